@@ -1,0 +1,24 @@
+// What a flown case returns: the same bits wherever, whenever and however often it is flown.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/flight/digest.h"
+#include "core/flight/metrics.h"
+
+namespace dispersa {
+
+struct CaseResult {
+  std::uint64_t case_index = 0;
+  Outcome outcome = Outcome::kNumericalFailure;
+  double end_time_s = 0.0;      ///< since lift-off
+  int end_stage = 0;            ///< 1-based stage burning, or last burnt, at the end
+  std::string reason;           ///< one sentence; empty when completed
+  std::vector<double> inputs;   ///< as applied, in the order of InputNames()
+  std::vector<double> metrics;  ///< in the order of MetricNames(); NaN = undefined
+  Digest digest;
+};
+
+}  // namespace dispersa

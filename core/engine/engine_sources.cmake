@@ -1,0 +1,12 @@
+# engine_sources(ROOT OUT [GLOB_OPTION...]): the sources under ROOT that decide the result of a case, as
+# sorted paths relative to ROOT. Statistics and reports only read results.
+function(engine_sources root out)
+  set(patterns "")
+  foreach(module IN ITEMS math random environment vehicle control dynamics flight optimization trajectory
+          campaign campaign_yaml)
+    list(APPEND patterns "${root}/core/${module}/*.h" "${root}/core/${module}/*.cc")
+  endforeach()
+  file(GLOB_RECURSE sources LIST_DIRECTORIES false RELATIVE "${root}" ${ARGN} ${patterns})
+  list(SORT sources COMPARE STRING CASE SENSITIVE ORDER ASCENDING)
+  set(${out} "${sources}" PARENT_SCOPE)
+endfunction()

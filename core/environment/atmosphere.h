@@ -1,0 +1,36 @@
+// US Standard Atmosphere, 1976 (NOAA-S/T 76-1562).
+#pragma once
+
+namespace dispersa {
+
+/// Air at one altitude. The perfect-gas law holds: density = pressure M / (8314.32 temperature), M the
+/// mean molecular weight of that altitude.
+struct AirState {
+  double temperature_k;  ///< kinetic
+  double pressure_pa;
+  double density_kg_m3;
+  double speed_of_sound_m_s;
+};
+
+/// Range of StandardAtmosphere1976.
+inline constexpr double kAtmosphereBottom_m = -5000.0;
+inline constexpr double kAtmosphereTop_m = 1.0e6;
+
+/// The standard's air at a geometric altitude.
+///
+/// - Below 86 km: its defining equations: seven layers of linear molecular-scale temperature in
+///   geopotential altitude (r0 = 6356.766 km), kinetic temperature by Table 8 (M/M0) from 80 km.
+/// - From 86 km: its closed forms of temperature (equations 25 to 31), and pressure and molecular weight
+///   interpolated between nodes of its Table VIII: ln p by the cubic that has the hydrostatic slope
+///   -g M / (R T) at each node, M by a monotone cubic. Density follows from the perfect-gas law.
+/// - All values are continuous. The speed of sound is sqrt(1.4 p / density); the standard prints none
+///   above 86 km, where it loses its meaning.
+/// - Below -5 km the air of -5 km. Above 1000 km pressure and density are zero, temperature (1000 K) and
+///   speed of sound those of 1000 km, so that a Mach number stays finite.
+AirState StandardAtmosphere1976(double geometric_altitude_m);
+
+/// Sutherland's dynamic viscosity, Pa s, with the standard's constants (equation 51): 1.458e-6 and
+/// 110.4 K. The standard applies it up to 86 km; it holds for about 100 K to 1900 K.
+double DynamicViscosity(double temperature_k);
+
+}  // namespace dispersa

@@ -1,0 +1,71 @@
+// Wind over altitude: jet stream, table, gusts and a steady part, summed.
+//
+// A direction is where the wind comes from, clockwise from north; components are what the air moves with.
+// Altitudes are geodetic.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace dispersa {
+
+/// Velocity of the air over the ground, m/s.
+struct WindNorthEast {
+  double north_m_s = 0.0;
+  double east_m_s = 0.0;
+};
+
+/// Components of a wind of a speed (m/s) that comes from an azimuth (rad, clockwise from north).
+WindNorthEast FromAzimuth(double speed_m_s, double azimuth_from_rad);
+
+/// Jet stream: speed max cos²(pi/2 (h - altitude) / width) within one width of its altitude, zero beyond.
+/// So width is both the full width at half maximum and the distance from the peak to calm: with
+/// width <= altitude the ground is calm. Peak value and altitude are exact and the slope is continuous.
+/// The 95 % winds of the worst month over Vandenberg and Cape Canaveral (Range Reference Atmosphere 2019)
+/// peak at 11 to 12 km and are 11 km wide at half maximum.
+struct JetStream {
+  double max_speed_m_s;
+  double altitude_m;
+  double width_m;
+  double azimuth_from_rad;
+};
+
+/// Components over altitude, linear between points. The first value holds below; above the last one the
+/// wind fades linearly to zero over kWindFade_m, because measured profiles end where air still moves.
+struct WindTable {
+  std::vector<double> altitude_m;  ///< strictly increasing, at least two
+  std::vector<double> north_m_s;
+  std::vector<double> east_m_s;
+};
+inline constexpr double kWindFade_m = 10000.0;
+
+/// Discrete gust, speed/2 (1 - cos(2 pi x / length)) at x from 0 to length above its start: the
+/// build-up of MIL-F-8785C (3.7.3.2) over half the length and its mirror image.
+struct Gust {
+  double speed_m_s;
+  double start_altitude_m;
+  double length_m;
+  double azimuth_from_rad;
+};
+
+using SteadyWind = WindNorthEast;
+
+/// Sum of its parts; an empty one is calm.
+struct Wind {
+  std::vector<JetStream> jets = {};
+  std::vector<WindTable> tables = {};
+  std::vector<Gust> gusts = {};
+  SteadyWind steady = {};
+};
+
+WindNorthEast Evaluate(const Wind& wind, double altitude_m);
+
+/// What is wrong with a part, one sentence each that also says what is allowed; empty when usable.
+std::vector<std::string> Problems(const JetStream& jet);
+std::vector<std::string> Problems(const WindTable& table);
+std::vector<std::string> Problems(const Gust& gust);
+std::vector<std::string> Problems(const SteadyWind& steady);
+/// Problems of every part, each prefixed as in "jets[0]: ".
+std::vector<std::string> Problems(const Wind& wind);
+
+}  // namespace dispersa

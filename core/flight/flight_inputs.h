@@ -1,0 +1,82 @@
+// Everything by which one flight differs from the nominal: what a case draws, applies and echoes.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "core/vehicle/vehicle.h"
+
+namespace dispersa {
+
+using PerStage = std::array<double, kMaxStages>;
+
+constexpr PerStage AllStages(double value) {
+  PerStage values{};
+  for (double& v : values) v = value;
+  return values;
+}
+
+/// Number of altitude levels of a drawn wind profile.
+inline constexpr int kWindLevels = 20;
+
+/// Doubles only (a column is an offset), SI and radians; the defaults are the nominal flight. Factors multiply the nominal value.
+struct FlightInputs {
+  PerStage thrust_misalignment_rad{};        ///< tilt of the thrust against the body axis
+  PerStage thrust_misalignment_clock_rad{};  ///< direction of the tilt: from body y towards body z
+  PerStage thrust_offset_m{};                ///< lateral offset of the thrust line
+  PerStage thrust_offset_clock_rad{};        ///< direction of the offset, likewise
+  PerStage thrust_factor = AllStages(1.0);
+  PerStage mass_flow_factor = AllStages(1.0);        ///< flow at full thrust; the burn shortens with it
+  PerStage specific_impulse_factor = AllStages(1.0); ///< thrust at the same flow
+  double wind_max_speed_m_s = 0.0;           ///< of the jet stream
+  double wind_azimuth_rad = 0.0;             ///< where it comes from, clockwise from north
+  double wind_altitude_m = 11000.0;          ///< of the maximum
+  double wind_width_m = 5000.0;
+  double gust_speed_m_s = 0.0;               ///< 1 - cosine gust
+  double gust_altitude_m = 0.0;              ///< where it starts
+  double gust_length_m = 0.0;
+  double gust_azimuth_rad = 0.0;
+  std::array<double, kWindLevels> wind_profile_north{};  ///< standard normal draws of a wind climatology
+  std::array<double, kWindLevels> wind_profile_east{};
+  double drag_factor = 1.0;                  ///< of the axial force
+  double lift_factor = 1.0;                  ///< of the normal force
+  double cg_factor = 1.0;                    ///< of the CG's distance from the nose of the current stack
+  double cp_factor = 1.0;                    ///< of the CP's
+  double density_factor = 1.0;
+  double inertia_factor = 1.0;
+  double actuator_bandwidth_factor = 1.0;
+  PerStage tip_off_pitch_rad_s{};            ///< rate added to the upper stack as stage i separates
+  PerStage tip_off_yaw_rad_s{};
+  PerStage tip_off_roll_rad_s{};
+  double gyro_bias_roll_rad_s = 0.0;
+  double gyro_bias_pitch_rad_s = 0.0;
+  double gyro_bias_yaw_rad_s = 0.0;
+  double gyro_noise_rad_s = 0.0;             ///< standard deviation of each sample
+  double stuck_nozzle = 0.0;                 ///< 0 none, 1..4 right, left, bottom, top
+  double stuck_nozzle_stage = 0.0;           ///< 1-based
+  double stuck_nozzle_rad = 0.0;             ///< angle at which it stays
+  double pn_error_factor = 1.0;              ///< of the first component of P_n, the paper's Fig. 5
+  double pn_rate_factor = 1.0;               ///< of the second
+  double loop_gain_factor = 1.0;             ///< of every commanded deflection: measures the gain margin
+  double loop_delay_s = 0.0;                 ///< further delay of the commands: measures the delay margin
+};
+
+/// A column of the applied inputs: its name carries the unit, e.g. "thrust_misalignment_stage1_deg".
+struct InputColumn {
+  std::string name;
+  double unit = 1.0;       ///< internal value = value in the unit of the name * unit
+  std::size_t offset = 0;  ///< in doubles from the start of FlightInputs
+};
+
+/// All columns in their fixed order, names without the prefix `input_`.
+const std::vector<InputColumn>& InputColumns();
+/// Position of a name in InputColumns(), or -1.
+int FindInput(const std::string& name);
+/// The input of a column, in internal units.
+double& InputValue(FlightInputs& inputs, int column);
+/// Values of all columns, in the units of their names.
+std::vector<double> InputValues(const FlightInputs& inputs);
+
+}  // namespace dispersa

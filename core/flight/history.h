@@ -1,0 +1,24 @@
+// Time history of one flight: rows at the output step and at every event.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace dispersa {
+
+/// Column names with units, in their fixed order; the first is time_s.
+const std::vector<std::string>& HistoryColumns();
+/// Position of a column, or -1.
+int FindHistoryColumn(const std::string& name);
+
+/// Rows of HistoryColumns().size() doubles each, row by row; NaN = undefined (empty in CSV).
+struct History {
+  double step_s = 0.1;         ///< output step
+  std::vector<double> values;  ///< shape (rows, columns)
+
+  std::size_t rows() const { return values.size() / HistoryColumns().size(); }
+  double at(std::size_t row, int column) const { return values[row * HistoryColumns().size() + column]; }
+};
+
+}  // namespace dispersa

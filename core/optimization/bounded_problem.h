@@ -1,0 +1,32 @@
+// A minimisation problem over a box, with constraints. The optimiser knows nothing else about it.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+namespace dispersa {
+
+/// What one point of the search space is worth.
+struct Evaluation {
+  /// To be minimised. A value that is not finite makes the point the worst infeasible one.
+  double objective = 0.0;
+  /// One value per constraint: 0 where it is satisfied, otherwise how far it is missed as a positive
+  /// fraction of its limit, so that different constraints can be added. Negative values count as 0; one
+  /// that is not a number, or infinite, makes the point the worst infeasible one.
+  std::vector<double> constraint_violations;
+  /// Decides among points of equal objective: lower wins. Not a number counts as +infinity.
+  double tie_breaker = 0.0;
+
+  bool operator==(const Evaluation&) const = default;
+};
+
+/// Minimise `evaluate` for lower <= x <= upper. A variable with lower == upper is fixed.
+struct BoundedProblem {
+  std::vector<double> lower;  ///< shape (n), finite
+  std::vector<double> upper;  ///< shape (n), finite, none below `lower`
+  /// A pure function of a point of shape (n): it is called from several threads at a time, and its
+  /// exceptions reach the caller of the optimiser.
+  std::function<Evaluation(const std::vector<double>&)> evaluate;
+};
+
+}  // namespace dispersa

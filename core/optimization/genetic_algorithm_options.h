@@ -1,0 +1,54 @@
+// Every setting of the genetic algorithm, with its range and where its value comes from.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+namespace dispersa {
+
+struct GeneticAlgorithmOptions {
+  /// Individuals in a generation; 4 to 1,000,000. Deb (2000) takes ten per variable; more where the feasible
+  /// region is small.
+  int population = 100;
+  /// Generations after the initial one; 0 to 1,000,000.
+  int generations = 200;
+  /// Individuals drawn, with replacement, for each parent, of which the best is taken; 1 (no selection) to
+  /// 1000. Two is Deb (2000).
+  int tournament_size = 2;
+  /// Best individuals that pass unchanged into the next generation; 1 to population - 1. One is enough for
+  /// the best never to get worse.
+  int elites = 2;
+  /// Probability that two parents are crossed; 0 to 1. 0.9 is Deb (2000).
+  double crossover_probability = 0.9;
+  /// Probability that a variable takes part when its parents are crossed; 0 to 1. 0.5 is Deb and Agrawal
+  /// (1995).
+  double variable_crossover_probability = 0.5;
+  /// Distribution index of the crossover, the larger the closer children stay to their parents; 0 to 1000.
+  /// Deb and Agrawal (1995) recommend 2 to 5 for a single objective.
+  double crossover_eta = 2.0;
+  /// Probability that a variable of a child is mutated; 0 to 1. Absent: one variable per child on average,
+  /// 1/n, as in Deb (2000).
+  std::optional<double> mutation_probability;
+  /// Distribution index of the mutation; 0 to 1000. A change is of the order of 1/eta of the variable's
+  /// range (Deb and Goyal, 1996): 20 gives a few percent.
+  double mutation_eta = 20.0;
+  /// Feasible objectives within this much of the lowest one ever found are equal, and the tie-breaker
+  /// decides; not negative, unit of the objective.
+  double objective_tolerance = 0.0;
+  /// A tie-breaker that falls by no more than this is no progress for `stall_generations`; not negative, unit
+  /// of the tie-breaker.
+  double tie_breaker_tolerance = 0.0;
+  /// Stop after this many generations without progress: the least violation has not fallen (while nothing is
+  /// feasible), the objective not by more than `objective_tolerance`, the tie-breaker not by more than
+  /// `tie_breaker_tolerance`; 0 (never) to 1,000,000.
+  int stall_generations = 0;
+  /// Seed of all draws.
+  std::uint64_t seed = 1;
+  /// Threads that evaluate individuals; 1 to 1024. The result does not depend on it.
+  int threads = 1;
+};
+
+/// Throws std::invalid_argument that names the first field out of its range, its value and what is allowed.
+void Validate(const GeneticAlgorithmOptions& options);
+
+}  // namespace dispersa

@@ -1,0 +1,21 @@
+// The variation operators of a real-coded genetic algorithm over a box.
+#pragma once
+
+#include <vector>
+
+#include "core/random/draws.h"
+
+namespace dispersa {
+
+/// Simulated binary crossover of one variable of two parents, in place: the children lie about the parents
+/// with a polynomial distribution of index eta, which is cut at the bounds so that no child leaves them.
+/// K. Deb and R. B. Agrawal, "Simulated binary crossover for continuous search space", Complex Systems 9
+/// (1995) 115-148; the bounded form as in Deb (2000), see feasibility_rules.h. Draws two numbers.
+void CrossOver(double* a, double* b, double lower, double upper, double eta, Stream* stream);
+
+/// `x` after a polynomial mutation of index eta, cut at the bounds: the larger eta, the smaller the change.
+/// K. Deb and M. Goyal, "A combined genetic adaptive search (GeneAS) for engineering design", Computer
+/// Science and Informatics 26 (1996) 30-45; bounded form as in Deb (2000). Draws one number.
+double Mutated(double x, double lower, double upper, double eta, Stream* stream);
+
+}  // namespace dispersa

@@ -1,0 +1,39 @@
+// What a table shows of one metric over the cases.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace dispersa {
+
+/// Statistics of a metric's defined (finite) values. What is undefined (all but the counts without values,
+/// std below two values) is NaN.
+struct Summary {
+  std::size_t n = 0;          ///< defined values
+  std::size_t undefined = 0;  ///< values that are not finite, left out of everything below
+  double mean;
+  double std;  ///< sample standard deviation, divisor n - 1
+  double min;
+  double max;
+  double p00_135;  ///< quantiles, see Quantile(): 0.135 %, the normal's -3 sigma
+  double p01;
+  double p05;
+  double p50;
+  double p95;
+  double p99;
+  double p99_73;
+  double p99_865;  ///< the normal's +3 sigma
+};
+
+/// The result's bits do not depend on the order of `values`: they are sorted, and summed with compensation.
+Summary Summarize(std::vector<double> values);
+
+/// The finite values in increasing order; -0 becomes 0.
+std::vector<double> SortedFinite(std::vector<double> values);
+
+/// Quantile of sorted values: linear between order statistics, the smallest at 0 and the largest at 1 (type 7
+/// of Hyndman and Fan, The American Statistician 50 (1996) 361-365, the default of R and NumPy). An estimate
+/// without a confidence: requirements use order_statistics.h. NaN without values.
+double Quantile(const std::vector<double>& sorted_values, double probability);
+
+}  // namespace dispersa

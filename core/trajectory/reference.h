@@ -1,0 +1,79 @@
+// What the optimiser found and every flight follows: the problem, the flight program, the orbit reached,
+// and the full attitude in the launch-inertial frame over time.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/flight/attitude_program.h"
+
+namespace dispersa {
+
+/// Section II of the paper: vertical to t1, turning with incidence to t2, then zero incidence; maximum
+/// incidence at t3. Times since lift-off.
+struct FlightProgram {
+  double alpha_max_rad = 0.0;       ///< magnitude of the (nose-down) maximum incidence
+  double t1_s = 0.0;
+  double t3_s = 0.0;
+  double t2_s = 0.0;
+  double coast_s = 0.0;             ///< from the third stage's burnout to the last stage's ignition
+  double launch_azimuth_rad = 0.0;  ///< clockwise from north
+};
+
+/// Injection: geodetic altitude, inertial speed, inertial flight path angle, inclination.
+struct Orbit {
+  double altitude_m = 0.0;
+  double velocity_m_s = 0.0;
+  double flight_path_angle_rad = 0.0;
+  double inclination_rad = 0.0;
+};
+
+struct ConstraintMargin {
+  std::string name;   ///< unit in the name
+  double value = 0.0;
+  double limit = 0.0;
+  double margin = 0.0;  ///< limit - value, >= 0 when satisfied
+  bool enforced = true; ///< false: reported only
+};
+
+struct Bounds {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+/// Target, decision variables' bounds, objective (8) and constraints of section II.
+struct TrajectoryProblem {
+  double target_altitude_m = 0.0;
+  double target_velocity_m_s = 0.0;
+  double target_flight_path_angle_rad = 0.0;
+  Bounds alpha_max_rad, t1_s, t3_s, t2_s, coast_s, launch_azimuth_rad;
+  double weight_altitude_1_m = 0.0;   ///< G1 of (8)
+  double weight_velocity_s_m = 0.0;   ///< G2
+  double weight_angle_1_rad = 0.0;    ///< G3
+  double axial_load_limit_g = 12.0;
+  double lateral_load_limit_g = 1.5;
+  double alpha_limit_rad = 0.0;
+  double transonic_mach_low = 0.8;    ///< alpha = 0 from here
+  double transonic_mach_high = 1.2;   ///< to here
+  double q_max_limit_pa = 0.0;        ///< 0: reported only
+  double q_alpha_limit_pa_rad = 0.0;  ///< 0: reported only
+  int population = 0;
+  int generations = 0;
+  std::uint64_t seed = 0;
+};
+
+struct Reference {
+  std::string name;
+  TrajectoryProblem problem;
+  FlightProgram program;
+  double last_ignition_s = 0.0;  ///< timer since lift-off of the last stage
+  Orbit orbit;                   ///< reached, by the optimiser's own simulation
+  std::vector<ConstraintMargin> constraints;
+  std::string engine;            ///< version that found it
+  std::string vehicle_sha256;    ///< of the canonical vehicle it was found for
+  std::int64_t evaluations = 0;
+  AttitudeProgram attitude;
+};
+
+}  // namespace dispersa

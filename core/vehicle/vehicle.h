@@ -1,0 +1,149 @@
+// The launch vehicle as its file describes it: plain data, SI and radians.
+//
+// Stations are distances aft of the nose tip of the full vehicle, along the axis; they do not change when
+// a stage separates. Body axes: x forward, y right, z down at launch attitude zero roll.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "core/math/linear.h"
+#include "core/math/table.h"
+
+namespace dispersa {
+
+/// Results, inputs and metrics have one column a stage; this is the largest number of stages.
+inline constexpr int kMaxStages = 4;
+
+/// A homogeneous hollow or solid cylinder on the axis: the building block of mass properties.
+struct MassElement {
+  std::string name;
+  double fraction = 0.0;  ///< of the stage's dry mass
+  double top_station_m = 0.0;
+  double bottom_station_m = 0.0;
+  double outer_diameter_m = 0.0;
+  double inner_diameter_m = 0.0;
+};
+
+/// Solid propellant: a tube that burns from its bore outwards, so its length and station stay.
+struct Grain {
+  double top_station_m = 0.0;
+  double bottom_station_m = 0.0;
+  double outer_diameter_m = 0.0;
+  double inner_diameter_m = 0.0;  ///< of the bore at ignition
+};
+
+/// Constant thrust between two linear ramps whose impulse is part of the whole: propellant flow is
+/// proportional to thrust, and the propellant is used up exactly at burnout.
+struct Motor {
+  double thrust_n = 0.0;            ///< all four nozzles together (the paper's 4P), in vacuum
+  double burning_time_s = 0.0;      ///< propellant_mass / burning_time is the flow at full thrust
+  double ignition_rise_s = 0.0;     ///< linear rise to full thrust
+  double tail_off_s = 0.0;          ///< linear decay at the end
+  double nozzle_exit_area_m2 = 0.0; ///< of all nozzles; P = P_vac - p A_e; 0 switches the term off
+  double published_mass_flow_kg_s = 0.0;  ///< as printed in the source, 0 if none; only compared
+};
+
+/// Four nozzles at 90°, each hinged in one plane: two for pitch (right, left), two for yaw (bottom, top);
+/// all four differentially for roll.
+struct Gimbal {
+  double pivot_station_m = 0.0;
+  double radius_m = 0.0;          ///< of the nozzle centres from the axis (the paper's z_r)
+  double limit_rad = 0.0;         ///< of each nozzle
+  double rate_limit_rad_s = 0.0;
+  double bandwidth_rad_s = 0.0;   ///< natural frequency of the second-order actuator
+  double damping_ratio = 0.7;
+  int delay_ticks = 1;            ///< whole autopilot ticks between command and actuator
+};
+
+enum class IgnitionTrigger {
+  kLiftOff,           ///< the first stage
+  kBurnoutDetection,  ///< `delay_s` after the stage below has separated
+  kTimer,             ///< at the flight program's time since lift-off
+};
+
+struct Stage {
+  std::string name;
+  double liftoff_mass_kg = 0.0;     ///< this stage and everything above it (Table 1)
+  double propellant_mass_kg = 0.0;
+  double diameter_m = 0.0;
+  double bottom_station_m = 0.0;    ///< where the stack ends while this stage is its lowest
+  Motor motor;
+  Grain grain;
+  std::vector<MassElement> structure;  ///< the dry mass; the fractions sum to 1
+  Gimbal gimbal;
+  IgnitionTrigger ignition = IgnitionTrigger::kLiftOff;
+  double ignition_delay_s = 0.0;    ///< after separation of the stage below (kBurnoutDetection)
+  double separation_delay_s = 0.0;  ///< after burnout detection; the last stage does not separate
+};
+
+/// Cold-gas couples about each axis, on the stack of the last stage: torque without net force.
+struct ReactionControl {
+  double thrust_n = 0.0;              ///< of one thruster; two fire at a time
+  double pitch_yaw_arm_m = 0.0;       ///< half the distance between the two thrusters of a couple
+  double roll_arm_m = 0.0;
+  double specific_impulse_s = 0.0;
+  double minimum_on_time_s = 0.0;     ///< minimum impulse bit / thrust
+};
+
+enum class ProfileShape { kTangentOgive, kCone, kCylinder, kFrustum };
+
+/// A piece of the outer mould line; the pieces follow one another from the nose tip aft.
+struct ProfileSection {
+  ProfileShape shape = ProfileShape::kCylinder;
+  double length_m = 0.0;
+  double aft_diameter_m = 0.0;  ///< the fore diameter is the section's before; 0 at the nose tip
+};
+
+/// Aerodynamic coefficients of one stack (the stages still attached) over Mach number and total
+/// incidence, in body axes: F = -q S (CA x + CN n), n the direction of the cross-flow.
+/// Outside the grid the end value holds.
+struct AeroTable {
+  double reference_area_m2 = 0.0;
+  double reference_length_m = 0.0;      ///< the diameter
+  std::vector<double> mach;
+  std::vector<double> incidence_rad;    ///< >= 0
+  std::vector<double> ca;               ///< shape (mach, incidence), row by row; power on
+  std::vector<double> cn;
+  std::vector<double> xcp_station_m;    ///< where the normal force acts
+  std::vector<double> cmq_per_rad;      ///< shape (mach): pitch and yaw damping, on q d / (2 V), about the CG
+  std::vector<double> clp_per_rad;      ///< shape (mach): roll damping on p d / (2 V)
+};
+
+/// Limits of the structure; 0 = none given.
+struct StructuralLimits {
+  double q_alpha_pa_rad = 0.0;
+  double axial_load_g = 0.0;
+  double lateral_load_g = 0.0;
+  bool terminate = false;  ///< end the flight as `structural_limit`, else only flag it
+};
+
+struct LaunchSite {
+  double latitude_rad = 0.0;   ///< geodetic
+  double longitude_rad = 0.0;
+  double altitude_m = 0.0;     ///< geodetic, of the vehicle's CG at rest
+};
+
+struct Vehicle {
+  std::string name;
+  LaunchSite site;
+  double hold_down_s = 0.0;             ///< stage 1 burns this long before release; lift-off is time 0
+  bool jet_damping = true;              ///< moment of the flow from CG to nozzle on a turning vehicle
+  std::vector<Stage> stages;            ///< in the order of flight
+  std::vector<ProfileSection> profile;  ///< outer mould line of the full vehicle
+  double surface_roughness_m = 0.0;     ///< equivalent sand grain, for skin friction
+  std::vector<AeroTable> aerodynamics;  ///< one a stack; empty: built up from the profile
+  ReactionControl reaction_control;
+  StructuralLimits limits;
+};
+
+/// What contradicts itself in a vehicle, each with the path of the value ("stages[1].propellant_mass_kg").
+struct VehicleProblem {
+  std::string path;
+  std::string message;  ///< what is wrong
+  std::string allowed;  ///< what is allowed
+};
+std::vector<VehicleProblem> Problems(const Vehicle& vehicle);
+
+}  // namespace dispersa
