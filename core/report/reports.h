@@ -1,0 +1,30 @@
+// The reports of a result folder, and the verdict they come to.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "core/campaign/campaign.h"
+#include "core/report/campaign_summary.h"
+#include "core/report/result_folder.h"
+
+namespace dispersa {
+
+struct ReportOptions {
+  std::uint64_t history_cases = 200;  ///< the first so many cases are flown again for the percentile bands
+  int threads = 1;                    ///< for flying them; the files do not depend on it
+  /// Called now and then with what is being done ("percentile bands", 120, 200); may throw to stop.
+  std::function<void(const std::string& what, std::uint64_t done, std::uint64_t total)> progress;
+};
+
+/// Writes cases.csv, histories/, summary.json and report.html from what is stored, each replaced as a whole.
+/// The same stored results give the same bytes whoever flew them. Flies the nominal, the worst cases and
+/// some others again; throws ResultError (kConflict) when a case does not reproduce its stored digest.
+CampaignSummary WriteReports(const ResultFolder& folder, const Campaign& campaign,
+                             const ReportOptions& options = {});
+
+/// cases.csv alone.
+void WriteCasesCsv(const ResultFolder& folder);
+
+}  // namespace dispersa

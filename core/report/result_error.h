@@ -1,0 +1,27 @@
+// What can go wrong with a result folder.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace dispersa {
+
+/// A result folder cannot be made, read or written. The message is one sentence with the path.
+class ResultError : public std::runtime_error {
+ public:
+  enum class Kind {
+    kUsage,     ///< not a result folder, not empty, not writable, of another flight id: bad usage
+    kDiskFull,  ///< no space left, or over quota: the run is incomplete and can be resumed
+    kConflict,  ///< a case returned twice with different digests: an internal error, never ignored
+    kFile,      ///< any other failure of the disk or the database
+  };
+
+  ResultError(Kind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}
+
+  Kind kind() const { return kind_; }
+
+ private:
+  Kind kind_;
+};
+
+}  // namespace dispersa
