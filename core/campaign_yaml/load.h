@@ -1,0 +1,62 @@
+// From the user's YAML files to the structs of the engine, and back for references.
+//
+// The schema of every kind of file is in README.md beside this header. A function that loads reads all files
+// that its argument refers to, and throws one InputError with every problem of all of them.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/campaign/campaign.h"
+#include "core/campaign/input_error.h"
+
+namespace dispersa {
+
+/// Values of the command line that replace the file's before anything is checked or hashed.
+struct CampaignOverrides {
+  std::optional<std::uint64_t> cases;
+  std::optional<std::uint64_t> seed;
+};
+
+/// The campaign of a file, to be flown: it must have a `reference`, not an `optimize` block. `warnings`, if
+/// given, receives what looks wrong but is legal (a reference that was found for another vehicle).
+Campaign LoadCampaign(const std::string& path, const CampaignOverrides& overrides = {},
+                      std::vector<InputProblem>* warnings = nullptr);
+/// The campaign of a canonical text (Campaign::canonical_yaml, a result folder's campaign.yaml), in which
+/// everything is inlined. `display_name` stands for the file in messages. The same campaign, the same
+/// canonical text, the same ids as LoadCampaign of the original.
+Campaign ParseCampaign(const std::string& yaml_text, const std::string& display_name);
+
+/// What `optimize` needs of a campaign: the problem in its `optimize` block, or the one that its reference
+/// carries.
+struct OptimizationInput {
+  std::string name;            ///< of the campaign
+  Vehicle vehicle;
+  std::string vehicle_sha256;  ///< of the canonical vehicle
+  TrajectoryProblem problem;
+};
+/// `seed` replaces the problem's.
+OptimizationInput LoadOptimization(const std::string& path, std::optional<std::uint64_t> seed = {});
+
+Vehicle LoadVehicle(const std::string& path);
+AutopilotConfig LoadAutopilot(const std::string& path);
+Reference LoadReference(const std::string& path);
+
+/// YAML text of a reference; angles in degrees, lengths in km. A number is the shortest text that reads back
+/// to the same bits. A few radian values are no double's worth of degrees; those become the nearest value
+/// that is, so ReadReference(WriteReference(x)) may differ from x in the last bit, but writing and reading
+/// again changes nothing more, neither value nor text.
+std::string WriteReference(const Reference& reference);
+/// The reference in a text, as LoadReference.
+Reference ReadReference(const std::string& yaml_text, const std::string& display_name);
+
+/// Every problem of a file of any kind, found by its `schema`; empty when it is valid.
+std::vector<InputProblem> ValidateFile(const std::string& path);
+
+/// 64 lower-case hexadecimal digits.
+std::string Sha256Hex(std::string_view bytes);
+
+}  // namespace dispersa

@@ -1,0 +1,43 @@
+// How a command joins the program. Each command is one file, command_<name>.cc, with one function
+//
+//   void AddRunCommand(CLI::App& app, Invocation& invocation) {
+//     auto options = std::make_shared<RunOptions>();
+//     CLI::App* command = app.add_subcommand("run", "fly a campaign");
+//     command->add_option("campaign", options->campaign, "campaign file")->required();
+//     command->callback([options, &invocation] {
+//       invocation.command = [options](const GlobalOptions& global) { return Run(*options, global); };
+//     });
+//   }
+//
+// which is declared below and called in main.cc; the function that flies returns an ExitCode. Results go to
+// stdout, everything else to stderr (spdlog's default logger writes there). Exceptions need no handling:
+// InputError ends with its text and 2, any other with its message and 1.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+#include "services/cli/exit_code.h"
+
+namespace dispersa {
+
+struct GlobalOptions {
+  bool json = false;   ///< one JSON object on stdout instead of text
+  bool quiet = false;  ///< no progress, only warnings and errors on stderr
+};
+
+/// What the command line asked for; main.cc runs it after parsing.
+struct Invocation {
+  GlobalOptions global;
+  std::function<ExitCode(const GlobalOptions&)> command;
+};
+
+void AddValidateCommand(CLI::App& app, Invocation& invocation);
+void AddPlanCommand(CLI::App& app, Invocation& invocation);
+void AddFlyCommand(CLI::App& app, Invocation& invocation);
+void AddOptimizeCommand(CLI::App& app, Invocation& invocation);
+void AddRunCommand(CLI::App& app, Invocation& invocation);
+void AddReplayCommand(CLI::App& app, Invocation& invocation);
+void AddReportCommand(CLI::App& app, Invocation& invocation);
+
+}  // namespace dispersa
