@@ -22,7 +22,7 @@ WindNorthEast FromAzimuth(double speed_m_s, double azimuth_from_rad);
 /// So width is both the full width at half maximum and the distance from the peak to calm: with
 /// width <= altitude the ground is calm. Peak value and altitude are exact and the slope is continuous.
 /// The 95 % winds of the worst month over Vandenberg and Cape Canaveral (Range Reference Atmosphere 2019)
-/// peak at 11 to 12 km and are 11 km wide at half maximum.
+/// peak at 11 and 12 km and are 12 and 13 km wide at half maximum.
 struct JetStream {
   double max_speed_m_s;
   double altitude_m;
