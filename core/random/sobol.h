@@ -20,7 +20,7 @@ namespace dispersa {
 /// that assume independent draws do not hold for them.
 class Sobol {
  public:
-  static constexpr std::size_t kMaxDimensions = 1000;
+  static constexpr std::size_t kMaxDimensions = 3667;  ///< of the tables
   static constexpr std::uint64_t kMaxCases = std::uint64_t{1} << 32;
 
   /// 1 to kMaxDimensions dimensions.

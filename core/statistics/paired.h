@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/statistics/intervals.h"
+#include "core/statistics/summary.h"
 
 namespace dispersa {
 
@@ -12,7 +13,7 @@ namespace dispersa {
 ///
 /// An undefined value (a lost flight) is infinitely bad, so that no pair is dropped: a pair that only b lost
 /// has the difference infinity, one that only a lost -infinity, one that both lost is equal. Intervals are
-/// order statistics of the pairs, valid for any distribution. Without pairs every number is NaN.
+/// order statistics of the pairs, valid for any distribution. Without pairs every number is undefined.
 struct PairedDifference {
   std::size_t n = 0;          ///< pairs
   std::size_t worse = 0;      ///< b > a, or only b undefined
@@ -20,11 +21,11 @@ struct PairedDifference {
   std::size_t equal = 0;
   std::size_t lost_a = 0;     ///< undefined in a, whether or not in b
   std::size_t lost_b = 0;
-  double median_difference;   ///< of b - a
-  Interval difference_interval;
-  double median_ratio;        ///< of b / a; NaN, as its interval, unless every defined value is positive
-  Interval ratio_interval;
-  double sign_test_p;         ///< exact and two-sided: worse and better equally likely, equal left out
+  double median_difference = kUndefined;  ///< of b - a
+  Interval difference_interval{kUndefined, kUndefined};
+  double median_ratio = kUndefined;  ///< of b / a; undefined, as its interval, unless all values are positive
+  Interval ratio_interval{kUndefined, kUndefined};
+  double sign_test_p = kUndefined;  ///< exact, two-sided: worse as likely as better, equal left out
 };
 
 /// a[i] and b[i] belong to the same case; as many of each.

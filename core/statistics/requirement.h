@@ -11,7 +11,7 @@ enum class Verdict { kPass, kFail, kInconclusive };
 enum class Side { kBelow, kAbove };
 
 /// The metric lies below (or above) the limit, strictly, with at least this probability.
-struct Requirement {
+struct ProbabilityRequirement {
   Side side = Side::kBelow;
   double limit = 0.0;          ///< in the metric's unit
   double probability = 0.9973; ///< in (0, 1)
@@ -32,16 +32,16 @@ struct RequirementResult {
 };
 
 /// Values that do not meet the limit; an undefined (not finite) value does not.
-std::int64_t CountFailures(const Requirement& requirement, const std::vector<double>& values);
+std::int64_t CountFailures(const ProbabilityRequirement& requirement, const std::vector<double>& values);
 
 /// Pass when ConsumerRisk <= consumer_risk with the missing cases counted as failures; fail when ProducerRisk
 /// <= consumer_risk (the Clopper-Pearson upper limit does not exceed the probability) with the missing counted
 /// as successes; else inconclusive. The cases are independent draws of a number fixed beforehand: neither a
 /// Latin hypercube or Sobol design nor a campaign stopped because of its results.
-RequirementResult Evaluate(const Requirement& requirement, std::int64_t n, std::int64_t failures,
+RequirementResult Evaluate(const ProbabilityRequirement& requirement, std::int64_t n, std::int64_t failures,
                            std::int64_t missing = 0);
 /// The same from one value a case, NaN for a lost flight or an undefined metric.
-RequirementResult Evaluate(const Requirement& requirement, const std::vector<double>& values,
+RequirementResult Evaluate(const ProbabilityRequirement& requirement, const std::vector<double>& values,
                            std::int64_t missing = 0);
 
 }  // namespace dispersa

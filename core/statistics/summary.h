@@ -2,27 +2,30 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace dispersa {
 
-/// Statistics of a metric's defined (finite) values. What is undefined (all but the counts without values,
-/// std below two values) is NaN.
+/// A number that the data do not define; written out as null.
+inline constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
+
+/// Statistics of a metric's defined (finite) values; kUndefined where there are too few of them.
 struct Summary {
   std::size_t n = 0;          ///< defined values
   std::size_t undefined = 0;  ///< values that are not finite, left out of everything below
-  double mean;
-  double std;  ///< sample standard deviation, divisor n - 1
-  double min;
-  double max;
-  double p00_135;  ///< quantiles, see Quantile(): 0.135 %, the normal's -3 sigma
-  double p01;
-  double p05;
-  double p50;
-  double p95;
-  double p99;
-  double p99_73;
-  double p99_865;  ///< the normal's +3 sigma
+  double mean = kUndefined;
+  double std = kUndefined;  ///< sample standard deviation, divisor n - 1
+  double min = kUndefined;
+  double max = kUndefined;
+  double p00_135 = kUndefined;  ///< quantiles, see Quantile(): 0.135 %, the normal's -3 sigma
+  double p01 = kUndefined;
+  double p05 = kUndefined;
+  double p50 = kUndefined;
+  double p95 = kUndefined;
+  double p99 = kUndefined;
+  double p99_73 = kUndefined;
+  double p99_865 = kUndefined;  ///< the normal's +3 sigma
 };
 
 /// The result's bits do not depend on the order of `values`: they are sorted, and summed with compensation.

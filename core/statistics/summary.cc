@@ -1,0 +1,70 @@
+#include "core/statistics/summary.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace dispersa {
+namespace {
+
+/// Neumaier's compensated sum of term(value) in the given order.
+template <typename Term>
+double Sum(const std::vector<double>& values, Term term) {
+  double sum = 0.0;
+  double compensation = 0.0;
+  for (const double value : values) {
+    const double addend = term(value);
+    const double next = sum + addend;
+    compensation += std::fabs(sum) >= std::fabs(addend) ? (sum - next) + addend : (addend - next) + sum;
+    sum = next;
+  }
+  return sum + compensation;
+}
+
+double StandardDeviation(const std::vector<double>& values, double mean) {
+  if (values.size() < 2) return kUndefined;
+  const double squares = Sum(values, [mean](double value) { return (value - mean) * (value - mean); });
+  return std::sqrt(squares / static_cast<double>(values.size() - 1));
+}
+
+}  // namespace
+
+std::vector<double> SortedFinite(std::vector<double> values) {
+  std::erase_if(values, [](double value) { return !std::isfinite(value); });
+  for (double& value : values) value += 0.0;  // -0 and 0 compare equal: sorting would keep their order
+  std::sort(values.begin(), values.end());
+  return values;
+}
+
+double Quantile(const std::vector<double>& sorted_values, double probability) {
+  assert(probability >= 0.0 && probability <= 1.0);
+  if (sorted_values.empty()) return kUndefined;
+  const double position = probability * static_cast<double>(sorted_values.size() - 1);
+  const auto below = static_cast<std::size_t>(position);
+  if (below + 1 >= sorted_values.size()) return sorted_values.back();
+  return std::lerp(sorted_values[below], sorted_values[below + 1], position - static_cast<double>(below));
+}
+
+Summary Summarize(std::vector<double> values) {
+  const std::size_t cases = values.size();
+  const std::vector<double> sorted = SortedFinite(std::move(values));
+  const std::size_t n = sorted.size();
+  const auto identity = [](double value) { return value; };
+  const double mean = n == 0 ? kUndefined : Sum(sorted, identity) / static_cast<double>(n);
+  return {.n = n,
+          .undefined = cases - n,
+          .mean = mean,
+          .std = StandardDeviation(sorted, mean),
+          .min = Quantile(sorted, 0.0),
+          .max = Quantile(sorted, 1.0),
+          .p00_135 = Quantile(sorted, 0.00135),
+          .p01 = Quantile(sorted, 0.01),
+          .p05 = Quantile(sorted, 0.05),
+          .p50 = Quantile(sorted, 0.50),
+          .p95 = Quantile(sorted, 0.95),
+          .p99 = Quantile(sorted, 0.99),
+          .p99_73 = Quantile(sorted, 0.9973),
+          .p99_865 = Quantile(sorted, 0.99865)};
+}
+
+}  // namespace dispersa
