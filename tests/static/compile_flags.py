@@ -1,0 +1,48 @@
+"""Checks that every source of the product is compiled under the floating-point contract.
+
+usage: compile_flags.py REPOSITORY COMPILE_COMMANDS.json
+"""
+import json
+import pathlib
+import shlex
+import sys
+
+MARCH = "-march=x86-64-v3"
+CONTRACTION = "-ffp-contract=off"
+# What lets a compiler change values.
+FORBIDDEN = {
+    "-ffast-math", "-Ofast", "-funsafe-math-optimizations", "-fassociative-math", "-freciprocal-math",
+    "-ffinite-math-only", "-fno-signed-zeros", "-fno-trapping-math", "-fcx-limited-range",
+    "-fsingle-precision-constant", "-mrecip", "-mfpmath=387", "-fopenmp",
+}
+
+
+def violations(arguments):
+    """What is wrong with one compiler command. The last of repeated options counts."""
+    found = sorted(FORBIDDEN.intersection(arguments))
+    march = [a for a in arguments if a.startswith("-march=")]
+    contraction = [a for a in arguments if a.startswith("-ffp-contract=")]
+    if not march or march[-1] != MARCH:
+        found.append(f"lacks {MARCH}")
+    if not contraction or contraction[-1] != CONTRACTION:
+        found.append(f"lacks {CONTRACTION}")
+    return found
+
+
+def check(root, commands):
+    """Violations, one line each; `commands` is the parsed compile_commands.json."""
+    problems, seen = [], 0
+    for entry in commands:
+        path = pathlib.Path(entry["directory"], entry["file"])
+        if not path.is_relative_to(root) or path.relative_to(root).parts[0] not in ("core", "services"):
+            continue
+        seen += 1
+        for violation in violations(shlex.split(entry["command"])):
+            problems.append(f"{path.relative_to(root)}: {violation}")
+    return problems if seen else ["no source of core/ in compile_commands.json"]
+
+
+if __name__ == "__main__":
+    found = check(pathlib.Path(sys.argv[1]), json.loads(pathlib.Path(sys.argv[2]).read_text()))
+    print("\n".join(found))
+    sys.exit(1 if found else 0)

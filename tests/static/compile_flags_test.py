@@ -1,0 +1,37 @@
+"""compile_flags.py finds commands that break the floating-point contract."""
+import pathlib
+import unittest
+
+import compile_flags
+
+GOOD = "c++ -O3 -march=x86-64-v3 -ffp-contract=off -o a.o -c a.cc"
+
+
+def check(command, file="/src/core/math/a.cc"):
+    entry = {"directory": "/build", "file": file, "command": command}
+    return compile_flags.check(pathlib.Path("/src"), [entry])
+
+
+class CompileFlagsTest(unittest.TestCase):
+    def test_accepts_the_contract(self):
+        self.assertEqual(check(GOOD), [])
+
+    def test_finds_missing_options(self):
+        self.assertEqual(check("c++ -c a.cc"), ["core/math/a.cc: lacks -march=x86-64-v3",
+                                                "core/math/a.cc: lacks -ffp-contract=off"])
+
+    def test_the_last_option_counts(self):
+        self.assertEqual(check(GOOD + " -ffp-contract=fast -march=native"),
+                         ["core/math/a.cc: lacks -march=x86-64-v3", "core/math/a.cc: lacks -ffp-contract=off"])
+
+    def test_finds_value_changing_options(self):
+        self.assertEqual(check(GOOD + " -ffast-math"), ["core/math/a.cc: -ffast-math"])
+
+    def test_services_count_and_tests_do_not(self):
+        self.assertEqual(check(GOOD + " -Ofast", "/src/services/worker/a.cc"), ["services/worker/a.cc: -Ofast"])
+        self.assertEqual(check("c++ -c a.cc", "/src/tests/unit/a.cc"),
+                         ["no source of core/ in compile_commands.json"])
+
+
+if __name__ == "__main__":
+    unittest.main()

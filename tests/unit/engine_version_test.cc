@@ -1,0 +1,14 @@
+#include "core/engine/version.h"
+
+#include <gmock/gmock.h>
+
+namespace dispersa {
+namespace {
+
+// What the digits depend on is tested in tests/static/engine_version_test.py.
+TEST(EngineVersion, IsProjectVersionAndDigest) {
+  EXPECT_THAT(EngineVersion(), testing::MatchesRegex("[0-9]+\\.[0-9]+\\.[0-9]+\\+[0-9a-f]{12}"));
+}
+
+}  // namespace
+}  // namespace dispersa
