@@ -15,11 +15,11 @@ namespace dispersa {
 /// has the difference infinity, one that only a lost -infinity, one that both lost is equal. Intervals are
 /// order statistics of the pairs, valid for any distribution. Without pairs every number is undefined.
 struct PairedDifference {
-  std::size_t n = 0;          ///< pairs
-  std::size_t worse = 0;      ///< b > a, or only b undefined
-  std::size_t better = 0;     ///< b < a, or only a undefined
+  std::size_t n = 0;       ///< pairs
+  std::size_t worse = 0;   ///< b > a, or only b undefined
+  std::size_t better = 0;  ///< b < a, or only a undefined
   std::size_t equal = 0;
-  std::size_t lost_a = 0;     ///< undefined in a, whether or not in b
+  std::size_t lost_a = 0;  ///< undefined in a, whether or not in b
   std::size_t lost_b = 0;
   double median_difference = kUndefined;  ///< of b - a
   Interval difference_interval{kUndefined, kUndefined};

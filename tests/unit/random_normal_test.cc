@@ -1,5 +1,6 @@
 #include "core/random/normal.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 

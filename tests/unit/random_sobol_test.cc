@@ -1,14 +1,15 @@
 #include "core/random/sobol.h"
 
 #include <cmath>
-#include <fstream>
 #include <set>
-#include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "core/random/draws.h"
+#include "tests/unit/read_csv.h"
 
 namespace dispersa {
 namespace {
@@ -20,23 +21,16 @@ std::vector<std::string> Names(std::size_t dimensions) {
 }
 
 TEST(Sobol, MatchesJoeAndKuo) {
-  std::ifstream file(DISPERSA_TEST_DATA "/stats/sobol_joekuo_first32_d10.csv");
-  std::string line;
-  ASSERT_TRUE(std::getline(file, line));
+  const auto rows = ReadCsv(DISPERSA_TEST_DATA "/stats/sobol_joekuo_first32_d10.csv");
+  ASSERT_EQ(rows.size(), 32u);
   const Sobol sobol(1, Names(10));
-  std::uint64_t rows = 0;
-  while (std::getline(file, line)) {
-    std::istringstream cells(line);
-    std::string cell;
-    std::getline(cells, cell, ',');
-    ASSERT_EQ(std::stoull(cell), rows);
+  for (std::uint64_t i = 0; i < rows.size(); ++i) {
+    ASSERT_EQ(rows[i].size(), 11u);
+    EXPECT_EQ(rows[i][0], static_cast<double>(i));
     for (std::size_t dimension = 0; dimension < 10; ++dimension) {
-      ASSERT_TRUE(std::getline(cells, cell, ','));
-      EXPECT_EQ(sobol.Unshifted(rows, dimension), std::stod(cell)) << "row " << rows << ", " << dimension;
+      EXPECT_EQ(sobol.Unshifted(i, dimension), rows[i][1 + dimension]) << "point " << i << ", " << dimension;
     }
-    ++rows;
   }
-  EXPECT_EQ(rows, 32u);
 }
 
 // Any aligned block of 2^k points has one in each of 2^k strata, in every dimension of the tables, with the
