@@ -1,0 +1,151 @@
+#include "core/vehicle/aerodynamics_build_up.h"
+
+#include "core/math/constants.h"
+#include "core/math/functions.h"
+#include "core/vehicle/drag.h"
+#include "core/vehicle/mould_line.h"
+#include "core/vehicle/normal_force.h"
+#include "core/vehicle/shock_expansion.h"
+
+namespace dispersa {
+namespace {
+
+// Dense where the coefficients bend, so that linear interpolation stays within 1 % of the methods.
+const std::vector<double> kMach = {0.0,  0.1,  0.3,   0.5, 0.6,   0.7,  0.75,  0.8, 0.825, 0.85, 0.875, 0.9,
+                                   0.925, 0.95, 0.975, 1.0, 1.025, 1.05, 1.075, 1.1, 1.125, 1.15, 1.175, 1.2,
+                                   1.225, 1.25, 1.275, 1.3, 1.35,  1.4,  1.45,  1.5, 1.6,   1.7,  1.8,   2.0,
+                                   2.25, 2.5,  2.75,  3.0, 3.5,   4.0,  4.5,   5.0, 6.0,   7.0,  8.0,   10.0,
+                                   12.0, 15.0, 20.0};
+const std::vector<double> kIncidence_deg = {0.0,  1.0,  2.0,  3.0,  4.0,   5.0,   6.0,   8.0,   10.0,  12.0,
+                                            15.0, 18.0, 22.0, 26.0, 30.0,  35.0,  40.0,  50.0,  60.0,  70.0,
+                                            80.0, 90.0, 100.0, 110.0, 120.0, 130.0, 140.0, 150.0, 160.0, 170.0,
+                                            175.0, 180.0};
+
+constexpr double kSlenderMach = 0.8;
+constexpr double kUnknownNozzleShare = 0.5;  // of the base, for four nozzles in a circle (at most 0.69)
+
+double SmoothStep(double low, double high, double x) {
+  const double t = Clamp((x - low) / (high - low), 0.0, 1.0);
+  return t * t * (3.0 - 2.0 * t);
+}
+
+/// One stack's body with what its coefficients are made from.
+class Stack {
+ public:
+  Stack(const Vehicle& vehicle, const Stage& lowest)
+      : body_(CutMouldLine(vehicle.profile, lowest.bottom_station_m)),
+        integrals_(Integrate(body_)),
+        slender_(SlenderBody(integrals_)),
+        diameter_m_(lowest.diameter_m),
+        area_m2_(kPi / 4.0 * Square(lowest.diameter_m)),
+        base_area_m2_(kPi * Square(integrals_.base_radius_m)),
+        roughness_m_(vehicle.surface_roughness_m) {
+    const double exit_m2 = lowest.motor.nozzle_exit_area_m2;
+    nozzle_share_ = exit_m2 > 0.0 ? Clamp(exit_m2 / base_area_m2_, 0.0, 1.0) : kUnknownNozzleShare;
+  }
+
+  AeroTable Table() const {
+    AeroTable table;
+    table.reference_area_m2 = area_m2_;
+    table.reference_length_m = diameter_m_;
+    table.mach = kMach;
+    for (const double incidence_deg : kIncidence_deg) {
+      table.incidence_rad.push_back(incidence_deg * kRadPerDeg);
+    }
+    for (const double mach : kMach) AddRow(mach, table);
+    return table;
+  }
+
+ private:
+  void AddRow(double mach, AeroTable& table) const {
+    const double friction = Friction(mach);
+    const double forward = friction + ForebodyDrag(mach) + PoweredBaseDrag(mach);
+    const double backward = friction + FlatFaceDrag(mach) * base_area_m2_ / area_m2_;
+    const NormalForceSlope slope = PotentialSlope(mach);
+    for (const double incidence_deg : kIncidence_deg) {
+      const bool nose_first = incidence_deg <= 90.0;
+      const double folded_rad = (nose_first ? incidence_deg : 180.0 - incidence_deg) * kRadPerDeg;
+      const double cosine = incidence_deg == 90.0 ? 0.0 : Cos(folded_rad);
+      table.ca.push_back((nose_first ? forward : -backward) * Square(cosine));
+      const NormalForceSlope& potential = nose_first ? slope : slender_;
+      AddNormalForce(mach, folded_rad, potential, table);
+    }
+    table.cmq_per_rad.push_back(PitchDamping());
+    table.clp_per_rad.push_back(RollDamping(mach));
+  }
+
+  double SkinFriction(double mach) const {
+    return SkinFrictionCoefficient(mach, integrals_.length_m, roughness_m_);
+  }
+
+  /// On the body's curvature: Hoerner, Fluid-Dynamic Drag, 6-17.
+  double Friction(double mach) const {
+    const double fineness = integrals_.length_m / (2.0 * integrals_.largest_radius_m);
+    const double form = 1.0 + 1.5 / Pow(fineness, 1.5) + 7.0 / (Square(fineness) * fineness);
+    return SkinFriction(mach) * form * integrals_.wetted_area_m2 / area_m2_;
+  }
+
+  double ForebodyDrag(double mach) const {
+    double area_m2 = 0.0;
+    for (const MouldSection& section : body_) area_m2 += PressureDragArea(section, mach);
+    return area_m2 / area_m2_;
+  }
+
+  double PoweredBaseDrag(double mach) const {
+    return BaseDrag(mach) * (1.0 - nozzle_share_) * base_area_m2_ / area_m2_;
+  }
+
+  NormalForceSlope PotentialSlope(double mach) const {
+    if (mach <= kSlenderMach) return slender_;
+    const NormalForceSlope fast =
+        ShockExpansion(body_, mach < kShockExpansionMach ? kShockExpansionMach : mach).normal_force;
+    const double share = SmoothStep(kSlenderMach, kShockExpansionMach, mach);
+    return {slender_.area_m2 + share * (fast.area_m2 - slender_.area_m2),
+            slender_.moment_m3 + share * (fast.moment_m3 - slender_.moment_m3)};
+  }
+
+  void AddNormalForce(double mach, double folded_rad, const NormalForceSlope& slope, AeroTable& table) const {
+    const double sine = Sin(folded_rad);
+    const double mean_diameter_m = integrals_.planform_area_m2 / integrals_.length_m;
+    const double eta = CrossFlowEndFactor(integrals_.length_m / mean_diameter_m, mach);
+    const double cross = eta * CrossFlowDrag(mach * sine) * Square(sine);
+    const double potential = 0.5 * Sin(2.0 * folded_rad) * Cos(0.5 * folded_rad);
+    const double force_m2 = slope.area_m2 * potential + cross * integrals_.planform_area_m2;
+    const double moment_m3 = slope.moment_m3 * potential + cross * integrals_.planform_moment_m3;
+    table.cn.push_back(force_m2 / area_m2_);
+    table.xcp_station_m.push_back(sine == 0.0 ? slope.moment_m3 / slope.area_m2 : moment_m3 / force_m2);
+  }
+
+  /// The incidence that a pitch rate adds at station x is q (x - x_mid) / V; each cross-section's
+  /// momentum A V^2 times it changes along the body (Munk, Lighthill).
+  double PitchDamping() const {
+    const double middle_m = 0.5 * integrals_.length_m;
+    const double sum_m4 = base_area_m2_ * Square(integrals_.length_m - middle_m) -
+                          (integrals_.volume_moment_m4 - middle_m * integrals_.volume_m3);
+    return -4.0 * sum_m4 / (area_m2_ * Square(diameter_m_));
+  }
+
+  /// Skin friction turns with the surface by p r / V.
+  double RollDamping(double mach) const {
+    return -2.0 * SkinFriction(mach) * integrals_.roll_moment_m4 / (area_m2_ * Square(diameter_m_));
+  }
+
+  std::vector<MouldSection> body_;
+  BodyIntegrals integrals_;
+  NormalForceSlope slender_;
+  double diameter_m_;
+  double area_m2_;
+  double base_area_m2_;
+  double roughness_m_;
+  double nozzle_share_;
+};
+
+}  // namespace
+
+std::vector<AeroTable> BuildAerodynamics(const Vehicle& vehicle) {
+  std::vector<AeroTable> tables;
+  for (const Stage& stage : vehicle.stages) tables.push_back(Stack(vehicle, stage).Table());
+  return tables;
+}
+
+}  // namespace dispersa

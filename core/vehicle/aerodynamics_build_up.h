@@ -1,0 +1,35 @@
+// Aerodynamic tables of a launch vehicle from its outer mould line.
+#pragma once
+
+#include <vector>
+
+#include "core/vehicle/vehicle.h"
+
+namespace dispersa {
+
+/// One table a stack: table k is for stages k to the last, that is, for the profile from the nose tip to
+/// vehicle.stages[k].bottom_station_m, on the cross-section and diameter of stage k.
+///
+/// Sum of components, each a body of revolution's (a = incidence, a' = a up to 90 degrees and 180 - a
+/// beyond; Jorgensen, NASA TN D-6996):
+/// - CN = C_Na(M) / 2 sin 2a' cos(a'/2) + eta Cdc(M sin a) A_p / S sin^2 a. C_Na is slender-body theory up
+///   to Mach 0.8 and second-order shock expansion from Mach 1.5, blended between; tail first it is that of
+///   the base. The cross-flow term acts at the centroid of the planform.
+/// - CA = CA0(M) cos^2 a' nose first, -CA180(M) cos^2 a' tail first.
+/// - CA0: turbulent skin friction with roughness, pressure drag of nose, frustums and boat-tails, base drag
+///   (drag.h). Power on: the nozzles' exits take their share of the base away (Fleeman); half of the base
+///   if the vehicle gives no exit area.
+/// - Pitch damping: slender-body theory, about the middle of the stack's length, the same at every Mach.
+/// - Roll damping: of skin friction only, there are no fins.
+///
+/// Grid: Mach 0 to 20, incidence 0 to 180 degrees; outside, the end value holds (at Mach 20 all
+/// coefficients have reached their hypersonic limits, and a launcher is above the sensible atmosphere).
+/// Validity: fineness above 5, attached flow ahead of the base at small incidence; estimated accuracy 15 %
+/// of CA and 10 % of CN at incidences up to 15 degrees outside Mach 0.8 to 1.5, twice that inside; beyond
+/// 30 degrees physical in sign and size only. Continuum flow, air without reactions, no plume effect on
+/// the body.
+///
+/// Precondition: a profile that passes Problems(): it reaches every stage's bottom.
+std::vector<AeroTable> BuildAerodynamics(const Vehicle& vehicle);
+
+}  // namespace dispersa
