@@ -18,13 +18,15 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 double ClopperPearsonLower(std::int64_t events, std::int64_t n, double confidence) {
   assert(n > 0 && events >= 0 && events <= n && confidence > 0.0 && confidence < 1.0);
   if (events == 0) return 0.0;
-  return boost::math::ibetac_inv(static_cast<double>(events), static_cast<double>(n - events + 1), confidence);
+  return boost::math::ibetac_inv(static_cast<double>(events), static_cast<double>(n - events + 1),
+                                 confidence);
 }
 
 double ClopperPearsonUpper(std::int64_t events, std::int64_t n, double confidence) {
   assert(n > 0 && events >= 0 && events <= n && confidence > 0.0 && confidence < 1.0);
   if (events == n) return 1.0;
-  return boost::math::ibeta_inv(static_cast<double>(events + 1), static_cast<double>(n - events), confidence);
+  return boost::math::ibeta_inv(static_cast<double>(events + 1), static_cast<double>(n - events),
+                                confidence);
 }
 
 Interval ClopperPearson(std::int64_t events, std::int64_t n, double confidence) {

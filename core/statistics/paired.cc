@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The median of sorted values; between two equal infinities, that infinity; between opposite ones, undefined.
+/// The median of sorted values; between equal infinities, that infinity; between opposite ones, undefined.
 template <typename Middle>
 double Median(const std::vector<double>& sorted, Middle middle) {
   const std::size_t half = sorted.size() / 2;
@@ -29,7 +29,8 @@ double SignTest(std::size_t worse, std::size_t better) {
 
 }  // namespace
 
-PairedDifference ComparePaired(const std::vector<double>& a, const std::vector<double>& b, double confidence) {
+PairedDifference ComparePaired(const std::vector<double>& a, const std::vector<double>& b,
+                               double confidence) {
   assert(a.size() == b.size());
   PairedDifference result;
   result.n = a.size();

@@ -11,7 +11,8 @@ namespace dispersa {
 
 std::int64_t CountFailures(const ProbabilityRequirement& requirement, const std::vector<double>& values) {
   return std::count_if(values.begin(), values.end(), [&](double value) {
-    const bool meets = requirement.side == Side::kBelow ? value < requirement.limit : value > requirement.limit;
+    const bool meets =
+        requirement.side == Side::kBelow ? value < requirement.limit : value > requirement.limit;
     return !std::isfinite(value) || !meets;
   });
 }

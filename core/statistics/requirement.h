@@ -13,9 +13,10 @@ enum class Side { kBelow, kAbove };
 /// The metric lies below (or above) the limit, strictly, with at least this probability.
 struct ProbabilityRequirement {
   Side side = Side::kBelow;
-  double limit = 0.0;          ///< in the metric's unit
-  double probability = 0.9973; ///< in (0, 1)
-  double consumer_risk = 0.10; ///< in (0, 0.5): of passing a design that misses, and of failing one that meets
+  double limit = 0.0;           ///< in the metric's unit
+  double probability = 0.9973;  ///< in (0, 1)
+  /// In (0, 0.5): of passing a design that just misses, and of failing one that just meets.
+  double consumer_risk = 0.10;
 };
 
 struct RequirementResult {
@@ -35,9 +36,9 @@ struct RequirementResult {
 std::int64_t CountFailures(const ProbabilityRequirement& requirement, const std::vector<double>& values);
 
 /// Pass when ConsumerRisk <= consumer_risk with the missing cases counted as failures; fail when ProducerRisk
-/// <= consumer_risk (the Clopper-Pearson upper limit does not exceed the probability) with the missing counted
-/// as successes; else inconclusive. The cases are independent draws of a number fixed beforehand: neither a
-/// Latin hypercube or Sobol design nor a campaign stopped because of its results.
+/// <= consumer_risk (the Clopper-Pearson upper limit does not exceed the probability) with the missing ones
+/// counted as successes; else inconclusive. The cases are independent draws of a number fixed beforehand:
+/// neither a Latin hypercube or Sobol design nor a campaign stopped because of its results.
 RequirementResult Evaluate(const ProbabilityRequirement& requirement, std::int64_t n, std::int64_t failures,
                            std::int64_t missing = 0);
 /// The same from one value a case, NaN for a lost flight or an undefined metric.

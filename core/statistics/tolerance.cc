@@ -17,7 +17,7 @@ std::int64_t WilksOneSided(double coverage, double confidence, std::int64_t orde
 }
 
 std::int64_t WilksTwoSided(double coverage, double confidence) {
-  // The share between the extremes has the distribution of the share below the second largest: Beta(n - 1, 2).
+  // The share between the extremes is distributed as that below the second largest: Beta(n - 1, 2).
   return WilksOneSided(coverage, confidence, 2);
 }
 

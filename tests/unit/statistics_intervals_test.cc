@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -23,10 +25,11 @@ TEST(ClopperPearson, MatchesSciPy) {
     const auto n = static_cast<std::int64_t>(row[1]);
     const double confidence = row[2];
     const Interval two_sided = ClopperPearson(events, n, confidence);
-    EXPECT_NEAR(two_sided.lower, row[3], kPrinted * row[3]) << events << " of " << n;
-    EXPECT_NEAR(two_sided.upper, row[4], kPrinted * row[4]) << events << " of " << n;
-    EXPECT_NEAR(ClopperPearsonLower(events, n, confidence), row[5], kPrinted * row[5]) << events << " of " << n;
-    EXPECT_NEAR(ClopperPearsonUpper(events, n, confidence), row[6], kPrinted * row[6]) << events << " of " << n;
+    SCOPED_TRACE(std::to_string(events) + " of " + std::to_string(n));
+    EXPECT_NEAR(two_sided.lower, row[3], kPrinted * row[3]);
+    EXPECT_NEAR(two_sided.upper, row[4], kPrinted * row[4]);
+    EXPECT_NEAR(ClopperPearsonLower(events, n, confidence), row[5], kPrinted * row[5]);
+    EXPECT_NEAR(ClopperPearsonUpper(events, n, confidence), row[6], kPrinted * row[6]);
   }
 }
 
@@ -120,7 +123,8 @@ TEST(QuantileInterval, CoversTheQuantile) {
   }
   // The ranks give this coverage exactly; four standard errors of the simulation (fixed seeds).
   const RankInterval ranks = QuantileRanks(kCases, 0.9, 0.9);
-  const double exact = ConsumerRisk(0.1, kCases, ranks.upper - 1) - ConsumerRisk(0.1, kCases, ranks.lower - 1);
+  const double exact =
+      ConsumerRisk(0.1, kCases, ranks.upper - 1) - ConsumerRisk(0.1, kCases, ranks.lower - 1);
   EXPECT_GE(exact, 0.9);
   EXPECT_NEAR(covered / double{kReplicates}, exact, 4.0 * std::sqrt(0.9 * 0.1 / kReplicates));
 }
