@@ -9,6 +9,7 @@
 
 #include "core/control/autopilot_config.h"
 #include "core/environment/wind.h"
+#include "core/environment/wind_statistics.h"
 #include "core/flight/flight_inputs.h"
 #include "core/trajectory/reference.h"
 #include "core/vehicle/vehicle.h"
