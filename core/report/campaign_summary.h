@@ -9,6 +9,9 @@
 
 #include "core/campaign/campaign.h"
 #include "core/campaign/case_result.h"
+#include "core/report/case_columns.h"
+#include "core/report/dispersion_summary.h"
+#include "core/report/requirement_summary.h"
 #include "core/report/result_folder.h"
 #include "core/statistics/summary.h"
 
@@ -26,23 +29,6 @@ struct MetricSummary {
   Summary statistics;
 };
 
-/// A lost flight (any outcome but completed) is a failure of every requirement.
-struct RequirementSummary {
-  std::string metric;
-  bool below = true;  ///< else above
-  double limit = 0.0;
-  double probability = 0.0;
-  double consumer_risk = 0.0;
-  std::int64_t n = 0;
-  std::int64_t failures = 0;
-  std::int64_t lost_flights = 0;        ///< of the failures
-  std::string verdict;                  ///< "pass", "fail" or "inconclusive"
-  double success_lower = 0.0;           ///< one-sided confidence bounds of the success probability
-  double success_upper = 1.0;
-  std::optional<std::int64_t> cases_needed;  ///< at least so many cases in all, if no further one fails
-  std::string sentence;                 ///< the verdict in words
-};
-
 struct WorstCase {
   std::uint64_t case_index = 0;
   std::optional<double> value;  ///< none: undefined
@@ -54,16 +40,6 @@ struct WorstCases {
   std::vector<WorstCase> cases;  ///< worst first; lost flights before all others
 };
 
-/// A dispersion as declared against the inputs as the flights applied them, in the unit of the column.
-struct DispersionSummary {
-  std::string dispersion;      ///< its name
-  std::string input;           ///< column, without the prefix
-  std::string declared;        ///< "normal, 3 sigma 0.25", ...
-  std::optional<double> expected_mean;  ///< of the declared distribution
-  std::optional<double> expected_std;
-  Summary drawn;
-};
-
 struct CampaignSummary {
   std::string name;
   std::string id;
@@ -71,9 +47,7 @@ struct CampaignSummary {
   std::uint64_t seed = 0;
   std::uint64_t cases = 0;     ///< asked for
   std::uint64_t flown = 0;
-  std::string sampling;        ///< "monte_carlo", ...
-  bool independent = true;     ///< cases independent and identically distributed: verdicts are confidence
-                               ///< statements; false: a design study
+  SamplingMethod sampling = SamplingMethod::kMonteCarlo;
   std::string engine;
   std::string vehicle;
   std::string reference;
@@ -90,6 +64,14 @@ struct CampaignSummary {
 
 /// From what is stored, without flying anything (so without `nominal`).
 CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaign);
+/// The same from columns that hold at least the inputs of DispersedInputs(campaign).
+CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaign, const CaseColumns& cases);
+
+/// Metrics of the requirements first, then those that any report shows in full.
+std::vector<std::string> KeyMetrics(const Campaign& campaign);
+
+/// What re-flies a case, for a shell in the result folder: no report holds the folder's path.
+std::string ReplayCommand(std::uint64_t case_index);
 
 /// The contents of summary.json: schema "dispersa/summary/1", two spaces of indent, a final newline.
 std::string SummaryJson(const CampaignSummary& summary);

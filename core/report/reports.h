@@ -1,4 +1,4 @@
-// The reports of a result folder, and the verdict they come to.
+// All reports of a result folder.
 #pragma once
 
 #include <cstdint>
@@ -14,17 +14,15 @@ namespace dispersa {
 struct ReportOptions {
   std::uint64_t history_cases = 200;  ///< the first so many cases are flown again for the percentile bands
   int threads = 1;                    ///< for flying them; the files do not depend on it
-  /// Called now and then with what is being done ("percentile bands", 120, 200); may throw to stop.
+  /// Called now and then from the calling thread ("percentile bands", 120, 200); may throw to stop.
   std::function<void(const std::string& what, std::uint64_t done, std::uint64_t total)> progress;
 };
 
 /// Writes cases.csv, histories/, summary.json and report.html from what is stored, each replaced as a whole.
-/// The same stored results give the same bytes whoever flew them. Flies the nominal, the worst cases and
-/// some others again; throws ResultError (kConflict) when a case does not reproduce its stored digest.
+/// The same stored results give the same bytes, whoever flew them. Flies the nominal, the worst cases and some
+/// others again. InputError when another engine flew the folder; ResultError (kConflict) when a case does not
+/// reproduce its digest.
 CampaignSummary WriteReports(const ResultFolder& folder, const Campaign& campaign,
                              const ReportOptions& options = {});
-
-/// cases.csv alone.
-void WriteCasesCsv(const ResultFolder& folder);
 
 }  // namespace dispersa

@@ -1,4 +1,4 @@
-// What can go wrong with a result folder.
+// What can go wrong with a result folder by no fault of the user.
 #pragma once
 
 #include <stdexcept>
@@ -6,11 +6,11 @@
 
 namespace dispersa {
 
-/// A result folder cannot be made, read or written. The message is one sentence with the path.
+/// A result folder cannot be read or written. The message is one sentence with the path. A folder that the user
+/// should not have named is an InputError instead.
 class ResultError : public std::runtime_error {
  public:
   enum class Kind {
-    kUsage,     ///< not a result folder, not empty, not writable, of another flight id: bad usage
     kDiskFull,  ///< no space left, or over quota: the run is incomplete and can be resumed
     kConflict,  ///< a case returned twice with different digests: an internal error, never ignored
     kFile,      ///< any other failure of the disk or the database

@@ -12,6 +12,7 @@
 
 #include "core/campaign/campaign.h"
 #include "core/campaign/case_result.h"
+#include "core/campaign/input_error.h"
 #include "core/report/result_error.h"
 
 namespace dispersa {
@@ -34,16 +35,17 @@ struct QuarantinedCase {
 };
 
 /// Not thread-safe: one thread at a time. Other processes may read `results.sqlite` meanwhile (WAL).
-/// Every method throws ResultError when the disk or the database fails.
+/// Every method throws ResultError when the disk or the database fails; InputError, where it says so, when the
+/// user named the wrong folder or case.
 class ResultFolder {
  public:
   /// Makes the folder (parents too) with campaign.yaml and an empty results.sqlite.
-  /// kUsage if it exists and is not empty, or cannot be written.
+  /// InputError if it exists and is not empty, or cannot be written.
   static ResultFolder Create(const std::filesystem::path& directory, const Campaign& campaign);
   /// Opens a folder to go on with, possibly with more cases, other requirements or another name.
-  /// kUsage if it holds another flight id or engine, or more cases than the campaign has.
+  /// InputError if it holds another flight id or engine, or more cases than the campaign has.
   static ResultFolder Resume(const std::filesystem::path& directory, const Campaign& campaign);
-  /// Opens a folder as it is. kUsage if it is none, or its columns are not this program's.
+  /// Opens a folder as it is. InputError if it is none, or its columns are not this program's.
   static ResultFolder Open(const std::filesystem::path& directory);
 
   ResultFolder(ResultFolder&&) noexcept;
@@ -68,7 +70,7 @@ class ResultFolder {
   /// Ascending by index.
   std::vector<QuarantinedCase> QuarantinedCases() const;
   bool Contains(std::uint64_t case_index) const;
-  /// The stored result, NULL as NaN. kUsage if there is none.
+  /// The stored result, NULL as NaN. InputError if there is none.
   CaseResult Load(std::uint64_t case_index) const;
   /// Calls back with each result in ascending order of index; holds one at a time.
   void ForEach(const std::function<void(const CaseResult&)>& callback) const;

@@ -1,0 +1,22 @@
+#include "core/report/case_columns.h"
+
+#include "core/flight/flight_inputs.h"
+
+namespace dispersa {
+
+CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& wanted_inputs) {
+  CaseColumns columns;
+  columns.inputs.resize(InputColumns().size());
+  columns.metrics.resize(MetricNames().size());
+  folder.ForEach([&](const CaseResult& result) {
+    columns.index.push_back(result.case_index);
+    columns.outcome.push_back(result.outcome);
+    for (const int input : wanted_inputs) {
+      columns.inputs[static_cast<std::size_t>(input)].push_back(result.inputs[static_cast<std::size_t>(input)]);
+    }
+    for (std::size_t i = 0; i < columns.metrics.size(); ++i) columns.metrics[i].push_back(result.metrics[i]);
+  });
+  return columns;
+}
+
+}  // namespace dispersa

@@ -1,0 +1,25 @@
+// The stored results by column: what statistics and charts are made of.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/flight/metrics.h"
+#include "core/report/result_folder.h"
+
+namespace dispersa {
+
+/// Everything in ascending order of case index; NaN = undefined.
+struct CaseColumns {
+  std::vector<std::uint64_t> index;
+  std::vector<Outcome> outcome;
+  std::vector<std::vector<double>> inputs;   ///< one column an entry of InputColumns(); only those asked for
+  std::vector<std::vector<double>> metrics;  ///< one column an entry of MetricNames()
+
+  std::size_t rows() const { return index.size(); }
+};
+
+/// Reads all metrics, and those inputs that `wanted_inputs` (positions in InputColumns()) names.
+CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& wanted_inputs);
+
+}  // namespace dispersa

@@ -1,0 +1,35 @@
+#include "core/report/cases_csv.h"
+
+#include <fmt/format.h>
+
+#include <string>
+
+#include "core/flight/flight_inputs.h"
+#include "core/report/output_file.h"
+#include "core/report/text.h"
+
+namespace dispersa {
+
+std::string CasesCsvHeader() {
+  std::string line = "case_index,outcome,end_time_s,end_stage,reason";
+  for (const InputColumn& input : InputColumns()) line += ",input_" + input.name;
+  for (const std::string& metric : MetricNames()) line += ",metric_" + metric;
+  return line + ",digest\n";
+}
+
+std::string CasesCsvLine(const CaseResult& result) {
+  std::string line = fmt::format("{},{},{},{},{}", result.case_index, OutcomeName(result.outcome),
+                                 ShortestText(result.end_time_s), result.end_stage, CsvField(result.reason));
+  for (const double value : result.inputs) line += "," + ShortestText(value);
+  for (const double value : result.metrics) line += "," + ShortestText(value);
+  return line + "," + result.digest.Hex() + "\n";
+}
+
+void WriteCasesCsv(const ResultFolder& folder) {
+  OutputFile file(folder.directory() / "cases.csv");
+  file.Write(CasesCsvHeader());
+  folder.ForEach([&](const CaseResult& result) { file.Write(CasesCsvLine(result)); });
+  file.Commit();
+}
+
+}  // namespace dispersa

@@ -1,0 +1,32 @@
+// What a metric means, for people.
+#pragma once
+
+#include <string>
+
+namespace dispersa {
+
+enum class Worse { kLarger, kSmaller, kFartherFromZero };
+
+struct MetricInfo {
+  std::string title;       ///< "Pitch error, peak, stage 2"
+  std::string unit;        ///< "°", "km", "" for a pure number
+  std::string definition;  ///< one sentence; empty for a metric that is not in the catalogue
+  Worse worse = Worse::kLarger;
+};
+
+/// Of a metric's name without prefix. The unit is read from the end of the name, so that a metric that the
+/// catalogue does not know still has one.
+MetricInfo DescribeMetric(const std::string& name);
+
+/// Unit of a column from the end of its name, and the name without it: "wind_max_speed_m_s" gives "m/s" and
+/// "wind_max_speed".
+struct NameAndUnit {
+  std::string stem;
+  std::string unit;
+};
+NameAndUnit SplitUnit(const std::string& name);
+
+/// The value by which cases are ranked: the larger, the worse.
+double Badness(Worse worse, double value);
+
+}  // namespace dispersa

@@ -1,0 +1,34 @@
+// Files that appear as a whole or not at all.
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace dispersa {
+
+/// Writes beside the target and takes its place on Commit(); without it the target stays as it was.
+/// Throws ResultError (kDiskFull, else kFile).
+class OutputFile {
+ public:
+  explicit OutputFile(std::filesystem::path target);
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  void Write(std::string_view bytes);
+  void Commit();
+
+ private:
+  [[noreturn]] void Fail(int error) const;
+
+  std::filesystem::path target_;
+  std::filesystem::path temporary_;
+  std::FILE* stream_ = nullptr;
+};
+
+/// A whole file at once.
+void WriteFile(const std::filesystem::path& target, std::string_view bytes);
+
+}  // namespace dispersa

@@ -1,0 +1,293 @@
+#include "core/report/result_folder.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "core/engine/version.h"
+#include "core/flight/flight_inputs.h"
+#include "core/flight/metrics.h"
+#include "core/report/database.h"
+#include "core/report/output_file.h"
+#include "core/report/sampling_text.h"
+
+namespace dispersa {
+namespace {
+
+namespace fs = std::filesystem;
+using Kind = ResultError::Kind;
+
+constexpr char kDatabaseName[] = "results.sqlite";
+constexpr char kCampaignName[] = "campaign.yaml";
+constexpr char kSchema[] = "dispersa/results/1";
+
+/// Columns of `cases` before the inputs; digest follows the metrics.
+constexpr int kFirstInput = 5;
+
+std::string CaseColumns(const char* type) {
+  std::string columns;
+  for (const InputColumn& input : InputColumns()) columns += fmt::format(", input_{}{}", input.name, type);
+  for (const std::string& metric : MetricNames()) columns += fmt::format(", metric_{}{}", metric, type);
+  return columns;
+}
+
+std::string SelectCases() {
+  return "SELECT case_index, outcome, end_time_s, end_stage, reason" + CaseColumns("") + ", digest FROM cases";
+}
+
+void CreateTables(Database& database) {
+  database.Execute(
+      "CREATE TABLE cases (case_index INTEGER PRIMARY KEY, outcome TEXT NOT NULL, end_time_s REAL, "
+      "end_stage INTEGER NOT NULL, reason TEXT NOT NULL" +
+      CaseColumns(" REAL") + ", digest TEXT NOT NULL)");
+  database.Execute("CREATE TABLE quarantined (case_index INTEGER PRIMARY KEY, reason TEXT NOT NULL)");
+  database.Execute("CREATE TABLE provenance (key TEXT PRIMARY KEY, value TEXT NOT NULL)");
+  database.Execute(
+      "CREATE TABLE execution (case_index INTEGER NOT NULL, worker TEXT NOT NULL, host TEXT NOT NULL, "
+      "started_utc TEXT NOT NULL, seconds REAL)");
+}
+
+void WriteProvenance(Database& database, const Campaign& campaign) {
+  Statement insert = database.Prepare("INSERT OR REPLACE INTO provenance VALUES (?, ?)");
+  const auto put = [&insert](const char* key, const std::string& value) {
+    insert.BindText(1, key);
+    insert.BindText(2, value);
+    insert.Step();
+    insert.Reset();
+  };
+  put("schema", kSchema);
+  put("campaign_id", campaign.id);
+  put("flight_id", campaign.flight_id);
+  put("engine", EngineVersion());
+  put("name", campaign.name);
+  put("seed", std::to_string(campaign.sampling.seed));
+  put("cases", std::to_string(campaign.sampling.cases));
+  put("sampling", SamplingMethodName(campaign.sampling.method));
+}
+
+std::optional<Digest> ParseDigest(const std::string& hex) {
+  Digest digest;
+  if (hex.size() != 32) return std::nullopt;
+  const char* text = hex.data();
+  const auto high = std::from_chars(text, text + 16, digest.high, 16);
+  const auto low = std::from_chars(text + 16, text + 32, digest.low, 16);
+  if (high.ptr != text + 16 || low.ptr != text + 32) return std::nullopt;
+  return digest;
+}
+
+CaseResult ReadCase(const Statement& row, const fs::path& directory) {
+  CaseResult result;
+  result.case_index = static_cast<std::uint64_t>(row.Integer(0));
+  result.end_time_s = row.Real(2);
+  result.end_stage = static_cast<int>(row.Integer(3));
+  result.reason = row.Text(4);
+  int column = kFirstInput;
+  for (std::size_t i = 0; i < InputColumns().size(); ++i) result.inputs.push_back(row.Real(column++));
+  for (std::size_t i = 0; i < MetricNames().size(); ++i) result.metrics.push_back(row.Real(column++));
+  const std::optional<Digest> digest = ParseDigest(row.Text(column));
+  if (!ParseOutcome(row.Text(1), &result.outcome) || !digest) {
+    throw ResultError(Kind::kFile, fmt::format("{}: the row of case {} is damaged",
+                                               (directory / kDatabaseName).string(), result.case_index));
+  }
+  result.digest = *digest;
+  return result;
+}
+
+/// The error for a folder that cannot be made or written, from the system's reason.
+[[noreturn]] void FailSystem(const fs::path& path, const std::error_code& error) {
+  if (error == std::errc::no_space_on_device) {
+    throw ResultError(Kind::kDiskFull, fmt::format("{}: no space left on the disk", path.string()));
+  }
+  throw InputError(fmt::format("{}: cannot be made: {}", path.string(), error.message()), "a folder that can be written");
+}
+
+}  // namespace
+
+ResultFolder::ResultFolder(fs::path directory, std::unique_ptr<Database> database)
+    : directory_(std::move(directory)), database_(std::move(database)) {}
+
+ResultFolder::ResultFolder(ResultFolder&&) noexcept = default;
+ResultFolder& ResultFolder::operator=(ResultFolder&&) noexcept = default;
+ResultFolder::~ResultFolder() = default;
+
+ResultFolder ResultFolder::Create(const fs::path& directory, const Campaign& campaign) {
+  std::error_code error;
+  fs::create_directories(directory, error);
+  if (error) FailSystem(directory, error);
+  const bool empty = fs::is_empty(directory, error);
+  if (error) FailSystem(directory, error);
+  if (!empty) {
+    throw InputError(fmt::format("{}: the folder is not empty", directory.string()),
+                     "a new or an empty folder, or --resume to go on with a campaign of the same flight id");
+  }
+  try {
+    WriteFile(directory / kCampaignName, campaign.canonical_yaml);
+  } catch (const ResultError& unwritable) {
+    // The first file in the folder: that it cannot be written is the user's choice of folder.
+    if (unwritable.kind() == Kind::kFile) throw InputError(unwritable.what(), "a folder that can be written");
+    throw;
+  }
+  auto database = std::make_unique<Database>(directory / kDatabaseName, Database::Mode::kCreate);
+  Transaction transaction(*database);
+  CreateTables(*database);
+  WriteProvenance(*database, campaign);
+  transaction.Commit();
+  return ResultFolder(directory, std::move(database));
+}
+
+ResultFolder ResultFolder::Open(const fs::path& directory) {
+  std::error_code error;
+  if (!fs::is_regular_file(directory / kDatabaseName, error)) {
+    throw InputError(fmt::format("{}: not a result folder: it has no {}", directory.string(), kDatabaseName));
+  }
+  ResultFolder folder(directory, std::make_unique<Database>(directory / kDatabaseName, Database::Mode::kExisting));
+  std::string schema;
+  try {
+    schema = folder.Provenance("schema");
+    folder.database_->Prepare(SelectCases());
+  } catch (const ResultError& unreadable) {
+    if (schema != kSchema) {
+      throw InputError(fmt::format("{}: not a result folder: {}", directory.string(), unreadable.what()));
+    }
+    throw InputError(fmt::format("{}: flown by engine {}, whose inputs and metrics are not those of this one, {}",
+                                 directory.string(), folder.Provenance("engine"), EngineVersion()));
+  }
+  return folder;
+}
+
+ResultFolder ResultFolder::Resume(const fs::path& directory, const Campaign& campaign) {
+  ResultFolder folder = Open(directory);
+  const std::string flight_id = folder.Provenance("flight_id");
+  if (flight_id != campaign.flight_id) {
+    throw InputError(fmt::format("{}: holds results of flight id {}, the campaign's is {}", directory.string(),
+                                 flight_id, campaign.flight_id));
+  }
+  const std::string engine = folder.Provenance("engine");
+  if (engine != EngineVersion()) {
+    throw InputError(fmt::format("{}: holds results of engine {}, this one is {}", directory.string(), engine,
+                                 EngineVersion()));
+  }
+  const std::vector<std::uint64_t> present = folder.PresentCases();
+  if (!present.empty() && present.back() >= campaign.sampling.cases) {
+    throw InputError(fmt::format("{}: already holds case {}, the campaign has only {} cases", directory.string(),
+                                 present.back(), campaign.sampling.cases));
+  }
+  WriteFile(directory / kCampaignName, campaign.canonical_yaml);
+  Transaction transaction(*folder.database_);
+  WriteProvenance(*folder.database_, campaign);
+  transaction.Commit();
+  return folder;
+}
+
+std::string ResultFolder::Provenance(const std::string& key) const {
+  Statement select = database_->Prepare("SELECT value FROM provenance WHERE key = ?");
+  select.BindText(1, key);
+  if (!select.Step()) {
+    throw ResultError(Kind::kFile, fmt::format("{}: no {} in the provenance", (directory_ / kDatabaseName).string(), key));
+  }
+  return select.Text(0);
+}
+
+std::size_t ResultFolder::Append(std::span<const CaseResult> results) {
+  std::string parameters = "?, ?, ?, ?, ?, ?";
+  for (std::size_t i = 0; i < InputColumns().size() + MetricNames().size(); ++i) parameters += ", ?";
+  Transaction transaction(*database_);
+  Statement stored = database_->Prepare("SELECT digest FROM cases WHERE case_index = ?");
+  Statement insert = database_->Prepare("INSERT INTO cases VALUES (" + parameters + ")");
+  Statement lift = database_->Prepare("DELETE FROM quarantined WHERE case_index = ?");
+  std::size_t added = 0;
+  for (const CaseResult& result : results) {
+    const auto index = static_cast<std::int64_t>(result.case_index);
+    const std::string digest = result.digest.Hex();
+    stored.Reset();
+    stored.BindInteger(1, index);
+    if (stored.Step()) {
+      if (stored.Text(0) == digest) continue;
+      throw ResultError(Kind::kConflict, fmt::format("case {} was flown twice with different digests: {} is stored, "
+                                                     "{} arrived", index, stored.Text(0), digest));
+    }
+    if (result.inputs.size() != InputColumns().size() || result.metrics.size() != MetricNames().size()) {
+      throw ResultError(Kind::kConflict,
+                        fmt::format("case {} has {} inputs and {} metrics, this engine has {} and {}", index,
+                                    result.inputs.size(), result.metrics.size(), InputColumns().size(), MetricNames().size()));
+    }
+    insert.Reset();
+    int parameter = 0;
+    insert.BindInteger(++parameter, index);
+    insert.BindText(++parameter, OutcomeName(result.outcome));
+    insert.BindReal(++parameter, result.end_time_s);
+    insert.BindInteger(++parameter, result.end_stage);
+    insert.BindText(++parameter, result.reason);
+    for (const double value : result.inputs) insert.BindReal(++parameter, value);
+    for (const double value : result.metrics) insert.BindReal(++parameter, value);
+    insert.BindText(++parameter, digest);
+    insert.Step();
+    lift.Reset();
+    lift.BindInteger(1, index);
+    lift.Step();
+    ++added;
+  }
+  transaction.Commit();
+  return added;
+}
+
+void ResultFolder::AppendExecution(std::span<const ExecutionRecord> records) {
+  Transaction transaction(*database_);
+  Statement insert = database_->Prepare("INSERT INTO execution VALUES (?, ?, ?, ?, ?)");
+  for (const ExecutionRecord& record : records) {
+    insert.Reset();
+    insert.BindInteger(1, static_cast<std::int64_t>(record.case_index));
+    insert.BindText(2, record.worker);
+    insert.BindText(3, record.host);
+    insert.BindText(4, record.started_utc);
+    insert.BindReal(5, record.seconds);
+    insert.Step();
+  }
+  transaction.Commit();
+}
+
+void ResultFolder::Quarantine(const QuarantinedCase& quarantined) {
+  Statement insert = database_->Prepare("INSERT OR REPLACE INTO quarantined VALUES (?, ?)");
+  insert.BindInteger(1, static_cast<std::int64_t>(quarantined.case_index));
+  insert.BindText(2, quarantined.reason);
+  insert.Step();
+}
+
+std::vector<std::uint64_t> ResultFolder::PresentCases() const {
+  std::vector<std::uint64_t> present;
+  Statement select = database_->Prepare("SELECT case_index FROM cases ORDER BY case_index");
+  while (select.Step()) present.push_back(static_cast<std::uint64_t>(select.Integer(0)));
+  return present;
+}
+
+std::vector<QuarantinedCase> ResultFolder::QuarantinedCases() const {
+  std::vector<QuarantinedCase> quarantined;
+  Statement select = database_->Prepare("SELECT case_index, reason FROM quarantined ORDER BY case_index");
+  while (select.Step()) quarantined.push_back({static_cast<std::uint64_t>(select.Integer(0)), select.Text(1)});
+  return quarantined;
+}
+
+bool ResultFolder::Contains(std::uint64_t case_index) const {
+  Statement select = database_->Prepare("SELECT 1 FROM cases WHERE case_index = ?");
+  select.BindInteger(1, static_cast<std::int64_t>(case_index));
+  return select.Step();
+}
+
+CaseResult ResultFolder::Load(std::uint64_t case_index) const {
+  Statement select = database_->Prepare(SelectCases() + " WHERE case_index = ?");
+  select.BindInteger(1, static_cast<std::int64_t>(case_index));
+  if (!select.Step()) {
+    throw InputError(fmt::format("{}: has no result of case {}", directory_.string(), case_index));
+  }
+  return ReadCase(select, directory_);
+}
+
+void ResultFolder::ForEach(const std::function<void(const CaseResult&)>& callback) const {
+  Statement select = database_->Prepare(SelectCases() + " ORDER BY case_index");
+  while (select.Step()) callback(ReadCase(select, directory_));
+}
+
+}  // namespace dispersa

@@ -1,0 +1,20 @@
+// Numbers and strings as the files of a result folder write them.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace dispersa {
+
+/// The shortest decimal that reads back as the same double; empty when not finite; -0 as 0.
+std::string ShortestText(double value);
+/// For people: about five significant digits, without an exponent between 1e-4 and 1e9; "–" when not finite.
+std::string ReadableText(double value);
+/// A probability in per cent with as many digits as it needs: 0.9973 is "99.73 %".
+std::string PercentText(double probability);
+/// One field of a CSV line, quoted as RFC 4180 asks when it holds a comma, a quote or a line break.
+std::string CsvField(std::string_view text);
+/// Text inside an HTML element or a double-quoted attribute.
+std::string HtmlText(std::string_view text);
+
+}  // namespace dispersa
