@@ -30,10 +30,10 @@ as_root() {
 
 apt() { as_root env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=600 "$@" </dev/null; }
 
-# install_packages LIST...: installs what the lists name and the machine lacks. A failure names each
-# package that is still missing, with apt's reason.
+# install_packages LIST...: installs what the lists name and the machine lacks. A failure shows apt's errors
+# and names each package that apt refuses by itself, with the reason.
 install_packages() {
-  local missing package log
+  local missing package log reason
   if ! command -v dpkg-query >/dev/null; then
     say "not a Debian system: taking the packages of docker/packages.txt for granted"
     return 0
@@ -50,9 +50,9 @@ install_packages() {
   grep '^[EW]:' "$log" >&2 || tail -n 20 "$log" >&2
   rm -f "$log"
   mapfile -t missing < <(missing_packages "$@")
+  say "not installed: ${missing[*]}"
   for package in "${missing[@]}"; do
-    say "could not install $package: $(apt install --simulate "$package" 2>&1 | grep -m 1 '^E:' ||
-      echo 'see the messages above')"
+    reason=$(apt install --simulate "$package" 2>&1 | grep -m 1 '^E:') && say "could not install $package: $reason"
   done
   return 1
 }
