@@ -1,0 +1,28 @@
+// Trees with everything inlined to the engine's structs.
+//
+// `path` is the tree's own in its file: empty when it is a whole file, e.g. "vehicle" when it is inlined.
+// A result is complete only if no problem was recorded.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/campaign/campaign.h"
+#include "core/campaign/input_error.h"
+#include "core/campaign_yaml/input_node.h"
+
+namespace dispersa {
+
+Vehicle DecodeVehicle(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems);
+/// `stages`: of the vehicle that it flies, 0 if that is unknown (then nothing is checked against it).
+AutopilotConfig DecodeAutopilot(const InputNode& node, const std::string& path, int stages,
+                                std::vector<InputProblem>& problems);
+Reference DecodeReference(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems);
+/// A reference's `problem`, a campaign's `optimize`.
+TrajectoryProblem DecodeTrajectoryProblem(const InputNode& node, const std::string& path,
+                                          std::vector<InputProblem>& problems);
+/// A campaign's `dispersions`: fills dispersions, wind_statistics and wind_table. `stages` as above.
+void DecodeDispersions(const InputNode& node, const std::string& path, int stages, Campaign& campaign,
+                       std::vector<InputProblem>& problems);
+
+}  // namespace dispersa

@@ -1,0 +1,34 @@
+// A campaign's tree with everything inlined to what is flown or optimised.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/campaign/campaign.h"
+#include "core/campaign/input_error.h"
+#include "core/campaign_yaml/input_node.h"
+
+namespace dispersa {
+
+/// A campaign as its file describes it: with a reference, or with a problem whose solution will be one.
+struct DecodedCampaign {
+  Campaign campaign;                        ///< without canonical_yaml and ids
+  std::optional<TrajectoryProblem> optimize;  ///< of the `optimize` block, which stands in place of `reference`
+};
+
+/// What the campaign is read for decides what it must have.
+enum class CampaignUse {
+  kFly,       ///< autopilot, sampling and a reference
+  kOptimize,  ///< a vehicle, and a reference or an `optimize` block
+  kCheck,     ///< the first if it has a reference, else the second
+};
+
+DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vector<InputProblem>& problems,
+                               std::vector<InputProblem>* warnings);
+
+/// SHA-256 of the canonical vehicle of a campaign's or a vehicle file's tree.
+std::string VehicleSha256(const InputNode& vehicle);
+/// SHA-256 of what decides a case.
+std::string FlightId(const InputNode& campaign, SamplingMethod method);
+
+}  // namespace dispersa

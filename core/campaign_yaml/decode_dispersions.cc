@@ -1,0 +1,327 @@
+#include <cassert>
+#include <functional>
+
+#include "core/campaign_yaml/decode.h"
+#include "core/campaign_yaml/decode_distribution.h"
+#include "core/campaign_yaml/yaml_reader.h"
+
+namespace dispersa {
+namespace {
+
+using ProblemList = std::vector<InputProblem>;
+
+int Column(const std::string& name) {
+  const int column = FindInput(name);
+  assert(column >= 0);
+  return column;
+}
+
+std::string StageName(int stage) { return "stage" + std::to_string(stage); }
+
+// The parts of a column's name around its stage: "thrust_offset" "_stage1" "_m".
+struct StageColumn {
+  std::string stem;
+  std::string unit_suffix;
+
+  int Of(int stage) const { return Column(stem + "_" + StageName(stage) + unit_suffix); }
+};
+
+class DispersionDecoder {
+ public:
+  DispersionDecoder(const InputNode& node, const std::string& path, int stages, Campaign& campaign,
+                    ProblemList& problems)
+      : map_(node, path, problems), stages_(stages > 0 ? stages : kMaxStages), campaign_(campaign),
+        problems_(problems) {}
+
+  void Decode() {
+    Lateral("thrust_misalignment", {kAngle, kAnyNumber}, {"thrust_misalignment", "_deg"},
+            {"thrust_misalignment_clock", "_deg"});
+    Lateral("thrust_offset", {kLength, kAnyNumber}, {"thrust_offset", "_m"}, {"thrust_offset_clock", "_deg"});
+    Thrust();
+    StageFactor("burn_rate", {{"thrust_factor", ""}, {"mass_flow_factor", ""}});
+    StageFactor("specific_impulse", {{"specific_impulse_factor", ""}});
+    Wind();
+    Gust();
+    WindProfile();
+    Scalar("drag_coefficient", kPositiveFactor, "drag_factor");
+    Scalar("lift_coefficient", kPositiveFactor, "lift_factor");
+    Scalar("center_of_gravity", kPositiveFactor, "cg_factor");
+    Scalar("center_of_pressure", kPositiveFactor, "cp_factor");
+    Scalar("density", kPositiveFactor, "density_factor");
+    Scalar("inertia", kPositiveFactor, "inertia_factor");
+    Scalar("actuator_bandwidth", kPositiveFactor, "actuator_bandwidth_factor");
+    TipOff();
+    GyroBias();
+    Scalar("gyro_noise", {kAngularRate, kNonNegative}, "gyro_noise_deg_s");
+    StuckNozzle();
+    // A deliberately bad P_n is a study, so any factor is legal.
+    Scalar("pn_error", {{}, kAnyNumber}, "pn_error_factor");
+    Scalar("pn_rate", {{}, kAnyNumber}, "pn_rate_factor");
+    Scalar("loop_gain", kPositiveFactor, "loop_gain_factor");
+    Scalar("loop_delay", {kTime, kNonNegative}, "loop_delay_s");
+  }
+
+ private:
+  void Add(const std::string& name, const ScalarDistribution& distribution, std::vector<int> inputs,
+           bool absolute = false) {
+    campaign_.dispersions.push_back({name, distribution, std::move(inputs), absolute});
+  }
+
+  // One draw a stage, or one for all of them, as `per` says.
+  void AddStages(const std::string& name, bool per_stage, const ScalarDistribution& distribution,
+                 const std::vector<StageColumn>& columns, bool absolute = false) {
+    std::vector<int> all;
+    for (int stage = 1; stage <= stages_; ++stage) {
+      std::vector<int> inputs;
+      for (const StageColumn& column : columns) inputs.push_back(column.Of(stage));
+      all.insert(all.end(), inputs.begin(), inputs.end());
+      if (per_stage) Add(name + "/" + StageName(stage), distribution, std::move(inputs), absolute);
+    }
+    if (!per_stage) Add(name, distribution, std::move(all), absolute);
+  }
+
+  static bool PerStage(MapReader& map) { return map.Choice<bool>("per", {{"stage", true}, {"vehicle", false}}); }
+
+  // A magnitude and the direction of it around the axis.
+  void Lateral(const std::string& key, const DispersedScalar& scalar, const StageColumn& magnitude,
+               const StageColumn& clock) {
+    const InputNode* node = map_.Optional(key);
+    if (node == nullptr) return;
+    MapReader map(*node, map_.PathOf(key), problems_);
+    const ScalarDistribution distribution = ReadDistribution(map, scalar);
+    const ScalarDistribution direction = ReadDirection(
+        map.Required("clock_angle", "uniform, {fixed_deg: x} or a distribution"), map.PathOf("clock_angle"), problems_);
+    const bool per_stage = PerStage(map);
+    AddStages(key, per_stage, distribution, {magnitude}, true);
+    AddStages(key + "/clock", per_stage, direction, {clock});
+  }
+
+  void Thrust() {
+    const InputNode* node = map_.Optional("thrust");
+    if (node == nullptr) return;
+    MapReader map(*node, map_.PathOf("thrust"), problems_);
+    const ScalarDistribution distribution = ReadDistribution(map, kPositiveFactor);
+    const bool flow_follows = map.Choice<bool>("conserve", {{"total_impulse", true}, {"propellant", false}});
+    std::vector<StageColumn> columns = {{"thrust_factor", ""}};
+    if (flow_follows) columns.push_back({"mass_flow_factor", ""});
+    AddStages("thrust", PerStage(map), distribution, columns);
+  }
+
+  void StageFactor(const std::string& key, const std::vector<StageColumn>& columns) {
+    const InputNode* node = map_.Optional(key);
+    if (node == nullptr) return;
+    MapReader map(*node, map_.PathOf(key), problems_);
+    const ScalarDistribution distribution = ReadDistribution(map, kPositiveFactor);
+    AddStages(key, PerStage(map), distribution, columns);
+  }
+
+  void Scalar(const std::string& key, const DispersedScalar& scalar, const std::string& column) {
+    const InputNode* node = map_.Optional(key);
+    if (node == nullptr) return;
+    MapReader map(*node, map_.PathOf(key), problems_);
+    Add(key, ReadDistribution(map, scalar), {Column(column)});
+  }
+
+  // "stem_unit: x" or "stem: {distribution: ...}"; `nominal` is the value that the draw is added to.
+  void FixedOrDrawn(MapReader& map, const std::string& name, const std::string& stem, const DispersedScalar& scalar,
+                    const std::string& column, bool required, double nominal = 0.0) {
+    const InputNode* drawn = map.node().Find(stem);
+    ScalarDistribution distribution;
+    if (drawn != nullptr && drawn->kind == InputNode::Kind::kMap) {
+      map.Ignore(stem);
+      MapReader inner(*drawn, map.PathOf(stem), problems_);
+      distribution = ReadDistribution(inner, scalar);
+    } else if (required) {
+      distribution = Constant(map.Quantity(stem, scalar.dimension, scalar.range));
+    } else {
+      const auto value = map.OptionalQuantity(stem, scalar.dimension, scalar.range);
+      if (!value) return;
+      distribution = Constant(*value);
+    }
+    distribution.nominal -= nominal;
+    distribution.low -= nominal;
+    distribution.high -= nominal;
+    for (double& value : distribution.values) value -= nominal;
+    Add(name, distribution, {Column(column)});
+  }
+
+  void Wind() {
+    const InputNode* node = map_.Optional("wind");
+    if (node == nullptr) return;
+    MapReader map(*node, map_.PathOf("wind"), problems_);
+    const double max_speed_m_s = map.Quantity("max_speed", kSpeed, Between(0.0, 200.0));
+    const bool is_uniform = map.Choice<bool>("speed", {{"fixed", false}, {"uniform", true}}, false);
+    Add("wind/speed", is_uniform ? Uniform(0.0, max_speed_m_s) : Constant(max_speed_m_s),
+        {Column("wind_max_speed_m_s")});
+    Add("wind/azimuth",
+        ReadDirection(map.Required("azimuth", "uniform, {fixed_deg: x} or a distribution"), map.PathOf("azimuth"),
+                      problems_),
+        {Column("wind_azimuth_deg")});
+    const FlightInputs nominal;
+    FixedOrDrawn(map, "wind/altitude", "altitude", {kLength, Between(0.0, 100e3)}, "wind_altitude_m", false,
+                 nominal.wind_altitude_m);
+    FixedOrDrawn(map, "wind/width", "width", {kLength, Between(100.0, 100e3)}, "wind_width_m", false,
+                 nominal.wind_width_m);
+  }
+
+  void Gust() {
+    const InputNode* node = map_.Optional("gust");
+    if (node == nullptr) return;
+    MapReader map(*node, map_.PathOf("gust"), problems_);
+    FixedOrDrawn(map, "gust/speed", "speed", {kSpeed, Between(-100.0, 100.0)}, "gust_speed_m_s", true);
+    FixedOrDrawn(map, "gust/altitude", "altitude", {kLength, Between(0.0, 100e3)}, "gust_altitude_m", true);
+    FixedOrDrawn(map, "gust/length", "length", {kLength, Between(1.0, 10e3)}, "gust_length_m", true);
+    Add("gust/azimuth",
+        ReadDirection(map.Required("azimuth", "uniform, {fixed_deg: x} or a distribution"), map.PathOf("azimuth"),
+                      problems_),
+        {Column("gust_azimuth_deg")});
+  }
+
+  // Tables are maps of columns: what a CSV file became.
+  void WindProfile() {
+    const InputNode* node = map_.Optional("wind_profile");
+    if (node == nullptr) return;
+    MapReader map(*node, map_.PathOf("wind_profile"), problems_);
+    const InputNode* table = map.Optional("table");
+    const InputNode* statistics = map.Optional("statistics");
+    if ((table == nullptr) == (statistics == nullptr)) {
+      AddProblem(problems_, *node, map.path(),
+                 table == nullptr ? "no profile is given" : "'table' and 'statistics' are both given",
+                 "either table: FILE.csv or statistics: FILE.csv");
+    }
+    if (table != nullptr) WindTableColumns(*table, PathOfTable(*table, *node, map.PathOf("table")));
+    if (statistics != nullptr) {
+      WindStatistics read;
+      read.correlation_ne = map.Number("correlation_ne", Inside(-1.0, 1.0));
+      read.correlation_length_m = map.Quantity("correlation_length", kLength, kPositive);
+      StatisticsColumns(*statistics, PathOfTable(*statistics, *node, map.PathOf("statistics")), read);
+    }
+  }
+
+  static std::string PathOfTable(const InputNode& table, const InputNode& parent, const std::string& path) {
+    return table.file == parent.file ? path : "";
+  }
+
+  // The columns of a table have as many values as the first, and the table has no further problems.
+  template <typename Table>
+  bool IsUsable(const Table& table, const std::vector<const std::vector<double>*>& columns, const InputNode& node,
+                const std::string& path, std::size_t problems_before) {
+    if (problems_.size() > problems_before) return false;
+    for (const auto* column : columns) {
+      if (column->size() == columns.front()->size()) continue;
+      AddProblem(problems_, node, path, "the columns have different lengths", "one value an altitude in each column");
+      return false;
+    }
+    for (const std::string& sentence : Problems(table)) AddProblem(problems_, node, path, sentence);
+    return problems_.size() == problems_before;
+  }
+
+  void WindTableColumns(const InputNode& node, const std::string& path) {
+    const std::size_t before = problems_.size();
+    WindTable table;
+    {
+      MapReader map(node, path, problems_);
+      table.altitude_m = map.Numbers("altitude_m", kAnyNumber, 2);
+      table.north_m_s = map.Numbers("north_m_s", kAnyNumber, 2);
+      table.east_m_s = map.Numbers("east_m_s", kAnyNumber, 2);
+    }
+    if (IsUsable(table, {&table.altitude_m, &table.north_m_s, &table.east_m_s}, node, path, before)) {
+      campaign_.wind_table = std::move(table);
+    }
+  }
+
+  void StatisticsColumns(const InputNode& node, const std::string& path, WindStatistics& statistics) {
+    const std::size_t before = problems_.size();
+    {
+      MapReader map(node, path, problems_);
+      statistics.altitude_m = map.Numbers("altitude_m", kAnyNumber, 2, kWindLevels);
+      statistics.mean_north_m_s = map.Numbers("mean_north_m_s", kAnyNumber, 2, kWindLevels);
+      statistics.mean_east_m_s = map.Numbers("mean_east_m_s", kAnyNumber, 2, kWindLevels);
+      statistics.sigma_north_m_s = map.Numbers("sigma_north_m_s", kNonNegative, 2, kWindLevels);
+      statistics.sigma_east_m_s = map.Numbers("sigma_east_m_s", kNonNegative, 2, kWindLevels);
+    }
+    if (!IsUsable(statistics,
+                  {&statistics.altitude_m, &statistics.mean_north_m_s, &statistics.mean_east_m_s,
+                   &statistics.sigma_north_m_s, &statistics.sigma_east_m_s},
+                  node, path, before)) {
+      return;
+    }
+    ScalarDistribution standard_normal;
+    standard_normal.kind = Distribution::kNormal;
+    standard_normal.sigma = 1.0;
+    for (std::size_t level = 1; level <= statistics.altitude_m.size(); ++level) {
+      for (const std::string component : {"north", "east"}) {
+        const std::string number = std::to_string(level);
+        Add("wind_profile/" + component + number, standard_normal,
+            {Column("wind_profile_" + component + "_" + number)});
+      }
+    }
+    campaign_.wind_statistics = std::move(statistics);
+  }
+
+  // f(axis, map) for each axis that a map of axes has; one at least.
+  void EachAxis(const std::string& key, const std::function<void(const std::string&, MapReader&)>& f) {
+    const InputNode* node = map_.Optional(key);
+    if (node == nullptr) return;
+    MapReader map(*node, map_.PathOf(key), problems_);
+    bool any = false;
+    for (const std::string axis : {"roll", "pitch", "yaw"}) {
+      const InputNode* axis_node = map.Optional(axis);
+      if (axis_node == nullptr) continue;
+      any = true;
+      MapReader axis_map(*axis_node, map.PathOf(axis), problems_);
+      f(axis, axis_map);
+    }
+    if (!any && node->members.empty()) {
+      AddProblem(problems_, *node, map.path(), "no axis is given", "one or more of roll, pitch, yaw");
+    }
+  }
+
+  void TipOff() {
+    EachAxis("tip_off_rate", [this](const std::string& axis, MapReader& map) {
+      const ScalarDistribution rate = ReadDistribution(map, {kAngularRate, kAnyNumber});
+      const StageColumn column{"tip_off_" + axis, "_deg_s"};
+      for (int stage = 1; stage < stages_; ++stage) {
+        Add("tip_off_rate/" + axis + "/" + StageName(stage), rate, {column.Of(stage)});
+      }
+    });
+  }
+
+  void GyroBias() {
+    EachAxis("gyro_bias", [this](const std::string& axis, MapReader& map) {
+      Add("gyro_bias/" + axis, ReadDistribution(map, {kAngularRate, kAnyNumber}),
+          {Column("gyro_bias_" + axis + "_deg_s")});
+    });
+  }
+
+  void StuckNozzle() {
+    const InputNode* node = map_.Optional("stuck_nozzle");
+    if (node == nullptr) return;
+    MapReader map(*node, map_.PathOf("stuck_nozzle"), problems_);
+    ScalarDistribution nozzle = Constant(map.Choice<double>(
+        "nozzle", {{"right", 1.0}, {"left", 2.0}, {"bottom", 3.0}, {"top", 4.0}, {"any", 0.0}}));
+    if (nozzle.nominal == 0.0) {
+      nozzle.kind = Distribution::kValues;
+      nozzle.values = {1.0, 2.0, 3.0, 4.0};
+    }
+    Add("stuck_nozzle/nozzle", nozzle, {Column("stuck_nozzle")});
+    Add("stuck_nozzle/stage",
+        Constant(static_cast<double>(map.Integer("stage", 1, static_cast<std::uint64_t>(stages_)))),
+        {Column("stuck_nozzle_stage")});
+    FixedOrDrawn(map, "stuck_nozzle/angle", "angle", {kAngle, Inside(-kPi / 2.0, kPi / 2.0)}, "stuck_nozzle_deg", true);
+  }
+
+  MapReader map_;
+  int stages_;
+  Campaign& campaign_;
+  ProblemList& problems_;
+};
+
+}  // namespace
+
+void DecodeDispersions(const InputNode& node, const std::string& path, int stages, Campaign& campaign,
+                       std::vector<InputProblem>& problems) {
+  DispersionDecoder(node, path, stages, campaign, problems).Decode();
+}
+
+}  // namespace dispersa

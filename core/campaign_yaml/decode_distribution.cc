@@ -1,0 +1,199 @@
+#include "core/campaign_yaml/decode_distribution.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/campaign_yaml/number_text.h"
+
+namespace dispersa {
+namespace {
+
+constexpr Unit kFactorSpread[] = {{"percent", 0.01}};
+constexpr Unit kFactorPosition[] = {{"percent", 0.01}, {"factor", 1.0}};
+
+// Keys of one distribution, in the units of one scalar.
+class ParameterReader {
+ public:
+  ParameterReader(MapReader& map, const DispersedScalar& scalar) : map_(map), scalar_(scalar) {}
+
+  // A deviation: sigma, bound.
+  std::optional<double> Spread(const std::string& stem) {
+    return map_.OptionalQuantity(stem, scalar_.IsFactor() ? Dimension(kFactorSpread) : scalar_.dimension, kPositive);
+  }
+
+  // A value that can be drawn.
+  std::optional<double> Position(const std::string& stem) {
+    std::string key;
+    const auto value = map_.OptionalQuantity(stem, PositionUnits(), kAnyNumber, &key);
+    if (!value) return std::nullopt;
+    return *value + Offset(key);
+  }
+
+  std::vector<double> Positions(const std::string& stem) {
+    std::string key;
+    std::vector<double> values = map_.Quantities(stem, PositionUnits(), kAnyNumber, 1, SIZE_MAX, &key);
+    for (double& value : values) value += Offset(key);
+    return values;
+  }
+
+  // "three_sigma_deg or three_sigma_rad"
+  std::string Keys(const std::string& stem, bool spread) const {
+    std::string text;
+    const Dimension factor = spread ? Dimension(kFactorSpread) : Dimension(kFactorPosition);
+    for (const Unit& unit : scalar_.IsFactor() ? factor : scalar_.dimension) {
+      text += (text.empty() ? "" : " or ") + stem + "_" + std::string(unit.suffix);
+    }
+    return text;
+  }
+
+ private:
+  Dimension PositionUnits() const { return scalar_.IsFactor() ? Dimension(kFactorPosition) : scalar_.dimension; }
+  double Offset(const std::string& key) const { return scalar_.IsFactor() && key.ends_with("_percent") ? 1.0 : 0.0; }
+
+  MapReader& map_;
+  const DispersedScalar& scalar_;
+};
+
+// The parameters that each distribution takes, in words.
+std::string Explain(const ParameterReader& keys) {
+  return "distribution: normal with " + keys.Keys("three_sigma", true) + " or " + keys.Keys("sigma", true) +
+         "; uniform with " + keys.Keys("bound", true) + "; two_point with " + keys.Keys("plus_minus", true) +
+         "; values with " + keys.Keys("values", false) + "; constant with " + keys.Keys("value", false);
+}
+
+void CheckRange(const MapReader& map, const DispersedScalar& scalar, const ScalarDistribution& distribution) {
+  std::vector<double> extremes;
+  switch (distribution.kind) {
+    case Distribution::kNormal:
+      extremes = {distribution.nominal - 6.0 * distribution.sigma, distribution.nominal + 6.0 * distribution.sigma};
+      break;
+    case Distribution::kUniform:
+    case Distribution::kTwoPoint:
+      extremes = {distribution.low, distribution.high};
+      if (!(distribution.low < distribution.high)) {
+        AddProblem(map.problems(), map.node(), map.path(), "the low value is not below the high value", "low < high");
+      }
+      break;
+    case Distribution::kValues:
+    case Distribution::kConstant:
+      extremes = distribution.values;
+      break;
+  }
+  const double scale = scalar.IsFactor() ? 1.0 : scalar.dimension.front().scale;
+  const std::string unit = scalar.IsFactor() ? "factor" : std::string(scalar.dimension.front().suffix);
+  for (const double value : extremes) {
+    if (scalar.range.Contains(value)) continue;
+    const bool normal = distribution.kind == Distribution::kNormal;
+    AddProblem(map.problems(), map.node(), map.path(),
+               std::string(normal ? "a draw at 6 sigma is " : "a draw can be ") + FormatScaled(value, scale) + " (" +
+                   unit + ")",
+               scalar.range.Text(scale));
+    return;
+  }
+}
+
+}  // namespace
+
+ScalarDistribution Constant(double value) {
+  ScalarDistribution constant;
+  constant.nominal = value;
+  constant.values = {value};
+  return constant;
+}
+
+ScalarDistribution Uniform(double low, double high) {
+  ScalarDistribution uniform;
+  uniform.kind = Distribution::kUniform;
+  uniform.nominal = 0.5 * (low + high);
+  uniform.low = low;
+  uniform.high = high;
+  return uniform;
+}
+
+ScalarDistribution ReadDistribution(MapReader& map, const DispersedScalar& scalar) {
+  ParameterReader keys(map, scalar);
+  ScalarDistribution distribution;
+  distribution.nominal = scalar.Nominal();
+  const std::size_t before = map.problems().size();
+
+  for (const InputMember& member : map.node().members) {
+    const Dimension units = scalar.IsFactor() ? Dimension(kFactorPosition) : scalar.dimension;
+    const bool bare = std::any_of(units.begin(), units.end(), [&](const Unit& u) { return u.suffix == member.key; });
+    if (!bare) continue;
+    map.Ignore(member.key);
+    map.Ignore("distribution");
+    InputNode at = MapAt(member.value);
+    at.line = member.line;
+    at.column = member.column;
+    AddProblem(map.problems(), at, map.PathOf(member.key),
+               "'" + member.key + "' alone does not say what it means (3 sigma, bound, corner, ...)", Explain(keys));
+  }
+  if (map.problems().size() > before) return distribution;
+
+  distribution.kind = map.Choice<Distribution>("distribution", {{"normal", Distribution::kNormal},
+                                                               {"uniform", Distribution::kUniform},
+                                                               {"two_point", Distribution::kTwoPoint},
+                                                               {"values", Distribution::kValues},
+                                                               {"constant", Distribution::kConstant}});
+  const bool known = map.node().Find("distribution") != nullptr && map.problems().size() == before;
+  if (!known) {
+    // Which parameters belong here is unknown too.
+    for (const InputMember& member : map.node().members) map.Ignore(member.key);
+    return distribution;
+  }
+
+  const auto exactly_one = [&](bool first, bool second, const std::string& allowed) {
+    if (first == second && map.problems().size() == before) {
+      AddProblem(map.problems(), map.node(), map.path(),
+                 first ? "the distribution is given twice" : "the distribution lacks its parameter", allowed);
+    }
+  };
+  switch (distribution.kind) {
+    case Distribution::kNormal: {
+      const auto three_sigma = keys.Spread("three_sigma");
+      const auto sigma = keys.Spread("sigma");
+      exactly_one(three_sigma.has_value(), sigma.has_value(),
+                      "one of " + keys.Keys("three_sigma", true) + " or " + keys.Keys("sigma", true));
+      distribution.nominal = keys.Position("mean").value_or(scalar.Nominal());
+      distribution.sigma = sigma ? *sigma : three_sigma.value_or(0.0) / 3.0;
+      break;
+    }
+    case Distribution::kUniform:
+    case Distribution::kTwoPoint: {
+      const std::string stem = distribution.kind == Distribution::kUniform ? "bound" : "plus_minus";
+      const auto spread = keys.Spread(stem);
+      const auto low = keys.Position("low");
+      const auto high = keys.Position("high");
+      exactly_one(spread.has_value(), low.has_value() && high.has_value(),
+                      keys.Keys(stem, true) + ", or both " + keys.Keys("low", false) + " and " + keys.Keys("high", false));
+      distribution.low = spread ? scalar.Nominal() - *spread : low.value_or(0.0);
+      distribution.high = spread ? scalar.Nominal() + *spread : high.value_or(0.0);
+      break;
+    }
+    case Distribution::kValues:
+      distribution.values = keys.Positions("values");
+      break;
+    case Distribution::kConstant: {
+      const auto value = keys.Position("value");
+      exactly_one(value.has_value(), false, keys.Keys("value", false));
+      distribution = Constant(value.value_or(scalar.Nominal()));
+      break;
+    }
+  }
+  if (map.problems().size() == before) CheckRange(map, scalar, distribution);
+  return distribution;
+}
+
+ScalarDistribution ReadDirection(const InputNode& node, const std::string& path,
+                                 std::vector<InputProblem>& problems) {
+  const std::string allowed = "uniform, {fixed_deg: x} or a distribution";
+  if (node.kind == InputNode::Kind::kScalar) {
+    if (node.text != "uniform") AddProblem(problems, node, path, node.Describe() + " is not a direction", allowed);
+    return Uniform(0.0, kTwoPi);
+  }
+  MapReader map(node, path, problems);
+  if (node.Find("distribution") != nullptr) return ReadDistribution(map, {kAngle, Between(-kTwoPi, kTwoPi)});
+  return Constant(map.Quantity("fixed", kAngle, Between(-kTwoPi, kTwoPi)));
+}
+
+}  // namespace dispersa

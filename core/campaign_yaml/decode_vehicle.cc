@@ -1,0 +1,223 @@
+#include <algorithm>
+
+#include "core/campaign_yaml/decode.h"
+#include "core/campaign_yaml/inline_files.h"
+#include "core/campaign_yaml/struct_problems.h"
+#include "core/campaign_yaml/yaml_reader.h"
+
+namespace dispersa {
+namespace {
+
+constexpr double kHalfTurn = kPi;
+constexpr double kQuarterTurn = kPi / 2.0;
+
+using ProblemList = std::vector<InputProblem>;
+
+LaunchSite DecodeSite(const InputNode& node, const std::string& path, ProblemList& problems) {
+  MapReader map(node, path, problems);
+  LaunchSite site;
+  site.latitude_rad = map.Quantity("latitude", kAngle, Between(-kQuarterTurn, kQuarterTurn));
+  site.longitude_rad = map.Quantity("longitude", kAngle, Between(-kHalfTurn, kHalfTurn));
+  site.altitude_m = map.Quantity("altitude", kLength, Between(-500.0, 9000.0));
+  return site;
+}
+
+Motor DecodeMotor(const InputNode& node, const std::string& path, ProblemList& problems) {
+  MapReader map(node, path, problems);
+  Motor motor;
+  motor.thrust_n = map.Quantity("thrust", kForce, kPositive);
+  motor.burning_time_s = map.Quantity("burning_time", kTime, kPositive);
+  motor.ignition_rise_s = map.Quantity("ignition_rise", kTime, kNonNegative, 0.0);
+  motor.tail_off_s = map.Quantity("tail_off", kTime, kNonNegative, 0.0);
+  motor.nozzle_exit_area_m2 = map.Quantity("nozzle_exit_area", kArea, kNonNegative, 0.0);
+  motor.published_mass_flow_kg_s = map.Quantity("published_mass_flow", kMassFlow, kNonNegative, 0.0);
+  return motor;
+}
+
+Grain DecodeGrain(const InputNode& node, const std::string& path, ProblemList& problems) {
+  MapReader map(node, path, problems);
+  Grain grain;
+  grain.top_station_m = map.Quantity("top_station", kLength, kNonNegative);
+  grain.bottom_station_m = map.Quantity("bottom_station", kLength, kPositive);
+  grain.outer_diameter_m = map.Quantity("outer_diameter", kLength, kPositive);
+  grain.inner_diameter_m = map.Quantity("inner_diameter", kLength, kNonNegative);
+  return grain;
+}
+
+MassElement DecodeMassElement(const InputNode& node, const std::string& path, ProblemList& problems) {
+  MapReader map(node, path, problems);
+  MassElement element;
+  element.name = map.Text("name");
+  element.fraction = map.Number("fraction", Between(0.0, 1.0));
+  element.top_station_m = map.Quantity("top_station", kLength, kNonNegative);
+  element.bottom_station_m = map.Quantity("bottom_station", kLength, kPositive);
+  element.outer_diameter_m = map.Quantity("outer_diameter", kLength, kPositive);
+  element.inner_diameter_m = map.Quantity("inner_diameter", kLength, kNonNegative, 0.0);
+  return element;
+}
+
+Gimbal DecodeGimbal(const InputNode& node, const std::string& path, ProblemList& problems) {
+  MapReader map(node, path, problems);
+  Gimbal gimbal;
+  gimbal.pivot_station_m = map.Quantity("pivot_station", kLength, kPositive);
+  gimbal.radius_m = map.Quantity("radius", kLength, kPositive);
+  gimbal.limit_rad = map.Quantity("limit", kAngle, {0.0, kQuarterTurn, true, true});
+  gimbal.rate_limit_rad_s = map.Quantity("rate_limit", kAngularRate, kPositive);
+  gimbal.bandwidth_rad_s = map.Quantity("bandwidth", kFrequency, kPositive);
+  gimbal.damping_ratio = map.Number("damping_ratio", kPositive);
+  gimbal.delay_ticks = static_cast<int>(map.Integer("delay_ticks", 0, 100));
+  return gimbal;
+}
+
+Stage DecodeStage(const InputNode& node, const std::string& path, ProblemList& problems) {
+  MapReader map(node, path, problems);
+  Stage stage;
+  stage.name = map.Text("name");
+  stage.liftoff_mass_kg = map.Quantity("liftoff_mass", kMass, kPositive);
+  stage.propellant_mass_kg = map.Quantity("propellant_mass", kMass, kPositive);
+  stage.diameter_m = map.Quantity("diameter", kLength, kPositive);
+  stage.bottom_station_m = map.Quantity("bottom_station", kLength, kPositive);
+  stage.motor = DecodeMotor(map.Required("motor", "a map"), map.PathOf("motor"), problems);
+  stage.grain = DecodeGrain(map.Required("grain", "a map"), map.PathOf("grain"), problems);
+  map.Each("structure", 1, SIZE_MAX, [&](const InputNode& item, const std::string& item_path) {
+    stage.structure.push_back(DecodeMassElement(item, item_path, problems));
+  });
+  stage.gimbal = DecodeGimbal(map.Required("gimbal", "a map"), map.PathOf("gimbal"), problems);
+  stage.ignition = map.Choice<IgnitionTrigger>("ignition", {{"lift_off", IgnitionTrigger::kLiftOff},
+                                                           {"burnout_detection", IgnitionTrigger::kBurnoutDetection},
+                                                           {"timer", IgnitionTrigger::kTimer}});
+  stage.ignition_delay_s = map.Quantity("ignition_delay", kTime, kNonNegative, 0.0);
+  stage.separation_delay_s = map.Quantity("separation_delay", kTime, kNonNegative, 0.0);
+  return stage;
+}
+
+ProfileSection DecodeProfileSection(const InputNode& node, const std::string& path, ProblemList& problems) {
+  MapReader map(node, path, problems);
+  ProfileSection section;
+  section.shape = map.Choice<ProfileShape>("shape", {{"tangent_ogive", ProfileShape::kTangentOgive},
+                                                    {"cone", ProfileShape::kCone},
+                                                    {"cylinder", ProfileShape::kCylinder},
+                                                    {"frustum", ProfileShape::kFrustum}});
+  section.length_m = map.Quantity("length", kLength, kPositive);
+  section.aft_diameter_m = map.Quantity("aft_diameter", kLength, kPositive);
+  return section;
+}
+
+// The rows of a table, one a grid point, to the grid: mach by mach, each with the same incidences.
+void GridRows(const InputNode& node, const std::string& path, AeroTable& table, ProblemList& problems) {
+  std::vector<double> mach;
+  std::vector<double> incidence_rad;
+  std::vector<double> cmq_per_rad;
+  std::vector<double> clp_per_rad;
+  const std::size_t before = problems.size();
+  {
+    MapReader map(node, path, problems);
+    mach = map.Numbers("mach", kNonNegative, 4);
+    incidence_rad = map.Quantities("incidence", kAngle, Between(0.0, kHalfTurn), 4);
+    table.ca = map.Numbers("ca", kAnyNumber, 4);
+    table.cn = map.Numbers("cn", kAnyNumber, 4);
+    table.xcp_station_m = map.Quantities("xcp_station", kLength, kAnyNumber, 4);
+    cmq_per_rad = map.Numbers("cmq_per_rad", kAnyNumber, 4);
+    clp_per_rad = map.Numbers("clp_per_rad", kAnyNumber, 4);
+  }
+  if (problems.size() > before) return;
+  const std::size_t rows = mach.size();
+  for (const auto* column : {&incidence_rad, &table.ca, &table.cn, &table.xcp_station_m, &cmq_per_rad, &clp_per_rad}) {
+    if (column->size() == rows) continue;
+    AddProblem(problems, node, path, "the columns have different lengths", "one value a row in each column");
+    return;
+  }
+  const std::size_t incidences = static_cast<std::size_t>(
+      std::find_if(mach.begin(), mach.end(), [&](double value) { return value != mach.front(); }) - mach.begin());
+  table.incidence_rad.assign(incidence_rad.begin(), incidence_rad.begin() + static_cast<std::ptrdiff_t>(incidences));
+  const std::string allowed =
+      "a full grid: rows of increasing mach, each mach with the same increasing incidences, two or more of both";
+  for (std::size_t row = 0; row < rows; ++row) {
+    const std::size_t column = row % incidences;
+    const bool starts_mach = column == 0;
+    const bool mach_fits =
+        starts_mach ? (row == 0 || mach[row] > mach[row - 1]) : mach[row] == mach[row - 1];
+    const bool incidence_fits =
+        incidence_rad[row] == table.incidence_rad[column] && (starts_mach || incidence_rad[row] > incidence_rad[row - 1]);
+    const bool last_is_partial = row + 1 == rows && column + 1 != incidences;
+    if (!mach_fits || !incidence_fits || last_is_partial || incidences < 2 || incidences == rows) {
+      AddProblem(problems, node.Find("mach")->items[row], path, "the row does not continue the grid", allowed);
+      return;
+    }
+    if (!starts_mach && (cmq_per_rad[row] != cmq_per_rad[row - 1] || clp_per_rad[row] != clp_per_rad[row - 1])) {
+      AddProblem(problems, node.Find("cmq_per_rad")->items[row], path, "the rate damping changes with incidence",
+                 "the same cmq_per_rad and clp_per_rad in all rows of a mach number");
+      return;
+    }
+    if (!starts_mach) continue;
+    table.mach.push_back(mach[row]);
+    table.cmq_per_rad.push_back(cmq_per_rad[row]);
+    table.clp_per_rad.push_back(clp_per_rad[row]);
+  }
+}
+
+AeroTable DecodeAeroTable(const InputNode& node, const std::string& path, ProblemList& problems) {
+  MapReader map(node, path, problems);
+  AeroTable table;
+  table.reference_area_m2 = map.Quantity("reference_area", kArea, kPositive);
+  table.reference_length_m = map.Quantity("reference_length", kLength, kPositive);
+  const InputNode& rows = map.Required("table", "a CSV file");
+  GridRows(rows, rows.file == node.file ? map.PathOf("table") : "", table, problems);
+  return table;
+}
+
+ReactionControl DecodeReactionControl(const InputNode& node, const std::string& path, ProblemList& problems) {
+  MapReader map(node, path, problems);
+  ReactionControl control;
+  control.thrust_n = map.Quantity("thrust", kForce, kPositive);
+  control.pitch_yaw_arm_m = map.Quantity("pitch_yaw_arm", kLength, kPositive);
+  control.roll_arm_m = map.Quantity("roll_arm", kLength, kPositive);
+  control.specific_impulse_s = map.Quantity("specific_impulse", kTime, kPositive);
+  control.minimum_on_time_s = map.Quantity("minimum_on_time", kTime, kNonNegative);
+  return control;
+}
+
+StructuralLimits DecodeLimits(const InputNode& node, const std::string& path, ProblemList& problems) {
+  MapReader map(node, path, problems);
+  StructuralLimits limits;
+  limits.q_alpha_pa_rad = map.Quantity("q_alpha", kPressureAngle, kPositive, 0.0);
+  limits.axial_load_g = map.Quantity("axial_load", kAcceleration, kPositive, 0.0);
+  limits.lateral_load_g = map.Quantity("lateral_load", kAcceleration, kPositive, 0.0);
+  limits.terminate = map.Flag("terminate", false);
+  return limits;
+}
+
+}  // namespace
+
+Vehicle DecodeVehicle(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems) {
+  const std::size_t before = problems.size();
+  Vehicle vehicle;
+  if (!CheckSchema(node, kVehicleSchema, !path.empty(), path, problems)) return vehicle;
+  {
+    MapReader map(node, path, problems);
+    map.Ignore("schema");
+    vehicle.name = map.Text("name");
+    vehicle.site = DecodeSite(map.Required("site", "a map"), map.PathOf("site"), problems);
+    vehicle.hold_down_s = map.Quantity("hold_down", kTime, kNonNegative, 0.0);
+    vehicle.jet_damping = map.Flag("jet_damping", true);
+    vehicle.surface_roughness_m = map.Quantity("surface_roughness", kLength, kNonNegative, 0.0);
+    map.Each("stages", 1, kMaxStages, [&](const InputNode& item, const std::string& item_path) {
+      vehicle.stages.push_back(DecodeStage(item, item_path, problems));
+    });
+    map.Each("profile", 1, SIZE_MAX, [&](const InputNode& item, const std::string& item_path) {
+      vehicle.profile.push_back(DecodeProfileSection(item, item_path, problems));
+    });
+    map.Each("aerodynamics", 0, kMaxStages, [&](const InputNode& item, const std::string& item_path) {
+      vehicle.aerodynamics.push_back(DecodeAeroTable(item, item_path, problems));
+    });
+    vehicle.reaction_control =
+        DecodeReactionControl(map.Required("reaction_control", "a map"), map.PathOf("reaction_control"), problems);
+    if (const InputNode* limits = map.Optional("limits")) {
+      vehicle.limits = DecodeLimits(*limits, map.PathOf("limits"), problems);
+    }
+  }
+  if (problems.size() == before) AddStructProblems(Problems(vehicle), node, path, problems);
+  return vehicle;
+}
+
+}  // namespace dispersa

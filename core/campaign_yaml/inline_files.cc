@@ -1,0 +1,103 @@
+#include "core/campaign_yaml/inline_files.h"
+
+#include <filesystem>
+#include <functional>
+
+#include "core/campaign_yaml/parse_csv.h"
+#include "core/campaign_yaml/parse_yaml.h"
+#include "core/campaign_yaml/yaml_reader.h"
+
+namespace dispersa {
+namespace {
+
+using Parse = std::function<InputNode(const std::string& text, const std::string& file)>;
+
+// Replaces a scalar, a file's name, by what the file holds; leaves it if that is impossible.
+void Replace(InputNode* value, const std::string& path, FileNames names, const Parse& parse,
+             std::vector<InputProblem>& problems) {
+  if (value == nullptr || value->kind != InputNode::Kind::kScalar) return;
+  if (names == FileNames::kRefused) {
+    AddProblem(problems, *value, path, "the file '" + value->text + "' is named in a text without files",
+               "its contents in its place");
+    *value = InputNode();
+    return;
+  }
+  const std::string file =
+      (std::filesystem::path(*value->file).parent_path() / value->text).lexically_normal().string();
+  std::string text;
+  std::string reason;
+  if (value->text.empty()) {
+    AddProblem(problems, *value, path, "the file name is empty", "a file name, relative to this file");
+    *value = InputNode();
+  } else if (!ReadFile(file, &text, &reason)) {
+    AddProblem(problems, *value, path, "cannot read '" + file + "': " + reason,
+               "a readable file, named relative to this one");
+    *value = InputNode();
+  } else {
+    *value = parse(text, file);
+  }
+}
+
+Parse YamlParser(std::vector<InputProblem>& problems) {
+  return [&problems](const std::string& text, const std::string& file) { return ParseYaml(text, file, problems); };
+}
+
+Parse CsvParser(const std::vector<std::string>& columns, std::vector<InputProblem>& problems) {
+  return [&columns, &problems](const std::string& text, const std::string& file) {
+    return ParseCsv(text, file, columns, problems);
+  };
+}
+
+}  // namespace
+
+InputNode ReadYamlFile(const std::string& path, std::vector<InputProblem>& problems) {
+  std::string text;
+  std::string reason;
+  if (!ReadFile(path, &text, &reason)) {
+    problems.push_back({path, 1, 1, "", "cannot be read: " + reason, "a readable file"});
+    return {};
+  }
+  return ParseYaml(text, path, problems);
+}
+
+void InlineVehicleFiles(InputNode& vehicle, FileNames names, std::vector<InputProblem>& problems) {
+  InputNode* stacks = vehicle.Find("aerodynamics");
+  if (stacks == nullptr) return;
+  for (std::size_t i = 0; i < stacks->items.size(); ++i) {
+    Replace(stacks->items[i].Find("table"), "aerodynamics[" + std::to_string(i) + "].table", names,
+            CsvParser(kAeroTableColumns, problems), problems);
+  }
+}
+
+void InlineCampaignFiles(InputNode& campaign, FileNames names, std::vector<InputProblem>& problems) {
+  for (const char* key : {"vehicle", "reference", "autopilot"}) {
+    Replace(campaign.Find(key), key, names, YamlParser(problems), problems);
+  }
+  if (InputNode* vehicle = campaign.Find("vehicle")) InlineVehicleFiles(*vehicle, names, problems);
+  InputNode* dispersions = campaign.Find("dispersions");
+  InputNode* wind = dispersions == nullptr ? nullptr : dispersions->Find("wind_profile");
+  if (wind == nullptr) return;
+  Replace(wind->Find("table"), "dispersions.wind_profile.table", names, CsvParser(kWindTableColumns, problems),
+          problems);
+  Replace(wind->Find("statistics"), "dispersions.wind_profile.statistics", names,
+          CsvParser(kWindStatisticsColumns, problems), problems);
+}
+
+bool CheckSchema(const InputNode& node, const std::string& schema, bool inside, const std::string& path,
+                 std::vector<InputProblem>& problems) {
+  if (node.kind != InputNode::Kind::kMap) return true;  // its reader says so
+  const InputNode* value = node.Find("schema");
+  if (value == nullptr && inside) return true;
+  const std::string allowed = "schema: " + schema;
+  if (value == nullptr) {
+    AddProblem(problems, node, path, "missing key 'schema'", allowed);
+  } else if (value->text != schema) {
+    AddProblem(problems, *value, path.empty() ? "schema" : path + ".schema",
+               value->Describe() + " is not the schema of this kind of file", allowed);
+  } else {
+    return true;
+  }
+  return false;
+}
+
+}  // namespace dispersa

@@ -1,0 +1,40 @@
+// Puts the contents of a file in the place of its name, so that one tree holds everything.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/campaign/input_error.h"
+#include "core/campaign_yaml/input_node.h"
+
+namespace dispersa {
+
+inline constexpr char kCampaignSchema[] = "dispersa/campaign/1";
+inline constexpr char kVehicleSchema[] = "dispersa/vehicle/1";
+inline constexpr char kAutopilotSchema[] = "dispersa/autopilot/1";
+inline constexpr char kReferenceSchema[] = "dispersa/reference/1";
+
+/// Columns of the tables that a file may name.
+inline const std::vector<std::string> kWindTableColumns = {"altitude_m", "north_m_s", "east_m_s"};
+inline const std::vector<std::string> kWindStatisticsColumns = {
+    "altitude_m", "mean_north_m_s", "mean_east_m_s", "sigma_north_m_s", "sigma_east_m_s"};
+inline const std::vector<std::string> kAeroTableColumns = {
+    "mach", "incidence_deg", "ca", "cn", "xcp_station_m", "cmq_per_rad", "clp_per_rad"};
+
+/// Whether a text may name files: a canonical text, which lives anywhere, may not.
+enum class FileNames { kAllowed, kRefused };
+
+/// Reads a YAML file. An unreadable one is a problem at line 1, column 1.
+InputNode ReadYamlFile(const std::string& path, std::vector<InputProblem>& problems);
+
+/// Replaces what names a file: a campaign's vehicle, reference, autopilot and wind tables, a vehicle's
+/// aerodynamic tables. Names are relative to the file in which they stand.
+void InlineCampaignFiles(InputNode& campaign, FileNames names, std::vector<InputProblem>& problems);
+void InlineVehicleFiles(InputNode& vehicle, FileNames names, std::vector<InputProblem>& problems);
+
+/// True if a tree that was read from a file has this `schema`; a map that stands inside another file (`inside`)
+/// need not have one. False is recorded as a problem.
+bool CheckSchema(const InputNode& node, const std::string& schema, bool inside, const std::string& path,
+                 std::vector<InputProblem>& problems);
+
+}  // namespace dispersa

@@ -1,0 +1,47 @@
+// A YAML or CSV document as a tree in which every value knows its place.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace dispersa {
+
+struct InputMember;
+
+/// A value of a document. Anchors, aliases and tags do not exist here: a value stands where it is used.
+struct InputNode {
+  enum class Kind { kNull, kScalar, kList, kMap };
+
+  Kind kind = Kind::kNull;
+  std::string text;     ///< of a scalar
+  bool quoted = false;  ///< a quoted scalar is text, even if it looks like a number
+  std::vector<InputNode> items;      ///< of a list
+  std::vector<InputMember> members;  ///< of a map, in file order; the parser refuses duplicate keys
+  std::shared_ptr<const std::string> file;
+  int line = 1;
+  int column = 1;
+
+  /// The value of a key, or null.
+  const InputNode* Find(std::string_view key) const;
+  InputNode* Find(std::string_view key);
+  /// The scalar as an error message quotes it; "a list", "a map", "nothing" for the other kinds.
+  std::string Describe() const;
+};
+
+struct InputMember {
+  std::string key;
+  int line = 1;
+  int column = 1;
+  InputNode value;
+};
+
+/// A scalar, list or map that stands at the place of another node.
+InputNode ScalarAt(const InputNode& place, std::string text);
+InputNode ListAt(const InputNode& place);
+InputNode MapAt(const InputNode& place);
+/// Sets a key of a map, replacing its value if it has one.
+void SetMember(InputNode& map, const std::string& key, InputNode value);
+
+}  // namespace dispersa

@@ -1,0 +1,149 @@
+#include "core/campaign_yaml/load.h"
+
+#include <algorithm>
+#include <functional>
+#include <tuple>
+
+#include "core/campaign_yaml/canonical.h"
+#include "core/campaign_yaml/decode.h"
+#include "core/campaign_yaml/decode_campaign.h"
+#include "core/campaign_yaml/inline_files.h"
+#include "core/campaign_yaml/parse_yaml.h"
+#include "core/campaign_yaml/yaml_reader.h"
+
+namespace dispersa {
+namespace {
+
+using ProblemList = std::vector<InputProblem>;
+
+std::string SchemaNames() {
+  return "one of " + JoinWords({kCampaignSchema, kVehicleSchema, kAutopilotSchema, kReferenceSchema});
+}
+
+// In the order of the text, file by file as they were met first.
+void SortByPlace(ProblemList& problems) {
+  std::vector<std::string> files;
+  for (const InputProblem& problem : problems) {
+    if (std::find(files.begin(), files.end(), problem.file) == files.end()) files.push_back(problem.file);
+  }
+  const auto place = [&](const InputProblem& problem) {
+    return std::tuple(std::find(files.begin(), files.end(), problem.file) - files.begin(), problem.line, problem.column);
+  };
+  std::stable_sort(problems.begin(), problems.end(),
+                   [&](const InputProblem& a, const InputProblem& b) { return place(a) < place(b); });
+}
+
+void ThrowIfAny(ProblemList problems) {
+  if (problems.empty()) return;
+  SortByPlace(problems);
+  throw InputError(std::move(problems));
+}
+
+// The command line's values replace the file's; a campaign without a sampling block is reported later.
+void Override(InputNode& root, const CampaignOverrides& overrides) {
+  InputNode* sampling = root.Find("sampling");
+  if (sampling == nullptr || sampling->kind != InputNode::Kind::kMap) return;
+  if (overrides.cases) SetMember(*sampling, "cases", ScalarAt(*sampling, std::to_string(*overrides.cases)));
+  if (overrides.seed) SetMember(*sampling, "seed", ScalarAt(*sampling, std::to_string(*overrides.seed)));
+}
+
+Campaign FinishCampaign(InputNode root, FileNames names, const CampaignOverrides& overrides, ProblemList problems,
+                        std::vector<InputProblem>* warnings) {
+  InlineCampaignFiles(root, names, problems);
+  Override(root, overrides);
+  DecodedCampaign decoded = DecodeCampaign(root, CampaignUse::kFly, problems, warnings);
+  ThrowIfAny(std::move(problems));
+  Campaign& campaign = decoded.campaign;
+  campaign.canonical_yaml = CanonicalText(root);
+  campaign.id = Sha256Hex(campaign.canonical_yaml);
+  campaign.flight_id = FlightId(root, campaign.sampling.method);
+  return std::move(campaign);
+}
+
+}  // namespace
+
+Campaign LoadCampaign(const std::string& path, const CampaignOverrides& overrides,
+                      std::vector<InputProblem>* warnings) {
+  ProblemList problems;
+  InputNode root = ReadYamlFile(path, problems);
+  return FinishCampaign(std::move(root), FileNames::kAllowed, overrides, std::move(problems), warnings);
+}
+
+Campaign ParseCampaign(const std::string& yaml_text, const std::string& display_name) {
+  ProblemList problems;
+  InputNode root = ParseYaml(yaml_text, display_name, problems);
+  return FinishCampaign(std::move(root), FileNames::kRefused, {}, std::move(problems), nullptr);
+}
+
+OptimizationInput LoadOptimization(const std::string& path, std::optional<std::uint64_t> seed) {
+  ProblemList problems;
+  InputNode root = ReadYamlFile(path, problems);
+  InlineCampaignFiles(root, FileNames::kAllowed, problems);
+  DecodedCampaign decoded = DecodeCampaign(root, CampaignUse::kOptimize, problems, nullptr);
+  ThrowIfAny(std::move(problems));
+  OptimizationInput input;
+  input.name = decoded.campaign.name;
+  input.vehicle = std::move(decoded.campaign.vehicle);
+  input.vehicle_sha256 = VehicleSha256(*root.Find("vehicle"));
+  input.problem = decoded.optimize.value_or(decoded.campaign.reference.problem);
+  if (seed) input.problem.seed = *seed;
+  return input;
+}
+
+Vehicle LoadVehicle(const std::string& path) {
+  ProblemList problems;
+  InputNode root = ReadYamlFile(path, problems);
+  InlineVehicleFiles(root, FileNames::kAllowed, problems);
+  Vehicle vehicle = DecodeVehicle(root, "", problems);
+  ThrowIfAny(std::move(problems));
+  return vehicle;
+}
+
+AutopilotConfig LoadAutopilot(const std::string& path) {
+  ProblemList problems;
+  const InputNode root = ReadYamlFile(path, problems);
+  AutopilotConfig autopilot = DecodeAutopilot(root, "", 0, problems);
+  ThrowIfAny(std::move(problems));
+  return autopilot;
+}
+
+Reference LoadReference(const std::string& path) {
+  ProblemList problems;
+  const InputNode root = ReadYamlFile(path, problems);
+  Reference reference = DecodeReference(root, "", problems);
+  ThrowIfAny(std::move(problems));
+  return reference;
+}
+
+Reference ReadReference(const std::string& yaml_text, const std::string& display_name) {
+  ProblemList problems;
+  const InputNode root = ParseYaml(yaml_text, display_name, problems);
+  Reference reference = DecodeReference(root, "", problems);
+  ThrowIfAny(std::move(problems));
+  return reference;
+}
+
+std::vector<InputProblem> ValidateFile(const std::string& path) {
+  ProblemList problems;
+  InputNode root = ReadYamlFile(path, problems);
+  const InputNode* schema = root.Find("schema");
+  if (schema == nullptr) {
+    if (root.kind == InputNode::Kind::kMap) AddProblem(problems, root, "", "missing key 'schema'", SchemaNames());
+  } else if (schema->text == kCampaignSchema) {
+    InlineCampaignFiles(root, FileNames::kAllowed, problems);
+    DecodeCampaign(root, CampaignUse::kCheck, problems, nullptr);
+  } else if (schema->text == kVehicleSchema) {
+    InlineVehicleFiles(root, FileNames::kAllowed, problems);
+    DecodeVehicle(root, "", problems);
+  } else if (schema->text == kAutopilotSchema) {
+    DecodeAutopilot(root, "", 0, problems);
+  } else if (schema->text == kReferenceSchema) {
+    DecodeReference(root, "", problems);
+  } else {
+    AddProblem(problems, *schema, "schema", schema->Describe() + " is not a schema", SchemaNames());
+  }
+  SortByPlace(problems);
+  return problems;
+}
+
+}  // namespace dispersa

@@ -1,0 +1,17 @@
+// CSV tables to trees: a map from column name to the list of its cells.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/campaign/input_error.h"
+#include "core/campaign_yaml/input_node.h"
+
+namespace dispersa {
+
+/// Comma-separated; lines that begin with '#' and empty lines do not count; the first other line names the
+/// columns, which must be exactly `columns`, in any order. Cells are not checked here.
+InputNode ParseCsv(const std::string& text, const std::string& file, const std::vector<std::string>& columns,
+                   std::vector<InputProblem>& problems);
+
+}  // namespace dispersa

@@ -1,0 +1,26 @@
+#include <openssl/evp.h>
+
+#include <array>
+#include <stdexcept>
+
+#include "core/campaign_yaml/load.h"
+
+namespace dispersa {
+
+std::string Sha256Hex(std::string_view bytes) {
+  std::array<unsigned char, 32> digest;
+  unsigned int size = 0;
+  if (EVP_Digest(bytes.data(), bytes.size(), digest.data(), &size, EVP_sha256(), nullptr) != 1 ||
+      size != digest.size()) {
+    throw std::runtime_error("OpenSSL cannot compute SHA-256");
+  }
+  constexpr char kDigits[] = "0123456789abcdef";
+  std::string hex;
+  for (const unsigned char byte : digest) {
+    hex += kDigits[byte >> 4];
+    hex += kDigits[byte & 15];
+  }
+  return hex;
+}
+
+}  // namespace dispersa

@@ -1,0 +1,47 @@
+// The units in which the files may write a quantity: always the last part of its key.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "core/math/constants.h"
+
+namespace dispersa {
+
+struct Unit {
+  std::string_view suffix;  ///< "altitude" in "km" is the key "altitude_km"
+  double scale;             ///< value inside = value in the file * scale
+};
+
+using Dimension = std::span<const Unit>;
+
+inline constexpr Unit kLength[] = {{"m", 1.0}, {"km", 1e3}, {"mm", 1e-3}, {"um", 1e-6}};
+inline constexpr Unit kArea[] = {{"m2", 1.0}};
+inline constexpr Unit kTime[] = {{"s", 1.0}, {"ms", 1e-3}};
+inline constexpr Unit kMass[] = {{"kg", 1.0}, {"ton", 1e3}};
+inline constexpr Unit kMassFlow[] = {{"kg_s", 1.0}};
+inline constexpr Unit kForce[] = {{"n", 1.0}, {"kn", 1e3}};
+inline constexpr Unit kPressure[] = {{"pa", 1.0}, {"kpa", 1e3}};
+inline constexpr Unit kPressureAngle[] = {{"pa_rad", 1.0}, {"kpa_rad", 1e3}, {"pa_deg", kRadPerDeg}};
+inline constexpr Unit kSpeed[] = {{"m_s", 1.0}, {"km_s", 1e3}};
+inline constexpr Unit kAcceleration[] = {{"g", 1.0}};
+inline constexpr Unit kAngle[] = {{"deg", kRadPerDeg}, {"rad", 1.0}};
+inline constexpr Unit kAngularRate[] = {{"deg_s", kRadPerDeg}, {"rad_s", 1.0}};
+inline constexpr Unit kFrequency[] = {{"rad_s", 1.0}, {"hz", kTwoPi}};
+inline constexpr Unit kAngularAcceleration[] = {{"deg_s2", kRadPerDeg}, {"rad_s2", 1.0}};
+inline constexpr Unit kPerTime[] = {{"1_s", 1.0}};
+inline constexpr Unit kPerTimeSquared[] = {{"1_s2", 1.0}};
+inline constexpr Unit kPerLength[] = {{"per_km", 1e-3}, {"per_m", 1.0}};
+inline constexpr Unit kPerSpeed[] = {{"per_m_s", 1.0}};
+inline constexpr Unit kPerAngle[] = {{"per_deg", kDegPerRad}, {"per_rad", 1.0}};
+
+/// What may stand behind the last underscores of a key and is a unit, ours or not: to tell a wrong unit from a
+/// wrong name.
+inline constexpr std::string_view kUnitLike[] = {
+    "m",   "km",  "mm",  "um",   "cm",    "ft",     "in",     "mi",     "nmi",    "m2",     "ft2",   "s",
+    "ms",  "min", "h",   "kg",   "ton",   "t",      "g",      "lb",     "lbm",    "slug",   "kg_s",  "lb_s",
+    "n",   "kn",  "mn",  "lbf",  "pa",    "kpa",    "bar",    "psf",    "psi",    "pa_rad", "pa_deg", "kpa_rad",
+    "m_s", "km_s", "ft_s", "kt", "kts",   "mph",    "deg",    "rad",    "arcmin", "deg_s",  "rad_s", "hz",
+    "rpm", "deg_s2", "rad_s2", "1_s", "1_s2", "per_km", "per_m", "per_m_s", "per_deg", "per_rad", "percent", "factor"};
+
+}  // namespace dispersa

@@ -1,0 +1,341 @@
+#include "core/campaign_yaml/yaml_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/campaign_yaml/number_text.h"
+
+namespace dispersa {
+namespace {
+
+bool IsAbsent(const InputNode& node) { return node.file == nullptr; }
+
+bool IsTruthValue(const std::string& text) { return text == "true" || text == "false"; }
+
+// Levenshtein distance.
+std::size_t EditDistance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), 0);
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substituted});
+    }
+  }
+  return row[b.size()];
+}
+
+// The nearest word, or empty.
+std::string Nearest(const std::string& word, const std::vector<std::string>& words) {
+  std::size_t best_distance = std::max<std::size_t>(2, word.size() / 4) + 1;
+  std::string best;
+  for (const std::string& candidate : words) {
+    const std::size_t distance = EditDistance(word, candidate);
+    if (distance < best_distance && distance < std::max(word.size(), candidate.size())) {
+      best_distance = distance;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+std::string Quote(const std::vector<std::string>& words, const std::string& separator) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "'" : separator + "'") + word + "'";
+  return text;
+}
+
+bool IsUnitLike(std::string_view suffix) {
+  return std::find(std::begin(kUnitLike), std::end(kUnitLike), suffix) != std::end(kUnitLike);
+}
+
+std::string CountText(std::size_t low, std::size_t high) {
+  if (low == high) return "a list of " + std::to_string(low);
+  if (high == SIZE_MAX) return "a list of " + std::to_string(low) + " or more";
+  return "a list of " + std::to_string(low) + " to " + std::to_string(high);
+}
+
+}  // namespace
+
+bool Range::Contains(double value) const {
+  return std::isfinite(value) && (low_open ? value > low : value >= low) &&
+         (high_open ? value < high : value <= high);
+}
+
+std::string Range::Text(double scale) const {
+  std::string text = "a number";
+  if (std::isfinite(low)) {
+    const std::string limit = FormatScaled(low, scale);
+    text += low_open ? " above " + limit : " not below " + limit;
+  }
+  if (std::isfinite(high)) {
+    if (std::isfinite(low)) text += " and";
+    const std::string limit = FormatScaled(high, scale);
+    text += high_open ? " below " + limit : " not above " + limit;
+  }
+  return text;
+}
+
+void AddProblem(std::vector<InputProblem>& problems, const InputNode& at, std::string path, std::string message,
+                std::string allowed) {
+  problems.push_back({at.file ? *at.file : "", at.line, at.column, std::move(path), std::move(message),
+                      std::move(allowed)});
+}
+
+double ReadNumber(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems,
+                  const Range& range, double scale) {
+  if (IsAbsent(node)) return 0.0;
+  std::optional<double> value;
+  if (node.kind == InputNode::Kind::kScalar && !node.quoted) value = ParseNumber(node.text);
+  if (!value) {
+    AddProblem(problems, node, path, node.Describe() + " is not a number", range.Text(scale));
+    return 0.0;
+  }
+  if (!std::isfinite(*value)) {
+    AddProblem(problems, node, path, node.Describe() + " is not finite", range.Text(scale));
+    return 0.0;
+  }
+  if (!range.Contains(*value * scale)) {
+    AddProblem(problems, node, path, node.text + " is out of range", range.Text(scale));
+    return 0.0;
+  }
+  return *value * scale;
+}
+
+std::string ReadText(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems) {
+  if (IsAbsent(node)) return "";
+  if (node.kind != InputNode::Kind::kScalar) {
+    AddProblem(problems, node, path, node.Describe() + " is not text", "text");
+  } else if (!node.quoted && (ParseNumber(node.text) || IsTruthValue(node.text))) {
+    AddProblem(problems, node, path, node.Describe() + " is not text", "text; in quotes if it looks like a number");
+  } else if (node.text.empty()) {
+    AddProblem(problems, node, path, "the text is empty", "text");
+  }
+  return node.text;
+}
+
+std::string JoinWords(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+std::string DidYouMean(const std::string& word, const std::vector<std::string>& words) {
+  const std::string nearest = Nearest(word, words);
+  return nearest.empty() ? "" : " (did you mean '" + nearest + "'?)";
+}
+
+MapReader::MapReader(const InputNode& node, std::string path, std::vector<InputProblem>& problems)
+    : node_(node), path_(std::move(path)), problems_(problems) {
+  if (!IsAbsent(node) && node.kind != InputNode::Kind::kMap) {
+    AddProblem(problems_, node, path_, node.Describe() + " is not a map", "a map of keys and values");
+  }
+}
+
+MapReader::~MapReader() { Finish(); }
+
+const InputNode* MapReader::Optional(const std::string& key) {
+  known_.insert(key);
+  return node_.Find(key);
+}
+
+const InputNode& MapReader::Required(const std::string& key, const std::string& allowed) {
+  static const InputNode absent;
+  if (const InputNode* value = Optional(key)) return *value;
+  ReportMissing({key}, "", allowed);
+  return absent;
+}
+
+std::string MapReader::Text(const std::string& key) {
+  return ReadText(Required(key, "text"), PathOf(key), problems_);
+}
+
+std::string MapReader::Text(const std::string& key, const std::string& absent) {
+  const InputNode* value = Optional(key);
+  return value == nullptr ? absent : ReadText(*value, PathOf(key), problems_);
+}
+
+bool MapReader::Flag(const std::string& key, bool absent) {
+  const InputNode* value = Optional(key);
+  if (value == nullptr) return absent;
+  if (value->kind == InputNode::Kind::kScalar && !value->quoted && IsTruthValue(value->text)) {
+    return value->text == "true";
+  }
+  AddProblem(problems_, *value, PathOf(key), value->Describe() + " is not a truth value", "true or false");
+  return absent;
+}
+
+std::uint64_t MapReader::Integer(const std::string& key, std::uint64_t low, std::uint64_t high,
+                                 std::optional<std::uint64_t> absent) {
+  std::string allowed = "a whole number from " + std::to_string(low) + " to " + std::to_string(high);
+  const InputNode* value = Optional(key);
+  if (value == nullptr) {
+    if (!absent) ReportMissing({key}, "", allowed);
+    return absent.value_or(low);
+  }
+  std::optional<std::uint64_t> number;
+  if (value->kind == InputNode::Kind::kScalar && !value->quoted) number = ParseInteger(value->text);
+  if (number && *number >= low && *number <= high) return *number;
+  const bool is_number = value->kind == InputNode::Kind::kScalar && !value->quoted && ParseNumber(value->text);
+  AddProblem(problems_, *value, PathOf(key),
+             number ? value->text + " is out of range"
+                    : value->Describe() + (is_number ? " is not a whole number from 0" : " is not a number"),
+             std::move(allowed));
+  return low;
+}
+
+double MapReader::Number(const std::string& key, const Range& range, std::optional<double> absent) {
+  const InputNode* value = Optional(key);
+  if (value != nullptr) return ReadNumber(*value, PathOf(key), problems_, range);
+  if (!absent) ReportMissing({key}, "", range.Text());
+  return absent.value_or(0.0);
+}
+
+const InputNode* MapReader::FindQuantity(const std::string& stem, Dimension dimension, std::string* key,
+                                         double* scale) {
+  const InputNode* found = nullptr;
+  std::vector<std::string> keys;
+  for (const Unit& unit : dimension) {
+    keys.push_back(stem + "_" + std::string(unit.suffix));
+    const InputNode* value = Optional(keys.back());
+    if (value == nullptr) continue;
+    if (found != nullptr) {
+      AddProblem(problems_, *value, PathOf(keys.back()), "'" + *key + "' is given too", "one of the two");
+      continue;
+    }
+    found = value;
+    *key = keys.back();
+    *scale = unit.scale;
+  }
+  quantities_.emplace_back(stem, std::move(keys));
+  return found;
+}
+
+double MapReader::Quantity(const std::string& stem, Dimension dimension, const Range& range,
+                           std::optional<double> absent) {
+  std::string key;
+  double scale = 1.0;
+  const InputNode* value = FindQuantity(stem, dimension, &key, &scale);
+  if (value != nullptr) return ReadNumber(*value, PathOf(key), problems_, range, scale);
+  if (!absent) ReportMissing(quantities_.back().second, stem, range.Text(dimension.front().scale));
+  return absent.value_or(0.0);
+}
+
+std::optional<double> MapReader::OptionalQuantity(const std::string& stem, Dimension dimension,
+                                                  const Range& range, std::string* key) {
+  std::string found;
+  double scale = 1.0;
+  const InputNode* value = FindQuantity(stem, dimension, &found, &scale);
+  if (key != nullptr) *key = found;
+  if (value == nullptr) return std::nullopt;
+  return ReadNumber(*value, PathOf(found), problems_, range, scale);
+}
+
+std::vector<double> MapReader::Quantities(const std::string& stem, Dimension dimension, const Range& range,
+                                          std::size_t low_count, std::size_t high_count, std::string* key) {
+  std::string found;
+  double scale = 1.0;
+  std::vector<double> values;
+  if (FindQuantity(stem, dimension, &found, &scale) == nullptr) {
+    if (low_count > 0) ReportMissing(quantities_.back().second, stem, CountText(low_count, high_count));
+    return values;
+  }
+  if (key != nullptr) *key = found;
+  Each(found, low_count, high_count, [&](const InputNode& item, const std::string& path) {
+    values.push_back(ReadNumber(item, path, problems_, range, scale));
+  });
+  return values;
+}
+
+std::vector<double> MapReader::Numbers(const std::string& key, const Range& range, std::size_t low_count,
+                                       std::size_t high_count) {
+  std::vector<double> values;
+  Each(key, low_count, high_count, [&](const InputNode& item, const std::string& path) {
+    values.push_back(ReadNumber(item, path, problems_, range));
+  });
+  return values;
+}
+
+const InputNode* MapReader::List(const std::string& key, std::size_t low_count, std::size_t high_count) {
+  const InputNode* list = Optional(key);
+  const std::string allowed = CountText(low_count, high_count);
+  if (list == nullptr) {
+    if (low_count > 0) ReportMissing({key}, "", allowed);
+    return nullptr;
+  }
+  if (list->kind != InputNode::Kind::kList) {
+    AddProblem(problems_, *list, PathOf(key), list->Describe() + " is not a list", allowed);
+    return nullptr;
+  }
+  const std::size_t count = list->items.size();
+  if (count < low_count || count > high_count) {
+    AddProblem(problems_, *list, PathOf(key),
+               count == 0 ? "the list is empty" : "the list has " + std::to_string(count), allowed);
+    return nullptr;
+  }
+  return list;
+}
+
+std::optional<std::size_t> MapReader::WordIndex(const std::string& key, const std::vector<std::string>& words,
+                                                bool required) {
+  const std::string allowed = "one of " + JoinWords(words);
+  const InputNode* value = Optional(key);
+  if (value == nullptr) {
+    if (required) ReportMissing({key}, "", allowed);
+    return std::nullopt;
+  }
+  if (value->kind == InputNode::Kind::kScalar) {
+    const auto found = std::find(words.begin(), words.end(), value->text);
+    if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
+  }
+  const std::string guess = value->kind == InputNode::Kind::kScalar ? DidYouMean(value->text, words) : "";
+  AddProblem(problems_, *value, PathOf(key), value->Describe() + " is not a choice" + guess, allowed);
+  return std::nullopt;
+}
+
+void MapReader::ReportMissing(std::vector<std::string> keys, const std::string& stem, const std::string& allowed) {
+  if (node_.kind == InputNode::Kind::kMap) missing_.push_back({std::move(keys), stem, allowed});
+}
+
+void MapReader::Finish() {
+  const std::vector<std::string> known(known_.begin(), known_.end());
+  std::set<std::string> explained;  // missing keys that an unknown key evidently stands for
+  for (const InputMember& member : node_.members) {
+    if (known_.contains(member.key)) continue;
+    InputNode at = MapAt(member.value);
+    at.line = member.line;
+    at.column = member.column;
+    const std::string path = PathOf(member.key);
+
+    const auto quantity = std::find_if(quantities_.begin(), quantities_.end(), [&](const auto& entry) {
+      const std::string& stem = entry.first;
+      return member.key == stem || (member.key.starts_with(stem + "_") &&
+                                    IsUnitLike(std::string_view(member.key).substr(stem.size() + 1)));
+    });
+    if (quantity != quantities_.end()) {
+      const bool bare = member.key == quantity->first;
+      AddProblem(problems_, at, path,
+                 bare ? "missing unit: did you mean " + Quote(quantity->second, " or ") + "?"
+                      : "the unit of '" + member.key + "' is not known here",
+                 Quote(quantity->second, " or "));
+      explained.insert(quantity->second.begin(), quantity->second.end());
+      continue;
+    }
+    const std::string nearest = Nearest(member.key, known);
+    if (!nearest.empty()) explained.insert(nearest);
+    AddProblem(problems_, at, path, "unknown key '" + member.key + "'" + DidYouMean(member.key, known),
+               JoinWords(known));
+  }
+  for (const Missing& missing : missing_) {
+    const bool is_explained = std::any_of(missing.keys.begin(), missing.keys.end(),
+                                          [&](const std::string& key) { return explained.contains(key); });
+    if (is_explained) continue;
+    AddProblem(problems_, node_, path_, "missing key " + Quote(missing.keys, " or "), missing.allowed);
+  }
+}
+
+}  // namespace dispersa
