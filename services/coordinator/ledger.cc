@@ -1,0 +1,226 @@
+#include "services/coordinator/ledger.h"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+namespace dispersa {
+namespace {
+
+// A flight of the same campaign takes about as long as another; a factor of 20 over the longest seen is
+// a hang and not a slow case on a busy machine.
+constexpr double kLeasePerLongestCase = 20.0;
+constexpr double kMeanWeight = 0.1;  // of the newest duration in the running mean
+
+}  // namespace
+
+Ledger::Ledger(std::string engine_version, std::uint64_t cases, const LedgerOptions& options)
+    : engine_version_(std::move(engine_version)), options_(options), cases_(cases) {
+  waiting_.AddRange(0, cases);
+  progress_.total = cases;
+}
+
+void Ledger::MarkDone(std::uint64_t case_index) {
+  assert(case_index < cases_.size() && next_attempt_ == 1);
+  if (!waiting_.Remove(case_index)) return;
+  cases_[case_index].state = State::kDone;
+  ++progress_.done;
+}
+
+std::optional<std::string> Ledger::Join(const std::string& worker, const WorkerHello& hello, double now_s) {
+  if (hello.engine_version != engine_version_) {
+    return "engine version " + hello.engine_version + " of the worker differs from the coordinator's " +
+           engine_version_;
+  }
+  auto [entry, is_new] = workers_.try_emplace(worker);
+  if (is_new) {
+    entry->second.last_report_s = now_s;
+  } else {
+    slots_ -= entry->second.hello.slots;
+  }
+  slots_ += hello.slots;
+  entry->second.hello = hello;
+  return std::nullopt;
+}
+
+void Ledger::Started(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,
+                     double now_s) {
+  const auto entry = workers_.find(worker);
+  if (entry == workers_.end()) return;
+  entry->second.last_report_s = now_s;
+  entry->second.stuck = false;
+  const auto held = entry->second.held.find(case_index);
+  if (held == entry->second.held.end() || held->second.attempt != attempt) return;  // of a lease that expired
+  if (!held->second.started_s) held->second.started_s = now_s;
+}
+
+Acceptance Ledger::Finished(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,
+                            const Digest& fingerprint, double now_s) {
+  const auto entry = workers_.find(worker);
+  if (entry != workers_.end()) {
+    entry->second.last_report_s = now_s;
+    entry->second.stuck = false;
+    const auto held = entry->second.held.find(case_index);
+    if (held != entry->second.held.end() && held->second.attempt == attempt) {
+      if (held->second.started_s) {
+        const double duration_s = now_s - *held->second.started_s;
+        longest_case_s_ = std::max(longest_case_s_, duration_s);
+        mean_case_s_ = mean_case_s_ == 0.0 ? duration_s
+                                           : mean_case_s_ + kMeanWeight * (duration_s - mean_case_s_);
+      }
+      Release(entry->second, held);
+    }
+  }
+
+  if (case_index >= cases_.size()) return Acceptance::kUnknown;
+  Case& flown = cases_[case_index];
+  if (flown.state == State::kDone) {
+    if (flown.fingerprint_known && flown.fingerprint != fingerprint) {
+      ++progress_.conflicts;
+      return Acceptance::kConflict;
+    }
+    flown.fingerprint = fingerprint;
+    flown.fingerprint_known = true;
+    ++progress_.duplicates;
+    return Acceptance::kDuplicate;
+  }
+  if (flown.state == State::kWaiting) waiting_.Remove(case_index);
+  if (flown.state == State::kSuspect) suspects_.Remove(case_index);
+  if (flown.state == State::kQuarantined) --progress_.quarantined;
+  blames_.erase(case_index);
+  flown = {State::kDone, true, fingerprint};
+  ++progress_.done;
+  return Acceptance::kAccepted;
+}
+
+void Ledger::Lost(const std::string& worker, WorkerEnd end, const std::string& reason) {
+  const auto entry = workers_.find(worker);
+  if (entry == workers_.end()) return;
+  const bool blames = end == WorkerEnd::kCrashed || end == WorkerEnd::kSilent;
+  slots_ -= entry->second.hello.slots;
+  const auto held = std::move(entry->second.held);
+  workers_.erase(entry);
+  for (const auto& [case_index, how] : held) {
+    if (cases_[case_index].state != State::kAssigned) continue;  // another worker's late result came
+    if (blames && how.started_s) {
+      Blame(case_index, reason);
+    } else {
+      Return(case_index);
+    }
+  }
+}
+
+std::vector<std::string> Ledger::Expire(double now_s) {
+  const double lease_s = Lease();
+  std::vector<std::string> stuck;
+  for (auto& [id, worker] : workers_) {
+    if (worker.held.empty()) continue;
+    bool expired = now_s - worker.last_report_s > lease_s;
+    for (const auto& [case_index, held] : worker.held) {
+      expired = expired || (held.started_s && now_s - *held.started_s > lease_s);
+    }
+    if (!expired) continue;
+    stuck.push_back(id);
+    const auto held = std::move(worker.held);
+    worker.held.clear();
+    worker.batches.clear();
+    worker.alone = false;
+    worker.stuck = true;
+    for (const auto& [case_index, how] : held) {
+      if (cases_[case_index].state != State::kAssigned) continue;
+      if (how.started_s && now_s - *how.started_s > lease_s) {
+        Blame(case_index, "no result within its lease");
+      } else {
+        Return(case_index);
+      }
+    }
+  }
+  return stuck;
+}
+
+std::vector<Assignment> Ledger::Assign(double now_s) {
+  std::vector<Assignment> assignments;
+  // One assignment a worker in turn, so that few cases spread over all workers.
+  for (bool given = true; given && !waiting_.Empty();) {
+    given = false;
+    for (auto& [id, worker] : workers_) {
+      if (worker.stuck || worker.alone || worker.batches.size() >= worker.hello.credits) continue;
+      if (waiting_.Empty()) break;
+      assignments.push_back(Give(id, worker, waiting_.TakeRun(BatchSize()), now_s));
+      given = true;
+    }
+  }
+  if (!waiting_.Empty()) return assignments;
+  for (auto& [id, worker] : workers_) {
+    if (suspects_.Empty()) break;
+    if (worker.stuck || !worker.held.empty() || worker.hello.credits == 0) continue;
+    assignments.push_back(Give(id, worker, suspects_.TakeRun(1), now_s));
+    worker.alone = true;
+  }
+  return assignments;
+}
+
+bool Ledger::Complete() const { return progress_.done + progress_.quarantined == progress_.total; }
+
+LedgerProgress Ledger::Progress() const {
+  LedgerProgress progress = progress_;
+  progress.waiting = waiting_.Count() + suspects_.Count();
+  progress.assigned = progress.total - progress.done - progress.quarantined - progress.waiting;
+  return progress;
+}
+
+std::vector<BlamedCase> Ledger::Quarantined() const {
+  std::vector<BlamedCase> quarantined;
+  for (const auto& [case_index, reasons] : blames_) {
+    if (cases_[case_index].state == State::kQuarantined) quarantined.push_back({case_index, reasons});
+  }
+  return quarantined;
+}
+
+double Ledger::Lease() const { return std::max(options_.lease_s, kLeasePerLongestCase * longest_case_s_); }
+
+std::uint64_t Ledger::BatchSize() const {
+  // At least two rounds for every slot, so that the last cases end everywhere at about the same time.
+  const std::uint64_t share = waiting_.Count() / (2 * std::max<std::uint64_t>(slots_, 1));
+  const double by_duration = mean_case_s_ > 0.0 ? options_.batch_duration_s / mean_case_s_ : 1.0;
+  const double wanted = std::min(by_duration, static_cast<double>(std::min(share, options_.max_batch)));
+  return static_cast<std::uint64_t>(std::max(wanted, 1.0));
+}
+
+Assignment Ledger::Give(const std::string& id, Worker& worker, std::vector<std::uint64_t> cases,
+                        double now_s) {
+  if (worker.held.empty()) worker.last_report_s = now_s;  // an idle worker has nothing to report
+  const std::uint64_t attempt = next_attempt_++;
+  for (const std::uint64_t case_index : cases) {
+    cases_[case_index].state = State::kAssigned;
+    worker.held[case_index] = Held{attempt, std::nullopt};
+  }
+  worker.batches[attempt] = cases.size();
+  return {id, attempt, std::move(cases)};
+}
+
+void Ledger::Release(Worker& worker, std::map<std::uint64_t, Held>::iterator held) {
+  const auto batch = worker.batches.find(held->second.attempt);
+  if (--batch->second == 0) worker.batches.erase(batch);
+  worker.held.erase(held);
+  if (worker.held.empty()) worker.alone = false;
+}
+
+void Ledger::Return(std::uint64_t case_index) {
+  const bool suspect = blames_.contains(case_index);
+  cases_[case_index].state = suspect ? State::kSuspect : State::kWaiting;
+  (suspect ? suspects_ : waiting_).Add(case_index);
+}
+
+void Ledger::Blame(std::uint64_t case_index, const std::string& reason) {
+  std::vector<std::string>& reasons = blames_[case_index];
+  reasons.push_back(reason);
+  if (std::ssize(reasons) < options_.blames_to_quarantine) {
+    Return(case_index);
+    return;
+  }
+  cases_[case_index].state = State::kQuarantined;
+  ++progress_.quarantined;
+}
+
+}  // namespace dispersa

@@ -1,0 +1,142 @@
+// Who flies which case, what came back, who is to blame. A pure state machine: it knows neither clocks,
+// messages nor files; time is an argument, in seconds from any origin, and never decreases.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/flight/digest.h"
+#include "services/coordinator/index_set.h"
+
+namespace dispersa {
+
+struct LedgerOptions {
+  double lease_s = 60.0;             ///< a worker that holds cases and reports nothing for so long is stuck
+  int blames_to_quarantine = 3;
+  double batch_duration_s = 0.25;    ///< what one slot should need for one assignment
+  std::uint64_t max_batch = 64;      ///< cases
+};
+
+/// A worker as it announces itself.
+struct WorkerHello {
+  std::string engine_version;
+  std::uint32_t slots = 1;    ///< cases that it flies at the same time
+  std::uint32_t credits = 2;  ///< assignments that it holds at the same time
+};
+
+struct Assignment {
+  std::string worker;
+  std::uint64_t attempt = 0;  ///< of this assignment, unique within a ledger
+  std::vector<std::uint64_t> cases;
+
+  bool operator==(const Assignment&) const = default;
+};
+
+enum class WorkerEnd {
+  kLeft,     ///< by its own decision
+  kKilled,   ///< from outside (SIGKILL, SIGTERM): blames no case
+  kCrashed,  ///< by itself (a signal such as SIGSEGV, or an exit code): blames the cases that it flew
+  kSilent,   ///< its heartbeat stopped and nothing tells why: blames the cases that it flew
+};
+
+enum class Acceptance {
+  kAccepted,   ///< the first result of this case
+  kDuplicate,  ///< a further one with the same bits: harmless
+  kConflict,   ///< a further one with other bits: some machine or build breaks the contract
+  kUnknown,    ///< no case of this campaign
+};
+
+struct BlamedCase {
+  std::uint64_t case_index = 0;
+  std::vector<std::string> reasons;  ///< one of each blame
+
+  bool operator==(const BlamedCase&) const = default;
+};
+
+struct LedgerProgress {
+  std::uint64_t total = 0;
+  std::uint64_t done = 0;
+  std::uint64_t quarantined = 0;
+  std::uint64_t waiting = 0;   ///< for a worker; suspects included
+  std::uint64_t assigned = 0;  ///< to a worker that still lives
+  std::uint64_t duplicates = 0;
+  std::uint64_t conflicts = 0;
+};
+
+/// Cases 0 .. cases - 1 of one campaign. Each ends done or quarantined. Rules of blame: only a case that
+/// its worker reported as started is blamed; a blamed case waits until the queue is empty and is then flown
+/// alone, by a worker that holds nothing else; the N-th blame quarantines it. A result is welcome whenever
+/// it comes, even of a quarantined case.
+class Ledger {
+ public:
+  Ledger(std::string engine_version, std::uint64_t cases, const LedgerOptions& options = {});
+
+  /// A case whose result exists already (resume). Before any assignment.
+  void MarkDone(std::uint64_t case_index);
+
+  /// A worker announces itself, or changes what it announced. Returns why it is refused, if it is.
+  std::optional<std::string> Join(const std::string& worker, const WorkerHello& hello, double now_s);
+  void Started(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt, double now_s);
+  /// `fingerprint` covers every bit of the result.
+  Acceptance Finished(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,
+                      const Digest& fingerprint, double now_s);
+  /// The worker is gone: its cases return to the queue. `reason` is kept with each blame.
+  void Lost(const std::string& worker, WorkerEnd end, const std::string& reason);
+
+  /// Takes the cases of stuck workers away from them, with a blame for those that flew too long, and
+  /// returns these workers; they get no more cases until they report something.
+  std::vector<std::string> Expire(double now_s);
+  /// What to send now.
+  std::vector<Assignment> Assign(double now_s);
+
+  bool Complete() const;
+  LedgerProgress Progress() const;
+  /// By case index.
+  std::vector<BlamedCase> Quarantined() const;
+  std::size_t WorkerCount() const { return workers_.size(); }
+
+ private:
+  enum class State : std::uint8_t { kWaiting, kSuspect, kAssigned, kDone, kQuarantined };
+  struct Case {
+    State state = State::kWaiting;
+    bool fingerprint_known = false;
+    Digest fingerprint;
+  };
+  struct Held {
+    std::uint64_t attempt = 0;
+    std::optional<double> started_s;
+  };
+  struct Worker {
+    WorkerHello hello;
+    std::map<std::uint64_t, Held> held;              ///< by case index
+    std::map<std::uint64_t, std::uint64_t> batches;  ///< attempt -> cases of it that are still held
+    double last_report_s = 0.0;
+    bool alone = false;  ///< holds a suspect
+    bool stuck = false;
+  };
+
+  double Lease() const;
+  std::uint64_t BatchSize() const;
+  Assignment Give(const std::string& id, Worker& worker, std::vector<std::uint64_t> cases, double now_s);
+  void Release(Worker& worker, std::map<std::uint64_t, Held>::iterator held);
+  void Return(std::uint64_t case_index);
+  void Blame(std::uint64_t case_index, const std::string& reason);
+
+  std::string engine_version_;
+  LedgerOptions options_;
+  std::vector<Case> cases_;
+  IndexSet waiting_;
+  IndexSet suspects_;
+  std::map<std::uint64_t, std::vector<std::string>> blames_;  ///< case index -> reasons
+  std::map<std::string, Worker> workers_;
+  std::uint64_t next_attempt_ = 1;
+  std::uint64_t slots_ = 0;
+  double mean_case_s_ = 0.0;  ///< recent; 0: none finished yet
+  double longest_case_s_ = 0.0;
+  LedgerProgress progress_;
+};
+
+}  // namespace dispersa

@@ -1,0 +1,35 @@
+#include "services/transport/network.h"
+
+#include <array>
+#include <charconv>
+#include <cstdio>
+#include <random>
+
+namespace dispersa {
+
+Peer ParsePeer(const std::string& text, int domain) {
+  const std::size_t colon = text.rfind(':');
+  Peer peer{text.substr(0, colon), CoordinatorPort(domain)};
+  if (colon != std::string::npos) {
+    const char* const end = text.data() + text.size();
+    const auto [rest, error] = std::from_chars(text.data() + colon + 1, end, peer.port);
+    if (error != std::errc() || rest != end || peer.port == 0) {
+      throw NetworkError("peer '" + text + "': not HOST:PORT with a port from 1 to 65535");
+    }
+  }
+  if (peer.host.empty()) throw NetworkError("peer '" + text + "': the host is missing");
+  return peer;
+}
+
+std::uint16_t CoordinatorPort(int domain) { return static_cast<std::uint16_t>(7400 + 250 * domain + 5); }
+
+std::string MakeUuid() {
+  std::random_device device;
+  std::array<char, 33> text{};
+  for (int i = 0; i < 4; ++i) {
+    std::snprintf(text.data() + 8 * i, 9, "%08x", static_cast<unsigned>(device()));
+  }
+  return std::string(text.data(), 32);
+}
+
+}  // namespace dispersa

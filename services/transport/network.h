@@ -1,0 +1,37 @@
+// Where coordinator and workers find each other.
+#pragma once
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+
+namespace dispersa {
+
+/// Host name or IPv4 address, and a UDP port.
+struct Peer {
+  std::string host;
+  std::uint16_t port = 0;
+};
+
+/// "HOST:PORT", or "HOST" with the coordinator's port in `domain`. Throws NetworkError.
+Peer ParsePeer(const std::string& text, int domain);
+
+struct NetworkOptions {
+  int domain = 0;       ///< 0 .. 99
+  std::string address;  ///< IPv4 address of the only interface to use; empty: all
+};
+
+/// The fixed port at which the coordinator of a domain is discovered: 7400 + 250 * domain + 5, one that no
+/// participant without a fixed port takes.
+std::uint16_t CoordinatorPort(int domain);
+
+/// 128 random bits: one for each start of a worker.
+std::string MakeUuid();
+
+/// The network cannot be used as asked: an occupied port, an unknown host, no such interface.
+class NetworkError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace dispersa

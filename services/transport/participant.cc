@@ -1,0 +1,145 @@
+#include "services/transport/participant.h"
+
+#include <arpa/inet.h>
+#include <netdb.h>
+#include <spdlog/spdlog.h>
+
+#include <mutex>
+
+#include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
+#include <fastdds/dds/log/Log.hpp>
+#include <fastdds/dds/publisher/qos/PublisherQos.hpp>
+#include <fastdds/dds/subscriber/qos/SubscriberQos.hpp>
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
+#include <fastrtps/xmlparser/XMLProfileManager.h>
+
+#include "services/transport/udp_port.h"
+
+namespace dispersa {
+namespace {
+
+namespace dds = eprosima::fastdds::dds;
+namespace rtps = eprosima::fastrtps::rtps;
+
+class LogToSpdlog : public dds::LogConsumer {
+ public:
+  void Consume(const dds::Log::Entry& entry) override {
+    const auto level = entry.kind == dds::Log::Error ? spdlog::level::warn : spdlog::level::debug;
+    spdlog::log(level, "Fast DDS, {}: {}", entry.context.category, entry.message);
+  }
+};
+
+void ConfigureLibraryOnce() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    dds::Log::ClearConsumers();
+    dds::Log::RegisterConsumer(std::make_unique<LogToSpdlog>());
+    // Coordinator and worker in one process (tests) talk as two processes do.
+    eprosima::fastrtps::LibrarySettingsAttributes settings;
+    settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
+    eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
+  });
+}
+
+rtps::Locator_t MakeLocator(const std::string& address, std::uint16_t port) {
+  rtps::Locator_t locator;
+  locator.kind = LOCATOR_KIND_UDPv4;
+  rtps::IPLocator::setIPv4(locator, address);
+  locator.port = port;
+  return locator;
+}
+
+std::string Resolve(const std::string& host) {
+  addrinfo hints{};
+  hints.ai_family = AF_INET;
+  hints.ai_socktype = SOCK_DGRAM;
+  addrinfo* found = nullptr;
+  if (const int error = getaddrinfo(host.c_str(), nullptr, &hints, &found); error != 0) {
+    throw NetworkError("peer '" + host + "': " + gai_strerror(error));
+  }
+  char text[INET_ADDRSTRLEN] = "";
+  const auto* address = reinterpret_cast<const sockaddr_in*>(found->ai_addr);
+  inet_ntop(AF_INET, &address->sin_addr, text, sizeof text);
+  freeaddrinfo(found);
+  return text;
+}
+
+dds::DomainParticipantQos MakeQos(const ParticipantOptions& options) {
+  dds::DomainParticipantQos qos;
+  qos.name(options.name);
+
+  // No shared memory: after a SIGKILL it leaves segments behind and then fails to match.
+  qos.transport().use_builtin_transports = false;
+  auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
+  const std::string& address = options.network.address;
+  if (!address.empty()) udp->interfaceWhiteList.push_back(address);
+  qos.transport().user_transports.push_back(udp);
+
+  auto& builtin = qos.wire_protocol().builtin;
+  builtin.discovery_config.leaseDuration = eprosima::fastrtps::Duration_t(5, 0);
+  builtin.discovery_config.leaseDuration_announcementperiod = eprosima::fastrtps::Duration_t(1, 0);
+  // Own locators instead of the default ones, which include multicast: discovery is by peers alone, and
+  // nothing leaves the interface that was asked for. Port 0 is whatever is free.
+  const std::string own = address.empty() ? "0.0.0.0" : address;
+  builtin.metatrafficUnicastLocatorList.push_back(MakeLocator(own, options.discovery_port.value_or(0)));
+  for (const Peer& peer : options.peers) {
+    builtin.initialPeersList.push_back(MakeLocator(Resolve(peer.host), peer.port));
+  }
+  return qos;
+}
+
+}  // namespace
+
+Participant::Participant(const ParticipantOptions& options) {
+  const int domain = options.network.domain;
+  if (domain < 0 || domain > 99) {
+    throw NetworkError("domain " + std::to_string(domain) + ": must be from 0 to 99");
+  }
+  if (options.discovery_port && !IsUdpPortFree(options.network.address, *options.discovery_port)) {
+    throw NetworkError("UDP port " + std::to_string(*options.discovery_port) +
+                       (options.network.address.empty() ? "" : " of " + options.network.address) +
+                       " is not free: is there a coordinator in domain " + std::to_string(domain) + " already?");
+  }
+  ConfigureLibraryOnce();
+  participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(
+      static_cast<dds::DomainId_t>(domain), MakeQos(options));
+  if (participant_ == nullptr) {
+    throw NetworkError("no DDS participant in domain " + std::to_string(domain) +
+                       (options.network.address.empty() ? "" : " on " + options.network.address));
+  }
+}
+
+Participant::~Participant() {
+  participant_->delete_contained_entities();
+  dds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
+}
+
+dds::Topic* Participant::FindTopic(const std::string& name) {
+  return dynamic_cast<dds::Topic*>(participant_->lookup_topicdescription(name));
+}
+
+dds::Topic* Participant::MakeTopic(const std::string& name, dds::TypeSupport type) {
+  type.register_type(participant_);
+  dds::Topic* topic = participant_->create_topic(name, type.get_type_name(), dds::TOPIC_QOS_DEFAULT);
+  if (topic == nullptr) throw NetworkError("cannot create the topic " + name);
+  return topic;
+}
+
+dds::Publisher* Participant::MakePublisher(const std::string& partition) {
+  dds::PublisherQos qos;
+  if (!partition.empty()) qos.partition().push_back(partition.c_str());
+  dds::Publisher* publisher = participant_->create_publisher(qos);
+  if (publisher == nullptr) throw NetworkError("cannot create a publisher");
+  return publisher;
+}
+
+dds::Subscriber* Participant::MakeSubscriber(const std::string& partition) {
+  dds::SubscriberQos qos;
+  if (!partition.empty()) qos.partition().push_back(partition.c_str());
+  dds::Subscriber* subscriber = participant_->create_subscriber(qos);
+  if (subscriber == nullptr) throw NetworkError("cannot create a subscriber");
+  return subscriber;
+}
+
+}  // namespace dispersa

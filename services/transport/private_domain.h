@@ -1,0 +1,23 @@
+// A DDS domain that no other run on this machine uses.
+#pragma once
+
+namespace dispersa {
+
+/// Reserves one of the domains 40 .. 99 for as long as it lives; a process that dies gives it back. Two runs
+/// in one network namespace never get the same; programs that know nothing of this may still use it.
+class PrivateDomain {
+ public:
+  /// Throws NetworkError if all are taken.
+  PrivateDomain();
+  ~PrivateDomain();
+  PrivateDomain(const PrivateDomain&) = delete;
+  PrivateDomain& operator=(const PrivateDomain&) = delete;
+
+  int domain() const { return domain_; }
+
+ private:
+  int socket_ = -1;
+  int domain_ = 0;
+};
+
+}  // namespace dispersa

@@ -1,0 +1,411 @@
+// The ledger with made-up time, and a world of dying, hanging, lying and repeating workers around it.
+#include "services/coordinator/ledger.h"
+
+#include <algorithm>
+#include <deque>
+#include <map>
+#include <random>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace dispersa {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+const WorkerHello kHello{.engine_version = "1", .slots = 1, .credits = 2};
+
+// Results that differ exactly where their cases differ.
+Digest ResultOf(std::uint64_t case_index) { return {case_index, ~case_index}; }
+
+TEST(Ledger, RefusesAnotherEngineVersionWithAReason) {
+  Ledger ledger("0.1.0+aa", 10);
+  EXPECT_EQ(ledger.Join("w", {.engine_version = "0.1.0+bb"}, 0.0),
+            "engine version 0.1.0+bb of the worker differs from the coordinator's 0.1.0+aa");
+  EXPECT_EQ(ledger.WorkerCount(), 0u);
+  EXPECT_THAT(ledger.Assign(0.0), IsEmpty());
+}
+
+TEST(Ledger, GivesAsManyAssignmentsAsAWorkerGrantsCredits) {
+  Ledger ledger("1", 10);
+  EXPECT_EQ(ledger.Join("w", kHello, 0.0), std::nullopt);
+  const auto given = ledger.Assign(0.0);
+  // Durations are not known yet: single cases.
+  EXPECT_THAT(given, ElementsAre(Assignment{"w", 1, {0}}, Assignment{"w", 2, {1}}));
+  EXPECT_THAT(ledger.Assign(0.0), IsEmpty());
+  ledger.Started("w", 0, 1, 0.0);
+  EXPECT_EQ(ledger.Finished("w", 0, 1, ResultOf(0), 1.0), Acceptance::kAccepted);
+  EXPECT_THAT(ledger.Assign(1.0), ElementsAre(Assignment{"w", 3, {2}}));
+  const LedgerProgress progress = ledger.Progress();
+  EXPECT_EQ(progress.done, 1u);
+  EXPECT_EQ(progress.assigned, 2u);
+  EXPECT_EQ(progress.waiting, 7u);
+}
+
+TEST(Ledger, SpreadsFewCasesOverAllWorkers) {
+  Ledger ledger("1", 2);
+  ledger.Join("a", kHello, 0.0);
+  ledger.Join("b", kHello, 0.0);
+  EXPECT_THAT(ledger.Assign(0.0), ElementsAre(Assignment{"a", 1, {0}}, Assignment{"b", 2, {1}}));
+}
+
+TEST(Ledger, BatchesShortCasesAndShrinksTheBatchesTowardsTheEnd) {
+  Ledger ledger("1", 200, {.batch_duration_s = 0.25, .max_batch = 64});
+  ledger.Join("w", {.engine_version = "1", .slots = 1, .credits = 1}, 0.0);
+  std::vector<std::size_t> sizes;
+  std::uint64_t next = 0;
+  double now = 0.0;
+  while (!ledger.Complete()) {
+    const auto given = ledger.Assign(now);
+    ASSERT_THAT(given, SizeIs(1));
+    sizes.push_back(given[0].cases.size());
+    for (const std::uint64_t case_index : given[0].cases) {
+      EXPECT_EQ(case_index, next++);
+      ledger.Started("w", case_index, given[0].attempt, now);
+      now += 1.0 / 128;
+      ledger.Finished("w", case_index, given[0].attempt, ResultOf(case_index), now);
+    }
+  }
+  // 0.25 s of 1/128-s cases are 32; later half of what waits: 199-5*32 = 39/2 = 19, 20/2, 10/2, 5/2, ...
+  EXPECT_THAT(sizes, ElementsAre(1, 32, 32, 32, 32, 32, 19, 10, 5, 2, 1, 1, 1));
+}
+
+TEST(Ledger, AResultIsAcceptedOnceAndComparedEverAfter) {
+  Ledger ledger("1", 3);
+  ledger.Join("w", kHello, 0.0);
+  const auto given = ledger.Assign(0.0);
+  EXPECT_EQ(ledger.Finished("w", 0, given[0].attempt, ResultOf(0), 1.0), Acceptance::kAccepted);
+  EXPECT_EQ(ledger.Finished("w", 0, given[0].attempt, ResultOf(0), 1.0), Acceptance::kDuplicate);
+  EXPECT_EQ(ledger.Finished("stranger", 0, 77, ResultOf(0), 1.0), Acceptance::kDuplicate);
+  EXPECT_EQ(ledger.Finished("w", 0, given[0].attempt, ResultOf(1), 1.0), Acceptance::kConflict);
+  EXPECT_EQ(ledger.Finished("w", 3, given[0].attempt, ResultOf(3), 1.0), Acceptance::kUnknown);
+  EXPECT_EQ(ledger.Progress().done, 1u);
+  EXPECT_EQ(ledger.Progress().duplicates, 2u);
+  EXPECT_EQ(ledger.Progress().conflicts, 1u);
+  // A case that was never assigned is accepted too, and not flown again.
+  EXPECT_EQ(ledger.Finished("stranger", 2, 77, ResultOf(2), 1.0), Acceptance::kAccepted);
+  ledger.Finished("w", 1, given[1].attempt, ResultOf(1), 1.0);
+  EXPECT_TRUE(ledger.Complete());
+  EXPECT_THAT(ledger.Assign(1.0), IsEmpty());
+}
+
+TEST(Ledger, ResumesWithTheMissingCases) {
+  Ledger ledger("1", 4);
+  for (const std::uint64_t case_index : {0u, 2u, 2u}) ledger.MarkDone(case_index);
+  EXPECT_EQ(ledger.Progress().done, 2u);
+  ledger.Join("w", kHello, 0.0);
+  EXPECT_THAT(ledger.Assign(0.0), ElementsAre(Assignment{"w", 1, {1}}, Assignment{"w", 2, {3}}));
+  // The bits of an old result are not at hand: the first repetition sets what later ones must equal.
+  EXPECT_EQ(ledger.Finished("w", 0, 9, ResultOf(0), 0.0), Acceptance::kDuplicate);
+  EXPECT_EQ(ledger.Finished("w", 0, 9, ResultOf(1), 0.0), Acceptance::kConflict);
+}
+
+TEST(Ledger, ADeathReturnsTheCasesAndBlamesByItsCause) {
+  struct Row {
+    WorkerEnd end;
+    bool blames;
+  };
+  for (const Row row : {Row{WorkerEnd::kKilled, false}, Row{WorkerEnd::kLeft, false},
+                        Row{WorkerEnd::kCrashed, true}, Row{WorkerEnd::kSilent, true}}) {
+    Ledger ledger("1", 3, {.blames_to_quarantine = 1});
+    ledger.Join("w", kHello, 0.0);
+    const auto given = ledger.Assign(0.0);
+    ASSERT_THAT(given, SizeIs(2));
+    ledger.Started("w", 0, given[0].attempt, 0.0);  // case 1 is assigned but not started: never blamed
+    ledger.Lost("w", row.end, "reason");
+    EXPECT_EQ(ledger.Progress().waiting, row.blames ? 2u : 3u);
+    if (row.blames) {
+      EXPECT_THAT(ledger.Quarantined(), ElementsAre(BlamedCase{0, {"reason"}}));
+    } else {
+      EXPECT_THAT(ledger.Quarantined(), IsEmpty());
+    }
+    ledger.Lost("w", row.end, "again");  // told twice: by its exit status and by its heartbeat
+    EXPECT_EQ(ledger.Progress().quarantined, row.blames ? 1u : 0u);
+  }
+}
+
+TEST(Ledger, ABlamedCaseFliesAloneAfterTheOthersAndTheThirdBlameQuarantinesIt) {
+  Ledger ledger("1", 4);
+  ledger.Join("a", kHello, 0.0);
+  auto given = ledger.Assign(0.0);
+  ledger.Started("a", 0, given[0].attempt, 0.0);
+  ledger.Lost("a", WorkerEnd::kCrashed, "signal 11");
+  ledger.Join("b", kHello, 1.0);
+  given = ledger.Assign(1.0);
+  EXPECT_THAT(given, ElementsAre(Assignment{"b", 3, {1}}, Assignment{"b", 4, {2}}));
+  EXPECT_EQ(ledger.Finished("b", 1, 3, ResultOf(1), 1.5), Acceptance::kAccepted);
+  EXPECT_THAT(ledger.Assign(1.5), ElementsAre(Assignment{"b", 5, {3}}));
+  EXPECT_EQ(ledger.Finished("b", 2, 4, ResultOf(2), 2.0), Acceptance::kAccepted);
+  EXPECT_THAT(ledger.Assign(2.0), IsEmpty());  // b still holds case 3: the suspect would not be alone
+  EXPECT_EQ(ledger.Finished("b", 3, 5, ResultOf(3), 2.5), Acceptance::kAccepted);
+  EXPECT_THAT(ledger.Assign(2.5), ElementsAre(Assignment{"b", 6, {0}}));
+  ledger.Started("b", 0, 6, 2.5);
+  ledger.Lost("b", WorkerEnd::kKilled, "someone killed it");  // not the case's fault
+  ledger.Join("c", kHello, 3.0);
+  EXPECT_THAT(ledger.Assign(3.0), ElementsAre(Assignment{"c", 7, {0}}));
+  ledger.Started("c", 0, 7, 3.0);
+  ledger.Lost("c", WorkerEnd::kCrashed, "signal 6");
+  EXPECT_FALSE(ledger.Complete());
+  ledger.Join("d", kHello, 4.0);
+  EXPECT_THAT(ledger.Assign(4.0), ElementsAre(Assignment{"d", 8, {0}}));
+  ledger.Started("d", 0, 8, 4.0);
+  ledger.Lost("d", WorkerEnd::kSilent, "silent");
+  EXPECT_TRUE(ledger.Complete());
+  EXPECT_THAT(ledger.Quarantined(), ElementsAre(BlamedCase{0, {"signal 11", "signal 6", "silent"}}));
+  // Better late than never.
+  EXPECT_EQ(ledger.Finished("d", 0, 8, ResultOf(0), 9.0), Acceptance::kAccepted);
+  EXPECT_THAT(ledger.Quarantined(), IsEmpty());
+  EXPECT_EQ(ledger.Progress().done, 4u);
+  EXPECT_TRUE(ledger.Complete());
+}
+
+TEST(Ledger, NothingJoinsASuspectOnItsWorker) {
+  Ledger ledger("1", 3, {.lease_s = 10.0});
+  ledger.Join("a", kHello, 0.0);
+  ledger.Join("b", kHello, 0.0);
+  auto given = ledger.Assign(0.0);
+  EXPECT_THAT(given, ElementsAre(Assignment{"a", 1, {0}}, Assignment{"b", 2, {1}}, Assignment{"a", 3, {2}}));
+  ledger.Started("a", 0, 1, 0.0);
+  ledger.Lost("a", WorkerEnd::kCrashed, "signal 11");
+  EXPECT_THAT(ledger.Assign(1.0), ElementsAre(Assignment{"b", 4, {2}}));
+  ledger.Finished("b", 1, 2, ResultOf(1), 2.0);
+  ledger.Finished("b", 2, 4, ResultOf(2), 2.0);
+  EXPECT_THAT(ledger.Assign(2.0), ElementsAre(Assignment{"b", 5, {0}}));
+  ledger.Join("c", kHello, 2.0);
+  ledger.Join("b", kHello, 2.0);  // a repeated announcement changes nothing
+  EXPECT_THAT(ledger.Assign(2.0), IsEmpty());
+}
+
+TEST(Ledger, AStuckWorkerLosesItsCasesAndOnlyTheOneThatHangsIsBlamed) {
+  Ledger ledger("1", 3, {.lease_s = 10.0, .blames_to_quarantine = 1});
+  ledger.Join("a", kHello, 0.0);
+  ledger.Assign(0.0);
+  ledger.Started("a", 0, 1, 5.0);
+  EXPECT_THAT(ledger.Expire(15.0), IsEmpty());
+  EXPECT_THAT(ledger.Expire(15.1), ElementsAre("a"));
+  EXPECT_THAT(ledger.Quarantined(), ElementsAre(BlamedCase{0, {"no result within its lease"}}));
+  EXPECT_EQ(ledger.Progress().waiting, 2u);
+  EXPECT_THAT(ledger.Assign(15.1), IsEmpty());  // it must report something first
+  EXPECT_THAT(ledger.Expire(99.0), IsEmpty());
+  EXPECT_EQ(ledger.Finished("a", 0, 1, ResultOf(0), 99.0), Acceptance::kAccepted);
+  EXPECT_THAT(ledger.Assign(99.0), SizeIs(2));
+}
+
+TEST(Ledger, AnAssignmentThatNobodyStartsExpiresWithoutBlame) {
+  Ledger ledger("1", 1, {.lease_s = 10.0, .blames_to_quarantine = 1});
+  ledger.Join("a", kHello, 0.0);
+  ledger.Assign(100.0);  // idle time before the assignment does not count
+  EXPECT_THAT(ledger.Expire(110.0), IsEmpty());
+  EXPECT_THAT(ledger.Expire(110.1), ElementsAre("a"));
+  EXPECT_EQ(ledger.Progress().waiting, 1u);
+  ledger.Started("a", 0, 1, 111.0);  // of the expired attempt: unsticks the worker, holds nothing
+  EXPECT_EQ(ledger.Progress().waiting, 1u);
+  EXPECT_THAT(ledger.Assign(111.0), ElementsAre(Assignment{"a", 2, {0}}));
+  ledger.Started("a", 0, 1, 112.0);  // the old attempt again: not the one to be blamed
+  ledger.Lost("a", WorkerEnd::kCrashed, "signal 11");
+  EXPECT_THAT(ledger.Quarantined(), IsEmpty());
+}
+
+TEST(Ledger, TheLeaseGrowsWithTheLongestCase) {
+  Ledger ledger("1", 2, {.lease_s = 10.0});
+  ledger.Join("a", kHello, 0.0);
+  ledger.Assign(0.0);
+  ledger.Started("a", 0, 1, 0.0);
+  ledger.Finished("a", 0, 1, ResultOf(0), 5.0);  // so 100 s from now on
+  ledger.Started("a", 1, 2, 5.0);
+  EXPECT_THAT(ledger.Expire(105.0), IsEmpty());
+  EXPECT_THAT(ledger.Expire(105.1), ElementsAre("a"));
+}
+
+// A world in which messages are delayed, reordered between workers and repeated, workers are killed, stop
+// beating and come back, poison cases crash or hang whoever flies them. Whatever the interleaving, every
+// other case is accepted exactly once, exactly the poison is quarantined, and the world comes to rest.
+class RandomWorld {
+ public:
+  RandomWorld(std::uint64_t seed, std::uint64_t cases)
+      : random_(seed), cases_(cases), ledger_("1", cases, {.lease_s = 3.0}) {
+    for (std::uint64_t k = 0; k < cases; ++k) {
+      if (Chance(0.03)) (Chance(0.5) ? crashing_ : hanging_).insert(k);
+    }
+  }
+
+  void Run() {
+    int steps = 0;
+    while (!ledger_.Complete()) {
+      ASSERT_LT(++steps, 200000) << "does not come to rest";
+      Step();
+      const LedgerProgress progress = ledger_.Progress();
+      ASSERT_EQ(progress.done, accepted_.size());
+      ASSERT_EQ(progress.done + progress.quarantined + progress.waiting + progress.assigned, cases_);
+    }
+    std::set<std::uint64_t> poison = crashing_;
+    poison.insert(hanging_.begin(), hanging_.end());
+    std::set<std::uint64_t> quarantined;
+    for (const BlamedCase& q : ledger_.Quarantined()) {
+      quarantined.insert(q.case_index);
+      EXPECT_THAT(q.reasons, SizeIs(3));
+    }
+    EXPECT_EQ(quarantined, poison);
+    for (std::uint64_t k = 0; k < cases_; ++k) {
+      EXPECT_EQ(accepted_.count(k), poison.contains(k) ? 0u : 1u) << k;
+    }
+    EXPECT_EQ(ledger_.Progress().conflicts, 0u);
+  }
+
+ private:
+  struct Message {
+    enum { kStarted, kFinished } kind;
+    std::uint64_t case_index;
+    std::uint64_t attempt;
+  };
+  struct Machine {
+    std::deque<std::pair<std::uint64_t, std::uint64_t>> queue;  ///< case, attempt
+    std::vector<std::pair<std::uint64_t, std::uint64_t>> flying;
+    std::deque<Message> outbox;  ///< in order, as of one reliable writer
+    bool known = false;
+  };
+
+  bool Chance(double p) { return std::bernoulli_distribution(p)(random_); }
+
+  void Step() {
+    now_s_ += 0.05;
+    if (machines_.size() < 4 && Chance(0.2)) machines_["w" + std::to_string(next_++)] = {};
+    for (auto& [id, machine] : machines_) {
+      if (!machine.known && Chance(0.3)) {
+        ASSERT_EQ(ledger_.Join(id, {.engine_version = "1", .slots = 2, .credits = 3}, now_s_), std::nullopt);
+        machine.known = true;
+      }
+    }
+    for (const std::string& stuck : ledger_.Expire(now_s_)) {
+      Deliver(stuck);
+      machines_.erase(stuck);
+      ledger_.Lost(stuck, WorkerEnd::kKilled, "stuck");
+    }
+    for (const Assignment& assignment : ledger_.Assign(now_s_)) {
+      ASSERT_TRUE(machines_.contains(assignment.worker));
+      for (std::size_t i = 1; i < assignment.cases.size(); ++i) {
+        ASSERT_EQ(assignment.cases[i], assignment.cases[i - 1] + 1) << "not contiguous";
+      }
+      for (const std::uint64_t k : assignment.cases) {
+        ASSERT_LT(k, cases_);
+        ASSERT_FALSE(accepted_.contains(k)) << "flown again";
+        machines_[assignment.worker].queue.emplace_back(k, assignment.attempt);
+      }
+    }
+    std::vector<std::string> ids;
+    for (const auto& [id, machine] : machines_) ids.push_back(id);
+    for (const std::string& id : ids) Act(id);
+  }
+
+  void Act(const std::string& id) {
+    Machine& machine = machines_[id];
+    if (machine.flying.size() < 2 && !machine.queue.empty() && Chance(0.7)) {
+      machine.flying.push_back(machine.queue.front());
+      machine.queue.pop_front();
+      const auto [k, attempt] = machine.flying.back();
+      machine.outbox.push_back({Message::kStarted, k, attempt});
+      if (crashing_.contains(k)) {
+        // Some of its last messages arrive, some do not.
+        if (Chance(0.9)) Deliver(id);
+        machines_.erase(id);
+        ledger_.Lost(id, Chance(0.5) ? WorkerEnd::kCrashed : WorkerEnd::kSilent, "crash");
+        return;
+      }
+    }
+    for (std::size_t i = 0; i < machine.flying.size(); ++i) {
+      const auto [k, attempt] = machine.flying[i];
+      if (hanging_.contains(k) || !Chance(0.5)) continue;
+      machine.outbox.push_back({Message::kFinished, k, attempt});
+      machine.flying.erase(machine.flying.begin() + static_cast<std::ptrdiff_t>(i));
+      break;
+    }
+    if (Chance(0.5)) Deliver(id);
+    if (Chance(0.004)) {
+      if (Chance(0.5)) Deliver(id);
+      // Killed; what it had sent may still arrive after the news of its death.
+      ledger_.Lost(id, WorkerEnd::kKilled, "killed");
+      Deliver(id);
+      machines_.erase(id);
+    } else if (Chance(0.005) && machine.flying.empty()) {
+      // A partition of the network: it is declared lost, goes on, and is back later.
+      ledger_.Lost(id, WorkerEnd::kSilent, "silent");
+      machine.known = false;
+    }
+  }
+
+  void Deliver(const std::string& id) {
+    std::deque<Message>& outbox = machines_[id].outbox;
+    for (const Message& message : outbox) {
+      for (int repetition = Chance(0.05) ? 2 : 1; repetition > 0; --repetition) {
+        if (message.kind == Message::kStarted) {
+          ledger_.Started(id, message.case_index, message.attempt, now_s_);
+          continue;
+        }
+        const Acceptance acceptance = ledger_.Finished(id, message.case_index, message.attempt,
+                                                       ResultOf(message.case_index), now_s_);
+        if (acceptance == Acceptance::kAccepted) {
+          EXPECT_TRUE(accepted_.insert(message.case_index).second) << "accepted twice";
+        } else {
+          EXPECT_EQ(acceptance, Acceptance::kDuplicate);
+        }
+      }
+    }
+    outbox.clear();
+  }
+
+  std::mt19937_64 random_;
+  std::uint64_t cases_;
+  Ledger ledger_;
+  std::set<std::uint64_t> crashing_;
+  std::set<std::uint64_t> hanging_;
+  std::set<std::uint64_t> accepted_;
+  std::map<std::string, Machine> machines_;
+  int next_ = 0;
+  double now_s_ = 0.0;
+};
+
+TEST(Ledger, EveryInterleavingAcceptsEachCaseOnceAndQuarantinesExactlyThePoison) {
+  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+    SCOPED_TRACE(seed);
+    RandomWorld(seed, 60).Run();
+    if (testing::Test::HasFailure()) break;
+  }
+}
+
+TEST(IndexSet, BehavesLikeASetThatGivesItsLowestRun) {
+  std::mt19937_64 random(1);
+  IndexSet set;
+  std::set<std::uint64_t> model;
+  set.AddRange(10, 30);
+  for (std::uint64_t k = 10; k < 30; ++k) model.insert(k);
+  for (int step = 0; step < 20000; ++step) {
+    const std::uint64_t k = random() % 64;
+    switch (random() % 3) {
+      case 0:
+        if (model.insert(k).second) set.Add(k);
+        break;
+      case 1:
+        ASSERT_EQ(set.Remove(k), model.erase(k) == 1);
+        break;
+      default: {
+        const std::uint64_t limit = 1 + random() % 3;
+        std::vector<std::uint64_t> expected;
+        while (!model.empty() && expected.size() < limit &&
+               (expected.empty() || *model.begin() == expected.back() + 1)) {
+          expected.push_back(*model.begin());
+          model.erase(model.begin());
+        }
+        ASSERT_EQ(set.TakeRun(limit), expected);
+      }
+    }
+    ASSERT_EQ(set.Count(), model.size());
+    ASSERT_EQ(set.Empty(), model.empty());
+  }
+}
+
+}  // namespace
+}  // namespace dispersa
