@@ -34,12 +34,13 @@ struct Layer {
   double gradient;
   double temperature = 0.0;
   double pressure = 0.0;
-  double exponent = 0.0;  // g0 M0 / (R* L), 1/K-free; for an isothermal layer -g0 M0 / (R* T), 1/m
+  double exponent = 0.0;  // -g0 M0 / (R* L); for an isothermal layer -g0 M0 / (R* T), 1/m
 };
 
 double LayerPressure(const Layer& layer, double temperature, double h) {
-  return layer.gradient == 0.0 ? layer.pressure * Exp(layer.exponent * (h - layer.base))
-                               : layer.pressure * Pow(layer.temperature / temperature, layer.exponent);
+  // Equations 33a and 33b. Exp and Log cost half of Pow; the argument stays below 3.
+  const double argument = layer.gradient == 0.0 ? h - layer.base : Log(temperature / layer.temperature);
+  return layer.pressure * Exp(layer.exponent * argument);
 }
 
 std::array<Layer, 7> MakeLayers() {
@@ -56,8 +57,8 @@ std::array<Layer, 7> MakeLayers() {
     Layer& layer = layers[i];
     layer.temperature = temperature;
     layer.pressure = pressure;
-    const double ratio = kGravity / kSpecificGasConstant;
-    layer.exponent = layer.gradient == 0.0 ? -ratio / temperature : ratio / layer.gradient;
+    layer.exponent =
+        -kGravity / (kSpecificGasConstant * (layer.gradient == 0.0 ? temperature : layer.gradient));
     if (i + 1 == layers.size()) break;
     const double top = layers[i + 1].base;
     temperature += layer.gradient * (top - layer.base);
@@ -93,17 +94,27 @@ AirState LowerAir(const std::array<Layer, 7>& layers, double z) {
   return air;
 }
 
-// Equations 25, 27, 29 and 31, kinetic temperature (K) at z >= 86 km.
+// Equations 25, 27, 29 and 31, kinetic temperature (K) at z >= 86 km. The standard rounds the constants of
+// its ellipse (263.1905, 76.3232, 19.9429), which leaves a step of 0.3 mK at 110 km. From the conditions
+// that define them, values and slopes at 91 km and 110 km, there is none.
 double UpperTemperature(double z) {
   constexpr double kBase = 186.8673;
+  constexpr double kTop = 240.0;
+  constexpr double kGradient = 0.012;
   if (z <= 91000.0) return kBase;
-  if (z <= 110000.0) return 263.1905 - 76.3232 * Sqrt(1.0 - Square((z - 91000.0) / 19942.9));
-  if (z <= 120000.0) return 240.0 + 0.012 * (z - 110000.0);
+  if (z <= 110000.0) {
+    constexpr double kHeight = 19000.0;
+    constexpr double kRise = kTop - kBase;
+    constexpr double kRoot = kRise / (kGradient * kHeight - kRise);  // of the ellipse at its top
+    constexpr double kDepth = kRise / (1.0 - kRoot);
+    return kBase + kDepth * (1.0 - Sqrt(1.0 - (1.0 - kRoot * kRoot) * Square((z - 91000.0) / kHeight)));
+  }
+  if (z <= 120000.0) return kTop + kGradient * (z - 110000.0);
   const double xi = (z - 120000.0) * (kEarthRadius + 120000.0) / (kEarthRadius + z);
   return 1000.0 - 640.0 * Exp(-1.875e-5 * xi);
 }
 
-// Nodes of Table VIII: geometric altitude (m), mean molecular weight (kg/kmol), pressure (Pa).
+// Nodes of the standard's tables: geometric altitude (m), mean molecular weight (kg/kmol), pressure (Pa).
 struct Node {
   double z;
   double molecular_weight;
@@ -175,13 +186,13 @@ UpperNodes MakeUpperNodes(const std::array<Layer, 7>& layers) {
   }
   for (std::size_t i = 1; i + 1 < nodes.size(); ++i)
     nodes[i].molecular_weight.slope = MonotoneSlope(kNodes[i - 1], kNodes[i], kNodes[i + 1]);
-  // At the ends, the slope of Table 8's last step and the last difference.
+  // At the ends: Table 8's last step, and the parabola through the last three nodes, evenly spaced.
   nodes.front().molecular_weight.slope =
       kMolecularWeight * (kMolecularWeightRatio[12] - kMolecularWeightRatio[11]) / kMolecularWeightStep;
-  const Node& last = kNodes[kNodes.size() - 1];
-  const Node& before = kNodes[kNodes.size() - 2];
+  const Node* last = &kNodes.back();
   nodes.back().molecular_weight.slope =
-      (last.molecular_weight - before.molecular_weight) / (last.z - before.z);
+      (3.0 * last[0].molecular_weight - 4.0 * last[-1].molecular_weight + last[-2].molecular_weight) /
+      (last[0].z - last[-2].z);
   return nodes;
 }
 

@@ -33,9 +33,8 @@ struct Geodetic {
   double longitude_rad;  ///< (-pi, pi]
   double altitude_m;
 };
-/// Bowring's iteration (Survey Review 28, 1985), a fixed number of times. At altitudes from -100 km up
-/// the error is the rounding of a double, about 2e-9 m in altitude and 5e-16 rad in latitude. On the axis
-/// longitude is 0.
+/// Bowring's iteration (Survey Review 28, 1985), twice. From -100 km up the error is the rounding of a
+/// double: below 2000 km at most 5e-9 m in altitude and 5e-16 rad in latitude. On the axis longitude is 0.
 Geodetic ToGeodetic(const Earth& earth, const Vector3& p_EoP_E);
 /// p_EoP_E, m.
 Vector3 FromGeodetic(const Earth& earth, const Geodetic& place);

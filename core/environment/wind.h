@@ -33,9 +33,9 @@ struct JetStream {
 /// Components over altitude, linear between points. The first value holds below; above the last one the
 /// wind fades linearly to zero over kWindFade_m, because measured profiles end where air still moves.
 struct WindTable {
-  std::vector<double> altitude_m;  ///< strictly increasing, at least two
-  std::vector<double> north_m_s;
-  std::vector<double> east_m_s;
+  std::vector<double> altitude_m = {};  ///< strictly increasing, at least two
+  std::vector<double> north_m_s = {};
+  std::vector<double> east_m_s = {};
 };
 inline constexpr double kWindFade_m = 10000.0;
 

@@ -12,11 +12,11 @@ namespace dispersa {
 /// Normal winds by altitude: mean and standard deviation of each component, their correlation at one
 /// altitude, and the distance over which a component's correlation with itself falls to 1/e.
 struct WindStatistics {
-  std::vector<double> altitude_m;  ///< strictly increasing, at least two
-  std::vector<double> mean_north_m_s;
-  std::vector<double> mean_east_m_s;
-  std::vector<double> sigma_north_m_s;
-  std::vector<double> sigma_east_m_s;
+  std::vector<double> altitude_m = {};  ///< strictly increasing, at least two
+  std::vector<double> mean_north_m_s = {};
+  std::vector<double> mean_east_m_s = {};
+  std::vector<double> sigma_north_m_s = {};
+  std::vector<double> sigma_east_m_s = {};
   double correlation_ne = 0.0;
   double correlation_length_m = 0.0;
 };

@@ -1,0 +1,105 @@
+#include "core/environment/wind_statistics.h"
+
+#include <cmath>
+#include <random>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace dispersa {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+WindStatistics Example() {
+  return {.altitude_m = {0.0, 1000.0, 4000.0},
+          .mean_north_m_s = {1.0, 2.0, -3.0},
+          .mean_east_m_s = {5.0, 10.0, 20.0},
+          .sigma_north_m_s = {2.0, 3.0, 4.0},
+          .sigma_east_m_s = {4.0, 6.0, 8.0},
+          .correlation_ne = 0.6,
+          .correlation_length_m = 2000.0};
+}
+
+TEST(DrawWind, ZeroNormalsGiveTheMean) {
+  const WindStatistics statistics = Example();
+  ASSERT_EQ(NormalsFor(statistics), 6u);
+  const WindTable table = DrawWind(statistics, std::vector<double>(6, 0.0));
+  EXPECT_EQ(table.altitude_m, statistics.altitude_m);
+  EXPECT_EQ(table.north_m_s, statistics.mean_north_m_s);
+  EXPECT_EQ(table.east_m_s, statistics.mean_east_m_s);
+  EXPECT_THAT(Problems(table), IsEmpty());
+}
+
+// A unit normal in the lowest north component, by hand: it reaches east by the correlation and decays
+// upward by exp(-dh / 2000 m).
+TEST(DrawWind, FollowsTheAutoregression) {
+  const WindTable table = DrawWind(Example(), {1.0, 0.0, 0.0, 0.0, 0.0, 0.0});
+  const double first = std::exp(-0.5);
+  const double second = std::exp(-2.0);
+  const double rounding = 1e-14;
+  EXPECT_NEAR(table.north_m_s[0], 1.0 + 2.0, rounding);
+  EXPECT_NEAR(table.north_m_s[1], 2.0 + 3.0 * first, rounding);
+  EXPECT_NEAR(table.north_m_s[2], -3.0 + 4.0 * second, rounding);
+  EXPECT_NEAR(table.east_m_s[0], 5.0 + 4.0 * 0.6, rounding);
+  EXPECT_NEAR(table.east_m_s[1], 10.0 + 6.0 * 0.6 * first, rounding);
+  EXPECT_NEAR(table.east_m_s[2], 20.0 + 8.0 * 0.6 * second, rounding);
+  const WindTable own = DrawWind(Example(), {0.0, 1.0, 0.0, 0.0, 0.0, 0.0});
+  EXPECT_NEAR(own.north_m_s[0], 1.0, rounding);
+  EXPECT_NEAR(own.east_m_s[0], 5.0 + 4.0 * 0.8, rounding);
+}
+
+// 40000 profiles of a fixed seed: a mean scatters by sigma / 200, a second moment by about sigma² / 140;
+// five of those.
+TEST(DrawWind, HasTheGivenMoments) {
+  const WindStatistics statistics = Example();
+  constexpr int kProfiles = 40000;
+  std::mt19937_64 generator(3);
+  std::normal_distribution<double> normal;
+  double mean = 0.0, north2 = 0.0, east2 = 0.0, cross = 0.0, levels = 0.0;
+  for (int i = 0; i < kProfiles; ++i) {
+    std::vector<double> normals(NormalsFor(statistics));
+    for (double& value : normals) value = normal(generator);
+    const WindTable table = DrawWind(statistics, normals);
+    const double north = (table.north_m_s[2] + 3.0) / 4.0;
+    const double east = (table.east_m_s[2] - 20.0) / 8.0;
+    mean += east / kProfiles;
+    north2 += north * north / kProfiles;
+    east2 += east * east / kProfiles;
+    cross += north * east / kProfiles;
+    levels += east * (table.east_m_s[1] - 10.0) / 6.0 / kProfiles;
+  }
+  EXPECT_NEAR(mean, 0.0, 0.025);
+  EXPECT_NEAR(north2, 1.0, 0.036);
+  EXPECT_NEAR(east2, 1.0, 0.036);
+  EXPECT_NEAR(cross, 0.6, 0.036);
+  EXPECT_NEAR(levels, std::exp(-1.5), 0.036);
+}
+
+TEST(WindStatistics, Problems) {
+  EXPECT_THAT(Problems(Example()), IsEmpty());
+  EXPECT_THAT(Problems(WindStatistics{.correlation_length_m = 1.0}),
+              ElementsAre("wind statistics need at least two altitudes"));
+
+  WindStatistics wrong = Example();
+  wrong.altitude_m[1] = 0.0;
+  wrong.mean_north_m_s[0] = NAN;
+  wrong.sigma_east_m_s[2] = -1.0;
+  wrong.correlation_ne = 1.5;
+  wrong.correlation_length_m = 0.0;
+  EXPECT_THAT(Problems(wrong),
+              ElementsAre("the altitudes of wind statistics must be finite and strictly increasing",
+                          "the means of wind statistics must be finite",
+                          "the deviations of wind statistics must be finite and not negative",
+                          "the correlation of north and east must be from -1 to 1",
+                          "the correlation length of wind statistics must be finite and positive"));
+
+  wrong = Example();
+  wrong.sigma_north_m_s.pop_back();
+  EXPECT_THAT(Problems(wrong),
+              ElementsAre("wind statistics need a mean and a deviation north and east for each altitude"));
+}
+
+}  // namespace
+}  // namespace dispersa
