@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/math/functions.h"
 #include "core/optimization/feasibility_rules.h"
 #include "core/optimization/parallel_for.h"
 #include "core/optimization/variation.h"
@@ -26,28 +27,33 @@ struct Individual {
 using Population = std::vector<Individual>;
 
 void Validate(const BoundedProblem& problem) {
-  if (problem.lower.empty()) throw std::invalid_argument("BoundedProblem.lower is empty; allowed is at least 1 variable");
+  if (problem.lower.empty())
+    throw std::invalid_argument("BoundedProblem.lower is empty; allowed is at least 1 variable");
   if (problem.upper.size() != problem.lower.size()) {
-    throw std::invalid_argument(fmt::format("BoundedProblem.upper has {} values; allowed is {}, as many as lower",
-                                            problem.upper.size(), problem.lower.size()));
+    throw std::invalid_argument(
+        fmt::format("BoundedProblem.upper has {} values; allowed is {}, as many as lower",
+                    problem.upper.size(), problem.lower.size()));
   }
   for (std::size_t i = 0; i < problem.lower.size(); ++i) {
     const double lower = problem.lower[i];
     const double upper = problem.upper[i];
     if (!std::isfinite(lower)) {
-      throw std::invalid_argument(fmt::format("BoundedProblem.lower[{}] is {}; allowed is a finite number", i, lower));
+      throw std::invalid_argument(
+          fmt::format("BoundedProblem.lower[{}] is {}; allowed is a finite number", i, lower));
     }
     if (!std::isfinite(upper) || upper < lower) {
-      throw std::invalid_argument(fmt::format(
-          "BoundedProblem.upper[{}] is {}; allowed is a finite number of at least lower[{}] = {}", i, upper, i, lower));
+      throw std::invalid_argument(
+          fmt::format("BoundedProblem.upper[{}] is {}; allowed is a finite number of at least lower[{}] = {}",
+                      i, upper, i, lower));
     }
   }
-  if (!problem.evaluate) throw std::invalid_argument("BoundedProblem.evaluate is empty; allowed is a function");
+  if (!problem.evaluate)
+    throw std::invalid_argument("BoundedProblem.evaluate is empty; allowed is a function");
 }
 
-// Stream number of item `item` of a generation; both are below 2^32 by the options' ranges.
+// A stream's index is below 2^32: the options' ranges give the generation and the item 16 bits each.
 std::uint64_t StreamIndex(int generation, std::size_t item) {
-  return (static_cast<std::uint64_t>(generation) << 32) | static_cast<std::uint64_t>(item);
+  return (static_cast<std::uint64_t>(generation) << 16) | static_cast<std::uint64_t>(item);
 }
 
 std::size_t RandomIndex(std::size_t count, Stream* stream) {
@@ -56,7 +62,9 @@ std::size_t RandomIndex(std::size_t count, Stream* stream) {
 
 GenerationRecord RecordOf(int generation, const Population& sorted) {
   const Individual& best = sorted.front();
-  GenerationRecord record{.generation = generation, .best_violation = best.merit.violation};
+  GenerationRecord record;
+  record.generation = generation;
+  record.best_violation = best.merit.violation;
   int feasible = 0;
   double sum = 0.0;
   for (const Individual& individual : sorted) {
@@ -79,16 +87,14 @@ class StallCounter {
 
   /// Whether the run has stalled, after a generation with this best individual and this lowest objective.
   bool HasStalled(const Merit& best, double lowest_objective) {
-    const bool progress = best.violation < violation_ ||
-                          lowest_objective < lowest_objective_ - options_.objective_tolerance ||
-                          best.tie_breaker < tie_breaker_ - options_.tie_breaker_tolerance;
+    const bool progress =
+        best.violation < violation_ || lowest_objective < lowest_objective_ - options_.objective_tolerance ||
+        (best.IsFeasible() && best.tie_breaker < tie_breaker_ - options_.tie_breaker_tolerance);
+    idle_generations_ = progress ? 0 : idle_generations_ + 1;
     if (progress) {
       violation_ = best.violation;
       lowest_objective_ = lowest_objective;
-      tie_breaker_ = best.tie_breaker;
-      idle_generations_ = 0;
-    } else {
-      ++idle_generations_;
+      if (best.IsFeasible()) tie_breaker_ = best.tie_breaker;
     }
     return options_.stall_generations > 0 && idle_generations_ >= options_.stall_generations;
   }
@@ -161,7 +167,8 @@ class Run {
   // Best first. Ties are counted from the lowest objective of the whole run, whoever had it.
   void Sort(Population* population) {
     for (const Individual& individual : *population) {
-      if (individual.merit.IsFeasible()) lowest_objective_ = std::min(lowest_objective_, individual.merit.objective);
+      if (individual.merit.IsFeasible())
+        lowest_objective_ = std::min(lowest_objective_, individual.merit.objective);
     }
     const double tie_threshold = lowest_objective_ + options_.objective_tolerance;
     std::stable_sort(population->begin(), population->end(), [&](const Individual& a, const Individual& b) {
@@ -171,6 +178,7 @@ class Run {
 
   Population NextGeneration(int generation, const Population& sorted) {
     const std::size_t elites = static_cast<std::size_t>(options_.elites);
+    const double mutation_eta = MutationEta(generation);
     Population next(sorted.begin(), sorted.begin() + options_.elites);
     for (std::size_t pair = 0; next.size() < size_; ++pair) {
       Stream stream(options_.seed, StreamIndex(generation, pair), "genetic_algorithm.offspring");
@@ -178,8 +186,9 @@ class Run {
       std::vector<double> b = sorted[SelectedIndex(&stream)].variables;
       CrossOverAll(&a, &b, &stream);
       for (std::vector<double>* child : {&a, &b}) {
-        MutateAll(child, &stream);
-        if (next.size() < size_) next.push_back({.variables = std::move(*child), .evaluation = {}, .merit = {}});
+        MutateAll(child, mutation_eta, &stream);
+        if (next.size() < size_)
+          next.push_back({.variables = std::move(*child), .evaluation = {}, .merit = {}});
       }
     }
     Evaluate(std::span(next).subspan(elites));
@@ -195,16 +204,27 @@ class Run {
 
   void CrossOverAll(std::vector<double>* a, std::vector<double>* b, Stream* stream) const {
     if (stream->Uniform() >= options_.crossover_probability) return;
+    if (stream->Uniform() < options_.line_crossover_probability) {
+      CrossOverOnLine(a, b, problem_.lower, problem_.upper, options_.crossover_eta, stream);
+      return;
+    }
     for (std::size_t k = 0; k < VariableCount(); ++k) {
       if (stream->Uniform() >= options_.variable_crossover_probability) continue;
       CrossOver(&(*a)[k], &(*b)[k], problem_.lower[k], problem_.upper[k], options_.crossover_eta, stream);
     }
   }
 
-  void MutateAll(std::vector<double>* x, Stream* stream) const {
+  // Geometric between the first and the last generation, in the index + 1 since an index may be 0.
+  double MutationEta(int generation) const {
+    const double first = options_.mutation_eta + 1.0;
+    const double last = options_.final_mutation_eta + 1.0;
+    return first * Pow(last / first, generation / static_cast<double>(options_.generations)) - 1.0;
+  }
+
+  void MutateAll(std::vector<double>* x, double eta, Stream* stream) const {
     for (std::size_t k = 0; k < VariableCount(); ++k) {
       if (stream->Uniform() >= mutation_probability_) continue;
-      (*x)[k] = Mutated((*x)[k], problem_.lower[k], problem_.upper[k], options_.mutation_eta, stream);
+      (*x)[k] = Mutated((*x)[k], problem_.lower[k], problem_.upper[k], eta, stream);
     }
   }
 
@@ -222,7 +242,8 @@ GeneticAlgorithm::GeneticAlgorithm(const GeneticAlgorithmOptions& options) : opt
   dispersa::Validate(options_);
 }
 
-GeneticAlgorithmResult GeneticAlgorithm::Minimize(const BoundedProblem& problem, const Observer& observer) const {
+GeneticAlgorithmResult GeneticAlgorithm::Minimize(const BoundedProblem& problem,
+                                                  const Observer& observer) const {
   Validate(problem);
   return Run(options_, problem).Execute(observer);
 }

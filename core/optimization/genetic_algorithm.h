@@ -2,8 +2,8 @@
 //
 // Tournament selection, simulated binary crossover, polynomial mutation, elitism, Deb's feasibility rules and
 // a declared tie-breaker; the sources stand in the headers of the parts. Each pair of children draws from a
-// random stream of its own, keyed by (seed, generation, pair), and individuals are evaluated on their own: the
-// result is the same to the last bit for any number of threads.
+// random stream of its own, keyed by (seed, generation, pair), and individuals are evaluated on their own:
+// the result is the same to the last bit for any number of threads.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,8 @@
 #include "core/optimization/variation.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <limits>
 #include <utility>
 
 #include "core/math/functions.h"
@@ -9,12 +11,19 @@ namespace dispersa {
 
 namespace {
 
-// The spread factor for a uniform draw u, given the share of the distribution that a bound at a distance of
-// `gap` beyond the nearer parent leaves, for parents that are `distance` apart.
-double SpreadFactor(double u, double gap, double distance, double eta) {
-  const double alpha = 2.0 - Pow(1.0 + 2.0 * gap / distance, -(eta + 1.0));
+// How many half distances from the middle a child lies (1: on its parent) for a uniform draw u, when a bound
+// cuts the distribution at `limit` (at least 1).
+double SpreadFactor(double u, double limit, double eta) {
+  const double alpha = 2.0 - Pow(limit, -(eta + 1.0));
   const double argument = u * alpha <= 1.0 ? u * alpha : 1.0 / (2.0 - u * alpha);
   return Pow(argument, 1.0 / (eta + 1.0));
+}
+
+// How many half distances from the middle the bound lies that is beyond `parent`; +infinity: none is.
+double Limit(double parent, double middle, double lower, double upper) {
+  if (parent == middle) return std::numeric_limits<double>::infinity();
+  const double bound = parent > middle ? upper : lower;
+  return std::max(1.0, (bound - middle) / (parent - middle));
 }
 
 }  // namespace
@@ -22,15 +31,29 @@ double SpreadFactor(double u, double gap, double distance, double eta) {
 void CrossOver(double* a, double* b, double lower, double upper, double eta, Stream* stream) {
   const double u = stream->Uniform();
   const bool exchange = stream->Uniform() < 0.5;  // neither child belongs to one of the parents
-  const auto [low, high] = std::minmax({*a, *b});
-  if (low == high) return;
-  const double middle = 0.5 * (low + high);
-  const double half = 0.5 * (high - low);
-  const double below = middle - half * SpreadFactor(u, low - lower, high - low, eta);
-  const double above = middle + half * SpreadFactor(u, upper - high, high - low, eta);
-  *a = Clamp(below, lower, upper);
-  *b = Clamp(above, lower, upper);
+  const double middle = 0.5 * (*a + *b);
+  for (double* parent : {a, b}) {
+    const double spread = SpreadFactor(u, Limit(*parent, middle, lower, upper), eta);
+    *parent = Clamp(middle + spread * (*parent - middle), lower, upper);
+  }
   if (exchange) std::swap(*a, *b);
+}
+
+void CrossOverOnLine(std::vector<double>* a, std::vector<double>* b, const std::vector<double>& lower,
+                     const std::vector<double>& upper, double eta, Stream* stream) {
+  const double u = stream->Uniform();
+  std::vector<double> middle(a->size());
+  for (std::size_t k = 0; k < middle.size(); ++k) middle[k] = 0.5 * ((*a)[k] + (*b)[k]);
+  for (std::vector<double>* parent : {a, b}) {
+    double limit = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < middle.size(); ++k) {
+      limit = std::min(limit, Limit((*parent)[k], middle[k], lower[k], upper[k]));
+    }
+    const double spread = SpreadFactor(u, limit, eta);
+    for (std::size_t k = 0; k < middle.size(); ++k) {
+      (*parent)[k] = Clamp(middle[k] + spread * ((*parent)[k] - middle[k]), lower[k], upper[k]);
+    }
+  }
 }
 
 double Mutated(double x, double lower, double upper, double eta, Stream* stream) {

@@ -1,0 +1,302 @@
+#include "core/optimization/levenberg_marquardt.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/math/functions.h"
+
+namespace dispersa {
+
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+void Require(bool holds, std::string_view field, double value, std::string_view allowed) {
+  if (!holds) throw std::invalid_argument(fmt::format("{} is {}; allowed is {}", field, value, allowed));
+}
+
+bool IsPositive(double x) { return x > 0.0 && std::isfinite(x); }
+bool IsNotNegative(double x) { return x >= 0.0 && std::isfinite(x); }
+
+void Validate(const LevenbergMarquardtOptions& options) {
+  const auto require = [](bool holds, std::string_view field, double value, std::string_view allowed) {
+    Require(holds, fmt::format("LevenbergMarquardtOptions.{}", field), value, allowed);
+  };
+  require(options.max_iterations >= 1 && options.max_iterations <= 100'000, "max_iterations",
+          options.max_iterations, "1 to 100000");
+  require(IsNotNegative(options.residual_tolerance), "residual_tolerance", options.residual_tolerance,
+          "a finite number of at least 0");
+  require(options.gradient_tolerance >= 0.0 && options.gradient_tolerance <= 1.0, "gradient_tolerance",
+          options.gradient_tolerance, "0 to 1");
+  require(IsNotNegative(options.step_tolerance), "step_tolerance", options.step_tolerance,
+          "a finite number of at least 0");
+  require(options.initial_damping > 0.0 && options.initial_damping <= 1.0, "initial_damping",
+          options.initial_damping, "above 0, at most 1");
+  require(options.rank_tolerance >= 0.0 && options.rank_tolerance <= 1.0, "rank_tolerance",
+          options.rank_tolerance, "0 to 1");
+}
+
+void Validate(const LeastSquaresProblem& problem, const std::vector<double>& start) {
+  const auto count = [](const auto& values) { return static_cast<double>(values.size()); };
+  Require(!problem.unknowns.empty(), "LeastSquaresProblem.unknowns.size()", 0.0, "at least 1");
+  Require(problem.residual_scales.size() >= problem.unknowns.size(),
+          "LeastSquaresProblem.residual_scales.size()", count(problem.residual_scales),
+          fmt::format("at least {}, the number of unknowns", problem.unknowns.size()));
+  for (std::size_t i = 0; i < problem.residual_scales.size(); ++i) {
+    Require(IsPositive(problem.residual_scales[i]), fmt::format("LeastSquaresProblem.residual_scales[{}]", i),
+            problem.residual_scales[i], "a finite number above 0");
+  }
+  if (!problem.residuals)
+    throw std::invalid_argument("LeastSquaresProblem.residuals is empty; allowed is a function");
+  Require(start.size() == problem.unknowns.size(), "start.size()", count(start),
+          fmt::format("{}, the number of unknowns", problem.unknowns.size()));
+  for (std::size_t i = 0; i < problem.unknowns.size(); ++i) {
+    const Unknown& unknown = problem.unknowns[i];
+    const std::string name = fmt::format("LeastSquaresProblem.unknowns[{}]", i);
+    Require(unknown.lower < unknown.upper, name + ".upper", unknown.upper,
+            fmt::format("above lower = {}", unknown.lower));
+    Require(IsPositive(unknown.scale), name + ".scale", unknown.scale, "a finite number above 0");
+    Require(IsPositive(unknown.difference_step) &&
+                unknown.difference_step <= 0.5 * (unknown.upper - unknown.lower),
+            name + ".difference_step", unknown.difference_step, "above 0, at most half of upper - lower");
+    Require(std::isfinite(start[i]) && start[i] >= unknown.lower && start[i] <= unknown.upper,
+            fmt::format("start[{}]", i), start[i], fmt::format("{} to {}", unknown.lower, unknown.upper));
+  }
+}
+
+// One search. Residuals and the Jacobian are scaled throughout; unknowns are not.
+class Search {
+ public:
+  Search(const LevenbergMarquardtOptions& options, const LeastSquaresProblem& problem,
+         const std::vector<double>& start)
+      : options_(options), problem_(problem), x_(start) {}
+
+  LeastSquaresResult Execute() {
+    const LeastSquaresStatus status = Iterate();
+    LeastSquaresResult result{.status = status,
+                              .unknowns = x_,
+                              .residuals = {},
+                              .largest_scaled_residual = residuals_.cwiseAbs().maxCoeff(),
+                              .held_at_bound = {},
+                              .iterations = iterations_,
+                              .evaluations = evaluations_};
+    for (std::size_t i = 0; i < problem_.residual_scales.size(); ++i) {
+      result.residuals.push_back(residuals_[i] * problem_.residual_scales[i]);
+    }
+    for (std::size_t i = 0; i < held_.size(); ++i) {
+      if (held_[i]) result.held_at_bound.push_back(i);
+    }
+    return result;
+  }
+
+ private:
+  struct Step {
+    std::vector<double> target;
+    double predicted_cost;  // of the linear model
+    double length;          // largest move of an unknown, in its scale
+  };
+
+  LeastSquaresStatus Iterate() {
+    residuals_ = Residuals(x_);
+    if (!residuals_.allFinite()) return LeastSquaresStatus::kNotFinite;
+    bool moved = true;
+    double damping_growth = 2.0;
+    for (;; ++iterations_) {
+      if (moved) {
+        if (residuals_.cwiseAbs().maxCoeff() <= options_.residual_tolerance)
+          return LeastSquaresStatus::kConverged;
+        if (iterations_ == options_.max_iterations) return LeastSquaresStatus::kMaxIterations;
+        if (!Linearise()) return LeastSquaresStatus::kNotFinite;
+        if (IsStationary()) return ReasonToStop();
+        moved = false;
+      }
+      if (iterations_ == options_.max_iterations) return LeastSquaresStatus::kMaxIterations;
+      const Step step = DampedStep();
+      if (step.length <= options_.step_tolerance) return ReasonToStop();
+
+      const VectorXd trial = Residuals(step.target);
+      const double cost = 0.5 * residuals_.squaredNorm();
+      const double trial_cost = 0.5 * trial.squaredNorm();
+      moved = trial.allFinite() && trial_cost < cost && step.predicted_cost < cost;
+      if (moved) {
+        const double gain = (cost - trial_cost) / (cost - step.predicted_cost);
+        const double poorness = 2.0 * gain - 1.0;
+        damping_ *= std::max(1.0 / 3.0, 1.0 - poorness * poorness * poorness);
+        damping_growth = 2.0;
+        x_ = step.target;
+        residuals_ = trial;
+      } else {
+        damping_ *= damping_growth;
+        damping_growth *= 2.0;
+      }
+    }
+  }
+
+  VectorXd Residuals(const std::vector<double>& x) {
+    ++evaluations_;
+    const std::vector<double> values = problem_.residuals(x);
+    const std::size_t count = problem_.residual_scales.size();
+    if (values.size() != count) {
+      throw std::invalid_argument(
+          fmt::format("LeastSquaresProblem.residuals returned {} values; allowed is {}, as many "
+                      "as residual_scales",
+                      values.size(), count));
+    }
+    VectorXd scaled(count);
+    for (std::size_t i = 0; i < count; ++i) scaled[i] = values[i] / problem_.residual_scales[i];
+    return scaled;
+  }
+
+  // The Jacobian at x_, the unknowns that their bounds hold, and the first damping. False: not finite.
+  bool Linearise() {
+    jacobian_.resize(residuals_.size(), x_.size());
+    for (std::size_t i = 0; i < x_.size(); ++i) jacobian_.col(i) = Column(i);
+    if (!jacobian_.allFinite()) return false;
+    const VectorXd gradient = jacobian_.transpose() * residuals_;
+    held_.assign(x_.size(), false);
+    for (std::size_t i = 0; i < x_.size(); ++i) {
+      held_[i] = (x_[i] == problem_.unknowns[i].lower && gradient[i] > 0.0) ||
+                 (x_[i] == problem_.unknowns[i].upper && gradient[i] < 0.0);
+    }
+    if (damping_ == 0.0) damping_ = options_.initial_damping * jacobian_.colwise().squaredNorm().maxCoeff();
+    return true;
+  }
+
+  VectorXd Column(std::size_t i) {
+    const Unknown& unknown = problem_.unknowns[i];
+    const double low = x_[i] - unknown.difference_step;
+    const double high = x_[i] + unknown.difference_step;
+    const bool use_low =
+        high > unknown.upper || (unknown.difference != Difference::kForward && low >= unknown.lower);
+    const bool use_high =
+        low < unknown.lower || (unknown.difference != Difference::kBackward && high <= unknown.upper);
+    std::vector<double> x = x_;
+    VectorXd from = residuals_;
+    VectorXd to = residuals_;
+    if (use_low) {
+      x[i] = low;
+      from = Residuals(x);
+    }
+    if (use_high) {
+      x[i] = high;
+      to = Residuals(x);
+    }
+    // The steps as they are after rounding.
+    const double distance = (use_high ? high : x_[i]) - (use_low ? low : x_[i]);
+    return (to - from) * (unknown.scale / distance);
+  }
+
+  bool IsStationary() const {
+    for (std::size_t i = 0; i < x_.size(); ++i) {
+      const double norms = jacobian_.col(i).norm() * residuals_.norm();
+      if (!held_[i] && std::fabs(jacobian_.col(i).dot(residuals_)) > options_.gradient_tolerance * norms)
+        return false;
+    }
+    return true;
+  }
+
+  // Minimises |r + J d|² + damping |d|² over the free unknowns; those that would cross a bound stop on it,
+  // and the rest is solved again.
+  Step DampedStep() const {
+    const Eigen::Index rows = residuals_.size();
+    Step step{.target = x_, .predicted_cost = 0.0, .length = 0.0};
+    VectorXd model = residuals_;
+    std::vector<Eigen::Index> free = FreeUnknowns();
+    while (!free.empty()) {
+      const Eigen::Index columns = static_cast<Eigen::Index>(free.size());
+      MatrixXd matrix = MatrixXd::Zero(rows + columns, columns);
+      matrix.topRows(rows) = jacobian_(Eigen::all, free);
+      matrix.bottomRows(columns).diagonal().setConstant(Sqrt(damping_));
+      VectorXd right = VectorXd::Zero(rows + columns);
+      right.head(rows) = -model;
+      const VectorXd move = matrix.colPivHouseholderQr().solve(right);
+
+      std::vector<Eigen::Index> inside;
+      for (Eigen::Index k = 0; k < columns; ++k) {
+        const Unknown& unknown = problem_.unknowns[free[k]];
+        const double target = x_[free[k]] + unknown.scale * move[k];
+        step.target[free[k]] = Clamp(target, unknown.lower, unknown.upper);
+        if (target >= unknown.lower && target <= unknown.upper) {
+          inside.push_back(free[k]);
+        } else {
+          model += jacobian_.col(free[k]) * MoveOf(step, free[k]);
+        }
+      }
+      if (inside.size() == free.size()) break;
+      free = inside;
+    }
+    for (const Eigen::Index i : free) model += jacobian_.col(i) * MoveOf(step, i);
+    step.predicted_cost = 0.5 * model.squaredNorm();
+    for (std::size_t i = 0; i < x_.size(); ++i)
+      step.length = std::max(step.length, std::fabs(MoveOf(step, i)));
+    return step;
+  }
+
+  double MoveOf(const Step& step, std::size_t i) const {
+    return (step.target[i] - x_[i]) / problem_.unknowns[i].scale;
+  }
+
+  std::vector<Eigen::Index> FreeUnknowns() const {
+    std::vector<Eigen::Index> free;
+    for (std::size_t i = 0; i < x_.size(); ++i) {
+      if (!held_[i]) free.push_back(static_cast<Eigen::Index>(i));
+    }
+    return free;
+  }
+
+  LeastSquaresStatus ReasonToStop() const {
+    const std::vector<Eigen::Index> free = FreeUnknowns();
+    if (free.size() < x_.size()) return LeastSquaresStatus::kAtBound;
+    Eigen::ColPivHouseholderQR<MatrixXd> factors(jacobian_);
+    factors.setThreshold(options_.rank_tolerance);
+    return factors.rank() < jacobian_.cols() ? LeastSquaresStatus::kSingularJacobian
+                                             : LeastSquaresStatus::kStalled;
+  }
+
+  const LevenbergMarquardtOptions& options_;
+  const LeastSquaresProblem& problem_;
+  std::vector<double> x_;
+  VectorXd residuals_;
+  MatrixXd jacobian_;
+  std::vector<bool> held_;
+  double damping_ = 0.0;  // 0: not chosen yet
+  int iterations_ = 0;
+  int evaluations_ = 0;
+};
+
+}  // namespace
+
+std::string_view Describe(LeastSquaresStatus status) {
+  switch (status) {
+    case LeastSquaresStatus::kConverged:
+      return "converged: every residual is within its tolerance";
+    case LeastSquaresStatus::kStalled:
+      return "stalled: no small step reduces the residuals";
+    case LeastSquaresStatus::kAtBound:
+      return "at a bound: the residuals fall only beyond the bounds of the unknowns";
+    case LeastSquaresStatus::kSingularJacobian:
+      return "singular: the residuals do not respond to some combination of the unknowns";
+    case LeastSquaresStatus::kMaxIterations:
+      return "out of iterations: the residuals were still falling";
+    case LeastSquaresStatus::kNotFinite:
+      return "not finite: the residuals cannot be evaluated at the start or beside a point of the search";
+  }
+  return "unknown status";
+}
+
+LevenbergMarquardt::LevenbergMarquardt(const LevenbergMarquardtOptions& options) : options_(options) {
+  Validate(options_);
+}
+
+LeastSquaresResult LevenbergMarquardt::Solve(const LeastSquaresProblem& problem,
+                                             const std::vector<double>& start) const {
+  Validate(problem, start);
+  return Search(options_, problem, start).Execute();
+}
+
+}  // namespace dispersa

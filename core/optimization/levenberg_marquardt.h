@@ -1,0 +1,98 @@
+// Least squares in a few unknowns within bounds, where residuals are expensive and have no derivatives.
+//
+// Levenberg-Marquardt with the damping rule of H. B. Nielsen, "Damping parameter in Marquardt's method",
+// IMM-REP-1999-05, Technical University of Denmark (also K. Madsen, H. B. Nielsen, O. Tingleff, "Methods for
+// non-linear least squares problems", 2nd ed., 2004, algorithm 3.16). A small initial damping makes it a
+// damped Newton method where there are as many residuals as unknowns. Bounds are an active set: an unknown on
+// its bound that the descent would push out is held there, and the others move. Steps come from a QR
+// factorisation of the Jacobian, which does not square its condition number. Sequential and deterministic.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <string_view>
+#include <vector>
+
+namespace dispersa {
+
+/// The side on which a column of the Jacobian is differenced; a bound in the way turns the side.
+enum class Difference { kForward, kBackward, kCentral };
+
+struct Unknown {
+  double lower = -std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();  ///< above `lower`
+  /// A typical change, positive: unknowns are divided by it, so that steps in different units compare.
+  double scale = 1.0;
+  /// Finite-difference step, positive, at most half of upper - lower, unit of the unknown. About 1e-8 of the
+  /// unknown's size for one-sided and 6e-6 for central differences of residuals that are exact to rounding;
+  /// larger where they are not.
+  double difference_step = 1e-6;
+  Difference difference = Difference::kCentral;
+};
+
+struct LeastSquaresProblem {
+  std::vector<Unknown> unknowns;  ///< shape (n), at least 1
+  /// Shape (m), m >= n, positive: residuals are divided by it before they are squared, added and compared
+  /// with `residual_tolerance`.
+  std::vector<double> residual_scales;
+  /// Residuals, shape (m), of unknowns, shape (n). Residuals that are not finite reject a step.
+  std::function<std::vector<double>(const std::vector<double>&)> residuals;
+};
+
+struct LevenbergMarquardtOptions {
+  /// Steps tried, accepted or not; 1 to 100,000.
+  int max_iterations = 100;
+  /// Converged when every scaled residual is at most this; not negative.
+  double residual_tolerance = 1e-9;
+  /// Stop when the cosine of the angle between the residuals and each column of the Jacobian of a free
+  /// unknown is at most this (the `gtol` of MINPACK's LMDER); 0 to 1.
+  double gradient_tolerance = 1e-12;
+  /// Stop when no unknown would move by more than this many of its scales; not negative.
+  double step_tolerance = 1e-13;
+  /// Initial damping as a fraction of the largest squared column norm of the scaled Jacobian; positive, at
+  /// most 1. 1e-6 suits a start near the solution, 1e-3 or more a remote one (Madsen et al., section 3.2).
+  double initial_damping = 1e-6;
+  /// When the search stops, directions along which the residuals change by less than this fraction of the
+  /// strongest one make the Jacobian singular; 0 to 1. Central differences are good to about 1e-10.
+  double rank_tolerance = 1e-9;
+};
+
+enum class LeastSquaresStatus {
+  kConverged,         ///< every scaled residual is within the tolerance
+  kStalled,           ///< a local minimum of the sum of squares, or the noise of the residuals
+  kAtBound,           ///< no step within the bounds helps; a residual would fall beyond one
+  kSingularJacobian,  ///< stalled where the residuals do not respond to some combination of the free unknowns
+  kMaxIterations,     ///< still improving when the iterations ran out
+  kNotFinite,         ///< residuals are not finite at the start or beside an accepted point
+};
+
+/// One sentence for a reader of a report.
+std::string_view Describe(LeastSquaresStatus status);
+
+struct LeastSquaresResult {
+  LeastSquaresStatus status = LeastSquaresStatus::kConverged;
+  std::vector<double> unknowns;            ///< shape (n), the best found, within the bounds
+  std::vector<double> residuals;           ///< shape (m), at `unknowns`, unscaled
+  double largest_scaled_residual = 0.0;    ///< absolute
+  std::vector<std::size_t> held_at_bound;  ///< unknowns on a bound beyond which the residuals would fall
+  int iterations = 0;
+  int evaluations = 0;  ///< calls of the residuals, those for the Jacobian included
+
+  bool operator==(const LeastSquaresResult&) const = default;
+};
+
+class LevenbergMarquardt {
+ public:
+  /// Throws std::invalid_argument that names the field which is out of range and what is allowed.
+  explicit LevenbergMarquardt(const LevenbergMarquardtOptions& options);
+
+  /// Minimises the sum of squared scaled residuals from `start`, shape (n), within the bounds. That it cannot
+  /// reach zero is a status, not an error. Throws std::invalid_argument for an ill-formed problem or start.
+  LeastSquaresResult Solve(const LeastSquaresProblem& problem, const std::vector<double>& start) const;
+
+ private:
+  LevenbergMarquardtOptions options_;
+};
+
+}  // namespace dispersa
