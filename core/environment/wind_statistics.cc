@@ -18,9 +18,9 @@ WindTable DrawWind(const WindStatistics& statistics, const std::vector<double>& 
   double north = 0.0;
   double east = 0.0;
   for (std::size_t k = 0; k < levels; ++k) {
-    const double persistence =
-        k == 0 ? 0.0
-               : Exp((statistics.altitude_m[k - 1] - statistics.altitude_m[k]) / statistics.correlation_length_m);
+    const double persistence = k == 0 ? 0.0
+                                      : Exp((statistics.altitude_m[k - 1] - statistics.altitude_m[k]) /
+                                            statistics.correlation_length_m);
     const double renewal = Sqrt(1.0 - Square(persistence));
     const double e_north = standard_normals[2 * k];
     const double e_east = shared * e_north + own * standard_normals[2 * k + 1];

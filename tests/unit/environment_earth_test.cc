@@ -107,8 +107,9 @@ TEST(Gravitation, IsTheGradientOfThePotential) {
     Vector3 gradient;
     for (int axis = 0; axis < 3; ++axis) {
       const Vector3 step = d * Vector3::Unit(axis);
-      gradient[axis] = (GravitationalPotential(earth, p_EoP + step) -
-                        GravitationalPotential(earth, p_EoP - step)) / (2.0 * d);
+      gradient[axis] =
+          (GravitationalPotential(earth, p_EoP + step) - GravitationalPotential(earth, p_EoP - step)) /
+          (2.0 * d);
     }
     ExpectNear(Gravitation(earth, p_EoP), gradient, 1e-8);
   }
@@ -133,8 +134,7 @@ TEST(Gravitation, IsFreeOfDivergence) {
   double divergence = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
     const Vector3 step = 1000.0 * Vector3::Unit(axis);
-    divergence +=
-        (Gravitation(earth, p_EoP + step)[axis] - Gravitation(earth, p_EoP - step)[axis]) / 2000.0;
+    divergence += (Gravitation(earth, p_EoP + step)[axis] - Gravitation(earth, p_EoP - step)[axis]) / 2000.0;
   }
   EXPECT_NEAR(divergence, 0.0, 1e-12);
 }

@@ -26,10 +26,10 @@ void ExpectWind(const WindNorthEast& actual, double north, double east) {
 }
 
 TEST(Wind, DirectionIsWhereItComesFrom) {
-  ExpectWind(FromAzimuth(10.0, 0.0), -10.0, 0.0);               // a north wind blows south
-  ExpectWind(FromAzimuth(10.0, kPi / 2), 0.0, -10.0);           // an east wind blows west
+  ExpectWind(FromAzimuth(10.0, 0.0), -10.0, 0.0);      // a north wind blows south
+  ExpectWind(FromAzimuth(10.0, kPi / 2), 0.0, -10.0);  // an east wind blows west
   ExpectWind(FromAzimuth(10.0, kPi), 10.0, 0.0);
-  ExpectWind(FromAzimuth(10.0, 3 * kPi / 2), 0.0, 10.0);        // a westerly blows east
+  ExpectWind(FromAzimuth(10.0, 3 * kPi / 2), 0.0, 10.0);  // a westerly blows east
   ExpectWind(FromAzimuth(10.0, 240 * kRadPerDeg), 5.0, 10.0 * std::sqrt(0.75));
 }
 
@@ -38,7 +38,7 @@ TEST(Wind, EmptyIsCalm) { EXPECT_EQ(Speed(Evaluate(Wind{}, 5000.0)), 0.0); }
 TEST(JetStream, PeakWidthAndEdges) {
   const Wind wind{.jets = {{60.96, 12000.0, 10000.0, 3 * kPi / 2}}};
   ExpectWind(Evaluate(wind, 12000.0), 0.0, 60.96);
-  EXPECT_NEAR(Speed(Evaluate(wind, 7000.0)), 30.48, kRounding);   // half maximum half a width away
+  EXPECT_NEAR(Speed(Evaluate(wind, 7000.0)), 30.48, kRounding);  // half maximum half a width away
   EXPECT_NEAR(Speed(Evaluate(wind, 17000.0)), 30.48, kRounding);
   EXPECT_EQ(Speed(Evaluate(wind, 2000.0)), 0.0);
   EXPECT_EQ(Speed(Evaluate(wind, 22000.0)), 0.0);
