@@ -103,6 +103,7 @@ CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaig
   summary.reference = campaign.reference.name;
   summary.autopilot = campaign.autopilot.name;
   for (const Outcome outcome : cases.outcome) ++summary.outcomes[static_cast<std::size_t>(outcome)];
+  summary.lost_flights = cases.lost_flights;
   for (std::size_t i = 0; i < MetricNames().size(); ++i) {
     summary.metrics.push_back({MetricNames()[i], Summarize(cases.metrics[i])});
   }

@@ -11,6 +11,7 @@
 #include "core/campaign/case_result.h"
 #include "core/report/case_columns.h"
 #include "core/report/dispersion_summary.h"
+#include "core/report/lost_flight.h"
 #include "core/report/requirement_summary.h"
 #include "core/report/result_folder.h"
 #include "core/statistics/summary.h"
@@ -54,6 +55,7 @@ struct CampaignSummary {
   std::string autopilot;
   CampaignVerdict verdict = CampaignVerdict::kIncomplete;
   std::array<std::uint64_t, kOutcomeCount> outcomes{};
+  std::vector<LostFlight> lost_flights;  ///< the first 20 that were not completed
   std::vector<MetricSummary> metrics;  ///< in the order of MetricNames()
   std::vector<RequirementSummary> requirements;
   std::vector<QuarantinedCase> quarantined;

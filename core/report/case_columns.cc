@@ -3,6 +3,11 @@
 #include "core/flight/flight_inputs.h"
 
 namespace dispersa {
+namespace {
+
+constexpr std::size_t kLostFlights = 20;
+
+}  // namespace
 
 CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& wanted_inputs) {
   CaseColumns columns;
@@ -11,6 +16,10 @@ CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& want
   folder.ForEach([&](const CaseResult& result) {
     columns.index.push_back(result.case_index);
     columns.outcome.push_back(result.outcome);
+    if (result.outcome != Outcome::kCompleted && columns.lost_flights.size() < kLostFlights) {
+      columns.lost_flights.push_back(
+          {result.case_index, result.outcome, result.end_time_s, result.end_stage, result.reason});
+    }
     for (const int input : wanted_inputs) {
       columns.inputs[static_cast<std::size_t>(input)].push_back(result.inputs[static_cast<std::size_t>(input)]);
     }

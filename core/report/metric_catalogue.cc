@@ -27,7 +27,7 @@ struct Entry {
   Worse worse = Worse::kLarger;
 };
 
-constexpr std::array<Entry, 38> kEntries = {{
+constexpr std::array<Entry, 35> kEntries = {{
     {"pitch_error_rms", "Pitch error, RMS",
      "root mean square over powered flight of the component about body y of the rotation from the reference "
      "attitude to the true one"},
@@ -41,8 +41,8 @@ constexpr std::array<Entry, 38> kEntries = {{
     {"deflection_peak", "Deflection, peak", "largest magnitude of any nozzle's angle"},
     {"deflection_rms", "Deflection, RMS", "root mean square over the nozzles and powered flight"},
     {"deflection_rate_peak", "Deflection rate, peak", "largest magnitude of any nozzle's rate"},
-    {"deflection_saturated_fraction", "Deflection saturated", "fraction of powered flight at a deflection limit"},
-    {"deflection_travel", "Deflection travel", "path of the nozzles added up: wear of the actuators"},
+    {"deflection_saturated_fraction", "Deflection saturated", "fraction of powered flight in which a nozzle is commanded to its limit"},
+    {"deflection_travel", "Deflection travel", "path of a nozzle added up, mean of the four: wear of the actuators"},
     {"deflection_limit_cycle", "Limit cycle of the deflection",
      "worst peak-to-peak deflection, detrended over sliding 1 s windows, from 5 s after each ignition, outside "
      "the kick and gusts"},
@@ -51,7 +51,10 @@ constexpr std::array<Entry, 38> kEntries = {{
     {"alpha_max", "Incidence as flown, maximum", "where the dynamic pressure is at least 1 kPa"},
     {"axial_load_max", "Axial load, maximum", "specific force along the body axis"},
     {"lateral_load_max", "Lateral load, maximum", "specific force normal to the body axis at the centre of gravity"},
-    {"structural_exceedance", "Structural limit exceeded", "1 when a limit of the vehicle file was exceeded"},
+    {"structural_limit_exceeded", "Structural limit exceeded", "1 when a limit of the vehicle file was exceeded"},
+    {"handover_attitude_error", "Attitude error at the last ignition",
+     "magnitude of the rotation that the reaction control leaves to the gimbals"},
+    {"handover_rate_error", "Rate error at the last ignition", "magnitude, likewise"},
     {"injection_altitude", "Injection altitude", "geodetic, at the end of the last burn"},
     {"injection_velocity", "Injection velocity", "inertial, at the end of the last burn"},
     {"injection_flight_path_angle", "Injection flight path angle", "inertial, at the end of the last burn",
@@ -60,19 +63,14 @@ constexpr std::array<Entry, 38> kEntries = {{
     {"injection_velocity_error", "Injection velocity error", "against the target", Worse::kFartherFromZero},
     {"injection_flight_path_angle_error", "Injection flight path angle error", "against the target",
      Worse::kFartherFromZero},
-    {"inclination_error", "Inclination error", "against the reference", Worse::kFartherFromZero},
     {"apogee", "Apogee", "altitude over the equatorial radius of the osculating orbit at injection"},
     {"perigee", "Perigee", "altitude over the equatorial radius of the osculating orbit at injection",
      Worse::kSmaller},
     {"inclination", "Inclination", "of the osculating orbit at injection"},
     {"rcs_propellant", "Reaction control propellant", "used in the coast"},
-    {"rcs_pulses", "Reaction control pulses", "in the coast"},
-    {"pitch_error", "Pitch error", "", Worse::kFartherFromZero},
-    {"yaw_error", "Yaw error", "", Worse::kFartherFromZero},
-    {"roll_error", "Roll error", "", Worse::kFartherFromZero},
-    {"theta_norm_max", "Adapted consequents, largest norm", ""},
-    {"flight_time", "Time of flight", "lift-off to the end"},
-    {"final_mass", "Mass at the end", "", Worse::kSmaller},
+    {"lyapunov_decreasing_fraction", "Lyapunov function decreasing", "fraction of powered flight", Worse::kSmaller},
+    {"adaptation_norm_peak", "Adaptation, largest norm", "distance of the pitch rules' consequents from their start"},
+    {"rules_fired", "Rules fired", "pitch rules that were active at any time"},
 }};
 
 /// Takes "_stage2" or "_coast" out of a stem and says it in words.

@@ -86,6 +86,14 @@ std::string SummaryJson(const CampaignSummary& summary) {
   for (int i = 0; i < kOutcomeCount; ++i) {
     json["outcomes"][OutcomeName(static_cast<Outcome>(i))] = summary.outcomes[static_cast<std::size_t>(i)];
   }
+  json["lost_flights"] = Json::array();
+  for (const LostFlight& lost : summary.lost_flights) {
+    json["lost_flights"].push_back({{"case_index", lost.case_index},
+                                    {"outcome", OutcomeName(lost.outcome)},
+                                    {"end_time_s", Number(lost.end_time_s)},
+                                    {"end_stage", lost.end_stage},
+                                    {"reason", lost.reason}});
+  }
   json["requirements"] = Json::array();
   for (const RequirementSummary& requirement : summary.requirements) {
     json["requirements"].push_back(RequirementJson(requirement));

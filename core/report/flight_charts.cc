@@ -1,0 +1,199 @@
+#include "core/report/flight_charts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "core/report/html_parts.h"
+#include "core/report/svg_chart.h"
+#include "core/report/text.h"
+
+namespace dispersa {
+namespace {
+
+constexpr char kTime[] = "time since lift-off, s";
+/// Below this dynamic pressure, Pa, incidence has no effect to speak of.
+constexpr double kThinAir_pa = 1000.0;
+
+std::vector<double> Column(const History& history, const char* name, double factor = 1.0) {
+  const int column = FindHistoryColumn(name);
+  assert(column >= 0);
+  std::vector<double> values(history.rows());
+  for (std::size_t row = 0; row < values.size(); ++row) values[row] = history.at(row, column) * factor;
+  return values;
+}
+
+/// When stages burn, read from a flight's history.
+struct Burns {
+  struct Burn {
+    int stage;
+    double from_s;
+    double to_s;
+  };
+  std::vector<Burn> burns;
+
+  explicit Burns(const History& history) {
+    const std::vector<double> time_s = Column(history, "time_s");
+    const std::vector<double> stage = Column(history, "stage");
+    const std::vector<double> thrust_n = Column(history, "thrust_n");
+    for (std::size_t row = 0; row < time_s.size(); ++row) {
+      if (thrust_n[row] <= 0.0) continue;
+      const int now = static_cast<int>(stage[row]);
+      if (burns.empty() || burns.back().stage != now) burns.push_back({now, time_s[row], time_s[row]});
+      burns.back().to_s = time_s[row];
+    }
+  }
+
+  /// Ignitions, and gaps of more than 10 s as coast.
+  void AddTo(SvgChart* chart) const {
+    for (std::size_t i = 0; i < burns.size(); ++i) {
+      if (i > 0 && burns[i].from_s - burns[i - 1].to_s > 10.0) chart->Shade(burns[i - 1].to_s, burns[i].from_s, "coast");
+      chart->Mark(burns[i].from_s, fmt::format("stage {}", burns[i].stage));
+    }
+  }
+};
+
+struct BandView {
+  const char* column;
+  const char* label;
+  double factor = 1.0;  ///< from the column's unit to the label's
+  const char* program = nullptr;  ///< column of the nominal drawn as the target
+  std::optional<double> from_s = {}, to_s = {};
+  bool limits = false;  ///< draw those of the requirements on the peak
+  int width = 520;
+};
+
+std::vector<double> Scaled(std::vector<double> values, double factor) {
+  for (double& value : values) value *= factor;
+  return values;
+}
+
+std::string BandFigure(const BandView& view, const FlightHistories& histories, const CampaignSummary& summary,
+                       const Burns& burns, const std::string& caption) {
+  const FlightBands& bands = histories.bands;
+  const auto band = std::find_if(bands.bands.begin(), bands.bands.end(),
+                                 [&](const Band& candidate) { return candidate.column == view.column; });
+  assert(band != bands.bands.end());
+  SvgChart chart({.label = kTime, .low = view.from_s, .high = view.to_s}, {.label = view.label}, view.width, 280);
+  burns.AddTo(&chart);
+  chart.Band(bands.time_s, Scaled(band->min, view.factor), Scaled(band->max, view.factor), "band-outer", "min–max");
+  chart.Band(bands.time_s, Scaled(band->p05, view.factor), Scaled(band->p95, view.factor), "band-inner", "5–95 %");
+  chart.Line(bands.time_s, Scaled(band->p50, view.factor), "line-0", "median");
+  const std::vector<double> time_s = Column(histories.nominal_history, "time_s");
+  if (view.program != nullptr) {
+    chart.Line(time_s, Column(histories.nominal_history, view.program, view.factor), "program", "program");
+  } else {
+    chart.Line(time_s, Column(histories.nominal_history, view.column, view.factor), "line-1", "nominal");
+  }
+  if (view.limits) {
+    for (const RequirementSummary& requirement : summary.requirements) {
+      if (requirement.metric != "pitch_error_peak_deg") continue;
+      chart.HorizontalLimit(requirement.limit, "limit of the peak");
+      chart.HorizontalLimit(-requirement.limit, "");
+    }
+  }
+  std::string figure = Figure(chart.Svg(caption), HtmlText(caption));
+  if (view.width > 600) figure.replace(0, 7, "<figure class=\"wide\"");
+  return figure;
+}
+
+/// The last time at which the air is thick enough, and a little more.
+double AtmosphereEnd(const std::vector<double>& time_s, const std::vector<double>& qbar_pa) {
+  double end_s = 0.0;
+  for (std::size_t i = 0; i < time_s.size(); ++i) {
+    if (qbar_pa[i] >= kThinAir_pa) end_s = time_s[i];
+  }
+  return 10.0 * std::ceil(0.1 * (end_s + 5.0));
+}
+
+}  // namespace
+
+std::string NominalFigures(const History& nominal) {
+  const Burns burns(nominal);
+  const std::vector<double> time_s = Column(nominal, "time_s");
+  const std::vector<double> qbar_pa = Column(nominal, "qbar_pa");
+  const double air_end_s = AtmosphereEnd(time_s, qbar_pa);
+  std::string figures = "<div class=\"figures\">\n";
+  const auto add = [&](SvgChart chart, const std::string& caption) {
+    burns.AddTo(&chart);
+    figures += Figure(chart.Svg(caption), HtmlText(caption));
+  };
+
+  SvgChart pitch({.label = kTime}, {.label = "pitch from the launch horizon, °"});
+  pitch.Line(time_s, Column(nominal, "pitch_launch_deg"), "line-0", "flown");
+  pitch.Line(time_s, Column(nominal, "pitch_program_deg"), "program", "program");
+  add(pitch, "Pitch program and pitch in the launch-inertial frame.");
+
+  SvgChart error({.label = kTime}, {.label = "pitch error, °"});
+  error.Line(time_s, Column(nominal, "pitch_error_deg"), "line-0", "");
+  add(error, "Pitch error: true minus reference attitude about body y, the coast included.");
+
+  SvgChart altitude({.label = kTime}, {.label = "altitude, km"});
+  altitude.Line(time_s, Column(nominal, "altitude_m", 1e-3), "line-0", "");
+  add(altitude, "Geodetic altitude.");
+
+  SvgChart velocity({.label = kTime}, {.label = "inertial velocity, m/s"});
+  velocity.Line(time_s, Column(nominal, "inertial_velocity_m_s"), "line-0", "");
+  add(velocity, "Inertial speed; it begins with the Earth's rotation.");
+
+  SvgChart angle({.label = kTime}, {.label = "flight path angle, °"});
+  angle.Line(time_s, Column(nominal, "flight_path_angle_deg"), "line-0", "");
+  add(angle, "Inertial flight path angle.");
+
+  SvgChart deflection({.label = kTime}, {.label = "deflection, °"});
+  deflection.Line(time_s, Column(nominal, "deflection_pitch_deg"), "line-0", "pitch");
+  deflection.Line(time_s, Column(nominal, "deflection_yaw_deg"), "line-1", "yaw");
+  deflection.Line(time_s, Column(nominal, "deflection_roll_deg"), "line-2", "roll");
+  add(deflection, "Gimbal deflection of each channel.");
+
+  SvgChart pressure({.label = kTime, .low = 0.0, .high = air_end_s}, {.label = "dynamic pressure, kPa"});
+  pressure.Line(time_s, Scaled(qbar_pa, 1e-3), "line-0", "");
+  add(pressure, "Dynamic pressure.");
+
+  std::vector<double> alpha_deg = Column(nominal, "alpha_deg");
+  for (std::size_t i = 0; i < alpha_deg.size(); ++i) {
+    if (qbar_pa[i] < kThinAir_pa) alpha_deg[i] = std::nan("");
+  }
+  SvgChart incidence({.label = kTime, .low = 0.0, .high = air_end_s}, {.label = "angle of attack, °"});
+  incidence.Line(time_s, alpha_deg, "line-0", "");
+  add(incidence, "Angle of attack against the air, where the dynamic pressure is at least 1 kPa.");
+  return figures + "</div>\n";
+}
+
+std::string EnvelopeFigures(const FlightHistories& histories, const CampaignSummary& summary, double kick_end_s) {
+  const Burns burns(histories.nominal_history);
+  const std::vector<double> time_s = Column(histories.nominal_history, "time_s");
+  const double air_end_s = AtmosphereEnd(time_s, Column(histories.nominal_history, "qbar_pa"));
+  const double pitch_over_end_s = 5.0 * std::ceil(0.2 * (kick_end_s + 5.0));
+  std::string figures = "<div class=\"figures\">\n";
+  const auto add = [&](const BandView& view, const std::string& caption) {
+    figures += BandFigure(view, histories, summary, burns, caption);
+  };
+  add({.column = "pitch_error_deg", .label = "pitch error, °", .limits = true, .width = 1060},
+      "Pitch error over the whole flight. The requirement binds powered flight; in the coast the reaction control's "
+      "dead band shows.");
+  add({.column = "pitch_error_deg", .label = "pitch error, °", .from_s = 0.0, .to_s = pitch_over_end_s},
+      "Pitch error during lift-off and the initial pitch-over.");
+  if (!burns.burns.empty() && burns.burns.size() > 1) {
+    const Burns::Burn& last = burns.burns.back();
+    add({.column = "pitch_error_deg", .label = "pitch error, °", .from_s = 10.0 * std::floor(0.1 * (last.from_s - 5.0)),
+         .to_s = 10.0 * std::ceil(0.1 * last.to_s)},
+        fmt::format("Pitch error while stage {} burns.", last.stage));
+  }
+  add({.column = "pitch_launch_deg", .label = "pitch from the launch horizon, °", .program = "pitch_program_deg"},
+      "Pitch angle in the launch-inertial frame and the program.");
+  add({.column = "deflection_pitch_deg", .label = "pitch deflection, °"}, "Deflection of the pitch channel.");
+  add({.column = "yaw_error_deg", .label = "yaw error, °"}, "Yaw error.");
+  add({.column = "roll_error_deg", .label = "roll error, °"}, "Roll error.");
+  add({.column = "qbar_pa", .label = "dynamic pressure, kPa", .factor = 1e-3, .from_s = 0.0, .to_s = air_end_s},
+      "Dynamic pressure.");
+  add({.column = "alpha_deg", .label = "angle of attack, °", .from_s = 2.0, .to_s = air_end_s},
+      "Angle of attack against the air, wind included, from 2 s on (at rest it has no meaning).");
+  return figures + "</div>\n";
+}
+
+}  // namespace dispersa

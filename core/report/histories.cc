@@ -1,0 +1,147 @@
+#include "core/report/histories.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <exception>
+#include <filesystem>
+#include <future>
+#include <set>
+
+#include "core/report/output_file.h"
+#include "core/report/text.h"
+
+namespace dispersa {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kHistoryStep_s = 0.1;
+/// Short against the transients of an ignition (about a second).
+constexpr double kBandStep_s = 0.2;
+/// Worst cases of each key metric that get a history.
+constexpr std::size_t kWorstWritten = 2;
+
+/// Quantities whose spread over the cases is shown.
+const char* const kBandColumns[] = {
+    "altitude_m",           "pitch_launch_deg",   "pitch_program_deg",   "pitch_error_deg", "yaw_error_deg", "roll_error_deg",
+    "deflection_pitch_deg", "deflection_yaw_deg", "deflection_roll_deg", "alpha_deg",       "beta_deg",      "qbar_pa"};
+
+std::vector<int> BandColumns() {
+  std::vector<int> columns;
+  for (const char* name : kBandColumns) {
+    const int column = FindHistoryColumn(name);
+    assert(column >= 0);
+    columns.push_back(column);
+  }
+  return columns;
+}
+
+/// Runs task(0) ... task(count - 1), `threads` at a time, with progress after each batch.
+void RunInBatches(std::size_t count, int threads, const std::function<void(std::size_t)>& task,
+                  const std::function<void(std::size_t)>& done) {
+  const auto batch = static_cast<std::size_t>(std::max(1, threads));
+  for (std::size_t first = 0; first < count; first += batch) {
+    const std::size_t last = std::min(count, first + batch);
+    std::vector<std::future<void>> others;
+    for (std::size_t i = first + 1; i < last; ++i) others.push_back(std::async(std::launch::async, task, i));
+    task(first);
+    for (std::future<void>& other : others) other.get();
+    done(last);
+  }
+}
+
+void CheckReproduced(const ResultFolder& folder, const CaseResult& flown) {
+  const Digest stored = folder.Load(flown.case_index).digest;
+  if (stored == flown.digest) return;
+  throw ResultError(ResultError::Kind::kConflict,
+                    fmt::format("case {} does not reproduce its stored result: digest {} is stored, {} was flown now",
+                                flown.case_index, stored.Hex(), flown.digest.Hex()));
+}
+
+/// Other worst cases may have had their histories there before.
+void EmptyDirectory(const fs::path& directory) {
+  std::error_code error;
+  fs::remove_all(directory, error);
+  if (!error) fs::create_directories(directory, error);
+  if (error) {
+    throw ResultError(error == std::errc::no_space_on_device ? ResultError::Kind::kDiskFull : ResultError::Kind::kFile,
+                      fmt::format("{}: cannot be made anew: {}", directory.string(), error.message()));
+  }
+}
+
+std::vector<std::uint64_t> WorstToWrite(const CampaignSummary& summary) {
+  std::set<std::uint64_t> indices;
+  for (const WorstCases& worst : summary.worst_cases) {
+    for (std::size_t i = 0; i < std::min(kWorstWritten, worst.cases.size()); ++i) indices.insert(worst.cases[i].case_index);
+  }
+  return {indices.begin(), indices.end()};
+}
+
+}  // namespace
+
+std::string HistoryCsv(const History& history) {
+  const std::vector<std::string>& columns = HistoryColumns();
+  std::string csv;
+  for (std::size_t i = 0; i < columns.size(); ++i) csv += (i == 0 ? "" : ",") + columns[i];
+  csv += "\n";
+  for (std::size_t row = 0; row < history.rows(); ++row) {
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      if (i > 0) csv += ",";
+      csv += ShortestText(history.at(row, static_cast<int>(i)));
+    }
+    csv += "\n";
+  }
+  return csv;
+}
+
+FlightHistories WriteHistories(const ResultFolder& folder, const Campaign& campaign, const CampaignSummary& summary,
+                               const CaseColumns& cases, const ReportOptions& options) {
+  const auto progress = [&](const char* what, std::size_t done, std::size_t total) {
+    if (options.progress) options.progress(what, done, total);
+  };
+  const fs::path directory = folder.directory() / "histories";
+  EmptyDirectory(directory);
+  const CampaignFlights flights(campaign);
+  FlightHistories histories;
+
+  progress("nominal flight", 0, 1);
+  histories.nominal_history.step_s = kHistoryStep_s;
+  histories.nominal = flights.FlyNominal(&histories.nominal_history);
+  WriteFile(directory / "nominal.csv", HistoryCsv(histories.nominal_history));
+
+  histories.written_cases = WorstToWrite(summary);
+  std::vector<CaseResult> flown(histories.written_cases.size());
+  RunInBatches(
+      histories.written_cases.size(), options.threads,
+      [&](std::size_t i) {
+        History history{.step_s = kHistoryStep_s, .values = {}};
+        const std::uint64_t index = histories.written_cases[i];
+        flown[i] = flights.FlyCase(index, &history);
+        WriteFile(directory / fmt::format("case_{}.csv", index), HistoryCsv(history));
+      },
+      [&](std::size_t done) { progress("worst cases", done, histories.written_cases.size()); });
+  for (const CaseResult& result : flown) CheckReproduced(folder, result);
+
+  // Only cases that have a result are flown: a quarantined one may take this process with it.
+  const std::size_t count = static_cast<std::size_t>(
+      std::lower_bound(cases.index.begin(), cases.index.end(), options.history_cases) - cases.index.begin());
+  const std::vector<int> columns = BandColumns();
+  std::vector<SampledFlight> samples(count);
+  std::vector<CaseResult> banded(count);
+  RunInBatches(
+      count, options.threads,
+      [&](std::size_t i) {
+        History history{.step_s = kBandStep_s, .values = {}};
+        banded[i] = flights.FlyCase(cases.index[i], &history);
+        samples[i] = SampleFlight(history, columns, kBandStep_s);
+      },
+      [&](std::size_t done) { progress("percentile bands", done, count); });
+  for (const CaseResult& result : banded) CheckReproduced(folder, result);
+  histories.bands = ComputeBands(samples, columns, kBandStep_s);
+  WriteFile(directory / "bands.csv", BandsCsv(histories.bands));
+  return histories;
+}
+
+}  // namespace dispersa

@@ -1,0 +1,31 @@
+// The flights whose time histories go with a report: the nominal, the worst cases, and bands over many.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/campaign/campaign_flights.h"
+#include "core/flight/history.h"
+#include "core/report/campaign_summary.h"
+#include "core/report/flight_bands.h"
+#include "core/report/reports.h"
+
+namespace dispersa {
+
+struct FlightHistories {
+  CaseResult nominal;
+  History nominal_history;
+  FlightBands bands;
+  std::vector<std::uint64_t> written_cases;  ///< with a file histories/case_<index>.csv, ascending
+};
+
+/// One line a row; the header names the columns. NaN is an empty cell.
+std::string HistoryCsv(const History& history);
+
+/// Flies again what the report shows and writes histories/ anew. Errors as WriteReports.
+FlightHistories WriteHistories(const ResultFolder& folder, const Campaign& campaign, const CampaignSummary& summary,
+                               const CaseColumns& cases, const ReportOptions& options);
+
+}  // namespace dispersa

@@ -1,0 +1,39 @@
+// Pieces of a page: tables, figures, and the style sheet.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace dispersa {
+
+/// A table whose columns are text (left) or numbers (right). Cells are HTML already.
+class HtmlTable {
+ public:
+  struct Column {
+    std::string title;
+    bool number = false;
+  };
+
+  explicit HtmlTable(std::vector<Column> columns) : columns_(std::move(columns)) {}
+
+  void Row(const std::vector<std::string>& cells, std::string_view row_class = "");
+  /// One cell over the whole width.
+  void Wide(const std::string& cell, std::string_view row_class);
+  std::string Html() const;
+
+ private:
+  std::vector<Column> columns_;
+  std::string rows_;
+};
+
+/// A chart with what to see in it.
+std::string Figure(const std::string& svg, const std::string& caption_html);
+
+/// "pass", "fail", "inconclusive", "incomplete" as a coloured label that is also readable without colour.
+std::string VerdictBadge(std::string_view verdict);
+
+/// For the page's <style>.
+std::string_view StyleSheet();
+
+}  // namespace dispersa

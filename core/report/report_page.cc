@@ -1,0 +1,59 @@
+#include "core/report/report_page.h"
+
+#include <fmt/format.h>
+
+#include "core/report/distribution_charts.h"
+#include "core/report/flight_charts.h"
+#include "core/report/html_parts.h"
+#include "core/report/report_sections.h"
+#include "core/report/text.h"
+
+namespace dispersa {
+namespace {
+
+constexpr char kNavigation[] =
+    "<nav><a href=\"#requirements\">Requirements</a><a href=\"#outcomes\">Outcomes</a><a href=\"#envelope\">Envelope</a>"
+    "<a href=\"#distributions\">Distributions</a><a href=\"#worst\">Worst cases</a><a href=\"#nominal\">Nominal flight</a>"
+    "<a href=\"#statistics\">Statistics</a><a href=\"#dispersions\">Dispersions</a><a href=\"#limits\">Not modelled</a>"
+    "<a href=\"#provenance\">Provenance</a></nav>\n";
+
+}  // namespace
+
+std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary, const CaseColumns& cases,
+                       const FlightHistories& histories) {
+  std::string page = fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+      "content=\"width=device-width, initial-scale=1\">\n<title>{} – dispersa</title>\n<style>{}</style>\n</head>\n<body>\n",
+      HtmlText(summary.name), StyleSheet());
+  page += HeaderSection(summary);
+  page += kNavigation;
+  page += RequirementsSection(summary);
+  page += OutcomesSection(summary);
+
+  page += "<h2 id=\"envelope\">Envelope of the dispersed flights</h2>\n";
+  if (histories.bands.flights == 0) {
+    page += "<p>No case has a result.</p>\n";
+  } else {
+    page += fmt::format(
+        "<p>Pointwise percentiles over the first {} flown cases of {}, sampled every {} s; a lost flight counts until it is "
+        "lost. Peaks between the samples are in the metrics, not here. Numbers: <code>histories/bands.csv</code>.</p>\n",
+        histories.bands.flights, summary.flown, ReadableText(histories.bands.step_s));
+    page += EnvelopeFigures(histories, summary, campaign.reference.program.t2_s);
+  }
+
+  page += "<h2 id=\"distributions\">Distribution of key metrics</h2>\n<div class=\"figures\">\n";
+  for (const WorstCases& worst : summary.worst_cases) page += DistributionFigures(worst.metric, summary, cases);
+  page += "</div>\n";
+
+  page += WorstCasesSection(summary, histories);
+  page += "<h2 id=\"nominal\">Nominal flight</h2>\n<p>The flight without dispersions, through the same closed loop. It is not "
+          "one of the cases. Numbers: <code>histories/nominal.csv</code>.</p>\n";
+  page += NominalFigures(histories.nominal_history);
+  page += StatisticsSection(summary);
+  page += DispersionsSection(summary);
+  page += NotModelledSection();
+  page += ProvenanceSection(campaign, summary);
+  return page + "</body>\n</html>\n";
+}
+
+}  // namespace dispersa

@@ -1,0 +1,22 @@
+// The parts of report.html that are text and tables.
+#pragma once
+
+#include <string>
+
+#include "core/campaign/campaign.h"
+#include "core/report/campaign_summary.h"
+#include "core/report/histories.h"
+
+namespace dispersa {
+
+/// Name, overall verdict and the numbers to read first.
+std::string HeaderSection(const CampaignSummary& summary);
+std::string RequirementsSection(const CampaignSummary& summary);
+std::string OutcomesSection(const CampaignSummary& summary);
+std::string WorstCasesSection(const CampaignSummary& summary, const FlightHistories& histories);
+std::string StatisticsSection(const CampaignSummary& summary);
+std::string DispersionsSection(const CampaignSummary& summary);
+std::string NotModelledSection();
+std::string ProvenanceSection(const Campaign& campaign, const CampaignSummary& summary);
+
+}  // namespace dispersa

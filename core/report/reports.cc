@@ -1,0 +1,31 @@
+#include "core/report/reports.h"
+
+#include <fmt/format.h>
+
+#include "core/campaign/input_error.h"
+#include "core/engine/version.h"
+#include "core/report/case_columns.h"
+#include "core/report/cases_csv.h"
+#include "core/report/histories.h"
+#include "core/report/output_file.h"
+#include "core/report/report_page.h"
+
+namespace dispersa {
+
+CampaignSummary WriteReports(const ResultFolder& folder, const Campaign& campaign, const ReportOptions& options) {
+  if (folder.Provenance("engine") != EngineVersion()) {
+    throw InputError(fmt::format("{}: flown by engine {}, this one is {}: its flights cannot be flown again",
+                                 folder.directory().string(), folder.Provenance("engine"), EngineVersion()),
+                     "the engine that flew it");
+  }
+  WriteCasesCsv(folder);
+  const CaseColumns cases = ReadColumns(folder, DispersedInputs(campaign));
+  CampaignSummary summary = BuildSummary(folder, campaign, cases);
+  const FlightHistories histories = WriteHistories(folder, campaign, summary, cases, options);
+  summary.nominal = histories.nominal;
+  WriteFile(folder.directory() / "summary.json", SummaryJson(summary));
+  WriteFile(folder.directory() / "report.html", ReportPage(campaign, summary, cases, histories));
+  return summary;
+}
+
+}  // namespace dispersa

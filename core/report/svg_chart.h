@@ -1,0 +1,64 @@
+// A chart as inline SVG: no script, no font and no file outside the page. Colours come from the page's style
+// sheet by class, so that one chart serves screen, dark screen and paper.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace dispersa {
+
+struct ChartAxis {
+  std::string label;          ///< with the unit
+  std::optional<double> low = {};  ///< as the data, when absent
+  std::optional<double> high = {};
+  bool logarithmic = false;   ///< base 10; values that are not positive are left out
+  bool percent = false;       ///< tick labels of 0.01 read "1 %"
+};
+
+class SvgChart {
+ public:
+  SvgChart(ChartAxis x, ChartAxis y, int width = 520, int height = 260);
+
+  /// Points joined by lines; NaN interrupts. `style` is a class of the style sheet ("line-0" ... "line-3").
+  void Line(std::vector<double> x, std::vector<double> y, const std::string& style, const std::string& legend);
+  /// The area between two curves over the same x.
+  void Band(std::vector<double> x, std::vector<double> low, std::vector<double> high, const std::string& style,
+            const std::string& legend);
+  /// counts[i] between edges[i] and edges[i + 1], from zero up.
+  void Bars(std::vector<double> edges, std::vector<double> counts, const std::string& legend);
+  /// Dashed lines that belong to a requirement; the axes grow to show them.
+  void VerticalLimit(double x, const std::string& legend);
+  void HorizontalLimit(double y, const std::string& legend);
+  /// A labelled event, and a labelled span of time.
+  void Mark(double x, const std::string& label);
+  void Shade(double from, double to, const std::string& label);
+
+  /// The element, with `description` for those who cannot see it.
+  std::string Svg(const std::string& description) const;
+
+ private:
+  struct Series {
+    enum class Kind { kLine, kBand, kBars, kVerticalLimit, kHorizontalLimit };
+    Kind kind;
+    std::vector<double> x;
+    std::vector<double> low;  ///< y of lines and bars
+    std::vector<double> high;
+    std::string style;
+    std::string legend;
+  };
+  struct Span {
+    double from;
+    double to;  ///< == from: an event
+    std::string label;
+  };
+
+  ChartAxis x_;
+  ChartAxis y_;
+  int width_;
+  int height_;
+  std::vector<Series> series_;
+  std::vector<Span> spans_;
+};
+
+}  // namespace dispersa
