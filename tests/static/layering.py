@@ -13,7 +13,7 @@ OWNED = [
     (r"(sundials|arkode|cvodes?|idas?|kinsol|nvector|sunmatrix|sunlinsol|sunnonlinsol)/", {"dynamics"}),
     (r"sleef\.h", {"math"}),
     (r"Random123/", {"random"}),
-    (r"CLI/", {"cli"}),
+    (r"CLI/", {"cli", "coordinator", "worker"}),
 ]
 
 
