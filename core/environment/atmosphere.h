@@ -23,7 +23,7 @@ inline constexpr double kAtmosphereTop_m = 1.0e6;
 /// - From 86 km: its closed forms of temperature (equations 25 to 31), and pressure and molecular weight
 ///   interpolated between 42 nodes of its tables: ln p by the cubic that has the hydrostatic slope
 ///   -g M / (R T) at each node, M by a monotone cubic. Density follows from the perfect-gas law. Pressure
-///   stays within 0.1 % and density within 0.15 % of an integration of the standard's own equations.
+///   and density stay within 0.1 % of an integration of the standard's own equations.
 /// - All values are continuous. The speed of sound is sqrt(1.4 p / density); the standard prints none
 ///   above 86 km, where it loses its meaning.
 /// - Below -5 km the air of -5 km. Above 1000 km pressure and density are zero, temperature (1000 K) and
