@@ -9,6 +9,8 @@ namespace dispersa {
 namespace {
 
 constexpr std::size_t kWorstCases = 5;
+/// Of them lost flights: all of those have their own list, and they shall not hide what limits the others.
+constexpr std::size_t kLostAmongWorst = 1;
 
 /// Shown in full in any report, after the metrics of the requirements.
 const char* const kUsualMetrics[] = {"pitch_error_peak_deg", "pitch_error_rms_deg", "deflection_peak_deg",
@@ -30,11 +32,11 @@ WorstCases FindWorst(const std::string& metric, Worse worse, const CaseColumns& 
     const double badness_b = std::isfinite(values[b]) ? Badness(worse, values[b]) : HUGE_VAL;
     return badness_a != badness_b ? badness_a > badness_b : a < b;
   };
-  const std::size_t count = std::min(kWorstCases, order.size());
-  std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count), order.end(), is_worse);
+  std::sort(order.begin(), order.end(), is_worse);
   WorstCases result{.metric = metric, .cases = {}};
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < order.size() && result.cases.size() < kWorstCases; ++i) {
     const std::size_t row = order[i];
+    if (i >= kLostAmongWorst && lost(row)) continue;
     WorstCase worst{.case_index = cases.index[row], .value = std::nullopt, .outcome = cases.outcome[row]};
     if (std::isfinite(values[row])) worst.value = values[row];
     result.cases.push_back(worst);
@@ -64,7 +66,7 @@ const char* CampaignVerdictName(CampaignVerdict verdict) {
   return "";
 }
 
-int ExitCode(CampaignVerdict verdict) {
+int VerdictExitCode(CampaignVerdict verdict) {
   switch (verdict) {
     case CampaignVerdict::kPass: return 0;
     case CampaignVerdict::kInconclusive: return 4;

@@ -23,7 +23,7 @@ enum class CampaignVerdict { kPass, kInconclusive, kFail, kIncomplete };
 /// "pass", "inconclusive", "fail", "incomplete".
 const char* CampaignVerdictName(CampaignVerdict verdict);
 /// The contract's exit code: 0, 4, 3, 5.
-int ExitCode(CampaignVerdict verdict);
+int VerdictExitCode(CampaignVerdict verdict);
 
 struct MetricSummary {
   std::string name;  ///< without the prefix
@@ -38,7 +38,7 @@ struct WorstCase {
 
 struct WorstCases {
   std::string metric;
-  std::vector<WorstCase> cases;  ///< worst first; lost flights before all others
+  std::vector<WorstCase> cases;  ///< one lost flight, if any, then the worst of the others
 };
 
 struct CampaignSummary {
