@@ -31,7 +31,7 @@ struct GeneticAlgorithmOptions {
   /// Deb and Agrawal (1995) recommend 2 to 5 for a single objective.
   double crossover_eta = 2.0;
   /// Probability that a variable of a child is mutated; 0 to 1. Absent: one variable per child on average,
-  /// 1/n, as in Deb (2000).
+  /// 1/n, where Deb (2000) starts.
   std::optional<double> mutation_probability;
   /// Distribution index of the mutation in the first generation; 0 to 1e9. A change is of the order of 1/eta
   /// of the variable's range (Deb and Goyal, 1996): 20 gives a few percent.

@@ -116,7 +116,9 @@ TEST(GeneticAlgorithm, CountsItsEvaluationsAndLogsEachGeneration) {
     EXPECT_LE(record.feasible_fraction, 1.0);
     EXPECT_GE(record.mean_objective, record.best_objective);
     EXPECT_EQ(record.best_tie_breaker, 0.5);
-    if (i > 0) EXPECT_LE(record.best_objective, result.log[i - 1].best_objective);
+    if (i > 0) {
+      EXPECT_LE(record.best_objective, result.log[i - 1].best_objective);
+    }
   }
   EXPECT_EQ(result.log.back().best_objective, result.evaluation.objective);
   // Half of the box is feasible: 30 of 60, give or take four standard deviations of sqrt(60) / 2.

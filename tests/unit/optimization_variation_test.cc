@@ -67,7 +67,8 @@ TEST(CrossOverOnLine, ChildrenLieOnTheLineWithinTheBox) {
   Stream stream(4, 0, "test");
   const std::vector<double> lower = {0.0, -10.0, 5.0};
   const std::vector<double> upper = {1.0, 10.0, 5.0};
-  int outside_the_parents = 0;
+  int beyond_a = 0;
+  int beyond_b = 0;
   for (int i = 0; i < kDraws; ++i) {
     std::vector<double> a = {0.2, -2.0, 5.0};
     std::vector<double> b = {0.6, 4.0, 5.0};
@@ -77,12 +78,14 @@ TEST(CrossOverOnLine, ChildrenLieOnTheLineWithinTheBox) {
       EXPECT_GE(child[0], 0.0);
       EXPECT_LE(child[1], 10.0);
       EXPECT_EQ(child[2], 5.0);
-      outside_the_parents += child[0] < 0.2 || child[0] > 0.6;
     }
+    beyond_a += a[0] < 0.2;
+    beyond_b += b[0] > 0.6;
   }
-  // The bounds leave a spread factor of 2: a fraction (1/2 - 1/8) / (1 - 1/8) = 3/7 of the children is
-  // outside; four standard deviations of 2 * 20000 children that come in equal pairs are 0.014.
-  EXPECT_NEAR(outside_the_parents / (2.0 * kDraws), 3.0 / 7.0, 0.014);
+  // Beyond a the bounds leave a spread factor of L = 2, beyond b of L = 3; so the distribution of index 1,
+  // cut there, has (1 - L^-2) / (2 - L^-2) outside the parents. Four standard deviations are 0.014.
+  EXPECT_NEAR(beyond_a / double{kDraws}, 3.0 / 7.0, 0.014);
+  EXPECT_NEAR(beyond_b / double{kDraws}, 8.0 / 17.0, 0.014);
 }
 
 TEST(Mutated, StaysWithinTheBoundsAndLeavesFixedVariables) {
