@@ -11,17 +11,24 @@ namespace dispersa {
 namespace {
 
 // Dense where the coefficients bend, so that linear interpolation stays within 1 % of the methods.
-const std::vector<double> kMach = {0.0,  0.1,  0.3,   0.5, 0.6,   0.7,  0.75,  0.8, 0.825, 0.85, 0.875, 0.9,
-                                   0.925, 0.95, 0.975, 1.0, 1.025, 1.05, 1.075, 1.1, 1.125, 1.15, 1.175, 1.2,
-                                   1.225, 1.25, 1.275, 1.3, 1.35,  1.4,  1.45,  1.5, 1.6,   1.7,  1.8,   2.0,
-                                   2.25, 2.5,  2.75,  3.0, 3.5,   4.0,  4.5,   5.0, 6.0,   7.0,  8.0,   10.0,
-                                   12.0, 15.0, 20.0};
-const std::vector<double> kIncidence_deg = {0.0,  1.0,  2.0,  3.0,  4.0,   5.0,   6.0,   8.0,   10.0,  12.0,
-                                            15.0, 18.0, 22.0, 26.0, 30.0,  35.0,  40.0,  50.0,  60.0,  70.0,
-                                            80.0, 90.0, 100.0, 110.0, 120.0, 130.0, 140.0, 150.0, 160.0, 170.0,
-                                            175.0, 180.0};
+const std::vector<double> kMach = {0.0,   0.1,   0.3,   0.5,   0.6,   0.7,   0.75, 0.8,   0.825, 0.85,  0.875,
+                                   0.9,   0.925, 0.95,  0.975, 1.0,   1.025, 1.05, 1.075, 1.1,   1.125, 1.15,
+                                   1.175, 1.2,   1.225, 1.25,  1.275, 1.3,   1.35, 1.4,   1.45,  1.5,   1.6,
+                                   1.7,   1.8,   2.0,   2.25,  2.5,   2.75,  3.0,  3.5,   4.0,   4.5,   5.0,
+                                   6.0,   7.0,   8.0,   10.0,  12.0,  14.5,  17.0, 20.0};
+const std::vector<double> kIncidence_deg = {
+    0.0,  1.0,  2.0,  3.0,  4.0,  5.0,  6.0,   8.0,   10.0,  12.0,  15.0,  18.0,  22.0,  26.0,  30.0,  35.0,
+    40.0, 50.0, 60.0, 70.0, 80.0, 90.0, 100.0, 110.0, 120.0, 130.0, 140.0, 150.0, 160.0, 170.0, 175.0, 180.0};
 
+// The normal-force slope leaves slender-body theory between these two Mach numbers.
 constexpr double kSlenderMach = 0.8;
+constexpr double kCarryOverMach = 2.0;
+// The part of shock-expansion theory's excess over slender-body theory that is kept: it overestimates the
+// lift carried over onto cylinders, where linear cross-flow theory, which underestimates it, gives 0.3 of
+// that excess (an ogive of fineness 3 with 7 diameters of cylinder at Mach 2).
+constexpr double kCarryOverShare = 0.5;
+// Mach-number independence: above this the slope holds.
+constexpr double kHypersonicMach = 8.0;
 constexpr double kUnknownNozzleShare = 0.5;  // of the base, for four nozzles in a circle (at most 0.69)
 
 double SmoothStep(double low, double high, double x) {
@@ -98,8 +105,8 @@ class Stack {
   NormalForceSlope PotentialSlope(double mach) const {
     if (mach <= kSlenderMach) return slender_;
     const NormalForceSlope fast =
-        ShockExpansion(body_, mach < kShockExpansionMach ? kShockExpansionMach : mach).normal_force;
-    const double share = SmoothStep(kSlenderMach, kShockExpansionMach, mach);
+        ShockExpansion(body_, Clamp(mach, kShockExpansionMach, kHypersonicMach)).normal_force;
+    const double share = kCarryOverShare * SmoothStep(kSlenderMach, kCarryOverMach, mach);
     return {slender_.area_m2 + share * (fast.area_m2 - slender_.area_m2),
             slender_.moment_m3 + share * (fast.moment_m3 - slender_.moment_m3)};
   }

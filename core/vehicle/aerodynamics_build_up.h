@@ -12,9 +12,10 @@ namespace dispersa {
 ///
 /// Sum of components, each a body of revolution's (a = incidence, a' = a up to 90 degrees and 180 - a
 /// beyond; Jorgensen, NASA TN D-6996):
-/// - CN = C_Na(M) / 2 sin 2a' cos(a'/2) + eta Cdc(M sin a) A_p / S sin^2 a. C_Na is slender-body theory up
-///   to Mach 0.8 and second-order shock expansion from Mach 1.5, blended between; tail first it is that of
-///   the base. The cross-flow term acts at the centroid of the planform.
+/// - CN = C_Na(M) / 2 sin 2a' cos(a'/2) + eta Cdc(M sin a) A_p / S sin^2 a. C_Na is slender-body theory,
+///   to which half of the excess of shock-expansion theory is added, from Mach 0.8 (nothing) to
+///   Mach 2 (all of the half); constant above Mach 8. Tail first it is slender-body theory's. The
+///   cross-flow term acts at the centroid of the planform.
 /// - CA = CA0(M) cos^2 a' nose first, -CA180(M) cos^2 a' tail first.
 /// - CA0: turbulent skin friction with roughness, pressure drag of nose, frustums and boat-tails, base drag
 ///   (drag.h). Power on: the nozzles' exits take their share of the base away (Fleeman); half of the base

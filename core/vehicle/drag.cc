@@ -48,8 +48,7 @@ double ConePressureDrag(double mach, double sin_half_angle, double incompressibl
     return incompressible + rise * Pow(mach, sonic_slope / rise);
   }
   const double join = ConeDragSupersonic(kJoinMach, sin_half_angle);
-  const double join_slope =
-      -0.5 * sin_half_angle * kJoinMach / Pow(Square(kJoinMach) - 1.0, 1.5);
+  const double join_slope = -0.5 * sin_half_angle * kJoinMach / Pow(Square(kJoinMach) - 1.0, 1.5);
   const double width = kJoinMach - 1.0;
   const double t = (mach - 1.0) / width;
   // The cubic Hermite polynomial through both ends with their slopes.

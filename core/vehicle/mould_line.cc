@@ -77,8 +77,7 @@ BodyIntegrals Integrate(const std::vector<MouldSection>& body) {
       sum.planform_moment_m3 += weight * 2.0 * r * x;
       sum.roll_moment_m4 += weight * kTwoPi * r * r * r;
     }
-    sum.largest_radius_m =
-        std::max({sum.largest_radius_m, section.fore_radius_m, section.aft_radius_m});
+    sum.largest_radius_m = std::max({sum.largest_radius_m, section.fore_radius_m, section.aft_radius_m});
   }
   sum.length_m = body.back().end_m;
   sum.base_radius_m = body.back().aft_radius_m;

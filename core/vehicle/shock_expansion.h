@@ -1,4 +1,4 @@
-// Second-order shock-expansion theory for bodies of revolution at small incidence.
+// Shock-expansion theory for bodies of revolution at small incidence.
 #pragma once
 
 #include <vector>
@@ -16,15 +16,21 @@ struct ShockExpansionResult {
   double pressure_drag_area_m2 = 0.0;  ///< of the body without its base: D = q times this
 };
 
-/// Loads on a body of revolution in supersonic flow (Syvertson and Dennis, NACA TR 1328).
+/// Loads on a body of revolution in supersonic flow, after Syvertson and Dennis (NACA TR 1328).
 ///
 /// The body becomes a chain of conical elements. Behind each corner the pressure follows from a
-/// Prandtl-Meyer turn and relaxes exponentially to that of the tangent cone; so does its derivative over
-/// incidence, which carries lift over onto cylinders. Tangent cones: pressure by the similarity rule of
-/// Linnell and Bailey (1956), shock angle by Rasmussen (1967), normal force 2 cos^2 e on the base area
-/// (Newtonian; slender-body at e = 0). Where a tangent cone has no supersonic surface flow (blunt noses)
-/// or a compression corner no attached shock, the tangent cone's values hold on the element.
-/// Range: Mach 1.5 to about 10 at attached flow; above, entropy layers make it an estimate.
+/// Prandtl-Meyer turn, and its derivative over incidence from the strength of that wave; both then relax
+/// exponentially to those of the tangent cone. So lift is carried over onto cylinders. Tangent cones:
+/// pressure by the similarity rule of Linnell and Bailey (1956), shock angle by Rasmussen (1967), normal
+/// force 2 cos^2 e on the base area (Newtonian; slender-body at e = 0).
+///
+/// The rate of relaxation is 0.65 / (r sqrt(M^2 - 1)). The report's own, a quotient of two differences that
+/// has poles on curved noses, is 0.5 of that unit for slender corners, and 0.54 to 0.82 at the shoulder of
+/// a 10-degree cone or an ogive of fineness 3 from Mach 1.5 to 8.
+///
+/// Ahead of the point where the surface flow is supersonic (blunt noses) the tangent cone's values hold;
+/// behind it the surface Mach number is at least 1.1, also where a compression corner is too steep for an
+/// attached shock. Range: Mach 1.5 to 8. It overestimates the carry-over below Mach 3 (see the build-up).
 /// Precondition: mach >= kShockExpansionMach.
 ShockExpansionResult ShockExpansion(const std::vector<MouldSection>& body, double mach);
 
