@@ -113,7 +113,6 @@ class Search {
         if (iterations_ == options_.max_iterations) return LeastSquaresStatus::kMaxIterations;
         if (!Linearise()) return LeastSquaresStatus::kNotFinite;
         if (IsStationary()) return ReasonToStop();
-        moved = false;
       }
       if (iterations_ == options_.max_iterations) return LeastSquaresStatus::kMaxIterations;
       const Step step = DampedStep();
