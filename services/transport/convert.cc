@@ -54,6 +54,7 @@ idl::CampaignV1 ToIdl(const CampaignDefinition& campaign) {
   message.coordinator_epoch(campaign.coordinator_epoch);
   message.campaign_id(campaign.campaign_id);
   message.flight_id(campaign.flight_id);
+  message.engine_version(campaign.engine_version);
   message.name(campaign.name);
   message.canonical_yaml(campaign.canonical_yaml);
   return message;
@@ -115,8 +116,8 @@ WorkerStatus FromIdl(const idl::WorkerStatusV1& status) {
 }
 
 CampaignDefinition FromIdl(const idl::CampaignV1& campaign) {
-  return {campaign.coordinator_epoch(), campaign.campaign_id(), campaign.flight_id(), campaign.name(),
-          campaign.canonical_yaml()};
+  return {campaign.coordinator_epoch(), campaign.campaign_id(), campaign.flight_id(), campaign.engine_version(),
+          campaign.name(), campaign.canonical_yaml()};
 }
 
 std::variant<FlyOrder, LeaveOrder> FromIdl(const idl::AssignmentV1& assignment) {

@@ -28,6 +28,7 @@ struct CampaignDefinition {
   std::uint64_t coordinator_epoch = 0;
   std::string campaign_id;
   std::string flight_id;
+  std::string engine_version;
   std::string name;
   std::string canonical_yaml;
 };

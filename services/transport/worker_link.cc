@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <condition_variable>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <stop_token>
@@ -29,10 +30,22 @@ struct WorkerLink::Impl {
         publisher(participant.MakePublisher("")),
         subscriber(participant.MakeSubscriber("")),
         own_subscriber(participant.MakeSubscriber(PartitionOf(worker))) {
+    // A campaign has a writer of its own, which goes when the campaign closes.
     campaigns.emplace(participant, subscriber, kCampaignTopic,
-                      ReaderCallbacks<idl::CampaignV1>{[this](const idl::CampaignV1& message, const WriterHandle&) {
-                        events.Push(FromIdl(message));
-                      }});
+                      ReaderCallbacks<idl::CampaignV1>{
+                          [this](const idl::CampaignV1& message, const WriterHandle& from) {
+                            const std::lock_guard lock(mutex);
+                            campaign_of[from] = message.flight_id();
+                            events.Push(FromIdl(message));
+                          },
+                          {},
+                          [this](const WriterHandle& from) {
+                            const std::lock_guard lock(mutex);
+                            const auto found = campaign_of.find(from);
+                            if (found == campaign_of.end()) return;
+                            events.Push(CampaignClosed{found->second});
+                            campaign_of.erase(found);
+                          }});
     assignments.emplace(
         participant, own_subscriber, kAssignmentTopic,
         ReaderCallbacks<idl::AssignmentV1>{[this](const idl::AssignmentV1& message, const WriterHandle&) {
@@ -58,6 +71,8 @@ struct WorkerLink::Impl {
   }
 
   EventQueue<WorkerEvent> events;
+  std::mutex mutex;
+  std::map<WriterHandle, std::string> campaign_of;  ///< flight id, by campaign writer
   Participant participant;
   dds::Publisher* publisher;
   dds::Subscriber* subscriber;

@@ -12,10 +12,15 @@
 
 namespace dispersa {
 
+/// The coordinator has closed a campaign, or is gone: nothing more will come for it.
+struct CampaignClosed {
+  std::string flight_id;
+};
+
 /// Not an order: something happened on this side, see WorkerLink::Wake.
 struct Wakened {};
 
-using WorkerEvent = std::variant<CampaignDefinition, FlyOrder, LeaveOrder, Refusal, Wakened>;
+using WorkerEvent = std::variant<CampaignDefinition, CampaignClosed, FlyOrder, LeaveOrder, Refusal, Wakened>;
 
 /// Sending is thread-safe. A thread of its own gives the heartbeat from construction to destruction.
 /// Throws NetworkError.

@@ -1,0 +1,314 @@
+// dispersa run: a campaign from the file to the report.
+#include <fmt/format.h>
+#include <sched.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/campaign/campaign_flights.h"
+#include "core/engine/version.h"
+#include "core/report/reports.h"
+#include "services/cli/command.h"
+#include "services/cli/execution_file.h"
+#include "services/cli/local_workers.h"
+#include "services/cli/progress.h"
+#include "services/cli/stop_signal.h"
+#include "services/coordinator/coordinator.h"
+#include "services/coordinator/open_campaign.h"
+#include "services/coordinator/utc.h"
+#include "services/transport/private_domain.h"
+
+namespace dispersa {
+namespace {
+
+constexpr char kLoopback[] = "127.0.0.1";
+// Replacements of workers that end again and again without a single result between.
+constexpr int kFruitlessEndsAllowed = 30;
+constexpr double kJoinPatience_s = 60.0;
+constexpr double kLeavePatience_s = 2.0;
+
+struct RunOptions {
+  CampaignRequest request;
+  int workers = -1;  ///< -1: the usable cores
+};
+
+struct Interrupted {};
+
+int UsableCores() {
+  cpu_set_t usable;
+  CPU_ZERO(&usable);
+  return sched_getaffinity(0, sizeof usable, &usable) == 0 ? CPU_COUNT(&usable) : 1;
+}
+
+double SecondsSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+std::string ShellWord(const std::string& text) {
+  if (text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./=:,+@%") ==
+          std::string::npos &&
+      !text.empty()) {
+    return text;
+  }
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+  return quoted + "'";
+}
+
+std::string ResumeCommand(const RunOptions& options, const std::filesystem::path& directory) {
+  std::string command = "dispersa run " + ShellWord(options.request.campaign);
+  const CampaignOverrides& overrides = options.request.overrides;
+  if (overrides.cases) command += fmt::format(" --cases {}", *overrides.cases);
+  if (overrides.seed) command += fmt::format(" --seed {}", *overrides.seed);
+  if (options.workers >= 0) command += fmt::format(" --workers {}", options.workers);
+  return command + " --out " + ShellWord(directory.string()) + " --resume";
+}
+
+/// Flies what is missing. Returns why it gave up, if it did. Throws Interrupted.
+class CampaignRun {
+ public:
+  CampaignRun(CampaignBook& book, ExecutionFile& execution, bool quiet)
+      : book_(book), execution_(execution), progress_(book.campaign().name, quiet) {}
+
+  std::optional<std::string> FlyHere() {
+    const std::string self = "in process";
+    const CampaignFlights flights(book_.campaign());
+    book_.ledger().Join(self, {EngineVersion(), 1, 1}, Now());
+    while (!book_.ledger().Complete()) {
+      for (const Assignment& assignment : book_.ledger().Assign(Now())) {
+        for (const std::uint64_t case_index : assignment.cases) {
+          if (StopRequested()) throw Interrupted();
+          book_.Start(self, case_index, assignment.attempt, Now());
+          book_.Accept(self, "", assignment.attempt, flights.FlyCase(case_index), Now());
+          book_.FlushIfDue(Now());
+          ShowProgress("in process");
+        }
+      }
+    }
+    return std::nullopt;
+  }
+
+  std::optional<std::string> FlyWithWorkers(int count) {
+    const std::filesystem::path program =
+        std::filesystem::read_symlink("/proc/self/exe").parent_path() / "dispersa-worker";
+    const PrivateDomain domain;
+    execution_.domain = domain.domain();
+    Coordinator coordinator({domain.domain(), kLoopback}, book_);
+    LocalWorkers workers(program,
+                         {"--domain", std::to_string(domain.domain()), "--address", kLoopback, "--peer",
+                          fmt::format("{}:{}", kLoopback, CoordinatorPort(domain.domain()))},
+                         count);
+    std::optional<std::string> problem;
+    double joined_s = Now();
+    while (!book_.ledger().Complete() && !problem) {
+      if (StopRequested()) {
+        workers.End(0.0);
+        Note(workers);
+        throw Interrupted();
+      }
+      Supervise(coordinator, workers);
+      coordinator.Step(std::chrono::milliseconds(50));
+      for (const std::string& uuid : coordinator.TakeUnresponsive()) workers.Kill(uuid);
+      ShowProgress(fmt::format("{} worker{}", workers.alive(), workers.alive() == 1 ? "" : "s"));
+      if (coordinator.joined() > 0) joined_s = Now();
+      problem = Problem(coordinator, workers, Now() - joined_s);
+    }
+    coordinator.Dismiss();
+    workers.End(problem ? 0.0 : kLeavePatience_s);
+    Note(workers);
+    return problem;
+  }
+
+ private:
+  double Now() const { return SecondsSince(start_); }
+
+  void Supervise(Coordinator& coordinator, LocalWorkers& workers) {
+    const LocalWorkers::Changes changes = workers.Poll(Now(), book_.flown_now());
+    for (const WorkerProcess& ended : changes.ended) {
+      spdlog::warn("worker process {} ended: {}", ended.pid, ended.how);
+      coordinator.WorkerEnded(ended.uuid, ended.end, ended.how);
+    }
+    for (const WorkerProcess& started : changes.started) coordinator.Supervise(started.uuid);
+    if (!changes.ended.empty() || !changes.started.empty()) Note(workers);
+  }
+
+  static std::optional<std::string> Problem(const Coordinator& coordinator, const LocalWorkers& workers,
+                                            double nobody_joined_s) {
+    if (coordinator.joined() == 0 && coordinator.refusal()) {
+      return "no worker may fly this campaign: " + *coordinator.refusal();
+    }
+    if (workers.fruitless_ends() > kFruitlessEndsAllowed) {
+      return fmt::format("{} workers ended in a row without a result, the last one with {}",
+                         workers.fruitless_ends(), LastEnd(workers));
+    }
+    if (nobody_joined_s > kJoinPatience_s) {
+      return fmt::format("no worker has joined for {:.0f} s", kJoinPatience_s);
+    }
+    return std::nullopt;
+  }
+
+  static std::string LastEnd(const LocalWorkers& workers) {
+    std::string how;
+    for (const WorkerProcess& worker : workers.history()) {
+      if (worker.ended_utc) how = worker.how;
+    }
+    return how;
+  }
+
+  void Note(const LocalWorkers& workers) {
+    execution_.workers = workers.history();
+    execution_.Write();
+  }
+
+  void ShowProgress(const std::string& who) {
+    const LedgerProgress progress = book_.ledger().Progress();
+    std::string note = who;
+    if (progress.quarantined > 0) note += fmt::format(", {} quarantined", progress.quarantined);
+    progress_.Show(progress.done, progress.total, note);
+  }
+
+  CampaignBook& book_;
+  ExecutionFile& execution_;
+  Progress progress_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+void PrintSummary(const CampaignSummary& summary, const std::filesystem::path& directory, bool json) {
+  if (json) {
+    auto object = nlohmann::ordered_json::parse(SummaryJson(summary));
+    object["directory"] = directory.string();
+    fmt::print("{}\n", object.dump(2));
+    return;
+  }
+  fmt::print("{}: {} of {} cases flown", summary.name, summary.flown, summary.cases);
+  for (int i = 0; i < kOutcomeCount; ++i) {
+    const auto count = summary.outcomes[static_cast<std::size_t>(i)];
+    if (count > 0) fmt::print(", {} {}", count, OutcomeName(static_cast<Outcome>(i)));
+  }
+  if (!summary.quarantined.empty()) fmt::print(", {} quarantined", summary.quarantined.size());
+  fmt::print("\n");
+  for (const RequirementSummary& requirement : summary.requirements) {
+    fmt::print("{}: {}\n", requirement.verdict, requirement.sentence);
+  }
+  fmt::print("report: {}\nresult: {}\n", (directory / "report.html").string(), directory.string());
+}
+
+/// Reports what is stored. Throws Interrupted.
+CampaignSummary Report(const CampaignBook& book, int threads, bool quiet) {
+  std::string phase;
+  std::unique_ptr<Progress> progress;
+  ReportOptions options;
+  options.threads = std::max(threads, 1);
+  options.progress = [&](const std::string& what, std::uint64_t done, std::uint64_t total) {
+    if (StopRequested()) throw Interrupted();
+    if (!progress || what != phase) {
+      progress.reset();
+      progress = std::make_unique<Progress>(what, quiet);
+      phase = what;
+    }
+    progress->Show(done, total);
+  };
+  return WriteReports(book.folder(), book.campaign(), options);
+}
+
+ExitCode FlyAndReport(const RunOptions& options, const GlobalOptions& global, OpenedCampaign opened,
+                      ExecutionFile& execution) {
+  const std::filesystem::path directory = opened.folder.directory();
+  const int workers = options.workers >= 0 ? options.workers : UsableCores();
+  CampaignBook book(opened.campaign, std::move(opened.folder));
+  execution.workers_wanted = workers;
+  execution.cases_before = book.ledger().Progress().done;
+  execution.Write();
+
+  const auto start = std::chrono::steady_clock::now();
+  const auto note_end = [&] {
+    book.Flush(SecondsSince(start));
+    execution.cases_flown = book.flown_now();
+    execution.flying_s = SecondsSince(start);
+  };
+  ExitCode code = kExitDone;
+  if (!book.ledger().Complete()) {
+    try {
+      CampaignRun run(book, execution, global.quiet);
+      execution.problem = workers == 0 ? run.FlyHere() : run.FlyWithWorkers(workers);
+    } catch (const NetworkError& error) {
+      execution.problem = error.what();
+    } catch (const Interrupted&) {
+      note_end();
+      throw;
+    }
+  }
+  note_end();
+  if (execution.problem) {
+    spdlog::error("{}", *execution.problem);
+    code = WorseOf(code, kExitIncomplete);
+  }
+  for (const BlamedCase& blamed : book.ledger().Quarantined()) {
+    for (const std::string& reason : blamed.reasons) spdlog::warn("case {}: {}", blamed.case_index, reason);
+  }
+  if (book.ledger().Progress().conflicts > 0) code = WorseOf(code, kExitInternalError);
+  const CampaignSummary summary = Report(book, workers, global.quiet);
+  execution.ended_utc = UtcNow();
+  execution.Write();
+  PrintSummary(summary, directory, global.json);
+  return WorseOf(code, static_cast<ExitCode>(VerdictExitCode(summary.verdict)));
+}
+
+ExitCode Run(const RunOptions& options, const GlobalOptions& global) {
+  CatchStopSignals();
+  OpenedCampaign opened = OpenCampaign(options.request);
+  const std::filesystem::path directory = opened.folder.directory();
+  ExecutionFile execution;
+  execution.directory = directory;
+  execution.started_utc = UtcNow();
+  try {
+    return FlyAndReport(options, global, std::move(opened), execution);
+  } catch (const Interrupted&) {
+    execution.ended_utc = UtcNow();
+    execution.problem = "interrupted";
+    execution.Write();
+    fmt::print(stderr, "interrupted; to go on: {}\n", ResumeCommand(options, directory));
+    return kExitInterrupted;
+  } catch (const ResultError& error) {
+    if (error.kind() != ResultError::Kind::kDiskFull) throw;
+    spdlog::error("{}", error.what());
+    fmt::print(stderr, "to go on when there is space: {}\n", ResumeCommand(options, directory));
+    return kExitIncomplete;
+  }
+}
+
+}  // namespace
+
+void AddRunCommand(CLI::App& app, Invocation& invocation) {
+  auto options = std::make_shared<RunOptions>();
+  CLI::App* command = app.add_subcommand("run", "fly a campaign on local workers and write its result folder");
+  CampaignRequest& request = options->request;
+  command->add_option("campaign", request.campaign, "campaign file")->required();
+  command
+      ->add_option("--workers", options->workers,
+                   "worker processes; default: the usable cores; 0 flies in this process without DDS")
+      ->check(CLI::Range(0, 1024));
+  command->add_option("--out", request.out, "result folder; default: results/<name>-<first 8 of id>")
+      ->check([](const std::string& text) { return text.empty() ? "must not be empty" : ""; });
+  command->add_option("--cases", request.overrides.cases, "number of cases, instead of the file's")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--seed", request.overrides.seed, "seed, instead of the file's");
+  command->add_flag("--resume", request.resume, "go on in a folder of the same flight id");
+  command->footer(
+      "Example: dispersa run campaigns/table3.yaml --cases 200 --out results/trial\n"
+      "         dispersa run campaigns/table3.yaml --cases 500 --out results/trial --resume");
+  command->callback([options, &invocation] {
+    invocation.command = [options](const GlobalOptions& global) { return Run(*options, global); };
+  });
+}
+
+}  // namespace dispersa

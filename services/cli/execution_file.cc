@@ -1,0 +1,52 @@
+#include "services/cli/execution_file.h"
+
+#include <unistd.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/engine/version.h"
+#include "core/report/output_file.h"
+
+namespace dispersa {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <typename T>
+Json OrNull(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+}  // namespace
+
+void ExecutionFile::Write() const {
+  char host[256] = "";
+  gethostname(host, sizeof host - 1);
+  Json pids = Json::array({getpid()});
+  Json processes = Json::array();
+  for (const WorkerProcess& worker : workers) {
+    pids.push_back(worker.pid);
+    processes.push_back({{"worker", worker.uuid},
+                         {"pid", worker.pid},
+                         {"started_utc", worker.started_utc},
+                         {"ended_utc", OrNull(worker.ended_utc)},
+                         {"end", worker.ended_utc ? Json(worker.how) : Json(nullptr)}});
+  }
+  const Json file = {{"schema", "dispersa/execution/1"},
+                     {"engine", EngineVersion()},
+                     {"host", host},
+                     {"pid", getpid()},
+                     {"pids", pids},
+                     {"started_utc", started_utc},
+                     {"ended_utc", OrNull(ended_utc)},
+                     {"problem", OrNull(problem)},
+                     {"domain", OrNull(domain)},
+                     {"workers_wanted", workers_wanted},
+                     {"workers", processes},
+                     {"cases_before", cases_before},
+                     {"cases_flown", cases_flown},
+                     {"flying_s", flying_s}};
+  WriteFile(directory / "execution.json", file.dump(2) + "\n");
+}
+
+}  // namespace dispersa

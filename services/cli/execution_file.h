@@ -1,0 +1,30 @@
+// execution.json: who ran a campaign, when, in which processes. What differs between runs and nothing else.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "services/cli/local_workers.h"
+
+namespace dispersa {
+
+/// Of the newest run in a result folder. Each Write replaces the file as a whole; it throws ResultError.
+struct ExecutionFile {
+  std::filesystem::path directory;
+  std::string started_utc;
+  std::optional<int> domain;  ///< none: flown in process
+  int workers_wanted = 0;
+  std::uint64_t cases_before = 0;  ///< stored by earlier runs
+  std::uint64_t cases_flown = 0;
+  double flying_s = 0.0;  ///< wall clock
+  std::vector<WorkerProcess> workers;
+  std::optional<std::string> ended_utc;
+  std::optional<std::string> problem;  ///< why it is incomplete
+
+  void Write() const;
+};
+
+}  // namespace dispersa

@@ -1,0 +1,146 @@
+#include "services/cli/local_workers.h"
+
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstring>
+#include <thread>
+#include <utility>
+
+#include "services/coordinator/utc.h"
+#include "services/transport/network.h"
+
+namespace dispersa {
+namespace {
+
+constexpr int kExecFailed = 127;
+constexpr double kLongestDelay_s = 2.0;
+
+// Between fork and exec of a process with threads: only what is safe in a signal handler.
+[[noreturn]] void BecomeWorker(const char* program, char* const* arguments, pid_t parent) {
+  // The kernel kills the worker when its parent ends; if that happened already, nobody would.
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(kExecFailed);
+  execv(program, arguments);
+  _exit(kExecFailed);
+}
+
+}  // namespace
+
+WorkerEnd ClassifyExit(int status, std::string* how) {
+  if (WIFSIGNALED(status)) {
+    const int signal = WTERMSIG(status);
+    *how = "signal " + std::to_string(signal) + " (" + strsignal(signal) + ")";
+    const bool from_outside = signal == SIGKILL || signal == SIGTERM || signal == SIGINT || signal == SIGHUP;
+    return from_outside ? WorkerEnd::kKilled : WorkerEnd::kCrashed;
+  }
+  const int code = WEXITSTATUS(status);
+  *how = code == kExecFailed ? "the program could not be started" : "exit code " + std::to_string(code);
+  return code == 0 ? WorkerEnd::kLeft : WorkerEnd::kCrashed;
+}
+
+LocalWorkers::LocalWorkers(std::filesystem::path program, std::vector<std::string> arguments, int count)
+    : program_(std::move(program)), arguments_(std::move(arguments)), slots_(static_cast<std::size_t>(count)) {}
+
+LocalWorkers::~LocalWorkers() {
+  SignalAll(SIGKILL);
+  WaitAll(1.0);
+}
+
+LocalWorkers::Changes LocalWorkers::Poll(double now_s, std::uint64_t progress) {
+  Changes changes;
+  if (progress != progress_) {
+    progress_ = progress;
+    fruitless_ends_ = 0;
+    start_due_s_ = now_s;
+  }
+  changes.ended = Reap();
+  for (std::size_t i = 0; i < changes.ended.size(); ++i) {
+    if (++fruitless_ends_ > 1) {
+      start_due_s_ = now_s + std::min(0.05 * std::exp2(fruitless_ends_ - 2), kLongestDelay_s);
+    }
+  }
+  if (now_s < start_due_s_) return changes;
+  for (std::size_t slot = 0; slot < slots_.size(); ++slot) {
+    if (slots_[slot]) continue;
+    Start(slot);
+    changes.started.push_back(history_.back());
+  }
+  return changes;
+}
+
+void LocalWorkers::Kill(const std::string& uuid) {
+  for (const auto& slot : slots_) {
+    if (slot && history_[*slot].uuid == uuid) kill(history_[*slot].pid, SIGKILL);
+  }
+}
+
+void LocalWorkers::End(double patience_s) {
+  if (WaitAll(patience_s)) return;
+  SignalAll(SIGTERM);
+  if (WaitAll(1.0)) return;
+  SignalAll(SIGKILL);
+  WaitAll(1.0);
+}
+
+int LocalWorkers::alive() const {
+  return static_cast<int>(std::count_if(slots_.begin(), slots_.end(), [](const auto& slot) { return slot; }));
+}
+
+void LocalWorkers::Start(std::size_t slot) {
+  WorkerProcess worker;
+  worker.uuid = MakeUuid();
+  std::vector<std::string> words = {program_.string()};
+  words.insert(words.end(), arguments_.begin(), arguments_.end());
+  words.insert(words.end(), {"--uuid", worker.uuid});
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+
+  const pid_t parent = getpid();
+  worker.started_utc = UtcNow();
+  worker.pid = fork();
+  if (worker.pid == 0) BecomeWorker(pointers.front(), pointers.data(), parent);
+  if (worker.pid < 0) throw NetworkError(std::string("no process can be started: ") + std::strerror(errno));
+  slots_[slot] = history_.size();
+  history_.push_back(std::move(worker));
+}
+
+std::vector<WorkerProcess> LocalWorkers::Reap() {
+  std::vector<WorkerProcess> ended;
+  for (auto& slot : slots_) {
+    if (!slot) continue;
+    WorkerProcess& worker = history_[*slot];
+    int status = 0;
+    if (waitpid(worker.pid, &status, WNOHANG) != worker.pid) continue;
+    worker.end = ClassifyExit(status, &worker.how);
+    worker.ended_utc = UtcNow();
+    ended.push_back(worker);
+    slot.reset();
+  }
+  return ended;
+}
+
+bool LocalWorkers::WaitAll(double seconds) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+  for (;;) {
+    Reap();
+    if (alive() == 0) return true;
+    if (std::chrono::steady_clock::now() >= deadline) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+}
+
+void LocalWorkers::SignalAll(int signal) {
+  for (const auto& slot : slots_) {
+    if (slot) kill(history_[*slot].pid, signal);
+  }
+}
+
+}  // namespace dispersa

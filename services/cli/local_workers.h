@@ -1,0 +1,71 @@
+// The worker processes of `dispersa run`: its children, replaced when they end, gone when it is gone.
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "services/coordinator/ledger.h"
+
+namespace dispersa {
+
+/// One incarnation of a worker.
+struct WorkerProcess {
+  std::string uuid;
+  pid_t pid = 0;
+  std::string started_utc;
+  std::optional<std::string> ended_utc;
+  WorkerEnd end = WorkerEnd::kLeft;  ///< once ended
+  std::string how;                   ///< "exit code 1", "signal 9 (Killed)"
+};
+
+/// How a process that ended with this status (waitpid) counts in the rules of blame.
+WorkerEnd ClassifyExit(int status, std::string* how);
+
+/// Every worker dies with the thread that started it, even if that is killed. Not thread-safe.
+class LocalWorkers {
+ public:
+  /// Each worker is `program arguments... --uuid <its own>`. Starts nothing yet.
+  LocalWorkers(std::filesystem::path program, std::vector<std::string> arguments, int count);
+  /// Kills what is left.
+  ~LocalWorkers();
+  LocalWorkers(const LocalWorkers&) = delete;
+  LocalWorkers& operator=(const LocalWorkers&) = delete;
+
+  struct Changes {
+    std::vector<WorkerProcess> started;
+    std::vector<WorkerProcess> ended;
+  };
+  /// Notes who ended, and starts missing workers: at once, but ever later if they keep ending without any
+  /// `progress` (a number that grows) between. Times in seconds.
+  Changes Poll(double now_s, std::uint64_t progress);
+  /// Ends in a row without progress.
+  int fruitless_ends() const { return fruitless_ends_; }
+
+  void Kill(const std::string& uuid);
+  /// Waits until they end by themselves, at most so long; then SIGTERM; a second later SIGKILL.
+  void End(double patience_s);
+
+  int alive() const;
+  /// All incarnations so far.
+  const std::vector<WorkerProcess>& history() const { return history_; }
+
+ private:
+  void Start(std::size_t slot);
+  std::vector<WorkerProcess> Reap();
+  bool WaitAll(double seconds);
+  void SignalAll(int signal);
+
+  std::filesystem::path program_;
+  std::vector<std::string> arguments_;
+  std::vector<std::optional<std::size_t>> slots_;  ///< position in history_ of the one that lives
+  std::vector<WorkerProcess> history_;
+  std::uint64_t progress_ = 0;
+  int fruitless_ends_ = 0;
+  double start_due_s_ = 0.0;
+};
+
+}  // namespace dispersa

@@ -1,0 +1,65 @@
+#include "services/cli/progress.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <utility>
+
+namespace dispersa {
+namespace {
+
+constexpr std::chrono::milliseconds kBarPeriod(100);
+constexpr std::chrono::seconds kLinePeriod(5);
+constexpr int kBarWidth = 30;
+
+}  // namespace
+
+std::string DurationText(double seconds) {
+  const auto whole = static_cast<long>(seconds + 0.5);
+  if (whole >= 3600) return fmt::format("{}h{:02}m", whole / 3600, whole / 60 % 60);
+  if (whole >= 60) return fmt::format("{}m{:02}s", whole / 60, whole % 60);
+  return fmt::format("{}s", whole);
+}
+
+Progress::Progress(std::string what, bool quiet)
+    : what_(std::move(what)), quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
+
+Progress::~Progress() {
+  if (drawn_) std::fputs("\n", stderr);
+}
+
+void Progress::Show(std::uint64_t done, std::uint64_t total, const std::string& note) {
+  if (quiet_ || total == 0) return;
+  const auto now = std::chrono::steady_clock::now();
+  if (!begun_) {
+    begun_ = true;
+    first_done_ = done;
+    start_ = shown_ = now;
+    if (!terminal_) return;
+  } else if (now - shown_ < (terminal_ ? std::chrono::milliseconds(kBarPeriod) : kLinePeriod) && done < total) {
+    return;
+  }
+  shown_ = now;
+  const double fraction = static_cast<double>(done) / static_cast<double>(total);
+  std::string line = fmt::format("{}/{} ({:.0f} %)", done, total, 100.0 * fraction);
+  const double elapsed_s = std::chrono::duration<double>(now - start_).count();
+  if (done > first_done_ && elapsed_s > 0.0) {
+    const double rate = static_cast<double>(done - first_done_) / elapsed_s;
+    line += fmt::format(", {:.3g}/s", rate);
+    line += done < total ? fmt::format(", {} left", DurationText(static_cast<double>(total - done) / rate))
+                         : fmt::format(", {}", DurationText(elapsed_s));
+  }
+  if (!note.empty()) line += ", " + note;
+  if (terminal_) {
+    const auto filled = static_cast<std::size_t>(fraction * kBarWidth);
+    const std::string bar = std::string(filled, '#') + std::string(kBarWidth - filled, '.');
+    fmt::print(stderr, "\r\x1b[K{} [{}] {}", what_, bar, line);
+    drawn_ = true;
+  } else {
+    fmt::print(stderr, "{}: {}\n", what_, line);
+  }
+  std::fflush(stderr);
+}
+
+}  // namespace dispersa

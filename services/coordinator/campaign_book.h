@@ -1,0 +1,56 @@
+// The ledger of a campaign together with the folder that its results go to.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/campaign/campaign.h"
+#include "core/report/result_folder.h"
+#include "services/coordinator/ledger.h"
+
+namespace dispersa {
+
+/// A 128-bit hash over every bit of a result.
+Digest Fingerprint(const CaseResult& result);
+
+/// Results are stored in batches; nothing that was accepted is lost by more than one batch. Not thread-safe.
+/// Times are seconds from any origin. Storing throws ResultError.
+class CampaignBook {
+ public:
+  CampaignBook(const Campaign& campaign, ResultFolder folder, const LedgerOptions& options = {});
+
+  const Campaign& campaign() const { return campaign_; }
+  const ResultFolder& folder() const { return folder_; }
+  Ledger& ledger() { return ledger_; }
+  const Ledger& ledger() const { return ledger_; }
+  std::uint64_t flown_now() const { return flown_now_; }  ///< accepted since construction
+
+  void Start(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt, double now_s);
+  /// A result that differs from the one already accepted is logged, stored nowhere, and counted as a conflict
+  /// in the ledger's progress.
+  Acceptance Accept(const std::string& worker, const std::string& host, std::uint64_t attempt,
+                    const CaseResult& result, double now_s);
+  /// Stores what has gathered if it is time to.
+  void FlushIfDue(double now_s);
+  void Flush(double now_s);
+
+ private:
+  Campaign campaign_;
+  ResultFolder folder_;
+  Ledger ledger_;
+  std::vector<CaseResult> results_;
+  std::vector<ExecutionRecord> records_;
+  struct StartTime {
+    double now_s;
+    std::string utc;
+  };
+  std::map<std::pair<std::string, std::uint64_t>, StartTime> starts_;  ///< by worker and case
+  std::size_t quarantined_ = 0;  ///< stored as such
+  std::uint64_t flown_now_ = 0;
+  double flushed_s_ = 0.0;
+};
+
+}  // namespace dispersa

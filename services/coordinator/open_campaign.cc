@@ -1,0 +1,69 @@
+#include "services/coordinator/open_campaign.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace dispersa {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool HasContent(const fs::path& directory) {
+  std::error_code error;
+  return fs::exists(directory, error) && !fs::is_empty(directory, error);
+}
+
+fs::path DefaultFolder(const Campaign& campaign, bool resume) {
+  const std::string stem = campaign.name + "-" + campaign.id.substr(0, 8);
+  fs::path last = fs::path("results") / stem;
+  for (int i = 2;; ++i) {
+    const fs::path next = fs::path("results") / (stem + "-" + std::to_string(i));
+    const bool stop = resume ? !HasContent(next) : !HasContent(last);
+    if (stop) return last;
+    last = next;
+  }
+}
+
+// A start that was killed between its first two files left nothing to resume.
+bool IsStillborn(const fs::path& directory) {
+  return std::all_of(fs::directory_iterator(directory), fs::directory_iterator(),
+                     [](const fs::directory_entry& entry) { return entry.path().filename() == "campaign.yaml"; });
+}
+
+}  // namespace
+
+OpenedCampaign OpenCampaign(const CampaignRequest& request) {
+  std::vector<InputProblem> warnings;
+  Campaign campaign = LoadCampaign(request.campaign, request.overrides, &warnings);
+  for (const InputProblem& warning : warnings) spdlog::warn("{}", warning.Text());
+  const fs::path directory =
+      request.out.empty() ? DefaultFolder(campaign, request.resume) : fs::path(request.out);
+
+  if (!request.resume || !HasContent(directory)) {
+    ResultFolder folder = ResultFolder::Create(directory, campaign);
+    return {std::move(campaign), std::move(folder)};
+  }
+  if (IsStillborn(directory)) {
+    fs::remove(directory / "campaign.yaml");
+    ResultFolder folder = ResultFolder::Create(directory, campaign);
+    return {std::move(campaign), std::move(folder)};
+  }
+  const std::vector<std::uint64_t> present = ResultFolder::Open(directory).PresentCases();
+  if (!present.empty() && present.back() >= campaign.sampling.cases) {
+    CampaignOverrides extended = request.overrides;
+    extended.cases = present.back() + 1;
+    Campaign larger = LoadCampaign(request.campaign, extended);
+    if (larger.flight_id == campaign.flight_id) {
+      spdlog::warn("{} holds more cases than the {} asked for: the campaign is extended to {}", directory.string(),
+                   campaign.sampling.cases, larger.sampling.cases);
+      campaign = std::move(larger);
+    }
+  }
+  ResultFolder folder = ResultFolder::Resume(directory, campaign);
+  return {std::move(campaign), std::move(folder)};
+}
+
+}  // namespace dispersa

@@ -1,0 +1,66 @@
+// dispersa-worker: flies cases for a coordinator.
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <cstdlib>
+#include <exception>
+#include <thread>
+
+#include "core/engine/version.h"
+#include "services/worker/worker.h"
+
+namespace {
+
+// Exit codes of the product that apply to a worker.
+constexpr int kDone = 0;
+constexpr int kInternalError = 1;
+constexpr int kBadUsage = 2;
+constexpr int kRefused = 5;
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using namespace dispersa;
+  spdlog::set_default_logger(spdlog::stderr_logger_mt("dispersa-worker"));
+
+  WorkerOptions options;
+  std::string peer;
+  CLI::App app("Flies cases for a coordinator until it is told to leave. SIGTERM ends it at once.", "dispersa-worker");
+  app.set_version_flag("--version", EngineVersion());
+  app.add_option("--domain", options.network.domain, "DDS domain")->envname("DISPERSA_DOMAIN")->check(CLI::Range(0, 99));
+  app.add_option("--peer", peer, "HOST[:PORT] of the coordinator")->required();
+  app.add_option("--address", options.network.address, "IPv4 address of the only network interface to use")
+      ->check(CLI::ValidIPV4);
+  app.add_option("--slots", options.slots, "cases flown at the same time")->check(CLI::Range(1, 1024));
+  app.add_option("--uuid", options.uuid, "name of this incarnation, drawn if not given");
+  CLI11_PARSE(app, argc, argv);
+  if (options.uuid.empty()) options.uuid = MakeUuid();
+
+  // Before any thread starts, so that every thread leaves the signals to the one that waits for them.
+  sigset_t ends;
+  sigemptyset(&ends);
+  sigaddset(&ends, SIGTERM);
+  sigaddset(&ends, SIGINT);
+  pthread_sigmask(SIG_BLOCK, &ends, nullptr);
+
+  int code = kInternalError;
+  try {
+    options.peer = ParsePeer(peer, options.network.domain);
+    Worker worker(options);
+    std::thread([&] {
+      int signal = 0;
+      sigwait(&ends, &signal);
+      worker.Stop();
+    }).detach();
+    code = worker.Run() == WorkerExit::kRefused ? kRefused : kDone;
+    std::_Exit(code);  // the other threads still use what a return would destroy
+  } catch (const NetworkError& error) {
+    spdlog::error("{}", error.what());
+    code = kBadUsage;
+  } catch (const std::exception& error) {
+    spdlog::error("{}", error.what());
+  }
+  return code;
+}
