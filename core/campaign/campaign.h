@@ -30,18 +30,18 @@ enum class Distribution {
 /// Of one scalar, in the internal unit of its input (SI, radians, or a factor).
 struct ScalarDistribution {
   Distribution kind = Distribution::kConstant;
-  double nominal = 0.0;  ///< kNormal: the mean; designs: the value while other parameters move
+  double nominal = 0.0;  ///< kConstant: the value; kNormal: the mean; designs: while other parameters move
   double sigma = 0.0;    ///< kNormal
   double low = 0.0;      ///< kUniform, kTwoPoint
   double high = 0.0;     ///< kUniform, kTwoPoint
-  std::vector<double> values;  ///< kValues; kConstant: one value
+  std::vector<double> values;  ///< kValues
 };
 
 /// One draw of a case: `name` keys its random stream and stays when other draws come or go.
 struct Dispersion {
   std::string name;            ///< e.g. "thrust/stage1", "wind/azimuth"
   ScalarDistribution distribution;
-  std::vector<int> inputs;     ///< columns (FindInput) that take the value; factors multiply, others add
+  std::vector<int> inputs;     ///< columns (FindInput) that take the value; draws of one factor multiply
   bool absolute = false;       ///< take the magnitude of the draw: lateral deviations with a clock angle
 };
 

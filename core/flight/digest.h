@@ -17,10 +17,9 @@ struct Digest {
   std::string Hex() const;
 };
 
-/// Collects doubles in order (XXH3-128 over their bytes). Plain data between samples.
+/// Collects doubles in order (XXH3-128 over their bytes).
 class Digester {
  public:
-  Digester();
   void Add(const double* values, std::size_t count);
   Digest Finish() const;
 

@@ -32,8 +32,8 @@ struct FlightInputs {
   PerStage specific_impulse_factor = AllStages(1.0); ///< thrust at the same flow
   double wind_max_speed_m_s = 0.0;           ///< of the jet stream
   double wind_azimuth_rad = 0.0;             ///< where it comes from, clockwise from north
-  double wind_altitude_m = 11000.0;          ///< of the maximum
-  double wind_width_m = 5000.0;
+  double wind_altitude_m = 12000.0;          ///< of the maximum
+  double wind_width_m = 12000.0;             ///< full width at half the maximum
   double gust_speed_m_s = 0.0;               ///< 1 - cosine gust
   double gust_altitude_m = 0.0;              ///< where it starts
   double gust_length_m = 0.0;

@@ -1,0 +1,40 @@
+// Which inputs a case has: the campaign's sampling method and dispersions.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/campaign/campaign.h"
+#include "core/random/latin_hypercube.h"
+#include "core/random/sobol.h"
+
+namespace dispersa {
+
+/// Number of runs of a corner, one-at-a-time, grid or list design before it repeats; 1 for random designs.
+std::uint64_t DesignSize(const Campaign& campaign);
+
+/// Draws cases. Every dispersion has a random stream of its own, keyed by (seed, case, name), so that one
+/// more changes no other. Latin hypercube and Sobol designs, which place all cases together, take the place
+/// of the streams' uniform numbers. In the designs of DesignSize the factors move by plan (two_point:
+/// corners and one at a time; values: grid and list), and every other dispersion stays random.
+class CaseDesign {
+ public:
+  explicit CaseDesign(const Campaign& campaign);
+
+  /// Pure: the same inputs whatever was drawn before.
+  FlightInputs Draw(std::uint64_t case_index) const;
+
+ private:
+  double Uniform(std::uint64_t case_index, std::size_t dispersion) const;
+  double Value(std::uint64_t case_index, std::size_t dispersion) const;
+
+  Sampling sampling_;
+  std::vector<Dispersion> dispersions_;
+  std::vector<std::size_t> factors_;  ///< dispersions that move by plan
+  std::uint64_t size_ = 1;
+  std::unique_ptr<LatinHypercube> latin_hypercube_;
+  std::unique_ptr<Sobol> sobol_;
+};
+
+}  // namespace dispersa

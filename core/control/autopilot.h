@@ -1,0 +1,69 @@
+// The flight computer's attitude loop: errors in, nozzle and thruster commands out, once a tick.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/control/axis_controller.h"
+#include "core/control/reaction_control.h"
+#include "core/math/table.h"
+
+namespace dispersa {
+
+enum Axis : int { kRoll = 0, kPitch = 1, kYaw = 2 };
+inline constexpr int kAxes = 3;
+
+/// What the autopilot knows of a stage beforehand, from nominal data: angular acceleration per radian of
+/// deflection over the time since ignition, and the limits of the nozzles.
+struct StageControl {
+  Table1D pitch_effectiveness_1_s2;  ///< of yaw too
+  Table1D roll_effectiveness_1_s2;
+  double limit_rad = 0.0;
+};
+
+/// Shared by all flights.
+struct AutopilotModel {
+  AutopilotConfig config;
+  std::array<AxisLaw, kAxes> laws;
+  std::vector<StageControl> stages;
+  int thruster_minimum_ticks = 1;
+};
+AutopilotModel BuildAutopilot(const AutopilotConfig& config, std::vector<StageControl> stages,
+                              double thruster_minimum_on_time_s);
+
+/// Memory of one flight's autopilot.
+struct AutopilotState {
+  std::array<AxisState, kAxes> axes;
+  std::array<int, kAxes> saturation{};  ///< of the last command, in the sense of u
+  std::array<ThrusterState, kAxes> thrusters;
+};
+
+/// Errors reference - true about body x, y, z: angle (rad) and rate (rad/s).
+struct AttitudeError {
+  Vector3 angle_rad = Vector3::Zero();
+  Vector3 rate_rad_s = Vector3::Zero();
+};
+
+struct GimbalCommand {
+  double roll_rad = 0.0;   ///< the paper's delta gamma
+  double pitch_rad = 0.0;  ///< delta phi
+  double yaw_rad = 0.0;    ///< delta psi
+  std::array<AxisTelemetry, kAxes> telemetry;
+
+  /// Commands of the nozzles right, left, bottom, top.
+  std::array<double, 4> Nozzles() const {
+    return {pitch_rad + roll_rad, pitch_rad - roll_rad, yaw_rad + roll_rad, yaw_rad - roll_rad};
+  }
+};
+
+/// At ignition of a stage: the rules of the stage, anew or, without reset, with what they learnt.
+void StartStage(const AutopilotModel& model, int stage, AutopilotState& state);
+/// One tick of powered flight. `gain` multiplies every command (1 in flight).
+GimbalCommand StepGimbals(const AutopilotModel& model, int stage, double since_ignition_s,
+                          const AttitudeError& error, const Vector2& pn_factor, double gain,
+                          AutopilotState& state);
+/// One tick of coast: direction of the couple about each axis.
+std::array<int, kAxes> StepReactionControl(const AutopilotModel& model, const AttitudeError& error,
+                                           AutopilotState& state);
+
+}  // namespace dispersa

@@ -1,0 +1,75 @@
+#include "core/control/autopilot_config.h"
+
+#include <cmath>
+#include <string>
+
+#include "core/control/lyapunov.h"
+
+namespace dispersa {
+
+namespace {
+
+void CheckAxis(const AxisConfig& axis, const std::string& name, int stages,
+               std::vector<AutopilotProblem>& problems) {
+  const auto add = [&](const std::string& path, const std::string& message, const std::string& allowed) {
+    problems.push_back({name + "." + path, message, allowed});
+  };
+  if (static_cast<int>(axis.gains.size()) != stages) {
+    add("gains", "has " + std::to_string(axis.gains.size()) + " entries",
+        "one entry for each of the vehicle's " + std::to_string(stages) + " stages");
+    return;
+  }
+  for (std::size_t i = 0; i < axis.gains.size(); ++i) {
+    const std::string path = "gains[" + std::to_string(i) + "]";
+    if (!(axis.gains[i].kp_1_s2 > 0.0)) add(path + ".kp_1_s2", "is not positive", "a number above 0");
+    if (!(axis.gains[i].kd_1_s > 0.0)) add(path + ".kd_1_s", "is not positive", "a number above 0");
+  }
+  const bool fuzzy = axis.law == ControlLaw::kAdaptiveFuzzy || axis.law == ControlLaw::kFrozenFuzzy;
+  if (fuzzy) {
+    if (!(axis.rules.error_range_rad > 0.0))
+      add("rules.error_range_deg", "is not positive", "a number above 0");
+    if (!(axis.rules.rate_range_rad_s > 0.0))
+      add("rules.rate_range_deg_s", "is not positive", "a number above 0");
+  }
+  if (axis.law != ControlLaw::kAdaptiveFuzzy || !problems.empty()) return;
+
+  const Adaptation& a = axis.adaptation;
+  if (static_cast<int>(a.gamma.size()) != stages)
+    add("adaptation.gamma", "has " + std::to_string(a.gamma.size()) + " entries",
+        "one entry for each of the vehicle's " + std::to_string(stages) + " stages");
+  if (a.q(0, 1) != a.q(1, 0) || !IsPositiveDefinite(a.q))
+    add("adaptation.q", "is not symmetric positive definite",
+        "a symmetric matrix with positive diagonal and determinant");
+  else if (a.p_n && !a.allow_unproven) {
+    if (!(a.p_n->x() > 0.0) || !(a.p_n->y() > 0.0)) {
+      add("adaptation.p_n", "is not positive: no positive definite P has this last column and gives a stable law",
+          "two positive numbers, or allow_unproven: true to study it");
+      return;
+    }
+    for (std::size_t i = 0; i < axis.gains.size(); ++i) {
+      const Vector2 solved = SolveLyapunov(axis.gains[i], a.q).col(1);
+      // The file prints a handful of digits: a part in a thousand tells agreement from another P.
+      if (std::fabs(a.p_n->x() - solved.x()) > 1e-3 * solved.x() ||
+          std::fabs(a.p_n->y() - solved.y()) > 1e-3 * solved.y()) {
+        add("adaptation.p_n",
+            "is not the last column of the P that solves A'P + PA = -Q for the gains of stage " +
+                std::to_string(i + 1) + ", which is [" + std::to_string(solved.x()) + ", " + std::to_string(solved.y()) + "]",
+            "that column, no p_n at all, or allow_unproven: true to study it");
+        return;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<AutopilotProblem> Problems(const AutopilotConfig& autopilot, int stages) {
+  std::vector<AutopilotProblem> problems;
+  if (!(autopilot.tick_s > 0.0)) problems.push_back({"tick_s", "is not positive", "a number above 0"});
+  CheckAxis(autopilot.pitch, "pitch", stages, problems);
+  CheckAxis(autopilot.yaw, "yaw", stages, problems);
+  CheckAxis(autopilot.roll, "roll", stages, problems);
+  return problems;
+}
+
+}  // namespace dispersa

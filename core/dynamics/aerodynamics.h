@@ -1,0 +1,54 @@
+// Aerodynamic force and moment on a body, in body axes about its CG.
+#pragma once
+
+#include <vector>
+
+#include "core/math/linear.h"
+#include "core/math/table.h"
+#include "core/vehicle/vehicle.h"
+
+namespace dispersa {
+
+/// A coefficient over Mach number and total incidence; no table means 0.
+struct Coefficient {
+  double factor = 1.0;
+  Table2D table = {};
+
+  bool empty() const { return table.z.empty(); }
+};
+
+/// Coefficients of a body that is symmetric about its x axis, in body or in wind axes or both (they add):
+///   F = -q S (ca x + cn n) - q S cd v + q S cl l,
+/// x forward, v along the velocity through the air, n the direction of the cross-flow and l normal to v
+/// in the plane of incidence. Moments about the CG:
+///   the normal force acts at xcp; cm (at the moment reference) turns the nose up in the plane of
+///   incidence; clp, cmq, cnr damp p b / (2 V), q c / (2 V), r b / (2 V).
+/// Validity is the grid's; outside it the end value holds.
+struct BodyAerodynamics {
+  double area_m2 = 0.0;
+  double length_m = 0.0;  ///< c: of cm and cmq
+  double span_m = 0.0;    ///< b: of clp and cnr
+  Coefficient ca, cn, cd, cl, cm;
+  Coefficient xcp_station_m;      ///< with cn
+  double moment_reference_station_m = 0.0;  ///< with cm, cd, cl
+  Coefficient clp, cmq, cnr;      ///< over Mach, one incidence
+  double minimum_airspeed_m_s = 0.0;  ///< floor of V in the damping terms
+};
+
+struct ForceAndMoment {
+  Vector3 force_n = Vector3::Zero();
+  Vector3 moment_n_m = Vector3::Zero();
+};
+
+/// v_AB_B: velocity through the air, m/s; w_AB_B: angular velocity relative to the air, rad/s; both in body
+/// axes; cg_station_m aft of the reference point of the stations.
+ForceAndMoment AerodynamicForce(const BodyAerodynamics& body, const Vector3& v_AB_B, const Vector3& w_AB_B,
+                                double mach, double qbar_pa, double cg_station_m);
+
+/// The vehicle file's table of one stack as coefficients.
+BodyAerodynamics FromTable(const AeroTable& table);
+
+/// Angle between the body axis and the velocity through the air, [0, pi] rad; 0 at rest.
+double TotalIncidence(const Vector3& v_AB_B);
+
+}  // namespace dispersa

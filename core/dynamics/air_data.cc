@@ -1,0 +1,27 @@
+#include "core/dynamics/air_data.h"
+
+#include "core/math/functions.h"
+
+namespace dispersa {
+
+AirData ComputeAirData(const Environment& environment, const Vector3& p, const Vector3& v) {
+  AirData data;
+  data.place = ToGeodetic(environment.earth, p);
+  const double omega = environment.earth.rotation_rate_rad_s;
+  data.v_AP_I = Vector3(v.x() + omega * p.y(), v.y() - omega * p.x(), v.z());
+  const WindNorthEast wind = Evaluate(environment.wind, data.place.altitude_m);
+  if (wind.north_m_s != 0.0 || wind.east_m_s != 0.0) {
+    const Matrix3 R_IN = NedAxes(data.place.latitude_rad, data.place.longitude_rad);
+    data.v_AP_I -= wind.north_m_s * R_IN.col(0) + wind.east_m_s * R_IN.col(1);
+  }
+  data.airspeed_m_s = data.v_AP_I.norm();
+  const AirState air = Scaled(StandardAtmosphere1976(data.place.altitude_m),
+                              environment.density(data.place.altitude_m));
+  data.density_kg_m3 = air.density_kg_m3;
+  data.pressure_pa = air.pressure_pa;
+  data.mach = air.speed_of_sound_m_s > 0.0 ? data.airspeed_m_s / air.speed_of_sound_m_s : 0.0;
+  data.qbar_pa = 0.5 * air.density_kg_m3 * Square(data.airspeed_m_s);
+  return data;
+}
+
+}  // namespace dispersa

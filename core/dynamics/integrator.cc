@@ -1,0 +1,143 @@
+#include "core/dynamics/integrator.h"
+
+#include <arkode/arkode_erkstep.h>
+#include <cvode/cvode.h>
+#include <nvector/nvector_serial.h>
+#include <sundials/sundials_context.h>
+#include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
+
+#include <cmath>
+#include <stdexcept>
+
+namespace dispersa {
+
+namespace {
+
+// The classical Runge-Kutta method of order 4.
+ARKodeButcherTable ClassicalTable() {
+  realtype c[] = {0.0, 0.5, 0.5, 1.0};
+  realtype a[] = {0.0, 0.0, 0.0, 0.0,  //
+                  0.5, 0.0, 0.0, 0.0,  //
+                  0.0, 0.5, 0.0, 0.0,  //
+                  0.0, 0.0, 1.0, 0.0};
+  realtype b[] = {1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0};
+  return ARKodeButcherTable_Create(4, 4, 0, c, a, b, nullptr);
+}
+
+void Require(bool ok, const char* call) {
+  if (!ok) throw std::runtime_error(std::string("SUNDIALS: ") + call + " failed");
+}
+
+void DropMessage(int, const char*, const char*, char*, void*) {}
+
+}  // namespace
+
+bool ParseScheme(const std::string& name, Scheme* scheme) {
+  if (name == "erk4") {
+    *scheme = Scheme::kRungeKutta4;
+    return true;
+  }
+  if (name == "cvode") {
+    *scheme = Scheme::kCvode;
+    return true;
+  }
+  return false;
+}
+
+struct Integrator::Solver {
+  Scheme scheme;
+  int size;
+  RightHandSide rhs;
+  void* context;
+  SUNContext sun = nullptr;
+  N_Vector y = nullptr;
+  N_Vector tolerance = nullptr;
+  void* memory = nullptr;
+  ARKodeButcherTable table = nullptr;
+  SUNNonlinearSolver fixed_point = nullptr;
+
+  static int Call(realtype t, N_Vector y, N_Vector dydt, void* user) {
+    const auto* self = static_cast<const Solver*>(user);
+    self->rhs(t, N_VGetArrayPointer(y), N_VGetArrayPointer(dydt), self->context);
+    return 0;
+  }
+
+  void CreateErk() {
+    memory = ERKStepCreate(&Call, 0.0, y, sun);
+    Require(memory != nullptr, "ERKStepCreate");
+    table = ClassicalTable();
+    Require(ERKStepSetTable(memory, table) == ARK_SUCCESS, "ERKStepSetTable");
+    ERKStepSetUserData(memory, this);
+    ERKStepSetMaxNumSteps(memory, -1);
+    ERKStepSetErrHandlerFn(memory, &DropMessage, nullptr);
+  }
+
+  void CreateCvode(const double* absolute_tolerance) {
+    memory = CVodeCreate(CV_ADAMS, sun);
+    Require(memory != nullptr, "CVodeCreate");
+    Require(CVodeInit(memory, &Call, 0.0, y) == CV_SUCCESS, "CVodeInit");
+    tolerance = N_VNew_Serial(size, sun);
+    for (int i = 0; i < size; ++i) NV_Ith_S(tolerance, i) = absolute_tolerance[i];
+    Require(CVodeSVtolerances(memory, 1e-12, tolerance) == CV_SUCCESS, "CVodeSVtolerances");
+    fixed_point = SUNNonlinSol_FixedPoint(y, 0, sun);
+    Require(CVodeSetNonlinearSolver(memory, fixed_point) == CV_SUCCESS, "CVodeSetNonlinearSolver");
+    CVodeSetUserData(memory, this);
+    CVodeSetMaxNumSteps(memory, 1000000);
+    CVodeSetErrHandlerFn(memory, &DropMessage, nullptr);
+  }
+
+  ~Solver() {
+    if (table) ARKodeButcherTable_Free(table);
+    if (memory && scheme == Scheme::kRungeKutta4) ERKStepFree(&memory);
+    if (memory && scheme == Scheme::kCvode) CVodeFree(&memory);
+    if (fixed_point) SUNNonlinSolFree(fixed_point);
+    if (tolerance) N_VDestroy(tolerance);
+    if (y) N_VDestroy(y);
+    if (sun) SUNContext_Free(&sun);
+  }
+};
+
+Integrator::Integrator(Scheme scheme, int size, RightHandSide rhs, void* context,
+                       const double* absolute_tolerance)
+    : solver_(std::make_unique<Solver>()) {
+  Solver& s = *solver_;
+  s.scheme = scheme;
+  s.size = size;
+  s.rhs = rhs;
+  s.context = context;
+  Require(SUNContext_Create(nullptr, &s.sun) == 0, "SUNContext_Create");
+  s.y = N_VNew_Serial(size, s.sun);
+  Require(s.y != nullptr, "N_VNew_Serial");
+  N_VConst(0.0, s.y);
+  if (scheme == Scheme::kRungeKutta4)
+    s.CreateErk();
+  else
+    s.CreateCvode(absolute_tolerance);
+}
+
+Integrator::~Integrator() = default;
+
+bool Integrator::Advance(double from_s, double to_s, int steps, double* y) {
+  Solver& s = *solver_;
+  double* state = N_VGetArrayPointer(s.y);
+  for (int i = 0; i < s.size; ++i) state[i] = y[i];
+  double reached = from_s;
+  if (s.scheme == Scheme::kRungeKutta4) {
+    // Without the reset a derivative from before the jump of a held command would be reused.
+    if (ERKStepReset(s.memory, from_s, s.y) != ARK_SUCCESS) return false;
+    ERKStepSetFixedStep(s.memory, (to_s - from_s) / steps);
+    ERKStepSetStopTime(s.memory, to_s);
+    if (ERKStepEvolve(s.memory, to_s, s.y, &reached, ARK_NORMAL) < 0) return false;
+  } else {
+    if (CVodeReInit(s.memory, from_s, s.y) != CV_SUCCESS) return false;
+    CVodeSetStopTime(s.memory, to_s);
+    if (CVode(s.memory, to_s, s.y, &reached, CV_NORMAL) < 0) return false;
+  }
+  for (int i = 0; i < s.size; ++i) {
+    if (!std::isfinite(state[i])) return false;
+    y[i] = state[i];
+  }
+  return true;
+}
+
+}  // namespace dispersa

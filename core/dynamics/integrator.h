@@ -1,0 +1,39 @@
+// Integration from one event to the next, through SUNDIALS.
+#pragma once
+
+#include <memory>
+#include <string>
+
+namespace dispersa {
+
+/// dy/dt = f(t, y); `context` is the caller's.
+using RightHandSide = void (*)(double time_s, const double* y, double* dydt, void* context);
+
+enum class Scheme {
+  kRungeKutta4,   ///< ERKStep with the classical fourth-order table and fixed steps: what flights use
+  kCvode,         ///< CVODE Adams, relative tolerance 1e-12: the independent check
+};
+/// "erk4", "cvode".
+bool ParseScheme(const std::string& name, Scheme* scheme);
+
+/// Advances a state of fixed size. Every Advance starts afresh: no derivative, step size or history
+/// survives an event, so a result depends on the arguments alone. Not thread-safe; make one a flight.
+class Integrator {
+ public:
+  /// absolute_tolerance, shape (size): only CVODE reads it.
+  Integrator(Scheme scheme, int size, RightHandSide rhs, void* context,
+             const double* absolute_tolerance);
+  ~Integrator();
+  Integrator(const Integrator&) = delete;
+  Integrator& operator=(const Integrator&) = delete;
+
+  /// Replaces y(from) by y(to) in `steps` equal steps (at least 1; CVODE chooses its own).
+  /// Returns false when the solver fails or the state is not finite.
+  bool Advance(double from_s, double to_s, int steps, double* y);
+
+ private:
+  struct Solver;
+  std::unique_ptr<Solver> solver_;
+};
+
+}  // namespace dispersa

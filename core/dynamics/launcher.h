@@ -1,0 +1,71 @@
+// The launch vehicle as a dynamic system between two events of a flight.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/dynamics/aerodynamics.h"
+#include "core/dynamics/rigid_body.h"
+#include "core/vehicle/mass.h"
+#include "core/vehicle/propulsion.h"
+
+namespace dispersa {
+
+inline constexpr int kNozzles = 4;
+/// State: rigid body, then the angle and the rate of each nozzle (right, left, bottom, top).
+inline constexpr int kNozzleAngle = kRigidBodySize;
+inline constexpr int kNozzleRate = kNozzleAngle + kNozzles;
+inline constexpr int kLauncherSize = kNozzleRate + kNozzles;
+
+/// One stack as one flight flies it: nominal data with the flight's factors applied.
+struct LauncherStack {
+  StackMass mass;
+  BodyAerodynamics aerodynamics;
+  MotorBurn burn;
+  Gimbal gimbal;
+  Matrix3 thrust_tilt = Matrix3::Identity();  ///< turns the nozzles' thrust by the misalignment
+  double thrust_offset_y_m = 0.0;
+  double thrust_offset_z_m = 0.0;
+};
+
+/// A vehicle of one flight.
+struct LauncherPlant {
+  Environment environment;
+  std::vector<LauncherStack> stacks;
+  double cg_factor = 1.0;
+  double inertia_factor = 1.0;
+  bool jet_damping = true;
+};
+
+/// What stays constant between two events.
+struct LauncherPhase {
+  int stack = 0;
+  bool burning = false;
+  bool burnt = false;            ///< the stack's propellant is used up
+  double ignition_s = 0.0;       ///< of the stack's motor, when burning
+  double expelled_mass_kg = 0.0; ///< by the reaction control so far
+  Vector3 control_torque_n_m = Vector3::Zero();  ///< of the reaction control
+  std::array<double, kNozzles> command_rad{};    ///< to the actuators
+  int stuck_nozzle = -1;         ///< index of a nozzle that does not move, or -1
+};
+
+/// Everything of one instant that forces, metrics and histories need.
+struct LauncherInstant {
+  AirData air;
+  Vector3 v_AB_B = Vector3::Zero();  ///< velocity through the air
+  BodyLoads loads;
+  double cg_station_m = 0.0;
+  double thrust_n = 0.0;
+  double flow_kg_s = 0.0;
+};
+
+LauncherInstant Evaluate(const LauncherPlant& plant, const LauncherPhase& phase, double time_s,
+                         const double* y);
+
+/// Right-hand side of the flight. Thrust: each nozzle carries a quarter, deflected in its hinge plane;
+/// positive pitch, yaw and roll deflections give positive moments about body y, z and x. Actuators are
+/// second order with a limited rate: d(angle)/dt = rate within the limit; the command is limited in angle.
+void LauncherDerivative(const LauncherPlant& plant, const LauncherPhase& phase, double time_s,
+                        const double* y, double* dydt);
+
+}  // namespace dispersa

@@ -1,0 +1,39 @@
+// One closed-loop flight from lift-off to injection, or to where it fails.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/flight/digest.h"
+#include "core/flight/flight_inputs.h"
+#include "core/flight/flight_model.h"
+#include "core/flight/history.h"
+#include "core/flight/metrics.h"
+
+namespace dispersa {
+
+struct FlightOptions {
+  Scheme scheme = Scheme::kRungeKutta4;
+  int steps_per_tick = 1;
+  std::uint64_t case_index = 0;  ///< keys the sensors' noise
+  History* history = nullptr;    ///< filled if given
+};
+
+struct FlightResult {
+  Outcome outcome = Outcome::kCompleted;
+  double end_time_s = 0.0;
+  int end_stage = 0;            ///< 1-based
+  std::string reason;
+  std::vector<double> metrics;  ///< in the order of MetricNames()
+  Digest digest;
+  RigidBodyState end_state;
+};
+
+/// Flies; a pure function of its arguments. Everything that changes lives in it and ends with it.
+FlightResult Fly(const FlightModel& model, const FlightInputs& inputs, const FlightOptions& options = {});
+
+/// State at lift-off: at rest on the site, attitude as the pitch program begins.
+RigidBodyState LiftOffState(const FlightModel& model);
+
+}  // namespace dispersa

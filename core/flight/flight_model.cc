@@ -1,0 +1,110 @@
+#include "core/flight/flight_model.h"
+
+#include "core/math/functions.h"
+#include "core/vehicle/aerodynamics_build_up.h"
+
+namespace dispersa {
+
+LauncherPlant BuildNominalPlant(const Vehicle& vehicle) {
+  LauncherPlant plant;
+  plant.jet_damping = vehicle.jet_damping;
+  const std::vector<StackMass> masses = BuildStackMasses(vehicle);
+  const std::vector<AeroTable> tables =
+      vehicle.aerodynamics.empty() ? BuildAerodynamics(vehicle) : vehicle.aerodynamics;
+  for (std::size_t i = 0; i < vehicle.stages.size(); ++i) {
+    const Stage& stage = vehicle.stages[i];
+    LauncherStack stack;
+    stack.mass = masses[i];
+    stack.aerodynamics = FromTable(tables[i]);
+    stack.burn = BuildBurn(stage, 1.0, 1.0);
+    stack.gimbal = stage.gimbal;
+    plant.stacks.push_back(stack);
+  }
+  return plant;
+}
+
+StageControl BuildStageControl(const LauncherStack& stack) {
+  // The effectiveness changes slowly and smoothly: this many points follow it to a part in a thousand.
+  constexpr int kPoints = 33;
+  StageControl control;
+  control.limit_rad = stack.gimbal.limit_rad;
+  for (int i = 0; i < kPoints; ++i) {
+    const double since = stack.burn.duration_s * i / (kPoints - 1);
+    const MassProperties mass = stack.mass.At(stack.burn.Propellant(since));
+    const double thrust = stack.burn.vacuum_thrust_n;
+    const double lever = stack.gimbal.pivot_station_m - mass.cg_station_m;
+    control.pitch_effectiveness_1_s2.x.push_back(since);
+    control.roll_effectiveness_1_s2.x.push_back(since);
+    // Two of the four nozzles turn in pitch (the paper's 2P), all four in roll.
+    control.pitch_effectiveness_1_s2.y.push_back(0.5 * thrust * lever / mass.transverse_inertia_kg_m2);
+    control.roll_effectiveness_1_s2.y.push_back(thrust * stack.gimbal.radius_m /
+                                                mass.axial_inertia_kg_m2);
+  }
+  return control;
+}
+
+FlightModel::FlightModel(FlightDefinition definition)
+    : definition_(std::move(definition)),
+      nominal_(BuildNominalPlant(definition_.vehicle)) {
+  frame_ = BuildLaunchFrame(nominal_.environment.earth, definition_.vehicle.site,
+                            definition_.program.launch_azimuth_rad);
+  if (definition_.wind_table) nominal_.environment.wind.tables.push_back(*definition_.wind_table);
+  std::vector<StageControl> controls;
+  for (const LauncherStack& stack : nominal_.stacks) controls.push_back(BuildStageControl(stack));
+  autopilot_ = BuildAutopilot(definition_.autopilot, std::move(controls),
+                              definition_.vehicle.reaction_control.minimum_on_time_s);
+}
+
+namespace {
+
+// Turns the thrust by `tilt` towards the direction `clock` (from body y towards body z).
+Matrix3 ThrustTilt(double tilt, double clock) {
+  const SinCos c = SineCosine(clock);
+  return RotationMatrix(FromRotationVector(Vector3(0.0, -tilt * c.sin, tilt * c.cos)));
+}
+
+WindTable DrawnProfile(const WindStatistics& statistics, const FlightInputs& inputs) {
+  std::vector<double> normals;
+  for (std::size_t level = 0; level < statistics.altitude_m.size(); ++level) {
+    normals.push_back(inputs.wind_profile_north[level]);
+    normals.push_back(inputs.wind_profile_east[level]);
+  }
+  return DrawWind(statistics, normals);
+}
+
+}  // namespace
+
+LauncherPlant FlightModel::PlantFor(const FlightInputs& in) const {
+  LauncherPlant plant = nominal_;
+  plant.cg_factor = in.cg_factor;
+  plant.inertia_factor = in.inertia_factor;
+  plant.environment.density.scale *= in.density_factor;
+
+  Wind& wind = plant.environment.wind;
+  if (in.wind_max_speed_m_s != 0.0)
+    wind.jets.push_back(
+        {in.wind_max_speed_m_s, in.wind_altitude_m, in.wind_width_m, in.wind_azimuth_rad});
+  if (in.gust_speed_m_s != 0.0)
+    wind.gusts.push_back(
+        {in.gust_speed_m_s, in.gust_altitude_m, in.gust_length_m, in.gust_azimuth_rad});
+  if (definition_.wind_statistics)
+    wind.tables.push_back(DrawnProfile(*definition_.wind_statistics, in));
+
+  for (std::size_t i = 0; i < plant.stacks.size(); ++i) {
+    LauncherStack& stack = plant.stacks[i];
+    const Stage& stage = definition_.vehicle.stages[i];
+    stack.burn = BuildBurn(stage, in.thrust_factor[i] * in.specific_impulse_factor[i],
+                           in.mass_flow_factor[i]);
+    stack.gimbal.bandwidth_rad_s *= in.actuator_bandwidth_factor;
+    stack.aerodynamics.ca.factor = in.drag_factor;
+    stack.aerodynamics.cn.factor = in.lift_factor;
+    stack.aerodynamics.xcp_station_m.factor = in.cp_factor;
+    stack.thrust_tilt = ThrustTilt(in.thrust_misalignment_rad[i], in.thrust_misalignment_clock_rad[i]);
+    const SinCos offset = SineCosine(in.thrust_offset_clock_rad[i]);
+    stack.thrust_offset_y_m = in.thrust_offset_m[i] * offset.cos;
+    stack.thrust_offset_z_m = in.thrust_offset_m[i] * offset.sin;
+  }
+  return plant;
+}
+
+}  // namespace dispersa

@@ -1,0 +1,64 @@
+// What all flights of a campaign share, and the plant of one of them.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/control/autopilot.h"
+#include "core/dynamics/integrator.h"
+#include "core/dynamics/launcher.h"
+#include "core/environment/wind_statistics.h"
+#include "core/flight/attitude_program.h"
+#include "core/flight/flight_inputs.h"
+#include "core/flight/launch_frame.h"
+#include "core/flight/sequence.h"
+#include "core/vehicle/vehicle.h"
+
+namespace dispersa {
+
+/// Where a flight shall arrive.
+struct InjectionTarget {
+  double altitude_m = 0.0;
+  double velocity_m_s = 0.0;
+  double flight_path_angle_rad = 0.0;
+};
+
+/// What decides a flight besides its inputs.
+struct FlightDefinition {
+  Vehicle vehicle;
+  AutopilotConfig autopilot;
+  AttitudeProgram program;
+  double last_ignition_s = 0.0;
+  double kick_start_s = 0.0;   ///< t1 and t2 of the flight program: the pitch-over
+  double kick_end_s = 0.0;
+  InjectionTarget target;
+  std::optional<WindTable> wind_table;
+  std::optional<WindStatistics> wind_statistics;
+  std::uint64_t noise_seed = 0;  ///< of the sensors
+};
+
+class FlightModel {
+ public:
+  explicit FlightModel(FlightDefinition definition);
+
+  const FlightDefinition& definition() const { return definition_; }
+  const LaunchFrame& frame() const { return frame_; }
+  const AutopilotModel& autopilot() const { return autopilot_; }
+  const LauncherPlant& nominal_plant() const { return nominal_; }
+
+  /// The nominal plant with a flight's factors, winds and misalignments applied.
+  LauncherPlant PlantFor(const FlightInputs& inputs) const;
+
+ private:
+  FlightDefinition definition_;
+  LaunchFrame frame_;
+  LauncherPlant nominal_;
+  AutopilotModel autopilot_;
+};
+
+/// The vehicle without dispersions: aerodynamics built up where the file gives no tables.
+LauncherPlant BuildNominalPlant(const Vehicle& vehicle);
+/// Angular acceleration per radian of deflection, over the time since ignition, of a nominal stack.
+StageControl BuildStageControl(const LauncherStack& stack);
+
+}  // namespace dispersa

@@ -1,0 +1,90 @@
+#include "core/flight/history_columns.h"
+
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "core/flight/orbit.h"
+#include "core/math/constants.h"
+#include "core/math/functions.h"
+
+namespace dispersa {
+
+namespace {
+constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
+}
+
+const std::vector<std::string>& KinematicColumnNames() {
+  static const std::vector<std::string> names = {
+      "time_s",
+      "eci_x_m", "eci_y_m", "eci_z_m", "eci_vx_m_s", "eci_vy_m_s", "eci_vz_m_s",
+      "ned_v_n_m_s", "ned_v_e_m_s", "ned_v_d_m_s",
+      "altitude_m", "latitude_deg", "longitude_deg",
+      "yaw_deg", "pitch_deg", "roll_deg", "p_deg_s", "q_deg_s", "r_deg_s",
+      "mach", "qbar_pa", "alpha_deg", "beta_deg", "mass_kg"};
+  return names;
+}
+
+const std::vector<std::string>& LauncherColumnNames() {
+  static const std::vector<std::string> names = {
+      "stage", "thrust_n", "inertial_velocity_m_s", "flight_path_angle_deg",
+      "pitch_program_deg", "pitch_launch_deg", "pitch_error_deg", "yaw_error_deg", "roll_error_deg",
+      "pitch_rate_error_deg_s",
+      "deflection_pitch_deg", "deflection_yaw_deg", "deflection_roll_deg",
+      "nozzle1_deg", "nozzle2_deg", "nozzle3_deg", "nozzle4_deg",
+      "command_pitch_deg", "control_pitch_deg_s2", "adaptation_norm_deg_s2",
+      "lyapunov_v", "lyapunov_v_rate_sign", "adaptation_projected", "adaptation_frozen", "rules_fired",
+      "total_gain", "thruster_roll", "thruster_pitch", "thruster_yaw", "rcs_propellant_kg",
+      "axial_load_g", "lateral_load_g", "incidence_deg"};
+  return names;
+}
+
+void AppendKinematics(const Earth& earth, double time_s, const RigidBodyState& s, const AirData& air,
+                      const Vector3& v_AB_B, double mass_kg, std::vector<double>& row) {
+  const Geodetic place = ToGeodetic(earth, InertialToEarth(earth, time_s, s.p_EoC_I));
+  // The axes of the place in I: the longitude of `air.place` is measured there.
+  const Matrix3 R_IN = NedAxes(air.place.latitude_rad, air.place.longitude_rad);
+  const double omega = earth.rotation_rate_rad_s;
+  const Vector3 v_EC_I(s.v_IC_I.x() + omega * s.p_EoC_I.y(), s.v_IC_I.y() - omega * s.p_EoC_I.x(),
+                       s.v_IC_I.z());
+  const Vector3 v_EC_N = R_IN.transpose() * v_EC_I;
+  const YawPitchRoll attitude = ToYawPitchRoll(Inverse(QuaternionOf(R_IN)) * s.q_IB);
+  const double speed = v_AB_B.norm();
+  const double alpha = speed > 0.0 ? Atan2(v_AB_B.z(), v_AB_B.x()) : 0.0;
+  const double beta = speed > 0.0 ? Asin(Clamp(v_AB_B.y() / speed, -1.0, 1.0)) : 0.0;
+  row.insert(row.end(),
+             {time_s, s.p_EoC_I.x(), s.p_EoC_I.y(), s.p_EoC_I.z(), s.v_IC_I.x(), s.v_IC_I.y(), s.v_IC_I.z(),
+              v_EC_N.x(), v_EC_N.y(), v_EC_N.z(), place.altitude_m, place.latitude_rad * kDegPerRad,
+              place.longitude_rad * kDegPerRad, attitude.yaw * kDegPerRad, attitude.pitch * kDegPerRad,
+              attitude.roll * kDegPerRad, s.w_IB_B.x() * kDegPerRad, s.w_IB_B.y() * kDegPerRad,
+              s.w_IB_B.z() * kDegPerRad, air.mach, air.qbar_pa, alpha * kDegPerRad, beta * kDegPerRad,
+              mass_kg});
+}
+
+void AppendLauncher(const FlightModel& model, const TickSample& s, std::vector<double>& row) {
+  const LauncherInstant& now = s.instant;
+  const OrbitElements orbit =
+      ElementsOf(model.nominal_plant().environment.earth, s.state.p_EoC_I, s.state.v_IC_I);
+  const PitchYawRoll attitude = ToPitchYawRoll(Inverse(model.frame().q_IL) * s.state.q_IB);
+  const Vector3 specific = now.loads.force_n / (now.loads.mass_kg * kStandardGravity);
+  const AxisTelemetry& t = s.gimbal.telemetry[kPitch];
+  const auto powered = [&](double value) { return s.burning ? value : kUndefined; };
+  const auto& n = s.nozzle_rad;
+  row.insert(row.end(),
+             {s.stack + 1.0, now.thrust_n, orbit.speed_m_s, orbit.flight_path_angle_rad * kDegPerRad,
+              s.reference.angles.pitch * kDegPerRad, attitude.pitch * kDegPerRad,
+              -s.error.angle_rad.y() * kDegPerRad, -s.error.angle_rad.z() * kDegPerRad,
+              -s.error.angle_rad.x() * kDegPerRad, -s.error.rate_rad_s.y() * kDegPerRad,
+              0.5 * (n[0] + n[1]) * kDegPerRad, 0.5 * (n[2] + n[3]) * kDegPerRad,
+              0.25 * (n[0] - n[1] + n[2] - n[3]) * kDegPerRad, n[0] * kDegPerRad, n[1] * kDegPerRad,
+              n[2] * kDegPerRad, n[3] * kDegPerRad, powered(s.gimbal.pitch_rad * kDegPerRad),
+              powered(t.command_rad_s2 * kDegPerRad), powered(t.adaptation_norm * kDegPerRad), powered(t.v),
+              powered(t.v_rate_sign), powered(t.projected ? 1.0 : 0.0), powered(t.frozen ? 1.0 : 0.0),
+              powered(std::popcount(s.axes[kPitch].rules_fired)), powered(s.axes[kPitch].total_gain),
+              static_cast<double>(s.thrusters[kRoll]), static_cast<double>(s.thrusters[kPitch]),
+              static_cast<double>(s.thrusters[kYaw]), s.expelled_mass_kg, specific.x(),
+              Sqrt(specific.y() * specific.y() + specific.z() * specific.z()),
+              TotalIncidence(now.v_AB_B) * kDegPerRad});
+}
+
+}  // namespace dispersa

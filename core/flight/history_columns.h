@@ -1,0 +1,23 @@
+// The two halves of a history row: motion of any body, and what only a launcher has.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/dynamics/air_data.h"
+#include "core/dynamics/rigid_body.h"
+#include "core/flight/flight_model.h"
+#include "core/flight/tick_sample.h"
+
+namespace dispersa {
+
+const std::vector<std::string>& KinematicColumnNames();
+const std::vector<std::string>& LauncherColumnNames();
+
+/// Appends one value a name of KinematicColumnNames(). `v_AB_B` is the velocity through the air.
+void AppendKinematics(const Earth& earth, double time_s, const RigidBodyState& state, const AirData& air,
+                      const Vector3& v_AB_B, double mass_kg, std::vector<double>& row);
+/// Appends one value a name of LauncherColumnNames().
+void AppendLauncher(const FlightModel& model, const TickSample& sample, std::vector<double>& row);
+
+}  // namespace dispersa

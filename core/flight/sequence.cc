@@ -1,0 +1,32 @@
+#include "core/flight/sequence.h"
+
+#include <cmath>
+
+namespace dispersa {
+
+std::vector<StageTimes> BuildTimeline(const Vehicle& vehicle, const std::vector<MotorBurn>& burns,
+                                      double tick_s, double last_ignition_s) {
+  std::vector<StageTimes> times(burns.size());
+  for (std::size_t i = 0; i < burns.size(); ++i) {
+    const Stage& stage = vehicle.stages[i];
+    switch (stage.ignition) {
+      case IgnitionTrigger::kLiftOff:
+        times[i].ignition_s = -vehicle.hold_down_s;
+        break;
+      case IgnitionTrigger::kBurnoutDetection:
+        times[i].ignition_s = times[i - 1].separation_s + stage.ignition_delay_s;
+        break;
+      case IgnitionTrigger::kTimer:
+        times[i].ignition_s =
+            last_ignition_s > times[i - 1].separation_s ? last_ignition_s : times[i - 1].separation_s;
+        break;
+    }
+    times[i].burnout_s = times[i].ignition_s + burns[i].duration_s;
+    const double detection_s = std::ceil((times[i].burnout_s - kSameInstant_s) / tick_s) * tick_s;
+    const bool last = i + 1 == burns.size();
+    times[i].separation_s = last ? times[i].burnout_s : detection_s + stage.separation_delay_s;
+  }
+  return times;
+}
+
+}  // namespace dispersa

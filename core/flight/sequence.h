@@ -1,0 +1,27 @@
+// When stages ignite, burn out and separate. Burns are closed forms of time, so the whole timeline of a
+// flight is known beforehand; detection and separation still act on the autopilot's ticks.
+#pragma once
+
+#include <vector>
+
+#include "core/vehicle/propulsion.h"
+#include "core/vehicle/vehicle.h"
+
+namespace dispersa {
+
+struct StageTimes {
+  double ignition_s = 0.0;
+  double burnout_s = 0.0;
+  double separation_s = 0.0;  ///< of this stage; of the last: its burnout, where the flight ends
+};
+
+/// Events within this time of a tick happen on the tick.
+inline constexpr double kSameInstant_s = 1e-9;
+
+/// Times since lift-off. Burnout is exact; it is detected on the next tick, and the stage separates
+/// `separation_delay_s` later. A stage on burnout detection ignites `ignition_delay_s` after that; a stage
+/// on the timer at last_ignition_s, or at separation of the stage below if that is later.
+std::vector<StageTimes> BuildTimeline(const Vehicle& vehicle, const std::vector<MotorBurn>& burns,
+                                      double tick_s, double last_ignition_s);
+
+}  // namespace dispersa

@@ -1,0 +1,33 @@
+// What one tick or event shows of a flight: the common input of metrics and history.
+#pragma once
+
+#include <array>
+
+#include "core/control/autopilot.h"
+#include "core/dynamics/launcher.h"
+#include "core/flight/attitude_program.h"
+
+namespace dispersa {
+
+struct TickSample {
+  double time_s = 0.0;
+  int stack = 0;                   ///< 0-based
+  bool burning = false;
+  bool coasting = false;           ///< the last stack before its ignition
+  double since_ignition_s = 0.0;   ///< of the burning stage
+  RigidBodyState state;
+  std::array<double, kNozzles> nozzle_rad{};
+  std::array<double, kNozzles> nozzle_rate_rad_s{};
+  std::array<double, kNozzles> command_rad{};  ///< at the actuators
+  double limit_rad = 0.0;
+  AttitudeError error;             ///< true, not measured
+  ReferenceAttitude reference;
+  GimbalCommand gimbal;            ///< of this tick
+  std::array<AxisState, kAxes> axes;
+  std::array<int, kAxes> thrusters{};
+  double expelled_mass_kg = 0.0;
+  bool has_instant = false;        ///< whether `instant` was evaluated
+  LauncherInstant instant;
+};
+
+}  // namespace dispersa

@@ -1,0 +1,316 @@
+#include "core/trajectory/ascent.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/dynamics/integrator.h"
+#include "core/flight/sequence.h"
+#include "core/math/constants.h"
+#include "core/math/functions.h"
+
+namespace dispersa {
+
+namespace {
+
+// The attitude program goes on this long after the nominal burnout, for flights that burn longer.
+constexpr double kProgramReserve_s = 30.0;
+// Knots of the attitude program: dense in the pitch-over, where the programmed incidence changes.
+constexpr double kKickKnot_s = 0.1;
+constexpr double kKnot_s = 1.0;
+// An ascent that comes this far below its site has failed.
+constexpr double kGround_m = 1000.0;
+
+double SmoothStep(double s) { return s * s * s * (10.0 + s * (-15.0 + 6.0 * s)); }
+
+enum class ProgramPhase { kVertical, kTurn };
+
+// State of an ascent between two events. y: position and velocity in I.
+class Ascent {
+ public:
+  Ascent(const AscentModel& model, const FlightProgram& program, const AscentOptions& options)
+      : model_(model),
+        program_(program),
+        options_(options),
+        frame_(BuildLaunchFrame(model.plant.environment.earth, model.vehicle.site,
+                                program.launch_azimuth_rad)),
+        integrator_(Scheme::kRungeKutta4, 6, &Ascent::Rhs, this, nullptr) {
+    for (int i = 0; i < 3; ++i) {
+      y_[i] = frame_.p_EoL_I[i];
+      y_[3 + i] = frame_.v_IL_I[i];
+    }
+  }
+
+  AscentResult Fly();
+
+ private:
+  struct Event {
+    double time_s;
+    enum Kind { kIgnition, kBurnout, kSeparation, kTurn, kKink } kind;
+    int stage;
+  };
+
+  static void Rhs(double t, const double* y, double* dydt, void* context) {
+    const auto* self = static_cast<const Ascent*>(context);
+    const Vector3 acceleration = self->Acceleration(t, y);
+    for (int i = 0; i < 3; ++i) {
+      dydt[i] = y[3 + i];
+      dydt[3 + i] = acceleration[i];
+    }
+  }
+
+  Vector3 AirVelocity(const double* y) const {
+    const double omega = model_.plant.environment.earth.rotation_rate_rad_s;
+    return Vector3(y[3] + omega * y[1], y[4] - omega * y[0], y[5]);
+  }
+  Matrix3 Attitude(double t, const double* y) const;
+  LauncherInstant Instant(double t, const double* y) const;
+  Vector3 Acceleration(double t, const double* y) const;
+  PitchYawRoll Angles(double t, const double* y) const {
+    return ToPitchYawRoll(QuaternionOf(frame_.R_IL.transpose() * Attitude(t, y)));
+  }
+  std::vector<Event> Events();
+  bool Advance(double to_s);
+  void Happen(const Event& event);
+  void Observe();
+  void AddKnot(double t, const double* y);
+  void Finish();
+
+  const AscentModel& model_;
+  const FlightProgram& program_;
+  const AscentOptions& options_;
+  LaunchFrame frame_;
+  Integrator integrator_;
+  double time_s_ = 0.0;
+  double y_[6] = {};
+  ProgramPhase turn_ = ProgramPhase::kVertical;
+  Vector3 turn_offset_I_ = Vector3::Zero();  // body axis less velocity direction as the turn begins
+  LauncherPhase phase_;
+  AscentResult result_;
+};
+
+// Body x along the velocity through the air turned by the programmed incidence; body y as near to the
+// launch frame's y as it can be (zero roll in L). While vertical, body x is the vertical of the site, which
+// turns with the Earth; the small angle that the velocity makes with it as the turn begins fades by t3.
+Matrix3 Ascent::Attitude(double t, const double* y) const {
+  const Vector3 right_L = frame_.R_IL.col(1);
+  Vector3 forward;
+  if (turn_ == ProgramPhase::kVertical) {
+    forward = EarthToInertial(model_.plant.environment.earth, t, -frame_.R_IL.col(2));
+  } else {
+    const Vector3 along = AirVelocity(y).normalized();
+    const Vector3 right = (right_L - right_L.dot(along) * along).normalized();
+    const SinCos alpha = SineCosine(ProgrammedIncidence(program_, t));
+    forward = alpha.cos * along + alpha.sin * right.cross(along);
+    const double faded = (t - program_.t1_s) / (program_.t3_s - program_.t1_s);
+    if (faded < 1.0) forward += (1.0 - SmoothStep(Clamp(faded, 0.0, 1.0))) * turn_offset_I_;
+    forward.normalize();
+  }
+  const Vector3 right = (right_L - right_L.dot(forward) * forward).normalized();
+  Matrix3 R_IB;
+  R_IB.col(0) = forward;
+  R_IB.col(1) = right;
+  R_IB.col(2) = forward.cross(right);
+  return R_IB;
+}
+
+LauncherInstant Ascent::Instant(double t, const double* y) const {
+  RigidBodyState state;
+  state.p_EoC_I = Vector3(y[0], y[1], y[2]);
+  state.v_IC_I = Vector3(y[3], y[4], y[5]);
+  state.q_IB = QuaternionOf(Attitude(t, y));
+  std::array<double, kLauncherSize> full{};
+  WriteState(state, full.data());
+  return Evaluate(model_.plant, phase_, t, full.data());
+}
+
+Vector3 Ascent::Acceleration(double t, const double* y) const {
+  const LauncherInstant now = Instant(t, y);
+  return Gravitation(model_.plant.environment.earth, Vector3(y[0], y[1], y[2])) +
+         Attitude(t, y) * (now.loads.force_n / now.loads.mass_kg);
+}
+
+std::vector<Ascent::Event> Ascent::Events() {
+  std::vector<MotorBurn> burns;
+  for (const LauncherStack& stack : model_.plant.stacks) burns.push_back(stack.burn);
+  const std::size_t last = burns.size() - 1;
+  // The coast counts from the burnout below, which does not depend on the timer.
+  std::vector<StageTimes> times = BuildTimeline(model_.vehicle, burns, model_.tick_s, 0.0);
+  if (last > 0) result_.last_ignition_s = times[last - 1].burnout_s + program_.coast_s;
+  times = BuildTimeline(model_.vehicle, burns, model_.tick_s, result_.last_ignition_s);
+
+  std::vector<Event> events;
+  for (std::size_t i = 0; i <= last; ++i) {
+    const int stage = static_cast<int>(i);
+    events.push_back({times[i].ignition_s, Event::kIgnition, stage});
+    events.push_back({times[i].burnout_s, Event::kBurnout, stage});
+    if (i < last) events.push_back({times[i].separation_s, Event::kSeparation, stage});
+  }
+  events.push_back({program_.t1_s, Event::kTurn, 0});
+  events.push_back({program_.t3_s, Event::kKink, 0});
+  events.push_back({program_.t2_s, Event::kKink, 0});
+  std::stable_sort(events.begin(), events.end(),
+                   [](const Event& a, const Event& b) { return a.time_s < b.time_s; });
+  return events;
+}
+
+void Ascent::AddKnot(double t, const double* y) {
+  // Rates by central differences along the motion: the program's own derivative, not the table's.
+  constexpr double kStep_s = 1e-3;
+  const Vector3 a = Acceleration(t, y);
+  const auto moved = [&](double dt) {
+    double there[6];
+    for (int i = 0; i < 3; ++i) {
+      there[i] = y[i] + dt * y[3 + i] + 0.5 * dt * dt * a[i];
+      there[3 + i] = y[3 + i] + dt * a[i];
+    }
+    return Angles(t + dt, there);
+  };
+  const PitchYawRoll now = Angles(t, y), after = moved(kStep_s), before = moved(-kStep_s);
+  const auto rate = [&](double PitchYawRoll::*angle) {
+    return (after.*angle - before.*angle) / (2.0 * kStep_s);
+  };
+  result_.attitude.knots.push_back({t, now.pitch, now.yaw, now.roll, rate(&PitchYawRoll::pitch),
+                                    rate(&PitchYawRoll::yaw), rate(&PitchYawRoll::roll)});
+}
+
+void Ascent::Observe() {
+  const LauncherInstant now = Instant(time_s_, y_);
+  const double alpha = std::fabs(ProgrammedIncidence(program_, time_s_));
+  const Vector3 specific = now.loads.force_n / (now.loads.mass_kg * kStandardGravity);
+  AscentResult& r = result_;
+  r.q_max_pa = std::max(r.q_max_pa, now.air.qbar_pa);
+  r.q_alpha_max_pa_rad = std::max(r.q_alpha_max_pa_rad, now.air.qbar_pa * TotalIncidence(now.v_AB_B));
+  r.axial_load_max_g = std::max(r.axial_load_max_g, std::fabs(specific.x()));
+  r.lateral_load_max_g = std::max(
+      r.lateral_load_max_g, Sqrt(specific.y() * specific.y() + specific.z() * specific.z()));
+  if (now.air.mach >= options_.mach_low && now.air.mach <= options_.mach_high)
+    r.transonic_alpha_max_rad = std::max(r.transonic_alpha_max_rad, alpha);
+  if (!options_.record) return;
+
+  const Vector3 p(y_[0], y_[1], y_[2]), v(y_[3], y_[4], y_[5]);
+  const Vector3 relative = AirVelocity(y_);
+  const PitchYawRoll angles = Angles(time_s_, y_);
+  AscentSample s;
+  s.time_s = time_s_;
+  s.stage = phase_.stack + 1;
+  s.altitude_m = now.air.place.altitude_m;
+  s.velocity_m_s = v.norm();
+  s.relative_velocity_m_s = relative.norm();
+  s.flight_path_angle_rad = Atan2(p.dot(v), p.cross(v).norm());
+  s.relative_path_angle_rad = Atan2(p.dot(relative), p.cross(relative).norm());
+  s.alpha_rad = ProgrammedIncidence(program_, time_s_);
+  s.pitch_rad = angles.pitch;
+  s.yaw_rad = angles.yaw;
+  s.roll_rad = angles.roll;
+  s.mach = now.air.mach;
+  s.qbar_pa = now.air.qbar_pa;
+  s.axial_load_g = specific.x();
+  s.mass_kg = now.loads.mass_kg;
+  r.samples.push_back(s);
+  if (r.attitude.knots.empty() || time_s_ > r.attitude.knots.back().time_s + kSameInstant_s)
+    AddKnot(time_s_, y_);
+}
+
+bool Ascent::Advance(double to_s) {
+  const bool coast = !phase_.burning && phase_.stack + 1 == static_cast<int>(model_.plant.stacks.size()) &&
+                     phase_.stack > 0;
+  double largest = coast ? options_.coast_step_s : options_.burn_step_s;
+  if (options_.record) largest = std::min(largest, time_s_ < program_.t2_s + 2.0 ? kKickKnot_s : kKnot_s);
+  const double from = time_s_;
+  const int steps = std::max(1, static_cast<int>(std::ceil((to_s - from) / largest - kSameInstant_s)));
+  for (int i = 1; i <= steps; ++i) {
+    const double next = i == steps ? to_s : from + (to_s - from) * i / steps;
+    if (!integrator_.Advance(time_s_, next, 1, y_)) return false;
+    time_s_ = next;
+    // The end of an interval is observed after its event, on the far side of the kink.
+    if (i < steps) Observe();
+  }
+  const Geodetic place = ToGeodetic(model_.plant.environment.earth, Vector3(y_[0], y_[1], y_[2]));
+  return place.altitude_m > model_.vehicle.site.altitude_m - kGround_m;
+}
+
+void Ascent::Happen(const Event& event) {
+  switch (event.kind) {
+    case Event::kIgnition:
+      phase_.burning = true;
+      phase_.ignition_s = event.time_s;
+      break;
+    case Event::kBurnout:
+      Observe();
+      phase_.burning = false;
+      phase_.burnt = true;
+      break;
+    case Event::kSeparation: {
+      const std::size_t below = static_cast<std::size_t>(event.stage);
+      const StackMass& upper = model_.plant.stacks[below + 1].mass;
+      const double forward_m = model_.plant.stacks[below].mass.At(0.0).cg_station_m -
+                               upper.At(upper.propellant_mass_kg).cg_station_m;
+      const Vector3 forward = Attitude(time_s_, y_).col(0) * forward_m;
+      for (int i = 0; i < 3; ++i) y_[i] += forward[i];
+      phase_.stack = event.stage + 1;
+      phase_.burnt = false;
+      break;
+    }
+    case Event::kTurn:
+      turn_offset_I_ = Attitude(time_s_, y_).col(0) - AirVelocity(y_).normalized();
+      turn_ = ProgramPhase::kTurn;
+      break;
+    case Event::kKink:
+      if (event.time_s == program_.t2_s) result_.mach_at_t2 = Instant(time_s_, y_).air.mach;
+      break;
+  }
+}
+
+void Ascent::Finish() {
+  const Earth& earth = model_.plant.environment.earth;
+  result_.p_EoC_I = Vector3(y_[0], y_[1], y_[2]);
+  result_.v_IC_I = Vector3(y_[3], y_[4], y_[5]);
+  const OrbitElements e = ElementsOf(earth, result_.p_EoC_I, result_.v_IC_I);
+  result_.orbit = {ToGeodetic(earth, result_.p_EoC_I).altitude_m, e.speed_m_s, e.flight_path_angle_rad,
+                   e.inclination_rad};
+}
+
+AscentResult Ascent::Fly() {
+  const std::vector<Event> events = Events();
+  result_.attitude.launch_azimuth_rad = program_.launch_azimuth_rad;
+  bool flying = true;
+  for (const Event& event : events) {
+    if (event.time_s > time_s_ + kSameInstant_s) {
+      Observe();
+      flying = Advance(event.time_s);
+      if (!flying) break;
+    }
+    Happen(event);
+  }
+  result_.end_time_s = time_s_;
+  result_.completed = flying;
+  Finish();
+  if (flying && options_.record) {
+    Observe();
+    const std::size_t samples = result_.samples.size();
+    Advance(time_s_ + kProgramReserve_s);
+    Observe();
+    result_.samples.resize(samples);
+  }
+  return result_;
+}
+
+}  // namespace
+
+double ProgrammedIncidence(const FlightProgram& program, double t) {
+  if (t <= program.t1_s || t >= program.t2_s) return 0.0;
+  const double s = t < program.t3_s ? (t - program.t1_s) / (program.t3_s - program.t1_s)
+                                    : (program.t2_s - t) / (program.t2_s - program.t3_s);
+  return -program.alpha_max_rad * SmoothStep(s);
+}
+
+AscentModel BuildAscentModel(const Vehicle& vehicle, double tick_s) {
+  return {vehicle, BuildNominalPlant(vehicle), tick_s};
+}
+
+AscentResult FlyAscent(const AscentModel& model, const FlightProgram& program,
+                       const AscentOptions& options) {
+  return Ascent(model, program, options).Fly();
+}
+
+}  // namespace dispersa

@@ -1,0 +1,76 @@
+// The production 3DOF: a point mass in three dimensions with the attitude imposed by the flight program, on
+// the same environment, aerodynamics, propulsion, mass and sequencing as the 6DOF flight. The paper's
+// planar equations (1) to (7) are its limit.
+#pragma once
+
+#include <vector>
+
+#include "core/flight/flight_model.h"
+#include "core/flight/launch_frame.h"
+#include "core/flight/orbit.h"
+#include "core/trajectory/reference.h"
+
+namespace dispersa {
+
+/// Programmed incidence, rad, negative (nose down): 0 to t1, a smooth fall to -alpha_max at t3, a smooth
+/// return to 0 at t2, 0 after. The ramps are quintics with no rate or acceleration at their ends
+/// (10 s³ - 15 s⁴ + 6 s⁵), so that the program asks no jump of the autopilot.
+double ProgrammedIncidence(const FlightProgram& program, double time_s);
+
+/// What every ascent of a vehicle shares.
+struct AscentModel {
+  Vehicle vehicle;
+  LauncherPlant plant;
+  double tick_s = 0.01;  ///< burnout is detected on the autopilot's ticks
+};
+
+struct AscentOptions {
+  double burn_step_s = 0.25;   ///< largest step while thrust acts or the air does
+  double coast_step_s = 10.0;  ///< largest step of the coast
+  bool record = false;         ///< keep samples and the attitude program
+  double mach_low = 0.8;       ///< of the transonic range
+  double mach_high = 1.2;
+};
+
+struct AscentSample {
+  double time_s = 0.0;
+  int stage = 0;  ///< 1-based
+  double altitude_m = 0.0;
+  double velocity_m_s = 0.0;           ///< inertial
+  double relative_velocity_m_s = 0.0;  ///< to the rotating Earth
+  double flight_path_angle_rad = 0.0;  ///< inertial
+  double relative_path_angle_rad = 0.0;
+  double alpha_rad = 0.0;              ///< programmed
+  double pitch_rad = 0.0;              ///< in the launch-inertial frame: the paper's phi
+  double yaw_rad = 0.0;
+  double roll_rad = 0.0;
+  double mach = 0.0;
+  double qbar_pa = 0.0;
+  double axial_load_g = 0.0;
+  double mass_kg = 0.0;
+};
+
+struct AscentResult {
+  bool completed = false;     ///< false: it came back to the ground
+  double end_time_s = 0.0;
+  Orbit orbit;                ///< at injection
+  Vector3 p_EoC_I = Vector3::Zero();
+  Vector3 v_IC_I = Vector3::Zero();
+  double last_ignition_s = 0.0;
+  double q_max_pa = 0.0;
+  double q_alpha_max_pa_rad = 0.0;
+  double axial_load_max_g = 0.0;
+  double lateral_load_max_g = 0.0;
+  double mach_at_t2 = 0.0;
+  double transonic_alpha_max_rad = 0.0;  ///< largest |programmed alpha| between the Mach limits
+  std::vector<AscentSample> samples;     ///< with `record`
+  AttitudeProgram attitude;              ///< with `record`
+};
+
+AscentModel BuildAscentModel(const Vehicle& vehicle, double tick_s);
+
+/// Flies the program. Event times are exact: they bound steps and are never rounded, and the program is
+/// evaluated on the side of a kink to which a step belongs.
+AscentResult FlyAscent(const AscentModel& model, const FlightProgram& program, const AscentOptions& options);
+
+}  // namespace dispersa

@@ -1,0 +1,91 @@
+#include "core/vehicle/mass.h"
+
+#include "core/math/constants.h"
+#include "core/math/functions.h"
+
+namespace dispersa {
+
+namespace {
+
+struct Tube {
+  double mass_kg;
+  double top_m;
+  double bottom_m;
+  double outer_radius_m;
+  double inner_radius_m;
+};
+
+void Add(const Tube& tube, StackMass& stack) {
+  const double radii = Square(tube.outer_radius_m) + Square(tube.inner_radius_m);
+  const double length = tube.bottom_m - tube.top_m;
+  const double station = 0.5 * (tube.top_m + tube.bottom_m);
+  stack.fixed_mass_kg += tube.mass_kg;
+  stack.fixed_first_moment_kg_m += tube.mass_kg * station;
+  stack.fixed_second_moment_kg_m2 +=
+      tube.mass_kg * (0.25 * radii + Square(length) / 12.0 + Square(station));
+  stack.fixed_axial_inertia_kg_m2 += 0.5 * tube.mass_kg * radii;
+}
+
+}  // namespace
+
+MassProperties StackMass::At(double propellant_kg) const {
+  const double outer2 = Square(grain_outer_radius_m);
+  const double inner2 = outer2 - propellant_kg / (kPi * grain_density_kg_m3 * grain_length_m);
+  const double grain_axial = 0.5 * propellant_kg * (outer2 + inner2);
+  const double length2 = Square(grain_length_m) / 12.0;
+
+  MassProperties m;
+  m.mass_kg = fixed_mass_kg + propellant_kg;
+  m.cg_station_m = (fixed_first_moment_kg_m + propellant_kg * grain_station_m) / m.mass_kg;
+  m.axial_inertia_kg_m2 = fixed_axial_inertia_kg_m2 + grain_axial;
+  m.transverse_inertia_kg_m2 = fixed_second_moment_kg_m2 + 0.5 * grain_axial +
+                               propellant_kg * (length2 + Square(grain_station_m)) -
+                               m.mass_kg * Square(m.cg_station_m);
+  // d(grain_axial)/dm = r_i², because the propellant goes at the bore.
+  m.axial_inertia_per_kg = inner2;
+  m.transverse_inertia_per_kg = 0.5 * inner2 + length2 + Square(grain_station_m - m.cg_station_m);
+  return m;
+}
+
+double DryMass(const Vehicle& vehicle, int stage) {
+  const auto& stages = vehicle.stages;
+  const std::size_t i = static_cast<std::size_t>(stage);
+  const double above = i + 1 < stages.size() ? stages[i + 1].liftoff_mass_kg : 0.0;
+  return stages[i].liftoff_mass_kg - above - stages[i].propellant_mass_kg;
+}
+
+double PropellantDensity(const Stage& stage) {
+  const Grain& g = stage.grain;
+  const double area = 0.25 * kPi * (Square(g.outer_diameter_m) - Square(g.inner_diameter_m));
+  return stage.propellant_mass_kg / (area * (g.bottom_station_m - g.top_station_m));
+}
+
+std::vector<StackMass> BuildStackMasses(const Vehicle& vehicle) {
+  const int count = static_cast<int>(vehicle.stages.size());
+  std::vector<StackMass> stacks(vehicle.stages.size());
+  for (int lowest = 0; lowest < count; ++lowest) {
+    StackMass& stack = stacks[static_cast<std::size_t>(lowest)];
+    for (int i = lowest; i < count; ++i) {
+      const Stage& stage = vehicle.stages[static_cast<std::size_t>(i)];
+      const double dry = DryMass(vehicle, i);
+      for (const MassElement& e : stage.structure)
+        Add({dry * e.fraction, e.top_station_m, e.bottom_station_m, 0.5 * e.outer_diameter_m,
+             0.5 * e.inner_diameter_m},
+            stack);
+      const Grain& g = stage.grain;
+      if (i > lowest)
+        Add({stage.propellant_mass_kg, g.top_station_m, g.bottom_station_m, 0.5 * g.outer_diameter_m,
+             0.5 * g.inner_diameter_m},
+            stack);
+    }
+    const Stage& burning = vehicle.stages[static_cast<std::size_t>(lowest)];
+    stack.grain_station_m = 0.5 * (burning.grain.top_station_m + burning.grain.bottom_station_m);
+    stack.grain_length_m = burning.grain.bottom_station_m - burning.grain.top_station_m;
+    stack.grain_outer_radius_m = 0.5 * burning.grain.outer_diameter_m;
+    stack.grain_density_kg_m3 = PropellantDensity(burning);
+    stack.propellant_mass_kg = burning.propellant_mass_kg;
+  }
+  return stacks;
+}
+
+}  // namespace dispersa

@@ -1,0 +1,45 @@
+// Mass, centre of gravity and inertia of a stack as its lowest stage's propellant burns.
+#pragma once
+
+#include <vector>
+
+#include "core/vehicle/vehicle.h"
+
+namespace dispersa {
+
+/// Of an axisymmetric stack; inertias about its CG, along and across the axis.
+struct MassProperties {
+  double mass_kg = 0.0;
+  double cg_station_m = 0.0;
+  double axial_inertia_kg_m2 = 0.0;
+  double transverse_inertia_kg_m2 = 0.0;
+  double axial_inertia_per_kg = 0.0;       ///< derivative by propellant mass, m²
+  double transverse_inertia_per_kg = 0.0;  ///< likewise, about the moving CG
+};
+
+/// Everything of a stack but the burning propellant, summed once, and the grain that burns.
+///
+/// The grain burns from its bore outwards at constant length: with rho the propellant's density,
+/// r_i² = r_o² - m / (pi rho L); its inertias are those of a tube. Parallel axes by Huygens and Steiner.
+struct StackMass {
+  double fixed_mass_kg = 0.0;
+  double fixed_first_moment_kg_m = 0.0;      ///< about station 0
+  double fixed_second_moment_kg_m2 = 0.0;    ///< transverse, about station 0, own inertias included
+  double fixed_axial_inertia_kg_m2 = 0.0;
+  double grain_station_m = 0.0;
+  double grain_length_m = 0.0;
+  double grain_outer_radius_m = 0.0;
+  double grain_density_kg_m3 = 0.0;
+  double propellant_mass_kg = 0.0;           ///< at ignition
+
+  MassProperties At(double propellant_kg) const;
+};
+
+/// Dry mass of a stage: its lift-off mass less what is above and its propellant.
+double DryMass(const Vehicle& vehicle, int stage);
+/// Propellant density that the grain's volume implies, kg/m³.
+double PropellantDensity(const Stage& stage);
+/// One entry a stack; stack i has stages i, i+1, ... attached.
+std::vector<StackMass> BuildStackMasses(const Vehicle& vehicle);
+
+}  // namespace dispersa
