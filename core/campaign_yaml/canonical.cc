@@ -12,9 +12,12 @@ namespace {
 // and what file names and schemas need.
 bool IsPlainText(const std::string& text) {
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
-  const auto is_other = [](char c) { return (c >= '0' && c <= '9') || c == '_' || c == '-' || c == '.' || c == '/'; };
+  const auto is_other = [](char c) {
+    return (c >= '0' && c <= '9') || c == '_' || c == '-' || c == '.' || c == '/';
+  };
   if (text.empty() || !is_letter(text[0])) return false;
-  if (!std::all_of(text.begin(), text.end(), [&](char c) { return is_letter(c) || is_other(c); })) return false;
+  if (!std::all_of(text.begin(), text.end(), [&](char c) { return is_letter(c) || is_other(c); }))
+    return false;
   std::string lower = text;
   std::transform(lower.begin(), lower.end(), lower.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
@@ -59,12 +62,18 @@ void Emit(const InputNode& node, const std::string& indent, std::string& out);
 // The rest of a line that began with "key:" or "-", and the lines below it.
 void EmitValue(const InputNode& node, const std::string& indent, std::string& out) {
   if (IsScalar(node)) {
-    out += " " + ScalarText(node) + "\n";
+    out += ' ';
+    out += ScalarText(node);
+    out += '\n';
   } else if (node.kind == InputNode::Kind::kMap && node.members.empty()) {
     out += " {}\n";
-  } else if (node.kind == InputNode::Kind::kList && std::all_of(node.items.begin(), node.items.end(), IsScalar)) {
+  } else if (node.kind == InputNode::Kind::kList &&
+             std::all_of(node.items.begin(), node.items.end(), IsScalar)) {
     out += " [";
-    for (std::size_t i = 0; i < node.items.size(); ++i) out += (i > 0 ? ", " : "") + ScalarText(node.items[i]);
+    for (std::size_t i = 0; i < node.items.size(); ++i) {
+      if (i > 0) out += ", ";
+      out += ScalarText(node.items[i]);
+    }
     out += "]\n";
   } else {
     out += "\n";
@@ -75,8 +84,14 @@ void EmitValue(const InputNode& node, const std::string& indent, std::string& ou
 void Emit(const InputNode& node, const std::string& indent, std::string& out) {
   if (node.kind == InputNode::Kind::kList) {
     for (const InputNode& item : node.items) {
-      out += indent + "-";
-      EmitValue(item, indent, out);
+      const std::size_t begin = out.size();
+      if (item.kind == InputNode::Kind::kMap && !item.members.empty()) {
+        Emit(item, indent + "  ", out);
+        out[begin + indent.size()] = '-';
+      } else {
+        out += indent + "-";
+        EmitValue(item, indent, out);
+      }
     }
     return;
   }

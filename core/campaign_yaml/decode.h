@@ -17,7 +17,8 @@ Vehicle DecodeVehicle(const InputNode& node, const std::string& path, std::vecto
 /// `stages`: of the vehicle that it flies, 0 if that is unknown (then nothing is checked against it).
 AutopilotConfig DecodeAutopilot(const InputNode& node, const std::string& path, int stages,
                                 std::vector<InputProblem>& problems);
-Reference DecodeReference(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems);
+Reference DecodeReference(const InputNode& node, const std::string& path,
+                          std::vector<InputProblem>& problems);
 /// A reference's `problem`, a campaign's `optimize`.
 TrajectoryProblem DecodeTrajectoryProblem(const InputNode& node, const std::string& path,
                                           std::vector<InputProblem>& problems);

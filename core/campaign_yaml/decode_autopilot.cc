@@ -30,13 +30,14 @@ Adaptation DecodeAdaptation(const InputNode& node, const std::string& path, Prob
   adaptation.gamma = map.Numbers("gamma", kNonNegative, 1, kMaxStages);
   map.Each("q", 2, 2, [&](const InputNode& row, const std::string& row_path) {
     if (row.kind != InputNode::Kind::kList || row.items.size() != 2) {
-      AddProblem(problems, row, row_path, row.Describe() + " is not a row of two numbers", "[[q11, q12], [q12, q22]]");
+      AddProblem(problems, row, row_path, row.Describe() + " is not a row of two numbers",
+                 "[[q11, q12], [q12, q22]]");
       return;
     }
     const auto index = &row - node.Find("q")->items.data();
     for (int column = 0; column < 2; ++column) {
-      adaptation.q(index, column) =
-          ReadNumber(row.items[static_cast<std::size_t>(column)], row_path + "[" + std::to_string(column) + "]", problems);
+      adaptation.q(index, column) = ReadNumber(row.items[static_cast<std::size_t>(column)],
+                                               row_path + "[" + std::to_string(column) + "]", problems);
     }
   });
   if (map.Optional("p_n") != nullptr) {
@@ -44,7 +45,8 @@ Adaptation DecodeAdaptation(const InputNode& node, const std::string& path, Prob
     if (p_n.size() == 2) adaptation.p_n = Vector2(p_n[0], p_n[1]);
   }
   adaptation.allow_unproven = map.Flag("allow_unproven", false);
-  adaptation.projection_bound_rad_s2 = map.Quantity("projection_bound", kAngularAcceleration, kNonNegative, 0.0);
+  adaptation.projection_bound_rad_s2 =
+      map.Quantity("projection_bound", kAngularAcceleration, kNonNegative, 0.0);
   adaptation.leakage_1_s = map.Quantity("leakage", kPerTime, kNonNegative, 0.0);
   adaptation.dead_zone_rad = map.Quantity("dead_zone", kAngle, kNonNegative, 0.0);
   adaptation.freeze_when_saturated = map.Flag("freeze_when_saturated", false);
@@ -53,7 +55,8 @@ Adaptation DecodeAdaptation(const InputNode& node, const std::string& path, Prob
   return adaptation;
 }
 
-AdaptiveAugmentation DecodeAugmentation(const InputNode& node, const std::string& path, ProblemList& problems) {
+AdaptiveAugmentation DecodeAugmentation(const InputNode& node, const std::string& path,
+                                        ProblemList& problems) {
   MapReader map(node, path, problems);
   AdaptiveAugmentation augmentation;
   augmentation.adaptive_gain_1_s = map.Quantity("adaptive_gain", kPerTime, kNonNegative);
@@ -71,9 +74,9 @@ AxisConfig DecodeAxis(const InputNode& node, const std::string& path, ProblemLis
   MapReader map(node, path, problems);
   AxisConfig axis;
   axis.law = map.Choice<ControlLaw>("law", {{"adaptive_fuzzy", ControlLaw::kAdaptiveFuzzy},
-                                           {"frozen_fuzzy", ControlLaw::kFrozenFuzzy},
-                                           {"pd", ControlLaw::kPd},
-                                           {"pd_aac", ControlLaw::kPdAac}});
+                                            {"frozen_fuzzy", ControlLaw::kFrozenFuzzy},
+                                            {"pd", ControlLaw::kPd},
+                                            {"pd_aac", ControlLaw::kPdAac}});
   map.Each("gains", 1, kMaxStages, [&](const InputNode& item, const std::string& item_path) {
     axis.gains.push_back(DecodeGains(item, item_path, problems));
   });
@@ -93,11 +96,13 @@ AxisConfig DecodeAxis(const InputNode& node, const std::string& path, ProblemLis
   return axis;
 }
 
-ReactionControlLogic DecodeReactionControl(const InputNode& node, const std::string& path, ProblemList& problems) {
+ReactionControlLogic DecodeReactionControl(const InputNode& node, const std::string& path,
+                                           ProblemList& problems) {
   MapReader map(node, path, problems);
   ReactionControlLogic logic;
   logic.deadband_rad = map.Quantity("deadband", kAngle, kPositive);
   logic.rate_gain_s = map.Quantity("rate_gain", kTime, kNonNegative);
+  logic.cycle_ticks = static_cast<int>(map.Integer("cycle_ticks", 1, 100));
   logic.hysteresis = map.Number("hysteresis", {0.0, 1.0, false, true});
   return logic;
 }
@@ -108,6 +113,7 @@ AutopilotConfig DecodeAutopilot(const InputNode& node, const std::string& path, 
                                 std::vector<InputProblem>& problems) {
   const std::size_t before = problems.size();
   AutopilotConfig autopilot;
+  if (node.file == nullptr) return autopilot;  // already reported
   if (!CheckSchema(node, kAutopilotSchema, !path.empty(), path, problems)) return autopilot;
   {
     MapReader map(node, path, problems);
@@ -117,8 +123,8 @@ AutopilotConfig DecodeAutopilot(const InputNode& node, const std::string& path, 
     autopilot.pitch = DecodeAxis(map.Required("pitch", "a map"), map.PathOf("pitch"), problems);
     autopilot.yaw = DecodeAxis(map.Required("yaw", "a map"), map.PathOf("yaw"), problems);
     autopilot.roll = DecodeAxis(map.Required("roll", "a map"), map.PathOf("roll"), problems);
-    autopilot.reaction_control =
-        DecodeReactionControl(map.Required("reaction_control", "a map"), map.PathOf("reaction_control"), problems);
+    autopilot.reaction_control = DecodeReactionControl(map.Required("reaction_control", "a map"),
+                                                       map.PathOf("reaction_control"), problems);
   }
   if (stages == 0) stages = static_cast<int>(autopilot.pitch.gains.size());
   if (problems.size() == before) AddStructProblems(Problems(autopilot, stages), node, path, problems);

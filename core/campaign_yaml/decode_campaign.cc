@@ -28,13 +28,14 @@ std::string PathOfPart(const InputNode& part, const InputNode& root, const std::
 Sampling DecodeSampling(const InputNode& node, const std::string& path, ProblemList& problems) {
   MapReader map(node, path, problems);
   Sampling sampling;
-  sampling.method = map.Choice<SamplingMethod>("method", {{"monte_carlo", SamplingMethod::kMonteCarlo},
-                                                         {"latin_hypercube", SamplingMethod::kLatinHypercube},
-                                                         {"sobol", SamplingMethod::kSobol},
-                                                         {"corners", SamplingMethod::kCorners},
-                                                         {"one_at_a_time", SamplingMethod::kOneAtATime},
-                                                         {"grid", SamplingMethod::kGrid},
-                                                         {"list", SamplingMethod::kList}});
+  sampling.method =
+      map.Choice<SamplingMethod>("method", {{"monte_carlo", SamplingMethod::kMonteCarlo},
+                                            {"latin_hypercube", SamplingMethod::kLatinHypercube},
+                                            {"sobol", SamplingMethod::kSobol},
+                                            {"corners", SamplingMethod::kCorners},
+                                            {"one_at_a_time", SamplingMethod::kOneAtATime},
+                                            {"grid", SamplingMethod::kGrid},
+                                            {"list", SamplingMethod::kList}});
   sampling.cases = map.Integer("cases", 1, kMaxCases);
   sampling.seed = map.Integer("seed", 0, UINT64_MAX);
   return sampling;
@@ -94,14 +95,17 @@ Requirement DecodeRequirement(const InputNode& node, const std::string& path, Pr
   const InputNode& metric = map.Required("metric", "the name of a metric");
   requirement.metric = ReadText(metric, map.PathOf("metric"), problems);
   const std::vector<std::string>& names = MetricNames();
-  if (metric.kind == InputNode::Kind::kScalar && std::find(names.begin(), names.end(), metric.text) == names.end()) {
+  if (metric.kind == InputNode::Kind::kScalar &&
+      std::find(names.begin(), names.end(), metric.text) == names.end()) {
     AddProblem(problems, metric, map.PathOf("metric"),
-               metric.Describe() + " is not a metric" + DidYouMean(metric.text, names), "one of " + JoinWords(names));
+               metric.Describe() + " is not a metric" + DidYouMean(metric.text, names),
+               "one of " + JoinWords(names));
   }
   if (map.Optional("below") != nullptr) requirement.below = map.Number("below", kAnyNumber);
   if (map.Optional("above") != nullptr) requirement.above = map.Number("above", kAnyNumber);
   if (requirement.below.has_value() == requirement.above.has_value() && node.kind == InputNode::Kind::kMap) {
-    AddProblem(problems, node, path, requirement.below ? "'below' and 'above' are both given" : "the limit is missing",
+    AddProblem(problems, node, path,
+               requirement.below ? "'below' and 'above' are both given" : "the limit is missing",
                "either below: x or above: x");
   }
   requirement.probability = map.Number("probability", Inside(0.0, 1.0));
@@ -112,9 +116,12 @@ Requirement DecodeRequirement(const InputNode& node, const std::string& path, Pr
 // The name becomes part of a folder's name.
 void CheckName(const std::string& name, const InputNode& root, ProblemList& problems) {
   const auto is_allowed = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' || c == '.';
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-' || c == '.';
   };
-  if (name.empty() || (std::all_of(name.begin(), name.end(), is_allowed) && name[0] != '.' && name.size() <= 64)) return;
+  if (name.empty() ||
+      (std::all_of(name.begin(), name.end(), is_allowed) && name[0] != '.' && name.size() <= 64))
+    return;
   AddProblem(problems, *root.Find("name"), "name", "'" + name + "' cannot name a folder",
              "up to 64 letters, digits, '_', '-' and '.', the first not '.'");
 }
@@ -139,8 +146,9 @@ DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vect
   const InputNode* reference = map.Optional("reference");
   const InputNode* optimize = map.Optional("optimize");
   if (root.kind == InputNode::Kind::kMap && (reference == nullptr) == (optimize == nullptr)) {
-    AddProblem(problems, root, "", reference == nullptr ? "there is neither 'reference' nor 'optimize'"
-                                                        : "'reference' and 'optimize' are both given",
+    AddProblem(problems, root, "",
+               reference == nullptr ? "there is neither 'reference' nor 'optimize'"
+                                    : "'reference' and 'optimize' are both given",
                "one of the two");
   } else if (optimize != nullptr && use == CampaignUse::kFly) {
     AddProblem(problems, *optimize, "optimize", "the campaign has no trajectory to fly yet",
@@ -153,8 +161,10 @@ DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vect
   if (optimize != nullptr) decoded.optimize = DecodeTrajectoryProblem(*optimize, "optimize", problems);
 
   const bool flies = use == CampaignUse::kFly || (use == CampaignUse::kCheck && reference != nullptr);
-  if (const InputNode* autopilot = flies ? &map.Required("autopilot", "an autopilot file") : map.Optional("autopilot")) {
-    campaign.autopilot = DecodeAutopilot(*autopilot, PathOfPart(*autopilot, root, "autopilot"), stages, problems);
+  if (const InputNode* autopilot =
+          flies ? &map.Required("autopilot", "an autopilot file") : map.Optional("autopilot")) {
+    campaign.autopilot =
+        DecodeAutopilot(*autopilot, PathOfPart(*autopilot, root, "autopilot"), stages, problems);
   }
   const InputNode* sampling = flies ? &map.Required("sampling", "a map") : map.Optional("sampling");
   if (sampling != nullptr) campaign.sampling = DecodeSampling(*sampling, "sampling", problems);
@@ -172,8 +182,8 @@ DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vect
 
   if (warnings != nullptr && problems.empty() && reference != nullptr &&
       campaign.reference.vehicle_sha256 != VehicleSha256(vehicle)) {
-    AddProblem(*warnings, *reference, "reference",
-               "the reference was found for another vehicle than this one; flights will not reach its orbit",
+    AddProblem(*warnings, *reference, PathOfPart(*reference, root, "reference"),
+               "the reference was found for another vehicle; flights will miss its orbit",
                "a reference that `dispersa optimize` wrote for this vehicle");
   }
   return decoded;

@@ -12,8 +12,9 @@ namespace dispersa {
 
 /// A campaign as its file describes it: with a reference, or with a problem whose solution will be one.
 struct DecodedCampaign {
-  Campaign campaign;                        ///< without canonical_yaml and ids
-  std::optional<TrajectoryProblem> optimize;  ///< of the `optimize` block, which stands in place of `reference`
+  Campaign campaign;  ///< without canonical_yaml and ids
+  std::optional<TrajectoryProblem>
+      optimize;  ///< of the `optimize` block, which stands in place of `reference`
 };
 
 /// What the campaign is read for decides what it must have.

@@ -30,7 +30,9 @@ class DispersionDecoder {
  public:
   DispersionDecoder(const InputNode& node, const std::string& path, int stages, Campaign& campaign,
                     ProblemList& problems)
-      : map_(node, path, problems), stages_(stages > 0 ? stages : kMaxStages), campaign_(campaign),
+      : map_(node, path, problems),
+        stages_(stages > 0 ? stages : kMaxStages),
+        campaign_(campaign),
         problems_(problems) {}
 
   void Decode() {
@@ -67,6 +69,15 @@ class DispersionDecoder {
     campaign_.dispersions.push_back({name, distribution, std::move(inputs), absolute});
   }
 
+  static void Shift(ScalarDistribution& distribution, double by) {
+    distribution.nominal += by;
+    if (distribution.low < distribution.high) {
+      distribution.low += by;
+      distribution.high += by;
+    }
+    for (double& value : distribution.values) value += by;
+  }
+
   // One draw a stage, or one for all of them, as `per` says.
   void AddStages(const std::string& name, bool per_stage, const ScalarDistribution& distribution,
                  const std::vector<StageColumn>& columns, bool absolute = false) {
@@ -80,7 +91,9 @@ class DispersionDecoder {
     if (!per_stage) Add(name, distribution, std::move(all), absolute);
   }
 
-  static bool PerStage(MapReader& map) { return map.Choice<bool>("per", {{"stage", true}, {"vehicle", false}}); }
+  static bool PerStage(MapReader& map) {
+    return map.Choice<bool>("per", {{"stage", true}, {"vehicle", false}});
+  }
 
   // A magnitude and the direction of it around the axis.
   void Lateral(const std::string& key, const DispersedScalar& scalar, const StageColumn& magnitude,
@@ -89,8 +102,9 @@ class DispersionDecoder {
     if (node == nullptr) return;
     MapReader map(*node, map_.PathOf(key), problems_);
     const ScalarDistribution distribution = ReadDistribution(map, scalar);
-    const ScalarDistribution direction = ReadDirection(
-        map.Required("clock_angle", "uniform, {fixed_deg: x} or a distribution"), map.PathOf("clock_angle"), problems_);
+    const ScalarDistribution direction =
+        ReadDirection(map.Required("clock_angle", "uniform, {fixed_deg: x} or a distribution"),
+                      map.PathOf("clock_angle"), problems_);
     const bool per_stage = PerStage(map);
     AddStages(key, per_stage, distribution, {magnitude}, true);
     AddStages(key + "/clock", per_stage, direction, {clock});
@@ -123,8 +137,9 @@ class DispersionDecoder {
   }
 
   // "stem_unit: x" or "stem: {distribution: ...}"; `nominal` is the value that the draw is added to.
-  void FixedOrDrawn(MapReader& map, const std::string& name, const std::string& stem, const DispersedScalar& scalar,
-                    const std::string& column, bool required, double nominal = 0.0) {
+  void FixedOrDrawn(MapReader& map, const std::string& name, const std::string& stem,
+                    const DispersedScalar& scalar, const std::string& column, bool required,
+                    double nominal = 0.0) {
     const InputNode* drawn = map.node().Find(stem);
     ScalarDistribution distribution;
     if (drawn != nullptr && drawn->kind == InputNode::Kind::kMap) {
@@ -138,10 +153,7 @@ class DispersionDecoder {
       if (!value) return;
       distribution = Constant(*value);
     }
-    distribution.nominal -= nominal;
-    distribution.low -= nominal;
-    distribution.high -= nominal;
-    for (double& value : distribution.values) value -= nominal;
+    Shift(distribution, -nominal);
     Add(name, distribution, {Column(column)});
   }
 
@@ -154,8 +166,8 @@ class DispersionDecoder {
     Add("wind/speed", is_uniform ? Uniform(0.0, max_speed_m_s) : Constant(max_speed_m_s),
         {Column("wind_max_speed_m_s")});
     Add("wind/azimuth",
-        ReadDirection(map.Required("azimuth", "uniform, {fixed_deg: x} or a distribution"), map.PathOf("azimuth"),
-                      problems_),
+        ReadDirection(map.Required("azimuth", "uniform, {fixed_deg: x} or a distribution"),
+                      map.PathOf("azimuth"), problems_),
         {Column("wind_azimuth_deg")});
     const FlightInputs nominal;
     FixedOrDrawn(map, "wind/altitude", "altitude", {kLength, Between(0.0, 100e3)}, "wind_altitude_m", false,
@@ -172,8 +184,8 @@ class DispersionDecoder {
     FixedOrDrawn(map, "gust/altitude", "altitude", {kLength, Between(0.0, 100e3)}, "gust_altitude_m", true);
     FixedOrDrawn(map, "gust/length", "length", {kLength, Between(1.0, 10e3)}, "gust_length_m", true);
     Add("gust/azimuth",
-        ReadDirection(map.Required("azimuth", "uniform, {fixed_deg: x} or a distribution"), map.PathOf("azimuth"),
-                      problems_),
+        ReadDirection(map.Required("azimuth", "uniform, {fixed_deg: x} or a distribution"),
+                      map.PathOf("azimuth"), problems_),
         {Column("gust_azimuth_deg")});
   }
 
@@ -204,12 +216,13 @@ class DispersionDecoder {
 
   // The columns of a table have as many values as the first, and the table has no further problems.
   template <typename Table>
-  bool IsUsable(const Table& table, const std::vector<const std::vector<double>*>& columns, const InputNode& node,
-                const std::string& path, std::size_t problems_before) {
+  bool IsUsable(const Table& table, const std::vector<const std::vector<double>*>& columns,
+                const InputNode& node, const std::string& path, std::size_t problems_before) {
     if (problems_.size() > problems_before) return false;
     for (const auto* column : columns) {
       if (column->size() == columns.front()->size()) continue;
-      AddProblem(problems_, node, path, "the columns have different lengths", "one value an altitude in each column");
+      AddProblem(problems_, node, path, "the columns have different lengths",
+                 "one value an altitude in each column");
       return false;
     }
     for (const std::string& sentence : Problems(table)) AddProblem(problems_, node, path, sentence);
@@ -217,6 +230,7 @@ class DispersionDecoder {
   }
 
   void WindTableColumns(const InputNode& node, const std::string& path) {
+    if (node.file == nullptr) return;  // already reported
     const std::size_t before = problems_.size();
     WindTable table;
     {
@@ -231,6 +245,7 @@ class DispersionDecoder {
   }
 
   void StatisticsColumns(const InputNode& node, const std::string& path, WindStatistics& statistics) {
+    if (node.file == nullptr) return;  // already reported
     const std::size_t before = problems_.size();
     {
       MapReader map(node, path, problems_);
@@ -308,7 +323,8 @@ class DispersionDecoder {
     Add("stuck_nozzle/stage",
         Constant(static_cast<double>(map.Integer("stage", 1, static_cast<std::uint64_t>(stages_)))),
         {Column("stuck_nozzle_stage")});
-    FixedOrDrawn(map, "stuck_nozzle/angle", "angle", {kAngle, Inside(-kPi / 2.0, kPi / 2.0)}, "stuck_nozzle_deg", true);
+    FixedOrDrawn(map, "stuck_nozzle/angle", "angle", {kAngle, Inside(-kPi / 2.0, kPi / 2.0)},
+                 "stuck_nozzle_deg", true);
   }
 
   MapReader map_;

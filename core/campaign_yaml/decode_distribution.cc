@@ -18,7 +18,8 @@ class ParameterReader {
 
   // A deviation: sigma, bound.
   std::optional<double> Spread(const std::string& stem) {
-    return map_.OptionalQuantity(stem, scalar_.IsFactor() ? Dimension(kFactorSpread) : scalar_.dimension, kPositive);
+    return map_.OptionalQuantity(stem, scalar_.IsFactor() ? Dimension(kFactorSpread) : scalar_.dimension,
+                                 kPositive);
   }
 
   // A value that can be drawn.
@@ -36,23 +37,42 @@ class ParameterReader {
     return values;
   }
 
+  // three_sigma_deg, three_sigma_rad
+  std::vector<std::string> KeyList(const std::string& stem, bool spread) const {
+    std::vector<std::string> keys;
+    const Dimension factor = spread ? Dimension(kFactorSpread) : Dimension(kFactorPosition);
+    for (const Unit& unit : scalar_.IsFactor() ? factor : scalar_.dimension) {
+      keys.push_back(stem + "_" + std::string(unit.suffix));
+    }
+    return keys;
+  }
+
   // "three_sigma_deg or three_sigma_rad"
   std::string Keys(const std::string& stem, bool spread) const {
     std::string text;
-    const Dimension factor = spread ? Dimension(kFactorSpread) : Dimension(kFactorPosition);
-    for (const Unit& unit : scalar_.IsFactor() ? factor : scalar_.dimension) {
-      text += (text.empty() ? "" : " or ") + stem + "_" + std::string(unit.suffix);
-    }
+    for (const std::string& key : KeyList(stem, spread)) text += (text.empty() ? "" : " or ") + key;
     return text;
   }
 
  private:
-  Dimension PositionUnits() const { return scalar_.IsFactor() ? Dimension(kFactorPosition) : scalar_.dimension; }
-  double Offset(const std::string& key) const { return scalar_.IsFactor() && key.ends_with("_percent") ? 1.0 : 0.0; }
+  Dimension PositionUnits() const {
+    return scalar_.IsFactor() ? Dimension(kFactorPosition) : scalar_.dimension;
+  }
+  double Offset(const std::string& key) const {
+    return scalar_.IsFactor() && key.ends_with("_percent") ? 1.0 : 0.0;
+  }
 
   MapReader& map_;
   const DispersedScalar& scalar_;
 };
+
+// Some distribution has a parameter of this name.
+bool IsParameter(const std::string& key) {
+  constexpr const char* kStems[] = {"three_sigma", "sigma", "mean", "bound",
+                                    "plus_minus",  "low",   "high", "value"};
+  return std::any_of(std::begin(kStems), std::end(kStems),
+                     [&](const char* stem) { return key.starts_with(stem); });
+}
 
 // The parameters that each distribution takes, in words.
 std::string Explain(const ParameterReader& keys) {
@@ -65,13 +85,15 @@ void CheckRange(const MapReader& map, const DispersedScalar& scalar, const Scala
   std::vector<double> extremes;
   switch (distribution.kind) {
     case Distribution::kNormal:
-      extremes = {distribution.nominal - 6.0 * distribution.sigma, distribution.nominal + 6.0 * distribution.sigma};
+      extremes = {distribution.nominal - 6.0 * distribution.sigma,
+                  distribution.nominal + 6.0 * distribution.sigma};
       break;
     case Distribution::kUniform:
     case Distribution::kTwoPoint:
       extremes = {distribution.low, distribution.high};
       if (!(distribution.low < distribution.high)) {
-        AddProblem(map.problems(), map.node(), map.path(), "the low value is not below the high value", "low < high");
+        AddProblem(map.problems(), map.node(), map.path(), "the low value is not below the high value",
+                   "low < high");
       }
       break;
     case Distribution::kValues:
@@ -85,8 +107,8 @@ void CheckRange(const MapReader& map, const DispersedScalar& scalar, const Scala
     if (scalar.range.Contains(value)) continue;
     const bool normal = distribution.kind == Distribution::kNormal;
     AddProblem(map.problems(), map.node(), map.path(),
-               std::string(normal ? "a draw at 6 sigma is " : "a draw can be ") + FormatScaled(value, scale) + " (" +
-                   unit + ")",
+               std::string(normal ? "a draw at 6 sigma is " : "a draw can be ") +
+                   FormatRounded(value / scale) + " (" + unit + ")",
                scalar.range.Text(scale));
     return;
   }
@@ -118,7 +140,8 @@ ScalarDistribution ReadDistribution(MapReader& map, const DispersedScalar& scala
 
   for (const InputMember& member : map.node().members) {
     const Dimension units = scalar.IsFactor() ? Dimension(kFactorPosition) : scalar.dimension;
-    const bool bare = std::any_of(units.begin(), units.end(), [&](const Unit& u) { return u.suffix == member.key; });
+    const bool bare =
+        std::any_of(units.begin(), units.end(), [&](const Unit& u) { return u.suffix == member.key; });
     if (!bare) continue;
     map.Ignore(member.key);
     map.Ignore("distribution");
@@ -126,34 +149,43 @@ ScalarDistribution ReadDistribution(MapReader& map, const DispersedScalar& scala
     at.line = member.line;
     at.column = member.column;
     AddProblem(map.problems(), at, map.PathOf(member.key),
-               "'" + member.key + "' alone does not say what it means (3 sigma, bound, corner, ...)", Explain(keys));
+               "'" + member.key + "' alone does not say what it means (3 sigma, bound, corner, ...)",
+               Explain(keys));
   }
   if (map.problems().size() > before) return distribution;
 
   distribution.kind = map.Choice<Distribution>("distribution", {{"normal", Distribution::kNormal},
-                                                               {"uniform", Distribution::kUniform},
-                                                               {"two_point", Distribution::kTwoPoint},
-                                                               {"values", Distribution::kValues},
-                                                               {"constant", Distribution::kConstant}});
+                                                                {"uniform", Distribution::kUniform},
+                                                                {"two_point", Distribution::kTwoPoint},
+                                                                {"values", Distribution::kValues},
+                                                                {"constant", Distribution::kConstant}});
   const bool known = map.node().Find("distribution") != nullptr && map.problems().size() == before;
   if (!known) {
     // Which parameters belong here is unknown too.
-    for (const InputMember& member : map.node().members) map.Ignore(member.key);
+    for (const InputMember& member : map.node().members) {
+      if (IsParameter(member.key)) map.Ignore(member.key);
+    }
     return distribution;
   }
 
-  const auto exactly_one = [&](bool first, bool second, const std::string& allowed) {
-    if (first == second && map.problems().size() == before) {
-      AddProblem(map.problems(), map.node(), map.path(),
-                 first ? "the distribution is given twice" : "the distribution lacks its parameter", allowed);
+  const auto exactly_one = [&](bool first, bool second, std::vector<std::string> missing,
+                               const std::string& allowed) {
+    if (!first && !second) {
+      map.ReportMissing(std::move(missing), allowed);
+    } else if (first && second) {
+      AddProblem(map.problems(), map.node(), map.path(), "the distribution is given twice", allowed);
     }
+    return first != second;
   };
+  bool complete = false;
   switch (distribution.kind) {
     case Distribution::kNormal: {
       const auto three_sigma = keys.Spread("three_sigma");
       const auto sigma = keys.Spread("sigma");
-      exactly_one(three_sigma.has_value(), sigma.has_value(),
-                      "one of " + keys.Keys("three_sigma", true) + " or " + keys.Keys("sigma", true));
+      std::vector<std::string> missing = keys.KeyList("three_sigma", true);
+      for (std::string& key : keys.KeyList("sigma", true)) missing.push_back(std::move(key));
+      complete = exactly_one(three_sigma.has_value(), sigma.has_value(), std::move(missing),
+                             "one number above 0, 3 sigma or 1 sigma");
       distribution.nominal = keys.Position("mean").value_or(scalar.Nominal());
       distribution.sigma = sigma ? *sigma : three_sigma.value_or(0.0) / 3.0;
       break;
@@ -164,23 +196,31 @@ ScalarDistribution ReadDistribution(MapReader& map, const DispersedScalar& scala
       const auto spread = keys.Spread(stem);
       const auto low = keys.Position("low");
       const auto high = keys.Position("high");
-      exactly_one(spread.has_value(), low.has_value() && high.has_value(),
-                      keys.Keys(stem, true) + ", or both " + keys.Keys("low", false) + " and " + keys.Keys("high", false));
+      complete =
+          exactly_one(spread.has_value(), low.has_value() || high.has_value(), keys.KeyList(stem, true),
+                      keys.Keys(stem, true) + ", or both " + keys.Keys("low", false) + " and " +
+                          keys.Keys("high", false));
+      if (complete && !spread && !low)
+        map.ReportMissing(keys.KeyList("low", false), "a number below the high value");
+      if (complete && !spread && !high)
+        map.ReportMissing(keys.KeyList("high", false), "a number above the low value");
+      complete = complete && (spread || (low && high));
       distribution.low = spread ? scalar.Nominal() - *spread : low.value_or(0.0);
       distribution.high = spread ? scalar.Nominal() + *spread : high.value_or(0.0);
       break;
     }
     case Distribution::kValues:
       distribution.values = keys.Positions("values");
+      complete = !distribution.values.empty();
       break;
     case Distribution::kConstant: {
       const auto value = keys.Position("value");
-      exactly_one(value.has_value(), false, keys.Keys("value", false));
+      complete = exactly_one(value.has_value(), false, keys.KeyList("value", false), "a number");
       distribution = Constant(value.value_or(scalar.Nominal()));
       break;
     }
   }
-  if (map.problems().size() == before) CheckRange(map, scalar, distribution);
+  if (complete && map.problems().size() == before) CheckRange(map, scalar, distribution);
   return distribution;
 }
 
@@ -188,7 +228,8 @@ ScalarDistribution ReadDirection(const InputNode& node, const std::string& path,
                                  std::vector<InputProblem>& problems) {
   const std::string allowed = "uniform, {fixed_deg: x} or a distribution";
   if (node.kind == InputNode::Kind::kScalar) {
-    if (node.text != "uniform") AddProblem(problems, node, path, node.Describe() + " is not a direction", allowed);
+    if (node.text != "uniform")
+      AddProblem(problems, node, path, node.Describe() + " is not a direction", allowed);
     return Uniform(0.0, kTwoPi);
   }
   MapReader map(node, path, problems);

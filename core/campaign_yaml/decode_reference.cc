@@ -34,7 +34,8 @@ FlightProgram DecodeProgram(const InputNode& node, const std::string& path, doub
   program.coast_s = map.Quantity("coast", kTime, kNonNegative);
   program.launch_azimuth_rad = map.Quantity("launch_azimuth", kAngle, kAzimuth);
   *last_ignition_s = map.Quantity("last_ignition", kTime, kPositive);
-  if (problems.size() == before && !(program.t1_s < program.t3_s && program.t3_s < program.t2_s)) {
+  if (node.file != nullptr && problems.size() == before &&
+      !(program.t1_s < program.t3_s && program.t3_s < program.t2_s)) {
     AddProblem(problems, node, path, "the times are out of order", "t1 < t3 < t2");
   }
   return program;
@@ -69,7 +70,8 @@ ConstraintMargin DecodeConstraint(const InputNode& node, const std::string& path
   return constraint;
 }
 
-void DecodeProvenance(const InputNode& node, const std::string& path, Reference& reference, ProblemList& problems) {
+void DecodeProvenance(const InputNode& node, const std::string& path, Reference& reference,
+                      ProblemList& problems) {
   MapReader map(node, path, problems);
   reference.engine = map.Text("engine");
   reference.vehicle_sha256 = map.Text("vehicle_sha256");
@@ -80,12 +82,14 @@ AttitudeProgram DecodeAttitude(const InputNode& node, const std::string& path, P
   MapReader map(node, path, problems);
   AttitudeProgram attitude;
   const std::vector<std::string> columns = AttitudeColumnNames();
-  map.Each("columns", columns.size(), columns.size(), [&](const InputNode& item, const std::string& item_path) {
-    const std::string& expected = columns[static_cast<std::size_t>(&item - node.Find("columns")->items.data())];
-    if (item.text != expected) {
-      AddProblem(problems, item, item_path, item.Describe() + " is not the column", expected);
-    }
-  });
+  map.Each("columns", columns.size(), columns.size(),
+           [&](const InputNode& item, const std::string& item_path) {
+             const std::string& expected =
+                 columns[static_cast<std::size_t>(&item - node.Find("columns")->items.data())];
+             if (item.text != expected) {
+               AddProblem(problems, item, item_path, item.Describe() + " is not the column", expected);
+             }
+           });
   map.Each("rows", 2, SIZE_MAX, [&](const InputNode& row, const std::string& row_path) {
     if (row.kind != InputNode::Kind::kList || row.items.size() != columns.size()) {
       AddProblem(problems, row, row_path, row.Describe() + " is not a row",
@@ -94,8 +98,8 @@ AttitudeProgram DecodeAttitude(const InputNode& node, const std::string& path, P
     }
     AttitudeKnot knot;
     for (std::size_t c = 0; c < columns.size(); ++c) {
-      knot.*kAttitudeColumns[c].field = ReadNumber(row.items[c], row_path + "[" + std::to_string(c) + "]", problems,
-                                                   kAnyNumber, kAttitudeColumns[c].scale);
+      knot.*kAttitudeColumns[c].field = ReadNumber(row.items[c], row_path + "[" + std::to_string(c) + "]",
+                                                   problems, kAnyNumber, kAttitudeColumns[c].scale);
     }
     if (!attitude.knots.empty() && knot.time_s <= attitude.knots.back().time_s) {
       AddProblem(problems, row.items[0], row_path + "[0]", "the time is not after the row before",
@@ -150,13 +154,15 @@ TrajectoryProblem DecodeTrajectoryProblem(const InputNode& node, const std::stri
   return problem;
 }
 
-Reference DecodeReference(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems) {
+Reference DecodeReference(const InputNode& node, const std::string& path,
+                          std::vector<InputProblem>& problems) {
   Reference reference;
   if (!CheckSchema(node, kReferenceSchema, !path.empty(), path, problems)) return reference;
   MapReader map(node, path, problems);
   map.Ignore("schema");
   reference.name = map.Text("name");
-  reference.problem = DecodeTrajectoryProblem(map.Required("problem", "a map"), map.PathOf("problem"), problems);
+  reference.problem =
+      DecodeTrajectoryProblem(map.Required("problem", "a map"), map.PathOf("problem"), problems);
   reference.program = DecodeProgram(map.Required("flight_program", "a map"), map.PathOf("flight_program"),
                                     &reference.last_ignition_s, problems);
   reference.orbit = DecodeOrbit(map.Required("orbit", "a map"), map.PathOf("orbit"), problems);

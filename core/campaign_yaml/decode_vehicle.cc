@@ -83,10 +83,14 @@ Stage DecodeStage(const InputNode& node, const std::string& path, ProblemList& p
     stage.structure.push_back(DecodeMassElement(item, item_path, problems));
   });
   stage.gimbal = DecodeGimbal(map.Required("gimbal", "a map"), map.PathOf("gimbal"), problems);
-  stage.ignition = map.Choice<IgnitionTrigger>("ignition", {{"lift_off", IgnitionTrigger::kLiftOff},
-                                                           {"burnout_detection", IgnitionTrigger::kBurnoutDetection},
-                                                           {"timer", IgnitionTrigger::kTimer}});
-  stage.ignition_delay_s = map.Quantity("ignition_delay", kTime, kNonNegative, 0.0);
+  {
+    MapReader ignition(map.Required("ignition", "a map"), map.PathOf("ignition"), problems);
+    stage.ignition = ignition.Choice<IgnitionTrigger>(
+        "trigger", {{"lift_off", IgnitionTrigger::kLiftOff},
+                    {"burnout_detection", IgnitionTrigger::kBurnoutDetection},
+                    {"timer", IgnitionTrigger::kTimer}});
+    stage.ignition_delay_s = ignition.Quantity("delay", kTime, kNonNegative, 0.0);
+  }
   stage.separation_delay_s = map.Quantity("separation_delay", kTime, kNonNegative, 0.0);
   return stage;
 }
@@ -95,9 +99,9 @@ ProfileSection DecodeProfileSection(const InputNode& node, const std::string& pa
   MapReader map(node, path, problems);
   ProfileSection section;
   section.shape = map.Choice<ProfileShape>("shape", {{"tangent_ogive", ProfileShape::kTangentOgive},
-                                                    {"cone", ProfileShape::kCone},
-                                                    {"cylinder", ProfileShape::kCylinder},
-                                                    {"frustum", ProfileShape::kFrustum}});
+                                                     {"cone", ProfileShape::kCone},
+                                                     {"cylinder", ProfileShape::kCylinder},
+                                                     {"frustum", ProfileShape::kFrustum}});
   section.length_m = map.Quantity("length", kLength, kPositive);
   section.aft_diameter_m = map.Quantity("aft_diameter", kLength, kPositive);
   return section;
@@ -120,32 +124,38 @@ void GridRows(const InputNode& node, const std::string& path, AeroTable& table, 
     cmq_per_rad = map.Numbers("cmq_per_rad", kAnyNumber, 4);
     clp_per_rad = map.Numbers("clp_per_rad", kAnyNumber, 4);
   }
-  if (problems.size() > before) return;
+  if (node.file == nullptr || problems.size() > before) return;
   const std::size_t rows = mach.size();
-  for (const auto* column : {&incidence_rad, &table.ca, &table.cn, &table.xcp_station_m, &cmq_per_rad, &clp_per_rad}) {
+  for (const auto* column :
+       {&incidence_rad, &table.ca, &table.cn, &table.xcp_station_m, &cmq_per_rad, &clp_per_rad}) {
     if (column->size() == rows) continue;
     AddProblem(problems, node, path, "the columns have different lengths", "one value a row in each column");
     return;
   }
   const std::size_t incidences = static_cast<std::size_t>(
-      std::find_if(mach.begin(), mach.end(), [&](double value) { return value != mach.front(); }) - mach.begin());
-  table.incidence_rad.assign(incidence_rad.begin(), incidence_rad.begin() + static_cast<std::ptrdiff_t>(incidences));
+      std::find_if(mach.begin(), mach.end(), [&](double value) { return value != mach.front(); }) -
+      mach.begin());
+  table.incidence_rad.assign(incidence_rad.begin(),
+                             incidence_rad.begin() + static_cast<std::ptrdiff_t>(incidences));
   const std::string allowed =
-      "a full grid: rows of increasing mach, each mach with the same increasing incidences, two or more of both";
+      "a full grid: rows of increasing mach, each mach with the same increasing incidences, two or more of "
+      "both";
   for (std::size_t row = 0; row < rows; ++row) {
     const std::size_t column = row % incidences;
     const bool starts_mach = column == 0;
-    const bool mach_fits =
-        starts_mach ? (row == 0 || mach[row] > mach[row - 1]) : mach[row] == mach[row - 1];
-    const bool incidence_fits =
-        incidence_rad[row] == table.incidence_rad[column] && (starts_mach || incidence_rad[row] > incidence_rad[row - 1]);
+    const bool mach_fits = starts_mach ? (row == 0 || mach[row] > mach[row - 1]) : mach[row] == mach[row - 1];
+    const bool incidence_fits = incidence_rad[row] == table.incidence_rad[column] &&
+                                (starts_mach || incidence_rad[row] > incidence_rad[row - 1]);
     const bool last_is_partial = row + 1 == rows && column + 1 != incidences;
     if (!mach_fits || !incidence_fits || last_is_partial || incidences < 2 || incidences == rows) {
-      AddProblem(problems, node.Find("mach")->items[row], path, "the row does not continue the grid", allowed);
+      AddProblem(problems, node.Find("mach")->items[row], path, "the row does not continue the grid",
+                 allowed);
       return;
     }
-    if (!starts_mach && (cmq_per_rad[row] != cmq_per_rad[row - 1] || clp_per_rad[row] != clp_per_rad[row - 1])) {
-      AddProblem(problems, node.Find("cmq_per_rad")->items[row], path, "the rate damping changes with incidence",
+    if (!starts_mach &&
+        (cmq_per_rad[row] != cmq_per_rad[row - 1] || clp_per_rad[row] != clp_per_rad[row - 1])) {
+      AddProblem(problems, node.Find("cmq_per_rad")->items[row], path,
+                 "the rate damping changes with incidence",
                  "the same cmq_per_rad and clp_per_rad in all rows of a mach number");
       return;
     }
@@ -192,6 +202,7 @@ StructuralLimits DecodeLimits(const InputNode& node, const std::string& path, Pr
 Vehicle DecodeVehicle(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems) {
   const std::size_t before = problems.size();
   Vehicle vehicle;
+  if (node.file == nullptr) return vehicle;  // already reported
   if (!CheckSchema(node, kVehicleSchema, !path.empty(), path, problems)) return vehicle;
   {
     MapReader map(node, path, problems);
@@ -207,11 +218,14 @@ Vehicle DecodeVehicle(const InputNode& node, const std::string& path, std::vecto
     map.Each("profile", 1, SIZE_MAX, [&](const InputNode& item, const std::string& item_path) {
       vehicle.profile.push_back(DecodeProfileSection(item, item_path, problems));
     });
-    map.Each("aerodynamics", 0, kMaxStages, [&](const InputNode& item, const std::string& item_path) {
-      vehicle.aerodynamics.push_back(DecodeAeroTable(item, item_path, problems));
-    });
-    vehicle.reaction_control =
-        DecodeReactionControl(map.Required("reaction_control", "a map"), map.PathOf("reaction_control"), problems);
+    if (const InputNode* aerodynamics = map.Optional("aerodynamics")) {
+      MapReader tables(*aerodynamics, map.PathOf("aerodynamics"), problems);
+      tables.Each("tables", 1, kMaxStages, [&](const InputNode& item, const std::string& item_path) {
+        vehicle.aerodynamics.push_back(DecodeAeroTable(item, item_path, problems));
+      });
+    }
+    vehicle.reaction_control = DecodeReactionControl(map.Required("reaction_control", "a map"),
+                                                     map.PathOf("reaction_control"), problems);
     if (const InputNode* limits = map.Optional("limits")) {
       vehicle.limits = DecodeLimits(*limits, map.PathOf("limits"), problems);
     }

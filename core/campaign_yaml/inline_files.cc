@@ -39,7 +39,9 @@ void Replace(InputNode* value, const std::string& path, FileNames names, const P
 }
 
 Parse YamlParser(std::vector<InputProblem>& problems) {
-  return [&problems](const std::string& text, const std::string& file) { return ParseYaml(text, file, problems); };
+  return [&problems](const std::string& text, const std::string& file) {
+    return ParseYaml(text, file, problems);
+  };
 }
 
 Parse CsvParser(const std::vector<std::string>& columns, std::vector<InputProblem>& problems) {
@@ -61,10 +63,11 @@ InputNode ReadYamlFile(const std::string& path, std::vector<InputProblem>& probl
 }
 
 void InlineVehicleFiles(InputNode& vehicle, FileNames names, std::vector<InputProblem>& problems) {
-  InputNode* stacks = vehicle.Find("aerodynamics");
-  if (stacks == nullptr) return;
-  for (std::size_t i = 0; i < stacks->items.size(); ++i) {
-    Replace(stacks->items[i].Find("table"), "aerodynamics[" + std::to_string(i) + "].table", names,
+  InputNode* aerodynamics = vehicle.Find("aerodynamics");
+  InputNode* tables = aerodynamics == nullptr ? nullptr : aerodynamics->Find("tables");
+  if (tables == nullptr) return;
+  for (std::size_t i = 0; i < tables->items.size(); ++i) {
+    Replace(tables->items[i].Find("table"), "aerodynamics.tables[" + std::to_string(i) + "].table", names,
             CsvParser(kAeroTableColumns, problems), problems);
   }
 }
@@ -77,8 +80,8 @@ void InlineCampaignFiles(InputNode& campaign, FileNames names, std::vector<Input
   InputNode* dispersions = campaign.Find("dispersions");
   InputNode* wind = dispersions == nullptr ? nullptr : dispersions->Find("wind_profile");
   if (wind == nullptr) return;
-  Replace(wind->Find("table"), "dispersions.wind_profile.table", names, CsvParser(kWindTableColumns, problems),
-          problems);
+  Replace(wind->Find("table"), "dispersions.wind_profile.table", names,
+          CsvParser(kWindTableColumns, problems), problems);
   Replace(wind->Find("statistics"), "dispersions.wind_profile.statistics", names,
           CsvParser(kWindStatisticsColumns, problems), problems);
 }

@@ -32,8 +32,8 @@ InputNode ReadYamlFile(const std::string& path, std::vector<InputProblem>& probl
 void InlineCampaignFiles(InputNode& campaign, FileNames names, std::vector<InputProblem>& problems);
 void InlineVehicleFiles(InputNode& vehicle, FileNames names, std::vector<InputProblem>& problems);
 
-/// True if a tree that was read from a file has this `schema`; a map that stands inside another file (`inside`)
-/// need not have one. False is recorded as a problem.
+/// True if a tree that was read from a file has this `schema`; a map that stands inside another file
+/// (`inside`) need not have one. False is recorded as a problem.
 bool CheckSchema(const InputNode& node, const std::string& schema, bool inside, const std::string& path,
                  std::vector<InputProblem>& problems);
 

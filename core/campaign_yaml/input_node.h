@@ -15,8 +15,8 @@ struct InputNode {
   enum class Kind { kNull, kScalar, kList, kMap };
 
   Kind kind = Kind::kNull;
-  std::string text;     ///< of a scalar
-  bool quoted = false;  ///< a quoted scalar is text, even if it looks like a number
+  std::string text;                  ///< of a scalar
+  bool quoted = false;               ///< a quoted scalar is text, even if it looks like a number
   std::vector<InputNode> items;      ///< of a list
   std::vector<InputMember> members;  ///< of a map, in file order; the parser refuses duplicate keys
   std::shared_ptr<const std::string> file;

@@ -27,7 +27,8 @@ void SortByPlace(ProblemList& problems) {
     if (std::find(files.begin(), files.end(), problem.file) == files.end()) files.push_back(problem.file);
   }
   const auto place = [&](const InputProblem& problem) {
-    return std::tuple(std::find(files.begin(), files.end(), problem.file) - files.begin(), problem.line, problem.column);
+    return std::tuple(std::find(files.begin(), files.end(), problem.file) - files.begin(), problem.line,
+                      problem.column);
   };
   std::stable_sort(problems.begin(), problems.end(),
                    [&](const InputProblem& a, const InputProblem& b) { return place(a) < place(b); });
@@ -47,8 +48,8 @@ void Override(InputNode& root, const CampaignOverrides& overrides) {
   if (overrides.seed) SetMember(*sampling, "seed", ScalarAt(*sampling, std::to_string(*overrides.seed)));
 }
 
-Campaign FinishCampaign(InputNode root, FileNames names, const CampaignOverrides& overrides, ProblemList problems,
-                        std::vector<InputProblem>* warnings) {
+Campaign FinishCampaign(InputNode root, FileNames names, const CampaignOverrides& overrides,
+                        ProblemList problems, std::vector<InputProblem>* warnings) {
   InlineCampaignFiles(root, names, problems);
   Override(root, overrides);
   DecodedCampaign decoded = DecodeCampaign(root, CampaignUse::kFly, problems, warnings);
@@ -127,8 +128,10 @@ std::vector<InputProblem> ValidateFile(const std::string& path) {
   ProblemList problems;
   InputNode root = ReadYamlFile(path, problems);
   const InputNode* schema = root.Find("schema");
-  if (schema == nullptr) {
-    if (root.kind == InputNode::Kind::kMap) AddProblem(problems, root, "", "missing key 'schema'", SchemaNames());
+  if (root.file == nullptr) {
+    // Unreadable or not YAML: reported.
+  } else if (schema == nullptr) {
+    AddProblem(problems, root, "", "missing key 'schema'", SchemaNames());
   } else if (schema->text == kCampaignSchema) {
     InlineCampaignFiles(root, FileNames::kAllowed, problems);
     DecodeCampaign(root, CampaignUse::kCheck, problems, nullptr);

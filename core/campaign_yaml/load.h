@@ -33,7 +33,7 @@ Campaign ParseCampaign(const std::string& yaml_text, const std::string& display_
 /// What `optimize` needs of a campaign: the problem in its `optimize` block, or the one that its reference
 /// carries.
 struct OptimizationInput {
-  std::string name;            ///< of the campaign
+  std::string name;  ///< of the campaign
   Vehicle vehicle;
   std::string vehicle_sha256;  ///< of the canonical vehicle
   TrajectoryProblem problem;

@@ -8,12 +8,15 @@
 namespace dispersa {
 
 std::optional<double> ParseNumber(std::string_view text) {
-  if (text.starts_with('+')) text.remove_prefix(1);
-  if (text.starts_with('+')) return std::nullopt;
+  if (text.starts_with('+')) {
+    text.remove_prefix(1);
+    if (text.starts_with('-')) return std::nullopt;
+  }
   const bool negative = text.starts_with('-');
   const std::string_view magnitude = negative ? text.substr(1) : text;
   const double infinity = std::numeric_limits<double>::infinity();
-  if (magnitude == ".inf" || magnitude == ".Inf" || magnitude == ".INF") return negative ? -infinity : infinity;
+  if (magnitude == ".inf" || magnitude == ".Inf" || magnitude == ".INF")
+    return negative ? -infinity : infinity;
   if (text == ".nan" || text == ".NaN" || text == ".NAN") return std::numeric_limits<double>::quiet_NaN();
 
   double value = 0.0;
@@ -42,6 +45,13 @@ std::string FormatNumber(double value) {
   const auto result = whole ? std::to_chars(first, last, static_cast<std::int64_t>(value))
                             : std::to_chars(first, last, value);
   return std::string(first, result.ptr);
+}
+
+std::string FormatRounded(double value) {
+  std::array<char, 32> buffer;
+  const auto result =
+      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, 6);
+  return std::string(buffer.data(), result.ptr);
 }
 
 std::string FormatScaled(double value, double scale) {

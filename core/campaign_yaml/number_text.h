@@ -17,6 +17,9 @@ std::optional<std::uint64_t> ParseInteger(std::string_view text);
 /// Shortest text that reads back to the same bits; whole numbers below 2^53 without an exponent; 0 for -0.
 std::string FormatNumber(double value);
 
+/// Six significant digits, for messages.
+std::string FormatRounded(double value);
+
 /// Text x such that x * scale is `value` to the bit, the shortest one; where no double x is, the nearest.
 /// FormatScaled(ParseNumber(FormatScaled(v, s)) * s, s) is always FormatScaled(v, s).
 std::string FormatScaled(double value, double scale);

@@ -46,10 +46,11 @@ std::vector<std::size_t> MatchHeader(const std::vector<Cell>& header, const std:
   for (std::size_t i = 0; i < header.size(); ++i) {
     if (std::find(columns.begin(), columns.end(), header[i].text) == columns.end()) {
       problems.push_back({file, line, header[i].column, "",
-                          "unknown column '" + header[i].text + "'" + DidYouMean(header[i].text, columns), allowed});
-    } else if (std::find(places.begin(), places.end(), i) == places.end()) {
-      problems.push_back({file, line, header[i].column, "", "the column '" + header[i].text + "' is given twice",
+                          "unknown column '" + header[i].text + "'" + DidYouMean(header[i].text, columns),
                           allowed});
+    } else if (std::find(places.begin(), places.end(), i) == places.end()) {
+      problems.push_back(
+          {file, line, header[i].column, "", "the column '" + header[i].text + "' is given twice", allowed});
     }
   }
   if (problems.size() > before) places.clear();
@@ -60,6 +61,7 @@ std::vector<std::size_t> MatchHeader(const std::vector<Cell>& header, const std:
 
 InputNode ParseCsv(const std::string& text, const std::string& file, const std::vector<std::string>& columns,
                    std::vector<InputProblem>& problems) {
+  const std::size_t before = problems.size();
   InputNode place;
   place.file = std::make_shared<const std::string>(file);
   InputNode table = MapAt(place);
@@ -77,7 +79,7 @@ InputNode ParseCsv(const std::string& text, const std::string& file, const std::
     const std::vector<Cell> cells = SplitLine(line);
     if (!places) {
       places = MatchHeader(cells, columns, file, line_number, problems);
-      if (places->empty()) return table;
+      if (places->empty()) return {};
       place.line = line_number;
       for (std::size_t c = 0; c < columns.size(); ++c) {
         place.column = cells[(*places)[c]].column;
@@ -98,7 +100,9 @@ InputNode ParseCsv(const std::string& text, const std::string& file, const std::
       table.members[c].value.items.push_back(std::move(value));
     }
   }
-  if (!places) problems.push_back({file, 1, 1, "", "the table is empty", "the columns " + JoinWords(columns)});
+  if (!places)
+    problems.push_back({file, 1, 1, "", "the table is empty", "the columns " + JoinWords(columns)});
+  if (problems.size() > before) return {};
   return table;
 }
 

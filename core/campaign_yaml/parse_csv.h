@@ -10,7 +10,8 @@
 namespace dispersa {
 
 /// Comma-separated; lines that begin with '#' and empty lines do not count; the first other line names the
-/// columns, which must be exactly `columns`, in any order. Cells are not checked here.
+/// columns, which must be exactly `columns`, in any order. Cells are not checked here. A table
+/// of another form is a problem and an absent node (without file), which the readers ignore.
 InputNode ParseCsv(const std::string& text, const std::string& file, const std::vector<std::string>& columns,
                    std::vector<InputProblem>& problems);
 

@@ -73,7 +73,8 @@ class TreeBuilder : public YAML::EventHandler {
 
   void Refuse(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor) {
     if (anchor != YAML::NullAnchor) Add(mark, "an anchor ('&name') is not supported", "the value itself");
-    if (!tag.empty() && tag != "?" && tag != "!") Add(mark, "the tag '" + tag + "' is not supported", "no tag");
+    if (!tag.empty() && tag != "?" && tag != "!")
+      Add(mark, "the tag '" + tag + "' is not supported", "no tag");
   }
 
   void Open(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, InputNode::Kind kind) {

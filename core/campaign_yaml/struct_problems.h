@@ -16,8 +16,8 @@ const InputNode& FindField(const InputNode& node, const std::string& field_path,
 /// Records what the Problems() of a struct found (path, message, allowed) at the places of the values. `path`
 /// is the node's.
 template <typename StructProblem>
-void AddStructProblems(const std::vector<StructProblem>& found, const InputNode& node, const std::string& path,
-                       std::vector<InputProblem>& problems) {
+void AddStructProblems(const std::vector<StructProblem>& found, const InputNode& node,
+                       const std::string& path, std::vector<InputProblem>& problems) {
   for (const StructProblem& problem : found) {
     std::string found_path;
     const InputNode& at = FindField(node, problem.path, &found_path);

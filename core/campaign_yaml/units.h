@@ -35,13 +35,14 @@ inline constexpr Unit kPerLength[] = {{"per_km", 1e-3}, {"per_m", 1.0}};
 inline constexpr Unit kPerSpeed[] = {{"per_m_s", 1.0}};
 inline constexpr Unit kPerAngle[] = {{"per_deg", kDegPerRad}, {"per_rad", 1.0}};
 
-/// What may stand behind the last underscores of a key and is a unit, ours or not: to tell a wrong unit from a
-/// wrong name.
+/// What may stand behind the last underscores of a key and is a unit, ours or not: to tell a wrong unit from
+/// a wrong name.
 inline constexpr std::string_view kUnitLike[] = {
-    "m",   "km",  "mm",  "um",   "cm",    "ft",     "in",     "mi",     "nmi",    "m2",     "ft2",   "s",
-    "ms",  "min", "h",   "kg",   "ton",   "t",      "g",      "lb",     "lbm",    "slug",   "kg_s",  "lb_s",
-    "n",   "kn",  "mn",  "lbf",  "pa",    "kpa",    "bar",    "psf",    "psi",    "pa_rad", "pa_deg", "kpa_rad",
-    "m_s", "km_s", "ft_s", "kt", "kts",   "mph",    "deg",    "rad",    "arcmin", "deg_s",  "rad_s", "hz",
-    "rpm", "deg_s2", "rad_s2", "1_s", "1_s2", "per_km", "per_m", "per_m_s", "per_deg", "per_rad", "percent", "factor"};
+    "m",      "km",   "mm",   "um",     "cm",     "ft",      "in",      "mi",      "nmi",     "m2",
+    "ft2",    "s",    "ms",   "min",    "h",      "kg",      "ton",     "t",       "g",       "lb",
+    "lbm",    "slug", "kg_s", "lb_s",   "n",      "kn",      "mn",      "lbf",     "pa",      "kpa",
+    "bar",    "psf",  "psi",  "pa_rad", "pa_deg", "kpa_rad", "m_s",     "km_s",    "ft_s",    "kt",
+    "kts",    "mph",  "deg",  "rad",    "arcmin", "deg_s",   "rad_s",   "hz",      "rpm",     "deg_s2",
+    "rad_s2", "1_s",  "1_s2", "per_km", "per_m",  "per_m_s", "per_deg", "per_rad", "percent", "factor"};
 
 }  // namespace dispersa

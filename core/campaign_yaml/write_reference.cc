@@ -70,13 +70,15 @@ std::string WriteReference(const Reference& reference) {
   text += "  coast_s: " + FormatNumber(program.coast_s) + "\n";
   text += "  launch_azimuth_deg: " + Deg(program.launch_azimuth_rad) + "\n";
   text += "  last_ignition_s: " + FormatNumber(reference.last_ignition_s) + "\n";
-  text += "orbit: {altitude_km: " + Km(orbit.altitude_m) + ", velocity_m_s: " + FormatNumber(orbit.velocity_m_s) +
+  text += "orbit: {altitude_km: " + Km(orbit.altitude_m) +
+          ", velocity_m_s: " + FormatNumber(orbit.velocity_m_s) +
           ", flight_path_angle_deg: " + Deg(orbit.flight_path_angle_rad) +
           ", inclination_deg: " + Deg(orbit.inclination_rad) + "}\n";
-  text += "errors: {altitude_km: " + Km(orbit.altitude_m - problem.target_altitude_m) +
-          ", velocity_m_s: " + FormatNumber(orbit.velocity_m_s - problem.target_velocity_m_s) +
-          ", flight_path_angle_deg: " +
-          Deg(orbit.flight_path_angle_rad - problem.target_flight_path_angle_rad) + "}\n";
+  text +=
+      "errors: {altitude_km: " + Km(orbit.altitude_m - problem.target_altitude_m) +
+      ", velocity_m_s: " + FormatNumber(orbit.velocity_m_s - problem.target_velocity_m_s) +
+      ", flight_path_angle_deg: " + Deg(orbit.flight_path_angle_rad - problem.target_flight_path_angle_rad) +
+      "}\n";
   text += reference.constraints.empty() ? "constraints: []\n" : "constraints:\n";
   for (const ConstraintMargin& constraint : reference.constraints) {
     text += "  - {name: " + constraint.name + ", value: " + FormatNumber(constraint.value) +

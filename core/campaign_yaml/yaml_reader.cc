@@ -68,6 +68,9 @@ bool Range::Contains(double value) const {
 
 std::string Range::Text(double scale) const {
   std::string text = "a number";
+  if (std::isfinite(low) && std::isfinite(high) && !low_open && !high_open) {
+    return text + " from " + FormatScaled(low, scale) + " to " + FormatScaled(high, scale);
+  }
   if (std::isfinite(low)) {
     const std::string limit = FormatScaled(low, scale);
     text += low_open ? " above " + limit : " not below " + limit;
@@ -80,10 +83,10 @@ std::string Range::Text(double scale) const {
   return text;
 }
 
-void AddProblem(std::vector<InputProblem>& problems, const InputNode& at, std::string path, std::string message,
-                std::string allowed) {
-  problems.push_back({at.file ? *at.file : "", at.line, at.column, std::move(path), std::move(message),
-                      std::move(allowed)});
+void AddProblem(std::vector<InputProblem>& problems, const InputNode& at, std::string path,
+                std::string message, std::string allowed) {
+  problems.push_back(
+      {at.file ? *at.file : "", at.line, at.column, std::move(path), std::move(message), std::move(allowed)});
 }
 
 double ReadNumber(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems,
@@ -111,7 +114,8 @@ std::string ReadText(const InputNode& node, const std::string& path, std::vector
   if (node.kind != InputNode::Kind::kScalar) {
     AddProblem(problems, node, path, node.Describe() + " is not text", "text");
   } else if (!node.quoted && (ParseNumber(node.text) || IsTruthValue(node.text))) {
-    AddProblem(problems, node, path, node.Describe() + " is not text", "text; in quotes if it looks like a number");
+    AddProblem(problems, node, path, node.Describe() + " is not text",
+               "text; in quotes if it looks like a number");
   } else if (node.text.empty()) {
     AddProblem(problems, node, path, "the text is empty", "text");
   }
@@ -146,7 +150,7 @@ const InputNode* MapReader::Optional(const std::string& key) {
 const InputNode& MapReader::Required(const std::string& key, const std::string& allowed) {
   static const InputNode absent;
   if (const InputNode* value = Optional(key)) return *value;
-  ReportMissing({key}, "", allowed);
+  ReportMissing({key}, allowed);
   return absent;
 }
 
@@ -174,16 +178,17 @@ std::uint64_t MapReader::Integer(const std::string& key, std::uint64_t low, std:
   std::string allowed = "a whole number from " + std::to_string(low) + " to " + std::to_string(high);
   const InputNode* value = Optional(key);
   if (value == nullptr) {
-    if (!absent) ReportMissing({key}, "", allowed);
+    if (!absent) ReportMissing({key}, allowed);
     return absent.value_or(low);
   }
   std::optional<std::uint64_t> number;
   if (value->kind == InputNode::Kind::kScalar && !value->quoted) number = ParseInteger(value->text);
   if (number && *number >= low && *number <= high) return *number;
-  const bool is_number = value->kind == InputNode::Kind::kScalar && !value->quoted && ParseNumber(value->text);
+  const bool is_number =
+      value->kind == InputNode::Kind::kScalar && !value->quoted && ParseNumber(value->text);
   AddProblem(problems_, *value, PathOf(key),
              number ? value->text + " is out of range"
-                    : value->Describe() + (is_number ? " is not a whole number from 0" : " is not a number"),
+                    : value->Describe() + (is_number ? " is not a whole number" : " is not a number"),
              std::move(allowed));
   return low;
 }
@@ -191,7 +196,7 @@ std::uint64_t MapReader::Integer(const std::string& key, std::uint64_t low, std:
 double MapReader::Number(const std::string& key, const Range& range, std::optional<double> absent) {
   const InputNode* value = Optional(key);
   if (value != nullptr) return ReadNumber(*value, PathOf(key), problems_, range);
-  if (!absent) ReportMissing({key}, "", range.Text());
+  if (!absent) ReportMissing({key}, range.Text());
   return absent.value_or(0.0);
 }
 
@@ -221,7 +226,7 @@ double MapReader::Quantity(const std::string& stem, Dimension dimension, const R
   double scale = 1.0;
   const InputNode* value = FindQuantity(stem, dimension, &key, &scale);
   if (value != nullptr) return ReadNumber(*value, PathOf(key), problems_, range, scale);
-  if (!absent) ReportMissing(quantities_.back().second, stem, range.Text(dimension.front().scale));
+  if (!absent) ReportMissing(quantities_.back().second, range.Text(dimension.front().scale));
   return absent.value_or(0.0);
 }
 
@@ -241,7 +246,7 @@ std::vector<double> MapReader::Quantities(const std::string& stem, Dimension dim
   double scale = 1.0;
   std::vector<double> values;
   if (FindQuantity(stem, dimension, &found, &scale) == nullptr) {
-    if (low_count > 0) ReportMissing(quantities_.back().second, stem, CountText(low_count, high_count));
+    if (low_count > 0) ReportMissing(quantities_.back().second, CountText(low_count, high_count));
     return values;
   }
   if (key != nullptr) *key = found;
@@ -264,7 +269,7 @@ const InputNode* MapReader::List(const std::string& key, std::size_t low_count, 
   const InputNode* list = Optional(key);
   const std::string allowed = CountText(low_count, high_count);
   if (list == nullptr) {
-    if (low_count > 0) ReportMissing({key}, "", allowed);
+    if (low_count > 0) ReportMissing({key}, allowed);
     return nullptr;
   }
   if (list->kind != InputNode::Kind::kList) {
@@ -285,7 +290,7 @@ std::optional<std::size_t> MapReader::WordIndex(const std::string& key, const st
   const std::string allowed = "one of " + JoinWords(words);
   const InputNode* value = Optional(key);
   if (value == nullptr) {
-    if (required) ReportMissing({key}, "", allowed);
+    if (required) ReportMissing({key}, allowed);
     return std::nullopt;
   }
   if (value->kind == InputNode::Kind::kScalar) {
@@ -297,8 +302,8 @@ std::optional<std::size_t> MapReader::WordIndex(const std::string& key, const st
   return std::nullopt;
 }
 
-void MapReader::ReportMissing(std::vector<std::string> keys, const std::string& stem, const std::string& allowed) {
-  if (node_.kind == InputNode::Kind::kMap) missing_.push_back({std::move(keys), stem, allowed});
+void MapReader::ReportMissing(std::vector<std::string> keys, const std::string& allowed) {
+  if (node_.kind == InputNode::Kind::kMap) missing_.push_back({std::move(keys), allowed});
 }
 
 void MapReader::Finish() {
@@ -319,9 +324,9 @@ void MapReader::Finish() {
     if (quantity != quantities_.end()) {
       const bool bare = member.key == quantity->first;
       AddProblem(problems_, at, path,
-                 bare ? "missing unit: did you mean " + Quote(quantity->second, " or ") + "?"
+                 bare ? "missing unit (did you mean '" + quantity->second.front() + "'?)"
                       : "the unit of '" + member.key + "' is not known here",
-                 Quote(quantity->second, " or "));
+                 JoinWords(quantity->second));
       explained.insert(quantity->second.begin(), quantity->second.end());
       continue;
     }

@@ -36,8 +36,8 @@ inline constexpr Range kNonNegative{0.0, std::numeric_limits<double>::infinity()
 constexpr Range Between(double low, double high) { return {low, high, false, false}; }
 constexpr Range Inside(double low, double high) { return {low, high, true, true}; }
 
-void AddProblem(std::vector<InputProblem>& problems, const InputNode& at, std::string path, std::string message,
-                std::string allowed = "");
+void AddProblem(std::vector<InputProblem>& problems, const InputNode& at, std::string path,
+                std::string message, std::string allowed = "");
 
 /// A scalar that is a finite number in the range (which is in internal units), times `scale`.
 double ReadNumber(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems,
@@ -104,13 +104,15 @@ class MapReader {
     }
   }
 
+  /// None of the keys, any of which would do, is there. Not reported if an unknown key evidently means one.
+  void ReportMissing(std::vector<std::string> keys, const std::string& allowed);
+
   /// A key that is legal and read by someone else.
   void Ignore(const std::string& key) { known_.insert(key); }
 
  private:
   struct Missing {
-    std::vector<std::string> keys;  ///< any of which would do
-    std::string stem;               ///< of a quantity, else empty
+    std::vector<std::string> keys;
     std::string allowed;
   };
 
@@ -118,8 +120,8 @@ class MapReader {
   std::optional<std::size_t> WordIndex(const std::string& key, const std::vector<std::string>& words,
                                        bool required);
   // The member of a quantity and its unit, or null.
-  const InputNode* FindQuantity(const std::string& stem, Dimension dimension, std::string* key, double* scale);
-  void ReportMissing(std::vector<std::string> keys, const std::string& stem, const std::string& allowed);
+  const InputNode* FindQuantity(const std::string& stem, Dimension dimension, std::string* key,
+                                double* scale);
   void Finish();
 
   const InputNode& node_;

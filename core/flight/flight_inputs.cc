@@ -12,9 +12,7 @@ constexpr std::size_t kInputCount = sizeof(FlightInputs) / sizeof(double);
 // Names the doubles of FlightInputs in the order of their declaration.
 class ColumnList {
  public:
-  void One(const std::string& name, double unit = 1.0) {
-    columns_.push_back({name, unit, columns_.size()});
-  }
+  void One(const std::string& name, double unit = 1.0) { columns_.push_back({name, unit, columns_.size()}); }
   void EachStage(const std::string& stem, const std::string& unit_suffix = "", double unit = 1.0) {
     for (int stage = 1; stage <= kMaxStages; ++stage) {
       One(stem + "_stage" + std::to_string(stage) + unit_suffix, unit);

@@ -21,9 +21,9 @@
 #include "services/cli/execution_file.h"
 #include "services/cli/local_workers.h"
 #include "services/cli/progress.h"
-#include "services/cli/stop_signal.h"
 #include "services/coordinator/coordinator.h"
 #include "services/coordinator/open_campaign.h"
+#include "services/coordinator/stop_signal.h"
 #include "services/coordinator/utc.h"
 #include "services/transport/private_domain.h"
 
@@ -34,7 +34,7 @@ constexpr char kLoopback[] = "127.0.0.1";
 // Replacements of workers that end again and again without a single result between.
 constexpr int kFruitlessEndsAllowed = 30;
 constexpr double kJoinPatience_s = 60.0;
-constexpr double kLeavePatience_s = 2.0;
+constexpr double kLeavePatience_s = 0.3;
 
 struct RunOptions {
   CampaignRequest request;
@@ -117,7 +117,10 @@ class CampaignRun {
       }
       Supervise(coordinator, workers);
       coordinator.Step(std::chrono::milliseconds(50));
-      for (const std::string& uuid : coordinator.TakeUnresponsive()) workers.Kill(uuid);
+      for (const std::string& uuid : coordinator.TakeUnresponsive()) {
+        spdlog::warn("worker {} does not answer: it is killed", uuid);
+        workers.Kill(uuid);
+      }
       ShowProgress(fmt::format("{} worker{}", workers.alive(), workers.alive() == 1 ? "" : "s"));
       if (coordinator.joined() > 0) joined_s = Now();
       problem = Problem(coordinator, workers, Now() - joined_s);
@@ -134,7 +137,7 @@ class CampaignRun {
   void Supervise(Coordinator& coordinator, LocalWorkers& workers) {
     const LocalWorkers::Changes changes = workers.Poll(Now(), book_.flown_now());
     for (const WorkerProcess& ended : changes.ended) {
-      spdlog::warn("worker process {} ended: {}", ended.pid, ended.how);
+      spdlog::warn("worker {} (process {}) ended with {}; another takes its place", ended.uuid, ended.pid, ended.how);
       coordinator.WorkerEnded(ended.uuid, ended.end, ended.how);
     }
     for (const WorkerProcess& started : changes.started) coordinator.Supervise(started.uuid);
@@ -202,8 +205,8 @@ void PrintSummary(const CampaignSummary& summary, const std::filesystem::path& d
   fmt::print("report: {}\nresult: {}\n", (directory / "report.html").string(), directory.string());
 }
 
-/// Reports what is stored. Throws Interrupted.
-CampaignSummary Report(const CampaignBook& book, int threads, bool quiet) {
+/// Writes the reports of what is stored. Throws Interrupted.
+CampaignSummary MakeReports(const CampaignBook& book, int threads, bool quiet) {
   std::string phase;
   std::unique_ptr<Progress> progress;
   ReportOptions options;
@@ -231,7 +234,7 @@ ExitCode FlyAndReport(const RunOptions& options, const GlobalOptions& global, Op
 
   const auto start = std::chrono::steady_clock::now();
   const auto note_end = [&] {
-    book.Flush(SecondsSince(start));
+    book.Flush();
     execution.cases_flown = book.flown_now();
     execution.flying_s = SecondsSince(start);
   };
@@ -253,10 +256,10 @@ ExitCode FlyAndReport(const RunOptions& options, const GlobalOptions& global, Op
     code = WorseOf(code, kExitIncomplete);
   }
   for (const BlamedCase& blamed : book.ledger().Quarantined()) {
-    for (const std::string& reason : blamed.reasons) spdlog::warn("case {}: {}", blamed.case_index, reason);
+    spdlog::warn("case {} is quarantined: {}", blamed.case_index, fmt::join(blamed.reasons, "; "));
   }
   if (book.ledger().Progress().conflicts > 0) code = WorseOf(code, kExitInternalError);
-  const CampaignSummary summary = Report(book, workers, global.quiet);
+  const CampaignSummary summary = MakeReports(book, workers, global.quiet);
   execution.ended_utc = UtcNow();
   execution.Write();
   PrintSummary(summary, directory, global.json);

@@ -4,12 +4,12 @@
 namespace dispersa {
 
 enum ExitCode : int {
-  kExitDone = 0,            ///< done and every requirement met
+  kExitDone = 0,  ///< done and every requirement met
   kExitInternalError = 1,
-  kExitBadInput = 2,        ///< bad usage or bad input
+  kExitBadInput = 2,           ///< bad usage or bad input
   kExitRequirementFailed = 3,  ///< or the optimiser's target cannot be reached
-  kExitInconclusive = 4,    ///< more cases needed
-  kExitIncomplete = 5,      ///< no workers, disk full, quarantined cases, cancelled
+  kExitInconclusive = 4,       ///< more cases needed
+  kExitIncomplete = 5,         ///< no workers, disk full, quarantined cases, cancelled
   kExitReplayMismatch = 6,
   kExitInterrupted = 130,
 };

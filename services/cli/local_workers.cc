@@ -41,7 +41,7 @@ WorkerEnd ClassifyExit(int status, std::string* how) {
     return from_outside ? WorkerEnd::kKilled : WorkerEnd::kCrashed;
   }
   const int code = WEXITSTATUS(status);
-  *how = code == kExecFailed ? "the program could not be started" : "exit code " + std::to_string(code);
+  *how = code == kExecFailed ? "exit code 127 (the program cannot be started)" : "exit code " + std::to_string(code);
   return code == 0 ? WorkerEnd::kLeft : WorkerEnd::kCrashed;
 }
 

@@ -1,0 +1,161 @@
+// What the dispersions of a campaign file become.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/campaign_yaml/load.h"
+#include "core/math/constants.h"
+#include "tests/unit/input_files.h"
+
+namespace dispersa {
+namespace {
+
+using testing::ElementsAre;
+
+// Of the test campaign (two stages) with one dispersion in place of its own.
+std::vector<Dispersion> Decode(const std::string& line) {
+  const InputFiles files;
+  std::string text = ReadWholeFile(files.Path("campaign.yaml"));
+  const std::size_t begin = text.find("dispersions:\n");
+  text.replace(begin, text.find("requirements:") - begin, "dispersions:\n  " + line + "\n");
+  files.Write("campaign.yaml", text);
+  return LoadCampaign(files.Path("campaign.yaml")).dispersions;
+}
+
+std::vector<std::string> Names(const std::vector<Dispersion>& dispersions) {
+  std::vector<std::string> names;
+  for (const Dispersion& dispersion : dispersions) names.push_back(dispersion.name);
+  return names;
+}
+
+std::vector<std::string> Inputs(const Dispersion& dispersion) {
+  std::vector<std::string> names;
+  for (const int input : dispersion.inputs)
+    names.push_back(InputColumns()[static_cast<std::size_t>(input)].name);
+  return names;
+}
+
+TEST(CampaignYamlDispersions, MisalignmentHasAMagnitudeAndAClockAngleAStage) {
+  const auto list = Decode(
+      "thrust_misalignment: {distribution: normal, three_sigma_deg: 0.25, clock_angle: uniform, per: stage}");
+  EXPECT_THAT(Names(list),
+              ElementsAre("thrust_misalignment/stage1", "thrust_misalignment/stage2",
+                          "thrust_misalignment/clock/stage1", "thrust_misalignment/clock/stage2"));
+  EXPECT_EQ(list[0].distribution.kind, Distribution::kNormal);
+  EXPECT_EQ(list[0].distribution.nominal, 0.0);
+  EXPECT_EQ(list[0].distribution.sigma, 0.25 * kRadPerDeg / 3.0);
+  EXPECT_TRUE(list[0].absolute);
+  EXPECT_THAT(Inputs(list[1]), ElementsAre("thrust_misalignment_stage2_deg"));
+  EXPECT_EQ(list[2].distribution.kind, Distribution::kUniform);
+  EXPECT_EQ(list[2].distribution.low, 0.0);
+  EXPECT_EQ(list[2].distribution.high, kTwoPi);
+  EXPECT_FALSE(list[2].absolute);
+  EXPECT_THAT(Inputs(list[3]), ElementsAre("thrust_misalignment_clock_stage2_deg"));
+}
+
+TEST(CampaignYamlDispersions, PerVehicleIsOneDrawForAllStages) {
+  const auto list = Decode(
+      "thrust_offset: {distribution: uniform, bound_mm: 3, clock_angle: {fixed_deg: 90}, per: vehicle}");
+  EXPECT_THAT(Names(list), ElementsAre("thrust_offset", "thrust_offset/clock"));
+  EXPECT_EQ(list[0].distribution.low, -0.003);
+  EXPECT_EQ(list[0].distribution.high, 0.003);
+  EXPECT_THAT(Inputs(list[0]), ElementsAre("thrust_offset_stage1_m", "thrust_offset_stage2_m"));
+  EXPECT_EQ(list[1].distribution.kind, Distribution::kConstant);
+  EXPECT_THAT(list[1].distribution.values, ElementsAre(90.0 * kRadPerDeg));
+}
+
+TEST(CampaignYamlDispersions, WhatThrustConservesDecidesTheFlow) {
+  const auto impulse =
+      Decode("thrust: {distribution: normal, three_sigma_percent: 2, conserve: total_impulse, per: stage}");
+  EXPECT_THAT(Names(impulse), ElementsAre("thrust/stage1", "thrust/stage2"));
+  EXPECT_EQ(impulse[0].distribution.nominal, 1.0);
+  EXPECT_EQ(impulse[0].distribution.sigma, 0.02 / 3.0);
+  EXPECT_THAT(Inputs(impulse[0]), ElementsAre("thrust_factor_stage1", "mass_flow_factor_stage1"));
+  const auto propellant =
+      Decode("thrust: {distribution: normal, sigma_percent: 2, conserve: propellant, per: stage}");
+  EXPECT_EQ(propellant[0].distribution.sigma, 0.02);
+  EXPECT_THAT(Inputs(propellant[0]), ElementsAre("thrust_factor_stage1"));
+  EXPECT_THAT(Inputs(Decode("burn_rate: {distribution: normal, sigma_percent: 2, per: stage}")[1]),
+              ElementsAre("thrust_factor_stage2", "mass_flow_factor_stage2"));
+  EXPECT_THAT(Inputs(Decode("specific_impulse: {distribution: normal, sigma_percent: 2, per: vehicle}")[0]),
+              ElementsAre("specific_impulse_factor_stage1", "specific_impulse_factor_stage2"));
+}
+
+TEST(CampaignYamlDispersions, FactorsAreGivenInPercentOrAsSuch) {
+  const ScalarDistribution corner =
+      Decode("lift_coefficient: {distribution: two_point, plus_minus_percent: 20}")[0].distribution;
+  EXPECT_EQ(corner.kind, Distribution::kTwoPoint);
+  EXPECT_EQ(corner.nominal, 1.0);
+  EXPECT_EQ(corner.low, 0.8);
+  EXPECT_EQ(corner.high, 1.2);
+  const ScalarDistribution uniform =
+      Decode("center_of_pressure: {distribution: uniform, low_percent: -10, high_factor: 1.3}")[0]
+          .distribution;
+  EXPECT_EQ(uniform.low, 0.9);
+  EXPECT_EQ(uniform.high, 1.3);
+  EXPECT_THAT(Decode("pn_error: {distribution: values, values_factor: [0.1, 1, 10]}")[0].distribution.values,
+              ElementsAre(0.1, 1, 10));
+  EXPECT_THAT(Decode("pn_rate: {distribution: values, values_percent: [-50, 0, 50]}")[0].distribution.values,
+              ElementsAre(0.5, 1, 1.5));
+  const ScalarDistribution biased =
+      Decode("density: {distribution: normal, mean_percent: 5, sigma_percent: 2}")[0].distribution;
+  EXPECT_EQ(biased.nominal, 1.05);
+}
+
+TEST(CampaignYamlDispersions, WindIsFixedOrUniformUpToItsMaximum) {
+  const auto fixed = Decode("wind: {max_speed_m_s: 60.96, azimuth: uniform}");
+  EXPECT_THAT(Names(fixed), ElementsAre("wind/speed", "wind/azimuth"));
+  EXPECT_THAT(fixed[0].distribution.values, ElementsAre(60.96));
+  EXPECT_THAT(Inputs(fixed[0]), ElementsAre("wind_max_speed_m_s"));
+  const auto uniform = Decode(
+      "wind: {max_speed_m_s: 60.96, speed: uniform, azimuth: {distribution: normal, mean_deg: 270, "
+      "sigma_deg: 10}, altitude_km: 12, width_km: 6}");
+  EXPECT_THAT(Names(uniform), ElementsAre("wind/speed", "wind/azimuth", "wind/altitude", "wind/width"));
+  EXPECT_EQ(uniform[0].distribution.low, 0.0);
+  EXPECT_EQ(uniform[0].distribution.high, 60.96);
+  EXPECT_EQ(uniform[1].distribution.nominal, 270.0 * kRadPerDeg);
+  // A draw is added to the input's nominal value.
+  EXPECT_THAT(uniform[2].distribution.values, ElementsAre(12e3 - FlightInputs().wind_altitude_m));
+  EXPECT_THAT(uniform[3].distribution.values, ElementsAre(6e3 - FlightInputs().wind_width_m));
+}
+
+TEST(CampaignYamlDispersions, GustIsFixedOrDrawn) {
+  const auto list = Decode(
+      "gust: {speed_m_s: 9, altitude: {distribution: uniform, low_km: 5, high_km: 15}, length_m: 120, "
+      "azimuth: uniform}");
+  EXPECT_THAT(Names(list), ElementsAre("gust/speed", "gust/altitude", "gust/length", "gust/azimuth"));
+  EXPECT_EQ(list[1].distribution.low, 5000.0);
+  EXPECT_THAT(Inputs(list[2]), ElementsAre("gust_length_m"));
+}
+
+TEST(CampaignYamlDispersions, WindStatisticsDrawStandardNormals) {
+  const auto list = Decode(
+      "wind_profile: {statistics: wind_statistics.csv, correlation_ne: 0.1, correlation_length_km: 3}");
+  EXPECT_THAT(Names(list), ElementsAre("wind_profile/north1", "wind_profile/east1", "wind_profile/north2",
+                                       "wind_profile/east2"));
+  EXPECT_EQ(list[3].distribution.sigma, 1.0);
+  EXPECT_THAT(Inputs(list[3]), ElementsAre("wind_profile_east_2"));
+}
+
+TEST(CampaignYamlDispersions, RatesSensorsActuatorsAndLoop) {
+  // The last stage separates nothing.
+  const auto tip_off = Decode(
+      "tip_off_rate: {pitch: {distribution: normal, sigma_deg_s: 0.5}, yaw: {distribution: normal, "
+      "sigma_deg_s: 0.5}}");
+  EXPECT_THAT(Names(tip_off), ElementsAre("tip_off_rate/pitch/stage1", "tip_off_rate/yaw/stage1"));
+  EXPECT_THAT(Inputs(tip_off[1]), ElementsAre("tip_off_yaw_stage1_deg_s"));
+  EXPECT_THAT(Inputs(Decode("gyro_bias: {roll: {distribution: normal, sigma_deg_s: 0.01}}")[0]),
+              ElementsAre("gyro_bias_roll_deg_s"));
+  EXPECT_THAT(Decode("gyro_noise: {distribution: constant, value_deg_s: 0.1}")[0].distribution.values,
+              ElementsAre(0.1 * kRadPerDeg));
+  EXPECT_THAT(Inputs(Decode("actuator_bandwidth: {distribution: uniform, bound_percent: 30}")[0]),
+              ElementsAre("actuator_bandwidth_factor"));
+  EXPECT_THAT(Decode("loop_delay: {distribution: values, values_ms: [0, 20]}")[0].distribution.values,
+              ElementsAre(0.0, 0.02));
+  const auto stuck = Decode("stuck_nozzle: {nozzle: any, stage: 2, angle_deg: 3}");
+  EXPECT_THAT(Names(stuck), ElementsAre("stuck_nozzle/nozzle", "stuck_nozzle/stage", "stuck_nozzle/angle"));
+  EXPECT_THAT(stuck[0].distribution.values, ElementsAre(1, 2, 3, 4));
+  EXPECT_THAT(stuck[1].distribution.values, ElementsAre(2));
+}
+
+}  // namespace
+}  // namespace dispersa

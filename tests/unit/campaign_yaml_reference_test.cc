@@ -1,0 +1,134 @@
+// A reference survives its file; numbers survive their text.
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <random>
+
+#include "core/campaign_yaml/load.h"
+#include "core/campaign_yaml/number_text.h"
+#include "core/math/constants.h"
+#include "tests/unit/input_files.h"
+
+namespace dispersa {
+namespace {
+
+std::uint64_t Bits(double value) { return std::bit_cast<std::uint64_t>(value); }
+
+TEST(CampaignYamlNumbers, AreReadWholeOrNotAtAll) {
+  EXPECT_EQ(ParseNumber("1.5"), 1.5);
+  EXPECT_EQ(ParseNumber("+.5e1"), 5.0);
+  EXPECT_EQ(ParseNumber("-7"), -7.0);
+  EXPECT_FALSE(std::signbit(ParseNumber("-0.0").value()));
+  EXPECT_TRUE(std::isinf(ParseNumber("1e999").value()));
+  EXPECT_TRUE(std::isnan(ParseNumber(".nan").value()));
+  for (const char* text : {"", "+", "1,5", "1.5 ", " 1.5", "0x10", "1_000", "1.5.2", "++1", "+-1", "ten"}) {
+    EXPECT_FALSE(ParseNumber(text).has_value()) << text;
+  }
+}
+
+TEST(CampaignYamlNumbers, AreWrittenShort) {
+  EXPECT_EQ(FormatNumber(0.1), "0.1");
+  EXPECT_EQ(FormatNumber(-0.0), "0");
+  EXPECT_EQ(FormatNumber(1e6), "1000000");
+  EXPECT_EQ(FormatNumber(1e22), "1e+22");
+  EXPECT_EQ(FormatNumber(1.0 / 3.0), "0.3333333333333333");
+  EXPECT_EQ(FormatScaled(6.0 * kRadPerDeg, kRadPerDeg), "6");
+  EXPECT_EQ(FormatScaled(500e3, 1e3), "500");
+}
+
+// Any double, in any unit: what is written and read is written and read as the same for ever after, and is
+// off by at most one unit in the last place at first.
+TEST(CampaignYamlNumbers, ScaledTextIsAFixedPoint) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> exponent(-12.0, 12.0);
+  int exact = 0;
+  constexpr int kSamples = 20000;
+  for (int i = 0; i < kSamples; ++i) {
+    const double value = (i % 2 == 0 ? 1.0 : -1.0) * std::pow(10.0, exponent(random));
+    EXPECT_EQ(Bits(ParseNumber(FormatNumber(value)).value()), Bits(value));
+    for (const double scale : {kRadPerDeg, 1e3, 1e-3, kDegPerRad}) {
+      const std::string text = FormatScaled(value, scale);
+      const double read = ParseNumber(text).value() * scale;
+      EXPECT_LE(std::fabs(read - value), std::nextafter(std::fabs(value), INFINITY) - std::fabs(value));
+      EXPECT_EQ(FormatScaled(read, scale), text);
+      EXPECT_EQ(Bits(ParseNumber(FormatScaled(read, scale)).value() * scale), Bits(read));
+      exact += read == value;
+    }
+  }
+  // Half of the mantissas at least have a multiple that is finer than they are.
+  EXPECT_GT(exact, 2 * kSamples);
+}
+
+Reference RandomReference() {
+  std::mt19937_64 random(2);
+  std::uniform_real_distribution<double> angle(-1.0, 1.0);
+  Reference reference = LoadReference(DISPERSA_TEST_DATA "/yaml/reference.yaml");
+  reference.name = "it's 'quoted': #1";
+  reference.problem.q_max_limit_pa = 80000.0;
+  reference.problem.launch_azimuth_rad = {1.5 + 0.1 * angle(random), 2.9 + 0.1 * angle(random)};
+  reference.program.alpha_max_rad = 0.05 + 0.01 * angle(random);
+  reference.program.launch_azimuth_rad = 2.5 + 0.1 * angle(random);
+  reference.attitude.launch_azimuth_rad = reference.program.launch_azimuth_rad;
+  reference.orbit.altitude_m = 500e3 + angle(random);
+  reference.constraints.push_back({"q_alpha_max_pa_rad", 1234.5, 0.0, 0.0, false});
+  reference.attitude.knots.clear();
+  for (int i = 0; i < 500; ++i) {
+    reference.attitude.knots.push_back({0.1 * i, angle(random), angle(random), angle(random),
+                                        0.01 * angle(random), 0.01 * angle(random), 0.01 * angle(random)});
+  }
+  return reference;
+}
+
+TEST(CampaignYamlReference, IsAFixedPointOfWritingAndReading) {
+  const Reference original = RandomReference();
+  const std::string text = WriteReference(original);
+  const Reference read = ReadReference(text, "reference.yaml");
+  EXPECT_EQ(WriteReference(read), text);
+  const Reference again = ReadReference(WriteReference(read), "reference.yaml");
+  ASSERT_EQ(again.attitude.knots.size(), 500u);
+  for (std::size_t i = 0; i < 500; ++i) {
+    const AttitudeKnot& knot = read.attitude.knots[i];
+    EXPECT_EQ(Bits(again.attitude.knots[i].pitch), Bits(knot.pitch));
+    EXPECT_EQ(Bits(again.attitude.knots[i].roll_rate), Bits(knot.roll_rate));
+    EXPECT_EQ(Bits(original.attitude.knots[i].time_s), Bits(knot.time_s));
+    // One unit in the last place of a number below 1.
+    EXPECT_NEAR(original.attitude.knots[i].pitch, knot.pitch, 1.2e-16);
+  }
+}
+
+TEST(CampaignYamlReference, KeepsEveryField) {
+  const Reference original = RandomReference();
+  const Reference read = ReadReference(WriteReference(original), "reference.yaml");
+  EXPECT_EQ(read.name, original.name);
+  EXPECT_EQ(read.problem.target_altitude_m, 500e3);
+  EXPECT_EQ(read.problem.t3_s.low, 6.0);
+  EXPECT_EQ(read.problem.t3_s.high, 9.0);
+  EXPECT_EQ(read.problem.weight_altitude_1_m, original.problem.weight_altitude_1_m);
+  EXPECT_EQ(read.problem.weight_angle_1_rad, original.problem.weight_angle_1_rad);
+  EXPECT_EQ(read.problem.alpha_limit_rad, 6.0 * kRadPerDeg);
+  EXPECT_EQ(read.problem.q_max_limit_pa, 80000.0);
+  EXPECT_EQ(read.problem.q_alpha_limit_pa_rad, 0.0);
+  EXPECT_EQ(read.problem.seed, 1u);
+  EXPECT_EQ(read.program.t3_s, 7.5);
+  EXPECT_EQ(read.last_ignition_s, 420.5);
+  EXPECT_EQ(read.orbit.velocity_m_s, 7612.5996);
+  ASSERT_EQ(read.constraints.size(), 2u);
+  EXPECT_EQ(read.constraints[1].name, "q_alpha_max_pa_rad");
+  EXPECT_FALSE(read.constraints[1].enforced);
+  EXPECT_EQ(read.engine, "0.1.0+000000000000");
+  EXPECT_EQ(read.vehicle_sha256, "none");
+  EXPECT_EQ(read.evaluations, 6000);
+  EXPECT_EQ(read.attitude.launch_azimuth_rad, read.program.launch_azimuth_rad);
+}
+
+// 90 degrees at lift-off is exactly the constant that the loader makes of it.
+TEST(CampaignYamlReference, AnglesBecomeRadiansOnce) {
+  const Reference reference = LoadReference(DISPERSA_TEST_DATA "/yaml/reference.yaml");
+  EXPECT_EQ(reference.attitude.knots[0].pitch, 90.0 * kRadPerDeg);
+  EXPECT_EQ(reference.attitude.knots[1].pitch_rate, -0.7 * kRadPerDeg);
+  EXPECT_EQ(reference.program.launch_azimuth_rad, 146.7 * kRadPerDeg);
+}
+
+}  // namespace
+}  // namespace dispersa
