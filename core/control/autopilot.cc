@@ -10,8 +10,8 @@ AutopilotModel BuildAutopilot(const AutopilotConfig& config, std::vector<StageCo
   model.config = config;
   model.laws = {BuildAxisLaw(config.roll), BuildAxisLaw(config.pitch), BuildAxisLaw(config.yaw)};
   model.stages = std::move(stages);
-  model.thruster_minimum_ticks =
-      static_cast<int>(std::ceil(thruster_minimum_on_time_s / config.tick_s - 1e-9));
+  const double cycle_s = config.tick_s * config.reaction_control.cycle_ticks;
+  model.thruster_minimum_cycles = static_cast<int>(std::ceil(thruster_minimum_on_time_s / cycle_s - 1e-9));
   return model;
 }
 
@@ -62,7 +62,7 @@ std::array<int, kAxes> StepReactionControl(const AutopilotModel& model, const At
     const int index = static_cast<int>(axis);
     direction[axis] =
         StepThrusters(model.config.reaction_control, error.angle_rad[index], error.rate_rad_s[index],
-                      model.thruster_minimum_ticks, state.thrusters[axis]);
+                      model.thruster_minimum_cycles, state.thrusters[axis]);
   }
   return direction;
 }

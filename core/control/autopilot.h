@@ -26,7 +26,7 @@ struct AutopilotModel {
   AutopilotConfig config;
   std::array<AxisLaw, kAxes> laws;
   std::vector<StageControl> stages;
-  int thruster_minimum_ticks = 1;
+  int thruster_minimum_cycles = 1;
 };
 AutopilotModel BuildAutopilot(const AutopilotConfig& config, std::vector<StageControl> stages,
                               double thruster_minimum_on_time_s);
@@ -62,7 +62,7 @@ void StartStage(const AutopilotModel& model, int stage, AutopilotState& state);
 GimbalCommand StepGimbals(const AutopilotModel& model, int stage, double since_ignition_s,
                           const AttitudeError& error, const Vector2& pn_factor, double gain,
                           AutopilotState& state);
-/// One tick of coast: direction of the couple about each axis.
+/// One cycle of coast: direction of the couple about each axis.
 std::array<int, kAxes> StepReactionControl(const AutopilotModel& model, const AttitudeError& error,
                                            AutopilotState& state);
 

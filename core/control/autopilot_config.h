@@ -67,6 +67,7 @@ struct ReactionControlLogic {
   double deadband_rad = 0.0;
   double rate_gain_s = 0.0;     ///< switching line e + rate_gain * de/dt
   double hysteresis = 0.0;      ///< fraction of the deadband by which a firing overshoots into it
+  int cycle_ticks = 1;          ///< ticks between decisions: thrusters open for whole cycles
 };
 
 struct AutopilotConfig {

@@ -2,13 +2,13 @@
 
 namespace dispersa {
 
-int StepThrusters(const ReactionControlLogic& logic, double error, double rate, int minimum_ticks,
+int StepThrusters(const ReactionControlLogic& logic, double error, double rate, int minimum_cycles,
                   ThrusterState& state) {
   const double s = error + logic.rate_gain_s * rate;
   if (state.direction != 0) {
-    ++state.ticks_on;
+    ++state.cycles_on;
     const double closing = logic.deadband_rad * (1.0 - logic.hysteresis);
-    if (state.ticks_on < minimum_ticks || s * state.direction > closing) return state.direction;
+    if (state.cycles_on < minimum_cycles || s * state.direction > closing) return state.direction;
     state = ThrusterState{};
   }
   if (s > logic.deadband_rad)

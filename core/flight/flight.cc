@@ -81,6 +81,7 @@ class Flight {
     return on_last_stack() && motion_.phase.stack > 0 && !motion_.phase.burning && !motion_.phase.burnt;
   }
 
+  long NextTick() const;
   void Tick();
   void StepAutopilot(TickSample& sample);
   void HappenUntil(double time_s);
@@ -110,6 +111,7 @@ class Flight {
   Integrator integrator_;
 
   long tick_ = 0;
+  long next_tick_ = 1;
   double time_s_ = 0.0;
   std::array<double, kLauncherSize> y_{};
   AutopilotState autopilot_;
@@ -207,7 +209,8 @@ void Flight::StepAutopilot(TickSample& sample) {
       const double arm = axis == kRoll ? rcs.roll_arm_m : rcs.pitch_yaw_arm_m;
       motion_.phase.control_torque_n_m[axis] = couple * arm * direction;
       if (direction != 0)
-        motion_.phase.expelled_mass_kg += couple / (rcs.specific_impulse_s * kStandardGravity) * tick_s_;
+        motion_.phase.expelled_mass_kg += couple / (rcs.specific_impulse_s * kStandardGravity) *
+                                          static_cast<double>(next_tick_ - tick_) * tick_s_;
     }
   }
   sample.gimbal = gimbal_;
@@ -379,12 +382,24 @@ bool Flight::Advance(double to_s) {
   return true;
 }
 
+// Every tick counts but in the coast, where decisions fall on the thrusters' cycles, and on the first tick
+// after an event.
+long Flight::NextTick() const {
+  if (!coasting()) return tick_ + 1;
+  const long cycle = model_.autopilot().config.reaction_control.cycle_ticks;
+  const long next = (tick_ / cycle + 1) * cycle;
+  const double event_s = events_[next_event_].time_s;
+  const long event_tick = static_cast<long>(std::ceil((event_s - kSameInstant_s) / tick_s_));
+  return std::max(tick_ + 1, std::min(next, event_tick));
+}
+
 FlightResult Flight::Run() {
   HappenUntil(0.0);
   while (!ended_) {
+    next_tick_ = NextTick();
     Tick();
     if (ended_) break;
-    ++tick_;
+    tick_ = next_tick_;
     HappenUntil(static_cast<double>(tick_) * tick_s_);
   }
   metrics_.SetExpelledMass(motion_.phase.expelled_mass_kg);
