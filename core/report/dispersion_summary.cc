@@ -52,10 +52,9 @@ Moments FoldedNormal(double mean, double sigma) {
 std::optional<Moments> Of(const Dispersion& dispersion) {
   const ScalarDistribution& d = dispersion.distribution;
   switch (d.kind) {
-    case Distribution::kConstant:
+    case Distribution::kConstant: return Moments{dispersion.absolute ? std::fabs(d.nominal) : d.nominal, 0.0, 1.0};
     case Distribution::kValues: {
       std::vector<double> values = d.values;
-      if (values.empty()) values.push_back(d.nominal);
       if (dispersion.absolute) {
         for (double& value : values) value = std::fabs(value);
       }
@@ -80,7 +79,7 @@ std::string Words(const Dispersion& dispersion, double unit, const std::string& 
   const std::string suffix = unit_name.empty() ? "" : " " + unit_name;
   std::string words;
   switch (d.kind) {
-    case Distribution::kConstant: words = "constant " + text(d.values.empty() ? d.nominal : d.values[0]) + suffix; break;
+    case Distribution::kConstant: words = "constant " + text(d.nominal) + suffix; break;
     case Distribution::kNormal:
       words = fmt::format("normal, mean {}{}, 3σ {}{}", text(d.nominal), suffix, text(3.0 * d.sigma), suffix);
       break;

@@ -94,8 +94,8 @@ std::string DistributionFigures(const std::string& metric, const CampaignSummary
   const std::string missing = undefined > 0 ? fmt::format(" {} of {} cases do not define it.", undefined, cases.rows()) : "";
   return Figure(bars.Svg("Histogram of " + info.title), title + ": histogram of the cases." + missing) +
          Figure(tail.Svg("Exceedance of " + info.title),
-                title + ": share of the cases " + (above ? "at most" : "beyond") +
-                    " each value. Met with room when the curve falls below the allowed share well before the limit.");
+                title + ": share of the cases " + (above ? "at most" : "beyond") + " each value." +
+                    (requirements.empty() ? "" : " The curve should fall below the allowed share before the limit."));
 }
 
 }  // namespace dispersa

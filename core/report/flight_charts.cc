@@ -52,7 +52,7 @@ struct Burns {
   void AddTo(SvgChart* chart) const {
     for (std::size_t i = 0; i < burns.size(); ++i) {
       if (i > 0 && burns[i].from_s - burns[i - 1].to_s > 10.0) chart->Shade(burns[i - 1].to_s, burns[i].from_s, "coast");
-      chart->Mark(burns[i].from_s, fmt::format("stage {}", burns[i].stage));
+      chart->Mark(burns[i].from_s, fmt::format("S{}", burns[i].stage));
     }
   }
 };

@@ -16,13 +16,13 @@ void HtmlTable::Wide(const std::string& cell, std::string_view row_class) {
   rows_ += fmt::format("<tr class=\"{}\"><td colspan=\"{}\">{}</td></tr>\n", row_class, columns_.size(), cell);
 }
 
-std::string HtmlTable::Html() const {
+std::string HtmlTable::Html(std::string_view table_class) const {
   std::string head;
   for (const Column& column : columns_) {
     head += fmt::format("<th{}>{}</th>", column.number ? " class=\"n\"" : "", column.title);
   }
-  return fmt::format("<div class=\"scroll\"><table><thead><tr>{}</tr></thead>\n<tbody>\n{}</tbody></table></div>\n", head,
-                     rows_);
+  return fmt::format("<div class=\"scroll\"><table{}><thead><tr>{}</tr></thead>\n<tbody>\n{}</tbody></table></div>\n",
+                     table_class.empty() ? "" : fmt::format(" class=\"{}\"", table_class), head, rows_);
 }
 
 std::string Figure(const std::string& svg, const std::string& caption_html) {
@@ -69,8 +69,9 @@ code { font: 12.5px/1.4 ui-monospace, "DejaVu Sans Mono", "Liberation Mono", mon
 .scroll { overflow-x: auto; } table { border-collapse: collapse; margin: 8px 0 12px; font-size: 13.5px; width: 100%; }
 th { text-align: left; font-weight: 600; color: var(--soft); border-bottom: 1.5px solid var(--rule); padding: 4px 8px;
   vertical-align: bottom; } td { border-bottom: 1px solid var(--rule); padding: 4px 8px; vertical-align: top; }
-th:first-child, td:first-child { padding-left: 0; }
-.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
+th:first-child, td:first-child { padding-left: 0; } table.narrow { width: auto; min-width: 420px; }
+.n { text-align: right; font-variant-numeric: tabular-nums; } td.n, td.u { white-space: nowrap; }
+td > code { white-space: nowrap; }  td.id code { white-space: normal; }
 tr.joined td { border-bottom: none; padding-bottom: 0; } tr.sentence td { color: var(--soft); padding-top: 2px; }
 tr.group td { font-weight: 650; padding-top: 14px; } tr.part td:first-child { padding-left: 18px; }
 td .definition { display: block; font-size: 12px; line-height: 1.35; max-width: 46ch; }

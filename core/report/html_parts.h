@@ -20,7 +20,8 @@ class HtmlTable {
   void Row(const std::vector<std::string>& cells, std::string_view row_class = "");
   /// One cell over the whole width.
   void Wide(const std::string& cell, std::string_view row_class);
-  std::string Html() const;
+  /// As wide as the page, or only as its contents.
+  std::string Html(std::string_view table_class = "") const;
 
  private:
   std::vector<Column> columns_;

@@ -14,8 +14,8 @@ struct UnitSuffix {
 };
 
 /// Longer suffixes before those that end them.
-constexpr std::array<UnitSuffix, 18> kUnits = {{
-    {"_deg_s2", "° s²"}, {"_pa_rad", "Pa rad"}, {"_deg_s", "°/s"}, {"_rad_s", "rad/s"}, {"_kg_s", "kg/s"},
+constexpr std::array<UnitSuffix, 19> kUnits = {{
+    {"_itae_deg_s2", "° s²"}, {"_deg_s2", "°/s²"}, {"_pa_rad", "Pa rad"}, {"_deg_s", "°/s"}, {"_rad_s", "rad/s"}, {"_kg_s", "kg/s"},
     {"_km_s", "km/s"}, {"_m_s", "m/s"}, {"_deg", "°"}, {"_rad", "rad"}, {"_pa", "Pa"}, {"_km", "km"},
     {"_kg", "kg"}, {"_ms", "ms"}, {"_db", "dB"}, {"_n", "N"}, {"_m", "m"}, {"_g", "g"}, {"_s", "s"},
 }};
@@ -91,7 +91,9 @@ std::string TakePhase(std::string* stem) {
 NameAndUnit SplitUnit(const std::string& name) {
   for (const UnitSuffix& unit : kUnits) {
     if (name.ends_with(unit.suffix)) {
-      return {name.substr(0, name.size() - unit.suffix.size()), std::string(unit.unit)};
+      // ITAE is an integral over time twice, so its suffix reads otherwise than an acceleration's.
+      const std::size_t kept = unit.suffix.starts_with("_itae") ? 5 : 0;
+      return {name.substr(0, name.size() - unit.suffix.size() + kept), std::string(unit.unit)};
     }
   }
   return {name, ""};
@@ -108,6 +110,7 @@ MetricInfo DescribeMetric(const std::string& name) {
     info.title = entry->title;
     info.definition = entry->definition;
     info.worse = entry->worse;
+    info.known = true;
   } else {
     info.title = split.stem;
     std::replace(info.title.begin(), info.title.end(), '_', ' ');

@@ -36,7 +36,8 @@ std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary,
   } else {
     page += fmt::format(
         "<p>Pointwise percentiles over the first {} flown cases of {}, sampled every {} s; a lost flight counts until it is "
-        "lost. Peaks between the samples are in the metrics, not here. Numbers: <code>histories/bands.csv</code>.</p>\n",
+        "lost. S1 to S4 mark ignitions. Peaks between the samples are in the metrics, not here. Numbers: "
+        "<code>histories/bands.csv</code>.</p>\n",
         histories.bands.flights, summary.flown, ReadableText(histories.bands.step_s));
     page += EnvelopeFigures(histories, summary, campaign.reference.program.t2_s);
   }

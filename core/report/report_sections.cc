@@ -20,6 +20,12 @@ std::string WithUnit(double value, const std::string& unit) {
   return ReadableText(value) + (unit.empty() ? "" : " " + unit);
 }
 
+/// For the middle of a sentence.
+std::string Lower(std::string title) {
+  if (!title.empty() && title[0] >= 'A' && title[0] <= 'Z') title[0] = static_cast<char>(title[0] - 'A' + 'a');
+  return HtmlText(title);
+}
+
 std::string Code(const std::string& text) { return "<code>" + HtmlText(text) + "</code>"; }
 
 std::string OutcomeWords(Outcome outcome) {
@@ -113,7 +119,7 @@ std::string HeaderSection(const CampaignSummary& summary) {
     const Summary* metric = FindMetric(summary, name);
     if (metric == nullptr) continue;
     const MetricInfo info = DescribeMetric(name);
-    html += Tile(WithUnit(metric->p50, info.unit), "median " + HtmlText(info.title));
+    html += Tile(WithUnit(metric->p50, info.unit), "median " + Lower(info.title));
   }
   return html + "</div>\n</header>\n";
 }
@@ -121,8 +127,8 @@ std::string HeaderSection(const CampaignSummary& summary) {
 std::string RequirementsSection(const CampaignSummary& summary) {
   std::string html = "<h2 id=\"requirements\">Requirements</h2>\n";
   if (summary.requirements.empty()) return html + "<p>The campaign states none.</p>\n";
-  HtmlTable table({{"Metric"}, {"Limit", true}, {"Probability required", true}, {"Consumer risk", true}, {"Cases", true},
-                   {"Failures", true}, {"of them lost flights", true}, {"Observed", true}, {"Confidence bounds", true},
+  HtmlTable table({{"Metric"}, {"Limit", true}, {"Required probability", true}, {"Consumer risk", true}, {"Cases", true},
+                   {"Failures", true}, {"of them lost", true}, {"Observed", true}, {"Confidence bounds", true},
                    {"Verdict"}, {"Cases needed", true}});
   for (const RequirementSummary& requirement : summary.requirements) {
     const MetricInfo info = DescribeMetric(requirement.metric);
@@ -158,7 +164,7 @@ std::string OutcomesSection(const CampaignSummary& summary) {
     const double share = summary.flown == 0 ? std::nan("") : static_cast<double>(count) / static_cast<double>(summary.flown);
     table.Row({OutcomeWords(static_cast<Outcome>(i)), std::to_string(count), PercentText(share)});
   }
-  html += table.Html();
+  html += table.Html("narrow");
   if (!summary.lost_flights.empty()) {
     const std::uint64_t lost = summary.flown - summary.outcomes[static_cast<std::size_t>(Outcome::kCompleted)];
     html += fmt::format("<h3>Lost flights{}</h3>\n", lost > summary.lost_flights.size()
@@ -186,7 +192,7 @@ std::string OutcomesSection(const CampaignSummary& summary) {
 
 std::string WorstCasesSection(const CampaignSummary& summary, const FlightHistories& histories) {
   std::string html =
-      "<h2 id=\"worst\">Worst cases</h2>\n<p>Lost flights first. The commands run in the result folder and check that the "
+      "<h2 id=\"worst\">Worst cases</h2>\n<p>A lost flight first, if there is one; all are listed under Outcomes. The commands run in the result folder and check that the "
       "case comes out the same to the last bit; <code>--history FILE</code> adds its time history.</p>\n";
   HtmlTable table({{"Metric"}, {"Case", true}, {"Value", true}, {"Outcome"}, {"To fly it again"}, {"Time history"}});
   for (const WorstCases& worst : summary.worst_cases) {
@@ -208,7 +214,7 @@ std::string StatisticsSection(const CampaignSummary& summary) {
       "<h2 id=\"statistics\">Statistics of every metric</h2>\n<p>Over the cases that define the metric; n says how many. "
       "Percentiles are estimates without a confidence: the requirements above do not use them. Attitude and deflection "
       "metrics cover powered flight, ignition to burnout of each stage with its transients; the coast has its own.</p>\n";
-  HtmlTable table({{"Metric"}, {"Unit"}, {"Nominal", true}, {"n", true}, {"Mean", true}, {"Std", true}, {"Min", true},
+  HtmlTable table({{"Metric"}, {"Unit", true}, {"Nominal", true}, {"n", true}, {"Mean", true}, {"Std", true}, {"Min", true},
                    {"p50", true}, {"p95", true}, {"p99", true}, {"p99.73", true}, {"Max", true}});
   for (std::size_t group = 0; group < MetricGroups().size(); ++group) {
     bool titled = false;

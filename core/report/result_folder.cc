@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
+#include <fstream>
+#include <iterator>
 #include <optional>
 #include <system_error>
 #include <utility>
@@ -66,6 +69,14 @@ void WriteProvenance(Database& database, const Campaign& campaign) {
   put("seed", std::to_string(campaign.sampling.seed));
   put("cases", std::to_string(campaign.sampling.cases));
   put("sampling", SamplingMethodName(campaign.sampling.method));
+}
+
+/// By the first bytes of the file format; so a wrong file is told from a damaged one.
+bool IsDatabase(const fs::path& file) {
+  constexpr char kMagic[] = "SQLite format 3";
+  char begin[sizeof kMagic] = {};
+  std::ifstream(file, std::ios::binary).read(begin, sizeof begin);
+  return std::equal(std::begin(kMagic), std::end(kMagic), std::begin(begin));
 }
 
 std::optional<Digest> ParseDigest(const std::string& hex) {
@@ -142,6 +153,9 @@ ResultFolder ResultFolder::Open(const fs::path& directory) {
   std::error_code error;
   if (!fs::is_regular_file(directory / kDatabaseName, error)) {
     throw InputError(fmt::format("{}: not a result folder: it has no {}", directory.string(), kDatabaseName));
+  }
+  if (!IsDatabase(directory / kDatabaseName)) {
+    throw InputError(fmt::format("{}: not a result folder: its {} is no SQLite database", directory.string(), kDatabaseName));
   }
   ResultFolder folder(directory, std::make_unique<Database>(directory / kDatabaseName, Database::Mode::kExisting));
   std::string schema;

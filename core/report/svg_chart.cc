@@ -14,12 +14,12 @@ namespace dispersa {
 namespace {
 
 constexpr double kLeft = 58.0;
-constexpr double kRight = 12.0;
+constexpr double kRight = 18.0;
 constexpr double kBottom = 42.0;
 constexpr double kTitleRow = 20.0;   ///< the y axis's label
 constexpr double kLegendRow = 17.0;
 constexpr double kMarkRow = 13.0;    ///< labels of events
-constexpr double kCharacter = 6.1;   ///< mean width of a letter of the legend
+constexpr double kCharacter = 6.9;   ///< mean width of a letter of the legend
 
 std::string Coordinate(double value) {
   std::string text = fmt::format("{:.1f}", value);
@@ -147,7 +147,7 @@ std::string SvgChart::Svg(const std::string& description) const {
   int rows = 0;
   for (const Series& series : series_) {
     if (series.legend.empty()) continue;
-    const double width = 26.0 + kCharacter * static_cast<double>(series.legend.size());
+    const double width = 32.0 + kCharacter * static_cast<double>(series.legend.size());
     if (rows == 0 || legend_x + width > width_ - kRight) {
       ++rows;
       legend_x = kLeft;
@@ -161,6 +161,11 @@ std::string SvgChart::Svg(const std::string& description) const {
 
   Range x_range;
   for (const Series& series : series_) x_range.Add(series.x, x_.logarithmic);
+  for (const Series& series : series_) {
+    if (series.kind != Series::Kind::kVerticalLimit) continue;
+    const double room = 0.03 * (x_range.high - x_range.low);  // a limit shall not lie on the frame
+    x_range.Add({series.x[0] - room, series.x[0] + room}, x_.logarithmic);
+  }
   const ChartScale xs(x_, x_range.low, x_range.high, kLeft, right, std::max(3, width_ / 90));
   Range y_range;
   for (const Series& series : series_) {

@@ -31,7 +31,10 @@ std::string ReadableText(double value) {
 }
 
 std::string PercentText(double probability) {
-  return std::isfinite(probability) ? fmt::format("{:.6g} %", 100.0 * probability) : "–";
+  if (!std::isfinite(probability)) return "–";
+  std::string digits = fmt::format("{:.5g}", 100.0 * probability);
+  if (digits == "100" && probability < 1.0) digits = fmt::format("{:.9g}", 100.0 * probability);
+  return digits + " %";
 }
 
 std::string CsvField(std::string_view text) {

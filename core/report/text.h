@@ -10,7 +10,7 @@ namespace dispersa {
 std::string ShortestText(double value);
 /// For people: about five significant digits, without an exponent between 1e-4 and 1e9; "–" when not finite.
 std::string ReadableText(double value);
-/// A probability in per cent with as many digits as it needs: 0.9973 is "99.73 %".
+/// A probability in per cent, with five digits or as many more as show that it is not 1: 0.9973 is "99.73 %".
 std::string PercentText(double probability);
 /// One field of a CSV line, quoted as RFC 4180 asks when it holds a comma, a quote or a line break.
 std::string CsvField(std::string_view text);
