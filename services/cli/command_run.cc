@@ -278,7 +278,11 @@ ExitCode Run(const RunOptions& options, const GlobalOptions& global) {
   } catch (const Interrupted&) {
     execution.ended_utc = UtcNow();
     execution.problem = "interrupted";
-    execution.Write();
+    try {
+      execution.Write();
+    } catch (const ResultError& error) {
+      spdlog::error("{}", error.what());
+    }
     fmt::print(stderr, "interrupted; to go on: {}\n", ResumeCommand(options, directory));
     return kExitInterrupted;
   } catch (const ResultError& error) {

@@ -80,11 +80,12 @@ Acceptance CampaignBook::Accept(const std::string& worker, const std::string& ho
 }
 
 void CampaignBook::FlushIfDue(double now_s) {
-  if (results_.size() >= kFlushCount || now_s - flushed_s_ >= kFlushPeriod_s) Flush(now_s);
+  if (results_.size() < kFlushCount && now_s - flushed_s_ < kFlushPeriod_s) return;
+  flushed_s_ = now_s;
+  Flush();
 }
 
-void CampaignBook::Flush(double now_s) {
-  flushed_s_ = now_s;
+void CampaignBook::Flush() {
   if (!results_.empty()) {
     folder_.Append(results_);
     results_.clear();

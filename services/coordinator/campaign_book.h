@@ -35,7 +35,7 @@ class CampaignBook {
                     const CaseResult& result, double now_s);
   /// Stores what has gathered if it is time to.
   void FlushIfDue(double now_s);
-  void Flush(double now_s);
+  void Flush();
 
  private:
   Campaign campaign_;

@@ -83,7 +83,10 @@ void Coordinator::On(const WorkerStatus& status) {
     banned_.insert(status.worker);
     return;
   }
-  joined_[status.worker] = status.host;
+  if (joined_.insert_or_assign(status.worker, status.host).second && !supervised_.contains(status.worker)) {
+    spdlog::info("worker {} joined: process {} on {}, {} slots", status.worker, status.pid, status.host,
+                 status.slots);
+  }
 }
 
 void Coordinator::On(const Report& report) {
@@ -125,11 +128,12 @@ void Coordinator::On(const WorkerGone& gone) {
 
 void Coordinator::Lose(const std::string& worker, WorkerEnd end, const std::string& reason) {
   const bool known = joined_.erase(worker) > 0;
-  if (supervised_.erase(worker) > 0) banned_.insert(worker);
+  const bool supervised = supervised_.erase(worker) > 0;
+  if (supervised) banned_.insert(worker);
   unresponsive_.erase(worker);
   book_.ledger().Lost(worker, end, reason);
   link_.Forget(worker);
-  if (known && end != WorkerEnd::kLeft) spdlog::warn("worker {} is lost: {}", worker, reason);
+  if (known && !supervised) spdlog::warn("worker {} is lost: {}", worker, reason);
 }
 
 double Coordinator::Now() const {

@@ -35,7 +35,11 @@ int main(int argc, char** argv) {
       ->check(CLI::ValidIPV4);
   app.add_option("--slots", options.slots, "cases flown at the same time")->check(CLI::Range(1, 1024));
   app.add_option("--uuid", options.uuid, "name of this incarnation, drawn if not given");
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kDone : kBadUsage;
+  }
   if (options.uuid.empty()) options.uuid = MakeUuid();
 
   // Before any thread starts, so that every thread leaves the signals to the one that waits for them.

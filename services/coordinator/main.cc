@@ -1,0 +1,100 @@
+// dispersa-coordinator: serves a campaign to the workers that come.
+#include <fmt/format.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <exception>
+#include <utility>
+
+#include "core/engine/version.h"
+#include "core/report/reports.h"
+#include "services/coordinator/coordinator.h"
+#include "services/coordinator/open_campaign.h"
+#include "services/coordinator/stop_signal.h"
+
+namespace dispersa {
+namespace {
+
+// The product's exit codes that no verdict gives.
+constexpr int kInternalError = 1;
+constexpr int kBadInput = 2;
+constexpr int kIncomplete = 5;
+constexpr int kInterrupted = 130;
+
+constexpr std::chrono::seconds kProgressPeriod(5);
+
+int Serve(const NetworkOptions& network, const CampaignRequest& request) {
+  OpenedCampaign opened = OpenCampaign(request);
+  CampaignBook book(opened.campaign, std::move(opened.folder));
+  Coordinator coordinator(network, book);
+  spdlog::info("campaign {}, flight id {}, results in {}; domain {}, workers may come to port {}",
+               book.campaign().name, book.campaign().flight_id, book.folder().directory().string(), network.domain,
+               CoordinatorPort(network.domain));
+  auto progress_due = std::chrono::steady_clock::now();
+  while (!book.ledger().Complete() && !StopRequested()) {
+    coordinator.Step(std::chrono::milliseconds(100));
+    if (const auto now = std::chrono::steady_clock::now(); now >= progress_due) {
+      progress_due = now + kProgressPeriod;
+      const LedgerProgress progress = book.ledger().Progress();
+      spdlog::info("{}/{} cases done, {} assigned, {} quarantined, {} workers", progress.done, progress.total,
+                   progress.assigned, progress.quarantined, coordinator.joined());
+    }
+  }
+  coordinator.Dismiss();
+  book.Flush();
+  if (StopRequested()) {
+    spdlog::warn("stopped; the same with --resume goes on");
+    return kInterrupted;
+  }
+  const CampaignSummary summary = WriteReports(book.folder(), book.campaign());
+  fmt::print("result: {}\n", book.folder().directory().string());
+  return book.ledger().Progress().conflicts > 0 ? kInternalError : VerdictExitCode(summary.verdict);
+}
+
+int Main(int argc, char** argv) {
+  spdlog::set_default_logger(spdlog::stderr_logger_mt("dispersa-coordinator"));
+  NetworkOptions network;
+  CampaignRequest request;
+  CLI::App app("Serves one campaign to all dispersa-worker processes of a DDS domain, then writes its reports.",
+               "dispersa-coordinator");
+  app.set_version_flag("--version", EngineVersion());
+  app.add_option("campaign", request.campaign, "campaign file")->required();
+  app.add_option("--out", request.out, "result folder; default: results/<name>-<first 8 of id>");
+  app.add_option("--cases", request.overrides.cases, "number of cases, instead of the file's")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--seed", request.overrides.seed, "seed, instead of the file's");
+  app.add_flag("--resume", request.resume, "go on in a folder of the same flight id");
+  app.add_option("--domain", network.domain, "DDS domain")->envname("DISPERSA_DOMAIN")->check(CLI::Range(0, 99));
+  app.add_option("--address", network.address, "IPv4 address of the only network interface to use")
+      ->check(CLI::ValidIPV4);
+  app.footer("Example: dispersa-coordinator campaigns/table3.yaml --out results/table3 --domain 7\n"
+             "         dispersa-worker --domain 7 --peer coordinator-host");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kBadInput;
+  }
+  CatchStopSignals();
+  try {
+    return Serve(network, request);
+  } catch (const InputError& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return kBadInput;
+  } catch (const NetworkError& error) {
+    spdlog::error("{}", error.what());
+    return kBadInput;
+  } catch (const ResultError& error) {
+    spdlog::error("{}", error.what());
+    return error.kind() == ResultError::Kind::kDiskFull ? kIncomplete : kInternalError;
+  } catch (const std::exception& error) {
+    spdlog::error("{}", error.what());
+    return kInternalError;
+  }
+}
+
+}  // namespace
+}  // namespace dispersa
+
+int main(int argc, char** argv) { return dispersa::Main(argc, argv); }
