@@ -257,7 +257,7 @@ constexpr BadInput kBadInputs[] = {
 };
 
 INSTANTIATE_TEST_SUITE_P(CampaignYamlErrors, BadInputTest, testing::ValuesIn(kBadInputs),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& instance) { return instance.param.name; });
 
 TEST(CampaignYamlErrors, ValidFilesHaveNone) {
   const InputFiles files;
