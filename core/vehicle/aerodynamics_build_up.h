@@ -23,8 +23,8 @@ namespace dispersa {
 /// - Pitch damping: slender-body theory, about the middle of the stack's length, the same at every Mach.
 /// - Roll damping: of skin friction only, there are no fins.
 ///
-/// Grid: Mach 0 to 20, incidence 0 to 180 degrees; outside, the end value holds (at Mach 20 all
-/// coefficients but skin friction have reached their hypersonic limits, and a launcher is above the sensible atmosphere).
+/// Grid: Mach 0 to 20, incidence 0 to 180 degrees; outside, the end value holds (at Mach 20 all but skin
+/// friction has reached its hypersonic limit, and a launcher is above the sensible atmosphere).
 /// Validity: fineness above 5, widening mould lines (a boat-tail's negative lift is taken in full, as if
 /// its flow stayed attached), incidence up to 30 degrees; beyond, right in sign and size only. Continuum
 /// flow, air without reactions, no plume effect on the body.

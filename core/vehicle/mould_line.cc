@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <string>
 
 #include "core/math/constants.h"
 #include "core/math/functions.h"
@@ -16,7 +17,6 @@ constexpr int kPanels = 64;
 MouldSection Section(ProfileShape shape, double start_m, double length_m, double fore_radius_m,
                      double aft_radius_m) {
   MouldSection section{start_m, start_m + length_m, fore_radius_m, aft_radius_m, 0.0, 0.0};
-  if (shape == ProfileShape::kCylinder) section.fore_radius_m = aft_radius_m;
   if (shape == ProfileShape::kTangentOgive) {
     const double rise_m = aft_radius_m - fore_radius_m;
     section.arc_radius_m = (Square(rise_m) + Square(length_m)) / (2.0 * rise_m);
@@ -37,6 +37,32 @@ double MouldSection::Slope(double station_m) const {
   if (!IsCurved()) return (aft_radius_m - fore_radius_m) / (end_m - start_m);
   const double ahead_m = arc_centre_m - station_m;
   return ahead_m / Sqrt(Square(arc_radius_m) - Square(ahead_m));
+}
+
+std::vector<VehicleProblem> ProfileProblems(const std::vector<ProfileSection>& profile) {
+  std::vector<VehicleProblem> problems;
+  double fore_diameter_m = 0.0;
+  for (std::size_t i = 0; i < profile.size(); ++i) {
+    const ProfileSection& section = profile[i];
+    const std::string path = "profile[" + std::to_string(i) + "].";
+    const auto require = [&](bool ok, const char* key, const char* message, const char* allowed) {
+      if (!ok) problems.push_back({path + key, message, allowed});
+    };
+    require(section.length_m > 0.0, "length_m", "is not positive", "a number above 0");
+    require(section.aft_diameter_m > 0.0, "aft_diameter_m", "is not positive", "a number above 0");
+    if (i == 0) {
+      require(section.shape == ProfileShape::kTangentOgive || section.shape == ProfileShape::kCone, "shape",
+              "has no tip", "tangent_ogive or cone for the first section");
+    } else if (section.shape == ProfileShape::kTangentOgive) {
+      require(section.aft_diameter_m > fore_diameter_m, "aft_diameter_m",
+              "is not larger than the section's before", "a tangent ogive that widens");
+    } else if (section.shape == ProfileShape::kCylinder) {
+      require(section.aft_diameter_m == fore_diameter_m, "aft_diameter_m",
+              "is not the diameter of the section before", "a cylinder that keeps it; a frustum changes it");
+    }
+    fore_diameter_m = section.aft_diameter_m;
+  }
+  return problems;
 }
 
 std::vector<MouldSection> CutMouldLine(const std::vector<ProfileSection>& profile, double end_station_m) {

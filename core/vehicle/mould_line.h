@@ -21,9 +21,14 @@ struct MouldSection {
   bool IsCurved() const { return arc_radius_m > 0.0; }
 };
 
+/// What makes a profile no body of revolution that flies nose first: lengths and diameters that are not
+/// positive, a first section without a tip, a tangent ogive that does not widen, a cylinder that does not
+/// keep the diameter before it. Paths are `profile[i].…`.
+std::vector<VehicleProblem> ProfileProblems(const std::vector<ProfileSection>& profile);
+
 /// The profile's sections from the nose tip to `end_station_m`, the last one cut there. A curved section
-/// is an arc that ends parallel to the axis; a cylinder has its aft diameter throughout.
-/// Precondition: positive lengths, and a nose (the first section) that starts at radius 0.
+/// is an arc that ends parallel to the axis.
+/// Precondition: no ProfileProblems.
 std::vector<MouldSection> CutMouldLine(const std::vector<ProfileSection>& profile, double end_station_m);
 
 /// Integrals over a body of length l and cross-section A(x) = pi r(x)^2, by Simpson's rule.

@@ -5,6 +5,7 @@
 
 #include "core/math/table.h"
 #include "core/vehicle/mass.h"
+#include "core/vehicle/mould_line.h"
 
 namespace dispersa {
 
@@ -153,6 +154,8 @@ std::vector<VehicleProblem> Problems(const Vehicle& vehicle) {
                   "is " + std::to_string(length) + " m long in all",
                   "sections that end at the first stage's bottom_station_m, " +
                       std::to_string(vehicle.stages[0].bottom_station_m) + " m");
+  for (const VehicleProblem& problem : ProfileProblems(vehicle.profile))
+    check.Require(false, problem.path, problem.message, problem.allowed);
   CheckTables(vehicle, check);
   const ReactionControl& rcs = vehicle.reaction_control;
   if (count > 1) {

@@ -1,10 +1,12 @@
 // The component build-up of aerodynamics: closed answers, independent theories, and the tables' shape.
 #include "core/vehicle/aerodynamics_build_up.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "core/math/constants.h"
@@ -107,6 +109,25 @@ TEST(MouldLine, CutsASectionWhereTheStackEnds) {
   EXPECT_DOUBLE_EQ(body[1].end_m, 2.0);
   EXPECT_NEAR(body[1].aft_radius_m, 0.35, 1e-15);
   EXPECT_NEAR(body[1].Slope(1.7), 0.2, 1e-12);
+}
+
+TEST(MouldLine, NamesEveryProblemOfAProfile) {
+  std::vector<std::string> texts;
+  for (const VehicleProblem& problem : ProfileProblems({{Shape::kFrustum, 1.0, 0.5},
+                                                        {Shape::kCylinder, 0.0, 0.6},
+                                                        {Shape::kTangentOgive, 1.0, 0.6},
+                                                        {Shape::kCone, 1.0, -0.1}})) {
+    texts.push_back(problem.path + ": " + problem.message + " | " + problem.allowed);
+  }
+  EXPECT_THAT(texts, testing::ElementsAre(
+                         "profile[0].shape: has no tip | tangent_ogive or cone for the first section",
+                         "profile[1].length_m: is not positive | a number above 0",
+                         "profile[1].aft_diameter_m: is not the diameter of the section before | a cylinder "
+                         "that keeps it; a frustum changes it",
+                         "profile[2].aft_diameter_m: is not larger than the section's before | a tangent "
+                         "ogive that widens",
+                         "profile[3].aft_diameter_m: is not positive | a number above 0"));
+  EXPECT_THAT(ProfileProblems(Launcher().profile), testing::IsEmpty());
 }
 
 // ---- Normal force ----
