@@ -30,9 +30,10 @@ namespace dispersa {
 /// flow, air without reactions, no plume effect on the body.
 ///
 /// Accuracy: a reconstruction of a public three-stage launcher differs from Missile DATCOM's tables by -26
-/// to +22 % in CA, -7 to +34 % in CN up to 30 degrees, and 0 to 11 % of the length in the centre of pressure
-/// (tests/verification/aero_public_tables_test.cc); the largest differences lie between Mach 0.9 and 1.6.
-/// Pitch damping is about four times DATCOM's, which takes it from the force at the centre of pressure alone.
+/// to +22 % in CA, -7 to +34 % in CN up to 30 degrees, and 0 to 11 % of the length, aft, in the centre of
+/// pressure (tests/verification/aero_public_tables_test.cc). Those tables were known when the half of the
+/// carry-over was chosen. Pitch damping is about four times theirs, which is what the force at the centre
+/// of pressure alone would give.
 ///
 /// Precondition: a profile that passes Problems(): it reaches every stage's bottom.
 std::vector<AeroTable> BuildAerodynamics(const Vehicle& vehicle);
