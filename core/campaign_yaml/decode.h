@@ -10,6 +10,7 @@
 #include "core/campaign/campaign.h"
 #include "core/campaign/input_error.h"
 #include "core/campaign_yaml/input_node.h"
+#include "core/flight/scenario.h"
 
 namespace dispersa {
 
@@ -17,6 +18,7 @@ Vehicle DecodeVehicle(const InputNode& node, const std::string& path, std::vecto
 /// `stages`: of the vehicle that it flies, 0 if that is unknown (then nothing is checked against it).
 AutopilotConfig DecodeAutopilot(const InputNode& node, const std::string& path, int stages,
                                 std::vector<InputProblem>& problems);
+Scenario DecodeScenario(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems);
 Reference DecodeReference(const InputNode& node, const std::string& path,
                           std::vector<InputProblem>& problems);
 /// A reference's `problem`, a campaign's `optimize`.

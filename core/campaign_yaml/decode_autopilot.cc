@@ -48,6 +48,7 @@ Adaptation DecodeAdaptation(const InputNode& node, const std::string& path, Prob
   adaptation.projection_bound_rad_s2 =
       map.Quantity("projection_bound", kAngularAcceleration, kNonNegative, 0.0);
   adaptation.leakage_1_s = map.Quantity("leakage", kPerTime, kNonNegative, 0.0);
+  adaptation.spread_1_s = map.Quantity("spread", kPerTime, kNonNegative, 0.0);
   adaptation.dead_zone_rad = map.Quantity("dead_zone", kAngle, kNonNegative, 0.0);
   adaptation.freeze_when_saturated = map.Flag("freeze_when_saturated", false);
   adaptation.reset_at_ignition = map.Flag("reset_at_ignition", false);

@@ -69,15 +69,6 @@ class DispersionDecoder {
     campaign_.dispersions.push_back({name, distribution, std::move(inputs), absolute});
   }
 
-  static void Shift(ScalarDistribution& distribution, double by) {
-    distribution.nominal += by;
-    if (distribution.low < distribution.high) {
-      distribution.low += by;
-      distribution.high += by;
-    }
-    for (double& value : distribution.values) value += by;
-  }
-
   // One draw a stage, or one for all of them, as `per` says.
   void AddStages(const std::string& name, bool per_stage, const ScalarDistribution& distribution,
                  const std::vector<StageColumn>& columns, bool absolute = false) {
@@ -136,10 +127,9 @@ class DispersionDecoder {
     Add(key, ReadDistribution(map, scalar), {Column(column)});
   }
 
-  // "stem_unit: x" or "stem: {distribution: ...}"; `nominal` is the value that the draw is added to.
+  // "stem_unit: x" or "stem: {distribution: ...}".
   void FixedOrDrawn(MapReader& map, const std::string& name, const std::string& stem,
-                    const DispersedScalar& scalar, const std::string& column, bool required,
-                    double nominal = 0.0) {
+                    const DispersedScalar& scalar, const std::string& column, bool required) {
     const InputNode* drawn = map.node().Find(stem);
     ScalarDistribution distribution;
     if (drawn != nullptr && drawn->kind == InputNode::Kind::kMap) {
@@ -153,7 +143,6 @@ class DispersionDecoder {
       if (!value) return;
       distribution = Constant(*value);
     }
-    Shift(distribution, -nominal);
     Add(name, distribution, {Column(column)});
   }
 
@@ -169,11 +158,8 @@ class DispersionDecoder {
         ReadDirection(map.Required("azimuth", "uniform, {fixed_deg: x} or a distribution"),
                       map.PathOf("azimuth"), problems_),
         {Column("wind_azimuth_deg")});
-    const FlightInputs nominal;
-    FixedOrDrawn(map, "wind/altitude", "altitude", {kLength, Between(0.0, 100e3)}, "wind_altitude_m", false,
-                 nominal.wind_altitude_m);
-    FixedOrDrawn(map, "wind/width", "width", {kLength, Between(100.0, 100e3)}, "wind_width_m", false,
-                 nominal.wind_width_m);
+    FixedOrDrawn(map, "wind/altitude", "altitude", {kLength, Between(0.0, 100e3)}, "wind_altitude_m", false);
+    FixedOrDrawn(map, "wind/width", "width", {kLength, Between(100.0, 100e3)}, "wind_width_m", false);
   }
 
   void Gust() {

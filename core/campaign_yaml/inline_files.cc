@@ -2,7 +2,9 @@
 
 #include <filesystem>
 #include <functional>
+#include <string_view>
 
+#include "core/campaign_yaml/number_text.h"
 #include "core/campaign_yaml/parse_csv.h"
 #include "core/campaign_yaml/parse_yaml.h"
 #include "core/campaign_yaml/yaml_reader.h"
@@ -50,6 +52,23 @@ Parse CsvParser(const std::vector<std::string>& columns, std::vector<InputProble
   };
 }
 
+// A coefficient or the mass properties of a scenario's stage may be a file's name.
+void InlineStageFiles(InputNode& stage, const std::string& path, FileNames names,
+                      std::vector<InputProblem>& problems) {
+  Replace(stage.Find("mass_properties"), path + ".mass_properties", names,
+          CsvParser(kMassTableColumns, problems), problems);
+  InputNode* aerodynamics = stage.Find("aerodynamics");
+  if (aerodynamics == nullptr) return;
+  for (const char* name : {"ca", "cn", "xcp_station_m", "cd", "cl", "cm", "clp", "cmq", "cnr"}) {
+    InputNode* value = aerodynamics->Find(name);
+    if (value == nullptr || value->kind != InputNode::Kind::kScalar || ParseNumber(value->text)) continue;
+    const bool is_damping = std::string_view("clp cmq cnr").find(name) != std::string_view::npos;
+    std::vector<std::string> columns = {"mach", name};
+    if (!is_damping) columns.insert(columns.begin() + 1, "incidence_deg");
+    Replace(value, path + ".aerodynamics." + name, names, CsvParser(columns, problems), problems);
+  }
+}
+
 }  // namespace
 
 InputNode ReadYamlFile(const std::string& path, std::vector<InputProblem>& problems) {
@@ -84,6 +103,16 @@ void InlineCampaignFiles(InputNode& campaign, FileNames names, std::vector<Input
           CsvParser(kWindTableColumns, problems), problems);
   Replace(wind->Find("statistics"), "dispersions.wind_profile.statistics", names,
           CsvParser(kWindStatisticsColumns, problems), problems);
+}
+
+void InlineScenarioFiles(InputNode& scenario, FileNames names, std::vector<InputProblem>& problems) {
+  if (InputNode* wind = scenario.Find("wind"))
+    Replace(wind->Find("table"), "wind.table", names, CsvParser(kWindTableColumns, problems), problems);
+  if (InputNode* body = scenario.Find("body")) InlineStageFiles(*body, "body", names, problems);
+  InputNode* stages = scenario.Find("stages");
+  if (stages == nullptr) return;
+  for (std::size_t i = 0; i < stages->items.size(); ++i)
+    InlineStageFiles(stages->items[i], "stages[" + std::to_string(i) + "]", names, problems);
 }
 
 bool CheckSchema(const InputNode& node, const std::string& schema, bool inside, const std::string& path,

@@ -17,7 +17,7 @@ namespace {
 using ProblemList = std::vector<InputProblem>;
 
 std::string SchemaNames() {
-  return "one of " + JoinWords({kCampaignSchema, kVehicleSchema, kAutopilotSchema, kReferenceSchema});
+  return "one of " + JoinWords({kCampaignSchema, kVehicleSchema, kAutopilotSchema, kReferenceSchema, kScenarioSchema});
 }
 
 // In the order of the text, file by file as they were met first.
@@ -88,6 +88,7 @@ OptimizationInput LoadOptimization(const std::string& path, std::optional<std::u
   input.vehicle_sha256 = VehicleSha256(*root.Find("vehicle"));
   input.problem = decoded.optimize.value_or(decoded.campaign.reference.problem);
   if (seed) input.problem.seed = *seed;
+  input.tick_s = decoded.campaign.autopilot.tick_s;
   return input;
 }
 
@@ -116,6 +117,22 @@ Reference LoadReference(const std::string& path) {
   return reference;
 }
 
+Scenario LoadScenario(const std::string& path) {
+  ProblemList problems;
+  InputNode root = ReadYamlFile(path, problems);
+  InlineScenarioFiles(root, FileNames::kAllowed, problems);
+  Scenario scenario = DecodeScenario(root, "", problems);
+  ThrowIfAny(std::move(problems));
+  return scenario;
+}
+
+bool IsScenarioFile(const std::string& path) {
+  ProblemList ignored;
+  const InputNode root = ReadYamlFile(path, ignored);
+  const InputNode* schema = root.Find("schema");
+  return schema != nullptr && schema->text == kScenarioSchema;
+}
+
 Reference ReadReference(const std::string& yaml_text, const std::string& display_name) {
   ProblemList problems;
   const InputNode root = ParseYaml(yaml_text, display_name, problems);
@@ -142,6 +159,9 @@ std::vector<InputProblem> ValidateFile(const std::string& path) {
     DecodeAutopilot(root, "", 0, problems);
   } else if (schema->text == kReferenceSchema) {
     DecodeReference(root, "", problems);
+  } else if (schema->text == kScenarioSchema) {
+    InlineScenarioFiles(root, FileNames::kAllowed, problems);
+    DecodeScenario(root, "", problems);
   } else {
     AddProblem(problems, *schema, "schema", schema->Describe() + " is not a schema", SchemaNames());
   }

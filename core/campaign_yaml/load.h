@@ -12,6 +12,7 @@
 
 #include "core/campaign/campaign.h"
 #include "core/campaign/input_error.h"
+#include "core/flight/scenario.h"
 
 namespace dispersa {
 
@@ -37,6 +38,7 @@ struct OptimizationInput {
   Vehicle vehicle;
   std::string vehicle_sha256;  ///< of the canonical vehicle
   TrajectoryProblem problem;
+  double tick_s = 0.01;        ///< of the campaign's autopilot, if it has one: burnout is detected on ticks
 };
 /// `seed` replaces the problem's.
 OptimizationInput LoadOptimization(const std::string& path, std::optional<std::uint64_t> seed = {});
@@ -44,6 +46,9 @@ OptimizationInput LoadOptimization(const std::string& path, std::optional<std::u
 Vehicle LoadVehicle(const std::string& path);
 AutopilotConfig LoadAutopilot(const std::string& path);
 Reference LoadReference(const std::string& path);
+Scenario LoadScenario(const std::string& path);
+/// True if the file is YAML with `schema: dispersa/scenario/1`; a file that cannot be read is none.
+bool IsScenarioFile(const std::string& path);
 
 /// YAML text of a reference; angles in degrees, lengths in km. A number is the shortest text that reads back
 /// to the same bits. A few radian values are no double's worth of degrees; those become the nearest value
