@@ -1,0 +1,302 @@
+// The coordinator against workers that do what real ones must never do. The "workers" speak the real protocol
+// over real sockets, but make up their results.
+#include "services/coordinator/coordinator.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <chrono>
+#include <cmath>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <memory>
+
+#include "core/engine/version.h"
+#include "core/flight/flight_inputs.h"
+#include "services/transport/private_domain.h"
+#include "services/transport/worker_link.h"
+
+namespace dispersa {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+// Ample for what takes milliseconds on an idle machine.
+constexpr seconds kPatience(30);
+
+CaseResult ResultOf(std::uint64_t case_index) {
+  CaseResult result;
+  result.case_index = case_index;
+  result.outcome = Outcome::kCompleted;
+  result.end_time_s = 570.0;
+  result.end_stage = 4;
+  const auto k = static_cast<double>(case_index);
+  for (std::size_t i = 0; i < InputColumns().size(); ++i) result.inputs.push_back(std::sqrt(k + 1.0));
+  result.metrics.assign(MetricNames().size(), k / 3.0);
+  result.metrics.back() = std::numeric_limits<double>::quiet_NaN();
+  result.digest = {case_index, 1};
+  return result;
+}
+
+class MadeUpWorker {
+ public:
+  MadeUpWorker(const NetworkOptions& network, const std::string& uuid,
+               const std::string& engine_version = EngineVersion())
+      : uuid_(uuid), link_(network, {"127.0.0.1", CoordinatorPort(network.domain)}, uuid) {
+    link_.Send(WorkerStatus{uuid, "host", 1, engine_version, 1, 2, WorkerState::kStarting, 0, {}});
+  }
+
+  /// What came since; assignments as single cases.
+  void Listen() {
+    for (WorkerEvent& event : link_.Wait(milliseconds(0))) {
+      if (auto* campaign = std::get_if<CampaignDefinition>(&event)) campaign_ = std::move(*campaign);
+      if (auto* order = std::get_if<FlyOrder>(&event)) {
+        for (const std::uint64_t k : order->cases) cases.push_back({k, order->attempt});
+      }
+      if (std::holds_alternative<LeaveOrder>(event)) dismissed = true;
+      if (auto* refusal = std::get_if<Refusal>(&event)) refused = refusal->reason;
+    }
+  }
+  void Start(const StartedCase& which) { Send({}, {which}); }
+  void Finish(const StartedCase& which) { Finish(which, ResultOf(which.case_index)); }
+  void Finish(const StartedCase& which, const CaseResult& result) { Send({{which.attempt, result}}, {}); }
+  /// Flies all it has, once it knows of what campaign.
+  void FlyAll() {
+    for (; ready() && !cases.empty(); cases.pop_front()) {
+      Start(cases.front());
+      Finish(cases.front());
+    }
+  }
+  void RefuseCampaign(const std::string& reason) {
+    link_.Send(CampaignRefusal{uuid_, campaign_->coordinator_epoch, campaign_->flight_id, reason});
+  }
+  /// As if it answered another start of the coordinator.
+  void SetEpoch(std::uint64_t epoch) { campaign_->coordinator_epoch = epoch; }
+  bool ready() const { return campaign_.has_value(); }
+
+  std::deque<StartedCase> cases;
+  std::string refused;
+  bool dismissed = false;
+
+ private:
+  void Send(std::vector<FlownCase> flown, std::vector<StartedCase> started) {
+    link_.Send(Report{uuid_, campaign_->coordinator_epoch, campaign_->flight_id, std::move(flown), std::move(started)});
+  }
+
+  std::string uuid_;
+  std::optional<CampaignDefinition> campaign_;
+  WorkerLink link_;
+};
+
+class CoordinatorTest : public testing::Test {
+ protected:
+  CoordinatorTest() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "dispersa-coordinator-XXXXXX").string();
+    directory_ = mkdtemp(pattern.data());
+  }
+  ~CoordinatorTest() override { std::filesystem::remove_all(directory_); }
+
+  void Open(std::uint64_t cases) {
+    campaign_.name = "made up";
+    campaign_.sampling.cases = cases;
+    campaign_.canonical_yaml = "made up";
+    campaign_.id = std::string(64, 'a');
+    campaign_.flight_id = std::string(64, 'f');
+    book_ = std::make_unique<CampaignBook>(campaign_, ResultFolder::Create(directory_ / "out", campaign_));
+    coordinator_ = std::make_unique<Coordinator>(Network(), *book_);
+  }
+  NetworkOptions Network() const { return {domain_.domain(), "127.0.0.1"}; }
+
+  /// Lets the coordinator and the workers run until the condition holds.
+  [[nodiscard]] bool Until(const std::function<bool()>& condition, std::vector<MadeUpWorker*> workers) {
+    const auto deadline = std::chrono::steady_clock::now() + kPatience;
+    while (!condition()) {
+      if (std::chrono::steady_clock::now() > deadline) return false;
+      coordinator_->Step(milliseconds(2));
+      for (MadeUpWorker* worker : workers) worker->Listen();
+    }
+    return true;
+  }
+  LedgerProgress Progress() const { return book_->ledger().Progress(); }
+
+  PrivateDomain domain_;
+  std::filesystem::path directory_;
+  Campaign campaign_;
+  std::unique_ptr<CampaignBook> book_;
+  std::unique_ptr<Coordinator> coordinator_;
+};
+
+TEST_F(CoordinatorTest, FliesACampaignAndDismissesItsWorkers) {
+  Open(50);
+  MadeUpWorker a(Network(), "a");
+  MadeUpWorker b(Network(), "b");
+  ASSERT_TRUE(Until([&] { return coordinator_->joined() == 2; }, {&a, &b}));
+  ASSERT_TRUE(Until(
+      [&] {
+        a.FlyAll();
+        b.FlyAll();
+        return book_->ledger().Complete();
+      },
+      {&a, &b}));
+  book_->Flush();
+  coordinator_->Dismiss();
+  EXPECT_TRUE(Until([&] { return a.dismissed && b.dismissed; }, {&a, &b}));
+  ASSERT_EQ(book_->folder().PresentCases().size(), 50u);
+  for (std::uint64_t k = 0; k < 50; ++k) {
+    const CaseResult stored = book_->folder().Load(k);
+    EXPECT_EQ(stored.digest, ResultOf(k).digest);
+    EXPECT_EQ(stored.inputs, ResultOf(k).inputs);
+    EXPECT_EQ(stored.metrics.front(), ResultOf(k).metrics.front());
+  }
+}
+
+TEST_F(CoordinatorTest, RefusesAWorkerOfAnotherEngineVersionWithAReason) {
+  Open(5);
+  MadeUpWorker stranger(Network(), "stranger", "0.0.9+other");
+  ASSERT_TRUE(Until([&] { return !stranger.refused.empty(); }, {&stranger}));
+  EXPECT_EQ(stranger.refused,
+            "engine version 0.0.9+other of the worker differs from the coordinator's " + EngineVersion());
+  EXPECT_EQ(coordinator_->refusal(), stranger.refused);
+  EXPECT_EQ(coordinator_->joined(), 0u);
+  // It gets nothing, others do.
+  MadeUpWorker good(Network(), "good");
+  ASSERT_TRUE(Until(
+      [&] {
+        good.FlyAll();
+        return book_->ledger().Complete();
+      },
+      {&good, &stranger}));
+  EXPECT_THAT(stranger.cases, IsEmpty());
+}
+
+TEST_F(CoordinatorTest, AWorkerThatRefusesTheCampaignGivesItsCasesBack) {
+  Open(5);
+  MadeUpWorker stranger(Network(), "stranger");
+  ASSERT_TRUE(Until([&] { return stranger.ready() && !stranger.cases.empty(); }, {&stranger}));
+  stranger.RefuseCampaign("flight id differs");
+  ASSERT_TRUE(Until([&] { return coordinator_->refusal().has_value(); }, {&stranger}));
+  EXPECT_EQ(coordinator_->refusal(), "flight id differs");
+  EXPECT_EQ(Progress().waiting, 5u);
+  MadeUpWorker good(Network(), "good");
+  EXPECT_TRUE(Until(
+      [&] {
+        good.FlyAll();
+        return book_->ledger().Complete();
+      },
+      {&good, &stranger}));
+}
+
+TEST_F(CoordinatorTest, ACaseThatEndsThreeWorkersIsQuarantinedAndRemembered) {
+  Open(6);
+  int deaths = 0;
+  while (deaths < 10 && !book_->ledger().Complete()) {
+    auto worker = std::make_unique<MadeUpWorker>(Network(), "w" + std::to_string(deaths));
+    bool doomed = false;
+    ASSERT_TRUE(Until(
+        [&] {
+          for (; worker->ready() && !worker->cases.empty() && !doomed; worker->cases.pop_front()) {
+            worker->Start(worker->cases.front());
+            doomed = worker->cases.front().case_index == 3;
+            if (!doomed) worker->Finish(worker->cases.front());
+          }
+          return doomed;
+        },
+        {worker.get()}));
+    // Its last words come before its end.
+    for (int i = 0; i < 20; ++i) coordinator_->Step(milliseconds(5));
+    worker.reset();
+    ++deaths;
+    ASSERT_TRUE(Until([&] { return coordinator_->joined() == 0; }, {}));
+  }
+  EXPECT_EQ(deaths, 3);
+  EXPECT_TRUE(book_->ledger().Complete());
+  EXPECT_EQ(Progress().done, 5u);
+  book_->Flush();
+  const auto quarantined = book_->folder().QuarantinedCases();
+  ASSERT_EQ(quarantined.size(), 1u);
+  EXPECT_EQ(quarantined[0].case_index, 3u);
+  EXPECT_EQ(quarantined[0].reason, "every attempt to fly it ended or hung its worker");
+  EXPECT_FALSE(book_->folder().Contains(3));
+}
+
+TEST_F(CoordinatorTest, ASupervisedWorkersExitStatusDecidesWhoIsToBlame) {
+  Open(2);
+  coordinator_->Supervise("a");
+  {
+    MadeUpWorker a(Network(), "a");
+    ASSERT_TRUE(Until([&] { return a.ready() && a.cases.size() == 2; }, {&a}));
+    a.Start(a.cases[0]);
+    for (int i = 0; i < 20; ++i) coordinator_->Step(milliseconds(5));
+  }
+  // It is gone, but nothing happens until its parent tells how.
+  for (int i = 0; i < 20; ++i) coordinator_->Step(milliseconds(5));
+  EXPECT_EQ(Progress().assigned, 2u);
+  coordinator_->WorkerEnded("a", WorkerEnd::kKilled, "signal 9");
+  ASSERT_TRUE(Until([&] { return Progress().waiting == 2; }, {}));
+  // Not blamed: another worker gets case 0 together with case 1 at once.
+  MadeUpWorker b(Network(), "b");
+  ASSERT_TRUE(Until([&] { return b.cases.size() == 2; }, {&b}));
+  EXPECT_EQ(b.cases[0].case_index, 0u);
+}
+
+TEST_F(CoordinatorTest, DuplicatesAreHarmlessAndAnotherResultIsAConflict) {
+  Open(3);
+  MadeUpWorker a(Network(), "a");
+  ASSERT_TRUE(Until([&] { return a.ready() && !a.cases.empty(); }, {&a}));
+  const StartedCase first = a.cases.front();
+  a.Finish(first);
+  a.Finish(first);
+  ASSERT_TRUE(Until([&] { return Progress().duplicates == 1; }, {&a}));
+  EXPECT_EQ(Progress().conflicts, 0u);
+  CaseResult other = ResultOf(first.case_index);
+  other.metrics[0] = std::nextafter(other.metrics[0], 1e9);
+  a.Finish(first, other);
+  ASSERT_TRUE(Until([&] { return Progress().conflicts == 1; }, {&a}));
+  book_->Flush();
+  EXPECT_EQ(book_->folder().Load(first.case_index).metrics[0], ResultOf(first.case_index).metrics[0]);
+}
+
+TEST_F(CoordinatorTest, ResultsForAnEarlierCoordinatorAreWelcomeButItsStartsMeanNothing) {
+  Open(2);
+  MadeUpWorker old(Network(), "old");
+  ASSERT_TRUE(Until([&] { return old.ready() && !old.cases.empty(); }, {&old}));
+  old.SetEpoch(1);
+  old.Start({1, 1});
+  old.Finish({0, 1});
+  EXPECT_TRUE(Until([&] { return Progress().done == 1; }, {&old}));
+}
+
+TEST(FingerprintTest, ChangesWithEveryField) {
+  const CaseResult base = ResultOf(1);
+  const std::vector<std::function<void(CaseResult&)>> changes = {
+      [](CaseResult& r) { r.case_index = 2; },
+      [](CaseResult& r) { r.outcome = Outcome::kImpact; },
+      [](CaseResult& r) { r.end_time_s = std::nextafter(r.end_time_s, 0.0); },
+      [](CaseResult& r) { r.end_stage = 3; },
+      [](CaseResult& r) { r.reason = "x"; },
+      [](CaseResult& r) { r.reason = std::string(1, '\0'); },
+      [](CaseResult& r) { r.inputs[3] = -r.inputs[3]; },
+      [](CaseResult& r) { r.metrics[1] = 0.0; },
+      [](CaseResult& r) { r.inputs.push_back(r.metrics[0]), r.metrics.erase(r.metrics.begin()); },
+      [](CaseResult& r) { r.digest.high ^= 1; },
+      [](CaseResult& r) { r.digest.low ^= 1; },
+  };
+  EXPECT_EQ(Fingerprint(base), Fingerprint(ResultOf(1)));
+  std::vector<Digest> seen = {Fingerprint(base)};
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    CaseResult changed = base;
+    changes[i](changed);
+    const Digest fingerprint = Fingerprint(changed);
+    EXPECT_EQ(std::count(seen.begin(), seen.end(), fingerprint), 0) << i;
+    seen.push_back(fingerprint);
+  }
+}
+
+}  // namespace
+}  // namespace dispersa
