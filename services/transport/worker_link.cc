@@ -60,12 +60,12 @@ struct WorkerLink::Impl {
     campaign_refusals.emplace(participant, publisher, kCampaignRefusalTopic);
     statuses.emplace(participant, publisher, kStatusTopic, Presence::kHeartbeat);
     heart = std::jthread([this](std::stop_token stop) {
-      std::mutex mutex;
-      std::condition_variable_any sleep;
-      std::unique_lock lock(mutex);
+      std::mutex alone;
+      std::condition_variable_any pause;
+      std::unique_lock lock(alone);
       while (!stop.stop_requested()) {
         statuses->Beat();
-        sleep.wait_for(lock, stop, kBeat, [] { return false; });
+        pause.wait_for(lock, stop, kBeat, [] { return false; });
       }
     });
   }
