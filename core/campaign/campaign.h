@@ -30,11 +30,11 @@ enum class Distribution {
 /// Of one scalar, in the internal unit of its input (SI, radians, or a factor).
 struct ScalarDistribution {
   Distribution kind = Distribution::kConstant;
-  double nominal = 0.0;  ///< kConstant: the value; kNormal: the mean; designs: while other parameters move
+  double nominal = 0.0;  ///< kNormal: the mean; designs: the value while other parameters move
   double sigma = 0.0;    ///< kNormal
   double low = 0.0;      ///< kUniform, kTwoPoint
   double high = 0.0;     ///< kUniform, kTwoPoint
-  std::vector<double> values;  ///< kValues
+  std::vector<double> values;  ///< kValues; kConstant: one value
 };
 
 /// One draw of a case: `name` keys its random stream and stays when other draws come or go.

@@ -118,7 +118,7 @@ double CaseDesign::Value(std::uint64_t case_index, std::size_t dispersion) const
     case Distribution::kConstant:
       break;
   }
-  return d.nominal;
+  return d.values.front();
 }
 
 FlightInputs CaseDesign::Draw(std::uint64_t case_index) const {

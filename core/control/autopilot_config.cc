@@ -9,8 +9,9 @@ namespace dispersa {
 
 namespace {
 
-void CheckAxis(const AxisConfig& axis, const std::string& name, int stages,
+void CheckAxis(const AxisConfig& axis, const std::string& name, int stages, double tick_s,
                std::vector<AutopilotProblem>& problems) {
+  const std::size_t before = problems.size();
   const auto add = [&](const std::string& path, const std::string& message, const std::string& allowed) {
     problems.push_back({name + "." + path, message, allowed});
   };
@@ -31,7 +32,9 @@ void CheckAxis(const AxisConfig& axis, const std::string& name, int stages,
     if (!(axis.rules.rate_range_rad_s > 0.0))
       add("rules.rate_range_deg_s", "is not positive", "a number above 0");
   }
-  if (axis.law != ControlLaw::kAdaptiveFuzzy || !problems.empty()) return;
+  if (axis.law == ControlLaw::kAdaptiveFuzzy && !(axis.adaptation.spread_1_s * tick_s <= 1.0))
+    add("adaptation.spread_1_s", "overshoots the mean within a tick", "at most 1 / tick_s");
+  if (axis.law != ControlLaw::kAdaptiveFuzzy || problems.size() != before) return;
 
   const Adaptation& a = axis.adaptation;
   if (static_cast<int>(a.gamma.size()) != stages)
@@ -66,9 +69,9 @@ void CheckAxis(const AxisConfig& axis, const std::string& name, int stages,
 std::vector<AutopilotProblem> Problems(const AutopilotConfig& autopilot, int stages) {
   std::vector<AutopilotProblem> problems;
   if (!(autopilot.tick_s > 0.0)) problems.push_back({"tick_s", "is not positive", "a number above 0"});
-  CheckAxis(autopilot.pitch, "pitch", stages, problems);
-  CheckAxis(autopilot.yaw, "yaw", stages, problems);
-  CheckAxis(autopilot.roll, "roll", stages, problems);
+  CheckAxis(autopilot.pitch, "pitch", stages, autopilot.tick_s, problems);
+  CheckAxis(autopilot.yaw, "yaw", stages, autopilot.tick_s, problems);
+  CheckAxis(autopilot.roll, "roll", stages, autopilot.tick_s, problems);
   return problems;
 }
 

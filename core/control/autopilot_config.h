@@ -31,6 +31,7 @@ struct Adaptation {
   bool allow_unproven = false;
   double projection_bound_rad_s2 = 0.0;  ///< each consequent stays within this distance of its start
   double leakage_1_s = 0.0;              ///< sigma modification: pulls the consequents to their start
+  double spread_1_s = 0.0;               ///< pulls departures from the start to their mean over the rules
   double dead_zone_rad = 0.0;            ///< no adaptation while |e' P_n| / p12 is below
   bool freeze_when_saturated = false;    ///< no adaptation into a deflection limit
   bool reset_at_ignition = false;        ///< consequents start anew with each stage

@@ -18,6 +18,11 @@ double RuleOutput(const std::array<double, kFuzzyRules>& consequents,
 }
 
 // Adaptation law (32) with its guards.
+//
+// A steady disturbance excites the central rule alone. Learnt there alone it bends the rule surface: the
+// slope towards the neighbours, which is the loop's gain, changes and can turn negative. `spread` draws each
+// departure to the mean of all, so that what lasts becomes a common offset, which leaves the slopes alone. As
+// leakage does, it adds a negative semi-definite term to dV/dt, but none against a common offset.
 void Adapt(const AxisLaw::PerStageLaw& law, const Adaptation& guards, const Vector2& p_n,
            const std::array<double, kFuzzyRules>& zeta, double error, double rate, int saturation,
            double tick_s, AxisState& state, AxisTelemetry& telemetry) {
@@ -28,9 +33,13 @@ void Adapt(const AxisLaw::PerStageLaw& law, const Adaptation& guards, const Vect
   const double step = telemetry.frozen ? 0.0 : tick_s * law.gamma * drive;
   const double leak = tick_s * guards.leakage_1_s;
   const double bound = guards.projection_bound_rad_s2;
+  const double spread = tick_s * guards.spread_1_s;
+  double mean = 0.0;
+  for (std::size_t i = 0; i < kFuzzyRules; ++i) mean += state.consequents[i] - law.consequents[i];
+  mean /= kFuzzyRules;
   for (std::size_t i = 0; i < kFuzzyRules; ++i) {
     double from_start = state.consequents[i] - law.consequents[i];
-    from_start += step * zeta[i] - leak * from_start;
+    from_start += step * zeta[i] - leak * from_start - spread * (from_start - mean);
     if (bound > 0.0 && std::fabs(from_start) > bound) {
       from_start = Clamp(from_start, -bound, bound);
       telemetry.projected = true;
