@@ -41,7 +41,12 @@ WorkerExit Worker::Run() {
     std::optional<WorkerExit> exit;
     for (const WorkerEvent& event : link_->Wait(kStatusPeriod)) {
       std::visit(Overloaded{[this](const CampaignDefinition& campaign) { Load(campaign); },
-                            [this](const CampaignClosed& closed) { campaigns_.erase(closed.flight_id); },
+                            [this](const CampaignClosed& closed) {
+                              campaigns_.erase(closed.flight_id);
+                              std::erase_if(early_orders_, [&](const FlyOrder& order) {
+                                return order.flight_id == closed.flight_id;
+                              });
+                            },
                             [this](const FlyOrder& order) { Enqueue(order); },
                             [&](const LeaveOrder&) { exit = WorkerExit::kTold; },
                             [&](const Refusal& refusal) {

@@ -1,0 +1,107 @@
+// What a case costs on the network: loopback, a coordinator and a worker that "flies" at once.
+#include <benchmark/benchmark.h>
+#include <sys/resource.h>
+
+#include <atomic>
+#include <chrono>
+#include <numeric>
+#include <thread>
+
+#include "core/flight/flight_inputs.h"
+#include "services/coordinator/ledger.h"
+#include "services/transport/coordinator_link.h"
+#include "services/transport/private_domain.h"
+#include "services/transport/worker_link.h"
+
+namespace dispersa {
+namespace {
+
+using std::chrono::milliseconds;
+
+double ProcessorSeconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+/// Answers each case as a real worker does: a start, and the result with the next start.
+void Answer(WorkerLink& link, const std::atomic<bool>& stop) {
+  Report report{"w", 1, "flight", {}, {}};
+  CaseResult result;
+  result.outcome = Outcome::kCompleted;
+  result.inputs.assign(InputColumns().size(), 1.0 / 3.0);
+  result.metrics.assign(MetricNames().size(), 2.0 / 3.0);
+  while (!stop) {
+    for (const WorkerEvent& event : link.Wait(milliseconds(20))) {
+      const auto* order = std::get_if<FlyOrder>(&event);
+      if (order == nullptr) continue;
+      for (const std::uint64_t case_index : order->cases) {
+        report.started = {{case_index, order->attempt}};
+        link.Send(report);
+        result.case_index = case_index;
+        report.flown = {{order->attempt, result}};
+      }
+      report.started.clear();
+      link.Send(report);
+      report.flown.clear();
+    }
+  }
+}
+
+/// One assignment of state.range(0) cases, until its last result is back.
+void BM_AssignmentRoundTrip(benchmark::State& state) {
+  const PrivateDomain domain;
+  const NetworkOptions network{domain.domain(), "127.0.0.1"};
+  CoordinatorLink coordinator(network);
+  WorkerLink link(network, {"127.0.0.1", CoordinatorPort(domain.domain())}, "w");
+  std::atomic<bool> stop = false;
+  std::jthread worker([&] { Answer(link, stop); });
+
+  std::vector<std::uint64_t> cases(static_cast<std::size_t>(state.range(0)));
+  std::iota(cases.begin(), cases.end(), 0);
+  std::uint64_t attempt = 0;
+  const auto round = [&] {
+    coordinator.Send("w", FlyOrder{1, "flight", ++attempt, cases});
+    for (std::size_t flown = 0; flown < cases.size();) {
+      for (const CoordinatorEvent& event : coordinator.Wait(milliseconds(1000))) {
+        if (const auto* report = std::get_if<Report>(&event)) flown += report->flown.size();
+      }
+    }
+  };
+  round();  // matched from here on
+  const double before_s = ProcessorSeconds();
+  for (auto _ : state) round();
+  const auto flown = static_cast<double>(state.iterations()) * static_cast<double>(cases.size());
+  state.counters["cases/s"] = benchmark::Counter(flown, benchmark::Counter::kIsRate);
+  // Of both ends together.
+  state.counters["cpu_us/case"] = 1e6 * (ProcessorSeconds() - before_s) / flown;
+  stop = true;
+}
+BENCHMARK(BM_AssignmentRoundTrip)->Arg(1)->Arg(8)->Arg(64)->UseRealTime()->Unit(benchmark::kMicrosecond);
+
+/// The ledger's share of a case.
+void BM_LedgerCase(benchmark::State& state) {
+  const std::uint64_t cases = 100'000;
+  for (auto _ : state) {
+    Ledger ledger("1", cases);
+    for (const char* id : {"a", "b"}) ledger.Join(id, {"1", 1, 2}, 0.0);
+    double now_s = 0.0;
+    while (!ledger.Complete()) {
+      for (const Assignment& assignment : ledger.Assign(now_s)) {
+        for (const std::uint64_t case_index : assignment.cases) {
+          ledger.Started(assignment.worker, case_index, assignment.attempt, now_s);
+          now_s += 0.01;
+          ledger.Finished(assignment.worker, case_index, assignment.attempt, {case_index, 0}, now_s);
+        }
+      }
+    }
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(cases));
+}
+BENCHMARK(BM_LedgerCase)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace dispersa
