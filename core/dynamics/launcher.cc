@@ -69,7 +69,7 @@ LauncherInstant Evaluate(const LauncherPlant& plant, const LauncherPhase& phase,
     // P = P_vac - p A_e; a nozzle that the ambient pressure would turn inwards gives nothing.
     const double pressure_loss = now.air.pressure_pa * stack.burn.exit_area_m2;
     const double vacuum = stack.burn.vacuum_thrust_n * fraction;
-    now.thrust_n = vacuum > pressure_loss ? vacuum - pressure_loss : 0.0;
+    now.thrust_n = vacuum < pressure_loss ? 0.0 : vacuum - pressure_loss;
     now.flow_kg_s = stack.burn.full_flow_kg_s * fraction;
     const double lever = stack.gimbal.pivot_station_m - now.cg_station_m;
     AddThrust(stack, y, now.thrust_n, lever, now.loads);

@@ -244,13 +244,14 @@ void Flight::End(Outcome outcome, const std::string& reason) {
 
 void Flight::CheckEnds(const TickSample& s) {
   const bool lost = s.error.angle_rad.norm() > kLostAngle_rad;
-  lost_ticks_ = lost ? lost_ticks_ + 1 : 0;
+  // A sample stands for the ticks up to the next one; in the coast these are several.
+  lost_ticks_ = lost ? lost_ticks_ + (next_tick_ - tick_) : 0;
+  const double altitude_m = ToGeodetic(motion_.plant.environment.earth, s.state.p_EoC_I).altitude_m;
   if (static_cast<double>(lost_ticks_) * tick_s_ >= kLostFor_s)
     End(Outcome::kLostControl, "attitude error above 15 deg for 0.5 s");
   else if (s.state.w_IB_B.norm() > kLostRate_rad_s)
     End(Outcome::kLostControl, "angular rate above 60 deg/s");
-  else if (s.has_instant &&
-           s.instant.air.place.altitude_m < model_.definition().vehicle.site.altitude_m - kImpactDepth_m)
+  else if (altitude_m < model_.definition().vehicle.site.altitude_m - kImpactDepth_m)
     End(Outcome::kImpact, "fell below the launch site");
   else if (metrics_.structural_limit_exceeded() && model_.definition().vehicle.limits.terminate)
     End(Outcome::kStructuralLimit, "a structural limit of the vehicle was exceeded");
@@ -371,13 +372,16 @@ bool Flight::Advance(double to_s) {
   RigidBodyState s = ReadState(y_.data());
   s.q_IB = Normalized(s.q_IB);
   WriteState(s, y_.data());
-  // Mechanical stops.
-  const double limit = stack().gimbal.limit_rad;
+  // Mechanical stops, and the drives' greatest rate, which a step may overshoot.
+  const Gimbal& gimbal = stack().gimbal;
   for (std::size_t i = 0; i < kNozzles; ++i) {
+    if (static_cast<int>(i) == motion_.phase.stuck_nozzle) continue;
     double& angle = y_[kNozzleAngle + i];
-    if (std::fabs(angle) <= limit || static_cast<int>(i) == motion_.phase.stuck_nozzle) continue;
-    angle = std::copysign(limit, angle);
-    y_[kNozzleRate + i] = 0.0;
+    double& rate = y_[kNozzleRate + i];
+    rate = Clamp(rate, -gimbal.rate_limit_rad_s, gimbal.rate_limit_rad_s);
+    if (std::fabs(angle) <= gimbal.limit_rad) continue;
+    angle = std::copysign(gimbal.limit_rad, angle);
+    rate = 0.0;
   }
   return true;
 }

@@ -99,7 +99,8 @@ void MetricsRecorder::AddLoads(const LauncherInstant& now) {
 }
 
 void MetricsRecorder::AddTick(const TickSample& s) {
-  if (s.has_instant) AddLoads(s.instant);
+  // In the coast loads are evaluated for the history's rows alone, which must not change a metric.
+  if (s.has_instant && !s.coasting) AddLoads(s.instant);
   // Errors are reported as true - reference.
   const double pitch = -s.error.angle_rad.y();
   if (s.coasting) pitch_coast_.Add(pitch, s.time_s);
@@ -182,7 +183,7 @@ std::vector<double> MetricsRecorder::Finish() const {
                   : kUndefined);
   m.push_back(travel_ * kDegPerRad);
   double cycle = -1.0;
-  for (const LimitCycleMeter& meter : limit_cycle_) cycle = std::max(cycle, meter.worst_);
+  for (const LimitCycleMeter& meter : limit_cycle_) cycle = std::max(cycle, meter.Worst());
   m.push_back(cycle >= 0.0 ? cycle * kDegPerRad : kUndefined);
   m.insert(m.end(), {q_max_, q_alpha_max_, alpha_max_ * kDegPerRad, axial_max_, lateral_max_,
                      structural_exceeded_ ? 1.0 : 0.0});

@@ -29,7 +29,7 @@ class LimitCycleMeter {
   void Configure(double tick_s);
   void Interrupt() { filled_ = 0; }
   void Add(double value);
-  double Worst() const { return worst_; }  ///< NaN without a whole window
+  double Worst() const { return worst_; }  ///< negative without a whole window
 
  private:
   std::vector<double> window_;
@@ -38,8 +38,6 @@ class LimitCycleMeter {
   std::size_t since_evaluation_ = 0;
   std::size_t stride_ = 1;
   double worst_ = -1.0;
-
-  friend class MetricsRecorder;
 };
 
 /// Definitions: core/README.md, "Metrics". Angles in rad inside, degrees in the result.

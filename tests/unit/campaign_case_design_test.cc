@@ -1,0 +1,206 @@
+// Which inputs a case has, by every sampling method.
+#include "core/campaign/case_design.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <vector>
+
+#include "core/random/draws.h"
+#include "core/random/normal.h"
+
+namespace dispersa {
+namespace {
+
+Dispersion Of(const std::string& name, ScalarDistribution distribution, const std::string& input) {
+  return {name, std::move(distribution), {FindInput(input)}, false};
+}
+ScalarDistribution Normal(double mean, double sigma) {
+  return {.kind = Distribution::kNormal, .nominal = mean, .sigma = sigma, .values = {}};
+}
+ScalarDistribution Uniform(double low, double high) {
+  return {.kind = Distribution::kUniform, .low = low, .high = high, .values = {}};
+}
+ScalarDistribution TwoPoint(double nominal, double low, double high) {
+  return {.kind = Distribution::kTwoPoint, .nominal = nominal, .low = low, .high = high, .values = {}};
+}
+ScalarDistribution Values(std::vector<double> values) {
+  return {.kind = Distribution::kValues, .values = std::move(values)};
+}
+
+Campaign With(SamplingMethod method, std::vector<Dispersion> dispersions, std::uint64_t cases = 64) {
+  Campaign campaign;
+  campaign.sampling = {method, cases, 42};
+  campaign.dispersions = std::move(dispersions);
+  return campaign;
+}
+
+TEST(CaseDesign, WithoutDispersionsEveryCaseIsNominal) {
+  for (const SamplingMethod method : {SamplingMethod::kMonteCarlo, SamplingMethod::kLatinHypercube,
+                                      SamplingMethod::kSobol, SamplingMethod::kCorners, SamplingMethod::kList})
+    EXPECT_EQ(InputValues(CaseDesign(With(method, {})).Draw(7)), InputValues(FlightInputs{}));
+}
+
+TEST(CaseDesign, MonteCarloDrawsByNameAndCase) {
+  const CaseDesign design(With(SamplingMethod::kMonteCarlo, {Of("drag", Normal(1.0, 0.02), "drag_factor")}));
+  for (const std::uint64_t k : {0, 5, 1000000}) {
+    const double u = Stream(42, k, "drag").Uniform();
+    EXPECT_EQ(design.Draw(k).drag_factor, 1.0 + 0.02 * InverseNormal(u));
+  }
+}
+
+TEST(CaseDesign, MonteCarloParametersDoNotDisturbOneAnother) {
+  const Dispersion drag = Of("drag", Normal(1.0, 0.02), "drag_factor");
+  const Dispersion cg = Of("cg", Uniform(0.8, 1.2), "cg_factor");
+  const CaseDesign alone(With(SamplingMethod::kMonteCarlo, {drag}));
+  const CaseDesign after(With(SamplingMethod::kMonteCarlo, {cg, drag}));
+  const CaseDesign before(With(SamplingMethod::kMonteCarlo, {drag, cg}));
+  for (std::uint64_t k = 0; k < 100; ++k) {
+    EXPECT_EQ(alone.Draw(k).drag_factor, after.Draw(k).drag_factor);
+    EXPECT_EQ(alone.Draw(k).drag_factor, before.Draw(k).drag_factor);
+    EXPECT_EQ(before.Draw(k).cg_factor, after.Draw(k).cg_factor);
+  }
+}
+
+TEST(CaseDesign, DrawingIsPure) {
+  const CaseDesign design(With(SamplingMethod::kSobol, {Of("drag", Uniform(0.0, 1.0), "drag_factor"),
+                                                        Of("cg", Uniform(0.0, 1.0), "cg_factor")}));
+  const auto first = InputValues(design.Draw(9));
+  design.Draw(3);
+  design.Draw(60);
+  EXPECT_EQ(InputValues(design.Draw(9)), first);
+}
+
+TEST(CaseDesign, FactorsMultiplyOthersAreSet) {
+  Dispersion all = Of("thrust/all", Values({1.1}), "thrust_factor_stage1");
+  all.inputs.push_back(FindInput("thrust_factor_stage2"));
+  const CaseDesign design(With(SamplingMethod::kMonteCarlo,
+                               {all, Of("thrust/stage1", Values({0.5}), "thrust_factor_stage1"),
+                                Of("wind", Values({30.0}), "wind_max_speed_m_s"),
+                                Of("wind again", Values({20.0}), "wind_max_speed_m_s")}));
+  const FlightInputs in = design.Draw(0);
+  EXPECT_DOUBLE_EQ(in.thrust_factor[0], 1.1 * 0.5);
+  EXPECT_DOUBLE_EQ(in.thrust_factor[1], 1.1);
+  EXPECT_EQ(in.thrust_factor[2], 1.0);
+  EXPECT_EQ(in.wind_max_speed_m_s, 20.0);
+}
+
+TEST(CaseDesign, AbsoluteTakesTheMagnitude) {
+  Dispersion tilt = Of("tilt", Normal(0.0, 0.01), "thrust_misalignment_stage1_deg");
+  const CaseDesign with_sign(With(SamplingMethod::kMonteCarlo, {tilt}));
+  tilt.absolute = true;
+  const CaseDesign magnitude(With(SamplingMethod::kMonteCarlo, {tilt}));
+  int negative = 0;
+  for (std::uint64_t k = 0; k < 50; ++k) {
+    const double value = with_sign.Draw(k).thrust_misalignment_rad[0];
+    negative += value < 0.0;
+    EXPECT_EQ(magnitude.Draw(k).thrust_misalignment_rad[0], std::fabs(value));
+  }
+  EXPECT_GT(negative, 10);
+}
+
+TEST(CaseDesign, UniformTwoPointAndValuesKeepToTheirRange) {
+  const CaseDesign design(With(SamplingMethod::kMonteCarlo,
+                               {Of("a", Uniform(0.8, 1.2), "drag_factor"),
+                                Of("b", TwoPoint(1.0, 0.9, 1.1), "cg_factor"),
+                                Of("c", Values({0.5, 1.0, 2.0}), "cp_factor")}));
+  double low = 2.0, high = 0.0;
+  std::set<double> two, three;
+  for (std::uint64_t k = 0; k < 200; ++k) {
+    const FlightInputs in = design.Draw(k);
+    low = std::min(low, in.drag_factor);
+    high = std::max(high, in.drag_factor);
+    two.insert(in.cg_factor);
+    three.insert(in.cp_factor);
+  }
+  EXPECT_GE(low, 0.8);
+  EXPECT_LE(high, 1.2);
+  EXPECT_LT(low, 0.82);
+  EXPECT_GT(high, 1.18);
+  EXPECT_EQ(two, (std::set<double>{0.9, 1.1}));
+  EXPECT_EQ(three, (std::set<double>{0.5, 1.0, 2.0}));
+}
+
+TEST(CaseDesign, CornersAreAllCombinationsFirstFactorFastest) {
+  const Campaign campaign = With(SamplingMethod::kCorners, {Of("a", TwoPoint(1.0, 0.8, 1.2), "drag_factor"),
+                                                            Of("b", TwoPoint(1.0, 0.9, 1.1), "cg_factor")});
+  EXPECT_EQ(DesignSize(campaign), 4u);
+  const CaseDesign design(campaign);
+  const std::vector<std::pair<double, double>> expected = {{0.8, 0.9}, {1.2, 0.9}, {0.8, 1.1}, {1.2, 1.1}};
+  for (std::uint64_t k = 0; k < 8; ++k) {
+    const FlightInputs in = design.Draw(k);
+    EXPECT_EQ(std::make_pair(in.drag_factor, in.cg_factor), expected[k % 4]) << k;
+  }
+}
+
+TEST(CaseDesign, WhatIsNoFactorStaysRandomAndRepeatsWithOtherDraws) {
+  const CaseDesign design(With(SamplingMethod::kCorners, {Of("a", TwoPoint(1.0, 0.8, 1.2), "drag_factor"),
+                                                          Of("r", Normal(0.0, 1.0), "gyro_bias_yaw_deg_s")}));
+  EXPECT_EQ(design.Draw(0).drag_factor, design.Draw(2).drag_factor);
+  EXPECT_NE(design.Draw(0).gyro_bias_yaw_rad_s, design.Draw(2).gyro_bias_yaw_rad_s);
+}
+
+TEST(CaseDesign, OneAtATimeMovesOneFactorAndHoldsTheOthersAtNominal) {
+  const Campaign campaign =
+      With(SamplingMethod::kOneAtATime, {Of("a", TwoPoint(1.0, 0.8, 1.2), "drag_factor"),
+                                         Of("b", TwoPoint(1.0, 0.9, 1.1), "cg_factor")});
+  EXPECT_EQ(DesignSize(campaign), 4u);
+  const CaseDesign design(campaign);
+  const std::vector<std::pair<double, double>> expected = {{0.8, 1.0}, {1.2, 1.0}, {1.0, 0.9}, {1.0, 1.1}};
+  for (std::uint64_t k = 0; k < 4; ++k)
+    EXPECT_EQ(std::make_pair(design.Draw(k).drag_factor, design.Draw(k).cg_factor), expected[k]) << k;
+}
+
+TEST(CaseDesign, GridVariesTheFirstAxisSlowest) {
+  const Campaign campaign = With(SamplingMethod::kGrid, {Of("a", Values({1.0, 2.0}), "drag_factor"),
+                                                         Of("b", Values({10.0, 20.0, 30.0}), "cg_factor")});
+  EXPECT_EQ(DesignSize(campaign), 6u);
+  const CaseDesign design(campaign);
+  const std::vector<std::pair<double, double>> expected = {{1, 10}, {1, 20}, {1, 30}, {2, 10}, {2, 20}, {2, 30}};
+  for (std::uint64_t k = 0; k < 6; ++k)
+    EXPECT_EQ(std::make_pair(design.Draw(k).drag_factor, design.Draw(k).cg_factor), expected[k]) << k;
+}
+
+TEST(CaseDesign, ListTakesRowsTogether) {
+  const Campaign campaign = With(SamplingMethod::kList, {Of("a", Values({1.0, 2.0, 3.0}), "drag_factor"),
+                                                         Of("b", Values({10.0, 20.0, 30.0}), "cg_factor")});
+  EXPECT_EQ(DesignSize(campaign), 3u);
+  const CaseDesign design(campaign);
+  for (std::uint64_t k = 0; k < 6; ++k) {
+    EXPECT_EQ(design.Draw(k).drag_factor, 1.0 + static_cast<double>(k % 3));
+    EXPECT_EQ(design.Draw(k).cg_factor, 10.0 * (1.0 + static_cast<double>(k % 3)));
+  }
+}
+
+// Of n cases, one falls into each of n equal cells of every parameter.
+void ExpectStratified(SamplingMethod method, std::size_t cases) {
+  const CaseDesign design(With(method,
+                               {Of("a", Uniform(0.0, 1.0), "wind_max_speed_m_s"),
+                                Of("b", Uniform(0.0, 1.0), "wind_altitude_m")},
+                               cases));
+  std::set<std::size_t> cells_a, cells_b;
+  for (std::uint64_t k = 0; k < cases; ++k) {
+    const FlightInputs in = design.Draw(k);
+    cells_a.insert(static_cast<std::size_t>(in.wind_max_speed_m_s * static_cast<double>(cases)));
+    cells_b.insert(static_cast<std::size_t>(in.wind_altitude_m * static_cast<double>(cases)));
+  }
+  EXPECT_EQ(cells_a.size(), cases);
+  EXPECT_EQ(cells_b.size(), cases);
+}
+
+TEST(CaseDesign, LatinHypercubeIsStratified) { ExpectStratified(SamplingMethod::kLatinHypercube, 50); }
+TEST(CaseDesign, SobolIsStratifiedInPowersOfTwo) { ExpectStratified(SamplingMethod::kSobol, 64); }
+
+TEST(CaseDesign, SeedAndMethodChangeTheDraws) {
+  Campaign campaign = With(SamplingMethod::kMonteCarlo, {Of("a", Uniform(0.0, 1.0), "wind_altitude_m")});
+  const double one = CaseDesign(campaign).Draw(3).wind_altitude_m;
+  campaign.sampling.seed = 43;
+  EXPECT_NE(CaseDesign(campaign).Draw(3).wind_altitude_m, one);
+  campaign.sampling = {SamplingMethod::kLatinHypercube, 64, 42};
+  EXPECT_NE(CaseDesign(campaign).Draw(3).wind_altitude_m, one);
+}
+
+}  // namespace
+}  // namespace dispersa

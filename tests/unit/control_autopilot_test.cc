@@ -1,0 +1,291 @@
+// The three axes together: stages, mixing, saturation, reaction control, and what a file may not say.
+#include "core/control/autopilot.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/math/constants.h"
+#include "core/vehicle/mass.h"
+#include "tests/unit/sample_vehicle.h"
+
+namespace dispersa {
+namespace {
+
+const Vector2 kNoStudy = Vector2::Ones();
+constexpr double kLimit = 6.0 * kRadPerDeg;
+
+StageControl Effectiveness(double pitch, double roll) {
+  return {{{0.0, 1.0}, {pitch, pitch}}, {{0.0, 1.0}, {roll, roll}}, kLimit};
+}
+
+AutopilotModel Model(const AutopilotConfig& config = SampleAutopilot()) {
+  return BuildAutopilot(config, {Effectiveness(2.0, 8.0), Effectiveness(10.0, 40.0)}, 0.05);
+}
+
+AttitudeError ErrorOf(double roll, double pitch, double yaw) {
+  return {Vector3(roll, pitch, yaw), Vector3::Zero()};
+}
+
+TEST(StepGimbals, DividesEachAxisByItsEffectiveness) {
+  const AutopilotModel model = Model();
+  AutopilotState state;
+  StartStage(model, 0, state);
+  const GimbalCommand c = StepGimbals(model, 0, 0.0, ErrorOf(0.01, 0.02, 0.03), kNoStudy, 1.0, state);
+  EXPECT_NEAR(c.roll_rad, 16.0 * 0.01 / 8.0, 1e-16);
+  EXPECT_NEAR(c.pitch_rad, 16.0 * 0.02 / 2.0, 1e-15);
+  EXPECT_NEAR(c.yaw_rad, 16.0 * 0.03 / 2.0, 1e-15);
+}
+
+TEST(StepGimbals, LoopGainMultipliesEveryCommand) {
+  const AutopilotModel model = Model();
+  AutopilotState a, b;
+  StartStage(model, 0, a);
+  StartStage(model, 0, b);
+  const AttitudeError error = ErrorOf(0.001, 0.002, 0.003);
+  const GimbalCommand one = StepGimbals(model, 0, 0.0, error, kNoStudy, 1.0, a);
+  const GimbalCommand half = StepGimbals(model, 0, 0.0, error, kNoStudy, 0.5, b);
+  EXPECT_EQ(half.roll_rad, 0.5 * one.roll_rad);
+  EXPECT_EQ(half.pitch_rad, 0.5 * one.pitch_rad);
+  EXPECT_EQ(half.yaw_rad, 0.5 * one.yaw_rad);
+}
+
+TEST(StepGimbals, RemembersTheSenseOfSaturation) {
+  const AutopilotModel model = Model();
+  AutopilotState state;
+  StartStage(model, 0, state);
+  StepGimbals(model, 0, 0.0, ErrorOf(0.0, 0.05, -0.05), kNoStudy, 1.0, state);
+  EXPECT_EQ(state.saturation, (std::array<int, kAxes>{0, 1, -1}));
+  StepGimbals(model, 0, 0.0, ErrorOf(0.0, 0.0, 0.0), kNoStudy, 1.0, state);
+  EXPECT_EQ(state.saturation, (std::array<int, kAxes>{0, 0, 0}));
+}
+
+TEST(GimbalCommand, MixesPairsAndRoll) {
+  GimbalCommand c;
+  c.roll_rad = 0.001;
+  c.pitch_rad = 0.02;
+  c.yaw_rad = 0.03;
+  EXPECT_EQ(c.Nozzles(), (std::array<double, 4>{0.02 + 0.001, 0.02 - 0.001, 0.03 + 0.001, 0.03 - 0.001}));
+}
+
+// What the pitch axis learnt in stage 1 after a standing error.
+AutopilotState Learnt(const AutopilotModel& model) {
+  AutopilotState state;
+  StartStage(model, 0, state);
+  for (int i = 0; i < 100; ++i)
+    StepGimbals(model, 0, 0.01 * i, ErrorOf(0.0, 0.01, 0.0), kNoStudy, 1.0, state);
+  return state;
+}
+
+TEST(StartStage, CarriesWhatWasLearntOntoTheNextStagesRules) {
+  const AutopilotModel model = Model();
+  AutopilotState state = Learnt(model);
+  const AxisLaw& law = model.laws[kPitch];
+  std::array<double, kFuzzyRules> learnt{};
+  double size = 0.0;
+  for (std::size_t i = 0; i < kFuzzyRules; ++i) {
+    learnt[i] = state.axes[kPitch].consequents[i] - law.stages[0].consequents[i];
+    size += std::fabs(learnt[i]);
+  }
+  ASSERT_GT(size, 0.01);
+  StartStage(model, 1, state);
+  for (std::size_t i = 0; i < kFuzzyRules; ++i)
+    EXPECT_NEAR(state.axes[kPitch].consequents[i] - law.stages[1].consequents[i], learnt[i], 1e-15);
+  // So at zero error the trim in rad/s² goes on without a bump.
+  AutopilotState before = Learnt(model);
+  const double trim =
+      StepGimbals(model, 0, 1.0, ErrorOf(0, 0, 0), kNoStudy, 1.0, before).telemetry[kPitch].command_rad_s2;
+  const double carried =
+      StepGimbals(model, 1, 0.0, ErrorOf(0, 0, 0), kNoStudy, 1.0, state).telemetry[kPitch].command_rad_s2;
+  ASSERT_GT(std::fabs(trim), 1e-4);
+  EXPECT_NEAR(carried, trim, 1e-15);
+}
+
+TEST(StartStage, StartsAnewWhenConfiguredAndClearsSaturationAndThrusters) {
+  AutopilotConfig config = SampleAutopilot();
+  config.pitch.adaptation.reset_at_ignition = true;
+  const AutopilotModel model = Model(config);
+  AutopilotState state = Learnt(model);
+  state.saturation = {1, 1, -1};
+  state.thrusters[kYaw].direction = 1;
+  StartStage(model, 1, state);
+  EXPECT_EQ(state.axes[kPitch].consequents, model.laws[kPitch].stages[1].consequents);
+  EXPECT_EQ(state.saturation, (std::array<int, kAxes>{}));
+  EXPECT_EQ(state.thrusters[kYaw].direction, 0);
+}
+
+TEST(BuildStageControl, IsThrustTimesLeverOverInertia) {
+  const LauncherPlant plant = BuildNominalPlant(SampleVehicle());
+  const StageControl control = BuildStageControl(plant.stacks[1]);
+  for (const double since : {0.0, 20.0}) {
+    const MassProperties m = plant.stacks[1].mass.At(1000.0 * (1.0 - since / 20.0));
+    // Two of four nozzles in pitch, all four on a radius of 0.3 m in roll; table nodes fall on both times.
+    EXPECT_NEAR(control.pitch_effectiveness_1_s2(since),
+                25e3 * (10.0 - m.cg_station_m) / m.transverse_inertia_kg_m2, 1e-12);
+    EXPECT_NEAR(control.roll_effectiveness_1_s2(since), 50e3 * 0.3 / m.axial_inertia_kg_m2, 1e-10);
+  }
+  // Between the nodes the table's own claim: a part in a thousand.
+  const MassProperties m = plant.stacks[1].mass.At(1000.0 * (1.0 - 0.3 / 20.0));
+  const double exact = 25e3 * (10.0 - m.cg_station_m) / m.transverse_inertia_kg_m2;
+  EXPECT_NEAR(control.pitch_effectiveness_1_s2(0.3), exact, 1e-3 * exact);
+  EXPECT_EQ(control.limit_rad, kLimit);
+}
+
+// Reaction control: deadband 1, switching line e + 0.5 de/dt, closes half-way back.
+constexpr ReactionControlLogic kLogic = {.deadband_rad = 1.0, .rate_gain_s = 0.5, .hysteresis = 0.5};
+
+TEST(StepThrusters, OpensBeyondTheDeadbandAgainstTheError) {
+  ThrusterState state;
+  EXPECT_EQ(StepThrusters(kLogic, 1.0, 0.0, 1, state), 0);
+  EXPECT_EQ(StepThrusters(kLogic, 1.01, 0.0, 1, state), 1);
+  ThrusterState other;
+  EXPECT_EQ(StepThrusters(kLogic, -1.01, 0.0, 1, other), -1);
+}
+
+TEST(StepThrusters, RateCountsByItsGain) {
+  ThrusterState state;
+  EXPECT_EQ(StepThrusters(kLogic, 0.0, 2.0, 1, state), 0);
+  EXPECT_EQ(StepThrusters(kLogic, 0.0, 2.1, 1, state), 1);
+}
+
+TEST(StepThrusters, ClosesAcrossTheHysteresisOnly) {
+  ThrusterState state;
+  StepThrusters(kLogic, 1.2, 0.0, 1, state);
+  EXPECT_EQ(StepThrusters(kLogic, 0.9, 0.0, 1, state), 1);
+  EXPECT_EQ(StepThrusters(kLogic, 0.51, 0.0, 1, state), 1);
+  EXPECT_EQ(StepThrusters(kLogic, 0.5, 0.0, 1, state), 0);
+  EXPECT_EQ(StepThrusters(kLogic, 0.9, 0.0, 1, state), 0);
+}
+
+TEST(StepThrusters, StaysOpenForItsMinimumTime) {
+  ThrusterState state;
+  EXPECT_EQ(StepThrusters(kLogic, 1.2, 0.0, 3, state), 1);
+  EXPECT_EQ(StepThrusters(kLogic, 0.0, 0.0, 3, state), 1);
+  EXPECT_EQ(StepThrusters(kLogic, 0.0, 0.0, 3, state), 1);
+  EXPECT_EQ(StepThrusters(kLogic, 0.0, 0.0, 3, state), 0);
+}
+
+TEST(StepThrusters, ReversesAtOnceWhenTheOtherSideIsLeft) {
+  ThrusterState state;
+  StepThrusters(kLogic, 1.2, 0.0, 1, state);
+  EXPECT_EQ(StepThrusters(kLogic, -1.2, 0.0, 1, state), -1);
+}
+
+TEST(StepReactionControl, EveryAxisHasItsOwnMemory) {
+  const AutopilotModel model = Model();
+  AutopilotState state;
+  const double deadband = 0.1 * kRadPerDeg;
+  const auto fired = StepReactionControl(model, ErrorOf(1.5 * deadband, 0.0, -1.5 * deadband), state);
+  EXPECT_EQ(fired, (std::array<int, kAxes>{1, 0, -1}));
+}
+
+TEST(BuildAutopilot, MinimumOnTimeIsWholeCyclesRoundedUp) {
+  AutopilotConfig config = SampleAutopilot();
+  EXPECT_EQ(BuildAutopilot(config, {}, 0.05).thruster_minimum_cycles, 5);
+  EXPECT_EQ(BuildAutopilot(config, {}, 0.051).thruster_minimum_cycles, 6);
+  config.reaction_control.cycle_ticks = 5;
+  EXPECT_EQ(BuildAutopilot(config, {}, 0.05).thruster_minimum_cycles, 1);
+}
+
+// Problems ---------------------------------------------------------------------------------------------
+
+std::vector<std::string> Texts(const AutopilotConfig& config, int stages = 2) {
+  std::vector<std::string> texts;
+  for (const AutopilotProblem& p : Problems(config, stages))
+    texts.push_back(p.path + ": " + p.message + " | " + p.allowed);
+  return texts;
+}
+
+AutopilotConfig With(const std::function<void(AutopilotConfig&)>& change) {
+  AutopilotConfig config = SampleAutopilot();
+  change(config);
+  return config;
+}
+
+using List = std::vector<std::string>;
+
+TEST(AutopilotProblems, NoneInTheSample) { EXPECT_EQ(Texts(SampleAutopilot()), List{}); }
+
+TEST(AutopilotProblems, TickGainsAndRanges) {
+  EXPECT_EQ(Texts(With([](auto& c) {
+              c.tick_s = 0.0;
+              c.yaw.gains[1] = {0.0, -1.0};
+              c.pitch.rules = {};
+            })),
+            (List{"tick_s: is not positive | a number above 0",
+                  "pitch.rules.error_range_deg: is not positive | a number above 0",
+                  "pitch.rules.rate_range_deg_s: is not positive | a number above 0",
+                  "yaw.gains[1].kp_1_s2: is not positive | a number above 0",
+                  "yaw.gains[1].kd_1_s: is not positive | a number above 0"}));
+}
+
+TEST(AutopilotProblems, OneEntryAStage) {
+  EXPECT_EQ(Texts(With([](auto& c) { c.roll.gains.pop_back(); })),
+            (List{"roll.gains: has 1 entries | one entry for each of the vehicle's 2 stages"}));
+  EXPECT_EQ(Texts(With([](auto& c) { c.pitch.adaptation.gamma = {1.0, 2.0, 3.0}; })),
+            (List{"pitch.adaptation.gamma: has 3 entries | one entry for each of the vehicle's 2 stages"}));
+}
+
+TEST(AutopilotProblems, AMistakeElsewhereHidesNoneInTheAdaptation) {
+  EXPECT_EQ(Texts(With([](auto& c) {
+              c.tick_s = -1.0;
+              c.pitch.adaptation.gamma.clear();
+            })),
+            (List{"tick_s: is not positive | a number above 0",
+                  "pitch.adaptation.gamma: has 0 entries | one entry for each of the vehicle's 2 stages"}));
+}
+
+TEST(AutopilotProblems, QMustBeSymmetricPositiveDefinite) {
+  const List expected = {
+      "pitch.adaptation.q: is not symmetric positive definite | a symmetric matrix with positive diagonal "
+      "and determinant"};
+  EXPECT_EQ(Texts(With([](auto& c) { c.pitch.adaptation.q << 1.0, 0.0, 0.0, 0.0; })), expected);
+  EXPECT_EQ(Texts(With([](auto& c) { c.pitch.adaptation.q << 1.0, 0.1, 0.0, 1.0; })), expected);
+}
+
+AutopilotConfig WithPn(double error, double rate) {
+  return With([&](AutopilotConfig& c) {
+    c.pitch.gains[1] = c.pitch.gains[0];
+    c.pitch.adaptation.p_n = Vector2(error, rate);
+  });
+}
+
+TEST(AutopilotProblems, PnOfTheLyapunovEquationIsAccepted) {
+  // kp 16, kd 7, Q diag(1, 0.02): p12 = 1/32, p22 = (0.02 + 2/32) / 14.
+  EXPECT_EQ(Texts(WithPn(0.03125, 0.0825 / 14.0)), List{});
+}
+
+TEST(AutopilotProblems, PnOfAnotherMatrixIsRefusedWithTheRightOne) {
+  EXPECT_EQ(Texts(WithPn(0.0625, 0.0825 / 14.0)),
+            (List{"pitch.adaptation.p_n: is not the last column of the P that solves A'P + PA = -Q for the "
+                  "gains of stage 1, which is [0.031250, 0.005893] | that column, no p_n at all, or "
+                  "allow_unproven: true to study it"}));
+}
+
+TEST(AutopilotProblems, PnMustHoldForEveryStage) {
+  AutopilotConfig config = WithPn(0.03125, 0.0825 / 14.0);
+  config.pitch.gains[1] = {25.0, 9.0};
+  EXPECT_EQ(Texts(config),
+            (List{"pitch.adaptation.p_n: is not the last column of the P that solves A'P + PA = -Q for the "
+                  "gains of stage 2, which is [0.020000, 0.003333] | that column, no p_n at all, or "
+                  "allow_unproven: true to study it"}));
+}
+
+TEST(AutopilotProblems, PnMustBePositive) {
+  EXPECT_EQ(Texts(WithPn(-0.03125, 0.0825 / 14.0)),
+            (List{"pitch.adaptation.p_n: is not positive: no positive definite P has this last column and "
+                  "gives a stable law | two positive numbers, or allow_unproven: true to study it"}));
+}
+
+TEST(AutopilotProblems, AnUnprovenPnMayBeStudied) {
+  AutopilotConfig config = WithPn(-1.0, 5.0);
+  config.pitch.adaptation.allow_unproven = true;
+  EXPECT_EQ(Texts(config), List{});
+  const AxisLaw law = BuildAxisLaw(config.pitch);
+  EXPECT_EQ(law.stages[0].p_n, Vector2(-1.0, 5.0));
+}
+
+}  // namespace
+}  // namespace dispersa

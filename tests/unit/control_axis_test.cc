@@ -1,0 +1,253 @@
+// One axis of the autopilot, tick by tick: the law, its guards, and what each must not change.
+#include "core/control/axis_controller.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <functional>
+
+#include "core/control/lyapunov.h"
+#include "core/math/constants.h"
+#include "core/random/draws.h"
+#include "tests/unit/sample_vehicle.h"
+
+namespace dispersa {
+namespace {
+
+constexpr double kTick_s = 0.01;
+const Vector2 kNoStudy = Vector2::Ones();
+
+// One axis with its memory.
+struct Loop {
+  explicit Loop(const AxisConfig& config) : law(BuildAxisLaw(config)) { ResetAxis(law, 0, state); }
+  double Step(double error, double rate, int saturation = 0, const Vector2& pn_factor = kNoStudy) {
+    return StepAxis(law, 0, error, rate, saturation, pn_factor, kTick_s, state, telemetry);
+  }
+  double FromStart(std::size_t rule) const {
+    return state.consequents[rule] - law.stages[0].consequents[rule];
+  }
+  AxisLaw law;
+  AxisState state;
+  AxisTelemetry telemetry;
+};
+
+AxisConfig Adaptive(const std::function<void(Adaptation&)>& change = [](Adaptation&) {}) {
+  AxisConfig config = SampleAxis(ControlLaw::kAdaptiveFuzzy);
+  change(config.adaptation);
+  return config;
+}
+
+// Inside the rule base, where every rule of a 2 x 2 block fires.
+constexpr double kError = 1.0 * kRadPerDeg;
+constexpr double kRate = 0.3 * kRadPerDeg;
+
+TEST(StepAxis, AdaptsByTheLawOfEquation32) {
+  Loop loop(Adaptive());
+  const double u = loop.Step(kError, kRate);
+  // The command uses the consequents before the step.
+  EXPECT_NEAR(u, 16.0 * kError + 7.0 * kRate, 1e-15);
+  Matrix2 q;
+  q << 1.0, 0.0, 0.0, 0.02;
+  const Vector2 p_n = SolveLyapunov({16.0, 7.0}, q).col(1);
+  const double drive = p_n.x() * kError + p_n.y() * kRate;
+  const auto zeta = Regressor(loop.law.config.rules, kError, kRate);
+  for (std::size_t i = 0; i < kFuzzyRules; ++i)
+    // Rounding of consequents of order 2.
+    EXPECT_NEAR(loop.FromStart(i), kTick_s * 500.0 * drive * zeta[i], 1e-15);
+}
+
+TEST(StepAxis, AdaptationRaisesTheCommandAgainstAStandingError) {
+  Loop loop(Adaptive());
+  const double first = loop.Step(kError, 0.0);
+  double last = first;
+  for (int i = 0; i < 100; ++i) last = loop.Step(kError, 0.0);
+  EXPECT_GT(last, 1.5 * first);
+}
+
+TEST(StepAxis, GammaZeroIsTheFrozenLawBitForBit) {
+  AxisConfig zero = Adaptive([](Adaptation& a) {
+    a.gamma = {0.0, 0.0};
+    a.leakage_1_s = 0.02;
+    a.projection_bound_rad_s2 = 1.0;
+  });
+  AxisConfig frozen = zero;
+  frozen.law = ControlLaw::kFrozenFuzzy;
+  Loop a(zero), b(frozen);
+  Stream draws(3, 0, "errors");
+  for (int i = 0; i < 5000; ++i) {
+    const double error = 0.3 * (draws.Uniform() - 0.5), rate = 0.1 * (draws.Uniform() - 0.5);
+    const double ua = a.Step(error, rate), ub = b.Step(error, rate);
+    ASSERT_EQ(std::bit_cast<std::uint64_t>(ua), std::bit_cast<std::uint64_t>(ub)) << "tick " << i;
+  }
+  EXPECT_EQ(a.state.consequents, b.state.consequents);
+  EXPECT_EQ(a.state.consequents, a.law.stages[0].consequents);
+}
+
+TEST(StepAxis, ProjectionHoldsEveryConsequentWithinItsBoundAtEveryTick) {
+  const double bound = 0.05;
+  Loop loop(Adaptive([&](Adaptation& a) { a.projection_bound_rad_s2 = bound; }));
+  Stream draws(4, 0, "errors");
+  bool projected = false;
+  for (int i = 0; i < 2000; ++i) {
+    loop.Step(0.15 * (draws.Uniform() - 0.3), 0.05 * (draws.Uniform() - 0.3));
+    projected |= loop.telemetry.projected;
+    for (std::size_t rule = 0; rule < kFuzzyRules; ++rule)
+      // start + bound - start rounds in the last place of start.
+      ASSERT_LE(std::fabs(loop.FromStart(rule)), bound + 1e-15) << "tick " << i;
+  }
+  EXPECT_TRUE(projected);
+}
+
+TEST(StepAxis, LeakageDrawsTheConsequentsToTheirStart) {
+  Loop loop(Adaptive([](Adaptation& a) { a.leakage_1_s = 0.5; }));
+  for (int i = 0; i < 50; ++i) loop.Step(kError, kRate);
+  const std::size_t rule = 2 * kFuzzySets + 2;
+  const double learnt = loop.FromStart(rule);
+  ASSERT_GT(std::fabs(learnt), 1e-3);
+  // No error drives nothing, so what is left is the leak's geometric decay.
+  for (int i = 0; i < 200; ++i) loop.Step(0.0, 0.0);
+  EXPECT_NEAR(loop.FromStart(rule), learnt * std::pow(1.0 - kTick_s * 0.5, 200), 1e-13);
+}
+
+TEST(StepAxis, DoesNotAdaptIntoASaturatedActuatorButOutOfIt) {
+  Loop loop(Adaptive([](Adaptation& a) { a.freeze_when_saturated = true; }));
+  loop.Step(kError, kRate, +1);
+  EXPECT_TRUE(loop.telemetry.frozen);
+  EXPECT_EQ(loop.state.consequents, loop.law.stages[0].consequents);
+  loop.Step(kError, kRate, -1);
+  EXPECT_FALSE(loop.telemetry.frozen);
+  EXPECT_NE(loop.state.consequents, loop.law.stages[0].consequents);
+}
+
+TEST(StepAxis, AdaptsIntoSaturationOnlyWithoutThatGuard) {
+  Loop loop(Adaptive());
+  loop.Step(kError, kRate, +1);
+  EXPECT_FALSE(loop.telemetry.frozen);
+  EXPECT_NE(loop.state.consequents, loop.law.stages[0].consequents);
+}
+
+TEST(StepAxis, DeadZoneIsMeasuredInErrorAtZeroRate) {
+  const double zone = 0.5 * kRadPerDeg;
+  for (const double sign : {-1.0, 1.0}) {
+    Loop loop(Adaptive([&](Adaptation& a) { a.dead_zone_rad = zone; }));
+    loop.Step(sign * zone * 0.999, 0.0);
+    EXPECT_TRUE(loop.telemetry.frozen);
+    EXPECT_EQ(loop.state.consequents, loop.law.stages[0].consequents);
+    loop.Step(sign * zone * 1.001, 0.0);
+    EXPECT_FALSE(loop.telemetry.frozen);
+    EXPECT_NE(loop.state.consequents, loop.law.stages[0].consequents);
+  }
+}
+
+TEST(StepAxis, SupervisoryTermRestoresTheLinearLawBeyondTheRulesOnlyAboveItsBound) {
+  const auto frozen = [](double bound) {
+    AxisConfig config = Adaptive([&](Adaptation& a) { a.supervisory_bound = bound; });
+    config.law = ControlLaw::kFrozenFuzzy;
+    return Loop(config);
+  };
+  const double error = 12.0 * kRadPerDeg, rate = 4.0 * kRadPerDeg;
+  const double edge = 16.0 * 5.0 * kRadPerDeg + 7.0 * 1.5 * kRadPerDeg;
+  Loop off = frozen(0.0), below = frozen(1e6), above = frozen(1e-6);
+  EXPECT_NEAR(off.Step(error, rate), edge, 1e-14);
+  EXPECT_NEAR(below.Step(error, rate), edge, 1e-14);
+  EXPECT_NEAR(above.Step(error, rate), 16.0 * error + 7.0 * rate, 1e-14);
+}
+
+TEST(StepAxis, ReportsTheLyapunovFunctionAndTheSignOfItsChange) {
+  Loop loop(Adaptive());
+  Matrix2 q;
+  q << 1.0, 0.0, 0.0, 0.02;
+  const Matrix2 p = SolveLyapunov({16.0, 7.0}, q);
+  const Vector2 e(kError, kRate);
+  loop.Step(kError, kRate);
+  EXPECT_NEAR(loop.telemetry.v, 0.5 * e.dot(p * e), 1e-18);
+  EXPECT_EQ(loop.telemetry.v_rate_sign, 1.0);
+  loop.Step(kError, kRate);
+  EXPECT_EQ(loop.telemetry.v_rate_sign, 0.0);
+  loop.Step(0.5 * kError, 0.5 * kRate);
+  EXPECT_EQ(loop.telemetry.v_rate_sign, -1.0);
+}
+
+TEST(StepAxis, RemembersWhichRulesFired) {
+  Loop loop(Adaptive());
+  loop.Step(0.0, 0.0);
+  EXPECT_EQ(loop.state.rules_fired, 1u << 12);
+  loop.Step(1.0, 1.0);
+  EXPECT_EQ(loop.state.rules_fired, (1u << 12) | (1u << 24));
+  ResetAxis(loop.law, 0, loop.state);
+  EXPECT_EQ(loop.state.rules_fired, (1u << 12) | (1u << 24)) << "coverage is of the whole flight";
+}
+
+TEST(StepAxis, AdaptationNormIsTheDistanceFromTheStart) {
+  Loop loop(Adaptive());
+  for (int i = 0; i < 10; ++i) loop.Step(kError, kRate);
+  double squares = 0.0;
+  for (std::size_t i = 0; i < kFuzzyRules; ++i) squares += loop.FromStart(i) * loop.FromStart(i);
+  EXPECT_DOUBLE_EQ(loop.telemetry.adaptation_norm, std::sqrt(squares));
+  EXPECT_GT(squares, 0.0);
+}
+
+TEST(StepAxis, PnFactorsScaleTheDrive) {
+  Loop one(Adaptive()), twice(Adaptive()), rate_only(Adaptive());
+  one.Step(kError, 0.0);
+  twice.Step(kError, 0.0, 0, Vector2(2.0, 1.0));
+  rate_only.Step(kError, 0.0, 0, Vector2(0.0, 1.0));
+  const std::size_t rule = 2 * kFuzzySets + 2;
+  EXPECT_NEAR(twice.FromStart(rule), 2.0 * one.FromStart(rule), 1e-15);
+  EXPECT_EQ(rate_only.FromStart(rule), 0.0);
+}
+
+TEST(StepAxis, PdIsTheLinearLaw) {
+  Loop loop(SampleAxis(ControlLaw::kPd));
+  EXPECT_EQ(loop.Step(0.3, -0.2), 16.0 * 0.3 + 7.0 * -0.2);
+}
+
+AxisConfig Augmented() {
+  AxisConfig config = SampleAxis(ControlLaw::kPdAac);
+  config.augmentation = {.adaptive_gain_1_s = 4000.0,
+                         .leakage_1_s = 0.5,
+                         .spectral_gain_1_s = 1.0,
+                         .high_pass_rad_s = 20.0,
+                         .low_pass_rad_s = 5.0,
+                         .minimum_total_gain = 0.5,
+                         .maximum_total_gain = 2.0};
+  return config;
+}
+
+TEST(StepAxis, AugmentationWithoutGainsIsPdBitForBit) {
+  AxisConfig config = Augmented();
+  config.augmentation.adaptive_gain_1_s = config.augmentation.spectral_gain_1_s = 0.0;
+  Loop augmented(config), pd(SampleAxis(ControlLaw::kPd));
+  Stream draws(5, 0, "errors");
+  for (int i = 0; i < 500; ++i) {
+    const double error = draws.Normal(), rate = draws.Normal();
+    ASSERT_EQ(augmented.Step(error, rate), pd.Step(error, rate));
+  }
+}
+
+TEST(StepAxis, AugmentationRaisesTheGainOnDepartureLowersItOnChatterAndStaysWithinItsBounds) {
+  Loop departing(Augmented());
+  for (int i = 0; i < 300; ++i) departing.Step(2.0 * kRadPerDeg, 0.0);
+  EXPECT_GT(departing.state.total_gain, 1.05);
+  for (int i = 0; i < 20000; ++i) departing.Step(0.5, 0.0);
+  EXPECT_LE(departing.state.total_gain, 2.0);
+
+  AxisConfig spectral = Augmented();
+  spectral.augmentation.adaptive_gain_1_s = 0.0;
+  Loop chattering(spectral);
+  for (int i = 0; i < 300; ++i) chattering.Step(i % 2 ? 0.1 : -0.1, 0.0);
+  EXPECT_LT(chattering.state.total_gain, 0.9);
+  for (int i = 0; i < 5000; ++i) chattering.Step(i % 2 ? 10.0 : -10.0, 0.0);
+  EXPECT_EQ(chattering.state.total_gain, 0.5);
+}
+
+TEST(StepAxis, AugmentationLeaksBackToOne) {
+  Loop loop(Augmented());
+  loop.state.total_gain = 1.5;
+  for (int i = 0; i < 200; ++i) loop.Step(0.0, 0.0);
+  EXPECT_NEAR(loop.state.total_gain, 1.0 + 0.5 * std::pow(1.0 - kTick_s * 0.5, 200), 1e-12);
+}
+
+}  // namespace
+}  // namespace dispersa

@@ -1,0 +1,121 @@
+// Fingerprints and the columns of the inputs.
+#include "core/flight/digest.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "core/flight/flight_inputs.h"
+#include "core/math/constants.h"
+
+namespace dispersa {
+namespace {
+
+Digest Of(const std::vector<double>& values) {
+  Digester digester;
+  digester.Add(values.data(), values.size());
+  return digester.Finish();
+}
+
+TEST(Digest, SeesEveryBitAndTheOrder) {
+  EXPECT_EQ(Of({1.0, 2.0}), Of({1.0, 2.0}));
+  EXPECT_NE(Of({1.0, 2.0}), Of({2.0, 1.0}));
+  EXPECT_NE(Of({1.0, 2.0}), Of({1.0, std::nextafter(2.0, 3.0)}));
+  EXPECT_NE(Of({0.0}), Of({-0.0}));
+  EXPECT_NE(Of({0.0}), Of({0.0, 0.0}));
+}
+
+TEST(Digest, DoesNotDependOnHowValuesArrive) {
+  Digester digester;
+  const double values[] = {1.0, 2.0, 3.0};
+  digester.Add(values, 1);
+  digester.Add(values + 1, 2);
+  EXPECT_EQ(digester.Finish(), Of({1.0, 2.0, 3.0}));
+}
+
+TEST(Digest, OfNothingIsThePublishedValueOfXxh3) {
+  // XXH3_128bits of zero bytes with seed 0 (xxHash 0.8 specification).
+  EXPECT_EQ(Of({}).Hex(), "99aa06d3014798d86001c324468d497f");
+}
+
+TEST(Digest, HexIs32DigitsWithLeadingZeros) {
+  EXPECT_EQ((Digest{0x1, 0xabcdef}).Hex(), "00000000000000010000000000abcdef");
+}
+
+// Each column must be the field that its name says, in the unit that its name says.
+TEST(InputColumns, NameTheFieldsOfFlightInputs) {
+  FlightInputs in;
+  const auto expect = [&](const std::string& name, double& field, double unit) {
+    const int column = FindInput(name);
+    ASSERT_GE(column, 0) << name;
+    EXPECT_EQ(&InputValue(in, column), &field) << name;
+    EXPECT_EQ(InputColumns()[static_cast<std::size_t>(column)].unit, unit) << name;
+  };
+  for (std::size_t i = 0; i < kMaxStages; ++i) {
+    const std::string stage = "_stage" + std::to_string(i + 1);
+    expect("thrust_misalignment" + stage + "_deg", in.thrust_misalignment_rad[i], kRadPerDeg);
+    expect("thrust_misalignment_clock" + stage + "_deg", in.thrust_misalignment_clock_rad[i], kRadPerDeg);
+    expect("thrust_offset" + stage + "_m", in.thrust_offset_m[i], 1.0);
+    expect("thrust_offset_clock" + stage + "_deg", in.thrust_offset_clock_rad[i], kRadPerDeg);
+    expect("thrust_factor" + stage, in.thrust_factor[i], 1.0);
+    expect("mass_flow_factor" + stage, in.mass_flow_factor[i], 1.0);
+    expect("specific_impulse_factor" + stage, in.specific_impulse_factor[i], 1.0);
+    expect("tip_off_pitch" + stage + "_deg_s", in.tip_off_pitch_rad_s[i], kRadPerDeg);
+    expect("tip_off_yaw" + stage + "_deg_s", in.tip_off_yaw_rad_s[i], kRadPerDeg);
+    expect("tip_off_roll" + stage + "_deg_s", in.tip_off_roll_rad_s[i], kRadPerDeg);
+  }
+  expect("wind_max_speed_m_s", in.wind_max_speed_m_s, 1.0);
+  expect("wind_azimuth_deg", in.wind_azimuth_rad, kRadPerDeg);
+  expect("wind_altitude_m", in.wind_altitude_m, 1.0);
+  expect("wind_width_m", in.wind_width_m, 1.0);
+  expect("gust_speed_m_s", in.gust_speed_m_s, 1.0);
+  expect("gust_altitude_m", in.gust_altitude_m, 1.0);
+  expect("gust_length_m", in.gust_length_m, 1.0);
+  expect("gust_azimuth_deg", in.gust_azimuth_rad, kRadPerDeg);
+  expect("wind_profile_north_1", in.wind_profile_north[0], 1.0);
+  expect("wind_profile_north_20", in.wind_profile_north[19], 1.0);
+  expect("wind_profile_east_1", in.wind_profile_east[0], 1.0);
+  expect("drag_factor", in.drag_factor, 1.0);
+  expect("lift_factor", in.lift_factor, 1.0);
+  expect("cg_factor", in.cg_factor, 1.0);
+  expect("cp_factor", in.cp_factor, 1.0);
+  expect("density_factor", in.density_factor, 1.0);
+  expect("inertia_factor", in.inertia_factor, 1.0);
+  expect("actuator_bandwidth_factor", in.actuator_bandwidth_factor, 1.0);
+  expect("gyro_bias_roll_deg_s", in.gyro_bias_roll_rad_s, kRadPerDeg);
+  expect("gyro_bias_pitch_deg_s", in.gyro_bias_pitch_rad_s, kRadPerDeg);
+  expect("gyro_bias_yaw_deg_s", in.gyro_bias_yaw_rad_s, kRadPerDeg);
+  expect("gyro_noise_deg_s", in.gyro_noise_rad_s, kRadPerDeg);
+  expect("stuck_nozzle", in.stuck_nozzle, 1.0);
+  expect("stuck_nozzle_stage", in.stuck_nozzle_stage, 1.0);
+  expect("stuck_nozzle_deg", in.stuck_nozzle_rad, kRadPerDeg);
+  expect("pn_error_factor", in.pn_error_factor, 1.0);
+  expect("pn_rate_factor", in.pn_rate_factor, 1.0);
+  expect("loop_gain_factor", in.loop_gain_factor, 1.0);
+  expect("loop_delay_s", in.loop_delay_s, 1.0);
+}
+
+TEST(InputColumns, CoverEveryDoubleOnceWithDistinctNames) {
+  std::set<std::string> names;
+  std::set<std::size_t> offsets;
+  for (const InputColumn& column : InputColumns()) {
+    names.insert(column.name);
+    offsets.insert(column.offset);
+  }
+  EXPECT_EQ(names.size(), InputColumns().size());
+  EXPECT_EQ(offsets.size(), sizeof(FlightInputs) / sizeof(double));
+  EXPECT_EQ(*offsets.rbegin(), sizeof(FlightInputs) / sizeof(double) - 1);
+}
+
+TEST(InputValues, AreInTheUnitsOfTheirNamesWithoutMinusZero) {
+  FlightInputs in;
+  in.gyro_bias_yaw_rad_s = 0.5 * kRadPerDeg;
+  in.wind_azimuth_rad = -0.0;
+  const std::vector<double> values = InputValues(in);
+  EXPECT_DOUBLE_EQ(values[static_cast<std::size_t>(FindInput("gyro_bias_yaw_deg_s"))], 0.5);
+  EXPECT_FALSE(std::signbit(values[static_cast<std::size_t>(FindInput("wind_azimuth_deg"))]));
+  EXPECT_EQ(FindInput("no_such_input"), -1);
+}
+
+}  // namespace
+}  // namespace dispersa

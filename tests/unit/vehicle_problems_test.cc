@@ -1,0 +1,186 @@
+// Every way in which a vehicle can contradict itself, with the full text that the user reads.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/vehicle/vehicle.h"
+#include "tests/unit/sample_vehicle.h"
+
+namespace dispersa {
+namespace {
+
+std::vector<std::string> Texts(const Vehicle& vehicle) {
+  std::vector<std::string> texts;
+  for (const VehicleProblem& p : Problems(vehicle))
+    texts.push_back(p.path + ": " + p.message + " | " + p.allowed);
+  return texts;
+}
+
+struct Mistake {
+  const char* name;
+  std::function<void(Vehicle&)> make;
+  std::vector<std::string> texts;
+};
+
+// Readable test names instead of bytes.
+void PrintTo(const Mistake& mistake, std::ostream* out) { *out << mistake.name; }
+
+class VehicleProblems : public testing::TestWithParam<Mistake> {};
+
+TEST_P(VehicleProblems, AreNamedInFull) {
+  Vehicle vehicle = SampleVehicle();
+  GetParam().make(vehicle);
+  EXPECT_EQ(Texts(vehicle), GetParam().texts);
+}
+
+const std::string kPositive = "is not positive | a number above 0";
+
+INSTANTIATE_TEST_SUITE_P(
+    Each, VehicleProblems,
+    testing::Values(
+        Mistake{"None", [](Vehicle&) {}, {}},
+        Mistake{"NoStages", [](Vehicle& v) { v.stages.clear(); }, {"stages: has 0 entries | 1 to 4 stages"}},
+        Mistake{"FiveStages",
+                [](Vehicle& v) { v.stages.assign(5, v.stages[0]); },
+                {"stages: has 5 entries | 1 to 4 stages"}},
+        Mistake{"PropellantMoreThanTheStageWeighs",
+                [](Vehicle& v) {
+                  v.stages[1].propellant_mass_kg = 3100.0;
+                  v.stages[1].grain = {2.0, 9.0, 0.9, 0.3};
+                },
+                {"stages[1].propellant_mass_kg: leaves the stage no dry mass: lift-off mass less what is "
+                 "above it and its propellant is -100.000000 kg | less propellant than the stage's own mass"}},
+        Mistake{"UpperStageHeavierThanTheOneBelow",
+                [](Vehicle& v) { v.stages[1].liftoff_mass_kg = 13000.0; },
+                {"stages[0].propellant_mass_kg: leaves the stage no dry mass: lift-off mass less what is "
+                 "above it and its propellant is -4000.000000 kg | less propellant than the stage's own mass",
+                 "stages[1].liftoff_mass_kg: is not below that of the stage underneath: lift-off mass counts "
+                 "everything above, and stages are listed in the order of flight | less than 13000.000000"}},
+        Mistake{"StagesInTheWrongOrder",
+                [](Vehicle& v) {
+                  std::swap(v.stages[0], v.stages[1]);
+                  v.stages[0].ignition = IgnitionTrigger::kLiftOff;
+                  v.stages[1].ignition = IgnitionTrigger::kTimer;
+                },
+                {"stages[0].propellant_mass_kg: leaves the stage no dry mass: lift-off mass less what is "
+                 "above it and its propellant is -11000.000000 kg | less propellant than the stage's own "
+                 "mass",
+                 "stages[1].liftoff_mass_kg: is not below that of the stage underneath: lift-off mass counts "
+                 "everything above, and stages are listed in the order of flight | less than 3000.000000",
+                 "stages[0].bottom_station_m: is not aft of the next stage's | stations that decrease in the "
+                 "order of flight"}},
+        Mistake{"CentreOfGravityBehindTheNozzle",
+                [](Vehicle& v) { v.stages[1].gimbal.pivot_station_m = 5.0; },
+                {"stages[1].gimbal.pivot_station_m: is not aft of the centre of gravity, which reaches "
+                 "station 6.333333 m | a station aft of the centre of gravity"}},
+        Mistake{"GrainTooSmallForItsPropellant",
+                [](Vehicle& v) { v.stages[1].grain = {8.5, 9.0, 0.9, 0.3}; },
+                {"stages[1].grain: implies a propellant density of 3536.776513 kg/m3 | a volume that gives "
+                 "less than 2100 kg/m3"}},
+        Mistake{"GrainUpsideDown",
+                [](Vehicle& v) { v.stages[1].grain = {9.0, 6.0, 0.9, 0.3}; },
+                {"stages[1].grain.bottom_station_m: is not aft of top_station_m | a station larger than "
+                 "top_station_m",
+                 "stages[1].grain: implies a propellant density of -589.462752 kg/m3 | a volume that gives "
+                 "less than 2100 kg/m3"}},
+        Mistake{"BoreWiderThanTheGrain",
+                [](Vehicle& v) { v.stages[1].grain.inner_diameter_m = 1.0; },
+                {"stages[1].grain.inner_diameter_m: is not smaller than outer_diameter_m | less than "
+                 "outer_diameter_m",
+                 "stages[1].grain: implies a propellant density of -2233.753587 kg/m3 | a volume that gives "
+                 "less than 2100 kg/m3"}},
+        Mistake{"GrainOutOfTheStack",
+                [](Vehicle& v) { v.stages[1].grain = {8.5, 11.5, 0.9, 0.3}; },
+                {"stages[1].grain.bottom_station_m: lies aft of the stage's bottom_station_m | at most "
+                 "bottom_station_m of the stage"}},
+        Mistake{"FractionsDoNotSumTo1",
+                [](Vehicle& v) { v.stages[0].structure[0].fraction = 0.7; },
+                {"stages[0].structure: has fractions that sum to 0.950000 | fractions that sum to 1"}},
+        Mistake{"NoStructureThatIsNoInertia",
+                [](Vehicle& v) { v.stages[1].structure.clear(); },
+                {"stages[1].structure: has fractions that sum to 0.000000 | fractions that sum to 1"}},
+        Mistake{"ElementOfNoSize",
+                [](Vehicle& v) {
+                  v.stages[1].structure[0].outer_diameter_m = 0.0;
+                  v.stages[1].structure[0].inner_diameter_m = 0.0;
+                },
+                {"stages[1].structure[0].outer_diameter_m: " + kPositive,
+                 "stages[1].structure[0].inner_diameter_m: is not smaller than outer_diameter_m | less than "
+                 "outer_diameter_m"}},
+        Mistake{"NoThrustAndNoTime",
+                [](Vehicle& v) {
+                  v.stages[0].motor.thrust_n = 0.0;
+                  v.stages[0].motor.burning_time_s = -1.0;
+                },
+                {"stages[0].motor.thrust_n: " + kPositive, "stages[0].motor.burning_time_s: " + kPositive,
+                 "stages[0].motor.tail_off_s: leaves no time at full thrust | ramps that are together shorter "
+                 "than twice burning_time_s"}},
+        Mistake{"RampsLongerThanTheBurn",
+                [](Vehicle& v) {
+                  v.stages[0].motor.ignition_rise_s = 40.0;
+                  v.stages[0].motor.tail_off_s = 40.0;
+                },
+                {"stages[0].motor.tail_off_s: leaves no time at full thrust | ramps that are together shorter "
+                 "than twice burning_time_s"}},
+        Mistake{"NegativeExitArea",
+                [](Vehicle& v) { v.stages[0].motor.nozzle_exit_area_m2 = -0.1; },
+                {"stages[0].motor.nozzle_exit_area_m2: is negative | 0 or more"}},
+        Mistake{"Gimbal",
+                [](Vehicle& v) {
+                  Gimbal& g = v.stages[0].gimbal;
+                  g.limit_rad = g.rate_limit_rad_s = g.bandwidth_rad_s = g.damping_ratio = g.radius_m = 0.0;
+                  g.delay_ticks = 51;
+                },
+                {"stages[0].gimbal.limit_deg: " + kPositive, "stages[0].gimbal.rate_limit_deg_s: " + kPositive,
+                 "stages[0].gimbal.bandwidth_rad_s: " + kPositive, "stages[0].gimbal.damping_ratio: " + kPositive,
+                 "stages[0].gimbal.radius_m: " + kPositive,
+                 "stages[0].gimbal.delay_ticks: is out of range | 0 to 50"}},
+        Mistake{"FirstStageOnATimer",
+                [](Vehicle& v) { v.stages[0].ignition = IgnitionTrigger::kTimer; },
+                {"stages[0].ignition.trigger: the first stage does not ignite at lift-off | lift_off",
+                 "stages[0].ignition.trigger: only the last stage ignites on the timer | "
+                 "burnout_detection"}},
+        Mistake{"SecondStageAtLiftOff",
+                [](Vehicle& v) { v.stages[1].ignition = IgnitionTrigger::kLiftOff; },
+                {"stages[1].ignition.trigger: only the first stage ignites at lift-off | burnout_detection "
+                 "or timer"}},
+        Mistake{"NegativeDelays",
+                [](Vehicle& v) {
+                  v.stages[1].ignition_delay_s = -1.0;
+                  v.stages[0].separation_delay_s = -0.5;
+                },
+                {"stages[0].separation_delay_s: is negative | 0 or more",
+                 "stages[1].ignition.delay_s: is negative | 0 or more"}},
+        Mistake{"ProfileThatEndsElsewhere",
+                [](Vehicle& v) {
+                  v.aerodynamics.clear();
+                  v.profile = {{ProfileShape::kCone, 2.0, 1.0}, {ProfileShape::kCylinder, 17.0, 1.0}};
+                },
+                {"profile: is 19.000000 m long in all | sections that end at the first stage's "
+                 "bottom_station_m, 20.000000 m"}},
+        Mistake{"OneTableForTwoStacks",
+                [](Vehicle& v) { v.aerodynamics.pop_back(); },
+                {"aerodynamics.tables: has 1 tables | one table for each of the 2 stacks"}},
+        Mistake{"TableThatIsNotMonotone",
+                [](Vehicle& v) {
+                  v.aerodynamics[0].mach = {1.0, 1.0};
+                  v.aerodynamics[1].incidence_rad = {0.1, 0.0};
+                  v.aerodynamics[1].reference_area_m2 = 0.0;
+                },
+                {"aerodynamics.tables[0].mach: is not strictly increasing | at least two strictly increasing "
+                 "numbers",
+                 "aerodynamics.tables[1].incidence_deg: is not strictly increasing | at least two strictly "
+                 "increasing numbers",
+                 "aerodynamics.tables[1].reference_area_m2: " + kPositive}},
+        Mistake{"ReactionControlOfNothing",
+                [](Vehicle& v) { v.reaction_control = {}; },
+                {"reaction_control.thrust_n: " + kPositive, "reaction_control.pitch_yaw_arm_m: " + kPositive,
+                 "reaction_control.roll_arm_m: " + kPositive,
+                 "reaction_control.specific_impulse_s: " + kPositive,
+                 "reaction_control.minimum_on_time_s: " + kPositive}}),
+    [](const testing::TestParamInfo<Mistake>& test) { return std::string(test.param.name); });
+
+}  // namespace
+}  // namespace dispersa
