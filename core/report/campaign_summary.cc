@@ -103,6 +103,7 @@ CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaig
   summary.engine = folder.Provenance("engine");
   summary.vehicle = campaign.vehicle.name;
   summary.reference = campaign.reference.name;
+  summary.reference_orbit = campaign.reference.orbit;
   summary.autopilot = campaign.autopilot.name;
   for (const Outcome outcome : cases.outcome) ++summary.outcomes[static_cast<std::size_t>(outcome)];
   summary.lost_flights = cases.lost_flights;

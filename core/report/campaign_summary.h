@@ -52,6 +52,7 @@ struct CampaignSummary {
   std::string engine;
   std::string vehicle;
   std::string reference;
+  Orbit reference_orbit;       ///< that the optimiser reached with it
   std::string autopilot;
   CampaignVerdict verdict = CampaignVerdict::kIncomplete;
   std::array<std::uint64_t, kOutcomeCount> outcomes{};

@@ -45,13 +45,38 @@ std::string LimitText(const RequirementSummary& requirement, const std::string& 
                      unit.empty() ? "" : " ", unit);
 }
 
+std::size_t Position(const std::string& metric) {
+  const std::vector<std::string>& names = MetricNames();
+  return static_cast<std::size_t>(std::find(names.begin(), names.end(), metric) - names.begin());
+}
+
+std::string AxisLabel(const std::string& metric) {
+  const MetricInfo info = DescribeMetric(metric);
+  return info.title + (info.unit.empty() ? "" : ", " + info.unit);
+}
+
+std::string Scatter(const std::string& x, const std::string& y, const CampaignSummary& summary, const CaseColumns& cases,
+                    const std::string& caption) {
+  SvgChart chart({.label = AxisLabel(x)}, {.label = AxisLabel(y)}, 520, 300);
+  chart.Points(cases.metrics.at(Position(x)), cases.metrics.at(Position(y)), "dots", "cases");
+  if (summary.nominal) {
+    chart.Points({summary.nominal->metrics[Position(x)]}, {summary.nominal->metrics[Position(y)]}, "dot-nominal", "nominal");
+  }
+  return Figure(chart.Svg(caption), HtmlText(caption));
+}
+
 }  // namespace
+
+std::string InjectionFigures(const CampaignSummary& summary, const CaseColumns& cases) {
+  return Scatter("injection_velocity_error_m_s", "injection_altitude_error_km", summary, cases,
+                 "Injection of each completed case against the target.") +
+         Scatter("perigee_km", "apogee_km", summary, cases, "The orbits that follow from it.");
+}
 
 std::string DistributionFigures(const std::string& metric, const CampaignSummary& summary, const CaseColumns& cases) {
   const MetricInfo info = DescribeMetric(metric);
   const std::string title = HtmlText(info.title);
-  const std::vector<std::string>& names = MetricNames();
-  const auto position = static_cast<std::size_t>(std::find(names.begin(), names.end(), metric) - names.begin());
+  const std::size_t position = Position(metric);
   const std::vector<double> sorted = SortedFinite(cases.metrics.at(position));
   if (sorted.empty()) return fmt::format("<p>{}: no case defines it.</p>\n", title);
 
@@ -60,7 +85,7 @@ std::string DistributionFigures(const std::string& metric, const CampaignSummary
     if (requirement.metric == metric) requirements.push_back(&requirement);
   }
   const bool above = !requirements.empty() && !requirements.front()->below;
-  const std::string axis = info.title + (info.unit.empty() ? "" : ", " + info.unit);
+  const std::string axis = AxisLabel(metric);
 
   const Histogram histogram = MakeHistogram(sorted);
   SvgChart bars({.label = axis}, {.label = "cases"}, 520, 250);
@@ -80,15 +105,17 @@ std::string DistributionFigures(const std::string& metric, const CampaignSummary
     x.insert(x.end(), {good[i], good[i]});
     share.insert(share.end(), {(all - static_cast<double>(i)) / all, (all - static_cast<double>(i) - 1.0) / all});
   }
+  double lowest_share = 0.5 / all;
+  for (const RequirementSummary* requirement : requirements) {
+    lowest_share = std::min(lowest_share, 0.5 * (1.0 - requirement->probability));
+  }
   SvgChart tail({.label = axis}, {.label = above ? "share of cases at most this" : "share of cases beyond this",
-                                  .low = 0.5 / all, .high = 1.0, .logarithmic = true, .percent = true}, 520, 250);
+                                  .low = std::max(lowest_share, 1e-6), .high = 1.0, .logarithmic = true, .percent = true}, 520, 250);
   tail.Line(x, share, "line-0", "cases");
   for (const RequirementSummary* requirement : requirements) {
     bars.VerticalLimit(requirement->limit, "limit: " + LimitText(*requirement, info.unit));
     tail.VerticalLimit(requirement->limit, "limit");
-    if (1.0 - requirement->probability >= 0.5 / all) {
-      tail.HorizontalLimit(1.0 - requirement->probability, fmt::format("{} allowed", PercentText(1.0 - requirement->probability)));
-    }
+    tail.HorizontalLimit(1.0 - requirement->probability, fmt::format("{} allowed", PercentText(1.0 - requirement->probability)));
   }
   const std::size_t undefined = cases.rows() - sorted.size();
   const std::string missing = undefined > 0 ? fmt::format(" {} of {} cases do not define it.", undefined, cases.rows()) : "";

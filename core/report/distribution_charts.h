@@ -12,4 +12,7 @@ namespace dispersa {
 /// (lost flights are beyond any), with the limits of its requirements. A sentence if no case defines it.
 std::string DistributionFigures(const std::string& metric, const CampaignSummary& summary, const CaseColumns& cases);
 
+/// The injection of the completed cases: altitude against velocity error, and apogee against perigee.
+std::string InjectionFigures(const CampaignSummary& summary, const CaseColumns& cases);
+
 }  // namespace dispersa

@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kHistoryStep_s = 0.1;
-/// Short against the transients of an ignition (about a second).
+/// Short against the transients of an ignition (about a second), and a multiple of the other step.
 constexpr double kBandStep_s = 0.2;
 /// Worst cases of each key metric that get a history.
 constexpr std::size_t kWorstWritten = 2;
@@ -52,12 +52,12 @@ void RunInBatches(std::size_t count, int threads, const std::function<void(std::
   }
 }
 
-void CheckReproduced(const ResultFolder& folder, const CaseResult& flown) {
-  const Digest stored = folder.Load(flown.case_index).digest;
-  if (stored == flown.digest) return;
+void CheckReproduced(const ResultFolder& folder, std::uint64_t case_index, const Digest& flown) {
+  const Digest stored = folder.Load(case_index).digest;
+  if (stored == flown) return;
   throw ResultError(ResultError::Kind::kConflict,
                     fmt::format("case {} does not reproduce its stored result: digest {} is stored, {} was flown now",
-                                flown.case_index, stored.Hex(), flown.digest.Hex()));
+                                case_index, stored.Hex(), flown.Hex()));
 }
 
 /// Other worst cases may have had their histories there before.
@@ -111,34 +111,29 @@ FlightHistories WriteHistories(const ResultFolder& folder, const Campaign& campa
   histories.nominal = flights.FlyNominal(&histories.nominal_history);
   WriteFile(directory / "nominal.csv", HistoryCsv(histories.nominal_history));
 
-  histories.written_cases = WorstToWrite(summary);
-  std::vector<CaseResult> flown(histories.written_cases.size());
-  RunInBatches(
-      histories.written_cases.size(), options.threads,
-      [&](std::size_t i) {
-        History history{.step_s = kHistoryStep_s, .values = {}};
-        const std::uint64_t index = histories.written_cases[i];
-        flown[i] = flights.FlyCase(index, &history);
-        WriteFile(directory / fmt::format("case_{}.csv", index), HistoryCsv(history));
-      },
-      [&](std::size_t done) { progress("worst cases", done, histories.written_cases.size()); });
-  for (const CaseResult& result : flown) CheckReproduced(folder, result);
-
   // Only cases that have a result are flown: a quarantined one may take this process with it.
-  const std::size_t count = static_cast<std::size_t>(
-      std::lower_bound(cases.index.begin(), cases.index.end(), options.history_cases) - cases.index.begin());
+  histories.written_cases = WorstToWrite(summary);
+  const auto banded_end = std::lower_bound(cases.index.begin(), cases.index.end(), options.history_cases);
+  const auto banded = static_cast<std::size_t>(banded_end - cases.index.begin());
+  std::vector<std::uint64_t> indices(cases.index.begin(), banded_end);
+  for (const std::uint64_t index : histories.written_cases) {
+    if (index >= options.history_cases) indices.push_back(index);
+  }
   const std::vector<int> columns = BandColumns();
-  std::vector<SampledFlight> samples(count);
-  std::vector<CaseResult> banded(count);
+  std::vector<SampledFlight> samples(banded);
+  std::vector<Digest> digests(indices.size());
   RunInBatches(
-      count, options.threads,
+      indices.size(), options.threads,
       [&](std::size_t i) {
-        History history{.step_s = kBandStep_s, .values = {}};
-        banded[i] = flights.FlyCase(cases.index[i], &history);
-        samples[i] = SampleFlight(history, columns, kBandStep_s);
+        const bool written =
+            std::binary_search(histories.written_cases.begin(), histories.written_cases.end(), indices[i]);
+        History history{.step_s = written ? kHistoryStep_s : kBandStep_s, .values = {}};
+        digests[i] = flights.FlyCase(indices[i], &history).digest;
+        if (written) WriteFile(directory / fmt::format("case_{}.csv", indices[i]), HistoryCsv(history));
+        if (i < banded) samples[i] = SampleFlight(history, columns, kBandStep_s);
       },
-      [&](std::size_t done) { progress("percentile bands", done, count); });
-  for (const CaseResult& result : banded) CheckReproduced(folder, result);
+      [&](std::size_t done) { progress("time histories", done, indices.size()); });
+  for (std::size_t i = 0; i < indices.size(); ++i) CheckReproduced(folder, indices[i], digests[i]);
   histories.bands = ComputeBands(samples, columns, kBandStep_s);
   WriteFile(directory / "bands.csv", BandsCsv(histories.bands));
   return histories;

@@ -86,6 +86,8 @@ svg .axis { stroke: var(--soft); stroke-width: 1; } svg .mark { stroke: var(--so
 svg .shade { fill: var(--panel); } svg .limit { stroke: var(--limit); stroke-width: 1.3; stroke-dasharray: 7 4; }
 svg .line-0 { stroke: var(--blue); stroke-width: 1.6; } svg .line-1 { stroke: var(--orange); stroke-width: 1.4; }
 svg .line-2 { stroke: var(--green); stroke-width: 1.4; } svg .line-3 { stroke: var(--violet); stroke-width: 1.4; }
+svg .dots { stroke: var(--blue); stroke-width: 3.4; stroke-linecap: round; opacity: 0.6; }
+svg .dot-nominal { stroke: var(--orange); stroke-width: 8; stroke-linecap: round; }
 svg .program { stroke: var(--ink); stroke-width: 1.2; stroke-dasharray: 5 3; }
 svg path.band-outer, svg rect.band-outer { fill: var(--outer); stroke: none; }
 svg path.band-inner, svg rect.band-inner { fill: var(--inner); stroke: none; }

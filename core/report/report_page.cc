@@ -45,6 +45,11 @@ std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary,
   page += "<h2 id=\"distributions\">Distribution of key metrics</h2>\n<div class=\"figures\">\n";
   for (const WorstCases& worst : summary.worst_cases) page += DistributionFigures(worst.metric, summary, cases);
   page += "</div>\n";
+  if (summary.flown > 0) {
+    page += "<h3>Spread of the orbit</h3>\n<p>Guidance is open loop: the autopilot follows the pitch program, and nothing "
+            "corrects what dispersed thrust, flow and drag do to speed and altitude. No requirement rests on it.</p>\n"
+            "<div class=\"figures\">\n" + InjectionFigures(summary, cases) + "</div>\n";
+  }
 
   page += WorstCasesSection(summary, histories);
   page += "<h2 id=\"nominal\">Nominal flight</h2>\n<p>The flight without dispersions, through the same closed loop. It is not "

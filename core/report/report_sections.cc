@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "core/math/constants.h"
 #include "core/report/html_parts.h"
 #include "core/report/metric_catalogue.h"
 #include "core/report/sampling_text.h"
@@ -13,8 +13,6 @@
 
 namespace dispersa {
 namespace {
-
-constexpr double kDegPerRadian = 180.0 / std::numbers::pi;
 
 std::string WithUnit(double value, const std::string& unit) {
   return ReadableText(value) + (unit.empty() ? "" : " " + unit);
@@ -128,7 +126,7 @@ std::string RequirementsSection(const CampaignSummary& summary) {
   std::string html = "<h2 id=\"requirements\">Requirements</h2>\n";
   if (summary.requirements.empty()) return html + "<p>The campaign states none.</p>\n";
   HtmlTable table({{"Metric"}, {"Limit", true}, {"Required probability", true}, {"Consumer risk", true}, {"Cases", true},
-                   {"Failures", true}, {"of them lost", true}, {"Observed", true}, {"Confidence bounds", true},
+                   {"Failures", true}, {"Lost flights", true}, {"Observed", true}, {"Confidence bounds", true},
                    {"Verdict"}, {"Cases needed", true}});
   for (const RequirementSummary& requirement : summary.requirements) {
     const MetricInfo info = DescribeMetric(requirement.metric);
@@ -240,7 +238,7 @@ std::string StatisticsSection(const CampaignSummary& summary) {
 std::string DispersionsSection(const CampaignSummary& summary) {
   std::string html = "<h2 id=\"dispersions\">Dispersions, declared and drawn</h2>\n";
   if (summary.dispersions.empty()) return html + "<p>The campaign disperses nothing: every case is the nominal flight.</p>\n";
-  html += "<p>What was drawn is read back from the inputs as each flight applied them. “As declared” means that mean and "
+  html += "<p>What was drawn is read back from the inputs as each flight applied them. “Agrees” means that mean and "
           "standard deviation lie within five standard errors of the declared ones.</p>\n";
   HtmlTable table({{"Input"}, {"Declared"}, {"Expected mean", true}, {"drawn", true}, {"Expected std", true}, {"drawn", true},
                    {"Min", true}, {"Max", true}, {"Check"}});
@@ -248,7 +246,7 @@ std::string DispersionsSection(const CampaignSummary& summary) {
     const auto text = [](const std::optional<double>& value) { return value ? ReadableText(*value) : "–"; };
     table.Row({Code(one.input), HtmlText(one.declared), text(one.expected_mean), ReadableText(one.drawn.mean),
                text(one.expected_std), ReadableText(one.drawn.std), ReadableText(one.drawn.min), ReadableText(one.drawn.max),
-               !one.consistent ? "–" : *one.consistent ? "as declared" : "<span class=\"badge fail\">differs</span>"});
+               !one.consistent ? "–" : *one.consistent ? "agrees" : "<span class=\"badge fail\">differs</span>"});
   }
   return html + table.Html();
 }
@@ -263,7 +261,7 @@ mass flow and drag therefore spread the orbit by tens of kilometres whatever the
 for that spread and are no measure of the autopilot.</li>
 <li>Navigation is ideal but for the gyro bias and noise that a campaign declares: no filter, no alignment error.</li>
 <li>Separation is instantaneous: no contact forces and no re-contact analysis; what disturbs it is the declared tip-off rate.</li>
-<li>Motors burn with constant thrust between two ramps, at Table 1's values; four equal nozzles; no thrust oscillation. The
+<li>Motors burn with constant thrust between two ramps, through four equal nozzles, without thrust oscillation. The
 reaction control gives ideal couples.</li>
 <li>Aerodynamic coefficients come from one table or build-up for each stack, without plume interaction, aeroelasticity or
 hysteresis; their uncertainty is what the campaign disperses.</li>
@@ -282,11 +280,11 @@ std::string ProvenanceSection(const Campaign& campaign, const CampaignSummary& s
   table.Row({"Engine", Code(summary.engine)});
   table.Row({"Sampling", fmt::format("{}, {} cases, seed {}", SamplingMethodTitle(summary.sampling), summary.cases, summary.seed)});
   table.Row({"Vehicle", fmt::format("{}, {} stages", HtmlText(summary.vehicle), campaign.vehicle.stages.size())});
-  const Orbit& orbit = campaign.reference.orbit;
+  const Orbit& orbit = summary.reference_orbit;
   table.Row({"Reference", fmt::format("{}: {} km, {} m/s, {}° flight path angle, {}° inclination; found by engine {}",
                                       HtmlText(summary.reference), ReadableText(orbit.altitude_m * 1e-3),
-                                      ReadableText(orbit.velocity_m_s), ReadableText(orbit.flight_path_angle_rad * kDegPerRadian),
-                                      ReadableText(orbit.inclination_rad * kDegPerRadian), HtmlText(campaign.reference.engine))});
+                                      ReadableText(orbit.velocity_m_s), ReadableText(orbit.flight_path_angle_rad * kDegPerRad),
+                                      ReadableText(orbit.inclination_rad * kDegPerRad), HtmlText(campaign.reference.engine))});
   table.Row({"Autopilot", fmt::format("{}, tick {} s", HtmlText(summary.autopilot), ReadableText(campaign.autopilot.tick_s))});
   return html + table.Html() +
          "<p>To fly the campaign again, in this folder; <code>campaign.yaml</code> holds everything that it needs, and "

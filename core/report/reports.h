@@ -12,9 +12,9 @@
 namespace dispersa {
 
 struct ReportOptions {
-  std::uint64_t history_cases = 200;  ///< the first so many cases are flown again for the percentile bands
+  std::uint64_t history_cases = 100;  ///< the first so many cases are flown again for the percentile bands
   int threads = 1;                    ///< for flying them; the files do not depend on it
-  /// Called now and then from the calling thread ("percentile bands", 120, 200); may throw to stop.
+  /// Called now and then from the calling thread ("time histories", 40, 104); may throw to stop.
   std::function<void(const std::string& what, std::uint64_t done, std::uint64_t total)> progress;
 };
 

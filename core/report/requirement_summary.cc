@@ -39,8 +39,8 @@ std::string IndependentSentence(const RequirementSummary& summary, std::int64_t 
     return fmt::format("Not met: {} show a probability of at most {} with {} confidence; {} is required.", seen,
                        PercentText(*summary.success_upper), confidence, required);
   }
-  return fmt::format("Not decided: {} show no more than a probability of at least {} with {} confidence; {} is "
-                     "required, which takes {} cases in all if no further one fails.",
+  return fmt::format("Not decided: {} show a probability of at least {} with {} confidence, short of the {} required; "
+                     "that takes {} cases in all if no further one fails.",
                      seen, PercentText(*summary.success_lower), confidence, required, *summary.cases_needed);
 }
 

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/flight/flight_inputs.h"
+#include "core/math/constants.h"
 #include "core/report/campaign_summary.h"
 #include "core/report/metric_catalogue.h"
 #include "core/report/sampling_text.h"
@@ -79,6 +80,10 @@ std::string SummaryJson(const CampaignSummary& summary) {
                       {"vehicle", summary.vehicle},   {"reference", summary.reference},
                       {"autopilot", summary.autopilot}};
   json["engine"] = summary.engine;
+  json["reference_orbit"] = {{"altitude_km", Number(summary.reference_orbit.altitude_m * 1e-3)},
+                             {"velocity_m_s", Number(summary.reference_orbit.velocity_m_s)},
+                             {"flight_path_angle_deg", Number(summary.reference_orbit.flight_path_angle_rad * kDegPerRad)},
+                             {"inclination_deg", Number(summary.reference_orbit.inclination_rad * kDegPerRad)}};
   json["verdict"] = CampaignVerdictName(summary.verdict);
   json["design_study"] = !IsIndependent(summary.sampling);
   json["flown"] = summary.flown;

@@ -114,6 +114,10 @@ void SvgChart::Line(std::vector<double> x, std::vector<double> y, const std::str
   series_.push_back({Series::Kind::kLine, std::move(x), std::move(y), {}, style, legend});
 }
 
+void SvgChart::Points(std::vector<double> x, std::vector<double> y, const std::string& style, const std::string& legend) {
+  series_.push_back({Series::Kind::kPoints, std::move(x), std::move(y), {}, style, legend});
+}
+
 void SvgChart::Band(std::vector<double> x, std::vector<double> low, std::vector<double> high, const std::string& style,
                     const std::string& legend) {
   series_.push_back({Series::Kind::kBand, std::move(x), std::move(low), std::move(high), style, legend});
@@ -215,6 +219,16 @@ std::string SvgChart::Svg(const std::string& description) const {
           svg += fmt::format("<path class=\"{}\" d=\"{}\"/>", series.style, Path(run));
         }
         break;
+      case Series::Kind::kPoints: {
+        // One path of strokes without length, whose round ends are the dots: an element a case would be heavy.
+        std::string dots;
+        for (std::size_t i = 0; i < series.x.size(); ++i) {
+          if (!std::isfinite(series.x[i]) || !std::isfinite(series.low[i])) continue;
+          dots += "M" + Coordinate(xs.At(series.x[i])) + " " + Coordinate(ys.At(series.low[i])) + "h0";
+        }
+        svg += fmt::format("<path class=\"{}\" d=\"{}\"/>", series.style, dots);
+        break;
+      }
       case Series::Kind::kBand: {
         const auto lows = Runs(series.x, series.low, xs, ys, y_.logarithmic);
         const auto highs = Runs(series.x, series.high, xs, ys, y_.logarithmic);
@@ -254,7 +268,8 @@ std::string SvgChart::Svg(const std::string& description) const {
     const bool area = entry.series->kind == Series::Kind::kBand || entry.series->kind == Series::Kind::kBars;
     svg += area ? fmt::format("<rect class=\"{}\" x=\"{}\" y=\"{}\" width=\"18\" height=\"10\"/>", entry.series->style,
                               Coordinate(entry.x), Coordinate(y - 9.0))
-                : Segment(entry.x, y - 4.0, entry.x + 18.0, y - 4.0, entry.series->style.c_str());
+                : Segment(entry.x + (entry.series->kind == Series::Kind::kPoints ? 12.0 : 0.0), y - 4.0,
+                          entry.x + (entry.series->kind == Series::Kind::kPoints ? 12.0 : 18.0), y - 4.0, entry.series->style.c_str());
     svg += Text(entry.x + 22.0, y, "legend", "start", entry.series->legend);
   }
   return svg + "</svg>";

@@ -22,6 +22,8 @@ class SvgChart {
 
   /// Points joined by lines; NaN interrupts. `style` is a class of the style sheet ("line-0" ... "line-3").
   void Line(std::vector<double> x, std::vector<double> y, const std::string& style, const std::string& legend);
+  /// Dots.
+  void Points(std::vector<double> x, std::vector<double> y, const std::string& style, const std::string& legend);
   /// The area between two curves over the same x.
   void Band(std::vector<double> x, std::vector<double> low, std::vector<double> high, const std::string& style,
             const std::string& legend);
@@ -39,7 +41,7 @@ class SvgChart {
 
  private:
   struct Series {
-    enum class Kind { kLine, kBand, kBars, kVerticalLimit, kHorizontalLimit };
+    enum class Kind { kLine, kPoints, kBand, kBars, kVerticalLimit, kHorizontalLimit };
     Kind kind;
     std::vector<double> x;
     std::vector<double> low;  ///< y of lines and bars

@@ -65,8 +65,8 @@ TEST(Judge, NeedsTheCasesOfTheExactBinomial) {
 TEST(Judge, SaysWhyNothingIsDecided) {
   // 200 cases without a failure: 0.1^(1/200) = 0.98855.
   EXPECT_EQ(Judge(PeakBelow(0.5, 0.9973, 0.10), SamplingMethod::kMonteCarlo, Columns(200, 0), 0).sentence,
-            "Not decided: 0 failures in 200 cases show no more than a probability of at least 98.855 % with 90 % "
-            "confidence; 99.73 % is required, which takes 852 cases in all if no further one fails.");
+            "Not decided: 0 failures in 200 cases show a probability of at least 98.855 % with 90 % confidence, short of "
+            "the 99.73 % required; that takes 852 cases in all if no further one fails.");
 }
 
 TEST(Judge, CountsALostFlightWhateverItMeasured) {

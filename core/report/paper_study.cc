@@ -1,0 +1,119 @@
+#include "core/report/paper_study.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "core/campaign/campaign_flights.h"
+#include "core/campaign/case_design.h"
+#include "core/control/lyapunov.h"
+
+namespace dispersa {
+namespace {
+
+constexpr double kHistoryStep_s = 0.1;
+/// Time histories that a band is made of: enough for its 5 and 95 % curves.
+constexpr std::uint64_t kBandFlights = 100;
+
+std::vector<int> HistoryColumnsKept() {
+  std::vector<int> columns(kPaperColumns);
+  columns[kPitchLaunch] = FindHistoryColumn("pitch_launch_deg");
+  columns[kPitchError] = FindHistoryColumn("pitch_error_deg");
+  columns[kDeflection] = FindHistoryColumn("deflection_pitch_deg");
+  columns[kLyapunovV] = FindHistoryColumn("lyapunov_v");
+  columns[kLyapunovSign] = FindHistoryColumn("lyapunov_v_rate_sign");
+  columns[kStage] = FindHistoryColumn("stage");
+  return columns;
+}
+
+/// Whole repetitions of a design, about `cases` divided by `share` of them; once when everything is planned.
+std::uint64_t CasesOf(const Campaign& campaign, std::uint64_t cases) {
+  const std::uint64_t size = DesignSize(campaign);
+  if (size == 1) return cases;
+  // Without random dispersions every repetition is the same flight again.
+  if (campaign.sampling.cases <= size) return size;
+  constexpr std::uint64_t kCasesPerRepetition = 25;
+  return size * std::clamp<std::uint64_t>(cases / kCasesPerRepetition, 1, campaign.sampling.cases / size);
+}
+
+BadPn FlyBadPn(Campaign campaign) {
+  BadPn bad;
+  AxisConfig& pitch = campaign.autopilot.pitch;
+  // The sign that turns adaptation into positive feedback of the error.
+  bad.p_n = -SolveLyapunov(pitch.gains[0], pitch.adaptation.q).col(1);
+  pitch.adaptation.p_n = bad.p_n;
+  pitch.adaptation.allow_unproven = false;
+  const int stages = static_cast<int>(campaign.vehicle.stages.size());
+  for (const AutopilotProblem& problem : Problems(campaign.autopilot, stages)) {
+    bad.refusal += problem.path + ": " + problem.message + ", allowed: " + problem.allowed;
+  }
+  pitch.adaptation.allow_unproven = true;
+  bad.history.step_s = kHistoryStep_s;
+  bad.flight = CampaignFlights(campaign).FlyCase(0, &bad.history);
+  return bad;
+}
+
+}  // namespace
+
+const std::vector<PaperCampaign>& PaperCampaigns() {
+  static const std::vector<PaperCampaign> campaigns = {
+      {"nominal", "Figs. 6 to 9, the nominal flight"},
+      {"table3", "Table 3, the bands of Figs. 6 to 9, the statistics of V"},
+      {"pn_curves", "Fig. 5, error over time"},
+      {"pn_sweep", "Fig. 5, maps"},
+      {"aero20_quiet", "Fig. 10, the 16 corners"},
+      {"aero20", "Fig. 10, the 16 corners with Table 3"},
+      {"aero20_one_at_a_time_quiet", "Fig. 10, one at a time"},
+      {"aero20_one_at_a_time", "Fig. 10, one at a time with Table 3"},
+      {"aero20_monte_carlo_quiet", "Fig. 10, Monte Carlo"},
+      {"aero20_monte_carlo", "Fig. 10, Monte Carlo with Table 3"},
+      {"controllers", "the paper's law on Table 3, cases that no tuning used"},
+      {"controllers_frozen_fuzzy", "the frozen rules on the same cases"},
+      {"controllers_pd", "scheduled PD on the same cases"},
+      {"controllers_pd_aac", "PD with adaptive augmenting control on the same cases"},
+      {"completions", "what we added to the vehicle, swept"},
+  };
+  return campaigns;
+}
+
+const std::vector<std::string>& PaperBaselines() {
+  static const std::vector<std::string> names = {"controllers_frozen_fuzzy", "controllers_pd", "controllers_pd_aac"};
+  return names;
+}
+
+PaperStudy RunPaperStudy(const std::vector<Campaign>& campaigns, const PaperOptions& options) {
+  assert(campaigns.size() == PaperCampaigns().size());
+  const auto progress = [&](const std::string& what, std::uint64_t done, std::uint64_t total) {
+    if (options.progress) options.progress(what, done, total);
+  };
+  PaperStudy study;
+  study.cases = options.cases;
+
+  const Campaign& nominal = campaigns.front();
+  TrajectoryOptions trajectory;
+  trajectory.tick_s = nominal.autopilot.tick_s;
+  trajectory.threads = options.threads;
+  const auto generations = static_cast<std::uint64_t>(nominal.reference.problem.generations);
+  study.optimization = OptimizeTrajectory(
+      nominal.vehicle, nominal.reference.problem, trajectory, [&](const GenerationRecord& record) {
+        progress("optimize", static_cast<std::uint64_t>(record.generation), generations);
+      });
+
+  study.nominal_history.step_s = kHistoryStep_s;
+  study.nominal = CampaignFlights(nominal).FlyNominal(&study.nominal_history);
+
+  for (std::size_t i = 1; i < campaigns.size(); ++i) {
+    const std::string& name = PaperCampaigns()[i].name;
+    StudyOptions flown;
+    flown.cases = CasesOf(campaigns[i], options.cases);
+    flown.histories = kBandFlights;
+    flown.columns = HistoryColumnsKept();
+    flown.step_s = kHistoryStep_s;
+    flown.threads = options.threads;
+    flown.progress = [&](std::uint64_t done) { progress(name, done, flown.cases); };
+    study.campaigns.emplace(name, PaperFlights{campaigns[i], FlyStudy(campaigns[i], flown)});
+  }
+  study.bad_pn = FlyBadPn(study.at("pn_curves").campaign);
+  return study;
+}
+
+}  // namespace dispersa

@@ -1,0 +1,70 @@
+// Everything that the paper's page shows, computed: the optimised trajectory and the flights of the campaigns that
+// stand behind its figures.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/campaign/campaign.h"
+#include "core/campaign/case_result.h"
+#include "core/control/autopilot_config.h"
+#include "core/flight/history.h"
+#include "core/report/study_flights.h"
+#include "core/trajectory/optimize.h"
+
+namespace dispersa {
+
+/// A campaign of the page, and what it is for.
+struct PaperCampaign {
+  std::string name;    ///< of the file without its ending
+  std::string figure;  ///< what it shows, for people
+};
+
+/// In the order of the page. The first is the nominal flight.
+const std::vector<PaperCampaign>& PaperCampaigns();
+
+/// Baselines of the comparison: the campaigns that fly other autopilots on the cases of "controllers".
+const std::vector<std::string>& PaperBaselines();
+
+struct PaperOptions {
+  /// Size of a Monte Carlo campaign; the designs are repeated, and the bands drawn, in proportion.
+  std::uint64_t cases = 200;
+  int threads = 1;  ///< the page does not depend on it
+  /// Called now and then, one call at a time ("table3", 17, 200).
+  std::function<void(const std::string& what, std::uint64_t done, std::uint64_t total)> progress;
+};
+
+struct PaperFlights {
+  Campaign campaign;
+  StudyFlights flights;
+};
+
+/// A deliberately bad P_n of the pitch axis: what is said to it, and what it does when it is flown all the same.
+struct BadPn {
+  Vector2 p_n = Vector2::Zero();
+  std::string refusal;  ///< why an autopilot file with it is refused
+  CaseResult flight;    ///< with allow_unproven
+  History history;
+};
+
+struct PaperStudy {
+  std::uint64_t cases = 0;  ///< of the options
+  OptimizationResult optimization;
+  CaseResult nominal;
+  History nominal_history;
+  std::map<std::string, PaperFlights> campaigns;  ///< by name; all but the nominal
+  BadPn bad_pn;
+
+  const PaperFlights& at(const std::string& name) const { return campaigns.at(name); }
+};
+
+/// Columns of the time histories that flights keep, in this order.
+enum PaperColumn { kPitchLaunch, kPitchError, kDeflection, kLyapunovV, kLyapunovSign, kStage, kPaperColumns };
+
+/// Flies everything. `campaigns` are those of PaperCampaigns(), in that order.
+PaperStudy RunPaperStudy(const std::vector<Campaign>& campaigns, const PaperOptions& options);
+
+}  // namespace dispersa

@@ -1,0 +1,42 @@
+// A campaign flown in process for a page that compares many of them: no folder, no database.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/campaign/campaign.h"
+#include "core/report/case_columns.h"
+#include "core/report/flight_bands.h"
+
+namespace dispersa {
+
+/// How much of a campaign is flown and kept.
+struct StudyOptions {
+  std::uint64_t cases = 0;      ///< instead of the campaign's own number; 0: that
+  std::uint64_t histories = 0;  ///< the first so many cases keep a time history
+  std::vector<int> columns;     ///< of HistoryColumns(), that a time history keeps
+  double step_s = 0.1;          ///< of the time histories
+  int threads = 1;              ///< the results do not depend on it
+  /// Called with the number of cases flown so far, one call at a time, from any of the threads.
+  std::function<void(std::uint64_t)> progress;
+};
+
+struct StudyFlights {
+  CaseColumns cases;                     ///< with all inputs
+  std::vector<SampledFlight> histories;  ///< shape (flights, columns, steps)
+};
+
+StudyFlights FlyStudy(const Campaign& campaign, const StudyOptions& options);
+
+/// Position of a metric, which must be one of MetricNames().
+std::size_t MetricColumn(const std::string& name);
+
+/// A metric's values, NaN for every flight that was not completed whatever it measured until then.
+std::vector<double> CompletedValues(const CaseColumns& cases, const std::string& metric);
+
+/// Flights that were not completed.
+std::size_t LostCount(const CaseColumns& cases);
+
+}  // namespace dispersa

@@ -1,0 +1,102 @@
+#include "core/report/trajectory_figures.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/math/constants.h"
+#include "core/report/html_parts.h"
+#include "core/report/svg_chart.h"
+#include "core/report/text.h"
+
+namespace dispersa {
+namespace {
+
+constexpr char kTime[] = "time since lift-off, s";
+
+template <typename Value>
+std::vector<double> Column(const std::vector<AscentSample>& history, Value value) {
+  std::vector<double> column;
+  for (const AscentSample& sample : history) column.push_back(value(sample));
+  return column;
+}
+
+double TimeOf(const AscentSample& sample) { return sample.time_s; }
+
+/// Where stages begin, and the coast: the samples without axial load above the air.
+void MarkStages(const std::vector<AscentSample>& history, SvgChart* chart) {
+  for (std::size_t i = 0; i < history.size(); ++i) {
+    if (i == 0 || history[i].stage != history[i - 1].stage)
+      chart->Mark(history[i].time_s, fmt::format("S{}", history[i].stage));
+  }
+  constexpr double kNoThrust_g = 0.5;  // drag alone in the coast is thousandths of a g
+  std::size_t burnt = 0;
+  for (std::size_t i = 1; i < history.size(); ++i) {
+    if (history[i].axial_load_g > kNoThrust_g) {
+      if (history[i].time_s - history[burnt].time_s > 20.0)
+        chart->Shade(history[burnt].time_s, history[i].time_s, "coast");
+      burnt = i;
+    }
+  }
+}
+
+std::string Draw(SvgChart chart, const std::string& caption) {
+  return Figure(chart.Svg(caption), HtmlText(caption));
+}
+
+}  // namespace
+
+std::string FlightProgramFigures(const FlightProgram& program, const std::vector<AscentSample>& history) {
+  const std::vector<double> time_s = Column(history, TimeOf);
+  const std::vector<double> alpha_deg =
+      Column(history, [](const AscentSample& s) { return s.alpha_rad * kDegPerRad; });
+  SvgChart whole({.label = kTime}, {.label = "programmed angle of attack, °"});
+  MarkStages(history, &whole);
+  whole.Line(time_s, alpha_deg, "line-0", "");
+  SvgChart kick({.label = kTime, .low = 0.0, .high = std::ceil(program.t2_s / 5.0 + 0.5) * 5.0},
+                {.label = "programmed angle of attack, °"});
+  kick.Mark(program.t1_s, "t1");
+  kick.Mark(program.t3_s, "t3");
+  kick.Mark(program.t2_s, "t2");
+  kick.Line(time_s, alpha_deg, "line-0", "");
+  return Draw(std::move(whole), "Flight program over the whole flight; S1 to S4: the stages.") +
+         Draw(std::move(kick), "The same in the initial pitch-over, with the program's three times.");
+}
+
+std::string ReferenceFigures(const std::vector<AscentSample>& history) {
+  const std::vector<double> time_s = Column(history, TimeOf);
+  std::string figures;
+  const auto add = [&](const char* label, std::vector<double> values, const std::string& caption) {
+    SvgChart chart({.label = kTime}, {.label = label});
+    MarkStages(history, &chart);
+    chart.Line(time_s, std::move(values), "line-0", "");
+    figures += Draw(std::move(chart), caption);
+  };
+  add("pitch, °", Column(history, [](const AscentSample& s) { return s.pitch_rad * kDegPerRad; }),
+      "Pitch angle from the launch horizon, in the frame frozen at lift-off.");
+  add("height, km", Column(history, [](const AscentSample& s) { return s.altitude_m * 1e-3; }), "Geodetic height.");
+  add("velocity, m/s", Column(history, [](const AscentSample& s) { return s.velocity_m_s; }),
+      "Inertial speed; it begins with the Earth's rotation.");
+  add("injection angle, °", Column(history, [](const AscentSample& s) { return s.flight_path_angle_rad * kDegPerRad; }),
+      "Inertial flight path angle, which the paper calls the angle of injection.");
+  return figures;
+}
+
+std::string AscentCsv(const std::vector<AscentSample>& history) {
+  std::string csv =
+      "time_s,stage,altitude_m,velocity_m_s,relative_velocity_m_s,flight_path_angle_deg,relative_path_angle_deg,"
+      "alpha_deg,pitch_deg,yaw_deg,roll_deg,mach,qbar_pa,axial_load_g,mass_kg\n";
+  for (const AscentSample& s : history) {
+    csv += ShortestText(s.time_s) + "," + std::to_string(s.stage);
+    for (const double value :
+         {s.altitude_m, s.velocity_m_s, s.relative_velocity_m_s, s.flight_path_angle_rad * kDegPerRad,
+          s.relative_path_angle_rad * kDegPerRad, s.alpha_rad * kDegPerRad, s.pitch_rad * kDegPerRad,
+          s.yaw_rad * kDegPerRad, s.roll_rad * kDegPerRad, s.mach, s.qbar_pa, s.axial_load_g, s.mass_kg}) {
+      csv += "," + ShortestText(value);
+    }
+    csv += "\n";
+  }
+  return csv;
+}
+
+}  // namespace dispersa
