@@ -2,13 +2,15 @@
 #include <fmt/format.h>
 #include <sched.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -16,7 +18,7 @@
 
 #include "core/campaign/campaign_flights.h"
 #include "core/engine/version.h"
-#include "core/report/reports.h"
+#include "services/cli/campaign_output.h"
 #include "services/cli/command.h"
 #include "services/cli/execution_file.h"
 #include "services/cli/local_workers.h"
@@ -31,8 +33,10 @@ namespace dispersa {
 namespace {
 
 constexpr char kLoopback[] = "127.0.0.1";
-// Replacements of workers that end again and again without a single result between.
-constexpr int kFruitlessEndsAllowed = 30;
+// Replacements of workers that end again and again while no case gets done or given up.
+constexpr int kFruitlessEndsAllowed = 10;
+// So many cases given up and not one flown: it is not the cases.
+constexpr std::uint64_t kHopelessCases = 20;
 constexpr double kJoinPatience_s = 60.0;
 constexpr double kLeavePatience_s = 0.3;
 
@@ -100,6 +104,9 @@ class CampaignRun {
   std::optional<std::string> FlyWithWorkers(int count) {
     const std::filesystem::path program =
         std::filesystem::read_symlink("/proc/self/exe").parent_path() / "dispersa-worker";
+    if (access(program.c_str(), X_OK) != 0) {
+      return fmt::format("{}: no worker can be started: {}", program.string(), std::strerror(errno));
+    }
     const PrivateDomain domain;
     execution_.domain = domain.domain();
     Coordinator coordinator({domain.domain(), kLoopback}, book_);
@@ -135,7 +142,8 @@ class CampaignRun {
   double Now() const { return SecondsSince(start_); }
 
   void Supervise(Coordinator& coordinator, LocalWorkers& workers) {
-    const LocalWorkers::Changes changes = workers.Poll(Now(), book_.flown_now());
+    const std::uint64_t settled = book_.flown_now() + book_.ledger().Progress().quarantined;
+    const LocalWorkers::Changes changes = workers.Poll(Now(), settled);
     for (const WorkerProcess& ended : changes.ended) {
       spdlog::warn("worker {} (process {}) ended with {}; another takes its place", ended.uuid, ended.pid, ended.how);
       coordinator.WorkerEnded(ended.uuid, ended.end, ended.how);
@@ -144,14 +152,19 @@ class CampaignRun {
     if (!changes.ended.empty() || !changes.started.empty()) Note(workers);
   }
 
-  static std::optional<std::string> Problem(const Coordinator& coordinator, const LocalWorkers& workers,
-                                            double nobody_joined_s) {
+  std::optional<std::string> Problem(const Coordinator& coordinator, const LocalWorkers& workers,
+                                     double nobody_joined_s) const {
     if (coordinator.joined() == 0 && coordinator.refusal()) {
       return "no worker may fly this campaign: " + *coordinator.refusal();
     }
     if (workers.fruitless_ends() > kFruitlessEndsAllowed) {
       return fmt::format("{} workers ended in a row without a result, the last one with {}",
                          workers.fruitless_ends(), LastEnd(workers));
+    }
+    if (const auto given_up = book_.ledger().Progress().quarantined;
+        given_up >= kHopelessCases && book_.flown_now() == 0) {
+      return fmt::format("the first {} cases ended every worker that flew them, the last one with {}", given_up,
+                         LastEnd(workers));
     }
     if (nobody_joined_s > kJoinPatience_s) {
       return fmt::format("no worker has joined for {:.0f} s", kJoinPatience_s);
@@ -184,44 +197,6 @@ class CampaignRun {
   Progress progress_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
-
-void PrintSummary(const CampaignSummary& summary, const std::filesystem::path& directory, bool json) {
-  if (json) {
-    auto object = nlohmann::ordered_json::parse(SummaryJson(summary));
-    object["directory"] = directory.string();
-    fmt::print("{}\n", object.dump(2));
-    return;
-  }
-  fmt::print("{}: {} of {} cases flown", summary.name, summary.flown, summary.cases);
-  for (int i = 0; i < kOutcomeCount; ++i) {
-    const auto count = summary.outcomes[static_cast<std::size_t>(i)];
-    if (count > 0) fmt::print(", {} {}", count, OutcomeName(static_cast<Outcome>(i)));
-  }
-  if (!summary.quarantined.empty()) fmt::print(", {} quarantined", summary.quarantined.size());
-  fmt::print("\n");
-  for (const RequirementSummary& requirement : summary.requirements) {
-    fmt::print("{}: {}\n", requirement.verdict, requirement.sentence);
-  }
-  fmt::print("report: {}\nresult: {}\n", (directory / "report.html").string(), directory.string());
-}
-
-/// Writes the reports of what is stored. Throws Interrupted.
-CampaignSummary MakeReports(const CampaignBook& book, int threads, bool quiet) {
-  std::string phase;
-  std::unique_ptr<Progress> progress;
-  ReportOptions options;
-  options.threads = std::max(threads, 1);
-  options.progress = [&](const std::string& what, std::uint64_t done, std::uint64_t total) {
-    if (StopRequested()) throw Interrupted();
-    if (!progress || what != phase) {
-      progress.reset();
-      progress = std::make_unique<Progress>(what, quiet);
-      phase = what;
-    }
-    progress->Show(done, total);
-  };
-  return WriteReports(book.folder(), book.campaign(), options);
-}
 
 ExitCode FlyAndReport(const RunOptions& options, const GlobalOptions& global, OpenedCampaign opened,
                       ExecutionFile& execution) {
@@ -259,7 +234,9 @@ ExitCode FlyAndReport(const RunOptions& options, const GlobalOptions& global, Op
     spdlog::warn("case {} is quarantined: {}", blamed.case_index, fmt::join(blamed.reasons, "; "));
   }
   if (book.ledger().Progress().conflicts > 0) code = WorseOf(code, kExitInternalError);
-  const CampaignSummary summary = MakeReports(book, workers, global.quiet);
+  const CampaignSummary summary = MakeReports(book.folder(), book.campaign(), workers, global.quiet, [] {
+    if (StopRequested()) throw Interrupted();
+  });
   execution.ended_utc = UtcNow();
   execution.Write();
   PrintSummary(summary, directory, global.json);

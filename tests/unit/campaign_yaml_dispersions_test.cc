@@ -113,9 +113,8 @@ TEST(CampaignYamlDispersions, WindIsFixedOrUniformUpToItsMaximum) {
   EXPECT_EQ(uniform[0].distribution.low, 0.0);
   EXPECT_EQ(uniform[0].distribution.high, 60.96);
   EXPECT_EQ(uniform[1].distribution.nominal, 270.0 * kRadPerDeg);
-  // A draw is added to the input's nominal value.
-  EXPECT_THAT(uniform[2].distribution.values, ElementsAre(12e3 - FlightInputs().wind_altitude_m));
-  EXPECT_THAT(uniform[3].distribution.values, ElementsAre(6e3 - FlightInputs().wind_width_m));
+  EXPECT_THAT(uniform[2].distribution.values, ElementsAre(12e3));
+  EXPECT_THAT(uniform[3].distribution.values, ElementsAre(6e3));
 }
 
 TEST(CampaignYamlDispersions, GustIsFixedOrDrawn) {

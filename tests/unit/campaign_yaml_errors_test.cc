@@ -110,7 +110,8 @@ constexpr BadInput kBadInputs[] = {
      "named relative to this one\n"},
     {"OtherSchemaVersion", "campaign.yaml", "campaign/1", "campaign/2", "campaign.yaml",
      "campaign.yaml:1:9: schema: 'dispersa/campaign/2' is not a schema, allowed: one of "
-     "dispersa/campaign/1, dispersa/vehicle/1, dispersa/autopilot/1, dispersa/reference/1\n"},
+     "dispersa/campaign/1, dispersa/vehicle/1, dispersa/autopilot/1, dispersa/reference/1, "
+     "dispersa/scenario/1\n"},
     {"FilesSwapped", "campaign.yaml", "vehicle: vehicle.yaml", "vehicle: autopilot.yaml", "campaign.yaml",
      "autopilot.yaml:1:9: schema: 'dispersa/autopilot/1' is not the schema of this kind of "
      "file, allowed: schema: dispersa/vehicle/1\n"},
@@ -118,7 +119,8 @@ constexpr BadInput kBadInputs[] = {
      "autopilot.yaml:1:1: missing key 'schema', allowed: schema: dispersa/autopilot/1\n"},
     {"NoSchemaOnItsOwn", "autopilot.yaml", "schema: dispersa/autopilot/1\n", "", "autopilot.yaml",
      "autopilot.yaml:1:1: missing key 'schema', allowed: one of dispersa/campaign/1, "
-     "dispersa/vehicle/1, dispersa/autopilot/1, dispersa/reference/1\n"},
+     "dispersa/vehicle/1, dispersa/autopilot/1, dispersa/reference/1, "
+     "dispersa/scenario/1\n"},
     {"Duplicate", "campaign.yaml", "name: trial", "name: trial\nname: other", "campaign.yaml",
      "campaign.yaml:3:1: the key 'name' is given twice, allowed: each key once in a map\n"},
     {"NotYaml", "campaign.yaml", "sampling: {", "sampling: [", "campaign.yaml",
@@ -299,7 +301,8 @@ TEST(CampaignYamlErrors, EmptyFileAndFileWithoutMap) {
   files.Write("word.yaml", "hello\n");
   EXPECT_EQ(files.Texts(ValidateFile(files.Path("word.yaml"))),
             "word.yaml:1:1: missing key 'schema', allowed: one of dispersa/campaign/1, dispersa/vehicle/1, "
-            "dispersa/autopilot/1, dispersa/reference/1\n");
+            "dispersa/autopilot/1, dispersa/reference/1, "
+            "dispersa/scenario/1\n");
 }
 
 TEST(CampaignYamlErrors, UnknownMetricNamesTheNearest) {

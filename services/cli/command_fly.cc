@@ -1,0 +1,104 @@
+// dispersa fly: one flight of a campaign, or a scenario, in this process.
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "core/campaign/campaign_flights.h"
+#include "core/campaign_yaml/load.h"
+#include "core/report/histories.h"
+#include "core/report/output_file.h"
+#include "core/report/text.h"
+#include "services/cli/command.h"
+#include "services/cli/flight_json.h"
+#include "services/cli/fly_scenario.h"
+#include "services/cli/warn.h"
+
+namespace dispersa {
+namespace {
+
+struct FlyOptions {
+  std::string campaign;
+  CampaignOverrides overrides;
+  std::optional<std::uint64_t> case_index;  ///< none: the nominal flight
+  std::string history;
+  std::string integrator = "erk4";
+};
+
+void PrintJson(const CaseResult& result) {
+  const nlohmann::ordered_json json = {{"schema", "dispersa/fly/1"},
+                                       {"outcome", OutcomeName(result.outcome)},
+                                       {"end_time_s", JsonNumber(result.end_time_s)},
+                                       {"end_stage", result.end_stage},
+                                       {"reason", result.reason},
+                                       {"inputs", InputsJson(result.inputs)},
+                                       {"metrics", MetricsJson(result.metrics)},
+                                       {"digest", result.digest.Hex()}};
+  fmt::print("{}\n", json.dump(2));
+}
+
+void PrintText(const CaseResult& result) {
+  fmt::print("outcome  {}\ndigest   {}\n", OutcomeText(result), result.digest.Hex());
+  const std::vector<double> nominal = InputValues(FlightInputs{});
+  for (std::size_t i = 0; i < result.inputs.size(); ++i) {
+    if (result.inputs[i] == nominal[i]) continue;
+    fmt::print("{:<44} {}\n", "input_" + InputColumns()[i].name, ShortestText(result.inputs[i]));
+  }
+  for (std::size_t i = 0; i < result.metrics.size(); ++i) {
+    const std::string value = ShortestText(result.metrics[i]);
+    fmt::print("{:<44} {}\n", "metric_" + MetricNames()[i], value.empty() ? "-" : value);
+  }
+}
+
+ExitCode FlyOne(const FlyOptions& options, const GlobalOptions& global) {
+  Scheme scheme = Scheme::kRungeKutta4;
+  if (!ParseScheme(options.integrator, &scheme)) {
+    throw InputError("--integrator: '" + options.integrator + "' is not an integrator", "erk4 or cvode");
+  }
+  if (IsScenarioFile(options.campaign)) {
+    if (options.case_index || options.overrides.seed)
+      throw InputError("--case, --seed: a scenario has no cases", "a campaign file with these options");
+    return FlyScenarioFile(options.campaign, scheme, options.history, global);
+  }
+  const Campaign campaign = LoadAndWarn(options.campaign, options.overrides);
+  if (options.case_index && *options.case_index >= campaign.sampling.cases) {
+    throw InputError("--case: the campaign has no case " + std::to_string(*options.case_index),
+                     "0 to " + std::to_string(campaign.sampling.cases - 1));
+  }
+  const CampaignFlights flights(campaign);
+  const FlightInputs inputs = options.case_index ? flights.Draw(*options.case_index) : FlightInputs{};
+  History history;
+  const CaseResult result = flights.Fly(inputs, options.case_index.value_or(0),
+                                        options.history.empty() ? nullptr : &history, scheme);
+  if (!options.history.empty()) WriteFile(options.history, HistoryCsv(history));
+  if (global.json) {
+    PrintJson(result);
+  } else {
+    PrintText(result);
+  }
+  return kExitDone;
+}
+
+}  // namespace
+
+void AddFlyCommand(CLI::App& app, Invocation& invocation) {
+  auto options = std::make_shared<FlyOptions>();
+  CLI::App* command = app.add_subcommand("fly", "fly the nominal flight, one case, or a scenario, in this process");
+  command->add_option("campaign", options->campaign, "campaign or scenario file")->required();
+  command->add_option("--case", options->case_index, "case index, from 0; without it the nominal flight");
+  command->add_option("--history", options->history, "file for the time history, CSV");
+  command->add_option("--integrator", options->integrator,
+                      "erk4 (fixed steps, what campaigns fly) or cvode (high accuracy, to compare)");
+  command->add_option("--seed", options->overrides.seed, "seed, instead of the file's");
+  command->footer(
+      "Example: dispersa fly campaigns/nominal.yaml --history nominal.csv\n"
+      "         dispersa fly campaigns/table3.yaml --case 17 --json\n"
+      "         dispersa fly campaigns/scenarios/nesc_case09.yaml --history case09.csv");
+  command->callback([options, &invocation] {
+    invocation.command = [options](const GlobalOptions& global) { return FlyOne(*options, global); };
+  });
+}
+
+}  // namespace dispersa

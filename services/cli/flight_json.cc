@@ -1,0 +1,35 @@
+#include "services/cli/flight_json.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/flight/flight_inputs.h"
+#include "core/flight/metrics.h"
+
+namespace dispersa {
+
+nlohmann::ordered_json JsonNumber(double value) {
+  if (!std::isfinite(value)) return nullptr;
+  return value + 0.0;
+}
+
+nlohmann::ordered_json InputsJson(const std::vector<double>& inputs) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  for (std::size_t i = 0; i < inputs.size(); ++i) json[InputColumns()[i].name] = JsonNumber(inputs[i]);
+  return json;
+}
+
+nlohmann::ordered_json MetricsJson(const std::vector<double>& metrics) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  for (std::size_t i = 0; i < metrics.size(); ++i) json[MetricNames()[i]] = JsonNumber(metrics[i]);
+  return json;
+}
+
+std::string OutcomeText(const CaseResult& result) {
+  if (result.outcome == Outcome::kCompleted) return OutcomeName(result.outcome);
+  return fmt::format("{} at {:.2f} s in stage {}: {}", OutcomeName(result.outcome), result.end_time_s,
+                     result.end_stage, result.reason);
+}
+
+}  // namespace dispersa

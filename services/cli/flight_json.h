@@ -1,0 +1,20 @@
+// A flown case as JSON and as text.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "core/campaign/case_result.h"
+
+namespace dispersa {
+
+/// NaN and infinity become null, -0 becomes 0.
+nlohmann::ordered_json JsonNumber(double value);
+
+/// Inputs and metrics by name: {"thrust_factor_stage1": 1.01, ...}; what is undefined is null.
+nlohmann::ordered_json InputsJson(const std::vector<double>& inputs);
+nlohmann::ordered_json MetricsJson(const std::vector<double>& metrics);
+
+/// "completed", or the outcome with time, stage and reason.
+std::string OutcomeText(const CaseResult& result);
+
+}  // namespace dispersa

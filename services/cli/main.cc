@@ -1,0 +1,79 @@
+// dispersa: command line to command to exit code.
+#include <fmt/format.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <cstdio>
+#include <exception>
+
+#include "core/campaign/input_error.h"
+#include "core/engine/version.h"
+#include "core/report/result_error.h"
+#include "services/cli/command.h"
+
+namespace dispersa {
+namespace {
+
+void AddCommands(CLI::App& app, Invocation& invocation) {
+  AddValidateCommand(app, invocation);
+  AddOptimizeCommand(app, invocation);
+  AddPlanCommand(app, invocation);
+  AddFlyCommand(app, invocation);
+  AddRunCommand(app, invocation);
+  AddReplayCommand(app, invocation);
+  AddReportCommand(app, invocation);
+}
+
+ExitCode Say(const std::exception& error, ExitCode code) {
+  fmt::print(stderr, "{}\n", error.what());
+  return code;
+}
+
+ExitCode Execute(const Invocation& invocation) {
+  try {
+    const ExitCode code = invocation.command(invocation.global);
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+      spdlog::error("the results cannot be written to standard output");
+      return WorseOf(code, kExitInternalError);
+    }
+    return code;
+  } catch (const InputError& error) {
+    return Say(error, kExitBadInput);
+  } catch (const ResultError& error) {
+    return Say(error, error.kind() == ResultError::Kind::kDiskFull ? kExitIncomplete : kExitInternalError);
+  } catch (const std::exception& error) {
+    spdlog::error("internal error: {}", error.what());
+    return kExitInternalError;
+  }
+}
+
+int Main(int argc, char** argv) {
+  spdlog::set_default_logger(spdlog::stderr_color_mt("dispersa"));
+  spdlog::set_pattern("%^%l%$: %v");
+
+  Invocation invocation;
+  CLI::App app("Monte Carlo dispersion campaigns of launch vehicles.", "dispersa");
+  app.set_version_flag("--version", "dispersa " + EngineVersion());
+  app.add_flag("--json", invocation.global.json, "print one JSON object instead of text");
+  app.add_flag("--quiet", invocation.global.quiet, "no progress, only warnings and errors");
+  app.require_subcommand(1);
+  app.fallthrough();
+  app.footer(
+      "Examples: dispersa validate campaigns/table3.yaml\n"
+      "          dispersa fly campaigns/table3.yaml --case 17 --history case17.csv\n"
+      "          dispersa run campaigns/table3.yaml --cases 200\n"
+      "`dispersa COMMAND --help` tells more.");
+  AddCommands(app, invocation);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kExitDone : kExitBadInput;
+  }
+  if (invocation.global.quiet) spdlog::set_level(spdlog::level::warn);
+  return Execute(invocation);
+}
+
+}  // namespace
+}  // namespace dispersa
+
+int main(int argc, char** argv) { return dispersa::Main(argc, argv); }

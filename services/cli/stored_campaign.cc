@@ -1,0 +1,15 @@
+#include "services/cli/stored_campaign.h"
+
+#include <utility>
+
+#include "core/campaign_yaml/load.h"
+
+namespace dispersa {
+
+StoredCampaign OpenStored(const std::string& directory) {
+  ResultFolder folder = ResultFolder::Open(directory);
+  Campaign campaign = LoadCampaign((folder.directory() / "campaign.yaml").string());
+  return {std::move(folder), std::move(campaign)};
+}
+
+}  // namespace dispersa
