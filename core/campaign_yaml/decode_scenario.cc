@@ -43,9 +43,7 @@ bool IsIncreasing(const InputNode& node, const std::string& path, const std::str
   return true;
 }
 
-Table2D ConstantTable(double value) {
-  return {{0.0, 1.0}, {0.0, 1.0}, {value, value, value, value}};
-}
+Table2D ConstantTable(double value) { return {{0.0, 1.0}, {0.0, 1.0}, {value, value, value, value}}; }
 
 // A grid needs two points of each argument; one that does not vary gets a second one.
 void Widen(Table2D& table) {
@@ -101,8 +99,7 @@ Table2D DecodeGrid(const InputNode& node, const std::string& path, const std::st
   if (!has_mach && !IsIncreasing(node, path, incidence_key, incidence, problems)) return {};
   for (std::size_t row = 0; row < values.size(); ++row) {
     const std::size_t column = row % columns;
-    const bool mach_fits =
-        column > 0 ? mach[row] == mach[row - 1] : row == 0 || mach[row] > mach[row - 1];
+    const bool mach_fits = column > 0 ? mach[row] == mach[row - 1] : row == 0 || mach[row] > mach[row - 1];
     const bool incidence_fits =
         incidence[row] == table.y[column] && (column == 0 || incidence[row] > incidence[row - 1]);
     if (mach_fits && incidence_fits && (row + 1 < values.size() || column + 1 == columns)) continue;
@@ -121,8 +118,8 @@ Coefficient DecodeCoefficient(MapReader& map, const std::string& name, bool over
   if (node == nullptr || node->file == nullptr) return coefficient;
   const std::string path = map.PathOf(name);
   if (node->kind == InputNode::Kind::kMap) {
-    coefficient.table = DecodeGrid(*node, TablePath(*node, map.node(), path), name, over_incidence,
-                                   map.problems());
+    coefficient.table =
+        DecodeGrid(*node, TablePath(*node, map.node(), path), name, over_incidence, map.problems());
   } else {
     coefficient.table = ConstantTable(ReadNumber(*node, path, map.problems()));
   }
@@ -228,11 +225,10 @@ ScenarioMass DecodeMassTable(const InputNode& node, const std::string& path, Pro
   const std::size_t rows = mass.propellant_kg.size();
   for (int product = 3; product < 6; ++product)
     if (i[product].empty()) i[product].assign(rows, 0.0);
-  if (problems.size() > before ||
-      !HaveEqualSizes(node, path,
-                      {&mass.propellant_kg, &mass.mass_kg, &mass.cg_station_m, &i[0], &i[1], &i[2], &i[3],
-                       &i[4], &i[5]},
-                      problems))
+  if (problems.size() > before || !HaveEqualSizes(node, path,
+                                                  {&mass.propellant_kg, &mass.mass_kg, &mass.cg_station_m,
+                                                   &i[0], &i[1], &i[2], &i[3], &i[4], &i[5]},
+                                                  problems))
     return {};
   for (std::size_t row = 0; row < rows; ++row)
     mass.inertia_kg_m2.push_back(Tensor(i[0][row], i[1][row], i[2][row], i[3][row], i[4][row], i[5][row]));
@@ -344,8 +340,7 @@ Wind DecodeWind(const InputNode& node, const std::string& path, ProblemList& pro
   if (const InputNode* steady = map.Optional("steady"))
     wind.steady = DecodeSteadyWind(*steady, map.PathOf("steady"), problems);
   if (const InputNode* table = map.Optional("table"))
-    wind.tables.push_back(
-        DecodeWindTable(*table, TablePath(*table, node, map.PathOf("table")), problems));
+    wind.tables.push_back(DecodeWindTable(*table, TablePath(*table, node, map.PathOf("table")), problems));
   if (const InputNode* gust = map.Optional("gust"))
     wind.gusts.push_back(DecodeGust(*gust, map.PathOf("gust"), problems));
   return wind;
@@ -363,8 +358,7 @@ void DecodeInitial(const InputNode& node, const std::string& path, Scenario& sce
   scenario.v_EC_N.x() = map.Quantity("velocity_north", kSpeed, kAnyNumber, 0.0);
   scenario.v_EC_N.y() = map.Quantity("velocity_east", kSpeed, kAnyNumber, 0.0);
   scenario.v_EC_N.z() = map.Quantity("velocity_down", kSpeed, kAnyNumber, 0.0);
-  scenario.rates_are_inertial =
-      map.Choice<bool>("rates_relative_to", {{"inertial", true}, {"earth", false}});
+  scenario.rates_are_inertial = map.Choice<bool>("rates_relative_to", {{"inertial", true}, {"earth", false}});
   scenario.rates_rad_s.x() = map.Quantity("p", kAngularRate, kAnyNumber, 0.0);
   scenario.rates_rad_s.y() = map.Quantity("q", kAngularRate, kAnyNumber, 0.0);
   scenario.rates_rad_s.z() = map.Quantity("r", kAngularRate, kAnyNumber, 0.0);
@@ -382,8 +376,7 @@ Scenario DecodeScenario(const InputNode& node, const std::string& path, ProblemL
     map.Ignore("schema");
     map.Text("description", "");
     scenario.name = map.Text("name");
-    scenario.environment.earth =
-        DecodeEarth(map.Required("earth", "a map"), map.PathOf("earth"), problems);
+    scenario.environment.earth = DecodeEarth(map.Required("earth", "a map"), map.PathOf("earth"), problems);
     if (const InputNode* wind = map.Optional("wind"))
       scenario.environment.wind = DecodeWind(*wind, map.PathOf("wind"), problems);
     DecodeInitial(map.Required("initial", "a map"), map.PathOf("initial"), scenario, problems);

@@ -10,8 +10,8 @@ namespace dispersa {
 namespace {
 
 // CVODE's absolute tolerances: m, m/s, quaternion, rad/s.
-constexpr std::array<double, kRigidBodySize> kTolerances = {
-    1e-6, 1e-6, 1e-6, 1e-9, 1e-9, 1e-9, 1e-13, 1e-13, 1e-13, 1e-13, 1e-13, 1e-13, 1e-13};
+constexpr std::array<double, kRigidBodySize> kTolerances = {1e-6,  1e-6,  1e-6,  1e-9,  1e-9,  1e-9, 1e-13,
+                                                            1e-13, 1e-13, 1e-13, 1e-13, 1e-13, 1e-13};
 
 // A stretch of flight in which the right-hand side is smooth in time. Propellant and mass properties are
 // linear in time: between two rows of the mass table at a constant flow.
@@ -111,8 +111,7 @@ ScenarioSample Evaluate(const Motion& motion, double time_s, const double* y) {
                                      now.air.qbar_pa, cg_station_m);
   now.loads.force_n = now.aerodynamic.force_n;
   now.loads.moment_n_m = now.aerodynamic.moment_n_m;
-  if (motion.phase.burning)
-    AddThrust(*stage.motor, now.air.pressure_pa, now.state.w_IB_B, cg_station_m, now);
+  if (motion.phase.burning) AddThrust(*stage.motor, now.air.pressure_pa, now.state.w_IB_B, cg_station_m, now);
   return now;
 }
 

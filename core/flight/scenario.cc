@@ -29,12 +29,11 @@ void CheckMass(const ScenarioMass& mass, std::vector<ScenarioProblem>& problems)
     if (i == 0 && propellant != 0.0)
       problems.push_back({At(path + "propellant_kg", i), "does not begin without propellant", "0"});
     if (i > 0 && !(propellant > mass.propellant_kg[i - 1]))
-      problems.push_back({At(path + "propellant_kg", i), "is not above the one before",
-                          "propellant strictly increasing"});
+      problems.push_back(
+          {At(path + "propellant_kg", i), "is not above the one before", "propellant strictly increasing"});
     const double expected = mass.mass_kg[0] + propellant - mass.propellant_kg[0];
     if (std::fabs(mass.mass_kg[i] - expected) > kMassRounding * expected)
-      problems.push_back({At(path + "mass_kg", i),
-                          "is not the mass without propellant plus the propellant",
+      problems.push_back({At(path + "mass_kg", i), "is not the mass without propellant plus the propellant",
                           std::to_string(expected)});
     if (!IsPositiveDefinite(mass.inertia_kg_m2[i]))
       problems.push_back({At(path + "ixx_kg_m2", i), "the inertia tensor is not positive definite",
@@ -46,17 +45,17 @@ void CheckMass(const ScenarioMass& mass, std::vector<ScenarioProblem>& problems)
 void CheckMotor(const ScenarioStage& stage, std::vector<ScenarioProblem>& problems) {
   const ScenarioMass& mass = stage.mass;
   if (mass.propellant_kg.size() < 2) {
-    problems.push_back({"motor", "has no propellant to burn",
-                        "mass_properties over propellant_kg with two rows or more"});
+    problems.push_back(
+        {"motor", "has no propellant to burn", "mass_properties over propellant_kg with two rows or more"});
     return;
   }
   double aftmost = -std::numeric_limits<double>::infinity();
   for (const double cg : mass.cg_station_m) aftmost = cg > aftmost ? cg : aftmost;
   if (!(stage.motor->nozzle_station_m > aftmost))
-    problems.push_back({"motor.nozzle_station_m",
-                        "is not aft of the centre of gravity, which reaches station " +
-                            std::to_string(aftmost) + " m",
-                        "a station aft of the centre of gravity"});
+    problems.push_back(
+        {"motor.nozzle_station_m",
+         "is not aft of the centre of gravity, which reaches station " + std::to_string(aftmost) + " m",
+         "a station aft of the centre of gravity"});
 }
 
 }  // namespace
@@ -93,8 +92,8 @@ std::vector<ScenarioProblem> Problems(const Scenario& scenario) {
       break;
     }
     if (!stage.motor && !stage.separation_time_s) {
-      problems.push_back({path, "does not say when it separates: it has no motor that burns out",
-                          "separation_time_s"});
+      problems.push_back(
+          {path, "does not say when it separates: it has no motor that burns out", "separation_time_s"});
       break;
     }
     const double end_s = SeparationTime(stage);
