@@ -1,0 +1,325 @@
+"""dispersa run and the daemons as processes: the same bytes whatever dies, and nothing left behind.
+
+DISPERSA_BINARIES and DISPERSA_CAMPAIGNS name the folders of the programs and of the campaigns. Runs itself again
+in network and mount namespaces of its own where the system permits it.
+"""
+import fcntl
+import json
+import os
+import pathlib
+import re
+import shlex
+import shutil
+import signal
+import socket
+import sqlite3
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+BINARIES = pathlib.Path(os.environ["DISPERSA_BINARIES"])
+CAMPAIGN = os.environ.get("DISPERSA_TEST_CAMPAIGN", str(pathlib.Path(os.environ["DISPERSA_CAMPAIGNS"], "smoke.yaml")))
+ISOLATED = "DISPERSA_TEST_ISOLATED"
+PATIENCE_S = 60  # for what takes seconds on an idle machine
+FLYING_S = 2.0   # of one core for a campaign of these tests: long enough to be killed half-way
+
+
+def isolate():
+    """Starts this program again with its own loopback interface and its own mounts, if that is permitted."""
+    for unshare in (["unshare", "-n", "-m"], ["unshare", "-r", "-n", "-m"]):
+        if shutil.which("unshare") and subprocess.run([*unshare, "true"], stderr=subprocess.DEVNULL).returncode == 0:
+            os.environ[ISOLATED] = "1"
+            os.execvp(unshare[0], [*unshare, sys.executable, "-B", *sys.argv])
+
+
+def raise_loopback():
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as s:
+        name = struct.pack("16sh", b"lo", 0) + bytes(22)
+        flags = struct.unpack("16sh", fcntl.ioctl(s, 0x8913, name)[:18])[1]  # SIOCGIFFLAGS
+        fcntl.ioctl(s, 0x8914, struct.pack("16sh", b"lo", flags | 1) + bytes(22))  # SIOCSIFFLAGS, IFF_UP
+
+
+def is_running(pid):
+    """False for a zombie too: nobody may wait for the orphans of a killed parent."""
+    try:
+        return pathlib.Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+
+
+def parent_and_name(pid):
+    text = pathlib.Path(f"/proc/{pid}/stat").read_text()
+    return int(text.rpartition(")")[2].split()[1]), text.partition("(")[2].rpartition(")")[0]
+
+
+def wait_for(condition, what):
+    deadline = time.monotonic() + PATIENCE_S
+    while not condition():
+        if time.monotonic() > deadline:
+            raise AssertionError(f"{what}: not within {PATIENCE_S} s")
+        time.sleep(0.02)
+
+
+def shared_memory_segments():
+    return {p.name for p in pathlib.Path("/dev/shm").iterdir() if p.name.startswith("fastrtps")}
+
+
+class Run:
+    """One `dispersa run` into a folder."""
+
+    def __init__(self, out, *arguments, program="dispersa", campaign=CAMPAIGN):
+        self.out = out
+        command = [BINARIES / program, "run", campaign, "--out", out, *map(str, arguments)]
+        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+    def finish(self):
+        self.stdout, self.stderr = self.process.communicate(timeout=3 * PATIENCE_S)
+        self.code = self.process.returncode
+        return self
+
+    def execution(self):
+        return json.loads((self.out / "execution.json").read_text())
+
+    def stored(self):
+        """Number of cases in the database; 0 while there is none."""
+        try:
+            with sqlite3.connect(f"file:{self.out}/results.sqlite?mode=ro", uri=True) as database:
+                return database.execute("SELECT count(*) FROM cases").fetchone()[0]
+        except sqlite3.OperationalError:
+            return 0
+
+    def wait_half_way(self, cases):
+        wait_for(lambda: self.stored() > 0 or self.process.poll() is not None, "first results")
+        if self.process.poll() is not None:
+            raise AssertionError(f"ended too early: {self.finish().stderr}")
+        if not 0 < self.stored() < cases:
+            raise AssertionError("not half-way: the campaign is too short for this test")
+
+    def workers(self):
+        return [w["pid"] for w in self.execution()["workers"] if w["ended_utc"] is None]
+
+    def csv(self):
+        return (self.out / "cases.csv").read_bytes()
+
+
+class RunTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.segments = shared_memory_segments()
+        cls.root = pathlib.Path(tempfile.mkdtemp(prefix="dispersa-run-"))
+        probe = Run(cls.root / "probe", "--workers", 0, "--cases", 10).finish()
+        per_case_s = probe.execution()["flying_s"] / 10
+        cls.cases = min(max(int(FLYING_S / per_case_s), 20), 2000)
+        cls.reference = Run(cls.root / "reference", "--workers", 0, "--cases", cls.cases).finish()
+        if cls.reference.code not in (0, 3, 4):
+            raise AssertionError(f"reference: exit code {cls.reference.code}\n{cls.reference.stderr}")
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.root)
+
+    def setUp(self):
+        self.runs = []
+
+    def tearDown(self):
+        for run in self.runs:
+            if run.process.poll() is None:
+                run.process.kill()
+                run.finish()
+            pids = run.execution()["pids"] if (run.out / "execution.json").exists() else []
+            wait_for(lambda: not any(map(is_running, pids)), f"end of the processes {pids}")
+        self.assertEqual(shared_memory_segments(), self.segments)
+
+    def run_dispersa(self, name, *arguments, cases=None, **options):
+        run = Run(self.root / name, "--cases", cases or self.cases, *arguments, **options)
+        self.runs.append(run)
+        return run
+
+    def assert_same(self, run):
+        self.assertEqual(run.code, self.reference.code, run.stderr)
+        self.assertEqual(run.csv(), self.reference.csv())
+        self.assertEqual((run.out / "summary.json").read_bytes(), (self.reference.out / "summary.json").read_bytes())
+        self.assertEqual(run.stdout.splitlines()[-1], f"result: {run.out}")
+
+    def test_any_number_of_workers_gives_the_same_bytes(self):
+        rows = self.reference.csv().splitlines()
+        self.assertEqual(len(rows), self.cases + 1)
+        self.assertEqual([int(row.split(b",")[0]) for row in rows[1:]], list(range(self.cases)))
+        for workers in (1, 2, 3):
+            run = self.run_dispersa(f"workers{workers}", "--workers", workers)
+            wait_for(lambda: run.stored() > 0, "first results")
+            for pid in run.workers():
+                self.assertEqual(parent_and_name(pid), (run.process.pid, "dispersa-worker"))
+            self.assert_same(run.finish())
+            self.assertEqual(len(run.execution()["workers"]), workers)
+
+    def end_a_worker(self, name, how):
+        run = self.run_dispersa(name, "--workers", 2)
+        run.wait_half_way(self.cases)
+        victim = run.workers()[0]
+        os.kill(victim, how)
+        self.assert_same(run.finish())
+        ends = {w["pid"]: w["end"] for w in run.execution()["workers"]}
+        self.assertEqual(len(ends), 3, "it was not replaced")
+        return ends[victim]
+
+    def test_a_worker_killed_half_way(self):
+        self.assertEqual(self.end_a_worker("kill", signal.SIGKILL), "signal 9 (Killed)")
+
+    def test_a_worker_that_crashes_half_way(self):
+        # The case that it flew is blamed, flown again alone, and not quarantined.
+        self.assertEqual(self.end_a_worker("crash", signal.SIGSEGV), "signal 11 (Segmentation fault)")
+
+    def test_a_worker_that_stops_beating_is_killed_and_replaced(self):
+        self.assertEqual(self.end_a_worker("stop", signal.SIGSTOP), "signal 9 (Killed)")
+
+    def test_the_whole_run_killed_and_resumed(self):
+        run = self.run_dispersa("killed", "--workers", 2)
+        run.wait_half_way(self.cases)
+        pids = run.execution()["pids"]
+        self.assertEqual(len(pids), 3)
+        run.process.kill()
+        run.finish()
+        wait_for(lambda: not any(map(is_running, pids)), "end of the workers")
+        stored = run.stored()
+        self.assertGreater(stored, 0)
+        self.assertLess(stored, self.cases)
+        resumed = self.run_dispersa("killed", "--workers", 2, "--resume").finish()
+        self.assert_same(resumed)
+        self.assertEqual(resumed.execution()["cases_before"], stored)
+        self.assertEqual(resumed.execution()["cases_flown"], self.cases - stored)
+
+    def test_an_interrupted_run_tells_how_to_go_on(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            for workers in (0, 2):
+                run = self.run_dispersa(f"interrupted{number}-{workers}", "--workers", workers)
+                run.wait_half_way(self.cases)
+                run.process.send_signal(number)
+                asked = time.monotonic()
+                run.finish()
+                self.assertLess(time.monotonic() - asked, 10.0)
+                self.assertEqual(run.code, 130, run.stderr)
+                self.assertEqual(run.stdout, "")
+                command = (f"dispersa run {shlex.quote(CAMPAIGN)} --cases {self.cases} --workers {workers} "
+                           f"--out {run.out} --resume")
+                self.assertEqual(run.stderr.splitlines()[-1], f"interrupted; to go on: {command}")
+                self.assertTrue(0 < run.stored() < self.cases)
+        arguments = shlex.split(command)
+        resumed = subprocess.run([BINARIES / arguments[0], *arguments[1:]], capture_output=True, timeout=3 * PATIENCE_S)
+        self.assertEqual(resumed.returncode, self.reference.code)
+        self.assertEqual(run.csv(), self.reference.csv())
+
+    def test_a_campaign_can_be_extended_and_never_shrinks(self):
+        self.assertIn(self.run_dispersa("extended", "--workers", 1, cases=self.cases // 2).finish().code, (0, 3, 4))
+        extended = self.run_dispersa("extended", "--workers", 1, "--resume").finish()
+        self.assert_same(extended)
+        fewer = self.run_dispersa("extended", "--workers", 1, "--resume", cases=self.cases // 2).finish()
+        self.assert_same(fewer)
+        self.assertIn(f"{fewer.out} holds more cases than the {self.cases // 2} asked for: "
+                      f"the campaign is extended to {self.cases}", fewer.stderr)
+
+    def test_resume_starts_what_was_never_begun(self):
+        self.assert_same(self.run_dispersa("new", "--workers", 2, "--resume").finish())
+
+    def test_a_folder_of_another_flight_id_is_not_touched(self):
+        before = sorted((p.name, p.read_bytes()) for p in self.reference.out.iterdir() if p.is_file())
+        run = self.run_dispersa("reference", "--resume", "--seed", 999).finish()
+        self.assertEqual(run.code, 2)
+        self.assertRegex(run.stderr, f"{re.escape(str(run.out))}: holds results of flight id [0-9a-f]{{64}}, "
+                                     "the campaign's is [0-9a-f]{64}\n$")
+        self.assertEqual(run.stdout, "")
+        run = self.run_dispersa("reference").finish()
+        self.assertEqual(run.code, 2)
+        self.assertRegex(run.stderr, f"{re.escape(str(run.out))}: the folder is not empty, allowed: a new or an empty "
+                                     "folder, or --resume to go on with a campaign of the same flight id\n$")
+        after = sorted((p.name, p.read_bytes()) for p in self.reference.out.iterdir() if p.is_file())
+        self.assertEqual(before, after)
+
+    def test_a_folder_that_cannot_be_written_is_bad_usage(self):
+        (self.root / "file").write_text("")
+        run = self.run_dispersa("file/out").finish()
+        self.assertEqual(run.code, 2, run.stderr)
+        self.assertIn(str(run.out), run.stderr)
+
+    def test_a_missing_worker_program_is_reported(self):
+        lonely = self.root / "lonely"
+        lonely.mkdir()
+        shutil.copy(BINARIES / "dispersa", lonely)
+        run = self.run_dispersa("no-workers", "--workers", 2, program=lonely / "dispersa").finish()
+        self.assertEqual(run.code, 5)
+        self.assertIn(f"{lonely}/dispersa-worker: no worker can be started: No such file or directory", run.stderr)
+        self.assertEqual(run.execution()["problem"],
+                         f"{lonely}/dispersa-worker: no worker can be started: No such file or directory")
+
+    def test_workers_that_end_at_once_are_not_replaced_for_ever(self):
+        hopeless = self.root / "hopeless"
+        hopeless.mkdir()
+        shutil.copy(BINARIES / "dispersa", hopeless)
+        (hopeless / "dispersa-worker").write_text("#!/bin/sh\nexit 7\n")
+        (hopeless / "dispersa-worker").chmod(0o755)
+        run = self.run_dispersa("hopeless-run", "--workers", 2, program=hopeless / "dispersa").finish()
+        self.assertEqual(run.code, 5, run.stderr)
+        self.assertRegex(run.execution()["problem"],
+                         "^1[12] workers ended in a row without a result, the last one with exit code 7$")
+
+    def test_json_is_the_summary_with_the_folder(self):
+        run = self.run_dispersa("json", "--workers", 2, "--json", "--quiet").finish()
+        self.assertEqual(run.stderr, "")
+        printed = json.loads(run.stdout)
+        self.assertEqual(printed.pop("directory"), str(run.out))
+        self.assertEqual(printed, json.loads((run.out / "summary.json").read_text()))
+
+    def test_progress_goes_to_stderr(self):
+        self.assertRegex(self.reference.stderr, rf"(?m)^\S+: {self.cases}/{self.cases} \(100 %\), .*/s, .*, in process$")
+        self.assertEqual(self.reference.stdout.splitlines()[-1], f"result: {self.reference.out}")
+
+    def test_the_daemons_give_the_same_bytes(self):
+        out = self.root / "daemons"
+        network = ["--domain", "39", "--address", "127.0.0.1"]
+        workers = [subprocess.Popen([BINARIES / "dispersa-worker", *network, "--peer", "127.0.0.1", "--slots", slots],
+                                    stderr=subprocess.DEVNULL) for slots in ("1", "2")]
+        try:
+            served = subprocess.run([BINARIES / "dispersa-coordinator", CAMPAIGN, "--cases", str(self.cases), "--out", out,
+                                     *network], capture_output=True, text=True, timeout=3 * PATIENCE_S)
+            self.assertEqual(served.returncode, self.reference.code, served.stderr)
+            self.assertEqual(served.stdout, f"result: {out}\n")
+            self.assertEqual((out / "cases.csv").read_bytes(), self.reference.csv())
+            for worker in workers:
+                self.assertEqual(worker.wait(timeout=PATIENCE_S), 0)
+        finally:
+            for worker in workers:
+                if worker.poll() is None:
+                    worker.kill()
+                    worker.wait()
+
+    def test_a_full_disk_is_incomplete(self):
+        disk = self.root / "disk"
+        disk.mkdir()
+        campaign_size = (self.reference.out / "campaign.yaml").stat().st_size
+        subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={campaign_size + 200_000}", "tmpfs", disk], check=True)
+        try:
+            run = self.run_dispersa("disk/out", "--workers", 2).finish()
+            self.assertEqual(run.code, 5, run.stderr)
+            self.assertRegex(run.stderr, "no space left on the disk\n"
+                                         "to go on when there is space: dispersa run .* --resume\n$")
+            subprocess.run(["mount", "-o", "remount,size=1g", disk], check=True)
+            self.assert_same(self.run_dispersa("disk/out", "--workers", 2, "--resume").finish())
+        finally:
+            self.runs.clear()
+            subprocess.run(["umount", "-l", disk], check=True)
+
+
+if ISOLATED not in os.environ:
+    del RunTest.test_a_full_disk_is_incomplete  # it mounts a small disk
+
+
+if __name__ == "__main__":
+    if ISOLATED not in os.environ:
+        isolate()
+        print("no namespace of its own: loopback is shared, and no disk is filled", file=sys.stderr)
+    else:
+        raise_loopback()
+    unittest.main()
