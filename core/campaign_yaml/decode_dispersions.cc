@@ -236,10 +236,10 @@ class DispersionDecoder {
     {
       MapReader map(node, path, problems_);
       statistics.altitude_m = map.Numbers("altitude_m", kAnyNumber, 2, kWindLevels);
-      statistics.mean_north_m_s = map.Numbers("mean_north_m_s", kAnyNumber, 2, kWindLevels);
-      statistics.mean_east_m_s = map.Numbers("mean_east_m_s", kAnyNumber, 2, kWindLevels);
-      statistics.sigma_north_m_s = map.Numbers("sigma_north_m_s", kNonNegative, 2, kWindLevels);
-      statistics.sigma_east_m_s = map.Numbers("sigma_east_m_s", kNonNegative, 2, kWindLevels);
+      statistics.mean_north_m_s = map.Numbers("mean_north_m_s", kAnyNumber, 2);
+      statistics.mean_east_m_s = map.Numbers("mean_east_m_s", kAnyNumber, 2);
+      statistics.sigma_north_m_s = map.Numbers("sigma_north_m_s", kNonNegative, 2);
+      statistics.sigma_east_m_s = map.Numbers("sigma_east_m_s", kNonNegative, 2);
     }
     if (!IsUsable(statistics,
                   {&statistics.altitude_m, &statistics.mean_north_m_s, &statistics.mean_east_m_s,

@@ -18,8 +18,8 @@ constexpr PerStage AllStages(double value) {
   return values;
 }
 
-/// Number of altitude levels of a drawn wind profile.
-inline constexpr int kWindLevels = 20;
+/// Largest number of altitude levels of a drawn wind profile: every kilometre up to 30 km.
+inline constexpr int kWindLevels = 30;
 
 /// Doubles only (a column is an offset), SI and radians; the defaults are the nominal flight. Factors multiply the nominal value.
 struct FlightInputs {
@@ -61,6 +61,7 @@ struct FlightInputs {
   double pn_rate_factor = 1.0;               ///< of the second
   double loop_gain_factor = 1.0;             ///< of every commanded deflection: measures the gain margin
   double loop_delay_s = 0.0;                 ///< further delay of the commands: measures the delay margin
+  double loop_stage = 0.0;                   ///< the stage (1-based) whose loop they change, 0 all
 };
 
 /// A column of the applied inputs: its name carries the unit, e.g. "thrust_misalignment_stage1_deg".
