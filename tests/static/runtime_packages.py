@@ -24,8 +24,8 @@ def needed_libraries(program):
 
 
 def owner(library):
-    """The Debian package of a library, or None."""
-    found = subprocess.run(["dpkg-query", "--search", f"*/{library}"], text=True, capture_output=True).stdout
+    """The Debian package of a library of the x86-64 programs, or None."""
+    found = subprocess.run(["dpkg-query", "--search", f"*/x86_64-linux-gnu/{library}"], text=True, capture_output=True).stdout
     return found.split(":")[0] or None
 
 
