@@ -19,8 +19,9 @@ struct Histogram {
   std::vector<double> counts;
 };
 
-/// Width of D. Freedman and P. Diaconis (Z. Wahrscheinlichkeitstheorie 57 (1981) 453), between 8 and 50 bins.
-Histogram MakeHistogram(const std::vector<double>& sorted) {
+/// Width of D. Freedman and P. Diaconis (Z. Wahrscheinlichkeitstheorie 57 (1981) 453), but at most 50 bins and none
+/// narrower than `least_width`, so that it can be seen.
+Histogram MakeHistogram(const std::vector<double>& sorted, double least_width) {
   const double low = sorted.front();
   const double range = sorted.back() - low;
   if (range <= 0.0) {
@@ -28,8 +29,8 @@ Histogram MakeHistogram(const std::vector<double>& sorted) {
     return {{low - half, low + half}, {static_cast<double>(sorted.size())}};
   }
   const double spread = Quantile(sorted, 0.75) - Quantile(sorted, 0.25);
-  const double width = 2.0 * spread / std::cbrt(static_cast<double>(sorted.size()));
-  const int bins = static_cast<int>(std::clamp(width > 0.0 ? std::ceil(range / width) : 50.0, 8.0, 50.0));
+  const double width = std::max({2.0 * spread / std::cbrt(static_cast<double>(sorted.size())), range / 50.0, least_width});
+  const int bins = std::max(1, static_cast<int>(std::ceil(range / width)));
   Histogram histogram;
   for (int i = 0; i <= bins; ++i) histogram.edges.push_back(low + range * i / bins);
   histogram.counts.assign(static_cast<std::size_t>(bins), 0.0);
@@ -87,7 +88,13 @@ std::string DistributionFigures(const std::string& metric, const CampaignSummary
   const bool above = !requirements.empty() && !requirements.front()->below;
   const std::string axis = AxisLabel(metric);
 
-  const Histogram histogram = MakeHistogram(sorted);
+  double low = sorted.front();
+  double high = sorted.back();
+  for (const RequirementSummary* requirement : requirements) {
+    low = std::min(low, requirement->limit);
+    high = std::max(high, requirement->limit);
+  }
+  const Histogram histogram = MakeHistogram(sorted, (high - low) / 60.0);
   SvgChart bars({.label = axis}, {.label = "cases"}, 520, 250);
   bars.Bars(histogram.edges, histogram.counts, "");
 

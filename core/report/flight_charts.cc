@@ -63,6 +63,7 @@ struct BandView {
   double factor = 1.0;  ///< from the column's unit to the label's
   const char* program = nullptr;  ///< column of the nominal drawn as the target
   std::optional<double> from_s = {}, to_s = {};
+  bool nominal = true;
   bool limits = false;  ///< draw those of the requirements on the peak
   int width = 520;
 };
@@ -86,7 +87,7 @@ std::string BandFigure(const BandView& view, const FlightHistories& histories, c
   const std::vector<double> time_s = Column(histories.nominal_history, "time_s");
   if (view.program != nullptr) {
     chart.Line(time_s, Column(histories.nominal_history, view.program, view.factor), "program", "program");
-  } else {
+  } else if (view.nominal) {
     chart.Line(time_s, Column(histories.nominal_history, view.column, view.factor), "line-1", "nominal");
   }
   if (view.limits) {
@@ -187,8 +188,8 @@ std::string EnvelopeFigures(const FlightHistories& histories, const CampaignSumm
   add({.column = "pitch_launch_deg", .label = "pitch from the launch horizon, °", .program = "pitch_program_deg"},
       "Pitch angle in the launch-inertial frame and the program.");
   add({.column = "deflection_pitch_deg", .label = "pitch deflection, °"}, "Deflection of the pitch channel.");
-  add({.column = "yaw_error_deg", .label = "yaw error, °"}, "Yaw error.");
-  add({.column = "roll_error_deg", .label = "roll error, °"}, "Roll error.");
+  add({.column = "yaw_error_deg", .label = "yaw error, °", .nominal = false}, "Yaw error.");
+  add({.column = "roll_error_deg", .label = "roll error, °", .nominal = false}, "Roll error.");
   add({.column = "qbar_pa", .label = "dynamic pressure, kPa", .factor = 1e-3, .from_s = 0.0, .to_s = air_end_s},
       "Dynamic pressure.");
   add({.column = "alpha_deg", .label = "angle of attack, °", .from_s = 2.0, .to_s = air_end_s},

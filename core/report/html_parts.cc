@@ -94,7 +94,8 @@ svg path.band-inner, svg rect.band-inner { fill: var(--inner); stroke: none; }
 svg .bar { fill: var(--bar); } svg rect { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
 @media print { @page { size: A4; margin: 14mm; } body { padding: 0; max-width: none; font-size: 10.5pt; } nav { display: none; }
   .figures { grid-template-columns: 1fr 1fr; } figure, tr, .headline, .tile { break-inside: avoid; }
-  h2, h3 { break-after: avoid; } table { font-size: 8.5pt; } th, td { padding: 2px 5px; } .scroll { overflow: visible; } }
+  h2, h3 { break-after: avoid; } table { font-size: 7.2pt; } th, td { padding: 2px 4px; } td code { font-size: 6.8pt; }
+  td .badge { font-size: 7pt; padding: 0 4px; } td .definition { font-size: 6.6pt; } .scroll { overflow: visible; } }
 )css";
 }
 

@@ -50,7 +50,8 @@ std::string VerdictSentence(const CampaignSummary& summary) {
       return fmt::format("{} of {} requirements cannot be decided with {} cases; none has failed.", count("inconclusive"),
                          all, summary.flown);
     case CampaignVerdict::kPass:
-      return all == 0 ? "The campaign states no requirements." : fmt::format("All {} requirements are met.", all);
+      return all == 0 ? "The campaign states no requirements."
+                      : all == 1 ? "The one requirement is met." : fmt::format("All {} requirements are met.", all);
   }
   return "";
 }
@@ -146,7 +147,15 @@ std::string RequirementsSection(const CampaignSummary& summary) {
               "joined");
     table.Wide(HtmlText(requirement.sentence), "sentence");
   }
-  return html + table.Html() +
+  html += table.Html();
+  if (!IsIndependent(summary.sampling)) {
+    return html +
+           "<p class=\"soft\">The points of this campaign are chosen, not drawn independently, so that no confidence can be "
+           "stated: it is a design study. "
+           "A verdict compares the share of points that meet the limit with the probability required. A lost flight counts as "
+           "a failure of every requirement, and so does an undefined metric.</p>\n";
+  }
+  return html +
          "<p class=\"soft\">Verdicts come from the exact binomial distribution, not from mean ± 3σ (NASA/TP-2010-216447): a "
          "requirement passes when a design that just misses it would have shown so few failures with no more than the "
          "consumer risk, and fails when a design that just meets it would have shown so many with no more than the same "

@@ -44,10 +44,19 @@ std::string IndependentSentence(const RequirementSummary& summary, std::int64_t 
                      seen, PercentText(*summary.success_lower), confidence, required, *summary.cases_needed);
 }
 
+/// The points that have no result count as failed for a pass and as met for a fail.
+const char* EnumeratedVerdict(const RequirementResult& result, double probability) {
+  const auto all = static_cast<double>(result.n + result.missing);
+  const auto met = static_cast<double>(result.n - result.failures);
+  if (all > 0.0 && met >= probability * all) return "pass";
+  return met + static_cast<double>(result.missing) < probability * all ? "fail" : "inconclusive";
+}
+
 std::string EnumeratedSentence(const RequirementSummary& summary, std::int64_t missing) {
-  return fmt::format("Design study: {} of {} flown points meet the limit{}. This says nothing about a probability.",
+  return fmt::format("Design study: {} of {} flown points meet the limit{}; {} of them are required. This says nothing about "
+                     "the probability in flight.",
                      summary.n - summary.failures, summary.n,
-                     missing > 0 ? fmt::format("; {} have no result", missing) : "");
+                     missing > 0 ? fmt::format(" ({} have no result)", missing) : "", PercentText(summary.probability));
 }
 
 std::string SpaceFillingSentence(const RequirementSummary& summary) {
@@ -91,7 +100,7 @@ RequirementSummary Judge(const Requirement& requirement, SamplingMethod method, 
     summary.cases_needed = result.cases_needed;
     summary.sentence = IndependentSentence(summary, missing);
   } else if (IsEnumerated(method)) {
-    summary.verdict = result.failures > 0 ? "fail" : missing > 0 ? "inconclusive" : "pass";
+    summary.verdict = EnumeratedVerdict(result, summary.probability);
     summary.sentence = EnumeratedSentence(summary, missing);
   } else {
     summary.verdict = result.verdict == Verdict::kFail ? "fail" : "inconclusive";

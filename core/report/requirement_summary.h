@@ -31,9 +31,9 @@ struct RequirementSummary {
 
 /// `missing`: cases of the campaign without a result. They count as failed for a pass and as passed for a fail.
 ///
-/// Only independent cases give a confidence statement. An enumerated design (corners, ...) passes when every
-/// point meets the limit, and fails otherwise; Latin hypercube and Sobol designs can fail but not pass, because
-/// the binomial limits do not hold for them.
+/// Only independent cases give a confidence statement. An enumerated design (corners, ...) passes when the share
+/// of its points that meet the limit is at least the probability, and fails otherwise; Latin hypercube and Sobol
+/// designs can fail but not pass, because the binomial limits do not hold for them.
 RequirementSummary Judge(const Requirement& requirement, SamplingMethod method, const CaseColumns& cases,
                          std::int64_t missing);
 

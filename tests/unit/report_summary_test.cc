@@ -104,9 +104,12 @@ TEST(Judge, GivesNoConfidenceToADesign) {
   EXPECT_EQ(corners.verdict, "pass");
   EXPECT_FALSE(corners.success_lower.has_value());
   EXPECT_EQ(corners.sentence,
-            "Design study: 16 of 16 flown points meet the limit. This says nothing about a probability.");
+            "Design study: 16 of 16 flown points meet the limit; 99.73 % of them are required. This says nothing about the "
+            "probability in flight.");
   EXPECT_EQ(Judge(PeakBelow(0.5, 0.9973, 0.10), SamplingMethod::kCorners, Columns(16, 1), 0).verdict, "fail");
   EXPECT_EQ(Judge(PeakBelow(0.5, 0.9973, 0.10), SamplingMethod::kGrid, Columns(15, 0), 1).verdict, "inconclusive");
+  EXPECT_EQ(Judge(PeakBelow(0.5, 0.95, 0.10), SamplingMethod::kCorners, Columns(320, 16), 0).verdict, "pass");  // 95 %
+  EXPECT_EQ(Judge(PeakBelow(0.5, 0.95, 0.10), SamplingMethod::kCorners, Columns(320, 17), 0).verdict, "fail");
 
   const RequirementSummary latin = Judge(PeakBelow(0.5, 0.95, 0.10), SamplingMethod::kLatinHypercube, Columns(1000, 0), 0);
   EXPECT_EQ(latin.verdict, "inconclusive");

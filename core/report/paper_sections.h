@@ -1,0 +1,37 @@
+// Parts of the paper's page. Each returns HTML whose numbers come from the study.
+#pragma once
+
+#include <string>
+
+#include "core/report/paper_study.h"
+
+namespace dispersa {
+
+std::string PaperVehicleSection(const PaperStudy& study);     ///< Table 1
+std::string PaperTrajectorySection(const PaperStudy& study);  ///< Table 2, Figs. 2 and 3
+std::string PaperDispersionSection(const PaperStudy& study);  ///< Table 3
+std::string PaperPnSection(const PaperStudy& study);          ///< Fig. 5
+std::string PaperPitchSection(const PaperStudy& study);       ///< Figs. 6 to 9
+std::string PaperRobustnessSection(const PaperStudy& study);  ///< Fig. 10
+std::string PaperComparisonSection(const PaperStudy& study);  ///< the baselines
+std::string PaperLyapunovSection(const PaperStudy& study);    ///< statistics of dV/dt
+std::string PaperCompletionSection(const PaperStudy& study);  ///< what we added to the vehicle
+
+/// What the paper claims, what was found, where they differ and why: the last may be empty. Arguments are HTML.
+std::string PaperFindings(const std::string& claim, const std::string& found, const std::string& difference);
+
+/// How a campaign was flown here, and the command that flies it as its file says.
+std::string PaperSource(const PaperStudy& study, const std::vector<std::string>& names);
+
+/// "0.0123°"
+std::string Degrees(double value);
+
+/// Median, 99 % and maximum over completed flights, and how many were lost.
+struct MetricDigest {
+  std::size_t n = 0;  ///< flights, the lost among them
+  std::size_t lost = 0;
+  double p50 = 0.0, p99 = 0.0, max = 0.0;
+};
+MetricDigest Digested(const CaseColumns& cases, const std::string& metric);
+
+}  // namespace dispersa
