@@ -92,7 +92,8 @@ class CampaignRun {
         for (const std::uint64_t case_index : assignment.cases) {
           if (StopRequested()) throw Interrupted();
           book_.Start(self, case_index, assignment.attempt, Now());
-          book_.Accept(self, "", assignment.attempt, flights.FlyCase(case_index), Now());
+          const CaseResult result = flights.FlyCase(case_index);
+          book_.Accept(self, "", assignment.attempt, result, Now());
           book_.FlushIfDue(Now());
           ShowProgress("in process");
         }
@@ -145,7 +146,8 @@ class CampaignRun {
     const std::uint64_t settled = book_.flown_now() + book_.ledger().Progress().quarantined;
     const LocalWorkers::Changes changes = workers.Poll(Now(), settled);
     for (const WorkerProcess& ended : changes.ended) {
-      spdlog::warn("worker {} (process {}) ended with {}; another takes its place", ended.uuid, ended.pid, ended.how);
+      spdlog::warn("worker {} (process {}) ended with {}; another takes its place", ended.uuid, ended.pid,
+                   ended.how);
       coordinator.WorkerEnded(ended.uuid, ended.end, ended.how);
     }
     for (const WorkerProcess& started : changes.started) coordinator.Supervise(started.uuid);
@@ -163,8 +165,8 @@ class CampaignRun {
     }
     if (const auto given_up = book_.ledger().Progress().quarantined;
         given_up >= kHopelessCases && book_.flown_now() == 0) {
-      return fmt::format("the first {} cases ended every worker that flew them, the last one with {}", given_up,
-                         LastEnd(workers));
+      return fmt::format("the first {} cases ended every worker that flew them, the last one with {}",
+                         given_up, LastEnd(workers));
     }
     if (nobody_joined_s > kJoinPatience_s) {
       return fmt::format("no worker has joined for {:.0f} s", kJoinPatience_s);
@@ -274,7 +276,8 @@ ExitCode Run(const RunOptions& options, const GlobalOptions& global) {
 
 void AddRunCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<RunOptions>();
-  CLI::App* command = app.add_subcommand("run", "fly a campaign on local workers and write its result folder");
+  CLI::App* command =
+      app.add_subcommand("run", "fly a campaign on local workers and write its result folder");
   CampaignRequest& request = options->request;
   command->add_option("campaign", request.campaign, "campaign file")->required();
   command

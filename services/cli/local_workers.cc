@@ -41,12 +41,15 @@ WorkerEnd ClassifyExit(int status, std::string* how) {
     return from_outside ? WorkerEnd::kKilled : WorkerEnd::kCrashed;
   }
   const int code = WEXITSTATUS(status);
-  *how = code == kExecFailed ? "exit code 127 (the program cannot be started)" : "exit code " + std::to_string(code);
+  *how = code == kExecFailed ? "exit code 127 (the program cannot be started)"
+                             : "exit code " + std::to_string(code);
   return code == 0 ? WorkerEnd::kLeft : WorkerEnd::kCrashed;
 }
 
 LocalWorkers::LocalWorkers(std::filesystem::path program, std::vector<std::string> arguments, int count)
-    : program_(std::move(program)), arguments_(std::move(arguments)), slots_(static_cast<std::size_t>(count)) {}
+    : program_(std::move(program)),
+      arguments_(std::move(arguments)),
+      slots_(static_cast<std::size_t>(count)) {}
 
 LocalWorkers::~LocalWorkers() {
   SignalAll(SIGKILL);

@@ -37,7 +37,8 @@ void Progress::Show(std::uint64_t done, std::uint64_t total, const std::string& 
     first_done_ = done;
     start_ = shown_ = now;
     if (!terminal_) return;
-  } else if (now - shown_ < (terminal_ ? std::chrono::milliseconds(kBarPeriod) : kLinePeriod) && done < total) {
+  } else if (now - shown_ < (terminal_ ? std::chrono::milliseconds(kBarPeriod) : kLinePeriod) &&
+             done < total) {
     return;
   }
   shown_ = now;

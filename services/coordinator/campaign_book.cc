@@ -66,12 +66,14 @@ Acceptance CampaignBook::Accept(const std::string& worker, const std::string& ho
       }
       break;
     case Acceptance::kConflict:
-      spdlog::error("case {}: worker {} on {} returned other bits than were returned before: a processor, a "
-                    "library or a build breaks the floating-point contract; no result can be trusted",
-                    result.case_index, worker, host);
+      spdlog::error(
+          "case {}: worker {} on {} returned other bits than were returned before: a processor, a "
+          "library or a build breaks the floating-point contract; no result can be trusted",
+          result.case_index, worker, host);
       break;
     case Acceptance::kUnknown:
-      spdlog::error("case {} of worker {} on {} does not exist in this campaign", result.case_index, worker, host);
+      spdlog::error("case {} of worker {} on {} does not exist in this campaign", result.case_index, worker,
+                    host);
       break;
     case Acceptance::kDuplicate:
       break;

@@ -48,7 +48,7 @@ class CampaignBook {
     std::string utc;
   };
   std::map<std::pair<std::string, std::uint64_t>, StartTime> starts_;  ///< by worker and case
-  std::size_t quarantined_ = 0;  ///< stored as such
+  std::size_t quarantined_ = 0;                                        ///< stored as such
   std::uint64_t flown_now_ = 0;
   double flushed_s_ = 0.0;
 };

@@ -74,10 +74,11 @@ void Coordinator::On(const WorkerStatus& status) {
     if (!supervised_.contains(status.worker)) Lose(status.worker, WorkerEnd::kLeft, "it left");
     return;
   }
-  const auto refusal = book_.ledger().Join(
-      status.worker, {status.engine_version, status.slots, status.credits}, Now());
+  const auto refusal =
+      book_.ledger().Join(status.worker, {status.engine_version, status.slots, status.credits}, Now());
   if (refusal) {
-    spdlog::error("worker {} (process {} on {}) is refused: {}", status.worker, status.pid, status.host, *refusal);
+    spdlog::error("worker {} (process {} on {}) is refused: {}", status.worker, status.pid, status.host,
+                  *refusal);
     link_.Refuse({status.worker, *refusal});
     refusal_ = refusal;
     banned_.insert(status.worker);

@@ -65,8 +65,8 @@ Acceptance Ledger::Finished(const std::string& worker, std::uint64_t case_index,
       if (held->second.started_s) {
         const double duration_s = now_s - *held->second.started_s;
         longest_case_s_ = std::max(longest_case_s_, duration_s);
-        mean_case_s_ = mean_case_s_ == 0.0 ? duration_s
-                                           : mean_case_s_ + kMeanWeight * (duration_s - mean_case_s_);
+        mean_case_s_ =
+            mean_case_s_ == 0.0 ? duration_s : mean_case_s_ + kMeanWeight * (duration_s - mean_case_s_);
       }
       Release(entry->second, held);
     }

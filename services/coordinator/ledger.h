@@ -14,10 +14,10 @@
 namespace dispersa {
 
 struct LedgerOptions {
-  double lease_s = 60.0;             ///< a worker that holds cases and reports nothing for so long is stuck
+  double lease_s = 60.0;  ///< a worker that holds cases and reports nothing for so long is stuck
   int blames_to_quarantine = 3;
-  double batch_duration_s = 0.25;    ///< what one slot should need for one assignment
-  std::uint64_t max_batch = 64;      ///< cases
+  double batch_duration_s = 0.25;  ///< what one slot should need for one assignment
+  std::uint64_t max_batch = 64;    ///< cases
 };
 
 /// A worker as it announces itself.

@@ -30,8 +30,8 @@ int Serve(const NetworkOptions& network, const CampaignRequest& request) {
   CampaignBook book(opened.campaign, std::move(opened.folder));
   Coordinator coordinator(network, book);
   spdlog::info("campaign {}, flight id {}, results in {}; domain {}, workers may come to port {}",
-               book.campaign().name, book.campaign().flight_id, book.folder().directory().string(), network.domain,
-               CoordinatorPort(network.domain));
+               book.campaign().name, book.campaign().flight_id, book.folder().directory().string(),
+               network.domain, CoordinatorPort(network.domain));
   auto progress_due = std::chrono::steady_clock::now();
   while (!book.ledger().Complete() && !StopRequested()) {
     coordinator.Step(std::chrono::milliseconds(100));
@@ -57,8 +57,9 @@ int Main(int argc, char** argv) {
   spdlog::set_default_logger(spdlog::stderr_logger_mt("dispersa-coordinator"));
   NetworkOptions network;
   CampaignRequest request;
-  CLI::App app("Serves one campaign to all dispersa-worker processes of a DDS domain, then writes its reports.",
-               "dispersa-coordinator");
+  CLI::App app(
+      "Serves one campaign to all dispersa-worker processes of a DDS domain, then writes its reports.",
+      "dispersa-coordinator");
   app.set_version_flag("--version", EngineVersion());
   app.add_option("campaign", request.campaign, "campaign file")->required();
   app.add_option("--out", request.out, "result folder; default: results/<name>-<first 8 of id>");
@@ -66,11 +67,14 @@ int Main(int argc, char** argv) {
       ->check(CLI::PositiveNumber);
   app.add_option("--seed", request.overrides.seed, "seed, instead of the file's");
   app.add_flag("--resume", request.resume, "go on in a folder of the same flight id");
-  app.add_option("--domain", network.domain, "DDS domain")->envname("DISPERSA_DOMAIN")->check(CLI::Range(0, 99));
+  app.add_option("--domain", network.domain, "DDS domain")
+      ->envname("DISPERSA_DOMAIN")
+      ->check(CLI::Range(0, 99));
   app.add_option("--address", network.address, "IPv4 address of the only network interface to use")
       ->check(CLI::ValidIPV4);
-  app.footer("Example: dispersa-coordinator campaigns/table3.yaml --out results/table3 --domain 7\n"
-             "         dispersa-worker --domain 7 --peer coordinator-host");
+  app.footer(
+      "Example: dispersa-coordinator campaigns/table3.yaml --out results/table3 --domain 7\n"
+      "         dispersa-worker --domain 7 --peer coordinator-host");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

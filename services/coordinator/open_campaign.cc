@@ -29,8 +29,9 @@ fs::path DefaultFolder(const Campaign& campaign, bool resume) {
 
 // A start that was killed between its first two files left nothing to resume.
 bool IsStillborn(const fs::path& directory) {
-  return std::all_of(fs::directory_iterator(directory), fs::directory_iterator(),
-                     [](const fs::directory_entry& entry) { return entry.path().filename() == "campaign.yaml"; });
+  return std::all_of(
+      fs::directory_iterator(directory), fs::directory_iterator(),
+      [](const fs::directory_entry& entry) { return entry.path().filename() == "campaign.yaml"; });
 }
 
 }  // namespace
@@ -57,8 +58,8 @@ OpenedCampaign OpenCampaign(const CampaignRequest& request) {
     extended.cases = present.back() + 1;
     Campaign larger = LoadCampaign(request.campaign, extended);
     if (larger.flight_id == campaign.flight_id) {
-      spdlog::warn("{} holds more cases than the {} asked for: the campaign is extended to {}", directory.string(),
-                   campaign.sampling.cases, larger.sampling.cases);
+      spdlog::warn("{} holds more cases than the {} asked for: the campaign is extended to {}",
+                   directory.string(), campaign.sampling.cases, larger.sampling.cases);
       campaign = std::move(larger);
     }
   }

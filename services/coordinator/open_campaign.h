@@ -10,9 +10,9 @@
 namespace dispersa {
 
 struct CampaignRequest {
-  std::string campaign;          ///< file
+  std::string campaign;  ///< file
   CampaignOverrides overrides;
-  std::string out;               ///< empty: results/<name>-<first 8 of id>, then -2, -3, ...
+  std::string out;  ///< empty: results/<name>-<first 8 of id>, then -2, -3, ...
   bool resume = false;
 };
 
@@ -21,10 +21,10 @@ struct OpenedCampaign {
   ResultFolder folder;
 };
 
-/// Without `resume` the folder must be new or empty. With it, a folder of the same flight id is continued, and
-/// one that is new or empty is started; without `out` it is the last of the default folders. Results are never
-/// thrown away: a folder that holds more cases than asked for keeps them, and the campaign is extended to them.
-/// Throws InputError, ResultError.
+/// Without `resume` the folder must be new or empty. With it, a folder of the same flight id is continued,
+/// and one that is new or empty is started; without `out` it is the last of the default folders. Results are
+/// never thrown away: a folder that holds more cases than asked for keeps them, and the campaign is extended
+/// to them. Throws InputError, ResultError.
 OpenedCampaign OpenCampaign(const CampaignRequest& request);
 
 }  // namespace dispersa

@@ -110,14 +110,20 @@ idl::CampaignRefusalV1 ToIdl(const CampaignRefusal& refusal) {
 }
 
 WorkerStatus FromIdl(const idl::WorkerStatusV1& status) {
-  return {status.worker(), status.host(),    status.pid(),
-          status.engine_version(), status.slots(), status.credits(),
-          static_cast<WorkerState>(status.state()), status.flown(), status.started_cases()};
+  return {status.worker(),
+          status.host(),
+          status.pid(),
+          status.engine_version(),
+          status.slots(),
+          status.credits(),
+          static_cast<WorkerState>(status.state()),
+          status.flown(),
+          status.started_cases()};
 }
 
 CampaignDefinition FromIdl(const idl::CampaignV1& campaign) {
-  return {campaign.coordinator_epoch(), campaign.campaign_id(), campaign.flight_id(), campaign.engine_version(),
-          campaign.name(), campaign.canonical_yaml()};
+  return {campaign.coordinator_epoch(), campaign.campaign_id(), campaign.flight_id(),
+          campaign.engine_version(),    campaign.name(),        campaign.canonical_yaml()};
 }
 
 std::variant<FlyOrder, LeaveOrder> FromIdl(const idl::AssignmentV1& assignment) {

@@ -50,10 +50,11 @@ struct CoordinatorLink::Impl {
                         spdlog::error("worker {}: a result with an unknown outcome", message.worker());
                       }
                     }});
-    campaign_refusals.emplace(
-        participant, subscriber, kCampaignRefusalTopic,
-        ReaderCallbacks<idl::CampaignRefusalV1>{
-            [this](const idl::CampaignRefusalV1& message, const WriterHandle&) { events.Push(FromIdl(message)); }});
+    campaign_refusals.emplace(participant, subscriber, kCampaignRefusalTopic,
+                              ReaderCallbacks<idl::CampaignRefusalV1>{
+                                  [this](const idl::CampaignRefusalV1& message, const WriterHandle&) {
+                                    events.Push(FromIdl(message));
+                                  }});
     statuses.emplace(participant, subscriber, kStatusTopic,
                      ReaderCallbacks<idl::WorkerStatusV1>{
                          [this](const idl::WorkerStatusV1& message, const WriterHandle& from) {

@@ -46,8 +46,8 @@ dds::DataReaderQos MakeReaderQos(Presence presence) {
 }
 
 void LogIncompatibleQos(const std::string& topic, dds::QosPolicyId_t policy) {
-  spdlog::error("{}: a peer's quality of service does not match (policy {}): another version of dispersa?", topic,
-                static_cast<int>(policy));
+  spdlog::error("{}: a peer's quality of service does not match (policy {}): another version of dispersa?",
+                topic, static_cast<int>(policy));
 }
 
 }  // namespace dispersa

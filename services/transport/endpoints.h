@@ -43,7 +43,8 @@ class Writer : private eprosima::fastdds::dds::DataWriterListener {
   Writer(Participant& participant, eprosima::fastdds::dds::Publisher* publisher, const std::string& topic,
          Presence presence = Presence::kNone, std::function<void(int)> on_matched = {})
       : topic_(topic), on_matched_(std::move(on_matched)), publisher_(publisher) {
-    writer_ = publisher->create_datawriter(participant.TopicOf<PubSubType>(topic), MakeWriterQos(presence), this);
+    writer_ =
+        publisher->create_datawriter(participant.TopicOf<PubSubType>(topic), MakeWriterQos(presence), this);
     if (writer_ == nullptr) throw NetworkError("cannot create a writer of " + topic);
   }
   ~Writer() override {
@@ -74,7 +75,8 @@ class Writer : private eprosima::fastdds::dds::DataWriterListener {
   }
   /// Waits until what was written has arrived.
   void Drain(int milliseconds) {
-    writer_->wait_for_acknowledgments({milliseconds / 1000, static_cast<unsigned>(milliseconds % 1000) * 1000000u});
+    writer_->wait_for_acknowledgments(
+        {milliseconds / 1000, static_cast<unsigned>(milliseconds % 1000) * 1000000u});
   }
 
  private:
@@ -82,8 +84,9 @@ class Writer : private eprosima::fastdds::dds::DataWriterListener {
                               const eprosima::fastdds::dds::PublicationMatchedStatus& status) override {
     if (on_matched_) on_matched_(status.current_count_change);
   }
-  void on_offered_incompatible_qos(eprosima::fastdds::dds::DataWriter*,
-                                   const eprosima::fastdds::dds::OfferedIncompatibleQosStatus& status) override {
+  void on_offered_incompatible_qos(
+      eprosima::fastdds::dds::DataWriter*,
+      const eprosima::fastdds::dds::OfferedIncompatibleQosStatus& status) override {
     LogIncompatibleQos(topic_, status.last_policy_id);
   }
 
@@ -99,7 +102,7 @@ class Writer : private eprosima::fastdds::dds::DataWriterListener {
 template <typename Message>
 struct ReaderCallbacks {
   std::function<void(const Message&, const WriterHandle& from)> on_message;
-  std::function<void(const WriterHandle&)> on_silent = {};   ///< its heartbeat stopped
+  std::function<void(const WriterHandle&)> on_silent = {};     ///< its heartbeat stopped
   std::function<void(const WriterHandle&)> on_unmatched = {};  ///< it left, or its participant is gone
 };
 
@@ -111,7 +114,8 @@ class Reader : private eprosima::fastdds::dds::DataReaderListener {
   Reader(Participant& participant, eprosima::fastdds::dds::Subscriber* subscriber, const std::string& topic,
          ReaderCallbacks<Message> callbacks, Presence presence = Presence::kNone)
       : topic_(topic), callbacks_(std::move(callbacks)), subscriber_(subscriber) {
-    reader_ = subscriber->create_datareader(participant.TopicOf<PubSubType>(topic), MakeReaderQos(presence), this);
+    reader_ =
+        subscriber->create_datareader(participant.TopicOf<PubSubType>(topic), MakeReaderQos(presence), this);
     if (reader_ == nullptr) throw NetworkError("cannot create a reader of " + topic);
   }
   ~Reader() override {

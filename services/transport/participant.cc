@@ -6,13 +6,13 @@
 
 #include <mutex>
 
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
+#include <fastrtps/xmlparser/XMLProfileManager.h>
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
 #include <fastdds/dds/log/Log.hpp>
 #include <fastdds/dds/publisher/qos/PublisherQos.hpp>
 #include <fastdds/dds/subscriber/qos/SubscriberQos.hpp>
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastrtps/utils/IPLocator.h>
-#include <fastrtps/xmlparser/XMLProfileManager.h>
 
 #include "services/transport/udp_port.h"
 
@@ -99,7 +99,8 @@ Participant::Participant(const ParticipantOptions& options) {
   if (options.discovery_port && !IsUdpPortFree(options.network.address, *options.discovery_port)) {
     throw NetworkError("UDP port " + std::to_string(*options.discovery_port) +
                        (options.network.address.empty() ? "" : " of " + options.network.address) +
-                       " is not free: is there a coordinator in domain " + std::to_string(domain) + " already?");
+                       " is not free: is there a coordinator in domain " + std::to_string(domain) +
+                       " already?");
   }
   ConfigureLibraryOnce();
   participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(

@@ -45,8 +45,7 @@ class Participant {
 
  private:
   eprosima::fastdds::dds::Topic* FindTopic(const std::string& name);
-  eprosima::fastdds::dds::Topic* MakeTopic(const std::string& name,
-                                           eprosima::fastdds::dds::TypeSupport type);
+  eprosima::fastdds::dds::Topic* MakeTopic(const std::string& name, eprosima::fastdds::dds::TypeSupport type);
 
   eprosima::fastdds::dds::DomainParticipant* participant_ = nullptr;
 };

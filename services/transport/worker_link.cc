@@ -31,31 +31,31 @@ struct WorkerLink::Impl {
         subscriber(participant.MakeSubscriber("")),
         own_subscriber(participant.MakeSubscriber(PartitionOf(worker))) {
     // A campaign has a writer of its own, which goes when the campaign closes.
-    campaigns.emplace(participant, subscriber, kCampaignTopic,
-                      ReaderCallbacks<idl::CampaignV1>{
-                          [this](const idl::CampaignV1& message, const WriterHandle& from) {
-                            const std::lock_guard lock(mutex);
-                            campaign_of[from] = message.flight_id();
-                            events.Push(FromIdl(message));
-                          },
-                          {},
-                          [this](const WriterHandle& from) {
-                            const std::lock_guard lock(mutex);
-                            const auto found = campaign_of.find(from);
-                            if (found == campaign_of.end()) return;
-                            events.Push(CampaignClosed{found->second});
-                            campaign_of.erase(found);
-                          }});
+    campaigns.emplace(
+        participant, subscriber, kCampaignTopic,
+        ReaderCallbacks<idl::CampaignV1>{[this](const idl::CampaignV1& message, const WriterHandle& from) {
+                                           const std::lock_guard lock(mutex);
+                                           campaign_of[from] = message.flight_id();
+                                           events.Push(FromIdl(message));
+                                         },
+                                         {},
+                                         [this](const WriterHandle& from) {
+                                           const std::lock_guard lock(mutex);
+                                           const auto found = campaign_of.find(from);
+                                           if (found == campaign_of.end()) return;
+                                           events.Push(CampaignClosed{found->second});
+                                           campaign_of.erase(found);
+                                         }});
     assignments.emplace(
         participant, own_subscriber, kAssignmentTopic,
         ReaderCallbacks<idl::AssignmentV1>{[this](const idl::AssignmentV1& message, const WriterHandle&) {
           std::visit([this](auto&& order) { events.Push(std::forward<decltype(order)>(order)); },
                      FromIdl(message));
         }});
-    refusals.emplace(participant, own_subscriber, kRefusalTopic,
-                     ReaderCallbacks<idl::RefusalV1>{[this](const idl::RefusalV1& message, const WriterHandle&) {
-                       events.Push(FromIdl(message));
-                     }});
+    refusals.emplace(
+        participant, own_subscriber, kRefusalTopic,
+        ReaderCallbacks<idl::RefusalV1>{
+            [this](const idl::RefusalV1& message, const WriterHandle&) { events.Push(FromIdl(message)); }});
     reports.emplace(participant, publisher, kReportTopic);
     campaign_refusals.emplace(participant, publisher, kCampaignRefusalTopic);
     statuses.emplace(participant, publisher, kStatusTopic, Presence::kHeartbeat);

@@ -27,9 +27,12 @@ int main(int argc, char** argv) {
 
   WorkerOptions options;
   std::string peer;
-  CLI::App app("Flies cases for a coordinator until it is told to leave. SIGTERM ends it at once.", "dispersa-worker");
+  CLI::App app("Flies cases for a coordinator until it is told to leave. SIGTERM ends it at once.",
+               "dispersa-worker");
   app.set_version_flag("--version", EngineVersion());
-  app.add_option("--domain", options.network.domain, "DDS domain")->envname("DISPERSA_DOMAIN")->check(CLI::Range(0, 99));
+  app.add_option("--domain", options.network.domain, "DDS domain")
+      ->envname("DISPERSA_DOMAIN")
+      ->check(CLI::Range(0, 99));
   app.add_option("--peer", peer, "HOST[:PORT] of the coordinator")->required();
   app.add_option("--address", options.network.address, "IPv4 address of the only network interface to use")
       ->check(CLI::ValidIPV4);

@@ -1,5 +1,5 @@
-// Ends a program with a clear message on a processor that cannot run it: the one function that is compiled for
-// any x86-64 processor, run before the constructors of everything that is not.
+// Ends a program with a clear message on a processor that cannot run it: the one function that is compiled
+// for any x86-64 processor, run before the constructors of everything that is not.
 #include <unistd.h>
 
 #include <cstring>

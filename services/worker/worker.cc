@@ -78,8 +78,8 @@ void Worker::Load(const CampaignDefinition& definition) {
   std::string reason;
   try {
     if (definition.engine_version != EngineVersion()) {
-      reason = "engine version " + definition.engine_version + " of the coordinator differs from the worker's " +
-               EngineVersion();
+      reason = "engine version " + definition.engine_version +
+               " of the coordinator differs from the worker's " + EngineVersion();
     } else {
       const Campaign campaign = ParseCampaign(definition.canonical_yaml, definition.name);
       if (campaign.flight_id == definition.flight_id) {

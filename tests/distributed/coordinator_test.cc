@@ -86,7 +86,8 @@ class MadeUpWorker {
 
  private:
   void Send(std::vector<FlownCase> flown, std::vector<StartedCase> started) {
-    link_.Send(Report{uuid_, campaign_->coordinator_epoch, campaign_->flight_id, std::move(flown), std::move(started)});
+    link_.Send(Report{uuid_, campaign_->coordinator_epoch, campaign_->flight_id, std::move(flown),
+                      std::move(started)});
   }
 
   std::string uuid_;

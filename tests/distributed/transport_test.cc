@@ -1,4 +1,4 @@
-// Messages over real sockets: every field arrives, doubles to the last bit, silence and departure are noticed.
+// Messages over real sockets: every field arrives, doubles to the last bit, and departure is noticed.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -76,7 +76,8 @@ TEST_F(Transport, CarriesWhatAWorkerSaysToTheLastBit) {
   Report report{"u1", 99, "flight", {}, {{8, 3}, {9, 3}}};
   FlownCase flown;
   flown.attempt = 2;
-  flown.result = {7, Outcome::kLostControl, 123.456, 3, "attitude error", values, values, {0xfeedull << 48, 1}};
+  flown.result = {7,      Outcome::kLostControl, 123.456, 3, "attitude error", values,
+                  values, {0xfeedull << 48, 1}};
   report.flown = {flown};
   worker->Send(report);
   const auto received = Await<Report>(coordinator);

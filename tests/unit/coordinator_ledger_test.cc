@@ -345,8 +345,8 @@ class RandomWorld {
           ledger_.Started(id, message.case_index, message.attempt, now_s_);
           continue;
         }
-        const Acceptance acceptance = ledger_.Finished(id, message.case_index, message.attempt,
-                                                       ResultOf(message.case_index), now_s_);
+        const Acceptance acceptance =
+            ledger_.Finished(id, message.case_index, message.attempt, ResultOf(message.case_index), now_s_);
         if (acceptance == Acceptance::kAccepted) {
           EXPECT_TRUE(accepted_.insert(message.case_index).second) << "accepted twice";
         } else {
