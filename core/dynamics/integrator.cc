@@ -123,11 +123,17 @@ bool Integrator::Advance(double from_s, double to_s, int steps, double* y) {
   for (int i = 0; i < s.size; ++i) state[i] = y[i];
   double reached = from_s;
   if (s.scheme == Scheme::kRungeKutta4) {
-    // Without the reset a derivative from before the jump of a held command would be reused.
-    if (ERKStepReset(s.memory, from_s, s.y) != ARK_SUCCESS) return false;
-    ERKStepSetFixedStep(s.memory, (to_s - from_s) / steps);
-    ERKStepSetStopTime(s.memory, to_s);
-    if (ERKStepEvolve(s.memory, to_s, s.y, &reached, ARK_NORMAL) < 0) return false;
+    // Without the reset a derivative from before the jump of a held command would be reused; and between
+    // steps Debian's ERKStep (6.4) takes the last stage, because it is at c = 1, for the derivative at the end
+    // (github.com/llnl/sundials/issues/311), which costs an order.
+    for (int i = 0; i < steps; ++i) {
+      const double begin_s = i == 0 ? from_s : from_s + (to_s - from_s) * i / steps;
+      const double end_s = i + 1 == steps ? to_s : from_s + (to_s - from_s) * (i + 1) / steps;
+      if (ERKStepReset(s.memory, begin_s, s.y) != ARK_SUCCESS) return false;
+      ERKStepSetFixedStep(s.memory, end_s - begin_s);
+      ERKStepSetStopTime(s.memory, end_s);
+      if (ERKStepEvolve(s.memory, end_s, s.y, &reached, ARK_NORMAL) < 0) return false;
+    }
   } else {
     if (CVodeReInit(s.memory, from_s, s.y) != CV_SUCCESS) return false;
     CVodeSetStopTime(s.memory, to_s);
