@@ -85,7 +85,7 @@ TEST(ScenarioConvergence, Velocity) {
 
 TEST(ScenarioConvergence, Attitude) {
   ExpectOrderFour(
-      [](const auto& a, const auto& b) { return RotationVector(Inverse(a.q_IB) * b.q_IB).norm(); });
+      0.15, [](const auto& a, const auto& b) { return RotationVector(Inverse(a.q_IB) * b.q_IB).norm(); });
 }
 
 TEST(ScenarioConvergence, Rates) {
