@@ -143,13 +143,14 @@ TrajectoryProblem DecodeTrajectoryProblem(const InputNode& node, const std::stri
     problem.axial_load_limit_g = limits.Quantity("axial_load", kAcceleration, kPositive);
     problem.lateral_load_limit_g = limits.Quantity("lateral_load", kAcceleration, kPositive);
     problem.alpha_limit_rad = limits.Quantity("alpha", kAngle, {0.0, kPi / 2.0, true, true});
+    problem.turn_rate_limit_rad_s = limits.Quantity("turn_rate", kAngularRate, kPositive, 0.0);
     problem.transonic_mach_low = limits.Number("transonic_mach_low", kPositive);
     problem.transonic_mach_high = limits.Number("transonic_mach_high", kPositive);
     problem.q_max_limit_pa = limits.Quantity("q_max", kPressure, kPositive, 0.0);
     problem.q_alpha_limit_pa_rad = limits.Quantity("q_alpha", kPressureAngle, kPositive, 0.0);
   }
-  problem.population = static_cast<int>(map.Integer("population", 4, 100000));
-  problem.generations = static_cast<int>(map.Integer("generations", 1, 1000000));
+  problem.population = static_cast<int>(map.Integer("population", 4, 65535));
+  problem.generations = static_cast<int>(map.Integer("generations", 1, 65535));
   problem.seed = map.Integer("seed", 0, UINT64_MAX);
   return problem;
 }

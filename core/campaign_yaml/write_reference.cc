@@ -41,6 +41,9 @@ std::string ProblemText(const TrajectoryProblem& problem) {
   text += "    axial_load_g: " + FormatNumber(problem.axial_load_limit_g) + "\n";
   text += "    lateral_load_g: " + FormatNumber(problem.lateral_load_limit_g) + "\n";
   text += "    alpha_deg: " + Deg(problem.alpha_limit_rad) + "\n";
+  if (problem.turn_rate_limit_rad_s > 0.0) {
+    text += "    turn_rate_deg_s: " + Deg(problem.turn_rate_limit_rad_s) + "\n";
+  }
   text += "    transonic_mach_low: " + FormatNumber(problem.transonic_mach_low) + "\n";
   text += "    transonic_mach_high: " + FormatNumber(problem.transonic_mach_high) + "\n";
   if (problem.q_max_limit_pa > 0.0) text += "    q_max_pa: " + FormatNumber(problem.q_max_limit_pa) + "\n";

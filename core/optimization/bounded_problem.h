@@ -27,6 +27,8 @@ struct BoundedProblem {
   /// A pure function of a point of shape (n): it is called from several threads at a time, and its
   /// exceptions reach the caller of the optimiser.
   std::function<Evaluation(const std::vector<double>&)> evaluate;
+  /// Points, each of shape (n) and within the box, that the search starts with beside random ones.
+  std::vector<std::vector<double>> known_points = {};
 };
 
 }  // namespace dispersa

@@ -47,6 +47,17 @@ void Validate(const BoundedProblem& problem) {
                       i, upper, i, lower));
     }
   }
+  for (std::size_t p = 0; p < problem.known_points.size(); ++p) {
+    const std::vector<double>& point = problem.known_points[p];
+    bool inside = point.size() == problem.lower.size();
+    for (std::size_t i = 0; inside && i < point.size(); ++i)
+      inside = point[i] >= problem.lower[i] && point[i] <= problem.upper[i];
+    if (!inside) {
+      throw std::invalid_argument(fmt::format(
+          "BoundedProblem.known_points[{}] is outside; allowed is a point of {} variables within lower and upper",
+          p, problem.lower.size()));
+    }
+  }
   if (!problem.evaluate)
     throw std::invalid_argument("BoundedProblem.evaluate is empty; allowed is a function");
 }
@@ -144,7 +155,9 @@ class Run {
 
   Population RandomPopulation() const {
     Population population(size_);
-    for (std::size_t i = 0; i < size_; ++i) {
+    const std::size_t known = std::min(size_, problem_.known_points.size());
+    for (std::size_t i = 0; i < known; ++i) population[i].variables = problem_.known_points[i];
+    for (std::size_t i = known; i < size_; ++i) {
       Stream stream(options_.seed, StreamIndex(0, i), "genetic_algorithm.initial");
       for (std::size_t k = 0; k < VariableCount(); ++k) {
         const double lower = problem_.lower[k];

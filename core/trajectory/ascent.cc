@@ -1,6 +1,7 @@
 #include "core/trajectory/ascent.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/dynamics/integrator.h"
@@ -14,11 +15,16 @@ namespace {
 
 // The attitude program goes on this long after the nominal burnout, for flights that burn longer.
 constexpr double kProgramReserve_s = 30.0;
-// Knots of the attitude program: dense in the pitch-over, where the programmed incidence changes.
-constexpr double kKickKnot_s = 0.1;
-constexpr double kKnot_s = 1.0;
 // An ascent that comes this far below its site has failed.
 constexpr double kGround_m = 1000.0;
+// Spacing of samples and of the attitude program's knots, unless the steps are longer: dense in the
+// pitch-over, where the programmed incidence changes.
+constexpr double kKickKnot_s = 0.1;
+constexpr double kBurnKnot_s = 1.0;
+constexpr double kCoastKnot_s = 5.0;
+// Rates of the attitude program are central differences over this time: rounding and truncation stay below
+// 1e-10 of a rate.
+constexpr double kDifference_s = 1e-3;
 
 double SmoothStep(double s) { return s * s * s * (10.0 + s * (-15.0 + 6.0 * s)); }
 
@@ -45,7 +51,7 @@ class Ascent {
  private:
   struct Event {
     double time_s;
-    enum Kind { kIgnition, kBurnout, kSeparation, kTurn, kKink } kind;
+    enum Kind { kIgnition, kBurnout, kSeparation, kTurnBegin, kTurnEnd, kKink } kind;
     int stage;
   };
 
@@ -63,15 +69,17 @@ class Ascent {
     return Vector3(y[3] + omega * y[1], y[4] - omega * y[0], y[5]);
   }
   Matrix3 Attitude(double t, const double* y) const;
-  LauncherInstant Instant(double t, const double* y) const;
+  LauncherInstant Instant(double t, const double* y, const Matrix3& R_IB) const;
   Vector3 Acceleration(double t, const double* y) const;
+  double TurnRate(double t, const double* y) const;
   PitchYawRoll Angles(double t, const double* y) const {
     return ToPitchYawRoll(QuaternionOf(frame_.R_IL.transpose() * Attitude(t, y)));
   }
   std::vector<Event> Events();
   bool Advance(double to_s);
   void Happen(const Event& event);
-  void Observe();
+  void Observe(bool record = true);
+  void Record(const LauncherInstant& now);
   void AddKnot(double t, const double* y);
   void Finish();
 
@@ -113,20 +121,45 @@ Matrix3 Ascent::Attitude(double t, const double* y) const {
   return R_IB;
 }
 
-LauncherInstant Ascent::Instant(double t, const double* y) const {
+LauncherInstant Ascent::Instant(double t, const double* y, const Matrix3& R_IB) const {
   RigidBodyState state;
   state.p_EoC_I = Vector3(y[0], y[1], y[2]);
   state.v_IC_I = Vector3(y[3], y[4], y[5]);
-  state.q_IB = QuaternionOf(Attitude(t, y));
+  state.q_IB = QuaternionOf(R_IB);
   std::array<double, kLauncherSize> full{};
   WriteState(state, full.data());
   return Evaluate(model_.plant, phase_, t, full.data());
 }
 
 Vector3 Ascent::Acceleration(double t, const double* y) const {
-  const LauncherInstant now = Instant(t, y);
+  const Matrix3 R_IB = Attitude(t, y);
+  const LauncherInstant now = Instant(t, y, R_IB);
   return Gravitation(model_.plant.environment.earth, Vector3(y[0], y[1], y[2])) +
-         Attitude(t, y) * (now.loads.force_n / now.loads.mass_kg);
+         R_IB * (now.loads.force_n / now.loads.mass_kg);
+}
+
+// Calls visit(t + dt, state there) for dt = ±1 ms along the motion, to difference what depends on both.
+template <typename Visit>
+void Beside(double t, const double* y, const Vector3& acceleration, const Visit& visit) {
+  for (const double dt : {-kDifference_s, kDifference_s}) {
+    double there[6];
+    for (int i = 0; i < 3; ++i) {
+      there[i] = y[i] + dt * y[3 + i] + 0.5 * dt * dt * acceleration[i];
+      there[3 + i] = y[3 + i] + dt * acceleration[i];
+    }
+    visit(t + dt, there);
+  }
+}
+
+// Of the body axis against the stars.
+double Ascent::TurnRate(double t, const double* y) const {
+  Vector3 turned = Vector3::Zero();
+  double sign = -1.0;
+  Beside(t, y, Acceleration(t, y), [&](double beside_s, const double* there) {
+    turned += sign * Attitude(beside_s, there).col(0);
+    sign = 1.0;
+  });
+  return turned.norm() / (2.0 * kDifference_s);
 }
 
 std::vector<Ascent::Event> Ascent::Events() {
@@ -142,39 +175,35 @@ std::vector<Ascent::Event> Ascent::Events() {
   for (std::size_t i = 0; i <= last; ++i) {
     const int stage = static_cast<int>(i);
     events.push_back({times[i].ignition_s, Event::kIgnition, stage});
+    events.push_back({times[i].ignition_s + burns[i].rise_s, Event::kKink, stage});
+    events.push_back({times[i].burnout_s - burns[i].tail_s, Event::kKink, stage});
     events.push_back({times[i].burnout_s, Event::kBurnout, stage});
     if (i < last) events.push_back({times[i].separation_s, Event::kSeparation, stage});
   }
-  events.push_back({program_.t1_s, Event::kTurn, 0});
+  events.push_back({program_.t1_s, Event::kTurnBegin, 0});
   events.push_back({program_.t3_s, Event::kKink, 0});
-  events.push_back({program_.t2_s, Event::kKink, 0});
+  events.push_back({program_.t2_s, Event::kTurnEnd, 0});
   std::stable_sort(events.begin(), events.end(),
                    [](const Event& a, const Event& b) { return a.time_s < b.time_s; });
   return events;
 }
 
 void Ascent::AddKnot(double t, const double* y) {
-  // Rates by central differences along the motion: the program's own derivative, not the table's.
-  constexpr double kStep_s = 1e-3;
-  const Vector3 a = Acceleration(t, y);
-  const auto moved = [&](double dt) {
-    double there[6];
-    for (int i = 0; i < 3; ++i) {
-      there[i] = y[i] + dt * y[3 + i] + 0.5 * dt * dt * a[i];
-      there[3 + i] = y[3 + i] + dt * a[i];
-    }
-    return Angles(t + dt, there);
-  };
-  const PitchYawRoll now = Angles(t, y), after = moved(kStep_s), before = moved(-kStep_s);
+  // Rates along the motion: the program's own derivative, not the table's.
+  std::array<PitchYawRoll, 2> beside;
+  std::size_t count = 0;
+  Beside(t, y, Acceleration(t, y),
+         [&](double beside_s, const double* there) { beside[count++] = Angles(beside_s, there); });
+  const PitchYawRoll now = Angles(t, y);
   const auto rate = [&](double PitchYawRoll::*angle) {
-    return (after.*angle - before.*angle) / (2.0 * kStep_s);
+    return (beside[1].*angle - beside[0].*angle) / (2.0 * kDifference_s);
   };
   result_.attitude.knots.push_back({t, now.pitch, now.yaw, now.roll, rate(&PitchYawRoll::pitch),
                                     rate(&PitchYawRoll::yaw), rate(&PitchYawRoll::roll)});
 }
 
-void Ascent::Observe() {
-  const LauncherInstant now = Instant(time_s_, y_);
+void Ascent::Observe(bool record) {
+  const LauncherInstant now = Instant(time_s_, y_, Attitude(time_s_, y_));
   const double alpha = std::fabs(ProgrammedIncidence(program_, time_s_));
   const Vector3 specific = now.loads.force_n / (now.loads.mass_kg * kStandardGravity);
   AscentResult& r = result_;
@@ -185,8 +214,12 @@ void Ascent::Observe() {
       r.lateral_load_max_g, Sqrt(specific.y() * specific.y() + specific.z() * specific.z()));
   if (now.air.mach >= options_.mach_low && now.air.mach <= options_.mach_high)
     r.transonic_alpha_max_rad = std::max(r.transonic_alpha_max_rad, alpha);
-  if (!options_.record) return;
+  if (turn_ == ProgramPhase::kTurn && time_s_ <= program_.t2_s)
+    r.turn_rate_max_rad_s = std::max(r.turn_rate_max_rad_s, TurnRate(time_s_, y_));
+  if (options_.record && record) Record(now);
+}
 
+void Ascent::Record(const LauncherInstant& now) {
   const Vector3 p(y_[0], y_[1], y_[2]), v(y_[3], y_[4], y_[5]);
   const Vector3 relative = AirVelocity(y_);
   const PitchYawRoll angles = Angles(time_s_, y_);
@@ -204,26 +237,34 @@ void Ascent::Observe() {
   s.roll_rad = angles.roll;
   s.mach = now.air.mach;
   s.qbar_pa = now.air.qbar_pa;
-  s.axial_load_g = specific.x();
+  s.axial_load_g = now.loads.force_n.x() / (now.loads.mass_kg * kStandardGravity);
   s.mass_kg = now.loads.mass_kg;
-  r.samples.push_back(s);
-  if (r.attitude.knots.empty() || time_s_ > r.attitude.knots.back().time_s + kSameInstant_s)
+  result_.samples.push_back(s);
+  const std::vector<AttitudeKnot>& knots = result_.attitude.knots;
+  if (knots.empty() || time_s_ > knots.back().time_s + kSameInstant_s)
     AddKnot(time_s_, y_);
 }
 
 bool Ascent::Advance(double to_s) {
-  const bool coast = !phase_.burning && phase_.stack + 1 == static_cast<int>(model_.plant.stacks.size()) &&
-                     phase_.stack > 0;
-  double largest = coast ? options_.coast_step_s : options_.burn_step_s;
-  if (options_.record) largest = std::min(largest, time_s_ < program_.t2_s + 2.0 ? kKickKnot_s : kKnot_s);
+  const bool kick = time_s_ < program_.t2_s;
+  const AscentSteps& steps = options_.steps;
+  const bool air = phase_.stack == 0 && phase_.burning;
+  const double largest = air ? steps.air_s : phase_.burning ? steps.burn_s : steps.coast_s;
+  const double knot = kick ? kKickKnot_s : phase_.burning ? kBurnKnot_s : kCoastKnot_s;
+  const auto pieces = [](double whole, double part) {
+    return std::max(1, static_cast<int>(std::ceil(whole / part - kSameInstant_s)));
+  };
+  // The steps are the same whether their ends are recorded or not.
   const double from = time_s_;
-  const int steps = std::max(1, static_cast<int>(std::ceil((to_s - from) / largest - kSameInstant_s)));
-  for (int i = 1; i <= steps; ++i) {
-    const double next = i == steps ? to_s : from + (to_s - from) * i / steps;
+  const int knots = pieces(to_s - from, std::max(knot, largest));
+  const int steps_per_knot = pieces((to_s - from) / knots, largest);
+  const int count = knots * steps_per_knot;
+  for (int i = 1; i <= count; ++i) {
+    const double next = i == count ? to_s : from + (to_s - from) * i / count;
     if (!integrator_.Advance(time_s_, next, 1, y_)) return false;
     time_s_ = next;
     // The end of an interval is observed after its event, on the far side of the kink.
-    if (i < steps) Observe();
+    if (i < count) Observe(i % steps_per_knot == 0);
   }
   const Geodetic place = ToGeodetic(model_.plant.environment.earth, Vector3(y_[0], y_[1], y_[2]));
   return place.altitude_m > model_.vehicle.site.altitude_m - kGround_m;
@@ -251,12 +292,14 @@ void Ascent::Happen(const Event& event) {
       phase_.burnt = false;
       break;
     }
-    case Event::kTurn:
+    case Event::kTurnBegin:
       turn_offset_I_ = Attitude(time_s_, y_).col(0) - AirVelocity(y_).normalized();
       turn_ = ProgramPhase::kTurn;
       break;
+    case Event::kTurnEnd:
+      result_.mach_at_t2 = Instant(time_s_, y_, Attitude(time_s_, y_)).air.mach;
+      break;
     case Event::kKink:
-      if (event.time_s == program_.t2_s) result_.mach_at_t2 = Instant(time_s_, y_).air.mach;
       break;
   }
 }

@@ -24,10 +24,16 @@ struct AscentModel {
   double tick_s = 0.01;  ///< burnout is detected on the autopilot's ticks
 };
 
+/// Largest integration steps, which end at every event and kink of thrust and program.
+struct AscentSteps {
+  double air_s = 0.1;    ///< to the first stage's burnout, where kinks of the air's tables count
+  double burn_s = 0.5;   ///< while a later motor burns
+  double coast_s = 5.0;  ///< while none does
+};
+
 struct AscentOptions {
-  double burn_step_s = 0.25;   ///< largest step while thrust acts or the air does
-  double coast_step_s = 10.0;  ///< largest step of the coast
-  bool record = false;         ///< keep samples and the attitude program
+  AscentSteps steps;
+  bool record = false;         ///< keep samples and the attitude program, one a step
   double mach_low = 0.8;       ///< of the transonic range
   double mach_high = 1.2;
 };
@@ -61,6 +67,7 @@ struct AscentResult {
   double q_alpha_max_pa_rad = 0.0;
   double axial_load_max_g = 0.0;
   double lateral_load_max_g = 0.0;
+  double turn_rate_max_rad_s = 0.0;  ///< of the body axis in the pitch-over
   double mach_at_t2 = 0.0;
   double transonic_alpha_max_rad = 0.0;  ///< largest |programmed alpha| between the Mach limits
   std::vector<AscentSample> samples;     ///< with `record`

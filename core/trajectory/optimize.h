@@ -1,8 +1,7 @@
-// Finds the flight program that reaches a target orbit: a genetic algorithm on objective (8), then
-// refinement in the unknowns in which the problem is well posed.
+// Finds the flight program that reaches a target orbit: a genetic algorithm on objective (8) of the paper,
+// then refinement in the unknowns in which the problem is well posed.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -21,32 +20,72 @@ struct OrbitErrors {
 };
 OrbitErrors ErrorsOf(const TrajectoryProblem& problem, const Orbit& orbit);
 
+/// Every setting of the search but the problem's own (bounds, weights, limits, population, generations,
+/// seed), which comes from the user's file.
+struct TrajectoryOptions {
+  /// Of the autopilot that will fly the reference: burnout is detected on its ticks. Positive.
+  double tick_s = 0.01;
+  /// Threads that fly individuals; 1 to 1024. The result does not depend on it.
+  int threads = 1;
+  /// Of the search. On the shipped vehicle within 0.02 km, 0.04 m/s and 0.0004 deg of the converged injection:
+  /// less than `tie_tolerance` tells apart.
+  AscentSteps search_steps = {0.5, 2.0, 20.0};
+  /// Of the refinement and the reference. Halving them moves the shipped reference's injection by less than
+  /// 0.1 m, 0.1 mm/s and 1e-7 deg.
+  AscentSteps steps = {0.02, 0.1, 5.0};
+  /// Objectives (8) within this much of the best are equal, and the least peak of q·alpha decides; not
+  /// negative. With the shipped weights 1 is a kilometre, 10 m/s or a degree: misses that the refinement
+  /// removes without moving the program visibly.
+  double tie_tolerance = 1.0;
+  /// Probability that a variable of a child is mutated; 0 to 1. Measured on the shipped problem over 6 seeds and
+  /// 60 x 60 evaluations: the worst objective is 10 with one half, 34 with one variable a child.
+  double mutation_probability = 0.5;
+  /// Fraction of each limit that the search keeps in reserve, since the refinement moves the program a little;
+  /// 0 to 1. Removing a miss of `tie_tolerance` changes alpha_max by less than 0.5 %.
+  double limit_reserve = 0.01;
+  /// Shortest time from t1 to t3 and from t3 to t2; positive. How fast the program may turn is the limit's
+  /// business; this keeps the times apart.
+  double shortest_ramp_s = 1.0;
+  /// Individuals and generations of the search among programs that reach the target (selection.h), in the ranges
+  /// of GeneticAlgorithmOptions. On the shipped problem twice as many lower the peak of q·alpha by less
+  /// than 1 %.
+  int selection_population = 24;
+  int selection_generations = 20;
+  /// A target is reached when the refinement ends within these and every constraint holds; positive.
+  OrbitErrors tolerance = {1.0, 1e-3, 1.7453292519943296e-8};
+  /// Of the refinement: steps tried; 1 to 100,000.
+  int refinement_iterations = 60;
+};
+
+/// The search's log and the refinement's end beside what they found.
 struct OptimizationResult {
-  bool reached = false;          ///< within kReached of the target, constraints met
-  std::string statement;         ///< how far it got and what stopped it; empty when reached
-  Reference reference;           ///< the best found, with attitude program and margins
-  OrbitErrors errors;            ///< of the reference
-  OrbitErrors halved_step_errors;  ///< the same program flown with half the steps
+  bool reached = false;            ///< within the tolerance of the target, constraints met
+  std::string statement;           ///< how far it got and what stopped it; empty when reached
+  Reference reference;             ///< the best found, with attitude program and margins
+  OrbitErrors errors;              ///< of the reference
+  OrbitErrors halved_step_errors;  ///< of the same program flown with half the steps
   std::vector<AscentSample> history;
   GeneticAlgorithmResult genetic;
+  /// Along the programs that reach the target (selection.h); an empty log if none was found to start from.
+  GeneticAlgorithmResult selection;
   LeastSquaresResult refinement;
 };
 
-/// A target counts as reached within these, which the refinement beats by far unless the vehicle cannot.
-inline constexpr double kReachedAltitude_m = 1000.0;
-inline constexpr double kReachedVelocity_m_s = 5.0;
-inline constexpr double kReachedAngle_rad = 0.05 * 3.14159265358979323846 / 180.0;
+/// How far, s, a program's times are from order: t1, a ramp, t3, a ramp, t2. 0: in order.
+double DisorderOf(const FlightProgram& program, const TrajectoryOptions& options);
 
 /// Variables in the order alpha_max, t1, t3, t2, coast, launch azimuth.
 FlightProgram ProgramOf(const std::vector<double>& variables);
 
-/// `threads` changes the time it takes, never the result. `observer`, if given, sees each generation.
-OptimizationResult OptimizeTrajectory(const Vehicle& vehicle, const TrajectoryProblem& problem, double tick_s,
-                                      int threads,
+/// `observer`, if given, sees each generation. A target that cannot be reached is a result, not an error.
+/// Throws std::invalid_argument for options out of range.
+OptimizationResult OptimizeTrajectory(const Vehicle& vehicle, const TrajectoryProblem& problem,
+                                      const TrajectoryOptions& options,
                                       const GeneticAlgorithm::Observer& observer = nullptr);
 
-/// Flies a program as the refinement does: orbit, margins, attitude program, history.
+/// Flies a program with `options.steps`: orbit, margins, attitude program, history.
 Reference BuildReference(const AscentModel& model, const TrajectoryProblem& problem,
-                         const FlightProgram& program, std::vector<AscentSample>* history = nullptr);
+                         const FlightProgram& program, const TrajectoryOptions& options,
+                         std::vector<AscentSample>* history = nullptr);
 
 }  // namespace dispersa

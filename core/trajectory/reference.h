@@ -54,6 +54,7 @@ struct TrajectoryProblem {
   double axial_load_limit_g = 12.0;
   double lateral_load_limit_g = 1.5;
   double alpha_limit_rad = 0.0;
+  double turn_rate_limit_rad_s = 0.0; ///< of the body axis in the pitch-over; 0: reported only
   double transonic_mach_low = 0.8;    ///< alpha = 0 from here
   double transonic_mach_high = 1.2;   ///< to here
   double q_max_limit_pa = 0.0;        ///< 0: reported only

@@ -1,0 +1,25 @@
+// The refinement: flight programs to the orbit's last metre, in (alpha_max, coast, launch azimuth) with t1, t3
+// and t2 frozen. In these three the injection is well posed (two or three Newton steps); all six together
+// leave a manifold of programs with the same orbit.
+#pragma once
+
+#include "core/optimization/levenberg_marquardt.h"
+#include "core/trajectory/ascent.h"
+#include "core/trajectory/optimize.h"
+
+namespace dispersa {
+
+/// Changes `program` to the best found within the problem's bounds; variables with equal bounds stay.
+/// `held_at_bound` of the result: 0 alpha_max, 1 coast, 2 launch azimuth.
+LeastSquaresResult RefineProgram(const AscentModel& model, const TrajectoryProblem& problem,
+                                 const TrajectoryOptions& options, FlightProgram* program);
+
+/// Altitude and flight path angle only, by (alpha_max, coast) at the program's azimuth: the speed that is left
+/// then tells the vehicle's energy.
+LeastSquaresResult RefineAltitudeAndAngle(const AscentModel& model, const TrajectoryProblem& problem,
+                                          const TrajectoryOptions& options, FlightProgram* program);
+
+/// Options of one ascent of a problem.
+AscentOptions AscentOptionsOf(const TrajectoryProblem& problem, const AscentSteps& steps);
+
+}  // namespace dispersa

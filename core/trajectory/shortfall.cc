@@ -1,0 +1,113 @@
+#include "core/trajectory/shortfall.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+
+#include "core/math/constants.h"
+#include "core/trajectory/refine.h"
+
+namespace dispersa {
+
+namespace {
+
+double Deg(double radians) { return radians / kRadPerDeg; }
+
+// A variable that the refinement holds at the end of its bounds.
+std::string HeldText(const TrajectoryProblem& problem, const FlightProgram& program, std::size_t held) {
+  struct Variable {
+    const char* name;
+    double value;
+    Bounds bounds;
+    double unit;
+    const char* suffix;
+  };
+  const Variable variables[] = {
+      {"alpha_max", program.alpha_max_rad, problem.alpha_max_rad, kRadPerDeg, "deg"},
+      {"coast", program.coast_s, problem.coast_s, 1.0, "s"},
+      {"launch_azimuth", program.launch_azimuth_rad, problem.launch_azimuth_rad, kRadPerDeg, "deg"}};
+  const Variable& v = variables[held];
+  const bool upper = v.value - v.bounds.low > v.bounds.high - v.value;
+  return fmt::format(" {} is at the {} end of its bounds ({:.6g} {}).", v.name, upper ? "upper" : "lower",
+                     v.value / v.unit, v.suffix);
+}
+
+struct SpeedAtTarget {
+  double velocity_m_s = 0.0;
+  bool on_target = false;  ///< altitude and angle are the target's
+  std::vector<std::size_t> held;
+  FlightProgram program;
+};
+
+// The speed at the target's altitude and angle toward one azimuth; if they cannot be had, the speed at the
+// target's radius of the orbit that comes nearest, by its energy.
+SpeedAtTarget SpeedToward(const AscentModel& model, const TrajectoryProblem& problem,
+                          const TrajectoryOptions& options, FlightProgram program, double azimuth_rad) {
+  program.launch_azimuth_rad = azimuth_rad;
+  SpeedAtTarget speed;
+  const LeastSquaresResult refined = RefineAltitudeAndAngle(model, problem, options, &program);
+  const AscentResult ascent = FlyAscent(model, program, AscentOptionsOf(problem, options.steps));
+  const double mu = model.plant.environment.earth.mu_m3_s2;
+  const double radius_m = ascent.p_EoC_I.norm();
+  const double target_radius_m = radius_m - ascent.orbit.altitude_m + problem.target_altitude_m;
+  const double squared =
+      ascent.v_IC_I.squaredNorm() + 2.0 * mu * (1.0 / target_radius_m - 1.0 / radius_m);
+  speed.on_target = refined.status == LeastSquaresStatus::kConverged;
+  speed.velocity_m_s = std::sqrt(std::fmax(squared, 0.0));
+  speed.held = refined.held_at_bound;
+  speed.program = program;
+  return speed;
+}
+
+const char* Where(const SpeedAtTarget& speed) {
+  return speed.on_target ? "at the target's altitude and angle" : "carried to the target's altitude";
+}
+
+std::string EnergyText(const AscentModel& model, const TrajectoryProblem& problem,
+                       const TrajectoryOptions& options, const FlightProgram& program) {
+  const Bounds& azimuth = problem.launch_azimuth_rad;
+  SpeedAtTarget slow = SpeedToward(model, problem, options, program, azimuth.high);
+  SpeedAtTarget fast = SpeedToward(model, problem, options, program, azimuth.low);
+  if (slow.velocity_m_s > fast.velocity_m_s) std::swap(slow, fast);
+  const double asked = problem.target_velocity_m_s;
+  if (fast.velocity_m_s < asked)
+    return fmt::format(
+        " Energy: {} the vehicle has at most {:.1f} m/s (launch azimuth {:.6g} deg), {:.1f} m/s less than the "
+        "target asks.",
+        Where(fast), fast.velocity_m_s, Deg(fast.program.launch_azimuth_rad), asked - fast.velocity_m_s);
+  if (slow.velocity_m_s > asked)
+    return fmt::format(
+        " Energy: {} the vehicle has at least {:.1f} m/s (launch azimuth {:.6g} deg), {:.1f} m/s more than the "
+        "target asks; the bounds of the launch azimuth do not let it spend the surplus.",
+        Where(slow), slow.velocity_m_s, Deg(slow.program.launch_azimuth_rad), slow.velocity_m_s - asked);
+  return "";
+}
+
+}  // namespace
+
+std::string DescribeShortfall(const AscentModel& model, const TrajectoryProblem& problem,
+                              const TrajectoryOptions& options, const OptimizationResult& result) {
+  const FlightProgram& program = result.reference.program;
+  const AscentResult ascent = FlyAscent(model, program, AscentOptionsOf(problem, options.steps));
+  if (!ascent.completed)
+    return fmt::format("The target is out of reach: every program falls back to the ground; the best flies {:.1f} s.",
+                       ascent.end_time_s);
+  const OrbitErrors& e = result.errors;
+  std::string text = fmt::format(
+      "The target is out of reach: the best program ends {:+.3f} km, {:+.3f} m/s and {:+.4f} deg from it.",
+      e.altitude_m * 1e-3, e.velocity_m_s, Deg(e.flight_path_angle_rad));
+  const std::size_t before = text.size();
+  for (const ConstraintMargin& c : result.reference.constraints)
+    if (c.enforced && c.margin < 0.0)
+      text += fmt::format(" Constraint: {} = {:.6g} exceeds its limit of {:.6g}.", c.name, c.value, c.limit);
+  if (result.refinement.status != LeastSquaresStatus::kConverged) {
+    for (const std::size_t held : result.refinement.held_at_bound)
+      text += " Bound:" + HeldText(problem, program, held);
+    text += EnergyText(model, problem, options, program);
+  }
+  if (text.size() == before) text += fmt::format(" The refinement {}.", Describe(result.refinement.status));
+  return text;
+}
+
+}  // namespace dispersa
