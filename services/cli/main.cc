@@ -22,6 +22,8 @@ void AddCommands(CLI::App& app, Invocation& invocation) {
   AddRunCommand(app, invocation);
   AddReplayCommand(app, invocation);
   AddReportCommand(app, invocation);
+  AddCompareCommand(app, invocation);
+  AddPaperCommand(app, invocation);
 }
 
 ExitCode Say(const std::exception& error, ExitCode code) {
