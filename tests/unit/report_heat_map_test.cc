@@ -1,0 +1,71 @@
+// What a cell of a map shows.
+#include "core/report/heat_map.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace dispersa {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+using Region = HeatMapCell::Region;
+
+HeatMap Sample() {
+  HeatMap map;
+  map.x_label = "across";
+  map.y_label = "up";
+  map.value_label = "error, °";
+  map.x = {0.1, 1, 10};
+  map.y = {2};
+  map.cells = {{0.01, Region::kSound}, {1.0, Region::kLimitCycle}, {0.5, Region::kLost}};
+  map.framed_x = 1;
+  map.framed_y = 2;
+  return map;
+}
+
+std::size_t Count(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+TEST(ReportHeatMap, CellsSayTheirRegionWithoutColour) {
+  const std::string svg = HeatMapSvg(Sample(), "a map");
+  EXPECT_THAT(svg, HasSubstr(">0.0100</text>"));
+  EXPECT_THAT(svg, HasSubstr(">1.00 ~</text>"));
+  EXPECT_THAT(svg, HasSubstr(">×</text>"));
+  EXPECT_THAT(svg, Not(HasSubstr("0.500")));  // a lost flight has no value
+  EXPECT_THAT(svg, HasSubstr("aria-label=\"a map\""));
+}
+
+TEST(ReportHeatMap, ShadesFollowTheLogarithmOfTheCompletedFlights) {
+  HeatMap map = Sample();
+  // Equal ratios from 0.01 to 1: six shades end at 0.0215, 0.0464, 0.1, 0.215, 0.464.
+  map.x = {1, 2, 3, 4, 5, 6, 7};
+  map.cells = {{0.01}, {0.03}, {0.05}, {0.15}, {0.3}, {0.7}, {1.0}};
+  const std::string svg = HeatMapSvg(map, "");
+  for (const char* shade : {"\"heat-0\"", "\"heat-1\"", "\"heat-2\"", "\"heat-3\"", "\"heat-4\""})
+    EXPECT_EQ(Count(svg, shade), 1) << shade;
+  EXPECT_EQ(Count(svg, "\"heat-5\""), 2);  // 0.7 and the largest itself
+}
+
+TEST(ReportHeatMap, OneCellIsFramedIfTheGridHasIt) {
+  EXPECT_EQ(Count(HeatMapSvg(Sample(), ""), "heat-frame"), 1);
+  HeatMap map = Sample();
+  map.framed_x = 3;
+  EXPECT_EQ(Count(HeatMapSvg(map, ""), "heat-frame"), 0);
+}
+
+TEST(ReportHeatMap, EqualOrMissingValuesDraw) {
+  HeatMap map = Sample();
+  map.cells = {{0.5}, {0.5}, {0.5}};
+  EXPECT_EQ(Count(HeatMapSvg(map, ""), "\"heat-0\""), 3);
+  map.cells = {{0.0, Region::kLost}, {0.0, Region::kLost}, {0.0, Region::kLost}};
+  EXPECT_EQ(Count(HeatMapSvg(map, ""), ">×</text>"), 3);
+}
+
+}  // namespace
+}  // namespace dispersa
