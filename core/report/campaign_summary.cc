@@ -23,7 +23,9 @@ std::size_t MetricPosition(const std::string& name) {
 
 WorstCases FindWorst(const std::string& metric, Worse worse, const CaseColumns& cases) {
   const std::vector<double>& values = cases.metrics.at(MetricPosition(metric));
-  const auto lost = [&](std::size_t i) { return cases.outcome[i] != Outcome::kCompleted || !std::isfinite(values[i]); };
+  const auto lost = [&](std::size_t i) {
+    return cases.outcome[i] != Outcome::kCompleted || !std::isfinite(values[i]);
+  };
   std::vector<std::size_t> order(cases.rows());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   const auto is_worse = [&](std::size_t a, std::size_t b) {
@@ -58,20 +60,28 @@ CampaignVerdict Overall(const CampaignSummary& summary) {
 
 const char* CampaignVerdictName(CampaignVerdict verdict) {
   switch (verdict) {
-    case CampaignVerdict::kPass: return "pass";
-    case CampaignVerdict::kInconclusive: return "inconclusive";
-    case CampaignVerdict::kFail: return "fail";
-    case CampaignVerdict::kIncomplete: return "incomplete";
+    case CampaignVerdict::kPass:
+      return "pass";
+    case CampaignVerdict::kInconclusive:
+      return "inconclusive";
+    case CampaignVerdict::kFail:
+      return "fail";
+    case CampaignVerdict::kIncomplete:
+      return "incomplete";
   }
   return "";
 }
 
 int VerdictExitCode(CampaignVerdict verdict) {
   switch (verdict) {
-    case CampaignVerdict::kPass: return 0;
-    case CampaignVerdict::kInconclusive: return 4;
-    case CampaignVerdict::kFail: return 3;
-    case CampaignVerdict::kIncomplete: return 5;
+    case CampaignVerdict::kPass:
+      return 0;
+    case CampaignVerdict::kInconclusive:
+      return 4;
+    case CampaignVerdict::kFail:
+      return 3;
+    case CampaignVerdict::kIncomplete:
+      return 5;
   }
   return 1;
 }

@@ -46,23 +46,23 @@ struct CampaignSummary {
   std::string id;
   std::string flight_id;
   std::uint64_t seed = 0;
-  std::uint64_t cases = 0;     ///< asked for
+  std::uint64_t cases = 0;  ///< asked for
   std::uint64_t flown = 0;
   SamplingMethod sampling = SamplingMethod::kMonteCarlo;
   std::string engine;
   std::string vehicle;
   std::string reference;
-  Orbit reference_orbit;       ///< that the optimiser reached with it
+  Orbit reference_orbit;  ///< that the optimiser reached with it
   std::string autopilot;
   CampaignVerdict verdict = CampaignVerdict::kIncomplete;
   std::array<std::uint64_t, kOutcomeCount> outcomes{};
   std::vector<LostFlight> lost_flights;  ///< the first 20 that were not completed
-  std::vector<MetricSummary> metrics;  ///< in the order of MetricNames()
+  std::vector<MetricSummary> metrics;    ///< in the order of MetricNames()
   std::vector<RequirementSummary> requirements;
   std::vector<QuarantinedCase> quarantined;
   std::vector<WorstCases> worst_cases;
   std::vector<DispersionSummary> dispersions;
-  std::optional<CaseResult> nominal;   ///< flown without dispersions, when it was flown
+  std::optional<CaseResult> nominal;  ///< flown without dispersions, when it was flown
 };
 
 /// From what is stored, without flying anything (so without `nominal`).

@@ -21,7 +21,8 @@ CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& want
           {result.case_index, result.outcome, result.end_time_s, result.end_stage, result.reason});
     }
     for (const int input : wanted_inputs) {
-      columns.inputs[static_cast<std::size_t>(input)].push_back(result.inputs[static_cast<std::size_t>(input)]);
+      columns.inputs[static_cast<std::size_t>(input)].push_back(
+          result.inputs[static_cast<std::size_t>(input)]);
     }
     for (std::size_t i = 0; i < columns.metrics.size(); ++i) columns.metrics[i].push_back(result.metrics[i]);
   });

@@ -20,7 +20,8 @@ double RoundStep(double range, int count) {
 
 }  // namespace
 
-ChartScale::ChartScale(const ChartAxis& axis, double low, double high, double from, double to, int about_ticks)
+ChartScale::ChartScale(const ChartAxis& axis, double low, double high, double from, double to,
+                       int about_ticks)
     : logarithmic_(axis.logarithmic), low_(low), high_(high), from_(from), to_(to) {
   if (!(low_ <= high_)) low_ = 0.0, high_ = 1.0;  // no data
   if (axis.low) low_ = *axis.low;
@@ -38,8 +39,8 @@ ChartScale::ChartScale(const ChartAxis& axis, double low, double high, double fr
 }
 
 double ChartScale::At(double value) const {
-  const double part = logarithmic_ ? std::log10(value / low_) / std::log10(high_ / low_)
-                                   : (value - low_) / (high_ - low_);
+  const double part =
+      logarithmic_ ? std::log10(value / low_) / std::log10(high_ / low_) : (value - low_) / (high_ - low_);
   return from_ + (to_ - from_) * std::clamp(part, 0.0, 1.0);
 }
 

@@ -15,8 +15,8 @@ struct Tick {
 
 class ChartScale {
  public:
-  /// `low` and `high`: range of the data, which the axis's own ends replace; positions run from `from` to `to`.
-  /// Linear ranges without given ends widen to round numbers.
+  /// `low` and `high`: range of the data, which the axis's own ends replace; positions run from `from` to
+  /// `to`. Linear ranges without given ends widen to round numbers.
   ChartScale(const ChartAxis& axis, double low, double high, double from, double to, int about_ticks);
 
   double At(double value) const;

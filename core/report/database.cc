@@ -50,7 +50,8 @@ Statement Database::Prepare(const std::string& sql) { return Statement(*this, sq
 void Database::Fail(int code) const {
   const int system_error = handle_ != nullptr ? sqlite3_system_errno(handle_) : 0;
   if (IsDiskFull(code, system_error)) {
-    throw ResultError(ResultError::Kind::kDiskFull, fmt::format("{}: no space left on the disk", file_.string()));
+    throw ResultError(ResultError::Kind::kDiskFull,
+                      fmt::format("{}: no space left on the disk", file_.string()));
   }
   throw ResultError(ResultError::Kind::kFile,
                     fmt::format("{}: {}", file_.string(),
@@ -111,7 +112,8 @@ std::int64_t Statement::Integer(int column) const { return sqlite3_column_int64(
 
 std::string Statement::Text(int column) const {
   const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(handle_, column));
-  return text == nullptr ? std::string() : std::string(text, static_cast<std::size_t>(sqlite3_column_bytes(handle_, column)));
+  return text == nullptr ? std::string()
+                         : std::string(text, static_cast<std::size_t>(sqlite3_column_bytes(handle_, column)));
 }
 
 void Statement::Check(int code) const {

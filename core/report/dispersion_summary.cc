@@ -52,7 +52,8 @@ Moments FoldedNormal(double mean, double sigma) {
 std::optional<Moments> Of(const Dispersion& dispersion) {
   const ScalarDistribution& d = dispersion.distribution;
   switch (d.kind) {
-    case Distribution::kConstant: return Moments{dispersion.absolute ? std::fabs(d.nominal) : d.nominal, 0.0, 1.0};
+    case Distribution::kConstant:
+      return Moments{dispersion.absolute ? std::fabs(d.nominal) : d.nominal, 0.0, 1.0};
     case Distribution::kValues: {
       std::vector<double> values = d.values;
       if (dispersion.absolute) {
@@ -65,10 +66,10 @@ std::optional<Moments> Of(const Dispersion& dispersion) {
       return Moments{d.nominal, d.sigma, 3.0};
     case Distribution::kUniform:
       if (dispersion.absolute && d.low < 0.0) return std::nullopt;
-      return Moments {0.5 * (d.low + d.high), (d.high - d.low) / std::sqrt(12.0), 1.8};
+      return Moments{0.5 * (d.low + d.high), (d.high - d.low) / std::sqrt(12.0), 1.8};
     case Distribution::kTwoPoint:
       if (dispersion.absolute && d.low < 0.0) return std::nullopt;
-      return Moments {0.5 * (d.low + d.high), 0.5 * (d.high - d.low), 1.0};
+      return Moments{0.5 * (d.low + d.high), 0.5 * (d.high - d.low), 1.0};
   }
   return std::nullopt;
 }
@@ -79,12 +80,18 @@ std::string Words(const Dispersion& dispersion, double unit, const std::string& 
   const std::string suffix = unit_name.empty() ? "" : " " + unit_name;
   std::string words;
   switch (d.kind) {
-    case Distribution::kConstant: words = "constant " + text(d.nominal) + suffix; break;
+    case Distribution::kConstant:
+      words = "constant " + text(d.nominal) + suffix;
+      break;
     case Distribution::kNormal:
       words = fmt::format("normal, mean {}{}, 3σ {}{}", text(d.nominal), suffix, text(3.0 * d.sigma), suffix);
       break;
-    case Distribution::kUniform: words = fmt::format("uniform, {} to {}{}", text(d.low), text(d.high), suffix); break;
-    case Distribution::kTwoPoint: words = fmt::format("{} or {}{}", text(d.low), text(d.high), suffix); break;
+    case Distribution::kUniform:
+      words = fmt::format("uniform, {} to {}{}", text(d.low), text(d.high), suffix);
+      break;
+    case Distribution::kTwoPoint:
+      words = fmt::format("{} or {}{}", text(d.low), text(d.high), suffix);
+      break;
     case Distribution::kValues:
       words = "one of";
       for (const double value : d.values) words += " " + text(value);

@@ -19,8 +19,8 @@ struct Histogram {
   std::vector<double> counts;
 };
 
-/// Width of D. Freedman and P. Diaconis (Z. Wahrscheinlichkeitstheorie 57 (1981) 453), but at most 50 bins and none
-/// narrower than `least_width`, so that it can be seen.
+/// Width of D. Freedman and P. Diaconis (Z. Wahrscheinlichkeitstheorie 57 (1981) 453), but at most 50 bins
+/// and none narrower than `least_width`, so that it can be seen.
 Histogram MakeHistogram(const std::vector<double>& sorted, double least_width) {
   const double low = sorted.front();
   const double range = sorted.back() - low;
@@ -29,7 +29,8 @@ Histogram MakeHistogram(const std::vector<double>& sorted, double least_width) {
     return {{low - half, low + half}, {static_cast<double>(sorted.size())}};
   }
   const double spread = Quantile(sorted, 0.75) - Quantile(sorted, 0.25);
-  const double width = std::max({2.0 * spread / std::cbrt(static_cast<double>(sorted.size())), range / 50.0, least_width});
+  const double width =
+      std::max({2.0 * spread / std::cbrt(static_cast<double>(sorted.size())), range / 50.0, least_width});
   const int bins = std::max(1, static_cast<int>(std::ceil(range / width)));
   Histogram histogram;
   for (int i = 0; i <= bins; ++i) histogram.edges.push_back(low + range * i / bins);
@@ -56,12 +57,13 @@ std::string AxisLabel(const std::string& metric) {
   return info.title + (info.unit.empty() ? "" : ", " + info.unit);
 }
 
-std::string Scatter(const std::string& x, const std::string& y, const CampaignSummary& summary, const CaseColumns& cases,
-                    const std::string& caption) {
+std::string Scatter(const std::string& x, const std::string& y, const CampaignSummary& summary,
+                    const CaseColumns& cases, const std::string& caption) {
   SvgChart chart({.label = AxisLabel(x)}, {.label = AxisLabel(y)}, 520, 300);
   chart.Points(cases.metrics.at(Position(x)), cases.metrics.at(Position(y)), "dots", "cases");
   if (summary.nominal) {
-    chart.Points({summary.nominal->metrics[Position(x)]}, {summary.nominal->metrics[Position(y)]}, "dot-nominal", "nominal");
+    chart.Points({summary.nominal->metrics[Position(x)]}, {summary.nominal->metrics[Position(y)]},
+                 "dot-nominal", "nominal");
   }
   return Figure(chart.Svg(caption), HtmlText(caption));
 }
@@ -74,7 +76,8 @@ std::string InjectionFigures(const CampaignSummary& summary, const CaseColumns& 
          Scatter("perigee_km", "apogee_km", summary, cases, "The orbits that follow from it.");
 }
 
-std::string DistributionFigures(const std::string& metric, const CampaignSummary& summary, const CaseColumns& cases) {
+std::string DistributionFigures(const std::string& metric, const CampaignSummary& summary,
+                                const CaseColumns& cases) {
   const MetricInfo info = DescribeMetric(metric);
   const std::string title = HtmlText(info.title);
   const std::size_t position = Position(metric);
@@ -110,26 +113,36 @@ std::string DistributionFigures(const std::string& metric, const CampaignSummary
   std::vector<double> share;
   for (std::size_t i = 0; i < good.size(); ++i) {
     x.insert(x.end(), {good[i], good[i]});
-    share.insert(share.end(), {(all - static_cast<double>(i)) / all, (all - static_cast<double>(i) - 1.0) / all});
+    share.insert(share.end(),
+                 {(all - static_cast<double>(i)) / all, (all - static_cast<double>(i) - 1.0) / all});
   }
   double lowest_share = 0.5 / all;
   for (const RequirementSummary* requirement : requirements) {
     lowest_share = std::min(lowest_share, 0.5 * (1.0 - requirement->probability));
   }
-  SvgChart tail({.label = axis}, {.label = above ? "share of cases at most this" : "share of cases beyond this",
-                                  .low = std::max(lowest_share, 1e-6), .high = 1.0, .logarithmic = true, .percent = true}, 520, 250);
+  SvgChart tail({.label = axis},
+                {.label = above ? "share of cases at most this" : "share of cases beyond this",
+                 .low = std::max(lowest_share, 1e-6),
+                 .high = 1.0,
+                 .logarithmic = true,
+                 .percent = true},
+                520, 250);
   tail.Line(x, share, "line-0", "cases");
   for (const RequirementSummary* requirement : requirements) {
     bars.VerticalLimit(requirement->limit, "limit: " + LimitText(*requirement, info.unit));
     tail.VerticalLimit(requirement->limit, "limit");
-    tail.HorizontalLimit(1.0 - requirement->probability, fmt::format("{} allowed", PercentText(1.0 - requirement->probability)));
+    tail.HorizontalLimit(1.0 - requirement->probability,
+                         fmt::format("{} allowed", PercentText(1.0 - requirement->probability)));
   }
   const std::size_t undefined = cases.rows() - sorted.size();
-  const std::string missing = undefined > 0 ? fmt::format(" {} of {} cases do not define it.", undefined, cases.rows()) : "";
+  const std::string missing =
+      undefined > 0 ? fmt::format(" {} of {} cases do not define it.", undefined, cases.rows()) : "";
   return Figure(bars.Svg("Histogram of " + info.title), title + ": histogram of the cases." + missing) +
-         Figure(tail.Svg("Exceedance of " + info.title),
-                title + ": share of the cases " + (above ? "at most" : "beyond") + " each value." +
-                    (requirements.empty() ? "" : " The curve should fall below the allowed share before the limit."));
+         Figure(
+             tail.Svg("Exceedance of " + info.title),
+             title + ": share of the cases " + (above ? "at most" : "beyond") + " each value." +
+                 (requirements.empty() ? ""
+                                       : " The curve should fall below the allowed share before the limit."));
 }
 
 }  // namespace dispersa

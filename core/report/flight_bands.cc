@@ -23,7 +23,8 @@ SampledFlight SampleFlight(const History& history, const std::vector<int>& colum
   return samples;
 }
 
-FlightBands ComputeBands(const std::vector<SampledFlight>& flights, const std::vector<int>& columns, double step_s) {
+FlightBands ComputeBands(const std::vector<SampledFlight>& flights, const std::vector<int>& columns,
+                         double step_s) {
   FlightBands bands;
   bands.step_s = step_s;
   bands.flights = flights.size();
@@ -33,8 +34,9 @@ FlightBands ComputeBands(const std::vector<SampledFlight>& flights, const std::v
   }
   for (std::size_t step = 0; step < steps; ++step) {
     bands.time_s.push_back(static_cast<double>(step) * step_s);
-    bands.flying.push_back(static_cast<std::size_t>(std::count_if(
-        flights.begin(), flights.end(), [&](const SampledFlight& flight) { return flight[0].size() > step; })));
+    bands.flying.push_back(static_cast<std::size_t>(
+        std::count_if(flights.begin(), flights.end(),
+                      [&](const SampledFlight& flight) { return flight[0].size() > step; })));
   }
   for (std::size_t i = 0; i < columns.size(); ++i) {
     Band band{.column = HistoryColumns()[static_cast<std::size_t>(columns[i])]};
@@ -68,7 +70,8 @@ std::string BandsCsv(const FlightBands& bands) {
   for (std::size_t step = 0; step < bands.time_s.size(); ++step) {
     csv += ShortestText(bands.time_s[step]) + "," + std::to_string(bands.flying[step]);
     for (const Band& band : bands.bands) {
-      for (const auto* values : {&band.min, &band.p01, &band.p05, &band.p50, &band.p95, &band.p99, &band.max}) {
+      for (const auto* values :
+           {&band.min, &band.p01, &band.p05, &band.p50, &band.p95, &band.p99, &band.max}) {
         csv += "," + ShortestText((*values)[step]);
       }
     }

@@ -17,9 +17,9 @@ struct Band {
 
 struct FlightBands {
   double step_s = 0.0;
-  std::size_t flights = 0;           ///< that the bands are made of
-  std::vector<double> time_s;        ///< multiples of the step, to the end of the longest flight
-  std::vector<std::size_t> flying;   ///< flights that last so long
+  std::size_t flights = 0;          ///< that the bands are made of
+  std::vector<double> time_s;       ///< multiples of the step, to the end of the longest flight
+  std::vector<std::size_t> flying;  ///< flights that last so long
   std::vector<Band> bands;
 };
 
@@ -29,7 +29,8 @@ using SampledFlight = std::vector<std::vector<double>>;
 SampledFlight SampleFlight(const History& history, const std::vector<int>& columns, double step_s);
 
 /// Bands of the columns over the flights; the same bits in whatever order the flights come.
-FlightBands ComputeBands(const std::vector<SampledFlight>& flights, const std::vector<int>& columns, double step_s);
+FlightBands ComputeBands(const std::vector<SampledFlight>& flights, const std::vector<int>& columns,
+                         double step_s);
 
 /// As CSV: time_s, flights, then for each column its _min, _p01, _p05, _p50, _p95, _p99, _max.
 std::string BandsCsv(const FlightBands& bands);

@@ -51,7 +51,8 @@ struct Burns {
   /// Ignitions, and gaps of more than 10 s as coast.
   void AddTo(SvgChart* chart) const {
     for (std::size_t i = 0; i < burns.size(); ++i) {
-      if (i > 0 && burns[i].from_s - burns[i - 1].to_s > 10.0) chart->Shade(burns[i - 1].to_s, burns[i].from_s, "coast");
+      if (i > 0 && burns[i].from_s - burns[i - 1].to_s > 10.0)
+        chart->Shade(burns[i - 1].to_s, burns[i].from_s, "coast");
       chart->Mark(burns[i].from_s, fmt::format("S{}", burns[i].stage));
     }
   }
@@ -60,7 +61,7 @@ struct Burns {
 struct BandView {
   const char* column;
   const char* label;
-  double factor = 1.0;  ///< from the column's unit to the label's
+  double factor = 1.0;            ///< from the column's unit to the label's
   const char* program = nullptr;  ///< column of the nominal drawn as the target
   std::optional<double> from_s = {}, to_s = {};
   bool nominal = true;
@@ -79,10 +80,13 @@ std::string BandFigure(const BandView& view, const FlightHistories& histories, c
   const auto band = std::find_if(bands.bands.begin(), bands.bands.end(),
                                  [&](const Band& candidate) { return candidate.column == view.column; });
   assert(band != bands.bands.end());
-  SvgChart chart({.label = kTime, .low = view.from_s, .high = view.to_s}, {.label = view.label}, view.width, 280);
+  SvgChart chart({.label = kTime, .low = view.from_s, .high = view.to_s}, {.label = view.label}, view.width,
+                 280);
   burns.AddTo(&chart);
-  chart.Band(bands.time_s, Scaled(band->min, view.factor), Scaled(band->max, view.factor), "band-outer", "min–max");
-  chart.Band(bands.time_s, Scaled(band->p05, view.factor), Scaled(band->p95, view.factor), "band-inner", "5–95 %");
+  chart.Band(bands.time_s, Scaled(band->min, view.factor), Scaled(band->max, view.factor), "band-outer",
+             "min–max");
+  chart.Band(bands.time_s, Scaled(band->p05, view.factor), Scaled(band->p95, view.factor), "band-inner",
+             "5–95 %");
   chart.Line(bands.time_s, Scaled(band->p50, view.factor), "line-0", "median");
   const std::vector<double> time_s = Column(histories.nominal_history, "time_s");
   if (view.program != nullptr) {
@@ -165,7 +169,8 @@ std::string NominalFigures(const History& nominal) {
   return figures + "</div>\n";
 }
 
-std::string EnvelopeFigures(const FlightHistories& histories, const CampaignSummary& summary, double kick_end_s) {
+std::string EnvelopeFigures(const FlightHistories& histories, const CampaignSummary& summary,
+                            double kick_end_s) {
   const Burns burns(histories.nominal_history);
   const std::vector<double> time_s = Column(histories.nominal_history, "time_s");
   const double air_end_s = AtmosphereEnd(time_s, Column(histories.nominal_history, "qbar_pa"));
@@ -175,22 +180,31 @@ std::string EnvelopeFigures(const FlightHistories& histories, const CampaignSumm
     figures += BandFigure(view, histories, summary, burns, caption);
   };
   add({.column = "pitch_error_deg", .label = "pitch error, °", .limits = true, .width = 1060},
-      "Pitch error over the whole flight. The requirement binds powered flight; in the coast the reaction control's "
+      "Pitch error over the whole flight. The requirement binds powered flight; in the coast the reaction "
+      "control's "
       "dead band shows.");
   add({.column = "pitch_error_deg", .label = "pitch error, °", .from_s = 0.0, .to_s = pitch_over_end_s},
       "Pitch error during lift-off and the initial pitch-over.");
   if (!burns.burns.empty() && burns.burns.size() > 1) {
     const Burns::Burn& last = burns.burns.back();
-    add({.column = "pitch_error_deg", .label = "pitch error, °", .from_s = 10.0 * std::floor(0.1 * (last.from_s - 5.0)),
+    add({.column = "pitch_error_deg",
+         .label = "pitch error, °",
+         .from_s = 10.0 * std::floor(0.1 * (last.from_s - 5.0)),
          .to_s = 10.0 * std::ceil(0.1 * last.to_s)},
         fmt::format("Pitch error while stage {} burns.", last.stage));
   }
-  add({.column = "pitch_launch_deg", .label = "pitch from the launch horizon, °", .program = "pitch_program_deg"},
+  add({.column = "pitch_launch_deg",
+       .label = "pitch from the launch horizon, °",
+       .program = "pitch_program_deg"},
       "Pitch angle in the launch-inertial frame and the program.");
   add({.column = "deflection_pitch_deg", .label = "pitch deflection, °"}, "Deflection of the pitch channel.");
   add({.column = "yaw_error_deg", .label = "yaw error, °", .nominal = false}, "Yaw error.");
   add({.column = "roll_error_deg", .label = "roll error, °", .nominal = false}, "Roll error.");
-  add({.column = "qbar_pa", .label = "dynamic pressure, kPa", .factor = 1e-3, .from_s = 0.0, .to_s = air_end_s},
+  add({.column = "qbar_pa",
+       .label = "dynamic pressure, kPa",
+       .factor = 1e-3,
+       .from_s = 0.0,
+       .to_s = air_end_s},
       "Dynamic pressure.");
   add({.column = "alpha_deg", .label = "angle of attack, °", .from_s = 2.0, .to_s = air_end_s},
       "Angle of attack against the air, wind included, from 2 s on (at rest it has no meaning).");

@@ -13,6 +13,7 @@ std::string NominalFigures(const History& nominal);
 
 /// Figures of the percentile bands about the nominal. `kick_end_s`: the pitch-over is shown magnified till
 /// somewhat later.
-std::string EnvelopeFigures(const FlightHistories& histories, const CampaignSummary& summary, double kick_end_s);
+std::string EnvelopeFigures(const FlightHistories& histories, const CampaignSummary& summary,
+                            double kick_end_s);
 
 }  // namespace dispersa

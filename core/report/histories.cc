@@ -24,9 +24,18 @@ constexpr double kBandStep_s = 0.2;
 constexpr std::size_t kWorstWritten = 2;
 
 /// Quantities whose spread over the cases is shown.
-const char* const kBandColumns[] = {
-    "altitude_m",           "pitch_launch_deg",   "pitch_program_deg",   "pitch_error_deg", "yaw_error_deg", "roll_error_deg",
-    "deflection_pitch_deg", "deflection_yaw_deg", "deflection_roll_deg", "alpha_deg",       "beta_deg",      "qbar_pa"};
+const char* const kBandColumns[] = {"altitude_m",
+                                    "pitch_launch_deg",
+                                    "pitch_program_deg",
+                                    "pitch_error_deg",
+                                    "yaw_error_deg",
+                                    "roll_error_deg",
+                                    "deflection_pitch_deg",
+                                    "deflection_yaw_deg",
+                                    "deflection_roll_deg",
+                                    "alpha_deg",
+                                    "beta_deg",
+                                    "qbar_pa"};
 
 std::vector<int> BandColumns() {
   std::vector<int> columns;
@@ -55,9 +64,10 @@ void RunInBatches(std::size_t count, int threads, const std::function<void(std::
 void CheckReproduced(const ResultFolder& folder, std::uint64_t case_index, const Digest& flown) {
   const Digest stored = folder.Load(case_index).digest;
   if (stored == flown) return;
-  throw ResultError(ResultError::Kind::kConflict,
-                    fmt::format("case {} does not reproduce its stored result: digest {} is stored, {} was flown now",
-                                case_index, stored.Hex(), flown.Hex()));
+  throw ResultError(
+      ResultError::Kind::kConflict,
+      fmt::format("case {} does not reproduce its stored result: digest {} is stored, {} was flown now",
+                  case_index, stored.Hex(), flown.Hex()));
 }
 
 /// Other worst cases may have had their histories there before.
@@ -66,15 +76,17 @@ void EmptyDirectory(const fs::path& directory) {
   fs::remove_all(directory, error);
   if (!error) fs::create_directories(directory, error);
   if (error) {
-    throw ResultError(error == std::errc::no_space_on_device ? ResultError::Kind::kDiskFull : ResultError::Kind::kFile,
-                      fmt::format("{}: cannot be made anew: {}", directory.string(), error.message()));
+    throw ResultError(
+        error == std::errc::no_space_on_device ? ResultError::Kind::kDiskFull : ResultError::Kind::kFile,
+        fmt::format("{}: cannot be made anew: {}", directory.string(), error.message()));
   }
 }
 
 std::vector<std::uint64_t> WorstToWrite(const CampaignSummary& summary) {
   std::set<std::uint64_t> indices;
   for (const WorstCases& worst : summary.worst_cases) {
-    for (std::size_t i = 0; i < std::min(kWorstWritten, worst.cases.size()); ++i) indices.insert(worst.cases[i].case_index);
+    for (std::size_t i = 0; i < std::min(kWorstWritten, worst.cases.size()); ++i)
+      indices.insert(worst.cases[i].case_index);
   }
   return {indices.begin(), indices.end()};
 }
@@ -96,8 +108,9 @@ std::string HistoryCsv(const History& history) {
   return csv;
 }
 
-FlightHistories WriteHistories(const ResultFolder& folder, const Campaign& campaign, const CampaignSummary& summary,
-                               const CaseColumns& cases, const ReportOptions& options) {
+FlightHistories WriteHistories(const ResultFolder& folder, const Campaign& campaign,
+                               const CampaignSummary& summary, const CaseColumns& cases,
+                               const ReportOptions& options) {
   const auto progress = [&](const char* what, std::size_t done, std::size_t total) {
     if (options.progress) options.progress(what, done, total);
   };

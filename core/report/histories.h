@@ -25,7 +25,8 @@ struct FlightHistories {
 std::string HistoryCsv(const History& history);
 
 /// Flies again what the report shows and writes histories/ anew. Errors as WriteReports.
-FlightHistories WriteHistories(const ResultFolder& folder, const Campaign& campaign, const CampaignSummary& summary,
-                               const CaseColumns& cases, const ReportOptions& options);
+FlightHistories WriteHistories(const ResultFolder& folder, const Campaign& campaign,
+                               const CampaignSummary& summary, const CaseColumns& cases,
+                               const ReportOptions& options);
 
 }  // namespace dispersa

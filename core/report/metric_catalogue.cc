@@ -15,9 +15,25 @@ struct UnitSuffix {
 
 /// Longer suffixes before those that end them.
 constexpr std::array<UnitSuffix, 19> kUnits = {{
-    {"_itae_deg_s2", "° s²"}, {"_deg_s2", "°/s²"}, {"_pa_rad", "Pa rad"}, {"_deg_s", "°/s"}, {"_rad_s", "rad/s"}, {"_kg_s", "kg/s"},
-    {"_km_s", "km/s"}, {"_m_s", "m/s"}, {"_deg", "°"}, {"_rad", "rad"}, {"_pa", "Pa"}, {"_km", "km"},
-    {"_kg", "kg"}, {"_ms", "ms"}, {"_db", "dB"}, {"_n", "N"}, {"_m", "m"}, {"_g", "g"}, {"_s", "s"},
+    {"_itae_deg_s2", "° s²"},
+    {"_deg_s2", "°/s²"},
+    {"_pa_rad", "Pa rad"},
+    {"_deg_s", "°/s"},
+    {"_rad_s", "rad/s"},
+    {"_kg_s", "kg/s"},
+    {"_km_s", "km/s"},
+    {"_m_s", "m/s"},
+    {"_deg", "°"},
+    {"_rad", "rad"},
+    {"_pa", "Pa"},
+    {"_km", "km"},
+    {"_kg", "kg"},
+    {"_ms", "ms"},
+    {"_db", "dB"},
+    {"_n", "N"},
+    {"_m", "m"},
+    {"_g", "g"},
+    {"_s", "s"},
 }};
 
 struct Entry {
@@ -33,7 +49,8 @@ constexpr std::array<Entry, 35> kEntries = {{
      "attitude to the true one"},
     {"pitch_error_peak", "Pitch error, peak", "largest magnitude of the same error over powered flight"},
     {"pitch_error_peak_time", "Time of the pitch error's peak", "since lift-off"},
-    {"pitch_error_itae", "Pitch error, ITAE", "integral over powered flight of time times magnitude of the error"},
+    {"pitch_error_itae", "Pitch error, ITAE",
+     "integral over powered flight of time times magnitude of the error"},
     {"yaw_error_rms", "Yaw error, RMS", "about body z, over powered flight"},
     {"yaw_error_peak", "Yaw error, peak", "largest magnitude about body z over powered flight"},
     {"roll_error_rms", "Roll error, RMS", "about body x, over powered flight"},
@@ -41,17 +58,22 @@ constexpr std::array<Entry, 35> kEntries = {{
     {"deflection_peak", "Deflection, peak", "largest magnitude of any nozzle's angle"},
     {"deflection_rms", "Deflection, RMS", "root mean square over the nozzles and powered flight"},
     {"deflection_rate_peak", "Deflection rate, peak", "largest magnitude of any nozzle's rate"},
-    {"deflection_saturated_fraction", "Deflection saturated", "fraction of powered flight in which a nozzle is commanded to its limit"},
-    {"deflection_travel", "Deflection travel", "path of a nozzle added up, mean of the four: wear of the actuators"},
+    {"deflection_saturated_fraction", "Deflection saturated",
+     "fraction of powered flight in which a nozzle is commanded to its limit"},
+    {"deflection_travel", "Deflection travel",
+     "path of a nozzle added up, mean of the four: wear of the actuators"},
     {"deflection_limit_cycle", "Limit cycle of the deflection",
-     "worst peak-to-peak deflection, detrended over sliding 1 s windows, from 5 s after each ignition, outside "
+     "worst peak-to-peak deflection, detrended over sliding 1 s windows, from 5 s after each ignition, "
+     "outside "
      "the kick and gusts"},
     {"q_max", "Dynamic pressure, maximum", ""},
     {"q_alpha_max", "Product of dynamic pressure and incidence, maximum", ""},
     {"alpha_max", "Incidence as flown, maximum", "where the dynamic pressure is at least 1 kPa"},
     {"axial_load_max", "Axial load, maximum", "specific force along the body axis"},
-    {"lateral_load_max", "Lateral load, maximum", "specific force normal to the body axis at the centre of gravity"},
-    {"structural_limit_exceeded", "Structural limit exceeded", "1 when a limit of the vehicle file was exceeded"},
+    {"lateral_load_max", "Lateral load, maximum",
+     "specific force normal to the body axis at the centre of gravity"},
+    {"structural_limit_exceeded", "Structural limit exceeded",
+     "1 when a limit of the vehicle file was exceeded"},
     {"handover_attitude_error", "Attitude error at the last ignition",
      "magnitude of the rotation that the reaction control leaves to the gimbals"},
     {"handover_rate_error", "Rate error at the last ignition", "magnitude, likewise"},
@@ -68,8 +90,10 @@ constexpr std::array<Entry, 35> kEntries = {{
      Worse::kSmaller},
     {"inclination", "Inclination", "of the osculating orbit at injection"},
     {"rcs_propellant", "Reaction control propellant", "used in the coast"},
-    {"lyapunov_decreasing_fraction", "Lyapunov function decreasing", "fraction of powered flight", Worse::kSmaller},
-    {"adaptation_norm_peak", "Adaptation, largest norm", "distance of the pitch rules' consequents from their start"},
+    {"lyapunov_decreasing_fraction", "Lyapunov function decreasing", "fraction of powered flight",
+     Worse::kSmaller},
+    {"adaptation_norm_peak", "Adaptation, largest norm",
+     "distance of the pitch rules' consequents from their start"},
     {"rules_fired", "Rules fired", "pitch rules that were active at any time"},
 }};
 
@@ -114,7 +138,8 @@ MetricInfo DescribeMetric(const std::string& name) {
   } else {
     info.title = split.stem;
     std::replace(info.title.begin(), info.title.end(), '_', ' ');
-    if (!info.title.empty() && info.title[0] >= 'a') info.title[0] = static_cast<char>(info.title[0] - 'a' + 'A');
+    if (!info.title.empty() && info.title[0] >= 'a')
+      info.title[0] = static_cast<char>(info.title[0] - 'a' + 'A');
   }
   info.title += phase;
   return info;
@@ -122,9 +147,12 @@ MetricInfo DescribeMetric(const std::string& name) {
 
 double Badness(Worse worse, double value) {
   switch (worse) {
-    case Worse::kLarger: return value;
-    case Worse::kSmaller: return -value;
-    case Worse::kFartherFromZero: return std::fabs(value);
+    case Worse::kLarger:
+      return value;
+    case Worse::kSmaller:
+      return -value;
+    case Worse::kFartherFromZero:
+      return std::fabs(value);
   }
   return value;
 }

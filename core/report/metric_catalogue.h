@@ -12,7 +12,7 @@ struct MetricInfo {
   std::string unit;        ///< "°", "km", "" for a pure number
   std::string definition;  ///< one sentence; empty for a metric that is not in the catalogue
   Worse worse = Worse::kLarger;
-  bool known = false;      ///< to the catalogue
+  bool known = false;  ///< to the catalogue
 };
 
 /// Of a metric's name without prefix. The unit is read from the end of the name, so that a metric that the

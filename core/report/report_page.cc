@@ -12,9 +12,12 @@ namespace dispersa {
 namespace {
 
 constexpr char kNavigation[] =
-    "<nav><a href=\"#requirements\">Requirements</a><a href=\"#outcomes\">Outcomes</a><a href=\"#envelope\">Envelope</a>"
-    "<a href=\"#distributions\">Distributions</a><a href=\"#worst\">Worst cases</a><a href=\"#nominal\">Nominal flight</a>"
-    "<a href=\"#statistics\">Statistics</a><a href=\"#dispersions\">Dispersions</a><a href=\"#limits\">Not modelled</a>"
+    "<nav><a href=\"#requirements\">Requirements</a><a href=\"#outcomes\">Outcomes</a><a "
+    "href=\"#envelope\">Envelope</a>"
+    "<a href=\"#distributions\">Distributions</a><a href=\"#worst\">Worst cases</a><a "
+    "href=\"#nominal\">Nominal flight</a>"
+    "<a href=\"#statistics\">Statistics</a><a href=\"#dispersions\">Dispersions</a><a href=\"#limits\">Not "
+    "modelled</a>"
     "<a href=\"#provenance\">Provenance</a></nav>\n";
 
 }  // namespace
@@ -23,7 +26,8 @@ std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary,
                        const FlightHistories& histories) {
   std::string page = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
-      "content=\"width=device-width, initial-scale=1\">\n<title>{} – dispersa</title>\n<style>{}</style>\n</head>\n<body>\n",
+      "content=\"width=device-width, initial-scale=1\">\n<title>{} – "
+      "dispersa</title>\n<style>{}</style>\n</head>\n<body>\n",
       HtmlText(summary.name), StyleSheet());
   page += HeaderSection(summary);
   page += kNavigation;
@@ -35,7 +39,8 @@ std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary,
     page += "<p>No case has a result.</p>\n";
   } else {
     page += fmt::format(
-        "<p>Pointwise percentiles over the first {} flown cases of {}, sampled every {} s; a lost flight counts until it is "
+        "<p>Pointwise percentiles over the first {} flown cases of {}, sampled every {} s; a lost flight "
+        "counts until it is "
         "lost. S1 to S4 mark ignitions. Peaks between the samples are in the metrics, not here. Numbers: "
         "<code>histories/bands.csv</code>.</p>\n",
         histories.bands.flights, summary.flown, ReadableText(histories.bands.step_s));
@@ -43,17 +48,24 @@ std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary,
   }
 
   page += "<h2 id=\"distributions\">Distribution of key metrics</h2>\n<div class=\"figures\">\n";
-  for (const WorstCases& worst : summary.worst_cases) page += DistributionFigures(worst.metric, summary, cases);
+  for (const WorstCases& worst : summary.worst_cases)
+    page += DistributionFigures(worst.metric, summary, cases);
   page += "</div>\n";
   if (summary.flown > 0) {
-    page += "<h3>Spread of the orbit</h3>\n<p>Guidance is open loop: the autopilot follows the pitch program, and nothing "
-            "corrects what dispersed thrust, flow and drag do to speed and altitude. No requirement rests on it.</p>\n"
-            "<div class=\"figures\">\n" + InjectionFigures(summary, cases) + "</div>\n";
+    page +=
+        "<h3>Spread of the orbit</h3>\n<p>Guidance is open loop: the autopilot follows the pitch program, "
+        "and nothing "
+        "corrects what dispersed thrust, flow and drag do to speed and altitude. No requirement rests on "
+        "it.</p>\n"
+        "<div class=\"figures\">\n" +
+        InjectionFigures(summary, cases) + "</div>\n";
   }
 
   page += WorstCasesSection(summary, histories);
-  page += "<h2 id=\"nominal\">Nominal flight</h2>\n<p>The flight without dispersions, through the same closed loop. It is not "
-          "one of the cases. Numbers: <code>histories/nominal.csv</code>.</p>\n";
+  page +=
+      "<h2 id=\"nominal\">Nominal flight</h2>\n<p>The flight without dispersions, through the same closed "
+      "loop. It is not "
+      "one of the cases. Numbers: <code>histories/nominal.csv</code>.</p>\n";
   page += NominalFigures(histories.nominal_history);
   page += StatisticsSection(summary);
   page += DispersionsSection(summary);

@@ -20,7 +20,8 @@ std::string WithUnit(double value, const std::string& unit) {
 
 /// For the middle of a sentence.
 std::string Lower(std::string title) {
-  if (!title.empty() && title[0] >= 'A' && title[0] <= 'Z') title[0] = static_cast<char>(title[0] - 'A' + 'a');
+  if (!title.empty() && title[0] >= 'A' && title[0] <= 'Z')
+    title[0] = static_cast<char>(title[0] - 'A' + 'a');
   return HtmlText(title);
 }
 
@@ -35,23 +36,27 @@ std::string OutcomeWords(Outcome outcome) {
 /// What the requirements come to together, in one sentence.
 std::string VerdictSentence(const CampaignSummary& summary) {
   const auto count = [&](const char* verdict) {
-    return std::count_if(summary.requirements.begin(), summary.requirements.end(),
-                         [&](const RequirementSummary& requirement) { return requirement.verdict == verdict; });
+    return std::count_if(
+        summary.requirements.begin(), summary.requirements.end(),
+        [&](const RequirementSummary& requirement) { return requirement.verdict == verdict; });
   };
   const std::size_t all = summary.requirements.size();
   switch (summary.verdict) {
     case CampaignVerdict::kIncomplete:
       return fmt::format("{} of {} cases have a result{}.", summary.flown, summary.cases,
-                         summary.quarantined.empty() ? "; the campaign can be resumed"
-                                                     : fmt::format("; {} are quarantined", summary.quarantined.size()));
+                         summary.quarantined.empty()
+                             ? "; the campaign can be resumed"
+                             : fmt::format("; {} are quarantined", summary.quarantined.size()));
     case CampaignVerdict::kFail:
-      return fmt::format("{} of {} requirements {} not met.", count("fail"), all, count("fail") == 1 ? "is" : "are");
+      return fmt::format("{} of {} requirements {} not met.", count("fail"), all,
+                         count("fail") == 1 ? "is" : "are");
     case CampaignVerdict::kInconclusive:
-      return fmt::format("{} of {} requirements cannot be decided with {} cases; none has failed.", count("inconclusive"),
-                         all, summary.flown);
+      return fmt::format("{} of {} requirements cannot be decided with {} cases; none has failed.",
+                         count("inconclusive"), all, summary.flown);
     case CampaignVerdict::kPass:
-      return all == 0 ? "The campaign states no requirements."
-                      : all == 1 ? "The one requirement is met." : fmt::format("All {} requirements are met.", all);
+      return all == 0   ? "The campaign states no requirements."
+             : all == 1 ? "The one requirement is met."
+                        : fmt::format("All {} requirements are met.", all);
   }
   return "";
 }
@@ -103,16 +108,20 @@ double NominalValue(const CampaignSummary& summary, std::size_t metric) {
 std::string HeaderSection(const CampaignSummary& summary) {
   const std::uint64_t completed = summary.outcomes[static_cast<std::size_t>(Outcome::kCompleted)];
   std::string html = fmt::format(
-      "<header>\n<h1>Dispersion campaign {}</h1>\n<p class=\"soft\">{} · reference {} · autopilot {} · {}, {} cases, seed "
+      "<header>\n<h1>Dispersion campaign {}</h1>\n<p class=\"soft\">{} · reference {} · autopilot {} · {}, "
+      "{} cases, seed "
       "{}</p>\n",
-      HtmlText(summary.name), HtmlText(summary.vehicle), HtmlText(summary.reference), HtmlText(summary.autopilot),
-      SamplingMethodTitle(summary.sampling), summary.cases, summary.seed);
-  html += fmt::format("<div class=\"headline\">{}{}<p>{}</p></div>\n", VerdictBadge(CampaignVerdictName(summary.verdict)),
-                      IsIndependent(summary.sampling) ? "" : "<span class=\"badge design\">design study</span>",
-                      VerdictSentence(summary));
+      HtmlText(summary.name), HtmlText(summary.vehicle), HtmlText(summary.reference),
+      HtmlText(summary.autopilot), SamplingMethodTitle(summary.sampling), summary.cases, summary.seed);
+  html += fmt::format(
+      "<div class=\"headline\">{}{}<p>{}</p></div>\n", VerdictBadge(CampaignVerdictName(summary.verdict)),
+      IsIndependent(summary.sampling) ? "" : "<span class=\"badge design\">design study</span>",
+      VerdictSentence(summary));
   html += "<div class=\"tiles\">";
   html += Tile(fmt::format("{} / {}", summary.flown, summary.cases), "cases flown");
-  html += Tile(summary.flown == 0 ? "–" : PercentText(static_cast<double>(completed) / static_cast<double>(summary.flown)),
+  html += Tile(summary.flown == 0
+                   ? "–"
+                   : PercentText(static_cast<double>(completed) / static_cast<double>(summary.flown)),
                "of them completed");
   for (const char* name : {"pitch_error_rms_deg", "pitch_error_peak_deg", "deflection_peak_deg"}) {
     const Summary* metric = FindMetric(summary, name);
@@ -126,9 +135,17 @@ std::string HeaderSection(const CampaignSummary& summary) {
 std::string RequirementsSection(const CampaignSummary& summary) {
   std::string html = "<h2 id=\"requirements\">Requirements</h2>\n";
   if (summary.requirements.empty()) return html + "<p>The campaign states none.</p>\n";
-  HtmlTable table({{"Metric"}, {"Limit", true}, {"Required probability", true}, {"Consumer risk", true}, {"Cases", true},
-                   {"Failures", true}, {"Lost flights", true}, {"Observed", true}, {"Confidence bounds", true},
-                   {"Verdict"}, {"Cases needed", true}});
+  HtmlTable table({{"Metric"},
+                   {"Limit", true},
+                   {"Required probability", true},
+                   {"Consumer risk", true},
+                   {"Cases", true},
+                   {"Failures", true},
+                   {"Lost flights", true},
+                   {"Observed", true},
+                   {"Confidence bounds", true},
+                   {"Verdict"},
+                   {"Cases needed", true}});
   for (const RequirementSummary& requirement : summary.requirements) {
     const MetricInfo info = DescribeMetric(requirement.metric);
     const double observed = requirement.n == 0 ? std::nan("")
@@ -138,28 +155,36 @@ std::string RequirementsSection(const CampaignSummary& summary) {
                                    ? fmt::format("≥ {}<br>≤ {}", PercentText(*requirement.success_lower),
                                                  PercentText(*requirement.success_upper))
                                    : "none: design study";
-    table.Row({HtmlText(info.title) + "<br>" + Code(requirement.metric),
-               fmt::format("{} {}", requirement.below ? "below" : "above", WithUnit(requirement.limit, info.unit)),
-               PercentText(requirement.probability), PercentText(requirement.consumer_risk), std::to_string(requirement.n),
-               std::to_string(requirement.failures), std::to_string(requirement.lost_flights), PercentText(observed), bounds,
-               VerdictBadge(requirement.verdict),
-               requirement.cases_needed ? std::to_string(*requirement.cases_needed) : "–"},
-              "joined");
+    table.Row(
+        {HtmlText(info.title) + "<br>" + Code(requirement.metric),
+         fmt::format("{} {}", requirement.below ? "below" : "above", WithUnit(requirement.limit, info.unit)),
+         PercentText(requirement.probability), PercentText(requirement.consumer_risk),
+         std::to_string(requirement.n), std::to_string(requirement.failures),
+         std::to_string(requirement.lost_flights), PercentText(observed), bounds,
+         VerdictBadge(requirement.verdict),
+         requirement.cases_needed ? std::to_string(*requirement.cases_needed) : "–"},
+        "joined");
     table.Wide(HtmlText(requirement.sentence), "sentence");
   }
   html += table.Html();
   if (!IsIndependent(summary.sampling)) {
     return html +
-           "<p class=\"soft\">The points of this campaign are chosen, not drawn independently, so that no confidence can be "
+           "<p class=\"soft\">The points of this campaign are chosen, not drawn independently, so that no "
+           "confidence can be "
            "stated: it is a design study. "
-           "A verdict compares the share of points that meet the limit with the probability required. A lost flight counts as "
+           "A verdict compares the share of points that meet the limit with the probability required. A lost "
+           "flight counts as "
            "a failure of every requirement, and so does an undefined metric.</p>\n";
   }
   return html +
-         "<p class=\"soft\">Verdicts come from the exact binomial distribution, not from mean ± 3σ (NASA/TP-2010-216447): a "
-         "requirement passes when a design that just misses it would have shown so few failures with no more than the "
-         "consumer risk, and fails when a design that just meets it would have shown so many with no more than the same "
-         "risk. Each confidence bound is one-sided. A lost flight counts as a failure of every requirement, and so does an "
+         "<p class=\"soft\">Verdicts come from the exact binomial distribution, not from mean ± 3σ "
+         "(NASA/TP-2010-216447): a "
+         "requirement passes when a design that just misses it would have shown so few failures with no more "
+         "than the "
+         "consumer risk, and fails when a design that just meets it would have shown so many with no more "
+         "than the same "
+         "risk. Each confidence bound is one-sided. A lost flight counts as a failure of every requirement, "
+         "and so does an "
          "undefined metric.</p>\n";
 }
 
@@ -168,26 +193,33 @@ std::string OutcomesSection(const CampaignSummary& summary) {
   HtmlTable table({{"Outcome"}, {"Cases", true}, {"Share of those flown", true}});
   for (int i = 0; i < kOutcomeCount; ++i) {
     const std::uint64_t count = summary.outcomes[static_cast<std::size_t>(i)];
-    const double share = summary.flown == 0 ? std::nan("") : static_cast<double>(count) / static_cast<double>(summary.flown);
+    const double share =
+        summary.flown == 0 ? std::nan("") : static_cast<double>(count) / static_cast<double>(summary.flown);
     table.Row({OutcomeWords(static_cast<Outcome>(i)), std::to_string(count), PercentText(share)});
   }
   html += table.Html("narrow");
   if (!summary.lost_flights.empty()) {
-    const std::uint64_t lost = summary.flown - summary.outcomes[static_cast<std::size_t>(Outcome::kCompleted)];
-    html += fmt::format("<h3>Lost flights{}</h3>\n", lost > summary.lost_flights.size()
-                                                         ? fmt::format(", the first {} of {}", summary.lost_flights.size(), lost)
-                                                         : "");
-    HtmlTable lost_table({{"Case", true}, {"Outcome"}, {"Time, s", true}, {"Stage", true}, {"Reason"}, {"To fly it again"}});
+    const std::uint64_t lost =
+        summary.flown - summary.outcomes[static_cast<std::size_t>(Outcome::kCompleted)];
+    html += fmt::format("<h3>Lost flights{}</h3>\n",
+                        lost > summary.lost_flights.size()
+                            ? fmt::format(", the first {} of {}", summary.lost_flights.size(), lost)
+                            : "");
+    HtmlTable lost_table(
+        {{"Case", true}, {"Outcome"}, {"Time, s", true}, {"Stage", true}, {"Reason"}, {"To fly it again"}});
     for (const LostFlight& flight : summary.lost_flights) {
-      lost_table.Row({std::to_string(flight.case_index), OutcomeWords(flight.outcome), ReadableText(flight.end_time_s),
-                      std::to_string(flight.end_stage), HtmlText(flight.reason),
+      lost_table.Row({std::to_string(flight.case_index), OutcomeWords(flight.outcome),
+                      ReadableText(flight.end_time_s), std::to_string(flight.end_stage),
+                      HtmlText(flight.reason),
                       "<code class=\"copy\">" + ReplayCommand(flight.case_index) + "</code>"});
     }
     html += lost_table.Html();
   }
   if (!summary.quarantined.empty()) {
-    html += "<h3>Quarantined cases</h3>\n<p>Given up because they killed or hung their workers. They have no result: "
-            "verdicts count them as failed for a pass and as met for a failure.</p>\n";
+    html +=
+        "<h3>Quarantined cases</h3>\n<p>Given up because they killed or hung their workers. They have no "
+        "result: "
+        "verdicts count them as failed for a pass and as met for a failure.</p>\n";
     HtmlTable quarantine({{"Case", true}, {"Reason"}});
     for (const QuarantinedCase& one : summary.quarantined) {
       quarantine.Row({std::to_string(one.case_index), HtmlText(one.reason)});
@@ -199,14 +231,17 @@ std::string OutcomesSection(const CampaignSummary& summary) {
 
 std::string WorstCasesSection(const CampaignSummary& summary, const FlightHistories& histories) {
   std::string html =
-      "<h2 id=\"worst\">Worst cases</h2>\n<p>A lost flight first, if there is one; all are listed under Outcomes. The commands run in the result folder and check that the "
+      "<h2 id=\"worst\">Worst cases</h2>\n<p>A lost flight first, if there is one; all are listed under "
+      "Outcomes. The commands run in the result folder and check that the "
       "case comes out the same to the last bit; <code>--history FILE</code> adds its time history.</p>\n";
-  HtmlTable table({{"Metric"}, {"Case", true}, {"Value", true}, {"Outcome"}, {"To fly it again"}, {"Time history"}});
+  HtmlTable table(
+      {{"Metric"}, {"Case", true}, {"Value", true}, {"Outcome"}, {"To fly it again"}, {"Time history"}});
   for (const WorstCases& worst : summary.worst_cases) {
     const MetricInfo info = DescribeMetric(worst.metric);
     for (std::size_t i = 0; i < worst.cases.size(); ++i) {
       const WorstCase& one = worst.cases[i];
-      const bool written = std::binary_search(histories.written_cases.begin(), histories.written_cases.end(), one.case_index);
+      const bool written =
+          std::binary_search(histories.written_cases.begin(), histories.written_cases.end(), one.case_index);
       table.Row({i == 0 ? HtmlText(info.title) : "", std::to_string(one.case_index),
                  one.value ? WithUnit(*one.value, info.unit) : "–", OutcomeWords(one.outcome),
                  "<code class=\"copy\">" + ReplayCommand(one.case_index) + "</code>",
@@ -218,11 +253,24 @@ std::string WorstCasesSection(const CampaignSummary& summary, const FlightHistor
 
 std::string StatisticsSection(const CampaignSummary& summary) {
   std::string html =
-      "<h2 id=\"statistics\">Statistics of every metric</h2>\n<p>Over the cases that define the metric; n says how many. "
-      "Percentiles are estimates without a confidence: the requirements above do not use them. Attitude and deflection "
-      "metrics cover powered flight, ignition to burnout of each stage with its transients; the coast has its own.</p>\n";
-  HtmlTable table({{"Metric"}, {"Unit", true}, {"Nominal", true}, {"n", true}, {"Mean", true}, {"Std", true}, {"Min", true},
-                   {"p50", true}, {"p95", true}, {"p99", true}, {"p99.73", true}, {"Max", true}});
+      "<h2 id=\"statistics\">Statistics of every metric</h2>\n<p>Over the cases that define the metric; n "
+      "says how many. "
+      "Percentiles are estimates without a confidence: the requirements above do not use them. Attitude and "
+      "deflection "
+      "metrics cover powered flight, ignition to burnout of each stage with its transients; the coast has "
+      "its own.</p>\n";
+  HtmlTable table({{"Metric"},
+                   {"Unit", true},
+                   {"Nominal", true},
+                   {"n", true},
+                   {"Mean", true},
+                   {"Std", true},
+                   {"Min", true},
+                   {"p50", true},
+                   {"p95", true},
+                   {"p99", true},
+                   {"p99.73", true},
+                   {"Max", true}});
   for (std::size_t group = 0; group < MetricGroups().size(); ++group) {
     bool titled = false;
     for (std::size_t i = 0; i < summary.metrics.size(); ++i) {
@@ -231,13 +279,17 @@ std::string StatisticsSection(const CampaignSummary& summary) {
       if (!titled) table.Wide(MetricGroups()[group].title, "group");
       titled = true;
       const MetricInfo info = DescribeMetric(metric.name);
-      const bool part = metric.name.find("_stage") != std::string::npos || metric.name.find("_coast") != std::string::npos;
+      const bool part =
+          metric.name.find("_stage") != std::string::npos || metric.name.find("_coast") != std::string::npos;
       const std::string definition =
-          part || info.definition.empty() ? "" : "<span class=\"definition\">" + HtmlText(info.definition) + "</span>";
+          part || info.definition.empty()
+              ? ""
+              : "<span class=\"definition\">" + HtmlText(info.definition) + "</span>";
       const Summary& s = metric.statistics;
-      table.Row({HtmlText(info.title) + definition, HtmlText(info.unit), ReadableText(NominalValue(summary, i)),
-                 std::to_string(s.n), ReadableText(s.mean), ReadableText(s.std), ReadableText(s.min), ReadableText(s.p50),
-                 ReadableText(s.p95), ReadableText(s.p99), ReadableText(s.p99_73), ReadableText(s.max)},
+      table.Row({HtmlText(info.title) + definition, HtmlText(info.unit),
+                 ReadableText(NominalValue(summary, i)), std::to_string(s.n), ReadableText(s.mean),
+                 ReadableText(s.std), ReadableText(s.min), ReadableText(s.p50), ReadableText(s.p95),
+                 ReadableText(s.p99), ReadableText(s.p99_73), ReadableText(s.max)},
                 part ? "part" : "");
     }
   }
@@ -246,16 +298,29 @@ std::string StatisticsSection(const CampaignSummary& summary) {
 
 std::string DispersionsSection(const CampaignSummary& summary) {
   std::string html = "<h2 id=\"dispersions\">Dispersions, declared and drawn</h2>\n";
-  if (summary.dispersions.empty()) return html + "<p>The campaign disperses nothing: every case is the nominal flight.</p>\n";
-  html += "<p>What was drawn is read back from the inputs as each flight applied them. “Agrees” means that mean and "
-          "standard deviation lie within five standard errors of the declared ones.</p>\n";
-  HtmlTable table({{"Input"}, {"Declared"}, {"Expected mean", true}, {"drawn", true}, {"Expected std", true}, {"drawn", true},
-                   {"Min", true}, {"Max", true}, {"Check"}});
+  if (summary.dispersions.empty())
+    return html + "<p>The campaign disperses nothing: every case is the nominal flight.</p>\n";
+  html +=
+      "<p>What was drawn is read back from the inputs as each flight applied them. “Agrees” means that mean "
+      "and "
+      "standard deviation lie within five standard errors of the declared ones.</p>\n";
+  HtmlTable table({{"Input"},
+                   {"Declared"},
+                   {"Expected mean", true},
+                   {"drawn", true},
+                   {"Expected std", true},
+                   {"drawn", true},
+                   {"Min", true},
+                   {"Max", true},
+                   {"Check"}});
   for (const DispersionSummary& one : summary.dispersions) {
     const auto text = [](const std::optional<double>& value) { return value ? ReadableText(*value) : "–"; };
     table.Row({Code(one.input), HtmlText(one.declared), text(one.expected_mean), ReadableText(one.drawn.mean),
-               text(one.expected_std), ReadableText(one.drawn.std), ReadableText(one.drawn.min), ReadableText(one.drawn.max),
-               !one.consistent ? "–" : *one.consistent ? "agrees" : "<span class=\"badge fail\">differs</span>"});
+               text(one.expected_std), ReadableText(one.drawn.std), ReadableText(one.drawn.min),
+               ReadableText(one.drawn.max),
+               !one.consistent   ? "–"
+               : *one.consistent ? "agrees"
+                                 : "<span class=\"badge fail\">differs</span>"});
   }
   return html + table.Html();
 }
@@ -263,19 +328,21 @@ std::string DispersionsSection(const CampaignSummary& summary) {
 std::string NotModelledSection() {
   return R"html(<h2 id="limits">What is not modelled</h2>
 <ul>
-<li>The vehicle is rigid: no bending modes, no slosh (all stages are solid), no inertia of the swinging nozzles. Gain and
-phase margins against flexible modes cannot be read from this report.</li>
-<li>Guidance is open loop: the pitch program is flown over time, and nothing steers out errors of speed or altitude. Thrust,
-mass flow and drag therefore spread the orbit by tens of kilometres whatever the autopilot does; injection metrics are reported
-for that spread and are no measure of the autopilot.</li>
-<li>Navigation is ideal but for the gyro bias and noise that a campaign declares: no filter, no alignment error.</li>
-<li>Separation is instantaneous: no contact forces and no re-contact analysis; what disturbs it is the declared tip-off rate.</li>
-<li>Motors burn with constant thrust between two ramps, through four equal nozzles, without thrust oscillation. The
-reaction control gives ideal couples.</li>
-<li>Aerodynamic coefficients come from one table or build-up for each stack, without plume interaction, aeroelasticity or
-hysteresis; their uncertainty is what the campaign disperses.</li>
-<li>Wind stands still during a flight: a profile and a discrete gust, no continuous turbulence. The atmosphere is the US
-Standard Atmosphere 1976 with the density factor that the campaign declares.</li>
+<li>The vehicle is rigid: no bending modes, no slosh (all stages are solid), no inertia of the swinging
+nozzles. Gain and phase margins against flexible modes cannot be read from this report.</li>
+<li>Guidance is open loop: the pitch program is flown over time, and nothing steers out errors of speed or
+altitude. Thrust, mass flow and drag therefore spread the orbit by tens of kilometres whatever the autopilot
+does; injection metrics are reported for that spread and are no measure of the autopilot.</li>
+<li>Navigation is ideal but for the gyro bias and noise that a campaign declares: no filter, no alignment
+error.</li>
+<li>Separation is instantaneous: no contact forces and no re-contact analysis; what disturbs it is the
+declared tip-off rate.</li>
+<li>Motors burn with constant thrust between two ramps, through four equal nozzles, without thrust
+oscillation. The reaction control gives ideal couples.</li>
+<li>Aerodynamic coefficients come from one table or build-up for each stack, without plume interaction,
+aeroelasticity or hysteresis; their uncertainty is what the campaign disperses.</li>
+<li>Wind stands still during a flight: a profile and a discrete gust, no continuous turbulence. The
+atmosphere is the US Standard Atmosphere 1976 with the density factor that the campaign declares.</li>
 </ul>
 )html";
 }
@@ -284,19 +351,26 @@ std::string ProvenanceSection(const Campaign& campaign, const CampaignSummary& s
   std::string html = "<h2 id=\"provenance\">Provenance</h2>\n";
   HtmlTable table({{""}, {""}});
   table.Row({"Campaign id", Code(summary.id)});
-  table.Row({"Flight id", Code(summary.flight_id) + "<span class=\"definition\">of what decides a case: vehicle, reference, "
-                          "autopilot, tables, dispersions, sampling and seed, engine</span>"});
+  table.Row({"Flight id", Code(summary.flight_id) +
+                              "<span class=\"definition\">of what decides a case: vehicle, reference, "
+                              "autopilot, tables, dispersions, sampling and seed, engine</span>"});
   table.Row({"Engine", Code(summary.engine)});
-  table.Row({"Sampling", fmt::format("{}, {} cases, seed {}", SamplingMethodTitle(summary.sampling), summary.cases, summary.seed)});
-  table.Row({"Vehicle", fmt::format("{}, {} stages", HtmlText(summary.vehicle), campaign.vehicle.stages.size())});
+  table.Row({"Sampling", fmt::format("{}, {} cases, seed {}", SamplingMethodTitle(summary.sampling),
+                                     summary.cases, summary.seed)});
+  table.Row(
+      {"Vehicle", fmt::format("{}, {} stages", HtmlText(summary.vehicle), campaign.vehicle.stages.size())});
   const Orbit& orbit = summary.reference_orbit;
-  table.Row({"Reference", fmt::format("{}: {} km, {} m/s, {}° flight path angle, {}° inclination; found by engine {}",
-                                      HtmlText(summary.reference), ReadableText(orbit.altitude_m * 1e-3),
-                                      ReadableText(orbit.velocity_m_s), ReadableText(orbit.flight_path_angle_rad * kDegPerRad),
-                                      ReadableText(orbit.inclination_rad * kDegPerRad), HtmlText(campaign.reference.engine))});
-  table.Row({"Autopilot", fmt::format("{}, tick {} s", HtmlText(summary.autopilot), ReadableText(campaign.autopilot.tick_s))});
+  table.Row(
+      {"Reference",
+       fmt::format("{}: {} km, {} m/s, {}° flight path angle, {}° inclination; found by engine {}",
+                   HtmlText(summary.reference), ReadableText(orbit.altitude_m * 1e-3),
+                   ReadableText(orbit.velocity_m_s), ReadableText(orbit.flight_path_angle_rad * kDegPerRad),
+                   ReadableText(orbit.inclination_rad * kDegPerRad), HtmlText(campaign.reference.engine))});
+  table.Row({"Autopilot", fmt::format("{}, tick {} s", HtmlText(summary.autopilot),
+                                      ReadableText(campaign.autopilot.tick_s))});
   return html + table.Html() +
-         "<p>To fly the campaign again, in this folder; <code>campaign.yaml</code> holds everything that it needs, and "
+         "<p>To fly the campaign again, in this folder; <code>campaign.yaml</code> holds everything that it "
+         "needs, and "
          "<code>cases.csv</code> comes out the same byte for byte:</p>\n"
          "<code class=\"command\">dispersa run campaign.yaml</code>\n";
 }

@@ -12,7 +12,8 @@
 
 namespace dispersa {
 
-CampaignSummary WriteReports(const ResultFolder& folder, const Campaign& campaign, const ReportOptions& options) {
+CampaignSummary WriteReports(const ResultFolder& folder, const Campaign& campaign,
+                             const ReportOptions& options) {
   if (folder.Provenance("engine") != EngineVersion()) {
     throw InputError(fmt::format("{}: flown by engine {}, this one is {}: its flights cannot be flown again",
                                  folder.directory().string(), folder.Provenance("engine"), EngineVersion()),

@@ -19,9 +19,9 @@ struct ReportOptions {
 };
 
 /// Writes cases.csv, histories/, summary.json and report.html from what is stored, each replaced as a whole.
-/// The same stored results give the same bytes, whoever flew them. Flies the nominal, the worst cases and some
-/// others again. InputError when another engine flew the folder; ResultError (kConflict) when a case does not
-/// reproduce its digest.
+/// The same stored results give the same bytes, whoever flew them. Flies the nominal, the worst cases and
+/// some others again. InputError when another engine flew the folder; ResultError (kConflict) when a case
+/// does not reproduce its digest.
 CampaignSummary WriteReports(const ResultFolder& folder, const Campaign& campaign,
                              const ReportOptions& options = {});
 

@@ -15,9 +15,12 @@ namespace {
 
 const char* VerdictName(Verdict verdict) {
   switch (verdict) {
-    case Verdict::kPass: return "pass";
-    case Verdict::kFail: return "fail";
-    case Verdict::kInconclusive: return "inconclusive";
+    case Verdict::kPass:
+      return "pass";
+    case Verdict::kFail:
+      return "fail";
+    case Verdict::kInconclusive:
+      return "inconclusive";
   }
   return "";
 }
@@ -29,19 +32,21 @@ std::string Plural(std::int64_t count, const char* noun) {
 std::string IndependentSentence(const RequirementSummary& summary, std::int64_t missing) {
   const std::string required = PercentText(summary.probability);
   const std::string confidence = PercentText(1.0 - summary.consumer_risk);
-  const std::string seen = fmt::format("{} in {}{}", Plural(summary.failures, "failure"), Plural(summary.n, "case"),
-                                       missing > 0 ? fmt::format(" ({} without a result)", missing) : "");
+  const std::string seen =
+      fmt::format("{} in {}{}", Plural(summary.failures, "failure"), Plural(summary.n, "case"),
+                  missing > 0 ? fmt::format(" ({} without a result)", missing) : "");
   if (summary.verdict == "pass") {
     return fmt::format("Met: {} show a probability of at least {} with {} confidence; {} is required.", seen,
                        PercentText(*summary.success_lower), confidence, required);
   }
   if (summary.verdict == "fail") {
-    return fmt::format("Not met: {} show a probability of at most {} with {} confidence; {} is required.", seen,
-                       PercentText(*summary.success_upper), confidence, required);
+    return fmt::format("Not met: {} show a probability of at most {} with {} confidence; {} is required.",
+                       seen, PercentText(*summary.success_upper), confidence, required);
   }
-  return fmt::format("Not decided: {} show a probability of at least {} with {} confidence, short of the {} required; "
-                     "that takes {} cases in all if no further one fails.",
-                     seen, PercentText(*summary.success_lower), confidence, required, *summary.cases_needed);
+  return fmt::format(
+      "Not decided: {} show a probability of at least {} with {} confidence, short of the {} required; "
+      "that takes {} cases in all if no further one fails.",
+      seen, PercentText(*summary.success_lower), confidence, required, *summary.cases_needed);
 }
 
 /// The points that have no result count as failed for a pass and as met for a fail.
@@ -53,17 +58,20 @@ const char* EnumeratedVerdict(const RequirementResult& result, double probabilit
 }
 
 std::string EnumeratedSentence(const RequirementSummary& summary, std::int64_t missing) {
-  return fmt::format("Design study: {} of {} flown points meet the limit{}; {} of them are required. This says nothing about "
-                     "the probability in flight.",
-                     summary.n - summary.failures, summary.n,
-                     missing > 0 ? fmt::format(" ({} have no result)", missing) : "", PercentText(summary.probability));
+  return fmt::format(
+      "Design study: {} of {} flown points meet the limit{}; {} of them are required. This says nothing "
+      "about "
+      "the probability in flight.",
+      summary.n - summary.failures, summary.n,
+      missing > 0 ? fmt::format(" ({} have no result)", missing) : "", PercentText(summary.probability));
 }
 
 std::string SpaceFillingSentence(const RequirementSummary& summary) {
-  return fmt::format("Design study: {} of {} points meet the limit. Binomial confidence limits do not hold for this "
-                     "design{}; fly Monte Carlo for a verdict.",
-                     summary.n - summary.failures, summary.n,
-                     summary.verdict == "fail" ? ", but so many failures leave no doubt" : "");
+  return fmt::format(
+      "Design study: {} of {} points meet the limit. Binomial confidence limits do not hold for this "
+      "design{}; fly Monte Carlo for a verdict.",
+      summary.n - summary.failures, summary.n,
+      summary.verdict == "fail" ? ", but so many failures leave no doubt" : "");
 }
 
 }  // namespace
@@ -78,7 +86,8 @@ RequirementSummary Judge(const Requirement& requirement, SamplingMethod method, 
   summary.consumer_risk = requirement.consumer_risk;
 
   const std::vector<std::string>& names = MetricNames();
-  const auto metric = static_cast<std::size_t>(std::find(names.begin(), names.end(), requirement.metric) - names.begin());
+  const auto metric =
+      static_cast<std::size_t>(std::find(names.begin(), names.end(), requirement.metric) - names.begin());
   std::vector<double> values = cases.metrics.at(metric);
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (cases.outcome[i] == Outcome::kCompleted) continue;

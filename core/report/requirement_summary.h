@@ -12,8 +12,8 @@
 namespace dispersa {
 
 struct RequirementSummary {
-  std::string metric;    ///< without the prefix
-  bool below = true;     ///< else above
+  std::string metric;  ///< without the prefix
+  bool below = true;   ///< else above
   double limit = 0.0;
   double probability = 0.0;
   double consumer_risk = 0.0;
@@ -29,11 +29,12 @@ struct RequirementSummary {
   std::string sentence;
 };
 
-/// `missing`: cases of the campaign without a result. They count as failed for a pass and as passed for a fail.
+/// `missing`: cases of the campaign without a result. They count as failed for a pass and as passed for a
+/// fail.
 ///
-/// Only independent cases give a confidence statement. An enumerated design (corners, ...) passes when the share
-/// of its points that meet the limit is at least the probability, and fails otherwise; Latin hypercube and Sobol
-/// designs can fail but not pass, because the binomial limits do not hold for them.
+/// Only independent cases give a confidence statement. An enumerated design (corners, ...) passes when the
+/// share of its points that meet the limit is at least the probability, and fails otherwise; Latin hypercube
+/// and Sobol designs can fail but not pass, because the binomial limits do not hold for them.
 RequirementSummary Judge(const Requirement& requirement, SamplingMethod method, const CaseColumns& cases,
                          std::int64_t missing);
 

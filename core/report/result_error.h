@@ -6,8 +6,8 @@
 
 namespace dispersa {
 
-/// A result folder cannot be read or written. The message is one sentence with the path. A folder that the user
-/// should not have named is an InputError instead.
+/// A result folder cannot be read or written. The message is one sentence with the path. A folder that the
+/// user should not have named is an InputError instead.
 class ResultError : public std::runtime_error {
  public:
   enum class Kind {

@@ -38,7 +38,8 @@ std::string CaseColumns(const char* type) {
 }
 
 std::string SelectCases() {
-  return "SELECT case_index, outcome, end_time_s, end_stage, reason" + CaseColumns("") + ", digest FROM cases";
+  return "SELECT case_index, outcome, end_time_s, end_stage, reason" + CaseColumns("") +
+         ", digest FROM cases";
 }
 
 void CreateTables(Database& database) {
@@ -112,7 +113,8 @@ CaseResult ReadCase(const Statement& row, const fs::path& directory) {
   if (error == std::errc::no_space_on_device) {
     throw ResultError(Kind::kDiskFull, fmt::format("{}: no space left on the disk", path.string()));
   }
-  throw InputError(fmt::format("{}: cannot be made: {}", path.string(), error.message()), "a folder that can be written");
+  throw InputError(fmt::format("{}: cannot be made: {}", path.string(), error.message()),
+                   "a folder that can be written");
 }
 
 }  // namespace
@@ -155,9 +157,11 @@ ResultFolder ResultFolder::Open(const fs::path& directory) {
     throw InputError(fmt::format("{}: not a result folder: it has no {}", directory.string(), kDatabaseName));
   }
   if (!IsDatabase(directory / kDatabaseName)) {
-    throw InputError(fmt::format("{}: not a result folder: its {} is no SQLite database", directory.string(), kDatabaseName));
+    throw InputError(fmt::format("{}: not a result folder: its {} is no SQLite database", directory.string(),
+                                 kDatabaseName));
   }
-  ResultFolder folder(directory, std::make_unique<Database>(directory / kDatabaseName, Database::Mode::kExisting));
+  ResultFolder folder(directory,
+                      std::make_unique<Database>(directory / kDatabaseName, Database::Mode::kExisting));
   std::string schema;
   try {
     schema = folder.Provenance("schema");
@@ -166,8 +170,9 @@ ResultFolder ResultFolder::Open(const fs::path& directory) {
     if (schema != kSchema) {
       throw InputError(fmt::format("{}: not a result folder: {}", directory.string(), unreadable.what()));
     }
-    throw InputError(fmt::format("{}: flown by engine {}, whose inputs and metrics are not those of this one, {}",
-                                 directory.string(), folder.Provenance("engine"), EngineVersion()));
+    throw InputError(
+        fmt::format("{}: flown by engine {}, whose inputs and metrics are not those of this one, {}",
+                    directory.string(), folder.Provenance("engine"), EngineVersion()));
   }
   return folder;
 }
@@ -176,8 +181,8 @@ ResultFolder ResultFolder::Resume(const fs::path& directory, const Campaign& cam
   ResultFolder folder = Open(directory);
   const std::string flight_id = folder.Provenance("flight_id");
   if (flight_id != campaign.flight_id) {
-    throw InputError(fmt::format("{}: holds results of flight id {}, the campaign's is {}", directory.string(),
-                                 flight_id, campaign.flight_id));
+    throw InputError(fmt::format("{}: holds results of flight id {}, the campaign's is {}",
+                                 directory.string(), flight_id, campaign.flight_id));
   }
   const std::string engine = folder.Provenance("engine");
   if (engine != EngineVersion()) {
@@ -186,8 +191,8 @@ ResultFolder ResultFolder::Resume(const fs::path& directory, const Campaign& cam
   }
   const std::vector<std::uint64_t> present = folder.PresentCases();
   if (!present.empty() && present.back() >= campaign.sampling.cases) {
-    throw InputError(fmt::format("{}: already holds case {}, the campaign has only {} cases", directory.string(),
-                                 present.back(), campaign.sampling.cases));
+    throw InputError(fmt::format("{}: already holds case {}, the campaign has only {} cases",
+                                 directory.string(), present.back(), campaign.sampling.cases));
   }
   WriteFile(directory / kCampaignName, campaign.canonical_yaml);
   Transaction transaction(*folder.database_);
@@ -200,7 +205,8 @@ std::string ResultFolder::Provenance(const std::string& key) const {
   Statement select = database_->Prepare("SELECT value FROM provenance WHERE key = ?");
   select.BindText(1, key);
   if (!select.Step()) {
-    throw ResultError(Kind::kFile, fmt::format("{}: no {} in the provenance", (directory_ / kDatabaseName).string(), key));
+    throw ResultError(Kind::kFile,
+                      fmt::format("{}: no {} in the provenance", (directory_ / kDatabaseName).string(), key));
   }
   return select.Text(0);
 }
@@ -220,13 +226,16 @@ std::size_t ResultFolder::Append(std::span<const CaseResult> results) {
     stored.BindInteger(1, index);
     if (stored.Step()) {
       if (stored.Text(0) == digest) continue;
-      throw ResultError(Kind::kConflict, fmt::format("case {} was flown twice with different digests: {} is stored, "
-                                                     "{} arrived", index, stored.Text(0), digest));
+      throw ResultError(Kind::kConflict,
+                        fmt::format("case {} was flown twice with different digests: {} is stored, "
+                                    "{} arrived",
+                                    index, stored.Text(0), digest));
     }
     if (result.inputs.size() != InputColumns().size() || result.metrics.size() != MetricNames().size()) {
       throw ResultError(Kind::kConflict,
                         fmt::format("case {} has {} inputs and {} metrics, this engine has {} and {}", index,
-                                    result.inputs.size(), result.metrics.size(), InputColumns().size(), MetricNames().size()));
+                                    result.inputs.size(), result.metrics.size(), InputColumns().size(),
+                                    MetricNames().size()));
     }
     insert.Reset();
     int parameter = 0;
@@ -280,7 +289,8 @@ std::vector<std::uint64_t> ResultFolder::PresentCases() const {
 std::vector<QuarantinedCase> ResultFolder::QuarantinedCases() const {
   std::vector<QuarantinedCase> quarantined;
   Statement select = database_->Prepare("SELECT case_index, reason FROM quarantined ORDER BY case_index");
-  while (select.Step()) quarantined.push_back({static_cast<std::uint64_t>(select.Integer(0)), select.Text(1)});
+  while (select.Step())
+    quarantined.push_back({static_cast<std::uint64_t>(select.Integer(0)), select.Text(1)});
   return quarantined;
 }
 

@@ -35,8 +35,8 @@ struct QuarantinedCase {
 };
 
 /// Not thread-safe: one thread at a time. Other processes may read `results.sqlite` meanwhile (WAL).
-/// Every method throws ResultError when the disk or the database fails; InputError, where it says so, when the
-/// user named the wrong folder or case.
+/// Every method throws ResultError when the disk or the database fails; InputError, where it says so, when
+/// the user named the wrong folder or case.
 class ResultFolder {
  public:
   /// Makes the folder (parents too) with campaign.yaml and an empty results.sqlite.
@@ -57,8 +57,8 @@ class ResultFolder {
   std::string Provenance(const std::string& key) const;
 
   /// Stores results in one transaction: all or, on an error, none. A case that is already there with the same
-  /// digest is left alone; with another digest: kConflict. Lifts the quarantine of what it stores. Values that
-  /// are not finite become NULL, -0 becomes 0. Returns how many were new.
+  /// digest is left alone; with another digest: kConflict. Lifts the quarantine of what it stores. Values
+  /// that are not finite become NULL, -0 becomes 0. Returns how many were new.
   std::size_t Append(std::span<const CaseResult> results);
   /// Telemetry, one transaction. A case may have several records.
   void AppendExecution(std::span<const ExecutionRecord> records);

@@ -62,7 +62,8 @@ Json RequirementJson(const RequirementSummary& requirement) {
 
 Json NominalJson(const CaseResult& nominal) {
   Json metrics = Json::object();
-  for (std::size_t i = 0; i < nominal.metrics.size(); ++i) metrics[MetricNames()[i]] = Number(nominal.metrics[i]);
+  for (std::size_t i = 0; i < nominal.metrics.size(); ++i)
+    metrics[MetricNames()[i]] = Number(nominal.metrics[i]);
   return {{"outcome", OutcomeName(nominal.outcome)},
           {"end_time_s", Number(nominal.end_time_s)},
           {"metrics", metrics},
@@ -74,16 +75,17 @@ Json NominalJson(const CaseResult& nominal) {
 std::string SummaryJson(const CampaignSummary& summary) {
   Json json;
   json["schema"] = "dispersa/summary/1";
-  json["campaign"] = {{"name", summary.name},         {"id", summary.id},
+  json["campaign"] = {{"name", summary.name},           {"id", summary.id},
                       {"flight_id", summary.flight_id}, {"seed", summary.seed},
-                      {"cases", summary.cases},       {"sampling", SamplingMethodName(summary.sampling)},
-                      {"vehicle", summary.vehicle},   {"reference", summary.reference},
+                      {"cases", summary.cases},         {"sampling", SamplingMethodName(summary.sampling)},
+                      {"vehicle", summary.vehicle},     {"reference", summary.reference},
                       {"autopilot", summary.autopilot}};
   json["engine"] = summary.engine;
-  json["reference_orbit"] = {{"altitude_km", Number(summary.reference_orbit.altitude_m * 1e-3)},
-                             {"velocity_m_s", Number(summary.reference_orbit.velocity_m_s)},
-                             {"flight_path_angle_deg", Number(summary.reference_orbit.flight_path_angle_rad * kDegPerRad)},
-                             {"inclination_deg", Number(summary.reference_orbit.inclination_rad * kDegPerRad)}};
+  json["reference_orbit"] = {
+      {"altitude_km", Number(summary.reference_orbit.altitude_m * 1e-3)},
+      {"velocity_m_s", Number(summary.reference_orbit.velocity_m_s)},
+      {"flight_path_angle_deg", Number(summary.reference_orbit.flight_path_angle_rad * kDegPerRad)},
+      {"inclination_deg", Number(summary.reference_orbit.inclination_rad * kDegPerRad)}};
   json["verdict"] = CampaignVerdictName(summary.verdict);
   json["design_study"] = !IsIndependent(summary.sampling);
   json["flown"] = summary.flown;
@@ -104,7 +106,8 @@ std::string SummaryJson(const CampaignSummary& summary) {
     json["requirements"].push_back(RequirementJson(requirement));
   }
   json["metrics"] = Json::object();
-  for (const MetricSummary& metric : summary.metrics) json["metrics"][metric.name] = StatisticsJson(metric.statistics);
+  for (const MetricSummary& metric : summary.metrics)
+    json["metrics"][metric.name] = StatisticsJson(metric.statistics);
   json["quarantined"] = Json::array();
   for (const QuarantinedCase& quarantined : summary.quarantined) {
     json["quarantined"].push_back({{"case_index", quarantined.case_index}, {"reason", quarantined.reason}});
@@ -133,6 +136,8 @@ std::string SummaryJson(const CampaignSummary& summary) {
   return json.dump(2) + "\n";
 }
 
-std::string ReplayCommand(std::uint64_t case_index) { return fmt::format("dispersa replay . --case {}", case_index); }
+std::string ReplayCommand(std::uint64_t case_index) {
+  return fmt::format("dispersa replay . --case {}", case_index);
+}
 
 }  // namespace dispersa

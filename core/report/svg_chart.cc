@@ -16,10 +16,10 @@ namespace {
 constexpr double kLeft = 58.0;
 constexpr double kRight = 18.0;
 constexpr double kBottom = 42.0;
-constexpr double kTitleRow = 20.0;   ///< the y axis's label
+constexpr double kTitleRow = 20.0;  ///< the y axis's label
 constexpr double kLegendRow = 17.0;
-constexpr double kMarkRow = 13.0;    ///< labels of events
-constexpr double kCharacter = 6.9;   ///< mean width of a letter of the legend
+constexpr double kMarkRow = 13.0;   ///< labels of events
+constexpr double kCharacter = 6.9;  ///< mean width of a letter of the legend
 
 std::string Coordinate(double value) {
   std::string text = fmt::format("{:.1f}", value);
@@ -45,8 +45,8 @@ struct Point {
   double y;
 };
 
-/// Of the points that share a pixel column only the first, the lowest, the highest and the last are drawn, which
-/// keeps every peak.
+/// Of the points that share a pixel column only the first, the lowest, the highest and the last are drawn,
+/// which keeps every peak.
 void ThinColumn(const std::vector<Point>& column, std::vector<Point>* out) {
   if (column.size() <= 4) {
     out->insert(out->end(), column.begin(), column.end());
@@ -70,8 +70,8 @@ std::string Path(const std::vector<Point>& points) {
 }
 
 /// Runs of finite points inside the x range, thinned.
-std::vector<std::vector<Point>> Runs(const std::vector<double>& x, const std::vector<double>& y, const ChartScale& xs,
-                                     const ChartScale& ys, bool positive_only) {
+std::vector<std::vector<Point>> Runs(const std::vector<double>& x, const std::vector<double>& y,
+                                     const ChartScale& xs, const ChartScale& ys, bool positive_only) {
   std::vector<std::vector<Point>> runs(1);
   std::vector<Point> column;
   const auto flush = [&] {
@@ -96,13 +96,13 @@ std::vector<std::vector<Point>> Runs(const std::vector<double>& x, const std::ve
 }
 
 std::string Text(double x, double y, const char* style, const char* anchor, const std::string& text) {
-  return fmt::format("<text x=\"{}\" y=\"{}\" class=\"{}\" text-anchor=\"{}\">{}</text>", Coordinate(x), Coordinate(y),
-                     style, anchor, HtmlText(text));
+  return fmt::format("<text x=\"{}\" y=\"{}\" class=\"{}\" text-anchor=\"{}\">{}</text>", Coordinate(x),
+                     Coordinate(y), style, anchor, HtmlText(text));
 }
 
 std::string Segment(double x1, double y1, double x2, double y2, const char* style) {
-  return fmt::format("<path class=\"{}\" d=\"M{} {}L{} {}\"/>", style, Coordinate(x1), Coordinate(y1), Coordinate(x2),
-                     Coordinate(y2));
+  return fmt::format("<path class=\"{}\" d=\"M{} {}L{} {}\"/>", style, Coordinate(x1), Coordinate(y1),
+                     Coordinate(x2), Coordinate(y2));
 }
 
 }  // namespace
@@ -110,16 +110,18 @@ std::string Segment(double x1, double y1, double x2, double y2, const char* styl
 SvgChart::SvgChart(ChartAxis x, ChartAxis y, int width, int height)
     : x_(std::move(x)), y_(std::move(y)), width_(width), height_(height) {}
 
-void SvgChart::Line(std::vector<double> x, std::vector<double> y, const std::string& style, const std::string& legend) {
+void SvgChart::Line(std::vector<double> x, std::vector<double> y, const std::string& style,
+                    const std::string& legend) {
   series_.push_back({Series::Kind::kLine, std::move(x), std::move(y), {}, style, legend});
 }
 
-void SvgChart::Points(std::vector<double> x, std::vector<double> y, const std::string& style, const std::string& legend) {
+void SvgChart::Points(std::vector<double> x, std::vector<double> y, const std::string& style,
+                      const std::string& legend) {
   series_.push_back({Series::Kind::kPoints, std::move(x), std::move(y), {}, style, legend});
 }
 
-void SvgChart::Band(std::vector<double> x, std::vector<double> low, std::vector<double> high, const std::string& style,
-                    const std::string& legend) {
+void SvgChart::Band(std::vector<double> x, std::vector<double> low, std::vector<double> high,
+                    const std::string& style, const std::string& legend) {
   series_.push_back({Series::Kind::kBand, std::move(x), std::move(low), std::move(high), style, legend});
 }
 
@@ -137,7 +139,9 @@ void SvgChart::HorizontalLimit(double y, const std::string& legend) {
 
 void SvgChart::Mark(double x, const std::string& label) { spans_.push_back({x, x, label}); }
 
-void SvgChart::Shade(double from, double to, const std::string& label) { spans_.push_back({from, to, label}); }
+void SvgChart::Shade(double from, double to, const std::string& label) {
+  spans_.push_back({from, to, label});
+}
 
 std::string SvgChart::Svg(const std::string& description) const {
   // The legend decides where the plot begins.
@@ -186,15 +190,15 @@ std::string SvgChart::Svg(const std::string& description) const {
   }
   const ChartScale ys(y_, y_range.low, y_range.high, bottom, top, 5);
 
-  std::string svg = fmt::format("<svg class=\"chart\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">", width_,
-                                height_, HtmlText(description));
+  std::string svg = fmt::format("<svg class=\"chart\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">",
+                                width_, height_, HtmlText(description));
   for (const Span& span : spans_) {
     if (span.to < xs.low() || span.from > xs.high()) continue;
     const double from = xs.At(std::max(span.from, xs.low()));
     const double to = xs.At(std::min(span.to, xs.high()));
     if (span.to > span.from) {
-      svg += fmt::format("<rect class=\"shade\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>", Coordinate(from),
-                         Coordinate(top), Coordinate(to - from), Coordinate(bottom - top));
+      svg += fmt::format("<rect class=\"shade\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>",
+                         Coordinate(from), Coordinate(top), Coordinate(to - from), Coordinate(bottom - top));
       svg += Text(0.5 * (from + to), top - 3.0, "mark-label", "middle", span.label);
     } else {
       svg += Segment(from, top, from, bottom, "mark");
@@ -220,7 +224,8 @@ std::string SvgChart::Svg(const std::string& description) const {
         }
         break;
       case Series::Kind::kPoints: {
-        // One path of strokes without length, whose round ends are the dots: an element a case would be heavy.
+        // One path of strokes without length, whose round ends are the dots: an element a case would be
+        // heavy.
         std::string dots;
         for (std::size_t i = 0; i < series.x.size(); ++i) {
           if (!std::isfinite(series.x[i]) || !std::isfinite(series.low[i])) continue;
@@ -244,11 +249,12 @@ std::string SvgChart::Svg(const std::string& description) const {
           if (series.low[i] <= 0.0) continue;
           const double from = xs.At(series.x[i]);
           const double y = ys.At(series.low[i]);
-          svg += fmt::format("<rect class=\"bar\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"><title>{} to {}: {}"
-                             "</title></rect>",
-                             Coordinate(from), Coordinate(y), Coordinate(std::max(xs.At(series.x[i + 1]) - from - 0.6, 0.6)),
-                             Coordinate(bottom - y), ReadableText(series.x[i]), ReadableText(series.x[i + 1]),
-                             ReadableText(series.low[i]));
+          svg += fmt::format(
+              "<rect class=\"bar\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"><title>{} to {}: {}"
+              "</title></rect>",
+              Coordinate(from), Coordinate(y), Coordinate(std::max(xs.At(series.x[i + 1]) - from - 0.6, 0.6)),
+              Coordinate(bottom - y), ReadableText(series.x[i]), ReadableText(series.x[i + 1]),
+              ReadableText(series.low[i]));
         }
         break;
       case Series::Kind::kVerticalLimit:
@@ -266,10 +272,11 @@ std::string SvgChart::Svg(const std::string& description) const {
   for (const Entry& entry : entries) {
     const double y = kTitleRow + kLegendRow * entry.row + 9.0;
     const bool area = entry.series->kind == Series::Kind::kBand || entry.series->kind == Series::Kind::kBars;
-    svg += area ? fmt::format("<rect class=\"{}\" x=\"{}\" y=\"{}\" width=\"18\" height=\"10\"/>", entry.series->style,
-                              Coordinate(entry.x), Coordinate(y - 9.0))
+    svg += area ? fmt::format("<rect class=\"{}\" x=\"{}\" y=\"{}\" width=\"18\" height=\"10\"/>",
+                              entry.series->style, Coordinate(entry.x), Coordinate(y - 9.0))
                 : Segment(entry.x + (entry.series->kind == Series::Kind::kPoints ? 12.0 : 0.0), y - 4.0,
-                          entry.x + (entry.series->kind == Series::Kind::kPoints ? 12.0 : 18.0), y - 4.0, entry.series->style.c_str());
+                          entry.x + (entry.series->kind == Series::Kind::kPoints ? 12.0 : 18.0), y - 4.0,
+                          entry.series->style.c_str());
     svg += Text(entry.x + 22.0, y, "legend", "start", entry.series->legend);
   }
   return svg + "</svg>";

@@ -9,11 +9,11 @@
 namespace dispersa {
 
 struct ChartAxis {
-  std::string label;          ///< with the unit
+  std::string label;               ///< with the unit
   std::optional<double> low = {};  ///< as the data, when absent
   std::optional<double> high = {};
-  bool logarithmic = false;   ///< base 10; values that are not positive are left out
-  bool percent = false;       ///< tick labels of 0.01 read "1 %"
+  bool logarithmic = false;  ///< base 10; values that are not positive are left out
+  bool percent = false;      ///< tick labels of 0.01 read "1 %"
 };
 
 class SvgChart {
@@ -21,12 +21,14 @@ class SvgChart {
   SvgChart(ChartAxis x, ChartAxis y, int width = 520, int height = 260);
 
   /// Points joined by lines; NaN interrupts. `style` is a class of the style sheet ("line-0" ... "line-3").
-  void Line(std::vector<double> x, std::vector<double> y, const std::string& style, const std::string& legend);
-  /// Dots.
-  void Points(std::vector<double> x, std::vector<double> y, const std::string& style, const std::string& legend);
-  /// The area between two curves over the same x.
-  void Band(std::vector<double> x, std::vector<double> low, std::vector<double> high, const std::string& style,
+  void Line(std::vector<double> x, std::vector<double> y, const std::string& style,
             const std::string& legend);
+  /// Dots.
+  void Points(std::vector<double> x, std::vector<double> y, const std::string& style,
+              const std::string& legend);
+  /// The area between two curves over the same x.
+  void Band(std::vector<double> x, std::vector<double> low, std::vector<double> high,
+            const std::string& style, const std::string& legend);
   /// counts[i] between edges[i] and edges[i + 1], from zero up.
   void Bars(std::vector<double> edges, std::vector<double> counts, const std::string& legend);
   /// Dashed lines that belong to a requirement; the axes grow to show them.

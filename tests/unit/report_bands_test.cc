@@ -58,8 +58,9 @@ TEST(ComputeBands, DoNotDependOnTheOrderOfFlights) {
 TEST(BandsCsv, NamesItsColumns) {
   const std::string name = HistoryColumns()[1];
   const FlightBands bands = ComputeBands({{{1.0}}, {{1.0}}}, {1}, kStep_s);
-  EXPECT_EQ(BandsCsv(bands), "time_s,flights," + name + "_min," + name + "_p01," + name + "_p05," + name + "_p50," + name +
-                                 "_p95," + name + "_p99," + name + "_max\n0,2,1,1,1,1,1,1,1\n");
+  EXPECT_EQ(BandsCsv(bands), "time_s,flights," + name + "_min," + name + "_p01," + name + "_p05," + name +
+                                 "_p50," + name + "_p95," + name + "_p99," + name +
+                                 "_max\n0,2,1,1,1,1,1,1,1\n");
 }
 
 }  // namespace

@@ -34,7 +34,8 @@ DispersionSummary Summarized(const Dispersion& dispersion, std::size_t n, Draw d
   campaign.dispersions = {dispersion};
   CaseColumns cases;
   cases.inputs.resize(InputColumns().size());
-  for (std::size_t i = 0; i < n; ++i) cases.inputs[static_cast<std::size_t>(dispersion.inputs[0])].push_back(draw());
+  for (std::size_t i = 0; i < n; ++i)
+    cases.inputs[static_cast<std::size_t>(dispersion.inputs[0])].push_back(draw());
   return SummarizeDispersions(campaign, cases).at(0);
 }
 
@@ -49,14 +50,17 @@ TEST(Dispersions, AgreeWithWhatIsDeclared) {
 }
 
 TEST(Dispersions, ThatWereNeverAppliedAreFound) {
-  EXPECT_EQ(Summarized(Normal("thrust_factor_stage1", 1.0, 0.02 / 3.0), 200, [] { return 1.0; }).consistent, false);
+  EXPECT_EQ(Summarized(Normal("thrust_factor_stage1", 1.0, 0.02 / 3.0), 200, [] { return 1.0; }).consistent,
+            false);
 }
 
 TEST(Dispersions, AThirdOfTheSpreadIsFound) {  // sigma taken for three sigma
   std::mt19937_64 generator(2);
   std::normal_distribution<double> normal(1.0, 0.02 / 9.0);
-  EXPECT_EQ(Summarized(Normal("thrust_factor_stage1", 1.0, 0.02 / 3.0), 200, [&] { return normal(generator); }).consistent,
-            false);
+  EXPECT_EQ(
+      Summarized(Normal("thrust_factor_stage1", 1.0, 0.02 / 3.0), 200, [&] { return normal(generator); })
+          .consistent,
+      false);
 }
 
 TEST(Dispersions, AMagnitudeIsHalfNormal) {
@@ -74,8 +78,12 @@ TEST(Dispersions, AMagnitudeIsHalfNormal) {
 
 TEST(Dispersions, AUniformAngleHasItsMoments) {
   Dispersion azimuth = Normal("wind_azimuth_deg", 0.0, 0.0);
-  azimuth.distribution = {.kind = Distribution::kUniform, .nominal = 0.0, .sigma = 0.0, .low = 0.0,
-                          .high = 2.0 * std::numbers::pi, .values = {}};
+  azimuth.distribution = {.kind = Distribution::kUniform,
+                          .nominal = 0.0,
+                          .sigma = 0.0,
+                          .low = 0.0,
+                          .high = 2.0 * std::numbers::pi,
+                          .values = {}};
   std::mt19937_64 generator(4);
   std::uniform_real_distribution<double> uniform(0.0, 360.0);
   const DispersionSummary summary = Summarized(azimuth, 2000, [&] { return uniform(generator); });
@@ -87,8 +95,8 @@ TEST(Dispersions, AUniformAngleHasItsMoments) {
 
 TEST(Dispersions, AConstantHasNoSpread) {
   Dispersion speed = Normal("wind_max_speed_m_s", 0.0, 0.0);
-  speed.distribution = {.kind = Distribution::kConstant, .nominal = 60.96, .sigma = 0.0, .low = 0.0, .high = 0.0,
-                        .values = {}};
+  speed.distribution = {
+      .kind = Distribution::kConstant, .nominal = 60.96, .sigma = 0.0, .low = 0.0, .high = 0.0, .values = {}};
   EXPECT_EQ(Summarized(speed, 50, [] { return 60.96; }).consistent, true);
   EXPECT_EQ(Summarized(speed, 50, [] { return 60.0; }).consistent, false);
   EXPECT_EQ(Summarized(speed, 50, [] { return 60.96; }).declared, "constant 60.96 m/s");
@@ -97,7 +105,9 @@ TEST(Dispersions, AConstantHasNoSpread) {
 TEST(Dispersions, AFewCasesOrADesignDecideNothing) {
   const Dispersion thrust = Normal("thrust_factor_stage1", 1.0, 0.02 / 3.0);
   EXPECT_FALSE(Summarized(thrust, 9, [] { return 1.0; }).consistent.has_value());
-  EXPECT_FALSE(Summarized(thrust, 100, [] { return 1.0; }, SamplingMethod::kOneAtATime).consistent.has_value());
+  EXPECT_FALSE(Summarized(
+                   thrust, 100, [] { return 1.0; }, SamplingMethod::kOneAtATime)
+                   .consistent.has_value());
 }
 
 TEST(Dispersions, TwoThatFeedOneInputPromiseNothingAboutIt) {

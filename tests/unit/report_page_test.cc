@@ -30,11 +30,13 @@ History MakeHistory() {
     const int stage = k < 60 ? 1 : k < 110 ? 2 : k < 150 ? 3 : 4;
     const bool coast = k >= 145 && k < 450;
     std::vector<double> row;
-    for (std::size_t i = 0; i < HistoryColumns().size(); ++i) row.push_back(std::sin(0.02 * time_s + static_cast<double>(i)));
+    for (std::size_t i = 0; i < HistoryColumns().size(); ++i)
+      row.push_back(std::sin(0.02 * time_s + static_cast<double>(i)));
     row[0] = time_s;
     row[static_cast<std::size_t>(FindHistoryColumn("stage"))] = stage;
     row[static_cast<std::size_t>(FindHistoryColumn("thrust_n"))] = coast ? 0.0 : 1000.0;
-    row[static_cast<std::size_t>(FindHistoryColumn("qbar_pa"))] = 60000.0 * std::exp(-0.002 * (time_s - 40) * (time_s - 40));
+    row[static_cast<std::size_t>(FindHistoryColumn("qbar_pa"))] =
+        60000.0 * std::exp(-0.002 * (time_s - 40) * (time_s - 40));
     history.values.insert(history.values.end(), row.begin(), row.end());
   }
   return history;
@@ -45,11 +47,15 @@ class ReportPageTest : public testing::Test {
   void Build(std::uint64_t cases, std::uint64_t flown) {
     campaign_ = MakeCampaign(cases);
     campaign_.name = "made <up> & \"quoted\"";
-    campaign_.requirements = {
-        {.metric = "pitch_error_peak_deg", .below = 12.5, .above = std::nullopt, .probability = 0.9, .consumer_risk = 0.1}};
+    campaign_.requirements = {{.metric = "pitch_error_peak_deg",
+                               .below = 12.5,
+                               .above = std::nullopt,
+                               .probability = 0.9,
+                               .consumer_risk = 0.1}};
     Dispersion thrust;
     thrust.name = "thrust/stage1";
-    thrust.distribution = {.kind = Distribution::kNormal, .nominal = 1.0, .sigma = 0.01, .low = 0, .high = 0, .values = {}};
+    thrust.distribution = {
+        .kind = Distribution::kNormal, .nominal = 1.0, .sigma = 0.01, .low = 0, .high = 0, .values = {}};
     thrust.inputs = {FindInput("thrust_factor_stage1")};
     campaign_.dispersions = {thrust};
     ResultFolder folder = ResultFolder::Create(temporary_ / "out", campaign_);
@@ -93,13 +99,15 @@ TEST_F(ReportPageTest, ShowsTheNumbersOfTheSummary) {
     std::string row = ReadableText(summary_.nominal->metrics[MetricAt(metric.name)]);
     const auto add = [&](const std::string& text) { row += "</td><td class=\"n\">" + text; };
     add(std::to_string(s.n));
-    for (const double value : {s.mean, s.std, s.min, s.p50, s.p95, s.p99, s.p99_73, s.max}) add(ReadableText(value));
+    for (const double value : {s.mean, s.std, s.min, s.p50, s.p95, s.p99, s.p99_73, s.max})
+      add(ReadableText(value));
     EXPECT_THAT(page_, HasSubstr(row)) << metric.name;
   }
   const RequirementSummary& requirement = summary_.requirements[0];
   for (const std::string& text :
-       {PercentText(*requirement.success_lower), PercentText(*requirement.success_upper), std::string("below 12.5 °"),
-        HtmlText(requirement.sentence), std::string("39</td>"), std::string("97.5 %")}) {
+       {PercentText(*requirement.success_lower), PercentText(*requirement.success_upper),
+        std::string("below 12.5 °"), HtmlText(requirement.sentence), std::string("39</td>"),
+        std::string("97.5 %")}) {
     EXPECT_THAT(page_, HasSubstr(text));
   }
   for (const WorstCases& worst : summary_.worst_cases) {
@@ -132,11 +140,13 @@ TEST_F(ReportPageTest, ShowsNoUndefinedNumberAndNoPath) {
 
 TEST_F(ReportPageTest, ClosesEveryElementThatItOpens) {
   Build(40, 40);
-  for (const std::string tag : {"table", "tr", "td", "div", "figure", "svg", "text", "p", "h2", "ul", "code", "html"}) {
+  for (const std::string tag :
+       {"table", "tr", "td", "div", "figure", "svg", "text", "p", "h2", "ul", "code", "html"}) {
     const std::regex open("<" + tag + "[ >]");
     const std::regex close("</" + tag + ">");
     const auto count = [&](const std::regex& expression) {
-      return std::distance(std::sregex_iterator(page_.begin(), page_.end(), expression), std::sregex_iterator());
+      return std::distance(std::sregex_iterator(page_.begin(), page_.end(), expression),
+                           std::sregex_iterator());
     };
     EXPECT_EQ(count(open), count(close)) << tag;
   }
@@ -166,7 +176,8 @@ TEST_F(ReportPageTest, LabelsADesignStudy) {
   Build(40, 40);
   EXPECT_THAT(page_, Not(HasSubstr("design study")));
   summary_.sampling = SamplingMethod::kCorners;
-  EXPECT_THAT(ReportPage(campaign_, summary_, cases_, histories_), HasSubstr("<span class=\"badge design\">design study</span>"));
+  EXPECT_THAT(ReportPage(campaign_, summary_, cases_, histories_),
+              HasSubstr("<span class=\"badge design\">design study</span>"));
 }
 
 }  // namespace

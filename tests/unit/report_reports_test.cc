@@ -66,19 +66,22 @@ TEST(Reports, AreTheSameBytesForAnyOrderAndNumberOfThreads) {
   TemporaryFolder temporary;
   ResultFolder one = ResultFolder::Create(temporary / "one", TheCampaign());
   one.Append(TheResults());
-  const CampaignSummary summary = WriteReports(one, TheCampaign(), {.history_cases = 3, .threads = 1, .progress = {}});
+  const CampaignSummary summary =
+      WriteReports(one, TheCampaign(), {.history_cases = 3, .threads = 1, .progress = {}});
 
   ResultFolder other = ResultFolder::Create(temporary / "other", TheCampaign());
   std::vector<CaseResult> reversed(TheResults().rbegin(), TheResults().rend());
   for (const CaseResult& result : reversed) other.Append({{result}});
-  other.AppendExecution({{{.case_index = 0, .worker = "w", .host = "somewhere", .started_utc = "", .seconds = 1.0}}});
+  other.AppendExecution(
+      {{{.case_index = 0, .worker = "w", .host = "somewhere", .started_utc = "", .seconds = 1.0}}});
   WriteReports(other, TheCampaign(), {.history_cases = 3, .threads = 3, .progress = {}});
 
   const std::map<std::string, std::string> files = Files(temporary / "one");
   const std::map<std::string, std::string> others = Files(temporary / "other");
   ASSERT_EQ(files.size(), others.size());
   for (const auto& [name, bytes] : files) EXPECT_TRUE(others.at(name) == bytes) << name;
-  for (const char* name : {"campaign.yaml", "cases.csv", "summary.json", "report.html", "histories/nominal.csv", "histories/bands.csv"}) {
+  for (const char* name : {"campaign.yaml", "cases.csv", "summary.json", "report.html",
+                           "histories/nominal.csv", "histories/bands.csv"}) {
     EXPECT_EQ(files.count(name), 1u) << name;
   }
   const std::uint64_t worst = summary.worst_cases.at(0).cases.at(0).case_index;
@@ -96,7 +99,8 @@ TEST(Reports, CanBeWrittenAgain) {
             CampaignVerdict::kIncomplete);
   const std::map<std::string, std::string> first = Files(temporary / "out");
   std::ofstream(temporary / "out" / "histories" / "case_99.csv") << "of an earlier worst case";
-  WriteReports(ResultFolder::Open(temporary / "out"), TheCampaign(), {.history_cases = 0, .threads = 1, .progress = {}});
+  WriteReports(ResultFolder::Open(temporary / "out"), TheCampaign(),
+               {.history_cases = 0, .threads = 1, .progress = {}});
   EXPECT_TRUE(Files(temporary / "out") == first);
 }
 
@@ -111,8 +115,10 @@ TEST(Reports, RefuseAResultThatDoesNotComeOutAgain) {
     FAIL() << "written";
   } catch (const ResultError& error) {
     EXPECT_EQ(error.kind(), ResultError::Kind::kConflict);
-    EXPECT_EQ(error.what(), "case 0 does not reproduce its stored result: digest 00000000000000010000000000000002 is stored, " +
-                                TheResults()[0].digest.Hex() + " was flown now");
+    EXPECT_EQ(
+        error.what(),
+        "case 0 does not reproduce its stored result: digest 00000000000000010000000000000002 is stored, " +
+            TheResults()[0].digest.Hex() + " was flown now");
   }
 }
 
@@ -125,7 +131,8 @@ TEST(Reports, NeedTheEngineThatFlew) {
     WriteReports(folder, TheCampaign());
     FAIL() << "written";
   } catch (const InputError& error) {
-    EXPECT_EQ(error.what(), (temporary / "out").string() + ": flown by engine 0.0.0+older, this one is " + EngineVersion() +
+    EXPECT_EQ(error.what(), (temporary / "out").string() + ": flown by engine 0.0.0+older, this one is " +
+                                EngineVersion() +
                                 ": its flights cannot be flown again, allowed: the engine that flew it");
   }
 }
@@ -142,7 +149,9 @@ TEST(Reports, TellTheirProgressAndStopWhenAsked) {
     last = done;
     if (done == 2) throw Stop();
   };
-  EXPECT_THROW(WriteReports(folder, TheCampaign(), {.history_cases = kCases, .threads = 1, .progress = progress}), Stop);
+  EXPECT_THROW(
+      WriteReports(folder, TheCampaign(), {.history_cases = kCases, .threads = 1, .progress = progress}),
+      Stop);
   EXPECT_EQ(last, 2u);
 }
 

@@ -126,7 +126,8 @@ TEST(ResultFolder, ListsInOrderWhatIsThere) {
   EXPECT_THAT(visited, ElementsAre(3, 17, 41));
   EXPECT_TRUE(folder.Contains(17));
   EXPECT_FALSE(folder.Contains(18));
-  EXPECT_EQ(MessageOf<InputError>([&] { folder.Load(18); }), (temporary / "out").string() + ": has no result of case 18");
+  EXPECT_EQ(MessageOf<InputError>([&] { folder.Load(18); }),
+            (temporary / "out").string() + ": has no result of case 18");
 }
 
 TEST(ResultFolder, KeepsQuarantineUntilThereIsAResult) {
@@ -145,9 +146,13 @@ TEST(ResultFolder, KeepsQuarantineUntilThereIsAResult) {
 TEST(ResultFolder, KeepsTelemetryApart) {
   TemporaryFolder temporary;
   ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(10));
-  folder.AppendExecution({{{.case_index = 3, .worker = "w1", .host = "h", .started_utc = "2026-01-01T00:00:00Z",
+  folder.AppendExecution({{{.case_index = 3,
+                            .worker = "w1",
+                            .host = "h",
+                            .started_utc = "2026-01-01T00:00:00Z",
                             .seconds = 0.25}}});
-  EXPECT_EQ(Query(temporary / "out", "SELECT case_index || worker || host || started_utc || seconds FROM execution"),
+  EXPECT_EQ(Query(temporary / "out",
+                  "SELECT case_index || worker || host || started_utc || seconds FROM execution"),
             "3w1h2026-01-01T00:00:00Z0.25");
   EXPECT_TRUE(folder.PresentCases().empty());
 }
@@ -156,8 +161,9 @@ TEST(ResultFolder, RefusesAFolderThatIsNotEmpty) {
   TemporaryFolder temporary;
   std::filesystem::create_directories(temporary / "out" / "something");
   EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Create(temporary / "out", MakeCampaign(1)); }),
-            (temporary / "out").string() + ": the folder is not empty, allowed: a new or an empty folder, or --resume "
-                                           "to go on with a campaign of the same flight id");
+            (temporary / "out").string() +
+                ": the folder is not empty, allowed: a new or an empty folder, or --resume "
+                "to go on with a campaign of the same flight id");
 }
 
 TEST(ResultFolder, RefusesAFolderThatCannotBeMade) {
@@ -175,8 +181,9 @@ TEST(ResultFolder, RefusesToOpenWhatIsNone) {
             (temporary / "empty").string() + ": not a result folder: it has no results.sqlite");
   std::filesystem::create_directories(temporary / "garbage");
   std::ofstream(temporary / "garbage" / "results.sqlite") << std::string(4096, 'x');
-  EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Open(temporary / "garbage"); }),
-            (temporary / "garbage").string() + ": not a result folder: its results.sqlite is no SQLite database");
+  EXPECT_EQ(
+      MessageOf<InputError>([&] { ResultFolder::Open(temporary / "garbage"); }),
+      (temporary / "garbage").string() + ": not a result folder: its results.sqlite is no SQLite database");
   std::filesystem::create_directories(temporary / "other");
   Database((temporary / "other") / "results.sqlite", Database::Mode::kCreate).Execute("CREATE TABLE t (x)");
   EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Open(temporary / "other"); }),
@@ -205,7 +212,8 @@ TEST(ResultFolder, RefusesToMixFlights) {
   Campaign other = MakeCampaign(2);
   other.flight_id = std::string(64, '9');
   EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Resume(folder, other); }),
-            folder + ": holds results of flight id " + std::string(64, '2') + ", the campaign's is " + std::string(64, '9'));
+            folder + ": holds results of flight id " + std::string(64, '2') + ", the campaign's is " +
+                std::string(64, '9'));
   EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Resume(folder, MakeCampaign(1)); }),
             folder + ": already holds case 1, the campaign has only 1 cases");
   Database(folder + "/results.sqlite", Database::Mode::kExisting)

@@ -22,7 +22,11 @@ using testing::ElementsAre;
 const char kPeak[] = "pitch_error_peak_deg";
 
 Requirement PeakBelow(double limit, double probability, double consumer_risk) {
-  return {.metric = kPeak, .below = limit, .above = std::nullopt, .probability = probability, .consumer_risk = consumer_risk};
+  return {.metric = kPeak,
+          .below = limit,
+          .above = std::nullopt,
+          .probability = probability,
+          .consumer_risk = consumer_risk};
 }
 
 /// n completed cases whose peak is 0.1, but for the first `failures`, whose peak is 0.9.
@@ -46,7 +50,8 @@ TEST(Judge, NeedsTheCasesOfTheExactBinomial) {
   EXPECT_FALSE(enough.cases_needed.has_value());
   EXPECT_NEAR(*enough.success_lower, std::pow(0.10, 1.0 / 852), 1e-12);  // Clopper-Pearson without a failure
   EXPECT_EQ(enough.sentence,
-            "Met: 0 failures in 852 cases show a probability of at least 99.73 % with 90 % confidence; 99.73 % is required.");
+            "Met: 0 failures in 852 cases show a probability of at least 99.73 % with 90 % confidence; 99.73 "
+            "% is required.");
 
   const RequirementSummary one_less = Judge(requirement, SamplingMethod::kMonteCarlo, Columns(851, 0), 0);
   EXPECT_EQ(one_less.verdict, "inconclusive");
@@ -65,7 +70,8 @@ TEST(Judge, NeedsTheCasesOfTheExactBinomial) {
 TEST(Judge, SaysWhyNothingIsDecided) {
   // 200 cases without a failure: 0.1^(1/200) = 0.98855.
   EXPECT_EQ(Judge(PeakBelow(0.5, 0.9973, 0.10), SamplingMethod::kMonteCarlo, Columns(200, 0), 0).sentence,
-            "Not decided: 0 failures in 200 cases show a probability of at least 98.855 % with 90 % confidence, short of "
+            "Not decided: 0 failures in 200 cases show a probability of at least 98.855 % with 90 % "
+            "confidence, short of "
             "the 99.73 % required; that takes 852 cases in all if no further one fails.");
 }
 
@@ -85,7 +91,8 @@ TEST(Judge, TheLimitItselfFails) {
 }
 
 TEST(Judge, LooksAboveToo) {
-  const Requirement above = {.metric = kPeak, .below = std::nullopt, .above = 0.5, .probability = 0.5, .consumer_risk = 0.1};
+  const Requirement above = {
+      .metric = kPeak, .below = std::nullopt, .above = 0.5, .probability = 0.5, .consumer_risk = 0.1};
   const RequirementSummary summary = Judge(above, SamplingMethod::kMonteCarlo, Columns(10, 4), 0);
   EXPECT_FALSE(summary.below);
   EXPECT_EQ(summary.failures, 6);  // those at 0.1
@@ -93,30 +100,39 @@ TEST(Judge, LooksAboveToo) {
 
 TEST(Judge, MissingCasesCountAgainstEitherVerdict) {
   // 852 successes pass, but not beside 100 cases of which nothing is known.
-  EXPECT_EQ(Judge(PeakBelow(0.5, 0.9973, 0.10), SamplingMethod::kMonteCarlo, Columns(852, 0), 100).verdict, "inconclusive");
+  EXPECT_EQ(Judge(PeakBelow(0.5, 0.9973, 0.10), SamplingMethod::kMonteCarlo, Columns(852, 0), 100).verdict,
+            "inconclusive");
   // 3 failures of 20 fail 99 %, but not if 2000 more might all have been successes.
-  EXPECT_EQ(Judge(PeakBelow(0.5, 0.99, 0.10), SamplingMethod::kMonteCarlo, Columns(20, 3), 0).verdict, "fail");
-  EXPECT_EQ(Judge(PeakBelow(0.5, 0.99, 0.10), SamplingMethod::kMonteCarlo, Columns(20, 3), 2000).verdict, "inconclusive");
+  EXPECT_EQ(Judge(PeakBelow(0.5, 0.99, 0.10), SamplingMethod::kMonteCarlo, Columns(20, 3), 0).verdict,
+            "fail");
+  EXPECT_EQ(Judge(PeakBelow(0.5, 0.99, 0.10), SamplingMethod::kMonteCarlo, Columns(20, 3), 2000).verdict,
+            "inconclusive");
 }
 
 TEST(Judge, GivesNoConfidenceToADesign) {
-  const RequirementSummary corners = Judge(PeakBelow(0.5, 0.9973, 0.10), SamplingMethod::kCorners, Columns(16, 0), 0);
+  const RequirementSummary corners =
+      Judge(PeakBelow(0.5, 0.9973, 0.10), SamplingMethod::kCorners, Columns(16, 0), 0);
   EXPECT_EQ(corners.verdict, "pass");
   EXPECT_FALSE(corners.success_lower.has_value());
   EXPECT_EQ(corners.sentence,
-            "Design study: 16 of 16 flown points meet the limit; 99.73 % of them are required. This says nothing about the "
+            "Design study: 16 of 16 flown points meet the limit; 99.73 % of them are required. This says "
+            "nothing about the "
             "probability in flight.");
   EXPECT_EQ(Judge(PeakBelow(0.5, 0.9973, 0.10), SamplingMethod::kCorners, Columns(16, 1), 0).verdict, "fail");
-  EXPECT_EQ(Judge(PeakBelow(0.5, 0.9973, 0.10), SamplingMethod::kGrid, Columns(15, 0), 1).verdict, "inconclusive");
-  EXPECT_EQ(Judge(PeakBelow(0.5, 0.95, 0.10), SamplingMethod::kCorners, Columns(320, 16), 0).verdict, "pass");  // 95 %
+  EXPECT_EQ(Judge(PeakBelow(0.5, 0.9973, 0.10), SamplingMethod::kGrid, Columns(15, 0), 1).verdict,
+            "inconclusive");
+  EXPECT_EQ(Judge(PeakBelow(0.5, 0.95, 0.10), SamplingMethod::kCorners, Columns(320, 16), 0).verdict,
+            "pass");  // 95 %
   EXPECT_EQ(Judge(PeakBelow(0.5, 0.95, 0.10), SamplingMethod::kCorners, Columns(320, 17), 0).verdict, "fail");
 
-  const RequirementSummary latin = Judge(PeakBelow(0.5, 0.95, 0.10), SamplingMethod::kLatinHypercube, Columns(1000, 0), 0);
+  const RequirementSummary latin =
+      Judge(PeakBelow(0.5, 0.95, 0.10), SamplingMethod::kLatinHypercube, Columns(1000, 0), 0);
   EXPECT_EQ(latin.verdict, "inconclusive");
   EXPECT_FALSE(latin.success_upper.has_value());
   EXPECT_FALSE(latin.cases_needed.has_value());
   EXPECT_EQ(latin.sentence,
-            "Design study: 1000 of 1000 points meet the limit. Binomial confidence limits do not hold for this design; fly "
+            "Design study: 1000 of 1000 points meet the limit. Binomial confidence limits do not hold for "
+            "this design; fly "
             "Monte Carlo for a verdict.");
   EXPECT_EQ(Judge(PeakBelow(0.5, 0.95, 0.10), SamplingMethod::kSobol, Columns(1000, 500), 0).verdict, "fail");
 }
@@ -176,7 +192,8 @@ TEST_F(FiveCases, WorstCasesBeginWithALostOne) {
 }
 
 TEST_F(FiveCases, RanksByTheSideOfTheRequirement) {
-  campaign_.requirements = {{.metric = kPeak, .below = std::nullopt, .above = 0.1, .probability = 0.5, .consumer_risk = 0.1}};
+  campaign_.requirements = {
+      {.metric = kPeak, .below = std::nullopt, .above = 0.1, .probability = 0.5, .consumer_risk = 0.1}};
   const CampaignSummary summary = BuildSummary(folder_, campaign_);
   std::vector<std::uint64_t> order;
   for (const WorstCase& worst : summary.worst_cases[0].cases) order.push_back(worst.case_index);
@@ -218,7 +235,8 @@ TEST_F(FiveCases, JsonHoldsTheContract) {
   EXPECT_EQ(json["campaign"]["cases"], 6);
   EXPECT_EQ(json["engine"], EngineVersion());
   EXPECT_EQ(json["verdict"], "incomplete");
-  EXPECT_EQ(json["outcomes"], nlohmann::json::parse(R"({"completed": 4, "lost_control": 1, "structural_limit": 0, "impact": 0,
+  EXPECT_EQ(json["outcomes"],
+            nlohmann::json::parse(R"({"completed": 4, "lost_control": 1, "structural_limit": 0, "impact": 0,
                                                         "numerical_failure": 0, "timeout": 0})"));
   EXPECT_EQ(json["metrics"].size(), MetricNames().size());
   EXPECT_EQ(json["metrics"][kPeak]["n"], 5);
@@ -233,7 +251,8 @@ TEST_F(FiveCases, JsonHoldsTheContract) {
   EXPECT_EQ(requirement["failures"], 2);
   EXPECT_EQ(requirement["verdict"], "inconclusive");
   EXPECT_TRUE(requirement["cases_needed"].is_number_integer());
-  EXPECT_EQ(json["quarantined"], nlohmann::json::parse(R"([{"case_index": 5, "reason": "killed 3 workers"}])"));
+  EXPECT_EQ(json["quarantined"],
+            nlohmann::json::parse(R"([{"case_index": 5, "reason": "killed 3 workers"}])"));
   EXPECT_EQ(json["worst_cases"][0]["case_index"], 2);
   EXPECT_EQ(json["worst_cases"][0]["replay"], "dispersa replay . --case 2");
   EXPECT_EQ(json["nominal"], nullptr);

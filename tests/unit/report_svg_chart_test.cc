@@ -41,14 +41,15 @@ TEST(ChartScale, KeepsTheEndsThatItIsGiven) {
 }
 
 TEST(ChartScale, CountsDecades) {
-  const ChartScale scale({.label = "p", .low = 0.0005, .high = 1.0, .logarithmic = true, .percent = true}, 0.0, 0.0, 0.0,
-                         1.0, 5);
+  const ChartScale scale({.label = "p", .low = 0.0005, .high = 1.0, .logarithmic = true, .percent = true},
+                         0.0, 0.0, 0.0, 1.0, 5);
   EXPECT_THAT(Labels(scale), ElementsAre("0.1 %", "1 %", "10 %", "100 %"));
   EXPECT_NEAR(scale.At(std::sqrt(0.0005)), 0.5, 1e-12);  // half-way in decades
 }
 
 TEST(ChartScale, LivesWithConstantAndMissingData) {
-  EXPECT_NEAR(ChartScale({.label = "x"}, 5.0, 5.0, 0.0, 100.0, 4).At(5.0), 50.0, 1e-9);  // rounding of the ends
+  EXPECT_NEAR(ChartScale({.label = "x"}, 5.0, 5.0, 0.0, 100.0, 4).At(5.0), 50.0,
+              1e-9);  // rounding of the ends
   EXPECT_EQ(ChartScale({.label = "x"}, INFINITY, -INFINITY, 0.0, 100.0, 4).low(), 0.0);
 }
 
@@ -81,7 +82,8 @@ TEST(SvgChart, SaysWhatItShows) {
   chart.HorizontalLimit(0.5, "limit");
   chart.Mark(0.5, "S2");
   const std::string svg = chart.Svg("error < limit");
-  for (const char* text : {">time, s<", ">error, °<", ">flown<", ">limit<", ">S2<", "aria-label=\"error &lt; limit\""}) {
+  for (const char* text :
+       {">time, s<", ">error, °<", ">flown<", ">limit<", ">S2<", "aria-label=\"error &lt; limit\""}) {
     EXPECT_THAT(svg, HasSubstr(text));
   }
 }

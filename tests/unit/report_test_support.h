@@ -77,7 +77,8 @@ inline CaseResult MakeCase(std::uint64_t index) {
   result.end_time_s = 569.25;
   result.end_stage = 4;
   const auto k = static_cast<double>(index);
-  for (std::size_t i = 0; i < InputColumns().size(); ++i) result.inputs.push_back(0.1 * static_cast<double>(i) + k / 7.0);
+  for (std::size_t i = 0; i < InputColumns().size(); ++i)
+    result.inputs.push_back(0.1 * static_cast<double>(i) + k / 7.0);
   for (std::size_t i = 0; i < MetricNames().size(); ++i) {
     result.metrics.push_back(1.0 + static_cast<double>(i) + k / 3.0);
   }

@@ -31,7 +31,9 @@ TEST(PercentText, NeverRoundsUpToCertainty) {
   EXPECT_EQ(PercentText(4996.0 / 5000.0), "99.92 %");
 }
 
-TEST(HtmlText, EscapesWhatWouldBeMarkup) { EXPECT_EQ(HtmlText("<a & \"b\">"), "&lt;a &amp; &quot;b&quot;&gt;"); }
+TEST(HtmlText, EscapesWhatWouldBeMarkup) {
+  EXPECT_EQ(HtmlText("<a & \"b\">"), "&lt;a &amp; &quot;b&quot;&gt;");
+}
 
 TEST(MetricCatalogue, ReadsUnitsFromNames) {
   EXPECT_EQ(SplitUnit("wind_max_speed_m_s").unit, "m/s");
