@@ -20,6 +20,7 @@ class CampaignFlights {
   explicit CampaignFlights(const Campaign& campaign);
   ~CampaignFlights();
 
+  const FlightModel& model() const { return *model_; }
   /// The inputs of a case, as its flight applies them.
   FlightInputs Draw(std::uint64_t case_index) const { return design_.Draw(case_index); }
   CaseResult FlyCase(std::uint64_t case_index, History* history = nullptr) const;

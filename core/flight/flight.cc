@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/flight/history_columns.h"
 #include "core/flight/metrics_recorder.h"
@@ -23,12 +24,13 @@ constexpr double kTimeLimit_s = 3600.0;
 // A vehicle this far below its site has hit the ground.
 constexpr double kImpactDepth_m = 10.0;
 constexpr int kDelayLine = 128;
+constexpr double kNever_s = std::numeric_limits<double>::infinity();
 
-// CVODE's absolute tolerances: m, m/s, quaternion, rad/s, rad, rad/s.
+// CVODE's absolute tolerances of the change within a tick: m, m/s, quaternion, rad/s, rad, rad/s.
 std::array<double, kLauncherSize> AbsoluteTolerances() {
   std::array<double, kLauncherSize> t{};
   for (int i = 0; i < kLauncherSize; ++i) {
-    const double value = i < 3 ? 1e-6 : i < 6 ? 1e-9 : 1e-13;
+    const double value = i < 3 ? 1e-10 : i < 6 ? 1e-12 : 1e-14;
     t[static_cast<std::size_t>(i)] = value;
   }
   return t;
@@ -84,6 +86,7 @@ class Flight {
   long NextTick() const;
   void Tick();
   void StepAutopilot(TickSample& sample);
+  void PassCommands(double further_delay_s);
   void HappenUntil(double time_s);
   void Happen(const Event& event);
   void Ignite(int stage, double time_s);
@@ -118,6 +121,8 @@ class Flight {
   GimbalCommand gimbal_;
   std::array<int, kAxes> thrusters_{};
   std::array<std::array<double, kNozzles>, kDelayLine> delay_line_{};
+  double switch_s_ = kNever_s;  // when, within a tick, a delay of a fraction of a tick lets a command through
+  std::array<double, kNozzles> next_command_rad_{};
   long lost_ticks_ = 0;
   bool ended_ = false;
   FlightResult result_;
@@ -193,13 +198,11 @@ void Flight::StepAutopilot(TickSample& sample) {
   motion_.phase.control_torque_n_m.setZero();
   if (sample.burning) {
     const Vector2 pn_factor(inputs_.pn_error_factor, inputs_.pn_rate_factor);
+    const long loop_stage = std::lround(inputs_.loop_stage);
+    const bool changed = loop_stage == 0 || loop_stage == sample.stack + 1;
     gimbal_ = StepGimbals(autopilot, sample.stack, sample.since_ignition_s, Measured(sample.error),
-                          pn_factor, inputs_.loop_gain_factor, autopilot_);
-    delay_line_[static_cast<std::size_t>(tick_ % kDelayLine)] = gimbal_.Nozzles();
-    const long delay = stack().gimbal.delay_ticks + std::lround(inputs_.loop_delay_s / tick_s_);
-    const long from = tick_ - (delay < kDelayLine ? delay : kDelayLine - 1);
-    motion_.phase.command_rad =
-        delay_line_[static_cast<std::size_t>((from + kDelayLine) % kDelayLine)];
+                          pn_factor, changed ? inputs_.loop_gain_factor : 1.0, autopilot_);
+    PassCommands(changed ? inputs_.loop_delay_s : 0.0);
   } else if (sample.coasting) {
     const ReactionControl& rcs = model_.definition().vehicle.reaction_control;
     thrusters_ = StepReactionControl(autopilot, Measured(sample.error), autopilot_);
@@ -217,6 +220,23 @@ void Flight::StepAutopilot(TickSample& sample) {
   sample.axes = autopilot_.axes;
   sample.thrusters = thrusters_;
   sample.command_rad = motion_.phase.command_rad;
+}
+
+// This tick's command into the line, and what leaves it now to the actuators. A delay that is no whole
+// number of ticks lets the command through within the tick.
+void Flight::PassCommands(double further_delay_s) {
+  delay_line_[static_cast<std::size_t>(tick_ % kDelayLine)] = gimbal_.Nozzles();
+  const double delay = stack().gimbal.delay_ticks + further_delay_s / tick_s_;
+  const long whole = std::lround(std::floor(delay + kSameInstant_s));
+  const double fraction = delay - static_cast<double>(whole);
+  const auto before = [&](long ticks) {
+    const long from = tick_ - std::min(ticks, kDelayLine - 1L);
+    return delay_line_[static_cast<std::size_t>((from + kDelayLine) % kDelayLine)];
+  };
+  const bool within = fraction > kSameInstant_s;
+  motion_.phase.command_rad = before(within ? whole + 1 : whole);
+  next_command_rad_ = before(whole);
+  switch_s_ = within ? time_s_ + fraction * tick_s_ : kNever_s;
 }
 
 void Flight::AppendRow(const TickSample& sample) {
@@ -272,6 +292,7 @@ void Flight::Tick() {
     sample.has_instant = true;
   }
   metrics_.AddTick(sample);
+  if (options_.observe) options_.observe(sample);
   if (row) AppendRow(sample);
   if (tick_ % second == 0) AddToDigest();
   CheckEnds(sample);
@@ -283,6 +304,7 @@ void Flight::Ignite(int stage, double time_s) {
   motion_.phase.command_rad = {};
   motion_.phase.control_torque_n_m.setZero();
   delay_line_ = {};
+  switch_s_ = kNever_s;
   thrusters_ = {};
   StartStage(model_.autopilot(), stage, autopilot_);
   motion_.phase.stuck_nozzle = -1;
@@ -325,6 +347,7 @@ void Flight::Separate(int stage) {
   motion_.phase.stack = stage + 1;
   motion_.phase.burnt = false;
   motion_.phase.command_rad = {};
+  switch_s_ = kNever_s;
 }
 
 void Flight::Happen(const Event& event) {
@@ -363,6 +386,12 @@ void Flight::HappenUntil(double time_s) {
 }
 
 bool Flight::Advance(double to_s) {
+  if (switch_s_ < to_s) {
+    const double at_s = switch_s_;
+    switch_s_ = kNever_s;
+    if (at_s > time_s_ && !Advance(at_s)) return false;
+    motion_.phase.command_rad = next_command_rad_;
+  }
   const double from_s = time_s_;
   if (!integrator_.Advance(from_s, to_s, options_.steps_per_tick, y_.data())) {
     End(Outcome::kNumericalFailure, "the integrator failed or the state is not finite");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -13,11 +14,14 @@
 
 namespace dispersa {
 
+struct TickSample;
+
 struct FlightOptions {
   Scheme scheme = Scheme::kRungeKutta4;
   int steps_per_tick = 1;
   std::uint64_t case_index = 0;  ///< keys the sensors' noise
   History* history = nullptr;    ///< filled if given
+  std::function<void(const TickSample&)> observe;  ///< called at every tick if given
 };
 
 struct FlightResult {

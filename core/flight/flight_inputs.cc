@@ -67,6 +67,7 @@ std::vector<InputColumn> MakeColumns() {
   list.One("pn_rate_factor");
   list.One("loop_gain_factor");
   list.One("loop_delay_s");
+  list.One("loop_stage");
   std::vector<InputColumn> columns = list.Take();
   assert(columns.size() == kInputCount);
   return columns;

@@ -22,6 +22,7 @@ void AddCommands(CLI::App& app, Invocation& invocation) {
   AddRunCommand(app, invocation);
   AddReplayCommand(app, invocation);
   AddReportCommand(app, invocation);
+  AddMarginsCommand(app, invocation);
   AddCompareCommand(app, invocation);
   AddPaperCommand(app, invocation);
 }

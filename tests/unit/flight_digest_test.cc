@@ -93,6 +93,7 @@ TEST(InputColumns, NameTheFieldsOfFlightInputs) {
   expect("pn_rate_factor", in.pn_rate_factor, 1.0);
   expect("loop_gain_factor", in.loop_gain_factor, 1.0);
   expect("loop_delay_s", in.loop_delay_s, 1.0);
+  expect("loop_stage", in.loop_stage, 1.0);
 }
 
 TEST(InputColumns, CoverEveryDoubleOnceWithDistinctNames) {

@@ -1,0 +1,188 @@
+#include "core/control/loop_margins.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/math/constants.h"
+#include "core/math/functions.h"
+
+namespace dispersa {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// The slowest frequency that counts: loops of a launcher live above 0.1 rad/s and burns last a minute.
+constexpr double kLowest_rad_s = 0.01;
+// Neighbours of the frequency grid lie 2 % apart; crossings are then refined.
+constexpr int kFrequencies = 500;
+constexpr int kRefinements = 50;
+
+std::complex<double> UnitCircle(double angle_rad) {
+  const SinCos c = SineCosine(angle_rad);
+  return {c.cos, c.sin};
+}
+
+double Modulus(std::complex<double> z) { return Sqrt(std::norm(z)); }
+
+double Decibel(double ratio) { return 20.0 * Log10(ratio); }
+
+// (z I - a)⁻¹ b over the reals, [Re -Im; Im Re], which needs no complex square root.
+Eigen::Vector4cd Resolvent(const Eigen::Matrix4d& a, const Eigen::Vector4d& b, std::complex<double> z) {
+  Eigen::Matrix<double, 8, 8> m;
+  const Eigen::Matrix4d real = z.real() * Eigen::Matrix4d::Identity() - a;
+  const Eigen::Matrix4d imaginary = z.imag() * Eigen::Matrix4d::Identity();
+  m << real, -imaginary, imaginary, real;
+  Eigen::Matrix<double, 8, 1> rhs;
+  rhs << b, Eigen::Vector4d::Zero();
+  const Eigen::Matrix<double, 8, 1> x = m.partialPivLu().solve(rhs);
+  Eigen::Vector4cd result;
+  for (int i = 0; i < 4; ++i) result[i] = {x[i], x[i + 4]};
+  return result;
+}
+
+}  // namespace
+
+Eigen::MatrixXd MatrixExponential(const Eigen::MatrixXd& m) {
+  int halvings = 0;
+  for (double norm = m.cwiseAbs().rowwise().sum().maxCoeff(); norm > 0.5; norm *= 0.5) ++halvings;
+  Eigen::MatrixXd scaled = m;
+  for (int i = 0; i < halvings; ++i) scaled *= 0.5;
+  // 0.5^16 / 16! is below rounding.
+  Eigen::MatrixXd term = Eigen::MatrixXd::Identity(m.rows(), m.cols());
+  Eigen::MatrixXd sum = term;
+  for (int k = 1; k <= 16; ++k) {
+    term = term * scaled / k;
+    sum += term;
+  }
+  for (int i = 0; i < halvings; ++i) sum = (sum * sum).eval();
+  return sum;
+}
+
+SampledLoop::SampledLoop(const AxisPlant& plant, const LinearLaw& law, double tick_s, int delay_ticks)
+    : law_(law), tick_s_(tick_s), delay_ticks_(delay_ticks) {
+  // Zero-order hold: exp([a b; 0 0] T) = [ad bd; 0 1].
+  Eigen::MatrixXd m = Eigen::MatrixXd::Zero(5, 5);
+  m.topLeftCorner<4, 4>() = plant.a * tick_s;
+  m.topRightCorner<4, 1>() = plant.b * tick_s;
+  const Eigen::MatrixXd held = MatrixExponential(m);
+  ad_ = held.topLeftCorner<4, 4>();
+  bd_ = held.topRightCorner<4, 1>();
+}
+
+std::complex<double> SampledLoop::Response(double frequency_rad_s) const {
+  const std::complex<double> z = UnitCircle(frequency_rad_s * tick_s_);
+  const Eigen::Vector4cd x = Resolvent(ad_, bd_, z);
+  const std::complex<double> angle = x[0], rate = x[1];
+  std::complex<double> u = law_.kp_1_s2 * angle + law_.kd_1_s * rate;
+  if (law_.adapts()) {
+    const double share = 1.0 / law_.rules;
+    const std::complex<double> mean = z - 1.0 + tick_s_ * law_.leakage_1_s;
+    const std::complex<double> departure = mean + tick_s_ * law_.spread_1_s;
+    const std::complex<double> drive = law_.drive_error * angle + law_.drive_rate * rate;
+    u += tick_s_ * drive * (share / mean + (1.0 - share) / departure);
+  }
+  return u * UnitCircle(-frequency_rad_s * tick_s_ * delay_ticks_) / law_.effectiveness_1_s2;
+}
+
+double SampledLoop::SpectralRadius(double gain_factor) const {
+  // States: plant, commands on their way (latest first), mean of the consequents, departure of the central
+  // one from it. Without spread the two are one.
+  const int first_command = 4;
+  const int first_rule = first_command + delay_ticks_;
+  const int rule_states = !law_.adapts() ? 0 : law_.spread_1_s > 0.0 ? 2 : 1;
+  const int size = first_rule + rule_states;
+  Eigen::MatrixXd m = Eigen::MatrixXd::Zero(size, size);
+  m.topLeftCorner<4, 4>() = ad_;
+  // The command as a row over the states; e = -attitude.
+  Eigen::RowVectorXd command = Eigen::RowVectorXd::Zero(size);
+  command[0] = -law_.kp_1_s2;
+  command[1] = -law_.kd_1_s;
+  const double share = rule_states == 2 ? 1.0 / law_.rules : 1.0;
+  for (int i = 0; i < rule_states; ++i) {
+    const int rule = first_rule + i;
+    const double part = tick_s_ * (i == 0 ? share : 1.0 - share);
+    command[rule] = 1.0;
+    m(rule, 0) = -part * law_.drive_error;
+    m(rule, 1) = -part * law_.drive_rate;
+    m(rule, rule) = 1.0 - tick_s_ * (law_.leakage_1_s + (i == 0 ? 0.0 : law_.spread_1_s));
+  }
+  command *= gain_factor / law_.effectiveness_1_s2;
+  if (delay_ticks_ == 0) {
+    m.topRows<4>() += bd_ * command;
+  } else {
+    m.row(first_command) = command;
+    for (int i = 1; i < delay_ticks_; ++i) m(first_command + i, first_command + i - 1) = 1.0;
+    m.block<4, 1>(0, first_rule - 1) = bd_;
+  }
+  const Eigen::VectorXcd values = Eigen::EigenSolver<Eigen::MatrixXd>(m, false).eigenvalues();
+  double largest = 0.0;
+  for (Eigen::Index i = 0; i < values.size(); ++i) largest = std::max(largest, Modulus(values[i]));
+  return largest;
+}
+
+// The frequency between two at which the gain crosses 1, or the response the real axis.
+double SampledLoop::Refine(double low, double high, bool of_gain) const {
+  const auto value = [&](double w) {
+    const std::complex<double> l = Response(w);
+    return of_gain ? std::norm(l) - 1.0 : l.imag();
+  };
+  const bool low_negative = value(low) < 0.0;
+  for (int i = 0; i < kRefinements; ++i) {
+    const double middle = 0.5 * (low + high);
+    ((value(middle) < 0.0) == low_negative ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+LoopMargins SampledLoop::Margins() const {
+  LoopMargins margins;
+  margins.stable = SpectralRadius(1.0) < 1.0;
+  if (!margins.stable) return margins;
+  margins.gain_up_db = margins.gain_down_db = margins.delay_s = kInfinity;
+  margins.phase_deg = 180.0;
+
+  const auto critical = [&](std::complex<double> l) {
+    if (l.real() >= 0.0) return;
+    const double db = -Decibel(-l.real());
+    if (db > 0.0)
+      margins.gain_up_db = std::min(margins.gain_up_db, db);
+    else
+      margins.gain_down_db = std::min(margins.gain_down_db, -db);
+  };
+  const double nyquist = kPi / tick_s_;
+  critical(Response(nyquist));
+  // An aerodynamically unstable body without integral action diverges without oscillation: at z = 1. With
+  // the integrator of an adapting law, or of a body that the air leaves alone, L is infinite there.
+  const Eigen::Matrix4d at_rest = Eigen::Matrix4d::Identity() - ad_;
+  if (!law_.adapts() && std::fabs(at_rest.determinant()) > 0.0) {
+    const std::complex<double> l = Response(0.0);
+    if (std::isfinite(l.real())) critical(l.real());
+  }
+
+  const double ratio = Pow(nyquist / kLowest_rad_s, 1.0 / kFrequencies);
+  double w = kLowest_rad_s;
+  std::complex<double> l = Response(w);
+  for (int i = 1; i <= kFrequencies; ++i) {
+    const double next_w = i == kFrequencies ? nyquist : w * ratio;
+    const std::complex<double> next = Response(next_w);
+    if ((l.imag() < 0.0) != (next.imag() < 0.0) && i < kFrequencies)
+      critical(Response(Refine(w, next_w, false)).real());
+    if ((std::norm(l) < 1.0) != (std::norm(next) < 1.0)) {
+      const double crossover = Refine(w, next_w, true);
+      const std::complex<double> at = Response(crossover);
+      // Angle from -1, counter-clockwise, to L, in [0, 2 pi): what a delay may turn.
+      double lead = Atan2(at.imag(), at.real()) + kPi;
+      if (lead >= kTwoPi) lead -= kTwoPi;
+      margins.delay_s = std::min(margins.delay_s, lead / crossover);
+      margins.phase_deg = std::min(margins.phase_deg, kDegPerRad * std::min(lead, kTwoPi - lead));
+      margins.crossover_rad_s = std::max(margins.crossover_rad_s, crossover);
+    }
+    w = next_w;
+    l = next;
+  }
+  return margins;
+}
+
+}  // namespace dispersa

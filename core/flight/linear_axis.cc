@@ -1,0 +1,77 @@
+#include "core/flight/linear_axis.h"
+
+#include "core/math/rotation.h"
+
+namespace dispersa {
+
+namespace {
+
+// A twentieth of a degree: well inside the cells of the aerodynamic tables, far above rounding.
+constexpr double kAngleStep_rad = 1e-3;
+constexpr double kRateStep_rad_s = 1e-3;
+
+}  // namespace
+
+AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Axis axis) {
+  LauncherPhase phase;
+  phase.stack = sample.stack;
+  phase.burning = true;
+  phase.ignition_s = sample.time_s - sample.since_ignition_s;
+  phase.expelled_mass_kg = sample.expelled_mass_kg;
+
+  GimbalCommand unit;
+  (axis == kRoll ? unit.roll_rad : axis == kPitch ? unit.pitch_rad : unit.yaw_rad) = 1.0;
+  const std::array<double, kNozzles> pattern = unit.Nozzles();
+  Vector3 about = Vector3::Zero();
+  about[axis] = 1.0;
+
+  const auto acceleration = [&](double angle_rad, double rate_rad_s, double deflection_rad) {
+    RigidBodyState state = sample.state;
+    state.q_IB = state.q_IB * FromRotationVector(angle_rad * about);
+    state.w_IB_B += rate_rad_s * about;
+    std::array<double, kLauncherSize> y{}, dydt{};
+    WriteState(state, y.data());
+    for (std::size_t i = 0; i < kNozzles; ++i) y[kNozzleAngle + i] = sample.nozzle_rad[i] + deflection_rad * pattern[i];
+    LauncherDerivative(plant, phase, sample.time_s, y.data(), dydt.data());
+    return ReadState(dydt.data()).w_IB_B[axis];
+  };
+  const auto slope = [&](double angle_rad, double rate_rad_s, double deflection_rad) {
+    return acceleration(angle_rad, rate_rad_s, deflection_rad) -
+           acceleration(-angle_rad, -rate_rad_s, -deflection_rad);
+  };
+
+  const Gimbal& gimbal = plant.stacks[static_cast<std::size_t>(sample.stack)].gimbal;
+  const double w = gimbal.bandwidth_rad_s;
+  AxisPlant linear;
+  linear.a(0, 1) = 1.0;
+  linear.a(1, 0) = slope(kAngleStep_rad, 0.0, 0.0) / (2.0 * kAngleStep_rad);
+  linear.a(1, 1) = slope(0.0, kRateStep_rad_s, 0.0) / (2.0 * kRateStep_rad_s);
+  linear.a(1, 2) = slope(0.0, 0.0, kAngleStep_rad) / (2.0 * kAngleStep_rad);
+  linear.a(2, 3) = 1.0;
+  linear.a(3, 2) = -w * w;
+  linear.a(3, 3) = -2.0 * gimbal.damping_ratio * w;
+  linear.b[3] = w * w;
+  return linear;
+}
+
+LinearLaw LineariseLaw(const AutopilotModel& autopilot, int stage, double since_ignition_s, Axis axis,
+                       bool adapting) {
+  const AxisLaw& law = autopilot.laws[static_cast<std::size_t>(axis)];
+  const AxisLaw::PerStageLaw& of_stage = law.stages[static_cast<std::size_t>(stage)];
+  const StageControl& control = autopilot.stages[static_cast<std::size_t>(stage)];
+  LinearLaw linear;
+  linear.kp_1_s2 = of_stage.gains.kp_1_s2;
+  linear.kd_1_s = of_stage.gains.kd_1_s;
+  linear.effectiveness_1_s2 = (axis == kRoll ? control.roll_effectiveness_1_s2
+                                             : control.pitch_effectiveness_1_s2)(since_ignition_s);
+  if (adapting && law.config.law == ControlLaw::kAdaptiveFuzzy) {
+    linear.drive_error = of_stage.gamma * of_stage.p_n.x();
+    linear.drive_rate = of_stage.gamma * of_stage.p_n.y();
+    linear.leakage_1_s = law.config.adaptation.leakage_1_s;
+    linear.spread_1_s = law.config.adaptation.spread_1_s;
+    linear.rules = kFuzzyRules;
+  }
+  return linear;
+}
+
+}  // namespace dispersa

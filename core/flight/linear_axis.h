@@ -1,0 +1,21 @@
+// The flight's own equations of motion, linearised about one axis at one instant.
+#pragma once
+
+#include "core/control/autopilot.h"
+#include "core/control/loop_margins.h"
+#include "core/dynamics/launcher.h"
+#include "core/flight/tick_sample.h"
+
+namespace dispersa {
+
+/// Central differences of LauncherDerivative about a powered instant, so that nothing of the plant is
+/// written twice. The vehicle turns about the axis through its centre of gravity while its path and the wind
+/// stay: incidence changes with attitude alone, which the loop's frequencies justify.
+AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Axis axis);
+
+/// The autopilot's law of an axis about zero error. `adapting` includes the adaptation, if the law has any;
+/// adaptive augmenting control is linearised at its total gain of 1.
+LinearLaw LineariseLaw(const AutopilotModel& autopilot, int stage, double since_ignition_s, Axis axis,
+                       bool adapting);
+
+}  // namespace dispersa

@@ -1,0 +1,151 @@
+#include "core/flight/margins.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "core/flight/flight.h"
+#include "core/flight/linear_axis.h"
+#include "core/math/constants.h"
+#include "core/math/functions.h"
+
+namespace dispersa {
+
+namespace {
+
+constexpr double kAfterIgnition_s = 1.0;
+constexpr double kMisalignment_rad = 0.25 * kRadPerDeg;
+constexpr double kLostCycle_deg = 0.2;
+constexpr double kLostError_deg = 5.0;
+
+struct Instant {
+  std::string place;
+  TickSample sample;
+};
+
+// The instants at which margins are computed, in the order of time.
+std::vector<Instant> InstantsOf(const FlightModel& model, double every_s) {
+  std::vector<Instant> instants;
+  Instant max_q, last;
+  double q_max = 0.0, next_s = 0.0;
+  int stage = -1;
+  bool ignited = false;
+  FlightOptions options;
+  options.observe = [&](const TickSample& s) {
+    if (!s.burning) return;
+    const std::string name = "stage " + std::to_string(s.stack + 1);
+    if (s.stack != stage) {
+      if (stage >= 0) instants.push_back(last);
+      stage = s.stack;
+      ignited = false;
+      next_s = every_s;
+      if (stage == 0) instants.push_back({"lift-off", s});
+    }
+    if (!ignited && s.since_ignition_s >= kAfterIgnition_s) {
+      ignited = true;
+      instants.push_back({name + " ignition + 1 s", s});
+    }
+    if (s.since_ignition_s >= next_s) {
+      next_s += every_s;
+      instants.push_back({"", s});
+    }
+    if (s.instant.air.qbar_pa > q_max) {
+      q_max = s.instant.air.qbar_pa;
+      max_q = {"max q", s};
+    }
+    last = {name + " burnout", s};
+  };
+  Fly(model, FlightInputs{}, options);
+  if (stage < 0) return instants;
+  instants.push_back(last);
+  if (q_max > 0.0) instants.push_back(max_q);
+  std::stable_sort(instants.begin(), instants.end(),
+                   [](const Instant& a, const Instant& b) { return a.sample.time_s < b.sample.time_s; });
+  return instants;
+}
+
+LoopMargins MarginsAt(const FlightModel& model, const TickSample& s, Axis axis, bool adapting) {
+  const AutopilotModel& autopilot = model.autopilot();
+  const LauncherPlant& plant = model.nominal_plant();
+  return SampledLoop(LineariseAxis(plant, s, axis),
+                     LineariseLaw(autopilot, s.stack, s.since_ignition_s, axis, adapting),
+                     autopilot.config.tick_s,
+                     plant.stacks[static_cast<std::size_t>(s.stack)].gimbal.delay_ticks)
+      .Margins();
+}
+
+bool Holds(const FlightModel& model, int stage, double gain_db, double delay_s) {
+  FlightInputs inputs;
+  inputs.loop_stage = stage + 1;
+  inputs.loop_gain_factor = Pow(10.0, gain_db / 20.0);
+  inputs.loop_delay_s = delay_s;
+  // Towards a corner between pitch and yaw, so that both axes work.
+  inputs.thrust_misalignment_rad = AllStages(kMisalignment_rad);
+  inputs.thrust_misalignment_clock_rad = AllStages(0.25 * kPi);
+  const FlightResult result = Fly(model, inputs);
+  const auto metric = [&](const char* name) {
+    const auto& names = MetricNames();
+    return result.metrics[static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin())];
+  };
+  const auto above = [&](const char* name, double limit) { return metric(name) > limit; };
+  return result.outcome == Outcome::kCompleted && !above("deflection_limit_cycle_deg", kLostCycle_deg) &&
+         !above("pitch_error_peak_deg", kLostError_deg) && !above("yaw_error_peak_deg", kLostError_deg);
+}
+
+// The largest multiple of `step` up to `ceiling` that holds, if what is above one that fails fails too.
+double LargestThatHolds(double step, double ceiling, const std::function<bool(double)>& holds) {
+  long low = 0, high = std::lround(ceiling / step) + 1;
+  if (!holds(0.0)) return 0.0;
+  while (high - low > 1) {
+    const long middle = (low + high) / 2;
+    (holds(static_cast<double>(middle) * step) ? low : high) = middle;
+  }
+  return static_cast<double>(low) * step;
+}
+
+}  // namespace
+
+std::vector<ComputedMargins> ComputeMargins(const FlightModel& model, double every_s) {
+  std::vector<ComputedMargins> all;
+  for (const Instant& instant : InstantsOf(model, every_s)) {
+    for (const Axis axis : {kPitch, kYaw, kRoll}) {
+      ComputedMargins each;
+      each.place = instant.place;
+      each.stage = instant.sample.stack;
+      each.time_s = instant.sample.time_s;
+      each.axis = axis;
+      each.frozen = MarginsAt(model, instant.sample, axis, false);
+      each.adapting = MarginsAt(model, instant.sample, axis, true);
+      all.push_back(each);
+    }
+  }
+  return all;
+}
+
+std::vector<MeasuredMargins> MeasureMargins(const FlightModel& model) {
+  std::vector<MeasuredMargins> all;
+  for (int stage = 0; stage < static_cast<int>(model.definition().vehicle.stages.size()); ++stage) {
+    MeasuredMargins each;
+    each.stage = stage;
+    each.gain_up_db = LargestThatHolds(kMeasuredGainStep_db, kMeasuredGainCeiling_db,
+                                       [&](double db) { return Holds(model, stage, db, 0.0); });
+    each.gain_down_db = LargestThatHolds(kMeasuredGainStep_db, kMeasuredGainCeiling_db,
+                                         [&](double db) { return Holds(model, stage, -db, 0.0); });
+    each.delay_s = LargestThatHolds(kMeasuredDelayStep_s, kMeasuredDelayCeiling_s,
+                                    [&](double s) { return Holds(model, stage, 0.0, s); });
+    all.push_back(each);
+  }
+  return all;
+}
+
+bool PassesGates(const LoopMargins& m) {
+  return m.stable && m.gain_up_db >= kGainMarginGate_db && m.gain_down_db >= kGainMarginGate_db &&
+         m.phase_deg >= kPhaseMarginGate_deg && m.delay_s >= kDelayMarginGate_s;
+}
+
+bool PassesGates(const MeasuredMargins& m) {
+  return m.gain_up_db >= kGainMarginGate_db && m.gain_down_db >= kGainMarginGate_db &&
+         m.delay_s >= kDelayMarginGate_s;
+}
+
+}  // namespace dispersa

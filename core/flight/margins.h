@@ -1,0 +1,57 @@
+// Stability margins of an autopilot along its nominal flight: computed from a linearisation, and measured by
+// spoiling the loop of the flight until it fails.
+//
+// They are rigid-body margins: the vehicle has no bending modes and no slosh here, and an autopilot that is
+// to fly a real one must be shown to hold them too.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/control/loop_margins.h"
+#include "core/flight/flight_model.h"
+
+namespace dispersa {
+
+/// What every powered phase must have.
+inline constexpr double kGainMarginGate_db = 6.0;  ///< both ways
+inline constexpr double kPhaseMarginGate_deg = 30.0;
+inline constexpr double kDelayMarginGate_s = 0.020;
+
+/// One axis at one instant of the nominal flight.
+struct ComputedMargins {
+  std::string place;  ///< "lift-off", "max q", "stage 2 ignition + 1 s", ...; "" in between
+  int stage = 0;      ///< 0-based
+  double time_s = 0.0;
+  Axis axis = kPitch;
+  LoopMargins frozen;    ///< gains held
+  LoopMargins adapting;  ///< with the adaptation, linearised about zero error; as frozen if there is none
+};
+
+/// One powered phase, all axes at once. Resolutions: kMeasuredGainStep_db, kMeasuredDelayStep_s; a value at
+/// its ceiling was never lost.
+struct MeasuredMargins {
+  int stage = 0;  ///< 0-based
+  double gain_up_db = 0.0;
+  double gain_down_db = 0.0;
+  double delay_s = 0.0;
+};
+inline constexpr double kMeasuredGainStep_db = 0.1;
+inline constexpr double kMeasuredGainCeiling_db = 24.0;
+inline constexpr double kMeasuredDelayStep_s = 0.001;
+inline constexpr double kMeasuredDelayCeiling_s = 0.25;
+
+/// At lift-off, max q, each ignition + 1 s and burnout, and every `every_s` of powered flight between.
+std::vector<ComputedMargins> ComputeMargins(const FlightModel& model, double every_s = 5.0);
+
+/// By bisection over flights in which the gain or the delay of one stage's loop is changed, with a steady
+/// thrust misalignment of 0.25° in every stage that keeps the adaptation at work. A loop counts as lost when
+/// the flight loses control, when a deflection oscillates by more than 0.2° peak to peak over any second
+/// after the start-up transient, or when pitch or yaw leave the rules' range of 5°.
+std::vector<MeasuredMargins> MeasureMargins(const FlightModel& model);
+
+/// Whether a margin set passes the gates.
+bool PassesGates(const LoopMargins& margins);
+bool PassesGates(const MeasuredMargins& margins);
+
+}  // namespace dispersa

@@ -1,0 +1,204 @@
+// Margins of sampled loops whose critical gain is known in closed form, and of the autopilot's own code.
+#include "core/control/loop_margins.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/control/axis_controller.h"
+#include "core/math/constants.h"
+#include "tests/unit/sample_vehicle.h"
+
+namespace dispersa {
+namespace {
+
+constexpr double kTick_s = 0.01;
+
+double Db(double ratio) { return 20.0 * std::log10(ratio); }
+
+// Acceleration follows the command at once; the actuator's states are idle.
+AxisPlant DoubleIntegrator() {
+  AxisPlant plant;
+  plant.a(0, 1) = 1.0;
+  plant.a(2, 2) = plant.a(3, 3) = -1.0;
+  plant.b[1] = 1.0;
+  return plant;
+}
+
+AxisPlant WithActuator(double bandwidth, double aerodynamic = 0.0, double effectiveness = 5.0) {
+  AxisPlant plant;
+  plant.a(0, 1) = plant.a(2, 3) = 1.0;
+  plant.a(1, 0) = aerodynamic;
+  plant.a(1, 2) = effectiveness;
+  plant.a(3, 2) = -bandwidth * bandwidth;
+  plant.a(3, 3) = -1.4 * bandwidth;
+  plant.b[3] = bandwidth * bandwidth;
+  return plant;
+}
+
+TEST(MatrixExponential, OfARotationAndOfANilpotent) {
+  Eigen::MatrixXd turn(2, 2), chain = Eigen::MatrixXd::Zero(3, 3);
+  turn << 0.0, -30.0, 30.0, 0.0;
+  const Eigen::MatrixXd r = MatrixExponential(turn);
+  // Eight squarings multiply rounding by a few hundred.
+  EXPECT_NEAR(r(0, 0), std::cos(30.0), 1e-12);
+  EXPECT_NEAR(r(1, 0), std::sin(30.0), 1e-12);
+  chain(0, 1) = chain(1, 2) = 2.0;
+  const Eigen::MatrixXd c = MatrixExponential(chain);
+  EXPECT_NEAR(c(0, 1), 2.0, 1e-15);
+  EXPECT_NEAR(c(0, 2), 2.0, 1e-15);
+}
+
+TEST(SampledLoop, DoubleIntegratorWithPdAndNoDelayIsLostAtTheSampling) {
+  // z² + (K kp T²/2 + K kd T - 2) z + 1 + K kp T²/2 - K kd T: Jury's first condition to fail is P(-1) > 0,
+  // at K = 2 / (kd T); no gain is too small.
+  LinearLaw law;
+  law.kp_1_s2 = 16.0;
+  law.kd_1_s = 7.0;
+  law.effectiveness_1_s2 = 1.0;
+  const LoopMargins m = SampledLoop(DoubleIntegrator(), law, kTick_s, 0).Margins();
+  ASSERT_TRUE(m.stable);
+  EXPECT_NEAR(m.gain_up_db, Db(2.0 / (7.0 * kTick_s)), 1e-9);
+  EXPECT_TRUE(std::isinf(m.gain_down_db));
+}
+
+TEST(SampledLoop, RateLoopWithDelaysHasTheClosedFormMargins) {
+  // L = kd T / (z^d (z - 1)): of phase -w T (d + 1/2) - 90° and modulus kd T / (2 sin(w T / 2)). The attitude
+  // is made to decay, so that the loop that nothing feeds it back to is stable.
+  AxisPlant plant = DoubleIntegrator();
+  plant.a(0, 0) = -1.0;
+  for (const int delay : {1, 2, 5}) {
+    for (const double kd : {1.0, 5.0}) {
+      LinearLaw law;
+      law.kd_1_s = kd;
+      law.effectiveness_1_s2 = 1.0;
+      const LoopMargins m = SampledLoop(plant, law, kTick_s, delay).Margins();
+      ASSERT_TRUE(m.stable);
+      const double turn = delay + 0.5;
+      EXPECT_NEAR(m.gain_up_db, Db(2.0 * std::sin(0.25 * kPi / turn) / (kd * kTick_s)), 1e-9);
+      const double crossover = 2.0 / kTick_s * std::asin(0.5 * kd * kTick_s);
+      const double phase = 0.5 * kPi - turn * crossover * kTick_s;
+      EXPECT_NEAR(m.crossover_rad_s, crossover, 1e-9);
+      EXPECT_NEAR(m.phase_deg, phase * kDegPerRad, 1e-8);
+      EXPECT_NEAR(m.delay_s, phase / crossover, 1e-10);
+    }
+  }
+}
+
+TEST(SampledLoop, AerodynamicInstabilityBoundsTheGainFromBelow) {
+  // Steady state: the stiffness kp / b * b must exceed the aerodynamic one.
+  LinearLaw law;
+  law.kp_1_s2 = 16.0;
+  law.kd_1_s = 7.0;
+  law.effectiveness_1_s2 = 5.0;
+  const LoopMargins m = SampledLoop(WithActuator(25.0, 3.0), law, kTick_s, 1).Margins();
+  ASSERT_TRUE(m.stable);
+  EXPECT_NEAR(m.gain_down_db, Db(16.0 / 3.0), 1e-6);
+  // Stable by its air and damped, the body needs no gain at all.
+  AxisPlant stable = WithActuator(25.0, -3.0);
+  stable.a(1, 1) = -0.1;
+  EXPECT_TRUE(std::isinf(SampledLoop(stable, law, kTick_s, 1).Margins().gain_down_db));
+}
+
+TEST(SampledLoop, AnUnstableLoopHasNoMargins) {
+  LinearLaw law;
+  law.kp_1_s2 = 1.0;
+  law.kd_1_s = 7.0;
+  law.effectiveness_1_s2 = 5.0;
+  const LoopMargins m = SampledLoop(WithActuator(25.0, 3.0), law, kTick_s, 1).Margins();
+  EXPECT_FALSE(m.stable);
+  EXPECT_EQ(m.gain_up_db, 0.0);
+  EXPECT_EQ(m.phase_deg, 0.0);
+  EXPECT_EQ(m.delay_s, 0.0);
+}
+
+LinearLaw AdaptingLaw(double kp, double kd, double gamma) {
+  LinearLaw law;
+  law.kp_1_s2 = kp;
+  law.kd_1_s = kd;
+  law.effectiveness_1_s2 = 5.0;
+  law.drive_error = gamma * 0.02;
+  law.drive_rate = gamma * 0.004;
+  law.spread_1_s = 60.0;
+  law.rules = kFuzzyRules;
+  return law;
+}
+
+TEST(SampledLoop, TheClosedLoopIsCriticalWhereTheResponseSaysSo) {
+  // Gain margins come from the frequency response, stability from eigenvalues of the closed loop.
+  for (const double gamma : {0.0, 8000.0}) {
+    for (const double aerodynamic : {0.0, 3.0}) {
+      const SampledLoop loop(WithActuator(25.0, aerodynamic), AdaptingLaw(16.0, 7.0, gamma), kTick_s, 1);
+      const LoopMargins m = loop.Margins();
+      ASSERT_TRUE(m.stable);
+      const double up = std::pow(10.0, m.gain_up_db / 20.0);
+      EXPECT_LT(loop.SpectralRadius(up * (1.0 - 1e-6)), 1.0);
+      EXPECT_GT(loop.SpectralRadius(up * (1.0 + 1e-6)), 1.0);
+      if (std::isinf(m.gain_down_db)) continue;
+      const double down = std::pow(10.0, -m.gain_down_db / 20.0);
+      EXPECT_LT(loop.SpectralRadius(down * (1.0 + 1e-6)), 1.0);
+      EXPECT_GT(loop.SpectralRadius(down * (1.0 - 1e-6)), 1.0);
+    }
+  }
+}
+
+TEST(SampledLoop, IsStableForAsManyTicksMoreAsTheDelayMarginAllows) {
+  for (const double gamma : {0.0, 8000.0}) {
+    const AxisPlant plant = WithActuator(25.0);
+    const LinearLaw law = AdaptingLaw(16.0, 7.0, gamma);
+    const double margin_ticks = SampledLoop(plant, law, kTick_s, 1).Margins().delay_s / kTick_s;
+    ASSERT_GT(margin_ticks, 2.0);
+    const int allowed = static_cast<int>(margin_ticks);
+    EXPECT_LT(SampledLoop(plant, law, kTick_s, 1 + allowed).SpectralRadius(1.0), 1.0);
+    EXPECT_GT(SampledLoop(plant, law, kTick_s, 2 + allowed).SpectralRadius(1.0), 1.0);
+  }
+}
+
+// Growth of the attitude over the second half of a run of the autopilot's own code on the sampled plant.
+double Growth(const AxisPlant& plant, const AxisLaw& axis, double effectiveness, double gain) {
+  Eigen::MatrixXd m = Eigen::MatrixXd::Zero(5, 5);
+  m.topLeftCorner<4, 4>() = plant.a * kTick_s;
+  m.topRightCorner<4, 1>() = plant.b * kTick_s;
+  const Eigen::MatrixXd held = MatrixExponential(m);
+  Eigen::Vector4d x(1e-9, 0.0, 0.0, 0.0);  // so small that the law is linear
+  AxisState state;
+  AxisTelemetry telemetry;
+  ResetAxis(axis, 0, state);
+  double command = 0.0, early = 0.0, late = 0.0;
+  constexpr int kTicks = 4000;
+  for (int k = 0; k < kTicks; ++k) {
+    const double u = StepAxis(axis, 0, -x[0], -x[1], 0, Vector2::Ones(), kTick_s, state, telemetry);
+    x = held.topLeftCorner<4, 4>() * x + held.topRightCorner<4, 1>() * command;
+    command = gain * u / effectiveness;
+    (k < kTicks / 2 ? early : late) += x[0] * x[0];
+  }
+  return late / early;
+}
+
+TEST(SampledLoop, PredictsWhereTheAdaptiveFuzzyLawItselfIsLost) {
+  AxisConfig config = SampleAxis(ControlLaw::kAdaptiveFuzzy);
+  config.adaptation.gamma = {8000.0, 8000.0};
+  config.adaptation.spread_1_s = 60.0;
+  config.adaptation.leakage_1_s = 0.05;
+  const AxisLaw axis = BuildAxisLaw(config);
+  LinearLaw law = AdaptingLaw(16.0, 7.0, 0.0);
+  law.drive_error = 8000.0 * axis.stages[0].p_n.x();
+  law.drive_rate = 8000.0 * axis.stages[0].p_n.y();
+  law.leakage_1_s = 0.05;
+  const AxisPlant plant = WithActuator(25.0);
+  const LoopMargins m = SampledLoop(plant, law, kTick_s, 1).Margins();
+  ASSERT_TRUE(m.stable);
+  // The frozen loop would bear 1.2 dB more: the adaptation counts.
+  LinearLaw frozen = law;
+  frozen.drive_error = frozen.drive_rate = 0.0;
+  ASSERT_GT(SampledLoop(plant, frozen, kTick_s, 1).Margins().gain_up_db, m.gain_up_db + 0.5);
+  for (const double db : {m.gain_up_db, -m.gain_down_db}) {
+    const double critical = std::pow(10.0, db / 20.0);
+    const double inside = db > 0.0 ? 0.97 : 1.03;
+    EXPECT_LT(Growth(plant, axis, 5.0, critical * inside), 1.0) << db;
+    EXPECT_GT(Growth(plant, axis, 5.0, critical / inside), 1.0) << db;
+  }
+}
+
+}  // namespace
+}  // namespace dispersa
