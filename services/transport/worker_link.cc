@@ -31,21 +31,21 @@ struct WorkerLink::Impl {
         subscriber(participant.MakeSubscriber("")),
         own_subscriber(participant.MakeSubscriber(PartitionOf(worker))) {
     // A campaign has a writer of its own, which goes when the campaign closes.
-    campaigns.emplace(
-        participant, subscriber, kCampaignTopic,
-        ReaderCallbacks<idl::CampaignV1>{[this](const idl::CampaignV1& message, const WriterHandle& from) {
-                                           const std::lock_guard lock(mutex);
-                                           campaign_of[from] = message.flight_id();
-                                           events.Push(FromIdl(message));
-                                         },
-                                         {},
-                                         [this](const WriterHandle& from) {
-                                           const std::lock_guard lock(mutex);
-                                           const auto found = campaign_of.find(from);
-                                           if (found == campaign_of.end()) return;
-                                           events.Push(CampaignClosed{found->second});
-                                           campaign_of.erase(found);
-                                         }});
+    campaigns.emplace(participant, subscriber, kCampaignTopic,
+                      ReaderCallbacks<idl::CampaignV1>{
+                          [this](const idl::CampaignV1& message, const WriterHandle& from) {
+                            const std::lock_guard lock(mutex);
+                            campaign_of[from] = {message.coordinator_epoch(), message.flight_id()};
+                            events.Push(FromIdl(message));
+                          },
+                          {},
+                          [this](const WriterHandle& from) {
+                            const std::lock_guard lock(mutex);
+                            const auto found = campaign_of.find(from);
+                            if (found == campaign_of.end()) return;
+                            events.Push(found->second);
+                            campaign_of.erase(found);
+                          }});
     assignments.emplace(
         participant, own_subscriber, kAssignmentTopic,
         ReaderCallbacks<idl::AssignmentV1>{[this](const idl::AssignmentV1& message, const WriterHandle&) {
@@ -72,7 +72,7 @@ struct WorkerLink::Impl {
 
   EventQueue<WorkerEvent> events;
   std::mutex mutex;
-  std::map<WriterHandle, std::string> campaign_of;  ///< flight id, by campaign writer
+  std::map<WriterHandle, CampaignClosed> campaign_of;  ///< by campaign writer
   Participant participant;
   dds::Publisher* publisher;
   dds::Subscriber* subscriber;

@@ -14,6 +14,7 @@ namespace dispersa {
 
 /// The coordinator has closed a campaign, or is gone: nothing more will come for it.
 struct CampaignClosed {
+  std::uint64_t coordinator_epoch = 0;  ///< of the definition; a newer one of the same campaign stays open
   std::string flight_id;
 };
 

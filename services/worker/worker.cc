@@ -41,12 +41,7 @@ WorkerExit Worker::Run() {
     std::optional<WorkerExit> exit;
     for (const WorkerEvent& event : link_->Wait(kStatusPeriod)) {
       std::visit(Overloaded{[this](const CampaignDefinition& campaign) { Load(campaign); },
-                            [this](const CampaignClosed& closed) {
-                              campaigns_.erase(closed.flight_id);
-                              std::erase_if(early_orders_, [&](const FlyOrder& order) {
-                                return order.flight_id == closed.flight_id;
-                              });
-                            },
+                            [this](const CampaignClosed& closed) { Close(closed); },
                             [this](const FlyOrder& order) { Enqueue(order); },
                             [&](const LeaveOrder&) { exit = WorkerExit::kTold; },
                             [&](const Refusal& refusal) {
@@ -100,6 +95,16 @@ void Worker::Load(const CampaignDefinition& definition) {
   }
   const auto orders = std::exchange(early_orders_, {});
   for (const FlyOrder& order : orders) Enqueue(order);
+}
+
+void Worker::Close(const CampaignClosed& closed) {
+  const auto campaign = campaigns_.find(closed.flight_id);
+  if (campaign != campaigns_.end() && campaign->second->coordinator_epoch == closed.coordinator_epoch) {
+    campaigns_.erase(campaign);
+  }
+  std::erase_if(early_orders_, [&](const FlyOrder& order) {
+    return order.flight_id == closed.flight_id && order.coordinator_epoch == closed.coordinator_epoch;
+  });
 }
 
 void Worker::Enqueue(const FlyOrder& order) {

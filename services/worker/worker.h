@@ -55,6 +55,7 @@ class Worker {
   };
 
   void Load(const CampaignDefinition& definition);
+  void Close(const CampaignClosed& closed);
   void Enqueue(const FlyOrder& order);
   void FlyForEver();
   void SendStatus(std::optional<WorkerState> state = {});

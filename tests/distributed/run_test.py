@@ -67,6 +67,15 @@ def shared_memory_segments():
     return {p.name for p in pathlib.Path("/dev/shm").iterdir() if p.name.startswith("fastrtps")}
 
 
+def stored(out):
+    """Number of cases in the database of a result folder; 0 while there is none."""
+    try:
+        with sqlite3.connect(f"file:{out}/results.sqlite?mode=ro", uri=True) as database:
+            return database.execute("SELECT count(*) FROM cases").fetchone()[0]
+    except sqlite3.OperationalError:
+        return 0
+
+
 class Run:
     """One `dispersa run` into a folder."""
 
@@ -84,12 +93,7 @@ class Run:
         return json.loads((self.out / "execution.json").read_text())
 
     def stored(self):
-        """Number of cases in the database; 0 while there is none."""
-        try:
-            with sqlite3.connect(f"file:{self.out}/results.sqlite?mode=ro", uri=True) as database:
-                return database.execute("SELECT count(*) FROM cases").fetchone()[0]
-        except sqlite3.OperationalError:
-            return 0
+        return stored(self.out)
 
     def wait_half_way(self, cases):
         wait_for(lambda: self.stored() > 0 or self.process.poll() is not None, "first results")
@@ -123,8 +127,13 @@ class RunTest(unittest.TestCase):
 
     def setUp(self):
         self.runs = []
+        self.daemons = []
 
     def tearDown(self):
+        for daemon in self.daemons:
+            if daemon.poll() is None:
+                daemon.kill()
+            daemon.communicate()
         for run in self.runs:
             if run.process.poll() is None:
                 run.process.kill()
@@ -276,24 +285,39 @@ class RunTest(unittest.TestCase):
         self.assertRegex(self.reference.stderr, rf"(?m)^\S+: {self.cases}/{self.cases} \(100 %\), .*/s, .*, in process$")
         self.assertEqual(self.reference.stdout.splitlines()[-1], f"result: {self.reference.out}")
 
+    def start_daemons(self, domain, out, *arguments):
+        """A coordinator, and two workers if there are none yet."""
+        network = ["--domain", str(domain), "--address", "127.0.0.1"]
+        coordinator = subprocess.Popen([BINARIES / "dispersa-coordinator", CAMPAIGN, "--cases", str(self.cases), "--out", out,
+                                        *network, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.daemons.append(coordinator)
+        if len(self.daemons) == 1:
+            for slots in ("1", "2"):
+                self.daemons.append(subprocess.Popen(
+                    [BINARIES / "dispersa-worker", *network, "--peer", "127.0.0.1", "--slots", slots],
+                    stderr=subprocess.DEVNULL))
+        return coordinator
+
+    def finish_daemons(self, coordinator, out):
+        stdout, stderr = coordinator.communicate(timeout=3 * PATIENCE_S)
+        self.assertEqual(coordinator.returncode, self.reference.code, stderr)
+        self.assertEqual(stdout, f"result: {out}\n")
+        self.assertEqual((out / "cases.csv").read_bytes(), self.reference.csv())
+        for worker in self.daemons[1:3]:
+            self.assertEqual(worker.wait(timeout=PATIENCE_S), 0)
+
     def test_the_daemons_give_the_same_bytes(self):
         out = self.root / "daemons"
-        network = ["--domain", "39", "--address", "127.0.0.1"]
-        workers = [subprocess.Popen([BINARIES / "dispersa-worker", *network, "--peer", "127.0.0.1", "--slots", slots],
-                                    stderr=subprocess.DEVNULL) for slots in ("1", "2")]
-        try:
-            served = subprocess.run([BINARIES / "dispersa-coordinator", CAMPAIGN, "--cases", str(self.cases), "--out", out,
-                                     *network], capture_output=True, text=True, timeout=3 * PATIENCE_S)
-            self.assertEqual(served.returncode, self.reference.code, served.stderr)
-            self.assertEqual(served.stdout, f"result: {out}\n")
-            self.assertEqual((out / "cases.csv").read_bytes(), self.reference.csv())
-            for worker in workers:
-                self.assertEqual(worker.wait(timeout=PATIENCE_S), 0)
-        finally:
-            for worker in workers:
-                if worker.poll() is None:
-                    worker.kill()
-                    worker.wait()
+        self.finish_daemons(self.start_daemons(39, out), out)
+
+    def test_workers_outlive_a_killed_coordinator(self):
+        out = self.root / "restarted"
+        coordinator = self.start_daemons(38, out)
+        wait_for(lambda: stored(out) > 0, "first results")
+        coordinator.kill()
+        coordinator.wait()
+        self.assertLess(stored(out), self.cases, "the campaign is too short for this test")
+        self.finish_daemons(self.start_daemons(38, out, "--resume"), out)
 
     def test_a_full_disk_is_incomplete(self):
         disk = self.root / "disk"

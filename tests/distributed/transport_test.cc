@@ -133,6 +133,7 @@ TEST_F(Transport, GivesALateWorkerTheOpenCampaignAndTellsWhenItCloses) {
   const auto closed = Await<CampaignClosed>(*worker);
   ASSERT_TRUE(closed);
   EXPECT_EQ(closed->flight_id, "flight 2");
+  EXPECT_EQ(closed->coordinator_epoch, 1u);
 }
 
 TEST_F(Transport, OrdersReachOnlyTheWorkerTheyAreMeantForInOrder) {
