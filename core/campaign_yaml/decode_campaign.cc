@@ -160,7 +160,7 @@ DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vect
   }
   if (optimize != nullptr) decoded.optimize = DecodeTrajectoryProblem(*optimize, "optimize", problems);
 
-  const bool flies = use == CampaignUse::kFly || (use == CampaignUse::kCheck && reference != nullptr);
+  const bool flies = use != CampaignUse::kOptimize && optimize == nullptr;
   if (const InputNode* autopilot =
           flies ? &map.Required("autopilot", "an autopilot file") : map.Optional("autopilot")) {
     campaign.autopilot =

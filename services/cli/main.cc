@@ -7,6 +7,7 @@
 #include <exception>
 
 #include "core/campaign/input_error.h"
+#include "core/campaign_yaml/yaml_reader.h"
 #include "core/engine/version.h"
 #include "core/report/result_error.h"
 #include "services/cli/command.h"
@@ -50,6 +51,18 @@ ExitCode Execute(const Invocation& invocation) {
   }
 }
 
+// Help and version are errors to CLI11, of code 0.
+ExitCode Usage(const CLI::App& app, const CLI::ParseError& error) {
+  return app.exit(error) == 0 ? kExitDone : kExitBadInput;
+}
+
+InputError UnknownCommand(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands(nullptr)) names.push_back(command->get_name());
+  const std::string word = app.remaining().front();
+  return InputError("unknown command '" + word + "'" + DidYouMean(word, names), JoinWords(names));
+}
+
 int Main(int argc, char** argv) {
   spdlog::set_default_logger(spdlog::stderr_color_mt("dispersa"));
   spdlog::set_pattern("%^%l%$: %v");
@@ -69,8 +82,13 @@ int Main(int argc, char** argv) {
   AddCommands(app, invocation);
   try {
     app.parse(argc, argv);
+  } catch (const CLI::RequiredError& error) {
+    // CLI11 says of an unknown command only that one is required.
+    if (!app.get_subcommands().empty() || app.remaining().empty()) return Usage(app, error);
+    fmt::print(stderr, "{}\n", UnknownCommand(app).what());
+    return kExitBadInput;
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kExitDone : kExitBadInput;
+    return Usage(app, error);
   }
   if (invocation.global.quiet) spdlog::set_level(spdlog::level::warn);
   return Execute(invocation);

@@ -1,0 +1,42 @@
+// Every file that ships is valid, and the campaigns that refer to them load.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "core/campaign_yaml/load.h"
+
+namespace dispersa {
+namespace {
+
+std::string Texts(const std::vector<InputProblem>& problems) {
+  std::string texts;
+  for (const InputProblem& problem : problems) texts += problem.Text() + "\n";
+  return texts;
+}
+
+TEST(CampaignYamlShipped, FilesAreValid) {
+  int files = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(DISPERSA_CAMPAIGNS)) {
+    if (entry.path().extension() != ".yaml") continue;
+    EXPECT_EQ(Texts(ValidateFile(entry.path().string())), "");
+    ++files;
+  }
+  EXPECT_GE(files, 10);
+}
+
+TEST(CampaignYamlShipped, ReferencesWereFoundForTheVehicleThatFliesThem) {
+  for (const auto& entry : std::filesystem::directory_iterator(DISPERSA_CAMPAIGNS)) {
+    if (entry.path().extension() != ".yaml") continue;
+    std::vector<InputProblem> warnings;
+    try {
+      LoadCampaign(entry.path().string(), {}, &warnings);
+    } catch (const InputError& error) {
+      // One to optimise has no reference yet.
+      ASSERT_EQ(error.problems().front().path, "optimize") << error.what();
+    }
+    EXPECT_EQ(Texts(warnings), "");
+  }
+}
+
+}  // namespace
+}  // namespace dispersa

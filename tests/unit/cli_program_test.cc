@@ -1,0 +1,203 @@
+// The program as a user calls it: output, errors and exit codes of the commands that need no workers.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <sstream>
+
+#include "core/flight/flight_inputs.h"
+#include "core/flight/metrics.h"
+#include "tests/unit/input_files.h"
+
+namespace dispersa {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+struct Output {
+  int code = -1;
+  std::string text;   ///< stdout
+  std::string error;  ///< stderr
+};
+
+// Runs `dispersa` with arguments in shell syntax.
+Output Dispersa(const std::string& arguments) {
+  const InputFiles folder;
+  const std::string error_file = folder.Path("stderr");
+  const std::string command = std::string(DISPERSA_BINARIES "/dispersa ") + arguments + " 2>" + error_file;
+  Output output;
+  std::FILE* pipe = popen(command.c_str(), "r");
+  if (pipe == nullptr) return output;
+  std::array<char, 4096> buffer;
+  for (std::size_t n; (n = std::fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) {
+    output.text.append(buffer.data(), n);
+  }
+  const int status = pclose(pipe);
+  if (WIFEXITED(status)) output.code = WEXITSTATUS(status);
+  output.error = ReadWholeFile(error_file);
+  return output;
+}
+
+std::vector<std::string> Lines(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+std::vector<std::string> Cells(const std::string& line) {
+  std::vector<std::string> cells;
+  std::istringstream stream(line + ",");
+  for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
+  return cells;
+}
+
+const std::string kSmoke = DISPERSA_CAMPAIGNS "/smoke.yaml";
+
+TEST(CliProgram, HelpAndVersionAreNoErrors) {
+  EXPECT_EQ(Dispersa("--help").code, 0);
+  EXPECT_THAT(Dispersa("fly --help").text, HasSubstr("Example: dispersa fly "));
+  const Output version = Dispersa("--version");
+  EXPECT_EQ(version.code, 0);
+  EXPECT_THAT(version.text, StartsWith("dispersa 0."));
+}
+
+TEST(CliProgram, BadUsageIsTwo) {
+  const Output unknown = Dispersa("validat x.yaml");
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_THAT(
+      unknown.error,
+      StartsWith("unknown command 'validat' (did you mean 'validate'?), allowed: validate, optimize, "));
+  EXPECT_EQ(unknown.text, "");
+  const std::vector<std::string> bad = {"", "validate", "fly", "fly --no-such-option x",
+                                        "fly " + kSmoke + " --case x"};
+  for (const std::string& arguments : bad) {
+    const Output output = Dispersa(arguments);
+    EXPECT_EQ(output.code, 2) << arguments;
+    EXPECT_NE(output.error, "") << arguments;
+    EXPECT_EQ(output.text, "") << arguments;
+  }
+}
+
+TEST(CliProgram, ValidateSaysWhatIsWrongAndWhere) {
+  const InputFiles files;
+  const Output valid = Dispersa("validate " + files.Path("campaign.yaml") + " " + files.Path("vehicle.yaml"));
+  EXPECT_EQ(valid.code, 0);
+  EXPECT_EQ(valid.text, files.Path("campaign.yaml") + ": valid\n" + files.Path("vehicle.yaml") + ": valid\n");
+  files.Edit("campaign.yaml", "cases: 100", "cases: many");
+  const Output invalid =
+      Dispersa("validate " + files.Path("campaign.yaml") + " " + files.Path("vehicle.yaml"));
+  EXPECT_EQ(invalid.code, 2);
+  EXPECT_EQ(invalid.text,
+            files.Path("campaign.yaml") +
+                ":6:40: sampling.cases: 'many' is not a number, allowed: a whole number from 1 to "
+                "4294967295\n" +
+                files.Path("vehicle.yaml") + ": valid\n");
+}
+
+TEST(CliProgram, ValidateAsJson) {
+  const InputFiles files;
+  EXPECT_EQ(Dispersa("--json validate " + files.Path("campaign.yaml")).text,
+            "{\n  \"schema\": \"dispersa/validate/1\",\n  \"valid\": true,\n  \"errors\": []\n}\n");
+  const Output missing = Dispersa("validate --json nothing.yaml");
+  EXPECT_EQ(missing.code, 2);
+  EXPECT_EQ(
+      missing.text,
+      "{\n  \"schema\": \"dispersa/validate/1\",\n  \"valid\": false,\n  \"errors\": [\n    {\n"
+      "      \"file\": \"nothing.yaml\",\n      \"line\": 1,\n      \"column\": 1,\n      \"path\": \"\",\n"
+      "      \"message\": \"cannot be read: No such file or directory\",\n"
+      "      \"allowed\": \"a readable file\"\n    }\n  ]\n}\n");
+}
+
+TEST(CliProgram, BadInputToAnyCommandIsTwoWithTheSameText) {
+  const InputFiles files;
+  files.Edit("vehicle.yaml", "propellant_mass_kg: 500", "propellant_mass_kg: -500");
+  const std::string text =
+      files.Path("vehicle.yaml") +
+      ":21:25: stages[1].propellant_mass_kg: -500 is out of range, allowed: a number above 0\n";
+  for (const std::string command : {"plan", "fly", "optimize", "run --workers 0"}) {
+    const Output output = Dispersa(command + " " + files.Path("campaign.yaml"));
+    EXPECT_EQ(output.code, 2) << command;
+    EXPECT_EQ(output.error, text) << command;
+    EXPECT_EQ(output.text, "") << command;
+  }
+}
+
+TEST(CliProgram, PlanPrintsTheInputsThatAFlightApplies) {
+  const Output plan = Dispersa("plan --csv --cases 4 " + kSmoke);
+  ASSERT_EQ(plan.code, 0) << plan.error;
+  const std::vector<std::string> lines = Lines(plan.text);
+  ASSERT_EQ(lines.size(), 5u);
+  const std::vector<std::string> names = Cells(lines[0]);
+  const std::vector<std::string> values = Cells(lines[4]);
+  ASSERT_EQ(names.size(), InputColumns().size() + 1);
+  ASSERT_EQ(values.size(), names.size());
+  EXPECT_EQ(names[0], "case_index");
+  EXPECT_EQ(values[0], "3");
+  const Output flight = Dispersa("fly --case 3 " + kSmoke);
+  ASSERT_EQ(flight.code, 0) << flight.error;
+  int dispersed = 0;
+  for (const std::string& line : Lines(flight.text)) {
+    if (!line.starts_with("input_")) continue;
+    const std::string name = line.substr(0, line.find(' '));
+    const std::string value = line.substr(line.rfind(' ') + 1);
+    const auto place = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+    ASSERT_LT(place, names.size()) << name;
+    EXPECT_EQ(values[place], value) << name;
+    ++dispersed;
+  }
+  EXPECT_GT(dispersed, 10);
+}
+
+TEST(CliProgram, FlyRepeatsToTheLastBit) {
+  const Output first = Dispersa("fly --json --case 1 " + kSmoke);
+  ASSERT_EQ(first.code, 0) << first.error;
+  EXPECT_THAT(first.text,
+              StartsWith("{\n  \"schema\": \"dispersa/fly/1\",\n  \"outcome\": \"completed\",\n"));
+  EXPECT_THAT(first.text, Not(HasSubstr("-0.0,")));
+  for (const std::string& metric : MetricNames()) EXPECT_THAT(first.text, HasSubstr("\"" + metric + "\": "));
+  EXPECT_EQ(Dispersa("fly --json --case 1 " + kSmoke).text, first.text);
+  EXPECT_NE(Dispersa("fly --json --case 1 --seed 5 " + kSmoke).text, first.text);
+}
+
+TEST(CliProgram, FlyWritesTheHistoryInTheOrderOfTheContract) {
+  const InputFiles folder;
+  const std::string file = folder.Path("history.csv");
+  ASSERT_EQ(Dispersa("fly " + kSmoke + " --history " + file).code, 0);
+  const std::vector<std::string> lines = Lines(ReadWholeFile(file));
+  ASSERT_GT(lines.size(), 5000u);  // ten rows a second of a flight of ten minutes
+  EXPECT_THAT(lines[0],
+              StartsWith("time_s,eci_x_m,eci_y_m,eci_z_m,eci_vx_m_s,eci_vy_m_s,eci_vz_m_s,ned_v_n_m_s,"
+                         "ned_v_e_m_s,ned_v_d_m_s,altitude_m,latitude_deg,longitude_deg,yaw_deg,pitch_deg,"
+                         "roll_deg,p_deg_s,q_deg_s,r_deg_s,mach,qbar_pa,alpha_deg,beta_deg,mass_kg,"));
+  const std::size_t columns = Cells(lines[0]).size();
+  for (const std::string& line : lines) {
+    ASSERT_EQ(Cells(line).size(), columns) << line;
+    ASSERT_THAT(line, Not(HasSubstr("nan")));
+    ASSERT_THAT(line, Not(HasSubstr(",-0,")));
+  }
+}
+
+TEST(CliProgram, FlyRefusesWhatThereIsNot) {
+  const Output no_case = Dispersa("fly --case 12 " + kSmoke);
+  EXPECT_EQ(no_case.code, 2);
+  EXPECT_EQ(no_case.error, "--case: the campaign has no case 12, allowed: 0 to 11\n");
+  const Output integrator = Dispersa("fly --integrator euler " + kSmoke);
+  EXPECT_EQ(integrator.code, 2);
+  EXPECT_EQ(integrator.error, "--integrator: 'euler' is not an integrator, allowed: erk4 or cvode\n");
+}
+
+TEST(CliProgram, ReplayAndReportNeedAResultFolder) {
+  for (const std::string command : {"replay --case 0 ", "report "}) {
+    const Output output = Dispersa(command + "/nowhere");
+    EXPECT_EQ(output.code, 2) << command;
+    EXPECT_THAT(output.error, HasSubstr("/nowhere")) << command;
+  }
+}
+
+}  // namespace
+}  // namespace dispersa
