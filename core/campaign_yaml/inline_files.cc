@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <functional>
-#include <string_view>
 
 #include "core/campaign_yaml/number_text.h"
 #include "core/campaign_yaml/parse_csv.h"
@@ -59,14 +58,14 @@ void InlineStageFiles(InputNode& stage, const std::string& path, FileNames names
           CsvParser(kMassTableColumns, problems), problems);
   InputNode* aerodynamics = stage.Find("aerodynamics");
   if (aerodynamics == nullptr) return;
-  for (const char* name : {"ca", "cn", "xcp_station_m", "cd", "cl", "cm", "clp", "cmq", "cnr"}) {
+  const auto replace = [&](const std::string& name, const std::vector<std::string>& columns) {
     InputNode* value = aerodynamics->Find(name);
-    if (value == nullptr || value->kind != InputNode::Kind::kScalar || ParseNumber(value->text)) continue;
-    const bool is_damping = std::string_view("clp cmq cnr").find(name) != std::string_view::npos;
-    std::vector<std::string> columns = {"mach", name};
-    if (!is_damping) columns.insert(columns.begin() + 1, "incidence_deg");
+    if (value == nullptr || value->kind != InputNode::Kind::kScalar || ParseNumber(value->text)) return;
     Replace(value, path + ".aerodynamics." + name, names, CsvParser(columns, problems), problems);
-  }
+  };
+  for (const char* name : {"ca", "cn", "xcp_station_m", "cd", "cl", "cm"})
+    replace(name, {"mach", "incidence_deg", name});
+  for (const char* name : {"clp", "cmq", "cnr"}) replace(name, {"mach", name});
 }
 
 }  // namespace
