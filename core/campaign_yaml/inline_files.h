@@ -21,9 +21,9 @@ inline const std::vector<std::string> kWindStatisticsColumns = {
     "altitude_m", "mean_north_m_s", "mean_east_m_s", "sigma_north_m_s", "sigma_east_m_s"};
 inline const std::vector<std::string> kAeroTableColumns = {
     "mach", "incidence_deg", "ca", "cn", "xcp_station_m", "cmq_per_rad", "clp_per_rad"};
-inline const std::vector<std::string> kMassTableColumns = {
-    "propellant_kg", "mass_kg",   "cg_station_m", "ixx_kg_m2", "iyy_kg_m2",
-    "izz_kg_m2",     "ixy_kg_m2", "ixz_kg_m2",    "iyz_kg_m2"};
+inline const std::vector<std::string> kMassTableColumns = {"propellant_kg", "mass_kg",   "cg_station_m",
+                                                           "ixx_kg_m2",     "iyy_kg_m2", "izz_kg_m2",
+                                                           "ixy_kg_m2",     "ixz_kg_m2", "iyz_kg_m2"};
 
 /// Whether a text may name files: a canonical text, which lives anywhere, may not.
 enum class FileNames { kAllowed, kRefused };
@@ -32,7 +32,8 @@ enum class FileNames { kAllowed, kRefused };
 InputNode ReadYamlFile(const std::string& path, std::vector<InputProblem>& problems);
 
 /// Replaces what names a file: a campaign's vehicle, reference, autopilot and wind tables, a vehicle's
-/// aerodynamic tables, a scenario's wind, mass and coefficient tables. Names are relative to the file in which they stand.
+/// aerodynamic tables, a scenario's wind, mass and coefficient tables. Names are relative to the file in
+/// which they stand.
 void InlineCampaignFiles(InputNode& campaign, FileNames names, std::vector<InputProblem>& problems);
 void InlineVehicleFiles(InputNode& vehicle, FileNames names, std::vector<InputProblem>& problems);
 void InlineScenarioFiles(InputNode& scenario, FileNames names, std::vector<InputProblem>& problems);
