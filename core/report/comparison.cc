@@ -39,15 +39,20 @@ Pairs PairUp(const CaseColumns& a, const CaseColumns& b) {
   return pairs;
 }
 
+std::string BoundText(double value) {
+  if (std::isinf(value)) return value > 0.0 ? "∞" : "−∞";
+  return ReadableText(value);
+}
+
 std::string IntervalText(const Interval& interval) {
-  return ReadableText(interval.lower) + " … " + ReadableText(interval.upper);
+  return BoundText(interval.lower) + " … " + BoundText(interval.upper);
 }
 
 }  // namespace
 
 const std::vector<std::string>& ComparedMetrics() {
   static const std::vector<std::string> names = {
-      "pitch_error_rms_deg", "pitch_error_peak_deg", "yaw_error_rms_deg",         "yaw_error_peak_deg",
+      "pitch_error_rms_deg", "pitch_error_peak_deg", "yaw_error_rms_deg",          "yaw_error_peak_deg",
       "roll_error_peak_deg", "deflection_peak_deg",  "deflection_limit_cycle_deg", "deflection_travel_deg"};
   return names;
 }
@@ -70,7 +75,9 @@ Comparison Compare(const CaseColumns& a, const CaseColumns& b, const std::vector
       if (!std::isnan(values_b[i]) && gain > 0.0)
         result.better.push_back({a.index[pairs.a[i]], values_a[i], values_b[i]});
     }
-    const auto gain = [](const MetricComparison::BetterCase& c) { return std::isnan(c.a) ? HUGE_VAL : c.a - c.b; };
+    const auto gain = [](const MetricComparison::BetterCase& c) {
+      return std::isnan(c.a) ? HUGE_VAL : c.a - c.b;
+    };
     std::stable_sort(result.better.begin(), result.better.end(),
                      [&](const auto& one, const auto& other) { return gain(one) > gain(other); });
     result.difference = ComparePaired(values_a, values_b, kComparisonConfidence);
@@ -79,23 +86,33 @@ Comparison Compare(const CaseColumns& a, const CaseColumns& b, const std::vector
   return comparison;
 }
 
-std::string ComparisonTable(const Comparison& comparison, const std::string& name_a, const std::string& name_b) {
+std::string ComparisonTable(const Comparison& comparison, const std::string& name_a,
+                            const std::string& name_b) {
   const std::string a = HtmlText(name_a);
   const std::string b = HtmlText(name_b);
-  HtmlTable table({{"Metric"}, {"difference " + b + " − " + a + ", median", true}, {"95 % interval", true},
-                   {"ratio " + b + " / " + a + ", median", true}, {"95 % interval", true}, {a + " better", true},
-                   {b + " better", true}, {"sign test, p", true}});
+  HtmlTable table({{"Metric"},
+                   {"median of the difference", true},
+                   {"95 % interval", true},
+                   {"median of the ratio", true},
+                   {"95 % interval", true},
+                   {a + " better", true},
+                   {b + " better", true},
+                   {"sign test, p", true}});
   for (const MetricComparison& metric : comparison.metrics) {
     const PairedDifference& d = metric.difference;
     const MetricInfo info = DescribeMetric(metric.metric);
-    table.Row({HtmlText(info.title + (info.unit.empty() ? "" : ", " + info.unit)), ReadableText(d.median_difference),
-               IntervalText(d.difference_interval), ReadableText(d.median_ratio), IntervalText(d.ratio_interval),
-               fmt::format("{}", d.worse), fmt::format("{}", d.better), ReadableText(d.sign_test_p)});
+    table.Row({HtmlText(info.title + (info.unit.empty() ? "" : ",\u00a0" + info.unit)),
+               BoundText(d.median_difference), IntervalText(d.difference_interval), BoundText(d.median_ratio),
+               IntervalText(d.ratio_interval), fmt::format("{}", d.worse), fmt::format("{}", d.better),
+               ReadableText(d.sign_test_p)});
   }
-  return table.Html();
+  return table.Html() +
+         fmt::format("<p class=\"soft\">Differences are {} less {}, ratios {} over {}; {} pairs.</p>\n", b, a,
+                     b, a, comparison.pairs);
 }
 
-std::string BetterCasesList(const MetricComparison& metric, const std::string& name_a, const std::string& name_b) {
+std::string BetterCasesList(const MetricComparison& metric, const std::string& name_a,
+                            const std::string& name_b) {
   const MetricInfo info = DescribeMetric(metric.metric);
   const std::string intro = fmt::format("cases in which {} is better than {} in {}: {}", HtmlText(name_b),
                                         HtmlText(name_a), HtmlText(info.title), metric.better.size());
@@ -103,7 +120,8 @@ std::string BetterCasesList(const MetricComparison& metric, const std::string& n
   std::string list;
   for (const MetricComparison::BetterCase& c : metric.better) {
     list += fmt::format("{}{} ({} against {})", list.empty() ? "" : ", ", c.case_index,
-                        std::isnan(c.b) ? "lost" : ReadableText(c.b), std::isnan(c.a) ? "lost" : ReadableText(c.a));
+                        std::isnan(c.b) ? "lost" : ReadableText(c.b),
+                        std::isnan(c.a) ? "lost" : ReadableText(c.a));
   }
   return "<details><summary>" + intro + "</summary><p class=\"soft\">" + list + "</p></details>\n";
 }

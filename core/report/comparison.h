@@ -22,8 +22,8 @@ struct MetricComparison {
 };
 
 struct Comparison {
-  std::size_t pairs = 0;      ///< cases that both have, with equal draws
-  std::size_t unpaired = 0;   ///< cases of either that the other lacks or drew otherwise
+  std::size_t pairs = 0;     ///< cases that both have, with equal draws
+  std::size_t unpaired = 0;  ///< cases of either that the other lacks or drew otherwise
   std::vector<MetricComparison> metrics;
 };
 
@@ -37,9 +37,11 @@ inline constexpr double kComparisonConfidence = 0.95;
 Comparison Compare(const CaseColumns& a, const CaseColumns& b, const std::vector<std::string>& metrics);
 
 /// As <table>; the names stand for a and b.
-std::string ComparisonTable(const Comparison& comparison, const std::string& name_a, const std::string& name_b);
+std::string ComparisonTable(const Comparison& comparison, const std::string& name_a,
+                            const std::string& name_b);
 
 /// The cases in which b is better than a, folded away when they are many.
-std::string BetterCasesList(const MetricComparison& metric, const std::string& name_a, const std::string& name_b);
+std::string BetterCasesList(const MetricComparison& metric, const std::string& name_a,
+                            const std::string& name_b);
 
 }  // namespace dispersa

@@ -32,8 +32,8 @@ std::string Short(double value) {
 }
 
 std::string Rectangle(double x, double y, double width, double height, const std::string& style) {
-  return fmt::format("<rect class=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>", style, x, y,
-                     width, height);
+  return fmt::format("<rect class=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>",
+                     style, x, y, width, height);
 }
 
 }  // namespace
@@ -58,8 +58,9 @@ std::string HeatMapSvg(const HeatMap& map, const std::string& description) {
   const double bottom = kTop + plot_height;
   const double width = kLeft + plot_width + 12.0;
   const double height = bottom + kBottom;
-  std::string svg = fmt::format("<svg class=\"chart\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}\">",
-                                width, height, HtmlText(description));
+  std::string svg =
+      fmt::format("<svg class=\"chart\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}\">", width,
+                  height, HtmlText(description));
   svg += Label(4.0, 13.0, "label", "start", map.y_label);
   svg += Label(4.0, 32.0, "legend", "start", map.value_label + "; ~ limit cycle; × flight lost");
   for (std::size_t row = 0; row < map.y.size(); ++row) {

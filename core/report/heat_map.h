@@ -17,15 +17,16 @@ struct HeatMapCell {
 struct HeatMap {
   std::string x_label;
   std::string y_label;
-  std::string value_label;            ///< with the unit
-  std::vector<double> x;              ///< of the columns, ascending
-  std::vector<double> y;              ///< of the rows, ascending: the first is the lowest
-  std::vector<HeatMapCell> cells;     ///< shape (y, x), row by row
+  std::string value_label;                ///< with the unit
+  std::vector<double> x;                  ///< of the columns, ascending
+  std::vector<double> y;                  ///< of the rows, ascending: the first is the lowest
+  std::vector<HeatMapCell> cells;         ///< shape (y, x), row by row
   double framed_x = 0.0, framed_y = 0.0;  ///< the cell with a frame, if the grid has it
 };
 
-/// The element, with `description` for those who cannot see it. Shades follow the logarithm of the value; a cell
-/// says its value, "~" for a limit cycle, "lost" for a lost flight, so that no information rests on colour alone.
+/// The element, with `description` for those who cannot see it. Shades follow the logarithm of the value; a
+/// cell says its value, "~" for a limit cycle, "lost" for a lost flight, so that no information rests on
+/// colour alone.
 std::string HeatMapSvg(const HeatMap& map, const std::string& description);
 
 /// For the page's <style>.

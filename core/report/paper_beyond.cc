@@ -74,17 +74,25 @@ std::string PaperComparisonSection(const PaperStudy& study) {
   const PaperFlights& adaptive = study.at(kAdaptive);
   std::vector<std::string> names = {kAdaptive};
   for (const std::string& name : PaperBaselines()) names.push_back(name);
-  std::string html = "<h2 id=\"baselines\">Against other controllers, on the same cases</h2>\n" + PaperSource(study, names);
+  std::string html =
+      "<h2 id=\"baselines\">Against other controllers, on the same cases</h2>\n" + PaperSource(study, names);
 
-  HtmlTable overview({{"Autopilot"}, {"flights", true}, {"lost", true}, {"RMS, median", true}, {"RMS, 99 %", true},
-                      {"peak, median", true}, {"peak, largest", true}, {"limit cycle, largest", true}});
+  HtmlTable overview({{"Autopilot"},
+                      {"flights", true},
+                      {"lost", true},
+                      {"RMS, median", true},
+                      {"RMS, 99 %", true},
+                      {"peak, median", true},
+                      {"peak, largest", true},
+                      {"limit cycle, largest", true}});
   for (const std::string& name : names) {
     const PaperFlights& flown = study.at(name);
     const MetricDigest rms = Digested(flown.flights.cases, "pitch_error_rms_deg");
     const MetricDigest peak = Digested(flown.flights.cases, "pitch_error_peak_deg");
     const MetricDigest cycle = Digested(flown.flights.cases, "deflection_limit_cycle_deg");
-    overview.Row({HtmlText(flown.campaign.autopilot.name), fmt::format("{}", rms.n), fmt::format("{}", rms.lost),
-                  Degrees(rms.p50), Degrees(rms.p99), Degrees(peak.p50), Degrees(peak.max), Degrees(cycle.max)});
+    overview.Row({HtmlText(flown.campaign.autopilot.name), fmt::format("{}", rms.n),
+                  fmt::format("{}", rms.lost), Degrees(rms.p50), Degrees(rms.p99), Degrees(peak.p50),
+                  Degrees(peak.max), Degrees(cycle.max)});
   }
   html += overview.Html();
 
@@ -95,16 +103,23 @@ std::string PaperComparisonSection(const PaperStudy& study) {
     html += "<h3>" + HtmlText(baseline.campaign.autopilot.name) + " against " +
             HtmlText(adaptive.campaign.autopilot.name) + "</h3>\n" +
             ComparisonTable(comparison, adaptive.campaign.autopilot.name, baseline.campaign.autopilot.name) +
-            BetterCasesList(comparison.metrics[0], adaptive.campaign.autopilot.name, baseline.campaign.autopilot.name);
+            BetterCasesList(comparison.metrics[0], adaptive.campaign.autopilot.name,
+                            baseline.campaign.autopilot.name);
     const PairedDifference& rms = comparison.metrics[0].difference;
-    found += fmt::format("{}{}: RMS {:.2f} times as large ({:.2f} … {:.2f}), better than the adaptive law in {} of {} cases.",
-                         found.empty() ? "" : " ", HtmlText(baseline.campaign.autopilot.name), rms.median_ratio,
-                         rms.ratio_interval.lower, rms.ratio_interval.upper, rms.better, rms.n);
+    found += fmt::format(
+        "{}{}: RMS {:.2f} times as large as the adaptive law’s{}, better in {} of {} cases.",
+        found.empty() ? "" : " ", HtmlText(baseline.campaign.autopilot.name), rms.median_ratio,
+        std::isfinite(rms.ratio_interval.upper)
+            ? fmt::format(" ({:.2f} … {:.2f})", rms.ratio_interval.lower, rms.ratio_interval.upper)
+            : std::string(" (too few cases for an interval)"),
+        rms.better, rms.n);
   }
   html += PaperFindings(
       "Better results are achieved with adaptive fuzzy control. No other controller is flown.", found,
-      "Median ratios with 95 % intervals. All fly the same dispersions, wind directions and misalignments, drawn from a seed "
-      "that no tuning used. Against rules that are well tuned to begin with, adaptation has less to add than against poor "
+      "Median ratios with 95 % intervals. All fly the same dispersions, wind directions and misalignments, "
+      "drawn from a seed "
+      "that no tuning used. Against rules that are well tuned to begin with, adaptation has less to add than "
+      "against poor "
       "ones.");
   return html;
 }
@@ -126,23 +141,34 @@ std::string PaperLyapunovSection(const PaperStudy& study) {
   }
   chart.Line(middle, fraction, "line-0", "dV/dt < 0 at this level");
   chart.Line(middle, share, "line-1", "powered flight spent there");
-  HtmlTable table({{"V outside the level of"}, {"powered flight spent there", true}, {"of it with dV/dt < 0", true}});
+  HtmlTable table(
+      {{"V outside the level of"}, {"powered flight spent there", true}, {"of it with dV/dt < 0", true}});
   for (const double level : {0.0, 0.01, 0.1, 1.0}) {
     table.Row({level > 0.0 ? fmt::format("{:g}° of error", level) : std::string("0 (everything)"),
                Percent(statistics.Share(level)), Percent(statistics.Falling(level))});
   }
   const MetricDigest per_flight = Digested(table3.flights.cases, "lyapunov_decreasing_fraction");
-  const std::string caption = "How often V = ½ eᵀPe falls, by its level; levels with fewer than 100 samples are left out.";
-  return "<h2 id=\"lyapunov\">How often V falls</h2>\n" + PaperSource(study, {"table3"}) + "<div class=\"figures\">\n" +
-         Figure(chart.Svg(caption), HtmlText(caption)) + "<div>" + table.Html("narrow") + "</div></div>\n" +
+  const std::string caption =
+      "How often V = ½ eᵀPe falls, by its level; levels with fewer than 100 samples are left out.";
+  return "<h2 id=\"lyapunov\">How often V falls</h2>\n" + PaperSource(study, {"table3"}) +
+         "<div class=\"figures\">\n" + Figure(chart.Svg(caption), HtmlText(caption)) + "<div>" +
+         table.Html("narrow") + "</div></div>\n" +
          PaperFindings(
-             "dV/dt &lt; 0: the system is asymptotically stable, since the approximation error is very small (34).",
-             fmt::format("Over whole powered flights V falls {} of the time in the median flight. Outside the level of 0.1° it "
+             "dV/dt &lt; 0: the system is asymptotically stable, since the approximation error is very small "
+             "(34).",
+             fmt::format("Over whole powered flights V falls {} of the time in the median flight. Outside "
+                         "the level of 0.1° it "
                          "falls {} of the time, and {} of powered flight is spent there.",
-                         Percent(per_flight.p50), Percent(statistics.Falling(0.1)), Percent(statistics.Share(0.1))),
-             "With disturbances, an actuator and a projection, (34) can hold only outside a residual set: the honest claim is "
-             "uniform ultimate boundedness. V here is the part of (29) that can be measured; the part of the parameter error "
-             "is unknown in flight, so a rise of this V refutes nothing by itself, and near zero it is as often up as down.");
+                         Percent(per_flight.p50), Percent(statistics.Falling(0.1)),
+                         Percent(statistics.Share(0.1))),
+             "With disturbances, an actuator and a projection, (34) can hold only outside a residual set: "
+             "the honest claim is "
+             "uniform ultimate boundedness. V here is the part of (29) that can be measured; the part of the "
+             "parameter error "
+             "is unknown in flight, so a rise of this V refutes nothing by itself. At small levels V follows "
+             "the disturbances: it "
+             "rises while the wind or a transient grows, however slowly, and falls when the law has learnt "
+             "it.");
 }
 
 std::string PaperCompletionSection(const PaperStudy& study) {
@@ -151,8 +177,14 @@ std::string PaperCompletionSection(const PaperStudy& study) {
   const CaseColumns& cases = swept.flights.cases;
   const char* const factors[] = {"inertia_factor", "cp_factor", "cg_factor", "actuator_bandwidth_factor"};
   const char* const titles[] = {"inertia", "centre of pressure", "centre of gravity", "actuator bandwidth"};
-  HtmlTable table({{"Completion"}, {"times", true}, {"flights", true}, {"lost", true}, {"RMS, median", true},
-                   {"peak, median", true}, {"peak, largest", true}, {"limit cycle, largest", true},
+  HtmlTable table({{"Completion"},
+                   {"times", true},
+                   {"flights", true},
+                   {"lost", true},
+                   {"RMS, median", true},
+                   {"peak, median", true},
+                   {"peak, largest", true},
+                   {"limit cycle, largest", true},
                    {"requirements of table3 that fail"}});
   std::size_t changed = 0, settings = 0;
   const auto row = [&](const std::string& title, const std::string& factor, const CaseColumns& flown) {
@@ -164,8 +196,9 @@ std::string PaperCompletionSection(const PaperStudy& study) {
       if (Judge(requirement, SamplingMethod::kMonteCarlo, flown, 0).verdict != "fail") continue;
       failed += (failed.empty() ? "" : ", ") + requirement.metric;
     }
-    table.Row({title, factor, fmt::format("{}", rms.n), fmt::format("{}", rms.lost), Degrees(rms.p50), Degrees(peak.p50),
-               Degrees(peak.max), Degrees(cycle.max), failed.empty() ? "none" : "<code>" + failed + "</code>"});
+    table.Row({title, factor, fmt::format("{}", rms.n), fmt::format("{}", rms.lost), Degrees(rms.p50),
+               Degrees(peak.p50), Degrees(peak.max), Degrees(cycle.max),
+               failed.empty() ? "none" : "<code>" + failed + "</code>"});
     return failed;
   };
   const std::string as_shipped = row("as shipped (table3)", "1", table3.flights.cases);
@@ -185,14 +218,19 @@ std::string PaperCompletionSection(const PaperStudy& study) {
       changed += row(titles[f], fmt::format("{:g}", factor), group) != as_shipped;
     }
   }
-  return "<h2 id=\"completions\">How much depends on what we added</h2>\n" + PaperSource(study, {"completions"}) +
-         "<p>Table 1 gives no mass distribution, aerodynamics or actuators. Each completion is moved by 30 % with the "
-         "autopilot unchanged and Table 3’s disturbances on; CG and CP by 30 % of their distance from the nose.</p>\n" +
+  return "<h2 id=\"completions\">How much depends on what we added</h2>\n" +
+         PaperSource(study, {"completions"}) +
+         "<p>Table 1 gives no mass distribution, aerodynamics or actuators. Each completion is moved by 30 % "
+         "with the "
+         "autopilot unchanged and Table 3’s disturbances on; CG and CP by 30 % of their distance from the "
+         "nose.</p>\n" +
          table.Html() +
-         PaperFindings("Aerodynamics from DATCOM; inertia, centres and actuators are not given.",
-                       fmt::format("{} of {} settings change which requirements of table3 fail.", changed, settings),
-                       "A setting that changes a verdict marks where a reader with the real vehicle’s data should look first. "
-                       "With few flights a setting only fails a requirement that it misses clearly.");
+         PaperFindings(
+             "Aerodynamics from DATCOM; inertia, centres and actuators are not given.",
+             fmt::format("{} of {} settings change which requirements of table3 fail.", changed, settings),
+             "A setting that changes a verdict marks where a reader with the real vehicle’s data should look "
+             "first. "
+             "With few flights a setting only fails a requirement that it misses clearly.");
 }
 
 }  // namespace dispersa

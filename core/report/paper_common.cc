@@ -11,8 +11,8 @@
 namespace dispersa {
 
 std::string PaperFindings(const std::string& claim, const std::string& found, const std::string& difference) {
-  std::string html = "<dl class=\"findings\">\n<dt>The paper</dt><dd>" + claim + "</dd>\n<dt>Found</dt><dd>" + found +
-                     "</dd>\n";
+  std::string html = "<dl class=\"findings\">\n<dt>The paper</dt><dd>" + claim + "</dd>\n<dt>Found</dt><dd>" +
+                     found + "</dd>\n";
   if (!difference.empty()) html += "<dt>Difference</dt><dd>" + difference + "</dd>\n";
   return html + "</dl>\n";
 }
@@ -25,8 +25,9 @@ std::string PaperSource(const PaperStudy& study, const std::vector<std::string>&
     std::string how = "the nominal flight";
     if (found != study.campaigns.end()) {
       const Campaign& campaign = found->second.campaign;
-      how = fmt::format("{} flights of {} ({}, seed {})", found->second.flights.cases.rows(), campaign.sampling.cases,
-                        SamplingMethodTitle(campaign.sampling.method), campaign.sampling.seed);
+      how = fmt::format("{} flights of {} ({}, seed {})", found->second.flights.cases.rows(),
+                        campaign.sampling.cases, SamplingMethodTitle(campaign.sampling.method),
+                        campaign.sampling.seed);
     }
     html += fmt::format("{}: <code>dispersa run campaigns/{}.yaml</code>", how, names[i]);
   }
@@ -41,7 +42,8 @@ std::string Degrees(double value) {
 
 MetricDigest Digested(const CaseColumns& cases, const std::string& metric) {
   const std::vector<double> sorted = SortedFinite(CompletedValues(cases, metric));
-  return {cases.rows(), LostCount(cases), Quantile(sorted, 0.5), Quantile(sorted, 0.99), Quantile(sorted, 1.0)};
+  return {cases.rows(), LostCount(cases), Quantile(sorted, 0.5), Quantile(sorted, 0.99),
+          Quantile(sorted, 1.0)};
 }
 
 }  // namespace dispersa

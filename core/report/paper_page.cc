@@ -27,15 +27,21 @@ q { font-style: italic; }
 )css";
 
 constexpr char kNavigation[] =
-    "<nav><a href=\"#table1\">Table 1</a><a href=\"#table2\">Table 2</a><a href=\"#fig2\">Fig. 2</a><a href=\"#fig3\">Fig. "
+    "<nav><a href=\"#table1\">Table 1</a><a href=\"#table2\">Table 2</a><a href=\"#fig2\">Fig. 2</a><a "
+    "href=\"#fig3\">Fig. "
     "3</a><a href=\"#table3\">Table 3</a><a href=\"#fig5\">Fig. 5</a><a href=\"#fig6\">Figs. 6, 7</a><a "
     "href=\"#fig8\">Figs. 8, 9</a><a href=\"#fig10\">Fig. 10</a><a href=\"#baselines\">Baselines</a><a "
-    "href=\"#lyapunov\">V</a><a href=\"#completions\">Completions</a><a href=\"#campaigns\">Campaigns</a></nav>\n";
+    "href=\"#margins\">Margins</a><a "
+    "href=\"#lyapunov\">V</a><a href=\"#completions\">Completions</a><a "
+    "href=\"#campaigns\">Campaigns</a></nav>\n";
 
 constexpr char kLimits[] =
-    "<div class=\"headline warning\"><p><b>The vehicle is rigid.</b> No bending, no slosh, no inertia of the nozzles: a launcher "
-    "of 27 m has bending modes that a real autopilot must filter, and tracking, limit cycles and margins on this page are those "
-    "of the rigid body only. Guidance is open loop: the pitch profile is tracked, the orbit is not corrected.</p></div>\n";
+    "<div class=\"headline warning\"><p><b>The vehicle is rigid.</b> No bending, no slosh, no inertia of the "
+    "nozzles: a launcher "
+    "of 27 m has bending modes that a real autopilot must filter, and tracking, limit cycles and margins on "
+    "this page are those "
+    "of the rigid body only. Guidance is open loop: the pitch profile is tracked, the orbit is not "
+    "corrected.</p></div>\n";
 
 std::string Tile(const std::string& value, const std::string& label) {
   return fmt::format("<div class=\"tile\"><b>{}</b><span>{}</span></div>", value, label);
@@ -48,20 +54,24 @@ std::string Header(const PaperStudy& study) {
   std::size_t flights = 1;
   for (const auto& [name, flown] : study.campaigns) flights += flown.flights.cases.rows();
   std::string html =
-      "<header>\n<h1>Adaptive fuzzy attitude control of a launch vehicle: the paper reproduced</h1>\n<p class=\"soft\">U. "
-      "Ansari, S. Alam, S. M. un Nabi Jafri, “Trajectory optimization and Adaptive Fuzzy based Launch Vehicle Attitude "
+      "<header>\n<h1>Adaptive fuzzy attitude control of a launch vehicle: the paper reproduced</h1>\n<p "
+      "class=\"soft\">U. "
+      "Ansari, S. Alam, S. M. un Nabi Jafri, “Trajectory optimization and Adaptive Fuzzy based Launch "
+      "Vehicle Attitude "
       "Control”. Every table and figure from data; Figs. 1 and 4 are drawings without data.</p>\n";
   html += "<div class=\"tiles\">" + Tile(fmt::format("{}", flights), "flights on this page") +
           Tile(fmt::format("{} / {}", rms.lost, rms.n), "lost with Table 3") +
           Tile(Degrees(rms.p50), "median RMS pitch error, Table 3") +
           Tile(Degrees(peak.max), "largest peak pitch error, Table 3") +
-          Tile(fmt::format("{:.2g} m", std::fabs(study.optimization.errors.altitude_m)), "miss of the target height") +
+          Tile(fmt::format("{:.2g} m", std::fabs(study.optimization.errors.altitude_m)),
+               "miss of the target height") +
           "</div>\n</header>\n";
   return html + kLimits;
 }
 
 std::string CampaignSection(const PaperStudy& study) {
-  HtmlTable table({{"Campaign"}, {"Shows"}, {"flights here", true}, {"in the file", true}, {"Command"}, {"Id"}});
+  HtmlTable table(
+      {{"Campaign"}, {"Shows"}, {"flights here", true}, {"in the file", true}, {"Command"}, {"Id"}});
   for (const PaperCampaign& campaign : PaperCampaigns()) {
     const auto found = study.campaigns.find(campaign.name);
     const bool flown = found != study.campaigns.end();
@@ -71,10 +81,14 @@ std::string CampaignSection(const PaperStudy& study) {
                "<code class=\"copy\">dispersa run campaigns/" + campaign.name + ".yaml</code>",
                flown ? "<code>" + found->second.campaign.id.substr(0, 8) + "</code>" : ""});
   }
-  return "<h2 id=\"campaigns\">Each figure by its own campaign</h2>\n<p>The page flies the first cases of these files; a case "
-         "has the same bits here, in <code>dispersa run</code> on any number of workers, and in <code>dispersa replay</code>. "
-         "Figs. 2 and 3 and Table 2: <code>dispersa optimize campaigns/slv4_500km.yaml</code>. Two result folders on the same "
-         "cases: <code>dispersa compare DIR_A DIR_B</code>. The data of the figures are in <code>data/</code> beside this "
+  return "<h2 id=\"campaigns\">Each figure by its own campaign</h2>\n<p>The page flies the first cases of "
+         "these files; a case "
+         "has the same bits here, in <code>dispersa run</code> on any number of workers, and in "
+         "<code>dispersa replay</code>. "
+         "Figs. 2 and 3 and Table 2: <code>dispersa optimize campaigns/slv4_500km.yaml</code>. Two result "
+         "folders on the same "
+         "cases: <code>dispersa compare DIR_A DIR_B</code>. The data of the figures are in "
+         "<code>data/</code> beside this "
          "page.</p>\n" +
          table.Html() + "<p class=\"soft\">Engine <code>" + EngineVersion() + "</code>.</p>\n";
 }
@@ -117,7 +131,8 @@ std::string HistoriesData(const StudyFlights& flights, PaperColumn column) {
 std::string PaperPage(const PaperStudy& study) {
   std::string page = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
-      "content=\"width=device-width, initial-scale=1\">\n<title>The paper reproduced – dispersa</title>\n<style>{}{}{}</style>\n"
+      "content=\"width=device-width, initial-scale=1\">\n<title>The paper reproduced – "
+      "dispersa</title>\n<style>{}{}{}</style>\n"
       "</head>\n<body>\n",
       StyleSheet(), HeatMapStyle(), kStyle);
   page += Header(study);
@@ -129,6 +144,7 @@ std::string PaperPage(const PaperStudy& study) {
   page += PaperPitchSection(study);
   page += PaperRobustnessSection(study);
   page += PaperComparisonSection(study);
+  page += PaperMarginSection(study);
   page += PaperLyapunovSection(study);
   page += PaperCompletionSection(study);
   page += CampaignSection(study);
@@ -145,8 +161,9 @@ void WritePaper(const PaperStudy& study, const std::filesystem::path& directory)
   WriteFile(data / "figs6_9_nominal.csv", HistoryCsv(study.nominal_history));
   for (const auto& [name, flown] : study.campaigns) {
     WriteFile(data / (name + "_cases.csv"), CasesData(flown.flights.cases));
-    for (const auto& [column, title] : {std::pair{kPitchLaunch, "pitch"}, std::pair{kPitchError, "pitch_error"},
-                                        std::pair{kDeflection, "deflection"}}) {
+    for (const auto& [column, title] :
+         {std::pair{kPitchLaunch, "pitch"}, std::pair{kPitchError, "pitch_error"},
+          std::pair{kDeflection, "deflection"}}) {
       WriteFile(data / fmt::format("{}_{}_deg.csv", name, title), HistoriesData(flown.flights, column));
     }
   }

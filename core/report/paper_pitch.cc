@@ -64,12 +64,15 @@ struct BandChart {
   PaperColumn column;
   const char* history_column;
   const char* label;
-  bool program;  ///< draw the reference pitch
-  std::optional<double> to_s;
+  bool program = false;  ///< draw the reference pitch
+  std::optional<double> to_s = {};
+  bool wide = false;  ///< over both columns of the page
 };
 
-std::string Draw(const PaperStudy& study, const StudyFlights& flights, const BandChart& view, const std::string& caption) {
-  SvgChart chart({.label = kTime, .low = 0.0, .high = view.to_s}, {.label = view.label}, 520, 280);
+std::string Draw(const PaperStudy& study, const StudyFlights& flights, const BandChart& view,
+                 const std::string& caption) {
+  SvgChart chart({.label = kTime, .low = 0.0, .high = view.to_s}, {.label = view.label},
+                 view.wide ? 1060 : 520, 280);
   MarkStages(study, &chart);
   const FlightBands bands = BandsOf(flights, view.column);
   if (!bands.bands.empty()) {
@@ -80,21 +83,28 @@ std::string Draw(const PaperStudy& study, const StudyFlights& flights, const Ban
   const std::vector<double> time_s = NominalColumn(study, "time_s");
   chart.Line(time_s, NominalColumn(study, view.history_column), "line-0", "nominal");
   if (view.program) chart.Line(time_s, NominalColumn(study, "pitch_program_deg"), "program", "reference");
-  return Figure(chart.Svg(caption), HtmlText(caption));
+  std::string figure = Figure(chart.Svg(caption), HtmlText(caption));
+  if (view.wide) figure.replace(0, std::string("<figure").size(), "<figure class=\"wide\"");
+  return figure;
 }
 
 std::string RequirementRows(const PaperFlights& flown) {
-  HtmlTable table({{"Requirement"}, {"flights", true}, {"failures", true}, {"verdict"}});
+  HtmlTable table({{"Requirement"}, {"what the flights show"}, {"failures", true}, {"verdict"}});
   for (const Requirement& requirement : flown.campaign.requirements) {
     const RequirementSummary verdict =
         Judge(requirement, flown.campaign.sampling.method, flown.flights.cases, 0);
-    table.Row({HtmlText(verdict.sentence), fmt::format("{}", verdict.n), fmt::format("{}", verdict.failures),
-               VerdictBadge(verdict.verdict)});
+    table.Row(
+        {fmt::format("<code>{}</code> {} {} with {}", requirement.metric, verdict.below ? "below" : "above",
+                     ReadableText(verdict.limit), PercentText(verdict.probability)),
+         HtmlText(verdict.sentence), fmt::format("{} / {}", verdict.failures, verdict.n),
+         VerdictBadge(verdict.verdict)});
   }
   return table.Html();
 }
 
-double NominalMetric(const PaperStudy& study, const char* name) { return study.nominal.metrics[MetricColumn(name)]; }
+double NominalMetric(const PaperStudy& study, const char* name) {
+  return study.nominal.metrics[MetricColumn(name)];
+}
 
 }  // namespace
 
@@ -104,14 +114,15 @@ std::string PaperPitchSection(const PaperStudy& study) {
   const auto draw = [&](const BandChart& view, const std::string& caption) {
     return Draw(study, table3.flights, view, caption);
   };
-  const std::string bands = fmt::format(" Bands: the first {} flights of table3.", table3.flights.histories.size());
+  const std::string bands =
+      fmt::format(" Bands: the first {} flights of table3.", table3.flights.histories.size());
   std::string html = "<h2 id=\"fig6\">Figs. 6 and 7: the initial pitch-over</h2>\n" +
                      PaperSource(study, {"nominal", "table3"}) + "<div class=\"figures\">\n" +
                      draw({kPitchLaunch, "pitch_launch_deg", "pitch, °", true, kick_end_s},
                           "Fig. 6: pitch in the initial pitch-over." + bands) +
                      draw({kDeflection, "deflection_pitch_deg", "pitch deflection, °", false, kick_end_s},
                           "Fig. 7: control deflection in the initial pitch-over.") +
-                     draw({kPitchError, "pitch_error_deg", "pitch error, °", false, kick_end_s},
+                     draw({kPitchError, "pitch_error_deg", "pitch error, °", false, kick_end_s, true},
                           "What Fig. 6 cannot show at its scale: the pitch error.") +
                      "</div>\n";
   const std::vector<double> time_s = NominalColumn(study, "time_s");
@@ -128,31 +139,41 @@ std::string PaperPitchSection(const PaperStudy& study) {
     dispersed = std::max({dispersed, std::fabs(kick.bands[0].min[i]), std::fabs(kick.bands[0].max[i])});
   html += PaperFindings(
       "The pitch angle follows the reference accurately in the initial pitch-over.",
-      fmt::format("Nominal: at most {} of error with {} of deflection in the first {:.0f} s. With Table 3’s disturbances the "
+      fmt::format("Nominal: at most {} of error with {} of deflection in the first {:.0f} s. With Table 3’s "
+                  "disturbances the "
                   "error stays within {}.",
                   Degrees(worst_error), Degrees(worst_deflection), kick_end_s, Degrees(dispersed)),
-      "The paper prints one flight and does not say with which disturbances; here the nominal flight stands before the "
+      "The paper prints one flight and does not say with which disturbances; here the nominal flight stands "
+      "before the "
       "spread of the dispersed ones.");
 
-  html += "<h2 id=\"fig8\">Figs. 8 and 9: lift-off to injection</h2>\n" + PaperSource(study, {"nominal", "table3"}) +
-          "<div class=\"figures\">\n" +
-          draw({kPitchLaunch, "pitch_launch_deg", "pitch, °", true, {}}, "Fig. 8: pitch over the whole flight." + bands) +
+  html += "<h2 id=\"fig8\">Figs. 8 and 9: lift-off to injection</h2>\n" +
+          PaperSource(study, {"nominal", "table3"}) + "<div class=\"figures\">\n" +
+          draw({kPitchLaunch, "pitch_launch_deg", "pitch, °", true, {}},
+               "Fig. 8: pitch over the whole flight." + bands) +
           draw({kDeflection, "deflection_pitch_deg", "pitch deflection, °", false, {}},
-               "Fig. 9: control deflection over the whole flight. In the coast reaction control points the stage.") +
-          draw({kPitchError, "pitch_error_deg", "pitch error, °", false, {}}, "Pitch error over the whole flight.") +
+               "Fig. 9: control deflection over the whole flight. In the coast reaction control points the "
+               "stage.") +
+          draw({kPitchError, "pitch_error_deg", "pitch error, °", false, {}, true},
+               "Pitch error over the whole flight.") +
           "</div>\n" + RequirementRows(table3);
   const CaseColumns& cases = table3.flights.cases;
   const MetricDigest rms = Digested(cases, "pitch_error_rms_deg");
   const MetricDigest peak = Digested(cases, "pitch_error_peak_deg");
   const MetricDigest cycle = Digested(cases, "deflection_limit_cycle_deg");
   html += PaperFindings(
-      "The controller tracks the whole profile from launch to injection in the presence of Table 3’s disturbances.",
-      fmt::format("Nominal: RMS {}, peak {}, limit cycle {}. Table 3, {} flights: {} lost; median RMS {} (largest {}), median "
+      "The controller tracks the whole profile from launch to injection in the presence of Table 3’s "
+      "disturbances.",
+      fmt::format("Nominal: RMS {}, peak {}, limit cycle {}. Table 3, {} flights: {} lost; median RMS {} "
+                  "(largest {}), median "
                   "peak {} (largest {}), worst limit cycle {} peak to peak.",
-                  Degrees(NominalMetric(study, "pitch_error_rms_deg")), Degrees(NominalMetric(study, "pitch_error_peak_deg")),
-                  Degrees(NominalMetric(study, "deflection_limit_cycle_deg")), rms.n, rms.lost, Degrees(rms.p50),
-                  Degrees(rms.max), Degrees(peak.p50), Degrees(peak.max), Degrees(cycle.max)),
-      "The paper gives neither numbers nor a coast. Errors are those of powered flight with every ignition transient; a "
+                  Degrees(NominalMetric(study, "pitch_error_rms_deg")),
+                  Degrees(NominalMetric(study, "pitch_error_peak_deg")),
+                  Degrees(NominalMetric(study, "deflection_limit_cycle_deg")), rms.n, rms.lost,
+                  Degrees(rms.p50), Degrees(rms.max), Degrees(peak.p50), Degrees(peak.max),
+                  Degrees(cycle.max)),
+      "The paper gives neither numbers nor a coast. Errors are those of powered flight with every ignition "
+      "transient; a "
       "probability of 99.73 % needs thousands of flights, so the verdict is that of <code>dispersa run "
       "campaigns/table3.yaml</code> wherever the table above says inconclusive.");
   return html;
@@ -173,21 +194,24 @@ std::string PaperRobustnessSection(const PaperStudy& study) {
     names.push_back(set.quiet);
     names.push_back(set.disturbed);
   }
-  std::string html = "<h2 id=\"fig10\">Fig. 10: drag, lift, CG and CP ±20 %</h2>\n" + PaperSource(study, names) +
-                     "<div class=\"figures\">\n";
+  std::string html = "<h2 id=\"fig10\">Fig. 10: drag, lift, CG and CP ±20 %</h2>\n" +
+                     PaperSource(study, names) + "<div class=\"figures\">\n";
 
-  const auto curves = [&](const char* name, PaperColumn column, const char* label, const std::string& caption) {
+  const auto curves = [&](const char* name, PaperColumn column, const char* label,
+                          const std::string& caption) {
     SvgChart chart({.label = kTime, .low = 0.0, .high = kick_end_s}, {.label = label}, 520, 280);
     const std::vector<SampledFlight>& flights = study.at(name).flights.histories;
     for (std::size_t i = 0; i < flights.size(); ++i)
-      chart.Line(Times(flights[i][column].size()), flights[i][column], "line-0 thin", i == 0 ? "varied flights" : "");
+      chart.Line(Times(flights[i][column].size()), flights[i][column], "line-0 thin",
+                 i == 0 ? "varied flights" : "");
     const std::vector<double> time_s = NominalColumn(study, "time_s");
     const bool pitch = column == kPitchLaunch;
-    chart.Line(time_s, NominalColumn(study, pitch ? "pitch_program_deg" : "pitch_error_deg"), pitch ? "program" : "line-1",
-               pitch ? "reference" : "nominal");
+    chart.Line(time_s, NominalColumn(study, pitch ? "pitch_program_deg" : "pitch_error_deg"),
+               pitch ? "program" : "line-1", pitch ? "reference" : "nominal");
     html += Figure(chart.Svg(caption), HtmlText(caption));
   };
-  curves("aero20_quiet", kPitchLaunch, "pitch, °", "As in the paper: pitch in the initial pitch-over, the 16 corners.");
+  curves("aero20_quiet", kPitchLaunch, "pitch, °",
+         "As in the paper: pitch in the initial pitch-over, the 16 corners.");
   curves("aero20_quiet", kPitchError, "pitch error, °", "Their pitch errors.");
   curves("aero20_one_at_a_time_quiet", kPitchError, "pitch error, °", "One factor at a time.");
   for (const char* name : {"aero20_monte_carlo_quiet", "aero20_monte_carlo", "aero20"}) {
@@ -205,8 +229,15 @@ std::string PaperRobustnessSection(const PaperStudy& study) {
   }
   html += "</div>\n";
 
-  HtmlTable table({{"Set"}, {"Table 3"}, {"flights", true}, {"lost", true}, {"RMS, median", true}, {"RMS, largest", true},
-                   {"peak, median", true}, {"peak, largest", true}, {"limit cycle, largest", true}});
+  HtmlTable table({{"Set"},
+                   {"Table 3"},
+                   {"flights", true},
+                   {"lost", true},
+                   {"RMS, median", true},
+                   {"RMS, largest", true},
+                   {"peak, median", true},
+                   {"peak, largest", true},
+                   {"limit cycle, largest", true}});
   std::size_t lost = 0, flown = 0;
   double worst_peak = 0.0;
   std::string verdicts;
@@ -219,8 +250,9 @@ std::string PaperRobustnessSection(const PaperStudy& study) {
       lost += rms.lost;
       flown += rms.n;
       if (std::isfinite(peak.max)) worst_peak = std::max(worst_peak, peak.max);
-      table.Row({set.title, name == set.disturbed ? "on" : "off", fmt::format("{}", rms.n), fmt::format("{}", rms.lost),
-                 Degrees(rms.p50), Degrees(rms.max), Degrees(peak.p50), Degrees(peak.max), Degrees(cycle.max)});
+      table.Row({set.title, name == set.disturbed ? "on" : "off", fmt::format("{}", rms.n),
+                 fmt::format("{}", rms.lost), Degrees(rms.p50), Degrees(rms.max), Degrees(peak.p50),
+                 Degrees(peak.max), Degrees(cycle.max)});
     }
   }
   html += table.Html();
@@ -234,17 +266,22 @@ std::string PaperRobustnessSection(const PaperStudy& study) {
                                       [&](double a, double b) { return badness(a) < badness(b); });
   if (worst != peaks.end()) {
     const auto row = static_cast<std::size_t>(worst - peaks.begin());
-    const auto input = [&](const char* name) { return corners.inputs[static_cast<std::size_t>(FindInput(name))][row]; };
-    corner = fmt::format(" The worst corner without Table 3 is drag {:g}, lift {:g}, CG {:g}, CP {:g} times nominal: {}.",
-                         input("drag_factor"), input("lift_factor"), input("cg_factor"), input("cp_factor"),
-                         std::isfinite(*worst) ? "peak " + Degrees(*worst) : std::string("lost"));
+    const auto input = [&](const char* name) {
+      return corners.inputs[static_cast<std::size_t>(FindInput(name))][row];
+    };
+    corner = fmt::format(
+        " The worst corner without Table 3 is drag {:g}, lift {:g}, CG {:g}, CP {:g} times nominal: {}.",
+        input("drag_factor"), input("lift_factor"), input("cg_factor"), input("cp_factor"),
+        std::isfinite(*worst) ? "peak " + Degrees(*worst) : std::string("lost"));
   }
   html += PaperFindings(
       "The controller follows the reference pitch for all variations of ±20 %.",
-      fmt::format("{} of {} flights are lost; the largest peak error of the completed ones is {}.{}", lost, flown,
-                  Degrees(worst_peak), corner),
-      "The paper shows the pitch angle of some variations in the pitch-over; at that scale errors of tenths of a degree do "
-      "not show. “±20 % of CG and CP” is read as their distance from the nose of the current stack, with the inertia held; "
+      fmt::format("{} of {} flights are lost; the largest peak error of the completed ones is {}.{}", lost,
+                  flown, Degrees(worst_peak), corner),
+      "The paper shows the pitch angle of some variations in the pitch-over; at that scale errors of tenths "
+      "of a degree do "
+      "not show. “±20 % of CG and CP” is read as their distance from the nose of the current stack, with the "
+      "inertia held; "
       "the paper does not say from where.");
   return html;
 }

@@ -10,6 +10,7 @@
 #include "core/report/paper_sections.h"
 #include "core/report/svg_chart.h"
 #include "core/report/text.h"
+#include "core/statistics/summary.h"
 
 namespace dispersa {
 namespace {
@@ -59,20 +60,45 @@ HeatMap Map(const CaseColumns& cases, const char* metric, const char* label) {
   return map;
 }
 
-std::string Curves(const PaperStudy& study, double end_s, std::optional<double> range, const std::string& caption) {
+/// The error within +-range; a curve that leaves it has a gap there.
+std::string Curves(const PaperStudy& study, double end_s, double range_deg, const std::string& caption) {
   const PaperFlights& curves = study.at("pn_curves");
   const std::vector<double> error = Input(curves.flights.cases, "pn_error_factor");
   const std::vector<double> rate = Input(curves.flights.cases, "pn_rate_factor");
-  ChartAxis y{.label = "pitch error, °"};
-  if (range) y.low = -*range, y.high = *range;
-  SvgChart chart({.label = "time since lift-off, s", .low = 0.0, .high = end_s}, y, 520, 300);
-  for (std::size_t i = curves.flights.histories.size(); i-- > 0;) {
-    const std::vector<double>& values = curves.flights.histories[i][kPitchError];
-    const double step_s = 0.1;
-    chart.Line(Times(values.size(), step_s), values, fmt::format("line-{}", i),
-               fmt::format("{:g}·p12, {:g}·p22", error[i], rate[i]));
+  SvgChart chart({.label = "time since lift-off, s", .low = 0.0, .high = end_s},
+                 {.label = "pitch error, °", .low = -range_deg, .high = range_deg}, 520, 320);
+  // The file lists the wildest first, so that the tame are drawn over them.
+  const std::size_t count = curves.flights.histories.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    std::vector<double> values = curves.flights.histories[i][kPitchError];
+    for (double& value : values) {
+      if (std::fabs(value) > range_deg) value = kUndefined;
+    }
+    chart.Line(Times(values.size(), 0.1), values, fmt::format("line-{}", count - 1 - i),
+               error[i] == rate[i] ? fmt::format("{:g}·P_n", error[i])
+                                   : fmt::format("{:g}·p12, {:g}·p22", error[i], rate[i]));
   }
   return Figure(chart.Svg(caption), HtmlText(caption));
+}
+
+std::string BadPnTable(const PaperStudy& study) {
+  HtmlTable table({{"P_n of pitch"},
+                   {"what is said to it"},
+                   {"flown with allow_unproven"},
+                   {"RMS", true},
+                   {"peak", true},
+                   {"limit cycle", true}});
+  for (const BadPn& bad : study.bad_pn) {
+    const auto metric = [&](const char* name) { return Degrees(bad.flight.metrics[MetricColumn(name)]); };
+    table.Row(
+        {fmt::format("[{}, {}]", ReadableText(bad.p_n.x()), ReadableText(bad.p_n.y())),
+         bad.refusal.empty() ? "accepted" : "<q>" + HtmlText(bad.refusal) + "</q>",
+         fmt::format("<b>{}</b> after {:.1f} s{}", OutcomeName(bad.flight.outcome), bad.flight.end_time_s,
+                     bad.flight.reason.empty() ? "" : ": " + HtmlText(bad.flight.reason)),
+         metric("pitch_error_rms_deg"), metric("pitch_error_peak_deg"),
+         metric("deflection_limit_cycle_deg")});
+  }
+  return "<h3>A P_n that is refused</h3>\n" + table.Html();
 }
 
 }  // namespace
@@ -81,33 +107,43 @@ std::string PaperPnSection(const PaperStudy& study) {
   const PaperFlights& curves = study.at("pn_curves");
   const CaseColumns& sweep = study.at("pn_sweep").flights.cases;
   const AxisConfig& pitch = curves.campaign.autopilot.pitch;
-  std::string html = "<h2 id=\"fig5\">Fig. 5: the choice of P_n</h2>\n" + PaperSource(study, {"pn_curves", "pn_sweep"});
+  std::string html =
+      "<h2 id=\"fig5\">Fig. 5: the choice of P_n</h2>\n" + PaperSource(study, {"pn_curves", "pn_sweep"});
 
-  HtmlTable table({{"Stage"}, {"kp, 1/s²", true}, {"kd, 1/s", true}, {"p12", true}, {"p22", true}, {"γ", true}});
+  HtmlTable table(
+      {{"Stage"}, {"kp, 1/s²", true}, {"kd, 1/s", true}, {"p12", true}, {"p22", true}, {"γ", true}});
   for (std::size_t i = 0; i < pitch.gains.size(); ++i) {
     const Matrix2 p = SolveLyapunov(pitch.gains[i], pitch.adaptation.q);
-    table.Row({fmt::format("{}", i + 1), ReadableText(pitch.gains[i].kp_1_s2), ReadableText(pitch.gains[i].kd_1_s),
-               ReadableText(p(0, 1)), ReadableText(p(1, 1)), ReadableText(pitch.adaptation.gamma[i])});
+    table.Row({fmt::format("{}", i + 1), ReadableText(pitch.gains[i].kp_1_s2),
+               ReadableText(pitch.gains[i].kd_1_s), ReadableText(p(0, 1)), ReadableText(p(1, 1)),
+               ReadableText(pitch.adaptation.gamma[i])});
   }
-  html += fmt::format("<p>P solves AᵀP + PA = −Q for the error dynamics s² + kd s + kp of each stage and Q = [[{}, {}], [{}, "
-                      "{}]]; its last column is P_n. Below, both components are scaled in all stages at once.</p>\n",
-                      ReadableText(pitch.adaptation.q(0, 0)), ReadableText(pitch.adaptation.q(0, 1)),
-                      ReadableText(pitch.adaptation.q(1, 0)), ReadableText(pitch.adaptation.q(1, 1))) +
+  html += fmt::format(
+              "<p>P solves AᵀP + PA = −Q for the error dynamics s² + kd s + kp of each stage and Q = [[{}, "
+              "{}], [{}, "
+              "{}]]; its last column is P_n. Below, both components are scaled in all stages at once.</p>\n",
+              ReadableText(pitch.adaptation.q(0, 0)), ReadableText(pitch.adaptation.q(0, 1)),
+              ReadableText(pitch.adaptation.q(1, 0)), ReadableText(pitch.adaptation.q(1, 1))) +
           table.Html("narrow");
 
   const double kick_end_s = 10.0 * std::ceil(0.1 * (curves.campaign.reference.program.t2_s + 5.0));
-  html += "<div class=\"figures\">\n" +
-          Curves(study, kick_end_s, std::nullopt, "Pitch error in the initial pitch-over, as in the paper’s figure.") +
-          Curves(study, 180.0, 1.0, "The same to the burnout of stage 3.") +
-          Figure(HeatMapSvg(Map(sweep, "pitch_error_rms_deg", "RMS pitch error of powered flight, °"),
-                            "RMS pitch error over the two components of P_n"),
-                 "RMS pitch error of powered flight over the two factors. The frame is the P_n of the Lyapunov equation.") +
-          Figure(HeatMapSvg(Map(sweep, "deflection_limit_cycle_deg", "worst limit cycle, ° peak to peak"),
-                            "Worst limit cycle over the two components of P_n"),
-                 fmt::format("Worst deflection peak to peak within one second, away from ignitions and the pitch-over: a "
-                             "limit cycle above {}°.",
-                             kLimitCycle_deg)) +
-          "</div>\n";
+  html +=
+      "<div class=\"figures\">\n" +
+      Curves(study, kick_end_s, 0.5,
+             "Pitch error in the initial pitch-over, as in the paper’s figure. A curve that "
+             "leaves the frame diverges or swings beyond it.") +
+      Curves(study, 180.0, 1.0, "The same to the burnout of stage 3.") +
+      Figure(HeatMapSvg(Map(sweep, "pitch_error_rms_deg", "RMS pitch error of powered flight, °"),
+                        "RMS pitch error over the two components of P_n"),
+             "RMS pitch error of powered flight over the two factors. The frame is the P_n of the Lyapunov "
+             "equation.") +
+      Figure(HeatMapSvg(Map(sweep, "deflection_limit_cycle_deg", "worst limit cycle, ° peak to peak"),
+                        "Worst limit cycle over the two components of P_n"),
+             fmt::format(
+                 "Worst deflection peak to peak within one second, away from ignitions and the pitch-over: a "
+                 "limit cycle above {}°.",
+                 kLimitCycle_deg)) +
+      "</div>\n" + BadPnTable(study);
 
   // The paper's claim is about departures from the optimum.
   const std::vector<double>& rms = sweep.metrics[MetricColumn("pitch_error_rms_deg")];
@@ -126,25 +162,25 @@ std::string PaperPnSection(const PaperStudy& study) {
   std::string found;
   if (nominal < sweep.rows() && best < sweep.rows() && worst < sweep.rows()) {
     found = fmt::format(
-        "Of {} choices {} lose the vehicle and {} more run into a limit cycle. With the P_n of the Lyapunov equation the RMS "
-        "error is {}; the best choice that neither loses the vehicle nor cycles has {} (factors {:g} and {:g}), the worst "
+        "Of {} choices {} lose the vehicle and {} more run into a limit cycle. With the P_n of the Lyapunov "
+        "equation the RMS "
+        "error is {}; the best choice that neither loses the vehicle nor cycles has {} (factors {:g} and "
+        "{:g}), the worst "
         "completed one {} (factors {:g} and {:g}).",
-        sweep.rows(), lost, cycling, Degrees(rms[nominal]), Degrees(rms[best]), x[best], y[best], Degrees(rms[worst]),
-        x[worst], y[worst]);
+        sweep.rows(), lost, cycling, Degrees(rms[nominal]), Degrees(rms[best]), x[best], y[best],
+        Degrees(rms[worst]), x[worst], y[worst]);
   }
-  const BadPn& bad = study.bad_pn;
-  found += fmt::format(" An autopilot file with P_n = [{}, {}] is refused: <q>{}</q>. Flown all the same with "
-                       "<code>allow_unproven: true</code> it ends as <b>{}</b> after {:.1f} s{}.",
-                       ReadableText(bad.p_n.x()), ReadableText(bad.p_n.y()), HtmlText(bad.refusal),
-                       OutcomeName(bad.flight.outcome), bad.flight.end_time_s,
-                       bad.flight.reason.empty() ? "" : " (" + HtmlText(bad.flight.reason) + ")");
   html += PaperFindings(
-      "Performance deteriorates as P_n departs from its optimal values, and a poor choice makes the loop unstable. P is "
+      "Performance deteriorates as P_n departs from its optimal values, and a poor choice makes the loop "
+      "unstable. P is "
       "called positive semi-definite.",
       found,
-      "P must be definite, not semi-definite. Any two positive numbers are the last column of some positive definite P with "
-      "some Q, so positivity alone proves little: the check here is that P_n belongs to the configured gains and Q. Only "
-      "γ·P_n enters the law, so a larger P_n is a larger adaptation gain: it tracks better until the actuator’s lag turns "
+      "P must be definite, not semi-definite. Any two positive numbers are the last column of some positive "
+      "definite P with "
+      "some Q, so positivity alone proves little: the check here is that P_n belongs to the configured gains "
+      "and Q. Only "
+      "γ·P_n enters the law, so a larger P_n is a larger adaptation gain: it tracks better until the "
+      "actuator’s lag turns "
       "adaptation into a limit cycle.");
   return html;
 }

@@ -14,10 +14,12 @@ std::string PaperPnSection(const PaperStudy& study);          ///< Fig. 5
 std::string PaperPitchSection(const PaperStudy& study);       ///< Figs. 6 to 9
 std::string PaperRobustnessSection(const PaperStudy& study);  ///< Fig. 10
 std::string PaperComparisonSection(const PaperStudy& study);  ///< the baselines
+std::string PaperMarginSection(const PaperStudy& study);      ///< gain, phase and delay margins
 std::string PaperLyapunovSection(const PaperStudy& study);    ///< statistics of dV/dt
 std::string PaperCompletionSection(const PaperStudy& study);  ///< what we added to the vehicle
 
-/// What the paper claims, what was found, where they differ and why: the last may be empty. Arguments are HTML.
+/// What the paper claims, what was found, where they differ and why: the last may be empty. Arguments are
+/// HTML.
 std::string PaperFindings(const std::string& claim, const std::string& found, const std::string& difference);
 
 /// How a campaign was flown here, and the command that flies it as its file says.

@@ -35,11 +35,11 @@ std::uint64_t CasesOf(const Campaign& campaign, std::uint64_t cases) {
   return size * std::clamp<std::uint64_t>(cases / kCasesPerRepetition, 1, campaign.sampling.cases / size);
 }
 
-BadPn FlyBadPn(Campaign campaign) {
+BadPn FlyBadPn(Campaign campaign, double factor) {
   BadPn bad;
   AxisConfig& pitch = campaign.autopilot.pitch;
-  // The sign that turns adaptation into positive feedback of the error.
-  bad.p_n = -SolveLyapunov(pitch.gains[0], pitch.adaptation.q).col(1);
+  bad.factor = factor;
+  bad.p_n = factor * SolveLyapunov(pitch.gains[0], pitch.adaptation.q).col(1);
   pitch.adaptation.p_n = bad.p_n;
   pitch.adaptation.allow_unproven = false;
   const int stages = static_cast<int>(campaign.vehicle.stages.size());
@@ -47,8 +47,10 @@ BadPn FlyBadPn(Campaign campaign) {
     bad.refusal += problem.path + ": " + problem.message + ", allowed: " + problem.allowed;
   }
   pitch.adaptation.allow_unproven = true;
-  bad.history.step_s = kHistoryStep_s;
-  bad.flight = CampaignFlights(campaign).FlyCase(0, &bad.history);
+  const CampaignFlights flights(campaign);
+  FlightInputs inputs = flights.Draw(0);
+  inputs.pn_error_factor = inputs.pn_rate_factor = 1.0;
+  bad.flight = flights.Fly(inputs, 0, nullptr);
   return bad;
 }
 
@@ -76,7 +78,8 @@ const std::vector<PaperCampaign>& PaperCampaigns() {
 }
 
 const std::vector<std::string>& PaperBaselines() {
-  static const std::vector<std::string> names = {"controllers_frozen_fuzzy", "controllers_pd", "controllers_pd_aac"};
+  static const std::vector<std::string> names = {"controllers_frozen_fuzzy", "controllers_pd",
+                                                 "controllers_pd_aac"};
   return names;
 }
 
@@ -99,7 +102,12 @@ PaperStudy RunPaperStudy(const std::vector<Campaign>& campaigns, const PaperOpti
       });
 
   study.nominal_history.step_s = kHistoryStep_s;
-  study.nominal = CampaignFlights(nominal).FlyNominal(&study.nominal_history);
+  const CampaignFlights nominal_flights(nominal);
+  study.nominal = nominal_flights.FlyNominal(&study.nominal_history);
+  progress("margins", 0, 1);
+  study.computed_margins = ComputeMargins(nominal_flights.model());
+  study.measured_margins = MeasureMargins(nominal_flights.model());
+  progress("margins", 1, 1);
 
   for (std::size_t i = 1; i < campaigns.size(); ++i) {
     const std::string& name = PaperCampaigns()[i].name;
@@ -112,7 +120,9 @@ PaperStudy RunPaperStudy(const std::vector<Campaign>& campaigns, const PaperOpti
     flown.progress = [&](std::uint64_t done) { progress(name, done, flown.cases); };
     study.campaigns.emplace(name, PaperFlights{campaigns[i], FlyStudy(campaigns[i], flown)});
   }
-  study.bad_pn = FlyBadPn(study.at("pn_curves").campaign);
+  // A P_n of the wrong sign, which feeds the error back positively, and one too large for the actuators.
+  for (const double factor : {-1.0, 100.0})
+    study.bad_pn.push_back(FlyBadPn(study.at("pn_curves").campaign, factor));
   return study;
 }
 

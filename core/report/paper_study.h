@@ -1,5 +1,5 @@
-// Everything that the paper's page shows, computed: the optimised trajectory and the flights of the campaigns that
-// stand behind its figures.
+// Everything that the paper's page shows, computed: the optimised trajectory and the flights of the campaigns
+// that stand behind its figures.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +12,7 @@
 #include "core/campaign/case_result.h"
 #include "core/control/autopilot_config.h"
 #include "core/flight/history.h"
+#include "core/flight/margins.h"
 #include "core/report/study_flights.h"
 #include "core/trajectory/optimize.h"
 
@@ -42,12 +43,13 @@ struct PaperFlights {
   StudyFlights flights;
 };
 
-/// A deliberately bad P_n of the pitch axis: what is said to it, and what it does when it is flown all the same.
+/// A deliberately bad P_n of the pitch axis: what is said to it, and what it does when it is flown all the
+/// same.
 struct BadPn {
+  double factor = 0.0;  ///< of the Lyapunov equation's column
   Vector2 p_n = Vector2::Zero();
   std::string refusal;  ///< why an autopilot file with it is refused
   CaseResult flight;    ///< with allow_unproven
-  History history;
 };
 
 struct PaperStudy {
@@ -56,7 +58,9 @@ struct PaperStudy {
   CaseResult nominal;
   History nominal_history;
   std::map<std::string, PaperFlights> campaigns;  ///< by name; all but the nominal
-  BadPn bad_pn;
+  std::vector<BadPn> bad_pn;
+  std::vector<ComputedMargins> computed_margins;  ///< of the nominal's autopilot
+  std::vector<MeasuredMargins> measured_margins;
 
   const PaperFlights& at(const std::string& name) const { return campaigns.at(name); }
 };

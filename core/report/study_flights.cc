@@ -63,8 +63,9 @@ std::vector<double> CompletedValues(const CaseColumns& cases, const std::string&
 }
 
 std::size_t LostCount(const CaseColumns& cases) {
-  return static_cast<std::size_t>(std::count_if(cases.outcome.begin(), cases.outcome.end(),
-                                                [](Outcome outcome) { return outcome != Outcome::kCompleted; }));
+  return static_cast<std::size_t>(
+      std::count_if(cases.outcome.begin(), cases.outcome.end(),
+                    [](Outcome outcome) { return outcome != Outcome::kCompleted; }));
 }
 
 }  // namespace dispersa

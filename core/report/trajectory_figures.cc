@@ -23,20 +23,19 @@ std::vector<double> Column(const std::vector<AscentSample>& history, Value value
 
 double TimeOf(const AscentSample& sample) { return sample.time_s; }
 
-/// Where stages begin, and the coast: the samples without axial load above the air.
+/// Ignitions, and gaps of more than 20 s without thrust as coast.
 void MarkStages(const std::vector<AscentSample>& history, SvgChart* chart) {
-  for (std::size_t i = 0; i < history.size(); ++i) {
-    if (i == 0 || history[i].stage != history[i - 1].stage)
-      chart->Mark(history[i].time_s, fmt::format("S{}", history[i].stage));
-  }
-  constexpr double kNoThrust_g = 0.5;  // drag alone in the coast is thousandths of a g
-  std::size_t burnt = 0;
-  for (std::size_t i = 1; i < history.size(); ++i) {
-    if (history[i].axial_load_g > kNoThrust_g) {
-      if (history[i].time_s - history[burnt].time_s > 20.0)
-        chart->Shade(history[burnt].time_s, history[i].time_s, "coast");
-      burnt = i;
+  constexpr double kThrust_g = 0.5;  // drag alone is thousandths of a g in the coast
+  int marked = 0;
+  double burnout_s = 0.0;
+  for (const AscentSample& sample : history) {
+    if (sample.axial_load_g < kThrust_g) continue;
+    if (sample.stage != marked) {
+      if (marked > 0 && sample.time_s - burnout_s > 20.0) chart->Shade(burnout_s, sample.time_s, "coast");
+      marked = sample.stage;
+      chart->Mark(sample.time_s, fmt::format("S{}", marked));
     }
+    burnout_s = sample.time_s;
   }
 }
 
@@ -59,7 +58,7 @@ std::string FlightProgramFigures(const FlightProgram& program, const std::vector
   kick.Mark(program.t3_s, "t3");
   kick.Mark(program.t2_s, "t2");
   kick.Line(time_s, alpha_deg, "line-0", "");
-  return Draw(std::move(whole), "Flight program over the whole flight; S1 to S4: the stages.") +
+  return Draw(std::move(whole), "Flight program over the whole flight; S1 to S4: ignitions.") +
          Draw(std::move(kick), "The same in the initial pitch-over, with the program's three times.");
 }
 
@@ -74,17 +73,20 @@ std::string ReferenceFigures(const std::vector<AscentSample>& history) {
   };
   add("pitch, °", Column(history, [](const AscentSample& s) { return s.pitch_rad * kDegPerRad; }),
       "Pitch angle from the launch horizon, in the frame frozen at lift-off.");
-  add("height, km", Column(history, [](const AscentSample& s) { return s.altitude_m * 1e-3; }), "Geodetic height.");
+  add("height, km", Column(history, [](const AscentSample& s) { return s.altitude_m * 1e-3; }),
+      "Geodetic height.");
   add("velocity, m/s", Column(history, [](const AscentSample& s) { return s.velocity_m_s; }),
       "Inertial speed; it begins with the Earth's rotation.");
-  add("injection angle, °", Column(history, [](const AscentSample& s) { return s.flight_path_angle_rad * kDegPerRad; }),
+  add("injection angle, °",
+      Column(history, [](const AscentSample& s) { return s.flight_path_angle_rad * kDegPerRad; }),
       "Inertial flight path angle, which the paper calls the angle of injection.");
   return figures;
 }
 
 std::string AscentCsv(const std::vector<AscentSample>& history) {
   std::string csv =
-      "time_s,stage,altitude_m,velocity_m_s,relative_velocity_m_s,flight_path_angle_deg,relative_path_angle_deg,"
+      "time_s,stage,altitude_m,velocity_m_s,relative_velocity_m_s,flight_path_angle_deg,relative_path_angle_"
+      "deg,"
       "alpha_deg,pitch_deg,yaw_deg,roll_deg,mach,qbar_pa,axial_load_g,mass_kg\n";
   for (const AscentSample& s : history) {
     csv += ShortestText(s.time_s) + "," + std::to_string(s.stage);

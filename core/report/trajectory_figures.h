@@ -9,7 +9,8 @@
 
 namespace dispersa {
 
-/// Programmed angle of attack over the whole flight and over the pitch-over, stages and coast marked: <figure>s.
+/// Programmed angle of attack over the whole flight and over the pitch-over, stages and coast marked:
+/// <figure>s.
 std::string FlightProgramFigures(const FlightProgram& program, const std::vector<AscentSample>& history);
 
 /// Pitch, height, velocity and angle of injection (inertial flight path angle) over time: <figure>s.

@@ -37,7 +37,8 @@ void CheckMetrics(const std::vector<std::string>& metrics) {
   const std::vector<std::string>& names = MetricNames();
   for (const std::string& metric : metrics) {
     if (std::find(names.begin(), names.end(), metric) == names.end())
-      throw InputError("--metric: '" + metric + "' is not a metric", "a name in cases.csv without its prefix 'metric_'");
+      throw InputError("--metric: '" + metric + "' is not a metric",
+                       "a name in cases.csv without its prefix 'metric_'");
     if (DescribeMetric(metric).worse != Worse::kLarger)
       throw InputError("--metric: '" + metric + "' cannot be compared", "a metric of which less is better");
   }
@@ -80,8 +81,8 @@ void PrintJson(const Comparison& comparison, const std::string& a, const std::st
 void PrintText(const Comparison& comparison, const std::string& a, const std::string& b) {
   fmt::print("a: {}\nb: {}\n{} pairs, {} cases without a pair; intervals of {}\n\n", a, b, comparison.pairs,
              comparison.unpaired, PercentText(kComparisonConfidence));
-  fmt::print("{:<32}{:>12}{:>26}{:>9}{:>20}{:>10}{:>10}\n", "metric", "b - a", "interval", "b / a", "interval",
-             "a better", "b better");
+  fmt::print("{:<32}{:>12}{:>26}{:>9}{:>20}{:>10}{:>10}\n", "metric", "b - a", "interval", "b / a",
+             "interval", "a better", "b better");
   for (const MetricComparison& metric : comparison.metrics) {
     const PairedDifference& d = metric.difference;
     const auto interval = [](const Interval& i, const char* format) {
@@ -99,7 +100,8 @@ ExitCode CompareFolders(const CompareOptions& options, const GlobalOptions& glob
   const StoredCampaign b = OpenStored(options.b);
   const Comparison comparison = Compare(AllColumns(a.folder), AllColumns(b.folder),
                                         options.metrics.empty() ? ComparedMetrics() : options.metrics);
-  if (comparison.pairs == 0) throw InputError("no case of " + options.a + " has the draws of the same case of " + options.b);
+  if (comparison.pairs == 0)
+    throw InputError("no case of " + options.a + " has the draws of the same case of " + options.b);
   const std::string name_a = a.campaign.name + " (" + a.campaign.autopilot.name + ")";
   const std::string name_b = b.campaign.name + " (" + b.campaign.autopilot.name + ")";
   if (global.json) {
@@ -114,10 +116,12 @@ ExitCode CompareFolders(const CompareOptions& options, const GlobalOptions& glob
 
 void AddCompareCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<CompareOptions>();
-  CLI::App* command = app.add_subcommand("compare", "compare two result folders, paired by case where the draws match");
+  CLI::App* command =
+      app.add_subcommand("compare", "compare two result folders, paired by case where the draws match");
   command->add_option("a", options->a, "result folder")->required();
   command->add_option("b", options->b, "result folder")->required();
-  command->add_option("--metric", options->metrics, "metric to compare, instead of the usual ones; may be repeated");
+  command->add_option("--metric", options->metrics,
+                      "metric to compare, instead of the usual ones; may be repeated");
   command->footer("Example: dispersa compare results/controllers-1a2b3c4d results/controllers_pd-5e6f7a8b");
   command->callback([options, &invocation] {
     invocation.command = [options](const GlobalOptions& global) { return CompareFolders(*options, global); };

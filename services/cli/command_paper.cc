@@ -27,10 +27,12 @@ struct PaperCommandOptions {
   int threads = 0;  ///< 0: the processor's
 };
 
-/// The campaigns shipped with this program: of the repository that it was built in, or beside its installation.
+/// The campaigns shipped with this program: of the repository that it was built in, or beside its
+/// installation.
 fs::path ShippedCampaigns() {
   const fs::path program = fs::read_symlink("/proc/self/exe");
-  for (fs::path folder = program.parent_path(); folder != folder.parent_path(); folder = folder.parent_path()) {
+  for (fs::path folder = program.parent_path(); folder != folder.parent_path();
+       folder = folder.parent_path()) {
     for (const char* place : {"campaigns", "share/dispersa/campaigns"}) {
       if (fs::exists(folder / place / "table3.yaml")) return folder / place;
     }
@@ -40,8 +42,10 @@ fs::path ShippedCampaigns() {
 
 void CheckEmpty(const fs::path& directory) {
   std::error_code error;
-  if (fs::exists(directory, error) && (!fs::is_directory(directory, error) || !fs::is_empty(directory, error)))
-    throw InputError("--out: " + directory.string() + " is not an empty folder", "a folder that is empty or new");
+  if (fs::exists(directory, error) &&
+      (!fs::is_directory(directory, error) || !fs::is_empty(directory, error)))
+    throw InputError("--out: " + directory.string() + " is not an empty folder",
+                     "a folder that is empty or new");
 }
 
 ExitCode MakePaper(const PaperCommandOptions& options, const GlobalOptions& global) {
@@ -56,8 +60,8 @@ ExitCode MakePaper(const PaperCommandOptions& options, const GlobalOptions& glob
   std::unique_ptr<Progress> progress;
   PaperOptions study;
   study.cases = options.cases;
-  study.threads =
-      options.threads > 0 ? options.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  study.threads = options.threads > 0 ? options.threads
+                                      : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   study.progress = [&](const std::string& what, std::uint64_t done, std::uint64_t total) {
     if (!progress || what != phase) {
       progress.reset();
@@ -80,13 +84,16 @@ void AddPaperCommand(CLI::App& app, Invocation& invocation) {
   CLI::App* command =
       app.add_subcommand("paper", "every table and figure of the paper on one page, from flights flown now");
   command->add_option("--out", options->out, "folder for paper.html and its data, empty or new")->required();
-  command->add_option("--cases", options->cases, "size of a Monte Carlo campaign; designs repeat in proportion")
+  command
+      ->add_option("--cases", options->cases, "size of a Monte Carlo campaign; designs repeat in proportion")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1000000}))
       ->capture_default_str();
-  command->add_option("--campaigns", options->campaigns, "folder of the campaign files, instead of the shipped ones");
+  command->add_option("--campaigns", options->campaigns,
+                      "folder of the campaign files, instead of the shipped ones");
   command->add_option("--threads", options->threads, "threads; the page does not depend on them")
       ->check(CLI::Range(1, 1024));
-  command->footer("Example: dispersa paper --out paper\n         dispersa paper --out paper_quick --cases 10");
+  command->footer(
+      "Example: dispersa paper --out paper\n         dispersa paper --out paper_quick --cases 10");
   command->callback([options, &invocation] {
     invocation.command = [options](const GlobalOptions& global) { return MakePaper(*options, global); };
   });
