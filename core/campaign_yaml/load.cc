@@ -17,7 +17,8 @@ namespace {
 using ProblemList = std::vector<InputProblem>;
 
 std::string SchemaNames() {
-  return "one of " + JoinWords({kCampaignSchema, kVehicleSchema, kAutopilotSchema, kReferenceSchema, kScenarioSchema});
+  return "one of " +
+         JoinWords({kCampaignSchema, kVehicleSchema, kAutopilotSchema, kReferenceSchema, kScenarioSchema});
 }
 
 // In the order of the text, file by file as they were met first.
@@ -89,6 +90,7 @@ OptimizationInput LoadOptimization(const std::string& path, std::optional<std::u
   input.problem = decoded.optimize.value_or(decoded.campaign.reference.problem);
   if (seed) input.problem.seed = *seed;
   input.tick_s = decoded.campaign.autopilot.tick_s;
+  if (root.Find("autopilot") != nullptr) input.autopilot = std::move(decoded.campaign.autopilot);
   return input;
 }
 

@@ -39,6 +39,7 @@ struct OptimizationInput {
   std::string vehicle_sha256;  ///< of the canonical vehicle
   TrajectoryProblem problem;
   double tick_s = 0.01;        ///< of the campaign's autopilot, if it has one: burnout is detected on ticks
+  std::optional<AutopilotConfig> autopilot;  ///< the campaign's, if it has one: to fly what was found
 };
 /// `seed` replaces the problem's.
 OptimizationInput LoadOptimization(const std::string& path, std::optional<std::uint64_t> seed = {});

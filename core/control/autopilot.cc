@@ -20,7 +20,7 @@ void StartStage(const AutopilotModel& model, int stage, AutopilotState& state) {
   for (std::size_t axis = 0; axis < kAxes; ++axis) {
     const AxisLaw& law = model.laws[axis];
     AxisState& memory = state.axes[axis];
-    if (stage == 0 || law.config.adaptation.reset_at_ignition) {
+    if (stage == 0 || law.config.adaptation.reset_at_ignition || law.config.law == ControlLaw::kPdAac) {
       ResetAxis(law, stage, memory);
     } else {
       // What was learnt is a departure from the start of the stage before; it is carried over.

@@ -56,7 +56,8 @@ struct GimbalCommand {
   }
 };
 
-/// At ignition of a stage: the rules of the stage, anew or, without reset, with what they learnt.
+/// At ignition of a stage: the rules of the stage, anew or, without reset, with what they learnt. Adaptive
+/// augmenting control always starts anew.
 void StartStage(const AutopilotModel& model, int stage, AutopilotState& state);
 /// One tick of powered flight. `gain` multiplies every command (1 in flight).
 GimbalCommand StepGimbals(const AutopilotModel& model, int stage, double since_ignition_s,

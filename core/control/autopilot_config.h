@@ -43,13 +43,14 @@ struct FuzzyRules {
   double rate_range_rad_s = 0.0;    ///< outer set centres of its rate, +-
 };
 
-/// NASA's adaptive augmenting control (Orr and VanZwieten 2012): a total gain between a floor and a
-/// ceiling, raised by the model reference error, lowered by high-frequency control activity.
+/// NASA's adaptive augmenting control (J. S. Orr and T. S. VanZwieten, "Robust, Practical Adaptive Control
+/// for Launch Vehicles", AIAA 2012-4549): a total gain between a floor and a ceiling, raised by the departure
+/// from a reference model, lowered by high-frequency activity of the command, drawn back to 1.
 struct AdaptiveAugmentation {
-  double adaptive_gain_1_s = 0.0;
-  double leakage_1_s = 0.0;
-  double spectral_gain_1_s = 0.0;
-  double high_pass_rad_s = 0.0;
+  double adaptive_gain_1_s = 0.0;    ///< a, on the square of the departure in rad
+  double leakage_1_s = 0.0;          ///< beta
+  double spectral_gain_1_s = 0.0;    ///< alpha, on the square of the command in rad/s²
+  double high_pass_rad_s = 0.0;      ///< of the spectral damper, above the loop's bandwidth
   double low_pass_rad_s = 0.0;
   double minimum_total_gain = 1.0;
   double maximum_total_gain = 1.0;

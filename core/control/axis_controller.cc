@@ -59,26 +59,34 @@ double Supervisory(const AxisLaw& law, const AxisGains& gains, double error, dou
   return gains.kp_1_s2 * error_beyond + gains.kd_1_s * rate_beyond;
 }
 
-// Total loop gain of the adaptive augmenting control: raised by the departure from the reference model,
-// lowered by high-frequency activity of the command, drawn back to 1 by leakage.
-double Augment(const AdaptiveAugmentation& a, const AxisGains& gains, double error, double command,
+// Adaptive augmenting control, with k_T = k_0 + k_a the total gain, k_0 its floor, e_r the departure from
+// the reference model and y_s the low-passed square of the high-passed command:
+//   dk_a/dt = (k_max - k_a) / k_max a e_r² - alpha k_a y_s - beta (k_T - 1).
+// The reference model is the error dynamics the gains are chosen for, started at the stage's first error: in
+// error coordinates the attitude command does not appear. Returns the command.
+double Augment(const AdaptiveAugmentation& a, const AxisGains& gains, double error, double rate,
                double tick_s, AxisState& s) {
-  const double model_acceleration =
-      -gains.kp_1_s2 * s.model_error_rad - gains.kd_1_s * s.model_rate_rad_s;
-  s.model_rate_rad_s += tick_s * model_acceleration;
-  s.model_error_rad += tick_s * s.model_rate_rad_s;
+  if (!s.model_started) {
+    s.model_started = true;
+    s.model_error_rad = error;
+    s.model_rate_rad_s = rate;
+  }
   const double departure = error - s.model_error_rad;
+  const double command = s.total_gain * (gains.kp_1_s2 * error + gains.kd_1_s * rate);
 
+  s.model_rate_rad_s -=
+      tick_s * (gains.kp_1_s2 * s.model_error_rad + gains.kd_1_s * s.model_rate_rad_s);
+  s.model_error_rad += tick_s * s.model_rate_rad_s;
   s.high_pass += tick_s * a.high_pass_rad_s * (command - s.high_pass);
   const double fast = command - s.high_pass;
   s.low_pass += tick_s * a.low_pass_rad_s * (fast * fast - s.low_pass);
 
-  const double headroom = (a.maximum_total_gain - s.total_gain) / a.maximum_total_gain;
-  const double rate = headroom * a.adaptive_gain_1_s * departure * departure -
-                      a.spectral_gain_1_s * s.total_gain * s.low_pass -
-                      a.leakage_1_s * (s.total_gain - 1.0);
-  s.total_gain = Clamp(s.total_gain + tick_s * rate, a.minimum_total_gain, a.maximum_total_gain);
-  return s.total_gain;
+  const double k_max = a.maximum_total_gain - a.minimum_total_gain;
+  const double k_a = s.total_gain - a.minimum_total_gain;
+  const double gain_rate = (k_max - k_a) / k_max * a.adaptive_gain_1_s * departure * departure -
+                           a.spectral_gain_1_s * k_a * s.low_pass - a.leakage_1_s * (s.total_gain - 1.0);
+  s.total_gain = Clamp(s.total_gain + tick_s * gain_rate, a.minimum_total_gain, a.maximum_total_gain);
+  return command;
 }
 
 }  // namespace
@@ -139,11 +147,9 @@ double StepAxis(const AxisLaw& law, int stage, double error, double rate, int sa
     case ControlLaw::kPd:
       u = s.gains.kp_1_s2 * error + s.gains.kd_1_s * rate;
       break;
-    case ControlLaw::kPdAac: {
-      const double linear = s.gains.kp_1_s2 * error + s.gains.kd_1_s * rate;
-      u = Augment(law.config.augmentation, s.gains, error, linear, tick_s, state) * linear;
+    case ControlLaw::kPdAac:
+      u = Augment(law.config.augmentation, s.gains, error, rate, tick_s, state);
       break;
-    }
   }
   telemetry.command_rad_s2 = u;
   return u;

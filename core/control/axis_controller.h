@@ -33,7 +33,8 @@ AxisLaw BuildAxisLaw(const AxisConfig& config);
 struct AxisState {
   std::array<double, kFuzzyRules> consequents{};
   double total_gain = 1.0;          ///< adaptive augmentation
-  double model_error_rad = 0.0;     ///< its reference model
+  bool model_started = false;       ///< its reference model
+  double model_error_rad = 0.0;
   double model_rate_rad_s = 0.0;
   double high_pass = 0.0;           ///< its spectral damper
   double low_pass = 0.0;

@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <vector>
 
 namespace dispersa {
 
@@ -56,9 +57,20 @@ struct Integrator::Solver {
   ARKodeButcherTable table = nullptr;
   SUNNonlinearSolver fixed_point = nullptr;
 
+  std::vector<double> start = {};  // CVODE: the state at the restart, and
+  std::vector<double> whole = {};  // that plus its change since
+
   static int Call(realtype t, N_Vector y, N_Vector dydt, void* user) {
     const auto* self = static_cast<const Solver*>(user);
     self->rhs(t, N_VGetArrayPointer(y), N_VGetArrayPointer(dydt), self->context);
+    return 0;
+  }
+
+  static int CallWithChange(realtype t, N_Vector change, N_Vector dydt, void* user) {
+    auto* self = static_cast<Solver*>(user);
+    const double* moved = N_VGetArrayPointer(change);
+    for (std::size_t i = 0; i < self->start.size(); ++i) self->whole[i] = self->start[i] + moved[i];
+    self->rhs(t, self->whole.data(), N_VGetArrayPointer(dydt), self->context);
     return 0;
   }
 
@@ -73,9 +85,11 @@ struct Integrator::Solver {
   }
 
   void CreateCvode(const double* absolute_tolerance) {
+    start.resize(static_cast<std::size_t>(size));
+    whole.resize(static_cast<std::size_t>(size));
     memory = CVodeCreate(CV_ADAMS, sun);
     Require(memory != nullptr, "CVodeCreate");
-    Require(CVodeInit(memory, &Call, 0.0, y) == CV_SUCCESS, "CVodeInit");
+    Require(CVodeInit(memory, &CallWithChange, 0.0, y) == CV_SUCCESS, "CVodeInit");
     tolerance = N_VNew_Serial(size, sun);
     for (int i = 0; i < size; ++i) NV_Ith_S(tolerance, i) = absolute_tolerance[i];
     Require(CVodeSVtolerances(memory, 1e-12, tolerance) == CV_SUCCESS, "CVodeSVtolerances");
@@ -119,13 +133,20 @@ Integrator::~Integrator() = default;
 
 bool Integrator::Advance(double from_s, double to_s, int steps, double* y) {
   Solver& s = *solver_;
+  const bool changes = s.scheme == Scheme::kCvode;
   double* state = N_VGetArrayPointer(s.y);
-  for (int i = 0; i < s.size; ++i) state[i] = y[i];
+  for (int i = 0; i < s.size; ++i) state[i] = changes ? 0.0 : y[i];
   double reached = from_s;
-  if (s.scheme == Scheme::kRungeKutta4) {
-    // Without the reset a derivative from before the jump of a held command would be reused; and between
-    // steps Debian's ERKStep (6.4) takes the last stage, because it is at c = 1, for the derivative at the end
-    // (github.com/llnl/sundials/issues/311), which costs an order.
+  if (changes) {
+    s.start.assign(y, y + s.size);
+    if (CVodeReInit(s.memory, from_s, s.y) != CV_SUCCESS) return false;
+    CVodeSetStopTime(s.memory, to_s);
+    if (CVode(s.memory, to_s, s.y, &reached, CV_NORMAL) < 0) return false;
+    for (int i = 0; i < s.size; ++i) state[i] += s.start[static_cast<std::size_t>(i)];
+  } else {
+    // ERKStep takes the derivative of the last stage for that of the step's end when the stage lies there,
+    // which holds for stiffly accurate tables only: without a reset at every step the order falls to 3, and
+    // a derivative from before the jump of a held command would be reused.
     for (int i = 0; i < steps; ++i) {
       const double begin_s = i == 0 ? from_s : from_s + (to_s - from_s) * i / steps;
       const double end_s = i + 1 == steps ? to_s : from_s + (to_s - from_s) * (i + 1) / steps;
@@ -134,10 +155,6 @@ bool Integrator::Advance(double from_s, double to_s, int steps, double* y) {
       ERKStepSetStopTime(s.memory, end_s);
       if (ERKStepEvolve(s.memory, end_s, s.y, &reached, ARK_NORMAL) < 0) return false;
     }
-  } else {
-    if (CVodeReInit(s.memory, from_s, s.y) != CV_SUCCESS) return false;
-    CVodeSetStopTime(s.memory, to_s);
-    if (CVode(s.memory, to_s, s.y, &reached, CV_NORMAL) < 0) return false;
   }
   for (int i = 0; i < s.size; ++i) {
     if (!std::isfinite(state[i])) return false;

@@ -27,8 +27,8 @@ struct ScenarioFlight {
   Outcome outcome = Outcome::kCompleted;  ///< or kNumericalFailure
   double end_time_s = 0.0;
   std::string reason;
-  std::vector<ScenarioSample> samples;    ///< at 0, every output step, and the end
-  Digest digest;                          ///< of the samples' times and states
+  std::vector<ScenarioSample> samples;  ///< at 0, every output step, and the end
+  Digest digest;                        ///< of the samples' times and states
 };
 
 /// A scenario without Problems. Times at which something happens (ignition, burnout, separation, a row of

@@ -25,7 +25,7 @@ const std::vector<std::string>& MetricNames() {
         "apogee_km", "perigee_km", "inclination_deg",
         "injection_altitude_error_km", "injection_velocity_error_m_s",
         "injection_flight_path_angle_error_deg",
-        "lyapunov_decreasing_fraction", "adaptation_norm_peak_deg_s2", "rules_fired"};
+        "lyapunov_outside_fraction", "lyapunov_decreasing_fraction", "adaptation_norm_peak_deg_s2", "rules_fired"};
     list.insert(list.end(), rest.begin(), rest.end());
     return list;
   }();

@@ -17,6 +17,8 @@ constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSettled_s = 5.0;
 // Incidence means nothing where there is no air to feel it.
 constexpr double kIncidenceFloor_pa = 1000.0;
+// The residual set of pitch, in which V may rise: V up to that of this error at rest.
+constexpr double kResidualError_rad = 0.05 * kRadPerDeg;
 
 }  // namespace
 
@@ -144,8 +146,12 @@ void MetricsRecorder::AddTick(const TickSample& s) {
   }
 
   const AxisTelemetry& telemetry = s.gimbal.telemetry[kPitch];
-  ++v_ticks_;
-  if (telemetry.v_rate_sign < 0.0) ++v_falling_ticks_;
+  const auto& laws = model_.autopilot().laws[kPitch].stages;
+  const double p11 = laws[static_cast<std::size_t>(s.stack)].p(0, 0);
+  if (telemetry.v > 0.5 * p11 * Square(kResidualError_rad)) {
+    ++v_outside_ticks_;
+    if (telemetry.v_rate_sign < 0.0) ++v_falling_ticks_;
+  }
   adaptation_norm_peak_ = std::max(adaptation_norm_peak_, telemetry.adaptation_norm);
   rules_fired_ = s.axes[kPitch].rules_fired;
 }
@@ -206,8 +212,12 @@ std::vector<double> MetricsRecorder::Finish() const {
   for (double value : injection)
     m.push_back(injection_.reached && std::isfinite(value) ? value : kUndefined);
 
-  m.push_back(v_ticks_ > 0 ? static_cast<double>(v_falling_ticks_) / static_cast<double>(v_ticks_)
-                           : kUndefined);
+  m.push_back(powered_ticks_ > 0
+                  ? static_cast<double>(v_outside_ticks_) / static_cast<double>(powered_ticks_)
+                  : kUndefined);
+  m.push_back(v_outside_ticks_ > 0
+                  ? static_cast<double>(v_falling_ticks_) / static_cast<double>(v_outside_ticks_)
+                  : kUndefined);
   m.push_back(adaptation_norm_peak_ * kDegPerRad);
   m.push_back(std::popcount(rules_fired_));
   return m;

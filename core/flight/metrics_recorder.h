@@ -86,7 +86,7 @@ class MetricsRecorder {
   bool structural_exceeded_ = false;
   bool handed_over_ = false;
   double handover_angle_ = 0.0, handover_rate_ = 0.0;
-  long v_ticks_ = 0, v_falling_ticks_ = 0;
+  long v_outside_ticks_ = 0, v_falling_ticks_ = 0;
   double adaptation_norm_peak_ = 0.0;
   std::uint32_t rules_fired_ = 0;
   double expelled_mass_kg_ = 0.0;

@@ -24,14 +24,14 @@ struct ScenarioMass {
 /// Constant thrust along the body axis from ignition until the propellant is used up.
 struct ScenarioMotor {
   double ignition_time_s = 0.0;
-  double thrust_n = 0.0;              ///< in vacuum
+  double thrust_n = 0.0;  ///< in vacuum
   double flow_kg_s = 0.0;
-  double nozzle_exit_area_m2 = 0.0;   ///< P = P_vac - p A_e, never below 0
+  double nozzle_exit_area_m2 = 0.0;  ///< P = P_vac - p A_e, never below 0
   double nozzle_station_m = 0.0;
   double nozzle_y_m = 0.0;
   double nozzle_z_m = 0.0;
-  bool jet_damping = false;           ///< moment -m_dot r x (w x r), r from CG to nozzle
-  bool inertia_rate = true;           ///< the term -(dI/dt) w of Euler's equations
+  bool jet_damping = false;  ///< moment -m_dot r x (w x r), r from CG to nozzle
+  bool inertia_rate = true;  ///< the term -(dI/dt) w of Euler's equations
 };
 
 /// What flies between two separations: the whole vehicle as it is then.
@@ -48,14 +48,14 @@ struct Scenario {
   std::string name;
   Environment environment;
   Geodetic place;
-  YawPitchRoll attitude;                 ///< body against local NED
-  Vector3 v_EC_N = Vector3::Zero();      ///< relative to the Earth, north, east, down
-  Vector3 rates_rad_s = Vector3::Zero(); ///< p, q, r
-  bool rates_are_inertial = true;        ///< else relative to the Earth
+  YawPitchRoll attitude;                  ///< body against local NED
+  Vector3 v_EC_N = Vector3::Zero();       ///< relative to the Earth, north, east, down
+  Vector3 rates_rad_s = Vector3::Zero();  ///< p, q, r
+  bool rates_are_inertial = true;         ///< else relative to the Earth
   std::vector<ScenarioStage> stages;
   double duration_s = 0.0;
   double output_step_s = 0.0;
-  double integration_step_s = 0.0;       ///< upper limit: steps divide the time between outputs and events
+  double integration_step_s = 0.0;  ///< upper limit: steps divide the time between outputs and events
 };
 
 /// What contradicts itself, each with the path of the value.

@@ -14,7 +14,7 @@ namespace {
 constexpr double kLeft = 64.0;
 constexpr double kTop = 44.0;
 constexpr double kBottom = 44.0;
-constexpr double kCellWidth = 50.0;
+constexpr double kCellWidth = 58.0;
 constexpr double kCellHeight = 30.0;
 constexpr int kShades = 6;
 

@@ -123,7 +123,8 @@ svg .bar { fill: var(--bar); } svg rect { print-color-adjust: exact; -webkit-pri
   nav { display: none; }
   .figures { grid-template-columns: 1fr 1fr; } figure, tr, .headline, .tile { break-inside: avoid; }
   h2, h3 { break-after: avoid; } table { font-size: 7.2pt; } th, td { padding: 2px 4px; } td code {
-  font-size: 6.8pt; }
+  font-size: 6.2pt; }
+  td > code { white-space: normal; } table { font-size: 6.9pt; } th, td { padding: 2px 3px; }
   td .badge { font-size: 7pt; padding: 0 4px; } td .definition { font-size: 6.6pt; } .scroll { overflow:
   visible; } }
 )css";

@@ -43,7 +43,7 @@ struct Entry {
   Worse worse = Worse::kLarger;
 };
 
-constexpr std::array<Entry, 35> kEntries = {{
+constexpr std::array<Entry, 36> kEntries = {{
     {"pitch_error_rms", "Pitch error, RMS",
      "root mean square over powered flight of the component about body y of the rotation from the reference "
      "attitude to the true one"},
@@ -90,8 +90,10 @@ constexpr std::array<Entry, 35> kEntries = {{
      Worse::kSmaller},
     {"inclination", "Inclination", "of the osculating orbit at injection"},
     {"rcs_propellant", "Reaction control propellant", "used in the coast"},
-    {"lyapunov_decreasing_fraction", "Lyapunov function decreasing", "fraction of powered flight",
-     Worse::kSmaller},
+    {"lyapunov_outside_fraction", "Outside the residual set",
+     "fraction of powered flight with the pitch law's V above that of 0.05 deg of error"},
+    {"lyapunov_decreasing_fraction", "Lyapunov function decreasing",
+     "fraction of the powered flight outside the residual set", Worse::kSmaller},
     {"adaptation_norm_peak", "Adaptation, largest norm",
      "distance of the pitch rules' consequents from their start"},
     {"rules_fired", "Rules fired", "pitch rules that were active at any time"},

@@ -9,16 +9,12 @@
 #include "core/report/dispersion_summary.h"
 #include "core/report/html_parts.h"
 #include "core/report/paper_sections.h"
+#include "core/report/paper_table2.h"
 #include "core/report/text.h"
 #include "core/report/trajectory_figures.h"
 
 namespace dispersa {
 namespace {
-
-/// The optimal results that the paper prints in its Table 2.
-constexpr double kPaperHeight_km = 500.406;
-constexpr double kPaperVelocity_m_s = 7612.585;
-constexpr double kPaperAngle_deg = 0.0000055;
 
 std::string Signed(double value) { return fmt::format("{:+.3g}", value); }
 

@@ -31,6 +31,10 @@ struct AscentSteps {
   double coast_s = 5.0;  ///< while none does
 };
 
+inline AscentSteps HalvedSteps(const AscentSteps& steps) {
+  return {0.5 * steps.air_s, 0.5 * steps.burn_s, 0.5 * steps.coast_s};
+}
+
 struct AscentOptions {
   AscentSteps steps;
   bool record = false;         ///< keep samples and the attitude program, one a step

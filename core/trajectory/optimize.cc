@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "core/engine/version.h"
+#include "core/optimization/feasibility_rules.h"
 #include "core/trajectory/constraints.h"
 #include "core/trajectory/refine.h"
 #include "core/trajectory/selection.h"
@@ -43,8 +44,7 @@ void Validate(const TrajectoryOptions& options) {
 }
 
 Evaluation Evaluate(const AscentModel& model, const TrajectoryProblem& problem,
-                    const TrajectoryOptions& options, const std::vector<double>& variables) {
-  const FlightProgram program = ProgramOf(variables);
+                    const TrajectoryOptions& options, const FlightProgram& program) {
   Evaluation evaluation;
   const double disorder_s = DisorderOf(program, options);
   if (disorder_s > 0.0) {
@@ -75,7 +75,7 @@ GeneticAlgorithmResult Search(const AscentModel& model, const TrajectoryProblem&
     bounded.lower.push_back(b.low);
     bounded.upper.push_back(b.high);
   }
-  bounded.evaluate = [&](const std::vector<double>& v) { return Evaluate(model, problem, options, v); };
+  bounded.evaluate = [&](const std::vector<double>& v) { return Evaluate(model, problem, options, ProgramOf(v)); };
   GeneticAlgorithmOptions genetic;
   genetic.population = problem.population;
   genetic.generations = problem.generations;
@@ -86,17 +86,17 @@ GeneticAlgorithmResult Search(const AscentModel& model, const TrajectoryProblem&
   return GeneticAlgorithm(genetic).Minimize(bounded, observer);
 }
 
-bool IsWithin(const OrbitErrors& errors, const OrbitErrors& tolerance) {
-  return std::fabs(errors.altitude_m) <= tolerance.altitude_m &&
-         std::fabs(errors.velocity_m_s) <= tolerance.velocity_m_s &&
-         std::fabs(errors.flight_path_angle_rad) <= tolerance.flight_path_angle_rad;
-}
-
 }  // namespace
 
 OrbitErrors ErrorsOf(const TrajectoryProblem& problem, const Orbit& orbit) {
   return {orbit.altitude_m - problem.target_altitude_m, orbit.velocity_m_s - problem.target_velocity_m_s,
           orbit.flight_path_angle_rad - problem.target_flight_path_angle_rad};
+}
+
+bool IsWithin(const OrbitErrors& errors, const OrbitErrors& tolerance) {
+  return std::fabs(errors.altitude_m) <= tolerance.altitude_m &&
+         std::fabs(errors.velocity_m_s) <= tolerance.velocity_m_s &&
+         std::fabs(errors.flight_path_angle_rad) <= tolerance.flight_path_angle_rad;
 }
 
 double DisorderOf(const FlightProgram& program, const TrajectoryOptions& options) {
@@ -150,14 +150,20 @@ OptimizationResult OptimizeTrajectory(const Vehicle& vehicle, const TrajectoryPr
     result.refinement = RefineProgram(model, problem, options, &program);
     ascents += selection.ascents + result.refinement.evaluations;
   }
+  result.refined = program;
+  if (result.refinement.status != LeastSquaresStatus::kConverged) {
+    // The refinement knows neither constraints nor weights: what it ends with may be worse.
+    const FlightProgram searched = ProgramOf(result.genetic.variables);
+    const Merit before = MeritOf(Evaluate(model, problem, options, searched));
+    const Merit after = MeritOf(Evaluate(model, problem, options, program));
+    if (IsBetter(before, after, 0.0)) program = searched;
+  }
   result.reference = BuildReference(model, problem, program, options, &result.history);
   result.reference.evaluations = ascents;
   result.errors = ErrorsOf(problem, result.reference.orbit);
 
-  const AscentSteps halved = {0.5 * options.steps.air_s, 0.5 * options.steps.burn_s,
-                              0.5 * options.steps.coast_s};
-  result.halved_step_errors =
-      ErrorsOf(problem, FlyAscent(model, program, AscentOptionsOf(problem, halved)).orbit);
+  const AscentOptions halved = AscentOptionsOf(problem, HalvedSteps(options.steps));
+  result.halved_step_errors = ErrorsOf(problem, FlyAscent(model, program, halved).orbit);
 
   result.reached = AreSatisfied(result.reference.constraints) && IsWithin(result.errors, options.tolerance);
   if (!result.reached) result.statement = DescribeShortfall(model, problem, options, result);

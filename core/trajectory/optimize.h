@@ -19,6 +19,8 @@ struct OrbitErrors {
   double flight_path_angle_rad = 0.0;
 };
 OrbitErrors ErrorsOf(const TrajectoryProblem& problem, const Orbit& orbit);
+/// Whether no error is larger than its tolerance.
+bool IsWithin(const OrbitErrors& errors, const OrbitErrors& tolerance);
 
 /// Every setting of the search but the problem's own (bounds, weights, limits, population, generations,
 /// seed), which comes from the user's file.
@@ -69,6 +71,7 @@ struct OptimizationResult {
   /// Along the programs that reach the target (selection.h); an empty log if none was found to start from.
   GeneticAlgorithmResult selection;
   LeastSquaresResult refinement;
+  FlightProgram refined;  ///< where the refinement ended: the reference's, unless the search's best is better
 };
 
 /// How far, s, a program's times are from order: t1, a ramp, t3, a ramp, t2. 0: in order.

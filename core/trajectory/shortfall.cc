@@ -64,24 +64,31 @@ const char* Where(const SpeedAtTarget& speed) {
   return speed.on_target ? "at the target's altitude and angle" : "carried to the target's altitude";
 }
 
-std::string EnergyText(const AscentModel& model, const TrajectoryProblem& problem,
-                       const TrajectoryOptions& options, const FlightProgram& program) {
+// What is wrong with altitude and angle, then with speed, each on its own: a compromise between the three,
+// which is where the refinement ends, lies at bounds that have nothing to do with the cause.
+std::string CauseText(const AscentModel& model, const TrajectoryProblem& problem,
+                      const TrajectoryOptions& options, const FlightProgram& program) {
   const Bounds& azimuth = problem.launch_azimuth_rad;
   SpeedAtTarget slow = SpeedToward(model, problem, options, program, azimuth.high);
   SpeedAtTarget fast = SpeedToward(model, problem, options, program, azimuth.low);
   if (slow.velocity_m_s > fast.velocity_m_s) std::swap(slow, fast);
+  std::string text;
+  if (!fast.on_target) {
+    for (const std::size_t held : fast.held)
+      text += " Bound: for altitude and angle" + HeldText(problem, fast.program, held);
+  }
   const double asked = problem.target_velocity_m_s;
   if (fast.velocity_m_s < asked)
-    return fmt::format(
+    text += fmt::format(
         " Energy: {} the vehicle has at most {:.1f} m/s (launch azimuth {:.6g} deg), {:.1f} m/s less than the "
         "target asks.",
         Where(fast), fast.velocity_m_s, Deg(fast.program.launch_azimuth_rad), asked - fast.velocity_m_s);
   if (slow.velocity_m_s > asked)
-    return fmt::format(
+    text += fmt::format(
         " Energy: {} the vehicle has at least {:.1f} m/s (launch azimuth {:.6g} deg), {:.1f} m/s more than the "
         "target asks; the bounds of the launch azimuth do not let it spend the surplus.",
         Where(slow), slow.velocity_m_s, Deg(slow.program.launch_azimuth_rad), slow.velocity_m_s - asked);
-  return "";
+  return text;
 }
 
 }  // namespace
@@ -102,9 +109,10 @@ std::string DescribeShortfall(const AscentModel& model, const TrajectoryProblem&
     if (c.enforced && c.margin < 0.0)
       text += fmt::format(" Constraint: {} = {:.6g} exceeds its limit of {:.6g}.", c.name, c.value, c.limit);
   if (result.refinement.status != LeastSquaresStatus::kConverged) {
+    text += CauseText(model, problem, options, result.refined);
+    if (text.size() > before) return text;
     for (const std::size_t held : result.refinement.held_at_bound)
-      text += " Bound:" + HeldText(problem, program, held);
-    text += EnergyText(model, problem, options, program);
+      text += " Bound:" + HeldText(problem, result.refined, held);
   }
   if (text.size() == before) text += fmt::format(" The refinement {}.", Describe(result.refinement.status));
   return text;

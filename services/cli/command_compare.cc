@@ -79,7 +79,7 @@ void PrintJson(const Comparison& comparison, const std::string& a, const std::st
 }
 
 void PrintText(const Comparison& comparison, const std::string& a, const std::string& b) {
-  fmt::print("a: {}\nb: {}\n{} pairs, {} cases without a pair; intervals of {}\n\n", a, b, comparison.pairs,
+  fmt::print("a: {}\nb: {}\npairs: {}, cases without a pair: {}; intervals of {}\n\n", a, b, comparison.pairs,
              comparison.unpaired, PercentText(kComparisonConfidence));
   fmt::print("{:<32}{:>12}{:>26}{:>9}{:>20}{:>10}{:>10}\n", "metric", "b - a", "interval", "b / a",
              "interval", "a better", "b better");

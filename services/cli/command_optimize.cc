@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -13,11 +15,14 @@
 #include "core/campaign_yaml/load.h"
 #include "core/math/constants.h"
 #include "core/report/output_file.h"
-#include "core/report/text.h"
+#include "core/report/paper_table2.h"
+#include "core/report/trajectory_figures.h"
+#include "core/report/trajectory_page.h"
 #include "core/trajectory/optimize.h"
 #include "services/cli/command.h"
 #include "services/cli/flight_json.h"
 #include "services/cli/progress.h"
+#include "services/cli/seed_study.h"
 
 namespace dispersa {
 namespace {
@@ -27,25 +32,8 @@ struct OptimizeOptions {
   std::string out;
   std::optional<std::uint64_t> seed;
   int threads = 0;  ///< 0: the processor's
+  int seeds = 0;    ///< 0: one optimisation that writes its reference; else a study that writes nothing
 };
-
-std::string HistoryCsv(const std::vector<AscentSample>& history) {
-  std::string csv =
-      "time_s,stage,altitude_m,velocity_m_s,relative_velocity_m_s,flight_path_angle_deg,relative_path_angle_"
-      "deg,"
-      "alpha_deg,pitch_deg,yaw_deg,roll_deg,mach,qbar_pa,axial_load_g,mass_kg\n";
-  for (const AscentSample& s : history) {
-    csv += ShortestText(s.time_s) + "," + std::to_string(s.stage);
-    for (const double value :
-         {s.altitude_m, s.velocity_m_s, s.relative_velocity_m_s, s.flight_path_angle_rad * kDegPerRad,
-          s.relative_path_angle_rad * kDegPerRad, s.alpha_rad * kDegPerRad, s.pitch_rad * kDegPerRad,
-          s.yaw_rad * kDegPerRad, s.roll_rad * kDegPerRad, s.mach, s.qbar_pa, s.axial_load_g, s.mass_kg}) {
-      csv += "," + ShortestText(value);
-    }
-    csv += "\n";
-  }
-  return csv;
-}
 
 nlohmann::ordered_json ResultJson(const OptimizationResult& result, const std::string& file) {
   const Reference& reference = result.reference;
@@ -80,36 +68,73 @@ nlohmann::ordered_json ResultJson(const OptimizationResult& result, const std::s
           {"evaluations", reference.evaluations}};
 }
 
-// The paper's Table 2 stands beside ours.
-void PrintText(const OptimizationResult& result) {
+// Table 2; the paper's column only beside the paper's target.
+void PrintInjection(const OptimizationResult& result, const std::optional<OrbitErrors>& flown) {
   const Reference& reference = result.reference;
   const TrajectoryProblem& problem = reference.problem;
+  const bool paper = IsPaperTarget(problem);
+  fmt::print("{:<22}{:>12}", "injection", "desired");
+  if (paper) fmt::print("{:>14}{:>12}", "paper", "its error");
+  fmt::print("{:>16}{:>12}{:>14}", "reached", "error", "half the step");
+  fmt::print("{}\n", flown ? fmt::format("{:>14}", "closed loop") : "");
+  const auto row = [&](const char* name, double desired, double published, double reached, double error,
+                       double halved, double arrived) {
+    fmt::print("{:<22}{:>12.6g}", name, desired);
+    if (paper) fmt::print("{:>14.7f}{:>+12.2g}", published, published - desired);
+    // Rounded to what is shown, and never a negative zero.
+    fmt::print("{:>16.7f}{:>+12.2g}{:>+14.2g}", std::round(reached * 1e7) / 1e7 + 0.0, error, halved);
+    fmt::print("{}\n", flown ? fmt::format("{:>+14.2g}", arrived) : "");
+  };
+  const OrbitErrors& halved = result.halved_step_errors;
+  const OrbitErrors arrived = flown.value_or(OrbitErrors{});
+  row("altitude, km", problem.target_altitude_m * 1e-3, kPaperHeight_km, reference.orbit.altitude_m * 1e-3,
+      result.errors.altitude_m * 1e-3, halved.altitude_m * 1e-3, arrived.altitude_m * 1e-3);
+  row("velocity, m/s", problem.target_velocity_m_s, kPaperVelocity_m_s, reference.orbit.velocity_m_s,
+      result.errors.velocity_m_s, halved.velocity_m_s, arrived.velocity_m_s);
+  row("injection angle, deg", problem.target_flight_path_angle_rad * kDegPerRad, kPaperAngle_deg,
+      reference.orbit.flight_path_angle_rad * kDegPerRad, result.errors.flight_path_angle_rad * kDegPerRad,
+      halved.flight_path_angle_rad * kDegPerRad, arrived.flight_path_angle_rad * kDegPerRad);
+  fmt::print("inclination {:.4f} deg\n", reference.orbit.inclination_rad * kDegPerRad);
+  if (flown) fmt::print("closed loop: errors of the nominal flight under the campaign's autopilot\n");
+}
+
+void PrintText(const OptimizationResult& result, const std::optional<OrbitErrors>& flown) {
+  const Reference& reference = result.reference;
   const FlightProgram& program = reference.program;
-  fmt::print("{:<28}{:>12}{:>16}{:>14}\n", "injection", "desired", "reached", "error");
-  fmt::print("{:<28}{:>12.6g}{:>16.6f}{:>14.3g}\n", "altitude, km", problem.target_altitude_m * 1e-3,
-             reference.orbit.altitude_m * 1e-3, result.errors.altitude_m * 1e-3);
-  fmt::print("{:<28}{:>12.6g}{:>16.6f}{:>14.3g}\n", "velocity, m/s", problem.target_velocity_m_s,
-             reference.orbit.velocity_m_s, result.errors.velocity_m_s);
-  fmt::print("{:<28}{:>12.6g}{:>16.6f}{:>14.3g}\n", "flight path angle, deg",
-             problem.target_flight_path_angle_rad * kDegPerRad,
-             reference.orbit.flight_path_angle_rad * kDegPerRad,
-             result.errors.flight_path_angle_rad * kDegPerRad);
-  fmt::print("{:<28}{:>28.6f}\n", "inclination, deg", reference.orbit.inclination_rad * kDegPerRad);
+  PrintInjection(result, flown);
   fmt::print(
       "\nflight program: alpha_max {:.6f} deg, t1 {:.4f} s, t3 {:.4f} s, t2 {:.4f} s, coast {:.4f} s, "
       "launch azimuth {:.6f} deg\n\n",
       program.alpha_max_rad * kDegPerRad, program.t1_s, program.t3_s, program.t2_s, program.coast_s,
       program.launch_azimuth_rad * kDegPerRad);
-  fmt::print("{:<36}{:>14}{:>14}{:>14}\n", "constraint", "value", "limit", "margin");
+  fmt::print("{:<28}{:>14}{:>14}{:>14}\n", "constraint", "value", "limit", "margin");
   for (const ConstraintMargin& constraint : reference.constraints) {
     if (constraint.enforced) {
-      fmt::print("{:<36}{:>14.6g}{:>14.6g}{:>14.6g}\n", constraint.name, constraint.value, constraint.limit,
+      fmt::print("{:<28}{:>14.6g}{:>14.6g}{:>14.6g}\n", constraint.name, constraint.value, constraint.limit,
                  constraint.margin);
     } else {
-      fmt::print("{:<36}{:>14.6g}{:>14}\n", constraint.name, constraint.value, "none");
+      fmt::print("{:<28}{:>14.6g}{:>14}\n", constraint.name, constraint.value, "none");
     }
   }
-  fmt::print("\nseed {}, {} evaluations\n", problem.seed, reference.evaluations);
+  if (const std::string text = LimitsThatDoNotBind(reference); !text.empty()) fmt::print("{}\n", text);
+  fmt::print("\nseed {}, {} ascents\n", reference.problem.seed, reference.evaluations);
+}
+
+TrajectoryOptions OptionsFor(const OptimizationInput& input, int threads) {
+  TrajectoryOptions options;
+  options.tick_s = input.tick_s;
+  options.threads = threads;
+  return options;
+}
+
+// What the problem asks of the search may be out of its range: the user's fault.
+template <typename Function>
+auto OrInputError(const Function& function) {
+  try {
+    return function();
+  } catch (const std::invalid_argument& error) {
+    throw InputError(std::string("the optimisation problem cannot be solved as given: ") + error.what());
+  }
 }
 
 OptimizationResult Search(const OptimizationInput& input, int threads, bool quiet) {
@@ -120,14 +145,23 @@ OptimizationResult Search(const OptimizationInput& input, int threads, bool quie
                   record.best_objective ? fmt::format("best {:.4g}", *record.best_objective)
                                         : std::string("no feasible trajectory yet"));
   };
-  try {
-    TrajectoryOptions options;
-    options.tick_s = input.tick_s;
-    options.threads = threads;
-    return OptimizeTrajectory(input.vehicle, input.problem, options, observe);
-  } catch (const std::invalid_argument& error) {
-    throw InputError(std::string("the optimisation problem cannot be solved as given: ") + error.what());
-  }
+  return OrInputError([&] {
+    return OptimizeTrajectory(input.vehicle, input.problem, OptionsFor(input, threads), observe);
+  });
+}
+
+ExitCode StudySeeds(const OptimizationInput& input, const OptimizeOptions& options, int threads,
+                    const GlobalOptions& global) {
+  Progress progress("optimize", global.quiet);
+  std::uint64_t done = 0;
+  const std::vector<SeedRow> rows = OrInputError([&] {
+    return RunSeedStudy(input, options.seeds, OptionsFor(input, threads), [&](const SeedRow& row) {
+      progress.Show(++done, static_cast<std::uint64_t>(options.seeds), fmt::format("seed {}", row.seed));
+    });
+  });
+  fmt::print("{}", global.json ? SeedStudyJson(rows).dump(2) + "\n" : SeedStudyText(rows));
+  const bool all = std::all_of(rows.begin(), rows.end(), [](const SeedRow& row) { return row.reached; });
+  return all ? kExitDone : kExitRequirementFailed;
 }
 
 ExitCode Optimize(const OptimizeOptions& options, const GlobalOptions& global) {
@@ -135,21 +169,27 @@ ExitCode Optimize(const OptimizeOptions& options, const GlobalOptions& global) {
   const int threads = options.threads > 0
                           ? options.threads
                           : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  if (options.seeds > 0) return StudySeeds(input, options, threads, global);
   OptimizationResult result = Search(input, threads, global.quiet);
   result.reference.name = input.name;
   result.reference.vehicle_sha256 = input.vehicle_sha256;
 
   const std::filesystem::path file = options.out.empty() ? input.name + "_reference.yaml" : options.out;
+  std::optional<OrbitErrors> flown;
   if (result.reached) {
-    std::filesystem::path history_file = file;
-    history_file.replace_extension(".csv");
+    flown = FlyReference(input, result.reference);
+    const auto beside = [&](const char* extension) {
+      std::filesystem::path path = file;
+      return path.replace_extension(extension);
+    };
     WriteFile(file, WriteReference(result.reference));
-    WriteFile(history_file, HistoryCsv(result.history));
+    WriteFile(beside(".csv"), AscentCsv(result.history));
+    WriteFile(beside(".html"), TrajectoryPage(result, flown));
   }
   if (global.json) {
     fmt::print("{}\n", ResultJson(result, file.string()).dump(2));
   } else {
-    PrintText(result);
+    PrintText(result, flown);
     if (result.reached) fmt::print("reference: {}\n", file.string());
   }
   if (result.reached) return kExitDone;
@@ -166,12 +206,18 @@ void AddOptimizeCommand(CLI::App& app, Invocation& invocation) {
   command->add_option("campaign", options->campaign, "campaign file, with an optimize block or a reference")
       ->required();
   command->add_option("-o,--out", options->out,
-                      "reference file to write; the time history goes beside it as .csv; default "
-                      "<name>_reference.yaml. Nothing is written when the target is not reached");
+                      "reference file to write; the time history goes beside it as .csv, figures and tables as "
+                      ".html; default <name>_reference.yaml. Nothing is written when the target is not reached");
   command->add_option("--seed", options->seed, "seed, instead of the file's");
+  command->add_option("--seeds", options->seeds,
+                      "optimise with so many seeds, from the file's or --seed on, and print how well and how alike "
+                      "they end; writes nothing; exit code 3 unless every one reaches the target")
+      ->check(CLI::Range(1, 10000));
   command->add_option("--threads", options->threads, "threads; the result does not depend on them")
       ->check(CLI::Range(1, 1024));
-  command->footer("Example: dispersa optimize campaigns/nominal.yaml -o slv4_500km.yaml --seed 2");
+  command->footer(
+      "Example: dispersa optimize campaigns/nominal.yaml -o slv4_500km.yaml --seed 2\n"
+      "The shipped reference: dispersa optimize campaigns/slv4_500km.yaml -o campaigns/references/slv4_500km.yaml");
   command->callback([options, &invocation] {
     invocation.command = [options](const GlobalOptions& global) { return Optimize(*options, global); };
   });

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "core/flight/flight_inputs.h"
+#include "core/flight/history_columns.h"
 #include "core/flight/metrics.h"
 #include "tests/unit/input_files.h"
 
@@ -197,6 +198,28 @@ TEST(CliProgram, ReplayAndReportNeedAResultFolder) {
     EXPECT_EQ(output.code, 2) << command;
     EXPECT_THAT(output.error, HasSubstr("/nowhere")) << command;
   }
+}
+
+TEST(CliProgram, FlyScenario) {
+  const InputFiles folder;
+  const std::string scenario = DISPERSA_CAMPAIGNS "/scenarios/nesc_case09.yaml";
+  const Output output = Dispersa("fly " + scenario + " --json --history " + folder.Path("history.csv"));
+  EXPECT_EQ(output.code, 0) << output.error;
+  EXPECT_THAT(output.text,
+              StartsWith("{\n  \"schema\": \"dispersa/fly/1\",\n  \"scenario\": \"nesc_case09\",\n"
+                         "  \"outcome\": \"completed\",\n  \"end_time_s\": 30.0,\n"));
+  const std::vector<std::string> rows = Lines(ReadWholeFile(folder.Path("history.csv")));
+  ASSERT_EQ(rows.size(), 32u);  // a header, and every second from 0 to 30
+  EXPECT_EQ(Cells(rows[0]), KinematicColumnNames());
+  EXPECT_EQ(Cells(rows[1])[0], "0");
+  EXPECT_EQ(Cells(rows[31])[0], "30");
+  // The metrics are the last row.
+  EXPECT_THAT(output.text, HasSubstr("\"final_altitude_m\": " + Cells(rows[31])[10] + ","));
+
+  const Output with_case = Dispersa("fly " + scenario + " --case 0");
+  EXPECT_EQ(with_case.code, 2);
+  EXPECT_EQ(with_case.error,
+            "--case, --seed: a scenario has no cases, allowed: a campaign file with these options\n");
 }
 
 }  // namespace

@@ -116,6 +116,24 @@ TEST(StartStage, StartsAnewWhenConfiguredAndClearsSaturationAndThrusters) {
   EXPECT_EQ(state.thrusters[kYaw].direction, 0);
 }
 
+TEST(StartStage, AugmentationStartsEveryStageAnew) {
+  AutopilotConfig config = SampleAutopilot();
+  config.yaw.law = ControlLaw::kPdAac;
+  config.yaw.augmentation = {.adaptive_gain_1_s = 1e5, .leakage_1_s = 0.1, .spectral_gain_1_s = 1.0,
+                             .high_pass_rad_s = 20.0, .low_pass_rad_s = 2.0, .minimum_total_gain = 0.5,
+                             .maximum_total_gain = 2.0};
+  const AutopilotModel model = Model(config);
+  AutopilotState state;
+  StartStage(model, 0, state);
+  for (int i = 0; i < 50; ++i)
+    StepGimbals(model, 0, 0.01 * i, ErrorOf(0.0, 0.0, 0.05), kNoStudy, 1.0, state);
+  ASSERT_GT(state.axes[kYaw].total_gain, 1.1);
+  ASSERT_TRUE(state.axes[kYaw].model_started);
+  StartStage(model, 1, state);
+  EXPECT_EQ(state.axes[kYaw].total_gain, 1.0);
+  EXPECT_FALSE(state.axes[kYaw].model_started);
+}
+
 TEST(BuildStageControl, IsThrustTimesLeverOverInertia) {
   const LauncherPlant plant = BuildNominalPlant(SampleVehicle());
   const StageControl control = BuildStageControl(plant.stacks[1]);

@@ -1,4 +1,5 @@
 // Every metric on made-up histories whose answers are known by hand.
+#include "core/control/lyapunov.h"
 #include "core/flight/metrics_recorder.h"
 
 #include <gtest/gtest.h>
@@ -9,6 +10,7 @@
 
 #include "core/flight/metrics.h"
 #include "core/math/constants.h"
+#include "core/math/functions.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa {
@@ -98,9 +100,14 @@ RigidBodyState OrbitState(double mu, double perigee_m, double apogee_m, double i
 // One made-up flight for all metrics at once: stage 1 burns 0 to 10 s, a coast to 60 s, stage 2 to 70 s.
 TEST(MetricsRecorder, EveryMetricOfAMadeUpFlight) {
   Recording flight;
+  Matrix2 q;
+  q << 1.0, 0.0, 0.0, 0.02;
+  // V at the edge of the residual set.
+  const double residual_v = 0.5 * SolveLyapunov({16.0, 7.0}, q)(0, 0) * Square(0.05 * kDeg);
   for (int i = 0; i < 1000; ++i) {
     TickSample s = Powered(i * kTick_s);
     SetErrors(s, -0.4, i < 500 ? 1.0 : -2.0, 0.3);
+    s.gimbal.telemetry[kPitch].v = (i < 800 ? 1.01 : 0.99) * residual_v;
     const double chatter = i % 2 ? -0.5 : 0.5;
     s.nozzle_rad = {(2.0 + chatter) * kDeg, (2.0 + chatter) * kDeg, -1.0 * kDeg, -1.0 * kDeg};
     s.nozzle_rate_rad_s = {0.0, 0.0, 0.0, i == 700 ? -12.0 * kDeg : 0.0};
@@ -196,7 +203,8 @@ TEST(MetricsRecorder, EveryMetricOfAMadeUpFlight) {
       {"injection_altitude_error_km", 12.0},
       {"injection_velocity_error_m_s", speed - 7600.0},
       {"injection_flight_path_angle_error_deg", gamma - 0.1},
-      {"lyapunov_decreasing_fraction", 0.75},
+      {"lyapunov_outside_fraction", 0.4},
+      {"lyapunov_decreasing_fraction", 0.625},
       {"adaptation_norm_peak_deg_s2", 0.7},
       {"rules_fired", 4.0}};
 
@@ -228,7 +236,7 @@ TEST(MetricsRecorder, WhatAFlightDoesNotReachIsUndefined) {
         "yaw_error_rms_deg", "roll_error_peak_deg", "deflection_peak_deg", "deflection_saturated_fraction",
         "deflection_limit_cycle_deg", "handover_attitude_error_deg", "handover_rate_error_deg_s",
         "injection_altitude_km", "apogee_km", "inclination_deg", "injection_velocity_error_m_s",
-        "lyapunov_decreasing_fraction"})
+        "lyapunov_outside_fraction", "lyapunov_decreasing_fraction"})
     EXPECT_TRUE(std::isnan(flight[name])) << name;
   for (const char* name : {"pitch_error_itae_deg_s2", "q_max_pa", "axial_load_max_g", "rcs_propellant_kg",
                            "structural_limit_exceeded", "rules_fired"})

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/report/study_flights.h"
 #include "tests/unit/report_test_support.h"
 
@@ -36,7 +38,8 @@ TEST(ReportComparison, PairsCasesOfEqualIndexAndEqualDraws) {
   ASSERT_EQ(comparison.metrics.size(), 1);
   EXPECT_EQ(comparison.metrics[0].difference.worse, 2);
   EXPECT_EQ(comparison.metrics[0].difference.median_difference, 2.0);  // of 1 and 3
-  EXPECT_EQ(comparison.metrics[0].difference.median_ratio, 3.0);       // of 2 and 4
+  // Of 2 and 4, between which ratios are interpolated by their logarithms.
+  EXPECT_DOUBLE_EQ(comparison.metrics[0].difference.median_ratio, std::sqrt(8.0));
 }
 
 TEST(ReportComparison, ListsWhereTheSecondIsBetterWithTheLargestGainFirst) {

@@ -1,0 +1,166 @@
+#include "services/cli/seed_study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "core/campaign/campaign_flights.h"
+#include "core/flight/metrics.h"
+#include "core/math/constants.h"
+#include "core/trajectory/refine.h"
+
+namespace dispersa {
+namespace {
+
+double Deg(double radians) { return radians / kRadPerDeg; }
+
+// A column of the table: scaled to the unit in its title.
+struct Column {
+  const char* title;
+  const char* json;
+  int width;
+  int decimals;
+  std::function<double(const SeedRow&)> value;
+  bool is_error;  ///< summarised by the largest magnitude, others by their range
+};
+
+std::vector<Column> Columns(const std::vector<SeedRow>& rows) {
+  std::vector<Column> columns = {
+      {"dH, m", "altitude_error_m", 9, 4, [](const SeedRow& r) { return r.read_back.altitude_m; }, true},
+      {"dV, mm/s", "velocity_error_mm_s", 9, 4,
+       [](const SeedRow& r) { return r.read_back.velocity_m_s * 1e3; }, true},
+      {"dg, udeg", "flight_path_angle_error_udeg", 9, 4,
+       [](const SeedRow& r) { return Deg(r.read_back.flight_path_angle_rad) * 1e6; }, true},
+      {"half dH", "halved_altitude_error_m", 9, 4, [](const SeedRow& r) { return r.halved.altitude_m; }, true},
+      {"half dV", "halved_velocity_error_mm_s", 9, 4,
+       [](const SeedRow& r) { return r.halved.velocity_m_s * 1e3; }, true},
+      {"half dg", "halved_flight_path_angle_error_udeg", 9, 4,
+       [](const SeedRow& r) { return Deg(r.halved.flight_path_angle_rad) * 1e6; }, true},
+      {"alpha,deg", "alpha_max_deg", 10, 4, [](const SeedRow& r) { return Deg(r.program.alpha_max_rad); }, false},
+      {"t1, s", "t1_s", 8, 3, [](const SeedRow& r) { return r.program.t1_s; }, false},
+      {"t3, s", "t3_s", 8, 3, [](const SeedRow& r) { return r.program.t3_s; }, false},
+      {"t2, s", "t2_s", 8, 3, [](const SeedRow& r) { return r.program.t2_s; }, false},
+      {"coast, s", "coast_s", 10, 4, [](const SeedRow& r) { return r.program.coast_s; }, false},
+      {"azimuth,deg", "launch_azimuth_deg", 12, 4,
+       [](const SeedRow& r) { return Deg(r.program.launch_azimuth_rad); }, false},
+      {"q*alpha", "q_alpha_max_pa_rad", 9, 1, [](const SeedRow& r) { return r.q_alpha_max_pa_rad; }, false}};
+  const bool flown = std::all_of(rows.begin(), rows.end(), [](const SeedRow& r) { return r.flown.has_value(); });
+  if (flown) {
+    columns.push_back({"6D dH,km", "flown_altitude_error_km", 9, 4,
+                       [](const SeedRow& r) { return r.flown->altitude_m * 1e-3; }, true});
+    columns.push_back({"6D dV,m/s", "flown_velocity_error_m_s", 10, 4,
+                       [](const SeedRow& r) { return r.flown->velocity_m_s; }, true});
+    columns.push_back({"6D dg,deg", "flown_flight_path_angle_error_deg", 10, 5,
+                       [](const SeedRow& r) { return Deg(r.flown->flight_path_angle_rad); }, true});
+  }
+  columns.push_back({"ascents", "ascents", 8, 0, [](const SeedRow& r) { return static_cast<double>(r.ascents); },
+                     false});
+  columns.push_back({"time, s", "wall_s", 8, 1, [](const SeedRow& r) { return r.wall_s; }, false});
+  return columns;
+}
+
+// Least, largest and largest magnitude of a column.
+struct Range {
+  double low;
+  double high;
+  double Magnitude() const { return std::fmax(std::fabs(low), std::fabs(high)); }
+};
+Range RangeOf(const std::vector<SeedRow>& rows, const Column& column) {
+  Range range = {column.value(rows.front()), column.value(rows.front())};
+  for (const SeedRow& row : rows) {
+    range.low = std::fmin(range.low, column.value(row));
+    range.high = std::fmax(range.high, column.value(row));
+  }
+  return range;
+}
+
+}  // namespace
+
+std::optional<OrbitErrors> FlyReference(const OptimizationInput& input, const Reference& reference) {
+  if (!input.autopilot) return std::nullopt;
+  Campaign campaign;
+  campaign.vehicle = input.vehicle;
+  campaign.autopilot = *input.autopilot;
+  campaign.reference = reference;
+  const CaseResult result = CampaignFlights(campaign).FlyNominal();
+  if (result.outcome != Outcome::kCompleted) return std::nullopt;
+  const auto metric = [&](const char* name) {
+    const std::vector<std::string>& names = MetricNames();
+    return result.metrics[static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin())];
+  };
+  return OrbitErrors{metric("injection_altitude_error_km") * 1e3, metric("injection_velocity_error_m_s"),
+                     metric("injection_flight_path_angle_error_deg") * kRadPerDeg};
+}
+
+std::vector<SeedRow> RunSeedStudy(const OptimizationInput& input, int seeds, const TrajectoryOptions& options,
+                                  const std::function<void(const SeedRow&)>& done) {
+  std::vector<SeedRow> rows;
+  TrajectoryProblem problem = input.problem;
+  const AscentModel model = BuildAscentModel(input.vehicle, options.tick_s);
+  for (int i = 0; i < seeds; ++i, ++problem.seed) {
+    const auto begin = std::chrono::steady_clock::now();
+    OptimizationResult result = OptimizeTrajectory(input.vehicle, problem, options);
+    SeedRow row;
+    row.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    row.seed = problem.seed;
+    result.reference.name = input.name;
+    result.reference.vehicle_sha256 = input.vehicle_sha256;
+    const Reference read = ReadReference(WriteReference(result.reference), input.name);
+    const auto errors = [&](const AscentSteps& steps) {
+      return ErrorsOf(read.problem, FlyAscent(model, read.program, AscentOptionsOf(read.problem, steps)).orbit);
+    };
+    row.read_back = errors(options.steps);
+    row.reached = result.reached && IsWithin(row.read_back, options.tolerance);
+    row.halved = errors(HalvedSteps(options.steps));
+    row.flown = FlyReference(input, read);
+    row.program = read.program;
+    for (const ConstraintMargin& c : read.constraints)
+      if (c.name == "q_alpha_max_pa_rad") row.q_alpha_max_pa_rad = c.value;
+    row.ascents = read.evaluations;
+    rows.push_back(row);
+    done(row);
+  }
+  return rows;
+}
+
+std::string SeedStudyText(const std::vector<SeedRow>& rows) {
+  const std::vector<Column> columns = Columns(rows);
+  std::string text = fmt::format("{:>6} {:>8}", "seed", "reached");
+  for (const Column& column : columns) text += fmt::format("{:>{}}", column.title, column.width + 1);
+  text += "\n";
+  for (const SeedRow& row : rows) {
+    text += fmt::format("{:>6} {:>8}", row.seed, row.reached ? "yes" : "NO");
+    for (const Column& column : columns)
+      text += fmt::format("{:>{}.{}f}", column.value(row), column.width + 1, column.decimals);
+    text += "\n";
+  }
+  const auto summary = [&](const char* title, bool errors, const std::function<double(const Range&)>& value) {
+    text += fmt::format("{:<15}", title);
+    for (const Column& column : columns) {
+      text += column.is_error == errors
+                  ? fmt::format("{:>{}.{}f}", value(RangeOf(rows, column)), column.width + 1, column.decimals)
+                  : std::string(static_cast<std::size_t>(column.width) + 1, ' ');
+    }
+    text += "\n";
+  };
+  summary("worst", true, [](const Range& range) { return range.Magnitude(); });
+  summary("least", false, [](const Range& range) { return range.low; });
+  summary("largest", false, [](const Range& range) { return range.high; });
+  const auto reached = std::count_if(rows.begin(), rows.end(), [](const SeedRow& row) { return row.reached; });
+  return text + fmt::format("reached from {} of {} seeds\n", reached, rows.size());
+}
+
+nlohmann::ordered_json SeedStudyJson(const std::vector<SeedRow>& rows) {
+  auto list = nlohmann::ordered_json::array();
+  const std::vector<Column> columns = Columns(rows);
+  for (const SeedRow& row : rows) {
+    nlohmann::ordered_json object = {{"seed", row.seed}, {"reached", row.reached}};
+    for (const Column& column : columns) object[column.json] = column.value(row);
+    list.push_back(std::move(object));
+  }
+  return {{"schema", "dispersa/optimize-seeds/1"}, {"seeds", std::move(list)}};
+}
+
+}  // namespace dispersa

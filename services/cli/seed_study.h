@@ -1,0 +1,41 @@
+// One optimisation after another with other seeds: does the search find the orbit whatever its luck, and the
+// same program?
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/campaign_yaml/load.h"
+#include "core/trajectory/optimize.h"
+
+namespace dispersa {
+
+struct SeedRow {
+  std::uint64_t seed = 0;
+  bool reached = false;   ///< as written and read back too
+  OrbitErrors read_back;  ///< of the program as written to text, read again and flown again
+  OrbitErrors halved;     ///< the same with half the steps
+  std::optional<OrbitErrors> flown;  ///< closed loop, if the campaign has an autopilot
+  FlightProgram program;
+  double q_alpha_max_pa_rad = 0.0;
+  std::int64_t ascents = 0;
+  double wall_s = 0.0;
+};
+
+/// Injection errors of the nominal flight with six degrees of freedom under the input's autopilot. Nothing
+/// without an autopilot, or when the flight does not complete.
+std::optional<OrbitErrors> FlyReference(const OptimizationInput& input, const Reference& reference);
+
+/// Seeds problem.seed, problem.seed + 1, ... `done` is called after each row.
+std::vector<SeedRow> RunSeedStudy(const OptimizationInput& input, int seeds, const TrajectoryOptions& options,
+                                  const std::function<void(const SeedRow&)>& done);
+
+/// A row for each seed, then the worst, and the smallest and largest of each variable.
+std::string SeedStudyText(const std::vector<SeedRow>& rows);
+nlohmann::ordered_json SeedStudyJson(const std::vector<SeedRow>& rows);
+
+}  // namespace dispersa

@@ -1,0 +1,47 @@
+// The shipped vehicle on its shipped reference, for tests that fly it.
+#pragma once
+
+#include <string>
+
+#include "core/campaign_yaml/load.h"
+#include "core/flight/flight.h"
+#include "core/math/constants.h"
+
+namespace dispersa {
+
+/// `campaigns` is the folder of the shipped campaigns.
+inline FlightDefinition Slv4Definition(const std::string& campaigns,
+                                       const std::string& autopilot = "adaptive_fuzzy") {
+  const Reference reference = LoadReference(campaigns + "/references/slv4_500km.yaml");
+  FlightDefinition definition;
+  definition.vehicle = LoadVehicle(campaigns + "/vehicles/slv4.yaml");
+  definition.autopilot = LoadAutopilot(campaigns + "/autopilots/" + autopilot + ".yaml");
+  definition.program = reference.attitude;
+  definition.last_ignition_s = reference.last_ignition_s;
+  definition.kick_start_s = reference.program.t1_s;
+  definition.kick_end_s = reference.program.t2_s;
+  definition.target = {reference.problem.target_altitude_m, reference.problem.target_velocity_m_s,
+                       reference.problem.target_flight_path_angle_rad};
+  return definition;
+}
+
+/// Everything of the paper's Table 3 at once, each at its full size.
+inline FlightInputs Table3Inputs() {
+  FlightInputs inputs;
+  inputs.thrust_misalignment_rad = AllStages(0.25 * kRadPerDeg);
+  inputs.thrust_misalignment_clock_rad = {0.5, 2.1, 3.7, 5.3};
+  inputs.wind_max_speed_m_s = 60.96;
+  inputs.wind_azimuth_rad = 280.0 * kRadPerDeg;
+  inputs.drag_factor = 1.067;
+  inputs.thrust_factor = {1.02, 0.98, 1.02, 0.98};
+  return inputs;
+}
+
+/// A metric by its name.
+inline double MetricOf(const FlightResult& flight, const std::string& name) {
+  for (std::size_t i = 0; i < MetricNames().size(); ++i)
+    if (MetricNames()[i] == name) return flight.metrics[i];
+  throw std::out_of_range("no metric " + name);
+}
+
+}  // namespace dispersa
