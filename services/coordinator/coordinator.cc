@@ -84,6 +84,7 @@ void Coordinator::On(const WorkerStatus& status) {
     banned_.insert(status.worker);
     return;
   }
+  if (status.started_cases.empty()) book_.ledger().Idle(status.worker);
   if (joined_.insert_or_assign(status.worker, status.host).second && !supervised_.contains(status.worker)) {
     spdlog::info("worker {} joined: process {} on {}, {} slots", status.worker, status.pid, status.host,
                  status.slots);

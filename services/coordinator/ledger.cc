@@ -43,6 +43,11 @@ std::optional<std::string> Ledger::Join(const std::string& worker, const WorkerH
   return std::nullopt;
 }
 
+void Ledger::Idle(const std::string& worker) {
+  const auto entry = workers_.find(worker);
+  if (entry != workers_.end()) entry->second.stuck = false;
+}
+
 void Ledger::Started(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,
                      double now_s) {
   const auto entry = workers_.find(worker);

@@ -79,6 +79,8 @@ class Ledger {
 
   /// A worker announces itself, or changes what it announced. Returns why it is refused, if it is.
   std::optional<std::string> Join(const std::string& worker, const WorkerHello& hello, double now_s);
+  /// The worker says that it flies nothing. If it was stuck it is so no longer: what it was given got lost.
+  void Idle(const std::string& worker);
   void Started(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt, double now_s);
   /// `fingerprint` covers every bit of the result.
   Acceptance Finished(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,
@@ -87,7 +89,7 @@ class Ledger {
   void Lost(const std::string& worker, WorkerEnd end, const std::string& reason);
 
   /// Takes the cases of stuck workers away from them, with a blame for those that flew too long, and
-  /// returns these workers; they get no more cases until they report something.
+  /// returns these workers; they get no more cases until they report something or are idle.
   std::vector<std::string> Expire(double now_s);
   /// What to send now.
   std::vector<Assignment> Assign(double now_s);

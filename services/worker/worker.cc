@@ -78,7 +78,7 @@ void Worker::Load(const CampaignDefinition& definition) {
     } else {
       const Campaign campaign = ParseCampaign(definition.canonical_yaml, definition.name);
       if (campaign.flight_id == definition.flight_id) {
-        campaigns_[definition.flight_id] =
+        campaigns_[{definition.flight_id, definition.coordinator_epoch}] =
             std::make_shared<LoadedCampaign>(definition.coordinator_epoch, campaign);
       } else {
         reason = "flight id " + definition.flight_id + " of the coordinator differs from the worker's " +
@@ -98,17 +98,14 @@ void Worker::Load(const CampaignDefinition& definition) {
 }
 
 void Worker::Close(const CampaignClosed& closed) {
-  const auto campaign = campaigns_.find(closed.flight_id);
-  if (campaign != campaigns_.end() && campaign->second->coordinator_epoch == closed.coordinator_epoch) {
-    campaigns_.erase(campaign);
-  }
+  campaigns_.erase({closed.flight_id, closed.coordinator_epoch});
   std::erase_if(early_orders_, [&](const FlyOrder& order) {
     return order.flight_id == closed.flight_id && order.coordinator_epoch == closed.coordinator_epoch;
   });
 }
 
 void Worker::Enqueue(const FlyOrder& order) {
-  const auto campaign = campaigns_.find(order.flight_id);
+  const auto campaign = campaigns_.find({order.flight_id, order.coordinator_epoch});
   if (campaign == campaigns_.end()) {
     early_orders_.push_back(order);
     return;
@@ -134,7 +131,8 @@ void Worker::FlyForEver() {
     work_.wait(lock, [this] { return !jobs_.empty() && !stopping_; });
     const Job job = std::move(jobs_.front());
     jobs_.pop_front();
-    if (!report.flown.empty() && report.flight_id != job.campaign->flight_id) {
+    if (!report.flown.empty() && (report.flight_id != job.campaign->flight_id ||
+                                  report.coordinator_epoch != job.campaign->coordinator_epoch)) {
       link_->Send(report);
       report.flown.clear();
     }

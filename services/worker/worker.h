@@ -11,6 +11,7 @@
 #include <set>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "core/campaign/campaign_flights.h"
@@ -40,6 +41,9 @@ class Worker {
   void Stop();
 
  private:
+  /// Flight id and coordinator's epoch: a coordinator that was started again opens the same flight anew, and
+  /// its orders may arrive before that opening does.
+  using CampaignKey = std::pair<std::string, std::uint64_t>;
   struct LoadedCampaign {
     LoadedCampaign(std::uint64_t epoch, const Campaign& campaign)
         : coordinator_epoch(epoch), flight_id(campaign.flight_id), flights(campaign) {}
@@ -63,7 +67,7 @@ class Worker {
 
   WorkerOptions options_;
   std::unique_ptr<WorkerLink> link_;
-  std::map<std::string, std::shared_ptr<const LoadedCampaign>> campaigns_;  ///< by flight id
+  std::map<CampaignKey, std::shared_ptr<const LoadedCampaign>> campaigns_;
   std::vector<FlyOrder> early_orders_;  ///< whose campaign has not arrived yet
 
   std::mutex mutex_;  ///< of all below; also taken for sending from a flying thread

@@ -293,13 +293,21 @@ class RunTest(unittest.TestCase):
         self.daemons.append(coordinator)
         if len(self.daemons) == 1:
             for slots in ("1", "2"):
-                self.daemons.append(subprocess.Popen(
-                    [BINARIES / "dispersa-worker", *network, "--peer", "127.0.0.1", "--slots", slots],
-                    stderr=subprocess.DEVNULL))
+                log = self.root / f"worker-{domain}-{slots}.log"
+                with log.open("w") as stderr:
+                    self.daemons.append(subprocess.Popen(
+                        [BINARIES / "dispersa-worker", *network, "--peer", "127.0.0.1", "--slots", slots],
+                        stderr=stderr))
+                self.daemons[-1].log = log
         return coordinator
 
     def finish_daemons(self, coordinator, out):
-        stdout, stderr = coordinator.communicate(timeout=3 * PATIENCE_S)
+        try:
+            stdout, stderr = coordinator.communicate(timeout=3 * PATIENCE_S)
+        except subprocess.TimeoutExpired:
+            coordinator.kill()
+            workers = [(worker.poll(), worker.log.read_text()) for worker in self.daemons[1:3]]
+            self.fail(f"{stored(out)} cases, then nothing: {coordinator.communicate()[1]}\nworkers: {workers}")
         self.assertEqual(coordinator.returncode, self.reference.code, stderr)
         self.assertEqual(stdout, f"result: {out}\n")
         self.assertEqual((out / "cases.csv").read_bytes(), self.reference.csv())

@@ -210,6 +210,19 @@ TEST(Ledger, AnAssignmentThatNobodyStartsExpiresWithoutBlame) {
   EXPECT_THAT(ledger.Quarantined(), IsEmpty());
 }
 
+TEST(Ledger, AnAssignmentThatGotLostIsGivenAgainToTheWorkerThatIsIdle) {
+  Ledger ledger("1", 1, {.lease_s = 10.0});
+  ledger.Join("a", kHello, 0.0);
+  ledger.Assign(0.0);
+  ledger.Idle("a");  // it may still be on its way
+  EXPECT_THAT(ledger.Assign(5.0), IsEmpty());
+  EXPECT_THAT(ledger.Expire(10.1), ElementsAre("a"));
+  EXPECT_THAT(ledger.Assign(10.1), IsEmpty());
+  ledger.Idle("a");
+  EXPECT_THAT(ledger.Assign(10.2), ElementsAre(Assignment{"a", 2, {0}}));
+  ledger.Idle("nobody");
+}
+
 TEST(Ledger, TheLeaseGrowsWithTheLongestCase) {
   Ledger ledger("1", 2, {.lease_s = 10.0});
   ledger.Join("a", kHello, 0.0);
