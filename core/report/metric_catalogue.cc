@@ -48,7 +48,7 @@ constexpr std::array<Entry, 36> kEntries = {{
      "root mean square over powered flight of the component about body y of the rotation from the reference "
      "attitude to the true one"},
     {"pitch_error_peak", "Pitch error, peak", "largest magnitude of the same error over powered flight"},
-    {"pitch_error_peak_time", "Time of the pitch error's peak", "since lift-off"},
+    {"pitch_error_peak_time", "Time of the pitch error's peak", "since lift-off", Worse::kNeither},
     {"pitch_error_itae", "Pitch error, ITAE",
      "integral over powered flight of time times magnitude of the error"},
     {"yaw_error_rms", "Yaw error, RMS", "about body z, over powered flight"},
@@ -77,18 +77,19 @@ constexpr std::array<Entry, 36> kEntries = {{
     {"handover_attitude_error", "Attitude error at the last ignition",
      "magnitude of the rotation that the reaction control leaves to the gimbals"},
     {"handover_rate_error", "Rate error at the last ignition", "magnitude, likewise"},
-    {"injection_altitude", "Injection altitude", "geodetic, at the end of the last burn"},
-    {"injection_velocity", "Injection velocity", "inertial, at the end of the last burn"},
+    {"injection_altitude", "Injection altitude", "geodetic, at the end of the last burn", Worse::kNeither},
+    {"injection_velocity", "Injection velocity", "inertial, at the end of the last burn", Worse::kNeither},
     {"injection_flight_path_angle", "Injection flight path angle", "inertial, at the end of the last burn",
      Worse::kFartherFromZero},
     {"injection_altitude_error", "Injection altitude error", "against the target", Worse::kFartherFromZero},
     {"injection_velocity_error", "Injection velocity error", "against the target", Worse::kFartherFromZero},
     {"injection_flight_path_angle_error", "Injection flight path angle error", "against the target",
      Worse::kFartherFromZero},
-    {"apogee", "Apogee", "altitude over the equatorial radius of the osculating orbit at injection"},
+    {"apogee", "Apogee", "altitude over the equatorial radius of the osculating orbit at injection",
+     Worse::kNeither},
     {"perigee", "Perigee", "altitude over the equatorial radius of the osculating orbit at injection",
      Worse::kSmaller},
-    {"inclination", "Inclination", "of the osculating orbit at injection"},
+    {"inclination", "Inclination", "of the osculating orbit at injection", Worse::kNeither},
     {"rcs_propellant", "Reaction control propellant", "used in the coast"},
     {"lyapunov_outside_fraction", "Outside the residual set",
      "fraction of powered flight with the pitch law's V above that of 0.05 deg of error"},
@@ -96,7 +97,7 @@ constexpr std::array<Entry, 36> kEntries = {{
      "fraction of the powered flight outside the residual set", Worse::kSmaller},
     {"adaptation_norm_peak", "Adaptation, largest norm",
      "distance of the pitch rules' consequents from their start"},
-    {"rules_fired", "Rules fired", "pitch rules that were active at any time"},
+    {"rules_fired", "Rules fired", "pitch rules that were active at any time", Worse::kNeither},
 }};
 
 /// Takes "_stage2" or "_coast" out of a stem and says it in words.
@@ -150,6 +151,7 @@ MetricInfo DescribeMetric(const std::string& name) {
 double Badness(Worse worse, double value) {
   switch (worse) {
     case Worse::kLarger:
+    case Worse::kNeither:
       return value;
     case Worse::kSmaller:
       return -value;

@@ -5,7 +5,12 @@
 
 namespace dispersa {
 
-enum class Worse { kLarger, kSmaller, kFartherFromZero };
+enum class Worse {
+  kLarger,
+  kSmaller,
+  kFartherFromZero,
+  kNeither,  ///< it tells where or when, not how good
+};
 
 struct MetricInfo {
   std::string title;       ///< "Pitch error, peak, stage 2"
@@ -27,7 +32,7 @@ struct NameAndUnit {
 };
 NameAndUnit SplitUnit(const std::string& name);
 
-/// The value by which cases are ranked: the larger, the worse.
+/// The value by which cases are ranked: the larger, the worse. What is neither good nor bad is ranked by its size.
 double Badness(Worse worse, double value);
 
 }  // namespace dispersa

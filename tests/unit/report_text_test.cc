@@ -69,6 +69,7 @@ TEST(MetricCatalogue, RanksByWhatIsWorse) {
   EXPECT_GT(Badness(Worse::kLarger, 2.0), Badness(Worse::kLarger, 1.0));
   EXPECT_GT(Badness(Worse::kSmaller, 1.0), Badness(Worse::kSmaller, 2.0));
   EXPECT_GT(Badness(Worse::kFartherFromZero, -2.0), Badness(Worse::kFartherFromZero, 1.0));
+  EXPECT_EQ(DescribeMetric("injection_altitude_km").worse, Worse::kNeither);
 }
 
 }  // namespace

@@ -1,0 +1,146 @@
+"""dispersa paper and dispersa compare as a user calls them, on small campaigns.
+
+DISPERSA_BINARIES and DISPERSA_CAMPAIGNS name the folders of the programs and of the campaigns.
+"""
+import csv
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+BINARIES = pathlib.Path(os.environ["DISPERSA_BINARIES"])
+CAMPAIGNS = pathlib.Path(os.environ["DISPERSA_CAMPAIGNS"])
+
+SECTIONS = ["table1", "table2", "fig2", "fig3", "table3", "fig5", "fig6", "fig8", "fig10", "baselines",
+            "margins", "lyapunov", "completions", "campaigns"]
+
+
+def dispersa(*arguments):
+    return subprocess.run([BINARIES / "dispersa", *map(str, arguments)], capture_output=True, text=True)
+
+
+class StudyTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="dispersa-paper-"))
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def small_campaigns(self):
+        """The shipped campaigns with 4 choices of P_n instead of 81, 4 corners instead of 16, and a short search."""
+        campaigns = self.folder / "campaigns"
+        shutil.copytree(CAMPAIGNS, campaigns)
+
+        def change(name, pattern, replacement):
+            text, changes = re.subn(pattern, replacement, (campaigns / name).read_text(), flags=re.MULTILINE)
+            self.assertGreater(changes, 0, f"{name} has nothing like {pattern}")
+            (campaigns / name).write_text(text)
+
+        change("pn_sweep.yaml", r"values_factor: \[.*\]", "values_factor: [1, 30]")
+        change("pn_sweep.yaml", r"cases: \d+", "cases: 4")
+        for file in campaigns.glob("aero20*.yaml"):
+            change(file.name, r"^  (drag|lift)_coefficient: .*\n", "")
+        change("aero20_quiet.yaml", r"cases: \d+", "cases: 4")
+        change("aero20_one_at_a_time_quiet.yaml", r"cases: \d+", "cases: 4")
+        reference = re.search(r"^reference: (.*)$", (campaigns / "nominal.yaml").read_text(), re.MULTILINE)[1]
+        change(reference, r"population: \d+", "population: 10")
+        change(reference, r"generations: \d+", "generations: 2")
+        return campaigns
+
+    def test_the_page_has_every_table_and_figure_and_needs_nothing_else(self):
+        out = self.folder / "paper"
+        done = dispersa("paper", "--out", out, "--cases", "2", "--threads", "2", "--campaigns", self.small_campaigns(),
+                        "--quiet")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stdout, f"page: {out / 'paper.html'}\n")
+        page = (out / "paper.html").read_text()
+        self.assertEqual(re.findall(r'<h2 id="(\w+)">', page), SECTIONS)
+        self.assertEqual(re.findall(r'href="#(\w+)"', page)[:len(SECTIONS)], SECTIONS)  # each has a link
+        self.assertEqual(page.count("<dl class=\"findings\">"), len(SECTIONS) - 1)  # all but the list of campaigns
+        self.assertIn("The vehicle is rigid.", page)
+        # Readable offline, and no number that is none.
+        self.assertNotRegex(page, r'(src|href)="(?!#)')
+        self.assertNotIn("http", page)
+        self.assertNotRegex(re.sub(r"<style>.*?</style>", "", page, flags=re.DOTALL), r"\b(nan|inf)\b")
+
+        # The map: of P_n and 30 P_n at least the last loses control, and the Lyapunov equation's own does not.
+        with open(out / "data" / "pn_sweep_cases.csv", newline="") as stream:
+            rows = {(float(row["input_pn_error_factor"]), float(row["input_pn_rate_factor"])): row
+                    for row in csv.DictReader(stream)}
+        self.assertEqual(len(rows), 4)
+        self.assertEqual(rows[1, 1]["outcome"], "completed")
+        self.assertEqual(rows[30, 30]["outcome"], "lost_control")
+        # A P_n that was refused: one row each, with what is said to it.
+        self.assertEqual(page.count("pitch.adaptation.p_n: is not"), 2)
+
+        # Data beside the page, and baselines on the cases of the adaptive law.
+        for name in ["figs2_3_trajectory", "figs6_9_nominal", "table3_pitch_error_deg", "aero20_quiet_pitch_deg"]:
+            self.assertGreater(len((out / "data" / f"{name}.csv").read_text().splitlines()), 300, name)
+
+        def draws(name):
+            with open(out / "data" / f"{name}_cases.csv", newline="") as stream:
+                return [[value for column, value in row.items() if column.startswith("input_")]
+                        for row in csv.DictReader(stream)]
+        self.assertEqual(len(draws("controllers")), 2)
+        for baseline in ["frozen_fuzzy", "pd", "pd_aac"]:
+            self.assertEqual(draws(f"controllers_{baseline}"), draws("controllers"))
+
+    def test_bad_usage_of_paper(self):
+        (self.folder / "mine").write_text("")
+        full = dispersa("paper", "--out", self.folder)
+        self.assertEqual((full.returncode, full.stderr),
+                         (2, f"--out: {self.folder} is not an empty folder, allowed: a folder that is empty or new\n"))
+        missing = dispersa("paper", "--out", self.folder / "new", "--campaigns", self.folder)
+        self.assertEqual(missing.returncode, 2)
+        self.assertEqual(missing.stderr, f"{self.folder / 'nominal.yaml'}:1:1: cannot be read: No such file or directory, "
+                                         "allowed: a readable file\n")
+        self.assertFalse((self.folder / "new").exists())
+
+    def fly(self, campaign, cases):
+        out = self.folder / campaign
+        done = dispersa("run", CAMPAIGNS / f"{campaign}.yaml", "--cases", cases, "--workers", "0", "--out", out, "--quiet")
+        self.assertIn(done.returncode, (0, 3, 4), done.stderr)
+        return out
+
+    def test_compare_pairs_cases_and_refuses_what_has_no_pair(self):
+        adaptive = self.fly("controllers", 3)
+        pd = self.fly("controllers_pd", 2)
+        done = dispersa("--json", "compare", adaptive, pd, "--metric", "pitch_error_rms_deg")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        report = json.loads(done.stdout)
+        self.assertEqual(report["schema"], "dispersa/compare/1")
+        self.assertEqual((report["pairs"], report["unpaired"]), (2, 1))
+        self.assertEqual(report["b"], "controllers_pd (pd)")
+
+        def values(folder):
+            with open(folder / "cases.csv", newline="") as stream:
+                return [float(row["metric_pitch_error_rms_deg"]) for row in csv.DictReader(stream)]
+        differences = [b - a for a, b in zip(values(adaptive), values(pd))]
+        metric = report["metrics"][0]
+        self.assertEqual(metric["metric"], "pitch_error_rms_deg")
+        self.assertAlmostEqual(metric["median_difference"], sum(differences) / 2, delta=1e-12)  # of two
+        self.assertEqual(metric["a_better"], sum(difference > 0 for difference in differences))
+        self.assertEqual([case["case_index"] for case in metric["b_better_cases"]],
+                         [index for index, difference in enumerate(differences) if difference < 0])
+
+        text = dispersa("compare", adaptive, pd)
+        self.assertEqual(text.returncode, 0, text.stderr)
+        self.assertIn("pairs: 2, cases without a pair: 1; intervals of 95 %", text.stdout)
+
+        other = self.fly("smoke", 2)
+        refused = dispersa("compare", adaptive, other)
+        self.assertEqual((refused.returncode, refused.stderr),
+                         (2, f"no case of {adaptive} has the draws of the same case of {other}\n"))
+        unknown = dispersa("compare", adaptive, pd, "--metric", "speed")
+        self.assertEqual((unknown.returncode, unknown.stderr),
+                         (2, "--metric: 'speed' is not a metric, allowed: a name in cases.csv without its prefix 'metric_'\n"))
+        neither = dispersa("compare", adaptive, pd, "--metric", "injection_altitude_km")
+        self.assertEqual((neither.returncode, neither.stderr),
+                         (2, "--metric: 'injection_altitude_km' cannot be compared, allowed: a metric of which less is "
+                             "better\n"))
+
+
+if __name__ == "__main__":
+    unittest.main()
