@@ -33,6 +33,14 @@ void AddThrust(const LauncherStack& stack, const double* y, double thrust_n, dou
 
 }  // namespace
 
+RigidBodyState AfterSeparation(const LauncherPlant& plant, int below, const RigidBodyState& state) {
+  const StackMass& whole = plant.stacks[static_cast<std::size_t>(below)].mass;
+  const StackMass& upper = plant.stacks[static_cast<std::size_t>(below) + 1].mass;
+  const double old_cg = whole.At(0.0).cg_station_m * plant.cg_factor;
+  const double new_cg = upper.At(upper.propellant_mass_kg).cg_station_m * plant.cg_factor;
+  return AtPoint(state, Vector3(old_cg - new_cg, 0.0, 0.0));
+}
+
 LauncherInstant Evaluate(const LauncherPlant& plant, const LauncherPhase& phase, double time_s,
                          const double* y) {
   const LauncherStack& stack = plant.stacks[static_cast<std::size_t>(phase.stack)];

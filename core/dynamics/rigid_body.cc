@@ -19,6 +19,12 @@ void WriteState(const RigidBodyState& s, double* y) {
   y[9] = s.q_IB.z;
 }
 
+RigidBodyState AtPoint(RigidBodyState s, const Vector3& r_CP_B) {
+  s.p_EoC_I += Rotate(s.q_IB, r_CP_B);
+  s.v_IC_I += Rotate(s.q_IB, s.w_IB_B.cross(r_CP_B));
+  return s;
+}
+
 void RigidBodyDerivative(const Earth& earth, const RigidBodyState& s, const BodyLoads& loads,
                          double* dydt) {
   RigidBodyState rate;

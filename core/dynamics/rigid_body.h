@@ -19,6 +19,9 @@ inline constexpr int kRigidBodySize = 13;
 RigidBodyState ReadState(const double* y);
 void WriteState(const RigidBodyState& state, double* y);
 
+/// The state of the body's point P, at r_CP_B from C: the turning body moves there with v + w x r.
+RigidBodyState AtPoint(RigidBodyState state, const Vector3& r_CP_B);
+
 /// What acts on the body at one instant, in body axes about C.
 struct BodyLoads {
   Vector3 force_n = Vector3::Zero();       ///< all but gravitation
@@ -29,7 +32,10 @@ struct BodyLoads {
 };
 
 /// dp/dt = v, dv/dt = gravitation + R_IB F / m, dq/dt by w, and
-///   I dw/dt = M - w x I w - (dI/dt) w.
+///   I dw/dt = M - w x I w - (dI/dt) w,
+/// I and dI/dt about the moving C. With the jet damping -m_dot r x (w x r), r from C to the nozzle, in M, I w is
+/// the angular momentum of what stays on board. Left out: the force of the flow through a turning body, of the
+/// order m_dot |w| |r| (below 1e-4 of a launcher's thrust), and the motion of C through the body (metres a burn).
 /// q is used as it is: its norm drifts by the integrator's error and is restored between steps.
 void RigidBodyDerivative(const Earth& earth, const RigidBodyState& state, const BodyLoads& loads,
                          double* dydt);

@@ -329,16 +329,7 @@ void Flight::BurnOut(int stage, double) {
 
 void Flight::Separate(int stage) {
   const std::size_t below = static_cast<std::size_t>(stage);
-  const LauncherPlant& plant = motion_.plant;
-  const double old_cg = plant.stacks[below].mass.At(0.0).cg_station_m * plant.cg_factor;
-  const StackMass& upper = plant.stacks[below + 1].mass;
-  const double new_cg = upper.At(upper.propellant_mass_kg).cg_station_m * plant.cg_factor;
-
-  // The state follows the centre of gravity, which jumps forward to the remaining stack's.
-  RigidBodyState s = ReadState(y_.data());
-  const Vector3 forward(old_cg - new_cg, 0.0, 0.0);
-  s.p_EoC_I += Rotate(s.q_IB, forward);
-  s.v_IC_I += Rotate(s.q_IB, s.w_IB_B.cross(forward));
+  RigidBodyState s = AfterSeparation(motion_.plant, stage, ReadState(y_.data()));
   s.w_IB_B += Vector3(inputs_.tip_off_roll_rad_s[below], inputs_.tip_off_pitch_rad_s[below],
                       inputs_.tip_off_yaw_rad_s[below]);
   y_.fill(0.0);

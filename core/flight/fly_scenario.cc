@@ -128,11 +128,7 @@ void Separate(const Scenario& scenario, const Phase& from, const Phase& to, doub
   double new_cg = 0.0;
   SetMass(scenario.stages[from.stage], from, time_s, unused, old_cg);
   SetMass(scenario.stages[to.stage], to, time_s, unused, new_cg);
-  RigidBodyState state = ReadState(y);
-  const Vector3 forward(old_cg - new_cg, 0.0, 0.0);
-  state.p_EoC_I += Rotate(state.q_IB, forward);
-  state.v_IC_I += Rotate(state.q_IB, state.w_IB_B.cross(forward));
-  WriteState(state, y);
+  WriteState(AtPoint(ReadState(y), Vector3(old_cg - new_cg, 0.0, 0.0)), y);
 }
 
 class Flight {

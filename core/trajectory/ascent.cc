@@ -40,10 +40,7 @@ class Ascent {
         frame_(BuildLaunchFrame(model.plant.environment.earth, model.vehicle.site,
                                 program.launch_azimuth_rad)),
         integrator_(Scheme::kRungeKutta4, 6, &Ascent::Rhs, this, nullptr) {
-    for (int i = 0; i < 3; ++i) {
-      y_[i] = frame_.p_EoL_I[i];
-      y_[3 + i] = frame_.v_IL_I[i];
-    }
+    SetMotion(frame_.p_EoL_I, frame_.v_IL_I);
   }
 
   AscentResult Fly();
@@ -64,14 +61,21 @@ class Ascent {
     }
   }
 
+  void SetMotion(const Vector3& p_EoC_I, const Vector3& v_IC_I) {
+    for (int i = 0; i < 3; ++i) {
+      y_[i] = p_EoC_I[i];
+      y_[3 + i] = v_IC_I[i];
+    }
+  }
   Vector3 AirVelocity(const double* y) const {
     const double omega = model_.plant.environment.earth.rotation_rate_rad_s;
     return Vector3(y[3] + omega * y[1], y[4] - omega * y[0], y[5]);
   }
   Matrix3 Attitude(double t, const double* y) const;
+  static RigidBodyState State(const double* y, const Matrix3& R_IB);
   LauncherInstant Instant(double t, const double* y, const Matrix3& R_IB) const;
   Vector3 Acceleration(double t, const double* y) const;
-  double TurnRate(double t, const double* y) const;
+  Vector3 AxisRate(double t, const double* y) const;
   PitchYawRoll Angles(double t, const double* y) const {
     return ToPitchYawRoll(QuaternionOf(frame_.R_IL.transpose() * Attitude(t, y)));
   }
@@ -121,13 +125,17 @@ Matrix3 Ascent::Attitude(double t, const double* y) const {
   return R_IB;
 }
 
-LauncherInstant Ascent::Instant(double t, const double* y, const Matrix3& R_IB) const {
+RigidBodyState Ascent::State(const double* y, const Matrix3& R_IB) {
   RigidBodyState state;
   state.p_EoC_I = Vector3(y[0], y[1], y[2]);
   state.v_IC_I = Vector3(y[3], y[4], y[5]);
   state.q_IB = QuaternionOf(R_IB);
+  return state;
+}
+
+LauncherInstant Ascent::Instant(double t, const double* y, const Matrix3& R_IB) const {
   std::array<double, kLauncherSize> full{};
-  WriteState(state, full.data());
+  WriteState(State(y, R_IB), full.data());
   return Evaluate(model_.plant, phase_, t, full.data());
 }
 
@@ -151,15 +159,15 @@ void Beside(double t, const double* y, const Vector3& acceleration, const Visit&
   }
 }
 
-// Of the body axis against the stars.
-double Ascent::TurnRate(double t, const double* y) const {
+// Of the body's x axis against the stars, 1/s, in I.
+Vector3 Ascent::AxisRate(double t, const double* y) const {
   Vector3 turned = Vector3::Zero();
   double sign = -1.0;
   Beside(t, y, Acceleration(t, y), [&](double beside_s, const double* there) {
     turned += sign * Attitude(beside_s, there).col(0);
     sign = 1.0;
   });
-  return turned.norm() / (2.0 * kDifference_s);
+  return turned / (2.0 * kDifference_s);
 }
 
 std::vector<Ascent::Event> Ascent::Events() {
@@ -215,7 +223,7 @@ void Ascent::Observe(bool record) {
   if (now.air.mach >= options_.mach_low && now.air.mach <= options_.mach_high)
     r.transonic_alpha_max_rad = std::max(r.transonic_alpha_max_rad, alpha);
   if (turn_ == ProgramPhase::kTurn && time_s_ <= program_.t2_s)
-    r.turn_rate_max_rad_s = std::max(r.turn_rate_max_rad_s, TurnRate(time_s_, y_));
+    r.turn_rate_max_rad_s = std::max(r.turn_rate_max_rad_s, AxisRate(time_s_, y_).norm());
   if (options_.record && record) Record(now);
 }
 
@@ -239,6 +247,8 @@ void Ascent::Record(const LauncherInstant& now) {
   s.qbar_pa = now.air.qbar_pa;
   s.axial_load_g = now.loads.force_n.x() / (now.loads.mass_kg * kStandardGravity);
   s.mass_kg = now.loads.mass_kg;
+  s.p_EoC_I = p;
+  s.v_IC_I = v;
   result_.samples.push_back(s);
   const std::vector<AttitudeKnot>& knots = result_.attitude.knots;
   if (knots.empty() || time_s_ > knots.back().time_s + kSameInstant_s)
@@ -282,12 +292,12 @@ void Ascent::Happen(const Event& event) {
       phase_.burnt = true;
       break;
     case Event::kSeparation: {
-      const std::size_t below = static_cast<std::size_t>(event.stage);
-      const StackMass& upper = model_.plant.stacks[below + 1].mass;
-      const double forward_m = model_.plant.stacks[below].mass.At(0.0).cg_station_m -
-                               upper.At(upper.propellant_mass_kg).cg_station_m;
-      const Vector3 forward = Attitude(time_s_, y_).col(0) * forward_m;
-      for (int i = 0; i < 3; ++i) y_[i] += forward[i];
+      // The vehicle turns with its program: the stack above leaves with the velocity of its own CG.
+      const Matrix3 R_IB = Attitude(time_s_, y_);
+      RigidBodyState state = State(y_, R_IB);
+      state.w_IB_B = R_IB.transpose() * R_IB.col(0).cross(AxisRate(time_s_, y_));
+      state = AfterSeparation(model_.plant, event.stage, state);
+      SetMotion(state.p_EoC_I, state.v_IC_I);
       phase_.stack = event.stage + 1;
       phase_.burnt = false;
       break;

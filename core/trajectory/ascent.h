@@ -58,6 +58,8 @@ struct AscentSample {
   double qbar_pa = 0.0;
   double axial_load_g = 0.0;
   double mass_kg = 0.0;
+  Vector3 p_EoC_I = Vector3::Zero();
+  Vector3 v_IC_I = Vector3::Zero();
 };
 
 struct AscentResult {

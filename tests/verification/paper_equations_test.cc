@@ -546,15 +546,21 @@ class PlanarFlight {
     }
   }
 
-  // The centre of gravity jumps forward along the body; the path's inertial direction stays.
+  // The centre of gravity jumps forward along the body and takes the velocity of the turning body there; the
+  // body turns with the inertial direction of the path, at -g cos(path) / V.
   void Separate(std::size_t below) {
     const StackMass& upper = model_.plant.stacks[below + 1].mass;
     const double forward = model_.plant.stacks[below].mass.At(0.0).cg_station_m -
                            upper.At(upper.propellant_mass_kg).cg_station_m;
-    const double turned = forward * cos(y_[1]) / (kRadius_m + y_[2]);
+    const double r = kRadius_m + y_[2];
+    const double turn_rate = -model_.plant.environment.earth.mu_m3_s2 / (r * r) * cos(y_[1]) / y_[0];
+    const double turned = forward * cos(y_[1]) / r;
     y_[2] += forward * sin(y_[1]);
     y_[1] += turned;
     y_[3] += kRadius_m * turned;
+    const double across = forward * turn_rate;
+    y_[1] += std::atan2(across, y_[0]);
+    y_[0] = std::hypot(y_[0], across);
   }
 
   const AscentModel& model_;
