@@ -1,0 +1,110 @@
+// The optimiser as its users see it: the target met to the metre, the same bytes for any number of threads, a
+// plain statement when a target is out of reach. `dispersa optimize campaigns/slv4_500km.yaml --seeds 20` does the first for 20 seeds.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "core/campaign_yaml/load.h"
+#include "core/trajectory/optimize.h"
+
+namespace dispersa {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+
+OptimizationInput ShortSearch(const std::string& campaign) {
+  OptimizationInput input = LoadOptimization(DISPERSA_CAMPAIGNS "/" + campaign);
+  input.problem.population = 12;
+  input.problem.generations = 6;
+  return input;
+}
+
+TrajectoryOptions OptionsFor(const OptimizationInput& input, int threads) {
+  TrajectoryOptions options;
+  options.tick_s = input.tick_s;
+  options.threads = threads;
+  options.selection_population = 8;
+  options.selection_generations = 3;
+  return options;
+}
+
+void ExpectOnTarget(const OrbitErrors& errors, const OrbitErrors& limit) {
+  EXPECT_LE(std::fabs(errors.altitude_m), limit.altitude_m);
+  EXPECT_LE(std::fabs(errors.velocity_m_s), limit.velocity_m_s);
+  EXPECT_LE(std::fabs(errors.flight_path_angle_rad), limit.flight_path_angle_rad);
+}
+
+const OrbitErrors kMetre = {1.0, 1e-3, 1e-6 * kRadPerDeg};
+
+// The orbit of a program that is flown anew.
+OrbitErrors FlyAgain(const OptimizationInput& input, const Reference& reference) {
+  const TrajectoryOptions options = OptionsFor(input, 1);
+  const AscentModel model = BuildAscentModel(input.vehicle, options.tick_s);
+  return ErrorsOf(reference.problem, BuildReference(model, reference.problem, reference.program, options).orbit);
+}
+
+TEST(OptimizeTrajectory, MeetsTheTargetToTheMetreAndStillDoesAfterTheFileIsReadBack) {
+  for (const char* campaign : {"slv4_500km.yaml", "orbit400.yaml"}) {
+    SCOPED_TRACE(campaign);
+    const OptimizationInput input = LoadOptimization(std::string(DISPERSA_CAMPAIGNS "/") + campaign);
+    TrajectoryOptions options;
+    options.tick_s = input.tick_s;
+    options.threads = 2;
+    const OptimizationResult result = OptimizeTrajectory(input.vehicle, input.problem, options);
+    ASSERT_TRUE(result.reached) << result.statement;
+    ExpectOnTarget(result.errors, kMetre);
+    ExpectOnTarget(result.halved_step_errors, kMetre);
+    for (const ConstraintMargin& constraint : result.reference.constraints) {
+      EXPECT_TRUE(!constraint.enforced || constraint.margin >= 0.0) << constraint.name;
+    }
+    Reference written = result.reference;
+    written.name = "again";
+    written.vehicle_sha256 = input.vehicle_sha256;
+    ExpectOnTarget(FlyAgain(input, ReadReference(WriteReference(written), "again.yaml")), kMetre);
+  }
+}
+
+TEST(OptimizeTrajectory, ReturnsTheSameBytesForOneThreadAndTwo) {
+  const OptimizationInput input = ShortSearch("slv4_500km.yaml");
+  const auto text = [&](int threads) {
+    Reference reference =
+        OptimizeTrajectory(input.vehicle, input.problem, OptionsFor(input, threads)).reference;
+    reference.name = "threads";
+    reference.vehicle_sha256 = input.vehicle_sha256;
+    return WriteReference(reference);
+  };
+  EXPECT_EQ(text(1), text(2));
+}
+
+TEST(OptimizeTrajectory, SaysHowFarItGotAndThatTheEnergyDoesNotSuffice) {
+  OptimizationInput input = ShortSearch("slv4_500km.yaml");
+  input.problem.target_velocity_m_s = 8200.0;
+  const OptimizationResult result = OptimizeTrajectory(input.vehicle, input.problem, OptionsFor(input, 2));
+  EXPECT_FALSE(result.reached);
+  EXPECT_THAT(result.statement, HasSubstr(" Energy: "));
+  EXPECT_THAT(result.statement, HasSubstr(" m/s less than the target asks."));
+}
+
+TEST(OptimizeTrajectory, SaysWhichConstraintStoppedIt) {
+  OptimizationInput input = ShortSearch("slv4_500km.yaml");
+  input.problem.axial_load_limit_g = 5.0;  // the third stage burns out at more than 8 g, whatever the program
+  const OptimizationResult result = OptimizeTrajectory(input.vehicle, input.problem, OptionsFor(input, 2));
+  EXPECT_FALSE(result.reached);
+  EXPECT_THAT(result.statement, HasSubstr(" Constraint: axial_load_max_g = 8."));
+}
+
+// A change of the models or of the vehicle needs a new reference: campaigns/slv4_500km.yaml says how.
+TEST(ShippedReference, MeetsItsTargetWithTheModelsOfToday) {
+  const OptimizationInput input = LoadOptimization(DISPERSA_CAMPAIGNS "/slv4_500km.yaml");
+  const Reference reference = LoadReference(DISPERSA_CAMPAIGNS "/references/slv4_500km.yaml");
+  EXPECT_EQ(reference.vehicle_sha256, input.vehicle_sha256);
+  ExpectOnTarget(FlyAgain(input, reference), kMetre);
+}
+
+}  // namespace
+}  // namespace dispersa
