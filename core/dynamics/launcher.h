@@ -59,8 +59,8 @@ struct LauncherInstant {
   double flow_kg_s = 0.0;
 };
 
-/// `state` after the empty lowest stage of stack `below` has left: it follows the centre of gravity, which jumps
-/// forward to that of the stack above, full.
+/// `state` after the empty lowest stage of stack `below` has left: it follows the centre of gravity, which
+/// jumps forward to that of the stack above, full.
 RigidBodyState AfterSeparation(const LauncherPlant& plant, int below, const RigidBodyState& state);
 
 LauncherInstant Evaluate(const LauncherPlant& plant, const LauncherPhase& phase, double time_s,

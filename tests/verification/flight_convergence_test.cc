@@ -37,8 +37,8 @@ Differences Between(const Flown& a, const Flown& b) {
   Differences d{};
   d.altitude_m = 1e3 * std::fabs(MetricOf(a.result, "injection_altitude_km") -
                                  MetricOf(b.result, "injection_altitude_km"));
-  d.velocity_m_s = std::fabs(MetricOf(a.result, "injection_velocity_m_s") -
-                             MetricOf(b.result, "injection_velocity_m_s"));
+  d.velocity_m_s =
+      std::fabs(MetricOf(a.result, "injection_velocity_m_s") - MetricOf(b.result, "injection_velocity_m_s"));
   EXPECT_EQ(a.history.rows(), b.history.rows());
   const int column = FindHistoryColumn("pitch_error_deg");
   for (std::size_t row = 0; row < std::min(a.history.rows(), b.history.rows()); ++row)
@@ -51,7 +51,7 @@ void ExpectConvergence(const FlightInputs& inputs, const Differences& shipped_li
   const FlightModel model(Slv4Definition(DISPERSA_CAMPAIGNS));
   const Flown exact = FlyWith(model, inputs, Scheme::kCvode, 1);
   ASSERT_EQ(exact.result.outcome, Outcome::kCompleted) << exact.result.reason;
-  Differences previous{};
+  double shipped_deg = 0.0;
   for (const int steps : {1, 2, 4}) {
     const Flown flown = FlyWith(model, inputs, Scheme::kRungeKutta4, steps);
     const Differences d = Between(flown, exact);
@@ -61,13 +61,20 @@ void ExpectConvergence(const FlightInputs& inputs, const Differences& shipped_li
       EXPECT_LT(d.altitude_m, shipped_limit.altitude_m);
       EXPECT_LT(d.velocity_m_s, shipped_limit.velocity_m_s);
       EXPECT_LT(d.pitch_error_deg, shipped_limit.pitch_error_deg);
+      shipped_deg = d.pitch_error_deg;
+    } else if (steps == 2) {
+      // Order 4: a sixteenth, but for the kinks that fall between steps and the stops of the actuators.
+      EXPECT_LT(d.pitch_error_deg, shipped_deg / 8.0);
     }
-    previous = d;
   }
 }
 
-TEST(FlightConvergence, Nominal) { ExpectConvergence({}, {1.0, 1e-2, 1e-3}); }
-TEST(FlightConvergence, Table3) { ExpectConvergence(Table3Inputs(), {1.0, 1e-2, 1e-3}); }
+// Measured: 2e-6 m, 2e-9 m/s and 2e-7 deg nominally, 3e-5 m, 5e-8 m/s and 3e-6 deg with all of Table 3. The
+// limits are thirty times the worse, far below anything that a dispersion does.
+constexpr Differences kShippedLimit = {1e-3, 1.5e-6, 1e-4};
+
+TEST(FlightConvergence, Nominal) { ExpectConvergence({}, kShippedLimit); }
+TEST(FlightConvergence, Table3) { ExpectConvergence(Table3Inputs(), kShippedLimit); }
 
 }  // namespace
 }  // namespace dispersa

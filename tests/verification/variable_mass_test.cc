@@ -123,8 +123,8 @@ TEST_F(TurningStages, TheUpperStageLeavesWithTheVelocityOfItsOwnCg) {
   ExpectFourthOrder(100.0, 5e-8, [&](const RigidBodyState& s) { return (s.p_EoC_I - p).norm(); });
 }
 
-// The launcher's first burn in empty space, with the grain's inertia, which is no linear function of time: the
-// integral by quadrature.
+// The launcher's first burn in empty space, with the grain's inertia, which is no linear function of time:
+// the integral by quadrature.
 class TurningLauncher : public testing::Test {
  protected:
   TurningLauncher() {
