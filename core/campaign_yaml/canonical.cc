@@ -50,7 +50,7 @@ std::string ScalarText(const InputNode& node) {
     if (const auto number = ParseNumber(node.text)) return FormatNumber(*number);
     if (node.text == "true" || node.text == "false") return node.text;
   }
-  return IsPlainText(node.text) ? node.text : Quoted(node.text);
+  return TextScalar(node.text);
 }
 
 bool IsScalar(const InputNode& node) {
@@ -112,5 +112,7 @@ std::string CanonicalText(const InputNode& map) {
   Emit(map, "", out);
   return out;
 }
+
+std::string TextScalar(const std::string& text) { return IsPlainText(text) ? text : Quoted(text); }
 
 }  // namespace dispersa

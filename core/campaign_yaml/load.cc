@@ -143,6 +143,14 @@ Reference ReadReference(const std::string& yaml_text, const std::string& display
   return reference;
 }
 
+AutopilotConfig ReadAutopilot(const std::string& yaml_text, const std::string& display_name) {
+  ProblemList problems;
+  const InputNode root = ParseYaml(yaml_text, display_name, problems);
+  AutopilotConfig autopilot = DecodeAutopilot(root, "", 0, problems);
+  ThrowIfAny(std::move(problems));
+  return autopilot;
+}
+
 std::vector<InputProblem> ValidateFile(const std::string& path) {
   ProblemList problems;
   InputNode root = ReadYamlFile(path, problems);

@@ -1,4 +1,4 @@
-// From the user's YAML files to the structs of the engine, and back for references.
+// From the user's YAML files to the structs of the engine, and back for references and autopilots.
 //
 // The schema of every kind of file is in README.md beside this header. A function that loads reads all files
 // that its argument refers to, and throws one InputError with every problem of all of them.
@@ -58,6 +58,12 @@ bool IsScenarioFile(const std::string& path);
 std::string WriteReference(const Reference& reference);
 /// The reference in a text, as LoadReference.
 Reference ReadReference(const std::string& yaml_text, const std::string& display_name);
+
+/// YAML text of an autopilot, with the blocks that its laws read; ReadAutopilot(WriteAutopilot(x)) as for
+/// references.
+std::string WriteAutopilot(const AutopilotConfig& autopilot);
+/// The autopilot in a text, as LoadAutopilot.
+AutopilotConfig ReadAutopilot(const std::string& yaml_text, const std::string& display_name);
 
 /// Every problem of a file of any kind, found by its `schema`; empty when it is valid.
 std::vector<InputProblem> ValidateFile(const std::string& path);

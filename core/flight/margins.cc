@@ -18,15 +18,40 @@ constexpr double kMisalignment_rad = 0.25 * kRadPerDeg;
 constexpr double kLostCycle_deg = 0.2;
 constexpr double kLostError_deg = 5.0;
 
-struct Instant {
-  std::string place;
-  TickSample sample;
-};
+bool Holds(const FlightModel& model, int stage, double gain_db, double delay_s) {
+  FlightInputs inputs;
+  inputs.loop_stage = stage + 1;
+  inputs.loop_gain_factor = Pow(10.0, gain_db / 20.0);
+  inputs.loop_delay_s = delay_s;
+  // Towards a corner between pitch and yaw, so that both axes work.
+  inputs.thrust_misalignment_rad = AllStages(kMisalignment_rad);
+  inputs.thrust_misalignment_clock_rad = AllStages(0.25 * kPi);
+  const FlightResult result = Fly(model, inputs);
+  const auto metric = [&](const char* name) {
+    const auto& names = MetricNames();
+    return result.metrics[static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin())];
+  };
+  const auto above = [&](const char* name, double limit) { return metric(name) > limit; };
+  return result.outcome == Outcome::kCompleted && !above("deflection_limit_cycle_deg", kLostCycle_deg) &&
+         !above("pitch_error_peak_deg", kLostError_deg) && !above("yaw_error_peak_deg", kLostError_deg);
+}
 
-// The instants at which margins are computed, in the order of time.
-std::vector<Instant> InstantsOf(const FlightModel& model, double every_s) {
-  std::vector<Instant> instants;
-  Instant max_q, last;
+// The largest multiple of `step` up to `ceiling` that holds, if what is above one that fails fails too.
+double LargestThatHolds(double step, double ceiling, const std::function<bool(double)>& holds) {
+  long low = 0, high = std::lround(ceiling / step) + 1;
+  if (!holds(0.0)) return 0.0;
+  while (high - low > 1) {
+    const long middle = (low + high) / 2;
+    (holds(static_cast<double>(middle) * step) ? low : high) = middle;
+  }
+  return static_cast<double>(low) * step;
+}
+
+}  // namespace
+
+std::vector<MarginInstant> MarginInstants(const FlightModel& model, double every_s) {
+  std::vector<MarginInstant> instants;
+  MarginInstant max_q, last;
   double q_max = 0.0, next_s = 0.0;
   int stage = -1;
   bool ignited = false;
@@ -60,7 +85,9 @@ std::vector<Instant> InstantsOf(const FlightModel& model, double every_s) {
   instants.push_back(last);
   if (q_max > 0.0) instants.push_back(max_q);
   std::stable_sort(instants.begin(), instants.end(),
-                   [](const Instant& a, const Instant& b) { return a.sample.time_s < b.sample.time_s; });
+                   [](const MarginInstant& a, const MarginInstant& b) {
+                     return a.sample.time_s < b.sample.time_s;
+                   });
   return instants;
 }
 
@@ -74,40 +101,9 @@ LoopMargins MarginsAt(const FlightModel& model, const TickSample& s, Axis axis, 
       .Margins();
 }
 
-bool Holds(const FlightModel& model, int stage, double gain_db, double delay_s) {
-  FlightInputs inputs;
-  inputs.loop_stage = stage + 1;
-  inputs.loop_gain_factor = Pow(10.0, gain_db / 20.0);
-  inputs.loop_delay_s = delay_s;
-  // Towards a corner between pitch and yaw, so that both axes work.
-  inputs.thrust_misalignment_rad = AllStages(kMisalignment_rad);
-  inputs.thrust_misalignment_clock_rad = AllStages(0.25 * kPi);
-  const FlightResult result = Fly(model, inputs);
-  const auto metric = [&](const char* name) {
-    const auto& names = MetricNames();
-    return result.metrics[static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin())];
-  };
-  const auto above = [&](const char* name, double limit) { return metric(name) > limit; };
-  return result.outcome == Outcome::kCompleted && !above("deflection_limit_cycle_deg", kLostCycle_deg) &&
-         !above("pitch_error_peak_deg", kLostError_deg) && !above("yaw_error_peak_deg", kLostError_deg);
-}
-
-// The largest multiple of `step` up to `ceiling` that holds, if what is above one that fails fails too.
-double LargestThatHolds(double step, double ceiling, const std::function<bool(double)>& holds) {
-  long low = 0, high = std::lround(ceiling / step) + 1;
-  if (!holds(0.0)) return 0.0;
-  while (high - low > 1) {
-    const long middle = (low + high) / 2;
-    (holds(static_cast<double>(middle) * step) ? low : high) = middle;
-  }
-  return static_cast<double>(low) * step;
-}
-
-}  // namespace
-
 std::vector<ComputedMargins> ComputeMargins(const FlightModel& model, double every_s) {
   std::vector<ComputedMargins> all;
-  for (const Instant& instant : InstantsOf(model, every_s)) {
+  for (const MarginInstant& instant : MarginInstants(model, every_s)) {
     for (const Axis axis : {kPitch, kYaw, kRoll}) {
       ComputedMargins each;
       each.place = instant.place;

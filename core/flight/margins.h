@@ -10,6 +10,7 @@
 
 #include "core/control/loop_margins.h"
 #include "core/flight/flight_model.h"
+#include "core/flight/tick_sample.h"
 
 namespace dispersa {
 
@@ -41,7 +42,19 @@ inline constexpr double kMeasuredGainCeiling_db = 24.0;
 inline constexpr double kMeasuredDelayStep_s = 0.001;
 inline constexpr double kMeasuredDelayCeiling_s = 0.25;
 
-/// At lift-off, max q, each ignition + 1 s and burnout, and every `every_s` of powered flight between.
+/// An instant of the nominal flight at which margins are computed.
+struct MarginInstant {
+  std::string place;  ///< as in ComputedMargins
+  TickSample sample;
+};
+
+/// Lift-off, max q, each ignition + 1 s and burnout, and every `every_s` of powered flight between, in the
+/// order of time.
+std::vector<MarginInstant> MarginInstants(const FlightModel& model, double every_s = 5.0);
+/// The margins of the model's autopilot at an instant, be it of another autopilot's flight.
+LoopMargins MarginsAt(const FlightModel& model, const TickSample& sample, Axis axis, bool adapting);
+
+/// At each of MarginInstants, in all axes.
 std::vector<ComputedMargins> ComputeMargins(const FlightModel& model, double every_s = 5.0);
 
 /// By bisection over flights in which the gain or the delay of one stage's loop is changed, with a steady

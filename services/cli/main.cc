@@ -24,6 +24,7 @@ void AddCommands(CLI::App& app, Invocation& invocation) {
   AddReplayCommand(app, invocation);
   AddReportCommand(app, invocation);
   AddMarginsCommand(app, invocation);
+  AddTuneCommand(app, invocation);
   AddCompareCommand(app, invocation);
   AddPaperCommand(app, invocation);
 }

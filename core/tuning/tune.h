@@ -1,0 +1,87 @@
+// One procedure that tunes any autopilot, whatever its law, with one budget: comparisons of laws are fair
+// only between tunings that had the same chances.
+//
+// Stage after stage, since a stage's gains act only while it burns, a genetic algorithm searches the stage's
+// design (stage_design.h):
+// - objective: mean RMS pitch error of the stage over cases of the campaign, drawn with the tuning's own seed;
+//   tie-breaker within kObjectiveTolerance_deg: the largest peak;
+// - subject to: every computed margin of all axes, gains frozen and adapting, at every instant of
+//   MarginInstants at or above its gate plus a reserve; every case completed; every limit cycle below
+//   kLimitCycleLimit_deg.
+// Margins come first: a design that misses one is not flown. The search does not depend on the gains that the
+// autopilot had before, nor on the number of threads.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/campaign/campaign.h"
+#include "core/optimization/genetic_algorithm.h"
+
+namespace dispersa {
+
+inline constexpr double kObjectiveTolerance_deg = 1e-4;
+inline constexpr double kLimitCycleLimit_deg = 0.2;
+/// Margins above the gates of margins.h that a computed margin must have: what dispersion, the other axes and
+/// the rules' curvature take from it shows in measured margins.
+inline constexpr double kGainReserve_db = 0.5;
+inline constexpr double kPhaseReserve_deg = 2.0;
+inline constexpr double kDelayReserve_s = 0.002;
+/// Small: a stage has two or three variables, and generations are what a budget of flights is best spent on.
+inline constexpr int kTuningPopulation = 8;
+
+struct TuningOptions {
+  std::uint64_t seed = 1;  ///< of the cases and of the search; the campaign's own is refused
+  int cases = 4;           ///< flown for each design; 1 to 10,000
+  int evaluations = 320;   ///< designs tried in all stages; at least 2 kTuningPopulation a stage
+  int threads = 1;         ///< 1 to 1024; the result does not depend on it
+};
+
+/// One line of the log.
+struct TuningRecord {
+  int stage = 0;  ///< 0-based
+  GenerationRecord generation;
+};
+
+/// The least of a stage's margins over axes and instants.
+struct LeastMargins {
+  double gain_db = 0.0;  ///< either way
+  double phase_deg = 0.0;
+  double delay_s = 0.0;
+};
+
+struct StageTuning {
+  std::vector<double> design;  ///< shape (DesignSize)
+  bool feasible = false;       ///< all constraints are met
+  double mean_rms_deg = 0.0;   ///< of the stage, pitch
+  double peak_deg = 0.0;       ///< largest of the stage over the cases, pitch
+  LeastMargins frozen;
+  LeastMargins adapting;  ///< as frozen where nothing adapts
+};
+
+struct TuningResult {
+  AutopilotConfig autopilot;  ///< tuned
+  std::vector<StageTuning> stages;
+  bool feasible = false;  ///< of every stage
+  /// Powered pitch error of the tuned autopilot over the tuning's cases; 0 if it is not feasible.
+  double median_rms_deg = 0.0;
+  double largest_peak_deg = 0.0;
+  std::uint64_t evaluations = 0;  ///< designs tried
+  std::uint64_t flights = 0;      ///< of the search
+};
+
+/// Lines that the log will have.
+std::uint64_t TuningGenerations(const Campaign& campaign, const TuningOptions& options);
+
+using TuningObserver = std::function<void(const TuningRecord&)>;
+
+/// Tunes `autopilot` for the vehicle, reference and dispersions of a campaign, whose own autopilot is
+/// ignored; cases are drawn by Monte Carlo. `observer`, if given, is called on the calling thread after each
+/// generation. Throws InputError if the seed is the campaign's, an option is out of its range, the autopilot
+/// does not suit the vehicle or fixes a P_n, which follows from the gains.
+TuningResult Tune(const Campaign& campaign, const AutopilotConfig& autopilot, const TuningOptions& options,
+                  const TuningObserver& observer = nullptr);
+
+}  // namespace dispersa

@@ -1,0 +1,223 @@
+// dispersa tune: an autopilot's gains, found by the one procedure that tunes every law.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+
+#include "core/campaign_yaml/load.h"
+#include "core/report/output_file.h"
+#include "core/tuning/stage_design.h"
+#include "core/tuning/tune.h"
+#include "services/cli/command.h"
+#include "services/cli/flight_json.h"
+#include "services/cli/progress.h"
+#include "services/cli/warn.h"
+
+namespace dispersa {
+namespace {
+
+struct TuneOptions {
+  std::string campaign;
+  std::string out;
+  std::string autopilot;  ///< empty: the campaign's
+  TuningOptions tuning;
+  int threads = 0;  ///< 0: the processor's
+};
+
+// What gives the same file again; the number of threads does not matter.
+std::string CommandText(const TuneOptions& options) {
+  std::string text = "dispersa tune " + options.campaign;
+  if (!options.autopilot.empty()) text += " --autopilot " + options.autopilot;
+  return text + fmt::format(" --out {} --seed {} --cases {} --evaluations {}", options.out,
+                            options.tuning.seed, options.tuning.cases, options.tuning.evaluations);
+}
+
+// What the law is and what its numbers mean.
+std::string LawText(ControlLaw law) {
+  const std::string gains =
+      "# Gains are those of the error dynamics s² + kd s + kp, one entry a stage; roll has those of pitch.\n";
+  switch (law) {
+    case ControlLaw::kAdaptiveFuzzy:
+      return "# The paper's direct adaptive fuzzy law. The rules start from the plane of the gains; P_n follows\n"
+             "# from the gains and Q.\n" +
+             gains;
+    case ControlLaw::kFrozenFuzzy:
+      return "# The rules of the adaptive fuzzy law with their consequents held: gamma = 0.\n" + gains;
+    case ControlLaw::kPd:
+      return "# Scheduled proportional-derivative control.\n" + gains;
+    case ControlLaw::kPdAac:
+      break;
+  }
+  return "# Scheduled proportional-derivative control under adaptive augmenting control (J. S. Orr and T. S.\n"
+         "# VanZwieten, AIAA 2012-4549): the total gain rises with the departure from the reference model, in\n"
+         "# rad, falls with fast activity of the command, and leaks to 1, where margins are computed. The\n"
+         "# augmentation itself is not tuned.\n" +
+         gains;
+}
+
+std::string MarginsText(const LeastMargins& m) {
+  return fmt::format("{:.1f} dB, {:.1f} deg, {:.0f} ms", m.gain_db, m.phase_deg, 1e3 * m.delay_s);
+}
+
+// The comment at the head of the file.
+std::string Header(const TuneOptions& options, const TuningResult& result) {
+  std::string text = LawText(result.autopilot.pitch.law);
+  text += fmt::format("#\n# Tuned by\n#   {}\n", CommandText(options));
+  text += fmt::format("# which tried {} designs in {} flights. Over the {} cases of its seed:\n", result.evaluations,
+                      result.flights, options.tuning.cases);
+  text += fmt::format("#   median powered RMS pitch error {:.5f} deg, largest peak {:.4f} deg\n",
+                      result.median_rms_deg, result.largest_peak_deg);
+  text += "# Least computed margins (gain either way, phase, delay), gains frozen | adapting:\n";
+  for (std::size_t i = 0; i < result.stages.size(); ++i) {
+    text += fmt::format("#   stage {}: {} | {}\n", i + 1, MarginsText(result.stages[i].frozen),
+                        MarginsText(result.stages[i].adapting));
+  }
+  return text;
+}
+
+nlohmann::ordered_json MarginsJson(const LeastMargins& m) {
+  return {{"gain_db", JsonNumber(m.gain_db)},
+          {"phase_deg", JsonNumber(m.phase_deg)},
+          {"delay_ms", JsonNumber(1e3 * m.delay_s)}};
+}
+
+nlohmann::ordered_json ResultJson(const TuneOptions& options, const TuningResult& result,
+                                  const std::vector<TuningRecord>& log) {
+  auto stages = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < result.stages.size(); ++i) {
+    const StageTuning& stage = result.stages[i];
+    nlohmann::ordered_json design;
+    for (std::size_t k = 0; k < stage.design.size(); ++k) design[kDesignVariables[k].name] = stage.design[k];
+    const AxisGains& gains = result.autopilot.pitch.gains[i];
+    stages.push_back({{"stage", i + 1},
+                      {"feasible", stage.feasible},
+                      {"kp_1_s2", gains.kp_1_s2},
+                      {"kd_1_s", gains.kd_1_s},
+                      {"design", std::move(design)},
+                      {"pitch_error_rms_mean_deg", JsonNumber(stage.mean_rms_deg)},
+                      {"pitch_error_peak_deg", JsonNumber(stage.peak_deg)},
+                      {"frozen", MarginsJson(stage.frozen)},
+                      {"adapting", MarginsJson(stage.adapting)}});
+  }
+  auto generations = nlohmann::ordered_json::array();
+  for (const TuningRecord& record : log) {
+    const GenerationRecord& g = record.generation;
+    generations.push_back({{"stage", record.stage + 1},
+                           {"generation", g.generation},
+                           {"feasible_fraction", g.feasible_fraction},
+                           {"best_deg", g.best_objective ? JsonNumber(*g.best_objective) : nullptr},
+                           {"mean_deg", g.mean_objective ? JsonNumber(*g.mean_objective) : nullptr}});
+  }
+  return {{"schema", "dispersa/tune/1"},
+          {"autopilot", result.feasible ? nlohmann::ordered_json(options.out) : nullptr},
+          {"seed", options.tuning.seed},
+          {"cases", options.tuning.cases},
+          {"evaluations", result.evaluations},
+          {"flights", result.flights},
+          {"pitch_error_rms_median_deg", result.feasible ? JsonNumber(result.median_rms_deg) : nullptr},
+          {"pitch_error_peak_deg", result.feasible ? JsonNumber(result.largest_peak_deg) : nullptr},
+          {"stages", std::move(stages)},
+          {"log", std::move(generations)}};
+}
+
+void PrintText(const TuneOptions& options, const TuningResult& result, const std::vector<TuningRecord>& log) {
+  fmt::print("{:<6}{:>11}{:>10}{:>14}{:>14}\n", "stage", "generation", "feasible", "best rms deg",
+             "mean rms deg");
+  const auto number = [](const std::optional<double>& value) {
+    return value ? fmt::format("{:.5f}", *value) : std::string("-");
+  };
+  for (const TuningRecord& record : log) {
+    const GenerationRecord& g = record.generation;
+    fmt::print("{:<6}{:>11}{:>9.0f}%{:>14}{:>14}\n", record.stage + 1, g.generation,
+               100.0 * g.feasible_fraction, number(g.best_objective), number(g.mean_objective));
+  }
+  fmt::print("\n{:<6}{:>9}{:>9}{:>10}{:>13}{:>10}  {}\n", "stage", "kp 1/s2", "kd 1/s", "gamma",
+             "mean rms deg", "peak deg", "least margins, frozen | adapting");
+  for (std::size_t i = 0; i < result.stages.size(); ++i) {
+    const StageTuning& stage = result.stages[i];
+    const AxisConfig& axis = result.autopilot.pitch;
+    const std::string gamma = axis.law == ControlLaw::kAdaptiveFuzzy
+                                  ? fmt::format("{}", axis.adaptation.gamma[i])
+                                  : std::string("-");
+    fmt::print("{:<6}{:>9}{:>9}{:>10}{:>13.5f}{:>10.4f}  {} | {}{}\n", i + 1, axis.gains[i].kp_1_s2,
+               axis.gains[i].kd_1_s, gamma, stage.mean_rms_deg, stage.peak_deg, MarginsText(stage.frozen),
+               MarginsText(stage.adapting), stage.feasible ? "" : "  INFEASIBLE");
+  }
+  fmt::print("\n{} designs, {} flights\n", result.evaluations, result.flights);
+  if (!result.feasible) return;
+  fmt::print("median powered RMS pitch error {:.5f} deg, largest peak {:.4f} deg over {} cases of seed {}\n",
+             result.median_rms_deg, result.largest_peak_deg, options.tuning.cases, options.tuning.seed);
+  fmt::print("autopilot: {}\n", options.out);
+}
+
+ExitCode RunTuning(const TuneOptions& given, const GlobalOptions& global) {
+  TuneOptions options = given;
+  options.tuning.threads = options.threads > 0
+                               ? options.threads
+                               : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  const Campaign campaign = LoadAndWarn(options.campaign);
+  const AutopilotConfig autopilot =
+      options.autopilot.empty() ? campaign.autopilot : LoadAutopilot(options.autopilot);
+
+  std::vector<TuningRecord> log;
+  TuningResult result;
+  {
+    Progress progress("tune", global.quiet);
+    const auto observe = [&](const TuningRecord& record) {
+      log.push_back(record);
+      const GenerationRecord& g = record.generation;
+      progress.Show(log.size(), TuningGenerations(campaign, options.tuning),
+                    fmt::format("stage {}, {}", record.stage + 1,
+                                g.best_objective ? fmt::format("best {:.4g} deg", *g.best_objective)
+                                                 : std::string("no feasible design yet")));
+    };
+    result = Tune(campaign, autopilot, options.tuning, observe);
+  }
+  if (result.feasible) WriteFile(options.out, Header(options, result) + WriteAutopilot(result.autopilot));
+  if (global.json) {
+    fmt::print("{}\n", ResultJson(options, result, log).dump(2));
+  } else {
+    PrintText(options, result, log);
+  }
+  if (result.feasible) return kExitDone;
+  fmt::print(stderr, "no design was found that meets every constraint; nothing is written\n");
+  return kExitRequirementFailed;
+}
+
+}  // namespace
+
+void AddTuneCommand(CLI::App& app, Invocation& invocation) {
+  auto options = std::make_shared<TuneOptions>();
+  CLI::App* command = app.add_subcommand("tune", "find the gains of an autopilot, whatever its law");
+  command->add_option("campaign", options->campaign, "campaign file: vehicle, reference and dispersions")
+      ->required();
+  command
+      ->add_option("-o,--out", options->out,
+                   "autopilot file to write; nothing is written if a constraint is not met")
+      ->required();
+  command->add_option("--autopilot", options->autopilot,
+                      "autopilot file whose law and fixed parameters are taken, instead of the campaign's");
+  command
+      ->add_option("--seed", options->tuning.seed,
+                   "seed of the search and of its cases; never the campaign's own")
+      ->capture_default_str();
+  command->add_option("--cases", options->tuning.cases, "cases flown for each design")->capture_default_str();
+  command->add_option("--evaluations", options->tuning.evaluations, "designs tried, shared by the stages")
+      ->capture_default_str();
+  command->add_option("--threads", options->threads, "threads; the result does not depend on them")
+      ->check(CLI::Range(1, 1024));
+  command->footer(
+      "Minimises the mean RMS pitch error of each stage, subject to computed margins above the gates of\n"
+      "`dispersa margins` with a reserve. The gains that the file has are not looked at. Ends with 3 when "
+      "no\n"
+      "design meets the constraints.\n"
+      "Example: dispersa tune campaigns/table3.yaml --autopilot campaigns/autopilots/pd.yaml --out pd.yaml");
+  command->callback([options, &invocation] {
+    invocation.command = [options](const GlobalOptions& global) { return RunTuning(*options, global); };
+  });
+}
+
+}  // namespace dispersa

@@ -1,0 +1,83 @@
+// An autopilot survives its file.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "core/campaign_yaml/load.h"
+
+namespace dispersa {
+namespace {
+
+constexpr char kEverything[] = R"(schema: dispersa/autopilot/1
+name: all_laws
+tick_s: 0.02
+pitch:
+  law: adaptive_fuzzy
+  gains:
+    - {kp_1_s2: 16.3, kd_1_s: 7}
+    - {kp_1_s2: 25, kd_1_s: 9.01}
+  rules: {error_range_deg: 5, rate_range_deg_s: 1.5}
+  adaptation:
+    gamma: [8000, 0]
+    q: [[1, 0.1], [0.1, 0.02]]
+    p_n: [0.02, -0.01]
+    allow_unproven: true
+    projection_bound_deg_s2: 60
+    leakage_1_s: 0.1
+    spread_1_s: 40
+    dead_zone_deg: 0.01
+    freeze_when_saturated: true
+    reset_at_ignition: true
+    supervisory_bound: 0.5
+yaw:
+  law: pd_aac
+  gains:
+    - {kp_1_s2: 1, kd_1_s: 2}
+    - {kp_1_s2: 3, kd_1_s: 4}
+  augmentation:
+    adaptive_gain_1_s: 2000
+    leakage_1_s: 0.1
+    spectral_gain_1_s: 20
+    high_pass_rad_s: 15
+    low_pass_rad_s: 2
+    minimum_total_gain: 0.5
+    maximum_total_gain: 1.6
+roll:
+  law: frozen_fuzzy
+  gains:
+    - {kp_1_s2: 5, kd_1_s: 6}
+    - {kp_1_s2: 7, kd_1_s: 8}
+  rules: {error_range_deg: 4, rate_range_deg_s: 1}
+reaction_control: {deadband_deg: 0.05, rate_gain_s: 0.5, hysteresis: 0.25, cycle_ticks: 5}
+)";
+
+TEST(WriteAutopilot, WritesWhatWasReadToTheCharacter) {
+  EXPECT_EQ(WriteAutopilot(ReadAutopilot(kEverything, "text")), kEverything);
+}
+
+TEST(WriteAutopilot, QuotesANameThatYamlWouldReadAsSomethingElse) {
+  AutopilotConfig autopilot = ReadAutopilot(kEverything, "text");
+  autopilot.name = "1: a #'\"\n";
+  EXPECT_EQ(ReadAutopilot(WriteAutopilot(autopilot), "text").name, autopilot.name);
+}
+
+TEST(WriteAutopilot, LeavesOutGuardsThatAreOff) {
+  AutopilotConfig autopilot = ReadAutopilot(kEverything, "text");
+  Adaptation bare;
+  bare.gamma = {1.0, 2.0};
+  bare.q = autopilot.pitch.adaptation.q;
+  autopilot.pitch.adaptation = bare;
+  const std::string text = WriteAutopilot(autopilot);
+  EXPECT_NE(text.find("    gamma: [1, 2]\n    q: [[1, 0.1], [0.1, 0.02]]\nyaw:"), std::string::npos) << text;
+}
+
+TEST(WriteAutopilot, ShippedAutopilotsKeepEveryKey) {
+  for (const auto& entry : std::filesystem::directory_iterator(DISPERSA_CAMPAIGNS "/autopilots")) {
+    const AutopilotConfig autopilot = LoadAutopilot(entry.path().string());
+    const std::string text = WriteAutopilot(autopilot);
+    EXPECT_EQ(WriteAutopilot(ReadAutopilot(text, "text")), text) << entry.path();
+  }
+}
+
+}  // namespace
+}  // namespace dispersa
