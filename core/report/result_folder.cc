@@ -143,12 +143,19 @@ ResultFolder ResultFolder::Create(const fs::path& directory, const Campaign& cam
     if (unwritable.kind() == Kind::kFile) throw InputError(unwritable.what(), "a folder that can be written");
     throw;
   }
-  auto database = std::make_unique<Database>(directory / kDatabaseName, Database::Mode::kCreate);
-  Transaction transaction(*database);
-  CreateTables(*database);
-  WriteProvenance(*database, campaign);
-  transaction.Commit();
-  return ResultFolder(directory, std::move(database));
+  // Whoever finds the database finds it whole: a start that is killed leaves none.
+  const fs::path database = directory / kDatabaseName;
+  const fs::path temporary = database.string() + ".tmp";
+  {
+    Database fresh(temporary, Database::Mode::kCreate);
+    Transaction transaction(fresh);
+    CreateTables(fresh);
+    WriteProvenance(fresh, campaign);
+    transaction.Commit();
+  }
+  fs::rename(temporary, database, error);
+  if (error) FailSystem(database, error);
+  return ResultFolder(directory, std::make_unique<Database>(database, Database::Mode::kExisting));
 }
 
 ResultFolder ResultFolder::Open(const fs::path& directory) {

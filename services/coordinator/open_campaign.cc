@@ -27,11 +27,14 @@ fs::path DefaultFolder(const Campaign& campaign, bool resume) {
   }
 }
 
-// A start that was killed between its first two files left nothing to resume.
+// What a start that is killed before the folder has its database leaves behind. Nothing in it to resume.
+bool IsOfAStillbornStart(const fs::path& file) {
+  const std::string name = file.filename().string();
+  return name == "campaign.yaml" || name.starts_with("campaign.yaml.tmp") ||
+         name.starts_with("results.sqlite.tmp");
+}
 bool IsStillborn(const fs::path& directory) {
-  return std::all_of(
-      fs::directory_iterator(directory), fs::directory_iterator(),
-      [](const fs::directory_entry& entry) { return entry.path().filename() == "campaign.yaml"; });
+  return std::all_of(fs::directory_iterator(directory), fs::directory_iterator(), IsOfAStillbornStart);
 }
 
 }  // namespace
@@ -48,7 +51,8 @@ OpenedCampaign OpenCampaign(const CampaignRequest& request) {
     return {std::move(campaign), std::move(folder)};
   }
   if (IsStillborn(directory)) {
-    fs::remove(directory / "campaign.yaml");
+    const std::vector<fs::path> leftovers(fs::directory_iterator{directory}, fs::directory_iterator{});
+    for (const fs::path& leftover : leftovers) fs::remove(leftover);
     ResultFolder folder = ResultFolder::Create(directory, campaign);
     return {std::move(campaign), std::move(folder)};
   }

@@ -233,6 +233,14 @@ class RunTest(unittest.TestCase):
     def test_resume_starts_what_was_never_begun(self):
         self.assert_same(self.run_dispersa("new", "--workers", 2, "--resume").finish())
 
+    def test_resume_starts_what_was_killed_before_it_began(self):
+        out = self.root / "stillborn"
+        out.mkdir()
+        for name in ("campaign.yaml", "campaign.yaml.tmp", "results.sqlite.tmp", "results.sqlite.tmp-wal"):
+            (out / name).write_text("half")
+        self.assert_same(self.run_dispersa("stillborn", "--workers", 2, "--resume").finish())
+        self.assertEqual([p.name for p in out.iterdir() if ".tmp" in p.name], [])
+
     def test_a_folder_of_another_flight_id_is_not_touched(self):
         before = sorted((p.name, p.read_bytes()) for p in self.reference.out.iterdir() if p.is_file())
         run = self.run_dispersa("reference", "--resume", "--seed", 999).finish()
