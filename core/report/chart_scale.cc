@@ -32,7 +32,7 @@ ChartScale::ChartScale(const ChartAxis& axis, double low, double high, double fr
     high_ += room;
   }
   if (logarithmic_) {
-    LogarithmicTicks(axis);
+    LogarithmicTicks(axis, about_ticks);
   } else {
     LinearTicks(axis, about_ticks);
   }
@@ -55,8 +55,12 @@ void ChartScale::LinearTicks(const ChartAxis& axis, int about_ticks) {
   }
 }
 
-void ChartScale::LogarithmicTicks(const ChartAxis& axis) {
-  for (double k = std::ceil(std::log10(low_) - 1e-9); std::pow(10.0, k) <= high_ * (1.0 + 1e-9); k += 1.0) {
+void ChartScale::LogarithmicTicks(const ChartAxis& axis, int about_ticks) {
+  // Every decade, unless their labels would run into one another.
+  const double decades = std::log10(high_ / low_);
+  const double stride = decades > 2.0 * about_ticks ? std::ceil(decades / about_ticks) : 1.0;
+  const double first = stride * std::ceil(std::log10(low_) / stride - 1e-9);
+  for (double k = first; std::pow(10.0, k) <= high_ * (1.0 + 1e-9); k += stride) {
     const double value = std::pow(10.0, k);
     ticks_.push_back({value, axis.percent ? PercentText(value) : fmt::format("{:g}", value)});
   }

@@ -26,7 +26,7 @@ class ChartScale {
 
  private:
   void LinearTicks(const ChartAxis& axis, int about_ticks);
-  void LogarithmicTicks(const ChartAxis& axis);
+  void LogarithmicTicks(const ChartAxis& axis, int about_ticks);
 
   bool logarithmic_;
   double low_;

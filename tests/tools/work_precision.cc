@@ -1,22 +1,22 @@
-// Work and precision of the integration of a whole closed-loop flight, as CSV on stdout:
-//   work_precision CAMPAIGNS_FOLDER > work_precision.csv
-// For each autopilot tick the shipped scheme with 1, 2, 4 and 8 steps a tick against CVODE (relative
-// tolerance 1e-12) on the same tick, so that only the integration differs, never the controller.
-#include <chrono>
+#include "tests/tools/work_precision.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
+#include <ctime>
+#include <limits>
 
 #include "tests/slv4_flight.h"
+#include "tests/tools/sheets.h"
 
+namespace dispersa {
 namespace {
-
-using namespace dispersa;
 
 struct Flown {
   FlightResult result;
   History history;
-  double cpu_s = 0.0;
+  double cpu_s = std::numeric_limits<double>::infinity();
 };
 
 Flown FlyOnce(const FlightModel& model, const FlightInputs& inputs, Scheme scheme, int steps) {
@@ -26,12 +26,10 @@ Flown FlyOnce(const FlightModel& model, const FlightInputs& inputs, Scheme schem
   options.scheme = scheme;
   options.steps_per_tick = steps;
   // Timed without the history; the fastest of a few, because other work only ever slows a run.
-  flown.cpu_s = INFINITY;
-  for (int repeat = 0; repeat < (scheme == Scheme::kCvode ? 1 : 3); ++repeat) {
+  for (int repeat = 0; repeat < 3; ++repeat) {
     const std::clock_t start = std::clock();
     flown.result = Fly(model, inputs, options);
-    const double took = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-    if (took < flown.cpu_s) flown.cpu_s = took;
+    flown.cpu_s = std::min(flown.cpu_s, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
   }
   options.history = &flown.history;
   flown.result = Fly(model, inputs, options);
@@ -40,44 +38,142 @@ Flown FlyOnce(const FlightModel& model, const FlightInputs& inputs, Scheme schem
 
 double LargestDifference(const History& a, const History& b, int column) {
   double largest = 0.0;
-  const std::size_t rows = a.rows() < b.rows() ? a.rows() : b.rows();
-  for (std::size_t row = 0; row < rows; ++row)
-    largest = std::fmax(largest, std::fabs(a.at(row, column) - b.at(row, column)));
+  for (std::size_t row = 0; row < std::min(a.rows(), b.rows()); ++row)
+    largest = std::max(largest, std::fabs(a.at(row, column) - b.at(row, column)));
   return largest;
 }
 
+WorkPoint Compare(const Flown& flown, const Flown& exact) {
+  const auto differ = [&](const char* metric) {
+    return std::fabs(MetricOf(flown.result, metric) - MetricOf(exact.result, metric));
+  };
+  WorkPoint point;
+  point.cpu_s = flown.cpu_s;
+  point.altitude_difference_m = 1e3 * differ("injection_altitude_km");
+  point.velocity_difference_m_s = differ("injection_velocity_m_s");
+  point.pitch_error_difference_deg =
+      LargestDifference(flown.history, exact.history, FindHistoryColumn("pitch_error_deg"));
+  point.pitch_error_rms_deg = MetricOf(flown.result, "pitch_error_rms_deg");
+  point.pitch_error_peak_deg = MetricOf(flown.result, "pitch_error_peak_deg");
+  return point;
+}
+
+// A discrete law whose spreading would overshoot the mean within a tick is limited to the tick.
+AutopilotConfig WithTick(AutopilotConfig autopilot, double tick_s) {
+  autopilot.tick_s = tick_s;
+  for (AxisConfig* axis : {&autopilot.pitch, &autopilot.yaw, &autopilot.roll})
+    axis->adaptation.spread_1_s = std::min(axis->adaptation.spread_1_s, 1.0 / tick_s);
+  return autopilot;
+}
+
+std::string TickName(double tick_s) { return fmt::format("{:g} ms", 1e3 * tick_s); }
+
 }  // namespace
 
-int main(int argc, char** argv) {
-  if (argc != 2) {
-    std::fprintf(stderr, "usage: work_precision CAMPAIGNS_FOLDER\n");
-    return 2;
-  }
-  const int pitch_error = FindHistoryColumn("pitch_error_deg");
-  std::printf(
-      "case,tick_s,scheme,steps_per_tick,cpu_s,altitude_difference_m,velocity_difference_m_s,"
-      "pitch_error_difference_deg,pitch_error_rms_deg\n");
+std::vector<WorkPoint> MeasureWorkPrecision(const std::string& campaigns) {
+  std::vector<WorkPoint> points;
   for (const bool dispersed : {false, true}) {
     const FlightInputs inputs = dispersed ? Table3Inputs() : FlightInputs{};
-    for (const double tick_s : {0.005, 0.01, 0.02}) {
-      FlightDefinition definition = Slv4Definition(argv[1]);
-      definition.autopilot.tick_s = tick_s;
+    for (const double tick_s : {0.0025, 0.005, 0.01, 0.02}) {
+      FlightDefinition definition = Slv4Definition(campaigns);
+      definition.autopilot = WithTick(definition.autopilot, tick_s);
       const FlightModel model(definition);
       const Flown exact = FlyOnce(model, inputs, Scheme::kCvode, 1);
-      const auto print = [&](const char* scheme, int steps, const Flown& flown) {
-        std::printf("%s,%g,%s,%d,%.4f,%.3e,%.3e,%.3e,%.6f\n", dispersed ? "table3" : "nominal", tick_s,
-                    scheme, steps, flown.cpu_s,
-                    1e3 * std::fabs(MetricOf(flown.result, "injection_altitude_km") -
-                                    MetricOf(exact.result, "injection_altitude_km")),
-                    std::fabs(MetricOf(flown.result, "injection_velocity_m_s") -
-                              MetricOf(exact.result, "injection_velocity_m_s")),
-                    LargestDifference(flown.history, exact.history, pitch_error),
-                    MetricOf(flown.result, "pitch_error_rms_deg"));
-        std::fflush(stdout);
+      const auto add = [&](const Flown& flown, Scheme scheme, int steps) {
+        WorkPoint point = Compare(flown, exact);
+        point.flight = dispersed ? "table3" : "nominal";
+        point.tick_s = tick_s;
+        point.scheme = scheme;
+        point.steps = steps;
+        points.push_back(point);
       };
-      print("cvode", 0, exact);
-      for (const int steps : {1, 2, 4, 8}) print("erk4", steps, FlyOnce(model, inputs, Scheme::kRungeKutta4, steps));
+      add(exact, Scheme::kCvode, 0);
+      for (const int steps : {1, 2, 4})
+        add(FlyOnce(model, inputs, Scheme::kRungeKutta4, steps), Scheme::kRungeKutta4, steps);
     }
   }
-  return 0;
+  return points;
 }
+
+std::string WorkPrecisionCsv(const std::vector<WorkPoint>& points) {
+  std::string csv =
+      "flight,tick_s,scheme,steps_per_tick,cpu_s,altitude_difference_m,velocity_difference_m_s,"
+      "pitch_error_difference_deg,pitch_error_rms_deg,pitch_error_peak_deg\n";
+  for (const WorkPoint& p : points)
+    csv += fmt::format("{},{},{},{},{:.4f},{:.3e},{:.3e},{:.3e},{:.6f},{:.6f}\n", p.flight, p.tick_s,
+                       p.scheme == Scheme::kCvode ? "cvode" : "erk4", p.steps, p.cpu_s,
+                       p.altitude_difference_m, p.velocity_difference_m_s, p.pitch_error_difference_deg,
+                       p.pitch_error_rms_deg, p.pitch_error_peak_deg);
+  return csv;
+}
+
+FigureSheet WorkPrecisionSheet(const std::vector<WorkPoint>& points) {
+  FigureSheet sheet{
+      .title = "Work and precision of a whole closed-loop flight, every dispersion of Table 3 at once",
+      .columns = 3,
+      .panels = {}};
+  const ChartAxis cpu{.label = "CPU time of a flight, ms", .low = 10.0, .high = 1e4, .logarithmic = true};
+  const auto work = [&](const ChartAxis& y, double WorkPoint::*difference, const std::string& caption) {
+    SvgChart chart = PanelChart(cpu, y);
+    std::vector<double> shipped_x, shipped_y, cvode_x, cvode_y;
+    std::vector<std::pair<double, std::vector<WorkPoint>>> ticks;
+    for (const WorkPoint& p : points) {
+      if (p.flight != "table3") continue;
+      if (ticks.empty() || ticks.back().first != p.tick_s) ticks.push_back({p.tick_s, {}});
+      ticks.back().second.push_back(p);
+      if (p.tick_s == kShippedTick_s && p.steps == kShippedSteps) {
+        shipped_x = {1e3 * p.cpu_s};
+        shipped_y = {p.*difference};
+      }
+    }
+    chart.Points(shipped_x, shipped_y, "shipped", "shipped: 10 ms tick, 1 step");
+    for (std::size_t i = 0; i < ticks.size(); ++i) {
+      std::vector<double> x, y_values;
+      for (const WorkPoint& p : ticks[i].second) {
+        if (p.scheme == Scheme::kCvode) continue;
+        x.push_back(1e3 * p.cpu_s);
+        y_values.push_back(p.*difference);
+      }
+      // Two solutions that agree no better than this cannot tell which of them is nearer to the truth.
+      cvode_x.push_back(1e3 * ticks[i].second.front().cpu_s);
+      cvode_y.push_back(y_values.back());
+      const std::string style = std::to_string(i);
+      chart.Line(x, y_values, "line-" + style, "");
+      chart.Points(x, y_values, "dots-" + style, TickName(ticks[i].first));
+    }
+    chart.Points(cvode_x, cvode_y, "public", "CVODE 1e-12, floor");
+    sheet.panels.push_back({chart, caption});
+  };
+  work({.label = "largest difference in pitch error, °", .low = 1e-11, .high = 1e-3, .logarithmic = true},
+       &WorkPoint::pitch_error_difference_deg,
+       "ERK4 with 1, 2 and 4 steps a tick against CVODE on the same tick; CVODE's own points are placed at "
+       "its "
+       "difference to 4 steps a tick, the floor of the comparison.");
+  work({.label = "difference in injection altitude, m", .low = 1e-7, .high = 1e-2, .logarithmic = true},
+       &WorkPoint::altitude_difference_m, "The same for the injection altitude.");
+
+  SvgChart tick = PanelChart({.label = "tick of the autopilot, ms", .low = 0.0, .high = 22.0},
+                             {.label = "pitch error, °", .low = 0.0});
+  for (const bool dispersed : {true, false}) {
+    std::vector<double> x, rms, peak;
+    for (const WorkPoint& p : points) {
+      if (p.scheme == Scheme::kCvode || p.steps != kShippedSteps || (p.flight == "table3") != dispersed)
+        continue;
+      x.push_back(1e3 * p.tick_s);
+      rms.push_back(p.pitch_error_rms_deg);
+      peak.push_back(p.pitch_error_peak_deg);
+    }
+    const std::string name = dispersed ? "Table 3" : "nominal";
+    const std::string a = dispersed ? "0" : "2", b = dispersed ? "1" : "3";
+    tick.Line(x, peak, "line-" + b, "");
+    tick.Points(x, peak, "dots-" + b, name + ", peak");
+    tick.Line(x, rms, "line-" + a, "");
+    tick.Points(x, rms, "dots-" + a, name + ", RMS");
+  }
+  tick.Mark(1e3 * kShippedTick_s, "shipped");
+  sheet.panels.push_back(
+      {tick, "What the tick does to the controller, gains held: the delay of one tick grows with it."});
+  return sheet;
+}
+
+}  // namespace dispersa

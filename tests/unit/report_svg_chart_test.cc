@@ -47,6 +47,11 @@ TEST(ChartScale, CountsDecades) {
   EXPECT_NEAR(scale.At(std::sqrt(0.0005)), 0.5, 1e-12);  // half-way in decades
 }
 
+TEST(ChartScale, SkipsDecadesWhoseLabelsWouldRunTogether) {
+  const ChartScale scale({.label = "p", .low = 1e-9, .high = 1e6, .logarithmic = true}, 0.0, 0.0, 0.0, 1.0, 4);
+  EXPECT_THAT(Labels(scale), ElementsAre("1e-08", "0.0001", "1", "10000"));
+}
+
 TEST(ChartScale, LivesWithConstantAndMissingData) {
   EXPECT_NEAR(ChartScale({.label = "x"}, 5.0, 5.0, 0.0, 100.0, 4).At(5.0), 50.0,
               1e-9);  // rounding of the ends

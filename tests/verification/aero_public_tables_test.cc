@@ -1,66 +1,22 @@
-// The component build-up against public tables of other launchers (tests/data/aero/SOURCE.md).
-//
-// The three-stage launcher's tables are Missile DATCOM's; its geometry is not published. Known are the
-// reference diameter (2.032 m), the gimbal's station (16.84 m from the nose) and the masses and inertias,
-// which put the stages' propellant at 4.1, 7.0 and 12.7 m and their radii of gyration at those of cylinders
-// of about 1.5, 1.6 and 1.9 m. The profile below has these, with a payload fairing whose diameter and
-// bluntness follow from the hypersonic limits of the upper stages' tables (C_Na 1.15 and CA 0.36 on
-// 3.243 m^2, Newtonian). So these are comparisons of shape and size, of two estimates of two similar
-// bodies: bands of 35 %, where handbook methods claim 10 to 20 % each and the geometry takes the rest
-// (0.3 m of fairing nose are 20 % of CA).
+// The component build-up against public tables of other launchers (tests/data/aero/SOURCE.md), on the body of
+// tests/public_launcher.h, whose geometry is partly inferred. So these are comparisons of shape and size, of
+// two estimates of two similar bodies: bands of 35 %, where handbook methods claim 10 to 20 % each and the
+// geometry takes the rest (0.3 m of fairing nose are 20 % of CA).
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
-#include <map>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "core/math/constants.h"
 #include "core/math/table.h"
-#include "core/vehicle/aerodynamics_build_up.h"
+#include "tests/public_launcher.h"
 
 namespace dispersa {
 namespace {
 
-using Row = std::map<std::string, double>;
-
-/// Rows of a CSV file whose cells are numbers; `kind` selects by the first column where that is a name.
-std::vector<Row> Read(const std::string& name, const std::string& kind = "") {
-  std::ifstream file(std::string(DISPERSA_TEST_DATA) + "/aero/" + name);
-  EXPECT_TRUE(file) << name;
-  std::vector<std::string> columns;
-  std::vector<Row> rows;
-  for (std::string line; std::getline(file, line);) {
-    std::istringstream cells(line);
-    std::vector<std::string> values;
-    for (std::string cell; std::getline(cells, cell, ',');) values.push_back(cell);
-    if (columns.empty()) {
-      columns = values;
-    } else if (kind.empty() || values[0] == kind) {
-      Row row;
-      for (std::size_t i = kind.empty() ? 0 : 1; i < columns.size(); ++i)
-        row[columns[i]] = std::stod(values[i]);
-      rows.push_back(row);
-    }
-  }
-  return rows;
-}
-
-constexpr double kLength_m = 16.84;
-
-AeroTable ThreeStageLauncher() {
-  Vehicle vehicle;
-  vehicle.surface_roughness_m = 2e-5;
-  vehicle.profile = {{ProfileShape::kTangentOgive, 1.5, 1.68}, {ProfileShape::kCylinder, 2.1, 1.68},
-                     {ProfileShape::kFrustum, 0.6, 1.42},      {ProfileShape::kCylinder, 4.7, 1.42},
-                     {ProfileShape::kFrustum, 1.4, 2.032},     {ProfileShape::kCylinder, 6.54, 2.032}};
-  Stage stage;
-  stage.diameter_m = 2.032;
-  stage.bottom_station_m = kLength_m;
-  vehicle.stages = {stage};
-  return BuildAerodynamics(vehicle)[0];
+std::vector<PublicAeroRow> Read(const std::string& name, const std::string& kind = "") {
+  return ReadPublicAero(DISPERSA_TEST_DATA "/aero", name, kind);
 }
 
 class PublicLauncher : public testing::Test {
@@ -69,8 +25,8 @@ class PublicLauncher : public testing::Test {
     return Table2D{table_.mach, table_.incidence_rad, values}(mach, incidence_deg * kRadPerDeg);
   }
 
-  const AeroTable table_ = ThreeStageLauncher();
-  const std::vector<Row> public_ = Read("slv_cadac_derived_stability.csv", "slv3");
+  const AeroTable table_ = PublicLauncherBuildUp();
+  const std::vector<PublicAeroRow> public_ = Read("slv_cadac_derived_stability.csv", "slv3");
 };
 
 TEST_F(PublicLauncher, ReferenceAreaIsThePublicOne) {
@@ -79,7 +35,7 @@ TEST_F(PublicLauncher, ReferenceAreaIsThePublicOne) {
 }
 
 TEST_F(PublicLauncher, AxialForceHasThePublicSizeAtEveryMachNumber) {
-  for (const Row& row : public_) {
+  for (const PublicAeroRow& row : public_) {
     const double expected = row.at("CA0_power_on");
     EXPECT_NEAR(At(table_.ca, row.at("mach"), 0.0), expected, 0.35 * expected) << row.at("mach");
   }
@@ -105,7 +61,7 @@ TEST_F(PublicLauncher, AxialForcePeaksWhereThePublicOneDoes) {
 }
 
 TEST_F(PublicLauncher, NormalForceSlopeHasThePublicSizeAtEveryMachNumber) {
-  for (const Row& row : public_) {
+  for (const PublicAeroRow& row : public_) {
     const double expected = row.at("CN_alpha_per_rad_0_2deg");
     const double ours = At(table_.cn, row.at("mach"), 2.0) / (2.0 * kRadPerDeg);
     EXPECT_NEAR(ours, expected, 0.35 * expected) << row.at("mach");
@@ -115,18 +71,18 @@ TEST_F(PublicLauncher, NormalForceSlopeHasThePublicSizeAtEveryMachNumber) {
 TEST_F(PublicLauncher, CentreOfPressureIsWithinAnEighthOfTheLength) {
   // An eighth, 2.1 m, is one diameter: the public values themselves move by 1.4 m with Mach number.
   // Subsonically, where both are slender-body theory with cross-flow, within 0.25 m.
-  for (const Row& row : public_) {
+  for (const PublicAeroRow& row : public_) {
     const double ours_m = At(table_.xcp_station_m, row.at("mach"), 2.0);
-    const double tolerance_m = row.at("mach") <= 0.8 ? 0.25 : kLength_m / 8.0;
+    const double tolerance_m = row.at("mach") <= 0.8 ? 0.25 : kPublicLauncherLength_m / 8.0;
     EXPECT_NEAR(ours_m, row.at("xcp_from_nose_m"), tolerance_m) << row.at("mach");
   }
 }
 
 TEST_F(PublicLauncher, NormalForceGrowsWithIncidenceAsThePublicOne) {
   // To 30 degrees, where cross-flow is most of it.
-  const std::vector<Row> rows = Read("slv_cadac_normal_force.csv");
+  const std::vector<PublicAeroRow> rows = Read("slv_cadac_normal_force.csv");
   ASSERT_EQ(rows.size(), 187u);
-  for (const Row& row : rows) {
+  for (const PublicAeroRow& row : rows) {
     const double expected = row.at("cn");
     EXPECT_NEAR(At(table_.cn, row.at("mach"), row.at("alpha_deg")), expected, 0.35 * expected)
         << row.at("mach") << " " << row.at("alpha_deg");
@@ -136,12 +92,12 @@ TEST_F(PublicLauncher, NormalForceGrowsWithIncidenceAsThePublicOne) {
 TEST(PublicTwoStageRocket, DragGrowsWithLiftAsItsDoes) {
   // CD - CD0 over CL tan(a) is 1 where the normal force tilts and the axial force stays. NESC's rocket has
   // 0.95 to 1.21 from 4 degrees (below, its two digits leave nothing of the difference).
-  const AeroTable table = ThreeStageLauncher();
+  const AeroTable table = PublicLauncherBuildUp();
   const auto at = [&](const std::vector<double>& values, double incidence_rad) {
     return Table2D{table.mach, table.incidence_rad, values}(3.0, incidence_rad);
   };
   int compared = 0;
-  for (const Row& row : Read("nesc_twostage_v2_mach3.csv")) {
+  for (const PublicAeroRow& row : Read("nesc_twostage_v2_mach3.csv")) {
     const double a = row.at("alpha_deg") * kRadPerDeg;
     if (row.at("alpha_deg") < 4.0) continue;
     const double lift = at(table.cn, a) * std::cos(a) - at(table.ca, a) * std::sin(a);

@@ -1,0 +1,36 @@
+// Several charts as one picture that needs no page around it, and as a section of a page.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/report/svg_chart.h"
+
+namespace dispersa {
+
+struct FigurePanel {
+  SvgChart chart;
+  std::string caption;
+};
+
+struct FigureSheet {
+  std::string title;
+  int columns = 3;
+  std::vector<FigurePanel> panels;
+};
+
+inline constexpr int kPanelWidth = 440;
+inline constexpr int kPanelHeight = 340;
+
+/// A chart of the size of a panel.
+SvgChart PanelChart(ChartAxis x, ChartAxis y);
+
+/// A whole SVG file: light background, own style.
+std::string StandaloneSvg(const FigureSheet& sheet);
+/// The panels with their captions; the page's style sheet needs FigureStyle() besides the report's.
+std::string PageSection(const FigureSheet& sheet);
+/// Classes of points: "dots-0" to "dots-3" in the lines' colours, "public" for others' values, "shipped".
+std::string_view FigureStyle();
+
+}  // namespace dispersa
