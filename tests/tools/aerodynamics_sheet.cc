@@ -68,11 +68,6 @@ struct Panels {
     slope.Points(c.mach, c.cn_slope, "public", legend);
     xcp.Points(c.mach, c.xcp_lengths, "public", legend);
   }
-  void Into(FigureSheet& sheet, const std::array<std::string, 3>& captions) {
-    sheet.panels.push_back({std::move(ca), captions[0]});
-    sheet.panels.push_back({std::move(slope), captions[1]});
-    sheet.panels.push_back({std::move(xcp), captions[2]});
-  }
 };
 
 }  // namespace
@@ -110,9 +105,6 @@ FigureSheet AerodynamicsSheet(const std::string& campaigns, const std::string& d
   const Vehicle vehicle = LoadVehicle(campaigns + "/vehicles/slv4.yaml");
   const std::vector<AeroTable> tables = BuildAerodynamics(vehicle);
   const Curves theirs = Public(data, kTopMach);
-  FigureSheet sheet{.title = "Aerodynamics: stacks of slv4 (above), the public launcher rebuilt (below)",
-                    .columns = 3,
-                    .panels = {}};
 
   Panels stacks;
   for (std::size_t i = 0; i < tables.size(); ++i) {
@@ -122,24 +114,25 @@ FigureSheet AerodynamicsSheet(const std::string& campaigns, const std::string& d
         i + 1 < tables.size() ? "stages " + first + "-" + std::to_string(tables.size()) : "stage " + first);
   }
   stacks.Points(theirs, "public launcher");
-  stacks.Into(
-      sheet,
-      {"CA of each stack on the cross-section of its lowest stage, and of a public three-stage launcher of "
-       "another size and shape: shape and magnitude, not equality.",
-       "Slope of the normal force of the same. Slender-body theory gives 2 on the base area.",
-       "Centre of pressure in lengths of the stack. The public launcher is 8 diameters long and has a "
-       "fairing, slv4 21 with a slender nose."});
-
   Panels rebuilt;
   rebuilt.Line(Of(PublicLauncherBuildUp(), kPublicLauncherLength_m), "line-0",
                "build-up on the rebuilt body");
   rebuilt.Points(theirs, "public table (DATCOM)");
-  rebuilt.Into(
-      sheet,
-      {"The build-up on a body rebuilt from the public launcher's masses and inertias, against its own "
-       "table.",
-       "Normal force slope of the same.", "Centre of pressure of the same."});
-  return sheet;
+
+  return {.title = "Aerodynamics: the stacks of slv4 (left), the public launcher rebuilt (right)",
+          .panels = {
+              {stacks.ca,
+               "CA of each stack on the cross-section of its lowest stage, and of a public three-stage "
+               "launcher of another size and shape: shape and magnitude, not equality."},
+              {rebuilt.ca,
+               "The build-up on a body rebuilt from the public launcher's masses and inertias, against its "
+               "own table."},
+              {stacks.slope, "Slope of the normal force. Slender-body theory gives 2 on the base area."},
+              {rebuilt.slope, "Slope of the normal force of the rebuilt body."},
+              {stacks.xcp,
+               "Centre of pressure in lengths of the stack. The public launcher is 8 diameters long and has "
+               "a fairing, slv4 21 with a slender nose."},
+              {rebuilt.xcp, "Centre of pressure of the rebuilt body."}}};
 }
 
 }  // namespace dispersa

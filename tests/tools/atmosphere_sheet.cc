@@ -112,7 +112,7 @@ FigureSheet AtmosphereSheet(const std::string& data) {
   constexpr double kLow_km = -5.0, kMiddle_km = 120.0, kSoundTop_km = 86.0, kTop_km = 1000.0;
   const ChartAxis low{.label = "geometric altitude, km", .low = -10.0, .high = 120.0};
   const ChartAxis whole{.label = "geometric altitude, km", .low = -50.0, .high = 1000.0};
-  FigureSheet sheet{.title = "US Standard Atmosphere 1976, -5 to 1000 km", .columns = 3, .panels = {}};
+  FigureSheet sheet{.title = "US Standard Atmosphere 1976, -5 to 1000 km", .panels = {}};
 
   SvgChart temperature = PanelChart({.label = "kinetic temperature, K"}, low);
   Line(temperature, Ours(kLow_km, kMiddle_km, Temperature), "line-0", "dispersa");

@@ -10,6 +10,7 @@
 namespace dispersa {
 namespace {
 
+constexpr int kColumns = 2;
 constexpr int kGap = 14;
 constexpr int kTitle = 34;
 
@@ -36,8 +37,8 @@ SvgChart PanelChart(ChartAxis x, ChartAxis y) {
 
 std::string StandaloneSvg(const FigureSheet& sheet) {
   const int count = static_cast<int>(sheet.panels.size());
-  const int rows = (count + sheet.columns - 1) / sheet.columns;
-  const int width = sheet.columns * (kPanelWidth + kGap) + kGap;
+  const int rows = (count + kColumns - 1) / kColumns;
+  const int width = kColumns * (kPanelWidth + kGap) + kGap;
   const int height = kTitle + rows * (kPanelHeight + kGap) + kGap;
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\">\n"
@@ -48,8 +49,8 @@ std::string StandaloneSvg(const FigureSheet& sheet) {
     const FigurePanel& panel = sheet.panels[static_cast<std::size_t>(i)];
     // A nested element without a size would take the whole picture's.
     svg += fmt::format("<svg x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\">{}</svg>\n",
-                       kGap + (i % sheet.columns) * (kPanelWidth + kGap),
-                       kTitle + kGap + (i / sheet.columns) * (kPanelHeight + kGap), kPanelWidth, kPanelHeight,
+                       kGap + (i % kColumns) * (kPanelWidth + kGap),
+                       kTitle + kGap + (i / kColumns) * (kPanelHeight + kGap), kPanelWidth, kPanelHeight,
                        panel.chart.Svg(panel.caption));
   }
   return svg + "</svg>\n";

@@ -16,7 +16,6 @@ struct FigurePanel {
 
 struct FigureSheet {
   std::string title;
-  int columns = 3;
   std::vector<FigurePanel> panels;
 };
 
@@ -26,7 +25,7 @@ inline constexpr int kPanelHeight = 340;
 /// A chart of the size of a panel.
 SvgChart PanelChart(ChartAxis x, ChartAxis y);
 
-/// A whole SVG file: light background, own style.
+/// A whole SVG file, panels in two columns so that they can be read beside text: light background, own style.
 std::string StandaloneSvg(const FigureSheet& sheet);
 /// The panels with their captions; the page's style sheet needs FigureStyle() besides the report's.
 std::string PageSection(const FigureSheet& sheet);

@@ -1,5 +1,5 @@
-// Draws the figures of core/README.md into core/images/, rewrites its tables of atmosphere, aerodynamics, work
-// and precision, and writes a page with all of it:
+// Draws the figures of core/README.md into core/images/, rewrites its tables of atmosphere, aerodynamics,
+// work and precision, and writes a page with all of it:
 //   physics_plots PAGE.html
 #include <fmt/format.h>
 

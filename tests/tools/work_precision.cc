@@ -66,6 +66,21 @@ AutopilotConfig WithTick(AutopilotConfig autopilot, double tick_s) {
   return autopilot;
 }
 
+// From the decade below the least positive value of Table 3's flights to the one above the largest.
+ChartAxis WholeDecades(const std::string& label, const std::vector<WorkPoint>& points,
+                       double WorkPoint::*difference) {
+  double low = std::numeric_limits<double>::infinity(), high = 0.0;
+  for (const WorkPoint& p : points) {
+    if (p.flight != "table3" || !(p.*difference > 0.0)) continue;
+    low = std::min(low, p.*difference);
+    high = std::max(high, p.*difference);
+  }
+  return {.label = label,
+          .low = std::pow(10.0, std::floor(std::log10(low))),
+          .high = std::pow(10.0, std::ceil(std::log10(high))),
+          .logarithmic = true};
+}
+
 std::string TickName(double tick_s) { return fmt::format("{:g} ms", 1e3 * tick_s); }
 
 }  // namespace
@@ -110,11 +125,10 @@ std::string WorkPrecisionCsv(const std::vector<WorkPoint>& points) {
 FigureSheet WorkPrecisionSheet(const std::vector<WorkPoint>& points) {
   FigureSheet sheet{
       .title = "Work and precision of a whole closed-loop flight, every dispersion of Table 3 at once",
-      .columns = 3,
       .panels = {}};
   const ChartAxis cpu{.label = "CPU time of a flight, ms", .low = 10.0, .high = 1e4, .logarithmic = true};
-  const auto work = [&](const ChartAxis& y, double WorkPoint::*difference, const std::string& caption) {
-    SvgChart chart = PanelChart(cpu, y);
+  const auto work = [&](const std::string& label, double WorkPoint::*difference, const std::string& caption) {
+    SvgChart chart = PanelChart(cpu, WholeDecades(label, points, difference));
     std::vector<double> shipped_x, shipped_y, cvode_x, cvode_y;
     std::vector<std::pair<double, std::vector<WorkPoint>>> ticks;
     for (const WorkPoint& p : points) {
@@ -144,13 +158,11 @@ FigureSheet WorkPrecisionSheet(const std::vector<WorkPoint>& points) {
     chart.Points(cvode_x, cvode_y, "public", "CVODE 1e-12, floor");
     sheet.panels.push_back({chart, caption});
   };
-  work({.label = "largest difference in pitch error, °", .low = 1e-11, .high = 1e-3, .logarithmic = true},
-       &WorkPoint::pitch_error_difference_deg,
+  work("largest difference in pitch error, °", &WorkPoint::pitch_error_difference_deg,
        "ERK4 with 1, 2 and 4 steps a tick against CVODE on the same tick; CVODE's own points are placed at "
-       "its "
-       "difference to 4 steps a tick, the floor of the comparison.");
-  work({.label = "difference in injection altitude, m", .low = 1e-7, .high = 1e-2, .logarithmic = true},
-       &WorkPoint::altitude_difference_m, "The same for the injection altitude.");
+       "its difference to 4 steps a tick, the floor of the comparison.");
+  work("difference in injection altitude, m", &WorkPoint::altitude_difference_m,
+       "The same for the injection altitude.");
 
   SvgChart tick = PanelChart({.label = "tick of the autopilot, ms", .low = 0.0, .high = 22.0},
                              {.label = "pitch error, °", .low = 0.0});
