@@ -86,12 +86,13 @@ std::string TickName(double tick_s) { return fmt::format("{:g} ms", 1e3 * tick_s
 }  // namespace
 
 std::vector<WorkPoint> MeasureWorkPrecision(const std::string& campaigns) {
+  const FlightDefinition shipped = Slv4Definition(campaigns);
   std::vector<WorkPoint> points;
   for (const bool dispersed : {false, true}) {
     const FlightInputs inputs = dispersed ? Table3Inputs() : FlightInputs{};
     for (const double tick_s : {0.0025, 0.005, 0.01, 0.02}) {
-      FlightDefinition definition = Slv4Definition(campaigns);
-      definition.autopilot = WithTick(definition.autopilot, tick_s);
+      FlightDefinition definition = shipped;
+      definition.autopilot = WithTick(shipped.autopilot, tick_s);
       const FlightModel model(definition);
       const Flown exact = FlyOnce(model, inputs, Scheme::kCvode, 1);
       const auto add = [&](const Flown& flown, Scheme scheme, int steps) {
