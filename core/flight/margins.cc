@@ -29,7 +29,8 @@ bool Holds(const FlightModel& model, int stage, double gain_db, double delay_s) 
   const FlightResult result = Fly(model, inputs);
   const auto metric = [&](const char* name) {
     const auto& names = MetricNames();
-    return result.metrics[static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin())];
+    return result
+        .metrics[static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin())];
   };
   const auto above = [&](const char* name, double limit) { return metric(name) > limit; };
   return result.outcome == Outcome::kCompleted && !above("deflection_limit_cycle_deg", kLostCycle_deg) &&
@@ -84,16 +85,14 @@ std::vector<MarginInstant> MarginInstants(const FlightModel& model, double every
   if (stage < 0) return instants;
   instants.push_back(last);
   if (q_max > 0.0) instants.push_back(max_q);
-  std::stable_sort(instants.begin(), instants.end(),
-                   [](const MarginInstant& a, const MarginInstant& b) {
-                     return a.sample.time_s < b.sample.time_s;
-                   });
+  std::stable_sort(instants.begin(), instants.end(), [](const MarginInstant& a, const MarginInstant& b) {
+    return a.sample.time_s < b.sample.time_s;
+  });
   return instants;
 }
 
-LoopMargins MarginsAt(const FlightModel& model, const TickSample& s, Axis axis, bool adapting) {
-  const AutopilotModel& autopilot = model.autopilot();
-  const LauncherPlant& plant = model.nominal_plant();
+LoopMargins MarginsAt(const LauncherPlant& plant, const AutopilotModel& autopilot, const TickSample& s,
+                      Axis axis, bool adapting) {
   return SampledLoop(LineariseAxis(plant, s, axis),
                      LineariseLaw(autopilot, s.stack, s.since_ignition_s, axis, adapting),
                      autopilot.config.tick_s,
@@ -102,6 +101,7 @@ LoopMargins MarginsAt(const FlightModel& model, const TickSample& s, Axis axis, 
 }
 
 std::vector<ComputedMargins> ComputeMargins(const FlightModel& model, double every_s) {
+  const LauncherPlant& plant = model.nominal_plant();
   std::vector<ComputedMargins> all;
   for (const MarginInstant& instant : MarginInstants(model, every_s)) {
     for (const Axis axis : {kPitch, kYaw, kRoll}) {
@@ -110,8 +110,8 @@ std::vector<ComputedMargins> ComputeMargins(const FlightModel& model, double eve
       each.stage = instant.sample.stack;
       each.time_s = instant.sample.time_s;
       each.axis = axis;
-      each.frozen = MarginsAt(model, instant.sample, axis, false);
-      each.adapting = MarginsAt(model, instant.sample, axis, true);
+      each.frozen = MarginsAt(plant, model.autopilot(), instant.sample, axis, false);
+      each.adapting = MarginsAt(plant, model.autopilot(), instant.sample, axis, true);
       all.push_back(each);
     }
   }

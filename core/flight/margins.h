@@ -51,8 +51,9 @@ struct MarginInstant {
 /// Lift-off, max q, each ignition + 1 s and burnout, and every `every_s` of powered flight between, in the
 /// order of time.
 std::vector<MarginInstant> MarginInstants(const FlightModel& model, double every_s = 5.0);
-/// The margins of the model's autopilot at an instant, be it of another autopilot's flight.
-LoopMargins MarginsAt(const FlightModel& model, const TickSample& sample, Axis axis, bool adapting);
+/// The margins of an autopilot at an instant, be it of another autopilot's flight of the same plant.
+LoopMargins MarginsAt(const LauncherPlant& plant, const AutopilotModel& autopilot, const TickSample& sample,
+                      Axis axis, bool adapting);
 
 /// At each of MarginInstants, in all axes.
 std::vector<ComputedMargins> ComputeMargins(const FlightModel& model, double every_s = 5.0);

@@ -19,21 +19,21 @@ double RoundToDigits(double value, int digits) {
   return std::strtod(fmt::format("{:.{}e}", value, digits - 1).c_str(), nullptr);
 }
 
-std::size_t DesignSize(const AutopilotConfig& autopilot) {
-  return Adapts(autopilot.pitch) || Adapts(autopilot.yaw) || Adapts(autopilot.roll) ? 3 : 2;
+bool Learns(const AutopilotConfig& autopilot) {
+  return Adapts(autopilot.pitch) || Adapts(autopilot.yaw) || Adapts(autopilot.roll);
 }
 
-void ApplyDesign(const std::vector<double>& design, int stage, double actuator_rad_s,
-                 AutopilotConfig& autopilot) {
-  const double w = design[0] * actuator_rad_s;
+void ApplyDesign(const StageDesign& design, int stage, AutopilotConfig& autopilot) {
+  const double w = design.bandwidth_rad_s;
   const AxisGains gains = {RoundToDigits(w * w, kDesignDigits),
-                           RoundToDigits(2.0 * design[1] * w, kDesignDigits)};
+                           RoundToDigits(2.0 * design.damping * w, kDesignDigits)};
   const std::size_t at = static_cast<std::size_t>(stage);
   for (AxisConfig* axis : {&autopilot.pitch, &autopilot.yaw, &autopilot.roll}) {
     axis->gains[at] = gains;
     if (!Adapts(*axis)) continue;
     const double p12 = SolveLyapunov(gains, axis->adaptation.q)(0, 1);
-    axis->adaptation.gamma[at] = RoundToDigits(design[2] * w * w * w * kFuzzyRules / p12, kDesignDigits);
+    axis->adaptation.gamma[at] =
+        RoundToDigits(design.learning * w * w * w * kFuzzyRules / p12, kDesignDigits);
   }
 }
 

@@ -3,19 +3,21 @@
 #include <algorithm>
 #include <atomic>
 #include <limits>
+#include <memory>
 
 #include "core/campaign/campaign_flights.h"
 #include "core/campaign/input_error.h"
 #include "core/flight/flight_model.h"
 #include "core/flight/margins.h"
 #include "core/flight/metrics.h"
-#include "core/tuning/stage_design.h"
 
 namespace dispersa {
 
 namespace {
 
 constexpr int kElites = 2;
+// Changes of a tenth of a range at first.
+constexpr double kMutationEta = 10.0;
 // Changes of a percent at the end: the optimum is flat, and a design is rounded to a thousandth anyhow.
 constexpr double kFinalMutationEta = 100.0;
 
@@ -63,15 +65,14 @@ void Take(const LoopMargins& m, LeastMargins& least) {
   least.delay_s = std::min(least.delay_s, m.delay_s);
 }
 
-LeastMargins LeastOf(const FlightModel& model, const std::vector<MarginInstant>& instants, int stage,
-                     bool adapting) {
-  LeastMargins least = {kInfinity, kInfinity, kInfinity};
-  for (const MarginInstant& instant : instants) {
-    if (instant.sample.stack != stage) continue;
-    for (const Axis axis : {kPitch, kYaw, kRoll})
-      Take(MarginsAt(model, instant.sample, axis, adapting), least);
-  }
-  return least;
+bool Suffices(const LeastMargins& m) {
+  return m.gain_db >= kGainMarginGate_db + kGainReserve_db &&
+         m.phase_deg >= kPhaseMarginGate_deg + kPhaseReserve_deg &&
+         m.delay_s >= kDelayMarginGate_s + kDelayReserve_s;
+}
+
+bool AllZero(const std::vector<double>& violations) {
+  return std::all_of(violations.begin(), violations.end(), [](double v) { return v == 0.0; });
 }
 
 // Fractions by which gates plus reserves are missed.
@@ -89,17 +90,23 @@ int GenerationsOf(int evaluations, int stages) {
   return (evaluations / stages - kTuningPopulation) / (kTuningPopulation - kElites);
 }
 
+// Steps of the search for the largest bandwidth.
+constexpr double kBandwidthStep = 0.98;
+
 // The campaign as the tuning flies it, and what it has found so far.
 class Tuner {
  public:
   Tuner(const Campaign& campaign, const AutopilotConfig& autopilot, const TuningOptions& options)
-      : options_(options), campaign_(campaign) {
+      : options_(options), campaign_(campaign), learns_(Learns(autopilot)) {
     campaign_.autopilot = autopilot;
     campaign_.sampling = {SamplingMethod::kMonteCarlo, static_cast<std::uint64_t>(options.cases),
                           options.seed};
-    for (int stage = 0; stage < StageCount(); ++stage)
-      ApplyDesign(StartDesign(), stage, ActuatorOf(stage), campaign_.autopilot);
-    instants_ = MarginInstants(CampaignFlights(campaign_).model());
+    for (int stage = 0; stage < StageCount(); ++stage) {
+      ApplyDesign({kStartBandwidthOfActuator * ActuatorOf(stage), kStartDamping, kStartLearning}, stage,
+                  campaign_.autopilot);
+    }
+    start_ = std::make_unique<CampaignFlights>(campaign_);
+    instants_ = MarginInstants(start_->model());
   }
 
   TuningResult Run(const TuningObserver& observer) {
@@ -112,9 +119,8 @@ class Tuner {
     result.flights = flights_;
     result.autopilot = campaign_.autopilot;
     if (!result.feasible) return result;
-    const CampaignFlights flights(campaign_);
     std::vector<double> rms_deg;
-    for (const CaseResult& flown : FlyAll(flights)) {
+    for (const CaseResult& flown : FlyAll(campaign_)) {
       rms_deg.push_back(Metric(flown, "pitch_error_rms_deg"));
       result.largest_peak_deg = std::max(result.largest_peak_deg, Metric(flown, "pitch_error_peak_deg"));
     }
@@ -127,35 +133,75 @@ class Tuner {
   double ActuatorOf(int stage) const {
     return campaign_.vehicle.stages[static_cast<std::size_t>(stage)].gimbal.bandwidth_rad_s;
   }
-  std::vector<double> StartDesign() const {
-    std::vector<double> design;
-    for (std::size_t i = 0; i < DesignSize(campaign_.autopilot); ++i)
-      design.push_back(kDesignVariables[i].start);
-    return design;
-  }
 
-  std::vector<CaseResult> FlyAll(const CampaignFlights& flights) {
+  std::vector<CaseResult> FlyAll(const Campaign& campaign) {
+    const CampaignFlights flights(campaign);
     std::vector<CaseResult> all;
-    for (std::uint64_t i = 0; i < campaign_.sampling.cases; ++i) all.push_back(flights.FlyCase(i));
+    for (std::uint64_t i = 0; i < campaign.sampling.cases; ++i) all.push_back(flights.FlyCase(i));
     flights_ += all.size();
     return all;
   }
 
-  Evaluation Evaluate(const std::vector<double>& design, int stage) {
+  AutopilotModel ModelOf(const AutopilotConfig& autopilot) const {
+    return BuildAutopilot(autopilot, start_->model().autopilot().stages,
+                          campaign_.vehicle.reaction_control.minimum_on_time_s);
+  }
+
+  LeastMargins LeastOf(const AutopilotConfig& autopilot, int stage, bool adapting) const {
+    const AutopilotModel model = ModelOf(autopilot);
+    LeastMargins least = {kInfinity, kInfinity, kInfinity};
+    for (const MarginInstant& instant : instants_) {
+      if (instant.sample.stack != stage) continue;
+      for (const Axis axis : {kPitch, kYaw, kRoll})
+        Take(MarginsAt(start_->model().nominal_plant(), model, instant.sample, axis, adapting), least);
+    }
+    return least;
+  }
+
+  // Ends at the first instant that fails, so that a design far from admissible costs next to nothing.
+  bool HasMargins(const AutopilotConfig& autopilot, int stage) const {
+    const AutopilotModel model = ModelOf(autopilot);
+    for (const MarginInstant& instant : instants_) {
+      if (instant.sample.stack != stage) continue;
+      for (const Axis axis : {kPitch, kYaw, kRoll}) {
+        for (const bool adapting : {true, false}) {
+          LeastMargins least = {kInfinity, kInfinity, kInfinity};
+          Take(MarginsAt(start_->model().nominal_plant(), model, instant.sample, axis, adapting), least);
+          if (!Suffices(least)) return false;
+        }
+      }
+    }
+    return true;
+  }
+
+  // Of a point of the search: bandwidth as a fraction of the largest admissible one, damping, learning. Where
+  // none is admissible the least one stands, and its margins say by how much they are missed.
+  StageDesign DesignOf(const std::vector<double>& point, int stage) const {
+    StageDesign design = {0.0, point[1], learns_ ? point[2] : 0.0};
+    AutopilotConfig autopilot = campaign_.autopilot;
+    const double lowest_rad_s = kBandwidthOfActuator.low * ActuatorOf(stage);
+    double w = kBandwidthOfActuator.high * ActuatorOf(stage);
+    for (; w > lowest_rad_s; w *= kBandwidthStep) {
+      design.bandwidth_rad_s = w;
+      ApplyDesign(design, stage, autopilot);
+      if (HasMargins(autopilot, stage)) break;
+    }
+    design.bandwidth_rad_s = point[0] * std::max(w, lowest_rad_s);
+    return design;
+  }
+
+  Evaluation Evaluate(const std::vector<double>& point, int stage) {
     Campaign candidate = campaign_;
-    ApplyDesign(design, stage, ActuatorOf(stage), candidate.autopilot);
-    const CampaignFlights flights(candidate);
+    ApplyDesign(DesignOf(point, stage), stage, candidate.autopilot);
     Evaluation evaluation;
     std::vector<double>& violations = evaluation.constraint_violations;
-    AddViolations(LeastOf(flights.model(), instants_, stage, false), violations);
-    AddViolations(LeastOf(flights.model(), instants_, stage, true), violations);
-    if (std::any_of(violations.begin(), violations.end(), [](double v) { return v > 0.0; }))
-      return evaluation;
+    AddViolations(LeastOf(candidate.autopilot, stage, false), violations);
+    AddViolations(LeastOf(candidate.autopilot, stage, true), violations);
+    if (!AllZero(violations)) return evaluation;
 
     const std::string suffix = "_stage" + std::to_string(stage + 1) + "_deg";
     double sum_deg = 0.0, lost = 0.0, cycle_deg = 0.0;
-    const std::vector<CaseResult> all = FlyAll(flights);
-    for (const CaseResult& flown : all) {
+    for (const CaseResult& flown : FlyAll(candidate)) {
       // Not every metric of a flight that was lost is defined.
       if (flown.outcome != Outcome::kCompleted) {
         lost += 1.0;
@@ -165,9 +211,8 @@ class Tuner {
       evaluation.tie_breaker = std::max(evaluation.tie_breaker, Metric(flown, "pitch_error_peak" + suffix));
       cycle_deg = std::max(cycle_deg, Metric(flown, "deflection_limit_cycle_deg"));
     }
-    const double cases = static_cast<double>(all.size());
-    evaluation.objective = sum_deg / cases;
-    violations.push_back(lost / cases);
+    evaluation.objective = sum_deg / options_.cases;
+    violations.push_back(lost / options_.cases);
     violations.push_back(std::max(0.0, cycle_deg / kLimitCycleLimit_deg - 1.0));
     return evaluation;
   }
@@ -177,39 +222,44 @@ class Tuner {
     search.population = kTuningPopulation;
     search.elites = kElites;
     search.generations = GenerationsOf(options_.evaluations, StageCount());
+    search.mutation_eta = kMutationEta;
     search.final_mutation_eta = kFinalMutationEta;
     search.objective_tolerance = kObjectiveTolerance_deg;
     search.seed = options_.seed;
     search.threads = options_.threads;
 
     BoundedProblem problem;
-    problem.known_points = {StartDesign()};
-    for (std::size_t i = 0; i < problem.known_points[0].size(); ++i) {
-      problem.lower.push_back(kDesignVariables[i].lower);
-      problem.upper.push_back(kDesignVariables[i].upper);
+    problem.lower = {kBandwidthOfLargest.low, kDamping.low};
+    problem.upper = {kBandwidthOfLargest.high, kDamping.high};
+    problem.known_points = {{kBandwidthOfLargest.high, kStartDamping}};
+    if (learns_) {
+      problem.lower.push_back(kLearning.low);
+      problem.upper.push_back(kLearning.high);
+      problem.known_points[0].push_back(kStartLearning);
     }
-    problem.evaluate = [&](const std::vector<double>& design) { return Evaluate(design, stage); };
+    problem.evaluate = [&](const std::vector<double>& point) { return Evaluate(point, stage); };
     const GeneticAlgorithmResult found =
         GeneticAlgorithm(search).Minimize(problem, [&](const GenerationRecord& record) {
           if (observer) observer({stage, record});
         });
 
-    ApplyDesign(found.variables, stage, ActuatorOf(stage), campaign_.autopilot);
-    const CampaignFlights flights(campaign_);
     StageTuning tuned;
-    tuned.design = found.variables;
-    const std::vector<double>& violations = found.evaluation.constraint_violations;
-    tuned.feasible = std::all_of(violations.begin(), violations.end(), [](double v) { return v == 0.0; });
+    tuned.design = DesignOf(found.variables, stage);
+    ApplyDesign(tuned.design, stage, campaign_.autopilot);
+    tuned.feasible = AllZero(found.evaluation.constraint_violations);
     tuned.mean_rms_deg = found.evaluation.objective;
     tuned.peak_deg = found.evaluation.tie_breaker;
-    tuned.frozen = LeastOf(flights.model(), instants_, stage, false);
-    tuned.adapting = LeastOf(flights.model(), instants_, stage, true);
+    tuned.frozen = LeastOf(campaign_.autopilot, stage, false);
+    tuned.adapting = LeastOf(campaign_.autopilot, stage, true);
     evaluations += found.evaluations;
     return tuned;
   }
 
   const TuningOptions& options_;
   Campaign campaign_;  ///< its autopilot: tuned as far as the search has come
+  bool learns_;
+  std::unique_ptr<CampaignFlights>
+      start_;  ///< all stages untuned: margins are taken about its nominal flight
   std::vector<MarginInstant> instants_;
   std::atomic<std::uint64_t> flights_ = 0;
 };

@@ -2,8 +2,10 @@
 // only between tunings that had the same chances.
 //
 // Stage after stage, since a stage's gains act only while it burns, a genetic algorithm searches the stage's
-// design (stage_design.h):
-// - objective: mean RMS pitch error of the stage over cases of the campaign, drawn with the tuning's own seed;
+// design (stage_design.h): its damping, its learning if the law adapts, and its bandwidth as a fraction of
+// the largest one whose margins suffice, since the best designs lie on or near that limit.
+// - objective: mean RMS pitch error of the stage over cases of the campaign, drawn with the tuning's own
+// seed;
 //   tie-breaker within kObjectiveTolerance_deg: the largest peak;
 // - subject to: every computed margin of all axes, gains frozen and adapting, at every instant of
 //   MarginInstants at or above its gate plus a reserve; every case completed; every limit cycle below
@@ -19,6 +21,7 @@
 
 #include "core/campaign/campaign.h"
 #include "core/optimization/genetic_algorithm.h"
+#include "core/tuning/stage_design.h"
 
 namespace dispersa {
 
@@ -31,11 +34,21 @@ inline constexpr double kPhaseReserve_deg = 2.0;
 inline constexpr double kDelayReserve_s = 0.002;
 /// Small: a stage has two or three variables, and generations are what a budget of flights is best spent on.
 inline constexpr int kTuningPopulation = 8;
+/// What is searched. Bandwidths are fractions: of the largest admissible one, which is looked for between
+/// those of the actuator's.
+inline constexpr Bounds kBandwidthOfLargest = {0.6, 1.0};
+inline constexpr Bounds kBandwidthOfActuator = {0.04, 0.35};
+inline constexpr Bounds kDamping = {0.4, 1.6};
+inline constexpr Bounds kLearning = {0.0, 0.5};
+/// Cautious: every search begins with it, and stages yet to be tuned have it.
+inline constexpr double kStartBandwidthOfActuator = 0.1;
+inline constexpr double kStartDamping = 0.9;
+inline constexpr double kStartLearning = 0.05;
 
 struct TuningOptions {
   std::uint64_t seed = 1;  ///< of the cases and of the search; the campaign's own is refused
   int cases = 4;           ///< flown for each design; 1 to 10,000
-  int evaluations = 320;   ///< designs tried in all stages; at least 2 kTuningPopulation a stage
+  int evaluations = 160;   ///< designs tried in all stages; at least 2 kTuningPopulation a stage
   int threads = 1;         ///< 1 to 1024; the result does not depend on it
 };
 
@@ -53,10 +66,10 @@ struct LeastMargins {
 };
 
 struct StageTuning {
-  std::vector<double> design;  ///< shape (DesignSize)
-  bool feasible = false;       ///< all constraints are met
-  double mean_rms_deg = 0.0;   ///< of the stage, pitch
-  double peak_deg = 0.0;       ///< largest of the stage over the cases, pitch
+  StageDesign design;
+  bool feasible = false;      ///< all constraints are met
+  double mean_rms_deg = 0.0;  ///< of the stage, pitch
+  double peak_deg = 0.0;      ///< largest of the stage over the cases, pitch
   LeastMargins frozen;
   LeastMargins adapting;  ///< as frozen where nothing adapts
 };

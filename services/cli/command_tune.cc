@@ -9,7 +9,6 @@
 
 #include "core/campaign_yaml/load.h"
 #include "core/report/output_file.h"
-#include "core/tuning/stage_design.h"
 #include "core/tuning/tune.h"
 #include "services/cli/command.h"
 #include "services/cli/flight_json.h"
@@ -41,7 +40,8 @@ std::string LawText(ControlLaw law) {
       "# Gains are those of the error dynamics s² + kd s + kp, one entry a stage; roll has those of pitch.\n";
   switch (law) {
     case ControlLaw::kAdaptiveFuzzy:
-      return "# The paper's direct adaptive fuzzy law. The rules start from the plane of the gains; P_n follows\n"
+      return "# The paper's direct adaptive fuzzy law. The rules start from the plane of the gains; P_n "
+             "follows\n"
              "# from the gains and Q.\n" +
              gains;
     case ControlLaw::kFrozenFuzzy:
@@ -51,8 +51,10 @@ std::string LawText(ControlLaw law) {
     case ControlLaw::kPdAac:
       break;
   }
-  return "# Scheduled proportional-derivative control under adaptive augmenting control (J. S. Orr and T. S.\n"
-         "# VanZwieten, AIAA 2012-4549): the total gain rises with the departure from the reference model, in\n"
+  return "# Scheduled proportional-derivative control under adaptive augmenting control (J. S. Orr and T. "
+         "S.\n"
+         "# VanZwieten, AIAA 2012-4549): the total gain rises with the departure from the reference model, "
+         "in\n"
          "# rad, falls with fast activity of the command, and leaks to 1, where margins are computed. The\n"
          "# augmentation itself is not tuned.\n" +
          gains;
@@ -66,8 +68,8 @@ std::string MarginsText(const LeastMargins& m) {
 std::string Header(const TuneOptions& options, const TuningResult& result) {
   std::string text = LawText(result.autopilot.pitch.law);
   text += fmt::format("#\n# Tuned by\n#   {}\n", CommandText(options));
-  text += fmt::format("# which tried {} designs in {} flights. Over the {} cases of its seed:\n", result.evaluations,
-                      result.flights, options.tuning.cases);
+  text += fmt::format("# which tried {} designs in {} flights. Over the {} cases of its seed:\n",
+                      result.evaluations, result.flights, options.tuning.cases);
   text += fmt::format("#   median powered RMS pitch error {:.5f} deg, largest peak {:.4f} deg\n",
                       result.median_rms_deg, result.largest_peak_deg);
   text += "# Least computed margins (gain either way, phase, delay), gains frozen | adapting:\n";
@@ -89,14 +91,14 @@ nlohmann::ordered_json ResultJson(const TuneOptions& options, const TuningResult
   auto stages = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < result.stages.size(); ++i) {
     const StageTuning& stage = result.stages[i];
-    nlohmann::ordered_json design;
-    for (std::size_t k = 0; k < stage.design.size(); ++k) design[kDesignVariables[k].name] = stage.design[k];
     const AxisGains& gains = result.autopilot.pitch.gains[i];
     stages.push_back({{"stage", i + 1},
                       {"feasible", stage.feasible},
                       {"kp_1_s2", gains.kp_1_s2},
                       {"kd_1_s", gains.kd_1_s},
-                      {"design", std::move(design)},
+                      {"bandwidth_rad_s", stage.design.bandwidth_rad_s},
+                      {"damping", stage.design.damping},
+                      {"learning", stage.design.learning},
                       {"pitch_error_rms_mean_deg", JsonNumber(stage.mean_rms_deg)},
                       {"pitch_error_peak_deg", JsonNumber(stage.peak_deg)},
                       {"frozen", MarginsJson(stage.frozen)},
