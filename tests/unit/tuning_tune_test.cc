@@ -1,0 +1,207 @@
+// The procedure that tunes every law: what it holds, what it refuses, and that nothing but its arguments decides.
+#include "core/tuning/tune.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/campaign/campaign_flights.h"
+#include "core/campaign/input_error.h"
+#include "core/campaign_yaml/load.h"
+#include "core/flight/flight_model.h"
+#include "core/flight/margins.h"
+#include "core/tuning/stage_design.h"
+#include "tests/unit/sample_vehicle.h"
+
+namespace dispersa {
+namespace {
+
+// The sample vehicle with its second stage taking over at once, since nothing holds its attitude in a coast
+// through the air, slender enough for slow designs too, under a misaligned thrust.
+Campaign SampleCampaign() {
+  const FlightDefinition definition = SampleDefinition();
+  Campaign campaign;
+  campaign.name = "sample";
+  campaign.vehicle = definition.vehicle;
+  campaign.vehicle.stages[0].separation_delay_s = 0.0;
+  for (AeroTable& table : campaign.vehicle.aerodynamics) table.cn = {0.0, 0.3, 0.0, 0.3};
+  campaign.autopilot = definition.autopilot;
+  campaign.autopilot.pitch.adaptation.spread_1_s = 60.0;
+  campaign.reference.attitude = definition.program;
+  campaign.reference.last_ignition_s = 0.0;
+  campaign.sampling = {SamplingMethod::kMonteCarlo, 100, 77};
+  Dispersion misalignment;
+  misalignment.name = "thrust_misalignment";
+  misalignment.distribution.kind = Distribution::kNormal;
+  misalignment.distribution.sigma = 0.1 * kRadPerDeg;
+  misalignment.absolute = true;
+  misalignment.inputs = {FindInput("thrust_misalignment_stage1_deg"), FindInput("thrust_misalignment_stage2_deg")};
+  campaign.dispersions = {misalignment};
+  return campaign;
+}
+
+// Two stages, two generations of 8 after the first.
+TuningOptions Small() { return {.seed = 3, .cases = 1, .evaluations = 40, .threads = 1}; }
+
+AutopilotConfig AllPd() {
+  AutopilotConfig autopilot = SampleAutopilot();
+  autopilot.pitch.law = ControlLaw::kPd;
+  return autopilot;
+}
+
+std::string ErrorOf(const Campaign& campaign, const AutopilotConfig& autopilot, const TuningOptions& options) {
+  try {
+    Tune(campaign, autopilot, options);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(ApplyDesign, TurnsRatiosIntoRoundedGains) {
+  AutopilotConfig autopilot = SampleAutopilot();
+  const AutopilotConfig before = autopilot;
+  // kp = 5² and kd = 2 * 0.7 * 5. p12 = q11 / (2 kp) = 0.02; gamma = 0.1 * 5³ * 25 / 0.02.
+  ApplyDesign({5.0, 0.7, 0.1}, 1, autopilot);
+  for (const AxisConfig* axis : {&autopilot.pitch, &autopilot.yaw, &autopilot.roll}) {
+    EXPECT_EQ(axis->gains[1].kp_1_s2, 25.0);
+    EXPECT_EQ(axis->gains[1].kd_1_s, 7.0);
+    EXPECT_EQ(axis->gains[0].kp_1_s2, before.pitch.gains[0].kp_1_s2);
+  }
+  EXPECT_EQ(autopilot.pitch.adaptation.gamma[1], 15600.0) << "15,625 to three digits";
+  EXPECT_EQ(autopilot.pitch.adaptation.gamma[0], before.pitch.adaptation.gamma[0]);
+  EXPECT_EQ(autopilot.yaw.adaptation.gamma[1], before.yaw.adaptation.gamma[1]) << "yaw does not adapt";
+  ApplyDesign({3.085, 0.7, 0.1}, 0, autopilot);
+  EXPECT_EQ(autopilot.pitch.gains[0].kp_1_s2, 9.52) << "3.085² = 9.517";
+}
+
+TEST(Learns, IsTrueWhereAnAxisAdapts) {
+  EXPECT_TRUE(Learns(SampleAutopilot()));
+  EXPECT_FALSE(Learns(AllPd()));
+}
+
+TEST(Tune, HoldsEveryGateWithItsReserveAtEveryInstant) {
+  const Campaign campaign = SampleCampaign();
+  const TuningResult result = Tune(campaign, campaign.autopilot, Small());
+  ASSERT_TRUE(result.feasible);
+  Campaign tuned = campaign;
+  tuned.autopilot = result.autopilot;
+  for (const ComputedMargins& m : ComputeMargins(CampaignFlights(tuned).model())) {
+    for (const LoopMargins& margins : {m.frozen, m.adapting}) {
+      // The search linearises about the flight of its start design; this one differs by a little in attitude.
+      EXPECT_GE(margins.gain_up_db, kGainMarginGate_db + 0.95 * kGainReserve_db) << m.time_s;
+      EXPECT_GE(margins.gain_down_db, kGainMarginGate_db + 0.95 * kGainReserve_db) << m.time_s;
+      EXPECT_GE(margins.phase_deg, kPhaseMarginGate_deg + 0.95 * kPhaseReserve_deg) << m.time_s;
+      EXPECT_GE(margins.delay_s, kDelayMarginGate_s + 0.95 * kDelayReserve_s) << m.time_s;
+    }
+  }
+}
+
+TEST(Tune, IsTheSameForAnyNumberOfThreads) {
+  const Campaign campaign = SampleCampaign();
+  std::vector<GenerationRecord> logs[2];
+  TuningOptions options = Small();
+  TuningResult results[2];
+  for (const std::size_t i : {0u, 1u}) {
+    options.threads = i == 0 ? 1 : 3;
+    results[i] = Tune(campaign, campaign.autopilot, options,
+                      [&](const TuningRecord& record) { logs[i].push_back(record.generation); });
+  }
+  EXPECT_EQ(WriteAutopilot(results[0].autopilot), WriteAutopilot(results[1].autopilot));
+  EXPECT_EQ(logs[0], logs[1]);
+  EXPECT_EQ(logs[0].size(), TuningGenerations(campaign, options));
+  EXPECT_EQ(results[0].flights, results[1].flights);
+  EXPECT_EQ(results[0].median_rms_deg, results[1].median_rms_deg);
+}
+
+TEST(Tune, DoesNotDependOnTheGainsThatItReplaces) {
+  const Campaign campaign = SampleCampaign();
+  const TuningResult once = Tune(campaign, campaign.autopilot, Small());
+  EXPECT_NE(WriteAutopilot(once.autopilot), WriteAutopilot(campaign.autopilot));
+  const TuningResult again = Tune(campaign, once.autopilot, Small());
+  EXPECT_EQ(WriteAutopilot(again.autopilot), WriteAutopilot(once.autopilot));
+}
+
+TEST(Tune, DependsOnItsSeed) {
+  const Campaign campaign = SampleCampaign();
+  TuningOptions other = Small();
+  other.seed = 4;
+  EXPECT_NE(WriteAutopilot(Tune(campaign, campaign.autopilot, Small()).autopilot),
+            WriteAutopilot(Tune(campaign, campaign.autopilot, other).autopilot));
+}
+
+TEST(Tune, DoesNotSeeTheVerdictsCases) {
+  const Campaign campaign = SampleCampaign();
+  Campaign other = campaign;
+  other.sampling.seed = 78;
+  EXPECT_EQ(Tune(campaign, campaign.autopilot, Small()).median_rms_deg,
+            Tune(other, campaign.autopilot, Small()).median_rms_deg);
+}
+
+TEST(Tune, ImprovesOnItsStart) {
+  const Campaign campaign = SampleCampaign();
+  AutopilotConfig start = campaign.autopilot;
+  for (int stage = 0; stage < 2; ++stage)
+    ApplyDesign({kStartBandwidthOfActuator * 25.0, kStartDamping, kStartLearning}, stage, start);
+  TuningOptions options = Small();
+  const TuningResult result = Tune(campaign, campaign.autopilot, options);
+  // The mean of the same cases under the start design.
+  Campaign untuned = campaign;
+  untuned.autopilot = start;
+  untuned.sampling.seed = options.seed;
+  const CampaignFlights flights(untuned);
+  double sum_deg = 0.0;
+  for (int i = 0; i < options.cases; ++i)
+    sum_deg += flights.FlyCase(static_cast<std::uint64_t>(i)).metrics[0];
+  EXPECT_LT(result.median_rms_deg, 0.8 * sum_deg / options.cases);
+}
+
+TEST(Tune, SpendsTheSameBudgetOnEveryLaw) {
+  const Campaign campaign = SampleCampaign();
+  const TuningResult adaptive = Tune(campaign, campaign.autopilot, Small());
+  const TuningResult pd = Tune(campaign, AllPd(), Small());
+  EXPECT_EQ(adaptive.evaluations, pd.evaluations);
+  EXPECT_EQ(adaptive.evaluations, 40u);
+  EXPECT_EQ(pd.stages[0].design.learning, 0.0);
+  EXPECT_EQ(pd.stages[0].frozen.gain_db, pd.stages[0].adapting.gain_db);
+}
+
+TEST(Tune, DoesNotFlyADesignThatMissesAMargin) {
+  Campaign campaign = SampleCampaign();
+  // An actuator that rings a hundredfold: the slowest, least damped design of the box still crosses -1 there.
+  for (Stage& stage : campaign.vehicle.stages) stage.gimbal.damping_ratio = 0.005;
+  const TuningResult hopeless = Tune(campaign, campaign.autopilot, Small());
+  EXPECT_FALSE(hopeless.feasible);
+  EXPECT_EQ(hopeless.flights, 0u);
+}
+
+TEST(Tune, RefusesTheCampaignsSeedAndWhatIsOutOfRange) {
+  const Campaign campaign = SampleCampaign();
+  TuningOptions options = Small();
+  options.seed = 77;
+  EXPECT_EQ(ErrorOf(campaign, campaign.autopilot, options),
+            "seed: the tuning would see the cases of campaign 'sample', allowed: any but the campaign's own, 77");
+  options = Small();
+  options.cases = 0;
+  options.evaluations = 31;
+  EXPECT_EQ(ErrorOf(campaign, campaign.autopilot, options),
+            "cases: 0 is out of range, allowed: 1 to 10000\n"
+            "evaluations: 31 is out of range, allowed: 32 (two generations of 8 for each stage) to 1000000");
+}
+
+TEST(Tune, RefusesAnAutopilotThatDoesNotSuit) {
+  const Campaign campaign = SampleCampaign();
+  AutopilotConfig fixed = campaign.autopilot;
+  fixed.pitch.adaptation.p_n = Vector2(0.01, 0.01);
+  fixed.pitch.adaptation.allow_unproven = true;
+  EXPECT_EQ(ErrorOf(campaign, fixed, Small()),
+            "adaptation.p_n: is fixed, but P_n follows from the gains that are to be found, allowed: no p_n");
+  AutopilotConfig short_one = AllPd();
+  short_one.yaw.gains.pop_back();
+  EXPECT_EQ(ErrorOf(campaign, short_one, Small()),
+            "yaw.gains: has 1 entries, allowed: one entry for each of the vehicle's 2 stages");
+}
+
+}  // namespace
+}  // namespace dispersa
