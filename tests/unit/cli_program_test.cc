@@ -222,5 +222,32 @@ TEST(CliProgram, FlyScenario) {
             "--case, --seed: a scenario has no cases, allowed: a campaign file with these options\n");
 }
 
+TEST(CliProgram, TuneWritesAnAutopilotThatSaysWhereItComesFrom) {
+  const InputFiles folder;
+  const std::string file = folder.Path("tuned.yaml");
+  // The smallest budget that there is.
+  const std::string budget = " --seed 9 --cases 1 --evaluations 64";
+  const Output tuned =
+      Dispersa("--quiet tune " + kSmoke + " --autopilot " DISPERSA_CAMPAIGNS "/autopilots/pd.yaml --out " + file + budget);
+  ASSERT_EQ(tuned.code, 0) << tuned.error;
+  EXPECT_THAT(tuned.text, HasSubstr("generation  feasible  best rms deg"));
+  EXPECT_THAT(tuned.text, HasSubstr("\nautopilot: " + file + "\n"));
+  const std::string text = ReadWholeFile(file);
+  EXPECT_THAT(text, HasSubstr("# Tuned by\n#   dispersa tune " + kSmoke + " --autopilot "));
+  EXPECT_THAT(text, HasSubstr(" --out " + file + budget + "\n"));
+  EXPECT_THAT(text, HasSubstr("\nname: pd\n"));
+  EXPECT_EQ(Dispersa("validate " + file).code, 0);
+}
+
+TEST(CliProgram, TuneRefusesTheSeedOfTheVerdict) {
+  const InputFiles folder;
+  const std::string file = folder.Path("tuned.yaml");
+  const Output output = Dispersa("tune " + kSmoke + " --out " + file + " --seed 20260101");
+  EXPECT_EQ(output.code, 2);
+  EXPECT_EQ(output.error,
+            "seed: the tuning would see the cases of campaign 'smoke', allowed: any but the campaign's own, 20260101\n");
+  EXPECT_EQ(ReadWholeFile(file), "");
+}
+
 }  // namespace
 }  // namespace dispersa
