@@ -27,9 +27,9 @@ namespace dispersa {
 
 inline constexpr double kObjectiveTolerance_deg = 1e-4;
 inline constexpr double kLimitCycleLimit_deg = 0.2;
-/// Margins above the gates of margins.h that a computed margin must have: what dispersion, the other axes and
-/// the rules' curvature take from it shows in measured margins.
-inline constexpr double kGainReserve_db = 0.5;
+/// What a computed margin must have above the gates of margins.h. Measured gain margins, with all axes at work
+/// on a disturbed flight, were found up to 0.6 dB below the computed ones.
+inline constexpr double kGainReserve_db = 0.8;
 inline constexpr double kPhaseReserve_deg = 2.0;
 inline constexpr double kDelayReserve_s = 0.002;
 /// Small: a stage has two or three variables, and generations are what a budget of flights is best spent on.
