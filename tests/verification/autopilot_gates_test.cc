@@ -1,0 +1,39 @@
+// The gates that every shipped autopilot must pass, computed and measured: gain 6 dB both ways, phase 30°, delay
+// 20 ms (flight/margins.h). What `dispersa margins` shows, held for each law.
+#include <gtest/gtest.h>
+
+#include "core/flight/margins.h"
+#include "tests/slv4_flight.h"
+
+namespace dispersa {
+namespace {
+
+class ShippedAutopilot : public testing::TestWithParam<const char*> {
+ protected:
+  FlightModel model_{Slv4Definition(DISPERSA_CAMPAIGNS, GetParam())};
+};
+
+TEST_P(ShippedAutopilot, HasTheComputedMarginsFrozenAndAdaptingAtEveryInstant) {
+  const std::vector<ComputedMargins> computed = ComputeMargins(model_);
+  // Named instants of four stages and a sample every 5 s of 211 s, three axes each.
+  ASSERT_GT(computed.size(), 100u);
+  for (const ComputedMargins& m : computed) {
+    EXPECT_TRUE(PassesGates(m.frozen)) << "frozen at " << m.time_s << " s, axis " << m.axis;
+    EXPECT_TRUE(PassesGates(m.adapting)) << "adapting at " << m.time_s << " s, axis " << m.axis;
+  }
+}
+
+TEST_P(ShippedAutopilot, HasTheMeasuredMarginsInEveryStage) {
+  const std::vector<MeasuredMargins> measured = MeasureMargins(model_);
+  ASSERT_EQ(measured.size(), 4u);
+  for (const MeasuredMargins& m : measured)
+    EXPECT_TRUE(PassesGates(m)) << "stage " << m.stage + 1 << ": " << m.gain_up_db << " dB up, " << m.gain_down_db
+                                << " dB down, " << m.delay_s << " s";
+}
+
+INSTANTIATE_TEST_SUITE_P(Laws, ShippedAutopilot,
+                         testing::Values("adaptive_fuzzy", "frozen_fuzzy", "pd", "pd_aac"),
+                         [](const auto& law) { return std::string(law.param); });
+
+}  // namespace
+}  // namespace dispersa
