@@ -12,6 +12,7 @@ namespace dispersa {
 namespace {
 
 bool Adapts(const AxisConfig& axis) { return axis.law == ControlLaw::kAdaptiveFuzzy; }
+bool IsAugmented(const AxisConfig& axis) { return axis.law == ControlLaw::kPdAac; }
 
 }  // namespace
 
@@ -34,6 +35,20 @@ void ApplyDesign(const StageDesign& design, int stage, AutopilotConfig& autopilo
     const double p12 = SolveLyapunov(gains, axis->adaptation.q)(0, 1);
     axis->adaptation.gamma[at] =
         RoundToDigits(design.learning * w * w * w * kFuzzyRules / p12, kDesignDigits);
+  }
+}
+
+bool IsAugmented(const AutopilotConfig& autopilot) {
+  return IsAugmented(autopilot.pitch) || IsAugmented(autopilot.yaw) || IsAugmented(autopilot.roll);
+}
+
+void ApplyDesign(const AugmentationDesign& design, AutopilotConfig& autopilot) {
+  for (AxisConfig* axis : {&autopilot.pitch, &autopilot.yaw, &autopilot.roll}) {
+    if (!IsAugmented(*axis)) continue;
+    AdaptiveAugmentation& augmentation = axis->augmentation;
+    augmentation.adaptive_gain_1_s = RoundToDigits(design.adaptive_gain_1_s, kDesignDigits);
+    augmentation.spectral_gain_1_s = RoundToDigits(design.spectral_gain_1_s, kDesignDigits);
+    augmentation.maximum_total_gain = RoundToDigits(design.maximum_total_gain, kDesignDigits);
   }
 }
 

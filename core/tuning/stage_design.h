@@ -1,4 +1,4 @@
-// The gains of one stage as quantities of which one range suits every stage and vehicle.
+// What is searched, as quantities of which one range suits every stage and vehicle.
 #pragma once
 
 #include "core/control/autopilot_config.h"
@@ -14,6 +14,13 @@ struct StageDesign {
   double learning = 0.0;
 };
 
+/// What augments PD in every stage alike (AdaptiveAugmentation); its leakage, filters and floor are given.
+struct AugmentationDesign {
+  double adaptive_gain_1_s = 0.0;
+  double spectral_gain_1_s = 0.0;
+  double maximum_total_gain = 1.0;
+};
+
 /// Whether an axis adapts by fuzzy rules: only then there is something to learn.
 bool Learns(const AutopilotConfig& autopilot);
 
@@ -21,6 +28,12 @@ bool Learns(const AutopilotConfig& autopilot);
 /// `kDesignDigits`, so that a file that prints them holds exactly what was flown.
 void ApplyDesign(const StageDesign& design, int stage, AutopilotConfig& autopilot);
 inline constexpr int kDesignDigits = 3;
+
+/// Whether an axis is PD with augmentation.
+bool IsAugmented(const AutopilotConfig& autopilot);
+
+/// Gives all augmented axes a design, rounded likewise.
+void ApplyDesign(const AugmentationDesign& design, AutopilotConfig& autopilot);
 
 /// The nearest number of so many significant decimal digits.
 double RoundToDigits(double value, int digits);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <limits>
 #include <memory>
 
@@ -35,6 +36,11 @@ double Median(std::vector<double> values) {
   return 0.5 * (values[(n - 1) / 2] + values[n / 2]);
 }
 
+// Stages, and the augmentation.
+int SearchesOf(const Campaign& campaign, const AutopilotConfig& autopilot) {
+  return static_cast<int>(campaign.vehicle.stages.size()) + (IsAugmented(autopilot) ? 1 : 0);
+}
+
 void Validate(const Campaign& campaign, const AutopilotConfig& autopilot, const TuningOptions& options) {
   const int stages = static_cast<int>(campaign.vehicle.stages.size());
   std::vector<InputProblem> problems;
@@ -46,11 +52,11 @@ void Validate(const Campaign& campaign, const AutopilotConfig& autopilot, const 
         "any but the campaign's own, " + std::to_string(campaign.sampling.seed));
   if (options.cases < 1 || options.cases > 10000)
     add("cases", std::to_string(options.cases) + " is out of range", "1 to 10000");
-  const int least = 2 * kTuningPopulation * stages;
+  const int least = 2 * kTuningPopulation * SearchesOf(campaign, autopilot);
   if (options.evaluations < least || options.evaluations > 1000000)
     add("evaluations", std::to_string(options.evaluations) + " is out of range",
         std::to_string(least) + " (two generations of " + std::to_string(kTuningPopulation) +
-            " for each stage) to 1000000");
+            " for each " + (IsAugmented(autopilot) ? "stage and the augmentation" : "stage") + ") to 1000000");
   for (const AutopilotProblem& problem : Problems(autopilot, stages))
     add(problem.path, problem.message, problem.allowed);
   for (const AxisConfig* axis : {&autopilot.pitch, &autopilot.yaw, &autopilot.roll})
@@ -75,6 +81,14 @@ bool AllZero(const std::vector<double>& violations) {
   return std::all_of(violations.begin(), violations.end(), [](double v) { return v == 0.0; });
 }
 
+// Fractions by which the gates are missed.
+void AddViolations(const MeasuredMargins& m, std::vector<double>& violations) {
+  const double gain_db = std::min(m.gain_up_db, m.gain_down_db);
+  violations.push_back(PassesGates(m) ? 0.0
+                                      : std::max({1e-3, 1.0 - gain_db / kGainMarginGate_db,
+                                                  1.0 - m.delay_s / kDelayMarginGate_s}));
+}
+
 // Fractions by which gates plus reserves are missed.
 void AddViolations(const LeastMargins& m, std::vector<double>& violations) {
   const auto below = [&](double value, double limit) {
@@ -85,9 +99,9 @@ void AddViolations(const LeastMargins& m, std::vector<double>& violations) {
   below(m.delay_s, kDelayMarginGate_s + kDelayReserve_s);
 }
 
-// Generations of a stage after the initial one.
-int GenerationsOf(int evaluations, int stages) {
-  return (evaluations / stages - kTuningPopulation) / (kTuningPopulation - kElites);
+// Generations of a search after the initial one.
+int GenerationsOf(int evaluations, int searches) {
+  return (evaluations / searches - kTuningPopulation) / (kTuningPopulation - kElites);
 }
 
 // Steps of the search for the largest bandwidth.
@@ -105,6 +119,7 @@ class Tuner {
       ApplyDesign({kStartBandwidthOfActuator * ActuatorOf(stage), kStartDamping, kStartLearning}, stage,
                   campaign_.autopilot);
     }
+    ApplyDesign(kStartAugmentation, campaign_.autopilot);
     start_ = std::make_unique<CampaignFlights>(campaign_);
     instants_ = MarginInstants(start_->model());
   }
@@ -115,6 +130,10 @@ class Tuner {
     for (int stage = 0; stage < StageCount(); ++stage) {
       result.stages.push_back(TuneStage(stage, observer, result.evaluations));
       result.feasible = result.feasible && result.stages.back().feasible;
+    }
+    if (result.feasible && IsAugmented(campaign_.autopilot)) {
+      result.augmentation = TuneAugmentation(observer, result.evaluations);
+      result.feasible = result.augmentation->feasible;
     }
     result.flights = flights_;
     result.autopilot = campaign_.autopilot;
@@ -199,7 +218,12 @@ class Tuner {
     AddViolations(LeastOf(candidate.autopilot, stage, true), violations);
     if (!AllZero(violations)) return evaluation;
 
-    const std::string suffix = "_stage" + std::to_string(stage + 1) + "_deg";
+    FlyCandidate(candidate, "_stage" + std::to_string(stage + 1) + "_deg", evaluation);
+    return evaluation;
+  }
+
+  // Objective, tie-breaker and constraints of flight; `suffix` of the metrics of the pitch error.
+  void FlyCandidate(const Campaign& candidate, const std::string& suffix, Evaluation& evaluation) {
     double sum_deg = 0.0, lost = 0.0, cycle_deg = 0.0;
     for (const CaseResult& flown : FlyAll(candidate)) {
       // Not every metric of a flight that was lost is defined.
@@ -212,22 +236,59 @@ class Tuner {
       cycle_deg = std::max(cycle_deg, Metric(flown, "deflection_limit_cycle_deg"));
     }
     evaluation.objective = sum_deg / options_.cases;
-    violations.push_back(lost / options_.cases);
-    violations.push_back(std::max(0.0, cycle_deg / kLimitCycleLimit_deg - 1.0));
-    return evaluation;
+    evaluation.constraint_violations.push_back(lost / options_.cases);
+    evaluation.constraint_violations.push_back(std::max(0.0, cycle_deg / kLimitCycleLimit_deg - 1.0));
   }
 
-  StageTuning TuneStage(int stage, const TuningObserver& observer, std::uint64_t& evaluations) {
+  // `part`: as in TuningRecord.
+  GeneticAlgorithmResult Minimize(const BoundedProblem& problem, int part, const TuningObserver& observer) const {
     GeneticAlgorithmOptions search;
     search.population = kTuningPopulation;
     search.elites = kElites;
-    search.generations = GenerationsOf(options_.evaluations, StageCount());
+    search.generations = GenerationsOf(options_.evaluations, SearchesOf(campaign_, campaign_.autopilot));
     search.mutation_eta = kMutationEta;
     search.final_mutation_eta = kFinalMutationEta;
     search.objective_tolerance = kObjectiveTolerance_deg;
     search.seed = options_.seed;
     search.threads = options_.threads;
+    return GeneticAlgorithm(search).Minimize(problem, [&](const GenerationRecord& record) {
+      if (observer) observer({part, record});
+    });
+  }
 
+  static AugmentationDesign AugmentationOf(const std::vector<double>& point) {
+    return {std::pow(10.0, point[0]), std::pow(10.0, point[1]), point[2]};
+  }
+
+  AugmentationTuning TuneAugmentation(const TuningObserver& observer, std::uint64_t& evaluations) {
+    BoundedProblem problem;
+    problem.lower = {kAdaptiveGainPower.low, kSpectralGainPower.low, kMaximumTotalGain.low};
+    problem.upper = {kAdaptiveGainPower.high, kSpectralGainPower.high, kMaximumTotalGain.high};
+    problem.known_points = {{std::log10(kStartAugmentation.adaptive_gain_1_s),
+                             std::log10(kStartAugmentation.spectral_gain_1_s),
+                             kStartAugmentation.maximum_total_gain}};
+    problem.evaluate = [this](const std::vector<double>& point) {
+      Campaign candidate = campaign_;
+      ApplyDesign(AugmentationOf(point), candidate.autopilot);
+      Evaluation evaluation;
+      for (const MeasuredMargins& m : MeasureMargins(CampaignFlights(candidate).model()))
+        AddViolations(m, evaluation.constraint_violations);
+      if (AllZero(evaluation.constraint_violations)) FlyCandidate(candidate, "_deg", evaluation);
+      return evaluation;
+    };
+    const GeneticAlgorithmResult found = Minimize(problem, StageCount(), observer);
+
+    AugmentationTuning tuned;
+    tuned.design = AugmentationOf(found.variables);
+    ApplyDesign(tuned.design, campaign_.autopilot);
+    tuned.feasible = AllZero(found.evaluation.constraint_violations);
+    tuned.mean_rms_deg = found.evaluation.objective;
+    tuned.peak_deg = found.evaluation.tie_breaker;
+    evaluations += found.evaluations;
+    return tuned;
+  }
+
+  StageTuning TuneStage(int stage, const TuningObserver& observer, std::uint64_t& evaluations) {
     BoundedProblem problem;
     problem.lower = {kBandwidthOfLargest.low, kDamping.low};
     problem.upper = {kBandwidthOfLargest.high, kDamping.high};
@@ -238,10 +299,7 @@ class Tuner {
       problem.known_points[0].push_back(kStartLearning);
     }
     problem.evaluate = [&](const std::vector<double>& point) { return Evaluate(point, stage); };
-    const GeneticAlgorithmResult found =
-        GeneticAlgorithm(search).Minimize(problem, [&](const GenerationRecord& record) {
-          if (observer) observer({stage, record});
-        });
+    const GeneticAlgorithmResult found = Minimize(problem, stage, observer);
 
     StageTuning tuned;
     tuned.design = DesignOf(found.variables, stage);
@@ -266,10 +324,11 @@ class Tuner {
 
 }  // namespace
 
-std::uint64_t TuningGenerations(const Campaign& campaign, const TuningOptions& options) {
-  const int stages = static_cast<int>(campaign.vehicle.stages.size());
-  return static_cast<std::uint64_t>(stages) *
-         static_cast<std::uint64_t>(GenerationsOf(options.evaluations, stages) + 1);
+std::uint64_t TuningGenerations(const Campaign& campaign, const AutopilotConfig& autopilot,
+                                const TuningOptions& options) {
+  const int searches = SearchesOf(campaign, autopilot);
+  return static_cast<std::uint64_t>(searches) *
+         static_cast<std::uint64_t>(GenerationsOf(options.evaluations, searches) + 1);
 }
 
 TuningResult Tune(const Campaign& campaign, const AutopilotConfig& autopilot, const TuningOptions& options,

@@ -10,12 +10,15 @@
 // - subject to: every computed margin of all axes, gains frozen and adapting, at every instant of
 //   MarginInstants at or above its gate plus a reserve; every case completed; every limit cycle below
 //   kLimitCycleLimit_deg.
-// Margins come first: a design that misses one is not flown. The search does not depend on the gains that the
-// autopilot had before, nor on the number of threads.
+// Margins come first: a design that misses one is not flown. What augments PD acts in every stage; it is searched
+// last, over whole flights, with the measured margins at their gates instead of the computed ones, which know it
+// at rest only. The budget is shared by the stages and the augmentation. The search does not depend on the gains
+// that the autopilot had before, nor on the number of threads.
 #pragma once
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,21 +43,25 @@ inline constexpr Bounds kBandwidthOfLargest = {0.6, 1.0};
 inline constexpr Bounds kBandwidthOfActuator = {0.04, 0.35};
 inline constexpr Bounds kDamping = {0.4, 1.6};
 inline constexpr Bounds kLearning = {0.0, 0.5};
+inline constexpr Bounds kAdaptiveGainPower = {3.0, 8.0};  ///< of ten, 1/s
+inline constexpr Bounds kSpectralGainPower = {0.0, 4.0};  ///< of ten, 1/s
+inline constexpr Bounds kMaximumTotalGain = {1.1, 2.5};
 /// Cautious: every search begins with it, and stages yet to be tuned have it.
 inline constexpr double kStartBandwidthOfActuator = 0.1;
 inline constexpr double kStartDamping = 0.9;
 inline constexpr double kStartLearning = 0.05;
+inline constexpr AugmentationDesign kStartAugmentation = {1e4, 100.0, 1.5};
 
 struct TuningOptions {
   std::uint64_t seed = 1;  ///< of the cases and of the search; the campaign's own is refused
   int cases = 4;           ///< flown for each design; 1 to 10,000
-  int evaluations = 160;   ///< designs tried in all stages; at least 2 kTuningPopulation a stage
+  int evaluations = 160;   ///< designs tried in all searches; at least 2 kTuningPopulation in each
   int threads = 1;         ///< 1 to 1024; the result does not depend on it
 };
 
 /// One line of the log.
 struct TuningRecord {
-  int stage = 0;  ///< 0-based
+  int stage = 0;  ///< 0-based; the number of stages: the augmentation
   GenerationRecord generation;
 };
 
@@ -74,19 +81,28 @@ struct StageTuning {
   LeastMargins adapting;  ///< as frozen where nothing adapts
 };
 
+struct AugmentationTuning {
+  AugmentationDesign design;
+  bool feasible = false;
+  double mean_rms_deg = 0.0;  ///< of powered flight, pitch
+  double peak_deg = 0.0;      ///< largest over the cases, pitch
+};
+
 struct TuningResult {
   AutopilotConfig autopilot;  ///< tuned
   std::vector<StageTuning> stages;
-  bool feasible = false;  ///< of every stage
+  std::optional<AugmentationTuning> augmentation;  ///< where PD is augmented and every stage is feasible
+  bool feasible = false;                           ///< all of them
   /// Powered pitch error of the tuned autopilot over the tuning's cases; 0 if it is not feasible.
   double median_rms_deg = 0.0;
   double largest_peak_deg = 0.0;
   std::uint64_t evaluations = 0;  ///< designs tried
-  std::uint64_t flights = 0;      ///< of the search
+  std::uint64_t flights = 0;      ///< of cases; those that measure margins are not counted
 };
 
-/// Lines that the log will have.
-std::uint64_t TuningGenerations(const Campaign& campaign, const TuningOptions& options);
+/// Lines that the log of tuning `autopilot` will have.
+std::uint64_t TuningGenerations(const Campaign& campaign, const AutopilotConfig& autopilot,
+                                const TuningOptions& options);
 
 using TuningObserver = std::function<void(const TuningRecord&)>;
 

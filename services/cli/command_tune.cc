@@ -55,9 +55,14 @@ std::string LawText(ControlLaw law) {
          "S.\n"
          "# VanZwieten, AIAA 2012-4549): the total gain rises with the departure from the reference model, "
          "in\n"
-         "# rad, falls with fast activity of the command, and leaks to 1, where margins are computed. The\n"
-         "# augmentation itself is not tuned.\n" +
+         "# rad, falls with fast activity of the command, and leaks to 1, where margins are computed. Its\n"
+         "# leakage, filters and floor are not searched.\n" +
          gains;
+}
+
+// Of a line of the log: the number of a stage, or the augmentation.
+std::string PartText(const TuningRecord& record, const TuningResult& result) {
+  return record.stage < std::ssize(result.stages) ? fmt::format("{}", record.stage + 1) : "augm.";
 }
 
 std::string MarginsText(const LeastMargins& m) {
@@ -107,11 +112,22 @@ nlohmann::ordered_json ResultJson(const TuneOptions& options, const TuningResult
   auto generations = nlohmann::ordered_json::array();
   for (const TuningRecord& record : log) {
     const GenerationRecord& g = record.generation;
-    generations.push_back({{"stage", record.stage + 1},
+    const bool of_stage = record.stage < std::ssize(result.stages);
+    generations.push_back({{"stage", of_stage ? nlohmann::ordered_json(record.stage + 1) : nullptr},
                            {"generation", g.generation},
                            {"feasible_fraction", g.feasible_fraction},
                            {"best_deg", g.best_objective ? JsonNumber(*g.best_objective) : nullptr},
                            {"mean_deg", g.mean_objective ? JsonNumber(*g.mean_objective) : nullptr}});
+  }
+  nlohmann::ordered_json augmentation;
+  if (result.augmentation) {
+    const AugmentationTuning& tuned = *result.augmentation;
+    augmentation = {{"feasible", tuned.feasible},
+                    {"adaptive_gain_1_s", tuned.design.adaptive_gain_1_s},
+                    {"spectral_gain_1_s", tuned.design.spectral_gain_1_s},
+                    {"maximum_total_gain", tuned.design.maximum_total_gain},
+                    {"pitch_error_rms_mean_deg", JsonNumber(tuned.mean_rms_deg)},
+                    {"pitch_error_peak_deg", JsonNumber(tuned.peak_deg)}};
   }
   return {{"schema", "dispersa/tune/1"},
           {"autopilot", result.feasible ? nlohmann::ordered_json(options.out) : nullptr},
@@ -122,6 +138,7 @@ nlohmann::ordered_json ResultJson(const TuneOptions& options, const TuningResult
           {"pitch_error_rms_median_deg", result.feasible ? JsonNumber(result.median_rms_deg) : nullptr},
           {"pitch_error_peak_deg", result.feasible ? JsonNumber(result.largest_peak_deg) : nullptr},
           {"stages", std::move(stages)},
+          {"augmentation", std::move(augmentation)},
           {"log", std::move(generations)}};
 }
 
@@ -133,7 +150,7 @@ void PrintText(const TuneOptions& options, const TuningResult& result, const std
   };
   for (const TuningRecord& record : log) {
     const GenerationRecord& g = record.generation;
-    fmt::print("{:<6}{:>11}{:>9.0f}%{:>14}{:>14}\n", record.stage + 1, g.generation,
+    fmt::print("{:<6}{:>11}{:>9.0f}%{:>14}{:>14}\n", PartText(record, result), g.generation,
                100.0 * g.feasible_fraction, number(g.best_objective), number(g.mean_objective));
   }
   fmt::print("\n{:<6}{:>9}{:>9}{:>10}{:>13}{:>10}  {}\n", "stage", "kp 1/s2", "kd 1/s", "gamma",
@@ -147,6 +164,13 @@ void PrintText(const TuneOptions& options, const TuningResult& result, const std
     fmt::print("{:<6}{:>9}{:>9}{:>10}{:>13.5f}{:>10.4f}  {} | {}{}\n", i + 1, axis.gains[i].kp_1_s2,
                axis.gains[i].kd_1_s, gamma, stage.mean_rms_deg, stage.peak_deg, MarginsText(stage.frozen),
                MarginsText(stage.adapting), stage.feasible ? "" : "  INFEASIBLE");
+  }
+  if (result.augmentation) {
+    const AugmentationTuning& tuned = *result.augmentation;
+    fmt::print("augmentation: adaptive gain {:.3g} 1/s, spectral gain {:.3g} 1/s, total gain to {:.3g}; mean rms "
+               "{:.5f} deg, peak {:.4f} deg{}\n",
+               tuned.design.adaptive_gain_1_s, tuned.design.spectral_gain_1_s, tuned.design.maximum_total_gain,
+               tuned.mean_rms_deg, tuned.peak_deg, tuned.feasible ? "" : "  INFEASIBLE");
   }
   fmt::print("\n{} designs, {} flights\n", result.evaluations, result.flights);
   if (!result.feasible) return;
@@ -171,8 +195,8 @@ ExitCode RunTuning(const TuneOptions& given, const GlobalOptions& global) {
     const auto observe = [&](const TuningRecord& record) {
       log.push_back(record);
       const GenerationRecord& g = record.generation;
-      progress.Show(log.size(), TuningGenerations(campaign, options.tuning),
-                    fmt::format("stage {}, {}", record.stage + 1,
+      progress.Show(log.size(), TuningGenerations(campaign, autopilot, options.tuning),
+                    fmt::format("search {}, {}", record.stage + 1,
                                 g.best_objective ? fmt::format("best {:.4g} deg", *g.best_objective)
                                                  : std::string("no feasible design yet")));
     };
@@ -207,15 +231,16 @@ void AddTuneCommand(CLI::App& app, Invocation& invocation) {
                    "seed of the search and of its cases; never the campaign's own")
       ->capture_default_str();
   command->add_option("--cases", options->tuning.cases, "cases flown for each design")->capture_default_str();
-  command->add_option("--evaluations", options->tuning.evaluations, "designs tried, shared by the stages")
+  command
+      ->add_option("--evaluations", options->tuning.evaluations,
+                   "designs tried, shared by the stages and the augmentation of PD")
       ->capture_default_str();
   command->add_option("--threads", options->threads, "threads; the result does not depend on them")
       ->check(CLI::Range(1, 1024));
   command->footer(
       "Minimises the mean RMS pitch error of each stage, subject to computed margins above the gates of\n"
-      "`dispersa margins` with a reserve. The gains that the file has are not looked at. Ends with 3 when "
-      "no\n"
-      "design meets the constraints.\n"
+      "`dispersa margins` with a reserve; then what augments PD, subject to the measured ones. The gains\n"
+      "that the file has are not looked at. Ends with 3 when no design meets the constraints.\n"
       "Example: dispersa tune campaigns/table3.yaml --autopilot campaigns/autopilots/pd.yaml --out pd.yaml");
   command->callback([options, &invocation] {
     invocation.command = [options](const GlobalOptions& global) { return RunTuning(*options, global); };

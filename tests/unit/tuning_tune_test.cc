@@ -110,7 +110,7 @@ TEST(Tune, IsTheSameForAnyNumberOfThreads) {
   }
   EXPECT_EQ(WriteAutopilot(results[0].autopilot), WriteAutopilot(results[1].autopilot));
   EXPECT_EQ(logs[0], logs[1]);
-  EXPECT_EQ(logs[0].size(), TuningGenerations(campaign, options));
+  EXPECT_EQ(logs[0].size(), TuningGenerations(campaign, campaign.autopilot, options));
   EXPECT_EQ(results[0].flights, results[1].flights);
   EXPECT_EQ(results[0].median_rms_deg, results[1].median_rms_deg);
 }
@@ -165,6 +165,38 @@ TEST(Tune, SpendsTheSameBudgetOnEveryLaw) {
   EXPECT_EQ(adaptive.evaluations, 40u);
   EXPECT_EQ(pd.stages[0].design.learning, 0.0);
   EXPECT_EQ(pd.stages[0].frozen.gain_db, pd.stages[0].adapting.gain_db);
+}
+
+TEST(Tune, SearchesWhatAugmentsPdLastWithinTheSameBudget) {
+  const Campaign campaign = SampleCampaign();
+  AutopilotConfig augmented = AllPd();
+  augmented.pitch.law = ControlLaw::kPdAac;
+  augmented.pitch.augmentation = {1.0, 0.1, 1.0, 15.0, 2.0, 0.5, 1.0};
+  TuningOptions options = Small();
+  options.evaluations = 48;  // 14 for each of three searches: 8 and one generation of 6
+  int last = 0;
+  const TuningResult result = Tune(campaign, augmented, options, [&](const TuningRecord& r) { last = r.stage; });
+  ASSERT_TRUE(result.feasible);
+  ASSERT_TRUE(result.augmentation.has_value());
+  EXPECT_EQ(last, 2);
+  EXPECT_EQ(result.evaluations, 42u);
+  const AdaptiveAugmentation& found = result.autopilot.pitch.augmentation;
+  EXPECT_EQ(found.adaptive_gain_1_s, RoundToDigits(result.augmentation->design.adaptive_gain_1_s, kDesignDigits));
+  EXPECT_EQ(found.maximum_total_gain, RoundToDigits(result.augmentation->design.maximum_total_gain, kDesignDigits));
+  EXPECT_EQ(found.leakage_1_s, 0.1) << "not searched";
+  Campaign tuned = campaign;
+  tuned.autopilot = result.autopilot;
+  for (const MeasuredMargins& m : MeasureMargins(CampaignFlights(tuned).model())) EXPECT_TRUE(PassesGates(m));
+  // No worse than where it began.
+  AutopilotConfig start = result.autopilot;
+  ApplyDesign(kStartAugmentation, start);
+  tuned.autopilot = start;
+  tuned.sampling.seed = options.seed;
+  EXPECT_LE(result.median_rms_deg, CampaignFlights(tuned).FlyCase(0).metrics[0] + kObjectiveTolerance_deg);
+  options.evaluations = 47;
+  EXPECT_EQ(ErrorOf(campaign, augmented, options),
+            "evaluations: 47 is out of range, allowed: 48 (two generations of 8 for each stage and the "
+            "augmentation) to 1000000");
 }
 
 TEST(Tune, DoesNotFlyADesignThatMissesAMargin) {
