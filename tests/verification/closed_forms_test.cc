@@ -7,6 +7,7 @@
 // arithmetic of doubles adds; the error at the longer step must stand well above it, or the test would show
 // nothing.
 #include <cmath>
+#include <cstdio>
 #include <functional>
 
 #include <gtest/gtest.h>
@@ -46,6 +47,7 @@ void ExpectFourthOrder(const Scenario& scenario, double duration_s, double steps
                        const std::function<double(const State&)>& error) {
   const double coarse = error(Fly(scenario, duration_s, steps));
   const double fine = error(Fly(scenario, duration_s, 2.0 * steps));
+  std::printf("error %.2g, with half the step %.2g, ratio %.3g\n", coarse, fine, coarse / fine);
   EXPECT_GT(coarse, 20.0 * rounding);
   EXPECT_LE(fine, coarse / 12.0 + rounding) << "from " << coarse;
 }

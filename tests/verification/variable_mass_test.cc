@@ -10,6 +10,7 @@
 
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <cmath>
+#include <cstdio>
 #include <functional>
 
 #include "core/dynamics/integrator.h"
@@ -89,6 +90,7 @@ class TurningStages : public testing::Test {
   void ExpectFourthOrder(double steps, double rounding,
                          const std::function<double(const RigidBodyState&)>& error) {
     const double coarse = error(Fly(steps)), fine = error(Fly(2.0 * steps));
+    std::printf("error %.2g, with half the step %.2g, ratio %.3g\n", coarse, fine, coarse / fine);
     EXPECT_GT(coarse, 20.0 * rounding);
     EXPECT_LE(fine, coarse / 12.0 + rounding) << "from " << coarse;
   }
