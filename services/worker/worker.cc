@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <utility>
@@ -15,6 +16,7 @@ namespace {
 
 constexpr std::chrono::seconds kStatusPeriod(1);
 constexpr std::chrono::seconds kFarewell(1);
+constexpr std::size_t kClosedCampaigns = 4;
 
 std::string HostName() {
   char name[256] = "";
@@ -78,8 +80,9 @@ void Worker::Load(const CampaignDefinition& definition) {
     } else {
       const Campaign campaign = ParseCampaign(definition.canonical_yaml, definition.name);
       if (campaign.flight_id == definition.flight_id) {
-        campaigns_[{definition.flight_id, definition.coordinator_epoch}] =
-            std::make_shared<LoadedCampaign>(definition.coordinator_epoch, campaign);
+        const CampaignKey key(definition.flight_id, definition.coordinator_epoch);
+        campaigns_[key] = std::make_shared<LoadedCampaign>(definition.coordinator_epoch, campaign);
+        std::erase(closed_, key);
       } else {
         reason = "flight id " + definition.flight_id + " of the coordinator differs from the worker's " +
                  campaign.flight_id;
@@ -98,7 +101,16 @@ void Worker::Load(const CampaignDefinition& definition) {
 }
 
 void Worker::Close(const CampaignClosed& closed) {
-  campaigns_.erase({closed.flight_id, closed.coordinator_epoch});
+  // A coordinator that was only out of reach seems closed too. When it is heard again its orders come, but not
+  // its opening: the middleware knows that it was delivered. So the campaign is kept for a while.
+  const CampaignKey key(closed.flight_id, closed.coordinator_epoch);
+  if (campaigns_.contains(key) && std::find(closed_.begin(), closed_.end(), key) == closed_.end()) {
+    closed_.push_back(key);
+  }
+  if (closed_.size() > kClosedCampaigns) {
+    campaigns_.erase(closed_.front());
+    closed_.pop_front();
+  }
   std::erase_if(early_orders_, [&](const FlyOrder& order) {
     return order.flight_id == closed.flight_id && order.coordinator_epoch == closed.coordinator_epoch;
   });

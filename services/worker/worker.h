@@ -68,6 +68,7 @@ class Worker {
   WorkerOptions options_;
   std::unique_ptr<WorkerLink> link_;
   std::map<CampaignKey, std::shared_ptr<const LoadedCampaign>> campaigns_;
+  std::deque<CampaignKey> closed_;  ///< of campaigns_, oldest first; the last few are kept, see Close
   std::vector<FlyOrder> early_orders_;  ///< whose campaign has not arrived yet
 
   std::mutex mutex_;  ///< of all below; also taken for sending from a flying thread

@@ -83,5 +83,17 @@ TEST_F(WorkerTest, AnOrderWaitsForTheOpeningOfItsOwnCoordinator) {
   EXPECT_EQ(epoch_of_[1], 2u);
 }
 
+// As when the network was down for longer than the lease: the worker sees the campaign close, and then only orders.
+TEST_F(WorkerTest, FliesForACoordinatorThatWasOutOfReach) {
+  Open(1);
+  Order(1, 0);
+  ASSERT_TRUE(Until([this] { return epoch_of_.contains(0); }));
+  coordinator_.CloseCampaign(campaign_.flight_id);
+  const auto deadline = std::chrono::steady_clock::now() + kNothingComes;
+  while (std::chrono::steady_clock::now() < deadline) Listen(milliseconds(50));
+  Order(1, 1);
+  ASSERT_TRUE(Until([this] { return epoch_of_.contains(1); }));
+}
+
 }  // namespace
 }  // namespace dispersa
