@@ -1,6 +1,10 @@
 #include "core/report/case_columns.h"
 
+#include <algorithm>
+#include <cassert>
+
 #include "core/flight/flight_inputs.h"
+#include "core/statistics/summary.h"
 
 namespace dispersa {
 namespace {
@@ -27,6 +31,27 @@ CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& want
     for (std::size_t i = 0; i < columns.metrics.size(); ++i) columns.metrics[i].push_back(result.metrics[i]);
   });
   return columns;
+}
+
+std::size_t MetricColumn(const std::string& name) {
+  const std::vector<std::string>& names = MetricNames();
+  const auto found = std::find(names.begin(), names.end(), name);
+  assert(found != names.end());
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+std::vector<double> CompletedValues(const CaseColumns& cases, const std::string& metric) {
+  std::vector<double> values = cases.metrics[MetricColumn(metric)];
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (cases.outcome[i] != Outcome::kCompleted) values[i] = kUndefined;
+  }
+  return values;
+}
+
+std::size_t LostCount(const CaseColumns& cases) {
+  return static_cast<std::size_t>(
+      std::count_if(cases.outcome.begin(), cases.outcome.end(),
+                    [](Outcome outcome) { return outcome != Outcome::kCompleted; }));
 }
 
 }  // namespace dispersa

@@ -1,7 +1,9 @@
 // The stored results by column: what statistics and charts are made of.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "core/flight/metrics.h"
@@ -23,5 +25,14 @@ struct CaseColumns {
 
 /// Reads all metrics, and those inputs that `wanted_inputs` (positions in InputColumns()) names.
 CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& wanted_inputs);
+
+/// Position of a metric, which must be one of MetricNames().
+std::size_t MetricColumn(const std::string& name);
+
+/// A metric's values, NaN for every flight that was not completed whatever it measured until then.
+std::vector<double> CompletedValues(const CaseColumns& cases, const std::string& metric);
+
+/// Flights that were not completed.
+std::size_t LostCount(const CaseColumns& cases);
 
 }  // namespace dispersa

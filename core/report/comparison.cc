@@ -8,7 +8,6 @@
 
 #include "core/report/html_parts.h"
 #include "core/report/metric_catalogue.h"
-#include "core/report/study_flights.h"
 #include "core/report/text.h"
 
 namespace dispersa {

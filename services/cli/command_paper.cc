@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/campaign/input_error.h"
-#include "core/report/paper_page.h"
-#include "core/report/paper_study.h"
+#include "core/paper/paper_page.h"
+#include "core/paper/paper_study.h"
 #include "services/cli/command.h"
 #include "services/cli/progress.h"
 #include "services/cli/warn.h"

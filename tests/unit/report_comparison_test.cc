@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "core/report/study_flights.h"
+#include "core/report/case_columns.h"
 #include "tests/unit/report_test_support.h"
 
 namespace dispersa {

@@ -1,12 +1,10 @@
-#include "core/report/study_flights.h"
+#include "core/paper/study_flights.h"
 
 #include <algorithm>
-#include <cassert>
 #include <mutex>
 
 #include "core/campaign/campaign_flights.h"
 #include "core/optimization/parallel_for.h"
-#include "core/statistics/summary.h"
 
 namespace dispersa {
 
@@ -45,27 +43,6 @@ StudyFlights FlyStudy(const Campaign& campaign, const StudyOptions& options) {
         {result.case_index, result.outcome, result.end_time_s, result.end_stage, result.reason});
   }
   return study;
-}
-
-std::size_t MetricColumn(const std::string& name) {
-  const std::vector<std::string>& names = MetricNames();
-  const auto found = std::find(names.begin(), names.end(), name);
-  assert(found != names.end());
-  return static_cast<std::size_t>(found - names.begin());
-}
-
-std::vector<double> CompletedValues(const CaseColumns& cases, const std::string& metric) {
-  std::vector<double> values = cases.metrics[MetricColumn(metric)];
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (cases.outcome[i] != Outcome::kCompleted) values[i] = kUndefined;
-  }
-  return values;
-}
-
-std::size_t LostCount(const CaseColumns& cases) {
-  return static_cast<std::size_t>(
-      std::count_if(cases.outcome.begin(), cases.outcome.end(),
-                    [](Outcome outcome) { return outcome != Outcome::kCompleted; }));
 }
 
 }  // namespace dispersa

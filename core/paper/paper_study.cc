@@ -1,4 +1,4 @@
-#include "core/report/paper_study.h"
+#include "core/paper/paper_study.h"
 
 #include <algorithm>
 #include <cassert>

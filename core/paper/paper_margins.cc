@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/paper/paper_sections.h"
 #include "core/report/html_parts.h"
-#include "core/report/paper_sections.h"
 #include "core/report/text.h"
 
 namespace dispersa {

@@ -1,13 +1,13 @@
-#include "core/report/paper_page.h"
+#include "core/paper/paper_page.h"
 
 #include <fmt/format.h>
 
 #include "core/engine/version.h"
-#include "core/report/heat_map.h"
+#include "core/paper/heat_map.h"
+#include "core/paper/paper_sections.h"
 #include "core/report/histories.h"
 #include "core/report/html_parts.h"
 #include "core/report/output_file.h"
-#include "core/report/paper_sections.h"
 #include "core/report/result_error.h"
 #include "core/report/text.h"
 #include "core/report/trajectory_figures.h"

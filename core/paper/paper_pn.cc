@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "core/control/lyapunov.h"
-#include "core/report/heat_map.h"
+#include "core/paper/heat_map.h"
+#include "core/paper/paper_sections.h"
 #include "core/report/html_parts.h"
-#include "core/report/paper_sections.h"
 #include "core/report/svg_chart.h"
 #include "core/report/text.h"
 #include "core/statistics/summary.h"

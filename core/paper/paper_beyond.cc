@@ -7,9 +7,9 @@
 
 #include "core/control/lyapunov.h"
 #include "core/math/constants.h"
+#include "core/paper/paper_sections.h"
 #include "core/report/comparison.h"
 #include "core/report/html_parts.h"
-#include "core/report/paper_sections.h"
 #include "core/report/requirement_summary.h"
 #include "core/report/svg_chart.h"
 #include "core/report/text.h"

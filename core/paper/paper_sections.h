@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "core/report/paper_study.h"
+#include "core/paper/paper_study.h"
 
 namespace dispersa {
 

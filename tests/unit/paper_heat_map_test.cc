@@ -1,5 +1,5 @@
 // What a cell of a map shows.
-#include "core/report/heat_map.h"
+#include "core/paper/heat_map.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ std::size_t Count(const std::string& text, const std::string& part) {
   return count;
 }
 
-TEST(ReportHeatMap, CellsSayTheirRegionWithoutColour) {
+TEST(PaperHeatMap, CellsSayTheirRegionWithoutColour) {
   const std::string svg = HeatMapSvg(Sample(), "a map");
   EXPECT_THAT(svg, HasSubstr(">0.0100</text>"));
   EXPECT_THAT(svg, HasSubstr(">1.00 ~</text>"));
@@ -41,7 +41,7 @@ TEST(ReportHeatMap, CellsSayTheirRegionWithoutColour) {
   EXPECT_THAT(svg, HasSubstr("aria-label=\"a map\""));
 }
 
-TEST(ReportHeatMap, ShadesFollowTheLogarithmOfTheCompletedFlights) {
+TEST(PaperHeatMap, ShadesFollowTheLogarithmOfTheCompletedFlights) {
   HeatMap map = Sample();
   // Equal ratios from 0.01 to 1: six shades end at 0.0215, 0.0464, 0.1, 0.215, 0.464.
   map.x = {1, 2, 3, 4, 5, 6, 7};
@@ -52,14 +52,14 @@ TEST(ReportHeatMap, ShadesFollowTheLogarithmOfTheCompletedFlights) {
   EXPECT_EQ(Count(svg, "\"heat-5\""), 2);  // 0.7 and the largest itself
 }
 
-TEST(ReportHeatMap, OneCellIsFramedIfTheGridHasIt) {
+TEST(PaperHeatMap, OneCellIsFramedIfTheGridHasIt) {
   EXPECT_EQ(Count(HeatMapSvg(Sample(), ""), "heat-frame"), 1);
   HeatMap map = Sample();
   map.framed_x = 3;
   EXPECT_EQ(Count(HeatMapSvg(map, ""), "heat-frame"), 0);
 }
 
-TEST(ReportHeatMap, EqualOrMissingValuesDraw) {
+TEST(PaperHeatMap, EqualOrMissingValuesDraw) {
   HeatMap map = Sample();
   map.cells = {{0.5}, {0.5}, {0.5}};
   EXPECT_EQ(Count(HeatMapSvg(map, ""), "\"heat-0\""), 3);

@@ -1,5 +1,5 @@
 // Campaigns flown in process: the same cases as a campaign's, for any number of threads.
-#include "core/report/study_flights.h"
+#include "core/paper/study_flights.h"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ const Campaign& Smoke() {
   return campaign;
 }
 
-TEST(ReportStudyFlights, AreTheCampaignsCasesForAnyNumberOfThreads) {
+TEST(PaperStudyFlights, AreTheCampaignsCasesForAnyNumberOfThreads) {
   StudyOptions options;
   options.cases = 3;
   options.histories = 1;
@@ -54,19 +54,6 @@ TEST(ReportStudyFlights, AreTheCampaignsCasesForAnyNumberOfThreads) {
     largest = std::max(largest, std::fabs(flown.histories[0][0][step]));
   EXPECT_GT(largest, 0.0);
   EXPECT_LE(largest, flown.cases.metrics[MetricColumn("pitch_error_peak_deg")][0]);
-}
-
-TEST(ReportStudyFlights, OnlyCompletedFlightsHaveValues) {
-  CaseColumns cases;
-  cases.index = {0, 1, 2};
-  cases.outcome = {Outcome::kCompleted, Outcome::kLostControl, Outcome::kImpact};
-  cases.metrics.resize(MetricNames().size());
-  cases.metrics[MetricColumn("pitch_error_rms_deg")] = {0.1, 0.2, 0.3};
-  const std::vector<double> values = CompletedValues(cases, "pitch_error_rms_deg");
-  EXPECT_EQ(values[0], 0.1);
-  EXPECT_TRUE(std::isnan(values[1]));
-  EXPECT_TRUE(std::isnan(values[2]));
-  EXPECT_EQ(LostCount(cases), 2u);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 #include "core/control/autopilot_config.h"
 #include "core/flight/history.h"
 #include "core/flight/margins.h"
-#include "core/report/study_flights.h"
+#include "core/paper/study_flights.h"
 #include "core/trajectory/optimize.h"
 
 namespace dispersa {

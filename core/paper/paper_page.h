@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "core/report/paper_study.h"
+#include "core/paper/paper_study.h"
 
 namespace dispersa {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include "core/paper/paper_sections.h"
 #include "core/report/html_parts.h"
-#include "core/report/paper_sections.h"
 #include "core/report/requirement_summary.h"
 #include "core/report/svg_chart.h"
 #include "core/report/text.h"

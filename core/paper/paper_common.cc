@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/report/paper_sections.h"
+#include "core/paper/paper_sections.h"
 #include "core/report/sampling_text.h"
 #include "core/report/text.h"
 #include "core/statistics/summary.h"

@@ -30,13 +30,4 @@ struct StudyFlights {
 
 StudyFlights FlyStudy(const Campaign& campaign, const StudyOptions& options);
 
-/// Position of a metric, which must be one of MetricNames().
-std::size_t MetricColumn(const std::string& name);
-
-/// A metric's values, NaN for every flight that was not completed whatever it measured until then.
-std::vector<double> CompletedValues(const CaseColumns& cases, const std::string& metric);
-
-/// Flights that were not completed.
-std::size_t LostCount(const CaseColumns& cases);
-
 }  // namespace dispersa

@@ -1,4 +1,4 @@
-#include "core/report/heat_map.h"
+#include "core/paper/heat_map.h"
 
 #include <fmt/format.h>
 
