@@ -9,11 +9,14 @@ import sys
 
 MARCH = "-march=x86-64-v3"
 CONTRACTION = "-ffp-contract=off"
+# GCC 12's vectorisers fuse a*b-c and a*b+c in spite of -ffp-contract=off (fused.py).
+VECTORISERS = "-fno-tree-vectorize"
 # What lets a compiler change values.
 FORBIDDEN = {
     "-ffast-math", "-Ofast", "-funsafe-math-optimizations", "-fassociative-math", "-freciprocal-math",
     "-ffinite-math-only", "-fno-signed-zeros", "-fno-trapping-math", "-fcx-limited-range",
     "-fsingle-precision-constant", "-mrecip", "-mfpmath=387", "-fopenmp",
+    "-ftree-vectorize", "-ftree-slp-vectorize", "-ftree-loop-vectorize",
 }
 
 
@@ -26,6 +29,8 @@ def violations(arguments):
         found.append(f"lacks {MARCH}")
     if not contraction or contraction[-1] != CONTRACTION:
         found.append(f"lacks {CONTRACTION}")
+    if VECTORISERS not in arguments:
+        found.append(f"lacks {VECTORISERS}")
     return found
 
 

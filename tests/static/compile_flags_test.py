@@ -4,7 +4,7 @@ import unittest
 
 import compile_flags
 
-GOOD = "c++ -O3 -march=x86-64-v3 -ffp-contract=off -o a.o -c a.cc"
+GOOD = "c++ -O3 -march=x86-64-v3 -ffp-contract=off -fno-tree-vectorize -o a.o -c a.cc"
 
 
 def check(command, file="/src/core/math/a.cc"):
@@ -18,7 +18,8 @@ class CompileFlagsTest(unittest.TestCase):
 
     def test_finds_missing_options(self):
         self.assertEqual(check("c++ -c a.cc"), ["core/math/a.cc: lacks -march=x86-64-v3",
-                                                "core/math/a.cc: lacks -ffp-contract=off"])
+                                                "core/math/a.cc: lacks -ffp-contract=off",
+                                                "core/math/a.cc: lacks -fno-tree-vectorize"])
 
     def test_the_last_option_counts(self):
         self.assertEqual(check(GOOD + " -ffp-contract=fast -march=native"),
@@ -26,6 +27,7 @@ class CompileFlagsTest(unittest.TestCase):
 
     def test_finds_value_changing_options(self):
         self.assertEqual(check(GOOD + " -ffast-math"), ["core/math/a.cc: -ffast-math"])
+        self.assertEqual(check(GOOD + " -ftree-slp-vectorize"), ["core/math/a.cc: -ftree-slp-vectorize"])
 
     def test_services_count_and_tests_do_not(self):
         self.assertEqual(check(GOOD + " -Ofast", "/src/services/worker/a.cc"), ["services/worker/a.cc: -Ofast"])
