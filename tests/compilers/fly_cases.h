@@ -1,0 +1,21 @@
+// The one door of a flight library: the core as another compiler, or another optimisation level, made it.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/campaign/campaign.h"
+#include "core/campaign/case_result.h"
+
+namespace dispersa {
+
+/// Appends the cases first to first + count - 1. The caller has a core of its own, of which the library uses
+/// nothing; they share plain data and the C++ library.
+using FlyCasesFunction = void (*)(const Campaign& campaign, std::uint64_t first, std::uint64_t count,
+                                  std::vector<CaseResult>* results);
+inline constexpr char kFlyCasesSymbol[] = "DispersaFlyCases";
+
+}  // namespace dispersa
+
+extern "C" void DispersaFlyCases(const dispersa::Campaign& campaign, std::uint64_t first, std::uint64_t count,
+                                 std::vector<dispersa::CaseResult>* results);
