@@ -1,5 +1,6 @@
 #include "core/report/output_file.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -13,8 +14,11 @@ namespace dispersa {
 
 OutputFile::OutputFile(std::filesystem::path target)
     : target_(std::move(target)), temporary_(target_.string() + ".tmp") {
-  stream_ = std::fopen(temporary_.c_str(), "wb");
-  if (stream_ == nullptr) Fail(errno);
+  // What lies there is of a process that was killed, or was put there: a link would lead the writing elsewhere.
+  if (unlink(temporary_.c_str()) != 0 && errno != ENOENT) Fail(errno);
+  const int file = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+  if (file < 0) Fail(errno);
+  stream_ = fdopen(file, "wb");
 }
 
 OutputFile::~OutputFile() {

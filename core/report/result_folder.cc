@@ -14,6 +14,7 @@
 #include "core/flight/flight_inputs.h"
 #include "core/flight/metrics.h"
 #include "core/report/database.h"
+#include "core/report/fingerprint.h"
 #include "core/report/output_file.h"
 #include "core/report/sampling_text.h"
 
@@ -27,7 +28,7 @@ constexpr char kDatabaseName[] = "results.sqlite";
 constexpr char kCampaignName[] = "campaign.yaml";
 constexpr char kSchema[] = "dispersa/results/1";
 
-/// Columns of `cases` before the inputs; digest follows the metrics.
+/// Columns of `cases` before the inputs; the digests of the flight and of the row follow the metrics.
 constexpr int kFirstInput = 5;
 
 std::string CaseColumns(const char* type) {
@@ -39,14 +40,14 @@ std::string CaseColumns(const char* type) {
 
 std::string SelectCases() {
   return "SELECT case_index, outcome, end_time_s, end_stage, reason" + CaseColumns("") +
-         ", digest FROM cases";
+         ", digest, row_digest FROM cases";
 }
 
 void CreateTables(Database& database) {
   database.Execute(
       "CREATE TABLE cases (case_index INTEGER PRIMARY KEY, outcome TEXT NOT NULL, end_time_s REAL, "
       "end_stage INTEGER NOT NULL, reason TEXT NOT NULL" +
-      CaseColumns(" REAL") + ", digest TEXT NOT NULL)");
+      CaseColumns(" REAL") + ", digest TEXT NOT NULL, row_digest TEXT NOT NULL)");
   database.Execute("CREATE TABLE quarantined (case_index INTEGER PRIMARY KEY, reason TEXT NOT NULL)");
   database.Execute("CREATE TABLE provenance (key TEXT PRIMARY KEY, value TEXT NOT NULL)");
   database.Execute(
@@ -90,7 +91,8 @@ std::optional<Digest> ParseDigest(const std::string& hex) {
   return digest;
 }
 
-CaseResult ReadCase(const Statement& row, const fs::path& directory) {
+/// None if the row is damaged.
+std::optional<CaseResult> ReadRow(const Statement& row) {
   CaseResult result;
   result.case_index = static_cast<std::uint64_t>(row.Integer(0));
   result.end_time_s = row.Real(2);
@@ -100,12 +102,18 @@ CaseResult ReadCase(const Statement& row, const fs::path& directory) {
   for (std::size_t i = 0; i < InputColumns().size(); ++i) result.inputs.push_back(row.Real(column++));
   for (std::size_t i = 0; i < MetricNames().size(); ++i) result.metrics.push_back(row.Real(column++));
   const std::optional<Digest> digest = ParseDigest(row.Text(column));
-  if (!ParseOutcome(row.Text(1), &result.outcome) || !digest) {
-    throw ResultError(Kind::kFile, fmt::format("{}: the row of case {} is damaged",
-                                               (directory / kDatabaseName).string(), result.case_index));
-  }
+  if (!ParseOutcome(row.Text(1), &result.outcome) || !digest) return std::nullopt;
   result.digest = *digest;
+  // Whatever a disk, a copy or an editor changed: no number of it reaches a table or a verdict.
+  if (Fingerprint(result).Hex() != row.Text(column + 1)) return std::nullopt;
   return result;
+}
+
+CaseResult ReadCase(const Statement& row, const fs::path& directory) {
+  if (auto result = ReadRow(row)) return *std::move(result);
+  throw ResultError(Kind::kFile,
+                    fmt::format("{}: the row of case {} is damaged; --resume flies it again",
+                                (directory / kDatabaseName).string(), row.Integer(0)));
 }
 
 /// The error for a folder that cannot be made or written, from the system's reason.
@@ -126,10 +134,12 @@ ResultFolder::ResultFolder(ResultFolder&&) noexcept = default;
 ResultFolder& ResultFolder::operator=(ResultFolder&&) noexcept = default;
 ResultFolder::~ResultFolder() = default;
 
-ResultFolder ResultFolder::Create(const fs::path& directory, const Campaign& campaign) {
+ResultFolder ResultFolder::Create(const fs::path& directory, const Campaign& campaign,
+                                  std::optional<FolderLock> lock) {
   std::error_code error;
   fs::create_directories(directory, error);
   if (error) FailSystem(directory, error);
+  if (!lock) lock.emplace(directory);
   const bool empty = fs::is_empty(directory, error);
   if (error) FailSystem(directory, error);
   if (!empty) {
@@ -155,7 +165,9 @@ ResultFolder ResultFolder::Create(const fs::path& directory, const Campaign& cam
   }
   fs::rename(temporary, database, error);
   if (error) FailSystem(database, error);
-  return ResultFolder(directory, std::make_unique<Database>(database, Database::Mode::kExisting));
+  ResultFolder folder(directory, std::make_unique<Database>(database, Database::Mode::kExisting));
+  folder.lock_ = std::move(lock);
+  return folder;
 }
 
 ResultFolder ResultFolder::Open(const fs::path& directory) {
@@ -184,8 +196,11 @@ ResultFolder ResultFolder::Open(const fs::path& directory) {
   return folder;
 }
 
-ResultFolder ResultFolder::Resume(const fs::path& directory, const Campaign& campaign) {
+ResultFolder ResultFolder::Resume(const fs::path& directory, const Campaign& campaign,
+                                  std::optional<FolderLock> lock) {
   ResultFolder folder = Open(directory);
+  folder.lock_ = std::move(lock);
+  folder.Lock();
   const std::string flight_id = folder.Provenance("flight_id");
   if (flight_id != campaign.flight_id) {
     throw InputError(fmt::format("{}: holds results of flight id {}, the campaign's is {}",
@@ -204,8 +219,28 @@ ResultFolder ResultFolder::Resume(const fs::path& directory, const Campaign& cam
   WriteFile(directory / kCampaignName, campaign.canonical_yaml);
   Transaction transaction(*folder.database_);
   WriteProvenance(*folder.database_, campaign);
+  folder.RemoveDamaged();
   transaction.Commit();
   return folder;
+}
+
+void ResultFolder::Lock() {
+  if (!lock_) lock_.emplace(directory_);
+}
+
+void ResultFolder::RemoveDamaged() {
+  {
+    Statement select = database_->Prepare(SelectCases());
+    while (select.Step()) {
+      if (!ReadRow(select)) damaged_.push_back(static_cast<std::uint64_t>(select.Integer(0)));
+    }
+  }
+  Statement remove = database_->Prepare("DELETE FROM cases WHERE case_index = ?");
+  for (const std::uint64_t case_index : damaged_) {
+    remove.Reset();
+    remove.BindInteger(1, static_cast<std::int64_t>(case_index));
+    remove.Step();
+  }
 }
 
 std::string ResultFolder::Provenance(const std::string& key) const {
@@ -219,7 +254,7 @@ std::string ResultFolder::Provenance(const std::string& key) const {
 }
 
 std::size_t ResultFolder::Append(std::span<const CaseResult> results) {
-  std::string parameters = "?, ?, ?, ?, ?, ?";
+  std::string parameters = "?, ?, ?, ?, ?, ?, ?";
   for (std::size_t i = 0; i < InputColumns().size() + MetricNames().size(); ++i) parameters += ", ?";
   Transaction transaction(*database_);
   Statement stored = database_->Prepare("SELECT digest FROM cases WHERE case_index = ?");
@@ -254,6 +289,7 @@ std::size_t ResultFolder::Append(std::span<const CaseResult> results) {
     for (const double value : result.inputs) insert.BindReal(++parameter, value);
     for (const double value : result.metrics) insert.BindReal(++parameter, value);
     insert.BindText(++parameter, digest);
+    insert.BindText(++parameter, Fingerprint(result).Hex());
     insert.Step();
     lift.Reset();
     lift.BindInteger(1, index);
@@ -290,6 +326,16 @@ std::vector<std::uint64_t> ResultFolder::PresentCases() const {
   std::vector<std::uint64_t> present;
   Statement select = database_->Prepare("SELECT case_index FROM cases ORDER BY case_index");
   while (select.Step()) present.push_back(static_cast<std::uint64_t>(select.Integer(0)));
+  return present;
+}
+
+std::vector<std::pair<std::uint64_t, Digest>> ResultFolder::Fingerprints() const {
+  std::vector<std::pair<std::uint64_t, Digest>> present;
+  Statement select = database_->Prepare("SELECT case_index, row_digest FROM cases ORDER BY case_index");
+  while (select.Step()) {
+    present.emplace_back(static_cast<std::uint64_t>(select.Integer(0)),
+                         ParseDigest(select.Text(1)).value_or(Digest{}));
+  }
   return present;
 }
 

@@ -6,13 +6,16 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/campaign/campaign.h"
 #include "core/campaign/case_result.h"
 #include "core/campaign/input_error.h"
+#include "core/report/folder_lock.h"
 #include "core/report/result_error.h"
 
 namespace dispersa {
@@ -40,12 +43,16 @@ struct QuarantinedCase {
 class ResultFolder {
  public:
   /// Makes the folder (parents too) with campaign.yaml and an empty results.sqlite.
-  /// InputError if it exists and is not empty, or cannot be written.
-  static ResultFolder Create(const std::filesystem::path& directory, const Campaign& campaign);
+  /// InputError if it exists and is not empty, cannot be written, or another process writes it. It is locked
+  /// as long as the object lives; `lock` is the lock of a caller that has it already.
+  static ResultFolder Create(const std::filesystem::path& directory, const Campaign& campaign,
+                             std::optional<FolderLock> lock = {});
   /// Opens a folder to go on with, possibly with more cases, other requirements or another name.
-  /// InputError if it holds another flight id or engine, or more cases than the campaign has.
-  static ResultFolder Resume(const std::filesystem::path& directory, const Campaign& campaign);
-  /// Opens a folder as it is. InputError if it is none, or its columns are not this program's.
+  /// InputError if it holds another flight id or engine, or more cases than the campaign has. Rows that are
+  /// damaged are removed, so that their cases are flown again. Locked as by Create.
+  static ResultFolder Resume(const std::filesystem::path& directory, const Campaign& campaign,
+                             std::optional<FolderLock> lock = {});
+  /// Opens a folder as it is, without a lock: to read it. InputError if it is none, or its columns are not this program's.
   static ResultFolder Open(const std::filesystem::path& directory);
 
   ResultFolder(ResultFolder&&) noexcept;
@@ -60,6 +67,8 @@ class ResultFolder {
   /// digest is left alone; with another digest: kConflict. Lifts the quarantine of what it stores. Values
   /// that are not finite become NULL, -0 becomes 0. Returns how many were new.
   std::size_t Append(std::span<const CaseResult> results);
+  /// From now on no other process may write here. InputError if one does.
+  void Lock();
   /// Telemetry, one transaction. A case may have several records.
   void AppendExecution(std::span<const ExecutionRecord> records);
   /// Remembers a case as given up (again: the later reason holds).
@@ -67,19 +76,27 @@ class ResultFolder {
 
   /// Indices that have a result, ascending.
   std::vector<std::uint64_t> PresentCases() const;
+  /// The same with the fingerprint that was stored with each.
+  std::vector<std::pair<std::uint64_t, Digest>> Fingerprints() const;
+  /// Rows that Resume found damaged and removed.
+  const std::vector<std::uint64_t>& damaged() const { return damaged_; }
   /// Ascending by index.
   std::vector<QuarantinedCase> QuarantinedCases() const;
   bool Contains(std::uint64_t case_index) const;
-  /// The stored result, NULL as NaN. InputError if there is none.
+  /// The stored result, NULL as NaN. InputError if there is none; ResultError if its row does not fit its
+  /// fingerprint.
   CaseResult Load(std::uint64_t case_index) const;
   /// Calls back with each result in ascending order of index; holds one at a time.
   void ForEach(const std::function<void(const CaseResult&)>& callback) const;
 
  private:
   ResultFolder(std::filesystem::path directory, std::unique_ptr<Database> database);
+  void RemoveDamaged();
 
   std::filesystem::path directory_;
+  std::optional<FolderLock> lock_;
   std::unique_ptr<Database> database_;
+  std::vector<std::uint64_t> damaged_;
 };
 
 }  // namespace dispersa

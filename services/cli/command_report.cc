@@ -11,7 +11,8 @@ namespace dispersa {
 namespace {
 
 ExitCode Report(const std::string& directory, const GlobalOptions& global) {
-  const StoredCampaign stored = OpenStored(directory);
+  StoredCampaign stored = OpenStored(directory);
+  stored.folder.Lock();
   const int threads = static_cast<int>(std::thread::hardware_concurrency());
   const CampaignSummary summary = MakeReports(stored.folder, stored.campaign, threads, global.quiet);
   PrintSummary(summary, stored.folder.directory(), global.json);

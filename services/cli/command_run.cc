@@ -133,6 +133,7 @@ class CampaignRun {
       if (coordinator.joined() > 0) joined_s = Now();
       problem = Problem(coordinator, workers, Now() - joined_s);
     }
+    book_.Flush();
     coordinator.Dismiss();
     workers.End(problem ? 0.0 : kLeavePatience_s);
     Note(workers);

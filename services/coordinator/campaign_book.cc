@@ -2,11 +2,10 @@
 
 #include <spdlog/spdlog.h>
 
-#include <bit>
-#include <cstring>
 #include <utility>
 
 #include "core/engine/version.h"
+#include "core/report/fingerprint.h"
 #include "services/coordinator/utc.h"
 
 namespace dispersa {
@@ -17,31 +16,12 @@ constexpr std::size_t kFlushCount = 1000;
 
 }  // namespace
 
-Digest Fingerprint(const CaseResult& result) {
-  std::vector<double> words = {std::bit_cast<double>(result.case_index),
-                               static_cast<double>(result.outcome),
-                               result.end_time_s,
-                               static_cast<double>(result.end_stage),
-                               std::bit_cast<double>(result.digest.high),
-                               std::bit_cast<double>(result.digest.low),
-                               static_cast<double>(result.reason.size())};
-  const std::size_t reason_at = words.size();
-  words.resize(reason_at + (result.reason.size() + sizeof(double) - 1) / sizeof(double));
-  std::memcpy(words.data() + reason_at, result.reason.data(), result.reason.size());
-  words.push_back(static_cast<double>(result.inputs.size()));
-  words.insert(words.end(), result.inputs.begin(), result.inputs.end());
-  words.insert(words.end(), result.metrics.begin(), result.metrics.end());
-  Digester digester;
-  digester.Add(words.data(), words.size());
-  return digester.Finish();
-}
-
 CampaignBook::CampaignBook(const Campaign& campaign, ResultFolder folder, const LedgerOptions& options)
     : campaign_(campaign),
       folder_(std::move(folder)),
       ledger_(EngineVersion(), campaign.sampling.cases, options) {
-  for (const std::uint64_t case_index : folder_.PresentCases()) {
-    if (case_index < campaign.sampling.cases) ledger_.MarkDone(case_index);
+  for (const auto& [case_index, fingerprint] : folder_.Fingerprints()) {
+    if (case_index < campaign.sampling.cases) ledger_.MarkDone(case_index, fingerprint);
   }
 }
 

@@ -13,9 +13,6 @@
 
 namespace dispersa {
 
-/// A 128-bit hash over every bit of a result.
-Digest Fingerprint(const CaseResult& result);
-
 /// Results are stored in batches; nothing that was accepted is lost by more than one batch. Not thread-safe.
 /// Times are seconds from any origin. Storing throws ResultError.
 class CampaignBook {

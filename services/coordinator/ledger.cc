@@ -20,10 +20,10 @@ Ledger::Ledger(std::string engine_version, std::uint64_t cases, const LedgerOpti
   progress_.total = cases;
 }
 
-void Ledger::MarkDone(std::uint64_t case_index) {
+void Ledger::MarkDone(std::uint64_t case_index, const Digest& fingerprint) {
   assert(case_index < cases_.size() && next_attempt_ == 1);
   if (!waiting_.Remove(case_index)) return;
-  cases_[case_index].state = State::kDone;
+  cases_[case_index] = {State::kDone, fingerprint};
   ++progress_.done;
 }
 
@@ -80,12 +80,10 @@ Acceptance Ledger::Finished(const std::string& worker, std::uint64_t case_index,
   if (case_index >= cases_.size()) return Acceptance::kUnknown;
   Case& flown = cases_[case_index];
   if (flown.state == State::kDone) {
-    if (flown.fingerprint_known && flown.fingerprint != fingerprint) {
+    if (flown.fingerprint != fingerprint) {
       ++progress_.conflicts;
       return Acceptance::kConflict;
     }
-    flown.fingerprint = fingerprint;
-    flown.fingerprint_known = true;
     ++progress_.duplicates;
     return Acceptance::kDuplicate;
   }
@@ -93,7 +91,7 @@ Acceptance Ledger::Finished(const std::string& worker, std::uint64_t case_index,
   if (flown.state == State::kSuspect) suspects_.Remove(case_index);
   if (flown.state == State::kQuarantined) --progress_.quarantined;
   blames_.erase(case_index);
-  flown = {State::kDone, true, fingerprint};
+  flown = {State::kDone, fingerprint};
   ++progress_.done;
   return Acceptance::kAccepted;
 }

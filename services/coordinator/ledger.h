@@ -75,7 +75,7 @@ class Ledger {
   Ledger(std::string engine_version, std::uint64_t cases, const LedgerOptions& options = {});
 
   /// A case whose result exists already (resume). Before any assignment.
-  void MarkDone(std::uint64_t case_index);
+  void MarkDone(std::uint64_t case_index, const Digest& fingerprint);
 
   /// A worker announces itself, or changes what it announced. Returns why it is refused, if it is.
   std::optional<std::string> Join(const std::string& worker, const WorkerHello& hello, double now_s);
@@ -104,7 +104,6 @@ class Ledger {
   enum class State : std::uint8_t { kWaiting, kSuspect, kAssigned, kDone, kQuarantined };
   struct Case {
     State state = State::kWaiting;
-    bool fingerprint_known = false;
     Digest fingerprint;
   };
   struct Held {

@@ -4,8 +4,11 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <exception>
+#include <optional>
+#include <thread>
 #include <utility>
 
 #include "core/engine/version.h"
@@ -25,6 +28,8 @@ constexpr int kInterrupted = 130;
 
 constexpr std::chrono::seconds kProgressPeriod(5);
 
+struct Stopped {};
+
 int Serve(const NetworkOptions& network, const CampaignRequest& request) {
   OpenedCampaign opened = OpenCampaign(request);
   CampaignBook book(opened.campaign, std::move(opened.folder));
@@ -42,15 +47,25 @@ int Serve(const NetworkOptions& network, const CampaignRequest& request) {
                    progress.assigned, progress.quarantined, coordinator.joined());
     }
   }
-  coordinator.Dismiss();
+  // First what would be lost. Workers are sent home by a campaign that is complete on the disk and by nothing
+  // else: a coordinator that stops, or is killed here, finds them again when it is back.
   book.Flush();
-  if (StopRequested()) {
+  ReportOptions options;
+  options.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  options.progress = [](const std::string&, std::uint64_t, std::uint64_t) {
+    if (StopRequested()) throw Stopped();
+  };
+  std::optional<CampaignSummary> summary;
+  try {
+    if (StopRequested()) throw Stopped();
+    coordinator.Dismiss();
+    summary = WriteReports(book.folder(), book.campaign(), options);
+  } catch (const Stopped&) {
     spdlog::warn("stopped; the same with --resume goes on");
     return kInterrupted;
   }
-  const CampaignSummary summary = WriteReports(book.folder(), book.campaign());
   fmt::print("result: {}\n", book.folder().directory().string());
-  return book.ledger().Progress().conflicts > 0 ? kInternalError : VerdictExitCode(summary.verdict);
+  return book.ledger().Progress().conflicts > 0 ? kInternalError : VerdictExitCode(summary->verdict);
 }
 
 int Main(int argc, char** argv) {

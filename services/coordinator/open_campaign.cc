@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -46,14 +47,19 @@ OpenedCampaign OpenCampaign(const CampaignRequest& request) {
   const fs::path directory =
       request.out.empty() ? DefaultFolder(campaign, request.resume) : fs::path(request.out);
 
+  // Before looking into it: of several that start at once, one finds the folder as it is.
+  std::error_code error;
+  fs::create_directories(directory, error);
+  std::optional<FolderLock> lock;
+  if (!error) lock.emplace(directory);
   if (!request.resume || !HasContent(directory)) {
-    ResultFolder folder = ResultFolder::Create(directory, campaign);
+    ResultFolder folder = ResultFolder::Create(directory, campaign, std::move(lock));
     return {std::move(campaign), std::move(folder)};
   }
   if (IsStillborn(directory)) {
     const std::vector<fs::path> leftovers(fs::directory_iterator{directory}, fs::directory_iterator{});
     for (const fs::path& leftover : leftovers) fs::remove(leftover);
-    ResultFolder folder = ResultFolder::Create(directory, campaign);
+    ResultFolder folder = ResultFolder::Create(directory, campaign, std::move(lock));
     return {std::move(campaign), std::move(folder)};
   }
   const std::vector<std::uint64_t> present = ResultFolder::Open(directory).PresentCases();
@@ -67,7 +73,10 @@ OpenedCampaign OpenCampaign(const CampaignRequest& request) {
       campaign = std::move(larger);
     }
   }
-  ResultFolder folder = ResultFolder::Resume(directory, campaign);
+  ResultFolder folder = ResultFolder::Resume(directory, campaign, std::move(lock));
+  for (const std::uint64_t damaged : folder.damaged()) {
+    spdlog::warn("{}: the row of case {} is damaged; it is flown again", directory.string(), damaged);
+  }
   return {std::move(campaign), std::move(folder)};
 }
 

@@ -16,6 +16,7 @@
 
 #include "core/engine/version.h"
 #include "core/flight/flight_inputs.h"
+#include "core/report/fingerprint.h"
 #include "services/transport/private_domain.h"
 #include "services/transport/worker_link.h"
 
@@ -285,6 +286,7 @@ TEST(FingerprintTest, ChangesWithEveryField) {
       [](CaseResult& r) { r.inputs[3] = -r.inputs[3]; },
       [](CaseResult& r) { r.metrics[1] = 0.0; },
       [](CaseResult& r) { r.inputs.push_back(r.metrics[0]), r.metrics.erase(r.metrics.begin()); },
+      [](CaseResult& r) { r.metrics[2] = std::numeric_limits<double>::quiet_NaN(); },
       [](CaseResult& r) { r.digest.high ^= 1; },
       [](CaseResult& r) { r.digest.low ^= 1; },
   };

@@ -95,11 +95,11 @@ TEST(Ledger, AResultIsAcceptedOnceAndComparedEverAfter) {
 
 TEST(Ledger, ResumesWithTheMissingCases) {
   Ledger ledger("1", 4);
-  for (const std::uint64_t case_index : {0u, 2u, 2u}) ledger.MarkDone(case_index);
+  for (const std::uint64_t case_index : {0u, 2u, 2u}) ledger.MarkDone(case_index, ResultOf(case_index));
   EXPECT_EQ(ledger.Progress().done, 2u);
   ledger.Join("w", kHello, 0.0);
   EXPECT_THAT(ledger.Assign(0.0), ElementsAre(Assignment{"w", 1, {1}}, Assignment{"w", 2, {3}}));
-  // The bits of an old result are not at hand: the first repetition sets what later ones must equal.
+  // The stored fingerprint is what repetitions must equal.
   EXPECT_EQ(ledger.Finished("w", 0, 9, ResultOf(0), 0.0), Acceptance::kDuplicate);
   EXPECT_EQ(ledger.Finished("w", 0, 9, ResultOf(1), 0.0), Acceptance::kConflict);
 }

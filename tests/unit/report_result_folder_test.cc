@@ -4,10 +4,13 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <limits>
 
 #include "core/engine/version.h"
 #include "core/report/database.h"
+#include "core/report/fingerprint.h"
 #include "core/report/output_file.h"
 #include "tests/unit/report_test_support.h"
 
@@ -20,6 +23,7 @@ using report_test::MakeCase;
 using report_test::ReadText;
 using report_test::TemporaryFolder;
 using testing::ElementsAre;
+using testing::Pair;
 
 template <typename Error, typename Action>
 std::string MessageOf(Action action) {
@@ -230,6 +234,65 @@ TEST(ResultFolder, RefusesColumnsOfAnotherEngine) {
   EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Open(temporary / "out"); }),
             (temporary / "out").string() + ": flown by engine " + EngineVersion() +
                 ", whose inputs and metrics are not those of this one, " + EngineVersion());
+}
+
+TEST(ResultFolder, IsWrittenByOneProcessAtATime) {
+  TemporaryFolder temporary;
+  const std::string busy = (temporary / "out").string() +
+                           ": another dispersa process is writing this folder, allowed: another folder, or to "
+                           "wait for that process to end";
+  {
+    const ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(2));
+    EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Resume(temporary / "out", MakeCampaign(2)); }), busy);
+    ResultFolder reader = ResultFolder::Open(temporary / "out");
+    EXPECT_EQ(MessageOf<InputError>([&] { reader.Lock(); }), busy);
+  }
+  const ResultFolder folder = ResultFolder::Resume(temporary / "out", MakeCampaign(2));
+  EXPECT_EQ(MessageOf<InputError>([&] { FolderLock again(temporary / "out"); }), busy);
+}
+
+TEST(ResultFolder, TellsADamagedRowAndRemovesItToBeFlownAgain) {
+  const std::string metric = "metric_" + MetricNames()[0];
+  for (const std::string& damage :
+       {metric + " = " + metric + " + 1e-9", std::string("outcome = 'impact'"), std::string("reason = 'x'"),
+        std::string("end_stage = end_stage + 1"), std::string("end_time_s = NULL"),
+        std::string("digest = '0' || substr(digest, 2, 30) || 'f'"), std::string("row_digest = ''")}) {
+    TemporaryFolder temporary;
+    {
+      ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(3));
+      folder.Append({{MakeCase(0), MakeCase(1), MakeCase(2)}});
+    }
+    Database((temporary / "out") / "results.sqlite", Database::Mode::kExisting)
+        .Execute("UPDATE cases SET " + damage + " WHERE case_index = 1");
+    {
+      const ResultFolder folder = ResultFolder::Open(temporary / "out");
+      const std::string error = (temporary / "out").string() +
+                                "/results.sqlite: the row of case 1 is damaged; --resume flies it again";
+      EXPECT_EQ(MessageOf<ResultError>([&] { folder.Load(1); }), error) << damage;
+      EXPECT_EQ(MessageOf<ResultError>([&] { folder.ForEach([](const CaseResult&) {}); }), error) << damage;
+    }
+    const ResultFolder folder = ResultFolder::Resume(temporary / "out", MakeCampaign(3));
+    EXPECT_THAT(folder.damaged(), ElementsAre(1)) << damage;
+    EXPECT_THAT(folder.PresentCases(), ElementsAre(0, 2)) << damage;
+  }
+}
+
+TEST(ResultFolder, KeepsTheFingerprintOfEachRow) {
+  TemporaryFolder temporary;
+  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(3));
+  folder.Append({{MakeCase(2), MakeCase(1)}});
+  EXPECT_THAT(folder.Fingerprints(),
+              ElementsAre(Pair(1, Fingerprint(MakeCase(1))), Pair(2, Fingerprint(MakeCase(2)))));
+}
+
+TEST(OutputFile, DoesNotFollowALinkInItsPlace) {
+  TemporaryFolder temporary;
+  std::ofstream(temporary / "precious") << "kept";
+  std::filesystem::create_symlink(temporary / "precious", temporary / "cases.csv.tmp");
+  WriteFile(temporary / "cases.csv", "new");
+  EXPECT_EQ(ReadText(temporary / "precious"), "kept");
+  EXPECT_EQ(ReadText(temporary / "cases.csv"), "new");
+  EXPECT_FALSE(std::filesystem::exists(temporary / "cases.csv.tmp"));
 }
 
 TEST(Database, TellsAFullDiskFromOtherErrors) {
