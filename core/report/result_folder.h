@@ -17,30 +17,16 @@
 #include "core/campaign/input_error.h"
 #include "core/report/folder_lock.h"
 #include "core/report/result_error.h"
+#include "core/report/result_store.h"
 
 namespace dispersa {
 
 class Database;
 
-/// Who flew a case, and when: the only place in the database that differs between runs.
-struct ExecutionRecord {
-  std::uint64_t case_index = 0;
-  std::string worker;
-  std::string host;
-  std::string started_utc;  ///< ISO 8601
-  double seconds = 0.0;     ///< wall clock
-};
-
-/// A case that was given up because it killed or hung its workers; it has no result.
-struct QuarantinedCase {
-  std::uint64_t case_index = 0;
-  std::string reason;  ///< one sentence without names or times, so that reports do not differ between runs
-};
-
 /// Not thread-safe: one thread at a time. Other processes may read `results.sqlite` meanwhile (WAL).
 /// Every method throws ResultError when the disk or the database fails; InputError, where it says so, when
 /// the user named the wrong folder or case.
-class ResultFolder {
+class ResultFolder : public ResultStore {
  public:
   /// Makes the folder (parents too) with campaign.yaml and an empty results.sqlite.
   /// InputError if it exists and is not empty, cannot be written, or another process writes it. It is locked
@@ -57,7 +43,7 @@ class ResultFolder {
 
   ResultFolder(ResultFolder&&) noexcept;
   ResultFolder& operator=(ResultFolder&&) noexcept;
-  ~ResultFolder();
+  ~ResultFolder() override;
 
   const std::filesystem::path& directory() const { return directory_; }
   /// Value of "campaign_id", "flight_id", "engine", "name", "seed", "cases" or "sampling".
@@ -66,18 +52,18 @@ class ResultFolder {
   /// Stores results in one transaction: all or, on an error, none. A case that is already there with the same
   /// digest is left alone; with another digest: kConflict. Lifts the quarantine of what it stores. Values
   /// that are not finite become NULL, -0 becomes 0. Returns how many were new.
-  std::size_t Append(std::span<const CaseResult> results);
+  std::size_t Append(std::span<const CaseResult> results) override;
   /// From now on no other process may write here. InputError if one does.
   void Lock();
   /// Telemetry, one transaction. A case may have several records.
-  void AppendExecution(std::span<const ExecutionRecord> records);
+  void AppendExecution(std::span<const ExecutionRecord> records) override;
   /// Remembers a case as given up (again: the later reason holds).
-  void Quarantine(const QuarantinedCase& quarantined);
+  void Quarantine(const QuarantinedCase& quarantined) override;
 
   /// Indices that have a result, ascending.
   std::vector<std::uint64_t> PresentCases() const;
   /// The same with the fingerprint that was stored with each.
-  std::vector<std::pair<std::uint64_t, Digest>> Fingerprints() const;
+  std::vector<std::pair<std::uint64_t, Digest>> Fingerprints() const override;
   /// Rows that Resume found damaged and removed.
   const std::vector<std::uint64_t>& damaged() const { return damaged_; }
   /// Ascending by index.

@@ -85,9 +85,8 @@ void LocalWorkers::Kill(const std::string& uuid) {
 }
 
 void LocalWorkers::End(double patience_s) {
+  // Not SIGTERM: they would finish what they fly, which nobody waits for.
   if (WaitAll(patience_s)) return;
-  SignalAll(SIGTERM);
-  if (WaitAll(1.0)) return;
   SignalAll(SIGKILL);
   WaitAll(1.0);
 }

@@ -46,7 +46,7 @@ class LocalWorkers {
   int fruitless_ends() const { return fruitless_ends_; }
 
   void Kill(const std::string& uuid);
-  /// Waits until they end by themselves, at most so long; then SIGTERM; a second later SIGKILL.
+  /// Waits until they end by themselves, at most so long; then SIGKILL.
   void End(double patience_s);
 
   int alive() const;

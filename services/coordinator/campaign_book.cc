@@ -17,10 +17,14 @@ constexpr std::size_t kFlushCount = 1000;
 }  // namespace
 
 CampaignBook::CampaignBook(const Campaign& campaign, ResultFolder folder, const LedgerOptions& options)
+    : CampaignBook(campaign, std::make_unique<ResultFolder>(std::move(folder)), options) {}
+
+CampaignBook::CampaignBook(const Campaign& campaign, std::unique_ptr<ResultStore> store,
+                           const LedgerOptions& options)
     : campaign_(campaign),
-      folder_(std::move(folder)),
+      store_(std::move(store)),
       ledger_(EngineVersion(), campaign.sampling.cases, options) {
-  for (const auto& [case_index, fingerprint] : folder_.Fingerprints()) {
+  for (const auto& [case_index, fingerprint] : store_->Fingerprints()) {
     if (case_index < campaign.sampling.cases) ledger_.MarkDone(case_index, fingerprint);
   }
 }
@@ -61,25 +65,26 @@ Acceptance CampaignBook::Accept(const std::string& worker, const std::string& ho
   return acceptance;
 }
 
-void CampaignBook::FlushIfDue(double now_s) {
-  if (results_.size() < kFlushCount && now_s - flushed_s_ < kFlushPeriod_s) return;
+bool CampaignBook::FlushIfDue(double now_s) {
+  if (results_.size() < kFlushCount && now_s - flushed_s_ < kFlushPeriod_s) return false;
   flushed_s_ = now_s;
   Flush();
+  return true;
 }
 
 void CampaignBook::Flush() {
   if (!results_.empty()) {
-    folder_.Append(results_);
+    store_->Append(results_);
     results_.clear();
   }
   if (!records_.empty()) {
-    folder_.AppendExecution(records_);
+    store_->AppendExecution(records_);
     records_.clear();
   }
   if (ledger_.Progress().quarantined != quarantined_) {
     for (const BlamedCase& blamed : ledger_.Quarantined()) {
       // The reasons of each attempt name processes and signals; what is stored must not differ between runs.
-      folder_.Quarantine({blamed.case_index, "every attempt to fly it ended or hung its worker"});
+      store_->Quarantine({blamed.case_index, "every attempt to fly it ended or hung its worker"});
     }
     quarantined_ = ledger_.Progress().quarantined;
   }

@@ -1,14 +1,16 @@
-// The ledger of a campaign together with the folder that its results go to.
+// The ledger of a campaign together with the store that its results go to.
 #pragma once
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/campaign/campaign.h"
 #include "core/report/result_folder.h"
+#include "core/report/result_store.h"
 #include "services/coordinator/ledger.h"
 
 namespace dispersa {
@@ -17,10 +19,13 @@ namespace dispersa {
 /// Times are seconds from any origin. Storing throws ResultError.
 class CampaignBook {
  public:
+  CampaignBook(const Campaign& campaign, std::unique_ptr<ResultStore> store,
+               const LedgerOptions& options = {});
   CampaignBook(const Campaign& campaign, ResultFolder folder, const LedgerOptions& options = {});
 
   const Campaign& campaign() const { return campaign_; }
-  const ResultFolder& folder() const { return folder_; }
+  /// Of a book that was made with one.
+  const ResultFolder& folder() const { return dynamic_cast<const ResultFolder&>(*store_); }
   Ledger& ledger() { return ledger_; }
   const Ledger& ledger() const { return ledger_; }
   std::uint64_t flown_now() const { return flown_now_; }  ///< accepted since construction
@@ -30,13 +35,13 @@ class CampaignBook {
   /// in the ledger's progress.
   Acceptance Accept(const std::string& worker, const std::string& host, std::uint64_t attempt,
                     const CaseResult& result, double now_s);
-  /// Stores what has gathered if it is time to.
-  void FlushIfDue(double now_s);
+  /// Stores what has gathered if it is time to. True: all that was accepted so far is stored.
+  bool FlushIfDue(double now_s);
   void Flush();
 
  private:
   Campaign campaign_;
-  ResultFolder folder_;
+  std::unique_ptr<ResultStore> store_;
   Ledger ledger_;
   std::vector<CaseResult> results_;
   std::vector<ExecutionRecord> records_;

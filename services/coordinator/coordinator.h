@@ -1,71 +1,65 @@
-// Serves one campaign to the workers of a network.
+// Serves campaigns to the workers of a network.
 #pragma once
 
 #include <chrono>
 #include <cstdint>
-#include <map>
+#include <functional>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
-#include "services/coordinator/campaign_book.h"
+#include "services/coordinator/dispatcher.h"
 #include "services/transport/coordinator_link.h"
 
 namespace dispersa {
 
-/// Turns messages into events of the ledger and its assignments into messages. One thread.
+/// The dispatcher with a clock and a network. One thread.
 class Coordinator {
  public:
-  /// Throws NetworkError. The book must outlive it.
+  /// Throws NetworkError.
+  explicit Coordinator(const NetworkOptions& network);
+  /// Serves one campaign.
   Coordinator(const NetworkOptions& network, CampaignBook& book);
+
+  /// A book must stay until it is closed.
+  void Open(CampaignBook& book, int priority = 0) { dispatcher_.Open(book, priority); }
+  void Close(const std::string& flight_id) { dispatcher_.Close(flight_id); }
 
   /// One round: waits for messages, at most `timeout`, and does what follows from them and from the time.
   /// Throws ResultError.
   void Step(std::chrono::milliseconds timeout);
 
-  /// Announces that the end of this worker will be told by WorkerEnded: a local process has an exit status,
-  /// which says more than a silent heartbeat.
-  void Supervise(const std::string& worker);
-  /// A supervised worker ended. Takes effect a moment later, when its last messages have arrived.
-  void WorkerEnded(const std::string& worker, WorkerEnd end, const std::string& reason);
-  /// Supervised workers that hang or do not beat: to be killed.
-  std::vector<std::string> TakeUnresponsive();
+  /// See Dispatcher.
+  void Supervise(const std::string& worker) { dispatcher_.Supervise(worker); }
+  void WorkerEnded(const std::string& worker, WorkerEnd end, const std::string& reason) {
+    dispatcher_.WorkerEnded(worker, end, reason, now_s_);
+  }
+  std::vector<std::string> TakeUnresponsive() { return dispatcher_.TakeUnresponsive(); }
 
   /// Every worker is told to leave, and waited for until the message is there.
   void Dismiss();
 
-  std::size_t joined() const { return joined_.size(); }
-  /// Why a worker was refused or refused the campaign, most recently.
-  const std::optional<std::string>& refusal() const { return refusal_; }
+  /// What answers clients; a reply without a client is not sent.
+  void Serve(std::function<Reply(const Request&)> answer) { answer_ = std::move(answer); }
+  void Publish(CampaignProgress progress);
+
+  std::size_t joined() const { return dispatcher_.joined(); }
+  std::vector<Dispatcher::WorkerView> Workers() const { return dispatcher_.Workers(); }
+  const std::optional<std::string>& refusal() const { return dispatcher_.refusal(); }
+  /// Seconds since the start, without those for which this process or machine stood still.
+  double now_s() const { return now_s_; }
 
  private:
-  void On(const WorkerStatus& status);
-  void On(const Report& report);
-  void On(const CampaignRefusal& refusal);
-  void On(const WorkerSilent& silent);
-  void On(const WorkerGone& gone);
-  void Lose(const std::string& worker, WorkerEnd end, const std::string& reason);
-  double Now() const;
-
-  struct Ending {
-    double due_s;
-    std::string worker;
-    WorkerEnd end;
-    std::string reason;
-  };
+  void Advance();
+  void Handle(const CoordinatorEvent& event);
+  void Send(const std::vector<Orders>& messages);
 
   std::uint64_t epoch_;
-  std::chrono::steady_clock::time_point origin_ = std::chrono::steady_clock::now();
-  CampaignBook& book_;
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+  double now_s_ = 0.0;
+  Dispatcher dispatcher_;
   CoordinatorLink link_;
-  std::map<std::string, std::string> joined_;  ///< host, by worker
-  std::set<std::string> supervised_;
-  std::set<std::string> banned_;  ///< ended, or refused: whatever still arrives of them changes nothing
-  std::set<std::string> unresponsive_;
-  std::vector<Ending> endings_;
-  std::optional<std::string> refusal_;
-  double expired_s_ = 0.0;
+  std::function<Reply(const Request&)> answer_;
 };
 
 }  // namespace dispersa

@@ -15,13 +15,16 @@ constexpr double kMeanWeight = 0.1;  // of the newest duration in the running me
 }  // namespace
 
 Ledger::Ledger(std::string engine_version, std::uint64_t cases, const LedgerOptions& options)
-    : engine_version_(std::move(engine_version)), options_(options), cases_(cases) {
+    : engine_version_(std::move(engine_version)),
+      options_(options),
+      cases_(cases),
+      next_attempt_(options.attempt_base + 1) {
   waiting_.AddRange(0, cases);
   progress_.total = cases;
 }
 
 void Ledger::MarkDone(std::uint64_t case_index, const Digest& fingerprint) {
-  assert(case_index < cases_.size() && next_attempt_ == 1);
+  assert(case_index < cases_.size() && next_attempt_ == options_.attempt_base + 1);
   if (!waiting_.Remove(case_index)) return;
   cases_[case_index] = {State::kDone, fingerprint};
   ++progress_.done;
@@ -147,20 +150,64 @@ std::vector<Assignment> Ledger::Assign(double now_s) {
   for (bool given = true; given && !waiting_.Empty();) {
     given = false;
     for (auto& [id, worker] : workers_) {
-      if (worker.stuck || worker.alone || worker.batches.size() >= worker.hello.credits) continue;
       if (waiting_.Empty()) break;
-      assignments.push_back(Give(id, worker, waiting_.TakeRun(BatchSize()), now_s));
-      given = true;
+      if (auto assignment = GiveTo(id, 0, now_s)) {
+        assignments.push_back(*std::move(assignment));
+        given = true;
+      }
     }
   }
   if (!waiting_.Empty()) return assignments;
   for (auto& [id, worker] : workers_) {
     if (suspects_.Empty()) break;
-    if (worker.stuck || !worker.held.empty() || worker.hello.credits == 0) continue;
-    assignments.push_back(Give(id, worker, suspects_.TakeRun(1), now_s));
-    worker.alone = true;
+    if (auto assignment = GiveTo(id, 0, now_s)) assignments.push_back(*std::move(assignment));
   }
   return assignments;
+}
+
+std::optional<Assignment> Ledger::GiveTo(const std::string& worker, std::uint64_t elsewhere, double now_s) {
+  const auto entry = workers_.find(worker);
+  if (entry == workers_.end()) return std::nullopt;
+  Worker& to = entry->second;
+  if (to.stuck || to.leaving || to.alone || to.batches.size() + elsewhere >= to.hello.credits)
+    return std::nullopt;
+  if (!waiting_.Empty()) return Give(worker, to, waiting_.TakeRun(BatchSize()), now_s);
+  if (suspects_.Empty() || !to.held.empty() || elsewhere > 0) return std::nullopt;
+  to.alone = true;
+  return Give(worker, to, suspects_.TakeRun(1), now_s);
+}
+
+void Ledger::Withdraw(const std::string& worker, const std::vector<std::uint64_t>& begun) {
+  const auto entry = workers_.find(worker);
+  if (entry == workers_.end()) return;
+  entry->second.leaving = true;
+  for (auto held = entry->second.held.begin(); held != entry->second.held.end();) {
+    const auto here = held++;
+    if (std::find(begun.begin(), begun.end(), here->first) != begun.end()) continue;
+    const std::uint64_t case_index = here->first;
+    Release(entry->second, here);
+    if (cases_[case_index].state == State::kAssigned) Return(case_index);
+  }
+}
+
+std::vector<std::uint64_t> Ledger::Owed(const std::string& worker, std::uint64_t attempt) const {
+  std::vector<std::uint64_t> owed;
+  const auto entry = workers_.find(worker);
+  if (entry == workers_.end() || !entry->second.batches.contains(attempt)) return owed;
+  for (const auto& [case_index, held] : entry->second.held) {
+    if (held.attempt == attempt) owed.push_back(case_index);
+  }
+  return owed;
+}
+
+std::uint64_t Ledger::Batches(const std::string& worker) const {
+  const auto entry = workers_.find(worker);
+  return entry == workers_.end() ? 0 : entry->second.batches.size();
+}
+
+bool Ledger::IsAlone(const std::string& worker) const {
+  const auto entry = workers_.find(worker);
+  return entry != workers_.end() && entry->second.alone;
 }
 
 bool Ledger::Complete() const { return progress_.done + progress_.quarantined == progress_.total; }

@@ -18,6 +18,8 @@ struct LedgerOptions {
   int blames_to_quarantine = 3;
   double batch_duration_s = 0.25;  ///< what one slot should need for one assignment
   std::uint64_t max_batch = 64;    ///< cases
+  std::uint64_t attempt_base =
+      0;  ///< attempts count from here: ledgers of one coordinator have different ones
 };
 
 /// A worker as it announces itself.
@@ -91,8 +93,20 @@ class Ledger {
   /// Takes the cases of stuck workers away from them, with a blame for those that flew too long, and
   /// returns these workers; they get no more cases until they report something or are idle.
   std::vector<std::string> Expire(double now_s);
-  /// What to send now.
+  /// What to send now, when all workers fly for this ledger alone.
   std::vector<Assignment> Assign(double now_s);
+  /// Cases for one worker, if there are any that it may have. `elsewhere`: assignments that it holds of other
+  /// ledgers.
+  std::optional<Assignment> GiveTo(const std::string& worker, std::uint64_t elsewhere, double now_s);
+  /// The worker takes no more, and begins none but these of what it holds: the others return to the queue.
+  void Withdraw(const std::string& worker, const std::vector<std::uint64_t>& begun);
+
+  /// Cases of an assignment that the worker still owes.
+  std::vector<std::uint64_t> Owed(const std::string& worker, std::uint64_t attempt) const;
+  /// Assignments that it holds.
+  std::uint64_t Batches(const std::string& worker) const;
+  /// It flies a suspect and may hold nothing else.
+  bool IsAlone(const std::string& worker) const;
 
   bool Complete() const;
   LedgerProgress Progress() const;
@@ -117,6 +131,7 @@ class Ledger {
     double last_report_s = 0.0;
     bool alone = false;  ///< holds a suspect
     bool stuck = false;
+    bool leaving = false;
   };
 
   double Lease() const;

@@ -28,9 +28,36 @@ constexpr int kInterrupted = 130;
 
 constexpr std::chrono::seconds kProgressPeriod(5);
 
-struct Stopped {};
+constexpr double kSayAgain_s = 30.0;
 
-int Serve(const NetworkOptions& network, const CampaignRequest& request) {
+struct Stopped {};
+struct NobodyCame {};
+
+/// Says when nobody flies, again and again; throws NobodyCame when that lasts longer than `patience_s`.
+class Attendance {
+ public:
+  Attendance(int domain, std::optional<double> patience_s) : domain_(domain), patience_s_(patience_s) {}
+
+  void Check(std::size_t workers, double now_s) {
+    if (workers > 0) {
+      present_s_ = said_s_ = now_s;
+      return;
+    }
+    if (now_s - said_s_ >= kSayAgain_s) {
+      said_s_ = now_s;
+      spdlog::warn("no worker for {:.0f} s; they may come to port {}", now_s - present_s_,
+                   CoordinatorPort(domain_));
+    }
+    if (patience_s_ && now_s - present_s_ > *patience_s_) throw NobodyCame();
+  }
+
+ private:
+  int domain_;
+  std::optional<double> patience_s_;
+  double present_s_ = 0.0, said_s_ = 0.0;
+};
+
+int Serve(const NetworkOptions& network, const CampaignRequest& request, std::optional<double> patience_s) {
   OpenedCampaign opened = OpenCampaign(request);
   CampaignBook book(opened.campaign, std::move(opened.folder));
   Coordinator coordinator(network, book);
@@ -38,8 +65,16 @@ int Serve(const NetworkOptions& network, const CampaignRequest& request) {
                book.campaign().name, book.campaign().flight_id, book.folder().directory().string(),
                network.domain, CoordinatorPort(network.domain));
   auto progress_due = std::chrono::steady_clock::now();
+  Attendance attendance(network.domain, patience_s);
   while (!book.ledger().Complete() && !StopRequested()) {
     coordinator.Step(std::chrono::milliseconds(100));
+    try {
+      attendance.Check(coordinator.joined(), coordinator.now_s());
+    } catch (const NobodyCame&) {
+      book.Flush();
+      spdlog::error("no worker for {:.0f} s: given up; the same with --resume goes on", *patience_s);
+      return kIncomplete;
+    }
     if (const auto now = std::chrono::steady_clock::now(); now >= progress_due) {
       progress_due = now + kProgressPeriod;
       const LedgerProgress progress = book.ledger().Progress();
@@ -72,6 +107,7 @@ int Main(int argc, char** argv) {
   spdlog::set_default_logger(spdlog::stderr_logger_mt("dispersa-coordinator"));
   NetworkOptions network;
   CampaignRequest request;
+  std::optional<double> patience_s;
   CLI::App app(
       "Serves one campaign to all dispersa-worker processes of a DDS domain, then writes its reports.",
       "dispersa-coordinator");
@@ -87,6 +123,9 @@ int Main(int argc, char** argv) {
       ->check(CLI::Range(0, 99));
   app.add_option("--address", network.address, "IPv4 address of the only network interface to use")
       ->check(CLI::ValidIPV4);
+  app.add_option("--patience", patience_s,
+                 "give up (exit code 5) after so many seconds without a worker; default: never")
+      ->check(CLI::NonNegativeNumber);
   app.footer(
       "Example: dispersa-coordinator campaigns/table3.yaml --out results/table3 --domain 7\n"
       "         dispersa-worker --domain 7 --peer coordinator-host");
@@ -97,7 +136,7 @@ int Main(int argc, char** argv) {
   }
   CatchStopSignals();
   try {
-    return Serve(network, request);
+    return Serve(network, request, patience_s);
   } catch (const InputError& error) {
     fmt::print(stderr, "{}\n", error.what());
     return kBadInput;

@@ -1,8 +1,7 @@
-// Between the plain messages and the generated types.
+// Between the plain messages and the generated types. Internal to this folder.
 #pragma once
 
 #include <optional>
-#include <variant>
 
 #include <dispersion.h>
 
@@ -10,20 +9,26 @@
 
 namespace dispersa {
 
-idl::WorkerStatusV1 ToIdl(const WorkerStatus& status);
-idl::CampaignV1 ToIdl(const CampaignDefinition& campaign);
-idl::AssignmentV1 ToIdl(const FlyOrder& order);
-idl::AssignmentV1 ToIdl(const LeaveOrder& order);
-idl::ReportV1 ToIdl(const Report& report);
-idl::RefusalV1 ToIdl(const Refusal& refusal);
+idl::WorkerStatusV2 ToIdl(const WorkerStatus& status);
+idl::OrdersV1 ToIdl(const Orders& orders);
+idl::ReportV2 ToIdl(const Report& report);
+idl::TextRequestV1 ToIdl(const TextRequest& request);
+idl::TextV1 ToIdl(const TextPart& part);
 idl::CampaignRefusalV1 ToIdl(const CampaignRefusal& refusal);
+idl::ProgressV1 ToIdl(const CampaignProgress& progress);
+idl::ResultV1 ToIdl(const std::string& flight_id, const std::string& worker, const FlownCase& flown);
+idl::RequestV1 ToIdl(const Request& request);
+idl::ReplyV1 ToIdl(const Reply& reply);
 
-WorkerStatus FromIdl(const idl::WorkerStatusV1& status);
-CampaignDefinition FromIdl(const idl::CampaignV1& campaign);
-std::variant<FlyOrder, LeaveOrder> FromIdl(const idl::AssignmentV1& assignment);
-/// None if a result has an outcome that this version does not know.
-std::optional<Report> FromIdl(const idl::ReportV1& report);
-Refusal FromIdl(const idl::RefusalV1& refusal);
-CampaignRefusal FromIdl(const idl::CampaignRefusalV1& refusal);
+// None if the message has an enumerator or an outcome that this version does not know.
+std::optional<WorkerStatus> FromIdl(const idl::WorkerStatusV2& status);
+std::optional<Orders> FromIdl(const idl::OrdersV1& orders);
+std::optional<Report> FromIdl(const idl::ReportV2& report);
+std::optional<TextRequest> FromIdl(const idl::TextRequestV1& request);
+std::optional<TextPart> FromIdl(const idl::TextV1& part);
+std::optional<CampaignRefusal> FromIdl(const idl::CampaignRefusalV1& refusal);
+std::optional<CampaignProgress> FromIdl(const idl::ProgressV1& progress);
+std::optional<Request> FromIdl(const idl::RequestV1& request);
+std::optional<Reply> FromIdl(const idl::ReplyV1& reply);
 
 }  // namespace dispersa

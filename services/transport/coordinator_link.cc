@@ -1,9 +1,6 @@
 #include "services/transport/coordinator_link.h"
 
-#include <spdlog/spdlog.h>
-
 #include <map>
-#include <mutex>
 #include <optional>
 
 #include "services/transport/convert.h"
@@ -16,23 +13,29 @@ namespace {
 
 namespace dds = eprosima::fastdds::dds;
 
-/// What is meant for one worker goes through writers of its own: a stopped worker blocks nobody else.
-struct WorkerChannel {
-  WorkerChannel(Participant& participant_, const std::string& worker)
-      : participant(participant_),
-        publisher(participant.MakePublisher(PartitionOf(worker))),
-        assignments(std::in_place, participant, publisher, kAssignmentTopic),
-        refusals(std::in_place, participant, publisher, kRefusalTopic) {}
-  ~WorkerChannel() {
-    assignments.reset();
-    refusals.reset();
+/// What is meant for one goes through writers of its own: one that stopped blocks nobody else.
+struct Channel {
+  Channel(Participant& participant_, const std::string& who)
+      : participant(participant_), publisher(participant.MakePublisher(PartitionOf(who))) {}
+  ~Channel() {
+    orders.reset();
+    texts.reset();
+    replies.reset();
     participant.get()->delete_publisher(publisher);
+  }
+
+  /// Made when first needed.
+  template <typename PubSubType>
+  Writer<PubSubType>& In(std::optional<Writer<PubSubType>>& writer, const std::string& topic) {
+    if (!writer) writer.emplace(participant, publisher, topic);
+    return *writer;
   }
 
   Participant& participant;
   dds::Publisher* publisher;
-  std::optional<Writer<idl::AssignmentV1PubSubType>> assignments;
-  std::optional<Writer<idl::RefusalV1PubSubType>> refusals;
+  std::optional<Writer<idl::OrdersV1PubSubType>> orders;
+  std::optional<Writer<idl::TextV1PubSubType>> texts;
+  std::optional<Writer<idl::ReplyV1PubSubType>> replies;
 };
 
 }  // namespace
@@ -42,63 +45,42 @@ struct CoordinatorLink::Impl {
       : participant({network, "dispersa-coordinator", CoordinatorPort(network.domain), {}}),
         publisher(participant.MakePublisher("")),
         subscriber(participant.MakeSubscriber("")) {
-    reports.emplace(participant, subscriber, kReportTopic,
-                    ReaderCallbacks<idl::ReportV1>{[this](const idl::ReportV1& message, const WriterHandle&) {
-                      if (auto report = FromIdl(message)) {
-                        events.Push(*std::move(report));
-                      } else {
-                        spdlog::error("worker {}: a result with an unknown outcome", message.worker());
-                      }
-                    }});
-    campaign_refusals.emplace(participant, subscriber, kCampaignRefusalTopic,
-                              ReaderCallbacks<idl::CampaignRefusalV1>{
-                                  [this](const idl::CampaignRefusalV1& message, const WriterHandle&) {
-                                    events.Push(FromIdl(message));
-                                  }});
-    statuses.emplace(participant, subscriber, kStatusTopic,
-                     ReaderCallbacks<idl::WorkerStatusV1>{
-                         [this](const idl::WorkerStatusV1& message, const WriterHandle& from) {
-                           Remember(from, message.worker());
-                           events.Push(FromIdl(message));
-                         },
-                         [this](const WriterHandle& from) {
-                           if (const auto worker = Known(from)) events.Push(WorkerSilent{*worker});
-                         },
-                         [this](const WriterHandle& from) {
-                           if (const auto worker = Known(from)) events.Push(WorkerGone{*worker});
-                           const std::lock_guard lock(mutex);
-                           worker_of.erase(from);
-                         }},
-                     Presence::kHeartbeat);
+    const auto push = [this](auto&& message, const std::string& sender) {
+      if (!events.Push({sender, std::move(message)})) Complain("message", sender, "too many wait already");
+    };
+    reports.emplace(participant, subscriber, kReportTopic, push);
+    text_requests.emplace(participant, subscriber, kTextRequestTopic, push);
+    campaign_refusals.emplace(participant, subscriber, kCampaignRefusalTopic, push);
+    requests.emplace(participant, subscriber, kRequestTopic, push);
+    // A socket of their own: that a worker lives must be heard however many results wait in the other one.
+    statuses.emplace(
+        participant, subscriber, kStatusTopic, push,
+        [this](const std::string& sender) {
+          events.Push({sender, SenderGone{}});
+        },
+        MakeReaderQos(network.address, StatusPort(network.domain)));
+    progress.emplace(participant, publisher, kProgressTopic, 16);
+    results.emplace(participant, publisher, kResultTopic);
   }
 
-  void Remember(const WriterHandle& from, const std::string& worker) {
-    const std::lock_guard lock(mutex);
-    worker_of[from] = worker;
-  }
-  std::optional<std::string> Known(const WriterHandle& from) {
-    const std::lock_guard lock(mutex);
-    const auto found = worker_of.find(from);
-    return found == worker_of.end() ? std::nullopt : std::optional(found->second);
-  }
-  WorkerChannel& ChannelTo(const std::string& worker) {
-    auto& channel = channels[worker];
-    if (!channel) channel = std::make_unique<WorkerChannel>(participant, worker);
+  Channel& ChannelTo(const std::string& who) {
+    auto& channel = channels[who];
+    if (!channel) channel = std::make_unique<Channel>(participant, who);
     return *channel;
   }
 
   EventQueue<CoordinatorEvent> events;
-  std::mutex mutex;
-  std::map<WriterHandle, std::string> worker_of;  ///< of a status writer
-
   Participant participant;
   dds::Publisher* publisher;
   dds::Subscriber* subscriber;
-  std::map<std::string, std::unique_ptr<Writer<idl::CampaignV1PubSubType>>> campaigns;  ///< by flight id
-  std::map<std::string, std::unique_ptr<WorkerChannel>> channels;                       ///< by worker
-  std::optional<Reader<idl::ReportV1PubSubType>> reports;
+  std::map<std::string, std::unique_ptr<Channel>> channels;  ///< by worker or client
+  std::optional<Writer<idl::ProgressV1PubSubType>> progress;
+  std::optional<Writer<idl::ResultV1PubSubType>> results;
+  std::optional<Reader<idl::ReportV2PubSubType>> reports;
+  std::optional<Reader<idl::TextRequestV1PubSubType>> text_requests;
   std::optional<Reader<idl::CampaignRefusalV1PubSubType>> campaign_refusals;
-  std::optional<Reader<idl::WorkerStatusV1PubSubType>> statuses;
+  std::optional<Reader<idl::RequestV1PubSubType>> requests;
+  std::optional<Reader<idl::WorkerStatusV2PubSubType>> statuses;
 };
 
 CoordinatorLink::CoordinatorLink(const NetworkOptions& network) : impl_(std::make_unique<Impl>(network)) {}
@@ -108,34 +90,34 @@ std::vector<CoordinatorEvent> CoordinatorLink::Wait(std::chrono::milliseconds ti
   return impl_->events.Wait(timeout);
 }
 
-void CoordinatorLink::OpenCampaign(const CampaignDefinition& campaign) {
-  auto& writer = impl_->campaigns[campaign.flight_id];
-  writer = std::make_unique<Writer<idl::CampaignV1PubSubType>>(impl_->participant, impl_->publisher,
-                                                               kCampaignTopic);
-  if (!writer->Write(ToIdl(campaign))) throw NetworkError("cannot publish the campaign");
+void CoordinatorLink::Send(const Orders& orders) {
+  Channel& channel = impl_->ChannelTo(orders.worker);
+  channel.In(channel.orders, kOrdersTopic).Write(ToIdl(orders));
 }
 
-void CoordinatorLink::CloseCampaign(const std::string& flight_id) { impl_->campaigns.erase(flight_id); }
-
-void CoordinatorLink::Send(const std::string& worker, const FlyOrder& order) {
-  if (!impl_->ChannelTo(worker).assignments->Write(ToIdl(order))) {
-    // Nothing is lost: the lease of these cases will expire.
-    spdlog::warn("worker {}: an assignment could not be sent", worker);
-  }
+void CoordinatorLink::Send(const TextPart& part) {
+  Channel& channel = impl_->ChannelTo(part.worker);
+  channel.In(channel.texts, kTextTopic).Write(ToIdl(part));
 }
 
-void CoordinatorLink::Send(const std::string& worker, const LeaveOrder& order) {
-  impl_->ChannelTo(worker).assignments->Write(ToIdl(order));
-}
-
-void CoordinatorLink::Refuse(const Refusal& refusal) {
-  impl_->ChannelTo(refusal.worker).refusals->Write(ToIdl(refusal));
+void CoordinatorLink::Send(const Reply& reply) {
+  Channel& channel = impl_->ChannelTo(reply.client);
+  channel.In(channel.replies, kReplyTopic).Write(ToIdl(reply));
 }
 
 void CoordinatorLink::Drain(const std::string& worker, std::chrono::milliseconds timeout) {
-  impl_->ChannelTo(worker).assignments->Drain(static_cast<int>(timeout.count()));
+  if (auto& orders = impl_->ChannelTo(worker).orders) orders->Drain(static_cast<int>(timeout.count()));
 }
 
-void CoordinatorLink::Forget(const std::string& worker) { impl_->channels.erase(worker); }
+void CoordinatorLink::Forget(const std::string& who) { impl_->channels.erase(who); }
+
+void CoordinatorLink::Publish(const CampaignProgress& progress) { impl_->progress->Write(ToIdl(progress)); }
+
+void CoordinatorLink::Publish(const std::string& flight_id, const std::string& worker,
+                              const FlownCase& flown) {
+  impl_->results->Write(ToIdl(flight_id, worker, flown));
+}
+
+bool CoordinatorLink::HasResultObservers() const { return impl_->results->matched() > 0; }
 
 }  // namespace dispersa

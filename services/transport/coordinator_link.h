@@ -12,40 +12,41 @@
 
 namespace dispersa {
 
-/// The heartbeat of a worker stopped, without an explanation.
-struct WorkerSilent {
-  std::string worker;
+/// A participant closed its connection, or was not heard of for 5 s.
+struct SenderGone {};
+
+/// What came, and from which participant: an identifier that a sender cannot choose.
+struct CoordinatorEvent {
+  std::string sender;
+  std::variant<WorkerStatus, Report, TextRequest, CampaignRefusal, Request, SenderGone> what;
 };
 
-/// A worker closed its connection, or its participant was not heard of for 5 s.
-struct WorkerGone {
-  std::string worker;
-};
-
-using CoordinatorEvent = std::variant<WorkerStatus, Report, CampaignRefusal, WorkerSilent, WorkerGone>;
-
-/// Events are read by one thread, which also sends. Throws NetworkError.
+/// Events are read by one thread, which also sends. Nothing that is sent is sure to arrive. Throws
+/// NetworkError.
 class CoordinatorLink {
  public:
-  /// Listens at CoordinatorPort(network.domain).
+  /// Listens at CoordinatorPort(network.domain), and for workers' statuses at StatusPort(network.domain).
   explicit CoordinatorLink(const NetworkOptions& network);
   ~CoordinatorLink();
 
   /// All events so far, in order; waits for the first one, at most `timeout`.
   std::vector<CoordinatorEvent> Wait(std::chrono::milliseconds timeout);
 
-  /// Tells all workers, those that come later too, until it is closed.
-  void OpenCampaign(const CampaignDefinition& campaign);
-  void CloseCampaign(const std::string& flight_id);
-
   /// To one worker, which need not be matched yet.
-  void Send(const std::string& worker, const FlyOrder& order);
-  void Send(const std::string& worker, const LeaveOrder& order);
-  void Refuse(const Refusal& refusal);
-  /// Waits, at most so long, until the worker has what was sent to it.
+  void Send(const Orders& orders);
+  void Send(const TextPart& part);
+  /// To one client.
+  void Send(const Reply& reply);
+  /// Waits, at most so long, until the worker has the orders that were sent to it.
   void Drain(const std::string& worker, std::chrono::milliseconds timeout);
-  /// Drops what was kept to talk to it.
-  void Forget(const std::string& worker);
+  /// Drops what was kept to talk to a worker or client.
+  void Forget(const std::string& who);
+
+  /// To all observers.
+  void Publish(const CampaignProgress& progress);
+  void Publish(const std::string& flight_id, const std::string& worker, const FlownCase& flown);
+  /// Whether anybody listens to results.
+  bool HasResultObservers() const;
 
  private:
   struct Impl;

@@ -2,52 +2,68 @@
 
 #include <spdlog/spdlog.h>
 
+#include <array>
+#include <cstdio>
+
+#include <fastrtps/utils/IPLocator.h>
+
 namespace dispersa {
 namespace {
 
 namespace dds = eprosima::fastdds::dds;
+namespace rtps = eprosima::fastrtps::rtps;
 
 template <typename Qos>
-void SetCommonQos(Qos& qos, Presence presence) {
+void SetCommonQos(Qos& qos, int depth) {
   qos.reliability().kind = dds::RELIABLE_RELIABILITY_QOS;
-  // Volatile readers can lose the first samples after matching.
-  qos.durability().kind = dds::TRANSIENT_LOCAL_DURABILITY_QOS;
-  if (presence == Presence::kHeartbeat) {
-    qos.history().kind = dds::KEEP_LAST_HISTORY_QOS;
-    qos.history().depth = 1;
-    qos.liveliness().kind = dds::MANUAL_BY_TOPIC_LIVELINESS_QOS;
-    qos.liveliness().lease_duration = eprosima::fastrtps::Duration_t(kHeartbeatLeaseSeconds, 0);
-  } else {
-    qos.history().kind = dds::KEEP_ALL_HISTORY_QOS;
-    qos.resource_limits().max_samples = 0;  // no limit
-    qos.resource_limits().max_instances = 0;
-    qos.resource_limits().max_samples_per_instance = 0;
-  }
+  // Nobody depends on what was said before it listened: what matters is said again (services/README.md).
+  qos.durability().kind = dds::VOLATILE_DURABILITY_QOS;
+  qos.history().kind = dds::KEEP_LAST_HISTORY_QOS;
+  qos.history().depth = depth;
+  qos.resource_limits().max_samples = 0;  // no limit but the depth
+  qos.resource_limits().max_instances = 0;
+  qos.resource_limits().max_samples_per_instance = 0;
   qos.data_sharing().off();
   // The generated types guess the size of unbounded members; allocate what a sample really needs.
-  qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::DYNAMIC_RESERVE_MEMORY_MODE;
+  qos.endpoint().history_memory_policy = rtps::DYNAMIC_RESERVE_MEMORY_MODE;
 }
 
 }  // namespace
 
-dds::DataWriterQos MakeWriterQos(Presence presence) {
+dds::DataWriterQos MakeWriterQos(int depth) {
   dds::DataWriterQos qos = dds::DATAWRITER_QOS_DEFAULT;
-  SetCommonQos(qos, presence);
+  SetCommonQos(qos, depth);
   // What was lost is sent again after this long and not after 3 s.
   qos.reliable_writer_qos().times.heartbeatPeriod = eprosima::fastrtps::Duration_t(0, 200000000);
-  qos.reliability().max_blocking_time = eprosima::fastrtps::Duration_t(1, 0);
+  qos.reliability().max_blocking_time = eprosima::fastrtps::Duration_t(0, 100000000);
   return qos;
 }
 
-dds::DataReaderQos MakeReaderQos(Presence presence) {
+dds::DataReaderQos MakeReaderQos(const std::string& address, std::uint16_t port) {
   dds::DataReaderQos qos = dds::DATAREADER_QOS_DEFAULT;
-  SetCommonQos(qos, presence);
+  SetCommonQos(qos, kDepth);
+  if (port != 0) {
+    rtps::Locator_t own;
+    own.kind = LOCATOR_KIND_UDPv4;
+    rtps::IPLocator::setIPv4(own, address.empty() ? "0.0.0.0" : address);
+    own.port = port;
+    qos.endpoint().unicast_locator_list.push_back(own);
+  }
   return qos;
 }
 
 void LogIncompatibleQos(const std::string& topic, dds::QosPolicyId_t policy) {
   spdlog::error("{}: a peer's quality of service does not match (policy {}): another version of dispersa?",
                 topic, static_cast<int>(policy));
+}
+
+std::string ParticipantOf(const rtps::InstanceHandle_t& endpoint) {
+  constexpr int kPrefix = 12;  // bytes of a GUID that name the participant
+  std::array<char, 2 * kPrefix + 1> text{};
+  for (int i = 0; i < kPrefix; ++i) {
+    std::snprintf(text.data() + 2 * i, 3, "%02x", static_cast<unsigned>(endpoint.value[i]));
+  }
+  return text.data();
 }
 
 }  // namespace dispersa

@@ -1,6 +1,8 @@
-// Readers and writers with the quality of service of all our topics (README.md). Internal to this folder.
+// Readers and writers with the quality of service of all our topics (idl/README.md). Internal to this folder.
 #pragma once
 
+#include <cstdint>
+#include <exception>
 #include <functional>
 #include <mutex>
 #include <string>
@@ -14,24 +16,50 @@
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <fastdds/dds/subscriber/qos/DataReaderQos.hpp>
 
+#include "services/transport/complaints.h"
+#include "services/transport/convert.h"
 #include "services/transport/participant.h"
+#include "services/transport/validity.h"
+#include "services/transport/wire_shape.h"
 
 namespace dispersa {
 
-using WriterHandle = eprosima::fastrtps::rtps::InstanceHandle_t;
+/// Of samples that a writer keeps for a reader that has not acknowledged them, and a reader for us. What
+/// falls out is repeated by those who need it; so a reader that stops reading costs its writer so much and no
+/// more.
+inline constexpr int kDepth = 512;
+/// Samples after which a writer is made anew, so that nobody ever has to skip more (sieve.h).
+inline constexpr std::uint64_t kRenewAfter = 1 << 20;
 
-enum class Presence {
-  kNone,       ///< ordinary data
-  kHeartbeat,  ///< the writer must assert itself (Beat) within the lease, and only its newest sample matters
-};
-
-inline constexpr int kHeartbeatLeaseSeconds = 3;
-
-eprosima::fastdds::dds::DataWriterQos MakeWriterQos(Presence presence);
-eprosima::fastdds::dds::DataReaderQos MakeReaderQos(Presence presence);
+eprosima::fastdds::dds::DataWriterQos MakeWriterQos(int depth);
+/// With a socket of its own on `port`, if that is not 0.
+eprosima::fastdds::dds::DataReaderQos MakeReaderQos(const std::string& address, std::uint16_t port);
 
 /// Reports a mismatch of quality of service, which would otherwise be silent.
 void LogIncompatibleQos(const std::string& topic, eprosima::fastdds::dds::QosPolicyId_t policy);
+
+/// The participant that an endpoint belongs to: the same for all topics of one sender.
+std::string ParticipantOf(const eprosima::fastrtps::rtps::InstanceHandle_t& endpoint);
+
+/// A decoder that cannot be made to throw or to allocate more than a sample is large. A sample that it
+/// refuses is handed over empty with `refused` set, so that the reader can say who sent it.
+template <typename PubSubType>
+class GuardedType : public PubSubType {
+ public:
+  bool deserialize(eprosima::fastrtps::rtps::SerializedPayload_t* payload, void* data) override {
+    using Message = typename PubSubType::type;
+    try {
+      refused = !HasShape(WireShape<PubSubType>::value, payload->data, payload->length) ||
+                !PubSubType::deserialize(payload, data);
+    } catch (const std::exception&) {
+      refused = true;
+    }
+    if (refused) *static_cast<Message*>(data) = Message();
+    return true;
+  }
+  /// Of the last sample that this thread decoded.
+  static inline thread_local bool refused = false;
+};
 
 /// Thread-safe.
 template <typename PubSubType>
@@ -39,83 +67,84 @@ class Writer : private eprosima::fastdds::dds::DataWriterListener {
  public:
   using Message = typename PubSubType::type;
 
-  /// `on_matched` is told the change of the number of matched readers, on a thread of the middleware.
   Writer(Participant& participant, eprosima::fastdds::dds::Publisher* publisher, const std::string& topic,
-         Presence presence = Presence::kNone, std::function<void(int)> on_matched = {})
-      : topic_(topic), on_matched_(std::move(on_matched)), publisher_(publisher) {
-    writer_ =
-        publisher->create_datawriter(participant.TopicOf<PubSubType>(topic), MakeWriterQos(presence), this);
-    if (writer_ == nullptr) throw NetworkError("cannot create a writer of " + topic);
+         int depth = kDepth)
+      : name_(topic),
+        topic_(participant.TopicOf<GuardedType<PubSubType>>(topic)),
+        depth_(depth),
+        publisher_(publisher) {
+    Open();
   }
-  ~Writer() override {
-    writer_->set_listener(nullptr);
-    publisher_->delete_datawriter(writer_);
-  }
+  ~Writer() override { Close(); }
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
 
-  /// False: not now, the same again later.
-  bool Write(Message message) {
+  /// What cannot be sent now is lost; whoever needs it repeats it.
+  void Write(Message message) {
     const std::lock_guard lock(mutex_);
-    // A history that keeps all would grow for as long as the process lives. What every reader has
-    // acknowledged has served its purpose; a reader that is not there yet gets what came since.
-    if (++written_since_clear_ >= 4096 && matched() > 0 &&
-        writer_->wait_for_acknowledgments({0, 1}) == ReturnCode_t::RETCODE_OK) {
-      std::size_t removed = 0;
-      writer_->clear_history(&removed);
-      written_since_clear_ = 0;
+    if (++written_ > kRenewAfter) {
+      Close();
+      Open();
     }
-    return writer_->write(&message);
+    writer_->write(&message);
   }
-  void Beat() { writer_->assert_liveliness(); }
   int matched() const {
+    const std::lock_guard lock(mutex_);
     eprosima::fastdds::dds::PublicationMatchedStatus status;
     writer_->get_publication_matched_status(status);
     return status.current_count;
   }
   /// Waits until what was written has arrived.
   void Drain(int milliseconds) {
+    const std::lock_guard lock(mutex_);
     writer_->wait_for_acknowledgments(
         {milliseconds / 1000, static_cast<unsigned>(milliseconds % 1000) * 1000000u});
   }
 
  private:
-  void on_publication_matched(eprosima::fastdds::dds::DataWriter*,
-                              const eprosima::fastdds::dds::PublicationMatchedStatus& status) override {
-    if (on_matched_) on_matched_(status.current_count_change);
-  }
   void on_offered_incompatible_qos(
       eprosima::fastdds::dds::DataWriter*,
       const eprosima::fastdds::dds::OfferedIncompatibleQosStatus& status) override {
-    LogIncompatibleQos(topic_, status.last_policy_id);
+    LogIncompatibleQos(name_, status.last_policy_id);
+  }
+  void Open() {
+    written_ = 0;
+    writer_ = publisher_->create_datawriter(topic_, MakeWriterQos(depth_), this);
+    if (writer_ == nullptr) throw NetworkError("cannot create a writer of " + name_);
+  }
+  void Close() {
+    writer_->set_listener(nullptr);
+    publisher_->delete_datawriter(writer_);
   }
 
-  std::string topic_;
-  std::function<void(int)> on_matched_;
+  std::string name_;
+  eprosima::fastdds::dds::Topic* topic_;
+  int depth_;
   eprosima::fastdds::dds::Publisher* publisher_;
+  mutable std::mutex mutex_;
   eprosima::fastdds::dds::DataWriter* writer_ = nullptr;
-  std::mutex mutex_;
-  std::size_t written_since_clear_ = 0;
+  std::uint64_t written_ = 0;
 };
 
-/// What a reader tells, on threads of the middleware.
-template <typename Message>
-struct ReaderCallbacks {
-  std::function<void(const Message&, const WriterHandle& from)> on_message;
-  std::function<void(const WriterHandle&)> on_silent = {};     ///< its heartbeat stopped
-  std::function<void(const WriterHandle&)> on_unmatched = {};  ///< it left, or its participant is gone
-};
-
+/// Hands over, on a thread of the middleware, what is well-formed and makes sense (validity.h); what is not
+/// is refused with its sender.
 template <typename PubSubType>
 class Reader : private eprosima::fastdds::dds::DataReaderListener {
  public:
   using Message = typename PubSubType::type;
+  using Plain = typename decltype(FromIdl(std::declval<const Message&>()))::value_type;
+  using OnMessage = std::function<void(Plain&&, const std::string& sender)>;
+  using OnGone = std::function<void(const std::string& sender)>;
 
+  /// `on_gone`: a writer of this topic left, or its participant is gone.
   Reader(Participant& participant, eprosima::fastdds::dds::Subscriber* subscriber, const std::string& topic,
-         ReaderCallbacks<Message> callbacks, Presence presence = Presence::kNone)
-      : topic_(topic), callbacks_(std::move(callbacks)), subscriber_(subscriber) {
-    reader_ =
-        subscriber->create_datareader(participant.TopicOf<PubSubType>(topic), MakeReaderQos(presence), this);
+         OnMessage on_message, OnGone on_gone = {},
+         const eprosima::fastdds::dds::DataReaderQos& qos = MakeReaderQos("", 0))
+      : topic_(topic),
+        on_message_(std::move(on_message)),
+        on_gone_(std::move(on_gone)),
+        subscriber_(subscriber) {
+    reader_ = subscriber->create_datareader(participant.TopicOf<GuardedType<PubSubType>>(topic), qos, this);
     if (reader_ == nullptr) throw NetworkError("cannot create a reader of " + topic);
   }
   ~Reader() override {
@@ -130,19 +159,25 @@ class Reader : private eprosima::fastdds::dds::DataReaderListener {
     Message message;
     eprosima::fastdds::dds::SampleInfo info;
     while (reader->take_next_sample(&message, &info) == ReturnCode_t::RETCODE_OK) {
-      if (info.valid_data) callbacks_.on_message(message, info.publication_handle);
+      if (!info.valid_data) continue;
+      const std::string sender = ParticipantOf(info.publication_handle);
+      if (GuardedType<PubSubType>::refused) {
+        Complain(topic_, sender, "it cannot be decoded");
+        continue;
+      }
+      auto plain = FromIdl(message);
+      const std::string problem = plain ? Problem(*plain) : "an unknown state or outcome";
+      if (problem.empty()) {
+        on_message_(*std::move(plain), sender);
+      } else {
+        Complain(topic_, sender, problem);
+      }
     }
   }
   void on_subscription_matched(eprosima::fastdds::dds::DataReader*,
                                const eprosima::fastdds::dds::SubscriptionMatchedStatus& status) override {
-    if (status.current_count_change < 0 && callbacks_.on_unmatched) {
-      callbacks_.on_unmatched(status.last_publication_handle);
-    }
-  }
-  void on_liveliness_changed(eprosima::fastdds::dds::DataReader*,
-                             const eprosima::fastrtps::LivelinessChangedStatus& status) override {
-    if (status.not_alive_count_change > 0 && callbacks_.on_silent) {
-      callbacks_.on_silent(status.last_publication_handle);
+    if (status.current_count_change < 0 && on_gone_) {
+      on_gone_(ParticipantOf(eprosima::fastrtps::rtps::InstanceHandle_t(status.last_publication_handle)));
     }
   }
   void on_requested_incompatible_qos(
@@ -152,7 +187,8 @@ class Reader : private eprosima::fastdds::dds::DataReaderListener {
   }
 
   std::string topic_;
-  ReaderCallbacks<Message> callbacks_;
+  OnMessage on_message_;
+  OnGone on_gone_;
   eprosima::fastdds::dds::Subscriber* subscriber_;
   eprosima::fastdds::dds::DataReader* reader_ = nullptr;
 };

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <cstddef>
 #include <mutex>
 #include <utility>
 #include <vector>
@@ -12,12 +13,18 @@ namespace dispersa {
 template <typename Event>
 class EventQueue {
  public:
-  void Push(Event event) {
+  /// What comes when so many wait already is dropped: senders repeat what matters.
+  static constexpr std::size_t kMaxWaiting = 20000;
+
+  /// False: dropped.
+  bool Push(Event event) {
     {
       const std::lock_guard lock(mutex_);
+      if (events_.size() >= kMaxWaiting) return false;
       events_.push_back(std::move(event));
     }
     changed_.notify_one();
+    return true;
   }
 
   /// All events so far, in order; waits for the first one, at most `timeout`.

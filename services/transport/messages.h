@@ -10,7 +10,14 @@
 
 namespace dispersa {
 
-enum class WorkerState { kStarting, kReady, kFlying, kLeaving };
+enum class WorkerState { kReady, kFlying, kDraining, kLeft };
+
+struct StartedCase {
+  std::uint64_t case_index = 0;
+  std::uint64_t attempt = 0;
+
+  bool operator==(const StartedCase&) const = default;
+};
 
 struct WorkerStatus {
   std::string worker;
@@ -19,36 +26,31 @@ struct WorkerStatus {
   std::string engine_version;
   std::uint32_t slots = 1;
   std::uint32_t credits = 2;
-  WorkerState state = WorkerState::kStarting;
+  WorkerState state = WorkerState::kReady;
   std::uint64_t flown = 0;
-  std::vector<std::uint64_t> started_cases;
-};
-
-struct CampaignDefinition {
   std::uint64_t coordinator_epoch = 0;
-  std::string campaign_id;
-  std::string flight_id;
-  std::string engine_version;
-  std::string name;
-  std::string canonical_yaml;
+  std::vector<std::uint64_t> held;
+  std::vector<StartedCase> started;
 };
 
 /// Cases to fly.
 struct FlyOrder {
-  std::uint64_t coordinator_epoch = 0;
   std::string flight_id;
   std::uint64_t attempt = 0;
   std::vector<std::uint64_t> cases;
+
+  bool operator==(const FlyOrder&) const = default;
 };
 
-/// Nothing more will come: end.
-struct LeaveOrder {
+/// To one worker.
+struct Orders {
+  std::string worker;
   std::uint64_t coordinator_epoch = 0;
-};
-
-struct StartedCase {
-  std::uint64_t case_index = 0;
-  std::uint64_t attempt = 0;
+  std::vector<FlyOrder> assignments;
+  std::vector<std::uint64_t> revoked;
+  std::vector<std::uint64_t> acknowledged;
+  bool leave = false;
+  std::string refusal;
 };
 
 struct FlownCase {
@@ -59,15 +61,27 @@ struct FlownCase {
 struct Report {
   std::string worker;
   std::uint64_t coordinator_epoch = 0;
+  std::uint64_t number = 0;
   std::string flight_id;
   std::vector<FlownCase> flown;
   std::vector<StartedCase> started;
 };
 
-/// By the coordinator, of a worker.
-struct Refusal {
+struct TextRequest {
   std::string worker;
-  std::string reason;
+  std::string flight_id;
+  std::uint64_t offset = 0;
+};
+
+/// A part of a campaign's text.
+struct TextPart {
+  std::string worker;
+  std::string flight_id;
+  std::string name;
+  std::string engine_version;
+  std::uint64_t size = 0;
+  std::uint64_t offset = 0;
+  std::string bytes;
 };
 
 /// By a worker, of a campaign.
@@ -76,6 +90,37 @@ struct CampaignRefusal {
   std::uint64_t coordinator_epoch = 0;
   std::string flight_id;
   std::string reason;
+};
+
+/// How far a campaign is.
+struct CampaignProgress {
+  std::uint64_t coordinator_epoch = 0;
+  std::string campaign_id;
+  std::string flight_id;
+  std::string name;
+  std::string state;
+  std::uint64_t total = 0;
+  std::uint64_t done = 0;
+  std::uint64_t quarantined = 0;
+  std::uint64_t assigned = 0;
+  std::uint32_t workers = 0;
+};
+
+/// By a client.
+struct Request {
+  std::string client;
+  std::uint64_t number = 0;
+  std::string method;
+  std::string arguments;
+  std::string data;
+};
+
+struct Reply {
+  std::string client;
+  std::uint64_t number = 0;
+  int code = 0;
+  std::string text;
+  std::string data;
 };
 
 }  // namespace dispersa

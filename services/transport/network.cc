@@ -23,6 +23,8 @@ Peer ParsePeer(const std::string& text, int domain) {
 
 std::uint16_t CoordinatorPort(int domain) { return static_cast<std::uint16_t>(7400 + 250 * domain + 5); }
 
+std::uint16_t StatusPort(int domain) { return static_cast<std::uint16_t>(CoordinatorPort(domain) + 1); }
+
 std::string MakeUuid() {
   std::random_device device;
   std::array<char, 33> text{};

@@ -24,6 +24,8 @@ struct NetworkOptions {
 /// The fixed port at which the coordinator of a domain is discovered: 7400 + 250 * domain + 5, one that no
 /// participant without a fixed port takes.
 std::uint16_t CoordinatorPort(int domain);
+/// Where the coordinator hears of workers that they live: CoordinatorPort + 1.
+std::uint16_t StatusPort(int domain);
 
 /// 128 random bits: one for each start of a worker.
 std::string MakeUuid();

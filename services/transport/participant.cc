@@ -2,8 +2,6 @@
 
 #include <arpa/inet.h>
 #include <netdb.h>
-#include <spdlog/spdlog.h>
-
 #include <mutex>
 
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
@@ -14,6 +12,8 @@
 #include <fastdds/dds/publisher/qos/PublisherQos.hpp>
 #include <fastdds/dds/subscriber/qos/SubscriberQos.hpp>
 
+#include "services/transport/complaints.h"
+#include "services/transport/sieve.h"
 #include "services/transport/udp_port.h"
 
 namespace dispersa {
@@ -22,11 +22,16 @@ namespace {
 namespace dds = eprosima::fastdds::dds;
 namespace rtps = eprosima::fastrtps::rtps;
 
+constexpr std::uint32_t kReceiveBuffer = 4 << 20;
+constexpr std::uint32_t kSendBuffer = 1 << 20;
+
 class LogToSpdlog : public dds::LogConsumer {
  public:
   void Consume(const dds::Log::Entry& entry) override {
-    const auto level = entry.kind == dds::Log::Error ? spdlog::level::warn : spdlog::level::debug;
-    spdlog::log(level, "Fast DDS, {}: {}", entry.context.category, entry.message);
+    // Much of it repeats what strangers sent.
+    if (entry.kind == dds::Log::Error) {
+      Complain(std::string("Fast DDS, ") + entry.context.category, "the network", entry.message);
+    }
   }
 };
 
@@ -74,7 +79,11 @@ dds::DomainParticipantQos MakeQos(const ParticipantOptions& options) {
   auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
   const std::string& address = options.network.address;
   if (!address.empty()) udp->interfaceWhiteList.push_back(address);
-  qos.transport().user_transports.push_back(udp);
+  // The kernel's default of 212 kB holds 160 results: what 50 workers send while this thread waits for its
+  // turn. The kernel gives at most net.core.rmem_max, see services/README.md.
+  udp->receiveBufferSize = kReceiveBuffer;
+  udp->sendBufferSize = kSendBuffer;
+  qos.transport().user_transports.push_back(Sieved(udp));
 
   auto& builtin = qos.wire_protocol().builtin;
   builtin.discovery_config.leaseDuration = eprosima::fastrtps::Duration_t(5, 0);

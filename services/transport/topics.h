@@ -7,14 +7,18 @@
 
 namespace dispersa {
 
-inline const std::string kStatusTopic = "dispersa/WorkerStatusV1";
-inline const std::string kCampaignTopic = "dispersa/CampaignV1";
-inline const std::string kAssignmentTopic = "dispersa/AssignmentV1";
-inline const std::string kReportTopic = "dispersa/ReportV1";
-inline const std::string kRefusalTopic = "dispersa/RefusalV1";
+inline const std::string kStatusTopic = "dispersa/WorkerStatusV2";
+inline const std::string kOrdersTopic = "dispersa/OrdersV1";
+inline const std::string kReportTopic = "dispersa/ReportV2";
+inline const std::string kTextRequestTopic = "dispersa/TextRequestV1";
+inline const std::string kTextTopic = "dispersa/TextV1";
 inline const std::string kCampaignRefusalTopic = "dispersa/CampaignRefusalV1";
+inline const std::string kProgressTopic = "dispersa/ProgressV1";
+inline const std::string kResultTopic = "dispersa/ResultV1";
+inline const std::string kRequestTopic = "dispersa/RequestV1";
+inline const std::string kReplyTopic = "dispersa/ReplyV1";
 
-/// Of what is meant for one worker only.
-inline std::string PartitionOf(const std::string& worker) { return "w" + worker; }
+/// Of what is meant for one worker or client only.
+inline std::string PartitionOf(const std::string& who) { return "w" + who; }
 
 }  // namespace dispersa

@@ -17,7 +17,7 @@ namespace {
 constexpr int kDone = 0;
 constexpr int kInternalError = 1;
 constexpr int kBadUsage = 2;
-constexpr int kRefused = 5;
+constexpr int kIncomplete = 5;  // refused, or no coordinator
 
 }  // namespace
 
@@ -27,8 +27,11 @@ int main(int argc, char** argv) {
 
   WorkerOptions options;
   std::string peer;
-  CLI::App app("Flies cases for a coordinator until it is told to leave. SIGTERM ends it at once.",
-               "dispersa-worker");
+  CLI::App app(
+      "Flies cases for a coordinator, which it waits for as long as there is none. SIGTERM: it finishes what "
+      "it flies,\n"
+      "hands back the rest and leaves; a second one ends it at once.",
+      "dispersa-worker");
   app.set_version_flag("--version", EngineVersion());
   app.add_option("--domain", options.network.domain, "DDS domain")
       ->envname("DISPERSA_DOMAIN")
@@ -37,6 +40,12 @@ int main(int argc, char** argv) {
   app.add_option("--address", options.network.address, "IPv4 address of the only network interface to use")
       ->check(CLI::ValidIPV4);
   app.add_option("--slots", options.slots, "cases flown at the same time")->check(CLI::Range(1, 1024));
+  app.add_option("--idle-exit", options.idle_exit_s,
+                 "leave (exit code 0) after so many seconds without a case")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--patience", options.patience_s,
+                 "give up (exit code 5) after so many seconds without a coordinator; default: never")
+      ->check(CLI::NonNegativeNumber);
   app.add_option("--uuid", options.uuid, "name of this incarnation, drawn if not given");
   try {
     app.parse(argc, argv);
@@ -59,9 +68,15 @@ int main(int argc, char** argv) {
     std::thread([&] {
       int signal = 0;
       sigwait(&ends, &signal);
-      worker.Stop();
+      worker.Drain();
+      sigwait(&ends, &signal);
+      // As any process that is ended by a signal: whoever started it must not take it for a crash.
+      std::signal(signal, SIG_DFL);
+      pthread_sigmask(SIG_UNBLOCK, &ends, nullptr);
+      std::raise(signal);
     }).detach();
-    code = worker.Run() == WorkerExit::kRefused ? kRefused : kDone;
+    const WorkerExit exit = worker.Run();
+    code = exit == WorkerExit::kRefused || exit == WorkerExit::kNoCoordinator ? kIncomplete : kDone;
     std::_Exit(code);  // the other threads still use what a return would destroy
   } catch (const NetworkError& error) {
     spdlog::error("{}", error.what());

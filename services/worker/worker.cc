@@ -4,8 +4,8 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <exception>
+#include <thread>
 #include <utility>
 
 #include "core/campaign_yaml/load.h"
@@ -14,9 +14,11 @@
 namespace dispersa {
 namespace {
 
-constexpr std::chrono::seconds kStatusPeriod(1);
-constexpr std::chrono::seconds kFarewell(1);
-constexpr std::size_t kClosedCampaigns = 4;
+constexpr std::chrono::milliseconds kRound(50);
+constexpr std::chrono::milliseconds kFarewell(500);
+constexpr double kSayAgain_s = 10.0;
+/// A drained worker waits so long for its last results to be stored.
+constexpr double kLastWords_s = 10.0;
 
 std::string HostName() {
   char name[256] = "";
@@ -24,178 +26,181 @@ std::string HostName() {
   return name;
 }
 
-template <typename... F>
-struct Overloaded : F... {
-  using F::operator()...;
-};
-
 }  // namespace
 
 Worker::Worker(const WorkerOptions& options)
-    : options_(options), link_(std::make_unique<WorkerLink>(options.network, options.peer, options.uuid)) {}
+    : options_(options),
+      desk_({.worker = options.uuid, .engine_version = EngineVersion(), .slots = options.slots}, 0.0) {
+  Connect();
+}
 
 WorkerExit Worker::Run() {
   // Detached: a flight cannot be interrupted, so nobody could wait for them.
   for (std::uint32_t i = 0; i < options_.slots; ++i) std::thread([this] { FlyForEver(); }).detach();
-  SendStatus(WorkerState::kStarting);
-  auto status_due = std::chrono::steady_clock::now() + kStatusPeriod;
   for (;;) {
-    std::optional<WorkerExit> exit;
-    for (const WorkerEvent& event : link_->Wait(kStatusPeriod)) {
-      std::visit(Overloaded{[this](const CampaignDefinition& campaign) { Load(campaign); },
-                            [this](const CampaignClosed& closed) { Close(closed); },
-                            [this](const FlyOrder& order) { Enqueue(order); },
-                            [&](const LeaveOrder&) { exit = WorkerExit::kTold; },
-                            [&](const Refusal& refusal) {
-                              spdlog::error("refused by the coordinator: {}", refusal.reason);
-                              exit = WorkerExit::kRefused;
-                            },
-                            [](const Wakened&) {}},
-                 event);
+    std::vector<WorkerEvent> events;
+    if (link_) {
+      events = link_->Wait(kRound);
+    } else {
+      std::this_thread::sleep_for(kRound);
     }
+    const double now_s = Now();
+    FlightDesk::Due due;
+    std::optional<CampaignText> text;
     {
       const std::lock_guard lock(mutex_);
-      if (stopping_) exit = WorkerExit::kStopped;
+      for (const WorkerEvent& event : events) {
+        std::visit([&](const auto& what) { desk_.On(what, now_s); }, event);
+      }
+      due = desk_.Tick(now_s);
+      text = desk_.TakeText();
     }
-    if (exit) return Leave(*exit);
-    if (const auto now = std::chrono::steady_clock::now(); now >= status_due) {
-      SendStatus();
-      status_due = now + kStatusPeriod;
-    }
+    work_.notify_all();
+    // Apart from this thread, which must go on saying that it lives.
+    if (text) std::thread([this, text = *std::move(text)] { Load(text); }).detach();
+    Send(due);
+    if (due.new_connection) Connect();
+    if (const auto exit = Exit(now_s)) return Leave(*exit);
   }
 }
 
-void Worker::Stop() {
+void Worker::Drain() {
   const std::lock_guard lock(mutex_);
-  stopping_ = true;
-  if (link_) link_->Wake();
+  desk_.Drain();
 }
 
-void Worker::Load(const CampaignDefinition& definition) {
-  std::string reason;
+// A new participant, and the peer's name resolved again: what is stuck in the old one, on this side or on the
+// other, is gone with it.
+void Worker::Connect() {
+  std::shared_ptr<WorkerLink> link;
+  {
+    const std::lock_guard lock(mutex_);
+    link_.reset();
+  }
   try {
-    if (definition.engine_version != EngineVersion()) {
-      reason = "engine version " + definition.engine_version +
-               " of the coordinator differs from the worker's " + EngineVersion();
+    link = std::make_shared<WorkerLink>(options_.network, options_.peer, options_.uuid);
+  } catch (const NetworkError& error) {
+    spdlog::warn("{}; it is tried again", error.what());
+  }
+  const std::lock_guard lock(mutex_);
+  link_ = std::move(link);
+}
+
+void Worker::Load(const CampaignText& text) {
+  std::string problem;
+  std::shared_ptr<const CampaignFlights> flights;
+  try {
+    if (text.engine_version != EngineVersion()) {
+      problem = "engine version " + text.engine_version + " of the coordinator differs from the worker's " +
+                EngineVersion();
     } else {
-      const Campaign campaign = ParseCampaign(definition.canonical_yaml, definition.name);
-      if (campaign.flight_id == definition.flight_id) {
-        const CampaignKey key(definition.flight_id, definition.coordinator_epoch);
-        campaigns_[key] = std::make_shared<LoadedCampaign>(definition.coordinator_epoch, campaign);
-        std::erase(closed_, key);
+      const Campaign campaign = ParseCampaign(text.text, text.name);
+      if (campaign.flight_id == text.flight_id) {
+        flights = std::make_shared<CampaignFlights>(campaign);
       } else {
-        reason = "flight id " + definition.flight_id + " of the coordinator differs from the worker's " +
-                 campaign.flight_id;
+        problem = "flight id " + text.flight_id + " of the coordinator differs from the worker's " +
+                  campaign.flight_id;
       }
     }
   } catch (const std::exception& error) {
-    reason = error.what();
+    problem = error.what();
   }
-  if (!reason.empty()) {
-    spdlog::error("campaign {} is refused: {}", definition.name, reason);
-    link_->Send(CampaignRefusal{options_.uuid, definition.coordinator_epoch, definition.flight_id, reason});
-    return;
-  }
-  const auto orders = std::exchange(early_orders_, {});
-  for (const FlyOrder& order : orders) Enqueue(order);
-}
-
-void Worker::Close(const CampaignClosed& closed) {
-  // A coordinator that was only out of reach seems closed too. When it is heard again its orders come, but not
-  // its opening: the middleware knows that it was delivered. So the campaign is kept for a while.
-  const CampaignKey key(closed.flight_id, closed.coordinator_epoch);
-  if (campaigns_.contains(key) && std::find(closed_.begin(), closed_.end(), key) == closed_.end()) {
-    closed_.push_back(key);
-  }
-  if (closed_.size() > kClosedCampaigns) {
-    campaigns_.erase(closed_.front());
-    closed_.pop_front();
-  }
-  std::erase_if(early_orders_, [&](const FlyOrder& order) {
-    return order.flight_id == closed.flight_id && order.coordinator_epoch == closed.coordinator_epoch;
-  });
-}
-
-void Worker::Enqueue(const FlyOrder& order) {
-  const auto campaign = campaigns_.find({order.flight_id, order.coordinator_epoch});
-  if (campaign == campaigns_.end()) {
-    early_orders_.push_back(order);
-    return;
-  }
+  if (!problem.empty()) spdlog::error("campaign {} is refused: {}", text.name, problem);
   {
     const std::lock_guard lock(mutex_);
-    for (const std::uint64_t case_index : order.cases) {
-      jobs_.push_back({campaign->second, case_index, order.attempt});
-    }
+    desk_.Loaded(text.flight_id, std::move(flights), problem);
   }
   work_.notify_all();
 }
 
 void Worker::FlyForEver() {
-  Report report;
-  report.worker = options_.uuid;
+  while (const std::optional<Job> job = Next(true)) Done(*job, job->flights->FlyCase(job->case_index));
+}
+
+std::optional<Job> Worker::Next(bool wait) {
   std::unique_lock lock(mutex_);
   for (;;) {
-    if (jobs_.empty() && !report.flown.empty()) {
-      link_->Send(report);  // nothing to travel with
-      report.flown.clear();
+    std::optional<Job> job = closed_ ? std::nullopt : desk_.Next(Now());
+    for (const Report& report : desk_.TakeReports(Now())) {
+      if (link_) link_->Send(report);
     }
-    work_.wait(lock, [this] { return !jobs_.empty() && !stopping_; });
-    const Job job = std::move(jobs_.front());
-    jobs_.pop_front();
-    if (!report.flown.empty() && (report.flight_id != job.campaign->flight_id ||
-                                  report.coordinator_epoch != job.campaign->coordinator_epoch)) {
-      link_->Send(report);
-      report.flown.clear();
-    }
-    report.coordinator_epoch = job.campaign->coordinator_epoch;
-    report.flight_id = job.campaign->flight_id;
-    report.started = {{job.case_index, job.attempt}};
-    // Sent before the flight, so that the coordinator knows what to blame if this process ends in it.
-    link_->Send(report);
-    report.started.clear();
-    report.flown.clear();
-    const auto flying = flying_.insert(job.case_index);
-
-    lock.unlock();
-    CaseResult result = job.campaign->flights.FlyCase(job.case_index);
-    lock.lock();
-
-    flying_.erase(flying);
-    ++flown_;
-    report.flown.push_back({job.attempt, std::move(result)});
-    // Once stopping, the connection may be gone at any time.
-    work_.wait(lock, [this] { return !stopping_; });
+    if (job || !wait || closed_) return job;
+    work_.wait(lock);
   }
 }
 
-void Worker::SendStatus(std::optional<WorkerState> state) {
-  WorkerStatus status;
-  {
-    const std::lock_guard lock(mutex_);
-    status.flown = flown_;
-    status.started_cases.assign(flying_.begin(), flying_.end());
-    status.state = state.value_or(flying_.empty() ? WorkerState::kReady : WorkerState::kFlying);
+void Worker::Done(const Job& job, CaseResult result) {
+  const std::lock_guard lock(mutex_);
+  desk_.Done(job, std::move(result), Now());
+}
+
+void Worker::Send(const FlightDesk::Due& due) {
+  if (!link_) return;
+  if (due.status) {
+    WorkerStatus status = *due.status;
+    status.host = HostName();
+    status.pid = static_cast<std::uint32_t>(getpid());
+    link_->Send(status);
   }
-  status.worker = options_.uuid;
-  status.host = HostName();
-  status.pid = static_cast<std::uint32_t>(getpid());
-  status.engine_version = EngineVersion();
-  status.slots = options_.slots;
-  status.credits = options_.slots + 1;  // one waits while the slots fly
-  link_->Send(status);
+  for (const Report& report : due.reports) link_->Send(report);
+  for (const TextRequest& request : due.text_requests) link_->Send(request);
+  for (const CampaignRefusal& refusal : due.refusals) link_->Send(refusal);
+}
+
+std::optional<WorkerExit> Worker::Exit(double now_s) {
+  const std::lock_guard lock(mutex_);
+  if (desk_.IsHeard(now_s)) {
+    if (told_s_ > 0.0)
+      spdlog::info("the coordinator at {}:{} answers again", options_.peer.host, options_.peer.port);
+    heard_s_ = now_s;
+    told_s_ = 0.0;
+  } else if (now_s - std::max(heard_s_, told_s_) > kSayAgain_s) {
+    told_s_ = now_s;
+    spdlog::warn("no coordinator has answered at {}:{} for {:.0f} s; it is tried again", options_.peer.host,
+                 options_.peer.port, now_s - heard_s_);
+  }
+  if (!desk_.IsIdle()) busy_s_ = now_s;
+  if (!desk_.refusal().empty()) {
+    spdlog::error("refused by the coordinator: {}", desk_.refusal());
+    return WorkerExit::kRefused;
+  }
+  if (desk_.left()) return WorkerExit::kTold;
+  if (desk_.draining()) {
+    if (draining_s_ == 0.0) draining_s_ = now_s;
+    // What is flown is finished; that its results are stored is waited for while somebody is there to store
+    // them.
+    if (desk_.IsIdle() ||
+        (!desk_.IsFlying() && now_s - std::max(busy_since_drain_s_, draining_s_) > kLastWords_s)) {
+      return WorkerExit::kDrained;
+    }
+    if (desk_.IsFlying()) busy_since_drain_s_ = now_s;
+  }
+  if (options_.patience_s && now_s - heard_s_ > *options_.patience_s) {
+    spdlog::error("no coordinator has answered at {}:{} for {:.0f} s; given up", options_.peer.host,
+                  options_.peer.port, now_s - heard_s_);
+    return WorkerExit::kNoCoordinator;
+  }
+  if (options_.idle_exit_s && now_s - busy_s_ > *options_.idle_exit_s) return WorkerExit::kIdle;
+  return std::nullopt;
 }
 
 WorkerExit Worker::Leave(WorkerExit exit) {
-  SendStatus(WorkerState::kLeaving);
+  FlightDesk::Due last;
   {
     const std::lock_guard lock(mutex_);
-    stopping_ = true;
+    closed_ = true;
+    last.status = desk_.Status(WorkerState::kLeft);
   }
-  link_->Drain(kFarewell);
+  work_.notify_all();
+  Send(last);
+  if (link_) link_->Drain(kFarewell);
   const std::lock_guard lock(mutex_);
   link_.reset();
   return exit;
+}
+
+double Worker::Now() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - origin_).count();
 }
 
 }  // namespace dispersa

@@ -1,21 +1,16 @@
-// Flies what the coordinator assigns, until it is told to leave.
+// Flies what the coordinator assigns: a flight desk with a clock, a network and threads that fly.
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
-#include <deque>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <set>
 #include <string>
-#include <thread>
-#include <utility>
-#include <vector>
 
-#include "core/campaign/campaign_flights.h"
 #include "services/transport/worker_link.h"
+#include "services/worker/flight_desk.h"
 
 namespace dispersa {
 
@@ -23,60 +18,50 @@ struct WorkerOptions {
   NetworkOptions network;
   Peer peer;
   std::string uuid;
-  std::uint32_t slots = 1;  ///< cases at the same time, each on a thread
+  std::uint32_t slots = 1;                 ///< threads that fly
+  std::optional<double> idle_exit_s = {};  ///< without a case for so long: leave
+  std::optional<double> patience_s = {};   ///< without a coordinator for so long: give up
 };
 
-enum class WorkerExit { kTold, kRefused, kStopped };
+enum class WorkerExit { kTold, kRefused, kDrained, kIdle, kNoCoordinator };
 
 /// One incarnation of a worker. Cases are flown on threads of their own; the thread of Run only talks. A
-/// flight cannot be interrupted, so a worker that is stopped leaves flying threads behind: the process has to
+/// flight cannot be interrupted, so a worker that gives up leaves flying threads behind: the process has to
 /// end without destroying anything (std::_Exit).
 class Worker {
  public:
   explicit Worker(const WorkerOptions& options);
 
-  /// Until it is told to leave, refused or stopped. The connection is closed when it returns.
+  /// Until it is told to leave, refused, drained, idle or alone for too long. The connection is closed when
+  /// it returns.
   WorkerExit Run();
-  /// From any thread; not from a signal handler.
-  void Stop();
+  /// Finish what is flown, begin nothing more, then leave. From any thread; not from a signal handler.
+  void Drain();
 
  private:
-  /// Flight id and coordinator's epoch: a coordinator that was started again opens the same flight anew, and
-  /// its orders may arrive before that opening does.
-  using CampaignKey = std::pair<std::string, std::uint64_t>;
-  struct LoadedCampaign {
-    LoadedCampaign(std::uint64_t epoch, const Campaign& campaign)
-        : coordinator_epoch(epoch), flight_id(campaign.flight_id), flights(campaign) {}
-
-    std::uint64_t coordinator_epoch;
-    std::string flight_id;
-    CampaignFlights flights;
-  };
-  struct Job {
-    std::shared_ptr<const LoadedCampaign> campaign;
-    std::uint64_t case_index;
-    std::uint64_t attempt;
-  };
-
-  void Load(const CampaignDefinition& definition);
-  void Close(const CampaignClosed& closed);
-  void Enqueue(const FlyOrder& order);
+  // What a thread that flies asks: the next case (waiting for one, or none if there is none now), and giving
+  // back what became of it. The coordinator knows of a case before Next returns it.
+  std::optional<Job> Next(bool wait);
+  void Done(const Job& job, CaseResult result);
   void FlyForEver();
-  void SendStatus(std::optional<WorkerState> state = {});
+
+  void Connect();
+  void Load(const CampaignText& text);
+  void Send(const FlightDesk::Due& due);
+  std::optional<WorkerExit> Exit(double now_s);
   WorkerExit Leave(WorkerExit exit);
+  double Now() const;
 
   WorkerOptions options_;
-  std::unique_ptr<WorkerLink> link_;
-  std::map<CampaignKey, std::shared_ptr<const LoadedCampaign>> campaigns_;
-  std::deque<CampaignKey> closed_;  ///< of campaigns_, oldest first; the last few are kept, see Close
-  std::vector<FlyOrder> early_orders_;  ///< whose campaign has not arrived yet
+  std::chrono::steady_clock::time_point origin_ = std::chrono::steady_clock::now();
+  double heard_s_ = 0.0, busy_s_ = 0.0, told_s_ = 0.0, draining_s_ = 0.0,
+         busy_since_drain_s_ = 0.0;  ///< when it last was so; thread of Run
 
-  std::mutex mutex_;  ///< of all below; also taken for sending from a flying thread
+  std::mutex mutex_;  ///< of all below
   std::condition_variable work_;
-  std::deque<Job> jobs_;
-  std::multiset<std::uint64_t> flying_;
-  std::uint64_t flown_ = 0;
-  bool stopping_ = false;
+  FlightDesk desk_;
+  std::shared_ptr<WorkerLink> link_;  ///< none while the network cannot be used
+  bool closed_ = false;
 };
 
 }  // namespace dispersa

@@ -13,10 +13,12 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <set>
 
 #include "core/engine/version.h"
 #include "core/flight/flight_inputs.h"
 #include "core/report/fingerprint.h"
+#include "services/transport/complaints.h"
 #include "services/transport/private_domain.h"
 #include "services/transport/worker_link.h"
 
@@ -49,50 +51,67 @@ class MadeUpWorker {
  public:
   MadeUpWorker(const NetworkOptions& network, const std::string& uuid,
                const std::string& engine_version = EngineVersion())
-      : uuid_(uuid), link_(network, {"127.0.0.1", CoordinatorPort(network.domain)}, uuid) {
-    link_.Send(WorkerStatus{uuid, "host", 1, engine_version, 1, 2, WorkerState::kStarting, 0, {}});
-  }
+      : status_{uuid, "host", 1, engine_version, 1, 2, WorkerState::kReady, 0, 0, {}, {}},
+        link_(network, {"127.0.0.1", CoordinatorPort(network.domain)}, uuid) {}
 
-  /// What came since; assignments as single cases.
+  /// What came since; assignments as single cases. Says that it lives.
   void Listen() {
     for (WorkerEvent& event : link_.Wait(milliseconds(0))) {
-      if (auto* campaign = std::get_if<CampaignDefinition>(&event)) campaign_ = std::move(*campaign);
-      if (auto* order = std::get_if<FlyOrder>(&event)) {
-        for (const std::uint64_t k : order->cases) cases.push_back({k, order->attempt});
+      const auto* orders = std::get_if<Orders>(&event);
+      if (orders == nullptr) continue;
+      if (status_.coordinator_epoch == 0) status_.coordinator_epoch = orders->coordinator_epoch;
+      for (const FlyOrder& order : orders->assignments) {
+        if (!known_.insert(order.attempt).second) continue;
+        flight_id_ = order.flight_id;
+        for (const std::uint64_t k : order.cases) cases.push_back({k, order.attempt});
       }
-      if (std::holds_alternative<LeaveOrder>(event)) dismissed = true;
-      if (auto* refusal = std::get_if<Refusal>(&event)) refused = refusal->reason;
+      acknowledged.insert(orders->acknowledged.begin(), orders->acknowledged.end());
+      dismissed = dismissed || orders->leave;
+      if (!orders->refusal.empty()) refused = orders->refusal;
     }
+    const auto now = std::chrono::steady_clock::now();
+    if (now < said_ + milliseconds(200)) return;
+    said_ = now;
+    status_.held.assign(known_.begin(), known_.end());
+    link_.Send(status_);
   }
   void Start(const StartedCase& which) { Send({}, {which}); }
   void Finish(const StartedCase& which) { Finish(which, ResultOf(which.case_index)); }
   void Finish(const StartedCase& which, const CaseResult& result) { Send({{which.attempt, result}}, {}); }
-  /// Flies all it has, once it knows of what campaign.
+  /// Flies all it has.
   void FlyAll() {
-    for (; ready() && !cases.empty(); cases.pop_front()) {
+    for (; !cases.empty(); cases.pop_front()) {
       Start(cases.front());
       Finish(cases.front());
     }
   }
   void RefuseCampaign(const std::string& reason) {
-    link_.Send(CampaignRefusal{uuid_, campaign_->coordinator_epoch, campaign_->flight_id, reason});
+    link_.Send(CampaignRefusal{status_.worker, status_.coordinator_epoch, flight_id_, reason});
   }
   /// As if it answered another start of the coordinator.
-  void SetEpoch(std::uint64_t epoch) { campaign_->coordinator_epoch = epoch; }
-  bool ready() const { return campaign_.has_value(); }
+  void SetEpoch(std::uint64_t epoch) { status_.coordinator_epoch = epoch; }
+  void Say(WorkerState state) {
+    status_.state = state;
+    link_.Send(status_);
+  }
+  bool ready() const { return !flight_id_.empty(); }
 
   std::deque<StartedCase> cases;
+  std::set<std::uint64_t> acknowledged;
+  std::uint64_t reports = 0;
   std::string refused;
   bool dismissed = false;
 
  private:
   void Send(std::vector<FlownCase> flown, std::vector<StartedCase> started) {
-    link_.Send(Report{uuid_, campaign_->coordinator_epoch, campaign_->flight_id, std::move(flown),
+    link_.Send(Report{status_.worker, status_.coordinator_epoch, ++reports, flight_id_, std::move(flown),
                       std::move(started)});
   }
 
-  std::string uuid_;
-  std::optional<CampaignDefinition> campaign_;
+  WorkerStatus status_;
+  std::string flight_id_;
+  std::set<std::uint64_t> known_;
+  std::chrono::steady_clock::time_point said_;
   WorkerLink link_;
 };
 
@@ -185,6 +204,7 @@ TEST_F(CoordinatorTest, AWorkerThatRefusesTheCampaignGivesItsCasesBack) {
   ASSERT_TRUE(Until([&] { return coordinator_->refusal().has_value(); }, {&stranger}));
   EXPECT_EQ(coordinator_->refusal(), "flight id differs");
   EXPECT_EQ(Progress().waiting, 5u);
+  stranger.cases.clear();
   MadeUpWorker good(Network(), "good");
   EXPECT_TRUE(Until(
       [&] {
@@ -197,7 +217,7 @@ TEST_F(CoordinatorTest, AWorkerThatRefusesTheCampaignGivesItsCasesBack) {
 TEST_F(CoordinatorTest, ACaseThatEndsThreeWorkersIsQuarantinedAndRemembered) {
   Open(6);
   int deaths = 0;
-  while (deaths < 10 && !book_->ledger().Complete()) {
+  while (deaths < 4 && !book_->ledger().Complete()) {
     auto worker = std::make_unique<MadeUpWorker>(Network(), "w" + std::to_string(deaths));
     bool doomed = false;
     ASSERT_TRUE(Until(
@@ -272,6 +292,29 @@ TEST_F(CoordinatorTest, ResultsForAnEarlierCoordinatorAreWelcomeButItsStartsMean
   old.Start({1, 1});
   old.Finish({0, 1});
   EXPECT_TRUE(Until([&] { return Progress().done == 1; }, {&old}));
+}
+
+TEST_F(CoordinatorTest, AReportIsAcknowledgedWhenItsResultsAreStored) {
+  Open(3);
+  MadeUpWorker a(Network(), "a");
+  ASSERT_TRUE(Until([&] { return !a.cases.empty(); }, {&a}));
+  a.Finish(a.cases.front());
+  const std::uint64_t number = a.reports;
+  ASSERT_TRUE(Until([&] { return a.acknowledged.contains(number); }, {&a}));
+  EXPECT_EQ(book_->folder().PresentCases().size(), 1u);
+}
+
+TEST_F(CoordinatorTest, NobodySpeaksForAnotherWorker) {
+  Open(3);
+  MadeUpWorker a(Network(), "a");
+  ASSERT_TRUE(Until([&] { return a.ready() && !a.cases.empty(); }, {&a}));
+  const std::uint64_t before = Complaints();
+  MadeUpWorker forger(Network(), "a");
+  ASSERT_TRUE(Until([&] { return Complaints() > before; }, {&a, &forger}));
+  forger.Say(WorkerState::kLeft);
+  const std::uint64_t status = Complaints();
+  ASSERT_TRUE(Until([&] { return Complaints() > status; }, {&a}));
+  EXPECT_EQ(coordinator_->joined(), 1u);
 }
 
 TEST(FingerprintTest, ChangesWithEveryField) {

@@ -7,9 +7,13 @@
 #include <filesystem>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
-#include <thread>
+#include <set>
 
+#include "core/flight/flight_inputs.h"
+#include "core/flight/metrics.h"
+#include "services/transport/complaints.h"
 #include "services/transport/coordinator_link.h"
 #include "services/transport/private_domain.h"
 #include "services/transport/worker_link.h"
@@ -25,15 +29,26 @@ using ::testing::ElementsAre;
 constexpr seconds kPatience(20);
 
 // The first event of a type; none if it does not come.
-template <typename Event, typename Link>
-std::optional<Event> Await(Link& link, seconds patience = kPatience) {
+template <typename Event>
+std::optional<Event> Await(WorkerLink& link, milliseconds patience = kPatience) {
   const auto deadline = std::chrono::steady_clock::now() + patience;
   while (std::chrono::steady_clock::now() < deadline) {
-    std::optional<Event> found;
     for (auto& event : link.Wait(milliseconds(100))) {
-      if (auto* wanted = std::get_if<Event>(&event); wanted != nullptr && !found) found = std::move(*wanted);
+      if (auto* wanted = std::get_if<Event>(&event)) return std::move(*wanted);
     }
-    if (found) return found;
+  }
+  return std::nullopt;
+}
+/// `say` is called again and again: what is said before the two know each other is lost.
+template <typename Event>
+std::optional<Event> AwaitFrom(
+    CoordinatorLink& link, const std::function<void()>& say = [] {}) {
+  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  while (std::chrono::steady_clock::now() < deadline) {
+    say();
+    for (auto& event : link.Wait(milliseconds(100))) {
+      if (auto* wanted = std::get_if<Event>(&event.what)) return std::move(*wanted);
+    }
   }
   return std::nullopt;
 }
@@ -49,8 +64,23 @@ class Transport : public testing::Test {
   PrivateDomain domain_;
 };
 
+const std::string kFlight(64, 'f');
+
 WorkerStatus StatusOf(const std::string& uuid) {
-  return {uuid, "host", 42, "0.1.0+abc", 3, 4, WorkerState::kFlying, 17, {5, 6}};
+  return {uuid, "host", 42, "0.1.0+abc", 3, 4, WorkerState::kFlying, 17, 99, {5, 6}, {{7, 5}}};
+}
+
+CaseResult ResultOf(std::uint64_t case_index) {
+  CaseResult result;
+  result.case_index = case_index;
+  result.outcome = Outcome::kLostControl;
+  result.end_time_s = 123.456;
+  result.end_stage = 3;
+  result.reason = "attitude error";
+  result.inputs.assign(InputColumns().size(), 1.0 / 3.0);
+  result.metrics.assign(MetricNames().size(), -0.0);
+  result.digest = {0xfeedull << 48, 1};
+  return result;
 }
 
 std::uint64_t Bits(double value) { return std::bit_cast<std::uint64_t>(value); }
@@ -58,8 +88,7 @@ std::uint64_t Bits(double value) { return std::bit_cast<std::uint64_t>(value); }
 TEST_F(Transport, CarriesWhatAWorkerSaysToTheLastBit) {
   CoordinatorLink coordinator(Network());
   const auto worker = MakeWorker("u1");
-  worker->Send(StatusOf("u1"));
-  const auto status = Await<WorkerStatus>(coordinator);
+  const auto status = AwaitFrom<WorkerStatus>(coordinator, [&] { worker->Send(StatusOf("u1")); });
   ASSERT_TRUE(status);
   EXPECT_EQ(status->worker, "u1");
   EXPECT_EQ(status->host, "host");
@@ -69,148 +98,136 @@ TEST_F(Transport, CarriesWhatAWorkerSaysToTheLastBit) {
   EXPECT_EQ(status->credits, 4u);
   EXPECT_EQ(status->state, WorkerState::kFlying);
   EXPECT_EQ(status->flown, 17u);
-  EXPECT_THAT(status->started_cases, ElementsAre(5, 6));
+  EXPECT_EQ(status->coordinator_epoch, 99u);
+  EXPECT_THAT(status->held, ElementsAre(5, 6));
+  EXPECT_THAT(status->started, ElementsAre(StartedCase{7, 5}));
 
+  Report report{"u1", 99, 3, kFlight, {{2, ResultOf(7)}}, {{8, 3}, {9, 3}}};
   const double odd_nan = std::bit_cast<double>(0x7ff8000000c0ffeeull);
-  const std::vector<double> values = {1.0 / 3.0, -0.0, odd_nan, std::numeric_limits<double>::denorm_min()};
-  Report report{"u1", 99, "flight", {}, {{8, 3}, {9, 3}}};
-  FlownCase flown;
-  flown.attempt = 2;
-  flown.result = {7,      Outcome::kLostControl, 123.456, 3, "attitude error", values,
-                  values, {0xfeedull << 48, 1}};
-  report.flown = {flown};
-  worker->Send(report);
-  const auto received = Await<Report>(coordinator);
+  report.flown[0].result.metrics[1] = odd_nan;
+  report.flown[0].result.metrics[2] = std::numeric_limits<double>::denorm_min();
+  const auto received = AwaitFrom<Report>(coordinator, [&] { worker->Send(report); });
   ASSERT_TRUE(received);
   EXPECT_EQ(received->worker, "u1");
   EXPECT_EQ(received->coordinator_epoch, 99u);
-  EXPECT_EQ(received->flight_id, "flight");
-  ASSERT_EQ(received->started.size(), 2u);
-  EXPECT_EQ(received->started[1].case_index, 9u);
-  EXPECT_EQ(received->started[1].attempt, 3u);
+  EXPECT_EQ(received->number, 3u);
+  EXPECT_EQ(received->flight_id, kFlight);
+  EXPECT_THAT(received->started, ElementsAre(StartedCase{8, 3}, StartedCase{9, 3}));
   ASSERT_EQ(received->flown.size(), 1u);
   EXPECT_EQ(received->flown[0].attempt, 2u);
   const CaseResult& result = received->flown[0].result;
+  const CaseResult& sent = report.flown[0].result;
   EXPECT_EQ(result.case_index, 7u);
   EXPECT_EQ(result.outcome, Outcome::kLostControl);
   EXPECT_EQ(result.end_time_s, 123.456);
   EXPECT_EQ(result.end_stage, 3);
   EXPECT_EQ(result.reason, "attitude error");
-  EXPECT_EQ(result.digest, flown.result.digest);
-  ASSERT_EQ(result.inputs.size(), values.size());
-  ASSERT_EQ(result.metrics.size(), values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    EXPECT_EQ(Bits(result.inputs[i]), Bits(values[i])) << i;
-    EXPECT_EQ(Bits(result.metrics[i]), Bits(values[i])) << i;
-  }
+  EXPECT_EQ(result.digest, sent.digest);
+  ASSERT_EQ(result.inputs, sent.inputs);
+  ASSERT_EQ(result.metrics.size(), sent.metrics.size());
+  for (std::size_t i = 0; i < sent.metrics.size(); ++i)
+    EXPECT_EQ(Bits(result.metrics[i]), Bits(sent.metrics[i])) << i;
 
-  worker->Send(CampaignRefusal{"u1", 99, "flight", "cannot"});
-  const auto refusal = Await<CampaignRefusal>(coordinator);
+  const auto request = AwaitFrom<TextRequest>(coordinator, [&] {
+    worker->Send(TextRequest{"u1", kFlight, 17});
+  });
+  ASSERT_TRUE(request);
+  EXPECT_EQ(request->worker, "u1");
+  EXPECT_EQ(request->flight_id, kFlight);
+  EXPECT_EQ(request->offset, 17u);
+
+  const auto refusal = AwaitFrom<CampaignRefusal>(coordinator, [&] {
+    worker->Send(CampaignRefusal{"u1", 99, kFlight, "cannot"});
+  });
   ASSERT_TRUE(refusal);
   EXPECT_EQ(refusal->worker, "u1");
   EXPECT_EQ(refusal->coordinator_epoch, 99u);
-  EXPECT_EQ(refusal->flight_id, "flight");
+  EXPECT_EQ(refusal->flight_id, kFlight);
   EXPECT_EQ(refusal->reason, "cannot");
 }
 
-TEST_F(Transport, GivesALateWorkerTheOpenCampaignAndTellsWhenItCloses) {
+TEST_F(Transport, OrdersReachOnlyTheWorkerTheyAreMeantFor) {
   CoordinatorLink coordinator(Network());
-  // More than one datagram, and more than a socket's default buffer.
-  const std::string text(3'000'000, 'x');
-  coordinator.OpenCampaign({1, "closed", "flight 1", "e", "old", "text"});
-  coordinator.CloseCampaign("flight 1");
-  coordinator.OpenCampaign({1, "id", "flight 2", "engine", "name", text});
-  const auto worker = MakeWorker("u1");
-  const auto campaign = Await<CampaignDefinition>(*worker);
-  ASSERT_TRUE(campaign);
-  EXPECT_EQ(campaign->coordinator_epoch, 1u);
-  EXPECT_EQ(campaign->campaign_id, "id");
-  EXPECT_EQ(campaign->flight_id, "flight 2");
-  EXPECT_EQ(campaign->engine_version, "engine");
-  EXPECT_EQ(campaign->name, "name");
-  EXPECT_TRUE(campaign->canonical_yaml == text);
-  coordinator.CloseCampaign("flight 2");
-  const auto closed = Await<CampaignClosed>(*worker);
-  ASSERT_TRUE(closed);
-  EXPECT_EQ(closed->flight_id, "flight 2");
-  EXPECT_EQ(closed->coordinator_epoch, 1u);
-}
-
-TEST_F(Transport, OrdersReachOnlyTheWorkerTheyAreMeantForInOrder) {
-  CoordinatorLink coordinator(Network());
-  // Sent before the workers are there.
-  constexpr std::uint64_t kOrders = 500;
-  for (std::uint64_t i = 0; i < kOrders; ++i) {
-    coordinator.Send("u1", FlyOrder{7, "flight", i, {i, i + 1}});
-    coordinator.Send("u2", FlyOrder{7, "flight", 1000 + i, {}});
-  }
-  coordinator.Send("u1", LeaveOrder{7});
-  coordinator.Refuse({"u2", "because"});
   const auto first = MakeWorker("u1");
   const auto second = MakeWorker("u2");
-  std::uint64_t next = 0;
-  bool left = false;
-  const auto deadline = std::chrono::steady_clock::now() + kPatience;
-  while (!left && std::chrono::steady_clock::now() < deadline) {
-    for (const WorkerEvent& event : first->Wait(milliseconds(100))) {
-      if (const auto* order = std::get_if<FlyOrder>(&event)) {
-        ASSERT_EQ(order->attempt, next);
-        EXPECT_EQ(order->coordinator_epoch, 7u);
-        EXPECT_EQ(order->flight_id, "flight");
-        EXPECT_THAT(order->cases, ElementsAre(next, next + 1));
-        ++next;
-      } else {
-        ASSERT_TRUE(std::holds_alternative<LeaveOrder>(event));
-        left = true;
-      }
-    }
+  const Orders orders{"u1", 7, {{kFlight, 3, {1, 2}}, {kFlight, 4, {}}}, {5}, {6, 7}, true, "because"};
+  std::optional<Orders> received;
+  for (int i = 0; i < 100 && !received; ++i) {  // what is said before they know each other is lost
+    coordinator.Send(orders);
+    received = Await<Orders>(*first, milliseconds(100));
   }
-  EXPECT_TRUE(left);
-  EXPECT_EQ(next, kOrders);
-  const auto refusal = Await<Refusal>(*second);
-  ASSERT_TRUE(refusal);
-  EXPECT_EQ(refusal->worker, "u2");
-  EXPECT_EQ(refusal->reason, "because");
+  ASSERT_TRUE(received);
+  EXPECT_EQ(received->worker, "u1");
+  EXPECT_EQ(received->coordinator_epoch, 7u);
+  EXPECT_EQ(received->assignments, orders.assignments);
+  EXPECT_THAT(received->revoked, ElementsAre(5));
+  EXPECT_THAT(received->acknowledged, ElementsAre(6, 7));
+  EXPECT_TRUE(received->leave);
+  EXPECT_EQ(received->refusal, "because");
+
+  const std::string bytes(256 << 10, '\xfe');  // more than one datagram
+  std::optional<TextPart> part;
+  for (int i = 0; i < 100 && !part; ++i) {
+    coordinator.Send(TextPart{"u1", kFlight, "name", "engine", 1 << 20, 5, bytes});
+    part = Await<TextPart>(*first, milliseconds(100));
+  }
+  ASSERT_TRUE(part);
+  EXPECT_EQ(part->name, "name");
+  EXPECT_EQ(part->engine_version, "engine");
+  EXPECT_EQ(part->size, 1u << 20);
+  EXPECT_EQ(part->offset, 5u);
+  EXPECT_TRUE(part->bytes == bytes);
+  EXPECT_FALSE(Await<Orders>(*second, milliseconds(200)));
 }
 
 TEST_F(Transport, NoticesThatAWorkerLeaves) {
   CoordinatorLink coordinator(Network());
   auto worker = MakeWorker("u1");
-  worker->Send(StatusOf("u1"));
-  ASSERT_TRUE(Await<WorkerStatus>(coordinator));
+  ASSERT_TRUE(AwaitFrom<WorkerStatus>(coordinator, [&] { worker->Send(StatusOf("u1")); }));
   worker.reset();
-  const auto gone = Await<WorkerGone>(coordinator);
-  ASSERT_TRUE(gone);
-  EXPECT_EQ(gone->worker, "u1");
+  EXPECT_TRUE(AwaitFrom<SenderGone>(coordinator));
 }
 
-TEST_F(Transport, AWorkerWithNothingToSayIsNotSilent) {
+TEST_F(Transport, TellsSendersApart) {
   CoordinatorLink coordinator(Network());
-  const auto worker = MakeWorker("u1");
-  worker->Send(StatusOf("u1"));
-  ASSERT_TRUE(Await<WorkerStatus>(coordinator));
-  // Longer than the lease of 3 s.
-  EXPECT_FALSE(Await<WorkerSilent>(coordinator, seconds(5)));
-}
-
-TEST_F(Transport, HistoriesDoNotGrowWithoutLimitAndLoseNothing) {
-  CoordinatorLink coordinator(Network());
-  const auto worker = MakeWorker("u1");
-  // Twice past the point where a writer drops what was acknowledged.
-  constexpr std::uint64_t kReports = 10'000;
-  std::jthread sender([&] {
-    for (std::uint64_t i = 0; i < kReports; ++i) worker->Send(Report{"u1", i, "flight", {}, {}});
-  });
-  std::uint64_t next = 0;
-  const auto deadline = std::chrono::steady_clock::now() + 3 * kPatience;
-  while (next < kReports && std::chrono::steady_clock::now() < deadline) {
-    for (const CoordinatorEvent& event : coordinator.Wait(milliseconds(100))) {
-      const auto* report = std::get_if<Report>(&event);
-      if (report == nullptr) continue;
-      ASSERT_EQ(report->coordinator_epoch, next++);
-    }
+  const auto one = MakeWorker("u1");
+  const auto other = MakeWorker("u1");  // in the name of the first
+  std::set<std::string> senders;
+  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  while (senders.size() < 2 && std::chrono::steady_clock::now() < deadline) {
+    one->Send(StatusOf("u1"));
+    other->Send(StatusOf("u1"));
+    for (const CoordinatorEvent& event : coordinator.Wait(milliseconds(100))) senders.insert(event.sender);
   }
-  EXPECT_EQ(next, kReports);
+  EXPECT_EQ(senders.size(), 2u);
+}
+
+TEST_F(Transport, RefusesWhatMakesNoSense) {
+  CoordinatorLink coordinator(Network());
+  const auto worker = MakeWorker("u1");
+  const auto is_refused = [&](const auto& message) {
+    const std::uint64_t before = Complaints();
+    const auto deadline = std::chrono::steady_clock::now() + kPatience;
+    while (Complaints() == before && std::chrono::steady_clock::now() < deadline) {
+      worker->Send(message);
+      EXPECT_TRUE(coordinator.Wait(milliseconds(100)).empty());
+    }
+    return Complaints() > before;
+  };
+  WorkerStatus status = StatusOf("u1");
+  status.slots = 0;
+  EXPECT_TRUE(is_refused(status));
+  EXPECT_TRUE(is_refused(StatusOf("\x1b[31m")));
+  Report report{"u1", 99, 3, kFlight, {{2, ResultOf(7)}}, {}};
+  report.flown[0].result.metrics.pop_back();
+  EXPECT_TRUE(is_refused(report));
+  report.flown[0].result = ResultOf(7);
+  report.flight_id = "short";
+  EXPECT_TRUE(is_refused(report));
+  EXPECT_TRUE(is_refused(TextRequest{"u1", "no", 0}));
+  EXPECT_TRUE(is_refused(CampaignRefusal{"u1", 1, kFlight, std::string(5000, 'x')}));
+  EXPECT_TRUE(AwaitFrom<WorkerStatus>(coordinator, [&] { worker->Send(StatusOf("u1")); }))
+      << "it goes on listening";
 }
 
 TEST_F(Transport, ASecondCoordinatorInTheDomainIsRefused) {
@@ -272,8 +289,7 @@ TEST(SharedMemory, IsNotUsed) {
   const NetworkOptions network{domain.domain(), "127.0.0.1"};
   CoordinatorLink coordinator(network);
   WorkerLink worker(network, {"127.0.0.1", CoordinatorPort(domain.domain())}, "u1");
-  worker.Send(StatusOf("u1"));
-  ASSERT_TRUE(Await<WorkerStatus>(coordinator));
+  ASSERT_TRUE(AwaitFrom<WorkerStatus>(coordinator, [&] { worker.Send(StatusOf("u1")); }));
   EXPECT_EQ(segments(), before);
 }
 

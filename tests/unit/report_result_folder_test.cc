@@ -256,7 +256,7 @@ TEST(ResultFolder, TellsADamagedRowAndRemovesItToBeFlownAgain) {
   for (const std::string& damage :
        {metric + " = " + metric + " + 1e-9", std::string("outcome = 'impact'"), std::string("reason = 'x'"),
         std::string("end_stage = end_stage + 1"), std::string("end_time_s = NULL"),
-        std::string("digest = '0' || substr(digest, 2, 30) || 'f'"), std::string("row_digest = ''")}) {
+        std::string("digest = '0' || substr(digest, 2, 30) || 'e'"), std::string("row_digest = ''")}) {
     TemporaryFolder temporary;
     {
       ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(3));

@@ -1,0 +1,402 @@
+#include "services/coordinator/dispatcher.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "services/transport/complaints.h"
+#include "services/transport/validity.h"
+
+namespace dispersa {
+namespace {
+
+constexpr double kExpirePeriod_s = 1.0;
+/// In one message, so that it fits into a few datagrams.
+constexpr std::size_t kMaxAcknowledged = 4096;
+constexpr std::size_t kMaxRemembered = 1000;
+constexpr std::uint32_t kCreditsPerSlot = 32;  // more than a slot with the widest lanes asks for
+
+}  // namespace
+
+Dispatcher::Dispatcher(std::uint64_t epoch, std::string engine_version, const DispatcherOptions& options)
+    : epoch_(epoch), engine_version_(std::move(engine_version)), options_(options) {}
+
+void Dispatcher::Open(CampaignBook& book, int priority) {
+  OpenCampaign& campaign = campaigns_[book.campaign().flight_id];
+  campaign.book = &book;
+  campaign.priority = priority;
+  for (const auto& [id, worker] : workers_) book.ledger().Join(id, worker.hello, worker.heard_s);
+}
+
+void Dispatcher::Close(const std::string& flight_id) {
+  const auto found = campaigns_.find(flight_id);
+  if (found == campaigns_.end()) return;
+  for (const auto& [id, report] : found->second.unstored) {
+    if (const auto worker = workers_.find(id); worker != workers_.end()) {
+      worker->second.orders.acknowledged.push_back(report);
+    }
+  }
+  campaigns_.erase(found);
+  // What a worker still holds of it is revoked when its status says so.
+  for (auto& [id, worker] : workers_) {
+    std::erase_if(worker.sent, [&](const auto& sent) { return sent.second.flight_id == flight_id; });
+    std::erase_if(worker.orders.assignments,
+                  [&](const FlyOrder& order) { return order.flight_id == flight_id; });
+  }
+}
+
+void Dispatcher::On(const std::string& sender, const WorkerStatus& status, double now_s) {
+  if (ended_.contains(status.worker)) return;
+  if (const auto refused = refused_.find(status.worker); refused != refused_.end()) {
+    TellRefusal(status.worker, refused->second);
+    return;
+  }
+  const auto known = workers_.find(status.worker);
+  if (known != workers_.end() && known->second.sender != sender) {
+    // A worker that made its connection anew; or somebody who uses its name while it lives.
+    if (!known->second.sender_gone && now_s - known->second.heard_s <= options_.silence_s) {
+      Disagree(sender, "it speaks for worker " + status.worker + " of another participant");
+      return;
+    }
+    known->second.sender = sender;
+    known->second.sender_gone = false;
+  }
+  if (status.state == WorkerState::kLeft) {
+    if (!supervised_.contains(status.worker)) Lose(status.worker, WorkerEnd::kLeft, "it left");
+    return;
+  }
+  if (!Join(sender, status, now_s)) return;
+  Compare(workers_.at(status.worker), status, now_s);
+}
+
+bool Dispatcher::Join(const std::string& sender, const WorkerStatus& status, double now_s) {
+  auto known = workers_.find(status.worker);
+  if (known == workers_.end()) {
+    if (status.engine_version != engine_version_) {
+      Refuse(status.worker, "engine version " + Printable(status.engine_version) +
+                                " of the worker differs from the coordinator's " + engine_version_);
+      return false;
+    }
+    if (workers_.size() >= options_.max_workers) {
+      Disagree(sender, "there are " + std::to_string(options_.max_workers) + " workers already");
+      return false;
+    }
+    known = workers_.try_emplace(status.worker).first;
+    known->second.sender = sender;
+    known->second.orders.worker = status.worker;
+    known->second.orders.coordinator_epoch = epoch_;
+    known->second.spoken_s = now_s - options_.pulse_s;
+    if (!supervised_.contains(status.worker)) {
+      spdlog::info("worker {} joined: process {} on {}, {} slots", status.worker, status.pid,
+                   Printable(status.host), status.slots);
+    }
+  }
+  Worker& worker = known->second;
+  worker.host = status.host;
+  worker.state = status.state;
+  worker.flown = status.flown;
+  worker.heard_s = now_s;
+  // Whatever it says that it can hold: the others shall find cases too.
+  worker.hello = {status.engine_version, status.slots,
+                  std::min(status.credits, kCreditsPerSlot * status.slots)};
+  for (auto& [flight_id, campaign] : campaigns_) {
+    if (!campaign.refused_by.contains(status.worker))
+      campaign.book->ledger().Join(status.worker, worker.hello, now_s);
+  }
+  return true;
+}
+
+void Dispatcher::Refuse(const std::string& worker, const std::string& reason) {
+  spdlog::error("worker {} is refused: {}", worker, reason);
+  refusal_ = reason;
+  if (refused_.size() < kMaxRemembered) refused_[worker] = reason;
+  TellRefusal(worker, reason);
+}
+
+void Dispatcher::TellRefusal(const std::string& worker, const std::string& reason) {
+  Orders orders;
+  orders.worker = worker;
+  orders.coordinator_epoch = epoch_;
+  orders.refusal = reason;
+  refusals_.push_back(std::move(orders));
+}
+
+// What the worker holds against what it was given: the one place where losses on the way are found and made
+// good.
+void Dispatcher::Compare(Worker& worker, const WorkerStatus& status, double now_s) {
+  const std::string& id = status.worker;
+  const bool follows = status.coordinator_epoch == epoch_;
+  const std::set<std::uint64_t> held(follows ? status.held.begin() : status.held.end(), status.held.end());
+  std::map<std::string, std::vector<std::uint64_t>> begun;  // cases, by flight id
+  if (follows) {
+    for (const StartedCase& started : status.started) {
+      const auto sent = worker.sent.find(started.attempt);
+      if (sent == worker.sent.end()) continue;
+      const auto campaign = campaigns_.find(sent->second.flight_id);
+      if (campaign == campaigns_.end()) continue;
+      campaign->second.book->Start(id, started.case_index, started.attempt, now_s);
+      begun[sent->second.flight_id].push_back(started.case_index);
+    }
+  }
+  for (auto sent = worker.sent.begin(); sent != worker.sent.end();) {
+    const auto here = sent++;
+    if (held.contains(here->first)) continue;
+    const auto campaign = campaigns_.find(here->second.flight_id);
+    std::vector<std::uint64_t> owed;
+    if (campaign != campaigns_.end()) owed = campaign->second.book->ledger().Owed(id, here->first);
+    if (owed.empty()) {
+      worker.sent.erase(here);
+    } else if (now_s - here->second.at_s >= options_.repeat_s) {
+      Say(worker, here->second.flight_id, here->first, std::move(owed), now_s);
+    }
+  }
+  worker.orders.revoked.clear();
+  for (const std::uint64_t attempt : held) {
+    if (!worker.sent.contains(attempt)) worker.orders.revoked.push_back(attempt);
+  }
+  for (auto& [flight_id, campaign] : campaigns_) {
+    Ledger& ledger = campaign.book->ledger();
+    if (status.state == WorkerState::kDraining) ledger.Withdraw(id, begun[flight_id]);
+    if (held.empty() && status.started.empty()) ledger.Idle(id);
+  }
+}
+
+std::vector<const FlownCase*> Dispatcher::On(const std::string& sender, const Report& report, double now_s) {
+  if (ended_.contains(report.worker)) return {};
+  const auto known = workers_.find(report.worker);
+  // A worker that has not joined will report again when it has.
+  if (known == workers_.end()) return {};
+  if (known->second.sender != sender) {
+    Disagree(sender, "it reports for worker " + report.worker + " of another participant");
+    return {};
+  }
+  known->second.heard_s = now_s;
+  const auto campaign = campaigns_.find(report.flight_id);
+  if (campaign == campaigns_.end()) {
+    known->second.orders.acknowledged.push_back(report.number);  // nobody wants it any more
+    return {};
+  }
+  // Results for an earlier coordinator are as good as any; its assignments mean nothing.
+  const bool follows = report.coordinator_epoch == epoch_;
+  CampaignBook& book = *campaign->second.book;
+  std::vector<const FlownCase*> accepted;
+  for (const FlownCase& flown : report.flown) {
+    const Acceptance acceptance =
+        book.Accept(report.worker, known->second.host, follows ? flown.attempt : 0, flown.result, now_s);
+    if (acceptance == Acceptance::kAccepted) accepted.push_back(&flown);
+    if (acceptance == Acceptance::kUnknown)
+      Disagree(sender, "it flew a case that the campaign does not have");
+  }
+  if (!report.flown.empty()) campaign->second.unstored.emplace_back(report.worker, report.number);
+  if (!follows) return accepted;
+  for (const StartedCase& started : report.started) {
+    book.Start(report.worker, started.case_index, started.attempt, now_s);
+  }
+  return accepted;
+}
+
+void Dispatcher::On(const std::string& sender, const CampaignRefusal& refusal, double now_s) {
+  const auto campaign = campaigns_.find(refusal.flight_id);
+  const auto known = workers_.find(refusal.worker);
+  if (campaign == campaigns_.end() || known == workers_.end() || refusal.coordinator_epoch != epoch_) return;
+  if (known->second.sender != sender) {
+    Disagree(sender, "it refuses a campaign for worker " + refusal.worker + " of another participant");
+    return;
+  }
+  known->second.heard_s = now_s;
+  if (!campaign->second.refused_by.insert(refusal.worker).second) return;
+  spdlog::error("worker {} refuses the campaign {}: {}", refusal.worker,
+                campaign->second.book->campaign().name, Printable(refusal.reason, 1000));
+  refusal_ = Printable(refusal.reason, 1000);
+  campaign->second.book->ledger().Lost(refusal.worker, WorkerEnd::kLeft, *refusal_);
+  std::erase_if(known->second.sent,
+                [&](const auto& sent) { return sent.second.flight_id == refusal.flight_id; });
+}
+
+std::optional<TextPart> Dispatcher::On(const TextRequest& request, std::size_t limit) const {
+  const auto campaign = campaigns_.find(request.flight_id);
+  if (campaign == campaigns_.end() || !workers_.contains(request.worker)) return std::nullopt;
+  const Campaign& what = campaign->second.book->campaign();
+  if (request.offset > what.canonical_yaml.size()) return std::nullopt;
+  return TextPart{request.worker,
+                  request.flight_id,
+                  what.name,
+                  engine_version_,
+                  what.canonical_yaml.size(),
+                  request.offset,
+                  what.canonical_yaml.substr(request.offset, limit)};
+}
+
+void Dispatcher::Gone(const std::string& sender) {
+  for (auto& [id, worker] : workers_) {
+    if (worker.sender == sender) worker.sender_gone = true;
+  }
+}
+
+void Dispatcher::Supervise(const std::string& worker) { supervised_.insert(worker); }
+
+void Dispatcher::WorkerEnded(const std::string& worker, WorkerEnd end, const std::string& reason,
+                             double now_s) {
+  endings_.push_back({now_s + options_.last_messages_s, worker, end, reason});
+}
+
+std::vector<std::string> Dispatcher::TakeUnresponsive() {
+  std::vector<std::string> taken(unresponsive_.begin(), unresponsive_.end());
+  unresponsive_.clear();
+  return taken;
+}
+
+std::vector<std::string> Dispatcher::TakeForgotten() { return std::exchange(forgotten_, {}); }
+
+std::vector<Orders> Dispatcher::Tick(double now_s) {
+  for (auto& [flight_id, campaign] : campaigns_) {
+    if (!campaign.book->FlushIfDue(now_s)) continue;
+    for (const auto& [id, report] : std::exchange(campaign.unstored, {})) {
+      if (const auto worker = workers_.find(id); worker != workers_.end()) {
+        worker->second.orders.acknowledged.push_back(report);
+      }
+    }
+  }
+  const auto due = std::stable_partition(endings_.begin(), endings_.end(),
+                                         [&](const Ending& ending) { return ending.due_s > now_s; });
+  const std::vector<Ending> ended(due, endings_.end());
+  endings_.erase(due, endings_.end());
+  for (const Ending& ending : ended) Lose(ending.worker, ending.end, ending.reason);
+  LoseSilent(now_s);
+  Expire(now_s);
+  if (!dismissed_) Assign(now_s);
+
+  std::vector<Orders> messages = std::exchange(refusals_, {});
+  for (auto& [id, worker] : workers_) {
+    Orders& orders = worker.orders;
+    orders.leave = dismissed_;
+    const bool something =
+        !orders.assignments.empty() || !orders.revoked.empty() || !orders.acknowledged.empty();
+    if (!something && now_s - worker.spoken_s < options_.pulse_s) continue;
+    worker.spoken_s = now_s;
+    Orders message = orders;
+    orders.assignments.clear();
+    orders.revoked.clear();
+    orders.acknowledged.clear();
+    if (message.acknowledged.size() > kMaxAcknowledged) {
+      orders.acknowledged.assign(message.acknowledged.begin() + kMaxAcknowledged, message.acknowledged.end());
+      message.acknowledged.resize(kMaxAcknowledged);
+    }
+    messages.push_back(std::move(message));
+  }
+  return messages;
+}
+
+void Dispatcher::Dismiss() {
+  dismissed_ = true;
+  for (auto& [id, worker] : workers_) worker.spoken_s = -options_.pulse_s;
+}
+
+void Dispatcher::LoseSilent(double now_s) {
+  std::vector<std::string> silent;
+  for (const auto& [id, worker] : workers_) {
+    if (now_s - worker.heard_s > options_.silence_s) silent.push_back(id);
+  }
+  for (const std::string& id : silent) {
+    if (supervised_.contains(id)) {
+      unresponsive_.insert(id);
+      workers_.at(id).heard_s = now_s;  // said once; again if it is still there then
+    } else {
+      // It may come back: then its status lets it join again.
+      Lose(id, WorkerEnd::kSilent, "its worker fell silent");
+    }
+  }
+}
+
+void Dispatcher::Expire(double now_s) {
+  if (now_s - expired_s_ < kExpirePeriod_s) return;
+  expired_s_ = now_s;
+  for (auto& [flight_id, campaign] : campaigns_) {
+    for (const std::string& stuck : campaign.book->ledger().Expire(now_s)) {
+      spdlog::warn("worker {} has reported nothing for too long; its cases return to the queue", stuck);
+      if (supervised_.contains(stuck)) unresponsive_.insert(stuck);
+      if (const auto worker = workers_.find(stuck); worker != workers_.end()) {
+        std::erase_if(worker->second.sent,
+                      [&](const auto& sent) { return sent.second.flight_id == flight_id; });
+      }
+    }
+  }
+}
+
+void Dispatcher::Assign(double now_s) {
+  // One assignment a worker in turn, so that few cases spread over all workers.
+  for (bool given = true; given;) {
+    given = false;
+    for (auto& [id, worker] : workers_) given = AssignTo(id, worker, now_s) || given;
+  }
+}
+
+bool Dispatcher::AssignTo(const std::string& id, Worker& worker, double now_s) {
+  std::uint64_t batches = 0;
+  std::vector<OpenCampaign*> by_right;
+  for (auto& [flight_id, campaign] : campaigns_) {
+    if (campaign.book->ledger().IsAlone(id)) return false;
+    batches += campaign.book->ledger().Batches(id);
+    by_right.push_back(&campaign);
+  }
+  if (batches >= worker.hello.credits) return false;
+  if (by_right.size() > 1) {
+    // First by priority; of equal ones, that which has the least in flight.
+    std::map<const OpenCampaign*, std::uint64_t> assigned;
+    for (const OpenCampaign* campaign : by_right)
+      assigned[campaign] = campaign->book->ledger().Progress().assigned;
+    std::stable_sort(by_right.begin(), by_right.end(), [&](const OpenCampaign* a, const OpenCampaign* b) {
+      return a->priority != b->priority ? a->priority > b->priority : assigned[a] < assigned[b];
+    });
+  }
+  for (OpenCampaign* campaign : by_right) {
+    Ledger& ledger = campaign->book->ledger();
+    if (auto assignment = ledger.GiveTo(id, batches - ledger.Batches(id), now_s)) {
+      Say(worker, campaign->book->campaign().flight_id, assignment->attempt, std::move(assignment->cases),
+          now_s);
+      return true;
+    }
+  }
+  return false;
+}
+
+void Dispatcher::Say(Worker& worker, const std::string& flight_id, std::uint64_t attempt,
+                     std::vector<std::uint64_t> cases, double now_s) {
+  worker.sent[attempt] = {flight_id, now_s};
+  worker.orders.assignments.push_back({flight_id, attempt, std::move(cases)});
+}
+
+void Dispatcher::Lose(const std::string& worker, WorkerEnd end, const std::string& reason) {
+  const bool known = workers_.erase(worker) > 0;
+  const bool supervised = supervised_.erase(worker) > 0;
+  if (supervised) ended_.insert(worker);
+  unresponsive_.erase(worker);
+  for (auto& [flight_id, campaign] : campaigns_) {
+    campaign.book->ledger().Lost(worker, end, reason);
+    std::erase_if(campaign.unstored, [&](const auto& report) { return report.first == worker; });
+  }
+  forgotten_.push_back(worker);
+  if (!known || supervised) return;
+  if (end == WorkerEnd::kLeft) {
+    spdlog::info("worker {} left", worker);
+  } else {
+    spdlog::warn("worker {} is lost: {}", worker, reason);
+  }
+}
+
+std::vector<Dispatcher::WorkerView> Dispatcher::Workers() const {
+  std::vector<WorkerView> views;
+  for (const auto& [id, worker] : workers_) {
+    views.push_back({id, worker.host, worker.hello.slots, worker.state, worker.flown});
+  }
+  return views;
+}
+
+void Dispatcher::Disagree(const std::string& sender, const std::string& what) {
+  ++refused_messages_;
+  Complain("message", sender, what);
+}
+
+}  // namespace dispersa

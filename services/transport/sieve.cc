@@ -1,0 +1,154 @@
+#include "services/transport/sieve.h"
+
+#include <cstring>
+
+#include <fastdds/rtps/transport/ChainingTransport.h>
+#include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
+
+#include "services/transport/complaints.h"
+#include "services/transport/endpoints.h"
+#include "services/transport/wire_shape.h"
+
+namespace dispersa {
+namespace {
+
+namespace rtps = eprosima::fastrtps::rtps;
+namespace transport = eprosima::fastdds::rtps;
+
+// Of the RTPS protocol, version 2.
+constexpr std::size_t kMessageHeader = 20;
+constexpr std::uint8_t kGap = 0x08;
+constexpr std::uint8_t kAckNack = 0x06;
+constexpr std::uint8_t kHeartbeat = 0x07;
+constexpr std::uint8_t kData = 0x15;
+constexpr std::uint8_t kDataFragment = 0x16;
+
+/// What a reader that comes late to one of our writers may be told to skip (endpoints.h renews writers before
+/// they have written more).
+constexpr std::uint64_t kMaxRange = 2 * kRenewAfter;
+
+/// One submessage behind its header of 4 bytes.
+class Submessage {
+ public:
+  Submessage(const std::uint8_t* body, std::size_t size, bool little_endian)
+      : body_(body), size_(size), little_(little_endian) {}
+
+  std::size_t size() const { return size_; }
+  std::uint32_t U32(std::size_t at) const {
+    std::uint32_t value = 0;
+    std::memcpy(&value, body_ + at, 4);
+    return little_ ? value : __builtin_bswap32(value);
+  }
+  std::uint16_t U16(std::size_t at) const {
+    std::uint16_t value = 0;
+    std::memcpy(&value, body_ + at, 2);
+    return little_ ? value : __builtin_bswap16(value);
+  }
+  /// A sequence number: its high half comes first.
+  std::uint64_t Number(std::size_t at) const { return std::uint64_t{U32(at)} << 32 | U32(at + 4); }
+
+ private:
+  const std::uint8_t* body_;
+  std::size_t size_;
+  bool little_;
+};
+
+const char* HarmOfSubmessage(std::uint8_t kind, const Submessage& what) {
+  // Reader and writer (4 bytes each) come first, in DATA and DATA_FRAG behind flags and an offset.
+  switch (kind) {
+    case kGap: {
+      if (what.size() < 28) return "a GAP that is cut off";
+      const std::uint64_t first = what.Number(8), base = what.Number(16);
+      if (first == 0 || base < first || base - first > kMaxRange || what.U32(24) > 256)
+        return "a GAP of an absurd range";
+      return nullptr;
+    }
+    case kHeartbeat: {
+      if (what.size() < 28) return "a HEARTBEAT that is cut off";
+      const std::uint64_t first = what.Number(8), last = what.Number(16);
+      if (first == 0 || first >> 62 != 0 || last + 1 < first || last - first + 1 > kMaxRange) {
+        return "a HEARTBEAT of an absurd range";
+      }
+      return nullptr;
+    }
+    case kAckNack:
+      if (what.size() < 24 || what.Number(8) >> 62 != 0 || what.U32(16) > 256)
+        return "an ACKNACK out of bounds";
+      return nullptr;
+    case kData:
+      if (what.size() < 20 || what.U16(2) > what.size() - 4) return "a DATA that is cut off";
+      return nullptr;
+    case kDataFragment: {
+      if (what.size() < 32 || what.U16(2) > what.size() - 4) return "a DATA_FRAG that is cut off";
+      const std::uint32_t sample = what.U32(28), fragment = what.U16(26);
+      if (sample > kMaxSampleBytes + 1024) return "a sample of more than 1 MiB";
+      if (fragment == 0 || what.U32(20) == 0 || std::uint64_t{what.U32(20) - 1} * fragment >= sample) {
+        return "a fragment outside of its sample";
+      }
+      return nullptr;
+    }
+    default:
+      return nullptr;
+  }
+}
+
+class Sieve : public transport::ChainingTransport {
+ public:
+  explicit Sieve(const transport::ChainingTransportDescriptor& descriptor)
+      : ChainingTransport(descriptor), descriptor_(descriptor) {}
+
+  transport::TransportDescriptorInterface* get_configuration() override { return &descriptor_; }
+
+  bool send(rtps::SenderResource* inner, const rtps::octet* data, uint32_t size,
+            rtps::LocatorsIterator* begin, rtps::LocatorsIterator* end,
+            const std::chrono::steady_clock::time_point& timeout) override {
+    return inner->send(data, size, begin, end, timeout);
+  }
+
+  void receive(transport::TransportReceiverInterface* next, const rtps::octet* data, uint32_t size,
+               const rtps::Locator_t& local, const rtps::Locator_t& remote) override {
+    if (const char* harm = HarmOf(data, size)) {
+      Complain("datagram", rtps::IPLocator::ip_to_string(remote), harm);
+      return;
+    }
+    next->OnDataReceived(data, size, local, remote);
+  }
+
+ private:
+  struct Descriptor : transport::ChainingTransportDescriptor {
+    using ChainingTransportDescriptor::ChainingTransportDescriptor;
+    explicit Descriptor(const ChainingTransportDescriptor& other) : ChainingTransportDescriptor(other) {}
+    transport::TransportInterface* create_transport() const override { return new Sieve(*this); }
+  };
+  friend std::shared_ptr<transport::TransportDescriptorInterface> dispersa::Sieved(
+      std::shared_ptr<transport::TransportDescriptorInterface>);
+
+  Descriptor descriptor_;
+};
+
+}  // namespace
+
+const char* HarmOf(const std::uint8_t* datagram, std::size_t size) {
+  if (size < kMessageHeader || std::memcmp(datagram, "RTPS", 4) != 0) return "not of the protocol";
+  for (std::size_t at = kMessageHeader; at < size;) {
+    if (size - at < 4) return "a submessage that is cut off";
+    const std::uint8_t kind = datagram[at];
+    const bool little_endian = (datagram[at + 1] & 1) != 0;
+    const std::size_t rest = size - at - 4;
+    std::size_t length = Submessage(datagram + at, 4, little_endian).U16(2);
+    if (length > rest) return "a submessage that is cut off";
+    // 0: up to the end, but for the two kinds that may be empty (PAD, INFO_TS).
+    if (length == 0 && kind != 0x01 && kind != 0x09) length = rest;
+    if (const char* harm = HarmOfSubmessage(kind, {datagram + at + 4, length, little_endian})) return harm;
+    at += 4 + length;
+  }
+  return nullptr;
+}
+
+std::shared_ptr<transport::TransportDescriptorInterface> Sieved(
+    std::shared_ptr<transport::TransportDescriptorInterface> inner) {
+  return std::make_shared<Sieve::Descriptor>(std::move(inner));
+}
+
+}  // namespace dispersa

@@ -1,0 +1,131 @@
+#include "services/transport/validity.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+#include "core/flight/flight_inputs.h"
+#include "core/flight/metrics.h"
+
+namespace dispersa {
+namespace {
+
+constexpr std::size_t kMaxName = 256;
+constexpr std::size_t kMaxReason = 4096;
+constexpr std::size_t kMaxList = 65536;
+constexpr std::size_t kMaxCasesPerReport = 4096;
+constexpr int kMaxStage = 64;
+
+/// What a partition and a log may hold.
+bool IsName(const std::string& text, std::size_t limit) {
+  return !text.empty() && text.size() <= limit && std::all_of(text.begin(), text.end(), [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-' || c == '_';
+  });
+}
+
+bool IsFlightId(const std::string& text) {
+  return text.size() == 64 && std::all_of(text.begin(), text.end(), [](char c) {
+           return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f');
+         });
+}
+
+std::string FirstOf(std::initializer_list<std::pair<bool, const char*>> problems) {
+  for (const auto& [holds, what] : problems) {
+    if (holds) return what;
+  }
+  return "";
+}
+
+const char kBadWorker[] = "the worker's name is no identifier";
+const char kBadFlight[] = "the flight id is not 64 hexadecimal digits";
+
+}  // namespace
+
+std::string Problem(const WorkerStatus& status) {
+  return FirstOf(
+      {{!IsName(status.worker, 64), kBadWorker},
+       {status.host.size() > kMaxName || status.engine_version.size() > kMaxName, "a text is too long"},
+       {status.slots < 1 || status.slots > kMaxSlots, "slots are not from 1 to 1024"},
+       {status.credits > kMaxList, "too many credits"},
+       {status.held.size() > kMaxList || status.started.size() > kMaxList, "too long a list"}});
+}
+
+std::string Problem(const Orders& orders) {
+  const bool flights = std::all_of(orders.assignments.begin(), orders.assignments.end(),
+                                   [](const FlyOrder& order) { return IsFlightId(order.flight_id); });
+  return FirstOf({{!IsName(orders.worker, 64), kBadWorker},
+                  {orders.coordinator_epoch == 0, "the epoch is 0"},
+                  {!flights, kBadFlight},
+                  {orders.refusal.size() > kMaxReason, "a text is too long"}});
+}
+
+std::string Problem(const Report& report) {
+  const auto has_sizes = [](const FlownCase& flown) {
+    return flown.result.inputs.size() == InputColumns().size() &&
+           flown.result.metrics.size() == MetricNames().size();
+  };
+  const auto is_sane = [](const FlownCase& flown) {
+    return flown.result.reason.size() <= kMaxReason && flown.result.end_stage >= 0 &&
+           flown.result.end_stage <= kMaxStage;
+  };
+  return FirstOf({{!IsName(report.worker, 64), kBadWorker},
+                  {!IsFlightId(report.flight_id), kBadFlight},
+                  {report.flown.size() > kMaxCasesPerReport || report.started.size() > kMaxCasesPerReport,
+                   "too many cases"},
+                  {!std::all_of(report.flown.begin(), report.flown.end(), has_sizes),
+                   "a result has not the inputs and metrics of this engine"},
+                  {!std::all_of(report.flown.begin(), report.flown.end(), is_sane),
+                   "a result has an impossible stage or reason"}});
+}
+
+std::string Problem(const TextRequest& request) {
+  return FirstOf({{!IsName(request.worker, 64), kBadWorker}, {!IsFlightId(request.flight_id), kBadFlight}});
+}
+
+std::string Problem(const TextPart& part) {
+  return FirstOf(
+      {{!IsName(part.worker, 64), kBadWorker},
+       {!IsFlightId(part.flight_id), kBadFlight},
+       {part.name.size() > kMaxName || part.engine_version.size() > kMaxName, "a text is too long"},
+       {part.size > kMaxTextBytes, "the campaign's text is larger than 64 MiB"},
+       {part.offset > part.size || part.bytes.size() > part.size - part.offset, "a part beyond the text"}});
+}
+
+std::string Problem(const CampaignRefusal& refusal) {
+  return FirstOf(
+      {{!IsName(refusal.worker, 64), kBadWorker},
+       {!IsFlightId(refusal.flight_id), kBadFlight},
+       {refusal.reason.empty() || refusal.reason.size() > kMaxReason, "no reason, or too long a one"}});
+}
+
+std::string Problem(const CampaignProgress& progress) {
+  return FirstOf({{!IsFlightId(progress.flight_id), kBadFlight}});
+}
+
+std::string Problem(const Request& request) {
+  return FirstOf({{!IsName(request.client, 64), "the client's name is no identifier"},
+                  {!IsName(request.method, 64), "the method is no identifier"},
+                  {request.arguments.size() > kMaxReason, "too long arguments"}});
+}
+
+std::string Problem(const Reply& reply) {
+  return FirstOf({{!IsName(reply.client, 64), "the client's name is no identifier"}});
+}
+
+std::string Printable(const std::string& text, std::size_t limit) {
+  std::string clean;
+  for (const char c : text) {
+    if (clean.size() >= limit) return clean + "...";
+    if (c >= ' ' && c <= '~') {
+      clean += c;
+    } else {
+      std::array<char, 5> code{};
+      std::snprintf(code.data(), code.size(), "\\x%02x",
+                    static_cast<unsigned>(static_cast<unsigned char>(c)));
+      clean += code.data();
+    }
+  }
+  return clean;
+}
+
+}  // namespace dispersa

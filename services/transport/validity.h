@@ -1,0 +1,30 @@
+// Whether a message makes sense, whoever sent it. Sizes are bounded, so that nothing that arrives makes this
+// process allocate or compute without limit.
+#pragma once
+
+#include <string>
+
+#include "services/transport/messages.h"
+
+namespace dispersa {
+
+/// What is wrong with a message; empty: nothing.
+std::string Problem(const WorkerStatus& status);
+std::string Problem(const Orders& orders);
+std::string Problem(const Report& report);
+std::string Problem(const TextRequest& request);
+std::string Problem(const TextPart& part);
+std::string Problem(const CampaignRefusal& refusal);
+std::string Problem(const CampaignProgress& progress);
+std::string Problem(const Request& request);
+std::string Problem(const Reply& reply);
+
+/// Of a campaign.
+inline constexpr std::uint64_t kMaxTextBytes = std::uint64_t{64} << 20;
+inline constexpr std::size_t kMaxSlots = 1024;
+
+/// At most `limit` bytes of a text from elsewhere, fit for a log or a terminal: what is not printable ASCII
+/// is written as \xNN.
+std::string Printable(const std::string& text, std::size_t limit = 200);
+
+}  // namespace dispersa

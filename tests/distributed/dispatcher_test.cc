@@ -1,0 +1,293 @@
+// The coordinator's rules with made-up time and messages: who is believed, what is repeated, who is blamed.
+#include "services/coordinator/dispatcher.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <vector>
+
+#include "core/engine/version.h"
+
+namespace dispersa {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+class MemoryStore : public ResultStore {
+ public:
+  std::size_t Append(std::span<const CaseResult> results) override { return stored += results.size(); }
+  void AppendExecution(std::span<const ExecutionRecord>) override {}
+  void Quarantine(const QuarantinedCase&) override {}
+  std::vector<std::pair<std::uint64_t, Digest>> Fingerprints() const override { return {}; }
+  std::size_t stored = 0;
+};
+
+const std::string kFlight(64, 'f');
+
+Campaign MadeUp(const std::string& flight_id, std::uint64_t cases) {
+  Campaign campaign;
+  campaign.flight_id = flight_id;
+  campaign.sampling.cases = cases;
+  campaign.canonical_yaml = "0123456789";
+  return campaign;
+}
+
+CaseResult ResultOf(std::uint64_t case_index) {
+  CaseResult result;
+  result.case_index = case_index;
+  return result;
+}
+
+class DispatcherTest : public testing::Test {
+ protected:
+  void Open(std::uint64_t cases, LedgerOptions options = {}) {
+    auto store = std::make_unique<MemoryStore>();
+    store_ = store.get();
+    book_ = std::make_unique<CampaignBook>(MadeUp(kFlight, cases), std::move(store), options);
+    dispatcher_.Open(*book_);
+  }
+  WorkerStatus Status(const std::string& worker = "w") {
+    return {worker, "host", 1, EngineVersion(), 1, 2, WorkerState::kReady, 0, kEpoch, {}, {}};
+  }
+  /// What the worker is told now.
+  Orders Tick(double now_s, const std::string& worker = "w") {
+    for (const Orders& orders : dispatcher_.Tick(now_s)) {
+      if (orders.worker == worker) return orders;
+    }
+    return {};
+  }
+  LedgerProgress Progress() const { return book_->ledger().Progress(); }
+  void Fly(std::uint64_t attempt, std::uint64_t case_index, double now_s, std::uint64_t number = 1) {
+    dispatcher_.On("s", Report{"w", kEpoch, number, kFlight, {{attempt, ResultOf(case_index)}}, {}}, now_s);
+  }
+
+  static constexpr std::uint64_t kEpoch = 7;
+  Dispatcher dispatcher_{kEpoch, EngineVersion()};
+  MemoryStore* store_ = nullptr;
+  std::unique_ptr<CampaignBook> book_;
+};
+
+TEST_F(DispatcherTest, RepeatsAnAssignmentUntilTheWorkerHoldsIt) {
+  Open(1);
+  dispatcher_.On("s", Status(), 0.0);
+  const Orders first = Tick(0.0);
+  ASSERT_EQ(first.assignments.size(), 1u);
+  EXPECT_EQ(first.coordinator_epoch, kEpoch);
+  dispatcher_.On("s", Status(), 1.9);
+  EXPECT_THAT(Tick(1.9).assignments, IsEmpty()) << "it may be on its way";
+  dispatcher_.On("s", Status(), 2.0);
+  EXPECT_EQ(Tick(2.0).assignments, first.assignments);
+  WorkerStatus holds = Status();
+  holds.held = {first.assignments[0].attempt};
+  for (double now_s = 3.0; now_s < 20.0; now_s += 1.0) {
+    dispatcher_.On("s", holds, now_s);
+    EXPECT_THAT(Tick(now_s).assignments, IsEmpty());
+  }
+  holds.coordinator_epoch = kEpoch + 1;  // what it holds is another coordinator's
+  dispatcher_.On("s", holds, 20.0);
+  EXPECT_EQ(Tick(20.0).assignments, first.assignments);
+}
+
+TEST_F(DispatcherTest, RevokesWhatItDidNotGiveOrHasTakenBack) {
+  Open(1);
+  WorkerStatus holds = Status();
+  holds.held = {99};
+  dispatcher_.On("s", holds, 0.0);
+  EXPECT_THAT(Tick(0.0).revoked, ElementsAre(99));
+}
+
+TEST_F(DispatcherTest, SaysSomethingEverySecond) {
+  Open(0);
+  dispatcher_.On("s", Status(), 0.0);
+  int said = 0;
+  for (int i = 0; i < 100; ++i) {
+    dispatcher_.On("s", Status(), 0.1 * i);
+    said += Tick(0.1 * i).worker == "w";
+  }
+  EXPECT_GE(said, 9);
+  EXPECT_LE(said, 11);
+}
+
+TEST_F(DispatcherTest, AcknowledgesWhatIsStoredAndOnlyThat) {
+  Open(2);
+  dispatcher_.On("s", Status(), 0.0);
+  const std::uint64_t attempt = Tick(0.0).assignments.at(0).attempt;
+  Fly(attempt, 0, 0.1, 41);
+  EXPECT_THAT(Tick(0.1).acknowledged, IsEmpty());
+  EXPECT_EQ(store_->stored, 0u);
+  EXPECT_THAT(Tick(1.0).acknowledged, ElementsAre(41));
+  EXPECT_EQ(store_->stored, 1u);
+  Fly(attempt, 0, 1.1, 41);  // the acknowledgement got lost
+  EXPECT_THAT(Tick(2.0).acknowledged, ElementsAre(41));
+}
+
+TEST_F(DispatcherTest, AcknowledgesResultsOfAClosedCampaignSoThatTheyAreDropped) {
+  Open(2);
+  dispatcher_.On("s", Status(), 0.0);
+  Tick(0.0);
+  dispatcher_.Close(kFlight);
+  Fly(1, 0, 0.1, 41);
+  EXPECT_THAT(Tick(0.2).acknowledged, ElementsAre(41));
+}
+
+TEST_F(DispatcherTest, ReportsOfAnotherEpochBringResultsAndBlameNobody) {
+  Open(2, {.blames_to_quarantine = 1});
+  dispatcher_.On("s", Status(), 0.0);
+  const Orders orders = Tick(0.0);
+  const std::uint64_t attempt = orders.assignments.at(0).attempt;
+  // The same attempt number of another start of the coordinator: not this one.
+  dispatcher_.On("s", Report{"w", kEpoch + 1, 1, kFlight, {{attempt, ResultOf(1)}}, {{0, attempt}}}, 0.1);
+  EXPECT_EQ(Progress().done, 1u);
+  EXPECT_EQ(book_->ledger().Owed("w", attempt).size(), orders.assignments[0].cases.size());
+  WorkerStatus old = Status();
+  old.coordinator_epoch = kEpoch + 1;
+  old.started = {{0, attempt}};
+  dispatcher_.On("s", old, 0.2);
+  Tick(5.0);  // it fell silent
+  EXPECT_EQ(dispatcher_.joined(), 0u);
+  EXPECT_EQ(Progress().quarantined, 0u);
+  EXPECT_EQ(Progress().waiting, 1u);
+}
+
+TEST_F(DispatcherTest, SilenceBlamesWhatTheStatusSaysIsFlown) {
+  Open(2, {.blames_to_quarantine = 1});
+  dispatcher_.On("s", Status(), 0.0);
+  const std::uint64_t attempt = Tick(0.0).assignments.at(0).attempt;
+  WorkerStatus flies = Status();
+  flies.held = {attempt};
+  flies.started = {{0, attempt}};  // the report of the start got lost
+  dispatcher_.On("s", flies, 0.5);
+  Tick(5.0);
+  EXPECT_EQ(Progress().quarantined, 1u);
+  EXPECT_EQ(Progress().waiting, 1u);
+}
+
+TEST_F(DispatcherTest, ARefusedWorkerIsToldSoEachTimeAndNeverJoins) {
+  Open(1);
+  WorkerStatus stranger = Status();
+  stranger.engine_version = "other";
+  for (double now_s = 0.0; now_s < 5.0; now_s += 1.0) {
+    dispatcher_.On("s", stranger, now_s);
+    const Orders orders = Tick(now_s);
+    EXPECT_EQ(orders.refusal,
+              "engine version other of the worker differs from the coordinator's " + EngineVersion());
+    EXPECT_THAT(orders.assignments, IsEmpty());
+    EXPECT_EQ(dispatcher_.joined(), 0u);
+  }
+  stranger.engine_version = EngineVersion();  // the same incarnation with another story
+  dispatcher_.On("s", stranger, 5.0);
+  EXPECT_EQ(dispatcher_.joined(), 0u);
+}
+
+TEST_F(DispatcherTest, AnEndedWorkerDoesNotComeBackByALateMessage) {
+  Open(1);
+  dispatcher_.Supervise("w");
+  dispatcher_.On("s", Status(), 0.0);
+  Tick(0.0);
+  dispatcher_.WorkerEnded("w", WorkerEnd::kKilled, "signal 9", 0.1);
+  Tick(1.0);
+  EXPECT_EQ(dispatcher_.joined(), 0u);
+  dispatcher_.On("s", Status(), 1.1);
+  EXPECT_EQ(dispatcher_.joined(), 0u);
+  Fly(1, 0, 1.2);
+  EXPECT_EQ(Progress().done, 0u);
+}
+
+TEST_F(DispatcherTest, TheLastMessagesOfADeadWorkerAreAwaited) {
+  Open(2, {.blames_to_quarantine = 1});
+  dispatcher_.Supervise("w");
+  dispatcher_.On("s", Status(), 0.0);
+  const std::uint64_t attempt = Tick(0.0).assignments.at(0).attempt;
+  dispatcher_.WorkerEnded("w", WorkerEnd::kCrashed, "signal 11", 1.0);
+  Tick(1.1);
+  // On its way when the process ended: case 0 is done, case 1 is what it died of.
+  dispatcher_.On("s", Report{"w", kEpoch, 1, kFlight, {{attempt, ResultOf(0)}}, {}}, 1.15);
+  Tick(1.3);
+  EXPECT_EQ(Progress().done, 1u);
+  EXPECT_EQ(dispatcher_.joined(), 0u);
+}
+
+TEST_F(DispatcherTest, OnlyItsOwnParticipantSpeaksForAWorker) {
+  Open(2);
+  dispatcher_.On("s", Status(), 0.0);
+  const std::uint64_t attempt = Tick(0.0).assignments.at(0).attempt;
+  WorkerStatus left = Status();
+  left.state = WorkerState::kLeft;
+  dispatcher_.On("forger", left, 0.1);
+  dispatcher_.On("forger", Report{"w", kEpoch, 1, kFlight, {{attempt, ResultOf(0)}}, {}}, 0.2);
+  dispatcher_.On("forger", CampaignRefusal{"w", kEpoch, kFlight, "no"}, 0.3);
+  EXPECT_EQ(dispatcher_.joined(), 1u);
+  EXPECT_EQ(Progress().done, 0u);
+  EXPECT_EQ(dispatcher_.refused_messages(), 3u);
+  // Until it is gone, or silent for long: then the worker has made its connection anew.
+  dispatcher_.Gone("s");
+  dispatcher_.On("s2", Status(), 0.4);
+  dispatcher_.On("s2", Report{"w", kEpoch, 1, kFlight, {{attempt, ResultOf(0)}}, {}}, 0.5);
+  EXPECT_EQ(Progress().done, 1u);
+}
+
+TEST_F(DispatcherTest, AStrangersReportIsNotCounted) {
+  Open(2);
+  Fly(1, 0, 0.0);
+  EXPECT_EQ(Progress().done, 0u);
+  dispatcher_.On("s", Status(), 0.1);
+  Fly(1, 77, 0.2);
+  EXPECT_EQ(dispatcher_.refused_messages(), 1u) << "a case that does not exist";
+  EXPECT_EQ(Progress().done, 0u);
+}
+
+TEST_F(DispatcherTest, NoWorkerTakesMoreThanCreditsOfABatch) {
+  Open(100000);
+  WorkerStatus greedy = Status();
+  greedy.credits = 60000;
+  dispatcher_.On("s", greedy, 0.0);
+  dispatcher_.On("s2", Status("other"), 0.0);
+  std::size_t given = 0;
+  for (const Orders& orders : dispatcher_.Tick(0.0)) given += orders.assignments.size();
+  EXPECT_LE(given, 200u) << "another worker that comes finds cases left";
+}
+
+TEST_F(DispatcherTest, ADrainingWorkerKeepsWhatItFliesAndGetsNoMore) {
+  Open(4);
+  dispatcher_.On("s", Status(), 0.0);
+  const Orders orders = Tick(0.0);
+  WorkerStatus drains = Status();
+  drains.state = WorkerState::kDraining;
+  drains.held = {orders.assignments.at(0).attempt};
+  drains.started = {{orders.assignments[0].cases.at(0), orders.assignments[0].attempt}};
+  dispatcher_.On("s", drains, 0.5);
+  EXPECT_EQ(Progress().assigned, 1u);
+  EXPECT_THAT(Tick(0.6).assignments, IsEmpty());
+}
+
+TEST_F(DispatcherTest, CampaignsOfAHigherPriorityFirstAndEqualOnesShare) {
+  CampaignBook low(MadeUp(std::string(64, '1'), 50), std::make_unique<MemoryStore>(), {.attempt_base = 1000});
+  CampaignBook one(MadeUp(std::string(64, '2'), 50), std::make_unique<MemoryStore>(), {.attempt_base = 2000});
+  CampaignBook two(MadeUp(std::string(64, '3'), 50), std::make_unique<MemoryStore>(), {.attempt_base = 3000});
+  dispatcher_.Open(low, 0);
+  dispatcher_.Open(one, 5);
+  dispatcher_.Open(two, 5);
+  WorkerStatus status = Status();
+  status.credits = 20;
+  dispatcher_.On("s", status, 0.0);
+  Tick(0.0);
+  EXPECT_EQ(low.ledger().Progress().assigned, 0u);
+  EXPECT_EQ(one.ledger().Progress().assigned, 10u);
+  EXPECT_EQ(two.ledger().Progress().assigned, 10u);
+}
+
+TEST_F(DispatcherTest, GivesOutATextInParts) {
+  Open(1);
+  EXPECT_FALSE(dispatcher_.On(TextRequest{"w", kFlight, 0}, 4)) << "to no stranger";
+  dispatcher_.On("s", Status(), 0.0);
+  EXPECT_EQ(dispatcher_.On(TextRequest{"w", kFlight, 0}, 4)->bytes, "0123");
+  EXPECT_EQ(dispatcher_.On(TextRequest{"w", kFlight, 8}, 4)->bytes, "89");
+  EXPECT_EQ(dispatcher_.On(TextRequest{"w", kFlight, 8}, 4)->size, 10u);
+  EXPECT_FALSE(dispatcher_.On(TextRequest{"w", kFlight, 11}, 4));
+  EXPECT_FALSE(dispatcher_.On(TextRequest{"w", std::string(64, 'e'), 0}, 4));
+}
+
+}  // namespace
+}  // namespace dispersa

@@ -1,0 +1,196 @@
+// A worker's rules with made-up time and messages.
+#include "services/worker/flight_desk.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace dispersa {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+const std::string kFlight(64, 'f');
+
+class FlightDeskTest : public testing::Test {
+ protected:
+  FlightDesk desk_{{.worker = "w", .engine_version = "e", .slots = 1}, 0.0};
+
+  Orders Say(std::vector<FlyOrder> assignments, std::uint64_t epoch = 7) {
+    return {"w", epoch, std::move(assignments), {}, {}, false, ""};
+  }
+  void Load(double now_s = 0.0) {
+    ASSERT_THAT(desk_.Tick(now_s).text_requests, SizeIs(1));
+    desk_.On(TextPart{"w", kFlight, "name", "e", 4, 0, "te"}, now_s);
+    EXPECT_FALSE(desk_.TakeText());
+    desk_.On(TextPart{"w", kFlight, "name", "e", 4, 0, "te"}, now_s);  // again
+    desk_.On(TextPart{"w", kFlight, "name", "e", 4, 2, "xt"}, now_s);
+    EXPECT_EQ(desk_.TakeText().value().text, "text");
+    EXPECT_FALSE(desk_.TakeText());
+    desk_.Loaded(kFlight, nullptr, "");
+  }
+};
+
+TEST_F(FlightDeskTest, TheStartIsReportedBeforeTheCaseIsFlown) {
+  desk_.On(Say({{kFlight, 3, {10, 11}}}), 0.0);
+  EXPECT_FALSE(desk_.Next(0.0)) << "no text yet";
+  Load();
+  const auto first = desk_.Next(0.0);
+  ASSERT_TRUE(first);
+  auto reports = desk_.TakeReports(0.0);
+  ASSERT_THAT(reports, SizeIs(1));
+  EXPECT_THAT(reports[0].started, ElementsAre(StartedCase{10, 3}));
+  EXPECT_THAT(desk_.Status(WorkerState::kFlying).started, ElementsAre(StartedCase{10, 3}));
+  desk_.Done(*first, {}, 1.0);
+  // The result travels with the start of the next.
+  ASSERT_TRUE(desk_.Next(1.0));
+  reports = desk_.TakeReports(1.0);
+  ASSERT_THAT(reports, SizeIs(1));
+  EXPECT_THAT(reports[0].flown, SizeIs(1));
+  EXPECT_THAT(reports[0].started, ElementsAre(StartedCase{11, 3}));
+}
+
+TEST_F(FlightDeskTest, CasesThatTakeNoTimeAreAnnouncedTogether) {
+  std::vector<std::uint64_t> cases(40);
+  for (std::size_t i = 0; i < cases.size(); ++i) cases[i] = i;
+  desk_.On(Say({{kFlight, 3, cases}}), 0.0);
+  Load();
+  std::size_t messages = 0;
+  double now_s = 0.0;
+  while (const auto job = desk_.Next(now_s)) {
+    messages += desk_.TakeReports(now_s).size();
+    now_s += 0.0005;
+    desk_.Done(*job, {}, now_s);
+  }
+  messages += desk_.TakeReports(now_s).size();
+  EXPECT_LE(messages, 7u);  // the first alone, then ten together
+}
+
+TEST_F(FlightDeskTest, RepeatsAReportUntilItIsAcknowledged) {
+  desk_.On(Say({{kFlight, 3, {10}}}), 0.0);
+  Load();
+  desk_.Done(*desk_.Next(0.0), {}, 0.1);
+  EXPECT_FALSE(desk_.Next(0.1));
+  const auto reports = desk_.TakeReports(0.1);
+  ASSERT_THAT(reports, SizeIs(2));  // the start, the result, which has no next start to travel with
+  const std::uint64_t number = reports.back().number;
+  EXPECT_THAT(desk_.Tick(1.0).reports, IsEmpty());
+  desk_.On(Say({}), 2.0);
+  EXPECT_THAT(desk_.Tick(2.2).reports, SizeIs(1));
+  EXPECT_THAT(desk_.Tick(2.3).reports, IsEmpty());
+  EXPECT_THAT(desk_.Status(WorkerState::kReady).held, ElementsAre(3));
+  desk_.On(Say({{kFlight, 3, {10}}}), 2.5);  // the same order again
+  EXPECT_FALSE(desk_.Next(2.5));
+  Orders acknowledges = Say({});
+  acknowledges.acknowledged = {number};
+  desk_.On(acknowledges, 3.0);
+  EXPECT_THAT(desk_.Status(WorkerState::kReady).held, IsEmpty());
+  EXPECT_TRUE(desk_.IsIdle());
+  desk_.On(Say({}), 9.0);
+  EXPECT_THAT(desk_.Tick(9.0).reports, IsEmpty());
+}
+
+TEST_F(FlightDeskTest, AnotherCoordinatorsOrdersReplaceTheLastOnes) {
+  desk_.On(Say({{kFlight, 3, {10, 11}}}), 0.0);
+  Load();
+  const auto old = desk_.Next(0.0);
+  desk_.On(Say({{kFlight, 3, {20}}}, 8), 0.5);
+  EXPECT_THAT(desk_.Status(WorkerState::kReady).started, IsEmpty());
+  const auto job = desk_.Next(0.5);
+  ASSERT_TRUE(job);
+  EXPECT_EQ(job->case_index, 20u);
+  EXPECT_EQ(job->coordinator_epoch, 8u);
+  EXPECT_FALSE(desk_.Next(0.5)) << "case 11 is nobody's wish any more";
+  // What was flown for the last one counts, in its name.
+  desk_.Done(*old, {}, 0.6);
+  for (const Report& report : desk_.TakeReports(0.6)) {
+    if (!report.flown.empty()) {
+      EXPECT_EQ(report.coordinator_epoch, 7u);
+    }
+  }
+  EXPECT_THAT(desk_.Status(WorkerState::kReady).held, ElementsAre(3));
+}
+
+TEST_F(FlightDeskTest, WhatIsRevokedIsNotBegun) {
+  desk_.On(Say({{kFlight, 3, {10}}, {kFlight, 4, {11}}}), 0.0);
+  Load();
+  Orders revokes = Say({});
+  revokes.revoked = {3, 99};
+  desk_.On(revokes, 0.1);
+  EXPECT_EQ(desk_.Next(0.1).value().case_index, 11u);
+  EXPECT_FALSE(desk_.Next(0.1));
+}
+
+TEST_F(FlightDeskTest, ACampaignThatDoesNotLoadIsRefusedEachTime) {
+  desk_.On(Say({{kFlight, 3, {10}}}), 0.0);
+  desk_.Tick(0.0);
+  desk_.On(TextPart{"w", kFlight, "name", "e", 1, 0, "x"}, 0.0);
+  desk_.TakeText();
+  desk_.Loaded(kFlight, nullptr, "line 1: bad");
+  auto refusals = desk_.Tick(0.1).refusals;
+  ASSERT_THAT(refusals, SizeIs(1));
+  EXPECT_EQ(refusals[0].reason, "line 1: bad");
+  EXPECT_THAT(desk_.Status(WorkerState::kReady).held, IsEmpty());
+  EXPECT_THAT(desk_.Tick(0.2).refusals, IsEmpty());
+  desk_.On(Say({{kFlight, 3, {10}}}), 2.0);  // the refusal got lost
+  EXPECT_THAT(desk_.Tick(2.1).refusals, SizeIs(1));
+}
+
+TEST_F(FlightDeskTest, WithoutAWordTheConnectionIsMadeAnewEverMoreSeldom) {
+  std::vector<double> anew;
+  for (double now_s = 0.0; now_s < 100.0; now_s += 0.5) {
+    if (desk_.Tick(now_s).new_connection) anew.push_back(now_s);
+  }
+  EXPECT_THAT(anew, ElementsAre(5.5, 16.0, 36.5, 67.0, 97.5));
+  desk_.On(Say({}), 100.0);
+  EXPECT_FALSE(desk_.Tick(104.9).new_connection);
+  EXPECT_TRUE(desk_.Tick(105.1).new_connection);
+}
+
+TEST_F(FlightDeskTest, SaysThatItLivesTwiceASecondWhateverHappens) {
+  int said = 0;
+  for (int i = 0; i < 1000; ++i) said += desk_.Tick(0.01 * i).status.has_value();
+  EXPECT_GE(said, 19);
+  EXPECT_LE(said, 21);
+}
+
+TEST_F(FlightDeskTest, FlyingWaitsWhileResultsAreNotStored) {
+  FlightDesk desk({.worker = "w", .engine_version = "e", .slots = 1, .max_unstored = 2}, 0.0);
+  desk.On(Say({{kFlight, 3, {1, 2, 3}}}), 0.0);
+  desk.Tick(0.0);
+  desk.On(TextPart{"w", kFlight, "name", "e", 1, 0, "x"}, 0.0);
+  desk.TakeText();
+  desk.Loaded(kFlight, nullptr, "");
+  std::vector<std::uint64_t> numbers;
+  for (int i = 0; i < 2; ++i) {
+    desk.Done(*desk.Next(i), {}, i + 0.5);
+  }
+  EXPECT_FALSE(desk.Next(2.0));
+  for (const Report& report : desk.TakeReports(2.0)) numbers.push_back(report.number);
+  Orders acknowledges = Say({});
+  acknowledges.acknowledged = numbers;
+  desk.On(acknowledges, 2.1);
+  EXPECT_TRUE(desk.Next(2.2));
+}
+
+TEST_F(FlightDeskTest, DrainedItHandsBackWhatItHasNotBegun) {
+  desk_.On(Say({{kFlight, 3, {10, 11}}, {kFlight, 4, {12}}}), 0.0);
+  Load();
+  const auto job = desk_.Next(0.0);
+  desk_.Drain();
+  EXPECT_FALSE(desk_.Next(0.1));
+  const auto status = desk_.Tick(0.1).status;
+  ASSERT_TRUE(status);
+  EXPECT_EQ(status->state, WorkerState::kDraining);
+  EXPECT_THAT(status->held, ElementsAre(3));
+  EXPECT_THAT(status->started, ElementsAre(StartedCase{10, 3}));
+  desk_.On(Say({{kFlight, 5, {13}}}), 0.2);
+  EXPECT_FALSE(desk_.Next(0.2));
+  EXPECT_FALSE(desk_.IsIdle());
+  desk_.Done(*job, {}, 1.0);
+  EXPECT_FALSE(desk_.IsIdle()) << "its result is not stored yet";
+}
+
+}  // namespace
+}  // namespace dispersa

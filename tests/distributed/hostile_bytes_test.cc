@@ -1,0 +1,229 @@
+// Bytes from strangers: what a decoder or the middleware could be harmed by is told from what is well-formed.
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <random>
+#include <vector>
+
+#include "services/transport/convert.h"
+#include "services/transport/endpoints.h"
+#include "services/transport/sieve.h"
+#include "services/transport/wire_shape.h"
+
+namespace dispersa {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+/// How many mutated samples a fuzzing test tries; tests/run --long sets more.
+std::uint64_t Inputs() {
+  const char* text = std::getenv("DISPERSA_FUZZ_INPUTS");
+  return text == nullptr ? 100'000 : std::strtoull(text, nullptr, 10);
+}
+
+template <typename PubSubType>
+Bytes Encode(typename PubSubType::type message) {
+  GuardedType<PubSubType> type;
+  const auto size = type.getSerializedSizeProvider(&message)();
+  eprosima::fastrtps::rtps::SerializedPayload_t payload(size);
+  EXPECT_TRUE(type.serialize(&message, &payload));
+  return Bytes(payload.data, payload.data + payload.length);
+}
+
+/// False: refused.
+template <typename PubSubType>
+bool Decode(const Bytes& bytes, typename PubSubType::type* message) {
+  GuardedType<PubSubType> type;
+  eprosima::fastrtps::rtps::SerializedPayload_t payload(
+      static_cast<std::uint32_t>(std::max<std::size_t>(bytes.size(), 1)));
+  payload.length = static_cast<std::uint32_t>(bytes.size());
+  if (!bytes.empty()) std::memcpy(payload.data, bytes.data(), bytes.size());
+  EXPECT_TRUE(type.deserialize(&payload, message));
+  return !GuardedType<PubSubType>::refused;
+}
+
+Report SampleReport() {
+  Report report{"worker", 99, 3, std::string(64, 'f'), {}, {{8, 3}, {9, 3}}};
+  CaseResult result;
+  result.reason = "why";
+  result.inputs = {1.0, 2.0, 3.0};
+  result.metrics = {};
+  report.flown = {{1, result}, {2, result}};
+  return report;
+}
+Orders SampleOrders() {
+  return {"w", 7, {{"flight", 3, {1, 2}}, {"flight", 4, {}}}, {}, {6, 7}, true, "because"};
+}
+WorkerStatus SampleStatus() {
+  return {"u", "host", 42, "engine", 3, 4, WorkerState::kFlying, 17, 99, {5, 6}, {{7, 5}}};
+}
+
+/// Decodes the sample, and the sample damaged in many ways; each must be refused or decoded, and nothing else
+/// happen.
+template <typename PubSubType>
+void Fuzz(const typename PubSubType::type& sample) {
+  typename PubSubType::type message;
+  const Bytes good = Encode<PubSubType>(sample);
+  ASSERT_TRUE(Decode<PubSubType>(good, &message));
+  ASSERT_TRUE(Encode<PubSubType>(message) == good);
+  std::mt19937_64 chance(17);
+  for (std::uint64_t i = 0; i < Inputs(); ++i) {
+    Bytes bytes = good;
+    for (std::uint64_t k = chance() % 4; k < 4; ++k) {
+      const std::size_t at = chance() % bytes.size();
+      switch (chance() % 4) {
+        case 0:
+          bytes[at] = static_cast<std::uint8_t>(chance());
+          break;
+        case 1:
+          bytes.resize(at + 1);
+          break;
+        case 2:
+          std::fill(bytes.begin() + static_cast<std::ptrdiff_t>(at),
+                    bytes.begin() + static_cast<std::ptrdiff_t>(std::min(at + 4, bytes.size())), 0xff);
+          break;
+        default:
+          bytes.insert(bytes.begin() + static_cast<std::ptrdiff_t>(at), chance() % 9, 0);
+      }
+    }
+    if (!Decode<PubSubType>(bytes, &message)) continue;
+    if (const auto plain = FromIdl(message)) (void)Problem(*plain);
+  }
+}
+
+TEST(HostileBytes, EveryDecoderSurvivesDamagedSamples) {
+  Fuzz<idl::ReportV2PubSubType>(ToIdl(SampleReport()));
+  Fuzz<idl::OrdersV1PubSubType>(ToIdl(SampleOrders()));
+  Fuzz<idl::WorkerStatusV2PubSubType>(ToIdl(SampleStatus()));
+  Fuzz<idl::TextRequestV1PubSubType>(ToIdl(TextRequest{"w", "f", 3}));
+  Fuzz<idl::TextV1PubSubType>(ToIdl(TextPart{"w", "f", "n", "e", 9, 2, "bytes"}));
+  Fuzz<idl::CampaignRefusalV1PubSubType>(ToIdl(CampaignRefusal{"w", 1, "f", "r"}));
+  Fuzz<idl::ProgressV1PubSubType>(ToIdl(CampaignProgress{1, "i", "f", "n", "s", 2, 3, 4, 5, 6}));
+  Fuzz<idl::RequestV1PubSubType>(ToIdl(Request{"c", 1, "list", "{}", "data"}));
+  Fuzz<idl::ReplyV1PubSubType>(ToIdl(Reply{"c", 1, 0, "{}", "data"}));
+}
+
+TEST(HostileBytes, SevenBytesAreRefused) {
+  const Bytes seven = {0xff, 0xff, 0xff, 0xff, 1, 2, 3};
+  idl::ReportV2 report;
+  EXPECT_FALSE(Decode<idl::ReportV2PubSubType>(seven, &report));
+  idl::TextV1 text;
+  EXPECT_FALSE(Decode<idl::TextV1PubSubType>(seven, &text));
+  EXPECT_FALSE(Decode<idl::TextV1PubSubType>({}, &text));
+}
+
+TEST(HostileBytes, ASequenceThatSaysToBeLongerThanItsSampleIsNotAllocated) {
+  Bytes bytes = Encode<idl::RequestV1PubSubType>(ToIdl(Request{"c", 1, "list", "{}", "data"}));
+  // The length of the data stands before its four bytes.
+  for (std::uint8_t size : {std::uint8_t{5}, std::uint8_t{0xff}}) {
+    bytes[bytes.size() - 8] = size;
+    if (size == 0xff) std::fill(bytes.end() - 8, bytes.end() - 4, 0xff);
+    idl::RequestV1 request;
+    EXPECT_FALSE(Decode<idl::RequestV1PubSubType>(bytes, &request)) << int{size};
+  }
+  EXPECT_FALSE(HasShape("[B]", Bytes(kMaxSampleBytes + 1, 0).data(), kMaxSampleBytes + 1));
+}
+
+TEST(HostileBytes, AnUnknownStateOrOutcomeIsNoMessage) {
+  idl::WorkerStatusV2 status = ToIdl(SampleStatus());
+  status.state(static_cast<idl::WorkerStateV2>(4));
+  EXPECT_FALSE(FromIdl(status));
+  idl::ReportV2 report = ToIdl(SampleReport());
+  report.flown()[0].outcome("exploded");
+  EXPECT_FALSE(FromIdl(report));
+}
+
+// ---- datagrams
+
+void Put32(Bytes& bytes, std::uint32_t value) {
+  for (int i = 0; i < 4; ++i) bytes.push_back(static_cast<std::uint8_t>(value >> 8 * i));
+}
+void PutNumber(Bytes& bytes, std::uint64_t number) {
+  Put32(bytes, static_cast<std::uint32_t>(number >> 32));
+  Put32(bytes, static_cast<std::uint32_t>(number));
+}
+Bytes Datagram(std::uint8_t kind, const Bytes& body) {
+  Bytes bytes = {'R', 'T', 'P', 'S', 2, 3, 1, 15};
+  bytes.resize(20);
+  bytes.insert(bytes.end(), {kind, 1, static_cast<std::uint8_t>(body.size()),
+                             static_cast<std::uint8_t>(body.size() >> 8)});
+  bytes.insert(bytes.end(), body.begin(), body.end());
+  return bytes;
+}
+std::string Harm(const Bytes& bytes) {
+  const char* harm = HarmOf(bytes.data(), bytes.size());
+  return harm == nullptr ? "none" : harm;
+}
+Bytes Gap(std::uint64_t first, std::uint64_t base, std::uint32_t bits = 0) {
+  Bytes body(8);
+  PutNumber(body, first);
+  PutNumber(body, base);
+  Put32(body, bits);
+  return Datagram(0x08, body);
+}
+Bytes Heartbeat(std::uint64_t first, std::uint64_t last) {
+  Bytes body(8);
+  PutNumber(body, first);
+  PutNumber(body, last);
+  Put32(body, 1);
+  return Datagram(0x07, body);
+}
+Bytes Fragment(std::uint32_t number, std::uint16_t size, std::uint32_t sample) {
+  Bytes body(20);
+  body[2] = 28;
+  Put32(body, number);
+  Put32(body, 1u | std::uint32_t{size} << 16);
+  Put32(body, sample);
+  body.resize(64);
+  return Datagram(0x16, body);
+}
+
+TEST(Sieve, LetsTheProtocolPass) {
+  EXPECT_EQ(Harm(Gap(1, 2)), "none");
+  EXPECT_EQ(Harm(Gap(1, 1'000'001, 256)), "none");
+  EXPECT_EQ(Harm(Heartbeat(1, 0)), "none") << "nothing written yet";
+  EXPECT_EQ(Harm(Heartbeat(5000, 5511)), "none");
+  EXPECT_EQ(Harm(Fragment(4, 65000, 256 << 10)), "none");
+  EXPECT_EQ(Harm(Datagram(0x09, Bytes(8))), "none");
+}
+
+TEST(Sieve, DropsWhatWouldStopOrFillTheMiddleware) {
+  EXPECT_EQ(Harm(Gap(1, 1'000'000'000)), "a GAP of an absurd range");
+  EXPECT_EQ(Harm(Gap(1, std::uint64_t{1} << 62)), "a GAP of an absurd range");
+  EXPECT_EQ(Harm(Gap(5, 4)), "a GAP of an absurd range");
+  EXPECT_EQ(Harm(Gap(0, 4)), "a GAP of an absurd range");
+  EXPECT_EQ(Harm(Gap(1, 2, 257)), "a GAP of an absurd range");
+  EXPECT_EQ(Harm(Datagram(0x08, Bytes(20))), "a GAP that is cut off");
+  EXPECT_EQ(Harm(Heartbeat(1, 1'000'000'000)), "a HEARTBEAT of an absurd range");
+  EXPECT_EQ(Harm(Heartbeat(0, 1)), "a HEARTBEAT of an absurd range");
+  EXPECT_EQ(Harm(Fragment(1, 65000, 50'000'000)), "a sample of more than 1 MiB");
+  EXPECT_EQ(Harm(Fragment(9, 65000, 256 << 10)), "a fragment outside of its sample");
+  EXPECT_EQ(Harm(Fragment(0, 65000, 256 << 10)), "a fragment outside of its sample");
+  EXPECT_EQ(Harm(Fragment(1, 0, 256 << 10)), "a fragment outside of its sample");
+  EXPECT_EQ(Harm(Bytes{'H', 'T', 'T', 'P'}), "not of the protocol");
+  Bytes cut = Gap(1, 2);
+  cut.pop_back();
+  EXPECT_EQ(Harm(cut), "a submessage that is cut off");
+}
+
+TEST(Sieve, JudgesAnyDatagram) {
+  std::mt19937_64 chance(3);
+  for (std::uint64_t i = 0; i < Inputs(); ++i) {
+    Bytes bytes = chance() % 2 == 0 ? Gap(chance() % 9, chance() % 99) : Fragment(1, 100, 2000);
+    for (std::uint64_t k = chance() % 8; k > 0; --k)
+      bytes[20 + chance() % (bytes.size() - 20)] = static_cast<std::uint8_t>(chance());
+    bytes.resize(20 + chance() % (bytes.size() - 19));
+    (void)Harm(bytes);
+  }
+}
+
+TEST(Printable, KeepsALogClean) {
+  EXPECT_EQ(Printable("plain text"), "plain text");
+  EXPECT_EQ(Printable("\x1b[31mred\n\xc2\x9b"), "\\x1b[31mred\\x0a\\xc2\\x9b");
+  EXPECT_EQ(Printable(std::string(300, 'a')), std::string(200, 'a') + "...");
+}
+
+}  // namespace
+}  // namespace dispersa

@@ -1,0 +1,101 @@
+"""Coordinators killed at random moments of campaigns whose flights end at once: each must come to its end when it is resumed.
+
+Environment as of run_test.py. DISPERSA_RESTARTS: how many kills (default 15; tests/run --long: 300).
+"""
+import os
+import pathlib
+import random
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+from run_test import BINARIES, CAMPAIGN, ISOLATED, Run, isolate, raise_loopback, shared_memory_segments, stored
+
+RESTARTS = int(os.environ.get("DISPERSA_RESTARTS", "15"))
+CASES = 400
+# Seconds in which a resumed coordinator ends: a worker finds it within 2 s, or makes its connection anew within 30 s.
+LIMIT_S = 60
+NETWORK = ["--domain", "37", "--address", "127.0.0.1"]
+
+
+def write_tiny_campaign(folder):
+    """The campaign of the tests with a vehicle that its first second of flight breaks."""
+    source = pathlib.Path(CAMPAIGN)
+    vehicle = (source.parent / "vehicles/slv4.yaml").read_text() + "\nlimits: {axial_load_g: 0.5, terminate: true}\n"
+    (folder / "vehicle.yaml").write_text(vehicle)
+    text = source.read_text().replace("vehicles/slv4.yaml", str(folder / "vehicle.yaml"))
+    for name in ("references", "autopilots", "winds"):
+        text = text.replace(f" {name}/", f" {source.parent}/{name}/")
+    (folder / "tiny.yaml").write_text(text)
+    return folder / "tiny.yaml"
+
+
+class RestartTest(unittest.TestCase):
+    def setUp(self):
+        self.root = pathlib.Path(tempfile.mkdtemp(prefix="dispersa-restart-"))
+        self.processes = []
+        self.segments = shared_memory_segments()
+
+    def tearDown(self):
+        for process in self.processes:
+            if process.poll() is None:
+                process.kill()
+            process.wait()
+        self.assertEqual(shared_memory_segments(), self.segments)
+        shutil.rmtree(self.root)
+
+    def start(self, program, *arguments):
+        with (self.root / "log").open("a") as log:
+            self.processes.append(subprocess.Popen([BINARIES / program, *map(str, arguments), *NETWORK],
+                                                   stdout=subprocess.DEVNULL, stderr=log))
+        return self.processes[-1]
+
+    def test_a_resumed_coordinator_always_ends(self):
+        campaign = write_tiny_campaign(self.root)
+        reference = Run(self.root / "reference", "--workers", 0, "--cases", CASES, campaign=campaign).finish()
+        draws = random.Random(int(os.environ.get("DISPERSA_SEED", "1")))
+        restarts = cycles = 0
+        longest = 0.0
+        while restarts < RESTARTS:
+            cycles += 1
+            out = self.root / "out"
+            shutil.rmtree(out, ignore_errors=True)
+            (self.root / "log").write_text("")
+            self.processes = []
+            for _ in range(2):
+                self.start("dispersa-worker", "--peer", "127.0.0.1", "--slots", draws.choice([1, 2]))
+            arguments = ["dispersa-coordinator", campaign, "--cases", CASES, "--out", out, "--resume"]
+            coordinator = self.start(*arguments)
+            for _ in range(3):
+                time.sleep(draws.random() * 1.0)
+                if coordinator.poll() is not None:
+                    break
+                # SIGTERM too: it must not send the workers home.
+                coordinator.send_signal(draws.choice([signal.SIGKILL, signal.SIGKILL, signal.SIGTERM]))
+                coordinator.wait(timeout=30)
+                restarts += 1
+                coordinator = self.start(*arguments)
+            begun = time.monotonic()
+            try:
+                coordinator.wait(timeout=LIMIT_S)
+            except subprocess.TimeoutExpired:
+                self.fail(f"cycle {cycles}: {stored(out)} of {CASES} cases, then nothing:\n"
+                          f"{(self.root / 'log').read_text()[-4000:]}")
+            longest = max(longest, time.monotonic() - begun)
+            self.assertIn(coordinator.returncode, (0, 3, 4), (self.root / "log").read_text()[-4000:])
+            self.assertEqual((out / "cases.csv").read_bytes(), reference.csv(), f"cycle {cycles}")
+            for worker in self.processes[:2]:
+                worker.kill()
+                worker.wait()
+        print(f"{restarts} restarts in {cycles} campaigns; the longest wait for an end was {longest:.1f} s")
+
+
+if __name__ == "__main__":
+    if ISOLATED not in os.environ:
+        isolate()
+    else:
+        raise_loopback()
+    unittest.main()

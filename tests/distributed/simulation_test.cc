@@ -1,0 +1,321 @@
+// The real ledger, dispatcher and flight desks over a made-up network: messages are lost, repeated, reordered
+// and delayed, workers and coordinators die at any step, and still every campaign comes to its end with the
+// right results. DISPERSA_SIMULATED_WORLDS: how many worlds (default 2000; tests/run --long: 1,000,000).
+#include <gtest/gtest.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <map>
+#include <memory>
+#include <random>
+#include <set>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/engine/version.h"
+#include "core/report/fingerprint.h"
+#include "services/coordinator/dispatcher.h"
+#include "services/worker/flight_desk.h"
+
+namespace dispersa {
+namespace {
+
+constexpr double kStep_s = 0.1;
+constexpr std::size_t kTextPart = 5;  // bytes: a text takes several
+
+/// What survives a coordinator: a disk.
+struct Disk {
+  std::map<std::uint64_t, Digest> rows;
+  std::set<std::uint64_t> quarantined;
+};
+
+class DiskStore : public ResultStore {
+ public:
+  explicit DiskStore(Disk& disk) : disk_(disk) {}
+  std::size_t Append(std::span<const CaseResult> results) override {
+    for (const CaseResult& result : results) {
+      const auto [row, added] = disk_.rows.emplace(result.case_index, Fingerprint(result));
+      EXPECT_EQ(row->second, Fingerprint(result)) << "another result over the stored one";
+    }
+    return results.size();
+  }
+  void AppendExecution(std::span<const ExecutionRecord>) override {}
+  void Quarantine(const QuarantinedCase& quarantined) override {
+    disk_.quarantined.insert(quarantined.case_index);
+  }
+  std::vector<std::pair<std::uint64_t, Digest>> Fingerprints() const override {
+    return {disk_.rows.begin(), disk_.rows.end()};
+  }
+
+ private:
+  Disk& disk_;
+};
+
+CaseResult ResultOf(std::uint64_t case_index) {
+  CaseResult result;
+  result.case_index = case_index;
+  result.digest = {case_index, 7};
+  result.metrics = {static_cast<double>(case_index) / 3.0};
+  return result;
+}
+
+Campaign CampaignNumber(int number, std::uint64_t cases) {
+  Campaign campaign;
+  campaign.name = "c" + std::to_string(number);
+  campaign.flight_id = std::string(63, 'f') + std::to_string(number);
+  campaign.id = std::string(64, 'a');
+  campaign.canonical_yaml = "the text of campaign " + std::to_string(number);
+  campaign.sampling.cases = cases;
+  return campaign;
+}
+
+struct Weather {
+  double loss, repetition, worst_delay_s, worker_death, coordinator_death, freeze;
+};
+
+class World {
+ public:
+  World(std::uint64_t seed, const Weather& weather)
+      : chance_(seed), weather_(weather), campaigns_(1 + Draw(2)), disks_(campaigns_) {
+    for (int c = 0; c < campaigns_; ++c) cases_.push_back(1 + Draw(8));
+    StartCoordinator();
+    for (int w = 0; w < 1 + Draw(3); ++w) StartWorker(w);
+  }
+
+  /// Troubles end at `calm_s`; returns when all is done, or never.
+  bool Run(double calm_s, double limit_s) {
+    for (; now_s_ < limit_s; now_s_ += kStep_s) {
+      if (now_s_ < calm_s) {
+        Trouble();
+      } else {
+        weather_ = {};
+      }
+      Deliver();
+      StepWorkers();
+      if (StepCoordinator()) return true;
+    }
+    return false;
+  }
+
+  void Check() const {
+    for (int c = 0; c < campaigns_; ++c) {
+      ASSERT_EQ(disks_[c].rows.size() + quarantined_at_end_[c], cases_[c]);
+      for (const auto& [case_index, fingerprint] : disks_[c].rows) {
+        ASSERT_EQ(fingerprint, Fingerprint(ResultOf(case_index)));
+      }
+    }
+    ASSERT_EQ(conflicts_, 0u);
+  }
+  double now_s() const { return now_s_; }
+  std::string Tell() const {
+    std::string text;
+    for (int c = 0; c < campaigns_; ++c) {
+      text += std::to_string(disks_[c].rows.size()) + "/" + std::to_string(cases_[c]) + " stored; ";
+    }
+    for (const auto& [slot, worker] : workers_) {
+      const WorkerStatus status = worker.desk->Status(WorkerState::kReady);
+      text += worker.name + " holds " + std::to_string(status.held.size()) + ", flies " +
+              std::to_string(worker.flying.size()) + "; ";
+    }
+    return text;
+  }
+
+ private:
+  using Message = std::variant<WorkerStatus, Report, TextRequest, CampaignRefusal, Orders, TextPart>;
+  struct Packet {
+    double due_s;
+    std::string from, to;  ///< connections; "" is the coordinator
+    Message message;
+  };
+  struct Flight {
+    Job job;
+    double ends_s;
+  };
+  struct SimWorker {
+    std::string name, connection;
+    std::unique_ptr<FlightDesk> desk;
+    std::vector<Flight> flying;
+    double frozen_until_s = 0.0;
+    std::uint32_t slots = 1;
+  };
+
+  int Draw(int n) { return static_cast<int>(chance_() % static_cast<unsigned>(n)); }
+  bool Happens(double probability) {
+    return probability > 0.0 && std::uniform_real_distribution<>(0.0, 1.0)(chance_) < probability;
+  }
+
+  void StartCoordinator() {
+    ++epoch_;
+    books_.clear();
+    dispatcher_ = std::make_unique<Dispatcher>(epoch_, EngineVersion());
+    for (int c = 0; c < campaigns_; ++c) {
+      books_.push_back(std::make_unique<CampaignBook>(
+          CampaignNumber(c, cases_[c]), std::make_unique<DiskStore>(disks_[c]),
+          LedgerOptions{.lease_s = 20.0, .attempt_base = static_cast<std::uint64_t>(c) << 32}));
+      dispatcher_->Open(*books_.back(), c % 2);
+    }
+    coordinator_frozen_until_s_ = now_s_ + (epoch_ > 1 ? 0.1 * Draw(60) : 0.0);
+  }
+  void StartWorker(int slot) {
+    SimWorker worker;
+    worker.name = "w" + std::to_string(slot) + "n" + std::to_string(++incarnations_);
+    worker.slots = 1 + static_cast<std::uint32_t>(Draw(2));
+    worker.desk = std::make_unique<FlightDesk>(
+        FlightDeskOptions{.worker = worker.name, .engine_version = EngineVersion(), .slots = worker.slots},
+        now_s_);
+    worker.connection = worker.name + "c0";
+    workers_[slot] = std::move(worker);
+  }
+
+  void Trouble() {
+    if (Happens(weather_.coordinator_death)) StartCoordinator();
+    if (Happens(weather_.freeze)) coordinator_frozen_until_s_ = now_s_ + 0.1 * Draw(100);
+    for (auto& [slot, worker] : workers_) {
+      if (Happens(weather_.freeze)) worker.frozen_until_s = now_s_ + 0.1 * Draw(100);
+      if (Happens(weather_.worker_death)) StartWorker(slot);
+    }
+  }
+
+  void Send(const std::string& from, const std::string& to, Message message) {
+    const int copies = Happens(weather_.loss) ? 0 : Happens(weather_.repetition) ? 2 : 1;
+    for (int i = 0; i < copies; ++i) {
+      const double delay_s = std::uniform_real_distribution<>(0.0, weather_.worst_delay_s + 1e-3)(chance_);
+      packets_.push_back({now_s_ + delay_s, from, to, message});
+    }
+  }
+
+  void Deliver() {
+    std::vector<Packet> due;
+    std::erase_if(packets_, [&](Packet& packet) {
+      if (packet.due_s > now_s_) return false;
+      due.push_back(std::move(packet));
+      return true;
+    });
+    std::shuffle(due.begin(), due.end(), chance_);
+    for (Packet& packet : due) {
+      if (packet.to.empty()) {
+        if (coordinator_frozen_until_s_ > now_s_) {
+          packet.due_s = coordinator_frozen_until_s_;
+          packets_.push_back(std::move(packet));
+        } else {
+          ToCoordinator(packet);
+        }
+        continue;
+      }
+      for (auto& [slot, worker] : workers_) {
+        if (worker.connection != packet.to && worker.name != packet.to) continue;
+        if (const auto* orders = std::get_if<Orders>(&packet.message)) worker.desk->On(*orders, now_s_);
+        if (const auto* part = std::get_if<TextPart>(&packet.message)) worker.desk->On(*part, now_s_);
+      }
+    }
+  }
+  void ToCoordinator(const Packet& packet) {
+    if (const auto* status = std::get_if<WorkerStatus>(&packet.message))
+      dispatcher_->On(packet.from, *status, clock_s_);
+    if (const auto* report = std::get_if<Report>(&packet.message))
+      dispatcher_->On(packet.from, *report, clock_s_);
+    if (const auto* refusal = std::get_if<CampaignRefusal>(&packet.message)) {
+      dispatcher_->On(packet.from, *refusal, clock_s_);
+    }
+    if (const auto* request = std::get_if<TextRequest>(&packet.message)) {
+      if (const auto part = dispatcher_->On(*request, kTextPart)) Send("", part->worker, *part);
+    }
+  }
+
+  void StepWorkers() {
+    for (auto& [slot, worker] : workers_) {
+      if (worker.frozen_until_s > now_s_) continue;
+      FlightDesk& desk = *worker.desk;
+      std::erase_if(worker.flying, [&](Flight& flight) {
+        if (flight.ends_s > now_s_) return false;
+        desk.Done(flight.job, ResultOf(flight.job.case_index), now_s_);
+        return true;
+      });
+      while (const auto text = desk.TakeText()) {
+        const bool whole = text->text == CampaignNumber(text->flight_id.back() - '0', 1).canonical_yaml;
+        desk.Loaded(text->flight_id, nullptr, whole ? "" : "half a text");
+      }
+      while (worker.flying.size() < worker.slots) {
+        auto job = desk.Next(now_s_);
+        if (!job) break;
+        worker.flying.push_back({*std::move(job), now_s_ + 0.02 * Draw(100)});
+      }
+      for (Report& report : desk.TakeReports(now_s_)) Send(worker.connection, "", std::move(report));
+      const FlightDesk::Due due = desk.Tick(now_s_);
+      if (due.new_connection) worker.connection = worker.name + "c" + std::to_string(++connections_);
+      if (due.status) Send(worker.connection, "", *due.status);
+      for (const Report& report : due.reports) Send(worker.connection, "", report);
+      for (const TextRequest& request : due.text_requests) Send(worker.connection, "", request);
+      for (const CampaignRefusal& refusal : due.refusals) Send(worker.connection, "", refusal);
+    }
+  }
+
+  bool StepCoordinator() {
+    if (coordinator_frozen_until_s_ > now_s_) return false;
+    clock_s_ += kStep_s;  // stands still while it is frozen, as Coordinator's clock does
+    for (Orders& orders : dispatcher_->Tick(clock_s_)) {
+      const std::string to = orders.worker;
+      Send("", to, std::move(orders));
+    }
+    bool complete = true;
+    for (const auto& book : books_) complete = complete && book->ledger().Complete();
+    if (!complete) return false;
+    quarantined_at_end_.clear();
+    for (const auto& book : books_) {
+      book->Flush();
+      conflicts_ += book->ledger().Progress().conflicts;
+      quarantined_at_end_.push_back(book->ledger().Progress().quarantined);
+    }
+    return true;
+  }
+
+  std::mt19937_64 chance_;
+  Weather weather_;
+  int campaigns_;
+  std::vector<std::uint64_t> cases_;
+  std::vector<Disk> disks_;
+  double now_s_ = 0.0, clock_s_ = 0.0;
+  std::uint64_t epoch_ = 0;
+  int incarnations_ = 0, connections_ = 0;
+  double coordinator_frozen_until_s_ = 0.0;
+  std::vector<std::unique_ptr<CampaignBook>> books_;
+  std::unique_ptr<Dispatcher> dispatcher_;
+  std::map<int, SimWorker> workers_;
+  std::vector<Packet> packets_;
+  std::vector<std::uint64_t> quarantined_at_end_;
+  std::uint64_t conflicts_ = 0;
+};
+
+std::uint64_t Worlds() {
+  const char* text = std::getenv("DISPERSA_SIMULATED_WORLDS");
+  return text == nullptr ? 2000 : std::strtoull(text, nullptr, 10);
+}
+
+TEST(Simulation, EveryWorldComesToItsEndSoonAfterItsTroubles) {
+  spdlog::set_level(spdlog::level::off);
+  constexpr double kCalm_s = 20.0;
+  // What may be under way when the troubles end: a lease of 20 s, a connection made anew after 30 s, and the
+  // same again.
+  constexpr double kLimit_s = kCalm_s + 120.0;
+  double latest_s = 0.0;
+  for (std::uint64_t seed = 1; seed <= Worlds(); ++seed) {
+    std::mt19937_64 chance(seed * 977);
+    const auto up_to = [&](double most) {
+      return chance() % 3 == 0 ? 0.0 : std::uniform_real_distribution<>(0.0, most)(chance);
+    };
+    const Weather weather = {up_to(0.6), up_to(0.3), up_to(3.0), up_to(0.02), up_to(0.02), up_to(0.01)};
+    World world(seed, weather);
+    ASSERT_TRUE(world.Run(kCalm_s, kLimit_s)) << "world " << seed << " hangs: " << world.Tell();
+    world.Check();
+    ASSERT_FALSE(testing::Test::HasFailure()) << "world " << seed;
+    latest_s = std::max(latest_s, world.now_s());
+  }
+  RecordProperty("latest_s", std::to_string(latest_s));
+  std::printf("the last world ended %.1f s after the troubles\n", latest_s - kCalm_s);
+  spdlog::set_level(spdlog::level::info);
+}
+
+}  // namespace
+}  // namespace dispersa
