@@ -1,6 +1,13 @@
 #include "core/campaign/campaign_flights.h"
 
+#include <algorithm>
+#include <exception>
+#include <map>
+#include <mutex>
+#include <thread>
+
 #include "core/flight/flight.h"
+#include "core/flight/lane_engine.h"
 
 namespace dispersa {
 
@@ -23,6 +30,19 @@ FlightDefinition DefinitionOf(const Campaign& campaign) {
   return definition;
 }
 
+CaseResult ResultOf(std::uint64_t case_index, const FlightInputs& inputs, FlightResult flight) {
+  CaseResult result;
+  result.case_index = case_index;
+  result.outcome = flight.outcome;
+  result.end_time_s = flight.end_time_s;
+  result.end_stage = flight.end_stage;
+  result.reason = std::move(flight.reason);
+  result.inputs = InputValues(inputs);
+  result.metrics = std::move(flight.metrics);
+  result.digest = flight.digest;
+  return result;
+}
+
 }  // namespace
 
 CampaignFlights::CampaignFlights(const Campaign& campaign)
@@ -42,18 +62,117 @@ CaseResult CampaignFlights::Fly(const FlightInputs& inputs, std::uint64_t case_i
   options.scheme = scheme;
   options.case_index = case_index;
   options.history = history;
-  FlightResult flight = dispersa::Fly(*model_, inputs, options);
+  return ResultOf(case_index, inputs, dispersa::Fly(*model_, inputs, options));
+}
 
-  CaseResult result;
-  result.case_index = case_index;
-  result.outcome = flight.outcome;
-  result.end_time_s = flight.end_time_s;
-  result.end_stage = flight.end_stage;
-  result.reason = std::move(flight.reason);
-  result.inputs = InputValues(inputs);
-  result.metrics = std::move(flight.metrics);
-  result.digest = flight.digest;
-  return result;
+namespace {
+
+// The cases of a queue as flights of the engine.
+class FlyingCases : public FlightQueue {
+ public:
+  FlyingCases(const CampaignFlights& flights, CaseQueue& cases) : flights_(flights), cases_(cases) {}
+
+  FlightRecord* Next(bool idle) override {
+    const std::optional<std::uint64_t> case_index = cases_.Next(idle);
+    if (!case_index) return nullptr;
+    FlightOrder order{flights_.Draw(*case_index), {}};
+    order.options.case_index = *case_index;
+    auto record = std::make_unique<FlightRecord>(flights_.model(), order);
+    FlightRecord* const flying = record.get();
+    flying_[flying] = std::move(record);
+    return flying;
+  }
+  void Done(FlightRecord* record) override {
+    const auto ended = flying_.extract(record);
+    cases_.Done(ResultOf(record->options.case_index, record->inputs, record->Result()));
+  }
+
+ private:
+  const CampaignFlights& flights_;
+  CaseQueue& cases_;
+  std::map<FlightRecord*, std::unique_ptr<FlightRecord>> flying_;
+};
+
+// One thread's share of a list of cases.
+class FlyingOrders : public FlightQueue {
+ public:
+  // Common to the threads.
+  struct Shared {
+    const CampaignFlights& flights;
+    const std::vector<CaseOrder>& orders;
+    const CaseObserver& done;
+    std::mutex mutex = {};
+    std::size_t next = 0;
+    std::exception_ptr problem = {};
+  };
+
+  explicit FlyingOrders(Shared& shared) : shared_(shared) {}
+
+  FlightRecord* Next(bool) override {
+    std::size_t order = 0;
+    {
+      const std::lock_guard lock(shared_.mutex);
+      if (shared_.next == shared_.orders.size() || shared_.problem) return nullptr;
+      order = shared_.next++;
+    }
+    const CaseOrder& wanted = shared_.orders[order];
+    auto flight = std::make_unique<InFlight>();
+    flight->order = order;
+    FlightOrder to_fly{shared_.flights.Draw(wanted.case_index), {}};
+    to_fly.options.case_index = wanted.case_index;
+    if (wanted.history_step_s > 0.0) {
+      flight->history.step_s = wanted.history_step_s;
+      to_fly.options.history = &flight->history;
+    }
+    flight->record = std::make_unique<FlightRecord>(shared_.flights.model(), to_fly);
+    FlightRecord* const record = flight->record.get();
+    flying_[record] = std::move(flight);
+    return record;
+  }
+  void Done(FlightRecord* record) override {
+    const auto ended = flying_.extract(record);
+    CaseResult result = ResultOf(record->options.case_index, record->inputs, record->Result());
+    const std::lock_guard lock(shared_.mutex);
+    if (shared_.problem) return;
+    try {
+      shared_.done(ended.mapped()->order, std::move(result), ended.mapped()->history);
+    } catch (...) {
+      shared_.problem = std::current_exception();
+    }
+  }
+
+ private:
+  struct InFlight {
+    std::size_t order = 0;
+    History history;
+    std::unique_ptr<FlightRecord> record;
+  };
+  Shared& shared_;
+  std::map<FlightRecord*, std::unique_ptr<InFlight>> flying_;
+};
+
+}  // namespace
+
+void CampaignFlights::FlyCases(CaseQueue& queue) const {
+  FlyingCases flying(*this, queue);
+  ChosenEngine().fly(*model_, flying);
+}
+
+void CampaignFlights::FlyCases(const std::vector<CaseOrder>& orders, int threads, const CaseObserver& done) const {
+  FlyingOrders::Shared shared{*this, orders, done};
+  const auto fly = [&] {
+    FlyingOrders flying(shared);
+    ChosenEngine().fly(*model_, flying);
+  };
+  {
+    std::vector<std::jthread> others;  // joined at the end of this block
+    const auto useful = (orders.size() + static_cast<std::size_t>(ChosenEngine().lanes) - 1) /
+                        static_cast<std::size_t>(ChosenEngine().lanes);
+    for (std::size_t i = 1; i < std::min(useful, static_cast<std::size_t>(std::max(1, threads))); ++i)
+      others.emplace_back(fly);
+    fly();
+  }
+  if (shared.problem) std::rethrow_exception(shared.problem);
 }
 
 }  // namespace dispersa

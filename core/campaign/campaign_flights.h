@@ -2,7 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include "core/campaign/campaign.h"
 #include "core/campaign/case_design.h"
@@ -13,6 +16,24 @@
 namespace dispersa {
 
 class FlightModel;
+
+/// Where a thread takes its cases from and puts their results.
+class CaseQueue {
+ public:
+  virtual ~CaseQueue() = default;
+
+  /// The next case, or none now. `idle`: nothing else is in flight on this thread; none then ends FlyCases.
+  virtual std::optional<std::uint64_t> Next(bool idle) = 0;
+  virtual void Done(CaseResult result) = 0;
+};
+
+/// A case of a list, and whether its history is wanted.
+struct CaseOrder {
+  std::uint64_t case_index = 0;
+  double history_step_s = 0.0;  ///< 0: no history
+};
+/// What becomes of it: its position in the list, its result, and its history (empty where none was wanted).
+using CaseObserver = std::function<void(std::size_t order, CaseResult result, const History& history)>;
 
 /// Holds what all flights of a campaign share (tables, schedules, design); flying is const and thread-safe.
 class CampaignFlights {
@@ -28,7 +49,13 @@ class CampaignFlights {
   CaseResult FlyNominal(History* history = nullptr) const;
   /// Any inputs, with any integrator: `case_index` keys the sensors' noise.
   CaseResult Fly(const FlightInputs& inputs, std::uint64_t case_index, History* history,
-                 Scheme scheme = Scheme::kRungeKutta4) const;
+                 Scheme scheme = Scheme::kSimpson) const;
+
+  /// Flies the queue's cases side by side on this thread until it has none. Results are those of FlyCase.
+  void FlyCases(CaseQueue& queue) const;
+  /// Flies a list side by side on up to `threads` threads, this one among them. `done` is called by one thread at a time, in
+  /// the order in which flights end. Throws what it throws.
+  void FlyCases(const std::vector<CaseOrder>& orders, int threads, const CaseObserver& done) const;
 
  private:
   CaseDesign design_;

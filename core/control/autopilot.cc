@@ -2,13 +2,36 @@
 
 #include <cmath>
 
+#include "core/control/autopilot_step.h"
+
 namespace dispersa {
+
+namespace {
+
+EffectivenessRows RowsOf(const StageControl& stage) {
+  const Table1D& pitch = stage.pitch_effectiveness_1_s2;
+  const Table1D& roll = stage.roll_effectiveness_1_s2;
+  EffectivenessRows table;
+  table.last = static_cast<int>(pitch.x.size()) - 2;
+  table.end_s = pitch.x.back();
+  table.rows_per_s = (table.last + 1) / table.end_s;
+  for (std::size_t i = 0; i + 1 < pitch.x.size(); ++i) {
+    for (const Table1D* t : {&pitch, &roll}) {
+      const double slope = (t->y[i + 1] - t->y[i]) / (t->x[i + 1] - t->x[i]);
+      table.rows.insert(table.rows.end(), {t->y[i] - slope * t->x[i], slope});
+    }
+  }
+  return table;
+}
+
+}  // namespace
 
 AutopilotModel BuildAutopilot(const AutopilotConfig& config, std::vector<StageControl> stages,
                               double thruster_minimum_on_time_s) {
   AutopilotModel model;
   model.config = config;
   model.laws = {BuildAxisLaw(config.roll), BuildAxisLaw(config.pitch), BuildAxisLaw(config.yaw)};
+  for (const StageControl& stage : stages) model.effectiveness.push_back(RowsOf(stage));
   model.stages = std::move(stages);
   const double cycle_s = config.tick_s * config.reaction_control.cycle_ticks;
   model.thruster_minimum_cycles = static_cast<int>(std::ceil(thruster_minimum_on_time_s / cycle_s - 1e-9));
@@ -16,18 +39,12 @@ AutopilotModel BuildAutopilot(const AutopilotConfig& config, std::vector<StageCo
 }
 
 void StartStage(const AutopilotModel& model, int stage, AutopilotState& state) {
-  const std::size_t to = static_cast<std::size_t>(stage);
   for (std::size_t axis = 0; axis < kAxes; ++axis) {
-    const AxisLaw& law = model.laws[axis];
-    AxisState& memory = state.axes[axis];
-    if (stage == 0 || law.config.adaptation.reset_at_ignition || law.config.law == ControlLaw::kPdAac) {
-      ResetAxis(law, stage, memory);
-    } else {
-      // What was learnt is a departure from the start of the stage before; it is carried over.
-      for (std::size_t i = 0; i < kFuzzyRules; ++i)
-        memory.consequents[i] += law.stages[to].consequents[i] - law.stages[to - 1].consequents[i];
-    }
-    state.saturation[axis] = 0;
+    const AxisConfig& config = model.laws[axis].config;
+    // What was learnt is a departure from the start of the stage before; it is carried over.
+    if (stage == 0 || config.adaptation.reset_at_ignition || config.law == ControlLaw::kPdAac)
+      ResetAxis(state.axes[axis]);
+    state.axes[axis].saturation = 0.0;
     state.thrusters[axis] = ThrusterState{};
   }
 }
@@ -35,22 +52,20 @@ void StartStage(const AutopilotModel& model, int stage, AutopilotState& state) {
 GimbalCommand StepGimbals(const AutopilotModel& model, int stage, double since_ignition_s,
                           const AttitudeError& error, const Vector2& pn_factor, double gain,
                           AutopilotState& state) {
-  const StageControl& control = model.stages[static_cast<std::size_t>(stage)];
-  const double pitch_effectiveness = control.pitch_effectiveness_1_s2(since_ignition_s);
-  const double roll_effectiveness = control.roll_effectiveness_1_s2(since_ignition_s);
-  GimbalCommand command;
-  double* out[kAxes] = {&command.roll_rad, &command.pitch_rad, &command.yaw_rad};
-  for (std::size_t axis = 0; axis < kAxes; ++axis) {
-    const int index = static_cast<int>(axis);
-    const double u =
-        StepAxis(model.laws[axis], stage, error.angle_rad[index], error.rate_rad_s[index],
-                 state.saturation[axis], pn_factor, model.config.tick_s, state.axes[axis],
-                 command.telemetry[axis]);
-    const double deflection =
-        gain * u / (axis == kRoll ? roll_effectiveness : pitch_effectiveness);
-    state.saturation[axis] =
-        deflection > control.limit_rad ? 1 : (deflection < -control.limit_rad ? -1 : 0);
-    *out[axis] = deflection;
+  using namespace lanes;
+  GimbalLoop<double> loop;
+  SetLane(loop, 0, model, stage, pn_factor.x(), pn_factor.y(), gain);
+  AxisMemory<double> memory[kAxes];
+  for (int axis = 0; axis < kAxes; ++axis) SetLane(memory[axis], 0, state.axes[axis]);
+  const Vector<double> angle{error.angle_rad.x(), error.angle_rad.y(), error.angle_rad.z()};
+  const Vector<double> rate{error.rate_rad_s.x(), error.rate_rad_s.y(), error.rate_rad_s.z()};
+  GimbalOutput<double> out;
+  lanes::StepGimbals<true>(model, loop, true, since_ignition_s, angle, rate, memory, out);
+  GimbalCommand command{out.deflection_rad[kRoll], out.deflection_rad[kPitch], out.deflection_rad[kYaw], {}};
+  for (int axis = 0; axis < kAxes; ++axis) {
+    ReadLane(memory[axis], 0, state.axes[axis]);
+    command.telemetry[static_cast<std::size_t>(axis)] =
+        TelemetryOf(model.laws[static_cast<std::size_t>(axis)].config, out.axes[axis], memory[axis], 0);
   }
   return command;
 }

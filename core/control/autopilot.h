@@ -1,4 +1,6 @@
 // The flight computer's attitude loop: errors in, nozzle and thruster commands out, once a tick.
+//
+// Plain data; the loop itself is autopilot_step.h, written once for any number of flights.
 #pragma once
 
 #include <array>
@@ -6,6 +8,7 @@
 
 #include "core/control/axis_controller.h"
 #include "core/control/reaction_control.h"
+#include "core/math/aligned_rows.h"
 #include "core/math/table.h"
 
 namespace dispersa {
@@ -14,11 +17,23 @@ enum Axis : int { kRoll = 0, kPitch = 1, kYaw = 2 };
 inline constexpr int kAxes = 3;
 
 /// What the autopilot knows of a stage beforehand, from nominal data: angular acceleration per radian of
-/// deflection over the time since ignition, and the limits of the nozzles.
+/// deflection over the time since ignition, and the limits of the nozzles. Both tables share their arguments,
+/// which are evenly spaced.
 struct StageControl {
   Table1D pitch_effectiveness_1_s2;  ///< of yaw too
   Table1D roll_effectiveness_1_s2;
   double limit_rad = 0.0;
+};
+
+/// StageControl's tables as straight pieces: a row has pitch (constant, slope) and roll (constant, slope) over the
+/// time since ignition, held outside [0, end_s].
+struct EffectivenessRows {
+  static constexpr int kRowSize = 4;
+
+  AlignedRows rows;
+  double rows_per_s = 0.0;
+  double end_s = 0.0;
+  int last = 0;
 };
 
 /// Shared by all flights.
@@ -26,6 +41,7 @@ struct AutopilotModel {
   AutopilotConfig config;
   std::array<AxisLaw, kAxes> laws;
   std::vector<StageControl> stages;
+  std::vector<EffectivenessRows> effectiveness;  ///< one a stage
   int thruster_minimum_cycles = 1;
 };
 AutopilotModel BuildAutopilot(const AutopilotConfig& config, std::vector<StageControl> stages,
@@ -33,9 +49,8 @@ AutopilotModel BuildAutopilot(const AutopilotConfig& config, std::vector<StageCo
 
 /// Memory of one flight's autopilot.
 struct AutopilotState {
-  std::array<AxisState, kAxes> axes;
-  std::array<int, kAxes> saturation{};  ///< of the last command, in the sense of u
-  std::array<ThrusterState, kAxes> thrusters;
+  AxisState axes[kAxes];
+  ThrusterState thrusters[kAxes];
 };
 
 /// Errors reference - true about body x, y, z: angle (rad) and rate (rad/s).
@@ -59,7 +74,7 @@ struct GimbalCommand {
 /// At ignition of a stage: the rules of the stage, anew or, without reset, with what they learnt. Adaptive
 /// augmenting control always starts anew.
 void StartStage(const AutopilotModel& model, int stage, AutopilotState& state);
-/// One tick of powered flight. `gain` multiplies every command (1 in flight).
+/// One tick of powered flight. `gain` multiplies every command, the other factors P_n (1 in flight).
 GimbalCommand StepGimbals(const AutopilotModel& model, int stage, double since_ignition_s,
                           const AttitudeError& error, const Vector2& pn_factor, double gain,
                           AutopilotState& state);

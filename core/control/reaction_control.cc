@@ -1,20 +1,15 @@
 #include "core/control/reaction_control.h"
 
+#include "core/control/autopilot_step.h"
+
 namespace dispersa {
 
-int StepThrusters(const ReactionControlLogic& logic, double error, double rate, int minimum_cycles,
+int StepThrusters(const ReactionControlLogic& logic, double error_rad, double rate_rad_s, int minimum_cycles,
                   ThrusterState& state) {
-  const double s = error + logic.rate_gain_s * rate;
-  if (state.direction != 0) {
-    ++state.cycles_on;
-    const double closing = logic.deadband_rad * (1.0 - logic.hysteresis);
-    if (state.cycles_on < minimum_cycles || s * state.direction > closing) return state.direction;
-    state = ThrusterState{};
-  }
-  if (s > logic.deadband_rad)
-    state.direction = 1;
-  else if (s < -logic.deadband_rad)
-    state.direction = -1;
+  lanes::ThrusterMemory<double> memory{static_cast<double>(state.direction), static_cast<double>(state.cycles_on)};
+  lanes::StepThrusters(logic, minimum_cycles, true, error_rad, rate_rad_s, memory);
+  state.direction = static_cast<int>(memory.direction);
+  state.cycles_on = static_cast<int>(memory.cycles_on);
   return state.direction;
 }
 

@@ -40,10 +40,14 @@ struct ForceAndMoment {
   Vector3 moment_n_m = Vector3::Zero();
 };
 
+struct AeroGrid;
+
 /// v_AB_B: velocity through the air, m/s; w_AB_B: angular velocity relative to the air, rad/s; both in body
-/// axes; cg_station_m aft of the reference point of the stations.
-ForceAndMoment AerodynamicForce(const BodyAerodynamics& body, const Vector3& v_AB_B, const Vector3& w_AB_B,
-                                double mach, double qbar_pa, double cg_station_m);
+/// axes; cg_station_m aft of the reference point of the stations; grid: BuildAeroGrid(body). One lane of
+/// body_flow.h. No force at rest.
+ForceAndMoment AerodynamicForce(const BodyAerodynamics& body, const AeroGrid& grid, const Vector3& v_AB_B,
+                                const Vector3& w_AB_B, double density_kg_m3, double speed_of_sound_m_s,
+                                double cg_station_m);
 
 /// The vehicle file's table of one stack as coefficients.
 BodyAerodynamics FromTable(const AeroTable& table);

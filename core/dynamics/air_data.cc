@@ -19,6 +19,7 @@ AirData ComputeAirData(const Environment& environment, const Vector3& p, const V
                               environment.density(data.place.altitude_m));
   data.density_kg_m3 = air.density_kg_m3;
   data.pressure_pa = air.pressure_pa;
+  data.speed_of_sound_m_s = air.speed_of_sound_m_s;
   data.mach = air.speed_of_sound_m_s > 0.0 ? data.airspeed_m_s / air.speed_of_sound_m_s : 0.0;
   data.qbar_pa = 0.5 * air.density_kg_m3 * Square(data.airspeed_m_s);
   return data;

@@ -22,6 +22,7 @@ struct AirData {
   double airspeed_m_s = 0.0;
   double density_kg_m3 = 0.0;
   double pressure_pa = 0.0;
+  double speed_of_sound_m_s = 0.0;
   double mach = 0.0;
   double qbar_pa = 0.0;
 };

@@ -34,6 +34,10 @@ void DropMessage(int, const char*, const char*, char*, void*) {}
 }  // namespace
 
 bool ParseScheme(const std::string& name, Scheme* scheme) {
+  if (name == "simpson") {
+    *scheme = Scheme::kSimpson;
+    return true;
+  }
   if (name == "erk4") {
     *scheme = Scheme::kRungeKutta4;
     return true;
@@ -114,6 +118,7 @@ struct Integrator::Solver {
 Integrator::Integrator(Scheme scheme, int size, RightHandSide rhs, void* context,
                        const double* absolute_tolerance)
     : solver_(std::make_unique<Solver>()) {
+  Require(scheme != Scheme::kSimpson, "choosing the engine's own step");
   Solver& s = *solver_;
   s.scheme = scheme;
   s.size = size;

@@ -10,20 +10,21 @@ namespace dispersa {
 using RightHandSide = void (*)(double time_s, const double* y, double* dydt, void* context);
 
 enum class Scheme {
-  kRungeKutta4,   ///< ERKStep with the classical fourth-order table and fixed steps: what flights use
+  kSimpson,       ///< the engine's own step (core/flight/simpson_step.h): what flights use; not an Integrator
+  kRungeKutta4,   ///< ERKStep with the classical fourth-order table and fixed steps: scenarios, and a judge
   /// CVODE Adams: the independent check. It solves for the change of the state since the restart, so that the
   /// relative tolerance of 1e-12 is one of metres moved within a tick, not of the distance from the Earth's
   /// centre, which would let errors of 1e-5 m and 1e-8 m/s in at every restart.
   kCvode,
 };
-/// "erk4", "cvode".
+/// "simpson", "erk4", "cvode".
 bool ParseScheme(const std::string& name, Scheme* scheme);
 
 /// Advances a state of fixed size. Every Advance starts afresh: no derivative, step size or history
 /// survives an event, so a result depends on the arguments alone. Not thread-safe; make one a flight.
 class Integrator {
  public:
-  /// absolute_tolerance, shape (size): only CVODE reads it.
+  /// scheme: ERKStep's or CVODE's. absolute_tolerance, shape (size): only CVODE reads it.
   Integrator(Scheme scheme, int size, RightHandSide rhs, void* context,
              const double* absolute_tolerance);
   ~Integrator();

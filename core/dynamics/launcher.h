@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "core/dynamics/aerodynamics.h"
@@ -17,10 +18,13 @@ inline constexpr int kNozzleAngle = kRigidBodySize;
 inline constexpr int kNozzleRate = kNozzleAngle + kNozzles;
 inline constexpr int kLauncherSize = kNozzleRate + kNozzles;
 
+struct AeroGrid;
+
 /// One stack as one flight flies it: nominal data with the flight's factors applied.
 struct LauncherStack {
   StackMass mass;
   BodyAerodynamics aerodynamics;
+  std::shared_ptr<const AeroGrid> aero_grid;  ///< of the aerodynamics without factors; made where it is missing
   MotorBurn burn;
   Gimbal gimbal;
   Matrix3 thrust_tilt = Matrix3::Identity();  ///< turns the nozzles' thrust by the misalignment
@@ -69,6 +73,9 @@ LauncherInstant Evaluate(const LauncherPlant& plant, const LauncherPhase& phase,
 /// Right-hand side of the flight. Thrust: each nozzle carries a quarter, deflected in its hinge plane;
 /// positive pitch, yaw and roll deflections give positive moments about body y, z and x. Actuators are
 /// second order with a limited rate: d(angle)/dt = rate within the limit; the command is limited in angle.
+///
+/// One lane of launcher_body.h and actuators.h, whose step flights take: for the judges among the integrators,
+/// for linearisation and tests.
 void LauncherDerivative(const LauncherPlant& plant, const LauncherPhase& phase, double time_s,
                         const double* y, double* dydt);
 

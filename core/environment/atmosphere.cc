@@ -226,6 +226,18 @@ AirState StandardAtmosphere1976(double geometric_altitude_m) {
   return air;
 }
 
+std::vector<double> AtmosphereKinks() {
+  std::vector<double> kinks;
+  // Layers by geopotential altitude; the first begins at sea level and goes on below it.
+  for (const Layer& layer : MakeLayers())
+    if (layer.base > 0.0) kinks.push_back(kEarthRadius * layer.base / (kEarthRadius - layer.base));
+  for (std::size_t i = 0; i < kMolecularWeightRatio.size(); ++i)
+    kinks.push_back(kMixedTop + kMolecularWeightStep * static_cast<double>(i));
+  // The nodes include 86 km and the ends of the temperature's pieces.
+  for (std::size_t i = 1; i < kNodes.size(); ++i) kinks.push_back(kNodes[i].z);
+  return kinks;
+}
+
 double DynamicViscosity(double temperature_k) {
   return 1.458e-6 * temperature_k * Sqrt(temperature_k) / (temperature_k + 110.4);
 }

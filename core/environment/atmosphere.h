@@ -1,6 +1,8 @@
 // US Standard Atmosphere, 1976 (NOAA-S/T 76-1562).
 #pragma once
 
+#include <vector>
+
 namespace dispersa {
 
 /// Air at one altitude. The perfect-gas law holds: density = pressure M / (8314.32 temperature), M the
@@ -29,6 +31,9 @@ inline constexpr double kAtmosphereTop_m = 1.0e6;
 /// - Below -5 km the air of -5 km. Above 1000 km pressure and density are zero, temperature (1000 K) and
 ///   speed of sound those of 1000 km, so that a Mach number stays finite.
 AirState StandardAtmosphere1976(double geometric_altitude_m);
+/// Geometric altitudes from above kAtmosphereBottom_m to kAtmosphereTop_m, rising, at which its functions are
+/// not smooth: between two of them they are.
+std::vector<double> AtmosphereKinks();
 
 /// Sutherland's dynamic viscosity, Pa s, with the standard's constants (equation 51): 1.458e-6 and
 /// 110.4 K. The standard applies it up to 86 km; it holds for about 100 K to 1900 K.

@@ -1,4 +1,6 @@
-// One closed-loop flight from lift-off to injection, or to where it fails.
+// Closed-loop flights from lift-off to injection, or to where they fail.
+//
+// One engine flies them: lanes side by side (batch.h), of which a single flight is the one-lane instance.
 #pragma once
 
 #include <cstdint>
@@ -6,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/dynamics/integrator.h"
 #include "core/flight/digest.h"
 #include "core/flight/flight_inputs.h"
 #include "core/flight/flight_model.h"
@@ -17,11 +20,11 @@ namespace dispersa {
 struct TickSample;
 
 struct FlightOptions {
-  Scheme scheme = Scheme::kRungeKutta4;
+  Scheme scheme = Scheme::kSimpson;
   int steps_per_tick = 1;
   std::uint64_t case_index = 0;  ///< keys the sensors' noise
   History* history = nullptr;    ///< filled if given
-  std::function<void(const TickSample&)> observe;  ///< called at every tick if given
+  std::function<void(const TickSample&)> observe = {};  ///< called at every tick if given
 };
 
 struct FlightResult {
@@ -37,7 +40,18 @@ struct FlightResult {
 /// Flies; a pure function of its arguments. Everything that changes lives in it and ends with it.
 FlightResult Fly(const FlightModel& model, const FlightInputs& inputs, const FlightOptions& options = {});
 
+/// One flight of many.
+struct FlightOrder {
+  FlightInputs inputs;
+  FlightOptions options = {};
+};
+/// Flies all, side by side in ChosenLanes(), on this thread; results in the order of the orders. Each result has
+/// the bits that Fly gives it.
+std::vector<FlightResult> FlyAll(const FlightModel& model, const std::vector<FlightOrder>& orders);
+
 /// State at lift-off: at rest on the site, attitude as the pitch program begins.
 RigidBodyState LiftOffState(const FlightModel& model);
+/// Attitude error, reference less true, and its rate.
+AttitudeError ErrorAt(const FlightModel& model, const ReferenceAttitude& reference, const RigidBodyState& state);
 
 }  // namespace dispersa

@@ -1,5 +1,6 @@
 #include "core/flight/flight_model.h"
 
+#include "core/dynamics/aero_grid.h"
 #include "core/math/functions.h"
 #include "core/vehicle/aerodynamics_build_up.h"
 
@@ -16,6 +17,7 @@ LauncherPlant BuildNominalPlant(const Vehicle& vehicle) {
     LauncherStack stack;
     stack.mass = masses[i];
     stack.aerodynamics = FromTable(tables[i]);
+    stack.aero_grid = std::make_shared<const AeroGrid>(BuildAeroGrid(stack.aerodynamics));
     stack.burn = BuildBurn(stage, 1.0, 1.0);
     stack.gimbal = stage.gimbal;
     plant.stacks.push_back(stack);
@@ -43,6 +45,25 @@ StageControl BuildStageControl(const LauncherStack& stack) {
   return control;
 }
 
+namespace {
+
+ReferenceRows TabulateReference(const AttitudeProgram& program, const LaunchFrame& frame, double tick_s) {
+  // Up to the first tick after the last knot, from which on the attitude is held.
+  const long last = static_cast<long>(program.knots.back().time_s / tick_s) + 1;
+  ReferenceRows table;
+  table.last_tick = static_cast<double>(last);
+  table.rows.reserve(static_cast<std::size_t>(last + 1) * ReferenceRows::kRowSize);
+  for (long tick = 0; tick <= last; ++tick) {
+    const ReferenceAttitude at = program.At(static_cast<double>(tick) * tick_s);
+    const Quaternion q_IR = frame.q_IL * at.q_LR;
+    table.rows.insert(table.rows.end(), {q_IR.w, q_IR.x, q_IR.y, q_IR.z, at.w_LR_R.x(), at.w_LR_R.y(),
+                                         at.w_LR_R.z(), 0.0});
+  }
+  return table;
+}
+
+}  // namespace
+
 FlightModel::FlightModel(FlightDefinition definition)
     : definition_(std::move(definition)),
       nominal_(BuildNominalPlant(definition_.vehicle)) {
@@ -53,6 +74,7 @@ FlightModel::FlightModel(FlightDefinition definition)
   for (const LauncherStack& stack : nominal_.stacks) controls.push_back(BuildStageControl(stack));
   autopilot_ = BuildAutopilot(definition_.autopilot, std::move(controls),
                               definition_.vehicle.reaction_control.minimum_on_time_s);
+  reference_rows_ = TabulateReference(definition_.program, frame_, definition_.autopilot.tick_s);
 }
 
 namespace {

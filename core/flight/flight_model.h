@@ -37,6 +37,15 @@ struct FlightDefinition {
   std::uint64_t noise_seed = 0;  ///< of the sensors
 };
 
+/// The reference attitude at the autopilot's ticks, for flights that are flown side by side. A row has 8 doubles: q_IR
+/// (w, x, y, z), w_LR_R (x, y, z), unused. The last row holds for all later ticks.
+struct ReferenceRows {
+  static constexpr int kRowSize = 8;
+
+  AlignedRows rows;
+  double last_tick = 0.0;
+};
+
 class FlightModel {
  public:
   explicit FlightModel(FlightDefinition definition);
@@ -45,6 +54,7 @@ class FlightModel {
   const LaunchFrame& frame() const { return frame_; }
   const AutopilotModel& autopilot() const { return autopilot_; }
   const LauncherPlant& nominal_plant() const { return nominal_; }
+  const ReferenceRows& reference_rows() const { return reference_rows_; }
 
   /// The nominal plant with a flight's factors, winds and misalignments applied.
   LauncherPlant PlantFor(const FlightInputs& inputs) const;
@@ -54,6 +64,7 @@ class FlightModel {
   LaunchFrame frame_;
   LauncherPlant nominal_;
   AutopilotModel autopilot_;
+  ReferenceRows reference_rows_;
 };
 
 /// The vehicle without dispersions: aerodynamics built up where the file gives no tables.

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/dynamics/aero_grid.h"
 #include "core/flight/history_columns.h"
 
 namespace dispersa {
@@ -55,6 +56,7 @@ std::vector<Phase> PhasesOf(const Scenario& scenario) {
 struct Motion {
   const Scenario& scenario;
   Phase phase;
+  std::vector<AeroGrid> grids;  ///< one a stage
 
   const ScenarioStage& stage() const { return scenario.stages[phase.stage]; }
   static void Rhs(double t, const double* y, double* dydt, void* context);
@@ -107,8 +109,8 @@ ScenarioSample Evaluate(const Motion& motion, double time_s, const double* y) {
   Vector3 damped_rates = now.state.w_IB_B;
   if (!stage.inertial_damping_rates)
     damped_rates -= R_BI * Vector3(0.0, 0.0, environment.earth.rotation_rate_rad_s);
-  now.aerodynamic = AerodynamicForce(stage.aerodynamics, now.v_AB_B, damped_rates, now.air.mach,
-                                     now.air.qbar_pa, cg_station_m);
+  now.aerodynamic = AerodynamicForce(stage.aerodynamics, motion.grids[motion.phase.stage], now.v_AB_B, damped_rates,
+                                     now.air.density_kg_m3, now.air.speed_of_sound_m_s, cg_station_m);
   now.loads.force_n = now.aerodynamic.force_n;
   now.loads.moment_n_m = now.aerodynamic.moment_n_m;
   if (motion.phase.burning) AddThrust(*stage.motor, now.air.pressure_pa, now.state.w_IB_B, cg_station_m, now);
@@ -131,12 +133,18 @@ void Separate(const Scenario& scenario, const Phase& from, const Phase& to, doub
   WriteState(AtPoint(ReadState(y), Vector3(old_cg - new_cg, 0.0, 0.0)), y);
 }
 
+std::vector<AeroGrid> GridsOf(const Scenario& scenario) {
+  std::vector<AeroGrid> grids;
+  for (const ScenarioStage& stage : scenario.stages) grids.push_back(BuildAeroGrid(stage.aerodynamics));
+  return grids;
+}
+
 class Flight {
  public:
   Flight(const Scenario& scenario, Scheme scheme)
       : scenario_(scenario),
         phases_(PhasesOf(scenario)),
-        motion_{scenario, phases_.front()},
+        motion_{scenario, phases_.front(), GridsOf(scenario)},
         integrator_(scheme, kRigidBodySize, &Motion::Rhs, &motion_, kTolerances.data()) {
     WriteState(InitialState(scenario), y_.data());
   }

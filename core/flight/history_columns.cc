@@ -80,7 +80,7 @@ void AppendLauncher(const FlightModel& model, const TickSample& s, std::vector<d
               n[2] * kDegPerRad, n[3] * kDegPerRad, powered(s.gimbal.pitch_rad * kDegPerRad),
               powered(t.command_rad_s2 * kDegPerRad), powered(t.adaptation_norm * kDegPerRad), powered(t.v),
               powered(t.v_rate_sign), powered(t.projected ? 1.0 : 0.0), powered(t.frozen ? 1.0 : 0.0),
-              powered(std::popcount(s.axes[kPitch].rules_fired)), powered(s.axes[kPitch].total_gain),
+              powered(std::popcount(t.rules_fired)), powered(t.total_gain),
               static_cast<double>(s.thrusters[kRoll]), static_cast<double>(s.thrusters[kPitch]),
               static_cast<double>(s.thrusters[kYaw]), s.expelled_mass_kg, specific.x(),
               Sqrt(specific.y() * specific.y() + specific.z() * specific.z()),

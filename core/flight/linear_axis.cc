@@ -57,16 +57,16 @@ AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Ax
 LinearLaw LineariseLaw(const AutopilotModel& autopilot, int stage, double since_ignition_s, Axis axis,
                        bool adapting) {
   const AxisLaw& law = autopilot.laws[static_cast<std::size_t>(axis)];
-  const AxisLaw::PerStageLaw& of_stage = law.stages[static_cast<std::size_t>(stage)];
+  const StageLaw& of_stage = law.stages[static_cast<std::size_t>(stage)];
   const StageControl& control = autopilot.stages[static_cast<std::size_t>(stage)];
   LinearLaw linear;
-  linear.kp_1_s2 = of_stage.gains.kp_1_s2;
-  linear.kd_1_s = of_stage.gains.kd_1_s;
+  linear.kp_1_s2 = of_stage.kp_1_s2;
+  linear.kd_1_s = of_stage.kd_1_s;
   linear.effectiveness_1_s2 = (axis == kRoll ? control.roll_effectiveness_1_s2
                                              : control.pitch_effectiveness_1_s2)(since_ignition_s);
   if (adapting && law.config.law == ControlLaw::kAdaptiveFuzzy) {
-    linear.drive_error = of_stage.gamma * of_stage.p_n.x();
-    linear.drive_rate = of_stage.gamma * of_stage.p_n.y();
+    linear.drive_error = of_stage.gamma * of_stage.pn_error;
+    linear.drive_rate = of_stage.gamma * of_stage.pn_rate;
     linear.leakage_1_s = law.config.adaptation.leakage_1_s;
     linear.spread_1_s = law.config.adaptation.spread_1_s;
     linear.rules = kFuzzyRules;

@@ -18,35 +18,46 @@ constexpr double kMisalignment_rad = 0.25 * kRadPerDeg;
 constexpr double kLostCycle_deg = 0.2;
 constexpr double kLostError_deg = 5.0;
 
-bool Holds(const FlightModel& model, int stage, double gain_db, double delay_s) {
-  FlightInputs inputs;
+FlightOrder Spoilt(int stage, double gain_db, double delay_s) {
+  FlightOrder order;
+  FlightInputs& inputs = order.inputs;
   inputs.loop_stage = stage + 1;
   inputs.loop_gain_factor = Pow(10.0, gain_db / 20.0);
   inputs.loop_delay_s = delay_s;
   // Towards a corner between pitch and yaw, so that both axes work.
   inputs.thrust_misalignment_rad = AllStages(kMisalignment_rad);
   inputs.thrust_misalignment_clock_rad = AllStages(0.25 * kPi);
-  const FlightResult result = Fly(model, inputs);
-  const auto metric = [&](const char* name) {
-    const auto& names = MetricNames();
-    return result
-        .metrics[static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin())];
-  };
+  return order;
+}
+
+bool Holds(const FlightResult& result) {
+  const auto metric = [&](const char* name) { return result.metrics[MetricColumn(name)]; };
   const auto above = [&](const char* name, double limit) { return metric(name) > limit; };
   return result.outcome == Outcome::kCompleted && !above("deflection_limit_cycle_deg", kLostCycle_deg) &&
          !above("pitch_error_peak_deg", kLostError_deg) && !above("yaw_error_peak_deg", kLostError_deg);
 }
 
-// The largest multiple of `step` up to `ceiling` that holds, if what is above one that fails fails too.
-double LargestThatHolds(double step, double ceiling, const std::function<bool(double)>& holds) {
-  long low = 0, high = std::lround(ceiling / step) + 1;
-  if (!holds(0.0)) return 0.0;
-  while (high - low > 1) {
-    const long middle = (low + high) / 2;
-    (holds(static_cast<double>(middle) * step) ? low : high) = middle;
-  }
-  return static_cast<double>(low) * step;
-}
+// Bisects for the largest multiple of a step up to a ceiling that holds, if what is above one that fails fails
+// too.
+class Bisection {
+ public:
+  Bisection(double step, double ceiling, std::function<FlightOrder(double)> order)
+      : step_(step), high_(std::lround(ceiling / step) + 1), order_(std::move(order)) {}
+
+  /// Without a margin even unspoilt: the answer is 0.
+  void GiveUp() { high_ = low_ + 1; }
+  bool open() const { return high_ - low_ > 1; }
+  FlightOrder Next() const { return order_(static_cast<double>(Middle()) * step_); }
+  void Take(bool holds) { (holds ? low_ : high_) = Middle(); }
+  double found() const { return static_cast<double>(low_) * step_; }
+
+ private:
+  long Middle() const { return (low_ + high_) / 2; }
+
+  double step_;
+  long low_ = 0, high_;
+  std::function<FlightOrder(double)> order_;
+};
 
 }  // namespace
 
@@ -119,17 +130,35 @@ std::vector<ComputedMargins> ComputeMargins(const FlightModel& model, double eve
 }
 
 std::vector<MeasuredMargins> MeasureMargins(const FlightModel& model) {
+  const int stages = static_cast<int>(model.definition().vehicle.stages.size());
+  std::vector<Bisection> searches;  // three a stage: gain up, gain down, delay
+  for (int stage = 0; stage < stages; ++stage) {
+    searches.emplace_back(kMeasuredGainStep_db, kMeasuredGainCeiling_db,
+                          [stage](double db) { return Spoilt(stage, db, 0.0); });
+    searches.emplace_back(kMeasuredGainStep_db, kMeasuredGainCeiling_db,
+                          [stage](double db) { return Spoilt(stage, -db, 0.0); });
+    searches.emplace_back(kMeasuredDelayStep_s, kMeasuredDelayCeiling_s,
+                          [stage](double s) { return Spoilt(stage, 0.0, s); });
+  }
+  // Whatever its stage, the flight that nothing spoils is the same.
+  if (!Holds(Fly(model, Spoilt(0, 0.0, 0.0).inputs)))
+    for (Bisection& search : searches) search.GiveUp();
+  for (;;) {
+    std::vector<Bisection*> open;
+    std::vector<FlightOrder> orders;
+    for (Bisection& search : searches) {
+      if (!search.open()) continue;
+      open.push_back(&search);
+      orders.push_back(search.Next());
+    }
+    if (open.empty()) break;
+    const std::vector<FlightResult> flown = FlyAll(model, orders);
+    for (std::size_t i = 0; i < open.size(); ++i) open[i]->Take(Holds(flown[i]));
+  }
   std::vector<MeasuredMargins> all;
-  for (int stage = 0; stage < static_cast<int>(model.definition().vehicle.stages.size()); ++stage) {
-    MeasuredMargins each;
-    each.stage = stage;
-    each.gain_up_db = LargestThatHolds(kMeasuredGainStep_db, kMeasuredGainCeiling_db,
-                                       [&](double db) { return Holds(model, stage, db, 0.0); });
-    each.gain_down_db = LargestThatHolds(kMeasuredGainStep_db, kMeasuredGainCeiling_db,
-                                         [&](double db) { return Holds(model, stage, -db, 0.0); });
-    each.delay_s = LargestThatHolds(kMeasuredDelayStep_s, kMeasuredDelayCeiling_s,
-                                    [&](double s) { return Holds(model, stage, 0.0, s); });
-    all.push_back(each);
+  for (int stage = 0; stage < stages; ++stage) {
+    const Bisection* search = &searches[static_cast<std::size_t>(3 * stage)];
+    all.push_back({stage, search[0].found(), search[1].found(), search[2].found()});
   }
   return all;
 }

@@ -1,5 +1,8 @@
 #include "core/flight/metrics.h"
 
+#include <algorithm>
+#include <cassert>
+
 namespace dispersa {
 
 const std::vector<std::string>& MetricNames() {
@@ -35,6 +38,13 @@ const std::vector<std::string>& MetricNames() {
 namespace {
 constexpr const char* kOutcomeNames[kOutcomeCount] = {
     "completed", "lost_control", "structural_limit", "impact", "numerical_failure", "timeout"};
+}
+
+std::size_t MetricColumn(const std::string& name) {
+  const std::vector<std::string>& names = MetricNames();
+  const auto found = std::find(names.begin(), names.end(), name);
+  assert(found != names.end());
+  return static_cast<std::size_t>(found - names.begin());
 }
 
 const char* OutcomeName(Outcome outcome) { return kOutcomeNames[static_cast<int>(outcome)]; }

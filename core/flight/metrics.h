@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,8 @@ namespace dispersa {
 /// The metrics in the order of their columns. A metric that a flight does not define (a stage that it
 /// never reached) is NaN inside and NULL, empty or null outside.
 const std::vector<std::string>& MetricNames();
+/// The column of a metric that exists.
+std::size_t MetricColumn(const std::string& name);
 
 enum class Outcome {
   kCompleted,        ///< reached the end of the last stage's burn

@@ -1,4 +1,4 @@
-// What one tick or event shows of a flight: the common input of metrics and history.
+// What one tick or event shows of a flight: for histories and observers.
 #pragma once
 
 #include <array>
@@ -23,10 +23,8 @@ struct TickSample {
   AttitudeError error;             ///< true, not measured
   ReferenceAttitude reference;
   GimbalCommand gimbal;            ///< of this tick
-  std::array<AxisState, kAxes> axes;
   std::array<int, kAxes> thrusters{};
   double expelled_mass_kg = 0.0;
-  bool has_instant = false;        ///< whether `instant` was evaluated
   LauncherInstant instant;
 };
 

@@ -1,10 +1,8 @@
 #include "core/paper/study_flights.h"
 
 #include <algorithm>
-#include <mutex>
 
 #include "core/campaign/campaign_flights.h"
-#include "core/optimization/parallel_for.h"
 
 namespace dispersa {
 
@@ -14,18 +12,12 @@ StudyFlights FlyStudy(const Campaign& campaign, const StudyOptions& options) {
   std::vector<CaseResult> results(count);
   StudyFlights study;
   study.histories.resize(std::min(count, options.histories));
-  std::mutex mutex;
+  std::vector<CaseOrder> orders;
+  for (std::uint64_t i = 0; i < count; ++i) orders.push_back({i, i < study.histories.size() ? options.step_s : 0.0});
   std::uint64_t flown = 0;
-  ParallelFor(count, static_cast<std::size_t>(std::max(options.threads, 1)), [&](std::size_t i) {
-    if (i < study.histories.size()) {
-      History history;
-      history.step_s = options.step_s;
-      results[i] = flights.FlyCase(i, &history);
-      study.histories[i] = SampleFlight(history, options.columns, options.step_s);
-    } else {
-      results[i] = flights.FlyCase(i);
-    }
-    const std::lock_guard lock(mutex);
+  flights.FlyCases(orders, options.threads, [&](std::size_t i, CaseResult result, const History& history) {
+    results[i] = std::move(result);
+    if (i < study.histories.size()) study.histories[i] = SampleFlight(history, options.columns, options.step_s);
     ++flown;
     if (options.progress) options.progress(flown);
   });

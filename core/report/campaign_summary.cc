@@ -16,13 +16,8 @@ constexpr std::size_t kLostAmongWorst = 1;
 const char* const kUsualMetrics[] = {"pitch_error_peak_deg", "pitch_error_rms_deg", "deflection_peak_deg",
                                      "q_alpha_max_pa_rad"};
 
-std::size_t MetricPosition(const std::string& name) {
-  const std::vector<std::string>& names = MetricNames();
-  return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-}
-
 WorstCases FindWorst(const std::string& metric, Worse worse, const CaseColumns& cases) {
-  const std::vector<double>& values = cases.metrics.at(MetricPosition(metric));
+  const std::vector<double>& values = cases.metrics.at(MetricColumn(metric));
   const auto lost = [&](std::size_t i) {
     return cases.outcome[i] != Outcome::kCompleted || !std::isfinite(values[i]);
   };
@@ -89,7 +84,7 @@ int VerdictExitCode(CampaignVerdict verdict) {
 std::vector<std::string> KeyMetrics(const Campaign& campaign) {
   std::vector<std::string> metrics;
   const auto add = [&](const std::string& name) {
-    const bool exists = MetricPosition(name) < MetricNames().size();
+    const bool exists = MetricColumn(name) < MetricNames().size();
     if (exists && std::find(metrics.begin(), metrics.end(), name) == metrics.end()) metrics.push_back(name);
   };
   for (const Requirement& requirement : campaign.requirements) add(requirement.metric);

@@ -1,9 +1,9 @@
 #include "core/report/case_columns.h"
 
 #include <algorithm>
-#include <cassert>
 
 #include "core/flight/flight_inputs.h"
+#include "core/flight/metrics.h"
 #include "core/statistics/summary.h"
 
 namespace dispersa {
@@ -31,13 +31,6 @@ CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& want
     for (std::size_t i = 0; i < columns.metrics.size(); ++i) columns.metrics[i].push_back(result.metrics[i]);
   });
   return columns;
-}
-
-std::size_t MetricColumn(const std::string& name) {
-  const std::vector<std::string>& names = MetricNames();
-  const auto found = std::find(names.begin(), names.end(), name);
-  assert(found != names.end());
-  return static_cast<std::size_t>(found - names.begin());
 }
 
 std::vector<double> CompletedValues(const CaseColumns& cases, const std::string& metric) {

@@ -26,9 +26,6 @@ struct CaseColumns {
 /// Reads all metrics, and those inputs that `wanted_inputs` (positions in InputColumns()) names.
 CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& wanted_inputs);
 
-/// Position of a metric, which must be one of MetricNames().
-std::size_t MetricColumn(const std::string& name);
-
 /// A metric's values, NaN for every flight that was not completed whatever it measured until then.
 std::vector<double> CompletedValues(const CaseColumns& cases, const std::string& metric);
 

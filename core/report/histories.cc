@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
-#include <exception>
 #include <filesystem>
-#include <future>
 #include <set>
 
 #include "core/report/output_file.h"
@@ -45,20 +43,6 @@ std::vector<int> BandColumns() {
     columns.push_back(column);
   }
   return columns;
-}
-
-/// Runs task(0) ... task(count - 1), `threads` at a time, with progress after each batch.
-void RunInBatches(std::size_t count, int threads, const std::function<void(std::size_t)>& task,
-                  const std::function<void(std::size_t)>& done) {
-  const auto batch = static_cast<std::size_t>(std::max(1, threads));
-  for (std::size_t first = 0; first < count; first += batch) {
-    const std::size_t last = std::min(count, first + batch);
-    std::vector<std::future<void>> others;
-    for (std::size_t i = first + 1; i < last; ++i) others.push_back(std::async(std::launch::async, task, i));
-    task(first);
-    for (std::future<void>& other : others) other.get();
-    done(last);
-  }
 }
 
 void CheckReproduced(const ResultFolder& folder, std::uint64_t case_index, const Digest& flown) {
@@ -135,17 +119,18 @@ FlightHistories WriteHistories(const ResultFolder& folder, const Campaign& campa
   const std::vector<int> columns = BandColumns();
   std::vector<SampledFlight> samples(banded);
   std::vector<Digest> digests(indices.size());
-  RunInBatches(
-      indices.size(), options.threads,
-      [&](std::size_t i) {
-        const bool written =
-            std::binary_search(histories.written_cases.begin(), histories.written_cases.end(), indices[i]);
-        History history{.step_s = written ? kHistoryStep_s : kBandStep_s, .values = {}};
-        digests[i] = flights.FlyCase(indices[i], &history).digest;
-        if (written) WriteFile(directory / fmt::format("case_{}.csv", indices[i]), HistoryCsv(history));
-        if (i < banded) samples[i] = SampleFlight(history, columns, kBandStep_s);
-      },
-      [&](std::size_t done) { progress("time histories", done, indices.size()); });
+  const auto is_written = [&](std::uint64_t index) {
+    return std::binary_search(histories.written_cases.begin(), histories.written_cases.end(), index);
+  };
+  std::vector<CaseOrder> orders;
+  for (const std::uint64_t index : indices) orders.push_back({index, is_written(index) ? kHistoryStep_s : kBandStep_s});
+  std::size_t flown = 0;
+  flights.FlyCases(orders, options.threads, [&](std::size_t i, const CaseResult& result, const History& history) {
+    digests[i] = result.digest;
+    if (is_written(indices[i])) WriteFile(directory / fmt::format("case_{}.csv", indices[i]), HistoryCsv(history));
+    if (i < banded) samples[i] = SampleFlight(history, columns, kBandStep_s);
+    progress("time histories", ++flown, indices.size());
+  });
   for (std::size_t i = 0; i < indices.size(); ++i) CheckReproduced(folder, indices[i], digests[i]);
   histories.bands = ComputeBands(samples, columns, kBandStep_s);
   WriteFile(directory / "bands.csv", BandsCsv(histories.bands));

@@ -25,9 +25,7 @@ constexpr double kFinalMutationEta = 100.0;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double Metric(const CaseResult& result, const std::string& name) {
-  const std::vector<std::string>& names = MetricNames();
-  return result
-      .metrics[static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin())];
+  return result.metrics[MetricColumn(name)];
 }
 
 double Median(std::vector<double> values) {
@@ -155,8 +153,10 @@ class Tuner {
 
   std::vector<CaseResult> FlyAll(const Campaign& campaign) {
     const CampaignFlights flights(campaign);
-    std::vector<CaseResult> all;
-    for (std::uint64_t i = 0; i < campaign.sampling.cases; ++i) all.push_back(flights.FlyCase(i));
+    std::vector<CaseResult> all(campaign.sampling.cases);
+    std::vector<CaseOrder> orders;
+    for (std::uint64_t i = 0; i < all.size(); ++i) orders.push_back({i});
+    flights.FlyCases(orders, 1, [&](std::size_t i, CaseResult result, const History&) { all[i] = std::move(result); });
     flights_ += all.size();
     return all;
   }

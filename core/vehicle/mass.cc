@@ -2,6 +2,7 @@
 
 #include "core/math/constants.h"
 #include "core/math/functions.h"
+#include "core/vehicle/burning_stack.h"
 
 namespace dispersa {
 
@@ -29,22 +30,11 @@ void Add(const Tube& tube, StackMass& stack) {
 }  // namespace
 
 MassProperties StackMass::At(double propellant_kg) const {
-  const double outer2 = Square(grain_outer_radius_m);
-  const double inner2 = outer2 - propellant_kg / (kPi * grain_density_kg_m3 * grain_length_m);
-  const double grain_axial = 0.5 * propellant_kg * (outer2 + inner2);
-  const double length2 = Square(grain_length_m) / 12.0;
-
-  MassProperties m;
-  m.mass_kg = fixed_mass_kg + propellant_kg;
-  m.cg_station_m = (fixed_first_moment_kg_m + propellant_kg * grain_station_m) / m.mass_kg;
-  m.axial_inertia_kg_m2 = fixed_axial_inertia_kg_m2 + grain_axial;
-  m.transverse_inertia_kg_m2 = fixed_second_moment_kg_m2 + 0.5 * grain_axial +
-                               propellant_kg * (length2 + Square(grain_station_m)) -
-                               m.mass_kg * Square(m.cg_station_m);
-  // d(grain_axial)/dm = r_i², because the propellant goes at the bore.
-  m.axial_inertia_per_kg = inner2;
-  m.transverse_inertia_per_kg = 0.5 * inner2 + length2 + Square(grain_station_m - m.cg_station_m);
-  return m;
+  lanes::Stack<double> stack;
+  lanes::SetLane(stack, 0, *this);
+  const lanes::Masses<double> m = lanes::MassesAt(stack, propellant_kg);
+  return {m.mass_kg,     m.cg_station_m,    m.axial_kg_m2,
+          m.transverse_kg_m2, m.axial_per_kg_m2, m.transverse_per_kg_m2};
 }
 
 double DryMass(const Vehicle& vehicle, int stage) {

@@ -1,25 +1,24 @@
 #include "core/vehicle/propulsion.h"
 
-#include "core/math/functions.h"
+#include "core/vehicle/burning_stack.h"
 
 namespace dispersa {
 
-double MotorBurn::Fraction(double since_ignition_s) const {
-  if (since_ignition_s < 0.0 || since_ignition_s > duration_s) return 0.0;
-  if (since_ignition_s < rise_s) return since_ignition_s / rise_s;
-  const double left = duration_s - since_ignition_s;
-  return left < tail_s ? left / tail_s : 1.0;
+namespace {
+
+lanes::BurnState<double> At(const MotorBurn& motor, double since_ignition_s) {
+  lanes::Burn<double> burn;
+  lanes::SetLane(burn, 0, motor);
+  return lanes::BurnAt(burn, since_ignition_s);
 }
 
-double MotorBurn::Propellant(double since_ignition_s) const {
-  if (since_ignition_s <= 0.0) return propellant_mass_kg;
-  if (since_ignition_s >= duration_s) return 0.0;
-  if (since_ignition_s < rise_s)
-    return propellant_mass_kg - 0.5 * full_flow_kg_s * Square(since_ignition_s) / rise_s;
-  const double left = duration_s - since_ignition_s;
-  if (left < tail_s) return 0.5 * full_flow_kg_s * Square(left) / tail_s;
-  return full_flow_kg_s * (left - 0.5 * tail_s);
+}  // namespace
+
+double MotorBurn::Fraction(double since_ignition_s) const {
+  return since_ignition_s < 0.0 || since_ignition_s > duration_s ? 0.0 : At(*this, since_ignition_s).fraction;
 }
+
+double MotorBurn::Propellant(double since_ignition_s) const { return At(*this, since_ignition_s).propellant_kg; }
 
 MotorBurn BuildBurn(const Stage& stage, double thrust_factor, double flow_factor) {
   const Motor& motor = stage.motor;

@@ -24,7 +24,7 @@ struct FlyOptions {
   CampaignOverrides overrides;
   std::optional<std::uint64_t> case_index;  ///< none: the nominal flight
   std::string history;
-  std::string integrator = "erk4";
+  std::string integrator;  ///< empty: the one that campaigns and scenarios fly
 };
 
 void PrintJson(const CaseResult& result) {
@@ -53,11 +53,14 @@ void PrintText(const CaseResult& result) {
 }
 
 ExitCode FlyOne(const FlyOptions& options, const GlobalOptions& global) {
-  Scheme scheme = Scheme::kRungeKutta4;
-  if (!ParseScheme(options.integrator, &scheme)) {
-    throw InputError("--integrator: '" + options.integrator + "' is not an integrator", "erk4 or cvode");
+  const bool is_scenario = IsScenarioFile(options.campaign);
+  Scheme scheme = is_scenario ? Scheme::kRungeKutta4 : Scheme::kSimpson;
+  if (!options.integrator.empty() && !ParseScheme(options.integrator, &scheme)) {
+    throw InputError("--integrator: '" + options.integrator + "' is not an integrator", "simpson, erk4 or cvode");
   }
-  if (IsScenarioFile(options.campaign)) {
+  if (is_scenario) {
+    if (scheme == Scheme::kSimpson)
+      throw InputError("--integrator: a scenario does not fly with 'simpson'", "erk4 or cvode");
     if (options.case_index || options.overrides.seed)
       throw InputError("--case, --seed: a scenario has no cases", "a campaign file with these options");
     return FlyScenarioFile(options.campaign, scheme, options.history, global);
@@ -90,7 +93,8 @@ void AddFlyCommand(CLI::App& app, Invocation& invocation) {
   command->add_option("--case", options->case_index, "case index, from 0; without it the nominal flight");
   command->add_option("--history", options->history, "file for the time history, CSV");
   command->add_option("--integrator", options->integrator,
-                      "erk4 (fixed steps, what campaigns fly) or cvode (high accuracy, to compare)");
+                      "simpson (what campaigns fly), erk4 (what scenarios fly; classical Runge-Kutta through SUNDIALS) "
+                      "or cvode (high accuracy, to compare)");
   command->add_option("--seed", options->overrides.seed, "seed, instead of the file's");
   command->footer(
       "Example: dispersa fly campaigns/nominal.yaml --history nominal.csv\n"

@@ -10,7 +10,6 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <thread>
 
 #include "core/campaign_yaml/load.h"
 #include "core/math/constants.h"
@@ -23,6 +22,7 @@
 #include "services/cli/flight_json.h"
 #include "services/cli/progress.h"
 #include "services/cli/seed_study.h"
+#include "services/cli/threads.h"
 
 namespace dispersa {
 namespace {
@@ -166,9 +166,7 @@ ExitCode StudySeeds(const OptimizationInput& input, const OptimizeOptions& optio
 
 ExitCode Optimize(const OptimizeOptions& options, const GlobalOptions& global) {
   const OptimizationInput input = LoadOptimization(options.campaign, options.seed);
-  const int threads = options.threads > 0
-                          ? options.threads
-                          : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  const int threads = ThreadsOrAll(options.threads);
   if (options.seeds > 0) return StudySeeds(input, options, threads, global);
   OptimizationResult result = Search(input, threads, global.quiet);
   result.reference.name = input.name;

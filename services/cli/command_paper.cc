@@ -1,11 +1,9 @@
 // dispersa paper: every table and figure of the paper, computed here and now, on one page.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "core/campaign/input_error.h"
@@ -13,6 +11,7 @@
 #include "core/paper/paper_study.h"
 #include "services/cli/command.h"
 #include "services/cli/progress.h"
+#include "services/cli/threads.h"
 #include "services/cli/warn.h"
 
 namespace dispersa {
@@ -60,8 +59,7 @@ ExitCode MakePaper(const PaperCommandOptions& options, const GlobalOptions& glob
   std::unique_ptr<Progress> progress;
   PaperOptions study;
   study.cases = options.cases;
-  study.threads = options.threads > 0 ? options.threads
-                                      : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  study.threads = ThreadsOrAll(options.threads);
   study.progress = [&](const std::string& what, std::uint64_t done, std::uint64_t total) {
     if (!progress || what != phase) {
       progress.reset();

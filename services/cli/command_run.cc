@@ -7,12 +7,18 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <condition_variable>
 #include <cstdio>
 #include <cstring>
+#include <deque>
+#include <exception>
 #include <filesystem>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -43,6 +49,7 @@ constexpr double kLeavePatience_s = 0.3;
 struct RunOptions {
   CampaignRequest request;
   int workers = -1;  ///< -1: the usable cores
+  int threads = 0;   ///< without workers; 0: the usable cores
 };
 
 struct Interrupted {};
@@ -74,6 +81,7 @@ std::string ResumeCommand(const RunOptions& options, const std::filesystem::path
   if (overrides.cases) command += fmt::format(" --cases {}", *overrides.cases);
   if (overrides.seed) command += fmt::format(" --seed {}", *overrides.seed);
   if (options.workers >= 0) command += fmt::format(" --workers {}", options.workers);
+  if (options.threads > 0) command += fmt::format(" --threads {}", options.threads);
   return command + " --out " + ShellWord(directory.string()) + " --resume";
 }
 
@@ -83,22 +91,16 @@ class CampaignRun {
   CampaignRun(CampaignBook& book, ExecutionFile& execution, bool quiet)
       : book_(book), execution_(execution), progress_(book.campaign().name, quiet) {}
 
-  std::optional<std::string> FlyHere() {
-    const std::string self = "in process";
+  std::optional<std::string> FlyHere(int threads) {
     const CampaignFlights flights(book_.campaign());
-    book_.ledger().Join(self, {EngineVersion(), 1, 1}, Now());
-    while (!book_.ledger().Complete()) {
-      for (const Assignment& assignment : book_.ledger().Assign(Now())) {
-        for (const std::uint64_t case_index : assignment.cases) {
-          if (StopRequested()) throw Interrupted();
-          book_.Start(self, case_index, assignment.attempt, Now());
-          const CaseResult result = flights.FlyCase(case_index);
-          book_.Accept(self, "", assignment.attempt, result, Now());
-          book_.FlushIfDue(Now());
-          ShowProgress("in process");
-        }
-      }
+    HereQueue queue(*this, threads);
+    {
+      std::vector<std::jthread> others;  // joined at the end of this block
+      for (int i = 1; i < threads; ++i) others.emplace_back([&] { queue.FlyOn(flights); });
+      queue.FlyOn(flights);
     }
+    queue.RethrowProblem();
+    if (StopRequested()) throw Interrupted();
     return std::nullopt;
   }
 
@@ -141,6 +143,70 @@ class CampaignRun {
   }
 
  private:
+  /// The ledger's cases for threads of this process.
+  class HereQueue : public CaseQueue {
+   public:
+    HereQueue(CampaignRun& run, int threads) : run_(run) {
+      const auto slots = static_cast<std::uint32_t>(threads);
+      run_.book_.ledger().Join(kSelf, {EngineVersion(), slots, kAssignmentsAhead * slots}, run_.Now());
+    }
+
+    /// Until the campaign is complete or the run is stopped.
+    void FlyOn(const CampaignFlights& flights) {
+      for (;;) {
+        flights.FlyCases(*this);
+        std::unique_lock lock(mutex_);
+        if (run_.book_.ledger().Complete() || StopRequested() || problem_) return;
+        changed_.wait_for(lock, std::chrono::milliseconds(50));
+      }
+    }
+    std::optional<std::uint64_t> Next(bool) override {
+      const std::lock_guard lock(mutex_);
+      if (StopRequested() || problem_) return std::nullopt;
+      try {
+        if (waiting_.empty()) {
+          for (const Assignment& assignment : run_.book_.ledger().Assign(run_.Now()))
+            for (const std::uint64_t case_index : assignment.cases) waiting_.emplace_back(case_index, assignment.attempt);
+        }
+        if (waiting_.empty()) return std::nullopt;
+        const auto [case_index, attempt] = waiting_.front();
+        waiting_.pop_front();
+        attempts_[case_index] = attempt;
+        run_.book_.Start(kSelf, case_index, attempt, run_.Now());
+        return case_index;
+      } catch (...) {
+        problem_ = std::current_exception();
+        return std::nullopt;
+      }
+    }
+    void Done(CaseResult result) override {
+      const std::lock_guard lock(mutex_);
+      if (problem_) return;
+      try {
+        run_.book_.Accept(kSelf, "", attempts_.extract(result.case_index).mapped(), result, run_.Now());
+        run_.book_.FlushIfDue(run_.Now());
+        run_.ShowProgress("in process");
+      } catch (...) {
+        problem_ = std::current_exception();
+      }
+      changed_.notify_all();
+    }
+    void RethrowProblem() const {
+      if (problem_) std::rethrow_exception(problem_);
+    }
+
+   private:
+    static constexpr char kSelf[] = "in process";
+    static constexpr std::uint32_t kAssignmentsAhead = 4;
+
+    CampaignRun& run_;
+    std::mutex mutex_;  ///< of all that follows, and of the book
+    std::condition_variable changed_;
+    std::deque<std::pair<std::uint64_t, std::uint64_t>> waiting_;  ///< case and attempt
+    std::map<std::uint64_t, std::uint64_t> attempts_;              ///< of the cases in flight
+    std::exception_ptr problem_;
+  };
+
   double Now() const { return SecondsSince(start_); }
 
   void Supervise(Coordinator& coordinator, LocalWorkers& workers) {
@@ -220,7 +286,8 @@ ExitCode FlyAndReport(const RunOptions& options, const GlobalOptions& global, Op
   if (!book.ledger().Complete()) {
     try {
       CampaignRun run(book, execution, global.quiet);
-      execution.problem = workers == 0 ? run.FlyHere() : run.FlyWithWorkers(workers);
+      execution.problem = workers == 0 ? run.FlyHere(options.threads > 0 ? options.threads : UsableCores())
+                                       : run.FlyWithWorkers(workers);
     } catch (const NetworkError& error) {
       execution.problem = error.what();
     } catch (const Interrupted&) {
@@ -285,6 +352,10 @@ void AddRunCommand(CLI::App& app, Invocation& invocation) {
       ->add_option("--workers", options->workers,
                    "worker processes; default: the usable cores; 0 flies in this process without DDS")
       ->check(CLI::Range(0, 1024));
+  command
+      ->add_option("--threads", options->threads,
+                   "threads that fly in this process with --workers 0; default: the usable cores")
+      ->check(CLI::Range(1, 1024));
   command->add_option("--out", request.out, "result folder; default: results/<name>-<first 8 of id>")
       ->check([](const std::string& text) { return text.empty() ? "must not be empty" : ""; });
   command->add_option("--cases", request.overrides.cases, "number of cases, instead of the file's")

@@ -1,11 +1,9 @@
 // dispersa tune: an autopilot's gains, found by the one procedure that tunes every law.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <thread>
 
 #include "core/campaign_yaml/load.h"
 #include "core/report/output_file.h"
@@ -13,6 +11,7 @@
 #include "services/cli/command.h"
 #include "services/cli/flight_json.h"
 #include "services/cli/progress.h"
+#include "services/cli/threads.h"
 #include "services/cli/warn.h"
 
 namespace dispersa {
@@ -181,9 +180,7 @@ void PrintText(const TuneOptions& options, const TuningResult& result, const std
 
 ExitCode RunTuning(const TuneOptions& given, const GlobalOptions& global) {
   TuneOptions options = given;
-  options.tuning.threads = options.threads > 0
-                               ? options.threads
-                               : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  options.tuning.threads = ThreadsOrAll(options.threads);
   const Campaign campaign = LoadAndWarn(options.campaign);
   const AutopilotConfig autopilot =
       options.autopilot.empty() ? campaign.autopilot : LoadAutopilot(options.autopilot);

@@ -3,12 +3,17 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
 
 #include "core/campaign/input_error.h"
 #include "core/campaign_yaml/yaml_reader.h"
 #include "core/engine/version.h"
+#include "core/flight/lane_engine.h"
 #include "core/report/result_error.h"
 #include "services/cli/command.h"
 
@@ -64,9 +69,35 @@ InputError UnknownCommand(const CLI::App& app) {
   return InputError("unknown command '" + word + "'" + DidYouMean(word, names), JoinWords(names));
 }
 
+// CLI11 ends at --version, whatever else is asked for.
+bool AsksForVersionAsJson(int argc, char** argv) {
+  const auto has = [&](const char* flag) {
+    return std::any_of(argv + 1, argv + argc, [&](const char* word) { return std::string(word) == flag; });
+  };
+  return has("--version") && has("--json");
+}
+
+void PrintVersionJson() {
+  const nlohmann::ordered_json json = {{"schema", "dispersa/version/1"},
+                                       {"version", EngineVersion().substr(0, EngineVersion().find('+'))},
+                                       {"engine", EngineVersion()},
+                                       {"isa", ChosenEngine().isa},
+                                       {"lanes", ChosenEngine().lanes}};
+  fmt::print("{}\n", json.dump(2));
+}
+
 int Main(int argc, char** argv) {
   spdlog::set_default_logger(spdlog::stderr_color_mt("dispersa"));
   spdlog::set_pattern("%^%l%$: %v");
+  try {
+    ChosenEngine();
+  } catch (const std::invalid_argument& error) {
+    return Say(error, kExitBadInput);
+  }
+  if (AsksForVersionAsJson(argc, argv)) {
+    PrintVersionJson();
+    return kExitDone;
+  }
 
   Invocation invocation;
   CLI::App app("Monte Carlo dispersion campaigns of launch vehicles.", "dispersa");

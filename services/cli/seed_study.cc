@@ -86,10 +86,7 @@ std::optional<OrbitErrors> FlyReference(const OptimizationInput& input, const Re
   campaign.reference = reference;
   const CaseResult result = CampaignFlights(campaign).FlyNominal();
   if (result.outcome != Outcome::kCompleted) return std::nullopt;
-  const auto metric = [&](const char* name) {
-    const std::vector<std::string>& names = MetricNames();
-    return result.metrics[static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin())];
-  };
+  const auto metric = [&](const char* name) { return result.metrics[MetricColumn(name)]; };
   return OrbitErrors{metric("injection_altitude_error_km") * 1e3, metric("injection_velocity_error_m_s"),
                      metric("injection_flight_path_angle_error_deg") * kRadPerDeg};
 }

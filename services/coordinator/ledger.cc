@@ -233,8 +233,11 @@ std::uint64_t Ledger::BatchSize() const {
   // At least two rounds for every slot, so that the last cases end everywhere at about the same time.
   const std::uint64_t share = waiting_.Count() / (2 * std::max<std::uint64_t>(slots_, 1));
   const double by_duration = mean_case_s_ > 0.0 ? options_.batch_duration_s / mean_case_s_ : 1.0;
-  const double wanted = std::min(by_duration, static_cast<double>(std::min(share, options_.max_batch)));
-  return static_cast<std::uint64_t>(std::max(wanted, 1.0));
+  const double by_lanes = by_duration * static_cast<double>(options_.side_by_side);
+  const double wanted = std::min(by_lanes, static_cast<double>(std::min(share, options_.max_batch)));
+  const auto size = static_cast<std::uint64_t>(std::max(wanted, 1.0));
+  // Whole packs, so that no lane flies alone.
+  return size > options_.side_by_side ? size - size % options_.side_by_side : size;
 }
 
 Assignment Ledger::Give(const std::string& id, Worker& worker, std::vector<std::uint64_t> cases,

@@ -20,6 +20,7 @@ struct LedgerOptions {
   std::uint64_t max_batch = 64;    ///< cases
   std::uint64_t attempt_base =
       0;  ///< attempts count from here: ledgers of one coordinator have different ones
+  std::uint64_t side_by_side = 8;  ///< cases that a slot may fly at the same time: the widest engine's lanes
 };
 
 /// A worker as it announces itself.

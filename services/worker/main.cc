@@ -6,9 +6,11 @@
 #include <csignal>
 #include <cstdlib>
 #include <exception>
+#include <stdexcept>
 #include <thread>
 
 #include "core/engine/version.h"
+#include "core/flight/lane_engine.h"
 #include "services/worker/worker.h"
 
 namespace {
@@ -51,6 +53,12 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kDone : kBadUsage;
+  }
+  try {
+    ChosenEngine();
+  } catch (const std::invalid_argument& error) {
+    spdlog::error("{}", error.what());
+    return kBadUsage;
   }
   if (options.uuid.empty()) options.uuid = MakeUuid();
 

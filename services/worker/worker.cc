@@ -113,8 +113,43 @@ void Worker::Load(const CampaignText& text) {
   work_.notify_all();
 }
 
+// The jobs of one campaign as the engine takes them; a job of another campaign waits until all lanes are free.
+class Worker::SlotQueue : public CaseQueue {
+ public:
+  SlotQueue(Worker& worker, Job first) : worker_(worker), flights_(first.flights), next_(std::move(first)) {}
+
+  const CampaignFlights& flights() const { return *flights_; }
+  std::optional<Job> TakeOther() { return std::exchange(next_, std::nullopt); }
+
+  std::optional<std::uint64_t> Next(bool) override {
+    if (!next_) next_ = worker_.Next(false);
+    if (!next_ || next_->flights != flights_) return std::nullopt;
+    const std::uint64_t case_index = next_->case_index;
+    flying_.push_back(*std::exchange(next_, std::nullopt));
+    return case_index;
+  }
+  void Done(CaseResult result) override {
+    const auto job = std::find_if(flying_.begin(), flying_.end(),
+                                  [&](const Job& each) { return each.case_index == result.case_index; });
+    worker_.Done(*job, std::move(result));
+    flying_.erase(job);
+  }
+
+ private:
+  Worker& worker_;
+  std::shared_ptr<const CampaignFlights> flights_;
+  std::optional<Job> next_;
+  std::vector<Job> flying_;
+};
+
 void Worker::FlyForEver() {
-  while (const std::optional<Job> job = Next(true)) Done(*job, job->flights->FlyCase(job->case_index));
+  std::optional<Job> job = Next(true);
+  while (job) {
+    SlotQueue queue(*this, *std::move(job));
+    queue.flights().FlyCases(queue);
+    job = queue.TakeOther();
+    if (!job) job = Next(true);
+  }
 }
 
 std::optional<Job> Worker::Next(bool wait) {

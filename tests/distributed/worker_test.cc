@@ -137,14 +137,15 @@ TEST_F(WorkerTest, RefusesATextOfOtherFlights) {
 
 TEST_F(WorkerTest, ADrainedWorkerFinishesWhatItFliesAndHandsBackTheRest) {
   StartWorker();
-  Order(7, {0, 1, 2, 3, 4, 5});
+  // More than a slot flies side by side.
+  Order(7, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19});
   ASSERT_TRUE(Until([this] { return !status_.started.empty(); }));
   worker_->Drain();
   ASSERT_TRUE(Until([this] { return exit_ != kRunning; }));
   EXPECT_EQ(exit_, static_cast<int>(WorkerExit::kDrained));
   EXPECT_EQ(status_.state, WorkerState::kLeft);
   EXPECT_FALSE(times_.empty()) << "what it flew";
-  EXPECT_LT(times_.size(), 6u) << "the rest";
+  EXPECT_LT(times_.size(), 20u) << "the rest";
 }
 
 TEST_F(WorkerTest, GivesUpWithoutACoordinatorWhenItIsAskedTo) {

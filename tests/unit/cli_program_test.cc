@@ -189,7 +189,7 @@ TEST(CliProgram, FlyRefusesWhatThereIsNot) {
   EXPECT_EQ(no_case.error, "--case: the campaign has no case 12, allowed: 0 to 11\n");
   const Output integrator = Dispersa("fly --integrator euler " + kSmoke);
   EXPECT_EQ(integrator.code, 2);
-  EXPECT_EQ(integrator.error, "--integrator: 'euler' is not an integrator, allowed: erk4 or cvode\n");
+  EXPECT_EQ(integrator.error, "--integrator: 'euler' is not an integrator, allowed: simpson, erk4 or cvode\n");
 }
 
 TEST(CliProgram, ReplayAndReportNeedAResultFolder) {

@@ -57,9 +57,11 @@ TEST(StepGimbals, RemembersTheSenseOfSaturation) {
   AutopilotState state;
   StartStage(model, 0, state);
   StepGimbals(model, 0, 0.0, ErrorOf(0.0, 0.05, -0.05), kNoStudy, 1.0, state);
-  EXPECT_EQ(state.saturation, (std::array<int, kAxes>{0, 1, -1}));
+  EXPECT_EQ(state.axes[kRoll].saturation, 0.0);
+  EXPECT_EQ(state.axes[kPitch].saturation, 1.0);
+  EXPECT_EQ(state.axes[kYaw].saturation, -1.0);
   StepGimbals(model, 0, 0.0, ErrorOf(0.0, 0.0, 0.0), kNoStudy, 1.0, state);
-  EXPECT_EQ(state.saturation, (std::array<int, kAxes>{0, 0, 0}));
+  for (const AxisState& axis : state.axes) EXPECT_EQ(axis.saturation, 0.0);
 }
 
 TEST(GimbalCommand, MixesPairsAndRoll) {
@@ -82,17 +84,13 @@ AutopilotState Learnt(const AutopilotModel& model) {
 TEST(StartStage, CarriesWhatWasLearntOntoTheNextStagesRules) {
   const AutopilotModel model = Model();
   AutopilotState state = Learnt(model);
-  const AxisLaw& law = model.laws[kPitch];
-  std::array<double, kFuzzyRules> learnt{};
+  const AxisState learnt = state.axes[kPitch];
   double size = 0.0;
-  for (std::size_t i = 0; i < kFuzzyRules; ++i) {
-    learnt[i] = state.axes[kPitch].consequents[i] - law.stages[0].consequents[i];
-    size += std::fabs(learnt[i]);
-  }
+  for (const double departure : learnt.departure_rad_s2) size += std::fabs(departure);
   ASSERT_GT(size, 0.01);
   StartStage(model, 1, state);
   for (std::size_t i = 0; i < kFuzzyRules; ++i)
-    EXPECT_NEAR(state.axes[kPitch].consequents[i] - law.stages[1].consequents[i], learnt[i], 1e-15);
+    EXPECT_EQ(state.axes[kPitch].departure_rad_s2[i], learnt.departure_rad_s2[i]);
   // So at zero error the trim in rad/s² goes on without a bump.
   AutopilotState before = Learnt(model);
   const double trim =
@@ -108,11 +106,12 @@ TEST(StartStage, StartsAnewWhenConfiguredAndClearsSaturationAndThrusters) {
   config.pitch.adaptation.reset_at_ignition = true;
   const AutopilotModel model = Model(config);
   AutopilotState state = Learnt(model);
-  state.saturation = {1, 1, -1};
+  state.axes[kRoll].saturation = state.axes[kPitch].saturation = 1.0;
+  state.axes[kYaw].saturation = -1.0;
   state.thrusters[kYaw].direction = 1;
   StartStage(model, 1, state);
-  EXPECT_EQ(state.axes[kPitch].consequents, model.laws[kPitch].stages[1].consequents);
-  EXPECT_EQ(state.saturation, (std::array<int, kAxes>{}));
+  for (const double departure : state.axes[kPitch].departure_rad_s2) EXPECT_EQ(departure, 0.0);
+  for (const AxisState& axis : state.axes) EXPECT_EQ(axis.saturation, 0.0);
   EXPECT_EQ(state.thrusters[kYaw].direction, 0);
 }
 
@@ -128,10 +127,10 @@ TEST(StartStage, AugmentationStartsEveryStageAnew) {
   for (int i = 0; i < 50; ++i)
     StepGimbals(model, 0, 0.01 * i, ErrorOf(0.0, 0.0, 0.05), kNoStudy, 1.0, state);
   ASSERT_GT(state.axes[kYaw].total_gain, 1.1);
-  ASSERT_TRUE(state.axes[kYaw].model_started);
+  ASSERT_EQ(state.axes[kYaw].model_started, 1.0);
   StartStage(model, 1, state);
   EXPECT_EQ(state.axes[kYaw].total_gain, 1.0);
-  EXPECT_FALSE(state.axes[kYaw].model_started);
+  EXPECT_EQ(state.axes[kYaw].model_started, 0.0);
 }
 
 TEST(BuildStageControl, IsThrustTimesLeverOverInertia) {
@@ -302,7 +301,8 @@ TEST(AutopilotProblems, AnUnprovenPnMayBeStudied) {
   config.pitch.adaptation.allow_unproven = true;
   EXPECT_EQ(Texts(config), List{});
   const AxisLaw law = BuildAxisLaw(config.pitch);
-  EXPECT_EQ(law.stages[0].p_n, Vector2(-1.0, 5.0));
+  EXPECT_EQ(law.stages[0].pn_error, -1.0);
+  EXPECT_EQ(law.stages[0].pn_rate, 5.0);
 }
 
 }  // namespace

@@ -1,8 +1,9 @@
 // The rule base of equations (20) to (22) and the Lyapunov equation behind (32).
-#include "core/control/fuzzy.h"
+#include "core/control/axis_step.h"
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -15,14 +16,25 @@ namespace {
 constexpr FuzzyRules kRules = {0.08, 0.03};
 constexpr AxisGains kGains = {16.0, 7.0};
 
-double Surface(const std::array<double, kFuzzyRules>& consequents, double error, double rate) {
-  const auto zeta = Regressor(kRules, error, rate);
-  double u = 0.0;
-  for (std::size_t i = 0; i < kFuzzyRules; ++i) u += consequents[i] * zeta[i];
-  return u;
+// The grades of a value by sets of a range.
+std::array<double, kFuzzySets> Memberships(double x, double range) {
+  std::array<double, kFuzzySets> grade;
+  lanes::Grades(lanes::Clamp(2.0 * x / range + 2.0, 0.0, 4.0), grade.data());
+  return grade;
 }
 
-TEST(Memberships, AreOneAtTheirCentreAndHalfAtTheCrossings) {
+// The frozen rules' surface.
+double Surface(double error, double rate) {
+  AxisConfig config;
+  config.law = ControlLaw::kFrozenFuzzy;
+  config.gains = {kGains};
+  config.rules = kRules;
+  AxisState state;
+  AxisTelemetry telemetry;
+  return StepAxis(BuildAxisLaw(config), 0, error, rate, 1.0, 1.0, 0.01, state, telemetry);
+}
+
+TEST(Grades, AreOneAtTheirCentreAndHalfAtTheCrossings) {
   using Grades = std::array<double, kFuzzySets>;
   EXPECT_EQ(Memberships(-2.0, 2.0), (Grades{1, 0, 0, 0, 0}));
   EXPECT_EQ(Memberships(-1.0, 2.0), (Grades{0, 1, 0, 0, 0}));
@@ -31,48 +43,51 @@ TEST(Memberships, AreOneAtTheirCentreAndHalfAtTheCrossings) {
   EXPECT_EQ(Memberships(2.0, 2.0), (Grades{0, 0, 0, 0, 1}));
 }
 
-TEST(Memberships, OuterSetsAreShoulders) {
+TEST(Grades, OuterSetsAreShoulders) {
   EXPECT_EQ(Memberships(50.0, 2.0), Memberships(2.0, 2.0));
   EXPECT_EQ(Memberships(-50.0, 2.0), Memberships(-2.0, 2.0));
 }
 
-TEST(Regressor, IsAPartitionOfUnityWithAtMostFourRules) {
-  Stream draws(1, 0, "regressor");
+TEST(Grades, AreAPartitionOfUnityOverAtMostTwoSets) {
+  Stream draws(1, 0, "grades");
   for (int k = 0; k < 2000; ++k) {
-    const auto zeta =
-        Regressor(kRules, 0.4 * (draws.Uniform() - 0.5), 0.12 * (draws.Uniform() - 0.5));
-    int fired = 0;
-    for (const double z : zeta) {
-      ASSERT_GE(z, 0.0);
-      if (z > 0.0) ++fired;
+    const auto grades = Memberships(0.4 * (draws.Uniform() - 0.5), kRules.error_range_rad);
+    int sets = 0;
+    for (const double grade : grades) {
+      ASSERT_GE(grade, 0.0);
+      if (grade > 0.0) ++sets;
     }
-    ASSERT_LE(fired, 4);
-    // 25 sums and one division: a few units in the last place.
-    ASSERT_NEAR(std::accumulate(zeta.begin(), zeta.end(), 0.0), 1.0, 1e-15);
+    ASSERT_LE(sets, 2);
+    ASSERT_EQ(std::accumulate(grades.begin(), grades.end(), 0.0), 1.0);
   }
 }
 
-TEST(Regressor, NumbersRulesByErrorSetThenRateSet) {
-  const auto zeta = Regressor(kRules, kRules.error_range_rad, -0.5 * kRules.rate_range_rad_s);
-  for (std::size_t i = 0; i < kFuzzyRules; ++i) EXPECT_EQ(zeta[i], i == 4 * kFuzzySets + 1 ? 1.0 : 0.0) << i;
+TEST(Rules, AreNumberedByErrorSetThenRateSet) {
+  AxisConfig config;
+  config.law = ControlLaw::kFrozenFuzzy;
+  config.gains = {kGains};
+  config.rules = kRules;
+  AxisState state;
+  AxisTelemetry telemetry;
+  StepAxis(BuildAxisLaw(config), 0, kRules.error_range_rad, -0.5 * kRules.rate_range_rad_s, 1.0, 1.0, 0.01, state,
+           telemetry);
+  EXPECT_EQ(state.rules_fired, 1u << (4 * kFuzzySets + 1));
 }
 
-TEST(PlaneConsequents, ReproduceTheLinearLawInsideTheOuterCentres) {
-  const auto consequents = PlaneConsequents(kRules, kGains);
+TEST(Rules, StartAsTheLinearLawInsideTheOuterCentres) {
   Stream draws(2, 0, "plane");
   for (int k = 0; k < 1000; ++k) {
     const double error = 2.0 * kRules.error_range_rad * (draws.Uniform() - 0.5);
     const double rate = 2.0 * kRules.rate_range_rad_s * (draws.Uniform() - 0.5);
     // Rounding of products of order 1.
-    ASSERT_NEAR(Surface(consequents, error, rate), kGains.kp_1_s2 * error + kGains.kd_1_s * rate, 1e-14);
+    ASSERT_NEAR(Surface(error, rate), kGains.kp_1_s2 * error + kGains.kd_1_s * rate, 1e-14);
   }
 }
 
-TEST(PlaneConsequents, AreFlatBeyondTheOuterCentres) {
-  const auto consequents = PlaneConsequents(kRules, kGains);
+TEST(Rules, AreFlatBeyondTheOuterCentres) {
   const double corner = kGains.kp_1_s2 * kRules.error_range_rad + kGains.kd_1_s * kRules.rate_range_rad_s;
-  EXPECT_NEAR(Surface(consequents, 1.0, 1.0), corner, 1e-14);
-  EXPECT_NEAR(Surface(consequents, -1.0, -1.0), -corner, 1e-14);
+  EXPECT_NEAR(Surface(1.0, 1.0), corner, 1e-14);
+  EXPECT_NEAR(Surface(-1.0, -1.0), -corner, 1e-14);
 }
 
 TEST(SolveLyapunov, LeavesNoResidual) {

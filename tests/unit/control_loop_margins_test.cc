@@ -163,11 +163,10 @@ double Growth(const AxisPlant& plant, const AxisLaw& axis, double effectiveness,
   Eigen::Vector4d x(1e-9, 0.0, 0.0, 0.0);  // so small that the law is linear
   AxisState state;
   AxisTelemetry telemetry;
-  ResetAxis(axis, 0, state);
   double command = 0.0, early = 0.0, late = 0.0;
   constexpr int kTicks = 4000;
   for (int k = 0; k < kTicks; ++k) {
-    const double u = StepAxis(axis, 0, -x[0], -x[1], 0, Vector2::Ones(), kTick_s, state, telemetry);
+    const double u = StepAxis(axis, 0, -x[0], -x[1], 1.0, 1.0, kTick_s, state, telemetry);
     x = held.topLeftCorner<4, 4>() * x + held.topRightCorner<4, 1>() * command;
     command = gain * u / effectiveness;
     (k < kTicks / 2 ? early : late) += x[0] * x[0];
@@ -182,8 +181,8 @@ TEST(SampledLoop, PredictsWhereTheAdaptiveFuzzyLawItselfIsLost) {
   config.adaptation.leakage_1_s = 0.05;
   const AxisLaw axis = BuildAxisLaw(config);
   LinearLaw law = AdaptingLaw(16.0, 7.0, 0.0);
-  law.drive_error = 8000.0 * axis.stages[0].p_n.x();
-  law.drive_rate = 8000.0 * axis.stages[0].p_n.y();
+  law.drive_error = 8000.0 * axis.stages[0].pn_error;
+  law.drive_rate = 8000.0 * axis.stages[0].pn_rate;
   law.leakage_1_s = 0.05;
   const AxisPlant plant = WithActuator(25.0);
   const LoopMargins m = SampledLoop(plant, law, kTick_s, 1).Margins();

@@ -31,7 +31,7 @@ TEST(Ledger, RefusesAnotherEngineVersionWithAReason) {
 }
 
 TEST(Ledger, GivesAsManyAssignmentsAsAWorkerGrantsCredits) {
-  Ledger ledger("1", 10);
+  Ledger ledger("1", 10, {.side_by_side = 1});
   EXPECT_EQ(ledger.Join("w", kHello, 0.0), std::nullopt);
   const auto given = ledger.Assign(0.0);
   // Durations are not known yet: single cases.
@@ -53,15 +53,19 @@ TEST(Ledger, SpreadsFewCasesOverAllWorkers) {
   EXPECT_THAT(ledger.Assign(0.0), ElementsAre(Assignment{"a", 1, {0}}, Assignment{"b", 2, {1}}));
 }
 
-TEST(Ledger, BatchesShortCasesAndShrinksTheBatchesTowardsTheEnd) {
-  Ledger ledger("1", 200, {.batch_duration_s = 0.25, .max_batch = 64});
+// The sizes of the assignments of 200 cases of 1/128 s each to one worker that flies one after the other.
+std::vector<std::size_t> SizesOf(const LedgerOptions& options) {
+  Ledger ledger("1", 200, options);
   ledger.Join("w", {.engine_version = "1", .slots = 1, .credits = 1}, 0.0);
   std::vector<std::size_t> sizes;
   std::uint64_t next = 0;
   double now = 0.0;
   while (!ledger.Complete()) {
     const auto given = ledger.Assign(now);
-    ASSERT_THAT(given, SizeIs(1));
+    if (given.size() != 1) {
+      ADD_FAILURE() << given.size() << " assignments";
+      return sizes;
+    }
     sizes.push_back(given[0].cases.size());
     for (const std::uint64_t case_index : given[0].cases) {
       EXPECT_EQ(case_index, next++);
@@ -70,8 +74,19 @@ TEST(Ledger, BatchesShortCasesAndShrinksTheBatchesTowardsTheEnd) {
       ledger.Finished("w", case_index, given[0].attempt, ResultOf(case_index), now);
     }
   }
+  return sizes;
+}
+
+TEST(Ledger, BatchesShortCasesAndShrinksTheBatchesTowardsTheEnd) {
   // 0.25 s of 1/128-s cases are 32; later half of what waits: 199-5*32 = 39/2 = 19, 20/2, 10/2, 5/2, ...
-  EXPECT_THAT(sizes, ElementsAre(1, 32, 32, 32, 32, 32, 19, 10, 5, 2, 1, 1, 1));
+  EXPECT_THAT(SizesOf({.batch_duration_s = 0.25, .max_batch = 64, .side_by_side = 1}),
+              ElementsAre(1, 32, 32, 32, 32, 32, 19, 10, 5, 2, 1, 1, 1));
+}
+
+TEST(Ledger, BatchesCasesThatFlySideBySideInWholePacks) {
+  // Eight at once last as long as one; the largest batch and, later, half of what waits bound them.
+  EXPECT_THAT(SizesOf({.batch_duration_s = 0.25, .max_batch = 60, .side_by_side = 8}),
+              ElementsAre(8, 56, 56, 40, 16, 8, 8, 4, 2, 1, 1));
 }
 
 TEST(Ledger, AResultIsAcceptedOnceAndComparedEverAfter) {

@@ -15,12 +15,6 @@
 namespace dispersa {
 namespace {
 
-FlightDefinition HighDefinition() {
-  FlightDefinition definition = SampleDefinition();
-  definition.vehicle.site.altitude_m = 300e3;
-  return definition;
-}
-
 using Layout = std::array<double, kLauncherSize>;
 
 // Pointing up over the equator, at rest in the inertial frame, so that the air flows by from the west.

@@ -1,6 +1,9 @@
 // Every metric on made-up histories whose answers are known by hand.
 #include "core/control/lyapunov.h"
-#include "core/flight/metrics_recorder.h"
+#include "core/flight/flight_model.h"
+#include "core/flight/lane_metrics.h"
+#include "core/flight/limit_cycle.h"
+#include "core/flight/tick_sample.h"
 
 #include <gtest/gtest.h>
 
@@ -28,6 +31,92 @@ FlightDefinition Definition() {
   return definition;
 }
 
+// A made-up tick: what the engine would know of it, and whether it met loads.
+struct Tick : TickSample {
+  bool has_loads = false;
+};
+
+// One lane of the engine's metrics, fed with made-up ticks as the engine feeds it.
+class MetricsRecorder {
+ public:
+  MetricsRecorder(const FlightModel& model, const FlightInputs& inputs)
+      : model_(model), inputs_(inputs), cycle_(kTick_s) {
+    metrics_.StartFlight(0);
+  }
+
+  void AddTick(const Tick& s) {
+    if (s.has_loads) metrics_.AddLoads(!s.coasting, InstantOf(s.instant));
+    const double pitch = -s.error.angle_rad.y();
+    if (s.coasting) metrics_.AddCoast(true, s.time_s, pitch);
+    if (stage_ >= 0 && (!s.burning || s.stack != stage_)) EndStage();
+    if (!s.burning) return;
+    stage_ = s.stack;
+    lanes::DriveState<double> drives;
+    for (std::size_t i = 0; i < kNozzles; ++i) {
+      drives.angle_rad[i] = s.nozzle_rad[i];
+      drives.rate_rad_s[i] = s.nozzle_rate_rad_s[i];
+    }
+    const AxisTelemetry& t = s.gimbal.telemetry[kPitch];
+    const double p11 = model_.autopilot().laws[kPitch].stages[static_cast<std::size_t>(s.stack)].p11;
+    metrics_.AddPowered(true, kTick_s, s.time_s, {-s.error.angle_rad.x(), pitch, -s.error.angle_rad.z()}, drives,
+                        s.command_rad.data(), s.limit_rad,
+                        {t.v, t.v_rate_sign < 0.0 ? 1.0 : 0.0, p11, t.adaptation_norm * t.adaptation_norm});
+    sums_.rules_fired = t.rules_fired;
+    const double bottom_m = inputs_.gust_altitude_m;
+    const double top_m = inputs_.gust_speed_m_s != 0.0 ? bottom_m + inputs_.gust_length_m : bottom_m;
+    const FlightDefinition& d = model_.definition();
+    if (lanes::InTransient(s.time_s, s.since_ignition_s, s.instant.air.place.altitude_m, d.kick_start_s, d.kick_end_s,
+                           bottom_m, top_m))
+      cycle_.Interrupt();
+    else
+      cycle_.Add(0.25 * (s.nozzle_rad[0] - s.nozzle_rad[1] + s.nozzle_rad[2] - s.nozzle_rad[3]),
+                 0.5 * (s.nozzle_rad[0] + s.nozzle_rad[1]), 0.5 * (s.nozzle_rad[2] + s.nozzle_rad[3]));
+  }
+  void AddLoads(const LauncherInstant& now) { metrics_.AddLoadsOfLane(0, InstantOf(now)); }
+  void AddHandover(const AttitudeError& error) {
+    sums_.handed_over = true;
+    sums_.handover_angle_rad = error.angle_rad.norm();
+    sums_.handover_rate_rad_s = error.rate_rad_s.norm();
+  }
+  void AddInjection(const Earth& earth, const RigidBodyState& s, double altitude_m) {
+    sums_.injected = true;
+    sums_.injection_altitude_m = altitude_m;
+    sums_.orbit = ElementsOf(earth, s.p_EoC_I, s.v_IC_I);
+  }
+  void SetExpelledMass(double mass_kg) { sums_.expelled_kg = mass_kg; }
+  bool structural_limit_exceeded() const {
+    FlightSums sums;
+    metrics_.Read(0, sums);
+    return ExceedsStructure(model_.definition().vehicle.limits, sums);
+  }
+  std::vector<double> Finish() const {
+    MetricsRecorder ended = *this;
+    if (ended.stage_ >= 0) ended.EndStage();
+    ended.metrics_.Read(0, ended.sums_);
+    ended.sums_.limit_cycle_rad = cycle_.worst_rad();
+    return MetricsOf(ended.sums_, model_.definition());
+  }
+
+ private:
+  static lanes::Instant<double> InstantOf(const LauncherInstant& now) {
+    const Vector3& f = now.loads.force_n;
+    return {now.air.place.altitude_m, now.air.qbar_pa, now.air.mach, TotalIncidence(now.v_AB_B), now.loads.mass_kg,
+            now.thrust_n, {f.x(), f.y(), f.z()}};
+  }
+  void EndStage() {
+    metrics_.EndStage(0, stage_, sums_);
+    cycle_.Interrupt();
+    stage_ = -1;
+  }
+
+  const FlightModel& model_;
+  FlightInputs inputs_;
+  lanes::LaneMetrics<double> metrics_;
+  LimitCycleMeter cycle_;
+  FlightSums sums_;
+  int stage_ = -1;
+};
+
 // A recorder with names for its results.
 class Recording {
  public:
@@ -50,8 +139,8 @@ class Recording {
 };
 
 // A tick of powered flight of stage 1 (index 0), ignited at 0, with everything at zero and no loads.
-TickSample Powered(double time_s, int stack = 0, double ignition_s = 0.0) {
-  TickSample s;
+Tick Powered(double time_s, int stack = 0, double ignition_s = 0.0) {
+  Tick s;
   s.time_s = time_s;
   s.stack = stack;
   s.burning = true;
@@ -60,8 +149,8 @@ TickSample Powered(double time_s, int stack = 0, double ignition_s = 0.0) {
   return s;
 }
 
-TickSample Coasting(double time_s) {
-  TickSample s;
+Tick Coasting(double time_s) {
+  Tick s;
   s.time_s = time_s;
   s.stack = 1;
   s.coasting = true;
@@ -69,12 +158,12 @@ TickSample Coasting(double time_s) {
 }
 
 // True less reference, as metrics report it; `error` is reference less true.
-void SetErrors(TickSample& s, double roll_deg, double pitch_deg, double yaw_deg) {
+void SetErrors(Tick& s, double roll_deg, double pitch_deg, double yaw_deg) {
   s.error.angle_rad = -kDeg * Vector3(roll_deg, pitch_deg, yaw_deg);
 }
 
-void SetLoads(TickSample& s, double qbar_pa, double incidence_deg, const Vector3& specific_g) {
-  s.has_instant = true;
+void SetLoads(Tick& s, double qbar_pa, double incidence_deg, const Vector3& specific_g) {
+  s.has_loads = true;
   s.instant.air.qbar_pa = qbar_pa;
   s.instant.v_AB_B = Vector3(std::cos(incidence_deg * kDeg), 0.0, std::sin(incidence_deg * kDeg));
   s.instant.loads.mass_kg = 100.0;
@@ -105,7 +194,7 @@ TEST(MetricsRecorder, EveryMetricOfAMadeUpFlight) {
   // V at the edge of the residual set.
   const double residual_v = 0.5 * SolveLyapunov({16.0, 7.0}, q)(0, 0) * Square(0.05 * kDeg);
   for (int i = 0; i < 1000; ++i) {
-    TickSample s = Powered(i * kTick_s);
+    Tick s = Powered(i * kTick_s);
     SetErrors(s, -0.4, i < 500 ? 1.0 : -2.0, 0.3);
     s.gimbal.telemetry[kPitch].v = (i < 800 ? 1.01 : 0.99) * residual_v;
     const double chatter = i % 2 ? -0.5 : 0.5;
@@ -114,7 +203,7 @@ TEST(MetricsRecorder, EveryMetricOfAMadeUpFlight) {
     s.command_rad = {0.0, 0.0, 0.0, i < 250 ? -6.0 * kDeg : -5.9 * kDeg};
     s.gimbal.telemetry[kPitch].v_rate_sign = i < 500 ? -1.0 : 1.0;
     s.gimbal.telemetry[kPitch].adaptation_norm = i == 300 ? 0.7 * kDeg : 0.1 * kDeg;
-    s.axes[kPitch].rules_fired = 0b10110;
+    s.gimbal.telemetry[kPitch].rules_fired = 0b10110;
     SetLoads(s, i == 400 ? 50e3 : (i == 401 ? 70e3 : (i == 402 ? 900.0 : 2000.0)),
              i == 400 ? 4.0 : (i == 401 ? 1.0 : (i == 402 ? 20.0 : 0.1)), Vector3(5.0, 0.3, -0.4));
     flight.recorder.AddTick(s);
@@ -124,17 +213,17 @@ TEST(MetricsRecorder, EveryMetricOfAMadeUpFlight) {
   burnout.loads.force_n = Vector3(-6.0 * 100.0 * kStandardGravity, 0.0, 0.0);
   flight.recorder.AddLoads(burnout);
   for (int i = 0; i < 5000; ++i) {
-    TickSample s = Coasting(10.0 + i * kTick_s);
+    Tick s = Coasting(10.0 + i * kTick_s);
     SetErrors(s, 50.0, i == 2000 ? 3.0 : -0.1, 60.0);
     flight.recorder.AddTick(s);
   }
   flight.recorder.AddHandover(
       {kDeg * Vector3(0.03, 0.04, 0.0), kDeg * Vector3(0.0, 0.0, 0.2)});
   for (int i = 0; i < 1000; ++i) {
-    TickSample s = Powered(60.0 + i * kTick_s, 1, 60.0);
+    Tick s = Powered(60.0 + i * kTick_s, 1, 60.0);
     SetErrors(s, 0.0, 0.5, 0.0);
     s.gimbal.telemetry[kPitch].v_rate_sign = -1.0;
-    s.axes[kPitch].rules_fired = 0b11110;
+    s.gimbal.telemetry[kPitch].rules_fired = 0b11110;
     flight.recorder.AddTick(s);
   }
   const Earth earth = Wgs84();
@@ -247,7 +336,7 @@ TEST(MetricsRecorder, PeakIsTheLargestMagnitudeAndItsFirstTime) {
   Recording flight;
   const double values[] = {0.1, -0.8, 0.5, 0.8, -0.3};
   for (int i = 0; i < 5; ++i) {
-    TickSample s = Powered(i);
+    Tick s = Powered(i);
     SetErrors(s, 0.0, values[i], 0.0);
     flight.recorder.AddTick(s);
   }
@@ -257,7 +346,7 @@ TEST(MetricsRecorder, PeakIsTheLargestMagnitudeAndItsFirstTime) {
 
 TEST(MetricsRecorder, IncidenceCountsFromOneKilopascal) {
   Recording flight;
-  TickSample below = Powered(0.0), at = Powered(0.01);
+  Tick below = Powered(0.0), at = Powered(0.01);
   SetLoads(below, 999.9, 30.0, Vector3::Zero());
   flight.recorder.AddTick(below);
   EXPECT_EQ(flight["alpha_max_deg"], 0.0);
@@ -272,7 +361,7 @@ TEST(MetricsRecorder, StructuralFlagNamesOnlyGivenLimits) {
   FlightDefinition unlimited = Definition();
   unlimited.vehicle.limits = {};
   Recording flight({}, unlimited);
-  TickSample s = Powered(0.0);
+  Tick s = Powered(0.0);
   SetLoads(s, 1e6, 50.0, Vector3(100.0, 100.0, 0.0));
   flight.recorder.AddTick(s);
   EXPECT_EQ(flight["structural_limit_exceeded"], 0.0);
@@ -297,7 +386,7 @@ double LimitCycleOf(double from_s, double to_s, const Channel& channel, const Fl
   Recording flight(inputs);
   const long last = std::lround(to_s / kTick_s);
   for (long i = std::lround(from_s / kTick_s); i < last; ++i) {
-    TickSample s = Powered(static_cast<double>(i) * kTick_s);
+    Tick s = Powered(static_cast<double>(i) * kTick_s);
     s.nozzle_rad[0] = s.nozzle_rad[1] = channel(s.time_s) * kDeg;
     s.instant.air.place.altitude_m = altitude_m;
     flight.recorder.AddTick(s);
@@ -348,7 +437,7 @@ TEST(LimitCycle, TheKickDoesNotCount) {
   const auto fly = [&](double burst_from_s) {
     Recording flight({}, definition);
     for (int i = 0; i < 2000; ++i) {
-      TickSample s = Powered(i * kTick_s);
+      Tick s = Powered(i * kTick_s);
       const bool burst = s.time_s >= burst_from_s && s.time_s < burst_from_s + 2.0;
       if (burst && i % 2) s.nozzle_rad[2] = s.nozzle_rad[3] = 1.0 * kDeg;
       flight.recorder.AddTick(s);
@@ -362,7 +451,7 @@ TEST(LimitCycle, TheKickDoesNotCount) {
 TEST(LimitCycle, RollIsSeenInItsOwnChannel) {
   Recording flight;
   for (int i = 0; i < 2000; ++i) {
-    TickSample s = Powered(i * kTick_s);
+    Tick s = Powered(i * kTick_s);
     const double roll = i % 2 ? 0.5 * kDeg : -0.5 * kDeg;
     s.nozzle_rad = {roll, -roll, roll, -roll};
     flight.recorder.AddTick(s);
@@ -372,11 +461,11 @@ TEST(LimitCycle, RollIsSeenInItsOwnChannel) {
 
 TEST(Travel, DoesNotCountTheCentringBetweenStages) {
   Recording flight;
-  TickSample s = Powered(0.0);
+  Tick s = Powered(0.0);
   s.nozzle_rad = {0.1, 0.1, 0.1, 0.1};
   flight.recorder.AddTick(s);
   flight.recorder.AddTick(Coasting(1.0));
-  TickSample next = Powered(2.0, 1, 2.0);
+  Tick next = Powered(2.0, 1, 2.0);
   flight.recorder.AddTick(next);
   EXPECT_EQ(flight["deflection_travel_deg"], 0.0);
 }

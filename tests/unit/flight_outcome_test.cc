@@ -11,12 +11,6 @@
 namespace dispersa {
 namespace {
 
-FlightDefinition HighDefinition() {
-  FlightDefinition definition = SampleDefinition();
-  definition.vehicle.site.altitude_m = 300e3;
-  return definition;
-}
-
 FlightResult FlyWith(const FlightInputs& inputs, const FlightDefinition& definition = HighDefinition(),
                      History* history = nullptr) {
   const FlightModel model(definition);

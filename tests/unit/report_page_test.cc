@@ -16,7 +16,6 @@ namespace {
 using report_test::kNaN;
 using report_test::MakeCampaign;
 using report_test::MakeCase;
-using report_test::MetricAt;
 using report_test::TemporaryFolder;
 using testing::ContainsRegex;
 using testing::HasSubstr;
@@ -65,7 +64,7 @@ class ReportPageTest : public testing::Test {
       if (k != 3) continue;
       results.back().outcome = Outcome::kLostControl;
       results.back().reason = "rate > 60";
-      results.back().metrics[MetricAt("apogee_km")] = kNaN;
+      results.back().metrics[MetricColumn("apogee_km")] = kNaN;
     }
     folder.Append(results);
     if (flown < cases) folder.Quarantine({flown, "killed <three> workers"});
@@ -96,7 +95,7 @@ TEST_F(ReportPageTest, ShowsTheNumbersOfTheSummary) {
   for (const MetricSummary& metric : summary_.metrics) {
     const Summary& s = metric.statistics;
     // The row in one piece, so that a number of another metric cannot stand in.
-    std::string row = ReadableText(summary_.nominal->metrics[MetricAt(metric.name)]);
+    std::string row = ReadableText(summary_.nominal->metrics[MetricColumn(metric.name)]);
     const auto add = [&](const std::string& text) { row += "</td><td class=\"n\">" + text; };
     add(std::to_string(s.n));
     for (const double value : {s.mean, s.std, s.min, s.p50, s.p95, s.p99, s.p99_73, s.max})

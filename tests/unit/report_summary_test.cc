@@ -15,7 +15,6 @@ namespace {
 using report_test::kNaN;
 using report_test::MakeCampaign;
 using report_test::MakeCase;
-using report_test::MetricAt;
 using report_test::TemporaryFolder;
 using testing::ElementsAre;
 
@@ -37,7 +36,7 @@ CaseColumns Columns(std::size_t n, std::size_t failures) {
   for (std::size_t i = 0; i < n; ++i) {
     cases.index.push_back(i);
     cases.outcome.push_back(Outcome::kCompleted);
-    cases.metrics[MetricAt(kPeak)].push_back(i < failures ? 0.9 : 0.1);
+    cases.metrics[MetricColumn(kPeak)].push_back(i < failures ? 0.9 : 0.1);
   }
   return cases;
 }
@@ -79,7 +78,7 @@ TEST(Judge, CountsALostFlightWhateverItMeasured) {
   CaseColumns cases = Columns(100, 0);
   cases.outcome[3] = Outcome::kLostControl;
   cases.outcome[4] = Outcome::kImpact;
-  cases.metrics[MetricAt(kPeak)][7] = kNaN;
+  cases.metrics[MetricColumn(kPeak)][7] = kNaN;
   const RequirementSummary summary = Judge(PeakBelow(0.5, 0.9, 0.10), SamplingMethod::kMonteCarlo, cases, 0);
   EXPECT_EQ(summary.n, 100);
   EXPECT_EQ(summary.failures, 3);
@@ -145,13 +144,13 @@ class FiveCases : public testing::Test {
     std::vector<CaseResult> results;
     for (std::uint64_t k = 0; k < 5; ++k) {
       CaseResult result = MakeCase(k);
-      result.metrics[MetricAt(kPeak)] = peaks[k];
+      result.metrics[MetricColumn(kPeak)] = peaks[k];
       if (k == 2) {
         result.outcome = Outcome::kLostControl;
         result.reason = "gone";
         result.end_time_s = 60.0;
         result.end_stage = 2;
-        result.metrics[MetricAt("apogee_km")] = kNaN;
+        result.metrics[MetricColumn("apogee_km")] = kNaN;
       }
       results.push_back(result);
     }
@@ -168,15 +167,15 @@ TEST_F(FiveCases, StatisticsAreThoseWorkedOutByHand) {
   EXPECT_EQ(summary.flown, 5u);
   EXPECT_EQ(summary.outcomes[static_cast<std::size_t>(Outcome::kCompleted)], 4u);
   EXPECT_EQ(summary.outcomes[static_cast<std::size_t>(Outcome::kLostControl)], 1u);
-  const Summary& peak = summary.metrics[MetricAt(kPeak)].statistics;
+  const Summary& peak = summary.metrics[MetricColumn(kPeak)].statistics;
   EXPECT_EQ(peak.n, 5u);
   EXPECT_DOUBLE_EQ(peak.mean, 2.1);
   // Deviations -1.6 -1.1 -0.1 0.9 1.9: squares 2.56 1.21 0.01 0.81 3.61, sum 8.2.
   EXPECT_NEAR(peak.std, std::sqrt(8.2 / 4.0), 1e-15);
   EXPECT_EQ(peak.p50, 2.0);
   EXPECT_EQ(peak.max, 4.0);
-  EXPECT_EQ(summary.metrics[MetricAt("apogee_km")].statistics.n, 4u);
-  EXPECT_EQ(summary.metrics[MetricAt("apogee_km")].statistics.undefined, 1u);
+  EXPECT_EQ(summary.metrics[MetricColumn("apogee_km")].statistics.n, 4u);
+  EXPECT_EQ(summary.metrics[MetricColumn("apogee_km")].statistics.undefined, 1u);
 }
 
 TEST_F(FiveCases, WorstCasesBeginWithALostOne) {

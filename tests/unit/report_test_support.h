@@ -51,11 +51,6 @@ inline std::string ReadText(const std::filesystem::path& file) {
   return text.str();
 }
 
-inline std::size_t MetricAt(const std::string& name) {
-  const std::vector<std::string>& names = MetricNames();
-  return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-}
-
 inline Campaign MakeCampaign(std::uint64_t cases) {
   Campaign campaign;
   campaign.name = "made_up";

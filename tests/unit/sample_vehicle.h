@@ -94,4 +94,11 @@ inline FlightDefinition SampleDefinition() {
   return definition;
 }
 
+/// Launched from where there is next to no air.
+inline FlightDefinition HighDefinition() {
+  FlightDefinition definition = SampleDefinition();
+  definition.vehicle.site.altitude_m = 300e3;
+  return definition;
+}
+
 }  // namespace dispersa

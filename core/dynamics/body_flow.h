@@ -1,0 +1,148 @@
+// Aerodynamic force and moment on W bodies side by side (core/math/lanes.h): the one source of
+// AerodynamicForce.
+#pragma once
+
+#include "core/dynamics/aero_grid.h"
+#include "core/math/lane_vector.h"
+
+namespace dispersa::lanes {
+inline namespace DISPERSA_ISA {
+
+/// The body of each lane: its grid, sizes, and the factors on its coefficients.
+template <class T>
+struct AeroBody {
+  const AeroGrid* grid[kWidth<T>];
+  T mach_top, mach_scale, incidence_top, incidence_scale;  ///< AeroGrid::Axis
+  bool has_wind_axes;      ///< any lane's grid has coefficients in wind axes
+  bool has_airspeed_floor; ///< minimum_airspeed_m_s counts
+  T area_m2, length_m, span_m;
+  T ca_factor, cn_factor, xcp_factor;
+  T moment_reference_station_m;
+  T minimum_airspeed_m_s;
+};
+
+template <class T>
+struct Coefficients {
+  T ca, cn, xcp_station_m, cmq, clp, cd, cl, cm, cnr;
+};
+
+DISPERSA_INLINE int CellAt(const AeroGrid::Axis& axis, int bucket, double x) {
+  const double* edges = axis.edges.data();
+  int cell = axis.bucket.data()[bucket];
+  while (x >= edges[cell]) ++cell;
+  return cell;
+}
+
+template <class T>
+DISPERSA_INLINE T BilinearAt(const T* c, T mach, T incidence) {
+  return Fma(mach, Fma(incidence, c[3], c[2]), Fma(incidence, c[1], c[0]));
+}
+
+/// Factors applied; arguments outside the grid are held at its end.
+template <class T>
+DISPERSA_INLINE Coefficients<T> CoefficientsAt(const AeroBody<T>& body, T mach, T incidence_rad) {
+  const T m = Clamp(mach, T(0.0), body.mach_top), i = Clamp(incidence_rad, T(0.0), body.incidence_top);
+  int at_mach[kWidth<T>], at_incidence[kWidth<T>], offset[kWidth<T>];
+  Truncate(m * body.mach_scale, at_mach);
+  Truncate(i * body.incidence_scale, at_incidence);
+  const double* row[kWidth<T>];
+  for (int lane = 0; lane < kWidth<T>; ++lane) {
+    const AeroGrid& grid = *body.grid[lane];
+    const int in_mach = CellAt(grid.mach, at_mach[lane], Lane(m, lane));
+    const int in_incidence = CellAt(grid.incidence, at_incidence[lane], Lane(i, lane));
+    offset[lane] = AeroGrid::kRowSize * (in_mach * grid.incidence.cells + in_incidence);
+    row[lane] = grid.body_axes.data() + offset[lane];
+  }
+  T c[16];
+  LoadRow(row, 4, c);
+  Coefficients<T> o;
+  o.ca = body.ca_factor * BilinearAt(c, m, i);
+  o.cn = body.cn_factor * BilinearAt(c + 4, m, i);
+  o.xcp_station_m = body.xcp_factor * BilinearAt(c + 8, m, i);
+  o.cmq = Fma(m, c[13], c[12]);
+  o.clp = Fma(m, c[15], c[14]);
+  o.cd = o.cl = o.cm = T(0.0);
+  o.cnr = o.cmq;
+  if (body.has_wind_axes) {
+    alignas(32) static constexpr double kNone[AeroGrid::kRowSize] = {};
+    for (int lane = 0; lane < kWidth<T>; ++lane) {
+      const AlignedRows& rows = body.grid[lane]->wind_axes;
+      row[lane] = rows.empty() ? kNone : rows.data() + offset[lane];
+    }
+    LoadRow(row, 4, c);
+    o.cd = BilinearAt(c, m, i);
+    o.cl = BilinearAt(c + 4, m, i);
+    o.cm = BilinearAt(c + 8, m, i);
+    o.cnr = o.cmq + Fma(m, c[13], c[12]);
+  }
+  return o;
+}
+
+/// Angle between the body axis and the flow, [0, pi] rad, from the cross-flow and the flow along the axis:
+/// below an eighth by the series of the arctangent (remainder 4e-18), else by SLEEF's.
+template <class T>
+DISPERSA_INLINE T IncidenceOf(T across, T along) {
+  const auto is_small = across < T(0.125) * along;
+  const T t = across / Select(is_small, along, T(1.0));
+  const T q = t * t;
+  T angle = Fma(t * q,
+                Horner(q, -1.0 / 3, 1.0 / 5, -1.0 / 7, 1.0 / 9, -1.0 / 11, 1.0 / 13, -1.0 / 15, 1.0 / 17), t);
+  if (!All(is_small)) angle = Select(is_small, angle, Atan2(across, along));
+  return angle;
+}
+
+template <class T>
+struct FlowForce {
+  Vector<T> force_n, moment_n_m;
+  T qbar_pa, mach, incidence_rad;
+};
+
+/// v: velocity through the air (m/s), w: angular velocity (rad/s) that the damping derivatives see, both in
+/// body axes. At rest there is neither force nor moment.
+template <class T>
+DISPERSA_INLINE FlowForce<T> ForceOfFlow(const AeroBody<T>& body, Vector<T> v, Vector<T> w, T density_kg_m3,
+                                         T inverse_sound_s_m, T cg_station_m) {
+  FlowForce<T> o;
+  const T across2 = Fma(v.y, v.y, v.z * v.z);
+  const T across = Sqrt(across2);
+  const T v2 = Fma(v.x, v.x, across2);
+  const T airspeed = Sqrt(v2);
+  o.mach = airspeed * inverse_sound_s_m;
+  o.qbar_pa = T(0.5) * density_kg_m3 * v2;
+  o.incidence_rad = IncidenceOf(across, v.x);
+  const Coefficients<T> c = CoefficientsAt(body, o.mach, o.incidence_rad);
+  const T qs = o.qbar_pa * body.area_m2;
+  // Unit cross-flow; any direction will do at zero incidence, where the coefficients vanish.
+  const T inverse_across = T(1.0) / Max(across, T(1e-30));
+  const T ny = v.y * inverse_across, nz = v.z * inverse_across;
+  const T normal = qs * c.cn;
+  const T turning = normal * (cg_station_m - c.xcp_station_m);
+  o.force_n = {-(qs * c.ca), -(normal * ny), -(normal * nz)};
+  // q S d² / (2 V) = rho V S d² / 4, or with the floor in the place of a lower V.
+  T damped_airspeed = airspeed;
+  if (body.has_airspeed_floor) {
+    const auto is_slow = airspeed < body.minimum_airspeed_m_s;
+    damped_airspeed = Select(is_slow, v2 / Select(is_slow, body.minimum_airspeed_m_s, T(1.0)), airspeed);
+  }
+  const T damping = T(0.25) * density_kg_m3 * damped_airspeed * body.area_m2;
+  const T about_x = damping * body.span_m * body.span_m * c.clp;
+  const T about_y = damping * body.length_m * body.length_m * c.cmq;
+  const T about_z = damping * body.span_m * body.span_m * c.cnr;
+  o.moment_n_m = {about_x * w.x, Fma(about_y, w.y, turning * nz), Fma(about_z, w.z, -(turning * ny))};
+  if (body.has_wind_axes) {
+    const T inverse_airspeed = T(1.0) / Max(airspeed, T(1e-30));
+    const T cosine = v.x * inverse_airspeed, sine = across * inverse_airspeed;
+    const T drag = qs * c.cd, lift = qs * c.cl, pitching = qs * body.length_m * c.cm;
+    // Lift is normal to v, towards the side from which the nose meets the flow.
+    const Vector<T> force{Fma(lift, sine, -(drag * cosine)), -(Fma(lift, cosine, drag * sine) * ny),
+                          -(Fma(lift, cosine, drag * sine) * nz)};
+    const T arm = cg_station_m - body.moment_reference_station_m;
+    o.force_n = o.force_n + force;
+    o.moment_n_m = o.moment_n_m +
+                   Vector<T>{T(0.0), Fma(pitching, nz, -(arm * force.z)), Fma(-pitching, ny, arm * force.y)};
+  }
+  return o;
+}
+
+}  // namespace DISPERSA_ISA
+}  // namespace dispersa::lanes

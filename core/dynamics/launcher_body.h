@@ -1,0 +1,203 @@
+// Equations of motion of W launch vehicles side by side (core/math/lanes.h): the one source of Evaluate and
+// LauncherDerivative of launcher.h, split into what depends on time, on position and on the rest, so that an
+// integration step evaluates each part as often as it needs it.
+#pragma once
+
+#include "core/dynamics/body_flow.h"
+#include "core/dynamics/launcher.h"
+#include "core/environment/surroundings.h"
+#include "core/math/lane_vector.h"
+#include "core/vehicle/burning_stack.h"
+
+namespace dispersa::lanes {
+inline namespace DISPERSA_ISA {
+
+/// Each lane's current stack, its flight's factors applied (LauncherPlant, LauncherStack).
+template <class T>
+struct Plant {
+  Weather<T> weather;
+  Stack<T> stack;
+  Burn<T> burn;
+  AeroBody<T> aero;
+  T cg_factor, inertia_factor;
+  T pivot_station_m, nozzle_radius_m;
+  Matrix<T> thrust_tilt;
+  T thrust_offset_y_m, thrust_offset_z_m;
+};
+
+/// What stays constant between two events of each lane (LauncherPhase).
+template <class T>
+struct Phase {
+  MaskOf<T> burning, burnt;
+  T ignition_s;
+  T expelled_kg;
+  Vector<T> control_torque_n_m;
+};
+
+/// Position and velocity of the centre of gravity C, attitude, angular velocity (RigidBodyState).
+template <class T>
+struct Motion {
+  Vector<T> p, v;
+  Turn<T> q;
+  Vector<T> w;
+};
+
+/// What depends on time alone.
+template <class T>
+struct TimedMasses {
+  T mass_kg, inverse_mass_1_kg, cg_station_m, axial_kg_m2, transverse_kg_m2;
+  T axial_per_kg_m2, transverse_per_kg_m2;
+  T thrust_fraction;  ///< 0 when not burning
+};
+template <class T>
+DISPERSA_INLINE TimedMasses<T> MassesAt(const Plant<T>& plant, const Phase<T>& phase, T time_s) {
+  // BurnAt holds the time within the burn, so that the ends of a step, which rounding may put outside, count.
+  const BurnState<T> burn = BurnAt(plant.burn, time_s - phase.ignition_s);
+  const T unlit = Select(phase.burnt, T(0.0), plant.burn.propellant_kg);
+  const Masses<T> m = MassesAt(plant.stack, Select(phase.burning, burn.propellant_kg, unlit));
+  TimedMasses<T> o;
+  o.mass_kg = m.mass_kg - phase.expelled_kg;
+  o.inverse_mass_1_kg = T(1.0) / o.mass_kg;
+  o.cg_station_m = m.cg_station_m * plant.cg_factor;
+  o.axial_kg_m2 = m.axial_kg_m2 * plant.inertia_factor;
+  o.transverse_kg_m2 = m.transverse_kg_m2 * plant.inertia_factor;
+  o.axial_per_kg_m2 = m.axial_per_kg_m2 * plant.inertia_factor;
+  o.transverse_per_kg_m2 = m.transverse_per_kg_m2 * plant.inertia_factor;
+  o.thrust_fraction = Select(phase.burning, burn.fraction, T(0.0));
+  return o;
+}
+
+/// Sines and cosines of the nozzles' deflections (below 0.7 rad: remainder of the series below 1e-15).
+template <class T>
+struct Nozzles {
+  T sine[kNozzles], cosine[kNozzles];
+};
+template <class T>
+DISPERSA_INLINE Nozzles<T> NozzlesAt(const T* angle_rad) {
+  Nozzles<T> n;
+  for (int i = 0; i < kNozzles; ++i) {
+    const T x = angle_rad[i], q = x * x;
+    n.sine[i] = Fma(x * q, Horner(q, -1.0 / 6, 1.0 / 120, -1.0 / 5040, 1.0 / 362880, -1.0 / 39916800, 1.0 / 6227020800), x);
+    n.cosine[i] = Fma(q, Horner(q, -1.0 / 2, 1.0 / 24, -1.0 / 720, 1.0 / 40320, -1.0 / 3628800, 1.0 / 479001600,
+                                -1.0 / 87178291200),
+                      T(1.0));
+  }
+  return n;
+}
+
+/// What metrics and histories need of an instant.
+template <class T>
+struct Instant {
+  T altitude_m, qbar_pa, mach, incidence_rad, mass_kg, thrust_n;
+  Vector<T> force_n;  ///< all but gravitation, body axes
+};
+
+/// Accelerations of a body: of C in I, and of the rotation in B.
+template <class T>
+struct Rates {
+  Vector<T> dv, dw;
+};
+
+template <class T>
+struct Thrust {
+  T thrust_n, flow_kg_s;
+  Vector<T> force_n, moment_n_m;
+};
+/// Each nozzle carries a quarter of the thrust, deflected in its hinge plane. Right (+y) and left (-y) turn the
+/// force towards +z, bottom (+z) and top (-z) towards -y. P = P_vac - p A_e; a nozzle that the ambient pressure would
+/// turn inwards gives nothing.
+template <class T>
+DISPERSA_INLINE Thrust<T> ThrustOf(const Plant<T>& plant, const TimedMasses<T>& masses, const Nozzles<T>& nozzles,
+                                   T pressure_pa) {
+  Thrust<T> o;
+  // Not Max, which would turn a thrust that is no number into none.
+  const T net_n = Fma(plant.burn.vacuum_thrust_n, masses.thrust_fraction, -(pressure_pa * plant.burn.exit_area_m2));
+  o.thrust_n = Select(net_n < T(0.0), T(0.0), net_n);
+  o.flow_kg_s = plant.burn.full_flow_kg_s * masses.thrust_fraction;
+  const T* sine = nozzles.sine;
+  const T* cosine = nozzles.cosine;
+  const T quarter = T(0.25) * o.thrust_n;
+  o.force_n = plant.thrust_tilt * Vector<T>{quarter * ((cosine[0] + cosine[1]) + (cosine[2] + cosine[3])),
+                                            -(quarter * (sine[2] + sine[3])), quarter * (sine[0] + sine[1])};
+  const T couple = quarter * plant.nozzle_radius_m;
+  const Vector<T> across_y =
+      plant.thrust_tilt * Vector<T>{couple * (cosine[0] - cosine[1]), T(0.0), couple * (sine[0] - sine[1])};
+  const Vector<T> across_z =
+      plant.thrust_tilt * Vector<T>{couple * (cosine[2] - cosine[3]), -(couple * (sine[2] - sine[3])), T(0.0)};
+  const Vector<T> arm{masses.cg_station_m - plant.pivot_station_m, plant.thrust_offset_y_m, plant.thrust_offset_z_m};
+  o.moment_n_m = Cross(arm, o.force_n) +
+                 Vector<T>{across_y.z - across_z.y, across_z.x, -across_y.x};
+  return o;
+}
+
+/// Everything that acts on a lane's body, body axes, moments about C.
+template <class T>
+struct LoadsOf {
+  Matrix<T> R_IB;
+  Vector<T> v_air;    ///< velocity through the air, in I
+  Vector<T> v_AB_B;   ///< the same in B
+  FlowForce<T> flow;
+  Vector<T> force_n;  ///< all but gravitation
+  Vector<T> moment_n_m;  ///< without the jet damping
+  T thrust_n, flow_kg_s;
+  T jet_axial, jet_transverse;  ///< jet damping, per rad/s
+};
+/// `any_burns`: some lane does. With jet damping the flow leaves with the velocity of the nozzle about the CG:
+/// -m_dot r x (w x r), r on the axis, and for roll the nozzle circle's radius.
+template <class T>
+DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, bool jet_damping, const Plant<T>& plant,
+                                   const Phase<T>& phase, bool any_burns, const Surroundings<T>& around,
+                                   const TimedMasses<T>& masses, const Nozzles<T>& nozzles, const Motion<T>& s) {
+  LoadsOf<T> o;
+  o.R_IB = RotationMatrix(s.q);
+  const T omega(earth_rate_rad_s), none(0.0);
+  o.v_air = {Fma(omega, s.p.y, s.v.x) - around.wind_m_s.x, Fma(-omega, s.p.x, s.v.y) - around.wind_m_s.y,
+             s.v.z - around.wind_m_s.z};
+  o.v_AB_B = TransposeTimes(o.R_IB, o.v_air);
+  const Vector<T> w_EB_B = Along(s.w, -omega, o.R_IB.row[2]);
+  o.flow = ForceOfFlow(plant.aero, o.v_AB_B, w_EB_B, around.density_kg_m3, around.inverse_sound_s_m, masses.cg_station_m);
+  o.force_n = o.flow.force_n;
+  o.moment_n_m = o.flow.moment_n_m + phase.control_torque_n_m;
+  o.thrust_n = o.flow_kg_s = o.jet_axial = o.jet_transverse = none;
+  if (!any_burns) return o;
+  const Thrust<T> thrust = ThrustOf(plant, masses, nozzles, around.pressure_pa);
+  o.force_n = Select(phase.burning, o.force_n + thrust.force_n, o.force_n);
+  o.moment_n_m = Select(phase.burning, o.moment_n_m + thrust.moment_n_m, o.moment_n_m);
+  o.thrust_n = Select(phase.burning, thrust.thrust_n, none);
+  o.flow_kg_s = Select(phase.burning, thrust.flow_kg_s, none);
+  if (jet_damping) {
+    const T lever = plant.pivot_station_m - masses.cg_station_m;
+    o.jet_axial = o.flow_kg_s * plant.nozzle_radius_m * plant.nozzle_radius_m;
+    o.jet_transverse = o.flow_kg_s * lever * lever;
+  }
+  return o;
+}
+
+/// dv/dt = gravitation + R_IB F / m and I dw/dt = M - w x I w - (dI/dt) w, as rigid_body.h explains, of an
+/// axisymmetric body.
+template <class T>
+DISPERSA_INLINE Rates<T> RatesOf(double earth_rate_rad_s, bool jet_damping, const Plant<T>& plant, const Phase<T>& phase,
+                                 bool any_burns, const Surroundings<T>& around, const TimedMasses<T>& masses,
+                                 const Nozzles<T>& nozzles, const Motion<T>& s, Instant<T>* instant) {
+  const LoadsOf<T> loads =
+      LoadsAt(earth_rate_rad_s, jet_damping, plant, phase, any_burns, around, masses, nozzles, s);
+  Rates<T> o;
+  o.dv = around.gravitation_m_s2 + loads.R_IB * (masses.inverse_mass_1_kg * loads.force_n);
+  // What the flow takes along, less what the body's inertia loses to it.
+  const T axial_loss = loads.jet_axial - loads.flow_kg_s * masses.axial_per_kg_m2;
+  const T transverse_loss = loads.jet_transverse - loads.flow_kg_s * masses.transverse_per_kg_m2;
+  const T inverse = T(1.0) / (masses.axial_kg_m2 * masses.transverse_kg_m2);
+  const T inverse_axial = inverse * masses.transverse_kg_m2, inverse_transverse = inverse * masses.axial_kg_m2;
+  const T gyroscopic = (masses.transverse_kg_m2 - masses.axial_kg_m2) * s.w.x;
+  const Vector<T>& moment = loads.moment_n_m;
+  o.dw.x = inverse_axial * Fma(-axial_loss, s.w.x, moment.x);
+  o.dw.y = inverse_transverse * Fma(-transverse_loss, s.w.y, Fma(gyroscopic, s.w.z, moment.y));
+  o.dw.z = inverse_transverse * Fma(-transverse_loss, s.w.z, Fma(-gyroscopic, s.w.y, moment.z));
+  if (instant)
+    *instant = {around.altitude_m,    loads.flow.qbar_pa, loads.flow.mach, loads.flow.incidence_rad,
+                masses.mass_kg, loads.thrust_n,     loads.force_n};
+  return o;
+}
+
+}  // namespace DISPERSA_ISA
+}  // namespace dispersa::lanes

@@ -1,0 +1,84 @@
+// From the description of one flight (launcher.h) to a lane of the model (launcher_body.h).
+#pragma once
+
+#include "core/dynamics/actuators.h"
+#include "core/dynamics/launcher_body.h"
+
+namespace dispersa::lanes {
+inline namespace DISPERSA_ISA {
+
+/// `from` must outlive the flight.
+template <class T>
+DISPERSA_INLINE void SetLane(Weather<T>& w, int lane, const FlightWeather& from) {
+  Lane(w.density_factor, lane) = from.density_factor;
+  Lane(w.jet_speed_m_s, lane) = from.jet_speed_m_s;
+  Lane(w.jet_altitude_m, lane) = from.jet_altitude_m;
+  Lane(w.jet_inverse_width, lane) = from.jet_inverse_width;
+  Lane(w.jet_north, lane) = from.jet_north;
+  Lane(w.jet_east, lane) = from.jet_east;
+  Lane(w.gust_speed_m_s, lane) = from.gust_speed_m_s;
+  Lane(w.gust_start_m, lane) = from.gust_start_m;
+  Lane(w.gust_inverse_length, lane) = from.gust_inverse_length;
+  Lane(w.gust_north, lane) = from.gust_north;
+  Lane(w.gust_east, lane) = from.gust_east;
+  w.profile[lane] = from.profile.is_calm() ? nullptr : &from.profile;
+  w.has_profiles = false;
+  for (int i = 0; i < kWidth<T>; ++i) w.has_profiles |= w.profile[i] != nullptr;
+}
+
+template <class T>
+DISPERSA_INLINE void SetLane(AeroBody<T>& b, int lane, const BodyAerodynamics& body, const AeroGrid& grid) {
+  b.grid[lane] = &grid;
+  Lane(b.mach_top, lane) = grid.mach.top;
+  Lane(b.mach_scale, lane) = grid.mach.scale;
+  Lane(b.incidence_top, lane) = grid.incidence.top;
+  Lane(b.incidence_scale, lane) = grid.incidence.scale;
+  Lane(b.area_m2, lane) = body.area_m2;
+  Lane(b.length_m, lane) = body.length_m;
+  Lane(b.span_m, lane) = body.span_m;
+  Lane(b.ca_factor, lane) = body.ca.factor;
+  Lane(b.cn_factor, lane) = body.cn.factor;
+  Lane(b.xcp_factor, lane) = body.xcp_station_m.factor;
+  Lane(b.moment_reference_station_m, lane) = body.moment_reference_station_m;
+  Lane(b.minimum_airspeed_m_s, lane) = body.minimum_airspeed_m_s;
+  b.has_wind_axes = b.has_airspeed_floor = false;
+  for (int i = 0; i < kWidth<T>; ++i) {
+    b.has_wind_axes |= b.grid[i] && b.grid[i]->wind_axes.data() != nullptr;
+    b.has_airspeed_floor |= Lane(b.minimum_airspeed_m_s, i) > 0.0;
+  }
+}
+
+/// The plant of a lane on its stack; its weather is set by itself, once a flight.
+template <class T>
+DISPERSA_INLINE void SetLane(Plant<T>& p, int lane, const LauncherPlant& plant, int stack) {
+  const LauncherStack& s = plant.stacks.data()[stack];
+  SetLane(p.stack, lane, s.mass);
+  SetLane(p.burn, lane, s.burn);
+  SetLane(p.aero, lane, s.aerodynamics, *s.aero_grid.get());
+  Lane(p.cg_factor, lane) = plant.cg_factor;
+  Lane(p.inertia_factor, lane) = plant.inertia_factor;
+  Lane(p.pivot_station_m, lane) = s.gimbal.pivot_station_m;
+  Lane(p.nozzle_radius_m, lane) = s.gimbal.radius_m;
+  const double* tilt = reinterpret_cast<const double*>(&s.thrust_tilt);  // column by column
+  for (int i = 0; i < 3; ++i) {
+    Lane(p.thrust_tilt.row[i].x, lane) = tilt[i];
+    Lane(p.thrust_tilt.row[i].y, lane) = tilt[3 + i];
+    Lane(p.thrust_tilt.row[i].z, lane) = tilt[6 + i];
+  }
+  Lane(p.thrust_offset_y_m, lane) = s.thrust_offset_y_m;
+  Lane(p.thrust_offset_z_m, lane) = s.thrust_offset_z_m;
+}
+
+/// `stuck`: index of a nozzle that does not move, or -1.
+template <class T>
+DISPERSA_INLINE void SetLane(Drives<T>& d, int lane, const Gimbal& gimbal, int stuck) {
+  const double w = gimbal.bandwidth_rad_s;
+  Lane(d.limit_rad, lane) = gimbal.limit_rad;
+  Lane(d.rate_limit_rad_s, lane) = gimbal.rate_limit_rad_s;
+  Lane(d.bandwidth2_1_s2, lane) = w * w;
+  Lane(d.twice_damping_1_s, lane) = 2.0 * gimbal.damping_ratio * w;
+  for (int i = 0; i < kNozzles; ++i) Lane(d.moves[i], lane) = i == stuck ? 0.0 : 1.0;
+}
+
+}  // namespace DISPERSA_ISA
+}  // namespace dispersa::lanes

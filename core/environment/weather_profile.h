@@ -1,0 +1,37 @@
+// What a flight's tables of wind and density say over altitude, as one table of straight pieces.
+#pragma once
+
+#include <vector>
+
+#include "core/environment/density_factor.h"
+#include "core/environment/wind.h"
+#include "core/math/aligned_rows.h"
+
+namespace dispersa {
+
+/// The sum of the steady wind and of all wind tables with their fading tops (Evaluate of the same parts, to
+/// rounding), and the density factor. A row has 8 doubles: north (m/s), east (m/s) and factor, each as
+/// constant and slope over altitude (m); row k holds between edges k - 1 and k, open at both ends.
+struct WeatherProfile {
+  static constexpr int kRowSize = 8;
+
+  std::vector<double> edges;  ///< strictly increasing
+  AlignedRows rows;           ///< one more than there are edges
+
+  bool is_calm() const { return rows.empty(); }  ///< no wind, factor 1
+};
+
+WeatherProfile BuildWeatherProfile(const Wind& wind, const DensityFactor& density);
+
+/// One flight's wind and density as its equations take them: plain numbers and the profile. Directions are unit
+/// components of where the air moves to; a speed of 0 means there is none.
+struct FlightWeather {
+  double density_factor = 1.0;
+  double jet_speed_m_s = 0.0, jet_altitude_m = 0.0, jet_inverse_width = 1.0, jet_north = 0.0, jet_east = 0.0;
+  double gust_speed_m_s = 0.0, gust_start_m = 0.0, gust_inverse_length = 1.0, gust_north = 0.0, gust_east = 0.0;
+  WeatherProfile profile;  ///< of everything else
+};
+/// Of a wind with at most one jet stream and one gust, which is what a flight draws.
+FlightWeather PrepareWeather(const Wind& wind, const DensityFactor& density);
+
+}  // namespace dispersa

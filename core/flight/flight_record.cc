@@ -1,0 +1,212 @@
+#include "core/flight/flight_record.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/dynamics/integrator.h"
+#include "core/flight/history_columns.h"
+#include "core/flight/sequence.h"
+#include "core/flight/tick_sample.h"
+#include "core/math/functions.h"
+
+namespace dispersa {
+
+namespace {
+
+std::vector<FlightEvent> EventsOf(const FlightModel& model, const LauncherPlant& plant) {
+  const FlightDefinition& definition = model.definition();
+  std::vector<MotorBurn> burns;
+  for (const LauncherStack& stack : plant.stacks) burns.push_back(stack.burn);
+  const std::vector<StageTimes> timeline =
+      BuildTimeline(definition.vehicle, burns, definition.autopilot.tick_s, definition.last_ignition_s);
+  std::vector<FlightEvent> events;
+  for (std::size_t i = 0; i < timeline.size(); ++i) {
+    const int stage = static_cast<int>(i);
+    const StageTimes& t = timeline[i];
+    events.push_back({t.ignition_s, EventKind::kIgnition, stage});
+    double kinks[] = {t.ignition_s + burns[i].rise_s, t.burnout_s - burns[i].tail_s};
+    std::sort(std::begin(kinks), std::end(kinks));
+    for (const double kink_s : kinks)
+      if (kink_s > t.ignition_s && kink_s < t.burnout_s) events.push_back({kink_s, EventKind::kKink, stage});
+    events.push_back({t.burnout_s, EventKind::kBurnout, stage});
+    if (i + 1 < timeline.size()) events.push_back({t.separation_s, EventKind::kSeparation, stage});
+  }
+  return events;
+}
+
+// CVODE's absolute tolerances of the change within a tick: m, m/s, quaternion, rad/s, rad, rad/s.
+std::array<double, kLauncherSize> AbsoluteTolerances() {
+  std::array<double, kLauncherSize> t{};
+  for (std::size_t i = 0; i < kLauncherSize; ++i) t[i] = i < 3 ? 1e-10 : i < 6 ? 1e-12 : 1e-14;
+  return t;
+}
+
+}  // namespace
+
+// A flight's plant between two events, for an integrator that knows nothing of flights.
+class FlightRecord::JudgedMotion {
+ public:
+  JudgedMotion(const LauncherPlant& plant, Scheme scheme)
+      : plant_(plant), tolerances_(AbsoluteTolerances()),
+        integrator_(scheme, kLauncherSize, &Rhs, this, tolerances_.data()) {}
+
+  bool Advance(const LauncherPhase& phase, double from_s, double to_s, int steps, double* y) {
+    phase_ = phase;
+    if (!integrator_.Advance(from_s, to_s, steps, y)) return false;
+    RigidBodyState s = ReadState(y);
+    s.q_IB = Normalized(s.q_IB);
+    WriteState(s, y);
+    // Mechanical stops, and the drives' greatest rate, which a step may overshoot.
+    const Gimbal& gimbal = plant_.stacks[static_cast<std::size_t>(phase.stack)].gimbal;
+    for (int i = 0; i < kNozzles; ++i) {
+      if (i == phase.stuck_nozzle) continue;
+      double& angle = y[kNozzleAngle + i];
+      double& rate = y[kNozzleRate + i];
+      rate = Clamp(rate, -gimbal.rate_limit_rad_s, gimbal.rate_limit_rad_s);
+      if (std::fabs(angle) <= gimbal.limit_rad) continue;
+      angle = std::copysign(gimbal.limit_rad, angle);
+      rate = 0.0;
+    }
+    return true;
+  }
+
+ private:
+  static void Rhs(double t, const double* y, double* dydt, void* context) {
+    const auto* self = static_cast<const JudgedMotion*>(context);
+    LauncherDerivative(self->plant_, self->phase_, t, y, dydt);
+  }
+
+  const LauncherPlant& plant_;
+  LauncherPhase phase_;
+  std::array<double, kLauncherSize> tolerances_;
+  Integrator integrator_;
+};
+
+FlightRecord::FlightRecord(const FlightModel& model, const FlightOrder& order)
+    : inputs(order.inputs),
+      options(order.options),
+      plant(model.PlantFor(order.inputs)),
+      weather(PrepareWeather(plant.environment.wind, plant.environment.density)),
+      events(EventsOf(model, plant)),
+      lift_off{},
+      watched(options.history != nullptr || options.observe != nullptr),
+      history_ticks(options.history
+                        ? std::max(1L, std::lround(options.history->step_s / model.definition().autopilot.tick_s))
+                        : 0),
+      noisy(inputs.gyro_noise_rad_s > 0.0),
+      limit_cycle(model.definition().autopilot.tick_s),
+      model_(model),
+      gyro_noise_(model.definition().noise_seed, options.case_index, "gyro_noise") {
+  WriteState(LiftOffState(model), lift_off);
+  if (options.history) options.history->values.clear();
+  if (is_judged()) judged_ = std::make_unique<JudgedMotion>(plant, options.scheme);
+}
+
+FlightRecord::~FlightRecord() = default;
+
+void FlightRecord::DrawNoise(double* rate_rad_s) {
+  for (int axis = 0; axis < kAxes; ++axis) rate_rad_s[axis] = inputs.gyro_noise_rad_s * gyro_noise_.Normal();
+}
+
+void FlightRecord::AddToDigest(double time_s, const double* y) {
+  digester_.Add(&time_s, 1);
+  digester_.Add(y, kLauncherSize);
+}
+
+TickSample FlightRecord::SampleOf(const LaneView& view) const {
+  TickSample s;
+  s.time_s = view.time_s;
+  s.stack = view.phase.stack;
+  s.burning = view.phase.burning;
+  s.coasting = view.coasting;
+  s.since_ignition_s = view.time_s - view.phase.ignition_s;
+  s.state = ReadState(view.y);
+  for (int i = 0; i < kNozzles; ++i) {
+    s.nozzle_rad[static_cast<std::size_t>(i)] = view.y[kNozzleAngle + i];
+    s.nozzle_rate_rad_s[static_cast<std::size_t>(i)] = view.y[kNozzleRate + i];
+  }
+  s.command_rad = view.phase.command_rad;
+  s.limit_rad = plant.stacks[static_cast<std::size_t>(s.stack)].gimbal.limit_rad;
+  s.reference = model_.definition().program.At(view.time_s);
+  if (view.has_error) {
+    for (int axis = 0; axis < kAxes; ++axis) {
+      s.error.angle_rad[axis] = view.error_angle_rad[axis];
+      s.error.rate_rad_s[axis] = view.error_rate_rad_s[axis];
+    }
+  } else {
+    s.error = ErrorAt(model_, s.reference, s.state);
+  }
+  s.gimbal = {view.gimbal_rad[kRoll], view.gimbal_rad[kPitch], view.gimbal_rad[kYaw], {}};
+  for (std::size_t axis = 0; axis < kAxes; ++axis) {
+    s.gimbal.telemetry[axis] = view.axes[axis];
+    s.thrusters[axis] = view.thrusters[axis];
+  }
+  s.expelled_mass_kg = view.phase.expelled_mass_kg;
+  s.instant = Evaluate(plant, view.phase, view.time_s, view.y);
+  return s;
+}
+
+void FlightRecord::AppendRow(const TickSample& s) {
+  std::vector<double>& rows = options.history->values;
+  AppendKinematics(plant.environment.earth, s.time_s, s.state, s.instant.air, s.instant.v_AB_B,
+                   s.instant.loads.mass_kg, rows);
+  AppendLauncher(model_, s, rows);
+}
+
+void FlightRecord::Watch(const LaneView& view, bool row) {
+  if (!row && !options.observe) return;
+  const TickSample sample = SampleOf(view);
+  if (options.observe) options.observe(sample);
+  if (row) AppendRow(sample);
+}
+
+void FlightRecord::WatchEvent(const LaneView& view) {
+  if (options.history) AppendRow(SampleOf(view));
+}
+
+void FlightRecord::HandOver(double time_s, const double* y) {
+  const AttitudeError error = ErrorAt(model_, model_.definition().program.At(time_s), ReadState(y));
+  sums.handed_over = true;
+  sums.handover_angle_rad = error.angle_rad.norm();
+  sums.handover_rate_rad_s = error.rate_rad_s.norm();
+}
+
+void FlightRecord::Inject(double altitude_m, const double* y) {
+  const RigidBodyState s = ReadState(y);
+  sums.injected = true;
+  sums.injection_altitude_m = altitude_m;
+  sums.orbit = ElementsOf(plant.environment.earth, s.p_EoC_I, s.v_IC_I);
+}
+
+void FlightRecord::Separate(int stage, double* y) {
+  const std::size_t below = static_cast<std::size_t>(stage);
+  RigidBodyState s = AfterSeparation(plant, stage, ReadState(y));
+  s.w_IB_B += Vector3(inputs.tip_off_roll_rad_s[below], inputs.tip_off_pitch_rad_s[below],
+                      inputs.tip_off_yaw_rad_s[below]);
+  std::fill(y, y + kLauncherSize, 0.0);
+  WriteState(s, y);
+}
+
+bool FlightRecord::Judge(const LauncherPhase& phase, double from_s, double to_s, double* y) {
+  return judged_->Advance(phase, from_s, to_s, options.steps_per_tick, y);
+}
+
+void FlightRecord::End(Outcome outcome, const char* reason, double time_s, int stack, const double* y) {
+  result_.outcome = outcome;
+  result_.reason = reason;
+  result_.end_time_s = time_s;
+  result_.end_stage = stack + 1;
+  result_.end_state = ReadState(y);
+  AddToDigest(time_s, y);
+}
+
+FlightResult FlightRecord::Result() {
+  sums.limit_cycle_rad = limit_cycle.worst_rad();
+  result_.metrics = MetricsOf(sums, model_.definition());
+  digester_.Add(result_.metrics.data(), result_.metrics.size());
+  result_.digest = digester_.Finish();
+  return std::move(result_);
+}
+
+}  // namespace dispersa

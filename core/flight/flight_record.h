@@ -1,0 +1,106 @@
+// One flight as the engine flies it: what was prepared before, what is kept beside the lanes, what it gives back.
+//
+// The engine (batch.h) is compiled once for each instruction set and width; everything that happens once a
+// flight, once an event or only for flights that are watched stands here, once.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/control/autopilot.h"
+#include "core/environment/weather_profile.h"
+#include "core/flight/flight.h"
+#include "core/flight/flight_sums.h"
+#include "core/flight/limit_cycle.h"
+#include "core/flight/tick_sample.h"
+#include "core/random/draws.h"
+
+namespace dispersa {
+
+/// What happens to the plant at a time of its own. In the order in which they happen.
+enum class EventKind {
+  kIgnition,
+  kBurnout,
+  kSeparation,
+  kKink,  ///< the thrust's ramp ends or begins: nothing but a step that ends there
+};
+struct FlightEvent {
+  double time_s;
+  EventKind kind;
+  int stage;
+};
+
+/// The state of a flight outside its lane, as kLauncherSize doubles (launcher.h).
+using StateValues = double[kLauncherSize];
+
+/// A lane at a tick or an event, for histories and observers.
+struct LaneView {
+  double time_s = 0.0;
+  StateValues y = {};
+  LauncherPhase phase;
+  bool coasting = false;
+  bool has_error = false;            ///< at ticks: the engine's error; at events it is computed anew
+  double error_angle_rad[kAxes] = {};
+  double error_rate_rad_s[kAxes] = {};
+  double gimbal_rad[kAxes] = {};     ///< commanded about roll, pitch, yaw
+  AxisTelemetry axes[kAxes];
+  int thrusters[kAxes] = {};
+};
+
+class FlightRecord {
+ public:
+  FlightRecord(const FlightModel& model, const FlightOrder& order);
+  ~FlightRecord();
+  FlightRecord(const FlightRecord&) = delete;
+  FlightRecord& operator=(const FlightRecord&) = delete;
+
+  // ---- prepared ----
+  const FlightInputs inputs;
+  const FlightOptions options;
+  const LauncherPlant plant;
+  const FlightWeather weather;
+  const std::vector<FlightEvent> events;
+  StateValues lift_off;
+  bool watched;            ///< has a history or an observer
+  long history_ticks;      ///< between rows; 0: no history
+  bool noisy;              ///< its gyros are
+
+  // ---- while it flies ----
+  FlightSums sums;
+  LimitCycleMeter limit_cycle;
+
+  /// The three gyros' noise of a tick, rad/s.
+  void DrawNoise(double* rate_rad_s);
+  void AddToDigest(double time_s, const double* y);
+  /// A tick: `row` says whether the history has one here.
+  void Watch(const LaneView& view, bool row);
+  /// An event: a row of the history.
+  void WatchEvent(const LaneView& view);
+  /// What the reaction control hands over.
+  void HandOver(double time_s, const double* y);
+  /// The injection of a flight that completes.
+  void Inject(double altitude_m, const double* y);
+  /// Replaces the state by that of the stack above, with its tip-off rates.
+  void Separate(int stage, double* y);
+  /// Advances the state by one of the judges among the integrators instead of the engine's own step. False
+  /// when it fails.
+  bool Judge(const LauncherPhase& phase, double from_s, double to_s, double* y);
+  bool is_judged() const { return options.scheme != Scheme::kSimpson; }
+
+  /// Ends the flight; `reason` is a text of program life.
+  void End(Outcome outcome, const char* reason, double time_s, int stack, const double* y);
+  FlightResult Result();
+
+ private:
+  class JudgedMotion;
+  TickSample SampleOf(const LaneView& view) const;
+  void AppendRow(const TickSample& sample);
+
+  const FlightModel& model_;
+  Stream gyro_noise_;
+  Digester digester_;
+  std::unique_ptr<JudgedMotion> judged_;
+  FlightResult result_;
+};
+
+}  // namespace dispersa

@@ -1,0 +1,165 @@
+// Accumulates the metrics of W flights side by side (core/math/lanes.h). Definitions: core/README.md,
+// "Metrics". Each call takes the lanes that it is for.
+#pragma once
+
+#include "core/dynamics/actuators.h"
+#include "core/dynamics/launcher_body.h"
+#include "core/flight/flight_sums.h"
+#include "core/math/constants.h"
+
+namespace dispersa::lanes {
+inline namespace DISPERSA_ISA {
+
+/// Incidence means nothing where there is no air to feel it.
+inline constexpr double kIncidenceFloor_pa = 1000.0;
+/// The residual set of pitch, in which V may rise: V up to that of this error at rest.
+inline constexpr double kResidualError_rad = 0.05 * kRadPerDeg;
+
+/// Start-up transients of a stage are no limit cycle.
+inline constexpr double kSettled_s = 5.0;
+
+/// When deflections say nothing of a limit cycle: the first seconds of a stage, the kick (from and until given
+/// times since lift-off), and between the altitudes of a gust, of which there is none where top <= bottom.
+template <class T>
+DISPERSA_INLINE MaskOf<T> InTransient(T time_s, T since_ignition_s, T altitude_m, double kick_start_s, double kick_end_s,
+                                      T gust_bottom_m, T gust_top_m) {
+  const auto in_kick = (time_s >= T(kick_start_s)) & (time_s <= T(kick_end_s));
+  const auto in_gust = (gust_top_m > gust_bottom_m) & (altitude_m >= gust_bottom_m) & (altitude_m <= gust_top_m);
+  return (since_ignition_s < T(kSettled_s)) | in_kick | in_gust;
+}
+
+template <class T>
+struct ErrorStatistics {
+  T squares, peak, peak_time_s, count;
+
+  DISPERSA_INLINE void Add(MaskOf<T> lanes, T value, T time_s) {
+    const T size = Abs(value);
+    squares = Select(lanes, Fma(value, value, squares), squares);
+    const auto is_higher = lanes & (size > peak);
+    peak = Select(is_higher, size, peak);
+    peak_time_s = Select(is_higher, time_s, peak_time_s);
+    count = count + Select(lanes, T(1.0), T(0.0));
+  }
+};
+template <class T>
+DISPERSA_INLINE void SetLane(ErrorStatistics<T>& s, int lane, const ErrorSums& e) {
+  Lane(s.squares, lane) = e.squares;
+  Lane(s.peak, lane) = e.peak;
+  Lane(s.peak_time_s, lane) = e.peak_time_s;
+  Lane(s.count, lane) = e.count;
+}
+template <class T>
+DISPERSA_INLINE ErrorSums LaneOf(const ErrorStatistics<T>& s, int lane) {
+  return {Lane(s.squares, lane), Lane(s.peak, lane), Lane(s.peak_time_s, lane), Lane(s.count, lane)};
+}
+
+/// What the law of the pitch axis shows at a tick.
+template <class T>
+struct LyapunovSample {
+  T v, v_falls, p11;       ///< v_falls: 1 where V is below the last tick's
+  T departure_norm2;       ///< of the consequents, squared
+};
+
+template <class T>
+struct LaneMetrics {
+  ErrorStatistics<T> pitch, coast, yaw, roll, deflection;  ///< pitch: of the current stage
+  T itae_rad_s2, deflection_rate_peak_rad_s, saturated_ticks, travel_rad;
+  T has_previous, previous_rad[kNozzles];
+  T q_max_pa, q_alpha_max_pa_rad, alpha_max_rad, axial_load_max_g, lateral_load_max_g;
+  T v_outside_ticks, v_falling_ticks, departure_norm2_peak;
+
+  /// Before a lane's first tick.
+  DISPERSA_INLINE void StartFlight(int lane) {
+    T* all = reinterpret_cast<T*>(this);
+    for (unsigned i = 0; i < sizeof(LaneMetrics) / sizeof(T); ++i) Lane(all[i], lane) = 0.0;
+    for (ErrorStatistics<T>* e : {&pitch, &coast, &yaw, &roll, &deflection}) SetLane(*e, lane, ErrorSums{});
+  }
+  /// At a lane's burnout, and when it ends.
+  DISPERSA_INLINE void EndStage(int lane, int stage, FlightSums& sums) {
+    sums.pitch[stage] = LaneOf(pitch, lane);
+    SetLane(pitch, lane, ErrorSums{});
+    Lane(has_previous, lane) = 0.0;
+  }
+
+  /// One tick of powered flight. Errors are true less reference, about x, y, z; deflections of the actuators,
+  /// commands as they reach them.
+  DISPERSA_INLINE void AddPowered(MaskOf<T> lanes, T tick_s, T time_s, Vector<T> error_rad, const DriveState<T>& drives,
+                                  const T* command_rad, T limit_rad, const LyapunovSample<T>& law) {
+    pitch.Add(lanes, error_rad.y, time_s);
+    yaw.Add(lanes, error_rad.z, time_s);
+    roll.Add(lanes, error_rad.x, time_s);
+    itae_rad_s2 = Select(lanes, Fma(tick_s * time_s, Abs(error_rad.y), itae_rad_s2), itae_rad_s2);
+    T travel(0.0), largest(0.0), fastest(0.0);
+    for (int i = 0; i < kNozzles; ++i) {
+      const T angle = drives.angle_rad[i];
+      deflection.Add(lanes, angle, time_s);
+      fastest = Max(fastest, Abs(drives.rate_rad_s[i]));
+      largest = Max(largest, Abs(command_rad[i]));
+      travel = travel + Abs(angle - previous_rad[i]);
+      previous_rad[i] = Select(lanes, angle, previous_rad[i]);
+    }
+    const T one(1.0), none(0.0);
+    deflection_rate_peak_rad_s = Select(lanes, Max(deflection_rate_peak_rad_s, fastest), deflection_rate_peak_rad_s);
+    saturated_ticks = saturated_ticks + Select(lanes & (largest >= limit_rad), one, none);
+    travel_rad = Select(lanes & (has_previous > none), Fma(T(1.0 / kNozzles), travel, travel_rad), travel_rad);
+    has_previous = Select(lanes, one, has_previous);
+    const auto is_outside = lanes & (law.v > T(0.5 * kResidualError_rad * kResidualError_rad) * law.p11);
+    v_outside_ticks = v_outside_ticks + Select(is_outside, one, none);
+    v_falling_ticks = v_falling_ticks + Select(is_outside, law.v_falls, none);
+    departure_norm2_peak = Select(lanes, Max(departure_norm2_peak, law.departure_norm2), departure_norm2_peak);
+  }
+
+  DISPERSA_INLINE void AddCoast(MaskOf<T> lanes, T time_s, T pitch_error_rad) {
+    coast.Add(lanes, pitch_error_rad, time_s);
+  }
+
+  /// Loads at a tick outside the coast.
+  DISPERSA_INLINE void AddLoads(MaskOf<T> lanes, const Instant<T>& now) {
+    q_max_pa = Select(lanes, Max(q_max_pa, now.qbar_pa), q_max_pa);
+    const auto is_felt = lanes & (now.qbar_pa >= T(kIncidenceFloor_pa));
+    alpha_max_rad = Select(is_felt, Max(alpha_max_rad, now.incidence_rad), alpha_max_rad);
+    q_alpha_max_pa_rad =
+        Select(is_felt, Max(q_alpha_max_pa_rad, now.qbar_pa * now.incidence_rad), q_alpha_max_pa_rad);
+    const T weight = T(1.0) / (now.mass_kg * T(kStandardGravity));
+    const T axial = Abs(now.force_n.x * weight);
+    const T lateral = Sqrt(Fma(now.force_n.y, now.force_n.y, now.force_n.z * now.force_n.z)) * weight;
+    axial_load_max_g = Select(lanes, Max(axial_load_max_g, axial), axial_load_max_g);
+    lateral_load_max_g = Select(lanes, Max(lateral_load_max_g, lateral), lateral_load_max_g);
+  }
+
+  /// What the lane has, but for what its record keeps itself (stages, handover, orbit, limit cycle).
+  DISPERSA_INLINE void Read(int lane, FlightSums& s) const {
+    s.coast = LaneOf(coast, lane);
+    s.yaw = LaneOf(yaw, lane);
+    s.roll = LaneOf(roll, lane);
+    s.deflection = LaneOf(deflection, lane);
+    s.itae_rad_s2 = Lane(itae_rad_s2, lane);
+    s.deflection_rate_peak_rad_s = Lane(deflection_rate_peak_rad_s, lane);
+    s.saturated_ticks = Lane(saturated_ticks, lane);
+    s.travel_rad = Lane(travel_rad, lane);
+    s.q_max_pa = Lane(q_max_pa, lane);
+    s.q_alpha_max_pa_rad = Lane(q_alpha_max_pa_rad, lane);
+    s.alpha_max_rad = Lane(alpha_max_rad, lane);
+    s.axial_load_max_g = Lane(axial_load_max_g, lane);
+    s.lateral_load_max_g = Lane(lateral_load_max_g, lane);
+    s.v_outside_ticks = Lane(v_outside_ticks, lane);
+    s.v_falling_ticks = Lane(v_falling_ticks, lane);
+    s.adaptation_peak_rad_s2 = Sqrt(Lane(departure_norm2_peak, lane));
+  }
+  /// Loads of one lane at a moment between ticks, its burnout.
+  DISPERSA_INLINE void AddLoadsOfLane(int lane, const Instant<double>& now) {
+    LaneMetrics<double> one{};
+    one.AddLoads(true, now);
+    const auto raise = [lane](T& value, double to) {
+      if (to > Lane(value, lane)) Lane(value, lane) = to;
+    };
+    raise(q_max_pa, one.q_max_pa);
+    raise(q_alpha_max_pa_rad, one.q_alpha_max_pa_rad);
+    raise(alpha_max_rad, one.alpha_max_rad);
+    raise(axial_load_max_g, one.axial_load_max_g);
+    raise(lateral_load_max_g, one.lateral_load_max_g);
+  }
+};
+
+}  // namespace DISPERSA_ISA
+}  // namespace dispersa::lanes

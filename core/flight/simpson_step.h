@@ -1,0 +1,245 @@
+// The integration step of W launch vehicles side by side (core/math/lanes.h), and the state that it moves.
+//
+// Over a step of length h from a state with position p, velocity v, attitude q and angular velocity w:
+//
+//   actuators   depend on nothing else between two commands and are propagated first, exactly (actuators.h)
+//   a0, alpha0  accelerations at the start: those of the last step's end
+//   middle      p + h/2 v + h²/8 a0, v + h/2 a0 + h²/8 a0', q turned by h/2 w + h²/8 alpha0,
+//               w + h/2 alpha0 + h²/8 alpha0'; there a1, alpha1
+//   end         p + h v + h²/6 (a0 + 2 a1), q turned by h w + h²/6 (alpha0 + 2 alpha1) + h³/12 w1 x alpha1:
+//               final before the last evaluation, of which only the velocities are a guess: v + h a1, w + h alpha1;
+//               there a2, alpha2
+//   velocities  v + h/6 (a0 + 4 a1 + a2), w + h/6 (alpha0 + 4 alpha1 + alpha2)
+//
+// with a0' the slope at its end of the parabola through the last step's three accelerations, 0 after an event.
+// Two evaluations a step, and the last serves the metrics of the tick on which the step ends.
+//
+// Order. Simpson's rule, its double integral (exact to the third power of time) and the Magnus expansion with the
+// middle's w1 x alpha1 leave O(h⁵) a step. The guesses of v and w, in the middle and at the end, and the middle's q
+// err by O(h³), hence a1, a2 by that times their sensitivity to them, and the velocities by O(h⁴) a step: order 3,
+// with the small constant of accelerations that hardly depend on velocities. Where they do not depend on them and
+// the attitude turns steadily, order 4 remains. tests/verification/ holds it to both.
+#pragma once
+
+#include "core/dynamics/launcher_lanes.h"
+
+namespace dispersa::lanes {
+inline namespace DISPERSA_ISA {
+
+/// Commands of so many ticks are remembered for delays.
+inline constexpr int kDelayLine = 128;
+
+template <class T>
+class StepState {
+ public:
+  // ---- what moves ----
+  Motion<T> motion;
+  DriveState<T> drive_state;
+  // ---- what it moves under ----
+  Plant<T> plant;
+  Phase<T> phase;
+  Drives<T> drives;
+  T command_rad[kNozzles];  ///< at the actuators
+
+  void Configure(const Earth& earth, bool jet_damping, double tick_s) {
+    earth_ = earth;
+    air_ = &StandardAir();
+    jet_damping_ = jet_damping;
+    tick_s_ = tick_s;
+    start_ = &points_[0];
+    middle_ = &points_[1];
+    end_ = &points_[2];
+  }
+
+  /// A lane before lift-off: nothing burns, nothing is commanded.
+  void StartFlight(int lane) {
+    SetLane(phase.burning, lane, false);
+    SetLane(phase.burnt, lane, false);
+    Lane(phase.ignition_s, lane) = Lane(phase.expelled_kg, lane) = 0.0;
+    Lane(phase.control_torque_n_m.x, lane) = 0.0;
+    Lane(phase.control_torque_n_m.y, lane) = 0.0;
+    Lane(phase.control_torque_n_m.z, lane) = 0.0;
+    for (T& command : command_rad) Lane(command, lane) = 0.0;
+  }
+  void ReadLane(int lane, double* y) const {
+    const T* values = reinterpret_cast<const T*>(&motion);
+    for (int i = 0; i < kRigidBodySize; ++i) y[i] = Lane(values[i], lane);
+    for (int i = 0; i < kNozzles; ++i) {
+      y[kNozzleAngle + i] = Lane(drive_state.angle_rad[i], lane);
+      y[kNozzleRate + i] = Lane(drive_state.rate_rad_s[i], lane);
+    }
+  }
+  void WriteLane(int lane, const double* y) {
+    T* values = reinterpret_cast<T*>(&motion);
+    for (int i = 0; i < kRigidBodySize; ++i) Lane(values[i], lane) = y[i];
+    for (int i = 0; i < kNozzles; ++i) {
+      Lane(drive_state.angle_rad[i], lane) = y[kNozzleAngle + i];
+      Lane(drive_state.rate_rad_s[i], lane) = y[kNozzleRate + i];
+    }
+  }
+  /// After a lane's drives have changed.
+  void SetTickTransition(int lane) { SetTransition(tick_over_half_, lane, 0.5 * tick_s_); }
+
+  /// The lane's state or plant has jumped: nothing of the last step's end holds.
+  void MarkMoved(int lane) {
+    SetLane(moved_, lane, true);
+    SetLane(stale_, lane, true);
+    any_stale_ = any_moved_ = true;
+  }
+  /// The lanes' mass or torque has changed in place.
+  void MarkStale(MaskOf<T> lanes) {
+    if (!Any(lanes)) return;
+    stale_ = stale_ | lanes;
+    any_stale_ = true;
+  }
+
+  /// Where the lanes stand: valid after EvaluateStart.
+  const Instant<T>& now() const { return start_->instant; }
+  /// Of one lane at its time, evaluated anew.
+  Instant<double> InstantOf(int lane, T time_s) const {
+    Point p;
+    p.around = SurroundingsAt(earth_, *air_, plant.weather, motion.p);
+    p.masses = MassesAt(plant, phase, time_s);
+    p.nozzles = NozzlesAt(drive_state.angle_rad);
+    RatesAt(p, motion, &p.instant);
+    return LaneOf(p.instant, lane);
+  }
+
+  /// Evaluates the lanes at which the last step's end does not hold any more.
+  void EvaluateStart(T time_s) {
+    if (!any_stale_) return;
+    Point p;
+    if (any_moved_) {
+      Blend<T>(moved_, SurroundingsAt(earth_, *air_, plant.weather, motion.p), start_->around);
+      any_moved_ = false;
+    }
+    Blend<T>(stale_, MassesAt(plant, phase, time_s), start_->masses);
+    Blend<T>(stale_, NozzlesAt(drive_state.angle_rad), start_->nozzles);
+    p.rates = RatesAt(*start_, motion, &p.instant);
+    Blend<T>(stale_, p.rates, start_->rates);
+    Blend<T>(stale_, p.instant, start_->instant);
+    const Rates<T> none{Zero<T>(), Zero<T>()};
+    Blend<T>(stale_, none, start_->slopes);
+    stale_ = moved_ = NoLane<T>();
+    any_stale_ = false;
+  }
+
+  /// Moves lanes from their times to others; `all`: the rest does not fly. Returns those that hold a finite
+  /// state; the others stay as they were.
+  MaskOf<T> Step(MaskOf<T> moving, bool all, T from_s, T to_s);
+
+ private:
+  /// Everything of an instant that a step uses.
+  struct Point {
+    Surroundings<T> around;
+    TimedMasses<T> masses;
+    Nozzles<T> nozzles;
+    Rates<T> rates, slopes;  ///< slopes: of the rates, at the end of a step
+    Instant<T> instant;
+  };
+
+  DISPERSA_INLINE Rates<T> RatesAt(const Point& at, const Motion<T>& s, Instant<T>* instant) const {
+    return RatesOf(earth_.rotation_rate_rad_s, jet_damping_, plant, phase, Any(phase.burning), at.around, at.masses,
+                   at.nozzles, s, instant);
+  }
+  void SetTransition(Transition<T>& over, int lane, double time_s) const {
+    const Transition<double> one =
+        TransitionOver(Lane(drives.bandwidth2_1_s2, lane), Lane(drives.twice_damping_1_s, lane), time_s);
+    Lane(over.aa, lane) = one.aa;
+    Lane(over.ar, lane) = one.ar;
+    Lane(over.ra, lane) = one.ra;
+    Lane(over.rr, lane) = one.rr;
+  }
+  static Instant<double> LaneOf(const Instant<T>& i, int lane) {
+    Instant<double> one;
+    double* to = reinterpret_cast<double*>(&one);
+    const T* from = reinterpret_cast<const T*>(&i);
+    for (unsigned k = 0; k < sizeof(one) / sizeof(double); ++k) to[k] = Lane(from[k], lane);
+    return one;
+  }
+
+  Earth earth_;
+  const AirTable* air_;
+  bool jet_damping_;
+  double tick_s_;
+  Point points_[3];
+  Point *start_, *middle_, *end_;
+  MaskOf<T> stale_, moved_;
+  bool any_stale_, any_moved_;
+  Transition<T> tick_over_half_;  ///< over half a tick
+};
+
+/// Steps within this of a tick take the tick's transition of the actuators: it moves a deflection by less than a rounding.
+inline constexpr double kSameStep_s = 1e-10;
+
+template <class T>
+MaskOf<T> StepState<T>::Step(MaskOf<T> moving, bool all, T from_s, T to_s) {
+  EvaluateStart(from_s);
+  const T h = to_s - from_s, half = T(0.5) * h, sixth = h * T(1.0 / 6.0);
+  const T two(2.0), three(3.0), four(4.0);
+  const T h2 = h * h, h2_8 = T(0.125) * h2, h2_6 = T(1.0 / 6.0) * h2;
+  const Point& a = *start_;
+  Point& b = *middle_;
+  Point& c = *end_;
+
+  // In the coast angles, rates and commands are zero, and stay so.
+  DriveState<T> drives_half = drive_state, drives_end = drive_state;
+  const auto driven = phase.burning | phase.burnt;
+  if (Any(driven)) {
+    const auto odd = moving & driven & (Abs(h - T(tick_s_)) > T(kSameStep_s));
+    Transition<T> over = tick_over_half_;
+    if (Any(odd))
+      for (int lane = 0; lane < kWidth<T>; ++lane)
+        if (Bits(odd) >> lane & 1u) SetTransition(over, lane, 0.5 * Lane(h, lane));
+    drives_half = Propagate(drives, command_rad, over, half, drive_state);
+    drives_end = Propagate(drives, command_rad, over, half, drives_half);
+    b.nozzles = NozzlesAt(drives_half.angle_rad);
+    c.nozzles = NozzlesAt(drives_end.angle_rad);
+  }
+
+  Motion<T> middle;
+  middle.p = Along(Along(motion.p, half, motion.v), h2_8, a.rates.dv);
+  middle.v = Along(Along(motion.v, half, a.rates.dv), h2_8, a.slopes.dv);
+  middle.q = TurnedBy(motion.q, Along(half * motion.w, h2_8, a.rates.dw));
+  middle.w = Along(Along(motion.w, half, a.rates.dw), h2_8, a.slopes.dw);
+  b.around = SurroundingsAt(earth_, *air_, plant.weather, middle.p);
+  b.masses = MassesAt(plant, phase, from_s + half);
+  b.rates = RatesAt(b, middle, nullptr);
+
+  Motion<T> end;
+  end.p = Along(Along(motion.p, h, motion.v), h2_6, Along(a.rates.dv, two, b.rates.dv));
+  const Vector<T> turn = Along(h * motion.w, h2_6, Along(a.rates.dw, two, b.rates.dw));
+  end.q = TurnedBy(motion.q, Along(turn, h2 * h * T(1.0 / 12.0), Cross(middle.w, b.rates.dw)));
+  end.v = Along(motion.v, h, b.rates.dv);
+  end.w = Along(motion.w, h, b.rates.dw);
+  c.around = SurroundingsAt(earth_, *air_, plant.weather, end.p);
+  c.masses = MassesAt(plant, phase, to_s);
+  c.rates = RatesAt(c, end, &c.instant);
+  end.v = Along(motion.v, sixth, Along(a.rates.dv + c.rates.dv, four, b.rates.dv));
+  end.w = Along(motion.w, sixth, Along(a.rates.dw + c.rates.dw, four, b.rates.dw));
+  const T per_s = T(1.0) / h;
+  c.slopes.dv = per_s * Along(Along(a.rates.dv, three, c.rates.dv), -four, b.rates.dv);
+  c.slopes.dw = per_s * Along(Along(a.rates.dw, three, c.rates.dw), -four, b.rates.dw);
+
+  // 0 or not a number.
+  T none(0.0);
+  const T* values = reinterpret_cast<const T*>(&end);
+  for (int i = 0; i < kRigidBodySize; ++i) none = Fma(values[i], T(0.0), none);
+  for (const T& rate : drives_end.rate_rad_s) none = Fma(rate, T(0.0), none);
+  const auto accepted = moving & (none <= T(0.0));
+  if (all && !Any(moving & !accepted)) {
+    motion = end;
+    drive_state = drives_end;
+    Point* const last = start_;
+    start_ = end_;
+    end_ = last;
+  } else {
+    Blend<T>(accepted, end, motion);
+    Blend<T>(accepted, drives_end, drive_state);
+    Blend<T>(accepted, c, *start_);
+  }
+  return accepted;
+}
+
+}  // namespace DISPERSA_ISA
+}  // namespace dispersa::lanes

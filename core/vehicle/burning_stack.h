@@ -1,0 +1,99 @@
+// Masses and the burn of W stacks side by side (core/math/lanes.h): the one source of what mass.h and
+// propulsion.h give for one.
+#pragma once
+
+#include "core/math/constants.h"
+#include "core/math/lane_vector.h"
+#include "core/vehicle/mass.h"
+#include "core/vehicle/propulsion.h"
+
+namespace dispersa::lanes {
+inline namespace DISPERSA_ISA {
+
+/// StackMass, prepared.
+template <class T>
+struct Stack {
+  T fixed_mass_kg, first_moment_kg_m, second_moment_kg_m2, fixed_axial_kg_m2;
+  T grain_station_m;
+  T outer2_m2;          ///< the grain's outer radius squared
+  T inner_per_kg_m2;    ///< by which each kilogram lowers the bore's radius squared
+  T length2_m2;         ///< the grain's length squared, over 12
+};
+template <class T>
+DISPERSA_INLINE void SetLane(Stack<T>& s, int lane, const StackMass& mass) {
+  Lane(s.fixed_mass_kg, lane) = mass.fixed_mass_kg;
+  Lane(s.first_moment_kg_m, lane) = mass.fixed_first_moment_kg_m;
+  Lane(s.second_moment_kg_m2, lane) = mass.fixed_second_moment_kg_m2;
+  Lane(s.fixed_axial_kg_m2, lane) = mass.fixed_axial_inertia_kg_m2;
+  Lane(s.grain_station_m, lane) = mass.grain_station_m;
+  Lane(s.outer2_m2, lane) = mass.grain_outer_radius_m * mass.grain_outer_radius_m;
+  Lane(s.inner_per_kg_m2, lane) = 1.0 / (kPi * mass.grain_density_kg_m3 * mass.grain_length_m);
+  Lane(s.length2_m2, lane) = mass.grain_length_m * mass.grain_length_m / 12.0;
+}
+
+/// MassProperties of StackMass::At.
+template <class T>
+struct Masses {
+  T mass_kg, cg_station_m, axial_kg_m2, transverse_kg_m2, axial_per_kg_m2, transverse_per_kg_m2;
+};
+template <class T>
+DISPERSA_INLINE Masses<T> MassesAt(const Stack<T>& s, T propellant_kg) {
+  Masses<T> m;
+  m.mass_kg = s.fixed_mass_kg + propellant_kg;
+  const T cg = Fma(propellant_kg, s.grain_station_m, s.first_moment_kg_m) / m.mass_kg;
+  const T inner2 = Fma(-propellant_kg, s.inner_per_kg_m2, s.outer2_m2);
+  const T grain_axial = T(0.5) * propellant_kg * (s.outer2_m2 + inner2);
+  const T about_nose = Fma(s.grain_station_m, s.grain_station_m, s.length2_m2);
+  m.cg_station_m = cg;
+  m.axial_kg_m2 = s.fixed_axial_kg_m2 + grain_axial;
+  m.transverse_kg_m2 =
+      s.second_moment_kg_m2 + Fma(T(0.5), grain_axial, propellant_kg * about_nose) - m.mass_kg * cg * cg;
+  // d(grain_axial)/dm = r_i², because the propellant goes at the bore.
+  m.axial_per_kg_m2 = inner2;
+  m.transverse_per_kg_m2 = Fma(T(0.5), inner2, s.length2_m2) + Square(s.grain_station_m - cg);
+  return m;
+}
+
+/// MotorBurn, prepared. Times run from ignition; a ramp without duration has slope 0 and base 1.
+template <class T>
+struct Burn {
+  T vacuum_thrust_n, full_flow_kg_s, propellant_kg, duration_s, exit_area_m2;
+  T rise_s, rise_slope_1_s, rise_base, tail_s, tail_slope_1_s, tail_base;
+};
+template <class T>
+DISPERSA_INLINE void SetLane(Burn<T>& b, int lane, const MotorBurn& burn) {
+  Lane(b.vacuum_thrust_n, lane) = burn.vacuum_thrust_n;
+  Lane(b.full_flow_kg_s, lane) = burn.full_flow_kg_s;
+  Lane(b.propellant_kg, lane) = burn.propellant_mass_kg;
+  Lane(b.duration_s, lane) = burn.duration_s;
+  Lane(b.exit_area_m2, lane) = burn.exit_area_m2;
+  Lane(b.rise_s, lane) = burn.rise_s;
+  Lane(b.rise_slope_1_s, lane) = burn.rise_s > 0.0 ? 1.0 / burn.rise_s : 0.0;
+  Lane(b.rise_base, lane) = burn.rise_s > 0.0 ? 0.0 : 1.0;
+  Lane(b.tail_s, lane) = burn.tail_s;
+  Lane(b.tail_slope_1_s, lane) = burn.tail_s > 0.0 ? 1.0 / burn.tail_s : 0.0;
+  Lane(b.tail_base, lane) = burn.tail_s > 0.0 ? 0.0 : 1.0;
+}
+
+/// Fraction of full thrust and flow, and propellant left, at a time within the burn.
+template <class T>
+struct BurnState {
+  T fraction, propellant_kg;
+};
+template <class T>
+DISPERSA_INLINE BurnState<T> BurnAt(const Burn<T>& b, T since_ignition_s) {
+  const T since = Clamp(since_ignition_s, T(0.0), b.duration_s);
+  const T left = b.duration_s - since;
+  // Burnt at full flow from the end of the rise, plus the rise's triangle.
+  const T rising = Min(since, b.rise_s), falling = Max(b.tail_s - left, T(0.0));
+  const T full_s = Fma(T(0.5) * rising * rising, b.rise_slope_1_s, since - rising);
+  const T lacking_s = T(0.5) * falling * falling * b.tail_slope_1_s;
+  BurnState<T> state;
+  state.fraction = Min(T(1.0), Min(Fma(since, b.rise_slope_1_s, b.rise_base), Fma(left, b.tail_slope_1_s, b.tail_base)));
+  const T left_kg = b.propellant_kg - b.full_flow_kg_s * (full_s - lacking_s);
+  state.propellant_kg = Select(left_kg < T(0.0), T(0.0), left_kg);
+  return state;
+}
+
+}  // namespace DISPERSA_ISA
+}  // namespace dispersa::lanes

@@ -1,0 +1,159 @@
+// Flights side by side are the flights alone, bit by bit: for any number of lanes, instruction set, order and
+// neighbours, under every input that a case may draw.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numeric>
+#include <vector>
+
+#include "core/flight/lane_engine.h"
+#include "core/random/draws.h"
+#include "tests/slv4_flight.h"
+
+namespace dispersa {
+namespace {
+
+// The shipped definition with all that a file may give it besides.
+FlightDefinition Definition(const std::string& autopilot, bool with_winds) {
+  FlightDefinition definition = Slv4Definition(DISPERSA_CAMPAIGNS, autopilot);
+  definition.noise_seed = 11;
+  if (with_winds) {
+    definition.wind_table = WindTable{{0.0, 5000.0, 12000.0}, {1.0, 12.0, -20.0}, {3.0, -8.0, 30.0}};
+    definition.wind_statistics = WindStatistics{{0.0, 6000.0, 14000.0}, {0.0, 5.0, 20.0}, {1.0, 2.0, 3.0},
+                                                {2.0, 5.0, 8.0},        {2.0, 5.0, 8.0},  0.3, 3000.0};
+  }
+  return definition;
+}
+
+// Any input away from its nominal value in about half of the flights.
+FlightInputs DrawnInputs(std::uint64_t flight) {
+  Stream draws(5, flight, "inputs");
+  FlightInputs in;
+  const auto some = [&](double& value, double drawn) {
+    if (draws.Uniform() < 0.5) value = drawn;
+  };
+  for (std::size_t stage = 0; stage < kMaxStages; ++stage) {
+    some(in.thrust_misalignment_rad[stage], 0.25 * kRadPerDeg * draws.Uniform());
+    some(in.thrust_misalignment_clock_rad[stage], kTwoPi * draws.Uniform());
+    some(in.thrust_offset_m[stage], 0.005 * draws.Uniform());
+    some(in.thrust_offset_clock_rad[stage], kTwoPi * draws.Uniform());
+    some(in.thrust_factor[stage], 1.0 + 0.02 * draws.Normal());
+    some(in.mass_flow_factor[stage], 1.0 + 0.02 * draws.Normal());
+    some(in.specific_impulse_factor[stage], 1.0 + 0.01 * draws.Normal());
+    some(in.tip_off_pitch_rad_s[stage], 0.5 * kRadPerDeg * draws.Normal());
+    some(in.tip_off_yaw_rad_s[stage], 0.5 * kRadPerDeg * draws.Normal());
+    some(in.tip_off_roll_rad_s[stage], 0.5 * kRadPerDeg * draws.Normal());
+  }
+  some(in.wind_max_speed_m_s, 60.0 * draws.Uniform());
+  some(in.wind_azimuth_rad, kTwoPi * draws.Uniform());
+  some(in.gust_speed_m_s, 9.0 * draws.Uniform());
+  some(in.gust_altitude_m, 9000.0);
+  in.gust_length_m = 400.0;
+  for (std::size_t level = 0; level < kWindLevels; ++level) {
+    some(in.wind_profile_north[level], draws.Normal());
+    some(in.wind_profile_east[level], draws.Normal());
+  }
+  for (double* factor : {&in.drag_factor, &in.lift_factor, &in.cg_factor, &in.cp_factor, &in.density_factor,
+                         &in.inertia_factor, &in.actuator_bandwidth_factor})
+    some(*factor, 1.0 + 0.03 * draws.Normal());
+  some(in.gyro_bias_roll_rad_s, 1e-6 * draws.Normal());
+  some(in.gyro_bias_pitch_rad_s, 1e-6 * draws.Normal());
+  some(in.gyro_bias_yaw_rad_s, 1e-6 * draws.Normal());
+  some(in.gyro_noise_rad_s, 0.005 * kRadPerDeg);
+  if (draws.Uniform() < 0.3) {
+    in.stuck_nozzle = std::floor(1.0 + 4.0 * draws.Uniform());
+    in.stuck_nozzle_stage = std::floor(1.0 + 4.0 * draws.Uniform());
+    in.stuck_nozzle_rad = 3.0 * kRadPerDeg * draws.Normal();  // some are lost
+  }
+  some(in.pn_error_factor, 1.5);
+  some(in.pn_rate_factor, 0.7);
+  some(in.loop_gain_factor, 1.0 + 0.5 * draws.Uniform());
+  some(in.loop_delay_s, 0.03 * draws.Uniform());
+  some(in.loop_stage, std::floor(5.0 * draws.Uniform()));
+  return in;
+}
+
+// A queue that hands flights out in an order, and keeps everything that they give back.
+class Queue : public FlightQueue {
+ public:
+  struct Flown {
+    std::unique_ptr<FlightRecord> record;
+    History history;
+    FlightResult result;
+  };
+
+  Queue(const FlightModel& model, std::vector<std::uint64_t> order) : model_(model), order_(std::move(order)) {
+    flown.resize(order_.size());
+  }
+  FlightRecord* Next(bool) override {
+    if (next_ == order_.size()) return nullptr;
+    const std::uint64_t flight = order_[next_++];
+    Flown& one = flown[flight];
+    FlightOrder order{DrawnInputs(flight), {}};
+    order.options.case_index = flight;
+    one.history.step_s = 0.5;
+    if (flight % 4 == 1) order.options.history = &one.history;
+    one.record = std::make_unique<FlightRecord>(model_, order);
+    return one.record.get();
+  }
+  void Done(FlightRecord* record) override {
+    for (Flown& one : flown)
+      if (one.record.get() == record) one.result = record->Result();
+  }
+
+  std::vector<Flown> flown;
+
+ private:
+  const FlightModel& model_;
+  std::vector<std::uint64_t> order_;
+  std::size_t next_ = 0;
+};
+
+class FlightLanes : public testing::TestWithParam<const char*> {};
+
+TEST_P(FlightLanes, AreTheFlightsAlone) {
+  constexpr std::uint64_t kFlights = 12;
+  const bool with_winds = std::string(GetParam()) != "pd";
+  const FlightModel model(Definition(GetParam(), with_winds));
+  std::vector<std::uint64_t> order(kFlights);
+  std::iota(order.begin(), order.end(), 0);
+
+  Queue alone(model, order);
+  for (std::uint64_t flight = 0; flight < kFlights; ++flight) {
+    Queue one(model, {flight});
+    one.flown.resize(kFlights);
+    OneLaneEngine().fly(model, one);
+    alone.flown[flight] = std::move(one.flown[flight]);
+  }
+  std::size_t completed = 0, lost = 0;
+  for (const Queue::Flown& one : alone.flown) (one.result.outcome == Outcome::kCompleted ? completed : lost) += 1;
+  EXPECT_GT(completed, kFlights / 3) << "lanes are to be filled anew as flights end at different times";
+
+  for (const LaneEngine& engine : UsableEngines()) {
+    for (const bool reversed : {false, true}) {
+      std::vector<std::uint64_t> turned = order;
+      if (reversed) std::reverse(turned.begin(), turned.end());
+      Queue together(model, turned);
+      engine.fly(model, together);
+      for (std::uint64_t k = 0; k < kFlights; ++k) {
+        const FlightResult &a = alone.flown[k].result, &b = together.flown[k].result;
+        ASSERT_EQ(a.digest, b.digest) << engine.isa << " " << engine.lanes << " lanes, flight " << k;
+        EXPECT_EQ(a.outcome, b.outcome);
+        EXPECT_EQ(a.reason, b.reason);
+        EXPECT_EQ(a.end_time_s, b.end_time_s);
+        EXPECT_EQ(alone.flown[k].history.values.size(), together.flown[k].history.values.size());
+        for (std::size_t i = 0; i < alone.flown[k].history.values.size(); ++i) {
+          const double x = alone.flown[k].history.values[i], y = together.flown[k].history.values[i];
+          ASSERT_TRUE(x == y || (x != x && y != y)) << "history of flight " << k << ", value " << i;
+        }
+      }
+    }
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Laws, FlightLanes, testing::Values("adaptive_fuzzy", "frozen_fuzzy", "pd", "pd_aac"),
+                         [](const auto& law) { return std::string(law.param); });
+
+}  // namespace
+}  // namespace dispersa
