@@ -1,7 +1,9 @@
 // A minimisation problem over a box, with constraints. The optimiser knows nothing else about it.
 #pragma once
 
+#include <cstddef>
 #include <functional>
+#include <span>
 #include <vector>
 
 namespace dispersa {
@@ -29,6 +31,10 @@ struct BoundedProblem {
   std::function<Evaluation(const std::vector<double>&)> evaluate;
   /// Points, each of shape (n) and within the box, that the search starts with beside random ones.
   std::vector<std::vector<double>> known_points = {};
+  /// Optional: what `evaluate` returns for each of several points, for a problem that finds it faster side by side.
+  std::function<std::vector<Evaluation>(std::span<const std::vector<double>>)> evaluate_together = nullptr;
+  /// Largest number of points that evaluate_together is given at a time; at least 1.
+  std::size_t together = 1;
 };
 
 }  // namespace dispersa

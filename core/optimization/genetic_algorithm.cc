@@ -60,6 +60,8 @@ void Validate(const BoundedProblem& problem) {
   }
   if (!problem.evaluate)
     throw std::invalid_argument("BoundedProblem.evaluate is empty; allowed is a function");
+  if (problem.together < 1)
+    throw std::invalid_argument("BoundedProblem.together is 0; allowed is at least 1");
 }
 
 // A stream's index is below 2^32: the options' ranges give the generation and the item 16 bits each.
@@ -169,12 +171,30 @@ class Run {
   }
 
   void Evaluate(std::span<Individual> individuals) {
-    ParallelFor(individuals.size(), static_cast<std::size_t>(options_.threads), [&](std::size_t i) {
-      Individual& individual = individuals[i];
-      individual.evaluation = problem_.evaluate(individual.variables);
-      individual.merit = MeritOf(individual.evaluation);
-    });
+    const std::size_t threads = static_cast<std::size_t>(options_.threads);
+    if (problem_.evaluate_together) {
+      const std::size_t together = problem_.together;
+      ParallelFor((individuals.size() + together - 1) / together, threads, [&](std::size_t i) {
+        EvaluateTogether(individuals.subspan(i * together, std::min(together, individuals.size() - i * together)));
+      });
+    } else {
+      ParallelFor(individuals.size(), threads, [&](std::size_t i) {
+        individuals[i].evaluation = problem_.evaluate(individuals[i].variables);
+      });
+    }
+    for (Individual& individual : individuals) individual.merit = MeritOf(individual.evaluation);
     evaluations_ += individuals.size();
+  }
+
+  void EvaluateTogether(std::span<Individual> individuals) const {
+    std::vector<std::vector<double>> points;
+    for (const Individual& individual : individuals) points.push_back(individual.variables);
+    std::vector<Evaluation> evaluations = problem_.evaluate_together(points);
+    if (evaluations.size() != points.size()) {
+      throw std::invalid_argument(fmt::format("BoundedProblem.evaluate_together returned {} values; allowed is {}",
+                                              evaluations.size(), points.size()));
+    }
+    for (std::size_t i = 0; i < points.size(); ++i) individuals[i].evaluation = std::move(evaluations[i]);
   }
 
   // Best first. Ties are counted from the lowest objective of the whole run, whoever had it.

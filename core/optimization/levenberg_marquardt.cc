@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 #include "core/math/functions.h"
@@ -102,7 +103,8 @@ class Search {
   };
 
   LeastSquaresStatus Iterate() {
-    residuals_ = Residuals(x_);
+    residuals_ = Try(x_);
+    beside_ = tried_beside_;
     if (!residuals_.allFinite()) return LeastSquaresStatus::kNotFinite;
     bool moved = true;
     double damping_growth = 2.0;
@@ -118,7 +120,7 @@ class Search {
       const Step step = DampedStep();
       if (step.length <= options_.step_tolerance) return ReasonToStop();
 
-      const VectorXd trial = Residuals(step.target);
+      const VectorXd trial = Try(step.target);
       const double cost = 0.5 * residuals_.squaredNorm();
       const double trial_cost = 0.5 * trial.squaredNorm();
       moved = trial.allFinite() && trial_cost < cost && step.predicted_cost < cost;
@@ -129,6 +131,7 @@ class Search {
         damping_growth = 2.0;
         x_ = step.target;
         residuals_ = trial;
+        beside_ = tried_beside_;
       } else {
         damping_ *= damping_growth;
         damping_growth *= 2.0;
@@ -138,7 +141,10 @@ class Search {
 
   VectorXd Residuals(const std::vector<double>& x) {
     ++evaluations_;
-    const std::vector<double> values = problem_.residuals(x);
+    return Scaled(problem_.residuals(x));
+  }
+
+  VectorXd Scaled(const std::vector<double>& values) const {
     const std::size_t count = problem_.residual_scales.size();
     if (values.size() != count) {
       throw std::invalid_argument(
@@ -151,10 +157,34 @@ class Search {
     return scaled;
   }
 
+  // The residuals at x; with residuals_together also those beside it, for its Jacobian.
+  VectorXd Try(const std::vector<double>& x) {
+    tried_beside_.clear();
+    if (!problem_.residuals_together) return Residuals(x);
+    std::vector<std::vector<double>> points = {x};
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const Sides sides = SidesOf(x, i);
+      for (const std::optional<double>& side : {sides.low, sides.high}) {
+        if (!side) continue;
+        points.push_back(x);
+        points.back()[i] = *side;
+      }
+    }
+    const std::vector<std::vector<double>> all = problem_.residuals_together(points);
+    if (all.size() != points.size()) {
+      throw std::invalid_argument(fmt::format("LeastSquaresProblem.residuals_together returned {} values; allowed is {}",
+                                              all.size(), points.size()));
+    }
+    evaluations_ += static_cast<int>(points.size());
+    for (std::size_t i = 1; i < all.size(); ++i) tried_beside_.push_back(Scaled(all[i]));
+    return Scaled(all[0]);
+  }
+
   // The Jacobian at x_, the unknowns that their bounds hold, and the first damping. False: not finite.
   bool Linearise() {
     jacobian_.resize(residuals_.size(), x_.size());
-    for (std::size_t i = 0; i < x_.size(); ++i) jacobian_.col(i) = Column(i);
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < x_.size(); ++i) jacobian_.col(i) = Column(i, &next);
     if (!jacobian_.allFinite()) return false;
     const VectorXd gradient = jacobian_.transpose() * residuals_;
     held_.assign(x_.size(), false);
@@ -166,28 +196,37 @@ class Search {
     return true;
   }
 
-  VectorXd Column(std::size_t i) {
+  // Where a column of the Jacobian is differenced; a side that is not used is left out.
+  struct Sides {
+    std::optional<double> low, high;
+  };
+  Sides SidesOf(const std::vector<double>& x, std::size_t i) const {
     const Unknown& unknown = problem_.unknowns[i];
-    const double low = x_[i] - unknown.difference_step;
-    const double high = x_[i] + unknown.difference_step;
-    const bool use_low =
-        high > unknown.upper || (unknown.difference != Difference::kForward && low >= unknown.lower);
-    const bool use_high =
-        low < unknown.lower || (unknown.difference != Difference::kBackward && high <= unknown.upper);
-    std::vector<double> x = x_;
-    VectorXd from = residuals_;
-    VectorXd to = residuals_;
-    if (use_low) {
-      x[i] = low;
-      from = Residuals(x);
-    }
-    if (use_high) {
-      x[i] = high;
-      to = Residuals(x);
-    }
+    const double low = x[i] - unknown.difference_step;
+    const double high = x[i] + unknown.difference_step;
+    Sides sides;
+    if (high > unknown.upper || (unknown.difference != Difference::kForward && low >= unknown.lower))
+      sides.low = low;
+    if (low < unknown.lower || (unknown.difference != Difference::kBackward && high <= unknown.upper))
+      sides.high = high;
+    return sides;
+  }
+
+  // The column of unknown i; `next` counts through beside_.
+  VectorXd Column(std::size_t i, std::size_t* next) {
+    const Sides sides = SidesOf(x_, i);
+    const auto at = [&](const std::optional<double>& side) -> VectorXd {
+      if (!side) return residuals_;
+      if (problem_.residuals_together) return beside_[(*next)++];
+      std::vector<double> x = x_;
+      x[i] = *side;
+      return Residuals(x);
+    };
+    const VectorXd from = at(sides.low);
+    const VectorXd to = at(sides.high);
     // The steps as they are after rounding.
-    const double distance = (use_high ? high : x_[i]) - (use_low ? low : x_[i]);
-    return (to - from) * (unknown.scale / distance);
+    const double distance = sides.high.value_or(x_[i]) - sides.low.value_or(x_[i]);
+    return (to - from) * (problem_.unknowns[i].scale / distance);
   }
 
   bool IsStationary() const {
@@ -261,6 +300,7 @@ class Search {
   const LeastSquaresProblem& problem_;
   std::vector<double> x_;
   VectorXd residuals_;
+  std::vector<VectorXd> beside_, tried_beside_;  // residuals for the Jacobian at x_ and at the last point tried
   MatrixXd jacobian_;
   std::vector<bool> held_;
   double damping_ = 0.0;  // 0: not chosen yet

@@ -1,8 +1,10 @@
 // The genetic algorithm as a whole: known optima, reproducibility, threads, tie-breaker, ends and failures.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <span>
 #include <stdexcept>
 #include <thread>
 #include <vector>
@@ -74,6 +76,26 @@ TEST(GeneticAlgorithm, ResultDoesNotDependOnTheNumberOfThreads) {
   for (const int threads : {2, 3, 64}) {
     options.threads = threads;
     EXPECT_EQ(serial, GeneticAlgorithm(options).Minimize(problem)) << threads << " threads";
+  }
+}
+
+TEST(GeneticAlgorithm, ResultDoesNotDependOnHowManyAreEvaluatedTogether) {
+  BoundedProblem problem = RosenbrockProblem();
+  GeneticAlgorithmOptions options = ShortRun();
+  const GeneticAlgorithmResult alone = GeneticAlgorithm(options).Minimize(problem);
+  std::atomic<std::size_t> largest = 0;
+  problem.evaluate_together = [&](std::span<const std::vector<double>> points) {
+    if (points.size() > largest) largest = points.size();
+    std::vector<Evaluation> evaluations;
+    for (const std::vector<double>& x : points) evaluations.push_back(problem.evaluate(x));
+    return evaluations;
+  };
+  for (const std::size_t together : {1, 7, 1000}) {
+    problem.together = together;
+    options.threads = 2;
+    largest = 0;
+    EXPECT_EQ(alone, GeneticAlgorithm(options).Minimize(problem)) << together << " together";
+    EXPECT_EQ(largest, std::min<std::size_t>(together, 60));
   }
 }
 

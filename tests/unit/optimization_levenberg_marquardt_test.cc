@@ -1,8 +1,11 @@
 // Least squares: known solutions, each way to end, bounds, differencing sides, scales and errors.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numeric>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -209,6 +212,31 @@ TEST(LevenbergMarquardt, ScalesMakeUnitsIrrelevant) {
   EXPECT_EQ(scaled.residuals, (Vector{plain.residuals[0] * b, plain.residuals[1] * a}));
   EXPECT_EQ(scaled.largest_scaled_residual, plain.largest_scaled_residual);
   EXPECT_EQ(scaled.evaluations, plain.evaluations);
+}
+
+// Near a bound too, where the side of the differences turns.
+TEST(LevenbergMarquardt, ResidualsFoundTogetherGiveTheSameResult) {
+  for (const double bound : {10.0, 0.9}) {
+    LeastSquaresProblem problem = Rosenbrock();
+    problem.unknowns[0].upper = bound;
+    problem.unknowns[1].difference = Difference::kForward;
+    LeastSquaresResult alone = Solve(problem, {-1.2, 1.0});
+    std::vector<std::size_t> counts;
+    problem.residuals_together = [&](std::span<const Vector> points) {
+      counts.push_back(points.size());
+      std::vector<Vector> all;
+      for (const Vector& x : points) all.push_back(problem.residuals(x));
+      return all;
+    };
+    LeastSquaresResult together = Solve(problem, {-1.2, 1.0});
+    // Every point comes with those of its Jacobian: two of the first unknown, or one at its bound, and one.
+    EXPECT_GE(*std::min_element(counts.begin(), counts.end()), 3u);
+    EXPECT_EQ(*std::max_element(counts.begin(), counts.end()), 4u);
+    EXPECT_EQ(static_cast<std::size_t>(together.evaluations),
+              std::accumulate(counts.begin(), counts.end(), std::size_t{0}));
+    together.evaluations = alone.evaluations;
+    EXPECT_EQ(together, alone);
+  }
 }
 
 TEST(LevenbergMarquardt, IsDeterministic) {
