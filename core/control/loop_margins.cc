@@ -24,23 +24,15 @@ std::complex<double> UnitCircle(double angle_rad) {
   return {c.cos, c.sin};
 }
 
+// Without the checks for infinities of the standard's, which cost most of it.
+std::complex<double> Times(std::complex<double> a, std::complex<double> b) {
+  return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
+}
+std::complex<double> Inverse(std::complex<double> a) { return std::conj(a) / std::norm(a); }
+
 double Modulus(std::complex<double> z) { return Sqrt(std::norm(z)); }
 
 double Decibel(double ratio) { return 20.0 * Log10(ratio); }
-
-// (z I - a)⁻¹ b over the reals, [Re -Im; Im Re], which needs no complex square root.
-Eigen::Vector4cd Resolvent(const Eigen::Matrix4d& a, const Eigen::Vector4d& b, std::complex<double> z) {
-  Eigen::Matrix<double, 8, 8> m;
-  const Eigen::Matrix4d real = z.real() * Eigen::Matrix4d::Identity() - a;
-  const Eigen::Matrix4d imaginary = z.imag() * Eigen::Matrix4d::Identity();
-  m << real, -imaginary, imaginary, real;
-  Eigen::Matrix<double, 8, 1> rhs;
-  rhs << b, Eigen::Vector4d::Zero();
-  const Eigen::Matrix<double, 8, 1> x = m.partialPivLu().solve(rhs);
-  Eigen::Vector4cd result;
-  for (int i = 0; i < 4; ++i) result[i] = {x[i], x[i + 4]};
-  return result;
-}
 
 }  // namespace
 
@@ -69,21 +61,41 @@ SampledLoop::SampledLoop(const AxisPlant& plant, const LinearLaw& law, double ti
   const Eigen::MatrixXd held = MatrixExponential(m);
   ad_ = held.topLeftCorner<4, 4>();
   bd_ = held.topRightCorner<4, 1>();
+
+  // Faddeev and Le Verrier: with D = ad - I, adj(s I - D) = sum of adjoint_k s^k, by falling powers.
+  const Eigen::Matrix4d d = ad_ - Eigen::Matrix4d::Identity();
+  Eigen::Matrix4d adjoint = Eigen::Matrix4d::Identity();
+  denominator_[4] = 1.0;
+  for (int k = 3; k >= 0; --k) {
+    const Eigen::Vector4d numerator = adjoint * bd_;
+    angle_[k] = numerator[0];
+    rate_[k] = numerator[1];
+    const Eigen::Matrix4d product = d * adjoint;
+    denominator_[k] = -product.trace() / (4 - k);
+    adjoint = product + denominator_[k] * Eigen::Matrix4d::Identity();
+  }
 }
 
 std::complex<double> SampledLoop::Response(double frequency_rad_s) const {
-  const std::complex<double> z = UnitCircle(frequency_rad_s * tick_s_);
-  const Eigen::Vector4cd x = Resolvent(ad_, bd_, z);
-  const std::complex<double> angle = x[0], rate = x[1];
+  // s = z - 1 keeps its digits near z = 1, where rigid body and integrators have their poles.
+  const SinCos half = SineCosine(0.5 * frequency_rad_s * tick_s_);
+  const std::complex<double> s(-2.0 * half.sin * half.sin, 2.0 * half.sin * half.cos);
+  const auto at = [&](const auto& polynomial) {
+    std::complex<double> sum = 0.0;
+    for (auto k = polynomial.rbegin(); k != polynomial.rend(); ++k) sum = Times(sum, s) + *k;
+    return sum;
+  };
+  const std::complex<double> inverse = Inverse(at(denominator_));
+  const std::complex<double> angle = Times(at(angle_), inverse), rate = Times(at(rate_), inverse);
   std::complex<double> u = law_.kp_1_s2 * angle + law_.kd_1_s * rate;
   if (law_.adapts()) {
     const double share = 1.0 / law_.rules;
-    const std::complex<double> mean = z - 1.0 + tick_s_ * law_.leakage_1_s;
+    const std::complex<double> mean = s + tick_s_ * law_.leakage_1_s;
     const std::complex<double> departure = mean + tick_s_ * law_.spread_1_s;
     const std::complex<double> drive = law_.drive_error * angle + law_.drive_rate * rate;
-    u += tick_s_ * drive * (share / mean + (1.0 - share) / departure);
+    u += tick_s_ * Times(drive, share * Inverse(mean) + (1.0 - share) * Inverse(departure));
   }
-  return u * UnitCircle(-frequency_rad_s * tick_s_ * delay_ticks_) / law_.effectiveness_1_s2;
+  return Times(u, UnitCircle(-frequency_rad_s * tick_s_ * delay_ticks_)) / law_.effectiveness_1_s2;
 }
 
 double SampledLoop::SpectralRadius(double gain_factor) const {

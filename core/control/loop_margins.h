@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <complex>
 
 #include "core/math/linear.h"
@@ -61,6 +62,9 @@ class SampledLoop {
 
   Eigen::Matrix4d ad_;  ///< x(k+1) = ad x(k) + bd d(k)
   Eigen::Vector4d bd_;
+  /// (z I - ad)⁻¹ bd, angle and rate, as quotients of polynomials in z - 1, rising powers.
+  std::array<double, 4> angle_, rate_;
+  std::array<double, 5> denominator_;
   LinearLaw law_;
   double tick_s_;
   int delay_ticks_;
