@@ -8,8 +8,8 @@ import shlex
 import sys
 
 MARCH = "-march=x86-64-v3"
-# Compiled once more for processors that have it, and chosen when one does (core/flight/lane_engine.h).
-WIDER_MARCH = {"core/flight/fly_lanes.cc": "-march=x86-64-v4"}
+# Sources of lanes (core/math/lanes.h) are compiled for this one as well; the program chooses at its start.
+LANES, LANES_MARCH = "-DDISPERSA_LANES=", "-march=x86-64-v4"
 CONTRACTION = "-ffp-contract=off"
 # GCC 12's vectorisers fuse a*b-c and a*b+c in spite of -ffp-contract=off (fused.py).
 VECTORISERS = "-fno-tree-vectorize"
@@ -22,12 +22,13 @@ FORBIDDEN = {
 }
 
 
-def violations(arguments, wider=None):
-    """What is wrong with one compiler command. The last of repeated options counts; `wider` is allowed too."""
+def violations(arguments):
+    """What is wrong with one compiler command. The last of repeated options counts."""
     found = sorted(FORBIDDEN.intersection(arguments))
     march = [a for a in arguments if a.startswith("-march=")]
     contraction = [a for a in arguments if a.startswith("-ffp-contract=")]
-    if not march or march[-1] not in (MARCH, wider):
+    in_lanes = any(a.startswith(LANES) for a in arguments)
+    if not march or march[-1] not in ((MARCH, LANES_MARCH) if in_lanes else (MARCH,)):
         found.append(f"lacks {MARCH}")
     if not contraction or contraction[-1] != CONTRACTION:
         found.append(f"lacks {CONTRACTION}")
@@ -44,8 +45,7 @@ def check(root, commands):
         if not path.is_relative_to(root) or path.relative_to(root).parts[0] not in ("core", "services"):
             continue
         seen += 1
-        wider = WIDER_MARCH.get(str(path.relative_to(root)))
-        for violation in violations(shlex.split(entry["command"]), wider):
+        for violation in violations(shlex.split(entry["command"])):
             problems.append(f"{path.relative_to(root)}: {violation}")
     return problems if seen else ["no source of core/ in compile_commands.json"]
 

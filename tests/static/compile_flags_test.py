@@ -25,10 +25,11 @@ class CompileFlagsTest(unittest.TestCase):
         self.assertEqual(check(GOOD + " -ffp-contract=fast -march=native"),
                          ["core/math/a.cc: lacks -march=x86-64-v3", "core/math/a.cc: lacks -ffp-contract=off"])
 
-    def test_only_the_engine_may_be_compiled_for_more(self):
-        wider = GOOD + " -march=x86-64-v4"
-        self.assertEqual(check(wider, "/src/core/flight/fly_lanes.cc"), [])
-        self.assertEqual(check(wider), ["core/math/a.cc: lacks -march=x86-64-v3"])
+    def test_sources_of_lanes_may_be_for_a_newer_processor(self):
+        newer = GOOD + " -march=x86-64-v4"
+        self.assertEqual(check(newer), ["core/math/a.cc: lacks -march=x86-64-v3"])
+        self.assertEqual(check(newer + " -DDISPERSA_LANES=8"), [])
+        self.assertEqual(check(GOOD + " -march=native -DDISPERSA_LANES=8"), ["core/math/a.cc: lacks -march=x86-64-v3"])
 
     def test_finds_value_changing_options(self):
         self.assertEqual(check(GOOD + " -ffast-math"), ["core/math/a.cc: -ffast-math"])

@@ -7,7 +7,9 @@ fused by the compiler, or by an intrinsic of which the sources know nothing.
 usage: fused.py REPOSITORY COMPILE_COMMANDS.json OBJDUMP [LAUNCHER]
 """
 import collections
+import concurrent.futures
 import json
+import os
 import pathlib
 import re
 import shlex
@@ -43,29 +45,40 @@ def unfused(arguments, output):
     return changed + ["-DDISPERSA_NO_FMA"]
 
 
+def left_fused(entry, objdump, launcher):
+    """What is fused in an object although its source did not ask for it; None if there is no object."""
+    directory, arguments = pathlib.Path(entry["directory"]), shlex.split(entry["command"])
+    compiled = directory / arguments[arguments.index("-o") + 1]
+    if not compiled.exists():
+        return None
+    if not fused(disassemble(objdump, compiled)):
+        return {}
+    with tempfile.TemporaryDirectory() as folder:
+        again = pathlib.Path(folder) / "unfused.o"
+        subprocess.run([*launcher, *unfused(arguments, again)], cwd=directory, check=True)
+        return fused(disassemble(objdump, again))
+
+
 def check(root, commands, objdump, launcher=()):
     """Violations, one line each; `commands` is the parsed compile_commands.json."""
-    problems, seen = [], 0
+    entries = {}
     for entry in commands:
-        directory = pathlib.Path(entry["directory"])
-        path = directory / entry["file"]
-        if not path.is_relative_to(root) or path.relative_to(root).parts[0] not in ("core", "services"):
-            continue
-        seen += 1
-        name, arguments = path.relative_to(root), shlex.split(entry["command"])
-        compiled = directory / arguments[arguments.index("-o") + 1]
-        if not compiled.exists():
-            problems.append(f"{name}: is not built, so nothing is known about it")
-            continue
-        if not fused(disassemble(objdump, compiled)):
-            continue
-        with tempfile.TemporaryDirectory() as folder:
-            again = pathlib.Path(folder) / "unfused.o"
-            subprocess.run([*launcher, *unfused(arguments, again)], cwd=directory, check=True)
-            left = fused(disassemble(objdump, again))
-        problems += [f"{name}: {function}: {count} × {instruction} that the source did not ask for"
-                     for (function, instruction), count in left.items()]
-    return problems if seen else ["no source of core/ in compile_commands.json"]
+        path = pathlib.Path(entry["directory"], entry["file"])
+        if path.is_relative_to(root) and path.relative_to(root).parts[0] in ("core", "services"):
+            entries.setdefault(path.relative_to(root), []).append(entry)
+    if not entries:
+        return ["no source of core/ in compile_commands.json"]
+    problems = []
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        pending = [(name, pool.submit(left_fused, entry, objdump, launcher))
+                   for name, same in entries.items() for entry in same]
+        for name, left in pending:
+            if left.result() is None:
+                problems.append(f"{name}: is not built, so nothing is known about it")
+                continue
+            problems += [f"{name}: {function}: {count} × {instruction} that the source did not ask for"
+                         for (function, instruction), count in left.result().items()]
+    return problems
 
 
 if __name__ == "__main__":
