@@ -1,5 +1,7 @@
 #include "core/flight/flight_model.h"
 
+#include <cassert>
+
 #include "core/dynamics/aero_grid.h"
 #include "core/math/functions.h"
 #include "core/vehicle/aerodynamics_build_up.h"
@@ -75,6 +77,15 @@ FlightModel::FlightModel(FlightDefinition definition)
   autopilot_ = BuildAutopilot(definition_.autopilot, std::move(controls),
                               definition_.vehicle.reaction_control.minimum_on_time_s);
   reference_rows_ = TabulateReference(definition_.program, frame_, definition_.autopilot.tick_s);
+}
+
+FlightModel FlightModel::WithAutopilot(const AutopilotConfig& autopilot) const {
+  assert(autopilot.tick_s == definition_.autopilot.tick_s);
+  FlightModel model = *this;
+  model.definition_.autopilot = autopilot;
+  model.autopilot_ =
+      BuildAutopilot(autopilot, autopilot_.stages, definition_.vehicle.reaction_control.minimum_on_time_s);
+  return model;
 }
 
 namespace {

@@ -49,6 +49,8 @@ struct ReferenceRows {
 class FlightModel {
  public:
   explicit FlightModel(FlightDefinition definition);
+  /// The same with another autopilot on the same ticks, at a fraction of what a new model costs.
+  FlightModel WithAutopilot(const AutopilotConfig& autopilot) const;
 
   const FlightDefinition& definition() const { return definition_; }
   const LaunchFrame& frame() const { return frame_; }

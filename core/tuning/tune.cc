@@ -8,6 +8,7 @@
 
 #include "core/campaign/campaign_flights.h"
 #include "core/campaign/input_error.h"
+#include "core/flight/flight.h"
 #include "core/flight/flight_model.h"
 #include "core/flight/margins.h"
 #include "core/flight/metrics.h"
@@ -24,7 +25,7 @@ constexpr double kFinalMutationEta = 100.0;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-double Metric(const CaseResult& result, const std::string& name) {
+double Metric(const FlightResult& result, const std::string& name) {
   return result.metrics[MetricColumn(name)];
 }
 
@@ -137,7 +138,7 @@ class Tuner {
     result.autopilot = campaign_.autopilot;
     if (!result.feasible) return result;
     std::vector<double> rms_deg;
-    for (const CaseResult& flown : FlyAll(campaign_)) {
+    for (const FlightResult& flown : FlyCases(ModelWith(campaign_.autopilot))) {
       rms_deg.push_back(Metric(flown, "pitch_error_rms_deg"));
       result.largest_peak_deg = std::max(result.largest_peak_deg, Metric(flown, "pitch_error_peak_deg"));
     }
@@ -151,14 +152,16 @@ class Tuner {
     return campaign_.vehicle.stages[static_cast<std::size_t>(stage)].gimbal.bandwidth_rad_s;
   }
 
-  std::vector<CaseResult> FlyAll(const Campaign& campaign) {
-    const CampaignFlights flights(campaign);
-    std::vector<CaseResult> all(campaign.sampling.cases);
-    std::vector<CaseOrder> orders;
-    for (std::uint64_t i = 0; i < all.size(); ++i) orders.push_back({i});
-    flights.FlyCases(orders, 1, [&](std::size_t i, CaseResult result, const History&) { all[i] = std::move(result); });
-    flights_ += all.size();
-    return all;
+  FlightModel ModelWith(const AutopilotConfig& autopilot) const { return start_->model().WithAutopilot(autopilot); }
+
+  std::vector<FlightResult> FlyCases(const FlightModel& model) {
+    std::vector<FlightOrder> orders(campaign_.sampling.cases);
+    for (std::uint64_t i = 0; i < orders.size(); ++i) {
+      orders[i].inputs = start_->Draw(i);
+      orders[i].options.case_index = i;
+    }
+    flights_ += orders.size();
+    return FlyAll(model, orders);
   }
 
   AutopilotModel ModelOf(const AutopilotConfig& autopilot) const {
@@ -177,18 +180,21 @@ class Tuner {
     return least;
   }
 
-  // Ends at the first instant that fails, so that a design far from admissible costs next to nothing.
-  bool HasMargins(const AutopilotConfig& autopilot, int stage) const {
+  // Ends at the first set of margins that fails, and begins with the one that failed last: designs that are
+  // tried one after another are alike, so that one far from admissible costs next to nothing.
+  bool HasMargins(const AutopilotConfig& autopilot, int stage, std::size_t* failed_last) const {
     const AutopilotModel model = ModelOf(autopilot);
-    for (const MarginInstant& instant : instants_) {
+    const std::size_t sets = instants_.size() * kAxes * 2;
+    for (std::size_t k = 0; k < sets; ++k) {
+      const std::size_t set = (*failed_last + k) % sets;
+      const MarginInstant& instant = instants_[set / (kAxes * 2)];
       if (instant.sample.stack != stage) continue;
-      for (const Axis axis : {kPitch, kYaw, kRoll}) {
-        for (const bool adapting : {true, false}) {
-          LeastMargins least = {kInfinity, kInfinity, kInfinity};
-          Take(MarginsAt(start_->model().nominal_plant(), model, instant.sample, axis, adapting), least);
-          if (!Suffices(least)) return false;
-        }
-      }
+      const Axis axis = static_cast<Axis>(set / 2 % kAxes);
+      LeastMargins least = {kInfinity, kInfinity, kInfinity};
+      Take(MarginsAt(start_->model().nominal_plant(), model, instant.sample, axis, set % 2 == 0), least);
+      if (Suffices(least)) continue;
+      *failed_last = set;
+      return false;
     }
     return true;
   }
@@ -200,32 +206,33 @@ class Tuner {
     AutopilotConfig autopilot = campaign_.autopilot;
     const double lowest_rad_s = kBandwidthOfActuator.low * ActuatorOf(stage);
     double w = kBandwidthOfActuator.high * ActuatorOf(stage);
+    std::size_t failed_last = 0;
     for (; w > lowest_rad_s; w *= kBandwidthStep) {
       design.bandwidth_rad_s = w;
       ApplyDesign(design, stage, autopilot);
-      if (HasMargins(autopilot, stage)) break;
+      if (HasMargins(autopilot, stage, &failed_last)) break;
     }
     design.bandwidth_rad_s = point[0] * std::max(w, lowest_rad_s);
     return design;
   }
 
   Evaluation Evaluate(const std::vector<double>& point, int stage) {
-    Campaign candidate = campaign_;
-    ApplyDesign(DesignOf(point, stage), stage, candidate.autopilot);
+    AutopilotConfig candidate = campaign_.autopilot;
+    ApplyDesign(DesignOf(point, stage), stage, candidate);
     Evaluation evaluation;
     std::vector<double>& violations = evaluation.constraint_violations;
-    AddViolations(LeastOf(candidate.autopilot, stage, false), violations);
-    AddViolations(LeastOf(candidate.autopilot, stage, true), violations);
+    AddViolations(LeastOf(candidate, stage, false), violations);
+    AddViolations(LeastOf(candidate, stage, true), violations);
     if (!AllZero(violations)) return evaluation;
 
-    FlyCandidate(candidate, "_stage" + std::to_string(stage + 1) + "_deg", evaluation);
+    FlyCandidate(ModelWith(candidate), "_stage" + std::to_string(stage + 1) + "_deg", evaluation);
     return evaluation;
   }
 
   // Objective, tie-breaker and constraints of flight; `suffix` of the metrics of the pitch error.
-  void FlyCandidate(const Campaign& candidate, const std::string& suffix, Evaluation& evaluation) {
+  void FlyCandidate(const FlightModel& candidate, const std::string& suffix, Evaluation& evaluation) {
     double sum_deg = 0.0, lost = 0.0, cycle_deg = 0.0;
-    for (const CaseResult& flown : FlyAll(candidate)) {
+    for (const FlightResult& flown : FlyCases(candidate)) {
       // Not every metric of a flight that was lost is defined.
       if (flown.outcome != Outcome::kCompleted) {
         lost += 1.0;
@@ -268,11 +275,11 @@ class Tuner {
                              std::log10(kStartAugmentation.spectral_gain_1_s),
                              kStartAugmentation.maximum_total_gain}};
     problem.evaluate = [this](const std::vector<double>& point) {
-      Campaign candidate = campaign_;
-      ApplyDesign(AugmentationOf(point), candidate.autopilot);
+      AutopilotConfig autopilot = campaign_.autopilot;
+      ApplyDesign(AugmentationOf(point), autopilot);
+      const FlightModel candidate = ModelWith(autopilot);
       Evaluation evaluation;
-      for (const MeasuredMargins& m : MeasureMargins(CampaignFlights(candidate).model()))
-        AddViolations(m, evaluation.constraint_violations);
+      for (const MeasuredMargins& m : MeasureMargins(candidate)) AddViolations(m, evaluation.constraint_violations);
       if (AllZero(evaluation.constraint_violations)) FlyCandidate(candidate, "_deg", evaluation);
       return evaluation;
     };
