@@ -3,11 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
 
-#include "core/dynamics/integrator.h"
+#include <fmt/format.h>
+
+#include "core/flight/launch_frame.h"
+#include "core/flight/orbit.h"
 #include "core/flight/sequence.h"
 #include "core/math/constants.h"
-#include "core/math/functions.h"
+#include "core/trajectory/ascent_events.h"
+#include "core/trajectory/ascent_record.h"
+#include "core/trajectory/point_mass.h"
 
 namespace dispersa {
 
@@ -22,348 +28,379 @@ constexpr double kGround_m = 1000.0;
 constexpr double kKickKnot_s = 0.1;
 constexpr double kBurnKnot_s = 1.0;
 constexpr double kCoastKnot_s = 5.0;
-// Rates of the attitude program are central differences over this time: rounding and truncation stay below
-// 1e-10 of a rate.
-constexpr double kDifference_s = 1e-3;
 
-double SmoothStep(double s) { return s * s * s * (10.0 + s * (-15.0 + 6.0 * s)); }
+using lanes::Lane;
+using LaneVector = lanes::Vector<double>;
 
-enum class ProgramPhase { kVertical, kTurn };
+LaneVector ToLanes(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 
-// State of an ascent between two events. y: position and velocity in I.
-class Ascent {
- public:
-  Ascent(const AscentModel& model, const FlightProgram& program, const AscentOptions& options)
-      : model_(model),
-        program_(program),
-        options_(options),
-        frame_(BuildLaunchFrame(model.plant.environment.earth, model.vehicle.site,
-                                program.launch_azimuth_rad)),
-        integrator_(Scheme::kRungeKutta4, 6, &Ascent::Rhs, this, nullptr) {
-    SetMotion(frame_.p_EoL_I, frame_.v_IL_I);
-  }
+template <class T>
+void SetLane(lanes::Vector<T>& vector, int lane, const LaneVector& value) {
+  Lane(vector.x, lane) = value.x;
+  Lane(vector.y, lane) = value.y;
+  Lane(vector.z, lane) = value.z;
+}
+template <class T>
+LaneVector LaneOf(const lanes::Vector<T>& vector, int lane) {
+  return {Lane(vector.x, lane), Lane(vector.y, lane), Lane(vector.z, lane)};
+}
 
-  AscentResult Fly();
+lanes::Ground GroundOf(const AscentModel& model) {
+  const Earth& earth = model.plant.environment.earth;
+  return {earth, &StandardAir(), ToLanes(-BuildLaunchFrame(earth, model.vehicle.site, 0.0).R_IL.col(2))};
+}
 
- private:
-  struct Event {
-    double time_s;
-    enum Kind { kIgnition, kBurnout, kSeparation, kTurnBegin, kTurnEnd, kKink } kind;
-    int stage;
-  };
+// One flight's way from event to event. Its motion is a lane of the fleet.
+struct Flight {
+  const FlightProgram* program = nullptr;
+  AscentResult* result = nullptr;  // none: the lane is idle
+  LaunchFrame frame;
+  std::vector<AscentEvent> events;
+  std::size_t next_event = 0;
 
-  static void Rhs(double t, const double* y, double* dydt, void* context) {
-    const auto* self = static_cast<const Ascent*>(context);
-    const Vector3 acceleration = self->Acceleration(t, y);
-    for (int i = 0; i < 3; ++i) {
-      dydt[i] = y[3 + i];
-      dydt[3 + i] = acceleration[i];
-    }
-  }
+  // The way to the next event, in equal steps.
+  double from_s = 0.0, to_s = 0.0;
+  int step = 0, steps = 1, steps_per_knot = 1;
 
-  void SetMotion(const Vector3& p_EoC_I, const Vector3& v_IC_I) {
-    for (int i = 0; i < 3; ++i) {
-      y_[i] = p_EoC_I[i];
-      y_[3 + i] = v_IC_I[i];
-    }
-  }
-  Vector3 AirVelocity(const double* y) const {
-    const double omega = model_.plant.environment.earth.rotation_rate_rad_s;
-    return Vector3(y[3] + omega * y[1], y[4] - omega * y[0], y[5]);
-  }
-  Matrix3 Attitude(double t, const double* y) const;
-  static RigidBodyState State(const double* y, const Matrix3& R_IB);
-  LauncherInstant Instant(double t, const double* y, const Matrix3& R_IB) const;
-  Vector3 Acceleration(double t, const double* y) const;
-  Vector3 AxisRate(double t, const double* y) const;
-  PitchYawRoll Angles(double t, const double* y) const {
-    return ToPitchYawRoll(QuaternionOf(frame_.R_IL.transpose() * Attitude(t, y)));
-  }
-  std::vector<Event> Events();
-  bool Advance(double to_s);
-  void Happen(const Event& event);
-  void Observe(bool record = true);
-  void Record(const LauncherInstant& now);
-  void AddKnot(double t, const double* y);
-  void Finish();
+  int stack = 0;
+  bool burning = false, burnt = false, turning = false;
+  double ignition_s = 0.0;
+  LaneVector turn_offset_I = lanes::Zero<double>();
 
-  const AscentModel& model_;
-  const FlightProgram& program_;
-  const AscentOptions& options_;
-  LaunchFrame frame_;
-  Integrator integrator_;
-  double time_s_ = 0.0;
-  double y_[6] = {};
-  ProgramPhase turn_ = ProgramPhase::kVertical;
-  Vector3 turn_offset_I_ = Vector3::Zero();  // body axis less velocity direction as the turn begins
-  LauncherPhase phase_;
-  AscentResult result_;
+  bool in_reserve = false;  // injected already
+  std::size_t samples = 0;  // to the injection
+
+  double StepEnd() const { return step + 1 == steps ? to_s : from_s + (to_s - from_s) * (step + 1) / steps; }
+  bool IsAtKnot() const { return step % steps_per_knot == 0; }
 };
 
-// Body x along the velocity through the air turned by the programmed incidence; body y as near to the
-// launch frame's y as it can be (zero roll in L). While vertical, body x is the vertical of the site, which
-// turns with the Earth; the small angle that the velocity makes with it as the turn begins fades by t3.
-Matrix3 Ascent::Attitude(double t, const double* y) const {
-  const Vector3 right_L = frame_.R_IL.col(1);
-  Vector3 forward;
-  if (turn_ == ProgramPhase::kVertical) {
-    forward = EarthToInertial(model_.plant.environment.earth, t, -frame_.R_IL.col(2));
-  } else {
-    const Vector3 along = AirVelocity(y).normalized();
-    const Vector3 right = (right_L - right_L.dot(along) * along).normalized();
-    const SinCos alpha = SineCosine(ProgrammedIncidence(program_, t));
-    forward = alpha.cos * along + alpha.sin * right.cross(along);
-    const double faded = (t - program_.t1_s) / (program_.t3_s - program_.t1_s);
-    if (faded < 1.0) forward += (1.0 - SmoothStep(Clamp(faded, 0.0, 1.0))) * turn_offset_I_;
-    forward.normalize();
+template <class T>
+void SetLane(lanes::Leg<T>& leg, int lane, const AscentModel& model, const Flight& flight) {
+  const std::size_t stack = static_cast<std::size_t>(flight.stack);
+  SetLane(leg.program, lane, *flight.program);
+  SetLane(leg.stack, lane, model.plant.stacks[stack].mass);
+  SetLane(leg.burn, lane, model.plant.stacks[stack].burn);
+  SetLane(leg.aero, lane, model.plant.stacks[stack].aerodynamics, *model.plant.stacks[stack].aero_grid);
+  SetLane(leg.weather, lane, model.weather);
+  lanes::SetLane(leg.burning, lane, flight.burning);
+  lanes::SetLane(leg.burnt, lane, flight.burnt);
+  lanes::SetLane(leg.turning, lane, flight.turning);
+  Lane(leg.ignition_s, lane) = flight.ignition_s;
+  SetLane(leg.right_I, lane, ToLanes(flight.frame.R_IL.col(1)));
+  SetLane(leg.turn_offset_I, lane, flight.turn_offset_I);
+}
+
+// The largest of what limits are set on.
+template <class T>
+struct Peaks {
+  T qbar_pa, q_alpha_pa_rad, axial_g, lateral_g, turn_rate_rad_s, transonic_alpha_rad;
+};
+
+template <class T>
+Peaks<double> LaneOf(const Peaks<T>& peaks, int lane) {
+  return {Lane(peaks.qbar_pa, lane),         Lane(peaks.q_alpha_pa_rad, lane),
+          Lane(peaks.axial_g, lane),         Lane(peaks.lateral_g, lane),
+          Lane(peaks.turn_rate_rad_s, lane), Lane(peaks.transonic_alpha_rad, lane)};
+}
+template <class T>
+void SetLane(Peaks<T>& peaks, int lane, const Peaks<double>& value) {
+  Lane(peaks.qbar_pa, lane) = value.qbar_pa;
+  Lane(peaks.q_alpha_pa_rad, lane) = value.q_alpha_pa_rad;
+  Lane(peaks.axial_g, lane) = value.axial_g;
+  Lane(peaks.lateral_g, lane) = value.lateral_g;
+  Lane(peaks.turn_rate_rad_s, lane) = value.turn_rate_rad_s;
+  Lane(peaks.transonic_alpha_rad, lane) = value.transonic_alpha_rad;
+}
+
+// What an instant adds to the peaks.
+template <class T>
+void Observe(const AscentOptions& options, const lanes::Ground& ground, const lanes::Leg<T>& leg, T time_s,
+             const lanes::Vector<T>& p, const lanes::Vector<T>& v, const lanes::AscentInstant<T>& now,
+             Peaks<T>& peaks) {
+  const T inverse_weight = T(1.0) / (now.mass_kg * T(kStandardGravity));
+  const T alpha = lanes::Abs(lanes::IncidenceAt(leg.program, time_s));
+  peaks.qbar_pa = lanes::Max(peaks.qbar_pa, now.qbar_pa);
+  peaks.q_alpha_pa_rad = lanes::Max(peaks.q_alpha_pa_rad, now.qbar_pa * now.incidence_rad);
+  peaks.axial_g = lanes::Max(peaks.axial_g, lanes::Abs(now.axial_n) * inverse_weight);
+  peaks.lateral_g = lanes::Max(peaks.lateral_g, lanes::Abs(now.lateral_n) * inverse_weight);
+  const auto transonic = (now.mach >= T(options.mach_low)) & (now.mach <= T(options.mach_high));
+  peaks.transonic_alpha_rad =
+      lanes::Select(transonic, lanes::Max(peaks.transonic_alpha_rad, alpha), peaks.transonic_alpha_rad);
+  const auto kicking = leg.turning & (time_s <= leg.program.t2_s);
+  if (lanes::Any(kicking)) {
+    const lanes::Vector<T> rate = lanes::AxisRateAt(ground, leg, time_s, p, v, now.acceleration_I);
+    peaks.turn_rate_rad_s =
+        lanes::Select(kicking, lanes::Max(peaks.turn_rate_rad_s, lanes::Sqrt(lanes::Dot(rate, rate))),
+                      peaks.turn_rate_rad_s);
   }
-  const Vector3 right = (right_L - right_L.dot(forward) * forward).normalized();
-  Matrix3 R_IB;
-  R_IB.col(0) = forward;
-  R_IB.col(1) = right;
-  R_IB.col(2) = forward.cross(right);
-  return R_IB;
 }
 
-RigidBodyState Ascent::State(const double* y, const Matrix3& R_IB) {
-  RigidBodyState state;
-  state.p_EoC_I = Vector3(y[0], y[1], y[2]);
-  state.v_IC_I = Vector3(y[3], y[4], y[5]);
-  state.q_IB = QuaternionOf(R_IB);
-  return state;
-}
+// W ascents side by side, each from event to event in steps of its own. A lane that has ended takes the next
+// program, so that few idle.
+template <class T>
+class Fleet {
+ public:
+  Fleet(const AscentModel& model, const AscentOptions& options)
+      : model_(model), options_(options), ground_(GroundOf(model)) {}
 
-LauncherInstant Ascent::Instant(double t, const double* y, const Matrix3& R_IB) const {
-  std::array<double, kLauncherSize> full{};
-  WriteState(State(y, R_IB), full.data());
-  return Evaluate(model_.plant, phase_, t, full.data());
-}
+  void Fly(std::span<const FlightProgram> programs, std::span<AscentResult> results);
 
-Vector3 Ascent::Acceleration(double t, const double* y) const {
-  const Matrix3 R_IB = Attitude(t, y);
-  const LauncherInstant now = Instant(t, y, R_IB);
-  return Gravitation(model_.plant.environment.earth, Vector3(y[0], y[1], y[2])) +
-         R_IB * (now.loads.force_n / now.loads.mass_kg);
-}
+ private:
+  static constexpr int kWidth = lanes::kWidth<T>;
 
-// Calls visit(t + dt, state there) for dt = ±1 ms along the motion, to difference what depends on both.
-template <typename Visit>
-void Beside(double t, const double* y, const Vector3& acceleration, const Visit& visit) {
-  for (const double dt : {-kDifference_s, kDifference_s}) {
-    double there[6];
-    for (int i = 0; i < 3; ++i) {
-      there[i] = y[i] + dt * y[3 + i] + 0.5 * dt * dt * acceleration[i];
-      there[3 + i] = y[3 + i] + dt * acceleration[i];
+  void TakeOff(int lane, const FlightProgram& program, AscentResult* result);
+  void AdvanceAll();
+  void GoOn(int lane);
+  void SetOut(int lane, double to_s);
+  void Happen(int lane, const AscentEvent& event);
+  void Conclude(int lane, bool completed);
+  void Inject(int lane);
+
+  // What happens to one lane alone happens to it as to a fleet of one.
+  AscentPoint PointOf(int lane) const {
+    const Flight& flight = flights_[lane];
+    AscentPoint point;
+    SetLane(point.leg, 0, model_, flight);
+    point.time_s = Lane(time_s_, lane);
+    point.stage = flight.stack + 1;
+    point.p = LaneOf(p_, lane);
+    point.v = LaneOf(v_, lane);
+    return point;
+  }
+
+  const AscentModel& model_;
+  const AscentOptions& options_;
+  lanes::Ground ground_;
+  std::array<Flight, kWidth> flights_;
+  lanes::Leg<T> leg_{};
+  T time_s_ = T(0.0), next_s_ = T(0.0);
+  lanes::Vector<T> p_{}, v_{};
+  Peaks<T> peaks_{};
+};
+
+template <class T>
+void Fleet<T>::Fly(std::span<const FlightProgram> programs, std::span<AscentResult> results) {
+  std::size_t taken = 0;
+  for (int lane = 0; lane < kWidth; ++lane) {
+    // A lane without work flies the first program's instant of lift-off, in steps of no length.
+    const bool idle = taken == programs.size();
+    TakeOff(lane, programs[idle ? 0 : taken], idle ? nullptr : &results[taken]);
+    if (!idle) ++taken;
+  }
+  const auto flies = [](const Flight& flight) { return flight.result != nullptr; };
+  while (std::any_of(flights_.begin(), flights_.end(), flies)) {
+    AdvanceAll();
+    for (int lane = 0; lane < kWidth; ++lane) {
+      Flight& flight = flights_[lane];
+      if (!flight.result || ++flight.step < flight.steps) continue;
+      GoOn(lane);
+      if (flight.result || taken == programs.size()) continue;
+      TakeOff(lane, programs[taken], &results[taken]);
+      ++taken;
     }
-    visit(t + dt, there);
   }
 }
 
-// Of the body's x axis against the stars, 1/s, in I.
-Vector3 Ascent::AxisRate(double t, const double* y) const {
-  Vector3 turned = Vector3::Zero();
-  double sign = -1.0;
-  Beside(t, y, Acceleration(t, y), [&](double beside_s, const double* there) {
-    turned += sign * Attitude(beside_s, there).col(0);
-    sign = 1.0;
-  });
-  return turned / (2.0 * kDifference_s);
+template <class T>
+void Fleet<T>::TakeOff(int lane, const FlightProgram& program, AscentResult* result) {
+  Flight& flight = flights_[lane];
+  flight = {};
+  flight.program = &program;
+  flight.result = result;
+  flight.frame = BuildLaunchFrame(ground_.earth, model_.vehicle.site, program.launch_azimuth_rad);
+  AscentEvents all = EventsOf(model_, program);
+  flight.events = std::move(all.events);
+  SetLane(p_, lane, ToLanes(flight.frame.p_EoL_I));
+  SetLane(v_, lane, ToLanes(flight.frame.v_IL_I));
+  Lane(time_s_, lane) = Lane(next_s_, lane) = 0.0;
+  SetLane(peaks_, lane, Peaks<double>{});
+  SetLane(leg_, lane, model_, flight);
+  if (!result) return;
+  *result = {};
+  result->last_ignition_s = all.last_ignition_s;
+  result->attitude.launch_azimuth_rad = program.launch_azimuth_rad;
+  GoOn(lane);
 }
 
-std::vector<Ascent::Event> Ascent::Events() {
-  std::vector<MotorBurn> burns;
-  for (const LauncherStack& stack : model_.plant.stacks) burns.push_back(stack.burn);
-  const std::size_t last = burns.size() - 1;
-  // The coast counts from the burnout below, which does not depend on the timer.
-  std::vector<StageTimes> times = BuildTimeline(model_.vehicle, burns, model_.tick_s, 0.0);
-  if (last > 0) result_.last_ignition_s = times[last - 1].burnout_s + program_.coast_s;
-  times = BuildTimeline(model_.vehicle, burns, model_.tick_s, result_.last_ignition_s);
-
-  std::vector<Event> events;
-  for (std::size_t i = 0; i <= last; ++i) {
-    const int stage = static_cast<int>(i);
-    events.push_back({times[i].ignition_s, Event::kIgnition, stage});
-    events.push_back({times[i].ignition_s + burns[i].rise_s, Event::kKink, stage});
-    events.push_back({times[i].burnout_s - burns[i].tail_s, Event::kKink, stage});
-    events.push_back({times[i].burnout_s, Event::kBurnout, stage});
-    if (i < last) events.push_back({times[i].separation_s, Event::kSeparation, stage});
+// One step of every lane. What is observed is the start of a step: the end of an interval is observed after
+// its event, on the far side of the kink.
+template <class T>
+void Fleet<T>::AdvanceAll() {
+  for (int lane = 0; lane < kWidth; ++lane)
+    if (flights_[lane].result) Lane(next_s_, lane) = flights_[lane].StepEnd();
+  const lanes::AscentInstant<T> now = lanes::InstantAt(ground_, leg_, time_s_, p_, v_);
+  Observe(options_, ground_, leg_, time_s_, p_, v_, now, peaks_);
+  if constexpr (kWidth == 1) {
+    if (options_.record && flights_[0].IsAtKnot())
+      Record(flights_[0].frame, ground_, PointOf(0), now, flights_[0].result);
   }
-  events.push_back({program_.t1_s, Event::kTurnBegin, 0});
-  events.push_back({program_.t3_s, Event::kKink, 0});
-  events.push_back({program_.t2_s, Event::kTurnEnd, 0});
-  std::stable_sort(events.begin(), events.end(),
-                   [](const Event& a, const Event& b) { return a.time_s < b.time_s; });
-  return events;
+  lanes::Step(ground_, leg_, time_s_, next_s_, now.acceleration_I, &p_, &v_);
+  time_s_ = next_s_;
 }
 
-void Ascent::AddKnot(double t, const double* y) {
-  // Rates along the motion: the program's own derivative, not the table's.
-  std::array<PitchYawRoll, 2> beside;
-  std::size_t count = 0;
-  Beside(t, y, Acceleration(t, y),
-         [&](double beside_s, const double* there) { beside[count++] = Angles(beside_s, there); });
-  const PitchYawRoll now = Angles(t, y);
-  const auto rate = [&](double PitchYawRoll::*angle) {
-    return (beside[1].*angle - beside[0].*angle) / (2.0 * kDifference_s);
-  };
-  result_.attitude.knots.push_back({t, now.pitch, now.yaw, now.roll, rate(&PitchYawRoll::pitch),
-                                    rate(&PitchYawRoll::yaw), rate(&PitchYawRoll::roll)});
+// From an event, or from lift-off, to the next one.
+template <class T>
+void Fleet<T>::GoOn(int lane) {
+  Flight& flight = flights_[lane];
+  if (flight.in_reserve) {
+    const AscentPoint point = PointOf(lane);
+    Record(flight.frame, ground_, point, InstantOf(ground_, point), flight.result);
+    flight.result->samples.resize(flight.samples);
+    flight.result = nullptr;
+    return;
+  }
+  const double lowest_m = model_.vehicle.site.altitude_m - kGround_m;
+  if (!(ToGeodetic(ground_.earth, FromLanes(LaneOf(p_, lane))).altitude_m > lowest_m))
+    return Conclude(lane, false);
+  while (flight.next_event < flight.events.size()) {
+    const AscentEvent& event = flight.events[flight.next_event];
+    if (event.time_s > Lane(time_s_, lane) + kSameInstant_s) return SetOut(lane, event.time_s);
+    Happen(lane, event);
+    SetLane(leg_, lane, model_, flight);
+    ++flight.next_event;
+  }
+  Conclude(lane, true);
 }
 
-void Ascent::Observe(bool record) {
-  const LauncherInstant now = Instant(time_s_, y_, Attitude(time_s_, y_));
-  const double alpha = std::fabs(ProgrammedIncidence(program_, time_s_));
-  const Vector3 specific = now.loads.force_n / (now.loads.mass_kg * kStandardGravity);
-  AscentResult& r = result_;
-  r.q_max_pa = std::max(r.q_max_pa, now.air.qbar_pa);
-  r.q_alpha_max_pa_rad = std::max(r.q_alpha_max_pa_rad, now.air.qbar_pa * TotalIncidence(now.v_AB_B));
-  r.axial_load_max_g = std::max(r.axial_load_max_g, std::fabs(specific.x()));
-  r.lateral_load_max_g = std::max(
-      r.lateral_load_max_g, Sqrt(specific.y() * specific.y() + specific.z() * specific.z()));
-  if (now.air.mach >= options_.mach_low && now.air.mach <= options_.mach_high)
-    r.transonic_alpha_max_rad = std::max(r.transonic_alpha_max_rad, alpha);
-  if (turn_ == ProgramPhase::kTurn && time_s_ <= program_.t2_s)
-    r.turn_rate_max_rad_s = std::max(r.turn_rate_max_rad_s, AxisRate(time_s_, y_).norm());
-  if (options_.record && record) Record(now);
-}
-
-void Ascent::Record(const LauncherInstant& now) {
-  const Vector3 p(y_[0], y_[1], y_[2]), v(y_[3], y_[4], y_[5]);
-  const Vector3 relative = AirVelocity(y_);
-  const PitchYawRoll angles = Angles(time_s_, y_);
-  AscentSample s;
-  s.time_s = time_s_;
-  s.stage = phase_.stack + 1;
-  s.altitude_m = now.air.place.altitude_m;
-  s.velocity_m_s = v.norm();
-  s.relative_velocity_m_s = relative.norm();
-  s.flight_path_angle_rad = Atan2(p.dot(v), p.cross(v).norm());
-  s.relative_path_angle_rad = Atan2(p.dot(relative), p.cross(relative).norm());
-  s.alpha_rad = ProgrammedIncidence(program_, time_s_);
-  s.pitch_rad = angles.pitch;
-  s.yaw_rad = angles.yaw;
-  s.roll_rad = angles.roll;
-  s.mach = now.air.mach;
-  s.qbar_pa = now.air.qbar_pa;
-  s.axial_load_g = now.loads.force_n.x() / (now.loads.mass_kg * kStandardGravity);
-  s.mass_kg = now.loads.mass_kg;
-  s.p_EoC_I = p;
-  s.v_IC_I = v;
-  result_.samples.push_back(s);
-  const std::vector<AttitudeKnot>& knots = result_.attitude.knots;
-  if (knots.empty() || time_s_ > knots.back().time_s + kSameInstant_s)
-    AddKnot(time_s_, y_);
-}
-
-bool Ascent::Advance(double to_s) {
-  const bool kick = time_s_ < program_.t2_s;
+template <class T>
+void Fleet<T>::SetOut(int lane, double to_s) {
+  Flight& flight = flights_[lane];
   const AscentSteps& steps = options_.steps;
-  const bool air = phase_.stack == 0 && phase_.burning;
-  const double largest = air ? steps.air_s : phase_.burning ? steps.burn_s : steps.coast_s;
-  const double knot = kick ? kKickKnot_s : phase_.burning ? kBurnKnot_s : kCoastKnot_s;
+  flight.from_s = Lane(time_s_, lane);
+  flight.to_s = to_s;
+  const double way_s = to_s - flight.from_s;
+  const bool kick = flight.from_s < flight.program->t2_s;
+  const bool air = flight.stack == 0 && flight.burning;
+  const double largest = air ? steps.air_s : flight.burning ? steps.burn_s : steps.coast_s;
+  const double knot = kick ? kKickKnot_s : flight.burning ? kBurnKnot_s : kCoastKnot_s;
   const auto pieces = [](double whole, double part) {
     return std::max(1, static_cast<int>(std::ceil(whole / part - kSameInstant_s)));
   };
   // The steps are the same whether their ends are recorded or not.
-  const double from = time_s_;
-  const int knots = pieces(to_s - from, std::max(knot, largest));
-  const int steps_per_knot = pieces((to_s - from) / knots, largest);
-  const int count = knots * steps_per_knot;
-  for (int i = 1; i <= count; ++i) {
-    const double next = i == count ? to_s : from + (to_s - from) * i / count;
-    if (!integrator_.Advance(time_s_, next, 1, y_)) return false;
-    time_s_ = next;
-    // The end of an interval is observed after its event, on the far side of the kink.
-    if (i < count) Observe(i % steps_per_knot == 0);
-  }
-  const Geodetic place = ToGeodetic(model_.plant.environment.earth, Vector3(y_[0], y_[1], y_[2]));
-  return place.altitude_m > model_.vehicle.site.altitude_m - kGround_m;
+  const int knots = pieces(way_s, std::max(knot, largest));
+  flight.steps_per_knot = pieces(way_s / knots, largest);
+  flight.steps = knots * flight.steps_per_knot;
+  flight.step = 0;
 }
 
-void Ascent::Happen(const Event& event) {
+template <class T>
+void Fleet<T>::Happen(int lane, const AscentEvent& event) {
+  Flight& flight = flights_[lane];
   switch (event.kind) {
-    case Event::kIgnition:
-      phase_.burning = true;
-      phase_.ignition_s = event.time_s;
+    case AscentEvent::kIgnition:
+      flight.burning = true;
+      flight.ignition_s = event.time_s;
       break;
-    case Event::kBurnout:
-      Observe();
-      phase_.burning = false;
-      phase_.burnt = true;
+    case AscentEvent::kBurnout: {
+      const AscentPoint point = PointOf(lane);
+      const lanes::AscentInstant<double> now = InstantOf(ground_, point);
+      Peaks<double> peaks = LaneOf(peaks_, lane);
+      Observe(options_, ground_, point.leg, point.time_s, point.p, point.v, now, peaks);
+      SetLane(peaks_, lane, peaks);
+      if (options_.record) Record(flight.frame, ground_, point, now, flight.result);
+      flight.burning = false;
+      flight.burnt = true;
       break;
-    case Event::kSeparation: {
+    }
+    case AscentEvent::kSeparation: {
       // The vehicle turns with its program: the stack above leaves with the velocity of its own CG.
-      const Matrix3 R_IB = Attitude(time_s_, y_);
-      RigidBodyState state = State(y_, R_IB);
-      state.w_IB_B = R_IB.transpose() * R_IB.col(0).cross(AxisRate(time_s_, y_));
+      const AscentPoint point = PointOf(lane);
+      const LaneVector forward = ForwardOf(ground_, point);
+      const LaneVector rate = AxisRateOf(ground_, point);
+      RigidBodyState state;
+      state.p_EoC_I = FromLanes(point.p);
+      state.v_IC_I = FromLanes(point.v);
+      const Matrix3 R_IB = AttitudeOf(flight.frame, forward);
+      state.q_IB = QuaternionOf(R_IB);
+      state.w_IB_B = R_IB.transpose() * R_IB.col(0).cross(FromLanes(rate));
       state = AfterSeparation(model_.plant, event.stage, state);
-      SetMotion(state.p_EoC_I, state.v_IC_I);
-      phase_.stack = event.stage + 1;
-      phase_.burnt = false;
+      SetLane(p_, lane, ToLanes(state.p_EoC_I));
+      SetLane(v_, lane, ToLanes(state.v_IC_I));
+      flight.stack = event.stage + 1;
+      flight.burnt = false;
       break;
     }
-    case Event::kTurnBegin:
-      turn_offset_I_ = Attitude(time_s_, y_).col(0) - AirVelocity(y_).normalized();
-      turn_ = ProgramPhase::kTurn;
+    case AscentEvent::kTurnBegin: {
+      const AscentPoint point = PointOf(lane);
+      flight.turn_offset_I =
+          ForwardOf(ground_, point) - lanes::Normalized(lanes::VelocityOverGround(ground_, point.p, point.v));
+      flight.turning = true;
       break;
-    case Event::kTurnEnd:
-      result_.mach_at_t2 = Instant(time_s_, y_, Attitude(time_s_, y_)).air.mach;
+    }
+    case AscentEvent::kTurnEnd:
+      flight.result->mach_at_t2 = InstantOf(ground_, PointOf(lane)).mach;
       break;
-    case Event::kKink:
+    case AscentEvent::kKink:
       break;
   }
 }
 
-void Ascent::Finish() {
-  const Earth& earth = model_.plant.environment.earth;
-  result_.p_EoC_I = Vector3(y_[0], y_[1], y_[2]);
-  result_.v_IC_I = Vector3(y_[3], y_[4], y_[5]);
-  const OrbitElements e = ElementsOf(earth, result_.p_EoC_I, result_.v_IC_I);
-  result_.orbit = {ToGeodetic(earth, result_.p_EoC_I).altitude_m, e.speed_m_s, e.flight_path_angle_rad,
-                   e.inclination_rad};
-}
-
-AscentResult Ascent::Fly() {
-  const std::vector<Event> events = Events();
-  result_.attitude.launch_azimuth_rad = program_.launch_azimuth_rad;
-  bool flying = true;
-  for (const Event& event : events) {
-    if (event.time_s > time_s_ + kSameInstant_s) {
-      Observe();
-      flying = Advance(event.time_s);
-      if (!flying) break;
-    }
-    Happen(event);
+template <class T>
+void Fleet<T>::Conclude(int lane, bool completed) {
+  Flight& flight = flights_[lane];
+  AscentResult& result = *flight.result;
+  result.completed = completed;
+  result.end_time_s = Lane(time_s_, lane);
+  result.p_EoC_I = FromLanes(LaneOf(p_, lane));
+  result.v_IC_I = FromLanes(LaneOf(v_, lane));
+  const OrbitElements e = ElementsOf(ground_.earth, result.p_EoC_I, result.v_IC_I);
+  result.orbit = {ToGeodetic(ground_.earth, result.p_EoC_I).altitude_m, e.speed_m_s, e.flight_path_angle_rad,
+                  e.inclination_rad};
+  const Peaks<double> peaks = LaneOf(peaks_, lane);
+  result.q_max_pa = peaks.qbar_pa;
+  result.q_alpha_max_pa_rad = peaks.q_alpha_pa_rad;
+  result.axial_load_max_g = peaks.axial_g;
+  result.lateral_load_max_g = peaks.lateral_g;
+  result.turn_rate_max_rad_s = peaks.turn_rate_rad_s;
+  result.transonic_alpha_max_rad = peaks.transonic_alpha_rad;
+  if (completed && options_.record) {
+    // The sample at the injection is the one that the reserve begins with.
+    flight.in_reserve = true;
+    flight.samples = result.samples.size() + 1;
+    SetOut(lane, result.end_time_s + kProgramReserve_s);
+  } else {
+    flight.result = nullptr;
   }
-  result_.end_time_s = time_s_;
-  result_.completed = flying;
-  Finish();
-  if (flying && options_.record) {
-    Observe();
-    const std::size_t samples = result_.samples.size();
-    Advance(time_s_ + kProgramReserve_s);
-    Observe();
-    result_.samples.resize(samples);
-  }
-  return result_;
 }
 
 }  // namespace
 
-double ProgrammedIncidence(const FlightProgram& program, double t) {
-  if (t <= program.t1_s || t >= program.t2_s) return 0.0;
-  const double s = t < program.t3_s ? (t - program.t1_s) / (program.t3_s - program.t1_s)
-                                    : (program.t2_s - t) / (program.t2_s - program.t3_s);
-  return -program.alpha_max_rad * SmoothStep(s);
+double ProgrammedIncidence(const FlightProgram& program, double time_s) {
+  lanes::Program<double> prepared;
+  SetLane(prepared, 0, program);
+  return lanes::IncidenceAt(prepared, time_s);
 }
 
 AscentModel BuildAscentModel(const Vehicle& vehicle, double tick_s) {
-  return {vehicle, BuildNominalPlant(vehicle), tick_s};
+  AscentModel model{vehicle, BuildNominalPlant(vehicle), {}, tick_s};
+  model.weather = PrepareWeather(model.plant.environment.wind, model.plant.environment.density);
+  return model;
 }
 
-AscentResult FlyAscent(const AscentModel& model, const FlightProgram& program,
-                       const AscentOptions& options) {
-  return Ascent(model, program, options).Fly();
+AscentResult FlyAscent(const AscentModel& model, const FlightProgram& program, const AscentOptions& options) {
+  AscentResult result;
+  Fleet<double>(model, options).Fly({&program, 1}, {&result, 1});
+  return result;
+}
+
+std::vector<AscentResult> FlyAscents(const AscentModel& model, std::span<const FlightProgram> programs,
+                                     const AscentOptions& options, int width) {
+  std::vector<AscentResult> results(programs.size());
+  if (programs.empty()) return results;
+  switch (options.record ? 1 : width) {
+    case 1:
+      Fleet<double>(model, options).Fly(programs, results);
+      break;
+    case 4:
+      Fleet<lanes::Pack<4>>(model, options).Fly(programs, results);
+      break;
+    case 8:
+      Fleet<lanes::Pack<8>>(model, options).Fly(programs, results);
+      break;
+    default:
+      throw std::invalid_argument(fmt::format("FlyAscents: width is {}; allowed are 1, 4 and 8", width));
+  }
+  return results;
 }
 
 }  // namespace dispersa

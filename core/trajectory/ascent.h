@@ -3,8 +3,10 @@
 // planar equations (1) to (7) are its limit.
 #pragma once
 
+#include <span>
 #include <vector>
 
+#include "core/environment/weather_profile.h"
 #include "core/flight/flight_model.h"
 #include "core/flight/launch_frame.h"
 #include "core/flight/orbit.h"
@@ -21,6 +23,7 @@ double ProgrammedIncidence(const FlightProgram& program, double time_s);
 struct AscentModel {
   Vehicle vehicle;
   LauncherPlant plant;
+  FlightWeather weather;  ///< of the plant's environment
   double tick_s = 0.01;  ///< burnout is detected on the autopilot's ticks
 };
 
@@ -85,5 +88,13 @@ AscentModel BuildAscentModel(const Vehicle& vehicle, double tick_s);
 /// Flies the program. Event times are exact: they bound steps and are never rounded, and the program is
 /// evaluated on the side of a kink to which a step belongs.
 AscentResult FlyAscent(const AscentModel& model, const FlightProgram& program, const AscentOptions& options);
+
+/// Lanes that are flown side by side unless the caller says otherwise: a register of AVX2.
+inline constexpr int kAscentWidth = 4;
+
+/// FlyAscent of each program, `width` at a time: 1, 4 or 8, which changes no bit. Throws std::invalid_argument
+/// for another width.
+std::vector<AscentResult> FlyAscents(const AscentModel& model, std::span<const FlightProgram> programs,
+                                     const AscentOptions& options, int width = kAscentWidth);
 
 }  // namespace dispersa

@@ -17,9 +17,14 @@ namespace dispersa {
 
 namespace {
 
+// Individuals that one thread flies side by side: enough to keep the lanes busy, few enough to share a
+// population.
+constexpr std::size_t kTogether = 2 * kAscentWidth;
+
 void Require(bool holds, const char* field, double value, const char* allowed) {
   if (!holds)
-    throw std::invalid_argument(fmt::format("TrajectoryOptions.{} is {}; allowed is {}", field, value, allowed));
+    throw std::invalid_argument(
+        fmt::format("TrajectoryOptions.{} is {}; allowed is {}", field, value, allowed));
 }
 
 void Validate(const TrajectoryOptions& options) {
@@ -35,24 +40,17 @@ void Validate(const TrajectoryOptions& options) {
   }
   Require(options.tie_tolerance >= 0.0 && std::isfinite(options.tie_tolerance), "tie_tolerance",
           options.tie_tolerance, "a finite number of at least 0");
-  Require(options.limit_reserve >= 0.0 && options.limit_reserve <= 1.0, "limit_reserve", options.limit_reserve,
-          "0 to 1");
+  Require(options.limit_reserve >= 0.0 && options.limit_reserve <= 1.0, "limit_reserve",
+          options.limit_reserve, "0 to 1");
   positive("shortest_ramp_s", options.shortest_ramp_s);
   positive("tolerance.altitude_m", options.tolerance.altitude_m);
   positive("tolerance.velocity_m_s", options.tolerance.velocity_m_s);
   positive("tolerance.flight_path_angle_rad", options.tolerance.flight_path_angle_rad);
 }
 
-Evaluation Evaluate(const AscentModel& model, const TrajectoryProblem& problem,
-                    const TrajectoryOptions& options, const FlightProgram& program) {
+Evaluation Judge(const TrajectoryProblem& problem, const TrajectoryOptions& options,
+                 const FlightProgram& program, const AscentResult& ascent) {
   Evaluation evaluation;
-  const double disorder_s = DisorderOf(program, options);
-  if (disorder_s > 0.0) {
-    // Such a program cannot be flown; further from order is worse than anything that can.
-    evaluation.constraint_violations = {1e4 * (1.0 + disorder_s)};
-    return evaluation;
-  }
-  const AscentResult ascent = FlyAscent(model, program, AscentOptionsOf(problem, options.search_steps));
   if (!ascent.completed) {
     // Worse than any limit broken on the way to an orbit; the later it falls the better.
     evaluation.constraint_violations = {1e3 + 1e3 / (1.0 + ascent.end_time_s)};
@@ -62,9 +60,33 @@ Evaluation Evaluate(const AscentModel& model, const TrajectoryProblem& problem,
   evaluation.objective = problem.weight_altitude_1_m * std::fabs(errors.altitude_m) +
                          problem.weight_velocity_s_m * std::fabs(errors.velocity_m_s) +
                          problem.weight_angle_1_rad * std::fabs(errors.flight_path_angle_rad);
-  evaluation.constraint_violations = Violations(ConstraintsOf(problem, program, ascent), options.limit_reserve);
+  evaluation.constraint_violations =
+      Violations(ConstraintsOf(problem, program, ascent), options.limit_reserve);
   evaluation.tie_breaker = ascent.q_alpha_max_pa_rad;
   return evaluation;
+}
+
+// Flown side by side.
+std::vector<Evaluation> Evaluate(const AscentModel& model, const TrajectoryProblem& problem,
+                                 const TrajectoryOptions& options,
+                                 const std::vector<FlightProgram>& programs) {
+  std::vector<Evaluation> evaluations(programs.size());
+  std::vector<FlightProgram> flown;
+  std::vector<std::size_t> index;
+  for (std::size_t i = 0; i < programs.size(); ++i) {
+    if (const double disorder_s = DisorderOf(programs[i], options); disorder_s > 0.0) {
+      // Such a program cannot be flown; further from order is worse than anything that can.
+      evaluations[i].constraint_violations = {1e4 * (1.0 + disorder_s)};
+    } else {
+      flown.push_back(programs[i]);
+      index.push_back(i);
+    }
+  }
+  const std::vector<AscentResult> ascents =
+      FlyAscents(model, flown, AscentOptionsOf(problem, options.search_steps));
+  for (std::size_t i = 0; i < flown.size(); ++i)
+    evaluations[index[i]] = Judge(problem, options, flown[i], ascents[i]);
+  return evaluations;
 }
 
 GeneticAlgorithmResult Search(const AscentModel& model, const TrajectoryProblem& problem,
@@ -75,7 +97,15 @@ GeneticAlgorithmResult Search(const AscentModel& model, const TrajectoryProblem&
     bounded.lower.push_back(b.low);
     bounded.upper.push_back(b.high);
   }
-  bounded.evaluate = [&](const std::vector<double>& v) { return Evaluate(model, problem, options, ProgramOf(v)); };
+  bounded.evaluate = [&](const std::vector<double>& v) {
+    return Evaluate(model, problem, options, {ProgramOf(v)}).front();
+  };
+  bounded.evaluate_together = [&](std::span<const std::vector<double>> points) {
+    std::vector<FlightProgram> programs;
+    for (const std::vector<double>& v : points) programs.push_back(ProgramOf(v));
+    return Evaluate(model, problem, options, programs);
+  };
+  bounded.together = kTogether;
   GeneticAlgorithmOptions genetic;
   genetic.population = problem.population;
   genetic.generations = problem.generations;
@@ -154,9 +184,8 @@ OptimizationResult OptimizeTrajectory(const Vehicle& vehicle, const TrajectoryPr
   if (result.refinement.status != LeastSquaresStatus::kConverged) {
     // The refinement knows neither constraints nor weights: what it ends with may be worse.
     const FlightProgram searched = ProgramOf(result.genetic.variables);
-    const Merit before = MeritOf(Evaluate(model, problem, options, searched));
-    const Merit after = MeritOf(Evaluate(model, problem, options, program));
-    if (IsBetter(before, after, 0.0)) program = searched;
+    const std::vector<Evaluation> both = Evaluate(model, problem, options, {searched, program});
+    if (IsBetter(MeritOf(both[0]), MeritOf(both[1]), 0.0)) program = searched;
   }
   result.reference = BuildReference(model, problem, program, options, &result.history);
   result.reference.evaluations = ascents;

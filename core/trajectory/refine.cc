@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <limits>
+#include <span>
+#include <utility>
 
 #include "core/math/constants.h"
 
@@ -29,7 +31,7 @@ constexpr double kWithinTolerance = 0.02;
 
 LeastSquaresResult Solve(const AscentModel& model, const TrajectoryProblem& problem,
                          const TrajectoryOptions& options, const std::vector<Freedom>& freedoms,
-                         bool with_speed, FlightProgram* program) {
+                         bool with_speed, FlightProgram* program, AscentResult* ascent = nullptr) {
   LeastSquaresProblem least_squares;
   std::vector<Freedom> free;
   std::vector<std::size_t> index;
@@ -50,27 +52,48 @@ LeastSquaresResult Solve(const AscentModel& model, const TrajectoryProblem& prob
     index.push_back(i);
     start.push_back(program->*freedom.variable);
   }
-  const auto fly = [&](const std::vector<double>& unknowns) {
+  const auto residuals = [&](const AscentResult& flown) {
+    std::vector<double> values(least_squares.residual_scales.size(),
+                               std::numeric_limits<double>::quiet_NaN());
+    if (!flown.completed) return values;
+    const OrbitErrors errors = ErrorsOf(problem, flown.orbit);
+    values[0] = errors.altitude_m;
+    values[1] = errors.flight_path_angle_rad;
+    if (with_speed) values[2] = errors.velocity_m_s;
+    return values;
+  };
+  const AscentOptions ascent_options = AscentOptionsOf(problem, options.steps);
+  const auto program_at = [&](const std::vector<double>& unknowns) {
     FlightProgram trial = *program;
     for (std::size_t i = 0; i < free.size(); ++i) trial.*free[i].variable = unknowns[i];
-    return FlyAscent(model, trial, AscentOptionsOf(problem, options.steps));
+    return trial;
   };
   least_squares.residual_scales = {options.tolerance.altitude_m, options.tolerance.flight_path_angle_rad};
   if (with_speed) least_squares.residual_scales.push_back(options.tolerance.velocity_m_s);
+  // Of every point that is tried; one of them is the end.
+  std::vector<std::pair<std::vector<double>, AscentResult>> tried;
   least_squares.residuals = [&](const std::vector<double>& unknowns) {
-    const AscentResult ascent = fly(unknowns);
-    std::vector<double> residuals(least_squares.residual_scales.size(),
-                                  std::numeric_limits<double>::quiet_NaN());
-    if (!ascent.completed) return residuals;
-    const OrbitErrors errors = ErrorsOf(problem, ascent.orbit);
-    residuals[0] = errors.altitude_m;
-    residuals[1] = errors.flight_path_angle_rad;
-    if (with_speed) residuals[2] = errors.velocity_m_s;
-    return residuals;
+    tried.emplace_back(unknowns, FlyAscent(model, program_at(unknowns), ascent_options));
+    return residuals(tried.back().second);
+  };
+  least_squares.residuals_together = [&](std::span<const std::vector<double>> points) {
+    std::vector<FlightProgram> programs;
+    for (const std::vector<double>& unknowns : points) programs.push_back(program_at(unknowns));
+    const std::vector<AscentResult> ascents = FlyAscents(model, programs, ascent_options);
+    tried.emplace_back(points.front(), ascents.front());
+    std::vector<std::vector<double>> all;
+    for (const AscentResult& flown : ascents) all.push_back(residuals(flown));
+    return all;
+  };
+  const auto end_at = [&](const std::vector<double>& unknowns) {
+    if (!ascent) return;
+    for (const auto& [point, flown] : tried)
+      if (point == unknowns) *ascent = flown;
   };
   if (free.empty()) {
     LeastSquaresResult result;
     result.residuals = least_squares.residuals(start);
+    end_at(start);
     result.status = LeastSquaresStatus::kAtBound;
     return result;
   }
@@ -78,7 +101,8 @@ LeastSquaresResult Solve(const AscentModel& model, const TrajectoryProblem& prob
   settings.residual_tolerance = kWithinTolerance;
   settings.max_iterations = options.refinement_iterations;
   LeastSquaresResult result = LevenbergMarquardt(settings).Solve(least_squares, start);
-  for (std::size_t i = 0; i < free.size(); ++i) program->*free[i].variable = result.unknowns[i];
+  end_at(result.unknowns);
+  *program = program_at(result.unknowns);
   for (std::size_t& held : result.held_at_bound) held = index[held];
   return result;
 }
@@ -86,8 +110,9 @@ LeastSquaresResult Solve(const AscentModel& model, const TrajectoryProblem& prob
 }  // namespace
 
 LeastSquaresResult RefineProgram(const AscentModel& model, const TrajectoryProblem& problem,
-                                 const TrajectoryOptions& options, FlightProgram* program) {
-  return Solve(model, problem, options, {kAlphaMax, kCoast, kAzimuth}, true, program);
+                                 const TrajectoryOptions& options, FlightProgram* program,
+                                 AscentResult* ascent) {
+  return Solve(model, problem, options, {kAlphaMax, kCoast, kAzimuth}, true, program, ascent);
 }
 
 LeastSquaresResult RefineAltitudeAndAngle(const AscentModel& model, const TrajectoryProblem& problem,

@@ -10,9 +10,11 @@
 namespace dispersa {
 
 /// Changes `program` to the best found within the problem's bounds; variables with equal bounds stay.
-/// `held_at_bound` of the result: 0 alpha_max, 1 coast, 2 launch azimuth.
+/// `held_at_bound` of the result: 0 alpha_max, 1 coast, 2 launch azimuth. `ascent`, if given, is the program's, with
+/// the steps of the refinement.
 LeastSquaresResult RefineProgram(const AscentModel& model, const TrajectoryProblem& problem,
-                                 const TrajectoryOptions& options, FlightProgram* program);
+                                 const TrajectoryOptions& options, FlightProgram* program,
+                                 AscentResult* ascent = nullptr);
 
 /// Altitude and flight path angle only, by (alpha_max, coast) at the program's azimuth: the speed that is left
 /// then tells the vehicle's energy.

@@ -39,9 +39,10 @@ Selection SelectProgram(const AscentModel& model, const TrajectoryProblem& probl
   std::atomic<std::int64_t> ascents = 0;
 
   // From the same start whoever asks, so that an individual's refinement depends on nothing but itself.
-  const auto refined = [&](const std::vector<double>& times, FlightProgram* trial) {
+  const auto refined = [&](const std::vector<double>& times, FlightProgram* trial,
+                           AscentResult* ascent = nullptr) {
     *trial = WithTimes(start, times);
-    const LeastSquaresResult result = RefineProgram(model, steep, coarse, trial);
+    const LeastSquaresResult result = RefineProgram(model, steep, coarse, trial, ascent);
     ascents += result.evaluations;
     return result;
   };
@@ -59,13 +60,12 @@ Selection SelectProgram(const AscentModel& model, const TrajectoryProblem& probl
       return evaluation;
     }
     FlightProgram trial;
-    const LeastSquaresResult result = refined(times, &trial);
+    AscentResult ascent;
+    const LeastSquaresResult result = refined(times, &trial, &ascent);
     if (result.status != LeastSquaresStatus::kConverged) {
       evaluation.constraint_violations = {1e3};
       return evaluation;
     }
-    const AscentResult ascent = FlyAscent(model, trial, AscentOptionsOf(problem, coarse.steps));
-    ++ascents;
     evaluation.objective = ascent.q_alpha_max_pa_rad;
     evaluation.constraint_violations =
         Violations(ConstraintsOf(problem, trial, ascent), options.limit_reserve);

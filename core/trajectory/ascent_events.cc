@@ -1,0 +1,36 @@
+#include "core/trajectory/ascent_events.h"
+
+#include <algorithm>
+
+#include "core/flight/sequence.h"
+
+namespace dispersa {
+
+AscentEvents EventsOf(const AscentModel& model, const FlightProgram& program) {
+  std::vector<MotorBurn> burns;
+  for (const LauncherStack& stack : model.plant.stacks) burns.push_back(stack.burn);
+  const std::size_t last = burns.size() - 1;
+  AscentEvents all;
+  // The coast counts from the burnout below, which does not depend on the timer.
+  std::vector<StageTimes> times = BuildTimeline(model.vehicle, burns, model.tick_s, 0.0);
+  if (last > 0) all.last_ignition_s = times[last - 1].burnout_s + program.coast_s;
+  times = BuildTimeline(model.vehicle, burns, model.tick_s, all.last_ignition_s);
+
+  std::vector<AscentEvent>& events = all.events;
+  for (std::size_t i = 0; i <= last; ++i) {
+    const int stage = static_cast<int>(i);
+    events.push_back({times[i].ignition_s, AscentEvent::kIgnition, stage});
+    events.push_back({times[i].ignition_s + burns[i].rise_s, AscentEvent::kKink, stage});
+    events.push_back({times[i].burnout_s - burns[i].tail_s, AscentEvent::kKink, stage});
+    events.push_back({times[i].burnout_s, AscentEvent::kBurnout, stage});
+    if (i < last) events.push_back({times[i].separation_s, AscentEvent::kSeparation, stage});
+  }
+  events.push_back({program.t1_s, AscentEvent::kTurnBegin, 0});
+  events.push_back({program.t3_s, AscentEvent::kKink, 0});
+  events.push_back({program.t2_s, AscentEvent::kTurnEnd, 0});
+  std::stable_sort(events.begin(), events.end(),
+                   [](const AscentEvent& a, const AscentEvent& b) { return a.time_s < b.time_s; });
+  return all;
+}
+
+}  // namespace dispersa

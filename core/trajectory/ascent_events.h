@@ -1,0 +1,25 @@
+// What happens during an ascent, and when.
+#pragma once
+
+#include <vector>
+
+#include "core/trajectory/ascent.h"
+
+namespace dispersa {
+
+struct AscentEvent {
+  enum Kind { kIgnition, kBurnout, kSeparation, kTurnBegin, kTurnEnd, kKink };
+
+  double time_s;  ///< since lift-off, exact; an ignition may be earlier
+  Kind kind;      ///< kKink: thrust or program bend there, and no step may go across
+  int stage;
+};
+
+/// In the order of time.
+struct AscentEvents {
+  std::vector<AscentEvent> events;
+  double last_ignition_s = 0.0;  ///< the last stage's timer; 0 of a single stage
+};
+AscentEvents EventsOf(const AscentModel& model, const FlightProgram& program);
+
+}  // namespace dispersa
