@@ -29,24 +29,28 @@ double ProcessorSeconds() {
 
 /// Answers each case as a real worker does: a start, and the result with the next start.
 void Answer(WorkerLink& link, const std::atomic<bool>& stop) {
-  Report report{"w", 1, "flight", {}, {}};
+  Report report{.worker = "w", .coordinator_epoch = 1, .number = 0, .flight_id = "flight", .flown = {}, .started = {}};
   CaseResult result;
   result.outcome = Outcome::kCompleted;
   result.inputs.assign(InputColumns().size(), 1.0 / 3.0);
   result.metrics.assign(MetricNames().size(), 2.0 / 3.0);
   while (!stop) {
     for (const WorkerEvent& event : link.Wait(milliseconds(20))) {
-      const auto* order = std::get_if<FlyOrder>(&event);
-      if (order == nullptr) continue;
-      for (const std::uint64_t case_index : order->cases) {
-        report.started = {{case_index, order->attempt}};
+      const auto* orders = std::get_if<Orders>(&event);
+      if (orders == nullptr) continue;
+      for (const FlyOrder& order : orders->assignments) {
+        for (const std::uint64_t case_index : order.cases) {
+          report.started = {{case_index, order.attempt}};
+          ++report.number;
+          link.Send(report);
+          result.case_index = case_index;
+          report.flown = {{order.attempt, result}};
+        }
+        report.started.clear();
+        ++report.number;
         link.Send(report);
-        result.case_index = case_index;
-        report.flown = {{order->attempt, result}};
+        report.flown.clear();
       }
-      report.started.clear();
-      link.Send(report);
-      report.flown.clear();
     }
   }
 }
@@ -64,10 +68,14 @@ void BM_AssignmentRoundTrip(benchmark::State& state) {
   std::iota(cases.begin(), cases.end(), 0);
   std::uint64_t attempt = 0;
   const auto round = [&] {
-    coordinator.Send("w", FlyOrder{1, "flight", ++attempt, cases});
+    Orders orders;
+    orders.worker = "w";
+    orders.coordinator_epoch = 1;
+    orders.assignments = {{"flight", ++attempt, cases}};
+    coordinator.Send(orders);
     for (std::size_t flown = 0; flown < cases.size();) {
       for (const CoordinatorEvent& event : coordinator.Wait(milliseconds(1000))) {
-        if (const auto* report = std::get_if<Report>(&event)) flown += report->flown.size();
+        if (const auto* report = std::get_if<Report>(&event.what)) flown += report->flown.size();
       }
     }
   };
