@@ -7,6 +7,7 @@
 #include <numeric>
 #include <thread>
 
+#include "core/engine/version.h"
 #include "core/flight/flight_inputs.h"
 #include "services/coordinator/ledger.h"
 #include "services/transport/coordinator_link.h"
@@ -34,7 +35,14 @@ void Answer(WorkerLink& link, const std::atomic<bool>& stop) {
   result.outcome = Outcome::kCompleted;
   result.inputs.assign(InputColumns().size(), 1.0 / 3.0);
   result.metrics.assign(MetricNames().size(), 2.0 / 3.0);
+  // A coordinator listens to nobody who has not introduced himself.
+  WorkerStatus status;
+  status.worker = "w";
+  status.host = "host";
+  status.pid = 1;
+  status.engine_version = EngineVersion();
   while (!stop) {
+    if (report.number == 0) link.Send(status);
     for (const WorkerEvent& event : link.Wait(milliseconds(20))) {
       const auto* orders = std::get_if<Orders>(&event);
       if (orders == nullptr) continue;

@@ -1,6 +1,11 @@
 // The result folder keeps every result once, exactly, whatever arrives in whatever order.
 #include "core/report/result_folder.h"
 
+#include <sched.h>
+#include <sys/mount.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -330,18 +335,40 @@ TEST(OutputFile, ReplacesAsAWholeOrNotAtAll) {
   EXPECT_FALSE(std::filesystem::exists(temporary / "file.tmp"));
 }
 
+// What a child process says that sees `folder` as a disk of 64 KiB: the message of the file that does not fit. A disk
+// of its own needs a mount namespace, and that a process with one thread.
+std::string MessageOnASmallDisk(const std::filesystem::path& folder) {
+  int ends[2];
+  EXPECT_EQ(pipe(ends), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    std::string said = "no disk of its own";
+    if (unshare(CLONE_NEWUSER | CLONE_NEWNS) == 0 && mount("small", folder.c_str(), "tmpfs", 0, "size=64k") == 0) {
+      WriteFile(folder / "file", "old");
+      try {
+        WriteFile(folder / "file", std::string(1 << 20, 'x'));
+        said = "written";
+      } catch (const ResultError& error) {
+        said = error.kind() == ResultError::Kind::kDiskFull ? error.what() : "not the full disk";
+      }
+      if (ReadText(folder / "file") != "old") said += ", and the old file is gone";
+    }
+    const bool whole = write(ends[1], said.data(), said.size()) == static_cast<ssize_t>(said.size());
+    _exit(whole ? 0 : 1);
+  }
+  close(ends[1]);
+  char said[1000] = "";
+  EXPECT_GT(read(ends[0], said, sizeof said - 1), 0);
+  close(ends[0]);
+  int status = 0;
+  waitpid(child, &status, 0);
+  return said;
+}
+
 TEST(OutputFile, ReportsAFullDisk) {
   TemporaryFolder temporary;
-  WriteFile(temporary / "file", "old");
-  std::filesystem::create_symlink("/dev/full", temporary / "file.tmp");  // every write to it: no space
-  try {
-    WriteFile(temporary / "file", "new");
-    FAIL() << "written";
-  } catch (const ResultError& error) {
-    EXPECT_EQ(error.kind(), ResultError::Kind::kDiskFull);
-    EXPECT_EQ(error.what(), (temporary / "file").string() + ": no space left on the disk");
-  }
-  EXPECT_EQ(ReadText(temporary / "file"), "old");
+  const std::filesystem::path folder = (temporary / "file").parent_path();
+  EXPECT_EQ(MessageOnASmallDisk(folder), (folder / "file").string() + ": no space left on the disk");
 }
 
 TEST(OutputFile, SaysWhyAFileCannotBeWritten) {
