@@ -9,6 +9,8 @@
 #include "core/campaign_yaml/load.h"
 #include "core/flight/flight.h"
 #include "core/flight/flight_model.h"
+#include "core/flight/flight_queue.h"
+#include "core/flight/lane_engine.h"
 
 namespace dispersa {
 namespace {
@@ -55,6 +57,46 @@ void Flight(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations());
 }
 BENCHMARK(Flight)->Unit(benchmark::kMillisecond)->MinTime(3.0);
+
+// The cases of a campaign, taken in turn.
+class Cases : public FlightQueue {
+ public:
+  Cases(const CampaignFlights& flights, std::uint64_t count) : flights_(flights), left_(count) {}
+
+  FlightRecord* Next(bool) override {
+    if (left_ == 0) return nullptr;
+    FlightOrder order{flights_.Draw(--left_), {}};
+    order.options.case_index = left_;
+    return new FlightRecord(flights_.model(), order);
+  }
+  void Done(FlightRecord* record) override {
+    benchmark::DoNotOptimize(record->Result());
+    delete record;
+  }
+
+ private:
+  const CampaignFlights& flights_;
+  std::uint64_t left_;
+};
+
+// The same side by side, in every engine that this processor can run: instruction set / lanes. Items are flights.
+void SideBySide(benchmark::State& state, const LaneEngine& engine) {
+  const CampaignFlights flights(Table3());
+  constexpr std::uint64_t kCases = 32;
+  for (auto _ : state) {
+    Cases cases(flights, kCases);
+    engine.fly(flights.model(), cases);
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kCases));
+}
+const bool kRegistered = [] {
+  for (const LaneEngine& engine : UsableEngines()) {
+    benchmark::RegisterBenchmark(("Flights/" + std::string(engine.isa) + "/" + std::to_string(engine.lanes)).c_str(),
+                                 SideBySide, engine)
+        ->Unit(benchmark::kMillisecond);
+  }
+  return true;
+}();
 
 // What a campaign costs before its first flight: tables, schedules, design.
 void Preparation(benchmark::State& state) {
