@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <numeric>
+#include <set>
 #include <thread>
 
 #include "core/engine/version.h"
@@ -19,6 +20,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
+const std::string kFlightId(64, 'f');
+
 double ProcessorSeconds() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -30,7 +33,7 @@ double ProcessorSeconds() {
 
 /// Answers each case as a real worker does: a start, and the result with the next start.
 void Answer(WorkerLink& link, const std::atomic<bool>& stop) {
-  Report report{.worker = "w", .coordinator_epoch = 1, .number = 0, .flight_id = "flight", .flown = {}, .started = {}};
+  Report report{.worker = "w", .coordinator_epoch = 1, .number = 0, .flight_id = kFlightId, .flown = {}, .started = {}};
   CaseResult result;
   result.outcome = Outcome::kCompleted;
   result.inputs.assign(InputColumns().size(), 1.0 / 3.0);
@@ -79,11 +82,20 @@ void BM_AssignmentRoundTrip(benchmark::State& state) {
     Orders orders;
     orders.worker = "w";
     orders.coordinator_epoch = 1;
-    orders.assignments = {{"flight", ++attempt, cases}};
-    coordinator.Send(orders);
-    for (std::size_t flown = 0; flown < cases.size();) {
-      for (const CoordinatorEvent& event : coordinator.Wait(milliseconds(1000))) {
-        if (const auto* report = std::get_if<Report>(&event.what)) flown += report->flown.size();
+    orders.assignments = {{kFlightId, ++attempt, cases}};
+    // Repeated until they are answered, as a coordinator does: the first may go before anybody listens.
+    std::set<std::uint64_t> flown;
+    auto said = std::chrono::steady_clock::time_point();
+    while (flown.size() < cases.size()) {
+      if (const auto now = std::chrono::steady_clock::now(); now > said + milliseconds(1000)) {
+        said = now;
+        coordinator.Send(orders);
+      }
+      for (const CoordinatorEvent& event : coordinator.Wait(milliseconds(100))) {
+        const auto* report = std::get_if<Report>(&event.what);
+        if (report == nullptr) continue;
+        for (const FlownCase& each : report->flown)
+          if (each.attempt == attempt) flown.insert(each.result.case_index);
       }
     }
   };

@@ -343,7 +343,12 @@ std::string MessageOnASmallDisk(const std::filesystem::path& folder) {
   const pid_t child = fork();
   if (child == 0) {
     std::string said = "no disk of its own";
-    if (unshare(CLONE_NEWUSER | CLONE_NEWNS) == 0 && mount("small", folder.c_str(), "tmpfs", 0, "size=64k") == 0) {
+    const std::string owner = "0 " + std::to_string(geteuid()) + " 1";
+    const bool is_root = geteuid() == 0;
+    if (unshare(is_root ? CLONE_NEWNS : CLONE_NEWUSER | CLONE_NEWNS) == 0 &&
+        (is_root || (std::ofstream("/proc/self/uid_map") << owner).flush()) &&
+        mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
+        mount("small", folder.c_str(), "tmpfs", 0, "size=64k") == 0) {
       WriteFile(folder / "file", "old");
       try {
         WriteFile(folder / "file", std::string(1 << 20, 'x'));
