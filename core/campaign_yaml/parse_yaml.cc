@@ -8,10 +8,24 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 namespace dispersa {
 namespace {
+
+// Far above what any file of ours has; below them no text takes long or much memory, whoever wrote it.
+constexpr std::size_t kMaxBytes = std::size_t{64} << 20;
+constexpr std::size_t kMaxDepth = 64;
+constexpr std::size_t kMaxKeys = 1000;
+constexpr std::size_t kMaxKeyBytes = 200;
+
+/// Ends the reading: what follows is not looked at.
+struct TooMuch {
+  YAML::Mark mark;
+  std::string message;
+  std::string allowed;
+};
 
 // Builds the tree from the parser's events.
 class TreeBuilder : public YAML::EventHandler {
@@ -55,7 +69,9 @@ class TreeBuilder : public YAML::EventHandler {
   struct Level {
     InputNode node;
     bool has_key = false;
+    bool is_new = false;  // that key
     InputMember member;
+    std::set<std::string> keys;
   };
 
   InputNode NodeAt(const YAML::Mark& mark, InputNode::Kind kind) const {
@@ -79,7 +95,10 @@ class TreeBuilder : public YAML::EventHandler {
 
   void Open(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, InputNode::Kind kind) {
     Refuse(mark, tag, anchor);
-    levels_.push_back({NodeAt(mark, kind), false, {}});
+    if (levels_.size() >= kMaxDepth) {
+      throw TooMuch{mark, "nested too deeply", "up to " + std::to_string(kMaxDepth) + " levels"};
+    }
+    levels_.push_back({NodeAt(mark, kind), false, false, {}, {}});
   }
 
   void Close() {
@@ -98,17 +117,24 @@ class TreeBuilder : public YAML::EventHandler {
       level.node.items.push_back(std::move(node));
     } else if (!level.has_key) {
       level.has_key = true;
-      level.member = {node.text, node.line, node.column, {}};
       const YAML::Mark mark = MarkOf(node);
+      if (level.keys.size() >= kMaxKeys) {
+        throw TooMuch{mark, "the map has too many keys", "up to " + std::to_string(kMaxKeys)};
+      }
+      if (node.text.size() > kMaxKeyBytes) {
+        throw TooMuch{mark, "the key is too long", "up to " + std::to_string(kMaxKeyBytes) + " bytes"};
+      }
+      level.member = {node.text, node.line, node.column, {}};
+      level.is_new = level.keys.insert(node.text).second;
       if (node.kind != InputNode::Kind::kScalar) {
         Add(mark, "the key is " + node.Describe(), "a name as key");
-      } else if (level.node.Find(node.text) != nullptr) {
+      } else if (!level.is_new) {
         Add(mark, "the key '" + node.text + "' is given twice", "each key once in a map");
       }
     } else {
       level.has_key = false;
       level.member.value = std::move(node);
-      if (level.node.Find(level.member.key) == nullptr) level.node.members.push_back(std::move(level.member));
+      if (level.is_new) level.node.members.push_back(std::move(level.member));
     }
   }
 
@@ -128,6 +154,10 @@ class TreeBuilder : public YAML::EventHandler {
 }  // namespace
 
 InputNode ParseYaml(const std::string& text, const std::string& file, std::vector<InputProblem>& problems) {
+  if (text.size() > kMaxBytes) {
+    problems.push_back({file, 1, 1, "", "the file is too large", "up to 64 MiB"});
+    return {};
+  }
   const auto shared_file = std::make_shared<const std::string>(file);
   TreeBuilder builder(shared_file, problems);
   try {
@@ -143,6 +173,9 @@ InputNode ParseYaml(const std::string& text, const std::string& file, std::vecto
       problems.push_back({file, second.line, second.column, "", "a second document", "one document a file"});
     }
     return builder.Take();
+  } catch (const TooMuch& limit) {
+    problems.push_back({file, limit.mark.line + 1, limit.mark.column + 1, "", limit.message, limit.allowed});
+    return {};
   } catch (const YAML::Exception& error) {
     problems.push_back({file, error.mark.line + 1, error.mark.column + 1, "", "not YAML: " + error.msg, ""});
     return {};

@@ -31,6 +31,8 @@ std::size_t EditDistance(const std::string& a, const std::string& b) {
 
 // The nearest word, or empty.
 std::string Nearest(const std::string& word, const std::vector<std::string>& words) {
+  constexpr std::size_t kLongestWord = 200;
+  if (word.size() > kLongestWord) return "";
   std::size_t best_distance = std::max<std::size_t>(2, word.size() / 4) + 1;
   std::string best;
   for (const std::string& candidate : words) {
