@@ -25,8 +25,7 @@ double ClopperPearsonLower(std::int64_t events, std::int64_t n, double confidenc
 double ClopperPearsonUpper(std::int64_t events, std::int64_t n, double confidence) {
   assert(n > 0 && events >= 0 && events <= n && confidence > 0.0 && confidence < 1.0);
   if (events == n) return 1.0;
-  return boost::math::ibeta_inv(static_cast<double>(events + 1), static_cast<double>(n - events),
-                                confidence);
+  return boost::math::ibeta_inv(static_cast<double>(events + 1), static_cast<double>(n - events), confidence);
 }
 
 Interval ClopperPearson(std::int64_t events, std::int64_t n, double confidence) {
@@ -42,8 +41,8 @@ RankInterval QuantileRanks(std::int64_t n, double probability, double confidence
   const double tail = 0.5 * (1.0 - confidence);
   const std::int64_t too_high = FirstTrue(
       0, n + 1, [&](std::int64_t rank) { return ProducerRisk(probability, n, n - rank + 1) > tail; });
-  const std::int64_t high_enough = FirstTrue(
-      0, n + 1, [&](std::int64_t rank) { return ConsumerRisk(probability, n, n - rank) <= tail; });
+  const std::int64_t high_enough =
+      FirstTrue(0, n + 1, [&](std::int64_t rank) { return ConsumerRisk(probability, n, n - rank) <= tail; });
   return {too_high - 1, high_enough};
 }
 

@@ -34,9 +34,8 @@ std::int64_t CasesNeeded(double probability, double consumer_risk, std::int64_t 
 
 std::optional<std::int64_t> MaxFailures(double probability, double consumer_risk, std::int64_t n) {
   assert(consumer_risk > 0.0 && consumer_risk < 1.0);
-  const std::int64_t too_many = FirstTrue(-1, n, [&](std::int64_t failures) {
-    return ConsumerRisk(probability, n, failures) > consumer_risk;
-  });
+  const std::int64_t too_many = FirstTrue(
+      -1, n, [&](std::int64_t failures) { return ConsumerRisk(probability, n, failures) > consumer_risk; });
   if (too_many == 0) return std::nullopt;
   return too_many - 1;
 }

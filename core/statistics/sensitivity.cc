@@ -1,0 +1,214 @@
+#include "core/statistics/sensitivity.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numeric>
+#include <random>
+
+#include <Eigen/Dense>
+#include <boost/math/distributions/normal.hpp>
+
+namespace dispersa {
+namespace {
+
+constexpr int kBootstrapSamples = 200;
+/// Of many cases, groups of them are drawn again: as good for a standard error, and a million cases are no
+/// work.
+constexpr std::size_t kBootstrapGroups = 1000;
+
+std::vector<std::size_t> Order(const std::vector<double>& values) {
+  std::vector<std::size_t> order(values.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
+  return order;
+}
+
+/// More classes see finer dependence, fewer have less noise.
+std::size_t ClassCount(std::size_t n) {
+  return std::clamp<std::size_t>(static_cast<std::size_t>(std::sqrt(static_cast<double>(n))), 3, 100);
+}
+
+std::vector<std::size_t> Classes(const std::vector<double>& x, std::size_t count) {
+  const std::vector<std::size_t> order = Order(x);
+  std::vector<std::size_t> classes(x.size());
+  for (std::size_t rank = 0; rank < order.size(); ++rank) {
+    const bool equal = rank > 0 && x[order[rank]] == x[order[rank - 1]];
+    classes[order[rank]] = equal ? classes[order[rank - 1]] : rank * count / order.size();
+  }
+  return classes;
+}
+
+/// Sums over the cases of a class.
+struct ClassSums {
+  double n = 0.0, sum = 0.0, squares = 0.0;
+};
+
+double Epsilon(const std::vector<ClassSums>& classes) {
+  double n = 0.0, sum = 0.0, squares = 0.0, between = 0.0, used = 0.0;
+  for (const ClassSums& each : classes) {
+    if (each.n == 0.0) continue;
+    n += each.n;
+    sum += each.sum;
+    squares += each.squares;
+    between += each.sum * each.sum / each.n;
+    used += 1.0;
+  }
+  const double total = squares - sum * sum / n;
+  if (!(total > 0.0) || used < 2.0 || n <= used) return 0.0;
+  const double within = squares - between;
+  return 1.0 - (n - 1.0) / (n - used) * within / total;
+}
+
+double Correlation(const std::vector<double>& x, const std::vector<double>& y) {
+  const auto n = static_cast<double>(x.size());
+  const double mean_x = std::accumulate(x.begin(), x.end(), 0.0) / n;
+  const double mean_y = std::accumulate(y.begin(), y.end(), 0.0) / n;
+  double xx = 0.0, yy = 0.0, xy = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    xx += (x[i] - mean_x) * (x[i] - mean_x);
+    yy += (y[i] - mean_y) * (y[i] - mean_y);
+    xy += (x[i] - mean_x) * (y[i] - mean_y);
+  }
+  return xx > 0.0 && yy > 0.0 ? xy / std::sqrt(xx * yy) : 0.0;
+}
+
+}  // namespace
+
+SensitivityIndex FirstOrderIndex(const std::vector<double>& x, const std::vector<double>& y,
+                                 std::uint64_t seed) {
+  assert(x.size() == y.size());
+  const std::size_t n = x.size();
+  if (n < 8) return {};
+  // About the mean, so that the squares lose no digits.
+  const double mean = std::accumulate(y.begin(), y.end(), 0.0) / static_cast<double>(n);
+  const std::size_t count = ClassCount(n);
+  const std::vector<std::size_t> classes = Classes(x, count);
+  const std::size_t groups = std::min(n, kBootstrapGroups);
+  std::vector<std::vector<ClassSums>> sums(groups, std::vector<ClassSums>(groups == n ? 1 : count));
+  std::vector<ClassSums> all(count);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double value = y[i] - mean;
+    ClassSums& group = sums[i % groups][groups == n ? 0 : classes[i]];
+    for (ClassSums* each : {&group, &all[classes[i]]}) {
+      each->n += 1.0;
+      each->sum += value;
+      each->squares += value * value;
+    }
+  }
+  const double index = Epsilon(all);
+  std::mt19937_64 random(seed);
+  double sum = 0.0, squares = 0.0;
+  for (int sample = 0; sample < kBootstrapSamples; ++sample) {
+    std::vector<ClassSums> drawn(count);
+    for (std::size_t k = 0; k < groups; ++k) {
+      const std::size_t group = random() % groups;
+      for (std::size_t c = 0; c < sums[group].size(); ++c) {
+        ClassSums& into = drawn[groups == n ? classes[group] : c];
+        into.n += sums[group][c].n;
+        into.sum += sums[group][c].sum;
+        into.squares += sums[group][c].squares;
+      }
+    }
+    const double value = Epsilon(drawn);
+    sum += value;
+    squares += value * value;
+  }
+  const double spread =
+      std::sqrt(std::max(0.0, (squares - sum * sum / kBootstrapSamples) / (kBootstrapSamples - 1)));
+  return {std::clamp(index, 0.0, 1.0), std::clamp(index - 1.96 * spread, 0.0, 1.0),
+          std::clamp(index + 1.96 * spread, 0.0, 1.0)};
+}
+
+double FirstOrderShare(const std::vector<double>& x, const std::vector<double>& y) {
+  assert(x.size() == y.size());
+  if (x.size() < 8) return 0.0;
+  const double mean = std::accumulate(y.begin(), y.end(), 0.0) / static_cast<double>(y.size());
+  const std::size_t count = ClassCount(x.size());
+  const std::vector<std::size_t> classes = Classes(x, count);
+  std::vector<ClassSums> sums(count);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double value = y[i] - mean;
+    ClassSums& each = sums[classes[i]];
+    each.n += 1.0;
+    each.sum += value;
+    each.squares += value * value;
+  }
+  return Epsilon(sums);
+}
+
+std::vector<double> Ranks(const std::vector<double>& values) {
+  const std::vector<std::size_t> order = Order(values);
+  std::vector<double> ranks(values.size());
+  for (std::size_t first = 0; first < order.size();) {
+    std::size_t end = first + 1;
+    while (end < order.size() && values[order[end]] == values[order[first]]) ++end;
+    for (std::size_t i = first; i < end; ++i)
+      ranks[order[i]] = 0.5 * (static_cast<double>(first + end) + 1.0);
+    first = end;
+  }
+  return ranks;
+}
+
+double RankCorrelation(const std::vector<double>& x, const std::vector<double>& y) {
+  return x.empty() ? 0.0 : Correlation(Ranks(x), Ranks(y));
+}
+
+std::vector<double> PartialRankCorrelations(const std::vector<std::vector<double>>& x,
+                                            const std::vector<double>& y) {
+  const auto d = static_cast<Eigen::Index>(x.size());
+  std::vector<double> result(x.size(), 0.0);
+  // A regression needs a few cases for each of its inputs.
+  if (d == 0 || y.size() < 3 * x.size() + 3) return result;
+  std::vector<std::vector<double>> ranks;
+  for (const auto& each : x) ranks.push_back(Ranks(each));
+  ranks.push_back(Ranks(y));
+  Eigen::MatrixXd correlations = Eigen::MatrixXd::Identity(d + 1, d + 1);
+  for (Eigen::Index i = 0; i <= d; ++i) {
+    for (Eigen::Index j = 0; j < i; ++j) {
+      correlations(i, j) = correlations(j, i) =
+          Correlation(ranks[static_cast<std::size_t>(i)], ranks[static_cast<std::size_t>(j)]);
+    }
+  }
+  // Inputs that say the same twice are told apart by nothing: a little noise shares the effect among them.
+  correlations.diagonal().array() += 1e-9;
+  const Eigen::MatrixXd precision = correlations.inverse();
+  for (Eigen::Index i = 0; i < d; ++i) {
+    const double partial = -precision(i, d) / std::sqrt(precision(i, i) * precision(d, d));
+    if (std::isfinite(partial)) result[static_cast<std::size_t>(i)] = std::clamp(partial, -1.0, 1.0);
+  }
+  return result;
+}
+
+double RankSumP(const std::vector<double>& x, const std::vector<bool>& marked) {
+  assert(x.size() == marked.size());
+  const std::vector<double> ranks = Ranks(x);
+  const auto n = static_cast<double>(x.size());
+  double m = 0.0, sum = 0.0, squares = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    squares += (ranks[i] - 0.5 * (n + 1.0)) * (ranks[i] - 0.5 * (n + 1.0));
+    if (!marked[i]) continue;
+    m += 1.0;
+    sum += ranks[i];
+  }
+  // Of m ranks drawn from all without putting back.
+  const double variance = n > 1.0 ? m * (n - m) / (n * (n - 1.0)) * squares : 0.0;
+  if (!(variance > 0.0)) return 1.0;
+  const double away = std::max(0.0, std::fabs(sum - 0.5 * m * (n + 1.0)) - 0.5) / std::sqrt(variance);
+  return std::min(1.0, 2.0 * cdf(complement(boost::math::normal(), away)));
+}
+
+std::vector<double> FalseDiscoveryRates(const std::vector<double>& p_values) {
+  const std::vector<std::size_t> order = Order(p_values);
+  std::vector<double> rates(p_values.size());
+  double least = 1.0;
+  for (std::size_t i = order.size(); i-- > 0;) {
+    least =
+        std::min(least, p_values[order[i]] * static_cast<double>(order.size()) / static_cast<double>(i + 1));
+    rates[order[i]] = least;
+  }
+  return rates;
+}
+
+}  // namespace dispersa

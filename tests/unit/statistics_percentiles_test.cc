@@ -1,0 +1,54 @@
+// Percentiles: what so many values support, and what they do not.
+#include "core/statistics/percentiles.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "core/statistics/summary.h"
+
+namespace dispersa {
+namespace {
+
+std::vector<double> Rising(int n) {
+  std::vector<double> values;
+  for (int i = 1; i <= n; ++i) values.push_back(i);
+  return values;
+}
+
+TEST(Percentiles, BeyondTheSampleThereIsOnlyABound) {
+  const auto of300 = Percentiles(Rising(300));
+  ASSERT_EQ(of300.size(), 8u);
+  EXPECT_EQ(of300[6].name, "p99_73");
+  EXPECT_TRUE(std::isnan(of300[6].estimate));  // 0.81 of 300 values lie beyond
+  EXPECT_TRUE(std::isinf(of300[6].limits.upper));
+  // P(at least k of 300 above the 99.73 %) <= 2.5 % from k = 4 on: 297 is below it with 97.5 %.
+  EXPECT_EQ(of300[6].limits.lower, 297.0);
+  EXPECT_EQ(of300[5].estimate, Quantile(Rising(300), 0.99));
+  EXPECT_FALSE(std::isnan(Percentiles(Rising(371))[6].estimate));
+  EXPECT_FALSE(std::isnan(Percentiles(Rising(100))[5].estimate));
+  EXPECT_TRUE(std::isnan(Percentiles(Rising(99))[5].estimate));
+  EXPECT_TRUE(std::isnan(Percentiles(Rising(99))[1].estimate));
+}
+
+// Of the median of 10 values the ranks 2 and 9 hold 97.9 %; 3 and 8 would hold 89 %.
+TEST(Percentiles, LimitsOfAMedianAreThoseOfTheTable) {
+  const Percentile median = Percentiles(Rising(10))[3];
+  EXPECT_EQ(median.limits.lower, 2.0);
+  EXPECT_EQ(median.limits.upper, 9.0);
+  EXPECT_EQ(median.estimate, 5.5);
+  const Percentile of_one = Percentiles(Rising(1))[3];
+  EXPECT_TRUE(std::isinf(of_one.limits.lower) && std::isinf(of_one.limits.upper));
+  EXPECT_TRUE(std::isnan(Percentiles({})[3].estimate));
+}
+
+TEST(Skewness, OfSmallSamplesByHand) {
+  EXPECT_TRUE(std::isnan(Skewness({})));
+  EXPECT_TRUE(std::isnan(Skewness({2.0, 2.0})));
+  EXPECT_EQ(Skewness({-1.0, 0.0, 1.0}), 0.0);
+  // 0 0 3: mean 1, deviations -1 -1 2, second moment 2, third 2.
+  EXPECT_NEAR(Skewness({0.0, 0.0, 3.0}), 2.0 / std::pow(2.0, 1.5), 1e-15);
+}
+
+}  // namespace
+}  // namespace dispersa
