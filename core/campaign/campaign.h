@@ -1,16 +1,19 @@
 // A dispersion campaign: what is flown, how it is dispersed, what is required of it. Immutable once loaded.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/control/autopilot_config.h"
 #include "core/environment/wind.h"
 #include "core/environment/wind_statistics.h"
 #include "core/flight/flight_inputs.h"
+#include "core/statistics/verdict_plan.h"
 #include "core/trajectory/reference.h"
 #include "core/vehicle/vehicle.h"
 
@@ -22,19 +25,25 @@ enum class SamplingMethod { kMonteCarlo, kLatinHypercube, kSobol, kCorners, kOne
 enum class Distribution {
   kConstant,  ///< the same value in every case
   kNormal,    ///< nominal + sigma * standard normal, not truncated
-  kUniform,   ///< between low and high
-  kTwoPoint,  ///< low or high: a factor of a corner or one-at-a-time design, else a fair coin
-  kValues,    ///< one of a list: an axis of a grid or list design, else drawn with equal probability
+  kTruncatedNormal,  ///< the same between low and high: never clamped, which would pile cases at the ends
+  kLogNormal,  ///< nominal (the median) * exp(sigma * standard normal)
+  kRayleigh,   ///< magnitude of two normal components of standard deviation sigma: sigma is its mode
+  kUniform,    ///< between low and high
+  kTriangular, ///< between low and high, most likely at nominal
+  kTwoPoint,   ///< low or high: a factor of a corner or one-at-a-time design, else a fair coin
+  kValues,     ///< one of a list: an axis of a grid or list design, else drawn by weight
+  kEmpirical,  ///< like the values of a sample: linear between its order statistics
 };
 
 /// Of one scalar, in the internal unit of its input (SI, radians, or a factor).
 struct ScalarDistribution {
   Distribution kind = Distribution::kConstant;
-  double nominal = 0.0;  ///< kNormal: the mean; designs: the value while other parameters move
-  double sigma = 0.0;    ///< kNormal
-  double low = 0.0;      ///< kUniform, kTwoPoint
-  double high = 0.0;     ///< kUniform, kTwoPoint
-  std::vector<double> values;  ///< kValues; kConstant: one value
+  double nominal = 0.0;  ///< see Distribution; designs: the value while other parameters move
+  double sigma = 0.0;
+  double low = 0.0;
+  double high = 0.0;
+  std::vector<double> values;        ///< kValues; kConstant: one value; kEmpirical: ascending
+  std::vector<double> weights = {};  ///< kValues: above 0, one a value, or none: equal
 };
 
 /// One draw of a case: `name` keys its random stream and stays when other draws come or go.
@@ -43,20 +52,33 @@ struct Dispersion {
   ScalarDistribution distribution;
   std::vector<int> inputs;     ///< columns (FindInput) that take the value; draws of one factor multiply
   bool absolute = false;       ///< take the magnitude of the draw: lateral deviations with a clock angle
+  /// Of a correlated normal: its standard normal is the sum of weight * that of the dispersion at a position in
+  /// Campaign::dispersions, a row of the Cholesky factor of the correlations. Empty: its own alone.
+  std::vector<std::pair<std::size_t, double>> mix = {};
 };
 
 struct Requirement {
   std::string metric;             ///< without the prefix
-  std::optional<double> below;    ///< exactly one of below and above
+  std::optional<double> below;    ///< exactly one of below, above and within
   std::optional<double> above;
   double probability = 0.0;
   double consumer_risk = 0.0;
+  std::optional<std::array<double, 2>> within = {};  ///< between both, strictly
+  VerdictPlan plan = {};
+};
+
+/// How the requirements are judged together, and whether their verdicts end the campaign.
+struct Verdicts {
+  bool holm = false;  ///< all verdicts together keep the largest consumer risk (S. Holm, 1979), else each its own
+  bool stop_when_decided = false;  ///< at a look at which every requirement is decided; else all cases are flown
 };
 
 struct Sampling {
   SamplingMethod method = SamplingMethod::kMonteCarlo;
-  std::uint64_t cases = 0;     ///< a design of m runs repeats after m cases with other random draws
+  std::uint64_t cases = 0;  ///< at most; a design of m runs repeats after m cases with other random draws
   std::uint64_t seed = 0;
+  /// Latin hypercube and Sobol: so many designs of cases / replicates points, each randomised by itself.
+  std::uint64_t replicates = 1;
 };
 
 struct Campaign {
@@ -69,10 +91,12 @@ struct Campaign {
   std::optional<WindStatistics> wind_statistics;  ///< climatology whose levels the profile draws fill
   std::optional<WindTable> wind_table;            ///< a profile that every flight meets, the nominal too
   std::vector<Requirement> requirements;
+  Verdicts verdicts;
 
   std::string canonical_yaml;  ///< everything inlined; what campaign.yaml holds
   std::string id;              ///< SHA-256 of canonical_yaml, hexadecimal
   std::string flight_id;       ///< SHA-256 of what decides a case
+  std::string requirements_id;  ///< SHA-256 of the requirements and how they are judged
 };
 
 }  // namespace dispersa

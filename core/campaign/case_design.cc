@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "core/math/functions.h"
 #include "core/random/draws.h"
 #include "core/random/normal.h"
 
@@ -38,9 +39,63 @@ bool IsFactor(int column) {
 }
 
 // The element of a list that a uniform number in (0, 1) selects.
-double Select(const std::vector<double>& values, double uniform) {
-  const auto index = static_cast<std::size_t>(uniform * static_cast<double>(values.size()));
-  return values[std::min(index, values.size() - 1)];
+double Select(const ScalarDistribution& d, double uniform) {
+  std::size_t index = 0;
+  if (d.weights.empty()) {
+    index = static_cast<std::size_t>(uniform * static_cast<double>(d.values.size()));
+  } else {
+    double total = 0.0;
+    for (const double weight : d.weights) total += weight;
+    double sum = d.weights[0];
+    while (index + 1 < d.values.size() && uniform * total >= sum) sum += d.weights[++index];
+  }
+  return d.values[std::min(index, d.values.size() - 1)];
+}
+
+// The quantile of a sample, linear between its order statistics.
+double SampleQuantile(const std::vector<double>& ascending, double uniform) {
+  const double position = uniform * static_cast<double>(ascending.size() - 1);
+  const auto below = static_cast<std::size_t>(position);
+  if (below + 1 >= ascending.size()) return ascending.back();
+  const double share = position - static_cast<double>(below);
+  return ascending[below] + share * (ascending[below + 1] - ascending[below]);
+}
+
+double Triangular(const ScalarDistribution& d, double uniform) {
+  const double range = d.high - d.low;
+  const double rising = (d.nominal - d.low) / range;  // probability below the mode
+  return uniform < rising ? d.low + Sqrt(uniform * range * (d.nominal - d.low))
+                          : d.high - Sqrt((1.0 - uniform) * range * (d.high - d.nominal));
+}
+
+// The probability below x, by bisection: the inverse is at hand, and has the same bits on every machine.
+double NormalProbability(double x) {
+  double low = 0.0;
+  double high = 1.0;
+  for (int i = 0; i < 80; ++i) {
+    const double middle = 0.5 * (low + high);
+    (InverseNormal(middle) < x ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+// The dimension of Sobol's sequence that belongs to each dispersion: that of the first input which it feeds.
+// Of several that feed one input, the later names go on behind all inputs.
+std::vector<std::size_t> SobolDimensions(const std::vector<Dispersion>& dispersions) {
+  const std::size_t inputs = InputColumns().size();
+  std::vector<std::size_t> dimensions;
+  for (const Dispersion& dispersion : dispersions) {
+    std::size_t rank = 0;
+    for (const Dispersion& other : dispersions)
+      rank += other.inputs.front() == dispersion.inputs.front() && other.name < dispersion.name ? 1 : 0;
+    dimensions.push_back(static_cast<std::size_t>(dispersion.inputs.front()) + rank * inputs);
+  }
+  return dimensions;
+}
+
+// The first design keeps the plain seed, so that a campaign of one is what it was.
+std::uint64_t ReplicateSeed(std::uint64_t seed, std::uint64_t replicate) {
+  return replicate == 0 ? seed : Stream(seed, replicate, "replicate").Bits();
 }
 
 }  // namespace
@@ -68,19 +123,42 @@ CaseDesign::CaseDesign(const Campaign& campaign)
       dispersions_(campaign.dispersions),
       factors_(Factors(campaign)),
       size_(DesignSize(campaign)) {
+  for (const Dispersion& dispersion : dispersions_) {
+    const ScalarDistribution& d = dispersion.distribution;
+    const bool truncated = d.kind == Distribution::kTruncatedNormal;
+    truncation_.push_back(truncated ? std::array{NormalProbability((d.low - d.nominal) / d.sigma),
+                                                 NormalProbability((d.high - d.nominal) / d.sigma)}
+                                    : std::array{0.0, 1.0});
+  }
   std::vector<std::string> names;
   for (const Dispersion& d : dispersions_) names.push_back(d.name);
+  replicate_size_ = sampling_.cases / sampling_.replicates;
   if (names.empty()) return;
-  if (sampling_.method == SamplingMethod::kLatinHypercube)
-    latin_hypercube_ = std::make_unique<LatinHypercube>(sampling_.seed, sampling_.cases, names);
-  if (sampling_.method == SamplingMethod::kSobol)
-    sobol_ = std::make_unique<Sobol>(sampling_.seed, names);
+  for (std::uint64_t replicate = 0; replicate < sampling_.replicates; ++replicate) {
+    const std::uint64_t seed = ReplicateSeed(sampling_.seed, replicate);
+    if (sampling_.method == SamplingMethod::kLatinHypercube)
+      latin_hypercubes_.emplace_back(seed, replicate_size_, names);
+    if (sampling_.method == SamplingMethod::kSobol)
+      sobols_.emplace_back(seed, names, SobolDimensions(dispersions_));
+  }
 }
 
 double CaseDesign::Uniform(std::uint64_t case_index, std::size_t dispersion) const {
-  if (latin_hypercube_) return latin_hypercube_->Uniform(case_index, dispersion);
-  if (sobol_) return sobol_->Uniform(case_index, dispersion);
+  // One Sobol design goes on beyond the number of cases; several have a size.
+  if (!latin_hypercubes_.empty())
+    return latin_hypercubes_[case_index / replicate_size_].Uniform(case_index % replicate_size_, dispersion);
+  if (sobols_.size() == 1) return sobols_[0].Uniform(case_index, dispersion);
+  if (!sobols_.empty())
+    return sobols_[case_index / replicate_size_].Uniform(case_index % replicate_size_, dispersion);
   return Stream(sampling_.seed, case_index, dispersions_[dispersion].name).Uniform();
+}
+
+double CaseDesign::Normal(std::uint64_t case_index, std::size_t dispersion) const {
+  const auto& mix = dispersions_[dispersion].mix;
+  if (mix.empty()) return InverseNormal(Uniform(case_index, dispersion));
+  double sum = 0.0;
+  for (const auto& [other, weight] : mix) sum += weight * InverseNormal(Uniform(case_index, other));
+  return sum;
 }
 
 double CaseDesign::Value(std::uint64_t case_index, std::size_t dispersion) const {
@@ -108,13 +186,26 @@ double CaseDesign::Value(std::uint64_t case_index, std::size_t dispersion) const
   }
   switch (d.kind) {
     case Distribution::kNormal:
-      return d.nominal + d.sigma * InverseNormal(Uniform(case_index, dispersion));
+      return d.nominal + d.sigma * Normal(case_index, dispersion);
+    case Distribution::kTruncatedNormal: {
+      const auto& [from, to] = truncation_[dispersion];
+      const double draw = InverseNormal(from + (to - from) * Uniform(case_index, dispersion));
+      return Clamp(d.nominal + d.sigma * draw, d.low, d.high);  // of rounding alone
+    }
+    case Distribution::kLogNormal:
+      return d.nominal * Exp(d.sigma * InverseNormal(Uniform(case_index, dispersion)));
+    case Distribution::kRayleigh:
+      return d.sigma * Sqrt(-2.0 * Log(Uniform(case_index, dispersion)));
+    case Distribution::kTriangular:
+      return Triangular(d, Uniform(case_index, dispersion));
+    case Distribution::kEmpirical:
+      return SampleQuantile(d.values, Uniform(case_index, dispersion));
     case Distribution::kUniform:
       return d.low + (d.high - d.low) * Uniform(case_index, dispersion);
     case Distribution::kTwoPoint:
       return Uniform(case_index, dispersion) < 0.5 ? d.low : d.high;
     case Distribution::kValues:
-      return Select(d.values, Uniform(case_index, dispersion));
+      return Select(d, Uniform(case_index, dispersion));
     case Distribution::kConstant:
       break;
   }

@@ -1,8 +1,9 @@
 // Which inputs a case has: the campaign's sampling method and dispersions.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "core/campaign/campaign.h"
@@ -12,11 +13,13 @@
 namespace dispersa {
 
 /// Number of runs of a corner, one-at-a-time, grid or list design before it repeats; 1 for random designs.
+/// Fewer cases leave the design incomplete.
 std::uint64_t DesignSize(const Campaign& campaign);
 
 /// Draws cases. Every dispersion has a random stream of its own, keyed by (seed, case, name), so that one
 /// more changes no other. Latin hypercube and Sobol designs, which place all cases together, take the place
-/// of the streams' uniform numbers. In the designs of DesignSize the factors move by plan (two_point:
+/// of the streams' uniform numbers; a column of theirs belongs to its dispersion's name too. Replicates are
+/// designs one after the other, each with permutations, shifts and draws of its own. In the designs of DesignSize the factors move by plan (two_point:
 /// corners and one at a time; values: grid and list), and every other dispersion stays random.
 class CaseDesign {
  public:
@@ -27,14 +30,17 @@ class CaseDesign {
 
  private:
   double Uniform(std::uint64_t case_index, std::size_t dispersion) const;
+  double Normal(std::uint64_t case_index, std::size_t dispersion) const;
   double Value(std::uint64_t case_index, std::size_t dispersion) const;
 
   Sampling sampling_;
   std::vector<Dispersion> dispersions_;
   std::vector<std::size_t> factors_;  ///< dispersions that move by plan
   std::uint64_t size_ = 1;
-  std::unique_ptr<LatinHypercube> latin_hypercube_;
-  std::unique_ptr<Sobol> sobol_;
+  std::vector<std::array<double, 2>> truncation_;  ///< uniform numbers of a truncated normal's limits
+  std::uint64_t replicate_size_ = 0;               ///< cases of one design
+  std::vector<LatinHypercube> latin_hypercubes_;   ///< one a replicate
+  std::vector<Sobol> sobols_;
 };
 
 }  // namespace dispersa

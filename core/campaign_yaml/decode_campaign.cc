@@ -11,6 +11,7 @@
 #include "core/campaign_yaml/yaml_reader.h"
 #include "core/engine/version.h"
 #include "core/flight/metrics.h"
+#include "core/math/functions.h"
 
 namespace dispersa {
 namespace {
@@ -19,6 +20,9 @@ using ProblemList = std::vector<InputProblem>;
 
 // A stream's index is 32 bits wide.
 constexpr std::uint64_t kMaxCases = 4294967295;
+constexpr std::uint64_t kMaxReplicates = 10000;
+// More looks than these are better served by an anytime plan.
+constexpr std::uint64_t kMaxLooks = 100;
 
 // A tree that was read from a file of its own has paths of its own.
 std::string PathOfPart(const InputNode& part, const InputNode& root, const std::string& key) {
@@ -38,7 +42,201 @@ Sampling DecodeSampling(const InputNode& node, const std::string& path, ProblemL
                                             {"list", SamplingMethod::kList}});
   sampling.cases = map.Integer("cases", 1, kMaxCases);
   sampling.seed = map.Integer("seed", 0, UINT64_MAX);
+  sampling.replicates = map.Integer("replicates", 1, kMaxReplicates, 1);
+  const bool designed =
+      sampling.method == SamplingMethod::kLatinHypercube || sampling.method == SamplingMethod::kSobol;
+  if (sampling.replicates > 1 && !designed) {
+    AddProblem(problems, *node.Find("replicates"), map.PathOf("replicates"),
+               "only a Latin hypercube or Sobol design has replicates", "method: latin_hypercube or sobol");
+  } else if (sampling.replicates > 1 && sampling.cases % sampling.replicates != 0) {
+    AddProblem(problems, *node.Find("replicates"), map.PathOf("replicates"),
+               std::to_string(sampling.cases) + " cases are not divisible into " +
+                   std::to_string(sampling.replicates) + " designs of one size",
+               "a divisor of the number of cases");
+  }
+  if (map.Optional("table") != nullptr && sampling.method != SamplingMethod::kList) {
+    AddProblem(problems, *node.Find("table"), map.PathOf("table"), "only a list is read from a table",
+               "method: list");
+  }
   return sampling;
+}
+
+// The columns of a list's table, each an input by its name in cases.csv without the prefix.
+void DecodeListTable(const InputNode& table, const std::string& path, Campaign& campaign,
+                     ProblemList& problems) {
+  if (table.file == nullptr) return;  // already reported
+  std::vector<std::string> names;
+  for (const InputColumn& column : InputColumns()) names.push_back(column.name);
+  MapReader map(table, path, problems);
+  std::size_t length = 0;
+  for (const InputMember& member : table.members) {
+    const int input = FindInput(member.key);
+    if (input < 0) {
+      map.Ignore(member.key);
+      InputNode at = MapAt(member.value);
+      AddProblem(problems, at, map.PathOf(member.key),
+                 "'" + member.key + "' is not an input" + DidYouMean(member.key, names),
+                 "a column of cases.csv without its prefix 'input_'");
+      continue;
+    }
+    ScalarDistribution values;
+    values.kind = Distribution::kValues;
+    values.values = map.Numbers(member.key, kAnyNumber, 1);
+    for (double& value : values.values) value *= InputColumns()[static_cast<std::size_t>(input)].unit;
+    length = std::max(length, values.values.size());
+    campaign.dispersions.push_back({"list/" + member.key, std::move(values), {input}, false, {}});
+  }
+}
+
+// The rows of L with L L^T = the correlations; empty unless they are positive definite.
+std::vector<std::vector<double>> Cholesky(const std::vector<std::vector<double>>& matrix) {
+  std::vector<std::vector<double>> factor(matrix.size());
+  for (std::size_t i = 0; i < matrix.size(); ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      double rest = matrix[i][j];
+      for (std::size_t k = 0; k < j; ++k) rest -= factor[i][k] * factor[j][k];
+      if (i == j && !(rest > 1e-12)) return {};
+      factor[i].push_back(i == j ? Sqrt(rest) : rest / factor[j][j]);
+    }
+  }
+  return factor;
+}
+
+// One group of normal dispersions that are drawn together.
+void DecodeCorrelation(const InputNode& node, const std::string& path, Campaign& campaign,
+                       ProblemList& problems) {
+  const std::size_t before = problems.size();
+  std::vector<std::size_t> members;
+  std::vector<std::vector<double>> matrix;
+  const InputNode* rows = nullptr;
+  {
+    MapReader map(node, path, problems);
+    map.Each("of", 2, SIZE_MAX, [&](const InputNode& item, const std::string& item_path) {
+      const std::string name = ReadText(item, item_path, problems);
+      std::vector<std::string> names;
+      for (const Dispersion& dispersion : campaign.dispersions) names.push_back(dispersion.name);
+      const auto found = std::find(names.begin(), names.end(), name);
+      if (found == names.end()) {
+        AddProblem(problems, item, item_path, "'" + name + "' is not a dispersion" + DidYouMean(name, names),
+                   names.empty() ? "a campaign with dispersions" : "one of " + JoinWords(names));
+        return;
+      }
+      const auto position = static_cast<std::size_t>(found - names.begin());
+      const Dispersion& dispersion = campaign.dispersions[position];
+      if (dispersion.distribution.kind != Distribution::kNormal) {
+        AddProblem(problems, item, item_path, "'" + name + "' is not normal", "distribution: normal");
+      } else if (!dispersion.mix.empty() ||
+                 std::find(members.begin(), members.end(), position) != members.end()) {
+        AddProblem(problems, item, item_path, "'" + name + "' is correlated twice", "once, in one group");
+      }
+      members.push_back(position);
+    });
+    const bool covariance = node.Find("covariance") != nullptr;
+    const std::string key = covariance ? "covariance" : "matrix";
+    rows = node.Find(key);
+    map.Each(key, 2, SIZE_MAX, [&](const InputNode& item, const std::string& item_path) {
+      std::vector<double> row;
+      for (const InputNode& cell : item.items) row.push_back(ReadNumber(cell, item_path, problems));
+      matrix.push_back(std::move(row));
+    });
+    if (problems.size() > before || rows == nullptr) return;
+    const std::size_t size = members.size();
+    const bool square =
+        matrix.size() == size &&
+        std::all_of(matrix.begin(), matrix.end(), [size](const auto& row) { return row.size() == size; });
+    if (!square) {
+      AddProblem(problems, *rows, map.PathOf(key),
+                 "the matrix does not fit its " + std::to_string(size) + " names",
+                 std::to_string(size) + " rows of " + std::to_string(size) + " numbers");
+      return;
+    }
+    if (covariance) {
+      // In the squares of the internal units; the standard deviations are the dispersions' own.
+      std::vector<double> sigma;
+      for (std::size_t i = 0; i < size; ++i) sigma.push_back(Sqrt(std::max(matrix[i][i], 0.0)));
+      for (std::size_t i = 0; i < size; ++i) {
+        const Dispersion& dispersion = campaign.dispersions[members[i]];
+        const double unit = InputColumns()[static_cast<std::size_t>(dispersion.inputs.front())].unit;
+        const double stated = dispersion.distribution.sigma / unit;
+        if (!(std::fabs(sigma[i] - stated) <= 1e-6 * stated)) {
+          AddProblem(problems, *rows, map.PathOf(key),
+                     "the variance of '" + dispersion.name + "' is not that of its distribution",
+                     "the square of sigma in the unit of the column " +
+                         InputColumns()[static_cast<std::size_t>(dispersion.inputs.front())].name);
+          return;
+        }
+      }
+      for (std::size_t i = 0; i < size; ++i) {
+        for (std::size_t j = 0; j < size; ++j) matrix[i][j] /= sigma[i] * sigma[j];
+      }
+      for (std::size_t i = 0; i < size; ++i) matrix[i][i] = 1.0;
+    }
+    for (std::size_t i = 0; i < size; ++i) {
+      for (std::size_t j = 0; j < size; ++j) {
+        if (matrix[i][j] == (i == j ? 1.0 : matrix[j][i])) continue;
+        AddProblem(problems, *rows, map.PathOf(key),
+                   i == j ? "the diagonal is not 1" : "the matrix is not symmetric",
+                   i == j ? "correlations, or covariance: in place of matrix:"
+                          : "equal numbers across the diagonal");
+        return;
+      }
+    }
+    const std::vector<std::vector<double>> factor = Cholesky(matrix);
+    if (factor.empty()) {
+      AddProblem(problems, *rows, map.PathOf(key), "the matrix is not positive definite",
+                 "correlations that can hold together");
+      return;
+    }
+    for (std::size_t i = 0; i < size; ++i) {
+      auto& mix = campaign.dispersions[members[i]].mix;
+      for (std::size_t j = 0; j <= i; ++j) mix.emplace_back(members[j], factor[i][j]);
+    }
+  }
+}
+
+// looks, spending and anytime of a requirement, or of all in `verdicts`.
+VerdictPlan ReadPlan(MapReader& map, const VerdictPlan& absent) {
+  VerdictPlan plan = absent;
+  const InputNode* looks = map.Optional("looks");
+  const InputNode* anytime = map.Optional("anytime");
+  const InputNode* spending = map.Optional("spending");
+  if (looks != nullptr && anytime != nullptr) {
+    AddProblem(map.problems(), *anytime, map.PathOf("anytime"), "'looks' and 'anytime' are both given",
+               "either looks: K or anytime: true");
+  }
+  if (anytime != nullptr) plan.kind = map.Flag("anytime", false) ? PlanKind::kAnytime : PlanKind::kFixed;
+  if (looks != nullptr) {
+    plan.looks = static_cast<std::int64_t>(map.Integer("looks", 1, kMaxLooks));
+    plan.kind = plan.looks > 1 ? PlanKind::kGroupSequential : PlanKind::kFixed;
+  }
+  if (plan.kind != PlanKind::kGroupSequential) plan.looks = 1;
+  if (spending != nullptr) {
+    plan.spending = map.Choice<Spending>(
+        "spending", {{"obrien_fleming", Spending::kOBrienFleming}, {"pocock", Spending::kPocock}});
+    if (plan.kind != PlanKind::kGroupSequential) {
+      AddProblem(map.problems(), *spending, map.PathOf("spending"), "one look has nothing to share",
+                 "looks: 2 or more");
+    }
+  }
+  return plan;
+}
+
+Verdicts DecodeVerdicts(const InputNode& node, const std::string& path, VerdictPlan& plan, Sampling& sampling,
+                        ProblemList& problems) {
+  MapReader map(node, path, problems);
+  Verdicts verdicts;
+  plan = ReadPlan(map, {});
+  verdicts.holm = map.Choice<bool>("joint", {{"each", false}, {"holm", true}}, false);
+  verdicts.stop_when_decided =
+      map.Choice<bool>("stop", {{"when_all_flown", false}, {"when_decided", true}}, false);
+  const InputNode* max_cases = map.Optional("max_cases");
+  if (max_cases == nullptr) return verdicts;
+  const std::uint64_t most = map.Integer("max_cases", 1, kMaxCases);
+  if (!verdicts.stop_when_decided) {
+    AddProblem(problems, *max_cases, map.PathOf("max_cases"), "every case is flown", "stop: when_decided");
+  }
+  sampling.cases = most;
+  return verdicts;
 }
 
 // A design needs dispersions that it can set.
@@ -89,7 +287,8 @@ void CheckDesign(const Campaign& campaign, const InputNode& sampling, ProblemLis
   }
 }
 
-Requirement DecodeRequirement(const InputNode& node, const std::string& path, ProblemList& problems) {
+Requirement DecodeRequirement(const InputNode& node, const std::string& path, const VerdictPlan& plan,
+                              ProblemList& problems) {
   MapReader map(node, path, problems);
   Requirement requirement;
   const InputNode& metric = map.Required("metric", "the name of a metric");
@@ -103,13 +302,29 @@ Requirement DecodeRequirement(const InputNode& node, const std::string& path, Pr
   }
   if (map.Optional("below") != nullptr) requirement.below = map.Number("below", kAnyNumber);
   if (map.Optional("above") != nullptr) requirement.above = map.Number("above", kAnyNumber);
-  if (requirement.below.has_value() == requirement.above.has_value() && node.kind == InputNode::Kind::kMap) {
+  if (map.Optional("within") != nullptr) {
+    const std::vector<double> ends = map.Numbers("within", kAnyNumber, 2, 2);
+    if (ends.size() == 2) {
+      requirement.within = {ends[0], ends[1]};
+      if (!(ends[0] < ends[1])) {
+        AddProblem(problems, *node.Find("within"), map.PathOf("within"),
+                   "the first limit is not below the second", "[low, high]");
+      }
+    }
+  }
+  const int limits =
+      (node.Find("below") != nullptr) + (node.Find("above") != nullptr) + (node.Find("within") != nullptr);
+  if (limits != 1 && node.kind == InputNode::Kind::kMap) {
+    const bool pair = limits == 2 && node.Find("within") == nullptr;
     AddProblem(problems, node, path,
-               requirement.below ? "'below' and 'above' are both given" : "the limit is missing",
-               "either below: x or above: x");
+               limits == 0 ? "the limit is missing"
+               : pair      ? "'below' and 'above' are both given"
+                           : "more than one limit is given",
+               "either below: x, above: x or within: [low, high]");
   }
   requirement.probability = map.Number("probability", Inside(0.0, 1.0));
-  requirement.consumer_risk = map.Number("consumer_risk", Inside(0.0, 1.0));
+  requirement.consumer_risk = map.Number("consumer_risk", Inside(0.0, 0.5));
+  requirement.plan = ReadPlan(map, plan);
   return requirement;
 }
 
@@ -172,12 +387,26 @@ DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vect
   if (const InputNode* dispersions = map.Optional("dispersions")) {
     DecodeDispersions(*dispersions, "dispersions", stages, campaign, problems);
   }
+  if (const InputNode* table = sampling == nullptr ? nullptr : sampling->Find("table")) {
+    DecodeListTable(*table, table->file == root.file ? "sampling.table" : "", campaign, problems);
+  }
+  map.Each("correlations", 0, SIZE_MAX, [&](const InputNode& item, const std::string& path) {
+    DecodeCorrelation(item, path, campaign, problems);
+  });
   if (problems.size() == before && sampling != nullptr && sampling->Find("method") != nullptr) {
     CheckDesign(campaign, *sampling, problems);
   }
+  VerdictPlan plan;
+  if (const InputNode* verdicts = map.Optional("verdicts")) {
+    campaign.verdicts = DecodeVerdicts(*verdicts, "verdicts", plan, campaign.sampling, problems);
+    if (campaign.verdicts.stop_when_decided && campaign.sampling.method != SamplingMethod::kMonteCarlo) {
+      AddProblem(problems, *verdicts->Find("stop"), "verdicts.stop", "a design study decides nothing",
+                 "method: monte_carlo");
+    }
+  }
   map.Each("requirements", map.node().Find("requirements") == nullptr ? 0 : 1, SIZE_MAX,
            [&](const InputNode& item, const std::string& path) {
-             campaign.requirements.push_back(DecodeRequirement(item, path, problems));
+             campaign.requirements.push_back(DecodeRequirement(item, path, plan, problems));
            });
 
   if (warnings != nullptr && problems.empty() && reference != nullptr &&
@@ -191,16 +420,28 @@ DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vect
 
 std::string VehicleSha256(const InputNode& vehicle) { return Sha256Hex(CanonicalText(vehicle)); }
 
+std::string RequirementsId(const InputNode& campaign) {
+  InputNode judged = MapAt(campaign);
+  for (const char* key : {"requirements", "verdicts"}) {
+    if (const InputNode* value = campaign.Find(key)) SetMember(judged, key, *value);
+  }
+  return Sha256Hex(CanonicalText(judged));
+}
+
 std::string FlightId(const InputNode& campaign, SamplingMethod method) {
   InputNode deciding = MapAt(campaign);
-  for (const char* key : {"vehicle", "reference", "autopilot", "dispersions"}) {
+  for (const char* key : {"vehicle", "reference", "autopilot", "dispersions", "correlations"}) {
     if (const InputNode* value = campaign.Find(key)) SetMember(deciding, key, *value);
   }
   InputNode sampling = MapAt(campaign);
   SetMember(sampling, "method", *campaign.Find("sampling")->Find("method"));
   SetMember(sampling, "seed", *campaign.Find("sampling")->Find("seed"));
-  // The strata of a Latin hypercube depend on their number; every other case stands for itself.
-  if (method == SamplingMethod::kLatinHypercube) {
+  for (const char* key : {"replicates", "table"}) {
+    if (const InputNode* value = campaign.Find("sampling")->Find(key)) SetMember(sampling, key, *value);
+  }
+  // The strata of a Latin hypercube and the bounds of replicates depend on the number of cases; every other
+  // case stands for itself.
+  if (method == SamplingMethod::kLatinHypercube || campaign.Find("sampling")->Find("replicates") != nullptr) {
     SetMember(sampling, "cases", *campaign.Find("sampling")->Find("cases"));
   }
   SetMember(deciding, "sampling", std::move(sampling));

@@ -29,6 +29,8 @@ DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vect
 
 /// SHA-256 of the canonical vehicle of a campaign's or a vehicle file's tree.
 std::string VehicleSha256(const InputNode& vehicle);
+/// SHA-256 of the requirements and of how they are judged.
+std::string RequirementsId(const InputNode& campaign);
 /// SHA-256 of what decides a case.
 std::string FlightId(const InputNode& campaign, SamplingMethod method);
 

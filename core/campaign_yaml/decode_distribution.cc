@@ -68,8 +68,8 @@ class ParameterReader {
 
 // Some distribution has a parameter of this name.
 bool IsParameter(const std::string& key) {
-  constexpr const char* kStems[] = {"three_sigma", "sigma", "mean", "bound",
-                                    "plus_minus",  "low",   "high", "value"};
+  constexpr const char* kStems[] = {"three_sigma", "sigma", "mean", "bound",  "plus_minus", "low",
+                                    "high",        "value", "mode", "median", "weights",    "samples"};
   return std::any_of(std::begin(kStems), std::end(kStems),
                      [&](const char* stem) { return key.starts_with(stem); });
 }
@@ -78,7 +78,8 @@ bool IsParameter(const std::string& key) {
 std::string Explain(const ParameterReader& keys) {
   return "distribution: normal with " + keys.Keys("three_sigma", true) + " or " + keys.Keys("sigma", true) +
          "; uniform with " + keys.Keys("bound", true) + "; two_point with " + keys.Keys("plus_minus", true) +
-         "; values with " + keys.Keys("values", false) + "; constant with " + keys.Keys("value", false);
+         "; values with " + keys.Keys("values", false) + "; constant with " + keys.Keys("value", false) +
+         "; truncated_normal, triangular, lognormal, rayleigh or empirical with theirs";
 }
 
 void CheckRange(const MapReader& map, const DispersedScalar& scalar, const ScalarDistribution& distribution) {
@@ -88,8 +89,17 @@ void CheckRange(const MapReader& map, const DispersedScalar& scalar, const Scala
       extremes = {distribution.nominal - 6.0 * distribution.sigma,
                   distribution.nominal + 6.0 * distribution.sigma};
       break;
+    case Distribution::kLogNormal:
+      extremes = {distribution.nominal * std::exp(-6.0 * distribution.sigma),
+                  distribution.nominal * std::exp(6.0 * distribution.sigma)};
+      break;
+    case Distribution::kRayleigh:
+      extremes = {0.0, 6.0 * distribution.sigma};
+      break;
     case Distribution::kUniform:
     case Distribution::kTwoPoint:
+    case Distribution::kTriangular:
+    case Distribution::kTruncatedNormal:
       extremes = {distribution.low, distribution.high};
       if (!(distribution.low < distribution.high)) {
         AddProblem(map.problems(), map.node(), map.path(), "the low value is not below the high value",
@@ -98,6 +108,7 @@ void CheckRange(const MapReader& map, const DispersedScalar& scalar, const Scala
       break;
     case Distribution::kValues:
     case Distribution::kConstant:
+    case Distribution::kEmpirical:
       extremes = distribution.values;
       break;
   }
@@ -105,7 +116,9 @@ void CheckRange(const MapReader& map, const DispersedScalar& scalar, const Scala
   const std::string unit = scalar.IsFactor() ? "factor" : std::string(scalar.dimension.front().suffix);
   for (const double value : extremes) {
     if (scalar.range.Contains(value)) continue;
-    const bool normal = distribution.kind == Distribution::kNormal;
+    const bool normal = distribution.kind == Distribution::kNormal ||
+                        distribution.kind == Distribution::kLogNormal ||
+                        distribution.kind == Distribution::kRayleigh;
     AddProblem(map.problems(), map.node(), map.path(),
                std::string(normal ? "a draw at 6 sigma is " : "a draw can be ") +
                    FormatRounded(value / scale) + " (" + unit + ")",
@@ -154,11 +167,17 @@ ScalarDistribution ReadDistribution(MapReader& map, const DispersedScalar& scala
   }
   if (map.problems().size() > before) return distribution;
 
-  distribution.kind = map.Choice<Distribution>("distribution", {{"normal", Distribution::kNormal},
-                                                                {"uniform", Distribution::kUniform},
-                                                                {"two_point", Distribution::kTwoPoint},
-                                                                {"values", Distribution::kValues},
-                                                                {"constant", Distribution::kConstant}});
+  distribution.kind =
+      map.Choice<Distribution>("distribution", {{"normal", Distribution::kNormal},
+                                                {"uniform", Distribution::kUniform},
+                                                {"two_point", Distribution::kTwoPoint},
+                                                {"values", Distribution::kValues},
+                                                {"constant", Distribution::kConstant},
+                                                {"truncated_normal", Distribution::kTruncatedNormal},
+                                                {"triangular", Distribution::kTriangular},
+                                                {"lognormal", Distribution::kLogNormal},
+                                                {"rayleigh", Distribution::kRayleigh},
+                                                {"empirical", Distribution::kEmpirical}});
   const bool known = map.node().Find("distribution") != nullptr && map.problems().size() == before;
   if (!known) {
     // Which parameters belong here is unknown too.
@@ -178,18 +197,80 @@ ScalarDistribution ReadDistribution(MapReader& map, const DispersedScalar& scala
     return first != second;
   };
   bool complete = false;
+  const auto read_sigma = [&] {
+    const auto three_sigma = keys.Spread("three_sigma");
+    const auto sigma = keys.Spread("sigma");
+    std::vector<std::string> missing = keys.KeyList("three_sigma", true);
+    for (std::string& key : keys.KeyList("sigma", true)) missing.push_back(std::move(key));
+    complete = exactly_one(three_sigma.has_value(), sigma.has_value(), std::move(missing),
+                           "one number above 0, 3 sigma or 1 sigma");
+    distribution.sigma = sigma ? *sigma : three_sigma.value_or(0.0) / 3.0;
+  };
+  // Both ends, of which neither has a default.
+  const auto read_ends = [&] {
+    const auto low = keys.Position("low");
+    const auto high = keys.Position("high");
+    if (!low) map.ReportMissing(keys.KeyList("low", false), "a number below the high value");
+    if (!high) map.ReportMissing(keys.KeyList("high", false), "a number above the low value");
+    distribution.low = low.value_or(0.0);
+    distribution.high = high.value_or(0.0);
+    return low && high;
+  };
   switch (distribution.kind) {
-    case Distribution::kNormal: {
-      const auto three_sigma = keys.Spread("three_sigma");
-      const auto sigma = keys.Spread("sigma");
-      std::vector<std::string> missing = keys.KeyList("three_sigma", true);
-      for (std::string& key : keys.KeyList("sigma", true)) missing.push_back(std::move(key));
-      complete = exactly_one(three_sigma.has_value(), sigma.has_value(), std::move(missing),
-                             "one number above 0, 3 sigma or 1 sigma");
+    case Distribution::kNormal:
+      read_sigma();
       distribution.nominal = keys.Position("mean").value_or(scalar.Nominal());
-      distribution.sigma = sigma ? *sigma : three_sigma.value_or(0.0) / 3.0;
+      break;
+    case Distribution::kTruncatedNormal:
+      read_sigma();
+      distribution.nominal = keys.Position("mean").value_or(scalar.Nominal());
+      complete = read_ends() && complete;
+      // Beyond 6 sigma there is next to nothing to draw from.
+      if (complete && !(distribution.low < distribution.nominal + 6.0 * distribution.sigma &&
+                        distribution.high > distribution.nominal - 6.0 * distribution.sigma)) {
+        AddProblem(map.problems(), map.node(), map.path(), "the limits leave nothing of the normal",
+                   "limits that reach into 6 sigma about the mean");
+      }
+      break;
+    case Distribution::kTriangular: {
+      complete = read_ends();
+      const auto mode = keys.Position("mode");
+      if (!mode) map.ReportMissing(keys.KeyList("mode", false), "the most likely value");
+      distribution.nominal = mode.value_or(scalar.Nominal());
+      if (complete && mode && !(distribution.low <= *mode && *mode <= distribution.high)) {
+        AddProblem(map.problems(), map.node(), map.path(),
+                   "the mode is not between the low and the high value", "low <= mode <= high");
+      }
+      complete = complete && mode.has_value();
       break;
     }
+    case Distribution::kLogNormal: {
+      const auto median = keys.Position("median");
+      if (!median && !scalar.IsFactor()) map.ReportMissing(keys.KeyList("median", false), "a number above 0");
+      distribution.nominal = median.value_or(scalar.Nominal());
+      distribution.sigma = map.Number("sigma_log", kPositive);
+      complete = distribution.sigma > 0.0 && (median || scalar.IsFactor());
+      if (complete && distribution.nominal <= 0.0) {
+        AddProblem(map.problems(), map.node(), map.path(), "the median is not above 0", "a median above 0");
+      }
+      break;
+    }
+    case Distribution::kRayleigh:
+      read_sigma();
+      if (scalar.IsFactor()) {
+        AddProblem(map.problems(), map.node(), map.path(), "a factor is no magnitude",
+                   "rayleigh for an angle, a length, a speed or a rate");
+      }
+      break;
+    case Distribution::kEmpirical:
+      distribution.values = keys.Positions("samples");
+      std::sort(distribution.values.begin(), distribution.values.end());
+      complete = distribution.values.size() >= 2;
+      if (distribution.values.size() == 1) {
+        AddProblem(map.problems(), map.node(), map.path(), "one sample is no distribution",
+                   "two samples or more");
+      }
+      break;
     case Distribution::kUniform:
     case Distribution::kTwoPoint: {
       const std::string stem = distribution.kind == Distribution::kUniform ? "bound" : "plus_minus";
@@ -212,6 +293,15 @@ ScalarDistribution ReadDistribution(MapReader& map, const DispersedScalar& scala
     case Distribution::kValues:
       distribution.values = keys.Positions("values");
       complete = !distribution.values.empty();
+      if (map.Optional("weights") != nullptr) {
+        distribution.weights = map.Numbers("weights", kPositive, 1);
+        if (distribution.weights.size() != distribution.values.size() && complete) {
+          AddProblem(map.problems(), *map.node().Find("weights"), map.PathOf("weights"),
+                     "there are " + std::to_string(distribution.weights.size()) + " weights for " +
+                         std::to_string(distribution.values.size()) + " values",
+                     "one weight a value");
+        }
+      }
       break;
     case Distribution::kConstant: {
       const auto value = keys.Position("value");

@@ -46,9 +46,26 @@ Parse YamlParser(std::vector<InputProblem>& problems) {
 }
 
 Parse CsvParser(const std::vector<std::string>& columns, std::vector<InputProblem>& problems) {
-  return [&columns, &problems](const std::string& text, const std::string& file) {
+  return [columns, &problems](const std::string& text, const std::string& file) {
     return ParseCsv(text, file, columns, problems);
   };
+}
+
+// The samples_* of an empirical distribution, anywhere among the dispersions, may be a file with that column.
+void InlineSamples(InputNode& node, const std::string& path, FileNames names,
+                   std::vector<InputProblem>& problems) {
+  for (InputMember& member : node.members) {
+    const std::string member_path = path + "." + member.key;
+    if (!member.key.starts_with("samples_")) {
+      InlineSamples(member.value, member_path, names, problems);
+    } else if (member.value.kind == InputNode::Kind::kScalar) {
+      Replace(&member.value, member_path, names, CsvParser({member.key}, problems), problems);
+      if (InputNode* column = member.value.Find(member.key)) {
+        InputNode values = std::move(*column);
+        member.value = std::move(values);
+      }
+    }
+  }
 }
 
 // A coefficient or the mass properties of a scenario's stage may be a file's name.
@@ -95,7 +112,10 @@ void InlineCampaignFiles(InputNode& campaign, FileNames names, std::vector<Input
     Replace(campaign.Find(key), key, names, YamlParser(problems), problems);
   }
   if (InputNode* vehicle = campaign.Find("vehicle")) InlineVehicleFiles(*vehicle, names, problems);
+  if (InputNode* sampling = campaign.Find("sampling"))
+    Replace(sampling->Find("table"), "sampling.table", names, CsvParser({}, problems), problems);
   InputNode* dispersions = campaign.Find("dispersions");
+  if (dispersions != nullptr) InlineSamples(*dispersions, "dispersions", names, problems);
   InputNode* wind = dispersions == nullptr ? nullptr : dispersions->Find("wind_profile");
   if (wind == nullptr) return;
   Replace(wind->Find("table"), "dispersions.wind_profile.table", names,

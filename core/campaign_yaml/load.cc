@@ -45,7 +45,13 @@ void ThrowIfAny(ProblemList problems) {
 void Override(InputNode& root, const CampaignOverrides& overrides) {
   InputNode* sampling = root.Find("sampling");
   if (sampling == nullptr || sampling->kind != InputNode::Kind::kMap) return;
-  if (overrides.cases) SetMember(*sampling, "cases", ScalarAt(*sampling, std::to_string(*overrides.cases)));
+  if (overrides.cases) {
+    const std::string cases = std::to_string(*overrides.cases);
+    SetMember(*sampling, "cases", ScalarAt(*sampling, cases));
+    InputNode* verdicts = root.Find("verdicts");
+    if (verdicts != nullptr && verdicts->Find("max_cases") != nullptr)
+      SetMember(*verdicts, "max_cases", ScalarAt(*verdicts, cases));
+  }
   if (overrides.seed) SetMember(*sampling, "seed", ScalarAt(*sampling, std::to_string(*overrides.seed)));
 }
 
@@ -59,6 +65,7 @@ Campaign FinishCampaign(InputNode root, FileNames names, const CampaignOverrides
   campaign.canonical_yaml = CanonicalText(root);
   campaign.id = Sha256Hex(campaign.canonical_yaml);
   campaign.flight_id = FlightId(root, campaign.sampling.method);
+  campaign.requirements_id = RequirementsId(root);
   return std::move(campaign);
 }
 

@@ -59,8 +59,9 @@ std::vector<std::size_t> MatchHeader(const std::vector<Cell>& header, const std:
 
 }  // namespace
 
-InputNode ParseCsv(const std::string& text, const std::string& file, const std::vector<std::string>& columns,
+InputNode ParseCsv(const std::string& text, const std::string& file, const std::vector<std::string>& wanted,
                    std::vector<InputProblem>& problems) {
+  std::vector<std::string> columns = wanted;
   const std::size_t before = problems.size();
   InputNode place;
   place.file = std::make_shared<const std::string>(file);
@@ -78,6 +79,12 @@ InputNode ParseCsv(const std::string& text, const std::string& file, const std::
 
     const std::vector<Cell> cells = SplitLine(line);
     if (!places) {
+      if (wanted.empty()) {
+        for (const Cell& cell : cells) {
+          if (std::find(columns.begin(), columns.end(), cell.text) == columns.end())
+            columns.push_back(cell.text);
+        }
+      }
       places = MatchHeader(cells, columns, file, line_number, problems);
       if (places->empty()) return {};
       place.line = line_number;
@@ -101,7 +108,9 @@ InputNode ParseCsv(const std::string& text, const std::string& file, const std::
     }
   }
   if (!places)
-    problems.push_back({file, 1, 1, "", "the table is empty", "the columns " + JoinWords(columns)});
+    problems.push_back(
+        {file, 1, 1, "", "the table is empty",
+         columns.empty() ? "a line with the names of its columns" : "the columns " + JoinWords(columns)});
   if (problems.size() > before) return {};
   return table;
 }

@@ -15,16 +15,19 @@ namespace dispersa {
 ///
 /// The shift makes each point uniform, so means are unbiased, and keeps the sequence's stratification: every
 /// block of 2^k cases has one in each of 2^k equal strata of a dimension. Nothing is skipped: case 0 is the
-/// (shifted) origin (A. B. Owen, "On dropping the first Sobol' point", 2020). A case depends on its index
-/// and on the order of the dimensions, not on the number of cases. The cases are not independent: limits
-/// that assume independent draws do not hold for them.
+/// (shifted) origin (A. B. Owen, "On dropping the first Sobol' point", 2020). A coordinate depends on the case's
+/// index, on its own dimension of the sequence and on its name: not on the number of cases, nor on the other
+/// dimensions. The cases are not independent: limits that assume independent draws do not hold for them.
 class Sobol {
  public:
   static constexpr std::size_t kMaxDimensions = 3667;  ///< of the tables
   static constexpr std::uint64_t kMaxCases = std::uint64_t{1} << 32;
 
-  /// 1 to kMaxDimensions dimensions.
+  /// 1 to kMaxDimensions dimensions, the first ones of the sequence.
   Sobol(std::uint64_t seed, const std::vector<std::string>& dimension_names);
+  /// The same with these dimensions of the sequence, each below kMaxDimensions and once.
+  Sobol(std::uint64_t seed, const std::vector<std::string>& dimension_names,
+        const std::vector<std::size_t>& sequence_dimensions);
 
   std::size_t dimensions() const { return dimensions_.size(); }
 

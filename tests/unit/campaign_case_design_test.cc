@@ -202,5 +202,88 @@ TEST(CaseDesign, SeedAndMethodChangeTheDraws) {
   EXPECT_NE(CaseDesign(campaign).Draw(3).wind_altitude_m, one);
 }
 
+/// The share of draws at most x against the distribution function, over 4000 cases: within 4 standard errors of
+/// at most sqrt(0.25 / 4000) = 0.0079.
+void ExpectLaw(const ScalarDistribution& distribution, const std::vector<std::pair<double, double>>& law) {
+  const CaseDesign design(With(SamplingMethod::kMonteCarlo, {Of("w", distribution, "wind_altitude_m")}));
+  for (const auto& [x, probability] : law) {
+    int below = 0;
+    for (std::uint64_t k = 0; k < 4000; ++k) below += design.Draw(k).wind_altitude_m <= x;
+    EXPECT_NEAR(below / 4000.0, probability, 0.032) << x;
+  }
+}
+
+TEST(CaseDesign, DrawsFollowTheirLaws) {
+  const auto phi = [](double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); };
+  const double from = phi(-1.0), to = phi(0.5);
+  ExpectLaw({.kind = Distribution::kTruncatedNormal, .nominal = 3.0, .sigma = 2.0, .low = 1.0, .high = 4.0, .values = {}},
+            {{0.999, 0.0}, {2.0, (phi(-0.5) - from) / (to - from)}, {3.5, (phi(0.25) - from) / (to - from)}, {4.0, 1.0}});
+  ExpectLaw({.kind = Distribution::kTriangular, .nominal = 1.0, .low = 0.0, .high = 4.0, .values = {}},
+            {{0.5, 0.0625}, {1.0, 0.25}, {2.0, 1.0 - 4.0 / 12.0}});
+  ExpectLaw({.kind = Distribution::kLogNormal, .nominal = 2.0, .sigma = 0.5, .values = {}},
+            {{2.0, 0.5}, {2.0 * std::exp(0.5), phi(1.0)}, {2.0 * std::exp(-0.25), phi(-0.5)}});
+  ExpectLaw({.kind = Distribution::kRayleigh, .sigma = 3.0, .values = {}},
+            {{3.0, 1.0 - std::exp(-0.5)}, {6.0, 1.0 - std::exp(-2.0)}});
+  ExpectLaw({.kind = Distribution::kValues, .values = {1.0, 2.0, 3.0}, .weights = {1.0, 5.0, 2.0}},
+            {{1.0, 0.125}, {2.0, 0.75}, {3.0, 1.0}});
+  ExpectLaw({.kind = Distribution::kEmpirical, .values = {0.0, 1.0, 11.0}}, {{0.5, 0.25}, {1.0, 0.5}, {6.0, 0.75}});
+}
+
+TEST(CaseDesign, CorrelatedNormalsAreAndOthersStay) {
+  Dispersion a = Of("a", Normal(0.0, 1.0), "wind_altitude_m");
+  Dispersion b = Of("b", Normal(0.0, 2.0), "wind_width_m");
+  const CaseDesign apart(With(SamplingMethod::kMonteCarlo, {a, b}));
+  b.mix = {{0, 0.6}, {1, 0.8}};
+  const CaseDesign together(With(SamplingMethod::kMonteCarlo, {a, b}));
+  double ab = 0.0, bb = 0.0;
+  constexpr int kCases = 4000;
+  for (std::uint64_t k = 0; k < kCases; ++k) {
+    const FlightInputs in = together.Draw(k);
+    EXPECT_EQ(in.wind_altitude_m, apart.Draw(k).wind_altitude_m);
+    ab += in.wind_altitude_m * in.wind_width_m / kCases;
+    bb += in.wind_width_m * in.wind_width_m / kCases;
+  }
+  // Standard errors: of the covariance 2 sqrt((1 + 0.36) / 4000) = 0.037, of the variance 4 sqrt(2 / 4000) = 0.09.
+  EXPECT_NEAR(ab, 1.2, 0.15);
+  EXPECT_NEAR(bb, 4.0, 0.36);
+}
+
+TEST(CaseDesign, SobolColumnsBelongToTheirNames) {
+  const Dispersion drag = Of("drag", Uniform(0.0, 1.0), "drag_factor");
+  const Dispersion wind = Of("wind/altitude", Uniform(0.0, 1.0), "wind_altitude_m");
+  const Dispersion thrust = Of("thrust", Uniform(0.5, 1.5), "thrust_factor_stage1");
+  const CaseDesign few(With(SamplingMethod::kSobol, {drag, wind}));
+  const CaseDesign more(With(SamplingMethod::kSobol, {thrust, drag, wind}));
+  for (std::uint64_t k = 0; k < 64; ++k) {
+    EXPECT_EQ(few.Draw(k).drag_factor, more.Draw(k).drag_factor);
+    EXPECT_EQ(few.Draw(k).wind_altitude_m, more.Draw(k).wind_altitude_m);
+  }
+}
+
+TEST(CaseDesign, ReplicatesAreDesignsOfTheirOwn) {
+  for (const SamplingMethod method : {SamplingMethod::kLatinHypercube, SamplingMethod::kSobol}) {
+    Campaign campaign = With(method, {Of("a", Uniform(0.0, 1.0), "wind_altitude_m")}, 64);
+    campaign.sampling.replicates = 4;
+    const CaseDesign design(campaign);
+    campaign.sampling.cases = 16;
+    campaign.sampling.replicates = 1;
+    const CaseDesign one(campaign);
+    std::set<double> all;
+    for (std::uint64_t replicate = 0; replicate < 4; ++replicate) {
+      std::set<int> strata;
+      for (std::uint64_t k = 0; k < 16; ++k) {
+        const double value = design.Draw(16 * replicate + k).wind_altitude_m;
+        if (replicate == 0) {
+          EXPECT_EQ(value, one.Draw(k).wind_altitude_m);
+        }
+        strata.insert(static_cast<int>(16.0 * value));
+        all.insert(value);
+      }
+      EXPECT_EQ(strata.size(), 16u);
+    }
+    EXPECT_EQ(all.size(), 64u);
+  }
+}
+
 }  // namespace
 }  // namespace dispersa

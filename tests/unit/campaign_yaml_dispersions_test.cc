@@ -156,5 +156,100 @@ TEST(CampaignYamlDispersions, RatesSensorsActuatorsAndLoop) {
   EXPECT_THAT(stuck[1].distribution.values, ElementsAre(2));
 }
 
+TEST(CampaignYamlDispersions, FurtherDistributions) {
+  const auto drag = [](const std::string& parameters) {
+    return Decode("drag_coefficient: {distribution: " + parameters + "}").at(0).distribution;
+  };
+  const ScalarDistribution truncated =
+      drag("truncated_normal, three_sigma_percent: 6, low_percent: -5, high_factor: 1.03");
+  EXPECT_EQ(truncated.kind, Distribution::kTruncatedNormal);
+  EXPECT_DOUBLE_EQ(truncated.sigma, 0.02);
+  EXPECT_DOUBLE_EQ(truncated.low, 0.95);
+  EXPECT_DOUBLE_EQ(truncated.high, 1.03);
+  const ScalarDistribution triangular = drag("triangular, low_percent: -5, mode_percent: 1, high_percent: 2");
+  EXPECT_EQ(triangular.kind, Distribution::kTriangular);
+  EXPECT_DOUBLE_EQ(triangular.nominal, 1.01);
+  const ScalarDistribution lognormal = drag("lognormal, sigma_log: 0.05");
+  EXPECT_EQ(lognormal.kind, Distribution::kLogNormal);
+  EXPECT_EQ(lognormal.nominal, 1.0);
+  EXPECT_EQ(lognormal.sigma, 0.05);
+  const ScalarDistribution discrete = drag("values, values_factor: [0.9, 1.1], weights: [3, 1]");
+  EXPECT_THAT(discrete.weights, ElementsAre(3.0, 1.0));
+  const ScalarDistribution empirical = drag("empirical, samples_factor: [1.1, 0.9, 1.0]");
+  EXPECT_EQ(empirical.kind, Distribution::kEmpirical);
+  EXPECT_THAT(empirical.values, ElementsAre(0.9, 1.0, 1.1));
+  const ScalarDistribution rayleigh =
+      Decode("thrust_offset: {distribution: rayleigh, sigma_mm: 2, clock_angle: uniform, per: vehicle}")
+          .at(0)
+          .distribution;
+  EXPECT_EQ(rayleigh.kind, Distribution::kRayleigh);
+  EXPECT_DOUBLE_EQ(rayleigh.sigma, 2e-3);
+}
+
+TEST(CampaignYamlDispersions, SamplesAndListsComeFromTables) {
+  const InputFiles files;
+  files.Write("samples.csv", "# measured\nsamples_percent\n3\n-2\n1\n");
+  files.Edit("campaign.yaml", "distribution: normal, three_sigma_percent: 6.7",
+             "distribution: empirical, samples_percent: samples.csv");
+  files.Write("runs.csv", "wind_azimuth_deg,gyro_bias_roll_deg_s\n90,0.1\n180,0.2\n");
+  files.Edit("campaign.yaml", "method: monte_carlo, cases: 100, seed: 20260101",
+             "method: list, cases: 2, seed: 1, table: runs.csv");
+  const Campaign campaign = LoadCampaign(files.Path("campaign.yaml"));
+  std::vector<double> drag;
+  for (const Dispersion& dispersion : campaign.dispersions) {
+    if (dispersion.name == "drag_coefficient") drag = dispersion.distribution.values;
+  }
+  EXPECT_THAT(drag, ElementsAre(0.98, 1.01, 1.03));
+  const Dispersion& last = campaign.dispersions.back();
+  EXPECT_EQ(last.name, "list/gyro_bias_roll_deg_s");
+  EXPECT_THAT(last.distribution.values, ElementsAre(0.1 * kRadPerDeg, 0.2 * kRadPerDeg));
+  // The canonical text holds both tables: the same campaign without the files.
+  const Campaign again = ParseCampaign(campaign.canonical_yaml, "canonical");
+  EXPECT_EQ(again.id, campaign.id);
+  EXPECT_EQ(again.flight_id, campaign.flight_id);
+}
+
+TEST(CampaignYamlDispersions, CorrelationsAreRowsOfTheCholeskyFactor) {
+  const InputFiles files;
+  files.Edit("campaign.yaml", "requirements:",
+             "correlations:\n  - {of: [thrust/stage1, drag_coefficient], matrix: [[1, 0.6], [0.6, 1]]}\n"
+             "requirements:");
+  const Campaign campaign = LoadCampaign(files.Path("campaign.yaml"));
+  std::size_t thrust = 0, drag = 0;
+  for (std::size_t i = 0; i < campaign.dispersions.size(); ++i) {
+    if (campaign.dispersions[i].name == "thrust/stage1") thrust = i;
+    if (campaign.dispersions[i].name == "drag_coefficient") drag = i;
+  }
+  using testing::Pair;
+  EXPECT_THAT(campaign.dispersions[thrust].mix, ElementsAre(Pair(thrust, 1.0)));
+  EXPECT_THAT(campaign.dispersions[drag].mix,
+              ElementsAre(Pair(thrust, 0.6), Pair(drag, testing::DoubleEq(0.8))));
+  // A covariance in the columns' units says the same: sigma 0.02/3 and 0.067/3.
+  files.Edit("campaign.yaml", "matrix: [[1, 0.6], [0.6, 1]]",
+             "covariance: [[4.444444444444444e-05, 8.933333333333333e-05], "
+             "[8.933333333333333e-05, 4.987777777777778e-04]]");
+  EXPECT_NEAR(LoadCampaign(files.Path("campaign.yaml")).dispersions[drag].mix[0].second, 0.6, 1e-9);
+}
+
+TEST(CampaignYaml, RequirementsNameTheirPlan) {
+  const InputFiles files;
+  files.Edit("campaign.yaml", "requirements:",
+             "verdicts: {looks: 4, spending: pocock, joint: holm, stop: when_decided, max_cases: 900}\n"
+             "requirements:\n"
+             "  - {metric: apogee_km, within: [480, 520], probability: 0.9, consumer_risk: 0.1, anytime: true}");
+  const Campaign campaign = LoadCampaign(files.Path("campaign.yaml"));
+  EXPECT_TRUE(campaign.verdicts.holm);
+  EXPECT_TRUE(campaign.verdicts.stop_when_decided);
+  EXPECT_EQ(campaign.sampling.cases, 900u);
+  EXPECT_EQ(campaign.requirements[0].plan.kind, PlanKind::kAnytime);
+  EXPECT_EQ((*campaign.requirements[0].within)[1], 520.0);
+  EXPECT_EQ(campaign.requirements[1].plan, (VerdictPlan{PlanKind::kGroupSequential, 4, Spending::kPocock}));
+  EXPECT_EQ(LoadCampaign(files.Path("campaign.yaml"), {.cases = 300, .seed = {}}).sampling.cases, 300u);
+  // What is required decides no flight.
+  const InputFiles plain;
+  EXPECT_EQ(LoadCampaign(plain.Path("campaign.yaml")).flight_id, campaign.flight_id);
+  EXPECT_NE(LoadCampaign(plain.Path("campaign.yaml")).requirements_id, campaign.requirements_id);
+}
+
 }  // namespace
 }  // namespace dispersa

@@ -33,11 +33,11 @@ TEST_P(BadInputTest, IsReportedInFull) {
 constexpr BadInput kBadInputs[] = {
     {"UnknownKey", "campaign.yaml", "dispersions:\n", "dispersion:\n", "campaign.yaml",
      "campaign.yaml:7:1: dispersion: unknown key 'dispersion' (did you mean 'dispersions'?), "
-     "allowed: autopilot, description, dispersions, name, optimize, reference, requirements, "
-     "sampling, schema, vehicle\n"},
+     "allowed: autopilot, correlations, description, dispersions, name, optimize, reference, "
+     "requirements, sampling, schema, vehicle, verdicts\n"},
     {"UnknownKeyLikeNoOther", "campaign.yaml", "name: trial", "name: trial\nzebra: 1", "campaign.yaml",
-     "campaign.yaml:3:1: zebra: unknown key 'zebra', allowed: autopilot, description, "
-     "dispersions, name, optimize, reference, requirements, sampling, schema, vehicle\n"},
+     "campaign.yaml:3:1: zebra: unknown key 'zebra', allowed: autopilot, correlations, "
+     "description, dispersions, name, optimize, reference, requirements, sampling, schema, vehicle, verdicts\n"},
     {"WordForCount", "campaign.yaml", "cases: 100", "cases: many", "campaign.yaml",
      "campaign.yaml:6:40: sampling.cases: 'many' is not a number, allowed: a whole number "
      "from 1 to 4294967295\n"},
@@ -135,29 +135,34 @@ constexpr BadInput kBadInputs[] = {
      "what it means (3 sigma, bound, corner, ...), allowed: distribution: normal with "
      "three_sigma_percent or sigma_percent; uniform with bound_percent; two_point with "
      "plus_minus_percent; values with values_percent or values_factor; constant with "
-     "value_percent or value_factor\n"},
+     "value_percent or value_factor; truncated_normal, triangular, lognormal, rayleigh or empirical with "
+     "theirs\n"},
     {"BarePercent", "campaign.yaml", "distribution: normal, three_sigma_percent: 6.7", "percent: 20",
      "campaign.yaml",
      "campaign.yaml:10:22: dispersions.drag_coefficient.percent: 'percent' alone does not say "
      "what it means (3 sigma, bound, corner, ...), allowed: distribution: normal with "
      "three_sigma_percent or sigma_percent; uniform with bound_percent; two_point with "
      "plus_minus_percent; values with values_percent or values_factor; constant with "
-     "value_percent or value_factor\n"},
+     "value_percent or value_factor; truncated_normal, triangular, lognormal, rayleigh or empirical with "
+     "theirs\n"},
     {"BareDegrees", "campaign.yaml", "distribution: normal, three_sigma_deg: 0.25", "deg: 20",
      "campaign.yaml",
      "campaign.yaml:8:25: dispersions.thrust_misalignment.deg: 'deg' alone does not say what "
      "it means (3 sigma, bound, corner, ...), allowed: distribution: normal with "
      "three_sigma_deg or three_sigma_rad or sigma_deg or sigma_rad; uniform with bound_deg or "
      "bound_rad; two_point with plus_minus_deg or plus_minus_rad; values with values_deg or "
-     "values_rad; constant with value_deg or value_rad\n"},
+     "values_rad; constant with value_deg or value_rad; truncated_normal, triangular, lognormal, rayleigh or "
+     "empirical with theirs\n"},
     {"NoDistribution", "campaign.yaml", "distribution: normal, three_sigma_percent: 6.7",
      "three_sigma_percent: 6.7", "campaign.yaml",
      "campaign.yaml:10:21: dispersions.drag_coefficient: missing key 'distribution', allowed: "
-     "one of normal, uniform, two_point, values, constant\n"},
+     "one of normal, uniform, two_point, values, constant, truncated_normal, triangular, lognormal, rayleigh, "
+     "empirical\n"},
     {"UnknownDistribution", "campaign.yaml", "distribution: normal, three_sigma_percent: 6.7",
      "distribution: gaussian, three_sigma_percent: 6.7", "campaign.yaml",
      "campaign.yaml:10:36: dispersions.drag_coefficient.distribution: 'gaussian' is not a "
-     "choice, allowed: one of normal, uniform, two_point, values, constant\n"},
+     "choice, allowed: one of normal, uniform, two_point, values, constant, truncated_normal, triangular, lognormal, "
+     "rayleigh, empirical\n"},
     {"ParameterOfAnotherDistribution", "campaign.yaml", "distribution: normal, three_sigma_percent: 6.7",
      "distribution: uniform, three_sigma_percent: 6.7", "campaign.yaml",
      "campaign.yaml:10:21: dispersions.drag_coefficient: missing key 'bound_percent', "
@@ -193,16 +198,68 @@ constexpr BadInput kBadInputs[] = {
      "uniform, {fixed_deg: x} or a distribution\n"},
     {"TwoLimits", "campaign.yaml", "below: 0.5", "below: 0.5, above: 0.1", "campaign.yaml",
      "campaign.yaml:13:5: requirements[0]: 'below' and 'above' are both given, allowed: "
-     "either below: x or above: x\n"},
+     "either below: x, above: x or within: [low, high]\n"},
     {"NoLimit", "campaign.yaml", "below: 0.5, ", "", "campaign.yaml",
-     "campaign.yaml:13:5: requirements[0]: the limit is missing, allowed: either below: x or "
-     "above: x\n"},
+     "campaign.yaml:13:5: requirements[0]: the limit is missing, allowed: either below: x, "
+     "above: x or within: [low, high]\n"},
     {"ProbabilityInPercent", "campaign.yaml", "probability: 0.9973", "probability: 99.73", "campaign.yaml",
      "campaign.yaml:13:61: requirements[0].probability: 99.73 is out of range, allowed: a "
      "number above 0 and below 1\n"},
     {"CertainRisk", "campaign.yaml", "consumer_risk: 0.10", "consumer_risk: 1", "campaign.yaml",
      "campaign.yaml:13:84: requirements[0].consumer_risk: 1 is out of range, allowed: a "
-     "number above 0 and below 1\n"},
+     "number above 0 and below 0.5\n"},
+    {"ThreeLimits", "campaign.yaml", "below: 0.5", "below: 0.5, within: [0, 1]", "campaign.yaml",
+     "campaign.yaml:13:5: requirements[0]: more than one limit is given, allowed: either below: x, above: x or "
+     "within: [low, high]\n"},
+    {"LimitsTheWrongWayRound", "campaign.yaml", "below: 0.5", "within: [1, 0]", "campaign.yaml",
+     "campaign.yaml:13:44: requirements[0].within: the first limit is not below the second, allowed: [low, "
+     "high]\n"},
+    {"TwoPlans", "campaign.yaml", "below: 0.5", "below: 0.5, looks: 3, anytime: true", "campaign.yaml",
+     "campaign.yaml:13:67: requirements[0].anytime: 'looks' and 'anytime' are both given, allowed: either looks: "
+     "K or anytime: true\n"},
+    {"SpendingOfOneLook", "campaign.yaml", "below: 0.5", "below: 0.5, spending: pocock", "campaign.yaml",
+     "campaign.yaml:13:58: requirements[0].spending: one look has nothing to share, allowed: looks: 2 or more\n"},
+    {"NoLooks", "campaign.yaml", "below: 0.5", "below: 0.5, looks: 0", "campaign.yaml",
+     "campaign.yaml:13:55: requirements[0].looks: 0 is out of range, allowed: a whole number from 1 to 100\n"},
+    {"MaxCasesWithoutStop", "campaign.yaml", "requirements:", "verdicts: {max_cases: 500}\nrequirements:",
+     "campaign.yaml",
+     "campaign.yaml:12:23: verdicts.max_cases: every case is flown, allowed: stop: when_decided\n"},
+    {"StudyThatStops", "campaign.yaml", "sampling: {method: monte_carlo",
+     "verdicts: {stop: when_decided}\nsampling: {method: sobol", "campaign.yaml",
+     "campaign.yaml:6:18: verdicts.stop: a design study decides nothing, allowed: method: monte_carlo\n"},
+    {"ReplicatesOfDraws", "campaign.yaml", "seed: 20260101", "seed: 20260101, replicates: 4", "campaign.yaml",
+     "campaign.yaml:6:73: sampling.replicates: only a Latin hypercube or Sobol design has replicates, allowed: "
+     "method: latin_hypercube or sobol\n"},
+    {"UnevenReplicates", "campaign.yaml", "sampling: {method: monte_carlo, cases: 100, seed: 20260101}",
+     "sampling: {method: sobol, cases: 100, seed: 1, replicates: 3}", "campaign.yaml",
+     "campaign.yaml:6:60: sampling.replicates: 100 cases are not divisible into 3 designs of one size, allowed: a "
+     "divisor of the number of cases\n"},
+    {"NotPositiveDefinite", "campaign.yaml", "requirements:",
+     "correlations:\n  - {of: [drag_coefficient, thrust/stage1], matrix: [[1, 1], [1, 1]]}\nrequirements:",
+     "campaign.yaml",
+     "campaign.yaml:13:53: correlations[0].matrix: the matrix is not positive definite, allowed: correlations "
+     "that can hold together\n"},
+    {"CorrelationOfAUniform", "campaign.yaml", "requirements:",
+     "correlations:\n  - {of: [drag_coefficient, wind/azimuth], matrix: [[1, 0.5], [0.5, 1]]}\nrequirements:",
+     "campaign.yaml",
+     "campaign.yaml:13:29: correlations[0].of[1]: 'wind/azimuth' is not normal, allowed: distribution: normal\n"},
+    {"CrookedMatrix", "campaign.yaml", "requirements:",
+     "correlations:\n  - {of: [drag_coefficient, thrust/stage1], matrix: [[1, 0.5], [0.4, 1]]}\nrequirements:",
+     "campaign.yaml",
+     "campaign.yaml:13:53: correlations[0].matrix: the matrix is not symmetric, allowed: equal numbers across the "
+     "diagonal\n"},
+    {"ModeOutside", "campaign.yaml", "distribution: normal, three_sigma_percent: 6.7",
+     "distribution: triangular, low_percent: -5, mode_percent: 6, high_percent: 5", "campaign.yaml",
+     "campaign.yaml:10:21: dispersions.drag_coefficient: the mode is not between the low and the high value, "
+     "allowed: low <= mode <= high\n"},
+    {"WeightsAndValues", "campaign.yaml", "distribution: normal, three_sigma_percent: 6.7",
+     "distribution: values, values_percent: [1, 2], weights: [1]", "campaign.yaml",
+     "campaign.yaml:10:77: dispersions.drag_coefficient.weights: there are 1 weights for 2 values, allowed: one "
+     "weight a value\n"},
+    {"FactorAsMagnitude", "campaign.yaml", "distribution: normal, three_sigma_percent: 6.7",
+     "distribution: rayleigh, sigma_percent: 2", "campaign.yaml",
+     "campaign.yaml:10:21: dispersions.drag_coefficient: a factor is no magnitude, allowed: rayleigh for an "
+     "angle, a length, a speed or a rate\n"},
     {"EmptyList", "campaign.yaml",
      "requirements:\n  - {metric: pitch_error_peak_deg, below: 0.5, probability: 0.9973, "
      "consumer_risk: 0.10}",
