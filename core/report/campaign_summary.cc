@@ -1,9 +1,16 @@
 #include "core/report/campaign_summary.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
+#include "core/campaign/case_design.h"
 #include "core/report/metric_catalogue.h"
+#include "core/report/sampling_text.h"
+#include "core/report/stopping_rule.h"
+#include "core/report/text.h"
 
 namespace dispersa {
 namespace {
@@ -43,12 +50,39 @@ WorstCases FindWorst(const std::string& metric, Worse worse, const CaseColumns& 
 
 CampaignVerdict Overall(const CampaignSummary& summary) {
   if (summary.flown < summary.cases) return CampaignVerdict::kIncomplete;
-  const auto any = [&](const char* verdict) {
-    return std::any_of(summary.requirements.begin(), summary.requirements.end(),
-                       [&](const RequirementSummary& requirement) { return requirement.verdict == verdict; });
+  const auto any = [&](const auto& condition) {
+    return std::any_of(summary.requirements.begin(), summary.requirements.end(), condition);
   };
-  if (any("fail")) return CampaignVerdict::kFail;
-  return any("inconclusive") ? CampaignVerdict::kInconclusive : CampaignVerdict::kPass;
+  const auto is = [](const char* verdict) {
+    return [verdict](const RequirementSummary& requirement) { return requirement.verdict == verdict; };
+  };
+  if (!summary.requirements.empty() && !IsIndependent(summary.sampling)) {
+    if (summary.cases < summary.design_points) return CampaignVerdict::kIncomplete;
+    return any([](const RequirementSummary& requirement) { return requirement.failures > 0; })
+               ? CampaignVerdict::kStudyViolated
+               : CampaignVerdict::kStudy;
+  }
+  if (any(is("fail"))) return CampaignVerdict::kFail;
+  return any(is("inconclusive")) ? CampaignVerdict::kInconclusive : CampaignVerdict::kPass;
+}
+
+/// Cases that the campaign flies: where it stops, if it stops by itself.
+std::uint64_t CasesToFly(const Campaign& campaign, const JudgingContext& context,
+                         const std::vector<QuarantinedCase>& quarantined, const CaseColumns& cases) {
+  StoppingRule rule(campaign, context.planned, context.past_looks);
+  rule.Add(cases);
+  std::vector<std::uint64_t> given_up;
+  for (const QuarantinedCase& one : quarantined) given_up.push_back(one.case_index);
+  while (rule.Advance(given_up)) {
+  }
+  return rule.target();
+}
+
+std::vector<std::string> Lines(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
 }
 
 }  // namespace
@@ -59,6 +93,9 @@ const char* CampaignVerdictName(CampaignVerdict verdict) {
       return "pass";
     case CampaignVerdict::kInconclusive:
       return "inconclusive";
+    case CampaignVerdict::kStudy:
+    case CampaignVerdict::kStudyViolated:
+      return "study";
     case CampaignVerdict::kFail:
       return "fail";
     case CampaignVerdict::kIncomplete:
@@ -72,8 +109,10 @@ int VerdictExitCode(CampaignVerdict verdict) {
     case CampaignVerdict::kPass:
       return 0;
     case CampaignVerdict::kInconclusive:
+    case CampaignVerdict::kStudy:
       return 4;
     case CampaignVerdict::kFail:
+    case CampaignVerdict::kStudyViolated:
       return 3;
     case CampaignVerdict::kIncomplete:
       return 5;
@@ -81,10 +120,85 @@ int VerdictExitCode(CampaignVerdict verdict) {
   return 1;
 }
 
+std::vector<std::string> Warnings(const CampaignSummary& summary) {
+  std::vector<std::string> warnings;
+  const bool independent = IsIndependent(summary.sampling);
+  if (summary.flown < summary.cases) {
+    warnings.push_back(
+        fmt::format("Incomplete: {} of {} cases have a result.", summary.flown, summary.cases));
+    for (const RequirementSummary& requirement : summary.requirements) {
+      if (requirement.verdict != "fail") continue;
+      warnings.push_back(
+          fmt::format("Not met whatever the missing cases bring: {}.", RequirementWords(requirement)));
+    }
+  }
+  if (summary.cases < summary.design_points) {
+    warnings.push_back(fmt::format("Incomplete design: {} of its {} points are in the campaign.",
+                                   summary.cases, summary.design_points));
+  }
+  if (!independent && !summary.requirements.empty()) {
+    warnings.push_back(
+        "Design study: the points are chosen, so that no requirement is passed or failed by it.");
+  }
+  bool post_hoc = false;
+  for (const RequirementSummary& requirement : summary.requirements) {
+    if (requirement.post_hoc) {
+      post_hoc = true;
+      warnings.push_back(fmt::format("Post hoc: {} is not what was required before the first case was flown.",
+                                     RequirementWords(requirement)));
+    }
+    if (requirement.naive_risk) {
+      warnings.push_back(fmt::format(
+          "Beyond the plan: {} was planned for {} cases, {} are in the campaign; its looks read one "
+          "by one carry a risk of {}, not {}.",
+          requirement.metric, requirement.planned, summary.cases, PercentText(*requirement.naive_risk),
+          PercentText(requirement.consumer_risk)));
+    }
+    if (requirement.contradicted)
+      warnings.push_back(fmt::format("Contradiction: {} was decided both ways.", requirement.metric));
+  }
+  if (!post_hoc && summary.requirements_id != summary.registered_requirements_id) {
+    warnings.push_back(
+        "Post hoc: requirements were left out, or the way they are judged was changed, after the first case "
+        "was flown.");
+  }
+  const std::uint64_t completed = summary.outcomes[static_cast<std::size_t>(Outcome::kCompleted)];
+  if (completed < summary.flown) {
+    warnings.push_back(
+        fmt::format("{} of {} flights were lost: statistics and percentiles cover the {} that were "
+                    "completed, and every lost flight fails every requirement.",
+                    summary.flown - completed, summary.flown, completed));
+  }
+  return warnings;
+}
+
+std::string JointRiskSentence(const CampaignSummary& summary) {
+  if (summary.requirements.empty() || !IsIndependent(summary.sampling)) return "";
+  std::string sentence =
+      fmt::format("A design that misses any requirement passes them all with a probability of at most {}.",
+                  PercentText(summary.overall_risk));
+  if (summary.requirements.size() > 1) {
+    sentence +=
+        fmt::format(" That any one of the {} verdicts to pass, taken by itself, is wrong: at most {}{}.",
+                    summary.requirements.size(), PercentText(summary.any_risk),
+                    summary.holm ? " (Holm)" : " (the sum of their risks; joint: holm keeps it down)");
+  }
+  return sentence;
+}
+
+void RecordLooks(const ResultFolder& folder, const Campaign& campaign, const CampaignSummary& summary) {
+  if (summary.verdict == CampaignVerdict::kIncomplete || !IsIndependent(summary.sampling)) return;
+  for (std::size_t i = 0; i < summary.requirements.size(); ++i) {
+    const RequirementSummary& requirement = summary.requirements[i];
+    folder.RecordLook({campaign.requirements_id, RequirementLine(campaign.requirements[i]),
+                       static_cast<std::int64_t>(summary.cases), requirement.failures, requirement.verdict});
+  }
+}
+
 std::vector<std::string> KeyMetrics(const Campaign& campaign) {
   std::vector<std::string> metrics;
   const auto add = [&](const std::string& name) {
-    const bool exists = MetricColumn(name) < MetricNames().size();
+    const bool exists = std::find(MetricNames().begin(), MetricNames().end(), name) != MetricNames().end();
     if (exists && std::find(metrics.begin(), metrics.end(), name) == metrics.end()) metrics.push_back(name);
   };
   for (const Requirement& requirement : campaign.requirements) add(requirement.metric);
@@ -102,7 +216,25 @@ CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaig
   summary.id = campaign.id;
   summary.flight_id = campaign.flight_id;
   summary.seed = campaign.sampling.seed;
-  summary.cases = campaign.sampling.cases;
+  summary.max_cases = campaign.sampling.cases;
+  summary.quarantined = folder.QuarantinedCases();
+  JudgingContext context;
+  context.method = campaign.sampling.method;
+  context.replicates = campaign.sampling.replicates;
+  context.design_points = DesignSize(campaign);
+  context.planned = std::stoll(folder.Provenance("planned_cases"));
+  context.past_looks = folder.PastLooks();
+  context.registered = Lines(folder.Provenance("requirements"));
+  if (context.registered.empty()) context.registered = {"no requirement"};
+  context.holm = campaign.verdicts.holm;
+  context.cases = CasesToFly(campaign, context, summary.quarantined, cases);
+  summary.cases = context.cases;
+  summary.replicates = context.replicates;
+  summary.design_points = context.design_points;
+  summary.planned_cases = context.planned;
+  summary.holm = context.holm;
+  summary.requirements_id = campaign.requirements_id;
+  summary.registered_requirements_id = folder.Provenance("requirements_id");
   summary.flown = cases.rows();
   summary.sampling = campaign.sampling.method;
   summary.engine = folder.Provenance("engine");
@@ -113,13 +245,17 @@ CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaig
   for (const Outcome outcome : cases.outcome) ++summary.outcomes[static_cast<std::size_t>(outcome)];
   summary.lost_flights = cases.lost_flights;
   for (std::size_t i = 0; i < MetricNames().size(); ++i) {
-    summary.metrics.push_back({MetricNames()[i], Summarize(cases.metrics[i])});
+    const std::vector<double> values = CompletedValues(cases, MetricNames()[i]);
+    const std::vector<double> sorted = SortedFinite(values);
+    summary.metrics.push_back({MetricNames()[i], Summarize(values), Skewness(sorted), Percentiles(sorted)});
   }
-  const auto missing = static_cast<std::int64_t>(summary.cases - summary.flown);
+  summary.requirements = JudgeAll(campaign.requirements, context, cases);
   for (const Requirement& requirement : campaign.requirements) {
-    summary.requirements.push_back(Judge(requirement, campaign.sampling.method, cases, missing));
+    summary.overall_risk = std::max(summary.overall_risk, requirement.consumer_risk);
+    summary.any_risk += requirement.consumer_risk;
   }
-  summary.quarantined = folder.QuarantinedCases();
+  if (summary.holm) summary.any_risk = summary.overall_risk;
+  summary.any_risk = std::min(summary.any_risk, 1.0);
   for (const std::string& metric : KeyMetrics(campaign)) {
     Worse worse = DescribeMetric(metric).worse;
     for (const Requirement& requirement : campaign.requirements) {
@@ -128,6 +264,8 @@ CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaig
     summary.worst_cases.push_back(FindWorst(metric, worse, cases));
   }
   summary.dispersions = SummarizeDispersions(campaign, cases);
+  summary.drivers = FindDrivers(campaign, KeyMetrics(campaign), cases);
+  summary.failure_drivers = FindFailureDrivers(campaign, cases);
   summary.verdict = Overall(summary);
   return summary;
 }

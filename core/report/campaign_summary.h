@@ -11,23 +11,28 @@
 #include "core/campaign/case_result.h"
 #include "core/report/case_columns.h"
 #include "core/report/dispersion_summary.h"
+#include "core/report/drivers.h"
 #include "core/report/lost_flight.h"
 #include "core/report/requirement_summary.h"
 #include "core/report/result_folder.h"
+#include "core/statistics/percentiles.h"
 #include "core/statistics/summary.h"
 
 namespace dispersa {
 
-/// What a campaign comes to, worst last.
-enum class CampaignVerdict { kPass, kInconclusive, kFail, kIncomplete };
-/// "pass", "inconclusive", "fail", "incomplete".
+/// What a campaign comes to. A study's points are chosen: it neither passes nor fails, but a point that
+/// violates a requirement is a fact.
+enum class CampaignVerdict { kPass, kInconclusive, kStudy, kStudyViolated, kFail, kIncomplete };
+/// "pass", "inconclusive", "study", "study", "fail", "incomplete".
 const char* CampaignVerdictName(CampaignVerdict verdict);
-/// The contract's exit code: 0, 4, 3, 5.
+/// The contract's exit code: 0, 4, 4, 3, 3, 5.
 int VerdictExitCode(CampaignVerdict verdict);
 
 struct MetricSummary {
   std::string name;  ///< without the prefix
-  Summary statistics;
+  Summary statistics;                   ///< of the flights that were completed
+  double skewness = kUndefined;
+  std::vector<Percentile> percentiles;  ///< with what the sample says of them
 };
 
 struct WorstCase {
@@ -46,8 +51,11 @@ struct CampaignSummary {
   std::string id;
   std::string flight_id;
   std::uint64_t seed = 0;
-  std::uint64_t cases = 0;  ///< asked for
+  std::uint64_t cases = 0;      ///< asked for; of a campaign that stops when decided, up to where it stopped
+  std::uint64_t max_cases = 0;  ///< up to which it would have gone on
   std::uint64_t flown = 0;
+  std::uint64_t replicates = 1;
+  std::uint64_t design_points = 1;  ///< of a corner, one-at-a-time, grid or list design
   SamplingMethod sampling = SamplingMethod::kMonteCarlo;
   std::string engine;
   std::string vehicle;
@@ -56,14 +64,34 @@ struct CampaignSummary {
   std::string autopilot;
   CampaignVerdict verdict = CampaignVerdict::kIncomplete;
   std::array<std::uint64_t, kOutcomeCount> outcomes{};
-  std::vector<LostFlight> lost_flights;  ///< the first 20 that were not completed
+  std::vector<LostFlight> lost_flights;  ///< all that were not completed
   std::vector<MetricSummary> metrics;    ///< in the order of MetricNames()
   std::vector<RequirementSummary> requirements;
+  bool holm = false;  ///< the requirements' verdicts hold together
+  /// How likely it is at most that a campaign that misses any requirement passes them all, and that any of
+  /// the requirements' own verdicts to pass is wrong.
+  double overall_risk = 0.0;
+  double any_risk = 0.0;
+  std::string requirements_id;             ///< hash of the requirements now,
+  std::string registered_requirements_id;  ///< and before the first case was flown
+  std::int64_t planned_cases = 0;          ///< likewise
   std::vector<QuarantinedCase> quarantined;
   std::vector<WorstCases> worst_cases;
   std::vector<DispersionSummary> dispersions;
+  std::vector<MetricDrivers> drivers;            ///< of KeyMetrics()
+  std::vector<FailureDrivers> failure_drivers;   ///< of the requirements
   std::optional<CaseResult> nominal;  ///< flown without dispersions, when it was flown
 };
+
+/// What a reader must not miss before any number: cases that are missing, limits that were changed after the
+/// first case, looks beyond the plan, studies, lost flights. Sentences, of which the first screen shows each.
+std::vector<std::string> Warnings(const CampaignSummary& summary);
+
+/// The sentence for each requirement's verdict taken together.
+std::string JointRiskSentence(const CampaignSummary& summary);
+
+/// Keeps in the folder that these verdicts were read, if the campaign is complete and gives any.
+void RecordLooks(const ResultFolder& folder, const Campaign& campaign, const CampaignSummary& summary);
 
 /// From what is stored, without flying anything (so without `nominal`).
 CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaign);

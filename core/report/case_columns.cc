@@ -7,12 +7,6 @@
 #include "core/statistics/summary.h"
 
 namespace dispersa {
-namespace {
-
-constexpr std::size_t kLostFlights = 20;
-
-}  // namespace
-
 CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& wanted_inputs) {
   CaseColumns columns;
   columns.inputs.resize(InputColumns().size());
@@ -20,7 +14,7 @@ CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& want
   folder.ForEach([&](const CaseResult& result) {
     columns.index.push_back(result.case_index);
     columns.outcome.push_back(result.outcome);
-    if (result.outcome != Outcome::kCompleted && columns.lost_flights.size() < kLostFlights) {
+    if (result.outcome != Outcome::kCompleted) {
       columns.lost_flights.push_back(
           {result.case_index, result.outcome, result.end_time_s, result.end_stage, result.reason});
     }

@@ -17,7 +17,7 @@ struct CaseColumns {
   std::vector<std::uint64_t> index;
   std::vector<Outcome> outcome;
   std::vector<std::vector<double>> inputs;   ///< one column an entry of InputColumns(); only those asked for
-  std::vector<LostFlight> lost_flights;      ///< the first 20
+  std::vector<LostFlight> lost_flights;      ///< all of them
   std::vector<std::vector<double>> metrics;  ///< one column an entry of MetricNames()
 
   std::size_t rows() const { return index.size(); }

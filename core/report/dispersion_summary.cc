@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <boost/math/distributions/normal.hpp>
+
 #include "core/flight/flight_inputs.h"
 #include "core/report/metric_catalogue.h"
 #include "core/report/sampling_text.h"
@@ -37,6 +39,24 @@ Moments OfValues(const std::vector<double>& values) {
   return moments;
 }
 
+Moments OfWeighted(const Dispersion& dispersion) {
+  const ScalarDistribution& d = dispersion.distribution;
+  double total = 0.0;
+  for (const double weight : d.weights) total += weight;
+  Moments moments{0.0, 0.0, 1.0};
+  const auto value = [&](std::size_t i) { return dispersion.absolute ? std::fabs(d.values[i]) : d.values[i]; };
+  for (std::size_t i = 0; i < d.values.size(); ++i) moments.mean += d.weights[i] / total * value(i);
+  double second = 0.0, fourth = 0.0;
+  for (std::size_t i = 0; i < d.values.size(); ++i) {
+    const double square = (value(i) - moments.mean) * (value(i) - moments.mean);
+    second += d.weights[i] / total * square;
+    fourth += d.weights[i] / total * square * square;
+  }
+  moments.std = std::sqrt(second);
+  if (second > 0.0) moments.kurtosis = fourth / (second * second);
+  return moments;
+}
+
 /// Of the magnitude of a normal: the folded normal distribution.
 Moments FoldedNormal(double mean, double sigma) {
   using std::numbers::pi;
@@ -48,6 +68,39 @@ Moments FoldedNormal(double mean, double sigma) {
   return {folded, std::sqrt(variance), 3.87};
 }
 
+double QuantileOf(const ScalarDistribution& d, double u) {
+  const boost::math::normal normal;
+  switch (d.kind) {
+    case Distribution::kTruncatedNormal: {
+      const double from = cdf(normal, (d.low - d.nominal) / d.sigma);
+      const double to = cdf(normal, (d.high - d.nominal) / d.sigma);
+      return d.nominal + d.sigma * quantile(normal, from + (to - from) * u);
+    }
+    case Distribution::kLogNormal:
+      return d.nominal * std::exp(d.sigma * quantile(normal, u));
+    case Distribution::kRayleigh:
+      return d.sigma * std::sqrt(-2.0 * std::log1p(-u));
+    case Distribution::kTriangular: {
+      const double rising = (d.nominal - d.low) / (d.high - d.low);
+      return u < rising ? d.low + std::sqrt(u * (d.high - d.low) * (d.nominal - d.low))
+                        : d.high - std::sqrt((1.0 - u) * (d.high - d.low) * (d.high - d.nominal));
+    }
+    default:
+      return Quantile(d.values, u);
+  }
+}
+
+/// Over the quantiles in the middles of many equal parts: exact enough to tell a draw from another law.
+Moments ByQuantiles(const Dispersion& dispersion) {
+  constexpr int kParts = 20000;
+  std::vector<double> values;
+  for (int i = 0; i < kParts; ++i) {
+    const double value = QuantileOf(dispersion.distribution, (i + 0.5) / kParts);
+    values.push_back(dispersion.absolute ? std::fabs(value) : value);
+  }
+  return OfValues(values);
+}
+
 /// None where the magnitude of the draw makes it another distribution than the catalogue below knows.
 std::optional<Moments> Of(const Dispersion& dispersion) {
   const ScalarDistribution& d = dispersion.distribution;
@@ -55,6 +108,7 @@ std::optional<Moments> Of(const Dispersion& dispersion) {
     case Distribution::kConstant:
       return Moments{dispersion.absolute ? std::fabs(d.nominal) : d.nominal, 0.0, 1.0};
     case Distribution::kValues: {
+      if (!d.weights.empty()) return OfWeighted(dispersion);
       std::vector<double> values = d.values;
       if (dispersion.absolute) {
         for (double& value : values) value = std::fabs(value);
@@ -70,6 +124,12 @@ std::optional<Moments> Of(const Dispersion& dispersion) {
     case Distribution::kTwoPoint:
       if (dispersion.absolute && d.low < 0.0) return std::nullopt;
       return Moments{0.5 * (d.low + d.high), 0.5 * (d.high - d.low), 1.0};
+    case Distribution::kTruncatedNormal:
+    case Distribution::kLogNormal:
+    case Distribution::kRayleigh:
+    case Distribution::kTriangular:
+    case Distribution::kEmpirical:
+      return ByQuantiles(dispersion);
   }
   return std::nullopt;
 }
@@ -92,12 +152,36 @@ std::string Words(const Dispersion& dispersion, double unit, const std::string& 
     case Distribution::kTwoPoint:
       words = fmt::format("{} or {}{}", text(d.low), text(d.high), suffix);
       break;
+    case Distribution::kTruncatedNormal:
+      words = fmt::format("normal, mean {}{}, 3σ {}{}, truncated to {} to {}{}", text(d.nominal), suffix,
+                          text(3.0 * d.sigma), suffix, text(d.low), text(d.high), suffix);
+      break;
+    case Distribution::kLogNormal:
+      words = fmt::format("lognormal, median {}{}, σ of the logarithm {}", text(d.nominal), suffix,
+                          ReadableText(d.sigma));
+      break;
+    case Distribution::kRayleigh:
+      words = fmt::format("Rayleigh, σ {}{}", text(d.sigma), suffix);
+      break;
+    case Distribution::kTriangular:
+      words = fmt::format("triangular, {} to {}{}, mode {}{}", text(d.low), text(d.high), suffix, text(d.nominal),
+                          suffix);
+      break;
+    case Distribution::kEmpirical:
+      words = fmt::format("as a sample of {}, {} to {}{}", d.values.size(), text(d.values.front()),
+                          text(d.values.back()), suffix);
+      break;
     case Distribution::kValues:
       words = "one of";
       for (const double value : d.values) words += " " + text(value);
       words += suffix;
+      if (!d.weights.empty()) {
+        words += " with weights";
+        for (const double weight : d.weights) words += " " + ReadableText(weight);
+      }
       break;
   }
+  if (!dispersion.mix.empty()) words += ", correlated";
   return dispersion.absolute ? "magnitude of " + words : words;
 }
 

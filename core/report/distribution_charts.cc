@@ -42,11 +42,6 @@ Histogram MakeHistogram(const std::vector<double>& sorted, double least_width) {
   return histogram;
 }
 
-std::string LimitText(const RequirementSummary& requirement, const std::string& unit) {
-  return fmt::format("{} {}{}{}", requirement.below ? "below" : "above", ReadableText(requirement.limit),
-                     unit.empty() ? "" : " ", unit);
-}
-
 std::size_t Position(const std::string& metric) {
   const std::vector<std::string>& names = MetricNames();
   return static_cast<std::size_t>(std::find(names.begin(), names.end(), metric) - names.begin());
@@ -129,7 +124,7 @@ std::string DistributionFigures(const std::string& metric, const CampaignSummary
                 520, 250);
   tail.Line(x, share, "line-0", "cases");
   for (const RequirementSummary* requirement : requirements) {
-    bars.VerticalLimit(requirement->limit, "limit: " + LimitText(*requirement, info.unit));
+    bars.VerticalLimit(requirement->limit, "limit: " + LimitWords(*requirement, info.unit));
     tail.VerticalLimit(requirement->limit, "limit");
     tail.HorizontalLimit(1.0 - requirement->probability,
                          fmt::format("{} allowed", PercentText(1.0 - requirement->probability)));

@@ -92,6 +92,11 @@ std::string HistoryCsv(const History& history) {
   return csv;
 }
 
+void RemoveHistories(const ResultFolder& folder) {
+  std::error_code ignored;  // what cannot be removed is out of date, and the report does not name it
+  fs::remove_all(folder.directory() / "histories", ignored);
+}
+
 FlightHistories WriteHistories(const ResultFolder& folder, const Campaign& campaign,
                                const CampaignSummary& summary, const CaseColumns& cases,
                                const ReportOptions& options) {

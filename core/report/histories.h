@@ -24,6 +24,9 @@ struct FlightHistories {
 /// One line a row; the header names the columns. NaN is an empty cell.
 std::string HistoryCsv(const History& history);
 
+/// Removes histories/, which would belong to an earlier report.
+void RemoveHistories(const ResultFolder& folder);
+
 /// Flies again what the report shows and writes histories/ anew. Errors as WriteReports.
 FlightHistories WriteHistories(const ResultFolder& folder, const Campaign& campaign,
                                const CampaignSummary& summary, const CaseColumns& cases,

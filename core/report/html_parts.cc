@@ -35,6 +35,7 @@ std::string VerdictBadge(std::string_view verdict) {
   const std::string_view sign = verdict == "pass"           ? "✓"
                                 : verdict == "fail"         ? "✗"
                                 : verdict == "inconclusive" ? "?"
+                                : verdict == "study"        ? "◇"
                                                             : "…";
   return fmt::format("<span class=\"badge {}\">{} {}</span>", verdict, sign, verdict);
 }
@@ -62,14 +63,14 @@ body { margin: 0 auto; padding: 28px 24px 60px; max-width: 1160px; background: v
 h1 { font-size: 27px; margin: 0 0 2px; } h2 { font-size: 20px; margin: 44px 0 8px; padding-bottom: 4px;
   border-bottom: 2px solid var(--rule); } h3 { font-size: 16px; margin: 24px 0 6px; }
 p { margin: 6px 0 10px; max-width: 88ch; } .soft, figcaption, .definition { color: var(--soft); }
-a { color: var(--blue); } nav { font-size: 13px; margin: 16px 0 0; } nav a { margin-right: 14px;
-  white-space: nowrap; }
+a { color: var(--blue); } nav { font-size: 13px; margin: 16px 0 0; display: flex;
+  flex-wrap: wrap; gap: 4px 14px; } nav a { white-space: nowrap; }
 code { font: 12.5px/1.4 ui-monospace, "DejaVu Sans Mono", "Liberation Mono", monospace; overflow-wrap:
   anywhere; }
 .command { display: block; background: var(--panel); border: 1px solid var(--rule); border-radius: 5px;
   padding: 6px 10px;
   margin: 6px 0; user-select: all; } td code.copy { user-select: all; white-space: nowrap; }
-.headline { display: flex; gap: 16px; align-items: center; margin: 16px 0 4px; padding: 12px 16px;
+.headline { display: flex; flex-wrap: wrap; gap: 8px 16px; align-items: center; margin: 16px 0 4px; padding: 12px 16px;
   border-radius: 7px;
   border: 1px solid var(--rule); background: var(--panel); } .headline p { margin: 0; }
 .headline .badge { font-size: 17px; padding: 5px 14px; }
@@ -77,7 +78,7 @@ code { font: 12.5px/1.4 ui-monospace, "DejaVu Sans Mono", "Liberation Mono", mon
   color: #fff;
   white-space: nowrap; print-color-adjust: exact; -webkit-print-color-adjust: exact; }
 .badge.pass { background: var(--pass); } .badge.fail { background: var(--fail); }
-.badge.inconclusive, .badge.incomplete, .badge.design { background: var(--open); }
+.badge.inconclusive, .badge.incomplete, .badge.design, .badge.study { background: var(--open); }
 .tiles { display: grid; grid-template-columns: repeat(auto-fit, minmax(150px, 1fr)); gap: 10px; margin:
   14px 0 0; }
 .tile { border: 1px solid var(--rule); border-radius: 6px; padding: 7px 12px; } .tile b { display: block;
@@ -92,11 +93,16 @@ th { text-align: left; font-weight: 600; color: var(--soft); border-bottom: 1.5p
 th:first-child, td:first-child { padding-left: 0; } table.narrow { width: auto; min-width: 420px; }
 .n { text-align: right; font-variant-numeric: tabular-nums; } td.n, td.u { white-space: nowrap; }
 td > code { white-space: nowrap; }  td.id code { white-space: normal; }
-tr.joined td { border-bottom: none; padding-bottom: 0; } tr.sentence td { color: var(--soft); padding-top:
-  2px; }
+.warnings { margin: 8px 0; padding: 8px 14px 8px 32px; border-left: 4px solid var(--open); background: var(--panel);
+  border-radius: 4px; } .warnings li { margin: 2px 0; max-width: 110ch; }
+.requirement { border: 1px solid var(--rule); border-radius: 6px; padding: 10px 14px 6px; margin: 10px 0; }
+.requirement .claim { max-width: none; } .requirement .claim .badge { margin-right: 8px; }
+.requirement .sentence { color: var(--soft); } dl.facts { display: grid; margin: 8px 0; gap: 6px 18px;
+  grid-template-columns: repeat(auto-fit, minmax(130px, max-content)); }
+dl.facts dt { font-size: 12px; color: var(--soft); } dl.facts dd { margin: 0; font-variant-numeric: tabular-nums; }
 tr.group td { font-weight: 650; padding-top: 14px; } tr.part td:first-child { padding-left: 18px; }
 td .definition { display: block; font-size: 12px; line-height: 1.35; max-width: 46ch; }
-.figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(440px, 1fr)); gap: 18px 22px;
+.figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(440px, 100%), 1fr)); gap: 18px 22px;
   margin: 12px 0; }
 figure { margin: 0; } figure.wide { grid-column: 1 / -1; } figcaption { font-size: 12.5px; line-height:
   1.4; padding: 0 8px; }

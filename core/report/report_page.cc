@@ -14,7 +14,7 @@ namespace {
 constexpr char kNavigation[] =
     "<nav><a href=\"#requirements\">Requirements</a><a href=\"#outcomes\">Outcomes</a><a "
     "href=\"#envelope\">Envelope</a>"
-    "<a href=\"#distributions\">Distributions</a><a href=\"#worst\">Worst cases</a><a "
+    "<a href=\"#distributions\">Distributions</a><a href=\"#causes\">Causes</a><a href=\"#worst\">Worst cases</a><a "
     "href=\"#nominal\">Nominal flight</a>"
     "<a href=\"#statistics\">Statistics</a><a href=\"#dispersions\">Dispersions</a><a href=\"#limits\">Not "
     "modelled</a>"
@@ -35,8 +35,11 @@ std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary,
   page += OutcomesSection(summary);
 
   page += "<h2 id=\"envelope\">Envelope of the dispersed flights</h2>\n";
-  if (histories.bands.flights == 0) {
+  const bool flown_again = histories.nominal_history.rows() > 0;
+  if (summary.flown == 0) {
     page += "<p>No case has a result.</p>\n";
+  } else if (!flown_again || histories.bands.flights == 0) {
+    page += "<p>This report was made without time histories: <code>dispersa report .</code> adds them.</p>\n";
   } else {
     page += fmt::format(
         "<p>Pointwise percentiles over the first {} flown cases of {}, sampled every {} s; a lost flight "
@@ -61,12 +64,14 @@ std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary,
         InjectionFigures(summary, cases) + "</div>\n";
   }
 
+  page += CausesSection(summary);
   page += WorstCasesSection(summary, histories);
   page +=
       "<h2 id=\"nominal\">Nominal flight</h2>\n<p>The flight without dispersions, through the same closed "
       "loop. It is not "
       "one of the cases. Numbers: <code>histories/nominal.csv</code>.</p>\n";
-  page += NominalFigures(histories.nominal_history);
+  page += flown_again ? NominalFigures(histories.nominal_history)
+                      : "<p>This report was made without time histories.</p>\n";
   page += StatisticsSection(summary);
   page += DispersionsSection(summary);
   page += NotModelledSection();

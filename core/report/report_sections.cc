@@ -33,6 +33,11 @@ std::string OutcomeWords(Outcome outcome) {
   return words;
 }
 
+std::ptrdiff_t Violated(const CampaignSummary& summary) {
+  return std::count_if(summary.requirements.begin(), summary.requirements.end(),
+                       [](const RequirementSummary& requirement) { return requirement.failures > 0; });
+}
+
 /// What the requirements come to together, in one sentence.
 std::string VerdictSentence(const CampaignSummary& summary) {
   const auto count = [&](const char* verdict) {
@@ -42,7 +47,14 @@ std::string VerdictSentence(const CampaignSummary& summary) {
   };
   const std::size_t all = summary.requirements.size();
   switch (summary.verdict) {
+    case CampaignVerdict::kStudy:
+      return fmt::format("A design study of {} points: each requirement is met at every one.", summary.cases);
+    case CampaignVerdict::kStudyViolated:
+      return fmt::format("A design study of {} points: {} of {} requirements {} violated at some.", summary.cases,
+                         Violated(summary), all, Violated(summary) == 1 ? "is" : "are");
     case CampaignVerdict::kIncomplete:
+      if (summary.flown == summary.cases)
+        return fmt::format("{} of the design's {} points were flown.", summary.flown, summary.design_points);
       return fmt::format("{} of {} cases have a result{}.", summary.flown, summary.cases,
                          summary.quarantined.empty()
                              ? "; the campaign can be resumed"
@@ -99,6 +111,24 @@ std::size_t GroupOf(const std::string& name) {
   return groups.size() - 1;
 }
 
+/// An estimate with its limits below it, or the bound that is all the sample gives.
+std::string PercentileCell(const MetricSummary& metric, const std::string& name) {
+  for (const Percentile& percentile : metric.percentiles) {
+    if (percentile.name != name) continue;
+    const Interval& limits = percentile.limits;
+    const bool above = std::isfinite(limits.lower);
+    const bool below = std::isfinite(limits.upper);
+    if (!std::isfinite(percentile.estimate)) return above ? "≥ " + ReadableText(limits.lower) : "–";
+    return ReadableText(percentile.estimate) + "<span class=\"definition\">" +
+           (above && below ? ReadableText(limits.lower) + " … " + ReadableText(limits.upper)
+            : above        ? "≥ " + ReadableText(limits.lower)
+            : below        ? "≤ " + ReadableText(limits.upper)
+                           : "no limits") +
+           "</span>";
+  }
+  return "–";
+}
+
 double NominalValue(const CampaignSummary& summary, std::size_t metric) {
   return summary.nominal ? summary.nominal->metrics[metric] : std::nan("");
 }
@@ -113,10 +143,24 @@ std::string HeaderSection(const CampaignSummary& summary) {
       "{}</p>\n",
       HtmlText(summary.name), HtmlText(summary.vehicle), HtmlText(summary.reference),
       HtmlText(summary.autopilot), SamplingMethodTitle(summary.sampling), summary.cases, summary.seed);
+  const bool certain_fail =
+      summary.verdict == CampaignVerdict::kIncomplete &&
+      std::any_of(summary.requirements.begin(), summary.requirements.end(),
+                  [](const RequirementSummary& requirement) { return requirement.verdict == "fail"; });
   html += fmt::format(
       "<div class=\"headline\">{}{}<p>{}</p></div>\n", VerdictBadge(CampaignVerdictName(summary.verdict)),
-      IsIndependent(summary.sampling) ? "" : "<span class=\"badge design\">design study</span>",
+      certain_fail                        ? VerdictBadge("fail")
+      : IsIndependent(summary.sampling) || summary.verdict == CampaignVerdict::kStudy ||
+              summary.verdict == CampaignVerdict::kStudyViolated
+          ? ""
+          : "<span class=\"badge design\">design study</span>",
       VerdictSentence(summary));
+  const std::vector<std::string> warnings = Warnings(summary);
+  if (!warnings.empty()) {
+    html += "<ul class=\"warnings\">";
+    for (const std::string& warning : warnings) html += "<li>" + HtmlText(warning) + "</li>";
+    html += "</ul>\n";
+  }
   html += "<div class=\"tiles\">";
   html += Tile(fmt::format("{} / {}", summary.flown, summary.cases), "cases flown");
   html += Tile(summary.flown == 0
@@ -132,62 +176,6 @@ std::string HeaderSection(const CampaignSummary& summary) {
   return html + "</div>\n</header>\n";
 }
 
-std::string RequirementsSection(const CampaignSummary& summary) {
-  std::string html = "<h2 id=\"requirements\">Requirements</h2>\n";
-  if (summary.requirements.empty()) return html + "<p>The campaign states none.</p>\n";
-  HtmlTable table({{"Metric"},
-                   {"Limit", true},
-                   {"Required probability", true},
-                   {"Consumer risk", true},
-                   {"Cases", true},
-                   {"Failures", true},
-                   {"Lost flights", true},
-                   {"Observed", true},
-                   {"Confidence bounds", true},
-                   {"Verdict"},
-                   {"Cases needed", true}});
-  for (const RequirementSummary& requirement : summary.requirements) {
-    const MetricInfo info = DescribeMetric(requirement.metric);
-    const double observed = requirement.n == 0 ? std::nan("")
-                                               : static_cast<double>(requirement.n - requirement.failures) /
-                                                     static_cast<double>(requirement.n);
-    const std::string bounds = requirement.success_lower
-                                   ? fmt::format("≥ {}<br>≤ {}", PercentText(*requirement.success_lower),
-                                                 PercentText(*requirement.success_upper))
-                                   : "none: design study";
-    table.Row(
-        {HtmlText(info.title) + "<br>" + Code(requirement.metric),
-         fmt::format("{} {}", requirement.below ? "below" : "above", WithUnit(requirement.limit, info.unit)),
-         PercentText(requirement.probability), PercentText(requirement.consumer_risk),
-         std::to_string(requirement.n), std::to_string(requirement.failures),
-         std::to_string(requirement.lost_flights), PercentText(observed), bounds,
-         VerdictBadge(requirement.verdict),
-         requirement.cases_needed ? std::to_string(*requirement.cases_needed) : "–"},
-        "joined");
-    table.Wide(HtmlText(requirement.sentence), "sentence");
-  }
-  html += table.Html();
-  if (!IsIndependent(summary.sampling)) {
-    return html +
-           "<p class=\"soft\">The points of this campaign are chosen, not drawn independently, so that no "
-           "confidence can be "
-           "stated: it is a design study. "
-           "A verdict compares the share of points that meet the limit with the probability required. A lost "
-           "flight counts as "
-           "a failure of every requirement, and so does an undefined metric.</p>\n";
-  }
-  return html +
-         "<p class=\"soft\">Verdicts come from the exact binomial distribution, not from mean ± 3σ "
-         "(NASA/TP-2010-216447): a "
-         "requirement passes when a design that just misses it would have shown so few failures with no more "
-         "than the "
-         "consumer risk, and fails when a design that just meets it would have shown so many with no more "
-         "than the same "
-         "risk. Each confidence bound is one-sided. A lost flight counts as a failure of every requirement, "
-         "and so does an "
-         "undefined metric.</p>\n";
-}
-
 std::string OutcomesSection(const CampaignSummary& summary) {
   std::string html = "<h2 id=\"outcomes\">Outcomes</h2>\n";
   HtmlTable table({{"Outcome"}, {"Cases", true}, {"Share of those flown", true}});
@@ -201,10 +189,7 @@ std::string OutcomesSection(const CampaignSummary& summary) {
   if (!summary.lost_flights.empty()) {
     const std::uint64_t lost =
         summary.flown - summary.outcomes[static_cast<std::size_t>(Outcome::kCompleted)];
-    html += fmt::format("<h3>Lost flights{}</h3>\n",
-                        lost > summary.lost_flights.size()
-                            ? fmt::format(", the first {} of {}", summary.lost_flights.size(), lost)
-                            : "");
+    html += fmt::format("<h3>Lost flights: {}</h3>\n", lost);
     HtmlTable lost_table(
         {{"Case", true}, {"Outcome"}, {"Time, s", true}, {"Stage", true}, {"Reason"}, {"To fly it again"}});
     for (const LostFlight& flight : summary.lost_flights) {
@@ -213,7 +198,9 @@ std::string OutcomesSection(const CampaignSummary& summary) {
                       HtmlText(flight.reason),
                       "<code class=\"copy\">" + ReplayCommand(flight.case_index) + "</code>"});
     }
-    html += lost_table.Html();
+    // All of them, however many; a long list is folded away on screen and printed in full.
+    html += lost > 20 ? "<details><summary>all of them</summary>\n" + lost_table.Html() + "</details>\n"
+                      : lost_table.Html();
   }
   if (!summary.quarantined.empty()) {
     html +=
@@ -253,9 +240,9 @@ std::string WorstCasesSection(const CampaignSummary& summary, const FlightHistor
 
 std::string StatisticsSection(const CampaignSummary& summary) {
   std::string html =
-      "<h2 id=\"statistics\">Statistics of every metric</h2>\n<p>Over the cases that define the metric; n "
-      "says how many. "
-      "Percentiles are estimates without a confidence: the requirements above do not use them. Attitude and "
+      "<h2 id=\"statistics\">Statistics of every metric</h2>\n<p>Over the completed flights that define "
+      "the metric; n says how many, and lost flights are listed under Outcomes. Under each percentile its limits of "
+      "95 %, of any distribution; one that so few flights cannot reach is shown as a bound. Attitude and "
       "deflection "
       "metrics cover powered flight, ignition to burnout of each stage with its transients; the coast has "
       "its own.</p>\n";
@@ -265,6 +252,7 @@ std::string StatisticsSection(const CampaignSummary& summary) {
                    {"n", true},
                    {"Mean", true},
                    {"Std", true},
+                   {"Skewness", true},
                    {"Min", true},
                    {"p50", true},
                    {"p95", true},
@@ -288,8 +276,9 @@ std::string StatisticsSection(const CampaignSummary& summary) {
       const Summary& s = metric.statistics;
       table.Row({HtmlText(info.title) + definition, HtmlText(info.unit),
                  ReadableText(NominalValue(summary, i)), std::to_string(s.n), ReadableText(s.mean),
-                 ReadableText(s.std), ReadableText(s.min), ReadableText(s.p50), ReadableText(s.p95),
-                 ReadableText(s.p99), ReadableText(s.p99_73), ReadableText(s.max)},
+                 ReadableText(s.std), ReadableText(metric.skewness), ReadableText(s.min),
+                 PercentileCell(metric, "p50"), PercentileCell(metric, "p95"), PercentileCell(metric, "p99"),
+                 PercentileCell(metric, "p99_73"), ReadableText(s.max)},
                 part ? "part" : "");
     }
   }

@@ -14,6 +14,7 @@ std::string HeaderSection(const CampaignSummary& summary);
 std::string RequirementsSection(const CampaignSummary& summary);
 std::string OutcomesSection(const CampaignSummary& summary);
 std::string WorstCasesSection(const CampaignSummary& summary, const FlightHistories& histories);
+std::string CausesSection(const CampaignSummary& summary);
 std::string StatisticsSection(const CampaignSummary& summary);
 std::string DispersionsSection(const CampaignSummary& summary);
 std::string NotModelledSection();

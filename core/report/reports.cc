@@ -14,17 +14,23 @@ namespace dispersa {
 
 CampaignSummary WriteReports(const ResultFolder& folder, const Campaign& campaign,
                              const ReportOptions& options) {
-  if (folder.Provenance("engine") != EngineVersion()) {
+  if (options.histories && folder.Provenance("engine") != EngineVersion()) {
     throw InputError(fmt::format("{}: flown by engine {}, this one is {}: its flights cannot be flown again",
                                  folder.directory().string(), folder.Provenance("engine"), EngineVersion()),
-                     "the engine that flew it");
+                     "the engine that flew it, or --no-histories");
   }
   WriteCasesCsv(folder);
   const CaseColumns cases = ReadColumns(folder, DispersedInputs(campaign));
   CampaignSummary summary = BuildSummary(folder, campaign, cases);
-  const FlightHistories histories = WriteHistories(folder, campaign, summary, cases, options);
-  summary.nominal = histories.nominal;
+  FlightHistories histories;
+  if (options.histories) {
+    histories = WriteHistories(folder, campaign, summary, cases, options);
+    summary.nominal = histories.nominal;
+  } else {
+    RemoveHistories(folder);
+  }
   WriteFile(folder.directory() / "summary.json", SummaryJson(summary));
+  RecordLooks(folder, campaign, summary);
   WriteFile(folder.directory() / "report.html", ReportPage(campaign, summary, cases, histories));
   return summary;
 }

@@ -16,6 +16,7 @@
 #include "core/report/database.h"
 #include "core/report/fingerprint.h"
 #include "core/report/output_file.h"
+#include "core/report/requirement_summary.h"
 #include "core/report/sampling_text.h"
 
 namespace dispersa {
@@ -53,9 +54,13 @@ void CreateTables(Database& database) {
   database.Execute(
       "CREATE TABLE execution (case_index INTEGER NOT NULL, worker TEXT NOT NULL, host TEXT NOT NULL, "
       "started_utc TEXT NOT NULL, seconds REAL)");
+  database.Execute(
+      "CREATE TABLE looks (requirements_id TEXT NOT NULL, requirement TEXT NOT NULL, n INTEGER NOT NULL, "
+      "failures INTEGER NOT NULL, verdict TEXT NOT NULL, PRIMARY KEY (requirements_id, requirement, n))");
 }
 
-void WriteProvenance(Database& database, const Campaign& campaign) {
+/// `register_plan`: no case has been flown, so that the requirements and the number of cases are the plan.
+void WriteProvenance(Database& database, const Campaign& campaign, bool register_plan) {
   Statement insert = database.Prepare("INSERT OR REPLACE INTO provenance VALUES (?, ?)");
   const auto put = [&insert](const char* key, const std::string& value) {
     insert.BindText(1, key);
@@ -71,6 +76,12 @@ void WriteProvenance(Database& database, const Campaign& campaign) {
   put("seed", std::to_string(campaign.sampling.seed));
   put("cases", std::to_string(campaign.sampling.cases));
   put("sampling", SamplingMethodName(campaign.sampling.method));
+  if (!register_plan) return;
+  std::string lines;
+  for (const Requirement& requirement : campaign.requirements) lines += RequirementLine(requirement) + "\n";
+  put("planned_cases", std::to_string(campaign.sampling.cases));
+  put("requirements_id", campaign.requirements_id);
+  put("requirements", lines);
 }
 
 /// By the first bytes of the file format; so a wrong file is told from a damaged one.
@@ -160,7 +171,7 @@ ResultFolder ResultFolder::Create(const fs::path& directory, const Campaign& cam
     Database fresh(temporary, Database::Mode::kCreate);
     Transaction transaction(fresh);
     CreateTables(fresh);
-    WriteProvenance(fresh, campaign);
+    WriteProvenance(fresh, campaign, true);
     transaction.Commit();
   }
   fs::rename(temporary, database, error);
@@ -218,7 +229,7 @@ ResultFolder ResultFolder::Resume(const fs::path& directory, const Campaign& cam
   }
   WriteFile(directory / kCampaignName, campaign.canonical_yaml);
   Transaction transaction(*folder.database_);
-  WriteProvenance(*folder.database_, campaign);
+  WriteProvenance(*folder.database_, campaign, present.empty());
   folder.RemoveDamaged();
   transaction.Commit();
   return folder;
@@ -251,6 +262,23 @@ std::string ResultFolder::Provenance(const std::string& key) const {
                       fmt::format("{}: no {} in the provenance", (directory_ / kDatabaseName).string(), key));
   }
   return select.Text(0);
+}
+
+void ResultFolder::RecordLook(const LookRecord& look) const {
+  Statement insert = database_->Prepare("INSERT OR REPLACE INTO looks VALUES (?, ?, ?, ?, ?)");
+  insert.BindText(1, look.requirements_id);
+  insert.BindText(2, look.requirement);
+  insert.BindInteger(3, look.n);
+  insert.BindInteger(4, look.failures);
+  insert.BindText(5, look.verdict);
+  insert.Step();
+}
+
+std::vector<std::int64_t> ResultFolder::PastLooks() const {
+  std::vector<std::int64_t> looks;
+  Statement select = database_->Prepare("SELECT DISTINCT n FROM looks ORDER BY n");
+  while (select.Step()) looks.push_back(select.Integer(0));
+  return looks;
 }
 
 std::size_t ResultFolder::Append(std::span<const CaseResult> results) {

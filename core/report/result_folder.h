@@ -23,6 +23,15 @@ namespace dispersa {
 
 class Database;
 
+/// A verdict that was read.
+struct LookRecord {
+  std::string requirements_id;  ///< Campaign's, at the time
+  std::string requirement;      ///< RequirementLine()
+  std::int64_t n = 0;
+  std::int64_t failures = 0;
+  std::string verdict;
+};
+
 /// Not thread-safe: one thread at a time. Other processes may read `results.sqlite` meanwhile (WAL).
 /// Every method throws ResultError when the disk or the database fails; InputError, where it says so, when
 /// the user named the wrong folder or case.
@@ -46,8 +55,15 @@ class ResultFolder : public ResultStore {
   ~ResultFolder() override;
 
   const std::filesystem::path& directory() const { return directory_; }
-  /// Value of "campaign_id", "flight_id", "engine", "name", "seed", "cases" or "sampling".
+  /// Value of "campaign_id", "flight_id", "engine", "name", "seed", "cases", "sampling"; and as they were before
+  /// the first case was flown: "planned_cases", "requirements_id" and "requirements" (RequirementLine() each).
   std::string Provenance(const std::string& key) const;
+
+  /// Remembers, once each, that verdicts were read from the first n cases. A record of what people saw, not of
+  /// what was flown: so a folder that is only reported on may get one too.
+  void RecordLook(const LookRecord& look) const;
+  /// Numbers of cases at which any verdict was read, ascending.
+  std::vector<std::int64_t> PastLooks() const;
 
   /// Stores results in one transaction: all or, on an error, none. A case that is already there with the same
   /// digest is left alone; with another digest: kConflict. Lifts the quarantine of what it stores. Values

@@ -43,19 +43,60 @@ Json StatisticsJson(const Summary& statistics) {
           {"max", Number(statistics.max)}};
 }
 
+const char* PlanName(PlanKind kind) {
+  switch (kind) {
+    case PlanKind::kFixed:
+      return "fixed";
+    case PlanKind::kGroupSequential:
+      return "group_sequential";
+    case PlanKind::kAnytime:
+      return "anytime";
+  }
+  return "";
+}
+
+const char* LookVerdict(Verdict verdict) {
+  return verdict == Verdict::kPass ? "pass" : verdict == Verdict::kFail ? "fail" : "inconclusive";
+}
+
 Json RequirementJson(const RequirementSummary& requirement) {
   Json json = {{"metric", requirement.metric}};
-  json["side"] = requirement.below ? "below" : "above";
+  json["side"] = requirement.low_limit ? "within" : requirement.below ? "below" : "above";
   json["limit"] = Number(requirement.limit);
+  json["low_limit"] = OrNull(requirement.low_limit);
   json["probability"] = requirement.probability;
   json["consumer_risk"] = requirement.consumer_risk;
+  json["plan"] = {{"kind", PlanName(requirement.plan.kind)},
+                  {"looks", requirement.plan.looks},
+                  {"spending", requirement.plan.kind != PlanKind::kGroupSequential ? Json(nullptr)
+                               : requirement.plan.spending == Spending::kPocock    ? Json("pocock")
+                                                                                : Json("obrien_fleming")},
+                  {"cases", requirement.planned}};
   json["n"] = requirement.n;
   json["failures"] = requirement.failures;
   json["lost_flights"] = requirement.lost_flights;
   json["success_lower"] = OrNull(requirement.success_lower);
   json["success_upper"] = OrNull(requirement.success_upper);
+  json["bound"] = OrNull(requirement.bound);
+  json["margin"] = OrNull(requirement.margin);
   json["verdict"] = requirement.verdict;
+  json["accepts"] = OrNull(requirement.accepts);
+  json["rejects"] = OrNull(requirement.rejects);
+  json["looks"] = Json::array();
+  for (const Look& look : requirement.looks) {
+    json["looks"].push_back({{"n", look.n},
+                             {"failures", look.failures},
+                             {"verdict", LookVerdict(look.verdict)},
+                             {"planned", look.planned}});
+  }
+  json["beyond_plan"] = requirement.beyond_plan;
+  json["risk_if_each_look_were_the_only_one"] = OrNull(requirement.naive_risk);
+  json["contradicted"] = requirement.contradicted;
+  json["post_hoc"] = requirement.post_hoc;
   json["cases_needed"] = OrNull(requirement.cases_needed);
+  json["pass_probability"] = Json::array();
+  for (const auto& chance : requirement.pass_chances)
+    json["pass_probability"].push_back({{"cases", chance.cases}, {"probability", chance.probability}});
   json["sentence"] = requirement.sentence;
   return json;
 }
@@ -77,7 +118,12 @@ std::string SummaryJson(const CampaignSummary& summary) {
   json["schema"] = "dispersa/summary/1";
   json["campaign"] = {{"name", summary.name},           {"id", summary.id},
                       {"flight_id", summary.flight_id}, {"seed", summary.seed},
-                      {"cases", summary.cases},         {"sampling", SamplingMethodName(summary.sampling)},
+                      {"cases", summary.cases},         {"max_cases", summary.max_cases},
+                      {"planned_cases", summary.planned_cases},
+                      {"sampling", SamplingMethodName(summary.sampling)},
+                      {"design", IsIndependent(summary.sampling) ? "monte_carlo" : "study"},
+                      {"design_points", IsEnumerated(summary.sampling) ? Json(summary.design_points) : Json(nullptr)},
+                      {"replicates", summary.replicates},
                       {"vehicle", summary.vehicle},     {"reference", summary.reference},
                       {"autopilot", summary.autopilot}};
   json["engine"] = summary.engine;
@@ -88,6 +134,7 @@ std::string SummaryJson(const CampaignSummary& summary) {
       {"inclination_deg", Number(summary.reference_orbit.inclination_rad * kDegPerRad)}};
   json["verdict"] = CampaignVerdictName(summary.verdict);
   json["design_study"] = !IsIndependent(summary.sampling);
+  json["warnings"] = Warnings(summary);
   json["flown"] = summary.flown;
   json["outcomes"] = Json::object();
   for (int i = 0; i < kOutcomeCount; ++i) {
@@ -105,9 +152,50 @@ std::string SummaryJson(const CampaignSummary& summary) {
   for (const RequirementSummary& requirement : summary.requirements) {
     json["requirements"].push_back(RequirementJson(requirement));
   }
+  json["joint"] = {{"method", summary.holm ? "holm" : "each"},
+                   {"overall_risk", summary.overall_risk},
+                   {"any_risk", summary.any_risk},
+                   {"requirements_id", summary.requirements_id},
+                   {"registered_requirements_id", summary.registered_requirements_id},
+                   {"sentence", JointRiskSentence(summary)}};
   json["metrics"] = Json::object();
-  for (const MetricSummary& metric : summary.metrics)
-    json["metrics"][metric.name] = StatisticsJson(metric.statistics);
+  for (const MetricSummary& metric : summary.metrics) {
+    Json& of = json["metrics"][metric.name] = StatisticsJson(metric.statistics);
+    of["skewness"] = Number(metric.skewness);
+    of["percentile_confidence"] = kPercentileConfidence;
+    for (const Percentile& percentile : metric.percentiles) {
+      of["percentiles"][percentile.name] = {{"estimate", Number(percentile.estimate)},
+                                            {"lower", Number(percentile.limits.lower)},
+                                            {"upper", Number(percentile.limits.upper)}};
+    }
+  }
+  json["drivers"] = Json::object();
+  for (const MetricDrivers& metric : summary.drivers) {
+    Json& list = json["drivers"][metric.metric] = Json::array();
+    for (const Driver& driver : metric.drivers) {
+      list.push_back({{"input", driver.input},
+                      {"feature", driver.feature},
+                      {"index", Number(driver.index)},
+                      {"low", Number(driver.low)},
+                      {"high", Number(driver.high)},
+                      {"partial_rank_correlation", Number(driver.partial)}});
+    }
+  }
+  json["failure_drivers"] = Json::array();
+  for (const FailureDrivers& requirement : summary.failure_drivers) {
+    Json list = Json::array();
+    for (const FailureDriver& driver : requirement.drivers) {
+      list.push_back({{"input", driver.input},
+                      {"feature", driver.feature},
+                      {"larger", driver.larger},
+                      {"p", Number(driver.p)},
+                      {"false_discovery_rate", Number(driver.false_discovery_rate)}});
+    }
+    json["failure_drivers"].push_back({{"metric", requirement.metric},
+                                       {"basis", requirement.nearest ? "nearest" : "failed"},
+                                       {"flights", requirement.flights},
+                                       {"inputs", std::move(list)}});
+  }
   json["quarantined"] = Json::array();
   for (const QuarantinedCase& quarantined : summary.quarantined) {
     json["quarantined"].push_back({{"case_index", quarantined.case_index}, {"reason", quarantined.reason}});

@@ -12,11 +12,12 @@
 namespace dispersa {
 
 CampaignSummary MakeReports(const ResultFolder& folder, const Campaign& campaign, int threads, bool quiet,
-                            const std::function<void()>& check) {
+                            bool histories, const std::function<void()>& check) {
   std::string phase;
   std::unique_ptr<Progress> progress;
   ReportOptions options;
   options.threads = std::max(threads, 1);
+  options.histories = histories;
   options.progress = [&](const std::string& what, std::uint64_t done, std::uint64_t total) {
     if (check) check();
     if (!progress || what != phase) {
@@ -43,8 +44,9 @@ void PrintSummary(const CampaignSummary& summary, const std::filesystem::path& d
   }
   if (!summary.quarantined.empty()) fmt::print(", {} quarantined", summary.quarantined.size());
   fmt::print("\n");
+  for (const std::string& warning : Warnings(summary)) fmt::print("warning: {}\n", warning);
   for (const RequirementSummary& requirement : summary.requirements) {
-    fmt::print("{}: {}\n", requirement.verdict, requirement.sentence);
+    fmt::print("{}: {}: {}\n", requirement.verdict, RequirementWords(requirement), requirement.sentence);
   }
   fmt::print("report: {}\nresult: {}\n", (directory / "report.html").string(), directory.string());
 }

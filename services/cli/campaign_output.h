@@ -9,10 +9,10 @@
 
 namespace dispersa {
 
-/// Writes all reports of a folder with progress on stderr. `check`, if given, is called now and then and may
+/// Writes all reports of a folder with progress on stderr, with or without flying time histories for them. `check`, if given, is called now and then and may
 /// throw to stop.
 CampaignSummary MakeReports(const ResultFolder& folder, const Campaign& campaign, int threads, bool quiet,
-                            const std::function<void()>& check = nullptr);
+                            bool histories = true, const std::function<void()>& check = nullptr);
 
 /// The verdicts, where the report is, and as the last line "result: DIR"; or summary.json plus `directory`.
 void PrintSummary(const CampaignSummary& summary, const std::filesystem::path& directory, bool json);

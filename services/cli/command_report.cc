@@ -10,11 +10,17 @@
 namespace dispersa {
 namespace {
 
-ExitCode Report(const std::string& directory, const GlobalOptions& global) {
-  StoredCampaign stored = OpenStored(directory);
+struct ReportCommand {
+  std::string directory;
+  bool no_histories = false;
+};
+
+ExitCode Report(const ReportCommand& options, const GlobalOptions& global) {
+  StoredCampaign stored = OpenStored(options.directory);
   stored.folder.Lock();
   const int threads = static_cast<int>(std::thread::hardware_concurrency());
-  const CampaignSummary summary = MakeReports(stored.folder, stored.campaign, threads, global.quiet);
+  const CampaignSummary summary =
+      MakeReports(stored.folder, stored.campaign, threads, global.quiet, !options.no_histories);
   PrintSummary(summary, stored.folder.directory(), global.json);
   return static_cast<ExitCode>(VerdictExitCode(summary.verdict));
 }
@@ -22,12 +28,13 @@ ExitCode Report(const std::string& directory, const GlobalOptions& global) {
 }  // namespace
 
 void AddReportCommand(CLI::App& app, Invocation& invocation) {
-  auto directory = std::make_shared<std::string>();
+  auto options = std::make_shared<ReportCommand>();
   CLI::App* command = app.add_subcommand("report", "make the reports of a result folder again");
-  command->add_option("directory", *directory, "result folder")->required();
+  command->add_option("directory", options->directory, "result folder")->required();
+  command->add_flag("--no-histories", options->no_histories, "fly no case again for the report");
   command->footer("Example: dispersa report results/table3-1a2b3c4d");
-  command->callback([directory, &invocation] {
-    invocation.command = [directory](const GlobalOptions& global) { return Report(*directory, global); };
+  command->callback([options, &invocation] {
+    invocation.command = [options](const GlobalOptions& global) { return Report(*options, global); };
   });
 }
 

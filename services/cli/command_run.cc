@@ -50,6 +50,7 @@ struct RunOptions {
   CampaignRequest request;
   int workers = -1;  ///< -1: the usable cores
   int threads = 0;   ///< without workers; 0: the usable cores
+  bool no_histories = false;
 };
 
 struct Interrupted {};
@@ -119,7 +120,7 @@ class CampaignRun {
                          count);
     std::optional<std::string> problem;
     double joined_s = Now();
-    while (!book_.ledger().Complete() && !problem) {
+    while (!book_.Complete() && !problem) {
       if (StopRequested()) {
         workers.End(0.0);
         Note(workers);
@@ -156,7 +157,7 @@ class CampaignRun {
       for (;;) {
         flights.FlyCases(*this);
         std::unique_lock lock(mutex_);
-        if (run_.book_.ledger().Complete() || StopRequested() || problem_) return;
+        if (run_.book_.Complete() || StopRequested() || problem_) return;
         changed_.wait_for(lock, std::chrono::milliseconds(50));
       }
     }
@@ -283,7 +284,7 @@ ExitCode FlyAndReport(const RunOptions& options, const GlobalOptions& global, Op
     execution.flying_s = SecondsSince(start);
   };
   ExitCode code = kExitDone;
-  if (!book.ledger().Complete()) {
+  if (!book.Complete()) {
     try {
       CampaignRun run(book, execution, global.quiet);
       execution.problem = workers == 0 ? run.FlyHere(options.threads > 0 ? options.threads : UsableCores())
@@ -304,9 +305,10 @@ ExitCode FlyAndReport(const RunOptions& options, const GlobalOptions& global, Op
     spdlog::warn("case {} is quarantined: {}", blamed.case_index, fmt::join(blamed.reasons, "; "));
   }
   if (book.ledger().Progress().conflicts > 0) code = WorseOf(code, kExitInternalError);
-  const CampaignSummary summary = MakeReports(book.folder(), book.campaign(), workers, global.quiet, [] {
-    if (StopRequested()) throw Interrupted();
-  });
+  const CampaignSummary summary = MakeReports(book.folder(), book.campaign(), workers, global.quiet,
+                                              !options.no_histories, [] {
+                                                if (StopRequested()) throw Interrupted();
+                                              });
   execution.ended_utc = UtcNow();
   execution.Write();
   PrintSummary(summary, directory, global.json);
@@ -361,6 +363,8 @@ void AddRunCommand(CLI::App& app, Invocation& invocation) {
   command->add_option("--cases", request.overrides.cases, "number of cases, instead of the file's")
       ->check(CLI::PositiveNumber);
   command->add_option("--seed", request.overrides.seed, "seed, instead of the file's");
+  command->add_flag("--no-histories", options->no_histories,
+                    "fly no case again for the report: for gates that read verdicts only");
   command->add_flag("--resume", request.resume, "go on in a folder of the same flight id");
   command->footer(
       "Example: dispersa run campaigns/table3.yaml --cases 200 --out results/trial\n"

@@ -30,6 +30,7 @@ void AddCommands(CLI::App& app, Invocation& invocation) {
   AddReportCommand(app, invocation);
   AddMarginsCommand(app, invocation);
   AddTuneCommand(app, invocation);
+  AddExportCommand(app, invocation);
   AddCompareCommand(app, invocation);
   AddPaperCommand(app, invocation);
 }

@@ -14,6 +14,17 @@ namespace {
 constexpr double kFlushPeriod_s = 0.5;
 constexpr std::size_t kFlushCount = 1000;
 
+/// With what the folder holds already, so that the target is where an interrupted run left it.
+std::optional<StoppingRule> RuleOf(const Campaign& campaign, const ResultStore& store) {
+  const auto* folder = dynamic_cast<const ResultFolder*>(&store);
+  if (!campaign.verdicts.stop_when_decided || folder == nullptr) return std::nullopt;
+  StoppingRule rule(campaign, std::stoll(folder->Provenance("planned_cases")), folder->PastLooks());
+  folder->ForEach([&](const CaseResult& result) { rule.Add(result); });
+  while (rule.Advance({})) {
+  }
+  return rule;
+}
+
 }  // namespace
 
 CampaignBook::CampaignBook(const Campaign& campaign, ResultFolder folder, const LedgerOptions& options)
@@ -23,10 +34,21 @@ CampaignBook::CampaignBook(const Campaign& campaign, std::unique_ptr<ResultStore
                            const LedgerOptions& options)
     : campaign_(campaign),
       store_(std::move(store)),
-      ledger_(EngineVersion(), campaign.sampling.cases, options) {
+      rule_(RuleOf(campaign, *store_)),
+      ledger_(EngineVersion(), rule_ ? rule_->target() : campaign.sampling.cases, options) {
+  const std::uint64_t cases = ledger_.Progress().total;
   for (const auto& [case_index, fingerprint] : store_->Fingerprints()) {
-    if (case_index < campaign.sampling.cases) ledger_.MarkDone(case_index, fingerprint);
+    if (case_index < cases) ledger_.MarkDone(case_index, fingerprint);
   }
+}
+
+bool CampaignBook::Complete() {
+  if (!ledger_.Complete()) return false;
+  std::vector<std::uint64_t> given_up;
+  for (const BlamedCase& blamed : ledger_.Quarantined()) given_up.push_back(blamed.case_index);
+  if (!rule_ || !rule_->Advance(given_up)) return true;
+  ledger_.Extend(rule_->target());
+  return false;
 }
 
 void CampaignBook::Start(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,
@@ -43,6 +65,7 @@ Acceptance CampaignBook::Accept(const std::string& worker, const std::string& ho
   switch (acceptance) {
     case Acceptance::kAccepted:
       results_.push_back(result);
+      if (rule_) rule_->Add(result);
       ++flown_now_;
       if (!start.empty()) {
         records_.push_back(

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "core/campaign/campaign.h"
 #include "core/report/result_folder.h"
 #include "core/report/result_store.h"
+#include "core/report/stopping_rule.h"
 #include "services/coordinator/ledger.h"
 
 namespace dispersa {
@@ -28,6 +30,9 @@ class CampaignBook {
   const ResultFolder& folder() const { return dynamic_cast<const ResultFolder&>(*store_); }
   Ledger& ledger() { return ledger_; }
   const Ledger& ledger() const { return ledger_; }
+  /// Whether nothing is left to fly. Extends the ledger to the campaign's next look when all cases up to this
+  /// one are settled and its requirements are not decided.
+  bool Complete();
   std::uint64_t flown_now() const { return flown_now_; }  ///< accepted since construction
 
   void Start(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt, double now_s);
@@ -42,6 +47,7 @@ class CampaignBook {
  private:
   Campaign campaign_;
   std::unique_ptr<ResultStore> store_;
+  std::optional<StoppingRule> rule_;  ///< of a campaign that stops when it is decided
   Ledger ledger_;
   std::vector<CaseResult> results_;
   std::vector<ExecutionRecord> records_;

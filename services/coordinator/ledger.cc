@@ -30,6 +30,14 @@ void Ledger::MarkDone(std::uint64_t case_index, const Digest& fingerprint) {
   ++progress_.done;
 }
 
+void Ledger::Extend(std::uint64_t cases) {
+  assert(cases >= cases_.size());
+  if (cases == cases_.size()) return;
+  waiting_.AddRange(cases_.size(), cases);
+  cases_.resize(cases);
+  progress_.total = cases;
+}
+
 std::optional<std::string> Ledger::Join(const std::string& worker, const WorkerHello& hello, double now_s) {
   if (hello.engine_version != engine_version_) {
     return "engine version " + hello.engine_version + " of the worker differs from the coordinator's " +

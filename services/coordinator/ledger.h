@@ -80,6 +80,9 @@ class Ledger {
   /// A case whose result exists already (resume). Before any assignment.
   void MarkDone(std::uint64_t case_index, const Digest& fingerprint);
 
+  /// Adds cases at the end: there are so many in all from now on.
+  void Extend(std::uint64_t cases);
+
   /// A worker announces itself, or changes what it announced. Returns why it is refused, if it is.
   std::optional<std::string> Join(const std::string& worker, const WorkerHello& hello, double now_s);
   /// The worker says that it flies nothing. If it was stuck it is so no longer: what it was given got lost.

@@ -66,7 +66,7 @@ int Serve(const NetworkOptions& network, const CampaignRequest& request, std::op
                network.domain, CoordinatorPort(network.domain));
   auto progress_due = std::chrono::steady_clock::now();
   Attendance attendance(network.domain, patience_s);
-  while (!book.ledger().Complete() && !StopRequested()) {
+  while (!book.Complete() && !StopRequested()) {
     coordinator.Step(std::chrono::milliseconds(100));
     try {
       attendance.Check(coordinator.joined(), coordinator.now_s());

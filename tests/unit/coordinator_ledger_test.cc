@@ -435,5 +435,22 @@ TEST(IndexSet, BehavesLikeASetThatGivesItsLowestRun) {
   }
 }
 
+TEST(Ledger, GoesOnWhenItIsExtended) {
+  Ledger ledger("engine", 2);
+  ASSERT_FALSE(ledger.Join("w", {"engine", 1, 2}, 0.0));
+  for (const Assignment& assignment : ledger.Assign(0.0)) {
+    for (const std::uint64_t index : assignment.cases)
+      ledger.Finished("w", index, assignment.attempt, Digest{index, 1}, 1.0);
+  }
+  EXPECT_TRUE(ledger.Complete());
+  ledger.Extend(2);
+  EXPECT_TRUE(ledger.Complete());
+  ledger.Extend(5);
+  EXPECT_FALSE(ledger.Complete());
+  EXPECT_EQ(ledger.Progress().total, 5u);
+  EXPECT_EQ(ledger.Progress().waiting, 3u);
+  EXPECT_EQ(ledger.Assign(2.0).front().cases.front(), 2u);
+}
+
 }  // namespace
 }  // namespace dispersa

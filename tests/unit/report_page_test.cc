@@ -98,15 +98,20 @@ TEST_F(ReportPageTest, ShowsTheNumbersOfTheSummary) {
     std::string row = ReadableText(summary_.nominal->metrics[MetricColumn(metric.name)]);
     const auto add = [&](const std::string& text) { row += "</td><td class=\"n\">" + text; };
     add(std::to_string(s.n));
-    for (const double value : {s.mean, s.std, s.min, s.p50, s.p95, s.p99, s.p99_73, s.max})
-      add(ReadableText(value));
+    for (const double value : {s.mean, s.std, metric.skewness, s.min, s.p50}) add(ReadableText(value));
+    row += "<span class=\"definition\">" + ReadableText(metric.percentiles[3].limits.lower) + " … " +
+           ReadableText(metric.percentiles[3].limits.upper) + "</span>";
     EXPECT_THAT(page_, HasSubstr(row)) << metric.name;
+    // 39 completed flights do not reach so far: only a bound is shown.
+    EXPECT_EQ(metric.percentiles[6].name, "p99_73");
+    EXPECT_THAT(page_, HasSubstr("≥ " + ReadableText(metric.percentiles[6].limits.lower)));
   }
   const RequirementSummary& requirement = summary_.requirements[0];
   for (const std::string& text :
        {PercentText(*requirement.success_lower), PercentText(*requirement.success_upper),
-        std::string("below 12.5 °"), HtmlText(requirement.sentence), std::string("39</td>"),
-        std::string("97.5 %")}) {
+        std::string("below 12.5 °"), HtmlText(requirement.sentence),
+        std::string("<dt>failures</dt><dd>" + std::to_string(requirement.failures) + "</dd>"),
+        std::string("<dt>observed</dt><dd>"), HtmlText(JointRiskSentence(summary_))}) {
     EXPECT_THAT(page_, HasSubstr(text));
   }
   for (const WorstCases& worst : summary_.worst_cases) {
@@ -163,6 +168,15 @@ TEST_F(ReportPageTest, SaysWhatIsMissing) {
   Build(40, 39);
   EXPECT_THAT(page_, HasSubstr("39 of 40 cases have a result; 1 are quarantined."));
   EXPECT_THAT(page_, HasSubstr("<span class=\"badge incomplete\">… incomplete</span>"));
+  for (const std::string& warning : Warnings(summary_)) EXPECT_THAT(page_, HasSubstr("<li>" + HtmlText(warning)));
+}
+
+TEST_F(ReportPageTest, StandsWithoutTimeHistories) {
+  Build(40, 40);
+  summary_.nominal.reset();
+  const std::string page = ReportPage(campaign_, summary_, cases_, {});
+  EXPECT_THAT(page, HasSubstr("This report was made without time histories"));
+  EXPECT_THAT(page, HasSubstr(HtmlText(summary_.requirements[0].sentence)));
 }
 
 TEST_F(ReportPageTest, StandsWithoutAnyCase) {
@@ -175,8 +189,10 @@ TEST_F(ReportPageTest, LabelsADesignStudy) {
   Build(40, 40);
   EXPECT_THAT(page_, Not(HasSubstr("design study")));
   summary_.sampling = SamplingMethod::kCorners;
+  summary_.verdict = CampaignVerdict::kStudy;
+  summary_.requirements[0].verdict = "study";
   EXPECT_THAT(ReportPage(campaign_, summary_, cases_, histories_),
-              HasSubstr("<span class=\"badge design\">design study</span>"));
+              HasSubstr("<span class=\"badge study\">◇ study</span>"));
 }
 
 }  // namespace

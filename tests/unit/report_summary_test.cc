@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/engine/version.h"
+#include "core/report/stopping_rule.h"
 #include "tests/unit/report_test_support.h"
 
 namespace dispersa {
@@ -68,10 +69,49 @@ TEST(Judge, NeedsTheCasesOfTheExactBinomial) {
 
 TEST(Judge, SaysWhyNothingIsDecided) {
   // 200 cases without a failure: 0.1^(1/200) = 0.98855.
-  EXPECT_EQ(Judge(PeakBelow(0.5, 0.9973, 0.10), SamplingMethod::kMonteCarlo, Columns(200, 0), 0).sentence,
-            "Not decided: 0 failures in 200 cases show a probability of at least 98.855 % with 90 % "
-            "confidence, short of "
-            "the 99.73 % required; that takes 852 cases in all if no further one fails.");
+  const RequirementSummary open =
+      Judge(PeakBelow(0.5, 0.9973, 0.10), SamplingMethod::kMonteCarlo, Columns(200, 0), 0);
+  EXPECT_EQ(open.sentence,
+            "Not decided: 0 failures in 200 cases show a probability of 98.855 % to 100 %, either bound with 90 % "
+            "confidence; 99.73 % is required. At the failure rate seen here a new campaign of 852 cases passes "
+            "with a probability of 100 %.");
+  // 8 failures in 2000 cases are more than 0.27 %: no number of cases is likely to pass.
+  EXPECT_THAT(Judge(PeakBelow(0.5, 0.9973, 0.10), SamplingMethod::kMonteCarlo, Columns(2000, 8), 0).sentence,
+              testing::EndsWith("At the failure rate seen here a larger campaign is not likely to pass either."));
+}
+
+TEST(Judge, BoundsTheMetricByTheOrderStatisticThatDecides) {
+  // 2000 cases allow 2 failures: the third largest value is the bound.
+  CaseColumns cases = Columns(2000, 0);
+  for (std::size_t i = 0; i < 2000; ++i) cases.metrics[MetricColumn(kPeak)][i] = 0.1 + 1e-4 * static_cast<double>(i);
+  const Requirement requirement = PeakBelow(0.5, 0.9973, 0.10);
+  const RequirementSummary summary = Judge(requirement, SamplingMethod::kMonteCarlo, cases, 0);
+  EXPECT_DOUBLE_EQ(*summary.bound, 0.1 + 1e-4 * 1997);
+  EXPECT_DOUBLE_EQ(*summary.margin, 0.5 - (0.1 + 1e-4 * 1997));
+  EXPECT_EQ(summary.verdict, "pass");
+  // The requirement passes exactly when the bound keeps to the limit.
+  EXPECT_EQ(Judge(PeakBelow(*summary.bound, 0.9973, 0.10), SamplingMethod::kMonteCarlo, cases, 0).verdict,
+            "inconclusive");
+  // Two lost flights are worse than any value; a third leaves no bound.
+  cases.outcome[0] = cases.outcome[1] = Outcome::kLostControl;
+  EXPECT_DOUBLE_EQ(*Judge(requirement, SamplingMethod::kMonteCarlo, cases, 0).bound, 0.1 + 1e-4 * 1999);
+  cases.outcome[2] = Outcome::kImpact;
+  EXPECT_FALSE(Judge(requirement, SamplingMethod::kMonteCarlo, cases, 0).bound.has_value());
+  EXPECT_FALSE(Judge(requirement, SamplingMethod::kMonteCarlo, Columns(851, 0), 0).bound.has_value());
+  // From below, and from both sides.
+  const Requirement above = {
+      .metric = kPeak, .below = std::nullopt, .above = 0.0, .probability = 0.9973, .consumer_risk = 0.1};
+  CaseColumns ascending = Columns(852, 0);
+  for (std::size_t i = 0; i < 852; ++i) ascending.metrics[MetricColumn(kPeak)][i] = 1.0 + static_cast<double>(i);
+  EXPECT_EQ(Judge(above, SamplingMethod::kMonteCarlo, ascending, 0).bound, 1.0);
+  Requirement within = PeakBelow(0.5, 0.9973, 0.10);
+  within.below.reset();
+  within.within = {{-10.0, 900.0}};
+  const RequirementSummary inside = Judge(within, SamplingMethod::kMonteCarlo, ascending, 0);
+  EXPECT_EQ(inside.bound, 1.0);  // 11 from -10, nearer than 852 to 900
+  EXPECT_EQ(inside.margin, 11.0);
+  EXPECT_EQ(inside.failures, 0);
+  EXPECT_EQ(LimitWords(inside, "km"), "between -10 and 900 km");
 }
 
 TEST(Judge, CountsALostFlightWhateverItMeasured) {
@@ -83,6 +123,31 @@ TEST(Judge, CountsALostFlightWhateverItMeasured) {
   EXPECT_EQ(summary.n, 100);
   EXPECT_EQ(summary.failures, 3);
   EXPECT_EQ(summary.lost_flights, 2);
+}
+
+TEST(Judge, SaysWhatAPlanDecidedWithoutWiderBounds) {
+  Requirement requirement = PeakBelow(0.5, 0.9973, 0.10);
+  requirement.plan = {PlanKind::kGroupSequential, 5, Spending::kOBrienFleming};
+  const RequirementSummary met = Judge(requirement, SamplingMethod::kMonteCarlo, Columns(5000, 8), 0);
+  // The first 8 cases failed: too few to fail early, few enough to pass at the end.
+  EXPECT_EQ(met.sentence, "Met by its plan (5 looks up to 5000 cases): 8 failures in 5000 cases at a risk of 10 %; "
+                          "99.73 % is required.");
+  EXPECT_EQ(met.looks[0].verdict, Verdict::kInconclusive);
+  CaseColumns late = Columns(5000, 0);
+  for (std::size_t i = 4000; i < 4008; ++i) late.metrics[MetricColumn(kPeak)][i] = 0.9;
+  const RequirementSummary early = Judge(requirement, SamplingMethod::kMonteCarlo, late, 0);
+  EXPECT_EQ(early.verdict, "pass");
+  EXPECT_EQ(early.accepts, 8);
+  EXPECT_EQ(early.looks[1].verdict, Verdict::kPass);
+  EXPECT_EQ(early.sentence,
+            "Met by its plan (5 looks up to 5000 cases): 8 failures in 5000 cases at a risk of 10 %; 99.73 % is "
+            "required. Decided by the look at 2000 cases, with 0 failures.");
+}
+
+TEST(Judge, TakesRowsOfWhateverNumbers) {
+  CaseColumns some = Columns(852, 0);
+  for (std::size_t i = 0; i < 852; ++i) some.index[i] = 7 * i + 3;
+  EXPECT_EQ(Judge(PeakBelow(0.5, 0.9973, 0.10), SamplingMethod::kMonteCarlo, some, 0).verdict, "pass");
 }
 
 TEST(Judge, TheLimitItselfFails) {
@@ -108,32 +173,35 @@ TEST(Judge, MissingCasesCountAgainstEitherVerdict) {
             "inconclusive");
 }
 
-TEST(Judge, GivesNoConfidenceToADesign) {
-  const RequirementSummary corners =
-      Judge(PeakBelow(0.5, 0.9973, 0.10), SamplingMethod::kCorners, Columns(16, 0), 0);
-  EXPECT_EQ(corners.verdict, "pass");
-  EXPECT_FALSE(corners.success_lower.has_value());
-  EXPECT_EQ(corners.sentence,
-            "Design study: 16 of 16 flown points meet the limit; 99.73 % of them are required. This says "
-            "nothing about the "
-            "probability in flight.");
-  EXPECT_EQ(Judge(PeakBelow(0.5, 0.9973, 0.10), SamplingMethod::kCorners, Columns(16, 1), 0).verdict, "fail");
-  EXPECT_EQ(Judge(PeakBelow(0.5, 0.9973, 0.10), SamplingMethod::kGrid, Columns(15, 0), 1).verdict,
-            "inconclusive");
-  EXPECT_EQ(Judge(PeakBelow(0.5, 0.95, 0.10), SamplingMethod::kCorners, Columns(320, 16), 0).verdict,
-            "pass");  // 95 %
-  EXPECT_EQ(Judge(PeakBelow(0.5, 0.95, 0.10), SamplingMethod::kCorners, Columns(320, 17), 0).verdict, "fail");
+TEST(Judge, GivesAChosenDesignNoVerdict) {
+  for (const std::size_t violated : {0, 1, 500}) {
+    for (const SamplingMethod method : {SamplingMethod::kCorners, SamplingMethod::kOneAtATime,
+                                        SamplingMethod::kGrid, SamplingMethod::kList, SamplingMethod::kSobol,
+                                        SamplingMethod::kLatinHypercube}) {
+      const RequirementSummary study = Judge(PeakBelow(0.5, 0.95, 0.10), method, Columns(1000, violated), 0);
+      EXPECT_EQ(study.verdict, "study");
+      EXPECT_FALSE(study.success_lower.has_value());
+      EXPECT_FALSE(study.cases_needed.has_value());
+      EXPECT_FALSE(study.bound.has_value());
+      EXPECT_TRUE(study.looks.empty());
+    }
+  }
+  EXPECT_EQ(Judge(PeakBelow(0.5, 0.95, 0.10), SamplingMethod::kCorners, Columns(16, 1), 0).sentence,
+            "Design study: 15 of 16 points meet the limit. The points are chosen, not drawn independently: this "
+            "says nothing about the probability in flight.");
+}
 
-  const RequirementSummary latin =
-      Judge(PeakBelow(0.5, 0.95, 0.10), SamplingMethod::kLatinHypercube, Columns(1000, 0), 0);
-  EXPECT_EQ(latin.verdict, "inconclusive");
-  EXPECT_FALSE(latin.success_upper.has_value());
-  EXPECT_FALSE(latin.cases_needed.has_value());
-  EXPECT_EQ(latin.sentence,
-            "Design study: 1000 of 1000 points meet the limit. Binomial confidence limits do not hold for "
-            "this design; fly "
-            "Monte Carlo for a verdict.");
-  EXPECT_EQ(Judge(PeakBelow(0.5, 0.95, 0.10), SamplingMethod::kSobol, Columns(1000, 500), 0).verdict, "fail");
+TEST(Judge, ReplicatesOfADesignGiveBounds) {
+  JudgingContext context;
+  context.method = SamplingMethod::kLatinHypercube;
+  context.cases = 1000;
+  context.planned = 1000;
+  context.replicates = 10;
+  const RequirementSummary study = JudgeAll({PeakBelow(0.5, 0.95, 0.10)}, context, Columns(1000, 20))[0];
+  EXPECT_EQ(study.verdict, "study");
+  // Shares 0.2 and nine times 0: mean 0.02, standard error 0.02, t of 9 degrees at 10 % 1.3830.
+  EXPECT_NEAR(*study.success_lower, 1.0 - (0.02 + 1.38303 * 0.02), 1e-6);
+  EXPECT_NEAR(*study.success_upper, 1.0, 1e-6);
 }
 
 /// Five cases, peaks 1 2 3 4 of the completed ones; case 2 is lost.
@@ -168,14 +236,15 @@ TEST_F(FiveCases, StatisticsAreThoseWorkedOutByHand) {
   EXPECT_EQ(summary.outcomes[static_cast<std::size_t>(Outcome::kCompleted)], 4u);
   EXPECT_EQ(summary.outcomes[static_cast<std::size_t>(Outcome::kLostControl)], 1u);
   const Summary& peak = summary.metrics[MetricColumn(kPeak)].statistics;
-  EXPECT_EQ(peak.n, 5u);
-  EXPECT_DOUBLE_EQ(peak.mean, 2.1);
-  // Deviations -1.6 -1.1 -0.1 0.9 1.9: squares 2.56 1.21 0.01 0.81 3.61, sum 8.2.
-  EXPECT_NEAR(peak.std, std::sqrt(8.2 / 4.0), 1e-15);
-  EXPECT_EQ(peak.p50, 2.0);
+  EXPECT_EQ(peak.n, 4u);  // the lost flight is not among them
+  EXPECT_EQ(peak.undefined, 1u);
+  EXPECT_DOUBLE_EQ(peak.mean, 2.5);
+  // Deviations -1.5 -0.5 0.5 1.5: squares 2.25 0.25 0.25 2.25, sum 5.
+  EXPECT_NEAR(peak.std, std::sqrt(5.0 / 3.0), 1e-15);
+  EXPECT_EQ(peak.p50, 2.5);
   EXPECT_EQ(peak.max, 4.0);
-  EXPECT_EQ(summary.metrics[MetricColumn("apogee_km")].statistics.n, 4u);
-  EXPECT_EQ(summary.metrics[MetricColumn("apogee_km")].statistics.undefined, 1u);
+  EXPECT_THAT(Warnings(summary), ElementsAre("1 of 5 flights were lost: statistics and percentiles cover the 4 "
+                                             "that were completed, and every lost flight fails every requirement."));
 }
 
 TEST_F(FiveCases, WorstCasesBeginWithALostOne) {
@@ -214,6 +283,16 @@ TEST_F(FiveCases, TheVerdictAndItsExitCode) {
   campaign_.sampling.cases = 6;
   EXPECT_EQ(BuildSummary(folder_, campaign_).verdict, CampaignVerdict::kIncomplete);
 
+  // A failure that no missing case can undo is said beside the incompleteness.
+  campaign_.requirements = {PeakBelow(0.1, 0.99, 0.10)};
+  summary = BuildSummary(folder_, campaign_);
+  EXPECT_EQ(summary.verdict, CampaignVerdict::kIncomplete);
+  EXPECT_EQ(summary.requirements[0].verdict, "fail");
+  EXPECT_EQ(Warnings(summary)[1], "Not met whatever the missing cases bring: pitch_error_peak_deg below 0.1 for "
+                                  "99 % of flights at 10 % risk.");
+
+  EXPECT_EQ(VerdictExitCode(CampaignVerdict::kStudy), 4);
+  EXPECT_EQ(VerdictExitCode(CampaignVerdict::kStudyViolated), 3);
   EXPECT_EQ(VerdictExitCode(CampaignVerdict::kPass), 0);
   EXPECT_EQ(VerdictExitCode(CampaignVerdict::kFail), 3);
   EXPECT_EQ(VerdictExitCode(CampaignVerdict::kInconclusive), 4);
@@ -222,7 +301,7 @@ TEST_F(FiveCases, TheVerdictAndItsExitCode) {
 
 TEST_F(FiveCases, JsonHoldsTheContract) {
   campaign_.sampling.cases = 6;
-  campaign_.requirements = {PeakBelow(3.5, 0.9, 0.10)};
+  campaign_.requirements = {PeakBelow(4.5, 0.9, 0.10)};
   folder_.Quarantine({5, "killed 3 workers"});
   const std::string text = SummaryJson(BuildSummary(folder_, campaign_));
   const nlohmann::json json = nlohmann::json::parse(text);
@@ -238,24 +317,158 @@ TEST_F(FiveCases, JsonHoldsTheContract) {
             nlohmann::json::parse(R"({"completed": 4, "lost_control": 1, "structural_limit": 0, "impact": 0,
                                                         "numerical_failure": 0, "timeout": 0})"));
   EXPECT_EQ(json["metrics"].size(), MetricNames().size());
-  EXPECT_EQ(json["metrics"][kPeak]["n"], 5);
-  EXPECT_EQ(json["metrics"][kPeak]["p50"], 2.0);
-  EXPECT_EQ(json["metrics"][kPeak]["min"], 0.5);
+  EXPECT_EQ(json["metrics"][kPeak]["n"], 4);
+  EXPECT_EQ(json["metrics"][kPeak]["p50"], 2.5);
+  EXPECT_EQ(json["metrics"][kPeak]["min"], 1.0);
+  EXPECT_EQ(json["campaign"]["design"], "monte_carlo");
+  EXPECT_EQ(json["joint"]["method"], "each");
   const nlohmann::json& requirement = json["requirements"][0];
   EXPECT_EQ(requirement["metric"], kPeak);
-  EXPECT_EQ(requirement["limit"], 3.5);
+  EXPECT_EQ(requirement["limit"], 4.5);
   EXPECT_EQ(requirement["probability"], 0.9);
   EXPECT_EQ(requirement["consumer_risk"], 0.1);
   EXPECT_EQ(requirement["n"], 5);
-  EXPECT_EQ(requirement["failures"], 2);
+  EXPECT_EQ(requirement["failures"], 1);
   EXPECT_EQ(requirement["verdict"], "inconclusive");
   EXPECT_TRUE(requirement["cases_needed"].is_number_integer());
+  EXPECT_EQ(requirement["plan"]["kind"], "fixed");
+  EXPECT_EQ(requirement["plan"]["cases"], 5);
+  EXPECT_EQ(requirement["post_hoc"], true);  // the folder was made without requirements
   EXPECT_EQ(json["quarantined"],
             nlohmann::json::parse(R"([{"case_index": 5, "reason": "killed 3 workers"}])"));
   EXPECT_EQ(json["worst_cases"][0]["case_index"], 2);
   EXPECT_EQ(json["worst_cases"][0]["replay"], "dispersa replay . --case 2");
   EXPECT_EQ(json["nominal"], nullptr);
   EXPECT_EQ(text.back(), '\n');
+}
+
+/// A campaign of made-up cases, of which `failing` have a large peak, reported on as `run` does.
+class Misuse : public testing::Test {
+ protected:
+  Misuse() { campaign_.requirements_id = "original"; }
+
+  void Fly(std::uint64_t cases, std::uint64_t failing) {
+    campaign_.sampling.cases = cases;
+    const std::filesystem::path folder = temporary_ / "out";
+    ResultFolder opened = std::filesystem::exists(folder) ? ResultFolder::Resume(folder, campaign_)
+                                                          : ResultFolder::Create(folder, campaign_);
+    std::vector<CaseResult> results;
+    for (std::uint64_t k = flown_; k < cases; ++k) {
+      results.push_back(MakeCase(k));
+      results.back().metrics[MetricColumn(kPeak)] = k < failing ? 0.9 : 0.1;
+    }
+    flown_ = cases;
+    opened.Append(results);
+    summary_ = BuildSummary(opened, campaign_);
+    RecordLooks(opened, campaign_, summary_);
+  }
+
+  TemporaryFolder temporary_;
+  Campaign campaign_ = MakeCampaign(0);
+  CampaignSummary summary_;
+  std::uint64_t flown_ = 0;
+};
+
+TEST_F(Misuse, ExtendingUntilItPassesDoesNotPassAndShows) {
+  campaign_.requirements = {PeakBelow(0.5, 0.97, 0.10)};  // 76 cases without a failure, 129 with one
+  Fly(76, 1);
+  EXPECT_EQ(summary_.requirements[0].verdict, "inconclusive");
+  EXPECT_EQ(summary_.requirements[0].cases_needed, 129);
+  EXPECT_TRUE(Warnings(summary_).empty());
+  Fly(129, 1);
+  const RequirementSummary& requirement = summary_.requirements[0];
+  EXPECT_EQ(requirement.verdict, "inconclusive");
+  EXPECT_TRUE(requirement.beyond_plan);
+  EXPECT_EQ(requirement.planned, 76);
+  EXPECT_THAT(requirement.looks, ElementsAre(Look{76, 1, true, Verdict::kInconclusive},
+                                             Look{129, 1, false, Verdict::kInconclusive}));
+  ASSERT_EQ(Warnings(summary_).size(), 1u);
+  EXPECT_THAT(Warnings(summary_)[0],
+              testing::StartsWith("Beyond the plan: pitch_error_peak_deg was planned for 76 cases, 129 are in the "
+                                  "campaign; its looks read one by one carry a risk of 14."));
+  // Reading it again is no further look.
+  const std::string before = SummaryJson(summary_);
+  Fly(129, 1);
+  EXPECT_EQ(SummaryJson(summary_), before);
+}
+
+TEST_F(Misuse, ALimitThatWasChangedAfterTheFirstCaseShows) {
+  campaign_.requirements = {PeakBelow(0.05, 0.9, 0.10)};
+  Fly(40, 0);
+  EXPECT_FALSE(summary_.requirements[0].post_hoc);
+  EXPECT_EQ(summary_.requirements[0].verdict, "fail");
+  campaign_.requirements = {PeakBelow(0.5, 0.9, 0.10)};
+  campaign_.requirements_id = "changed";
+  Fly(40, 0);
+  EXPECT_EQ(summary_.requirements[0].verdict, "pass");
+  EXPECT_TRUE(summary_.requirements[0].post_hoc);
+  EXPECT_THAT(Warnings(summary_),
+              ElementsAre("Post hoc: pitch_error_peak_deg below 0.5 for 90 % of flights at 10 % risk is not what was "
+                          "required before the first case was flown."));
+  campaign_.requirements.clear();
+  Fly(40, 0);
+  EXPECT_EQ(Warnings(summary_).size(), 1u);  // dropped, which shows too
+}
+
+TEST_F(Misuse, HalfADesignIsIncomplete) {
+  campaign_.requirements = {PeakBelow(0.5, 0.9, 0.10)};
+  campaign_.sampling.method = SamplingMethod::kCorners;
+  for (const char* input : {"drag_factor", "lift_factor", "cg_factor", "cp_factor", "density_factor"}) {
+    Dispersion corner;
+    corner.name = input;
+    corner.distribution.kind = Distribution::kTwoPoint;
+    corner.inputs = {FindInput(input)};
+    campaign_.dispersions.push_back(corner);
+  }
+  Fly(16, 0);
+  EXPECT_EQ(summary_.verdict, CampaignVerdict::kIncomplete);
+  EXPECT_EQ(Warnings(summary_)[0], "Incomplete design: 16 of its 32 points are in the campaign.");
+  Fly(32, 0);
+  EXPECT_EQ(summary_.verdict, CampaignVerdict::kStudy);
+  EXPECT_EQ(summary_.requirements[0].verdict, "study");
+}
+
+TEST_F(Misuse, APointOfADesignThatViolatesARequirementIsSaid) {
+  campaign_.requirements = {PeakBelow(0.5, 0.9, 0.10)};
+  campaign_.sampling.method = SamplingMethod::kLatinHypercube;
+  Fly(100, 1);
+  EXPECT_EQ(summary_.verdict, CampaignVerdict::kStudyViolated);
+  EXPECT_STREQ(CampaignVerdictName(summary_.verdict), "study");
+}
+
+TEST_F(Misuse, StopsWhereItIsDecidedInWhateverOrderTheCasesCame) {
+  campaign_.requirements = {PeakBelow(0.5, 0.97, 0.10)};
+  campaign_.requirements[0].plan = {PlanKind::kGroupSequential, 4, Spending::kPocock};
+  campaign_.verdicts.stop_when_decided = true;
+  campaign_.sampling.cases = 400;
+  StoppingRule ascending(campaign_, 400, {});
+  StoppingRule descending(campaign_, 400, {});
+  EXPECT_EQ(ascending.target(), 100u);
+  for (std::uint64_t k = 0; k < 100; ++k) {
+    EXPECT_FALSE(ascending.Settled({}));
+    EXPECT_FALSE(ascending.Advance({}));
+    for (const bool up : {true, false}) {
+      const std::uint64_t index = up ? k : 99 - k;
+      CaseResult result = MakeCase(index);
+      result.metrics[MetricColumn(kPeak)] = index == 7 ? 0.9 : 0.1;
+      (up ? ascending : descending).Add(result);
+    }
+  }
+  EXPECT_TRUE(ascending.Advance({}));  // one failure of 100 decides nothing
+  EXPECT_TRUE(descending.Advance({}));
+  EXPECT_EQ(ascending.target(), 200u);
+  for (std::uint64_t k = 100; k < 199; ++k) {
+    CaseResult result = MakeCase(k);
+    result.metrics[MetricColumn(kPeak)] = 0.1;
+    ascending.Add(result);
+  }
+  EXPECT_FALSE(ascending.Settled({}));
+  EXPECT_TRUE(ascending.Settled({199}));  // given up
+  CaseResult last = MakeCase(199);
+  last.metrics[MetricColumn(kPeak)] = 0.1;
+  ascending.Add(last);
+  const auto looks = Boundaries(campaign_.requirements[0].plan, 0.97, 0.10, 400);
+  EXPECT_EQ(ascending.Advance({}), looks[1].accept < 1);  // one failure of 200 is enough or not
 }
 
 TEST(SummaryJson, WritesUndefinedAsNull) {

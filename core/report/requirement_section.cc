@@ -1,0 +1,130 @@
+// The requirements of a report: one card each, so that a verdict stays beside its numbers on any screen.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/report/html_parts.h"
+#include "core/report/metric_catalogue.h"
+#include "core/report/report_sections.h"
+#include "core/report/sampling_text.h"
+#include "core/report/svg_chart.h"
+#include "core/report/text.h"
+
+namespace dispersa {
+namespace {
+
+std::string WithUnit(double value, const std::string& unit) {
+  return ReadableText(value) + (unit.empty() ? "" : " " + unit);
+}
+
+std::string Fact(const std::string& title, const std::string& value) {
+  return fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", title, value);
+}
+
+const char* LookName(Verdict verdict) {
+  return verdict == Verdict::kPass ? "pass" : verdict == Verdict::kFail ? "fail" : "inconclusive";
+}
+
+std::string PlanWords(const RequirementSummary& requirement) {
+  switch (requirement.plan.kind) {
+    case PlanKind::kFixed:
+      return fmt::format("one look at {} cases", requirement.planned);
+    case PlanKind::kGroupSequential:
+      return fmt::format("{} looks up to {} cases, {} spending", requirement.plan.looks, requirement.planned,
+                         requirement.plan.spending == Spending::kPocock ? "Pocock" : "O’Brien–Fleming");
+    case PlanKind::kAnytime:
+      return "any time, by a mixture martingale";
+  }
+  return "";
+}
+
+std::string BoundWords(const RequirementSummary& requirement, const std::string& unit) {
+  if (!requirement.bound) return "none: too few cases or too many lost";
+  return fmt::format("{}, margin {}", WithUnit(*requirement.bound, unit),
+                     WithUnit(*requirement.margin, unit));
+}
+
+std::string LooksTable(const RequirementSummary& requirement) {
+  if (requirement.looks.size() < 2) return "";
+  HtmlTable table({{"Look at", true}, {"Failures", true}, {"Verdict"}, {"In the plan"}});
+  for (const Look& look : requirement.looks) {
+    table.Row({std::to_string(look.n), std::to_string(look.failures), LookName(look.verdict),
+               look.planned ? "yes" : "no"});
+  }
+  return table.Html("narrow");
+}
+
+std::string ChanceFigure(const RequirementSummary& requirement) {
+  if (requirement.verdict != "inconclusive" || requirement.pass_chances.size() < 2) return "";
+  SvgChart chart({.label = "cases of a new campaign", .logarithmic = true},
+                 {.label = "probability of a pass", .low = 0.0, .high = 1.0, .percent = true}, 520, 200);
+  std::vector<double> cases;
+  std::vector<double> chance;
+  for (const auto& each : requirement.pass_chances) {
+    cases.push_back(static_cast<double>(each.cases));
+    chance.push_back(each.probability);
+  }
+  chart.Line(cases, chance, "line-0", "at the failure rate seen here");
+  const std::string caption = "Probability that a new campaign passes, against its number of cases.";
+  return "<div class=\"figures\">" + Figure(chart.Svg(caption), caption) + "</div>\n";
+}
+
+std::string Card(const RequirementSummary& requirement) {
+  const MetricInfo info = DescribeMetric(requirement.metric);
+  const double observed = requirement.n == 0 ? std::nan("")
+                                             : static_cast<double>(requirement.n - requirement.failures) /
+                                                   static_cast<double>(requirement.n);
+  const bool study = requirement.verdict == "study";
+  std::string html = fmt::format(
+      "<section class=\"requirement\"><p class=\"claim\">{}{}<b>{}</b> {} for {} of flights, consumer risk "
+      "{}<br><code>{}</code></p>\n<p class=\"sentence\">{}</p>\n<dl class=\"facts\">",
+      VerdictBadge(requirement.verdict),
+      requirement.post_hoc ? " <span class=\"badge design\">post hoc</span>" : "", HtmlText(info.title),
+      HtmlText(LimitWords(requirement, info.unit)), PercentText(requirement.probability),
+      PercentText(requirement.consumer_risk), HtmlText(requirement.metric), HtmlText(requirement.sentence));
+  html += Fact("cases", std::to_string(requirement.n));
+  html += Fact("failures", std::to_string(requirement.failures));
+  html += Fact("lost flights", std::to_string(requirement.lost_flights));
+  html += Fact("observed", PercentText(observed));
+  html += Fact("confidence bounds", requirement.success_lower
+                                        ? fmt::format("≥ {}, ≤ {}", PercentText(*requirement.success_lower),
+                                                      PercentText(*requirement.success_upper))
+                                        : "none: design study");
+  if (!study) {
+    html += Fact(fmt::format("bound of {} of flights", PercentText(requirement.probability)),
+                 BoundWords(requirement, info.unit));
+    html += Fact("plan", PlanWords(requirement));
+    html += Fact("failures that decide", fmt::format("pass {}, fail {}",
+                                                     requirement.accepts ? fmt::format("≤ {}", *requirement.accepts)
+                                                                         : "none",
+                                                     requirement.rejects ? fmt::format("≥ {}", *requirement.rejects)
+                                                                         : "none"));
+  }
+  return html + "</dl>\n" + LooksTable(requirement) + ChanceFigure(requirement) + "</section>\n";
+}
+
+}  // namespace
+
+std::string RequirementsSection(const CampaignSummary& summary) {
+  std::string html = "<h2 id=\"requirements\">Requirements</h2>\n";
+  if (summary.requirements.empty()) return html + "<p>The campaign states none.</p>\n";
+  for (const RequirementSummary& requirement : summary.requirements) html += Card(requirement);
+  if (!IsIndependent(summary.sampling)) {
+    return html +
+           "<p class=\"soft\">The points of this campaign are chosen, not drawn independently, so that no "
+           "confidence can be stated: it is a design study, which neither passes nor fails a requirement. A "
+           "point that violates one is a fact all the same. A lost flight violates every requirement, and so "
+           "does an undefined metric.</p>\n";
+  }
+  return html + "<p>" + HtmlText(JointRiskSentence(summary)) +
+         "</p>\n<p class=\"soft\">Verdicts come from the exact binomial distribution, not from mean ± 3σ "
+         "(NASA/TP-2010-216447): a requirement passes when a design that just misses it would have shown so "
+         "few failures, at any of the plan’s looks, with no more than the consumer risk, and fails when a "
+         "design that just meets it would have shown so many with no more than the same risk. Each "
+         "confidence "
+         "bound is one-sided. The bound in the metric’s unit is the order statistic that decides: the "
+         "requirement passes exactly when it keeps to the limit. A lost flight counts as a failure of every "
+         "requirement, and so does an undefined metric.</p>\n";
+}
+
+}  // namespace dispersa
