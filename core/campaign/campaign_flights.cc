@@ -158,7 +158,8 @@ void CampaignFlights::FlyCases(CaseQueue& queue) const {
   ChosenEngine().fly(*model_, flying);
 }
 
-void CampaignFlights::FlyCases(const std::vector<CaseOrder>& orders, int threads, const CaseObserver& done) const {
+void CampaignFlights::FlyCases(const std::vector<CaseOrder>& orders, int threads,
+                               const CaseObserver& done) const {
   FlyingOrders::Shared shared{*this, orders, done};
   const auto fly = [&] {
     FlyingOrders flying(shared);

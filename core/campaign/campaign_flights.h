@@ -53,8 +53,8 @@ class CampaignFlights {
 
   /// Flies the queue's cases side by side on this thread until it has none. Results are those of FlyCase.
   void FlyCases(CaseQueue& queue) const;
-  /// Flies a list side by side on up to `threads` threads, this one among them. `done` is called by one thread at a time, in
-  /// the order in which flights end. Throws what it throws.
+  /// Flies a list side by side on up to `threads` threads, this one among them. `done` is called by one
+  /// thread at a time, in the order in which flights end. Throws what it throws.
   void FlyCases(const std::vector<CaseOrder>& orders, int threads, const CaseObserver& done) const;
 
  private:

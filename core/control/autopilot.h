@@ -25,8 +25,8 @@ struct StageControl {
   double limit_rad = 0.0;
 };
 
-/// StageControl's tables as straight pieces: a row has pitch (constant, slope) and roll (constant, slope) over the
-/// time since ignition, held outside [0, end_s].
+/// StageControl's tables as straight pieces: a row has pitch (constant, slope) and roll (constant, slope)
+/// over the time since ignition, held outside [0, end_s].
 struct EffectivenessRows {
   static constexpr int kRowSize = 4;
 

@@ -13,7 +13,7 @@ inline namespace DISPERSA_ISA {
 template <class T>
 struct GimbalLoop {
   AxisStage<T> axes[kAxes];
-  T gain;       ///< of every command
+  T gain;  ///< of every command
   T limit_rad;
   const EffectivenessRows* effectiveness[kWidth<T>];
 };
@@ -21,7 +21,8 @@ template <class T>
 DISPERSA_INLINE void SetLane(GimbalLoop<T>& loop, int lane, const AutopilotModel& model, int stage,
                              double pn_error_factor, double pn_rate_factor, double gain) {
   for (int axis = 0; axis < kAxes; ++axis)
-    SetLane(loop.axes[axis], lane, model.laws.data()[axis].stages.data()[stage], pn_error_factor, pn_rate_factor);
+    SetLane(loop.axes[axis], lane, model.laws.data()[axis].stages.data()[stage], pn_error_factor,
+            pn_rate_factor);
   Lane(loop.gain, lane) = gain;
   Lane(loop.limit_rad, lane) = model.stages.data()[stage].limit_rad;
   loop.effectiveness[lane] = model.effectiveness.data() + stage;
@@ -33,12 +34,12 @@ struct GimbalOutput {
   AxisOutput<T> axes[kAxes];
 };
 
-/// One tick of the lanes that act. Errors reference less true, about x, y, z. Of what the laws have learnt, pitch
-/// alone is reported.
+/// One tick of the lanes that act. Errors reference less true, about x, y, z. Of what the laws have learnt,
+/// pitch alone is reported.
 template <bool kAll, class T>
 DISPERSA_INLINE void StepGimbals(const AutopilotModel& model, const GimbalLoop<T>& loop, MaskOf<T> acting,
-                                 T since_ignition_s, Vector<T> angle_rad, Vector<T> rate_rad_s, AxisMemory<T>* memory,
-                                 GimbalOutput<T>& out) {
+                                 T since_ignition_s, Vector<T> angle_rad, Vector<T> rate_rad_s,
+                                 AxisMemory<T>* memory, GimbalOutput<T>& out) {
   T since;
   const double* row[kWidth<T>];
   for (int lane = 0; lane < kWidth<T>; ++lane) {
@@ -57,11 +58,11 @@ DISPERSA_INLINE void StepGimbals(const AutopilotModel& model, const GimbalLoop<T
   const T* angle = &angle_rad.x;
   const T* rate = &rate_rad_s.x;
   for (int axis = 0; axis < kAxes; ++axis) {
-    StepAxis<kAll>(model.laws.data()[axis].config, model.config.tick_s, loop.axes[axis], acting, angle[axis], rate[axis],
-                   axis == kPitch, memory[axis], out.axes[axis]);
+    StepAxis<kAll>(model.laws.data()[axis].config, model.config.tick_s, loop.axes[axis], acting, angle[axis],
+                   rate[axis], axis == kPitch, memory[axis], out.axes[axis]);
     const T deflection = out.axes[axis].command_rad_s2 * (axis == kRoll ? per_roll : per_pitch);
-    const T saturation = Select(deflection > loop.limit_rad, T(1.0),
-                                Select(deflection < -loop.limit_rad, T(-1.0), T(0.0)));
+    const T saturation =
+        Select(deflection > loop.limit_rad, T(1.0), Select(deflection < -loop.limit_rad, T(-1.0), T(0.0)));
     memory[axis].saturation = Kept<kAll>(acting, saturation, memory[axis].saturation);
     out.deflection_rad[axis] = deflection;
   }
@@ -76,14 +77,16 @@ struct ThrusterMemory {
 
 /// One cycle of the lanes that act: StepThrusters of reaction_control.h.
 template <class T>
-DISPERSA_INLINE void StepThrusters(const ReactionControlLogic& logic, int minimum_cycles, MaskOf<T> acting, T error_rad,
-                                   T rate_rad_s, ThrusterMemory<T>& memory) {
+DISPERSA_INLINE void StepThrusters(const ReactionControlLogic& logic, int minimum_cycles, MaskOf<T> acting,
+                                   T error_rad, T rate_rad_s, ThrusterMemory<T>& memory) {
   const T s = Fma(T(logic.rate_gain_s), rate_rad_s, error_rad);
   const auto is_open = Abs(memory.direction) > T(0.5);
   const T cycles = memory.cycles_on + Select(is_open, T(1.0), T(0.0));
-  const auto stays_open = is_open & ((cycles < T(static_cast<double>(minimum_cycles))) |
-                                     (s * memory.direction > T(logic.deadband_rad * (1.0 - logic.hysteresis))));
-  const T anew = Select(s > T(logic.deadband_rad), T(1.0), Select(s < T(-logic.deadband_rad), T(-1.0), T(0.0)));
+  const auto stays_open =
+      is_open & ((cycles < T(static_cast<double>(minimum_cycles))) |
+                 (s * memory.direction > T(logic.deadband_rad * (1.0 - logic.hysteresis))));
+  const T anew =
+      Select(s > T(logic.deadband_rad), T(1.0), Select(s < T(-logic.deadband_rad), T(-1.0), T(0.0)));
   memory.cycles_on = Select(acting, Select(stays_open, cycles, T(0.0)), memory.cycles_on);
   memory.direction = Select(acting, Select(stays_open, memory.direction, anew), memory.direction);
 }

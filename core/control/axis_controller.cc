@@ -10,11 +10,10 @@ AxisLaw BuildAxisLaw(const AxisConfig& config) {
   law.config = config;
   for (std::size_t i = 0; i < config.gains.size(); ++i) {
     const AxisGains& gains = config.gains[i];
-    const bool fuzzy =
-        config.law == ControlLaw::kAdaptiveFuzzy || config.law == ControlLaw::kFrozenFuzzy;
+    const bool fuzzy = config.law == ControlLaw::kAdaptiveFuzzy || config.law == ControlLaw::kFrozenFuzzy;
     // V is logged for every law; where no Q is configured the identity serves.
-    const Matrix2 q = fuzzy && IsPositiveDefinite(config.adaptation.q) ? config.adaptation.q
-                                                                       : Matrix2(Matrix2::Identity());
+    const Matrix2 q =
+        fuzzy && IsPositiveDefinite(config.adaptation.q) ? config.adaptation.q : Matrix2(Matrix2::Identity());
     const Matrix2 p = SolveLyapunov(gains, q);
     const Vector2 p_n = config.adaptation.p_n ? *config.adaptation.p_n : Vector2(p.col(1));
     law.stages.push_back({gains.kp_1_s2, gains.kd_1_s, p(0, 0), p(0, 1), p(1, 1), p_n.x(), p_n.y(),

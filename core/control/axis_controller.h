@@ -34,26 +34,26 @@ AxisLaw BuildAxisLaw(const AxisConfig& config);
 /// All memory of one axis, made afresh for each flight.
 struct AxisState {
   double departure_rad_s2[kFuzzyRules] = {};  ///< of the consequents from their start
-  std::uint32_t rules_fired = 0;    ///< bit i: rule i has fired
+  std::uint32_t rules_fired = 0;              ///< bit i: rule i has fired
   double previous_v = 0.0;
-  double saturation = 0.0;          ///< -1, 0, 1: the last deflection command was limited in this sense of u
-  double total_gain = 1.0;          ///< adaptive augmentation
-  double model_started = 0.0;       ///< its reference model: 0 or 1
+  double saturation = 0.0;     ///< -1, 0, 1: the last deflection command was limited in this sense of u
+  double total_gain = 1.0;     ///< adaptive augmentation
+  double model_started = 0.0;  ///< its reference model: 0 or 1
   double model_error_rad = 0.0;
   double model_rate_rad_s = 0.0;
-  double high_pass = 0.0;           ///< its spectral damper
+  double high_pass = 0.0;  ///< its spectral damper
   double low_pass = 0.0;
 };
 
 struct AxisTelemetry {
-  double command_rad_s2 = 0.0;      ///< u
-  double adaptation_norm = 0.0;     ///< of the consequents less their start
-  double v = 0.0;                   ///< 1/2 e'Pe
-  double v_rate_sign = 0.0;         ///< -1, 0, 1: of the change of v since the last tick
-  double total_gain = 1.0;          ///< of the augmentation, after the tick
-  std::uint32_t rules_fired = 0;    ///< since the flight began
-  bool projected = false;           ///< a consequent stands at its bound
-  bool frozen = false;              ///< adaptation held by saturation or dead zone
+  double command_rad_s2 = 0.0;    ///< u
+  double adaptation_norm = 0.0;   ///< of the consequents less their start
+  double v = 0.0;                 ///< 1/2 e'Pe
+  double v_rate_sign = 0.0;       ///< -1, 0, 1: of the change of v since the last tick
+  double total_gain = 1.0;        ///< of the augmentation, after the tick
+  std::uint32_t rules_fired = 0;  ///< since the flight began
+  bool projected = false;         ///< a consequent stands at its bound
+  bool frozen = false;            ///< adaptation held by saturation or dead zone
 };
 
 /// Starts a stage's rules and augmentation: at lift-off, and at ignitions if so configured.

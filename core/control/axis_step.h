@@ -1,5 +1,5 @@
-// One axis of the autopilot of W flights side by side (core/math/lanes.h), one tick: from the attitude error and
-// its rate to an angular acceleration. Signs as in axis_controller.h.
+// One axis of the autopilot of W flights side by side (core/math/lanes.h), one tick: from the attitude error
+// and its rate to an angular acceleration. Signs as in axis_controller.h.
 #pragma once
 
 #include "core/control/axis_controller.h"
@@ -35,7 +35,7 @@ struct AxisMemory {
   T departure_rad_s2[kFuzzyRules];  ///< of the consequents from their start
   T fired;                          ///< as bits: rule i has fired
   T previous_v;
-  T saturation;                     ///< -1, 0, 1: the last deflection command was limited in this sense of u
+  T saturation;  ///< -1, 0, 1: the last deflection command was limited in this sense of u
   T total_gain, model_started, model_error_rad, model_rate_rad_s, high_pass, low_pass;  ///< augmentation
 };
 template <class T>
@@ -81,11 +81,12 @@ DISPERSA_INLINE void SetLane(AxisOutput<T>& o, int lane, const AxisOutput<double
   for (unsigned i = 0; i < sizeof from / sizeof(double); ++i) Lane(to[i], lane) = values[i];
 }
 template <class T>
-DISPERSA_INLINE AxisTelemetry TelemetryOf(const AxisConfig& config, const AxisOutput<T>& o, const AxisMemory<T>& m,
-                                          int lane) {
+DISPERSA_INLINE AxisTelemetry TelemetryOf(const AxisConfig& config, const AxisOutput<T>& o,
+                                          const AxisMemory<T>& m, int lane) {
   AxisTelemetry t;
   const double bound = config.adaptation.projection_bound_rad_s2;
-  for (int i = 0; i < kFuzzyRules; ++i) t.projected |= bound > 0.0 && Abs(Lane(m.departure_rad_s2[i], lane)) >= bound;
+  for (int i = 0; i < kFuzzyRules; ++i)
+    t.projected |= bound > 0.0 && Abs(Lane(m.departure_rad_s2[i], lane)) >= bound;
   t.command_rad_s2 = Lane(o.command_rad_s2, lane);
   t.adaptation_norm = Sqrt(Lane(o.departure_norm2, lane));
   t.v = Lane(o.v, lane);
@@ -107,7 +108,8 @@ DISPERSA_INLINE T Kept(MaskOf<T> acting, T anew, T old) {
 /// centre: Memberships of fuzzy.h. They sum to 1, so the regressor of (22) is the product of two.
 template <class T>
 DISPERSA_INLINE void Grades(T position, T* grade) {
-  for (int i = 0; i < kFuzzySets; ++i) grade[i] = Max(T(1.0) - Abs(position - T(static_cast<double>(i))), T(0.0));
+  for (int i = 0; i < kFuzzySets; ++i)
+    grade[i] = Max(T(1.0) - Abs(position - T(static_cast<double>(i))), T(0.0));
 }
 
 /// The paper's law (20)-(32), adaptive or frozen, with the guards of Adaptation.
@@ -117,11 +119,12 @@ DISPERSA_INLINE void Grades(T position, T* grade) {
 ///
 /// A steady disturbance excites the central rule alone. Learnt there alone it bends the rule surface: the
 /// slope towards the neighbours, which is the loop's gain, changes and can turn negative. `spread` draws each
-/// departure to the mean of all, so that what lasts becomes a common offset, which leaves the slopes alone. As
-/// leakage does, it adds a negative semi-definite term to dV/dt, but none against a common offset.
+/// departure to the mean of all, so that what lasts becomes a common offset, which leaves the slopes alone.
+/// As leakage does, it adds a negative semi-definite term to dV/dt, but none against a common offset.
 template <bool kAll, class T>
-DISPERSA_INLINE T StepFuzzy(const AxisConfig& config, double tick_s, const AxisStage<T>& stage, MaskOf<T> acting, T error,
-                            T rate, bool is_reported, AxisMemory<T>& memory, AxisOutput<T>& out) {
+DISPERSA_INLINE T StepFuzzy(const AxisConfig& config, double tick_s, const AxisStage<T>& stage,
+                            MaskOf<T> acting, T error, T rate, bool is_reported, AxisMemory<T>& memory,
+                            AxisOutput<T>& out) {
   const FuzzyRules& rules = config.rules;
   const double last = kFuzzySets - 1.0;
   const T at_error = Clamp(Fma(error, T(2.0 / rules.error_range_rad), T(0.5 * last)), T(0.0), T(last));
@@ -209,8 +212,9 @@ DISPERSA_INLINE T StepAugmented(const AdaptiveAugmentation& a, double tick_s, co
 
   const double k_max = a.maximum_total_gain - a.minimum_total_gain;
   const T k_a = memory.total_gain - T(a.minimum_total_gain);
-  const T gain_rate = (T(k_max) - k_a) * T(k_max > 0.0 ? a.adaptive_gain_1_s / k_max : 0.0) * departure * departure -
-                      T(a.spectral_gain_1_s) * k_a * low_pass - T(a.leakage_1_s) * (memory.total_gain - T(1.0));
+  const T gain_rate =
+      (T(k_max) - k_a) * T(k_max > 0.0 ? a.adaptive_gain_1_s / k_max : 0.0) * departure * departure -
+      T(a.spectral_gain_1_s) * k_a * low_pass - T(a.leakage_1_s) * (memory.total_gain - T(1.0));
   const T total_gain =
       Clamp(Fma(dt, gain_rate, memory.total_gain), T(a.minimum_total_gain), T(a.maximum_total_gain));
   memory.model_started = Kept<kAll>(acting, T(1.0), memory.model_started);
@@ -222,19 +226,23 @@ DISPERSA_INLINE T StepAugmented(const AdaptiveAugmentation& a, double tick_s, co
   return command;
 }
 
-/// One tick of the lanes that act; the others' memory stays as it is. `is_reported`: what the law has learnt is
-/// read afterwards.
+/// One tick of the lanes that act; the others' memory stays as it is. `is_reported`: what the law has learnt
+/// is read afterwards.
 template <bool kAll, class T>
-DISPERSA_INLINE void StepAxis(const AxisConfig& config, double tick_s, const AxisStage<T>& stage, MaskOf<T> acting,
-                              T error, T rate, bool is_reported, AxisMemory<T>& memory, AxisOutput<T>& out) {
+DISPERSA_INLINE void StepAxis(const AxisConfig& config, double tick_s, const AxisStage<T>& stage,
+                              MaskOf<T> acting, T error, T rate, bool is_reported, AxisMemory<T>& memory,
+                              AxisOutput<T>& out) {
   out.command_rad_s2 = out.departure_norm2 = out.frozen = T(0.0);
-  out.v = T(0.5) * Fma(stage.p11 * error, error, Fma(T(2.0) * stage.p12 * error, rate, stage.p22 * rate * rate));
-  out.v_rate_sign = Select(out.v > memory.previous_v, T(1.0), Select(out.v < memory.previous_v, T(-1.0), T(0.0)));
+  out.v =
+      T(0.5) * Fma(stage.p11 * error, error, Fma(T(2.0) * stage.p12 * error, rate, stage.p22 * rate * rate));
+  out.v_rate_sign =
+      Select(out.v > memory.previous_v, T(1.0), Select(out.v < memory.previous_v, T(-1.0), T(0.0)));
   memory.previous_v = Kept<kAll>(acting, out.v, memory.previous_v);
   switch (config.law) {
     case ControlLaw::kAdaptiveFuzzy:
     case ControlLaw::kFrozenFuzzy:
-      out.command_rad_s2 = StepFuzzy<kAll>(config, tick_s, stage, acting, error, rate, is_reported, memory, out);
+      out.command_rad_s2 =
+          StepFuzzy<kAll>(config, tick_s, stage, acting, error, rate, is_reported, memory, out);
       break;
     case ControlLaw::kPd:
       out.command_rad_s2 = Fma(stage.kp_1_s2, error, stage.kd_1_s * rate);

@@ -1,5 +1,6 @@
-// The nozzles' actuators of W flights side by side (core/math/lanes.h): second order with a limited rate. Between two
-// commands they depend on nothing else, so they are propagated by themselves, exactly where no limit acts.
+// The nozzles' actuators of W flights side by side (core/math/lanes.h): second order with a limited rate.
+// Between two commands they depend on nothing else, so they are propagated by themselves, exactly where no
+// limit acts.
 #pragma once
 
 #include "core/dynamics/launcher.h"
@@ -12,9 +13,9 @@ inline namespace DISPERSA_ISA {
 template <class T>
 struct Drives {
   T limit_rad, rate_limit_rad_s;
-  T bandwidth2_1_s2;     ///< w²
-  T twice_damping_1_s;   ///< 2 zeta w
-  T moves[kNozzles];     ///< 1, or 0 of a nozzle that is stuck
+  T bandwidth2_1_s2;    ///< w²
+  T twice_damping_1_s;  ///< 2 zeta w
+  T moves[kNozzles];    ///< 1, or 0 of a nozzle that is stuck
 };
 
 template <class T>
@@ -50,7 +51,8 @@ DISPERSA_INLINE Transition<double> TransitionOver(double bandwidth2, double twic
 /// Derivative of one drive: d(angle)/dt = rate within the limit, at which it cannot accelerate further
 /// outwards.
 template <class T>
-DISPERSA_INLINE void DriveRates(const Drives<T>& d, int i, T command_rad, T angle_rad, T rate_rad_s, T& dangle, T& drate) {
+DISPERSA_INLINE void DriveRates(const Drives<T>& d, int i, T command_rad, T angle_rad, T rate_rad_s,
+                                T& dangle, T& drate) {
   T acceleration = Fma(d.bandwidth2_1_s2, command_rad - angle_rad, -(d.twice_damping_1_s * rate_rad_s));
   const auto at_limit = ((rate_rad_s >= d.rate_limit_rad_s) & (acceleration > T(0.0))) |
                         ((rate_rad_s <= -d.rate_limit_rad_s) & (acceleration < T(0.0)));
@@ -66,8 +68,8 @@ inline constexpr int kLimitedSteps = 4;
 /// integrated numerically. Commands are limited in angle here; the mechanical stop is at the same angle and
 /// takes the rate.
 template <class T>
-DISPERSA_INLINE DriveState<T> Propagate(const Drives<T>& d, const T* command_rad, const Transition<T>& over, T time_s,
-                                        const DriveState<T>& from) {
+DISPERSA_INLINE DriveState<T> Propagate(const Drives<T>& d, const T* command_rad, const Transition<T>& over,
+                                        T time_s, const DriveState<T>& from) {
   DriveState<T> to;
   T fastest(0.0), farthest(0.0);
   T command[kNozzles];
@@ -92,7 +94,8 @@ DISPERSA_INLINE DriveState<T> Propagate(const Drives<T>& d, const T* command_rad
         DriveRates(d, i, command[i], Fma(half, a2, angle), Fma(half, r2, rate), a3, r3);
         DriveRates(d, i, command[i], Fma(h, a3, angle), Fma(h, r3, rate), a4, r4);
         angle = Fma(sixth, (a1 + a4) + T(2.0) * (a2 + a3), angle);
-        rate = Clamp(Fma(sixth, (r1 + r4) + T(2.0) * (r2 + r3), rate), -d.rate_limit_rad_s, d.rate_limit_rad_s);
+        rate =
+            Clamp(Fma(sixth, (r1 + r4) + T(2.0) * (r2 + r3), rate), -d.rate_limit_rad_s, d.rate_limit_rad_s);
       }
       to.angle_rad[i] = Select(limited, angle, to.angle_rad[i]);
       to.rate_rad_s[i] = Select(limited, rate, to.rate_rad_s[i]);

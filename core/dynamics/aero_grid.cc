@@ -58,7 +58,8 @@ class Cell {
       row.insert(row.end(), 4, 0.0);
       return;
     }
-    const double z00 = c.table(m0_, i0_), z01 = c.table(m0_, i1_), z10 = c.table(m1_, i0_), z11 = c.table(m1_, i1_);
+    const double z00 = c.table(m0_, i0_), z01 = c.table(m0_, i1_), z10 = c.table(m1_, i0_),
+                 z11 = c.table(m1_, i1_);
     const double width = m1_ - m0_, height = i1_ - i0_;
     const double twist = ((z11 - z10) - (z01 - z00)) / (width * height);
     const double by_i = (z01 - z00) / height - twist * m0_;
@@ -77,7 +78,9 @@ class Cell {
   double m0_, m1_, i0_, i1_;
 };
 
-bool IsSame(const Coefficient& a, const Coefficient& b) { return a.table.x == b.table.x && a.table.z == b.table.z; }
+bool IsSame(const Coefficient& a, const Coefficient& b) {
+  return a.table.x == b.table.x && a.table.z == b.table.z;
+}
 
 }  // namespace
 

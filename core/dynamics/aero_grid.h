@@ -9,15 +9,15 @@
 
 namespace dispersa {
 
-/// All tables of a BodyAerodynamics at factor 1 on the union of their breakpoints, where each is still the bilinear
-/// function that it was, to rounding. A cell's row holds, for each coefficient, c0 + c1 i + (c2 + c3 i) m over
-/// Mach number m and incidence i (rad), and for damping c0 + c1 m.
+/// All tables of a BodyAerodynamics at factor 1 on the union of their breakpoints, where each is still the
+/// bilinear function that it was, to rounding. A cell's row holds, for each coefficient, c0 + c1 i + (c2 + c3
+/// i) m over Mach number m and incidence i (rad), and for damping c0 + c1 m.
 struct AeroGrid {
   static constexpr int kRowSize = 16;
 
   /// One axis of the grid: cells between edges, found by equal buckets no wider than a cell.
   struct Axis {
-    std::vector<double> edges;          ///< inner lower edges of the cells from the second on, then an upper bound
+    std::vector<double> edges;  ///< inner lower edges of the cells from the second on, then an upper bound
     std::vector<std::uint16_t> bucket;  ///< first cell of each bucket
     double scale = 0.0;                 ///< buckets a unit
     double top = 0.0;                   ///< the argument is held from 0 to here
@@ -25,8 +25,8 @@ struct AeroGrid {
   };
 
   Axis mach, incidence;
-  AlignedRows body_axes;   ///< cell by cell, incidence fastest: ca (4), cn (4), xcp (4), cmq (2), clp (2)
-  AlignedRows wind_axes;   ///< likewise: cd (4), cl (4), cm (4), cnr less cmq (2), unused (2); or empty
+  AlignedRows body_axes;  ///< cell by cell, incidence fastest: ca (4), cn (4), xcp (4), cmq (2), clp (2)
+  AlignedRows wind_axes;  ///< likewise: cd (4), cl (4), cm (4), cnr less cmq (2), unused (2); or empty
 };
 
 AeroGrid BuildAeroGrid(const BodyAerodynamics& body);

@@ -13,8 +13,8 @@ template <class T>
 struct AeroBody {
   const AeroGrid* grid[kWidth<T>];
   T mach_top, mach_scale, incidence_top, incidence_scale;  ///< AeroGrid::Axis
-  bool has_wind_axes;      ///< any lane's grid has coefficients in wind axes
-  bool has_airspeed_floor; ///< minimum_airspeed_m_s counts
+  bool has_wind_axes;                                      ///< any lane's grid has coefficients in wind axes
+  bool has_airspeed_floor;                                 ///< minimum_airspeed_m_s counts
   T area_m2, length_m, span_m;
   T ca_factor, cn_factor, xcp_factor;
   T moment_reference_station_m;

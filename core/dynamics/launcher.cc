@@ -17,7 +17,8 @@ class OneLane {
   OneLane(const LauncherPlant& plant, const LauncherPhase& phase)
       : weather_(PrepareWeather(plant.environment.wind, plant.environment.density)) {
     const LauncherStack& stack = plant.stacks[static_cast<std::size_t>(phase.stack)];
-    grid_ = stack.aero_grid ? stack.aero_grid : std::make_shared<const AeroGrid>(BuildAeroGrid(stack.aerodynamics));
+    grid_ = stack.aero_grid ? stack.aero_grid
+                            : std::make_shared<const AeroGrid>(BuildAeroGrid(stack.aerodynamics));
     LauncherPlant one;  // the stack alone
     one.stacks = {stack};
     one.stacks.front().aero_grid = grid_;
@@ -26,7 +27,8 @@ class OneLane {
     lanes::SetLane(plant_, 0, one, 0);
     lanes::SetLane(plant_.weather, 0, weather_);
     lanes::SetLane(drives, 0, stack.gimbal, phase.stuck_nozzle);
-    phase_ = {phase.burning, phase.burnt, phase.ignition_s, phase.expelled_mass_kg, ToLane(phase.control_torque_n_m)};
+    phase_ = {phase.burning, phase.burnt, phase.ignition_s, phase.expelled_mass_kg,
+              ToLane(phase.control_torque_n_m)};
   }
 
   const lanes::Plant<double>& plant() const { return plant_; }
@@ -54,15 +56,16 @@ RigidBodyState AfterSeparation(const LauncherPlant& plant, int below, const Rigi
   return AtPoint(state, Vector3(old_cg - new_cg, 0.0, 0.0));
 }
 
-LauncherInstant Evaluate(const LauncherPlant& plant, const LauncherPhase& phase, double time_s, const double* y) {
+LauncherInstant Evaluate(const LauncherPlant& plant, const LauncherPhase& phase, double time_s,
+                         const double* y) {
   const OneLane one(plant, phase);
   const Earth& earth = plant.environment.earth;
   const lanes::Motion<double> s = MotionOf(y);
   const auto around = lanes::SurroundingsAt(earth, StandardAir(), one.plant().weather, s.p);
   const auto masses = lanes::MassesAt(one.plant(), one.phase(), time_s);
   const auto nozzles = lanes::NozzlesAt(y + kNozzleAngle);
-  lanes::LoadsOf<double> loads = lanes::LoadsAt(earth.rotation_rate_rad_s, plant.jet_damping, one.plant(), one.phase(),
-                                                phase.burning, around, masses, nozzles, s);
+  lanes::LoadsOf<double> loads = lanes::LoadsAt(earth.rotation_rate_rad_s, plant.jet_damping, one.plant(),
+                                                one.phase(), phase.burning, around, masses, nozzles, s);
   LauncherInstant now;
   now.air.place = ToGeodetic(earth, Vector3(y[0], y[1], y[2]));
   now.air.v_AP_I = ToEigen(loads.v_air);
@@ -77,25 +80,28 @@ LauncherInstant Evaluate(const LauncherPlant& plant, const LauncherPhase& phase,
   now.flow_kg_s = loads.flow_kg_s;
   now.loads.mass_kg = masses.mass_kg;
   now.loads.force_n = ToEigen(loads.force_n);
-  now.loads.inertia_kg_m2 = Vector3(masses.axial_kg_m2, masses.transverse_kg_m2, masses.transverse_kg_m2).asDiagonal();
+  now.loads.inertia_kg_m2 =
+      Vector3(masses.axial_kg_m2, masses.transverse_kg_m2, masses.transverse_kg_m2).asDiagonal();
   now.loads.inertia_rate_kg_m2_s =
       -loads.flow_kg_s *
-      Matrix3(Vector3(masses.axial_per_kg_m2, masses.transverse_per_kg_m2, masses.transverse_per_kg_m2).asDiagonal());
+      Matrix3(Vector3(masses.axial_per_kg_m2, masses.transverse_per_kg_m2, masses.transverse_per_kg_m2)
+                  .asDiagonal());
   now.loads.moment_n_m =
-      ToEigen(loads.moment_n_m) - Vector3(loads.jet_axial * s.w.x, loads.jet_transverse * s.w.y, loads.jet_transverse * s.w.z);
+      ToEigen(loads.moment_n_m) -
+      Vector3(loads.jet_axial * s.w.x, loads.jet_transverse * s.w.y, loads.jet_transverse * s.w.z);
   return now;
 }
 
-void LauncherDerivative(const LauncherPlant& plant, const LauncherPhase& phase, double time_s, const double* y,
-                        double* dydt) {
+void LauncherDerivative(const LauncherPlant& plant, const LauncherPhase& phase, double time_s,
+                        const double* y, double* dydt) {
   const OneLane one(plant, phase);
   const Earth& earth = plant.environment.earth;
   const lanes::Motion<double> s = MotionOf(y);
   const auto around = lanes::SurroundingsAt(earth, StandardAir(), one.plant().weather, s.p);
   const auto masses = lanes::MassesAt(one.plant(), one.phase(), time_s);
   const auto nozzles = lanes::NozzlesAt(y + kNozzleAngle);
-  const auto rates = lanes::RatesOf<double>(earth.rotation_rate_rad_s, plant.jet_damping, one.plant(), one.phase(),
-                                            phase.burning, around, masses, nozzles, s, nullptr);
+  const auto rates = lanes::RatesOf<double>(earth.rotation_rate_rad_s, plant.jet_damping, one.plant(),
+                                            one.phase(), phase.burning, around, masses, nozzles, s, nullptr);
   const Quaternion dq = Derivative({s.q.w, s.q.x, s.q.y, s.q.z}, ToEigen(s.w));
   WriteState({ToEigen(s.v), ToEigen(rates.dv), dq, ToEigen(rates.dw)}, dydt);
   for (int i = 0; i < kNozzles; ++i) {

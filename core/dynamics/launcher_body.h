@@ -77,9 +77,12 @@ DISPERSA_INLINE Nozzles<T> NozzlesAt(const T* angle_rad) {
   Nozzles<T> n;
   for (int i = 0; i < kNozzles; ++i) {
     const T x = angle_rad[i], q = x * x;
-    n.sine[i] = Fma(x * q, Horner(q, -1.0 / 6, 1.0 / 120, -1.0 / 5040, 1.0 / 362880, -1.0 / 39916800, 1.0 / 6227020800), x);
-    n.cosine[i] = Fma(q, Horner(q, -1.0 / 2, 1.0 / 24, -1.0 / 720, 1.0 / 40320, -1.0 / 3628800, 1.0 / 479001600,
-                                -1.0 / 87178291200),
+    n.sine[i] =
+        Fma(x * q,
+            Horner(q, -1.0 / 6, 1.0 / 120, -1.0 / 5040, 1.0 / 362880, -1.0 / 39916800, 1.0 / 6227020800), x);
+    n.cosine[i] = Fma(q,
+                      Horner(q, -1.0 / 2, 1.0 / 24, -1.0 / 720, 1.0 / 40320, -1.0 / 3628800, 1.0 / 479001600,
+                             -1.0 / 87178291200),
                       T(1.0));
   }
   return n;
@@ -103,15 +106,16 @@ struct Thrust {
   T thrust_n, flow_kg_s;
   Vector<T> force_n, moment_n_m;
 };
-/// Each nozzle carries a quarter of the thrust, deflected in its hinge plane. Right (+y) and left (-y) turn the
-/// force towards +z, bottom (+z) and top (-z) towards -y. P = P_vac - p A_e; a nozzle that the ambient pressure would
-/// turn inwards gives nothing.
+/// Each nozzle carries a quarter of the thrust, deflected in its hinge plane. Right (+y) and left (-y) turn
+/// the force towards +z, bottom (+z) and top (-z) towards -y. P = P_vac - p A_e; a nozzle that the ambient
+/// pressure would turn inwards gives nothing.
 template <class T>
-DISPERSA_INLINE Thrust<T> ThrustOf(const Plant<T>& plant, const TimedMasses<T>& masses, const Nozzles<T>& nozzles,
-                                   T pressure_pa) {
+DISPERSA_INLINE Thrust<T> ThrustOf(const Plant<T>& plant, const TimedMasses<T>& masses,
+                                   const Nozzles<T>& nozzles, T pressure_pa) {
   Thrust<T> o;
   // Not Max, which would turn a thrust that is no number into none.
-  const T net_n = Fma(plant.burn.vacuum_thrust_n, masses.thrust_fraction, -(pressure_pa * plant.burn.exit_area_m2));
+  const T net_n =
+      Fma(plant.burn.vacuum_thrust_n, masses.thrust_fraction, -(pressure_pa * plant.burn.exit_area_m2));
   o.thrust_n = Select(net_n < T(0.0), T(0.0), net_n);
   o.flow_kg_s = plant.burn.full_flow_kg_s * masses.thrust_fraction;
   const T* sine = nozzles.sine;
@@ -122,11 +126,11 @@ DISPERSA_INLINE Thrust<T> ThrustOf(const Plant<T>& plant, const TimedMasses<T>& 
   const T couple = quarter * plant.nozzle_radius_m;
   const Vector<T> across_y =
       plant.thrust_tilt * Vector<T>{couple * (cosine[0] - cosine[1]), T(0.0), couple * (sine[0] - sine[1])};
-  const Vector<T> across_z =
-      plant.thrust_tilt * Vector<T>{couple * (cosine[2] - cosine[3]), -(couple * (sine[2] - sine[3])), T(0.0)};
-  const Vector<T> arm{masses.cg_station_m - plant.pivot_station_m, plant.thrust_offset_y_m, plant.thrust_offset_z_m};
-  o.moment_n_m = Cross(arm, o.force_n) +
-                 Vector<T>{across_y.z - across_z.y, across_z.x, -across_y.x};
+  const Vector<T> across_z = plant.thrust_tilt * Vector<T>{couple * (cosine[2] - cosine[3]),
+                                                           -(couple * (sine[2] - sine[3])), T(0.0)};
+  const Vector<T> arm{masses.cg_station_m - plant.pivot_station_m, plant.thrust_offset_y_m,
+                      plant.thrust_offset_z_m};
+  o.moment_n_m = Cross(arm, o.force_n) + Vector<T>{across_y.z - across_z.y, across_z.x, -across_y.x};
   return o;
 }
 
@@ -134,20 +138,21 @@ DISPERSA_INLINE Thrust<T> ThrustOf(const Plant<T>& plant, const TimedMasses<T>& 
 template <class T>
 struct LoadsOf {
   Matrix<T> R_IB;
-  Vector<T> v_air;    ///< velocity through the air, in I
-  Vector<T> v_AB_B;   ///< the same in B
+  Vector<T> v_air;   ///< velocity through the air, in I
+  Vector<T> v_AB_B;  ///< the same in B
   FlowForce<T> flow;
-  Vector<T> force_n;  ///< all but gravitation
+  Vector<T> force_n;     ///< all but gravitation
   Vector<T> moment_n_m;  ///< without the jet damping
   T thrust_n, flow_kg_s;
   T jet_axial, jet_transverse;  ///< jet damping, per rad/s
 };
-/// `any_burns`: some lane does. With jet damping the flow leaves with the velocity of the nozzle about the CG:
-/// -m_dot r x (w x r), r on the axis, and for roll the nozzle circle's radius.
+/// `any_burns`: some lane does. With jet damping the flow leaves with the velocity of the nozzle about the
+/// CG: -m_dot r x (w x r), r on the axis, and for roll the nozzle circle's radius.
 template <class T>
 DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, bool jet_damping, const Plant<T>& plant,
                                    const Phase<T>& phase, bool any_burns, const Surroundings<T>& around,
-                                   const TimedMasses<T>& masses, const Nozzles<T>& nozzles, const Motion<T>& s) {
+                                   const TimedMasses<T>& masses, const Nozzles<T>& nozzles,
+                                   const Motion<T>& s) {
   LoadsOf<T> o;
   o.R_IB = RotationMatrix(s.q);
   const T omega(earth_rate_rad_s), none(0.0);
@@ -155,7 +160,8 @@ DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, bool jet_damping, co
              s.v.z - around.wind_m_s.z};
   o.v_AB_B = TransposeTimes(o.R_IB, o.v_air);
   const Vector<T> w_EB_B = Along(s.w, -omega, o.R_IB.row[2]);
-  o.flow = ForceOfFlow(plant.aero, o.v_AB_B, w_EB_B, around.density_kg_m3, around.inverse_sound_s_m, masses.cg_station_m);
+  o.flow = ForceOfFlow(plant.aero, o.v_AB_B, w_EB_B, around.density_kg_m3, around.inverse_sound_s_m,
+                       masses.cg_station_m);
   o.force_n = o.flow.force_n;
   o.moment_n_m = o.flow.moment_n_m + phase.control_torque_n_m;
   o.thrust_n = o.flow_kg_s = o.jet_axial = o.jet_transverse = none;
@@ -176,9 +182,10 @@ DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, bool jet_damping, co
 /// dv/dt = gravitation + R_IB F / m and I dw/dt = M - w x I w - (dI/dt) w, as rigid_body.h explains, of an
 /// axisymmetric body.
 template <class T>
-DISPERSA_INLINE Rates<T> RatesOf(double earth_rate_rad_s, bool jet_damping, const Plant<T>& plant, const Phase<T>& phase,
-                                 bool any_burns, const Surroundings<T>& around, const TimedMasses<T>& masses,
-                                 const Nozzles<T>& nozzles, const Motion<T>& s, Instant<T>* instant) {
+DISPERSA_INLINE Rates<T> RatesOf(double earth_rate_rad_s, bool jet_damping, const Plant<T>& plant,
+                                 const Phase<T>& phase, bool any_burns, const Surroundings<T>& around,
+                                 const TimedMasses<T>& masses, const Nozzles<T>& nozzles, const Motion<T>& s,
+                                 Instant<T>* instant) {
   const LoadsOf<T> loads =
       LoadsAt(earth_rate_rad_s, jet_damping, plant, phase, any_burns, around, masses, nozzles, s);
   Rates<T> o;
@@ -187,15 +194,16 @@ DISPERSA_INLINE Rates<T> RatesOf(double earth_rate_rad_s, bool jet_damping, cons
   const T axial_loss = loads.jet_axial - loads.flow_kg_s * masses.axial_per_kg_m2;
   const T transverse_loss = loads.jet_transverse - loads.flow_kg_s * masses.transverse_per_kg_m2;
   const T inverse = T(1.0) / (masses.axial_kg_m2 * masses.transverse_kg_m2);
-  const T inverse_axial = inverse * masses.transverse_kg_m2, inverse_transverse = inverse * masses.axial_kg_m2;
+  const T inverse_axial = inverse * masses.transverse_kg_m2,
+          inverse_transverse = inverse * masses.axial_kg_m2;
   const T gyroscopic = (masses.transverse_kg_m2 - masses.axial_kg_m2) * s.w.x;
   const Vector<T>& moment = loads.moment_n_m;
   o.dw.x = inverse_axial * Fma(-axial_loss, s.w.x, moment.x);
   o.dw.y = inverse_transverse * Fma(-transverse_loss, s.w.y, Fma(gyroscopic, s.w.z, moment.y));
   o.dw.z = inverse_transverse * Fma(-transverse_loss, s.w.z, Fma(-gyroscopic, s.w.y, moment.z));
   if (instant)
-    *instant = {around.altitude_m,    loads.flow.qbar_pa, loads.flow.mach, loads.flow.incidence_rad,
-                masses.mass_kg, loads.thrust_n,     loads.force_n};
+    *instant = {around.altitude_m, loads.flow.qbar_pa, loads.flow.mach, loads.flow.incidence_rad,
+                masses.mass_kg,    loads.thrust_n,     loads.force_n};
   return o;
 }
 

@@ -9,17 +9,18 @@
 namespace dispersa {
 
 /// Pressure p (Pa) and specific energy p / density (J/kg) of StandardAtmosphere1976 in cells that end at the
-/// standard's own kinks. A row has 16 doubles: the cell's centre (m), 1 / half width, seven coefficients of p and six of
-/// the energy, rising powers of u = (z - centre) / half width.
+/// standard's own kinks. A row has 16 doubles: the cell's centre (m), 1 / half width, seven coefficients of p
+/// and six of the energy, rising powers of u = (z - centre) / half width.
 ///
-/// Cells are halved until both polynomials, which interpolate in Chebyshev's points, meet the standard's equations
-/// to a quarter of kAirTableTolerance or a half would be narrower than a bucket. From kAtmosphereBottom_m to
-/// kAtmosphereTop_m all is within that tolerance; outside, what StandardAtmosphere1976 says holds.
+/// Cells are halved until both polynomials, which interpolate in Chebyshev's points, meet the standard's
+/// equations to a quarter of kAirTableTolerance or a half would be narrower than a bucket. From
+/// kAtmosphereBottom_m to kAtmosphereTop_m all is within that tolerance; outside, what StandardAtmosphere1976
+/// says holds.
 struct AirTable {
   static constexpr int kRowSize = 16;
   static constexpr double kBucket_m = 125.0;  ///< no cell is narrower
 
-  std::vector<double> edges;          ///< lower edges of the cells, then an upper bound of all altitudes
+  std::vector<double> edges;  ///< lower edges of the cells, then an upper bound of all altitudes
   AlignedRows rows;
   std::vector<std::uint16_t> bucket;  ///< the cell at the lower end of each bucket
 };

@@ -18,11 +18,11 @@ struct Place {
   T altitude_m;
   T sin_latitude, cos_latitude;  ///< geodetic
   T axis_distance_m;
-  T inverse_r, inverse_r2;       ///< of the distance from the centre
+  T inverse_r, inverse_r2;  ///< of the distance from the centre
 };
 
-/// One step of Bowring's iteration (ToGeodetic takes two): it leaves 3e-13 rad of latitude near the Earth, and
-/// the altitude, which is stationary in it, has its rounding only.
+/// One step of Bowring's iteration (ToGeodetic takes two): it leaves 3e-13 rad of latitude near the Earth,
+/// and the altitude, which is stationary in it, has its rounding only.
 template <class T>
 DISPERSA_INLINE Place<T> PlaceAt(const Earth& earth, Vector<T> p) {
   const double a = earth.equatorial_radius_m, aspect = 1.0 - earth.flattening, b = a * aspect;
@@ -142,7 +142,8 @@ struct Surroundings {
 template <class T>
 DISPERSA_INLINE Surroundings<T> SurroundingsAt(const Earth& earth, const AirTable& standard,
                                                const Weather<T>& weather, Vector<T> p) {
-  alignas(32) static constexpr double kCalm[WeatherProfile::kRowSize] = {0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0};
+  alignas(32) static constexpr double kCalm[WeatherProfile::kRowSize] = {0.0, 0.0, 0.0, 0.0,
+                                                                         1.0, 0.0, 0.0, 0.0};
   const Place<T> at = PlaceAt(earth, p);
   Surroundings<T> o;
   o.altitude_m = at.altitude_m;
@@ -169,14 +170,16 @@ DISPERSA_INLINE Surroundings<T> SurroundingsAt(const Earth& earth, const AirTabl
   const auto in_jet = (Abs((at.altitude_m - weather.jet_altitude_m) * weather.jet_inverse_width) < T(1.0)) &
                       (weather.jet_speed_m_s > T(0.0));
   if (Any(in_jet)) {
-    const T speed = JetSpeed(at.altitude_m, weather.jet_speed_m_s, weather.jet_altitude_m, weather.jet_inverse_width);
+    const T speed =
+        JetSpeed(at.altitude_m, weather.jet_speed_m_s, weather.jet_altitude_m, weather.jet_inverse_width);
     north = Select(in_jet, Fma(speed, weather.jet_north, north), north);
     east = Select(in_jet, Fma(speed, weather.jet_east, east), east);
   }
   const T into_gust = (at.altitude_m - weather.gust_start_m) * weather.gust_inverse_length;
   const auto in_gust = (into_gust > T(0.0)) & (into_gust < T(1.0)) & (weather.gust_speed_m_s > T(0.0));
   if (Any(in_gust)) {
-    const T speed = GustSpeed(at.altitude_m, weather.gust_speed_m_s, weather.gust_start_m, weather.gust_inverse_length);
+    const T speed =
+        GustSpeed(at.altitude_m, weather.gust_speed_m_s, weather.gust_start_m, weather.gust_inverse_length);
     north = Select(in_gust, Fma(speed, weather.gust_north, north), north);
     east = Select(in_gust, Fma(speed, weather.gust_east, east), east);
   }

@@ -43,8 +43,8 @@ WeatherProfile BuildWeatherProfile(const Wind& wind, const DensityFactor& densit
   for (std::size_t i = 1; i < profile.edges.size(); ++i) {
     const double bottom = profile.edges[i - 1], top = profile.edges[i];
     const Weather low = WeatherAt(tables, density, bottom), high = WeatherAt(tables, density, top);
-    for (const auto& [a, b] : {std::pair(low.north_m_s, high.north_m_s), std::pair(low.east_m_s, high.east_m_s),
-                               std::pair(low.factor, high.factor)}) {
+    for (const auto& [a, b] : {std::pair(low.north_m_s, high.north_m_s),
+                               std::pair(low.east_m_s, high.east_m_s), std::pair(low.factor, high.factor)}) {
       const double slope = (b - a) / (top - bottom);
       profile.rows.insert(profile.rows.end(), {a - slope * bottom, slope});
     }

@@ -23,12 +23,13 @@ struct WeatherProfile {
 
 WeatherProfile BuildWeatherProfile(const Wind& wind, const DensityFactor& density);
 
-/// One flight's wind and density as its equations take them: plain numbers and the profile. Directions are unit
-/// components of where the air moves to; a speed of 0 means there is none.
+/// One flight's wind and density as its equations take them: plain numbers and the profile. Directions are
+/// unit components of where the air moves to; a speed of 0 means there is none.
 struct FlightWeather {
   double density_factor = 1.0;
   double jet_speed_m_s = 0.0, jet_altitude_m = 0.0, jet_inverse_width = 1.0, jet_north = 0.0, jet_east = 0.0;
-  double gust_speed_m_s = 0.0, gust_start_m = 0.0, gust_inverse_length = 1.0, gust_north = 0.0, gust_east = 0.0;
+  double gust_speed_m_s = 0.0, gust_start_m = 0.0, gust_inverse_length = 1.0, gust_north = 0.0,
+         gust_east = 0.0;
   WeatherProfile profile;  ///< of everything else
 };
 /// Of a wind with at most one jet stream and one gust, which is what a flight draws.

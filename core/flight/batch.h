@@ -38,9 +38,9 @@ class Batch {
     const FlightEvent* last_event = nullptr;  ///< one past
     int stack = 0;
     int stuck_nozzle = -1;
-    int whole_delay = 0;             ///< ticks between command and actuator, and
-    double part_delay_s = 0.0;       ///< a part of one
-    double switch_s = 0.0;           ///< when, within a tick, the next command gets through
+    int whole_delay = 0;        ///< ticks between command and actuator, and
+    double part_delay_s = 0.0;  ///< a part of one
+    double switch_s = 0.0;      ///< when, within a tick, the next command gets through
   };
 
   // ---- lanes that come, stand and go ----
@@ -81,14 +81,14 @@ class Batch {
   const double tick_s_;
   const double ticks_a_second_;
   Slot slot_[kLanes];
-  int flying_ = 0;          ///< lanes
-  unsigned patience_ = 0;   ///< passes until the queue is asked again
+  int flying_ = 0;         ///< lanes
+  unsigned patience_ = 0;  ///< passes until the queue is asked again
 
   M live_, coasting_;
   T time_s_, tick_, next_tick_;
-  T stop_s_;                ///< when the next event or switch of commands is due
+  T stop_s_;  ///< when the next event or switch of commands is due
   T next_digest_tick_, next_row_tick_;
-  T lost_ticks_;            ///< for which the attitude has been lost
+  T lost_ticks_;  ///< for which the attitude has been lost
   StepState<T> step_;
   T next_command_rad_[kNozzles];
   T delay_line_[kDelayLine][kNozzles];  ///< commands by pass
@@ -96,7 +96,7 @@ class Batch {
   bool same_delay_ = true;  ///< all lanes that burn have one of whole ticks:
   int common_delay_ = 0;
 
-  Vector<T> angle_rad_, rate_rad_s_;                    ///< error, reference less true
+  Vector<T> angle_rad_, rate_rad_s_;  ///< error, reference less true
   Vector<T> measured_angle_rad_, measured_rate_rad_s_;
   Vector<T> gyro_bias_rad_s_;
   bool any_noise_ = false, any_judged_ = false;
@@ -203,14 +203,16 @@ void Batch<T>::Start(int lane, FlightRecord* record) {
   Lane(next_row_tick_, lane) = record->watched ? 0.0 : kFarFuture;
   const AxisState fresh;
   for (AxisMemory<T>& axis : axes_) SetLane(axis, lane, fresh);
-  for (ThrusterMemory<T>& thruster : thrusters_) Lane(thruster.direction, lane) = Lane(thruster.cycles_on, lane) = 0.0;
+  for (ThrusterMemory<T>& thruster : thrusters_)
+    Lane(thruster.direction, lane) = Lane(thruster.cycles_on, lane) = 0.0;
   metrics_.StartFlight(lane);
   const FlightInputs& in = record->inputs;
   Lane(gyro_bias_rad_s_.x, lane) = in.gyro_bias_roll_rad_s;
   Lane(gyro_bias_rad_s_.y, lane) = in.gyro_bias_pitch_rad_s;
   Lane(gyro_bias_rad_s_.z, lane) = in.gyro_bias_yaw_rad_s;
   Lane(gust_bottom_m_, lane) = in.gust_altitude_m;
-  Lane(gust_top_m_, lane) = in.gust_speed_m_s != 0.0 ? in.gust_altitude_m + in.gust_length_m : in.gust_altitude_m;
+  Lane(gust_top_m_, lane) =
+      in.gust_speed_m_s != 0.0 ? in.gust_altitude_m + in.gust_length_m : in.gust_altitude_m;
   Lane(steps_a_tick_, lane) = record->options.steps_per_tick;
   any_noise_ = any_judged_ = false;
   most_steps_ = 1;
@@ -225,7 +227,8 @@ void Batch<T>::Start(int lane, FlightRecord* record) {
   WriteState(lane, record->lift_off);
   SetStack(lane, 0);
   // What happened before lift-off happens at lift-off.
-  while (slot.record != nullptr && slot.next_event < slot.last_event && slot.next_event->time_s <= kSameInstant_s)
+  while (slot.record != nullptr && slot.next_event < slot.last_event &&
+         slot.next_event->time_s <= kSameInstant_s)
     Happen(lane);
   if (slot.record != nullptr) SetStop(lane);
 }
@@ -335,8 +338,8 @@ void Batch<T>::Pass() {
   if (flying_ > 0) Advance();
 }
 
-/// Error of the lanes' attitudes against the reference at their ticks, true and as the gyros see it: rates with
-/// bias and noise; the attitude, integrated from them, drifts with the bias.
+/// Error of the lanes' attitudes against the reference at their ticks, true and as the gyros see it: rates
+/// with bias and noise; the attitude, integrated from them, drifts with the bias.
 template <class T>
 void Batch<T>::Measure() {
   const ReferenceRows& reference = model_.reference_rows();
@@ -383,8 +386,8 @@ void Batch<T>::FlyGimbalsOf(M powered) {
                     measured_rate_rad_s_, axes_, gimbals_);
 }
 
-// This tick's commands into the line, and what leaves it now to the actuators. A delay that is no whole number
-// of ticks lets the command through within the tick.
+// This tick's commands into the line, and what leaves it now to the actuators. A delay that is no whole
+// number of ticks lets the command through within the tick.
 template <class T>
 void Batch<T>::PassCommands(M powered) {
   const T roll = gimbals_.deflection_rad[kRoll], pitch = gimbals_.deflection_rad[kPitch];
@@ -396,7 +399,8 @@ void Batch<T>::PassCommands(M powered) {
   entry[3] = yaw - roll;
   if (same_delay_) {
     const T* leaving = delay_line_[(line_at_ - common_delay_) & (kDelayLine - 1)];
-    for (int i = 0; i < kNozzles; ++i) step_.command_rad[i] = Select(powered, leaving[i], step_.command_rad[i]);
+    for (int i = 0; i < kNozzles; ++i)
+      step_.command_rad[i] = Select(powered, leaving[i], step_.command_rad[i]);
   } else {
     const unsigned acting = Bits(powered);
     for (int lane = 0; lane < kLanes; ++lane) {
@@ -444,7 +448,8 @@ void Batch<T>::FlyThrusters() {
   M changes = NoLane<T>();
   T firing(0.0);
   for (int axis = 0; axis < kAxes; ++axis) {
-    StepThrusters(logic, autopilot.thruster_minimum_cycles, coasting_, angle[axis], rate[axis], thrusters_[axis]);
+    StepThrusters(logic, autopilot.thruster_minimum_cycles, coasting_, angle[axis], rate[axis],
+                  thrusters_[axis]);
     const T direction = thrusters_[axis].direction;
     const T anew = T(couple_n * (axis == kRoll ? rcs.roll_arm_m : rcs.pitch_yaw_arm_m)) * direction;
     changes = changes | (coasting_ & ((anew < torque[axis]) | (anew > torque[axis])));
@@ -465,10 +470,10 @@ void Batch<T>::Meter(M powered) {
   if (Any(coasting_)) metrics_.AddCoast(coasting_, time_s_, pitch_error);
   if (!Any(powered)) return;
   const AxisOutput<T>& pitch = gimbals_.axes[kPitch];
-  const LyapunovSample<T> law{pitch.v, Select(pitch.v_rate_sign < T(0.0), T(1.0), T(0.0)), loop_.axes[kPitch].p11,
-                              pitch.departure_norm2};
-  metrics_.AddPowered(powered, T(tick_s_), time_s_, {-angle_rad_.x, pitch_error, -angle_rad_.z}, step_.drive_state,
-                      step_.command_rad, loop_.limit_rad, law);
+  const LyapunovSample<T> law{pitch.v, Select(pitch.v_rate_sign < T(0.0), T(1.0), T(0.0)),
+                              loop_.axes[kPitch].p11, pitch.departure_norm2};
+  metrics_.AddPowered(powered, T(tick_s_), time_s_, {-angle_rad_.x, pitch_error, -angle_rad_.z},
+                      step_.drive_state, step_.command_rad, loop_.limit_rad, law);
 
   const M is_transient =
       InTransient(time_s_, time_s_ - step_.phase.ignition_s, step_.now().altitude_m, definition_.kick_start_s,
@@ -502,7 +507,8 @@ void Batch<T>::WatchAndDigest() {
       record.Watch(view, record.history_ticks > 0 && tick % record.history_ticks == 0);
       const bool every_tick = static_cast<bool>(record.options.observe);
       Lane(next_row_tick_, lane) =
-          every_tick ? Lane(tick_, lane) : static_cast<double>((tick / record.history_ticks + 1) * record.history_ticks);
+          every_tick ? Lane(tick_, lane)
+                     : static_cast<double>((tick / record.history_ticks + 1) * record.history_ticks);
     }
     if (static_cast<double>(tick) < Lane(next_digest_tick_, lane)) continue;
     if (tick % second == 0) {
@@ -536,8 +542,9 @@ void Batch<T>::CheckEnds() {
   for (int lane = 0; lane < kLanes; ++lane) {
     if (!(Bits(suspects) >> lane & 1u)) continue;
     // A sample stands for the ticks up to the next one; in the coast these are several.
-    const double lost_ticks =
-        Bits(is_lost) >> lane & 1u ? Lane(lost_ticks_, lane) + Lane(next_tick_, lane) - Lane(tick_, lane) : 0.0;
+    const double lost_ticks = Bits(is_lost) >> lane & 1u
+                                  ? Lane(lost_ticks_, lane) + Lane(next_tick_, lane) - Lane(tick_, lane)
+                                  : 0.0;
     Lane(lost_ticks_, lane) = lost_ticks;
     FlightSums loads;
     metrics_.Read(lane, loads);
@@ -607,7 +614,8 @@ void Batch<T>::AdvanceThroughEvents(T target) {
       }
       if (slot.switch_s <= Lane(time_s_, lane)) {
         slot.switch_s = kFarFuture;
-        for (int i = 0; i < kNozzles; ++i) Lane(step_.command_rad[i], lane) = Lane(next_command_rad_[i], lane);
+        for (int i = 0; i < kNozzles; ++i)
+          Lane(step_.command_rad[i], lane) = Lane(next_command_rad_[i], lane);
       } else if (due >> lane & 1u) {
         Happen(lane);
       } else if (Lane(time_s_, lane) >= Lane(target, lane)) {
@@ -647,7 +655,8 @@ template <class T>
 void Batch<T>::Judge(M moving, T from, T to, StateValues* states, M& failed) {
   for (int lane = 0; lane < kLanes; ++lane) {
     if (!(Bits(moving) >> lane & 1u) || !slot_[lane].record->is_judged()) continue;
-    const bool holds = slot_[lane].record->Judge(PhaseOf(lane), Lane(from, lane), Lane(to, lane), states[lane]);
+    const bool holds =
+        slot_[lane].record->Judge(PhaseOf(lane), Lane(from, lane), Lane(to, lane), states[lane]);
     SetLane(failed, lane, !holds);
     Lane(time_s_, lane) = holds ? Lane(to, lane) : Lane(from, lane);
     WriteState(lane, states[lane]);
@@ -722,7 +731,8 @@ void Batch<T>::Ignite(int lane, int stage) {
   }
   const int loop_stage = static_cast<int>(in.loop_stage + 0.5);
   const bool is_changed = loop_stage == 0 || loop_stage == stage + 1;
-  SetLane(loop_, lane, autopilot, stage, in.pn_error_factor, in.pn_rate_factor, is_changed ? in.loop_gain_factor : 1.0);
+  SetLane(loop_, lane, autopilot, stage, in.pn_error_factor, in.pn_rate_factor,
+          is_changed ? in.loop_gain_factor : 1.0);
 
   const Gimbal& gimbal = record.plant.stacks.data()[stage].gimbal;
   const double delay = gimbal.delay_ticks + (is_changed ? in.loop_delay_s / tick_s_ : 0.0);

@@ -62,7 +62,8 @@ RigidBodyState LiftOffState(const FlightModel& model) {
   return s;
 }
 
-AttitudeError ErrorAt(const FlightModel& model, const ReferenceAttitude& reference, const RigidBodyState& state) {
+AttitudeError ErrorAt(const FlightModel& model, const ReferenceAttitude& reference,
+                      const RigidBodyState& state) {
   const Quaternion q_IR = model.frame().q_IL * reference.q_LR;
   const Quaternion q_BR = Inverse(state.q_IB) * q_IR;
   AttitudeError error;

@@ -22,15 +22,15 @@ struct TickSample;
 struct FlightOptions {
   Scheme scheme = Scheme::kSimpson;
   int steps_per_tick = 1;
-  std::uint64_t case_index = 0;  ///< keys the sensors' noise
-  History* history = nullptr;    ///< filled if given
+  std::uint64_t case_index = 0;                         ///< keys the sensors' noise
+  History* history = nullptr;                           ///< filled if given
   std::function<void(const TickSample&)> observe = {};  ///< called at every tick if given
 };
 
 struct FlightResult {
   Outcome outcome = Outcome::kCompleted;
   double end_time_s = 0.0;
-  int end_stage = 0;            ///< 1-based
+  int end_stage = 0;  ///< 1-based
   std::string reason;
   std::vector<double> metrics;  ///< in the order of MetricNames()
   Digest digest;
@@ -45,13 +45,14 @@ struct FlightOrder {
   FlightInputs inputs;
   FlightOptions options = {};
 };
-/// Flies all, side by side in ChosenLanes(), on this thread; results in the order of the orders. Each result has
-/// the bits that Fly gives it.
+/// Flies all, side by side in ChosenLanes(), on this thread; results in the order of the orders. Each result
+/// has the bits that Fly gives it.
 std::vector<FlightResult> FlyAll(const FlightModel& model, const std::vector<FlightOrder>& orders);
 
 /// State at lift-off: at rest on the site, attitude as the pitch program begins.
 RigidBodyState LiftOffState(const FlightModel& model);
 /// Attitude error, reference less true, and its rate.
-AttitudeError ErrorAt(const FlightModel& model, const ReferenceAttitude& reference, const RigidBodyState& state);
+AttitudeError ErrorAt(const FlightModel& model, const ReferenceAttitude& reference,
+                      const RigidBodyState& state);
 
 }  // namespace dispersa

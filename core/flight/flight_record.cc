@@ -48,7 +48,8 @@ std::array<double, kLauncherSize> AbsoluteTolerances() {
 class FlightRecord::JudgedMotion {
  public:
   JudgedMotion(const LauncherPlant& plant, Scheme scheme)
-      : plant_(plant), tolerances_(AbsoluteTolerances()),
+      : plant_(plant),
+        tolerances_(AbsoluteTolerances()),
         integrator_(scheme, kLauncherSize, &Rhs, this, tolerances_.data()) {}
 
   bool Advance(const LauncherPhase& phase, double from_s, double to_s, int steps, double* y) {
@@ -91,9 +92,9 @@ FlightRecord::FlightRecord(const FlightModel& model, const FlightOrder& order)
       events(EventsOf(model, plant)),
       lift_off{},
       watched(options.history != nullptr || options.observe != nullptr),
-      history_ticks(options.history
-                        ? std::max(1L, std::lround(options.history->step_s / model.definition().autopilot.tick_s))
-                        : 0),
+      history_ticks(options.history ? std::max(1L, std::lround(options.history->step_s /
+                                                               model.definition().autopilot.tick_s))
+                                    : 0),
       noisy(inputs.gyro_noise_rad_s > 0.0),
       limit_cycle(model.definition().autopilot.tick_s),
       model_(model),

@@ -1,4 +1,5 @@
-// One flight as the engine flies it: what was prepared before, what is kept beside the lanes, what it gives back.
+// One flight as the engine flies it: what was prepared before, what is kept beside the lanes, what it gives
+// back.
 //
 // The engine (batch.h) is compiled once for each instruction set and width; everything that happens once a
 // flight, once an event or only for flights that are watched stands here, once.
@@ -39,10 +40,10 @@ struct LaneView {
   StateValues y = {};
   LauncherPhase phase;
   bool coasting = false;
-  bool has_error = false;            ///< at ticks: the engine's error; at events it is computed anew
+  bool has_error = false;  ///< at ticks: the engine's error; at events it is computed anew
   double error_angle_rad[kAxes] = {};
   double error_rate_rad_s[kAxes] = {};
-  double gimbal_rad[kAxes] = {};     ///< commanded about roll, pitch, yaw
+  double gimbal_rad[kAxes] = {};  ///< commanded about roll, pitch, yaw
   AxisTelemetry axes[kAxes];
   int thrusters[kAxes] = {};
 };
@@ -61,9 +62,9 @@ class FlightRecord {
   const FlightWeather weather;
   const std::vector<FlightEvent> events;
   StateValues lift_off;
-  bool watched;            ///< has a history or an observer
-  long history_ticks;      ///< between rows; 0: no history
-  bool noisy;              ///< its gyros are
+  bool watched;        ///< has a history or an observer
+  long history_ticks;  ///< between rows; 0: no history
+  bool noisy;          ///< its gyros are
 
   // ---- while it flies ----
   FlightSums sums;

@@ -63,8 +63,8 @@ std::vector<double> MetricsOf(const FlightSums& s, const FlightDefinition& defin
   const InjectionTarget& target = definition.target;
   const OrbitElements& e = s.orbit;
   for (const double value :
-       {s.injection_altitude_m * 1e-3, e.speed_m_s, e.flight_path_angle_rad * kDegPerRad, e.apogee_altitude_m * 1e-3,
-        e.perigee_altitude_m * 1e-3, e.inclination_rad * kDegPerRad,
+       {s.injection_altitude_m * 1e-3, e.speed_m_s, e.flight_path_angle_rad * kDegPerRad,
+        e.apogee_altitude_m * 1e-3, e.perigee_altitude_m * 1e-3, e.inclination_rad * kDegPerRad,
         (s.injection_altitude_m - target.altitude_m) * 1e-3, e.speed_m_s - target.velocity_m_s,
         (e.flight_path_angle_rad - target.flight_path_angle_rad) * kDegPerRad})
     m.push_back(s.injected && std::isfinite(value) ? value : kUndefined);

@@ -15,8 +15,8 @@ struct FlightDefinition;
 /// Of a signed angle over ticks.
 struct ErrorSums {
   double squares = 0.0;
-  double peak = -1.0;       ///< largest magnitude; negative without ticks
-  double peak_time_s = 0.0; ///< when it was first reached
+  double peak = -1.0;        ///< largest magnitude; negative without ticks
+  double peak_time_s = 0.0;  ///< when it was first reached
   double count = 0.0;
 };
 
@@ -46,7 +46,8 @@ struct FlightSums {
 /// Whether the loads so far exceed a limit that the vehicle gives.
 bool ExceedsStructure(const StructuralLimits& limits, const FlightSums& sums);
 
-/// In the order of MetricNames(), in their units; NaN where undefined. Definitions: core/README.md, "Metrics".
+/// In the order of MetricNames(), in their units; NaN where undefined. Definitions: core/README.md,
+/// "Metrics".
 std::vector<double> MetricsOf(const FlightSums& sums, const FlightDefinition& definition);
 
 }  // namespace dispersa

@@ -6,13 +6,11 @@
 
 namespace dispersa {
 
-// Defined by fly_lanes.cc.
-void Fly_v3_1(const FlightModel& model, FlightQueue& queue);
-void Fly_v3_4(const FlightModel& model, FlightQueue& queue);
-void Fly_v3_8(const FlightModel& model, FlightQueue& queue);
-void Fly_v4_1(const FlightModel& model, FlightQueue& queue);
-void Fly_v4_4(const FlightModel& model, FlightQueue& queue);
-void Fly_v4_8(const FlightModel& model, FlightQueue& queue);
+// The instances that this build has, as CMakeLists.txt lists them: ENGINE(isa, lanes) ...; defined by
+// fly_lanes.cc.
+#define ENGINE(isa, lanes) void Fly_##isa##_##lanes(const FlightModel& model, FlightQueue& queue);
+DISPERSA_ENGINES
+#undef ENGINE
 
 namespace {
 
@@ -35,15 +33,18 @@ LaneEngine Choose() {
   std::string asked;
   if (isa) asked += "DISPERSA_ISA=" + std::string(isa);
   if (lanes) asked += (asked.empty() ? "" : " ") + ("DISPERSA_LANES=" + std::string(lanes));
-  throw std::invalid_argument(asked + ": this processor flies with DISPERSA_ISA=" + (HasV4() ? "v3 or v4" : "v3") +
-                           " and DISPERSA_LANES=1, 4 or 8");
+  throw std::invalid_argument(asked + ": this processor flies with DISPERSA_ISA=" +
+                              (HasV4() ? "v3 or v4" : "v3") + " and DISPERSA_LANES=1, 4 or 8");
 }
 
 }  // namespace
 
 std::vector<LaneEngine> UsableEngines() {
-  std::vector<LaneEngine> engines = {{"v3", 1, &Fly_v3_1}, {"v3", 4, &Fly_v3_4}, {"v3", 8, &Fly_v3_8}};
-  if (HasV4()) engines.insert(engines.end(), {{"v4", 1, &Fly_v4_1}, {"v4", 4, &Fly_v4_4}, {"v4", 8, &Fly_v4_8}});
+#define ENGINE(isa, lanes) {#isa, lanes, &Fly_##isa##_##lanes},
+  std::vector<LaneEngine> engines = {DISPERSA_ENGINES};
+#undef ENGINE
+  if (!HasV4())
+    std::erase_if(engines, [](const LaneEngine& engine) { return std::string(engine.isa) == "v4"; });
   return engines;
 }
 

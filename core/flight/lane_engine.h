@@ -9,17 +9,17 @@
 namespace dispersa {
 
 struct LaneEngine {
-  const char* isa;  ///< "v3" or "v4": the x86-64 level
-  int lanes;        ///< 1, 4 or 8
+  const char* isa;                                            ///< "v3" or "v4": the x86-64 level
+  int lanes;                                                  ///< 1, 4 or 8
   void (*fly)(const FlightModel& model, FlightQueue& queue);  ///< until the queue is empty
 };
 
 /// All that this processor can run. The bits of a flight are the same in each.
 std::vector<LaneEngine> UsableEngines();
 
-/// As many lanes as one register holds, 4 or 8, on the highest level that this processor has; or what DISPERSA_LANES
-/// (1, 4, 8) and DISPERSA_ISA (v3, v4) ask for. Decided at the first call. Throws std::invalid_argument when they ask
-/// for what there is not.
+/// As many lanes as one register holds, 4 or 8, on the highest level that this processor has; or what
+/// DISPERSA_LANES (1, 4, 8) and DISPERSA_ISA (v3, v4) ask for. Decided at the first call. Throws
+/// std::invalid_argument when they ask for what there is not.
 const LaneEngine& ChosenEngine();
 /// The instance of one lane on the same level.
 const LaneEngine& OneLaneEngine();

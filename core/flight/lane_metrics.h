@@ -18,13 +18,15 @@ inline constexpr double kResidualError_rad = 0.05 * kRadPerDeg;
 /// Start-up transients of a stage are no limit cycle.
 inline constexpr double kSettled_s = 5.0;
 
-/// When deflections say nothing of a limit cycle: the first seconds of a stage, the kick (from and until given
-/// times since lift-off), and between the altitudes of a gust, of which there is none where top <= bottom.
+/// When deflections say nothing of a limit cycle: the first seconds of a stage, the kick (from and until
+/// given times since lift-off), and between the altitudes of a gust, of which there is none where top <=
+/// bottom.
 template <class T>
-DISPERSA_INLINE MaskOf<T> InTransient(T time_s, T since_ignition_s, T altitude_m, double kick_start_s, double kick_end_s,
-                                      T gust_bottom_m, T gust_top_m) {
+DISPERSA_INLINE MaskOf<T> InTransient(T time_s, T since_ignition_s, T altitude_m, double kick_start_s,
+                                      double kick_end_s, T gust_bottom_m, T gust_top_m) {
   const auto in_kick = (time_s >= T(kick_start_s)) & (time_s <= T(kick_end_s));
-  const auto in_gust = (gust_top_m > gust_bottom_m) & (altitude_m >= gust_bottom_m) & (altitude_m <= gust_top_m);
+  const auto in_gust =
+      (gust_top_m > gust_bottom_m) & (altitude_m >= gust_bottom_m) & (altitude_m <= gust_top_m);
   return (since_ignition_s < T(kSettled_s)) | in_kick | in_gust;
 }
 
@@ -56,8 +58,8 @@ DISPERSA_INLINE ErrorSums LaneOf(const ErrorStatistics<T>& s, int lane) {
 /// What the law of the pitch axis shows at a tick.
 template <class T>
 struct LyapunovSample {
-  T v, v_falls, p11;       ///< v_falls: 1 where V is below the last tick's
-  T departure_norm2;       ///< of the consequents, squared
+  T v, v_falls, p11;  ///< v_falls: 1 where V is below the last tick's
+  T departure_norm2;  ///< of the consequents, squared
 };
 
 template <class T>
@@ -83,8 +85,9 @@ struct LaneMetrics {
 
   /// One tick of powered flight. Errors are true less reference, about x, y, z; deflections of the actuators,
   /// commands as they reach them.
-  DISPERSA_INLINE void AddPowered(MaskOf<T> lanes, T tick_s, T time_s, Vector<T> error_rad, const DriveState<T>& drives,
-                                  const T* command_rad, T limit_rad, const LyapunovSample<T>& law) {
+  DISPERSA_INLINE void AddPowered(MaskOf<T> lanes, T tick_s, T time_s, Vector<T> error_rad,
+                                  const DriveState<T>& drives, const T* command_rad, T limit_rad,
+                                  const LyapunovSample<T>& law) {
     pitch.Add(lanes, error_rad.y, time_s);
     yaw.Add(lanes, error_rad.z, time_s);
     roll.Add(lanes, error_rad.x, time_s);
@@ -99,14 +102,17 @@ struct LaneMetrics {
       previous_rad[i] = Select(lanes, angle, previous_rad[i]);
     }
     const T one(1.0), none(0.0);
-    deflection_rate_peak_rad_s = Select(lanes, Max(deflection_rate_peak_rad_s, fastest), deflection_rate_peak_rad_s);
+    deflection_rate_peak_rad_s =
+        Select(lanes, Max(deflection_rate_peak_rad_s, fastest), deflection_rate_peak_rad_s);
     saturated_ticks = saturated_ticks + Select(lanes & (largest >= limit_rad), one, none);
-    travel_rad = Select(lanes & (has_previous > none), Fma(T(1.0 / kNozzles), travel, travel_rad), travel_rad);
+    travel_rad =
+        Select(lanes & (has_previous > none), Fma(T(1.0 / kNozzles), travel, travel_rad), travel_rad);
     has_previous = Select(lanes, one, has_previous);
     const auto is_outside = lanes & (law.v > T(0.5 * kResidualError_rad * kResidualError_rad) * law.p11);
     v_outside_ticks = v_outside_ticks + Select(is_outside, one, none);
     v_falling_ticks = v_falling_ticks + Select(is_outside, law.v_falls, none);
-    departure_norm2_peak = Select(lanes, Max(departure_norm2_peak, law.departure_norm2), departure_norm2_peak);
+    departure_norm2_peak =
+        Select(lanes, Max(departure_norm2_peak, law.departure_norm2), departure_norm2_peak);
   }
 
   DISPERSA_INLINE void AddCoast(MaskOf<T> lanes, T time_s, T pitch_error_rad) {

@@ -10,7 +10,8 @@ LimitCycleMeter::LimitCycleMeter(double tick_s) {
   const int ticks = std::max(1, static_cast<int>(std::lround(1.0 / tick_s)));
   block_size_ = std::max(1, ticks / kBlocks);
   blocks_ = std::min(kBlocks, ticks);
-  for (std::vector<double>& samples : samples_) samples.resize(static_cast<std::size_t>(blocks_ * block_size_));
+  for (std::vector<double>& samples : samples_)
+    samples.resize(static_cast<std::size_t>(blocks_ * block_size_));
 }
 
 void LimitCycleMeter::Add(double roll_rad, double pitch_rad, double yaw_rad) {
@@ -45,8 +46,8 @@ void LimitCycleMeter::Evaluate(int channel) {
     low = std::min(low, blocks[k].low);
     high = std::max(high, blocks[k].high);
   }
-  // Among samples within a range the line through them rises by at most one and a half of it, and taking it out
-  // raises the range by no more than that.
+  // Among samples within a range the line through them rises by at most one and a half of it, and taking it
+  // out raises the range by no more than that.
   if (2.5 * (high - low) <= worst_) return;
   const int n = blocks_ * block_size_;
   const double centre = 0.5 * (n - 1);

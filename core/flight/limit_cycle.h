@@ -6,8 +6,8 @@
 namespace dispersa {
 
 /// Worst peak-to-peak of pitch, yaw and roll deflection in windows of one second with the straight line taken
-/// out. A window is ten blocks of a tenth of a second, rounded down to whole ticks, and starts with each block:
-/// neighbours overlap by nine tenths, so no oscillation hides between them.
+/// out. A window is ten blocks of a tenth of a second, rounded down to whole ticks, and starts with each
+/// block: neighbours overlap by nine tenths, so no oscillation hides between them.
 class LimitCycleMeter {
  public:
   explicit LimitCycleMeter(double tick_s);
@@ -29,9 +29,9 @@ class LimitCycleMeter {
   void Evaluate(int channel);
 
   int block_size_;
-  int blocks_;           ///< in a window
-  int at_ = 0;           ///< where the next sample goes
-  int filled_ = 0;       ///< samples since the last interruption, up to a window
+  int blocks_;                              ///< in a window
+  int at_ = 0;                              ///< where the next sample goes
+  int filled_ = 0;                          ///< samples since the last interruption, up to a window
   std::vector<double> samples_[kChannels];  ///< the window as a ring
   Block block_[kChannels][kBlocks];
   double worst_ = -1.0;

@@ -37,8 +37,8 @@ bool Holds(const FlightResult& result) {
          !above("pitch_error_peak_deg", kLostError_deg) && !above("yaw_error_peak_deg", kLostError_deg);
 }
 
-// Bisects for the largest multiple of a step up to a ceiling that holds, if what is above one that fails fails
-// too.
+// Bisects for the largest multiple of a step up to a ceiling that holds, if what is above one that fails
+// fails too.
 class Bisection {
  public:
   Bisection(double step, double ceiling, std::function<FlightOrder(double)> order)

@@ -7,18 +7,18 @@
 //   middle      p + h/2 v + h²/8 a0, v + h/2 a0 + h²/8 a0', q turned by h/2 w + h²/8 alpha0,
 //               w + h/2 alpha0 + h²/8 alpha0'; there a1, alpha1
 //   end         p + h v + h²/6 (a0 + 2 a1), q turned by h w + h²/6 (alpha0 + 2 alpha1) + h³/12 w1 x alpha1:
-//               final before the last evaluation, of which only the velocities are a guess: v + h a1, w + h alpha1;
-//               there a2, alpha2
+//               final before the last evaluation, of which only the velocities are a guess: v + h a1, w + h
+//               alpha1; there a2, alpha2
 //   velocities  v + h/6 (a0 + 4 a1 + a2), w + h/6 (alpha0 + 4 alpha1 + alpha2)
 //
-// with a0' the slope at its end of the parabola through the last step's three accelerations, 0 after an event.
-// Two evaluations a step, and the last serves the metrics of the tick on which the step ends.
+// with a0' the slope at its end of the parabola through the last step's three accelerations, 0 after an
+// event. Two evaluations a step, and the last serves the metrics of the tick on which the step ends.
 //
-// Order. Simpson's rule, its double integral (exact to the third power of time) and the Magnus expansion with the
-// middle's w1 x alpha1 leave O(h⁵) a step. The guesses of v and w, in the middle and at the end, and the middle's q
-// err by O(h³), hence a1, a2 by that times their sensitivity to them, and the velocities by O(h⁴) a step: order 3,
-// with the small constant of accelerations that hardly depend on velocities. Where they do not depend on them and
-// the attitude turns steadily, order 4 remains. tests/verification/ holds it to both.
+// Order. Simpson's rule, its double integral (exact to the third power of time) and the Magnus expansion with
+// the middle's w1 x alpha1 leave O(h⁵) a step. The guesses of v and w, in the middle and at the end, and the
+// middle's q err by O(h³), hence a1, a2 by that times their sensitivity to them, and the velocities by O(h⁴)
+// a step: order 3, with the small constant of accelerations that hardly depend on velocities. Where they do
+// not depend on them and the attitude turns steadily, order 4 remains. tests/verification/ holds it to both.
 #pragma once
 
 #include "core/dynamics/launcher_lanes.h"
@@ -139,8 +139,8 @@ class StepState {
   };
 
   DISPERSA_INLINE Rates<T> RatesAt(const Point& at, const Motion<T>& s, Instant<T>* instant) const {
-    return RatesOf(earth_.rotation_rate_rad_s, jet_damping_, plant, phase, Any(phase.burning), at.around, at.masses,
-                   at.nozzles, s, instant);
+    return RatesOf(earth_.rotation_rate_rad_s, jet_damping_, plant, phase, Any(phase.burning), at.around,
+                   at.masses, at.nozzles, s, instant);
   }
   void SetTransition(Transition<T>& over, int lane, double time_s) const {
     const Transition<double> one =
@@ -169,7 +169,8 @@ class StepState {
   Transition<T> tick_over_half_;  ///< over half a tick
 };
 
-/// Steps within this of a tick take the tick's transition of the actuators: it moves a deflection by less than a rounding.
+/// Steps within this of a tick take the tick's transition of the actuators: it moves a deflection by less
+/// than a rounding.
 inline constexpr double kSameStep_s = 1e-10;
 
 template <class T>

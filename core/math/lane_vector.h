@@ -1,5 +1,5 @@
-// Vectors and quaternions of lanes (core/math/lanes.h), for models that are flown side by side. Conventions as
-// in core/math/rotation.h.
+// Vectors and quaternions of lanes (core/math/lanes.h), for models that are flown side by side. Conventions
+// as in core/math/rotation.h.
 #pragma once
 
 #include "core/math/lanes.h"
@@ -88,9 +88,9 @@ DISPERSA_INLINE Vector<T> Rotate(Turn<T> q, Vector<T> v) {
   return Along(v, q.w, t) + Cross(u, t);
 }
 
-/// q turned by the rotation vector phi (rad, in the axes of B) of less than 0.5 rad: the half angle's sine and
-/// cosine by their series, whose remainder stays below 1e-17, and the norm restored by one Newton step, since
-/// q has it but for rounding.
+/// q turned by the rotation vector phi (rad, in the axes of B) of less than 0.5 rad: the half angle's sine
+/// and cosine by their series, whose remainder stays below 1e-17, and the norm restored by one Newton step,
+/// since q has it but for rounding.
 template <class T>
 DISPERSA_INLINE Turn<T> TurnedBy(Turn<T> q, Vector<T> phi) {
   const T n = Dot(phi, phi);
@@ -112,8 +112,9 @@ DISPERSA_INLINE Vector<T> RotationVector(Turn<T> q) {
   const auto is_small = sine2 < T(1.0 / 64.0) * w * w;
   const T inverse = T(1.0) / Select(is_small, w, T(1.0));
   const T tangent2 = sine2 * inverse * inverse;
-  T factor = T(2.0) * inverse *
-             Horner(tangent2, 1.0, -1.0 / 3, 1.0 / 5, -1.0 / 7, 1.0 / 9, -1.0 / 11, 1.0 / 13, -1.0 / 15, 1.0 / 17);
+  T factor =
+      T(2.0) * inverse *
+      Horner(tangent2, 1.0, -1.0 / 3, 1.0 / 5, -1.0 / 7, 1.0 / 9, -1.0 / 11, 1.0 / 13, -1.0 / 15, 1.0 / 17);
   if (!All(is_small)) {
     const T sine = Sqrt(sine2);
     factor = Select(is_small, factor, T(2.0) * Atan2(sine, w) / Select(sine > T(0.0), sine, T(1.0)));

@@ -1,10 +1,11 @@
-// The value that a flight's models compute with: one double, or a pack of W doubles whose lanes are W flights.
+// The value that a flight's models compute with: one double, or a pack of W doubles whose lanes are W
+// flights.
 //
-// A model is written once over a type T: `double` is one lane, Pack<4> and Pack<8> are as many flights side by
-// side. Every operation here is exact or correctly rounded for each lane (IEEE 754), or one of SLEEF's `finz`
-// functions, which return the same bits in any width. So the bits of a lane depend neither on W nor on the
-// instruction set, as long as models keep one rule: a branch that depends on any lane must not show in the
-// others. Select, or guard what only saves time (`if (Any(mask))`) such that skipping it changes no lane.
+// A model is written once over a type T: `double` is one lane, Pack<4> and Pack<8> are as many flights side
+// by side. Every operation here is exact or correctly rounded for each lane (IEEE 754), or one of SLEEF's
+// `finz` functions, which return the same bits in any width. So the bits of a lane depend neither on W nor on
+// the instruction set, as long as models keep one rule: a branch that depends on any lane must not show in
+// the others. Select, or guard what only saves time (`if (Any(mask))`) such that skipping it changes no lane.
 //
 // Everything that is compiled once for each instruction set lives in an inline namespace of its own, so that
 // the linker never mixes them; sources compiled so use no inline function from elsewhere that could stay a
@@ -95,7 +96,9 @@ DISPERSA_INLINE __m256d BlendRegisters(__m256d mask, __m256d yes, __m256d no) {
   __asm__("vblendvpd %3, %2, %1, %0" : "=x"(blended) : "x"(no), "xm"(yes), "x"(mask));
   return blended;
 }
-DISPERSA_INLINE Pack<4> Select(Mask<4> m, Pack<4> yes, Pack<4> no) { return BlendRegisters(m.v, yes.v, no.v); }
+DISPERSA_INLINE Pack<4> Select(Mask<4> m, Pack<4> yes, Pack<4> no) {
+  return BlendRegisters(m.v, yes.v, no.v);
+}
 DISPERSA_INLINE Mask<4> SelectMask(Mask<4> m, Mask<4> yes, Mask<4> no) {
   return {BlendRegisters(m.v, yes.v, no.v)};
 }
@@ -217,8 +220,12 @@ DISPERSA_INLINE Pack<8> Sqrt(Pack<8> a) { return {Sqrt(a.low), Sqrt(a.high)}; }
 DISPERSA_INLINE Pack<8> Abs(Pack<8> a) { return {Abs(a.low), Abs(a.high)}; }
 DISPERSA_INLINE Pack<8> Min(Pack<8> a, Pack<8> b) { return {Min(a.low, b.low), Min(a.high, b.high)}; }
 DISPERSA_INLINE Pack<8> Max(Pack<8> a, Pack<8> b) { return {Max(a.low, b.low), Max(a.high, b.high)}; }
-DISPERSA_INLINE Pack<8> OrBits(Pack<8> a, Pack<8> b) { return {OrBits(a.low, b.low), OrBits(a.high, b.high)}; }
-DISPERSA_INLINE Pack<8> AndBits(Pack<8> a, Pack<8> b) { return {AndBits(a.low, b.low), AndBits(a.high, b.high)}; }
+DISPERSA_INLINE Pack<8> OrBits(Pack<8> a, Pack<8> b) {
+  return {OrBits(a.low, b.low), OrBits(a.high, b.high)};
+}
+DISPERSA_INLINE Pack<8> AndBits(Pack<8> a, Pack<8> b) {
+  return {AndBits(a.low, b.low), AndBits(a.high, b.high)};
+}
 DISPERSA_INLINE Pack<8> Cos(Pack<8> x) { return {Cos(x.low), Cos(x.high)}; }
 DISPERSA_INLINE Pack<8> Sin(Pack<8> x) { return {Sin(x.low), Sin(x.high)}; }
 DISPERSA_INLINE Pack<8> Atan2(Pack<8> y, Pack<8> x) { return {Atan2(y.low, x.low), Atan2(y.high, x.high)}; }

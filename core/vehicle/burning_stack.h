@@ -15,9 +15,9 @@ template <class T>
 struct Stack {
   T fixed_mass_kg, first_moment_kg_m, second_moment_kg_m2, fixed_axial_kg_m2;
   T grain_station_m;
-  T outer2_m2;          ///< the grain's outer radius squared
-  T inner_per_kg_m2;    ///< by which each kilogram lowers the bore's radius squared
-  T length2_m2;         ///< the grain's length squared, over 12
+  T outer2_m2;        ///< the grain's outer radius squared
+  T inner_per_kg_m2;  ///< by which each kilogram lowers the bore's radius squared
+  T length2_m2;       ///< the grain's length squared, over 12
 };
 template <class T>
 DISPERSA_INLINE void SetLane(Stack<T>& s, int lane, const StackMass& mass) {
@@ -89,7 +89,8 @@ DISPERSA_INLINE BurnState<T> BurnAt(const Burn<T>& b, T since_ignition_s) {
   const T full_s = Fma(T(0.5) * rising * rising, b.rise_slope_1_s, since - rising);
   const T lacking_s = T(0.5) * falling * falling * b.tail_slope_1_s;
   BurnState<T> state;
-  state.fraction = Min(T(1.0), Min(Fma(since, b.rise_slope_1_s, b.rise_base), Fma(left, b.tail_slope_1_s, b.tail_base)));
+  state.fraction =
+      Min(T(1.0), Min(Fma(since, b.rise_slope_1_s, b.rise_base), Fma(left, b.tail_slope_1_s, b.tail_base)));
   const T left_kg = b.propellant_kg - b.full_flow_kg_s * (full_s - lacking_s);
   state.propellant_kg = Select(left_kg < T(0.0), T(0.0), left_kg);
   return state;

@@ -157,7 +157,13 @@ class CampaignRun {
       for (;;) {
         flights.FlyCases(*this);
         std::unique_lock lock(mutex_);
-        if (run_.book_.Complete() || StopRequested() || problem_) return;
+        if (StopRequested() || problem_) return;
+        try {
+          if (run_.book_.Complete()) return;  // else the plan may have asked for more
+        } catch (...) {
+          problem_ = std::current_exception();
+          return;
+        }
         changed_.wait_for(lock, std::chrono::milliseconds(50));
       }
     }

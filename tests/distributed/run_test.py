@@ -223,10 +223,16 @@ class RunTest(unittest.TestCase):
 
     def test_a_campaign_can_be_extended_and_never_shrinks(self):
         self.assertIn(self.run_dispersa("extended", "--workers", 1, cases=self.cases // 2).finish().code, (0, 3, 4))
-        extended = self.run_dispersa("extended", "--workers", 1, "--resume").finish()
-        self.assert_same(extended)
-        fewer = self.run_dispersa("extended", "--workers", 1, "--resume", cases=self.cases // 2).finish()
-        self.assert_same(fewer)
+        for cases in (self.cases, self.cases // 2):
+            extended = self.run_dispersa("extended", "--workers", 1, "--resume", cases=cases).finish()
+            self.assertEqual(extended.code, self.reference.code, extended.stderr)
+            self.assertEqual(extended.csv(), self.reference.csv())
+            # The same cases, but looked at twice: the summary says so.
+            summary = json.loads((extended.out / "summary.json").read_text())
+            for requirement in summary["requirements"]:
+                self.assertEqual([look["n"] for look in requirement["looks"]], [self.cases // 2, self.cases])
+                self.assertTrue(requirement["beyond_plan"])
+        fewer = extended
         self.assertIn(f"{fewer.out} holds more cases than the {self.cases // 2} asked for: "
                       f"the campaign is extended to {self.cases}", fewer.stderr)
 

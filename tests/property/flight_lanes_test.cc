@@ -21,8 +21,13 @@ FlightDefinition Definition(const std::string& autopilot, bool with_winds) {
   definition.noise_seed = 11;
   if (with_winds) {
     definition.wind_table = WindTable{{0.0, 5000.0, 12000.0}, {1.0, 12.0, -20.0}, {3.0, -8.0, 30.0}};
-    definition.wind_statistics = WindStatistics{{0.0, 6000.0, 14000.0}, {0.0, 5.0, 20.0}, {1.0, 2.0, 3.0},
-                                                {2.0, 5.0, 8.0},        {2.0, 5.0, 8.0},  0.3, 3000.0};
+    definition.wind_statistics = WindStatistics{{0.0, 6000.0, 14000.0},
+                                                {0.0, 5.0, 20.0},
+                                                {1.0, 2.0, 3.0},
+                                                {2.0, 5.0, 8.0},
+                                                {2.0, 5.0, 8.0},
+                                                0.3,
+                                                3000.0};
   }
   return definition;
 }
@@ -84,7 +89,8 @@ class Queue : public FlightQueue {
     FlightResult result;
   };
 
-  Queue(const FlightModel& model, std::vector<std::uint64_t> order) : model_(model), order_(std::move(order)) {
+  Queue(const FlightModel& model, std::vector<std::uint64_t> order)
+      : model_(model), order_(std::move(order)) {
     flown.resize(order_.size());
   }
   FlightRecord* Next(bool) override {
@@ -128,7 +134,8 @@ TEST_P(FlightLanes, AreTheFlightsAlone) {
     alone.flown[flight] = std::move(one.flown[flight]);
   }
   std::size_t completed = 0, lost = 0;
-  for (const Queue::Flown& one : alone.flown) (one.result.outcome == Outcome::kCompleted ? completed : lost) += 1;
+  for (const Queue::Flown& one : alone.flown)
+    (one.result.outcome == Outcome::kCompleted ? completed : lost) += 1;
   EXPECT_GT(completed, kFlights / 3) << "lanes are to be filled anew as flights end at different times";
 
   for (const LaneEngine& engine : UsableEngines()) {

@@ -26,15 +26,15 @@ std::string WorkPrecisionTable(const std::vector<WorkPoint>& points) {
   for (const WorkPoint& p : points) {
     if (p.flight == "nominal" && p.tick_s != kShippedTick_s) continue;  // the page has them all
     const bool exact = p.scheme == Scheme::kCvode;
-    const bool shipped = p.tick_s == kShippedTick_s && p.steps == kShippedSteps;
+    const std::string scheme = p.scheme == Scheme::kSimpson ? "Simpson" : "ERK4";
     const auto difference = [&](double value) {
       return exact ? std::string("–") : fmt::format("{:.1e}", value);
     };
     table += fmt::format(
         "| {} | {:g} | {} | {:.0f} | {} | {} | {} | {:.5f} | {:.4f} |\n", p.flight, 1e3 * p.tick_s,
         exact     ? "CVODE"
-        : shipped ? "**ERK4, 1 step (shipped)**"
-                  : fmt::format("ERK4, {} step{}", p.steps, p.steps > 1 ? "s" : ""),
+        : IsShipped(p) ? "**Simpson, 1 step (shipped)**"
+                       : fmt::format("{}, {} step{}", scheme, p.steps, p.steps > 1 ? "s" : ""),
         1e3 * p.cpu_s, difference(p.altitude_difference_m), difference(p.velocity_difference_m_s),
         difference(p.pitch_error_difference_deg), p.pitch_error_rms_deg, p.pitch_error_peak_deg);
   }

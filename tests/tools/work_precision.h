@@ -13,7 +13,7 @@ namespace dispersa {
 struct WorkPoint {
   std::string flight;  ///< "nominal" or "table3", every dispersion of Table 3 at its full size
   double tick_s = 0.0;
-  Scheme scheme = Scheme::kRungeKutta4;
+  Scheme scheme = Scheme::kSimpson;
   int steps = 0;  ///< a tick; 0 of CVODE, which chooses its own
   double cpu_s = 0.0;
   double altitude_difference_m = 0.0;       ///< at injection
@@ -25,8 +25,12 @@ struct WorkPoint {
 
 inline constexpr double kShippedTick_s = 0.01;
 inline constexpr int kShippedSteps = 1;
+inline bool IsShipped(const WorkPoint& p) {
+  return p.tick_s == kShippedTick_s && p.scheme == Scheme::kSimpson && p.steps == kShippedSteps;
+}
 
-/// The shipped scheme with 1, 2 and 4 steps a tick for ticks of 2.5 to 20 ms, under the shipped autopilot.
+/// The shipped scheme with 1, 2 and 4 steps a tick for ticks of 2.5 to 20 ms, under the shipped autopilot; on its tick the
+/// classical Runge-Kutta method besides.
 /// `campaigns` is the folder of the shipped campaigns. Takes minutes.
 std::vector<WorkPoint> MeasureWorkPrecision(const std::string& campaigns);
 

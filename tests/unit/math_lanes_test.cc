@@ -21,11 +21,23 @@ using lanes::ToBits;
 
 // Ordinary numbers of all sizes, and what is not ordinary.
 std::vector<double> Arguments() {
-  std::vector<double> all = {0.0, -0.0, 1.0, -1.0, 0.5, 1e300, -1e300, 5e-324, 1e-310, 0.125, 3.0,
-                             std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
+  std::vector<double> all = {0.0,
+                             -0.0,
+                             1.0,
+                             -1.0,
+                             0.5,
+                             1e300,
+                             -1e300,
+                             5e-324,
+                             1e-310,
+                             0.125,
+                             3.0,
+                             std::numeric_limits<double>::infinity(),
+                             -std::numeric_limits<double>::infinity(),
                              std::numeric_limits<double>::quiet_NaN()};
   Stream draws(7, 0, "lanes");
-  while (all.size() % 64 != 0 || all.size() < 512) all.push_back(draws.Normal() * std::pow(10.0, 6.0 * draws.Normal()));
+  while (all.size() % 64 != 0 || all.size() < 512)
+    all.push_back(draws.Normal() * std::pow(10.0, 6.0 * draws.Normal()));
   return all;
 }
 
@@ -51,8 +63,9 @@ class Lanes : public testing::Test {
       const T packed = f(pa, pb, pc);
       for (int i = 0; i < kWidth; ++i) {
         const double one = f(Lane(pa, i), Lane(pb, i), Lane(pc, i));
-        ASSERT_TRUE(IsSame(Lane(packed, i), one)) << name << "(" << Lane(pa, i) << ", " << Lane(pb, i) << ", "
-                                                  << Lane(pc, i) << "): " << Lane(packed, i) << ", not " << one;
+        ASSERT_TRUE(IsSame(Lane(packed, i), one))
+            << name << "(" << Lane(pa, i) << ", " << Lane(pb, i) << ", " << Lane(pc, i)
+            << "): " << Lane(packed, i) << ", not " << one;
       }
     }
   }
@@ -79,9 +92,8 @@ TYPED_TEST(Lanes, ComparisonsSelectAsThoseOfDoubles) {
   this->ExpectSame(">", [](auto a, auto b, auto c) { return lanes::Select(a > b, a, c); });
   this->ExpectSame("<=", [](auto a, auto b, auto c) { return lanes::Select(a <= b, a, c); });
   this->ExpectSame(">=", [](auto a, auto b, auto c) { return lanes::Select(a >= b, a, c); });
-  this->ExpectSame("&, |, !", [](auto a, auto b, auto c) {
-    return lanes::Select(((a < b) & (b < c)) | !(a < c), a, b);
-  });
+  this->ExpectSame(
+      "&, |, !", [](auto a, auto b, auto c) { return lanes::Select(((a < b) & (b < c)) | !(a < c), a, b); });
 }
 
 TYPED_TEST(Lanes, TranscendentalFunctionsAreThoseOfDoubles) {
@@ -123,7 +135,8 @@ TYPED_TEST(Lanes, LoadsARowALane) {
     for (int i = 0; i < 8; ++i) EXPECT_EQ(Lane(out[i], lane), 100.0 * lane + i);
 }
 
-// The rotation vector takes the short way round whatever the quaternion's sign, near zero and near half a turn.
+// The rotation vector takes the short way round whatever the quaternion's sign, near zero and near half a
+// turn.
 TEST(LaneVector, RotationVectorIsTheShortWayRound) {
   Stream draws(8, 0, "turns");
   for (const double angle : {0.0, 1e-12, 1e-4, 0.1, 0.25, 1.0, 3.0, 3.141592}) {

@@ -22,11 +22,13 @@ TEST(AirTable, IsWithinItsToleranceOfTheStandardEverywhere) {
     const AirState air = StandardAtmosphere1976(z);
     const lanes::Air<double> looked_up = lanes::AirAt(StandardAir(), z);
     pressure = std::max(pressure, std::fabs(looked_up.pressure_pa / air.pressure_pa - 1.0));
-    density = std::max(density, std::fabs(looked_up.pressure_pa / looked_up.energy_j_kg / air.density_kg_m3 - 1.0));
+    density =
+        std::max(density, std::fabs(looked_up.pressure_pa / looked_up.energy_j_kg / air.density_kg_m3 - 1.0));
     sound = std::max(sound, std::fabs(Sqrt(1.4 * looked_up.energy_j_kg) / air.speed_of_sound_m_s - 1.0));
   }
-  std::printf("relative error of the air table: pressure %.1e, density %.1e, speed of sound %.1e; %zu cells\n", pressure,
-              density, sound, StandardAir().edges.size() - 1);
+  std::printf(
+      "relative error of the air table: pressure %.1e, density %.1e, speed of sound %.1e; %zu cells\n",
+      pressure, density, sound, StandardAir().edges.size() - 1);
   EXPECT_LT(pressure, kAirTableTolerance);
   EXPECT_LT(density, kAirTableTolerance);
   // The root of an energy as exact as the density.
@@ -34,7 +36,8 @@ TEST(AirTable, IsWithinItsToleranceOfTheStandardEverywhere) {
 }
 
 TEST(AirTable, HoldsWhatTheStandardDoesOutside) {
-  EXPECT_EQ(lanes::AirAt(StandardAir(), -9000.0).pressure_pa, lanes::AirAt(StandardAir(), -5000.0).pressure_pa);
+  EXPECT_EQ(lanes::AirAt(StandardAir(), -9000.0).pressure_pa,
+            lanes::AirAt(StandardAir(), -5000.0).pressure_pa);
   EXPECT_EQ(lanes::AirAt(StandardAir(), 1.1e6).pressure_pa, 0.0);
   EXPECT_GT(lanes::AirAt(StandardAir(), 1.1e6).energy_j_kg, 0.0);
 }
@@ -52,7 +55,8 @@ TEST(Surroundings, AreThoseOfTheDefinitions) {
   lanes::SetLane(weather, 0, prepared);
   Stream draws(3, 0, "places");
   for (int k = 0; k < 20000; ++k) {
-    const Geodetic place = {kPi * (draws.Uniform() - 0.5), kTwoPi * (draws.Uniform() - 0.5), 120e3 * draws.Uniform() - 500.0};
+    const Geodetic place = {kPi * (draws.Uniform() - 0.5), kTwoPi * (draws.Uniform() - 0.5),
+                            120e3 * draws.Uniform() - 500.0};
     const Vector3 p = FromGeodetic(environment.earth, place);
     const AirData air = ComputeAirData(environment, p, Vector3::Zero());
     const AirData calm = [&] {
@@ -60,7 +64,8 @@ TEST(Surroundings, AreThoseOfTheDefinitions) {
       still.wind = {};
       return ComputeAirData(still, p, Vector3::Zero());
     }();
-    const auto here = lanes::SurroundingsAt<double>(environment.earth, StandardAir(), weather, {p.x(), p.y(), p.z()});
+    const auto here =
+        lanes::SurroundingsAt<double>(environment.earth, StandardAir(), weather, {p.x(), p.y(), p.z()});
     // Rounding of coordinates of 6e6 m, which is 1e-9 m, and 1e-13 of the air at that.
     ASSERT_NEAR(here.altitude_m, place.altitude_m, 1e-8);
     ASSERT_NEAR(here.pressure_pa, air.pressure_pa, 3e-12 * air.pressure_pa);
@@ -68,7 +73,8 @@ TEST(Surroundings, AreThoseOfTheDefinitions) {
     ASSERT_NEAR(here.inverse_sound_s_m, 1.0 / air.speed_of_sound_m_s, 3e-12 / air.speed_of_sound_m_s);
     const Vector3 wind = calm.v_AP_I - air.v_AP_I;
     // Winds of 60 m/s whose slopes are 0.07 1/s (the gust's) over the altitude's rounding.
-    ASSERT_LT((Vector3(here.wind_m_s.x, here.wind_m_s.y, here.wind_m_s.z) - wind).norm(), 1e-9) << place.altitude_m;
+    ASSERT_LT((Vector3(here.wind_m_s.x, here.wind_m_s.y, here.wind_m_s.z) - wind).norm(), 1e-9)
+        << place.altitude_m;
     const Vector3 g = Gravitation(environment.earth, p);
     ASSERT_LT((Vector3(here.gravitation_m_s2.x, here.gravitation_m_s2.y, here.gravitation_m_s2.z) - g).norm(),
               1e-14 * g.norm());
@@ -78,7 +84,8 @@ TEST(Surroundings, AreThoseOfTheDefinitions) {
 // The shipped vehicle's build-up, and a body whose tables share no breakpoint.
 TEST(AeroGrid, IsTheTablesThemselves) {
   std::vector<BodyAerodynamics> bodies;
-  for (const LauncherStack& stack : BuildNominalPlant(LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml")).stacks)
+  for (const LauncherStack& stack :
+       BuildNominalPlant(LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml")).stacks)
     bodies.push_back(stack.aerodynamics);
   BodyAerodynamics mixed = bodies[0];
   mixed.cd.table = {{0.3, 0.9, 4.0}, {0.05, 0.4}, {0.1, 0.2, 0.3, 0.7, 0.5, 0.6}};
@@ -91,12 +98,14 @@ TEST(AeroGrid, IsTheTablesThemselves) {
     lanes::AeroBody<double> one;
     lanes::SetLane(one, 0, body, grid);
     for (int k = 0; k < 5000; ++k) {
-      const double mach = 12.0 * draws.Uniform() * draws.Uniform(), incidence = kPi * draws.Uniform() * draws.Uniform();
+      const double mach = 12.0 * draws.Uniform() * draws.Uniform(),
+                   incidence = kPi * draws.Uniform() * draws.Uniform();
       const auto c = lanes::CoefficientsAt(one, mach, incidence);
       // Rows of powers of the whole argument lose a few digits to cancellation.
       const auto expect = [&](double value, const Coefficient& table, double at_incidence) {
         const double expected = table.empty() ? 0.0 : table.table(mach, at_incidence);
-        ASSERT_NEAR(value, expected, 1e-12 * std::max(1.0, std::fabs(expected))) << mach << " " << at_incidence;
+        ASSERT_NEAR(value, expected, 1e-12 * std::max(1.0, std::fabs(expected)))
+            << mach << " " << at_incidence;
       };
       expect(c.ca, body.ca, incidence);
       expect(c.cn, body.cn, incidence);
@@ -110,7 +119,8 @@ TEST(AeroGrid, IsTheTablesThemselves) {
   }
 }
 
-// One drive from rest under a command, by SUNDIALS on its derivative, and by the engine in steps of half a tick.
+// One drive from rest under a command, by SUNDIALS on its derivative, and by the engine in steps of half a
+// tick.
 struct OneDrive {
   lanes::Drives<double> drives{};
   double command_rad;

@@ -1,4 +1,5 @@
-// The order of the engine's step, on a stretch of powered flight without kinks: no controller, no change of command.
+// The order of the engine's step, on a stretch of powered flight without kinks: no controller, no change of
+// command.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,8 +19,8 @@ namespace {
 constexpr double kFloors[] = {1e-7, 3e-8, 1e-10, 1e-10};  // m, m/s, rad, rad/s
 constexpr double kFrom_s = 20.0, kTo_s = 21.0;
 
-// The first stack of the shipped vehicle with coefficients that do not bend, at 20 s, turning slowly with its nozzles
-// deflected.
+// The first stack of the shipped vehicle with coefficients that do not bend, at 20 s, turning slowly with its
+// nozzles deflected.
 class Stretch {
  public:
   Stretch() : plant_(BuildNominalPlant(LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml"))) {
@@ -91,13 +92,15 @@ TEST(SimpsonStep, HasItsOrder) {
   for (const int steps : {25, 50, 100}) {
     const RigidBodyState s = stretch.InSteps(steps);
     const double error[4] = {(s.p_EoC_I - exact.p_EoC_I).norm(), (s.v_IC_I - exact.v_IC_I).norm(),
-                             RotationVector(Inverse(exact.q_IB) * s.q_IB).norm(), (s.w_IB_B - exact.w_IB_B).norm()};
-    std::printf("step %.3f s: %.2e m, %.2e m/s, %.2e rad, %.2e rad/s", (kTo_s - kFrom_s) / steps, error[0], error[1],
-                error[2], error[3]);
+                             RotationVector(Inverse(exact.q_IB) * s.q_IB).norm(),
+                             (s.w_IB_B - exact.w_IB_B).norm()};
+    std::printf("step %.3f s: %.2e m, %.2e m/s, %.2e rad, %.2e rad/s", (kTo_s - kFrom_s) / steps, error[0],
+                error[1], error[2], error[3]);
     for (int i = 0; i < 4; ++i) {
       if (last[i] > 0.0) std::printf("%s%.1f", i == 0 ? "; ratios " : " ", last[i] / error[i]);
-      // Order 3 at least. Here the guesses of the velocities hardly matter, and a sixteenth is left, of which terms of
-      // higher order may take a third. Below the floors are the rounding of 6e6 m and CVODE's tolerance.
+      // Order 3 at least. Here the guesses of the velocities hardly matter, and a sixteenth is left, of which
+      // terms of higher order may take a third. Below the floors are the rounding of 6e6 m and CVODE's
+      // tolerance.
       if (last[i] > 0.0) {
         EXPECT_LT(error[i], std::max(last[i] / 10.0, kFloors[i])) << i;
       }
