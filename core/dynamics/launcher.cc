@@ -1,21 +1,18 @@
 #include "core/dynamics/launcher.h"
 
 #include "core/dynamics/launcher_lanes.h"
+#include "core/math/lane_eigen.h"
 
 namespace dispersa {
 
 namespace {
 
-using lanes::Vector;
-
-Vector3 ToEigen(const Vector<double>& v) { return Vector3(v.x, v.y, v.z); }
-Vector<double> ToLane(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
-
 // One lane of the model, with what it points to.
 class OneLane {
  public:
-  OneLane(const LauncherPlant& plant, const LauncherPhase& phase)
-      : weather_(PrepareWeather(plant.environment.wind, plant.environment.density)) {
+  OneLane(const LauncherPlant& plant, const LauncherPhase& phase, double time_s, const double* y)
+      : motion{{y[0], y[1], y[2]}, {y[3], y[4], y[5]}, {y[6], y[7], y[8], y[9]}, {y[10], y[11], y[12]}},
+        weather_(PrepareWeather(plant.environment.wind, plant.environment.density)) {
     const LauncherStack& stack = plant.stacks[static_cast<std::size_t>(phase.stack)];
     grid_ = stack.aero_grid ? stack.aero_grid
                             : std::make_shared<const AeroGrid>(BuildAeroGrid(stack.aerodynamics));
@@ -28,12 +25,20 @@ class OneLane {
     lanes::SetLane(plant_.weather, 0, weather_);
     lanes::SetLane(drives, 0, stack.gimbal, phase.stuck_nozzle);
     phase_ = {phase.burning, phase.burnt, phase.ignition_s, phase.expelled_mass_kg,
-              ToLane(phase.control_torque_n_m)};
+              ToLanes(phase.control_torque_n_m)};
+    around = lanes::SurroundingsAt(plant.environment.earth, StandardAir(), plant_.weather, motion.p);
+    masses = lanes::MassesAt(plant_, phase_, time_s);
+    nozzles = lanes::NozzlesAt(y + kNozzleAngle);
   }
 
   const lanes::Plant<double>& plant() const { return plant_; }
   const lanes::Phase<double>& phase() const { return phase_; }
-  lanes::Drives<double> drives;
+
+  lanes::Drives<double> drives{};
+  lanes::Motion<double> motion;
+  lanes::Surroundings<double> around{};
+  lanes::TimedMasses<double> masses{};
+  lanes::Nozzles<double> nozzles{};
 
  private:
   FlightWeather weather_;
@@ -41,10 +46,6 @@ class OneLane {
   lanes::Plant<double> plant_{};
   lanes::Phase<double> phase_{};
 };
-
-lanes::Motion<double> MotionOf(const double* y) {
-  return {{y[0], y[1], y[2]}, {y[3], y[4], y[5]}, {y[6], y[7], y[8], y[9]}, {y[10], y[11], y[12]}};
-}
 
 }  // namespace
 
@@ -58,20 +59,19 @@ RigidBodyState AfterSeparation(const LauncherPlant& plant, int below, const Rigi
 
 LauncherInstant Evaluate(const LauncherPlant& plant, const LauncherPhase& phase, double time_s,
                          const double* y) {
-  const OneLane one(plant, phase);
+  const OneLane one(plant, phase, time_s, y);
   const Earth& earth = plant.environment.earth;
-  const lanes::Motion<double> s = MotionOf(y);
-  const auto around = lanes::SurroundingsAt(earth, StandardAir(), one.plant().weather, s.p);
-  const auto masses = lanes::MassesAt(one.plant(), one.phase(), time_s);
-  const auto nozzles = lanes::NozzlesAt(y + kNozzleAngle);
-  lanes::LoadsOf<double> loads = lanes::LoadsAt(earth.rotation_rate_rad_s, plant.jet_damping, one.plant(),
-                                                one.phase(), phase.burning, around, masses, nozzles, s);
+  const lanes::Motion<double>& s = one.motion;
+  const lanes::TimedMasses<double>& masses = one.masses;
+  const lanes::LoadsOf<double> loads =
+      lanes::LoadsAt(earth.rotation_rate_rad_s, plant.jet_damping, one.plant(), one.phase(), phase.burning,
+                     one.around, masses, one.nozzles, s);
   LauncherInstant now;
   now.air.place = ToGeodetic(earth, Vector3(y[0], y[1], y[2]));
   now.air.v_AP_I = ToEigen(loads.v_air);
   now.air.airspeed_m_s = now.air.v_AP_I.norm();
-  now.air.density_kg_m3 = around.density_kg_m3;
-  now.air.pressure_pa = around.pressure_pa;
+  now.air.density_kg_m3 = one.around.density_kg_m3;
+  now.air.pressure_pa = one.around.pressure_pa;
   now.air.mach = loads.flow.mach;
   now.air.qbar_pa = loads.flow.qbar_pa;
   now.v_AB_B = ToEigen(loads.v_AB_B);
@@ -94,14 +94,12 @@ LauncherInstant Evaluate(const LauncherPlant& plant, const LauncherPhase& phase,
 
 void LauncherDerivative(const LauncherPlant& plant, const LauncherPhase& phase, double time_s,
                         const double* y, double* dydt) {
-  const OneLane one(plant, phase);
+  const OneLane one(plant, phase, time_s, y);
   const Earth& earth = plant.environment.earth;
-  const lanes::Motion<double> s = MotionOf(y);
-  const auto around = lanes::SurroundingsAt(earth, StandardAir(), one.plant().weather, s.p);
-  const auto masses = lanes::MassesAt(one.plant(), one.phase(), time_s);
-  const auto nozzles = lanes::NozzlesAt(y + kNozzleAngle);
-  const auto rates = lanes::RatesOf<double>(earth.rotation_rate_rad_s, plant.jet_damping, one.plant(),
-                                            one.phase(), phase.burning, around, masses, nozzles, s, nullptr);
+  const lanes::Motion<double>& s = one.motion;
+  const auto rates =
+      lanes::RatesOf<double>(earth.rotation_rate_rad_s, plant.jet_damping, one.plant(), one.phase(),
+                             phase.burning, one.around, one.masses, one.nozzles, s, nullptr);
   const Quaternion dq = Derivative({s.q.w, s.q.x, s.q.y, s.q.z}, ToEigen(s.w));
   WriteState({ToEigen(s.v), ToEigen(rates.dv), dq, ToEigen(rates.dw)}, dydt);
   for (int i = 0; i < kNozzles; ++i) {

@@ -50,8 +50,6 @@ class Batch {
   void SetStop(int lane);
   void End(int lane, Outcome outcome, const char* reason);
   LauncherPhase PhaseOf(int lane) const;
-  void ReadState(int lane, double* y) const;
-  void WriteState(int lane, const double* y);
   LaneView ViewOf(int lane) const;
 
   // ---- a pass ----
@@ -207,9 +205,8 @@ void Batch<T>::Start(int lane, FlightRecord* record) {
     Lane(thruster.direction, lane) = Lane(thruster.cycles_on, lane) = 0.0;
   metrics_.StartFlight(lane);
   const FlightInputs& in = record->inputs;
-  Lane(gyro_bias_rad_s_.x, lane) = in.gyro_bias_roll_rad_s;
-  Lane(gyro_bias_rad_s_.y, lane) = in.gyro_bias_pitch_rad_s;
-  Lane(gyro_bias_rad_s_.z, lane) = in.gyro_bias_yaw_rad_s;
+  SetLane(gyro_bias_rad_s_, lane,
+          {in.gyro_bias_roll_rad_s, in.gyro_bias_pitch_rad_s, in.gyro_bias_yaw_rad_s});
   Lane(gust_bottom_m_, lane) = in.gust_altitude_m;
   Lane(gust_top_m_, lane) =
       in.gust_speed_m_s != 0.0 ? in.gust_altitude_m + in.gust_length_m : in.gust_altitude_m;
@@ -224,7 +221,7 @@ void Batch<T>::Start(int lane, FlightRecord* record) {
   }
   step_.StartFlight(lane);
   SetLane(step_.plant.weather, lane, record->weather);
-  WriteState(lane, record->lift_off);
+  step_.WriteLane(lane, record->lift_off);
   SetStack(lane, 0);
   // What happened before lift-off happens at lift-off.
   while (slot.record != nullptr && slot.next_event < slot.last_event &&
@@ -257,7 +254,7 @@ void Batch<T>::End(int lane, Outcome outcome, const char* reason) {
   Slot& slot = slot_[lane];
   FlightRecord* record = slot.record;
   StateValues y;
-  ReadState(lane, y);
+  step_.ReadLane(lane, y);
   if (Bits(step_.phase.burning) >> lane & 1u) metrics_.EndStage(lane, slot.stack, record->sums);
   metrics_.Read(lane, record->sums);
   record->sums.expelled_kg = Lane(step_.phase.expelled_kg, lane);
@@ -292,19 +289,10 @@ LauncherPhase Batch<T>::PhaseOf(int lane) const {
 }
 
 template <class T>
-void Batch<T>::ReadState(int lane, double* y) const {
-  step_.ReadLane(lane, y);
-}
-template <class T>
-void Batch<T>::WriteState(int lane, const double* y) {
-  step_.WriteLane(lane, y);
-}
-
-template <class T>
 LaneView Batch<T>::ViewOf(int lane) const {
   LaneView view;
   view.time_s = Lane(time_s_, lane);
-  ReadState(lane, view.y);
+  step_.ReadLane(lane, view.y);
   view.phase = PhaseOf(lane);
   view.coasting = Bits(coasting_) >> lane & 1u;
   const T* angle = &angle_rad_.x;
@@ -513,7 +501,7 @@ void Batch<T>::WatchAndDigest() {
     if (static_cast<double>(tick) < Lane(next_digest_tick_, lane)) continue;
     if (tick % second == 0) {
       StateValues y;
-      ReadState(lane, y);
+      step_.ReadLane(lane, y);
       record.AddToDigest(Lane(time_s_, lane), y);
     }
     Lane(next_digest_tick_, lane) = static_cast<double>((tick / second + 1) * second);
@@ -632,7 +620,7 @@ template <class T>
 void Batch<T>::Step(M moving, T to) {
   StateValues before[kLanes];
   if (any_judged_)
-    for (int lane = 0; lane < kLanes; ++lane) ReadState(lane, before[lane]);
+    for (int lane = 0; lane < kLanes; ++lane) step_.ReadLane(lane, before[lane]);
   const T from = time_s_;
   M failed = NoLane<T>();
   for (int i = 1; i <= most_steps_; ++i) {
@@ -659,7 +647,7 @@ void Batch<T>::Judge(M moving, T from, T to, StateValues* states, M& failed) {
         slot_[lane].record->Judge(PhaseOf(lane), Lane(from, lane), Lane(to, lane), states[lane]);
     SetLane(failed, lane, !holds);
     Lane(time_s_, lane) = holds ? Lane(to, lane) : Lane(from, lane);
-    WriteState(lane, states[lane]);
+    step_.WriteLane(lane, states[lane]);
     step_.MarkMoved(lane);
   }
 }
@@ -679,9 +667,9 @@ void Batch<T>::Happen(int lane) {
       break;
     case EventKind::kSeparation: {
       StateValues y;
-      ReadState(lane, y);
+      step_.ReadLane(lane, y);
       record.Separate(event.stage, y);
-      WriteState(lane, y);
+      step_.WriteLane(lane, y);
       SetStack(lane, event.stage + 1);
       SetLane(step_.phase.burnt, lane, false);
       SetLane(coasting_, lane, event.stage + 2 == static_cast<int>(record.plant.stacks.size()));
@@ -694,7 +682,7 @@ void Batch<T>::Happen(int lane) {
   }
   step_.MarkMoved(lane);
   StateValues y;
-  ReadState(lane, y);
+  step_.ReadLane(lane, y);
   record.AddToDigest(Lane(time_s_, lane), y);
   if (record.watched) record.WatchEvent(ViewOf(lane));
   // The last event is the last stage's burnout.
@@ -709,9 +697,7 @@ void Batch<T>::Ignite(int lane, int stage) {
   const AutopilotModel& autopilot = model_.autopilot();
   SetLane(step_.phase.burning, lane, true);
   SetLane(coasting_, lane, false);
-  Lane(step_.phase.control_torque_n_m.x, lane) = 0.0;
-  Lane(step_.phase.control_torque_n_m.y, lane) = 0.0;
-  Lane(step_.phase.control_torque_n_m.z, lane) = 0.0;
+  SetLane(step_.phase.control_torque_n_m, lane, Zero<double>());
   for (T& command : step_.command_rad) Lane(command, lane) = 0.0;
   for (auto& entry : delay_line_)
     for (T& command : entry) Lane(command, lane) = 0.0;
@@ -759,7 +745,7 @@ void Batch<T>::Ignite(int lane, int stage) {
   SetLane(step_.drives, lane, gimbal, slot.stuck_nozzle);
   if (stage > 0 && stage + 1 == static_cast<int>(record.plant.stacks.size())) {
     StateValues y;
-    ReadState(lane, y);
+    step_.ReadLane(lane, y);
     record.HandOver(Lane(time_s_, lane), y);
   }
 }
@@ -768,7 +754,7 @@ template <class T>
 void Batch<T>::BurnOut(int lane, int stage) {
   FlightRecord& record = *slot_[lane].record;
   StateValues y;
-  ReadState(lane, y);
+  step_.ReadLane(lane, y);
   // Loads peak here, between ticks.
   const Instant<double> now = step_.InstantOf(lane, time_s_);
   metrics_.AddLoadsOfLane(lane, now);

@@ -56,9 +56,7 @@ class StepState {
     SetLane(phase.burning, lane, false);
     SetLane(phase.burnt, lane, false);
     Lane(phase.ignition_s, lane) = Lane(phase.expelled_kg, lane) = 0.0;
-    Lane(phase.control_torque_n_m.x, lane) = 0.0;
-    Lane(phase.control_torque_n_m.y, lane) = 0.0;
-    Lane(phase.control_torque_n_m.z, lane) = 0.0;
+    SetLane(phase.control_torque_n_m, lane, Zero<double>());
     for (T& command : command_rad) Lane(command, lane) = 0.0;
   }
   void ReadLane(int lane, double* y) const {

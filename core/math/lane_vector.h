@@ -19,6 +19,16 @@ template <class T>
 DISPERSA_INLINE Vector<T> Zero() {
   return {T(0.0), T(0.0), T(0.0)};
 }
+template <class T>
+DISPERSA_INLINE void SetLane(Vector<T>& v, int lane, const Vector<double>& value) {
+  Lane(v.x, lane) = value.x;
+  Lane(v.y, lane) = value.y;
+  Lane(v.z, lane) = value.z;
+}
+template <class T>
+DISPERSA_INLINE Vector<double> LaneOf(const Vector<T>& v, int lane) {
+  return {Lane(v.x, lane), Lane(v.y, lane), Lane(v.z, lane)};
+}
 /// a + k b.
 template <class T>
 DISPERSA_INLINE Vector<T> Along(Vector<T> a, T k, Vector<T> b) {

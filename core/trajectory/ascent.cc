@@ -32,19 +32,6 @@ constexpr double kCoastKnot_s = 5.0;
 using lanes::Lane;
 using LaneVector = lanes::Vector<double>;
 
-LaneVector ToLanes(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
-
-template <class T>
-void SetLane(lanes::Vector<T>& vector, int lane, const LaneVector& value) {
-  Lane(vector.x, lane) = value.x;
-  Lane(vector.y, lane) = value.y;
-  Lane(vector.z, lane) = value.z;
-}
-template <class T>
-LaneVector LaneOf(const lanes::Vector<T>& vector, int lane) {
-  return {Lane(vector.x, lane), Lane(vector.y, lane), Lane(vector.z, lane)};
-}
-
 lanes::Ground GroundOf(const AscentModel& model) {
   const Earth& earth = model.plant.environment.earth;
   return {earth, &StandardAir(), ToLanes(-BuildLaunchFrame(earth, model.vehicle.site, 0.0).R_IL.col(2))};
@@ -250,7 +237,7 @@ void Fleet<T>::GoOn(int lane) {
     return;
   }
   const double lowest_m = model_.vehicle.site.altitude_m - kGround_m;
-  if (!(ToGeodetic(ground_.earth, FromLanes(LaneOf(p_, lane))).altitude_m > lowest_m))
+  if (!(ToGeodetic(ground_.earth, ToEigen(LaneOf(p_, lane))).altitude_m > lowest_m))
     return Conclude(lane, false);
   while (flight.next_event < flight.events.size()) {
     const AscentEvent& event = flight.events[flight.next_event];
@@ -308,11 +295,11 @@ void Fleet<T>::Happen(int lane, const AscentEvent& event) {
       const LaneVector forward = ForwardOf(ground_, point);
       const LaneVector rate = AxisRateOf(ground_, point);
       RigidBodyState state;
-      state.p_EoC_I = FromLanes(point.p);
-      state.v_IC_I = FromLanes(point.v);
+      state.p_EoC_I = ToEigen(point.p);
+      state.v_IC_I = ToEigen(point.v);
       const Matrix3 R_IB = AttitudeOf(flight.frame, forward);
       state.q_IB = QuaternionOf(R_IB);
-      state.w_IB_B = R_IB.transpose() * R_IB.col(0).cross(FromLanes(rate));
+      state.w_IB_B = R_IB.transpose() * R_IB.col(0).cross(ToEigen(rate));
       state = AfterSeparation(model_.plant, event.stage, state);
       SetLane(p_, lane, ToLanes(state.p_EoC_I));
       SetLane(v_, lane, ToLanes(state.v_IC_I));
@@ -341,8 +328,8 @@ void Fleet<T>::Conclude(int lane, bool completed) {
   AscentResult& result = *flight.result;
   result.completed = completed;
   result.end_time_s = Lane(time_s_, lane);
-  result.p_EoC_I = FromLanes(LaneOf(p_, lane));
-  result.v_IC_I = FromLanes(LaneOf(v_, lane));
+  result.p_EoC_I = ToEigen(LaneOf(p_, lane));
+  result.v_IC_I = ToEigen(LaneOf(v_, lane));
   const OrbitElements e = ElementsOf(ground_.earth, result.p_EoC_I, result.v_IC_I);
   result.orbit = {ToGeodetic(ground_.earth, result.p_EoC_I).altitude_m, e.speed_m_s, e.flight_path_angle_rad,
                   e.inclination_rad};

@@ -53,7 +53,7 @@ lanes::Vector<double> AxisRateOf(const lanes::Ground& ground, const AscentPoint&
 }
 
 Matrix3 AttitudeOf(const LaunchFrame& frame, const lanes::Vector<double>& forward_I) {
-  const Vector3 forward = FromLanes(forward_I);
+  const Vector3 forward = ToEigen(forward_I);
   const Vector3 right_I = frame.R_IL.col(1);
   const Vector3 right = (right_I - right_I.dot(forward) * forward).normalized();
   Matrix3 R_IB;
@@ -65,8 +65,8 @@ Matrix3 AttitudeOf(const LaunchFrame& frame, const lanes::Vector<double>& forwar
 
 void Record(const LaunchFrame& frame, const lanes::Ground& ground, const AscentPoint& point,
             const lanes::AscentInstant<double>& now, AscentResult* result) {
-  const Vector3 p = FromLanes(point.p), v = FromLanes(point.v);
-  const Vector3 relative = FromLanes(lanes::VelocityOverGround(ground, point.p, point.v));
+  const Vector3 p = ToEigen(point.p), v = ToEigen(point.v);
+  const Vector3 relative = ToEigen(lanes::VelocityOverGround(ground, point.p, point.v));
   const PitchYawRoll angles = AnglesOf(frame, ground, point);
   AscentSample s;
   s.time_s = point.time_s;

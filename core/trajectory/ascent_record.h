@@ -2,12 +2,11 @@
 #pragma once
 
 #include "core/flight/launch_frame.h"
+#include "core/math/lane_eigen.h"
 #include "core/trajectory/ascent.h"
 #include "core/trajectory/point_mass.h"
 
 namespace dispersa {
-
-inline Vector3 FromLanes(const lanes::Vector<double>& v) { return {v.x, v.y, v.z}; }
 
 struct AscentPoint {
   lanes::Leg<double> leg;
