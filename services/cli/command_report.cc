@@ -1,11 +1,11 @@
 // dispersa report: the reports of a result folder, made again from what is stored.
 #include <memory>
 #include <string>
-#include <thread>
 
 #include "services/cli/campaign_output.h"
 #include "services/cli/command.h"
 #include "services/cli/stored_campaign.h"
+#include "services/cli/threads.h"
 
 namespace dispersa {
 namespace {
@@ -18,9 +18,8 @@ struct ReportCommand {
 ExitCode Report(const ReportCommand& options, const GlobalOptions& global) {
   StoredCampaign stored = OpenStored(options.directory);
   stored.folder.Lock();
-  const int threads = static_cast<int>(std::thread::hardware_concurrency());
   const CampaignSummary summary =
-      MakeReports(stored.folder, stored.campaign, threads, global.quiet, !options.no_histories);
+      MakeReports(stored.folder, stored.campaign, UsableCores(), global.quiet, !options.no_histories);
   PrintSummary(summary, stored.folder.directory(), global.json);
   return static_cast<ExitCode>(VerdictExitCode(summary.verdict));
 }

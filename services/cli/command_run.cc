@@ -1,6 +1,5 @@
 // dispersa run: a campaign from the file to the report.
 #include <fmt/format.h>
-#include <sched.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
@@ -29,6 +28,7 @@
 #include "services/cli/execution_file.h"
 #include "services/cli/local_workers.h"
 #include "services/cli/progress.h"
+#include "services/cli/threads.h"
 #include "services/coordinator/coordinator.h"
 #include "services/coordinator/open_campaign.h"
 #include "services/coordinator/stop_signal.h"
@@ -54,12 +54,6 @@ struct RunOptions {
 };
 
 struct Interrupted {};
-
-int UsableCores() {
-  cpu_set_t usable;
-  CPU_ZERO(&usable);
-  return sched_getaffinity(0, sizeof usable, &usable) == 0 ? CPU_COUNT(&usable) : 1;
-}
 
 double SecondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -293,7 +287,7 @@ ExitCode FlyAndReport(const RunOptions& options, const GlobalOptions& global, Op
   if (!book.Complete()) {
     try {
       CampaignRun run(book, execution, global.quiet);
-      execution.problem = workers == 0 ? run.FlyHere(options.threads > 0 ? options.threads : UsableCores())
+      execution.problem = workers == 0 ? run.FlyHere(ThreadsOrAll(options.threads))
                                        : run.FlyWithWorkers(workers);
     } catch (const NetworkError& error) {
       execution.problem = error.what();

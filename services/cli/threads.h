@@ -1,14 +1,18 @@
 // How many threads a command takes.
 #pragma once
 
-#include <algorithm>
-#include <thread>
+#include <sched.h>
 
 namespace dispersa {
 
-/// As many as asked for; with 0 as the processor has.
-inline int ThreadsOrAll(int asked) {
-  return asked > 0 ? asked : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+/// The cores that this process may use: with an affinity mask fewer than the processor has.
+inline int UsableCores() {
+  cpu_set_t usable;
+  CPU_ZERO(&usable);
+  return sched_getaffinity(0, sizeof usable, &usable) == 0 ? CPU_COUNT(&usable) : 1;
 }
+
+/// As many as asked for; with 0 the usable cores.
+inline int ThreadsOrAll(int asked) { return asked > 0 ? asked : UsableCores(); }
 
 }  // namespace dispersa
