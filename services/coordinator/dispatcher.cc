@@ -33,15 +33,11 @@ void Dispatcher::Open(CampaignBook& book, int priority) {
 void Dispatcher::Close(const std::string& flight_id) {
   const auto found = campaigns_.find(flight_id);
   if (found == campaigns_.end()) return;
-  for (const auto& [id, report] : found->second.unstored) {
-    if (const auto worker = workers_.find(id); worker != workers_.end()) {
-      worker->second.orders.acknowledged.push_back(report);
-    }
-  }
+  Acknowledge(found->second);
   campaigns_.erase(found);
   // What a worker still holds of it is revoked when its status says so.
   for (auto& [id, worker] : workers_) {
-    std::erase_if(worker.sent, [&](const auto& sent) { return sent.second.flight_id == flight_id; });
+    worker.ForgetSent(flight_id);
     std::erase_if(worker.orders.assignments,
                   [&](const FlyOrder& order) { return order.flight_id == flight_id; });
   }
@@ -211,8 +207,7 @@ void Dispatcher::On(const std::string& sender, const CampaignRefusal& refusal, d
                 campaign->second.book->campaign().name, Printable(refusal.reason, 1000));
   refusal_ = Printable(refusal.reason, 1000);
   campaign->second.book->ledger().Lost(refusal.worker, WorkerEnd::kLeft, *refusal_);
-  std::erase_if(known->second.sent,
-                [&](const auto& sent) { return sent.second.flight_id == refusal.flight_id; });
+  known->second.ForgetSent(refusal.flight_id);
 }
 
 std::optional<TextPart> Dispatcher::On(const TextRequest& request, std::size_t limit) const {
@@ -252,12 +247,7 @@ std::vector<std::string> Dispatcher::TakeForgotten() { return std::exchange(forg
 
 std::vector<Orders> Dispatcher::Tick(double now_s) {
   for (auto& [flight_id, campaign] : campaigns_) {
-    if (!campaign.book->FlushIfDue(now_s)) continue;
-    for (const auto& [id, report] : std::exchange(campaign.unstored, {})) {
-      if (const auto worker = workers_.find(id); worker != workers_.end()) {
-        worker->second.orders.acknowledged.push_back(report);
-      }
-    }
+    if (campaign.book->FlushIfDue(now_s)) Acknowledge(campaign);
   }
   const auto due = std::stable_partition(endings_.begin(), endings_.end(),
                                          [&](const Ending& ending) { return ending.due_s > now_s; });
@@ -317,10 +307,8 @@ void Dispatcher::Expire(double now_s) {
     for (const std::string& stuck : campaign.book->ledger().Expire(now_s)) {
       spdlog::warn("worker {} has reported nothing for too long; its cases return to the queue", stuck);
       if (supervised_.contains(stuck)) unresponsive_.insert(stuck);
-      if (const auto worker = workers_.find(stuck); worker != workers_.end()) {
-        std::erase_if(worker->second.sent,
-                      [&](const auto& sent) { return sent.second.flight_id == flight_id; });
-      }
+      if (const auto worker = workers_.find(stuck); worker != workers_.end())
+        worker->second.ForgetSent(flight_id);
     }
   }
 }
@@ -366,6 +354,18 @@ void Dispatcher::Say(Worker& worker, const std::string& flight_id, std::uint64_t
                      std::vector<std::uint64_t> cases, double now_s) {
   worker.sent[attempt] = {flight_id, now_s};
   worker.orders.assignments.push_back({flight_id, attempt, std::move(cases)});
+}
+
+void Dispatcher::Acknowledge(OpenCampaign& campaign) {
+  for (const auto& [id, report] : std::exchange(campaign.unstored, {})) {
+    if (const auto worker = workers_.find(id); worker != workers_.end()) {
+      worker->second.orders.acknowledged.push_back(report);
+    }
+  }
+}
+
+void Dispatcher::Worker::ForgetSent(const std::string& flight_id) {
+  std::erase_if(sent, [&](const auto& each) { return each.second.flight_id == flight_id; });
 }
 
 void Dispatcher::Lose(const std::string& worker, WorkerEnd end, const std::string& reason) {

@@ -100,6 +100,8 @@ class Dispatcher {
     double spoken_s = 0.0;
     std::map<std::uint64_t, Sent> sent;  ///< by attempt
     Orders orders;                       ///< what is to be said
+
+    void ForgetSent(const std::string& flight_id);
   };
 
   bool Join(const std::string& sender, const WorkerStatus& status, double now_s);
@@ -108,6 +110,8 @@ class Dispatcher {
   void Compare(Worker& worker, const WorkerStatus& status, double now_s);
   void Say(Worker& worker, const std::string& flight_id, std::uint64_t attempt,
            std::vector<std::uint64_t> cases, double now_s);
+  /// Acknowledges what is stored of a campaign.
+  void Acknowledge(OpenCampaign& campaign);
   void Lose(const std::string& worker, WorkerEnd end, const std::string& reason);
   void LoseSilent(double now_s);
   void Expire(double now_s);
