@@ -3,14 +3,11 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "core/flight/orbit.h"
 #include "core/vehicle/vehicle.h"
 
 namespace dispersa {
-
-struct FlightDefinition;
 
 /// Of a signed angle over ticks.
 struct ErrorSums {
@@ -43,11 +40,9 @@ struct FlightSums {
   std::uint32_t rules_fired = 0;
 };
 
+/// Of all stages together; a peak that several share is the first one's.
+ErrorSums Total(const ErrorSums (&stages)[kMaxStages]);
 /// Whether the loads so far exceed a limit that the vehicle gives.
 bool ExceedsStructure(const StructuralLimits& limits, const FlightSums& sums);
-
-/// In the order of MetricNames(), in their units; NaN where undefined. Definitions: core/README.md,
-/// "Metrics".
-std::vector<double> MetricsOf(const FlightSums& sums, const FlightDefinition& definition);
 
 }  // namespace dispersa

@@ -1,43 +1,207 @@
 #include "core/flight/metrics.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "core/flight/flight_model.h"
+#include "core/flight/flight_sums.h"
+#include "core/math/constants.h"
+#include "core/math/functions.h"
 
 namespace dispersa {
 
+namespace {
+
+constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
+
+double Rms(const ErrorSums& e) { return e.count > 0.0 ? Sqrt(e.squares / e.count) * kDegPerRad : kUndefined; }
+double Peak(const ErrorSums& e) { return e.count > 0.0 ? e.peak * kDegPerRad : kUndefined; }
+double Ratio(double part, double whole) { return whole > 0.0 ? part / whole : kUndefined; }
+
+// What a metric is computed from.
+struct Measured {
+  const FlightSums& sums;
+  const FlightDefinition& definition;
+  const ErrorSums& pitch;  // of the metric's phase
+
+  /// Of a flight that got there.
+  double AtHandover(double value) const { return sums.handed_over ? value : kUndefined; }
+  double AtInjection(double value) const {
+    return sums.injected && std::isfinite(value) ? value : kUndefined;
+  }
+};
+
+struct Row {
+  const char* stem;
+  const char* unit;
+  const char* title;
+  const char* definition;
+  Worse worse;
+  double (*value)(const Measured&);
+};
+
+constexpr auto kLarger = Worse::kLarger, kSmaller = Worse::kSmaller, kAnyway = Worse::kNeither,
+               kFarther = Worse::kFartherFromZero;
+
+// Of powered flight, of each stage's burn and of the coast.
+constexpr Row kByPhase[] = {
+    {"pitch_error_rms", "_deg", "Pitch error, RMS",
+     "root mean square over powered flight of the component about body y of the rotation from the reference "
+     "attitude to the true one",
+     kLarger, [](const Measured& m) { return Rms(m.pitch); }},
+    {"pitch_error_peak", "_deg", "Pitch error, peak",
+     "largest magnitude of the same error over powered flight", kLarger,
+     [](const Measured& m) { return Peak(m.pitch); }},
+    {"pitch_error_peak_time", "_s", "Time of the pitch error's peak", "since lift-off", kAnyway,
+     [](const Measured& m) { return m.pitch.count > 0.0 ? m.pitch.peak_time_s : kUndefined; }},
+};
+
+constexpr Row kOfFlight[] = {
+    {"pitch_error_itae", "_deg_s2", "Pitch error, ITAE",
+     "integral over powered flight of time times magnitude of the error", kLarger,
+     [](const Measured& m) { return m.sums.itae_rad_s2 * kDegPerRad; }},
+    {"yaw_error_rms", "_deg", "Yaw error, RMS", "about body z, over powered flight", kLarger,
+     [](const Measured& m) { return Rms(m.sums.yaw); }},
+    {"yaw_error_peak", "_deg", "Yaw error, peak", "largest magnitude about body z over powered flight",
+     kLarger, [](const Measured& m) { return Peak(m.sums.yaw); }},
+    {"roll_error_rms", "_deg", "Roll error, RMS", "about body x, over powered flight", kLarger,
+     [](const Measured& m) { return Rms(m.sums.roll); }},
+    {"roll_error_peak", "_deg", "Roll error, peak", "largest magnitude about body x over powered flight",
+     kLarger, [](const Measured& m) { return Peak(m.sums.roll); }},
+
+    {"deflection_peak", "_deg", "Deflection, peak", "largest magnitude of any nozzle's angle", kLarger,
+     [](const Measured& m) { return Peak(m.sums.deflection); }},
+    {"deflection_rms", "_deg", "Deflection, RMS", "root mean square over the nozzles and powered flight",
+     kLarger, [](const Measured& m) { return Rms(m.sums.deflection); }},
+    {"deflection_rate_peak", "_deg_s", "Deflection rate, peak", "largest magnitude of any nozzle's rate",
+     kLarger, [](const Measured& m) { return m.sums.deflection_rate_peak_rad_s * kDegPerRad; }},
+    {"deflection_saturated_fraction", "", "Deflection saturated",
+     "fraction of powered flight in which a nozzle is commanded to its limit", kLarger,
+     [](const Measured& m) { return Ratio(m.sums.saturated_ticks, m.pitch.count); }},
+    {"deflection_travel", "_deg", "Deflection travel",
+     "path of a nozzle added up, mean of the four: wear of the actuators", kLarger,
+     [](const Measured& m) { return m.sums.travel_rad * kDegPerRad; }},
+    {"deflection_limit_cycle", "_deg", "Limit cycle of the deflection",
+     "worst peak-to-peak deflection, detrended over sliding 1 s windows, from 5 s after each ignition, "
+     "outside "
+     "the kick and gusts",
+     kLarger,
+     [](const Measured& m) {
+       return m.sums.limit_cycle_rad >= 0.0 ? m.sums.limit_cycle_rad * kDegPerRad : kUndefined;
+     }},
+
+    {"q_max", "_pa", "Dynamic pressure, maximum", "", kLarger,
+     [](const Measured& m) { return m.sums.q_max_pa; }},
+    {"q_alpha_max", "_pa_rad", "Product of dynamic pressure and incidence, maximum", "", kLarger,
+     [](const Measured& m) { return m.sums.q_alpha_max_pa_rad; }},
+    {"alpha_max", "_deg", "Incidence as flown, maximum", "where the dynamic pressure is at least 1 kPa",
+     kLarger, [](const Measured& m) { return m.sums.alpha_max_rad * kDegPerRad; }},
+    {"axial_load_max", "_g", "Axial load, maximum", "specific force along the body axis", kLarger,
+     [](const Measured& m) { return m.sums.axial_load_max_g; }},
+    {"lateral_load_max", "_g", "Lateral load, maximum",
+     "specific force normal to the body axis at the centre of gravity", kLarger,
+     [](const Measured& m) { return m.sums.lateral_load_max_g; }},
+    {"structural_limit_exceeded", "", "Structural limit exceeded",
+     "1 when a limit of the vehicle file was exceeded", kLarger,
+     [](const Measured& m) { return ExceedsStructure(m.definition.vehicle.limits, m.sums) ? 1.0 : 0.0; }},
+
+    {"handover_attitude_error", "_deg", "Attitude error at the last ignition",
+     "magnitude of the rotation that the reaction control leaves to the gimbals", kLarger,
+     [](const Measured& m) { return m.AtHandover(m.sums.handover_angle_rad * kDegPerRad); }},
+    {"handover_rate_error", "_deg_s", "Rate error at the last ignition", "magnitude, likewise", kLarger,
+     [](const Measured& m) { return m.AtHandover(m.sums.handover_rate_rad_s * kDegPerRad); }},
+    {"rcs_propellant", "_kg", "Reaction control propellant", "used in the coast", kLarger,
+     [](const Measured& m) { return m.sums.expelled_kg; }},
+
+    {"injection_altitude", "_km", "Injection altitude", "geodetic, at the end of the last burn", kAnyway,
+     [](const Measured& m) { return m.AtInjection(m.sums.injection_altitude_m * 1e-3); }},
+    {"injection_velocity", "_m_s", "Injection velocity", "inertial, at the end of the last burn", kAnyway,
+     [](const Measured& m) { return m.AtInjection(m.sums.orbit.speed_m_s); }},
+    {"injection_flight_path_angle", "_deg", "Injection flight path angle",
+     "inertial, at the end of the last burn", kFarther,
+     [](const Measured& m) { return m.AtInjection(m.sums.orbit.flight_path_angle_rad * kDegPerRad); }},
+    {"apogee", "_km", "Apogee", "altitude over the equatorial radius of the osculating orbit at injection",
+     kAnyway, [](const Measured& m) { return m.AtInjection(m.sums.orbit.apogee_altitude_m * 1e-3); }},
+    {"perigee", "_km", "Perigee", "altitude over the equatorial radius of the osculating orbit at injection",
+     kSmaller, [](const Measured& m) { return m.AtInjection(m.sums.orbit.perigee_altitude_m * 1e-3); }},
+    {"inclination", "_deg", "Inclination", "of the osculating orbit at injection", kAnyway,
+     [](const Measured& m) { return m.AtInjection(m.sums.orbit.inclination_rad * kDegPerRad); }},
+    {"injection_altitude_error", "_km", "Injection altitude error", "against the target", kFarther,
+     [](const Measured& m) {
+       return m.AtInjection((m.sums.injection_altitude_m - m.definition.target.altitude_m) * 1e-3);
+     }},
+    {"injection_velocity_error", "_m_s", "Injection velocity error", "against the target", kFarther,
+     [](const Measured& m) {
+       return m.AtInjection(m.sums.orbit.speed_m_s - m.definition.target.velocity_m_s);
+     }},
+    {"injection_flight_path_angle_error", "_deg", "Injection flight path angle error", "against the target",
+     kFarther,
+     [](const Measured& m) {
+       return m.AtInjection((m.sums.orbit.flight_path_angle_rad - m.definition.target.flight_path_angle_rad) *
+                            kDegPerRad);
+     }},
+
+    {"lyapunov_outside_fraction", "", "Outside the residual set",
+     "fraction of powered flight with the pitch law's V above that of 0.05 deg of error", kLarger,
+     [](const Measured& m) { return Ratio(m.sums.v_outside_ticks, m.pitch.count); }},
+    {"lyapunov_decreasing_fraction", "", "Lyapunov function decreasing",
+     "fraction of the powered flight outside the residual set", kSmaller,
+     [](const Measured& m) { return Ratio(m.sums.v_falling_ticks, m.sums.v_outside_ticks); }},
+    {"adaptation_norm_peak", "_deg_s2", "Adaptation, largest norm",
+     "distance of the pitch rules' consequents from their start", kLarger,
+     [](const Measured& m) { return m.sums.adaptation_peak_rad_s2 * kDegPerRad; }},
+    {"rules_fired", "", "Rules fired", "pitch rules that were active at any time", kAnyway,
+     [](const Measured& m) { return static_cast<double>(std::popcount(m.sums.rules_fired)); }},
+};
+
+// The phases of kByPhase: 0 all powered flight, then the stages, then the coast.
+constexpr int kPhases = 1 + kMaxStages + 1;
+
+ErrorSums PitchOf(int phase, const FlightSums& sums) {
+  if (phase == kPhases - 1) return sums.coast;
+  return phase == 0 ? Total(sums.pitch) : sums.pitch[phase - 1];
+}
+std::string PhaseName(int phase) {
+  if (phase == kPhases - 1) return "coast";
+  return phase == 0 ? "" : "stage" + std::to_string(phase);
+}
+std::string PhaseTitle(int phase) {
+  if (phase == kPhases - 1) return ", coast";
+  return phase == 0 ? "" : ", stage " + std::to_string(phase);
+}
+
+// f(row, phase) for each metric in the order of the columns.
+template <class F>
+void ForEach(F f) {
+  for (int phase = 0; phase < kPhases; ++phase)
+    for (const Row& row : kByPhase) f(row, phase);
+  for (const Row& row : kOfFlight) f(row, 0);
+}
+
+}  // namespace
+
+const std::vector<Metric>& Metrics() {
+  static const std::vector<Metric> metrics = [] {
+    std::vector<Metric> list;
+    ForEach([&](const Row& row, int phase) {
+      const std::string name = phase == 0 ? row.stem : std::string(row.stem) + "_" + PhaseName(phase);
+      list.push_back({name + row.unit, row.title + PhaseTitle(phase), row.definition, row.worse});
+    });
+    return list;
+  }();
+  return metrics;
+}
+
 const std::vector<std::string>& MetricNames() {
   static const std::vector<std::string> names = [] {
-    std::vector<std::string> list = {"pitch_error_rms_deg", "pitch_error_peak_deg",
-                                     "pitch_error_peak_time_s"};
-    for (int stage = 1; stage <= kMaxStages; ++stage) {
-      const std::string suffix = "_stage" + std::to_string(stage);
-      list.push_back("pitch_error_rms" + suffix + "_deg");
-      list.push_back("pitch_error_peak" + suffix + "_deg");
-      list.push_back("pitch_error_peak_time" + suffix + "_s");
-    }
-    const std::vector<std::string> rest = {
-        "pitch_error_rms_coast_deg", "pitch_error_peak_coast_deg", "pitch_error_peak_time_coast_s",
-        "pitch_error_itae_deg_s2",
-        "yaw_error_rms_deg", "yaw_error_peak_deg", "roll_error_rms_deg", "roll_error_peak_deg",
-        "deflection_peak_deg", "deflection_rms_deg", "deflection_rate_peak_deg_s",
-        "deflection_saturated_fraction", "deflection_travel_deg", "deflection_limit_cycle_deg",
-        "q_max_pa", "q_alpha_max_pa_rad", "alpha_max_deg", "axial_load_max_g", "lateral_load_max_g",
-        "structural_limit_exceeded",
-        "handover_attitude_error_deg", "handover_rate_error_deg_s", "rcs_propellant_kg",
-        "injection_altitude_km", "injection_velocity_m_s", "injection_flight_path_angle_deg",
-        "apogee_km", "perigee_km", "inclination_deg",
-        "injection_altitude_error_km", "injection_velocity_error_m_s",
-        "injection_flight_path_angle_error_deg",
-        "lyapunov_outside_fraction", "lyapunov_decreasing_fraction", "adaptation_norm_peak_deg_s2", "rules_fired"};
-    list.insert(list.end(), rest.begin(), rest.end());
+    std::vector<std::string> list;
+    for (const Metric& metric : Metrics()) list.push_back(metric.name);
     return list;
   }();
   return names;
-}
-
-namespace {
-constexpr const char* kOutcomeNames[kOutcomeCount] = {
-    "completed", "lost_control", "structural_limit", "impact", "numerical_failure", "timeout"};
 }
 
 std::size_t MetricColumn(const std::string& name) {
@@ -47,15 +211,14 @@ std::size_t MetricColumn(const std::string& name) {
   return static_cast<std::size_t>(found - names.begin());
 }
 
-const char* OutcomeName(Outcome outcome) { return kOutcomeNames[static_cast<int>(outcome)]; }
-
-bool ParseOutcome(const std::string& name, Outcome* outcome) {
-  for (int i = 0; i < kOutcomeCount; ++i) {
-    if (name != kOutcomeNames[i]) continue;
-    *outcome = static_cast<Outcome>(i);
-    return true;
-  }
-  return false;
+std::vector<double> MetricsOf(const FlightSums& sums, const FlightDefinition& definition) {
+  std::vector<double> values;
+  values.reserve(MetricNames().size());
+  ForEach([&](const Row& row, int phase) {
+    const ErrorSums pitch = PitchOf(phase, sums);
+    values.push_back(row.value({sums, definition, pitch}));
+  });
+  return values;
 }
 
 }  // namespace dispersa

@@ -1,34 +1,41 @@
-// What is measured of a flight, under the names that results carry.
+// What is measured of a flight: one table of names, meanings and how each follows from what was accumulated.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
 
-#include "core/vehicle/vehicle.h"
+#include "core/flight/outcome.h"
 
 namespace dispersa {
 
-/// The metrics in the order of their columns. A metric that a flight does not define (a stage that it
-/// never reached) is NaN inside and NULL, empty or null outside.
+struct FlightDefinition;
+struct FlightSums;
+
+/// Which values of a metric are worse ones.
+enum class Worse {
+  kLarger,
+  kSmaller,
+  kFartherFromZero,
+  kNeither,  ///< it tells where or when, not how good
+};
+
+/// A metric that a flight does not define (a stage that it never reached) is NaN inside and NULL, empty or
+/// null outside.
+struct Metric {
+  std::string name;        ///< with phase and unit: "pitch_error_peak_stage2_deg"
+  std::string title;       ///< "Pitch error, peak, stage 2"
+  std::string definition;  ///< completes the title; empty where that says all
+  Worse worse = Worse::kLarger;
+};
+
+/// In the order of their columns.
+const std::vector<Metric>& Metrics();
 const std::vector<std::string>& MetricNames();
 /// The column of a metric that exists.
 std::size_t MetricColumn(const std::string& name);
 
-enum class Outcome {
-  kCompleted,        ///< reached the end of the last stage's burn
-  kLostControl,      ///< attitude error above 15° for 0.5 s, or a rate above 60 °/s
-  kStructuralLimit,  ///< only if the vehicle's limits say so
-  kImpact,
-  kNumericalFailure,
-  kTimeout,          ///< of simulated time
-};
-inline constexpr int kOutcomeCount = 6;
-
-/// "completed", "lost_control", ...
-const char* OutcomeName(Outcome outcome);
-/// Of a name; false if there is none such.
-bool ParseOutcome(const std::string& name, Outcome* outcome);
+/// In the order of Metrics(), in the units of their names.
+std::vector<double> MetricsOf(const FlightSums& sums, const FlightDefinition& definition);
 
 }  // namespace dispersa

@@ -3,25 +3,20 @@
 
 #include <string>
 
-namespace dispersa {
+#include "core/flight/metrics.h"
 
-enum class Worse {
-  kLarger,
-  kSmaller,
-  kFartherFromZero,
-  kNeither,  ///< it tells where or when, not how good
-};
+namespace dispersa {
 
 struct MetricInfo {
   std::string title;       ///< "Pitch error, peak, stage 2"
   std::string unit;        ///< "°", "km", "" for a pure number
-  std::string definition;  ///< one sentence; empty for a metric that is not in the catalogue
+  std::string definition;  ///< one sentence; empty for a name that is no metric
   Worse worse = Worse::kLarger;
-  bool known = false;  ///< to the catalogue
+  bool known = false;  ///< a metric of flights
 };
 
-/// Of a metric's name without prefix. The unit is read from the end of the name, so that a metric that the
-/// catalogue does not know still has one.
+/// Of a metric's name without prefix. The unit is read from the end of the name, so that a name that is no metric has
+/// one too.
 MetricInfo DescribeMetric(const std::string& name);
 
 /// Unit of a column from the end of its name, and the name without it: "wind_max_speed_m_s" gives "m/s" and

@@ -1,0 +1,23 @@
+// How a flight ended.
+#pragma once
+
+#include <string>
+
+namespace dispersa {
+
+enum class Outcome {
+  kCompleted,        ///< reached the end of the last stage's burn
+  kLostControl,      ///< attitude error above 15° for 0.5 s, or a rate above 60 °/s
+  kStructuralLimit,  ///< only if the vehicle's limits say so
+  kImpact,
+  kNumericalFailure,
+  kTimeout,          ///< of simulated time
+};
+inline constexpr int kOutcomeCount = 6;
+
+/// "completed", "lost_control", ...
+const char* OutcomeName(Outcome outcome);
+/// Of a name; false if there is none such.
+bool ParseOutcome(const std::string& name, Outcome* outcome);
+
+}  // namespace dispersa
