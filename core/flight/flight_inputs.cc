@@ -9,65 +9,75 @@ namespace {
 
 constexpr std::size_t kInputCount = sizeof(FlightInputs) / sizeof(double);
 
-// Names the doubles of FlightInputs in the order of their declaration.
+// Names the fields of FlightInputs, in the order of the columns.
 class ColumnList {
  public:
-  void One(const std::string& name, double unit = 1.0) { columns_.push_back({name, unit, columns_.size()}); }
-  void EachStage(const std::string& stem, const std::string& unit_suffix = "", double unit = 1.0) {
-    for (int stage = 1; stage <= kMaxStages; ++stage) {
-      One(stem + "_stage" + std::to_string(stage) + unit_suffix, unit);
-    }
+  void One(double FlightInputs::*field, const std::string& name, double unit = 1.0) {
+    columns_.push_back({name, unit, OffsetOf(&(nominal_.*field))});
   }
-  void EachLevel(const std::string& stem) {
-    for (int level = 1; level <= kWindLevels; ++level) One(stem + "_" + std::to_string(level));
+  void EachStage(PerStage FlightInputs::*field, const std::string& stem, const std::string& unit_suffix = "",
+                 double unit = 1.0) {
+    for (std::size_t i = 0; i < kMaxStages; ++i)
+      columns_.push_back(
+          {stem + "_stage" + std::to_string(i + 1) + unit_suffix, unit, OffsetOf(&(nominal_.*field)[i])});
+  }
+  void EachLevel(std::array<double, kWindLevels> FlightInputs::*field, const std::string& stem) {
+    for (std::size_t i = 0; i < kWindLevels; ++i)
+      columns_.push_back({stem + "_" + std::to_string(i + 1), 1.0, OffsetOf(&(nominal_.*field)[i])});
   }
   std::vector<InputColumn> Take() { return std::move(columns_); }
 
  private:
+  std::size_t OffsetOf(const double* value) const {
+    return static_cast<std::size_t>(value - reinterpret_cast<const double*>(&nominal_));
+  }
+
+  const FlightInputs nominal_;
   std::vector<InputColumn> columns_;
 };
 
 std::vector<InputColumn> MakeColumns() {
+  using In = FlightInputs;
   ColumnList list;
-  list.EachStage("thrust_misalignment", "_deg", kRadPerDeg);
-  list.EachStage("thrust_misalignment_clock", "_deg", kRadPerDeg);
-  list.EachStage("thrust_offset", "_m");
-  list.EachStage("thrust_offset_clock", "_deg", kRadPerDeg);
-  list.EachStage("thrust_factor");
-  list.EachStage("mass_flow_factor");
-  list.EachStage("specific_impulse_factor");
-  list.One("wind_max_speed_m_s");
-  list.One("wind_azimuth_deg", kRadPerDeg);
-  list.One("wind_altitude_m");
-  list.One("wind_width_m");
-  list.One("gust_speed_m_s");
-  list.One("gust_altitude_m");
-  list.One("gust_length_m");
-  list.One("gust_azimuth_deg", kRadPerDeg);
-  list.EachLevel("wind_profile_north");
-  list.EachLevel("wind_profile_east");
-  list.One("drag_factor");
-  list.One("lift_factor");
-  list.One("cg_factor");
-  list.One("cp_factor");
-  list.One("density_factor");
-  list.One("inertia_factor");
-  list.One("actuator_bandwidth_factor");
-  list.EachStage("tip_off_pitch", "_deg_s", kRadPerDeg);
-  list.EachStage("tip_off_yaw", "_deg_s", kRadPerDeg);
-  list.EachStage("tip_off_roll", "_deg_s", kRadPerDeg);
-  list.One("gyro_bias_roll_deg_s", kRadPerDeg);
-  list.One("gyro_bias_pitch_deg_s", kRadPerDeg);
-  list.One("gyro_bias_yaw_deg_s", kRadPerDeg);
-  list.One("gyro_noise_deg_s", kRadPerDeg);
-  list.One("stuck_nozzle");
-  list.One("stuck_nozzle_stage");
-  list.One("stuck_nozzle_deg", kRadPerDeg);
-  list.One("pn_error_factor");
-  list.One("pn_rate_factor");
-  list.One("loop_gain_factor");
-  list.One("loop_delay_s");
-  list.One("loop_stage");
+  list.EachStage(&In::thrust_misalignment_rad, "thrust_misalignment", "_deg", kRadPerDeg);
+  list.EachStage(&In::thrust_misalignment_clock_rad, "thrust_misalignment_clock", "_deg", kRadPerDeg);
+  list.EachStage(&In::thrust_offset_m, "thrust_offset", "_m");
+  list.EachStage(&In::thrust_offset_clock_rad, "thrust_offset_clock", "_deg", kRadPerDeg);
+  list.EachStage(&In::thrust_factor, "thrust_factor");
+  list.EachStage(&In::mass_flow_factor, "mass_flow_factor");
+  list.EachStage(&In::specific_impulse_factor, "specific_impulse_factor");
+  list.One(&In::wind_max_speed_m_s, "wind_max_speed_m_s");
+  list.One(&In::wind_azimuth_rad, "wind_azimuth_deg", kRadPerDeg);
+  list.One(&In::wind_altitude_m, "wind_altitude_m");
+  list.One(&In::wind_width_m, "wind_width_m");
+  list.One(&In::gust_speed_m_s, "gust_speed_m_s");
+  list.One(&In::gust_altitude_m, "gust_altitude_m");
+  list.One(&In::gust_length_m, "gust_length_m");
+  list.One(&In::gust_azimuth_rad, "gust_azimuth_deg", kRadPerDeg);
+  list.EachLevel(&In::wind_profile_north, "wind_profile_north");
+  list.EachLevel(&In::wind_profile_east, "wind_profile_east");
+  list.One(&In::drag_factor, "drag_factor");
+  list.One(&In::lift_factor, "lift_factor");
+  list.One(&In::cg_factor, "cg_factor");
+  list.One(&In::cp_factor, "cp_factor");
+  list.One(&In::density_factor, "density_factor");
+  list.One(&In::inertia_factor, "inertia_factor");
+  list.One(&In::actuator_bandwidth_factor, "actuator_bandwidth_factor");
+  list.EachStage(&In::tip_off_pitch_rad_s, "tip_off_pitch", "_deg_s", kRadPerDeg);
+  list.EachStage(&In::tip_off_yaw_rad_s, "tip_off_yaw", "_deg_s", kRadPerDeg);
+  list.EachStage(&In::tip_off_roll_rad_s, "tip_off_roll", "_deg_s", kRadPerDeg);
+  list.One(&In::gyro_bias_roll_rad_s, "gyro_bias_roll_deg_s", kRadPerDeg);
+  list.One(&In::gyro_bias_pitch_rad_s, "gyro_bias_pitch_deg_s", kRadPerDeg);
+  list.One(&In::gyro_bias_yaw_rad_s, "gyro_bias_yaw_deg_s", kRadPerDeg);
+  list.One(&In::gyro_noise_rad_s, "gyro_noise_deg_s", kRadPerDeg);
+  list.One(&In::stuck_nozzle, "stuck_nozzle");
+  list.One(&In::stuck_nozzle_stage, "stuck_nozzle_stage");
+  list.One(&In::stuck_nozzle_rad, "stuck_nozzle_deg", kRadPerDeg);
+  list.One(&In::pn_error_factor, "pn_error_factor");
+  list.One(&In::pn_rate_factor, "pn_rate_factor");
+  list.One(&In::loop_gain_factor, "loop_gain_factor");
+  list.One(&In::loop_delay_s, "loop_delay_s");
+  list.One(&In::loop_stage, "loop_stage");
   std::vector<InputColumn> columns = list.Take();
   assert(columns.size() == kInputCount);
   return columns;

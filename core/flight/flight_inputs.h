@@ -21,7 +21,7 @@ constexpr PerStage AllStages(double value) {
 /// Largest number of altitude levels of a drawn wind profile: every kilometre up to 30 km.
 inline constexpr int kWindLevels = 30;
 
-/// Doubles only (a column is an offset), SI and radians; the defaults are the nominal flight. Factors multiply the nominal value.
+/// Doubles only, each named by a column in flight_inputs.cc; SI and radians; the defaults are the nominal flight. Factors multiply the nominal value.
 struct FlightInputs {
   PerStage thrust_misalignment_rad{};        ///< tilt of the thrust against the body axis
   PerStage thrust_misalignment_clock_rad{};  ///< direction of the tilt: from body y towards body z
