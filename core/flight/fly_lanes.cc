@@ -1,5 +1,7 @@
 // The engine of one width for one instruction set: compiled once for each (CMakeLists.txt).
 #include "core/flight/batch.h"
+#include "core/flight/batch_events.h"
+#include "core/flight/batch_pass.h"
 
 #if DISPERSA_LANES == 1
 using Value = double;

@@ -1,0 +1,224 @@
+// How the batch (batch.h) moves each lane to its next tick, through the lane's own events.
+#pragma once
+
+#include "core/flight/batch.h"
+
+namespace dispersa::lanes {
+inline namespace DISPERSA_ISA {
+
+template <class T>
+void Batch<T>::Advance() {
+  const T target = next_tick_ * T(tick_s_);
+  if (Any(live_ & (stop_s_ <= target + T(kSameInstant_s))))
+    AdvanceThroughEvents(target);
+  else
+    Step(live_, target);
+  tick_ = Select(live_, next_tick_, tick_);
+}
+
+/// Each lane through its own stops. An event as good as on the tick happens on the tick.
+template <class T>
+void Batch<T>::AdvanceThroughEvents(T target) {
+  unsigned pending = Bits(live_);
+  while (pending != 0) {
+    T to = time_s_;
+    M moving = NoLane<T>();
+    unsigned due = 0;  // lanes whose next event happens where this step ends
+    for (int lane = 0; lane < kLanes; ++lane) {
+      if (!(pending >> lane & 1u)) continue;
+      Slot& slot = slot_[lane];
+      const double now = Lane(time_s_, lane), end = Lane(target, lane);
+      double goal = end;
+      if (slot.next_event < slot.last_event) {
+        const double event_s = slot.next_event->time_s;
+        if (event_s < end - kSameInstant_s && event_s > now + kSameInstant_s) {
+          goal = event_s;
+          due |= 1u << lane;
+        } else if (event_s <= end + kSameInstant_s) {
+          // As good as now, or as good as at the end.
+          if (event_s < end - kSameInstant_s) goal = now;
+          due |= 1u << lane;
+        }
+      }
+      if (slot.switch_s < goal) {
+        goal = slot.switch_s > now ? slot.switch_s : now;
+        due &= ~(1u << lane);
+      }
+      Lane(to, lane) = goal;
+      if (goal > now) SetLane(moving, lane, true);
+    }
+    if (Any(moving)) Step(moving, to);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      if (!(pending >> lane & 1u)) continue;
+      Slot& slot = slot_[lane];
+      if (slot.record == nullptr) {  // the step failed
+        pending &= ~(1u << lane);
+        continue;
+      }
+      if (slot.switch_s <= Lane(time_s_, lane)) {
+        slot.switch_s = kFarFuture;
+        for (int i = 0; i < kNozzles; ++i)
+          Lane(step_.command_rad[i], lane) = Lane(next_command_rad_[i], lane);
+      } else if (due >> lane & 1u) {
+        Happen(lane);
+      } else if (Lane(time_s_, lane) >= Lane(target, lane)) {
+        pending &= ~(1u << lane);
+      }
+      if (slot.record == nullptr) pending &= ~(1u << lane);
+    }
+  }
+  for (int lane = 0; lane < kLanes; ++lane)
+    if (slot_[lane].record != nullptr) SetStop(lane);
+}
+
+template <class T>
+void Batch<T>::Step(M moving, T to) {
+  StateValues before[kLanes];
+  if (any_judged_)
+    for (int lane = 0; lane < kLanes; ++lane) step_.ReadLane(lane, before[lane]);
+  const T from = time_s_;
+  M failed = NoLane<T>();
+  for (int i = 1; i <= most_steps_; ++i) {
+    const T part(static_cast<double>(i));
+    const M steps = moving & !failed & (part <= steps_a_tick_);
+    const T end = Select(part >= steps_a_tick_, to, Fma(part / steps_a_tick_, to - from, from));
+    const M accepted = step_.Step(steps, most_steps_ == 1 && All(steps | !live_), time_s_, end);
+    failed = failed | (steps & !accepted);
+    time_s_ = Select(accepted, end, time_s_);
+  }
+  if (any_judged_) Judge(moving, from, to, before, failed);
+  if (!Any(failed)) return;
+  for (int lane = 0; lane < kLanes; ++lane)
+    if (Bits(failed) >> lane & 1u)
+      End(lane, Outcome::kNumericalFailure, "the integrator failed or the state is not finite");
+}
+
+/// Replaces the step of the lanes whose flights ask for a judge.
+template <class T>
+void Batch<T>::Judge(M moving, T from, T to, StateValues* states, M& failed) {
+  for (int lane = 0; lane < kLanes; ++lane) {
+    if (!(Bits(moving) >> lane & 1u) || !slot_[lane].record->is_judged()) continue;
+    const bool holds =
+        slot_[lane].record->Judge(PhaseOf(lane), Lane(from, lane), Lane(to, lane), states[lane]);
+    SetLane(failed, lane, !holds);
+    Lane(time_s_, lane) = holds ? Lane(to, lane) : Lane(from, lane);
+    step_.WriteLane(lane, states[lane]);
+    step_.MarkMoved(lane);
+  }
+}
+
+template <class T>
+void Batch<T>::Happen(int lane) {
+  Slot& slot = slot_[lane];
+  const FlightEvent& event = *slot.next_event++;
+  FlightRecord& record = *slot.record;
+  switch (event.kind) {
+    case EventKind::kIgnition:
+      Lane(step_.phase.ignition_s, lane) = event.time_s;
+      Ignite(lane, event.stage);
+      break;
+    case EventKind::kBurnout:
+      BurnOut(lane, event.stage);
+      break;
+    case EventKind::kSeparation: {
+      StateValues y;
+      step_.ReadLane(lane, y);
+      record.Separate(event.stage, y);
+      step_.WriteLane(lane, y);
+      SetStack(lane, event.stage + 1);
+      SetLane(step_.phase.burnt, lane, false);
+      SetLane(coasting_, lane, event.stage + 2 == static_cast<int>(record.plant.stacks.size()));
+      for (T& command : step_.command_rad) Lane(command, lane) = 0.0;
+      break;
+    }
+    case EventKind::kKink:
+      step_.MarkMoved(lane);
+      return;
+  }
+  step_.MarkMoved(lane);
+  StateValues y;
+  step_.ReadLane(lane, y);
+  record.AddToDigest(Lane(time_s_, lane), y);
+  if (record.watched) record.WatchEvent(ViewOf(lane));
+  // The last event is the last stage's burnout.
+  if (slot.next_event == slot.last_event) End(lane, Outcome::kCompleted, "");
+}
+
+template <class T>
+void Batch<T>::Ignite(int lane, int stage) {
+  Slot& slot = slot_[lane];
+  FlightRecord& record = *slot.record;
+  const FlightInputs& in = record.inputs;
+  const AutopilotModel& autopilot = model_.autopilot();
+  SetLane(step_.phase.burning, lane, true);
+  SetLane(coasting_, lane, false);
+  SetLane(step_.phase.control_torque_n_m, lane, Zero<double>());
+  for (T& command : step_.command_rad) Lane(command, lane) = 0.0;
+  for (auto& entry : delay_line_)
+    for (T& command : entry) Lane(command, lane) = 0.0;
+
+  AutopilotState state;
+  for (int axis = 0; axis < kAxes; ++axis) ReadLane(axes_[axis], lane, state.axes[axis]);
+  StartStage(autopilot, stage, state);
+  for (int axis = 0; axis < kAxes; ++axis) {
+    SetLane(axes_[axis], lane, state.axes[axis]);
+    Lane(thrusters_[axis].direction, lane) = Lane(thrusters_[axis].cycles_on, lane) = 0.0;
+  }
+  // The last stage's are nobody's now.
+  const AxisOutput<double> nothing{};
+  for (int axis = 0; axis < kAxes; ++axis) {
+    Lane(gimbals_.deflection_rad[axis], lane) = 0.0;
+    SetLane(gimbals_.axes[axis], lane, nothing);
+  }
+  const int loop_stage = static_cast<int>(in.loop_stage + 0.5);
+  const bool is_changed = loop_stage == 0 || loop_stage == stage + 1;
+  SetLane(loop_, lane, autopilot, stage, in.pn_error_factor, in.pn_rate_factor,
+          is_changed ? in.loop_gain_factor : 1.0);
+
+  const Gimbal& gimbal = record.plant.stacks.data()[stage].gimbal;
+  const double delay = gimbal.delay_ticks + (is_changed ? in.loop_delay_s / tick_s_ : 0.0);
+  slot.whole_delay = static_cast<int>(delay + kSameInstant_s);
+  const double part = delay - slot.whole_delay;
+  slot.part_delay_s = part > kSameInstant_s ? part * tick_s_ : 0.0;
+  if (slot.whole_delay > kDelayLine - 2) {  // longer than the line: its end
+    slot.whole_delay = kDelayLine - 2;
+    slot.part_delay_s = 0.0;
+  }
+  slot.switch_s = kFarFuture;
+  same_delay_ = true;
+  common_delay_ = slot.whole_delay;
+  for (int i = 0; i < kLanes; ++i)
+    if (Bits(step_.phase.burning) >> i & 1u)
+      same_delay_ &= slot_[i].part_delay_s == 0.0 && slot_[i].whole_delay == common_delay_;
+
+  slot.stuck_nozzle = -1;
+  const int stuck = static_cast<int>(in.stuck_nozzle + 0.5);
+  if (static_cast<int>(in.stuck_nozzle_stage + 0.5) == stage + 1 && stuck > 0) {
+    slot.stuck_nozzle = stuck - 1;
+    Lane(step_.drive_state.angle_rad[slot.stuck_nozzle], lane) = in.stuck_nozzle_rad;
+  }
+  SetLane(step_.drives, lane, gimbal, slot.stuck_nozzle);
+  if (stage > 0 && stage + 1 == static_cast<int>(record.plant.stacks.size())) {
+    StateValues y;
+    step_.ReadLane(lane, y);
+    record.HandOver(Lane(time_s_, lane), y);
+  }
+}
+
+template <class T>
+void Batch<T>::BurnOut(int lane, int stage) {
+  FlightRecord& record = *slot_[lane].record;
+  StateValues y;
+  step_.ReadLane(lane, y);
+  // Loads peak here, between ticks.
+  const Instant<double> now = step_.InstantOf(lane, time_s_);
+  metrics_.AddLoadsOfLane(lane, now);
+  metrics_.EndStage(lane, stage, record.sums);
+  record.limit_cycle.Interrupt();
+  SetLane(step_.phase.burning, lane, false);
+  SetLane(step_.phase.burnt, lane, true);
+  if (stage + 1 == static_cast<int>(record.plant.stacks.size())) record.Inject(now.altitude_m, y);
+}
+
+}  // namespace DISPERSA_ISA
+}  // namespace dispersa::lanes

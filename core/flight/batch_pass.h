@@ -1,0 +1,256 @@
+// A pass of the batch (batch.h): measure, decide, take metrics, end.
+#pragma once
+
+#include "core/flight/batch.h"
+
+namespace dispersa::lanes {
+inline namespace DISPERSA_ISA {
+
+// Loss of control, as the metrics define it.
+inline constexpr double kLostAngle_rad = 15.0 * kRadPerDeg;
+inline constexpr double kLostFor_s = 0.5;
+inline constexpr double kLostRate_rad_s = 60.0 * kRadPerDeg;
+/// Simulated time that no flight needs.
+inline constexpr double kTimeLimit_s = 3600.0;
+/// A vehicle this far below its site has hit the ground.
+inline constexpr double kImpactDepth_m = 10.0;
+
+template <class T>
+void Batch<T>::Pass() {
+  next_tick_ = Select(live_, tick_ + T(1.0), tick_);
+  Measure();
+  FlyGimbals();
+  if (Any(coasting_)) FlyThrusters();
+  step_.EvaluateStart(time_s_);
+  metrics_.AddLoads(live_ & !coasting_, step_.now());
+  Meter(live_ & step_.phase.burning);
+  WatchAndDigest();
+  CheckEnds();
+  if (flying_ > 0) Advance();
+}
+
+/// Error of the lanes' attitudes against the reference at their ticks, true and as the gyros see it: rates
+/// with bias and noise; the attitude, integrated from them, drifts with the bias.
+template <class T>
+void Batch<T>::Measure() {
+  const ReferenceRows& reference = model_.reference_rows();
+  const double* row[kLanes];
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const double tick = Min(Lane(tick_, lane), reference.last_tick);
+    row[lane] = reference.rows.data() + ReferenceRows::kRowSize * static_cast<long>(tick);
+  }
+  T c[ReferenceRows::kRowSize];
+  LoadRow(row, 2, c);
+  const Turn<T> q_BR = Compose(Inverse(step_.motion.q), {c[0], c[1], c[2], c[3]});
+  angle_rad_ = RotationVector(q_BR);
+  rate_rad_s_ = Rotate(q_BR, {c[4], c[5], c[6]}) - step_.motion.w;
+  measured_angle_rad_ = Along(angle_rad_, -time_s_, gyro_bias_rad_s_);
+  measured_rate_rad_s_ = rate_rad_s_ - gyro_bias_rad_s_;
+  if (!any_noise_) return;
+  // Only a tick at which the autopilot acts takes a sample.
+  const unsigned acting = Bits(live_ & (step_.phase.burning | coasting_));
+  for (int lane = 0; lane < kLanes; ++lane) {
+    if (!(acting >> lane & 1u) || !slot_[lane].record->noisy) continue;
+    double noise[kAxes];
+    slot_[lane].record->DrawNoise(noise);
+    Lane(measured_rate_rad_s_.x, lane) -= noise[0];
+    Lane(measured_rate_rad_s_.y, lane) -= noise[1];
+    Lane(measured_rate_rad_s_.z, lane) -= noise[2];
+  }
+}
+
+template <class T>
+void Batch<T>::FlyGimbals() {
+  const M powered = live_ & step_.phase.burning;
+  if (!Any(powered)) return;
+  if (All(powered))
+    FlyGimbalsOf<true>(powered);
+  else
+    FlyGimbalsOf<false>(powered);
+  PassCommands(powered);
+}
+
+template <class T>
+template <bool kAll>
+void Batch<T>::FlyGimbalsOf(M powered) {
+  StepGimbals<kAll>(model_.autopilot(), loop_, powered, time_s_ - step_.phase.ignition_s, measured_angle_rad_,
+                    measured_rate_rad_s_, axes_, gimbals_);
+}
+
+// This tick's commands into the line, and what leaves it now to the actuators. A delay that is no whole
+// number of ticks lets the command through within the tick.
+template <class T>
+void Batch<T>::PassCommands(M powered) {
+  const T roll = gimbals_.deflection_rad[kRoll], pitch = gimbals_.deflection_rad[kPitch];
+  const T yaw = gimbals_.deflection_rad[kYaw];
+  T* entry = delay_line_[line_at_];
+  entry[0] = pitch + roll;
+  entry[1] = pitch - roll;
+  entry[2] = yaw + roll;
+  entry[3] = yaw - roll;
+  if (same_delay_) {
+    const T* leaving = delay_line_[(line_at_ - common_delay_) & (kDelayLine - 1)];
+    for (int i = 0; i < kNozzles; ++i)
+      step_.command_rad[i] = Select(powered, leaving[i], step_.command_rad[i]);
+  } else {
+    const unsigned acting = Bits(powered);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      if (!(acting >> lane & 1u)) continue;
+      Slot& slot = slot_[lane];
+      const bool within = slot.part_delay_s > 0.0;
+      const T* next = delay_line_[(line_at_ - slot.whole_delay) & (kDelayLine - 1)];
+      const T* now = delay_line_[(line_at_ - slot.whole_delay - (within ? 1 : 0)) & (kDelayLine - 1)];
+      for (int i = 0; i < kNozzles; ++i) {
+        Lane(step_.command_rad[i], lane) = Lane(now[i], lane);
+        Lane(next_command_rad_[i], lane) = Lane(next[i], lane);
+      }
+      if (!within) continue;
+      slot.switch_s = Lane(time_s_, lane) + slot.part_delay_s;
+      SetStop(lane);
+    }
+  }
+  line_at_ = (line_at_ + 1) & (kDelayLine - 1);
+}
+
+/// The coast: decisions fall on the thrusters' cycles, and on the first tick after an event.
+template <class T>
+void Batch<T>::FlyThrusters() {
+  const AutopilotModel& autopilot = model_.autopilot();
+  const ReactionControlLogic& logic = autopilot.config.reaction_control;
+  const ReactionControl& rcs = definition_.vehicle.reaction_control;
+  const unsigned coasting = Bits(coasting_);
+  for (int lane = 0; lane < kLanes; ++lane) {
+    if (!(coasting >> lane & 1u)) continue;
+    const long tick = static_cast<long>(Lane(tick_, lane));
+    const long cycle_end = (tick / logic.cycle_ticks + 1) * logic.cycle_ticks;
+    // The first tick at or after the next event: rounded up.
+    const double event_ticks = (slot_[lane].next_event->time_s - kSameInstant_s) / tick_s_;
+    long event_tick = static_cast<long>(event_ticks);
+    if (static_cast<double>(event_tick) < event_ticks) ++event_tick;
+    long next = cycle_end < event_tick ? cycle_end : event_tick;
+    if (next <= tick) next = tick + 1;
+    Lane(next_tick_, lane) = static_cast<double>(next);
+  }
+  const double couple_n = 2.0 * rcs.thrust_n;
+  const double flow_kg = couple_n / (rcs.specific_impulse_s * kStandardGravity) * tick_s_;  // a tick
+  const T* angle = &measured_angle_rad_.x;
+  const T* rate = &measured_rate_rad_s_.x;
+  T* torque = &step_.phase.control_torque_n_m.x;
+  M changes = NoLane<T>();
+  T firing(0.0);
+  for (int axis = 0; axis < kAxes; ++axis) {
+    StepThrusters(logic, autopilot.thruster_minimum_cycles, coasting_, angle[axis], rate[axis],
+                  thrusters_[axis]);
+    const T direction = thrusters_[axis].direction;
+    const T anew = T(couple_n * (axis == kRoll ? rcs.roll_arm_m : rcs.pitch_yaw_arm_m)) * direction;
+    changes = changes | (coasting_ & ((anew < torque[axis]) | (anew > torque[axis])));
+    torque[axis] = Select(coasting_, anew, torque[axis]);
+    firing = firing + Abs(direction);
+  }
+  const M fires = coasting_ & (firing > T(0.0));
+  // A firing counts for as long as it lasts: until the next decision.
+  const T expelled = Fma(T(flow_kg) * (next_tick_ - tick_), firing, step_.phase.expelled_kg);
+  step_.phase.expelled_kg = Select(fires, expelled, step_.phase.expelled_kg);
+  step_.MarkStale(changes | fires);
+}
+
+/// Metrics of this tick.
+template <class T>
+void Batch<T>::Meter(M powered) {
+  const T pitch_error = -angle_rad_.y;
+  if (Any(coasting_)) metrics_.AddCoast(coasting_, time_s_, pitch_error);
+  if (!Any(powered)) return;
+  const AxisOutput<T>& pitch = gimbals_.axes[kPitch];
+  const LyapunovSample<T> law{pitch.v, Select(pitch.v_rate_sign < T(0.0), T(1.0), T(0.0)),
+                              loop_.axes[kPitch].p11, pitch.departure_norm2};
+  metrics_.AddPowered(powered, T(tick_s_), time_s_, {-angle_rad_.x, pitch_error, -angle_rad_.z},
+                      step_.drive_state, step_.command_rad, loop_.limit_rad, law);
+
+  const M is_transient =
+      InTransient(time_s_, time_s_ - step_.phase.ignition_s, step_.now().altitude_m, definition_.kick_start_s,
+                  definition_.kick_end_s, gust_bottom_m_, gust_top_m_);
+  const unsigned metered = Bits(powered), interrupted = Bits(is_transient);
+  const T* n = step_.drive_state.angle_rad;
+  const T roll = T(0.25) * ((n[0] - n[1]) + (n[2] - n[3]));
+  const T pitch_angle = T(0.5) * (n[0] + n[1]), yaw = T(0.5) * (n[2] + n[3]);
+  for (int lane = 0; lane < kLanes; ++lane) {
+    if (!(metered >> lane & 1u)) continue;
+    LimitCycleMeter& meter = slot_[lane].record->limit_cycle;
+    if (interrupted >> lane & 1u)
+      meter.Interrupt();
+    else
+      meter.Add(Lane(roll, lane), Lane(pitch_angle, lane), Lane(yaw, lane));
+  }
+}
+
+template <class T>
+void Batch<T>::WatchAndDigest() {
+  const unsigned due = Bits(live_ & ((tick_ >= next_digest_tick_) | (tick_ >= next_row_tick_)));
+  if (due == 0) return;
+  const long second = static_cast<long>(ticks_a_second_);
+  for (int lane = 0; lane < kLanes; ++lane) {
+    if (!(due >> lane & 1u)) continue;
+    FlightRecord& record = *slot_[lane].record;
+    const long tick = static_cast<long>(Lane(tick_, lane));
+    if (record.watched) {
+      LaneView view = ViewOf(lane);
+      view.has_error = true;
+      record.Watch(view, record.history_ticks > 0 && tick % record.history_ticks == 0);
+      const bool every_tick = static_cast<bool>(record.options.observe);
+      Lane(next_row_tick_, lane) =
+          every_tick ? Lane(tick_, lane)
+                     : static_cast<double>((tick / record.history_ticks + 1) * record.history_ticks);
+    }
+    if (static_cast<double>(tick) < Lane(next_digest_tick_, lane)) continue;
+    if (tick % second == 0) {
+      StateValues y;
+      step_.ReadLane(lane, y);
+      record.AddToDigest(Lane(time_s_, lane), y);
+    }
+    Lane(next_digest_tick_, lane) = static_cast<double>((tick / second + 1) * second);
+  }
+}
+
+template <class T>
+void Batch<T>::CheckEnds() {
+  const T lost_angle2(kLostAngle_rad * kLostAngle_rad);
+  const T angle2 = Dot(angle_rad_, angle_rad_);
+  const T rate2 = Dot(step_.motion.w, step_.motion.w);
+  const T lowest(definition_.vehicle.site.altitude_m - kImpactDepth_m);
+  const M is_lost = angle2 > lost_angle2;
+  const M is_fast = rate2 > T(kLostRate_rad_s * kLostRate_rad_s);
+  const M is_low = step_.now().altitude_m < lowest;
+  const M is_late = time_s_ > T(kTimeLimit_s);
+  M suspects = live_ & (is_lost | is_fast | is_low | is_late | (lost_ticks_ > T(0.0)));
+  const StructuralLimits& limits = definition_.vehicle.limits;
+  if (limits.terminate) {
+    const auto above = [](T value, double limit) { return value > T(limit > 0.0 ? limit : kFarFuture); };
+    suspects = suspects | (live_ & (above(metrics_.q_alpha_max_pa_rad, limits.q_alpha_pa_rad) |
+                                    above(metrics_.axial_load_max_g, limits.axial_load_g) |
+                                    above(metrics_.lateral_load_max_g, limits.lateral_load_g)));
+  }
+  if (!Any(suspects)) return;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    if (!(Bits(suspects) >> lane & 1u)) continue;
+    // A sample stands for the ticks up to the next one; in the coast these are several.
+    const double lost_ticks = Bits(is_lost) >> lane & 1u
+                                  ? Lane(lost_ticks_, lane) + Lane(next_tick_, lane) - Lane(tick_, lane)
+                                  : 0.0;
+    Lane(lost_ticks_, lane) = lost_ticks;
+    FlightSums loads;
+    metrics_.Read(lane, loads);
+    if (lost_ticks * tick_s_ >= kLostFor_s)
+      End(lane, Outcome::kLostControl, "attitude error above 15 deg for 0.5 s");
+    else if (Bits(is_fast) >> lane & 1u)
+      End(lane, Outcome::kLostControl, "angular rate above 60 deg/s");
+    else if (Bits(is_low) >> lane & 1u)
+      End(lane, Outcome::kImpact, "fell below the launch site");
+    else if (limits.terminate && ExceedsStructure(limits, loads))
+      End(lane, Outcome::kStructuralLimit, "a structural limit of the vehicle was exceeded");
+    else if (Bits(is_late) >> lane & 1u)
+      End(lane, Outcome::kTimeout, "3600 s of simulated time passed");
+  }
+}
+
+}  // namespace DISPERSA_ISA
+}  // namespace dispersa::lanes
