@@ -71,6 +71,7 @@ TEST(Sobol, FirstTwoDimensionsFillEveryElementaryBox) {
 TEST(Sobol, TheShiftDependsOnSeedAndName) {
   const Sobol sobol(1, {"thrust", "wind"});
   EXPECT_EQ(sobol.Uniform(0, 0), OpenUnitInterval(Stream(1, 0, "thrust/shift").Bits()));
+  EXPECT_EQ(sobol.Uniform(0, 1), OpenUnitInterval(Stream(1, 0, "wind/shift").Bits()));
   EXPECT_NE(sobol.Uniform(9, 0), Sobol(2, {"thrust"}).Uniform(9, 0));
   EXPECT_NE(sobol.Uniform(9, 0), Sobol(1, {"mass"}).Uniform(9, 0));
   EXPECT_EQ(sobol.Uniform(9, 0), Sobol(1, {"thrust"}).Uniform(9, 0));
