@@ -1,3 +1,4 @@
+#include "core/campaign_yaml/autopilot_fields.h"
 #include "core/campaign_yaml/decode.h"
 #include "core/campaign_yaml/inline_files.h"
 #include "core/campaign_yaml/struct_problems.h"
@@ -8,92 +9,72 @@ namespace {
 
 using ProblemList = std::vector<InputProblem>;
 
-AxisGains DecodeGains(const InputNode& node, const std::string& path, ProblemList& problems) {
-  MapReader map(node, path, problems);
-  AxisGains gains;
-  gains.kp_1_s2 = map.Quantity("kp", kPerTimeSquared, kPositive);
-  gains.kd_1_s = map.Quantity("kd", kPerTime, kPositive);
-  return gains;
-}
+// Reads what it visits from a map.
+class FieldReader {
+ public:
+  FieldReader(const InputNode& node, std::string path, ProblemList& problems)
+      : map_(node, std::move(path), problems) {}
 
-FuzzyRules DecodeRules(const InputNode& node, const std::string& path, ProblemList& problems) {
-  MapReader map(node, path, problems);
-  FuzzyRules rules;
-  rules.error_range_rad = map.Quantity("error_range", kAngle, kPositive);
-  rules.rate_range_rad_s = map.Quantity("rate_range", kAngularRate, kPositive);
-  return rules;
-}
-
-Adaptation DecodeAdaptation(const InputNode& node, const std::string& path, ProblemList& problems) {
-  MapReader map(node, path, problems);
-  Adaptation adaptation;
-  adaptation.gamma = map.Numbers("gamma", kNonNegative, 1, kMaxStages);
-  map.Each("q", 2, 2, [&](const InputNode& row, const std::string& row_path) {
-    if (row.kind != InputNode::Kind::kList || row.items.size() != 2) {
-      AddProblem(problems, row, row_path, row.Describe() + " is not a row of two numbers",
-                 "[[q11, q12], [q12, q22]]");
-      return;
-    }
-    const auto index = &row - node.Find("q")->items.data();
-    for (int column = 0; column < 2; ++column) {
-      adaptation.q(index, column) = ReadNumber(row.items[static_cast<std::size_t>(column)],
-                                               row_path + "[" + std::to_string(column) + "]", problems);
-    }
-  });
-  if (map.Optional("p_n") != nullptr) {
-    const std::vector<double> p_n = map.Numbers("p_n", kAnyNumber, 2, 2);
-    if (p_n.size() == 2) adaptation.p_n = Vector2(p_n[0], p_n[1]);
+  void Quantity(const char* stem, Dimension dimension, const Range& range, double& value) {
+    value = map_.Quantity(stem, dimension, range);
   }
-  adaptation.allow_unproven = map.Flag("allow_unproven", false);
-  adaptation.projection_bound_rad_s2 =
-      map.Quantity("projection_bound", kAngularAcceleration, kNonNegative, 0.0);
-  adaptation.leakage_1_s = map.Quantity("leakage", kPerTime, kNonNegative, 0.0);
-  adaptation.spread_1_s = map.Quantity("spread", kPerTime, kNonNegative, 0.0);
-  adaptation.dead_zone_rad = map.Quantity("dead_zone", kAngle, kNonNegative, 0.0);
-  adaptation.freeze_when_saturated = map.Flag("freeze_when_saturated", false);
-  adaptation.reset_at_ignition = map.Flag("reset_at_ignition", false);
-  adaptation.supervisory_bound = map.Number("supervisory_bound", kNonNegative, 0.0);
-  return adaptation;
-}
+  void Guard(const char* stem, Dimension dimension, const Range& range, double& value) {
+    value = map_.Quantity(stem, dimension, range, 0.0);
+  }
+  void Number(const char* key, const Range& range, double& value) { value = map_.Number(key, range); }
+  void NumberGuard(const char* key, const Range& range, double& value) {
+    value = map_.Number(key, range, 0.0);
+  }
+  void Flag(const char* key, bool& value) { value = map_.Flag(key, false); }
+  void EachStage(const char* key, const Range& range, std::vector<double>& values) {
+    values = map_.Numbers(key, range, 1, kMaxStages);
+  }
+  void Stage(const char* key, int& stage) { stage = static_cast<int>(map_.Integer(key, 1, kMaxStages, 0)); }
+  void Matrix(const char* key, Matrix2& value) {
+    map_.Each(key, 2, 2, [&](const InputNode& row, const std::string& row_path) {
+      if (row.kind != InputNode::Kind::kList || row.items.size() != 2) {
+        AddProblem(map_.problems(), row, row_path, row.Describe() + " is not a row of two numbers",
+                   "[[q11, q12], [q12, q22]]");
+        return;
+      }
+      const auto index = &row - map_.node().Find(key)->items.data();
+      for (int column = 0; column < 2; ++column) {
+        value(index, column) = ReadNumber(row.items[static_cast<std::size_t>(column)],
+                                          row_path + "[" + std::to_string(column) + "]", map_.problems());
+      }
+    });
+  }
+  void OptionalPair(const char* key, std::optional<Vector2>& value) {
+    if (map_.Optional(key) == nullptr) return;
+    const std::vector<double> pair = map_.Numbers(key, kAnyNumber, 2, 2);
+    if (pair.size() == 2) value = Vector2(pair[0], pair[1]);
+  }
 
-AdaptiveAugmentation DecodeAugmentation(const InputNode& node, const std::string& path,
-                                        ProblemList& problems) {
-  MapReader map(node, path, problems);
-  AdaptiveAugmentation augmentation;
-  augmentation.adaptive_gain_1_s = map.Quantity("adaptive_gain", kPerTime, kNonNegative);
-  augmentation.leakage_1_s = map.Quantity("leakage", kPerTime, kNonNegative);
-  augmentation.spectral_gain_1_s = map.Quantity("spectral_gain", kPerTime, kNonNegative);
-  augmentation.high_pass_rad_s = map.Quantity("high_pass", kFrequency, kPositive);
-  augmentation.low_pass_rad_s = map.Quantity("low_pass", kFrequency, kPositive);
-  augmentation.minimum_total_gain = map.Number("minimum_total_gain", kPositive);
-  augmentation.maximum_total_gain = map.Number("maximum_total_gain", kPositive);
-  return augmentation;
-}
+ private:
+  MapReader map_;
+};
 
 // The blocks that a law reads must be there; others may be (the same file with another law is a comparison).
 AxisConfig DecodeAxis(const InputNode& node, const std::string& path, ProblemList& problems) {
   MapReader map(node, path, problems);
   AxisConfig axis;
-  axis.law = map.Choice<ControlLaw>("law", {{"adaptive_fuzzy", ControlLaw::kAdaptiveFuzzy},
-                                            {"frozen_fuzzy", ControlLaw::kFrozenFuzzy},
-                                            {"pd", ControlLaw::kPd},
-                                            {"pd_aac", ControlLaw::kPdAac}});
+  std::vector<std::pair<std::string, ControlLaw>> laws;
+  for (const LawInfo& law : kLaws) laws.emplace_back(law.name, law.law);
+  axis.law = map.Choice<ControlLaw>("law", laws);
   map.Each("gains", 1, kMaxStages, [&](const InputNode& item, const std::string& item_path) {
-    axis.gains.push_back(DecodeGains(item, item_path, problems));
+    FieldReader fields(item, item_path, problems);
+    VisitGains(fields, axis.gains.emplace_back());
   });
-  const auto block = [&](const char* key, bool needed) -> const InputNode* {
-    return needed ? &map.Required(key, "a map, which this law needs") : map.Optional(key);
-  };
-  const bool adaptive = axis.law == ControlLaw::kAdaptiveFuzzy;
-  if (const InputNode* rules = block("rules", adaptive || axis.law == ControlLaw::kFrozenFuzzy)) {
-    axis.rules = DecodeRules(*rules, map.PathOf("rules"), problems);
-  }
-  if (const InputNode* adaptation = block("adaptation", adaptive)) {
-    axis.adaptation = DecodeAdaptation(*adaptation, map.PathOf("adaptation"), problems);
-  }
-  if (const InputNode* augmentation = block("augmentation", axis.law == ControlLaw::kPdAac)) {
-    axis.augmentation = DecodeAugmentation(*augmentation, map.PathOf("augmentation"), problems);
-  }
+  map.Each("filters", 0, kFilterSections, [&](const InputNode& item, const std::string& item_path) {
+    FieldReader fields(item, item_path, problems);
+    VisitFilter(fields, axis.filters.emplace_back());
+  });
+  EachBlock(axis, [&](const char* key, bool needed, auto visit) {
+    const InputNode* block = needed ? &map.Required(key, "a map, which this law needs") : map.Optional(key);
+    if (block == nullptr) return;
+    FieldReader fields(*block, map.PathOf(key), problems);
+    visit(fields);
+  });
   return axis;
 }
 

@@ -43,7 +43,7 @@ inline constexpr std::string_view kUnitLike[] = {
     "lbm",    "slug", "kg_s", "lb_s",   "n",      "kn",      "mn",      "lbf",     "pa",      "kpa",
     "bar",    "psf",  "psi",  "pa_rad", "pa_deg", "kpa_rad", "m_s",     "km_s",    "ft_s",    "kt",
     "kts",    "mph",  "deg",  "rad",    "arcmin", "deg_s",   "rad_s",   "hz",      "rpm",     "deg_s2",
-    "rad_s2", "1_s",  "1_s2", "per_km", "per_m",  "per_m_s", "per_deg", "per_rad", "percent", "factor",
+    "rad_s2", "1_s",  "1_s2", "1_s3", "per_km", "per_m",  "per_m_s", "per_deg", "per_rad", "percent", "factor",
     "kg_m2"};
 
 }  // namespace dispersa

@@ -1,3 +1,4 @@
+#include "core/campaign_yaml/autopilot_fields.h"
 #include "core/campaign_yaml/canonical.h"
 #include "core/campaign_yaml/inline_files.h"
 #include "core/campaign_yaml/load.h"
@@ -8,67 +9,81 @@ namespace dispersa {
 namespace {
 
 std::string Deg(double radians) { return FormatScaled(radians, kRadPerDeg); }
-
-const char* LawName(ControlLaw law) {
-  switch (law) {
-    case ControlLaw::kAdaptiveFuzzy:
-      return "adaptive_fuzzy";
-    case ControlLaw::kFrozenFuzzy:
-      return "frozen_fuzzy";
-    case ControlLaw::kPd:
-      return "pd";
-    case ControlLaw::kPdAac:
-      break;
-  }
-  return "pd_aac";
-}
-
 std::string Row(double a, double b) { return "[" + FormatNumber(a) + ", " + FormatNumber(b) + "]"; }
 
-std::string AdaptationText(const Adaptation& a) {
-  std::string text = "  adaptation:\n    gamma: [";
-  for (std::size_t i = 0; i < a.gamma.size(); ++i) text += (i > 0 ? ", " : "") + FormatNumber(a.gamma[i]);
-  text += "]\n    q: [" + Row(a.q(0, 0), a.q(0, 1)) + ", " + Row(a.q(1, 0), a.q(1, 1)) + "]\n";
-  if (a.p_n) text += "    p_n: " + Row(a.p_n->x(), a.p_n->y()) + "\n";
-  // A guard that is off is left out.
-  const auto number = [&](const char* key, double value, const std::string& shown) {
-    if (value != 0.0) text += std::string("    ") + key + ": " + shown + "\n";
-  };
-  const auto flag = [&](const char* key, bool value) {
-    if (value) text += std::string("    ") + key + ": true\n";
-  };
-  flag("allow_unproven", a.allow_unproven);
-  number("projection_bound_deg_s2", a.projection_bound_rad_s2, Deg(a.projection_bound_rad_s2));
-  number("leakage_1_s", a.leakage_1_s, FormatNumber(a.leakage_1_s));
-  number("spread_1_s", a.spread_1_s, FormatNumber(a.spread_1_s));
-  number("dead_zone_deg", a.dead_zone_rad, Deg(a.dead_zone_rad));
-  flag("freeze_when_saturated", a.freeze_when_saturated);
-  flag("reset_at_ignition", a.reset_at_ignition);
-  number("supervisory_bound", a.supervisory_bound, FormatNumber(a.supervisory_bound));
-  return text;
-}
+// Texts "key: value" of what it visits, quantities in the first unit of their dimension. What is off is left
+// out.
+class FieldWriter {
+ public:
+  std::vector<std::string> texts;
+  bool has_lists = false;
 
-std::string AugmentationText(const AdaptiveAugmentation& a) {
-  return "  augmentation:\n    adaptive_gain_1_s: " + FormatNumber(a.adaptive_gain_1_s) +
-         "\n    leakage_1_s: " + FormatNumber(a.leakage_1_s) +
-         "\n    spectral_gain_1_s: " + FormatNumber(a.spectral_gain_1_s) +
-         "\n    high_pass_rad_s: " + FormatNumber(a.high_pass_rad_s) +
-         "\n    low_pass_rad_s: " + FormatNumber(a.low_pass_rad_s) +
-         "\n    minimum_total_gain: " + FormatNumber(a.minimum_total_gain) +
-         "\n    maximum_total_gain: " + FormatNumber(a.maximum_total_gain) + "\n";
+  void Quantity(const char* stem, Dimension dimension, const Range&, double value) {
+    const Unit& unit = dimension.front();
+    Add(std::string(stem) + "_" + std::string(unit.suffix),
+        unit.scale == 1.0 ? FormatNumber(value) : FormatScaled(value, unit.scale));
+  }
+  void Guard(const char* stem, Dimension dimension, const Range& range, double value) {
+    if (value != 0.0) Quantity(stem, dimension, range, value);
+  }
+  void Number(const char* key, const Range&, double value) { Add(key, FormatNumber(value)); }
+  void NumberGuard(const char* key, const Range& range, double value) {
+    if (value != 0.0) Number(key, range, value);
+  }
+  void Flag(const char* key, bool value) {
+    if (value) Add(key, "true");
+  }
+  void EachStage(const char* key, const Range&, const std::vector<double>& values) {
+    std::string list;
+    for (const double value : values) list += (list.empty() ? "[" : ", ") + FormatNumber(value);
+    Add(key, list + "]");
+    has_lists = true;
+  }
+  void Stage(const char* key, int stage) {
+    if (stage != 0) Add(key, std::to_string(stage));
+  }
+  void Matrix(const char* key, const Matrix2& value) {
+    Add(key, "[" + Row(value(0, 0), value(0, 1)) + ", " + Row(value(1, 0), value(1, 1)) + "]");
+  }
+  void OptionalPair(const char* key, const std::optional<Vector2>& value) {
+    if (value) Add(key, Row(value->x(), value->y()));
+  }
+
+ private:
+  void Add(const std::string& key, const std::string& value) { texts.push_back(key + ": " + value); }
+};
+
+std::string OnOneLine(const std::vector<std::string>& texts) {
+  std::string line;
+  for (const std::string& text : texts) line += (line.empty() ? "{" : ", ") + text;
+  return line + "}";
 }
 
 std::string AxisText(const char* name, const AxisConfig& axis) {
-  std::string text = std::string(name) + ":\n  law: " + LawName(axis.law) + "\n  gains:\n";
-  for (const AxisGains& gains : axis.gains)
-    text +=
-        "    - {kp_1_s2: " + FormatNumber(gains.kp_1_s2) + ", kd_1_s: " + FormatNumber(gains.kd_1_s) + "}\n";
-  const bool adaptive = axis.law == ControlLaw::kAdaptiveFuzzy;
-  if (adaptive || axis.law == ControlLaw::kFrozenFuzzy)
-    text += "  rules: {error_range_deg: " + Deg(axis.rules.error_range_rad) +
-            ", rate_range_deg_s: " + Deg(axis.rules.rate_range_rad_s) + "}\n";
-  if (adaptive) text += AdaptationText(axis.adaptation);
-  if (axis.law == ControlLaw::kPdAac) text += AugmentationText(axis.augmentation);
+  std::string text = std::string(name) + ":\n  law: " + InfoOf(axis.law).name + "\n  gains:\n";
+  for (const AxisGains& gains : axis.gains) {
+    FieldWriter fields;
+    VisitGains(fields, gains);
+    text += "    - " + OnOneLine(fields.texts) + "\n";
+  }
+  if (!axis.filters.empty()) text += "  filters:\n";
+  for (const FilterSection& section : axis.filters) {
+    FieldWriter fields;
+    VisitFilter(fields, section);
+    text += "    - " + OnOneLine(fields.texts) + "\n";
+  }
+  EachBlock(axis, [&](const char* key, bool needed, auto visit) {
+    if (!needed) return;
+    FieldWriter fields;
+    visit(fields);
+    text += "  " + std::string(key) + ":";
+    if (fields.texts.size() <= 2 && !fields.has_lists) {
+      text += " " + OnOneLine(fields.texts) + "\n";
+      return;
+    }
+    text += "\n";
+    for (const std::string& field : fields.texts) text += "    " + field + "\n";
+  });
   return text;
 }
 

@@ -30,7 +30,8 @@ AutopilotModel BuildAutopilot(const AutopilotConfig& config, std::vector<StageCo
                               double thruster_minimum_on_time_s) {
   AutopilotModel model;
   model.config = config;
-  model.laws = {BuildAxisLaw(config.roll), BuildAxisLaw(config.pitch), BuildAxisLaw(config.yaw)};
+  model.laws = {BuildAxisLaw(config.roll, config.tick_s), BuildAxisLaw(config.pitch, config.tick_s),
+                BuildAxisLaw(config.yaw, config.tick_s)};
   for (const StageControl& stage : stages) model.effectiveness.push_back(RowsOf(stage));
   model.stages = std::move(stages);
   const double cycle_s = config.tick_s * config.reaction_control.cycle_ticks;
@@ -41,10 +42,13 @@ AutopilotModel BuildAutopilot(const AutopilotConfig& config, std::vector<StageCo
 void StartStage(const AutopilotModel& model, int stage, AutopilotState& state) {
   for (std::size_t axis = 0; axis < kAxes; ++axis) {
     const AxisConfig& config = model.laws[axis].config;
+    const LawInfo& law = InfoOf(config.law);
     // What was learnt is a departure from the start of the stage before; it is carried over.
-    if (stage == 0 || config.adaptation.reset_at_ignition || config.law == ControlLaw::kPdAac)
+    if (stage == 0 || law.augmentation || (law.rules && config.adaptation.reset_at_ignition) ||
+        (law.integral && config.integral.reset_at_ignition))
       ResetAxis(state.axes[axis]);
     state.axes[axis].saturation = 0.0;
+    for (double (&memory)[2] : state.axes[axis].filters) memory[0] = memory[1] = 0.0;
     state.thrusters[axis] = ThrusterState{};
   }
 }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/control/lyapunov.h"
+#include "core/math/constants.h"
 
 namespace dispersa {
 
@@ -12,40 +13,56 @@ namespace {
 void CheckAxis(const AxisConfig& axis, const std::string& name, int stages, double tick_s,
                std::vector<AutopilotProblem>& problems) {
   const std::size_t before = problems.size();
+  const LawInfo& law = InfoOf(axis.law);
   const auto add = [&](const std::string& path, const std::string& message, const std::string& allowed) {
     problems.push_back({name + "." + path, message, allowed});
   };
-  if (static_cast<int>(axis.gains.size()) != stages) {
-    add("gains", "has " + std::to_string(axis.gains.size()) + " entries",
+  const auto is_one_a_stage = [&](const std::string& path, std::size_t entries) {
+    if (static_cast<int>(entries) == stages) return true;
+    add(path, "has " + std::to_string(entries) + " entries",
         "one entry for each of the vehicle's " + std::to_string(stages) + " stages");
-    return;
-  }
+    return false;
+  };
+  if (!is_one_a_stage("gains", axis.gains.size())) return;
   for (std::size_t i = 0; i < axis.gains.size(); ++i) {
     const std::string path = "gains[" + std::to_string(i) + "]";
     if (!(axis.gains[i].kp_1_s2 > 0.0)) add(path + ".kp_1_s2", "is not positive", "a number above 0");
     if (!(axis.gains[i].kd_1_s > 0.0)) add(path + ".kd_1_s", "is not positive", "a number above 0");
   }
-  const bool fuzzy = axis.law == ControlLaw::kAdaptiveFuzzy || axis.law == ControlLaw::kFrozenFuzzy;
-  if (fuzzy) {
+  if (axis.filters.size() > kFilterSections)
+    add("filters", "has " + std::to_string(axis.filters.size()) + " sections",
+        "at most " + std::to_string(kFilterSections));
+  for (std::size_t i = 0; i < axis.filters.size(); ++i) {
+    const FilterSection& section = axis.filters[i];
+    const std::string path = "filters[" + std::to_string(i) + "]";
+    if (!(section.poles_rad_s > 0.0) || !(section.poles_rad_s * tick_s < kPi))
+      add(path + ".poles_rad_s", "is not below half of the sampling frequency",
+          "a frequency above 0 and below pi / tick_s");
+    if (!(section.poles_damping > 0.0)) add(path + ".poles_damping", "is not positive", "a number above 0");
+    if (section.stage > stages)
+      add(path + ".stage", "is not a stage of the vehicle", "1 to " + std::to_string(stages));
+  }
+  if (law.integral) is_one_a_stage("integral.ki_1_s3", axis.integral.ki_1_s3.size());
+  if (law.rules) {
     if (!(axis.rules.error_range_rad > 0.0))
       add("rules.error_range_deg", "is not positive", "a number above 0");
     if (!(axis.rules.rate_range_rad_s > 0.0))
       add("rules.rate_range_deg_s", "is not positive", "a number above 0");
   }
-  if (axis.law == ControlLaw::kAdaptiveFuzzy && !(axis.adaptation.spread_1_s * tick_s <= 1.0))
+  if (!law.adaptation) return;
+  if (!(axis.adaptation.spread_1_s * tick_s <= 1.0))
     add("adaptation.spread_1_s", "overshoots the mean within a tick", "at most 1 / tick_s");
-  if (axis.law != ControlLaw::kAdaptiveFuzzy || problems.size() != before) return;
+  if (problems.size() != before) return;
 
   const Adaptation& a = axis.adaptation;
-  if (static_cast<int>(a.gamma.size()) != stages)
-    add("adaptation.gamma", "has " + std::to_string(a.gamma.size()) + " entries",
-        "one entry for each of the vehicle's " + std::to_string(stages) + " stages");
+  is_one_a_stage("adaptation.gamma", a.gamma.size());
   if (a.q(0, 1) != a.q(1, 0) || !IsPositiveDefinite(a.q))
     add("adaptation.q", "is not symmetric positive definite",
         "a symmetric matrix with positive diagonal and determinant");
   else if (a.p_n && !a.allow_unproven) {
     if (!(a.p_n->x() > 0.0) || !(a.p_n->y() > 0.0)) {
-      add("adaptation.p_n", "is not positive: no positive definite P has this last column and gives a stable law",
+      add("adaptation.p_n",
+          "is not positive: no positive definite P has this last column and gives a stable law",
           "two positive numbers, or allow_unproven: true to study it");
       return;
     }
@@ -56,7 +73,8 @@ void CheckAxis(const AxisConfig& axis, const std::string& name, int stages, doub
           std::fabs(a.p_n->y() - solved.y()) > 1e-3 * solved.y()) {
         add("adaptation.p_n",
             "is not the last column of the P that solves A'P + PA = -Q for the gains of stage " +
-                std::to_string(i + 1) + ", which is [" + std::to_string(solved.x()) + ", " + std::to_string(solved.y()) + "]",
+                std::to_string(i + 1) + ", which is [" + std::to_string(solved.x()) + ", " +
+                std::to_string(solved.y()) + "]",
             "that column, no p_n at all, or allow_unproven: true to study it");
         return;
       }

@@ -9,12 +9,50 @@
 
 namespace dispersa {
 
-enum class ControlLaw {
-  kAdaptiveFuzzy,  ///< the paper's equations (20)-(32)
-  kFrozenFuzzy,    ///< the same rules, consequents held (gamma = 0)
-  kPd,             ///< gain-scheduled proportional-derivative
-  kPdAac,          ///< the PD law under NASA's adaptive augmenting control
+enum class ControlLaw { kAdaptiveFuzzy, kFrozenFuzzy, kPd, kPid, kPdAac };
+
+/// What a law is called, what it is, and which blocks of its axis it needs.
+struct LawInfo {
+  ControlLaw law;
+  const char* name;  ///< in files
+  const char* meaning;
+  bool rules = false;
+  bool adaptation = false;
+  bool integral = false;
+  bool augmentation = false;
 };
+/// In the order of ControlLaw.
+inline constexpr LawInfo kLaws[] = {
+    {.law = ControlLaw::kAdaptiveFuzzy,
+     .name = "adaptive_fuzzy",
+     .meaning = "The paper's direct adaptive fuzzy law, equations (20) to (32). The rules start from the "
+                "plane of the gains; "
+                "P_n follows from the gains and Q.",
+     .rules = true,
+     .adaptation = true},
+    {.law = ControlLaw::kFrozenFuzzy,
+     .name = "frozen_fuzzy",
+     .meaning = "The rules of the adaptive fuzzy law with their consequents held: gamma = 0.",
+     .rules = true},
+    {.law = ControlLaw::kPd, .name = "pd", .meaning = "Scheduled proportional-derivative control."},
+    {.law = ControlLaw::kPid,
+     .name = "pid",
+     .meaning = "Scheduled proportional-integral-derivative control; the integral holds while the deflection "
+                "is limited in "
+                "its sense.",
+     .integral = true},
+    {.law = ControlLaw::kPdAac,
+     .name = "pd_aac",
+     .meaning = "Scheduled proportional-derivative control under adaptive augmenting control (J. S. Orr and "
+                "T. S. VanZwieten, "
+                "AIAA 2012-4549): the total gain rises with the departure from the reference model, in rad, "
+                "falls with fast "
+                "activity of the command, and leaks to 1, where margins are computed. Its leakage, filters "
+                "and floor are not "
+                "searched.",
+     .augmentation = true},
+};
+constexpr const LawInfo& InfoOf(ControlLaw law) { return kLaws[static_cast<int>(law)]; }
 
 /// Desired error dynamics s² + kd s + kp of one axis while one stage burns; the law's output is an angular
 /// acceleration, which the stage's control effectiveness turns into a deflection.
@@ -25,9 +63,9 @@ struct AxisGains {
 
 /// Adaptation law (32) and what makes it flyable. Each guard is off at 0 or false.
 struct Adaptation {
-  std::vector<double> gamma;       ///< adaptation gain, one a stage
-  Matrix2 q = Matrix2::Zero();     ///< Q of the Lyapunov equation, symmetric positive definite
-  std::optional<Vector2> p_n;      ///< last column of P; must agree with K and Q unless allow_unproven
+  std::vector<double> gamma;    ///< adaptation gain, one a stage
+  Matrix2 q = Matrix2::Zero();  ///< Q of the Lyapunov equation, symmetric positive definite
+  std::optional<Vector2> p_n;   ///< last column of P; must agree with K and Q unless allow_unproven
   bool allow_unproven = false;
   double projection_bound_rad_s2 = 0.0;  ///< each consequent stays within this distance of its start
   double leakage_1_s = 0.0;              ///< sigma modification: pulls the consequents to their start
@@ -39,37 +77,59 @@ struct Adaptation {
 };
 
 struct FuzzyRules {
-  double error_range_rad = 0.0;     ///< outer set centres of the pitch error, +-
-  double rate_range_rad_s = 0.0;    ///< outer set centres of its rate, +-
+  double error_range_rad = 0.0;   ///< outer set centres of the pitch error, +-
+  double rate_range_rad_s = 0.0;  ///< outer set centres of its rate, +-
+};
+
+/// The integral of a PID law: u = kp e + kd e' + w, w' = ki e, but 0 while the last deflection command was
+/// limited in the sense of e.
+struct IntegralAction {
+  std::vector<double> ki_1_s3;     ///< one a stage
+  double bound_rad_s2 = 0.0;       ///< of |w|; 0: none
+  bool reset_at_ignition = false;  ///< w starts anew with each stage
 };
 
 /// NASA's adaptive augmenting control (J. S. Orr and T. S. VanZwieten, "Robust, Practical Adaptive Control
 /// for Launch Vehicles", AIAA 2012-4549): a total gain between a floor and a ceiling, raised by the departure
 /// from a reference model, lowered by high-frequency activity of the command, drawn back to 1.
 struct AdaptiveAugmentation {
-  double adaptive_gain_1_s = 0.0;    ///< a, on the square of the departure in rad
-  double leakage_1_s = 0.0;          ///< beta
-  double spectral_gain_1_s = 0.0;    ///< alpha, on the square of the command in rad/s²
-  double high_pass_rad_s = 0.0;      ///< of the spectral damper, above the loop's bandwidth
+  double adaptive_gain_1_s = 0.0;  ///< a, on the square of the departure in rad
+  double leakage_1_s = 0.0;        ///< beta
+  double spectral_gain_1_s = 0.0;  ///< alpha, on the square of the command in rad/s²
+  double high_pass_rad_s = 0.0;    ///< of the spectral damper, above the loop's bandwidth
   double low_pass_rad_s = 0.0;
   double minimum_total_gain = 1.0;
   double maximum_total_gain = 1.0;
 };
+
+/// A section of the filter behind a law, of unit gain at rest:
+/// H(s) = (s²/wz² + 2 dz s/wz + 1) / (s²/wp² + 2 dp s/wp + 1), without zeros a low pass.
+struct FilterSection {
+  double zeros_rad_s = 0.0;  ///< wz; 0: no zeros
+  double zeros_damping = 0.0;
+  double poles_rad_s = 0.0;
+  double poles_damping = 0.0;
+  int stage = 0;  ///< 1-based stage in whose burn it acts; 0: in all
+};
+/// Most sections of an axis.
+inline constexpr int kFilterSections = 6;
 
 struct AxisConfig {
   ControlLaw law = ControlLaw::kPd;
   std::vector<AxisGains> gains;  ///< one a stage
   FuzzyRules rules;
   Adaptation adaptation;
+  IntegralAction integral;
   AdaptiveAugmentation augmentation;
+  std::vector<FilterSection> filters;  ///< in series, on the law's output
 };
 
 /// Phase-plane logic of the reaction control in unpowered flight.
 struct ReactionControlLogic {
   double deadband_rad = 0.0;
-  double rate_gain_s = 0.0;     ///< switching line e + rate_gain * de/dt
-  double hysteresis = 0.0;      ///< fraction of the deadband by which a firing overshoots into it
-  int cycle_ticks = 1;          ///< ticks between decisions: thrusters open for whole cycles
+  double rate_gain_s = 0.0;  ///< switching line e + rate_gain * de/dt
+  double hysteresis = 0.0;   ///< fraction of the deadband by which a firing overshoots into it
+  int cycle_ticks = 1;       ///< ticks between decisions: thrusters open for whole cycles
 };
 
 struct AutopilotConfig {

@@ -5,25 +5,39 @@
 
 namespace dispersa {
 
-AxisLaw BuildAxisLaw(const AxisConfig& config) {
+AxisLaw BuildAxisLaw(const AxisConfig& config, double tick_s) {
   AxisLaw law;
   law.config = config;
+  const LawInfo& info = InfoOf(config.law);
   for (std::size_t i = 0; i < config.gains.size(); ++i) {
     const AxisGains& gains = config.gains[i];
-    const bool fuzzy = config.law == ControlLaw::kAdaptiveFuzzy || config.law == ControlLaw::kFrozenFuzzy;
     // V is logged for every law; where no Q is configured the identity serves.
-    const Matrix2 q =
-        fuzzy && IsPositiveDefinite(config.adaptation.q) ? config.adaptation.q : Matrix2(Matrix2::Identity());
+    const Matrix2 q = info.rules && IsPositiveDefinite(config.adaptation.q) ? config.adaptation.q
+                                                                            : Matrix2(Matrix2::Identity());
     const Matrix2 p = SolveLyapunov(gains, q);
     const Vector2 p_n = config.adaptation.p_n ? *config.adaptation.p_n : Vector2(p.col(1));
-    law.stages.push_back({gains.kp_1_s2, gains.kd_1_s, p(0, 0), p(0, 1), p(1, 1), p_n.x(), p_n.y(),
-                          config.law == ControlLaw::kAdaptiveFuzzy ? config.adaptation.gamma[i] : 0.0});
+    StageLaw of_stage{gains.kp_1_s2,
+                      gains.kd_1_s,
+                      p(0, 0),
+                      p(0, 1),
+                      p(1, 1),
+                      p_n.x(),
+                      p_n.y(),
+                      info.adaptation ? config.adaptation.gamma[i] : 0.0,
+                      info.integral ? config.integral.ki_1_s3[i] : 0.0,
+                      {}};
+    for (std::size_t k = 0; k < config.filters.size(); ++k) {
+      const FilterSection& section = config.filters[k];
+      if (section.stage == 0 || section.stage == static_cast<int>(i) + 1)
+        of_stage.filters[k] = Discretise(section, tick_s);
+    }
+    law.stages.push_back(of_stage);
   }
   return law;
 }
 
 void ResetAxis(AxisState& state) {
-  const std::uint32_t fired = state.rules_fired;
+  const std::uint64_t fired = state.rules_fired;
   state = AxisState{};
   state.rules_fired = fired;
 }

@@ -11,17 +11,20 @@
 #include <vector>
 
 #include "core/control/autopilot_config.h"
+#include "core/control/filter.h"
 #include "core/control/fuzzy.h"
 
 namespace dispersa {
 
-/// The law of one axis in one stage.
+/// The law of one axis in one stage: doubles only, those of AxisStage (axis_step.h).
 struct StageLaw {
   double kp_1_s2 = 0.0;
   double kd_1_s = 0.0;
   double p11 = 0.0, p12 = 0.0, p22 = 0.0;  ///< P of the Lyapunov equation
   double pn_error = 0.0, pn_rate = 0.0;    ///< P_n: its last column, or the configured one
   double gamma = 0.0;                      ///< 0: not adaptive
+  double ki_1_s3 = 0.0;                    ///< of the integral
+  DigitalSection filters[kFilterSections];
 };
 
 /// The law of one axis prepared for flight; shared by all flights.
@@ -29,20 +32,22 @@ struct AxisLaw {
   AxisConfig config;
   std::vector<StageLaw> stages;
 };
-AxisLaw BuildAxisLaw(const AxisConfig& config);
+AxisLaw BuildAxisLaw(const AxisConfig& config, double tick_s);
 
-/// All memory of one axis, made afresh for each flight.
+/// All memory of one axis, made afresh for each flight: values of 64 bits, those of AxisMemory (axis_step.h).
 struct AxisState {
   double departure_rad_s2[kFuzzyRules] = {};  ///< of the consequents from their start
-  std::uint32_t rules_fired = 0;              ///< bit i: rule i has fired
+  std::uint64_t rules_fired = 0;              ///< bit i: rule i has fired
   double previous_v = 0.0;
-  double saturation = 0.0;     ///< -1, 0, 1: the last deflection command was limited in this sense of u
-  double total_gain = 1.0;     ///< adaptive augmentation
-  double model_started = 0.0;  ///< its reference model: 0 or 1
+  double saturation = 0.0;       ///< -1, 0, 1: the last deflection command was limited in this sense of u
+  double integral_rad_s2 = 0.0;  ///< of a PID law
+  double total_gain = 1.0;       ///< adaptive augmentation
+  double model_started = 0.0;    ///< its reference model: 0 or 1
   double model_error_rad = 0.0;
   double model_rate_rad_s = 0.0;
   double high_pass = 0.0;  ///< its spectral damper
   double low_pass = 0.0;
+  double filters[kFilterSections][2] = {};  ///< memory of the sections
 };
 
 struct AxisTelemetry {
@@ -56,7 +61,7 @@ struct AxisTelemetry {
   bool frozen = false;            ///< adaptation held by saturation or dead zone
 };
 
-/// Starts a stage's rules and augmentation: at lift-off, and at ignitions if so configured.
+/// Starts a stage's rules, integral and augmentation: at lift-off, and at ignitions if so configured.
 void ResetAxis(AxisState& state);
 
 /// One tick. `pn_error_factor` and `pn_rate_factor` scale P_n (the study of Fig. 5); 1 in flight.

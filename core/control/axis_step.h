@@ -8,25 +8,22 @@
 namespace dispersa::lanes {
 inline namespace DISPERSA_ISA {
 
-/// AxisLaw::PerStageLaw of each lane's stage. P_n carries the flight's factors.
+/// StageLaw of each lane's stage. P_n carries the flight's factors.
 template <class T>
 struct AxisStage {
   T kp_1_s2, kd_1_s;
   T p11, p12, p22;
   T pn_error, pn_rate;
   T gamma;
+  T ki_1_s3;
+  T filters[kFilterSections][5];  ///< DigitalSection's coefficients
 };
 template <class T>
 DISPERSA_INLINE void SetLane(AxisStage<T>& s, int lane, const StageLaw& law, double pn_error_factor,
                              double pn_rate_factor) {
-  Lane(s.kp_1_s2, lane) = law.kp_1_s2;
-  Lane(s.kd_1_s, lane) = law.kd_1_s;
-  Lane(s.p11, lane) = law.p11;
-  Lane(s.p12, lane) = law.p12;
-  Lane(s.p22, lane) = law.p22;
-  Lane(s.pn_error, lane) = law.pn_error * pn_error_factor;
-  Lane(s.pn_rate, lane) = law.pn_rate * pn_rate_factor;
-  Lane(s.gamma, lane) = law.gamma;
+  SetLaneValues<T>(s, lane, law);
+  Lane(s.pn_error, lane) *= pn_error_factor;
+  Lane(s.pn_rate, lane) *= pn_rate_factor;
 }
 
 /// All memory of one axis: plain values, AxisState lane by lane.
@@ -36,33 +33,17 @@ struct AxisMemory {
   T fired;                          ///< as bits: rule i has fired
   T previous_v;
   T saturation;  ///< -1, 0, 1: the last deflection command was limited in this sense of u
+  T integral_rad_s2;
   T total_gain, model_started, model_error_rad, model_rate_rad_s, high_pass, low_pass;  ///< augmentation
+  T filters[kFilterSections][2];
 };
 template <class T>
 DISPERSA_INLINE void SetLane(AxisMemory<T>& m, int lane, const AxisState& s) {
-  for (int i = 0; i < kFuzzyRules; ++i) Lane(m.departure_rad_s2[i], lane) = s.departure_rad_s2[i];
-  Lane(m.fired, lane) = OfBits(s.rules_fired);
-  Lane(m.previous_v, lane) = s.previous_v;
-  Lane(m.saturation, lane) = s.saturation;
-  Lane(m.total_gain, lane) = s.total_gain;
-  Lane(m.model_started, lane) = s.model_started;
-  Lane(m.model_error_rad, lane) = s.model_error_rad;
-  Lane(m.model_rate_rad_s, lane) = s.model_rate_rad_s;
-  Lane(m.high_pass, lane) = s.high_pass;
-  Lane(m.low_pass, lane) = s.low_pass;
+  SetLaneValues<T>(m, lane, s);
 }
 template <class T>
 DISPERSA_INLINE void ReadLane(const AxisMemory<T>& m, int lane, AxisState& s) {
-  for (int i = 0; i < kFuzzyRules; ++i) s.departure_rad_s2[i] = Lane(m.departure_rad_s2[i], lane);
-  s.rules_fired = static_cast<std::uint32_t>(ToBits(Lane(m.fired, lane)));
-  s.previous_v = Lane(m.previous_v, lane);
-  s.saturation = Lane(m.saturation, lane);
-  s.total_gain = Lane(m.total_gain, lane);
-  s.model_started = Lane(m.model_started, lane);
-  s.model_error_rad = Lane(m.model_error_rad, lane);
-  s.model_rate_rad_s = Lane(m.model_rate_rad_s, lane);
-  s.high_pass = Lane(m.high_pass, lane);
-  s.low_pass = Lane(m.low_pass, lane);
+  ReadLaneValues<T>(m, lane, s);
 }
 
 /// AxisTelemetry lane by lane.
@@ -76,9 +57,7 @@ struct AxisOutput {
 
 template <class T>
 DISPERSA_INLINE void SetLane(AxisOutput<T>& o, int lane, const AxisOutput<double>& from) {
-  T* to = reinterpret_cast<T*>(&o);
-  const double* values = reinterpret_cast<const double*>(&from);
-  for (unsigned i = 0; i < sizeof from / sizeof(double); ++i) Lane(to[i], lane) = values[i];
+  SetLaneValues<T>(o, lane, from);
 }
 template <class T>
 DISPERSA_INLINE AxisTelemetry TelemetryOf(const AxisConfig& config, const AxisOutput<T>& o,
@@ -189,6 +168,19 @@ DISPERSA_INLINE T StepFuzzy(const AxisConfig& config, double tick_s, const AxisS
   return u;
 }
 
+/// Proportional, derivative and integral of the error. The command uses the integral before the step, as the
+/// rules' does what they have learnt.
+template <bool kAll, class T>
+DISPERSA_INLINE T StepPid(const IntegralAction& integral, double tick_s, const AxisStage<T>& stage,
+                          MaskOf<T> acting, T error, T rate, AxisMemory<T>& memory) {
+  const T before = memory.integral_rad_s2;
+  const T bound(integral.bound_rad_s2 > 0.0 ? integral.bound_rad_s2 : 1e300);
+  const T after = Clamp(Fma(T(tick_s) * stage.ki_1_s3, error, before), -bound, bound);
+  const auto held = memory.saturation * error > T(0.0);
+  memory.integral_rad_s2 = Kept<kAll>(acting, Select(held, before, after), before);
+  return Fma(stage.kp_1_s2, error, Fma(stage.kd_1_s, rate, before));
+}
+
 /// Adaptive augmenting control, with k_T = k_0 + k_a the total gain, k_0 its floor, e_r the departure from
 /// the reference model and y_s the low-passed square of the high-passed command:
 ///   dk_a/dt = (k_max - k_a) / k_max a e_r² - alpha k_a y_s - beta (k_T - 1).
@@ -226,6 +218,22 @@ DISPERSA_INLINE T StepAugmented(const AdaptiveAugmentation& a, double tick_s, co
   return command;
 }
 
+/// `count` sections in series, transposed direct form II: two values of memory each.
+template <bool kAll, class T>
+DISPERSA_INLINE T Filter(int count, const T (*sections)[5], MaskOf<T> acting, T x, T (*memory)[2]) {
+  for (int i = 0; i < count; ++i) {
+    const T* c = sections[i];  // b0, b1, b2, a1, a2
+    T* m = memory[i];
+    const T y = Fma(c[0], x, m[0]);
+    const T first = Fma(c[1], x, Fma(-c[3], y, m[1]));
+    const T second = Fma(c[2], x, -c[4] * y);
+    m[0] = Kept<kAll>(acting, first, m[0]);
+    m[1] = Kept<kAll>(acting, second, m[1]);
+    x = y;
+  }
+  return x;
+}
+
 /// One tick of the lanes that act; the others' memory stays as it is. `is_reported`: what the law has learnt
 /// is read afterwards.
 template <bool kAll, class T>
@@ -247,11 +255,16 @@ DISPERSA_INLINE void StepAxis(const AxisConfig& config, double tick_s, const Axi
     case ControlLaw::kPd:
       out.command_rad_s2 = Fma(stage.kp_1_s2, error, stage.kd_1_s * rate);
       break;
+    case ControlLaw::kPid:
+      out.command_rad_s2 = StepPid<kAll>(config.integral, tick_s, stage, acting, error, rate, memory);
+      break;
     case ControlLaw::kPdAac:
       out.command_rad_s2 =
           StepAugmented<kAll>(config.augmentation, tick_s, stage, acting, error, rate, memory);
       break;
   }
+  const int sections = static_cast<int>(config.filters.size());
+  out.command_rad_s2 = Filter<kAll>(sections, stage.filters, acting, out.command_rad_s2, memory.filters);
 }
 
 }  // namespace DISPERSA_ISA

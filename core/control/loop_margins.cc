@@ -95,16 +95,23 @@ std::complex<double> SampledLoop::Response(double frequency_rad_s) const {
     const std::complex<double> drive = law_.drive_error * angle + law_.drive_rate * rate;
     u += tick_s_ * Times(drive, share * Inverse(mean) + (1.0 - share) * Inverse(departure));
   }
+  for (const DigitalSection& f : law_.filters) {
+    // By powers of s = z - 1.
+    const std::complex<double> above = Times(s, f.b0 * s + (2.0 * f.b0 + f.b1)) + (f.b0 + f.b1 + f.b2);
+    const std::complex<double> below = Times(s, s + (2.0 + f.a1)) + (1.0 + f.a1 + f.a2);
+    u = Times(u, Times(above, Inverse(below)));
+  }
   return Times(u, UnitCircle(-frequency_rad_s * tick_s_ * delay_ticks_)) / law_.effectiveness_1_s2;
 }
 
 double SampledLoop::SpectralRadius(double gain_factor) const {
   // States: plant, commands on their way (latest first), mean of the consequents, departure of the central
-  // one from it. Without spread the two are one.
+  // one from it (without spread the two are one), two a section of the filters.
   const int first_command = 4;
   const int first_rule = first_command + delay_ticks_;
   const int rule_states = !law_.adapts() ? 0 : law_.spread_1_s > 0.0 ? 2 : 1;
-  const int size = first_rule + rule_states;
+  const int first_filter = first_rule + rule_states;
+  const int size = first_filter + 2 * static_cast<int>(law_.filters.size());
   Eigen::MatrixXd m = Eigen::MatrixXd::Zero(size, size);
   m.topLeftCorner<4, 4>() = ad_;
   // The command as a row over the states; e = -attitude.
@@ -119,6 +126,16 @@ double SampledLoop::SpectralRadius(double gain_factor) const {
     m(rule, 0) = -part * law_.drive_error;
     m(rule, 1) = -part * law_.drive_rate;
     m(rule, rule) = 1.0 - tick_s_ * (law_.leakage_1_s + (i == 0 ? 0.0 : law_.spread_1_s));
+  }
+  int memory = first_filter;
+  for (const DigitalSection& f : law_.filters) {
+    const Eigen::RowVectorXd input = command;
+    command *= f.b0;
+    command[memory] += 1.0;
+    m.row(memory) = f.b1 * input - f.a1 * command;
+    m(memory, memory + 1) += 1.0;
+    m.row(memory + 1) = f.b2 * input - f.a2 * command;
+    memory += 2;
   }
   command *= gain_factor / law_.effectiveness_1_s2;
   if (delay_ticks_ == 0) {

@@ -5,7 +5,9 @@
 #include <Eigen/Core>
 #include <array>
 #include <complex>
+#include <vector>
 
+#include "core/control/filter.h"
 #include "core/math/linear.h"
 
 namespace dispersa {
@@ -17,12 +19,12 @@ struct AxisPlant {
   Eigen::Vector4d b = Eigen::Vector4d::Zero();
 };
 
-/// A control law about zero error: u = kp e + kd e' + w, and the command is u / effectiveness.
+/// A control law about zero error: u = kp e + kd e' + w, and the command is u, filtered, / effectiveness.
 ///
 /// The adaptation law of the fuzzy rules, linearised there, learns in the central rule alone and spreads over
 /// all: w is driven by drive_error e + drive_rate e' through the mean of `rules` consequents, an integrator
 /// of gain 1 / rules that leaks at `leakage`, and the central rule's departure from the mean, which decays at
-/// leakage + spread. Both drives 0: frozen.
+/// leakage + spread. With one rule it is the integral of a PID law. Both drives 0: frozen, PD.
 struct LinearLaw {
   double kp_1_s2 = 0.0;
   double kd_1_s = 0.0;
@@ -32,6 +34,7 @@ struct LinearLaw {
   double leakage_1_s = 0.0;
   double spread_1_s = 0.0;
   int rules = 1;
+  std::vector<DigitalSection> filters;  ///< of u, in series
 
   bool adapts() const { return drive_error != 0.0 || drive_rate != 0.0; }
 };

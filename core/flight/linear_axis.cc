@@ -64,7 +64,11 @@ LinearLaw LineariseLaw(const AutopilotModel& autopilot, int stage, double since_
   linear.kd_1_s = of_stage.kd_1_s;
   linear.effectiveness_1_s2 = (axis == kRoll ? control.roll_effectiveness_1_s2
                                              : control.pitch_effectiveness_1_s2)(since_ignition_s);
-  if (adapting && law.config.law == ControlLaw::kAdaptiveFuzzy) {
+  linear.filters.assign(of_stage.filters, of_stage.filters + law.config.filters.size());
+  const LawInfo& info = InfoOf(law.config.law);
+  // The integral of a PID law acts whether or not anything adapts.
+  if (info.integral) linear.drive_error = of_stage.ki_1_s3;
+  if (adapting && info.adaptation) {
     linear.drive_error = of_stage.gamma * of_stage.pn_error;
     linear.drive_rate = of_stage.gamma * of_stage.pn_rate;
     linear.leakage_1_s = law.config.adaptation.leakage_1_s;

@@ -150,9 +150,7 @@ class StepState {
   }
   static Instant<double> LaneOf(const Instant<T>& i, int lane) {
     Instant<double> one;
-    double* to = reinterpret_cast<double*>(&one);
-    const T* from = reinterpret_cast<const T*>(&i);
-    for (unsigned k = 0; k < sizeof(one) / sizeof(double); ++k) to[k] = Lane(from[k], lane);
+    ReadLaneValues<T>(i, lane, one);
     return one;
   }
 

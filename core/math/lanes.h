@@ -355,6 +355,27 @@ DISPERSA_INLINE void Blend(MaskOf<T> mask, const S& from, S& to) {
   for (unsigned i = 0; i < sizeof(S) / sizeof(T); ++i) target[i] = Select(mask, source[i], target[i]);
 }
 
+/// Structs of values are moved lane by lane as arrays: `S` of T, `V` of 64-bit values in the same order.
+template <class T, class S, class V>
+DISPERSA_INLINE void SetLaneValues(S& to, int lane, const V& from) {
+  static_assert(sizeof(S) / sizeof(T) == sizeof(V) / sizeof(double));
+  T* values = reinterpret_cast<T*>(&to);
+  for (unsigned i = 0; i < sizeof(V) / sizeof(double); ++i) {
+    double value;
+    __builtin_memcpy(&value, reinterpret_cast<const char*>(&from) + i * sizeof value, sizeof value);
+    Lane(values[i], lane) = value;
+  }
+}
+template <class T, class S, class V>
+DISPERSA_INLINE void ReadLaneValues(const S& from, int lane, V& to) {
+  static_assert(sizeof(S) / sizeof(T) == sizeof(V) / sizeof(double));
+  const T* values = reinterpret_cast<const T*>(&from);
+  for (unsigned i = 0; i < sizeof(V) / sizeof(double); ++i) {
+    const double value = Lane(values[i], lane);
+    __builtin_memcpy(reinterpret_cast<char*>(&to) + i * sizeof value, &value, sizeof value);
+  }
+}
+
 /// Truncated towards zero, lane by lane; values must be within int.
 DISPERSA_INLINE void Truncate(double x, int* out) { out[0] = static_cast<int>(x); }
 DISPERSA_INLINE void Truncate(Pack<4> x, int* out) {

@@ -11,8 +11,8 @@ namespace dispersa {
 
 namespace {
 
-bool Adapts(const AxisConfig& axis) { return axis.law == ControlLaw::kAdaptiveFuzzy; }
-bool IsAugmented(const AxisConfig& axis) { return axis.law == ControlLaw::kPdAac; }
+bool Learns(const AxisConfig& axis) { return InfoOf(axis.law).adaptation || InfoOf(axis.law).integral; }
+bool IsAugmented(const AxisConfig& axis) { return InfoOf(axis.law).augmentation; }
 
 }  // namespace
 
@@ -21,7 +21,7 @@ double RoundToDigits(double value, int digits) {
 }
 
 bool Learns(const AutopilotConfig& autopilot) {
-  return Adapts(autopilot.pitch) || Adapts(autopilot.yaw) || Adapts(autopilot.roll);
+  return Learns(autopilot.pitch) || Learns(autopilot.yaw) || Learns(autopilot.roll);
 }
 
 void ApplyDesign(const StageDesign& design, int stage, AutopilotConfig& autopilot) {
@@ -31,10 +31,11 @@ void ApplyDesign(const StageDesign& design, int stage, AutopilotConfig& autopilo
   const std::size_t at = static_cast<std::size_t>(stage);
   for (AxisConfig* axis : {&autopilot.pitch, &autopilot.yaw, &autopilot.roll}) {
     axis->gains[at] = gains;
-    if (!Adapts(*axis)) continue;
+    const double integral_1_s3 = design.learning * w * w * w;
+    if (InfoOf(axis->law).integral) axis->integral.ki_1_s3[at] = RoundToDigits(integral_1_s3, kDesignDigits);
+    if (!InfoOf(axis->law).adaptation) continue;
     const double p12 = SolveLyapunov(gains, axis->adaptation.q)(0, 1);
-    axis->adaptation.gamma[at] =
-        RoundToDigits(design.learning * w * w * w * kFuzzyRules / p12, kDesignDigits);
+    axis->adaptation.gamma[at] = RoundToDigits(integral_1_s3 * kFuzzyRules / p12, kDesignDigits);
   }
 }
 

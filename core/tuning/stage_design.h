@@ -5,12 +5,12 @@
 
 namespace dispersa {
 
-/// The error dynamics of one stage and the learning of its adaptation.
+/// The error dynamics of one stage and the learning of its adaptation or integral.
 struct StageDesign {
   double bandwidth_rad_s = 0.0;  ///< natural frequency w of s² + kd s + kp: w² = kp
   double damping = 0.0;          ///< its damping ratio: kd = 2 damping w
   /// What lasts of the adaptation is an integrator of gain gamma p12 / 25 (of the mean of 25 rules, see
-  /// LinearLaw); its ratio to w³. Only where the law adapts.
+  /// LinearLaw); that of a PID law is ki. Its ratio to w³, where the law has one.
   double learning = 0.0;
 };
 
@@ -21,11 +21,11 @@ struct AugmentationDesign {
   double maximum_total_gain = 1.0;
 };
 
-/// Whether an axis adapts by fuzzy rules: only then there is something to learn.
+/// Whether an axis adapts by fuzzy rules or integrates: only then there is something to learn.
 bool Learns(const AutopilotConfig& autopilot);
 
-/// Gives one stage (0-based) of all axes the gains of a design, and adaptive fuzzy axes its gamma; rounded to
-/// `kDesignDigits`, so that a file that prints them holds exactly what was flown.
+/// Gives one stage (0-based) of all axes the gains of a design, adaptive fuzzy axes its gamma, PID axes its ki;
+/// rounded to `kDesignDigits`, so that a file that prints them holds exactly what was flown.
 void ApplyDesign(const StageDesign& design, int stage, AutopilotConfig& autopilot);
 inline constexpr int kDesignDigits = 3;
 

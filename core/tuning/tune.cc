@@ -59,7 +59,7 @@ void Validate(const Campaign& campaign, const AutopilotConfig& autopilot, const 
   for (const AutopilotProblem& problem : Problems(autopilot, stages))
     add(problem.path, problem.message, problem.allowed);
   for (const AxisConfig* axis : {&autopilot.pitch, &autopilot.yaw, &autopilot.roll})
-    if (axis->law == ControlLaw::kAdaptiveFuzzy && axis->adaptation.p_n)
+    if (InfoOf(axis->law).adaptation && axis->adaptation.p_n)
       add("adaptation.p_n", "is fixed, but P_n follows from the gains that are to be found", "no p_n");
   if (!problems.empty()) throw InputError(std::move(problems));
 }

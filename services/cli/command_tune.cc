@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 
 #include "core/campaign_yaml/load.h"
@@ -33,30 +34,20 @@ std::string CommandText(const TuneOptions& options) {
                             options.tuning.seed, options.tuning.cases, options.tuning.evaluations);
 }
 
-// What the law is and what its numbers mean.
+// What the law is and what its numbers mean, as comment lines.
 std::string LawText(ControlLaw law) {
-  const std::string gains =
-      "# Gains are those of the error dynamics s² + kd s + kp, one entry a stage; roll has those of pitch.\n";
-  switch (law) {
-    case ControlLaw::kAdaptiveFuzzy:
-      return "# The paper's direct adaptive fuzzy law. The rules start from the plane of the gains; P_n "
-             "follows\n"
-             "# from the gains and Q.\n" +
-             gains;
-    case ControlLaw::kFrozenFuzzy:
-      return "# The rules of the adaptive fuzzy law with their consequents held: gamma = 0.\n" + gains;
-    case ControlLaw::kPd:
-      return "# Scheduled proportional-derivative control.\n" + gains;
-    case ControlLaw::kPdAac:
-      break;
+  constexpr std::size_t kColumns = 108;
+  std::istringstream words(InfoOf(law).meaning);
+  std::string text, line = "#";
+  for (std::string word; words >> word;) {
+    if (line.size() + 1 + word.size() > kColumns) {
+      text += line + "\n";
+      line = "#";
+    }
+    line += " " + word;
   }
-  return "# Scheduled proportional-derivative control under adaptive augmenting control (J. S. Orr and T. "
-         "S.\n"
-         "# VanZwieten, AIAA 2012-4549): the total gain rises with the departure from the reference model, "
-         "in\n"
-         "# rad, falls with fast activity of the command, and leaks to 1, where margins are computed. Its\n"
-         "# leakage, filters and floor are not searched.\n" +
-         gains;
+  return text + line +
+         "\n# Gains are those of the error dynamics s² + kd s + kp, one entry a stage; roll has those of pitch.\n";
 }
 
 // Of a line of the log: the number of a stage, or the augmentation.
@@ -152,16 +143,17 @@ void PrintText(const TuneOptions& options, const TuningResult& result, const std
     fmt::print("{:<6}{:>11}{:>9.0f}%{:>14}{:>14}\n", PartText(record, result), g.generation,
                100.0 * g.feasible_fraction, number(g.best_objective), number(g.mean_objective));
   }
-  fmt::print("\n{:<6}{:>9}{:>9}{:>10}{:>13}{:>10}  {}\n", "stage", "kp 1/s2", "kd 1/s", "gamma",
+  fmt::print("\n{:<6}{:>9}{:>9}{:>10}{:>13}{:>10}  {}\n", "stage", "kp 1/s2", "kd 1/s", "gamma, ki",
              "mean rms deg", "peak deg", "least margins, frozen | adapting");
   for (std::size_t i = 0; i < result.stages.size(); ++i) {
     const StageTuning& stage = result.stages[i];
     const AxisConfig& axis = result.autopilot.pitch;
-    const std::string gamma = axis.law == ControlLaw::kAdaptiveFuzzy
-                                  ? fmt::format("{}", axis.adaptation.gamma[i])
-                                  : std::string("-");
+    const LawInfo& law = InfoOf(axis.law);
+    const std::string learning = law.adaptation ? fmt::format("{}", axis.adaptation.gamma[i])
+                                 : law.integral ? fmt::format("{}", axis.integral.ki_1_s3[i])
+                                                : std::string("-");
     fmt::print("{:<6}{:>9}{:>9}{:>10}{:>13.5f}{:>10.4f}  {} | {}{}\n", i + 1, axis.gains[i].kp_1_s2,
-               axis.gains[i].kd_1_s, gamma, stage.mean_rms_deg, stage.peak_deg, MarginsText(stage.frozen),
+               axis.gains[i].kd_1_s, learning, stage.mean_rms_deg, stage.peak_deg, MarginsText(stage.frozen),
                MarginsText(stage.adapting), stage.feasible ? "" : "  INFEASIBLE");
   }
   if (result.augmentation) {

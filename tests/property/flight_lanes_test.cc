@@ -18,6 +18,10 @@ namespace {
 // The shipped definition with all that a file may give it besides.
 FlightDefinition Definition(const std::string& autopilot, bool with_winds) {
   FlightDefinition definition = Slv4Definition(DISPERSA_CAMPAIGNS, autopilot);
+  if (autopilot == "pid")  // stages with and without a notch, side by side
+    definition.autopilot.pitch.filters = definition.autopilot.yaw.filters = {
+        {.poles_rad_s = 80.0, .poles_damping = 0.7},
+        {.zeros_rad_s = 25.0, .zeros_damping = 0.2, .poles_rad_s = 25.0, .poles_damping = 0.6, .stage = 1}};
   definition.noise_seed = 11;
   if (with_winds) {
     definition.wind_table = WindTable{{0.0, 5000.0, 12000.0}, {1.0, 12.0, -20.0}, {3.0, -8.0, 30.0}};
@@ -159,7 +163,7 @@ TEST_P(FlightLanes, AreTheFlightsAlone) {
     }
   }
 }
-INSTANTIATE_TEST_SUITE_P(Laws, FlightLanes, testing::Values("adaptive_fuzzy", "frozen_fuzzy", "pd", "pd_aac"),
+INSTANTIATE_TEST_SUITE_P(Laws, FlightLanes, testing::Values("adaptive_fuzzy", "frozen_fuzzy", "pd", "pid", "pd_aac"),
                          [](const auto& law) { return std::string(law.param); });
 
 }  // namespace

@@ -2,7 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
+#include <map>
 
+#include "core/campaign_yaml/autopilot_fields.h"
 #include "core/campaign_yaml/load.h"
 
 namespace dispersa {
@@ -77,6 +80,65 @@ TEST(WriteAutopilot, ShippedAutopilotsKeepEveryKey) {
     const std::string text = WriteAutopilot(autopilot);
     EXPECT_EQ(WriteAutopilot(ReadAutopilot(text, "text")), text) << entry.path();
   }
+}
+
+TEST(WriteAutopilot, WritesThePidLawAndFilters) {
+  const std::string pid = R"(
+roll:
+  law: pid
+  gains:
+    - {kp_1_s2: 5, kd_1_s: 6}
+    - {kp_1_s2: 7, kd_1_s: 8}
+  filters:
+    - {zeros_rad_s: 20, zeros_damping: 0.05, poles_rad_s: 20, poles_damping: 0.7, stage: 1}
+    - {poles_rad_s: 60, poles_damping: 0.7}
+  integral:
+    ki_1_s3: [9.5, 0]
+    bound_deg_s2: 20
+    reset_at_ignition: true
+)";
+  const std::string all = kEverything;
+  const std::string text =
+      all.substr(0, all.find("\nroll:")) + pid + all.substr(all.find("reaction_control:"));
+  EXPECT_EQ(WriteAutopilot(ReadAutopilot(text, "text")), text);
+}
+
+// Reads the names that it visits.
+struct FieldNames {
+  std::vector<std::string> names;
+  void Quantity(const char* stem, Dimension dimension, const Range&, double) {
+    names.push_back(dimension.size() > 1 ? std::string(stem) + "_*"
+                                         : std::string(stem) + "_" + std::string(dimension[0].suffix));
+  }
+  void Guard(const char* stem, Dimension dimension, const Range& range, double value) {
+    Quantity(stem, dimension, range, value);
+  }
+  void Number(const char* key, const Range&, double) { names.push_back(key); }
+  void NumberGuard(const char* key, const Range&, double) { names.push_back(key); }
+  void Flag(const char* key, bool) { names.push_back(key); }
+  void EachStage(const char* key, const Range&, const std::vector<double>&) { names.push_back(key); }
+  void Stage(const char* key, int) { names.push_back(key); }
+  void Matrix(const char* key, const Matrix2&) { names.push_back(key); }
+  void OptionalPair(const char* key, const std::optional<Vector2>&) { names.push_back(key); }
+};
+
+TEST(AutopilotKeys, AreDocumentedAllAndByTheirBlocks) {
+  std::ifstream file(DISPERSA_CAMPAIGNS "/../core/campaign_yaml/README.md");
+  std::map<std::string, std::string> rows;  // of the tables, by their first cell
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with("| `")) rows[line.substr(3, line.find('`', 3) - 3)] = line;
+  for (const LawInfo& law : kLaws)
+    EXPECT_NE(rows["law"].find("`" + std::string(law.name) + "`"), std::string::npos) << law.name;
+  const auto expect = [&](const std::string& block, auto visit) {
+    FieldNames fields;
+    visit(fields);
+    for (const std::string& name : fields.names)
+      EXPECT_NE(rows[block].find("`" + name + "`"), std::string::npos) << block << "." << name;
+  };
+  const FilterSection section;
+  expect("filters", [&](auto& fields) { VisitFilter(fields, section); });
+  const AxisConfig axis;
+  EachBlock(axis, [&](const std::string& block, bool, auto visit) { expect(block, visit); });
 }
 
 }  // namespace

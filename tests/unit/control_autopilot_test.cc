@@ -300,7 +300,7 @@ TEST(AutopilotProblems, AnUnprovenPnMayBeStudied) {
   AutopilotConfig config = WithPn(-1.0, 5.0);
   config.pitch.adaptation.allow_unproven = true;
   EXPECT_EQ(Texts(config), List{});
-  const AxisLaw law = BuildAxisLaw(config.pitch);
+  const AxisLaw law = BuildAxisLaw(config.pitch, config.tick_s);
   EXPECT_EQ(law.stages[0].pn_error, -1.0);
   EXPECT_EQ(law.stages[0].pn_rate, 5.0);
 }

@@ -22,7 +22,7 @@ const Vector2 kNoStudy = Vector2::Ones();
 
 // One axis with its memory.
 struct Loop {
-  explicit Loop(const AxisConfig& config) : law(BuildAxisLaw(config)) {}
+  explicit Loop(const AxisConfig& config) : law(BuildAxisLaw(config, kTick_s)) {}
   double Step(double error, double rate, double saturation = 0.0, const Vector2& pn_factor = kNoStudy) {
     state.saturation = saturation;
     return StepAxis(law, 0, error, rate, pn_factor.x(), pn_factor.y(), kTick_s, state, telemetry);
@@ -62,7 +62,8 @@ TEST(StepAxis, AdaptsByTheLawOfEquation32) {
   lanes::Grades(2.0 + 2.0 * kRate / rules.rate_range_rad_s, by_rate);
   for (std::size_t i = 0; i < kFuzzyRules; ++i)
     // Rounding of grades of order 1 times the step's 0.1.
-    EXPECT_NEAR(loop.FromStart(i), kTick_s * 500.0 * drive * by_error[i / kFuzzySets] * by_rate[i % kFuzzySets], 1e-16);
+    EXPECT_NEAR(loop.FromStart(i),
+                kTick_s * 500.0 * drive * by_error[i / kFuzzySets] * by_rate[i % kFuzzySets], 1e-16);
 }
 
 TEST(StepAxis, AdaptationRaisesTheCommandAgainstAStandingError) {
@@ -208,6 +209,63 @@ TEST(StepAxis, PnFactorsScaleTheDrive) {
 TEST(StepAxis, PdIsTheLinearLaw) {
   Loop loop(SampleAxis(ControlLaw::kPd));
   EXPECT_EQ(loop.Step(0.3, -0.2), std::fma(16.0, 0.3, 7.0 * -0.2));
+}
+
+TEST(StepAxis, PidAddsTheIntegralUpToTheTickBefore) {
+  Loop loop(SampleAxis(ControlLaw::kPid));
+  for (int i = 0; i < 100; ++i)
+    EXPECT_NEAR(loop.Step(0.3, -0.2), 16.0 * 0.3 - 7.0 * 0.2 + 8.0 * 0.3 * 0.01 * i, 1e-12);
+  EXPECT_NEAR(loop.state.integral_rad_s2, 8.0 * 0.3, 1e-12);
+}
+
+TEST(StepAxis, PidWithoutIntegralGainIsPdBitForBit) {
+  AxisConfig config = SampleAxis(ControlLaw::kPid);
+  config.integral.ki_1_s3 = {0.0, 0.0};
+  Loop pid(config), pd(SampleAxis(ControlLaw::kPd));
+  Stream draws(5, 0, "errors");
+  for (int i = 0; i < 500; ++i) {
+    const double error = draws.Normal(), rate = draws.Normal();
+    ASSERT_EQ(pid.Step(error, rate), pd.Step(error, rate));
+  }
+}
+
+TEST(StepAxis, PidHoldsItsIntegralWhileTheDeflectionIsLimitedInItsSenseAndWithinItsBound) {
+  AxisConfig config = SampleAxis(ControlLaw::kPid);
+  Loop loop(config);
+  loop.Step(0.3, 0.0, 1.0);
+  EXPECT_EQ(loop.state.integral_rad_s2, 0.0);
+  loop.Step(-0.3, 0.0, 1.0);
+  EXPECT_NEAR(loop.state.integral_rad_s2, -8.0 * 0.3 * 0.01, 1e-15) << "out of the limit it integrates";
+
+  config.integral.bound_rad_s2 = 0.1;
+  Loop bounded(config);
+  for (int i = 0; i < 100; ++i) bounded.Step(0.3, 0.0);
+  EXPECT_EQ(bounded.state.integral_rad_s2, 0.1);
+  for (int i = 0; i < 100; ++i) bounded.Step(-0.3, 0.0);
+  EXPECT_EQ(bounded.state.integral_rad_s2, -0.1);
+}
+
+TEST(StepAxis, WhatTheRulesLearnInCommonIsAPid) {
+  AxisConfig fuzzy = SampleAxis(ControlLaw::kAdaptiveFuzzy);
+  fuzzy.adaptation.spread_1_s = 1.0 / kTick_s;  // every departure is the mean of the tick before
+  const StageLaw law = BuildAxisLaw(fuzzy, kTick_s).stages[0];
+  AxisConfig config = SampleAxis(ControlLaw::kPid);
+  config.gains[0].kp_1_s2 += law.gamma * law.pn_rate / kFuzzyRules;
+  config.integral.ki_1_s3[0] = law.gamma * law.pn_error / kFuzzyRules;
+  Loop rules(fuzzy), pid(config);
+  // Within the outer sets, where the rules start from the plane.
+  const double amplitude = 0.4 * kRadPerDeg, w = 2.0;
+  double largest = 0.0, apart = 0.0, learnt = 0.0;
+  for (int i = 0; i < 3000; ++i) {
+    const double t = i * kTick_s;
+    const double error = amplitude * (1.0 - std::cos(w * t)), rate = amplitude * w * std::sin(w * t);
+    const double u = rules.Step(error, rate);
+    largest = std::max(largest, std::fabs(u));
+    learnt = std::max(learnt, std::fabs(u - 16.0 * error - 7.0 * rate));
+    apart = std::max(apart, std::fabs(u - pid.Step(error, rate)));
+  }
+  EXPECT_GT(learnt, 0.1 * largest);
+  EXPECT_LT(apart, 0.02 * learnt);
 }
 
 AxisConfig Augmented() {

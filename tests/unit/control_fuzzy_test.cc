@@ -31,7 +31,7 @@ double Surface(double error, double rate) {
   config.rules = kRules;
   AxisState state;
   AxisTelemetry telemetry;
-  return StepAxis(BuildAxisLaw(config), 0, error, rate, 1.0, 1.0, 0.01, state, telemetry);
+  return StepAxis(BuildAxisLaw(config, 0.01), 0, error, rate, 1.0, 1.0, 0.01, state, telemetry);
 }
 
 TEST(Grades, AreOneAtTheirCentreAndHalfAtTheCrossings) {
@@ -69,7 +69,7 @@ TEST(Rules, AreNumberedByErrorSetThenRateSet) {
   config.rules = kRules;
   AxisState state;
   AxisTelemetry telemetry;
-  StepAxis(BuildAxisLaw(config), 0, kRules.error_range_rad, -0.5 * kRules.rate_range_rad_s, 1.0, 1.0, 0.01, state,
+  StepAxis(BuildAxisLaw(config, 0.01), 0, kRules.error_range_rad, -0.5 * kRules.rate_range_rad_s, 1.0, 1.0, 0.01, state,
            telemetry);
   EXPECT_EQ(state.rules_fired, 1u << (4 * kFuzzySets + 1));
 }

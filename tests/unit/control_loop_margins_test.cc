@@ -142,6 +142,32 @@ TEST(SampledLoop, TheClosedLoopIsCriticalWhereTheResponseSaysSo) {
   }
 }
 
+TEST(SampledLoop, FiltersTurnTheResponseAndMoveTheCriticalGain) {
+  LinearLaw law;
+  law.kp_1_s2 = 16.0;
+  law.kd_1_s = 7.0;
+  law.effectiveness_1_s2 = 5.0;
+  const AxisPlant plant = WithActuator(25.0);
+  const SampledLoop bare(plant, law, kTick_s, 1);
+  law.filters = {
+      Discretise({.poles_rad_s = 40.0, .poles_damping = 0.7}, kTick_s),
+      Discretise({.zeros_rad_s = 30.0, .zeros_damping = 0.1, .poles_rad_s = 30.0, .poles_damping = 0.5},
+                 kTick_s)};
+  const SampledLoop filtered(plant, law, kTick_s, 1);
+  for (const double w : {0.1, 3.0, 30.0, 200.0}) {
+    const std::complex<double> z = std::polar(1.0, w * kTick_s);
+    std::complex<double> h = 1.0;
+    for (const DigitalSection& f : law.filters)
+      h *= (f.b0 * z * z + f.b1 * z + f.b2) / (z * z + f.a1 * z + f.a2);
+    EXPECT_LT(std::abs(filtered.Response(w) / (h * bare.Response(w)) - 1.0), 1e-9) << w;
+  }
+  const LoopMargins m = filtered.Margins();
+  ASSERT_TRUE(m.stable);
+  EXPECT_LT(m.gain_up_db, bare.Margins().gain_up_db - 1.0);
+  EXPECT_NEAR(filtered.SpectralRadius(std::pow(10.0, m.gain_up_db / 20.0)), 1.0, 1e-9);
+  EXPECT_GT(filtered.SpectralRadius(std::pow(10.0, (m.gain_up_db + 0.1) / 20.0)), 1.0);
+}
+
 TEST(SampledLoop, IsStableForAsManyTicksMoreAsTheDelayMarginAllows) {
   for (const double gamma : {0.0, 8000.0}) {
     const AxisPlant plant = WithActuator(25.0);
@@ -179,7 +205,7 @@ TEST(SampledLoop, PredictsWhereTheAdaptiveFuzzyLawItselfIsLost) {
   config.adaptation.gamma = {8000.0, 8000.0};
   config.adaptation.spread_1_s = 60.0;
   config.adaptation.leakage_1_s = 0.05;
-  const AxisLaw axis = BuildAxisLaw(config);
+  const AxisLaw axis = BuildAxisLaw(config, kTick_s);
   LinearLaw law = AdaptingLaw(16.0, 7.0, 0.0);
   law.drive_error = 8000.0 * axis.stages[0].pn_error;
   law.drive_rate = 8000.0 * axis.stages[0].pn_rate;

@@ -70,6 +70,7 @@ inline AxisConfig SampleAxis(ControlLaw law) {
   axis.rules = {5.0 * kRadPerDeg, 1.5 * kRadPerDeg};
   axis.adaptation.gamma = {500.0, 1000.0};
   axis.adaptation.q << 1.0, 0.0, 0.0, 0.02;
+  axis.integral.ki_1_s3 = {8.0, 12.0};
   return axis;
 }
 
