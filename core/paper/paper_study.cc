@@ -71,6 +71,7 @@ const std::vector<PaperCampaign>& PaperCampaigns() {
       {"controllers", "the paper's law on Table 3, cases that no tuning used"},
       {"controllers_frozen_fuzzy", "the frozen rules on the same cases"},
       {"controllers_pd", "scheduled PD on the same cases"},
+      {"controllers_pid", "scheduled PID on the same cases"},
       {"controllers_pd_aac", "PD with adaptive augmenting control on the same cases"},
       {"completions", "what we added to the vehicle, swept"},
   };
@@ -79,7 +80,7 @@ const std::vector<PaperCampaign>& PaperCampaigns() {
 
 const std::vector<std::string>& PaperBaselines() {
   static const std::vector<std::string> names = {"controllers_frozen_fuzzy", "controllers_pd",
-                                                 "controllers_pd_aac"};
+                                                 "controllers_pid", "controllers_pd_aac"};
   return names;
 }
 
