@@ -255,6 +255,7 @@ void Batch<T>::End(int lane, Outcome outcome, const char* reason) {
   record->End(outcome, reason, Lane(time_s_, lane), slot.stack, y);
   slot.record = nullptr;
   slot.switch_s = kFarFuture;
+  step_.plant.weather.profile[lane] = nullptr;  // the record's; an empty lane is computed on
   --flying_;
   patience_ = 0;
   SetLane(live_, lane, false);
