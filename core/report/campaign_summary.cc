@@ -24,27 +24,30 @@ const char* const kUsualMetrics[] = {"pitch_error_peak_deg", "pitch_error_rms_de
                                      "q_alpha_max_pa_rad"};
 
 WorstCases FindWorst(const std::string& metric, Worse worse, const CaseColumns& cases) {
-  const std::vector<double>& values = cases.metrics.at(MetricColumn(metric));
-  const auto lost = [&](std::size_t i) {
-    return cases.outcome[i] != Outcome::kCompleted || !std::isfinite(values[i]);
-  };
-  std::vector<std::size_t> order(cases.rows());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  const std::vector<double> values = cases.metrics.at(MetricColumn(metric));
   const auto is_worse = [&](std::size_t a, std::size_t b) {
-    if (lost(a) != lost(b)) return lost(a);
     const double badness_a = std::isfinite(values[a]) ? Badness(worse, values[a]) : HUGE_VAL;
     const double badness_b = std::isfinite(values[b]) ? Badness(worse, values[b]) : HUGE_VAL;
     return badness_a != badness_b ? badness_a > badness_b : a < b;
   };
-  std::sort(order.begin(), order.end(), is_worse);
-  WorstCases result{.metric = metric, .cases = {}};
-  for (std::size_t i = 0; i < order.size() && result.cases.size() < kWorstCases; ++i) {
-    const std::size_t row = order[i];
-    if (i >= kLostAmongWorst && lost(row)) continue;
-    WorstCase worst{.case_index = cases.index[row], .value = std::nullopt, .outcome = cases.outcome[row]};
-    if (std::isfinite(values[row])) worst.value = values[row];
-    result.cases.push_back(worst);
+  // The worst of some rows, in order.
+  const auto add = [&](std::vector<std::size_t> rows, std::size_t count, WorstCases* result) {
+    const auto end = rows.begin() + static_cast<std::ptrdiff_t>(std::min(count, rows.size()));
+    std::partial_sort(rows.begin(), end, rows.end(), is_worse);
+    for (auto row = rows.begin(); row != end; ++row) {
+      WorstCase one{.case_index = cases.index[*row], .value = std::nullopt, .outcome = cases.outcome[*row]};
+      if (std::isfinite(values[*row])) one.value = values[*row];
+      result->cases.push_back(one);
+    }
+  };
+  std::vector<std::size_t> lost, others;
+  for (std::size_t i = 0; i < cases.rows(); ++i) {
+    const bool is_lost = cases.outcome[i] != Outcome::kCompleted || !std::isfinite(values[i]);
+    (is_lost ? lost : others).push_back(i);
   }
+  WorstCases result{.metric = metric, .cases = {}};
+  add(std::move(lost), kLostAmongWorst, &result);
+  add(std::move(others), kWorstCases - result.cases.size(), &result);
   return result;
 }
 
@@ -245,9 +248,9 @@ CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaig
   for (const Outcome outcome : cases.outcome) ++summary.outcomes[static_cast<std::size_t>(outcome)];
   summary.lost_flights = cases.lost_flights;
   for (std::size_t i = 0; i < MetricNames().size(); ++i) {
-    const std::vector<double> values = CompletedValues(cases, MetricNames()[i]);
-    const std::vector<double> sorted = SortedFinite(values);
-    summary.metrics.push_back({MetricNames()[i], Summarize(values), Skewness(sorted), Percentiles(sorted)});
+    const std::vector<double> sorted = SortedFinite(CompletedValues(cases, MetricNames()[i]));
+    summary.metrics.push_back({MetricNames()[i], SummarizeSorted(sorted, cases.rows() - sorted.size()),
+                               Skewness(sorted), Percentiles(sorted)});
   }
   summary.requirements = JudgeAll(campaign.requirements, context, cases);
   for (const Requirement& requirement : campaign.requirements) {

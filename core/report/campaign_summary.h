@@ -64,7 +64,7 @@ struct CampaignSummary {
   std::string autopilot;
   CampaignVerdict verdict = CampaignVerdict::kIncomplete;
   std::array<std::uint64_t, kOutcomeCount> outcomes{};
-  std::vector<LostFlight> lost_flights;  ///< all that were not completed
+  std::vector<LostFlight> lost_flights;  ///< the first kListedLostFlights
   std::vector<MetricSummary> metrics;    ///< in the order of MetricNames()
   std::vector<RequirementSummary> requirements;
   bool holm = false;  ///< the requirements' verdicts hold together

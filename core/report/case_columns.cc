@@ -1,30 +1,38 @@
 #include "core/report/case_columns.h"
 
 #include <algorithm>
+#include <memory>
 
 #include "core/flight/flight_inputs.h"
 #include "core/flight/metrics.h"
 #include "core/statistics/summary.h"
 
 namespace dispersa {
-CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& wanted_inputs) {
-  CaseColumns columns;
-  columns.inputs.resize(InputColumns().size());
-  columns.metrics.resize(MetricNames().size());
+
+CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& wanted_inputs,
+                        const std::function<void(const CaseResult&)>& observe) {
+  CaseColumns cases;
+  const std::size_t metrics = MetricNames().size();
+  const auto file = std::make_shared<ColumnFile>(folder.directory(), metrics + wanted_inputs.size());
+  std::vector<double> row(metrics + wanted_inputs.size());
   folder.ForEach([&](const CaseResult& result) {
-    columns.index.push_back(result.case_index);
-    columns.outcome.push_back(result.outcome);
-    if (result.outcome != Outcome::kCompleted) {
-      columns.lost_flights.push_back(
+    if (observe) observe(result);
+    cases.index.push_back(result.case_index);
+    cases.outcome.push_back(result.outcome);
+    if (result.outcome != Outcome::kCompleted && cases.lost_flights.size() < kListedLostFlights) {
+      cases.lost_flights.push_back(
           {result.case_index, result.outcome, result.end_time_s, result.end_stage, result.reason});
     }
-    for (const int input : wanted_inputs) {
-      columns.inputs[static_cast<std::size_t>(input)].push_back(
-          result.inputs[static_cast<std::size_t>(input)]);
-    }
-    for (std::size_t i = 0; i < columns.metrics.size(); ++i) columns.metrics[i].push_back(result.metrics[i]);
+    std::copy(result.metrics.begin(), result.metrics.end(), row.begin());
+    for (std::size_t i = 0; i < wanted_inputs.size(); ++i)
+      row[metrics + i] = result.inputs[static_cast<std::size_t>(wanted_inputs[i])];
+    file->Append(row);
   });
-  return columns;
+  for (std::size_t i = 0; i < metrics; ++i) cases.metrics.emplace_back(file, i);
+  cases.inputs.resize(InputColumns().size());
+  for (std::size_t i = 0; i < wanted_inputs.size(); ++i)
+    cases.inputs[static_cast<std::size_t>(wanted_inputs[i])] = CaseColumn(file, metrics + i);
+  return cases;
 }
 
 std::vector<double> CompletedValues(const CaseColumns& cases, const std::string& metric) {

@@ -3,10 +3,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "core/flight/metrics.h"
+#include "core/report/case_column.h"
 #include "core/report/lost_flight.h"
 #include "core/report/result_folder.h"
 
@@ -16,15 +18,20 @@ namespace dispersa {
 struct CaseColumns {
   std::vector<std::uint64_t> index;
   std::vector<Outcome> outcome;
-  std::vector<std::vector<double>> inputs;   ///< one column an entry of InputColumns(); only those asked for
-  std::vector<LostFlight> lost_flights;      ///< all of them
-  std::vector<std::vector<double>> metrics;  ///< one column an entry of MetricNames()
+  std::vector<CaseColumn> inputs;   ///< one an entry of InputColumns(); empty are those that were not asked for
+  std::vector<CaseColumn> metrics;  ///< one an entry of MetricNames()
+  std::vector<LostFlight> lost_flights;  ///< the first kListedLostFlights
 
   std::size_t rows() const { return index.size(); }
 };
 
-/// Reads all metrics, and those inputs that `wanted_inputs` (positions in InputColumns()) names.
-CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& wanted_inputs);
+/// A page that lists more of them is read by nobody; cases.csv has them all.
+inline constexpr std::size_t kListedLostFlights = 10000;
+
+/// Reads all metrics, and those inputs that `wanted_inputs` (positions in InputColumns()) names, in one pass;
+/// `observe`, if given, sees each result in it. A million cases take 50 MB beside the columns in use.
+CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& wanted_inputs,
+                        const std::function<void(const CaseResult&)>& observe = {});
 
 /// A metric's values, NaN for every flight that was not completed whatever it measured until then.
 std::vector<double> CompletedValues(const CaseColumns& cases, const std::string& metric);

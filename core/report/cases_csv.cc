@@ -5,7 +5,6 @@
 #include <string>
 
 #include "core/flight/flight_inputs.h"
-#include "core/report/output_file.h"
 #include "core/report/text.h"
 
 namespace dispersa {
@@ -25,11 +24,12 @@ std::string CasesCsvLine(const CaseResult& result) {
   return line + "," + result.digest.Hex() + "\n";
 }
 
-void WriteCasesCsv(const ResultFolder& folder) {
-  OutputFile file(folder.directory() / "cases.csv");
-  file.Write(CasesCsvHeader());
-  folder.ForEach([&](const CaseResult& result) { file.Write(CasesCsvLine(result)); });
-  file.Commit();
+CasesCsv::CasesCsv(const std::filesystem::path& file) : file_(file) { file_.Write(CasesCsvHeader()); }
+
+void WriteCasesCsv(const ResultFolder& folder, const std::filesystem::path& file) {
+  CasesCsv csv(file);
+  folder.ForEach([&csv](const CaseResult& result) { csv.Write(result); });
+  csv.Commit();
 }
 
 }  // namespace dispersa

@@ -1,9 +1,11 @@
 // cases.csv: one line a case, sorted by case index, the same bytes however the cases were flown.
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include "core/campaign/case_result.h"
+#include "core/report/output_file.h"
 #include "core/report/result_folder.h"
 
 namespace dispersa {
@@ -12,7 +14,20 @@ namespace dispersa {
 std::string CasesCsvHeader();
 std::string CasesCsvLine(const CaseResult& result);
 
-/// From what is stored; replaces the file as a whole.
-void WriteCasesCsv(const ResultFolder& folder);
+/// The file as it grows; it takes its place as a whole.
+class CasesCsv {
+ public:
+  explicit CasesCsv(const std::filesystem::path& file);
+
+  /// In ascending order of case index.
+  void Write(const CaseResult& result) { file_.Write(CasesCsvLine(result)); }
+  void Commit() { file_.Commit(); }
+
+ private:
+  OutputFile file_;
+};
+
+/// All that is stored.
+void WriteCasesCsv(const ResultFolder& folder, const std::filesystem::path& file);
 
 }  // namespace dispersa

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "core/report/html_parts.h"
 #include "core/report/metric_catalogue.h"
@@ -17,25 +16,30 @@ struct Pairs {
   std::vector<std::size_t> a, b;  ///< rows
 };
 
-bool SameDraws(const CaseColumns& a, std::size_t row_a, const CaseColumns& b, std::size_t row_b) {
+/// By case index, then column by column: a pair stays where every input that was read of both is equal.
+Pairs PairUp(const CaseColumns& a, const CaseColumns& b) {
+  Pairs pairs;
+  for (std::size_t row = 0, other = 0; row < a.rows(); ++row) {
+    while (other < b.rows() && b.index[other] < a.index[row]) ++other;
+    if (other == b.rows() || b.index[other] != a.index[row]) continue;
+    pairs.a.push_back(row);
+    pairs.b.push_back(other);
+  }
+  std::vector<bool> same(pairs.a.size(), true);
   for (std::size_t i = 0; i < std::min(a.inputs.size(), b.inputs.size()); ++i) {
     if (a.inputs[i].empty() || b.inputs[i].empty()) continue;  // not read
-    if (a.inputs[i][row_a] != b.inputs[i][row_b]) return false;
+    const std::vector<double> of_a = a.inputs[i];
+    const std::vector<double> of_b = b.inputs[i];
+    for (std::size_t pair = 0; pair < same.size(); ++pair)
+      if (of_a[pairs.a[pair]] != of_b[pairs.b[pair]]) same[pair] = false;
   }
-  return true;
-}
-
-Pairs PairUp(const CaseColumns& a, const CaseColumns& b) {
-  std::map<std::uint64_t, std::size_t> rows_of_b;
-  for (std::size_t row = 0; row < b.rows(); ++row) rows_of_b[b.index[row]] = row;
-  Pairs pairs;
-  for (std::size_t row = 0; row < a.rows(); ++row) {
-    const auto found = rows_of_b.find(a.index[row]);
-    if (found == rows_of_b.end() || !SameDraws(a, row, b, found->second)) continue;
-    pairs.a.push_back(row);
-    pairs.b.push_back(found->second);
+  Pairs kept;
+  for (std::size_t pair = 0; pair < same.size(); ++pair) {
+    if (!same[pair]) continue;
+    kept.a.push_back(pairs.a[pair]);
+    kept.b.push_back(pairs.b[pair]);
   }
-  return pairs;
+  return kept;
 }
 
 std::string BoundText(double value) {

@@ -18,11 +18,14 @@ constexpr std::size_t kLeastFlights = 30;
 constexpr std::size_t kShown = 12;
 constexpr double kFalseDiscoveryRate = 0.10;
 
+/// Of so many flights indices have a standard error below a hundredth; more would only take time and memory.
+constexpr std::size_t kCauseFlights = 50000;
+
 /// A function of the inputs that may act on its own.
 struct Feature {
   std::string input;
   std::string name;
-  std::vector<double> values;
+  Ranked values;
 };
 
 bool IsAngle(const std::string& column) {
@@ -83,33 +86,53 @@ std::vector<Feature> Features(const Campaign& campaign, const CaseColumns& cases
             along[i] *= m[i];
             across[i] *= m[i];
           }
-          features.push_back({both, "m cos x", std::move(along)});
-          features.push_back({both, "m sin x", std::move(across)});
+          features.push_back({both, "m cos x", along});
+          features.push_back({both, "m sin x", across});
         }
       }
-      features.push_back({name, "sin x", std::move(sine)});
-      features.push_back({name, "cos x", std::move(cosine)});
+      features.push_back({name, "sin x", sine});
+      features.push_back({name, "cos x", cosine});
       continue;
     }
     // x squared has the ranks of |x|.
     std::vector<double> size;
     for (const double value : x) size.push_back(std::fabs(value - nominal[static_cast<std::size_t>(input)]));
-    features.push_back({name, "|x|", std::move(size)});
+    features.push_back({name, "|x|", size});
   }
   return features;
 }
 
-MetricDrivers DriversOf(const Campaign& campaign, const std::string& metric, const CaseColumns& cases) {
+/// The features of the rows that were asked for last: most metrics are defined for the same flights.
+class FeaturesOfRows {
+ public:
+  FeaturesOfRows(const Campaign& campaign, const CaseColumns& cases) : campaign_(campaign), cases_(cases) {}
+
+  const std::vector<Feature>& Of(const std::vector<std::size_t>& rows) {
+    if (rows != rows_) features_.clear();
+    if (rows != rows_) features_ = Features(campaign_, cases_, rows);
+    rows_ = rows;
+    return features_;
+  }
+
+ private:
+  const Campaign& campaign_;
+  const CaseColumns& cases_;
+  std::vector<std::size_t> rows_;
+  std::vector<Feature> features_;
+};
+
+MetricDrivers DriversOf(const std::string& metric, const CaseColumns& cases, FeaturesOfRows& known) {
   MetricDrivers result{metric, {}};
   const std::vector<double> values = CompletedValues(cases, metric);
   std::vector<std::size_t> rows;
-  for (std::size_t i = 0; i < values.size(); ++i) {
+  for (std::size_t i = 0; i < values.size() && rows.size() < kCauseFlights; ++i) {
     if (std::isfinite(values[i])) rows.push_back(i);
   }
   if (rows.size() < kLeastFlights) return result;
   const std::vector<double> y = Pick(values, rows);
   if (!Varies(y)) return result;
-  const std::vector<Feature> features = Features(campaign, cases, rows);
+  const Ranked ranked_y(y);
+  const std::vector<Feature>& features = known.Of(rows);
 
   // One driver an input: the index is that of the raw input, which no feature of it exceeds; the feature says
   // how.
@@ -122,7 +145,7 @@ MetricDrivers DriversOf(const Campaign& campaign, const std::string& metric, con
   std::vector<Candidate> candidates;
   for (std::size_t i = 0; i < features.size(); ++i) {
     const bool pair = features[i].name.starts_with("m ");
-    const double correlation = std::fabs(RankCorrelation(features[i].values, y));
+    const double correlation = std::fabs(RankCorrelation(features[i].values, ranked_y));
     const auto same = std::find_if(candidates.begin(), candidates.end(), [&](const Candidate& other) {
       return !pair && features[other.indexed].input == features[i].input &&
              !features[other.indexed].name.starts_with("m ");
@@ -136,12 +159,12 @@ MetricDrivers DriversOf(const Campaign& campaign, const std::string& metric, con
   }
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.index > b.index; });
-  std::vector<std::vector<double>> named;
+  std::vector<const Ranked*> named;
   for (const Candidate& candidate : candidates) {
     if (!features[candidate.indexed].name.starts_with("m "))
-      named.push_back(features[candidate.named].values);
+      named.push_back(&features[candidate.named].values);
   }
-  const std::vector<double> partial = PartialRankCorrelations(named, y);
+  const std::vector<double> partial = PartialRankCorrelations(named, ranked_y);
   std::size_t regressed = 0;
   for (const Candidate& candidate : candidates) {
     const bool pair = features[candidate.indexed].name.starts_with("m ");
@@ -159,29 +182,33 @@ MetricDrivers DriversOf(const Campaign& campaign, const std::string& metric, con
 std::vector<MetricDrivers> FindDrivers(const Campaign& campaign, const std::vector<std::string>& metrics,
                                        const CaseColumns& cases) {
   std::vector<MetricDrivers> drivers;
-  for (const std::string& metric : metrics) drivers.push_back(DriversOf(campaign, metric, cases));
+  FeaturesOfRows features(campaign, cases);
+  for (const std::string& metric : metrics) drivers.push_back(DriversOf(metric, cases, features));
   return drivers;
 }
 
 std::vector<FailureDrivers> FindFailureDrivers(const Campaign& campaign, const CaseColumns& cases) {
   constexpr std::size_t kEnoughFailures = 10;
   std::vector<FailureDrivers> all;
-  std::vector<std::size_t> rows(cases.rows());
-  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = i;
-  const std::vector<Feature> features =
-      rows.size() < kLeastFlights ? std::vector<Feature>{} : Features(campaign, cases, rows);
+  FeaturesOfRows known(campaign, cases);
   for (const Requirement& requirement : campaign.requirements) {
     FailureDrivers result{requirement.metric, false, 0, {}};
     const Limits limits = LimitsOf(requirement);
     const std::vector<double> values = CompletedValues(cases, requirement.metric);
-    std::vector<bool> marked(rows.size());
-    std::vector<double> margins;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      marked[i] = !limits.Meets(values[i]);
-      margins.push_back(std::isfinite(values[i]) ? limits.Margin(values[i]) : -HUGE_VAL);
+    // The first flights, and of those beyond them the failing: what they are held against stays a fair sample.
+    std::vector<std::size_t> rows;
+    std::vector<bool> marked;
+    for (std::size_t i = 0; i < values.size() && rows.size() < 2 * kCauseFlights; ++i) {
+      const bool failed = !limits.Meets(values[i]);
+      if (i >= kCauseFlights && !failed) continue;
+      rows.push_back(i);
+      marked.push_back(failed);
     }
     result.flights = static_cast<std::size_t>(std::count(marked.begin(), marked.end(), true));
     if (result.flights < kEnoughFailures && rows.size() >= kLeastFlights) {
+      std::vector<double> margins;
+      for (const std::size_t row : rows)
+        margins.push_back(std::isfinite(values[row]) ? limits.Margin(values[row]) : -HUGE_VAL);
       std::vector<double> sorted = margins;
       std::sort(sorted.begin(), sorted.end());
       const double nearest = sorted[rows.size() / 10];
@@ -189,13 +216,15 @@ std::vector<FailureDrivers> FindFailureDrivers(const Campaign& campaign, const C
       result.nearest = true;
       result.flights = static_cast<std::size_t>(std::count(marked.begin(), marked.end(), true));
     }
+    static const std::vector<Feature> kNone;
+    const std::vector<Feature>& features = rows.size() < kLeastFlights ? kNone : known.Of(rows);
     std::vector<double> p;
     for (const Feature& feature : features) p.push_back(RankSumP(feature.values, marked));
     const std::vector<double> rates = FalseDiscoveryRates(p);
     for (std::size_t i = 0; i < features.size(); ++i) {
       if (rates[i] > kFalseDiscoveryRate) continue;
       double inside = 0.0, outside = 0.0;
-      const std::vector<double> ranks = Ranks(features[i].values);
+      const std::vector<double>& ranks = features[i].values.ranks();
       for (std::size_t k = 0; k < rows.size(); ++k) (marked[k] ? inside : outside) += ranks[k];
       const auto in = static_cast<double>(result.flights);
       const bool larger = inside / in > outside / (static_cast<double>(rows.size()) - in);

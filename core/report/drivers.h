@@ -25,7 +25,7 @@ struct MetricDrivers {
   std::vector<Driver> drivers;  ///< by falling index, at most a dozen
 };
 
-/// Of each metric; empty for one that fewer than 30 completed flights define, or that does not vary.
+/// Of each metric, from the first 50,000 flights that define it; empty for one that fewer than 30 completed flights define, or that does not vary.
 std::vector<MetricDrivers> FindDrivers(const Campaign& campaign, const std::vector<std::string>& metrics,
                                        const CaseColumns& cases);
 
@@ -37,7 +37,7 @@ struct FailureDriver {
   double false_discovery_rate = 1.0;  ///< of this and all that rank before it (Benjamini and Hochberg)
 };
 
-/// What the failing flights of a requirement have in common. Where fewer than ten fail, the tenth of the
+/// What the failing flights of a requirement have in common, against the others of the first 50,000. Where fewer than ten fail, the tenth of the
 /// flights nearest to failing, the failing among them.
 struct FailureDrivers {
   std::string metric;

@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "core/flight/flight_inputs.h"
-#include "core/report/cases_csv.h"
 #include "core/report/output_file.h"
 #include "core/report/text.h"
 
@@ -39,13 +38,6 @@ std::string TestCase(const std::string& suite, const std::string& name, const Fi
 }
 
 }  // namespace
-
-void ExportCsv(const ResultFolder& folder, const std::filesystem::path& file) {
-  OutputFile output(file);
-  output.Write(CasesCsvHeader());
-  folder.ForEach([&](const CaseResult& result) { output.Write(CasesCsvLine(result)); });
-  output.Commit();
-}
 
 void ExportJsonLines(const ResultFolder& folder, const std::filesystem::path& file) {
   OutputFile output(file);

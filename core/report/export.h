@@ -10,7 +10,6 @@
 namespace dispersa {
 
 /// cases.csv as it stands in the folder, made from what is stored.
-void ExportCsv(const ResultFolder& folder, const std::filesystem::path& file);
 /// One JSON object a case and line, keys as the columns of cases.csv; an empty cell is null.
 void ExportJsonLines(const ResultFolder& folder, const std::filesystem::path& file);
 

@@ -198,8 +198,12 @@ std::string OutcomesSection(const CampaignSummary& summary) {
                       HtmlText(flight.reason),
                       "<code class=\"copy\">" + ReplayCommand(flight.case_index) + "</code>"});
     }
-    // All of them, however many; a long list is folded away on screen and printed in full.
-    html += lost > 20 ? "<details><summary>all of them</summary>\n" + lost_table.Html() + "</details>\n"
+    // A long list is folded away on screen and printed in full.
+    const std::string which = lost > summary.lost_flights.size()
+                                  ? fmt::format("the first {}; <code>cases.csv</code> has all of them",
+                                                summary.lost_flights.size())
+                                  : "all of them";
+    html += lost > 20 ? "<details><summary>" + which + "</summary>\n" + lost_table.Html() + "</details>\n"
                       : lost_table.Html();
   }
   if (!summary.quarantined.empty()) {

@@ -19,8 +19,10 @@ CampaignSummary WriteReports(const ResultFolder& folder, const Campaign& campaig
                                  folder.directory().string(), folder.Provenance("engine"), EngineVersion()),
                      "the engine that flew it, or --no-histories");
   }
-  WriteCasesCsv(folder);
-  const CaseColumns cases = ReadColumns(folder, DispersedInputs(campaign));
+  CasesCsv csv(folder.directory() / "cases.csv");
+  const CaseColumns cases =
+      ReadColumns(folder, DispersedInputs(campaign), [&csv](const CaseResult& result) { csv.Write(result); });
+  csv.Commit();
   CampaignSummary summary = BuildSummary(folder, campaign, cases);
   FlightHistories histories;
   if (options.histories) {

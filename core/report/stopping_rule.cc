@@ -49,9 +49,12 @@ void StoppingRule::Add(const CaseResult& result) {
 }
 
 void StoppingRule::Add(const CaseColumns& cases) {
+  if (!stops_) return;
+  std::vector<std::vector<double>> columns;
+  for (const std::size_t column : columns_) columns.push_back(cases.metrics[column]);
   std::vector<double> values(columns_.size());
   for (std::size_t row = 0; row < cases.rows(); ++row) {
-    for (std::size_t i = 0; i < columns_.size(); ++i) values[i] = cases.metrics[columns_[i]][row];
+    for (std::size_t i = 0; i < columns_.size(); ++i) values[i] = columns[i][row];
     Add(cases.index[row], cases.outcome[row] == Outcome::kCompleted, values);
   }
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include "core/report/chart_scale.h"
@@ -19,6 +20,7 @@ constexpr double kBottom = 42.0;
 constexpr double kTitleRow = 20.0;  ///< the y axis's label
 constexpr double kLegendRow = 17.0;
 constexpr double kMarkRow = 13.0;   ///< labels of events
+constexpr std::size_t kManyPoints = 5000;
 constexpr double kCharacter = 6.9;  ///< mean width of a letter of the legend
 
 std::string Coordinate(double value) {
@@ -31,12 +33,13 @@ struct Range {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
 
+  void Add(double value, bool positive_only) {
+    if (!std::isfinite(value) || (positive_only && value <= 0.0)) return;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
   void Add(const std::vector<double>& values, bool positive_only) {
-    for (const double value : values) {
-      if (!std::isfinite(value) || (positive_only && value <= 0.0)) continue;
-      low = std::min(low, value);
-      high = std::max(high, value);
-    }
+    for (const double value : values) Add(value, positive_only);
   }
 };
 
@@ -172,20 +175,20 @@ std::string SvgChart::Svg(const std::string& description) const {
   for (const Series& series : series_) {
     if (series.kind != Series::Kind::kVerticalLimit) continue;
     const double room = 0.03 * (x_range.high - x_range.low);  // a limit shall not lie on the frame
-    x_range.Add({series.x[0] - room, series.x[0] + room}, x_.logarithmic);
+    x_range.Add(std::vector{series.x[0] - room, series.x[0] + room}, x_.logarithmic);
   }
   const ChartScale xs(x_, x_range.low, x_range.high, kLeft, right, std::max(3, width_ / 90));
   Range y_range;
   for (const Series& series : series_) {
-    if (series.kind == Series::Kind::kBars) y_range.Add({0.0}, y_.logarithmic);
+    if (series.kind == Series::Kind::kBars) y_range.Add(0.0, y_.logarithmic);
     if (series.x.size() != series.low.size() || series.kind == Series::Kind::kBars) {
       y_range.Add(series.low, y_.logarithmic);
       continue;
     }
     for (std::size_t i = 0; i < series.x.size(); ++i) {  // only what the x axis shows
       if (!(series.x[i] >= xs.low() && series.x[i] <= xs.high())) continue;
-      y_range.Add({series.low[i]}, y_.logarithmic);
-      if (!series.high.empty()) y_range.Add({series.high[i]}, y_.logarithmic);
+      y_range.Add(series.low[i], y_.logarithmic);
+      if (!series.high.empty()) y_range.Add(series.high[i], y_.logarithmic);
     }
   }
   const ChartScale ys(y_, y_range.low, y_range.high, bottom, top, 5);
@@ -227,9 +230,14 @@ std::string SvgChart::Svg(const std::string& description) const {
         // One path of strokes without length, whose round ends are the dots: an element a case would be
         // heavy.
         std::string dots;
+        std::set<std::pair<long, long>> taken;
         for (std::size_t i = 0; i < series.x.size(); ++i) {
           if (!std::isfinite(series.x[i]) || !std::isfinite(series.low[i])) continue;
-          dots += "M" + Coordinate(xs.At(series.x[i])) + " " + Coordinate(ys.At(series.low[i])) + "h0";
+          const double x = xs.At(series.x[i]);
+          const double y = ys.At(series.low[i]);
+          // Of many dots one a pixel is seen.
+          if (series.x.size() > kManyPoints && !taken.insert({std::lround(x), std::lround(y)}).second) continue;
+          dots += "M" + Coordinate(x) + " " + Coordinate(y) + "h0";
         }
         svg += fmt::format("<path class=\"{}\" d=\"{}\"/>", series.style, dots);
         break;

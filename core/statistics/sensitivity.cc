@@ -17,11 +17,11 @@ constexpr int kBootstrapSamples = 200;
 /// work.
 constexpr std::size_t kBootstrapGroups = 1000;
 
-std::vector<std::size_t> Order(const std::vector<double>& values) {
-  std::vector<std::size_t> order(values.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
+std::vector<std::uint32_t> Order(const std::vector<double>& values) {
+  std::vector<std::uint32_t> order(values.size());
+  std::iota(order.begin(), order.end(), std::uint32_t{0});
   std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
+                   [&](std::uint32_t a, std::uint32_t b) { return values[a] < values[b]; });
   return order;
 }
 
@@ -30,12 +30,13 @@ std::size_t ClassCount(std::size_t n) {
   return std::clamp<std::size_t>(static_cast<std::size_t>(std::sqrt(static_cast<double>(n))), 3, 100);
 }
 
-std::vector<std::size_t> Classes(const std::vector<double>& x, std::size_t count) {
-  const std::vector<std::size_t> order = Order(x);
-  std::vector<std::size_t> classes(x.size());
+std::vector<std::uint8_t> Classes(const Ranked& x, std::size_t count) {
+  const std::vector<std::uint32_t>& order = x.order();
+  std::vector<std::uint8_t> classes(x.size());
   for (std::size_t rank = 0; rank < order.size(); ++rank) {
-    const bool equal = rank > 0 && x[order[rank]] == x[order[rank - 1]];
-    classes[order[rank]] = equal ? classes[order[rank - 1]] : rank * count / order.size();
+    const bool equal = rank > 0 && x.ranks()[order[rank]] == x.ranks()[order[rank - 1]];
+    classes[order[rank]] =
+        equal ? classes[order[rank - 1]] : static_cast<std::uint8_t>(rank * count / order.size());
   }
   return classes;
 }
@@ -76,15 +77,24 @@ double Correlation(const std::vector<double>& x, const std::vector<double>& y) {
 
 }  // namespace
 
-SensitivityIndex FirstOrderIndex(const std::vector<double>& x, const std::vector<double>& y,
-                                 std::uint64_t seed) {
+Ranked::Ranked(const std::vector<double>& values) : order_(Order(values)), ranks_(values.size()) {
+  for (std::size_t first = 0; first < order_.size();) {
+    std::size_t end = first + 1;
+    while (end < order_.size() && values[order_[end]] == values[order_[first]]) ++end;
+    for (std::size_t i = first; i < end; ++i)
+      ranks_[order_[i]] = 0.5 * (static_cast<double>(first + end) + 1.0);
+    first = end;
+  }
+}
+
+SensitivityIndex FirstOrderIndex(const Ranked& x, const std::vector<double>& y, std::uint64_t seed) {
   assert(x.size() == y.size());
   const std::size_t n = x.size();
   if (n < 8) return {};
   // About the mean, so that the squares lose no digits.
   const double mean = std::accumulate(y.begin(), y.end(), 0.0) / static_cast<double>(n);
   const std::size_t count = ClassCount(n);
-  const std::vector<std::size_t> classes = Classes(x, count);
+  const std::vector<std::uint8_t> classes = Classes(x, count);
   const std::size_t groups = std::min(n, kBootstrapGroups);
   std::vector<std::vector<ClassSums>> sums(groups, std::vector<ClassSums>(groups == n ? 1 : count));
   std::vector<ClassSums> all(count);
@@ -121,12 +131,12 @@ SensitivityIndex FirstOrderIndex(const std::vector<double>& x, const std::vector
           std::clamp(index + 1.96 * spread, 0.0, 1.0)};
 }
 
-double FirstOrderShare(const std::vector<double>& x, const std::vector<double>& y) {
+double FirstOrderShare(const Ranked& x, const std::vector<double>& y) {
   assert(x.size() == y.size());
   if (x.size() < 8) return 0.0;
   const double mean = std::accumulate(y.begin(), y.end(), 0.0) / static_cast<double>(y.size());
   const std::size_t count = ClassCount(x.size());
-  const std::vector<std::size_t> classes = Classes(x, count);
+  const std::vector<std::uint8_t> classes = Classes(x, count);
   std::vector<ClassSums> sums(count);
   for (std::size_t i = 0; i < x.size(); ++i) {
     const double value = y[i] - mean;
@@ -138,37 +148,22 @@ double FirstOrderShare(const std::vector<double>& x, const std::vector<double>& 
   return Epsilon(sums);
 }
 
-std::vector<double> Ranks(const std::vector<double>& values) {
-  const std::vector<std::size_t> order = Order(values);
-  std::vector<double> ranks(values.size());
-  for (std::size_t first = 0; first < order.size();) {
-    std::size_t end = first + 1;
-    while (end < order.size() && values[order[end]] == values[order[first]]) ++end;
-    for (std::size_t i = first; i < end; ++i)
-      ranks[order[i]] = 0.5 * (static_cast<double>(first + end) + 1.0);
-    first = end;
-  }
-  return ranks;
+double RankCorrelation(const Ranked& x, const Ranked& y) {
+  return x.size() == 0 ? 0.0 : Correlation(x.ranks(), y.ranks());
 }
 
-double RankCorrelation(const std::vector<double>& x, const std::vector<double>& y) {
-  return x.empty() ? 0.0 : Correlation(Ranks(x), Ranks(y));
-}
-
-std::vector<double> PartialRankCorrelations(const std::vector<std::vector<double>>& x,
-                                            const std::vector<double>& y) {
+std::vector<double> PartialRankCorrelations(const std::vector<const Ranked*>& x, const Ranked& y) {
   const auto d = static_cast<Eigen::Index>(x.size());
   std::vector<double> result(x.size(), 0.0);
   // A regression needs a few cases for each of its inputs.
   if (d == 0 || y.size() < 3 * x.size() + 3) return result;
-  std::vector<std::vector<double>> ranks;
-  for (const auto& each : x) ranks.push_back(Ranks(each));
-  ranks.push_back(Ranks(y));
+  std::vector<const Ranked*> all = x;
+  all.push_back(&y);
   Eigen::MatrixXd correlations = Eigen::MatrixXd::Identity(d + 1, d + 1);
   for (Eigen::Index i = 0; i <= d; ++i) {
     for (Eigen::Index j = 0; j < i; ++j) {
       correlations(i, j) = correlations(j, i) =
-          Correlation(ranks[static_cast<std::size_t>(i)], ranks[static_cast<std::size_t>(j)]);
+          RankCorrelation(*all[static_cast<std::size_t>(i)], *all[static_cast<std::size_t>(j)]);
     }
   }
   // Inputs that say the same twice are told apart by nothing: a little noise shares the effect among them.
@@ -181,9 +176,9 @@ std::vector<double> PartialRankCorrelations(const std::vector<std::vector<double
   return result;
 }
 
-double RankSumP(const std::vector<double>& x, const std::vector<bool>& marked) {
+double RankSumP(const Ranked& x, const std::vector<bool>& marked) {
   assert(x.size() == marked.size());
-  const std::vector<double> ranks = Ranks(x);
+  const std::vector<double>& ranks = x.ranks();
   const auto n = static_cast<double>(x.size());
   double m = 0.0, sum = 0.0, squares = 0.0;
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -200,7 +195,7 @@ double RankSumP(const std::vector<double>& x, const std::vector<bool>& marked) {
 }
 
 std::vector<double> FalseDiscoveryRates(const std::vector<double>& p_values) {
-  const std::vector<std::size_t> order = Order(p_values);
+  const std::vector<std::uint32_t> order = Order(p_values);
   std::vector<double> rates(p_values.size());
   double least = 1.0;
   for (std::size_t i = order.size(); i-- > 0;) {

@@ -10,6 +10,22 @@
 
 namespace dispersa {
 
+/// Values sorted once, to be held against many others.
+class Ranked {
+ public:
+  Ranked(const std::vector<double>& values);
+
+  std::size_t size() const { return ranks_.size(); }
+  /// Positions by rising value, equal values in the order given.
+  const std::vector<std::uint32_t>& order() const { return order_; }
+  /// From 1; equal values share their mean rank.
+  const std::vector<double>& ranks() const { return ranks_; }
+
+ private:
+  std::vector<std::uint32_t> order_;
+  std::vector<double> ranks_;
+};
+
 /// An index with its interval of 95 %, from the standard error over bootstrap samples.
 struct SensitivityIndex {
   double index = 0.0;
@@ -23,25 +39,22 @@ struct SensitivityIndex {
 /// (2012) 188; the correction is that of the analysis of variance, Kelley's epsilon squared). It sees any
 /// dependence on x alone, signed, symmetric or circular. Equal x stay in one class. 0 without variance of x
 /// or of y. Values are finite, as many of each. The samples' bits depend on `seed` alone.
-SensitivityIndex FirstOrderIndex(const std::vector<double>& x, const std::vector<double>& y,
+SensitivityIndex FirstOrderIndex(const Ranked& x, const std::vector<double>& y,
                                  std::uint64_t seed = 1);
 
 /// The index alone, unlimited below: what chance explains may come out negative.
-double FirstOrderShare(const std::vector<double>& x, const std::vector<double>& y);
+double FirstOrderShare(const Ranked& x, const std::vector<double>& y);
 
-/// Ranks from 1, equal values share their mean rank.
-std::vector<double> Ranks(const std::vector<double>& values);
 /// Pearson's correlation of the ranks; 0 where either has no variance.
-double RankCorrelation(const std::vector<double>& x, const std::vector<double>& y);
+double RankCorrelation(const Ranked& x, const Ranked& y);
 
 /// Partial rank correlation of each x with y, the other ones held: one value an x, 0 where it is not defined
 /// (S. Marino et al., J. Theor. Biol. 254 (2008) 178-196).
-std::vector<double> PartialRankCorrelations(const std::vector<std::vector<double>>& x,
-                                            const std::vector<double>& y);
+std::vector<double> PartialRankCorrelations(const std::vector<const Ranked*>& x, const Ranked& y);
 
 /// Two-sided p-value that x is as large among the marked cases as among the others: Wilcoxon, Mann and
 /// Whitney's rank sum in its normal approximation with ties. 1 when either side is empty.
-double RankSumP(const std::vector<double>& x, const std::vector<bool>& marked);
+double RankSumP(const Ranked& x, const std::vector<bool>& marked);
 
 /// p-values adjusted so that those up to q are false discoveries in a share of at most q (Y. Benjamini and
 /// Y. Hochberg, J. R. Statist. Soc. B 57 (1995) 289-300); in the order given.

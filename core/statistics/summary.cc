@@ -49,11 +49,15 @@ double Quantile(const std::vector<double>& sorted_values, double probability) {
 Summary Summarize(std::vector<double> values) {
   const std::size_t cases = values.size();
   const std::vector<double> sorted = SortedFinite(std::move(values));
+  return SummarizeSorted(sorted, cases - sorted.size());
+}
+
+Summary SummarizeSorted(const std::vector<double>& sorted, std::size_t undefined) {
   const std::size_t n = sorted.size();
   const auto identity = [](double value) { return value; };
   const double mean = n == 0 ? kUndefined : Sum(sorted, identity) / static_cast<double>(n);
   return {.n = n,
-          .undefined = cases - n,
+          .undefined = undefined,
           .mean = mean,
           .std = StandardDeviation(sorted, mean),
           .min = Quantile(sorted, 0.0),

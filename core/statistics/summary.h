@@ -28,6 +28,9 @@ struct Summary {
   double p99_865 = kUndefined;  ///< the normal's +3 sigma
 };
 
+/// Of values that SortedFinite() gave; `undefined` were left out.
+Summary SummarizeSorted(const std::vector<double>& sorted, std::size_t undefined);
+
 /// The result's bits do not depend on the order of `values`: they are sorted, and summed with compensation.
 Summary Summarize(std::vector<double> values);
 

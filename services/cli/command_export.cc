@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "core/report/cases_csv.h"
 #include "core/report/export.h"
 #include "core/report/output_file.h"
 #include "services/cli/command.h"
@@ -24,7 +25,7 @@ ExitCode Export(const ExportOptions& options) {
   const StoredCampaign stored = OpenStored(options.directory);
   switch (options.format) {
     case ExportFormat::kCsv:
-      ExportCsv(stored.folder, options.out);
+      WriteCasesCsv(stored.folder, options.out);
       break;
     case ExportFormat::kJsonLines:
       ExportJsonLines(stored.folder, options.out);

@@ -68,8 +68,8 @@ TEST(CasesCsv, DoesNotDependOnTheOrderOfArrival) {
   for (std::uint64_t k = 0; k < 50; ++k) batch.push_back(MakeCase((k * 37 + 11) % 50));  // 37 is prime to 50
   shuffled.Append(batch);
   shuffled.Append(batch);
-  WriteCasesCsv(ascending);
-  WriteCasesCsv(shuffled);
+  WriteCasesCsv(ascending, temporary / "ascending" / "cases.csv");
+  WriteCasesCsv(shuffled, temporary / "shuffled" / "cases.csv");
   const std::string csv = ReadText(temporary / "ascending" / "cases.csv");
   EXPECT_EQ(csv, ReadText(temporary / "shuffled" / "cases.csv"));
   std::string expected = CasesCsvHeader();
@@ -84,7 +84,7 @@ TEST(CasesCsv, ShowsNegativeZeroAsZeroAndUndefinedAsEmpty) {
   result.metrics[0] = -0.0;
   result.metrics[1] = kNaN;
   folder.Append({{result}});
-  WriteCasesCsv(folder);
+  WriteCasesCsv(folder, temporary / "out" / "cases.csv");
   CaseResult normalised = result;
   normalised.metrics[0] = 0.0;
   EXPECT_EQ(ReadText(temporary / "out" / "cases.csv"), CasesCsvHeader() + CasesCsvLine(normalised));

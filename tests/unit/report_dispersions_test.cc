@@ -115,7 +115,7 @@ TEST(Dispersions, TwoThatFeedOneInputPromiseNothingAboutIt) {
   campaign.dispersions = {Normal("drag_factor", 1.0, 0.1), Normal("drag_factor", 1.0, 0.2)};
   CaseColumns cases;
   cases.inputs.resize(InputColumns().size());
-  cases.inputs[static_cast<std::size_t>(FindInput("drag_factor"))].assign(20, 1.0);
+  cases.inputs[static_cast<std::size_t>(FindInput("drag_factor"))] = std::vector<double>(20, 1.0);
   for (const DispersionSummary& summary : SummarizeDispersions(campaign, cases)) {
     EXPECT_FALSE(summary.expected_mean.has_value());
   }

@@ -46,9 +46,9 @@ class Planted : public testing::Test {
 
   template <typename F>
   std::vector<Driver> DriversWhen(F metric) {
-    auto& values = cases_.metrics[MetricColumn(kPeak)];
-    values.clear();
+    std::vector<double> values;
     for (std::size_t k = 0; k < cases_.rows(); ++k) values.push_back(metric(k));
+    cases_.metrics[MetricColumn(kPeak)] = values;
     return FindDrivers(campaign_, {kPeak}, cases_).at(0).drivers;
   }
 

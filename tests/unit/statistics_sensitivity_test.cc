@@ -84,7 +84,7 @@ TEST(FirstOrderIndex, TheIntervalHoldsWhatItSays) {
 }
 
 TEST(FirstOrderIndex, DegenerateDataGiveZero) {
-  EXPECT_EQ(FirstOrderIndex({1, 2, 3}, {1, 2, 3}).index, 0.0);  // too few
+  EXPECT_EQ(FirstOrderIndex(std::vector<double>{1, 2, 3}, {1, 2, 3}).index, 0.0);  // too few
   const std::vector<double> same(100, 2.0);
   std::vector<double> rising(100);
   for (std::size_t i = 0; i < 100; ++i) rising[i] = static_cast<double>(i);
@@ -106,9 +106,9 @@ TEST(FirstOrderIndex, GroupsOfManyCasesGiveTheSameInterval) {
 }
 
 TEST(Ranks, ShareTheMeanOfTies) {
-  EXPECT_THAT(Ranks({3.0, 1.0, 3.0, 2.0}), ElementsAre(3.5, 1.0, 3.5, 2.0));
-  EXPECT_DOUBLE_EQ(RankCorrelation({1, 2, 3, 4}, {10, 100, 1000, 10000}), 1.0);
-  EXPECT_DOUBLE_EQ(RankCorrelation({1, 2, 3, 4}, {1, 1, 1, 1}), 0.0);
+  EXPECT_THAT(Ranked(std::vector{3.0, 1.0, 3.0, 2.0}).ranks(), ElementsAre(3.5, 1.0, 3.5, 2.0));
+  EXPECT_DOUBLE_EQ(RankCorrelation(std::vector<double>{1, 2, 3, 4}, std::vector<double>{10, 100, 1000, 10000}), 1.0);
+  EXPECT_DOUBLE_EQ(RankCorrelation(std::vector<double>{1, 2, 3, 4}, std::vector<double>{1, 1, 1, 1}), 0.0);
 }
 
 TEST(PartialRankCorrelations, TellAConfounderFromACause) {
@@ -120,7 +120,8 @@ TEST(PartialRankCorrelations, TellAConfounderFromACause) {
     y.push_back(x.back() + 0.5 * Stream(5, k, "y").Normal());
   }
   EXPECT_GT(RankCorrelation(z, y), 0.7);
-  const auto partial = PartialRankCorrelations({x, z}, y);
+  const Ranked ranked_x(x), ranked_z(z);
+  const auto partial = PartialRankCorrelations({&ranked_x, &ranked_z}, y);
   EXPECT_GT(partial[0], 0.6);
   EXPECT_NEAR(partial[1], 0.0, 0.06);
 }

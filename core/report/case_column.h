@@ -1,0 +1,62 @@
+// One quantity over all cases. Few cases lie in memory; of many, the disk holds the columns and memory the one in use.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace dispersa {
+
+/// Rows go in, columns come out. Beyond a few thousand rows they lie in a file without a name, which ends with the
+/// object: in `directory`, or where that cannot be written in the system's folder for temporary files. Throws
+/// ResultError (kDiskFull, else kFile).
+class ColumnFile {
+ public:
+  ColumnFile(std::filesystem::path directory, std::size_t columns);
+  ~ColumnFile();
+  ColumnFile(const ColumnFile&) = delete;
+  ColumnFile& operator=(const ColumnFile&) = delete;
+
+  /// As many values as there are columns.
+  void Append(const std::vector<double>& row);
+  std::size_t rows() const { return rows_; }
+  std::vector<double> Read(std::size_t column) const;
+
+ private:
+  void WriteBlock();
+
+  std::filesystem::path directory_;
+  std::size_t columns_;
+  std::size_t rows_ = 0;
+  std::vector<double> block_;  ///< the last rows, column by column
+  int file_ = -1;              ///< the rows before, block by block
+};
+
+/// NaN = undefined.
+class CaseColumn {
+ public:
+  CaseColumn() = default;
+  /// In memory.
+  CaseColumn(std::vector<double> values) : values_(std::move(values)) {}
+  CaseColumn(std::shared_ptr<const ColumnFile> file, std::size_t number) : file_(std::move(file)), number_(number) {}
+
+  std::size_t size() const { return file_ ? file_->rows() : values_.size(); }
+  bool empty() const { return size() == 0; }
+  /// All values; of a column on disk they are read now.
+  std::vector<double> Values() const { return file_ ? file_->Read(number_) : values_; }
+  operator std::vector<double>() const { return Values(); }
+
+  // Of a column in memory only.
+  void push_back(double value) { values_.push_back(value); }
+  double operator[](std::size_t row) const { return values_[row]; }
+  double& operator[](std::size_t row) { return values_[row]; }
+
+ private:
+  std::vector<double> values_;
+  std::shared_ptr<const ColumnFile> file_;
+  std::size_t number_ = 0;
+};
+
+}  // namespace dispersa
