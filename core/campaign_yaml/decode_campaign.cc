@@ -9,7 +9,7 @@
 #include "core/campaign_yaml/load.h"
 #include "core/campaign_yaml/number_text.h"
 #include "core/campaign_yaml/yaml_reader.h"
-#include "core/engine/version.h"
+#include "core/flight/engine_version.h"
 #include "core/flight/metrics.h"
 #include "core/math/functions.h"
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "core/engine/version.h"
+#include "core/flight/engine_version.h"
 #include "core/paper/heat_map.h"
 #include "core/paper/paper_sections.h"
 #include "core/report/histories.h"

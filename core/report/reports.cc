@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/campaign/input_error.h"
-#include "core/engine/version.h"
+#include "core/flight/engine_version.h"
 #include "core/report/case_columns.h"
 #include "core/report/cases_csv.h"
 #include "core/report/histories.h"

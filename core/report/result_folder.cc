@@ -10,7 +10,7 @@
 #include <system_error>
 #include <utility>
 
-#include "core/engine/version.h"
+#include "core/flight/engine_version.h"
 #include "core/flight/flight_inputs.h"
 #include "core/flight/metrics.h"
 #include "core/report/database.h"

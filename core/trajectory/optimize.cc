@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/engine/version.h"
+#include "core/flight/engine_version.h"
 #include "core/optimization/feasibility_rules.h"
 #include "core/trajectory/constraints.h"
 #include "core/trajectory/refine.h"

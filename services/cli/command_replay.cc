@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/campaign/campaign_flights.h"
-#include "core/engine/version.h"
+#include "core/flight/engine_version.h"
 #include "core/report/histories.h"
 #include "core/report/output_file.h"
 #include "core/report/text.h"

@@ -22,7 +22,7 @@
 #include <vector>
 
 #include "core/campaign/campaign_flights.h"
-#include "core/engine/version.h"
+#include "core/flight/engine_version.h"
 #include "services/cli/campaign_output.h"
 #include "services/cli/command.h"
 #include "services/cli/execution_file.h"

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/engine/version.h"
+#include "core/flight/engine_version.h"
 #include "core/report/output_file.h"
 
 namespace dispersa {

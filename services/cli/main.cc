@@ -12,7 +12,7 @@
 
 #include "core/campaign/input_error.h"
 #include "core/campaign_yaml/yaml_reader.h"
-#include "core/engine/version.h"
+#include "core/flight/engine_version.h"
 #include "core/flight/lane_engine.h"
 #include "core/report/result_error.h"
 #include "services/cli/command.h"

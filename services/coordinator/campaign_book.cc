@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "core/engine/version.h"
+#include "core/flight/engine_version.h"
 #include "core/report/fingerprint.h"
 #include "services/coordinator/utc.h"
 

@@ -4,7 +4,7 @@
 #include <random>
 #include <utility>
 
-#include "core/engine/version.h"
+#include "core/flight/engine_version.h"
 
 namespace dispersa {
 namespace {

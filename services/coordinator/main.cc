@@ -11,7 +11,7 @@
 #include <thread>
 #include <utility>
 
-#include "core/engine/version.h"
+#include "core/flight/engine_version.h"
 #include "core/report/reports.h"
 #include "services/coordinator/coordinator.h"
 #include "services/coordinator/open_campaign.h"

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "core/engine/version.h"
+#include "core/flight/engine_version.h"
 #include "core/flight/lane_engine.h"
 #include "services/worker/worker.h"
 

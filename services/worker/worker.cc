@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/campaign_yaml/load.h"
-#include "core/engine/version.h"
+#include "core/flight/engine_version.h"
 
 namespace dispersa {
 namespace {

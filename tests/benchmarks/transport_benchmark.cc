@@ -8,7 +8,7 @@
 #include <set>
 #include <thread>
 
-#include "core/engine/version.h"
+#include "core/flight/engine_version.h"
 #include "core/flight/flight_inputs.h"
 #include "services/coordinator/ledger.h"
 #include "services/transport/coordinator_link.h"

@@ -15,7 +15,7 @@
 #include <memory>
 #include <set>
 
-#include "core/engine/version.h"
+#include "core/flight/engine_version.h"
 #include "core/flight/flight_inputs.h"
 #include "core/report/fingerprint.h"
 #include "services/transport/complaints.h"

@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/engine/version.h"
+#include "core/flight/engine_version.h"
 
 namespace dispersa {
 namespace {

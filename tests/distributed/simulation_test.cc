@@ -14,7 +14,7 @@
 #include <variant>
 #include <vector>
 
-#include "core/engine/version.h"
+#include "core/flight/engine_version.h"
 #include "core/report/fingerprint.h"
 #include "services/coordinator/dispatcher.h"
 #include "services/worker/flight_desk.h"

@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "core/campaign_yaml/load.h"
-#include "core/engine/version.h"
+#include "core/flight/engine_version.h"
 #include "services/transport/coordinator_link.h"
 #include "services/transport/private_domain.h"
 

@@ -1,4 +1,4 @@
-"""core/engine/engine_version.cmake: what changes the engine version and what does not."""
+"""core/flight/engine_version.cmake: what changes the engine version and what does not."""
 import hashlib
 import os
 import pathlib
@@ -8,7 +8,7 @@ import tempfile
 import unittest
 
 CMAKE = os.environ.get("CMAKE", "cmake")
-SCRIPT = pathlib.Path(__file__).parents[2] / "core/engine/engine_version.cmake"
+SCRIPT = pathlib.Path(__file__).parents[2] / "core/flight/engine_version.cmake"
 
 
 class EngineVersionTest(unittest.TestCase):

@@ -8,7 +8,7 @@
 
 #include "core/campaign/campaign_flights.h"
 #include "core/campaign_yaml/load.h"
-#include "core/engine/version.h"
+#include "core/flight/engine_version.h"
 #include "core/report/database.h"
 #include "tests/unit/report_test_support.h"
 

@@ -13,7 +13,7 @@
 #include <fstream>
 #include <limits>
 
-#include "core/engine/version.h"
+#include "core/flight/engine_version.h"
 #include "core/report/database.h"
 #include "core/report/fingerprint.h"
 #include "core/report/output_file.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/engine/version.h"
+#include "core/flight/engine_version.h"
 #include "core/report/stopping_rule.h"
 #include "tests/unit/report_test_support.h"
 

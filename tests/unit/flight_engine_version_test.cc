@@ -1,4 +1,4 @@
-#include "core/engine/version.h"
+#include "core/flight/engine_version.h"
 
 #include <gmock/gmock.h>
 

@@ -13,7 +13,7 @@ foreach(source IN LISTS sources)
 endforeach()
 string(SHA256 digest "${manifest}")
 string(SUBSTRING "${digest}" 0 12 digest)
-file(WRITE "${OUTPUT}" "#include \"core/engine/version.h\"
+file(WRITE "${OUTPUT}" "#include \"core/flight/engine_version.h\"
 
 namespace dispersa {
 
