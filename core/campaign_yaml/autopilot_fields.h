@@ -1,8 +1,9 @@
 // The keys of an autopilot's blocks, declared once: whoever reads, writes or lists them visits them here.
 //
 // A visitor `f` has a function for each kind of key; `A` is const where it only reads:
-//   f.Quantity(stem, dimension, range, value)         a number with a unit; Guard: the same, off (0) where
-//   absent f.Number(key, range, value)                       a number without unit; NumberGuard likewise
+//   f.Quantity(stem, dimension, range, value)         a number with a unit
+//   f.Number(key, range, value)                       a number without one
+//   f.Guard, f.NumberGuard                            the same; 0, which is off, where absent
 //   f.Flag(key, value)                                false where absent
 //   f.EachStage(key, range, values)                   a list of one number a stage
 //   f.Stage(key, stage)                               1-based; 0, all of them, where absent

@@ -60,7 +60,9 @@ AxisConfig DecodeAxis(const InputNode& node, const std::string& path, ProblemLis
   AxisConfig axis;
   std::vector<std::pair<std::string, ControlLaw>> laws;
   for (const LawInfo& law : kLaws) laws.emplace_back(law.name, law.law);
+  const std::size_t before = problems.size();
   axis.law = map.Choice<ControlLaw>("law", laws);
+  const bool is_law = problems.size() == before;  // else nobody knows what it needs
   map.Each("gains", 1, kMaxStages, [&](const InputNode& item, const std::string& item_path) {
     FieldReader fields(item, item_path, problems);
     VisitGains(fields, axis.gains.emplace_back());
@@ -70,7 +72,7 @@ AxisConfig DecodeAxis(const InputNode& node, const std::string& path, ProblemLis
     VisitFilter(fields, axis.filters.emplace_back());
   });
   EachBlock(axis, [&](const char* key, bool needed, auto visit) {
-    const InputNode* block = needed ? &map.Required(key, "a map, which this law needs") : map.Optional(key);
+    const InputNode* block = needed && is_law ? &map.Required(key, "a map, which this law needs") : map.Optional(key);
     if (block == nullptr) return;
     FieldReader fields(*block, map.PathOf(key), problems);
     visit(fields);

@@ -26,8 +26,7 @@ inline constexpr LawInfo kLaws[] = {
     {.law = ControlLaw::kAdaptiveFuzzy,
      .name = "adaptive_fuzzy",
      .meaning = "The paper's direct adaptive fuzzy law, equations (20) to (32). The rules start from the "
-                "plane of the gains; "
-                "P_n follows from the gains and Q.",
+                "plane of the gains; P_n follows from the gains and Q.",
      .rules = true,
      .adaptation = true},
     {.law = ControlLaw::kFrozenFuzzy,
@@ -37,19 +36,15 @@ inline constexpr LawInfo kLaws[] = {
     {.law = ControlLaw::kPd, .name = "pd", .meaning = "Scheduled proportional-derivative control."},
     {.law = ControlLaw::kPid,
      .name = "pid",
-     .meaning = "Scheduled proportional-integral-derivative control; the integral holds while the deflection "
-                "is limited in "
-                "its sense.",
+     .meaning = "Scheduled proportional-integral-derivative control; the integral holds while the "
+                "deflection is limited in its sense.",
      .integral = true},
     {.law = ControlLaw::kPdAac,
      .name = "pd_aac",
-     .meaning = "Scheduled proportional-derivative control under adaptive augmenting control (J. S. Orr and "
-                "T. S. VanZwieten, "
-                "AIAA 2012-4549): the total gain rises with the departure from the reference model, in rad, "
-                "falls with fast "
-                "activity of the command, and leaks to 1, where margins are computed. Its leakage, filters "
-                "and floor are not "
-                "searched.",
+     .meaning = "Scheduled proportional-derivative control under adaptive augmenting control (J. S. Orr "
+                "and T. S. VanZwieten, AIAA 2012-4549): the total gain rises with the departure from the "
+                "reference model, in rad, falls with fast activity of the command, and leaks to 1, where "
+                "margins are computed. Its leakage, filters and floor are not searched.",
      .augmentation = true},
 };
 constexpr const LawInfo& InfoOf(ControlLaw law) { return kLaws[static_cast<int>(law)]; }
