@@ -5,46 +5,47 @@
 
 namespace dispersa {
 
-namespace {
-
-// One lane of the model, with what it points to.
-class OneLane {
- public:
-  OneLane(const LauncherPlant& plant, const LauncherPhase& phase, double time_s, const double* y)
-      : motion{{y[0], y[1], y[2]}, {y[3], y[4], y[5]}, {y[6], y[7], y[8], y[9]}, {y[10], y[11], y[12]}},
-        weather_(PrepareWeather(plant.environment.wind, plant.environment.density)) {
-    const LauncherStack& stack = plant.stacks[static_cast<std::size_t>(phase.stack)];
-    grid_ = stack.aero_grid ? stack.aero_grid
-                            : std::make_shared<const AeroGrid>(BuildAeroGrid(stack.aerodynamics));
-    LauncherPlant one;  // the stack alone
-    one.stacks = {stack};
-    one.stacks.front().aero_grid = grid_;
-    one.cg_factor = plant.cg_factor;
-    one.inertia_factor = plant.inertia_factor;
-    lanes::SetLane(plant_, 0, one, 0);
-    lanes::SetLane(plant_.weather, 0, weather_);
-    lanes::SetLane(drives, 0, stack.gimbal, phase.stuck_nozzle);
-    phase_ = {phase.burning, phase.burnt, phase.ignition_s, phase.expelled_mass_kg,
-              ToLanes(phase.control_torque_n_m)};
-    around = lanes::SurroundingsAt(plant.environment.earth, StandardAir(), plant_.weather, motion.p);
-    masses = lanes::MassesAt(plant_, phase_, time_s);
-    nozzles = lanes::NozzlesAt(y + kNozzleAngle);
+// What the lanes point to, and a lane for each stack.
+struct LauncherModel::Prepared {
+  explicit Prepared(const LauncherPlant& of)
+      : plant(of), weather(PrepareWeather(plant.environment.wind, plant.environment.density)) {
+    for (LauncherStack& stack : plant.stacks)
+      if (!stack.aero_grid) stack.aero_grid = std::make_shared<const AeroGrid>(BuildAeroGrid(stack.aerodynamics));
+    stacks.resize(plant.stacks.size());
+    for (std::size_t i = 0; i < stacks.size(); ++i) {
+      lanes::SetLane(stacks[i], 0, plant, static_cast<int>(i));
+      lanes::SetLane(stacks[i].weather, 0, weather);
+    }
   }
 
-  const lanes::Plant<double>& plant() const { return plant_; }
-  const lanes::Phase<double>& phase() const { return phase_; }
+  LauncherPlant plant;
+  FlightWeather weather;
+  std::vector<lanes::Plant<double>> stacks;
+};
 
-  lanes::Drives<double> drives{};
+namespace {
+
+// An instant of one lane.
+struct OneLane {
+  OneLane(const LauncherPlant& from, const lanes::Plant<double>& stack, const LauncherPhase& now, double time_s,
+          const double* y)
+      : earth(from.environment.earth),
+        jet_damping(from.jet_damping),
+        plant(stack),
+        phase{now.burning, now.burnt, now.ignition_s, now.expelled_mass_kg, ToLanes(now.control_torque_n_m)},
+        motion{{y[0], y[1], y[2]}, {y[3], y[4], y[5]}, {y[6], y[7], y[8], y[9]}, {y[10], y[11], y[12]}},
+        around(lanes::SurroundingsAt(earth, StandardAir(), plant.weather, motion.p)),
+        masses(lanes::MassesAt(plant, phase, time_s)),
+        nozzles(lanes::NozzlesAt(y + kNozzleAngle)) {}
+
+  const Earth& earth;
+  bool jet_damping;
+  const lanes::Plant<double>& plant;
+  lanes::Phase<double> phase;
   lanes::Motion<double> motion;
-  lanes::Surroundings<double> around{};
-  lanes::TimedMasses<double> masses{};
-  lanes::Nozzles<double> nozzles{};
-
- private:
-  FlightWeather weather_;
-  std::shared_ptr<const AeroGrid> grid_;
-  lanes::Plant<double> plant_{};
-  lanes::Phase<double> phase_{};
+  lanes::Surroundings<double> around;
+  lanes::TimedMasses<double> masses;
+  lanes::Nozzles<double> nozzles;
 };
 
 }  // namespace
@@ -57,17 +58,20 @@ RigidBodyState AfterSeparation(const LauncherPlant& plant, int below, const Rigi
   return AtPoint(state, Vector3(old_cg - new_cg, 0.0, 0.0));
 }
 
-LauncherInstant Evaluate(const LauncherPlant& plant, const LauncherPhase& phase, double time_s,
-                         const double* y) {
-  const OneLane one(plant, phase, time_s, y);
-  const Earth& earth = plant.environment.earth;
+LauncherModel::LauncherModel(const LauncherPlant& plant) : prepared_(std::make_unique<Prepared>(plant)) {}
+LauncherModel::~LauncherModel() = default;
+
+const LauncherPlant& LauncherModel::plant() const { return prepared_->plant; }
+
+LauncherInstant LauncherModel::Evaluate(const LauncherPhase& phase, double time_s, const double* y) const {
+  const OneLane one(prepared_->plant, prepared_->stacks[static_cast<std::size_t>(phase.stack)], phase, time_s, y);
   const lanes::Motion<double>& s = one.motion;
   const lanes::TimedMasses<double>& masses = one.masses;
   const lanes::LoadsOf<double> loads =
-      lanes::LoadsAt(earth.rotation_rate_rad_s, plant.jet_damping, one.plant(), one.phase(), phase.burning,
+      lanes::LoadsAt(one.earth.rotation_rate_rad_s, one.jet_damping, one.plant, one.phase, phase.burning,
                      one.around, masses, one.nozzles, s);
   LauncherInstant now;
-  now.air.place = ToGeodetic(earth, Vector3(y[0], y[1], y[2]));
+  now.air.place = ToGeodetic(one.earth, Vector3(y[0], y[1], y[2]));
   now.air.v_AP_I = ToEigen(loads.v_air);
   now.air.airspeed_m_s = now.air.v_AP_I.norm();
   now.air.density_kg_m3 = one.around.density_kg_m3;
@@ -92,20 +96,21 @@ LauncherInstant Evaluate(const LauncherPlant& plant, const LauncherPhase& phase,
   return now;
 }
 
-void LauncherDerivative(const LauncherPlant& plant, const LauncherPhase& phase, double time_s,
-                        const double* y, double* dydt) {
-  const OneLane one(plant, phase, time_s, y);
-  const Earth& earth = plant.environment.earth;
+void LauncherModel::Derivative(const LauncherPhase& phase, double time_s, const double* y, double* dydt) const {
+  const std::size_t stack = static_cast<std::size_t>(phase.stack);
+  const OneLane one(prepared_->plant, prepared_->stacks[stack], phase, time_s, y);
   const lanes::Motion<double>& s = one.motion;
   const auto rates =
-      lanes::RatesOf<double>(earth.rotation_rate_rad_s, plant.jet_damping, one.plant(), one.phase(),
+      lanes::RatesOf<double>(one.earth.rotation_rate_rad_s, one.jet_damping, one.plant, one.phase,
                              phase.burning, one.around, one.masses, one.nozzles, s, nullptr);
-  const Quaternion dq = Derivative({s.q.w, s.q.x, s.q.y, s.q.z}, ToEigen(s.w));
+  const Quaternion dq = dispersa::Derivative({s.q.w, s.q.x, s.q.y, s.q.z}, ToEigen(s.w));
   WriteState({ToEigen(s.v), ToEigen(rates.dv), dq, ToEigen(rates.dw)}, dydt);
+  lanes::Drives<double> drives{};
+  lanes::SetLane(drives, 0, prepared_->plant.stacks[stack].gimbal, phase.stuck_nozzle);
   for (int i = 0; i < kNozzles; ++i) {
-    const double limit = one.drives.limit_rad;
+    const double limit = drives.limit_rad;
     const double command = Clamp(phase.command_rad[static_cast<std::size_t>(i)], -limit, limit);
-    lanes::DriveRates(one.drives, i, command, y[kNozzleAngle + i], y[kNozzleRate + i], dydt[kNozzleAngle + i],
+    lanes::DriveRates(drives, i, command, y[kNozzleAngle + i], y[kNozzleRate + i], dydt[kNozzleAngle + i],
                       dydt[kNozzleRate + i]);
   }
 }

@@ -67,16 +67,27 @@ struct LauncherInstant {
 /// jumps forward to that of the stack above, full.
 RigidBodyState AfterSeparation(const LauncherPlant& plant, int below, const RigidBodyState& state);
 
-LauncherInstant Evaluate(const LauncherPlant& plant, const LauncherPhase& phase, double time_s,
-                         const double* y);
+/// The equations of motion of one flight, prepared once for many instants: one lane of launcher_body.h and
+/// actuators.h, whose step flights take. For the judges among the integrators, histories, linearisation and tests.
+class LauncherModel {
+ public:
+  explicit LauncherModel(const LauncherPlant& plant);
+  ~LauncherModel();
+  LauncherModel(const LauncherModel&) = delete;
+  LauncherModel& operator=(const LauncherModel&) = delete;
 
-/// Right-hand side of the flight. Thrust: each nozzle carries a quarter, deflected in its hinge plane;
-/// positive pitch, yaw and roll deflections give positive moments about body y, z and x. Actuators are
-/// second order with a limited rate: d(angle)/dt = rate within the limit; the command is limited in angle.
-///
-/// One lane of launcher_body.h and actuators.h, whose step flights take: for the judges among the integrators,
-/// for linearisation and tests.
-void LauncherDerivative(const LauncherPlant& plant, const LauncherPhase& phase, double time_s,
-                        const double* y, double* dydt);
+  const LauncherPlant& plant() const;
+
+  LauncherInstant Evaluate(const LauncherPhase& phase, double time_s, const double* y) const;
+
+  /// Right-hand side of the flight. Thrust: each nozzle carries a quarter, deflected in its hinge plane;
+  /// positive pitch, yaw and roll deflections give positive moments about body y, z and x. Actuators are
+  /// second order with a limited rate: d(angle)/dt = rate within the limit; the command is limited in angle.
+  void Derivative(const LauncherPhase& phase, double time_s, const double* y, double* dydt) const;
+
+ private:
+  struct Prepared;
+  std::unique_ptr<const Prepared> prepared_;
+};
 
 }  // namespace dispersa

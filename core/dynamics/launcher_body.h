@@ -1,5 +1,5 @@
-// Equations of motion of W launch vehicles side by side (core/math/lanes.h): the one source of Evaluate and
-// LauncherDerivative of launcher.h, split into what depends on time, on position and on the rest, so that an
+// Equations of motion of W launch vehicles side by side (core/math/lanes.h): the one source of
+// LauncherModel in launcher.h, split into what depends on time, on position and on the rest, so that an
 // integration step evaluates each part as often as it needs it.
 #pragma once
 

@@ -47,8 +47,8 @@ std::array<double, kLauncherSize> AbsoluteTolerances() {
 // A flight's plant between two events, for an integrator that knows nothing of flights.
 class FlightRecord::JudgedMotion {
  public:
-  JudgedMotion(const LauncherPlant& plant, Scheme scheme)
-      : plant_(plant),
+  JudgedMotion(const LauncherModel& equations, Scheme scheme)
+      : equations_(equations),
         tolerances_(AbsoluteTolerances()),
         integrator_(scheme, kLauncherSize, &Rhs, this, tolerances_.data()) {}
 
@@ -59,7 +59,7 @@ class FlightRecord::JudgedMotion {
     s.q_IB = Normalized(s.q_IB);
     WriteState(s, y);
     // Mechanical stops, and the drives' greatest rate, which a step may overshoot.
-    const Gimbal& gimbal = plant_.stacks[static_cast<std::size_t>(phase.stack)].gimbal;
+    const Gimbal& gimbal = equations_.plant().stacks[static_cast<std::size_t>(phase.stack)].gimbal;
     for (int i = 0; i < kNozzles; ++i) {
       if (i == phase.stuck_nozzle) continue;
       double& angle = y[kNozzleAngle + i];
@@ -75,10 +75,10 @@ class FlightRecord::JudgedMotion {
  private:
   static void Rhs(double t, const double* y, double* dydt, void* context) {
     const auto* self = static_cast<const JudgedMotion*>(context);
-    LauncherDerivative(self->plant_, self->phase_, t, y, dydt);
+    self->equations_.Derivative(self->phase_, t, y, dydt);
   }
 
-  const LauncherPlant& plant_;
+  const LauncherModel& equations_;
   LauncherPhase phase_;
   std::array<double, kLauncherSize> tolerances_;
   Integrator integrator_;
@@ -101,7 +101,8 @@ FlightRecord::FlightRecord(const FlightModel& model, const FlightOrder& order)
       gyro_noise_(model.definition().noise_seed, options.case_index, "gyro_noise") {
   WriteState(LiftOffState(model), lift_off);
   if (options.history) options.history->values.clear();
-  if (is_judged()) judged_ = std::make_unique<JudgedMotion>(plant, options.scheme);
+  if (watched || is_judged()) equations_ = std::make_unique<const LauncherModel>(plant);
+  if (is_judged()) judged_ = std::make_unique<JudgedMotion>(*equations_, options.scheme);
 }
 
 FlightRecord::~FlightRecord() = default;
@@ -144,7 +145,7 @@ TickSample FlightRecord::SampleOf(const LaneView& view) const {
     s.thrusters[axis] = view.thrusters[axis];
   }
   s.expelled_mass_kg = view.phase.expelled_mass_kg;
-  s.instant = Evaluate(plant, view.phase, view.time_s, view.y);
+  s.instant = equations_->Evaluate(view.phase, view.time_s, view.y);
   return s;
 }
 

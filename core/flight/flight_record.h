@@ -100,6 +100,7 @@ class FlightRecord {
   const FlightModel& model_;
   Stream gyro_noise_;
   Digester digester_;
+  std::unique_ptr<const LauncherModel> equations_;  ///< of a flight that is watched or judged
   std::unique_ptr<JudgedMotion> judged_;
   FlightResult result_;
 };

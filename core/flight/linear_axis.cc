@@ -25,6 +25,7 @@ AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Ax
   Vector3 about = Vector3::Zero();
   about[axis] = 1.0;
 
+  const LauncherModel equations(plant);
   const auto acceleration = [&](double angle_rad, double rate_rad_s, double deflection_rad) {
     RigidBodyState state = sample.state;
     state.q_IB = state.q_IB * FromRotationVector(angle_rad * about);
@@ -32,7 +33,7 @@ AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Ax
     std::array<double, kLauncherSize> y{}, dydt{};
     WriteState(state, y.data());
     for (std::size_t i = 0; i < kNozzles; ++i) y[kNozzleAngle + i] = sample.nozzle_rad[i] + deflection_rad * pattern[i];
-    LauncherDerivative(plant, phase, sample.time_s, y.data(), dydt.data());
+    equations.Derivative(phase, sample.time_s, y.data(), dydt.data());
     return ReadState(dydt.data()).w_IB_B[axis];
   };
   const auto slope = [&](double angle_rad, double rate_rad_s, double deflection_rad) {

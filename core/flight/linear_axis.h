@@ -8,7 +8,7 @@
 
 namespace dispersa {
 
-/// Central differences of LauncherDerivative about a powered instant, so that nothing of the plant is
+/// Central differences of LauncherModel::Derivative about a powered instant, so that nothing of the plant is
 /// written twice. The vehicle turns about the axis through its centre of gravity while its path and the wind
 /// stay: incidence changes with attitude alone, which the loop's frequencies justify.
 AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Axis axis);

@@ -2,7 +2,6 @@
 // with those of another machine.
 #include <benchmark/benchmark.h>
 
-#include <array>
 #include <string>
 
 #include "core/campaign/campaign_flights.h"
@@ -19,35 +18,6 @@ const Campaign& Table3() {
   static const Campaign campaign = LoadCampaign(std::string(DISPERSA_CAMPAIGNS) + "/table3.yaml");
   return campaign;
 }
-
-// A state of the first stage's burn at high dynamic pressure: every term of the right-hand side acts.
-struct Ascent {
-  LauncherPlant plant = BuildNominalPlant(Table3().vehicle);
-  LauncherPhase phase;
-  std::array<double, kLauncherSize> y{};
-
-  Ascent() {
-    const LaunchFrame frame =
-        BuildLaunchFrame(plant.environment.earth, Table3().vehicle.site, Table3().reference.program.launch_azimuth_rad);
-    plant.environment.wind.jets.push_back({60.96, 12000.0, 12000.0, 1.0});
-    phase.burning = true;
-    RigidBodyState state;
-    state.p_EoC_I = frame.p_EoL_I - 11000.0 * frame.R_IL.col(2);
-    state.v_IC_I = frame.v_IL_I + frame.R_IL * Vector3(450.0, 0.0, -450.0);
-    state.q_IB = frame.q_IL * FromPitchYawRoll({0.75, 0.01, 0.0});
-    WriteState(state, y.data());
-  }
-};
-
-void RightHandSide(benchmark::State& state) {
-  Ascent ascent;
-  std::array<double, kLauncherSize> dydt{};
-  for (auto _ : state) {
-    LauncherDerivative(ascent.plant, ascent.phase, 45.0, ascent.y.data(), dydt.data());
-    benchmark::DoNotOptimize(dydt);
-  }
-}
-BENCHMARK(RightHandSide);
 
 // A whole dispersed flight. Items are flights: items_per_second is flights per second and core.
 void Flight(benchmark::State& state) {

@@ -1,9 +1,11 @@
-"""One table of what the core costs on this machine: flights side by side, their right-hand side, ascents, the
-optimiser, campaigns in process and over DDS, memory and instructions.
+"""One table of what the core costs on this machine: flights side by side and their floor, ascents, the optimiser, the
+tuner, campaigns in process and over DDS, memory and instructions.
 
 usage: table.py BUILD [OLD_BUILD]
-BUILD is a build folder with the benchmarks and programs; OLD_BUILD, one of another commit, gives the ratio of its
-flight. Medians of five turns; callgrind counts only where valgrind is installed.
+       table.py --instructions BUILD
+BUILD is a build folder with the benchmarks and programs; OLD_BUILD, one of another commit, gives ratios. What is
+compared is measured in turn, so that a change of the machine's load meets both: medians of five turns, ratios with
+their least and greatest. Callgrind counts where valgrind is installed; --instructions counts and does nothing else.
 """
 import json
 import os
@@ -18,8 +20,10 @@ import tempfile
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+TABLE3 = ROOT / "campaigns/table3.yaml"
 TURNS = 5
 CASES = 400
+EVALUATIONS = 24
 
 
 def output(*command):
@@ -32,52 +36,89 @@ def processor():
 
 
 def benchmarks(program, wanted):
-    """{name: median ms an item} of a Google Benchmark program; an iteration without items is one."""
-    report = json.loads(output(program, f"--benchmark_filter={wanted}", "--benchmark_format=json",
-                               f"--benchmark_repetitions={TURNS}", "--benchmark_report_aggregates_only=true"))
+    """{name: ms of CPU an item} of a Google Benchmark program; an iteration without items is one."""
+    report = json.loads(output(program, f"--benchmark_filter={wanted}", "--benchmark_format=json"))
     found = {}
     for row in report["benchmarks"]:
-        if row["aggregate_name"] != "median":
-            continue
         per_unit = {"ns": 1e-6, "us": 1e-3, "ms": 1.0, "s": 1e3}[row["time_unit"]]
         rate = row.get("items_per_second")
-        found[row["run_name"].split("/min_time")[0]] = 1e3 / rate if rate else row["cpu_time"] * per_unit
+        found[row["name"].split("/min_time")[0]] = 1e3 / rate if rate else row["cpu_time"] * per_unit
     return found
 
 
-def campaign(dispersa, *arguments):
-    """Flights a second of a campaign of CASES cases, its start and its report included."""
-    rates = []
+def in_turn(*measurements):
+    """Each measurement's {name: value} of every turn, one after the other: [{name: [values]}]."""
+    found = [{} for _ in measurements]
     for _ in range(TURNS):
-        with tempfile.TemporaryDirectory() as folder:
-            begin = time.monotonic()
-            # Its verdict is the exit code.
-            subprocess.run([dispersa, "run", ROOT / "campaigns/table3.yaml", "--cases", str(CASES), "--quiet",
-                            "--out", f"{folder}/out", *arguments], capture_output=True, timeout=1800, check=False)
-            rates.append(CASES / (time.monotonic() - begin))
-    return statistics.median(rates)
+        for values, measure in zip(found, measurements):
+            for name, value in measure().items():
+                values.setdefault(name, []).append(value)
+    return found
 
 
-def peak_memory_mb(dispersa):
-    """Of one process that flies side by side on one thread."""
+def ratio(above, below):
+    """Of what was measured in the same turns."""
+    each = sorted(a / b for a, b in zip(above, below))
+    return f"{statistics.median(each):.2f} ({each[0]:.2f} to {each[-1]:.2f})"
+
+
+def peak_memory_mb(pid):
+    try:
+        status = pathlib.Path(f"/proc/{pid}/status").read_text()
+    except OSError:
+        return 0.0  # it has ended
+    peak = re.search(r"VmHWM:\s*(\d+) kB", status)
+    return int(peak.group(1)) / 1024.0 if peak else 0.0
+
+
+def campaign(dispersa, *arguments):
+    """Flights a second of a campaign of CASES cases, its start and its report included, and the greatest memory of a
+    worker, or of the program where it flies itself."""
     with tempfile.TemporaryDirectory() as folder:
-        child = subprocess.Popen([dispersa, "run", ROOT / "campaigns/smoke.yaml", "--quiet", "--out", f"{folder}/out",
-                                  "--workers", "0", "--threads", "1"], stdout=subprocess.DEVNULL,
-                                 stderr=subprocess.DEVNULL)
-        _, _, usage = os.wait4(child.pid, 0)
-        return usage.ru_maxrss / 1024.0
+        begin = time.monotonic()
+        # Its verdict is the exit code.
+        run = subprocess.Popen([dispersa, "run", TABLE3, "--cases", str(CASES), "--quiet", "--out", f"{folder}/out",
+                                *arguments], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        peak = 0.0
+        while run.poll() is None:
+            children = pathlib.Path(f"/proc/{run.pid}/task/{run.pid}/children")
+            pids = children.read_text().split() if children.exists() else []
+            peak = max([peak, *(peak_memory_mb(pid) for pid in pids or [run.pid])])
+            time.sleep(0.02)
+            if time.monotonic() - begin > 1800:
+                run.kill()
+        return {"flights/s": CASES / (time.monotonic() - begin), "MB": peak}
+
+
+def tuner(dispersa):
+    """Seconds of a search of EVALUATIONS designs on one thread; so few need not find one that meets the constraints."""
+    with tempfile.TemporaryDirectory() as folder:
+        begin = time.monotonic()
+        subprocess.run([dispersa, "tune", TABLE3, "--evaluations", str(EVALUATIONS), "--threads", "1", "--quiet",
+                        "--out", f"{folder}/found.yaml"], capture_output=True, timeout=1800, check=False)
+        return {"s": time.monotonic() - begin}
 
 
 def instructions(dispersa):
-    """Millions a flight in process on one thread, by callgrind: what 16 cases take beyond 8, histories and report included."""
+    """Millions a flight in process on one thread: what 12 cases take beyond 4."""
+    told = output(dispersa, "run", "--help")
+    options = [*(["--threads", "1"] if "--threads" in told else []),
+               *(["--no-histories"] if "--no-histories" in told else [])]
+
     def count(cases):
         with tempfile.TemporaryDirectory() as folder:
             done = subprocess.run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/profile", dispersa,
-                                   "run", ROOT / "campaigns/table3.yaml", "--cases", str(cases), "--quiet", "--out",
-                                   f"{folder}/out", "--workers", "0", "--threads", "1"],
+                                   "run", TABLE3, "--cases", str(cases), "--quiet", "--out", f"{folder}/out",
+                                   "--workers", "0", *options],
                                   text=True, capture_output=True, timeout=1800, check=False)
             return int(re.search(r"Collected : (\d+)", done.stderr).group(1))
-    return (count(16) - count(8)) / 8e6
+    return (count(12) - count(4)) / 8e6
+
+
+def label_of(name):
+    what, isa, lanes = name.split("/")
+    words = {"Flights": "flight", "BareFlight": "flight's steps alone", "RightHandSide": "right-hand side, of a lane"}
+    return f"{words[what]}, {isa}, {lanes} lane{'s' * (lanes != '1')}"
 
 
 def main(build, old_build=None):
@@ -86,33 +127,56 @@ def main(build, old_build=None):
     compiler = re.search(r"CMAKE_CXX_COMPILER:\w+=(.*)", (build / "CMakeCache.txt").read_text()).group(1)
     print(f"machine   {processor()}, {os.cpu_count()} processors")
     print(f"compiler  {output(compiler, '--version').splitlines()[0]}")
-    print(f"commit    {output('git', '-C', str(ROOT), 'rev-parse', '--short', 'HEAD').strip()}")
+    print(f"commit    {output('git', '-C', str(ROOT), 'describe', '--always', '--dirty').strip()}")
     print(f"load      {os.getloadavg()[0]:.2f} over the minute before\n")
-    rows = []
-    flights = benchmarks(programs / "flight_benchmark", "^(Flight|Flights|RightHandSide)(/|$)")
+
+    def row(label, values, unit, remark="", scale=1.0):
+        print(f"{label:<44} {scale * statistics.median(values):>10.3f} {unit:<10} {remark}".rstrip(), flush=True)
+
+    old_flight = [lambda: benchmarks(old_build / "benchmarks/flight_benchmark", "^Flight(/|$)")] if old_build else []
+    flights, steps, *old = in_turn(lambda: benchmarks(programs / "flight_benchmark", "^(Flight|Flights)(/|$)"),
+                                   lambda: benchmarks(programs / "step_benchmark", "."), *old_flight)
     one = flights.pop("Flight")
-    rows.append(("flight, one lane", one, "ms", None))
-    if old_build:
-        old = benchmarks(old_build / "benchmarks/flight_benchmark", "^Flight(/|$)")["Flight"]
-        rows.append(("flight of the other build", old, "ms", one / old))
-    rows.append(("right-hand side alone", 1e6 * flights.pop("RightHandSide"), "ns", None))
+    row("flight alone", one, "ms")
+    if old:
+        row("flight alone, other build", old[0]["Flight"], "ms", f"x {ratio(old[0]['Flight'], one)} of this one")
     for name, ms in flights.items():
-        rows.append((f"flight, {name.removeprefix('Flights/').replace('/', ', lanes ')}", ms, "ms", one / ms))
-    ascents = benchmarks(programs / "ascent_benchmark", ".")
+        remark = f"flight alone x {ratio(one, ms)}"
+        if old:
+            remark += f", other build's x {ratio(old[0]['Flight'], ms)}"
+        row(label_of(name), ms, "ms", remark)
+    for name, ms in steps.items():
+        if name.startswith("BareFlight"):
+            row(label_of(name), ms, "ms", f"{ratio(ms, flights[name.replace('BareFlight', 'Flights')])} of the flight")
+    for name, ms in steps.items():
+        if name.startswith("RightHandSide"):
+            row(label_of(name), ms, "ns", scale=1e6)
+
+    (ascents,) = in_turn(lambda: benchmarks(programs / "ascent_benchmark", "."))
+    optimisation = ascents.pop("Optimisation")
     for name, ms in ascents.items():
-        lanes = name.startswith("Ascents/")
-        label = f"ascent, lanes {name.split('/')[1]}" if lanes else "optimisation of slv4_500km, one thread"
-        rows.append((label, ms, "ms", ascents["Ascents/1"] / ms if lanes else None))
-    inside = campaign(dispersa, "--workers", "0", "--threads", "2")
-    rows.append((f"table3, {CASES} cases, in process, 2 threads", inside, "flights/s", None))
-    over = campaign(dispersa, "--workers", "2")
-    rows.append((f"table3, {CASES} cases, over DDS, 2 workers", over, "flights/s", over / inside))
-    rows.append(("memory of a process that flies", peak_memory_mb(dispersa), "MB", None))
+        row(f"ascent, lanes {name.split('/')[1]}", ms, "ms", f"one lane x {ratio(ascents['Ascents/1'], ms)}")
+    row("optimisation of slv4_500km, one thread", optimisation, "ms")
+    (tuned,) = in_turn(lambda: tuner(dispersa))
+    row(f"tuner, {EVALUATIONS} designs, one thread", tuned["s"], "s")
+
+    inside, over = in_turn(lambda: campaign(dispersa, "--workers", "0", "--threads", "2"),
+                           lambda: campaign(dispersa, "--workers", "2"))
+    row(f"table3, {CASES} cases, in process, 2 threads", inside["flights/s"], "flights/s")
+    row(f"table3, {CASES} cases, over DDS, 2 workers", over["flights/s"], "flights/s",
+        f"{ratio(over['flights/s'], inside['flights/s'])} of in process")
+    row("memory of a process that flies itself", inside["MB"], "MB")
+    row("memory of a worker", over["MB"], "MB")
     if shutil.which("valgrind"):
-        rows.append(("instructions a flight, in process", instructions(dispersa), "M", None))
-    for label, value, unit, ratio in rows:
-        print(f"{label:<44} {value:>10.3f} {unit:<10}" + (f" {ratio:6.2f} x" if ratio else ""))
+        counted = instructions(dispersa)
+        row("instructions a flight, in process", [counted], "M")
+        if old_build:
+            other = instructions(old_build / "bin/dispersa")
+            row("instructions a flight, other build", [other], "M", f"x {other / counted:.2f} of this one")
 
 
 if __name__ == "__main__":
-    main(*(pathlib.Path(argument) for argument in sys.argv[1:]))
+    if sys.argv[1] == "--instructions":
+        print(f"instructions a flight: {instructions(pathlib.Path(sys.argv[2]) / 'bin/dispersa'):.1f} M")
+    else:
+        main(*(pathlib.Path(argument).resolve() for argument in sys.argv[1:]))

@@ -34,7 +34,7 @@ LauncherPhase Burning() {
 
 LauncherInstant InstantOf(const FlightInputs& inputs, double altitude_m) {
   const FlightModel model(SampleDefinition());
-  return Evaluate(model.PlantFor(inputs), Burning(), 10.0, Above(altitude_m).data());
+  return LauncherModel(model.PlantFor(inputs)).Evaluate(Burning(), 10.0, Above(altitude_m).data());
 }
 
 constexpr double kSpace_m = 2e6;  // above the atmosphere's end
@@ -108,7 +108,7 @@ TEST(Launcher, AmbientPressureTakesItsPartOfTheThrust) {
   definition.vehicle.stages[0].motor.nozzle_exit_area_m2 = 0.5;
   LauncherPlant plant = FlightModel(definition).PlantFor({});
   const auto thrust = [&](double altitude_m) {
-    return Evaluate(plant, Burning(), 10.0, Above(altitude_m).data()).thrust_n;
+    return LauncherModel(plant).Evaluate(Burning(), 10.0, Above(altitude_m).data()).thrust_n;
   };
   // The standard's pressure at sea level and at 11 km of geopotential altitude.
   EXPECT_NEAR(thrust(0.0), 200e3 - 0.5 * 101325.0, 1e-3);
@@ -133,7 +133,7 @@ TEST(Dispersions, DensityProfileOfTheEnvironmentIsMultiplied) {
   inputs.density_factor = 1.1;
   LauncherPlant plant = FlightModel(SampleDefinition()).PlantFor(inputs);
   plant.environment.density.by_altitude = {{10e3, 14e3}, {1.0, 1.4}};
-  const AirData air = Evaluate(plant, Burning(), 10.0, Above(12e3).data()).air;
+  const AirData air = LauncherModel(plant).Evaluate(Burning(), 10.0, Above(12e3).data()).air;
   EXPECT_NEAR(air.density_kg_m3 / InstantOf({}, 12e3).air.density_kg_m3, 1.1 * 1.2, 1e-12);
 }
 
@@ -173,7 +173,7 @@ TEST(Dispersions, BandwidthOfTheActuators) {
   const FlightModel model(SampleDefinition());
   const auto acceleration = [&](const FlightInputs& in) {
     Layout dydt{};
-    LauncherDerivative(model.PlantFor(in), phase, 10.0, Above(kSpace_m).data(), dydt.data());
+    LauncherModel(model.PlantFor(in)).Derivative(phase, 10.0, Above(kSpace_m).data(), dydt.data());
     return dydt[kNozzleRate];
   };
   // From rest: w² times the command.

@@ -91,7 +91,7 @@ TEST(ReactionControl, IsShutAtIgnition) {
     phase.burning = true;
     phase.ignition_s = s.time_s - s.since_ignition_s;
     phase.expelled_mass_kg = s.expelled_mass_kg;
-    const Vector3 without = Evaluate(plant, phase, s.time_s, y).loads.moment_n_m;
+    const Vector3 without = LauncherModel(plant).Evaluate(phase, s.time_s, y).loads.moment_n_m;
     ASSERT_LT((s.instant.loads.moment_n_m - without).norm(), 1e-9) << s.time_s;
   }
   EXPECT_TRUE(fired_to_the_end) << "the test is to find them open";

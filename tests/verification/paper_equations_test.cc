@@ -134,7 +134,7 @@ std::array<double, kLauncherSize> EngineState(const Setting& setting, const Pape
 PaperRates Engine(const Setting& setting, const PaperState& s) {
   const auto y = EngineState(setting, s);
   std::array<double, kLauncherSize> dydt{};
-  LauncherDerivative(setting.plant, setting.phase, s.time_s, y.data(), dydt.data());
+  LauncherModel(setting.plant).Derivative(setting.phase, s.time_s, y.data(), dydt.data());
   const RigidBodyState rate = ReadState(dydt.data()), state = ReadState(y.data());
   // v_EC = v_IC - Omega x p; its rate as seen from the turning Earth.
   const Vector3 omega_I(0.0, 0.0, setting.plant.environment.earth.rotation_rate_rad_s);
@@ -307,7 +307,7 @@ PaperRates ListedMisprints(const Setting& setting, const PaperState& s) {
 double Between(Stream& draws, double low, double high) { return low + (high - low) * draws.Uniform(); }
 
 TEST(PaperEquations, ExactFormAgreesWithTheEngineAtRandomStates) {
-  // Verifies: forces, moments, signs, frames and the rotating Earth of LauncherDerivative. Relative 1e-9; the
+  // Verifies: forces, moments, signs, frames and the rotating Earth of LauncherModel. Relative 1e-9; the
   // floor of 1e-9 (m/s², rad/s²) is rounding: 465 m/s of the Earth's surface subtracted from velocities of
   // 100 m/s leave 1e-15 of incidence, times 1e3 1/s² of control and aerodynamic stiffness.
   Stream draws(7, 0, "states");

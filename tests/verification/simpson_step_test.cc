@@ -49,6 +49,8 @@ class Stretch {
     double y[kLauncherSize], tolerances[kLauncherSize];
     std::copy(y_, y_ + kLauncherSize, y);
     for (double& t : tolerances) t = 1e-15;
+    const LauncherModel equations(plant_);
+    equations_ = &equations;
     Integrator cvode(Scheme::kCvode, kLauncherSize, &Rhs, this, tolerances);
     EXPECT_TRUE(cvode.Advance(kFrom_s, kTo_s, 1, y));
     return ReadState(y);
@@ -77,10 +79,11 @@ class Stretch {
  private:
   static void Rhs(double t, const double* y, double* dydt, void* context) {
     const auto* self = static_cast<const Stretch*>(context);
-    LauncherDerivative(self->plant_, self->phase_, t, y, dydt);
+    self->equations_->Derivative(self->phase_, t, y, dydt);
   }
 
   LauncherPlant plant_;
+  const LauncherModel* equations_ = nullptr;
   LauncherPhase phase_;
   double y_[kLauncherSize] = {};
 };

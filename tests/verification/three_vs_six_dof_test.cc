@@ -1,4 +1,4 @@
-// Verifies that the production 3DOF (FlyAscent) and the 6DOF engine (LauncherDerivative) agree along the
+// Verifies that the production 3DOF (FlyAscent) and the 6DOF engine (LauncherModel) agree along the
 // whole flight when the 6DOF's attitude is imposed: on the same environment, propulsion, mass and sequencing,
 // once by the steering law evaluated on the flight's own state, written here independently of the 3DOF, and
 // once by the reference as it is shipped and as flights follow it, a table over time.
@@ -28,7 +28,7 @@ using Steering = std::function<Quaternion(double, const Vector3&, const Vector3&
 class SixDof {
  public:
   SixDof(const LauncherPlant& plant, const LaunchFrame& frame, Steering steering)
-      : plant_(plant),
+      : equations_(plant),
         steering_(std::move(steering)),
         integrator_(Scheme::kRungeKutta4, 6, &SixDof::Rhs, this, nullptr) {
     SetMotion(frame.p_EoL_I, frame.v_IL_I);
@@ -60,7 +60,7 @@ class SixDof {
     RigidBodyState s{p(), v(), steering_(time_s_, p(), v()), Vector3::Zero()};
     const Vector3 axis_rate = (axis(kDifference_s) - axis(-kDifference_s)) / (2.0 * kDifference_s);
     s.w_IB_B = Rotate(Inverse(s.q_IB), axis(0.0).cross(axis_rate));
-    s = AfterSeparation(plant_, phase_.stack, s);
+    s = AfterSeparation(equations_.plant(), phase_.stack, s);
     SetMotion(s.p_EoC_I, s.v_IC_I);
     ++phase_.stack;
     phase_.burnt = false;
@@ -77,14 +77,14 @@ class SixDof {
     const Vector3 p(y[0], y[1], y[2]), v(y[3], y[4], y[5]);
     std::array<double, kLauncherSize> state{}, rate{};
     WriteState({p, v, self->steering_(t, p, v), Vector3::Zero()}, state.data());
-    LauncherDerivative(self->plant_, self->phase_, t, state.data(), rate.data());
+    self->equations_.Derivative(self->phase_, t, state.data(), rate.data());
     std::copy_n(rate.begin(), 6, dydt);
   }
   void SetMotion(const Vector3& p_EoC_I, const Vector3& v_IC_I) {
     y_ = {p_EoC_I.x(), p_EoC_I.y(), p_EoC_I.z(), v_IC_I.x(), v_IC_I.y(), v_IC_I.z()};
   }
 
-  const LauncherPlant& plant_;
+  LauncherModel equations_;
   Steering steering_;
   Integrator integrator_;
   LauncherPhase phase_;

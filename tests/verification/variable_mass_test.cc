@@ -139,6 +139,8 @@ class TurningLauncher : public testing::Test {
     start.p_EoC_I = {7e6, 0.0, 0.0};
     start.w_IB_B = rates;
     WriteState(start, y.data());
+    const LauncherModel equations(plant_);
+    equations_ = &equations;
     Integrator integrator(Scheme::kRungeKutta4, kLauncherSize, &Rhs, this, nullptr);
     EXPECT_TRUE(integrator.Advance(0.0, stack().burn.duration_s, 2000, y.data()));
     return ReadState(y.data()).w_IB_B;
@@ -159,8 +161,10 @@ class TurningLauncher : public testing::Test {
  private:
   static void Rhs(double t, const double* y, double* dydt, void* context) {
     const auto* self = static_cast<const TurningLauncher*>(context);
-    LauncherDerivative(self->plant_, self->phase_, t, y, dydt);
+    self->equations_->Derivative(self->phase_, t, y, dydt);
   }
+
+  const LauncherModel* equations_ = nullptr;
 };
 
 TEST_F(TurningLauncher, KeepsItsAngularMomentumButForTheFlows) {
