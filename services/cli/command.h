@@ -44,5 +44,9 @@ void AddTuneCommand(CLI::App& app, Invocation& invocation);
 void AddExportCommand(CLI::App& app, Invocation& invocation);
 void AddCompareCommand(CLI::App& app, Invocation& invocation);
 void AddPaperCommand(CLI::App& app, Invocation& invocation);
+// Those that speak to a coordinator; list, status, watch and cancel together.
+void AddLaunchCommand(CLI::App& app, Invocation& invocation);
+void AddStatusCommands(CLI::App& app, Invocation& invocation);
+void AddFetchCommand(CLI::App& app, Invocation& invocation);
 
 }  // namespace dispersa

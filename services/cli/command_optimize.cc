@@ -22,7 +22,7 @@
 #include "services/cli/flight_json.h"
 #include "services/cli/progress.h"
 #include "services/cli/seed_study.h"
-#include "services/cli/threads.h"
+#include "services/coordinator/threads.h"
 
 namespace dispersa {
 namespace {

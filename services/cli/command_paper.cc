@@ -11,8 +11,8 @@
 #include "core/paper/paper_study.h"
 #include "services/cli/command.h"
 #include "services/cli/progress.h"
-#include "services/cli/threads.h"
 #include "services/cli/warn.h"
+#include "services/coordinator/threads.h"
 
 namespace dispersa {
 namespace {

@@ -5,7 +5,7 @@
 #include "services/cli/campaign_output.h"
 #include "services/cli/command.h"
 #include "services/cli/stored_campaign.h"
-#include "services/cli/threads.h"
+#include "services/coordinator/threads.h"
 
 namespace dispersa {
 namespace {

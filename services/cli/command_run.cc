@@ -28,10 +28,10 @@
 #include "services/cli/execution_file.h"
 #include "services/cli/local_workers.h"
 #include "services/cli/progress.h"
-#include "services/cli/threads.h"
 #include "services/coordinator/coordinator.h"
 #include "services/coordinator/open_campaign.h"
 #include "services/coordinator/stop_signal.h"
+#include "services/coordinator/threads.h"
 #include "services/coordinator/utc.h"
 #include "services/transport/private_domain.h"
 
@@ -304,7 +304,6 @@ ExitCode FlyAndReport(const RunOptions& options, const GlobalOptions& global, Op
   for (const BlamedCase& blamed : book.ledger().Quarantined()) {
     spdlog::warn("case {} is quarantined: {}", blamed.case_index, fmt::join(blamed.reasons, "; "));
   }
-  if (book.ledger().Progress().conflicts > 0) code = WorseOf(code, kExitInternalError);
   const CampaignSummary summary = MakeReports(book.folder(), book.campaign(), workers, global.quiet,
                                               !options.no_histories, [] {
                                                 if (StopRequested()) throw Interrupted();
@@ -312,7 +311,8 @@ ExitCode FlyAndReport(const RunOptions& options, const GlobalOptions& global, Op
   execution.ended_utc = UtcNow();
   execution.Write();
   PrintSummary(summary, directory, global.json);
-  return WorseOf(code, static_cast<ExitCode>(VerdictExitCode(summary.verdict)));
+  const int end = CampaignExitCode(summary.verdict, book.ledger().Progress().conflicts);
+  return WorseOf(code, static_cast<ExitCode>(end));
 }
 
 ExitCode Run(const RunOptions& options, const GlobalOptions& global) {

@@ -12,8 +12,8 @@
 #include "services/cli/command.h"
 #include "services/cli/flight_json.h"
 #include "services/cli/progress.h"
-#include "services/cli/threads.h"
 #include "services/cli/warn.h"
+#include "services/coordinator/threads.h"
 
 namespace dispersa {
 namespace {

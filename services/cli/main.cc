@@ -33,6 +33,9 @@ void AddCommands(CLI::App& app, Invocation& invocation) {
   AddExportCommand(app, invocation);
   AddCompareCommand(app, invocation);
   AddPaperCommand(app, invocation);
+  AddLaunchCommand(app, invocation);
+  AddStatusCommands(app, invocation);
+  AddFetchCommand(app, invocation);
 }
 
 ExitCode Say(const std::exception& error, ExitCode code) {

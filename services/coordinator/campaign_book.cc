@@ -25,7 +25,20 @@ std::optional<StoppingRule> RuleOf(const Campaign& campaign, const ResultStore& 
   return rule;
 }
 
+RunningTally TallyOf(const Campaign& campaign, const ResultStore& store) {
+  RunningTally tally(campaign);
+  if (const auto* folder = dynamic_cast<const ResultFolder*>(&store)) {
+    folder->ForEach([&](const CaseResult& result) { tally.Add(result); });
+  }
+  return tally;
+}
+
 }  // namespace
+
+int CampaignExitCode(CampaignVerdict verdict, std::uint64_t conflicts) {
+  constexpr int kInternalError = 1;
+  return conflicts > 0 ? kInternalError : VerdictExitCode(verdict);
+}
 
 CampaignBook::CampaignBook(const Campaign& campaign, ResultFolder folder, const LedgerOptions& options)
     : CampaignBook(campaign, std::make_unique<ResultFolder>(std::move(folder)), options) {}
@@ -35,6 +48,7 @@ CampaignBook::CampaignBook(const Campaign& campaign, std::unique_ptr<ResultStore
     : campaign_(campaign),
       store_(std::move(store)),
       rule_(RuleOf(campaign, *store_)),
+      tally_(TallyOf(campaign, *store_)),
       ledger_(EngineVersion(), rule_ ? rule_->target() : campaign.sampling.cases, options) {
   const std::uint64_t cases = ledger_.Progress().total;
   for (const auto& [case_index, fingerprint] : store_->Fingerprints()) {
@@ -66,6 +80,7 @@ Acceptance CampaignBook::Accept(const std::string& worker, const std::string& ho
     case Acceptance::kAccepted:
       results_.push_back(result);
       if (rule_) rule_->Add(result);
+      tally_.Add(result);
       ++flown_now_;
       if (!start.empty()) {
         records_.push_back(

@@ -10,12 +10,18 @@
 #include <vector>
 
 #include "core/campaign/campaign.h"
+#include "core/report/campaign_summary.h"
 #include "core/report/result_folder.h"
 #include "core/report/result_store.h"
 #include "core/report/stopping_rule.h"
 #include "services/coordinator/ledger.h"
+#include "services/coordinator/running_tally.h"
 
 namespace dispersa {
+
+/// The exit code of a campaign that ends with this verdict after so many results that contradicted others:
+/// any is an internal error (1), whatever the verdict says.
+int CampaignExitCode(CampaignVerdict verdict, std::uint64_t conflicts);
 
 /// Results are stored in batches; nothing that was accepted is lost by more than one batch. Not thread-safe.
 /// Times are seconds from any origin. Storing throws ResultError.
@@ -35,6 +41,9 @@ class CampaignBook {
   bool Complete();
   std::uint64_t flown_now() const { return flown_now_; }  ///< accepted since construction
 
+  /// How the requirements stand by what has been accepted.
+  const RunningTally& tally() const { return tally_; }
+
   void Start(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt, double now_s);
   /// A result that differs from the one already accepted is logged, stored nowhere, and counted as a conflict
   /// in the ledger's progress.
@@ -48,6 +57,7 @@ class CampaignBook {
   Campaign campaign_;
   std::unique_ptr<ResultStore> store_;
   std::optional<StoppingRule> rule_;  ///< of a campaign that stops when it is decided
+  RunningTally tally_;
   Ledger ledger_;
   std::vector<CaseResult> results_;
   std::vector<ExecutionRecord> records_;

@@ -13,6 +13,9 @@ constexpr std::chrono::milliseconds kFarewell(500);
 /// Longer rounds count as this long: a process that was stopped, or a machine that slept, must not take what
 /// it did not hear meanwhile for silence.
 constexpr double kLongestRound_s = 0.5;
+/// What is kept to talk to a client is dropped when it has asked nothing for so long.
+constexpr double kClientPatience_s = 30.0;
+constexpr std::size_t kMaxClients = 256;
 constexpr std::size_t kTextPart = 256 << 10;
 
 std::uint64_t DrawEpoch() {
@@ -36,6 +39,22 @@ void Coordinator::Step(std::chrono::milliseconds timeout) {
   for (const CoordinatorEvent& event : events) Handle(event);
   Send(dispatcher_.Tick(now_s_));
   for (const std::string& forgotten : dispatcher_.TakeForgotten()) link_.Forget(forgotten);
+  ForgetClients();
+}
+
+void Coordinator::Answer(const Request& request) {
+  if (!answer_) return;
+  if (!clients_.contains(request.client) && clients_.size() >= kMaxClients) return;  // it asks again
+  clients_[request.client] = now_s_;
+  link_.Send(answer_(request));
+}
+
+void Coordinator::ForgetClients() {
+  std::erase_if(clients_, [this](const auto& client) {
+    if (now_s_ - client.second < kClientPatience_s) return false;
+    link_.Forget(client.first);
+    return true;
+  });
 }
 
 void Coordinator::Advance() {
@@ -48,8 +67,7 @@ void Coordinator::Handle(const CoordinatorEvent& event) {
   if (const auto* request = std::get_if<TextRequest>(&event.what)) {
     if (const auto part = dispatcher_.On(*request, kTextPart)) link_.Send(*part);
   } else if (const auto* asked = std::get_if<Request>(&event.what)) {
-    if (!answer_) return;
-    if (const Reply reply = answer_(*asked); !reply.client.empty()) link_.Send(reply);
+    Answer(*asked);
   } else if (std::holds_alternative<SenderGone>(event.what)) {
     dispatcher_.Gone(event.sender);
   } else if (const auto* status = std::get_if<WorkerStatus>(&event.what)) {

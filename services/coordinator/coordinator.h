@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,7 +40,7 @@ class Coordinator {
   /// Every worker is told to leave, and waited for until the message is there.
   void Dismiss();
 
-  /// What answers clients; a reply without a client is not sent.
+  /// What answers clients.
   void Serve(std::function<Reply(const Request&)> answer) { answer_ = std::move(answer); }
   void Publish(CampaignProgress progress);
 
@@ -52,6 +53,8 @@ class Coordinator {
  private:
   void Advance();
   void Handle(const CoordinatorEvent& event);
+  void Answer(const Request& request);
+  void ForgetClients();
   void Send(const std::vector<Orders>& messages);
 
   std::uint64_t epoch_;
@@ -60,6 +63,7 @@ class Coordinator {
   Dispatcher dispatcher_;
   CoordinatorLink link_;
   std::function<Reply(const Request&)> answer_;
+  std::map<std::string, double> clients_;  ///< when they asked last
 };
 
 }  // namespace dispersa

@@ -5,8 +5,8 @@
 #include <atomic>
 #include <chrono>
 #include <map>
-#include <mutex>
 
+#include "services/transport/mutex.h"
 #include "services/transport/validity.h"
 
 namespace dispersa {
@@ -20,8 +20,8 @@ struct Kind {
   std::uint64_t unsaid = 0;
 };
 
-std::mutex mutex;
-std::map<std::string, Kind> kinds;  // few: those that this program names
+Mutex mutex;
+std::map<std::string, Kind> kinds DISPERSA_GUARDED_BY(mutex);  // few: those that this program names
 std::atomic<std::uint64_t> total = 0;
 
 }  // namespace
@@ -30,7 +30,7 @@ void Complain(const std::string& kind, const std::string& sender, const std::str
   ++total;
   std::uint64_t unsaid = 0;
   {
-    const std::lock_guard lock(mutex);
+    const Lock lock(mutex);
     Kind& known = kinds[kind];
     const auto now = Clock::now();
     if (now < known.quiet_until) {

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <exception>
 #include <functional>
-#include <mutex>
 #include <string>
 #include <utility>
 
@@ -18,6 +17,7 @@
 
 #include "services/transport/complaints.h"
 #include "services/transport/convert.h"
+#include "services/transport/mutex.h"
 #include "services/transport/participant.h"
 #include "services/transport/validity.h"
 #include "services/transport/wire_shape.h"
@@ -81,7 +81,7 @@ class Writer : private eprosima::fastdds::dds::DataWriterListener {
 
   /// What cannot be sent now is lost; whoever needs it repeats it.
   void Write(Message message) {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     if (++written_ > kRenewAfter) {
       Close();
       Open();
@@ -89,14 +89,14 @@ class Writer : private eprosima::fastdds::dds::DataWriterListener {
     writer_->write(&message);
   }
   int matched() const {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     eprosima::fastdds::dds::PublicationMatchedStatus status;
     writer_->get_publication_matched_status(status);
     return status.current_count;
   }
   /// Waits until what was written has arrived.
   void Drain(int milliseconds) {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     writer_->wait_for_acknowledgments(
         {milliseconds / 1000, static_cast<unsigned>(milliseconds % 1000) * 1000000u});
   }
@@ -107,12 +107,12 @@ class Writer : private eprosima::fastdds::dds::DataWriterListener {
       const eprosima::fastdds::dds::OfferedIncompatibleQosStatus& status) override {
     LogIncompatibleQos(name_, status.last_policy_id);
   }
-  void Open() {
+  void Open() DISPERSA_PROVED(requires_capability(mutex_)) {
     written_ = 0;
     writer_ = publisher_->create_datawriter(topic_, MakeWriterQos(depth_), this);
     if (writer_ == nullptr) throw NetworkError("cannot create a writer of " + name_);
   }
-  void Close() {
+  void Close() DISPERSA_PROVED(requires_capability(mutex_)) {
     writer_->set_listener(nullptr);
     publisher_->delete_datawriter(writer_);
   }
@@ -121,9 +121,9 @@ class Writer : private eprosima::fastdds::dds::DataWriterListener {
   eprosima::fastdds::dds::Topic* topic_;
   int depth_;
   eprosima::fastdds::dds::Publisher* publisher_;
-  mutable std::mutex mutex_;
-  eprosima::fastdds::dds::DataWriter* writer_ = nullptr;
-  std::uint64_t written_ = 0;
+  mutable Mutex mutex_;
+  eprosima::fastdds::dds::DataWriter* writer_ DISPERSA_GUARDED_BY(mutex_) = nullptr;
+  std::uint64_t written_ DISPERSA_GUARDED_BY(mutex_) = 0;
 };
 
 /// Hands over, on a thread of the middleware, what is well-formed and makes sense (validity.h); what is not

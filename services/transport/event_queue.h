@@ -4,9 +4,10 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
-#include <mutex>
 #include <utility>
 #include <vector>
+
+#include "services/transport/mutex.h"
 
 namespace dispersa {
 
@@ -19,7 +20,7 @@ class EventQueue {
   /// False: dropped.
   bool Push(Event event) {
     {
-      const std::lock_guard lock(mutex_);
+      const Lock lock(mutex_);
       if (events_.size() >= kMaxWaiting) return false;
       events_.push_back(std::move(event));
     }
@@ -29,15 +30,17 @@ class EventQueue {
 
   /// All events so far, in order; waits for the first one, at most `timeout`.
   std::vector<Event> Wait(std::chrono::milliseconds timeout) {
-    std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, timeout, [this] { return !events_.empty(); });
+    const auto deadline = std::chrono::steady_clock::now() + timeout;
+    Lock lock(mutex_);
+    while (events_.empty() && lock.WaitUntil(changed_, deadline)) {
+    }
     return std::exchange(events_, {});
   }
 
  private:
-  std::mutex mutex_;
+  Mutex mutex_;
   std::condition_variable changed_;
-  std::vector<Event> events_;
+  std::vector<Event> events_ DISPERSA_GUARDED_BY(mutex_);
 };
 
 }  // namespace dispersa

@@ -48,9 +48,13 @@ WorkerExit Worker::Run() {
     FlightDesk::Due due;
     std::optional<CampaignText> text;
     {
-      const std::lock_guard lock(mutex_);
+      const Lock lock(mutex_);
       for (const WorkerEvent& event : events) {
-        std::visit([&](const auto& what) { desk_.On(what, now_s); }, event);
+        if (const auto* orders = std::get_if<Orders>(&event)) {
+          desk_.On(*orders, now_s);
+        } else {
+          desk_.On(std::get<TextPart>(event), now_s);
+        }
       }
       due = desk_.Tick(now_s);
       text = desk_.TakeText();
@@ -65,7 +69,7 @@ WorkerExit Worker::Run() {
 }
 
 void Worker::Drain() {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   desk_.Drain();
 }
 
@@ -74,7 +78,7 @@ void Worker::Drain() {
 void Worker::Connect() {
   std::shared_ptr<WorkerLink> link;
   {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     link_.reset();
   }
   try {
@@ -82,7 +86,7 @@ void Worker::Connect() {
   } catch (const NetworkError& error) {
     spdlog::warn("{}; it is tried again", error.what());
   }
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   link_ = std::move(link);
 }
 
@@ -107,13 +111,14 @@ void Worker::Load(const CampaignText& text) {
   }
   if (!problem.empty()) spdlog::error("campaign {} is refused: {}", text.name, problem);
   {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     desk_.Loaded(text.flight_id, std::move(flights), problem);
   }
   work_.notify_all();
 }
 
-// The jobs of one campaign as the engine takes them; a job of another campaign waits until all lanes are free.
+// The jobs of one campaign as the engine takes them; a job of another campaign waits until all lanes are
+// free.
 class Worker::SlotQueue : public CaseQueue {
  public:
   SlotQueue(Worker& worker, Job first) : worker_(worker), flights_(first.flights), next_(std::move(first)) {}
@@ -153,19 +158,19 @@ void Worker::FlyForEver() {
 }
 
 std::optional<Job> Worker::Next(bool wait) {
-  std::unique_lock lock(mutex_);
+  Lock lock(mutex_);
   for (;;) {
     std::optional<Job> job = closed_ ? std::nullopt : desk_.Next(Now());
     for (const Report& report : desk_.TakeReports(Now())) {
       if (link_) link_->Send(report);
     }
     if (job || !wait || closed_) return job;
-    work_.wait(lock);
+    lock.Wait(work_);
   }
 }
 
 void Worker::Done(const Job& job, CaseResult result) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   desk_.Done(job, std::move(result), Now());
 }
 
@@ -183,7 +188,7 @@ void Worker::Send(const FlightDesk::Due& due) {
 }
 
 std::optional<WorkerExit> Worker::Exit(double now_s) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   if (desk_.IsHeard(now_s)) {
     if (told_s_ > 0.0)
       spdlog::info("the coordinator at {}:{} answers again", options_.peer.host, options_.peer.port);
@@ -222,14 +227,14 @@ std::optional<WorkerExit> Worker::Exit(double now_s) {
 WorkerExit Worker::Leave(WorkerExit exit) {
   FlightDesk::Due last;
   {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     closed_ = true;
     last.status = desk_.Status(WorkerState::kLeft);
   }
   work_.notify_all();
   Send(last);
   if (link_) link_->Drain(kFarewell);
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   link_.reset();
   return exit;
 }

@@ -5,10 +5,10 @@
 #include <condition_variable>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 
+#include "services/transport/mutex.h"
 #include "services/transport/worker_link.h"
 #include "services/worker/flight_desk.h"
 
@@ -58,11 +58,12 @@ class Worker {
   double heard_s_ = 0.0, busy_s_ = 0.0, told_s_ = 0.0, draining_s_ = 0.0,
          busy_since_drain_s_ = 0.0;  ///< when it last was so; thread of Run
 
-  std::mutex mutex_;  ///< of all below
+  Mutex mutex_;
   std::condition_variable work_;
-  FlightDesk desk_;
-  std::shared_ptr<WorkerLink> link_;  ///< none while the network cannot be used
-  bool closed_ = false;
+  FlightDesk desk_ DISPERSA_GUARDED_BY(mutex_);
+  bool closed_ DISPERSA_GUARDED_BY(mutex_) = false;
+  /// None while the network cannot be used. Changed by the thread of Run under the lock.
+  std::shared_ptr<WorkerLink> link_;
 };
 
 }  // namespace dispersa

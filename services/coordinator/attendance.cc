@@ -1,0 +1,27 @@
+#include "services/coordinator/attendance.h"
+
+#include <spdlog/spdlog.h>
+
+#include "services/transport/network.h"
+
+namespace dispersa {
+namespace {
+
+constexpr double kSayAgain_s = 30.0;
+
+}  // namespace
+
+bool Attendance::Check(bool attended, double now_s) {
+  if (attended) {
+    present_s_ = said_s_ = now_s;
+    return true;
+  }
+  if (now_s - said_s_ >= kSayAgain_s) {
+    said_s_ = now_s;
+    spdlog::warn("no worker for {:.0f} s; they may come to port {}", now_s - present_s_,
+                 CoordinatorPort(domain_));
+  }
+  return !patience_s_ || now_s - present_s_ <= *patience_s_;
+}
+
+}  // namespace dispersa

@@ -1,0 +1,73 @@
+#include "services/coordinator/campaign_opening.h"
+
+#include <spdlog/spdlog.h>
+
+#include <utility>
+
+#include "core/campaign_yaml/load.h"
+
+namespace dispersa {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Attempts of one opening: more than any has.
+constexpr std::uint64_t kAttempts = std::uint64_t{1} << 40;
+constexpr std::size_t kBatch = 1000;
+
+bool HasResults(const fs::path& directory) {
+  std::error_code error;
+  return fs::is_regular_file(directory / "results.sqlite", error);
+}
+
+void TakeOver(const ResultFolder& from, std::uint64_t cases, ResultFolder& to) {
+  std::vector<CaseResult> batch;
+  const auto store = [&] {
+    to.Append(batch);
+    batch.clear();
+  };
+  from.ForEach([&](const CaseResult& result) {
+    if (result.case_index >= cases) return;
+    batch.push_back(result);
+    if (batch.size() >= kBatch) store();
+  });
+  store();
+}
+
+/// What others have flown saves time; what is wrong with their folders is no reason to fail.
+void TryToTakeOver(const fs::path& from, const Campaign& campaign, ResultFolder& to) {
+  try {
+    const ResultFolder folder = ResultFolder::Open(from);
+    if (folder.Provenance("flight_id") == campaign.flight_id) TakeOver(folder, campaign.sampling.cases, to);
+  } catch (const InputError& error) {
+    spdlog::warn("{}: its results are not taken over: {}", from.string(), error.what());
+  } catch (const ResultError& error) {
+    if (error.kind() == ResultError::Kind::kDiskFull) throw;
+    spdlog::warn("{}: its results are not taken over: {}", from.string(), error.what());
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<CampaignBook> OpenBook(const CampaignOpening& opening) {
+  const Campaign campaign = ParseCampaign(opening.text, opening.name);
+  const bool is_new = !HasResults(opening.results);
+  if (is_new) fs::remove_all(opening.results);  // of a start that was killed: nothing is in it
+  ResultFolder folder = is_new ? ResultFolder::Create(opening.results, campaign)
+                               : ResultFolder::Resume(opening.results, campaign);
+  for (const std::uint64_t damaged : folder.damaged()) {
+    spdlog::warn("{}: the row of case {} is damaged; it is flown again", opening.results.string(), damaged);
+  }
+  // Each time: what a start that was killed did not take over is taken now. A campaign that stops by itself
+  // takes none, because what it flies depends on its own looks alone.
+  if (!campaign.verdicts.stop_when_decided) {
+    for (const fs::path& other : opening.same_flights) {
+      if (HasResults(other)) TryToTakeOver(other, campaign, folder);
+    }
+  }
+  LedgerOptions options;
+  options.attempt_base = opening.number * kAttempts;
+  return std::make_unique<CampaignBook>(campaign, std::move(folder), options);
+}
+
+}  // namespace dispersa

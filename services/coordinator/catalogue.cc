@@ -1,0 +1,140 @@
+#include "services/coordinator/catalogue.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <tuple>
+#include <utility>
+
+#include "core/campaign/input_error.h"
+#include "core/report/output_file.h"
+#include "core/report/result_error.h"
+#include "services/coordinator/dump_any_text.h"
+
+namespace dispersa {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr std::array<const char*, 6> kStates = {"waiting", "flying",    "reporting",
+                                                "done",    "cancelled", "failed"};
+
+std::string ReadWhole(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  if (!stream) throw ResultError(ResultError::Kind::kFile, file.string() + ": cannot be read");
+  return std::move(text).str();
+}
+
+CatalogueEntry Parse(const std::string& text) {
+  const Json json = Json::parse(text);
+  CatalogueEntry entry;
+  entry.id = json.at("id").get<std::string>();
+  entry.flight_id = json.at("flight_id").get<std::string>();
+  entry.name = json.at("name").get<std::string>();
+  entry.priority = json.at("priority").get<int>();
+  entry.order = json.at("order").get<std::uint64_t>();
+  entry.cases = json.at("cases").get<std::uint64_t>();
+  entry.done = json.at("done").get<std::uint64_t>();
+  entry.quarantined = json.at("quarantined").get<std::uint64_t>();
+  entry.conflicts = json.at("conflicts").get<std::uint64_t>();
+  entry.code = json.at("code").get<int>();
+  entry.problem = json.at("problem").get<std::string>();
+  const auto state = std::find(kStates.begin(), kStates.end(), json.at("state").get<std::string>());
+  if (state == kStates.end()) throw std::runtime_error("an unknown state");
+  entry.state = static_cast<CampaignState>(state - kStates.begin());
+  // What was under way goes on.
+  if (entry.state == CampaignState::kFlying || entry.state == CampaignState::kReporting) {
+    entry.state = CampaignState::kWaiting;
+  }
+  return entry;
+}
+
+}  // namespace
+
+const char* CampaignStateName(CampaignState state) { return kStates[static_cast<std::size_t>(state)]; }
+
+bool HasEnded(CampaignState state) {
+  return state == CampaignState::kDone || state == CampaignState::kCancelled ||
+         state == CampaignState::kFailed;
+}
+
+bool ComesBefore(const CatalogueEntry& a, const CatalogueEntry& b) {
+  return std::tuple(b.priority, a.order) < std::tuple(a.priority, b.order);
+}
+
+Catalogue::Catalogue(const fs::path& directory) : directory_(directory) {
+  std::error_code error;
+  fs::create_directories(directory, error);
+  if (error) {
+    throw InputError(directory.string() + ": cannot be made: " + error.message(),
+                     "a folder that can be written");
+  }
+  lock_.emplace(directory);
+  for (const fs::directory_entry& folder : fs::directory_iterator(directory)) {
+    // A launch that was killed before its state was written has left nothing that anybody was told of.
+    if (!fs::is_regular_file(folder.path() / "state.json")) continue;
+    try {
+      CatalogueEntry entry = Parse(ReadWhole(folder.path() / "state.json"));
+      if (entry.id != folder.path().filename().string()) throw std::runtime_error("of another campaign");
+      next_order_ = std::max(next_order_, entry.order + 1);
+      entries_[entry.id] = std::move(entry);
+    } catch (const std::exception& damage) {
+      spdlog::error("{}: the state is damaged, the campaign is left alone: {}", folder.path().string(),
+                    damage.what());
+    }
+  }
+}
+
+const CatalogueEntry* Catalogue::Find(const std::string& prefix) const {
+  const auto first = entries_.lower_bound(prefix);
+  if (prefix.empty() || first == entries_.end() || !first->first.starts_with(prefix)) return nullptr;
+  const auto second = std::next(first);
+  return second != entries_.end() && second->first.starts_with(prefix) ? nullptr : &first->second;
+}
+
+std::vector<std::string> Catalogue::InOrder() const {
+  std::vector<std::string> ids;
+  for (const auto& [id, entry] : entries_) ids.push_back(id);
+  std::sort(ids.begin(), ids.end(), [this](const std::string& a, const std::string& b) {
+    return ComesBefore(entries_.at(a), entries_.at(b));
+  });
+  return ids;
+}
+
+CatalogueEntry& Catalogue::Add(CatalogueEntry entry, const std::string& text) {
+  entry.order = next_order_++;
+  fs::create_directories(directory_ / entry.id);
+  WriteFile(directory_ / entry.id / "campaign.yaml", text);
+  Write(entry);
+  const std::string id = entry.id;
+  return entries_[id] = std::move(entry);
+}
+
+void Catalogue::Write(const CatalogueEntry& entry) const {
+  const Json json = {{"id", entry.id},
+                     {"flight_id", entry.flight_id},
+                     {"name", entry.name},
+                     {"priority", entry.priority},
+                     {"order", entry.order},
+                     {"cases", entry.cases},
+                     {"done", entry.done},
+                     {"quarantined", entry.quarantined},
+                     {"conflicts", entry.conflicts},
+                     {"state", CampaignStateName(entry.state)},
+                     {"code", entry.code},
+                     {"problem", entry.problem}};
+  WriteFile(directory_ / entry.id / "state.json", DumpAnyText(json, 2) + "\n");
+}
+
+std::string Catalogue::TextOf(const std::string& id) const {
+  return ReadWhole(directory_ / id / "campaign.yaml");
+}
+
+}  // namespace dispersa

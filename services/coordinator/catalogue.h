@@ -1,0 +1,68 @@
+// The campaigns of a coordinator that runs for weeks: what was launched, in which order, and what became of
+// it. Each is a folder of the data directory, so that a restart finds them all.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/report/folder_lock.h"
+
+namespace dispersa {
+
+enum class CampaignState { kWaiting, kFlying, kReporting, kDone, kCancelled, kFailed };
+
+/// "waiting", "flying", "reporting", "done", "cancelled", "failed".
+const char* CampaignStateName(CampaignState state);
+/// Nothing more happens to it by itself.
+bool HasEnded(CampaignState state);
+
+struct CatalogueEntry {
+  std::string id;
+  std::string flight_id;
+  std::string name;
+  int priority = 0;
+  std::uint64_t order = 0;  ///< of launching
+  std::uint64_t cases = 0;
+  std::uint64_t done = 0;  ///< when it was last written
+  std::uint64_t quarantined = 0;
+  std::uint64_t conflicts = 0;  ///< results that contradicted others, ever
+  CampaignState state = CampaignState::kWaiting;
+  int code = 0;         ///< exit code of a campaign that has ended
+  std::string problem;  ///< of a failed one
+};
+
+/// The order of the queue: by priority, then by age.
+bool ComesBefore(const CatalogueEntry& a, const CatalogueEntry& b);
+
+/// DIR/<id>/campaign.yaml, state.json and results/. One process at a time, locked. Throws ResultError,
+/// InputError.
+class Catalogue {
+ public:
+  /// Reads what is there. A folder that cannot be read is left alone and warned of.
+  explicit Catalogue(const std::filesystem::path& directory);
+
+  const std::map<std::string, CatalogueEntry>& entries() const { return entries_; }
+  CatalogueEntry& At(const std::string& id) { return entries_.at(id); }
+  /// The campaign whose id begins so, if it is exactly one.
+  const CatalogueEntry* Find(const std::string& prefix) const;
+  /// Ids in the order of the queue.
+  std::vector<std::string> InOrder() const;
+
+  CatalogueEntry& Add(CatalogueEntry entry, const std::string& text);
+  void Write(const CatalogueEntry& entry) const;
+
+  std::string TextOf(const std::string& id) const;
+  std::filesystem::path ResultsOf(const std::string& id) const { return directory_ / id / "results"; }
+
+ private:
+  std::filesystem::path directory_;
+  std::optional<FolderLock> lock_;
+  std::map<std::string, CatalogueEntry> entries_;
+  std::uint64_t next_order_ = 1;
+};
+
+}  // namespace dispersa

@@ -1,0 +1,269 @@
+#include "services/coordinator/front_desk.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include "core/campaign_yaml/load.h"
+#include "services/coordinator/dump_any_text.h"
+#include "services/transport/validity.h"
+
+namespace dispersa {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr int kInternalError = 1;
+constexpr int kBadInput = 2;
+constexpr int kIncomplete = 5;
+constexpr std::size_t kMaxUploads = 8;
+constexpr double kUploadPatience_s = 60.0;
+/// In an answer, so that it fits into a sample.
+constexpr std::size_t kMaxListed = 500;
+constexpr std::size_t kFilePart = 256 << 10;
+
+/// Files of a result folder that a client may have, by path within it.
+std::vector<fs::path> FilesIn(const fs::path& directory) {
+  std::vector<fs::path> files;
+  if (!fs::is_directory(directory)) return files;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(directory)) {
+    const std::string name = entry.path().filename().string();
+    if (entry.is_symlink() || !entry.is_regular_file() || name.ends_with(".tmp") || name.ends_with("-wal") ||
+        name.ends_with("-shm")) {
+      continue;
+    }
+    files.push_back(entry.path().lexically_relative(directory));
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+CatalogueEntry Parse(const std::string& text) {
+  const Campaign campaign = ParseCampaign(text, "campaign");
+  CatalogueEntry entry;
+  entry.id = campaign.id;
+  entry.flight_id = campaign.flight_id;
+  entry.name = campaign.name;
+  entry.cases = campaign.sampling.cases;
+  return entry;
+}
+
+Json ToJson(const CampaignView& view) {
+  const CatalogueEntry& entry = *view.entry;
+  Json standings = Json::array();
+  for (const RequirementStanding& standing : view.standings) {
+    standings.push_back({{"metric", standing.metric},
+                         {"requirement", standing.requirement},
+                         {"n", standing.n},
+                         {"failures", standing.failures},
+                         {"so_far", standing.so_far}});
+  }
+  return {{"id", entry.id},
+          {"name", entry.name},
+          {"state", CampaignStateName(entry.state)},
+          {"done", view.progress.done},
+          {"total", view.progress.total},
+          {"quarantined", view.progress.quarantined},
+          {"rate_per_s", view.rate_per_s},
+          {"eta_s", view.eta_s ? Json(*view.eta_s) : Json(nullptr)},
+          {"priority", entry.priority},
+          {"code", HasEnded(entry.state) ? Json(entry.code) : Json(nullptr)},
+          {"problem", entry.problem.empty() ? Json(nullptr) : Json(entry.problem)},
+          {"requirements", std::move(standings)}};
+}
+
+void RefuseAnotherEngine(const std::string& asked, const CatalogueEntry& entry) {
+  if (asked == entry.flight_id) return;
+  throw Refused(kBadInput, fmt::format("campaign {} has the flight id {} here and {} at the client: the "
+                                       "engines differ",
+                                       entry.id.substr(0, 8), entry.flight_id, Printable(asked)));
+}
+
+}  // namespace
+
+Reply FrontDesk::Answer(const Request& request) {
+  Reply reply;
+  reply.client = request.client;
+  reply.number = request.number;
+  ForgetUploads();
+  try {
+    if (request.method == "health") {
+      reply.text = "{}";
+    } else if (request.method == "upload") {
+      reply.text = TakePart(request.arguments, request.data);
+    } else if (request.method == "launch") {
+      reply.text = Launch(request.arguments);
+    } else if (request.method == "cancel") {
+      reply.text = Cancel(request.arguments);
+    } else if (request.method == "list") {
+      reply.text = List(request.arguments);
+    } else if (request.method == "status") {
+      reply.text = Status(request.arguments);
+    } else if (request.method == "files") {
+      reply.text = Files(request.arguments);
+    } else if (request.method == "read") {
+      reply.text = Read(request.arguments, &reply.data);
+    } else {
+      throw Refused(kBadInput,
+                    "the coordinator does not know the request '" + Printable(request.method) + "'");
+    }
+  } catch (const Refused& refused) {
+    reply.code = refused.code;
+    reply.text = refused.what();
+  } catch (const InputError& error) {
+    reply.code = kBadInput;
+    reply.text = error.what();
+  } catch (const Json::exception&) {
+    reply.code = kBadInput;
+    reply.text = "the coordinator does not understand the arguments of '" + Printable(request.method) + "'";
+  } catch (const ResultError& error) {
+    reply.code = error.kind() == ResultError::Kind::kDiskFull ? kIncomplete : kInternalError;
+    reply.text = error.what();
+  }
+  return reply;
+}
+
+void FrontDesk::ForgetUploads() {
+  std::erase_if(uploads_, [now_s = coordinator_.now_s()](const auto& upload) {
+    return now_s - upload.second.used_s > kUploadPatience_s;
+  });
+}
+
+std::string FrontDesk::TakePart(const std::string& arguments, const std::string& data) {
+  const Json json = Json::parse(arguments);
+  const std::string id = json.at("id");
+  const std::uint64_t size = json.at("size"), offset = json.at("offset");
+  if (size > kMaxTextBytes) throw Refused(kBadInput, "the campaign's text is larger than 64 MiB");
+  if (!uploads_.contains(id) && uploads_.size() >= kMaxUploads) {
+    throw Refused(kIncomplete,
+                  "the coordinator takes " + std::to_string(kMaxUploads) + " texts at a time already");
+  }
+  Upload& upload = uploads_[id];
+  upload.used_s = coordinator_.now_s();
+  if (upload.size != size && !upload.parsed.valid()) {
+    upload.text.clear();
+    upload.size = size;
+  }
+  if (offset == upload.text.size() && data.size() <= upload.size - offset) upload.text += data;
+  return Json{{"received", upload.text.size()}}.dump();
+}
+
+// A campaign that is not known is "unknown" until its text is here, and "checked" while it is parsed, which
+// takes seconds when it is large.
+std::string FrontDesk::Launch(const std::string& arguments) {
+  const Json json = Json::parse(arguments);
+  const std::string id = json.at("id"), flight_id = json.at("flight_id");
+  const int priority = json.at("priority");
+  const auto answer = [&](const char* state) { return Json{{"id", id}, {"state", state}}.dump(); };
+  if (service_.catalogue().entries().contains(id)) {
+    uploads_.erase(id);
+    RefuseAnotherEngine(flight_id, service_.catalogue().entries().at(id));
+    service_.Relaunch(id, priority);
+    return answer(CampaignStateName(service_.catalogue().entries().at(id).state));
+  }
+  const auto found = uploads_.find(id);
+  if (found == uploads_.end() || found->second.text.size() != found->second.size) return answer("unknown");
+  Upload& upload = found->second;
+  upload.used_s = coordinator_.now_s();
+  if (!upload.parsed.valid()) upload.parsed = std::async(std::launch::async, Parse, upload.text);
+  if (upload.parsed.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready)
+    return answer("checked");
+  Upload complete = std::move(upload);
+  uploads_.erase(found);
+  CatalogueEntry entry = complete.parsed.get();
+  if (entry.id != id) throw Refused(kBadInput, "the text is not that of campaign " + Printable(id));
+  RefuseAnotherEngine(flight_id, entry);
+  entry.priority = priority;
+  service_.Launch(std::move(entry), complete.text);
+  return answer("waiting");
+}
+
+std::string FrontDesk::Cancel(const std::string& arguments) {
+  const std::string id = Named(Json::parse(arguments).at("id")).id;
+  service_.Cancel(id);
+  return Json{{"id", id}}.dump();
+}
+
+std::string FrontDesk::List(const std::string& arguments) const {
+  const std::string wanted = Json::parse(arguments).value("id", "");
+  std::vector<std::string> ids = wanted.empty() ? Listed() : std::vector{Named(wanted).id};
+  Json campaigns = Json::array();
+  for (const std::string& id : ids) campaigns.push_back(ToJson(service_.View(id)));
+  const std::size_t unlisted = wanted.empty() ? service_.catalogue().entries().size() - ids.size() : 0;
+  return DumpAnyText(
+      {{"schema", "dispersa/list/1"}, {"campaigns", std::move(campaigns)}, {"unlisted", unlisted}});
+}
+
+// As many as fit into an answer; rather those that have not ended.
+std::vector<std::string> FrontDesk::Listed() const {
+  std::vector<std::string> ids = service_.catalogue().InOrder();
+  std::size_t surplus = ids.size() - std::min(ids.size(), kMaxListed);
+  std::erase_if(ids, [&](const std::string& id) {
+    return surplus > 0 && HasEnded(service_.catalogue().entries().at(id).state) && surplus-- > 0;
+  });
+  ids.resize(std::min(ids.size(), kMaxListed));
+  return ids;
+}
+
+std::string FrontDesk::Status(const std::string& arguments) const {
+  Json answer = Json::parse(List(arguments));
+  answer["schema"] = "dispersa/status/1";
+  constexpr const char* kStates[] = {"ready", "flying", "draining", "left"};
+  Json workers = Json::array();
+  for (const Dispatcher::WorkerView& worker : coordinator_.Workers()) {
+    workers.push_back({{"id", worker.worker},
+                       {"host", Printable(worker.host)},
+                       {"slots", worker.slots},
+                       {"state", kStates[static_cast<int>(worker.state)]},
+                       {"flown", worker.flown}});
+  }
+  answer["workers"] = std::move(workers);
+  return answer.dump();
+}
+
+std::string FrontDesk::Files(const std::string& arguments) const {
+  const CatalogueEntry& entry = Named(Json::parse(arguments).at("id"));
+  if (!service_.IsAtRest(entry.id)) {
+    throw Refused(kIncomplete, fmt::format("campaign {} is {}: its results can be fetched when it has ended",
+                                           entry.id.substr(0, 8), CampaignStateName(entry.state)));
+  }
+  const fs::path directory = service_.catalogue().ResultsOf(entry.id);
+  // What a coordinator that was killed left beside the database belongs into it.
+  if (fs::exists(directory / "results.sqlite-wal")) ResultFolder::Open(directory);
+  Json files = Json::array();
+  for (const fs::path& file : FilesIn(directory)) {
+    files.push_back({{"path", file.generic_string()}, {"size", fs::file_size(directory / file)}});
+  }
+  return Json{{"id", entry.id}, {"code", entry.code}, {"files", std::move(files)}}.dump();
+}
+
+std::string FrontDesk::Read(const std::string& arguments, std::string* data) const {
+  const Json json = Json::parse(arguments);
+  const CatalogueEntry& entry = Named(json.at("id"));
+  const fs::path directory = service_.catalogue().ResultsOf(entry.id);
+  const fs::path path = json.at("path").get<std::string>();
+  const std::uint64_t offset = json.at("offset");
+  const std::vector<fs::path> files = FilesIn(directory);
+  if (!service_.IsAtRest(entry.id) || std::find(files.begin(), files.end(), path) == files.end()) {
+    throw Refused(kBadInput,
+                  "campaign " + entry.id.substr(0, 8) + " has no file " + Printable(path.string()));
+  }
+  std::ifstream stream(directory / path, std::ios::binary);
+  data->resize(kFilePart);
+  stream.seekg(static_cast<std::streamoff>(offset));
+  stream.read(data->data(), static_cast<std::streamsize>(data->size()));
+  data->resize(static_cast<std::size_t>(std::max<std::streamsize>(stream.gcount(), 0)));
+  return "{}";
+}
+
+const CatalogueEntry& FrontDesk::Named(const std::string& id) const {
+  if (const CatalogueEntry* entry = service_.catalogue().Find(id)) return *entry;
+  throw Refused(kBadInput, "no campaign, or more than one, has the id '" + Printable(id) + "'");
+}
+
+}  // namespace dispersa

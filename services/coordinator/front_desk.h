@@ -1,0 +1,47 @@
+// What clients may ask a coordinator, and the answers. idl/README.md lists the requests.
+#pragma once
+
+#include <cstdint>
+#include <future>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "services/coordinator/service.h"
+
+namespace dispersa {
+
+/// A request may come several times, since clients repeat it until the reply arrives: none does more the
+/// second time than the first.
+class FrontDesk {
+ public:
+  FrontDesk(Service& service, Coordinator& coordinator) : service_(service), coordinator_(coordinator) {}
+
+  Reply Answer(const Request& request);
+
+ private:
+  /// A campaign's text that comes in parts.
+  struct Upload {
+    std::string text;
+    std::uint64_t size = 0;
+    double used_s = 0.0;
+    std::future<CatalogueEntry> parsed;
+  };
+
+  std::string TakePart(const std::string& arguments, const std::string& data);
+  std::string Launch(const std::string& arguments);
+  std::string Cancel(const std::string& arguments);
+  std::string List(const std::string& arguments) const;
+  std::vector<std::string> Listed() const;
+  std::string Status(const std::string& arguments) const;
+  std::string Files(const std::string& arguments) const;
+  std::string Read(const std::string& arguments, std::string* data) const;
+  const CatalogueEntry& Named(const std::string& id) const;
+  void ForgetUploads();
+
+  Service& service_;
+  Coordinator& coordinator_;
+  std::map<std::string, Upload> uploads_;  ///< by id
+};
+
+}  // namespace dispersa

@@ -1,0 +1,13 @@
+// A service in figures, for a monitor that asks now and then.
+#pragma once
+
+#include <string>
+
+#include "services/coordinator/service.h"
+
+namespace dispersa {
+
+/// In Prometheus' text format 0.0.4.
+std::string MetricsText(const Service& service, const Coordinator& coordinator);
+
+}  // namespace dispersa

@@ -1,0 +1,42 @@
+#include "services/coordinator/running_tally.h"
+
+#include "core/flight/metrics.h"
+#include "core/report/requirement_summary.h"
+#include "core/report/sampling_text.h"
+#include "core/statistics/intervals.h"
+
+namespace dispersa {
+
+RunningTally::RunningTally(const Campaign& campaign)
+    : requirements_(campaign.requirements),
+      failures_(requirements_.size()),
+      independent_(IsIndependent(campaign.sampling.method)) {
+  for (const Requirement& requirement : requirements_) columns_.push_back(MetricColumn(requirement.metric));
+}
+
+void RunningTally::Add(const CaseResult& result) {
+  ++n_;
+  for (std::size_t i = 0; i < requirements_.size(); ++i) {
+    const bool met = result.outcome == Outcome::kCompleted &&
+                     LimitsOf(requirements_[i]).Meets(result.metrics[columns_[i]]);
+    failures_[i] += met ? 0 : 1;
+  }
+}
+
+std::vector<RequirementStanding> RunningTally::Standings() const {
+  std::vector<RequirementStanding> standings;
+  for (std::size_t i = 0; i < requirements_.size(); ++i) {
+    const Requirement& requirement = requirements_[i];
+    RequirementStanding standing{requirement.metric, RequirementLine(requirement), n_, failures_[i],
+                                 independent_ ? "inconclusive" : "study"};
+    if (independent_ && n_ > 0) {
+      const double confidence = 1.0 - requirement.consumer_risk, failing = 1.0 - requirement.probability;
+      if (ClopperPearsonUpper(failures_[i], n_, confidence) <= failing) standing.so_far = "pass";
+      if (ClopperPearsonLower(failures_[i], n_, confidence) > failing) standing.so_far = "fail";
+    }
+    standings.push_back(std::move(standing));
+  }
+  return standings;
+}
+
+}  // namespace dispersa

@@ -1,0 +1,130 @@
+#include "services/coordinator/serve.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <utility>
+
+#include "core/report/reports.h"
+#include "services/coordinator/attendance.h"
+#include "services/coordinator/coordinator.h"
+#include "services/coordinator/front_desk.h"
+#include "services/coordinator/metrics_port.h"
+#include "services/coordinator/metrics_text.h"
+#include "services/coordinator/service.h"
+#include "services/coordinator/stop_signal.h"
+#include "services/coordinator/threads.h"
+#include "services/transport/client_link.h"
+
+namespace dispersa {
+namespace {
+
+// The product's exit codes that no verdict gives.
+constexpr int kIncomplete = 5;
+constexpr int kInterrupted = 130;
+
+constexpr std::chrono::milliseconds kRound(50);
+constexpr double kProgress_s = 5.0;
+constexpr double kMetrics_s = 1.0;
+constexpr std::chrono::seconds kHealthPatience(5);
+
+struct Stopped {};
+
+/// True now and then.
+class Every {
+ public:
+  explicit Every(double period_s) : period_s_(period_s) {}
+  bool IsDue(double now_s) {
+    if (now_s < due_s_) return false;
+    due_s_ = now_s + period_s_;
+    return true;
+  }
+
+ private:
+  double period_s_;
+  double due_s_ = 0.0;
+};
+
+}  // namespace
+
+int ServeCampaign(const NetworkOptions& network, const CampaignRequest& request,
+                  std::optional<double> patience_s) {
+  OpenedCampaign opened = OpenCampaign(request);
+  CampaignBook book(opened.campaign, std::move(opened.folder));
+  Coordinator coordinator(network, book);
+  spdlog::info("campaign {}, flight id {}, results in {}; domain {}, workers may come to port {}",
+               book.campaign().name, book.campaign().flight_id, book.folder().directory().string(),
+               network.domain, CoordinatorPort(network.domain));
+  Every progress_period(kProgress_s);
+  Attendance attendance(network.domain, patience_s);
+  while (!book.Complete() && !StopRequested()) {
+    coordinator.Step(kRound);
+    if (!attendance.Check(coordinator.joined() > 0, coordinator.now_s())) {
+      book.Flush();
+      spdlog::error("no worker for {:.0f} s: given up; the same with --resume goes on", *patience_s);
+      return kIncomplete;
+    }
+    if (progress_period.IsDue(coordinator.now_s())) {
+      const LedgerProgress progress = book.ledger().Progress();
+      spdlog::info("{}/{} cases done, {} assigned, {} quarantined, {} workers", progress.done, progress.total,
+                   progress.assigned, progress.quarantined, coordinator.joined());
+    }
+  }
+  // First what would be lost. Workers are sent home by a campaign that is complete on the disk and by nothing
+  // else: a coordinator that stops, or is killed here, finds them again when it is back.
+  book.Flush();
+  ReportOptions options;
+  options.threads = UsableCores();
+  options.progress = [](const std::string&, std::uint64_t, std::uint64_t) {
+    if (StopRequested()) throw Stopped();
+  };
+  try {
+    if (StopRequested()) throw Stopped();
+    coordinator.Dismiss();
+    const CampaignSummary summary = WriteReports(book.folder(), book.campaign(), options);
+    fmt::print("result: {}\n", book.folder().directory().string());
+    return CampaignExitCode(summary.verdict, book.ledger().Progress().conflicts);
+  } catch (const Stopped&) {
+    spdlog::warn("stopped; the same with --resume goes on");
+    return kInterrupted;
+  }
+}
+
+// Workers stay when it ends: another coordinator on the same data takes them over.
+int ServeClients(const NetworkOptions& network, const std::string& data,
+                 std::optional<std::uint16_t> metrics_port) {
+  Coordinator coordinator(network);
+  ServiceOptions options;
+  options.data = data;
+  options.report_threads = UsableCores();
+  Service service(options, coordinator);
+  FrontDesk front_desk(service, coordinator);
+  coordinator.Serve([&](const Request& request) { return front_desk.Answer(request); });
+  spdlog::info("domain {}, workers and clients may come to port {}", network.domain,
+               CoordinatorPort(network.domain));
+  std::optional<MetricsPort> metrics;
+  if (metrics_port) metrics.emplace(*metrics_port);
+  Every metrics_period(kMetrics_s);
+  Attendance attendance(network.domain, std::nullopt);
+  while (!StopRequested()) {
+    coordinator.Step(kRound);
+    service.Step();
+    attendance.Check(coordinator.joined() > 0 || !service.HasWork(), coordinator.now_s());
+    if (metrics && metrics_period.IsDue(coordinator.now_s())) metrics->Set(MetricsText(service, coordinator));
+  }
+  service.Flush();
+  spdlog::info("stopped; what is open goes on when the coordinator is started again");
+  return 0;
+}
+
+int AskHealth(const NetworkOptions& network) {
+  const std::string host = network.address.empty() ? "127.0.0.1" : network.address;
+  ClientLink client(network, {host, CoordinatorPort(network.domain)});
+  const auto reply = client.Call("health", "{}", "", kHealthPatience);
+  if (reply && reply->code == 0) return 0;
+  spdlog::error("the coordinator of domain {} does not answer", network.domain);
+  return kIncomplete;
+}
+
+}  // namespace dispersa

@@ -1,0 +1,290 @@
+#include "services/coordinator/service.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+
+#include "core/report/reports.h"
+#include "services/coordinator/campaign_opening.h"
+
+namespace dispersa {
+namespace {
+
+constexpr int kInternalError = 1;
+constexpr int kBadInput = 2;
+constexpr int kIncomplete = 5;
+constexpr double kMeasure_s = 1.0;
+constexpr std::size_t kRateOver = 10;  // measurements
+constexpr std::size_t kMaxProblem = 1000;
+
+struct Stopped {};
+
+template <typename T>
+bool IsReady(const std::future<T>& future) {
+  return future.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+}
+
+}  // namespace
+
+Service::Service(const ServiceOptions& options, Coordinator& coordinator)
+    : options_(options), coordinator_(coordinator), catalogue_(options.data) {
+  std::size_t open = 0;
+  for (const auto& [id, entry] : catalogue_.entries()) open += !HasEnded(entry.state);
+  spdlog::info("{}: {} campaigns, {} of them open", options.data.string(), catalogue_.entries().size(), open);
+}
+
+Service::~Service() {
+  stop_report_ = true;
+  if (reporting_) reporting_->verdict.wait();
+  for (auto& [id, flying] : flying_) coordinator_.Close(catalogue_.At(id).flight_id);
+}
+
+void Service::Step() {
+  CloseComplete();
+  FinishReport();
+  StartReport();
+  FinishOpening();
+  StartOpening();
+  Measure();
+}
+
+void Service::Flush() {
+  for (auto& [id, flying] : flying_) flying.book->Flush();
+}
+
+void Service::CloseComplete() {
+  std::vector<std::string> complete;
+  for (auto& [id, flying] : flying_) {
+    if (flying.book->Complete()) complete.push_back(id);
+  }
+  for (const std::string& id : complete) {
+    to_report_.emplace_back(id, TakeBack(id));
+    CatalogueEntry& entry = catalogue_.At(id);
+    entry.cases = to_report_.back().second->ledger().Progress().total;
+    entry.state = CampaignState::kReporting;
+    catalogue_.Write(entry);
+  }
+}
+
+void Service::StartReport() {
+  if (reporting_ || to_report_.empty()) return;
+  auto [id, book] = std::move(to_report_.front());
+  to_report_.pop_front();
+  reporting_.emplace();
+  reporting_->id = id;
+  reporting_->verdict = std::async(std::launch::async, [this, book = std::shared_ptr(std::move(book))] {
+    ReportOptions options;
+    options.threads = options_.report_threads;
+    options.progress = [this](const std::string&, std::uint64_t, std::uint64_t) {
+      if (stop_report_) throw Stopped();  // the next coordinator writes it
+    };
+    return WriteReports(book->folder(), book->campaign(), options).verdict;
+  });
+}
+
+void Service::FinishReport() {
+  if (!reporting_ || !IsReady(reporting_->verdict)) return;
+  CatalogueEntry& entry = catalogue_.At(reporting_->id);
+  try {
+    End(entry, CampaignState::kDone, CampaignExitCode(reporting_->verdict.get(), entry.conflicts));
+  } catch (const std::exception& error) {
+    End(entry, CampaignState::kFailed, kInternalError, error.what());
+  }
+  reporting_.reset();
+}
+
+// Of campaigns of the same flights one after the other: the later takes over what the earlier has flown.
+const CatalogueEntry* Service::NextToOpen() const {
+  std::set<std::string> busy;
+  for (const auto& [id, entry] : catalogue_.entries()) {
+    if (entry.state == CampaignState::kFlying || entry.state == CampaignState::kReporting)
+      busy.insert(entry.flight_id);
+  }
+  const CatalogueEntry* next = nullptr;
+  for (const auto& [id, entry] : catalogue_.entries()) {
+    if (entry.state != CampaignState::kWaiting || busy.contains(entry.flight_id)) continue;
+    if (next == nullptr || ComesBefore(entry, *next)) next = &entry;
+  }
+  return next;
+}
+
+// One that flies goes back into the queue if this one has a higher priority.
+bool Service::MakeRoomFor(const CatalogueEntry& entry) {
+  if (flying_.size() < options_.open_at_once) return true;
+  const auto last = std::max_element(flying_.begin(), flying_.end(), [this](const auto& a, const auto& b) {
+    return ComesBefore(catalogue_.At(a.first), catalogue_.At(b.first));
+  });
+  CatalogueEntry& lowest = catalogue_.At(last->first);
+  if (lowest.priority >= entry.priority) return false;
+  TakeBack(lowest.id);
+  lowest.state = CampaignState::kWaiting;
+  catalogue_.Write(lowest);
+  spdlog::info("campaign {} ({}) waits for one of a higher priority", lowest.name, lowest.id.substr(0, 8));
+  return true;
+}
+
+void Service::StartOpening() {
+  if (opening_) return;
+  const CatalogueEntry* entry = NextToOpen();
+  if (entry == nullptr || !MakeRoomFor(*entry)) return;
+  CampaignOpening opening{
+      catalogue_.TextOf(entry->id), entry->name, catalogue_.ResultsOf(entry->id), {}, ++opened_};
+  for (const auto& [id, other] : catalogue_.entries()) {
+    if (id != entry->id && other.flight_id == entry->flight_id)
+      opening.same_flights.push_back(catalogue_.ResultsOf(id));
+  }
+  opening_.emplace();
+  opening_->id = entry->id;
+  opening_->book =
+      std::async(std::launch::async, [opening = std::move(opening)] { return OpenBook(opening); });
+}
+
+void Service::FinishOpening() {
+  if (!opening_ || !IsReady(opening_->book)) return;
+  Opening opened = *std::move(opening_);
+  opening_.reset();
+  CatalogueEntry& entry = catalogue_.At(opened.id);
+  try {
+    Book book = opened.book.get();
+    if (entry.state != CampaignState::kWaiting) return;  // cancelled meanwhile
+    entry.flight_id = book->campaign().flight_id;        // another one if the engine is another one by now
+    coordinator_.Open(*book, entry.priority);
+    spdlog::info("campaign {} ({}) is open: {} of {} cases are there", entry.name, opened.id.substr(0, 8),
+                 book->ledger().Progress().done, book->ledger().Progress().total);
+    flying_[opened.id].book = std::move(book);
+    entry.state = CampaignState::kFlying;
+    catalogue_.Write(entry);
+  } catch (const ResultError& error) {
+    if (error.kind() == ResultError::Kind::kDiskFull) throw;
+    End(entry, CampaignState::kFailed, kInternalError, error.what());
+  } catch (const InputError& error) {
+    End(entry, CampaignState::kFailed, kBadInput, error.what());
+  }
+}
+
+void Service::Measure() {
+  const double now_s = coordinator_.now_s();
+  if (now_s - measured_s_ < kMeasure_s) return;
+  measured_s_ = now_s;
+  for (auto& [id, flying] : flying_) {
+    CatalogueEntry& entry = catalogue_.At(id);
+    flying.past.emplace_back(now_s, flying.book->ledger().Progress().done);
+    if (flying.past.size() > kRateOver) flying.past.pop_front();
+    NoteConflicts(entry, flying);
+    Publish(entry);
+  }
+}
+
+// At once and for ever: whoever starts this coordinator again must not make them unseen.
+void Service::NoteConflicts(CatalogueEntry& entry, Flying& flying) {
+  const std::uint64_t seen = flying.book->ledger().Progress().conflicts;
+  if (seen == flying.conflicts_noted) return;
+  entry.conflicts += seen - flying.conflicts_noted;
+  flying.conflicts_noted = seen;
+  catalogue_.Write(entry);
+}
+
+// From the workers. Its entry holds what the ledger knew.
+Service::Book Service::TakeBack(const std::string& id) {
+  const auto found = flying_.find(id);
+  CatalogueEntry& entry = catalogue_.At(id);
+  found->second.book->Flush();
+  NoteConflicts(entry, found->second);
+  coordinator_.Close(entry.flight_id);
+  Book book = std::move(found->second.book);
+  entry.done = book->ledger().Progress().done;
+  entry.quarantined = book->ledger().Progress().quarantined;
+  flying_.erase(found);
+  return book;
+}
+
+void Service::End(CatalogueEntry& entry, CampaignState state, int code, const std::string& problem) {
+  entry.state = state;
+  entry.code = code;
+  entry.problem = problem.substr(0, kMaxProblem);
+  catalogue_.Write(entry);
+  Publish(entry);
+  if (problem.empty()) {
+    spdlog::info("campaign {} ({}) is {}, code {}", entry.name, entry.id.substr(0, 8),
+                 CampaignStateName(state), code);
+  } else {
+    spdlog::error("campaign {} ({}) is {}: {}", entry.name, entry.id.substr(0, 8), CampaignStateName(state),
+                  problem);
+  }
+}
+
+void Service::Publish(const CatalogueEntry& entry) {
+  const LedgerProgress progress = View(entry.id).progress;
+  coordinator_.Publish({0, entry.id, entry.flight_id, entry.name, CampaignStateName(entry.state),
+                        progress.total, progress.done, progress.quarantined, progress.assigned, 0});
+}
+
+CampaignView Service::View(const std::string& id) const {
+  CampaignView view;
+  const CatalogueEntry& entry = catalogue_.entries().at(id);
+  view.entry = &entry;
+  const auto flying = flying_.find(id);
+  if (flying == flying_.end()) {
+    view.progress.total = entry.cases;
+    view.progress.done = entry.done;
+    view.progress.quarantined = entry.quarantined;
+    if (!HasEnded(entry.state))
+      view.progress.waiting = entry.cases - std::min(entry.cases, entry.done + entry.quarantined);
+    return view;
+  }
+  view.progress = flying->second.book->ledger().Progress();
+  view.standings = flying->second.book->tally().Standings();
+  const auto& past = flying->second.past;
+  if (past.size() < 2) return view;
+  const double seconds = past.back().first - past.front().first;
+  view.rate_per_s = static_cast<double>(past.back().second - past.front().second) / seconds;
+  if (view.rate_per_s > 0.0) {
+    view.eta_s = static_cast<double>(view.progress.waiting + view.progress.assigned) / view.rate_per_s;
+  }
+  return view;
+}
+
+bool Service::IsAtRest(const std::string& id) const {
+  return HasEnded(catalogue_.entries().at(id).state) && !(opening_ && opening_->id == id);
+}
+
+bool Service::HasWork() const {
+  const auto& entries = catalogue_.entries();
+  return std::any_of(entries.begin(), entries.end(),
+                     [](const auto& each) { return !HasEnded(each.second.state); });
+}
+
+void Service::Relaunch(const std::string& id, int priority) {
+  CatalogueEntry& entry = catalogue_.At(id);
+  entry.priority = priority;
+  if (entry.state == CampaignState::kCancelled || entry.state == CampaignState::kFailed ||
+      (entry.state == CampaignState::kDone && entry.quarantined > 0)) {
+    entry.state = CampaignState::kWaiting;
+    entry.quarantined = 0;
+    entry.problem.clear();
+  }
+  catalogue_.Write(entry);
+  if (const auto flying = flying_.find(id); flying != flying_.end())
+    coordinator_.Open(*flying->second.book, priority);
+}
+
+void Service::Launch(CatalogueEntry entry, const std::string& text) {
+  spdlog::info("campaign {} ({}): launched, {} cases", entry.name, entry.id.substr(0, 8), entry.cases);
+  catalogue_.Add(std::move(entry), text);
+}
+
+void Service::Cancel(const std::string& id) {
+  CatalogueEntry& entry = catalogue_.At(id);
+  if (entry.state == CampaignState::kCancelled) return;
+  if (HasEnded(entry.state) || entry.state == CampaignState::kReporting) {
+    throw Refused(kBadInput, fmt::format("campaign {} is {} and cannot be cancelled", id.substr(0, 8),
+                                         CampaignStateName(entry.state)));
+  }
+  if (flying_.contains(id)) TakeBack(id);
+  End(entry, CampaignState::kCancelled, kIncomplete);
+}
+
+}  // namespace dispersa

@@ -1,0 +1,112 @@
+// A coordinator of many campaigns: keeps their queue, flies several at once, writes their reports.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <future>
+#include <map>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "services/coordinator/catalogue.h"
+#include "services/coordinator/coordinator.h"
+
+namespace dispersa {
+
+struct ServiceOptions {
+  std::filesystem::path data;
+  int report_threads = 1;
+  std::size_t open_at_once = 8;  ///< campaigns that fly side by side; the others wait
+};
+
+/// Asked for something that cannot be; `code` is the exit code of the client.
+struct Refused : std::runtime_error {
+  Refused(int exit_code, const std::string& what) : std::runtime_error(what), code(exit_code) {}
+  int code;
+};
+
+/// A campaign as it is now.
+struct CampaignView {
+  const CatalogueEntry* entry = nullptr;
+  LedgerProgress progress;
+  double rate_per_s = 0.0;
+  std::optional<double> eta_s;
+  std::vector<RequirementStanding> standings;  ///< while it flies
+};
+
+/// Everything that a client was told survives a restart: a campaign is on the disk before its id is answered.
+/// One thread talks; another one opens campaigns and a third writes reports, since both may take minutes.
+class Service {
+ public:
+  /// Throws InputError if the data directory cannot be used.
+  Service(const ServiceOptions& options, Coordinator& coordinator);
+  ~Service();
+
+  /// Between two steps of the coordinator. Throws ResultError when the disk is full.
+  void Step();
+  /// Stores what has gathered.
+  void Flush();
+
+  const Catalogue& catalogue() const { return catalogue_; }
+  CampaignView View(const std::string& id) const;
+  /// Whether nobody writes its results, now or soon.
+  bool IsAtRest(const std::string& id) const;
+  /// Whether any campaign has not ended.
+  bool HasWork() const;
+
+  /// Puts a campaign that is known into the queue again if it was cancelled, failed or gave cases up, and
+  /// changes its priority.
+  void Relaunch(const std::string& id, int priority);
+  /// Takes a new one.
+  void Launch(CatalogueEntry entry, const std::string& text);
+  /// Ends it; what it has flown stays. Again: nothing. Throws Refused when it is too late.
+  void Cancel(const std::string& id);
+
+ private:
+  using Book = std::unique_ptr<CampaignBook>;
+  struct Flying {
+    Book book;
+    std::uint64_t conflicts_noted = 0;
+    std::deque<std::pair<double, std::uint64_t>> past;  ///< time, cases done: of the last seconds
+  };
+  struct Opening {
+    std::string id;
+    std::future<Book> book;
+  };
+  struct Reporting {
+    std::string id;
+    std::future<CampaignVerdict> verdict;
+  };
+
+  void CloseComplete();
+  void FinishReport();
+  void StartReport();
+  void FinishOpening();
+  void StartOpening();
+  const CatalogueEntry* NextToOpen() const;
+  bool MakeRoomFor(const CatalogueEntry& entry);
+  void Measure();
+  void NoteConflicts(CatalogueEntry& entry, Flying& flying);
+  Book TakeBack(const std::string& id);
+  void End(CatalogueEntry& entry, CampaignState state, int code, const std::string& problem = "");
+  void Publish(const CatalogueEntry& entry);
+
+  ServiceOptions options_;
+  Coordinator& coordinator_;
+  Catalogue catalogue_;
+  std::map<std::string, Flying> flying_;  ///< by id
+  std::optional<Opening> opening_;
+  std::deque<std::pair<std::string, Book>> to_report_;
+  std::optional<Reporting> reporting_;
+  std::atomic<bool> stop_report_ = false;
+  std::uint64_t opened_ = 0;
+  double measured_s_ = -1.0;
+};
+
+}  // namespace dispersa

@@ -1,0 +1,162 @@
+// The memory of a coordinator of many campaigns: what a restart finds, in which order it goes on.
+#include "services/coordinator/catalogue.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <fstream>
+
+#include "core/campaign/input_error.h"
+#include "core/flight/metrics.h"
+#include "services/coordinator/running_tally.h"
+
+namespace dispersa {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::ElementsAre;
+
+class CatalogueTest : public testing::Test {
+ protected:
+  CatalogueTest() {
+    std::string pattern = (fs::temp_directory_path() / "dispersa-catalogue-XXXXXX").string();
+    root_ = mkdtemp(pattern.data());
+  }
+  ~CatalogueTest() override { fs::remove_all(root_); }
+
+  static CatalogueEntry Entry(const std::string& id, int priority = 0) {
+    CatalogueEntry entry;
+    entry.id = id;
+    entry.flight_id = "f" + id;
+    entry.name = "name of " + id;
+    entry.priority = priority;
+    entry.cases = 7;
+    return entry;
+  }
+
+  fs::path root_;
+};
+
+TEST_F(CatalogueTest, RemembersEverythingOverARestart) {
+  {
+    Catalogue catalogue(root_ / "data");
+    CatalogueEntry entry = catalogue.Add(Entry("a1", -3), "text of a1");
+    entry.state = CampaignState::kFailed;
+    entry.done = 5;
+    entry.quarantined = 1;
+    entry.conflicts = 2;
+    entry.code = 1;
+    entry.problem = "it \"broke\"\n\xff";
+    catalogue.Write(entry);
+  }
+  Catalogue catalogue(root_ / "data");
+  const CatalogueEntry& entry = catalogue.At("a1");
+  EXPECT_EQ(entry.flight_id, "fa1");
+  EXPECT_EQ(entry.name, "name of a1");
+  EXPECT_EQ(entry.priority, -3);
+  EXPECT_EQ(entry.cases, 7u);
+  EXPECT_EQ(entry.done, 5u);
+  EXPECT_EQ(entry.quarantined, 1u);
+  EXPECT_EQ(entry.conflicts, 2u);
+  EXPECT_EQ(entry.state, CampaignState::kFailed);
+  EXPECT_EQ(entry.code, 1);
+  EXPECT_EQ(entry.problem, "it \"broke\"\n\xef\xbf\xbd");
+  EXPECT_EQ(catalogue.TextOf("a1"), "text of a1");
+}
+
+TEST_F(CatalogueTest, WhatWasUnderWayWaitsAgainAndWhatEndedHasEnded) {
+  const std::vector<std::pair<CampaignState, CampaignState>> before_and_after = {
+      {CampaignState::kWaiting, CampaignState::kWaiting},
+      {CampaignState::kFlying, CampaignState::kWaiting},
+      {CampaignState::kReporting, CampaignState::kWaiting},
+      {CampaignState::kDone, CampaignState::kDone},
+      {CampaignState::kCancelled, CampaignState::kCancelled},
+      {CampaignState::kFailed, CampaignState::kFailed}};
+  {
+    Catalogue catalogue(root_);
+    for (const auto& [before, after] : before_and_after) {
+      CatalogueEntry entry = catalogue.Add(Entry(CampaignStateName(before)), "");
+      entry.state = before;
+      catalogue.Write(entry);
+    }
+  }
+  Catalogue catalogue(root_);
+  for (const auto& [before, after] : before_and_after) {
+    EXPECT_EQ(catalogue.At(CampaignStateName(before)).state, after) << CampaignStateName(before);
+  }
+}
+
+TEST_F(CatalogueTest, TheQueueGoesByPriorityThenByAgeAlsoAfterARestart) {
+  {
+    Catalogue catalogue(root_);
+    for (const auto& [id, priority] : std::vector<std::pair<std::string, int>>{
+             {"z", 0}, {"low", -2147483647 - 1}, {"y", 0}, {"high", 2147483647}, {"x", 5}})
+      catalogue.Add(Entry(id, priority), "");
+    EXPECT_THAT(catalogue.InOrder(), ElementsAre("high", "x", "z", "y", "low"));
+  }
+  Catalogue catalogue(root_);
+  catalogue.Add(Entry("a"), "");
+  EXPECT_THAT(catalogue.InOrder(), ElementsAre("high", "x", "z", "y", "a", "low"));
+}
+
+TEST_F(CatalogueTest, FindsACampaignByTheBeginningOfItsIdIfThatIsOne) {
+  Catalogue catalogue(root_);
+  for (const char* id : {"abc1", "abc2", "b"}) catalogue.Add(Entry(id), "");
+  EXPECT_EQ(catalogue.Find("abc2")->id, "abc2");
+  EXPECT_EQ(catalogue.Find("b")->id, "b");
+  for (const char* prefix : {"", "abc", "c", "abc11"}) EXPECT_EQ(catalogue.Find(prefix), nullptr) << prefix;
+}
+
+TEST_F(CatalogueTest, LeavesAloneWhatIsDamagedAndWhatWasNeverToldToAnybody) {
+  {
+    Catalogue catalogue(root_);
+    for (const char* id : {"good", "damaged", "moved"}) catalogue.Add(Entry(id), "text");
+  }
+  std::ofstream(root_ / "damaged" / "state.json") << "{\"id\": \"damaged\", \"prio";
+  fs::rename(root_ / "moved", root_ / "elsewhere");
+  fs::create_directories(root_ / "stillborn");
+  std::ofstream(root_ / "stillborn" / "campaign.yaml") << "text";
+  Catalogue catalogue(root_);
+  EXPECT_THAT(catalogue.InOrder(), ElementsAre("good"));
+  EXPECT_TRUE(fs::exists(root_ / "damaged" / "campaign.yaml"));
+}
+
+TEST_F(CatalogueTest, BelongsToOneProcess) {
+  const Catalogue catalogue(root_);
+  EXPECT_THROW(Catalogue(root_.string()), InputError);
+}
+
+TEST(RunningTally, CountsWhatBreaksARequirementInAnyOrder) {
+  Campaign campaign;
+  Requirement requirement;
+  requirement.metric = "pitch_error_peak_deg";
+  requirement.below = 0.5;
+  requirement.probability = 0.9;
+  requirement.consumer_risk = 0.1;
+  campaign.requirements = {requirement};
+  RunningTally tally(campaign);
+  CaseResult result;
+  result.metrics.assign(MetricNames().size(), 0.1);
+  result.outcome = Outcome::kCompleted;
+  EXPECT_EQ(tally.Standings().at(0).so_far, "inconclusive") << "none flown";
+  // 0.9^21 > 0.1 >= 0.9^22.
+  for (int i = 0; i < 21; ++i) tally.Add(result);
+  EXPECT_EQ(tally.Standings().at(0).so_far, "inconclusive");
+  tally.Add(result);
+  EXPECT_EQ(tally.Standings().at(0).so_far, "pass");
+  result.outcome = Outcome::kLostControl;  // whatever it measured
+  tally.Add(result);
+  result.outcome = Outcome::kCompleted;
+  result.metrics[MetricColumn("pitch_error_peak_deg")] = 0.5;
+  for (int i = 0; i < 9; ++i) tally.Add(result);
+  const RequirementStanding standing = tally.Standings().at(0);
+  EXPECT_EQ(standing.n, 32);
+  EXPECT_EQ(standing.failures, 10);
+  EXPECT_EQ(standing.so_far, "fail");
+  campaign.sampling.method = SamplingMethod::kSobol;
+  EXPECT_EQ(RunningTally(campaign).Standings().at(0).so_far, "study");
+}
+
+}  // namespace
+}  // namespace dispersa

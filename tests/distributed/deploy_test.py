@@ -1,0 +1,130 @@
+"""Every deployment file is parsed, and every command in it runs: a coordinator and a worker that find each other.
+
+Environment as of run_test.py. Addresses, folders and ports are the test's; nothing else of a command is changed.
+"""
+import configparser
+import os
+import pathlib
+import shlex
+import shutil
+import signal
+import subprocess
+import tempfile
+import unittest
+import urllib.request
+
+import yaml
+
+from run_test import BINARIES, ISOLATED, PATIENCE_S, isolate, raise_loopback, wait_for
+
+REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
+DEPLOY = REPOSITORY / "services/deploy"
+
+
+def unit(name):
+    """The sections of a systemd unit; a repeated key keeps its last value."""
+    parser = configparser.RawConfigParser(strict=False, comment_prefixes=("#",))
+    parser.optionxform = str
+    parser.read_string((DEPLOY / name).read_text())
+    return parser
+
+
+class DeployTest(unittest.TestCase):
+    def setUp(self):
+        self.data = tempfile.mkdtemp(prefix="dispersa-deploy-")
+        self.processes = []
+
+    def tearDown(self):
+        for process in self.processes:
+            if process.poll() is None:
+                process.kill()
+            process.wait()
+        shutil.rmtree(self.data)
+
+    def start(self, words, environment=None):
+        """Starts a command of a file on loopback, with the folder and the peer of this test."""
+        words = [str(word) for word in words]
+        program = pathlib.Path(words[0]).name
+        for option, value in (("--data", self.data), ("--peer", "127.0.0.1"), ("--slots", "1")):
+            if option in words:
+                words[words.index(option) + 1] = value
+        command = [BINARIES / program, *words[1:], "--address", "127.0.0.1"]
+        self.processes.append(subprocess.Popen(command, stderr=subprocess.DEVNULL, env={**os.environ, **(environment or {})}))
+        return self.processes[-1]
+
+    def assert_they_find_each_other(self, coordinator, worker, probe):
+        def workers():
+            status = subprocess.run([BINARIES / "dispersa", "status", "--domain", "0", "--address", "127.0.0.1"],
+                                    capture_output=True, text=True)
+            return "worker " in status.stdout
+        self.start(coordinator)
+        worker = self.start(worker) if isinstance(worker, list) else worker()
+        wait_for(workers, "a worker")
+        probe = [BINARIES / probe[0], *probe[1:], "--address", "127.0.0.1"]
+        self.assertEqual(subprocess.run(probe, timeout=PATIENCE_S).returncode, 0)
+        worker.send_signal(signal.SIGTERM)
+        self.assertEqual(worker.wait(timeout=PATIENCE_S), 0)
+
+    def test_compose(self):
+        compose = yaml.safe_load((REPOSITORY / "docker/compose.yaml").read_text())
+        services = compose["services"]
+        self.assertEqual(set(services), {"coordinator", "worker"})
+        self.assertEqual(services["coordinator"]["healthcheck"]["test"][0], "CMD")
+        self.assert_they_find_each_other(shlex.split(services["coordinator"]["command"]),
+                                         shlex.split(services["worker"]["command"]),
+                                         services["coordinator"]["healthcheck"]["test"][1:])
+
+    def test_kubernetes(self):
+        documents = {d["kind"]: d for d in yaml.safe_load_all((DEPLOY / "kubernetes.yaml").read_text())}
+        self.assertEqual(set(documents), {"Service", "StatefulSet", "Deployment", "HorizontalPodAutoscaler"})
+        coordinator = documents["StatefulSet"]["spec"]["template"]["spec"]["containers"][0]
+        worker = documents["Deployment"]["spec"]["template"]["spec"]["containers"][0]
+        # Names that must agree.
+        service = documents["Service"]["metadata"]["name"]
+        self.assertEqual(documents["StatefulSet"]["spec"]["serviceName"], service)
+        self.assertEqual(worker["command"][worker["command"].index("--peer") + 1],
+                         f"{documents['StatefulSet']['metadata']['name']}-0.{service}")
+        scaled = documents["HorizontalPodAutoscaler"]["spec"]
+        self.assertEqual(scaled["scaleTargetRef"]["name"], documents["Deployment"]["metadata"]["name"])
+        for kind in ("StatefulSet", "Deployment"):
+            spec = documents[kind]["spec"]
+            self.assertEqual(spec["selector"]["matchLabels"], spec["template"]["metadata"]["labels"])
+        self.assert_they_find_each_other(coordinator["command"], worker["command"],
+                                         coordinator["readinessProbe"]["exec"]["command"])
+        metrics = urllib.request.urlopen("http://127.0.0.1:9464/metrics", timeout=PATIENCE_S).read().decode()
+        self.assertIn(f"\n{scaled['metrics'][0]['external']['metric']['name']} 0\n", metrics)
+        for line in metrics.splitlines():
+            self.assertRegex(line, r'^(# (HELP|TYPE) dispersa_\w+ .+|dispersa_\w+(\{\w+="\w+"\})? \d+)$')
+
+    def test_systemd(self):
+        coordinator, worker = unit("dispersa-coordinator.service"), unit("dispersa-worker.service")
+        variables = dict(word.split("=", 1) for word in worker["Service"]["Environment"].split())
+        command = worker["Service"]["ExecStart"]
+        for name, value in variables.items():
+            command = command.replace("${" + name + "}", value)
+        self.assertNotIn("$", command)
+        self.assertEqual((coordinator["Service"]["Restart"], worker["Service"]["Restart"]), ("always", "always"))
+        self.assert_they_find_each_other(shlex.split(coordinator["Service"]["ExecStart"]), shlex.split(command),
+                                         ["dispersa-coordinator", "--health", "--domain", "0"])
+
+    def test_slurm(self):
+        script = DEPLOY / "slurm.sbatch"
+        self.assertEqual(subprocess.run(["bash", "-n", script]).returncode, 0)
+        missing = subprocess.run(["bash", script], capture_output=True, text=True, env={"PATH": os.environ["PATH"]})
+        self.assertNotEqual(missing.returncode, 0)
+        self.assertIn("COORDINATOR: name of the host where dispersa-coordinator runs", missing.stderr)
+
+        def submitted():
+            environment = {**os.environ, "PATH": f"{BINARIES}:{os.environ['PATH']}", "COORDINATOR": "127.0.0.1"}
+            self.processes.append(subprocess.Popen(["bash", script], env=environment, stderr=subprocess.DEVNULL))
+            return self.processes[-1]
+        self.assert_they_find_each_other(["dispersa-coordinator", "--data", self.data], submitted,
+                                         ["dispersa-coordinator", "--health"])
+
+
+if __name__ == "__main__":
+    if ISOLATED not in os.environ:
+        isolate()
+    else:
+        raise_loopback()
+    unittest.main()

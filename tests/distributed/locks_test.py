@@ -1,0 +1,78 @@
+"""Nothing that a lock guards is touched without it: clang's thread safety analysis of services/.
+
+Arguments: the build folder, whose compile_commands.json tells how each source is compiled, and clang++.
+"""
+import concurrent.futures
+import json
+import os
+import pathlib
+import re
+import shlex
+import subprocess
+import sys
+import tempfile
+import unittest
+
+REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
+BUILD, CLANG = pathlib.Path(sys.argv[1]), sys.argv[2]
+MUTEX = "services/transport/mutex.h"
+INSTANCES = "services/transport/worker_link.cc"  # of the templates
+INCLUDE = re.compile(r'^#include "([^"]+)"', re.M)
+
+
+def includes(path):
+    return set(INCLUDE.findall(path.read_text()))
+
+
+def sources():
+    """Where each guarded member is used: the source of its class; of a class template, one that instantiates it."""
+    folder = REPOSITORY / "services"
+    found = {source for source in folder.rglob("*.cc") if MUTEX in includes(source)}
+    for header in folder.rglob("*.h"):
+        if MUTEX in includes(header):
+            is_template = re.search(r"^template .*\nclass", header.read_text(), re.M)
+            found.add(REPOSITORY / INSTANCES if is_template else header.with_suffix(".cc"))
+    return sorted(found)
+
+
+def options(source):
+    """Include paths and definitions of the build."""
+    for command in json.loads((BUILD / "compile_commands.json").read_text()):
+        if pathlib.Path(command["file"]) == source:
+            words = shlex.split(command["command"])
+            taken = [w for w in words if w.startswith(("-I", "-D", "-std=", "-march="))]
+            return taken + [w for i, w in enumerate(words) for w in words[i:i + 2] if words[i] == "-isystem"]
+    raise AssertionError(f"{source} is not built")
+
+
+def problems(source, words):
+    # Other warnings are the business of other builds.
+    command = [CLANG, "-fsyntax-only", "-Wno-everything", "-Wthread-safety", *words, source]
+    return subprocess.run(command, cwd=BUILD, capture_output=True, text=True).stderr
+
+
+class LocksTest(unittest.TestCase):
+    def test_what_is_guarded_is_touched_under_its_lock(self):
+        checked = sources()
+        self.assertGreaterEqual(len(checked), 4)
+        with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+            for source, found in zip(checked, pool.map(lambda s: problems(s, options(s)), checked)):
+                self.assertEqual(found, "", source)
+
+    def test_it_would_be_noticed(self):
+        guarded = f"""#include "{MUTEX}"
+            struct Counter {{
+              int Take() {{ @ return value_++; }}
+              dispersa::Mutex mutex_;
+              int value_ DISPERSA_GUARDED_BY(mutex_) = 0;
+            }};"""
+        with tempfile.TemporaryDirectory() as folder:
+            source = pathlib.Path(folder) / "counter.cc"
+            source.write_text(guarded.replace("@", "const dispersa::Lock lock(mutex_);"))
+            self.assertEqual(problems(source, ["-std=c++20", f"-I{REPOSITORY}"]), "")
+            source.write_text(guarded.replace("@", ""))
+            self.assertIn("requires holding mutex 'mutex_'", problems(source, ["-std=c++20", f"-I{REPOSITORY}"]))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])

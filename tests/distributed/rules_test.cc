@@ -1,0 +1,87 @@
+// Rules whose breach no campaign that goes well would show.
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/flight/flight_inputs.h"
+#include "core/flight/metrics.h"
+#include "services/cli/local_workers.h"
+#include "services/coordinator/campaign_book.h"
+#include "services/coordinator/open_campaign.h"
+
+namespace dispersa {
+namespace {
+
+class Nowhere : public ResultStore {
+ public:
+  std::size_t Append(std::span<const CaseResult>) override { return 0; }
+  void AppendExecution(std::span<const ExecutionRecord>) override {}
+  void Quarantine(const QuarantinedCase&) override {}
+  std::vector<std::pair<std::uint64_t, Digest>> Fingerprints() const override { return {}; }
+};
+
+TEST(Rules, AConflictFailsTheCampaignWhateverItsVerdict) {
+  Campaign campaign;
+  campaign.sampling.cases = 2;
+  CampaignBook book(campaign, std::make_unique<Nowhere>());
+  CaseResult result;
+  book.Accept("w", "h", 1, result, 0.0);
+  book.Accept("w", "h", 1, result, 0.0);
+  const auto conflicts = [&] { return book.ledger().Progress().conflicts; };
+  EXPECT_EQ(CampaignExitCode(CampaignVerdict::kPass, conflicts()), 0);
+  EXPECT_EQ(CampaignExitCode(CampaignVerdict::kFail, conflicts()), 3);
+  result.end_time_s = 1.0;
+  book.Accept("other", "h", 1, result, 0.0);
+  for (const auto verdict : {CampaignVerdict::kPass, CampaignVerdict::kFail, CampaignVerdict::kInconclusive,
+                             CampaignVerdict::kIncomplete}) {
+    EXPECT_EQ(CampaignExitCode(verdict, conflicts()), 1);
+  }
+}
+
+// Statuses as waitpid gives them.
+TEST(Rules, AWorkerThatIsEndedFromOutsideBlamesNothing) {
+  std::string how;
+  for (const int signal : {SIGKILL, SIGTERM, SIGINT, SIGHUP}) {
+    EXPECT_EQ(ClassifyExit(signal, &how), WorkerEnd::kKilled);
+  }
+  for (const int signal : {SIGSEGV, SIGABRT, SIGFPE, SIGILL, SIGBUS}) {
+    EXPECT_EQ(ClassifyExit(signal, &how), WorkerEnd::kCrashed);
+  }
+  EXPECT_EQ(ClassifyExit(7 << 8, &how), WorkerEnd::kCrashed);
+  EXPECT_EQ(how, "exit code 7");
+  EXPECT_EQ(ClassifyExit(0, &how), WorkerEnd::kLeft);
+}
+
+TEST(Rules, ResumingWithFewerCasesDropsNoRow) {
+  std::string pattern = (std::filesystem::temp_directory_path() / "dispersa-rules-XXXXXX").string();
+  const std::filesystem::path root = mkdtemp(pattern.data());
+  CampaignRequest request;
+  request.campaign = DISPERSA_CAMPAIGNS "/smoke.yaml";
+  request.out = (root / "out").string();
+  request.overrides.cases = 10;
+  {
+    OpenedCampaign opened = OpenCampaign(request);
+    CaseResult result;
+    result.case_index = 7;
+    result.inputs.assign(InputColumns().size(), 0.5);
+    result.metrics.assign(MetricNames().size(), 0.5);
+    opened.folder.Append({{result}});
+  }
+  request.resume = true;
+  request.overrides.cases = 3;
+  {
+    const OpenedCampaign opened = OpenCampaign(request);
+    EXPECT_EQ(opened.campaign.sampling.cases, 8u) << "extended to what is there";
+    EXPECT_EQ(opened.folder.PresentCases(), std::vector<std::uint64_t>{7});
+    EXPECT_THROW(OpenCampaign(request), InputError) << "two at once";
+  }
+  std::filesystem::remove_all(root);
+}
+
+}  // namespace
+}  // namespace dispersa

@@ -1,0 +1,230 @@
+"""A coordinator with --data and its clients: launched campaigns end with the bytes of a run, whatever is killed.
+
+Environment as of run_test.py.
+"""
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+from restart_test import write_tiny_campaign
+from run_test import BINARIES, CAMPAIGN, ISOLATED, PATIENCE_S, Run, isolate, raise_loopback, stored, wait_for
+
+CASES = 60
+DOMAIN = "36"
+NETWORK = ["--domain", DOMAIN, "--address", "127.0.0.1"]
+
+
+class ServiceTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.root = pathlib.Path(tempfile.mkdtemp(prefix="dispersa-service-"))
+        cls.tiny = write_tiny_campaign(cls.root)
+        cls.reference = Run(cls.root / "reference", "--workers", 0, "--cases", CASES).finish()
+        cls.tiny_reference = Run(cls.root / "tiny", "--workers", 0, "--cases", 300, campaign=cls.tiny).finish()
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.root)
+
+    def setUp(self):
+        self.data = pathlib.Path(tempfile.mkdtemp(dir=self.root, prefix="data-"))
+        self.log = self.data.parent / f"{self.data.name}.log"
+        self.processes = []
+
+    def tearDown(self):
+        for process in self.processes:
+            if process.poll() is None:
+                process.kill()
+            process.wait()
+
+    def start(self, program, *arguments):
+        with self.log.open("a") as log:
+            self.processes.append(subprocess.Popen([BINARIES / program, *map(str, arguments), *NETWORK],
+                                                   stdout=log, stderr=log))
+        return self.processes[-1]
+
+    def start_coordinator(self):
+        return self.start("dispersa-coordinator", "--data", self.data)
+
+    def start_worker(self, *arguments):
+        return self.start("dispersa-worker", "--peer", "127.0.0.1", *arguments)
+
+    def dispersa(self, *arguments, code=0):
+        """Runs a client command; its standard output."""
+        done = subprocess.run([BINARIES / "dispersa", *map(str, arguments), *NETWORK], capture_output=True, text=True,
+                              timeout=3 * PATIENCE_S)
+        self.assertEqual(done.returncode, code, f"{arguments}: {done.stdout}{done.stderr}\n{self.log.read_text()[-3000:]}")
+        self.error = done.stderr
+        return done.stdout
+
+    def status(self, identity):
+        return json.loads(self.dispersa("status", identity, "--json"))["campaigns"][0]
+
+    def assert_same_folder(self, identity, reference):
+        out = pathlib.Path(tempfile.mkdtemp(dir=self.root))
+        self.assertEqual(self.dispersa("fetch", identity, "--out", out), f"result: {out}\n")
+        for name in ("cases.csv", "summary.json", "report.html", "campaign.yaml"):
+            self.assertEqual((out / name).read_bytes(), (reference.out / name).read_bytes(), name)
+        self.assertEqual(sorted(p.name for p in (out / "histories").iterdir()),
+                         sorted(p.name for p in (reference.out / "histories").iterdir()))
+        return out
+
+    def test_launch_watch_fetch(self):
+        self.start_coordinator()
+        self.start_worker("--slots", 2)
+        identity = self.dispersa("launch", CAMPAIGN, "--cases", CASES).strip()
+        self.assertRegex(identity, "^[0-9a-f]{64}$")
+        self.dispersa("watch", identity[:10], code=self.reference.code)
+        out = self.assert_same_folder(identity, self.reference)
+        self.assertEqual(subprocess.run([BINARIES / "dispersa", "replay", out, "--case", "1", "--quiet"],
+                                        stdout=subprocess.DEVNULL).returncode, 0)
+        status = json.loads(self.dispersa("status", "--json"))
+        self.assertEqual(status["schema"], "dispersa/status/1")
+        campaign = status["campaigns"][0]
+        self.assertEqual({k: campaign[k] for k in ("id", "name", "state", "done", "total", "quarantined")},
+                         {"id": identity, "name": "smoke", "state": "done", "done": CASES, "total": CASES, "quarantined": 0})
+        self.assertEqual([(w["slots"], w["state"]) for w in status["workers"]], [(2, "ready")])
+        # The same again is there already.
+        self.assertEqual(self.dispersa("launch", CAMPAIGN, "--cases", CASES).strip(), identity)
+        self.assertEqual(self.status(identity)["state"], "done")
+        self.assertEqual(subprocess.run([BINARIES / "dispersa-coordinator", "--health", *NETWORK]).returncode, 0)
+
+    def test_the_queue_survives_kills_and_restarts(self):
+        coordinator = self.start_coordinator()
+        worker = self.start_worker()
+        first = self.dispersa("launch", CAMPAIGN, "--cases", CASES).strip()
+        second = self.dispersa("launch", self.tiny, "--cases", 300, "--priority", 5).strip()
+        for how in (signal.SIGKILL, signal.SIGTERM, signal.SIGKILL):
+            time.sleep(1.0)
+            coordinator.send_signal(how)
+            self.assertEqual(coordinator.wait(timeout=30), 0 if how == signal.SIGTERM else -how)
+            coordinator = self.start_coordinator()
+        worker.kill()
+        self.start_worker("--slots", 2)
+        self.dispersa("watch", second, code=self.tiny_reference.code)
+        self.dispersa("watch", first, code=self.reference.code)
+        self.assert_same_folder(first, self.reference)
+        self.assert_same_folder(second, self.tiny_reference)
+
+    def test_more_cases_of_the_same_flights_take_over_what_is_flown(self):
+        self.start_coordinator()
+        worker = self.start_worker()
+        few = self.dispersa("launch", CAMPAIGN, "--cases", CASES // 2).strip()
+        self.dispersa("watch", few, code=self.code_of(few))
+        many = self.dispersa("launch", CAMPAIGN, "--cases", CASES).strip()
+        self.assertNotEqual(few, many)
+        self.dispersa("watch", many, code=self.reference.code)
+        self.assert_same_folder(many, self.reference)
+        flown = json.loads(self.dispersa("status", "--json"))["workers"][0]["flown"]
+        self.assertEqual(flown, CASES, "half of them twice?")
+        worker.send_signal(signal.SIGTERM)
+        self.assertEqual(worker.wait(timeout=PATIENCE_S), 0)
+
+    def code_of(self, identity):
+        wait_for(lambda: self.status(identity)["code"] is not None, "the end of a campaign")
+        return self.status(identity)["code"]
+
+    def test_cancel_keeps_what_was_flown_and_launch_goes_on(self):
+        self.start_coordinator()
+        identity = self.dispersa("launch", CAMPAIGN, "--cases", CASES).strip()
+        self.assertIn("no workers", self.dispersa("status"))
+        self.dispersa("fetch", identity, "--out", self.root / "none", code=5)
+        self.assertRegex(self.error, "^campaign [0-9a-f]{8} is (waiting|flying): its results can be fetched when it has ended\n$")
+        self.dispersa("cancel", identity)
+        self.assertEqual(self.status(identity)["state"], "cancelled")
+        self.dispersa("watch", identity, code=5)
+        self.dispersa("launch", CAMPAIGN, "--cases", CASES)
+        self.start_worker("--slots", 2)
+        self.dispersa("watch", identity, code=self.reference.code)
+        self.assert_same_folder(identity, self.reference)
+        self.dispersa("cancel", identity, code=2)
+        self.assertEqual(self.error, f"campaign {identity[:8]} is done and cannot be cancelled\n")
+        self.dispersa("status", "zz", code=2)
+        self.assertEqual(self.error, "no campaign, or more than one, has the id 'zz'\n")
+
+    def test_elastic_workers(self):
+        # A worker that is there before the coordinator waits for it and says so.
+        worker = self.start_worker("--idle-exit", 4)
+        lost = subprocess.run([BINARIES / "dispersa-worker", "--peer", "127.0.0.1", "--patience", "1", *NETWORK],
+                              capture_output=True, text=True, timeout=PATIENCE_S)
+        self.assertEqual(lost.returncode, 5)
+        self.assertIn("no coordinator has answered at 127.0.0.1:16405 for 1 s; given up", lost.stderr)
+        self.start_coordinator()
+        identity = self.dispersa("launch", self.tiny, "--cases", 300).strip()
+        self.dispersa("watch", identity, code=self.tiny_reference.code)
+        self.assertEqual(worker.wait(timeout=PATIENCE_S), 0, "idle")
+
+    def test_two_coordinators_do_not_share_a_folder(self):
+        self.start_coordinator()
+        wait_for(lambda: subprocess.run([BINARIES / "dispersa-coordinator", "--health", *NETWORK],
+                                        stderr=subprocess.DEVNULL).returncode == 0, "health")
+        second = subprocess.run([BINARIES / "dispersa-coordinator", "--data", self.data, "--domain", "35", "--address", "127.0.0.1"],
+                                capture_output=True, text=True, timeout=PATIENCE_S)
+        self.assertEqual(second.returncode, 2)
+        self.assertEqual(second.stderr.splitlines()[-1],
+                         f"{self.data}: another dispersa process is writing this folder, allowed: another folder, or to "
+                         "wait for that process to end")
+
+    def test_several_clients_at_once_and_one_that_dies(self):
+        self.start_coordinator()
+        commands = [[BINARIES / "dispersa", "launch", campaign, "--cases", str(cases), *NETWORK]
+                    for campaign, cases in ((CAMPAIGN, CASES), (self.tiny, 300), (CAMPAIGN, CASES), (self.tiny, 200))]
+        clients = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for command in commands]
+        ids = [client.communicate(timeout=PATIENCE_S)[0].strip() for client in clients]
+        self.assertEqual([client.returncode for client in clients], [0, 0, 0, 0])
+        self.assertEqual(ids[0], ids[2], "the same campaign is one campaign")
+        self.assertEqual(len(set(ids)), 3)
+        watchers = [self.start("dispersa", "watch", identity) for identity in ids]
+        dying = self.start("dispersa", "launch", self.tiny, "--cases", 250)
+        for process in (dying, watchers[0]):
+            process.kill()
+            process.wait()
+        self.start_worker("--slots", 2)
+        self.assertEqual([watcher.wait(timeout=PATIENCE_S) for watcher in watchers[1:3]],
+                         [self.tiny_reference.code, self.reference.code])
+        self.assert_same_folder(ids[0], self.reference)
+        self.assert_same_folder(ids[1], self.tiny_reference)
+
+    def test_a_higher_priority_goes_first_and_the_standings_show(self):
+        self.start_coordinator()
+        low = self.dispersa("launch", CAMPAIGN, "--cases", 2000).strip()
+        high = self.dispersa("launch", self.tiny, "--cases", 300, "--priority", 3).strip()
+        self.start_worker("--slots", 2)
+        self.dispersa("watch", high, code=self.tiny_reference.code)
+        campaigns = {c["id"]: c for c in json.loads(self.dispersa("list", "--json"))["campaigns"]}
+        self.assertEqual((campaigns[high]["priority"], campaigns[low]["priority"]), (3, 0))
+        self.assertEqual((campaigns[high]["state"], campaigns[low]["state"]), ("done", "flying"))
+        # What was flown of the other before is little.
+        self.assertLess(campaigns[low]["done"], 2000)
+        wait_for(lambda: self.status(low)["done"] > 0, "first results")
+        campaign = self.status(low)
+        for standing in campaign["requirements"]:
+            self.assertLessEqual(standing["failures"], standing["n"])
+            self.assertGreater(standing["n"], 0)
+            self.assertIn(standing["so_far"], ("pass", "fail", "inconclusive", "study"))
+        self.assertEqual({r["metric"] for r in campaign["requirements"]},
+                         {r["metric"] for r in json.loads((self.reference.out / "summary.json").read_text())["requirements"]})
+        self.assertRegex(self.dispersa("status", low), rf"(?m)^{low[:12]}  flying +\d+/2000 +smoke\b")
+        self.dispersa("cancel", low)
+        out = self.root / "cancelled"
+        self.dispersa("fetch", low, "--out", out)
+        self.assertEqual(stored(out), self.status(low)["done"])
+
+    def test_without_a_coordinator_a_client_says_so(self):
+        done = subprocess.run([BINARIES / "dispersa", "list", *NETWORK], capture_output=True, text=True, timeout=PATIENCE_S)
+        self.assertEqual(done.returncode, 5)
+        self.assertEqual(done.stderr, "no coordinator has answered at 127.0.0.1:16405 for 15 s\n")
+
+
+if __name__ == "__main__":
+    if ISOLATED not in os.environ:
+        isolate()
+    else:
+        raise_loopback()
+    unittest.main()
