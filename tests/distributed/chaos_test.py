@@ -12,7 +12,7 @@ import tempfile
 import time
 import unittest
 
-from run_test import BINARIES, CAMPAIGN, ISOLATED, PATIENCE_S, Run, isolate, raise_loopback, stored, wait_for
+from run_test import BINARIES, CAMPAIGN, ISOLATED, PATIENCE_S, Run, end, isolate, raise_loopback, stored, wait_for
 
 CASES = 400
 COORDINATOR_KILLS = 80
@@ -26,10 +26,7 @@ class ChaosTest(unittest.TestCase):
         self.processes = []
 
     def tearDown(self):
-        for process in self.processes:
-            if process.poll() is None:
-                process.kill()
-            process.wait()
+        end(self.processes)
         shutil.rmtree(self.root)
 
     def start(self, program, *arguments):

@@ -15,7 +15,7 @@ import urllib.request
 
 import yaml
 
-from run_test import BINARIES, ISOLATED, PATIENCE_S, isolate, raise_loopback, wait_for
+from run_test import BINARIES, ISOLATED, PATIENCE_S, end, isolate, raise_loopback, wait_for
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
 DEPLOY = REPOSITORY / "services/deploy"
@@ -35,10 +35,7 @@ class DeployTest(unittest.TestCase):
         self.processes = []
 
     def tearDown(self):
-        for process in self.processes:
-            if process.poll() is None:
-                process.kill()
-            process.wait()
+        end(self.processes)
         shutil.rmtree(self.data)
 
     def start(self, words, environment=None):

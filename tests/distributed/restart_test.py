@@ -12,7 +12,7 @@ import tempfile
 import time
 import unittest
 
-from run_test import BINARIES, CAMPAIGN, ISOLATED, Run, isolate, raise_loopback, shared_memory_segments, stored
+from run_test import BINARIES, CAMPAIGN, ISOLATED, Run, end, isolate, raise_loopback, shared_memory_segments, stored
 
 RESTARTS = int(os.environ.get("DISPERSA_RESTARTS", "15"))
 CASES = 400
@@ -40,10 +40,7 @@ class RestartTest(unittest.TestCase):
         self.segments = shared_memory_segments()
 
     def tearDown(self):
-        for process in self.processes:
-            if process.poll() is None:
-                process.kill()
-            process.wait()
+        end(self.processes)
         self.assertEqual(shared_memory_segments(), self.segments)
         shutil.rmtree(self.root)
 

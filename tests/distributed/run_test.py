@@ -55,6 +55,14 @@ def parent_and_name(pid):
     return int(text.rpartition(")")[2].split()[1]), text.partition("(")[2].rpartition(")")[0]
 
 
+def end(processes):
+    """Kills those of a test's processes that still run, and waits for all."""
+    for process in processes:
+        if process.poll() is None:
+            process.kill()
+        process.wait()
+
+
 def wait_for(condition, what):
     deadline = time.monotonic() + PATIENCE_S
     while not condition():

@@ -13,7 +13,7 @@ import time
 import unittest
 
 from restart_test import write_tiny_campaign
-from run_test import BINARIES, CAMPAIGN, ISOLATED, PATIENCE_S, Run, isolate, raise_loopback, stored, wait_for
+from run_test import BINARIES, CAMPAIGN, ISOLATED, PATIENCE_S, Run, end, isolate, raise_loopback, stored, wait_for
 
 CASES = 60
 DOMAIN = "36"
@@ -38,10 +38,7 @@ class ServiceTest(unittest.TestCase):
         self.processes = []
 
     def tearDown(self):
-        for process in self.processes:
-            if process.poll() is None:
-                process.kill()
-            process.wait()
+        end(self.processes)
 
     def start(self, program, *arguments):
         with self.log.open("a") as log:
