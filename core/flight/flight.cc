@@ -47,7 +47,7 @@ FlightResult Fly(const FlightModel& model, const FlightInputs& inputs, const Fli
 
 std::vector<FlightResult> FlyAll(const FlightModel& model, const std::vector<FlightOrder>& orders) {
   OrderQueue queue(model, orders);
-  ChosenEngine().fly(model, queue);
+  EngineFor(orders.size()).fly(model, queue);
   return queue.Take();
 }
 

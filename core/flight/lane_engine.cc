@@ -25,11 +25,18 @@ LaneEngine Choose() {
   const char* isa = std::getenv("DISPERSA_ISA");
   const char* lanes = std::getenv("DISPERSA_LANES");
   const std::vector<LaneEngine> usable = UsableEngines();
-  const std::string level = isa ? isa : HasV4() ? "v4" : "v3";
-  // One register of the level; more are slower for want of registers.
+  const bool any_v4 = std::any_of(usable.begin(), usable.end(),
+                                  [](const LaneEngine& engine) { return std::string(engine.isa) == "v4"; });
+  const std::string level = isa ? isa : any_v4 ? "v4" : "v3";
+  // One register of the level; more are slower for want of registers. A build may lack that width.
   const std::string width = lanes ? lanes : level == "v4" ? "8" : "4";
-  for (const LaneEngine& engine : usable)
-    if (level == engine.isa && width == std::to_string(engine.lanes)) return engine;
+  const LaneEngine* widest = nullptr;
+  for (const LaneEngine& engine : usable) {
+    if (level != engine.isa) continue;
+    if (width == std::to_string(engine.lanes)) return engine;
+    if (widest == nullptr || engine.lanes > widest->lanes) widest = &engine;
+  }
+  if (widest != nullptr && !lanes) return *widest;
   std::string asked;
   if (isa) asked += "DISPERSA_ISA=" + std::string(isa);
   if (lanes) asked += (asked.empty() ? "" : " ") + ("DISPERSA_LANES=" + std::string(lanes));
@@ -61,6 +68,22 @@ const LaneEngine& OneLaneEngine() {
     });
   }();
   return engine;
+}
+
+const LaneEngine& EngineFor(std::size_t flights) {
+  static const std::vector<LaneEngine> narrower = [] {
+    std::vector<LaneEngine> engines =
+        std::getenv("DISPERSA_LANES") ? std::vector<LaneEngine>() : UsableEngines();
+    std::erase_if(engines, [](const LaneEngine& e) {
+      return std::string(e.isa) != ChosenEngine().isa || e.lanes >= ChosenEngine().lanes;
+    });
+    std::sort(engines.begin(), engines.end(),
+              [](const LaneEngine& a, const LaneEngine& b) { return a.lanes < b.lanes; });
+    return engines;
+  }();
+  for (const LaneEngine& engine : narrower)
+    if (flights <= static_cast<std::size_t>(engine.lanes)) return engine;
+  return ChosenEngine();
 }
 
 }  // namespace dispersa

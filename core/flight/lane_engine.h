@@ -1,6 +1,7 @@
 // Which instance of the engine flies: how many lanes, compiled for which instruction set.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -23,5 +24,8 @@ std::vector<LaneEngine> UsableEngines();
 const LaneEngine& ChosenEngine();
 /// The instance of one lane on the same level.
 const LaneEngine& OneLaneEngine();
+/// The chosen instance; or, unless DISPERSA_LANES asks for it, the narrowest on its level that holds so many
+/// flights at once: a lane that stays empty costs as much as one that flies.
+const LaneEngine& EngineFor(std::size_t flights);
 
 }  // namespace dispersa

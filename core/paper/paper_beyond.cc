@@ -21,6 +21,53 @@ constexpr char kAdaptive[] = "controllers";
 /// V up to that of this error at rest is the residual set, in which V may rise.
 constexpr double kResidualError_deg = 0.05;
 
+/// What controllers are usually compared by: of each, less is better.
+const std::vector<std::string> kCompared = {
+    "pitch_error_rms_deg", "pitch_error_peak_deg", "yaw_error_rms_deg",          "yaw_error_peak_deg",
+    "roll_error_peak_deg", "deflection_peak_deg",  "deflection_limit_cycle_deg", "deflection_travel_deg"};
+
+std::string IntervalText(const Interval& interval) {
+  const auto text = [](double value) {
+    return std::isinf(value) ? std::string(value > 0.0 ? "∞" : "−∞") : ReadableText(value);
+  };
+  return text(interval.lower) + " … " + text(interval.upper);
+}
+
+std::string ComparisonTable(const Comparison& comparison) {
+  const std::string a = HtmlText(comparison.a.autopilot);
+  const std::string b = HtmlText(comparison.b.autopilot);
+  HtmlTable table({{"Metric"},
+                   {"median of the difference", true},
+                   {"95 % interval", true},
+                   {"median of the ratio", true},
+                   {"95 % interval", true},
+                   {a + " better", true},
+                   {b + " better", true},
+                   {"sign test, p", true}});
+  for (const MetricComparison& metric : comparison.metrics) {
+    table.Row({HtmlText(metric.info.title + (metric.info.unit.empty() ? "" : ",\u00a0" + metric.info.unit)),
+               ReadableText(metric.difference), IntervalText(metric.interval), ReadableText(metric.ratio),
+               IntervalText(metric.ratio_interval), fmt::format("{}", metric.a_better),
+               fmt::format("{}", metric.b_better), ReadableText(metric.p)});
+  }
+  return table.Html() + fmt::format("<p class=\"soft\">Differences are {} less {}, ratios {} over {}; {} pairs.</p>\n",
+                                    b, a, b, a, comparison.pairing.shared);
+}
+
+/// Where the second law beats the first most, by the first metric.
+std::string LargestGains(const Comparison& comparison) {
+  const MetricComparison& metric = comparison.metrics[0];
+  std::string list;
+  for (const MetricComparison::Pair& pair : metric.gains) {
+    list += fmt::format("{}{} ({} against {})", list.empty() ? ": most in " : ", ", pair.case_index,
+                        std::isnan(pair.b) ? "lost" : ReadableText(pair.b),
+                        std::isnan(pair.a) ? "lost" : ReadableText(pair.a));
+  }
+  return fmt::format("<p class=\"soft\">{} is better than {} in {} in {} cases{}.</p>\n",
+                     HtmlText(comparison.b.autopilot), HtmlText(comparison.a.autopilot), HtmlText(metric.info.title),
+                     metric.b_better, list);
+}
+
 /// How often V falls, by how large it is.
 struct LyapunovStatistics {
   /// Level: the error, at rest, that has the same V; in degrees, so that stages compare.
@@ -96,7 +143,7 @@ std::string PaperComparisonSection(const PaperStudy& study) {
     const MetricDigest peak = Digested(flown.flights.cases, "pitch_error_peak_deg");
     const MetricDigest cycle = Digested(flown.flights.cases, "deflection_limit_cycle_deg");
     overview.Row({HtmlText(flown.campaign.autopilot.name), fmt::format("{}", rms.n),
-                  fmt::format("{}", rms.lost), Degrees(rms.p50), Degrees(rms.p99), Degrees(peak.p50),
+                  fmt::format("{}", rms.lost), Degrees(rms.p50), rms.p99, Degrees(peak.p50),
                   Degrees(peak.max), Degrees(cycle.max)});
   }
   html += overview.Html();
@@ -104,20 +151,19 @@ std::string PaperComparisonSection(const PaperStudy& study) {
   std::string found;
   for (const std::string& name : PaperBaselines()) {
     const PaperFlights& baseline = study.at(name);
-    const Comparison comparison = Compare(adaptive.flights.cases, baseline.flights.cases, ComparedMetrics());
+    const Comparison comparison = Compare({"", "", adaptive.campaign, adaptive.flights.cases},
+                                          {"", "", baseline.campaign, baseline.flights.cases}, kCompared, {});
     html += "<h3>" + HtmlText(baseline.campaign.autopilot.name) + " against " +
             HtmlText(adaptive.campaign.autopilot.name) + "</h3>\n" +
-            ComparisonTable(comparison, adaptive.campaign.autopilot.name, baseline.campaign.autopilot.name) +
-            BetterCasesList(comparison.metrics[0], adaptive.campaign.autopilot.name,
-                            baseline.campaign.autopilot.name);
-    const PairedDifference& rms = comparison.metrics[0].difference;
+            ComparisonTable(comparison) + LargestGains(comparison);
+    const MetricComparison& rms = comparison.metrics[0];
     found += fmt::format(
         "{}{}: RMS {:.2f} times as large as the adaptive law’s{}, better in {} of {} cases.",
-        found.empty() ? "" : " ", HtmlText(baseline.campaign.autopilot.name), rms.median_ratio,
+        found.empty() ? "" : " ", HtmlText(baseline.campaign.autopilot.name), rms.ratio,
         std::isfinite(rms.ratio_interval.upper)
             ? fmt::format(" ({:.2f} … {:.2f})", rms.ratio_interval.lower, rms.ratio_interval.upper)
             : std::string(" (too few cases for an interval)"),
-        rms.better, rms.n);
+        rms.b_better, rms.n_b);
   }
   html += PaperFindings(
       "Better results are achieved with adaptive fuzzy control. No other controller is flown.", found,

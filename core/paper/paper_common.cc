@@ -6,6 +6,7 @@
 #include "core/paper/paper_sections.h"
 #include "core/report/sampling_text.h"
 #include "core/report/text.h"
+#include "core/statistics/percentiles.h"
 #include "core/statistics/summary.h"
 
 namespace dispersa {
@@ -42,8 +43,16 @@ std::string Degrees(double value) {
 
 MetricDigest Digested(const CaseColumns& cases, const std::string& metric) {
   const std::vector<double> sorted = SortedFinite(CompletedValues(cases, metric));
-  return {cases.rows(), LostCount(cases), Quantile(sorted, 0.5), Quantile(sorted, 0.99),
-          Quantile(sorted, 1.0)};
+  MetricDigest digest{cases.rows(), LostCount(cases), Quantile(sorted, 0.5), Quantile(sorted, 1.0), "–"};
+  for (const Percentile& percentile : Percentiles(sorted)) {
+    if (percentile.name != "p99") continue;
+    if (std::isfinite(percentile.estimate)) {
+      digest.p99 = Degrees(percentile.estimate);
+    } else if (std::isfinite(percentile.limits.lower)) {
+      digest.p99 = "≥ " + Degrees(percentile.limits.lower);
+    }
+  }
+  return digest;
 }
 
 }  // namespace dispersa

@@ -129,12 +129,8 @@ std::string HistoriesData(const StudyFlights& flights, PaperColumn column) {
 }  // namespace
 
 std::string PaperPage(const PaperStudy& study) {
-  std::string page = fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
-      "content=\"width=device-width, initial-scale=1\">\n<title>The paper reproduced – "
-      "dispersa</title>\n<style>{}{}{}</style>\n"
-      "</head>\n<body>\n",
-      StyleSheet(), HeatMapStyle(), kStyle);
+  std::string page = PageHead("The paper reproduced", "The paper reproduced · engine " + std::string(EngineVersion()),
+                              std::string(HeatMapStyle()) + kStyle);
   page += Header(study);
   page += kNavigation;
   page += PaperVehicleSection(study);

@@ -60,11 +60,15 @@ HeatMap Map(const CaseColumns& cases, const char* metric, const char* label) {
   return map;
 }
 
+std::string CurveName(const CaseColumns& cases, std::size_t row) {
+  const double error = Input(cases, "pn_error_factor")[row];
+  const double rate = Input(cases, "pn_rate_factor")[row];
+  return error == rate ? fmt::format("{:g}·P_n", error) : fmt::format("{:g}·p12, {:g}·p22", error, rate);
+}
+
 /// The error within +-range; a curve that leaves it has a gap there.
 std::string Curves(const PaperStudy& study, double end_s, double range_deg, const std::string& caption) {
   const PaperFlights& curves = study.at("pn_curves");
-  const std::vector<double> error = Input(curves.flights.cases, "pn_error_factor");
-  const std::vector<double> rate = Input(curves.flights.cases, "pn_rate_factor");
   SvgChart chart({.label = "time since lift-off, s", .low = 0.0, .high = end_s},
                  {.label = "pitch error, °", .low = -range_deg, .high = range_deg}, 520, 320);
   // The file lists the wildest first, so that the tame are drawn over them.
@@ -74,9 +78,28 @@ std::string Curves(const PaperStudy& study, double end_s, double range_deg, cons
     for (double& value : values) {
       if (std::fabs(value) > range_deg) value = kUndefined;
     }
-    chart.Line(Times(values.size(), 0.1), values, fmt::format("line-{}", count - 1 - i),
-               error[i] == rate[i] ? fmt::format("{:g}·P_n", error[i])
-                                   : fmt::format("{:g}·p12, {:g}·p22", error[i], rate[i]));
+    chart.Line(Times(values.size(), 0.1), values, fmt::format("line-{}", count - 1 - i), CurveName(curves.flights.cases, i));
+  }
+  return Figure(chart.Svg(caption), HtmlText(caption));
+}
+
+/// The size of the error on a logarithmic axis, which holds the tame and the lost alike.
+std::string WholeCurves(const PaperStudy& study, double end_s, const std::string& caption) {
+  const PaperFlights& curves = study.at("pn_curves");
+  SvgChart chart({.label = "time since lift-off, s", .low = 0.0, .high = end_s},
+                 {.label = "largest pitch error of each second, °", .logarithmic = true}, 520, 320);
+  const std::size_t count = curves.flights.histories.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    constexpr std::size_t kSecond = 10;  // samples
+    const std::vector<double>& error = curves.flights.histories[i][kPitchError];
+    std::vector<double> time_s, largest;
+    for (std::size_t k = 0; k < error.size() && static_cast<double>(k) < kSecond * end_s; k += kSecond) {
+      double size = 0.0;
+      for (std::size_t j = k; j < std::min(k + kSecond, error.size()); ++j) size = std::max(size, std::fabs(error[j]));
+      time_s.push_back(0.1 * static_cast<double>(k) + 0.5);
+      largest.push_back(size);
+    }
+    chart.Line(time_s, largest, fmt::format("line-{}", count - 1 - i), CurveName(curves.flights.cases, i));
   }
   return Figure(chart.Svg(caption), HtmlText(caption));
 }
@@ -132,7 +155,9 @@ std::string PaperPnSection(const PaperStudy& study) {
       Curves(study, kick_end_s, 0.5,
              "Pitch error in the initial pitch-over, as in the paper’s figure. A curve that "
              "leaves the frame diverges or swings beyond it.") +
-      Curves(study, 180.0, 1.0, "The same to the burnout of stage 3.") +
+      WholeCurves(study, 180.0,
+                  "The same to the burnout of stage 3, whatever its size: the largest error of each second. A curve "
+                  "ends where the vehicle is lost.") +
       Figure(HeatMapSvg(Map(sweep, "pitch_error_rms_deg", "RMS pitch error of powered flight, °"),
                         "RMS pitch error over the two components of P_n"),
              "RMS pitch error of powered flight over the two factors. The frame is the P_n of the Lyapunov "

@@ -28,11 +28,12 @@ std::string PaperSource(const PaperStudy& study, const std::vector<std::string>&
 /// "0.0123°"
 std::string Degrees(double value);
 
-/// Median, 99 % and maximum over completed flights, and how many were lost.
+/// Of a metric in degrees: median, 99 % and maximum over completed flights, and how many were lost.
 struct MetricDigest {
   std::size_t n = 0;  ///< flights, the lost among them
   std::size_t lost = 0;
-  double p50 = 0.0, p99 = 0.0, max = 0.0;
+  double p50 = 0.0, max = 0.0;
+  std::string p99;  ///< with its unit; a bound, "≥ 0.0123°", where so few flights do not reach so far
 };
 MetricDigest Digested(const CaseColumns& cases, const std::string& metric);
 

@@ -82,17 +82,17 @@ std::string PaperTrajectorySection(const PaperStudy& study) {
 
   HtmlTable table({{"Injection"}, {"desired", true}, {"paper", true}, {"paper’s error", true}, {"ours", true},
                    {"our error", true}, {"with half the step", true}});
-  const auto row = [&](const char* name, const char* format, double desired, double paper, double ours, double error,
+  const auto row = [&](const char* name, int decimals, double desired, double paper, double ours, double error,
                        double halved) {
-    table.Row({name, ReadableText(desired), fmt::format(fmt::runtime(format), paper), Signed(paper - desired),
-               fmt::format(fmt::runtime(format), ours), Signed(error), Signed(halved)});
+    table.Row({name, ReadableText(desired), FixedText(paper, decimals), Signed(paper - desired),
+               FixedText(ours, decimals), Signed(error), Signed(halved)});
   };
   const OrbitErrors& halved = result.halved_step_errors;
-  row("Height, km", "{:.3f}", problem.target_altitude_m * 1e-3, kPaperHeight_km, reference.orbit.altitude_m * 1e-3,
+  row("Height, km", 3, problem.target_altitude_m * 1e-3, kPaperHeight_km, reference.orbit.altitude_m * 1e-3,
       result.errors.altitude_m * 1e-3, halved.altitude_m * 1e-3);
-  row("Velocity, m/s", "{:.3f}", problem.target_velocity_m_s, kPaperVelocity_m_s, reference.orbit.velocity_m_s,
+  row("Velocity, m/s", 3, problem.target_velocity_m_s, kPaperVelocity_m_s, reference.orbit.velocity_m_s,
       result.errors.velocity_m_s, halved.velocity_m_s);
-  row("Angle of injection, °", "{:.7f}", problem.target_flight_path_angle_rad * kDegPerRad, kPaperAngle_deg,
+  row("Angle of injection, °", 7, problem.target_flight_path_angle_rad * kDegPerRad, kPaperAngle_deg,
       reference.orbit.flight_path_angle_rad * kDegPerRad, result.errors.flight_path_angle_rad * kDegPerRad,
       halved.flight_path_angle_rad * kDegPerRad);
   html += table.Html();

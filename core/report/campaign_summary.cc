@@ -107,22 +107,6 @@ const char* CampaignVerdictName(CampaignVerdict verdict) {
   return "";
 }
 
-int VerdictExitCode(CampaignVerdict verdict) {
-  switch (verdict) {
-    case CampaignVerdict::kPass:
-      return 0;
-    case CampaignVerdict::kInconclusive:
-    case CampaignVerdict::kStudy:
-      return 4;
-    case CampaignVerdict::kFail:
-    case CampaignVerdict::kStudyViolated:
-      return 3;
-    case CampaignVerdict::kIncomplete:
-      return 5;
-  }
-  return 1;
-}
-
 std::vector<std::string> Warnings(const CampaignSummary& summary) {
   std::vector<std::string> warnings;
   const bool independent = IsIndependent(summary.sampling);
@@ -266,6 +250,7 @@ CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaig
     }
     summary.worst_cases.push_back(FindWorst(metric, worse, cases));
   }
+  summary.injection = SummarizeInjection(cases);
   summary.dispersions = SummarizeDispersions(campaign, cases);
   summary.drivers = FindDrivers(campaign, KeyMetrics(campaign), cases);
   summary.failure_drivers = FindFailureDrivers(campaign, cases);

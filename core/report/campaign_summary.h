@@ -12,6 +12,7 @@
 #include "core/report/case_columns.h"
 #include "core/report/dispersion_summary.h"
 #include "core/report/drivers.h"
+#include "core/report/injection_summary.h"
 #include "core/report/lost_flight.h"
 #include "core/report/requirement_summary.h"
 #include "core/report/result_folder.h"
@@ -25,8 +26,6 @@ namespace dispersa {
 enum class CampaignVerdict { kPass, kInconclusive, kStudy, kStudyViolated, kFail, kIncomplete };
 /// "pass", "inconclusive", "study", "study", "fail", "incomplete".
 const char* CampaignVerdictName(CampaignVerdict verdict);
-/// The contract's exit code: 0, 4, 4, 3, 3, 5.
-int VerdictExitCode(CampaignVerdict verdict);
 
 struct MetricSummary {
   std::string name;  ///< without the prefix
@@ -78,8 +77,16 @@ struct CampaignSummary {
   std::vector<QuarantinedCase> quarantined;
   std::vector<WorstCases> worst_cases;
   std::vector<DispersionSummary> dispersions;
+  std::optional<InjectionSummary> injection;     ///< none where fewer than two flights got there
   std::vector<MetricDrivers> drivers;            ///< of KeyMetrics()
   std::vector<FailureDrivers> failure_drivers;   ///< of the requirements
+  /// Flights that the envelope was made of, when they were flown: percentiles from the first cases, minimum and
+  /// maximum besides from those that are extreme in any metric.
+  struct Envelope {
+    std::size_t flights = 0;
+    std::size_t extreme_flights = 0;
+  };
+  std::optional<Envelope> envelope;
   std::optional<CaseResult> nominal;  ///< flown without dispersions, when it was flown
 };
 

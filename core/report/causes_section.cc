@@ -1,6 +1,8 @@
 // The causes of a report: what drives each key metric, and what failing flights have in common.
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "core/report/html_parts.h"
 #include "core/report/metric_catalogue.h"
 #include "core/report/report_sections.h"
@@ -9,19 +11,22 @@
 namespace dispersa {
 namespace {
 
-/// An index from 0 to 1 as a bar with its interval.
+std::string Share(double index) { return fmt::format("{:.1f} %", 100.0 * index); }
+
+/// A row of the tornado: names and numbers, and below them a bar as wide as the screen gives, with its interval.
 std::string Bar(const Driver& driver) {
-  constexpr double kWidth = 200.0;
+  std::string names = "<code>" + HtmlText(driver.input) + "</code>";
+  for (const std::string& same : driver.same_as) names += " = <code>" + HtmlText(same) + "</code>";
   return fmt::format(
-      "<svg class=\"tornado\" viewBox=\"0 0 {0:.0f} 12\" width=\"{0:.0f}\" height=\"12\" role=\"img\" "
-      "aria-label=\"{1}, {2} to {3}\"><rect class=\"bar\" x=\"0\" y=\"2\" width=\"{4:.1f}\" "
-      "height=\"8\"/><path "
-      "class=\"axis\" d=\"M{5:.1f} 6H{6:.1f}M{5:.1f} 3V9M{6:.1f} 3V9\"/></svg>",
-      kWidth, ReadableText(driver.index), ReadableText(driver.low), ReadableText(driver.high),
-      kWidth * driver.index, kWidth * driver.low, kWidth * driver.high);
+      "<li><span class=\"cause\">{} <span class=\"soft\">by {}{}</span></span><span class=\"n\"><b>{}</b> "
+      "<span class=\"soft\">{} to {}</span></span><svg viewBox=\"0 0 1000 10\" preserveAspectRatio=\"none\" "
+      "aria-hidden=\"true\"><rect class=\"track\" width=\"1000\" height=\"10\"/><rect class=\"bar\" width=\"{:.1f}\" "
+      "height=\"10\"/><path class=\"whisker\" d=\"M{:.1f} 5H{:.1f}\"/></svg></li>\n",
+      names, HtmlText(driver.feature),
+      std::isfinite(driver.partial) ? ", partial " + FixedText(driver.partial, 2) : std::string(), Share(driver.index),
+      Share(driver.low), Share(driver.high), 1000.0 * driver.index, 1000.0 * driver.low, 1000.0 * driver.high);
 }
 
-std::string Share(double index) { return fmt::format("{:.1f} %", 100.0 * index); }
 
 }  // namespace
 
@@ -33,7 +38,7 @@ std::string CausesSection(const CampaignSummary& summary) {
       "circular, with "
       "its interval of 95 %. The feature is the function of the input that ranks the flights best; “along” "
       "is a "
-      "magnitude in a direction. The partial rank correlation holds the other inputs. What the shares leave "
+      "magnitude in a direction. The partial rank correlation holds the other inputs. Inputs that rank the flights alike (“=”) cannot be told apart. What the shares leave "
       "is "
       "interaction and noise.</p>\n";
   bool any = false;
@@ -41,13 +46,9 @@ std::string CausesSection(const CampaignSummary& summary) {
     if (metric.drivers.empty()) continue;
     any = true;
     html += "<h3>" + HtmlText(DescribeMetric(metric.metric).title) + "</h3>\n";
-    HtmlTable table({{"Input"}, {"Feature"}, {"Share", true}, {"Interval", true}, {"Partial", true}, {""}});
-    for (const Driver& driver : metric.drivers) {
-      table.Row({"<code>" + HtmlText(driver.input) + "</code>", HtmlText(driver.feature), Share(driver.index),
-                 fmt::format("{} to {}", Share(driver.low), Share(driver.high)),
-                 fmt::format("{:.2f}", driver.partial + 0.0), Bar(driver)});
-    }
-    html += table.Html("causes");
+    html += "<ol class=\"tornado\">\n";
+    for (const Driver& driver : metric.drivers) html += Bar(driver);
+    html += "</ol>\n";
   }
   if (!any) html += "<p>Fewer than 30 completed flights, or nothing that varies: no cause can be told.</p>\n";
   for (const FailureDrivers& requirement : summary.failure_drivers) {

@@ -10,6 +10,8 @@
 #include "core/report/metric_catalogue.h"
 #include "core/report/svg_chart.h"
 #include "core/report/text.h"
+#include "core/statistics/intervals.h"
+#include "core/statistics/point_scatter.h"
 
 namespace dispersa {
 namespace {
@@ -19,9 +21,9 @@ struct Histogram {
   std::vector<double> counts;
 };
 
-/// Width of D. Freedman and P. Diaconis (Z. Wahrscheinlichkeitstheorie 57 (1981) 453), but at most 50 bins
-/// and none narrower than `least_width`, so that it can be seen.
-Histogram MakeHistogram(const std::vector<double>& sorted, double least_width) {
+/// Width of D. Freedman and P. Diaconis (Z. Wahrscheinlichkeitstheorie 57 (1981) 453), but at least as many bins
+/// as H. A. Sturges (J. Am. Stat. Assoc. 21 (1926) 65) gives, and at most 50.
+Histogram MakeHistogram(const std::vector<double>& sorted) {
   const double low = sorted.front();
   const double range = sorted.back() - low;
   if (range <= 0.0) {
@@ -29,9 +31,9 @@ Histogram MakeHistogram(const std::vector<double>& sorted, double least_width) {
     return {{low - half, low + half}, {static_cast<double>(sorted.size())}};
   }
   const double spread = Quantile(sorted, 0.75) - Quantile(sorted, 0.25);
-  const double width =
-      std::max({2.0 * spread / std::cbrt(static_cast<double>(sorted.size())), range / 50.0, least_width});
-  const int bins = std::max(1, static_cast<int>(std::ceil(range / width)));
+  const double width = std::max(2.0 * spread / std::cbrt(static_cast<double>(sorted.size())), range / 50.0);
+  const double least = std::ceil(std::log2(static_cast<double>(sorted.size()))) + 1.0;
+  const int bins = static_cast<int>(std::max(std::ceil(range / width), least));
   Histogram histogram;
   for (int i = 0; i <= bins; ++i) histogram.edges.push_back(low + range * i / bins);
   histogram.counts.assign(static_cast<std::size_t>(bins), 0.0);
@@ -40,6 +42,24 @@ Histogram MakeHistogram(const std::vector<double>& sorted, double least_width) {
     histogram.counts[static_cast<std::size_t>(bin)] += 1.0;
   }
   return histogram;
+}
+
+/// Confidence of 95 % about the share beyond a value, for each value taken alone; good cases from the best on.
+void AddConfidence(const std::vector<double>& good, std::size_t all, double lowest_share, SvgChart* chart) {
+  constexpr double kConfidence = 0.95;
+  constexpr double kSteps = 150.0;  // a logarithmic axis wants them evenly in decades
+  const auto n = static_cast<std::int64_t>(all);
+  std::vector<double> x, low, high;
+  const auto ratio = std::pow(static_cast<double>(all), 1.0 / kSteps);
+  for (std::int64_t beyond = n - 1;; beyond = std::min(beyond - 1, static_cast<std::int64_t>(static_cast<double>(beyond) / ratio))) {
+    const auto worst = n - 1 - beyond;  // the rank of the value that so many cases lie beyond
+    if (beyond < 0 || worst >= std::ssize(good)) break;
+    const Interval share = ClopperPearson(beyond, n, kConfidence);
+    x.push_back(good[static_cast<std::size_t>(worst)]);
+    low.push_back(std::max(share.lower, lowest_share));
+    high.push_back(share.upper);
+  }
+  chart->Band(x, low, high, "band-outer", "95 %");
 }
 
 std::size_t Position(const std::string& metric) {
@@ -52,32 +72,61 @@ std::string AxisLabel(const std::string& metric) {
   return info.title + (info.unit.empty() ? "" : ", " + info.unit);
 }
 
-std::string Scatter(const std::string& x, const std::string& y, const CampaignSummary& summary,
-                    const CaseColumns& cases, const std::string& caption) {
-  SvgChart chart({.label = AxisLabel(x)}, {.label = AxisLabel(y)}, 520, 300);
-  chart.Points(cases.metrics.at(Position(x)), cases.metrics.at(Position(y)), "dots", "cases");
-  if (summary.nominal) {
-    chart.Points({summary.nominal->metrics[Position(x)]}, {summary.nominal->metrics[Position(y)]},
-                 "dot-nominal", "nominal");
-  }
-  return Figure(chart.Svg(caption), HtmlText(caption));
+/// The nominal flight's dot over those of the cases.
+void AddCases(const std::string& x, const std::string& y, const CampaignSummary& summary, const CaseColumns& cases,
+              SvgChart* chart) {
+  chart->ShowsCases(x, y);
+  chart->Points(CompletedValues(cases, x), CompletedValues(cases, y), "dots", "cases");
+  if (!summary.nominal) return;
+  chart->Points({summary.nominal->metrics[Position(x)]}, {summary.nominal->metrics[Position(y)]}, "dot-nominal",
+                "nominal");
+}
+
+constexpr std::size_t kFewestForEllipses = 10;
+
+PointScatter PairsOf(const std::vector<double>& x, const std::vector<double>& y) {
+  std::vector<std::vector<double>> pairs;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    if (std::isfinite(x[i]) && std::isfinite(y[i])) pairs.push_back({x[i], y[i]});
+  return PointScatterOf(pairs);
 }
 
 }  // namespace
 
 std::string InjectionFigures(const CampaignSummary& summary, const CaseColumns& cases) {
-  return Scatter("injection_velocity_error_m_s", "injection_altitude_error_km", summary, cases,
-                 "Injection of each completed case against the target.") +
-         Scatter("perigee_km", "apogee_km", summary, cases, "The orbits that follow from it.");
+  const std::string x = "injection_velocity_error_m_s", y = "injection_altitude_error_km";
+  SvgChart injection({.label = AxisLabel(x)}, {.label = AxisLabel(y)}, 520, 300);
+  AddCases(x, y, summary, cases, &injection);
+  std::string caption = "Injection of each completed case against the target.";
+  const PointScatter scatter = PairsOf(CompletedValues(cases, x), CompletedValues(cases, y));
+  if (scatter.n >= kFewestForEllipses) {
+    std::string drawn;
+    for (const double containment : {0.5, 0.95, 0.9973}) {
+      // Two coordinates: the quantile of chi squared in closed form.
+      const ScatterEllipse ellipse = EllipseOf(scatter.covariance, -2.0 * std::log1p(-containment));
+      std::vector<double> outline_x, outline_y;
+      for (const auto& point : OutlineOf(ellipse, {scatter.mean[0], scatter.mean[1]}, 120)) {
+        outline_x.push_back(point[0]);
+        outline_y.push_back(point[1]);
+      }
+      injection.Line(outline_x, outline_y, "ellipse", drawn.empty() ? "covariance ellipses" : "");
+      drawn += (drawn.empty() ? "" : ", ") + PercentText(containment);
+    }
+    caption +=
+        " The ellipses hold " + drawn + " of a normal law with the mean and covariance of these flights.";
+  }
+  SvgChart orbits({.label = AxisLabel("perigee_km")}, {.label = AxisLabel("apogee_km")}, 520, 300);
+  AddCases("perigee_km", "apogee_km", summary, cases, &orbits);
+  const std::string orbit_caption = "The orbits that follow from it; far from a normal law, so no ellipse is drawn.";
+  return Figure(injection.Svg(caption), HtmlText(caption)) + Figure(orbits.Svg(orbit_caption), HtmlText(orbit_caption));
 }
 
 std::string DistributionFigures(const std::string& metric, const CampaignSummary& summary,
                                 const CaseColumns& cases) {
   const MetricInfo info = DescribeMetric(metric);
   const std::string title = HtmlText(info.title);
-  const std::size_t position = Position(metric);
-  const std::vector<double> sorted = SortedFinite(cases.metrics.at(position));
-  if (sorted.empty()) return fmt::format("<p>{}: no case defines it.</p>\n", title);
+  std::vector<double> good = SortedFinite(CompletedValues(cases, metric));
+  if (good.empty()) return fmt::format("<p>{}: no completed flight defines it.</p>\n", title);
 
   std::vector<const RequirementSummary*> requirements;
   for (const RequirementSummary& requirement : summary.requirements) {
@@ -86,22 +135,12 @@ std::string DistributionFigures(const std::string& metric, const CampaignSummary
   const bool above = !requirements.empty() && !requirements.front()->below;
   const std::string axis = AxisLabel(metric);
 
-  double low = sorted.front();
-  double high = sorted.back();
-  for (const RequirementSummary* requirement : requirements) {
-    low = std::min(low, requirement->limit);
-    high = std::max(high, requirement->limit);
-  }
-  const Histogram histogram = MakeHistogram(sorted, (high - low) / 60.0);
+  const Histogram histogram = MakeHistogram(good);
   SvgChart bars({.label = axis}, {.label = "cases"}, 520, 250);
+  bars.ShowsCases(metric);
   bars.Bars(histogram.edges, histogram.counts, "");
 
   // A lost flight fails whatever it measured: it lies beyond all values, as in the verdict.
-  std::vector<double> good = cases.metrics[position];
-  for (std::size_t i = 0; i < good.size(); ++i) {
-    if (cases.outcome[i] != Outcome::kCompleted) good[i] = kUndefined;
-  }
-  good = SortedFinite(std::move(good));
   if (above) std::reverse(good.begin(), good.end());
   const auto all = static_cast<double>(cases.rows());
   std::vector<double> x;
@@ -122,22 +161,29 @@ std::string DistributionFigures(const std::string& metric, const CampaignSummary
                  .logarithmic = true,
                  .percent = true},
                 520, 250);
+  tail.ShowsCases(metric);
+  AddConfidence(good, cases.rows(), std::max(lowest_share, 1e-6), &tail);
   tail.Line(x, share, "line-0", "cases");
   for (const RequirementSummary* requirement : requirements) {
     bars.VerticalLimit(requirement->limit, "limit: " + LimitWords(*requirement, info.unit));
     tail.VerticalLimit(requirement->limit, "limit");
     tail.HorizontalLimit(1.0 - requirement->probability,
                          fmt::format("{} allowed", PercentText(1.0 - requirement->probability)));
+    if (!requirement->bound) continue;
+    bars.VerticalLimit(*requirement->bound, "bound", "bound");
+    tail.VerticalLimit(*requirement->bound, "bound", "bound");
   }
-  const std::size_t undefined = cases.rows() - sorted.size();
-  const std::string missing =
-      undefined > 0 ? fmt::format(" {} of {} cases do not define it.", undefined, cases.rows()) : "";
-  return Figure(bars.Svg("Histogram of " + info.title), title + ": histogram of the cases." + missing) +
+  const std::size_t missing = cases.rows() - good.size();
+  const std::string without =
+      missing > 0 ? fmt::format(" {} of {} cases are lost or do not define it.", missing, cases.rows()) : "";
+  return Figure(bars.Svg("Histogram of " + info.title), title + ": histogram of the completed flights." + without) +
          Figure(
              tail.Svg("Exceedance of " + info.title),
-             title + ": share of the cases " + (above ? "at most" : "beyond") + " each value." +
+             title + ": share of the cases " + (above ? "at most" : "beyond") +
+                 " each value, with its exact confidence of 95 % at each value taken alone (Clopper and Pearson)." +
                  (requirements.empty() ? ""
-                                       : " The curve should fall below the allowed share before the limit."));
+                                       : " The curve should fall below the allowed share before the limit; the bound "
+                                         "is the value that decides."));
 }
 
 }  // namespace dispersa

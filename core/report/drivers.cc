@@ -26,7 +26,19 @@ struct Feature {
   std::string input;
   std::string name;
   Ranked values;
+  std::vector<std::string> same_as = {};
 };
+
+/// Equal ranks or mirrored ones.
+bool RankAlike(const Ranked& a, const Ranked& b) {
+  const double mirror = static_cast<double>(a.size()) + 1.0;
+  bool equal = true, mirrored = true;
+  for (std::size_t i = 0; i < a.size() && (equal || mirrored); ++i) {
+    equal = equal && a.ranks()[i] == b.ranks()[i];
+    mirrored = mirrored && a.ranks()[i] + b.ranks()[i] == mirror;
+  }
+  return equal || mirrored;
+}
 
 bool IsAngle(const std::string& column) {
   return column.find("_clock") != std::string::npos || column.find("_azimuth") != std::string::npos;
@@ -68,7 +80,16 @@ std::vector<Feature> Features(const Campaign& campaign, const CaseColumns& cases
     const std::string& name = InputColumns()[static_cast<std::size_t>(input)].name;
     const std::vector<double> x = Pick(cases.inputs[static_cast<std::size_t>(input)], rows);
     if (!Varies(x)) continue;
-    features.push_back({name, "x", x});
+    Ranked ranked(x);
+    const auto same = std::find_if(features.begin(), features.end(), [&](const Feature& other) {
+      return other.name == "x" && RankAlike(other.values, ranked);
+    });
+    if (same != features.end()) {
+      same->same_as.push_back(name);
+      continue;
+    }
+    features.push_back({name, "x", std::move(ranked)});
+    const std::size_t itself = features.size() - 1;
     if (IsAngle(name)) {
       std::vector<double> sine, cosine;
       for (const double angle : x) {
@@ -97,7 +118,8 @@ std::vector<Feature> Features(const Campaign& campaign, const CaseColumns& cases
     // x squared has the ranks of |x|.
     std::vector<double> size;
     for (const double value : x) size.push_back(std::fabs(value - nominal[static_cast<std::size_t>(input)]));
-    features.push_back({name, "|x|", size});
+    Ranked sized(size);
+    if (!RankAlike(features[itself].values, sized)) features.push_back({name, "|x|", std::move(sized)});
   }
   return features;
 }
@@ -168,10 +190,11 @@ MetricDrivers DriversOf(const std::string& metric, const CaseColumns& cases, Fea
   std::size_t regressed = 0;
   for (const Candidate& candidate : candidates) {
     const bool pair = features[candidate.indexed].name.starts_with("m ");
-    const double correlation = pair ? 0.0 : partial[regressed++];
+    const double correlation = pair ? kUndefined : partial[regressed++];
     if (result.drivers.size() == kShown || candidate.index <= 0.0) continue;
     const SensitivityIndex index = FirstOrderIndex(features[candidate.indexed].values, y);
-    result.drivers.push_back({features[candidate.indexed].input, features[candidate.named].name, index.index,
+    result.drivers.push_back({features[candidate.indexed].input, features[candidate.indexed].same_as,
+                              features[candidate.named].name, index.index,
                               index.low, index.high, correlation});
   }
   return result;

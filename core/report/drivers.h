@@ -13,11 +13,13 @@ namespace dispersa {
 /// One input, or a magnitude along a direction, of one metric over the completed flights.
 struct Driver {
   std::string input;    ///< column without prefix; "magnitude * cos angle" columns joined by " along "
+  /// Inputs that rank the flights alike or in reverse (one dispersion may feed two): nothing can tell them apart.
+  std::vector<std::string> same_as = {};
   std::string feature;  ///< through which it acts most: "x", "|x|" (about the nominal), "sin x", "cos x"
   double index = 0.0;   ///< first-order Sobol index, with its interval of 95 %
   double low = 0.0;
   double high = 0.0;
-  double partial = 0.0;  ///< partial rank correlation of the feature
+  double partial = 0.0;  ///< partial rank correlation of the feature; undefined of a pair
 };
 
 struct MetricDrivers {

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/flight/flight_inputs.h"
+#include "core/report/json_number.h"
 #include "core/report/output_file.h"
 #include "core/report/text.h"
 
@@ -13,8 +13,6 @@ namespace dispersa {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json Number(double value) { return std::isfinite(value) ? Json(value + 0.0) : Json(nullptr); }
 
 /// What a requirement comes to for a continuous-integration service.
 struct Finding {

@@ -62,7 +62,7 @@ struct BandView {
   const char* column;
   const char* label;
   double factor = 1.0;            ///< from the column's unit to the label's
-  const char* program = nullptr;  ///< column of the nominal drawn as the target
+  bool deviation = false;         ///< from the nominal, beside which the spread would not be seen
   std::optional<double> from_s = {}, to_s = {};
   bool nominal = true;
   bool limits = false;  ///< draw those of the requirements on the peak
@@ -71,6 +71,13 @@ struct BandView {
 
 std::vector<double> Scaled(std::vector<double> values, double factor) {
   for (double& value : values) value *= factor;
+  return values;
+}
+
+/// The nominal flight at the steps of the bands; undefined after its end.
+std::vector<double> AtSteps(const History& nominal, const char* column, const FlightBands& bands) {
+  std::vector<double> values = SampleFlight(nominal, {FindHistoryColumn(column)}, bands.step_s)[0];
+  values.resize(bands.time_s.size(), std::nan(""));
   return values;
 }
 
@@ -83,16 +90,18 @@ std::string BandFigure(const BandView& view, const FlightHistories& histories, c
   SvgChart chart({.label = kTime, .low = view.from_s, .high = view.to_s}, {.label = view.label}, view.width,
                  280);
   burns.AddTo(&chart);
-  chart.Band(bands.time_s, Scaled(band->min, view.factor), Scaled(band->max, view.factor), "band-outer",
-             "min–max");
-  chart.Band(bands.time_s, Scaled(band->p05, view.factor), Scaled(band->p95, view.factor), "band-inner",
-             "5–95 %");
-  chart.Line(bands.time_s, Scaled(band->p50, view.factor), "line-0", "median");
-  const std::vector<double> time_s = Column(histories.nominal_history, "time_s");
-  if (view.program != nullptr) {
-    chart.Line(time_s, Column(histories.nominal_history, view.program, view.factor), "program", "program");
-  } else if (view.nominal) {
-    chart.Line(time_s, Column(histories.nominal_history, view.column, view.factor), "line-1", "nominal");
+  const std::vector<double> nominal =
+      view.deviation ? AtSteps(histories.nominal_history, view.column, bands) : std::vector<double>();
+  const auto shown = [&](std::vector<double> values) {
+    for (std::size_t i = 0; i < nominal.size(); ++i) values[i] -= nominal[i];
+    return Scaled(std::move(values), view.factor);
+  };
+  chart.Band(bands.time_s, shown(band->min), shown(band->max), "band-outer", "min–max");
+  chart.Band(bands.time_s, shown(band->p05), shown(band->p95), "band-inner", "5–95 %");
+  chart.Line(bands.time_s, shown(band->p50), "line-0", "median");
+  if (view.nominal && !view.deviation) {
+    chart.Line(Column(histories.nominal_history, "time_s"),
+               Column(histories.nominal_history, view.column, view.factor), "line-1", "nominal");
   }
   if (view.limits) {
     for (const RequirementSummary& requirement : summary.requirements) {
@@ -193,10 +202,8 @@ std::string EnvelopeFigures(const FlightHistories& histories, const CampaignSumm
          .to_s = 10.0 * std::ceil(0.1 * last.to_s)},
         fmt::format("Pitch error while stage {} burns.", last.stage));
   }
-  add({.column = "pitch_launch_deg",
-       .label = "pitch from the launch horizon, °",
-       .program = "pitch_program_deg"},
-      "Pitch angle in the launch-inertial frame and the program.");
+  add({.column = "altitude_m", .label = "altitude minus that of the nominal, km", .factor = 1e-3, .deviation = true},
+      "How far the flights lie above the nominal one at the same time.");
   add({.column = "deflection_pitch_deg", .label = "pitch deflection, °"}, "Deflection of the pitch channel.");
   add({.column = "yaw_error_deg", .label = "yaw error, °", .nominal = false}, "Yaw error.");
   add({.column = "roll_error_deg", .label = "roll error, °", .nominal = false}, "Roll error.");
@@ -209,6 +216,58 @@ std::string EnvelopeFigures(const FlightHistories& histories, const CampaignSumm
   add({.column = "alpha_deg", .label = "angle of attack, °", .from_s = 2.0, .to_s = air_end_s},
       "Angle of attack against the air, wind included, from 2 s on (at rest it has no meaning).");
   return figures + "</div>\n";
+}
+
+std::string WorstFigures(const FlightHistories& histories, const CampaignSummary& summary) {
+  struct View {
+    const char* metrics;  ///< beginning of their names
+    const char* column;
+    const char* label;
+    bool in_air;
+  };
+  static constexpr View kViews[] = {{"pitch_error", "pitch_error_deg", "pitch error, °", false},
+                                    {"yaw_error", "yaw_error_deg", "yaw error, °", false},
+                                    {"roll_error", "roll_error_deg", "roll error, °", false},
+                                    {"deflection", "deflection_pitch_deg", "pitch deflection, °", false},
+                                    {"q_alpha", "alpha_deg", "angle of attack, °", true}};
+  constexpr std::size_t kLines = 4;
+  const Burns burns(histories.nominal_history);
+  const FlightBands& bands = histories.bands;
+  const double air_end_s = AtmosphereEnd(Column(histories.nominal_history, "time_s"),
+                                         Column(histories.nominal_history, "qbar_pa"));
+  std::string figures;
+  for (const View& view : kViews) {
+    std::vector<std::uint64_t> shown;
+    for (const WorstCases& worst : summary.worst_cases) {
+      if (!worst.metric.starts_with(view.metrics)) continue;
+      for (const WorstCase& one : worst.cases) {
+        const bool written =
+            std::binary_search(histories.written_cases.begin(), histories.written_cases.end(), one.case_index);
+        if (written && shown.size() < kLines && std::find(shown.begin(), shown.end(), one.case_index) == shown.end())
+          shown.push_back(one.case_index);
+      }
+    }
+    if (shown.empty()) continue;
+    const auto band = std::find_if(bands.bands.begin(), bands.bands.end(),
+                                   [&](const Band& candidate) { return candidate.column == view.column; });
+    ChartAxis time{.label = kTime};
+    if (view.in_air) time.low = 2.0, time.high = air_end_s;
+    SvgChart chart(time, {.label = view.label}, 1060, 280);
+    burns.AddTo(&chart);
+    chart.Band(bands.time_s, band->min, band->max, "band-outer", "min–max");
+    chart.Band(bands.time_s, band->p05, band->p95, "band-inner", "5–95 %");
+    for (std::size_t i = 0; i < shown.size(); ++i) {
+      const auto at = std::lower_bound(histories.written_cases.begin(), histories.written_cases.end(), shown[i]) -
+                      histories.written_cases.begin();
+      const auto& values = histories.written_flights[static_cast<std::size_t>(at)]
+                                                    [static_cast<std::size_t>(band - bands.bands.begin())];
+      std::vector<double> time_s(bands.time_s.begin(), bands.time_s.begin() + std::ssize(values));
+      chart.CaseLine(time_s, values, fmt::format("line-{}", i), shown[i]);
+    }
+    const std::string caption = fmt::format("Worst cases over the envelope: {}.", view.label);
+    figures += "<figure class=\"wide\"" + Figure(chart.Svg(caption), HtmlText(caption)).substr(7);
+  }
+  return figures.empty() ? "" : "<div class=\"figures\">\n" + figures + "</div>\n";
 }
 
 }  // namespace dispersa

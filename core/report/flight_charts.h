@@ -16,4 +16,7 @@ std::string NominalFigures(const History& nominal);
 std::string EnvelopeFigures(const FlightHistories& histories, const CampaignSummary& summary,
                             double kick_end_s);
 
+/// The worst cases that have a history, over the envelope of what made them worst.
+std::string WorstFigures(const FlightHistories& histories, const CampaignSummary& summary);
+
 }  // namespace dispersa

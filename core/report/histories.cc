@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <filesystem>
 #include <set>
 
+#include "core/report/band_counter.h"
 #include "core/report/output_file.h"
 #include "core/report/text.h"
 
@@ -92,6 +94,21 @@ std::string HistoryCsv(const History& history) {
   return csv;
 }
 
+std::vector<std::size_t> ExtremeRows(const CaseColumns& cases) {
+  std::set<std::size_t> rows;
+  for (const CaseColumn& column : cases.metrics) {
+    const std::vector<double> values = column;
+    std::size_t least = values.size(), largest = values.size();
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (!std::isfinite(values[i])) continue;
+      if (least == values.size() || values[i] < values[least]) least = i;
+      if (largest == values.size() || values[i] > values[largest]) largest = i;
+    }
+    if (least < values.size()) rows.insert({least, largest});
+  }
+  return {rows.begin(), rows.end()};
+}
+
 void RemoveHistories(const ResultFolder& folder) {
   std::error_code ignored;  // what cannot be removed is out of date, and the report does not name it
   fs::remove_all(folder.directory() / "histories", ignored);
@@ -113,31 +130,51 @@ FlightHistories WriteHistories(const ResultFolder& folder, const Campaign& campa
   histories.nominal = flights.FlyNominal(&histories.nominal_history);
   WriteFile(directory / "nominal.csv", HistoryCsv(histories.nominal_history));
 
-  // Only cases that have a result are flown: a quarantined one may take this process with it.
+  // Only cases that have a result are flown: a quarantined one may take this process with it. The first cases are a
+  // fair sample, of which percentiles can be told; no case's peak lies outside minimum and maximum.
   histories.written_cases = WorstToWrite(summary);
-  const auto banded_end = std::lower_bound(cases.index.begin(), cases.index.end(), options.history_cases);
-  const auto banded = static_cast<std::size_t>(banded_end - cases.index.begin());
-  std::vector<std::uint64_t> indices(cases.index.begin(), banded_end);
-  for (const std::uint64_t index : histories.written_cases) {
-    if (index >= options.history_cases) indices.push_back(index);
+  const std::size_t sampled = static_cast<std::size_t>(
+      std::lower_bound(cases.index.begin(), cases.index.end(), options.history_cases) - cases.index.begin());
+  std::vector<std::uint64_t> indices(cases.index.begin(), cases.index.begin() + static_cast<std::ptrdiff_t>(sampled));
+  std::set<std::uint64_t> beyond(histories.written_cases.begin(), histories.written_cases.end());
+  for (const std::size_t row : ExtremeRows(cases)) beyond.insert(cases.index[row]);
+  for (const std::uint64_t index : beyond) {
+    if (!std::binary_search(cases.index.begin(), cases.index.begin() + static_cast<std::ptrdiff_t>(sampled), index))
+      indices.push_back(index);
   }
   const std::vector<int> columns = BandColumns();
-  std::vector<SampledFlight> samples(banded);
-  std::vector<Digest> digests(indices.size());
-  const auto is_written = [&](std::uint64_t index) {
-    return std::binary_search(histories.written_cases.begin(), histories.written_cases.end(), index);
-  };
-  std::vector<CaseOrder> orders;
-  for (const std::uint64_t index : indices) orders.push_back({index, is_written(index) ? kHistoryStep_s : kBandStep_s});
+  BandCounter counter(columns, kBandStep_s);
+  const std::vector<std::uint64_t>& written = histories.written_cases;
+  histories.written_flights.resize(written.size());
   std::size_t flown = 0;
-  flights.FlyCases(orders, options.threads, [&](std::size_t i, const CaseResult& result, const History& history) {
-    digests[i] = result.digest;
-    if (is_written(indices[i])) WriteFile(directory / fmt::format("case_{}.csv", indices[i]), HistoryCsv(history));
-    if (i < banded) samples[i] = SampleFlight(history, columns, kBandStep_s);
-    progress("time histories", ++flown, indices.size());
-  });
-  for (std::size_t i = 0; i < indices.size(); ++i) CheckReproduced(folder, indices[i], digests[i]);
-  histories.bands = ComputeBands(samples, columns, kBandStep_s);
+  const auto fly = [&](std::size_t from, std::size_t to) {
+    std::vector<CaseOrder> orders;
+    for (std::size_t i = from; i < to; ++i) {
+      const bool in_full = std::binary_search(written.begin(), written.end(), indices[i]);
+      orders.push_back({indices[i], in_full ? kHistoryStep_s : kBandStep_s});
+    }
+    flights.FlyCases(orders, options.threads, [&](std::size_t i, const CaseResult& result, const History& history) {
+      const std::size_t at = from + i;
+      CheckReproduced(folder, indices[at], result.digest);
+      SampledFlight samples = SampleFlight(history, columns, kBandStep_s);
+      const auto found = std::lower_bound(written.begin(), written.end(), indices[at]);
+      if (found != written.end() && *found == indices[at]) {
+        WriteFile(directory / fmt::format("case_{}.csv", indices[at]), HistoryCsv(history));
+        histories.written_flights[static_cast<std::size_t>(found - written.begin())] = samples;
+      }
+      if (at < sampled) {
+        counter.Add(std::move(samples));
+      } else {
+        counter.AddExtreme(samples);
+      }
+      progress("time histories", ++flown, indices.size());
+    });
+  };
+  // Those that the counter keeps go first, whoever of them lands first.
+  const std::size_t kept = std::min(sampled, BandCounter::kKept);
+  fly(0, kept);
+  fly(kept, indices.size());
+  histories.bands = counter.Bands();
   WriteFile(directory / "bands.csv", BandsCsv(histories.bands));
   return histories;
 }

@@ -18,11 +18,15 @@ struct FlightHistories {
   CaseResult nominal;
   History nominal_history;
   FlightBands bands;
-  std::vector<std::uint64_t> written_cases;  ///< with a file histories/case_<index>.csv, ascending
+  std::vector<std::uint64_t> written_cases;   ///< with a file histories/case_<index>.csv, ascending
+  std::vector<SampledFlight> written_flights;  ///< the same at the steps of the bands: one column a band
 };
 
 /// One line a row; the header names the columns. NaN is an empty cell.
 std::string HistoryCsv(const History& history);
+
+/// Rows of the cases with the least and with the largest value of any metric, ascending.
+std::vector<std::size_t> ExtremeRows(const CaseColumns& cases);
 
 /// Removes histories/, which would belong to an earlier report.
 void RemoveHistories(const ResultFolder& folder);

@@ -2,7 +2,22 @@
 
 #include <fmt/format.h>
 
+#include "core/report/text.h"
+
 namespace dispersa {
+namespace {
+
+/// A string of CSS: what could end it, or the style sheet around it, as an escape.
+std::string CssString(std::string_view text) {
+  std::string css = "\"";
+  for (const char c : text) {
+    const bool plain = c != '"' && c != '\\' && c != '<' && static_cast<unsigned char>(c) >= 0x20;
+    css += plain ? std::string(1, c) : fmt::format("\\{:06x}", static_cast<unsigned char>(c));
+  }
+  return css + "\"";
+}
+
+}  // namespace
 
 void HtmlTable::Row(const std::vector<std::string>& cells, std::string_view row_class) {
   rows_ += row_class.empty() ? std::string("<tr>") : fmt::format("<tr class=\"{}\">", row_class);
@@ -38,6 +53,15 @@ std::string VerdictBadge(std::string_view verdict) {
                                 : verdict == "study"        ? "◇"
                                                             : "…";
   return fmt::format("<span class=\"badge {}\">{} {}</span>", verdict, sign, verdict);
+}
+
+std::string PageHead(const std::string& title, const std::string& footer, const std::string& more_style) {
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+      "content=\"width=device-width, initial-scale=1\">\n<title>{} – dispersa</title>\n<style>{}{}\n"
+      "@page {{ @bottom-left {{ content: {}; }} @bottom-right {{ content: counter(page) \" / \" counter(pages); }} }}"
+      "\n</style>\n</head>\n<body>\n",
+      HtmlText(title), StyleSheet(), more_style, CssString(footer));
 }
 
 std::string_view StyleSheet() {
@@ -97,16 +121,22 @@ td > code { white-space: nowrap; }  td.id code { white-space: normal; }
   border-radius: 4px; } .warnings li { margin: 2px 0; max-width: 110ch; }
 .requirement { border: 1px solid var(--rule); border-radius: 6px; padding: 10px 14px 6px; margin: 10px 0; }
 .requirement .claim { max-width: none; } .requirement .claim .badge { margin-right: 8px; }
-.requirement .sentence { color: var(--soft); } dl.facts { display: grid; margin: 8px 0; gap: 6px 18px;
-  grid-template-columns: repeat(auto-fit, minmax(130px, max-content)); }
+.requirement .sentence { color: var(--soft); } dl.facts { display: flex; flex-wrap: wrap; margin: 8px 0; gap: 6px 28px; }
 dl.facts dt { font-size: 12px; color: var(--soft); } dl.facts dd { margin: 0; font-variant-numeric: tabular-nums; }
+.requirement .value { font-weight: 650; }
 tr.group td { font-weight: 650; padding-top: 14px; } tr.part td:first-child { padding-left: 18px; }
 td .definition { display: block; font-size: 12px; line-height: 1.35; max-width: 46ch; }
+ol.tornado { list-style: none; margin: 6px 0 14px; padding: 0; font-size: 13px; columns: 2 420px; column-gap: 28px; }
+ol.tornado li { display: flex; flex-wrap: wrap; justify-content: space-between; gap: 0 12px; padding: 3px 0; break-inside: avoid; }
+ol.tornado .n { margin-left: auto; } ol.tornado .cause { overflow-wrap: anywhere; } ol.tornado svg { width: 100%; height: 9px; overflow: visible; }
+svg .track { fill: var(--panel); } svg .whisker { stroke: var(--ink); stroke-width: 3; }
+tr.name td { border-bottom: 0; padding-bottom: 0; } tr.name div { position: sticky; left: 0; width: fit-content;
+  max-width: min(110ch, 88vw); } tr.name b { font-weight: 600; }
 .figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(440px, 100%), 1fr)); gap: 18px 22px;
   margin: 12px 0; }
-figure { margin: 0; } figure.wide { grid-column: 1 / -1; } figcaption { font-size: 12.5px; line-height:
+figure { margin: 0; } figure.wide { grid-column: 1 / -1; overflow-x: auto; } figcaption { font-size: 12.5px; line-height:
   1.4; padding: 0 8px; }
-svg.chart { display: block; width: 100%; height: auto; }
+svg.chart { display: block; width: 100%; height: auto; } figure.wide svg.chart { min-width: 700px; }
 svg text { font-family: inherit; fill: var(--ink); } svg .label { font-size: 12px; font-weight: 600; }
 svg .tick { font-size: 11px; fill: var(--soft); } svg .legend { font-size: 11.5px; }
 svg .mark-label { font-size: 10px; fill: var(--soft); }
@@ -115,6 +145,8 @@ svg .axis { stroke: var(--soft); stroke-width: 1; } svg .mark { stroke: var(--so
   stroke-dasharray: 2 3; }
 svg .shade { fill: var(--panel); } svg .limit { stroke: var(--limit); stroke-width: 1.3; stroke-dasharray:
   7 4; }
+svg .bound { stroke: var(--violet); stroke-width: 1.5; stroke-dasharray: 2 2; }
+svg .ellipse { stroke: var(--ink); stroke-width: 1; }
 svg .line-0 { stroke: var(--blue); stroke-width: 1.6; } svg .line-1 { stroke: var(--orange); stroke-width:
   1.4; }
 svg .line-2 { stroke: var(--green); stroke-width: 1.4; } svg .line-3 { stroke: var(--violet); stroke-width:
@@ -122,17 +154,28 @@ svg .line-2 { stroke: var(--green); stroke-width: 1.4; } svg .line-3 { stroke: v
 svg .dots { stroke: var(--blue); stroke-width: 3.4; stroke-linecap: round; opacity: 0.6; }
 svg .dot-nominal { stroke: var(--orange); stroke-width: 8; stroke-linecap: round; }
 svg .program { stroke: var(--ink); stroke-width: 1.2; stroke-dasharray: 5 3; }
-svg path.band-outer, svg rect.band-outer { fill: var(--outer); stroke: none; }
+svg path.band-outer, svg rect.band-outer { fill: var(--outer); stroke: var(--inner); stroke-width: 0.6; }
 svg path.band-inner, svg rect.band-inner { fill: var(--inner); stroke: none; }
 svg .bar { fill: var(--bar); } svg rect { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
-@media print { @page { size: A4; margin: 14mm; } body { padding: 0; max-width: none; font-size: 10.5pt; }
-  nav { display: none; }
-  .figures { grid-template-columns: 1fr 1fr; } figure, tr, .headline, .tile { break-inside: avoid; }
-  h2, h3 { break-after: avoid; } table { font-size: 7.2pt; } th, td { padding: 2px 4px; } td code {
-  font-size: 6.2pt; }
-  td > code { white-space: normal; } table { font-size: 6.9pt; } th, td { padding: 2px 3px; }
-  td .badge { font-size: 7pt; padding: 0 4px; } td .definition { font-size: 6.6pt; } .scroll { overflow:
-  visible; } }
+.tip { position: fixed; z-index: 2; padding: 5px 9px; border-radius: 5px; background: var(--ink); color: var(--paper);
+  font-size: 12.5px; white-space: pre-line; pointer-events: none; max-width: min(340px, 92vw); }
+.hint { font-size: 12.5px; margin: 8px 0 0; max-width: none; } .hint input { width: 8em; font: inherit; }
+tr.hit td { background: var(--outer); } code.copied::after { content: " ✓ copied"; color: var(--pass); }
+code[data-case], svg.chart[data-mx] .plot { cursor: pointer; }
+svg.chart[data-x] .plot { touch-action: pan-y; user-select: none; overflow: hidden; }
+svg .hit { stroke: var(--limit); stroke-width: 9; stroke-linecap: round; } svg .hit-line { stroke: var(--limit); stroke-width: 1.6; }
+svg .zoom { fill: var(--blue); opacity: 0.15; } svg .plot.dimmed path[data-case] { opacity: 0.35; }
+svg .plot.dimmed path.strong { opacity: 1; stroke-width: 2.4; }
+svg .marks path, svg.zoomed .plot path { vector-effect: non-scaling-stroke; }
+@page { size: A4; margin: 14mm 14mm 16mm; font: 8pt "Liberation Sans", Arial, sans-serif; }
+@media print { body { padding: 0; max-width: none; font-size: 10.5pt; } nav, .tip, .hint, svg .marks { display: none; }
+  .figures { grid-template-columns: 1fr 1fr; } .tiles { grid-template-columns: repeat(5, 1fr); } .tile b { font-size: 12pt; } figure, tr, .headline, .tile, .requirement { break-inside: avoid; }
+  h2, h3, summary, thead { break-after: avoid; } h2 + p, h3 + p { break-before: avoid; break-after: avoid; }
+  table { font-size: 6.9pt; } th, td { padding: 2px 3px; } td code { font-size: 6.2pt; }
+  td .badge { font-size: 7pt; padding: 0 4px; } td .definition { font-size: 6.6pt; }
+  table.statistics td.n .definition { white-space: normal; } tr.name { break-after: avoid; } tr.numbers { break-before: avoid; }
+  td > code { white-space: normal; overflow-wrap: normal; } figure.wide svg.chart { min-width: 0; }
+  .scroll, figure.wide { overflow: visible; } }
 )css";
 }
 

@@ -37,4 +37,7 @@ std::string VerdictBadge(std::string_view verdict);
 /// For the page's <style>.
 std::string_view StyleSheet();
 
+/// Everything of a page before its contents. In print `footer` stands below each page, beside its number.
+std::string PageHead(const std::string& title, const std::string& footer, const std::string& more_style = "");
+
 }  // namespace dispersa

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include "core/report/case_data.h"
 #include "core/report/distribution_charts.h"
 #include "core/report/flight_charts.h"
 #include "core/report/html_parts.h"
+#include "core/report/page_script.h"
 #include "core/report/report_sections.h"
 #include "core/report/text.h"
 
@@ -24,11 +26,8 @@ constexpr char kNavigation[] =
 
 std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary, const CaseColumns& cases,
                        const FlightHistories& histories) {
-  std::string page = fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
-      "content=\"width=device-width, initial-scale=1\">\n<title>{} – "
-      "dispersa</title>\n<style>{}</style>\n</head>\n<body>\n",
-      HtmlText(summary.name), StyleSheet());
+  std::string page =
+      PageHead(summary.name, fmt::format("Dispersion campaign {} · {}", summary.name, summary.id.substr(0, 16)));
   page += HeaderSection(summary);
   page += kNavigation;
   page += RequirementsSection(summary);
@@ -41,12 +40,22 @@ std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary,
   } else if (!flown_again || histories.bands.flights == 0) {
     page += "<p>This report was made without time histories: <code>dispersa report .</code> adds them.</p>\n";
   } else {
+    const FlightBands& bands = histories.bands;
+    const std::string sample = bands.flights == summary.flown
+                                   ? fmt::format("all {} flown cases", summary.flown)
+                                   : fmt::format("the first {} of {} flown cases", bands.flights, summary.flown);
+    const std::string extremes =
+        bands.extreme_flights == 0
+            ? std::string(" Minimum and maximum are over the same flights.")
+            : fmt::format(" Minimum and maximum are over these and {} more, which are the least or the largest of all "
+                          "in some metric: no case’s peak of a stage lies outside, but at other times a case that was "
+                          "not flown again may.",
+                          bands.extreme_flights);
     page += fmt::format(
-        "<p>Pointwise percentiles over the first {} flown cases of {}, sampled every {} s; a lost flight "
-        "counts until it is "
-        "lost. S1 to S4 mark ignitions. Peaks between the samples are in the metrics, not here. Numbers: "
+        "<p>Pointwise percentiles over {}, flown again and sampled every {} s; a lost flight counts until it is "
+        "lost.{} S1 to S4 mark ignitions. Peaks between the samples are in the metrics, not here. Numbers: "
         "<code>histories/bands.csv</code>.</p>\n",
-        histories.bands.flights, summary.flown, ReadableText(histories.bands.step_s));
+        sample, ReadableText(bands.step_s), extremes);
     page += EnvelopeFigures(histories, summary, campaign.reference.program.t2_s);
   }
 
@@ -62,10 +71,12 @@ std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary,
         "it.</p>\n"
         "<div class=\"figures\">\n" +
         InjectionFigures(summary, cases) + "</div>\n";
+    if (summary.injection) page += InjectionSection(*summary.injection);
   }
 
   page += CausesSection(summary);
   page += WorstCasesSection(summary, histories);
+  if (flown_again && histories.bands.flights > 0) page += WorstFigures(histories, summary);
   page +=
       "<h2 id=\"nominal\">Nominal flight</h2>\n<p>The flight without dispersions, through the same closed "
       "loop. It is not "
@@ -76,7 +87,9 @@ std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary,
   page += DispersionsSection(summary);
   page += NotModelledSection();
   page += ProvenanceSection(campaign, summary);
-  return page + "</body>\n</html>\n";
+  page += "<script type=\"application/json\" id=\"cases\">" + CaseData(summary, cases) + "</script>\n<script>";
+  page += PageScript();
+  return page + "</script>\n</body>\n</html>\n";
 }
 
 }  // namespace dispersa

@@ -27,6 +27,10 @@ std::string Lower(std::string title) {
 
 std::string Code(const std::string& text) { return "<code>" + HtmlText(text) + "</code>"; }
 
+std::string ReplayCell(std::uint64_t case_index) {
+  return fmt::format("<code class=\"copy\" data-case=\"{}\">{}</code>", case_index, ReplayCommand(case_index));
+}
+
 std::string OutcomeWords(Outcome outcome) {
   std::string words = OutcomeName(outcome);
   std::replace(words.begin(), words.end(), '_', ' ');
@@ -196,7 +200,7 @@ std::string OutcomesSection(const CampaignSummary& summary) {
       lost_table.Row({std::to_string(flight.case_index), OutcomeWords(flight.outcome),
                       ReadableText(flight.end_time_s), std::to_string(flight.end_stage),
                       HtmlText(flight.reason),
-                      "<code class=\"copy\">" + ReplayCommand(flight.case_index) + "</code>"});
+                      ReplayCell(flight.case_index)});
     }
     // A long list is folded away on screen and printed in full.
     const std::string which = lost > summary.lost_flights.size()
@@ -235,7 +239,7 @@ std::string WorstCasesSection(const CampaignSummary& summary, const FlightHistor
           std::binary_search(histories.written_cases.begin(), histories.written_cases.end(), one.case_index);
       table.Row({i == 0 ? HtmlText(info.title) : "", std::to_string(one.case_index),
                  one.value ? WithUnit(*one.value, info.unit) : "–", OutcomeWords(one.outcome),
-                 "<code class=\"copy\">" + ReplayCommand(one.case_index) + "</code>",
+                 ReplayCell(one.case_index),
                  written ? Code(fmt::format("histories/case_{}.csv", one.case_index)) : ""});
     }
   }
@@ -250,9 +254,7 @@ std::string StatisticsSection(const CampaignSummary& summary) {
       "deflection "
       "metrics cover powered flight, ignition to burnout of each stage with its transients; the coast has "
       "its own.</p>\n";
-  HtmlTable table({{"Metric"},
-                   {"Unit", true},
-                   {"Nominal", true},
+  HtmlTable table({{"Nominal", true},
                    {"n", true},
                    {"Mean", true},
                    {"Std", true},
@@ -276,17 +278,20 @@ std::string StatisticsSection(const CampaignSummary& summary) {
       const std::string definition =
           part || info.definition.empty()
               ? ""
-              : "<span class=\"definition\">" + HtmlText(info.definition) + "</span>";
+              : " <span class=\"soft\">" + HtmlText(info.definition) + "</span>";
       const Summary& s = metric.statistics;
-      table.Row({HtmlText(info.title) + definition, HtmlText(info.unit),
-                 ReadableText(NominalValue(summary, i)), std::to_string(s.n), ReadableText(s.mean),
+      // Above its numbers: beside twelve of them no name finds room.
+      table.Wide("<div><b>" + HtmlText(info.title) + (info.unit.empty() ? "" : ", " + HtmlText(info.unit)) + "</b>" +
+                     definition + "</div>",
+                 "name");
+      table.Row({ReadableText(NominalValue(summary, i)), std::to_string(s.n), ReadableText(s.mean),
                  ReadableText(s.std), ReadableText(metric.skewness), ReadableText(s.min),
                  PercentileCell(metric, "p50"), PercentileCell(metric, "p95"), PercentileCell(metric, "p99"),
                  PercentileCell(metric, "p99_73"), ReadableText(s.max)},
-                part ? "part" : "");
+                "numbers");
     }
   }
-  return html + table.Html();
+  return html + table.Html("statistics");
 }
 
 std::string DispersionsSection(const CampaignSummary& summary) {

@@ -28,6 +28,7 @@ CampaignSummary WriteReports(const ResultFolder& folder, const Campaign& campaig
   if (options.histories) {
     histories = WriteHistories(folder, campaign, summary, cases, options);
     summary.nominal = histories.nominal;
+    summary.envelope = {histories.bands.flights, histories.bands.extreme_flights};
   } else {
     RemoveHistories(folder);
   }

@@ -12,7 +12,8 @@
 namespace dispersa {
 
 struct ReportOptions {
-  std::uint64_t history_cases = 100;  ///< the first so many cases are flown again for the percentile bands
+  /// The first so many cases are flown again for the percentile bands, and besides them the extremes of every metric.
+  std::uint64_t history_cases = 500;
   int threads = 1;                    ///< for flying them; the files do not depend on it
   bool histories = true;              ///< false: nothing is flown again, the report has no flight over time
   /// Called now and then from the calling thread ("time histories", 40, 104); may throw to stop.
@@ -21,7 +22,7 @@ struct ReportOptions {
 
 /// Writes cases.csv, histories/, summary.json and report.html from what is stored, each replaced as a whole.
 /// The same stored results give the same bytes, whoever flew them. Flies the nominal, the worst cases and
-/// some others again. With histories, InputError when another engine flew the folder; ResultError (kConflict) when a case
+/// others again, as ReportOptions say. With histories, InputError when another engine flew the folder; ResultError (kConflict) when a case
 /// does not reproduce its digest.
 CampaignSummary WriteReports(const ResultFolder& folder, const Campaign& campaign,
                              const ReportOptions& options = {});

@@ -9,6 +9,7 @@
 #include "core/report/metric_catalogue.h"
 #include "core/report/sampling_text.h"
 #include "core/report/text.h"
+#include "core/statistics/intervals.h"
 #include "core/statistics/order_statistics.h"
 #include "core/statistics/replicates.h"
 #include "core/statistics/summary.h"
@@ -83,6 +84,20 @@ void SetPassChances(RequirementSummary& summary) {
     const double probability = PassProbability(summary.probability, summary.consumer_risk, cases, rate);
     summary.pass_chances.push_back({cases, probability});
     if (probability > 0.995) break;
+  }
+}
+
+void SetConvergence(const CaseTally& tally, const CaseColumns& cases, RequirementSummary& summary) {
+  constexpr double kRatio = 1.15;
+  const auto all = std::ssize(cases.index);
+  const double confidence = 1.0 - summary.consumer_risk;
+  for (std::int64_t n = std::min<std::int64_t>(10, all); n > 0;) {
+    const auto last = static_cast<std::int64_t>(cases.index[static_cast<std::size_t>(n - 1)]);
+    const auto failures = std::upper_bound(tally.failed.begin(), tally.failed.end(), last) - tally.failed.begin();
+    summary.convergence.push_back({n, failures, ClopperPearsonLower(n - failures, n, confidence),
+                                   ClopperPearsonUpper(n - failures, n, confidence)});
+    if (n == all) break;
+    n = std::min(all, static_cast<std::int64_t>(std::ceil(kRatio * static_cast<double>(n))));
   }
 }
 
@@ -176,13 +191,12 @@ std::string StudySentence(const RequirementSummary& summary, const JudgingContex
   return sentence + ": this says nothing about the probability in flight.";
 }
 
-/// The share of the cases of each replicate that fail.
-std::vector<double> FailureShares(const CaseTally& tally, const JudgingContext& context) {
-  const auto size = static_cast<std::int64_t>(context.cases / context.replicates);
-  std::vector<double> shares(context.replicates, 0.0);
-  for (const std::int64_t index : tally.failed)
-    shares[static_cast<std::size_t>(index / size)] += 1.0 / static_cast<double>(size);
-  return shares;
+/// Bounds of the failure probability from the failures in each replicate.
+Interval BoundsOfReplicates(const CaseTally& tally, const JudgingContext& context, double risk) {
+  const auto points = static_cast<std::int64_t>(context.cases / context.replicates);
+  std::vector<std::int64_t> counts(context.replicates, 0);
+  for (const std::int64_t index : tally.failed) ++counts[static_cast<std::size_t>(index / points)];
+  return ReplicateBounds(counts, points, risk);
 }
 
 }  // namespace
@@ -255,8 +269,7 @@ std::vector<RequirementSummary> JudgeAll(const std::vector<Requirement>& require
       RequirementSummary& summary = summaries[i];
       summary.verdict = "study";
       if (context.replicates > 1 && missing == 0) {
-        const Interval failure =
-            ReplicateMeanBounds(FailureShares(tallies[i], context), summary.consumer_risk);
+        const Interval failure = BoundsOfReplicates(tallies[i], context, summary.consumer_risk);
         summary.success_lower = 1.0 - failure.upper;
         summary.success_upper = 1.0 - failure.lower;
       }
@@ -283,6 +296,7 @@ std::vector<RequirementSummary> JudgeAll(const std::vector<Requirement>& require
     SetBound(LimitsOf(requirements[i]), ValuesOf(summary.metric, cases), verdict.boundary.accept, missing,
              summary);
     SetPassChances(summary);
+    SetConvergence(tallies[i], cases, summary);
     summary.sentence = IndependentSentence(summary, missing);
   }
   return summaries;

@@ -49,6 +49,15 @@ struct RequirementSummary {
     double probability = 0.0;
   };
   std::vector<PassChance> pass_chances;
+  /// What the first n cases with a result say of the success probability, for n in about equal ratios up to all of
+  /// them. Each bound is one-sided and holds at its n taken alone (Clopper and Pearson); none of a design study.
+  struct Convergence {
+    std::int64_t n = 0;
+    std::int64_t failures = 0;
+    double success_lower = 0.0;
+    double success_upper = 1.0;
+  };
+  std::vector<Convergence> convergence;
   std::string sentence;
 };
 
@@ -76,7 +85,7 @@ struct JudgingContext {
 
 /// The verdicts on all requirements. Only independent cases give one (Decide()). The points of a design study
 /// are chosen: its verdict is "study", and what is said is how many of the points meet the limit; independent
-/// replicates of a Latin hypercube or Sobol design give bounds of the probability, by Student's t over them.
+/// replicates of a Latin hypercube or Sobol design give bounds of the probability (ReplicateBounds()).
 std::vector<RequirementSummary> JudgeAll(const std::vector<Requirement>& requirements,
                                          const JudgingContext& context, const CaseColumns& cases);
 

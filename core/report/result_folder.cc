@@ -44,6 +44,13 @@ std::string SelectCases() {
          ", digest, row_digest FROM cases";
 }
 
+/// Younger than other tables: a folder may lack it.
+void CreateAudits(Database& database) {
+  database.Execute(
+      "CREATE TABLE IF NOT EXISTS audits (case_index INTEGER NOT NULL, worker TEXT NOT NULL, "
+      "PRIMARY KEY (case_index, worker))");
+}
+
 void CreateTables(Database& database) {
   database.Execute(
       "CREATE TABLE cases (case_index INTEGER PRIMARY KEY, outcome TEXT NOT NULL, end_time_s REAL, "
@@ -54,6 +61,7 @@ void CreateTables(Database& database) {
   database.Execute(
       "CREATE TABLE execution (case_index INTEGER NOT NULL, worker TEXT NOT NULL, host TEXT NOT NULL, "
       "started_utc TEXT NOT NULL, seconds REAL)");
+  CreateAudits(database);
   database.Execute(
       "CREATE TABLE looks (requirements_id TEXT NOT NULL, requirement TEXT NOT NULL, n INTEGER NOT NULL, "
       "failures INTEGER NOT NULL, verdict TEXT NOT NULL, PRIMARY KEY (requirements_id, requirement, n))");
@@ -230,6 +238,7 @@ ResultFolder ResultFolder::Resume(const fs::path& directory, const Campaign& cam
   WriteFile(directory / kCampaignName, campaign.canonical_yaml);
   Transaction transaction(*folder.database_);
   WriteProvenance(*folder.database_, campaign, present.empty());
+  CreateAudits(*folder.database_);
   folder.RemoveDamaged();
   transaction.Commit();
   return folder;
@@ -246,11 +255,17 @@ void ResultFolder::RemoveDamaged() {
       if (!ReadRow(select)) damaged_.push_back(static_cast<std::uint64_t>(select.Integer(0)));
     }
   }
-  Statement remove = database_->Prepare("DELETE FROM cases WHERE case_index = ?");
-  for (const std::uint64_t case_index : damaged_) {
-    remove.Reset();
-    remove.BindInteger(1, static_cast<std::int64_t>(case_index));
-    remove.Step();
+  Remove(damaged_);
+}
+
+void ResultFolder::Remove(const std::vector<std::uint64_t>& cases) {
+  for (const char* table : {"cases", "execution"}) {
+    Statement remove = database_->Prepare(fmt::format("DELETE FROM {} WHERE case_index = ?", table));
+    for (const std::uint64_t case_index : cases) {
+      remove.Reset();
+      remove.BindInteger(1, static_cast<std::int64_t>(case_index));
+      remove.Step();
+    }
   }
 }
 
@@ -282,9 +297,24 @@ std::vector<std::int64_t> ResultFolder::PastLooks() const {
 }
 
 std::size_t ResultFolder::Append(std::span<const CaseResult> results) {
+  Transaction transaction(*database_);
+  const std::size_t added = Insert(results);
+  transaction.Commit();
+  return added;
+}
+
+void ResultFolder::AppendExecution(std::span<const ExecutionRecord> records) { Store({}, records); }
+
+void ResultFolder::Store(std::span<const CaseResult> results, std::span<const ExecutionRecord> records) {
+  Transaction transaction(*database_);
+  Insert(results);
+  Insert(records);
+  transaction.Commit();
+}
+
+std::size_t ResultFolder::Insert(std::span<const CaseResult> results) {
   std::string parameters = "?, ?, ?, ?, ?, ?, ?";
   for (std::size_t i = 0; i < InputColumns().size() + MetricNames().size(); ++i) parameters += ", ?";
-  Transaction transaction(*database_);
   Statement stored = database_->Prepare("SELECT digest FROM cases WHERE case_index = ?");
   Statement insert = database_->Prepare("INSERT INTO cases VALUES (" + parameters + ")");
   Statement lift = database_->Prepare("DELETE FROM quarantined WHERE case_index = ?");
@@ -324,12 +354,10 @@ std::size_t ResultFolder::Append(std::span<const CaseResult> results) {
     lift.Step();
     ++added;
   }
-  transaction.Commit();
   return added;
 }
 
-void ResultFolder::AppendExecution(std::span<const ExecutionRecord> records) {
-  Transaction transaction(*database_);
+void ResultFolder::Insert(std::span<const ExecutionRecord> records) {
   Statement insert = database_->Prepare("INSERT INTO execution VALUES (?, ?, ?, ?, ?)");
   for (const ExecutionRecord& record : records) {
     insert.Reset();
@@ -340,7 +368,6 @@ void ResultFolder::AppendExecution(std::span<const ExecutionRecord> records) {
     insert.BindReal(5, record.seconds);
     insert.Step();
   }
-  transaction.Commit();
 }
 
 void ResultFolder::Quarantine(const QuarantinedCase& quarantined) {
@@ -365,6 +392,48 @@ std::vector<std::pair<std::uint64_t, Digest>> ResultFolder::Fingerprints() const
                          ParseDigest(select.Text(1)).value_or(Digest{}));
   }
   return present;
+}
+
+std::optional<std::string> ResultFolder::WorkerOf(std::uint64_t case_index) const {
+  Statement select =
+      database_->Prepare("SELECT worker FROM execution WHERE case_index = ? ORDER BY rowid DESC");
+  select.BindInteger(1, static_cast<std::int64_t>(case_index));
+  return select.Step() ? std::optional(select.Text(0)) : std::nullopt;
+}
+
+void ResultFolder::AppendAudits(std::span<const Claim> claims) {
+  Transaction transaction(*database_);
+  Statement insert = database_->Prepare("INSERT OR IGNORE INTO audits VALUES (?, ?)");
+  for (const Claim& claim : claims) {
+    insert.Reset();
+    insert.BindInteger(1, static_cast<std::int64_t>(claim.case_index));
+    insert.BindText(2, claim.worker);
+    insert.Step();
+  }
+  transaction.Commit();
+}
+
+void ResultFolder::ForEachUnaudited(const std::function<void(const Claim&)>& callback) const {
+  Statement select = database_->Prepare(
+      "SELECT e.worker, c.case_index, c.row_digest FROM execution e JOIN cases c USING (case_index) "
+      "LEFT JOIN audits a USING (case_index, worker) WHERE a.worker IS NULL");
+  while (select.Step()) {
+    callback({select.Text(0), static_cast<std::uint64_t>(select.Integer(1)),
+              ParseDigest(select.Text(2)).value_or(Digest{}), false});
+  }
+}
+
+std::vector<std::uint64_t> ResultFolder::Disown(const std::string& worker) {
+  Transaction transaction(*database_);
+  std::vector<std::uint64_t> cases;
+  {
+    Statement select = database_->Prepare("SELECT case_index FROM execution WHERE worker = ?");
+    select.BindText(1, worker);
+    while (select.Step()) cases.push_back(static_cast<std::uint64_t>(select.Integer(0)));
+  }
+  Remove(cases);
+  transaction.Commit();
+  return cases;
 }
 
 std::vector<QuarantinedCase> ResultFolder::QuarantinedCases() const {

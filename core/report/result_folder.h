@@ -71,8 +71,10 @@ class ResultFolder : public ResultStore {
   std::size_t Append(std::span<const CaseResult> results) override;
   /// From now on no other process may write here. InputError if one does.
   void Lock();
-  /// Telemetry, one transaction. A case may have several records.
+  /// One transaction. A stored case has one record.
   void AppendExecution(std::span<const ExecutionRecord> records) override;
+  /// One transaction of the two.
+  void Store(std::span<const CaseResult> results, std::span<const ExecutionRecord> records) override;
   /// Remembers a case as given up (again: the later reason holds).
   void Quarantine(const QuarantinedCase& quarantined) override;
 
@@ -80,6 +82,10 @@ class ResultFolder : public ResultStore {
   std::vector<std::uint64_t> PresentCases() const;
   /// The same with the fingerprint that was stored with each.
   std::vector<std::pair<std::uint64_t, Digest>> Fingerprints() const override;
+  std::optional<std::string> WorkerOf(std::uint64_t case_index) const override;
+  void AppendAudits(std::span<const Claim> claims) override;
+  void ForEachUnaudited(const std::function<void(const Claim&)>& callback) const override;
+  std::vector<std::uint64_t> Disown(const std::string& worker) override;
   /// Rows that Resume found damaged and removed.
   const std::vector<std::uint64_t>& damaged() const { return damaged_; }
   /// Ascending by index.
@@ -93,7 +99,10 @@ class ResultFolder : public ResultStore {
 
  private:
   ResultFolder(std::filesystem::path directory, std::unique_ptr<Database> database);
+  std::size_t Insert(std::span<const CaseResult> results);
+  void Insert(std::span<const ExecutionRecord> records);
   void RemoveDamaged();
+  void Remove(const std::vector<std::uint64_t>& cases);
 
   std::filesystem::path directory_;
   std::optional<FolderLock> lock_;

@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -17,8 +19,16 @@ struct ExecutionRecord {
   std::uint64_t case_index = 0;
   std::string worker;
   std::string host;
-  std::string started_utc;  ///< ISO 8601
-  double seconds = 0.0;     ///< wall clock
+  std::string started_utc;  ///< ISO 8601; empty: nobody knows
+  double seconds = 0.0;     ///< wall clock; NaN: nobody knows
+};
+
+/// A result as a worker returned it.
+struct Claim {
+  std::string worker;
+  std::uint64_t case_index = 0;
+  Digest fingerprint;
+  bool is_dispute = false;  ///< another worker's result of this case, with other bits, was accepted
 };
 
 /// A case that was given up because it killed or hung its workers; it has no result.
@@ -33,8 +43,21 @@ class ResultStore {
   virtual ~ResultStore() = default;
   virtual std::size_t Append(std::span<const CaseResult> results) = 0;
   virtual void AppendExecution(std::span<const ExecutionRecord> records) = 0;
+  /// Both, all or nothing where a process may end between the two: a result whose worker nobody knows could
+  /// not be taken back.
+  virtual void Store(std::span<const CaseResult> results, std::span<const ExecutionRecord> records) {
+    Append(results);
+    AppendExecution(records);
+  }
   virtual void Quarantine(const QuarantinedCase& quarantined) = 0;
   virtual std::vector<std::pair<std::uint64_t, Digest>> Fingerprints() const = 0;
+  /// Who returned the result of a case.
+  virtual std::optional<std::string> WorkerOf(std::uint64_t case_index) const = 0;
+  /// These results were flown again and are right.
+  virtual void AppendAudits(std::span<const Claim> claims) = 0;
+  virtual void ForEachUnaudited(const std::function<void(const Claim&)>& callback) const = 0;
+  /// Removes all results of a worker; returns their cases.
+  virtual std::vector<std::uint64_t> Disown(const std::string& worker) = 0;
 };
 
 }  // namespace dispersa

@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/flight/flight_inputs.h"
 #include "core/math/constants.h"
 #include "core/report/campaign_summary.h"
+#include "core/report/json_number.h"
 #include "core/report/metric_catalogue.h"
 #include "core/report/sampling_text.h"
 
@@ -13,8 +13,6 @@ namespace dispersa {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json Number(double value) { return std::isfinite(value) ? Json(value + 0.0) : Json(nullptr); }
 
 template <typename T>
 Json OrNull(const std::optional<T>& value) {
@@ -97,8 +95,38 @@ Json RequirementJson(const RequirementSummary& requirement) {
   json["pass_probability"] = Json::array();
   for (const auto& chance : requirement.pass_chances)
     json["pass_probability"].push_back({{"cases", chance.cases}, {"probability", chance.probability}});
+  json["convergence"] = Json::array();
+  for (const auto& at : requirement.convergence) {
+    json["convergence"].push_back({{"n", at.n},
+                                   {"failures", at.failures},
+                                   {"success_lower", Number(at.success_lower)},
+                                   {"success_upper", Number(at.success_upper)}});
+  }
   json["sentence"] = requirement.sentence;
   return json;
+}
+
+Json InjectionJson(const InjectionSummary& injection) {
+  Json covariance = Json::array();
+  for (const auto& row : injection.scatter.covariance) {
+    Json& list = covariance.emplace_back(Json::array());
+    for (const double value : row) list.push_back(Number(value));
+  }
+  Json mean = Json::array();
+  for (const double value : injection.scatter.mean) mean.push_back(Number(value));
+  Json containment = Json::array();
+  for (const Containment& one : injection.containment) {
+    containment.push_back({{"stated", one.stated},
+                           {"inside", one.inside},
+                           {"empirical", one.empirical},
+                           {"lower", one.limits.lower},
+                           {"upper", one.limits.upper}});
+  }
+  return {{"coordinates", kInjectionMetrics},
+          {"n", injection.scatter.n},
+          {"mean", mean},
+          {"covariance", covariance},
+          {"containment", containment}};
 }
 
 Json NominalJson(const CaseResult& nominal) {
@@ -169,11 +197,13 @@ std::string SummaryJson(const CampaignSummary& summary) {
                                             {"upper", Number(percentile.limits.upper)}};
     }
   }
+  json["injection"] = summary.injection ? InjectionJson(*summary.injection) : Json(nullptr);
   json["drivers"] = Json::object();
   for (const MetricDrivers& metric : summary.drivers) {
     Json& list = json["drivers"][metric.metric] = Json::array();
     for (const Driver& driver : metric.drivers) {
       list.push_back({{"input", driver.input},
+                      {"same_as", driver.same_as},
                       {"feature", driver.feature},
                       {"index", Number(driver.index)},
                       {"low", Number(driver.low)},
@@ -220,6 +250,9 @@ std::string SummaryJson(const CampaignSummary& summary) {
                                    {"consistent", OrNull(dispersion.consistent)},
                                    {"drawn", StatisticsJson(dispersion.drawn)}});
   }
+  json["envelope"] = summary.envelope ? Json{{"flights", summary.envelope->flights},
+                                             {"extreme_flights", summary.envelope->extreme_flights}}
+                                      : Json(nullptr);
   json["nominal"] = summary.nominal ? NominalJson(*summary.nominal) : Json(nullptr);
   return json.dump(2) + "\n";
 }

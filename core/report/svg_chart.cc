@@ -43,6 +43,14 @@ struct Range {
   }
 };
 
+/// Whether a limit is shown: one that lies farther from the data than these are wide would press them together.
+bool Near(double limit, const ChartAxis& axis, const Range& data) {
+  if (axis.low && axis.high) return limit >= *axis.low && limit <= *axis.high;
+  const double span = data.high - data.low;
+  if (!(span > 0.0)) return true;
+  return limit >= data.low - span && limit <= data.high + span;
+}
+
 struct Point {
   double x;
   double y;
@@ -118,6 +126,17 @@ void SvgChart::Line(std::vector<double> x, std::vector<double> y, const std::str
   series_.push_back({Series::Kind::kLine, std::move(x), std::move(y), {}, style, legend});
 }
 
+void SvgChart::CaseLine(std::vector<double> x, std::vector<double> y, const std::string& style,
+                        std::uint64_t case_index) {
+  Line(std::move(x), std::move(y), style, fmt::format("case {}", case_index));
+  series_.back().case_index = case_index;
+}
+
+void SvgChart::ShowsCases(const std::string& x_metric, const std::string& y_metric) {
+  x_metric_ = x_metric;
+  y_metric_ = y_metric;
+}
+
 void SvgChart::Points(std::vector<double> x, std::vector<double> y, const std::string& style,
                       const std::string& legend) {
   series_.push_back({Series::Kind::kPoints, std::move(x), std::move(y), {}, style, legend});
@@ -132,8 +151,8 @@ void SvgChart::Bars(std::vector<double> edges, std::vector<double> counts, const
   series_.push_back({Series::Kind::kBars, std::move(edges), std::move(counts), {}, "bar", legend});
 }
 
-void SvgChart::VerticalLimit(double x, const std::string& legend) {
-  series_.push_back({Series::Kind::kVerticalLimit, {x}, {}, {}, "limit", legend});
+void SvgChart::VerticalLimit(double x, const std::string& legend, const std::string& style) {
+  series_.push_back({Series::Kind::kVerticalLimit, {x}, {}, {}, style, legend});
 }
 
 void SvgChart::HorizontalLimit(double y, const std::string& legend) {
@@ -147,41 +166,33 @@ void SvgChart::Shade(double from, double to, const std::string& label) {
 }
 
 std::string SvgChart::Svg(const std::string& description) const {
-  // The legend decides where the plot begins.
-  struct Entry {
-    const Series* series;
-    double x;
-    int row;
-  };
-  std::vector<Entry> entries;
-  double legend_x = kLeft;
-  int rows = 0;
-  for (const Series& series : series_) {
-    if (series.legend.empty()) continue;
-    const double width = 32.0 + kCharacter * static_cast<double>(series.legend.size());
-    if (rows == 0 || legend_x + width > width_ - kRight) {
-      ++rows;
-      legend_x = kLeft;
-    }
-    entries.push_back({&series, legend_x, rows - 1});
-    legend_x += width;
-  }
-  const double top = kTitleRow + kLegendRow * rows + (spans_.empty() ? 4.0 : kMarkRow);
   const double bottom = height_ - kBottom;
   const double right = width_ - kRight;
 
+  std::vector<std::string> legends;
+  for (const Series& series : series_) legends.push_back(series.legend);
+  std::vector<bool> drawn(series_.size(), true);
+
   Range x_range;
-  for (const Series& series : series_) x_range.Add(series.x, x_.logarithmic);
   for (const Series& series : series_) {
-    if (series.kind != Series::Kind::kVerticalLimit) continue;
-    const double room = 0.03 * (x_range.high - x_range.low);  // a limit shall not lie on the frame
-    x_range.Add(std::vector{series.x[0] - room, series.x[0] + room}, x_.logarithmic);
+    if (series.kind != Series::Kind::kVerticalLimit) x_range.Add(series.x, x_.logarithmic);
+  }
+  const Range x_data = x_range;
+  for (std::size_t i = 0; i < series_.size(); ++i) {
+    if (series_[i].kind != Series::Kind::kVerticalLimit) continue;
+    const double limit = series_[i].x[0];
+    drawn[i] = Near(limit, x_, x_data);
+    if (!drawn[i]) legends[i] += limit > x_data.high ? " (far to the right)" : " (far to the left)";
+    const double room = 0.03 * (x_data.high - x_data.low);  // a limit shall not lie on the frame
+    if (drawn[i]) x_range.Add(std::vector{limit - room, limit + room}, x_.logarithmic);
   }
   const ChartScale xs(x_, x_range.low, x_range.high, kLeft, right, std::max(3, width_ / 90));
+
   Range y_range;
   for (const Series& series : series_) {
-    if (series.kind == Series::Kind::kBars) y_range.Add(0.0, y_.logarithmic);
-    if (series.x.size() != series.low.size() || series.kind == Series::Kind::kBars) {
+    if (series.kind == Series::Kind::kVerticalLimit || series.kind == Series::Kind::kHorizontalLimit) continue;
+    if (series.kind == Series::Kind::kBars) {
+      y_range.Add(0.0, y_.logarithmic);
       y_range.Add(series.low, y_.logarithmic);
       continue;
     }
@@ -191,23 +202,66 @@ std::string SvgChart::Svg(const std::string& description) const {
       if (!series.high.empty()) y_range.Add(series.high[i], y_.logarithmic);
     }
   }
+  const Range y_data = y_range;
+  for (std::size_t i = 0; i < series_.size(); ++i) {
+    if (series_[i].kind != Series::Kind::kHorizontalLimit) continue;
+    const double limit = series_[i].low[0];
+    drawn[i] = Near(limit, y_, y_data);
+    if (drawn[i]) y_range.Add(limit, y_.logarithmic);
+    if (!drawn[i] && !legends[i].empty()) legends[i] += limit > y_data.high ? " (far above)" : " (far below)";
+  }
+
+  // The legend decides where the plot begins.
+  struct Entry {
+    const Series* series;
+    const std::string* text;
+    double x;
+    int row;
+  };
+  std::vector<Entry> entries;
+  double legend_x = kLeft;
+  int rows = 0;
+  for (std::size_t i = 0; i < series_.size(); ++i) {
+    if (legends[i].empty()) continue;
+    const double width = 32.0 + kCharacter * static_cast<double>(legends[i].size());
+    if (rows == 0 || legend_x + width > width_ - kRight) {
+      ++rows;
+      legend_x = kLeft;
+    }
+    entries.push_back({&series_[i], &legends[i], legend_x, rows - 1});
+    legend_x += width;
+  }
+  const double top = kTitleRow + kLegendRow * rows + (spans_.empty() ? 4.0 : kMarkRow);
   const ChartScale ys(y_, y_range.low, y_range.high, bottom, top, 5);
 
-  std::string svg = fmt::format("<svg class=\"chart\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">",
-                                width_, height_, HtmlText(description));
+  // What the page's script needs to tell values from positions.
+  const auto axis = [](const ChartAxis& described, const ChartScale& scale, double from, double to) {
+    return fmt::format("{} {} {} {} {}{}", ShortestText(scale.low()), ShortestText(scale.high()), Coordinate(from),
+                       Coordinate(to), described.logarithmic ? "log" : "linear", described.percent ? " percent" : "");
+  };
+  std::string svg = fmt::format(
+      "<svg class=\"chart\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\" data-x=\"{}\" data-y=\"{}\"",
+      width_, height_, HtmlText(description), axis(x_, xs, kLeft, right), axis(y_, ys, bottom, top));
+  if (!x_metric_.empty()) svg += fmt::format(" data-mx=\"{}\"", x_metric_);
+  if (!y_metric_.empty()) svg += fmt::format(" data-my=\"{}\"", y_metric_);
+  svg += ">";
+
+  std::string spans, labels;
   for (const Span& span : spans_) {
     if (span.to < xs.low() || span.from > xs.high()) continue;
     const double from = xs.At(std::max(span.from, xs.low()));
     const double to = xs.At(std::min(span.to, xs.high()));
     if (span.to > span.from) {
-      svg += fmt::format("<rect class=\"shade\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>",
-                         Coordinate(from), Coordinate(top), Coordinate(to - from), Coordinate(bottom - top));
-      svg += Text(0.5 * (from + to), top - 3.0, "mark-label", "middle", span.label);
+      spans += fmt::format("<rect class=\"shade\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>", Coordinate(from),
+                           Coordinate(top), Coordinate(to - from), Coordinate(bottom - top));
+      labels += Text(0.5 * (from + to), top - 3.0, "mark-label", "middle", span.label);
     } else {
-      svg += Segment(from, top, from, bottom, "mark");
-      svg += Text(from + 1.0, top - 3.0, "mark-label", "start", span.label);
+      spans += Segment(from, top, from, bottom, "mark");
+      const bool inside = from + kCharacter * static_cast<double>(span.label.size()) < width_;
+      labels += Text(from + (inside ? 1.0 : -1.0), top - 3.0, "mark-label", inside ? "start" : "end", span.label);
     }
   }
+  svg += labels + "<g class=\"ticks\">";
   for (const Tick& tick : ys.ticks()) {
     const double y = ys.At(tick.value);
     svg += Segment(kLeft, y, right, y, "grid");
@@ -218,12 +272,25 @@ std::string SvgChart::Svg(const std::string& description) const {
     svg += Segment(x, bottom, x, bottom + 4.0, "axis");
     svg += Text(x, bottom + 17.0, "tick", "middle", tick.label);
   }
+  // A view of its own, so that a zoom changes nothing but what it shows; a little larger than the axes, so that nothing
+  // on them is cut.
+  constexpr double kRim = 3.0;
+  const std::string frame = fmt::format("{} {} {} {}", Coordinate(kLeft - kRim), Coordinate(top - kRim),
+                                        Coordinate(right - kLeft + 2.0 * kRim), Coordinate(bottom - top + 2.0 * kRim));
+  svg += fmt::format(
+      "</g><svg class=\"plot\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" viewBox=\"{}\" "
+      "preserveAspectRatio=\"none\">{}",
+      Coordinate(kLeft - kRim), Coordinate(top - kRim), Coordinate(right - kLeft + 2.0 * kRim),
+      Coordinate(bottom - top + 2.0 * kRim), frame, spans);
 
-  for (const Series& series : series_) {
+  for (std::size_t n = 0; n < series_.size(); ++n) {
+    const Series& series = series_[n];
+    if (!drawn[n]) continue;
     switch (series.kind) {
       case Series::Kind::kLine:
         for (const auto& run : Runs(series.x, series.low, xs, ys, y_.logarithmic)) {
-          svg += fmt::format("<path class=\"{}\" d=\"{}\"/>", series.style, Path(run));
+          svg += fmt::format("<path class=\"{}\"{} d=\"{}\"/>", series.style,
+                             series.case_index ? fmt::format(" data-case=\"{}\"", *series.case_index) : "", Path(run));
         }
         break;
       case Series::Kind::kPoints: {
@@ -266,7 +333,7 @@ std::string SvgChart::Svg(const std::string& description) const {
         }
         break;
       case Series::Kind::kVerticalLimit:
-        svg += Segment(xs.At(series.x[0]), top, xs.At(series.x[0]), bottom, "limit");
+        svg += Segment(xs.At(series.x[0]), top, xs.At(series.x[0]), bottom, series.style.c_str());
         break;
       case Series::Kind::kHorizontalLimit:
         svg += Segment(kLeft, ys.At(series.low[0]), right, ys.At(series.low[0]), "limit");
@@ -274,7 +341,7 @@ std::string SvgChart::Svg(const std::string& description) const {
     }
   }
 
-  svg += Segment(kLeft, bottom, right, bottom, "axis");
+  svg += "</svg>" + Segment(kLeft, bottom, right, bottom, "axis");
   svg += Text(0.5 * (kLeft + right), height_ - 8.0, "label", "middle", x_.label);
   svg += Text(4.0, 13.0, "label", "start", y_.label);
   for (const Entry& entry : entries) {
@@ -285,7 +352,7 @@ std::string SvgChart::Svg(const std::string& description) const {
                 : Segment(entry.x + (entry.series->kind == Series::Kind::kPoints ? 12.0 : 0.0), y - 4.0,
                           entry.x + (entry.series->kind == Series::Kind::kPoints ? 12.0 : 18.0), y - 4.0,
                           entry.series->style.c_str());
-    svg += Text(entry.x + 22.0, y, "legend", "start", entry.series->legend);
+    svg += Text(entry.x + 22.0, y, "legend", "start", *entry.text);
   }
   return svg + "</svg>";
 }

@@ -2,6 +2,7 @@
 // sheet by class, so that one chart serves screen, dark screen and paper.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,6 +24,10 @@ class SvgChart {
   /// Points joined by lines; NaN interrupts. `style` is a class of the style sheet ("line-0" ... "line-3").
   void Line(std::vector<double> x, std::vector<double> y, const std::string& style,
             const std::string& legend);
+  /// The same of one case, which the page's script may mark.
+  void CaseLine(std::vector<double> x, std::vector<double> y, const std::string& style, std::uint64_t case_index);
+  /// Says that positions along x, and along y if that is not empty, are a metric of the cases.
+  void ShowsCases(const std::string& x_metric, const std::string& y_metric = "");
   /// Dots.
   void Points(std::vector<double> x, std::vector<double> y, const std::string& style,
               const std::string& legend);
@@ -31,8 +36,9 @@ class SvgChart {
             const std::string& style, const std::string& legend);
   /// counts[i] between edges[i] and edges[i + 1], from zero up.
   void Bars(std::vector<double> edges, std::vector<double> counts, const std::string& legend);
-  /// Dashed lines that belong to a requirement; the axes grow to show them.
-  void VerticalLimit(double x, const std::string& legend);
+  /// Dashed lines that belong to a requirement. The axes grow to show them, unless they lie so far from the data
+  /// that these could not be told apart: then the legend says where they are.
+  void VerticalLimit(double x, const std::string& legend, const std::string& style = "limit");
   void HorizontalLimit(double y, const std::string& legend);
   /// A labelled event, and a labelled span of time.
   void Mark(double x, const std::string& label);
@@ -50,6 +56,7 @@ class SvgChart {
     std::vector<double> high;
     std::string style;
     std::string legend;
+    std::optional<std::uint64_t> case_index = {};
   };
   struct Span {
     double from;
@@ -61,6 +68,8 @@ class SvgChart {
   ChartAxis y_;
   int width_;
   int height_;
+  std::string x_metric_;
+  std::string y_metric_;
   std::vector<Series> series_;
   std::vector<Span> spans_;
 };

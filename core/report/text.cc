@@ -30,6 +30,12 @@ std::string ReadableText(double value) {
   return text;
 }
 
+std::string FixedText(double value, int decimals) {
+  if (!std::isfinite(value)) return "–";
+  const std::string text = fmt::format("{:.{}f}", value, decimals);
+  return text[0] == '-' && text.find_first_not_of("-0.") == std::string::npos ? text.substr(1) : text;
+}
+
 std::string PercentText(double probability) {
   if (!std::isfinite(probability)) return "–";
   std::string digits = fmt::format("{:.5g}", 100.0 * probability);

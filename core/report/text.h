@@ -10,6 +10,8 @@ namespace dispersa {
 std::string ShortestText(double value);
 /// For people: five significant digits, without an exponent between 1e-4 and 1e9; "–" when not finite.
 std::string ReadableText(double value);
+/// So many decimals; never "-0.000".
+std::string FixedText(double value, int decimals);
 /// A probability in per cent, with five digits or as many more as show that it is not 1: 0.9973 is "99.73 %".
 std::string PercentText(double probability);
 /// One field of a CSV line, quoted as RFC 4180 asks when it holds a comma, a quote or a line break.

@@ -15,13 +15,7 @@ namespace dispersa {
 namespace {
 
 double Deg(double radians) { return radians / kRadPerDeg; }
-std::string Signed(double value) { return fmt::format("{:+.2g}", value); }
-
-// Never "-0.000".
-std::string Fixed(double value, int decimals) {
-  const std::string text = fmt::format("{:.{}f}", value, decimals);
-  return text.find_first_not_of("-0.") == std::string::npos && text[0] == '-' ? text.substr(1) : text;
-}
+std::string Signed(double value) { return fmt::format("{:+.2g}", value + 0.0); }
 
 std::string InjectionTable(const OptimizationResult& result, const std::optional<OrbitErrors>& flown) {
   const Reference& reference = result.reference;
@@ -39,7 +33,7 @@ std::string InjectionTable(const OptimizationResult& result, const std::optional
       cells.push_back(fmt::format("{:.{}f}", published, decimals));
       cells.push_back(Signed(published - desired));
     }
-    cells.push_back(Fixed(reached, decimals));
+    cells.push_back(FixedText(reached, decimals));
     cells.push_back(Signed(error));
     cells.push_back(Signed(halved));
     if (flown) cells.push_back(Signed(arrived));
@@ -57,13 +51,23 @@ std::string InjectionTable(const OptimizationResult& result, const std::optional
   return table.Html();
 }
 
+/// A search that ends on a bound was held back by it: the optimum within it may lie there, or beyond.
+std::string BoundReached(double value, const Bounds& bounds) {
+  const double near = 1e-3 * (bounds.high - bounds.low);
+  if (!(near > 0.0)) return "fixed";
+  return value - bounds.low <= near    ? "at its lower bound"
+         : bounds.high - value <= near ? "at its upper bound"
+                                       : "";
+}
+
 std::string VariableTable(const Reference& reference) {
   const TrajectoryProblem& problem = reference.problem;
   const FlightProgram& program = reference.program;
-  HtmlTable table({{"Variable"}, {"value", true}, {"from", true}, {"to", true}});
+  HtmlTable table({{"Variable"}, {"value", true}, {"from", true}, {"to", true}, {""}});
   const auto row = [&](const char* name, double value, const Bounds& bounds, double unit) {
-    table.Row({name, fmt::format("{:.6f}", value / unit), ReadableText(bounds.low / unit),
-               ReadableText(bounds.high / unit)});
+    const std::string bound = BoundReached(value, bounds);
+    table.Row({name, FixedText(value / unit, 6), ReadableText(bounds.low / unit), ReadableText(bounds.high / unit),
+               bound.empty() ? "" : "<span class=\"badge design\">" + bound + "</span>"});
   };
   row("α<sub>max</sub>, °", program.alpha_max_rad, problem.alpha_max_rad, kRadPerDeg);
   row("t1, begin of the pitch-over, s", program.t1_s, problem.t1_s, 1.0);
@@ -134,11 +138,10 @@ std::string LimitsThatDoNotBind(const Reference& reference) {
 std::string TrajectoryPage(const OptimizationResult& result, const std::optional<OrbitErrors>& flown) {
   const Reference& reference = result.reference;
   const TrajectoryProblem& problem = reference.problem;
-  std::string page = fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
-      "content=\"width=device-width, initial-scale=1\">\n<title>{0} – trajectory – dispersa</title>\n"
-      "<style>{1}</style>\n</head>\n<body>\n<h1>{0}: trajectory to {2} km</h1>\n",
-      HtmlText(reference.name), StyleSheet(), ReadableText(problem.target_altitude_m * 1e-3));
+  const std::string title = fmt::format("{}: trajectory to {} km", reference.name,
+                                        ReadableText(problem.target_altitude_m * 1e-3));
+  std::string page = PageHead(title, fmt::format("{} · engine {}", title, reference.engine)) + "<h1>" +
+                     HtmlText(title) + "</h1>\n";
   page += fmt::format(
       "<p>Genetic algorithm on objective (8) with {} individuals, selection of the least peak of q·α along the "
       "programs that reach the target, refinement by least squares. Seed {}, {} ascents flown, engine {}.</p>\n",
@@ -149,6 +152,8 @@ std::string TrajectoryPage(const OptimizationResult& result, const std::optional
                               "under the campaign’s autopilot, reaction control included."
                             : "");
   page += "<h2>Flight program</h2>\n" + VariableTable(reference);
+  page += "<p class=\"soft\">A variable at a bound was held back by it: what lies beyond was not searched, and may be "
+          "better.</p>\n";
   page += "<h2>Constraints</h2>\n" + ConstraintTable(reference);
   if (const std::string text = LimitsThatDoNotBind(reference); !text.empty())
     page += "<p>" + HtmlText(text) + ".</p>\n";

@@ -3,21 +3,39 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "core/report/text.h"
 #include "services/cli/progress.h"
 
 namespace dispersa {
 
+void AddReflownOptions(CLI::App& command, ReflownFlights& flights) {
+  const std::map<std::string, std::uint64_t> words = {{"all", std::numeric_limits<std::uint64_t>::max()}};
+  command.add_flag("--no-histories", flights.none,
+                   "fly no case again for the report: for gates that read verdicts only");
+  command
+      .add_option(
+          "--envelope", flights.envelope,
+          "so many first cases, or all, are flown again for the percentiles over time; the extremes of every "
+          "metric besides")
+      ->transform(CLI::Transformer(words))
+      ->check(CLI::PositiveNumber)
+      ->default_str(std::to_string(flights.envelope));
+}
+
 CampaignSummary MakeReports(const ResultFolder& folder, const Campaign& campaign, int threads, bool quiet,
-                            bool histories, const std::function<void()>& check) {
+                            const ReflownFlights& reflown, const std::function<void()>& check) {
   std::string phase;
   std::unique_ptr<Progress> progress;
   ReportOptions options;
   options.threads = std::max(threads, 1);
-  options.histories = histories;
+  options.histories = !reflown.none;
+  options.history_cases = reflown.envelope;
   options.progress = [&](const std::string& what, std::uint64_t done, std::uint64_t total) {
     if (check) check();
     if (!progress || what != phase) {
@@ -46,7 +64,9 @@ void PrintSummary(const CampaignSummary& summary, const std::filesystem::path& d
   fmt::print("\n");
   for (const std::string& warning : Warnings(summary)) fmt::print("warning: {}\n", warning);
   for (const RequirementSummary& requirement : summary.requirements) {
-    fmt::print("{}: {}: {}\n", requirement.verdict, RequirementWords(requirement), requirement.sentence);
+    fmt::print("{}: {}{}: {}\n", requirement.verdict, RequirementWords(requirement),
+               requirement.bound ? fmt::format(", bound {}", ReadableText(*requirement.bound)) : std::string(),
+               requirement.sentence);
   }
   fmt::print("report: {}\nresult: {}\n", (directory / "report.html").string(), directory.string());
 }

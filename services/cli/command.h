@@ -17,7 +17,7 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 
-#include "services/cli/exit_code.h"
+#include "services/transport/exit_code.h"
 
 namespace dispersa {
 
@@ -43,10 +43,13 @@ void AddMarginsCommand(CLI::App& app, Invocation& invocation);
 void AddTuneCommand(CLI::App& app, Invocation& invocation);
 void AddExportCommand(CLI::App& app, Invocation& invocation);
 void AddCompareCommand(CLI::App& app, Invocation& invocation);
+void AddSearchCommand(CLI::App& app, Invocation& invocation);
 void AddPaperCommand(CLI::App& app, Invocation& invocation);
-// Those that speak to a coordinator; list, status, watch and cancel together.
+// Those that speak to a coordinator; list, status and cancel together.
 void AddLaunchCommand(CLI::App& app, Invocation& invocation);
 void AddStatusCommands(CLI::App& app, Invocation& invocation);
+void AddWatchCommand(CLI::App& app, Invocation& invocation);
 void AddFetchCommand(CLI::App& app, Invocation& invocation);
+void AddKeysCommand(CLI::App& app, Invocation& invocation);
 
 }  // namespace dispersa

@@ -2,8 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <numeric>
 #include <string>
 #include <vector>
@@ -12,10 +13,10 @@
 #include "core/flight/flight_inputs.h"
 #include "core/report/case_columns.h"
 #include "core/report/comparison.h"
-#include "core/report/metric_catalogue.h"
+#include "core/report/output_file.h"
 #include "core/report/text.h"
+#include "services/cli/campaign_differences.h"
 #include "services/cli/command.h"
-#include "services/cli/flight_json.h"
 #include "services/cli/stored_campaign.h"
 
 namespace dispersa {
@@ -25,6 +26,7 @@ struct CompareOptions {
   std::string a;
   std::string b;
   std::vector<std::string> metrics;
+  std::string out;
 };
 
 CaseColumns AllColumns(const ResultFolder& folder) {
@@ -39,58 +41,50 @@ void CheckMetrics(const std::vector<std::string>& metrics) {
     if (std::find(names.begin(), names.end(), metric) == names.end())
       throw InputError("--metric: '" + metric + "' is not a metric",
                        "a name in cases.csv without its prefix 'metric_'");
-    if (DescribeMetric(metric).worse != Worse::kLarger)
-      throw InputError("--metric: '" + metric + "' cannot be compared", "a metric of which less is better");
   }
 }
 
-nlohmann::ordered_json IntervalJson(const Interval& interval) {
-  return {JsonNumber(interval.lower), JsonNumber(interval.upper)};
+std::vector<CampaignChange> ChangesOf(const Campaign& a, const Campaign& b) {
+  std::vector<CampaignChange> changes;
+  for (const ValueDifference& each : DifferencesOf(a.canonical_yaml, b.canonical_yaml))
+    changes.push_back({each.path, each.a, each.b});
+  return changes;
 }
 
-void PrintJson(const Comparison& comparison, const std::string& a, const std::string& b) {
-  auto metrics = nlohmann::ordered_json::array();
+std::string IntervalText(const Interval& interval) {
+  const auto text = [](double value, const char* none) {
+    return std::isfinite(value) ? fmt::format("{:.4g}", value) : none;
+  };
+  if (!std::isfinite(interval.lower) && !std::isfinite(interval.upper)) return "–";
+  return text(interval.lower, "-inf") + " to " + text(interval.upper, "inf");
+}
+
+std::string NumberText(double value) { return std::isfinite(value) ? fmt::format("{:.4g}", value) : "–"; }
+
+void PrintText(const Comparison& comparison) {
+  for (const auto& [letter, side] : {std::pair{"A", &comparison.a}, std::pair{"B", &comparison.b}})
+    fmt::print("{}: {} ({}), {} of {} flights completed\n", letter, side->name, side->autopilot,
+               side->completed, side->flown);
+  fmt::print("{}\n{}\n\n", comparison.pairing.sentence, comparison.sentence);
+  fmt::print("{:<37} {:>10} {:>10} {:>11} {:>26} {:>11} {:>11}  {}\n", "metric", "median A", "median B", "B - A",
+             "95 % interval", "p99 B - A", "p, Holm", "B is");
   for (const MetricComparison& metric : comparison.metrics) {
-    const PairedDifference& d = metric.difference;
-    auto better = nlohmann::ordered_json::array();
-    for (const auto& c : metric.better)
-      better.push_back({{"case_index", c.case_index}, {"a", JsonNumber(c.a)}, {"b", JsonNumber(c.b)}});
-    metrics.push_back({{"metric", metric.metric},
-                       {"a_better", d.worse},
-                       {"b_better", d.better},
-                       {"equal", d.equal},
-                       {"lost_a", d.lost_a},
-                       {"lost_b", d.lost_b},
-                       {"median_difference", JsonNumber(d.median_difference)},
-                       {"difference_interval", IntervalJson(d.difference_interval)},
-                       {"median_ratio", JsonNumber(d.median_ratio)},
-                       {"ratio_interval", IntervalJson(d.ratio_interval)},
-                       {"sign_test_p", JsonNumber(d.sign_test_p)},
-                       {"b_better_cases", std::move(better)}});
+    const auto tail =
+        std::find_if(metric.tails.begin(), metric.tails.end(), [&](const PercentileComparison& each) {
+          return each.name == (metric.info.worse == Worse::kSmaller ? "p01" : "p99");
+        });
+    fmt::print("{:<37} {:>10} {:>10} {:>11} {:>26} {:>11} {:>11}  {}\n", metric.metric, NumberText(metric.median_a),
+               NumberText(metric.median_b), NumberText(metric.difference), IntervalText(metric.interval),
+               tail == metric.tails.end() ? "–" : NumberText(tail->difference), NumberText(metric.p_holm),
+               metric.finding);
   }
-  const nlohmann::ordered_json report = {{"schema", "dispersa/compare/1"},
-                                         {"a", a},
-                                         {"b", b},
-                                         {"confidence", kComparisonConfidence},
-                                         {"pairs", comparison.pairs},
-                                         {"unpaired", comparison.unpaired},
-                                         {"metrics", std::move(metrics)}};
-  fmt::print("{}\n", report.dump(2));
-}
-
-void PrintText(const Comparison& comparison, const std::string& a, const std::string& b) {
-  fmt::print("a: {}\nb: {}\npairs: {}, cases without a pair: {}; intervals of {}\n\n", a, b, comparison.pairs,
-             comparison.unpaired, PercentText(kComparisonConfidence));
-  fmt::print("{:<32}{:>12}{:>26}{:>9}{:>20}{:>10}{:>10}\n", "metric", "b - a", "interval", "b / a",
-             "interval", "a better", "b better");
-  for (const MetricComparison& metric : comparison.metrics) {
-    const PairedDifference& d = metric.difference;
-    const auto interval = [](const Interval& i, const char* format) {
-      return fmt::format(fmt::runtime(format), i.lower, i.upper);
-    };
-    fmt::print("{:<32}{:>12.4g}{:>26}{:>9.3g}{:>20}{:>10}{:>10}\n", metric.metric, d.median_difference,
-               interval(d.difference_interval, "{:.4g} to {:.4g}"), d.median_ratio,
-               interval(d.ratio_interval, "{:.3g} to {:.3g}"), d.worse, d.better);
+  for (const RequirementComparison& requirement : comparison.requirements) {
+    fmt::print("\n{}: fails in {} of {} in A, {} of {} in B; {} {}\n", requirement.words,
+               requirement.failures_a, requirement.n_a, requirement.failures_b, requirement.n_b,
+               comparison.pairing.paired ? fmt::format("only in A {}, only in B {}; McNemar's p",
+                                                       requirement.only_a_fails, requirement.only_b_fails)
+                                         : "Fisher's p",
+               NumberText(requirement.p));
   }
 }
 
@@ -98,16 +92,29 @@ ExitCode CompareFolders(const CompareOptions& options, const GlobalOptions& glob
   CheckMetrics(options.metrics);
   const StoredCampaign a = OpenStored(options.a);
   const StoredCampaign b = OpenStored(options.b);
-  const Comparison comparison = Compare(AllColumns(a.folder), AllColumns(b.folder),
-                                        options.metrics.empty() ? ComparedMetrics() : options.metrics);
-  if (comparison.pairs == 0)
-    throw InputError("no case of " + options.a + " has the draws of the same case of " + options.b);
-  const std::string name_a = a.campaign.name + " (" + a.campaign.autopilot.name + ")";
-  const std::string name_b = b.campaign.name + " (" + b.campaign.autopilot.name + ")";
+  const CaseColumns cases_a = AllColumns(a.folder);
+  const CaseColumns cases_b = AllColumns(b.folder);
+  for (const auto& [name, cases] : {std::pair{&options.a, &cases_a}, std::pair{&options.b, &cases_b}})
+    if (cases->rows() == 0) throw InputError(*name + ": no case has a result");
+  const Comparison comparison = Compare({options.a, a.folder.Provenance("engine"), a.campaign, cases_a},
+                                        {options.b, b.folder.Provenance("engine"), b.campaign, cases_b},
+                                        options.metrics, ChangesOf(a.campaign, b.campaign));
+  const std::string json = ComparisonJson(comparison);
+  if (!options.out.empty()) {
+    const std::filesystem::path out = options.out;
+    std::error_code error;
+    std::filesystem::create_directories(out, error);
+    if (error)
+      throw InputError("--out: " + options.out + ": " + error.message(), "a folder that can be written");
+    WriteFile(out / "compare.json", json);
+    WriteFile(out / "compare.html", ComparisonPage(comparison, cases_a, cases_b));
+  }
   if (global.json) {
-    PrintJson(comparison, name_a, name_b);
+    fmt::print("{}", json);
   } else {
-    PrintText(comparison, name_a, name_b);
+    PrintText(comparison);
+    if (!options.out.empty())
+      fmt::print("\ncomparison: {}\n", (std::filesystem::path(options.out) / "compare.html").string());
   }
   return kExitDone;
 }
@@ -120,9 +127,11 @@ void AddCompareCommand(CLI::App& app, Invocation& invocation) {
       app.add_subcommand("compare", "compare two result folders, paired by case where the draws match");
   command->add_option("a", options->a, "result folder")->required();
   command->add_option("b", options->b, "result folder")->required();
-  command->add_option("--metric", options->metrics,
-                      "metric to compare, instead of the usual ones; may be repeated");
-  command->footer("Example: dispersa compare results/controllers-1a2b3c4d results/controllers_pd-5e6f7a8b");
+  command->add_option("--out", options->out, "folder for compare.html and compare.json");
+  command->add_option("--metric", options->metrics, "metric to compare, instead of all; may be repeated");
+  command->footer(
+      "Example: dispersa compare results/controllers-1a2b3c4d results/controllers_pd-5e6f7a8b --out "
+      "comparison");
   command->callback([options, &invocation] {
     invocation.command = [options](const GlobalOptions& global) { return CompareFolders(*options, global); };
   });

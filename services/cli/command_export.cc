@@ -3,17 +3,23 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "core/math/constants.h"
 #include "core/report/cases_csv.h"
 #include "core/report/export.h"
+#include "core/report/footprints.h"
 #include "core/report/output_file.h"
+#include "core/report/text.h"
 #include "services/cli/command.h"
+#include "services/cli/progress.h"
 #include "services/cli/stored_campaign.h"
+#include "services/coordinator/threads.h"
 
 namespace dispersa {
 namespace {
 
-enum class ExportFormat { kCsv, kJsonLines, kJUnit };
+enum class ExportFormat { kCsv, kJsonLines, kHdf5, kJUnit, kGeoJson, kKml };
 
 struct ExportOptions {
   std::string directory;
@@ -21,7 +27,29 @@ struct ExportOptions {
   std::string out;
 };
 
-ExitCode Export(const ExportOptions& options) {
+/// Flies the cases again: their rows do not say where stages separated.
+void ExportImpacts(const StoredCampaign& stored, const ExportOptions& options, const GlobalOptions& global) {
+  Progress progress("flights", global.quiet);
+  const std::vector<Footprint> footprints =
+      FootprintsOf(stored.folder, stored.campaign, UsableCores(),
+                   [&](std::size_t done, std::size_t total) { progress.Show(done, total); });
+  WriteFile(options.out, options.format == ExportFormat::kKml ? Kml(stored.campaign, footprints)
+                                                              : GeoJson(stored.campaign, footprints));
+  for (const Footprint& footprint : footprints) {
+    fmt::print("{}: {} down{}", FootprintTitle(footprint), footprint.points.size(),
+               footprint.aloft > 0 ? fmt::format(", {} aloft", footprint.aloft) : "");
+    for (std::size_t i = 0; i < footprint.containment.size(); ++i) {
+      if (footprint.containment[i].stated != 0.95) continue;
+      fmt::print(", mean {:.4f}° N {:.4f}° E, 95 % ellipse {:.2f} km by {:.2f} km holds {}",
+                 footprint.mean.latitude_rad * kDegPerRad, footprint.mean.longitude_rad * kDegPerRad,
+                 footprint.ellipses[i].semi_major * 1e-3, footprint.ellipses[i].semi_minor * 1e-3,
+                 PercentText(footprint.containment[i].empirical));
+    }
+    fmt::print("\n");
+  }
+}
+
+ExitCode Export(const ExportOptions& options, const GlobalOptions& global) {
   const StoredCampaign stored = OpenStored(options.directory);
   switch (options.format) {
     case ExportFormat::kCsv:
@@ -29,6 +57,13 @@ ExitCode Export(const ExportOptions& options) {
       break;
     case ExportFormat::kJsonLines:
       ExportJsonLines(stored.folder, options.out);
+      break;
+    case ExportFormat::kHdf5:
+      ExportHdf5(stored.folder, options.out);
+      break;
+    case ExportFormat::kGeoJson:
+    case ExportFormat::kKml:
+      ExportImpacts(stored, options, global);
       break;
     case ExportFormat::kJUnit:
       WriteFile(options.out, JUnitXml(BuildSummary(stored.folder, stored.campaign)));
@@ -45,15 +80,22 @@ void AddExportCommand(CLI::App& app, Invocation& invocation) {
   CLI::App* command = app.add_subcommand("export", "write the results of a folder for other tools");
   command->add_option("directory", options->directory, "result folder")->required();
   command
-      ->add_option("--format", options->format,
-                   "csv or jsonl: one line a case; junit: a test case a requirement")
+      ->add_option(
+          "--format", options->format,
+          "csv or jsonl: one line a case; hdf5: one dataset a column; junit: a test case a requirement; "
+          "geojson or kml: impact points of spent stages and lost flights, flown again, and their footprints")
       ->required()
-      ->transform(CLI::CheckedTransformer(std::map<std::string, ExportFormat>{
-          {"csv", ExportFormat::kCsv}, {"jsonl", ExportFormat::kJsonLines}, {"junit", ExportFormat::kJUnit}}));
+      ->transform(
+          CLI::CheckedTransformer(std::map<std::string, ExportFormat>{{"csv", ExportFormat::kCsv},
+                                                                      {"jsonl", ExportFormat::kJsonLines},
+                                                                      {"hdf5", ExportFormat::kHdf5},
+                                                                      {"junit", ExportFormat::kJUnit},
+                                                                      {"geojson", ExportFormat::kGeoJson},
+                                                                      {"kml", ExportFormat::kKml}}));
   command->add_option("--out", options->out, "file to write")->required();
   command->footer("Example: dispersa export results/table3-1a2b3c4d --format junit --out requirements.xml");
   command->callback([options, &invocation] {
-    invocation.command = [options](const GlobalOptions&) { return Export(*options); };
+    invocation.command = [options](const GlobalOptions& global) { return Export(*options, global); };
   });
 }
 

@@ -1,7 +1,8 @@
 // dispersa plan: what every case would fly with, without flying.
 #include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
-#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -12,6 +13,7 @@
 #include "core/report/text.h"
 #include "services/cli/command.h"
 #include "services/cli/flight_json.h"
+#include "services/cli/plan_text.h"
 #include "services/cli/warn.h"
 
 namespace dispersa {
@@ -23,15 +25,12 @@ struct PlanOptions {
   bool csv = false;
 };
 
-// Positions of the inputs that the campaign disperses, ascending.
-std::vector<std::size_t> DispersedColumns(const Campaign& campaign) {
-  std::vector<std::size_t> columns;
-  for (const Dispersion& dispersion : campaign.dispersions) {
-    for (const int input : dispersion.inputs) columns.push_back(static_cast<std::size_t>(input));
-  }
-  std::sort(columns.begin(), columns.end());
-  columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
-  return columns;
+constexpr std::uint64_t kShownOnATerminal = 10;
+constexpr std::size_t kUsualWidth = 100;
+
+std::size_t TerminalWidth() {
+  winsize size{};
+  return ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : kUsualWidth;
 }
 
 void PrintCsv(const Campaign& campaign, const CaseDesign& design) {
@@ -57,28 +56,6 @@ void PrintJson(const Campaign& campaign, const CaseDesign& design) {
   fmt::print("{}\n", plan.dump(2));
 }
 
-void PrintTable(const Campaign& campaign, const CaseDesign& design) {
-  const std::vector<std::size_t> columns = DispersedColumns(campaign);
-  fmt::print("{}: {} cases, seed {}, {} dispersed inputs\n", campaign.name, campaign.sampling.cases,
-             campaign.sampling.seed, columns.size());
-  std::vector<std::size_t> widths;
-  std::string line = fmt::format("{:>8}", "case");
-  for (const std::size_t column : columns) {
-    const std::string& name = InputColumns()[column].name;
-    widths.push_back(std::max<std::size_t>(name.size(), 10));
-    line += fmt::format("  {:>{}}", name, widths.back());
-  }
-  fmt::print("{}\n", line);
-  for (std::uint64_t index = 0; index < campaign.sampling.cases; ++index) {
-    const std::vector<double> values = InputValues(design.Draw(index));
-    line = fmt::format("{:>8}", index);
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-      line += fmt::format("  {:>{}.6g}", values[columns[i]], widths[i]);
-    }
-    fmt::print("{}\n", line);
-  }
-}
-
 ExitCode Plan(const PlanOptions& options, const GlobalOptions& global) {
   const Campaign campaign = LoadAndWarn(options.campaign, options.overrides);
   const CaseDesign design(campaign);
@@ -87,7 +64,9 @@ ExitCode Plan(const PlanOptions& options, const GlobalOptions& global) {
   } else if (options.csv) {
     PrintCsv(campaign, design);
   } else {
-    PrintTable(campaign, design);
+    const bool terminal = isatty(STDOUT_FILENO) != 0;
+    fmt::print("{}",
+               PlanText(campaign, terminal ? kShownOnATerminal : campaign.sampling.cases, TerminalWidth()));
   }
   return kExitDone;
 }
@@ -102,7 +81,11 @@ void AddPlanCommand(CLI::App& app, Invocation& invocation) {
       ->check(CLI::PositiveNumber);
   command->add_option("--seed", options->overrides.seed, "seed, instead of the file's");
   command->add_flag("--csv", options->csv, "all inputs, in the columns of cases.csv");
-  command->footer("Example: dispersa plan campaigns/table3.yaml --cases 20 --csv");
+  command->footer(
+      "Prints the dispersed inputs of every case (on a terminal of the first ten), then of each input what "
+      "was\n"
+      "drawn and what was declared.\n"
+      "Example: dispersa plan campaigns/table3.yaml --cases 20 --csv");
   command->callback([options, &invocation] {
     invocation.command = [options](const GlobalOptions& global) { return Plan(*options, global); };
   });

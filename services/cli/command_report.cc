@@ -1,10 +1,16 @@
 // dispersa report: the reports of a result folder, made again from what is stored.
+#include <fmt/format.h>
+
 #include <memory>
 #include <string>
 
+#include "core/campaign/input_error.h"
+#include "core/report/output_file.h"
 #include "services/cli/campaign_output.h"
 #include "services/cli/command.h"
+#include "services/cli/render_template.h"
 #include "services/cli/stored_campaign.h"
+#include "services/coordinator/campaign_book.h"
 #include "services/coordinator/threads.h"
 
 namespace dispersa {
@@ -12,16 +18,33 @@ namespace {
 
 struct ReportCommand {
   std::string directory;
-  bool no_histories = false;
+  ReflownFlights reflown;
+  std::string template_file;
+  std::string out;
 };
 
+/// Nothing is flown and nothing in the folder changes: the template reads summary.json as it stands.
+ExitCode Fill(const ReportCommand& options) {
+  const StoredCampaign stored = OpenStored(options.directory);
+  const std::string text = RenderTemplate(stored.folder.directory() / "summary.json", options.template_file);
+  if (options.out.empty()) {
+    fmt::print("{}", text);
+  } else {
+    WriteFile(options.out, text);
+  }
+  return CampaignExitCode(BuildSummary(stored.folder, stored.campaign).verdict, 0);
+}
+
 ExitCode Report(const ReportCommand& options, const GlobalOptions& global) {
+  if (!options.template_file.empty()) return Fill(options);
+  if (!options.out.empty())
+    throw InputError("--out: the reports stand in the result folder", "--out with --template");
   StoredCampaign stored = OpenStored(options.directory);
   stored.folder.Lock();
   const CampaignSummary summary =
-      MakeReports(stored.folder, stored.campaign, UsableCores(), global.quiet, !options.no_histories);
+      MakeReports(stored.folder, stored.campaign, UsableCores(), global.quiet, options.reflown);
   PrintSummary(summary, stored.folder.directory(), global.json);
-  return static_cast<ExitCode>(VerdictExitCode(summary.verdict));
+  return CampaignExitCode(summary.verdict, 0);
 }
 
 }  // namespace
@@ -30,8 +53,14 @@ void AddReportCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<ReportCommand>();
   CLI::App* command = app.add_subcommand("report", "make the reports of a result folder again");
   command->add_option("directory", options->directory, "result folder")->required();
-  command->add_flag("--no-histories", options->no_histories, "fly no case again for the report");
-  command->footer("Example: dispersa report results/table3-1a2b3c4d");
+  AddReflownOptions(*command, options->reflown);
+  command->add_option("--template", options->template_file,
+                      "Jinja template to fill from summary.json, instead of making the reports");
+  command->add_option("--out", options->out, "file for what the template gives; default: standard output");
+  command->footer(
+      "Examples: dispersa report results/table3-1a2b3c4d\n"
+      "          dispersa report results/table3-1a2b3c4d --template campaigns/templates/report.md --out "
+      "report.md");
   command->callback([options, &invocation] {
     invocation.command = [options](const GlobalOptions& global) { return Report(*options, global); };
   });

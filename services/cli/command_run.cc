@@ -23,6 +23,7 @@
 
 #include "core/campaign/campaign_flights.h"
 #include "core/flight/engine_version.h"
+#include "core/report/shell_word.h"
 #include "services/cli/campaign_output.h"
 #include "services/cli/command.h"
 #include "services/cli/execution_file.h"
@@ -50,24 +51,13 @@ struct RunOptions {
   CampaignRequest request;
   int workers = -1;  ///< -1: the usable cores
   int threads = 0;   ///< without workers; 0: the usable cores
-  bool no_histories = false;
+  ReflownFlights reflown;
 };
 
 struct Interrupted {};
 
 double SecondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-std::string ShellWord(const std::string& text) {
-  if (text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./=:,+@%") ==
-          std::string::npos &&
-      !text.empty()) {
-    return text;
-  }
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? "'\\''" : std::string(1, c);
-  return quoted + "'";
 }
 
 std::string ResumeCommand(const RunOptions& options, const std::filesystem::path& directory) {
@@ -304,15 +294,14 @@ ExitCode FlyAndReport(const RunOptions& options, const GlobalOptions& global, Op
   for (const BlamedCase& blamed : book.ledger().Quarantined()) {
     spdlog::warn("case {} is quarantined: {}", blamed.case_index, fmt::join(blamed.reasons, "; "));
   }
-  const CampaignSummary summary = MakeReports(book.folder(), book.campaign(), workers, global.quiet,
-                                              !options.no_histories, [] {
-                                                if (StopRequested()) throw Interrupted();
-                                              });
+  const CampaignSummary summary =
+      MakeReports(book.folder(), book.campaign(), workers, global.quiet, options.reflown, [] {
+        if (StopRequested()) throw Interrupted();
+      });
   execution.ended_utc = UtcNow();
   execution.Write();
   PrintSummary(summary, directory, global.json);
-  const int end = CampaignExitCode(summary.verdict, book.ledger().Progress().conflicts);
-  return WorseOf(code, static_cast<ExitCode>(end));
+  return WorseOf(code, CampaignExitCode(summary.verdict, book.ledger().Progress().conflicts));
 }
 
 ExitCode Run(const RunOptions& options, const GlobalOptions& global) {
@@ -363,8 +352,7 @@ void AddRunCommand(CLI::App& app, Invocation& invocation) {
   command->add_option("--cases", request.overrides.cases, "number of cases, instead of the file's")
       ->check(CLI::PositiveNumber);
   command->add_option("--seed", request.overrides.seed, "seed, instead of the file's");
-  command->add_flag("--no-histories", options->no_histories,
-                    "fly no case again for the report: for gates that read verdicts only");
+  AddReflownOptions(*command, options->reflown);
   command->add_flag("--resume", request.resume, "go on in a folder of the same flight id");
   command->footer(
       "Example: dispersa run campaigns/table3.yaml --cases 200 --out results/trial\n"

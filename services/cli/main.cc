@@ -32,10 +32,13 @@ void AddCommands(CLI::App& app, Invocation& invocation) {
   AddTuneCommand(app, invocation);
   AddExportCommand(app, invocation);
   AddCompareCommand(app, invocation);
+  AddSearchCommand(app, invocation);
   AddPaperCommand(app, invocation);
   AddLaunchCommand(app, invocation);
   AddStatusCommands(app, invocation);
+  AddWatchCommand(app, invocation);
   AddFetchCommand(app, invocation);
+  AddKeysCommand(app, invocation);
 }
 
 ExitCode Say(const std::exception& error, ExitCode code) {

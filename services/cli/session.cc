@@ -2,27 +2,24 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <utility>
 
 namespace dispersa {
-namespace {
-
-constexpr std::chrono::seconds kPatience(15);
-
-}  // namespace
 
 Session::Session(const SessionOptions& options) {
   try {
     peer_ = ParsePeer(options.peer, options.domain);
-    link_ = std::make_unique<ClientLink>(NetworkOptions{options.domain, options.address}, peer_);
+    const NetworkOptions network = Admit({options.domain, options.address}, options.admission,
+                                         {Role::kClient, Role::kCoordinator}, peer_.host);
+    link_ = std::make_unique<ClientLink>(network, peer_);
   } catch (const NetworkError& error) {
     throw Failure{kExitBadInput, error.what()};
   }
 }
 
-std::optional<Reply> Session::Try(const std::string& method, const Json& arguments, const std::string& data) {
-  auto reply = link_->Call(method, arguments.dump(), data, kPatience);
+std::optional<Reply> Session::Try(const std::string& method, const Json& arguments, const std::string& data,
+                                  std::chrono::milliseconds patience) {
+  auto reply = link_->Call(method, arguments.dump(), data, patience);
   if (reply && reply->code != 0) throw Failure{static_cast<ExitCode>(reply->code), reply->text};
   return reply;
 }
@@ -32,9 +29,8 @@ Reply Session::Ask(const std::string& method, const Json& arguments, const std::
   throw Failure{kExitIncomplete, Silence()};
 }
 
-std::string Session::Silence() const {
-  return fmt::format("no coordinator has answered at {}:{} for {} s", peer_.host, peer_.port,
-                     kPatience.count());
+std::string Session::Silence(std::chrono::seconds silent) const {
+  return fmt::format("no coordinator has answered at {}:{} for {} s", peer_.host, peer_.port, silent.count());
 }
 
 void BindSession(CLI::App* command, Invocation& invocation,
@@ -46,6 +42,8 @@ void BindSession(CLI::App* command, Invocation& invocation,
   command->add_option("--peer", options->peer, "HOST[:PORT] of the coordinator; default: this machine");
   command->add_option("--address", options->address, "IPv4 address of the only network interface to use")
       ->check(CLI::ValidIPV4);
+  command->add_option("--keys", options->admission.keys, kKeysHelp);
+  command->add_flag("--insecure", options->admission.insecure, kInsecureHelp);
   command->callback([options, &invocation, run = std::move(run)] {
     invocation.command = [options, run](const GlobalOptions& global) {
       try {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -9,6 +10,7 @@
 #include <string>
 
 #include "services/cli/command.h"
+#include "services/transport/admission.h"
 #include "services/transport/client_link.h"
 
 namespace dispersa {
@@ -18,6 +20,7 @@ struct SessionOptions {
   int domain = 0;
   std::string peer = "127.0.0.1";
   std::string address;
+  Admission admission;
 };
 
 /// What ends a command.
@@ -34,14 +37,17 @@ class Session {
 
   explicit Session(const SessionOptions& options);
 
-  /// Asks for 15 s. None: nobody has answered.
-  std::optional<Reply> Try(const std::string& method, const Json& arguments, const std::string& data = "");
+  /// Asks for so long. None: nobody has answered.
+  std::optional<Reply> Try(const std::string& method, const Json& arguments, const std::string& data = "",
+                           std::chrono::milliseconds patience = kPatience);
   /// The same; nobody is a Failure.
   Reply Ask(const std::string& method, const Json& arguments, const std::string& data = "");
   /// "no coordinator has answered at HOST:PORT for 15 s"
-  std::string Silence() const;
+  std::string Silence(std::chrono::seconds silent = kPatience) const;
 
  private:
+  static constexpr std::chrono::seconds kPatience{15};
+
   Peer peer_;
   std::unique_ptr<ClientLink> link_;
 };

@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <limits>
 #include <utility>
 
 #include "core/flight/engine_version.h"
@@ -12,7 +13,8 @@ namespace dispersa {
 namespace {
 
 constexpr double kFlushPeriod_s = 0.5;
-constexpr std::size_t kFlushCount = 1000;
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kFlushCount = 4000;  // 4 MB; at 20,000 results/s five transactions a second
 
 /// With what the folder holds already, so that the target is where an interrupted run left it.
 std::optional<StoppingRule> RuleOf(const Campaign& campaign, const ResultStore& store) {
@@ -25,19 +27,23 @@ std::optional<StoppingRule> RuleOf(const Campaign& campaign, const ResultStore& 
   return rule;
 }
 
-RunningTally TallyOf(const Campaign& campaign, const ResultStore& store) {
-  RunningTally tally(campaign);
-  if (const auto* folder = dynamic_cast<const ResultFolder*>(&store)) {
-    folder->ForEach([&](const CaseResult& result) { tally.Add(result); });
-  }
-  return tally;
-}
-
 }  // namespace
 
-int CampaignExitCode(CampaignVerdict verdict, std::uint64_t conflicts) {
-  constexpr int kInternalError = 1;
-  return conflicts > 0 ? kInternalError : VerdictExitCode(verdict);
+ExitCode CampaignExitCode(CampaignVerdict verdict, std::uint64_t conflicts) {
+  if (conflicts > 0) return kExitInternalError;
+  switch (verdict) {
+    case CampaignVerdict::kPass:
+      return kExitDone;
+    case CampaignVerdict::kInconclusive:
+    case CampaignVerdict::kStudy:
+      return kExitInconclusive;
+    case CampaignVerdict::kFail:
+    case CampaignVerdict::kStudyViolated:
+      return kExitRequirementFailed;
+    case CampaignVerdict::kIncomplete:
+      return kExitIncomplete;
+  }
+  return kExitInternalError;
 }
 
 CampaignBook::CampaignBook(const Campaign& campaign, ResultFolder folder, const LedgerOptions& options)
@@ -48,7 +54,6 @@ CampaignBook::CampaignBook(const Campaign& campaign, std::unique_ptr<ResultStore
     : campaign_(campaign),
       store_(std::move(store)),
       rule_(RuleOf(campaign, *store_)),
-      tally_(TallyOf(campaign, *store_)),
       ledger_(EngineVersion(), rule_ ? rule_->target() : campaign.sampling.cases, options) {
   const std::uint64_t cases = ledger_.Progress().total;
   for (const auto& [case_index, fingerprint] : store_->Fingerprints()) {
@@ -56,8 +61,50 @@ CampaignBook::CampaignBook(const Campaign& campaign, std::unique_ptr<ResultStore
   }
 }
 
+void CampaignBook::KeepTally() {
+  tally_.emplace(campaign_);
+  if (const auto* stored = dynamic_cast<const ResultFolder*>(store_.get()))
+    stored->ForEach([&](const CaseResult& result) { tally_->Add(result); });
+}
+
+void CampaignBook::KeepAudit(const AuditOptions& options) {
+  if (options.share <= 0.0 || audit_) return;
+  audit_.emplace(options);
+  store_->ForEachUnaudited([&](const Claim& claim) { audit_->Consider(claim); });
+}
+
+bool CampaignBook::Settle(const Claim& claim, const Digest& truth) {
+  audit_->Settle();
+  if (claim.is_dispute) ledger_.SettleConflict();
+  if (claim.fingerprint != truth) return false;
+  if (!claim.is_dispute) audits_.push_back(claim);
+  ++confirmed_;
+  return true;
+}
+
+void CampaignBook::Disown(const std::string& worker) {
+  Flush();
+  if (audit_) audit_->Drop(worker);
+  const std::vector<std::uint64_t> cases = store_->Disown(worker);
+  if (cases.empty()) return;
+  spdlog::warn("campaign {}: {} results of worker {} are removed; their cases are flown again",
+               campaign_.name, cases.size(), worker);
+  ledger_.Reopen(cases);
+  if (rule_) rule_ = RuleOf(campaign_, *store_);
+  if (tally_) KeepTally();
+}
+
+// Two results, of which one at least is wrong: both are flown again.
+void CampaignBook::Dispute(const std::string& worker, const CaseResult& result) {
+  Flush();
+  const auto other = store_->WorkerOf(result.case_index);
+  if (!other) return;  // nobody to expel: it stays a conflict
+  audit_->Add({worker, result.case_index, Fingerprint(result), true});
+  audit_->Add({*other, result.case_index, ledger_.FingerprintOf(result.case_index), false});
+}
+
 bool CampaignBook::Complete() {
-  if (!ledger_.Complete()) return false;
+  if (!ledger_.Complete() || (audit_ && !audit_->IsSettled())) return false;
   std::vector<std::uint64_t> given_up;
   for (const BlamedCase& blamed : ledger_.Quarantined()) given_up.push_back(blamed.case_index);
   if (!rule_ || !rule_->Advance(given_up)) return true;
@@ -80,18 +127,21 @@ Acceptance CampaignBook::Accept(const std::string& worker, const std::string& ho
     case Acceptance::kAccepted:
       results_.push_back(result);
       if (rule_) rule_->Add(result);
-      tally_.Add(result);
+      if (tally_) tally_->Add(result);
       ++flown_now_;
-      if (!start.empty()) {
-        records_.push_back(
-            {result.case_index, worker, host, start.mapped().utc, now_s - start.mapped().now_s});
-      }
+      records_.push_back(start.empty() ? ExecutionRecord{result.case_index, worker, host, "", kUnknown}
+                                       : ExecutionRecord{result.case_index, worker, host, start.mapped().utc,
+                                                         now_s - start.mapped().now_s});
+      if (audit_) audit_->Consider({worker, result.case_index, Fingerprint(result), false});
       break;
     case Acceptance::kConflict:
-      spdlog::error(
-          "case {}: worker {} on {} returned other bits than were returned before: a processor, a "
-          "library or a build breaks the floating-point contract; no result can be trusted",
-          result.case_index, worker, host);
+      if (audit_) Dispute(worker, result);
+      spdlog::error("case {}: worker {} on {} returned other bits than were returned before: {}",
+                    result.case_index, worker, host,
+                    audit_
+                        ? "it is flown again here"
+                        : "a processor, a library or a build breaks the floating-point contract; no result "
+                          "can be trusted");
       break;
     case Acceptance::kUnknown:
       spdlog::error("case {} of worker {} on {} does not exist in this campaign", result.case_index, worker,
@@ -112,12 +162,13 @@ bool CampaignBook::FlushIfDue(double now_s) {
 
 void CampaignBook::Flush() {
   if (!results_.empty()) {
-    store_->Append(results_);
+    store_->Store(results_, records_);
     results_.clear();
-  }
-  if (!records_.empty()) {
-    store_->AppendExecution(records_);
     records_.clear();
+  }
+  if (!audits_.empty()) {
+    store_->AppendAudits(audits_);
+    audits_.clear();
   }
   if (ledger_.Progress().quarantined != quarantined_) {
     for (const BlamedCase& blamed : ledger_.Quarantined()) {

@@ -14,14 +14,16 @@
 #include "core/report/result_folder.h"
 #include "core/report/result_store.h"
 #include "core/report/stopping_rule.h"
+#include "services/coordinator/audit.h"
 #include "services/coordinator/ledger.h"
 #include "services/coordinator/running_tally.h"
+#include "services/transport/exit_code.h"
 
 namespace dispersa {
 
 /// The exit code of a campaign that ends with this verdict after so many results that contradicted others:
 /// any is an internal error (1), whatever the verdict says.
-int CampaignExitCode(CampaignVerdict verdict, std::uint64_t conflicts);
+ExitCode CampaignExitCode(CampaignVerdict verdict, std::uint64_t conflicts);
 
 /// Results are stored in batches; nothing that was accepted is lost by more than one batch. Not thread-safe.
 /// Times are seconds from any origin. Storing throws ResultError.
@@ -41,12 +43,28 @@ class CampaignBook {
   bool Complete();
   std::uint64_t flown_now() const { return flown_now_; }  ///< accepted since construction
 
-  /// How the requirements stand by what has been accepted.
-  const RunningTally& tally() const { return tally_; }
+  /// Counts from what the store holds; to be called before the first result.
+  void KeepTally();
+  /// How the requirements stand by what has been accepted, in a book that keeps a tally.
+  const RunningTally& tally() const { return *tally_; }
+
+  /// From now on nothing is complete before its audit is, of what the store holds already too. Nothing if the
+  /// share is 0, or when it is called again.
+  void KeepAudit(const AuditOptions& options);
+  bool IsAudited() const { return audit_.has_value(); }
+  /// What is to be flown again now.
+  std::vector<Claim> TakeClaims() { return audit_ ? audit_->Take() : std::vector<Claim>(); }
+  /// What it gave. False: the worker returned something else.
+  bool Settle(const Claim& claim, const Digest& truth);
+  /// Results that were flown again since construction, and agreed.
+  std::uint64_t confirmed() const { return confirmed_; }
+  /// Whatever this worker returned is flown again. A campaign that stops when it is decided keeps the cases
+  /// that it was extended to.
+  void Disown(const std::string& worker);
 
   void Start(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt, double now_s);
   /// A result that differs from the one already accepted is logged, stored nowhere, and counted as a conflict
-  /// in the ledger's progress.
+  /// in the ledger's progress, until an audit tells who is wrong.
   Acceptance Accept(const std::string& worker, const std::string& host, std::uint64_t attempt,
                     const CaseResult& result, double now_s);
   /// Stores what has gathered if it is time to. True: all that was accepted so far is stored.
@@ -54,13 +72,18 @@ class CampaignBook {
   void Flush();
 
  private:
+  void Dispute(const std::string& worker, const CaseResult& result);
+
   Campaign campaign_;
   std::unique_ptr<ResultStore> store_;
   std::optional<StoppingRule> rule_;  ///< of a campaign that stops when it is decided
-  RunningTally tally_;
+  std::optional<RunningTally> tally_;
+  std::optional<Audit> audit_;
+  std::uint64_t confirmed_ = 0;
   Ledger ledger_;
   std::vector<CaseResult> results_;
   std::vector<ExecutionRecord> records_;
+  std::vector<Claim> audits_;  ///< confirmed
   struct StartTime {
     double now_s;
     std::string utc;

@@ -67,7 +67,10 @@ std::unique_ptr<CampaignBook> OpenBook(const CampaignOpening& opening) {
   }
   LedgerOptions options;
   options.attempt_base = opening.number * kAttempts;
-  return std::make_unique<CampaignBook>(campaign, std::move(folder), options);
+  auto book = std::make_unique<CampaignBook>(campaign, std::move(folder), options);
+  book->KeepTally();
+  book->KeepAudit(opening.audit);
+  return book;
 }
 
 }  // namespace dispersa

@@ -18,6 +18,7 @@ struct CampaignOpening {
   /// Result folders of the same flight id, which nobody writes now.
   std::vector<std::filesystem::path> same_flights;
   std::uint64_t number = 1;  ///< of this opening: attempts of different ones differ
+  AuditOptions audit;
 };
 
 /// May take minutes when there are many results. Throws InputError, ResultError.

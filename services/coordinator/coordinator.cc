@@ -18,7 +18,7 @@ constexpr double kClientPatience_s = 30.0;
 constexpr std::size_t kMaxClients = 256;
 constexpr std::size_t kTextPart = 256 << 10;
 
-std::uint64_t DrawEpoch() {
+std::uint64_t Draw() {
   // Not the time: clocks are set back.
   std::random_device device;
   return (std::uint64_t{device()} << 32 | device()) | 1;
@@ -26,10 +26,14 @@ std::uint64_t DrawEpoch() {
 
 }  // namespace
 
-Coordinator::Coordinator(const NetworkOptions& network)
-    : epoch_(DrawEpoch()), dispatcher_(epoch_, EngineVersion()), link_(network) {}
+// The epoch is told to everybody; which results are audited, to nobody.
+Coordinator::Coordinator(const NetworkOptions& network, double audit_share)
+    : epoch_(Draw()), dispatcher_(epoch_, EngineVersion(), {.audit = {audit_share, Draw()}}), link_(network) {
+  if (audit_share > 0.0) auditor_.emplace();
+}
 
-Coordinator::Coordinator(const NetworkOptions& network, CampaignBook& book) : Coordinator(network) {
+Coordinator::Coordinator(const NetworkOptions& network, CampaignBook& book, double audit_share)
+    : Coordinator(network, audit_share) {
   dispatcher_.Open(book);
 }
 
@@ -37,6 +41,13 @@ void Coordinator::Step(std::chrono::milliseconds timeout) {
   const std::vector<CoordinatorEvent> events = link_.Wait(timeout);
   Advance();
   for (const CoordinatorEvent& event : events) Handle(event);
+  if (auditor_) {
+    dispatcher_.TakeClaims([this](const Campaign& campaign, std::vector<Claim> claims) {
+      auditor_->Fly(campaign, std::move(claims));
+    });
+    for (const Auditor::Verdict& verdict : auditor_->Take())
+      dispatcher_.Audited(verdict.flight_id, verdict.claim, verdict.truth);
+  }
   Send(dispatcher_.Tick(now_s_));
   for (const std::string& forgotten : dispatcher_.TakeForgotten()) link_.Forget(forgotten);
   ForgetClients();

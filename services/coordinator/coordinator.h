@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "services/coordinator/auditor.h"
 #include "services/coordinator/dispatcher.h"
 #include "services/transport/coordinator_link.h"
 
@@ -18,9 +19,10 @@ namespace dispersa {
 class Coordinator {
  public:
   /// Throws NetworkError.
-  explicit Coordinator(const NetworkOptions& network);
+  /// `audit_share`: so much of all results is flown again here, 0 to 1.
+  explicit Coordinator(const NetworkOptions& network, double audit_share = 0.0);
   /// Serves one campaign.
-  Coordinator(const NetworkOptions& network, CampaignBook& book);
+  Coordinator(const NetworkOptions& network, CampaignBook& book, double audit_share = 0.0);
 
   /// A book must stay until it is closed.
   void Open(CampaignBook& book, int priority = 0) { dispatcher_.Open(book, priority); }
@@ -47,6 +49,9 @@ class Coordinator {
   std::size_t joined() const { return dispatcher_.joined(); }
   std::vector<Dispatcher::WorkerView> Workers() const { return dispatcher_.Workers(); }
   const std::optional<std::string>& refusal() const { return dispatcher_.refusal(); }
+  const AuditOptions& audit() const { return dispatcher_.audit(); }
+  std::uint64_t audits() const { return dispatcher_.audits(); }
+  std::uint64_t expelled() const { return dispatcher_.expelled(); }
   /// Seconds since the start, without those for which this process or machine stood still.
   double now_s() const { return now_s_; }
 
@@ -61,6 +66,7 @@ class Coordinator {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
   double now_s_ = 0.0;
   Dispatcher dispatcher_;
+  std::optional<Auditor> auditor_;
   CoordinatorLink link_;
   std::function<Reply(const Request&)> answer_;
   std::map<std::string, double> clients_;  ///< when they asked last

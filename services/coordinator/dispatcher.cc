@@ -27,6 +27,7 @@ void Dispatcher::Open(CampaignBook& book, int priority) {
   OpenCampaign& campaign = campaigns_[book.campaign().flight_id];
   campaign.book = &book;
   campaign.priority = priority;
+  book.KeepAudit(options_.audit);
   for (const auto& [id, worker] : workers_) book.ledger().Join(id, worker.hello, worker.heard_s);
 }
 
@@ -109,6 +110,29 @@ void Dispatcher::Refuse(const std::string& worker, const std::string& reason) {
   refusal_ = reason;
   if (refused_.size() < kMaxRemembered) refused_[worker] = reason;
   TellRefusal(worker, reason);
+}
+
+void Dispatcher::TakeClaims(const OnClaims& fly) {
+  for (auto& [flight_id, campaign] : campaigns_) fly(campaign.book->campaign(), campaign.book->TakeClaims());
+}
+
+void Dispatcher::Audited(const std::string& flight_id, const Claim& claim, const Digest& truth) {
+  const auto campaign = campaigns_.find(flight_id);
+  if (campaign == campaigns_.end()) return;  // closed meanwhile
+  ++audits_;
+  if (campaign->second.book->Settle(claim, truth)) return;
+  Expel(claim.worker, "case " + std::to_string(claim.case_index) + " of campaign " +
+                          campaign->second.book->campaign().name +
+                          ", flown again by the coordinator, gives other bits than the worker returned");
+}
+
+void Dispatcher::Expel(const std::string& worker, const std::string& reason) {
+  if (refused_.contains(worker)) return;
+  ++expelled_;
+  Refuse(worker, reason);
+  refused_[worker] = reason;  // however many are remembered
+  Lose(worker, WorkerEnd::kKilled, "expelled");
+  for (auto& [flight_id, campaign] : campaigns_) campaign.book->Disown(worker);
 }
 
 void Dispatcher::TellRefusal(const std::string& worker, const std::string& reason) {

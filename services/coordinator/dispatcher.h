@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -22,6 +23,7 @@ struct DispatcherOptions {
   double pulse_s = 1.0;          ///< every worker hears something at least so often
   double last_messages_s = 0.2;  ///< what a process that ended has sent may still arrive for so long
   std::size_t max_workers = 2000;
+  AuditOptions audit;
 };
 
 /// Liveness (services/README.md): nothing depends on a message arriving. Assignments are repeated until the
@@ -46,6 +48,13 @@ class Dispatcher {
   std::optional<TextPart> On(const TextRequest& request, std::size_t limit) const;
   /// The participant closed its connection: another one may speak for its workers.
   void Gone(const std::string& sender);
+
+  /// Results to be flown again here, of one campaign after the other.
+  using OnClaims = std::function<void(const Campaign&, std::vector<Claim>)>;
+  void TakeClaims(const OnClaims& fly);
+  /// What that gave. A worker that returned something else is expelled: it may not fly here any more, and
+  /// whatever it returned is flown again.
+  void Audited(const std::string& flight_id, const Claim& claim, const Digest& truth);
 
   /// Announces that the end of this worker will be told by WorkerEnded: a local process has an exit status,
   /// which says more than silence.
@@ -76,6 +85,9 @@ class Dispatcher {
   /// Messages that contradicted what is known: of strangers, of other senders than before, of impossible
   /// cases.
   std::uint64_t refused_messages() const { return refused_messages_; }
+  const AuditOptions& audit() const { return options_.audit; }
+  std::uint64_t audits() const { return audits_; }
+  std::uint64_t expelled() const { return expelled_; }
 
  private:
   struct OpenCampaign {
@@ -106,6 +118,7 @@ class Dispatcher {
 
   bool Join(const std::string& sender, const WorkerStatus& status, double now_s);
   void Refuse(const std::string& worker, const std::string& reason);
+  void Expel(const std::string& worker, const std::string& reason);
   void TellRefusal(const std::string& worker, const std::string& reason);
   void Compare(Worker& worker, const WorkerStatus& status, double now_s);
   void Say(Worker& worker, const std::string& flight_id, std::uint64_t attempt,
@@ -140,6 +153,8 @@ class Dispatcher {
   std::vector<Orders> refusals_;
   std::optional<std::string> refusal_;
   std::uint64_t refused_messages_ = 0;
+  std::uint64_t audits_ = 0;
+  std::uint64_t expelled_ = 0;
   double expired_s_ = 0.0;
   bool dismissed_ = false;
 };

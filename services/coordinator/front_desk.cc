@@ -4,12 +4,16 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <vector>
 
 #include "core/campaign_yaml/load.h"
+#include "core/report/json_number.h"
+#include "core/report/requirement_summary.h"
 #include "services/coordinator/dump_any_text.h"
+#include "services/transport/exit_code.h"
 #include "services/transport/validity.h"
 
 namespace dispersa {
@@ -18,9 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr int kInternalError = 1;
-constexpr int kBadInput = 2;
-constexpr int kIncomplete = 5;
 constexpr std::size_t kMaxUploads = 8;
 constexpr double kUploadPatience_s = 60.0;
 /// In an answer, so that it fits into a sample.
@@ -77,11 +78,17 @@ Json ToJson(const CampaignView& view) {
           {"requirements", std::move(standings)}};
 }
 
+/// Twice the cube root of their number (Rice's rule), so that few cases make no comb.
+std::size_t BinsFor(std::int64_t n) {
+  return std::clamp(static_cast<std::size_t>(2.0 * std::cbrt(static_cast<double>(n))), std::size_t{6},
+                    RunningHistogram::kMaxBins);
+}
+
 void RefuseAnotherEngine(const std::string& asked, const CatalogueEntry& entry) {
   if (asked == entry.flight_id) return;
-  throw Refused(kBadInput, fmt::format("campaign {} has the flight id {} here and {} at the client: the "
-                                       "engines differ",
-                                       entry.id.substr(0, 8), entry.flight_id, Printable(asked)));
+  throw Refused(kExitBadInput, fmt::format("campaign {} has the flight id {} here and {} at the client: the "
+                                           "engines differ",
+                                           entry.id.substr(0, 8), entry.flight_id, Printable(asked)));
 }
 
 }  // namespace
@@ -104,25 +111,27 @@ Reply FrontDesk::Answer(const Request& request) {
       reply.text = List(request.arguments);
     } else if (request.method == "status") {
       reply.text = Status(request.arguments);
+    } else if (request.method == "tally") {
+      reply.text = Tally(request.arguments);
     } else if (request.method == "files") {
       reply.text = Files(request.arguments);
     } else if (request.method == "read") {
       reply.text = Read(request.arguments, &reply.data);
     } else {
-      throw Refused(kBadInput,
+      throw Refused(kExitBadInput,
                     "the coordinator does not know the request '" + Printable(request.method) + "'");
     }
   } catch (const Refused& refused) {
     reply.code = refused.code;
     reply.text = refused.what();
   } catch (const InputError& error) {
-    reply.code = kBadInput;
+    reply.code = kExitBadInput;
     reply.text = error.what();
   } catch (const Json::exception&) {
-    reply.code = kBadInput;
+    reply.code = kExitBadInput;
     reply.text = "the coordinator does not understand the arguments of '" + Printable(request.method) + "'";
   } catch (const ResultError& error) {
-    reply.code = error.kind() == ResultError::Kind::kDiskFull ? kIncomplete : kInternalError;
+    reply.code = error.kind() == ResultError::Kind::kDiskFull ? kExitIncomplete : kExitInternalError;
     reply.text = error.what();
   }
   return reply;
@@ -138,9 +147,9 @@ std::string FrontDesk::TakePart(const std::string& arguments, const std::string&
   const Json json = Json::parse(arguments);
   const std::string id = json.at("id");
   const std::uint64_t size = json.at("size"), offset = json.at("offset");
-  if (size > kMaxTextBytes) throw Refused(kBadInput, "the campaign's text is larger than 64 MiB");
+  if (size > kMaxTextBytes) throw Refused(kExitBadInput, "the campaign's text is larger than 64 MiB");
   if (!uploads_.contains(id) && uploads_.size() >= kMaxUploads) {
-    throw Refused(kIncomplete,
+    throw Refused(kExitIncomplete,
                   "the coordinator takes " + std::to_string(kMaxUploads) + " texts at a time already");
   }
   Upload& upload = uploads_[id];
@@ -176,7 +185,7 @@ std::string FrontDesk::Launch(const std::string& arguments) {
   Upload complete = std::move(upload);
   uploads_.erase(found);
   CatalogueEntry entry = complete.parsed.get();
-  if (entry.id != id) throw Refused(kBadInput, "the text is not that of campaign " + Printable(id));
+  if (entry.id != id) throw Refused(kExitBadInput, "the text is not that of campaign " + Printable(id));
   RefuseAnotherEngine(flight_id, entry);
   entry.priority = priority;
   service_.Launch(std::move(entry), complete.text);
@@ -226,11 +235,46 @@ std::string FrontDesk::Status(const std::string& arguments) const {
   return answer.dump();
 }
 
+// How a campaign stands, for those who watch it: bounded, however many cases it has.
+std::string FrontDesk::Tally(const std::string& arguments) const {
+  const std::string id = Named(Json::parse(arguments).at("id")).id;
+  Json answer = {{"schema", "dispersa/tally/1"}, {"id", id}, {"n", 0}};
+  Json requirements = Json::array(), histograms = Json::array();
+  if (const RunningTally* tally = service_.TallyOf(id)) {
+    answer["n"] = tally->n();
+    const std::vector<RequirementStanding> standings = tally->Standings();
+    for (std::size_t i = 0; i < standings.size(); ++i) {
+      const Requirement& requirement = tally->requirements()[i];
+      const Limits limits = LimitsOf(requirement);
+      requirements.push_back({{"metric", requirement.metric},
+                              {"above", Number(limits.low)},
+                              {"below", Number(limits.high)},
+                              {"probability", requirement.probability},
+                              {"consumer_risk", requirement.consumer_risk},
+                              {"n", standings[i].n},
+                              {"failures", standings[i].failures},
+                              {"so_far", standings[i].so_far}});
+    }
+    for (const MetricHistogram& histogram : tally->histograms()) {
+      const HistogramBins bins = histogram.values.Bins(BinsFor(histogram.values.n()));
+      histograms.push_back({{"metric", histogram.metric},
+                            {"n", histogram.values.n()},
+                            {"low", bins.low},
+                            {"width", bins.width},
+                            {"counts", bins.counts}});
+    }
+  }
+  answer["requirements"] = std::move(requirements);
+  answer["histograms"] = std::move(histograms);
+  return answer.dump();
+}
+
 std::string FrontDesk::Files(const std::string& arguments) const {
   const CatalogueEntry& entry = Named(Json::parse(arguments).at("id"));
   if (!service_.IsAtRest(entry.id)) {
-    throw Refused(kIncomplete, fmt::format("campaign {} is {}: its results can be fetched when it has ended",
-                                           entry.id.substr(0, 8), CampaignStateName(entry.state)));
+    throw Refused(kExitIncomplete,
+                  fmt::format("campaign {} is {}: its results can be fetched when it has ended",
+                              entry.id.substr(0, 8), CampaignStateName(entry.state)));
   }
   const fs::path directory = service_.catalogue().ResultsOf(entry.id);
   // What a coordinator that was killed left beside the database belongs into it.
@@ -250,7 +294,7 @@ std::string FrontDesk::Read(const std::string& arguments, std::string* data) con
   const std::uint64_t offset = json.at("offset");
   const std::vector<fs::path> files = FilesIn(directory);
   if (!service_.IsAtRest(entry.id) || std::find(files.begin(), files.end(), path) == files.end()) {
-    throw Refused(kBadInput,
+    throw Refused(kExitBadInput,
                   "campaign " + entry.id.substr(0, 8) + " has no file " + Printable(path.string()));
   }
   std::ifstream stream(directory / path, std::ios::binary);
@@ -263,7 +307,7 @@ std::string FrontDesk::Read(const std::string& arguments, std::string* data) con
 
 const CatalogueEntry& FrontDesk::Named(const std::string& id) const {
   if (const CatalogueEntry* entry = service_.catalogue().Find(id)) return *entry;
-  throw Refused(kBadInput, "no campaign, or more than one, has the id '" + Printable(id) + "'");
+  throw Refused(kExitBadInput, "no campaign, or more than one, has the id '" + Printable(id) + "'");
 }
 
 }  // namespace dispersa

@@ -34,6 +34,7 @@ class FrontDesk {
   std::string List(const std::string& arguments) const;
   std::vector<std::string> Listed() const;
   std::string Status(const std::string& arguments) const;
+  std::string Tally(const std::string& arguments) const;
   std::string Files(const std::string& arguments) const;
   std::string Read(const std::string& arguments, std::string* data) const;
   const CatalogueEntry& Named(const std::string& id) const;

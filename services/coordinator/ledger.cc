@@ -38,6 +38,14 @@ void Ledger::Extend(std::uint64_t cases) {
   progress_.total = cases;
 }
 
+void Ledger::Reopen(const std::vector<std::uint64_t>& cases) {
+  for (const std::uint64_t case_index : cases) {
+    if (case_index >= cases_.size() || cases_[case_index].state != State::kDone) continue;
+    --progress_.done;
+    Return(case_index);
+  }
+}
+
 std::optional<std::string> Ledger::Join(const std::string& worker, const WorkerHello& hello, double now_s) {
   if (hello.engine_version != engine_version_) {
     return "engine version " + hello.engine_version + " of the worker differs from the coordinator's " +

@@ -83,6 +83,11 @@ class Ledger {
   /// Adds cases at the end: there are so many in all from now on.
   void Extend(std::uint64_t cases);
 
+  /// Results of these cases are not believed any more: they are flown again.
+  void Reopen(const std::vector<std::uint64_t>& cases);
+  /// Which of two results that contradicted each other is wrong is known.
+  void SettleConflict() { --progress_.conflicts; }
+
   /// A worker announces itself, or changes what it announced. Returns why it is refused, if it is.
   std::optional<std::string> Join(const std::string& worker, const WorkerHello& hello, double now_s);
   /// The worker says that it flies nothing. If it was stuck it is so no longer: what it was given got lost.
@@ -111,6 +116,8 @@ class Ledger {
   std::uint64_t Batches(const std::string& worker) const;
   /// It flies a suspect and may hold nothing else.
   bool IsAlone(const std::string& worker) const;
+  /// Of the result that was accepted.
+  Digest FingerprintOf(std::uint64_t case_index) const { return cases_.at(case_index).fingerprint; }
 
   bool Complete() const;
   LedgerProgress Progress() const;

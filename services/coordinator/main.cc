@@ -6,25 +6,26 @@
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "core/flight/engine_version.h"
 #include "core/report/result_error.h"
 #include "services/coordinator/serve.h"
 #include "services/coordinator/stop_signal.h"
+#include "services/transport/admission.h"
+#include "services/transport/exit_code.h"
 
 namespace dispersa {
 namespace {
-
-// The product's exit codes that no verdict gives.
-constexpr int kInternalError = 1;
-constexpr int kBadInput = 2;
-constexpr int kIncomplete = 5;
 
 int Main(int argc, char** argv) {
   spdlog::set_default_logger(spdlog::stderr_logger_mt("dispersa-coordinator"));
   NetworkOptions network;
   CampaignRequest request;
   std::optional<double> patience_s;
+  Admission admission;
   CLI::App app(
       "With --data: serves the campaigns that clients launch to all dispersa-worker processes of a DDS "
       "domain, until it is\n"
@@ -33,6 +34,7 @@ int Main(int argc, char** argv) {
   app.set_version_flag("--version", EngineVersion());
   std::string data;
   bool health = false;
+  double audit = 0.0;
   std::optional<std::uint16_t> metrics_port;
   app.add_option("campaign", request.campaign, "campaign file");
   app.add_option("--data", data, "folder of the campaigns that were launched, made if it is not there");
@@ -41,6 +43,11 @@ int Main(int argc, char** argv) {
       ->check(CLI::Range(1, 65535));
   app.add_flag("--health", health,
                "ask the coordinator of the domain on this machine: exit code 0 if it answers");
+  app.add_option(
+         "--audit", audit,
+         "share of the results, 0 to 1, that the coordinator flies again; a worker whose result differs "
+         "is expelled, and\nwhatever it returned is flown again")
+      ->check(CLI::Range(0.0, 1.0));
   app.add_option("--out", request.out, "result folder; default: results/<name>-<first 8 of id>");
   app.add_option("--cases", request.overrides.cases, "number of cases, instead of the file's")
       ->check(CLI::PositiveNumber);
@@ -51,39 +58,48 @@ int Main(int argc, char** argv) {
       ->check(CLI::Range(0, 99));
   app.add_option("--address", network.address, "IPv4 address of the only network interface to use")
       ->check(CLI::ValidIPV4);
+  app.add_option("--keys", admission.keys, kKeysHelp);
+  app.add_flag("--insecure", admission.insecure, kInsecureHelp);
   app.add_option("--patience", patience_s,
                  "give up (exit code 5) after so many seconds without a worker; default: never")
       ->check(CLI::NonNegativeNumber);
   app.footer(
-      "Example: dispersa-coordinator --data /var/lib/dispersa --domain 7\n"
-      "         dispersa-coordinator campaigns/table3.yaml --out results/table3 --domain 7\n"
-      "         dispersa-worker --domain 7 --peer coordinator-host");
+      "Example: dispersa-coordinator --data /var/lib/dispersa --domain 7 --keys coordinator-main\n"
+      "         dispersa-worker --domain 7 --peer coordinator-host --keys worker-node1\n"
+      "         dispersa-coordinator campaigns/table3.yaml --out results/table3 --address 127.0.0.1");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kBadInput;
+    return app.exit(error) == 0 ? 0 : kExitBadInput;
   }
   if (int(health) + int(!data.empty()) + int(!request.campaign.empty()) != 1) {
     fmt::print(stderr, "one of --data, a campaign, or --health is needed\n");
-    return kBadInput;
+    return kExitBadInput;
   }
   CatchStopSignals();
   try {
-    if (health) return AskHealth(network);
-    if (!data.empty()) return ServeClients(network, data, metrics_port);
-    return ServeCampaign(network, request, patience_s);
+    if (health) {
+      const std::string host = network.address.empty() ? "127.0.0.1" : network.address;
+      return AskHealth(Admit(network, admission, {Role::kCoordinator, Role::kClient}, host), host);
+    }
+    network = Admit(network, admission, {Role::kCoordinator});
+    std::vector<std::string> again(argv, argv + argc);
+    if (data.empty() && !request.resume) again.emplace_back("--resume");
+    const ServeOptions options{network, audit, std::move(again)};
+    if (!data.empty()) return ServeClients(options, data, metrics_port);
+    return ServeCampaign(options, request, patience_s);
   } catch (const InputError& error) {
     fmt::print(stderr, "{}\n", error.what());
-    return kBadInput;
+    return kExitBadInput;
   } catch (const NetworkError& error) {
     spdlog::error("{}", error.what());
-    return kBadInput;
+    return kExitBadInput;
   } catch (const ResultError& error) {
     spdlog::error("{}", error.what());
-    return error.kind() == ResultError::Kind::kDiskFull ? kIncomplete : kInternalError;
+    return error.kind() == ResultError::Kind::kDiskFull ? kExitIncomplete : kExitInternalError;
   } catch (const std::exception& error) {
     spdlog::error("{}", error.what());
-    return kInternalError;
+    return kExitInternalError;
   }
 }
 

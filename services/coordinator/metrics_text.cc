@@ -37,6 +37,8 @@ std::string MetricsText(const Service& service, const Coordinator& coordinator) 
   put("conflicts", "gauge", "Results that contradicted others.", conflicts);
   put("workers", "gauge", "Workers that are joined.", coordinator.joined());
   put("slots", "gauge", "Threads of theirs that fly.", slots);
+  put("audits_total", "counter", "Results that were flown again.", coordinator.audits());
+  put("expelled_total", "counter", "Workers whose results were wrong.", coordinator.expelled());
   put("refused_total", "counter", "Datagrams and messages that were refused.", Complaints());
   return text;
 }

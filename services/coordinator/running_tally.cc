@@ -1,6 +1,9 @@
 #include "services/coordinator/running_tally.h"
 
+#include <cmath>
+
 #include "core/flight/metrics.h"
+#include "core/report/campaign_summary.h"
 #include "core/report/requirement_summary.h"
 #include "core/report/sampling_text.h"
 #include "core/statistics/intervals.h"
@@ -12,6 +15,8 @@ RunningTally::RunningTally(const Campaign& campaign)
       failures_(requirements_.size()),
       independent_(IsIndependent(campaign.sampling.method)) {
   for (const Requirement& requirement : requirements_) columns_.push_back(MetricColumn(requirement.metric));
+  for (const std::string& metric : KeyMetrics(campaign))
+    histograms_.push_back({metric, MetricColumn(metric), {}});
 }
 
 void RunningTally::Add(const CaseResult& result) {
@@ -20,6 +25,11 @@ void RunningTally::Add(const CaseResult& result) {
     const bool met = result.outcome == Outcome::kCompleted &&
                      LimitsOf(requirements_[i]).Meets(result.metrics[columns_[i]]);
     failures_[i] += met ? 0 : 1;
+  }
+  if (result.outcome != Outcome::kCompleted) return;
+  for (MetricHistogram& histogram : histograms_) {
+    if (const double value = result.metrics[histogram.column]; std::isfinite(value))
+      histogram.values.Add(value);
   }
 }
 

@@ -1,4 +1,4 @@
-// How the requirements of a campaign that is being flown stand.
+// How a campaign that is being flown stands: its requirements, and how its key metrics are distributed.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,7 @@
 
 #include "core/campaign/campaign.h"
 #include "core/campaign/case_result.h"
+#include "services/coordinator/running_histogram.h"
 
 namespace dispersa {
 
@@ -21,6 +22,13 @@ struct RequirementStanding {
   std::string so_far;
 };
 
+/// Of the flights completed so far.
+struct MetricHistogram {
+  std::string metric;
+  std::size_t column = 0;
+  RunningHistogram values;
+};
+
 class RunningTally {
  public:
   explicit RunningTally(const Campaign& campaign);
@@ -28,11 +36,16 @@ class RunningTally {
   /// Each case once.
   void Add(const CaseResult& result);
   std::vector<RequirementStanding> Standings() const;
+  std::int64_t n() const { return n_; }
+  const std::vector<Requirement>& requirements() const { return requirements_; }
+  /// Of KeyMetrics().
+  const std::vector<MetricHistogram>& histograms() const { return histograms_; }
 
  private:
   std::vector<Requirement> requirements_;
   std::vector<std::size_t> columns_;  ///< of their metrics
   std::vector<std::int64_t> failures_;
+  std::vector<MetricHistogram> histograms_;
   std::int64_t n_ = 0;
   bool independent_;
 };

@@ -15,19 +15,17 @@
 #include "services/coordinator/service.h"
 #include "services/coordinator/stop_signal.h"
 #include "services/coordinator/threads.h"
+#include "services/coordinator/watchdog.h"
 #include "services/transport/client_link.h"
+#include "services/transport/exit_code.h"
 
 namespace dispersa {
 namespace {
 
-// The product's exit codes that no verdict gives.
-constexpr int kIncomplete = 5;
-constexpr int kInterrupted = 130;
-
 constexpr std::chrono::milliseconds kRound(50);
 constexpr double kProgress_s = 5.0;
 constexpr double kMetrics_s = 1.0;
-constexpr std::chrono::seconds kHealthPatience(5);
+constexpr std::chrono::seconds kHealthPatience(8);
 
 struct Stopped {};
 
@@ -48,22 +46,24 @@ class Every {
 
 }  // namespace
 
-int ServeCampaign(const NetworkOptions& network, const CampaignRequest& request,
+int ServeCampaign(const ServeOptions& options, const CampaignRequest& request,
                   std::optional<double> patience_s) {
   OpenedCampaign opened = OpenCampaign(request);
   CampaignBook book(opened.campaign, std::move(opened.folder));
-  Coordinator coordinator(network, book);
+  Coordinator coordinator(options.network, book, options.audit);
   spdlog::info("campaign {}, flight id {}, results in {}; domain {}, workers may come to port {}",
                book.campaign().name, book.campaign().flight_id, book.folder().directory().string(),
-               network.domain, CoordinatorPort(network.domain));
+               options.network.domain, CoordinatorPort(options.network.domain));
   Every progress_period(kProgress_s);
-  Attendance attendance(network.domain, patience_s);
+  Attendance attendance(options.network.domain, patience_s);
+  std::optional<Watchdog> watchdog(std::in_place, options.again);
   while (!book.Complete() && !StopRequested()) {
     coordinator.Step(kRound);
+    watchdog->Note(coordinator.joined() > 0, true);
     if (!attendance.Check(coordinator.joined() > 0, coordinator.now_s())) {
       book.Flush();
       spdlog::error("no worker for {:.0f} s: given up; the same with --resume goes on", *patience_s);
-      return kIncomplete;
+      return kExitIncomplete;
     }
     if (progress_period.IsDue(coordinator.now_s())) {
       const LedgerProgress progress = book.ledger().Progress();
@@ -71,60 +71,64 @@ int ServeCampaign(const NetworkOptions& network, const CampaignRequest& request,
                    progress.assigned, progress.quarantined, coordinator.joined());
     }
   }
+  watchdog.reset();
   // First what would be lost. Workers are sent home by a campaign that is complete on the disk and by nothing
   // else: a coordinator that stops, or is killed here, finds them again when it is back.
   book.Flush();
-  ReportOptions options;
-  options.threads = UsableCores();
-  options.progress = [](const std::string&, std::uint64_t, std::uint64_t) {
+  if (book.IsAudited()) spdlog::info("{} results were flown again and agree", book.confirmed());
+  ReportOptions report;
+  report.threads = UsableCores();
+  report.progress = [](const std::string&, std::uint64_t, std::uint64_t) {
     if (StopRequested()) throw Stopped();
   };
   try {
     if (StopRequested()) throw Stopped();
     coordinator.Dismiss();
-    const CampaignSummary summary = WriteReports(book.folder(), book.campaign(), options);
+    const CampaignSummary summary = WriteReports(book.folder(), book.campaign(), report);
     fmt::print("result: {}\n", book.folder().directory().string());
     return CampaignExitCode(summary.verdict, book.ledger().Progress().conflicts);
   } catch (const Stopped&) {
     spdlog::warn("stopped; the same with --resume goes on");
-    return kInterrupted;
+    return kExitInterrupted;
   }
 }
 
 // Workers stay when it ends: another coordinator on the same data takes them over.
-int ServeClients(const NetworkOptions& network, const std::string& data,
+int ServeClients(const ServeOptions& options, const std::string& data,
                  std::optional<std::uint16_t> metrics_port) {
-  Coordinator coordinator(network);
-  ServiceOptions options;
-  options.data = data;
-  options.report_threads = UsableCores();
-  Service service(options, coordinator);
+  Coordinator coordinator(options.network, options.audit);
+  ServiceOptions service_options;
+  service_options.data = data;
+  service_options.report_threads = UsableCores();
+  Service service(service_options, coordinator);
   FrontDesk front_desk(service, coordinator);
   coordinator.Serve([&](const Request& request) { return front_desk.Answer(request); });
-  spdlog::info("domain {}, workers and clients may come to port {}", network.domain,
-               CoordinatorPort(network.domain));
+  spdlog::info("domain {}, workers and clients may come to port {}", options.network.domain,
+               CoordinatorPort(options.network.domain));
   std::optional<MetricsPort> metrics;
   if (metrics_port) metrics.emplace(*metrics_port);
   Every metrics_period(kMetrics_s);
-  Attendance attendance(network.domain, std::nullopt);
+  Attendance attendance(options.network.domain, std::nullopt);
+  std::optional<Watchdog> watchdog(std::in_place, options.again);
   while (!StopRequested()) {
     coordinator.Step(kRound);
     service.Step();
+    watchdog->Note(coordinator.joined() > 0, service.HasWorkToFly());
     attendance.Check(coordinator.joined() > 0 || !service.HasWork(), coordinator.now_s());
     if (metrics && metrics_period.IsDue(coordinator.now_s())) metrics->Set(MetricsText(service, coordinator));
   }
+  watchdog.reset();
   service.Flush();
   spdlog::info("stopped; what is open goes on when the coordinator is started again");
   return 0;
 }
 
-int AskHealth(const NetworkOptions& network) {
-  const std::string host = network.address.empty() ? "127.0.0.1" : network.address;
+int AskHealth(const NetworkOptions& network, const std::string& host) {
   ClientLink client(network, {host, CoordinatorPort(network.domain)});
   const auto reply = client.Call("health", "{}", "", kHealthPatience);
   if (reply && reply->code == 0) return 0;
   spdlog::error("the coordinator of domain {} does not answer", network.domain);
-  return kIncomplete;
+  return kExitIncomplete;
 }
 
 }  // namespace dispersa

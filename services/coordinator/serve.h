@@ -4,22 +4,30 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "services/coordinator/open_campaign.h"
 #include "services/transport/network.h"
 
 namespace dispersa {
 
+struct ServeOptions {
+  NetworkOptions network;
+  double audit = 0.0;  ///< so much of the results is flown again
+  std::vector<std::string>
+      again;  ///< the command that takes this program's place when it hears nobody any more
+};
+
 /// One campaign: serves it, writes its reports, ends. Gives up after `patience_s` without a worker.
-int ServeCampaign(const NetworkOptions& network, const CampaignRequest& request,
+int ServeCampaign(const ServeOptions& options, const CampaignRequest& request,
                   std::optional<double> patience_s);
 
 /// The campaigns that clients launch, kept in the folder `data`, until a signal to stop. Metrics on this port
 /// of 127.0.0.1.
-int ServeClients(const NetworkOptions& network, const std::string& data,
+int ServeClients(const ServeOptions& options, const std::string& data,
                  std::optional<std::uint16_t> metrics_port);
 
-/// Whether a coordinator answers in this domain.
-int AskHealth(const NetworkOptions& network);
+/// Whether the coordinator of this domain answers on `host`.
+int AskHealth(const NetworkOptions& network, const std::string& host);
 
 }  // namespace dispersa

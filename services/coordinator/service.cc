@@ -9,16 +9,15 @@
 
 #include "core/report/reports.h"
 #include "services/coordinator/campaign_opening.h"
+#include "services/transport/exit_code.h"
 
 namespace dispersa {
 namespace {
 
-constexpr int kInternalError = 1;
-constexpr int kBadInput = 2;
-constexpr int kIncomplete = 5;
 constexpr double kMeasure_s = 1.0;
 constexpr std::size_t kRateOver = 10;  // measurements
 constexpr std::size_t kMaxProblem = 1000;
+constexpr std::size_t kRemembered = 16;  // tallies of campaigns that fly no more
 
 struct Stopped {};
 
@@ -61,6 +60,10 @@ void Service::CloseComplete() {
     if (flying.book->Complete()) complete.push_back(id);
   }
   for (const std::string& id : complete) {
+    if (const CampaignBook& book = *flying_.at(id).book; book.IsAudited()) {
+      spdlog::info("campaign {} ({}): {} results were flown again and agree", book.campaign().name,
+                   id.substr(0, 8), book.confirmed());
+    }
     to_report_.emplace_back(id, TakeBack(id));
     CatalogueEntry& entry = catalogue_.At(id);
     entry.cases = to_report_.back().second->ledger().Progress().total;
@@ -91,7 +94,7 @@ void Service::FinishReport() {
   try {
     End(entry, CampaignState::kDone, CampaignExitCode(reporting_->verdict.get(), entry.conflicts));
   } catch (const std::exception& error) {
-    End(entry, CampaignState::kFailed, kInternalError, error.what());
+    End(entry, CampaignState::kFailed, kExitInternalError, error.what());
   }
   reporting_.reset();
 }
@@ -131,7 +134,8 @@ void Service::StartOpening() {
   const CatalogueEntry* entry = NextToOpen();
   if (entry == nullptr || !MakeRoomFor(*entry)) return;
   CampaignOpening opening{
-      catalogue_.TextOf(entry->id), entry->name, catalogue_.ResultsOf(entry->id), {}, ++opened_};
+      catalogue_.TextOf(entry->id), entry->name, catalogue_.ResultsOf(entry->id), {}, ++opened_,
+      coordinator_.audit()};
   for (const auto& [id, other] : catalogue_.entries()) {
     if (id != entry->id && other.flight_id == entry->flight_id)
       opening.same_flights.push_back(catalogue_.ResultsOf(id));
@@ -159,9 +163,9 @@ void Service::FinishOpening() {
     catalogue_.Write(entry);
   } catch (const ResultError& error) {
     if (error.kind() == ResultError::Kind::kDiskFull) throw;
-    End(entry, CampaignState::kFailed, kInternalError, error.what());
+    End(entry, CampaignState::kFailed, kExitInternalError, error.what());
   } catch (const InputError& error) {
-    End(entry, CampaignState::kFailed, kBadInput, error.what());
+    End(entry, CampaignState::kFailed, kExitBadInput, error.what());
   }
 }
 
@@ -195,6 +199,9 @@ Service::Book Service::TakeBack(const std::string& id) {
   NoteConflicts(entry, found->second);
   coordinator_.Close(entry.flight_id);
   Book book = std::move(found->second.book);
+  std::erase_if(flew_, [&](const auto& each) { return each.first == id; });
+  flew_.emplace_back(id, book->tally());
+  if (flew_.size() > kRemembered) flew_.pop_front();
   entry.done = book->ledger().Progress().done;
   entry.quarantined = book->ledger().Progress().quarantined;
   flying_.erase(found);
@@ -226,6 +233,8 @@ CampaignView Service::View(const std::string& id) const {
   CampaignView view;
   const CatalogueEntry& entry = catalogue_.entries().at(id);
   view.entry = &entry;
+  if (const RunningTally* tally = TallyOf(id); tally != nullptr && !HasEnded(entry.state))
+    view.standings = tally->Standings();
   const auto flying = flying_.find(id);
   if (flying == flying_.end()) {
     view.progress.total = entry.cases;
@@ -236,7 +245,6 @@ CampaignView Service::View(const std::string& id) const {
     return view;
   }
   view.progress = flying->second.book->ledger().Progress();
-  view.standings = flying->second.book->tally().Standings();
   const auto& past = flying->second.past;
   if (past.size() < 2) return view;
   const double seconds = past.back().first - past.front().first;
@@ -245,6 +253,13 @@ CampaignView Service::View(const std::string& id) const {
     view.eta_s = static_cast<double>(view.progress.waiting + view.progress.assigned) / view.rate_per_s;
   }
   return view;
+}
+
+const RunningTally* Service::TallyOf(const std::string& id) const {
+  if (const auto flying = flying_.find(id); flying != flying_.end()) return &flying->second.book->tally();
+  const auto flew =
+      std::find_if(flew_.begin(), flew_.end(), [&](const auto& each) { return each.first == id; });
+  return flew == flew_.end() ? nullptr : &flew->second;
 }
 
 bool Service::IsAtRest(const std::string& id) const {
@@ -280,11 +295,11 @@ void Service::Cancel(const std::string& id) {
   CatalogueEntry& entry = catalogue_.At(id);
   if (entry.state == CampaignState::kCancelled) return;
   if (HasEnded(entry.state) || entry.state == CampaignState::kReporting) {
-    throw Refused(kBadInput, fmt::format("campaign {} is {} and cannot be cancelled", id.substr(0, 8),
-                                         CampaignStateName(entry.state)));
+    throw Refused(kExitBadInput, fmt::format("campaign {} is {} and cannot be cancelled", id.substr(0, 8),
+                                             CampaignStateName(entry.state)));
   }
   if (flying_.contains(id)) TakeBack(id);
-  End(entry, CampaignState::kCancelled, kIncomplete);
+  End(entry, CampaignState::kCancelled, kExitIncomplete);
 }
 
 }  // namespace dispersa

@@ -37,7 +37,7 @@ struct CampaignView {
   LedgerProgress progress;
   double rate_per_s = 0.0;
   std::optional<double> eta_s;
-  std::vector<RequirementStanding> standings;  ///< while it flies
+  std::vector<RequirementStanding> standings;  ///< until it has ended
 };
 
 /// Everything that a client was told survives a restart: a campaign is on the disk before its id is answered.
@@ -55,10 +55,14 @@ class Service {
 
   const Catalogue& catalogue() const { return catalogue_; }
   CampaignView View(const std::string& id) const;
+  /// What its results so far come to; also of one that flew lately. nullptr: not known.
+  const RunningTally* TallyOf(const std::string& id) const;
   /// Whether nobody writes its results, now or soon.
   bool IsAtRest(const std::string& id) const;
   /// Whether any campaign has not ended.
   bool HasWork() const;
+  /// Whether workers are needed now.
+  bool HasWorkToFly() const { return !flying_.empty(); }
 
   /// Puts a campaign that is known into the queue again if it was cancelled, failed or gave cases up, and
   /// changes its priority.
@@ -101,6 +105,7 @@ class Service {
   Coordinator& coordinator_;
   Catalogue catalogue_;
   std::map<std::string, Flying> flying_;  ///< by id
+  std::deque<std::pair<std::string, RunningTally>> flew_;  ///< by id: what the last ones came to
   std::optional<Opening> opening_;
   std::deque<std::pair<std::string, Book>> to_report_;
   std::optional<Reporting> reporting_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "services/transport/admission.h"
 #include "services/transport/convert.h"
 #include "services/transport/endpoints.h"
 #include "services/transport/event_queue.h"
@@ -17,10 +18,10 @@ constexpr std::chrono::milliseconds kRepetition(1000);
 
 struct ClientLink::Impl {
   Impl(const NetworkOptions& network, const Peer& coordinator)
-      : uuid(MakeUuid()),
+      : uuid(NameOnNetwork(network, MakeUuid())),
         participant({network, "dispersa-client", std::nullopt, {coordinator}}),
-        requests(participant, participant.MakePublisher(""), kRequestTopic),
-        replies(participant, participant.MakeSubscriber(PartitionOf(uuid)), kReplyTopic,
+        requests(participant, participant.MakePublisher(PartitionOf(uuid)), kRequestTopic),
+        replies(participant, participant.MakeSubscriber({PartitionOf(uuid)}), kReplyTopic,
                 [this](Reply&& reply, const std::string&) { events.Push(std::move(reply)); }) {}
 
   std::string uuid;
@@ -43,6 +44,7 @@ std::optional<Reply> ClientLink::Call(const std::string& method, const std::stri
   // The first ones get lost when the two have not found each other yet.
   auto pause = kFirstRepetition;
   while (Clock::now() < deadline) {
+    impl_->participant.LogSilent();
     impl_->requests.Write(ToIdl(request));
     const auto again = std::min(deadline, Clock::now() + pause);
     pause = std::min(2 * pause, kRepetition);

@@ -44,7 +44,7 @@ struct CoordinatorLink::Impl {
   explicit Impl(const NetworkOptions& network)
       : participant({network, "dispersa-coordinator", CoordinatorPort(network.domain), {}}),
         publisher(participant.MakePublisher("")),
-        subscriber(participant.MakeSubscriber("")) {
+        subscriber(participant.MakeSubscriber({"", PartitionOf("*")})) {
     const auto push = [this](auto&& message, const std::string& sender) {
       if (!events.Push({sender, std::move(message)})) Complain("message", sender, "too many wait already");
     };
@@ -87,6 +87,7 @@ CoordinatorLink::CoordinatorLink(const NetworkOptions& network) : impl_(std::mak
 CoordinatorLink::~CoordinatorLink() = default;
 
 std::vector<CoordinatorEvent> CoordinatorLink::Wait(std::chrono::milliseconds timeout) {
+  impl_->participant.LogSilent();
   return impl_->events.Wait(timeout);
 }
 

@@ -61,6 +61,16 @@ class GuardedType : public PubSubType {
   static inline thread_local bool refused = false;
 };
 
+/// The worker or client who sends a message, or to whom it goes.
+template <typename Plain>
+const std::string& NameIn(const Plain& message) {
+  if constexpr (requires { message.client; }) {
+    return message.client;
+  } else {
+    return message.worker;
+  }
+}
+
 /// Thread-safe.
 template <typename PubSubType>
 class Writer : private eprosima::fastdds::dds::DataWriterListener {
@@ -143,6 +153,7 @@ class Reader : private eprosima::fastdds::dds::DataReaderListener {
       : topic_(topic),
         on_message_(std::move(on_message)),
         on_gone_(std::move(on_gone)),
+        participant_(participant),
         subscriber_(subscriber) {
     reader_ = subscriber->create_datareader(participant.TopicOf<GuardedType<PubSubType>>(topic), qos, this);
     if (reader_ == nullptr) throw NetworkError("cannot create a reader of " + topic);
@@ -166,7 +177,10 @@ class Reader : private eprosima::fastdds::dds::DataReaderListener {
         continue;
       }
       auto plain = FromIdl(message);
-      const std::string problem = plain ? Problem(*plain) : "an unknown state or outcome";
+      std::string problem = plain ? Problem(*plain) : "an unknown state or outcome";
+      if (problem.empty() && !participant_.MaySpeakFor(info.publication_handle, NameIn(*plain))) {
+        problem = "it names a worker or client that its keys are not for";
+      }
       if (problem.empty()) {
         on_message_(*std::move(plain), sender);
       } else {
@@ -189,6 +203,7 @@ class Reader : private eprosima::fastdds::dds::DataReaderListener {
   std::string topic_;
   OnMessage on_message_;
   OnGone on_gone_;
+  Participant& participant_;
   eprosima::fastdds::dds::Subscriber* subscriber_;
   eprosima::fastdds::dds::DataReader* reader_ = nullptr;
 };

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
+
+#include "services/transport/key_folder.h"
 
 namespace dispersa {
 
@@ -19,6 +22,8 @@ Peer ParsePeer(const std::string& text, int domain);
 struct NetworkOptions {
   int domain = 0;       ///< 0 .. 99
   std::string address;  ///< IPv4 address of the only interface to use; empty: all
+  /// Who we are; then only those are spoken to whom the same authority issued keys, and all is encrypted.
+  std::optional<KeyFolder> keys = {};
 };
 
 /// The fixed port at which the coordinator of a domain is discovered: 7400 + 250 * domain + 5, one that no

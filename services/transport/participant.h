@@ -12,6 +12,7 @@
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <fastdds/dds/topic/Topic.hpp>
 
+#include "services/transport/neighbours.h"
 #include "services/transport/network.h"
 
 namespace dispersa {
@@ -37,9 +38,16 @@ class Participant {
     if (auto* topic = FindTopic(name)) return topic;
     return MakeTopic(name, eprosima::fastdds::dds::TypeSupport(new PubSubType()));
   }
-  /// With a partition, or without if it is empty.
+  /// In a partition; an empty one is none.
   eprosima::fastdds::dds::Publisher* MakePublisher(const std::string& partition);
-  eprosima::fastdds::dds::Subscriber* MakeSubscriber(const std::string& partition);
+  eprosima::fastdds::dds::Subscriber* MakeSubscriber(const std::vector<std::string>& partitions);
+
+  /// Whether this writer of another participant is sure to speak for, or to, the worker or client of that
+  /// name. Without keys nothing is sure, and all may.
+  bool MaySpeakFor(const eprosima::fastrtps::rtps::InstanceHandle_t& writer, const std::string& name) const;
+
+  /// Now and then: see Neighbours.
+  void LogSilent() { neighbours_.LogSilent(); }
 
   eprosima::fastdds::dds::DomainParticipant* get() { return participant_; }
 
@@ -47,6 +55,8 @@ class Participant {
   eprosima::fastdds::dds::Topic* FindTopic(const std::string& name);
   eprosima::fastdds::dds::Topic* MakeTopic(const std::string& name, eprosima::fastdds::dds::TypeSupport type);
 
+  bool has_keys_;
+  Neighbours neighbours_;
   eprosima::fastdds::dds::DomainParticipant* participant_ = nullptr;
 };
 

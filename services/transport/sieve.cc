@@ -23,6 +23,17 @@ constexpr std::uint8_t kAckNack = 0x06;
 constexpr std::uint8_t kHeartbeat = 0x07;
 constexpr std::uint8_t kData = 0x15;
 constexpr std::uint8_t kDataFragment = 0x16;
+constexpr std::uint8_t kNackFragment = 0x12;
+constexpr std::uint8_t kHeartbeatFragment = 0x13;
+// Of DDS Security. What is encrypted is a prefix, a body and a postfix.
+constexpr std::uint8_t kSecureBody = 0x30;
+constexpr std::uint8_t kSecurePrefix = 0x31;
+constexpr std::uint8_t kSecurePostfix = 0x32;
+constexpr std::uint8_t kSecureMessagePrefix = 0x33;
+constexpr std::uint8_t kSecureMessagePostfix = 0x34;
+// Writers, as big-endian numbers, that say who they are and shake hands.
+constexpr std::uint32_t kGreeting = 0x000100c2;
+constexpr std::uint32_t kHandshake = 0x000201c3;
 
 /// What a reader that comes late to one of our writers may be told to skip (endpoints.h renews writers before
 /// they have written more).
@@ -35,20 +46,23 @@ class Submessage {
       : body_(body), size_(size), little_(little_endian) {}
 
   std::size_t size() const { return size_; }
-  std::uint32_t U32(std::size_t at) const {
-    std::uint32_t value = 0;
-    std::memcpy(&value, body_ + at, 4);
-    return little_ ? value : __builtin_bswap32(value);
-  }
+  std::uint32_t U32(std::size_t at) const { return little_ ? Native(at) : __builtin_bswap32(Native(at)); }
   std::uint16_t U16(std::size_t at) const {
     std::uint16_t value = 0;
     std::memcpy(&value, body_ + at, 2);
     return little_ ? value : __builtin_bswap16(value);
   }
+  std::uint32_t BigEndianU32(std::size_t at) const { return __builtin_bswap32(Native(at)); }
   /// A sequence number: its high half comes first.
   std::uint64_t Number(std::size_t at) const { return std::uint64_t{U32(at)} << 32 | U32(at + 4); }
 
  private:
+  std::uint32_t Native(std::size_t at) const {
+    std::uint32_t value = 0;
+    std::memcpy(&value, body_ + at, 4);
+    return value;
+  }
+
   const std::uint8_t* body_;
   std::size_t size_;
   bool little_;
@@ -93,10 +107,54 @@ const char* HarmOfSubmessage(std::uint8_t kind, const Submessage& what) {
   }
 }
 
+bool IsSecure(std::uint8_t kind) { return kind >= kSecureBody && kind <= kSecureMessagePostfix; }
+
+// `before`: the kind of the submessage before it. The library reads a body of the length that is written in
+// it.
+const char* HarmOfSecure(std::uint8_t kind, std::uint8_t before, const Submessage& what) {
+  switch (kind) {
+    case kSecurePrefix:
+      return what.size() == 20 ? nullptr : "an encrypted submessage without its head";
+    case kSecureBody:
+      if (before != kSecurePrefix || what.size() < 4 || what.BigEndianU32(0) > what.size() - 4) {
+        return "an encrypted submessage that is cut off";
+      }
+      return nullptr;
+    case kSecurePostfix:
+      if (before != kSecureBody || what.size() < 20) return "an encrypted submessage without its end";
+      return nullptr;
+    default:
+      return "a kind of encryption that is not used";
+  }
+}
+
+const char* HarmOfPlain(std::uint8_t kind, const Submessage& what) {
+  switch (kind) {
+    case kGap:
+    case kHeartbeat:
+    case kAckNack:
+    case kNackFragment:
+    case kHeartbeatFragment:
+    case kData:
+    case kDataFragment: {
+      const std::size_t writer_at = kind == kData || kind == kDataFragment ? 8 : 4;
+      if (what.size() < writer_at + 4) return "a submessage that is cut off";
+      const std::uint32_t writer = what.BigEndianU32(writer_at);
+      if (kind == kData && (writer == kGreeting || writer == kHandshake)) return nullptr;
+      // Discovery in plain is there, empty, and its readers ask until they know that it is empty.
+      const bool is_builtin = (writer & 0xc0) == 0xc0 && writer >> 24 == 0;
+      if (is_builtin && (kind == kHeartbeat || kind == kAckNack)) return nullptr;
+      return "a message in plain where all are encrypted";
+    }
+    default:
+      return nullptr;
+  }
+}
+
 class Sieve : public transport::ChainingTransport {
  public:
-  explicit Sieve(const transport::ChainingTransportDescriptor& descriptor)
-      : ChainingTransport(descriptor), descriptor_(descriptor) {}
+  Sieve(const transport::ChainingTransportDescriptor& descriptor, bool with_keys)
+      : ChainingTransport(descriptor), descriptor_(descriptor, with_keys), with_keys_(with_keys) {}
 
   transport::TransportDescriptorInterface* get_configuration() override { return &descriptor_; }
 
@@ -108,7 +166,7 @@ class Sieve : public transport::ChainingTransport {
 
   void receive(transport::TransportReceiverInterface* next, const rtps::octet* data, uint32_t size,
                const rtps::Locator_t& local, const rtps::Locator_t& remote) override {
-    if (const char* harm = HarmOf(data, size)) {
+    if (const char* harm = HarmOf(data, size, with_keys_)) {
       Complain("datagram", rtps::IPLocator::ip_to_string(remote), harm);
       return;
     }
@@ -117,20 +175,25 @@ class Sieve : public transport::ChainingTransport {
 
  private:
   struct Descriptor : transport::ChainingTransportDescriptor {
-    using ChainingTransportDescriptor::ChainingTransportDescriptor;
-    explicit Descriptor(const ChainingTransportDescriptor& other) : ChainingTransportDescriptor(other) {}
-    transport::TransportInterface* create_transport() const override { return new Sieve(*this); }
+    Descriptor(std::shared_ptr<TransportDescriptorInterface> inner, bool keys)
+        : ChainingTransportDescriptor(std::move(inner)), with_keys(keys) {}
+    Descriptor(const ChainingTransportDescriptor& other, bool keys)
+        : ChainingTransportDescriptor(other), with_keys(keys) {}
+    transport::TransportInterface* create_transport() const override { return new Sieve(*this, with_keys); }
+    bool with_keys;
   };
   friend std::shared_ptr<transport::TransportDescriptorInterface> dispersa::Sieved(
-      std::shared_ptr<transport::TransportDescriptorInterface>);
+      std::shared_ptr<transport::TransportDescriptorInterface>, bool);
 
   Descriptor descriptor_;
+  bool with_keys_;
 };
 
 }  // namespace
 
-const char* HarmOf(const std::uint8_t* datagram, std::size_t size) {
+const char* HarmOf(const std::uint8_t* datagram, std::size_t size, bool with_keys) {
   if (size < kMessageHeader || std::memcmp(datagram, "RTPS", 4) != 0) return "not of the protocol";
+  std::uint8_t before = 0;
   for (std::size_t at = kMessageHeader; at < size;) {
     if (size - at < 4) return "a submessage that is cut off";
     const std::uint8_t kind = datagram[at];
@@ -140,15 +203,25 @@ const char* HarmOf(const std::uint8_t* datagram, std::size_t size) {
     if (length > rest) return "a submessage that is cut off";
     // 0: up to the end, but for the two kinds that may be empty (PAD, INFO_TS).
     if (length == 0 && kind != 0x01 && kind != 0x09) length = rest;
-    if (const char* harm = HarmOfSubmessage(kind, {datagram + at + 4, length, little_endian})) return harm;
+    const Submessage what(datagram + at + 4, length, little_endian);
+    const char* harm = nullptr;
+    if (IsSecure(kind)) {
+      harm = with_keys ? HarmOfSecure(kind, before, what) : "it is encrypted, and we have no keys";
+    } else {
+      if (before == kSecurePrefix || before == kSecureBody) return "an encrypted submessage that is cut off";
+      if (with_keys) harm = HarmOfPlain(kind, what);
+      if (harm == nullptr) harm = HarmOfSubmessage(kind, what);
+    }
+    if (harm != nullptr) return harm;
+    before = kind;
     at += 4 + length;
   }
   return nullptr;
 }
 
 std::shared_ptr<transport::TransportDescriptorInterface> Sieved(
-    std::shared_ptr<transport::TransportDescriptorInterface> inner) {
-  return std::make_shared<Sieve::Descriptor>(std::move(inner));
+    std::shared_ptr<transport::TransportDescriptorInterface> inner, bool with_keys) {
+  return std::make_shared<Sieve::Descriptor>(std::move(inner), with_keys);
 }
 
 }  // namespace dispersa

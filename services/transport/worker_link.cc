@@ -17,8 +17,8 @@ namespace dds = eprosima::fastdds::dds;
 struct WorkerLink::Impl {
   Impl(const NetworkOptions& network, const Peer& peer, const std::string& worker)
       : participant({network, "dispersa-worker", std::nullopt, {peer}}),
-        publisher(participant.MakePublisher("")),
-        subscriber(participant.MakeSubscriber(PartitionOf(worker))) {
+        publisher(participant.MakePublisher(PartitionOf(worker))),
+        subscriber(participant.MakeSubscriber({PartitionOf(worker)})) {
     const auto push = [this](auto&& message, const std::string& sender) {
       if (!events.Push(std::move(message))) Complain("message", sender, "too many wait already");
     };
@@ -47,6 +47,7 @@ WorkerLink::WorkerLink(const NetworkOptions& network, const Peer& peer, const st
 WorkerLink::~WorkerLink() = default;
 
 std::vector<WorkerEvent> WorkerLink::Wait(std::chrono::milliseconds timeout) {
+  impl_->participant.LogSilent();
   return impl_->events.Wait(timeout);
 }
 

@@ -11,17 +11,9 @@
 
 #include "core/flight/engine_version.h"
 #include "core/flight/lane_engine.h"
+#include "services/transport/admission.h"
+#include "services/transport/exit_code.h"
 #include "services/worker/worker.h"
-
-namespace {
-
-// Exit codes of the product that apply to a worker.
-constexpr int kDone = 0;
-constexpr int kInternalError = 1;
-constexpr int kBadUsage = 2;
-constexpr int kIncomplete = 5;  // refused, or no coordinator
-
-}  // namespace
 
 int main(int argc, char** argv) {
   using namespace dispersa;
@@ -29,6 +21,7 @@ int main(int argc, char** argv) {
 
   WorkerOptions options;
   std::string peer;
+  Admission admission;
   CLI::App app(
       "Flies cases for a coordinator, which it waits for as long as there is none. SIGTERM: it finishes what "
       "it flies,\n"
@@ -41,6 +34,8 @@ int main(int argc, char** argv) {
   app.add_option("--peer", peer, "HOST[:PORT] of the coordinator")->required();
   app.add_option("--address", options.network.address, "IPv4 address of the only network interface to use")
       ->check(CLI::ValidIPV4);
+  app.add_option("--keys", admission.keys, kKeysHelp);
+  app.add_flag("--insecure", admission.insecure, kInsecureHelp);
   app.add_option("--slots", options.slots, "cases flown at the same time")->check(CLI::Range(1, 1024));
   app.add_option("--idle-exit", options.idle_exit_s,
                  "leave (exit code 0) after so many seconds without a case")
@@ -52,15 +47,14 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kDone : kBadUsage;
+    return app.exit(error) == 0 ? kExitDone : kExitBadInput;
   }
   try {
     ChosenEngine();
   } catch (const std::invalid_argument& error) {
     spdlog::error("{}", error.what());
-    return kBadUsage;
+    return kExitBadInput;
   }
-  if (options.uuid.empty()) options.uuid = MakeUuid();
 
   // Before any thread starts, so that every thread leaves the signals to the one that waits for them.
   sigset_t ends;
@@ -69,9 +63,11 @@ int main(int argc, char** argv) {
   sigaddset(&ends, SIGINT);
   pthread_sigmask(SIG_BLOCK, &ends, nullptr);
 
-  int code = kInternalError;
+  int code = kExitInternalError;
   try {
     options.peer = ParsePeer(peer, options.network.domain);
+    options.network = Admit(options.network, admission, {Role::kWorker}, options.peer.host);
+    options.uuid = NameOnNetwork(options.network, options.uuid.empty() ? MakeUuid() : options.uuid);
     Worker worker(options);
     std::thread([&] {
       int signal = 0;
@@ -84,11 +80,11 @@ int main(int argc, char** argv) {
       std::raise(signal);
     }).detach();
     const WorkerExit exit = worker.Run();
-    code = exit == WorkerExit::kRefused || exit == WorkerExit::kNoCoordinator ? kIncomplete : kDone;
+    code = exit == WorkerExit::kRefused || exit == WorkerExit::kNoCoordinator ? kExitIncomplete : kExitDone;
     std::_Exit(code);  // the other threads still use what a return would destroy
   } catch (const NetworkError& error) {
     spdlog::error("{}", error.what());
-    code = kBadUsage;
+    code = kExitBadInput;
   } catch (const std::exception& error) {
     spdlog::error("{}", error.what());
   }

@@ -4,13 +4,20 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstdlib>
+#include <filesystem>
 #include <numeric>
+#include <optional>
 #include <set>
+#include <stdexcept>
+#include <string>
 #include <thread>
 
 #include "core/flight/engine_version.h"
 #include "core/flight/flight_inputs.h"
 #include "services/coordinator/ledger.h"
+#include "services/transport/admission.h"
+#include "services/transport/authority.h"
 #include "services/transport/coordinator_link.h"
 #include "services/transport/private_domain.h"
 #include "services/transport/worker_link.h"
@@ -32,15 +39,20 @@ double ProcessorSeconds() {
 }
 
 /// Answers each case as a real worker does: a start, and the result with the next start.
-void Answer(WorkerLink& link, const std::atomic<bool>& stop) {
-  Report report{.worker = "w", .coordinator_epoch = 1, .number = 0, .flight_id = kFlightId, .flown = {}, .started = {}};
+void Answer(WorkerLink& link, const std::string& worker, const std::atomic<bool>& stop) {
+  Report report{.worker = worker,
+                .coordinator_epoch = 1,
+                .number = 0,
+                .flight_id = kFlightId,
+                .flown = {},
+                .started = {}};
   CaseResult result;
   result.outcome = Outcome::kCompleted;
   result.inputs.assign(InputColumns().size(), 1.0 / 3.0);
   result.metrics.assign(MetricNames().size(), 2.0 / 3.0);
   // A coordinator listens to nobody who has not introduced himself.
   WorkerStatus status;
-  status.worker = "w";
+  status.worker = worker;
   status.host = "host";
   status.pid = 1;
   status.engine_version = EngineVersion();
@@ -66,21 +78,47 @@ void Answer(WorkerLink& link, const std::atomic<bool>& stop) {
   }
 }
 
-/// One assignment of state.range(0) cases, until its last result is back.
+/// Keys of a coordinator and a worker, in a folder that goes with it.
+class Keys {
+ public:
+  Keys() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "dispersa-keys-XXXXXX").string();
+    if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary folder");
+    folder_ = pattern;
+    MakeAuthority(folder_, ValidFor(1));
+  }
+  ~Keys() { std::filesystem::remove_all(folder_); }
+  Keys(const Keys&) = delete;
+  Keys& operator=(const Keys&) = delete;
+
+  KeyFolder Of(Role role) { return OpenKeyFolder(IssueKeys(folder_, role, "one", ValidFor(1)), {role}); }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+/// One assignment of state.range(0) cases, until its last result is back; with keys if state.range(1).
 void BM_AssignmentRoundTrip(benchmark::State& state) {
   const PrivateDomain domain;
-  const NetworkOptions network{domain.domain(), "127.0.0.1"};
-  CoordinatorLink coordinator(network);
-  WorkerLink link(network, {"127.0.0.1", CoordinatorPort(domain.domain())}, "w");
+  NetworkOptions ours{domain.domain(), "127.0.0.1"}, theirs = ours;
+  std::optional<Keys> keys;
+  if (state.range(1) != 0) {
+    keys.emplace();
+    ours.keys = keys->Of(Role::kCoordinator);
+    theirs.keys = keys->Of(Role::kWorker);
+  }
+  const std::string name = NameOnNetwork(theirs, "w");
+  CoordinatorLink coordinator(ours);
+  WorkerLink link(theirs, {"127.0.0.1", CoordinatorPort(domain.domain())}, name);
   std::atomic<bool> stop = false;
-  std::jthread worker([&] { Answer(link, stop); });
+  std::jthread worker([&] { Answer(link, name, stop); });
 
   std::vector<std::uint64_t> cases(static_cast<std::size_t>(state.range(0)));
   std::iota(cases.begin(), cases.end(), 0);
   std::uint64_t attempt = 0;
   const auto round = [&] {
     Orders orders;
-    orders.worker = "w";
+    orders.worker = name;
     orders.coordinator_epoch = 1;
     orders.assignments = {{kFlightId, ++attempt, cases}};
     // Repeated until they are answered, as a coordinator does: the first may go before anybody listens.
@@ -108,7 +146,11 @@ void BM_AssignmentRoundTrip(benchmark::State& state) {
   state.counters["cpu_us/case"] = 1e6 * (ProcessorSeconds() - before_s) / flown;
   stop = true;
 }
-BENCHMARK(BM_AssignmentRoundTrip)->Arg(1)->Arg(8)->Arg(64)->UseRealTime()->Unit(benchmark::kMicrosecond);
+BENCHMARK(BM_AssignmentRoundTrip)
+    ->ArgNames({"cases", "keys"})
+    ->ArgsProduct({{1, 8, 64}, {0, 1}})
+    ->UseRealTime()
+    ->Unit(benchmark::kMicrosecond);
 
 /// The ledger's share of a case.
 void BM_LedgerCase(benchmark::State& state) {

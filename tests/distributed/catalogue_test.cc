@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
+#include <cmath>
 #include <fstream>
 
 #include "core/campaign/input_error.h"
@@ -140,6 +141,7 @@ TEST(RunningTally, CountsWhatBreaksARequirementInAnyOrder) {
   result.metrics.assign(MetricNames().size(), 0.1);
   result.outcome = Outcome::kCompleted;
   EXPECT_EQ(tally.Standings().at(0).so_far, "inconclusive") << "none flown";
+  EXPECT_EQ(tally.histograms().at(0).metric, "pitch_error_peak_deg");
   // 0.9^21 > 0.1 >= 0.9^22.
   for (int i = 0; i < 21; ++i) tally.Add(result);
   EXPECT_EQ(tally.Standings().at(0).so_far, "inconclusive");
@@ -154,6 +156,12 @@ TEST(RunningTally, CountsWhatBreaksARequirementInAnyOrder) {
   EXPECT_EQ(standing.n, 32);
   EXPECT_EQ(standing.failures, 10);
   EXPECT_EQ(standing.so_far, "fail");
+  result.metrics[MetricColumn("pitch_error_peak_deg")] = std::nan("");
+  tally.Add(result);
+  // Neither the lost one nor the undefined one.
+  EXPECT_EQ(tally.n(), 33);
+  EXPECT_EQ(tally.histograms().at(0).values.n(), 31);
+  EXPECT_EQ(tally.histograms().at(1).values.n(), 32);
   campaign.sampling.method = SamplingMethod::kSobol;
   EXPECT_EQ(RunningTally(campaign).Standings().at(0).so_far, "study");
 }

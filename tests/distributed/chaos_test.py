@@ -1,85 +1,151 @@
-"""The daemons under a hundred kills: coordinators started again while workers live, workers replaced at random.
+"""A service on three hosts whose processes are killed and frozen and whose links are cut and lose packets, while it
+flies several campaigns: all bytes are those of a run in one process, and it always gets on again.
 
-Environment as of run_test.py. Long: about three minutes.
+Environment as of run_test.py. DISPERSA_TROUBLES: how many (default 16; tests/run --long: 1000); DISPERSA_SEED draws them.
 """
 import os
 import pathlib
 import random
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
 import time
 import unittest
 
-from run_test import BINARIES, CAMPAIGN, ISOLATED, PATIENCE_S, Run, end, isolate, raise_loopback, stored, wait_for
+from hosts import Hosts
+from run_test import BINARIES, CAMPAIGN, ISOLATED, Run, end, isolate, raise_loopback, shared_memory_segments, stored, wait_for
 
-CASES = 400
-COORDINATOR_KILLS = 80
-WORKER_KILLS = 20
-NETWORK = ["--domain", "40", "--address", "127.0.0.1"]
+TROUBLES = int(os.environ.get("DISPERSA_TROUBLES", "16"))
+CASES = 800
+OPEN = 2           # campaigns at once, at least
+LONGEST_S = 6.0    # a freeze, a cut: beyond the silence after which a worker is lost
+STALL_S = 30       # after a trouble something must be stored within
+PATIENCE_S = 120   # for the last campaigns, when all is calm
+NETWORK = ["--domain", "33", "--insecure"]
 
 
 class ChaosTest(unittest.TestCase):
     def setUp(self):
         self.root = pathlib.Path(tempfile.mkdtemp(prefix="dispersa-chaos-"))
+        self.segments = shared_memory_segments()
+        self.draws = random.Random(int(os.environ.get("DISPERSA_SEED", "1")))
+        self.hosts = Hosts(3)
         self.processes = []
+        self.launched = []
+        self.longest_stall_s = 0.0
 
     def tearDown(self):
         end(self.processes)
+        self.hosts.close()
+        self.assertEqual(shared_memory_segments(), self.segments)
         shutil.rmtree(self.root)
 
-    def start(self, program, *arguments):
+    def start(self, host, program, *arguments):
         with (self.root / "log").open("a") as log:
-            self.processes.append(subprocess.Popen([BINARIES / program, *map(str, arguments), *NETWORK],
-                                                   stdout=subprocess.DEVNULL, stderr=log))
-        return self.processes[-1]
+            process = self.hosts[host].start([BINARIES / program, *arguments, *NETWORK], stdout=log, stderr=log)
+        self.processes.append(process)
+        return process
 
-    def start_worker(self):
-        return self.start("dispersa-worker", "--peer", "127.0.0.1", "--slots", 1)
+    def start_coordinator(self):
+        return self.start(0, "dispersa-coordinator", "--data", self.root / "data")
 
-    def end(self, process):
-        process.kill()
-        process.wait()
+    def start_worker(self, host):
+        return self.start(host, "dispersa-worker", "--peer", self.hosts[0].address)
 
-    def test_every_restart_gets_on_and_the_bytes_are_the_same(self):
-        reference = Run(self.root / "reference", "--workers", 0, "--cases", CASES).finish()
-        out = self.root / "chaos"
-        draws = random.Random(1)
-        kills = draws.sample([True] * COORDINATOR_KILLS + [False] * WORKER_KILLS, COORDINATOR_KILLS + WORKER_KILLS)
-        workers = [self.start_worker(), self.start_worker()]
+    def client(self, *arguments):
+        """Of a host whose link is whole: a client repeats what it asks until it is answered."""
+        done = subprocess.run([*self.hosts[0].inside, BINARIES / "dispersa", *map(str, arguments), *NETWORK,
+                               "--peer", self.hosts[0].address], capture_output=True, text=True, timeout=PATIENCE_S)
+        return done.returncode, done.stdout, done.stderr
 
-        def start_coordinator():
-            return self.start("dispersa-coordinator", CAMPAIGN, "--cases", CASES, "--out", out, "--resume")
-        coordinator = start_coordinator()
-        for of_coordinator in kills:
-            before = stored(out)
-            if before >= CASES - 10:
-                break
-            # Killed at any time, also before it has a worker; but every other one must get a result first.
-            if draws.random() < 0.5:
-                wait_for(lambda: stored(out) > before, f"a result after {before}")
-            time.sleep(draws.random() * 0.5)
-            if of_coordinator:
-                self.end(coordinator)
-                coordinator = start_coordinator()
+    def stored(self):
+        return {identity: stored(self.root / "data" / identity / "results") for identity in self.launched}
+
+    def keep_busy(self):
+        while sum(count < CASES for count in self.stored().values()) < OPEN:
+            code, out, error = self.client("launch", CAMPAIGN, "--cases", CASES, "--seed", len(self.launched) + 1)
+            self.assertEqual(code, 0, error)
+            self.launched.append(out.strip())
+
+    def trouble(self):
+        """One of them, over when this returns."""
+        long_s = self.draws.uniform(0.0, LONGEST_S)
+        host = self.draws.randrange(3)
+        what = self.draws.choices(["kill worker", "freeze worker", "kill coordinator", "freeze coordinator", "cut",
+                                   "deafen", "silence", "lose"], weights=[4, 2, 3, 2, 1, 1, 1, 1])[0]
+        victim = self.coordinator if "coordinator" in what else self.workers[host]
+        if what.startswith("kill"):
+            victim.kill()
+            victim.wait()
+            self.processes.remove(victim)
+            if victim is self.coordinator:
+                time.sleep(long_s / 3)
+                self.coordinator = self.start_coordinator()
             else:
-                self.end(workers.pop(0))
-                workers.append(self.start_worker())
-        try:
-            coordinator.wait(timeout=3 * PATIENCE_S)
-        except subprocess.TimeoutExpired:
-            self.fail(f"{stored(out)} of {CASES} cases, then nothing:\n{(self.root / 'log').read_text()[-4000:]}")
-        self.assertEqual(coordinator.returncode, reference.code, (self.root / "log").read_text()[-4000:])
-        self.assertEqual((out / "cases.csv").read_bytes(), reference.csv())
-        for worker in workers:
-            self.assertEqual(worker.wait(timeout=PATIENCE_S), 0)
+                self.workers[host] = self.start_worker(host)
+        elif what.startswith("freeze"):
+            victim.send_signal(signal.SIGSTOP)
+            time.sleep(long_s)
+            victim.send_signal(signal.SIGCONT)
+        else:
+            link = self.hosts[host]
+            {"cut": link.cut, "deafen": lambda: link.drop("in", 100), "silence": lambda: link.drop("out", 100),
+             "lose": lambda: [link.drop(way, self.draws.randrange(10, 50)) for way in ("in", "out")]}[what]()
+            time.sleep(long_s)
+            link.heal()
+        return f"{what}, host {host}, {long_s:.1f} s"
+
+    def await_progress(self, before, after):
+        """Until more is stored than was when the trouble was over."""
+        deadline = time.monotonic() + STALL_S
+        while sum(self.stored().values()) <= before:
+            if time.monotonic() > deadline:
+                self.fail(f"nothing was stored for {STALL_S} s after: {after}\n{(self.root / 'log').read_text()[-6000:]}")
+            time.sleep(0.05)
+        self.longest_stall_s = max(self.longest_stall_s, time.monotonic() - deadline + STALL_S)
+
+    def test_whatever_happens_the_bytes_are_the_same(self):
+        self.coordinator = self.start_coordinator()
+        self.workers = [self.start_worker(host) for host in range(3)]
+        for _ in range(TROUBLES):
+            self.keep_busy()
+            what = self.trouble()
+            self.keep_busy()
+            self.await_progress(sum(self.stored().values()), what)
+        self.assert_same_bytes()
+        print(f"{TROUBLES} troubles, {len(self.launched)} campaigns; at most {self.longest_stall_s:.1f} s until more was stored")
+
+    def test_a_coordinator_that_hears_nobody_starts_again(self):
+        self.coordinator = self.start_coordinator()
+        self.workers = [self.start_worker(1)]
+        self.keep_busy()
+        wait_for(lambda: sum(self.stored().values()) > 0, "first results")
+        self.hosts[0].drop("in", 100)
+        wait_for(lambda: "the coordinator starts again" in (self.root / "log").read_text(), "a new start")
+        self.hosts[0].heal()
+        self.assert_same_bytes()
+
+    def assert_same_bytes(self):
+        """Of all campaigns, at their end; and that nothing has ended by itself."""
+        for seed, identity in enumerate(self.launched, 1):
+            reference = Run(self.root / f"reference{seed}", "--workers", 0, "--cases", CASES, "--seed", seed).finish()
+            code, _, error = self.client("watch", identity)
+            self.assertEqual(code, reference.code, error)
+            out = self.root / f"fetched{seed}"
+            self.assertEqual(self.client("fetch", identity, "--out", out)[0], 0)
+            for name in ("cases.csv", "summary.json", "report.html"):
+                self.assertEqual((out / name).read_bytes(), (reference.out / name).read_bytes(), name)
+            shutil.rmtree(out), shutil.rmtree(reference.out)
+        for process in self.processes:
+            self.assertIsNone(process.poll(), "an end that nobody asked for")
 
 
 if __name__ == "__main__":
+    sys.dont_write_bytecode = True
     if ISOLATED not in os.environ:
         isolate()
-    else:
-        raise_loopback()
-    sys.dont_write_bytecode = True
+        sys.exit("no network namespaces: hosts cannot be made")
+    raise_loopback()
     unittest.main()

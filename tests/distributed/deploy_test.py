@@ -5,6 +5,7 @@ Environment as of run_test.py. Addresses, folders and ports are the test's; noth
 import configparser
 import os
 import pathlib
+import re
 import shlex
 import shutil
 import signal
@@ -16,6 +17,7 @@ import urllib.request
 import yaml
 
 from run_test import BINARIES, ISOLATED, PATIENCE_S, end, isolate, raise_loopback, wait_for
+from security_test import keys
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
 DEPLOY = REPOSITORY / "services/deploy"
@@ -32,6 +34,10 @@ def unit(name):
 class DeployTest(unittest.TestCase):
     def setUp(self):
         self.data = tempfile.mkdtemp(prefix="dispersa-deploy-")
+        self.authority = pathlib.Path(self.data, "authority")
+        keys("init", self.authority)
+        self.keys = {program: keys("issue", self.authority, "--role", role, "--name", "one") for program, role in
+                     (("dispersa-coordinator", "coordinator"), ("dispersa-worker", "worker"), ("dispersa", "client"))}
         self.processes = []
 
     def tearDown(self):
@@ -39,26 +45,30 @@ class DeployTest(unittest.TestCase):
         shutil.rmtree(self.data)
 
     def start(self, words, environment=None):
-        """Starts a command of a file on loopback, with the folder and the peer of this test."""
-        words = [str(word) for word in words]
-        program = pathlib.Path(words[0]).name
-        for option, value in (("--data", self.data), ("--peer", "127.0.0.1"), ("--slots", "1")):
-            if option in words:
-                words[words.index(option) + 1] = value
-        command = [BINARIES / program, *words[1:], "--address", "127.0.0.1"]
+        """Starts a command of a file on loopback."""
+        command = self.on_loopback(words)
         self.processes.append(subprocess.Popen(command, stderr=subprocess.DEVNULL, env={**os.environ, **(environment or {})}))
         return self.processes[-1]
 
+    def on_loopback(self, words):
+        """The command with the folders, keys and peer of this test. Each must name keys."""
+        words = [str(word) for word in words]
+        program = pathlib.Path(words[0]).name
+        words[words.index("--keys") + 1] = self.keys[program]
+        for option, value in (("--data", f"{self.data}/data"), ("--peer", "127.0.0.1"), ("--slots", "1")):
+            if option in words:
+                words[words.index(option) + 1] = value
+        return [BINARIES / program, *words[1:], "--address", "127.0.0.1"]
+
     def assert_they_find_each_other(self, coordinator, worker, probe):
         def workers():
-            status = subprocess.run([BINARIES / "dispersa", "status", "--domain", "0", "--address", "127.0.0.1"],
+            status = subprocess.run(self.on_loopback(["dispersa", "status", "--domain", "0", "--keys", "/keys"]),
                                     capture_output=True, text=True)
             return "worker " in status.stdout
         self.start(coordinator)
         worker = self.start(worker) if isinstance(worker, list) else worker()
         wait_for(workers, "a worker")
-        probe = [BINARIES / probe[0], *probe[1:], "--address", "127.0.0.1"]
-        self.assertEqual(subprocess.run(probe, timeout=PATIENCE_S).returncode, 0)
+        self.assertEqual(subprocess.run(self.on_loopback(probe), timeout=PATIENCE_S).returncode, 0)
         worker.send_signal(signal.SIGTERM)
         self.assertEqual(worker.wait(timeout=PATIENCE_S), 0)
 
@@ -67,6 +77,8 @@ class DeployTest(unittest.TestCase):
         services = compose["services"]
         self.assertEqual(set(services), {"coordinator", "worker"})
         self.assertEqual(services["coordinator"]["healthcheck"]["test"][0], "CMD")
+        for name, service in services.items():
+            self.assertRegex(" ".join(service["volumes"]), rf"/issued/{name}-\w+:/keys:ro\b")
         self.assert_they_find_each_other(shlex.split(services["coordinator"]["command"]),
                                          shlex.split(services["worker"]["command"]),
                                          services["coordinator"]["healthcheck"]["test"][1:])
@@ -86,6 +98,12 @@ class DeployTest(unittest.TestCase):
         for kind in ("StatefulSet", "Deployment"):
             spec = documents[kind]["spec"]
             self.assertEqual(spec["selector"]["matchLabels"], spec["template"]["metadata"]["labels"])
+            pod = spec["template"]["spec"]
+            mounts = {mount["name"]: mount["mountPath"] for mount in pod["containers"][0]["volumeMounts"]}
+            self.assertEqual(pod["containers"][0]["command"][pod["containers"][0]["command"].index("--keys") + 1], mounts["keys"])
+            # Readable for the user of the container and nobody else.
+            self.assertEqual((pod["volumes"][0]["name"], pod["volumes"][0]["secret"]["defaultMode"]), ("keys", 0o440))
+            self.assertEqual(pod["securityContext"]["fsGroup"], 1000)
         self.assert_they_find_each_other(coordinator["command"], worker["command"],
                                          coordinator["readinessProbe"]["exec"]["command"])
         metrics = urllib.request.urlopen("http://127.0.0.1:9464/metrics", timeout=PATIENCE_S).read().decode()
@@ -97,12 +115,16 @@ class DeployTest(unittest.TestCase):
         coordinator, worker = unit("dispersa-coordinator.service"), unit("dispersa-worker.service")
         variables = dict(word.split("=", 1) for word in worker["Service"]["Environment"].split())
         command = worker["Service"]["ExecStart"]
+        for name in ("dispersa-coordinator", "dispersa-worker"):
+            loaded = re.findall(r"(?m)^LoadCredential=(.*):/etc/dispersa/keys/(.*)$", (DEPLOY / f"{name}.service").read_text())
+            self.assertEqual({file for file, _ in loaded}, {file.name for file in self.keys[name].iterdir()})
+            self.assertTrue(all(shown == file for shown, file in loaded))
         for name, value in variables.items():
             command = command.replace("${" + name + "}", value)
         self.assertNotIn("$", command)
         self.assertEqual((coordinator["Service"]["Restart"], worker["Service"]["Restart"]), ("always", "always"))
         self.assert_they_find_each_other(shlex.split(coordinator["Service"]["ExecStart"]), shlex.split(command),
-                                         ["dispersa-coordinator", "--health", "--domain", "0"])
+                                         ["dispersa-coordinator", "--health", "--domain", "0", "--keys", "%d"])
 
     def test_slurm(self):
         script = DEPLOY / "slurm.sbatch"
@@ -112,11 +134,12 @@ class DeployTest(unittest.TestCase):
         self.assertIn("COORDINATOR: name of the host where dispersa-coordinator runs", missing.stderr)
 
         def submitted():
-            environment = {**os.environ, "PATH": f"{BINARIES}:{os.environ['PATH']}", "COORDINATOR": "127.0.0.1"}
+            environment = {**os.environ, "PATH": f"{BINARIES}:{os.environ['PATH']}", "COORDINATOR": "127.0.0.1",
+                           "DISPERSA_KEYS": str(self.keys["dispersa-worker"])}
             self.processes.append(subprocess.Popen(["bash", script], env=environment, stderr=subprocess.DEVNULL))
             return self.processes[-1]
-        self.assert_they_find_each_other(["dispersa-coordinator", "--data", self.data], submitted,
-                                         ["dispersa-coordinator", "--health"])
+        self.assert_they_find_each_other(["dispersa-coordinator", "--data", self.data, "--keys", "/keys"], submitted,
+                                         ["dispersa-coordinator", "--health", "--keys", "/keys"])
 
 
 if __name__ == "__main__":

@@ -4,10 +4,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <memory>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "core/flight/engine_version.h"
+#include "core/report/fingerprint.h"
 
 namespace dispersa {
 namespace {
@@ -18,9 +22,30 @@ using ::testing::IsEmpty;
 class MemoryStore : public ResultStore {
  public:
   std::size_t Append(std::span<const CaseResult> results) override { return stored += results.size(); }
-  void AppendExecution(std::span<const ExecutionRecord>) override {}
+  void AppendExecution(std::span<const ExecutionRecord> records) override {
+    for (const ExecutionRecord& record : records) worker_of[record.case_index] = record.worker;
+  }
   void Quarantine(const QuarantinedCase&) override {}
   std::vector<std::pair<std::uint64_t, Digest>> Fingerprints() const override { return {}; }
+  std::optional<std::string> WorkerOf(std::uint64_t case_index) const override {
+    const auto found = worker_of.find(case_index);
+    return found == worker_of.end() ? std::nullopt : std::optional(found->second);
+  }
+  void AppendAudits(std::span<const Claim> claims) override {
+    for (const Claim& claim : claims) audited.insert(claim.case_index);
+  }
+  void ForEachUnaudited(const std::function<void(const Claim&)>&) const override {}
+  std::vector<std::uint64_t> Disown(const std::string& worker) override {
+    std::vector<std::uint64_t> cases;
+    for (const auto& [case_index, who] : worker_of) {
+      if (who == worker) cases.push_back(case_index);
+    }
+    std::erase_if(worker_of, [&](const auto& each) { return each.second == worker; });
+    stored -= cases.size();
+    return cases;
+  }
+  std::map<std::uint64_t, std::string> worker_of;
+  std::set<std::uint64_t> audited;
   std::size_t stored = 0;
 };
 
@@ -61,6 +86,17 @@ class DispatcherTest : public testing::Test {
   LedgerProgress Progress() const { return book_->ledger().Progress(); }
   void Fly(std::uint64_t attempt, std::uint64_t case_index, double now_s, std::uint64_t number = 1) {
     dispatcher_.On("s", Report{"w", kEpoch, number, kFlight, {{attempt, ResultOf(case_index)}}, {}}, now_s);
+  }
+
+  /// Flies what the audit asks for; returns how many.
+  std::size_t FlyClaims(Dispatcher& dispatcher) {
+    std::vector<Claim> all;
+    dispatcher.TakeClaims([&](const Campaign&, std::vector<Claim> claims) {
+      all.insert(all.end(), claims.begin(), claims.end());
+    });
+    for (const Claim& claim : all)
+      dispatcher.Audited(kFlight, claim, Fingerprint(ResultOf(claim.case_index)));
+    return all.size();
   }
 
   static constexpr std::uint64_t kEpoch = 7;
@@ -287,6 +323,98 @@ TEST_F(DispatcherTest, GivesOutATextInParts) {
   EXPECT_EQ(dispatcher_.On(TextRequest{"w", kFlight, 8}, 4)->size, 10u);
   EXPECT_FALSE(dispatcher_.On(TextRequest{"w", kFlight, 11}, 4));
   EXPECT_FALSE(dispatcher_.On(TextRequest{"w", std::string(64, 'e'), 0}, 4));
+}
+
+class AuditTest : public DispatcherTest {
+ protected:
+  void Audit(double share, std::uint64_t cases) {
+    audited_ = std::make_unique<Dispatcher>(kEpoch, EngineVersion(), DispatcherOptions{.audit = {share, 1}});
+    auto store = std::make_unique<MemoryStore>();
+    store_ = store.get();
+    book_ = std::make_unique<CampaignBook>(MadeUp(kFlight, cases), std::move(store));
+    audited_->Open(*book_);
+    for (const char* worker : {"liar", "honest"}) audited_->On(worker, Status(worker), 0.0);
+  }
+  /// Of a worker that nobody gave the case to: a result is welcome from whomever.
+  void Return(const std::string& worker, CaseResult result, std::uint64_t number = 1) {
+    audited_->On(worker, Report{worker, kEpoch, number, kFlight, {{0, std::move(result)}}, {}}, 0.0);
+  }
+  static CaseResult Lie(std::uint64_t case_index) {
+    CaseResult lie = ResultOf(case_index);
+    lie.digest.low = 1;
+    return lie;
+  }
+  std::unique_ptr<Dispatcher> audited_;
+};
+
+TEST_F(AuditTest, TakesTheFirstResultOfEachWorkerAndTheShare) {
+  Audit(0.25, 1000);
+  for (std::uint64_t i = 0; i < 1000; ++i) Return(i % 2 == 0 ? "honest" : "liar", ResultOf(i), i + 1);
+  const std::size_t taken = FlyClaims(*audited_);
+  EXPECT_NEAR(static_cast<double>(taken), 252.0, 60.0) << "four standard deviations";
+  EXPECT_EQ(FlyClaims(*audited_), 0u) << "each once";
+  EXPECT_EQ(book_->confirmed(), taken);
+  EXPECT_EQ(audited_->expelled(), 0u);
+  book_->Flush();
+  EXPECT_EQ(store_->audited.size(), taken);
+}
+
+TEST_F(AuditTest, NothingIsCompleteBeforeItsAuditIs) {
+  Audit(1e-9, 2);
+  Return("honest", ResultOf(0));
+  Return("liar", ResultOf(1));
+  EXPECT_TRUE(book_->ledger().Complete());
+  EXPECT_FALSE(book_->Complete());
+  EXPECT_EQ(FlyClaims(*audited_), 2u) << "the first of each";
+  EXPECT_TRUE(book_->Complete());
+}
+
+TEST_F(AuditTest, ALiarIsExpelledAndAllThatItReturnedIsFlownAgain) {
+  Audit(1e-9, 8);
+  for (std::uint64_t i = 0; i < 4; ++i) Return("honest", ResultOf(i), i + 1);
+  Return("liar", Lie(4), 1);
+  for (std::uint64_t i = 5; i < 8; ++i) Return("liar", ResultOf(i), i + 1);
+  ASSERT_TRUE(book_->ledger().Complete());
+  FlyClaims(*audited_);
+  EXPECT_EQ(audited_->expelled(), 1u);
+  EXPECT_EQ(Progress().done, 4u) << "what it told the truth about too";
+  EXPECT_EQ(store_->stored, 4u);
+  // It is told why, whenever it speaks, and gets and gives nothing any more.
+  audited_->On("liar", Status("liar"), 1.0);
+  bool is_told = false;
+  for (const Orders& orders : audited_->Tick(1.0)) {
+    if (orders.worker != "liar") continue;
+    is_told = true;
+    EXPECT_THAT(orders.refusal, testing::HasSubstr("case 4"));
+    EXPECT_THAT(orders.assignments, IsEmpty());
+  }
+  EXPECT_TRUE(is_told);
+  Return("liar", ResultOf(5), 9);
+  EXPECT_EQ(Progress().done, 4u);
+  for (std::uint64_t i = 4; i < 8; ++i) Return("honest", ResultOf(i), i + 1);
+  EXPECT_TRUE(book_->Complete());
+}
+
+TEST_F(AuditTest, SettlesWhoIsWrongWhenTwoContradictEachOther) {
+  for (const bool the_lie_comes_first : {true, false}) {
+    Audit(1e-9, 3);
+    Return("honest", ResultOf(0), 1);
+    Return("liar", ResultOf(1), 1);
+    FlyClaims(*audited_);  // the first of each; the others are not chosen
+    if (the_lie_comes_first) Return("liar", Lie(2), 2);
+    Return("honest", ResultOf(2), 2);
+    if (!the_lie_comes_first) Return("liar", Lie(2), 2);
+    EXPECT_EQ(Progress().conflicts, 1u);
+    EXPECT_EQ(FlyClaims(*audited_), 2u);
+    EXPECT_EQ(audited_->expelled(), 1u);
+    EXPECT_EQ(Progress().conflicts, 0u) << "it is known who was wrong";
+    EXPECT_EQ(store_->WorkerOf(0), "honest");
+    EXPECT_EQ(store_->WorkerOf(1), std::nullopt);
+    EXPECT_EQ(book_->ledger().Complete(), false);
+    Return("honest", ResultOf(1), 3);
+    if (the_lie_comes_first) Return("honest", ResultOf(2), 4);
+    EXPECT_TRUE(book_->Complete());
+  }
 }
 
 }  // namespace

@@ -152,8 +152,8 @@ Bytes Datagram(std::uint8_t kind, const Bytes& body) {
   bytes.insert(bytes.end(), body.begin(), body.end());
   return bytes;
 }
-std::string Harm(const Bytes& bytes) {
-  const char* harm = HarmOf(bytes.data(), bytes.size());
+std::string Harm(const Bytes& bytes, bool with_keys = false) {
+  const char* harm = HarmOf(bytes.data(), bytes.size(), with_keys);
   return harm == nullptr ? "none" : harm;
 }
 Bytes Gap(std::uint64_t first, std::uint64_t base, std::uint32_t bits = 0) {
@@ -208,14 +208,72 @@ TEST(Sieve, DropsWhatWouldStopOrFillTheMiddleware) {
   EXPECT_EQ(Harm(cut), "a submessage that is cut off");
 }
 
+/// DATA of this writer, a big-endian number.
+Bytes Data(std::uint32_t writer) {
+  Bytes body(8);
+  body[2] = 16;
+  Put32(body, __builtin_bswap32(writer));
+  body.resize(24);
+  return Datagram(0x15, body);
+}
+/// Prefix, body and postfix, the body of `size` bytes that says that it has `told`.
+Bytes Encrypted(std::uint32_t told, std::uint16_t size) {
+  Bytes bytes = Datagram(0x31, Bytes(20));
+  bytes.insert(bytes.end(), {0x30, 1, static_cast<std::uint8_t>(size), static_cast<std::uint8_t>(size >> 8)});
+  Bytes body;
+  Put32(body, __builtin_bswap32(told));
+  body.resize(size);
+  bytes.insert(bytes.end(), body.begin(), body.end());
+  bytes.insert(bytes.end(), {0x32, 1, 20, 0});
+  bytes.resize(bytes.size() + 20);
+  return bytes;
+}
+
+TEST(Sieve, WithKeysNothingPassesInPlainButTheHandshake) {
+  EXPECT_EQ(Harm(Data(0x000100c2), true), "none") << "greeting";
+  EXPECT_EQ(Harm(Data(0x000201c3), true), "none") << "handshake";
+  EXPECT_EQ(Harm(Encrypted(96, 100), true), "none");
+  const char plain[] = "a message in plain where all are encrypted";
+  EXPECT_EQ(Harm(Data(0x00000103), true), plain) << "of a topic";
+  EXPECT_EQ(Harm(Data(0x000003c2), true), plain) << "of discovery in plain";
+  EXPECT_EQ(Harm(Data(0xff0003c2), true), plain) << "of encrypted discovery";
+  EXPECT_EQ(Harm(Data(0xff0202c3), true), plain) << "of the exchange of keys";
+  EXPECT_EQ(Harm(Gap(1, 2), true), plain);
+  EXPECT_EQ(Harm(Heartbeat(1, 0), true), plain);
+  EXPECT_EQ(Harm(Fragment(4, 65000, 256 << 10), true), plain);
+  // An encrypted one in front of it does not open the door.
+  Bytes both = Encrypted(96, 100);
+  const Bytes forged = Data(0x00000103);
+  both.insert(both.end(), forged.begin() + 20, forged.end());
+  EXPECT_EQ(Harm(both, true), plain);
+  for (const std::uint32_t writer : {0x00000103u, 0x000003c2u}) EXPECT_EQ(Harm(Data(writer)), "none");
+}
+
+TEST(Sieve, DropsEncryptedSubmessagesThatClaimMoreThanThereIs) {
+  EXPECT_EQ(Harm(Encrypted(97, 100), true), "an encrypted submessage that is cut off");
+  EXPECT_EQ(Harm(Encrypted(0xffffffff, 100), true), "an encrypted submessage that is cut off");
+  EXPECT_EQ(Harm(Datagram(0x30, Bytes(20)), true), "an encrypted submessage that is cut off") << "no prefix";
+  EXPECT_EQ(Harm(Datagram(0x32, Bytes(20)), true), "an encrypted submessage without its end") << "no body";
+  EXPECT_EQ(Harm(Datagram(0x31, Bytes(19)), true), "an encrypted submessage without its head");
+  EXPECT_EQ(Harm(Datagram(0x33, Bytes(20)), true), "a kind of encryption that is not used");
+  EXPECT_EQ(Harm(Encrypted(96, 100)), "it is encrypted, and we have no keys");
+  // A submessage in plain in the place of the body would be read as one that is only signed.
+  Bytes bytes = Datagram(0x31, Bytes(20));
+  const Bytes forged = Data(0x00000103);
+  bytes.insert(bytes.end(), forged.begin() + 20, forged.end());
+  EXPECT_EQ(Harm(bytes, true), "an encrypted submessage that is cut off");
+}
+
 TEST(Sieve, JudgesAnyDatagram) {
   std::mt19937_64 chance(3);
   for (std::uint64_t i = 0; i < Inputs(); ++i) {
-    Bytes bytes = chance() % 2 == 0 ? Gap(chance() % 9, chance() % 99) : Fragment(1, 100, 2000);
+    Bytes bytes = chance() % 3 == 0   ? Gap(chance() % 9, chance() % 99)
+                  : chance() % 2 == 0 ? Fragment(1, 100, 2000)
+                                      : Encrypted(96, 100);
     for (std::uint64_t k = chance() % 8; k > 0; --k)
       bytes[20 + chance() % (bytes.size() - 20)] = static_cast<std::uint8_t>(chance());
     bytes.resize(20 + chance() % (bytes.size() - 19));
-    (void)Harm(bytes);
+    (void)Harm(bytes, chance() % 2 == 0);
   }
 }
 

@@ -13,6 +13,7 @@
 #include "services/cli/local_workers.h"
 #include "services/coordinator/campaign_book.h"
 #include "services/coordinator/open_campaign.h"
+#include "services/coordinator/watchdog.h"
 
 namespace dispersa {
 namespace {
@@ -23,6 +24,10 @@ class Nowhere : public ResultStore {
   void AppendExecution(std::span<const ExecutionRecord>) override {}
   void Quarantine(const QuarantinedCase&) override {}
   std::vector<std::pair<std::uint64_t, Digest>> Fingerprints() const override { return {}; }
+  std::optional<std::string> WorkerOf(std::uint64_t) const override { return std::nullopt; }
+  void AppendAudits(std::span<const Claim>) override {}
+  void ForEachUnaudited(const std::function<void(const Claim&)>&) const override {}
+  std::vector<std::uint64_t> Disown(const std::string&) override { return {}; }
 };
 
 TEST(Rules, AConflictFailsTheCampaignWhateverItsVerdict) {
@@ -41,6 +46,15 @@ TEST(Rules, AConflictFailsTheCampaignWhateverItsVerdict) {
                              CampaignVerdict::kIncomplete}) {
     EXPECT_EQ(CampaignExitCode(verdict, conflicts()), 1);
   }
+}
+
+TEST(Rules, AVerdictHasItsExitCode) {
+  EXPECT_EQ(CampaignExitCode(CampaignVerdict::kPass, 0), 0);
+  EXPECT_EQ(CampaignExitCode(CampaignVerdict::kFail, 0), 3);
+  EXPECT_EQ(CampaignExitCode(CampaignVerdict::kStudyViolated, 0), 3);
+  EXPECT_EQ(CampaignExitCode(CampaignVerdict::kStudy, 0), 4);
+  EXPECT_EQ(CampaignExitCode(CampaignVerdict::kInconclusive, 0), 4);
+  EXPECT_EQ(CampaignExitCode(CampaignVerdict::kIncomplete, 0), 5);
 }
 
 // Statuses as waitpid gives them.
@@ -81,6 +95,26 @@ TEST(Rules, ResumingWithFewerCasesDropsNoRow) {
     EXPECT_THROW(OpenCampaign(request), InputError) << "two at once";
   }
   std::filesystem::remove_all(root);
+}
+
+TEST(DeafnessRule, WhoHeardSomebodyAndHasWorkDoesNotHearNobodyForLong) {
+  DeafnessRule rule;
+  long rounds = 0;
+  for (double t = 0.0; t < 100.0; t += 1.0)
+    EXPECT_FALSE(rule.Check(t, false, true, ++rounds)) << "nobody came yet";
+  EXPECT_FALSE(rule.Check(100.0, true, true, ++rounds));
+  for (double t = 101.0; t < 200.0; t += 1.0)
+    EXPECT_FALSE(rule.Check(t, false, false, ++rounds)) << "nothing to do";
+  for (double t = 200.0; t < 209.0; t += 1.0) EXPECT_FALSE(rule.Check(t, false, true, ++rounds)) << t;
+  EXPECT_TRUE(rule.Check(210.0, false, true, ++rounds));
+}
+
+TEST(DeafnessRule, AThreadThatMakesNoRoundHangs) {
+  DeafnessRule rule;
+  EXPECT_FALSE(rule.Check(0.0, true, true, 1));
+  EXPECT_FALSE(rule.Check(20.0, true, true, 1));
+  EXPECT_FALSE(rule.Check(20.5, true, true, 2)) << "it was slow";
+  EXPECT_TRUE(rule.Check(41.0, true, true, 2));
 }
 
 }  // namespace

@@ -4,73 +4,27 @@ Environment as of run_test.py.
 """
 import json
 import os
-import pathlib
-import shutil
 import signal
 import subprocess
-import tempfile
 import time
 import unittest
 
 from restart_test import write_tiny_campaign
-from run_test import BINARIES, CAMPAIGN, ISOLATED, PATIENCE_S, Run, end, isolate, raise_loopback, stored, wait_for
+from run_test import BINARIES, CAMPAIGN, ISOLATED, PATIENCE_S, Run, isolate, raise_loopback, stored, wait_for
+from service_case import ServiceCase
 
 CASES = 60
-DOMAIN = "36"
-NETWORK = ["--domain", DOMAIN, "--address", "127.0.0.1"]
 
 
-class ServiceTest(unittest.TestCase):
+class ServiceTest(ServiceCase):
+    DOMAIN = "36"
+
     @classmethod
     def setUpClass(cls):
-        cls.root = pathlib.Path(tempfile.mkdtemp(prefix="dispersa-service-"))
+        super().setUpClass()
         cls.tiny = write_tiny_campaign(cls.root)
         cls.reference = Run(cls.root / "reference", "--workers", 0, "--cases", CASES).finish()
         cls.tiny_reference = Run(cls.root / "tiny", "--workers", 0, "--cases", 300, campaign=cls.tiny).finish()
-
-    @classmethod
-    def tearDownClass(cls):
-        shutil.rmtree(cls.root)
-
-    def setUp(self):
-        self.data = pathlib.Path(tempfile.mkdtemp(dir=self.root, prefix="data-"))
-        self.log = self.data.parent / f"{self.data.name}.log"
-        self.processes = []
-
-    def tearDown(self):
-        end(self.processes)
-
-    def start(self, program, *arguments):
-        with self.log.open("a") as log:
-            self.processes.append(subprocess.Popen([BINARIES / program, *map(str, arguments), *NETWORK],
-                                                   stdout=log, stderr=log))
-        return self.processes[-1]
-
-    def start_coordinator(self):
-        return self.start("dispersa-coordinator", "--data", self.data)
-
-    def start_worker(self, *arguments):
-        return self.start("dispersa-worker", "--peer", "127.0.0.1", *arguments)
-
-    def dispersa(self, *arguments, code=0):
-        """Runs a client command; its standard output."""
-        done = subprocess.run([BINARIES / "dispersa", *map(str, arguments), *NETWORK], capture_output=True, text=True,
-                              timeout=3 * PATIENCE_S)
-        self.assertEqual(done.returncode, code, f"{arguments}: {done.stdout}{done.stderr}\n{self.log.read_text()[-3000:]}")
-        self.error = done.stderr
-        return done.stdout
-
-    def status(self, identity):
-        return json.loads(self.dispersa("status", identity, "--json"))["campaigns"][0]
-
-    def assert_same_folder(self, identity, reference):
-        out = pathlib.Path(tempfile.mkdtemp(dir=self.root))
-        self.assertEqual(self.dispersa("fetch", identity, "--out", out), f"result: {out}\n")
-        for name in ("cases.csv", "summary.json", "report.html", "campaign.yaml"):
-            self.assertEqual((out / name).read_bytes(), (reference.out / name).read_bytes(), name)
-        self.assertEqual(sorted(p.name for p in (out / "histories").iterdir()),
-                         sorted(p.name for p in (reference.out / "histories").iterdir()))
-        return out
 
     def test_launch_watch_fetch(self):
         self.start_coordinator()
@@ -90,7 +44,7 @@ class ServiceTest(unittest.TestCase):
         # The same again is there already.
         self.assertEqual(self.dispersa("launch", CAMPAIGN, "--cases", CASES).strip(), identity)
         self.assertEqual(self.status(identity)["state"], "done")
-        self.assertEqual(subprocess.run([BINARIES / "dispersa-coordinator", "--health", *NETWORK]).returncode, 0)
+        self.assertEqual(subprocess.run([BINARIES / "dispersa-coordinator", "--health", *self.NETWORK]).returncode, 0)
 
     def test_the_queue_survives_kills_and_restarts(self):
         coordinator = self.start_coordinator()
@@ -147,8 +101,8 @@ class ServiceTest(unittest.TestCase):
 
     def test_elastic_workers(self):
         # A worker that is there before the coordinator waits for it and says so.
-        worker = self.start_worker("--idle-exit", 4)
-        lost = subprocess.run([BINARIES / "dispersa-worker", "--peer", "127.0.0.1", "--patience", "1", *NETWORK],
+        worker = self.start_worker("--idle-exit", 15)  # a busy machine may take seconds to launch
+        lost = subprocess.run([BINARIES / "dispersa-worker", "--peer", "127.0.0.1", "--patience", "1", *self.NETWORK],
                               capture_output=True, text=True, timeout=PATIENCE_S)
         self.assertEqual(lost.returncode, 5)
         self.assertIn("no coordinator has answered at 127.0.0.1:16405 for 1 s; given up", lost.stderr)
@@ -159,7 +113,7 @@ class ServiceTest(unittest.TestCase):
 
     def test_two_coordinators_do_not_share_a_folder(self):
         self.start_coordinator()
-        wait_for(lambda: subprocess.run([BINARIES / "dispersa-coordinator", "--health", *NETWORK],
+        wait_for(lambda: subprocess.run([BINARIES / "dispersa-coordinator", "--health", *self.NETWORK],
                                         stderr=subprocess.DEVNULL).returncode == 0, "health")
         second = subprocess.run([BINARIES / "dispersa-coordinator", "--data", self.data, "--domain", "35", "--address", "127.0.0.1"],
                                 capture_output=True, text=True, timeout=PATIENCE_S)
@@ -170,7 +124,7 @@ class ServiceTest(unittest.TestCase):
 
     def test_several_clients_at_once_and_one_that_dies(self):
         self.start_coordinator()
-        commands = [[BINARIES / "dispersa", "launch", campaign, "--cases", str(cases), *NETWORK]
+        commands = [[BINARIES / "dispersa", "launch", campaign, "--cases", str(cases), *self.NETWORK]
                     for campaign, cases in ((CAMPAIGN, CASES), (self.tiny, 300), (CAMPAIGN, CASES), (self.tiny, 200))]
         clients = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for command in commands]
         ids = [client.communicate(timeout=PATIENCE_S)[0].strip() for client in clients]
@@ -214,7 +168,7 @@ class ServiceTest(unittest.TestCase):
         self.assertEqual(stored(out), self.status(low)["done"])
 
     def test_without_a_coordinator_a_client_says_so(self):
-        done = subprocess.run([BINARIES / "dispersa", "list", *NETWORK], capture_output=True, text=True, timeout=PATIENCE_S)
+        done = subprocess.run([BINARIES / "dispersa", "list", *self.NETWORK], capture_output=True, text=True, timeout=PATIENCE_S)
         self.assertEqual(done.returncode, 5)
         self.assertEqual(done.stderr, "no coordinator has answered at 127.0.0.1:16405 for 15 s\n")
 

@@ -1,6 +1,7 @@
 // The real ledger, dispatcher and flight desks over a made-up network: messages are lost, repeated, reordered
-// and delayed, workers and coordinators die at any step, and still every campaign comes to its end with the
-// right results. DISPERSA_SIMULATED_WORLDS: how many worlds (default 2000; tests/run --long: 1,000,000).
+// and delayed, connections fall deaf or dumb, workers and coordinators die at any step, workers lie where all
+// is audited, and still every campaign comes to its end with the right results. DISPERSA_SIMULATED_WORLDS:
+// how many worlds (default 2000; tests/run --long: 1,000,000).
 #include <gtest/gtest.h>
 #include <spdlog/spdlog.h>
 
@@ -28,6 +29,8 @@ constexpr std::size_t kTextPart = 5;  // bytes: a text takes several
 /// What survives a coordinator: a disk.
 struct Disk {
   std::map<std::uint64_t, Digest> rows;
+  std::map<std::uint64_t, std::string> worker_of;
+  std::set<std::pair<std::uint64_t, std::string>> audited;
   std::set<std::uint64_t> quarantined;
 };
 
@@ -41,12 +44,35 @@ class DiskStore : public ResultStore {
     }
     return results.size();
   }
-  void AppendExecution(std::span<const ExecutionRecord>) override {}
+  void AppendExecution(std::span<const ExecutionRecord> records) override {
+    for (const ExecutionRecord& record : records) disk_.worker_of[record.case_index] = record.worker;
+  }
   void Quarantine(const QuarantinedCase& quarantined) override {
     disk_.quarantined.insert(quarantined.case_index);
   }
   std::vector<std::pair<std::uint64_t, Digest>> Fingerprints() const override {
     return {disk_.rows.begin(), disk_.rows.end()};
+  }
+  std::optional<std::string> WorkerOf(std::uint64_t case_index) const override {
+    return disk_.worker_of.at(case_index);
+  }
+  void AppendAudits(std::span<const Claim> claims) override {
+    for (const Claim& claim : claims) disk_.audited.emplace(claim.case_index, claim.worker);
+  }
+  void ForEachUnaudited(const std::function<void(const Claim&)>& callback) const override {
+    for (const auto& [case_index, fingerprint] : disk_.rows) {
+      const std::string& worker = disk_.worker_of.at(case_index);
+      if (!disk_.audited.contains({case_index, worker})) callback({worker, case_index, fingerprint, false});
+    }
+  }
+  std::vector<std::uint64_t> Disown(const std::string& worker) override {
+    std::vector<std::uint64_t> cases;
+    for (const auto& [case_index, who] : disk_.worker_of) {
+      if (who == worker) cases.push_back(case_index);
+    }
+    for (const std::uint64_t case_index : cases)
+      disk_.rows.erase(case_index), disk_.worker_of.erase(case_index);
+    return cases;
   }
 
  private:
@@ -73,6 +99,7 @@ Campaign CampaignNumber(int number, std::uint64_t cases) {
 
 struct Weather {
   double loss, repetition, worst_delay_s, worker_death, coordinator_death, freeze;
+  double lies;  ///< of the results of a worker that lies; then all results are audited
 };
 
 class World {
@@ -90,7 +117,7 @@ class World {
       if (now_s_ < calm_s) {
         Trouble();
       } else {
-        weather_ = {};
+        weather_ = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, weather_.lies};  // a liar goes on lying
       }
       Deliver();
       StepWorkers();
@@ -138,7 +165,14 @@ class World {
     std::unique_ptr<FlightDesk> desk;
     std::vector<Flight> flying;
     double frozen_until_s = 0.0;
+    bool deaf = false, dumb = false;  ///< until it makes a new connection
     std::uint32_t slots = 1;
+    bool lies = false;
+  };
+  struct Audited {
+    double due_s;
+    std::string flight_id;
+    Claim claim;
   };
 
   int Draw(int n) { return static_cast<int>(chance_() % static_cast<unsigned>(n)); }
@@ -149,7 +183,9 @@ class World {
   void StartCoordinator() {
     ++epoch_;
     books_.clear();
-    dispatcher_ = std::make_unique<Dispatcher>(epoch_, EngineVersion());
+    audited_.clear();
+    const AuditOptions audit = {weather_.lies > 0.0 ? 1.0 : 0.0, epoch_};
+    dispatcher_ = std::make_unique<Dispatcher>(epoch_, EngineVersion(), DispatcherOptions{.audit = audit});
     for (int c = 0; c < campaigns_; ++c) {
       books_.push_back(std::make_unique<CampaignBook>(
           CampaignNumber(c, cases_[c]), std::make_unique<DiskStore>(disks_[c]),
@@ -166,6 +202,7 @@ class World {
         FlightDeskOptions{.worker = worker.name, .engine_version = EngineVersion(), .slots = worker.slots},
         now_s_);
     worker.connection = worker.name + "c0";
+    worker.lies = weather_.lies > 0.0 && slot > 0 && Happens(0.5);  // one slot's workers are honest
     workers_[slot] = std::move(worker);
   }
 
@@ -174,6 +211,8 @@ class World {
     if (Happens(weather_.freeze)) coordinator_frozen_until_s_ = now_s_ + 0.1 * Draw(100);
     for (auto& [slot, worker] : workers_) {
       if (Happens(weather_.freeze)) worker.frozen_until_s = now_s_ + 0.1 * Draw(100);
+      if (Happens(weather_.freeze)) worker.deaf = true;
+      if (Happens(weather_.freeze)) worker.dumb = true;
       if (Happens(weather_.worker_death)) StartWorker(slot);
     }
   }
@@ -205,7 +244,7 @@ class World {
         continue;
       }
       for (auto& [slot, worker] : workers_) {
-        if (worker.connection != packet.to && worker.name != packet.to) continue;
+        if (worker.deaf || (worker.connection != packet.to && worker.name != packet.to)) continue;
         if (const auto* orders = std::get_if<Orders>(&packet.message)) worker.desk->On(*orders, now_s_);
         if (const auto* part = std::get_if<TextPart>(&packet.message)) worker.desk->On(*part, now_s_);
       }
@@ -230,7 +269,9 @@ class World {
       FlightDesk& desk = *worker.desk;
       std::erase_if(worker.flying, [&](Flight& flight) {
         if (flight.ends_s > now_s_) return false;
-        desk.Done(flight.job, ResultOf(flight.job.case_index), now_s_);
+        CaseResult result = ResultOf(flight.job.case_index);
+        if (worker.lies && Happens(weather_.lies)) result.metrics[0] += 1.0;
+        desk.Done(flight.job, std::move(result), now_s_);
         return true;
       });
       while (const auto text = desk.TakeText()) {
@@ -242,25 +283,48 @@ class World {
         if (!job) break;
         worker.flying.push_back({*std::move(job), now_s_ + 0.02 * Draw(100)});
       }
-      for (Report& report : desk.TakeReports(now_s_)) Send(worker.connection, "", std::move(report));
+      for (Report& report : desk.TakeReports(now_s_)) Say(worker, std::move(report));
       const FlightDesk::Due due = desk.Tick(now_s_);
-      if (due.new_connection) worker.connection = worker.name + "c" + std::to_string(++connections_);
-      if (due.status) Send(worker.connection, "", *due.status);
-      for (const Report& report : due.reports) Send(worker.connection, "", report);
-      for (const TextRequest& request : due.text_requests) Send(worker.connection, "", request);
-      for (const CampaignRefusal& refusal : due.refusals) Send(worker.connection, "", refusal);
+      if (due.new_connection) {
+        worker.connection = worker.name + "c" + std::to_string(++connections_);
+        worker.deaf = worker.dumb = false;
+      }
+      if (due.status) Say(worker, *due.status);
+      for (const Report& report : due.reports) Say(worker, report);
+      for (const TextRequest& request : due.text_requests) Say(worker, request);
+      for (const CampaignRefusal& refusal : due.refusals) Say(worker, refusal);
     }
+    for (auto& [slot, worker] : workers_) {
+      if (!worker.desk->refusal().empty())
+        StartWorker(slot);  // expelled: it ends, and somebody starts it again
+    }
+  }
+
+  void Say(const SimWorker& worker, Message message) {
+    if (!worker.dumb) Send(worker.connection, "", std::move(message));
   }
 
   bool StepCoordinator() {
     if (coordinator_frozen_until_s_ > now_s_) return false;
     clock_s_ += kStep_s;  // stands still while it is frozen, as Coordinator's clock does
+    dispatcher_->TakeClaims([this](const Campaign& campaign, std::vector<Claim> claims) {
+      for (Claim& claim : claims)
+        audited_.push_back({clock_s_ + 0.02 * Draw(100), campaign.flight_id, std::move(claim)});
+    });
+    std::vector<Audited> due;
+    std::erase_if(audited_, [&](Audited& each) {
+      if (each.due_s > clock_s_) return false;
+      due.push_back(std::move(each));
+      return true;
+    });
+    for (const Audited& each : due)
+      dispatcher_->Audited(each.flight_id, each.claim, Fingerprint(ResultOf(each.claim.case_index)));
     for (Orders& orders : dispatcher_->Tick(clock_s_)) {
       const std::string to = orders.worker;
       Send("", to, std::move(orders));
     }
     bool complete = true;
-    for (const auto& book : books_) complete = complete && book->ledger().Complete();
+    for (const auto& book : books_) complete = complete && book->Complete();
     if (!complete) return false;
     quarantined_at_end_.clear();
     for (const auto& book : books_) {
@@ -284,6 +348,7 @@ class World {
   std::unique_ptr<Dispatcher> dispatcher_;
   std::map<int, SimWorker> workers_;
   std::vector<Packet> packets_;
+  std::vector<Audited> audited_;
   std::vector<std::uint64_t> quarantined_at_end_;
   std::uint64_t conflicts_ = 0;
 };
@@ -305,7 +370,8 @@ TEST(Simulation, EveryWorldComesToItsEndSoonAfterItsTroubles) {
     const auto up_to = [&](double most) {
       return chance() % 3 == 0 ? 0.0 : std::uniform_real_distribution<>(0.0, most)(chance);
     };
-    const Weather weather = {up_to(0.6), up_to(0.3), up_to(3.0), up_to(0.02), up_to(0.02), up_to(0.01)};
+    Weather weather = {up_to(0.6), up_to(0.3), up_to(3.0), up_to(0.02), up_to(0.02), up_to(0.01), 0.0};
+    weather.lies = up_to(1.0);
     World world(seed, weather);
     ASSERT_TRUE(world.Run(kCalm_s, kLimit_s)) << "world " << seed << " hangs: " << world.Tell();
     world.Check();

@@ -13,6 +13,7 @@ OWNED = [
     (r"(sundials|arkode|cvodes?|idas?|kinsol|nvector|sunmatrix|sunlinsol|sunnonlinsol)/", {"dynamics"}),
     (r"sleef\.h", {"math"}),
     (r"Random123/", {"random"}),
+    (r"hdf5", {"report"}),
     (r"CLI/", {"cli", "coordinator", "worker"}),
 ]
 

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "core/flight/flight_inputs.h"
@@ -152,6 +153,38 @@ TEST(CliProgram, PlanPrintsTheInputsThatAFlightApplies) {
     ++dispersed;
   }
   EXPECT_GT(dispersed, 10);
+}
+
+TEST(CliProgram, PlanShowsEveryCaseAndWhatWasDrawnOfEachInputInLinesOfATerminal) {
+  const Output plan = Dispersa("plan --cases 200 " + kSmoke);
+  ASSERT_EQ(plan.code, 0) << plan.error;
+  const std::vector<std::string> lines = Lines(plan.text);
+  EXPECT_THAT(lines[0], StartsWith("smoke: 200 cases, seed "));
+  int last_cases = 0, drawn = 0, agreeing = 0;
+  for (const std::string& line : lines) {
+    EXPECT_LE(line.size(), 110u) << line;
+    last_cases += line.starts_with("     199 ");
+    drawn += line.starts_with("    drawn: mean ");
+    agreeing += line.ends_with(", as drawn");
+  }
+  EXPECT_GT(last_cases, 1) << "blocks of columns";
+  EXPECT_GT(drawn, 10);
+  EXPECT_EQ(agreeing, drawn);
+  EXPECT_THAT(plan.text, Not(HasSubstr("DO NOT AGREE")));
+}
+
+TEST(CliProgram, ReportTakesItsEnvelopeFromAsManyFlightsAsItIsTold) {
+  const InputFiles folder;
+  const std::string out = folder.Path("result");
+  ASSERT_EQ(Dispersa("run --workers 0 --no-histories --quiet --cases 9 --out " + out + " " + kSmoke).code, 4);
+  const auto flights = [&](const std::string& envelope) {
+    EXPECT_EQ(Dispersa("report --quiet --envelope " + envelope + " " + out).code, 4);
+    return nlohmann::json::parse(ReadWholeFile(out + "/summary.json"))["envelope"]["flights"].get<int>();
+  };
+  EXPECT_EQ(flights("4"), 4);
+  EXPECT_EQ(flights("all"), 9);
+  EXPECT_EQ(Dispersa("report --envelope 0 " + out).code, 2);
+  EXPECT_EQ(Dispersa("report --envelope many " + out).code, 2);
 }
 
 TEST(CliProgram, FlyRepeatsToTheLastBit) {

@@ -193,6 +193,14 @@ TEST(Ledger, NothingJoinsASuspectOnItsWorker) {
   ledger.Join("c", kHello, 2.0);
   ledger.Join("b", kHello, 2.0);  // a repeated announcement changes nothing
   EXPECT_THAT(ledger.Assign(2.0), IsEmpty());
+  // Cases that wait again, or are new, are for others until the suspect has landed.
+  ledger.Extend(7);
+  for (const Assignment& assignment : ledger.Assign(2.0)) EXPECT_EQ(assignment.worker, "c");
+  EXPECT_GT(ledger.Progress().waiting, 0u);
+  EXPECT_TRUE(ledger.IsAlone("b"));
+  ledger.Finished("b", 0, 5, ResultOf(0), 3.0);
+  EXPECT_FALSE(ledger.IsAlone("b"));
+  EXPECT_THAT(ledger.Assign(3.0), Not(IsEmpty()));
 }
 
 TEST(Ledger, AStuckWorkerLosesItsCasesAndOnlyTheOneThatHangsIsBlamed) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/flight/flight.h"
+#include "core/flight/lane_engine.h"
 #include "core/flight/tick_sample.h"
 #include "core/math/constants.h"
 #include "tests/unit/sample_vehicle.h"
@@ -127,6 +128,17 @@ TEST(Digest, IsOfTheMetricsToo) {
   ASSERT_NE(MetricOf(one, "deflection_limit_cycle_deg"), MetricOf(other, "deflection_limit_cycle_deg"));
   EXPECT_EQ(one.end_state.p_EoC_I, other.end_state.p_EoC_I);
   EXPECT_NE(one.digest, other.digest);
+}
+
+TEST(EngineFor, HoldsTheFlightsInNoMoreLanesThanTheyNeed) {
+  EXPECT_EQ(EngineFor(1).lanes, 1);
+  EXPECT_EQ(EngineFor(3).lanes, 4);
+  EXPECT_EQ(EngineFor(4).lanes, 4);
+  for (const std::size_t flights : {1, 4, 5, 8, 1000}) {
+    EXPECT_STREQ(EngineFor(flights).isa, ChosenEngine().isa);
+    EXPECT_LE(EngineFor(flights).lanes, ChosenEngine().lanes);
+  }
+  EXPECT_EQ(EngineFor(1000).lanes, ChosenEngine().lanes);
 }
 
 TEST(FlyAll, KeepsTheOrderOfItsOrders) {

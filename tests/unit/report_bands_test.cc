@@ -3,7 +3,10 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <numeric>
 
+#include "core/random/draws.h"
+#include "core/report/band_counter.h"
 #include "tests/unit/report_test_support.h"
 
 namespace dispersa {
@@ -61,6 +64,80 @@ TEST(BandsCsv, NamesItsColumns) {
   EXPECT_EQ(BandsCsv(bands), "time_s,flights," + name + "_min," + name + "_p01," + name + "_p05," + name +
                                  "_p50," + name + "_p95," + name + "_p99," + name +
                                  "_max\n0,2,1,1,1,1,1,1,1\n");
+}
+
+/// A quantity at two steps; every tenth flight ends after the first.
+SampledFlight MakeFlight(std::uint64_t k) {
+  const double value = Stream(3, k, "value").Normal();
+  if (k % 10 == 0) return {{value}};
+  return {{value, 100.0 + 0.01 * value}};
+}
+
+TEST(BandCounter, IsExactWhileItKeepsAll) {
+  std::vector<SampledFlight> flights;
+  BandCounter counter({1}, kStep_s);
+  for (std::uint64_t k = 0; k < BandCounter::kKept; ++k) {
+    flights.push_back(MakeFlight(k));
+    counter.Add(flights.back());
+  }
+  EXPECT_EQ(BandsCsv(counter.Bands()), BandsCsv(ComputeBands(flights, {1}, kStep_s)));
+}
+
+TEST(BandCounter, IsRightToAClassBeyondThat) {
+  std::vector<SampledFlight> flights;
+  BandCounter counter({1}, kStep_s);
+  for (std::uint64_t k = 0; k < 5000; ++k) {
+    flights.push_back(MakeFlight(k));
+    counter.Add(flights.back());
+  }
+  const FlightBands exact = ComputeBands(flights, {1}, kStep_s);
+  const FlightBands counted = counter.Bands();
+  EXPECT_EQ(counted.flights, 5000u);
+  EXPECT_EQ(counted.flying, exact.flying);
+  const FlightBands first = ComputeBands({flights.begin(), flights.begin() + BandCounter::kKept}, {1}, kStep_s);
+  for (std::size_t step = 0; step < 2; ++step) {
+    const Band& a = counted.bands[0];
+    const Band& b = exact.bands[0];
+    const double one_class = (first.bands[0].max[step] - first.bands[0].min[step]) / 128.0;
+    EXPECT_EQ(a.min[step], b.min[step]);
+    EXPECT_EQ(a.max[step], b.max[step]);
+    for (const auto& [counted_value, exact_value] :
+         {std::pair{a.p01[step], b.p01[step]}, std::pair{a.p05[step], b.p05[step]}, std::pair{a.p50[step], b.p50[step]},
+          std::pair{a.p95[step], b.p95[step]}, std::pair{a.p99[step], b.p99[step]}}) {
+      EXPECT_NEAR(counted_value, exact_value, one_class) << step;
+      EXPECT_NE(counted_value, exact_value) << "were they kept after all?";
+    }
+  }
+}
+
+TEST(BandCounter, DoesNotDependOnTheOrderBeyondTheFirst) {
+  std::vector<std::uint64_t> order(1000);
+  std::iota(order.begin(), order.end(), std::uint64_t{0});
+  const auto csv = [&] {
+    BandCounter counter({1}, kStep_s);
+    for (const std::uint64_t k : order) counter.Add(MakeFlight(k));
+    counter.AddExtreme({{-9.0, 99.0, 7.0}});
+    return BandsCsv(counter.Bands());
+  };
+  const std::string forward = csv();
+  std::reverse(order.begin() + BandCounter::kKept, order.end());
+  std::reverse(order.begin(), order.begin() + BandCounter::kKept);
+  EXPECT_TRUE(csv() == forward);
+}
+
+TEST(BandCounter, WidensByExtremesWithoutCountingThem) {
+  BandCounter counter({1}, kStep_s);
+  counter.Add({{1.0}});
+  counter.Add({{2.0}});
+  counter.AddExtreme({{-5.0, 8.0}});
+  const FlightBands bands = counter.Bands();
+  EXPECT_EQ(bands.flights, 2u);
+  EXPECT_EQ(bands.extreme_flights, 1u);
+  EXPECT_THAT(bands.flying, ElementsAre(2, 0));
+  EXPECT_THAT(bands.bands[0].min, ElementsAre(-5.0, 8.0));
+  EXPECT_THAT(bands.bands[0].max, ElementsAre(2.0, 8.0));
+  EXPECT_EQ(bands.bands[0].p50[0], 1.5);
+  EXPECT_TRUE(std::isnan(bands.bands[0].p50[1]));
 }
 
 }  // namespace

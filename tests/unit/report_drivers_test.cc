@@ -112,5 +112,25 @@ TEST_F(Planted, WhatFailingFlightsShareIsFound) {
   EXPECT_LE(FindFailureDrivers(campaign_, cases_).at(0).drivers.size(), 1u);
 }
 
+TEST_F(Planted, InputsThatRankTheFlightsAlikeAreNamedTogether) {
+  Dispersion twin;
+  twin.name = "mass_flow_factor_stage1";
+  twin.inputs = {FindInput("mass_flow_factor_stage1")};
+  campaign_.dispersions.push_back(twin);
+  const std::vector<double> drag = cases_.inputs[static_cast<std::size_t>(FindInput("drag_factor"))];
+  for (const double value : drag)
+    cases_.inputs[static_cast<std::size_t>(FindInput("mass_flow_factor_stage1"))].push_back(3.0 - value);
+  const auto drivers = DriversWhen([&](std::size_t k) { return drag[k] + 0.001 * noise_[k]; });
+  ASSERT_FALSE(drivers.empty());
+  // Which of the two comes first is the order of the columns.
+  ASSERT_EQ(drivers[0].same_as.size(), 1u);
+  EXPECT_NE(drivers[0].input, drivers[0].same_as[0]);
+  EXPECT_GT(std::fabs(drivers[0].partial), 0.9);  // beside its twin it had none
+  for (std::size_t i = 1; i < drivers.size(); ++i) {
+    EXPECT_NE(drivers[i].input, drivers[0].input);
+    EXPECT_NE(drivers[i].input, drivers[0].same_as[0]);
+  }
+}
+
 }  // namespace
 }  // namespace dispersa

@@ -166,6 +166,36 @@ TEST(ResultFolder, KeepsTelemetryApart) {
   EXPECT_TRUE(folder.PresentCases().empty());
 }
 
+TEST(ResultFolder, KnowsWhoReturnedWhatAndForgetsAllOfOneWorker) {
+  TemporaryFolder temporary;
+  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(10));
+  folder.Append({{MakeCase(1), MakeCase(2), MakeCase(3)}});
+  folder.AppendExecution(
+      {{{1, "liar", "h", "", kNaN}, {2, "honest", "h", "", kNaN}, {3, "liar", "h", "", kNaN}}});
+  EXPECT_EQ(folder.WorkerOf(2), "honest");
+  EXPECT_EQ(folder.WorkerOf(4), std::nullopt);
+
+  folder.AppendAudits({{{"honest", 2, {}, false}, {"liar", 3, {}, false}}});
+  const auto unaudited = [&] {
+    std::vector<std::string> found;
+    folder.ForEachUnaudited([&](const Claim& claim) {
+      EXPECT_EQ(claim.fingerprint, Fingerprint(MakeCase(claim.case_index)));
+      found.push_back(claim.worker + std::to_string(claim.case_index));
+    });
+    return found;
+  };
+  EXPECT_THAT(unaudited(), ElementsAre("liar1"));
+
+  EXPECT_THAT(folder.Disown("liar"), testing::UnorderedElementsAre(1u, 3u));
+  EXPECT_THAT(folder.PresentCases(), ElementsAre(2u));
+  EXPECT_EQ(folder.WorkerOf(1), std::nullopt);
+  EXPECT_TRUE(folder.Disown("liar").empty());
+  // That the liar's result of a case was right says nothing of the next one's.
+  folder.Append({{MakeCase(3)}});
+  folder.AppendExecution({{{3, "next", "h", "", kNaN}}});
+  EXPECT_THAT(unaudited(), ElementsAre("next3"));
+}
+
 TEST(ResultFolder, RefusesAFolderThatIsNotEmpty) {
   TemporaryFolder temporary;
   std::filesystem::create_directories(temporary / "out" / "something");

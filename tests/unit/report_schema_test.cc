@@ -92,6 +92,16 @@ TEST(SummarySchema, HoldsForCompleteIncompleteAndEmptyCampaigns) {
   }
 }
 
+TEST(SummarySchema, IsDocumentedKeyByKey) {
+  std::ifstream file(DISPERSA_TEST_DATA "/../../core/report/README.md");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const Json schema = Schema();
+  for (const auto& [key, rule] : schema["properties"].items())
+    EXPECT_THAT(text, testing::HasSubstr("`" + key + "`"));
+  for (const auto& [key, rule] : schema["properties"]["requirements"]["items"]["properties"].items())
+    EXPECT_THAT(text, testing::HasSubstr("`" + key + "`"));
+}
+
 TEST(SummarySchema, SeesWhatIsWrong) {
   Json summary = SummaryOf(60, 60);
   summary["flown"] = "sixty";

@@ -268,7 +268,7 @@ TEST_F(FiveCases, RanksByTheSideOfTheRequirement) {
   EXPECT_THAT(order, ElementsAre(2, 3, 0, 4, 1));
 }
 
-TEST_F(FiveCases, TheVerdictAndItsExitCode) {
+TEST_F(FiveCases, TheVerdict) {
   EXPECT_EQ(BuildSummary(folder_, campaign_).verdict, CampaignVerdict::kPass);  // nothing is required
   campaign_.requirements = {PeakBelow(10.0, 0.5, 0.40)};  // 1 failure of 5: P(X <= 1 | 0.5) = 6/32 < 0.4
   EXPECT_EQ(BuildSummary(folder_, campaign_).verdict, CampaignVerdict::kPass);
@@ -288,15 +288,9 @@ TEST_F(FiveCases, TheVerdictAndItsExitCode) {
   summary = BuildSummary(folder_, campaign_);
   EXPECT_EQ(summary.verdict, CampaignVerdict::kIncomplete);
   EXPECT_EQ(summary.requirements[0].verdict, "fail");
-  EXPECT_EQ(Warnings(summary)[1], "Not met whatever the missing cases bring: pitch_error_peak_deg below 0.1 for "
-                                  "99 % of flights at 10 % risk.");
-
-  EXPECT_EQ(VerdictExitCode(CampaignVerdict::kStudy), 4);
-  EXPECT_EQ(VerdictExitCode(CampaignVerdict::kStudyViolated), 3);
-  EXPECT_EQ(VerdictExitCode(CampaignVerdict::kPass), 0);
-  EXPECT_EQ(VerdictExitCode(CampaignVerdict::kFail), 3);
-  EXPECT_EQ(VerdictExitCode(CampaignVerdict::kInconclusive), 4);
-  EXPECT_EQ(VerdictExitCode(CampaignVerdict::kIncomplete), 5);
+  EXPECT_EQ(Warnings(summary)[1],
+            "Not met whatever the missing cases bring: pitch_error_peak_deg below 0.1 for "
+            "99 % of flights at 10 % risk.");
 }
 
 TEST_F(FiveCases, JsonHoldsTheContract) {

@@ -93,6 +93,22 @@ TEST(SvgChart, SaysWhatItShows) {
   }
 }
 
+TEST(SvgChart, NamesALimitThatLiesTooFarToBeDrawnBesideTheData) {
+  SvgChart chart({.label = "x"}, {.label = "y"});
+  chart.Line({1.0, 1.5, 2.0}, {0.0, 1.0, 0.5}, "line-0", "");
+  chart.VerticalLimit(2.9, "near");    // less than the data's width away
+  chart.VerticalLimit(10.0, "high");
+  chart.VerticalLimit(-9.0, "low");
+  chart.HorizontalLimit(5.0, "tall");
+  const std::string svg = chart.Svg("limits");
+  EXPECT_THAT(svg, HasSubstr(">near<"));
+  EXPECT_THAT(svg, HasSubstr(">high (far to the right)<"));
+  EXPECT_THAT(svg, HasSubstr(">low (far to the left)<"));
+  EXPECT_THAT(svg, HasSubstr(">tall (far above)<"));
+  EXPECT_THAT(svg, Not(HasSubstr(">10<")));   // the axis ends before it
+  EXPECT_EQ(Count(svg, "class=\"limit\""), 5u);  // four in the legend, one drawn
+}
+
 TEST(SvgChart, DrawsWithoutData) {
   SvgChart chart({.label = "x"}, {.label = "y"});
   chart.Line({}, {}, "line-0", "nothing");

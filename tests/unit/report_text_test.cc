@@ -72,5 +72,13 @@ TEST(MetricCatalogue, RanksByWhatIsWorse) {
   EXPECT_EQ(DescribeMetric("injection_altitude_km").worse, Worse::kNeither);
 }
 
+TEST(FixedText, NeverShowsANegativeZero) {
+  EXPECT_EQ(FixedText(-1e-9, 7), "0.0000000");
+  EXPECT_EQ(FixedText(-0.0, 2), "0.00");
+  EXPECT_EQ(FixedText(-0.004, 3), "-0.004");
+  EXPECT_EQ(FixedText(12.345, 1), "12.3");
+  EXPECT_EQ(FixedText(std::nan(""), 3), "–");
+}
+
 }  // namespace
 }  // namespace dispersa

@@ -1,4 +1,4 @@
-// What the process tells its caller.
+// What a process tells its caller, and a coordinator's reply its client.
 #pragma once
 
 namespace dispersa {

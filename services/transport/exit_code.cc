@@ -1,4 +1,4 @@
-#include "services/cli/exit_code.h"
+#include "services/transport/exit_code.h"
 
 #include <algorithm>
 #include <iterator>

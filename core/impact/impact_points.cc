@@ -1,0 +1,136 @@
+#include "core/impact/impact_points.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/flight/flight.h"
+#include "core/math/constants.h"
+#include "core/optimization/parallel_for.h"
+#include "core/vehicle/mass.h"
+
+namespace dispersa {
+namespace {
+
+/// No row but the first and those of events.
+constexpr double kEventsOnly_s = 1e6;
+/// Flights whose rows are kept at a time: 10 MB.
+constexpr std::size_t kFlownTogether = 2000;
+
+class HistoryReader {
+ public:
+  explicit HistoryReader(const History& history) : history_(history) {}
+
+  double At(std::size_t row, const char* column) const { return history_.at(row, FindHistoryColumn(column)); }
+  int Stack(std::size_t row) const { return static_cast<int>(At(row, "stage")) - 1; }
+  /// Attitude is against the local north, east and down, whose axes in I follow from the position.
+  RigidBodyState State(const Earth& earth, std::size_t row) const {
+    RigidBodyState s;
+    s.p_EoC_I = {At(row, "eci_x_m"), At(row, "eci_y_m"), At(row, "eci_z_m")};
+    s.v_IC_I = {At(row, "eci_vx_m_s"), At(row, "eci_vy_m_s"), At(row, "eci_vz_m_s")};
+    s.w_IB_B = kRadPerDeg * Vector3(At(row, "p_deg_s"), At(row, "q_deg_s"), At(row, "r_deg_s"));
+    const Geodetic place = ToGeodetic(earth, s.p_EoC_I);
+    s.q_IB = QuaternionOf(NedAxes(place.latitude_rad, place.longitude_rad)) *
+             FromYawPitchRoll({At(row, "yaw_deg") * kRadPerDeg, At(row, "pitch_deg") * kRadPerDeg,
+                               At(row, "roll_deg") * kRadPerDeg});
+    return s;
+  }
+
+ private:
+  const History& history_;
+};
+
+/// Of the empty stage alone.
+double DryStation(const Stage& stage) {
+  double station_m = 0.0;
+  for (const MassElement& element : stage.structure)
+    station_m += element.fraction * 0.5 * (element.top_station_m + element.bottom_station_m);
+  return station_m;
+}
+
+/// From the bottom of the stage above, or from the nose, to its own.
+double TopStation(const Vehicle& vehicle, int stage) {
+  return stage + 1 < static_cast<int>(vehicle.stages.size())
+             ? vehicle.stages[static_cast<std::size_t>(stage) + 1].bottom_station_m
+             : 0.0;
+}
+
+}  // namespace
+
+std::vector<ImpactPoint> ImpactPoints(const CampaignFlights& flights, const CaseResult& result,
+                                      const History& history, const FallSteps& steps) {
+  const Vehicle& vehicle = flights.model().definition().vehicle;
+  const FlightInputs inputs = flights.Draw(result.case_index);
+  const LauncherPlant plant = flights.model().PlantFor(inputs);
+  const Environment& environment = plant.environment;
+  const HistoryReader rows(history);
+  std::vector<ImpactPoint> points;
+  const auto fall = [&](ImpactPoint point, const FallingBody& body, const FallState& start) {
+    point.case_index = result.case_index;
+    point.from_time_s = start.time_s;
+    point.from_altitude_m = ToGeodetic(environment.earth, start.p_EoP_I).altitude_m;
+    point.impact = Fall(environment, body, start, steps);
+    points.push_back(std::move(point));
+  };
+
+  for (std::size_t row = 1; row < history.rows(); ++row) {
+    const int below = rows.Stack(row - 1);
+    if (rows.Stack(row) == below) continue;
+    // The row shows the stack above, full, with its tip-off rates, which the stage below does not have.
+    const auto stage = static_cast<std::size_t>(below);
+    RigidBodyState above = rows.State(environment.earth, row);
+    above.w_IB_B -= Vector3(inputs.tip_off_roll_rad_s[stage], inputs.tip_off_pitch_rad_s[stage],
+                            inputs.tip_off_yaw_rad_s[stage]);
+    const StackMass& mass = plant.stacks[stage + 1].mass;
+    const double aft_m = DryStation(vehicle.stages[stage]) - mass.At(mass.propellant_mass_kg).cg_station_m;
+    const RigidBodyState spent = AtPoint(above, Vector3(-aft_m, 0.0, 0.0));
+    const double length_m = vehicle.stages[stage].bottom_station_m - TopStation(vehicle, below);
+    fall({.stage = below + 1, .lost = false},
+         {DryMass(vehicle, below), TumblingCylinderDragArea(length_m, vehicle.stages[stage].diameter_m)},
+         {rows.At(row, "time_s"), spent.p_EoC_I, spent.v_IC_I});
+  }
+
+  if (result.outcome != Outcome::kCompleted) {
+    History last;
+    FlightOptions options;
+    options.case_index = result.case_index;
+    options.history = &last;
+    const FlightResult again = dispersa::Fly(flights.model(), inputs, options);
+    const RigidBodyState& end = again.end_state;
+    const int lowest = again.end_stage - 1;
+    if (end.p_EoC_I.allFinite() && end.v_IC_I.allFinite() && last.rows() > 0) {
+      const Stage& stage = vehicle.stages[static_cast<std::size_t>(lowest)];
+      fall({.stage = lowest + 1, .lost = true},
+           {HistoryReader(last).At(last.rows() - 1, "mass_kg"),
+            TumblingCylinderDragArea(stage.bottom_station_m, stage.diameter_m)},
+           {again.end_time_s, end.p_EoC_I, end.v_IC_I});
+    }
+  }
+  return points;
+}
+
+std::vector<ImpactPoint> FlyToImpact(const CampaignFlights& flights, const std::vector<std::uint64_t>& cases,
+                                     int threads, const std::function<void(const CaseResult&)>& flown) {
+  struct Flown {
+    CaseResult result;
+    History history;
+  };
+  std::vector<ImpactPoint> points;
+  for (std::size_t first = 0; first < cases.size(); first += kFlownTogether) {
+    std::vector<CaseOrder> orders;
+    for (std::size_t i = first; i < std::min(cases.size(), first + kFlownTogether); ++i)
+      orders.push_back({cases[i], kEventsOnly_s});
+    std::vector<Flown> together(orders.size());
+    flights.FlyCases(orders, threads, [&](std::size_t i, CaseResult result, const History& history) {
+      flown(result);
+      together[i] = {std::move(result), history};
+    });
+    std::vector<std::vector<ImpactPoint>> fallen(orders.size());
+    ParallelFor(orders.size(), static_cast<std::size_t>(std::max(1, threads)), [&](std::size_t i) {
+      fallen[i] = ImpactPoints(flights, together[i].result, together[i].history);
+    });
+    for (const auto& of_case : fallen) points.insert(points.end(), of_case.begin(), of_case.end());
+  }
+  return points;
+}
+
+}  // namespace dispersa

@@ -1,0 +1,37 @@
+#include "services/cli/campaign_text.h"
+
+#include <fmt/format.h>
+
+#include "services/cli/progress.h"
+
+namespace dispersa {
+
+using Json = nlohmann::ordered_json;
+
+std::string ShortId(const Json& what) { return what.at("id").get<std::string>().substr(0, 12); }
+
+std::string StandingText(const Json& standing) {
+  return fmt::format("{} of {} break {} ({} so far)", standing.at("failures").get<std::int64_t>(),
+                     standing.at("n").get<std::int64_t>(), standing.at("metric").get<std::string>(),
+                     standing.at("so_far").get<std::string>());
+}
+
+std::string CampaignText(const Json& campaign) {
+  const auto done = campaign.at("done").get<std::uint64_t>(),
+             total = campaign.at("total").get<std::uint64_t>();
+  std::string text =
+      fmt::format("{}  {:<10} {:>9}/{:<9} {}", ShortId(campaign), campaign.at("state").get<std::string>(),
+                  done, total, campaign.at("name").get<std::string>());
+  if (const double rate = campaign.at("rate_per_s"); rate > 0.0) text += fmt::format("  {:.1f}/s", rate);
+  if (!campaign.at("eta_s").is_null()) text += "  " + DurationText(campaign.at("eta_s")) + " left";
+  if (const auto given_up = campaign.at("quarantined").get<std::uint64_t>(); given_up > 0) {
+    text += fmt::format("  {} quarantined", given_up);
+  }
+  if (!campaign.at("code").is_null()) text += fmt::format("  exit code {}", campaign.at("code").get<int>());
+  if (!campaign.at("problem").is_null()) text += "  " + campaign.at("problem").get<std::string>();
+  text += "\n";
+  for (const Json& standing : campaign.at("requirements")) text += "  " + StandingText(standing) + "\n";
+  return text;
+}
+
+}  // namespace dispersa

@@ -1,0 +1,85 @@
+// dispersa keys: an authority, and what it issues to coordinators, workers, clients and observers.
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "services/cli/command.h"
+#include "services/transport/authority.h"
+
+namespace dispersa {
+namespace {
+
+constexpr int kAuthorityDays = 3650;
+constexpr int kIssuedDays = 365;
+constexpr int kMostDays = 36500;
+
+struct KeysOptions {
+  std::string directory, role, name;
+  int days = 0;
+};
+
+ExitCode Say(const std::string& what, const std::string& directory, const GlobalOptions& global) {
+  if (global.json) {
+    const nlohmann::ordered_json object = {{"schema", "dispersa/keys/1"}, {"directory", directory}};
+    fmt::print("{}\n", object.dump(2));
+  } else {
+    fmt::print("{}: {}\n", what, directory);
+  }
+  return kExitDone;
+}
+
+ExitCode Init(const KeysOptions& options, const GlobalOptions& global) {
+  MakeAuthority(options.directory, ValidFor(options.days));
+  return Say("authority", options.directory, global);
+}
+
+ExitCode Issue(const KeysOptions& options, const GlobalOptions& global) {
+  const auto folder =
+      IssueKeys(options.directory, *ParseRole(options.role), options.name, ValidFor(options.days));
+  return Say("issued", folder.string(), global);
+}
+
+/// Returns the command and its options, to which more may be added.
+std::pair<CLI::App*, std::shared_ptr<KeysOptions>> AddCommand(
+    CLI::App* keys, Invocation& invocation, const std::string& name, const std::string& what, int days,
+    ExitCode (*run)(const KeysOptions&, const GlobalOptions&)) {
+  auto options = std::make_shared<KeysOptions>();
+  options->days = days;
+  CLI::App* command = keys->add_subcommand(name, what);
+  command->add_option("directory", options->directory, "folder of the authority")->required();
+  command->add_option("--days", options->days, fmt::format("valid for so long; default {}", days))
+      ->check(CLI::Range(1, kMostDays));
+  command->callback([options, &invocation, run] {
+    invocation.command = [options, run](const GlobalOptions& global) { return run(*options, global); };
+  });
+  return {command, options};
+}
+
+}  // namespace
+
+void AddKeysCommand(CLI::App& app, Invocation& invocation) {
+  CLI::App* keys = app.add_subcommand("keys", "make the keys with which daemons and clients know each other");
+  keys->require_subcommand(1);
+  keys->fallthrough();
+  keys->footer(
+      "Examples: dispersa keys init authority\n"
+      "          dispersa keys issue authority --role coordinator --name main\n"
+      "          dispersa keys issue authority --role worker --name node1\n"
+      "          dispersa-worker --keys authority/issued/worker-node1 --peer coordinator-host\n"
+      "The folder `authority` stays where it was made; a machine gets only its own folder of what was "
+      "issued.");
+  AddCommand(keys, invocation, "init", "make an authority", kAuthorityDays, Init);
+  const auto [command, options] =
+      AddCommand(keys, invocation, "issue", "make the keys of one participant", kIssuedDays, Issue);
+  std::vector<std::string> roles;
+  for (const Role role : kRoles) roles.emplace_back(Name(role));
+  command->add_option("--role", options->role, "what it may do")->required()->check(CLI::IsMember(roles));
+  command->add_option("--name", options->name, "its name: letters, digits, '-'; often that of its machine")
+      ->required();
+}
+
+}  // namespace dispersa

@@ -1,0 +1,230 @@
+// dispersa search: the smallest dispersion of a campaign that fails a requirement.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/campaign/campaign_flights.h"
+#include "core/campaign/input_error.h"
+#include "core/flight/flight.h"
+#include "core/optimization/parallel_for.h"
+#include "core/report/limit_text.h"
+#include "core/report/metric_catalogue.h"
+#include "core/report/output_file.h"
+#include "core/report/requirement_summary.h"
+#include "core/report/text.h"
+#include "core/search/smallest_failure.h"
+#include "services/cli/command.h"
+#include "services/cli/flight_json.h"
+#include "services/cli/progress.h"
+#include "services/cli/warn.h"
+#include "services/coordinator/threads.h"
+
+namespace dispersa {
+namespace {
+
+/// Flights that go side by side on one thread.
+constexpr std::size_t kTogether = 8;
+/// Shares of the distance that are printed.
+constexpr double kPrintedShare = 0.001;
+
+struct SearchCommand {
+  std::string campaign;
+  std::string metric;
+  std::optional<double> below, above;
+  FailureSearchOptions options;
+  std::string out;
+};
+
+/// A limit of the command line, or the campaign's own.
+Requirement WantedRequirement(const SearchCommand& command, const Campaign& campaign) {
+  const std::vector<std::string>& names = MetricNames();
+  if (!command.metric.empty() && std::find(names.begin(), names.end(), command.metric) == names.end())
+    throw InputError("--metric: '" + command.metric + "' is not a metric",
+                     "a name in cases.csv without its prefix 'metric_'");
+  if (command.below || command.above) {
+    if (command.metric.empty()) throw InputError("--below and --above need --metric");
+    Requirement requirement;
+    requirement.metric = command.metric;
+    requirement.below = command.below;
+    requirement.above = command.above;
+    return requirement;
+  }
+  for (const Requirement& requirement : campaign.requirements)
+    if (command.metric.empty() || requirement.metric == command.metric) return requirement;
+  throw InputError(command.metric.empty() ? command.campaign + ": states no requirement"
+                                          : command.campaign + ": states no requirement of " + command.metric,
+                   "--metric with --below or --above");
+}
+
+class Searcher {
+ public:
+  Searcher(const Campaign& campaign, const Requirement& requirement, std::size_t max_flights, bool quiet)
+      : flights_(campaign),
+        space_(campaign),
+        limits_(LimitsOf(requirement)),
+        metric_(MetricColumn(requirement.metric)),
+        max_flights_(max_flights),
+        progress_("flights", quiet) {}
+
+  const DispersionSpace& space() const { return space_; }
+
+  std::vector<double> Margins(const std::vector<std::vector<double>>& points) {
+    const std::vector<FlightInputs> inputs = space_.Inputs(points);
+    std::vector<double> margins(points.size());
+    const std::size_t groups = (points.size() + kTogether - 1) / kTogether;
+    ParallelFor(groups, static_cast<std::size_t>(UsableCores()), [&](std::size_t group) {
+      const std::size_t first = group * kTogether;
+      std::vector<FlightOrder> orders;
+      for (std::size_t i = first; i < std::min(points.size(), first + kTogether); ++i)
+        orders.push_back({inputs[i], {}});
+      const std::vector<FlightResult> flown = FlyAll(flights_.model(), orders);
+      for (std::size_t i = 0; i < flown.size(); ++i) {
+        const double value = flown[i].metrics[metric_];
+        margins[first + i] = flown[i].outcome == Outcome::kCompleted && std::isfinite(value)
+                                 ? limits_.Margin(value)
+                                 : std::nan("");
+      }
+    });
+    done_ += points.size();
+    progress_.Show(done_, max_flights_);
+    return margins;
+  }
+  /// The flight of a point, with the noise of case 0 as all of the search.
+  CaseResult Fly(const std::vector<double>& point) const {
+    return flights_.Fly(space_.Inputs({point}).front(), 0, nullptr);
+  }
+
+ private:
+  CampaignFlights flights_;
+  DispersionSpace space_;
+  Limits limits_;
+  std::size_t metric_;
+  std::size_t max_flights_;
+  std::size_t done_ = 0;
+  Progress progress_;
+};
+
+/// What of the squared distance a coordinate makes up.
+double ShareOf(const FailureSearchResult& result, const DispersionSpace& space, std::size_t i) {
+  if (space.coordinates()[i].kind != CoordinateKind::kNormal || result.distance == 0.0) return 0.0;
+  return result.point[i] * result.point[i] / (result.distance * result.distance);
+}
+
+const char* KindName(CoordinateKind kind) {
+  return kind == CoordinateKind::kNormal      ? "normal"
+         : kind == CoordinateKind::kDirection ? "direction"
+                                              : "held";
+}
+
+std::string Sentence(const FailureSearchResult& result, const Requirement& requirement, double reach) {
+  if (result.found && result.distance == 0.0)
+    return fmt::format("The flight without dispersions fails {}.", LimitText(requirement));
+  if (result.found) {
+    return fmt::format(
+        "Fails {} at a distance of {} standard deviations from nothing dispersed, the smallest found by a "
+        "local search of "
+        "{} flights; a smaller one may exist.",
+        LimitText(requirement), ReadableText(result.distance), result.flights);
+  }
+  return fmt::format(
+      "No flight within {} standard deviations was found to fail {} in a local search of {} flights, which "
+      "does not show "
+      "that there is none.",
+      ReadableText(reach), LimitText(requirement), result.flights);
+}
+
+ExitCode SearchFor(const SearchCommand& command, const GlobalOptions& global) {
+  const Campaign campaign = LoadAndWarn(command.campaign);
+  const Requirement requirement = WantedRequirement(command, campaign);
+  Searcher searcher(campaign, requirement, command.options.max_flights, global.quiet);
+  const DispersionSpace& space = searcher.space();
+  const FailureSearchResult result = FindSmallestFailure(
+      space.coordinates(), [&](const auto& points) { return searcher.Margins(points); }, command.options);
+
+  nlohmann::ordered_json json = {{"schema", "dispersa/search/1"},
+                                 {"campaign", campaign.name},
+                                 {"flight_id", campaign.flight_id},
+                                 {"requirement", LimitText(requirement)},
+                                 {"metric", requirement.metric},
+                                 {"sentence", Sentence(result, requirement, command.options.reach)},
+                                 {"local_search", true},
+                                 {"found", result.found},
+                                 {"flights", result.flights},
+                                 {"max_flights", command.options.max_flights},
+                                 {"reach", command.options.reach},
+                                 {"seed", command.options.seed},
+                                 {"least_margin", JsonNumber(result.least_margin)}};
+  std::string text = Sentence(result, requirement, command.options.reach) + "\n";
+  if (result.found) {
+    const CaseResult flown = searcher.Fly(result.point);
+    const double value = flown.metrics[MetricColumn(requirement.metric)];
+    json["distance"] = JsonNumber(result.distance);
+    json["outcome"] = OutcomeName(flown.outcome);
+    json["value"] = JsonNumber(value);
+    json["dispersions"] = nlohmann::ordered_json::array();
+    text += fmt::format("outcome {}, {} {}\n\n{:<44}{:>12}{:>10}\n", OutcomeName(flown.outcome),
+                        requirement.metric, std::isfinite(value) ? ReadableText(value) : "undefined",
+                        "dispersion", "std devs", "share");
+    std::vector<std::size_t> order(space.coordinates().size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return ShareOf(result, space, a) > ShareOf(result, space, b);
+    });
+    for (const std::size_t i : order) {
+      const Coordinate& coordinate = space.coordinates()[i];
+      const double share = ShareOf(result, space, i);
+      json["dispersions"].push_back({{"name", coordinate.name},
+                                     {"kind", KindName(coordinate.kind)},
+                                     {"standard_normal", JsonNumber(result.point[i])},
+                                     {"share", JsonNumber(share)}});
+      if (share >= kPrintedShare)
+        text += fmt::format("{:<44}{:>12.3f}{:>10}\n", coordinate.name, result.point[i],
+                            PercentText(std::round(share * 1e3) / 1e3));
+    }
+    json["inputs"] = InputsJson(flown.inputs);
+    json["digest"] = flown.digest.Hex();
+  }
+  const std::string written = json.dump(2) + "\n";
+  if (!command.out.empty()) WriteFile(command.out, written);
+  fmt::print("{}", global.json ? written : text);
+  return kExitDone;
+}
+
+}  // namespace
+
+void AddSearchCommand(CLI::App& app, Invocation& invocation) {
+  auto options = std::make_shared<SearchCommand>();
+  CLI::App* command = app.add_subcommand(
+      "search", "the smallest dispersion that fails a requirement: a bounded local search that flies");
+  command->add_option("campaign", options->campaign, "campaign file")->required();
+  command->add_option("--metric", options->metric,
+                      "metric whose requirement shall fail; default: the first one's");
+  auto* below =
+      command->add_option("--below", options->below, "limit in place of the campaign's: it fails above");
+  command->add_option("--above", options->above, "limit in place of the campaign's: it fails below")
+      ->excludes(below);
+  command->add_option("--flights", options->options.max_flights, "at most so many flights, default 1000")
+      ->check(CLI::Range(std::size_t{20}, std::size_t{1000000}));
+  command->add_option("--starts", options->options.starts, "points to search from, default 4")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{100}));
+  command
+      ->add_option("--reach", options->options.reach, "farthest distance in standard deviations, default 6")
+      ->check(CLI::Range(0.1, 8.0));
+  command->add_option("--seed", options->options.seed,
+                      "of the points that are drawn to begin with, default 1");
+  command->add_option("--out", options->out, "file for what --json prints");
+  command->footer(
+      "Example: dispersa search campaigns/full.yaml --metric pitch_error_peak_deg --below 0.5 --flights "
+      "2000");
+  command->callback([options, &invocation] {
+    invocation.command = [options](const GlobalOptions& global) { return SearchFor(*options, global); };
+  });
+}
+
+}  // namespace dispersa

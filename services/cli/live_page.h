@@ -1,0 +1,22 @@
+// What `watch --web` shows of a campaign: the report's style and words, and nothing from outside.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "services/cli/live_server.h"
+
+namespace dispersa {
+
+/// The page before anything is known of the campaign, for a LiveServer.
+std::string LivePage(const std::string& id);
+/// The header that lets a page use its own style and script, its own server, and nothing else.
+std::string ContentSecurityPolicy(const std::string& page);
+
+/// Of the answers of a coordinator to `status` and `tally`.
+LiveParts StatusParts(const nlohmann::ordered_json& status);
+LiveParts TallyParts(const nlohmann::ordered_json& tally);
+/// What is wrong with the coordinator; empty: nothing.
+LiveParts NoticeParts(const std::string& notice);
+
+}  // namespace dispersa

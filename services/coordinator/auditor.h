@@ -1,0 +1,57 @@
+// Flies again what the audit asks for.
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <map>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "core/campaign/campaign_flights.h"
+#include "services/coordinator/audit.h"
+#include "services/transport/mutex.h"
+
+namespace dispersa {
+
+/// One thread of its own that flies, so that whoever talks need not wait.
+class Auditor {
+ public:
+  /// A claim and the fingerprint of the case as it was flown here.
+  struct Verdict {
+    std::string flight_id;
+    Claim claim;
+    Digest truth;
+  };
+
+  Auditor();
+  ~Auditor();
+
+  void Fly(const Campaign& campaign, std::vector<Claim> claims);
+  /// What has been flown since the last time.
+  std::vector<Verdict> Take();
+
+ private:
+  class Queue;
+  struct Work {
+    std::shared_ptr<const Campaign> campaign;
+    std::shared_ptr<const CampaignFlights> flights;  ///< made when the first claim is flown
+    std::deque<Claim> claims;
+    bool is_flown = false;  ///< now
+  };
+
+  void FlyForEver();
+  /// Waits for claims; returns the flight id of their campaign, or nothing at the end.
+  std::string Await();
+  std::shared_ptr<const CampaignFlights> FlightsOf(const std::string& flight_id);
+
+  Mutex mutex_;
+  std::condition_variable changed_;
+  std::map<std::string, Work> work_ DISPERSA_GUARDED_BY(mutex_);  ///< by flight id
+  std::vector<Verdict> verdicts_ DISPERSA_GUARDED_BY(mutex_);
+  bool closed_ DISPERSA_GUARDED_BY(mutex_) = false;
+  std::jthread thread_;
+};
+
+}  // namespace dispersa

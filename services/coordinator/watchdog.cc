@@ -1,0 +1,56 @@
+#include "services/coordinator/watchdog.h"
+
+#include <linux/close_range.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstring>
+#include <utility>
+
+namespace dispersa {
+namespace {
+
+constexpr std::chrono::milliseconds kPeriod(250);
+
+/// Returns only if it fails.
+void StartAgain(std::vector<std::string>& arguments) {
+  std::vector<char*> words;
+  for (std::string& argument : arguments) words.push_back(argument.data());
+  words.push_back(nullptr);
+  // Sockets, whose ports the new program needs, and locks.
+  close_range(3, ~0U, CLOSE_RANGE_CLOEXEC);
+  execv("/proc/self/exe", words.data());
+  spdlog::error("the program cannot be started again: {}", std::strerror(errno));
+}
+
+}  // namespace
+
+bool DeafnessRule::Check(double now_s, bool hears, bool has_work, long rounds) {
+  if (rounds != rounds_) {
+    rounds_ = rounds;
+    round_s_ = now_s;
+  }
+  has_heard_ = has_heard_ || hears;
+  if (hears || !has_work) heard_s_ = now_s;
+  return now_s - round_s_ > kHang_s || (has_heard_ && now_s - heard_s_ > kDeaf_s);
+}
+
+Watchdog::Watchdog(std::vector<std::string> arguments)
+    : arguments_(std::move(arguments)), thread_([this](const std::stop_token& stop) { Watch(stop); }) {}
+
+// The time is what the thread has slept, not the clock's: a program that was stopped, or a machine that
+// slept, has missed nothing.
+void Watchdog::Watch(const std::stop_token& stop) {
+  DeafnessRule rule;
+  for (double awake_s = 0.0; !stop.stop_requested();
+       awake_s += std::chrono::duration<double>(kPeriod).count()) {
+    std::this_thread::sleep_for(kPeriod);
+    if (!rule.Check(awake_s, hears_, has_work_, rounds_)) continue;
+    spdlog::warn("nobody is heard any more: the coordinator starts again");
+    StartAgain(arguments_);
+    return;
+  }
+}
+
+}  // namespace dispersa

@@ -1,0 +1,45 @@
+#include "services/transport/admission.h"
+
+#include <arpa/inet.h>
+#include <spdlog/spdlog.h>
+
+namespace dispersa {
+namespace {
+
+constexpr char kLoopback[] = "127.0.0.1";
+
+bool IsLoopback(const std::string& host) {
+  in_addr address{};
+  return host == "localhost" ||
+         (host.rfind("127.", 0) == 0 && inet_pton(AF_INET, host.c_str(), &address) == 1);
+}
+
+}  // namespace
+
+NetworkOptions Admit(NetworkOptions network, const Admission& admission, std::initializer_list<Role> roles,
+                     const std::string& peer) {
+  if (!admission.keys.empty()) {
+    if (admission.insecure) throw NetworkError("--keys and --insecure exclude each other");
+    network.keys = OpenKeyFolder(admission.keys, roles);
+    return network;
+  }
+  // A coordinator that is not on this machine's interface alone announces itself with its other addresses: whoever
+  // may use those keeps all interfaces, also with a peer on this machine.
+  if (network.address.empty() && IsLoopback(peer) && !admission.insecure) network.address = kLoopback;
+  if (IsLoopback(network.address) && (peer.empty() || IsLoopback(peer))) return network;
+  if (!admission.insecure) {
+    throw NetworkError(
+        "beyond this machine nobody is spoken to without keys, allowed: --keys DIR with a folder that "
+        "`dispersa "
+        "keys issue` made, --address 127.0.0.1 for this machine alone, or --insecure on a network that you "
+        "trust");
+  }
+  spdlog::warn("without keys: whoever reaches this network can read, join and forge (--insecure)");
+  return network;
+}
+
+std::string NameOnNetwork(const NetworkOptions& network, const std::string& uuid) {
+  return network.keys ? OwnPrefix(network.keys->name) + uuid : uuid;
+}
+
+}  // namespace dispersa

@@ -1,0 +1,29 @@
+// Who may speak where: keys are wanted beyond this machine.
+#pragma once
+
+#include <initializer_list>
+#include <string>
+
+#include "services/transport/network.h"
+
+namespace dispersa {
+
+/// What a command line says of it.
+struct Admission {
+  std::string keys;       ///< folder; empty: none
+  bool insecure = false;  ///< none, and beyond this machine all the same
+};
+
+inline constexpr char kKeysHelp[] = "folder that `dispersa keys issue` made: who we are";
+inline constexpr char kInsecureHelp[] = "beyond this machine without keys: on networks that you trust";
+
+/// `network` as it may be used by one of `roles`: with the keys; without, with the loopback interface alone if that is
+/// where `peer` is, no address was given, and nobody said --insecure. Throws NetworkError with what to do when neither keys nor the
+/// loopback interface nor --insecure is there. A coordinator has no peer.
+NetworkOptions Admit(NetworkOptions network, const Admission& admission, std::initializer_list<Role> roles,
+                     const std::string& peer = "");
+
+/// A name on the network: `uuid`, after the name of our keys if we have any.
+std::string NameOnNetwork(const NetworkOptions& network, const std::string& uuid);
+
+}  // namespace dispersa

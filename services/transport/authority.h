@@ -1,0 +1,37 @@
+// Makes the keys with which coordinators, workers, clients and observers know each other.
+#pragma once
+
+#include <ctime>
+#include <filesystem>
+#include <string>
+
+#include "services/transport/permissions.h"
+
+namespace dispersa {
+
+/// When keys are valid.
+struct Validity {
+  std::time_t not_before;
+  std::time_t not_after;
+};
+
+/// From a day ago, because clocks differ, for `days` from now on.
+Validity ValidFor(int days);
+
+/// An authority is a folder:
+///
+///   authority/identity_ca.{key,pem}      signs who somebody is
+///   authority/permissions_ca.{key,pem}   signs who may do what; apart from the first, because whoever has a
+///                                        certificate of that one could sign permissions for himself
+///   authority/governance.p7s             how everything is protected
+///   issued/<role>-<name>/                one folder for each participant, all that it needs
+///
+/// Both functions make a folder as a whole or not at all, readable by the owner alone, and throw InputError
+/// rather than overwrite one.
+void MakeAuthority(const std::filesystem::path& directory, const Validity& validity);
+
+/// Returns the folder. Keys end with the authority at the latest; for more than a day longer: InputError.
+std::filesystem::path IssueKeys(const std::filesystem::path& directory, Role role, const std::string& name,
+                                const Validity& validity);
+
+}  // namespace dispersa

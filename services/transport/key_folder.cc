@@ -1,0 +1,113 @@
+#include "services/transport/key_folder.h"
+
+#include <algorithm>
+#include <cstring>
+#include <ctime>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+#include "services/transport/network.h"
+#include "services/transport/openssl.h"
+
+namespace dispersa {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kHowTo[] = "give a folder that `dispersa keys issue` made";
+
+[[noreturn]] void Refuse(const fs::path& what, const std::string& problem) {
+  throw NetworkError(what.string() + ": " + problem);
+}
+
+std::string DateText(std::time_t time) {
+  std::tm parts{};
+  gmtime_r(&time, &parts);
+  char text[32] = "";
+  std::strftime(text, sizeof text, "%Y-%m-%d %H:%M UTC", &parts);
+  return text;
+}
+
+std::string JoinRoles(std::initializer_list<Role> roles) {
+  std::string text;
+  for (const Role role : roles) text += (text.empty() ? "" : " or ") + std::string(Name(role));
+  return text;
+}
+
+/// What OpenSSL reads of a file, or a refusal that names the file.
+template <typename Read>
+auto Parse(const fs::path& file, Read read) {
+  const std::string text = ReadKeyFile(file);
+  try {
+    return read(text);
+  } catch (const NetworkError&) {
+    throw;
+  } catch (const std::runtime_error& error) {
+    Refuse(file, error.what());
+  }
+}
+
+void CheckDates(const fs::path& file, X509* certificate, const char* remedy) {
+  const std::time_t now = std::time(nullptr);
+  if (now > EndOf(certificate)) Refuse(file, "expired on " + DateText(EndOf(certificate)) + ": " + remedy);
+  if (now < BeginOf(certificate)) {
+    Refuse(file,
+           "is valid from " + DateText(BeginOf(certificate)) + " on: the clock of this machine may be wrong");
+  }
+}
+
+bool Contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+std::string ReadKeyFile(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  if (!in.is_open() || in.bad()) {
+    Refuse(file, std::string("cannot be read: ") + std::strerror(errno));
+  }
+  return text;
+}
+
+KeyFolder OpenKeyFolder(const fs::path& directory, std::initializer_list<Role> roles) {
+  if (!fs::is_directory(directory)) Refuse(directory, std::string("no folder: ") + kHowTo);
+  if (fs::exists(directory / "authority")) {
+    Refuse(directory, "the folder of the authority, which signs and does not speak: give one of " +
+                          (directory / "issued").string());
+  }
+  const auto certificate_in = [&](const char* name) { return Parse(directory / name, ReadCertificate); };
+  const Certificate identity_ca = certificate_in(kIdentityAuthorityFile);
+  const Certificate permissions_ca = certificate_in(kPermissionsAuthorityFile);
+  const Certificate identity = certificate_in(kIdentityFile);
+  const PrivateKey key = Parse(directory / kIdentityKeyFile, ReadPrivateKey);
+  if (X509_check_private_key(identity.get(), key.get()) != 1) {
+    Refuse(directory / kIdentityKeyFile, std::string("not the key of ") + kIdentityFile);
+  }
+  if (!IsSignedBy(identity.get(), identity_ca.get())) {
+    Refuse(directory / kIdentityFile, std::string("not signed by ") + kIdentityAuthorityFile);
+  }
+  const auto document_in = [&](const char* name) {
+    return Parse(directory / name,
+                 [&](const std::string& text) { return VerifiedDocument(text, permissions_ca.get()); });
+  };
+  document_in(kGovernanceFile);
+  const std::string permissions = document_in(kPermissionsFile);
+  if (!Contains(permissions, "<subject_name>" + SubjectText(identity.get()) + "</subject_name>")) {
+    Refuse(directory / kPermissionsFile, std::string("not the permissions of the owner of ") + kIdentityFile);
+  }
+  const Subject subject = SubjectOf(identity.get());
+  const auto role = ParseRole(subject.unit);
+  if (!role || std::find(roles.begin(), roles.end(), *role) == roles.end()) {
+    Refuse(directory, "keys of the " + subject.unit + " '" + subject.name + "'; here those of a " +
+                          JoinRoles(roles) + " are needed");
+  }
+  CheckDates(directory / kIdentityAuthorityFile, identity_ca.get(), "make a new authority");
+  CheckDates(directory / kPermissionsAuthorityFile, permissions_ca.get(), "make a new authority");
+  CheckDates(directory / kIdentityFile, identity.get(), "issue new keys");
+  return {fs::absolute(directory), *role, subject.name};
+}
+
+}  // namespace dispersa

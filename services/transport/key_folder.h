@@ -1,0 +1,34 @@
+// The folder with which a process shows who it is: what `dispersa keys issue` made, and nothing secret of
+// others.
+#pragma once
+
+#include <filesystem>
+#include <initializer_list>
+#include <string>
+
+#include "services/transport/permissions.h"
+
+namespace dispersa {
+
+struct KeyFolder {
+  std::filesystem::path directory;
+  Role role = Role::kObserver;
+  std::string name;
+};
+
+// The files of a folder.
+inline constexpr char kIdentityAuthorityFile[] = "identity_ca.pem";
+inline constexpr char kPermissionsAuthorityFile[] = "permissions_ca.pem";
+inline constexpr char kGovernanceFile[] = "governance.p7s";
+inline constexpr char kIdentityFile[] = "identity.pem";
+inline constexpr char kIdentityKeyFile[] = "identity.key";
+inline constexpr char kPermissionsFile[] = "permissions.p7s";
+
+/// Reads the folder and checks all of it: each file, signatures, dates, and that it is for one of `roles`.
+/// Throws NetworkError with what is wrong and what to do.
+KeyFolder OpenKeyFolder(const std::filesystem::path& directory, std::initializer_list<Role> roles);
+
+/// The text of a file; throws NetworkError.
+std::string ReadKeyFile(const std::filesystem::path& file);
+
+}  // namespace dispersa

@@ -1,0 +1,88 @@
+#include "services/transport/neighbours.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fastdds/rtps/builtin/data/ParticipantProxyData.h>
+#include <fastdds/rtps/participant/ParticipantDiscoveryInfo.h>
+#include <fastdds/rtps/writer/WriterDiscoveryInfo.h>
+#include <fastrtps/utils/IPLocator.h>
+
+#include "services/transport/complaints.h"
+#include "services/transport/endpoints.h"
+
+namespace dispersa {
+namespace {
+
+namespace dds = eprosima::fastdds::dds;
+namespace rtps = eprosima::fastrtps::rtps;
+
+constexpr std::chrono::seconds kHandshake(5);
+constexpr std::size_t kMostHandshakes = 1024;  // strangers may make up participants without end
+constexpr char kBadKeys[] = "its keys are of another authority, expired or damaged";
+
+std::string WhoIs(const rtps::ParticipantProxyData& participant) {
+  const auto& addresses = participant.metatraffic_locators.unicast;
+  return ParticipantOf(participant.m_guid) +
+         (addresses.empty() ? "" : " at " + rtps::IPLocator::ip_to_string(addresses.front()));
+}
+
+}  // namespace
+
+bool Neighbours::IsIn(const rtps::GUID_t& writer, const std::string& partition) const {
+  const Lock lock(mutex_);
+  const auto known = partitions_.find(writer);
+  return known != partitions_.end() && known->second == std::vector<std::string>{partition};
+}
+
+void Neighbours::on_participant_discovery(dds::DomainParticipant*, rtps::ParticipantDiscoveryInfo&& found) {
+  using Found = rtps::ParticipantDiscoveryInfo;
+  if (found.status == Found::CHANGED_QOS_PARTICIPANT) return;
+  const Lock lock(mutex_);
+  if (found.status != Found::DISCOVERED_PARTICIPANT) {
+    handshakes_.erase(found.info.m_guid);
+    return;
+  }
+  const bool it_has_keys = !found.info.identity_token_.class_id().empty();
+  if (we_have_keys_ && it_has_keys) {
+    if (handshakes_.size() < kMostHandshakes) {
+      handshakes_[found.info.m_guid] = {std::chrono::steady_clock::now() + kHandshake, WhoIs(found.info)};
+    }
+  } else if (we_have_keys_ != it_has_keys) {
+    Complain("participant", WhoIs(found.info),
+             we_have_keys_ ? "it has no keys" : "it has keys, and we have none to show (--keys)");
+  }
+}
+
+void Neighbours::onParticipantAuthentication(dds::DomainParticipant*,
+                                             rtps::ParticipantAuthenticationInfo&& who) {
+  const Lock lock(mutex_);
+  handshakes_.erase(who.guid);
+  if (who.status == rtps::ParticipantAuthenticationInfo::UNAUTHORIZED_PARTICIPANT) {
+    Complain("participant", ParticipantOf(who.guid), kBadKeys);
+  }
+}
+
+void Neighbours::LogSilent() {
+  const Lock lock(mutex_);
+  const auto now = std::chrono::steady_clock::now();
+  std::erase_if(handshakes_, [&](const auto& each) {
+    const bool is_silent = now > each.second.due;
+    if (is_silent) Complain("participant", each.second.who, kBadKeys);
+    return is_silent;
+  });
+}
+
+// Who changes partitions could speak in one with the permission for another: he speaks in none from then on.
+void Neighbours::on_publisher_discovery(dds::DomainParticipant*, rtps::WriterDiscoveryInfo&& found) {
+  const Lock lock(mutex_);
+  if (found.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER) {
+    partitions_.erase(found.info.guid());
+    return;
+  }
+  std::vector<std::string> now = found.info.m_qos.m_partition.getNames();
+  const auto [known, is_new] = partitions_.try_emplace(found.info.guid(), now);
+  if (!is_new && known->second != now) known->second.clear();
+}
+
+}  // namespace dispersa

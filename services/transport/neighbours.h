@@ -1,0 +1,47 @@
+// Who else is on the network, as the middleware finds them. Internal to this folder.
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <fastdds/dds/domain/DomainParticipantListener.hpp>
+
+#include "services/transport/mutex.h"
+
+namespace dispersa {
+
+/// Logs who is refused at the door, which the middleware often does in silence, and knows in which partitions
+/// the writers of others are. With keys the permissions say who may be in which.
+class Neighbours : public eprosima::fastdds::dds::DomainParticipantListener {
+ public:
+  explicit Neighbours(bool we_have_keys) : we_have_keys_(we_have_keys) {}
+
+  /// Whether the writer is in this partition and never was in another.
+  bool IsIn(const eprosima::fastrtps::rtps::GUID_t& writer, const std::string& partition) const;
+  /// Now and then: logs those who have shown no valid keys for some seconds. Whoever finds the other's keys
+  /// bad falls silent, so one of the two sides sees nothing but silence.
+  void LogSilent();
+
+ private:
+  void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant*,
+                                eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& found) override;
+  void onParticipantAuthentication(eprosima::fastdds::dds::DomainParticipant*,
+                                   eprosima::fastrtps::rtps::ParticipantAuthenticationInfo&& who) override;
+  void on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant*,
+                              eprosima::fastrtps::rtps::WriterDiscoveryInfo&& found) override;
+
+  struct Handshake {
+    std::chrono::steady_clock::time_point due;
+    std::string who;
+  };
+
+  bool we_have_keys_;
+  mutable Mutex mutex_;
+  std::map<eprosima::fastrtps::rtps::GUID_t, std::vector<std::string>> partitions_
+      DISPERSA_GUARDED_BY(mutex_);
+  std::map<eprosima::fastrtps::rtps::GUID_t, Handshake> handshakes_ DISPERSA_GUARDED_BY(mutex_);
+};
+
+}  // namespace dispersa

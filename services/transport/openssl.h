@@ -1,0 +1,64 @@
+// OpenSSL's objects with owners, and the few things that keys need of it. Internal to this folder.
+#pragma once
+
+#include <openssl/bio.h>
+#include <openssl/evp.h>
+#include <openssl/pkcs7.h>
+#include <openssl/x509.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+namespace dispersa {
+
+template <auto Free>
+struct OpenSslFree {
+  template <typename T>
+  void operator()(T* object) const {
+    Free(object);
+  }
+};
+
+using Bio = std::unique_ptr<BIO, OpenSslFree<BIO_free_all>>;
+using PrivateKey = std::unique_ptr<EVP_PKEY, OpenSslFree<EVP_PKEY_free>>;
+using Certificate = std::unique_ptr<X509, OpenSslFree<X509_free>>;
+
+/// What a certificate says of its owner.
+struct Subject {
+  std::string name;  ///< CN
+  std::string unit;  ///< OU; a role, or empty
+};
+
+struct CertificateContents {
+  Subject subject;
+  bool is_authority = false;  ///< may sign certificates
+  std::time_t not_before = 0;
+  std::time_t not_after = 0;
+};
+
+/// On the curve P-256, the one that the middleware's key exchange knows. All of these throw
+/// std::runtime_error with OpenSSL's words.
+PrivateKey MakePrivateKey();
+/// Signed by `issuer` with its key, or by itself without an issuer.
+Certificate MakeCertificate(const CertificateContents& contents, EVP_PKEY* key, X509* issuer,
+                            EVP_PKEY* issuer_key);
+/// A document in S/MIME with its signature, as DDS Security wants it.
+std::string SignDocument(const std::string& text, X509* signer, EVP_PKEY* key);
+
+std::string ToPem(X509* certificate);
+std::string ToPem(EVP_PKEY* key);
+Certificate ReadCertificate(const std::string& pem);
+PrivateKey ReadPrivateKey(const std::string& pem);
+
+Subject SubjectOf(X509* certificate);
+/// "CN=node1,OU=worker,O=dispersa": the form in which permissions name their owner.
+std::string SubjectText(X509* certificate);
+std::time_t EndOf(X509* certificate);
+std::time_t BeginOf(X509* certificate);
+/// Whether `authority` has signed it; its dates are not looked at.
+bool IsSignedBy(X509* certificate, X509* authority);
+/// The text of a signed document; throws if it is not one, or not signed by `signer`.
+std::string VerifiedDocument(const std::string& smime, X509* signer);
+
+}  // namespace dispersa

@@ -1,0 +1,30 @@
+// Who may say and hear what: the documents of DDS Security that the authority signs.
+#pragma once
+
+#include <array>
+#include <ctime>
+#include <optional>
+#include <string>
+
+namespace dispersa {
+
+enum class Role { kCoordinator, kWorker, kClient, kObserver };
+
+inline constexpr std::array<Role, 4> kRoles = {Role::kCoordinator, Role::kWorker, Role::kClient,
+                                               Role::kObserver};
+
+const char* Name(Role role);
+std::optional<Role> ParseRole(const std::string& text);
+
+/// Workers and clients with keys are called NAME_… after their keys: nobody else may speak and hear under
+/// such a name. Names of keys have no '_'.
+std::string OwnPrefix(const std::string& name);
+
+/// What is the same for all participants: how everything is protected.
+std::string GovernanceDocument();
+
+/// What one participant may publish and subscribe. `subject` is SubjectText of its certificate.
+std::string PermissionsDocument(Role role, const std::string& name, const std::string& subject,
+                                std::time_t not_before, std::time_t not_after);
+
+}  // namespace dispersa

@@ -1,0 +1,87 @@
+// A worker that speaks as dispersa-worker does and flies nothing: made-up results, at once. What the service
+// itself costs is measured with it, and that made-up results are found out.
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdint>
+#include <optional>
+
+#include "core/flight/engine_version.h"
+#include "core/flight/flight_inputs.h"
+#include "core/flight/metrics.h"
+#include "services/transport/worker_link.h"
+#include "services/worker/flight_desk.h"
+
+namespace dispersa {
+namespace {
+
+/// The same for every worker, another one for each case.
+CaseResult MadeUp(std::uint64_t case_index) {
+  CaseResult result;
+  result.case_index = case_index;
+  result.outcome = Outcome::kCompleted;
+  result.end_time_s = 500.0;
+  result.end_stage = 4;
+  result.inputs.assign(InputColumns().size(), 1.0 / 3.0);
+  result.metrics.assign(MetricNames().size(), 1.0 / static_cast<double>(case_index + 1));
+  result.digest = {case_index, ~case_index};
+  return result;
+}
+
+/// Until it is told to leave.
+void Work(const NetworkOptions& network, const Peer& peer, std::uint32_t slots) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto now_s = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  const std::string uuid = MakeUuid();
+  FlightDesk desk({.worker = uuid, .engine_version = EngineVersion(), .slots = slots}, 0.0);
+  std::optional<WorkerLink> link(std::in_place, network, peer, uuid);
+  while (!desk.left() && desk.refusal().empty()) {
+    for (const WorkerEvent& event : link->Wait(std::chrono::milliseconds(20))) {
+      if (const auto* orders = std::get_if<Orders>(&event)) {
+        desk.On(*orders, now_s());
+      } else {
+        desk.On(std::get<TextPart>(event), now_s());
+      }
+    }
+    if (const auto text = desk.TakeText()) desk.Loaded(text->flight_id, nullptr, "");
+    while (const auto job = desk.Next(now_s())) {
+      for (const Report& report : desk.TakeReports(now_s())) link->Send(report);
+      desk.Done(*job, MadeUp(job->case_index), now_s());
+    }
+    const FlightDesk::Due due = desk.Tick(now_s());
+    if (due.status) {
+      WorkerStatus status = *due.status;
+      status.host = "nowhere";
+      link->Send(status);
+    }
+    for (const Report& report : due.reports) link->Send(report);
+    for (const TextRequest& request : due.text_requests) link->Send(request);
+    if (due.new_connection) link.emplace(network, peer, uuid);
+  }
+}
+
+}  // namespace
+}  // namespace dispersa
+
+int main(int argc, char** argv) {
+  using namespace dispersa;
+  NetworkOptions network;
+  std::string peer = "127.0.0.1";
+  std::uint32_t slots = 1;
+  CLI::App app("A worker that makes its results up.", "noop_worker");
+  app.add_option("--domain", network.domain);
+  app.add_option("--peer", peer);
+  app.add_option("--address", network.address);
+  app.add_option("--slots", slots);
+  CLI11_PARSE(app, argc, argv);
+  try {
+    Work(network, ParsePeer(peer, network.domain), slots);
+  } catch (const NetworkError& error) {
+    spdlog::error("{}", error.what());
+    return 2;
+  }
+  return 0;
+}

@@ -1,0 +1,157 @@
+"""Exports, templates and the gate as a user calls them, on a small campaign.
+
+DISPERSA_BINARIES and DISPERSA_CAMPAIGNS name the folders of the programs and of the campaigns.
+"""
+import csv
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+import unittest
+import xml.etree.ElementTree
+
+BINARIES = pathlib.Path(os.environ["DISPERSA_BINARIES"])
+CAMPAIGNS = pathlib.Path(os.environ["DISPERSA_CAMPAIGNS"])
+DEBIAN_PYTHON = "/usr/bin/python3"  # python3-jinja2 and python3-h5py belong to it
+TIMEOUT_S = 300
+
+
+def run(*command, **options):
+    return subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=TIMEOUT_S, **options)
+
+
+def dispersa(*arguments):
+    return run(BINARIES / "dispersa", *arguments)
+
+
+class ExportTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="dispersa-export-"))
+        cls.addClassCleanup(shutil.rmtree, cls.folder)
+        cls.results = cls.folder / "results"
+        done = dispersa("run", CAMPAIGNS / "smoke.yaml", "--workers", "0", "--no-histories", "--quiet", "--out", cls.results)
+        assert done.returncode == 0, done.stderr
+        with open(cls.results / "cases.csv", newline="") as stream:
+            cls.rows = list(csv.DictReader(stream))
+
+    def template(self, text, name="template.md"):
+        file = self.folder / name
+        file.write_text(text)
+        return file
+
+
+class Templates(ExportTest):
+    def test_values_of_the_summary(self):
+        done = dispersa("report", self.results, "--template", self.template(
+            "{{ campaign.name }} {{ verdict }} {{ requirements[0].limit | number }} {{ 0.99731 | percent }}\n"
+            "{% for r in requirements %}\n{{ r.metric }}\n{% endfor %}\n{{ None | number }} {{ 12345.678 | number }}\n"))
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(done.stdout, "smoke pass 1 99.731 %\npitch_error_peak_deg\n\u2013 12346\n")
+
+    def test_shipped_templates(self):
+        for name in ("report.md", "report.html"):
+            done = dispersa("report", self.results, "--template", CAMPAIGNS / "templates" / name, "--out", self.folder / name)
+            self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "", ""))
+            text = (self.folder / name).read_text()
+            self.assertIn("smoke: pass", text)
+            self.assertIn("pitch_error_peak_deg", text)
+            self.assertNotRegex(text, r"\b(None|nan|inf)\b|Undefined")
+
+    def test_mistakes_name_their_line(self):
+        for text, line, what in [("a\n{{ campaign.nme }}\n", 2, "'dict object' has no attribute 'nme'"),
+                                 ("a\nb\n{% if %}\n", 3, "Expected an expression, got 'end of statement block'"),
+                                 ("{{ verdict | colour }}", 1, "No filter named 'colour'."),
+                                 ("\n{{ ''.__class__ }}", 2, "access to attribute '__class__' of 'str' object is unsafe."),
+                                 ("{{ 1 / 0 }}", 1, "division by zero"),
+                                 ("{% include '../secret' %}", 1, "no template named '../secret' beside it")]:
+            file = self.template(text)
+            done = dispersa("report", self.results, "--template", file)
+            self.assertEqual((done.returncode, done.stdout, done.stderr), (2, "", f"{file}:{line}: {what}\n"))
+        missing = self.folder / "missing.md"
+        done = dispersa("report", self.results, "--template", missing)
+        self.assertEqual((done.returncode, done.stderr), (2, f"{missing}: cannot be read, allowed: a readable file\n"))
+
+    def test_html_is_escaped(self):
+        done = dispersa("report", self.results, "--template", self.template("{{ '<&>' }}", "template.html"))
+        self.assertEqual(done.stdout, "&lt;&amp;&gt;")
+
+    def test_the_gate_leaves_what_a_pipeline_attaches(self):
+        artifacts = self.folder / "artifacts"
+        environment = {**os.environ, "DISPERSA": str(BINARIES / "dispersa")}
+        done = run(CAMPAIGNS / "gate", CAMPAIGNS / "smoke.yaml", artifacts, "--workers", "0", env=environment)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        suite = xml.etree.ElementTree.parse(artifacts / "requirements.xml").getroot().find("testsuite")
+        self.assertEqual((suite.get("failures"), suite.get("errors")), ("0", "0"))
+        self.assertIn("smoke: pass", (artifacts / "report.md").read_text())
+        self.assertTrue((artifacts / "results" / "report.html").is_file())
+        # A limit that no flight keeps: everything is attached all the same, and the pipeline stops.
+        campaigns = self.folder / "campaigns"
+        shutil.copytree(CAMPAIGNS, campaigns)
+        failing = campaigns / "smoke.yaml"
+        failing.write_text(re.sub(r"below: [\d.]+", "below: 1.0e-9", failing.read_text()))
+        done = run(CAMPAIGNS / "gate", failing, self.folder / "failed", "--workers", "0", env=environment)
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn("**fail**", (self.folder / "failed" / "report.md").read_text())
+        self.assertEqual(run(CAMPAIGNS / "gate", env=environment).returncode, 2)
+
+
+class Hdf5(ExportTest):
+    def setUp(self):
+        self.file = self.folder / "results.h5"
+        done = dispersa("export", self.results, "--format", "hdf5", "--out", self.file)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def column(self, name):
+        return [float(row[name]) if row[name] else float("nan") for row in self.rows]
+
+    def test_the_same_results_give_the_same_bytes(self):
+        again = self.folder / "again.h5"
+        dispersa("export", self.results, "--format", "hdf5", "--out", again)
+        self.assertEqual(self.file.read_bytes(), again.read_bytes())
+        self.assertFalse((self.folder / "again.h5.tmp").exists())
+
+    def test_h5py_reads_every_column(self):
+        script = """
+import h5py, json, math, sys
+with h5py.File(sys.argv[1]) as file:
+    text = lambda values: [value.decode() for value in values]
+    numbers = lambda values: [None if math.isnan(value) else value for value in values]
+    print(json.dumps({
+        "schema": file.attrs["schema"].decode(), "engine": file.attrs["engine"].decode(),
+        "case_index": file["cases/case_index"][:].tolist(), "outcome": text(file["cases/outcome"][:]),
+        "digest": text(file["cases/digest"][:]), "unit": file["metrics/q_max_pa"].attrs["unit"].decode(),
+        "columns": {group + "_" + name: numbers(file[key][name][:]) for key, group in (("inputs", "input"), ("metrics", "metric"))
+                    for name in file[key]}}))
+"""
+        done = run(DEBIAN_PYTHON, "-I", "-c", script, self.file)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        read = json.loads(done.stdout)
+        self.assertEqual((read["schema"], read["unit"]), ("dispersa/hdf5/1", "Pa"))
+        self.assertEqual(read["case_index"], [int(row["case_index"]) for row in self.rows])
+        self.assertEqual(read["outcome"], [row["outcome"] for row in self.rows])
+        self.assertEqual(read["digest"], [row["digest"] for row in self.rows])
+        names = {name for name in self.rows[0] if re.match("(input|metric)_", name)}
+        self.assertEqual(set(read["columns"]), names)
+        for name in names:
+            self.assertEqual(read["columns"][name], [float(row[name]) if row[name] else None for row in self.rows], name)
+
+    @unittest.skipUnless(shutil.which("octave-cli"), "octave is not installed (tests/long-packages.txt)")
+    def test_octave_opens_it(self):
+        done = run("octave-cli", "--norc", "--eval",
+                   f"d = load('-hdf5', '{self.file}'); printf('%.17g\\n', d.metrics.q_max_pa); printf('%d\\n', d.cases.case_index);")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        numbers = [float(word) for word in done.stdout.split()]
+        self.assertEqual(numbers, self.column("metric_q_max_pa") + self.column("case_index"))
+
+    def test_a_place_that_cannot_be_written(self):
+        done = dispersa("export", self.results, "--format", "hdf5", "--out", self.folder / "none" / "results.h5")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("HDF5 cannot write it", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,88 @@
+#include "core/statistics/point_scatter.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "core/random/draws.h"
+
+namespace dispersa {
+namespace {
+
+/// Correlated normals of the given spread.
+std::vector<std::vector<double>> Normals(int n, int dimensions) {
+  std::vector<std::vector<double>> points;
+  for (int i = 0; i < n; ++i) {
+    Stream stream(3, static_cast<std::uint64_t>(i), "ellipse");
+    const double x = stream.Normal(), y = stream.Normal(), z = stream.Normal();
+    points.push_back({100.0 + 3.0 * x, -7.0 + 2.0 * x + y});
+    if (dimensions == 3) points.back().push_back(1e-3 * (x - z));
+  }
+  return points;
+}
+
+TEST(PointScatter, ScatterOfAFewPoints) {
+  const PointScatter scatter = PointScatterOf({{1, 10}, {2, 30}, {3, 20}});
+  EXPECT_EQ(scatter.mean, (std::vector<double>{2, 20}));
+  EXPECT_EQ(scatter.covariance[0][0], 1.0);
+  EXPECT_EQ(scatter.covariance[0][1], 5.0);
+  EXPECT_EQ(scatter.covariance[1][1], 100.0);
+  EXPECT_EQ(PointScatterOf({}).n, 0u);
+}
+
+TEST(PointScatter, HoldsTheStatedShareOfNormalPoints) {
+  for (const int dimensions : {2, 3}) {
+    const auto points = Normals(20000, dimensions);
+    const PointScatter scatter = PointScatterOf(points);
+    for (const Containment& one : ContainmentOf(points, scatter, {0.5, 0.95, 0.99})) {
+      // Four standard errors of 20,000 points.
+      EXPECT_NEAR(one.empirical, one.stated, 4.0 * std::sqrt(one.stated * (1.0 - one.stated) / 20000.0))
+          << dimensions;
+      EXPECT_LT(one.limits.lower, one.empirical);
+      EXPECT_GT(one.limits.upper, one.empirical);
+      // Two dimensions in closed form.
+      if (dimensions == 2) {
+        EXPECT_NEAR(one.scale, -2.0 * std::log(1.0 - one.stated), 1e-12);
+      }
+    }
+  }
+  EXPECT_NEAR(PointScatterOf(Normals(20000, 2)).covariance[0][1], 6.0, 0.3);
+}
+
+TEST(PointScatter, SaysSoWhenPointsAreNotNormal) {
+  std::vector<std::vector<double>> ring;
+  for (int i = 0; i < 360; ++i)
+    ring.push_back({std::cos(i * std::numbers::pi / 180), std::sin(i * std::numbers::pi / 180)});
+  const auto containment = ContainmentOf(ring, PointScatterOf(ring), {0.5, 0.95});
+  EXPECT_EQ(containment[0].inside, 0);
+  EXPECT_EQ(containment[1].inside, 360);
+}
+
+TEST(PointScatter, NoneWithoutSpread) {
+  const std::vector<std::vector<double>> line = {{1, 2}, {2, 4}, {3, 6}, {4, 8}, {5, 10}};
+  EXPECT_TRUE(ContainmentOf(line, PointScatterOf(line), {0.95}).empty());
+  const std::vector<std::vector<double>> flat = {{1, 2}, {2, 2}, {3, 2}, {4, 2}};
+  EXPECT_TRUE(ContainmentOf(flat, PointScatterOf(flat), {0.95}).empty());
+  const std::vector<std::vector<double>> few = {{1, 2}, {2, 5}, {3, 1}};
+  EXPECT_TRUE(ContainmentOf(few, PointScatterOf(few), {0.95}).empty());
+}
+
+TEST(PointScatter, AxesAndOutline) {
+  // Turned by 30 degrees, half-axes 5 and 2 at scale 1.
+  const double c = std::cos(std::numbers::pi / 6), s = std::sin(std::numbers::pi / 6);
+  const std::vector<std::vector<double>> covariance = {{25 * c * c + 4 * s * s, 21 * c * s},
+                                                       {21 * c * s, 25 * s * s + 4 * c * c}};
+  const ScatterEllipse ellipse = EllipseOf(covariance, 4.0);
+  EXPECT_NEAR(ellipse.semi_major, 10.0, 1e-12);
+  EXPECT_NEAR(ellipse.semi_minor, 4.0, 1e-12);
+  EXPECT_NEAR(ellipse.angle_rad, std::numbers::pi / 6, 1e-12);
+  const auto outline = OutlineOf(ellipse, {1.0, 2.0}, 72);
+  ASSERT_EQ(outline.size(), 73u);
+  EXPECT_EQ(outline.front(), outline.back());
+  EXPECT_NEAR(outline[0][0], 1.0 + 10.0 * c, 1e-12);
+  EXPECT_NEAR(outline[0][1], 2.0 + 10.0 * s, 1e-12);
+}
+
+}  // namespace
+}  // namespace dispersa
