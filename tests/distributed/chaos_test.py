@@ -1,7 +1,7 @@
 """A service on three hosts whose processes are killed and frozen and whose links are cut and lose packets, while it
 flies several campaigns: all bytes are those of a run in one process, and it always gets on again.
 
-Environment as of run_test.py. DISPERSA_TROUBLES: how many (default 16; tests/run --long: 1000); DISPERSA_SEED draws them.
+Environment as of processes.py. DISPERSA_TROUBLES: how many (default 16; tests/run --long: 1000); DISPERSA_SEED draws them.
 """
 import os
 import pathlib
@@ -9,13 +9,12 @@ import random
 import shutil
 import signal
 import subprocess
-import sys
 import tempfile
 import time
 import unittest
 
 from hosts import Hosts
-from run_test import BINARIES, CAMPAIGN, ISOLATED, Run, end, isolate, raise_loopback, shared_memory_segments, stored, wait_for
+from processes import BINARIES, CAMPAIGN, Run, end, main, shared_memory_segments, stored, wait_for
 
 TROUBLES = int(os.environ.get("DISPERSA_TROUBLES", "16"))
 CASES = 800
@@ -143,9 +142,4 @@ class ChaosTest(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    sys.dont_write_bytecode = True
-    if ISOLATED not in os.environ:
-        isolate()
-        sys.exit("no network namespaces: hosts cannot be made")
-    raise_loopback()
-    unittest.main()
+    main(need_isolation="hosts cannot be made")

@@ -21,8 +21,8 @@ using ::testing::IsEmpty;
 
 class MemoryStore : public ResultStore {
  public:
-  std::size_t Append(std::span<const CaseResult> results) override { return stored += results.size(); }
-  void AppendExecution(std::span<const ExecutionRecord> records) override {
+  void Store(std::span<const CaseResult> results, std::span<const ExecutionRecord> records) override {
+    stored += results.size();
     for (const ExecutionRecord& record : records) worker_of[record.case_index] = record.worker;
   }
   void Quarantine(const QuarantinedCase&) override {}

@@ -1,6 +1,6 @@
 """Three hosts as network namespaces, joined by a bridge in this program's own, without multicast.
 
-The links can be cut, or lose packets. Needs a network namespace of its own (run_test.isolate).
+The links can be cut, or lose packets. Needs a network namespace of its own (processes.main).
 """
 import os
 import subprocess

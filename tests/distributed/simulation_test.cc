@@ -37,14 +37,11 @@ struct Disk {
 class DiskStore : public ResultStore {
  public:
   explicit DiskStore(Disk& disk) : disk_(disk) {}
-  std::size_t Append(std::span<const CaseResult> results) override {
+  void Store(std::span<const CaseResult> results, std::span<const ExecutionRecord> records) override {
     for (const CaseResult& result : results) {
       const auto [row, added] = disk_.rows.emplace(result.case_index, Fingerprint(result));
       EXPECT_EQ(row->second, Fingerprint(result)) << "another result over the stored one";
     }
-    return results.size();
-  }
-  void AppendExecution(std::span<const ExecutionRecord> records) override {
     for (const ExecutionRecord& record : records) disk_.worker_of[record.case_index] = record.worker;
   }
   void Quarantine(const QuarantinedCase& quarantined) override {
