@@ -300,6 +300,7 @@ LaneView Batch<T>::ViewOf(int lane) const {
     view.gimbal_rad[axis] = Lane(gimbals_.deflection_rad[axis], lane);
     view.axes[axis] =
         TelemetryOf(model_.autopilot().laws.data()[axis].config, gimbals_.axes[axis], axes_[axis], lane);
+    ReadLane(axes_[axis], lane, view.memories[axis]);
   }
   return view;
 }

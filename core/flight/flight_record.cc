@@ -142,8 +142,10 @@ TickSample FlightRecord::SampleOf(const LaneView& view) const {
   s.gimbal = {view.gimbal_rad[kRoll], view.gimbal_rad[kPitch], view.gimbal_rad[kYaw], {}};
   for (std::size_t axis = 0; axis < kAxes; ++axis) {
     s.gimbal.telemetry[axis] = view.axes[axis];
+    s.memories[axis] = view.memories[axis];
     s.thrusters[axis] = view.thrusters[axis];
   }
+  s.stuck_nozzle = view.phase.stuck_nozzle;
   s.expelled_mass_kg = view.phase.expelled_mass_kg;
   s.instant = equations_->Evaluate(view.phase, view.time_s, view.y);
   return s;

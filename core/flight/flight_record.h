@@ -45,6 +45,7 @@ struct LaneView {
   double error_rate_rad_s[kAxes] = {};
   double gimbal_rad[kAxes] = {};  ///< commanded about roll, pitch, yaw
   AxisTelemetry axes[kAxes];
+  AxisState memories[kAxes];  ///< of the autopilot, after the tick
   int thrusters[kAxes] = {};
 };
 

@@ -21,7 +21,8 @@ AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Ax
 
   GimbalCommand unit;
   (axis == kRoll ? unit.roll_rad : axis == kPitch ? unit.pitch_rad : unit.yaw_rad) = 1.0;
-  const std::array<double, kNozzles> pattern = unit.Nozzles();
+  std::array<double, kNozzles> pattern = unit.Nozzles();
+  if (sample.stuck_nozzle >= 0) pattern[static_cast<std::size_t>(sample.stuck_nozzle)] = 0.0;
   Vector3 about = Vector3::Zero();
   about[axis] = 1.0;
 
@@ -75,6 +76,29 @@ LinearLaw LineariseLaw(const AutopilotModel& autopilot, int stage, double since_
     linear.leakage_1_s = law.config.adaptation.leakage_1_s;
     linear.spread_1_s = law.config.adaptation.spread_1_s;
     linear.rules = kFuzzyRules;
+  }
+  return linear;
+}
+
+LinearLaw LineariseLearntLaw(const AutopilotModel& autopilot, const TickSample& sample, Axis axis,
+                             ErrorSide side) {
+  LinearLaw linear = LineariseLaw(autopilot, sample.stack, sample.since_ignition_s, axis, true);
+  const AxisConfig& config = autopilot.laws[static_cast<std::size_t>(axis)].config;
+  const AxisState& memory = sample.memories[static_cast<std::size_t>(axis)];
+  const LawInfo& info = InfoOf(config.law);
+  if (info.augmentation) {
+    linear.kp_1_s2 *= memory.total_gain;
+    linear.kd_1_s *= memory.total_gain;
+  }
+  if (info.rules && info.adaptation) {
+    const double error_step = config.rules.error_range_rad / (kFuzzySets / 2);
+    const double rate_step = config.rules.rate_range_rad_s / (kFuzzySets / 2);
+    constexpr int kCentre = kFuzzyRules / 2;
+    const auto rise = [&](int towards) {
+      return memory.departure_rad_s2[kCentre + towards] - memory.departure_rad_s2[kCentre];
+    };
+    linear.kp_1_s2 += side.error * rise(side.error * kFuzzySets) / error_step;
+    linear.kd_1_s += side.rate * rise(side.rate) / rate_step;
   }
   return linear;
 }

@@ -18,4 +18,17 @@ AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Ax
 LinearLaw LineariseLaw(const AutopilotModel& autopilot, int stage, double since_ignition_s, Axis axis,
                        bool adapting);
 
+/// Sides of zero error and zero rate, -1 or 1: what the rules have learnt gives the rule surface an edge
+/// there.
+struct ErrorSide {
+  int error = 1;
+  int rate = 1;
+};
+
+/// The same law adapting, with what it has learnt until the sample: about zero error, to where the adaptation
+/// steers, but on one side of it. The rules' slopes are those towards the neighbours of the central rule; the
+/// augmentation's total gain is the sample's.
+LinearLaw LineariseLearntLaw(const AutopilotModel& autopilot, const TickSample& sample, Axis axis,
+                             ErrorSide side);
+
 }  // namespace dispersa

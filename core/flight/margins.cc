@@ -61,13 +61,32 @@ class Bisection {
 
 }  // namespace
 
-std::vector<MarginInstant> MarginInstants(const FlightModel& model, double every_s) {
+namespace {
+
+// What learning changes a law's slopes in.
+bool Learns(const AutopilotModel& autopilot, Axis axis) {
+  const LawInfo& info = InfoOf(autopilot.laws[static_cast<std::size_t>(axis)].config.law);
+  return info.adaptation || info.augmentation;
+}
+
+LoopMargins Least(const LoopMargins& a, const LoopMargins& b) {
+  return {a.stable && b.stable,
+          std::min(a.gain_up_db, b.gain_up_db),
+          std::min(a.gain_down_db, b.gain_down_db),
+          std::min(a.phase_deg, b.phase_deg),
+          std::min(a.delay_s, b.delay_s),
+          std::max(a.crossover_rad_s, b.crossover_rad_s)};
+}
+
+// Those of one flight, and how it ended.
+std::vector<MarginInstant> InstantsOf(const FlightModel& model, const FlightOrder& order, double every_s,
+                                      Outcome* outcome) {
   std::vector<MarginInstant> instants;
   MarginInstant max_q, last;
   double q_max = 0.0, next_s = 0.0;
   int stage = -1;
   bool ignited = false;
-  FlightOptions options;
+  FlightOptions options = order.options;
   options.observe = [&](const TickSample& s) {
     if (!s.burning) return;
     const std::string name = "stage " + std::to_string(s.stack + 1);
@@ -92,7 +111,7 @@ std::vector<MarginInstant> MarginInstants(const FlightModel& model, double every
     }
     last = {name + " burnout", s};
   };
-  Fly(model, FlightInputs{}, options);
+  *outcome = Fly(model, order.inputs, options).outcome;
   if (stage < 0) return instants;
   instants.push_back(last);
   if (q_max > 0.0) instants.push_back(max_q);
@@ -102,6 +121,74 @@ std::vector<MarginInstant> MarginInstants(const FlightModel& model, double every
   return instants;
 }
 
+// Of each axis: all laws of ComputedMargins. `learnt` is the sample whose memories count.
+void AddMarginsAt(const LauncherPlant& plant, const AutopilotModel& autopilot, const FlightInputs& inputs,
+                  const MarginInstant& instant, const TickSample& learnt, std::vector<ComputedMargins>& all) {
+  const TickSample& s = instant.sample;
+  for (const Axis axis : {kPitch, kYaw, kRoll}) {
+    const AxisPlant linear = LineariseAxis(plant, s, axis);
+    const auto margins_of = [&](LinearLaw law) {
+      const bool is_spoilt = inputs.loop_stage == 0.0 || inputs.loop_stage == s.stack + 1;
+      if (is_spoilt) law.effectiveness_1_s2 /= inputs.loop_gain_factor;
+      if (law.rules > 1) {
+        law.drive_error *= inputs.pn_error_factor;
+        law.drive_rate *= inputs.pn_rate_factor;
+      }
+      return SampledLoop(linear, law, autopilot.config.tick_s,
+                         plant.stacks[static_cast<std::size_t>(s.stack)].gimbal.delay_ticks)
+          .Margins();
+    };
+    const auto law = [&](bool adapting) {
+      return LineariseLaw(autopilot, s.stack, s.since_ignition_s, axis, adapting);
+    };
+    ComputedMargins each{instant.place,         s.stack, s.time_s, axis, margins_of(law(false)),
+                         margins_of(law(true)), {}};
+    if (Learns(autopilot, axis)) {
+      each.learnt = each.adapting;
+      for (const int error : {-1, 1}) {
+        for (const int rate : {-1, 1})
+          each.learnt =
+              Least(*each.learnt, margins_of(LineariseLearntLaw(autopilot, learnt, axis, {error, rate})));
+      }
+    }
+    all.push_back(std::move(each));
+  }
+}
+
+}  // namespace
+
+std::vector<MarginInstant> MarginInstants(const FlightModel& model, double every_s) {
+  Outcome outcome;
+  return InstantsOf(model, {}, every_s, &outcome);
+}
+
+std::vector<ComputedMargins> ComputeMargins(const FlightModel& model, double every_s) {
+  const std::vector<MarginInstant> instants = MarginInstants(model, every_s);
+  // The same ticks of the flight in which something is to be learnt: its stages burn as long.
+  std::vector<TickSample> learnt;
+  FlightOrder order = Spoilt(0, 0.0, 0.0);
+  order.options.observe = [&](const TickSample& s) {
+    while (s.burning && learnt.size() < instants.size() && instants[learnt.size()].sample.time_s <= s.time_s)
+      learnt.push_back(s);
+  };
+  Fly(model, order.inputs, order.options);
+  std::vector<ComputedMargins> all;
+  for (std::size_t i = 0; i < instants.size(); ++i) {
+    // A flight that ends early learns nothing more.
+    const TickSample& sample = i < learnt.size() ? learnt[i] : instants[i].sample;
+    AddMarginsAt(model.nominal_plant(), model.autopilot(), {}, instants[i], sample, all);
+  }
+  return all;
+}
+
+DispersedMargins ComputeDispersedMargins(const FlightModel& model, const FlightOrder& order, double every_s) {
+  DispersedMargins found;
+  const LauncherPlant plant = model.PlantFor(order.inputs);
+  for (const MarginInstant& instant : InstantsOf(model, order, every_s, &found.outcome))
+    AddMarginsAt(plant, model.autopilot(), order.inputs, instant, instant.sample, found.margins);
+  return found;
+}
+
 LoopMargins MarginsAt(const LauncherPlant& plant, const AutopilotModel& autopilot, const TickSample& s,
                       Axis axis, bool adapting) {
   return SampledLoop(LineariseAxis(plant, s, axis),
@@ -109,24 +196,6 @@ LoopMargins MarginsAt(const LauncherPlant& plant, const AutopilotModel& autopilo
                      autopilot.config.tick_s,
                      plant.stacks[static_cast<std::size_t>(s.stack)].gimbal.delay_ticks)
       .Margins();
-}
-
-std::vector<ComputedMargins> ComputeMargins(const FlightModel& model, double every_s) {
-  const LauncherPlant& plant = model.nominal_plant();
-  std::vector<ComputedMargins> all;
-  for (const MarginInstant& instant : MarginInstants(model, every_s)) {
-    for (const Axis axis : {kPitch, kYaw, kRoll}) {
-      ComputedMargins each;
-      each.place = instant.place;
-      each.stage = instant.sample.stack;
-      each.time_s = instant.sample.time_s;
-      each.axis = axis;
-      each.frozen = MarginsAt(plant, model.autopilot(), instant.sample, axis, false);
-      each.adapting = MarginsAt(plant, model.autopilot(), instant.sample, axis, true);
-      all.push_back(each);
-    }
-  }
-  return all;
 }
 
 std::vector<MeasuredMargins> MeasureMargins(const FlightModel& model) {
@@ -166,6 +235,18 @@ std::vector<MeasuredMargins> MeasureMargins(const FlightModel& model) {
 bool PassesGates(const LoopMargins& m) {
   return m.stable && m.gain_up_db >= kGainMarginGate_db && m.gain_down_db >= kGainMarginGate_db &&
          m.phase_deg >= kPhaseMarginGate_deg && m.delay_s >= kDelayMarginGate_s;
+}
+
+bool PassesGates(const ComputedMargins& m) {
+  return PassesGates(m.frozen) && PassesGates(m.adapting) && (!m.learnt || PassesGates(*m.learnt));
+}
+
+bool PassesDispersedGates(const ComputedMargins& m) {
+  const auto passes = [](const LoopMargins& loop) {
+    return loop.stable && loop.gain_up_db >= kDispersedGainGate_db &&
+           loop.gain_down_db >= kDispersedGainGate_db && loop.phase_deg >= kDispersedPhaseGate_deg;
+  };
+  return passes(m.frozen) && passes(m.adapting) && (!m.learnt || passes(*m.learnt));
 }
 
 bool PassesGates(const MeasuredMargins& m) {

@@ -5,10 +5,12 @@
 // to fly a real one must be shown to hold them too.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/control/loop_margins.h"
+#include "core/flight/flight.h"
 #include "core/flight/flight_model.h"
 #include "core/flight/tick_sample.h"
 
@@ -18,6 +20,9 @@ namespace dispersa {
 inline constexpr double kGainMarginGate_db = 6.0;  ///< both ways
 inline constexpr double kPhaseMarginGate_deg = 30.0;
 inline constexpr double kDelayMarginGate_s = 0.020;
+/// What every powered phase of a dispersed flight must have.
+inline constexpr double kDispersedGainGate_db = 3.0;
+inline constexpr double kDispersedPhaseGate_deg = 20.0;
 
 /// One axis at one instant of the nominal flight.
 struct ComputedMargins {
@@ -27,6 +32,9 @@ struct ComputedMargins {
   Axis axis = kPitch;
   LoopMargins frozen;    ///< gains held
   LoopMargins adapting;  ///< with the adaptation, linearised about zero error; as frozen if there is none
+  /// As adapting, with what the law has learnt by then: the least on any side of zero error and zero rate.
+  /// None where nothing changes by learning.
+  std::optional<LoopMargins> learnt;
 };
 
 /// One powered phase, all axes at once. Resolutions: kMeasuredGainStep_db, kMeasuredDelayStep_s; a value at
@@ -55,8 +63,18 @@ std::vector<MarginInstant> MarginInstants(const FlightModel& model, double every
 LoopMargins MarginsAt(const LauncherPlant& plant, const AutopilotModel& autopilot, const TickSample& sample,
                       Axis axis, bool adapting);
 
-/// At each of MarginInstants, in all axes.
+/// At each of MarginInstants, in all axes. What is learnt is learnt in a flight with the misalignment of
+/// MeasureMargins.
 std::vector<ComputedMargins> ComputeMargins(const FlightModel& model, double every_s = 5.0);
+
+/// The margins of a dispersed flight: its own plant, at the instants of its own flight, with what was learnt
+/// in it; the autopilot knows the nominal vehicle. A further delay of the loop is left out.
+struct DispersedMargins {
+  Outcome outcome = Outcome::kCompleted;  ///< the margins end with the flight
+  std::vector<ComputedMargins> margins;
+};
+DispersedMargins ComputeDispersedMargins(const FlightModel& model, const FlightOrder& order,
+                                         double every_s = 5.0);
 
 /// By bisection over flights in which the gain or the delay of one stage's loop is changed, with a steady
 /// thrust misalignment of 0.25° in every stage that keeps the adaptation at work. A loop counts as lost when
@@ -66,6 +84,9 @@ std::vector<MeasuredMargins> MeasureMargins(const FlightModel& model);
 
 /// Whether a margin set passes the gates.
 bool PassesGates(const LoopMargins& margins);
+bool PassesGates(const ComputedMargins& margins);
 bool PassesGates(const MeasuredMargins& margins);
+/// Whether a margin set of a dispersed flight does.
+bool PassesDispersedGates(const ComputedMargins& margins);
 
 }  // namespace dispersa

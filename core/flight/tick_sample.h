@@ -23,6 +23,8 @@ struct TickSample {
   AttitudeError error;             ///< true, not measured
   ReferenceAttitude reference;
   GimbalCommand gimbal;            ///< of this tick
+  std::array<AxisState, kAxes> memories{};  ///< of the burning stage's laws, after this tick
+  int stuck_nozzle = -1;                    ///< index, or none
   std::array<int, kAxes> thrusters{};
   double expelled_mass_kg = 0.0;
   LauncherInstant instant;

@@ -44,12 +44,12 @@ std::string PaperMarginSection(const PaperStudy& study) {
                       {"gates"}});
   std::size_t points = 0, passed = 0;
   for (const ComputedMargins& at : study.computed_margins) {
-    points += 2;
-    passed += PassesGates(at.frozen);
-    passed += PassesGates(at.adapting);
+    points += at.learnt ? 3 : 2;
+    passed += PassesGates(at.frozen) + PassesGates(at.adapting) + (at.learnt && PassesGates(*at.learnt));
     if (at.place.empty() || at.axis != kPitch) continue;
     LoopRow(computed, at, "frozen", at.frozen);
     LoopRow(computed, at, "adapting", at.adapting);
+    if (at.learnt) LoopRow(computed, at, "learnt", *at.learnt);
   }
   HtmlTable measured({{"All axes, measured in flight"},
                       {"gain up, dB", true},
@@ -71,7 +71,8 @@ std::string PaperMarginSection(const PaperStudy& study) {
       "Stability follows from the Lyapunov function; margins are not given.",
       fmt::format("Measured by spoiling the loop in flight: at least {} dB of gain either way and {} ms of "
                   "delay; {}. "
-                  "Linearised, {} of {} sets (all axes, with gains frozen and adapting, every few seconds of "
+                  "Linearised, {} of {} sets (all axes, with gains frozen, adapting, and with what was "
+                  "learnt by then, every few seconds of "
                   "powered flight) "
                   "pass the gates.",
                   Number(least_gain_db, 1), Number(1e3 * least_delay_s, 0),

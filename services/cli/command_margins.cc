@@ -5,26 +5,31 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/campaign/campaign_flights.h"
+#include "core/campaign/dispersed_margins.h"
 #include "core/flight/margins.h"
 #include "services/cli/command.h"
 #include "services/cli/flight_json.h"
 #include "services/cli/warn.h"
+#include "services/coordinator/threads.h"
 
 namespace dispersa {
 namespace {
 
 struct MarginsOptions {
   std::string campaign;
+  std::optional<std::uint64_t> cases;  ///< of dispersed margins; none: nominal alone
 };
 
 struct MarginsResult {
   std::string autopilot;
   std::vector<ComputedMargins> computed;
   std::vector<MeasuredMargins> measured;
+  std::optional<CampaignMargins> dispersed;
   bool passed = false;
 };
 
@@ -40,6 +45,28 @@ nlohmann::ordered_json LoopJson(const LoopMargins& m) {
           {"passed", PassesGates(m)}};
 }
 
+nlohmann::ordered_json LeastJson(const LeastMargin& m, double unit = 1.0) {
+  return {{"value", JsonNumber(unit * m.value)}, {"case", m.case_index}, {"time_s", m.time_s}};
+}
+
+nlohmann::ordered_json DispersedJson(const CampaignMargins& dispersed) {
+  auto loops = nlohmann::ordered_json::array();
+  for (const LeastLoopMargins& loop : dispersed.loops) {
+    loops.push_back({{"stage", loop.stage + 1},
+                     {"axis", kAxisNames[loop.axis]},
+                     {"gain_up_db", LeastJson(loop.gain_up_db)},
+                     {"gain_down_db", LeastJson(loop.gain_down_db)},
+                     {"phase_deg", LeastJson(loop.phase_deg)},
+                     {"delay_ms", LeastJson(loop.delay_s, 1e3)}});
+  }
+  return {{"cases", dispersed.cases},
+          {"gates", {{"gain_db", kDispersedGainGate_db}, {"phase_deg", kDispersedPhaseGate_deg}}},
+          {"ended_early", dispersed.ended_early},
+          {"missed", dispersed.missed},
+          {"least", std::move(loops)},
+          {"passed", dispersed.Passed()}};
+}
+
 void PrintJson(const MarginsResult& result) {
   auto computed = nlohmann::ordered_json::array();
   for (const ComputedMargins& m : result.computed) {
@@ -48,7 +75,8 @@ void PrintJson(const MarginsResult& result) {
                         {"time_s", m.time_s},
                         {"axis", kAxisNames[m.axis]},
                         {"frozen", LoopJson(m.frozen)},
-                        {"adapting", LoopJson(m.adapting)}});
+                        {"adapting", LoopJson(m.adapting)},
+                        {"learnt", m.learnt ? LoopJson(*m.learnt) : nullptr}});
   }
   auto measured = nlohmann::ordered_json::array();
   for (const MeasuredMargins& m : result.measured) {
@@ -58,22 +86,22 @@ void PrintJson(const MarginsResult& result) {
                         {"delay_ms", 1e3 * m.delay_s},
                         {"passed", PassesGates(m)}});
   }
-  const nlohmann::ordered_json json = {
-      {"schema", "dispersa/margins/1"},
-      {"model", "rigid body: no bending, no slosh"},
-      {"autopilot", result.autopilot},
-      {"gates",
-       {{"gain_db", kGainMarginGate_db},
-        {"phase_deg", kPhaseMarginGate_deg},
-        {"delay_ms", 1e3 * kDelayMarginGate_s}}},
-      {"measured_resolution",
-       {{"gain_db", kMeasuredGainStep_db},
-        {"gain_ceiling_db", kMeasuredGainCeiling_db},
-        {"delay_ms", 1e3 * kMeasuredDelayStep_s},
-        {"delay_ceiling_ms", 1e3 * kMeasuredDelayCeiling_s}}},
-      {"computed", std::move(computed)},
-      {"measured", std::move(measured)},
-      {"passed", result.passed}};
+  nlohmann::ordered_json json = {{"schema", "dispersa/margins/1"},
+                                 {"model", "rigid body: no bending, no slosh"},
+                                 {"autopilot", result.autopilot},
+                                 {"gates",
+                                  {{"gain_db", kGainMarginGate_db},
+                                   {"phase_deg", kPhaseMarginGate_deg},
+                                   {"delay_ms", 1e3 * kDelayMarginGate_s}}},
+                                 {"measured_resolution",
+                                  {{"gain_db", kMeasuredGainStep_db},
+                                   {"gain_ceiling_db", kMeasuredGainCeiling_db},
+                                   {"delay_ms", 1e3 * kMeasuredDelayStep_s},
+                                   {"delay_ceiling_ms", 1e3 * kMeasuredDelayCeiling_s}}},
+                                 {"computed", std::move(computed)},
+                                 {"measured", std::move(measured)},
+                                 {"passed", result.passed}};
+  if (result.dispersed) json["dispersed"] = DispersedJson(*result.dispersed);
   fmt::print("{}\n", json.dump(2));
 }
 
@@ -95,12 +123,36 @@ double Nearness(const LoopMargins& m) {
                    m.phase_deg / kPhaseMarginGate_deg, m.delay_s / kDelayMarginGate_s});
 }
 
+void PrintDispersed(const CampaignMargins& dispersed) {
+  fmt::print(
+      "\nDispersed: the least of {} cases, linearised about each one's own flight, with its case and time.\n"
+      "Gates: gain {:.0f} dB both ways, phase {:.0f} deg.\n"
+      "{:<8}{:<6} {:>23} {:>23} {:>23} {:>23}\n",
+      dispersed.cases, kDispersedGainGate_db, kDispersedPhaseGate_deg, "", "", "gain up dB", "gain down dB",
+      "phase deg", "delay ms");
+  const auto cell = [](const LeastMargin& m, double unit, int decimals) {
+    return std::isfinite(m.value)
+               ? fmt::format("{:.{}f} ({} at {:.1f} s)", unit * m.value, decimals, m.case_index, m.time_s)
+               : "none";
+  };
+  for (const LeastLoopMargins& loop : dispersed.loops) {
+    fmt::print("{:<8}{:<6} {:>23} {:>23} {:>23} {:>23}\n", fmt::format("stage {}", loop.stage + 1),
+               kAxisNames[loop.axis], cell(loop.gain_up_db, 1.0, 1), cell(loop.gain_down_db, 1.0, 1),
+               cell(loop.phase_deg, 1.0, 1), cell(loop.delay_s, 1e3, 0));
+  }
+  fmt::print("{} of {} cases miss a gate{}; {} flights ended early.\n", dispersed.missed.size(),
+             dispersed.cases,
+             dispersed.missed.empty() ? "" : fmt::format(", the first is case {}", dispersed.missed.front()),
+             dispersed.ended_early);
+}
+
 void PrintText(const MarginsResult& result) {
   fmt::print(
       "Margins of autopilot {} along the nominal flight.\n"
       "RIGID-BODY MARGINS: no bending modes, no slosh. Gates: gain {:.0f} dB both ways, phase {:.0f} deg, "
       "delay {:.0f} ms.\n\n"
-      "Computed: linearised; frozen = gains held, adapting = with the adaptation about zero error.\n",
+      "Computed: linearised; frozen = gains held, adapting = with the adaptation about zero error,\n"
+      "learnt = the same with what was learnt by then from a thrust misalignment of 0.25 deg.\n",
       result.autopilot, kGainMarginGate_db, kPhaseMarginGate_deg, 1e3 * kDelayMarginGate_s);
   fmt::print("{:<24} {:>8} {:<5}  {:<8} {:>8} {:>8} {:>8} {:>8}\n", "", "time s", "axis", "", "gain dB",
              "gain dB", "phase", "delay ms");
@@ -109,21 +161,21 @@ void PrintText(const MarginsResult& result) {
     const bool named = !m.place.empty();
     if (named || !PassesGates(m.frozen)) PrintLoop(named ? m.place : "(between)", "frozen", m, m.frozen);
     if (named || !PassesGates(m.adapting)) PrintLoop(named ? m.place : "(between)", "adapting", m, m.adapting);
+    if (m.learnt && (named || !PassesGates(*m.learnt)))
+      PrintLoop(named ? m.place : "(between)", "learnt", m, *m.learnt);
   }
   fmt::print("\nNearest to a gate in each stage, named instants or between:\n");
   for (const MeasuredMargins& stage : result.measured) {
-    for (const bool adapting : {false, true}) {
+    for (const char* kind : {"frozen", "adapting", "learnt"}) {
       const ComputedMargins* nearest = nullptr;
-      const auto margins = [adapting](const ComputedMargins& m) -> const LoopMargins& {
-        return adapting ? m.adapting : m.frozen;
+      const auto margins = [kind](const ComputedMargins& m) -> const LoopMargins& {
+        return kind[0] == 'f' ? m.frozen : kind[0] == 'l' && m.learnt ? *m.learnt : m.adapting;
       };
       for (const ComputedMargins& m : result.computed) {
         if (m.stage == stage.stage && (!nearest || Nearness(margins(m)) < Nearness(margins(*nearest))))
           nearest = &m;
       }
-      if (nearest)
-        PrintLoop(fmt::format("stage {}", stage.stage + 1), adapting ? "adapting" : "frozen", *nearest,
-                  margins(*nearest));
+      if (nearest) PrintLoop(fmt::format("stage {}", stage.stage + 1), kind, *nearest, margins(*nearest));
     }
   }
   fmt::print(
@@ -138,21 +190,25 @@ void PrintText(const MarginsResult& result) {
                fmt::format("{}{:.0f}", capped(m.delay_s, kMeasuredDelayCeiling_s), 1e3 * m.delay_s),
                PassesGates(m) ? "" : "FAIL");
   }
+  if (result.dispersed) PrintDispersed(*result.dispersed);
   fmt::print("\n{}\n", result.passed ? "PASS: every gate is met" : "FAIL: a gate is not met");
 }
 
 ExitCode Margins(const MarginsOptions& options, const GlobalOptions& global) {
-  const Campaign campaign = LoadAndWarn(options.campaign);
+  const Campaign campaign = LoadAndWarn(options.campaign, {options.cases, {}});
   const CampaignFlights flights(campaign);
   MarginsResult result;
   result.autopilot = campaign.autopilot.name;
   result.computed = ComputeMargins(flights.model());
   result.measured = MeasureMargins(flights.model());
-  result.passed =
-      std::all_of(result.computed.begin(), result.computed.end(),
-                  [](const ComputedMargins& m) { return PassesGates(m.frozen) && PassesGates(m.adapting); }) &&
-      std::all_of(result.measured.begin(), result.measured.end(),
-                  [](const MeasuredMargins& m) { return PassesGates(m); });
+  result.passed = std::all_of(result.computed.begin(), result.computed.end(),
+                              [](const ComputedMargins& m) { return PassesGates(m); }) &&
+                  std::all_of(result.measured.begin(), result.measured.end(),
+                              [](const MeasuredMargins& m) { return PassesGates(m); });
+  if (options.cases) {
+    result.dispersed = ComputeCampaignMargins(flights, *options.cases, UsableCores());
+    result.passed = result.passed && result.dispersed->Passed();
+  }
   if (global.json) {
     PrintJson(result);
   } else {
@@ -168,10 +224,12 @@ void AddMarginsCommand(CLI::App& app, Invocation& invocation) {
   CLI::App* command =
       app.add_subcommand("margins", "gain, phase and delay margins of the autopilot (rigid body)");
   command->add_option("campaign", options->campaign, "campaign file")->required();
+  command->add_option("--cases", options->cases, "also of so many dispersed cases of the campaign");
   command->footer(
       "Computed from a linearisation at lift-off, max q, ignitions and burnouts, and measured by spoiling\n"
       "the loop in flight. Ends with 3 when a gate is not met.\n"
-      "Example: dispersa margins campaigns/nominal.yaml");
+      "Example: dispersa margins campaigns/nominal.yaml\n"
+      "         dispersa margins campaigns/aero20.yaml --cases 32");
   command->callback([options, &invocation] {
     invocation.command = [options](const GlobalOptions& global) { return Margins(*options, global); };
   });

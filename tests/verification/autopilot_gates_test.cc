@@ -2,6 +2,8 @@
 // 20 ms (flight/margins.h). What `dispersa margins` shows, held for each law.
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "core/flight/margins.h"
 #include "tests/slv4_flight.h"
 
@@ -13,13 +15,14 @@ class ShippedAutopilot : public testing::TestWithParam<const char*> {
   FlightModel model_{Slv4Definition(DISPERSA_CAMPAIGNS, GetParam())};
 };
 
-TEST_P(ShippedAutopilot, HasTheComputedMarginsFrozenAndAdaptingAtEveryInstant) {
+TEST_P(ShippedAutopilot, HasTheComputedMarginsFrozenAdaptingAndLearntAtEveryInstant) {
   const std::vector<ComputedMargins> computed = ComputeMargins(model_);
   // Named instants of four stages and a sample every 5 s of 211 s, three axes each.
   ASSERT_GT(computed.size(), 100u);
   for (const ComputedMargins& m : computed) {
     EXPECT_TRUE(PassesGates(m.frozen)) << "frozen at " << m.time_s << " s, axis " << m.axis;
     EXPECT_TRUE(PassesGates(m.adapting)) << "adapting at " << m.time_s << " s, axis " << m.axis;
+    EXPECT_TRUE(PassesGates(m)) << "learnt at " << m.time_s << " s, axis " << m.axis;
   }
 }
 
@@ -29,6 +32,24 @@ TEST_P(ShippedAutopilot, HasTheMeasuredMarginsInEveryStage) {
   for (const MeasuredMargins& m : measured)
     EXPECT_TRUE(PassesGates(m)) << "stage " << m.stage + 1 << ": " << m.gain_up_db << " dB up, " << m.gain_down_db
                                 << " dB down, " << m.delay_s << " s";
+}
+
+// The paper's law as it stands in (32), without spread, with the integral action of the shipped one: about
+// zero error nothing is wrong with it. Where the central rule has learnt a trim alone, the edge in the
+// surface is.
+TEST(SpreadFreeLaw, PassesAboutZeroErrorAndFailsWhereItHasLearnt) {
+  FlightDefinition definition = Slv4Definition(DISPERSA_CAMPAIGNS, "adaptive_fuzzy");
+  for (AxisConfig* axis : {&definition.autopilot.pitch, &definition.autopilot.yaw}) {
+    axis->adaptation.spread_1_s = 0.0;
+    for (double& gamma : axis->adaptation.gamma) gamma /= kFuzzyRules;
+  }
+  std::set<int> failing;
+  for (const ComputedMargins& m : ComputeMargins(FlightModel(definition))) {
+    EXPECT_TRUE(PassesGates(m.frozen) && PassesGates(m.adapting)) << m.time_s << " s, axis " << m.axis;
+    if (!PassesGates(m)) failing.insert(m.stage);
+  }
+  EXPECT_EQ(failing.size(), 4u);
+  for (const MeasuredMargins& m : MeasureMargins(FlightModel(definition))) EXPECT_FALSE(PassesGates(m));
 }
 
 INSTANTIATE_TEST_SUITE_P(Laws, ShippedAutopilot,
