@@ -116,15 +116,23 @@ class ChaosTest(unittest.TestCase):
         self.assert_same_bytes()
         print(f"{TROUBLES} troubles, {len(self.launched)} campaigns; at most {self.longest_stall_s:.1f} s until more was stored")
 
-    def test_a_coordinator_that_hears_nobody_starts_again(self):
+    def start_again_without(self, *packets):
+        """A coordinator that gets none of these packets while it flies starts again, and the bytes are the same."""
         self.coordinator = self.start_coordinator()
         self.workers = [self.start_worker(1)]
         self.keep_busy()
         wait_for(lambda: sum(self.stored().values()) > 0, "first results")
-        self.hosts[0].drop("in", 100)
+        self.hosts[0].drop("in", 100, *packets)
         wait_for(lambda: "the coordinator starts again" in (self.root / "log").read_text(), "a new start")
         self.hosts[0].heal()
         self.assert_same_bytes()
+
+    def test_a_coordinator_that_hears_nobody_starts_again(self):
+        self.start_again_without()
+
+    def test_a_coordinator_that_hears_no_results_starts_again(self):
+        # That the worker lives is still heard: discovery and statuses have ports of their own (services/README.md).
+        self.start_again_without("udp", "dport", "!=", "{15655,", "15656}")
 
     def assert_same_bytes(self):
         """Of all campaigns, at their end; and that nothing has ended by itself."""

@@ -256,7 +256,7 @@ class World {
       dispatcher_->On(packet.from, *refusal, clock_s_);
     }
     if (const auto* request = std::get_if<TextRequest>(&packet.message)) {
-      if (const auto part = dispatcher_->On(*request, kTextPart)) Send("", part->worker, *part);
+      if (const auto part = dispatcher_->On(*request, kTextPart, clock_s_)) Send("", part->worker, *part);
     }
   }
 
