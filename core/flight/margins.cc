@@ -18,8 +18,9 @@ constexpr double kMisalignment_rad = 0.25 * kRadPerDeg;
 constexpr double kLostCycle_deg = 0.2;
 constexpr double kLostError_deg = 5.0;
 
-FlightOrder Spoilt(int stage, double gain_db, double delay_s) {
+FlightOrder Spoilt(const FlightInputs& unspoilt, int stage, double gain_db, double delay_s) {
   FlightOrder order;
+  order.inputs = unspoilt;
   FlightInputs& inputs = order.inputs;
   inputs.loop_stage = stage + 1;
   inputs.loop_gain_factor = Pow(10.0, gain_db / 20.0);
@@ -61,7 +62,13 @@ class Bisection {
 
 }  // namespace
 
-std::vector<MarginInstant> MarginInstants(const FlightModel& model, double every_s) {
+void LeastMargins::Take(const LoopMargins& m) {
+  gain_db = std::min({gain_db, m.gain_up_db, m.gain_down_db});
+  phase_deg = std::min(phase_deg, m.phase_deg);
+  delay_s = std::min(delay_s, m.delay_s);
+}
+
+std::vector<MarginInstant> MarginInstants(const FlightModel& model, double every_s, const FlightInputs& inputs) {
   std::vector<MarginInstant> instants;
   MarginInstant max_q, last;
   double q_max = 0.0, next_s = 0.0;
@@ -92,7 +99,7 @@ std::vector<MarginInstant> MarginInstants(const FlightModel& model, double every
     }
     last = {name + " burnout", s};
   };
-  Fly(model, FlightInputs{}, options);
+  Fly(model, inputs, options);
   if (stage < 0) return instants;
   instants.push_back(last);
   if (q_max > 0.0) instants.push_back(max_q);
@@ -111,10 +118,10 @@ LoopMargins MarginsAt(const LauncherPlant& plant, const AutopilotModel& autopilo
       .Margins();
 }
 
-std::vector<ComputedMargins> ComputeMargins(const FlightModel& model, double every_s) {
-  const LauncherPlant& plant = model.nominal_plant();
+std::vector<ComputedMargins> ComputeMargins(const FlightModel& model, double every_s, const FlightInputs& inputs) {
+  const LauncherPlant plant = model.PlantFor(inputs);
   std::vector<ComputedMargins> all;
-  for (const MarginInstant& instant : MarginInstants(model, every_s)) {
+  for (const MarginInstant& instant : MarginInstants(model, every_s, inputs)) {
     for (const Axis axis : {kPitch, kYaw, kRoll}) {
       ComputedMargins each;
       each.place = instant.place;
@@ -129,19 +136,19 @@ std::vector<ComputedMargins> ComputeMargins(const FlightModel& model, double eve
   return all;
 }
 
-std::vector<MeasuredMargins> MeasureMargins(const FlightModel& model) {
+std::vector<MeasuredMargins> MeasureMargins(const FlightModel& model, const FlightInputs& inputs) {
   const int stages = static_cast<int>(model.definition().vehicle.stages.size());
   std::vector<Bisection> searches;  // three a stage: gain up, gain down, delay
   for (int stage = 0; stage < stages; ++stage) {
     searches.emplace_back(kMeasuredGainStep_db, kMeasuredGainCeiling_db,
-                          [stage](double db) { return Spoilt(stage, db, 0.0); });
+                          [&inputs, stage](double db) { return Spoilt(inputs, stage, db, 0.0); });
     searches.emplace_back(kMeasuredGainStep_db, kMeasuredGainCeiling_db,
-                          [stage](double db) { return Spoilt(stage, -db, 0.0); });
+                          [&inputs, stage](double db) { return Spoilt(inputs, stage, -db, 0.0); });
     searches.emplace_back(kMeasuredDelayStep_s, kMeasuredDelayCeiling_s,
-                          [stage](double s) { return Spoilt(stage, 0.0, s); });
+                          [&inputs, stage](double s) { return Spoilt(inputs, stage, 0.0, s); });
   }
   // Whatever its stage, the flight that nothing spoils is the same.
-  if (!Holds(Fly(model, Spoilt(0, 0.0, 0.0).inputs)))
+  if (!Holds(Fly(model, Spoilt(inputs, 0, 0.0, 0.0).inputs)))
     for (Bisection& search : searches) search.GiveUp();
   for (;;) {
     std::vector<Bisection*> open;

@@ -19,6 +19,7 @@ namespace {
 
 struct MarginsOptions {
   std::string campaign;
+  CampaignOverrides overrides;
 };
 
 struct MarginsResult {
@@ -142,7 +143,7 @@ void PrintText(const MarginsResult& result) {
 }
 
 ExitCode Margins(const MarginsOptions& options, const GlobalOptions& global) {
-  const Campaign campaign = LoadAndWarn(options.campaign);
+  const Campaign campaign = LoadAndWarn(options.campaign, options.overrides);
   const CampaignFlights flights(campaign);
   MarginsResult result;
   result.autopilot = campaign.autopilot.name;
@@ -168,6 +169,7 @@ void AddMarginsCommand(CLI::App& app, Invocation& invocation) {
   CLI::App* command =
       app.add_subcommand("margins", "gain, phase and delay margins of the autopilot (rigid body)");
   command->add_option("campaign", options->campaign, "campaign file")->required();
+  command->add_option("--autopilot", options->overrides.autopilot, "autopilot file, instead of the campaign's");
   command->footer(
       "Computed from a linearisation at lift-off, max q, ignitions and burnouts, and measured by spoiling\n"
       "the loop in flight. Ends with 3 when a gate is not met.\n"
