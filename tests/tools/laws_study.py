@@ -14,7 +14,7 @@ import tempfile
 
 LAWS = ["adaptive_fuzzy", "frozen_fuzzy", "pd", "pid", "lqr", "pd_aac", "pid_aac"]
 # Campaign, cases of it.
-CAMPAIGNS = [("controllers", 2000), ("table3", 1000), ("aero20", 320), ("stuck_nozzle", 60)]
+CAMPAIGNS = [("controllers", 1000), ("table3", 500), ("aero20", 320), ("stuck_nozzle", 60)]
 # One tick of delay and the lag 2 * 0.7 / w of the first two stages' actuators; the upper stages' are 20 and 31 ms less.
 LEAD_S = 0.066
 
