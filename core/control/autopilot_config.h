@@ -108,8 +108,8 @@ struct AdaptiveAugmentation {
   double maximum_total_gain = 1.0;
 };
 
-/// The program's own angular acceleration, added behind a law and its filters. It is known beforehand, so it is read
-/// ahead by what delay and actuators take.
+/// The program's own angular acceleration, added behind a law and its filters. It is known beforehand, so it
+/// is read ahead by what delay and actuators take.
 struct FeedForward {
   double lead_s = 0.0;
 };

@@ -34,8 +34,8 @@ struct GimbalOutput {
   AxisOutput<T> axes[kAxes];
 };
 
-/// One tick of the lanes that act. Errors reference less true, about x, y, z. `program_rad_s2`: what is fed forward
-/// to each axis, or null. Of what the laws have learnt, pitch alone is reported.
+/// One tick of the lanes that act. Errors reference less true, about x, y, z. `program_rad_s2`: what is fed
+/// forward to each axis, or null. Of what the laws have learnt, pitch alone is reported.
 template <bool kAll, class T>
 DISPERSA_INLINE void StepGimbals(const AutopilotModel& model, const GimbalLoop<T>& loop, MaskOf<T> acting,
                                  T since_ignition_s, Vector<T> angle_rad, Vector<T> rate_rad_s,

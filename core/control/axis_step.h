@@ -220,8 +220,9 @@ DISPERSA_INLINE T StepAugmented(const AxisConfig& config, double tick_s, const A
   if (config.law == ControlLaw::kPidAac) {
     command = StepPid<kAll>(config.integral, tick_s, stage, acting, error, rate, memory);
     of_model = of_model + memory.model_integral_rad_s2;
-    memory.model_integral_rad_s2 = Kept<kAll>(
-        acting, Fma(dt * stage.ki_1_s3, model_error, memory.model_integral_rad_s2), memory.model_integral_rad_s2);
+    memory.model_integral_rad_s2 =
+        Kept<kAll>(acting, Fma(dt * stage.ki_1_s3, model_error, memory.model_integral_rad_s2),
+                   memory.model_integral_rad_s2);
   }
   command = memory.total_gain * command;
 

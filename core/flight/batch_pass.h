@@ -78,8 +78,8 @@ void Batch<T>::FlyGimbalsOf(M powered) {
                     measured_rate_rad_s_, FedForward(program), axes_, gimbals_);
 }
 
-// What the program asks of the lanes' axes at their ticks; null where nothing is fed forward. Body axes stand for the
-// reference's: what an error of a degree mixes of them is a part in fifty of what is small.
+// What the program asks of the lanes' axes at their ticks; null where nothing is fed forward. Body axes stand
+// for the reference's: what an error of a degree mixes of them is a part in fifty of what is small.
 template <class T>
 const T* Batch<T>::FedForward(T* program) const {
   const FeedForwardRows& table = model_.feed_forward_rows();

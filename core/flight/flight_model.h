@@ -46,9 +46,9 @@ struct ReferenceRows {
   double last_tick = 0.0;
 };
 
-/// What the program asks of each axis' angular acceleration, rad/s², where it is fed forward: the mean over the tick
-/// that begins an axis' lead later, about the reference's x, y, z, 4 doubles a row, the last unused. Of an axis
-/// without feed-forward 0. Empty where no axis feeds forward; the rows are those of ReferenceRows.
+/// What the program asks of each axis' angular acceleration, rad/s², where it is fed forward: the mean over
+/// the tick that begins an axis' lead later, about the reference's x, y, z, 4 doubles a row, the last unused.
+/// Of an axis without feed-forward 0. Empty where no axis feeds forward; the rows are those of ReferenceRows.
 struct FeedForwardRows {
   static constexpr int kRowSize = 4;
 

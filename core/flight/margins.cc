@@ -68,7 +68,8 @@ void LeastMargins::Take(const LoopMargins& m) {
   delay_s = std::min(delay_s, m.delay_s);
 }
 
-std::vector<MarginInstant> MarginInstants(const FlightModel& model, double every_s, const FlightInputs& inputs) {
+std::vector<MarginInstant> MarginInstants(const FlightModel& model, double every_s,
+                                          const FlightInputs& inputs) {
   std::vector<MarginInstant> instants;
   MarginInstant max_q, last;
   double q_max = 0.0, next_s = 0.0;
@@ -118,7 +119,8 @@ LoopMargins MarginsAt(const LauncherPlant& plant, const AutopilotModel& autopilo
       .Margins();
 }
 
-std::vector<ComputedMargins> ComputeMargins(const FlightModel& model, double every_s, const FlightInputs& inputs) {
+std::vector<ComputedMargins> ComputeMargins(const FlightModel& model, double every_s,
+                                            const FlightInputs& inputs) {
   const LauncherPlant plant = model.PlantFor(inputs);
   std::vector<ComputedMargins> all;
   for (const MarginInstant& instant : MarginInstants(model, every_s, inputs)) {

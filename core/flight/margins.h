@@ -66,16 +66,16 @@ std::vector<MarginInstant> MarginInstants(const FlightModel& model, double every
 LoopMargins MarginsAt(const LauncherPlant& plant, const AutopilotModel& autopilot, const TickSample& sample,
                       Axis axis, bool adapting);
 
-/// At each of MarginInstants, in all axes, of the plant and along the flight that `inputs` make; the autopilot knows
-/// of the nominal plant only.
+/// At each of MarginInstants, in all axes, of the plant and along the flight that `inputs` make; the
+/// autopilot knows of the nominal plant only.
 std::vector<ComputedMargins> ComputeMargins(const FlightModel& model, double every_s = 5.0,
                                             const FlightInputs& inputs = {});
 
 /// By bisection over flights in which the gain or the delay of one stage's loop is changed, with a steady
 /// thrust misalignment of 0.25° in every stage that keeps the adaptation at work. A loop counts as lost when
 /// the flight loses control, when a deflection oscillates by more than 0.2° peak to peak over any second
-/// after the start-up transient, or when pitch or yaw leave the rules' range of 5°. The flights have `inputs`, but for
-/// the misalignment and the loop's gain and delay.
+/// after the start-up transient, or when pitch or yaw leave the rules' range of 5°. The flights have
+/// `inputs`, but for the misalignment and the loop's gain and delay.
 std::vector<MeasuredMargins> MeasureMargins(const FlightModel& model, const FlightInputs& inputs = {});
 
 /// Whether a margin set passes the gates.

@@ -138,13 +138,16 @@ std::string PaperHeadline(const PaperStudy& study) {
   }
   const double of_pid = times("controllers_pid");
   return fmt::format(
-      "<div class=\"headline warning\"><p><b>What the adaptive fuzzy law gains over PD is integral action.</b> On {} "
-      "cases of Table 3 that no tuning used, PD’s median RMS pitch error is {:.1f} times the adaptive law’s. A plain PID, "
-      "tuned by the same procedure and budget under the same margins, has {:.2f} of it, the smaller one in {} of {} cases, and "
+      "<div class=\"headline warning\"><p><b>What the adaptive fuzzy law gains over PD is integral "
+      "action.</b> On {} "
+      "cases of Table 3 that no tuning used, PD’s median RMS pitch error is {:.1f} times the adaptive law’s. "
+      "A plain PID, "
+      "tuned by the same procedure and budget under the same margins, has {:.2f} of it, the smaller one in "
+      "{} of {} cases, and "
       "{:.2f} times its median peak; with an augmentation that adapts its gain, {:.2f} and {:.2f}: {}. "
       "<a href=\"#baselines\">All laws on the same cases</a>.</p></div>\n",
-      adaptive.rows(), times("controllers_pd"), of_pid, better, pid.rows(),
-      times("controllers_pid", kPeak), times("controllers_pid_aac"), times("controllers_pid_aac", kPeak),
+      adaptive.rows(), times("controllers_pd"), of_pid, better, pid.rows(), times("controllers_pid", kPeak),
+      times("controllers_pid_aac"), times("controllers_pid_aac", kPeak),
       of_pid < 1.0 ? "by RMS the paper’s law is not the better one"
                    : "by RMS the paper’s law is the better one");
 }
@@ -282,8 +285,8 @@ std::string PaperCompletionSection(const PaperStudy& study) {
     table.Row({title, factor, fmt::format("{}", rms.n), fmt::format("{}", rms.lost), Degrees(rms.p50),
                Degrees(peak.p50), Degrees(peak.max), Degrees(cycle.max),
                failed.empty() ? "none" : "<code>" + failed + "</code>",
-               fmt::format("{:.1f} dB, {:.1f}°, {:.0f} ms", margins.computed.gain_db, margins.computed.phase_deg,
-                           1e3 * margins.computed.delay_s),
+               fmt::format("{:.1f} dB, {:.1f}°, {:.0f} ms", margins.computed.gain_db,
+                           margins.computed.phase_deg, 1e3 * margins.computed.delay_s),
                fmt::format("{:.1f} dB, {:.0f} ms", margins.measured.gain_db, 1e3 * margins.measured.delay_s),
                VerdictBadge(margins.passed ? "pass" : "fail")});
     return failed;
@@ -314,13 +317,15 @@ std::string PaperCompletionSection(const PaperStudy& study) {
          "<p>Table 1 gives no mass distribution, aerodynamics or actuators. Each completion is moved by 30 % "
          "with the "
          "autopilot unchanged and Table 3’s disturbances on; CG and CP by 30 % of their distance from the "
-         "nose. The margins are those of the changed vehicle along its own undisturbed flight, all axes and stages, with "
+         "nose. The margins are those of the changed vehicle along its own undisturbed flight, all axes and "
+         "stages, with "
          "gains frozen and adapting; measured ones as above.</p>\n" +
          table.Html() +
          PaperFindings(
              "Aerodynamics from DATCOM; inertia, centres and actuators are not given.",
-             fmt::format("{} of {} settings change which requirements of table3 fail; {} miss a gate of the margins.",
-                         changed, settings, failing_gates),
+             fmt::format(
+                 "{} of {} settings change which requirements of table3 fail; {} miss a gate of the margins.",
+                 changed, settings, failing_gates),
              "A setting that changes a verdict marks where a reader with the real vehicle’s data should look "
              "first. "
              "With few flights a setting only fails a requirement that it misses clearly.");

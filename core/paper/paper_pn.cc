@@ -159,14 +159,17 @@ std::string PaperPnSection(const PaperStudy& study) {
       Curves(study, kick_end_s, 0.5,
              "Pitch error in the initial pitch-over, as in the paper’s figure. A curve that "
              "leaves the frame diverges or swings beyond it.") +
-      WholeCurves(study, 180.0,
-                  "The same to the burnout of stage 3, whatever its size: the largest error of each second. A curve "
-                  "ends where the vehicle is lost.") +
-      Figure(HeatMapSvg(Map(sweep, sweep.metrics[MetricColumn("pitch_error_rms_deg")], "RMS pitch error of powered flight, °"),
+      WholeCurves(
+          study, 180.0,
+          "The same to the burnout of stage 3, whatever its size: the largest error of each second. A curve "
+          "ends where the vehicle is lost.") +
+      Figure(HeatMapSvg(Map(sweep, sweep.metrics[MetricColumn("pitch_error_rms_deg")],
+                            "RMS pitch error of powered flight, °"),
                         "RMS pitch error over the two components of P_n"),
              "RMS pitch error of powered flight over the two factors. The frame is the P_n of the Lyapunov "
              "equation.") +
-      Figure(HeatMapSvg(Map(sweep, sweep.metrics[MetricColumn("deflection_limit_cycle_deg")], "worst limit cycle, ° peak to peak"),
+      Figure(HeatMapSvg(Map(sweep, sweep.metrics[MetricColumn("deflection_limit_cycle_deg")],
+                            "worst limit cycle, ° peak to peak"),
                         "Worst limit cycle over the two components of P_n"),
              fmt::format(
                  "Worst deflection peak to peak within one second, away from ignitions and the pitch-over: a "
@@ -174,7 +177,8 @@ std::string PaperPnSection(const PaperStudy& study) {
                  kLimitCycle_deg)) +
       Figure(HeatMapSvg(Map(sweep, gains_db, "least computed gain margin, dB"),
                         "Least computed gain margin over the two components of P_n"),
-             fmt::format("Gain margin of the pitch loop with the adaptation at work, the least of the flight; the gate is "
+             fmt::format("Gain margin of the pitch loop with the adaptation at work, the least of the "
+                         "flight; the gate is "
                          "{:g} dB. 0: the linearised loop is unstable.",
                          kGainMarginGate_db)) +
       Figure(HeatMapSvg(Map(sweep, phases_deg, "least computed phase margin, °"),
@@ -210,12 +214,13 @@ std::string PaperPnSection(const PaperStudy& study) {
       return fmt::format("{:.1f} dB and {:.1f}°", study.pn_margins[i].gain_db, study.pn_margins[i].phase_deg);
     };
     found += fmt::format(
-        " <b>{}</b> The computed margins, least of the flight, are {} at the Lyapunov equation’s and {} at that best choice.",
-        rms[best] < rms[nominal]
-            ? fmt::format("The figure’s claim is not reproduced: departing from the Lyapunov equation’s P_n lowers the "
-                          "error to {:.2g} of its own.",
-                          rms[best] / rms[nominal])
-            : "As the figure claims, no departure lowers the error.",
+        " <b>{}</b> The computed margins, least of the flight, are {} at the Lyapunov equation’s and {} at "
+        "that best choice.",
+        rms[best] < rms[nominal] ? fmt::format("The figure’s claim is not reproduced: departing from the "
+                                               "Lyapunov equation’s P_n lowers the "
+                                               "error to {:.2g} of its own.",
+                                               rms[best] / rms[nominal])
+                                 : "As the figure claims, no departure lowers the error.",
         margins(nominal), margins(best));
   }
   html += PaperFindings(

@@ -72,8 +72,10 @@ std::vector<LeastMargins> PnMargins(const PaperFlights& sweep) {
   const CampaignFlights flights(sweep.campaign);
   const FlightModel& model = flights.model();
   const std::vector<MarginInstant> instants = MarginInstants(model);
-  const std::vector<double>& errors = sweep.flights.cases.inputs[static_cast<std::size_t>(FindInput("pn_error_factor"))];
-  const std::vector<double>& rates = sweep.flights.cases.inputs[static_cast<std::size_t>(FindInput("pn_rate_factor"))];
+  const std::vector<double>& errors =
+      sweep.flights.cases.inputs[static_cast<std::size_t>(FindInput("pn_error_factor"))];
+  const std::vector<double>& rates =
+      sweep.flights.cases.inputs[static_cast<std::size_t>(FindInput("pn_rate_factor"))];
   std::vector<LeastMargins> all(errors.size());
   for (std::size_t row = 0; row < errors.size(); ++row) {
     AutopilotModel autopilot = model.autopilot();
@@ -113,7 +115,8 @@ std::vector<CompletionMargins> MarginsOfCompletions(const PaperFlights& sweep) {
   const CampaignFlights flights(sweep.campaign);
   std::vector<CompletionMargins> all = {MarginsOf(flights.model(), "", 1.0)};
   for (const std::string& input : PaperCompletions()) {
-    const std::vector<double>& column = sweep.flights.cases.inputs[static_cast<std::size_t>(FindInput(input))];
+    const std::vector<double>& column =
+        sweep.flights.cases.inputs[static_cast<std::size_t>(FindInput(input))];
     for (const double factor : std::set<double>(column.begin(), column.end()))
       if (factor != 1.0) all.push_back(MarginsOf(flights.model(), input, factor));
   }
@@ -147,8 +150,9 @@ const std::vector<PaperCampaign>& PaperCampaigns() {
 }
 
 const std::vector<std::string>& PaperBaselines() {
-  static const std::vector<std::string> names = {"controllers_frozen_fuzzy", "controllers_pd", "controllers_pid",
-                                                 "controllers_lqr", "controllers_pd_aac", "controllers_pid_aac"};
+  static const std::vector<std::string> names = {"controllers_frozen_fuzzy", "controllers_pd",
+                                                 "controllers_pid",          "controllers_lqr",
+                                                 "controllers_pd_aac",       "controllers_pid_aac"};
   return names;
 }
 

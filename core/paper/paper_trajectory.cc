@@ -37,21 +37,25 @@ std::string InjectionTable(const PaperStudy& study) {
                    {"flown nominal", true},
                    {"flown less point mass", true},
                    {"flown less lighter", true}});
-  const auto row = [&](const char* name, int decimals, double point_mass, double lighter, const char* metric) {
+  const auto row = [&](const char* name, int decimals, double point_mass, double lighter,
+                       const char* metric) {
     const double flown = study.nominal.metrics[MetricColumn(metric)];
-    table.Row({name, FixedText(point_mass, decimals), FixedText(lighter, decimals), FixedText(flown, decimals),
-               Signed(flown - point_mass), Signed(flown - lighter)});
+    table.Row({name, FixedText(point_mass, decimals), FixedText(lighter, decimals),
+               FixedText(flown, decimals), Signed(flown - point_mass), Signed(flown - lighter)});
   };
   const Orbit &heavy = injection.point_mass, &light = injection.lighter_point_mass;
   row("Height, km", 3, heavy.altitude_m * 1e-3, light.altitude_m * 1e-3, "injection_altitude_km");
   row("Velocity, m/s", 3, heavy.velocity_m_s, light.velocity_m_s, "injection_velocity_m_s");
-  row("Angle of injection, °", 5, heavy.flight_path_angle_rad * kDegPerRad, light.flight_path_angle_rad * kDegPerRad,
-      "injection_flight_path_angle_deg");
-  return table.Html() +
-         fmt::format("<p class=\"soft\">Lighter: by the {:.3f} kg that the flown nominal’s reaction control expels in the "
-                     "coast, which a point mass has no use for. What then remains is what a point mass leaves out: the "
-                     "attitude follows the program with an error, nozzles deflect, stages separate while they turn.</p>\n",
-                     injection.propellant_kg);
+  row("Angle of injection, °", 5, heavy.flight_path_angle_rad * kDegPerRad,
+      light.flight_path_angle_rad * kDegPerRad, "injection_flight_path_angle_deg");
+  return table.Html() + fmt::format(
+                            "<p class=\"soft\">Lighter: by the {:.3f} kg that the flown nominal’s reaction "
+                            "control expels in the "
+                            "coast, which a point mass has no use for. What then remains is what a point "
+                            "mass leaves out: the "
+                            "attitude follows the program with an error, nozzles deflect, stages separate "
+                            "while they turn.</p>\n",
+                            injection.propellant_kg);
 }
 
 }  // namespace

@@ -31,8 +31,8 @@ Eigen::Matrix3d SolveLyapunov3(const Eigen::Matrix3d& a, const Eigen::Matrix3d& 
 RegulatorGains SolveRegulator(const RegulatorWeights& weights) {
   Eigen::Matrix3d q = Eigen::Matrix3d::Zero();
   q.diagonal() << weights.integral_1_s6, weights.angle_1_s4, weights.rate_1_s2;
-  // Stabilising: poles at -1 and at an angle of 60° beside it. From there the iteration falls to P, quadratically at
-  // the end; it starts at most some powers of ten away and halves its distance at least.
+  // Stabilising: poles at -1 and at an angle of 60° beside it. From there the iteration falls to P,
+  // quadratically at the end; it starts at most some powers of ten away and halves its distance at least.
   Eigen::RowVector3d k(1.0, 2.0, 2.0);
   for (int i = 0; i < 60; ++i) {
     Eigen::Matrix3d closed = Eigen::Matrix3d::Zero();

@@ -62,7 +62,8 @@ void Validate(const Campaign& campaign, const AutopilotConfig& autopilot, const 
   if (options.regulator)
     for (const auto& [axis, name] : {std::pair{&autopilot.pitch, "pitch"}, {&autopilot.yaw, "yaw"}})
       if (!InfoOf(axis->law).integral)
-        add(std::string(name) + ".law", std::string(InfoOf(axis->law).name) + " has no integral, which is a state of the regulator",
+        add(std::string(name) + ".law",
+            std::string(InfoOf(axis->law).name) + " has no integral, which is a state of the regulator",
             "pid, pid_aac");
   if (!problems.empty()) throw InputError(std::move(problems));
 }

@@ -98,7 +98,8 @@ void AddFlyCommand(CLI::App& app, Invocation& invocation) {
                       "simpson (what campaigns fly), erk4 (what scenarios fly; classical Runge-Kutta through SUNDIALS) "
                       "or cvode (high accuracy, to compare)");
   command->add_option("--seed", options->overrides.seed, "seed, instead of the file's");
-  command->add_option("--autopilot", options->overrides.autopilot, "autopilot file, instead of the campaign's");
+  command->add_option("--autopilot", options->overrides.autopilot,
+                      "autopilot file, instead of the campaign's");
   command->footer(
       "Example: dispersa fly campaigns/nominal.yaml --history nominal.csv\n"
       "         dispersa fly campaigns/table3.yaml --case 17 --json\n"

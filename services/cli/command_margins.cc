@@ -169,7 +169,8 @@ void AddMarginsCommand(CLI::App& app, Invocation& invocation) {
   CLI::App* command =
       app.add_subcommand("margins", "gain, phase and delay margins of the autopilot (rigid body)");
   command->add_option("campaign", options->campaign, "campaign file")->required();
-  command->add_option("--autopilot", options->overrides.autopilot, "autopilot file, instead of the campaign's");
+  command->add_option("--autopilot", options->overrides.autopilot,
+                      "autopilot file, instead of the campaign's");
   command->footer(
       "Computed from a linearisation at lift-off, max q, ignitions and burnouts, and measured by spoiling\n"
       "the loop in flight. Ends with 3 when a gate is not met.\n"

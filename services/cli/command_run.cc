@@ -353,7 +353,8 @@ void AddRunCommand(CLI::App& app, Invocation& invocation) {
   command->add_option("--cases", request.overrides.cases, "number of cases, instead of the file's")
       ->check(CLI::PositiveNumber);
   command->add_option("--seed", request.overrides.seed, "seed, instead of the file's");
-  command->add_option("--autopilot", request.overrides.autopilot, "autopilot file, instead of the campaign's");
+  command->add_option("--autopilot", request.overrides.autopilot,
+                      "autopilot file, instead of the campaign's");
   AddReflownOptions(*command, options->reflown);
   command->add_flag("--resume", request.resume, "go on in a folder of the same flight id");
   command->footer(

@@ -55,11 +55,13 @@ std::string LawText(ControlLaw law) {
 // The weights behind a regulator's gains.
 std::string RegulatorText(const AxisConfig& axis) {
   std::string text =
-      "# They are a linear-quadratic regulator's, optimal for e'' = -u and the weights of (∫e)², e², e'² beside u²:\n";
+      "# They are a linear-quadratic regulator's, optimal for e'' = -u and the weights of (∫e)², e², e'² "
+      "beside u²:\n";
   for (std::size_t i = 0; i < axis.gains.size(); ++i) {
-    const RegulatorWeights q = WeightsOf({axis.integral.ki_1_s3[i], axis.gains[i].kp_1_s2, axis.gains[i].kd_1_s});
-    text += fmt::format("#   stage {}: {:.3g} 1/s^6, {:.3g} 1/s^4, {:.3g} 1/s^2\n", i + 1, q.integral_1_s6, q.angle_1_s4,
-                        q.rate_1_s2);
+    const RegulatorWeights q =
+        WeightsOf({axis.integral.ki_1_s3[i], axis.gains[i].kp_1_s2, axis.gains[i].kd_1_s});
+    text += fmt::format("#   stage {}: {:.3g} 1/s^6, {:.3g} 1/s^4, {:.3g} 1/s^2\n", i + 1, q.integral_1_s6,
+                        q.angle_1_s4, q.rate_1_s2);
   }
   return text;
 }
@@ -239,8 +241,9 @@ void AddTuneCommand(CLI::App& app, Invocation& invocation) {
       ->add_option("--evaluations", options->tuning.evaluations,
                    "designs tried, shared by the stages and the augmentation of PD")
       ->capture_default_str();
-  command->add_flag("--lqr", options->tuning.regulator,
-                    "search the weights of a linear-quadratic regulator, whose gains the law flies: pid, pid_aac");
+  command->add_flag(
+      "--lqr", options->tuning.regulator,
+      "search the weights of a linear-quadratic regulator, whose gains the law flies: pid, pid_aac");
   command->add_option("--threads", options->threads, "threads; the result does not depend on them")
       ->check(CLI::Range(1, 1024));
   command->footer(

@@ -208,7 +208,8 @@ TEST_P(FlightLanes, AreTheFlightsAlone) {
     }
   }
 }
-INSTANTIATE_TEST_SUITE_P(Laws, FlightLanes, testing::Values("adaptive_fuzzy", "frozen_fuzzy", "pd", "pid", "pd_aac", "pid_aac"),
+INSTANTIATE_TEST_SUITE_P(Laws, FlightLanes,
+                         testing::Values("adaptive_fuzzy", "frozen_fuzzy", "pd", "pid", "pd_aac", "pid_aac"),
                          [](const auto& law) { return std::string(law.param); });
 
 }  // namespace

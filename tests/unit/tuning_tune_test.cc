@@ -169,7 +169,8 @@ TEST(Tune, SpendsTheSameBudgetOnEveryLaw) {
 }
 
 TEST(SolveRegulator, SolvesTheRiccatiEquation) {
-  for (const RegulatorWeights q : {RegulatorWeights{1.0, 1.0, 1.0}, {1e-4, 1.0, 1e-2}, {1e3, 1.0, 1e2}, {1e-4, 1.0, 1e2}}) {
+  for (const RegulatorWeights q :
+       {RegulatorWeights{1.0, 1.0, 1.0}, {1e-4, 1.0, 1e-2}, {1e3, 1.0, 1e2}, {1e-4, 1.0, 1e2}}) {
     const RegulatorGains k = SolveRegulator(q);
     // Spectral factor of the chain of integrators: |s³ + kd s² + kp s + ki|² on the imaginary axis is
     // w⁶ + q_rate w⁴ + q_angle w² + q_integral, and the loop is stable.
@@ -193,7 +194,8 @@ TEST(Tune, FindsARegulatorWithinTheSameBudget) {
   EXPECT_EQ(found.evaluations, 40u);
   for (std::size_t i = 0; i < 2; ++i) {
     const AxisConfig& axis = found.autopilot.pitch;
-    const RegulatorWeights q = WeightsOf({axis.integral.ki_1_s3[i], axis.gains[i].kp_1_s2, axis.gains[i].kd_1_s});
+    const RegulatorWeights q =
+        WeightsOf({axis.integral.ki_1_s3[i], axis.gains[i].kp_1_s2, axis.gains[i].kd_1_s});
     // Of the flown gains, which have three digits.
     EXPECT_GT(q.integral_1_s6, 0.0);
     EXPECT_GT(q.angle_1_s4, -0.02 * axis.gains[i].kp_1_s2 * axis.gains[i].kp_1_s2);

@@ -32,7 +32,8 @@ TEST_P(ShippedAutopilot, HasTheMeasuredMarginsInEveryStage) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Laws, ShippedAutopilot,
-                         testing::Values("adaptive_fuzzy", "frozen_fuzzy", "pd", "pid", "lqr", "pd_aac", "pid_aac"),
+                         testing::Values("adaptive_fuzzy", "frozen_fuzzy", "pd", "pid", "lqr", "pd_aac",
+                                         "pid_aac"),
                          [](const auto& law) { return std::string(law.param); });
 
 }  // namespace
