@@ -16,6 +16,9 @@
 
 namespace dispersa {
 
+/// Of actuators and delays: a second would be another program.
+inline constexpr Range kLead = {0.0, 1.0, false, false};
+
 template <class F, class A>
 void VisitGains(F& f, A& gains) {
   f.Quantity("kp", kPerTimeSquared, kPositive, gains.kp_1_s2);
@@ -38,6 +41,9 @@ void VisitAdaptation(F& f, A& adaptation) {
   f.Guard("leakage", kPerTime, kNonNegative, adaptation.leakage_1_s);
   f.Guard("spread", kPerTime, kNonNegative, adaptation.spread_1_s);
   f.Guard("dead_zone", kAngle, kNonNegative, adaptation.dead_zone_rad);
+  f.Flag("normalized", adaptation.normalized);
+  f.NumberGuard("composite", kNonNegative, adaptation.composite);
+  f.Guard("predictor", kPerTime, kNonNegative, adaptation.predictor_1_s);
   f.Flag("freeze_when_saturated", adaptation.freeze_when_saturated);
   f.Flag("reset_at_ignition", adaptation.reset_at_ignition);
   f.NumberGuard("supervisory_bound", kNonNegative, adaptation.supervisory_bound);
@@ -59,6 +65,11 @@ void VisitAugmentation(F& f, A& augmentation) {
   f.Quantity("low_pass", kFrequency, kPositive, augmentation.low_pass_rad_s);
   f.Number("minimum_total_gain", kPositive, augmentation.minimum_total_gain);
   f.Number("maximum_total_gain", kPositive, augmentation.maximum_total_gain);
+}
+
+template <class F, class A>
+void VisitFeedForward(F& f, A& feed_forward) {
+  f.Quantity("lead", kTime, kLead, feed_forward.lead_s);
 }
 
 template <class F, class A>

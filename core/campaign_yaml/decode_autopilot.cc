@@ -71,6 +71,10 @@ AxisConfig DecodeAxis(const InputNode& node, const std::string& path, ProblemLis
     FieldReader fields(item, item_path, problems);
     VisitFilter(fields, axis.filters.emplace_back());
   });
+  if (const InputNode* block = map.Optional("feed_forward")) {
+    FieldReader fields(*block, map.PathOf("feed_forward"), problems);
+    VisitFeedForward(fields, axis.feed_forward.emplace());
+  }
   EachBlock(axis, [&](const char* key, bool needed, auto visit) {
     const InputNode* block = needed && is_law ? &map.Required(key, "a map, which this law needs") : map.Optional(key);
     if (block == nullptr) return;

@@ -1,6 +1,7 @@
 #include "core/campaign_yaml/load.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <functional>
 #include <tuple>
 
@@ -55,8 +56,15 @@ void Override(InputNode& root, const CampaignOverrides& overrides) {
   if (overrides.seed) SetMember(*sampling, "seed", ScalarAt(*sampling, std::to_string(*overrides.seed)));
 }
 
+// A name in a file is relative to that file; one of the command line is not.
+void OverrideAutopilot(InputNode& root, const CampaignOverrides& overrides) {
+  if (!overrides.autopilot || root.kind != InputNode::Kind::kMap) return;
+  SetMember(root, "autopilot", ScalarAt(root, std::filesystem::absolute(*overrides.autopilot).string()));
+}
+
 Campaign FinishCampaign(InputNode root, FileNames names, const CampaignOverrides& overrides,
                         ProblemList problems, std::vector<InputProblem>* warnings) {
+  OverrideAutopilot(root, overrides);
   InlineCampaignFiles(root, names, problems);
   Override(root, overrides);
   DecodedCampaign decoded = DecodeCampaign(root, CampaignUse::kFly, problems, warnings);

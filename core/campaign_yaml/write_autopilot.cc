@@ -72,6 +72,11 @@ std::string AxisText(const char* name, const AxisConfig& axis) {
     VisitFilter(fields, section);
     text += "    - " + OnOneLine(fields.texts) + "\n";
   }
+  if (axis.feed_forward) {
+    FieldWriter fields;
+    VisitFeedForward(fields, *axis.feed_forward);
+    text += "  feed_forward: " + OnOneLine(fields.texts) + "\n";
+  }
   EachBlock(axis, [&](const char* key, bool needed, auto visit) {
     if (!needed) return;
     FieldWriter fields;

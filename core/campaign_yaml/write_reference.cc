@@ -50,6 +50,9 @@ std::string ProblemText(const TrajectoryProblem& problem) {
   if (problem.q_alpha_limit_pa_rad > 0.0) {
     text += "    q_alpha_pa_rad: " + FormatNumber(problem.q_alpha_limit_pa_rad) + "\n";
   }
+  if (problem.reaction_control_propellant_kg > 0.0)
+    text +=
+        "  reaction_control_propellant_kg: " + FormatNumber(problem.reaction_control_propellant_kg) + "\n";
   text += "  population: " + std::to_string(problem.population) + "\n";
   text += "  generations: " + std::to_string(problem.generations) + "\n";
   text += "  seed: " + std::to_string(problem.seed) + "\n";

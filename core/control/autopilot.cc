@@ -47,7 +47,7 @@ void StartStage(const AutopilotModel& model, int stage, AutopilotState& state) {
     if (stage == 0 || law.augmentation || (law.rules && config.adaptation.reset_at_ignition) ||
         (law.integral && config.integral.reset_at_ignition))
       ResetAxis(state.axes[axis]);
-    state.axes[axis].saturation = 0.0;
+    state.axes[axis].saturation = state.axes[axis].model_started = 0.0;
     for (double (&memory)[2] : state.axes[axis].filters) memory[0] = memory[1] = 0.0;
     state.thrusters[axis] = ThrusterState{};
   }
@@ -63,8 +63,10 @@ GimbalCommand StepGimbals(const AutopilotModel& model, int stage, double since_i
   for (int axis = 0; axis < kAxes; ++axis) SetLane(memory[axis], 0, state.axes[axis]);
   const Vector<double> angle{error.angle_rad.x(), error.angle_rad.y(), error.angle_rad.z()};
   const Vector<double> rate{error.rate_rad_s.x(), error.rate_rad_s.y(), error.rate_rad_s.z()};
+  const double program[kAxes] = {error.program_rad_s2.x(), error.program_rad_s2.y(),
+                                 error.program_rad_s2.z()};
   GimbalOutput<double> out;
-  lanes::StepGimbals<true>(model, loop, true, since_ignition_s, angle, rate, memory, out);
+  lanes::StepGimbals<true>(model, loop, true, since_ignition_s, angle, rate, program, memory, out);
   GimbalCommand command{out.deflection_rad[kRoll], out.deflection_rad[kPitch], out.deflection_rad[kYaw], {}};
   for (int axis = 0; axis < kAxes; ++axis) {
     ReadLane(memory[axis], 0, state.axes[axis]);

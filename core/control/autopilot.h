@@ -53,10 +53,12 @@ struct AutopilotState {
   ThrusterState thrusters[kAxes];
 };
 
-/// Errors reference - true about body x, y, z: angle (rad) and rate (rad/s).
+/// Errors reference - true about body x, y, z: angle (rad) and rate (rad/s); and the angular acceleration
+/// that the program asks for, of the axes that feed it forward.
 struct AttitudeError {
   Vector3 angle_rad = Vector3::Zero();
   Vector3 rate_rad_s = Vector3::Zero();
+  Vector3 program_rad_s2 = Vector3::Zero();
 };
 
 struct GimbalCommand {

@@ -52,6 +52,8 @@ void CheckAxis(const AxisConfig& axis, const std::string& name, int stages, doub
   if (!law.adaptation) return;
   if (!(axis.adaptation.spread_1_s * tick_s <= 1.0))
     add("adaptation.spread_1_s", "overshoots the mean within a tick", "at most 1 / tick_s");
+  if (!(axis.adaptation.predictor_1_s * tick_s <= 1.0))
+    add("adaptation.predictor_1_s", "overshoots the measurement within a tick", "at most 1 / tick_s");
   if (problems.size() != before) return;
 
   const Adaptation& a = axis.adaptation;

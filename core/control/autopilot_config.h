@@ -9,7 +9,7 @@
 
 namespace dispersa {
 
-enum class ControlLaw { kAdaptiveFuzzy, kFrozenFuzzy, kPd, kPid, kPdAac };
+enum class ControlLaw { kAdaptiveFuzzy, kFrozenFuzzy, kPd, kPid, kPdAac, kPidAac };
 
 /// What a law is called, what it is, and which blocks of its axis it needs.
 struct LawInfo {
@@ -46,6 +46,12 @@ inline constexpr LawInfo kLaws[] = {
                 "reference model, in rad, falls with fast activity of the command, and leaks to 1, where "
                 "margins are computed. Its leakage, filters and floor are not searched.",
      .augmentation = true},
+    {.law = ControlLaw::kPidAac,
+     .name = "pid_aac",
+     .meaning = "Scheduled proportional-integral-derivative control under the same augmentation: the total "
+                "gain multiplies the integral too, and the reference model has one of its own.",
+     .integral = true,
+     .augmentation = true},
 };
 constexpr const LawInfo& InfoOf(ControlLaw law) { return kLaws[static_cast<int>(law)]; }
 
@@ -66,6 +72,11 @@ struct Adaptation {
   double leakage_1_s = 0.0;              ///< sigma modification: pulls the consequents to their start
   double spread_1_s = 0.0;               ///< pulls departures from the start to their mean over the rules
   double dead_zone_rad = 0.0;            ///< no adaptation while |e' P_n| / p12 is below
+  bool normalized = false;  ///< the regressor of (32) over its squared norm, which lies in [1/4, 1]
+  /// Composite adaptation: beside e' P_n the error of a prediction of de/dt drives (32), with this many p22;
+  /// the prediction follows the error dynamics and is drawn to what is measured at predictor_1_s.
+  double composite = 0.0;
+  double predictor_1_s = 0.0;
   bool freeze_when_saturated = false;    ///< no adaptation into a deflection limit
   bool reset_at_ignition = false;        ///< consequents start anew with each stage
   double supervisory_bound = 0.0;        ///< supervisory term acts while V exceeds it
@@ -97,6 +108,12 @@ struct AdaptiveAugmentation {
   double maximum_total_gain = 1.0;
 };
 
+/// The program's own angular acceleration, added behind a law and its filters. It is known beforehand, so it
+/// is read ahead by what delay and actuators take.
+struct FeedForward {
+  double lead_s = 0.0;
+};
+
 /// A section of the filter behind a law, of unit gain at rest:
 /// H(s) = (s²/wz² + 2 dz s/wz + 1) / (s²/wp² + 2 dp s/wp + 1), without zeros a low pass.
 struct FilterSection {
@@ -117,6 +134,7 @@ struct AxisConfig {
   IntegralAction integral;
   AdaptiveAugmentation augmentation;
   std::vector<FilterSection> filters;  ///< in series, on the law's output
+  std::optional<FeedForward> feed_forward;
 };
 
 /// Phase-plane logic of the reaction control in unpowered flight.

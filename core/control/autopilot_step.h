@@ -34,12 +34,12 @@ struct GimbalOutput {
   AxisOutput<T> axes[kAxes];
 };
 
-/// One tick of the lanes that act. Errors reference less true, about x, y, z. Of what the laws have learnt,
-/// pitch alone is reported.
+/// One tick of the lanes that act. Errors reference less true, about x, y, z. `program_rad_s2`: what is fed
+/// forward to each axis, or null. Of what the laws have learnt, pitch alone is reported.
 template <bool kAll, class T>
 DISPERSA_INLINE void StepGimbals(const AutopilotModel& model, const GimbalLoop<T>& loop, MaskOf<T> acting,
                                  T since_ignition_s, Vector<T> angle_rad, Vector<T> rate_rad_s,
-                                 AxisMemory<T>* memory, GimbalOutput<T>& out) {
+                                 const T* program_rad_s2, AxisMemory<T>* memory, GimbalOutput<T>& out) {
   T since;
   const double* row[kWidth<T>];
   for (int lane = 0; lane < kWidth<T>; ++lane) {
@@ -60,6 +60,8 @@ DISPERSA_INLINE void StepGimbals(const AutopilotModel& model, const GimbalLoop<T
   for (int axis = 0; axis < kAxes; ++axis) {
     StepAxis<kAll>(model.laws.data()[axis].config, model.config.tick_s, loop.axes[axis], acting, angle[axis],
                    rate[axis], axis == kPitch, memory[axis], out.axes[axis]);
+    if (program_rad_s2 != nullptr)
+      out.axes[axis].command_rad_s2 = out.axes[axis].command_rad_s2 + program_rad_s2[axis];
     const T deflection = out.axes[axis].command_rad_s2 * (axis == kRoll ? per_roll : per_pitch);
     const T saturation =
         Select(deflection > loop.limit_rad, T(1.0), Select(deflection < -loop.limit_rad, T(-1.0), T(0.0)));

@@ -44,7 +44,8 @@ struct AxisState {
   double total_gain = 1.0;       ///< adaptive augmentation
   double model_started = 0.0;    ///< its reference model: 0 or 1
   double model_error_rad = 0.0;
-  double model_rate_rad_s = 0.0;
+  double model_rate_rad_s = 0.0;  ///< its rate; of composite adaptation the predicted one
+  double model_integral_rad_s2 = 0.0;
   double high_pass = 0.0;  ///< its spectral damper
   double low_pass = 0.0;
   double filters[kFilterSections][2] = {};  ///< memory of the sections

@@ -34,7 +34,8 @@ struct AxisMemory {
   T previous_v;
   T saturation;  ///< -1, 0, 1: the last deflection command was limited in this sense of u
   T integral_rad_s2;
-  T total_gain, model_started, model_error_rad, model_rate_rad_s, high_pass, low_pass;  ///< augmentation
+  T total_gain, model_started;  ///< augmentation
+  T model_error_rad, model_rate_rad_s, model_integral_rad_s2, high_pass, low_pass;
   T filters[kFilterSections][2];
 };
 template <class T>
@@ -124,12 +125,31 @@ DISPERSA_INLINE T StepFuzzy(const AxisConfig& config, double tick_s, const AxisS
             stage.kd_1_s * T(0.5 * rules.rate_range_rad_s) * (at_rate - centre));
   if (config.law == ControlLaw::kAdaptiveFuzzy) {
     const Adaptation& guards = config.adaptation;
-    const T drive = Fma(stage.pn_error, error, stage.pn_rate * rate);  // e' P_n
+    T drive = Fma(stage.pn_error, error, stage.pn_rate * rate);  // e' P_n
+    if (guards.composite > 0.0) {
+      const T predicted = Select(memory.model_started > T(0.0), memory.model_rate_rad_s, rate);
+      const T missed = rate - predicted;
+      drive = Fma(T(guards.composite) * stage.pn_rate, missed, drive);
+      // What the rules have learnt is taken to cancel the disturbance: the error dynamics remain.
+      const T change = Fma(T(guards.predictor_1_s), missed, -u);
+      memory.model_rate_rad_s =
+          Kept<kAll>(acting, Fma(T(tick_s), change, predicted), memory.model_rate_rad_s);
+      memory.model_started = Kept<kAll>(acting, T(1.0), memory.model_started);
+    }
     auto is_frozen = Abs(drive) < T(guards.dead_zone_rad) * Abs(stage.pn_error);
     if (guards.freeze_when_saturated) is_frozen = is_frozen | (memory.saturation * drive > T(0.0));
     // Where nothing adapts the coefficients leave every departure as it is.
     const auto adapts = acting & (stage.gamma > T(0.0));
-    const T step = Select(adapts & !is_frozen, T(tick_s) * stage.gamma * drive, T(0.0));
+    T rated = T(tick_s) * stage.gamma * drive;
+    if (guards.normalized) {
+      T norm2_error(0.0), norm2_rate(0.0);
+      Each<kFuzzySets>([&](int i) __attribute__((always_inline)) {
+        norm2_error = Fma(by_error[i], by_error[i], norm2_error);
+        norm2_rate = Fma(by_rate[i], by_rate[i], norm2_rate);
+      });
+      rated = rated / (norm2_error * norm2_rate);
+    }
+    const T step = Select(adapts & !is_frozen, rated, T(0.0));
     T sum(0.0);
     Each<kFuzzyRules>([&](int i) __attribute__((always_inline)) { sum = sum + memory.departure_rad_s2[i]; });
     const T keep = Select(adapts, T(1.0 - tick_s * guards.leakage_1_s - tick_s * guards.spread_1_s), T(1.0));
@@ -185,18 +205,28 @@ DISPERSA_INLINE T StepPid(const IntegralAction& integral, double tick_s, const A
 /// the reference model and y_s the low-passed square of the high-passed command:
 ///   dk_a/dt = (k_max - k_a) / k_max a e_r² - alpha k_a y_s - beta (k_T - 1).
 /// The reference model is the error dynamics the gains are chosen for, started at the stage's first error: in
-/// error coordinates the attitude command does not appear.
+/// error coordinates the attitude command does not appear. Of PID, command and model have their integrals.
 template <bool kAll, class T>
-DISPERSA_INLINE T StepAugmented(const AdaptiveAugmentation& a, double tick_s, const AxisStage<T>& stage,
+DISPERSA_INLINE T StepAugmented(const AxisConfig& config, double tick_s, const AxisStage<T>& stage,
                                 MaskOf<T> acting, T error, T rate, AxisMemory<T>& memory) {
+  const AdaptiveAugmentation& a = config.augmentation;
   const T dt(tick_s);
   const auto has_model = memory.model_started > T(0.0);
   const T model_error = Select(has_model, memory.model_error_rad, error);
   const T model_rate = Select(has_model, memory.model_rate_rad_s, rate);
   const T departure = error - model_error;
-  const T command = memory.total_gain * Fma(stage.kp_1_s2, error, stage.kd_1_s * rate);
+  T command = Fma(stage.kp_1_s2, error, stage.kd_1_s * rate);
+  T of_model = Fma(stage.kp_1_s2, model_error, stage.kd_1_s * model_rate);
+  if (config.law == ControlLaw::kPidAac) {
+    command = StepPid<kAll>(config.integral, tick_s, stage, acting, error, rate, memory);
+    of_model = of_model + memory.model_integral_rad_s2;
+    memory.model_integral_rad_s2 =
+        Kept<kAll>(acting, Fma(dt * stage.ki_1_s3, model_error, memory.model_integral_rad_s2),
+                   memory.model_integral_rad_s2);
+  }
+  command = memory.total_gain * command;
 
-  const T next_rate = model_rate - dt * Fma(stage.kp_1_s2, model_error, stage.kd_1_s * model_rate);
+  const T next_rate = model_rate - dt * of_model;
   const T next_error = Fma(dt, next_rate, model_error);
   const T high_pass = Fma(T(tick_s * a.high_pass_rad_s), command - memory.high_pass, memory.high_pass);
   const T fast = command - high_pass;
@@ -259,8 +289,8 @@ DISPERSA_INLINE void StepAxis(const AxisConfig& config, double tick_s, const Axi
       out.command_rad_s2 = StepPid<kAll>(config.integral, tick_s, stage, acting, error, rate, memory);
       break;
     case ControlLaw::kPdAac:
-      out.command_rad_s2 =
-          StepAugmented<kAll>(config.augmentation, tick_s, stage, acting, error, rate, memory);
+    case ControlLaw::kPidAac:
+      out.command_rad_s2 = StepAugmented<kAll>(config, tick_s, stage, acting, error, rate, memory);
       break;
   }
   const int sections = static_cast<int>(config.filters.size());

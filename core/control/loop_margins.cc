@@ -92,7 +92,13 @@ std::complex<double> SampledLoop::Response(double frequency_rad_s) const {
     const double share = 1.0 / law_.rules;
     const std::complex<double> mean = s + tick_s_ * law_.leakage_1_s;
     const std::complex<double> departure = mean + tick_s_ * law_.spread_1_s;
-    const std::complex<double> drive = law_.drive_error * angle + law_.drive_rate * rate;
+    std::complex<double> drive = law_.drive_error * angle + law_.drive_rate * rate;
+    if (law_.drive_prediction > 0.0) {
+      const std::complex<double> forced = (law_.predictor_1_s - law_.kd_1_s) * rate - law_.kp_1_s2 * angle;
+      const std::complex<double> predicted =
+          tick_s_ * Times(forced, Inverse(s + tick_s_ * law_.predictor_1_s));
+      drive += law_.drive_prediction * (rate - predicted);
+    }
     u += tick_s_ * Times(drive, share * Inverse(mean) + (1.0 - share) * Inverse(departure));
   }
   for (const DigitalSection& f : law_.filters) {
@@ -106,12 +112,14 @@ std::complex<double> SampledLoop::Response(double frequency_rad_s) const {
 
 double SampledLoop::SpectralRadius(double gain_factor) const {
   // States: plant, commands on their way (latest first), mean of the consequents, departure of the central
-  // one from it (without spread the two are one), two a section of the filters.
+  // one from it (without spread the two are one), two a section of the filters, the prediction of the rate.
   const int first_command = 4;
   const int first_rule = first_command + delay_ticks_;
   const int rule_states = !law_.adapts() ? 0 : law_.spread_1_s > 0.0 ? 2 : 1;
   const int first_filter = first_rule + rule_states;
-  const int size = first_filter + 2 * static_cast<int>(law_.filters.size());
+  const int prediction = first_filter + 2 * static_cast<int>(law_.filters.size());
+  const bool predicts = rule_states > 0 && law_.drive_prediction > 0.0;
+  const int size = prediction + (predicts ? 1 : 0);
   Eigen::MatrixXd m = Eigen::MatrixXd::Zero(size, size);
   m.topLeftCorner<4, 4>() = ad_;
   // The command as a row over the states; e = -attitude.
@@ -126,6 +134,14 @@ double SampledLoop::SpectralRadius(double gain_factor) const {
     m(rule, 0) = -part * law_.drive_error;
     m(rule, 1) = -part * law_.drive_rate;
     m(rule, rule) = 1.0 - tick_s_ * (law_.leakage_1_s + (i == 0 ? 0.0 : law_.spread_1_s));
+    if (!predicts) continue;
+    m(rule, 1) -= part * law_.drive_prediction;
+    m(rule, prediction) = -part * law_.drive_prediction;
+  }
+  if (predicts) {
+    m(prediction, 0) = tick_s_ * law_.kp_1_s2;
+    m(prediction, 1) = -tick_s_ * (law_.predictor_1_s - law_.kd_1_s);
+    m(prediction, prediction) = 1.0 - tick_s_ * law_.predictor_1_s;
   }
   int memory = first_filter;
   for (const DigitalSection& f : law_.filters) {

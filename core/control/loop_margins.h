@@ -34,6 +34,10 @@ struct LinearLaw {
   double leakage_1_s = 0.0;
   double spread_1_s = 0.0;
   int rules = 1;
+  /// Composite adaptation: w is driven by this times the miss of a prediction of e', r' = -kp e - kd e' +
+  /// predictor (e' - r).
+  double drive_prediction = 0.0;  ///< gamma p22 composite, 1/s²
+  double predictor_1_s = 0.0;
   std::vector<DigitalSection> filters;  ///< of u, in series
 
   bool adapts() const { return drive_error != 0.0 || drive_rate != 0.0; }

@@ -59,6 +59,7 @@ class Batch {
   void FlyGimbals();
   template <bool kAll>
   void FlyGimbalsOf(M powered);
+  const T* FedForward(T* program) const;
   void PassCommands(M powered);
   void FlyThrusters();
   void Meter(M powered);

@@ -73,8 +73,24 @@ void Batch<T>::FlyGimbals() {
 template <class T>
 template <bool kAll>
 void Batch<T>::FlyGimbalsOf(M powered) {
+  T program[FeedForwardRows::kRowSize];
   StepGimbals<kAll>(model_.autopilot(), loop_, powered, time_s_ - step_.phase.ignition_s, measured_angle_rad_,
-                    measured_rate_rad_s_, axes_, gimbals_);
+                    measured_rate_rad_s_, FedForward(program), axes_, gimbals_);
+}
+
+// What the program asks of the lanes' axes at their ticks; null where nothing is fed forward. Body axes stand
+// for the reference's: what an error of a degree mixes of them is a part in fifty of what is small.
+template <class T>
+const T* Batch<T>::FedForward(T* program) const {
+  const FeedForwardRows& table = model_.feed_forward_rows();
+  if (table.rows.empty()) return nullptr;
+  const double* row[kLanes];
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const double tick = Min(Lane(tick_, lane), model_.reference_rows().last_tick);
+    row[lane] = table.rows.data() + FeedForwardRows::kRowSize * static_cast<long>(tick);
+  }
+  LoadFour(row, program);
+  return program;
 }
 
 // This tick's commands into the line, and what leaves it now to the actuators. A delay that is no whole

@@ -64,6 +64,28 @@ ReferenceRows TabulateReference(const AttitudeProgram& program, const LaunchFram
   return table;
 }
 
+FeedForwardRows TabulateFeedForward(const AttitudeProgram& program, const AutopilotConfig& autopilot,
+                                    long ticks) {
+  FeedForwardRows table;
+  const std::optional<FeedForward>* const axes[kAxes] = {
+      &autopilot.roll.feed_forward, &autopilot.pitch.feed_forward, &autopilot.yaw.feed_forward};
+  if (!*axes[kRoll] && !*axes[kPitch] && !*axes[kYaw]) return table;
+  table.rows.resize(static_cast<std::size_t>(ticks) * FeedForwardRows::kRowSize);
+  for (int axis = 0; axis < kAxes; ++axis) {
+    if (!*axes[axis]) continue;
+    for (long tick = 0; tick < ticks; ++tick) {
+      const double from_s = static_cast<double>(tick) * autopilot.tick_s + (*axes[axis])->lead_s;
+      const double to_s = from_s + autopilot.tick_s;
+      // The rate ends with the program: no acceleration stands for that.
+      if (to_s > program.knots.back().time_s) break;
+      table
+          .rows[static_cast<std::size_t>(tick) * FeedForwardRows::kRowSize + static_cast<std::size_t>(axis)] =
+          (program.At(to_s).w_LR_R[axis] - program.At(from_s).w_LR_R[axis]) / autopilot.tick_s;
+    }
+  }
+  return table;
+}
+
 }  // namespace
 
 FlightModel::FlightModel(FlightDefinition definition)
@@ -77,6 +99,8 @@ FlightModel::FlightModel(FlightDefinition definition)
   autopilot_ = BuildAutopilot(definition_.autopilot, std::move(controls),
                               definition_.vehicle.reaction_control.minimum_on_time_s);
   reference_rows_ = TabulateReference(definition_.program, frame_, definition_.autopilot.tick_s);
+  feed_forward_rows_ = TabulateFeedForward(definition_.program, definition_.autopilot,
+                                           static_cast<long>(reference_rows_.last_tick) + 1);
 }
 
 FlightModel FlightModel::WithAutopilot(const AutopilotConfig& autopilot) const {
@@ -85,6 +109,8 @@ FlightModel FlightModel::WithAutopilot(const AutopilotConfig& autopilot) const {
   model.definition_.autopilot = autopilot;
   model.autopilot_ =
       BuildAutopilot(autopilot, autopilot_.stages, definition_.vehicle.reaction_control.minimum_on_time_s);
+  model.feed_forward_rows_ =
+      TabulateFeedForward(definition_.program, autopilot, static_cast<long>(reference_rows_.last_tick) + 1);
   return model;
 }
 

@@ -46,6 +46,15 @@ struct ReferenceRows {
   double last_tick = 0.0;
 };
 
+/// What the program asks of each axis' angular acceleration, rad/s², where it is fed forward: the mean over
+/// the tick that begins an axis' lead later, about the reference's x, y, z, 4 doubles a row, the last unused.
+/// Of an axis without feed-forward 0. Empty where no axis feeds forward; the rows are those of ReferenceRows.
+struct FeedForwardRows {
+  static constexpr int kRowSize = 4;
+
+  AlignedRows rows;
+};
+
 class FlightModel {
  public:
   explicit FlightModel(FlightDefinition definition);
@@ -57,6 +66,7 @@ class FlightModel {
   const AutopilotModel& autopilot() const { return autopilot_; }
   const LauncherPlant& nominal_plant() const { return nominal_; }
   const ReferenceRows& reference_rows() const { return reference_rows_; }
+  const FeedForwardRows& feed_forward_rows() const { return feed_forward_rows_; }
 
   /// The nominal plant with a flight's factors, winds and misalignments applied.
   LauncherPlant PlantFor(const FlightInputs& inputs) const;
@@ -67,6 +77,7 @@ class FlightModel {
   LauncherPlant nominal_;
   AutopilotModel autopilot_;
   ReferenceRows reference_rows_;
+  FeedForwardRows feed_forward_rows_;
 };
 
 /// The vehicle without dispersions: aerodynamics built up where the file gives no tables.

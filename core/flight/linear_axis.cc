@@ -76,6 +76,8 @@ LinearLaw LineariseLaw(const AutopilotModel& autopilot, int stage, double since_
     linear.leakage_1_s = law.config.adaptation.leakage_1_s;
     linear.spread_1_s = law.config.adaptation.spread_1_s;
     linear.rules = kFuzzyRules;
+    linear.drive_prediction = of_stage.gamma * of_stage.pn_rate * law.config.adaptation.composite;
+    linear.predictor_1_s = law.config.adaptation.predictor_1_s;
   }
   return linear;
 }

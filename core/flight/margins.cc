@@ -18,8 +18,9 @@ constexpr double kMisalignment_rad = 0.25 * kRadPerDeg;
 constexpr double kLostCycle_deg = 0.2;
 constexpr double kLostError_deg = 5.0;
 
-FlightOrder Spoilt(int stage, double gain_db, double delay_s) {
+FlightOrder Spoilt(const FlightInputs& unspoilt, int stage, double gain_db, double delay_s) {
   FlightOrder order;
+  order.inputs = unspoilt;
   FlightInputs& inputs = order.inputs;
   inputs.loop_stage = stage + 1;
   inputs.loop_gain_factor = Pow(10.0, gain_db / 20.0);
@@ -60,6 +61,12 @@ class Bisection {
 };
 
 }  // namespace
+
+void LeastMargins::Take(const LoopMargins& m) {
+  gain_db = std::min({gain_db, m.gain_up_db, m.gain_down_db});
+  phase_deg = std::min(phase_deg, m.phase_deg);
+  delay_s = std::min(delay_s, m.delay_s);
+}
 
 namespace {
 
@@ -157,16 +164,19 @@ void AddMarginsAt(const LauncherPlant& plant, const AutopilotModel& autopilot, c
 
 }  // namespace
 
-std::vector<MarginInstant> MarginInstants(const FlightModel& model, double every_s) {
+std::vector<MarginInstant> MarginInstants(const FlightModel& model, double every_s,
+                                          const FlightInputs& inputs) {
   Outcome outcome;
-  return InstantsOf(model, {}, every_s, &outcome);
+  return InstantsOf(model, {inputs, {}}, every_s, &outcome);
 }
 
-std::vector<ComputedMargins> ComputeMargins(const FlightModel& model, double every_s) {
-  const std::vector<MarginInstant> instants = MarginInstants(model, every_s);
+std::vector<ComputedMargins> ComputeMargins(const FlightModel& model, double every_s,
+                                            const FlightInputs& inputs) {
+  const LauncherPlant plant = model.PlantFor(inputs);
+  const std::vector<MarginInstant> instants = MarginInstants(model, every_s, inputs);
   // The same ticks of the flight in which something is to be learnt: its stages burn as long.
   std::vector<TickSample> learnt;
-  FlightOrder order = Spoilt(0, 0.0, 0.0);
+  FlightOrder order = Spoilt(inputs, 0, 0.0, 0.0);
   order.options.observe = [&](const TickSample& s) {
     while (s.burning && learnt.size() < instants.size() && instants[learnt.size()].sample.time_s <= s.time_s)
       learnt.push_back(s);
@@ -176,7 +186,7 @@ std::vector<ComputedMargins> ComputeMargins(const FlightModel& model, double eve
   for (std::size_t i = 0; i < instants.size(); ++i) {
     // A flight that ends early learns nothing more.
     const TickSample& sample = i < learnt.size() ? learnt[i] : instants[i].sample;
-    AddMarginsAt(model.nominal_plant(), model.autopilot(), {}, instants[i], sample, all);
+    AddMarginsAt(plant, model.autopilot(), inputs, instants[i], sample, all);
   }
   return all;
 }
@@ -198,19 +208,19 @@ LoopMargins MarginsAt(const LauncherPlant& plant, const AutopilotModel& autopilo
       .Margins();
 }
 
-std::vector<MeasuredMargins> MeasureMargins(const FlightModel& model) {
+std::vector<MeasuredMargins> MeasureMargins(const FlightModel& model, const FlightInputs& inputs) {
   const int stages = static_cast<int>(model.definition().vehicle.stages.size());
   std::vector<Bisection> searches;  // three a stage: gain up, gain down, delay
   for (int stage = 0; stage < stages; ++stage) {
     searches.emplace_back(kMeasuredGainStep_db, kMeasuredGainCeiling_db,
-                          [stage](double db) { return Spoilt(stage, db, 0.0); });
+                          [&inputs, stage](double db) { return Spoilt(inputs, stage, db, 0.0); });
     searches.emplace_back(kMeasuredGainStep_db, kMeasuredGainCeiling_db,
-                          [stage](double db) { return Spoilt(stage, -db, 0.0); });
+                          [&inputs, stage](double db) { return Spoilt(inputs, stage, -db, 0.0); });
     searches.emplace_back(kMeasuredDelayStep_s, kMeasuredDelayCeiling_s,
-                          [stage](double s) { return Spoilt(stage, 0.0, s); });
+                          [&inputs, stage](double s) { return Spoilt(inputs, stage, 0.0, s); });
   }
   // Whatever its stage, the flight that nothing spoils is the same.
-  if (!Holds(Fly(model, Spoilt(0, 0.0, 0.0).inputs)))
+  if (!Holds(Fly(model, Spoilt(inputs, 0, 0.0, 0.0).inputs)))
     for (Bisection& search : searches) search.GiveUp();
   for (;;) {
     std::vector<Bisection*> open;

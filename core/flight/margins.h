@@ -5,6 +5,7 @@
 // to fly a real one must be shown to hold them too.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -50,6 +51,15 @@ inline constexpr double kMeasuredGainCeiling_db = 24.0;
 inline constexpr double kMeasuredDelayStep_s = 0.001;
 inline constexpr double kMeasuredDelayCeiling_s = 0.25;
 
+/// The least of margins over axes and instants.
+struct LeastMargins {
+  double gain_db = std::numeric_limits<double>::infinity();  ///< either way
+  double phase_deg = std::numeric_limits<double>::infinity();
+  double delay_s = std::numeric_limits<double>::infinity();
+
+  void Take(const LoopMargins& m);
+};
+
 /// An instant of the nominal flight at which margins are computed.
 struct MarginInstant {
   std::string place;  ///< as in ComputedMargins
@@ -58,17 +68,19 @@ struct MarginInstant {
 
 /// Lift-off, max q, each ignition + 1 s and burnout, and every `every_s` of powered flight between, in the
 /// order of time.
-std::vector<MarginInstant> MarginInstants(const FlightModel& model, double every_s = 5.0);
+std::vector<MarginInstant> MarginInstants(const FlightModel& model, double every_s = 5.0,
+                                          const FlightInputs& inputs = {});
 /// The margins of an autopilot at an instant, be it of another autopilot's flight of the same plant.
 LoopMargins MarginsAt(const LauncherPlant& plant, const AutopilotModel& autopilot, const TickSample& sample,
                       Axis axis, bool adapting);
 
-/// At each of MarginInstants, in all axes. What is learnt is learnt in a flight with the misalignment of
-/// MeasureMargins.
-std::vector<ComputedMargins> ComputeMargins(const FlightModel& model, double every_s = 5.0);
+/// At each of MarginInstants, in all axes, of the plant and along the flight that `inputs` make; the
+/// autopilot knows of the nominal plant only. What is learnt is learnt in a flight with the misalignment of
+/// MeasureMargins besides. A further delay of the loop (`inputs`) is left out.
+std::vector<ComputedMargins> ComputeMargins(const FlightModel& model, double every_s = 5.0,
+                                            const FlightInputs& inputs = {});
 
-/// The margins of a dispersed flight: its own plant, at the instants of its own flight, with what was learnt
-/// in it; the autopilot knows the nominal vehicle. A further delay of the loop is left out.
+/// The same of a dispersed flight, with what was learnt in itself.
 struct DispersedMargins {
   Outcome outcome = Outcome::kCompleted;  ///< the margins end with the flight
   std::vector<ComputedMargins> margins;
@@ -79,8 +91,9 @@ DispersedMargins ComputeDispersedMargins(const FlightModel& model, const FlightO
 /// By bisection over flights in which the gain or the delay of one stage's loop is changed, with a steady
 /// thrust misalignment of 0.25° in every stage that keeps the adaptation at work. A loop counts as lost when
 /// the flight loses control, when a deflection oscillates by more than 0.2° peak to peak over any second
-/// after the start-up transient, or when pitch or yaw leave the rules' range of 5°.
-std::vector<MeasuredMargins> MeasureMargins(const FlightModel& model);
+/// after the start-up transient, or when pitch or yaw leave the rules' range of 5°. The flights have
+/// `inputs`, but for the misalignment and the loop's gain and delay.
+std::vector<MeasuredMargins> MeasureMargins(const FlightModel& model, const FlightInputs& inputs = {});
 
 /// Whether a margin set passes the gates.
 bool PassesGates(const LoopMargins& margins);

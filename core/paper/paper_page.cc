@@ -66,7 +66,7 @@ std::string Header(const PaperStudy& study) {
           Tile(fmt::format("{:.2g} m", std::fabs(study.optimization.errors.altitude_m)),
                "miss of the target height") +
           "</div>\n</header>\n";
-  return html + kLimits;
+  return html + PaperHeadline(study) + kLimits;
 }
 
 std::string CampaignSection(const PaperStudy& study) {

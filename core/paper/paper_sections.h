@@ -7,6 +7,7 @@
 
 namespace dispersa {
 
+std::string PaperHeadline(const PaperStudy& study);           ///< what the comparison of laws comes to
 std::string PaperVehicleSection(const PaperStudy& study);     ///< Table 1
 std::string PaperTrajectorySection(const PaperStudy& study);  ///< Table 2, Figs. 2 and 3
 std::string PaperDispersionSection(const PaperStudy& study);  ///< Table 3

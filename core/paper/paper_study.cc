@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <set>
 
 #include "core/campaign/campaign_flights.h"
 #include "core/campaign/case_design.h"
@@ -54,6 +55,74 @@ BadPn FlyBadPn(Campaign campaign, double factor) {
   return bad;
 }
 
+PaperInjection FlyInjection(const Campaign& nominal, const CaseResult& flown) {
+  PaperInjection injection;
+  injection.propellant_kg = flown.metrics[MetricColumn("rcs_propellant_kg")];
+  AscentModel model = BuildAscentModel(nominal.vehicle, nominal.autopilot.tick_s);
+  AscentOptions options;
+  options.steps = TrajectoryOptions{}.steps;
+  injection.point_mass = FlyAscent(model, nominal.reference.program, options).orbit;
+  model.reaction_control_propellant_kg = injection.propellant_kg;
+  injection.lighter_point_mass = FlyAscent(model, nominal.reference.program, options).orbit;
+  return injection;
+}
+
+// P_n moves no trajectory that a linearisation would see: every choice is judged along the nominal flight.
+std::vector<LeastMargins> PnMargins(const PaperFlights& sweep) {
+  const CampaignFlights flights(sweep.campaign);
+  const FlightModel& model = flights.model();
+  const std::vector<MarginInstant> instants = MarginInstants(model);
+  const std::vector<double>& errors =
+      sweep.flights.cases.inputs[static_cast<std::size_t>(FindInput("pn_error_factor"))];
+  const std::vector<double>& rates =
+      sweep.flights.cases.inputs[static_cast<std::size_t>(FindInput("pn_rate_factor"))];
+  std::vector<LeastMargins> all(errors.size());
+  for (std::size_t row = 0; row < errors.size(); ++row) {
+    AutopilotModel autopilot = model.autopilot();
+    for (StageLaw& stage : autopilot.laws[kPitch].stages) {
+      stage.pn_error *= errors[row];
+      stage.pn_rate *= rates[row];
+    }
+    for (const MarginInstant& instant : instants)
+      all[row].Take(MarginsAt(model.nominal_plant(), autopilot, instant.sample, kPitch, true));
+  }
+  return all;
+}
+
+CompletionMargins MarginsOf(const FlightModel& model, const std::string& input, double factor) {
+  CompletionMargins all;
+  all.input = input;
+  all.factor = factor;
+  all.passed = true;
+  FlightInputs inputs;
+  if (!input.empty()) InputValue(inputs, FindInput(input)) = factor;
+  for (const ComputedMargins& m : ComputeMargins(model, 5.0, inputs)) {
+    for (const LoopMargins* margins : {&m.frozen, &m.adapting}) {
+      all.computed.Take(*margins);
+      all.passed = all.passed && PassesGates(*margins);
+    }
+  }
+  for (const MeasuredMargins& m : MeasureMargins(model, inputs)) {
+    all.measured.gain_db = std::min({all.measured.gain_db, m.gain_up_db, m.gain_down_db});
+    all.measured.delay_s = std::min(all.measured.delay_s, m.delay_s);
+    all.passed = all.passed && PassesGates(m);
+  }
+  return all;
+}
+
+// As shipped, then each setting of the sweep that moves a completion, in the order of the page.
+std::vector<CompletionMargins> MarginsOfCompletions(const PaperFlights& sweep) {
+  const CampaignFlights flights(sweep.campaign);
+  std::vector<CompletionMargins> all = {MarginsOf(flights.model(), "", 1.0)};
+  for (const std::string& input : PaperCompletions()) {
+    const std::vector<double>& column =
+        sweep.flights.cases.inputs[static_cast<std::size_t>(FindInput(input))];
+    for (const double factor : std::set<double>(column.begin(), column.end()))
+      if (factor != 1.0) all.push_back(MarginsOf(flights.model(), input, factor));
+  }
+  return all;
+}
+
 }  // namespace
 
 const std::vector<PaperCampaign>& PaperCampaigns() {
@@ -72,7 +141,9 @@ const std::vector<PaperCampaign>& PaperCampaigns() {
       {"controllers_frozen_fuzzy", "the frozen rules on the same cases"},
       {"controllers_pd", "scheduled PD on the same cases"},
       {"controllers_pid", "scheduled PID on the same cases"},
+      {"controllers_lqr", "a linear-quadratic regulator with integral on the same cases"},
       {"controllers_pd_aac", "PD with adaptive augmenting control on the same cases"},
+      {"controllers_pid_aac", "PID with adaptive augmenting control on the same cases"},
       {"completions", "what we added to the vehicle, swept"},
   };
   return campaigns;
@@ -80,8 +151,15 @@ const std::vector<PaperCampaign>& PaperCampaigns() {
 
 const std::vector<std::string>& PaperBaselines() {
   static const std::vector<std::string> names = {"controllers_frozen_fuzzy", "controllers_pd",
-                                                 "controllers_pid", "controllers_pd_aac"};
+                                                 "controllers_pid",          "controllers_lqr",
+                                                 "controllers_pd_aac",       "controllers_pid_aac"};
   return names;
+}
+
+const std::vector<std::string>& PaperCompletions() {
+  static const std::vector<std::string> inputs = {"inertia_factor", "cp_factor", "cg_factor",
+                                                  "actuator_bandwidth_factor"};
+  return inputs;
 }
 
 PaperStudy RunPaperStudy(const std::vector<Campaign>& campaigns, const PaperOptions& options) {
@@ -108,6 +186,7 @@ PaperStudy RunPaperStudy(const std::vector<Campaign>& campaigns, const PaperOpti
   progress("margins", 0, 1);
   study.computed_margins = ComputeMargins(nominal_flights.model());
   study.measured_margins = MeasureMargins(nominal_flights.model());
+  study.injection = FlyInjection(nominal, study.nominal);
   progress("margins", 1, 1);
 
   for (std::size_t i = 1; i < campaigns.size(); ++i) {
@@ -121,6 +200,10 @@ PaperStudy RunPaperStudy(const std::vector<Campaign>& campaigns, const PaperOpti
     flown.progress = [&](std::uint64_t done) { progress(name, done, flown.cases); };
     study.campaigns.emplace(name, PaperFlights{campaigns[i], FlyStudy(campaigns[i], flown)});
   }
+  progress("margins of sweeps", 0, 1);
+  study.pn_margins = PnMargins(study.at("pn_sweep"));
+  study.completion_margins = MarginsOfCompletions(study.at("completions"));
+  progress("margins of sweeps", 1, 1);
   // A P_n of the wrong sign, which feeds the error back positively, and one too large for the actuators.
   for (const double factor : {-1.0, 100.0})
     study.bad_pn.push_back(FlyBadPn(study.at("pn_curves").campaign, factor));

@@ -30,6 +30,9 @@ const std::vector<PaperCampaign>& PaperCampaigns();
 /// Baselines of the comparison: the campaigns that fly other autopilots on the cases of "controllers".
 const std::vector<std::string>& PaperBaselines();
 
+/// Inputs that "completions" sweeps.
+const std::vector<std::string>& PaperCompletions();
+
 struct PaperOptions {
   /// Size of a Monte Carlo campaign; the designs are repeated, and the bands drawn, in proportion.
   std::uint64_t cases = 200;
@@ -52,6 +55,22 @@ struct BadPn {
   CaseResult flight;    ///< with allow_unproven
 };
 
+/// The injection of the nominal's flight program, by what flies it.
+struct PaperInjection {
+  double propellant_kg = 0.0;  ///< that the nominal flight's reaction control expels
+  Orbit point_mass;            ///< as the optimiser flies it
+  Orbit lighter_point_mass;    ///< with that propellant gone before the last stage burns
+};
+
+/// A completion of the vehicle away from its value, and the margins of the loop there.
+struct CompletionMargins {
+  std::string input;  ///< "inertia_factor"
+  double factor = 1.0;
+  LeastMargins computed;  ///< all axes and instants, gains frozen and adapting
+  LeastMargins measured;  ///< all stages; no phase
+  bool passed = false;    ///< every gate of both
+};
+
 struct PaperStudy {
   std::uint64_t cases = 0;  ///< of the options
   OptimizationResult optimization;
@@ -59,6 +78,9 @@ struct PaperStudy {
   History nominal_history;
   std::map<std::string, PaperFlights> campaigns;  ///< by name; all but the nominal
   std::vector<BadPn> bad_pn;
+  PaperInjection injection;
+  std::vector<LeastMargins> pn_margins;  ///< of each case of "pn_sweep": pitch, adapting, computed
+  std::vector<CompletionMargins> completion_margins;  ///< as shipped first
   std::vector<ComputedMargins> computed_margins;  ///< of the nominal's autopilot
   std::vector<MeasuredMargins> measured_margins;
 

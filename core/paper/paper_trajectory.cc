@@ -28,6 +28,36 @@ std::string ConstraintTable(const Reference& reference) {
   return table.Html("narrow");
 }
 
+/// The same program by what flies it, to the flight with attitude, actuators and reaction control.
+std::string InjectionTable(const PaperStudy& study) {
+  const PaperInjection& injection = study.injection;
+  HtmlTable table({{"Injection of the shipped program"},
+                   {"point mass", true},
+                   {"lighter point mass", true},
+                   {"flown nominal", true},
+                   {"flown less point mass", true},
+                   {"flown less lighter", true}});
+  const auto row = [&](const char* name, int decimals, double point_mass, double lighter,
+                       const char* metric) {
+    const double flown = study.nominal.metrics[MetricColumn(metric)];
+    table.Row({name, FixedText(point_mass, decimals), FixedText(lighter, decimals),
+               FixedText(flown, decimals), Signed(flown - point_mass), Signed(flown - lighter)});
+  };
+  const Orbit &heavy = injection.point_mass, &light = injection.lighter_point_mass;
+  row("Height, km", 3, heavy.altitude_m * 1e-3, light.altitude_m * 1e-3, "injection_altitude_km");
+  row("Velocity, m/s", 3, heavy.velocity_m_s, light.velocity_m_s, "injection_velocity_m_s");
+  row("Angle of injection, °", 5, heavy.flight_path_angle_rad * kDegPerRad,
+      light.flight_path_angle_rad * kDegPerRad, "injection_flight_path_angle_deg");
+  return table.Html() + fmt::format(
+                            "<p class=\"soft\">Lighter: by the {:.3f} kg that the flown nominal’s reaction "
+                            "control expels in the "
+                            "coast, which a point mass has no use for. What then remains is what a point "
+                            "mass leaves out: the "
+                            "attitude follows the program with an error, nozzles deflect, stages separate "
+                            "while they turn.</p>\n",
+                            injection.propellant_kg);
+}
+
 }  // namespace
 
 std::string PaperVehicleSection(const PaperStudy& study) {
@@ -95,7 +125,7 @@ std::string PaperTrajectorySection(const PaperStudy& study) {
   row("Angle of injection, °", 7, problem.target_flight_path_angle_rad * kDegPerRad, kPaperAngle_deg,
       reference.orbit.flight_path_angle_rad * kDegPerRad, result.errors.flight_path_angle_rad * kDegPerRad,
       halved.flight_path_angle_rad * kDegPerRad);
-  html += table.Html();
+  html += table.Html() + InjectionTable(study);
   html += fmt::format(
       "<p>Variables: α<sub>max</sub> {:.4f}°, t1 {:.3f} s, t3 {:.3f} s, t2 {:.3f} s, coast before stage 4 {:.2f} s, launch "
       "azimuth {:.3f}°; inclination {:.2f}°. Genetic algorithm with {} individuals, then refinement by least squares: {} "

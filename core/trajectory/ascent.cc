@@ -73,6 +73,8 @@ void SetLane(lanes::Leg<T>& leg, int lane, const AscentModel& model, const Fligh
   lanes::SetLane(leg.burnt, lane, flight.burnt);
   lanes::SetLane(leg.turning, lane, flight.turning);
   Lane(leg.ignition_s, lane) = flight.ignition_s;
+  const bool is_last = stack + 1 == model.plant.stacks.size();
+  Lane(leg.expelled_kg, lane) = is_last ? model.reaction_control_propellant_kg : 0.0;
   SetLane(leg.right_I, lane, ToLanes(flight.frame.R_IL.col(1)));
   SetLane(leg.turn_offset_I, lane, flight.turn_offset_I);
 }
@@ -359,7 +361,7 @@ double ProgrammedIncidence(const FlightProgram& program, double time_s) {
 }
 
 AscentModel BuildAscentModel(const Vehicle& vehicle, double tick_s) {
-  AscentModel model{vehicle, BuildNominalPlant(vehicle), {}, tick_s};
+  AscentModel model{vehicle, BuildNominalPlant(vehicle), {}, tick_s, 0.0};
   model.weather = PrepareWeather(model.plant.environment.wind, model.plant.environment.density);
   return model;
 }

@@ -25,6 +25,10 @@ struct AscentModel {
   LauncherPlant plant;
   FlightWeather weather;  ///< of the plant's environment
   double tick_s = 0.01;  ///< burnout is detected on the autopilot's ticks
+  /// What the reaction control of the coast expels. A point mass has no attitude to hold; it is taken off at
+  /// once as the last stage begins, since nothing but that stage's thrust and thin air tells one mass from
+  /// another.
+  double reaction_control_propellant_kg = 0.0;
 };
 
 /// Largest integration steps, which end at every event and kink of thrust and program.

@@ -167,7 +167,8 @@ OptimizationResult OptimizeTrajectory(const Vehicle& vehicle, const TrajectoryPr
                                       const TrajectoryOptions& options,
                                       const GeneticAlgorithm::Observer& observer) {
   Validate(options);
-  const AscentModel model = BuildAscentModel(vehicle, options.tick_s);
+  AscentModel model = BuildAscentModel(vehicle, options.tick_s);
+  model.reaction_control_propellant_kg = problem.reaction_control_propellant_kg;
   OptimizationResult result;
   result.genetic = Search(model, problem, options, observer);
   FlightProgram program = ProgramOf(result.genetic.variables);

@@ -44,6 +44,7 @@ struct Leg {
   AeroBody<T> aero;
   MaskOf<T> burning, burnt;
   T ignition_s;
+  T expelled_kg;            ///< by the reaction control
   MaskOf<T> turning;        ///< t1 is past
   Vector<T> right_I;        ///< y axis of the launch frame
   Vector<T> turn_offset_I;  ///< body axis less direction of flight as the turn began
@@ -116,7 +117,8 @@ DISPERSA_INLINE AscentInstant<T> InstantAt(const Ground& ground, const Leg<T>& l
   const Surroundings<T> around = SurroundingsAt(ground.earth, *ground.air, leg.weather, p);
   const BurnState<T> burn = BurnAt(leg.burn, time_s - leg.ignition_s);
   const T unlit = Select(leg.burnt, T(0.0), leg.burn.propellant_kg);
-  const Masses<T> masses = MassesAt(leg.stack, Select(leg.burning, burn.propellant_kg, unlit));
+  Masses<T> masses = MassesAt(leg.stack, Select(leg.burning, burn.propellant_kg, unlit));
+  masses.mass_kg = masses.mass_kg - leg.expelled_kg;
 
   const Vector<T> forward = ForwardAt(ground, leg, time_s, p, v);
   const Vector<T> flow = VelocityOverGround(ground, p, v) - around.wind_m_s;

@@ -59,6 +59,8 @@ struct TrajectoryProblem {
   double transonic_mach_high = 1.2;   ///< to here
   double q_max_limit_pa = 0.0;        ///< 0: reported only
   double q_alpha_limit_pa_rad = 0.0;  ///< 0: reported only
+  double reaction_control_propellant_kg =
+      0.0;  ///< that a flight will have expelled before the last stage burns
   int population = 0;
   int generations = 0;
   std::uint64_t seed = 0;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <limits>
 #include <memory>
 
 #include "core/campaign/campaign_flights.h"
@@ -12,6 +11,7 @@
 #include "core/flight/flight_model.h"
 #include "core/flight/margins.h"
 #include "core/flight/metrics.h"
+#include "core/tuning/regulator.h"
 
 namespace dispersa {
 
@@ -22,8 +22,6 @@ constexpr int kElites = 2;
 constexpr double kMutationEta = 10.0;
 // Changes of a percent at the end: the optimum is flat, and a design is rounded to a thousandth anyhow.
 constexpr double kFinalMutationEta = 100.0;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double Metric(const FlightResult& result, const std::string& name) {
   return result.metrics[MetricColumn(name)];
@@ -61,13 +59,13 @@ void Validate(const Campaign& campaign, const AutopilotConfig& autopilot, const 
   for (const AxisConfig* axis : {&autopilot.pitch, &autopilot.yaw, &autopilot.roll})
     if (InfoOf(axis->law).adaptation && axis->adaptation.p_n)
       add("adaptation.p_n", "is fixed, but P_n follows from the gains that are to be found", "no p_n");
+  if (options.regulator)
+    for (const auto& [axis, name] : {std::pair{&autopilot.pitch, "pitch"}, {&autopilot.yaw, "yaw"}})
+      if (!InfoOf(axis->law).integral)
+        add(std::string(name) + ".law",
+            std::string(InfoOf(axis->law).name) + " has no integral, which is a state of the regulator",
+            "pid, pid_aac");
   if (!problems.empty()) throw InputError(std::move(problems));
-}
-
-void Take(const LoopMargins& m, LeastMargins& least) {
-  least.gain_db = std::min({least.gain_db, m.gain_up_db, m.gain_down_db});
-  least.phase_deg = std::min(least.phase_deg, m.phase_deg);
-  least.delay_s = std::min(least.delay_s, m.delay_s);
 }
 
 bool Suffices(const LeastMargins& m) {
@@ -171,11 +169,11 @@ class Tuner {
 
   LeastMargins LeastOf(const AutopilotConfig& autopilot, int stage, bool adapting) const {
     const AutopilotModel model = ModelOf(autopilot);
-    LeastMargins least = {kInfinity, kInfinity, kInfinity};
+    LeastMargins least;
     for (const MarginInstant& instant : instants_) {
       if (instant.sample.stack != stage) continue;
       for (const Axis axis : {kPitch, kYaw, kRoll})
-        Take(MarginsAt(start_->model().nominal_plant(), model, instant.sample, axis, adapting), least);
+        least.Take(MarginsAt(start_->model().nominal_plant(), model, instant.sample, axis, adapting));
     }
     return least;
   }
@@ -190,8 +188,8 @@ class Tuner {
       const MarginInstant& instant = instants_[set / (kAxes * 2)];
       if (instant.sample.stack != stage) continue;
       const Axis axis = static_cast<Axis>(set / 2 % kAxes);
-      LeastMargins least = {kInfinity, kInfinity, kInfinity};
-      Take(MarginsAt(start_->model().nominal_plant(), model, instant.sample, axis, set % 2 == 0), least);
+      LeastMargins least;
+      least.Take(MarginsAt(start_->model().nominal_plant(), model, instant.sample, axis, set % 2 == 0));
       if (Suffices(least)) continue;
       *failed_last = set;
       return false;
@@ -199,10 +197,18 @@ class Tuner {
     return true;
   }
 
-  // Of a point of the search: bandwidth as a fraction of the largest admissible one, damping, learning. Where
+  // Damping and learning at a point of the search.
+  StageDesign ShapeOf(const std::vector<double>& point) const {
+    if (!options_.regulator) return {0.0, point[1], learns_ ? point[2] : 0.0};
+    const RegulatorGains k = SolveRegulator({std::pow(10.0, point[1]), 1.0, std::pow(10.0, point[2])});
+    const double w = std::sqrt(k.kp_1_s2);
+    return {0.0, k.kd_1_s / (2.0 * w), k.ki_1_s3 / (w * w * w)};
+  }
+
+  // Of a point of the search: bandwidth as a fraction of the largest admissible one, and its shape. Where
   // none is admissible the least one stands, and its margins say by how much they are missed.
   StageDesign DesignOf(const std::vector<double>& point, int stage) const {
-    StageDesign design = {0.0, point[1], learns_ ? point[2] : 0.0};
+    StageDesign design = ShapeOf(point);
     AutopilotConfig autopilot = campaign_.autopilot;
     const double lowest_rad_s = kBandwidthOfActuator.low * ActuatorOf(stage);
     double w = kBandwidthOfActuator.high * ActuatorOf(stage);
@@ -297,13 +303,23 @@ class Tuner {
 
   StageTuning TuneStage(int stage, const TuningObserver& observer, std::uint64_t& evaluations) {
     BoundedProblem problem;
-    problem.lower = {kBandwidthOfLargest.low, kDamping.low};
-    problem.upper = {kBandwidthOfLargest.high, kDamping.high};
-    problem.known_points = {{kBandwidthOfLargest.high, kStartDamping}};
-    if (learns_) {
-      problem.lower.push_back(kLearning.low);
-      problem.upper.push_back(kLearning.high);
-      problem.known_points[0].push_back(kStartLearning);
+    struct Variable {
+      Bounds bounds;
+      double start;
+    };
+    std::vector<Variable> variables = {{kBandwidthOfLargest, kBandwidthOfLargest.high}};
+    if (options_.regulator) {
+      variables.push_back({kIntegralWeightPower, kStartIntegralWeightPower});
+      variables.push_back({kRateWeightPower, kStartRateWeightPower});
+    } else {
+      variables.push_back({kDamping, kStartDamping});
+      if (learns_) variables.push_back({kLearning, kStartLearning});
+    }
+    problem.known_points = {{}};
+    for (const Variable& variable : variables) {
+      problem.lower.push_back(variable.bounds.low);
+      problem.upper.push_back(variable.bounds.high);
+      problem.known_points[0].push_back(variable.start);
     }
     problem.evaluate = [&](const std::vector<double>& point) { return Evaluate(point, stage); };
     const GeneticAlgorithmResult found = Minimize(problem, stage, observer);

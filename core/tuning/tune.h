@@ -10,10 +10,11 @@
 // - subject to: every computed margin of all axes, gains frozen and adapting, at every instant of
 //   MarginInstants at or above its gate plus a reserve; every case completed; every limit cycle below
 //   kLimitCycleLimit_deg.
-// Margins come first: a design that misses one is not flown. What augments PD acts in every stage; it is searched
-// last, over whole flights, with the measured margins at their gates instead of the computed ones, which know it
-// at rest only. The budget is shared by the stages and the augmentation. The search does not depend on the gains
-// that the autopilot had before, nor on the number of threads.
+// A PID may be searched as a linear-quadratic regulator instead (regulator.h): weights take the place of
+// damping and learning. Margins come first: a design that misses one is not flown. What augments PD acts in
+// every stage; it is searched last, over whole flights, with the measured margins at their gates instead of
+// the computed ones, which know it at rest only. The budget is shared by the stages and the augmentation. The
+// search does not depend on the gains that the autopilot had before, nor on the number of threads.
 #pragma once
 
 #include <cstdint>
@@ -23,6 +24,7 @@
 #include <vector>
 
 #include "core/campaign/campaign.h"
+#include "core/flight/margins.h"
 #include "core/optimization/genetic_algorithm.h"
 #include "core/tuning/stage_design.h"
 
@@ -43,6 +45,10 @@ inline constexpr Bounds kBandwidthOfLargest = {0.6, 1.0};
 inline constexpr Bounds kBandwidthOfActuator = {0.04, 0.35};
 inline constexpr Bounds kDamping = {0.4, 1.6};
 inline constexpr Bounds kLearning = {0.0, 0.5};
+/// Of ten: a regulator's weights of integral and rate, with that of the angle as 1 and time in units that
+/// make it so.
+inline constexpr Bounds kIntegralWeightPower = {-4.0, 3.0};
+inline constexpr Bounds kRateWeightPower = {-2.0, 2.0};
 inline constexpr Bounds kAdaptiveGainPower = {3.0, 8.0};  ///< of ten, 1/s
 inline constexpr Bounds kSpectralGainPower = {0.0, 4.0};  ///< of ten, 1/s
 inline constexpr Bounds kMaximumTotalGain = {1.1, 2.5};
@@ -50,6 +56,9 @@ inline constexpr Bounds kMaximumTotalGain = {1.1, 2.5};
 inline constexpr double kStartBandwidthOfActuator = 0.1;
 inline constexpr double kStartDamping = 0.9;
 inline constexpr double kStartLearning = 0.05;
+/// What makes about that damping and learning.
+inline constexpr double kStartIntegralWeightPower = -2.5;
+inline constexpr double kStartRateWeightPower = 0.14;
 inline constexpr AugmentationDesign kStartAugmentation = {1e4, 100.0, 1.5};
 
 struct TuningOptions {
@@ -57,6 +66,7 @@ struct TuningOptions {
   int cases = 4;           ///< flown for each design; 1 to 10,000
   int evaluations = 160;   ///< designs tried in all searches; at least 2 kTuningPopulation in each
   int threads = 1;         ///< 1 to 1024; the result does not depend on it
+  bool regulator = false;  ///< search the weights of a linear-quadratic regulator; for laws with an integral
 };
 
 /// One line of the log.
@@ -65,19 +75,12 @@ struct TuningRecord {
   GenerationRecord generation;
 };
 
-/// The least of a stage's margins over axes and instants.
-struct LeastMargins {
-  double gain_db = 0.0;  ///< either way
-  double phase_deg = 0.0;
-  double delay_s = 0.0;
-};
-
 struct StageTuning {
   StageDesign design;
   bool feasible = false;      ///< all constraints are met
   double mean_rms_deg = 0.0;  ///< of the stage, pitch
   double peak_deg = 0.0;      ///< largest of the stage over the cases, pitch
-  LeastMargins frozen;
+  LeastMargins frozen;        ///< of the stage
   LeastMargins adapting;  ///< as frozen where nothing adapts
 };
 
@@ -109,7 +112,8 @@ using TuningObserver = std::function<void(const TuningRecord&)>;
 /// Tunes `autopilot` for the vehicle, reference and dispersions of a campaign, whose own autopilot is
 /// ignored; cases are drawn by Monte Carlo. `observer`, if given, is called on the calling thread after each
 /// generation. Throws InputError if the seed is the campaign's, an option is out of its range, the autopilot
-/// does not suit the vehicle or fixes a P_n, which follows from the gains.
+/// does not suit the vehicle or fixes a P_n, which follows from the gains, or a regulator's axis has no
+/// integral.
 TuningResult Tune(const Campaign& campaign, const AutopilotConfig& autopilot, const TuningOptions& options,
                   const TuningObserver& observer = nullptr);
 

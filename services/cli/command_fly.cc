@@ -63,6 +63,8 @@ ExitCode FlyOne(const FlyOptions& options, const GlobalOptions& global) {
       throw InputError("--integrator: a scenario does not fly with 'simpson'", "erk4 or cvode");
     if (options.case_index || options.overrides.seed)
       throw InputError("--case, --seed: a scenario has no cases", "a campaign file with these options");
+    if (options.overrides.autopilot)
+      throw InputError("--autopilot: a scenario flies without one", "a campaign file with this option");
     return FlyScenarioFile(options.campaign, scheme, options.history, global);
   }
   const Campaign campaign = LoadAndWarn(options.campaign, options.overrides);
@@ -96,6 +98,8 @@ void AddFlyCommand(CLI::App& app, Invocation& invocation) {
                       "simpson (what campaigns fly), erk4 (what scenarios fly; classical Runge-Kutta through SUNDIALS) "
                       "or cvode (high accuracy, to compare)");
   command->add_option("--seed", options->overrides.seed, "seed, instead of the file's");
+  command->add_option("--autopilot", options->overrides.autopilot,
+                      "autopilot file, instead of the campaign's");
   command->footer(
       "Example: dispersa fly campaigns/nominal.yaml --history nominal.csv\n"
       "         dispersa fly campaigns/table3.yaml --case 17 --json\n"

@@ -22,7 +22,7 @@ namespace {
 
 struct MarginsOptions {
   std::string campaign;
-  std::optional<std::uint64_t> cases;  ///< of dispersed margins; none: nominal alone
+  CampaignOverrides overrides;
 };
 
 struct MarginsResult {
@@ -195,7 +195,7 @@ void PrintText(const MarginsResult& result) {
 }
 
 ExitCode Margins(const MarginsOptions& options, const GlobalOptions& global) {
-  const Campaign campaign = LoadAndWarn(options.campaign, {options.cases, {}});
+  const Campaign campaign = LoadAndWarn(options.campaign, options.overrides);
   const CampaignFlights flights(campaign);
   MarginsResult result;
   result.autopilot = campaign.autopilot.name;
@@ -205,8 +205,8 @@ ExitCode Margins(const MarginsOptions& options, const GlobalOptions& global) {
                               [](const ComputedMargins& m) { return PassesGates(m); }) &&
                   std::all_of(result.measured.begin(), result.measured.end(),
                               [](const MeasuredMargins& m) { return PassesGates(m); });
-  if (options.cases) {
-    result.dispersed = ComputeCampaignMargins(flights, *options.cases, UsableCores());
+  if (options.overrides.cases) {
+    result.dispersed = ComputeCampaignMargins(flights, *options.overrides.cases, UsableCores());
     result.passed = result.passed && result.dispersed->Passed();
   }
   if (global.json) {
@@ -224,7 +224,9 @@ void AddMarginsCommand(CLI::App& app, Invocation& invocation) {
   CLI::App* command =
       app.add_subcommand("margins", "gain, phase and delay margins of the autopilot (rigid body)");
   command->add_option("campaign", options->campaign, "campaign file")->required();
-  command->add_option("--cases", options->cases, "also of so many dispersed cases of the campaign");
+  command->add_option("--autopilot", options->overrides.autopilot,
+                      "autopilot file, instead of the campaign's");
+  command->add_option("--cases", options->overrides.cases, "also of so many dispersed cases of the campaign");
   command->footer(
       "Computed from a linearisation at lift-off, max q, ignitions and burnouts, and measured by spoiling\n"
       "the loop in flight. Ends with 3 when a gate is not met.\n"

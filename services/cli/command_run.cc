@@ -65,6 +65,7 @@ std::string ResumeCommand(const RunOptions& options, const std::filesystem::path
   const CampaignOverrides& overrides = options.request.overrides;
   if (overrides.cases) command += fmt::format(" --cases {}", *overrides.cases);
   if (overrides.seed) command += fmt::format(" --seed {}", *overrides.seed);
+  if (overrides.autopilot) command += " --autopilot " + ShellWord(*overrides.autopilot);
   if (options.workers >= 0) command += fmt::format(" --workers {}", options.workers);
   if (options.threads > 0) command += fmt::format(" --threads {}", options.threads);
   return command + " --out " + ShellWord(directory.string()) + " --resume";
@@ -352,6 +353,8 @@ void AddRunCommand(CLI::App& app, Invocation& invocation) {
   command->add_option("--cases", request.overrides.cases, "number of cases, instead of the file's")
       ->check(CLI::PositiveNumber);
   command->add_option("--seed", request.overrides.seed, "seed, instead of the file's");
+  command->add_option("--autopilot", request.overrides.autopilot,
+                      "autopilot file, instead of the campaign's");
   AddReflownOptions(*command, options->reflown);
   command->add_flag("--resume", request.resume, "go on in a folder of the same flight id");
   command->footer(

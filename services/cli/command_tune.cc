@@ -8,6 +8,7 @@
 
 #include "core/campaign_yaml/load.h"
 #include "core/report/output_file.h"
+#include "core/tuning/regulator.h"
 #include "core/tuning/tune.h"
 #include "services/cli/command.h"
 #include "services/cli/flight_json.h"
@@ -30,6 +31,7 @@ struct TuneOptions {
 std::string CommandText(const TuneOptions& options) {
   std::string text = "dispersa tune " + options.campaign;
   if (!options.autopilot.empty()) text += " --autopilot " + options.autopilot;
+  if (options.tuning.regulator) text += " --lqr";
   return text + fmt::format(" --out {} --seed {} --cases {} --evaluations {}", options.out,
                             options.tuning.seed, options.tuning.cases, options.tuning.evaluations);
 }
@@ -50,6 +52,20 @@ std::string LawText(ControlLaw law) {
          "\n# Gains are those of the error dynamics s² + kd s + kp, one entry a stage; roll has those of pitch.\n";
 }
 
+// The weights behind a regulator's gains.
+std::string RegulatorText(const AxisConfig& axis) {
+  std::string text =
+      "# They are a linear-quadratic regulator's, optimal for e'' = -u and the weights of (∫e)², e², e'² "
+      "beside u²:\n";
+  for (std::size_t i = 0; i < axis.gains.size(); ++i) {
+    const RegulatorWeights q =
+        WeightsOf({axis.integral.ki_1_s3[i], axis.gains[i].kp_1_s2, axis.gains[i].kd_1_s});
+    text += fmt::format("#   stage {}: {:.3g} 1/s^6, {:.3g} 1/s^4, {:.3g} 1/s^2\n", i + 1, q.integral_1_s6,
+                        q.angle_1_s4, q.rate_1_s2);
+  }
+  return text;
+}
+
 // Of a line of the log: the number of a stage, or the augmentation.
 std::string PartText(const TuningRecord& record, const TuningResult& result) {
   return record.stage < std::ssize(result.stages) ? fmt::format("{}", record.stage + 1) : "augm.";
@@ -62,6 +78,7 @@ std::string MarginsText(const LeastMargins& m) {
 // The comment at the head of the file.
 std::string Header(const TuneOptions& options, const TuningResult& result) {
   std::string text = LawText(result.autopilot.pitch.law);
+  if (options.tuning.regulator) text += RegulatorText(result.autopilot.pitch);
   text += fmt::format("#\n# Tuned by\n#   {}\n", CommandText(options));
   text += fmt::format("# which tried {} designs in {} flights. Over the {} cases of its seed:\n",
                       result.evaluations, result.flights, options.tuning.cases);
@@ -224,6 +241,9 @@ void AddTuneCommand(CLI::App& app, Invocation& invocation) {
       ->add_option("--evaluations", options->tuning.evaluations,
                    "designs tried, shared by the stages and the augmentation of PD")
       ->capture_default_str();
+  command->add_flag(
+      "--lqr", options->tuning.regulator,
+      "search the weights of a linear-quadratic regulator, whose gains the law flies: pid, pid_aac");
   command->add_option("--threads", options->threads, "threads; the result does not depend on them")
       ->check(CLI::Range(1, 1024));
   command->footer(

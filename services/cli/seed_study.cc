@@ -95,7 +95,8 @@ std::vector<SeedRow> RunSeedStudy(const OptimizationInput& input, int seeds, con
                                   const std::function<void(const SeedRow&)>& done) {
   std::vector<SeedRow> rows;
   TrajectoryProblem problem = input.problem;
-  const AscentModel model = BuildAscentModel(input.vehicle, options.tick_s);
+  AscentModel model = BuildAscentModel(input.vehicle, options.tick_s);
+  model.reaction_control_propellant_kg = problem.reaction_control_propellant_kg;
   for (int i = 0; i < seeds; ++i, ++problem.seed) {
     const auto begin = std::chrono::steady_clock::now();
     OptimizationResult result = OptimizeTrajectory(input.vehicle, problem, options);

@@ -24,6 +24,8 @@ FlightDefinition Definition(const std::string& autopilot, bool with_winds) {
     definition.autopilot.pitch.filters = definition.autopilot.yaw.filters = {
         {.poles_rad_s = 80.0, .poles_damping = 0.7},
         {.zeros_rad_s = 25.0, .zeros_damping = 0.2, .poles_rad_s = 25.0, .poles_damping = 0.6, .stage = 1}};
+  if (autopilot == "pid_aac")  // axes that feed forward beside one that does not
+    definition.autopilot.pitch.feed_forward = definition.autopilot.yaw.feed_forward = FeedForward{0.066};
   definition.noise_seed = 11;
   if (with_winds) {
     definition.wind_table = WindTable{{0.0, 5000.0, 12000.0}, {1.0, 12.0, -20.0}, {3.0, -8.0, 30.0}};
@@ -206,7 +208,8 @@ TEST_P(FlightLanes, AreTheFlightsAlone) {
     }
   }
 }
-INSTANTIATE_TEST_SUITE_P(Laws, FlightLanes, testing::Values("adaptive_fuzzy", "frozen_fuzzy", "pd", "pid", "pd_aac"),
+INSTANTIATE_TEST_SUITE_P(Laws, FlightLanes,
+                         testing::Values("adaptive_fuzzy", "frozen_fuzzy", "pd", "pid", "pd_aac", "pid_aac"),
                          [](const auto& law) { return std::string(law.param); });
 
 }  // namespace

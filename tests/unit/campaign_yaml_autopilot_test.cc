@@ -29,6 +29,9 @@ pitch:
     leakage_1_s: 0.1
     spread_1_s: 40
     dead_zone_deg: 0.01
+    normalized: true
+    composite: 2
+    predictor_1_s: 20
     freeze_when_saturated: true
     reset_at_ignition: true
     supervisory_bound: 0.5
@@ -92,6 +95,7 @@ roll:
   filters:
     - {zeros_rad_s: 20, zeros_damping: 0.05, poles_rad_s: 20, poles_damping: 0.7, stage: 1}
     - {poles_rad_s: 60, poles_damping: 0.7}
+  feed_forward: {lead_s: 0.066}
   integral:
     ki_1_s3: [9.5, 0]
     bound_deg_s2: 20
@@ -137,6 +141,8 @@ TEST(AutopilotKeys, AreDocumentedAllAndByTheirBlocks) {
   };
   const FilterSection section;
   expect("filters", [&](auto& fields) { VisitFilter(fields, section); });
+  const FeedForward feed_forward;
+  expect("feed_forward", [&](auto& fields) { VisitFeedForward(fields, feed_forward); });
   const AxisConfig axis;
   EachBlock(axis, [&](const std::string& block, bool, auto visit) { expect(block, visit); });
 }

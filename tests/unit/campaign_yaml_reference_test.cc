@@ -66,6 +66,7 @@ Reference RandomReference() {
   Reference reference = LoadReference(DISPERSA_TEST_DATA "/yaml/reference.yaml");
   reference.name = "it's 'quoted': #1";
   reference.problem.q_max_limit_pa = 80000.0;
+  reference.problem.reaction_control_propellant_kg = 0.225;
   reference.problem.launch_azimuth_rad = {1.5 + 0.1 * angle(random), 2.9 + 0.1 * angle(random)};
   reference.program.alpha_max_rad = 0.05 + 0.01 * angle(random);
   reference.program.launch_azimuth_rad = 2.5 + 0.1 * angle(random);
@@ -109,6 +110,7 @@ TEST(CampaignYamlReference, KeepsEveryField) {
   EXPECT_EQ(read.problem.alpha_limit_rad, 6.0 * kRadPerDeg);
   EXPECT_EQ(read.problem.q_max_limit_pa, 80000.0);
   EXPECT_EQ(read.problem.q_alpha_limit_pa_rad, 0.0);
+  EXPECT_EQ(read.problem.reaction_control_propellant_kg, 0.225);
   EXPECT_EQ(read.problem.seed, 1u);
   EXPECT_EQ(read.program.t3_s, 7.5);
   EXPECT_EQ(read.last_ignition_s, 420.5);

@@ -52,6 +52,19 @@ TEST(StepGimbals, LoopGainMultipliesEveryCommand) {
   EXPECT_EQ(half.yaw_rad, 0.5 * one.yaw_rad);
 }
 
+TEST(StepGimbals, AddsWhatTheProgramAsks) {
+  const AutopilotModel model = Model();
+  AutopilotState state;
+  StartStage(model, 0, state);
+  AttitudeError error = ErrorOf(0.0, 0.02, 0.0);
+  error.program_rad_s2 = Vector3(0.08, -0.04, 0.02);
+  const GimbalCommand c = StepGimbals(model, 0, 0.0, error, kNoStudy, 1.0, state);
+  EXPECT_NEAR(c.roll_rad, 0.08 / 8.0, 1e-16);
+  EXPECT_NEAR(c.pitch_rad, (16.0 * 0.02 - 0.04) / 2.0, 1e-15);
+  EXPECT_NEAR(c.yaw_rad, 0.02 / 2.0, 1e-16);
+  EXPECT_NEAR(c.telemetry[kPitch].command_rad_s2, 16.0 * 0.02 - 0.04, 1e-15);
+}
+
 TEST(StepGimbals, RemembersTheSenseOfSaturation) {
   const AutopilotModel model = Model();
   AutopilotState state;

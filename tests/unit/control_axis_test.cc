@@ -268,6 +268,42 @@ TEST(StepAxis, WhatTheRulesLearnInCommonIsAPid) {
   EXPECT_LT(apart, 0.02 * learnt);
 }
 
+TEST(StepAxis, TheNormalizedRegressorIsThatOverItsSquaredNorm) {
+  const auto first_step = [](bool normalized, double error, double rate) {
+    Loop loop(Adaptive([&](Adaptation& a) { a.normalized = normalized; }));
+    loop.Step(error, rate);
+    return loop.FromStart(2 * kFuzzySets + 2);
+  };
+  // At the centre of a set one rule fires wholly: nothing to normalise.
+  const double wholly = first_step(false, 1e-9, 0.0);
+  EXPECT_NEAR(first_step(true, 1e-9, 0.0), wholly, 1e-6 * wholly);
+  // Halfway between two sets of the error and of the rate four rules fire by a quarter: 4 / 16.
+  const double error = 1.25 * kRadPerDeg, rate = 0.375 * kRadPerDeg;
+  EXPECT_NEAR(first_step(true, error, rate), 4.0 * first_step(false, error, rate), 1e-12);
+}
+
+TEST(StepAxis, CompositeAdaptationLearnsFromWhatThePredictionMissesAlone) {
+  const auto learnt = [](double composite, double disturbance) {
+    Loop loop(Adaptive([&](Adaptation& a) {
+      a.composite = composite;
+      a.predictor_1_s = 20.0;
+    }));
+    double error = 0.5 * kRadPerDeg, rate = 0.0;
+    for (int i = 0; i < 50; ++i) {
+      loop.Step(error, rate);
+      // The error dynamics themselves, as the prediction steps them, under a disturbance.
+      const double change = disturbance - (16.0 * error + 7.0 * rate);
+      error += kTick_s * rate;
+      rate += kTick_s * change;
+    }
+    double sum = 0.0;
+    for (std::size_t i = 0; i < kFuzzyRules; ++i) sum += loop.FromStart(i);
+    return sum;
+  };
+  EXPECT_NEAR(learnt(3.0, 0.0), learnt(0.0, 0.0), 1e-15) << "nothing is missed";
+  EXPECT_GT(learnt(3.0, 0.02) - learnt(3.0, 0.0), 1.2 * (learnt(0.0, 0.02) - learnt(0.0, 0.0)));
+}
+
 AxisConfig Augmented() {
   AxisConfig config = SampleAxis(ControlLaw::kPdAac);
   config.augmentation = {.adaptive_gain_1_s = 4000.0,
@@ -289,6 +325,34 @@ TEST(StepAxis, AugmentationWithoutGainsIsPdBitForBit) {
     const double error = draws.Normal(), rate = draws.Normal();
     ASSERT_EQ(augmented.Step(error, rate), pd.Step(error, rate));
   }
+}
+
+TEST(StepAxis, AugmentedPidWithoutGainsIsPidBitForBit) {
+  AxisConfig config = Augmented();
+  config.law = ControlLaw::kPidAac;
+  config.augmentation.adaptive_gain_1_s = config.augmentation.spectral_gain_1_s = 0.0;
+  Loop augmented(config), pid(SampleAxis(ControlLaw::kPid));
+  Stream draws(5, 0, "errors");
+  for (int i = 0; i < 500; ++i) {
+    const double error = draws.Normal(), rate = draws.Normal();
+    ASSERT_EQ(augmented.Step(error, rate), pid.Step(error, rate));
+  }
+}
+
+TEST(StepAxis, TheReferenceModelOfAnAugmentedPidIsItsOwnLoop) {
+  AxisConfig config = Augmented();
+  config.law = ControlLaw::kPidAac;
+  config.augmentation.spectral_gain_1_s = 0.0;
+  Loop loop(config);
+  // Errors that follow the undisturbed loop, with the integral: there is no departure, so the gain stays.
+  double error = 0.02, rate = 0.1;
+  for (int i = 0; i < 400; ++i) {
+    const double u = loop.Step(error, rate);
+    rate -= kTick_s * u;
+    error += kTick_s * rate;
+  }
+  EXPECT_NEAR(loop.state.total_gain, 1.0, 1e-12);
+  EXPECT_GT(std::fabs(loop.state.model_integral_rad_s2), 1e-4);
 }
 
 TEST(StepAxis, AugmentationRaisesTheGainOnDepartureLowersItOnChatterAndStaysWithinItsBounds) {

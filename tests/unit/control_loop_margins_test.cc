@@ -142,6 +142,20 @@ TEST(SampledLoop, TheClosedLoopIsCriticalWhereTheResponseSaysSo) {
   }
 }
 
+TEST(SampledLoop, CompositeAdaptationIsCriticalWhereTheResponseSaysSo) {
+  LinearLaw law = AdaptingLaw(16.0, 7.0, 8000.0);
+  const double without_db = SampledLoop(WithActuator(25.0), law, kTick_s, 1).Margins().gain_up_db;
+  law.drive_prediction = 1.0 * law.drive_rate;
+  law.predictor_1_s = 15.0;
+  const SampledLoop loop(WithActuator(25.0), law, kTick_s, 1);
+  const LoopMargins m = loop.Margins();
+  ASSERT_TRUE(m.stable);
+  EXPECT_GT(std::fabs(m.gain_up_db - without_db), 0.05) << "it counts";
+  const double up = std::pow(10.0, m.gain_up_db / 20.0);
+  EXPECT_LT(loop.SpectralRadius(up * (1.0 - 1e-6)), 1.0);
+  EXPECT_GT(loop.SpectralRadius(up * (1.0 + 1e-6)), 1.0);
+}
+
 TEST(SampledLoop, FiltersTurnTheResponseAndMoveTheCriticalGain) {
   LinearLaw law;
   law.kp_1_s2 = 16.0;
@@ -200,8 +214,11 @@ double Growth(const AxisPlant& plant, const AxisLaw& axis, double effectiveness,
   return late / early;
 }
 
-TEST(SampledLoop, PredictsWhereTheAdaptiveFuzzyLawItselfIsLost) {
+// With composite adaptation where `composite` is not 0.
+void ExpectLostWherePredicted(double composite) {
   AxisConfig config = SampleAxis(ControlLaw::kAdaptiveFuzzy);
+  config.adaptation.composite = composite;
+  config.adaptation.predictor_1_s = 15.0;
   config.adaptation.gamma = {8000.0, 8000.0};
   config.adaptation.spread_1_s = 60.0;
   config.adaptation.leakage_1_s = 0.05;
@@ -210,12 +227,14 @@ TEST(SampledLoop, PredictsWhereTheAdaptiveFuzzyLawItselfIsLost) {
   law.drive_error = 8000.0 * axis.stages[0].pn_error;
   law.drive_rate = 8000.0 * axis.stages[0].pn_rate;
   law.leakage_1_s = 0.05;
+  law.drive_prediction = composite * law.drive_rate;
+  law.predictor_1_s = 15.0;
   const AxisPlant plant = WithActuator(25.0);
   const LoopMargins m = SampledLoop(plant, law, kTick_s, 1).Margins();
   ASSERT_TRUE(m.stable);
   // The frozen loop would bear 1.2 dB more: the adaptation counts.
   LinearLaw frozen = law;
-  frozen.drive_error = frozen.drive_rate = 0.0;
+  frozen.drive_error = frozen.drive_rate = frozen.drive_prediction = 0.0;
   ASSERT_GT(SampledLoop(plant, frozen, kTick_s, 1).Margins().gain_up_db, m.gain_up_db + 0.5);
   for (const double db : {m.gain_up_db, -m.gain_down_db}) {
     const double critical = std::pow(10.0, db / 20.0);
@@ -224,6 +243,8 @@ TEST(SampledLoop, PredictsWhereTheAdaptiveFuzzyLawItselfIsLost) {
     EXPECT_GT(Growth(plant, axis, 5.0, critical / inside), 1.0) << db;
   }
 }
+TEST(SampledLoop, PredictsWhereTheAdaptiveFuzzyLawItselfIsLost) { ExpectLostWherePredicted(0.0); }
+TEST(SampledLoop, PredictsWhereTheCompositeAdaptiveLawItselfIsLost) { ExpectLostWherePredicted(1.0); }
 
 }  // namespace
 }  // namespace dispersa

@@ -130,6 +130,52 @@ TEST(Digest, IsOfTheMetricsToo) {
   EXPECT_NE(one.digest, other.digest);
 }
 
+// A program that turns at a constant acceleration for the first 20 s, as long as it lasts.
+FlightDefinition Turning(double acceleration_rad_s2) {
+  FlightDefinition definition = HighDefinition();
+  definition.program.knots.clear();
+  for (int i = 0; i <= 4; ++i) {
+    const double t = 5.0 * i;
+    definition.program.knots.push_back({.time_s = t,
+                                        .pitch = 0.5 * kPi + 0.5 * acceleration_rad_s2 * t * t,
+                                        .pitch_rate = acceleration_rad_s2 * t});
+  }
+  return definition;
+}
+
+TEST(FeedForward, IsTheProgramsAccelerationOfTheAxesThatHaveIt) {
+  FlightDefinition definition = Turning(0.002);
+  EXPECT_TRUE(FlightModel(definition).feed_forward_rows().rows.empty());
+  definition.autopilot.pitch.feed_forward = FeedForward{0.5};
+  const FlightModel model(definition);
+  const AlignedRows& rows = model.feed_forward_rows().rows;
+  ASSERT_EQ(rows.size(), (model.reference_rows().last_tick + 1) * FeedForwardRows::kRowSize);
+  // Each row is read 0.5 s ahead: to 19.49 s there is an acceleration, from then on the attitude is held.
+  const auto pitch = [&](std::size_t tick) { return rows[FeedForwardRows::kRowSize * tick + kPitch]; };
+  for (const std::size_t tick : {0u, 700u, 1948u}) EXPECT_NEAR(pitch(tick), 0.002, 1e-12) << tick;
+  for (const std::size_t tick : {1951u, 2000u}) EXPECT_EQ(pitch(tick), 0.0) << tick;
+  double of_others = 0.0;
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (i % FeedForwardRows::kRowSize != kPitch) of_others += std::fabs(rows[i]);
+  EXPECT_EQ(of_others, 0.0);
+  AutopilotConfig without = definition.autopilot;
+  without.pitch.feed_forward.reset();
+  EXPECT_TRUE(model.WithAutopilot(without).feed_forward_rows().rows.empty());
+}
+
+TEST(FeedForward, TakesTheErrorOfAnAcceleratingProgram) {
+  FlightDefinition definition = Turning(0.002);
+  definition.autopilot.pitch.law = ControlLaw::kPd;
+  const auto error_at_15_s = [&] {
+    return Watch(FlightModel(definition)).ticks[1500].error.angle_rad[kPitch];
+  };
+  // A PD law settles where kp e is the acceleration.
+  const double kp = definition.autopilot.pitch.gains[0].kp_1_s2;
+  EXPECT_NEAR(error_at_15_s(), 0.002 / kp, 0.1 * 0.002 / kp);
+  definition.autopilot.pitch.feed_forward = FeedForward{0.066};
+  EXPECT_LT(std::fabs(error_at_15_s()), 0.1 * 0.002 / kp);
+}
+
 TEST(EngineFor, HoldsTheFlightsInNoMoreLanesThanTheyNeed) {
   EXPECT_EQ(EngineFor(1).lanes, 1);
   EXPECT_EQ(EngineFor(3).lanes, 4);

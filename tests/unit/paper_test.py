@@ -84,7 +84,7 @@ class StudyTest(unittest.TestCase):
                 return [[value for column, value in row.items() if column.startswith("input_")]
                         for row in csv.DictReader(stream)]
         self.assertEqual(len(draws("controllers")), 2)
-        for baseline in ["frozen_fuzzy", "pd", "pid", "pd_aac"]:
+        for baseline in ["frozen_fuzzy", "pd", "pid", "lqr", "pd_aac", "pid_aac"]:
             self.assertEqual(draws(f"controllers_{baseline}"), draws("controllers"))
 
     def test_bad_usage_of_paper(self):

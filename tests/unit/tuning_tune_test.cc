@@ -11,6 +11,7 @@
 #include "core/campaign_yaml/load.h"
 #include "core/flight/flight_model.h"
 #include "core/flight/margins.h"
+#include "core/tuning/regulator.h"
 #include "core/tuning/stage_design.h"
 #include "tests/unit/sample_vehicle.h"
 
@@ -165,6 +166,44 @@ TEST(Tune, SpendsTheSameBudgetOnEveryLaw) {
   EXPECT_EQ(adaptive.evaluations, 40u);
   EXPECT_EQ(pd.stages[0].design.learning, 0.0);
   EXPECT_EQ(pd.stages[0].frozen.gain_db, pd.stages[0].adapting.gain_db);
+}
+
+TEST(SolveRegulator, SolvesTheRiccatiEquation) {
+  for (const RegulatorWeights q :
+       {RegulatorWeights{1.0, 1.0, 1.0}, {1e-4, 1.0, 1e-2}, {1e3, 1.0, 1e2}, {1e-4, 1.0, 1e2}}) {
+    const RegulatorGains k = SolveRegulator(q);
+    // Spectral factor of the chain of integrators: |s³ + kd s² + kp s + ki|² on the imaginary axis is
+    // w⁶ + q_rate w⁴ + q_angle w² + q_integral, and the loop is stable.
+    const RegulatorWeights back = WeightsOf(k);
+    EXPECT_NEAR(back.integral_1_s6, q.integral_1_s6, 1e-10 * q.integral_1_s6);
+    EXPECT_NEAR(back.angle_1_s4, 1.0, 1e-8 * (1.0 + k.ki_1_s3 * k.kd_1_s));
+    EXPECT_NEAR(back.rate_1_s2, q.rate_1_s2, 1e-8 * (1.0 + k.kp_1_s2));
+    EXPECT_GT(k.ki_1_s3, 0.0);
+    EXPECT_GT(k.kd_1_s * k.kp_1_s2, k.ki_1_s3) << "Hurwitz";
+  }
+}
+
+TEST(Tune, FindsARegulatorWithinTheSameBudget) {
+  const Campaign campaign = SampleCampaign();
+  AutopilotConfig pid = AllPd();
+  pid.pitch.law = pid.yaw.law = ControlLaw::kPid;
+  TuningOptions options = Small();
+  options.regulator = true;
+  const TuningResult found = Tune(campaign, pid, options);
+  ASSERT_TRUE(found.feasible);
+  EXPECT_EQ(found.evaluations, 40u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const AxisConfig& axis = found.autopilot.pitch;
+    const RegulatorWeights q =
+        WeightsOf({axis.integral.ki_1_s3[i], axis.gains[i].kp_1_s2, axis.gains[i].kd_1_s});
+    // Of the flown gains, which have three digits.
+    EXPECT_GT(q.integral_1_s6, 0.0);
+    EXPECT_GT(q.angle_1_s4, -0.02 * axis.gains[i].kp_1_s2 * axis.gains[i].kp_1_s2);
+    EXPECT_GT(q.rate_1_s2, 0.0);
+  }
+  EXPECT_EQ(ErrorOf(campaign, AllPd(), options),
+            "pitch.law: pd has no integral, which is a state of the regulator, allowed: pid, pid_aac\n"
+            "yaw.law: pd has no integral, which is a state of the regulator, allowed: pid, pid_aac");
 }
 
 TEST(Tune, SearchesWhatAugmentsPdLastWithinTheSameBudget) {

@@ -53,7 +53,8 @@ TEST(SpreadFreeLaw, PassesAboutZeroErrorAndFailsWhereItHasLearnt) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Laws, ShippedAutopilot,
-                         testing::Values("adaptive_fuzzy", "frozen_fuzzy", "pd", "pid", "pd_aac"),
+                         testing::Values("adaptive_fuzzy", "frozen_fuzzy", "pd", "pid", "lqr", "pd_aac",
+                                         "pid_aac"),
                          [](const auto& law) { return std::string(law.param); });
 
 }  // namespace

@@ -241,6 +241,17 @@ TEST_F(ThreeVsSixDof, TheClosedLoopArrives) {
   // The rocket equation explains the speed but for what some hundredths of a degree of attitude do.
   EXPECT_GT(lighter_m_s, 0.1);
   EXPECT_NEAR(velocity_m_s, lighter_m_s, 0.2);
+
+  // So does the 3DOF with that propellant gone: what is left was 14 m, 0.019 m/s and 0.0004 deg.
+  AscentModel model = model_;
+  model.reaction_control_propellant_kg = spent_kg;
+  const AscentResult lighter = FlyAscent(model, reference_.program, {});
+  ASSERT_TRUE(lighter.completed);
+  EXPECT_NEAR(lighter.orbit.velocity_m_s - reference_.orbit.velocity_m_s, lighter_m_s, 0.005);
+  EXPECT_NEAR(MetricOf(flight, "injection_velocity_m_s"), lighter.orbit.velocity_m_s, 0.05);
+  EXPECT_NEAR(1e3 * MetricOf(flight, "injection_altitude_km"), lighter.orbit.altitude_m, 50.0);
+  EXPECT_NEAR(MetricOf(flight, "injection_flight_path_angle_deg"), lighter.orbit.flight_path_angle_rad * kDegPerRad,
+              0.002);
 }
 
 }  // namespace
