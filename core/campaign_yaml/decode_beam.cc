@@ -77,7 +77,8 @@ LumpedMass DecodeLumpedMass(const InputNode& node, const std::string& path, bool
   return lump;
 }
 
-BeamStage DecodeStage(const InputNode& node, const std::string& path, bool timoshenko, ProblemList& problems) {
+BeamStage DecodeStage(const InputNode& node, const std::string& path, bool timoshenko,
+                      ProblemList& problems) {
   MapReader map(node, path, problems);
   BeamStage stage;
   std::size_t with_mass = 0;
@@ -90,14 +91,16 @@ BeamStage DecodeStage(const InputNode& node, const std::string& path, bool timos
   if (with_mass > 0 && !stage.own_masses)
     AddProblem(problems, *node.Find("sections"), map.PathOf("sections"),
                "some sections have a mass per length and some have none",
-               "mass_per_length_kg_m in every section of the stage, or in none: then the stage's structure says what it weighs");
+               "mass_per_length_kg_m in every section of the stage, or in none: then the stage's structure "
+               "says what it weighs");
   map.Each("lumped_masses", 0, 100, [&](const InputNode& item, const std::string& item_path) {
     stage.lumped_masses.push_back(DecodeLumpedMass(item, item_path, stage.own_masses, problems));
   });
   return stage;
 }
 
-using ModeKey = std::tuple<int, double, BeamPlane, int>;  // in the order of a table: propellant negative, so falling
+using ModeKey =
+    std::tuple<int, double, BeamPlane, int>;  // in the order of a table: propellant negative, so falling
 
 ModeKey KeyOf(const TabledMode& m) { return {m.stage, -m.propellant_kg, m.plane, m.mode}; }
 
@@ -130,8 +133,8 @@ std::vector<TabledMode> DecodeModeTable(const InputNode& node, const std::string
       for (std::size_t row = 0; row < column->items.size(); ++row) {
         const double value = name[0] == 's' ? stage[row] : mode[row];
         if (value != static_cast<double>(static_cast<int>(value)))
-          AddProblem(problems, column->items[row], path, column->items[row].Describe() + " is not a whole number",
-                     "a whole number");
+          AddProblem(problems, column->items[row], path,
+                     column->items[row].Describe() + " is not a whole number", "a whole number");
       }
     }
   }
@@ -143,23 +146,34 @@ std::vector<TabledMode> DecodeModeTable(const InputNode& node, const std::string
     AddProblem(problems, node, path, "the columns have different lengths", "one value a row in each column");
     return modes;
   }
-  const auto report = [&](const char* column, std::size_t row, const std::string& message, const std::string& allowed) {
+  const auto report = [&](const char* column, std::size_t row, const std::string& message,
+                          const std::string& allowed) {
     AddProblem(problems, node.Find(column)->items[row], path, message, allowed);
   };
   std::vector<std::size_t> first_row;
   std::set<ModeKey> seen;
   for (std::size_t row = 0; row < rows; ++row) {
-    TabledMode m{static_cast<int>(stage[row]) - 1, propellant_kg[row], plane[row], static_cast<int>(mode[row]),
-                 frequency_rad_s[row], mass_kg[row], {}, {}, {}};
+    TabledMode m{static_cast<int>(stage[row]) - 1,
+                 propellant_kg[row],
+                 plane[row],
+                 static_cast<int>(mode[row]),
+                 frequency_rad_s[row],
+                 mass_kg[row],
+                 {},
+                 {},
+                 {}};
     if (modes.empty() || KeyOf(modes.back()) != KeyOf(m)) {
       if (!seen.insert(KeyOf(m)).second) {
-        report("mode", row, "the mode was given before, further up", "all rows of a mode one after the other");
+        report("mode", row, "the mode was given before, further up",
+               "all rows of a mode one after the other");
         return {};
       }
       modes.push_back(std::move(m));
       first_row.push_back(row);
-    } else if (modes.back().frequency_rad_s != m.frequency_rad_s || modes.back().generalized_mass_kg != m.generalized_mass_kg) {
-      report("frequency_hz", row, "frequency or generalized mass change within a mode", "the same in all rows of a mode");
+    } else if (modes.back().frequency_rad_s != m.frequency_rad_s ||
+               modes.back().generalized_mass_kg != m.generalized_mass_kg) {
+      report("frequency_hz", row, "frequency or generalized mass change within a mode",
+             "the same in all rows of a mode");
       return {};
     }
     TabledMode& current = modes.back();
@@ -172,12 +186,16 @@ std::vector<TabledMode> DecodeModeTable(const InputNode& node, const std::string
     current.slope_1_m.push_back(slope_1_m[row]);
   }
   for (std::size_t i = 0; i < modes.size(); ++i) {
-    const bool moves = std::any_of(modes[i].deflection.begin(), modes[i].deflection.end(), [](double d) { return d != 0.0; });
+    const bool moves = std::any_of(modes[i].deflection.begin(), modes[i].deflection.end(),
+                                   [](double d) { return d != 0.0; });
     if (modes[i].station_m.size() < 2 || !moves) {
-      report("station_m", first_row[i], "the mode has less than two stations, or no deflection", "two or more stations, some deflection");
+      report("station_m", first_row[i], "the mode has less than two stations, or no deflection",
+             "two or more stations, some deflection");
       return {};
     }
-    const auto same_beam = [&](const TabledMode& m) { return m.stage == modes[i].stage && m.plane == modes[i].plane; };
+    const auto same_beam = [&](const TabledMode& m) {
+      return m.stage == modes[i].stage && m.plane == modes[i].plane;
+    };
     const TabledMode& first = *std::find_if(modes.begin(), modes.end(), same_beam);
     if (first.station_m != modes[i].station_m) {
       report("station_m", first_row[i], "the mode has other stations than the first of its stage and plane",
@@ -185,10 +203,13 @@ std::vector<TabledMode> DecodeModeTable(const InputNode& node, const std::string
       return {};
     }
     const auto count = [&](double propellant) {
-      return std::count_if(modes.begin(), modes.end(), [&](const TabledMode& m) { return same_beam(m) && m.propellant_kg == propellant; });
+      return std::count_if(modes.begin(), modes.end(), [&](const TabledMode& m) {
+        return same_beam(m) && m.propellant_kg == propellant;
+      });
     };
     if (count(first.propellant_kg) != count(modes[i].propellant_kg)) {
-      report("propellant_kg", first_row[i], "this propellant has another number of modes than the first of its stage and plane",
+      report("propellant_kg", first_row[i],
+             "this propellant has another number of modes than the first of its stage and plane",
              "as many modes at every propellant of a stage and plane");
       return {};
     }
@@ -200,11 +221,13 @@ std::vector<TabledMode> DecodeModeTable(const InputNode& node, const std::string
   };
   const auto lonely = std::find_if(modes.begin(), modes.end(), by_z_only);
   if (lonely != modes.end()) {
-    report("plane", first_row[static_cast<std::size_t>(lonely - modes.begin())], "the stage has modes in plane z and none in plane y",
+    report("plane", first_row[static_cast<std::size_t>(lonely - modes.begin())],
+           "the stage has modes in plane z and none in plane y",
            "plane y, which stands for both, or both planes");
     return {};
   }
-  std::sort(modes.begin(), modes.end(), [](const TabledMode& a, const TabledMode& b) { return KeyOf(a) < KeyOf(b); });
+  std::sort(modes.begin(), modes.end(),
+            [](const TabledMode& a, const TabledMode& b) { return KeyOf(a) < KeyOf(b); });
   return modes;
 }
 
@@ -228,16 +251,18 @@ std::optional<StructureBeam> DecodeStructureBeam(const InputNode& node, const st
   beam.rotary_inertia = map.Flag("rotary_inertia", true);
   if (const InputNode* table = map.Optional("modes_table")) {
     if (table->file == nullptr) return std::nullopt;
-    beam.table = DecodeModeTable(*table, table->file == node.file ? map.PathOf("modes_table") : "", stages, problems);
+    beam.table =
+        DecodeModeTable(*table, table->file == node.file ? map.PathOf("modes_table") : "", stages, problems);
     return beam;
   }
   beam.timoshenko = map.Choice<bool>("theory", {{"euler_bernoulli", false}, {"timoshenko", true}}, false);
   beam.modes = static_cast<int>(map.Integer("modes", 1, 10, 3));
   beam.propellant_levels = static_cast<int>(map.Integer("propellant_levels", 2, 101, 11));
   beam.elements = static_cast<int>(map.Integer("elements", 20, 400, 60));
-  map.Each("stages", std::max<std::size_t>(stages, 1), stages > 0 ? stages : kMaxStages, [&](const InputNode& item, const std::string& item_path) {
-    beam.stages.push_back(DecodeStage(item, item_path, beam.timoshenko, problems));
-  });
+  map.Each("stages", std::max<std::size_t>(stages, 1), stages > 0 ? stages : kMaxStages,
+           [&](const InputNode& item, const std::string& item_path) {
+             beam.stages.push_back(DecodeStage(item, item_path, beam.timoshenko, problems));
+           });
   return beam;
 }
 

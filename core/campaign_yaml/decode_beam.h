@@ -11,8 +11,8 @@
 
 namespace dispersa {
 
-/// `stages`: of the vehicle, for which the beam has one entry each; 0 if that is unknown. None if its table could not
-/// be read, which was reported.
+/// `stages`: of the vehicle, for which the beam has one entry each; 0 if that is unknown. None if its table
+/// could not be read, which was reported.
 std::optional<StructureBeam> DecodeStructureBeam(const InputNode& node, const std::string& path,
                                                  std::size_t stages, std::vector<InputProblem>& problems);
 

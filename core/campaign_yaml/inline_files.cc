@@ -86,8 +86,8 @@ void InlineStageFiles(InputNode& stage, const std::string& path, FileNames names
   for (const char* name : {"clp", "cmq", "cnr"}) replace(name, {"mach", name});
 }
 
-// A vehicle that is based on another has the other's keys where it has none itself. It becomes an absent node if there
-// is no other, so that nothing more is said about what it lacks.
+// A vehicle that is based on another has the other's keys where it has none itself. It becomes an absent node
+// if there is no other, so that nothing more is said about what it lacks.
 void InlineBase(InputNode& vehicle, FileNames names, std::vector<InputProblem>& problems) {
   const auto is_base = [](const InputMember& member) { return member.key == "based_on"; };
   const auto found = std::find_if(vehicle.members.begin(), vehicle.members.end(), is_base);
@@ -102,7 +102,8 @@ void InlineBase(InputNode& vehicle, FileNames names, std::vector<InputProblem>& 
     }
   }
   if (base.kind != InputNode::Kind::kMap) {
-    AddProblem(problems, base, "based_on", base.Describe() + " is not a vehicle", "the name of a vehicle file");
+    AddProblem(problems, base, "based_on", base.Describe() + " is not a vehicle",
+               "the name of a vehicle file");
     vehicle = InputNode();
     return;
   }
@@ -132,8 +133,8 @@ InputNode ReadYamlFile(const std::string& path, std::vector<InputProblem>& probl
 void InlineVehicleFiles(InputNode& vehicle, FileNames names, std::vector<InputProblem>& problems) {
   InlineBase(vehicle, names, problems);
   if (InputNode* beam = vehicle.Find("structure_beam"))
-    Replace(beam->Find("modes_table"), "structure_beam.modes_table", names, CsvParser(kModeTableColumns, problems),
-            problems);
+    Replace(beam->Find("modes_table"), "structure_beam.modes_table", names,
+            CsvParser(kModeTableColumns, problems), problems);
   InputNode* aerodynamics = vehicle.Find("aerodynamics");
   InputNode* tables = aerodynamics == nullptr ? nullptr : aerodynamics->Find("tables");
   if (tables == nullptr) return;

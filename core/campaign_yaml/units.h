@@ -42,12 +42,12 @@ inline constexpr Unit kPerAngle[] = {{"per_deg", kDegPerRad}, {"per_rad", 1.0}};
 /// What may stand behind the last underscores of a key and is a unit, ours or not: to tell a wrong unit from
 /// a wrong name.
 inline constexpr std::string_view kUnitLike[] = {
-    "m",      "km",   "mm",   "um",     "cm",     "ft",      "in",      "mi",      "nmi",     "m2",
-    "ft2",    "s",    "ms",   "min",    "h",      "kg",      "ton",     "t",       "g",       "lb",
-    "lbm",    "slug", "kg_s", "lb_s",   "n",      "kn",      "mn",      "lbf",     "pa",      "kpa",
-    "bar",    "psf",  "psi",  "pa_rad", "pa_deg", "kpa_rad", "m_s",     "km_s",    "ft_s",    "kt",
-    "kts",    "mph",  "deg",  "rad",    "arcmin", "deg_s",   "rad_s",   "hz",      "rpm",     "deg_s2",
-    "rad_s2", "1_s",  "1_s2", "1_s3", "per_km", "per_m",  "per_m_s", "per_deg", "per_rad", "percent", "factor",
-    "kg_m2",  "kg_m", "gpa",  "mpa",    "n_m2",   "kn_m2",   "mn_m2",   "1_m"};
+    "m",      "km",    "mm",   "um",     "cm",     "ft",      "in",      "mi",      "nmi",     "m2",
+    "ft2",    "s",     "ms",   "min",    "h",      "kg",      "ton",     "t",       "g",       "lb",
+    "lbm",    "slug",  "kg_s", "lb_s",   "n",      "kn",      "mn",      "lbf",     "pa",      "kpa",
+    "bar",    "psf",   "psi",  "pa_rad", "pa_deg", "kpa_rad", "m_s",     "km_s",    "ft_s",    "kt",
+    "kts",    "mph",   "deg",  "rad",    "arcmin", "deg_s",   "rad_s",   "hz",      "rpm",     "deg_s2",
+    "rad_s2", "1_s",   "1_s2", "1_s3",   "per_km", "per_m",   "per_m_s", "per_deg", "per_rad", "percent",
+    "factor", "kg_m2", "kg_m", "gpa",    "mpa",    "n_m2",    "kn_m2",   "mn_m2",   "1_m"};
 
 }  // namespace dispersa

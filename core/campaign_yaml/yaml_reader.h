@@ -82,7 +82,8 @@ class MapReader {
                                  std::string* key = nullptr);
   std::vector<double> Numbers(const std::string& key, const Range& range, std::size_t low_count,
                               std::size_t high_count = SIZE_MAX);
-  /// The key is that of a Quantity; its value one number, which counts for both ends of something, or a list of two.
+  /// The key is that of a Quantity; its value one number, which counts for both ends of something, or a list
+  /// of two.
   std::array<double, 2> Ends(const std::string& stem, Dimension dimension, const Range& range);
   /// Whether a Quantity is there, in any unit. It still has to be read.
   bool Has(const std::string& stem, Dimension dimension) const;

@@ -1,4 +1,5 @@
-// The bending modes of a vehicle as one self-contained page: frequencies over the propellant and shapes, by stack.
+// The bending modes of a vehicle as one self-contained page: frequencies over the propellant and shapes, by
+// stack.
 #pragma once
 
 #include <string>

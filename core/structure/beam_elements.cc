@@ -56,7 +56,8 @@ BeamShape ShapeAt(double fraction, double length_m, double shear_ratio) {
   return shape;
 }
 
-std::vector<double> MeshStations(const std::vector<BeamSection>& sections, const BeamMasses& masses, int elements) {
+std::vector<double> MeshStations(const std::vector<BeamSection>& sections, const BeamMasses& masses,
+                                 int elements) {
   std::vector<double> ends;
   for (const BeamSection& s : sections) ends.insert(ends.end(), {s.top_station_m, s.bottom_station_m});
   const auto [first, last] = std::minmax_element(ends.begin(), ends.end());
@@ -76,7 +77,8 @@ std::vector<double> MeshStations(const std::vector<BeamSection>& sections, const
   return stations;
 }
 
-std::vector<BeamElement> BuildElements(const Beam& beam, BeamPlane plane, const std::vector<double>& stations) {
+std::vector<BeamElement> BuildElements(const Beam& beam, BeamPlane plane,
+                                       const std::vector<double>& stations) {
   std::vector<BeamElement> elements;
   for (std::size_t i = 0; i + 1 < stations.size(); ++i) {
     const double h = stations[i + 1] - stations[i];
@@ -90,7 +92,8 @@ std::vector<BeamElement> BuildElements(const Beam& beam, BeamPlane plane, const 
     element.flexural_stiffness_n_m.setZero();
     Gauss([&](double weight, double x) {
       const Stiffness at = StiffnessAt(beam, plane, stations[i] + x * h);
-      const Eigen::Vector2d curvature = Eigen::Vector2d(6.0 * x - 4.0 - phi, 6.0 * x - 2.0 + phi) * (scale / h);
+      const Eigen::Vector2d curvature =
+          Eigen::Vector2d(6.0 * x - 4.0 - phi, 6.0 * x - 2.0 + phi) * (scale / h);
       element.flexural_stiffness_n_m += weight * h * at.bending_n_m2 * curvature * curvature.transpose();
       element.flexural_stiffness_n_m.array() += weight * h * at.shear_n * shear * shear;
     });
@@ -111,7 +114,8 @@ Eigen::MatrixXd MassMatrix(const Beam& beam, const std::vector<double>& stations
       if (middle < m.top_station_m || middle > m.bottom_station_m) continue;
       Gauss([&](double weight, double x) {
         const BeamShape shape = ShapeAt(x, h, elements[i].shear_ratio);
-        const Eigen::Map<const Eigen::Vector4d> deflection(shape.deflection.data()), rotation(shape.rotation.data());
+        const Eigen::Map<const Eigen::Vector4d> deflection(shape.deflection.data()),
+            rotation(shape.rotation.data());
         const double station = stations[i] + x * h;
         const double mass_kg = weight * h * m.MassPerLength(station);
         block += mass_kg * deflection * deflection.transpose();

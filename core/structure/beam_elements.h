@@ -1,12 +1,12 @@
 // Finite elements of a free beam: nodes, shape functions, stiffness and mass.
 //
-// A node has two degrees of freedom, deflection w and rotation of the cross-section theta; both are real functions of
-// the station s, and theta = dw/ds where nothing shears. Between nodes w is the cubic that the two nodes give, theta
-// the parabola that belongs to it: the exact static shape of a uniform element, of Euler's and Bernoulli's theory
-// (shear ratio 0: Hermite's cubics) and of Timoshenko's alike (Z. Friedman and J. B. Kosmatka,
-// Computers & Structures 47, 1993). They are conforming, so that frequencies come from above: with the fourth
-// power of the element's length without shear, with the second where it shears, since an element's shear strain is
-// constant.
+// A node has two degrees of freedom, deflection w and rotation of the cross-section theta; both are real
+// functions of the station s, and theta = dw/ds where nothing shears. Between nodes w is the cubic that the
+// two nodes give, theta the parabola that belongs to it: the exact static shape of a uniform element, of
+// Euler's and Bernoulli's theory (shear ratio 0: Hermite's cubics) and of Timoshenko's alike (Z. Friedman and
+// J. B. Kosmatka, Computers & Structures 47, 1993). They are conforming, so that frequencies come from above:
+// with the fourth power of the element's length without shear, with the second where it shears, since an
+// element's shear strain is constant.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,7 +18,8 @@
 
 namespace dispersa {
 
-/// What the two degrees of freedom at each end contribute at a place: w_top, theta_top, w_bottom, theta_bottom.
+/// What the two degrees of freedom at each end contribute at a place: w_top, theta_top, w_bottom,
+/// theta_bottom.
 struct BeamShape {
   std::array<double, 4> deflection;
   std::array<double, 4> rotation;
@@ -34,17 +35,20 @@ struct Beam {
   bool rotary_inertia = true;
 };
 
-/// Stations of the nodes: every end of a section and of a spread mass, every station of a fixed mass, and enough
-/// between for elements no longer than the beam's length over `elements`.
-std::vector<double> MeshStations(const std::vector<BeamSection>& sections, const BeamMasses& masses, int elements);
+/// Stations of the nodes: every end of a section and of a spread mass, every station of a fixed mass, and
+/// enough between for elements no longer than the beam's length over `elements`.
+std::vector<double> MeshStations(const std::vector<BeamSection>& sections, const BeamMasses& masses,
+                                 int elements);
 
-/// Elastic energy of an element is e' flexural_stiffness e / 2, e the rotations of its two ends relative to the chord.
+/// Elastic energy of an element is e' flexural_stiffness e / 2, e the rotations of its two ends relative to
+/// the chord.
 struct BeamElement {
   double length_m = 0.0;
   double shear_ratio = 0.0;
   Eigen::Matrix2d flexural_stiffness_n_m;
 };
-std::vector<BeamElement> BuildElements(const Beam& beam, BeamPlane plane, const std::vector<double>& stations);
+std::vector<BeamElement> BuildElements(const Beam& beam, BeamPlane plane,
+                                       const std::vector<double>& stations);
 
 /// Consistent masses, of two rows a node. A mass model's masses are integrated exactly (Gauss, 5 points).
 Eigen::MatrixXd MassMatrix(const Beam& beam, const std::vector<double>& stations,

@@ -55,8 +55,12 @@ Level Continue(const Level& earlier, const Level& later) {
   const std::vector<ModeMatch> matches =
       MatchModes(earlier.shape, later.shape, 0.5 * (earlier.mass + later.mass));
   const Eigen::Index count = earlier.shape.cols();
-  Level level{later.propellant_kg, Eigen::VectorXd(count), Eigen::VectorXd(count), Eigen::VectorXd(count),
-              Eigen::MatrixXd(later.shape.rows(), count), later.mass};
+  Level level{later.propellant_kg,
+              Eigen::VectorXd(count),
+              Eigen::VectorXd(count),
+              Eigen::VectorXd(count),
+              Eigen::MatrixXd(later.shape.rows(), count),
+              later.mass};
   for (Eigen::Index mode = 0; mode < count; ++mode) {
     const ModeMatch& match = matches[static_cast<std::size_t>(mode)];
     level.frequency_rad_s[mode] = later.frequency_rad_s[match.index];
@@ -201,15 +205,18 @@ StationShape ShapeOf(const StackModes& stack, BeamPlane plane, const BendingMode
   const std::vector<double>& stations = stack.station_m[Index(plane)];
   const std::size_t last = stations.size() - 1;
   if (station_m <= stations.front())
-    return {mode.deflection.front() + (station_m - stations.front()) * mode.slope_1_m.front(), mode.slope_1_m.front()};
+    return {mode.deflection.front() + (station_m - stations.front()) * mode.slope_1_m.front(),
+            mode.slope_1_m.front()};
   if (station_m >= stations.back())
-    return {mode.deflection[last] + (station_m - stations[last]) * mode.slope_1_m[last], mode.slope_1_m[last]};
+    return {mode.deflection[last] + (station_m - stations[last]) * mode.slope_1_m[last],
+            mode.slope_1_m[last]};
   const auto above = std::upper_bound(stations.begin(), stations.end(), station_m);
   const std::size_t i = static_cast<std::size_t>(above - stations.begin()) - 1;
   const double length = stations[i + 1] - stations[i];
   const BeamShape shape =
       ShapeAt((station_m - stations[i]) / length, length, stack.shear_ratio[Index(plane)][i]);
-  const double ends[4] = {mode.deflection[i], mode.slope_1_m[i], mode.deflection[i + 1], mode.slope_1_m[i + 1]};
+  const double ends[4] = {mode.deflection[i], mode.slope_1_m[i], mode.deflection[i + 1],
+                          mode.slope_1_m[i + 1]};
   StationShape at;
   for (std::size_t k = 0; k < 4; ++k) {
     at.deflection += shape.deflection[k] * ends[k];

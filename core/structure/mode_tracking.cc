@@ -9,7 +9,8 @@ std::vector<ModeMatch> MatchModes(const Eigen::MatrixXd& earlier, const Eigen::M
   const Eigen::VectorXd later_norm = (later.transpose() * mass * later).diagonal();
   Eigen::MatrixXd mac = product.array().square().matrix();
   for (Eigen::Index row = 0; row < mac.rows(); ++row) {
-    for (Eigen::Index column = 0; column < mac.cols(); ++column) mac(row, column) /= earlier_norm[row] * later_norm[column];
+    for (Eigen::Index column = 0; column < mac.cols(); ++column)
+      mac(row, column) /= earlier_norm[row] * later_norm[column];
   }
   std::vector<ModeMatch> matches(static_cast<std::size_t>(mac.rows()));
   for (Eigen::Index pair = 0; pair < mac.rows(); ++pair) {

@@ -16,7 +16,8 @@ double TubeGyration2(double outer_diameter_m, double inner_diameter_m) {
   return (Square(outer_diameter_m) + Square(inner_diameter_m)) / 16.0;
 }
 
-SpreadMass Spread(double mass_kg, double top_m, double bottom_m, double outer_diameter_m, double inner_diameter_m) {
+SpreadMass Spread(double mass_kg, double top_m, double bottom_m, double outer_diameter_m,
+                  double inner_diameter_m) {
   const double per_length = mass_kg / (bottom_m - top_m);
   const double gyration2 = TubeGyration2(outer_diameter_m, inner_diameter_m);
   return {top_m, bottom_m, {per_length, per_length}, {gyration2, gyration2}};
@@ -25,8 +26,9 @@ SpreadMass Spread(double mass_kg, double top_m, double bottom_m, double outer_di
 SpreadMass Of(const BeamSection& s) {
   SpreadMass mass{s.top_station_m, s.bottom_station_m, s.mass_per_length_kg_m, {}};
   if (s.modulus_pa > 0.0) {
-    mass.gyration2_m2 = {TubeGyration2(s.outer_diameter_m.top, s.outer_diameter_m.top - 2.0 * s.thickness_m.top),
-                         TubeGyration2(s.outer_diameter_m.bottom, s.outer_diameter_m.bottom - 2.0 * s.thickness_m.bottom)};
+    mass.gyration2_m2 = {
+        TubeGyration2(s.outer_diameter_m.top, s.outer_diameter_m.top - 2.0 * s.thickness_m.top),
+        TubeGyration2(s.outer_diameter_m.bottom, s.outer_diameter_m.bottom - 2.0 * s.thickness_m.bottom)};
   }
   return mass;
 }
@@ -48,7 +50,9 @@ struct Moments {
   double zeroth = 0.0, first = 0.0, second = 0.0;
 };
 
-FixedMass Fixed(const LumpedMass& lump) { return {lump.station_m, lump.mass_kg, lump.cg_station_m, lump.inertia_kg_m2}; }
+FixedMass Fixed(const LumpedMass& lump) {
+  return {lump.station_m, lump.mass_kg, lump.cg_station_m, lump.inertia_kg_m2};
+}
 
 }  // namespace
 
@@ -70,8 +74,8 @@ OwnMassScale ScaleOwnMasses(const Vehicle& vehicle, int stage) {
   const std::size_t i = static_cast<std::size_t>(stage);
   const BeamStage& beam = vehicle.structure_beam->stages[i];
   OwnMassScale scale;
-  // The dry stage of the mass model, about station 0, then about its centre of gravity, which keeps the equations'
-  // condition; the polynomial is in the distance from there.
+  // The dry stage of the mass model, about station 0, then about its centre of gravity, which keeps the
+  // equations' condition; the polynomial is in the distance from there.
   const double dry_kg = DryMass(vehicle, stage);
   Moments wanted;
   for (const MassElement& e : vehicle.stages[i].structure) {
@@ -106,7 +110,8 @@ OwnMassScale ScaleOwnMasses(const Vehicle& vehicle, int stage) {
       const double powers[3] = {1.0, arm, Square(arm)};
       const double moments[3] = {1.0, arm, Square(arm) + mass.Gyration2(station)};
       for (int row = 0; row < 3; ++row) {
-        for (int column = 0; column < 3; ++column) gram(row, column) += element_kg * moments[row] * powers[column];
+        for (int column = 0; column < 3; ++column)
+          gram(row, column) += element_kg * moments[row] * powers[column];
       }
       scale.given_kg += element_kg;
       given_first += element_kg * arm;
@@ -135,7 +140,8 @@ BeamMasses BuildBeamMasses(const Vehicle& vehicle, int stage, double propellant_
   BeamMasses masses;
   for (std::size_t i = static_cast<std::size_t>(stage); i < vehicle.stages.size(); ++i) {
     const Stage& s = vehicle.stages[i];
-    const BeamStage& beam = i < vehicle.structure_beam->stages.size() ? vehicle.structure_beam->stages[i] : nothing_lumped;
+    const BeamStage& beam =
+        i < vehicle.structure_beam->stages.size() ? vehicle.structure_beam->stages[i] : nothing_lumped;
     const double dry_kg = DryMass(vehicle, static_cast<int>(i));
     if (beam.own_masses) {
       const OwnMassScale scale = ScaleOwnMasses(vehicle, static_cast<int>(i));
@@ -147,7 +153,8 @@ BeamMasses BuildBeamMasses(const Vehicle& vehicle, int stage, double propellant_
     } else {
       for (const MassElement& e : s.structure) {
         const double mass_kg = dry_kg * e.fraction;
-        const SpreadMass spread = Spread(mass_kg, e.top_station_m, e.bottom_station_m, e.outer_diameter_m, e.inner_diameter_m);
+        const SpreadMass spread =
+            Spread(mass_kg, e.top_station_m, e.bottom_station_m, e.outer_diameter_m, e.inner_diameter_m);
         const auto lump = std::find_if(beam.lumped_masses.begin(), beam.lumped_masses.end(),
                                        [&](const LumpedMass& l) { return l.element == e.name; });
         if (lump == beam.lumped_masses.end()) {
@@ -168,7 +175,10 @@ BeamMasses BuildBeamMasses(const Vehicle& vehicle, int stage, double propellant_
     const double inner2 = outer2 - 4.0 * grain_kg / (kPi * PropellantDensity(s) * length);
     if (!(grain_kg > 0.0)) continue;
     const double gyration2 = (outer2 + inner2) / 16.0;
-    masses.spread.push_back({g.top_station_m, g.bottom_station_m, {grain_kg / length, grain_kg / length}, {gyration2, gyration2}});
+    masses.spread.push_back({g.top_station_m,
+                             g.bottom_station_m,
+                             {grain_kg / length, grain_kg / length},
+                             {gyration2, gyration2}});
   }
   return masses;
 }

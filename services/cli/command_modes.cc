@@ -32,8 +32,8 @@ struct ModesOptions {
 
 const char* PlaneName(BeamPlane plane) { return plane == BeamPlane::kY ? "y" : "z"; }
 
-nlohmann::ordered_json ModeJson(const Vehicle& vehicle, const StackModes& stack, BeamPlane plane, std::size_t index,
-                                const BendingMode& mode, bool shapes) {
+nlohmann::ordered_json ModeJson(const Vehicle& vehicle, const StackModes& stack, BeamPlane plane,
+                                std::size_t index, const BendingMode& mode, bool shapes) {
   auto places = nlohmann::ordered_json::array();
   for (const BeamSensor& place : ShownStations(vehicle, stack.stage)) {
     const StationShape at = ShapeOf(stack, plane, mode, place.station_m);
@@ -55,8 +55,10 @@ nlohmann::ordered_json ModeJson(const Vehicle& vehicle, const StackModes& stack,
   return json;
 }
 
-// Planes may have levels of their own, in a table of a finite-element model: an entry for each level of either.
-nlohmann::ordered_json StacksJson(const Vehicle& vehicle, const std::vector<StackModes>& stacks, bool shapes) {
+// Planes may have levels of their own, in a table of a finite-element model: an entry for each level of
+// either.
+nlohmann::ordered_json StacksJson(const Vehicle& vehicle, const std::vector<StackModes>& stacks,
+                                  bool shapes) {
   const std::vector<StackMass> masses = BuildStackMasses(vehicle);
   auto json = nlohmann::ordered_json::array();
   for (const StackModes& stack : stacks) {
@@ -89,8 +91,8 @@ nlohmann::ordered_json StacksJson(const Vehicle& vehicle, const std::vector<Stac
 void PrintStack(const Vehicle& vehicle, const StackModes& stack, BeamPlane plane) {
   const std::vector<BendingLevel>& levels = stack.levels[plane == BeamPlane::kY ? 0 : 1];
   const std::size_t count = levels.front().modes.size();
-  fmt::print("\nstage {} and above, plane {}\n{:>14}", stack.stage + 1, stack.axisymmetric ? "y, z" : PlaneName(plane),
-             "propellant kg");
+  fmt::print("\nstage {} and above, plane {}\n{:>14}", stack.stage + 1,
+             stack.axisymmetric ? "y, z" : PlaneName(plane), "propellant kg");
   for (std::size_t i = 0; i < count; ++i) fmt::print("{:>11} {} Hz{:>9} kg", "mode", i + 1, "gen.");
   fmt::print("\n");
   for (const BendingLevel& level : levels) {
@@ -118,14 +120,17 @@ fs::path PageFile(const std::string& out) {
   if (path.extension() == ".html") return path;
   std::error_code error;
   fs::create_directories(path, error);
-  if (error) throw InputError("--out: " + out + ": " + error.message(), "a folder that can be written, or a .html file");
+  if (error)
+    throw InputError("--out: " + out + ": " + error.message(),
+                     "a folder that can be written, or a .html file");
   return path / "modes.html";
 }
 
 ExitCode Modes(const ModesOptions& options, const GlobalOptions& global) {
   const Vehicle vehicle = LoadVehicle(options.vehicle);
   if (!vehicle.structure_beam)
-    throw InputError({{options.vehicle, 1, 1, "", "the vehicle is rigid", "a vehicle with a structure_beam"}});
+    throw InputError(
+        {{options.vehicle, 1, 1, "", "the vehicle is rigid", "a vehicle with a structure_beam"}});
   const fs::path page = options.out.empty() ? fs::path() : PageFile(options.out);
   const std::vector<StackModes> stacks = BuildBendingModes(vehicle);
   if (!page.empty()) WriteFile(page, ModesPage(vehicle, stacks));
@@ -138,7 +143,8 @@ ExitCode Modes(const ModesOptions& options, const GlobalOptions& global) {
     fmt::print("{}\n", json.dump(2));
     return kExitDone;
   }
-  fmt::print("{}: {}. Deflections are scaled to a largest of 1.\n", vehicle.name, BeamText(*vehicle.structure_beam));
+  fmt::print("{}: {}. Deflections are scaled to a largest of 1.\n", vehicle.name,
+             BeamText(*vehicle.structure_beam));
   for (const StackModes& stack : stacks) {
     PrintStack(vehicle, stack, BeamPlane::kY);
     if (!stack.axisymmetric) PrintStack(vehicle, stack, BeamPlane::kZ);
@@ -153,10 +159,12 @@ void AddModesCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<ModesOptions>();
   CLI::App* command = app.add_subcommand("modes", "bending modes of a vehicle, by stack and propellant");
   command->add_option("vehicle", options->vehicle, "vehicle file with a structure_beam")->required();
-  command->add_option("--out", options->out, "write the plots too: a folder for modes.html, or a name that ends in .html");
+  command->add_option("--out", options->out,
+                      "write the plots too: a folder for modes.html, or a name that ends in .html");
   command->add_flag("--shapes", options->shapes, "with --json: the whole shapes, node by node");
   command->footer(
-      "Frequencies, generalised masses, and deflection and slope at the beam's sensors and the nozzle pivot.\n"
+      "Frequencies, generalised masses, and deflection and slope at the beam's sensors and the nozzle "
+      "pivot.\n"
       "Example: dispersa modes campaigns/vehicles/slv4_flexible.yaml --out modes");
   command->callback([options, &invocation] {
     invocation.command = [options](const GlobalOptions& global) { return Modes(*options, global); };

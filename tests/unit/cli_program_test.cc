@@ -123,7 +123,10 @@ TEST(CliProgram, ModesOfARigidOrWrongVehicleAreBadInput) {
   EXPECT_EQ(Dispersa("modes " + files.Path("flexible.yaml")).code, 2);
   EXPECT_EQ(Dispersa("modes " + files.Path("none.yaml")).code, 2);
   EXPECT_EQ(Dispersa("modes").code, 2);
-  EXPECT_EQ(Dispersa("modes " + std::string(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml") + " --out /dev/null/x").code, 2);
+  EXPECT_EQ(Dispersa("modes " + std::string(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml") +
+                     " --out /dev/null/x")
+                .code,
+            2);
 }
 
 TEST(CliProgram, ValidateSaysWhatIsWrongAndWhere) {

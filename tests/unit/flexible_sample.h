@@ -5,7 +5,8 @@
 
 namespace dispersa {
 
-inline BeamSection SampleSection(const std::string& name, double top_m, double bottom_m, double bending_n_m2) {
+inline BeamSection SampleSection(const std::string& name, double top_m, double bottom_m,
+                                 double bending_n_m2) {
   BeamSection section;
   section.name = name;
   section.top_station_m = top_m;

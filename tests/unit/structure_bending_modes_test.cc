@@ -1,4 +1,5 @@
-// The beam of a vehicle: its masses are the rigid vehicle's, its modes keep their names and signs over the burn.
+// The beam of a vehicle: its masses are the rigid vehicle's, its modes keep their names and signs over the
+// burn.
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
@@ -41,7 +42,8 @@ void ExpectRigidMasses(const Vehicle& vehicle) {
       EXPECT_NEAR(beam.mass_kg / rigid.mass_kg, 1.0, 1e-12) << stage << ", " << fraction;
       EXPECT_NEAR(beam.cg_station_m / rigid.cg_station_m, 1.0, 1e-12) << stage << ", " << fraction;
       // The rigid one is a difference of moments about the nose, which are up to ten times as large.
-      EXPECT_NEAR(beam.transverse_inertia_kg_m2 / rigid.transverse_inertia_kg_m2, 1.0, 1e-11) << stage << ", " << fraction;
+      EXPECT_NEAR(beam.transverse_inertia_kg_m2 / rigid.transverse_inertia_kg_m2, 1.0, 1e-11)
+          << stage << ", " << fraction;
     }
   }
 }
@@ -83,8 +85,8 @@ TEST(BendingModes, OwnMassesAreScaledToTheVehicles) {
 }
 
 TEST(BendingModes, OfTheShippedVehicleLieWhereAReviewFoundThem) {
-  // Two independent beams of the same masses had 3.1 to 3.6 Hz and 6.9 to 8.1 Hz over the burns of stages 1 and 2; half
-  // or twice the stiffness 2.2 to 4.4 Hz.
+  // Two independent beams of the same masses had 3.1 to 3.6 Hz and 6.9 to 8.1 Hz over the burns of stages 1
+  // and 2; half or twice the stiffness 2.2 to 4.4 Hz.
   const std::vector<StackModes> stacks = BuildBendingModes(Slv4());
   ASSERT_EQ(stacks.size(), 4u);
   const auto first_hz = [&](std::size_t stage, bool full) {
@@ -142,7 +144,8 @@ TEST(BendingModes, ShapesAreWhatTheEquationsMeanByThem) {
     const double step = 1e-5;
     const double ahead = ShapeOf(stack, BeamPlane::kY, mode, station + step).deflection;
     const double behind = ShapeOf(stack, BeamPlane::kY, mode, station - step).deflection;
-    EXPECT_NEAR(ShapeOf(stack, BeamPlane::kY, mode, station).slope_1_m, (ahead - behind) / (2.0 * step), 1e-8);
+    EXPECT_NEAR(ShapeOf(stack, BeamPlane::kY, mode, station).slope_1_m, (ahead - behind) / (2.0 * step),
+                1e-8);
   }
   // Twice the kinetic energy of a unit rate, by Simpson's rule over what the beam is made of.
   double twice_energy = 0.0;
@@ -154,7 +157,8 @@ TEST(BendingModes, ShapesAreWhatTheEquationsMeanByThem) {
       const double s = m.top_station_m + i * h;
       const StationShape at = ShapeOf(stack, BeamPlane::kY, mode, s);
       const double weight = (i == 0 || i == kSteps ? 1.0 : i % 2 == 1 ? 4.0 : 2.0) * h / 3.0;
-      twice_energy += weight * m.MassPerLength(s) * (at.deflection * at.deflection + m.Gyration2(s) * at.slope_1_m * at.slope_1_m);
+      twice_energy += weight * m.MassPerLength(s) *
+                      (at.deflection * at.deflection + m.Gyration2(s) * at.slope_1_m * at.slope_1_m);
     }
   }
   for (const FixedMass& m : masses.fixed) {
@@ -177,8 +181,9 @@ TEST(BendingModes, PlaneZOfAStifferBeamIsItsOwn) {
   EXPECT_FALSE(stacks[0].axisymmetric);
   for (std::size_t mode = 0; mode < 3; ++mode) {
     for (std::size_t i = 0; i < 11; ++i) {
-      EXPECT_NEAR(stacks[0].levels[1][i].modes[mode].frequency_rad_s / stacks[0].levels[0][i].modes[mode].frequency_rad_s, 1.1,
-                  1e-9);
+      EXPECT_NEAR(stacks[0].levels[1][i].modes[mode].frequency_rad_s /
+                      stacks[0].levels[0][i].modes[mode].frequency_rad_s,
+                  1.1, 1e-9);
     }
   }
 }
@@ -188,7 +193,8 @@ TEST(BendingModes, RiseWithTheRootOfTheStiffness) {
   Vehicle vehicle = FlexibleSample();
   const double soft = BuildBendingModes(vehicle)[0].levels[0].front().modes[0].frequency_rad_s;
   for (BeamStage& stage : vehicle.structure_beam->stages) {
-    for (BeamSection& s : stage.sections) s.bending_stiffness_n_m2 = {1e6 * s.bending_stiffness_n_m2.top, 1e6 * s.bending_stiffness_n_m2.bottom};
+    for (BeamSection& s : stage.sections)
+      s.bending_stiffness_n_m2 = {1e6 * s.bending_stiffness_n_m2.top, 1e6 * s.bending_stiffness_n_m2.bottom};
   }
   EXPECT_NEAR(BuildBendingModes(vehicle)[0].levels[0].front().modes[0].frequency_rad_s / soft, 1000.0, 1e-8);
 }
@@ -220,7 +226,8 @@ TEST(ModeTracking, FollowsAModeThroughACrossing) {
     }
     before = now;
   }
-  // The lower one was the heavy oscillator at the beginning; at the end it is the higher one, under the same name.
+  // The lower one was the heavy oscillator at the beginning; at the end it is the higher one, under the same
+  // name.
   EXPECT_GT(std::fabs(before(0, 0)), 10.0 * std::fabs(before(0, 1)));
 }
 

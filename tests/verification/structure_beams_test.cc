@@ -1,5 +1,6 @@
-// Free beams against exact solutions: uniform, stepped, conical, shearing, with lumped bodies; orthogonality, rigid
-// modes, order of convergence. Characteristic equations are derived and solved here, independently of the elements.
+// Free beams against exact solutions: uniform, stepped, conical, shearing, with lumped bodies; orthogonality,
+// rigid modes, order of convergence. Characteristic equations are derived and solved here, independently of
+// the elements.
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
@@ -16,8 +17,8 @@ namespace dispersa {
 namespace {
 
 /// The first roots of cos x cosh x = 1, beta L of the uniform beam.
-constexpr double kUniformRoots[] = {4.730040744862704, 7.853204624095838, 10.995607838001671, 14.137165491257464,
-                                    17.278759657399481};
+constexpr double kUniformRoots[] = {4.730040744862704, 7.853204624095838, 10.995607838001671,
+                                    14.137165491257464, 17.278759657399481};
 
 BeamSection Section(double top_m, double bottom_m, double bending_n_m2, double shear_n = 0.0) {
   BeamSection section;
@@ -71,7 +72,8 @@ std::vector<double> Roots(const std::function<double(double)>& f, double from, d
 /// The determinant by rows of their own size, so that its sign is right whatever the exponentials in it.
 double ScaledDeterminant(Eigen::MatrixXd matrix) {
   for (Eigen::Index row = 0; row < matrix.rows(); ++row) matrix.row(row) /= matrix.row(row).norm();
-  for (Eigen::Index column = 0; column < matrix.cols(); ++column) matrix.col(column) /= matrix.col(column).norm();
+  for (Eigen::Index column = 0; column < matrix.cols(); ++column)
+    matrix.col(column) /= matrix.col(column).norm();
   return matrix.fullPivLu().determinant();
 }
 
@@ -90,7 +92,8 @@ TEST(FreeBeams, UniformFrequenciesAreTheTextbooks) {
 // A Ritz method with cubics: the error of omega² falls with the fourth power of the element, from above.
 TEST(FreeBeams, ConvergeWithTheFourthPowerFromAbove) {
   for (int mode = 0; mode < 3; ++mode) {
-    const double exact = kUniformRoots[mode] * kUniformRoots[mode] * std::sqrt(3e8 / (700.0 * std::pow(20.0, 4)));
+    const double exact =
+        kUniformRoots[mode] * kUniformRoots[mode] * std::sqrt(3e8 / (700.0 * std::pow(20.0, 4)));
     double before = 0.0;
     for (const int elements : {20, 40, 80}) {
       const double error = Solve(UniformBeam(), elements, 3).modes.frequency_rad_s[mode] / exact - 1.0;
@@ -103,8 +106,8 @@ TEST(FreeBeams, ConvergeWithTheFourthPowerFromAbove) {
   }
 }
 
-// However fine or uneven the mesh: an element of a millimetre costs no digits. (K and M given to a generalised
-// solver lose all of them here: the highest mode is 1e16 times the first in omega².)
+// However fine or uneven the mesh: an element of a millimetre costs no digits. (K and M given to a
+// generalised solver lose all of them here: the highest mode is 1e16 times the first in omega².)
 TEST(FreeBeams, KeepTheirDigitsOnAnUnevenMesh) {
   Beam beam = UniformBeam();
   beam.sections = {Section(0.0, 7.0, 3e8), Section(7.0, 7.001, 3e8), Section(7.001, 20.0, 3e8)};
@@ -140,7 +143,8 @@ TEST(FreeBeams, RigidMotionCostsNoEnergyAndModesHaveNoMomentum) {
   const Eigen::MatrixXd rigid = RigidShapes(s.stations, whole.cg_station_m);
   // Forces of a rigid motion, against those of a mode of like size.
   const double forces = (stiffness * s.modes.shape.col(0)).norm() / s.modes.shape.col(0).norm();
-  for (const int column : {0, 1}) EXPECT_LT((stiffness * rigid.col(column)).norm() / rigid.col(column).norm(), 1e-6 * forces);
+  for (const int column : {0, 1})
+    EXPECT_LT((stiffness * rigid.col(column)).norm() / rigid.col(column).norm(), 1e-6 * forces);
   const Eigen::MatrixXd momenta = rigid.transpose() * s.mass * s.modes.shape;
   // Linear and angular momentum, over those of the whole beam moving with the mode's generalised speed.
   for (int i = 0; i < 4; ++i) {
@@ -155,7 +159,8 @@ TEST(FreeBeams, ModesAreOrthogonalByMassAndStiffness) {
   beam.masses = {{Mass(0.0, 6.0, 90.0, 0.05), Mass(5.0, 20.0, 900.0, 0.2)}, {{6.0, 800.0, 5.0, 90.0}}};
   const Solved s = Solve(beam, 60, 6);
   const Eigen::MatrixXd by_mass = s.modes.shape.transpose() * s.mass * s.modes.shape;
-  const Eigen::MatrixXd by_stiffness = s.modes.shape.transpose() * StiffnessMatrix(s.elements) * s.modes.shape;
+  const Eigen::MatrixXd by_stiffness =
+      s.modes.shape.transpose() * StiffnessMatrix(s.elements) * s.modes.shape;
   EXPECT_LT((by_mass - Eigen::MatrixXd::Identity(6, 6)).cwiseAbs().maxCoeff(), 1e-11);
   for (int i = 0; i < 6; ++i) {
     for (int j = 0; j < 6; ++j) {
@@ -166,18 +171,21 @@ TEST(FreeBeams, ModesAreOrthogonalByMassAndStiffness) {
   }
 }
 
-// Two uniform pieces: w = A cos + B sin + C cosh + D sinh of beta x in each, no moment and no shear force at the free
-// ends, deflection, slope, moment and shear force continuous at the step. The determinant of the eight conditions.
-double SteppedDeterminant(double omega, const double (&length)[2], const double (&bending)[2], const double (&kg_m)[2]) {
+// Two uniform pieces: w = A cos + B sin + C cosh + D sinh of beta x in each, no moment and no shear force at
+// the free ends, deflection, slope, moment and shear force continuous at the step. The determinant of the
+// eight conditions.
+double SteppedDeterminant(double omega, const double (&length)[2], const double (&bending)[2],
+                          const double (&kg_m)[2]) {
   Eigen::MatrixXd m = Eigen::MatrixXd::Zero(8, 8);
   // The derivatives 0 to 3 of the four functions at x.
   const auto derivatives = [](double beta, double x) {
-    const double c = std::cos(beta * x), s = std::sin(beta * x), ch = std::cosh(beta * x), sh = std::sinh(beta * x);
+    const double c = std::cos(beta * x), s = std::sin(beta * x), ch = std::cosh(beta * x),
+                 sh = std::sinh(beta * x);
     Eigen::Matrix4d d;
-    d << c, s, ch, sh,                                              //
-        -beta * s, beta * c, beta * sh, beta * ch,                  //
-        beta * beta * -c, beta * beta * -s, beta * beta * ch, beta * beta * sh,
-        std::pow(beta, 3) * s, -std::pow(beta, 3) * c, std::pow(beta, 3) * sh, std::pow(beta, 3) * ch;
+    d << c, s, ch, sh,                              //
+        -beta * s, beta * c, beta * sh, beta * ch,  //
+        beta * beta * -c, beta * beta * -s, beta * beta * ch, beta * beta * sh, std::pow(beta, 3) * s,
+        -std::pow(beta, 3) * c, std::pow(beta, 3) * sh, std::pow(beta, 3) * ch;
     return d;
   };
   double beta[2];
@@ -198,27 +206,33 @@ TEST(FreeBeams, SteppedFrequenciesAreThoseOfTheirDeterminant) {
   const std::vector<double> exact =
       Roots([&](double omega) { return SteppedDeterminant(omega, length, bending, kg_m); }, 2.0, 400.0, 4);
   ASSERT_EQ(exact.size(), 4u);
-  const Beam beam{{Section(0.0, 8.0, 4e7), Section(8.0, 20.0, 6e8)}, {{Mass(0.0, 8.0, 250.0), Mass(8.0, 20.0, 1100.0)}, {}}};
+  const Beam beam{{Section(0.0, 8.0, 4e7), Section(8.0, 20.0, 6e8)},
+                  {{Mass(0.0, 8.0, 250.0), Mass(8.0, 20.0, 1100.0)}, {}}};
   const Solved s = Solve(beam, 120, 4);
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(s.modes.frequency_rad_s[i] / exact[i], 1.0, 1e-6) << i;
   // The determinant itself, where it is a textbook's: no step at all.
   const double even_bending[2] = {3e8, 3e8}, even_kg_m[2] = {700.0, 700.0};
   const std::vector<double> even =
-      Roots([&](double omega) { return SteppedDeterminant(omega, length, even_bending, even_kg_m); }, 2.0, 400.0, 1);
+      Roots([&](double omega) { return SteppedDeterminant(omega, length, even_bending, even_kg_m); }, 2.0,
+            400.0, 1);
   EXPECT_NEAR(even[0], std::pow(kUniformRoots[0] / 20.0, 2) * std::sqrt(3e8 / 700.0), 1e-9 * even[0]);
 }
 
 // A solid cone cut off at a fifth of its length: area a x², second moment b x⁴ about the apex, so
-// (b E x⁴ w'')'' = omega² rho a x² w, whose solutions are w = F_2(z) / x with z = 2 sqrt(k x), k² = omega² rho a / (b E)
-// and F one of J, Y, I, K. Free ends: w'' = 0 and, with that, w''' = 0.
+// (b E x⁴ w'')'' = omega² rho a x² w, whose solutions are w = F_2(z) / x with z = 2 sqrt(k x), k² = omega²
+// rho a / (b E) and F one of J, Y, I, K. Free ends: w'' = 0 and, with that, w''' = 0.
 double ConeDeterminant(double k, double tip_m, double base_m) {
   // d/dx of x^-n/2 F_n(2 sqrt(k x)) is s sqrt(k) x^-(n+1)/2 F_{n+1}, with s = -1 for J, Y, K and +1 for I.
   const auto bessel = [](int kind, int order, double z) {
     switch (kind) {
-      case 0: return boost::math::cyl_bessel_j(order, z);
-      case 1: return boost::math::cyl_neumann(order, z);
-      case 2: return boost::math::cyl_bessel_i(order, z);
-      default: return boost::math::cyl_bessel_k(order, z);
+      case 0:
+        return boost::math::cyl_bessel_j(order, z);
+      case 1:
+        return boost::math::cyl_neumann(order, z);
+      case 2:
+        return boost::math::cyl_bessel_i(order, z);
+      default:
+        return boost::math::cyl_bessel_k(order, z);
     }
   };
   Eigen::MatrixXd m(4, 4);
@@ -228,7 +242,8 @@ double ConeDeterminant(double k, double tip_m, double base_m) {
       for (const int derivative : {2, 3}) {
         const int order = 2 + derivative;
         const double sign = kind != 2 && derivative == 3 ? -1.0 : 1.0;
-        m(row++, kind) = sign * std::pow(std::sqrt(k / x), derivative) / x * bessel(kind, order, 2.0 * std::sqrt(k * x));
+        m(row++, kind) =
+            sign * std::pow(std::sqrt(k / x), derivative) / x * bessel(kind, order, 2.0 * std::sqrt(k * x));
       }
     }
   }
@@ -239,8 +254,8 @@ TEST(FreeBeams, ConicalFrequenciesAreThoseOfBesselsFunctions) {
   const double tip_m = 2.0, base_m = 10.0, half_angle = 0.05, modulus = 70e9, density = 2700.0;
   // Radius r = half_angle x: a = pi half_angle², b = pi half_angle⁴ / 4.
   const double k_over_omega = std::sqrt(density * 4.0 / (modulus * half_angle * half_angle));
-  const std::vector<double> exact =
-      Roots([&](double omega) { return ConeDeterminant(omega * k_over_omega, tip_m, base_m); }, 20.0, 4000.0, 3);
+  const std::vector<double> exact = Roots(
+      [&](double omega) { return ConeDeterminant(omega * k_over_omega, tip_m, base_m); }, 20.0, 4000.0, 3);
   ASSERT_EQ(exact.size(), 3u);
   BeamSection section;
   section.top_station_m = tip_m;
@@ -250,19 +265,23 @@ TEST(FreeBeams, ConicalFrequenciesAreThoseOfBesselsFunctions) {
   section.modulus_pa = modulus;
   SpreadMass mass = Mass(tip_m, base_m, density * kPi * half_angle * half_angle);
   mass.scale = {0.0, 0.0, 1.0};  // times x²
-  const Solved coarse = Solve({{section}, {{mass}, {}}}, 50, 3), fine = Solve({{section}, {{mass}, {}}}, 100, 3);
+  const Solved coarse = Solve({{section}, {{mass}, {}}}, 50, 3),
+               fine = Solve({{section}, {{mass}, {}}}, 100, 3);
   for (int i = 0; i < 3; ++i) {
     EXPECT_NEAR(fine.modes.frequency_rad_s[i] / exact[i], 1.0, 1e-6) << i;
     // Also a section that changes within the element keeps the fourth order.
-    const double order = std::log2((coarse.modes.frequency_rad_s[i] / exact[i] - 1.0) / (fine.modes.frequency_rad_s[i] / exact[i] - 1.0));
+    const double order = std::log2((coarse.modes.frequency_rad_s[i] / exact[i] - 1.0) /
+                                   (fine.modes.frequency_rad_s[i] / exact[i] - 1.0));
     EXPECT_NEAR(order, 4.0, 0.1) << i;
   }
 }
 
-// Timoshenko's uniform beam: kGA (w' - theta)' = -mu omega² w, EI theta'' + kGA (w' - theta) = -mu r² omega² theta.
-// With exp(p x): p⁴ + p² omega² (mu / kGA + mu r² / EI) - omega² mu / EI (1 - omega² mu r² / kGA) = 0, one p² negative
-// and one positive below the cut-off; theta = (p² + omega² mu / kGA) / p w. Free ends: theta' = 0, w' = theta.
-double TimoshenkoDeterminant(double omega, double length, double bending, double shear, double kg_m, double gyration2) {
+// Timoshenko's uniform beam: kGA (w' - theta)' = -mu omega² w, EI theta'' + kGA (w' - theta) = -mu r² omega²
+// theta. With exp(p x): p⁴ + p² omega² (mu / kGA + mu r² / EI) - omega² mu / EI (1 - omega² mu r² / kGA) = 0,
+// one p² negative and one positive below the cut-off; theta = (p² + omega² mu / kGA) / p w. Free ends: theta'
+// = 0, w' = theta.
+double TimoshenkoDeterminant(double omega, double length, double bending, double shear, double kg_m,
+                             double gyration2) {
   const double a = omega * omega * (kg_m / shear + kg_m * gyration2 / bending);
   const double b = omega * omega * kg_m / bending * (1.0 - omega * omega * kg_m * gyration2 / shear);
   const double root = std::sqrt(0.25 * a * a + b);
@@ -284,7 +303,8 @@ TEST(FreeBeams, TimoshenkosFrequenciesAreThoseOfTheirCharacteristicEquation) {
   // A tube as short as a stage: length over diameter 5, where shear and rotary inertia take a fifth off.
   const double length = 5.0, bending = 5e7, shear = 9e7, kg_m = 400.0, gyration2 = 0.125;
   const std::vector<double> exact = Roots(
-      [&](double omega) { return TimoshenkoDeterminant(omega, length, bending, shear, kg_m, gyration2); }, 5.0, 1300.0, 3);
+      [&](double omega) { return TimoshenkoDeterminant(omega, length, bending, shear, kg_m, gyration2); },
+      5.0, 1300.0, 3);
   ASSERT_EQ(exact.size(), 3u);
   Beam beam{{Section(0.0, length, bending, shear)}, {{Mass(0.0, length, kg_m, gyration2)}, {}}, true};
   const Solved coarse = Solve(beam, 40, 3), fine = Solve(beam, 80, 3);
@@ -315,12 +335,15 @@ TEST(FreeBeams, ALumpedBodyActsByMassOffsetAndInertia) {
   const auto determinant = [&](double omega) {
     const double beta = std::sqrt(omega) * std::pow(kg_m / bending, 0.25), o2 = omega * omega;
     const double w[4] = {1, 0, 1, 0}, dw[4] = {0, beta, 0, beta};
-    const double d2w[4] = {-beta * beta, 0, beta * beta, 0}, d3w[4] = {0, -std::pow(beta, 3), 0, std::pow(beta, 3)};
-    const double c = std::cos(beta * length), s = std::sin(beta * length), ch = std::cosh(beta * length), sh = std::sinh(beta * length);
+    const double d2w[4] = {-beta * beta, 0, beta * beta, 0},
+                 d3w[4] = {0, -std::pow(beta, 3), 0, std::pow(beta, 3)};
+    const double c = std::cos(beta * length), s = std::sin(beta * length), ch = std::cosh(beta * length),
+                 sh = std::sinh(beta * length);
     Eigen::MatrixXd m(4, 4);
     for (int i = 0; i < 4; ++i) {
       m(0, i) = bending * d3w[i] - o2 * body_kg * (w[i] + offset * dw[i]);
-      m(1, i) = bending * d2w[i] + o2 * (body_kg * offset * w[i] + (inertia + body_kg * offset * offset) * dw[i]);
+      m(1, i) =
+          bending * d2w[i] + o2 * (body_kg * offset * w[i] + (inertia + body_kg * offset * offset) * dw[i]);
     }
     m.row(2) << -c, -s, ch, sh;
     m.row(3) << s, -c, sh, ch;
