@@ -99,8 +99,8 @@ std::string ModeTable(const Vehicle& vehicle, const StackModes& stack) {
 }  // namespace
 
 std::string BeamText(const StructureBeam& beam) {
-  if (!beam.table.empty()) return "modes of a finite-element model, from the vehicle's table";
-  return fmt::format("free beam by {}, {} rotary inertia",
+  if (!beam.table.empty()) return "Modes of a finite-element model, from the vehicle's table";
+  return fmt::format("Free beam by {}, {} rotary inertia",
                      beam.timoshenko ? "Timoshenko's theory" : "Euler's and Bernoulli's theory",
                      beam.rotary_inertia ? "with" : "without");
 }

@@ -143,7 +143,7 @@ ExitCode Modes(const ModesOptions& options, const GlobalOptions& global) {
     fmt::print("{}\n", json.dump(2));
     return kExitDone;
   }
-  fmt::print("{}: {}. Deflections are scaled to a largest of 1.\n", vehicle.name,
+  fmt::print("{}. {}. Deflections are scaled to a largest of 1.\n", vehicle.name,
              BeamText(*vehicle.structure_beam));
   for (const StackModes& stack : stacks) {
     PrintStack(vehicle, stack, BeamPlane::kY);
