@@ -12,6 +12,10 @@ namespace {
 
 using ProblemList = std::vector<InputProblem>;
 
+/// Far above anything that flies, and far below what overflows.
+constexpr Range UpTo(double high) { return {0.0, high, true, false}; }
+constexpr Range kStiffnesses = UpTo(1e15), kModuli = UpTo(1e13), kDiameters = UpTo(100.0), kMassesPerLength = UpTo(1e6);
+
 Taper Ends(MapReader& map, const std::string& stem, Dimension dimension, const Range& range) {
   const auto ends = map.Ends(stem, dimension, range);
   return {ends[0], ends[1]};
@@ -34,15 +38,15 @@ void DecodeStiffness(MapReader& map, bool timoshenko, BeamSection& section, Prob
     return;
   }
   if (tube) {
-    section.outer_diameter_m = Ends(map, "outer_diameter", kLength, kPositive);
-    section.thickness_m = Ends(map, "thickness", kLength, kPositive);
-    section.modulus_pa = map.Quantity("modulus", kModulus, kPositive);
+    section.outer_diameter_m = Ends(map, "outer_diameter", kLength, kDiameters);
+    section.thickness_m = Ends(map, "thickness", kLength, kDiameters);
+    section.modulus_pa = map.Quantity("modulus", kModulus, kModuli);
     section.poisson_ratio = map.Number("poisson_ratio", Between(0.0, 0.5), 0.3);
     return;
   }
-  section.bending_stiffness_n_m2 = Ends(map, "bending_stiffness", kBendingStiffness, kPositive);
+  section.bending_stiffness_n_m2 = Ends(map, "bending_stiffness", kBendingStiffness, kStiffnesses);
   if (timoshenko || map.Has("shear_stiffness", kForce))
-    section.shear_stiffness_n = Ends(map, "shear_stiffness", kForce, kPositive);
+    section.shear_stiffness_n = Ends(map, "shear_stiffness", kForce, kStiffnesses);
 }
 
 // `has_mass` receives whether it gives a mass per length.
@@ -56,7 +60,7 @@ BeamSection DecodeSection(const InputNode& node, const std::string& path, bool t
   DecodeStiffness(map, timoshenko, section, problems);
   section.z_to_y_stiffness = map.Number("z_to_y_stiffness", Between(0.01, 100.0), 1.0);
   *has_mass = map.Has("mass_per_length", kMassPerLength);
-  if (*has_mass) section.mass_per_length_kg_m = Ends(map, "mass_per_length", kMassPerLength, kPositive);
+  if (*has_mass) section.mass_per_length_kg_m = Ends(map, "mass_per_length", kMassPerLength, kMassesPerLength);
   return section;
 }
 
@@ -82,7 +86,7 @@ BeamStage DecodeStage(const InputNode& node, const std::string& path, bool timos
   MapReader map(node, path, problems);
   BeamStage stage;
   std::size_t with_mass = 0;
-  map.Each("sections", 1, 200, [&](const InputNode& item, const std::string& item_path) {
+  map.Each("sections", 1, 50, [&](const InputNode& item, const std::string& item_path) {
     bool has_mass = false;
     stage.sections.push_back(DecodeSection(item, item_path, timoshenko, &has_mass, problems));
     with_mass += has_mass;
@@ -93,7 +97,7 @@ BeamStage DecodeStage(const InputNode& node, const std::string& path, bool timos
                "some sections have a mass per length and some have none",
                "mass_per_length_kg_m in every section of the stage, or in none: then the stage's structure "
                "says what it weighs");
-  map.Each("lumped_masses", 0, 100, [&](const InputNode& item, const std::string& item_path) {
+  map.Each("lumped_masses", 0, 50, [&](const InputNode& item, const std::string& item_path) {
     stage.lumped_masses.push_back(DecodeLumpedMass(item, item_path, stage.own_masses, problems));
   });
   return stage;

@@ -14,6 +14,8 @@ namespace {
 
 /// Stations are written to the millimetre; boundaries nearer than this are one.
 constexpr double kSameStation_m = 1e-6;
+/// Of a section.
+constexpr double kShortest_m = 1e-3;
 
 double Fraction(const BeamSection& section, double station_m) {
   return (station_m - section.top_station_m) / (section.bottom_station_m - section.top_station_m);
@@ -77,8 +79,9 @@ class Checker {
   }
 
   void CheckSection(const BeamSection& s, double stage_bottom_m, const std::string& path) {
-    if (!(s.bottom_station_m > s.top_station_m))
-      Add(path + ".bottom_station_m", "is not aft of top_station_m", "a station larger than top_station_m");
+    if (!(s.bottom_station_m - s.top_station_m >= kShortest_m))
+      Add(path + ".bottom_station_m", "is not a millimetre aft of top_station_m",
+          "a station larger than top_station_m by 0.001 m or more");
     if (s.bottom_station_m > stage_bottom_m + kSameStation_m)
       Add(path + ".bottom_station_m", "lies aft of the stage's bottom_station_m",
           "at most bottom_station_m of the stage");
