@@ -14,7 +14,8 @@ using ProblemList = std::vector<InputProblem>;
 
 /// Far above anything that flies, and far below what overflows.
 constexpr Range UpTo(double high) { return {0.0, high, true, false}; }
-constexpr Range kStiffnesses = UpTo(1e15), kModuli = UpTo(1e13), kDiameters = UpTo(100.0), kMassesPerLength = UpTo(1e6);
+constexpr Range kStiffnesses = UpTo(1e15), kModuli = UpTo(1e13), kDiameters = UpTo(100.0),
+                kMassesPerLength = UpTo(1e6);
 
 Taper Ends(MapReader& map, const std::string& stem, Dimension dimension, const Range& range) {
   const auto ends = map.Ends(stem, dimension, range);
@@ -60,7 +61,8 @@ BeamSection DecodeSection(const InputNode& node, const std::string& path, bool t
   DecodeStiffness(map, timoshenko, section, problems);
   section.z_to_y_stiffness = map.Number("z_to_y_stiffness", Between(0.01, 100.0), 1.0);
   *has_mass = map.Has("mass_per_length", kMassPerLength);
-  if (*has_mass) section.mass_per_length_kg_m = Ends(map, "mass_per_length", kMassPerLength, kMassesPerLength);
+  if (*has_mass)
+    section.mass_per_length_kg_m = Ends(map, "mass_per_length", kMassPerLength, kMassesPerLength);
   return section;
 }
 

@@ -80,7 +80,8 @@ std::string ModeTable(const Vehicle& vehicle, const StackModes& stack) {
   HtmlTable table(columns);
   for (std::size_t plane = 0; plane < PlanesOf(stack); ++plane) {
     for (const BendingLevel* level : {&stack.levels[plane].front(), &stack.levels[plane].back()}) {
-      if (level == &stack.levels[plane].front() && stack.levels[plane].size() == 1) continue;  // a table's only one
+      if (level == &stack.levels[plane].front() && stack.levels[plane].size() == 1)
+        continue;  // a table's only one
       for (std::size_t mode = 0; mode < level->modes.size(); ++mode) {
         const BendingMode& m = level->modes[mode];
         std::vector<std::string> cells = {ReadableText(level->propellant_kg), std::to_string(mode + 1),

@@ -114,7 +114,7 @@ constexpr BadInput kBadInputs[] = {
      "'thickness_km' or 'thickness_mm' or 'thickness_um', allowed: a number above 0 and not above 100\n"},
     {"ShearMissing", ", shear_stiffness_kn: 200e3", "",
      "flexible.yaml:14:11: structure_beam.stages[1].sections[0]: missing key 'shear_stiffness_n' or "
-     "'shear_stiffness_kn', allowed: a number above 0 and not above 1e+15\n"},
+     "'shear_stiffness_kn', allowed: a number above 0 and not above 1000000000000000\n"},
     {"WrongUnit", "modulus_gpa: 200", "modulus_psi: 3e7",
      "flexible.yaml:10:102: structure_beam.stages[0].sections[0].modulus_psi: the unit of "
      "'modulus_psi' is not known here, allowed: modulus_gpa, modulus_mpa, modulus_pa\n"},
@@ -123,7 +123,7 @@ constexpr BadInput kBadInputs[] = {
      "3, allowed: a list of 2\n"},
     {"NegativeEnd", "[100, 150]", "[100, -150]",
      "flexible.yaml:14:96: structure_beam.stages[1].sections[0].bending_stiffness_mn_m2[1]: -150 is "
-     "out of range, allowed: a number above 0 and not above 1e+09\n"},
+     "out of range, allowed: a number above 0 and not above 1000000000\n"},
     {"WallTooThick", "thickness_mm: 4", "thickness_mm: 501",
      "flexible.yaml:10:99: structure_beam.stages[0].sections[0].thickness_mm: is more than half of "
      "outer_diameter_m, allowed: up to half of the diameter, a solid rod\n"},

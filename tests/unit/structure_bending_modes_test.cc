@@ -85,8 +85,8 @@ TEST(BendingModes, OwnMassesAreScaledToTheVehicles) {
 }
 
 TEST(BendingModes, OfTheShippedVehicleLieWhereOthersFoundThem) {
-  // An independent beam of slv4.yaml's masses had 3.1 to 3.6 Hz over the burn of stage 1 and 6.9 to 8.1 Hz over that of
-  // stage 2; half or twice the stiffness 2.2 to 4.4 Hz in stage 1.
+  // An independent beam of slv4.yaml's masses had 3.1 to 3.6 Hz over the burn of stage 1 and 6.9 to 8.1 Hz
+  // over that of stage 2; half or twice the stiffness 2.2 to 4.4 Hz in stage 1.
   const std::vector<StackModes> stacks = BuildBendingModes(Slv4());
   ASSERT_EQ(stacks.size(), 4u);
   const auto first_hz = [&](std::size_t stage, bool full) {
