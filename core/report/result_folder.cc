@@ -303,8 +303,6 @@ std::size_t ResultFolder::Append(std::span<const CaseResult> results) {
   return added;
 }
 
-void ResultFolder::AppendExecution(std::span<const ExecutionRecord> records) { Store({}, records); }
-
 void ResultFolder::Store(std::span<const CaseResult> results, std::span<const ExecutionRecord> records) {
   Transaction transaction(*database_);
   Insert(results);

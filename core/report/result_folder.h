@@ -68,12 +68,10 @@ class ResultFolder : public ResultStore {
   /// Stores results in one transaction: all or, on an error, none. A case that is already there with the same
   /// digest is left alone; with another digest: kConflict. Lifts the quarantine of what it stores. Values
   /// that are not finite become NULL, -0 becomes 0. Returns how many were new.
-  std::size_t Append(std::span<const CaseResult> results) override;
+  std::size_t Append(std::span<const CaseResult> results);
   /// From now on no other process may write here. InputError if one does.
   void Lock();
-  /// One transaction. A stored case has one record.
-  void AppendExecution(std::span<const ExecutionRecord> records) override;
-  /// One transaction of the two.
+  /// Results as Append does, and one record of each, in one transaction.
   void Store(std::span<const CaseResult> results, std::span<const ExecutionRecord> records) override;
   /// Remembers a case as given up (again: the later reason holds).
   void Quarantine(const QuarantinedCase& quarantined) override;

@@ -41,14 +41,8 @@ struct QuarantinedCase {
 class ResultStore {
  public:
   virtual ~ResultStore() = default;
-  virtual std::size_t Append(std::span<const CaseResult> results) = 0;
-  virtual void AppendExecution(std::span<const ExecutionRecord> records) = 0;
-  /// Both, all or nothing where a process may end between the two: a result whose worker nobody knows could
-  /// not be taken back.
-  virtual void Store(std::span<const CaseResult> results, std::span<const ExecutionRecord> records) {
-    Append(results);
-    AppendExecution(records);
-  }
+  /// All or nothing: a result whose worker nobody knows could not be taken back.
+  virtual void Store(std::span<const CaseResult> results, std::span<const ExecutionRecord> records) = 0;
   virtual void Quarantine(const QuarantinedCase& quarantined) = 0;
   virtual std::vector<std::pair<std::uint64_t, Digest>> Fingerprints() const = 0;
   /// Who returned the result of a case.

@@ -6,7 +6,7 @@
 
 namespace dispersa {
 
-Session::Session(const SessionOptions& options) {
+Session::Session(const SessionOptions& options) : has_keys_(!options.admission.keys.empty()) {
   try {
     peer_ = ParsePeer(options.peer, options.domain);
     const NetworkOptions network = Admit({options.domain, options.address}, options.admission,
@@ -26,7 +26,10 @@ std::optional<Reply> Session::Try(const std::string& method, const Json& argumen
 
 Reply Session::Ask(const std::string& method, const Json& arguments, const std::string& data) {
   if (auto reply = Try(method, arguments, data)) return *std::move(reply);
-  throw Failure{kExitIncomplete, Silence()};
+  // Whoever has keys hears nobody without: it cannot tell us so.
+  throw Failure{
+      kExitIncomplete,
+      Silence() + (has_keys_ ? "" : "; a coordinator with keys answers only clients with keys (--keys)")};
 }
 
 std::string Session::Silence(std::chrono::seconds silent) const {

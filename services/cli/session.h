@@ -48,6 +48,7 @@ class Session {
  private:
   static constexpr std::chrono::seconds kPatience{15};
 
+  bool has_keys_;
   Peer peer_;
   std::unique_ptr<ClientLink> link_;
 };

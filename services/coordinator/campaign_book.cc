@@ -95,12 +95,13 @@ void CampaignBook::Disown(const std::string& worker) {
 }
 
 // Two results, of which one at least is wrong: both are flown again.
-void CampaignBook::Dispute(const std::string& worker, const CaseResult& result) {
+void CampaignBook::Dispute(Claim claim) {
   Flush();
-  const auto other = store_->WorkerOf(result.case_index);
+  const auto other = store_->WorkerOf(claim.case_index);
   if (!other) return;  // nobody to expel: it stays a conflict
-  audit_->Add({worker, result.case_index, Fingerprint(result), true});
-  audit_->Add({*other, result.case_index, ledger_.FingerprintOf(result.case_index), false});
+  audit_->Add({*other, claim.case_index, ledger_.FingerprintOf(claim.case_index), false});
+  claim.is_dispute = true;
+  audit_->Add(claim);
 }
 
 bool CampaignBook::Complete() {
@@ -120,8 +121,9 @@ void CampaignBook::Start(const std::string& worker, std::uint64_t case_index, st
 
 Acceptance CampaignBook::Accept(const std::string& worker, const std::string& host, std::uint64_t attempt,
                                 const CaseResult& result, double now_s) {
+  const Claim claim{worker, result.case_index, Fingerprint(result)};
   const Acceptance acceptance =
-      ledger_.Finished(worker, result.case_index, attempt, Fingerprint(result), now_s);
+      ledger_.Finished(worker, result.case_index, attempt, claim.fingerprint, now_s);
   auto start = starts_.extract({worker, result.case_index});
   switch (acceptance) {
     case Acceptance::kAccepted:
@@ -132,10 +134,10 @@ Acceptance CampaignBook::Accept(const std::string& worker, const std::string& ho
       records_.push_back(start.empty() ? ExecutionRecord{result.case_index, worker, host, "", kUnknown}
                                        : ExecutionRecord{result.case_index, worker, host, start.mapped().utc,
                                                          now_s - start.mapped().now_s});
-      if (audit_) audit_->Consider({worker, result.case_index, Fingerprint(result), false});
+      if (audit_) audit_->Consider(claim);
       break;
     case Acceptance::kConflict:
-      if (audit_) Dispute(worker, result);
+      if (audit_) Dispute(claim);
       spdlog::error("case {}: worker {} on {} returned other bits than were returned before: {}",
                     result.case_index, worker, host,
                     audit_

@@ -72,7 +72,7 @@ class CampaignBook {
   void Flush();
 
  private:
-  void Dispute(const std::string& worker, const CaseResult& result);
+  void Dispute(Claim claim);
 
   Campaign campaign_;
   std::unique_ptr<ResultStore> store_;

@@ -76,7 +76,7 @@ void Coordinator::Advance() {
 
 void Coordinator::Handle(const CoordinatorEvent& event) {
   if (const auto* request = std::get_if<TextRequest>(&event.what)) {
-    if (const auto part = dispatcher_.On(*request, kTextPart)) link_.Send(*part);
+    if (const auto part = dispatcher_.On(*request, kTextPart, now_s_)) link_.Send(*part);
   } else if (const auto* asked = std::get_if<Request>(&event.what)) {
     Answer(*asked);
   } else if (std::holds_alternative<SenderGone>(event.what)) {

@@ -47,6 +47,7 @@ class Coordinator {
   void Publish(CampaignProgress progress);
 
   std::size_t joined() const { return dispatcher_.joined(); }
+  bool Hears() const { return dispatcher_.Hears(now_s_); }
   std::vector<Dispatcher::WorkerView> Workers() const { return dispatcher_.Workers(); }
   const std::optional<std::string>& refusal() const { return dispatcher_.refusal(); }
   const AuditOptions& audit() const { return dispatcher_.audit(); }

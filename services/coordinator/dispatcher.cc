@@ -85,6 +85,7 @@ bool Dispatcher::Join(const std::string& sender, const WorkerStatus& status, dou
     known->second.orders.worker = status.worker;
     known->second.orders.coordinator_epoch = epoch_;
     known->second.spoken_s = now_s - options_.pulse_s;
+    known->second.message_s = now_s;
     if (!supervised_.contains(status.worker)) {
       spdlog::info("worker {} joined: process {} on {}, {} slots", status.worker, status.pid,
                    Printable(status.host), status.slots);
@@ -95,6 +96,12 @@ bool Dispatcher::Join(const std::string& sender, const WorkerStatus& status, dou
   worker.state = status.state;
   worker.flown = status.flown;
   worker.heard_s = now_s;
+  const std::int64_t untold = static_cast<std::int64_t>(status.flown) - worker.results;
+  if (!worker.untold || untold < *worker.untold || status.held.empty()) worker.untold = untold;
+  worker.tells_within_s = untold > *worker.untold ? options_.wordless_s
+                          : status.held.empty() || !status.started.empty()
+                              ? std::numeric_limits<double>::infinity()
+                              : options_.speechless_s;
   // Whatever it says that it can hold: the others shall find cases too.
   worker.hello = {status.engine_version, status.slots,
                   std::min(status.credits, kCreditsPerSlot * status.slots)};
@@ -192,7 +199,8 @@ std::vector<const FlownCase*> Dispatcher::On(const std::string& sender, const Re
     Disagree(sender, "it reports for worker " + report.worker + " of another participant");
     return {};
   }
-  known->second.heard_s = now_s;
+  known->second.heard_s = known->second.message_s = now_s;
+  known->second.results += static_cast<std::int64_t>(report.flown.size());
   const auto campaign = campaigns_.find(report.flight_id);
   if (campaign == campaigns_.end()) {
     known->second.orders.acknowledged.push_back(report.number);  // nobody wants it any more
@@ -225,7 +233,7 @@ void Dispatcher::On(const std::string& sender, const CampaignRefusal& refusal, d
     Disagree(sender, "it refuses a campaign for worker " + refusal.worker + " of another participant");
     return;
   }
-  known->second.heard_s = now_s;
+  known->second.heard_s = known->second.message_s = now_s;
   if (!campaign->second.refused_by.insert(refusal.worker).second) return;
   spdlog::error("worker {} refuses the campaign {}: {}", refusal.worker,
                 campaign->second.book->campaign().name, Printable(refusal.reason, 1000));
@@ -234,9 +242,11 @@ void Dispatcher::On(const std::string& sender, const CampaignRefusal& refusal, d
   known->second.ForgetSent(refusal.flight_id);
 }
 
-std::optional<TextPart> Dispatcher::On(const TextRequest& request, std::size_t limit) const {
+std::optional<TextPart> Dispatcher::On(const TextRequest& request, std::size_t limit, double now_s) {
   const auto campaign = campaigns_.find(request.flight_id);
-  if (campaign == campaigns_.end() || !workers_.contains(request.worker)) return std::nullopt;
+  const auto known = workers_.find(request.worker);
+  if (campaign == campaigns_.end() || known == workers_.end()) return std::nullopt;
+  known->second.message_s = now_s;
   const Campaign& what = campaign->second.book->campaign();
   if (request.offset > what.canonical_yaml.size()) return std::nullopt;
   return TextPart{request.worker,
@@ -246,6 +256,12 @@ std::optional<TextPart> Dispatcher::On(const TextRequest& request, std::size_t l
                   what.canonical_yaml.size(),
                   request.offset,
                   what.canonical_yaml.substr(request.offset, limit)};
+}
+
+bool Dispatcher::Hears(double now_s) const {
+  return std::any_of(workers_.begin(), workers_.end(), [now_s](const auto& each) {
+    return now_s - each.second.message_s <= each.second.tells_within_s;
+  });
 }
 
 void Dispatcher::Gone(const std::string& sender) {

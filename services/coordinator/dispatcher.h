@@ -22,6 +22,8 @@ struct DispatcherOptions {
   double repeat_s = 2.0;         ///< an assignment that a worker does not know is said again after so long
   double pulse_s = 1.0;          ///< every worker hears something at least so often
   double last_messages_s = 0.2;  ///< what a process that ended has sent may still arrive for so long
+  double wordless_s = 5.0;       ///< results are reported, and repeated, more often than that
+  double speechless_s = 60.0;    ///< a text is loaded within that
   std::size_t max_workers = 2000;
   AuditOptions audit;
 };
@@ -45,7 +47,7 @@ class Dispatcher {
   std::vector<const FlownCase*> On(const std::string& sender, const Report& report, double now_s);
   void On(const std::string& sender, const CampaignRefusal& refusal, double now_s);
   /// A part of a campaign's text, at most `limit` bytes; none if the campaign is not open.
-  std::optional<TextPart> On(const TextRequest& request, std::size_t limit) const;
+  std::optional<TextPart> On(const TextRequest& request, std::size_t limit, double now_s);
   /// The participant closed its connection: another one may speak for its workers.
   void Gone(const std::string& sender);
 
@@ -72,6 +74,10 @@ class Dispatcher {
   void Dismiss();
 
   std::size_t joined() const { return workers_.size(); }
+  /// Whether more than statuses gets here. False without workers, and when all of them have had something to
+  /// tell for longer than it takes: one that flew (`wordless_s`), or one that holds cases and flies none
+  /// (`speechless_s`).
+  bool Hears(double now_s) const;
   struct WorkerView {
     std::string worker;
     std::string host;
@@ -109,6 +115,10 @@ class Dispatcher {
     WorkerState state = WorkerState::kReady;
     std::uint64_t flown = 0;
     double heard_s = 0.0;
+    double message_s = 0.0;              ///< when the last one came that was no status
+    double tells_within_s = 0.0;         ///< the next one is due so long after it, by the last status
+    std::int64_t results = 0;            ///< that came
+    std::optional<std::int64_t> untold;  ///< what it has flown less that: the least, when all had come
     double spoken_s = 0.0;
     std::map<std::uint64_t, Sent> sent;  ///< by attempt
     Orders orders;                       ///< what is to be said

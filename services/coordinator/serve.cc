@@ -59,7 +59,7 @@ int ServeCampaign(const ServeOptions& options, const CampaignRequest& request,
   std::optional<Watchdog> watchdog(std::in_place, options.again);
   while (!book.Complete() && !StopRequested()) {
     coordinator.Step(kRound);
-    watchdog->Note(coordinator.joined() > 0, true);
+    watchdog->Note(coordinator.Hears(), true);
     if (!attendance.Check(coordinator.joined() > 0, coordinator.now_s())) {
       book.Flush();
       spdlog::error("no worker for {:.0f} s: given up; the same with --resume goes on", *patience_s);
@@ -113,7 +113,7 @@ int ServeClients(const ServeOptions& options, const std::string& data,
   while (!StopRequested()) {
     coordinator.Step(kRound);
     service.Step();
-    watchdog->Note(coordinator.joined() > 0, service.HasWorkToFly());
+    watchdog->Note(coordinator.Hears(), service.HasWorkToFly());
     attendance.Check(coordinator.joined() > 0 || !service.HasWork(), coordinator.now_s());
     if (metrics && metrics_period.IsDue(coordinator.now_s())) metrics->Set(MetricsText(service, coordinator));
   }

@@ -99,7 +99,8 @@ void Service::FinishReport() {
   reporting_.reset();
 }
 
-// Of campaigns of the same flights one after the other: the later takes over what the earlier has flown.
+// Of campaigns of the same flights one after the other: the later takes over what the earlier has flown. What
+// lacks its report alone, when the coordinator is started again, comes after all that is to be flown.
 const CatalogueEntry* Service::NextToOpen() const {
   std::set<std::string> busy;
   for (const auto& [id, entry] : catalogue_.entries()) {
@@ -107,9 +108,15 @@ const CatalogueEntry* Service::NextToOpen() const {
       busy.insert(entry.flight_id);
   }
   const CatalogueEntry* next = nullptr;
+  const auto comes_before = [](const CatalogueEntry& a, const CatalogueEntry& b) {
+    const auto is_flown = [](const CatalogueEntry& entry) {
+      return entry.done + entry.quarantined >= entry.cases;
+    };
+    return is_flown(a) == is_flown(b) ? ComesBefore(a, b) : is_flown(b);
+  };
   for (const auto& [id, entry] : catalogue_.entries()) {
     if (entry.state != CampaignState::kWaiting || busy.contains(entry.flight_id)) continue;
-    if (next == nullptr || ComesBefore(entry, *next)) next = &entry;
+    if (next == nullptr || comes_before(entry, *next)) next = &entry;
   }
   return next;
 }

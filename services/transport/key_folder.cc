@@ -1,5 +1,7 @@
 #include "services/transport/key_folder.h"
 
+#include <fmt/chrono.h>
+
 #include <algorithm>
 #include <cstring>
 #include <ctime>
@@ -21,13 +23,7 @@ constexpr char kHowTo[] = "give a folder that `dispersa keys issue` made";
   throw NetworkError(what.string() + ": " + problem);
 }
 
-std::string DateText(std::time_t time) {
-  std::tm parts{};
-  gmtime_r(&time, &parts);
-  char text[32] = "";
-  std::strftime(text, sizeof text, "%Y-%m-%d %H:%M UTC", &parts);
-  return text;
-}
+std::string DateText(std::time_t time) { return fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(time)); }
 
 std::string JoinRoles(std::initializer_list<Role> roles) {
   std::string text;

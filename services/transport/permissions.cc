@@ -1,5 +1,7 @@
 #include "services/transport/permissions.h"
 
+#include <fmt/chrono.h>
+
 #include <algorithm>
 #include <iterator>
 #include <vector>
@@ -59,13 +61,7 @@ std::string ToXml(const Rule& rule) {
          rule.verb + ">\n   </allow_rule>\n";
 }
 
-std::string ToXml(std::time_t time) {
-  std::tm parts{};
-  gmtime_r(&time, &parts);
-  char text[32] = "";
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S", &parts);
-  return text;
-}
+std::string ToXml(std::time_t time) { return fmt::format("{:%Y-%m-%dT%H:%M:%S}", fmt::gmtime(time)); }
 
 }  // namespace
 

@@ -1,9 +1,17 @@
 """A browser for tests: Chromium without a window, through chromedriver; nothing leaves the loopback interface."""
 import json
+import os
+import shutil
 import socket
 import subprocess
+import sys
+import tempfile
 import time
+import unittest
 import urllib.request
+
+DRIVER = shutil.which(sys.argv[1])
+DISPERSA, CAMPAIGN = map(os.path.abspath, sys.argv[2:4])
 
 
 def free_port():
@@ -64,3 +72,22 @@ class Browser:
         finally:
             self.driver.terminate()
             self.driver.wait(timeout=20)
+
+
+class BrowserCase(unittest.TestCase):
+    """Tests that share one browser and a temporary folder."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.browser = Browser(DRIVER, os.path.join(cls.temporary.name, "profile"))
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.close()
+        cls.temporary.cleanup()
+
+
+def main():
+    """What each of these programs ends with: PROGRAM CHROMEDRIVER DISPERSA CAMPAIGN [ARGUMENT...]."""
+    unittest.main(argv=sys.argv[:1] + sys.argv[4:], verbosity=2)

@@ -3,26 +3,19 @@
 report_test.py CHROMEDRIVER DISPERSA CAMPAIGN
 """
 
-import os
 import pathlib
 import re
-import shutil
 import subprocess
-import sys
-import tempfile
-import unittest
 
-from browser import Browser
+from browser import CAMPAIGN, DISPERSA, BrowserCase, main
 
-DRIVER = shutil.which(sys.argv[1])
-DISPERSA, CAMPAIGN = map(os.path.abspath, sys.argv[2:4])
 CASES = 40
 
 
-class ReportInABrowser(unittest.TestCase):
+class ReportInABrowser(BrowserCase):
     @classmethod
     def setUpClass(cls):
-        cls.temporary = tempfile.TemporaryDirectory()
+        super().setUpClass()
         cls.folder = pathlib.Path(cls.temporary.name, "result")
         subprocess.run([DISPERSA, "run", CAMPAIGN, "--cases", str(CASES), "--workers", "0", "--out", str(cls.folder),
                         "--quiet"], check=False, timeout=300, stdout=subprocess.DEVNULL)
@@ -30,12 +23,6 @@ class ReportInABrowser(unittest.TestCase):
         with open(cls.folder / "cases.csv", encoding="utf-8") as file:
             names = file.readline().strip().split(",")
             cls.rows = [dict(zip(names, line.strip().split(","))) for line in file]
-        cls.browser = Browser(DRIVER, os.path.join(cls.temporary.name, "profile"))
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.browser.close()
-        cls.temporary.cleanup()
 
     def setUp(self):
         self.browser.open(self.page.as_uri())
@@ -173,4 +160,4 @@ class ReportInABrowser(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1] + sys.argv[4:], verbosity=2)
+    main()

@@ -2,37 +2,21 @@
 
 watch_test.py CHROMEDRIVER DISPERSA CAMPAIGN
 """
-import os
 import pathlib
 import re
-import shutil
 import subprocess
-import sys
 import tempfile
 import time
-import unittest
 
-from browser import Browser, free_port
+from browser import CAMPAIGN, DISPERSA, BrowserCase, free_port, main
 
-DRIVER = shutil.which(sys.argv[1])
-DISPERSA, CAMPAIGN = map(os.path.abspath, sys.argv[2:4])
 CASES = 200
 PATIENCE_S = 60
 DOMAIN = "32"
 NETWORK = ["--domain", DOMAIN, "--address", "127.0.0.1"]
 
 
-class WatchInABrowser(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.temporary = tempfile.TemporaryDirectory()
-        cls.browser = Browser(DRIVER, os.path.join(cls.temporary.name, "profile"))
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.browser.close()
-        cls.temporary.cleanup()
-
+class WatchInABrowser(BrowserCase):
     def setUp(self):
         self.folder = pathlib.Path(tempfile.mkdtemp(dir=self.temporary.name))
         self.processes = []
@@ -143,4 +127,4 @@ class WatchInABrowser(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1] + sys.argv[4:], verbosity=2)
+    main()

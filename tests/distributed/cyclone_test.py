@@ -1,16 +1,15 @@
 """Programs of another vendor's middleware (cyclone/) at our topics: an observer sees what is stored, a worker's results
 count.
 
-Environment as of run_test.py; DISPERSA_CYCLONE names the folder of the two programs.
+Environment as of processes.py; DISPERSA_CYCLONE names the folder of the two programs.
 """
 import csv
 import json
 import os
 import pathlib
 import subprocess
-import unittest
 
-from run_test import BINARIES, CAMPAIGN, ISOLATED, PATIENCE_S, Run, isolate, raise_loopback, wait_for
+from processes import BINARIES, CAMPAIGN, PATIENCE_S, main, wait_for
 from service_case import ServiceCase
 
 CYCLONE = pathlib.Path(os.environ["DISPERSA_CYCLONE"])
@@ -24,11 +23,7 @@ def number(text):
 
 class CycloneTest(ServiceCase):
     DOMAIN = "34"
-
-    @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
-        cls.reference = Run(cls.root / "reference", "--workers", 0, "--cases", CASES).finish()
+    CASES = CASES
 
     def start_foreign(self, program, *arguments):
         """A program of cyclone/ and the file that it writes to."""
@@ -90,8 +85,4 @@ class CycloneTest(ServiceCase):
 
 
 if __name__ == "__main__":
-    if ISOLATED not in os.environ:
-        isolate()
-    else:
-        raise_loopback()
-    unittest.main()
+    main()

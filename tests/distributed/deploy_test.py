@@ -1,6 +1,6 @@
 """Every deployment file is parsed, and every command in it runs: a coordinator and a worker that find each other.
 
-Environment as of run_test.py. Addresses, folders and ports are the test's; nothing else of a command is changed.
+Environment as of processes.py. Addresses, folders and ports are the test's; nothing else of a command is changed.
 """
 import configparser
 import os
@@ -16,7 +16,7 @@ import urllib.request
 
 import yaml
 
-from run_test import BINARIES, ISOLATED, PATIENCE_S, end, isolate, raise_loopback, wait_for
+from processes import BINARIES, PATIENCE_S, end, main, wait_for
 from security_test import keys
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
@@ -143,8 +143,4 @@ class DeployTest(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    if ISOLATED not in os.environ:
-        isolate()
-    else:
-        raise_loopback()
-    unittest.main()
+    main()

@@ -21,8 +21,8 @@ using ::testing::IsEmpty;
 
 class MemoryStore : public ResultStore {
  public:
-  std::size_t Append(std::span<const CaseResult> results) override { return stored += results.size(); }
-  void AppendExecution(std::span<const ExecutionRecord> records) override {
+  void Store(std::span<const CaseResult> results, std::span<const ExecutionRecord> records) override {
+    stored += results.size();
     for (const ExecutionRecord& record : records) worker_of[record.case_index] = record.worker;
   }
   void Quarantine(const QuarantinedCase&) override {}
@@ -132,6 +132,51 @@ TEST_F(DispatcherTest, RevokesWhatItDidNotGiveOrHasTakenBack) {
   holds.held = {99};
   dispatcher_.On("s", holds, 0.0);
   EXPECT_THAT(Tick(0.0).revoked, ElementsAre(99));
+}
+
+TEST_F(DispatcherTest, KnowsThatNothingButStatusesGetsHere) {
+  Open(100);
+  EXPECT_FALSE(dispatcher_.Hears(0.0)) << "nobody";
+  dispatcher_.On("s", Status(), 0.0);
+  const std::uint64_t attempt = Tick(0.0).assignments.at(0).attempt;
+  WorkerStatus flies = Status();
+  flies.held = {attempt};
+  flies.started = {{attempt, 1}};
+  flies.flown = 1;
+  Fly(attempt, 0, 1.0);
+  double now_s = 1.5;
+  // One long flight has nothing to tell.
+  for (; now_s < 100.0; now_s += 0.5) {
+    dispatcher_.On("s", flies, now_s);
+    EXPECT_TRUE(dispatcher_.Hears(now_s));
+  }
+  // It has flown and nothing is heard of it; whoever else is there and has nothing to tell is heard.
+  flies.flown = 2;
+  const double deaf_s = now_s;
+  Fly(attempt, 2, now_s, 2);
+  for (; now_s < deaf_s + 10.0; now_s += 0.5) {
+    flies.flown += 1;
+    dispatcher_.On("s", flies, now_s);
+    EXPECT_EQ(dispatcher_.Hears(now_s), now_s <= deaf_s + 5.0) << now_s;
+  }
+  dispatcher_.On("t", Status("v"), now_s);
+  EXPECT_TRUE(dispatcher_.Hears(now_s));
+  dispatcher_.Gone("t");
+  Fly(attempt, 3, now_s, 3);
+  EXPECT_TRUE(dispatcher_.Hears(now_s)) << "it is heard again";
+}
+
+TEST_F(DispatcherTest, KnowsThatNoTextIsAskedFor) {
+  Open(1);
+  dispatcher_.On("s", Status(), 0.0);
+  WorkerStatus waits = Status();
+  waits.held = {Tick(0.0).assignments.at(0).attempt};
+  for (double now_s = 0.5; now_s < 70.0; now_s += 0.5) {
+    dispatcher_.On("s", waits, now_s);
+    EXPECT_EQ(dispatcher_.Hears(now_s), now_s <= 60.0) << now_s;
+  }
+  EXPECT_TRUE(dispatcher_.On(TextRequest{"w", kFlight, 0}, 4, 70.0));
+  EXPECT_TRUE(dispatcher_.Hears(70.0));
 }
 
 TEST_F(DispatcherTest, SaysSomethingEverySecond) {
@@ -316,13 +361,13 @@ TEST_F(DispatcherTest, CampaignsOfAHigherPriorityFirstAndEqualOnesShare) {
 
 TEST_F(DispatcherTest, GivesOutATextInParts) {
   Open(1);
-  EXPECT_FALSE(dispatcher_.On(TextRequest{"w", kFlight, 0}, 4)) << "to no stranger";
+  EXPECT_FALSE(dispatcher_.On(TextRequest{"w", kFlight, 0}, 4, 0.0)) << "to no stranger";
   dispatcher_.On("s", Status(), 0.0);
-  EXPECT_EQ(dispatcher_.On(TextRequest{"w", kFlight, 0}, 4)->bytes, "0123");
-  EXPECT_EQ(dispatcher_.On(TextRequest{"w", kFlight, 8}, 4)->bytes, "89");
-  EXPECT_EQ(dispatcher_.On(TextRequest{"w", kFlight, 8}, 4)->size, 10u);
-  EXPECT_FALSE(dispatcher_.On(TextRequest{"w", kFlight, 11}, 4));
-  EXPECT_FALSE(dispatcher_.On(TextRequest{"w", std::string(64, 'e'), 0}, 4));
+  EXPECT_EQ(dispatcher_.On(TextRequest{"w", kFlight, 0}, 4, 0.0)->bytes, "0123");
+  EXPECT_EQ(dispatcher_.On(TextRequest{"w", kFlight, 8}, 4, 0.0)->bytes, "89");
+  EXPECT_EQ(dispatcher_.On(TextRequest{"w", kFlight, 8}, 4, 0.0)->size, 10u);
+  EXPECT_FALSE(dispatcher_.On(TextRequest{"w", kFlight, 11}, 4, 0.0));
+  EXPECT_FALSE(dispatcher_.On(TextRequest{"w", std::string(64, 'e'), 0}, 4, 0.0));
 }
 
 class AuditTest : public DispatcherTest {

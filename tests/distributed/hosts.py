@@ -1,6 +1,6 @@
 """Three hosts as network namespaces, joined by a bridge in this program's own, without multicast.
 
-The links can be cut, or lose packets. Needs a network namespace of its own (run_test.isolate).
+The links can be cut, or lose packets. Needs a network namespace of its own (processes.main).
 """
 import os
 import subprocess
@@ -39,11 +39,11 @@ class Host:
     def cut(self):
         _run("ip", "link", "set", self.link, "down")
 
-    def drop(self, direction, percent):
-        """Loses packets that come "in" or go "out" over the link."""
+    def drop(self, direction, percent, *packets):
+        """Loses packets that come "in" or go "out" over the link; of these alone, if an expression of nft names some."""
         which = [] if percent == 100 else ["numgen", "random", "mod", "100", "<", percent]
         _run(*self.inside, "nft", "add", "rule", "ip", "faults", direction, "iif" if direction == "in" else "oif", "eth0",
-             *which, "drop")
+             *packets, *which, "drop")
 
     def heal(self):
         _run("ip", "link", "set", self.link, "up")

@@ -1,6 +1,6 @@
 """Coordinators killed at random moments of campaigns whose flights end at once: each must come to its end when it is resumed.
 
-Environment as of run_test.py. DISPERSA_RESTARTS: how many kills (default 15; tests/run --long: 300).
+Environment as of processes.py. DISPERSA_RESTARTS: how many kills (default 15; tests/run --long: 300).
 """
 import os
 import pathlib
@@ -12,7 +12,7 @@ import tempfile
 import time
 import unittest
 
-from run_test import BINARIES, CAMPAIGN, ISOLATED, Run, end, isolate, raise_loopback, shared_memory_segments, stored
+from processes import BINARIES, CAMPAIGN, Run, end, main, shared_memory_segments, stored
 
 RESTARTS = int(os.environ.get("DISPERSA_RESTARTS", "15"))
 CASES = 400
@@ -91,8 +91,4 @@ class RestartTest(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    if ISOLATED not in os.environ:
-        isolate()
-    else:
-        raise_loopback()
-    unittest.main()
+    main()

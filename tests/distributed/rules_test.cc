@@ -20,8 +20,7 @@ namespace {
 
 class Nowhere : public ResultStore {
  public:
-  std::size_t Append(std::span<const CaseResult>) override { return 0; }
-  void AppendExecution(std::span<const ExecutionRecord>) override {}
+  void Store(std::span<const CaseResult>, std::span<const ExecutionRecord>) override {}
   void Quarantine(const QuarantinedCase&) override {}
   std::vector<std::pair<std::uint64_t, Digest>> Fingerprints() const override { return {}; }
   std::optional<std::string> WorkerOf(std::uint64_t) const override { return std::nullopt; }

@@ -1,9 +1,7 @@
 """dispersa run and the daemons as processes: the same bytes whatever dies, and nothing left behind.
 
-DISPERSA_BINARIES and DISPERSA_CAMPAIGNS name the folders of the programs and of the campaigns. Runs itself again
-in network and mount namespaces of its own where the system permits it.
+Environment as of processes.py.
 """
-import fcntl
 import json
 import os
 import pathlib
@@ -11,110 +9,15 @@ import re
 import shlex
 import shutil
 import signal
-import socket
-import sqlite3
-import struct
 import subprocess
-import sys
 import tempfile
 import time
 import unittest
 
-BINARIES = pathlib.Path(os.environ["DISPERSA_BINARIES"])
-CAMPAIGN = os.environ.get("DISPERSA_TEST_CAMPAIGN", str(pathlib.Path(os.environ["DISPERSA_CAMPAIGNS"], "smoke.yaml")))
-ISOLATED = "DISPERSA_TEST_ISOLATED"
-PATIENCE_S = int(os.environ.get("DISPERSA_PATIENCE_S", "60"))  # for what takes seconds on an idle machine
+from processes import (BINARIES, CAMPAIGN, ISOLATED, PATIENCE_S, Run, is_running, main, parent_and_name,
+                       shared_memory_segments, stored, wait_for)
+
 FLYING_S = 3.0   # of one core for a campaign of these tests: long enough to be killed half-way
-
-
-def isolate():
-    """Starts this program again with its own loopback interface and its own mounts, if that is permitted."""
-    for unshare in (["unshare", "-n", "-m"], ["unshare", "-r", "-n", "-m"]):
-        if shutil.which("unshare") and subprocess.run([*unshare, "true"], stderr=subprocess.DEVNULL).returncode == 0:
-            os.environ[ISOLATED] = "1"
-            os.execvp(unshare[0], [*unshare, sys.executable, "-B", *sys.argv])
-
-
-def raise_loopback():
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as s:
-        name = struct.pack("16sh", b"lo", 0) + bytes(22)
-        flags = struct.unpack("16sh", fcntl.ioctl(s, 0x8913, name)[:18])[1]  # SIOCGIFFLAGS
-        fcntl.ioctl(s, 0x8914, struct.pack("16sh", b"lo", flags | 1) + bytes(22))  # SIOCSIFFLAGS, IFF_UP
-
-
-def is_running(pid):
-    """False for a zombie too: nobody may wait for the orphans of a killed parent."""
-    try:
-        return pathlib.Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
-    except (FileNotFoundError, ProcessLookupError):
-        return False
-
-
-def parent_and_name(pid):
-    text = pathlib.Path(f"/proc/{pid}/stat").read_text()
-    return int(text.rpartition(")")[2].split()[1]), text.partition("(")[2].rpartition(")")[0]
-
-
-def end(processes):
-    """Kills those of a test's processes that still run, and waits for all."""
-    for process in processes:
-        if process.poll() is None:
-            process.kill()
-        process.wait()
-
-
-def wait_for(condition, what):
-    deadline = time.monotonic() + PATIENCE_S
-    while not condition():
-        if time.monotonic() > deadline:
-            raise AssertionError(f"{what}: not within {PATIENCE_S} s")
-        time.sleep(0.02)
-
-
-def shared_memory_segments():
-    return {p.name for p in pathlib.Path("/dev/shm").iterdir() if p.name.startswith("fastrtps")}
-
-
-def stored(out):
-    """Number of cases in the database of a result folder; 0 while there is none."""
-    try:
-        with sqlite3.connect(f"file:{out}/results.sqlite?mode=ro", uri=True) as database:
-            return database.execute("SELECT count(*) FROM cases").fetchone()[0]
-    except sqlite3.OperationalError:
-        return 0
-
-
-class Run:
-    """One `dispersa run` into a folder."""
-
-    def __init__(self, out, *arguments, program="dispersa", campaign=CAMPAIGN):
-        self.out = out
-        command = [BINARIES / program, "run", campaign, "--out", out, *map(str, arguments)]
-        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-
-    def finish(self):
-        self.stdout, self.stderr = self.process.communicate(timeout=3 * PATIENCE_S)
-        self.code = self.process.returncode
-        return self
-
-    def execution(self):
-        return json.loads((self.out / "execution.json").read_text())
-
-    def stored(self):
-        return stored(self.out)
-
-    def wait_half_way(self, cases):
-        wait_for(lambda: self.stored() > 0 or self.process.poll() is not None, "first results")
-        if self.process.poll() is not None:
-            raise AssertionError(f"ended too early: {self.finish().stderr}")
-        if not 0 < self.stored() < cases:
-            raise AssertionError("not half-way: the campaign is too short for this test")
-
-    def workers(self):
-        return [w["pid"] for w in self.execution()["workers"] if w["ended_utc"] is None]
-
-    def csv(self):
-        return (self.out / "cases.csv").read_bytes()
 
 
 class RunTest(unittest.TestCase):
@@ -173,28 +76,26 @@ class RunTest(unittest.TestCase):
             self.assert_same(run.finish())
             self.assertEqual(len(run.execution()["workers"]), workers)
 
-    def end_workers(self, name, how, count=1):
-        """How the workers that were sent this signal half-way ended."""
-        run = self.run_dispersa(name, "--workers", 2)
+    def end_worker(self, name, how):
+        """How the worker that was sent this signal half-way ended. It is the only one, so nothing ends without another."""
+        run = self.run_dispersa(name, "--workers", 1)
         run.wait_half_way(self.cases)
-        victims = run.workers()[:count]
-        for victim in victims:
-            os.kill(victim, how)
+        (victim,) = run.workers()
+        os.kill(victim, how)
         self.assert_same(run.finish())
         ends = {w["pid"]: w["end"] for w in run.execution()["workers"]}
-        self.assertEqual(len(ends), 2 + count, "not replaced")
-        return [ends[victim] for victim in victims]
+        self.assertEqual(len(ends), 2, "not replaced, or more than once")
+        return ends[victim]
 
     def test_a_worker_killed_half_way(self):
-        self.assertEqual(self.end_workers("kill", signal.SIGKILL), ["signal 9 (Killed)"])
+        self.assertEqual(self.end_worker("kill", signal.SIGKILL), "signal 9 (Killed)")
 
     def test_a_worker_that_crashes_half_way(self):
         # The case that it flew is blamed, flown again alone, and not quarantined.
-        self.assertEqual(self.end_workers("crash", signal.SIGSEGV), ["signal 11 (Segmentation fault)"])
+        self.assertEqual(self.end_worker("crash", signal.SIGSEGV), "signal 11 (Segmentation fault)")
 
-    def test_workers_that_stop_beating_are_killed_and_replaced(self):
-        # Both: one that still flew could end the campaign before the silence of the other is noticed.
-        self.assertEqual(self.end_workers("stop", signal.SIGSTOP, count=2), ["signal 9 (Killed)"] * 2)
+    def test_a_worker_that_stops_beating_is_killed_and_replaced(self):
+        self.assertEqual(self.end_worker("stop", signal.SIGSTOP), "signal 9 (Killed)")
 
     def test_the_whole_run_killed_and_resumed(self):
         run = self.run_dispersa("killed", "--workers", 2)
@@ -374,9 +275,4 @@ if ISOLATED not in os.environ:
 
 
 if __name__ == "__main__":
-    if ISOLATED not in os.environ:
-        isolate()
-        print("no namespace of its own: loopback is shared, and no disk is filled", file=sys.stderr)
-    else:
-        raise_loopback()
-    unittest.main()
+    main()

@@ -1,6 +1,6 @@
 """Keys: a signed campaign has the bytes of a run, and each kind of stranger is refused and logged.
 
-Environment as of run_test.py; the strangers are security_probe.cc. Each checks first that the same message gets through
+Environment as of processes.py; the strangers are security_probe.cc. Each checks first that the same message gets through
 where it is allowed, so that a refusal means something.
 """
 import json
@@ -15,7 +15,7 @@ import threading
 import time
 import unittest
 
-from run_test import BINARIES, CAMPAIGN, ISOLATED, PATIENCE_S, Run, end, isolate, raise_loopback, wait_for
+from processes import BINARIES, CAMPAIGN, ISOLATED, PATIENCE_S, Run, end, main, wait_for
 
 PROBE = BINARIES.parent / "tests" / "security_probe"
 CASES = 60
@@ -61,6 +61,11 @@ class SecurityTest(unittest.TestCase):
                        check=True, capture_output=True)
         cls.own_signer.write_text(cls.own_signer.read_text() + (cls.root / "own_signer.key").read_text())
         cls.reference = Run(cls.root / "reference", "--workers", 0, "--cases", CASES).finish()
+        if ISOLATED in os.environ:
+            # As on most machines there is another interface, which a program on all of them prefers to loopback.
+            for command in ("link add eth0 type veth peer name eth1", "addr add 192.0.2.9/24 dev eth0", "link set eth0 up",
+                            "link set eth1 up"):
+                subprocess.run(["ip", *command.split()], check=True)
 
     @classmethod
     def tearDownClass(cls):
@@ -406,12 +411,4 @@ class SecurityTest(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    if ISOLATED not in os.environ:
-        isolate()
-    else:
-        raise_loopback()
-        # As on most machines there is another interface, which a program on all of them prefers to loopback.
-        for command in ("link add eth0 type veth peer name eth1", "addr add 192.0.2.9/24 dev eth0", "link set eth0 up",
-                        "link set eth1 up"):
-            subprocess.run(["ip", *command.split()], check=True)
-    unittest.main()
+    main()

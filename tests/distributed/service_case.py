@@ -1,6 +1,6 @@
-"""What tests of a coordinator with --data share: its programs as processes, started and ended by the test.
+"""What tests of one coordinator share: its programs as processes, started and ended by the test.
 
-Environment as of run_test.py.
+Environment as of processes.py.
 """
 import json
 import pathlib
@@ -9,16 +9,21 @@ import subprocess
 import tempfile
 import unittest
 
-from run_test import BINARIES, PATIENCE_S, end
+from processes import BINARIES, PATIENCE_S, Run, end
 
 
 class ServiceCase(unittest.TestCase):
     DOMAIN: str  # of the class that tests; no other's
+    CASES = 0    # of the reference, a run without workers whose bytes are expected; 0: there is none
+    REFERENCE_PROGRAM = "dispersa"
 
     @classmethod
     def setUpClass(cls):
         cls.NETWORK = ["--domain", cls.DOMAIN, "--address", "127.0.0.1"]
         cls.root = pathlib.Path(tempfile.mkdtemp(prefix="dispersa-service-"))
+        if cls.CASES:
+            cls.reference = Run(cls.root / "reference", "--workers", 0, "--cases", cls.CASES,
+                                program=cls.REFERENCE_PROGRAM).finish()
 
     @classmethod
     def tearDownClass(cls):

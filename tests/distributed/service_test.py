@@ -1,16 +1,14 @@
 """A coordinator with --data and its clients: launched campaigns end with the bytes of a run, whatever is killed.
 
-Environment as of run_test.py.
+Environment as of processes.py.
 """
 import json
-import os
 import signal
 import subprocess
 import time
-import unittest
 
 from restart_test import write_tiny_campaign
-from run_test import BINARIES, CAMPAIGN, ISOLATED, PATIENCE_S, Run, isolate, raise_loopback, stored, wait_for
+from processes import BINARIES, CAMPAIGN, PATIENCE_S, Run, main, stored, wait_for
 from service_case import ServiceCase
 
 CASES = 60
@@ -18,12 +16,12 @@ CASES = 60
 
 class ServiceTest(ServiceCase):
     DOMAIN = "36"
+    CASES = CASES
 
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
         cls.tiny = write_tiny_campaign(cls.root)
-        cls.reference = Run(cls.root / "reference", "--workers", 0, "--cases", CASES).finish()
         cls.tiny_reference = Run(cls.root / "tiny", "--workers", 0, "--cases", 300, campaign=cls.tiny).finish()
 
     def test_launch_watch_fetch(self):
@@ -170,12 +168,8 @@ class ServiceTest(ServiceCase):
     def test_without_a_coordinator_a_client_says_so(self):
         done = subprocess.run([BINARIES / "dispersa", "list", *self.NETWORK], capture_output=True, text=True, timeout=PATIENCE_S)
         self.assertEqual(done.returncode, 5)
-        self.assertEqual(done.stderr, "no coordinator has answered at 127.0.0.1:16405 for 15 s\n")
+        self.assertEqual(done.stderr, "no coordinator has answered at 127.0.0.1:16405 for 15 s; a coordinator with keys answers only clients with keys (--keys)\n")
 
 
 if __name__ == "__main__":
-    if ISOLATED not in os.environ:
-        isolate()
-    else:
-        raise_loopback()
-    unittest.main()
+    main()

@@ -37,14 +37,11 @@ struct Disk {
 class DiskStore : public ResultStore {
  public:
   explicit DiskStore(Disk& disk) : disk_(disk) {}
-  std::size_t Append(std::span<const CaseResult> results) override {
+  void Store(std::span<const CaseResult> results, std::span<const ExecutionRecord> records) override {
     for (const CaseResult& result : results) {
       const auto [row, added] = disk_.rows.emplace(result.case_index, Fingerprint(result));
       EXPECT_EQ(row->second, Fingerprint(result)) << "another result over the stored one";
     }
-    return results.size();
-  }
-  void AppendExecution(std::span<const ExecutionRecord> records) override {
     for (const ExecutionRecord& record : records) disk_.worker_of[record.case_index] = record.worker;
   }
   void Quarantine(const QuarantinedCase& quarantined) override {
@@ -259,7 +256,7 @@ class World {
       dispatcher_->On(packet.from, *refusal, clock_s_);
     }
     if (const auto* request = std::get_if<TextRequest>(&packet.message)) {
-      if (const auto part = dispatcher_->On(*request, kTextPart)) Send("", part->worker, *part);
+      if (const auto part = dispatcher_->On(*request, kTextPart, clock_s_)) Send("", part->worker, *part);
     }
   }
 

@@ -1,21 +1,19 @@
 """dispersa watch --web over HTTP: what the page is sent, to whom, and what a coordinator that dies changes.
 
-Environment as of run_test.py. tests/browser/watch_test.py looks at the page itself.
+Environment as of processes.py. tests/browser/watch_test.py looks at the page itself.
 """
 import csv
 import http.client
 import json
 import math
-import os
 import pathlib
 import re
 import signal
 import socket
 import subprocess
 import threading
-import unittest
 
-from run_test import CAMPAIGN, ISOLATED, PATIENCE_S, Run, isolate, raise_loopback, stored, wait_for
+from processes import CAMPAIGN, PATIENCE_S, main, stored, wait_for
 from service_case import ServiceCase
 
 CASES = 60
@@ -82,11 +80,7 @@ def bars(histograms):
 
 class WebTest(ServiceCase):
     DOMAIN = "33"
-
-    @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
-        cls.reference = Run(cls.root / "reference", "--workers", 0, "--cases", CASES).finish()
+    CASES = CASES
 
     def watch(self, identity, *arguments):
         """A watch with a page; its port is self.port."""
@@ -225,8 +219,4 @@ class WebTest(ServiceCase):
 
 
 if __name__ == "__main__":
-    if ISOLATED not in os.environ:
-        isolate()
-    else:
-        raise_loopback()
-    unittest.main()
+    main()

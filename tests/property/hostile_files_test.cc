@@ -205,7 +205,7 @@ TEST_F(HostileFiles, NoWrongNumberComesOutOfADamagedDatabase) {
       folder.Append({{result}});
       stored[i] = Fingerprint(result);
     }
-    folder.AppendExecution({{{0, "w", "h", "", 1.0}}});
+    folder.Store({}, {{{0, "w", "h", "", 1.0}}});
   }
   const fs::path database = root_ / "out/results.sqlite";
   const std::string good = Read(database);

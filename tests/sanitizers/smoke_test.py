@@ -1,6 +1,6 @@
 """The distributed smoke campaign: what a service meets in a day, in one minute; made to be run under sanitizers.
 
-Environment as of run_test.py, its programs those under test; DISPERSA_REFERENCE: the folder of the ordinary programs,
+Environment as of processes.py, its programs those under test; DISPERSA_REFERENCE: the folder of the ordinary programs,
 whose bytes are expected; DISPERSA_NOOP_WORKER as of audit_test.py.
 """
 import os
@@ -10,11 +10,10 @@ import signal
 import socket
 import sqlite3
 import sys
-import unittest
 import urllib.request
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "distributed"))
-from run_test import BINARIES, CAMPAIGN, ISOLATED, PATIENCE_S, Run, isolate, raise_loopback, wait_for  # noqa: E402
+from processes import CAMPAIGN, PATIENCE_S, Run, main, wait_for  # noqa: E402
 from service_case import ServiceCase  # noqa: E402
 from web_test import Viewer  # noqa: E402
 
@@ -33,11 +32,8 @@ def free_port():
 
 class SmokeTest(ServiceCase):
     DOMAIN = "33"
-
-    @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
-        cls.reference = Run(cls.root / "reference", "--workers", 0, "--cases", CASES, program=REFERENCE).finish()
+    CASES = CASES
+    REFERENCE_PROGRAM = REFERENCE
 
     def run_dispersa(self, name, *arguments):
         run = Run(self.root / name, "--cases", CASES, *arguments).finish()
@@ -113,8 +109,4 @@ class SmokeTest(ServiceCase):
 
 
 if __name__ == "__main__":
-    if ISOLATED not in os.environ:
-        isolate()
-    else:
-        raise_loopback()
-    unittest.main()
+    main()

@@ -72,8 +72,8 @@ TEST(Reports, AreTheSameBytesForAnyOrderAndNumberOfThreads) {
   ResultFolder other = ResultFolder::Create(temporary / "other", TheCampaign());
   std::vector<CaseResult> reversed(TheResults().rbegin(), TheResults().rend());
   for (const CaseResult& result : reversed) other.Append({{result}});
-  other.AppendExecution(
-      {{{.case_index = 0, .worker = "w", .host = "somewhere", .started_utc = "", .seconds = 1.0}}});
+  other.Store({},
+              {{{.case_index = 0, .worker = "w", .host = "somewhere", .started_utc = "", .seconds = 1.0}}});
   WriteReports(other, TheCampaign(), {.history_cases = 3, .threads = 3, .progress = {}});
 
   const std::map<std::string, std::string> files = Files(temporary / "one");

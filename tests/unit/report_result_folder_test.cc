@@ -155,11 +155,11 @@ TEST(ResultFolder, KeepsQuarantineUntilThereIsAResult) {
 TEST(ResultFolder, KeepsTelemetryApart) {
   TemporaryFolder temporary;
   ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(10));
-  folder.AppendExecution({{{.case_index = 3,
-                            .worker = "w1",
-                            .host = "h",
-                            .started_utc = "2026-01-01T00:00:00Z",
-                            .seconds = 0.25}}});
+  folder.Store({}, {{{.case_index = 3,
+                      .worker = "w1",
+                      .host = "h",
+                      .started_utc = "2026-01-01T00:00:00Z",
+                      .seconds = 0.25}}});
   EXPECT_EQ(Query(temporary / "out",
                   "SELECT case_index || worker || host || started_utc || seconds FROM execution"),
             "3w1h2026-01-01T00:00:00Z0.25");
@@ -169,9 +169,8 @@ TEST(ResultFolder, KeepsTelemetryApart) {
 TEST(ResultFolder, KnowsWhoReturnedWhatAndForgetsAllOfOneWorker) {
   TemporaryFolder temporary;
   ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(10));
-  folder.Append({{MakeCase(1), MakeCase(2), MakeCase(3)}});
-  folder.AppendExecution(
-      {{{1, "liar", "h", "", kNaN}, {2, "honest", "h", "", kNaN}, {3, "liar", "h", "", kNaN}}});
+  folder.Store({{MakeCase(1), MakeCase(2), MakeCase(3)}},
+               {{{1, "liar", "h", "", kNaN}, {2, "honest", "h", "", kNaN}, {3, "liar", "h", "", kNaN}}});
   EXPECT_EQ(folder.WorkerOf(2), "honest");
   EXPECT_EQ(folder.WorkerOf(4), std::nullopt);
 
@@ -191,8 +190,7 @@ TEST(ResultFolder, KnowsWhoReturnedWhatAndForgetsAllOfOneWorker) {
   EXPECT_EQ(folder.WorkerOf(1), std::nullopt);
   EXPECT_TRUE(folder.Disown("liar").empty());
   // That the liar's result of a case was right says nothing of the next one's.
-  folder.Append({{MakeCase(3)}});
-  folder.AppendExecution({{{3, "next", "h", "", kNaN}}});
+  folder.Store({{MakeCase(3)}}, {{{3, "next", "h", "", kNaN}}});
   EXPECT_THAT(unaudited(), ElementsAre("next3"));
 }
 

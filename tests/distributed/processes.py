@@ -1,0 +1,126 @@
+"""What the tests of programs share: runs and daemons as processes, what they leave behind, and namespaces of their own.
+
+DISPERSA_BINARIES and DISPERSA_CAMPAIGNS name the folders of the programs and of the campaigns.
+"""
+import fcntl
+import json
+import os
+import pathlib
+import shutil
+import socket
+import sqlite3
+import struct
+import subprocess
+import sys
+import time
+import unittest
+
+BINARIES = pathlib.Path(os.environ["DISPERSA_BINARIES"])
+CAMPAIGN = os.environ.get("DISPERSA_TEST_CAMPAIGN", str(pathlib.Path(os.environ["DISPERSA_CAMPAIGNS"], "smoke.yaml")))
+ISOLATED = "DISPERSA_TEST_ISOLATED"
+PATIENCE_S = int(os.environ.get("DISPERSA_PATIENCE_S", "60"))  # for what takes seconds on an idle machine
+
+
+def _isolate():
+    """Starts this program again with its own loopback interface and its own mounts, if that is permitted."""
+    for unshare in (["unshare", "-n", "-m"], ["unshare", "-r", "-n", "-m"]):
+        if shutil.which("unshare") and subprocess.run([*unshare, "true"], stderr=subprocess.DEVNULL).returncode == 0:
+            os.environ[ISOLATED] = "1"
+            os.execvp(unshare[0], [*unshare, sys.executable, "-B", *sys.argv])
+
+
+def _raise_loopback():
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as s:
+        name = struct.pack("16sh", b"lo", 0) + bytes(22)
+        flags = struct.unpack("16sh", fcntl.ioctl(s, 0x8913, name)[:18])[1]  # SIOCGIFFLAGS
+        fcntl.ioctl(s, 0x8914, struct.pack("16sh", b"lo", flags | 1) + bytes(22))  # SIOCSIFFLAGS, IFF_UP
+
+
+def is_running(pid):
+    """False for a zombie too: nobody may wait for the orphans of a killed parent."""
+    try:
+        return pathlib.Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+
+
+def parent_and_name(pid):
+    text = pathlib.Path(f"/proc/{pid}/stat").read_text()
+    return int(text.rpartition(")")[2].split()[1]), text.partition("(")[2].rpartition(")")[0]
+
+
+def end(processes):
+    """Kills those of a test's processes that still run, and waits for all."""
+    for process in processes:
+        if process.poll() is None:
+            process.kill()
+        process.wait()
+
+
+def wait_for(condition, what):
+    deadline = time.monotonic() + PATIENCE_S
+    while not condition():
+        if time.monotonic() > deadline:
+            raise AssertionError(f"{what}: not within {PATIENCE_S} s")
+        time.sleep(0.02)
+
+
+def shared_memory_segments():
+    return {p.name for p in pathlib.Path("/dev/shm").iterdir() if p.name.startswith("fastrtps")}
+
+
+def stored(out):
+    """Number of cases in the database of a result folder; 0 while there is none."""
+    try:
+        with sqlite3.connect(f"file:{out}/results.sqlite?mode=ro", uri=True) as database:
+            return database.execute("SELECT count(*) FROM cases").fetchone()[0]
+    except sqlite3.OperationalError:
+        return 0
+
+
+class Run:
+    """One `dispersa run` into a folder."""
+
+    def __init__(self, out, *arguments, program="dispersa", campaign=CAMPAIGN):
+        self.out = out
+        command = [BINARIES / program, "run", campaign, "--out", out, *map(str, arguments)]
+        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+    def finish(self):
+        self.stdout, self.stderr = self.process.communicate(timeout=3 * PATIENCE_S)
+        self.code = self.process.returncode
+        return self
+
+    def execution(self):
+        return json.loads((self.out / "execution.json").read_text())
+
+    def stored(self):
+        return stored(self.out)
+
+    def wait_half_way(self, cases):
+        wait_for(lambda: self.stored() > 0 or self.process.poll() is not None, "first results")
+        if self.process.poll() is not None:
+            raise AssertionError(f"ended too early: {self.finish().stderr}")
+        if not 0 < self.stored() < cases:
+            raise AssertionError("not half-way: the campaign is too short for this test")
+
+    def workers(self):
+        return [w["pid"] for w in self.execution()["workers"] if w["ended_utc"] is None]
+
+    def csv(self):
+        return (self.out / "cases.csv").read_bytes()
+
+
+def main(need_isolation=None):
+    """What each of these programs ends with: its tests, in namespaces of its own where the system permits it.
+
+    need_isolation: why the program cannot do without; it then ends with this text.
+    """
+    if ISOLATED in os.environ:
+        _raise_loopback()
+    else:
+        _isolate()
+        if need_isolation:
+            sys.exit(f"no namespace of its own: {need_isolation}")
+        print("no namespace of its own: the loopback interface is shared", file=sys.stderr)
+    unittest.main()
