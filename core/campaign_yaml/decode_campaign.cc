@@ -418,7 +418,11 @@ DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vect
   return decoded;
 }
 
-std::string VehicleSha256(const InputNode& vehicle) { return Sha256Hex(CanonicalText(vehicle)); }
+std::string VehicleSha256(const InputNode& vehicle) {
+  InputNode rigid = vehicle;
+  std::erase_if(rigid.members, [](const InputMember& member) { return member.key == "structure_beam"; });
+  return Sha256Hex(CanonicalText(rigid));
+}
 
 std::string RequirementsId(const InputNode& campaign) {
   InputNode judged = MapAt(campaign);

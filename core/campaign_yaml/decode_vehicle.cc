@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "core/campaign_yaml/decode.h"
+#include "core/campaign_yaml/decode_beam.h"
 #include "core/campaign_yaml/inline_files.h"
 #include "core/campaign_yaml/struct_problems.h"
 #include "core/campaign_yaml/yaml_reader.h"
@@ -228,6 +229,10 @@ Vehicle DecodeVehicle(const InputNode& node, const std::string& path, std::vecto
                                                      map.PathOf("reaction_control"), problems);
     if (const InputNode* limits = map.Optional("limits")) {
       vehicle.limits = DecodeLimits(*limits, map.PathOf("limits"), problems);
+    }
+    if (const InputNode* beam = map.Optional("structure_beam")) {
+      vehicle.structure_beam =
+          DecodeStructureBeam(*beam, map.PathOf("structure_beam"), vehicle.stages.size(), problems);
     }
   }
   if (problems.size() == before) AddStructProblems(Problems(vehicle), node, path, problems);

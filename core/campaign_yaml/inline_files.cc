@@ -1,5 +1,6 @@
 #include "core/campaign_yaml/inline_files.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 
@@ -85,6 +86,38 @@ void InlineStageFiles(InputNode& stage, const std::string& path, FileNames names
   for (const char* name : {"clp", "cmq", "cnr"}) replace(name, {"mach", name});
 }
 
+// A vehicle that is based on another has the other's keys where it has none itself. It becomes an absent node
+// if there is no other, so that nothing more is said about what it lacks.
+void InlineBase(InputNode& vehicle, FileNames names, std::vector<InputProblem>& problems) {
+  const auto is_base = [](const InputMember& member) { return member.key == "based_on"; };
+  const auto found = std::find_if(vehicle.members.begin(), vehicle.members.end(), is_base);
+  if (found == vehicle.members.end()) return;
+  InputNode base = std::move(found->value);
+  vehicle.members.erase(found);
+  if (base.kind == InputNode::Kind::kScalar) {
+    Replace(&base, "based_on", names, YamlParser(problems), problems);
+    if (base.file == nullptr || !CheckSchema(base, kVehicleSchema, false, "", problems)) {
+      vehicle = InputNode();
+      return;
+    }
+  }
+  if (base.kind != InputNode::Kind::kMap) {
+    AddProblem(problems, base, "based_on", base.Describe() + " is not a vehicle",
+               "the name of a vehicle file");
+    vehicle = InputNode();
+    return;
+  }
+  if (const InputNode* deeper = base.Find("based_on")) {
+    AddProblem(problems, *deeper, "based_on", "the vehicle that another is based on is based on a third",
+               "a vehicle file without based_on");
+    vehicle = InputNode();
+    return;
+  }
+  for (InputMember& member : base.members) {
+    if (vehicle.Find(member.key) == nullptr) vehicle.members.push_back(std::move(member));
+  }
+}
+
 }  // namespace
 
 InputNode ReadYamlFile(const std::string& path, std::vector<InputProblem>& problems) {
@@ -98,6 +131,10 @@ InputNode ReadYamlFile(const std::string& path, std::vector<InputProblem>& probl
 }
 
 void InlineVehicleFiles(InputNode& vehicle, FileNames names, std::vector<InputProblem>& problems) {
+  InlineBase(vehicle, names, problems);
+  if (InputNode* beam = vehicle.Find("structure_beam"))
+    Replace(beam->Find("modes_table"), "structure_beam.modes_table", names,
+            CsvParser(kModeTableColumns, problems), problems);
   InputNode* aerodynamics = vehicle.Find("aerodynamics");
   InputNode* tables = aerodynamics == nullptr ? nullptr : aerodynamics->Find("tables");
   if (tables == nullptr) return;

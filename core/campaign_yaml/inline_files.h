@@ -24,6 +24,9 @@ inline const std::vector<std::string> kAeroTableColumns = {
 inline const std::vector<std::string> kMassTableColumns = {"propellant_kg", "mass_kg",   "cg_station_m",
                                                            "ixx_kg_m2",     "iyy_kg_m2", "izz_kg_m2",
                                                            "ixy_kg_m2",     "ixz_kg_m2", "iyz_kg_m2"};
+inline const std::vector<std::string> kModeTableColumns = {
+    "stage",     "propellant_kg", "plane",    "mode", "frequency_hz", "generalized_mass_kg",
+    "station_m", "deflection",    "slope_1_m"};
 
 /// Whether a text may name files: a canonical text, which lives anywhere, may not.
 enum class FileNames { kAllowed, kRefused };
@@ -31,9 +34,9 @@ enum class FileNames { kAllowed, kRefused };
 /// Reads a YAML file. An unreadable one is a problem at line 1, column 1.
 InputNode ReadYamlFile(const std::string& path, std::vector<InputProblem>& problems);
 
-/// Replaces what names a file: a campaign's vehicle, reference, autopilot and wind tables, a vehicle's
-/// aerodynamic tables, a scenario's wind, mass and coefficient tables. Names are relative to the file in
-/// which they stand.
+/// Replaces what names a file: a campaign's vehicle, reference, autopilot and wind tables, a vehicle's base,
+/// aerodynamic tables and table of modes, a scenario's wind, mass and coefficient tables. Names are relative
+/// to the file in which they stand.
 void InlineCampaignFiles(InputNode& campaign, FileNames names, std::vector<InputProblem>& problems);
 void InlineVehicleFiles(InputNode& vehicle, FileNames names, std::vector<InputProblem>& problems);
 void InlineScenarioFiles(InputNode& scenario, FileNames names, std::vector<InputProblem>& problems);

@@ -20,6 +20,10 @@ inline constexpr Unit kArea[] = {{"m2", 1.0}};
 inline constexpr Unit kTime[] = {{"s", 1.0}, {"ms", 1e-3}};
 inline constexpr Unit kMass[] = {{"kg", 1.0}, {"ton", 1e3}};
 inline constexpr Unit kMassFlow[] = {{"kg_s", 1.0}};
+inline constexpr Unit kInertia[] = {{"kg_m2", 1.0}};
+inline constexpr Unit kMassPerLength[] = {{"kg_m", 1.0}};
+inline constexpr Unit kModulus[] = {{"gpa", 1e9}, {"mpa", 1e6}, {"pa", 1.0}};
+inline constexpr Unit kBendingStiffness[] = {{"n_m2", 1.0}, {"kn_m2", 1e3}, {"mn_m2", 1e6}};
 inline constexpr Unit kForce[] = {{"n", 1.0}, {"kn", 1e3}};
 inline constexpr Unit kPressure[] = {{"pa", 1.0}, {"kpa", 1e3}};
 inline constexpr Unit kPressureAngle[] = {{"pa_rad", 1.0}, {"kpa_rad", 1e3}, {"pa_deg", kRadPerDeg}};
@@ -38,12 +42,12 @@ inline constexpr Unit kPerAngle[] = {{"per_deg", kDegPerRad}, {"per_rad", 1.0}};
 /// What may stand behind the last underscores of a key and is a unit, ours or not: to tell a wrong unit from
 /// a wrong name.
 inline constexpr std::string_view kUnitLike[] = {
-    "m",      "km",   "mm",   "um",     "cm",     "ft",      "in",      "mi",      "nmi",     "m2",
-    "ft2",    "s",    "ms",   "min",    "h",      "kg",      "ton",     "t",       "g",       "lb",
-    "lbm",    "slug", "kg_s", "lb_s",   "n",      "kn",      "mn",      "lbf",     "pa",      "kpa",
-    "bar",    "psf",  "psi",  "pa_rad", "pa_deg", "kpa_rad", "m_s",     "km_s",    "ft_s",    "kt",
-    "kts",    "mph",  "deg",  "rad",    "arcmin", "deg_s",   "rad_s",   "hz",      "rpm",     "deg_s2",
-    "rad_s2", "1_s",  "1_s2", "1_s3", "per_km", "per_m",  "per_m_s", "per_deg", "per_rad", "percent", "factor",
-    "kg_m2"};
+    "m",      "km",    "mm",   "um",     "cm",     "ft",      "in",      "mi",      "nmi",     "m2",
+    "ft2",    "s",     "ms",   "min",    "h",      "kg",      "ton",     "t",       "g",       "lb",
+    "lbm",    "slug",  "kg_s", "lb_s",   "n",      "kn",      "mn",      "lbf",     "pa",      "kpa",
+    "bar",    "psf",   "psi",  "pa_rad", "pa_deg", "kpa_rad", "m_s",     "km_s",    "ft_s",    "kt",
+    "kts",    "mph",   "deg",  "rad",    "arcmin", "deg_s",   "rad_s",   "hz",      "rpm",     "deg_s2",
+    "rad_s2", "1_s",   "1_s2", "1_s3",   "per_km", "per_m",   "per_m_s", "per_deg", "per_rad", "percent",
+    "factor", "kg_m2", "kg_m", "gpa",    "mpa",    "n_m2",    "kn_m2",   "mn_m2",   "1_m"};
 
 }  // namespace dispersa

@@ -267,6 +267,36 @@ std::vector<double> MapReader::Numbers(const std::string& key, const Range& rang
   return values;
 }
 
+std::array<double, 2> MapReader::Ends(const std::string& stem, Dimension dimension, const Range& range) {
+  std::string key;
+  double scale = 1.0;
+  const InputNode* value = FindQuantity(stem, dimension, &key, &scale);
+  if (value == nullptr) {
+    ReportMissing(quantities_.back().second, range.Text(dimension.front().scale));
+    return {};
+  }
+  if (value->kind != InputNode::Kind::kList) {
+    const double number = ReadNumber(*value, PathOf(key), problems_, range, scale);
+    return {number, number};
+  }
+  std::array<double, 2> ends{};
+  std::size_t i = 0;
+  Each(key, 2, 2, [&](const InputNode& item, const std::string& path) {
+    ends[i++] = ReadNumber(item, path, problems_, range, scale);
+  });
+  return ends;
+}
+
+bool MapReader::Has(const std::string& stem, Dimension dimension) const {
+  return std::any_of(dimension.begin(), dimension.end(), [&](const Unit& unit) {
+    return node_.Find(stem + "_" + std::string(unit.suffix)) != nullptr;
+  });
+}
+
+void MapReader::IgnoreQuantity(const std::string& stem, Dimension dimension) {
+  for (const Unit& unit : dimension) Ignore(stem + "_" + std::string(unit.suffix));
+}
+
 const InputNode* MapReader::List(const std::string& key, std::size_t low_count, std::size_t high_count) {
   const InputNode* list = Optional(key);
   const std::string allowed = CountText(low_count, high_count);

@@ -4,6 +4,7 @@
 // that no problem was recorded before it uses the result.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -81,6 +82,11 @@ class MapReader {
                                  std::string* key = nullptr);
   std::vector<double> Numbers(const std::string& key, const Range& range, std::size_t low_count,
                               std::size_t high_count = SIZE_MAX);
+  /// The key is that of a Quantity; its value one number, which counts for both ends of something, or a list
+  /// of two.
+  std::array<double, 2> Ends(const std::string& stem, Dimension dimension, const Range& range);
+  /// Whether a Quantity is there, in any unit. It still has to be read.
+  bool Has(const std::string& stem, Dimension dimension) const;
 
   /// One of a list of words.
   template <typename Enum>
@@ -109,6 +115,7 @@ class MapReader {
 
   /// A key that is legal and read by someone else.
   void Ignore(const std::string& key) { known_.insert(key); }
+  void IgnoreQuantity(const std::string& stem, Dimension dimension);
 
  private:
   struct Missing {

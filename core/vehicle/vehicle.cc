@@ -165,7 +165,9 @@ std::vector<VehicleProblem> Problems(const Vehicle& vehicle) {
     check.Positive(rcs.specific_impulse_s, "reaction_control.specific_impulse_s");
     check.Positive(rcs.minimum_on_time_s, "reaction_control.minimum_on_time_s");
   }
-  return check.Take();
+  std::vector<VehicleProblem> problems = check.Take();
+  if (problems.empty() && vehicle.structure_beam) problems = BeamProblems(vehicle);
+  return problems;
 }
 
 }  // namespace dispersa

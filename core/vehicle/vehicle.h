@@ -5,11 +5,13 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/math/linear.h"
 #include "core/math/table.h"
+#include "core/vehicle/structure_beam.h"
 
 namespace dispersa {
 
@@ -136,6 +138,7 @@ struct Vehicle {
   std::vector<AeroTable> aerodynamics;  ///< one a stack; empty: built up from the profile
   ReactionControl reaction_control;
   StructuralLimits limits;
+  std::optional<StructureBeam> structure_beam;  ///< none: the vehicle is rigid
 };
 
 /// What contradicts itself in a vehicle, each with the path of the value ("stages[1].propellant_mass_kg").

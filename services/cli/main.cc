@@ -29,6 +29,7 @@ void AddCommands(CLI::App& app, Invocation& invocation) {
   AddReplayCommand(app, invocation);
   AddReportCommand(app, invocation);
   AddMarginsCommand(app, invocation);
+  AddModesCommand(app, invocation);
   AddTuneCommand(app, invocation);
   AddExportCommand(app, invocation);
   AddCompareCommand(app, invocation);

@@ -85,6 +85,50 @@ TEST(CliProgram, BadUsageIsTwo) {
   }
 }
 
+TEST(CliProgram, ModesShowsHowAVehicleBends) {
+  const InputFiles files;
+  const Output text = Dispersa("modes " + files.Path("flexible.yaml") + " --out " + files.Path("plots"));
+  EXPECT_EQ(text.code, 0) << text.error;
+  EXPECT_THAT(text.text, HasSubstr("stage 1 and above, plane y, z\n"));
+  EXPECT_THAT(text.text, HasSubstr("nozzle pivot"));
+  EXPECT_EQ(Lines(text.text).back(), "page: " + files.Path("plots/modes.html"));
+  EXPECT_THAT(ReadWholeFile(files.Path("plots/modes.html")), HasSubstr("Stack of first and all above"));
+
+  const Output output = Dispersa("modes " + files.Path("flexible.yaml") + " --json --shapes");
+  EXPECT_EQ(output.code, 0) << output.error;
+  const auto json = nlohmann::json::parse(output.text);
+  EXPECT_EQ(json["schema"], "dispersa/modes/1");
+  ASSERT_EQ(json["stacks"].size(), 2u * 3u);  // stages, levels
+  EXPECT_EQ(json["stacks"][2]["stage"], 1);
+  EXPECT_EQ(json["stacks"][2]["propellant_kg"], 0.0);
+  EXPECT_EQ(json["stacks"][2]["mass_kg"], 1500.0);
+  const auto& modes = json["stacks"][2]["modes"];
+  ASSERT_EQ(modes.size(), 2u * 3u);  // planes, modes
+  EXPECT_EQ(modes[0]["plane"], "y");
+  EXPECT_EQ(modes[3]["plane"], "z");
+  EXPECT_GT(modes[1]["frequency_hz"], modes[0]["frequency_hz"]);
+  EXPECT_GT(modes[0]["generalized_mass_kg"], 0.0);
+  EXPECT_EQ(modes[0]["stations"][0]["name"], "gyro");
+  EXPECT_EQ(modes[0]["shape"]["station_m"].size(), modes[0]["shape"]["slope_1_m"].size());
+}
+
+TEST(CliProgram, ModesOfARigidOrWrongVehicleAreBadInput) {
+  const InputFiles files;
+  const Output rigid = Dispersa("modes " + files.Path("vehicle.yaml"));
+  EXPECT_EQ(rigid.code, 2);
+  EXPECT_EQ(rigid.text, "");
+  EXPECT_EQ(rigid.error, files.Path("vehicle.yaml") +
+                             ":1:1: the vehicle is rigid, allowed: a vehicle with a structure_beam\n");
+  files.Edit("flexible.yaml", "thickness_mm: 4", "thickness_mm: 501");
+  EXPECT_EQ(Dispersa("modes " + files.Path("flexible.yaml")).code, 2);
+  EXPECT_EQ(Dispersa("modes " + files.Path("none.yaml")).code, 2);
+  EXPECT_EQ(Dispersa("modes").code, 2);
+  EXPECT_EQ(Dispersa("modes " + std::string(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml") +
+                     " --out /dev/null/x")
+                .code,
+            2);
+}
+
 TEST(CliProgram, ValidateSaysWhatIsWrongAndWhere) {
   const InputFiles files;
   const Output valid = Dispersa("validate " + files.Path("campaign.yaml") + " " + files.Path("vehicle.yaml"));

@@ -1,0 +1,163 @@
+#include "core/structure/beam_elements.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dispersa {
+
+namespace {
+
+/// Boundaries that are nearer to each other than this are one.
+constexpr double kSameStation_m = 1e-6;
+
+// f(weight, fraction) over the points of Gauss's rule that is exact up to degree 9; the weights sum to 1.
+template <typename F>
+void Gauss(F f) {
+  constexpr double kPoint[3] = {0.0, 0.53846931010568309104, 0.90617984593866399280};
+  constexpr double kWeight[3] = {0.56888888888888888889, 0.47862867049936646804, 0.23692688505618908751};
+  f(0.5 * kWeight[0], 0.5);
+  for (const int i : {1, 2}) {
+    f(0.5 * kWeight[i], 0.5 - 0.5 * kPoint[i]);
+    f(0.5 * kWeight[i], 0.5 + 0.5 * kPoint[i]);
+  }
+}
+
+struct Stiffness {
+  double bending_n_m2 = 0.0;
+  double shear_n = 0.0;  // 0: does not shear
+};
+
+Stiffness StiffnessAt(const Beam& beam, BeamPlane plane, double station_m) {
+  Stiffness sum;
+  bool shears = beam.timoshenko;
+  for (const BeamSection& s : beam.sections) {
+    if (station_m < s.top_station_m || station_m > s.bottom_station_m) continue;
+    sum.bending_n_m2 += s.BendingStiffness(plane, station_m);
+    const double shear_n = s.ShearStiffness(plane, station_m);
+    shears = shears && shear_n > 0.0;
+    sum.shear_n += shear_n;
+  }
+  if (!shears) sum.shear_n = 0.0;
+  return sum;
+}
+
+}  // namespace
+
+BeamShape ShapeAt(double fraction, double length_m, double shear_ratio) {
+  const double x = fraction, x2 = x * x, x3 = x2 * x, phi = shear_ratio, h = length_m;
+  const double scale = 1.0 / (1.0 + phi);
+  BeamShape shape;
+  shape.deflection = {scale * (1.0 - 3.0 * x2 + 2.0 * x3 + phi * (1.0 - x)),
+                      scale * h * (x - 2.0 * x2 + x3 + 0.5 * phi * (x - x2)),
+                      scale * (3.0 * x2 - 2.0 * x3 + phi * x), scale * h * (x3 - x2 - 0.5 * phi * (x - x2))};
+  const double turning = 6.0 * scale / h * (x2 - x);
+  shape.rotation = {turning, scale * (1.0 - 4.0 * x + 3.0 * x2 + phi * (1.0 - x)), -turning,
+                    scale * (3.0 * x2 - 2.0 * x + phi * x)};
+  return shape;
+}
+
+std::vector<double> MeshStations(const std::vector<BeamSection>& sections, const BeamMasses& masses,
+                                 int elements) {
+  std::vector<double> ends;
+  for (const BeamSection& s : sections) ends.insert(ends.end(), {s.top_station_m, s.bottom_station_m});
+  const auto [first, last] = std::minmax_element(ends.begin(), ends.end());
+  const double top = *first, bottom = *last;
+  for (const SpreadMass& m : masses.spread) ends.insert(ends.end(), {m.top_station_m, m.bottom_station_m});
+  for (const FixedMass& m : masses.fixed) ends.push_back(m.station_m);
+  std::sort(ends.begin(), ends.end());
+  const double longest = (bottom - top) / elements;
+  std::vector<double> stations = {top};
+  for (const double end : ends) {
+    const double begin = stations.back();
+    if (end <= begin + kSameStation_m || end > bottom + kSameStation_m) continue;
+    const int pieces = static_cast<int>(std::ceil((end - begin) / longest - 1e-9));
+    for (int i = 1; i < pieces; ++i) stations.push_back(begin + (end - begin) * i / pieces);
+    stations.push_back(end);
+  }
+  return stations;
+}
+
+std::vector<BeamElement> BuildElements(const Beam& beam, BeamPlane plane,
+                                       const std::vector<double>& stations) {
+  std::vector<BeamElement> elements;
+  for (std::size_t i = 0; i + 1 < stations.size(); ++i) {
+    const double h = stations[i + 1] - stations[i];
+    BeamElement element;
+    element.length_m = h;
+    // The shape is that of the element as if it were uniform; the energy is of what it is.
+    const Stiffness middle = StiffnessAt(beam, plane, stations[i] + 0.5 * h);
+    element.shear_ratio = middle.shear_n > 0.0 ? 12.0 * middle.bending_n_m2 / (middle.shear_n * h * h) : 0.0;
+    const double phi = element.shear_ratio, scale = 1.0 / (1.0 + phi);
+    const double shear = -0.5 * phi * scale;  // dw/ds - theta for a unit rotation of either end
+    element.flexural_stiffness_n_m.setZero();
+    Gauss([&](double weight, double x) {
+      const Stiffness at = StiffnessAt(beam, plane, stations[i] + x * h);
+      const Eigen::Vector2d curvature =
+          Eigen::Vector2d(6.0 * x - 4.0 - phi, 6.0 * x - 2.0 + phi) * (scale / h);
+      element.flexural_stiffness_n_m += weight * h * at.bending_n_m2 * curvature * curvature.transpose();
+      element.flexural_stiffness_n_m.array() += weight * h * at.shear_n * shear * shear;
+    });
+    elements.push_back(element);
+  }
+  return elements;
+}
+
+Eigen::MatrixXd MassMatrix(const Beam& beam, const std::vector<double>& stations,
+                           const std::vector<BeamElement>& elements) {
+  const Eigen::Index size = 2 * static_cast<Eigen::Index>(stations.size());
+  Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(size, size);
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    const double h = elements[i].length_m;
+    auto block = mass.block<4, 4>(2 * static_cast<Eigen::Index>(i), 2 * static_cast<Eigen::Index>(i));
+    const double middle = stations[i] + 0.5 * h;
+    for (const SpreadMass& m : beam.masses.spread) {
+      if (middle < m.top_station_m || middle > m.bottom_station_m) continue;
+      Gauss([&](double weight, double x) {
+        const BeamShape shape = ShapeAt(x, h, elements[i].shear_ratio);
+        const Eigen::Map<const Eigen::Vector4d> deflection(shape.deflection.data()),
+            rotation(shape.rotation.data());
+        const double station = stations[i] + x * h;
+        const double mass_kg = weight * h * m.MassPerLength(station);
+        block += mass_kg * deflection * deflection.transpose();
+        if (beam.rotary_inertia) block += mass_kg * m.Gyration2(station) * rotation * rotation.transpose();
+      });
+    }
+  }
+  for (const FixedMass& m : beam.masses.fixed) {
+    const auto nearest = std::min_element(stations.begin(), stations.end(), [&](double a, double b) {
+      return std::fabs(a - m.station_m) < std::fabs(b - m.station_m);
+    });
+    const Eigen::Index row = 2 * (nearest - stations.begin());
+    const double arm = m.cg_station_m - *nearest;  // its centre of gravity moves by w + arm theta
+    mass(row, row) += m.mass_kg;
+    mass(row, row + 1) += m.mass_kg * arm;
+    mass(row + 1, row) += m.mass_kg * arm;
+    mass(row + 1, row + 1) += m.mass_kg * arm * arm + m.inertia_kg_m2;
+  }
+  return mass;
+}
+
+Eigen::MatrixXd StiffnessMatrix(const std::vector<BeamElement>& elements) {
+  const Eigen::Index size = 2 * static_cast<Eigen::Index>(elements.size() + 1);
+  Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(size, size);
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    const double chord = 1.0 / elements[i].length_m;
+    Eigen::Matrix<double, 2, 4> relative;
+    relative << chord, 1.0, -chord, 0.0, chord, 0.0, -chord, 1.0;
+    const Eigen::Index row = 2 * static_cast<Eigen::Index>(i);
+    stiffness.block<4, 4>(row, row) += relative.transpose() * elements[i].flexural_stiffness_n_m * relative;
+  }
+  return stiffness;
+}
+
+Eigen::MatrixXd RigidShapes(const std::vector<double>& stations, double station_m) {
+  Eigen::MatrixXd shapes(2 * static_cast<Eigen::Index>(stations.size()), 2);
+  for (std::size_t i = 0; i < stations.size(); ++i) {
+    const Eigen::Index row = 2 * static_cast<Eigen::Index>(i);
+    shapes.row(row) << 1.0, stations[i] - station_m;
+    shapes.row(row + 1) << 0.0, 1.0;
+  }
+  return shapes;
+}
+
+}  // namespace dispersa

@@ -1,0 +1,271 @@
+#include "core/structure/bending_modes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/structure/beam_elements.h"
+#include "core/structure/free_free_modes.h"
+#include "core/structure/mode_tracking.h"
+
+namespace dispersa {
+
+namespace {
+
+/// A mode that resembles its predecessor less than this is looked at more closely.
+constexpr double kSureMac = 0.9;
+constexpr int kHalvings = 5;
+/// Solved beside the modes asked for, so that one that falls in order is still found.
+constexpr int kFurtherModes = 3;
+
+std::size_t Index(BeamPlane plane) { return plane == BeamPlane::kY ? 0 : 1; }
+
+// Modes at one level, in the order of those before it.
+struct Level {
+  double propellant_kg = 0.0;
+  Eigen::VectorXd frequency_rad_s, generalized_mass_kg, mac;
+  Eigen::MatrixXd shape;  // a column a mode
+  Eigen::MatrixXd mass;
+};
+
+// Every column to a largest deflection of 1.
+void Scale(Level& level) {
+  for (Eigen::Index mode = 0; mode < level.shape.cols(); ++mode) {
+    double largest = 0.0;
+    for (Eigen::Index row = 0; row < level.shape.rows(); row += 2)
+      largest = std::max(largest, std::fabs(level.shape(row, mode)));
+    level.shape.col(mode) /= largest;
+    level.generalized_mass_kg[mode] /= largest * largest;
+  }
+}
+
+// The first level: in the order of frequencies, noses up.
+void Begin(Level& level, Eigen::Index count) {
+  count = std::min(count, level.shape.cols());
+  level.frequency_rad_s.conservativeResize(count);
+  level.generalized_mass_kg.conservativeResize(count);
+  level.shape.conservativeResize(Eigen::NoChange, count);
+  level.mac = Eigen::VectorXd::Ones(count);
+  for (Eigen::Index mode = 0; mode < count; ++mode) {
+    if (level.shape(0, mode) < 0.0) level.shape.col(mode) *= -1.0;
+  }
+}
+
+// What `later` has of the modes of `earlier`, in their order and with their signs.
+Level Continue(const Level& earlier, const Level& later) {
+  const std::vector<ModeMatch> matches =
+      MatchModes(earlier.shape, later.shape, 0.5 * (earlier.mass + later.mass));
+  const Eigen::Index count = earlier.shape.cols();
+  Level level{later.propellant_kg,
+              Eigen::VectorXd(count),
+              Eigen::VectorXd(count),
+              Eigen::VectorXd(count),
+              Eigen::MatrixXd(later.shape.rows(), count),
+              later.mass};
+  for (Eigen::Index mode = 0; mode < count; ++mode) {
+    const ModeMatch& match = matches[static_cast<std::size_t>(mode)];
+    level.frequency_rad_s[mode] = later.frequency_rad_s[match.index];
+    level.generalized_mass_kg[mode] = later.generalized_mass_kg[match.index];
+    level.mac[mode] = match.mac;
+    level.shape.col(mode) = match.sign * later.shape.col(match.index);
+  }
+  return level;
+}
+
+// Continues `earlier` to a propellant level by steps so small that every mode is recognised.
+template <typename Solve>
+Level Follow(const Level& earlier, double propellant_kg, const Solve& solve, int halvings) {
+  Level level = Continue(earlier, solve(propellant_kg));
+  if (halvings == 0 || level.mac.minCoeff() >= kSureMac) return level;
+  const Level middle = Follow(earlier, 0.5 * (earlier.propellant_kg + propellant_kg), solve, halvings - 1);
+  level = Follow(middle, propellant_kg, solve, halvings - 1);
+  level.mac = level.mac.cwiseMin(middle.mac);
+  return level;
+}
+
+void Append(const Level& level, std::vector<BendingLevel>& levels) {
+  BendingLevel out;
+  out.propellant_kg = level.propellant_kg;
+  for (Eigen::Index mode = 0; mode < level.shape.cols(); ++mode) {
+    BendingMode m;
+    m.frequency_rad_s = level.frequency_rad_s[mode];
+    m.generalized_mass_kg = level.generalized_mass_kg[mode];
+    m.mac = level.mac[mode];
+    for (Eigen::Index row = 0; row < level.shape.rows(); row += 2) {
+      m.deflection.push_back(level.shape(row, mode));
+      m.slope_1_m.push_back(level.shape(row + 1, mode));
+    }
+    out.modes.push_back(std::move(m));
+  }
+  levels.push_back(std::move(out));
+}
+
+void SolvePlane(const Vehicle& vehicle, BeamPlane plane, StackModes& stack) {
+  const StructureBeam& structure = *vehicle.structure_beam;
+  const double full_kg = vehicle.stages[static_cast<std::size_t>(stack.stage)].propellant_mass_kg;
+  Beam beam;
+  beam.timoshenko = structure.timoshenko;
+  beam.rotary_inertia = structure.rotary_inertia;
+  for (std::size_t i = static_cast<std::size_t>(stack.stage); i < structure.stages.size(); ++i) {
+    const std::vector<BeamSection>& sections = structure.stages[i].sections;
+    beam.sections.insert(beam.sections.end(), sections.begin(), sections.end());
+  }
+  beam.masses = BuildBeamMasses(vehicle, stack.stage, full_kg);
+  // One mesh for all levels, so that shapes can be compared node by node.
+  const std::vector<double> stations = MeshStations(beam.sections, beam.masses, structure.elements);
+  const std::vector<BeamElement> elements = BuildElements(beam, plane, stations);
+  stack.station_m[Index(plane)] = stations;
+  for (const BeamElement& element : elements) stack.shear_ratio[Index(plane)].push_back(element.shear_ratio);
+
+  const auto solve = [&](double propellant_kg) {
+    beam.masses = BuildBeamMasses(vehicle, stack.stage, propellant_kg);
+    Level level;
+    level.propellant_kg = propellant_kg;
+    level.mass = MassMatrix(beam, stations, elements);
+    FreeFreeModes modes = SolveFreeFree(stations, elements, level.mass, structure.modes + kFurtherModes);
+    level.frequency_rad_s = std::move(modes.frequency_rad_s);
+    level.shape = std::move(modes.shape);
+    level.generalized_mass_kg = Eigen::VectorXd::Ones(level.shape.cols());
+    Scale(level);
+    return level;
+  };
+  Level level = solve(full_kg);
+  Begin(level, structure.modes);
+  Append(level, stack.levels[Index(plane)]);
+  for (int i = structure.propellant_levels - 2; i >= 0; --i) {
+    level = Follow(level, full_kg * i / (structure.propellant_levels - 1), solve, kHalvings);
+    Append(level, stack.levels[Index(plane)]);
+  }
+}
+
+// The modes of a table for one stack and plane; false if it has none.
+bool TakePlane(const Vehicle& vehicle, BeamPlane plane, StackModes& stack) {
+  std::vector<Level> levels;
+  std::vector<double>& stations = stack.station_m[Index(plane)];
+  std::vector<BeamElement> elements;
+  Beam beam;
+  beam.rotary_inertia = vehicle.structure_beam->rotary_inertia;
+  for (const TabledMode& m : vehicle.structure_beam->table) {
+    if (m.stage != stack.stage || m.plane != plane) continue;
+    if (stations.empty()) {
+      stations = m.station_m;
+      for (std::size_t i = 0; i + 1 < stations.size(); ++i)
+        elements.push_back({stations[i + 1] - stations[i], 0.0, Eigen::Matrix2d::Zero()});
+      stack.shear_ratio[Index(plane)].assign(elements.size(), 0.0);
+    }
+    if (levels.empty() || levels.back().propellant_kg != m.propellant_kg) {
+      beam.masses = BuildBeamMasses(vehicle, stack.stage, m.propellant_kg);
+      Level level;
+      level.propellant_kg = m.propellant_kg;
+      level.mass = MassMatrix(beam, stations, elements);
+      level.shape.resize(2 * static_cast<Eigen::Index>(stations.size()), 0);
+      levels.push_back(std::move(level));
+    }
+    Level& level = levels.back();
+    const Eigen::Index column = level.shape.cols();
+    level.frequency_rad_s.conservativeResize(column + 1);
+    level.generalized_mass_kg.conservativeResize(column + 1);
+    level.shape.conservativeResize(Eigen::NoChange, column + 1);
+    level.frequency_rad_s[column] = m.frequency_rad_s;
+    level.generalized_mass_kg[column] = m.generalized_mass_kg;
+    for (std::size_t i = 0; i < stations.size(); ++i) {
+      level.shape(2 * static_cast<Eigen::Index>(i), column) = m.deflection[i];
+      level.shape(2 * static_cast<Eigen::Index>(i) + 1, column) = m.slope_1_m[i];
+    }
+  }
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    Scale(levels[i]);
+    if (i == 0) {
+      Begin(levels[i], levels[i].shape.cols());
+    } else {
+      levels[i] = Continue(levels[i - 1], levels[i]);
+    }
+    Append(levels[i], stack.levels[Index(plane)]);
+  }
+  return !levels.empty();
+}
+
+void CopyPlaneY(StackModes& stack) {
+  stack.station_m[1] = stack.station_m[0];
+  stack.shear_ratio[1] = stack.shear_ratio[0];
+  stack.levels[1] = stack.levels[0];
+}
+
+bool IsAxisymmetric(const StructureBeam& beam, int stage) {
+  for (std::size_t i = static_cast<std::size_t>(stage); i < beam.stages.size(); ++i) {
+    for (const BeamSection& s : beam.stages[i].sections) {
+      if (s.z_to_y_stiffness != 1.0) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+StationShape ShapeOf(const StackModes& stack, BeamPlane plane, const BendingMode& mode, double station_m) {
+  const std::vector<double>& stations = stack.station_m[Index(plane)];
+  const std::size_t last = stations.size() - 1;
+  if (station_m <= stations.front())
+    return {mode.deflection.front() + (station_m - stations.front()) * mode.slope_1_m.front(),
+            mode.slope_1_m.front()};
+  if (station_m >= stations.back())
+    return {mode.deflection[last] + (station_m - stations[last]) * mode.slope_1_m[last],
+            mode.slope_1_m[last]};
+  const auto above = std::upper_bound(stations.begin(), stations.end(), station_m);
+  const std::size_t i = static_cast<std::size_t>(above - stations.begin()) - 1;
+  const double length = stations[i + 1] - stations[i];
+  const BeamShape shape =
+      ShapeAt((station_m - stations[i]) / length, length, stack.shear_ratio[Index(plane)][i]);
+  const double ends[4] = {mode.deflection[i], mode.slope_1_m[i], mode.deflection[i + 1],
+                          mode.slope_1_m[i + 1]};
+  StationShape at;
+  for (std::size_t k = 0; k < 4; ++k) {
+    at.deflection += shape.deflection[k] * ends[k];
+    at.slope_1_m += shape.rotation[k] * ends[k];
+  }
+  return at;
+}
+
+std::vector<StackModes> BuildBendingModes(const Vehicle& vehicle) {
+  const StructureBeam& beam = *vehicle.structure_beam;
+  std::vector<StackModes> stacks(vehicle.stages.size());
+  for (std::size_t i = 0; i < stacks.size(); ++i) {
+    StackModes& stack = stacks[i];
+    stack.stage = static_cast<int>(i);
+    if (beam.table.empty()) {
+      stack.axisymmetric = IsAxisymmetric(beam, stack.stage);
+      SolvePlane(vehicle, BeamPlane::kY, stack);
+      if (!stack.axisymmetric) SolvePlane(vehicle, BeamPlane::kZ, stack);
+    } else {
+      TakePlane(vehicle, BeamPlane::kY, stack);
+      stack.axisymmetric = !TakePlane(vehicle, BeamPlane::kZ, stack);
+    }
+    if (stack.axisymmetric) CopyPlaneY(stack);
+  }
+  return stacks;
+}
+
+ModeAlong Along(const StackModes& stack, BeamPlane plane, int mode, double station_m) {
+  ModeAlong along;
+  for (const BendingLevel& level : stack.levels[Index(plane)]) {
+    const BendingMode& m = level.modes[static_cast<std::size_t>(mode)];
+    const StationShape at = ShapeOf(stack, plane, m, station_m);
+    along.propellant_kg.push_back(level.propellant_kg);
+    along.frequency_rad_s.push_back(m.frequency_rad_s);
+    along.generalized_mass_kg.push_back(m.generalized_mass_kg);
+    along.deflection.push_back(at.deflection);
+    along.slope_1_m.push_back(at.slope_1_m);
+  }
+  return along;
+}
+
+std::vector<BeamSensor> ShownStations(const Vehicle& vehicle, int stage) {
+  const Stage& lowest = vehicle.stages[static_cast<std::size_t>(stage)];
+  std::vector<BeamSensor> stations;
+  for (const BeamSensor& sensor : vehicle.structure_beam->sensors) {
+    if (sensor.station_m <= lowest.bottom_station_m) stations.push_back(sensor);
+  }
+  stations.push_back({"nozzle pivot", lowest.gimbal.pivot_station_m});
+  return stations;
+}
+
+}  // namespace dispersa

@@ -1,0 +1,67 @@
+// Bending modes of a vehicle: of each stack, over its propellant.
+//
+// A mode q of frequency omega and generalised mass m has the lateral displacement deflection(s) q along body
+// y or z at station s, q in metres. Shapes are scaled to a largest deflection of 1; at lift-off of the stack
+// the nose end points along +y or +z, and from level to level a mode keeps its sign. `slope` is the rotation
+// of the cross-section by the station (aft): a unit q turns the body by +slope about y in plane z, and by
+// -slope about z in plane y.
+//
+// For a flight: q'' + 2 zeta omega q' + omega² q = (sum of force deflection + moment slope) / m at the actual
+// propellant, everything linear between levels; Along() tables what a place needs.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "core/vehicle/vehicle.h"
+
+namespace dispersa {
+
+struct BendingMode {
+  double frequency_rad_s = 0.0;
+  double generalized_mass_kg = 0.0;
+  double mac = 1.0;  ///< with the same mode one step back, with more propellant: how surely it is the same
+  std::vector<double> deflection;  ///< at the nodes
+  std::vector<double> slope_1_m;
+};
+
+/// The modes of one plane at one propellant level; the index of a mode is the same at all levels.
+struct BendingLevel {
+  double propellant_kg = 0.0;
+  std::vector<BendingMode> modes;
+};
+
+struct StackModes {
+  int stage = 0;                                    ///< the stack's lowest, from 0
+  bool axisymmetric = true;                         ///< plane z is plane y
+  std::array<std::vector<double>, 2> station_m;     ///< of the nodes, by plane
+  std::array<std::vector<double>, 2> shear_ratio;   ///< of the elements between them
+  std::array<std::vector<BendingLevel>, 2> levels;  ///< by plane; propellant falls
+};
+
+/// At a station; beyond the ends of the beam the shape goes on straight.
+struct StationShape {
+  double deflection = 0.0;
+  double slope_1_m = 0.0;
+};
+StationShape ShapeOf(const StackModes& stack, BeamPlane plane, const BendingMode& mode, double station_m);
+
+/// The stack's modes, one StackModes a stage.
+///
+/// Between the levels of the file further ones are looked at where a mode changes so much that its modal
+/// assurance criterion falls below 0.9, down to 1/32 of a step. Precondition: a vehicle with a beam and
+/// without Problems(). A table's shapes are scaled as above, its generalised masses with them, and its modes
+/// tracked likewise, with the vehicle's mass model as weight.
+std::vector<StackModes> BuildBendingModes(const Vehicle& vehicle);
+
+/// A mode of one plane at a place over the propellant, for a flight: falling propellant, as the levels.
+struct ModeAlong {
+  std::vector<double> propellant_kg, frequency_rad_s, generalized_mass_kg, deflection, slope_1_m;
+};
+ModeAlong Along(const StackModes& stack, BeamPlane plane, int mode, double station_m);
+
+/// Where shapes are of interest: the beam's sensors and the stack's nozzle pivot.
+std::vector<BeamSensor> ShownStations(const Vehicle& vehicle, int stage);
+
+}  // namespace dispersa

@@ -1,0 +1,68 @@
+#include "core/structure/free_free_modes.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+namespace dispersa {
+
+namespace {
+
+// C L'^-1: displacements of the nodes, the first one held, for unit energies of the elements.
+Eigen::MatrixXd DisplacementsByEnergy(const std::vector<BeamElement>& elements) {
+  const Eigen::Index count = static_cast<Eigen::Index>(elements.size());
+  Eigen::MatrixXd displacement = Eigen::MatrixXd::Zero(2 * count + 2, 2 * count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const BeamElement& element = elements[static_cast<std::size_t>(i)];
+    const double h = element.length_m;
+    const Eigen::Index top = 2 * i, bottom = top + 2;
+    // What came before turns the whole element.
+    displacement.row(bottom) = displacement.row(top) + h * displacement.row(top + 1);
+    displacement.row(bottom + 1) = displacement.row(top + 1);
+    // Its own ends: the chord turns by theta_top - e_top.
+    const Eigen::Matrix2d upper = element.flexural_stiffness_n_m.llt().matrixU();
+    Eigen::Matrix2d inverse;
+    inverse << 1.0 / upper(0, 0), -upper(0, 1) / (upper(0, 0) * upper(1, 1)), 0.0, 1.0 / upper(1, 1);
+    displacement.block<1, 2>(bottom, top) -= h * inverse.row(0);
+    displacement.block<1, 2>(bottom + 1, top) += inverse.row(1) - inverse.row(0);
+  }
+  return displacement;
+}
+
+}  // namespace
+
+BeamMassProperties MassPropertiesOf(const Eigen::MatrixXd& mass, const std::vector<double>& stations) {
+  // About the middle first, so that nothing cancels.
+  const double middle = 0.5 * (stations.front() + stations.back());
+  const Eigen::MatrixXd rigid = RigidShapes(stations, middle);
+  const Eigen::Matrix2d moments = rigid.transpose() * mass * rigid;
+  const double arm = moments(0, 1) / moments(0, 0);
+  return {moments(0, 0), middle + arm, moments(1, 1) - moments(0, 0) * arm * arm};
+}
+
+FreeFreeModes SolveFreeFree(const std::vector<double>& stations, const std::vector<BeamElement>& elements,
+                            const Eigen::MatrixXd& mass, int count) {
+  const BeamMassProperties whole = MassPropertiesOf(mass, stations);
+  const Eigen::MatrixXd rigid = RigidShapes(stations, whole.cg_station_m);
+  Eigen::MatrixXd shape = DisplacementsByEnergy(elements);
+  Eigen::MatrixXd momenta = rigid.transpose() * mass * shape;
+  momenta.row(0) /= whole.mass_kg;
+  momenta.row(1) /= whole.transverse_inertia_kg_m2;
+  shape -= rigid * momenta;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(shape.transpose() * mass * shape);
+  const Eigen::VectorXd& values = solver.eigenvalues();  // rising
+  // Values at rounding of the greatest are no modes: what has no mass does not vibrate.
+  const double least = 1e-12 * values[values.size() - 1];
+  Eigen::Index found = 0;
+  while (found < count && found < values.size() && values[values.size() - 1 - found] > least) ++found;
+  FreeFreeModes modes{Eigen::VectorXd(found), Eigen::MatrixXd(shape.rows(), found)};
+  for (Eigen::Index i = 0; i < found; ++i) {
+    const Eigen::Index column = values.size() - 1 - i;
+    modes.frequency_rad_s[i] = 1.0 / std::sqrt(values[column]);
+    modes.shape.col(i) = shape * solver.eigenvectors().col(column) * modes.frequency_rad_s[i];
+  }
+  return modes;
+}
+
+}  // namespace dispersa

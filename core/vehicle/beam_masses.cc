@@ -1,0 +1,186 @@
+#include "core/vehicle/beam_masses.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/math/constants.h"
+#include "core/math/functions.h"
+#include "core/math/linear.h"
+#include "core/vehicle/mass.h"
+
+namespace dispersa {
+
+namespace {
+
+double TubeGyration2(double outer_diameter_m, double inner_diameter_m) {
+  return (Square(outer_diameter_m) + Square(inner_diameter_m)) / 16.0;
+}
+
+SpreadMass Spread(double mass_kg, double top_m, double bottom_m, double outer_diameter_m,
+                  double inner_diameter_m) {
+  const double per_length = mass_kg / (bottom_m - top_m);
+  const double gyration2 = TubeGyration2(outer_diameter_m, inner_diameter_m);
+  return {top_m, bottom_m, {per_length, per_length}, {gyration2, gyration2}};
+}
+
+SpreadMass Of(const BeamSection& s) {
+  SpreadMass mass{s.top_station_m, s.bottom_station_m, s.mass_per_length_kg_m, {}};
+  if (s.modulus_pa > 0.0) {
+    mass.gyration2_m2 = {
+        TubeGyration2(s.outer_diameter_m.top, s.outer_diameter_m.top - 2.0 * s.thickness_m.top),
+        TubeGyration2(s.outer_diameter_m.bottom, s.outer_diameter_m.bottom - 2.0 * s.thickness_m.bottom)};
+  }
+  return mass;
+}
+
+// f(weight, station) over the points of Gauss's rule that is exact up to degree 7.
+template <typename F>
+void Gauss(double top_m, double bottom_m, F f) {
+  constexpr double kPoint[2] = {0.33998104358485626480, 0.86113631159405257522};
+  constexpr double kWeight[2] = {0.65214515486254614263, 0.34785484513745385737};
+  const double middle = 0.5 * (top_m + bottom_m), half = 0.5 * (bottom_m - top_m);
+  for (const int i : {0, 1}) {
+    f(half * kWeight[i], middle - half * kPoint[i]);
+    f(half * kWeight[i], middle + half * kPoint[i]);
+  }
+}
+
+// Mass, first and second moment about a station.
+struct Moments {
+  double zeroth = 0.0, first = 0.0, second = 0.0;
+};
+
+FixedMass Fixed(const LumpedMass& lump) {
+  return {lump.station_m, lump.mass_kg, lump.cg_station_m, lump.inertia_kg_m2};
+}
+
+}  // namespace
+
+double SpreadMass::MassPerLength(double station_m) const {
+  const double fraction = (station_m - top_station_m) / (bottom_station_m - top_station_m);
+  return mass_per_length_kg_m.At(fraction) * (scale[0] + station_m * (scale[1] + station_m * scale[2]));
+}
+
+double SpreadMass::Gyration2(double station_m) const {
+  return gyration2_m2.At((station_m - top_station_m) / (bottom_station_m - top_station_m));
+}
+
+bool IsLumped(const BeamStage& stage, const MassElement& element) {
+  return std::any_of(stage.lumped_masses.begin(), stage.lumped_masses.end(),
+                     [&](const LumpedMass& lump) { return lump.element == element.name; });
+}
+
+OwnMassScale ScaleOwnMasses(const Vehicle& vehicle, int stage) {
+  const std::size_t i = static_cast<std::size_t>(stage);
+  const BeamStage& beam = vehicle.structure_beam->stages[i];
+  OwnMassScale scale;
+  // The dry stage of the mass model, about station 0, then about its centre of gravity, which keeps the
+  // equations' condition; the polynomial is in the distance from there.
+  const double dry_kg = DryMass(vehicle, stage);
+  Moments wanted;
+  for (const MassElement& e : vehicle.stages[i].structure) {
+    wanted.zeroth += dry_kg * e.fraction;
+    wanted.first += dry_kg * e.fraction * 0.5 * (e.top_station_m + e.bottom_station_m);
+  }
+  const double origin = wanted.first / wanted.zeroth;
+  scale.stage_kg = wanted.zeroth;
+  scale.stage_cg_m = origin;
+  wanted.first = 0.0;
+  for (const MassElement& e : vehicle.stages[i].structure) {
+    const double length = e.bottom_station_m - e.top_station_m;
+    wanted.second += dry_kg * e.fraction *
+                     (TubeGyration2(e.outer_diameter_m, e.inner_diameter_m) + Square(length) / 12.0 +
+                      Square(0.5 * (e.top_station_m + e.bottom_station_m) - origin));
+  }
+  double given_first = 0.0;
+  for (const LumpedMass& lump : beam.lumped_masses) {
+    const double arm = lump.cg_station_m - origin;
+    wanted.zeroth -= lump.mass_kg;
+    wanted.first -= lump.mass_kg * arm;
+    wanted.second -= lump.inertia_kg_m2 + lump.mass_kg * Square(arm);
+    scale.given_kg += lump.mass_kg;
+    given_first += lump.mass_kg * arm;
+  }
+  Matrix3 gram = Matrix3::Zero();
+  for (const BeamSection& section : beam.sections) {
+    const SpreadMass mass = Of(section);
+    Gauss(section.top_station_m, section.bottom_station_m, [&](double weight, double station) {
+      const double element_kg = weight * mass.MassPerLength(station);
+      const double arm = station - origin;
+      const double powers[3] = {1.0, arm, Square(arm)};
+      const double moments[3] = {1.0, arm, Square(arm) + mass.Gyration2(station)};
+      for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 3; ++column)
+          gram(row, column) += element_kg * moments[row] * powers[column];
+      }
+      scale.given_kg += element_kg;
+      given_first += element_kg * arm;
+    });
+  }
+  scale.given_cg_m = origin + given_first / scale.given_kg;
+  const Vector3 c = gram.fullPivLu().solve(Vector3(wanted.zeroth, wanted.first, wanted.second));
+  scale.polynomial = {c[0] - c[1] * origin + c[2] * Square(origin), c[1] - 2.0 * c[2] * origin, c[2]};
+  scale.least = std::numeric_limits<double>::infinity();
+  scale.greatest = -scale.least;
+  for (const BeamSection& section : beam.sections) {
+    std::vector<double> places = {section.top_station_m, section.bottom_station_m};
+    const double turning = origin - 0.5 * c[1] / c[2];
+    if (turning > section.top_station_m && turning < section.bottom_station_m) places.push_back(turning);
+    for (const double place : places) {
+      const double value = c[0] + (place - origin) * (c[1] + (place - origin) * c[2]);
+      scale.least = std::min(scale.least, value);
+      scale.greatest = std::max(scale.greatest, value);
+    }
+  }
+  return scale;
+}
+
+BeamMasses BuildBeamMasses(const Vehicle& vehicle, int stage, double propellant_kg) {
+  const BeamStage nothing_lumped;  // a table of modes has no stages
+  BeamMasses masses;
+  for (std::size_t i = static_cast<std::size_t>(stage); i < vehicle.stages.size(); ++i) {
+    const Stage& s = vehicle.stages[i];
+    const BeamStage& beam =
+        i < vehicle.structure_beam->stages.size() ? vehicle.structure_beam->stages[i] : nothing_lumped;
+    const double dry_kg = DryMass(vehicle, static_cast<int>(i));
+    if (beam.own_masses) {
+      const OwnMassScale scale = ScaleOwnMasses(vehicle, static_cast<int>(i));
+      for (const BeamSection& section : beam.sections) {
+        masses.spread.push_back(Of(section));
+        masses.spread.back().scale = scale.polynomial;
+      }
+      for (const LumpedMass& lump : beam.lumped_masses) masses.fixed.push_back(Fixed(lump));
+    } else {
+      for (const MassElement& e : s.structure) {
+        const double mass_kg = dry_kg * e.fraction;
+        const SpreadMass spread =
+            Spread(mass_kg, e.top_station_m, e.bottom_station_m, e.outer_diameter_m, e.inner_diameter_m);
+        const auto lump = std::find_if(beam.lumped_masses.begin(), beam.lumped_masses.end(),
+                                       [&](const LumpedMass& l) { return l.element == e.name; });
+        if (lump == beam.lumped_masses.end()) {
+          masses.spread.push_back(spread);
+          continue;
+        }
+        const double length = e.bottom_station_m - e.top_station_m;
+        masses.fixed.push_back({lump->station_m, mass_kg, 0.5 * (e.top_station_m + e.bottom_station_m),
+                                mass_kg * (spread.gyration2_m2.top + Square(length) / 12.0)});
+      }
+    }
+    const bool burning = i == static_cast<std::size_t>(stage);
+    const double grain_kg = burning ? propellant_kg : s.propellant_mass_kg;
+    const Grain& g = s.grain;
+    const double length = g.bottom_station_m - g.top_station_m;
+    const double outer2 = Square(g.outer_diameter_m);
+    // It burns from the bore outwards (StackMass).
+    const double inner2 = outer2 - 4.0 * grain_kg / (kPi * PropellantDensity(s) * length);
+    if (!(grain_kg > 0.0)) continue;
+    const double gyration2 = (outer2 + inner2) / 16.0;
+    masses.spread.push_back({g.top_station_m,
+                             g.bottom_station_m,
+                             {grain_kg / length, grain_kg / length},
+                             {gyration2, gyration2}});
+  }
+  return masses;
+}
+
+}  // namespace dispersa

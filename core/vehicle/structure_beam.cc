@@ -1,0 +1,211 @@
+#include "core/vehicle/structure_beam.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/math/constants.h"
+#include "core/math/functions.h"
+#include "core/vehicle/beam_masses.h"
+#include "core/vehicle/vehicle.h"
+
+namespace dispersa {
+
+namespace {
+
+/// Stations are written to the millimetre; boundaries nearer than this are one.
+constexpr double kSameStation_m = 1e-6;
+/// Of a section.
+constexpr double kShortest_m = 1e-3;
+
+double Fraction(const BeamSection& section, double station_m) {
+  return (station_m - section.top_station_m) / (section.bottom_station_m - section.top_station_m);
+}
+
+double PlaneFactor(const BeamSection& section, BeamPlane plane) {
+  return plane == BeamPlane::kZ ? section.z_to_y_stiffness : 1.0;
+}
+
+class Checker {
+ public:
+  explicit Checker(const Vehicle& vehicle) : vehicle_(vehicle), beam_(*vehicle.structure_beam) {}
+
+  std::vector<VehicleProblem> Run() {
+    for (std::size_t i = 0; i < beam_.sensors.size(); ++i) {
+      if (beam_.sensors[i].station_m > vehicle_.stages[0].bottom_station_m)
+        Add("sensors[" + std::to_string(i) + "].station_m", "lies aft of the vehicle",
+            "at most " + std::to_string(vehicle_.stages[0].bottom_station_m) + " m");
+    }
+    if (!beam_.table.empty()) {
+      CheckTable();
+      return std::move(problems_);
+    }
+    if (beam_.stages.size() != vehicle_.stages.size()) {
+      Add("stages", "has " + std::to_string(beam_.stages.size()) + " entries",
+          "one for each of the " + std::to_string(vehicle_.stages.size()) + " stages");
+      return std::move(problems_);
+    }
+    for (std::size_t i = 0; i < beam_.stages.size(); ++i) CheckStage(i);
+    if (problems_.empty()) {
+      for (std::size_t i = 0; i < beam_.stages.size(); ++i) CheckStack(i);
+    }
+    return std::move(problems_);
+  }
+
+ private:
+  void Add(const std::string& path, const std::string& message, const std::string& allowed) {
+    problems_.push_back({"structure_beam." + path, message, allowed});
+  }
+
+  void CheckStage(std::size_t i) {
+    const BeamStage& stage = beam_.stages[i];
+    const std::string path = "stages[" + std::to_string(i) + "]";
+    for (std::size_t k = 0; k < stage.sections.size(); ++k)
+      CheckSection(stage.sections[k], vehicle_.stages[i].bottom_station_m,
+                   path + ".sections[" + std::to_string(k) + "]");
+    const std::vector<MassElement>& structure = vehicle_.stages[i].structure;
+    for (std::size_t k = 0; k < stage.lumped_masses.size(); ++k) {
+      const LumpedMass& lump = stage.lumped_masses[k];
+      const std::string item = path + ".lumped_masses[" + std::to_string(k) + "]";
+      if (lump.element.empty()) continue;
+      const auto named = [&](const MassElement& e) { return e.name == lump.element; };
+      if (std::none_of(structure.begin(), structure.end(), named))
+        Add(item + ".element", "'" + lump.element + "' is no element of the stage's structure",
+            "one of " + ElementNames(structure));
+      for (std::size_t j = 0; j < k; ++j) {
+        if (stage.lumped_masses[j].element == lump.element)
+          Add(item + ".element", "'" + lump.element + "' is lumped twice", "each element once");
+      }
+    }
+  }
+
+  void CheckSection(const BeamSection& s, double stage_bottom_m, const std::string& path) {
+    if (!(s.bottom_station_m - s.top_station_m >= kShortest_m))
+      Add(path + ".bottom_station_m", "is not a millimetre aft of top_station_m",
+          "a station larger than top_station_m by 0.001 m or more");
+    if (s.bottom_station_m > stage_bottom_m + kSameStation_m)
+      Add(path + ".bottom_station_m", "lies aft of the stage's bottom_station_m",
+          "at most bottom_station_m of the stage");
+    if (s.modulus_pa > 0.0) {
+      for (const double end : {0.0, 1.0}) {
+        if (s.thickness_m.At(end) > 0.5 * s.outer_diameter_m.At(end)) {
+          Add(path + ".thickness_m", "is more than half of outer_diameter_m",
+              "up to half of the diameter, a solid rod");
+          break;
+        }
+      }
+    }
+  }
+
+  // The stack of stages i and above: one beam without a gap, and all that it carries between its ends.
+  void CheckStack(std::size_t i) {
+    const std::string path = "stages[" + std::to_string(i) + "]";
+    std::vector<std::pair<double, double>> pieces;
+    for (std::size_t k = i; k < beam_.stages.size(); ++k) {
+      for (const BeamSection& s : beam_.stages[k].sections)
+        pieces.emplace_back(s.top_station_m, s.bottom_station_m);
+    }
+    std::sort(pieces.begin(), pieces.end());
+    const double top = pieces.front().first;
+    double bottom = top;
+    for (const auto& [begin, end] : pieces) {
+      if (begin > bottom + kSameStation_m) {
+        Add(path + ".sections",
+            "the beam has a gap from station " + std::to_string(bottom) + " m to " + std::to_string(begin) +
+                " m",
+            "sections of this stage and those above that follow one another without a gap");
+        return;
+      }
+      bottom = std::max(bottom, end);
+    }
+    const auto inside = [&](double a, double b) {
+      return a >= top - kSameStation_m && b <= bottom + kSameStation_m;
+    };
+    const std::string beam = "the beam, which reaches from station " + std::to_string(top) + " m to " +
+                             std::to_string(bottom) + " m";
+    const Stage& stage = vehicle_.stages[i];
+    if (!inside(stage.grain.top_station_m, stage.grain.bottom_station_m))
+      Add(path + ".sections", "the stage's grain lies outside of " + beam, "sections along the whole grain");
+    for (std::size_t k = 0; k < beam_.stages[i].lumped_masses.size(); ++k) {
+      const LumpedMass& lump = beam_.stages[i].lumped_masses[k];
+      if (!inside(lump.station_m, lump.station_m))
+        Add(path + ".lumped_masses[" + std::to_string(k) + "].station_m", "lies outside of " + beam,
+            "a station of the beam");
+    }
+    if (beam_.stages[i].own_masses) {
+      CheckOwnMasses(i, path);
+      return;
+    }
+    for (const MassElement& e : stage.structure) {
+      if (!IsLumped(beam_.stages[i], e) && !inside(e.top_station_m, e.bottom_station_m))
+        Add(path + ".sections", "'" + e.name + "' of the stage's structure lies outside of " + beam,
+            "sections along the whole element, or the element among lumped_masses");
+    }
+  }
+
+  void CheckOwnMasses(std::size_t i, const std::string& path) {
+    const OwnMassScale scale = ScaleOwnMasses(vehicle_, static_cast<int>(i));
+    if (scale.least >= kLeastMassScale && scale.greatest <= kGreatestMassScale) return;
+    Add(path + ".sections",
+        "the masses do not fit the stage's: they are " + std::to_string(scale.given_kg) +
+            " kg with the centre of gravity at station " + std::to_string(scale.given_cg_m) +
+            " m, the dry stage is " + std::to_string(scale.stage_kg) + " kg at " +
+            std::to_string(scale.stage_cg_m) + " m; the mass per length would be multiplied by " +
+            std::to_string(scale.least) + " to " + std::to_string(scale.greatest),
+        "masses that are multiplied by " + std::to_string(kLeastMassScale) + " to " +
+            std::to_string(kGreatestMassScale) +
+            " to have the mass, centre of gravity and inertia of the dry stage");
+  }
+
+  void CheckTable() {
+    for (std::size_t i = 0; i < vehicle_.stages.size(); ++i) {
+      if (std::none_of(beam_.table.begin(), beam_.table.end(),
+                       [&](const TabledMode& m) { return m.stage == static_cast<int>(i); }))
+        Add("modes_table", "has no modes of stage " + std::to_string(i + 1), "modes of every stage's stack");
+    }
+    for (const TabledMode& m : beam_.table) {
+      const double full = vehicle_.stages[static_cast<std::size_t>(m.stage)].propellant_mass_kg;
+      if (m.propellant_kg > full * (1.0 + 1e-9)) {
+        Add("modes_table",
+            "has modes of stage " + std::to_string(m.stage + 1) + " at " + std::to_string(m.propellant_kg) +
+                " kg",
+            "at most the stage's propellant, " + std::to_string(full) + " kg");
+        return;
+      }
+    }
+  }
+
+  static std::string ElementNames(const std::vector<MassElement>& structure) {
+    std::string names;
+    for (const MassElement& e : structure) names += (names.empty() ? "" : ", ") + e.name;
+    return names;
+  }
+
+  const Vehicle& vehicle_;
+  const StructureBeam& beam_;
+  std::vector<VehicleProblem> problems_;
+};
+
+}  // namespace
+
+double BeamSection::BendingStiffness(BeamPlane plane, double station_m) const {
+  const double f = Fraction(*this, station_m);
+  if (!(modulus_pa > 0.0)) return PlaneFactor(*this, plane) * bending_stiffness_n_m2.At(f);
+  const double outer = outer_diameter_m.At(f);
+  const double inner = outer - 2.0 * thickness_m.At(f);
+  return PlaneFactor(*this, plane) * modulus_pa * kPi / 64.0 *
+         (Square(Square(outer)) - Square(Square(inner)));
+}
+
+double BeamSection::ShearStiffness(BeamPlane plane, double station_m) const {
+  const double f = Fraction(*this, station_m);
+  if (!(modulus_pa > 0.0)) return PlaneFactor(*this, plane) * shear_stiffness_n.At(f);
+  const double outer = outer_diameter_m.At(f);
+  const double inner = outer - 2.0 * thickness_m.At(f);
+  const double area = 0.25 * kPi * (Square(outer) - Square(inner));
+  const double coefficient = 2.0 * (1.0 + poisson_ratio) / (4.0 + 3.0 * poisson_ratio);
+  return PlaneFactor(*this, plane) * coefficient * area * modulus_pa / (2.0 * (1.0 + poisson_ratio));
+}
+
+std::vector<VehicleProblem> BeamProblems(const Vehicle& vehicle) { return Checker(vehicle).Run(); }
+
+}  // namespace dispersa

@@ -1,0 +1,102 @@
+// The vehicle as an elastic beam on its axis, as its file describes it: plain data, SI.
+//
+// Stations as in vehicle.h. What it weighs is the mass model of vehicle.h (structure and grains); only a
+// stage that gives its own mass per length is weighed by that, scaled to the same mass, centre of gravity and
+// inertia.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace dispersa {
+
+/// Lateral planes of bending, by the body axis along which the beam moves.
+enum class BeamPlane { kY, kZ };
+inline constexpr std::array<BeamPlane, 2> kBeamPlanes = {BeamPlane::kY, BeamPlane::kZ};
+
+/// A value at the top and at the bottom of a section, linear between.
+struct Taper {
+  double top = 0.0;
+  double bottom = 0.0;
+  double At(double fraction) const { return top + fraction * (bottom - top); }
+};
+
+/// A length of the load-carrying structure. Its stiffness is either given or a round tube's: of a modulus
+/// above 0.
+struct BeamSection {
+  std::string name;
+  double top_station_m = 0.0;
+  double bottom_station_m = 0.0;
+  Taper bending_stiffness_n_m2;  ///< E I in plane y
+  Taper shear_stiffness_n;  ///< kappa G A in plane y; 0: does not shear (also without Timoshenko's theory)
+  Taper outer_diameter_m;
+  Taper thickness_m;
+  double modulus_pa = 0.0;        ///< E of the tube; 0: the stiffness is given
+  double poisson_ratio = 0.0;     ///< of the tube
+  double z_to_y_stiffness = 1.0;  ///< plane z is so many times as stiff, in bending and shear
+  Taper mass_per_length_kg_m;     ///< of a stage that gives its own masses
+
+  double BendingStiffness(BeamPlane plane, double station_m) const;
+  /// 0: does not shear. A thin round tube's coefficient is 2 (1 + nu) / (4 + 3 nu) (Cowper, J. Appl. Mech.
+  /// 33, 1966).
+  double ShearStiffness(BeamPlane plane, double station_m) const;
+};
+
+/// A body that does not bend, fixed to the beam at one station: a payload on its adapter, nozzles on a dome.
+struct LumpedMass {
+  std::string name;
+  double station_m = 0.0;  ///< where it is fixed
+  std::string element;     ///< the stage's element of `structure` that it is; empty: the values below
+  double mass_kg = 0.0;
+  double cg_station_m = 0.0;
+  double inertia_kg_m2 = 0.0;  ///< across the axis, about its own centre of gravity
+};
+
+/// What a stage brings to the beam; it flies as long as the stage is attached. Where sections of several
+/// stages overlap, their stiffnesses add.
+struct BeamStage {
+  std::vector<BeamSection> sections;
+  std::vector<LumpedMass> lumped_masses;
+  bool own_masses = false;  ///< mass per length and lumped masses are given, not the mass model's
+};
+
+/// A place whose deflection and slope are wanted.
+struct BeamSensor {
+  std::string name;
+  double station_m = 0.0;
+};
+
+/// A mode of a finite-element model, at one propellant level of one stack.
+struct TabledMode {
+  int stage = 0;  ///< the stack's lowest, from 0
+  double propellant_kg = 0.0;
+  BeamPlane plane = BeamPlane::kY;
+  int mode = 0;  ///< from 1; need not be the same mode from level to level
+  double frequency_rad_s = 0.0;
+  double generalized_mass_kg = 0.0;
+  std::vector<double> station_m;  ///< increasing
+  std::vector<double> deflection;
+  std::vector<double> slope_1_m;  ///< by the station
+};
+
+struct StructureBeam {
+  bool timoshenko = false;  ///< the beam shears; else Euler's and Bernoulli's, which does not
+  bool rotary_inertia =
+      true;       ///< of the cross-sections; without it the beam turns more easily than the vehicle
+  int modes = 3;  ///< in each plane
+  int propellant_levels = 11;  ///< evenly from full to empty
+  int elements = 60;           ///< at least so many along a stack
+  std::vector<BeamSensor> sensors;
+  std::vector<BeamStage> stages;  ///< as those of the vehicle; none with a table
+  std::vector<TabledMode> table;  ///< by stage, falling propellant, plane and mode; none with stages
+};
+
+struct Vehicle;
+struct VehicleProblem;
+
+/// What contradicts itself or the vehicle's mass model. Paths are `structure_beam.…`.
+/// Precondition: the vehicle has a beam, and no other problems.
+std::vector<VehicleProblem> BeamProblems(const Vehicle& vehicle);
+
+}  // namespace dispersa

@@ -1,0 +1,174 @@
+// dispersa modes: how a vehicle bends.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "core/campaign/input_error.h"
+#include "core/campaign_yaml/load.h"
+#include "core/math/constants.h"
+#include "core/report/modes_page.h"
+#include "core/report/output_file.h"
+#include "core/structure/bending_modes.h"
+#include "core/vehicle/mass.h"
+#include "services/cli/command.h"
+#include "services/cli/flight_json.h"
+
+namespace dispersa {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ModesOptions {
+  std::string vehicle;
+  std::string out;
+  bool shapes = false;
+};
+
+const char* PlaneName(BeamPlane plane) { return plane == BeamPlane::kY ? "y" : "z"; }
+
+nlohmann::ordered_json ModeJson(const Vehicle& vehicle, const StackModes& stack, BeamPlane plane,
+                                std::size_t index, const BendingMode& mode, bool shapes) {
+  auto places = nlohmann::ordered_json::array();
+  for (const BeamSensor& place : ShownStations(vehicle, stack.stage)) {
+    const StationShape at = ShapeOf(stack, plane, mode, place.station_m);
+    places.push_back({{"name", place.name},
+                      {"station_m", place.station_m},
+                      {"deflection", JsonNumber(at.deflection)},
+                      {"slope_1_m", JsonNumber(at.slope_1_m)}});
+  }
+  nlohmann::ordered_json json = {{"plane", PlaneName(plane)},
+                                 {"mode", index + 1},
+                                 {"frequency_hz", mode.frequency_rad_s / kTwoPi},
+                                 {"generalized_mass_kg", mode.generalized_mass_kg},
+                                 {"mac", mode.mac},
+                                 {"stations", std::move(places)}};
+  if (shapes)
+    json["shape"] = {{"station_m", stack.station_m[plane == BeamPlane::kY ? 0 : 1]},
+                     {"deflection", mode.deflection},
+                     {"slope_1_m", mode.slope_1_m}};
+  return json;
+}
+
+// Planes may have levels of their own, in a table of a finite-element model: an entry for each level of
+// either.
+nlohmann::ordered_json StacksJson(const Vehicle& vehicle, const std::vector<StackModes>& stacks,
+                                  bool shapes) {
+  const std::vector<StackMass> masses = BuildStackMasses(vehicle);
+  auto json = nlohmann::ordered_json::array();
+  for (const StackModes& stack : stacks) {
+    std::vector<double> levels;
+    for (const std::vector<BendingLevel>& plane : stack.levels) {
+      for (const BendingLevel& level : plane) levels.push_back(level.propellant_kg);
+    }
+    std::sort(levels.begin(), levels.end(), std::greater<>());
+    levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
+    for (const double propellant_kg : levels) {
+      auto modes = nlohmann::ordered_json::array();
+      for (const BeamPlane plane : kBeamPlanes) {
+        for (const BendingLevel& level : stack.levels[plane == BeamPlane::kY ? 0 : 1]) {
+          if (level.propellant_kg != propellant_kg) continue;
+          for (std::size_t i = 0; i < level.modes.size(); ++i)
+            modes.push_back(ModeJson(vehicle, stack, plane, i, level.modes[i], shapes));
+        }
+      }
+      const MassProperties rigid = masses[static_cast<std::size_t>(stack.stage)].At(propellant_kg);
+      json.push_back({{"stage", stack.stage + 1},
+                      {"propellant_kg", propellant_kg},
+                      {"mass_kg", rigid.mass_kg},
+                      {"cg_station_m", rigid.cg_station_m},
+                      {"modes", std::move(modes)}});
+    }
+  }
+  return json;
+}
+
+void PrintStack(const Vehicle& vehicle, const StackModes& stack, BeamPlane plane) {
+  const std::vector<BendingLevel>& levels = stack.levels[plane == BeamPlane::kY ? 0 : 1];
+  const std::size_t count = levels.front().modes.size();
+  fmt::print("\nstage {} and above, plane {}\n{:>14}", stack.stage + 1,
+             stack.axisymmetric ? "y, z" : PlaneName(plane), "propellant kg");
+  for (std::size_t i = 0; i < count; ++i) fmt::print("{:>11} {} Hz{:>9} kg", "mode", i + 1, "gen.");
+  fmt::print("\n");
+  for (const BendingLevel& level : levels) {
+    fmt::print("{:>14.1f}", level.propellant_kg);
+    for (const BendingMode& mode : level.modes)
+      fmt::print("{:>16.3f}{:>12.1f}", mode.frequency_rad_s / kTwoPi, mode.generalized_mass_kg);
+    fmt::print("\n");
+  }
+  fmt::print("{:<24}{:>10}   deflection and slope 1/m of each mode, full, then empty\n", "", "station m");
+  for (const BeamSensor& place : ShownStations(vehicle, stack.stage)) {
+    for (const BendingLevel* level : {&levels.front(), &levels.back()}) {
+      fmt::print("{:<24}{:>10.2f}", level == &levels.front() ? place.name : "", place.station_m);
+      for (const BendingMode& mode : level->modes) {
+        const StationShape at = ShapeOf(stack, plane, mode, place.station_m);
+        fmt::print("  {:>+8.3f} {:>+8.4f}", at.deflection, at.slope_1_m);
+      }
+      fmt::print("\n");
+    }
+  }
+}
+
+// A name that ends in .html is the page's, any other a folder's.
+fs::path PageFile(const std::string& out) {
+  const fs::path path = out;
+  if (path.extension() == ".html") return path;
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (error)
+    throw InputError("--out: " + out + ": " + error.message(),
+                     "a folder that can be written, or a .html file");
+  return path / "modes.html";
+}
+
+ExitCode Modes(const ModesOptions& options, const GlobalOptions& global) {
+  const Vehicle vehicle = LoadVehicle(options.vehicle);
+  if (!vehicle.structure_beam)
+    throw InputError(
+        {{options.vehicle, 1, 1, "", "the vehicle is rigid", "a vehicle with a structure_beam"}});
+  const fs::path page = options.out.empty() ? fs::path() : PageFile(options.out);
+  const std::vector<StackModes> stacks = BuildBendingModes(vehicle);
+  if (!page.empty()) WriteFile(page, ModesPage(vehicle, stacks));
+  if (global.json) {
+    nlohmann::ordered_json json = {{"schema", "dispersa/modes/1"},
+                                   {"vehicle", vehicle.name},
+                                   {"beam", BeamText(*vehicle.structure_beam)},
+                                   {"stacks", StacksJson(vehicle, stacks, options.shapes)}};
+    if (!page.empty()) json["page"] = page.string();
+    fmt::print("{}\n", json.dump(2));
+    return kExitDone;
+  }
+  fmt::print("{}. {}. Deflections are scaled to a largest of 1.\n", vehicle.name,
+             BeamText(*vehicle.structure_beam));
+  for (const StackModes& stack : stacks) {
+    PrintStack(vehicle, stack, BeamPlane::kY);
+    if (!stack.axisymmetric) PrintStack(vehicle, stack, BeamPlane::kZ);
+  }
+  if (!page.empty()) fmt::print("\npage: {}\n", page.string());
+  return kExitDone;
+}
+
+}  // namespace
+
+void AddModesCommand(CLI::App& app, Invocation& invocation) {
+  auto options = std::make_shared<ModesOptions>();
+  CLI::App* command = app.add_subcommand("modes", "bending modes of a vehicle, by stack and propellant");
+  command->add_option("vehicle", options->vehicle, "vehicle file with a structure_beam")->required();
+  command->add_option("--out", options->out,
+                      "write the plots too: a folder for modes.html, or a name that ends in .html");
+  command->add_flag("--shapes", options->shapes, "with --json: the whole shapes, node by node");
+  command->footer(
+      "Frequencies, generalised masses, and deflection and slope at the beam's sensors and the nozzle "
+      "pivot.\n"
+      "Example: dispersa modes campaigns/vehicles/slv4_flexible.yaml --out modes");
+  command->callback([options, &invocation] {
+    invocation.command = [options](const GlobalOptions& global) { return Modes(*options, global); };
+  });
+}
+
+}  // namespace dispersa
