@@ -103,11 +103,10 @@ void PrintStack(const Vehicle& vehicle, const StackModes& stack, BeamPlane plane
   }
   fmt::print("{:<24}{:>10}   deflection and slope 1/m of each mode, full, then empty\n", "", "station m");
   for (const BeamSensor& place : ShownStations(vehicle, stack.stage)) {
-    for (const BendingLevel* level : {&levels.front(), &levels.back()}) {
-      if (level == &levels.front() && levels.size() == 1) continue;  // a table's only one
-      fmt::print("{:<24}{:>10.2f}", level == &levels.front() || levels.size() == 1 ? place.name : "",
-                 place.station_m);
-      for (const BendingMode& mode : level->modes) {
+    for (std::size_t i = 0; i < levels.size(); i += std::max<std::size_t>(levels.size() - 1, 1)) {
+      const BendingLevel& level = levels[i];
+      fmt::print("{:<24}{:>10.2f}", i == 0 ? place.name : "", place.station_m);
+      for (const BendingMode& mode : level.modes) {
         const StationShape at = ShapeOf(stack, plane, mode, place.station_m);
         fmt::print("  {:>+8.3f} {:>+8.4f}", at.deflection, at.slope_1_m);
       }
