@@ -14,14 +14,13 @@ import time
 import unittest
 
 from hosts import Hosts
-from processes import BINARIES, CAMPAIGN, Run, end, main, shared_memory_segments, stored, wait_for
+from processes import BINARIES, CAMPAIGN, PATIENCE_S, Run, end, main, shared_memory_segments, stored, wait_for
 
 TROUBLES = int(os.environ.get("DISPERSA_TROUBLES", "16"))
 CASES = 800
 OPEN = 2           # campaigns at once, at least
 LONGEST_S = 6.0    # a freeze, a cut: beyond the silence after which a worker is lost
 STALL_S = 30       # after a trouble something must be stored within
-PATIENCE_S = 120   # for the last campaigns, when all is calm
 NETWORK = ["--domain", "33", "--insecure"]
 
 
@@ -56,7 +55,7 @@ class ChaosTest(unittest.TestCase):
     def client(self, *arguments):
         """Of a host whose link is whole: a client repeats what it asks until it is answered."""
         done = subprocess.run([*self.hosts[0].inside, BINARIES / "dispersa", *map(str, arguments), *NETWORK,
-                               "--peer", self.hosts[0].address], capture_output=True, text=True, timeout=PATIENCE_S)
+                               "--peer", self.hosts[0].address], capture_output=True, text=True, timeout=2 * PATIENCE_S)
         return done.returncode, done.stdout, done.stderr
 
     def stored(self):
