@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/math/constants.h"
 #include "core/report/html_parts.h"
 #include "core/report/svg_chart.h"
@@ -79,12 +81,12 @@ std::string ModeTable(const Vehicle& vehicle, const StackModes& stack) {
          true});
   HtmlTable table(columns);
   for (std::size_t plane = 0; plane < PlanesOf(stack); ++plane) {
-    for (const BendingLevel* level : {&stack.levels[plane].front(), &stack.levels[plane].back()}) {
-      if (level == &stack.levels[plane].front() && stack.levels[plane].size() == 1)
-        continue;  // a table's only one
-      for (std::size_t mode = 0; mode < level->modes.size(); ++mode) {
-        const BendingMode& m = level->modes[mode];
-        std::vector<std::string> cells = {ReadableText(level->propellant_kg), std::to_string(mode + 1),
+    const std::vector<BendingLevel>& levels = stack.levels[plane];
+    for (std::size_t k = 0; k < levels.size(); k += std::max<std::size_t>(levels.size() - 1, 1)) {
+      const BendingLevel& level = levels[k];  // the first and the last
+      for (std::size_t mode = 0; mode < level.modes.size(); ++mode) {
+        const BendingMode& m = level.modes[mode];
+        std::vector<std::string> cells = {ReadableText(level.propellant_kg), std::to_string(mode + 1),
                                           PlaneText(stack, plane), FixedText(m.frequency_rad_s / kTwoPi, 3),
                                           ReadableText(m.generalized_mass_kg)};
         for (const BeamSensor& place : places) {

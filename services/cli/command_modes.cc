@@ -103,9 +103,10 @@ void PrintStack(const Vehicle& vehicle, const StackModes& stack, BeamPlane plane
   }
   fmt::print("{:<24}{:>10}   deflection and slope 1/m of each mode, full, then empty\n", "", "station m");
   for (const BeamSensor& place : ShownStations(vehicle, stack.stage)) {
-    for (const BendingLevel* level : {&levels.front(), &levels.back()}) {
-      fmt::print("{:<24}{:>10.2f}", level == &levels.front() ? place.name : "", place.station_m);
-      for (const BendingMode& mode : level->modes) {
+    for (std::size_t i = 0; i < levels.size(); i += std::max<std::size_t>(levels.size() - 1, 1)) {
+      const BendingLevel& level = levels[i];
+      fmt::print("{:<24}{:>10.2f}", i == 0 ? place.name : "", place.station_m);
+      for (const BendingMode& mode : level.modes) {
         const StationShape at = ShapeOf(stack, plane, mode, place.station_m);
         fmt::print("  {:>+8.3f} {:>+8.4f}", at.deflection, at.slope_1_m);
       }
@@ -114,16 +115,16 @@ void PrintStack(const Vehicle& vehicle, const StackModes& stack, BeamPlane plane
   }
 }
 
-// A name that ends in .html is the page's, any other a folder's.
+// A name that ends in .html is the page's, any other a folder's. Folders are made.
 fs::path PageFile(const std::string& out) {
   const fs::path path = out;
-  if (path.extension() == ".html") return path;
+  const fs::path page = path.extension() == ".html" ? path : path / "modes.html";
   std::error_code error;
-  fs::create_directories(path, error);
+  if (page.has_parent_path()) fs::create_directories(page.parent_path(), error);
   if (error)
     throw InputError("--out: " + out + ": " + error.message(),
                      "a folder that can be written, or a .html file");
-  return path / "modes.html";
+  return page;
 }
 
 ExitCode Modes(const ModesOptions& options, const GlobalOptions& global) {
