@@ -18,9 +18,9 @@ namespace dispersa {
 
 /// Values of the command line that replace the file's before anything is checked or hashed.
 struct CampaignOverrides {
-  std::optional<std::uint64_t> cases;
-  std::optional<std::uint64_t> seed;
-  std::optional<std::string> autopilot;  ///< a file, relative to the working directory
+  std::optional<std::uint64_t> cases = {};
+  std::optional<std::uint64_t> seed = {};
+  std::optional<std::string> autopilot = {};  ///< a file, relative to the working directory
 };
 
 /// The campaign of a file, to be flown: it must have a `reference`, not an `optimize` block. `warnings`, if

@@ -114,6 +114,61 @@ TEST(ComputeMargins, OfAVehicleThatIsNotTheNominal) {
         << nominal[i].time_s << " s, axis " << nominal[i].axis;
 }
 
+TEST(LineariseLearntLaw, HasTheSlopesOfBothSidesOfTheRuleThatLearnt) {
+  const FlightModel model(HotStaged());
+  TickSample s = SampleAt(model, 20.0);
+  AxisState& memory = s.memories[kPitch];
+  memory = {};
+  const LinearLaw fresh = LineariseLaw(model.autopilot(), 0, s.since_ignition_s, kPitch, true);
+  constexpr double kLearnt_rad_s2 = 0.01;
+  memory.departure_rad_s2[12] = kLearnt_rad_s2;  // of the central rule alone
+  const FuzzyRules& rules = model.definition().autopilot.pitch.rules;
+  for (const int error : {-1, 1}) {
+    for (const int rate : {-1, 1}) {
+      const LinearLaw learnt = LineariseLearntLaw(model.autopilot(), s, kPitch, {error, rate});
+      // Up to the middle, down beyond it; sets are half a range apart.
+      EXPECT_NEAR(learnt.kp_1_s2, fresh.kp_1_s2 - error * kLearnt_rad_s2 / (0.5 * rules.error_range_rad),
+                  1e-12);
+      EXPECT_NEAR(learnt.kd_1_s, fresh.kd_1_s - rate * kLearnt_rad_s2 / (0.5 * rules.rate_range_rad_s),
+                  1e-12);
+    }
+  }
+  // What all rules have learnt is no slope.
+  for (double& departure : memory.departure_rad_s2) departure = kLearnt_rad_s2;
+  EXPECT_EQ(LineariseLearntLaw(model.autopilot(), s, kPitch, {}).kp_1_s2, fresh.kp_1_s2);
+}
+
+// The margin of pitch at lift-off.
+LoopMargins AtLiftOff(const FlightModel& model, const FlightInputs& inputs) {
+  const DispersedMargins found = ComputeDispersedMargins(model, {inputs, {}}, 10.0);
+  EXPECT_EQ(found.margins.at(0).axis, kPitch);
+  return found.margins.at(0).frozen;
+}
+
+TEST(ComputeDispersedMargins, AreThoseOfTheFlightsOwnPlant) {
+  const FlightModel model(HotStaged());
+  const double nominal_db = AtLiftOff(model, {}).gain_up_db;
+  const double half_db = 20.0 * std::log10(2.0);
+  FlightInputs stuck;
+  stuck.stuck_nozzle = 1.0;  // one of the two that turn pitch
+  stuck.stuck_nozzle_stage = 1.0;
+  EXPECT_NEAR(AtLiftOff(model, stuck).gain_up_db, nominal_db + half_db, 1e-3);
+  FlightInputs spoilt;
+  spoilt.loop_gain_factor = 0.5;
+  EXPECT_NEAR(AtLiftOff(model, spoilt).gain_up_db, nominal_db + half_db, 1e-9);
+  spoilt.loop_stage = 2.0;
+  EXPECT_EQ(AtLiftOff(model, spoilt).gain_up_db, nominal_db);
+}
+
+TEST(ComputeDispersedMargins, EndWithTheFlight) {
+  const FlightModel model(HotStaged());
+  FlightInputs hopeless;
+  hopeless.thrust_misalignment_rad = AllStages(20.0 * kRadPerDeg);
+  const DispersedMargins found = ComputeDispersedMargins(model, {hopeless, {}});
+  EXPECT_NE(found.outcome, Outcome::kCompleted);
+  EXPECT_LT(found.margins.size(), ComputeDispersedMargins(model, {}).margins.size());
+}
+
 void ExpectMeasuredAsComputed(const FlightDefinition& definition) {
   const FlightModel model(definition);
   const std::vector<ComputedMargins> computed = ComputeMargins(model, 5.0);
