@@ -152,6 +152,7 @@ void AddMarginsAt(const LauncherPlant& plant, const AutopilotModel& autopilot, c
                          margins_of(law(true)), {}};
     if (Learns(autopilot, axis)) {
       each.learnt = each.adapting;
+      each.is_augmented = InfoOf(autopilot.laws[static_cast<std::size_t>(axis)].config.law).augmentation;
       for (const int error : {-1, 1}) {
         for (const int rate : {-1, 1})
           each.learnt =
@@ -247,16 +248,22 @@ bool PassesGates(const LoopMargins& m) {
          m.phase_deg >= kPhaseMarginGate_deg && m.delay_s >= kDelayMarginGate_s;
 }
 
+bool LearntPasses(const ComputedMargins& m) {
+  return !m.learnt || (m.is_augmented ? PassesDispersedGates(*m.learnt) : PassesGates(*m.learnt));
+}
+
 bool PassesGates(const ComputedMargins& m) {
-  return PassesGates(m.frozen) && PassesGates(m.adapting) && (!m.learnt || PassesGates(*m.learnt));
+  return PassesGates(m.frozen) && PassesGates(m.adapting) && LearntPasses(m);
+}
+
+bool PassesDispersedGates(const LoopMargins& m) {
+  return m.stable && m.gain_up_db >= kDispersedGainGate_db && m.gain_down_db >= kDispersedGainGate_db &&
+         m.phase_deg >= kDispersedPhaseGate_deg;
 }
 
 bool PassesDispersedGates(const ComputedMargins& m) {
-  const auto passes = [](const LoopMargins& loop) {
-    return loop.stable && loop.gain_up_db >= kDispersedGainGate_db &&
-           loop.gain_down_db >= kDispersedGainGate_db && loop.phase_deg >= kDispersedPhaseGate_deg;
-  };
-  return passes(m.frozen) && passes(m.adapting) && (!m.learnt || passes(*m.learnt));
+  return PassesDispersedGates(m.frozen) && PassesDispersedGates(m.adapting) &&
+         (!m.learnt || PassesDispersedGates(*m.learnt));
 }
 
 bool PassesGates(const MeasuredMargins& m) {

@@ -36,6 +36,7 @@ struct ComputedMargins {
   /// As adapting, with what the law has learnt by then: the least on any side of zero error and zero rate.
   /// None where nothing changes by learning.
   std::optional<LoopMargins> learnt;
+  bool is_augmented = false;  ///< what is learnt is an augmentation's gain
 };
 
 /// One powered phase, all axes at once. Resolutions: kMeasuredGainStep_db, kMeasuredDelayStep_s; a value at
@@ -98,8 +99,12 @@ std::vector<MeasuredMargins> MeasureMargins(const FlightModel& model, const Flig
 /// Whether a margin set passes the gates.
 bool PassesGates(const LoopMargins& margins);
 bool PassesGates(const ComputedMargins& margins);
+/// What was learnt: rules must have the nominal flight's margins. An augmentation takes its gain from them
+/// until its spectral damper gives it back; it must leave those of a dispersed flight.
+bool LearntPasses(const ComputedMargins& margins);
 bool PassesGates(const MeasuredMargins& margins);
 /// Whether a margin set of a dispersed flight does.
+bool PassesDispersedGates(const LoopMargins& margins);
 bool PassesDispersedGates(const ComputedMargins& margins);
 
 }  // namespace dispersa

@@ -45,7 +45,7 @@ std::string PaperMarginSection(const PaperStudy& study) {
   std::size_t points = 0, passed = 0;
   for (const ComputedMargins& at : study.computed_margins) {
     points += at.learnt ? 3 : 2;
-    passed += PassesGates(at.frozen) + PassesGates(at.adapting) + (at.learnt && PassesGates(*at.learnt));
+    passed += PassesGates(at.frozen) + PassesGates(at.adapting) + (at.learnt && LearntPasses(at));
     if (at.place.empty() || at.axis != kPitch) continue;
     LoopRow(computed, at, "frozen", at.frozen);
     LoopRow(computed, at, "adapting", at.adapting);
