@@ -88,10 +88,7 @@ LinearLaw LineariseLearntLaw(const AutopilotModel& autopilot, const TickSample& 
   const AxisConfig& config = autopilot.laws[static_cast<std::size_t>(axis)].config;
   const AxisState& memory = sample.memories[static_cast<std::size_t>(axis)];
   const LawInfo& info = InfoOf(config.law);
-  if (info.augmentation) {
-    linear.kp_1_s2 *= memory.total_gain;
-    linear.kd_1_s *= memory.total_gain;
-  }
+  if (info.augmentation) linear.effectiveness_1_s2 /= memory.total_gain;
   if (info.rules && info.adaptation) {
     const double error_step = config.rules.error_range_rad / (kFuzzySets / 2);
     const double rate_step = config.rules.rate_range_rad_s / (kFuzzySets / 2);

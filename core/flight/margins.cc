@@ -140,6 +140,7 @@ void AddMarginsAt(const LauncherPlant& plant, const AutopilotModel& autopilot, c
       if (law.rules > 1) {
         law.drive_error *= inputs.pn_error_factor;
         law.drive_rate *= inputs.pn_rate_factor;
+        law.drive_prediction *= inputs.pn_rate_factor;
       }
       return SampledLoop(linear, law, autopilot.config.tick_s,
                          plant.stacks[static_cast<std::size_t>(s.stack)].gimbal.delay_ticks)
