@@ -8,9 +8,11 @@
 #include "core/campaign_yaml/inline_files.h"
 #include "core/campaign_yaml/load.h"
 #include "core/campaign_yaml/number_text.h"
+#include "core/campaign_yaml/struct_problems.h"
 #include "core/campaign_yaml/yaml_reader.h"
 #include "core/flight/engine_version.h"
 #include "core/flight/metrics.h"
+#include "core/flight/sensor_model.h"
 #include "core/math/functions.h"
 
 namespace dispersa {
@@ -380,6 +382,9 @@ DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vect
           flies ? &map.Required("autopilot", "an autopilot file") : map.Optional("autopilot")) {
     campaign.autopilot =
         DecodeAutopilot(*autopilot, PathOfPart(*autopilot, root, "autopilot"), stages, problems);
+    if (problems.empty())
+      AddStructProblems(GyroProblems(campaign.vehicle, campaign.autopilot), *autopilot,
+                        PathOfPart(*autopilot, root, "autopilot"), problems);
   }
   const InputNode* sampling = flies ? &map.Required("sampling", "a map") : map.Optional("sampling");
   if (sampling != nullptr) campaign.sampling = DecodeSampling(*sampling, "sampling", problems);
@@ -420,7 +425,9 @@ DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vect
 
 std::string VehicleSha256(const InputNode& vehicle) {
   InputNode rigid = vehicle;
-  std::erase_if(rigid.members, [](const InputMember& member) { return member.key == "structure_beam"; });
+  std::erase_if(rigid.members, [](const InputMember& member) {
+    return member.key == "structure_beam" || member.key == "sensors";
+  });
   return Sha256Hex(CanonicalText(rigid));
 }
 

@@ -52,6 +52,9 @@ class DispersionDecoder {
     Scalar("density", kPositiveFactor, "density_factor");
     Scalar("inertia", kPositiveFactor, "inertia_factor");
     Scalar("actuator_bandwidth", kPositiveFactor, "actuator_bandwidth_factor");
+    BendingFrequency();
+    Scalar("bending_damping", kPositiveFactor, "bending_damping_factor");
+    Scalar("bending_slope", {{}, kNonNegative}, "bending_slope_factor");
     TipOff();
     GyroBias();
     Scalar("gyro_noise", {kAngularRate, kNonNegative}, "gyro_noise_deg_s");
@@ -118,6 +121,21 @@ class DispersionDecoder {
     MapReader map(*node, map_.PathOf(key), problems_);
     const ScalarDistribution distribution = ReadDistribution(map, kPositiveFactor);
     AddStages(key, PerStage(map), distribution, columns);
+  }
+
+  // One draw a mode, or one for all of them.
+  void BendingFrequency() {
+    const InputNode* node = map_.Optional("bending_frequency");
+    if (node == nullptr) return;
+    MapReader map(*node, map_.PathOf("bending_frequency"), problems_);
+    const ScalarDistribution distribution = ReadDistribution(map, kPositiveFactor);
+    const bool per_mode = map.Choice<bool>("per", {{"mode", true}, {"vehicle", false}});
+    std::vector<int> all;
+    for (int mode = 1; mode <= kModes; ++mode) {
+      all.push_back(Column("bending_frequency_factor_mode" + std::to_string(mode)));
+      if (per_mode) Add("bending_frequency/mode" + std::to_string(mode), distribution, {all.back()});
+    }
+    if (!per_mode) Add("bending_frequency", distribution, all);
   }
 
   void Scalar(const std::string& key, const DispersedScalar& scalar, const std::string& column) {

@@ -67,6 +67,11 @@ Gimbal DecodeGimbal(const InputNode& node, const std::string& path, ProblemList&
   gimbal.bandwidth_rad_s = map.Quantity("bandwidth", kFrequency, kPositive);
   gimbal.damping_ratio = map.Number("damping_ratio", kPositive);
   gimbal.delay_ticks = static_cast<int>(map.Integer("delay_ticks", 0, 100));
+  gimbal.nozzle_mass_kg = map.Quantity("nozzle_mass", kMass, kNonNegative, 0.0);
+  if (gimbal.nozzle_mass_kg > 0.0) {
+    gimbal.nozzle_cg_m = map.Quantity("nozzle_cg", kLength, kAnyNumber);
+    gimbal.nozzle_inertia_kg_m2 = map.Quantity("nozzle_inertia", kInertia, kPositive);
+  }
   return gimbal;
 }
 
@@ -188,6 +193,31 @@ ReactionControl DecodeReactionControl(const InputNode& node, const std::string& 
   return control;
 }
 
+RateGyro DecodeGyro(const InputNode& node, const std::string& path, ProblemList& problems) {
+  MapReader map(node, path, problems);
+  RateGyro gyro;
+  gyro.name = map.Text("name");
+  gyro.station_m = map.Quantity("station", kLength, kNonNegative);
+  gyro.bandwidth_rad_s = map.Quantity("bandwidth", kFrequency, kPositive, 0.0);
+  gyro.damping_ratio = map.Number("damping_ratio", kPositive, 0.7);
+  gyro.quantum_rad_s = map.Quantity("quantum", kAngularRate, kPositive, 0.0);
+  gyro.sample_ticks = static_cast<int>(map.Integer("sample_ticks", 1, 100, 1));
+  return gyro;
+}
+
+Sensors DecodeSensors(const InputNode& node, const std::string& path, ProblemList& problems) {
+  MapReader map(node, path, problems);
+  Sensors sensors;
+  {
+    MapReader unit(map.Required("inertial_unit", "a map"), map.PathOf("inertial_unit"), problems);
+    sensors.inertial_unit_station_m = unit.Quantity("station", kLength, kNonNegative);
+  }
+  map.Each("rate_gyros", 0, kRateGyros, [&](const InputNode& item, const std::string& item_path) {
+    sensors.rate_gyros.push_back(DecodeGyro(item, item_path, problems));
+  });
+  return sensors;
+}
+
 StructuralLimits DecodeLimits(const InputNode& node, const std::string& path, ProblemList& problems) {
   MapReader map(node, path, problems);
   StructuralLimits limits;
@@ -230,9 +260,14 @@ Vehicle DecodeVehicle(const InputNode& node, const std::string& path, std::vecto
     if (const InputNode* limits = map.Optional("limits")) {
       vehicle.limits = DecodeLimits(*limits, map.PathOf("limits"), problems);
     }
+    const InputNode* sensors = map.Optional("sensors");
+    if (sensors != nullptr) vehicle.sensors = DecodeSensors(*sensors, map.PathOf("sensors"), problems);
     if (const InputNode* beam = map.Optional("structure_beam")) {
       vehicle.structure_beam =
           DecodeStructureBeam(*beam, map.PathOf("structure_beam"), vehicle.stages.size(), problems);
+      if (sensors == nullptr && vehicle.structure_beam && vehicle.structure_beam->flown_modes > 0)
+        map.ReportMissing({"sensors"}, "where the sensors of a vehicle that bends are: sensors: "
+                                       "{inertial_unit: {station_m: x}}");
     }
   }
   if (problems.size() == before) AddStructProblems(Problems(vehicle), node, path, problems);

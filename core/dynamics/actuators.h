@@ -3,7 +3,7 @@
 // limit acts.
 #pragma once
 
-#include "core/dynamics/launcher.h"
+#include "core/dynamics/launcher_body.h"
 #include "core/math/lanes.h"
 
 namespace dispersa::lanes {
@@ -59,6 +59,17 @@ DISPERSA_INLINE void DriveRates(const Drives<T>& d, int i, T command_rad, T angl
   acceleration = Select(at_limit, T(0.0), acceleration);
   dangle = d.moves[i] * Clamp(rate_rad_s, -d.rate_limit_rad_s, d.rate_limit_rad_s);
   drate = d.moves[i] * acceleration;
+}
+
+/// Accelerations of the deflections, into the nozzles that the equations of motion see.
+template <class T>
+DISPERSA_INLINE void SetAccelerations(const Drives<T>& d, const T* command_rad, const DriveState<T>& s,
+                                      Nozzles<T>& nozzles) {
+  for (int i = 0; i < kNozzles; ++i) {
+    T rate;
+    const T command = Clamp(command_rad[i], -d.limit_rad, d.limit_rad);
+    DriveRates(d, i, command, s.angle_rad[i], s.rate_rad_s[i], rate, nozzles.acceleration_rad_s2[i]);
+  }
 }
 
 /// Steps of the classical Runge-Kutta method that one propagation takes where a rate limit acts.

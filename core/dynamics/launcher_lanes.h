@@ -59,6 +59,9 @@ DISPERSA_INLINE void SetLane(Plant<T>& p, int lane, const LauncherPlant& plant, 
   Lane(p.inertia_factor, lane) = plant.inertia_factor;
   Lane(p.pivot_station_m, lane) = s.gimbal.pivot_station_m;
   Lane(p.nozzle_radius_m, lane) = s.gimbal.radius_m;
+  Lane(p.nozzle_moment_kg_m, lane) = s.gimbal.nozzle_mass_kg * s.gimbal.nozzle_cg_m;
+  Lane(p.nozzle_inertia_kg_m2, lane) = s.gimbal.nozzle_inertia_kg_m2;
+  p.nozzles_have_mass = plant.nozzles_have_mass();
   const double* tilt = reinterpret_cast<const double*>(&s.thrust_tilt);  // column by column
   for (int i = 0; i < 3; ++i) {
     Lane(p.thrust_tilt.row[i].x, lane) = tilt[i];
@@ -67,6 +70,26 @@ DISPERSA_INLINE void SetLane(Plant<T>& p, int lane, const LauncherPlant& plant, 
   }
   Lane(p.thrust_offset_y_m, lane) = s.thrust_offset_y_m;
   Lane(p.thrust_offset_z_m, lane) = s.thrust_offset_z_m;
+}
+
+/// The bending of a lane on its stack; what its propellant decides is set by ShapesAt.
+template <class T>
+DISPERSA_INLINE void SetLane(Bending<T>& b, int lane, const LauncherPlant& plant, int stack) {
+  const BendingTable* table = plant.stacks.data()[stack].bending.get();
+  b.table[lane] = table != nullptr && table->modes > 0 ? table : nullptr;
+  table = b.table[lane];
+  for (int mode = 0; mode < kModes; ++mode)
+    Lane(b.frequency_factor[mode], lane) = plant.bending.frequency.data()[mode];
+  Lane(b.damping_ratio, lane) = plant.bending.damping_ratio;
+  Lane(b.slope_factor, lane) = plant.bending.slope;
+  for (int strip = 0; strip < kStrips; ++strip) {
+    Lane(b.strip_station_m[strip], lane) = table ? table->strip_station_m.data()[strip] : 0.0;
+    Lane(b.slender[strip], lane) = table ? table->slender.data()[strip] : 0.0;
+    Lane(b.shift_1_m[strip], lane) = table ? table->shift_1_m.data()[strip] : 0.0;
+  }
+  Lane(b.slender_station_m, lane) = table ? table->slender_station_m : 0.0;
+  b.modes = plant.bending_modes();
+  b.planes = plant.bending_planes();
 }
 
 /// `stuck`: index of a nozzle that does not move, or -1.

@@ -21,6 +21,10 @@ class ColumnList {
       columns_.push_back(
           {stem + "_stage" + std::to_string(i + 1) + unit_suffix, unit, OffsetOf(&(nominal_.*field)[i])});
   }
+  void EachMode(std::array<double, kModes> FlightInputs::*field, const std::string& stem) {
+    for (std::size_t i = 0; i < kModes; ++i)
+      columns_.push_back({stem + "_mode" + std::to_string(i + 1), 1.0, OffsetOf(&(nominal_.*field)[i])});
+  }
   void EachLevel(std::array<double, kWindLevels> FlightInputs::*field, const std::string& stem) {
     for (std::size_t i = 0; i < kWindLevels; ++i)
       columns_.push_back({stem + "_" + std::to_string(i + 1), 1.0, OffsetOf(&(nominal_.*field)[i])});
@@ -63,6 +67,9 @@ std::vector<InputColumn> MakeColumns() {
   list.One(&In::density_factor, "density_factor");
   list.One(&In::inertia_factor, "inertia_factor");
   list.One(&In::actuator_bandwidth_factor, "actuator_bandwidth_factor");
+  list.EachMode(&In::bending_frequency_factor, "bending_frequency_factor");
+  list.One(&In::bending_damping_factor, "bending_damping_factor");
+  list.One(&In::bending_slope_factor, "bending_slope_factor");
   list.EachStage(&In::tip_off_pitch_rad_s, "tip_off_pitch", "_deg_s", kRadPerDeg);
   list.EachStage(&In::tip_off_yaw_rad_s, "tip_off_yaw", "_deg_s", kRadPerDeg);
   list.EachStage(&In::tip_off_roll_rad_s, "tip_off_roll", "_deg_s", kRadPerDeg);

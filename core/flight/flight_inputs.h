@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/structure/bending_table.h"
 #include "core/vehicle/vehicle.h"
 
 namespace dispersa {
@@ -47,6 +48,9 @@ struct FlightInputs {
   double density_factor = 1.0;
   double inertia_factor = 1.0;
   double actuator_bandwidth_factor = 1.0;
+  std::array<double, kModes> bending_frequency_factor = {1.0, 1.0, 1.0, 1.0, 1.0};  ///< of each mode, both planes
+  double bending_damping_factor = 1.0;       ///< of the modes' damping ratio
+  double bending_slope_factor = 1.0;         ///< of the slopes that sensors feel
   PerStage tip_off_pitch_rad_s{};            ///< rate added to the upper stack as stage i separates
   PerStage tip_off_yaw_rad_s{};
   PerStage tip_off_roll_rad_s{};

@@ -3,6 +3,7 @@
 #include <cassert>
 
 #include "core/dynamics/aero_grid.h"
+#include "core/math/constants.h"
 #include "core/math/functions.h"
 #include "core/vehicle/aerodynamics_build_up.h"
 
@@ -25,6 +26,15 @@ LauncherPlant BuildNominalPlant(const Vehicle& vehicle) {
     plant.stacks.push_back(stack);
   }
   return plant;
+}
+
+void AddBending(const Vehicle& vehicle, double tick_s, LauncherPlant& plant) {
+  if (!vehicle.structure_beam || vehicle.structure_beam->flown_modes == 0) return;
+  plant.bending.damping_ratio = vehicle.structure_beam->damping_ratio;
+  const std::vector<StackModes> stacks = BuildBendingModes(vehicle);
+  for (std::size_t i = 0; i < stacks.size(); ++i)
+    plant.stacks[i].bending =
+        std::make_shared<const BendingTable>(BuildBendingTable(vehicle, stacks[i], kPi / tick_s));
 }
 
 StageControl BuildStageControl(const LauncherStack& stack) {
@@ -93,11 +103,13 @@ FlightModel::FlightModel(FlightDefinition definition)
       nominal_(BuildNominalPlant(definition_.vehicle)) {
   frame_ = BuildLaunchFrame(nominal_.environment.earth, definition_.vehicle.site,
                             definition_.program.launch_azimuth_rad);
+  AddBending(definition_.vehicle, definition_.autopilot.tick_s, nominal_);
   if (definition_.wind_table) nominal_.environment.wind.tables.push_back(*definition_.wind_table);
   std::vector<StageControl> controls;
   for (const LauncherStack& stack : nominal_.stacks) controls.push_back(BuildStageControl(stack));
   autopilot_ = BuildAutopilot(definition_.autopilot, std::move(controls),
                               definition_.vehicle.reaction_control.minimum_on_time_s);
+  sensors_ = BuildSensors(definition_.vehicle, definition_.autopilot);
   reference_rows_ = TabulateReference(definition_.program, frame_, definition_.autopilot.tick_s);
   feed_forward_rows_ = TabulateFeedForward(definition_.program, definition_.autopilot,
                                            static_cast<long>(reference_rows_.last_tick) + 1);
@@ -107,6 +119,7 @@ FlightModel FlightModel::WithAutopilot(const AutopilotConfig& autopilot) const {
   assert(autopilot.tick_s == definition_.autopilot.tick_s);
   FlightModel model = *this;
   model.definition_.autopilot = autopilot;
+  model.sensors_ = BuildSensors(definition_.vehicle, autopilot);
   model.autopilot_ =
       BuildAutopilot(autopilot, autopilot_.stages, definition_.vehicle.reaction_control.minimum_on_time_s);
   model.feed_forward_rows_ =
@@ -137,6 +150,9 @@ LauncherPlant FlightModel::PlantFor(const FlightInputs& in) const {
   LauncherPlant plant = nominal_;
   plant.cg_factor = in.cg_factor;
   plant.inertia_factor = in.inertia_factor;
+  plant.bending.frequency = in.bending_frequency_factor;
+  plant.bending.damping_ratio *= in.bending_damping_factor;
+  plant.bending.slope = in.bending_slope_factor;
   plant.environment.density.scale *= in.density_factor;
 
   Wind& wind = plant.environment.wind;

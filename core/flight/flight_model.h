@@ -11,6 +11,7 @@
 #include "core/flight/attitude_program.h"
 #include "core/flight/flight_inputs.h"
 #include "core/flight/launch_frame.h"
+#include "core/flight/sensor_model.h"
 #include "core/flight/sequence.h"
 #include "core/vehicle/vehicle.h"
 
@@ -65,6 +66,7 @@ class FlightModel {
   const LaunchFrame& frame() const { return frame_; }
   const AutopilotModel& autopilot() const { return autopilot_; }
   const LauncherPlant& nominal_plant() const { return nominal_; }
+  const SensorModel& sensors() const { return sensors_; }
   const ReferenceRows& reference_rows() const { return reference_rows_; }
   const FeedForwardRows& feed_forward_rows() const { return feed_forward_rows_; }
 
@@ -76,12 +78,16 @@ class FlightModel {
   LaunchFrame frame_;
   LauncherPlant nominal_;
   AutopilotModel autopilot_;
+  SensorModel sensors_;
   ReferenceRows reference_rows_;
   FeedForwardRows feed_forward_rows_;
 };
 
 /// The vehicle without dispersions: aerodynamics built up where the file gives no tables.
 LauncherPlant BuildNominalPlant(const Vehicle& vehicle);
+/// Gives a vehicle with a beam that flies its bending: modes that stay below half the sampling frequency all the
+/// burn.
+void AddBending(const Vehicle& vehicle, double tick_s, LauncherPlant& plant);
 /// Angular acceleration per radian of deflection, over the time since ignition, of a nominal stack.
 StageControl BuildStageControl(const LauncherStack& stack);
 

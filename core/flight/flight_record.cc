@@ -50,7 +50,7 @@ class FlightRecord::JudgedMotion {
   JudgedMotion(const LauncherModel& equations, Scheme scheme)
       : equations_(equations),
         tolerances_(AbsoluteTolerances()),
-        integrator_(scheme, kLauncherSize, &Rhs, this, tolerances_.data()) {}
+        integrator_(scheme, equations.plant().state_size(), &Rhs, this, tolerances_.data()) {}
 
   bool Advance(const LauncherPhase& phase, double from_s, double to_s, int steps, double* y) {
     phase_ = phase;
@@ -113,7 +113,7 @@ void FlightRecord::DrawNoise(double* rate_rad_s) {
 
 void FlightRecord::AddToDigest(double time_s, const double* y) {
   digester_.Add(&time_s, 1);
-  digester_.Add(y, kLauncherSize);
+  digester_.Add(y, static_cast<std::size_t>(plant.state_size()));
 }
 
 TickSample FlightRecord::SampleOf(const LaneView& view) const {
@@ -128,6 +128,7 @@ TickSample FlightRecord::SampleOf(const LaneView& view) const {
     s.nozzle_rad[static_cast<std::size_t>(i)] = view.y[kNozzleAngle + i];
     s.nozzle_rate_rad_s[static_cast<std::size_t>(i)] = view.y[kNozzleRate + i];
   }
+  std::copy(view.y + kModalState, view.y + kLauncherSize, s.bending.begin());
   s.command_rad = view.phase.command_rad;
   s.limit_rad = plant.stacks[static_cast<std::size_t>(s.stack)].gimbal.limit_rad;
   s.reference = model_.definition().program.At(view.time_s);
