@@ -426,7 +426,7 @@ DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vect
 std::string VehicleSha256(const InputNode& vehicle) {
   InputNode rigid = vehicle;
   std::erase_if(rigid.members, [](const InputMember& member) {
-    return member.key == "structure_beam" || member.key == "sensors";
+    return member.key == "structure_beam" || member.key == "sensors" || member.key == "nozzles";
   });
   return Sha256Hex(CanonicalText(rigid));
 }

@@ -67,11 +67,6 @@ Gimbal DecodeGimbal(const InputNode& node, const std::string& path, ProblemList&
   gimbal.bandwidth_rad_s = map.Quantity("bandwidth", kFrequency, kPositive);
   gimbal.damping_ratio = map.Number("damping_ratio", kPositive);
   gimbal.delay_ticks = static_cast<int>(map.Integer("delay_ticks", 0, 100));
-  gimbal.nozzle_mass_kg = map.Quantity("nozzle_mass", kMass, kNonNegative, 0.0);
-  if (gimbal.nozzle_mass_kg > 0.0) {
-    gimbal.nozzle_cg_m = map.Quantity("nozzle_cg", kLength, kAnyNumber);
-    gimbal.nozzle_inertia_kg_m2 = map.Quantity("nozzle_inertia", kInertia, kPositive);
-  }
   return gimbal;
 }
 
@@ -193,6 +188,14 @@ ReactionControl DecodeReactionControl(const InputNode& node, const std::string& 
   return control;
 }
 
+// What turns of one nozzle of a stage.
+void DecodeNozzle(const InputNode& node, const std::string& path, Gimbal& gimbal, ProblemList& problems) {
+  MapReader map(node, path, problems);
+  gimbal.nozzle_mass_kg = map.Quantity("mass", kMass, kPositive);
+  gimbal.nozzle_cg_m = map.Quantity("cg_aft_of_pivot", kLength, kAnyNumber);
+  gimbal.nozzle_inertia_kg_m2 = map.Quantity("inertia_about_hinge", kInertia, kPositive);
+}
+
 RateGyro DecodeGyro(const InputNode& node, const std::string& path, ProblemList& problems) {
   MapReader map(node, path, problems);
   RateGyro gyro;
@@ -260,6 +263,14 @@ Vehicle DecodeVehicle(const InputNode& node, const std::string& path, std::vecto
     if (const InputNode* limits = map.Optional("limits")) {
       vehicle.limits = DecodeLimits(*limits, map.PathOf("limits"), problems);
     }
+    const std::size_t stages = vehicle.stages.size();
+    std::size_t stage = 0;
+    map.Each("nozzles", 0, stages, [&](const InputNode& item, const std::string& item_path) {
+      DecodeNozzle(item, item_path, vehicle.stages[stage++].gimbal, problems);
+    });
+    if (stage != 0 && stage != stages)
+      AddProblem(problems, *node.Find("nozzles"), map.PathOf("nozzles"),
+                 std::to_string(stage) + " entries for " + std::to_string(stages) + " stages", "one a stage, or none");
     const InputNode* sensors = map.Optional("sensors");
     if (sensors != nullptr) vehicle.sensors = DecodeSensors(*sensors, map.PathOf("sensors"), problems);
     if (const InputNode* beam = map.Optional("structure_beam")) {

@@ -213,6 +213,7 @@ DISPERSA_INLINE void FinishDrive(const Bending<T>& b, const BendingState<T>& s, 
 template <class T>
 struct Swing {
   T time_s;
+  T stiffness_1_s2[kPlanes][kModes], damping_1_s[kPlanes][kModes];
   T aa[kPlanes][kModes], ar[kPlanes][kModes], ra[kPlanes][kModes], rr[kPlanes][kModes];
 };
 template <class T>
@@ -222,6 +223,8 @@ DISPERSA_INLINE Swing<T> SwingOver(const Bending<T>& b, T time_s) {
   for (int plane = 0; plane < b.planes; ++plane)
     for (int mode = 0; mode < b.modes; ++mode) {
       const ModeNow<T>& m = b.now[plane][mode];
+      o.stiffness_1_s2[plane][mode] = m.stiffness_1_s2;
+      o.damping_1_s[plane][mode] = m.damping_1_s;
       const T e = Exp(-(m.decay_1_s * time_s)), angle = m.damped_frequency_rad_s * time_s;
       const T cosine = e * Cos(angle), sine = e * Sin(angle) / m.damped_frequency_rad_s;
       o.aa[plane][mode] = Fma(m.decay_1_s, sine, cosine);
@@ -234,7 +237,7 @@ DISPERSA_INLINE Swing<T> SwingOver(const Bending<T>& b, T time_s) {
 /// Twice the time.
 template <class T>
 DISPERSA_INLINE Swing<T> Twice(const Bending<T>& b, const Swing<T>& s) {
-  Swing<T> o;
+  Swing<T> o = s;
   o.time_s = s.time_s + s.time_s;
   for (int plane = 0; plane < b.planes; ++plane)
     for (int mode = 0; mode < b.modes; ++mode) {
@@ -257,12 +260,11 @@ DISPERSA_INLINE BendingState<T> Swung(const Bending<T>& b, const Swing<T>& swing
   const T t = swing.time_s, two(2.0);
   for (int plane = 0; plane < kPlanes; ++plane)
     for (int mode = 0; mode < b.modes; ++mode) {
-      const ModeNow<T>& m = b.At(plane, mode);
       const int of = b.planes == 1 ? 0 : plane;
-      const T softness = T(1.0) / m.stiffness_1_s2;
+      const T softness = T(1.0) / swing.stiffness_1_s2[of][mode], damping = swing.damping_1_s[of][mode];
       const T c = d2.drive_m_s2[plane][mode] * softness;
-      const T v = Fma(-(two * m.damping_1_s), c, d1.drive_m_s2[plane][mode]) * softness;
-      const T a = Fma(-m.damping_1_s, v, Fma(-two, c, d0.drive_m_s2[plane][mode])) * softness;
+      const T v = Fma(-(two * damping), c, d1.drive_m_s2[plane][mode]) * softness;
+      const T a = Fma(-damping, v, Fma(-two, c, d0.drive_m_s2[plane][mode])) * softness;
       const T q = from.q_m[plane][mode] - a, rate = from.rate_m_s[plane][mode] - v;
       to.q_m[plane][mode] =
           Fma(swing.aa[of][mode], q, Fma(swing.ar[of][mode], rate, Fma(t, Fma(t, c, v), a)));

@@ -11,7 +11,7 @@
 //               alpha1; there a2, alpha2
 //   bending     each mode swings exactly (bending.h) under its drive as it is at the start, rising as in the last
 //               step, for the middle; under the line through start and middle for the last evaluation; in the end
-//               under the parabola through all three. Shapes and frequencies are those of the step's middle
+//               under the parabola through all three. Frequencies are those of the step's middle
 //   velocities  v + h/6 (a0 + 4 a1 + a2), w + h/6 (alpha0 + 4 alpha1 + alpha2)
 //
 // with a0' the slope at its end of the parabola through the last step's three accelerations, 0 after an
@@ -122,7 +122,9 @@ class StepState {
   }
 
   /// Shapes of the modes at the lanes' propellant, where bending is looked at between steps.
-  void UpdateShapes(T time_s) { ShapesAt(bending, MassesAt(plant, phase, time_s).propellant_kg); }
+  void UpdateShapes(T time_s) {
+    if (any_stale_) ShapesAt(bending, MassesAt(plant, phase, time_s).propellant_kg);
+  }
 
   /// Evaluates the lanes at which the last step's end does not hold any more.
   void EvaluateStart(T time_s) {
@@ -260,6 +262,7 @@ MaskOf<T> StepState<T>::Step(MaskOf<T> moving, bool all, T from_s, T to_s) {
     for (int i = 0; i < kModalValues; ++i)
       (&rising.drive_m_s2[0][0])[i] = two * per_s * ((&b.modal.drive_m_s2[0][0])[i] - (&a.modal.drive_m_s2[0][0])[i]);
     bent_end = Swung(bending, over_step, bending_state, a.modal, rising, no_curvature);
+    ShapesAt(bending, c.masses.propellant_kg);
   }
   c.rates = RatesAt(c, end, bent_end, &c.instant);
   end.v = Along(motion.v, sixth, Along(a.rates.dv + c.rates.dv, four, b.rates.dv));

@@ -6,7 +6,6 @@
 
 #include "core/control/fuzzy.h"
 #include "core/control/lyapunov.h"
-#include "core/math/constants.h"
 
 namespace dispersa {
 
@@ -41,12 +40,10 @@ void ApplyDesign(const StageDesign& design, int stage, AutopilotConfig& autopilo
   const StageFilters& f = design.filters;
   if (f.low_pass_rad_s == 0.0) return;
   const auto round = [](double value) { return RoundToDigits(value, kDesignDigits); };
-  // In Hz, as a file has them.
-  const auto frequency = [&](double rad_s) { return round(rad_s / kTwoPi) * kTwoPi; };
   for (AxisConfig* axis : {&autopilot.pitch, &autopilot.yaw}) {
     std::erase_if(axis->filters, [&](const FilterSection& section) { return section.stage == stage + 1; });
-    axis->filters.push_back({0.0, 0.0, frequency(f.low_pass_rad_s), round(f.low_pass_damping), stage + 1});
-    const double notch = frequency(f.notch_rad_s);
+    axis->filters.push_back({0.0, 0.0, round(f.low_pass_rad_s), round(f.low_pass_damping), stage + 1});
+    const double notch = round(f.notch_rad_s);
     axis->filters.push_back(
         {notch, round(f.notch_zeros_damping), notch, round(f.notch_poles_damping), stage + 1});
   }

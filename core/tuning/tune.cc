@@ -112,11 +112,17 @@ class Tuner {
     campaign_.autopilot = autopilot;
     campaign_.sampling = {SamplingMethod::kMonteCarlo, static_cast<std::uint64_t>(options.cases),
                           options.seed};
+    // Of the plant alone what stages are like is asked below.
+    start_ = std::make_unique<CampaignFlights>(campaign_);
     for (int stage = 0; stage < StageCount(); ++stage) {
       StageDesign cautious;
       cautious.bandwidth_rad_s = kStartBandwidthOfActuator * ActuatorOf(stage);
       cautious.damping = kStartDamping;
       cautious.learning = kStartLearning;
+      if (FirstMode(stage) > 0.0)
+        cautious.filters = FiltersAt({kStartLowPassPower, kStartLowPassDamping, kStartNotchPower,
+                                      kStartNotchZerosDamping, kStartNotchPolesDamping, kStartGyroWeight},
+                                     stage);
       ApplyDesign(cautious, stage, campaign_.autopilot);
     }
     ApplyDesign(kStartAugmentation, campaign_.autopilot);
@@ -226,15 +232,22 @@ class Tuner {
       design.damping = point[next++];
       design.learning = learns_ ? point[next++] : 0.0;
     }
-    const double first_mode_rad_s = FirstMode(stage);
-    if (first_mode_rad_s == 0.0) return design;
-    design.filters.low_pass_rad_s = std::pow(10.0, point[next++]) * first_mode_rad_s;
-    design.filters.low_pass_damping = point[next++];
-    design.filters.notch_rad_s = std::pow(10.0, point[next++]) * first_mode_rad_s;
-    design.filters.notch_zeros_damping = point[next++];
-    design.filters.notch_poles_damping = point[next++];
-    if (!BlendedGyros(campaign_.autopilot, stage).empty()) design.filters.first_gyro_weight = point[next++];
+    if (FirstMode(stage) > 0.0)
+      design.filters = FiltersAt({point.begin() + static_cast<std::ptrdiff_t>(next), point.end()}, stage);
     return design;
+  }
+
+  // Of the last variables of a point.
+  StageFilters FiltersAt(const std::vector<double>& point, int stage) const {
+    const double first_mode_rad_s = FirstMode(stage);
+    StageFilters filters;
+    filters.low_pass_rad_s = std::pow(10.0, point[0]) * first_mode_rad_s;
+    filters.low_pass_damping = point[1];
+    filters.notch_rad_s = std::pow(10.0, point[2]) * first_mode_rad_s;
+    filters.notch_zeros_damping = point[3];
+    filters.notch_poles_damping = point[4];
+    if (!BlendedGyros(campaign_.autopilot, stage).empty()) filters.first_gyro_weight = point[5];
+    return filters;
   }
 
   // Of a point of the search: bandwidth as a fraction of the largest admissible one, and its shape. Where

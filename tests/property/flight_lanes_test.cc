@@ -26,6 +26,8 @@ FlightDefinition Definition(const std::string& autopilot, bool with_winds) {
         {.zeros_rad_s = 25.0, .zeros_damping = 0.2, .poles_rad_s = 25.0, .poles_damping = 0.6, .stage = 1}};
   if (autopilot == "pid_aac")  // axes that feed forward beside one that does not
     definition.autopilot.pitch.feed_forward = definition.autopilot.yaw.feed_forward = FeedForward{0.066};
+  if (autopilot == "flexible")
+    definition.vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml");
   definition.noise_seed = 11;
   if (with_winds) {
     definition.wind_table = WindTable{{0.0, 5000.0, 12000.0}, {1.0, 12.0, -20.0}, {3.0, -8.0, 30.0}};
@@ -69,7 +71,8 @@ FlightInputs DrawnInputs(std::uint64_t flight) {
     some(in.wind_profile_east[level], draws.Normal());
   }
   for (double* factor : {&in.drag_factor, &in.lift_factor, &in.cg_factor, &in.cp_factor, &in.density_factor,
-                         &in.inertia_factor, &in.actuator_bandwidth_factor})
+                         &in.inertia_factor, &in.actuator_bandwidth_factor, &in.bending_damping_factor,
+                         &in.bending_slope_factor, &in.bending_frequency_factor[0], &in.bending_frequency_factor[1]})
     some(*factor, 1.0 + 0.03 * draws.Normal());
   some(in.gyro_bias_roll_rad_s, 1e-6 * draws.Normal());
   some(in.gyro_bias_pitch_rad_s, 1e-6 * draws.Normal());
@@ -209,7 +212,8 @@ TEST_P(FlightLanes, AreTheFlightsAlone) {
   }
 }
 INSTANTIATE_TEST_SUITE_P(Laws, FlightLanes,
-                         testing::Values("adaptive_fuzzy", "frozen_fuzzy", "pd", "pid", "pd_aac", "pid_aac"),
+                         testing::Values("adaptive_fuzzy", "frozen_fuzzy", "pd", "pid", "pd_aac", "pid_aac",
+                                         "flexible"),
                          [](const auto& law) { return std::string(law.param); });
 
 }  // namespace
