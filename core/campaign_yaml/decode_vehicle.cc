@@ -269,8 +269,10 @@ Vehicle DecodeVehicle(const InputNode& node, const std::string& path, std::vecto
       DecodeNozzle(item, item_path, vehicle.stages[stage++].gimbal, problems);
     });
     if (stage != 0 && stage != stages)
-      AddProblem(problems, *node.Find("nozzles"), map.PathOf("nozzles"),
-                 std::to_string(stage) + " entries for " + std::to_string(stages) + " stages", "one a stage, or none");
+      AddProblem(
+          problems, *node.Find("nozzles"), map.PathOf("nozzles"),
+          "the list has " + std::to_string(stage) + ", the vehicle " + std::to_string(stages) + " stages",
+          "one entry a stage, or none");
     const InputNode* sensors = map.Optional("sensors");
     if (sensors != nullptr) vehicle.sensors = DecodeSensors(*sensors, map.PathOf("sensors"), problems);
     if (const InputNode* beam = map.Optional("structure_beam")) {

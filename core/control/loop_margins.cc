@@ -279,6 +279,7 @@ std::vector<double> SampledLoop::Frequencies() const {
   all.push_back(nyquist);
   if (plant_.lowest_mode_rad_s == 0.0) return all;
   const Eigen::VectorXcd modes = Eigen::EigenSolver<Eigen::MatrixXd>(plant_.a, false).eigenvalues();
+  all.push_back(kBelowModes * plant_.lowest_mode_rad_s);
   constexpr int kNear = 40;
   for (Eigen::Index i = 0; i < modes.size(); ++i) {
     const double frequency = modes[i].imag(), width = std::fabs(modes[i].real());
