@@ -22,8 +22,11 @@ DISPERSA_INLINE void SetLane(Weather<T>& w, int lane, const FlightWeather& from)
   Lane(w.gust_north, lane) = from.gust_north;
   Lane(w.gust_east, lane) = from.gust_east;
   w.profile[lane] = from.profile.is_calm() ? nullptr : &from.profile;
-  w.has_profiles = false;
-  for (int i = 0; i < kWidth<T>; ++i) w.has_profiles |= w.profile[i] != nullptr;
+  w.has_profiles = w.has_updrafts = false;
+  for (int i = 0; i < kWidth<T>; ++i) {
+    w.has_profiles |= w.profile[i] != nullptr;
+    w.has_updrafts |= w.profile[i] != nullptr && w.profile[i]->has_updraft;
+  }
 }
 
 template <class T>

@@ -214,6 +214,7 @@ void Batch<T>::BurnOut(int lane, int stage) {
   const Instant<double> now = step_.InstantOf(lane, time_s_);
   metrics_.AddLoadsOfLane(lane, now);
   metrics_.EndStage(lane, stage, record.sums);
+  record.ripple.Interrupt();
   record.limit_cycle.Interrupt();
   SetLane(step_.phase.burning, lane, false);
   SetLane(step_.phase.burnt, lane, true);

@@ -87,8 +87,9 @@ class FlightRecord::JudgedMotion {
 FlightRecord::FlightRecord(const FlightModel& model, const FlightOrder& order)
     : inputs(order.inputs),
       options(order.options),
-      plant(model.PlantFor(order.inputs)),
-      weather(PrepareWeather(plant.environment.wind, plant.environment.density)),
+      plant(model.PlantFor(order.inputs, order.options.case_index)),
+      weather(PrepareWeather(plant.environment.wind, plant.environment.density,
+                             plant.environment.turbulence.get())),
       events(EventsOf(model, plant)),
       lift_off{},
       watched(options.history != nullptr || options.observe != nullptr),
@@ -96,6 +97,7 @@ FlightRecord::FlightRecord(const FlightModel& model, const FlightOrder& order)
                                                                model.definition().autopilot.tick_s))
                                     : 0),
       noisy(inputs.gyro_noise_rad_s > 0.0),
+      ripple(model.definition().autopilot.tick_s),
       limit_cycle(model.definition().autopilot.tick_s),
       model_(model),
       gyro_noise_(model.definition().noise_seed, options.case_index, "gyro_noise") {
@@ -206,6 +208,7 @@ void FlightRecord::End(Outcome outcome, const char* reason, double time_s, int s
 }
 
 FlightResult FlightRecord::Result() {
+  sums.ripple_rad = ripple.worst_rad();
   sums.limit_cycle_rad = limit_cycle.worst_rad();
   result_.metrics = MetricsOf(sums, model_.definition());
   digester_.Add(result_.metrics.data(), result_.metrics.size());
