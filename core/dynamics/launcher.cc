@@ -109,10 +109,10 @@ void LauncherModel::Derivative(const LauncherPhase& phase, double time_s, const 
   lanes::Drives<double> drives{};
   lanes::SetLane(drives, 0, prepared_->plant.stacks[stack].gimbal, phase.stuck_nozzle);
   for (int i = 0; i < kNozzles; ++i) {
-    const double limit = drives.limit_rad;
-    const double command = Clamp(phase.command_rad[static_cast<std::size_t>(i)], -limit, limit);
-    lanes::DriveRates(drives, i, command, y[kNozzleAngle + i], y[kNozzleRate + i], dydt[kNozzleAngle + i],
-                      dydt[kNozzleRate + i]);
+    const std::size_t nozzle = static_cast<std::size_t>(i);
+    const double command = lanes::Followed(drives, phase.command_rad[nozzle]);
+    lanes::DriveRates(drives, i, command, y[kNozzleAngle + i], y[kNozzleRate + i], phase.slides[nozzle],
+                      dydt[kNozzleAngle + i], dydt[kNozzleRate + i]);
   }
 }
 
