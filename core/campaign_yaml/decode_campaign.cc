@@ -421,6 +421,14 @@ DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vect
 std::string VehicleSha256(const InputNode& vehicle) {
   InputNode rigid = vehicle;
   std::erase_if(rigid.members, [](const InputMember& member) { return member.key == "structure_beam"; });
+  // Nor does a point mass know what its actuators lack.
+  if (InputNode* stages = rigid.Find("stages"))
+    for (InputNode& stage : stages->items)
+      if (InputNode* gimbal = stage.Find("gimbal"))
+        std::erase_if(gimbal->members, [](const InputMember& member) {
+          return member.key.starts_with("dead_zone_") || member.key.starts_with("friction_") ||
+                 member.key.starts_with("resolution_");
+        });
   return Sha256Hex(CanonicalText(rigid));
 }
 
