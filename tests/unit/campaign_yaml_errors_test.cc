@@ -38,6 +38,12 @@ constexpr BadInput kBadInputs[] = {
     {"UnknownKeyLikeNoOther", "campaign.yaml", "name: trial", "name: trial\nzebra: 1", "campaign.yaml",
      "campaign.yaml:3:1: zebra: unknown key 'zebra', allowed: autopilot, correlations, "
      "description, dispersions, name, optimize, reference, requirements, sampling, schema, vehicle, verdicts\n"},
+    {"UnknownSeverity", "campaign.yaml", "dispersions:\n", "dispersions:\n  turbulence: {severity: rough}\n",
+     "campaign.yaml",
+     "campaign.yaml:8:26: dispersions.turbulence.severity: 'rough' is unknown, allowed: light, moderate, severe\n"},
+    {"ExceedanceOffTheFigure", "campaign.yaml", "dispersions:\n",
+     "dispersions:\n  turbulence: {exceedance: 0.5, wind_20ft_m_s: 10}\n", "campaign.yaml",
+     "campaign.yaml:8:28: dispersions.turbulence.exceedance: 0.5 is out of range, allowed: a number from 1e-06 to 0.2\n"},
     {"WordForCount", "campaign.yaml", "cases: 100", "cases: many", "campaign.yaml",
      "campaign.yaml:6:40: sampling.cases: 'many' is not a number, allowed: a whole number "
      "from 1 to 4294967295\n"},

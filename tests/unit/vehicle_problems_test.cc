@@ -75,6 +75,15 @@ INSTANTIATE_TEST_SUITE_P(
                 [](Vehicle& v) { v.stages[1].gimbal.pivot_station_m = 5.0; },
                 {"stages[1].gimbal.pivot_station_m: is not aft of the centre of gravity, which reaches "
                  "station 6.333333 m | a station aft of the centre of gravity"}},
+        Mistake{"DriveThatNeverMoves",
+                [](Vehicle& v) {
+                  v.stages[0].gimbal.dead_zone_rad = v.stages[0].gimbal.limit_rad;
+                  v.stages[1].gimbal.friction_rad = 1.0;
+                  v.stages[1].gimbal.resolution_rad = -1e-3;
+                },
+                {"stages[0].gimbal.dead_zone_deg: leaves the nozzle no travel | 0 to below the gimbal's limit",
+                 "stages[1].gimbal.friction_deg: leaves the nozzle no travel | 0 to below the gimbal's limit",
+                 "stages[1].gimbal.resolution_deg: leaves the nozzle no travel | 0 to below the gimbal's limit"}},
         Mistake{"GrainTooSmallForItsPropellant",
                 [](Vehicle& v) { v.stages[1].grain = {8.5, 9.0, 0.9, 0.3}; },
                 {"stages[1].grain: implies a propellant density of 3536.776513 kg/m3 | a volume that gives "
