@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "core/math/constants.h"
 #include "core/math/functions.h"
+#include "core/math/lanes.h"
 
 namespace dispersa {
 namespace {
@@ -112,63 +114,77 @@ double PeakToPeak(const double* samples, int count, double omega) {
 }  // namespace
 
 LimitCycleMeter::LimitCycleMeter(double tick_s)
-    : tick_s_(tick_s), ticks_(std::max(1, static_cast<int>(std::lround(kSampleTime_s / tick_s)))) {}
+    : ticks_(std::max(1, static_cast<int>(std::lround(kSampleTime_s / tick_s)))) {}
 
 void LimitCycleMeter::Interrupt() {
-  for (Octave& octave : octave_) octave.summed = octave.at = octave.filled = 0;
+  if (idle_) return;
+  idle_ = true;
+  summed_ = 0;
+  for (Octave& octave : octave_) octave.at = octave.hops = 0;
 }
 
 void LimitCycleMeter::Add(double roll_rad, double pitch_rad, double yaw_rad) {
-  const double values[kChannels] = {roll_rad, pitch_rad, yaw_rad};
-  Push(0, values);
+  idle_ = false;
+  Octave& highest = octave_[0];
+  double* sample = highest.sample[2 * kLag + highest.at];
+  if (summed_ == 0) {
+    sample[0] = roll_rad;
+    sample[1] = pitch_rad;
+    sample[2] = yaw_rad;
+  } else {
+    sample[0] += roll_rad;
+    sample[1] += pitch_rad;
+    sample[2] += yaw_rad;
+  }
+  if (ticks_ > 1) {
+    if (++summed_ < ticks_) return;
+    summed_ = 0;
+    for (int c = 0; c < kChannels; ++c) sample[c] /= ticks_;
+  }
+  if (++highest.at % kHop == 0) EndHop(0);
 }
 
-// A value of an octave's input: ticks for the highest, the samples of the octave above for the others.
-void LimitCycleMeter::Push(int octave, const double* values) {
+// A hop of an octave is whole: its energies, the windows that end with it, and the samples of the octave below, of two
+// each. All channels at once; they are never mixed.
+void LimitCycleMeter::EndHop(int octave) {
+  using Channels = lanes::Pack<kWidth>;
+  const auto load = [](const double* sample) { return Channels(_mm256_loadu_pd(sample)); };
+  const auto store = [](double* sample, Channels value) { _mm256_storeu_pd(sample, value.v); };
   Octave& o = octave_[octave];
-  const int parts = octave == 0 ? ticks_ : 2;
-  if (parts > 1) {
-    const bool first = o.summed == 0;
-    for (int c = 0; c < kChannels; ++c)
-      o.channel[c].sum = first ? values[c] : o.channel[c].sum + values[c];
-    if (++o.summed < parts) return;
-    o.summed = 0;
+  const int hop = o.at / kHop - 1, first = 2 * kLag + hop * kHop;
+  if (hop == 0) std::memcpy(o.sample, o.sample + kWindow, sizeof(o.sample[0]) * 2 * kLag);
+  Channels energy(0.0);
+  for (int i = o.hops == 0 ? first + 2 * kLag : first; i < first + kHop; ++i) {
+    const Channels difference =
+        load(o.sample[i - kLag]) - Channels(0.5) * (load(o.sample[i]) + load(o.sample[i - 2 * kLag]));
+    energy = energy + difference * difference;
   }
-  double mean[kChannels];
-  const double share = 1.0 / parts;
-  const int hop = o.at / kHop;
-  const bool anew = o.at == hop * kHop;
-  const int once = o.at >= kLag ? o.at - kLag : o.at - kLag + kWindow;
-  const int twice = o.at >= 2 * kLag ? o.at - 2 * kLag : o.at - 2 * kLag + kWindow;
-  for (int c = 0; c < kChannels; ++c) {
-    Channel& channel = o.channel[c];
-    mean[c] = parts > 1 ? share * channel.sum : values[c];
-    channel.sample[o.at] = mean[c];
-    if (anew) channel.energy[hop] = 0.0;
-    if (o.filled < 2 * kLag) continue;
-    const double difference = channel.sample[once] - 0.5 * (mean[c] + channel.sample[twice]);
-    channel.energy[hop] += difference * difference;
-  }
-  o.at = o.at + 1 == kWindow ? 0 : o.at + 1;
-  o.filled = std::min(o.filled + 1, kWindow);
-  if (o.filled == kWindow && o.at % kHop == 0)
-    for (const Channel& channel : o.channel) Evaluate(octave, channel);
-  if (octave + 1 < kOctaves) Push(octave + 1, mean);
+  store(o.energy[hop], energy);
+  if (o.at == kWindow) o.at = 0;
+  o.hops = std::min(o.hops + 1, kHops);
+  if (o.hops == kHops)
+    for (int channel = 0; channel < kChannels; ++channel) Evaluate(o, channel);
+  if (octave + 1 == kOctaves) return;
+  Octave& below = octave_[octave + 1];
+  double(*to)[kWidth] = below.sample + 2 * kLag + below.at;
+  for (int i = first; i < first + kHop; i += 2, ++to)
+    store(*to, Channels(0.5) * (load(o.sample[i]) + load(o.sample[i + 1])));
+  below.at += kHop / 2;
+  if (below.at % kHop == 0) EndHop(octave + 1);
 }
 
-void LimitCycleMeter::Evaluate(int octave, const Channel& channel) {
+void LimitCycleMeter::Evaluate(const Octave& octave, int channel) {
   worst_ = std::max(worst_, 0.0);
   // The second difference passes an octave's fundamental with a gain of 1 to 2, so its energy bounds the
   // amplitude: a² / 2 a sample at most. An oscillation swings no farther than twice its fundamental does.
   double energy = 0.0;
-  for (const double part : channel.energy) energy += part;
+  for (const auto& hop : octave.energy) energy += hop[channel];
   const double least = std::max(worst_, kFloor_rad);
   if (32.0 * energy <= least * least * (kWindow - 2 * kLag)) return;
 
   double samples[kWindow];
-  const int oldest = octave_[octave].at;
-  std::copy(channel.sample + oldest, channel.sample + kWindow, samples);
-  std::copy(channel.sample, channel.sample + oldest, samples + kWindow - oldest);
+  for (int i = 0, from = octave.at; i < kWindow; ++i, from = from + 1 == kWindow ? 0 : from + 1)
+    samples[i] = octave.sample[2 * kLag + from][channel];
   constexpr int kCount = kWindow - 2 * kLag;
   double differences[kCount];
   int crossings = 0;

@@ -43,6 +43,7 @@ class LimitCycleMeter {
 
  private:
   static constexpr int kChannels = 3;
+  static constexpr int kWidth = 4;  ///< of a sample: the channels side by side, the last unused
   static constexpr int kOctaves = 5;
   static constexpr int kWindow = 240;  ///< samples
   static constexpr int kHops = 4;      ///< windows begun in the time of one
@@ -51,23 +52,22 @@ class LimitCycleMeter {
   /// what has that period and lets the longest pass as it is.
   static constexpr int kLag = 5;
 
-  struct Channel {
-    double sum = 0.0;        ///< of the sample to come
-    double energy[kHops]{};  ///< of the second differences, by hop
-    double sample[kWindow];  ///< as a ring
-  };
   struct Octave {
-    int summed = 0, at = 0, filled = 0;
-    Channel channel[kChannels];
+    int at = 0;    ///< where the next sample goes
+    int hops = 0;  ///< whole ones since the last interruption, up to a window's
+    double energy[kHops][kWidth];  ///< of the second differences
+    /// A ring behind a copy of its own end, so that differences find what is before them.
+    double sample[2 * kLag + kWindow][kWidth];
   };
 
-  void Push(int octave, const double* values);
-  void Evaluate(int octave, const Channel& channel);
+  void EndHop(int octave);
+  void Evaluate(const Octave& octave, int channel);
 
-  double tick_s_;
-  int ticks_;  ///< in a sample of the highest octave
-  Octave octave_[kOctaves];
+  int ticks_;       ///< in a sample of the highest octave
+  int summed_ = 0;  ///< of them
+  bool idle_ = true;  ///< nothing since the last interruption
   double worst_ = -1.0;
+  Octave octave_[kOctaves] = {};
 };
 
 }  // namespace dispersa
