@@ -40,7 +40,7 @@ constexpr BadInput kBadInputs[] = {
      "description, dispersions, name, optimize, reference, requirements, sampling, schema, vehicle, verdicts\n"},
     {"UnknownSeverity", "campaign.yaml", "dispersions:\n", "dispersions:\n  turbulence: {severity: rough}\n",
      "campaign.yaml",
-     "campaign.yaml:8:26: dispersions.turbulence.severity: 'rough' is unknown, allowed: light, moderate, severe\n"},
+     "campaign.yaml:8:26: dispersions.turbulence.severity: 'rough' is not a choice, allowed: one of light, moderate, severe\n"},
     {"ExceedanceOffTheFigure", "campaign.yaml", "dispersions:\n",
      "dispersions:\n  turbulence: {exceedance: 0.5, wind_20ft_m_s: 10}\n", "campaign.yaml",
      "campaign.yaml:8:28: dispersions.turbulence.exceedance: 0.5 is out of range, allowed: a number from 1e-06 to 0.2\n"},

@@ -3,6 +3,7 @@
 #include "core/flight/flight_model.h"
 #include "core/flight/lane_metrics.h"
 #include "core/flight/limit_cycle.h"
+#include "core/flight/ripple.h"
 #include "core/flight/tick_sample.h"
 
 #include <gtest/gtest.h>
