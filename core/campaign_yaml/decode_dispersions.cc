@@ -177,7 +177,8 @@ class DispersionDecoder {
         {Column("gust_azimuth_deg")});
   }
 
-  // A severity names a curve of MIL-F-8785C, figure 7, and a wind near the ground (its figure 10); or both are given.
+  // A severity names a curve of MIL-F-8785C, figure 7, and a wind near the ground (its figure 10); or both
+  // are given.
   void Turbulence() {
     const InputNode* node = map_.Optional("turbulence");
     if (node == nullptr) return;

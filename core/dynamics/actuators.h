@@ -2,14 +2,15 @@
 // Between two commands they depend on nothing else, so they are propagated by themselves, exactly where no
 // limit acts.
 //
-// A vehicle file may give them what real drives have besides: a resolution, in steps of which the command reaches
-// the servo; a dead zone, within which the servo does not feel its distance from the command; and Coulomb friction,
-// which holds a drive at rest until the servo pulls harder and opposes it by as much while it slides:
+// A vehicle file may give them what real drives have besides: a resolution, in steps of which the command
+// reaches the servo; a dead zone, within which the servo does not feel its distance from the command; and
+// Coulomb friction, which holds a drive at rest until the servo pulls harder and opposes it by as much while
+// it slides:
 //
 //   angle'' = w² zone(command - angle) - 2 zeta w angle' - w² friction sign(angle')
 //
-// with zone(e) = e less the dead zone in the sense of 0, and friction in the unit of the angle. These drives are
-// integrated in small steps that end where a drive comes to rest.
+// with zone(e) = e less the dead zone in the sense of 0, and friction in the unit of the angle. These drives
+// are integrated in small steps that end where a drive comes to rest.
 #pragma once
 
 #include "core/dynamics/launcher.h"
@@ -26,7 +27,7 @@ struct Drives {
   T twice_damping_1_s;  ///< 2 zeta w
   T moves[kNozzles];    ///< 1, or 0 of a nozzle that is stuck
   T dead_zone_rad;
-  T friction_1_s2;      ///< w² friction: the deceleration by it, rad/s²
+  T friction_1_s2;  ///< w² friction: the deceleration by it, rad/s²
   T resolution_rad;
   bool is_rough, is_coarse;  ///< whether any lane has a dead zone or friction; a resolution
 };
@@ -61,7 +62,8 @@ DISPERSA_INLINE Transition<double> TransitionOver(double bandwidth2, double twic
   return {e * (cosine + sigma * sine), e * sine, -(bandwidth2 * e * sine), e * (cosine - sigma * sine)};
 }
 
-/// The command that a servo follows: the nearest step of its resolution (the even one of two), within the limit.
+/// The command that a servo follows: the nearest step of its resolution (the even one of two), within the
+/// limit.
 template <class T>
 DISPERSA_INLINE T Followed(const Drives<T>& d, T command_rad) {
   if (d.is_coarse) {
@@ -80,7 +82,8 @@ DISPERSA_INLINE T Pull(const Drives<T>& d, T command_rad, T angle_rad) {
   return d.bandwidth2_1_s2 * (distance - Clamp(distance, -d.dead_zone_rad, d.dead_zone_rad));
 }
 
-/// The sense in which a drive slides: that of its rate; at rest that of a pull above its friction, else 0: held.
+/// The sense in which a drive slides: that of its rate; at rest that of a pull above its friction, else 0:
+/// held.
 template <class T>
 DISPERSA_INLINE T SlidesIn(const Drives<T>& d, T command_rad, T angle_rad, T rate_rad_s) {
   const T one(1.0), none(0.0);
@@ -128,11 +131,12 @@ DISPERSA_INLINE void StepDrive(const Drives<T>& d, int i, T command_rad, T slide
   DriveRates(d, i, command_rad, Fma(half, a2, angle), Fma(half, r2, rate), slides, a3, r3);
   DriveRates(d, i, command_rad, Fma(h_s, a3, angle), Fma(h_s, r3, rate), slides, a4, r4);
   angle_rad = Fma(sixth, (a1 + a4) + T(2.0) * (a2 + a3), angle);
-  rate_rad_s = Clamp(Fma(sixth, (r1 + r4) + T(2.0) * (r2 + r3), rate), -d.rate_limit_rad_s, d.rate_limit_rad_s);
+  rate_rad_s =
+      Clamp(Fma(sixth, (r1 + r4) + T(2.0) * (r2 + r3), rate), -d.rate_limit_rad_s, d.rate_limit_rad_s);
 }
 
-/// Steps that one propagation of a drive with a dead zone or friction takes: of 0.6 ms in half a tick of 10 ms. A
-/// step that meets the edge of the zone or a rest within it errs by the cube of its length.
+/// Steps that one propagation of a drive with a dead zone or friction takes: of 0.6 ms in half a tick of 10
+/// ms. A step that meets the edge of the zone or a rest within it errs by the cube of its length.
 inline constexpr int kRoughSteps = 8;
 
 /// Replaces the lanes whose drives have a dead zone or friction by their numerical propagation.

@@ -8,8 +8,9 @@ namespace dispersa {
 // What the lanes point to, and a lane for each stack.
 struct LauncherModel::Prepared {
   explicit Prepared(const LauncherPlant& of)
-      : plant(of), weather(PrepareWeather(plant.environment.wind, plant.environment.density,
-                             plant.environment.turbulence.get())) {
+      : plant(of),
+        weather(PrepareWeather(plant.environment.wind, plant.environment.density,
+                               plant.environment.turbulence.get())) {
     for (LauncherStack& stack : plant.stacks)
       if (!stack.aero_grid) stack.aero_grid = std::make_shared<const AeroGrid>(BuildAeroGrid(stack.aerodynamics));
     stacks.resize(plant.stacks.size());

@@ -99,9 +99,9 @@ TurbulencePath::TurbulencePath(const ClimbPath& path) {
   double altitude_m = ground_m, spacing_m = 0.0;
   for (;;) {
     const GridPosition at = Locate(path.altitude_m, altitude_m);
-    const double sine = Clamp((1.0 - at.fraction) * path.sine_angle[at.index] +
-                                  at.fraction * path.sine_angle[at.index + 1],
-                              kLeastSine, 1.0);
+    const double sine =
+        Clamp((1.0 - at.fraction) * path.sine_angle[at.index] + at.fraction * path.sine_angle[at.index + 1],
+              kLeastSine, 1.0);
     const TurbulenceScales scales = TurbulenceAt({kLargestExceedance, 0.0, 1.0}, ground_m, altitude_m);
     Node node{altitude_m, sine, Sqrt(1.0 - sine * sine), 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0};
     // Stationary covariance of the two states across, [1 1/2; 1/2 1/2], less what the last node leaves of it.
@@ -137,14 +137,15 @@ TurbulentWind Evaluate(const TurbulenceField& field, double altitude_m) {
 
 TurbulenceField DrawTurbulence(const TurbulenceStrength& strength, const TurbulencePath& path,
                                const TurbulenceNormals& draw) {
-  // Of the states x1' = -x1 + w, x2' = -x2 + x1 over the length: (sqrt 3 x1 + (1 - sqrt 3) x2) / sqrt 2 has the
-  // lateral spectrum and the deviation 1.
+  // Of the states x1' = -x1 + w, x2' = -x2 + x1 over the length: (sqrt 3 x1 + (1 - sqrt 3) x2) / sqrt 2 has
+  // the lateral spectrum and the deviation 1.
   static const double root3 = Sqrt(3.0), root2 = Sqrt(2.0);
   const double of_first = root3 / root2, of_second = (1.0 - root3) / root2;
   struct Lateral {
     double first = 0.0, second = 0.0;
   };
-  const auto advance = [](const TurbulencePath::Node& node, const std::function<double()>& normal, Lateral& x) {
+  const auto advance = [](const TurbulencePath::Node& node, const std::function<double()>& normal,
+                          Lateral& x) {
     const double one = normal(), two = normal();
     x.second = node.across_keeps * (node.across_ratio * x.first + x.second) + node.renews_21 * one +
                node.renews_22 * two;

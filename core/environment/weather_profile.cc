@@ -8,7 +8,8 @@ namespace dispersa {
 
 namespace {
 
-// Wind of the tables, the steady part and the turbulence alone, from one side of an altitude at which a piece may end.
+// Wind of the tables, the steady part and the turbulence alone, from one side of an altitude at which a piece
+// may end.
 struct Weather {
   double north_m_s, east_m_s, factor, up_m_s;
 };
@@ -18,7 +19,8 @@ Weather WeatherAt(const Wind& tables, const DensityFactor& density, const Turbul
   const WindNorthEast wind = Evaluate(tables, altitude_m);
   if (turbulence == nullptr) return {wind.north_m_s, wind.east_m_s, density(altitude_m), 0.0};
   const TurbulentWind gusts = Evaluate(*turbulence, altitude_m);
-  return {wind.north_m_s + gusts.north_m_s, wind.east_m_s + gusts.east_m_s, density(altitude_m), gusts.up_m_s};
+  return {wind.north_m_s + gusts.north_m_s, wind.east_m_s + gusts.east_m_s, density(altitude_m),
+          gusts.up_m_s};
 }
 
 }  // namespace
@@ -28,7 +30,8 @@ WeatherProfile BuildWeatherProfile(const Wind& wind, const DensityFactor& densit
   WeatherProfile profile;
   const Wind tables{{}, wind.tables, {}, wind.steady};
   const bool is_calm = wind.tables.empty() && wind.steady.north_m_s == 0.0 && wind.steady.east_m_s == 0.0;
-  if (is_calm && density.by_altitude.x.empty() && density.scale == 1.0 && turbulence == nullptr) return profile;
+  if (is_calm && density.by_altitude.x.empty() && density.scale == 1.0 && turbulence == nullptr)
+    return profile;
   profile.has_updraft = turbulence != nullptr;
 
   for (const WindTable& table : wind.tables) {
@@ -44,7 +47,8 @@ WeatherProfile BuildWeatherProfile(const Wind& wind, const DensityFactor& densit
 
   const auto constant = [&](double altitude_m) {
     const Weather w = WeatherAt(tables, density, turbulence, altitude_m);
-    profile.rows.insert(profile.rows.end(), {w.north_m_s, 0.0, w.east_m_s, 0.0, w.factor, 0.0, w.up_m_s, 0.0});
+    profile.rows.insert(profile.rows.end(),
+                        {w.north_m_s, 0.0, w.east_m_s, 0.0, w.factor, 0.0, w.up_m_s, 0.0});
   };
   constant(profile.edges.empty() ? 0.0 : profile.edges.front());
   for (std::size_t i = 1; i < profile.edges.size(); ++i) {
@@ -62,7 +66,8 @@ WeatherProfile BuildWeatherProfile(const Wind& wind, const DensityFactor& densit
   return profile;
 }
 
-FlightWeather PrepareWeather(const Wind& wind, const DensityFactor& density, const TurbulenceField* turbulence) {
+FlightWeather PrepareWeather(const Wind& wind, const DensityFactor& density,
+                             const TurbulenceField* turbulence) {
   assert(wind.jets.size() <= 1 && wind.gusts.size() <= 1);
   FlightWeather w;
   w.density_factor = density.scale;

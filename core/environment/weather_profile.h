@@ -11,9 +11,9 @@
 namespace dispersa {
 
 /// The sum of the steady wind and of all wind tables with their fading tops (Evaluate of the same parts, to
-/// rounding) and of a turbulent field, and the density factor. A row has 8 doubles: north (m/s), east (m/s), factor
-/// and up (m/s), each as constant and slope over altitude (m); row k holds between edges k - 1 and k, open at both
-/// ends.
+/// rounding) and of a turbulent field, and the density factor. A row has 8 doubles: north (m/s), east (m/s),
+/// factor and up (m/s), each as constant and slope over altitude (m); row k holds between edges k - 1 and k,
+/// open at both ends.
 struct WeatherProfile {
   static constexpr int kRowSize = 8;
 

@@ -136,9 +136,9 @@ TurbulenceField TurbulenceOf(const FlightInputs& in, const TurbulencePath& path,
                              std::uint64_t case_index) {
   Stream along(seed, case_index, "turbulence/along"), across(seed, case_index, "turbulence/across"),
       normal(seed, case_index, "turbulence/normal");
-  return DrawTurbulence({in.turbulence_exceedance, in.turbulence_wind_20ft_m_s, in.turbulence_scale}, path,
-                        {[&] { return along.Normal(); }, [&] { return across.Normal(); },
-                         [&] { return normal.Normal(); }});
+  return DrawTurbulence(
+      {in.turbulence_exceedance, in.turbulence_wind_20ft_m_s, in.turbulence_scale}, path,
+      {[&] { return along.Normal(); }, [&] { return across.Normal(); }, [&] { return normal.Normal(); }});
 }
 
 }  // namespace

@@ -72,8 +72,8 @@ class FlightModel {
   const ReferenceRows& reference_rows() const { return reference_rows_; }
   const FeedForwardRows& feed_forward_rows() const { return feed_forward_rows_; }
 
-  /// The nominal plant with a flight's factors, winds and misalignments applied; with a case, whose random draws
-  /// they are, its turbulence too.
+  /// The nominal plant with a flight's factors, winds and misalignments applied; with a case, whose random
+  /// draws they are, its turbulence too.
   LauncherPlant PlantFor(const FlightInputs& inputs, std::optional<std::uint64_t> case_index = {}) const;
 
  private:

@@ -85,7 +85,8 @@ class FlightRecord::JudgedMotion {
 
   using State = std::array<double, kLauncherSize>;
 
-  // From rest to rest of the drives, each found by bisection: in between friction is constant and all is smooth.
+  // From rest to rest of the drives, each found by bisection: in between friction is constant and all is
+  // smooth.
   bool SlideTo(const Gimbal& gimbal, double from_s, double to_s, int steps, double* y) {
     lanes::Drives<double> drives{};
     lanes::SetLane(drives, 0, gimbal, phase_.stuck_nozzle);
@@ -95,9 +96,8 @@ class FlightRecord::JudgedMotion {
     for (int rests = 0; rests < 64; ++rests) {
       for (int i = 0; i < kNozzles; ++i) {
         const std::size_t nozzle = static_cast<std::size_t>(i);
-        phase_.slides[nozzle] =
-            lanes::SlidesIn(drives, lanes::Followed(drives, phase_.command_rad[nozzle]),
-                            start[nozzle + kNozzleAngle], start[nozzle + kNozzleRate]);
+        phase_.slides[nozzle] = lanes::SlidesIn(drives, lanes::Followed(drives, phase_.command_rad[nozzle]),
+                                                start[nozzle + kNozzleAngle], start[nozzle + kNozzleRate]);
       }
       State end = start;
       if (!integrator_.Advance(from_s, to_s, steps, end.data())) return false;

@@ -15,8 +15,9 @@ namespace {
 constexpr double kSampleTime_s = 0.01;
 constexpr int kShortest = 10, kLongest = 20;  // periods, samples
 constexpr int kSegments = 12;
-// A period is looked for where the samples resemble themselves at least so much, and its fundamental is to hold so
-// much of their energy: without it segments may agree on a tone that is not there (an alias of a faster one).
+// A period is looked for where the samples resemble themselves at least so much, and its fundamental is to
+// hold so much of their energy: without it segments may agree on a tone that is not there (an alias of a
+// faster one).
 constexpr double kSimilar = 0.4;
 constexpr double kShare = 0.25;
 constexpr int kHarmonics = 4;
@@ -144,8 +145,8 @@ void LimitCycleMeter::Add(double roll_rad, double pitch_rad, double yaw_rad) {
   if (++highest.at % kHop == 0) EndHop(0);
 }
 
-// A hop of an octave is whole: its energies, the windows that end with it, and the samples of the octave below, of two
-// each. All channels at once; they are never mixed.
+// A hop of an octave is whole: its energies, the windows that end with it, and the samples of the octave
+// below, of two each. All channels at once; they are never mixed.
 void LimitCycleMeter::EndHop(int octave) {
   using Channels = lanes::Pack<kWidth>;
   const auto load = [](const double* sample) { return Channels(_mm256_loadu_pd(sample)); };

@@ -58,9 +58,10 @@ struct Gimbal {
   double damping_ratio = 0.7;
   int delay_ticks = 1;            ///< whole autopilot ticks between command and actuator
   // What a real drive has besides; 0: not this one.
-  double dead_zone_rad = 0.0;     ///< distance from the command that does not move the servo yet
-  double friction_rad = 0.0;      ///< Coulomb's: the distance from the command at which a drive at rest breaks loose
-  double resolution_rad = 0.0;    ///< step in which the command reaches the servo
+  double dead_zone_rad = 0.0;  ///< distance from the command that does not move the servo yet
+  double friction_rad =
+      0.0;  ///< Coulomb's: the distance from the command at which a drive at rest breaks loose
+  double resolution_rad = 0.0;  ///< step in which the command reaches the servo
 };
 
 enum class IgnitionTrigger {

@@ -26,7 +26,8 @@ FlightDefinition Definition(const std::string& autopilot, bool with_winds) {
         {.zeros_rad_s = 25.0, .zeros_damping = 0.2, .poles_rad_s = 25.0, .poles_damping = 0.6, .stage = 1}};
   if (autopilot == "pid_aac")  // axes that feed forward beside one that does not
     definition.autopilot.pitch.feed_forward = definition.autopilot.yaw.feed_forward = FeedForward{0.066};
-  if (autopilot == "pid_aac" || autopilot == "pid") {  // drives of all kinds, side by side as their flights' stages are
+  if (autopilot == "pid_aac" ||
+      autopilot == "pid") {  // drives of all kinds, side by side as their flights' stages are
     definition.vehicle.stages[0].gimbal.dead_zone_rad = 0.03 * kRadPerDeg;
     definition.vehicle.stages[0].gimbal.friction_rad = 0.02 * kRadPerDeg;
     definition.vehicle.stages[1].gimbal.resolution_rad = 0.01 * kRadPerDeg;

@@ -127,7 +127,8 @@ TEST(CampaignYamlDispersions, TurbulenceIsNamedOrGivenByNumbers) {
   EXPECT_NEAR(named[1].distribution.values.at(0), 45.0 * 1852.0 / 3600.0, 1e-12);
   EXPECT_EQ(named[2].distribution.values, std::vector<double>{1.0});
   const auto given = Decode(
-      "turbulence: {exceedance: 0.02, wind_20ft_m_s: 12, scale: {distribution: uniform, low_factor: 0.5, high_factor: 2}}");
+      "turbulence: {exceedance: 0.02, wind_20ft_m_s: 12, scale: {distribution: uniform, low_factor: 0.5, "
+      "high_factor: 2}}");
   EXPECT_EQ(given[0].distribution.values, std::vector<double>{0.02});
   EXPECT_EQ(given[1].distribution.values, std::vector<double>{12.0});
   EXPECT_EQ(given[2].distribution.low, 0.5);

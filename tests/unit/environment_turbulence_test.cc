@@ -8,8 +8,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "core/environment/surroundings.h"
 #include "core/dynamics/air_data.h"
+#include "core/environment/surroundings.h"
 #include "core/environment/weather_profile.h"
 #include "core/environment/wind.h"
 #include "core/math/constants.h"
@@ -39,7 +39,8 @@ TEST(Turbulence, IntensitiesAreThoseOfTheFigure) {
   for (std::size_t r = 1; r < rows.size(); ++r) {
     for (std::size_t c = 1; c < rows[0].size(); ++c, ++read) {
       const double altitude_m = std::stod(rows[0][c]) * kFoot_m;  // "500ft"
-      EXPECT_NEAR(TurbulenceIntensity(exceedances[r - 1], altitude_m), std::stod(rows[r][c]) * kFoot_m, 1e-12);
+      EXPECT_NEAR(TurbulenceIntensity(exceedances[r - 1], altitude_m), std::stod(rows[r][c]) * kFoot_m,
+                  1e-12);
     }
   }
   EXPECT_EQ(read, 84);
@@ -77,16 +78,17 @@ TEST(Turbulence, LowAltitudeModel) {
 TurbulenceField Drawn(std::uint64_t index, double sine, double top_m = 9000.0) {
   const TurbulencePath path({{0.0, 50e3}, {sine, sine}, 0.25 * kPi});
   Stream along(7, index, "along"), across(7, index, "across"), normal(7, index, "normal");
-  TurbulenceField field = DrawTurbulence({1e-3, 10.0, 1.0}, path,
-                                         {[&] { return along.Normal(); }, [&] { return across.Normal(); },
-                                          [&] { return normal.Normal(); }});
+  TurbulenceField field = DrawTurbulence(
+      {1e-3, 10.0, 1.0}, path,
+      {[&] { return along.Normal(); }, [&] { return across.Normal(); }, [&] { return normal.Normal(); }});
   while (field.altitude_m.back() > top_m)
-    for (auto* values : {&field.altitude_m, &field.north_m_s, &field.east_m_s, &field.up_m_s}) values->pop_back();
+    for (auto* values : {&field.altitude_m, &field.north_m_s, &field.east_m_s, &field.up_m_s})
+      values->pop_back();
   return field;
 }
 
-// What a vehicle meets that flies up at a speed between 700 and 9000 m, by components of its path, over the local
-// deviation: sampled in time, as a flight samples it.
+// What a vehicle meets that flies up at a speed between 700 and 9000 m, by components of its path, over the
+// local deviation: sampled in time, as a flight samples it.
 struct Met {
   std::vector<double> along, across, normal;
 };
@@ -112,8 +114,9 @@ double Correlation(const std::vector<double>& x, std::size_t lag) {
 }
 
 TEST(Turbulence, AFlightMeetsDrydensCorrelations) {
-  // 300 fields of 8.2 km (vertical) or 16.4 km along the path, 15 and 30 lengths: a mean square of as many independent
-  // values a field has a deviation near sqrt(2 / 4500) = 2 %, a correlation likewise; 4 of them are asked.
+  // 300 fields of 8.2 km (vertical) or 16.4 km along the path, 15 and 30 lengths: a mean square of as many
+  // independent values a field has a deviation near sqrt(2 / 4500) = 2 %, a correlation likewise; 4 of them
+  // are asked.
   constexpr double kLength_m = 1750.0 * kFoot_m, kSpeed_m_s = 250.0, kStep_s = 0.05;
   for (const double sine : {1.0, 0.5}) {
     std::vector<double> along(40, 0.0), across(40, 0.0), normal(40, 0.0);
@@ -165,8 +168,8 @@ TEST(Turbulence, AFlightMeetsDrydensSpectra) {
         across += power(met.across, bin) / fields;
       }
     }
-    // Periodograms are exponential: at least 200 independent ones a bin, 7 %, of which 3.5 are asked. Straight lines
-    // between nodes 10.7 m apart take sinc^4 of half their wave: 10 % at the last.
+    // Periodograms are exponential: at least 200 independent ones a bin, 7 %, of which 3.5 are asked.
+    // Straight lines between nodes 10.7 m apart take sinc^4 of half their wave: 10 % at the last.
     EXPECT_NEAR(along / expected_along, 1.0, 0.25) << centre;
     EXPECT_NEAR(across / expected_across, 1.0, 0.25) << centre;
   }

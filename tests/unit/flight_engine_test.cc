@@ -118,8 +118,7 @@ TEST(Loads, AreTakenAtBurnoutBetweenTicks) {
 TEST(Digest, IsOfTheMetricsToo) {
   FlightDefinition definition = HighDefinition();
   const FlightModel a(definition);
-  definition.kick_end_s =
-      39.0;  // deflections of stage 1 say nothing of ripple: the states do not know
+  definition.kick_end_s = 39.0;  // deflections of stage 1 say nothing of ripple: the states do not know
   const FlightModel b(definition);
   FlightInputs inputs;
   inputs.thrust_misalignment_rad = AllStages(0.2 * kRadPerDeg);

@@ -28,7 +28,8 @@ double Found(double seconds, const History& history, double tick_s = kTick_s) {
 
 double Phase(double f, double t) { return f * t - std::floor(f * t); }
 
-// ---- with a cycle ------------------------------------------------------------------------------------------
+// ---- with a cycle
+// ------------------------------------------------------------------------------------------
 
 TEST(LimitCycle, ASineHasItsPeakToPeak) {
   for (const double f : {0.35, 0.5, 0.8, 1.0, 1.25, 2.0, 2.5, 3.3, 5.0, 7.0, 9.5}) {
@@ -39,12 +40,13 @@ TEST(LimitCycle, ASineHasItsPeakToPeak) {
 
 TEST(LimitCycle, IsTheSameForOtherTicks) {
   const History sine = [](double t) { return 0.5 * std::sin(kTwoPi * 1.7 * t); };
-  for (const double tick_s : {0.0025, 0.005, 0.02}) EXPECT_NEAR(Found(40.0, sine, tick_s), 1.0, 0.01) << tick_s;
+  for (const double tick_s : {0.0025, 0.005, 0.02})
+    EXPECT_NEAR(Found(40.0, sine, tick_s), 1.0, 0.01) << tick_s;
 }
 
 TEST(LimitCycle, ASawToothHasMostOfItsOwn) {
-  // Four harmonics of a triangle reach 0.9 of its peak to peak; of a saw-tooth and a relay's square they overshoot
-  // by Gibbs' share, 18 % of the half jump on either side and what short sums add.
+  // Four harmonics of a triangle reach 0.9 of its peak to peak; of a saw-tooth and a relay's square they
+  // overshoot by Gibbs' share, 18 % of the half jump on either side and what short sums add.
   for (const double f : {0.5, 1.0, 2.3, 4.0}) {
     EXPECT_NEAR(Found(60.0, [f](double t) { return std::fabs(2.0 * Phase(f, t) - 1.0); }), 0.9, 0.03) << f;
     EXPECT_NEAR(Found(60.0, [f](double t) { return Phase(f, t); }), 1.0, 0.2) << f;
@@ -64,17 +66,21 @@ TEST(LimitCycle, AGrowingOscillationCounts) {
 }
 
 TEST(LimitCycle, ACycleThatSlowlyChangesItsFrequencyCounts) {
-  EXPECT_NEAR(Found(60.0, [](double t) { return 0.5 * std::sin(kTwoPi * 1.5 * t * (1.0 + 0.1 * t / 60.0)); }), 1.0,
-              0.05);
+  EXPECT_NEAR(Found(60.0, [](double t) { return 0.5 * std::sin(kTwoPi * 1.5 * t * (1.0 + 0.1 * t / 60.0)); }),
+              1.0, 0.05);
 }
 
 TEST(LimitCycle, IsFoundUnderAChangingTrim) {
-  EXPECT_NEAR(Found(60.0, [](double t) { return 0.1 * t - 2.0 * std::sin(kTwoPi * t / 50.0) + 0.1 * std::sin(kTwoPi * 2.0 * t); }),
+  EXPECT_NEAR(Found(60.0,
+                    [](double t) {
+                      return 0.1 * t - 2.0 * std::sin(kTwoPi * t / 50.0) + 0.1 * std::sin(kTwoPi * 2.0 * t);
+                    }),
               0.2, 0.01);
 }
 
 TEST(LimitCycle, IsFoundInNoise) {
-  // White in every tick, with as much power as the sine and with four times as much: noise adds to the peak to peak.
+  // White in every tick, with as much power as the sine and with four times as much: noise adds to the peak
+  // to peak.
   for (const double f : {0.5, 1.0, 2.0}) {
     for (const double ratio : {1.0, 0.25}) {
       int found = 0;
@@ -103,7 +109,8 @@ TEST(LimitCycle, EveryChannelCounts) {
   }
 }
 
-// ---- without ------------------------------------------------------------------------------------------------
+// ---- without
+// ------------------------------------------------------------------------------------------------
 
 TEST(LimitCycle, NothingIsSaidWithoutAWindow) {
   const History sine = [](double t) { return std::sin(kTwoPi * 6.0 * t); };
@@ -127,17 +134,21 @@ TEST(LimitCycle, RampsDriftsAndStepsAreNone) {
 TEST(LimitCycle, DecayingTransientsAreNone) {
   for (const double f : {0.4, 1.0, 2.3, 6.0})
     for (const double zeta : {0.02, 0.05, 0.1, 0.3})
-      EXPECT_EQ(Found(60.0, [=](double t) {
-                  const double since = t - 10.0;
-                  return since < 0.0 ? 0.0 : std::exp(-zeta * kTwoPi * f * since) * std::sin(kTwoPi * f * since);
-                }),
+      EXPECT_EQ(Found(60.0,
+                      [=](double t) {
+                        const double since = t - 10.0;
+                        return since < 0.0
+                                   ? 0.0
+                                   : std::exp(-zeta * kTwoPi * f * since) * std::sin(kTwoPi * f * since);
+                      }),
                 0.0)
           << f << " Hz, damping " << zeta;
 }
 
 TEST(LimitCycle, ABurstIsNone) {
   // Five periods between 20 and 22.5 s.
-  EXPECT_EQ(Found(60.0, [](double t) { return t > 20.0 && t < 22.5 ? std::sin(kTwoPi * 2.0 * t) : 0.0; }), 0.0);
+  EXPECT_EQ(Found(60.0, [](double t) { return t > 20.0 && t < 22.5 ? std::sin(kTwoPi * 2.0 * t) : 0.0; }),
+            0.0);
 }
 
 TEST(LimitCycle, TonesFasterThanItMeasuresAreNone) {
@@ -145,8 +156,8 @@ TEST(LimitCycle, TonesFasterThanItMeasuresAreNone) {
     EXPECT_LT(Found(20.0, [f](double t) { return std::cos(kTwoPi * f * t); }), 0.1) << f;
 }
 
-// A mode of a damping driven by white noise, of deviation 1: what a closed loop makes of turbulence. Semi-implicit
-// Euler in quarter ticks.
+// A mode of a damping driven by white noise, of deviation 1: what a closed loop makes of turbulence.
+// Semi-implicit Euler in quarter ticks.
 bool RaisesFalsely(double f, double zeta, unsigned seed) {
   constexpr int kParts = 4;
   constexpr double kStep_s = kTick_s / kParts;
@@ -169,10 +180,10 @@ TEST(LimitCycle, TheAnswerOfADampedLoopToNoiseIsNone) {
     double f, zeta;
     int allowed;  // of 100 burns of 50 s
   };
-  // The estimate of limit_cycle.h by window, times the windows of a burn: none for a damping of 0.15 and more, one in
-  // some hundred at 0.1 below 3 Hz; higher modes fill more windows.
-  for (const Case& c : {Case{0.4, 0.15, 0}, Case{1.0, 0.15, 0}, Case{2.0, 0.15, 0}, Case{6.0, 0.3, 0}, Case{1.0, 0.5, 0},
-                        Case{0.4, 0.1, 2}, Case{1.0, 0.1, 2}, Case{2.0, 0.1, 2}}) {
+  // The estimate of limit_cycle.h by window, times the windows of a burn: none for a damping of 0.15 and
+  // more, one in some hundred at 0.1 below 3 Hz; higher modes fill more windows.
+  for (const Case& c : {Case{0.4, 0.15, 0}, Case{1.0, 0.15, 0}, Case{2.0, 0.15, 0}, Case{6.0, 0.3, 0},
+                        Case{1.0, 0.5, 0}, Case{0.4, 0.1, 2}, Case{1.0, 0.1, 2}, Case{2.0, 0.1, 2}}) {
     int raised = 0;
     for (unsigned seed = 0; seed < 100; ++seed) raised += RaisesFalsely(c.f, c.zeta, seed);
     EXPECT_LE(raised, c.allowed) << c.f << " Hz, damping " << c.zeta;

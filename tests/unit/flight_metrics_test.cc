@@ -71,7 +71,7 @@ class MetricsRecorder {
       Interrupt();
     else
       Add(0.25 * (s.nozzle_rad[0] - s.nozzle_rad[1] + s.nozzle_rad[2] - s.nozzle_rad[3]),
-                 0.5 * (s.nozzle_rad[0] + s.nozzle_rad[1]), 0.5 * (s.nozzle_rad[2] + s.nozzle_rad[3]));
+          0.5 * (s.nozzle_rad[0] + s.nozzle_rad[1]), 0.5 * (s.nozzle_rad[2] + s.nozzle_rad[3]));
   }
   void AddLoads(const LauncherInstant& now) { metrics_.AddLoadsOfLane(0, InstantOf(now)); }
   void AddHandover(const AttitudeError& error) {
@@ -335,9 +335,9 @@ TEST(MetricsRecorder, WhatAFlightDoesNotReachIsUndefined) {
   for (const char* name :
        {"pitch_error_rms_deg", "pitch_error_peak_deg", "pitch_error_peak_time_s", "pitch_error_rms_coast_deg",
         "yaw_error_rms_deg", "roll_error_peak_deg", "deflection_peak_deg", "deflection_saturated_fraction",
-        "deflection_ripple_deg", "deflection_limit_cycle_deg", "handover_attitude_error_deg", "handover_rate_error_deg_s",
-        "injection_altitude_km", "apogee_km", "inclination_deg", "injection_velocity_error_m_s",
-        "lyapunov_outside_fraction", "lyapunov_decreasing_fraction"})
+        "deflection_ripple_deg", "deflection_limit_cycle_deg", "handover_attitude_error_deg",
+        "handover_rate_error_deg_s", "injection_altitude_km", "apogee_km", "inclination_deg",
+        "injection_velocity_error_m_s", "lyapunov_outside_fraction", "lyapunov_decreasing_fraction"})
     EXPECT_TRUE(std::isnan(flight[name])) << name;
   for (const char* name : {"pitch_error_itae_deg_s2", "q_max_pa", "axial_load_max_g", "rcs_propellant_kg",
                            "structural_limit_exceeded", "rules_fired"})
@@ -394,7 +394,7 @@ TEST(MetricsRecorder, StructuralFlagNamesOnlyGivenLimits) {
 // Flies `channel(t)`, degrees, in the pitch pair of stage 1.
 template <typename Channel>
 double RippleOf(double from_s, double to_s, const Channel& channel, const FlightInputs& inputs = {},
-                    double altitude_m = 0.0) {
+                double altitude_m = 0.0) {
   Recording flight(inputs);
   const long last = std::lround(to_s / kTick_s);
   for (long i = std::lround(from_s / kTick_s); i < last; ++i) {

@@ -1,5 +1,5 @@
-// Actuators with a dead zone, friction and a resolution: against closed forms, an integration of their own and
-// describing functions.
+// Actuators with a dead zone, friction and a resolution: against closed forms, an integration of their own
+// and describing functions.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -43,8 +43,8 @@ class Drive {
 };
 
 TEST(RoughActuators, FrictionStopsAnOscillationWhereItsClosedFormSays) {
-  // Half a swing about the command, shifted by the friction against the motion, shrinks by exp(-pi zeta / root): it
-  // ends at the first turn within the friction of the command.
+  // Half a swing about the command, shifted by the friction against the motion, shrinks by exp(-pi zeta /
+  // root): it ends at the first turn within the friction of the command.
   const double command = 0.05, friction = 0.002, zeta = 0.1;
   const double shrinks = std::exp(-kPi * zeta / std::sqrt(1.0 - zeta * zeta));
   double turn = 0.0;
@@ -80,7 +80,8 @@ TEST(RoughActuators, StayWithinTheirDeadZoneAndFriction) {
 TEST(RoughActuators, FollowWholeStepsOfTheirResolution) {
   Gimbal gimbal = Smooth(25.0, 0.7);
   gimbal.resolution_rad = 0.004;
-  for (const auto& [command, step] : {std::pair(0.0019, 0.0), {0.0021, 0.004}, {-0.0061, -0.008}, {0.3, 0.2}}) {
+  for (const auto& [command, step] :
+       {std::pair(0.0019, 0.0), {0.0021, 0.004}, {-0.0061, -0.008}, {0.3, 0.2}}) {
     Drive drive(gimbal);
     for (int i = 0; i < 400; ++i) drive.Move(command, kHalfTick_s);
     EXPECT_NEAR(drive.angle_rad(), step, 1e-12) << command;
@@ -88,8 +89,8 @@ TEST(RoughActuators, FollowWholeStepsOfTheirResolution) {
 }
 
 TEST(RoughActuators, AgreeWithAnIntegrationOfTheirOwn) {
-  // Moreau's time stepping: an impulse of friction at most as large as it takes to stop. First order, at 0.5 us: the
-  // error of a half second is some 1e-6 of what moves.
+  // Moreau's time stepping: an impulse of friction at most as large as it takes to stop. First order, at 0.5
+  // us: the error of a half second is some 1e-6 of what moves.
   Gimbal gimbal = Smooth(30.0, 0.5);
   gimbal.dead_zone_rad = 0.001;
   gimbal.friction_rad = 0.0015;
@@ -150,10 +151,10 @@ TEST(RoughActuators, OneLaneMovesAsManyDo) {
   }
 }
 
-// A double integrator under PD through a drive whose resolution is a relay with three places for commands below one
-// and a half steps. A cycle is where describing function and loop make 1 together, at the frequency at which the
-// loop's phase is -180°: N(a) = 4 / (pi a) sqrt(1 - 1 / (4 a²)), a the amplitude of the command in steps. Of the two
-// amplitudes the larger one is stable.
+// A double integrator under PD through a drive whose resolution is a relay with three places for commands
+// below one and a half steps. A cycle is where describing function and loop make 1 together, at the frequency
+// at which the loop's phase is -180°: N(a) = 4 / (pi a) sqrt(1 - 1 / (4 a²)), a the amplitude of the command
+// in steps. Of the two amplitudes the larger one is stable.
 TEST(RoughActuators, ACoarseCommandCyclesAsItsDescribingFunctionSays) {
   const double w = 25.0, zeta = 0.7, resolution = 0.004, kStep_s = 0.001;
   const double kd_over_kp = 0.35;
@@ -202,8 +203,7 @@ TEST(RoughActuators, ACoarseCommandCyclesAsItsDescribingFunctionSays) {
     last = command;
   }
   ASSERT_GE(upward.size(), 10u);
-  const double found =
-      kTwoPi * static_cast<double>(upward.size() - 1) / (upward.back() - upward.front());
+  const double found = kTwoPi * static_cast<double>(upward.size() - 1) / (upward.back() - upward.front());
   EXPECT_NEAR(found / omega, 1.0, 0.03);
   EXPECT_NEAR(largest / amplitude, 1.0, 0.04);
   // And the metric of flights finds it.

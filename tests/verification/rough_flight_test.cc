@@ -38,14 +38,15 @@ Difference Between(const FlightModel& model, const FlightInputs& inputs, const c
   };
   const Difference d{1e3 * apart("injection_altitude_km"), apart("injection_velocity_m_s"),
                      apart("pitch_error_peak_deg")};
-  std::printf("%s: %.1e m, %.1e m/s, peak of the pitch error %.1e deg of %.3f; ripple %.4f, limit cycle %.4f deg\n",
-              what, d.altitude_m, d.velocity_m_s, d.error_peak_deg, MetricOf(flown, "pitch_error_peak_deg"),
-              MetricOf(flown, "deflection_ripple_deg"), MetricOf(flown, "deflection_limit_cycle_deg"));
+  std::printf(
+      "%s: %.1e m, %.1e m/s, peak of the pitch error %.1e deg of %.3f; ripple %.4f, limit cycle %.4f deg\n",
+      what, d.altitude_m, d.velocity_m_s, d.error_peak_deg, MetricOf(flown, "pitch_error_peak_deg"),
+      MetricOf(flown, "deflection_ripple_deg"), MetricOf(flown, "deflection_limit_cycle_deg"));
   return d;
 }
 
-// Another firing of the coast's thrusters is worth 0.04 m and 6e-4 m/s (flight_convergence_test.cc): the flights may
-// differ by a few. What is asked besides is far below what any dispersion does.
+// Another firing of the coast's thrusters is worth 0.04 m and 6e-4 m/s (flight_convergence_test.cc): the
+// flights may differ by a few. What is asked besides is far below what any dispersion does.
 constexpr double kAltitude_m = 0.5, kVelocity_m_s = 5e-3, kPeak_deg = 1e-3;
 
 TEST(RoughFlight, InTurbulenceIsCvodes) {
