@@ -428,6 +428,14 @@ std::string VehicleSha256(const InputNode& vehicle) {
   std::erase_if(rigid.members, [](const InputMember& member) {
     return member.key == "structure_beam" || member.key == "sensors" || member.key == "nozzles";
   });
+  // Nor does a point mass know what its actuators lack.
+  if (InputNode* stages = rigid.Find("stages"))
+    for (InputNode& stage : stages->items)
+      if (InputNode* gimbal = stage.Find("gimbal"))
+        std::erase_if(gimbal->members, [](const InputMember& member) {
+          return member.key.starts_with("dead_zone_") || member.key.starts_with("friction_") ||
+                 member.key.starts_with("resolution_");
+        });
   return Sha256Hex(CanonicalText(rigid));
 }
 

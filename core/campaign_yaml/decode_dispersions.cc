@@ -4,6 +4,7 @@
 #include "core/campaign_yaml/decode.h"
 #include "core/campaign_yaml/decode_distribution.h"
 #include "core/campaign_yaml/yaml_reader.h"
+#include "core/environment/turbulence.h"
 
 namespace dispersa {
 namespace {
@@ -45,6 +46,7 @@ class DispersionDecoder {
     Wind();
     Gust();
     WindProfile();
+    Turbulence();
     Scalar("drag_coefficient", kPositiveFactor, "drag_factor");
     Scalar("lift_coefficient", kPositiveFactor, "lift_factor");
     Scalar("center_of_gravity", kPositiveFactor, "cg_factor");
@@ -191,6 +193,37 @@ class DispersionDecoder {
         ReadDirection(map.Required("azimuth", "uniform, {fixed_deg: x} or a distribution"),
                       map.PathOf("azimuth"), problems_),
         {Column("gust_azimuth_deg")});
+  }
+
+  // A severity names a curve of MIL-F-8785C, figure 7, and a wind near the ground (its figure 10); or both
+  // are given.
+  void Turbulence() {
+    const InputNode* node = map_.Optional("turbulence");
+    if (node == nullptr) return;
+    MapReader map(*node, map_.PathOf("turbulence"), problems_);
+    constexpr double kKnot_m_s = 1852.0 / 3600.0;
+    struct Severity {
+      double exceedance, wind_m_s;
+    };
+    const bool named = node->Find("severity") != nullptr || node->Find("exceedance") == nullptr;
+    Severity severity{kLargestExceedance, 0.0};
+    if (named) {
+      const int level = map.Choice<int>("severity", {{"light", 0}, {"moderate", 1}, {"severe", 2}});
+      constexpr Severity kLevels[] = {
+          {1e-2, 15.0 * kKnot_m_s}, {1e-3, 30.0 * kKnot_m_s}, {1e-5, 45.0 * kKnot_m_s}};
+      severity = kLevels[level];
+    } else {
+      severity.exceedance = map.Number("exceedance", Between(kLeastExceedance, kLargestExceedance));
+      severity.wind_m_s = map.Quantity("wind_20ft", kSpeed, Between(0.0, 50.0));
+    }
+    Add("turbulence/exceedance", Constant(severity.exceedance), {Column("turbulence_exceedance")});
+    Add("turbulence/wind_20ft", Constant(severity.wind_m_s), {Column("turbulence_wind_20ft_m_s")});
+    ScalarDistribution scale = Constant(1.0);
+    if (const InputNode* drawn = map.Optional("scale")) {
+      MapReader inner(*drawn, map.PathOf("scale"), problems_);
+      scale = ReadDistribution(inner, kPositiveFactor);
+    }
+    Add("turbulence/scale", scale, {Column("turbulence_scale")});
   }
 
   // Tables are maps of columns: what a CSV file became.

@@ -67,6 +67,9 @@ Gimbal DecodeGimbal(const InputNode& node, const std::string& path, ProblemList&
   gimbal.bandwidth_rad_s = map.Quantity("bandwidth", kFrequency, kPositive);
   gimbal.damping_ratio = map.Number("damping_ratio", kPositive);
   gimbal.delay_ticks = static_cast<int>(map.Integer("delay_ticks", 0, 100));
+  gimbal.dead_zone_rad = map.Quantity("dead_zone", kAngle, kNonNegative, 0.0);
+  gimbal.friction_rad = map.Quantity("friction", kAngle, kNonNegative, 0.0);
+  gimbal.resolution_rad = map.Quantity("resolution", kAngle, kNonNegative, 0.0);
   return gimbal;
 }
 

@@ -10,7 +10,9 @@ namespace dispersa {
 // What the lanes point to, and a lane for each stack.
 struct LauncherModel::Prepared {
   explicit Prepared(const LauncherPlant& of)
-      : plant(of), weather(PrepareWeather(plant.environment.wind, plant.environment.density)) {
+      : plant(of),
+        weather(PrepareWeather(plant.environment.wind, plant.environment.density,
+                               plant.environment.turbulence.get())) {
     for (LauncherStack& stack : plant.stacks)
       if (!stack.aero_grid) stack.aero_grid = std::make_shared<const AeroGrid>(BuildAeroGrid(stack.aerodynamics));
     stacks.resize(plant.stacks.size());
@@ -130,10 +132,10 @@ void LauncherModel::Derivative(const LauncherPhase& phase, double time_s, const 
   const Quaternion dq = dispersa::Derivative({s.q.w, s.q.x, s.q.y, s.q.z}, ToEigen(s.w));
   WriteState({ToEigen(s.v), ToEigen(rates.dv), dq, ToEigen(rates.dw)}, dydt);
   for (int i = 0; i < kNozzles; ++i) {
-    const double limit = one.drives.limit_rad;
-    const double command = Clamp(phase.command_rad[static_cast<std::size_t>(i)], -limit, limit);
-    lanes::DriveRates(one.drives, i, command, y[kNozzleAngle + i], y[kNozzleRate + i], dydt[kNozzleAngle + i],
-                      dydt[kNozzleRate + i]);
+    const std::size_t nozzle = static_cast<std::size_t>(i);
+    const double command = lanes::Followed(one.drives, phase.command_rad[nozzle]);
+    lanes::DriveRates(one.drives, i, command, y[kNozzleAngle + i], y[kNozzleRate + i], phase.slides[nozzle],
+                      dydt[kNozzleAngle + i], dydt[kNozzleRate + i]);
   }
   if (prepared_->plant.state_size() == kRigidLauncherSize) return;
   for (int plane = 0; plane < kPlanes; ++plane)

@@ -72,6 +72,7 @@ struct LauncherPhase {
   Vector3 control_torque_n_m = Vector3::Zero();  ///< of the reaction control
   std::array<double, kNozzles> command_rad{};    ///< to the actuators
   int stuck_nozzle = -1;         ///< index of a nozzle that does not move, or -1
+  std::array<double, kNozzles> slides{};  ///< sense in which friction's drives slide, 0: held (actuators.h)
 };
 
 /// Everything of one instant that forces, metrics and histories need.

@@ -22,8 +22,11 @@ DISPERSA_INLINE void SetLane(Weather<T>& w, int lane, const FlightWeather& from)
   Lane(w.gust_north, lane) = from.gust_north;
   Lane(w.gust_east, lane) = from.gust_east;
   w.profile[lane] = from.profile.is_calm() ? nullptr : &from.profile;
-  w.has_profiles = false;
-  for (int i = 0; i < kWidth<T>; ++i) w.has_profiles |= w.profile[i] != nullptr;
+  w.has_profiles = w.has_updrafts = false;
+  for (int i = 0; i < kWidth<T>; ++i) {
+    w.has_profiles |= w.profile[i] != nullptr;
+    w.has_updrafts |= w.profile[i] != nullptr && w.profile[i]->has_updraft;
+  }
 }
 
 template <class T>
@@ -101,6 +104,14 @@ DISPERSA_INLINE void SetLane(Drives<T>& d, int lane, const Gimbal& gimbal, int s
   Lane(d.bandwidth2_1_s2, lane) = w * w;
   Lane(d.twice_damping_1_s, lane) = 2.0 * gimbal.damping_ratio * w;
   for (int i = 0; i < kNozzles; ++i) Lane(d.moves[i], lane) = i == stuck ? 0.0 : 1.0;
+  Lane(d.dead_zone_rad, lane) = gimbal.dead_zone_rad;
+  Lane(d.friction_1_s2, lane) = w * w * gimbal.friction_rad;
+  Lane(d.resolution_rad, lane) = gimbal.resolution_rad;
+  d.is_rough = d.is_coarse = false;
+  for (int i = 0; i < kWidth<T>; ++i) {
+    d.is_rough |= Lane(d.dead_zone_rad, i) > 0.0 || Lane(d.friction_1_s2, i) > 0.0;
+    d.is_coarse |= Lane(d.resolution_rad, i) > 0.0;
+  }
 }
 
 }  // namespace DISPERSA_ISA

@@ -221,6 +221,7 @@ void Batch<T>::BurnOut(int lane, int stage) {
   const Instant<double> now = step_.InstantOf(lane, time_s_);
   metrics_.AddLoadsOfLane(lane, now);
   metrics_.EndStage(lane, stage, record.sums);
+  record.ripple.Interrupt();
   record.limit_cycle.Interrupt();
   for (T& weight : gyro_weight_) Lane(weight, lane) = 0.0;
   Lane(unit_weight_, lane) = 1.0;

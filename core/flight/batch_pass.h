@@ -242,11 +242,14 @@ void Batch<T>::Meter(M powered) {
   const T pitch_angle = T(0.5) * (n[0] + n[1]), yaw = T(0.5) * (n[2] + n[3]);
   for (int lane = 0; lane < kLanes; ++lane) {
     if (!(metered >> lane & 1u)) continue;
-    LimitCycleMeter& meter = slot_[lane].record->limit_cycle;
-    if (interrupted >> lane & 1u)
-      meter.Interrupt();
-    else
-      meter.Add(Lane(roll, lane), Lane(pitch_angle, lane), Lane(yaw, lane));
+    FlightRecord& record = *slot_[lane].record;
+    if (interrupted >> lane & 1u) {
+      record.ripple.Interrupt();
+      record.limit_cycle.Interrupt();
+    } else {
+      record.ripple.Add(Lane(roll, lane), Lane(pitch_angle, lane), Lane(yaw, lane));
+      record.limit_cycle.Add(Lane(roll, lane), Lane(pitch_angle, lane), Lane(yaw, lane));
+    }
   }
 }
 

@@ -60,6 +60,9 @@ std::vector<InputColumn> MakeColumns() {
   list.One(&In::gust_azimuth_rad, "gust_azimuth_deg", kRadPerDeg);
   list.EachLevel(&In::wind_profile_north, "wind_profile_north");
   list.EachLevel(&In::wind_profile_east, "wind_profile_east");
+  list.One(&In::turbulence_exceedance, "turbulence_exceedance");
+  list.One(&In::turbulence_wind_20ft_m_s, "turbulence_wind_20ft_m_s");
+  list.One(&In::turbulence_scale, "turbulence_scale");
   list.One(&In::drag_factor, "drag_factor");
   list.One(&In::lift_factor, "lift_factor");
   list.One(&In::cg_factor, "cg_factor");

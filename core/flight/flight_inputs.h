@@ -41,6 +41,9 @@ struct FlightInputs {
   double gust_azimuth_rad = 0.0;
   std::array<double, kWindLevels> wind_profile_north{};  ///< standard normal draws of a wind climatology
   std::array<double, kWindLevels> wind_profile_east{};
+  double turbulence_exceedance = 0.0;        ///< probability that picks the intensity; 0: none
+  double turbulence_wind_20ft_m_s = 0.0;     ///< mean wind near the ground, which makes the turbulence there
+  double turbulence_scale = 1.0;             ///< of all intensities
   double drag_factor = 1.0;                  ///< of the axial force
   double lift_factor = 1.0;                  ///< of the normal force
   double cg_factor = 1.0;                    ///< of the CG's distance from the nose of the current stack

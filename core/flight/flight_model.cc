@@ -5,6 +5,7 @@
 #include "core/dynamics/aero_grid.h"
 #include "core/math/constants.h"
 #include "core/math/functions.h"
+#include "core/random/draws.h"
 #include "core/vehicle/aerodynamics_build_up.h"
 
 namespace dispersa {
@@ -144,9 +145,18 @@ WindTable DrawnProfile(const WindStatistics& statistics, const FlightInputs& inp
   return DrawWind(statistics, normals);
 }
 
+TurbulenceField TurbulenceOf(const FlightInputs& in, const TurbulencePath& path, std::uint64_t seed,
+                             std::uint64_t case_index) {
+  Stream along(seed, case_index, "turbulence/along"), across(seed, case_index, "turbulence/across"),
+      normal(seed, case_index, "turbulence/normal");
+  return DrawTurbulence(
+      {in.turbulence_exceedance, in.turbulence_wind_20ft_m_s, in.turbulence_scale}, path,
+      {[&] { return along.Normal(); }, [&] { return across.Normal(); }, [&] { return normal.Normal(); }});
+}
+
 }  // namespace
 
-LauncherPlant FlightModel::PlantFor(const FlightInputs& in) const {
+LauncherPlant FlightModel::PlantFor(const FlightInputs& in, std::optional<std::uint64_t> case_index) const {
   LauncherPlant plant = nominal_;
   plant.cg_factor = in.cg_factor;
   plant.inertia_factor = in.inertia_factor;
@@ -164,6 +174,10 @@ LauncherPlant FlightModel::PlantFor(const FlightInputs& in) const {
         {in.gust_speed_m_s, in.gust_altitude_m, in.gust_length_m, in.gust_azimuth_rad});
   if (definition_.wind_statistics)
     wind.tables.push_back(DrawnProfile(*definition_.wind_statistics, in));
+
+  if (case_index && definition_.turbulence_path && in.turbulence_exceedance > 0.0)
+    plant.environment.turbulence = std::make_shared<const TurbulenceField>(
+        TurbulenceOf(in, *definition_.turbulence_path, definition_.noise_seed, *case_index));
 
   for (std::size_t i = 0; i < plant.stacks.size(); ++i) {
     LauncherStack& stack = plant.stacks[i];

@@ -1,12 +1,14 @@
 // What all flights of a campaign share, and the plant of one of them.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "core/control/autopilot.h"
 #include "core/dynamics/integrator.h"
 #include "core/dynamics/launcher.h"
+#include "core/environment/turbulence.h"
 #include "core/environment/wind_statistics.h"
 #include "core/flight/attitude_program.h"
 #include "core/flight/flight_inputs.h"
@@ -35,7 +37,9 @@ struct FlightDefinition {
   InjectionTarget target;
   std::optional<WindTable> wind_table;
   std::optional<WindStatistics> wind_statistics;
-  std::uint64_t noise_seed = 0;  ///< of the sensors
+  std::uint64_t noise_seed = 0;  ///< of the sensors and of turbulence
+  /// Along which turbulence is laid. Null: no flight meets any, whatever its inputs ask.
+  std::shared_ptr<const TurbulencePath> turbulence_path = {};
 };
 
 /// The reference attitude at the autopilot's ticks, for flights that are flown side by side. A row has 8 doubles: q_IR
@@ -70,8 +74,9 @@ class FlightModel {
   const ReferenceRows& reference_rows() const { return reference_rows_; }
   const FeedForwardRows& feed_forward_rows() const { return feed_forward_rows_; }
 
-  /// The nominal plant with a flight's factors, winds and misalignments applied.
-  LauncherPlant PlantFor(const FlightInputs& inputs) const;
+  /// The nominal plant with a flight's factors, winds and misalignments applied; with a case, whose random
+  /// draws they are, its turbulence too.
+  LauncherPlant PlantFor(const FlightInputs& inputs, std::optional<std::uint64_t> case_index = {}) const;
 
  private:
   FlightDefinition definition_;

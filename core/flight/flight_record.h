@@ -13,6 +13,7 @@
 #include "core/flight/flight.h"
 #include "core/flight/flight_sums.h"
 #include "core/flight/limit_cycle.h"
+#include "core/flight/ripple.h"
 #include "core/flight/tick_sample.h"
 #include "core/random/draws.h"
 
@@ -69,6 +70,7 @@ class FlightRecord {
 
   // ---- while it flies ----
   FlightSums sums;
+  RippleMeter ripple;
   LimitCycleMeter limit_cycle;
 
   /// The three gyros' noise of a tick, rad/s.

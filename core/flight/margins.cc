@@ -34,7 +34,7 @@ FlightOrder Spoilt(const FlightInputs& unspoilt, int stage, double gain_db, doub
 bool Holds(const FlightResult& result) {
   const auto metric = [&](const char* name) { return result.metrics[MetricColumn(name)]; };
   const auto above = [&](const char* name, double limit) { return metric(name) > limit; };
-  return result.outcome == Outcome::kCompleted && !above("deflection_limit_cycle_deg", kLostCycle_deg) &&
+  return result.outcome == Outcome::kCompleted && !above("deflection_ripple_deg", kLostCycle_deg) &&
          !above("pitch_error_peak_deg", kLostError_deg) && !above("yaw_error_peak_deg", kLostError_deg);
 }
 
@@ -230,7 +230,7 @@ std::vector<ComputedMargins> ComputeMargins(const FlightModel& model, double eve
 
 DispersedMargins ComputeDispersedMargins(const FlightModel& model, const FlightOrder& order, double every_s) {
   DispersedMargins found;
-  const LauncherPlant plant = model.PlantFor(order.inputs);
+  const LauncherPlant plant = model.PlantFor(order.inputs, order.options.case_index);
   for (const MarginInstant& instant : InstantsOf(model, order, every_s, &found.outcome))
     AddMarginsAt(plant, model, order.inputs, instant, instant.sample, kAsFlown, found.margins);
   return found;

@@ -19,6 +19,7 @@ constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
 double Rms(const ErrorSums& e) { return e.count > 0.0 ? Sqrt(e.squares / e.count) * kDegPerRad : kUndefined; }
 double Peak(const ErrorSums& e) { return e.count > 0.0 ? e.peak * kDegPerRad : kUndefined; }
+double Swing(double rad) { return rad >= 0.0 ? rad * kDegPerRad : kUndefined; }
 double Ratio(double part, double whole) { return whole > 0.0 ? part / whole : kUndefined; }
 
 // What a metric is computed from.
@@ -84,14 +85,14 @@ constexpr Row kOfFlight[] = {
     {"deflection_travel", "_deg", "Deflection travel",
      "path of a nozzle added up, mean of the four: wear of the actuators", kLarger,
      [](const Measured& m) { return m.sums.travel_rad * kDegPerRad; }},
-    {"deflection_limit_cycle", "_deg", "Limit cycle of the deflection",
+    {"deflection_ripple", "_deg", "Deflection ripple",
      "worst peak-to-peak deflection, detrended over sliding 1 s windows, from 5 s after each ignition, "
-     "outside "
-     "the kick and gusts",
-     kLarger,
-     [](const Measured& m) {
-       return m.sums.limit_cycle_rad >= 0.0 ? m.sums.limit_cycle_rad * kDegPerRad : kUndefined;
-     }},
+     "outside the kick and gusts: of whatever origin",
+     kLarger, [](const Measured& m) { return Swing(m.sums.ripple_rad); }},
+    {"deflection_limit_cycle", "_deg", "Limit cycle of the deflection",
+     "largest peak-to-peak of a sustained periodic oscillation, 12 to 24 periods of 0.3125 to 10 Hz with one "
+     "phase, from 5 s after each ignition, outside the kick and gusts; 0: none",
+     kLarger, [](const Measured& m) { return Swing(m.sums.limit_cycle_rad); }},
 
     {"q_max", "_pa", "Dynamic pressure, maximum", "", kLarger,
      [](const Measured& m) { return m.sums.q_max_pa; }},

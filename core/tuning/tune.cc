@@ -291,7 +291,7 @@ class Tuner {
       }
       sum_deg += Metric(flown, "pitch_error_rms" + suffix);
       evaluation.tie_breaker = std::max(evaluation.tie_breaker, Metric(flown, "pitch_error_peak" + suffix));
-      cycle_deg = std::max(cycle_deg, Metric(flown, "deflection_limit_cycle_deg"));
+      cycle_deg = std::max(cycle_deg, Metric(flown, "deflection_ripple_deg"));
     }
     evaluation.objective = sum_deg / options_.cases;
     evaluation.constraint_violations.push_back(lost / options_.cases);

@@ -8,8 +8,8 @@
 // seed;
 //   tie-breaker within kObjectiveTolerance_deg: the largest peak;
 // - subject to: every computed margin of all axes, gains frozen and adapting, at every instant of
-//   MarginInstants at or above its gate plus a reserve; every case completed; every limit cycle below
-//   kLimitCycleLimit_deg.
+//   MarginInstants at or above its gate plus a reserve; every case completed; every ripple of the deflection
+//   below kLimitCycleLimit_deg.
 // A PID may be searched as a linear-quadratic regulator instead (regulator.h): weights take the place of
 // damping and learning. Margins come first: a design that misses one is not flown. What augments PD acts in
 // every stage; it is searched last, over whole flights, with the measured margins at their gates instead of

@@ -60,6 +60,11 @@ struct Gimbal {
   double nozzle_mass_kg = 0.0;    ///< what turns, of one nozzle; 0: turning it takes no momentum
   double nozzle_cg_m = 0.0;       ///< its centre of gravity, aft of the pivot
   double nozzle_inertia_kg_m2 = 0.0;  ///< about the hinge
+  // What a real drive has besides; 0: not this one.
+  double dead_zone_rad = 0.0;  ///< distance from the command that does not move the servo yet
+  double friction_rad =
+      0.0;  ///< Coulomb's: the distance from the command at which a drive at rest breaks loose
+  double resolution_rad = 0.0;  ///< step in which the command reaches the servo
 };
 
 enum class IgnitionTrigger {

@@ -28,8 +28,17 @@ FlightDefinition Definition(const std::string& autopilot, bool with_winds) {
     definition.autopilot.pitch.feed_forward = definition.autopilot.yaw.feed_forward = FeedForward{0.066};
   if (autopilot == "flexible")
     definition.vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml");
+  if (autopilot == "pid_aac" ||
+      autopilot == "pid") {  // drives of all kinds, side by side as their flights' stages are
+    definition.vehicle.stages[0].gimbal.dead_zone_rad = 0.03 * kRadPerDeg;
+    definition.vehicle.stages[0].gimbal.friction_rad = 0.02 * kRadPerDeg;
+    definition.vehicle.stages[1].gimbal.resolution_rad = 0.01 * kRadPerDeg;
+    definition.vehicle.stages[2].gimbal.friction_rad = 0.01 * kRadPerDeg;
+  }
   definition.noise_seed = 11;
   if (with_winds) {
+    definition.turbulence_path =
+        std::make_shared<const TurbulencePath>(ClimbPath{{0.0, 1000.0, 40e3}, {1.0, 1.0, 0.5}, 3.0});
     definition.wind_table = WindTable{{0.0, 5000.0, 12000.0}, {1.0, 12.0, -20.0}, {3.0, -8.0, 30.0}};
     definition.wind_statistics = WindStatistics{{0.0, 6000.0, 14000.0},
                                                 {0.0, 5.0, 20.0},
@@ -88,6 +97,9 @@ FlightInputs DrawnInputs(std::uint64_t flight) {
   some(in.loop_gain_factor, 1.0 + 0.5 * draws.Uniform());
   some(in.loop_delay_s, 0.03 * draws.Uniform());
   some(in.loop_stage, std::floor(5.0 * draws.Uniform()));
+  some(in.turbulence_exceedance, 1e-3);
+  some(in.turbulence_wind_20ft_m_s, 15.0);
+  some(in.turbulence_scale, 1.0 + 0.2 * draws.Uniform());
   return in;
 }
 

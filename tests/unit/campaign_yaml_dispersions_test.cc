@@ -117,6 +117,24 @@ TEST(CampaignYamlDispersions, WindIsFixedOrUniformUpToItsMaximum) {
   EXPECT_THAT(uniform[3].distribution.values, ElementsAre(6e3));
 }
 
+TEST(CampaignYamlDispersions, TurbulenceIsNamedOrGivenByNumbers) {
+  const auto named = Decode("turbulence: {severity: severe}");
+  EXPECT_THAT(Names(named), ElementsAre("turbulence/exceedance", "turbulence/wind_20ft", "turbulence/scale"));
+  EXPECT_THAT(Inputs(named[0]), ElementsAre("turbulence_exceedance"));
+  EXPECT_THAT(Inputs(named[1]), ElementsAre("turbulence_wind_20ft_m_s"));
+  EXPECT_THAT(Inputs(named[2]), ElementsAre("turbulence_scale"));
+  EXPECT_EQ(named[0].distribution.values, std::vector<double>{1e-5});
+  EXPECT_NEAR(named[1].distribution.values.at(0), 45.0 * 1852.0 / 3600.0, 1e-12);
+  EXPECT_EQ(named[2].distribution.values, std::vector<double>{1.0});
+  const auto given = Decode(
+      "turbulence: {exceedance: 0.02, wind_20ft_m_s: 12, scale: {distribution: uniform, low_factor: 0.5, "
+      "high_factor: 2}}");
+  EXPECT_EQ(given[0].distribution.values, std::vector<double>{0.02});
+  EXPECT_EQ(given[1].distribution.values, std::vector<double>{12.0});
+  EXPECT_EQ(given[2].distribution.low, 0.5);
+  EXPECT_EQ(given[2].distribution.high, 2.0);
+}
+
 TEST(CampaignYamlDispersions, GustIsFixedOrDrawn) {
   const auto list = Decode(
       "gust: {speed_m_s: 9, altitude: {distribution: uniform, low_km: 5, high_km: 15}, length_m: 120, "
