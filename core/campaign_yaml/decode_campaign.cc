@@ -331,8 +331,9 @@ Requirement DecodeRequirement(const InputNode& node, const std::string& path, co
 GuidanceConfig DecodeGuidance(const InputNode& node, const Vehicle& vehicle, ProblemList& problems) {
   MapReader map(node, "guidance", problems);
   GuidanceConfig guidance;
-  guidance.closed_loop =
-      map.Choice<bool>("mode", {{"open_loop", false}, {"closed_loop", true}});
+  guidance.closed_loop = map.Choice<bool>("mode", {{"open_loop", false}, {"closed_loop", true}});
+  guidance.steers_last_burn =
+      map.Choice<bool>("last_burn", {{"steered", true}, {"as_planned", false}}, guidance.steers_last_burn);
   guidance.period_s = map.Quantity("period", kTime, Between(0.1, 10.0), guidance.period_s);
   // Attitude loops of a launcher follow some degrees a second; more would be a loss of control.
   const Range rate = {0.0, 20.0 * kRadPerDeg, true, false};

@@ -55,7 +55,10 @@ const double* GuidedFlight::RowAt(double tick) {
                                                   at.w_LR_R.x(), at.w_LR_R.y(), at.w_LR_R.z(), 0.0};
   for (int i = 0; i < ReferenceRows::kRowSize; ++i) row_[i] = values[i];
   const Vector3 turn = guidance_->command().Acceleration();
-  for (int axis = 0; axis < 3; ++axis) feed_forward_row_[axis] = turn[axis];
+  const AutopilotConfig& autopilot = model_.definition().autopilot;
+  const AxisConfig* const axes[kAxes] = {&autopilot.roll, &autopilot.pitch, &autopilot.yaw};
+  for (int axis = 0; axis < kAxes; ++axis)
+    feed_forward_row_[axis] = axes[axis]->feed_forward ? turn[axis] : 0.0;
   return row_;
 }
 

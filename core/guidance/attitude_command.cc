@@ -7,19 +7,21 @@
 namespace dispersa {
 
 namespace {
-// Near its goal the command closes in exponentially, with this time constant: brakes chatter otherwise.
-constexpr double kClosing_s = 1.0;
+// Near its goal the command is a critically damped second-order filter, s² + 4 s + 4: a plan that moves a
+// little asks a little of the gimbals.
+constexpr double kClosing_1_s = 1.0;
+constexpr double kHastening_1_s = 4.0;
 }  // namespace
 
-// The rate that can still be braked away on what is left of the way, √(2 a |e|), is what a bounded acceleration
-// may have; it is reached as fast as the acceleration allows.
+// The rate that can still be braked away on what is left of the way, √(2 a |e|), is what a bounded
+// acceleration may have, and half of it leaves room for the filter's delay.
 void AttitudeCommand::Angle::Follow(double step_s, double wanted, double wanted_rate, double most_rate,
                                     double most_acceleration) {
   const double left = wanted - angle;
-  const double closing = std::fmin(Sqrt(most_acceleration * std::fabs(left)), std::fabs(left) / kClosing_s);
+  const double closing = std::fmin(Sqrt(most_acceleration * std::fabs(left)), kClosing_1_s * std::fabs(left));
   const double goal = Clamp(wanted_rate + std::copysign(closing, left), -most_rate, most_rate);
-  const double change = Clamp(goal - rate, -most_acceleration * step_s, most_acceleration * step_s);
-  acceleration = change / step_s;
+  acceleration = Clamp(kHastening_1_s * (goal - rate), -most_acceleration, most_acceleration);
+  const double change = step_s * acceleration;
   angle += step_s * (rate + 0.5 * change);
   rate += change;
 }

@@ -153,6 +153,7 @@ bool ClosedLoopGuidance::SeeCoast(const GuidanceSight& sight) {
 }
 
 void ClosedLoopGuidance::SeeLastBurn(const GuidanceSight& sight) {
+  if (!mission_.config.steers_last_burn) return;
   const double time_s = sight.state.time_s;
   last_.Add(time_s - sight.burn_ignition_s, sight.specific_force_m_s2);
   MeasureThrust(sight);
