@@ -32,7 +32,7 @@ struct Injection {
 
 /// Classical Runge-Kutta steps, at most so long; they end at a thrust's kinks.
 struct PredictorSteps {
-  double burn_s = 4.0;
+  double burn_s = 2.5;
   double coast_s = 40.0;
 };
 
