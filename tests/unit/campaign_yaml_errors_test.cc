@@ -40,10 +40,10 @@ constexpr BadInput kBadInputs[] = {
      "description, dispersions, guidance, name, optimize, reference, requirements, sampling, schema, vehicle, verdicts\n"},
     {"GuidanceOfNoKind", "campaign.yaml", "name: trial", "name: trial\nguidance: {mode: closed}",
      "campaign.yaml",
-     "campaign.yaml:3:18: guidance.mode: 'closed' is not a choice, allowed: open_loop, closed_loop\n"},
+     "campaign.yaml:3:18: guidance.mode: 'closed' is not a choice, allowed: one of open_loop, closed_loop\n"},
     {"GuidanceTooFast", "campaign.yaml", "name: trial",
      "name: trial\nguidance: {mode: closed_loop, period_s: 0.01}", "campaign.yaml",
-     "campaign.yaml:3:42: guidance.period_s: 0.01 is out of range, allowed: a number from 0.1 to 10\n"},
+     "campaign.yaml:3:41: guidance.period_s: 0.01 is out of range, allowed: a number from 0.1 to 10\n"},
     {"WordForCount", "campaign.yaml", "cases: 100", "cases: many", "campaign.yaml",
      "campaign.yaml:6:40: sampling.cases: 'many' is not a number, allowed: a whole number "
      "from 1 to 4294967295\n"},
@@ -385,7 +385,7 @@ TEST(CampaignYamlErrors, UnknownDispersionNamesTheNearest) {
       files.Texts(ValidateFile(files.Path("campaign.yaml"))),
       HasSubstr(
           "campaign.yaml:10:3: dispersions.drag_coeficient: unknown key 'drag_coeficient' (did you mean "
-          "'drag_coefficient'?), allowed: actuator_bandwidth, "));
+          "'drag_coefficient'?), allowed: accelerometer_scale, actuator_bandwidth, "));
 }
 
 TEST(CampaignYamlErrors, BadCellsOfATableAreFoundByLineAndColumn) {
