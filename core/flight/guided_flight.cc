@@ -30,7 +30,7 @@ bool GuidedFlight::See(const LaneSight& sight) {
     next_tick_ += 1.0 / tick_s;
     return false;
   }
-  seen.phase = is_below          ? GuidancePhase::kBelowBurns
+  seen.phase = is_below        ? GuidancePhase::kBelowBurns
                : sight.burning ? GuidancePhase::kLastBurns
                                : GuidancePhase::kCoast;
   seen.state = {sight.time_s, Vector3(sight.p_EoC_I) + position_error_I_,

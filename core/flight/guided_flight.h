@@ -1,8 +1,8 @@
 // A flight of the engine under closed-loop guidance: what stands between its lane and core/guidance/.
 //
-// The lane gives true values; navigation's errors and the accelerometers' are added here, so that the guidance sees
-// nothing else. It runs about once a second, as ordinary code of one flight, and gives the lane its own rows of reference
-// attitude in place of those that all flights share.
+// The lane gives true values; navigation's errors and the accelerometers' are added here, so that the
+// guidance sees nothing else. It runs about once a second, as ordinary code of one flight, and gives the lane
+// its own rows of reference attitude in place of those that all flights share.
 #pragma once
 
 #include <memory>

@@ -8,7 +8,8 @@ namespace {
 
 // The motor's first seconds, whose start and separation the autopilot is busy with.
 constexpr double kTakeOver_s = 3.0;
-// In the coast nothing changes but by navigation: a plan now and then is enough, and more often towards its end.
+// In the coast nothing changes but by navigation: a plan now and then is enough, and more often towards its
+// end.
 constexpr double kCoastPeriod_s = 20.0;
 constexpr double kNearIgnition_s = 25.0;
 // From here on ignition stays where it is unless the attitude has not settled.
@@ -65,15 +66,15 @@ bool ClosedLoopGuidance::See(const GuidanceSight& sight) {
   return false;
 }
 
-// Where thrust has pointed since the last call, by what it did to the velocity, against where it was to point:
-// navigation's error of attitude, the autopilot's, and the motor's misalignment in one.
+// Where thrust has pointed since the last call, by what it did to the velocity, against where it was to
+// point: navigation's error of attitude, the autopilot's, and the motor's misalignment in one.
 void ClosedLoopGuidance::MeasureThrust(const GuidanceSight& sight) {
   const NavigatedState& now = sight.state;
   const Vector3 direction_L = UnitVector(command_.direction());
   if (has_previous_) {
     const double since_s = now.time_s - previous_.time_s;
-    const Vector3 gravity = 0.5 * (Gravitation(mission_.earth, previous_.p_EoC_I) +
-                                   Gravitation(mission_.earth, now.p_EoC_I));
+    const Vector3 gravity =
+        0.5 * (Gravitation(mission_.earth, previous_.p_EoC_I) + Gravitation(mission_.earth, now.p_EoC_I));
     const Vector3 gained = now.v_IC_I - previous_.v_IC_I - since_s * gravity;
     const Vector3 pointed = (mission_.R_IL * (previous_direction_L_ + direction_L)).normalized();
     const Vector3 offset = pointed.cross(gained.normalized());
@@ -148,7 +149,8 @@ bool ClosedLoopGuidance::SeeCoast(const GuidanceSight& sight) {
   outcome_.ignition_shift_s = ignition_s - mission_.last_ignition_s;
   outcome_.excess_m_s = plan_.value[kWaste] * IdealVelocity(known.last);
   const double until_s = ignition_s - time_s;
-  next_call_s_ = time_s + (until_s > kCoastPeriod_s + kNearIgnition_s ? kCoastPeriod_s : mission_.config.period_s);
+  next_call_s_ =
+      time_s + (until_s > kCoastPeriod_s + kNearIgnition_s ? kCoastPeriod_s : mission_.config.period_s);
   return true;
 }
 

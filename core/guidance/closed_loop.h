@@ -13,10 +13,10 @@ namespace dispersa {
 struct GuidanceSight {
   NavigatedState state;
   GuidancePhase phase = GuidancePhase::kCoast;
-  double burn_ignition_s = 0.0;         ///< of the motor that burns
-  double specific_force_m_s2 = 0.0;     ///< by the accelerometers, its magnitude
-  double expelled_kg = 0.0;             ///< by the reaction control, from its valves' times
-  double attitude_error_rad = 0.0;      ///< measured, to the command
+  double burn_ignition_s = 0.0;      ///< of the motor that burns
+  double specific_force_m_s2 = 0.0;  ///< by the accelerometers, its magnitude
+  double expelled_kg = 0.0;          ///< by the reaction control, from its valves' times
+  double attitude_error_rad = 0.0;   ///< measured, to the command
   double rate_error_rad_s = 0.0;
 };
 

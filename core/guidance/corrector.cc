@@ -31,7 +31,8 @@ Arrival Less(const Arrival& a, const Arrival& b) {
 Misses Scaled(const Arrival& miss, const CorrectorTask& task) {
   Misses m;
   m << (task.meets_altitude ? miss.altitude_m / kTolerance[0] : 0.0), miss.velocity_m_s / kTolerance[1],
-      miss.flight_path_angle_rad / kTolerance[2], (task.meets_plane ? miss.inclination_rad / kTolerance[3] : 0.0);
+      miss.flight_path_angle_rad / kTolerance[2],
+      (task.meets_plane ? miss.inclination_rad / kTolerance[3] : 0.0);
   return m;
 }
 
@@ -106,7 +107,8 @@ Correction Correct(const GuidanceMission& mission, const PlanPrior& prior, const
     Plan next = best.plan;
     for (int i = 0; i < kPlanUnknowns; ++i) {
       const auto k = static_cast<std::size_t>(i);
-      if (task.free[k]) next.value[k] = Clamp(next.value[k] + step(i) * prior.scale[k], task.low[k], task.high[k]);
+      if (task.free[k])
+        next.value[k] = Clamp(next.value[k] + step(i) * prior.scale[k], task.low[k], task.high[k]);
     }
     reached = predict(next);
     const Arrival next_miss = Less(reached.at, mission.target);

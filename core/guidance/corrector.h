@@ -5,8 +5,8 @@
 //
 //   sum ((x - x0) / scale)² + sum (miss / tolerance)²
 //
-// with tolerances so tight that the first sum chooses among what the second leaves open. With J' the Jacobian of
-// miss / tolerance by x / scale and y = (x - x0) / scale, a step is
+// with tolerances so tight that the first sum chooses among what the second leaves open. With J' the Jacobian
+// of miss / tolerance by x / scale and y = (x - x0) / scale, a step is
 //
 //   dx / scale = -y - J'ᵀ (J' J'ᵀ + 1)⁻¹ (miss / tolerance - J' y),
 //
@@ -20,23 +20,23 @@ namespace dispersa {
 
 struct CorrectorTask {
   std::array<bool, kPlanUnknowns> free{};
-  Plan prior;                                  ///< what departures are counted from
+  Plan prior;  ///< what departures are counted from
   std::array<double, kPlanUnknowns> low{}, high{};
-  bool meets_altitude = true;                  ///< else only what a short rest of a burn can still change:
-  bool meets_plane = true;                     ///< speed and flight path angle
+  bool meets_altitude = true;  ///< else only what a short rest of a burn can still change:
+  bool meets_plane = true;     ///< speed and flight path angle
   int iterations = 3;
 };
 
 struct Correction {
   Plan plan;
-  Arrival miss;         ///< of the plan, predicted less target
+  Arrival miss;  ///< of the plan, predicted less target
   double burnout_s = 0.0;
-  bool arrives = false; ///< within Arrives()
+  bool arrives = false;  ///< within Arrives()
   int iterations = 0;
 };
 
-/// Misses that a plan may have and still arrive: 50 m, 0.5 m/s, 0.01 degree, and 0.02 degree of inclination. Where
-/// altitude and plane are not met any more they do not count.
+/// Misses that a plan may have and still arrive: 50 m, 0.5 m/s, 0.01 degree, and 0.02 degree of inclination.
+/// Where altitude and plane are not met any more they do not count.
 bool Arrives(const Arrival& miss, bool meets_altitude, bool meets_plane);
 
 Correction Correct(const GuidanceMission& mission, const PlanPrior& prior, const Knowledge& known,

@@ -6,9 +6,9 @@
 namespace dispersa {
 
 struct GuidanceConfig {
-  bool closed_loop = false;  ///< else the reference's attitude and ignition time are flown as they are
+  bool closed_loop = false;      ///< else the reference's attitude and ignition time are flown as they are
   bool steers_last_burn = true;  ///< else that burn is flown as it was planned at its ignition
-  double period_s = 1.0;     ///< between two solutions while a motor burns
+  double period_s = 1.0;         ///< between two solutions while a motor burns
   /// Of the commanded attitude under thrust, which the gimbals follow.
   double turn_rate_rad_s = 3.0 * kRadPerDeg;
   double turn_acceleration_rad_s2 = 2.0 * kRadPerDeg;

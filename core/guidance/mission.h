@@ -51,9 +51,9 @@ struct GuidanceMission {
   Arrival target;
   GuidedStage below;  ///< the stage before the last
   GuidedStage last;
-  double last_ignition_s = 0.0;        ///< of the reference
-  double velocity_reserve_m_s = 0.0;   ///< by which the reference arrives faster than the target
-  DirectionTable program;              ///< from the ignition of the stage before the last on
+  double last_ignition_s = 0.0;       ///< of the reference
+  double velocity_reserve_m_s = 0.0;  ///< by which the reference arrives faster than the target
+  DirectionTable program;             ///< from the ignition of the stage before the last on
 };
 
 /// Ideal velocity change of a burn.

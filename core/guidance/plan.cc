@@ -9,8 +9,7 @@ double Plan::TurnHalf() const { return Sqrt(6.0 * value[kWaste]); }
 Direction Plan::LastBurnAt(double since_ignition_s, double nominal_duration_s, double yaw_half_rad) const {
   const double since = since_ignition_s > 0.0 ? since_ignition_s : 0.0;
   const double s = 2.0 * since / nominal_duration_s - 1.0;
-  return {value[kPitchMiddle] + s * value[kPitchHalf],
-          value[kYawMiddle] + s * (yaw_half_rad - TurnHalf())};
+  return {value[kPitchMiddle] + s * value[kPitchHalf], value[kYawMiddle] + s * (yaw_half_rad - TurnHalf())};
 }
 
 Direction Plan::LastBurnRate(double nominal_duration_s, double yaw_half_rad) const {

@@ -9,8 +9,8 @@ namespace dispersa {
 
 namespace {
 
-// Equal steps of no more than `longest_s` from the state's time to `to_s`. `thrust` is the specific force in I at
-// a time since the state's; the end of a step and the beginning of the next share it.
+// Equal steps of no more than `longest_s` from the state's time to `to_s`. `thrust` is the specific force in
+// I at a time since the state's; the end of a step and the beginning of the next share it.
 template <class ThrustAt>
 void Advance(const Earth& earth, double to_s, double longest_s, const ThrustAt& thrust,
              NavigatedState& state) {
@@ -89,7 +89,9 @@ Injection Predict(const GuidanceMission& mission, const PlanPrior& prior, const 
   }
   const bool lit = known.phase == GuidancePhase::kLastBurns;
   const double ignition_s = lit ? known.burn_ignition_s : plan.ignition_s();
-  if (!lit) Advance(mission.earth, ignition_s, steps.coast_s, [](double) { return Vector3(0.0, 0.0, 0.0); }, state);
+  if (!lit)
+    Advance(
+        mission.earth, ignition_s, steps.coast_s, [](double) { return Vector3(0.0, 0.0, 0.0); }, state);
   const double nominal_s = mission.last.burn.duration_s;
   const auto direction = [&](double time_s) {
     return plan.LastBurnAt(time_s - ignition_s, nominal_s, prior.yaw_half_rad);

@@ -20,7 +20,7 @@ struct Knowledge {
   GuidancePhase phase = GuidancePhase::kCoast;
   double burn_ignition_s = 0.0;  ///< of the motor that burns
   GuidedStage below;             ///< as estimated, while it burns
-  GuidedStage last;              ///< nominal until it burns, then as estimated; less what reaction control expelled
+  GuidedStage last;  ///< nominal until it burns, then as estimated; less what reaction control expelled
   /// Small rotation from where thrust shall point to where it does, as measured.
   Vector3 thrust_offset_rad_I = Vector3::Zero();
 };

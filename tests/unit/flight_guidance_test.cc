@@ -23,8 +23,9 @@ struct Missed {
   double altitude_m, velocity_m_s, angle_deg, inclination_deg;
 };
 Missed MissOf(const FlightResult& flight) {
-  return {1e3 * MetricOf(flight, "injection_altitude_error_km"), MetricOf(flight, "injection_velocity_error_m_s"),
-          MetricOf(flight, "injection_flight_path_angle_error_deg"), MetricOf(flight, "inclination_error_deg")};
+  return {
+      1e3 * MetricOf(flight, "injection_altitude_error_km"), MetricOf(flight, "injection_velocity_error_m_s"),
+      MetricOf(flight, "injection_flight_path_angle_error_deg"), MetricOf(flight, "inclination_error_deg")};
 }
 
 TEST(GuidedFlight, ArrivesWhereAnOpenLoopMissesByKilometres) {
@@ -84,8 +85,8 @@ TEST(GuidedFlight, MissesByWhatNavigationErrs) {
   EXPECT_NEAR(MissOf(Fly(model, inputs)).altitude_m - right.altitude_m, 400.0 * std::cos(17.0 * kDeg), 60.0);
 }
 
-// A motor half a per cent stronger than it should be: unknown before its ignition, found out while it burns. A burn as
-// planned keeps all of it, some 12 m/s.
+// A motor half a per cent stronger than it should be: unknown before its ignition, found out while it burns.
+// A burn as planned keeps all of it, some 12 m/s.
 TEST(GuidedFlight, FindsOutAboutTheLastMotorOnlyWhileItBurns) {
   FlightDefinition definition = Guided();
   FlightInputs inputs;
@@ -97,7 +98,8 @@ TEST(GuidedFlight, FindsOutAboutTheLastMotorOnlyWhileItBurns) {
   EXPECT_NEAR(MissOf(planned).velocity_m_s, 0.005 * 2345.0, 2.0);
 }
 
-// 4 % less impulse in every motor: no reserve is that large. It flies to the end, spends nothing, and says so.
+// 4 % less impulse in every motor: no reserve is that large. It flies to the end, spends nothing, and says
+// so.
 TEST(GuidedFlight, SaysThatItsTargetIsOutOfReach) {
   FlightInputs inputs;
   for (double& factor : inputs.specific_impulse_factor) factor = 0.96;
@@ -110,7 +112,7 @@ TEST(GuidedFlight, SaysThatItsTargetIsOutOfReach) {
 
 struct Watched {
   double ignition_s = -1.0;
-  std::vector<double> rates_deg_s;       ///< of the reference in the coast and in the last burn
+  std::vector<double> rates_deg_s;  ///< of the reference in the coast and in the last burn
   double largest_coast_rate_deg_s = 0.0, largest_burn_rate_deg_s = 0.0, error_at_ignition_deg = 0.0;
   FlightResult result;
 };
@@ -139,9 +141,10 @@ TEST(GuidedFlight, MovesTheLastIgnitionWhenAndAsItSays) {
   const double shift_s = MetricOf(flight.result, "guidance_ignition_shift_s");
   EXPECT_GT(std::fabs(shift_s), 1e-3);
   EXPECT_NEAR(flight.ignition_s, definition.last_ignition_s + shift_s, 1e-9);
-  // And the burn keeps its duration: the flight ends with it. Impulse is conserved by Table3Inputs' 0.98 of thrust alone.
-  EXPECT_NEAR(flight.result.end_time_s - flight.ignition_s, definition.vehicle.stages.back().motor.burning_time_s,
-              1e-9);
+  // And the burn keeps its duration: the flight ends with it. Impulse is conserved by Table3Inputs' 0.98 of
+  // thrust alone.
+  EXPECT_NEAR(flight.result.end_time_s - flight.ignition_s,
+              definition.vehicle.stages.back().motor.burning_time_s, 1e-9);
 }
 
 TEST(GuidedFlight, CommandsNoFasterTurnThanTheAutopilotFollows) {
@@ -155,7 +158,8 @@ TEST(GuidedFlight, CommandsNoFasterTurnThanTheAutopilotFollows) {
   EXPECT_LT(MetricOf(flight.result, "yaw_error_peak_deg"), 1.0);
 }
 
-// Reaction control too weak to hold the deadband of 0.01 deg that is asked of it: ignition waits, and not for ever.
+// Reaction control too weak to hold the deadband of 0.01 deg that is asked of it: ignition waits, and not for
+// ever.
 TEST(GuidedFlight, IgnitesOnlyOnceSettled) {
   FlightDefinition definition = Guided();
   definition.guidance.settled_angle_rad = 0.001 * kDeg;
@@ -165,7 +169,8 @@ TEST(GuidedFlight, IgnitesOnlyOnceSettled) {
   EXPECT_LE(MetricOf(flight.result, "guidance_postponement_s"), 62.0);
 }
 
-// The point mass of the predictor against the engine's rigid body: one plan, flown by the autopilot as a program.
+// The point mass of the predictor against the engine's rigid body: one plan, flown by the autopilot as a
+// program.
 TEST(GuidedFlight, ThePredictorIsTheEnginesPointMass) {
   FlightDefinition definition = Slv4Definition(DISPERSA_CAMPAIGNS);
   const double ignition_s = definition.last_ignition_s, burn_s = 46.9;
@@ -174,7 +179,8 @@ TEST(GuidedFlight, ThePredictorIsTheEnginesPointMass) {
   std::vector<AttitudeKnot> knots;
   for (const AttitudeKnot& knot : definition.program.knots)
     if (knot.time_s < ignition_s - 120.0) knots.push_back(knot);
-  const double pitch_rate = (to.pitch_rad - from.pitch_rad) / burn_s, yaw_rate = (to.yaw_rad - from.yaw_rad) / burn_s;
+  const double pitch_rate = (to.pitch_rad - from.pitch_rad) / burn_s,
+               yaw_rate = (to.yaw_rad - from.yaw_rad) / burn_s;
   knots.push_back({ignition_s - 20.0, from.pitch_rad, from.yaw_rad, 0.0, 0.0, 0.0, 0.0});
   knots.push_back({ignition_s - 5.0, from.pitch_rad, from.yaw_rad, 0.0, 0.0, 0.0, 0.0});
   knots.push_back({ignition_s, from.pitch_rad, from.yaw_rad, 0.0, pitch_rate, yaw_rate, 0.0});

@@ -49,7 +49,8 @@ TEST(AttitudeCommand, ItsAngularVelocityIsThatOfItsAttitude) {
   AttitudeCommand command;
   command.Start(0.0, {0.3, -0.4}, {0.02, 0.03});
   const double h = 1e-4;
-  const Quaternion before = FromPitchYawRoll(command.AnglesAt(-h)), after = FromPitchYawRoll(command.AnglesAt(h));
+  const Quaternion before = FromPitchYawRoll(command.AnglesAt(-h)),
+                   after = FromPitchYawRoll(command.AnglesAt(h));
   const Vector3 w = RotationVector(Inverse(before) * after) / (2.0 * h);
   for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(command.RateAt(0.0)[axis], w[axis], 1e-9);
 }

@@ -81,7 +81,8 @@ TEST(Corrector, ASecondLookAtTheSamePlanNeedsNoMore) {
   }
 }
 
-// 300 m/s that nobody has: the turn in yaw is given up, what can be met is met as well as possible, and it is said.
+// 300 m/s that nobody has: the turn in yaw is given up, what can be met is met as well as possible, and it is
+// said.
 TEST(Corrector, SaysThatATargetIsOutOfReach) {
   GuidanceMission mission = ReachableMission();
   mission.target.velocity_m_s += 300.0;

@@ -52,8 +52,8 @@ TEST(Predictor, ABurnWithoutGravitationGainsTheIdealVelocity) {
 TEST(Predictor, ATurnInYawTakesAwayWhatItsPlanSays) {
   GuidanceMission mission = PlainMission();
   mission.earth.mu_m3_s2 = 0.0;
-  // So little propellant that the acceleration hardly grows: then time and velocity run alike, and the chord of the arc is
-  // sin(a)/a of its length.
+  // So little propellant that the acceleration hardly grows: then time and velocity run alike, and the chord
+  // of the arc is sin(a)/a of its length.
   mission.last.burn.vacuum_thrust_n = 1000.0;
   mission.last.burn.full_flow_kg_s = 1e-6;
   mission.last.burn.propellant_mass_kg = 5e-5;
@@ -107,8 +107,8 @@ TEST(Predictor, ThrustThatPointsElsewhereByASmallRotationIsTurnedByIt) {
   known.thrust_offset_rad_I = -0.5 * kDeg * mission.R_IL.col(1);
   const Arrival turned = Predict(mission, prior, known, from, plan).at;
   const double down_m_s = IdealVelocity(mission.last) * 0.5 * kDeg;
-  EXPECT_NEAR(straight.flight_path_angle_rad - turned.flight_path_angle_rad,
-              down_m_s / straight.velocity_m_s, 0.02 * down_m_s / straight.velocity_m_s);
+  EXPECT_NEAR(straight.flight_path_angle_rad - turned.flight_path_angle_rad, down_m_s / straight.velocity_m_s,
+              0.02 * down_m_s / straight.velocity_m_s);
 }
 
 }  // namespace
