@@ -42,9 +42,11 @@ TEST(Predictor, ABurnWithoutGravitationGainsTheIdealVelocity) {
     return Predict(mission, prior, known, from, plan, {.burn_s = burn_s}).at.velocity_m_s - ideal_m_s;
   };
   const Injection reached = Predict(mission, prior, known, from, plan);
-  // A fiftieth of what the corrector calls arrived, and of fourth order: a sixteenth with half the steps.
+  // A fiftieth of what the corrector calls arrived, and of fourth order.
   EXPECT_NEAR(reached.at.velocity_m_s, ideal_m_s, 1e-2);
-  EXPECT_NEAR(error_of(2.0) / error_of(1.0), 16.0, 2.0);
+  // Pieces hold whole numbers of steps, 30 and 59 in the longest: 15. Third order would give 8.
+  EXPECT_GT(error_of(2.0) / error_of(1.0), 12.0);
+  EXPECT_LT(error_of(2.0) / error_of(1.0), 18.0);
   EXPECT_NEAR(error_of(0.1), 0.0, 1e-7);
   EXPECT_NEAR(reached.time_s, 100.0 + mission.last.burn.duration_s, 1e-9);
 }
