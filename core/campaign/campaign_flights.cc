@@ -58,7 +58,9 @@ FlightDefinition DefinitionOf(const Campaign& campaign) {
   definition.kick_end_s = campaign.reference.program.t2_s;
   const TrajectoryProblem& problem = campaign.reference.problem;
   definition.target = {problem.target_altitude_m, problem.target_velocity_m_s,
-                       problem.target_flight_path_angle_rad};
+                       problem.target_flight_path_angle_rad, campaign.reference.orbit.inclination_rad};
+  definition.guidance = campaign.guidance;
+  definition.velocity_reserve_m_s = problem.velocity_reserve_m_s;
   definition.wind_table = campaign.wind_table;
   definition.wind_statistics = campaign.wind_statistics;
   definition.noise_seed = campaign.sampling.seed;

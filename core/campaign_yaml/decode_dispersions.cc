@@ -60,6 +60,9 @@ class DispersionDecoder {
     TipOff();
     GyroBias();
     Scalar("gyro_noise", {kAngularRate, kNonNegative}, "gyro_noise_deg_s");
+    NavigationError("navigation_position_error", kLength, "_m");
+    NavigationError("navigation_velocity_error", kSpeed, "_m_s");
+    Scalar("accelerometer_scale", kPositiveFactor, "accelerometer_scale_factor");
     StuckNozzle();
     // A deliberately bad P_n is a study, so any factor is legal.
     Scalar("pn_error", {{}, kAnyNumber}, "pn_error_factor");
@@ -344,6 +347,16 @@ class DispersionDecoder {
       Add("gyro_bias/" + axis, ReadDistribution(map, {kAngularRate, kAnyNumber}),
           {Column("gyro_bias_" + axis + "_deg_s")});
     });
+  }
+
+  // One distribution, drawn for each axis of the launch-inertial frame.
+  void NavigationError(const std::string& key, Dimension dimension, const std::string& unit_suffix) {
+    const InputNode* node = map_.Optional(key);
+    if (node == nullptr) return;
+    MapReader map(*node, map_.PathOf(key), problems_);
+    const ScalarDistribution error = ReadDistribution(map, {dimension, kAnyNumber});
+    for (const std::string axis : {"downrange", "right", "down"})
+      Add(key + "/" + axis, error, {Column(key + "_" + axis + unit_suffix)});
   }
 
   void StuckNozzle() {

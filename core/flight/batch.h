@@ -50,6 +50,11 @@ class Batch {
   void Start(int lane, FlightRecord* record);
   void SetStack(int lane, int stack);
   void SetStop(int lane);
+  /// Whether guidance gives the lane a reference of its own.
+  bool IsSteered(int lane) const {
+    return definition_.guidance.closed_loop && slot_[lane].record != nullptr &&
+           slot_[lane].record->guided->steers();
+  }
   void End(int lane, Outcome outcome, const char* reason);
   LauncherPhase PhaseOf(int lane) const;
   LaneView ViewOf(int lane) const;
@@ -66,6 +71,7 @@ class Batch {
   const T* FedForward(T* program) const;
   void PassCommands(M powered);
   void FlyThrusters();
+  void Guide();
   void Meter(M powered);
   void WatchAndDigest();
   void CheckEnds();

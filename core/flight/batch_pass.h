@@ -22,6 +22,7 @@ void Batch<T>::Pass() {
   FlyGimbals();
   if (Any(coasting_)) FlyThrusters();
   step_.EvaluateStart(time_s_);
+  if (definition_.guidance.closed_loop) Guide();
   metrics_.AddLoads(live_ & !coasting_, step_.now());
   Meter(live_ & step_.phase.burning);
   WatchAndDigest();
@@ -37,6 +38,7 @@ void Batch<T>::Measure() {
   for (int lane = 0; lane < kLanes; ++lane) {
     const double tick = Min(Lane(tick_, lane), reference.last_tick);
     row[lane] = reference.rows.data() + ReferenceRows::kRowSize * static_cast<long>(tick);
+    if (IsSteered(lane)) row[lane] = slot_[lane].record->guided->RowAt(Lane(tick_, lane));
   }
   T c[ReferenceRows::kRowSize];
   LoadRow(row, 2, c);
@@ -138,6 +140,7 @@ const T* Batch<T>::FedForward(T* program) const {
   for (int lane = 0; lane < kLanes; ++lane) {
     const double tick = Min(Lane(tick_, lane), model_.reference_rows().last_tick);
     row[lane] = table.rows.data() + FeedForwardRows::kRowSize * static_cast<long>(tick);
+    if (IsSteered(lane)) row[lane] = slot_[lane].record->guided->feed_forward_row();
   }
   LoadFour(row, program);
   return program;
@@ -219,6 +222,37 @@ void Batch<T>::FlyThrusters() {
   const T expelled = Fma(T(flow_kg) * (next_tick_ - tick_), firing, step_.phase.expelled_kg);
   step_.phase.expelled_kg = Select(fires, expelled, step_.phase.expelled_kg);
   step_.MarkStale(changes | fires);
+}
+
+/// Closed-loop guidance sees the lanes whose time has come: each by itself, as ordinary code.
+template <class T>
+void Batch<T>::Guide() {
+  for (int lane = 0; lane < kLanes; ++lane) {
+    FlightRecord* const record = slot_[lane].record;
+    if (record == nullptr || Lane(tick_, lane) < record->guided->next_tick()) continue;
+    StateValues y;
+    step_.ReadLane(lane, y);
+    const LauncherPhase phase = PhaseOf(lane);
+    const Instant<T>& now = step_.now();
+    const auto size_of = [lane](const Vector<T>& v) {
+      const double x = Lane(v.x, lane), y_ = Lane(v.y, lane), z = Lane(v.z, lane);
+      return Sqrt(x * x + y_ * y_ + z * z);
+    };
+    LaneSight sight;
+    sight.time_s = Lane(time_s_, lane);
+    for (int i = 0; i < 3; ++i) {
+      sight.p_EoC_I[i] = y[i];
+      sight.v_IC_I[i] = y[3 + i];
+    }
+    sight.stack = phase.stack;
+    sight.burning = phase.burning;
+    sight.ignition_s = phase.ignition_s;
+    sight.expelled_kg = phase.expelled_mass_kg;
+    sight.specific_force_m_s2 = size_of(now.force_n) / Lane(now.mass_kg, lane);
+    sight.measured_angle_rad = size_of(measured_angle_rad_);
+    sight.measured_rate_rad_s = size_of(measured_rate_rad_s_);
+    if (record->Guide(sight)) SetStop(lane);
+  }
 }
 
 /// Metrics of this tick.

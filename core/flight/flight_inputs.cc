@@ -29,6 +29,12 @@ class ColumnList {
     for (std::size_t i = 0; i < kWindLevels; ++i)
       columns_.push_back({stem + "_" + std::to_string(i + 1), 1.0, OffsetOf(&(nominal_.*field)[i])});
   }
+  void EachLaunchAxis(std::array<double, 3> FlightInputs::*field, const std::string& stem,
+                      const std::string& unit_suffix) {
+    const char* const axes[] = {"_downrange", "_right", "_down"};
+    for (std::size_t i = 0; i < 3; ++i)
+      columns_.push_back({stem + axes[i] + unit_suffix, 1.0, OffsetOf(&(nominal_.*field)[i])});
+  }
   std::vector<InputColumn> Take() { return std::move(columns_); }
 
  private:
@@ -88,6 +94,9 @@ std::vector<InputColumn> MakeColumns() {
   list.One(&In::loop_gain_factor, "loop_gain_factor");
   list.One(&In::loop_delay_s, "loop_delay_s");
   list.One(&In::loop_stage, "loop_stage");
+  list.EachLaunchAxis(&In::navigation_position_error_m, "navigation_position_error", "_m");
+  list.EachLaunchAxis(&In::navigation_velocity_error_m_s, "navigation_velocity_error", "_m_s");
+  list.One(&In::accelerometer_scale_factor, "accelerometer_scale_factor");
   std::vector<InputColumn> columns = list.Take();
   assert(columns.size() == kInputCount);
   return columns;

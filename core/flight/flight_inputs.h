@@ -69,6 +69,9 @@ struct FlightInputs {
   double loop_gain_factor = 1.0;             ///< of every commanded deflection: measures the gain margin
   double loop_delay_s = 0.0;                 ///< further delay of the commands: measures the delay margin
   double loop_stage = 0.0;                   ///< the stage (1-based) whose loop they change, 0 all
+  std::array<double, 3> navigation_position_error_m{};    ///< navigated less true, constant, along L's axes
+  std::array<double, 3> navigation_velocity_error_m_s{};  ///< likewise
+  double accelerometer_scale_factor = 1.0;   ///< of the sensed specific force
 };
 
 /// A column of the applied inputs: its name carries the unit, e.g. "thrust_misalignment_stage1_deg".

@@ -97,6 +97,34 @@ FeedForwardRows TabulateFeedForward(const AttitudeProgram& program, const Autopi
   return table;
 }
 
+GuidanceMission BuildMission(const FlightDefinition& definition, const LauncherPlant& plant,
+                             const LaunchFrame& frame) {
+  // Fine enough that straight pieces stand for a program whose rates change by some 0.1 deg/s in a second.
+  constexpr double kStep_s = 0.5;
+  GuidanceMission mission;
+  mission.config = definition.guidance;
+  mission.earth = plant.environment.earth;
+  mission.R_IL = frame.R_IL;
+  const InjectionTarget& target = definition.target;
+  mission.target = {target.altitude_m, target.velocity_m_s, target.flight_path_angle_rad,
+                    target.inclination_rad};
+  const auto stage = [&](std::size_t i) {
+    const LauncherStack& stack = plant.stacks[i];
+    return GuidedStage{stack.burn, stack.mass.fixed_mass_kg + stack.burn.propellant_mass_kg};
+  };
+  const std::size_t last = plant.stacks.size() - 1;
+  mission.below = stage(last - 1);
+  mission.last = stage(last);
+  mission.last_ignition_s = definition.last_ignition_s;
+  mission.velocity_reserve_m_s = definition.velocity_reserve_m_s;
+  mission.program.step_s = kStep_s;
+  for (double time_s = 0.0; time_s <= definition.program.knots.back().time_s + kStep_s; time_s += kStep_s) {
+    const PitchYawRoll at = definition.program.At(time_s).angles;
+    mission.program.at.push_back({at.pitch, at.yaw});
+  }
+  return mission;
+}
+
 }  // namespace
 
 FlightModel::FlightModel(FlightDefinition definition)
@@ -114,6 +142,8 @@ FlightModel::FlightModel(FlightDefinition definition)
   reference_rows_ = TabulateReference(definition_.program, frame_, definition_.autopilot.tick_s);
   feed_forward_rows_ = TabulateFeedForward(definition_.program, definition_.autopilot,
                                            static_cast<long>(reference_rows_.last_tick) + 1);
+  if (definition_.guidance.closed_loop)
+    guidance_mission_ = BuildMission(definition_, nominal_, frame_);
 }
 
 FlightModel FlightModel::WithAutopilot(const AutopilotConfig& autopilot) const {

@@ -15,6 +15,7 @@
 #include "core/flight/launch_frame.h"
 #include "core/flight/sensor_model.h"
 #include "core/flight/sequence.h"
+#include "core/guidance/mission.h"
 #include "core/vehicle/vehicle.h"
 
 namespace dispersa {
@@ -24,6 +25,7 @@ struct InjectionTarget {
   double altitude_m = 0.0;
   double velocity_m_s = 0.0;
   double flight_path_angle_rad = 0.0;
+  double inclination_rad = 0.0;       ///< of the reference's orbit
 };
 
 /// What decides a flight besides its inputs.
@@ -40,6 +42,8 @@ struct FlightDefinition {
   std::uint64_t noise_seed = 0;  ///< of the sensors and of turbulence
   /// Along which turbulence is laid. Null: no flight meets any, whatever its inputs ask.
   std::shared_ptr<const TurbulencePath> turbulence_path = {};
+  GuidanceConfig guidance;
+  double velocity_reserve_m_s = 0.0;  ///< by which the program arrives faster than the target
 };
 
 /// The reference attitude at the autopilot's ticks, for flights that are flown side by side. A row has 8 doubles: q_IR
@@ -73,6 +77,8 @@ class FlightModel {
   const SensorModel& sensors() const { return sensors_; }
   const ReferenceRows& reference_rows() const { return reference_rows_; }
   const FeedForwardRows& feed_forward_rows() const { return feed_forward_rows_; }
+  /// What closed-loop guidance knows beforehand; none of an open loop.
+  const std::optional<GuidanceMission>& guidance_mission() const { return guidance_mission_; }
 
   /// The nominal plant with a flight's factors, winds and misalignments applied; with a case, whose random
   /// draws they are, its turbulence too.
@@ -86,6 +92,7 @@ class FlightModel {
   SensorModel sensors_;
   ReferenceRows reference_rows_;
   FeedForwardRows feed_forward_rows_;
+  std::optional<GuidanceMission> guidance_mission_;
 };
 
 /// The vehicle without dispersions: aerodynamics built up where the file gives no tables.

@@ -158,6 +158,10 @@ FlightRecord::FlightRecord(const FlightModel& model, const FlightOrder& order)
       model_(model),
       gyro_noise_(model.definition().noise_seed, options.case_index, "gyro_noise") {
   WriteState(LiftOffState(model), lift_off);
+  if (model.guidance_mission()) {
+    guided_ = std::make_unique<GuidedFlight>(model, inputs);
+    guided = guided_.get();
+  }
   if (options.history) options.history->values.clear();
   if (watched || is_judged()) equations_ = std::make_unique<const LauncherModel>(plant);
   if (is_judged()) judged_ = std::make_unique<JudgedMotion>(*equations_, options.scheme);
@@ -172,6 +176,21 @@ void FlightRecord::DrawNoise(double* rate_rad_s) {
 void FlightRecord::AddToDigest(double time_s, const double* y) {
   digester_.Add(&time_s, 1);
   digester_.Add(y, static_cast<std::size_t>(plant.state_size()));
+}
+
+bool FlightRecord::Guide(const LaneSight& sight) {
+  if (!guided->See(sight)) return false;
+  // The last stage's events keep their distances from its ignition.
+  const int last = events.back().stage;
+  std::size_t first = events.size();
+  while (events[first - 1].stage == last) --first;
+  const double shift_s = guided->ignition_s() - events[first].time_s;
+  for (std::size_t i = first; i < events.size(); ++i) events[i].time_s += shift_s;
+  return true;
+}
+
+ReferenceAttitude FlightRecord::ReferenceAt(double time_s) const {
+  return guided && guided->steers() ? guided->ReferenceAt(time_s) : model_.definition().program.At(time_s);
 }
 
 TickSample FlightRecord::SampleOf(const LaneView& view) const {
@@ -189,7 +208,7 @@ TickSample FlightRecord::SampleOf(const LaneView& view) const {
   std::copy(view.y + kModalState, view.y + kLauncherSize, s.bending.begin());
   s.command_rad = view.phase.command_rad;
   s.limit_rad = plant.stacks[static_cast<std::size_t>(s.stack)].gimbal.limit_rad;
-  s.reference = model_.definition().program.At(view.time_s);
+  s.reference = ReferenceAt(view.time_s);
   if (view.has_error) {
     for (int axis = 0; axis < kAxes; ++axis) {
       s.error.angle_rad[axis] = view.error_angle_rad[axis];
@@ -229,7 +248,7 @@ void FlightRecord::WatchEvent(const LaneView& view) {
 }
 
 void FlightRecord::HandOver(double time_s, const double* y) {
-  const AttitudeError error = ErrorAt(model_, model_.definition().program.At(time_s), ReadState(y));
+  const AttitudeError error = ErrorAt(model_, ReferenceAt(time_s), ReadState(y));
   sums.handed_over = true;
   sums.handover_angle_rad = error.angle_rad.norm();
   sums.handover_rate_rad_s = error.rate_rad_s.norm();
@@ -267,8 +286,9 @@ void FlightRecord::End(Outcome outcome, const char* reason, double time_s, int s
 FlightResult FlightRecord::Result() {
   sums.ripple_rad = ripple.worst_rad();
   sums.limit_cycle_rad = limit_cycle.worst_rad();
+  if (guided) sums.guidance = guided->outcome();
   result_.metrics = MetricsOf(sums, model_.definition());
-  digester_.Add(result_.metrics.data(), result_.metrics.size());
+  digester_.Add(result_.metrics.data(), DigestedMetrics());
   result_.digest = digester_.Finish();
   return std::move(result_);
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "core/flight/orbit.h"
+#include "core/guidance/outcome.h"
 #include "core/vehicle/vehicle.h"
 
 namespace dispersa {
@@ -36,6 +37,7 @@ struct FlightSums {
   bool injected = false;
   double injection_altitude_m = 0.0;
   OrbitElements orbit;
+  GuidanceOutcome guidance;  ///< of a flight that is guided
   double v_outside_ticks = 0.0, v_falling_ticks = 0.0;
   double adaptation_peak_rad_s2 = 0.0;
   std::uint32_t rules_fired = 0;

@@ -18,8 +18,10 @@ namespace dispersa {
 namespace {
 
 // The shipped definition with all that a file may give it besides.
-FlightDefinition Definition(const std::string& autopilot, bool with_winds) {
-  FlightDefinition definition = Slv4Definition(DISPERSA_CAMPAIGNS, autopilot);
+FlightDefinition Definition(const std::string& autopilot, bool with_winds, bool guided = false) {
+  FlightDefinition definition =
+      Slv4Definition(DISPERSA_CAMPAIGNS, autopilot, guided ? "slv4_500km_reserve" : "slv4_500km");
+  definition.guidance.closed_loop = guided;
   if (autopilot == "pid")  // stages with and without a notch, side by side
     definition.autopilot.pitch.filters = definition.autopilot.yaw.filters = {
         {.poles_rad_s = 80.0, .poles_damping = 0.7},
@@ -87,6 +89,11 @@ FlightInputs DrawnInputs(std::uint64_t flight) {
   some(in.gyro_bias_pitch_rad_s, 1e-6 * draws.Normal());
   some(in.gyro_bias_yaw_rad_s, 1e-6 * draws.Normal());
   some(in.gyro_noise_rad_s, 0.005 * kRadPerDeg);
+  // Only guided flights feel these, so they are no draws of the stream that the inputs after them follow from.
+  Stream navigation(5, flight, "navigation");
+  for (double& error_m : in.navigation_position_error_m) error_m = 30.0 * navigation.Normal();
+  for (double& error_m_s : in.navigation_velocity_error_m_s) error_m_s = 0.3 * navigation.Normal();
+  in.accelerometer_scale_factor = 1.0 + 1e-3 * navigation.Normal();
   if (draws.Uniform() < 0.3) {
     in.stuck_nozzle = std::floor(1.0 + 4.0 * draws.Uniform());
     in.stuck_nozzle_stage = std::floor(1.0 + 4.0 * draws.Uniform());
@@ -171,9 +178,11 @@ class GuardedQueue : public FlightQueue {
   std::vector<void*> pages_;
 };
 
-TEST(FlightRecords, AreNotTouchedOnceDone) {
+class FlightRecords : public testing::TestWithParam<bool> {};
+
+TEST_P(FlightRecords, AreNotTouchedOnceDone) {
   constexpr std::uint64_t kFlights = 9;  // so that lanes stand empty in the end, whatever their number
-  const FlightModel model(Definition("adaptive_fuzzy", true));
+  const FlightModel model(Definition("adaptive_fuzzy", true, GetParam()));
   for (const LaneEngine& engine : UsableEngines()) {
     GuardedQueue queue(model, kFlights);
     engine.fly(model, queue);
@@ -181,12 +190,16 @@ TEST(FlightRecords, AreNotTouchedOnceDone) {
   }
 }
 
+INSTANTIATE_TEST_SUITE_P(OpenLoopAndGuided, FlightRecords, testing::Bool());
+
 class FlightLanes : public testing::TestWithParam<const char*> {};
 
 TEST_P(FlightLanes, AreTheFlightsAlone) {
   constexpr std::uint64_t kFlights = 12;
-  const bool with_winds = std::string(GetParam()) != "pd";
-  const FlightModel model(Definition(GetParam(), with_winds));
+  std::string law = GetParam();
+  const bool guided = law.starts_with("guided_");
+  if (guided) law = law.substr(7);
+  const FlightModel model(Definition(law, law != "pd", guided));
   std::vector<std::uint64_t> order(kFlights);
   std::iota(order.begin(), order.end(), 0);
 
@@ -225,7 +238,7 @@ TEST_P(FlightLanes, AreTheFlightsAlone) {
 }
 INSTANTIATE_TEST_SUITE_P(Laws, FlightLanes,
                          testing::Values("adaptive_fuzzy", "frozen_fuzzy", "pd", "pid", "pd_aac", "pid_aac",
-                                         "flexible"),
+                                         "flexible", "guided_adaptive_fuzzy", "guided_pid_aac"),
                          [](const auto& law) { return std::string(law.param); });
 
 }  // namespace

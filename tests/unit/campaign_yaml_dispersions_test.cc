@@ -164,6 +164,18 @@ TEST(CampaignYamlDispersions, RatesSensorsActuatorsAndLoop) {
               ElementsAre("gyro_bias_roll_deg_s"));
   EXPECT_THAT(Decode("gyro_noise: {distribution: constant, value_deg_s: 0.1}")[0].distribution.values,
               ElementsAre(0.1 * kRadPerDeg));
+  const auto position =
+      Decode("navigation_position_error: {distribution: normal, three_sigma_m: 30}");
+  EXPECT_THAT(Names(position),
+              ElementsAre("navigation_position_error/downrange", "navigation_position_error/right",
+                          "navigation_position_error/down"));
+  EXPECT_THAT(Inputs(position[2]), ElementsAre("navigation_position_error_down_m"));
+  EXPECT_EQ(position[0].distribution.sigma, 10.0);
+  const auto velocity =
+      Decode("navigation_velocity_error: {distribution: normal, sigma_m_s: 0.1}");
+  EXPECT_THAT(Inputs(velocity[1]), ElementsAre("navigation_velocity_error_right_m_s"));
+  EXPECT_THAT(Inputs(Decode("accelerometer_scale: {distribution: normal, sigma_percent: 0.1}")[0]),
+              ElementsAre("accelerometer_scale_factor"));
   EXPECT_THAT(Inputs(Decode("actuator_bandwidth: {distribution: uniform, bound_percent: 30}")[0]),
               ElementsAre("actuator_bandwidth_factor"));
   EXPECT_THAT(Decode("loop_delay: {distribution: values, values_ms: [0, 20]}")[0].distribution.values,

@@ -33,12 +33,11 @@ TEST_P(BadInputTest, IsReportedInFull) {
 constexpr BadInput kBadInputs[] = {
     {"UnknownKey", "campaign.yaml", "dispersions:\n", "dispersion:\n", "campaign.yaml",
      "campaign.yaml:7:1: dispersion: unknown key 'dispersion' (did you mean 'dispersions'?), "
-     "allowed: autopilot, correlations, description, dispersions, name, optimize, reference, "
+     "allowed: autopilot, correlations, description, dispersions, guidance, name, optimize, reference, "
      "requirements, sampling, schema, vehicle, verdicts\n"},
     {"UnknownKeyLikeNoOther", "campaign.yaml", "name: trial", "name: trial\nzebra: 1", "campaign.yaml",
      "campaign.yaml:3:1: zebra: unknown key 'zebra', allowed: autopilot, correlations, "
-     "description, dispersions, name, optimize, reference, requirements, sampling, schema, vehicle, "
-     "verdicts\n"},
+     "description, dispersions, guidance, name, optimize, reference, requirements, sampling, schema, vehicle, verdicts\n"},
     {"UnknownSeverity", "campaign.yaml", "dispersions:\n", "dispersions:\n  turbulence: {severity: rough}\n",
      "campaign.yaml",
      "campaign.yaml:8:26: dispersions.turbulence.severity: 'rough' is not a choice, allowed: one of light, "
@@ -47,6 +46,12 @@ constexpr BadInput kBadInputs[] = {
      "dispersions:\n  turbulence: {exceedance: 0.5, wind_20ft_m_s: 10}\n", "campaign.yaml",
      "campaign.yaml:8:28: dispersions.turbulence.exceedance: 0.5 is out of range, allowed: a number from "
      "1e-06 to 0.2\n"},
+    {"GuidanceOfNoKind", "campaign.yaml", "name: trial", "name: trial\nguidance: {mode: closed}",
+     "campaign.yaml",
+     "campaign.yaml:3:18: guidance.mode: 'closed' is not a choice, allowed: one of open_loop, closed_loop\n"},
+    {"GuidanceTooFast", "campaign.yaml", "name: trial",
+     "name: trial\nguidance: {mode: closed_loop, period_s: 0.01}", "campaign.yaml",
+     "campaign.yaml:3:41: guidance.period_s: 0.01 is out of range, allowed: a number from 0.1 to 10\n"},
     {"WordForCount", "campaign.yaml", "cases: 100", "cases: many", "campaign.yaml",
      "campaign.yaml:6:40: sampling.cases: 'many' is not a number, allowed: a whole number "
      "from 1 to 4294967295\n"},
@@ -401,7 +406,7 @@ TEST(CampaignYamlErrors, UnknownDispersionNamesTheNearest) {
       files.Texts(ValidateFile(files.Path("campaign.yaml"))),
       HasSubstr(
           "campaign.yaml:10:3: dispersions.drag_coeficient: unknown key 'drag_coeficient' (did you mean "
-          "'drag_coefficient'?), allowed: actuator_bandwidth, "));
+          "'drag_coefficient'?), allowed: accelerometer_scale, actuator_bandwidth, "));
 }
 
 TEST(CampaignYamlErrors, BadCellsOfATableAreFoundByLineAndColumn) {
@@ -469,6 +474,17 @@ TEST(CampaignYamlErrors, TextWithoutFilesNamesNone) {
         "its "
         "contents in its place");
   }
+}
+
+TEST(GuidanceOfAVehicle, NeedsALastStageOnATimer) {
+  const InputFiles files;
+  files.Edit("campaign.yaml", "name: trial", "name: trial\nguidance: {mode: closed_loop}");
+  EXPECT_EQ(files.Texts(ValidateFile(files.Path("campaign.yaml"))), "");
+  files.Edit("vehicle.yaml", "ignition: {trigger: timer}", "ignition: {trigger: burnout_detection}");
+  EXPECT_EQ(files.Texts(ValidateFile(files.Path("campaign.yaml"))),
+            "campaign.yaml:3:18: guidance.mode: the vehicle 'two-stage' has no last stage whose ignition guidance "
+            "could move, allowed: open_loop, or a vehicle whose last of two stages or more has ignition: "
+            "{trigger: timer}\n");
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ FlightDefinition Definition() {
   FlightDefinition definition = SampleDefinition();
   definition.kick_start_s = 0.0;
   definition.kick_end_s = 2.0;
-  definition.target = {500e3, 7600.0, 0.1 * kDeg};
+  definition.target = {500e3, 7600.0, 0.1 * kDeg, 61.5 * kDeg};
   definition.vehicle.limits.lateral_load_g = 0.45;
   return definition;
 }
@@ -247,6 +247,7 @@ TEST(MetricsRecorder, EveryMetricOfAMadeUpFlight) {
   const double e = (apogee - perigee) / (apogee + perigee);
   const double gamma = std::atan2(e * std::sin(nu), 1.0 + e * std::cos(nu)) / kDeg;
   const double speed = std::sqrt(earth.mu_m3_s2 / (perigee * (1.0 + e)) * (1.0 + e * e + 2.0 * e * std::cos(nu)));
+  const double radius = perigee * (1.0 + e) / (1.0 + e * std::cos(nu));
   // Sum of t over the ticks of a span: n first + step n (n - 1) / 2.
   const auto times = [](double first, int n) { return n * first + kTick_s * n * (n - 1) / 2.0; };
   const double nan = std::nan("");
@@ -307,7 +308,16 @@ TEST(MetricsRecorder, EveryMetricOfAMadeUpFlight) {
       {"lyapunov_outside_fraction", 0.4},
       {"lyapunov_decreasing_fraction", 0.625},
       {"adaptation_norm_peak_deg_s2", 0.7},
-      {"rules_fired", 4.0}};
+      {"rules_fired", 4.0},
+      // The target's orbit where it was reached: 12 km lower at 7600 m/s.
+      {"semi_major_axis_error_km",
+       1e-3 * (0.5 * (apogee + perigee) -
+               1.0 / (2.0 / (radius - 12e3) - 7600.0 * 7600.0 / earth.mu_m3_s2))},
+      {"inclination_error_deg", 0.5},
+      {"guidance_converged", nan},
+      {"guidance_ignition_shift_s", nan},
+      {"guidance_postponement_s", nan},
+      {"guidance_excess_velocity_m_s", nan}};
 
   const std::vector<double> values = flight.recorder.Finish();
   ASSERT_EQ(values.size(), MetricNames().size());
@@ -337,7 +347,8 @@ TEST(MetricsRecorder, WhatAFlightDoesNotReachIsUndefined) {
         "yaw_error_rms_deg", "roll_error_peak_deg", "deflection_peak_deg", "deflection_saturated_fraction",
         "deflection_ripple_deg", "deflection_limit_cycle_deg", "handover_attitude_error_deg",
         "handover_rate_error_deg_s", "injection_altitude_km", "apogee_km", "inclination_deg",
-        "injection_velocity_error_m_s", "lyapunov_outside_fraction", "lyapunov_decreasing_fraction"})
+        "injection_velocity_error_m_s", "lyapunov_outside_fraction", "lyapunov_decreasing_fraction",
+         "semi_major_axis_error_km", "inclination_error_deg", "guidance_converged"})
     EXPECT_TRUE(std::isnan(flight[name])) << name;
   for (const char* name : {"pitch_error_itae_deg_s2", "q_max_pa", "axial_load_max_g", "rcs_propellant_kg",
                            "structural_limit_exceeded", "rules_fired"})
