@@ -13,6 +13,7 @@
 #include "core/dynamics/aero_grid.h"
 #include "core/dynamics/integrator.h"
 #include "core/flight/flight_model.h"
+#include "core/flight/margins.h"
 #include "core/flight/simpson_step.h"
 #include "core/structure/beam_elements.h"
 #include "tests/slv4_flight.h"
@@ -274,6 +275,89 @@ TEST(BendingFlight, TurningNozzlesPushTheirPivotsAndTurnTheBody) {
     const std::size_t z = static_cast<std::size_t>(kModalRate + kModes + mode), y = z - kModes;
     EXPECT_NEAR(moved[z] - still[z], drive, 1e-9);
     EXPECT_NEAR(moved[y] - still[y], -drive, 1e-9);
+  }
+}
+
+TEST(BendingFlight, ABentBodyTurnsAndMovesItsThrustAndIsCompressedByIt) {
+  InSpace flight(Flexible());
+  const auto straight = flight.Rates();
+  const double thrust = flight.plant.stacks[0].burn.vacuum_thrust_n, q = 0.02;
+  const MassProperties mass = flight.plant.stacks[0].mass.At(flight.propellant_kg());
+  const double lever = flight.plant.stacks[0].gimbal.pivot_station_m - mass.cg_station_m;
+  for (int mode = 0; mode < 3; ++mode) {
+    const double turn = flight.At(mode, BendingTable::kPivotSlope) * q;
+    const double moved = flight.At(mode, BendingTable::kPivotDeflection) * q;
+    // Plane z: turned nose up by +turn about y; plane y: by -turn about z.
+    for (int plane = 0; plane < kPlanes; ++plane) {
+      InSpace bent = flight;
+      bent.y[static_cast<std::size_t>(kModalState + plane * kModes + mode)] = q;
+      const auto rates = bent.Rates();
+      const double side = -thrust * turn;  // along the plane's axis
+      EXPECT_NEAR(rates[plane == 1 ? 5 : 4] - straight[plane == 1 ? 5 : 4], side / mass.mass_kg, 1e-9);
+      const double moment = lever * side + moved * thrust;  // about y; about z the other way
+      const double about = (plane == 1 ? 1.0 : -1.0) * moment / mass.transverse_inertia_kg_m2;
+      EXPECT_NEAR(rates[plane == 1 ? 11 : 12] - straight[plane == 1 ? 11 : 12], about, 1e-9);
+      const double w = flight.At(mode, BendingTable::kFrequency);
+      for (int other = 0; other < 3; ++other) {
+        const double drive =
+            flight.At(other, BendingTable::kInverseMass) *
+            (side * flight.At(other, BendingTable::kPivotDeflection) +
+             thrust * q *
+                 flight.At(other, static_cast<BendingTable::Column>(BendingTable::kShortening + mode)));
+        const std::size_t at = static_cast<std::size_t>(kModalRate + plane * kModes + other);
+        EXPECT_NEAR(rates[at], drive - (other == mode ? w * w * q : 0.0), 1e-8);
+      }
+    }
+  }
+}
+
+// What is computed of the linearised loop, with modes, gyros, filters and the nozzles' masses, is lost in
+// flight where it says so.
+TEST(BendingFlight, MarginsMeasuredInFlightAreTheComputedOnes) {
+  FlightDefinition definition = Slv4Definition(DISPERSA_CAMPAIGNS, "flexible");
+  definition.vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml");
+  const FlightModel model(definition);
+  const std::vector<ComputedMargins> computed = ComputeDispersedMargins(model, {}).margins;
+  for (const MeasuredMargins& m : MeasureMargins(model)) {
+    double up_db = 1e9, delay_s = 1e9;
+    for (const ComputedMargins& c : computed) {
+      if (c.stage != m.stage) continue;
+      up_db = std::min(up_db, c.adapting.gain_up_db);
+      delay_s = std::min(delay_s, c.adapting.delay_s);
+    }
+    std::printf("stage %d: %.1f dB computed, %.1f dB measured; %.0f and %.0f ms\n", m.stage + 1, up_db,
+                m.gain_up_db, 1e3 * delay_s, 1e3 * m.delay_s);
+    // Both axes at work on a disturbed flight: up to 0.6 dB were found of rigid ones.
+    EXPECT_NEAR(m.gain_up_db, up_db, 0.8) << m.stage;
+    EXPECT_NEAR(m.delay_s, delay_s, 0.15 * delay_s) << m.stage;
+  }
+}
+
+// As stiffness grows the flight becomes the rigid one, in proportion to the compliance.
+TEST(BendingFlight, AStiffBodyIsARigidOne) {
+  FlightDefinition definition = Slv4Definition(DISPERSA_CAMPAIGNS, "flexible");
+  definition.vehicle = Flexible();
+  FlightInputs inputs = Table3Inputs();
+  FlightDefinition rigid = definition;
+  rigid.vehicle.structure_beam->flown_modes = 0;
+  const FlightResult exact = Fly(FlightModel(rigid), inputs);
+  ASSERT_EQ(exact.outcome, Outcome::kCompleted);
+  const FlightModel model(definition);
+  double last[3] = {};
+  for (const double factor : {4.0, 8.0, 16.0}) {
+    inputs.bending_frequency_factor.fill(factor);
+    const FlightResult stiff = Fly(model, inputs);
+    ASSERT_EQ(stiff.outcome, Outcome::kCompleted);
+    const char* names[] = {"pitch_error_rms_stage1_deg", "pitch_error_rms_stage2_deg", "alpha_max_deg"};
+    for (int i = 0; i < 3; ++i) {
+      const double error = std::fabs(MetricOf(stiff, names[i]) / MetricOf(exact, names[i]) - 1.0);
+      std::printf("frequencies times %.0f: %s differs by %.2e\n", factor, names[i], error);
+      // Compliance falls to a quarter.
+      if (last[i] > 0.0) {
+        EXPECT_LT(error, 0.4 * last[i]) << names[i];
+      }
+      last[i] = error;
+    }
   }
 }
 
