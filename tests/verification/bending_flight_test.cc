@@ -98,8 +98,11 @@ TEST(BendingFlight, ASteadyForceBendsTheBodyAsItBendsTheBeam) {
     for (const int plane : {0, 1}) {
       // Right and left turn the force to +z, bottom and top to -y.
       flight.y = centred;
-      for (const int nozzle : {0, 1})
-        flight.y[static_cast<std::size_t>(kNozzleAngle + nozzle + (plane == 1 ? 0 : 2))] = angle_rad;
+      flight.phase.command_rad.fill(0.0);
+      for (const std::size_t pair : {0u, 1u}) {
+        const std::size_t nozzle = pair + (plane == 1 ? 0u : 2u);
+        flight.y[kNozzleAngle + nozzle] = flight.phase.command_rad[nozzle] = angle_rad;
+      }
       const auto rates = flight.Rates();
       double slope = 0.0;
       for (int mode = 0; mode < modes; ++mode) {

@@ -1,6 +1,7 @@
 // Whole flights in turbulence and with real actuators, against CVODE: the same air, the same equations.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -63,10 +64,35 @@ TEST(RoughFlight, WithRealActuatorsIsCvodes) {
     stage.gimbal.friction_rad = 0.02 * kRadPerDeg;
     stage.gimbal.resolution_rad = 0.005 * kRadPerDeg;
   }
-  const Difference d = Between(FlightModel(definition), InTurbulence(), "actuators");
-  EXPECT_LT(d.altitude_m, kAltitude_m);
-  EXPECT_LT(d.velocity_m_s, kVelocity_m_s);
-  EXPECT_LT(d.error_peak_deg, kPeak_deg);
+  const FlightModel model(definition);
+  // Sticking and slipping drives in turbulence make a flight depend on its last digits: a drag of 1e-12 more
+  // moves the injection by metres. So CVODE's flight must lie among such neighbours of the engine's, no
+  // farther beyond them than they lie apart. One drive by itself is held to an exact solution in
+  // rough_actuators_test.
+  std::vector<FlightOrder> neighbours(8);
+  for (std::size_t i = 0; i < neighbours.size(); ++i) {
+    neighbours[i].inputs = InTurbulence();
+    neighbours[i].inputs.drag_factor += 1e-12 * static_cast<double>(i);
+  }
+  const std::vector<FlightResult> flown = FlyAll(model, neighbours);
+  FlightOptions exact;
+  exact.scheme = Scheme::kCvode;
+  const FlightResult judged = Fly(model, InTurbulence(), exact);
+  ASSERT_EQ(judged.outcome, Outcome::kCompleted) << judged.reason;
+  for (const char* metric : {"injection_altitude_km", "injection_velocity_m_s", "pitch_error_rms_stage1_deg",
+                             "pitch_error_rms_stage2_deg"}) {
+    double low = 1e300, high = -1e300;
+    for (const FlightResult& one : flown) {
+      low = std::min(low, MetricOf(one, metric));
+      high = std::max(high, MetricOf(one, metric));
+    }
+    std::printf("%s: neighbours %.6f to %.6f, CVODE %.6f\n", metric, low, high, MetricOf(judged, metric));
+    EXPECT_GT(MetricOf(judged, metric), low - (high - low)) << metric;
+    EXPECT_LT(MetricOf(judged, metric), high + (high - low)) << metric;
+  }
+  // The kick's, before neighbours part: the engine's steps through sticking and slipping err by a thousandth.
+  const double ripple_deg = MetricOf(judged, "deflection_ripple_deg");
+  EXPECT_NEAR(MetricOf(flown[0], "deflection_ripple_deg"), ripple_deg, 2e-3 * ripple_deg);
 }
 
 TEST(RoughFlight, TurbulenceIsTheCasesAndNothingElses) {
