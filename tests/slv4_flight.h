@@ -11,8 +11,9 @@ namespace dispersa {
 
 /// `campaigns` is the folder of the shipped campaigns.
 inline FlightDefinition Slv4Definition(const std::string& campaigns,
-                                       const std::string& autopilot = "adaptive_fuzzy") {
-  const Reference reference = LoadReference(campaigns + "/references/slv4_500km.yaml");
+                                       const std::string& autopilot = "adaptive_fuzzy",
+                                       const std::string& reference_name = "slv4_500km") {
+  const Reference reference = LoadReference(campaigns + "/references/" + reference_name + ".yaml");
   FlightDefinition definition;
   definition.vehicle = LoadVehicle(campaigns + "/vehicles/slv4.yaml");
   definition.autopilot = LoadAutopilot(campaigns + "/autopilots/" + autopilot + ".yaml");
@@ -21,7 +22,8 @@ inline FlightDefinition Slv4Definition(const std::string& campaigns,
   definition.kick_start_s = reference.program.t1_s;
   definition.kick_end_s = reference.program.t2_s;
   definition.target = {reference.problem.target_altitude_m, reference.problem.target_velocity_m_s,
-                       reference.problem.target_flight_path_angle_rad};
+                       reference.problem.target_flight_path_angle_rad, reference.orbit.inclination_rad};
+  definition.velocity_reserve_m_s = reference.problem.velocity_reserve_m_s;
   return definition;
 }
 

@@ -14,6 +14,7 @@
 #include "core/environment/wind_statistics.h"
 #include "core/flight/flight_inputs.h"
 #include "core/statistics/verdict_plan.h"
+#include "core/guidance/guidance_config.h"
 #include "core/trajectory/reference.h"
 #include "core/vehicle/vehicle.h"
 
@@ -86,6 +87,7 @@ struct Campaign {
   Vehicle vehicle;
   AutopilotConfig autopilot;
   Reference reference;
+  GuidanceConfig guidance;
   Sampling sampling;
   std::vector<Dispersion> dispersions;
   std::optional<WindStatistics> wind_statistics;  ///< climatology whose levels the profile draws fill

@@ -8,10 +8,45 @@
 
 #include "core/flight/flight.h"
 #include "core/flight/lane_engine.h"
+#include "core/math/functions.h"
+#include "core/trajectory/ascent.h"
 
 namespace dispersa {
 
 namespace {
+
+// The reference's own way up, the same for every autopilot: over the ground, until it leaves the air that
+// matters or climbs no more.
+ClimbPath ClimbOf(const Campaign& campaign) {
+  AscentOptions options;
+  options.record = true;
+  const AscentResult ascent = FlyAscent(BuildAscentModel(campaign.vehicle, campaign.autopilot.tick_s),
+                                        campaign.reference.program, options);
+  ClimbPath path;
+  path.azimuth_rad = campaign.reference.program.launch_azimuth_rad;
+  const double ground_m = campaign.vehicle.site.altitude_m;
+  path.altitude_m = {ground_m};
+  path.sine_angle = {1.0};
+  for (const AscentSample& s : ascent.samples) {
+    // The first metres have no direction yet.
+    if (s.altitude_m < ground_m + 1.0) continue;
+    if (s.altitude_m <= path.altitude_m.back()) break;
+    path.altitude_m.push_back(s.altitude_m);
+    path.sine_angle.push_back(Sin(s.relative_path_angle_rad));
+  }
+  if (path.altitude_m.size() < 2) {  // it never left the ground
+    path.altitude_m.push_back(ground_m + 1.0);
+    path.sine_angle.push_back(1.0);
+  }
+  return path;
+}
+
+bool MeetsTurbulence(const Campaign& campaign) {
+  const int exceedance = FindInput("turbulence_exceedance");
+  return std::any_of(campaign.dispersions.begin(), campaign.dispersions.end(), [&](const Dispersion& d) {
+    return std::find(d.inputs.begin(), d.inputs.end(), exceedance) != d.inputs.end();
+  });
+}
 
 FlightDefinition DefinitionOf(const Campaign& campaign) {
   FlightDefinition definition;
@@ -23,10 +58,14 @@ FlightDefinition DefinitionOf(const Campaign& campaign) {
   definition.kick_end_s = campaign.reference.program.t2_s;
   const TrajectoryProblem& problem = campaign.reference.problem;
   definition.target = {problem.target_altitude_m, problem.target_velocity_m_s,
-                       problem.target_flight_path_angle_rad};
+                       problem.target_flight_path_angle_rad, campaign.reference.orbit.inclination_rad};
+  definition.guidance = campaign.guidance;
+  definition.velocity_reserve_m_s = problem.velocity_reserve_m_s;
   definition.wind_table = campaign.wind_table;
   definition.wind_statistics = campaign.wind_statistics;
   definition.noise_seed = campaign.sampling.seed;
+  if (MeetsTurbulence(campaign))
+    definition.turbulence_path = std::make_shared<const TurbulencePath>(ClimbOf(campaign));
   return definition;
 }
 

@@ -111,6 +111,13 @@ AutopilotConfig DecodeAutopilot(const InputNode& node, const std::string& path, 
     autopilot.pitch = DecodeAxis(map.Required("pitch", "a map"), map.PathOf("pitch"), problems);
     autopilot.yaw = DecodeAxis(map.Required("yaw", "a map"), map.PathOf("yaw"), problems);
     autopilot.roll = DecodeAxis(map.Required("roll", "a map"), map.PathOf("roll"), problems);
+    map.Each("rate_gyros", 0, SIZE_MAX, [&](const InputNode& item, const std::string& item_path) {
+      MapReader share(item, item_path, problems);
+      GyroShare& gyro = autopilot.rate_gyros.emplace_back();
+      gyro.gyro = share.Text("gyro");
+      gyro.weight = share.Number("weight", Between(-10.0, 10.0), 1.0);
+      gyro.stage = static_cast<int>(share.Integer("stage", 0, kMaxStages, 0));
+    });
     autopilot.reaction_control = DecodeReactionControl(map.Required("reaction_control", "a map"),
                                                        map.PathOf("reaction_control"), problems);
   }

@@ -255,6 +255,8 @@ std::optional<StructureBeam> DecodeStructureBeam(const InputNode& node, const st
     beam.sensors.push_back(DecodeSensor(item, item_path, problems));
   });
   beam.rotary_inertia = map.Flag("rotary_inertia", true);
+  beam.flown_modes = static_cast<int>(map.Integer("flown_modes", 0, kMostFlownModes, 3));
+  beam.damping_ratio = map.Number("damping_ratio", Between(0.0, 0.5), 0.01);
   if (const InputNode* table = map.Optional("modes_table")) {
     if (table->file == nullptr) return std::nullopt;
     beam.table =

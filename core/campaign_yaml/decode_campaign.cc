@@ -8,9 +8,11 @@
 #include "core/campaign_yaml/inline_files.h"
 #include "core/campaign_yaml/load.h"
 #include "core/campaign_yaml/number_text.h"
+#include "core/campaign_yaml/struct_problems.h"
 #include "core/campaign_yaml/yaml_reader.h"
 #include "core/flight/engine_version.h"
 #include "core/flight/metrics.h"
+#include "core/flight/sensor_model.h"
 #include "core/math/functions.h"
 
 namespace dispersa {
@@ -328,6 +330,33 @@ Requirement DecodeRequirement(const InputNode& node, const std::string& path, co
   return requirement;
 }
 
+GuidanceConfig DecodeGuidance(const InputNode& node, const Vehicle& vehicle, ProblemList& problems) {
+  MapReader map(node, "guidance", problems);
+  GuidanceConfig guidance;
+  guidance.closed_loop = map.Choice<bool>("mode", {{"open_loop", false}, {"closed_loop", true}});
+  guidance.steers_last_burn =
+      map.Choice<bool>("last_burn", {{"steered", true}, {"as_planned", false}}, guidance.steers_last_burn);
+  guidance.period_s = map.Quantity("period", kTime, Between(0.1, 10.0), guidance.period_s);
+  // Attitude loops of a launcher follow some degrees a second; more would be a loss of control.
+  const Range rate = {0.0, 20.0 * kRadPerDeg, true, false};
+  guidance.turn_rate_rad_s = map.Quantity("turn_rate", kAngularRate, rate, guidance.turn_rate_rad_s);
+  guidance.turn_acceleration_rad_s2 =
+      map.Quantity("turn_acceleration", kAngularAcceleration, rate, guidance.turn_acceleration_rad_s2);
+  guidance.coast_rate_rad_s = map.Quantity("coast_rate", kAngularRate, rate, guidance.coast_rate_rad_s);
+  guidance.coast_acceleration_rad_s2 =
+      map.Quantity("coast_acceleration", kAngularAcceleration, rate, guidance.coast_acceleration_rad_s2);
+  guidance.settled_angle_rad = map.Quantity("settled", kAngle, rate, guidance.settled_angle_rad);
+  guidance.settled_rate_rad_s = map.Quantity("settled_rate", kAngularRate, rate, guidance.settled_rate_rad_s);
+  if (guidance.closed_loop && !vehicle.stages.empty() &&
+      (vehicle.stages.size() < 2 || vehicle.stages.back().ignition != IgnitionTrigger::kTimer)) {
+    const InputNode* mode = node.Find("mode");
+    AddProblem(problems, mode != nullptr ? *mode : node, map.PathOf("mode"),
+               "the vehicle '" + vehicle.name + "' has no last stage whose ignition guidance could move",
+               "open_loop, or a vehicle whose last of two stages or more has ignition: {trigger: timer}");
+  }
+  return guidance;
+}
+
 // The name becomes part of a folder's name.
 void CheckName(const std::string& name, const InputNode& root, ProblemList& problems) {
   const auto is_allowed = [](char c) {
@@ -380,7 +409,12 @@ DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vect
           flies ? &map.Required("autopilot", "an autopilot file") : map.Optional("autopilot")) {
     campaign.autopilot =
         DecodeAutopilot(*autopilot, PathOfPart(*autopilot, root, "autopilot"), stages, problems);
+    if (problems.empty())
+      AddStructProblems(GyroProblems(campaign.vehicle, campaign.autopilot), *autopilot,
+                        PathOfPart(*autopilot, root, "autopilot"), problems);
   }
+  if (const InputNode* guidance = map.Optional("guidance"))
+    campaign.guidance = DecodeGuidance(*guidance, campaign.vehicle, problems);
   const InputNode* sampling = flies ? &map.Required("sampling", "a map") : map.Optional("sampling");
   if (sampling != nullptr) campaign.sampling = DecodeSampling(*sampling, "sampling", problems);
   const std::size_t before = problems.size();
@@ -420,7 +454,17 @@ DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vect
 
 std::string VehicleSha256(const InputNode& vehicle) {
   InputNode rigid = vehicle;
-  std::erase_if(rigid.members, [](const InputMember& member) { return member.key == "structure_beam"; });
+  std::erase_if(rigid.members, [](const InputMember& member) {
+    return member.key == "structure_beam" || member.key == "sensors" || member.key == "nozzles";
+  });
+  // Nor does a point mass know what its actuators lack.
+  if (InputNode* stages = rigid.Find("stages"))
+    for (InputNode& stage : stages->items)
+      if (InputNode* gimbal = stage.Find("gimbal"))
+        std::erase_if(gimbal->members, [](const InputMember& member) {
+          return member.key.starts_with("dead_zone_") || member.key.starts_with("friction_") ||
+                 member.key.starts_with("resolution_");
+        });
   return Sha256Hex(CanonicalText(rigid));
 }
 
@@ -434,7 +478,7 @@ std::string RequirementsId(const InputNode& campaign) {
 
 std::string FlightId(const InputNode& campaign, SamplingMethod method) {
   InputNode deciding = MapAt(campaign);
-  for (const char* key : {"vehicle", "reference", "autopilot", "dispersions", "correlations"}) {
+  for (const char* key : {"vehicle", "reference", "autopilot", "guidance", "dispersions", "correlations"}) {
     if (const InputNode* value = campaign.Find(key)) SetMember(deciding, key, *value);
   }
   InputNode sampling = MapAt(campaign);

@@ -4,6 +4,7 @@
 #include "core/campaign_yaml/decode.h"
 #include "core/campaign_yaml/decode_distribution.h"
 #include "core/campaign_yaml/yaml_reader.h"
+#include "core/environment/turbulence.h"
 
 namespace dispersa {
 namespace {
@@ -45,6 +46,7 @@ class DispersionDecoder {
     Wind();
     Gust();
     WindProfile();
+    Turbulence();
     Scalar("drag_coefficient", kPositiveFactor, "drag_factor");
     Scalar("lift_coefficient", kPositiveFactor, "lift_factor");
     Scalar("center_of_gravity", kPositiveFactor, "cg_factor");
@@ -52,9 +54,15 @@ class DispersionDecoder {
     Scalar("density", kPositiveFactor, "density_factor");
     Scalar("inertia", kPositiveFactor, "inertia_factor");
     Scalar("actuator_bandwidth", kPositiveFactor, "actuator_bandwidth_factor");
+    BendingFrequency();
+    Scalar("bending_damping", kPositiveFactor, "bending_damping_factor");
+    Scalar("bending_slope", {{}, kNonNegative}, "bending_slope_factor");
     TipOff();
     GyroBias();
     Scalar("gyro_noise", {kAngularRate, kNonNegative}, "gyro_noise_deg_s");
+    NavigationError("navigation_position_error", kLength, "_m");
+    NavigationError("navigation_velocity_error", kSpeed, "_m_s");
+    Scalar("accelerometer_scale", kPositiveFactor, "accelerometer_scale_factor");
     StuckNozzle();
     // A deliberately bad P_n is a study, so any factor is legal.
     Scalar("pn_error", {{}, kAnyNumber}, "pn_error_factor");
@@ -120,6 +128,21 @@ class DispersionDecoder {
     AddStages(key, PerStage(map), distribution, columns);
   }
 
+  // One draw a mode, or one for all of them.
+  void BendingFrequency() {
+    const InputNode* node = map_.Optional("bending_frequency");
+    if (node == nullptr) return;
+    MapReader map(*node, map_.PathOf("bending_frequency"), problems_);
+    const ScalarDistribution distribution = ReadDistribution(map, kPositiveFactor);
+    const bool per_mode = map.Choice<bool>("per", {{"mode", true}, {"vehicle", false}});
+    std::vector<int> all;
+    for (int mode = 1; mode <= kModes; ++mode) {
+      all.push_back(Column("bending_frequency_factor_mode" + std::to_string(mode)));
+      if (per_mode) Add("bending_frequency/mode" + std::to_string(mode), distribution, {all.back()});
+    }
+    if (!per_mode) Add("bending_frequency", distribution, all);
+  }
+
   void Scalar(const std::string& key, const DispersedScalar& scalar, const std::string& column) {
     const InputNode* node = map_.Optional(key);
     if (node == nullptr) return;
@@ -173,6 +196,37 @@ class DispersionDecoder {
         ReadDirection(map.Required("azimuth", "uniform, {fixed_deg: x} or a distribution"),
                       map.PathOf("azimuth"), problems_),
         {Column("gust_azimuth_deg")});
+  }
+
+  // A severity names a curve of MIL-F-8785C, figure 7, and a wind near the ground (its figure 10); or both
+  // are given.
+  void Turbulence() {
+    const InputNode* node = map_.Optional("turbulence");
+    if (node == nullptr) return;
+    MapReader map(*node, map_.PathOf("turbulence"), problems_);
+    constexpr double kKnot_m_s = 1852.0 / 3600.0;
+    struct Severity {
+      double exceedance, wind_m_s;
+    };
+    const bool named = node->Find("severity") != nullptr || node->Find("exceedance") == nullptr;
+    Severity severity{kLargestExceedance, 0.0};
+    if (named) {
+      const int level = map.Choice<int>("severity", {{"light", 0}, {"moderate", 1}, {"severe", 2}});
+      constexpr Severity kLevels[] = {
+          {1e-2, 15.0 * kKnot_m_s}, {1e-3, 30.0 * kKnot_m_s}, {1e-5, 45.0 * kKnot_m_s}};
+      severity = kLevels[level];
+    } else {
+      severity.exceedance = map.Number("exceedance", Between(kLeastExceedance, kLargestExceedance));
+      severity.wind_m_s = map.Quantity("wind_20ft", kSpeed, Between(0.0, 50.0));
+    }
+    Add("turbulence/exceedance", Constant(severity.exceedance), {Column("turbulence_exceedance")});
+    Add("turbulence/wind_20ft", Constant(severity.wind_m_s), {Column("turbulence_wind_20ft_m_s")});
+    ScalarDistribution scale = Constant(1.0);
+    if (const InputNode* drawn = map.Optional("scale")) {
+      MapReader inner(*drawn, map.PathOf("scale"), problems_);
+      scale = ReadDistribution(inner, kPositiveFactor);
+    }
+    Add("turbulence/scale", scale, {Column("turbulence_scale")});
   }
 
   // Tables are maps of columns: what a CSV file became.
@@ -293,6 +347,16 @@ class DispersionDecoder {
       Add("gyro_bias/" + axis, ReadDistribution(map, {kAngularRate, kAnyNumber}),
           {Column("gyro_bias_" + axis + "_deg_s")});
     });
+  }
+
+  // One distribution, drawn for each axis of the launch-inertial frame.
+  void NavigationError(const std::string& key, Dimension dimension, const std::string& unit_suffix) {
+    const InputNode* node = map_.Optional(key);
+    if (node == nullptr) return;
+    MapReader map(*node, map_.PathOf(key), problems_);
+    const ScalarDistribution error = ReadDistribution(map, {dimension, kAnyNumber});
+    for (const std::string axis : {"downrange", "right", "down"})
+      Add(key + "/" + axis, error, {Column(key + "_" + axis + unit_suffix)});
   }
 
   void StuckNozzle() {

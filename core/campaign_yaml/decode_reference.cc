@@ -149,6 +149,7 @@ TrajectoryProblem DecodeTrajectoryProblem(const InputNode& node, const std::stri
     problem.q_max_limit_pa = limits.Quantity("q_max", kPressure, kPositive, 0.0);
     problem.q_alpha_limit_pa_rad = limits.Quantity("q_alpha", kPressureAngle, kPositive, 0.0);
   }
+  problem.velocity_reserve_m_s = map.Quantity("velocity_reserve", kSpeed, Between(0.0, 1000.0), 0.0);
   problem.reaction_control_propellant_kg =
       map.Quantity("reaction_control_propellant", kMass, kNonNegative, 0.0);
   problem.population = static_cast<int>(map.Integer("population", 4, 65535));

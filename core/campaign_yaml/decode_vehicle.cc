@@ -67,6 +67,9 @@ Gimbal DecodeGimbal(const InputNode& node, const std::string& path, ProblemList&
   gimbal.bandwidth_rad_s = map.Quantity("bandwidth", kFrequency, kPositive);
   gimbal.damping_ratio = map.Number("damping_ratio", kPositive);
   gimbal.delay_ticks = static_cast<int>(map.Integer("delay_ticks", 0, 100));
+  gimbal.dead_zone_rad = map.Quantity("dead_zone", kAngle, kNonNegative, 0.0);
+  gimbal.friction_rad = map.Quantity("friction", kAngle, kNonNegative, 0.0);
+  gimbal.resolution_rad = map.Quantity("resolution", kAngle, kNonNegative, 0.0);
   return gimbal;
 }
 
@@ -188,6 +191,39 @@ ReactionControl DecodeReactionControl(const InputNode& node, const std::string& 
   return control;
 }
 
+// What turns of one nozzle of a stage.
+void DecodeNozzle(const InputNode& node, const std::string& path, Gimbal& gimbal, ProblemList& problems) {
+  MapReader map(node, path, problems);
+  gimbal.nozzle_mass_kg = map.Quantity("mass", kMass, kPositive);
+  gimbal.nozzle_cg_m = map.Quantity("cg_aft_of_pivot", kLength, kAnyNumber);
+  gimbal.nozzle_inertia_kg_m2 = map.Quantity("inertia_about_hinge", kInertia, kPositive);
+}
+
+RateGyro DecodeGyro(const InputNode& node, const std::string& path, ProblemList& problems) {
+  MapReader map(node, path, problems);
+  RateGyro gyro;
+  gyro.name = map.Text("name");
+  gyro.station_m = map.Quantity("station", kLength, kNonNegative);
+  gyro.bandwidth_rad_s = map.Quantity("bandwidth", kFrequency, kPositive, 0.0);
+  gyro.damping_ratio = map.Number("damping_ratio", kPositive, 0.7);
+  gyro.quantum_rad_s = map.Quantity("quantum", kAngularRate, kPositive, 0.0);
+  gyro.sample_ticks = static_cast<int>(map.Integer("sample_ticks", 1, 100, 1));
+  return gyro;
+}
+
+Sensors DecodeSensors(const InputNode& node, const std::string& path, ProblemList& problems) {
+  MapReader map(node, path, problems);
+  Sensors sensors;
+  {
+    MapReader unit(map.Required("inertial_unit", "a map"), map.PathOf("inertial_unit"), problems);
+    sensors.inertial_unit_station_m = unit.Quantity("station", kLength, kNonNegative);
+  }
+  map.Each("rate_gyros", 0, kRateGyros, [&](const InputNode& item, const std::string& item_path) {
+    sensors.rate_gyros.push_back(DecodeGyro(item, item_path, problems));
+  });
+  return sensors;
+}
+
 StructuralLimits DecodeLimits(const InputNode& node, const std::string& path, ProblemList& problems) {
   MapReader map(node, path, problems);
   StructuralLimits limits;
@@ -230,9 +266,24 @@ Vehicle DecodeVehicle(const InputNode& node, const std::string& path, std::vecto
     if (const InputNode* limits = map.Optional("limits")) {
       vehicle.limits = DecodeLimits(*limits, map.PathOf("limits"), problems);
     }
+    const std::size_t stages = vehicle.stages.size();
+    std::size_t stage = 0;
+    map.Each("nozzles", 0, stages, [&](const InputNode& item, const std::string& item_path) {
+      DecodeNozzle(item, item_path, vehicle.stages[stage++].gimbal, problems);
+    });
+    if (stage != 0 && stage != stages)
+      AddProblem(
+          problems, *node.Find("nozzles"), map.PathOf("nozzles"),
+          "the list has " + std::to_string(stage) + ", the vehicle " + std::to_string(stages) + " stages",
+          "one entry a stage, or none");
+    const InputNode* sensors = map.Optional("sensors");
+    if (sensors != nullptr) vehicle.sensors = DecodeSensors(*sensors, map.PathOf("sensors"), problems);
     if (const InputNode* beam = map.Optional("structure_beam")) {
       vehicle.structure_beam =
           DecodeStructureBeam(*beam, map.PathOf("structure_beam"), vehicle.stages.size(), problems);
+      if (sensors == nullptr && vehicle.structure_beam && vehicle.structure_beam->flown_modes > 0)
+        map.ReportMissing({"sensors"}, "where the sensors of a vehicle that bends are: sensors: "
+                                       "{inertial_unit: {station_m: x}}");
     }
   }
   if (problems.size() == before) AddStructProblems(Problems(vehicle), node, path, problems);

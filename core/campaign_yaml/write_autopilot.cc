@@ -92,13 +92,24 @@ std::string AxisText(const char* name, const AxisConfig& axis) {
   return text;
 }
 
+std::string GyrosText(const std::vector<GyroShare>& shares) {
+  std::string text;
+  for (const GyroShare& share : shares) {
+    text += (text.empty() ? "rate_gyros:\n" : "") + std::string("  - {gyro: ") + TextScalar(share.gyro) +
+            ", weight: " + FormatNumber(share.weight);
+    if (share.stage != 0) text += ", stage: " + std::to_string(share.stage);
+    text += "}\n";
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string WriteAutopilot(const AutopilotConfig& autopilot) {
   const ReactionControlLogic& rcs = autopilot.reaction_control;
   return std::string("schema: ") + kAutopilotSchema + "\nname: " + TextScalar(autopilot.name) +
          "\ntick_s: " + FormatNumber(autopilot.tick_s) + "\n" + AxisText("pitch", autopilot.pitch) +
-         AxisText("yaw", autopilot.yaw) + AxisText("roll", autopilot.roll) +
+         AxisText("yaw", autopilot.yaw) + AxisText("roll", autopilot.roll) + GyrosText(autopilot.rate_gyros) +
          "reaction_control: {deadband_deg: " + Deg(rcs.deadband_rad) +
          ", rate_gain_s: " + FormatNumber(rcs.rate_gain_s) + ", hysteresis: " + FormatNumber(rcs.hysteresis) +
          ", cycle_ticks: " + std::to_string(rcs.cycle_ticks) + "}\n";

@@ -50,6 +50,8 @@ std::string ProblemText(const TrajectoryProblem& problem) {
   if (problem.q_alpha_limit_pa_rad > 0.0) {
     text += "    q_alpha_pa_rad: " + FormatNumber(problem.q_alpha_limit_pa_rad) + "\n";
   }
+  if (problem.velocity_reserve_m_s > 0.0)
+    text += "  velocity_reserve_m_s: " + FormatNumber(problem.velocity_reserve_m_s) + "\n";
   if (problem.reaction_control_propellant_kg > 0.0)
     text +=
         "  reaction_control_propellant_kg: " + FormatNumber(problem.reaction_control_propellant_kg) + "\n";
@@ -82,7 +84,7 @@ std::string WriteReference(const Reference& reference) {
           ", inclination_deg: " + Deg(orbit.inclination_rad) + "}\n";
   text +=
       "errors: {altitude_km: " + Km(orbit.altitude_m - problem.target_altitude_m) +
-      ", velocity_m_s: " + FormatNumber(orbit.velocity_m_s - problem.target_velocity_m_s) +
+      ", velocity_m_s: " + FormatNumber(orbit.velocity_m_s - AimedVelocity(problem)) +
       ", flight_path_angle_deg: " + Deg(orbit.flight_path_angle_rad - problem.target_flight_path_angle_rad) +
       "}\n";
   text += reference.constraints.empty() ? "constraints: []\n" : "constraints:\n";

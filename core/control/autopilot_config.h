@@ -145,6 +145,13 @@ struct ReactionControlLogic {
   int cycle_ticks = 1;       ///< ticks between decisions: thrusters open for whole cycles
 };
 
+/// A rate gyro's share of the measured rates.
+struct GyroShare {
+  std::string gyro;  ///< of the vehicle's sensors
+  double weight = 1.0;
+  int stage = 0;  ///< 1-based stage in whose burn it counts; 0: in all
+};
+
 struct AutopilotConfig {
   std::string name;
   double tick_s = 0.01;
@@ -152,6 +159,7 @@ struct AutopilotConfig {
   AxisConfig yaw;
   AxisConfig roll;
   ReactionControlLogic reaction_control;
+  std::vector<GyroShare> rate_gyros;  ///< empty: the inertial unit gives the rates
 };
 
 /// As Problems(Vehicle): what contradicts itself, by path. `stages` is the vehicle's number of stages.

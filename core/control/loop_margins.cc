@@ -18,6 +18,10 @@ constexpr double kLowest_rad_s = 0.01;
 // Neighbours of the frequency grid lie 2 % apart; crossings are then refined.
 constexpr int kFrequencies = 500;
 constexpr int kRefinements = 50;
+// Above this of the lowest mode's frequency a response is the bending's.
+constexpr double kBelowModes = 0.7;
+// Attenuations by 6 and 3 dB, squared.
+constexpr double k6db2 = 0.251188643150958, k3db2 = 0.501187233627272;
 
 std::complex<double> UnitCircle(double angle_rad) {
   const SinCos c = SineCosine(angle_rad);
@@ -53,17 +57,30 @@ Eigen::MatrixXd MatrixExponential(const Eigen::MatrixXd& m) {
 }
 
 SampledLoop::SampledLoop(const AxisPlant& plant, const LinearLaw& law, double tick_s, int delay_ticks)
-    : law_(law), tick_s_(tick_s), delay_ticks_(delay_ticks) {
+    : plant_(plant), law_(law), tick_s_(tick_s), delay_ticks_(delay_ticks) {
   // Zero-order hold: exp([a b; 0 0] T) = [ad bd; 0 1].
-  Eigen::MatrixXd m = Eigen::MatrixXd::Zero(5, 5);
-  m.topLeftCorner<4, 4>() = plant.a * tick_s;
-  m.topRightCorner<4, 1>() = plant.b * tick_s;
+  const Eigen::Index n = plant.a.rows();
+  Eigen::MatrixXd m = Eigen::MatrixXd::Zero(n + 1, n + 1);
+  m.topLeftCorner(n, n) = plant.a * tick_s;
+  m.topRightCorner(n, 1) = plant.b * tick_s;
   const Eigen::MatrixXd held = MatrixExponential(m);
-  ad_ = held.topLeftCorner<4, 4>();
-  bd_ = held.topRightCorner<4, 1>();
+  ad_ = held.topLeftCorner(n, n);
+  bd_ = held.topRightCorner(n, 1);
 
+  const RateSensor& first = plant.rates.front();
+  is_rigid_ = n == 4 && plant.rates.size() == 1 && first.weight == 1.0 && first.delay_ticks == 0.0 &&
+              first.section.b0 == 1.0 && first.section.b1 == 0.0 && first.section.b2 == 0.0;
+  if (!is_rigid_) {
+    const Eigen::HessenbergDecomposition<Eigen::MatrixXd> form(ad_ - Eigen::MatrixXd::Identity(n, n));
+    const Eigen::MatrixXd turn = form.matrixQ();
+    hessenberg_ = form.matrixH();
+    driven_ = turn.transpose() * bd_;
+    attitude_row_ = plant.attitude * turn;
+    for (const RateSensor& sensor : plant.rates) rate_rows_.push_back(sensor.rate * turn);
+    return;
+  }
   // Faddeev and Le Verrier: with D = ad - I, adj(s I - D) = sum of adjoint_k s^k, by falling powers.
-  const Eigen::Matrix4d d = ad_ - Eigen::Matrix4d::Identity();
+  const Eigen::Matrix4d d = Eigen::Matrix4d(ad_) - Eigen::Matrix4d::Identity();
   Eigen::Matrix4d adjoint = Eigen::Matrix4d::Identity();
   denominator_[4] = 1.0;
   for (int k = 3; k >= 0; --k) {
@@ -76,17 +93,67 @@ SampledLoop::SampledLoop(const AxisPlant& plant, const LinearLaw& law, double ti
   }
 }
 
-std::complex<double> SampledLoop::Response(double frequency_rad_s) const {
-  // s = z - 1 keeps its digits near z = 1, where rigid body and integrators have their poles.
-  const SinCos half = SineCosine(0.5 * frequency_rad_s * tick_s_);
-  const std::complex<double> s(-2.0 * half.sin * half.sin, 2.0 * half.sin * half.cos);
+SampledLoop::Measured SampledLoop::Rigid(std::complex<double> s) const {
   const auto at = [&](const auto& polynomial) {
     std::complex<double> sum = 0.0;
     for (auto k = polynomial.rbegin(); k != polynomial.rend(); ++k) sum = Times(sum, s) + *k;
     return sum;
   };
   const std::complex<double> inverse = Inverse(at(denominator_));
-  const std::complex<double> angle = Times(at(angle_), inverse), rate = Times(at(rate_), inverse);
+  return {Times(at(angle_), inverse), Times(at(rate_), inverse)};
+}
+
+namespace {
+
+// A section at z = 1 + s, by powers of s.
+std::complex<double> SectionAt(const DigitalSection& f, std::complex<double> s) {
+  const std::complex<double> above = Times(s, f.b0 * s + (2.0 * f.b0 + f.b1)) + (f.b0 + f.b1 + f.b2);
+  const std::complex<double> below = Times(s, s + (2.0 + f.a1)) + (1.0 + f.a1 + f.a2);
+  return Times(above, Inverse(below));
+}
+
+}  // namespace
+
+// (s I - H) x = driven by Gaussian elimination with exchanges of neighbouring rows; then the sensors.
+SampledLoop::Measured SampledLoop::Bent(std::complex<double> s, double angle_rad) const {
+  const Eigen::Index n = hessenberg_.rows();
+  Eigen::MatrixXcd m = -hessenberg_.cast<std::complex<double>>();
+  m.diagonal().array() += s;
+  Eigen::VectorXcd x = driven_.cast<std::complex<double>>();
+  for (Eigen::Index k = 0; k + 1 < n; ++k) {
+    if (std::norm(m(k + 1, k)) > std::norm(m(k, k))) {
+      for (Eigen::Index j = k; j < n; ++j) std::swap(m(k, j), m(k + 1, j));
+      std::swap(x[k], x[k + 1]);
+    }
+    const std::complex<double> factor = Times(m(k + 1, k), Inverse(m(k, k)));
+    for (Eigen::Index j = k + 1; j < n; ++j) m(k + 1, j) -= Times(factor, m(k, j));
+    x[k + 1] -= Times(factor, x[k]);
+  }
+  for (Eigen::Index k = n - 1; k >= 0; --k) {
+    for (Eigen::Index j = k + 1; j < n; ++j) x[k] -= Times(m(k, j), x[j]);
+    x[k] = Times(x[k], Inverse(m(k, k)));
+  }
+  const auto row = [&](const Eigen::RowVectorXd& r) {
+    std::complex<double> sum = 0.0;
+    for (Eigen::Index i = 0; i < n; ++i) sum += r[i] * x[i];
+    return sum;
+  };
+  Measured measured{row(attitude_row_), 0.0};
+  for (std::size_t i = 0; i < rate_rows_.size(); ++i) {
+    const RateSensor& sensor = plant_.rates[i];
+    std::complex<double> rate = Times(row(rate_rows_[i]), SectionAt(sensor.section, s));
+    if (sensor.delay_ticks > 0.0) rate = Times(rate, UnitCircle(-angle_rad * sensor.delay_ticks));
+    measured.rate += sensor.weight * rate;
+  }
+  return measured;
+}
+
+std::complex<double> SampledLoop::Response(double frequency_rad_s) const {
+  // s = z - 1 keeps its digits near z = 1, where rigid body and integrators have their poles.
+  const SinCos half = SineCosine(0.5 * frequency_rad_s * tick_s_);
+  const std::complex<double> s(-2.0 * half.sin * half.sin, 2.0 * half.sin * half.cos);
+  const Measured measured = is_rigid_ ? Rigid(s) : Bent(s, frequency_rad_s * tick_s_);
+  const std::complex<double> angle = measured.angle, rate = measured.rate;
   std::complex<double> u = law_.kp_1_s2 * angle + law_.kd_1_s * rate;
   if (law_.adapts()) {
     const double share = 1.0 / law_.rules;
@@ -101,47 +168,68 @@ std::complex<double> SampledLoop::Response(double frequency_rad_s) const {
     }
     u += tick_s_ * Times(drive, share * Inverse(mean) + (1.0 - share) * Inverse(departure));
   }
-  for (const DigitalSection& f : law_.filters) {
-    // By powers of s = z - 1.
-    const std::complex<double> above = Times(s, f.b0 * s + (2.0 * f.b0 + f.b1)) + (f.b0 + f.b1 + f.b2);
-    const std::complex<double> below = Times(s, s + (2.0 + f.a1)) + (1.0 + f.a1 + f.a2);
-    u = Times(u, Times(above, Inverse(below)));
-  }
+  for (const DigitalSection& f : law_.filters) u = Times(u, SectionAt(f, s));
   return Times(u, UnitCircle(-frequency_rad_s * tick_s_ * delay_ticks_)) / law_.effectiveness_1_s2;
 }
 
 double SampledLoop::SpectralRadius(double gain_factor) const {
   // States: plant, commands on their way (latest first), mean of the consequents, departure of the central
-  // one from it (without spread the two are one), two a section of the filters, the prediction of the rate.
-  const int first_command = 4;
+  // one from it (without spread the two are one), two a section of the filters, the prediction of the rate, and
+  // of each gyro two of its section and its outputs of the last ticks.
+  const int plant_states = static_cast<int>(ad_.rows());
+  const int first_command = plant_states;
   const int first_rule = first_command + delay_ticks_;
   const int rule_states = !law_.adapts() ? 0 : law_.spread_1_s > 0.0 ? 2 : 1;
   const int first_filter = first_rule + rule_states;
   const int prediction = first_filter + 2 * static_cast<int>(law_.filters.size());
   const bool predicts = rule_states > 0 && law_.drive_prediction > 0.0;
-  const int size = prediction + (predicts ? 1 : 0);
+  int size = prediction + (predicts ? 1 : 0);
+  const int first_gyro = size;
+  if (!is_rigid_)
+    for (const RateSensor& sensor : plant_.rates) size += 2 + static_cast<int>(std::ceil(sensor.delay_ticks));
   Eigen::MatrixXd m = Eigen::MatrixXd::Zero(size, size);
-  m.topLeftCorner<4, 4>() = ad_;
+  m.topLeftCorner(plant_states, plant_states) = ad_;
+  // What is measured as rows over the states.
+  Eigen::RowVectorXd angle = Eigen::RowVectorXd::Zero(size), rate = angle;
+  if (is_rigid_) {
+    angle[0] = rate[1] = 1.0;
+  } else {
+    angle.head(plant_states) = plant_.attitude;
+    int gyro = first_gyro;
+    for (const RateSensor& sensor : plant_.rates) {
+      const DigitalSection& f = sensor.section;
+      Eigen::RowVectorXd input = Eigen::RowVectorXd::Zero(size);
+      input.head(plant_states) = sensor.rate;
+      Eigen::RowVectorXd output = f.b0 * input;
+      output[gyro] += 1.0;
+      m.row(gyro) = f.b1 * input - f.a1 * output;
+      m(gyro, gyro + 1) += 1.0;
+      m.row(gyro + 1) = f.b2 * input - f.a2 * output;
+      gyro += 2;
+      for (int tick = static_cast<int>(std::ceil(sensor.delay_ticks)); tick > 0; --tick) {
+        m.row(gyro) = output;
+        output.setZero();
+        output[gyro++] = 1.0;
+      }
+      rate += sensor.weight * output;
+    }
+  }
   // The command as a row over the states; e = -attitude.
-  Eigen::RowVectorXd command = Eigen::RowVectorXd::Zero(size);
-  command[0] = -law_.kp_1_s2;
-  command[1] = -law_.kd_1_s;
+  Eigen::RowVectorXd command = -law_.kp_1_s2 * angle - law_.kd_1_s * rate;
   const double share = rule_states == 2 ? 1.0 / law_.rules : 1.0;
   for (int i = 0; i < rule_states; ++i) {
     const int rule = first_rule + i;
     const double part = tick_s_ * (i == 0 ? share : 1.0 - share);
     command[rule] = 1.0;
-    m(rule, 0) = -part * law_.drive_error;
-    m(rule, 1) = -part * law_.drive_rate;
-    m(rule, rule) = 1.0 - tick_s_ * (law_.leakage_1_s + (i == 0 ? 0.0 : law_.spread_1_s));
+    m.row(rule) = -part * law_.drive_error * angle - part * law_.drive_rate * rate;
+    m(rule, rule) += 1.0 - tick_s_ * (law_.leakage_1_s + (i == 0 ? 0.0 : law_.spread_1_s));
     if (!predicts) continue;
-    m(rule, 1) -= part * law_.drive_prediction;
+    m.row(rule) -= part * law_.drive_prediction * rate;
     m(rule, prediction) = -part * law_.drive_prediction;
   }
   if (predicts) {
-    m(prediction, 0) = tick_s_ * law_.kp_1_s2;
-    m(prediction, 1) = -tick_s_ * (law_.predictor_1_s - law_.kd_1_s);
-    m(prediction, prediction) = 1.0 - tick_s_ * law_.predictor_1_s;
+    m.row(prediction) = tick_s_ * law_.kp_1_s2 * angle - tick_s_ * (law_.predictor_1_s - law_.kd_1_s) * rate;
+    m(prediction, prediction) += 1.0 - tick_s_ * law_.predictor_1_s;
   }
   int memory = first_filter;
   for (const DigitalSection& f : law_.filters) {
@@ -155,11 +243,11 @@ double SampledLoop::SpectralRadius(double gain_factor) const {
   }
   command *= gain_factor / law_.effectiveness_1_s2;
   if (delay_ticks_ == 0) {
-    m.topRows<4>() += bd_ * command;
+    m.topRows(plant_states) += bd_ * command;
   } else {
     m.row(first_command) = command;
     for (int i = 1; i < delay_ticks_; ++i) m(first_command + i, first_command + i - 1) = 1.0;
-    m.block<4, 1>(0, first_rule - 1) = bd_;
+    m.block(0, first_rule - 1, plant_states, 1) = bd_;
   }
   const Eigen::VectorXcd values = Eigen::EigenSolver<Eigen::MatrixXd>(m, false).eigenvalues();
   double largest = 0.0;
@@ -181,10 +269,36 @@ double SampledLoop::Refine(double low, double high, bool of_gain) const {
   return 0.5 * (low + high);
 }
 
+// Neighbours 2 % apart from the slowest to half the sampling; near a mode as many within its width.
+std::vector<double> SampledLoop::Frequencies() const {
+  const double nyquist = kPi / tick_s_;
+  const double ratio = Pow(nyquist / kLowest_rad_s, 1.0 / kFrequencies);
+  std::vector<double> all;
+  double w = kLowest_rad_s;
+  for (int i = 0; i < kFrequencies; ++i, w *= ratio) all.push_back(w);
+  all.push_back(nyquist);
+  if (plant_.lowest_mode_rad_s == 0.0) return all;
+  const Eigen::VectorXcd modes = Eigen::EigenSolver<Eigen::MatrixXd>(plant_.a, false).eigenvalues();
+  all.push_back(kBelowModes * plant_.lowest_mode_rad_s);
+  constexpr int kNear = 40;
+  for (Eigen::Index i = 0; i < modes.size(); ++i) {
+    const double frequency = modes[i].imag(), width = std::fabs(modes[i].real());
+    if (frequency <= 0.0) continue;
+    // By the angle that a resonance turns through: atan of the distance in widths.
+    for (int k = -kNear + 1; k < kNear; ++k) {
+      const SinCos angle = SineCosine(0.5 * kPi * k / kNear);
+      const double near = frequency + std::max(width, 1e-4 * frequency) * angle.sin / angle.cos;
+      if (near > kLowest_rad_s && near < nyquist) all.push_back(near);
+    }
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
 LoopMargins SampledLoop::Margins() const {
   LoopMargins margins;
   margins.stable = SpectralRadius(1.0) < 1.0;
-  if (!margins.stable) return margins;
+  if (!margins.stable && is_rigid_) return margins;
   margins.gain_up_db = margins.gain_down_db = margins.delay_s = kInfinity;
   margins.phase_deg = 180.0;
 
@@ -200,21 +314,30 @@ LoopMargins SampledLoop::Margins() const {
   critical(Response(nyquist));
   // An aerodynamically unstable body without integral action diverges without oscillation: at z = 1. With
   // the integrator of an adapting law, or of a body that the air leaves alone, L is infinite there.
-  const Eigen::Matrix4d at_rest = Eigen::Matrix4d::Identity() - ad_;
+  const Eigen::MatrixXd at_rest = Eigen::MatrixXd::Identity(ad_.rows(), ad_.cols()) - ad_;
   if (!law_.adapts() && std::fabs(at_rest.determinant()) > 0.0) {
     const std::complex<double> l = Response(0.0);
     if (std::isfinite(l.real())) critical(l.real());
   }
 
-  const double ratio = Pow(nyquist / kLowest_rad_s, 1.0 / kFrequencies);
-  double w = kLowest_rad_s;
-  std::complex<double> l = Response(w);
-  for (int i = 1; i <= kFrequencies; ++i) {
-    const double next_w = i == kFrequencies ? nyquist : w * ratio;
+  const double bends_above_rad_s =
+      plant_.lowest_mode_rad_s > 0.0 ? kBelowModes * plant_.lowest_mode_rad_s : kInfinity;
+  const auto bend = [&](std::complex<double> at) {
+    const double size = std::norm(at);
+    margins.bending_peak_db = std::max(margins.bending_peak_db, 0.5 * Decibel(size));
+    const double from_critical = kDegPerRad * std::fabs(Atan2(-at.imag(), -at.real()));
+    if (size >= k6db2) margins.bending_phase_6db_deg = std::min(margins.bending_phase_6db_deg, from_critical);
+    if (size >= k3db2) margins.bending_phase_3db_deg = std::min(margins.bending_phase_3db_deg, from_critical);
+  };
+  const std::vector<double> grid = Frequencies();
+  std::complex<double> l = Response(grid.front());
+  for (std::size_t i = 1; i < grid.size(); ++i) {
+    const double w = grid[i - 1], next_w = grid[i];
     const std::complex<double> next = Response(next_w);
-    if ((l.imag() < 0.0) != (next.imag() < 0.0) && i < kFrequencies)
+    if (next_w >= bends_above_rad_s) bend(next);
+    if ((l.imag() < 0.0) != (next.imag() < 0.0) && i + 1 < grid.size())
       critical(Response(Refine(w, next_w, false)).real());
-    if ((std::norm(l) < 1.0) != (std::norm(next) < 1.0)) {
+    if (w < bends_above_rad_s && (std::norm(l) < 1.0) != (std::norm(next) < 1.0)) {
       const double crossover = Refine(w, next_w, true);
       const std::complex<double> at = Response(crossover);
       // Angle from -1, counter-clockwise, to L, in [0, 2 pi): what a delay may turn.
@@ -224,10 +347,13 @@ LoopMargins SampledLoop::Margins() const {
       margins.phase_deg = std::min(margins.phase_deg, kDegPerRad * std::min(lead, kTwoPi - lead));
       margins.crossover_rad_s = std::max(margins.crossover_rad_s, crossover);
     }
-    w = next_w;
     l = next;
   }
-  return margins;
+  if (margins.stable) return margins;
+  LoopMargins lost;
+  lost.bending_peak_db = margins.bending_peak_db;
+  lost.bending_phase_6db_deg = lost.bending_phase_3db_deg = 0.0;
+  return lost;
 }
 
 }  // namespace dispersa

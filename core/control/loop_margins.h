@@ -1,10 +1,11 @@
-// Stability margins of one sampled attitude loop: the rigid body, its actuator and its delays are exact in
-// discrete time. Bending and slosh are not modelled: these are rigid-body margins.
+// Stability margins of one sampled attitude loop: body, bending modes, actuator, gyros and delays are exact in
+// discrete time. Slosh is not modelled.
 #pragma once
 
 #include <Eigen/Core>
 #include <array>
 #include <complex>
+#include <limits>
 #include <vector>
 
 #include "core/control/filter.h"
@@ -12,11 +13,23 @@
 
 namespace dispersa {
 
+/// A part of the measured rate: that of a place, through a gyro.
+struct RateSensor {
+  Eigen::RowVectorXd rate;  ///< of the plant's state
+  DigitalSection section;   ///< from its values at ticks to what the gyro shows
+  double weight = 1.0;
+  double delay_ticks = 0.0;  ///< what holding a sample over several ticks is worth
+};
+
 /// Continuous plant of one axis about an operating point, x' = a x + b d. State: attitude (rad), its rate,
-/// nozzle deflection (rad), its rate; d: commanded deflection, rad.
+/// nozzle deflection (rad), its rate, and of a body that bends the modal coordinates and their rates; d: commanded
+/// deflection, rad.
 struct AxisPlant {
-  Eigen::Matrix4d a = Eigen::Matrix4d::Zero();
-  Eigen::Vector4d b = Eigen::Vector4d::Zero();
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(4, 4);
+  Eigen::VectorXd b = Eigen::VectorXd::Zero(4);
+  Eigen::RowVectorXd attitude = Eigen::RowVectorXd::Unit(4, 0);  ///< as measured
+  std::vector<RateSensor> rates = {{Eigen::RowVectorXd::Unit(4, 1), {}, 1.0, 0.0}};
+  double lowest_mode_rad_s = 0.0;  ///< 0: a rigid body
 };
 
 /// A control law about zero error: u = kp e + kd e' + w, and the command is u, filtered, / effectiveness.
@@ -50,6 +63,13 @@ struct LoopMargins {
   double phase_deg = 0.0;     ///< least at any crossover of 0 dB, either way
   double delay_s = 0.0;       ///< further delay that destabilises
   double crossover_rad_s = 0.0;  ///< highest crossover of 0 dB
+  // Where the body bends, above 0.7 of its lowest mode; phase, delay and crossover above are then those below it. The
+  // peak is that of the open loop, known of an unstable one too.
+  double bending_peak_db = -std::numeric_limits<double>::infinity();
+  /// Least angle of the response from -1 wherever it is not attenuated by 6 dB, and by 3 dB; 180 where it is
+  /// everywhere.
+  double bending_phase_6db_deg = 180.0;
+  double bending_phase_3db_deg = 180.0;
 };
 
 /// The loop cut at the command: measurement at a tick, command held over a tick, `delay_ticks` later.
@@ -64,14 +84,27 @@ class SampledLoop {
   LoopMargins Margins() const;
 
  private:
-  struct Crossing;
+  /// Attitude and rate as measured, per command, at s = z - 1.
+  struct Measured {
+    std::complex<double> angle, rate;
+  };
+  Measured Rigid(std::complex<double> s) const;
+  Measured Bent(std::complex<double> s, double angle_rad) const;
   double Refine(double low, double high, bool of_gain) const;
+  std::vector<double> Frequencies() const;
 
-  Eigen::Matrix4d ad_;  ///< x(k+1) = ad x(k) + bd d(k)
-  Eigen::Vector4d bd_;
-  /// (z I - ad)⁻¹ bd, angle and rate, as quotients of polynomials in z - 1, rising powers.
+  AxisPlant plant_;
+  bool is_rigid_;       ///< of four states, measured as they are
+  Eigen::MatrixXd ad_;  ///< x(k+1) = ad x(k) + bd d(k)
+  Eigen::VectorXd bd_;
+  /// Rigid: (z I - ad)⁻¹ bd, angle and rate, as quotients of polynomials in z - 1, rising powers.
   std::array<double, 4> angle_, rate_;
   std::array<double, 5> denominator_;
+  /// Else ad - I in upper Hessenberg form, with bd and the measured rows in its coordinates.
+  Eigen::MatrixXd hessenberg_;
+  Eigen::VectorXd driven_;
+  Eigen::RowVectorXd attitude_row_;
+  std::vector<Eigen::RowVectorXd> rate_rows_;
   LinearLaw law_;
   double tick_s_;
   int delay_ticks_;

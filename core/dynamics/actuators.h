@@ -1,9 +1,19 @@
 // The nozzles' actuators of W flights side by side (core/math/lanes.h): second order with a limited rate.
 // Between two commands they depend on nothing else, so they are propagated by themselves, exactly where no
 // limit acts.
+//
+// A vehicle file may give them what real drives have besides: a resolution, in steps of which the command
+// reaches the servo; a dead zone, within which the servo does not feel its distance from the command; and
+// Coulomb friction, which holds a drive at rest until the servo pulls harder and opposes it by as much while
+// it slides:
+//
+//   angle'' = w² zone(command - angle) - 2 zeta w angle' - w² friction sign(angle')
+//
+// with zone(e) = e less the dead zone in the sense of 0, and friction in the unit of the angle. These drives
+// are integrated in small steps that end where a drive comes to rest.
 #pragma once
 
-#include "core/dynamics/launcher.h"
+#include "core/dynamics/launcher_body.h"
 #include "core/math/lanes.h"
 
 namespace dispersa::lanes {
@@ -16,6 +26,10 @@ struct Drives {
   T bandwidth2_1_s2;    ///< w²
   T twice_damping_1_s;  ///< 2 zeta w
   T moves[kNozzles];    ///< 1, or 0 of a nozzle that is stuck
+  T dead_zone_rad;
+  T friction_1_s2;  ///< w² friction: the deceleration by it, rad/s²
+  T resolution_rad;
+  bool is_rough, is_coarse;  ///< whether any lane has a dead zone or friction; a resolution
 };
 
 template <class T>
@@ -48,17 +62,123 @@ DISPERSA_INLINE Transition<double> TransitionOver(double bandwidth2, double twic
   return {e * (cosine + sigma * sine), e * sine, -(bandwidth2 * e * sine), e * (cosine - sigma * sine)};
 }
 
-/// Derivative of one drive: d(angle)/dt = rate within the limit, at which it cannot accelerate further
-/// outwards.
+/// The command that a servo follows: the nearest step of its resolution (the even one of two), within the
+/// limit.
 template <class T>
-DISPERSA_INLINE void DriveRates(const Drives<T>& d, int i, T command_rad, T angle_rad, T rate_rad_s,
+DISPERSA_INLINE T Followed(const Drives<T>& d, T command_rad) {
+  if (d.is_coarse) {
+    const T to_integer(0x1.8p52);  // added, it leaves the nearest integer; taken away, that alone is left
+    const T steps = (command_rad / d.resolution_rad + to_integer) - to_integer;
+    command_rad = Select(d.resolution_rad > T(0.0), steps * d.resolution_rad, command_rad);
+  }
+  return Clamp(command_rad, -d.limit_rad, d.limit_rad);
+}
+
+/// What the servo pulls with, rad/s².
+template <class T>
+DISPERSA_INLINE T Pull(const Drives<T>& d, T command_rad, T angle_rad) {
+  const T distance = command_rad - angle_rad;
+  if (!d.is_rough) return d.bandwidth2_1_s2 * distance;
+  return d.bandwidth2_1_s2 * (distance - Clamp(distance, -d.dead_zone_rad, d.dead_zone_rad));
+}
+
+/// The sense in which a drive slides: that of its rate; at rest that of a pull above its friction, else 0:
+/// held.
+template <class T>
+DISPERSA_INLINE T SlidesIn(const Drives<T>& d, T command_rad, T angle_rad, T rate_rad_s) {
+  const T one(1.0), none(0.0);
+  const T pull = Pull(d, command_rad, angle_rad);
+  const T loose = Select(Abs(pull) > d.friction_1_s2, pull, none);
+  const T felt = Select(Abs(rate_rad_s) > none, rate_rad_s, loose);
+  return Select(felt > none, one, Select(felt < none, -one, none));
+}
+
+/// Derivative of one drive: d(angle)/dt = rate within the limit, at which it cannot accelerate further
+/// outwards. `slides`: SlidesIn, which friction opposes; it does not change between two rests.
+template <class T>
+DISPERSA_INLINE void DriveRates(const Drives<T>& d, int i, T command_rad, T angle_rad, T rate_rad_s, T slides,
                                 T& dangle, T& drate) {
   T acceleration = Fma(d.bandwidth2_1_s2, command_rad - angle_rad, -(d.twice_damping_1_s * rate_rad_s));
+  if (d.is_rough) {
+    const auto rough = (d.dead_zone_rad > T(0.0)) | (d.friction_1_s2 > T(0.0));
+    const T against = Fma(d.twice_damping_1_s, rate_rad_s, d.friction_1_s2 * slides);
+    acceleration = Select(rough, Pull(d, command_rad, angle_rad) - against, acceleration);
+    const auto held = (d.friction_1_s2 > T(0.0)) & !(Abs(slides) > T(0.0));
+    acceleration = Select(held, T(0.0), acceleration);
+  }
   const auto at_limit = ((rate_rad_s >= d.rate_limit_rad_s) & (acceleration > T(0.0))) |
                         ((rate_rad_s <= -d.rate_limit_rad_s) & (acceleration < T(0.0)));
   acceleration = Select(at_limit, T(0.0), acceleration);
   dangle = d.moves[i] * Clamp(rate_rad_s, -d.rate_limit_rad_s, d.rate_limit_rad_s);
   drate = d.moves[i] * acceleration;
+}
+/// Of a drive without friction.
+template <class T>
+DISPERSA_INLINE void DriveRates(const Drives<T>& d, int i, T command_rad, T angle_rad, T rate_rad_s,
+                                T& dangle, T& drate) {
+  DriveRates(d, i, command_rad, angle_rad, rate_rad_s, T(0.0), dangle, drate);
+}
+
+/// One step of the classical Runge-Kutta method, of a drive that slides one way.
+template <class T>
+DISPERSA_INLINE void StepDrive(const Drives<T>& d, int i, T command_rad, T slides, T h_s, T& angle_rad,
+                               T& rate_rad_s) {
+  const T half = T(0.5) * h_s, sixth = h_s * T(1.0 / 6.0);
+  const T angle = angle_rad, rate = rate_rad_s;
+  T a1, a2, a3, a4, r1, r2, r3, r4;
+  DriveRates(d, i, command_rad, angle, rate, slides, a1, r1);
+  DriveRates(d, i, command_rad, Fma(half, a1, angle), Fma(half, r1, rate), slides, a2, r2);
+  DriveRates(d, i, command_rad, Fma(half, a2, angle), Fma(half, r2, rate), slides, a3, r3);
+  DriveRates(d, i, command_rad, Fma(h_s, a3, angle), Fma(h_s, r3, rate), slides, a4, r4);
+  angle_rad = Fma(sixth, (a1 + a4) + T(2.0) * (a2 + a3), angle);
+  rate_rad_s =
+      Clamp(Fma(sixth, (r1 + r4) + T(2.0) * (r2 + r3), rate), -d.rate_limit_rad_s, d.rate_limit_rad_s);
+}
+
+/// Steps that one propagation of a drive with a dead zone or friction takes: of 0.6 ms in half a tick of 10
+/// ms. A step that meets the edge of the zone or a rest within it errs by the cube of its length.
+inline constexpr int kRoughSteps = 8;
+
+/// Replaces the lanes whose drives have a dead zone or friction by their numerical propagation.
+template <class T>
+void PropagateRough(const Drives<T>& d, const T* command_rad, T time_s, const DriveState<T>& from,
+                    DriveState<T>& to) {
+  const T none(0.0), half(0.5), h = time_s * T(1.0 / kRoughSteps);
+  const auto rough = (d.dead_zone_rad > none) | (d.friction_1_s2 > none);
+  for (int i = 0; i < kNozzles; ++i) {
+    const auto moves = rough & (d.moves[i] > none);
+    T angle = from.angle_rad[i], rate = from.rate_rad_s[i];
+    for (int step = 0; step < kRoughSteps; ++step) {
+      const T slides = SlidesIn(d, command_rad[i], angle, rate);
+      const T start = angle, speed = rate;
+      StepDrive(d, i, command_rad[i], slides, h, angle, rate);
+      // It came to rest on the way, and is held or slides back from there.
+      const auto rests = (d.friction_1_s2 > none) & (slides * rate < none);
+      const T slowing = speed / (speed - rate) * h, rest = h - slowing;
+      const T stop = Fma(half * slowing, speed, start);
+      const T pull = Pull(d, command_rad[i], stop);
+      const T back = pull - Clamp(pull, -d.friction_1_s2, d.friction_1_s2);
+      angle = Select(rests, Fma(half * back * rest, rest, stop), angle);
+      rate = Select(rests, back * rest, rate);
+      const auto beyond = Abs(angle) > d.limit_rad;
+      angle = Clamp(angle, -d.limit_rad, d.limit_rad);
+      rate = Select(beyond, none, rate);
+    }
+    to.angle_rad[i] = Select(moves, angle, to.angle_rad[i]);
+    to.rate_rad_s[i] = Select(moves, rate, to.rate_rad_s[i]);
+  }
+}
+
+/// Accelerations of the deflections, into the nozzles that the equations of motion see.
+template <class T>
+DISPERSA_INLINE void SetAccelerations(const Drives<T>& d, const T* command_rad, const DriveState<T>& s,
+                                      Nozzles<T>& nozzles) {
+  for (int i = 0; i < kNozzles; ++i) {
+    T rate;
+    const T command = Followed(d, command_rad[i]);
+    const T slides = SlidesIn(d, command, s.angle_rad[i], s.rate_rad_s[i]);
+    DriveRates(d, i, command, s.angle_rad[i], s.rate_rad_s[i], slides, rate, nozzles.acceleration_rad_s2[i]);
+  }
 }
 
 /// Steps of the classical Runge-Kutta method that one propagation takes where a rate limit acts.
@@ -74,7 +194,7 @@ DISPERSA_INLINE DriveState<T> Propagate(const Drives<T>& d, const T* command_rad
   T fastest(0.0), farthest(0.0);
   T command[kNozzles];
   for (int i = 0; i < kNozzles; ++i) {
-    command[i] = Clamp(command_rad[i], -d.limit_rad, d.limit_rad);
+    command[i] = Followed(d, command_rad[i]);
     const T x = from.angle_rad[i] - command[i], r = from.rate_rad_s[i];
     const auto moves = d.moves[i] > T(0.0);
     to.angle_rad[i] = Select(moves, Fma(over.aa, x, Fma(over.ar, r, command[i])), from.angle_rad[i]);
@@ -84,30 +204,22 @@ DISPERSA_INLINE DriveState<T> Propagate(const Drives<T>& d, const T* command_rad
   }
   const auto limited = fastest >= d.rate_limit_rad_s;
   if (Any(limited)) {
-    const T h = time_s * T(1.0 / kLimitedSteps), half = T(0.5) * h, sixth = h * T(1.0 / 6.0);
+    const T h = time_s * T(1.0 / kLimitedSteps);
     for (int i = 0; i < kNozzles; ++i) {
       T angle = from.angle_rad[i], rate = from.rate_rad_s[i];
-      for (int step = 0; step < kLimitedSteps; ++step) {
-        T a1, a2, a3, a4, r1, r2, r3, r4;
-        DriveRates(d, i, command[i], angle, rate, a1, r1);
-        DriveRates(d, i, command[i], Fma(half, a1, angle), Fma(half, r1, rate), a2, r2);
-        DriveRates(d, i, command[i], Fma(half, a2, angle), Fma(half, r2, rate), a3, r3);
-        DriveRates(d, i, command[i], Fma(h, a3, angle), Fma(h, r3, rate), a4, r4);
-        angle = Fma(sixth, (a1 + a4) + T(2.0) * (a2 + a3), angle);
-        rate =
-            Clamp(Fma(sixth, (r1 + r4) + T(2.0) * (r2 + r3), rate), -d.rate_limit_rad_s, d.rate_limit_rad_s);
-      }
+      for (int step = 0; step < kLimitedSteps; ++step) StepDrive(d, i, command[i], T(0.0), h, angle, rate);
       to.angle_rad[i] = Select(limited, angle, to.angle_rad[i]);
       to.rate_rad_s[i] = Select(limited, rate, to.rate_rad_s[i]);
     }
   }
   // The mechanical stop. Between two commands within the limit only an overshoot reaches it.
-  if (!Any(limited | (farthest > d.limit_rad))) return to;
-  for (int i = 0; i < kNozzles; ++i) {
+  const bool stops = Any(limited | (farthest > d.limit_rad));
+  for (int i = 0; stops && i < kNozzles; ++i) {
     const auto beyond = (Abs(to.angle_rad[i]) > d.limit_rad) & (d.moves[i] > T(0.0));
     to.angle_rad[i] = Select(beyond, Clamp(to.angle_rad[i], -d.limit_rad, d.limit_rad), to.angle_rad[i]);
     to.rate_rad_s[i] = Select(beyond, T(0.0), to.rate_rad_s[i]);
   }
+  if (d.is_rough) PropagateRough(d, command, time_s, from, to);
   return to;
 }
 

@@ -1,9 +1,12 @@
 // What the air does to a moving point: flow properties and the velocity relative to the air.
 #pragma once
 
+#include <memory>
+
 #include "core/environment/atmosphere.h"
 #include "core/environment/density_factor.h"
 #include "core/environment/earth.h"
+#include "core/environment/turbulence.h"
 #include "core/environment/wind.h"
 #include "core/math/linear.h"
 
@@ -14,6 +17,7 @@ struct Environment {
   Earth earth = Wgs84();
   Wind wind;
   DensityFactor density;
+  std::shared_ptr<const TurbulenceField> turbulence = {};  ///< adds to the wind; null: none
 };
 
 struct AirData {

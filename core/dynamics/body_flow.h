@@ -24,6 +24,7 @@ struct AeroBody {
 template <class T>
 struct Coefficients {
   T ca, cn, xcp_station_m, cmq, clp, cd, cl, cm, cnr;
+  T cn_slope_1_rad;  ///< of cn over the incidence
 };
 
 DISPERSA_INLINE int CellAt(const AeroGrid::Axis& axis, int bucket, double x) {
@@ -58,6 +59,7 @@ DISPERSA_INLINE Coefficients<T> CoefficientsAt(const AeroBody<T>& body, T mach, 
   Coefficients<T> o;
   o.ca = body.ca_factor * BilinearAt(c, m, i);
   o.cn = body.cn_factor * BilinearAt(c + 4, m, i);
+  o.cn_slope_1_rad = body.cn_factor * Fma(m, c[7], c[5]);
   o.xcp_station_m = body.xcp_factor * BilinearAt(c + 8, m, i);
   o.cmq = Fma(m, c[13], c[12]);
   o.clp = Fma(m, c[15], c[14]);
@@ -95,6 +97,10 @@ template <class T>
 struct FlowForce {
   Vector<T> force_n, moment_n_m;
   T qbar_pa, mach, incidence_rad;
+  // For a body that bends:
+  T airspeed_m_s, normal_n, normal_slope_n;  ///< the slope is by the incidence in rad
+  T xcp_station_m;
+  T across_y, across_z;  ///< unit vector of the flow across the axis
 };
 
 /// v: velocity through the air (m/s), w: angular velocity (rad/s) that the damping derivatives see, both in
@@ -117,6 +123,12 @@ DISPERSA_INLINE FlowForce<T> ForceOfFlow(const AeroBody<T>& body, Vector<T> v, V
   const T ny = v.y * inverse_across, nz = v.z * inverse_across;
   const T normal = qs * c.cn;
   const T turning = normal * (cg_station_m - c.xcp_station_m);
+  o.airspeed_m_s = airspeed;
+  o.normal_n = normal;
+  o.normal_slope_n = qs * c.cn_slope_1_rad;
+  o.xcp_station_m = c.xcp_station_m;
+  o.across_y = ny;
+  o.across_z = nz;
   o.force_n = {-(qs * c.ca), -(normal * ny), -(normal * nz)};
   // q S d² / (2 V) = rho V S d² / 4, or with the floor in the place of a lower V.
   T damped_airspeed = airspeed;

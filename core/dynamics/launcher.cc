@@ -1,5 +1,7 @@
 #include "core/dynamics/launcher.h"
 
+#include <algorithm>
+
 #include "core/dynamics/launcher_lanes.h"
 #include "core/math/lane_eigen.h"
 
@@ -8,7 +10,9 @@ namespace dispersa {
 // What the lanes point to, and a lane for each stack.
 struct LauncherModel::Prepared {
   explicit Prepared(const LauncherPlant& of)
-      : plant(of), weather(PrepareWeather(plant.environment.wind, plant.environment.density)) {
+      : plant(of),
+        weather(PrepareWeather(plant.environment.wind, plant.environment.density,
+                               plant.environment.turbulence.get())) {
     for (LauncherStack& stack : plant.stacks)
       if (!stack.aero_grid) stack.aero_grid = std::make_shared<const AeroGrid>(BuildAeroGrid(stack.aerodynamics));
     stacks.resize(plant.stacks.size());
@@ -36,7 +40,21 @@ struct OneLane {
         motion{{y[0], y[1], y[2]}, {y[3], y[4], y[5]}, {y[6], y[7], y[8], y[9]}, {y[10], y[11], y[12]}},
         around(lanes::SurroundingsAt(earth, StandardAir(), plant.weather, motion.p)),
         masses(lanes::MassesAt(plant, phase, time_s)),
-        nozzles(lanes::NozzlesAt(y + kNozzleAngle)) {}
+        nozzles(lanes::NozzlesAt(y + kNozzleAngle)) {
+    lanes::SetLane(drives, 0, from.stacks[static_cast<std::size_t>(now.stack)].gimbal, now.stuck_nozzle);
+    for (int i = 0; i < kNozzles; ++i) {
+      drive_state.angle_rad[i] = y[kNozzleAngle + i];
+      drive_state.rate_rad_s[i] = y[kNozzleRate + i];
+    }
+    lanes::SetAccelerations(drives, now.command_rad.data(), drive_state, nozzles);
+    lanes::SetLane(bending, 0, from, now.stack);
+    if (bending.modes == 0) return;
+    lanes::ShapesAt(bending, masses.propellant_kg);
+    std::copy_n(y + kModalState, kPlanes * kModes, &bending_state.q_m[0][0]);
+    std::copy_n(y + kModalRate, kPlanes * kModes, &bending_state.rate_m_s[0][0]);
+  }
+
+  const lanes::BentBody<double>* bent() const { return bending.modes > 0 ? &bent_ : nullptr; }
 
   const Earth& earth;
   bool jet_damping;
@@ -46,6 +64,14 @@ struct OneLane {
   lanes::Surroundings<double> around;
   lanes::TimedMasses<double> masses;
   lanes::Nozzles<double> nozzles;
+  lanes::Drives<double> drives{};
+  lanes::DriveState<double> drive_state{};
+  lanes::Bending<double> bending{};
+  lanes::BendingState<double> bending_state{};
+  mutable lanes::ModalForce<double> modal{};  ///< of the last evaluation
+
+ private:
+  const lanes::BentBody<double> bent_{&bending, &bending_state, &modal};
 };
 
 }  // namespace
@@ -69,7 +95,7 @@ LauncherInstant LauncherModel::Evaluate(const LauncherPhase& phase, double time_
   const lanes::TimedMasses<double>& masses = one.masses;
   const lanes::LoadsOf<double> loads =
       lanes::LoadsAt(one.earth.rotation_rate_rad_s, one.jet_damping, one.plant, one.phase, phase.burning,
-                     one.around, masses, one.nozzles, s);
+                     one.around, masses, one.nozzles, s, one.bent());
   LauncherInstant now;
   now.air.place = ToGeodetic(one.earth, Vector3(y[0], y[1], y[2]));
   now.air.v_AP_I = ToEigen(loads.v_air);
@@ -102,17 +128,46 @@ void LauncherModel::Derivative(const LauncherPhase& phase, double time_s, const 
   const lanes::Motion<double>& s = one.motion;
   const auto rates =
       lanes::RatesOf<double>(one.earth.rotation_rate_rad_s, one.jet_damping, one.plant, one.phase,
-                             phase.burning, one.around, one.masses, one.nozzles, s, nullptr);
+                             phase.burning, one.around, one.masses, one.nozzles, s, one.bent(), nullptr);
   const Quaternion dq = dispersa::Derivative({s.q.w, s.q.x, s.q.y, s.q.z}, ToEigen(s.w));
   WriteState({ToEigen(s.v), ToEigen(rates.dv), dq, ToEigen(rates.dw)}, dydt);
-  lanes::Drives<double> drives{};
-  lanes::SetLane(drives, 0, prepared_->plant.stacks[stack].gimbal, phase.stuck_nozzle);
   for (int i = 0; i < kNozzles; ++i) {
-    const double limit = drives.limit_rad;
-    const double command = Clamp(phase.command_rad[static_cast<std::size_t>(i)], -limit, limit);
-    lanes::DriveRates(drives, i, command, y[kNozzleAngle + i], y[kNozzleRate + i], dydt[kNozzleAngle + i],
-                      dydt[kNozzleRate + i]);
+    const std::size_t nozzle = static_cast<std::size_t>(i);
+    const double command = lanes::Followed(one.drives, phase.command_rad[nozzle]);
+    lanes::DriveRates(one.drives, i, command, y[kNozzleAngle + i], y[kNozzleRate + i], phase.slides[nozzle],
+                      dydt[kNozzleAngle + i], dydt[kNozzleRate + i]);
   }
+  if (prepared_->plant.state_size() == kRigidLauncherSize) return;
+  for (int plane = 0; plane < kPlanes; ++plane)
+    for (int mode = 0; mode < kModes; ++mode) {
+      const int at = plane * kModes + mode;
+      const bool flies = mode < one.bending.modes;
+      dydt[kModalState + at] = flies ? y[kModalRate + at] : 0.0;
+      dydt[kModalRate + at] = 0.0;
+      if (!flies) continue;
+      const lanes::ModeNow<double>& m = one.bending.At(plane, mode);
+      dydt[kModalRate + at] = one.modal.drive_m_s2[plane][mode] - m.damping_1_s * y[kModalRate + at] -
+                              m.stiffness_1_s2 * y[kModalState + at];
+    }
+}
+
+int LauncherPlant::bending_modes() const {
+  int most = 0;
+  for (const LauncherStack& stack : stacks)
+    if (stack.bending) most = std::max(most, stack.bending->modes);
+  return most;
+}
+
+int LauncherPlant::bending_planes() const {
+  int most = 1;
+  for (const LauncherStack& stack : stacks)
+    if (stack.bending) most = std::max(most, stack.bending->planes);
+  return most;
+}
+
+bool LauncherPlant::nozzles_have_mass() const {
+  return std::any_of(stacks.begin(), stacks.end(),
+                     [](const LauncherStack& s) { return s.gimbal.nozzle_inertia_kg_m2 > 0.0; });
 }
 
 }  // namespace dispersa

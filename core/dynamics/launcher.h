@@ -7,6 +7,7 @@
 
 #include "core/dynamics/aerodynamics.h"
 #include "core/dynamics/rigid_body.h"
+#include "core/structure/bending_table.h"
 #include "core/vehicle/mass.h"
 #include "core/vehicle/propulsion.h"
 
@@ -16,7 +17,11 @@ inline constexpr int kNozzles = 4;
 /// State: rigid body, then the angle and the rate of each nozzle (right, left, bottom, top).
 inline constexpr int kNozzleAngle = kRigidBodySize;
 inline constexpr int kNozzleRate = kNozzleAngle + kNozzles;
-inline constexpr int kLauncherSize = kNozzleRate + kNozzles;
+inline constexpr int kRigidLauncherSize = kNozzleRate + kNozzles;
+/// Of a vehicle that bends, then the modal coordinates by plane and mode, and their rates.
+inline constexpr int kModalState = kRigidLauncherSize;
+inline constexpr int kModalRate = kModalState + kPlanes * kModes;
+inline constexpr int kLauncherSize = kModalRate + kPlanes * kModes;
 
 struct AeroGrid;
 
@@ -30,6 +35,14 @@ struct LauncherStack {
   Matrix3 thrust_tilt = Matrix3::Identity();  ///< turns the nozzles' thrust by the misalignment
   double thrust_offset_y_m = 0.0;
   double thrust_offset_z_m = 0.0;
+  std::shared_ptr<const BendingTable> bending;  ///< null: this stack is rigid
+};
+
+/// Factors of one flight on every stack's bending.
+struct BendingFactors {
+  std::array<double, kModes> frequency = {1.0, 1.0, 1.0, 1.0, 1.0};  ///< of each mode
+  double damping_ratio = 0.0;
+  double slope = 1.0;  ///< of the slopes that sensors feel
 };
 
 /// A vehicle of one flight.
@@ -39,6 +52,14 @@ struct LauncherPlant {
   double cg_factor = 1.0;
   double inertia_factor = 1.0;
   bool jet_damping = true;
+  BendingFactors bending;
+
+  // Of all stacks, so that what is computed does not depend on where a flight stands.
+  int bending_modes() const;   ///< in a plane; 0: the vehicle is rigid
+  int bending_planes() const;  ///< that differ
+  bool nozzles_have_mass() const;
+  /// Doubles of a state that count: a rigid vehicle's state ends with its nozzles.
+  int state_size() const { return bending_modes() > 0 ? kLauncherSize : kRigidLauncherSize; }
 };
 
 /// What stays constant between two events.
@@ -51,6 +72,7 @@ struct LauncherPhase {
   Vector3 control_torque_n_m = Vector3::Zero();  ///< of the reaction control
   std::array<double, kNozzles> command_rad{};    ///< to the actuators
   int stuck_nozzle = -1;         ///< index of a nozzle that does not move, or -1
+  std::array<double, kNozzles> slides{};  ///< sense in which friction's drives slide, 0: held (actuators.h)
 };
 
 /// Everything of one instant that forces, metrics and histories need.

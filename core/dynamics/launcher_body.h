@@ -3,6 +3,7 @@
 // integration step evaluates each part as often as it needs it.
 #pragma once
 
+#include "core/dynamics/bending.h"
 #include "core/dynamics/body_flow.h"
 #include "core/dynamics/launcher.h"
 #include "core/environment/surroundings.h"
@@ -21,6 +22,9 @@ struct Plant {
   AeroBody<T> aero;
   T cg_factor, inertia_factor;
   T pivot_station_m, nozzle_radius_m;
+  T nozzle_moment_kg_m;    ///< mass of a nozzle times the distance of its centre of gravity aft of the pivot
+  T nozzle_inertia_kg_m2;  ///< about the hinge
+  bool nozzles_have_mass;  ///< of any stage: the same in all lanes
   Matrix<T> thrust_tilt;
   T thrust_offset_y_m, thrust_offset_z_m;
 };
@@ -45,6 +49,7 @@ struct Motion {
 /// What depends on time alone.
 template <class T>
 struct TimedMasses {
+  T propellant_kg;
   T mass_kg, inverse_mass_1_kg, cg_station_m, axial_kg_m2, transverse_kg_m2;
   T axial_per_kg_m2, transverse_per_kg_m2;
   T thrust_fraction;  ///< 0 when not burning
@@ -54,8 +59,9 @@ DISPERSA_INLINE TimedMasses<T> MassesAt(const Plant<T>& plant, const Phase<T>& p
   // BurnAt holds the time within the burn, so that the ends of a step, which rounding may put outside, count.
   const BurnState<T> burn = BurnAt(plant.burn, time_s - phase.ignition_s);
   const T unlit = Select(phase.burnt, T(0.0), plant.burn.propellant_kg);
-  const Masses<T> m = MassesAt(plant.stack, Select(phase.burning, burn.propellant_kg, unlit));
   TimedMasses<T> o;
+  o.propellant_kg = Select(phase.burning, burn.propellant_kg, unlit);
+  const Masses<T> m = MassesAt(plant.stack, o.propellant_kg);
   o.mass_kg = m.mass_kg - phase.expelled_kg;
   o.inverse_mass_1_kg = T(1.0) / o.mass_kg;
   o.cg_station_m = m.cg_station_m * plant.cg_factor;
@@ -71,11 +77,13 @@ DISPERSA_INLINE TimedMasses<T> MassesAt(const Plant<T>& plant, const Phase<T>& p
 template <class T>
 struct Nozzles {
   T sine[kNozzles], cosine[kNozzles];
+  T acceleration_rad_s2[kNozzles];  ///< of the deflection; counts where nozzles have mass
 };
 template <class T>
 DISPERSA_INLINE Nozzles<T> NozzlesAt(const T* angle_rad) {
   Nozzles<T> n;
   for (int i = 0; i < kNozzles; ++i) {
+    n.acceleration_rad_s2[i] = T(0.0);
     const T x = angle_rad[i], q = x * x;
     n.sine[i] =
         Fma(x * q,
@@ -105,6 +113,7 @@ template <class T>
 struct Thrust {
   T thrust_n, flow_kg_s;
   Vector<T> force_n, moment_n_m;
+  Vector<T> couple_n_m;  ///< the part of the moment that acts as a couple at the pivots
 };
 /// Each nozzle carries a quarter of the thrust, deflected in its hinge plane. Right (+y) and left (-y) turn
 /// the force towards +z, bottom (+z) and top (-z) towards -y. P = P_vac - p A_e; a nozzle that the ambient
@@ -130,9 +139,36 @@ DISPERSA_INLINE Thrust<T> ThrustOf(const Plant<T>& plant, const TimedMasses<T>& 
                                                            -(couple * (sine[2] - sine[3])), T(0.0)};
   const Vector<T> arm{masses.cg_station_m - plant.pivot_station_m, plant.thrust_offset_y_m,
                       plant.thrust_offset_z_m};
-  o.moment_n_m = Cross(arm, o.force_n) + Vector<T>{across_y.z - across_z.y, across_z.x, -across_y.x};
+  o.couple_n_m = {across_y.z - across_z.y, across_z.x, -across_y.x};
+  o.moment_n_m = Cross(arm, o.force_n) + o.couple_n_m;
   return o;
 }
+
+/// What turning nozzles do to the body besides turning the thrust, "tail wags dog": a nozzle whose deflection
+/// grows pushes its pivot the way that it turns the force, and turns the body with its inertia about the
+/// hinge, against its own turning. (A. L. Greensite, "Analysis and Design of Space Vehicle Flight Control
+/// Systems", NASA CR-820 to CR-835, 1967-69.) The body's own acceleration does not move a nozzle: actuators are stiff.
+template <class T>
+struct NozzleReaction {
+  Vector<T> force_n, couple_n_m;  ///< at the pivots
+};
+template <class T>
+DISPERSA_INLINE NozzleReaction<T> ReactionOf(const Plant<T>& plant, const Nozzles<T>& nozzles) {
+  const T* a = nozzles.acceleration_rad_s2;
+  const T pitch = a[0] + a[1], yaw = a[2] + a[3];
+  const T roll = (a[0] - a[1]) + (a[2] - a[3]);
+  return {{T(0.0), -(plant.nozzle_moment_kg_m * yaw), plant.nozzle_moment_kg_m * pitch},
+          {plant.nozzle_moment_kg_m * plant.nozzle_radius_m * roll, plant.nozzle_inertia_kg_m2 * pitch,
+           plant.nozzle_inertia_kg_m2 * yaw}};
+}
+
+/// A body that bends, at an instant.
+template <class T>
+struct BentBody {
+  const Bending<T>* bending;
+  const BendingState<T>* state;
+  ModalForce<T>* modal;  ///< receives Q / m
+};
 
 /// Everything that acts on a lane's body, body axes, moments about C.
 template <class T>
@@ -146,13 +182,31 @@ struct LoadsOf {
   T thrust_n, flow_kg_s;
   T jet_axial, jet_transverse;  ///< jet damping, per rad/s
 };
+/// The thrust where the body bends: it acts at the displaced pivots along the turned axis, and drives the modes.
+template <class T>
+DISPERSA_INLINE void BendThrust(const Plant<T>& plant, const Phase<T>& phase, const TimedMasses<T>& masses,
+                                const BentBody<T>& bent, Thrust<T>& thrust) {
+  const Bent<T> at = BentAtPivot(*bent.bending, *bent.state);
+  const Vector<T> turn{T(0.0), at.about_y_rad, at.about_z_rad};
+  const Vector<T> turned_n = Cross(turn, thrust.force_n);
+  const Vector<T> arm{masses.cg_station_m - plant.pivot_station_m, plant.thrust_offset_y_m,
+                      plant.thrust_offset_z_m};
+  const Vector<T> moved{T(0.0), at.y_m, at.z_m};
+  thrust.moment_n_m = thrust.moment_n_m + Cross(arm, turned_n) + Cross(moved, thrust.force_n);
+  thrust.force_n = thrust.force_n + turned_n;
+  const Vector<T> offset{T(0.0), plant.thrust_offset_y_m, plant.thrust_offset_z_m};
+  ModalForce<T> driven = *bent.modal;
+  DriveAtPivot(*bent.bending, thrust.force_n, thrust.couple_n_m + Cross(offset, thrust.force_n), driven);
+  Blend<T>(phase.burning, driven, *bent.modal);
+}
+
 /// `any_burns`: some lane does. With jet damping the flow leaves with the velocity of the nozzle about the
 /// CG: -m_dot r x (w x r), r on the axis, and for roll the nozzle circle's radius.
 template <class T>
 DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, bool jet_damping, const Plant<T>& plant,
                                    const Phase<T>& phase, bool any_burns, const Surroundings<T>& around,
                                    const TimedMasses<T>& masses, const Nozzles<T>& nozzles,
-                                   const Motion<T>& s) {
+                                   const Motion<T>& s, const BentBody<T>* bent) {
   LoadsOf<T> o;
   o.R_IB = RotationMatrix(s.q);
   const T omega(earth_rate_rad_s), none(0.0);
@@ -162,11 +216,27 @@ DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, bool jet_damping, co
   const Vector<T> w_EB_B = Along(s.w, -omega, o.R_IB.row[2]);
   o.flow = ForceOfFlow(plant.aero, o.v_AB_B, w_EB_B, around.density_kg_m3, around.inverse_sound_s_m,
                        masses.cg_station_m);
+  if (bent) {
+    for (int plane = 0; plane < kPlanes; ++plane)
+      for (int mode = 0; mode < kModes; ++mode) bent->modal->drive_m_s2[plane][mode] = none;
+    BendFlow(*bent->bending, *bent->state, masses.cg_station_m, o.flow, *bent->modal);
+  }
   o.force_n = o.flow.force_n;
   o.moment_n_m = o.flow.moment_n_m + phase.control_torque_n_m;
   o.thrust_n = o.flow_kg_s = o.jet_axial = o.jet_transverse = none;
-  if (!any_burns) return o;
-  const Thrust<T> thrust = ThrustOf(plant, masses, nozzles, around.pressure_pa);
+  if (!any_burns) {
+    if (bent) FinishDrive(*bent->bending, *bent->state, o.force_n.x, *bent->modal);
+    return o;
+  }
+  Thrust<T> thrust = ThrustOf(plant, masses, nozzles, around.pressure_pa);
+  if (plant.nozzles_have_mass) {
+    const NozzleReaction<T> reaction = ReactionOf(plant, nozzles);
+    const Vector<T> arm{masses.cg_station_m - plant.pivot_station_m, none, none};
+    thrust.force_n = thrust.force_n + reaction.force_n;
+    thrust.couple_n_m = thrust.couple_n_m + reaction.couple_n_m;
+    thrust.moment_n_m = thrust.moment_n_m + Cross(arm, reaction.force_n) + reaction.couple_n_m;
+  }
+  if (bent) BendThrust(plant, phase, masses, *bent, thrust);
   o.force_n = Select(phase.burning, o.force_n + thrust.force_n, o.force_n);
   o.moment_n_m = Select(phase.burning, o.moment_n_m + thrust.moment_n_m, o.moment_n_m);
   o.thrust_n = Select(phase.burning, thrust.thrust_n, none);
@@ -176,6 +246,7 @@ DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, bool jet_damping, co
     o.jet_axial = o.flow_kg_s * plant.nozzle_radius_m * plant.nozzle_radius_m;
     o.jet_transverse = o.flow_kg_s * lever * lever;
   }
+  if (bent) FinishDrive(*bent->bending, *bent->state, o.force_n.x, *bent->modal);
   return o;
 }
 
@@ -185,9 +256,9 @@ template <class T>
 DISPERSA_INLINE Rates<T> RatesOf(double earth_rate_rad_s, bool jet_damping, const Plant<T>& plant,
                                  const Phase<T>& phase, bool any_burns, const Surroundings<T>& around,
                                  const TimedMasses<T>& masses, const Nozzles<T>& nozzles, const Motion<T>& s,
-                                 Instant<T>* instant) {
+                                 const BentBody<T>* bent, Instant<T>* instant) {
   const LoadsOf<T> loads =
-      LoadsAt(earth_rate_rad_s, jet_damping, plant, phase, any_burns, around, masses, nozzles, s);
+      LoadsAt(earth_rate_rad_s, jet_damping, plant, phase, any_burns, around, masses, nozzles, s, bent);
   Rates<T> o;
   o.dv = around.gravitation_m_s2 + loads.R_IB * (masses.inverse_mass_1_kg * loads.force_n);
   // What the flow takes along, less what the body's inertia loses to it.

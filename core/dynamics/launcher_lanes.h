@@ -22,8 +22,11 @@ DISPERSA_INLINE void SetLane(Weather<T>& w, int lane, const FlightWeather& from)
   Lane(w.gust_north, lane) = from.gust_north;
   Lane(w.gust_east, lane) = from.gust_east;
   w.profile[lane] = from.profile.is_calm() ? nullptr : &from.profile;
-  w.has_profiles = false;
-  for (int i = 0; i < kWidth<T>; ++i) w.has_profiles |= w.profile[i] != nullptr;
+  w.has_profiles = w.has_updrafts = false;
+  for (int i = 0; i < kWidth<T>; ++i) {
+    w.has_profiles |= w.profile[i] != nullptr;
+    w.has_updrafts |= w.profile[i] != nullptr && w.profile[i]->has_updraft;
+  }
 }
 
 template <class T>
@@ -59,6 +62,9 @@ DISPERSA_INLINE void SetLane(Plant<T>& p, int lane, const LauncherPlant& plant, 
   Lane(p.inertia_factor, lane) = plant.inertia_factor;
   Lane(p.pivot_station_m, lane) = s.gimbal.pivot_station_m;
   Lane(p.nozzle_radius_m, lane) = s.gimbal.radius_m;
+  Lane(p.nozzle_moment_kg_m, lane) = s.gimbal.nozzle_mass_kg * s.gimbal.nozzle_cg_m;
+  Lane(p.nozzle_inertia_kg_m2, lane) = s.gimbal.nozzle_inertia_kg_m2;
+  p.nozzles_have_mass = plant.nozzles_have_mass();
   const double* tilt = reinterpret_cast<const double*>(&s.thrust_tilt);  // column by column
   for (int i = 0; i < 3; ++i) {
     Lane(p.thrust_tilt.row[i].x, lane) = tilt[i];
@@ -67,6 +73,26 @@ DISPERSA_INLINE void SetLane(Plant<T>& p, int lane, const LauncherPlant& plant, 
   }
   Lane(p.thrust_offset_y_m, lane) = s.thrust_offset_y_m;
   Lane(p.thrust_offset_z_m, lane) = s.thrust_offset_z_m;
+}
+
+/// The bending of a lane on its stack; what its propellant decides is set by ShapesAt.
+template <class T>
+DISPERSA_INLINE void SetLane(Bending<T>& b, int lane, const LauncherPlant& plant, int stack) {
+  const BendingTable* table = plant.stacks.data()[stack].bending.get();
+  b.table[lane] = table != nullptr && table->modes > 0 ? table : nullptr;
+  table = b.table[lane];
+  for (int mode = 0; mode < kModes; ++mode)
+    Lane(b.frequency_factor[mode], lane) = plant.bending.frequency.data()[mode];
+  Lane(b.damping_ratio, lane) = plant.bending.damping_ratio;
+  Lane(b.slope_factor, lane) = plant.bending.slope;
+  for (int strip = 0; strip < kStrips; ++strip) {
+    Lane(b.strip_station_m[strip], lane) = table ? table->strip_station_m.data()[strip] : 0.0;
+    Lane(b.slender[strip], lane) = table ? table->slender.data()[strip] : 0.0;
+    Lane(b.shift_1_m[strip], lane) = table ? table->shift_1_m.data()[strip] : 0.0;
+  }
+  Lane(b.slender_station_m, lane) = table ? table->slender_station_m : 0.0;
+  b.modes = plant.bending_modes();
+  b.planes = plant.bending_planes();
 }
 
 /// `stuck`: index of a nozzle that does not move, or -1.
@@ -78,6 +104,14 @@ DISPERSA_INLINE void SetLane(Drives<T>& d, int lane, const Gimbal& gimbal, int s
   Lane(d.bandwidth2_1_s2, lane) = w * w;
   Lane(d.twice_damping_1_s, lane) = 2.0 * gimbal.damping_ratio * w;
   for (int i = 0; i < kNozzles; ++i) Lane(d.moves[i], lane) = i == stuck ? 0.0 : 1.0;
+  Lane(d.dead_zone_rad, lane) = gimbal.dead_zone_rad;
+  Lane(d.friction_1_s2, lane) = w * w * gimbal.friction_rad;
+  Lane(d.resolution_rad, lane) = gimbal.resolution_rad;
+  d.is_rough = d.is_coarse = false;
+  for (int i = 0; i < kWidth<T>; ++i) {
+    d.is_rough |= Lane(d.dead_zone_rad, i) > 0.0 || Lane(d.friction_1_s2, i) > 0.0;
+    d.is_coarse |= Lane(d.resolution_rad, i) > 0.0;
+  }
 }
 
 }  // namespace DISPERSA_ISA

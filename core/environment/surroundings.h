@@ -97,7 +97,7 @@ struct Weather {
   T gust_start_m, gust_inverse_length;
   T gust_north, gust_east;
   const WeatherProfile* profile[kWidth<T>];  ///< null: calm
-  bool has_profiles;
+  bool has_profiles, has_updrafts;
 };
 
 /// Speed of a JetStream.
@@ -151,7 +151,7 @@ DISPERSA_INLINE Surroundings<T> SurroundingsAt(const Earth& earth, const AirTabl
   const Air<T> air = AirAt(standard, at.altitude_m);
   const T inverse_energy = T(1.0) / air.energy_j_kg;
   T factor = weather.density_factor;
-  T north(0.0), east(0.0);
+  T north(0.0), east(0.0), up(0.0);
   if (weather.has_profiles) {
     const double* row[kWidth<T>];
     for (int lane = 0; lane < kWidth<T>; ++lane)
@@ -161,6 +161,7 @@ DISPERSA_INLINE Surroundings<T> SurroundingsAt(const Earth& earth, const AirTabl
     north = Fma(at.altitude_m, c[1], c[0]);
     east = Fma(at.altitude_m, c[3], c[2]);
     factor = factor * Fma(at.altitude_m, c[5], c[4]);
+    if (weather.has_updrafts) up = Fma(at.altitude_m, c[7], c[6]);
   }
   o.pressure_pa = air.pressure_pa * factor;
   o.density_kg_m3 = o.pressure_pa * inverse_energy;
@@ -193,6 +194,15 @@ DISPERSA_INLINE Surroundings<T> SurroundingsAt(const Earth& earth, const AirTabl
     const Vector<T> wind{Fma(outward, cos_longitude, -(east * sin_longitude)),
                          Fma(outward, sin_longitude, east * cos_longitude), north * at.cos_latitude};
     o.wind_m_s = Select(windy, wind, o.wind_m_s);
+  }
+  const auto lifts = Abs(up) > T(0.0);
+  if (weather.has_updrafts && Any(lifts)) {
+    // Column down of NedAxes, turned round.
+    const T inverse_rho = T(1.0) / Select(at.axis_distance_m > T(0.0), at.axis_distance_m, T(1.0));
+    const T outward = up * at.cos_latitude * inverse_rho;
+    const Vector<T> lifted{Fma(outward, p.x, o.wind_m_s.x), Fma(outward, p.y, o.wind_m_s.y),
+                           Fma(up, at.sin_latitude, o.wind_m_s.z)};
+    o.wind_m_s = Select(lifts, lifted, o.wind_m_s);
   }
   return o;
 }

@@ -4,24 +4,30 @@
 #include <vector>
 
 #include "core/environment/density_factor.h"
+#include "core/environment/turbulence.h"
 #include "core/environment/wind.h"
 #include "core/math/aligned_rows.h"
 
 namespace dispersa {
 
 /// The sum of the steady wind and of all wind tables with their fading tops (Evaluate of the same parts, to
-/// rounding), and the density factor. A row has 8 doubles: north (m/s), east (m/s) and factor, each as
-/// constant and slope over altitude (m); row k holds between edges k - 1 and k, open at both ends.
+/// rounding) and of a turbulent field, and the density factor. A row has 8 doubles: north (m/s), east (m/s),
+/// factor and up (m/s), each as constant and slope over altitude (m); row k holds between edges k - 1 and k,
+/// open at both ends.
 struct WeatherProfile {
   static constexpr int kRowSize = 8;
 
   std::vector<double> edges;  ///< strictly increasing
   AlignedRows rows;           ///< one more than there are edges
 
+  bool has_updraft = false;  ///< up is not 0 everywhere
+
   bool is_calm() const { return rows.empty(); }  ///< no wind, factor 1
 };
 
-WeatherProfile BuildWeatherProfile(const Wind& wind, const DensityFactor& density);
+/// `turbulence`: null is none.
+WeatherProfile BuildWeatherProfile(const Wind& wind, const DensityFactor& density,
+                                   const TurbulenceField* turbulence = nullptr);
 
 /// One flight's wind and density as its equations take them: plain numbers and the profile. Directions are
 /// unit components of where the air moves to; a speed of 0 means there is none.
@@ -33,6 +39,7 @@ struct FlightWeather {
   WeatherProfile profile;  ///< of everything else
 };
 /// Of a wind with at most one jet stream and one gust, which is what a flight draws.
-FlightWeather PrepareWeather(const Wind& wind, const DensityFactor& density);
+FlightWeather PrepareWeather(const Wind& wind, const DensityFactor& density,
+                             const TurbulenceField* turbulence = nullptr);
 
 }  // namespace dispersa

@@ -14,6 +14,7 @@
 #include "core/dynamics/launcher_lanes.h"
 #include "core/flight/flight_queue.h"
 #include "core/flight/lane_metrics.h"
+#include "core/flight/lane_sensors.h"
 #include "core/flight/sequence.h"
 #include "core/flight/simpson_step.h"
 
@@ -49,6 +50,11 @@ class Batch {
   void Start(int lane, FlightRecord* record);
   void SetStack(int lane, int stack);
   void SetStop(int lane);
+  /// Whether guidance gives the lane a reference of its own.
+  bool IsSteered(int lane) const {
+    return definition_.guidance.closed_loop && slot_[lane].record != nullptr &&
+           slot_[lane].record->guided->steers();
+  }
   void End(int lane, Outcome outcome, const char* reason);
   LauncherPhase PhaseOf(int lane) const;
   LaneView ViewOf(int lane) const;
@@ -56,12 +62,16 @@ class Batch {
   // ---- a pass ----
   void Pass();
   void Measure();
+  void MeasureBySensors(const T* reference);
+  Vector<T> GyroRates(Vector<T> unit_rad_s);
+  void DriftOn();
   void FlyGimbals();
   template <bool kAll>
   void FlyGimbalsOf(M powered);
   const T* FedForward(T* program) const;
   void PassCommands(M powered);
   void FlyThrusters();
+  void Guide();
   void Meter(M powered);
   void WatchAndDigest();
   void CheckEnds();
@@ -99,7 +109,12 @@ class Batch {
   Vector<T> angle_rad_, rate_rad_s_;  ///< error, reference less true
   Vector<T> measured_angle_rad_, measured_rate_rad_s_;
   Vector<T> gyro_bias_rad_s_;
-  bool any_noise_ = false, any_judged_ = false;
+  InertialUnit<T> unit_;
+  M drifts_;  ///< whose gyros have a bias or noise
+  GyroMemory<T> gyros_[kRateGyros];
+  T gyro_weight_[kRateGyros], unit_weight_;  ///< of the measured rates
+  M gyros_fresh_;                            ///< have not been read since ignition
+  bool any_drift_ = false, any_judged_ = false;
   T steps_a_tick_;
   int most_steps_ = 1;
 
@@ -130,13 +145,18 @@ Batch<T>::Batch(const FlightModel& model, FlightQueue& queue)
   __builtin_memset(static_cast<void*>(&gimbals_), 0, sizeof gimbals_);
   __builtin_memset(static_cast<void*>(&thrusters_), 0, sizeof thrusters_);
   __builtin_memset(static_cast<void*>(&metrics_), 0, sizeof metrics_);
+  __builtin_memset(static_cast<void*>(&unit_), 0, sizeof unit_);
+  __builtin_memset(static_cast<void*>(&gyros_), 0, sizeof gyros_);
   const LauncherPlant& nominal = model.nominal_plant();
   step_.Configure(nominal.environment.earth, nominal.jet_damping, tick_s_);
   for (int lane = 0; lane < kLanes; ++lane) {
     SetLane(live_, lane, false);
     SetLane(coasting_, lane, false);
     SetLane(loop_, lane, model.autopilot(), 0, 1.0, 1.0, 1.0);
+    SetLane(drifts_, lane, false);
+    SetLane(gyros_fresh_, lane, false);
     SetLane(step_.plant, lane, nominal, 0);
+    SetLane(step_.bending, lane, nominal, 0);
     SetLane(step_.drives, lane, nominal.stacks.data()->gimbal, -1);
     step_.SetTickTransition(lane);
   }
@@ -145,6 +165,8 @@ Batch<T>::Batch(const FlightModel& model, FlightQueue& queue)
   steps_a_tick_ = T(1.0);
   for (T& command : next_command_rad_) command = T(0.0);
   gyro_bias_rad_s_ = Zero<T>();
+  for (T& weight : gyro_weight_) weight = T(0.0);
+  unit_weight_ = unit_.truth.w = unit_.measured.w = T(1.0);
   gust_bottom_m_ = gust_top_m_ = T(0.0);
   step_.motion.p.x = T(nominal.environment.earth.equatorial_radius_m);
   step_.motion.q.w = T(1.0);
@@ -205,17 +227,23 @@ void Batch<T>::Start(int lane, FlightRecord* record) {
   Lane(gust_top_m_, lane) =
       in.gust_speed_m_s != 0.0 ? in.gust_altitude_m + in.gust_length_m : in.gust_altitude_m;
   Lane(steps_a_tick_, lane) = record->options.steps_per_tick;
-  any_noise_ = any_judged_ = false;
+  SetLane(drifts_, lane,
+          record->noisy || in.gyro_bias_roll_rad_s != 0.0 || in.gyro_bias_pitch_rad_s != 0.0 ||
+              in.gyro_bias_yaw_rad_s != 0.0);
+  Lane(unit_weight_, lane) = 1.0;
+  for (T& weight : gyro_weight_) Lane(weight, lane) = 0.0;
+  any_drift_ = Any(drifts_ & live_);
+  any_judged_ = false;
   most_steps_ = 1;
   for (const Slot& each : slot_) {
     if (each.record == nullptr) continue;
-    any_noise_ |= each.record->noisy;
     any_judged_ |= each.record->is_judged();
     if (each.record->options.steps_per_tick > most_steps_) most_steps_ = each.record->options.steps_per_tick;
   }
   step_.StartFlight(lane);
   SetLane(step_.plant.weather, lane, record->weather);
   step_.WriteLane(lane, record->lift_off);
+  unit_.Start(lane, step_.motion.q);
   SetStack(lane, 0);
   // What happened before lift-off happens at lift-off.
   while (slot.record != nullptr && slot.next_event < slot.last_event &&
@@ -231,6 +259,7 @@ void Batch<T>::SetStack(int lane, int stack) {
   slot.stuck_nozzle = -1;
   slot.switch_s = kFarFuture;
   SetLane(step_.plant, lane, slot.record->plant, stack);
+  SetLane(step_.bending, lane, slot.record->plant, stack);
   SetLane(step_.drives, lane, slot.record->plant.stacks.data()[stack].gimbal, -1);
   step_.SetTickTransition(lane);
   step_.MarkMoved(lane);

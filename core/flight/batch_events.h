@@ -59,6 +59,9 @@ void Batch<T>::AdvanceThroughEvents(T target) {
         slot.switch_s = kFarFuture;
         for (int i = 0; i < kNozzles; ++i)
           Lane(step_.command_rad[i], lane) = Lane(next_command_rad_[i], lane);
+        M commanded = NoLane<T>();
+        SetLane(commanded, lane, true);
+        step_.MarkCommanded(commanded);
       } else if (due >> lane & 1u) {
         Happen(lane);
       } else if (Lane(time_s_, lane) >= Lane(target, lane)) {
@@ -170,6 +173,10 @@ void Batch<T>::Ignite(int lane, int stage) {
     Lane(gimbals_.deflection_rad[axis], lane) = 0.0;
     SetLane(gimbals_.axes[axis], lane, nothing);
   }
+  const SensorModel::Weights& weights = model_.sensors().stages.data()[stage];
+  for (int i = 0; i < kRateGyros; ++i) Lane(gyro_weight_[i], lane) = weights.gyro.data()[i];
+  Lane(unit_weight_, lane) = weights.unit;
+  SetLane(gyros_fresh_, lane, true);
   const int loop_stage = static_cast<int>(in.loop_stage + 0.5);
   const bool is_changed = loop_stage == 0 || loop_stage == stage + 1;
   SetLane(loop_, lane, autopilot, stage, in.pn_error_factor, in.pn_rate_factor,
@@ -214,7 +221,10 @@ void Batch<T>::BurnOut(int lane, int stage) {
   const Instant<double> now = step_.InstantOf(lane, time_s_);
   metrics_.AddLoadsOfLane(lane, now);
   metrics_.EndStage(lane, stage, record.sums);
+  record.ripple.Interrupt();
   record.limit_cycle.Interrupt();
+  for (T& weight : gyro_weight_) Lane(weight, lane) = 0.0;
+  Lane(unit_weight_, lane) = 1.0;
   SetLane(step_.phase.burning, lane, false);
   SetLane(step_.phase.burnt, lane, true);
   if (stage + 1 == static_cast<int>(record.plant.stacks.size())) record.Inject(now.altitude_m, y);

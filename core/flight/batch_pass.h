@@ -22,6 +22,7 @@ void Batch<T>::Pass() {
   FlyGimbals();
   if (Any(coasting_)) FlyThrusters();
   step_.EvaluateStart(time_s_);
+  if (definition_.guidance.closed_loop) Guide();
   metrics_.AddLoads(live_ & !coasting_, step_.now());
   Meter(live_ & step_.phase.burning);
   WatchAndDigest();
@@ -29,8 +30,7 @@ void Batch<T>::Pass() {
   if (flying_ > 0) Advance();
 }
 
-/// Error of the lanes' attitudes against the reference at their ticks, true and as the gyros see it: rates
-/// with bias and noise; the attitude, integrated from them, drifts with the bias.
+/// Error of the lanes' attitudes against the reference at their ticks, true and as the sensors see it.
 template <class T>
 void Batch<T>::Measure() {
   const ReferenceRows& reference = model_.reference_rows();
@@ -38,24 +38,76 @@ void Batch<T>::Measure() {
   for (int lane = 0; lane < kLanes; ++lane) {
     const double tick = Min(Lane(tick_, lane), reference.last_tick);
     row[lane] = reference.rows.data() + ReferenceRows::kRowSize * static_cast<long>(tick);
+    if (IsSteered(lane)) row[lane] = slot_[lane].record->guided->RowAt(Lane(tick_, lane));
   }
   T c[ReferenceRows::kRowSize];
   LoadRow(row, 2, c);
   const Turn<T> q_BR = Compose(Inverse(step_.motion.q), {c[0], c[1], c[2], c[3]});
   angle_rad_ = RotationVector(q_BR);
   rate_rad_s_ = Rotate(q_BR, {c[4], c[5], c[6]}) - step_.motion.w;
-  measured_angle_rad_ = Along(angle_rad_, -time_s_, gyro_bias_rad_s_);
-  measured_rate_rad_s_ = rate_rad_s_ - gyro_bias_rad_s_;
-  if (!any_noise_) return;
-  // Only a tick at which the autopilot acts takes a sample.
+  measured_angle_rad_ = angle_rad_;
+  measured_rate_rad_s_ = rate_rad_s_;
+  if (any_drift_ || step_.bending.modes > 0 || model_.sensors().uses_gyros) MeasureBySensors(c);
+}
+
+/// The same through sensors that are not perfect, or sit on a body that bends.
+template <class T>
+void Batch<T>::MeasureBySensors(const T* reference) {
+  const bool everywhere = step_.bending.modes > 0 || model_.sensors().uses_gyros;
+  Turn<T> seen = step_.motion.q;
+  Vector<T> rate = step_.motion.w;
+  if (step_.bending.modes > 0) {
+    step_.UpdateShapes(time_s_);
+    seen = TurnedBy(seen, UnitTurn(step_.bending, step_.bending_state));
+    rate = rate + TurnRate(step_.bending, step_.bending_state, -1);
+  }
+  if (model_.sensors().uses_gyros) rate = GyroRates(rate);
+  if (any_drift_) {
+    unit_.Measure(live_, time_s_, seen);
+    Blend<T>(drifts_, unit_.measured, seen);
+    DriftOn();
+    rate = Select(drifts_, rate + unit_.drift_rad_s, rate);
+  }
+  const Turn<T> q_SR = Compose(Inverse(seen), {reference[0], reference[1], reference[2], reference[3]});
+  const Vector<T> angle = RotationVector(q_SR);
+  const Vector<T> error_rate = Rotate(q_SR, {reference[4], reference[5], reference[6]}) - rate;
+  const M imperfect = everywhere ? live_ : live_ & drifts_;
+  measured_angle_rad_ = Select(imperfect, angle, measured_angle_rad_);
+  measured_rate_rad_s_ = Select(imperfect, error_rate, measured_rate_rad_s_);
+}
+
+/// The blend of gyros and inertial unit; while nothing burns the weights are the inertial unit's alone.
+template <class T>
+Vector<T> Batch<T>::GyroRates(Vector<T> unit_rad_s) {
+  const M burning = live_ & step_.phase.burning;
+  Vector<T> blend = unit_weight_ * unit_rad_s;
+  const int gyros = static_cast<int>(model_.sensors().gyros.size());
+  for (int g = 0; g < gyros; ++g) {
+    const GyroModel& gyro = model_.sensors().gyros.data()[g];
+    Vector<T> rate = step_.motion.w;
+    if (step_.bending.modes > 0) rate = rate + TurnRate(step_.bending, step_.bending_state, g);
+    M sampled = NoLane<T>();
+    for (int lane = 0; lane < kLanes; ++lane)
+      SetLane(sampled, lane, static_cast<long>(Lane(tick_, lane)) % gyro.sample_ticks == 0);
+    StepGyro(gyro, burning, burning & gyros_fresh_, sampled, rate, gyros_[g]);
+    blend = Along(blend, gyro_weight_[g], gyros_[g].output_rad_s);
+  }
+  gyros_fresh_ = gyros_fresh_ & !burning;
+  return blend;
+}
+
+/// Bias and noise until the next measurement. Only a tick at which the autopilot acts takes a sample.
+template <class T>
+void Batch<T>::DriftOn() {
+  unit_.drift_rad_s = gyro_bias_rad_s_;
   const unsigned acting = Bits(live_ & (step_.phase.burning | coasting_));
   for (int lane = 0; lane < kLanes; ++lane) {
     if (!(acting >> lane & 1u) || !slot_[lane].record->noisy) continue;
     double noise[kAxes];
     slot_[lane].record->DrawNoise(noise);
-    Lane(measured_rate_rad_s_.x, lane) -= noise[0];
-    Lane(measured_rate_rad_s_.y, lane) -= noise[1];
-    Lane(measured_rate_rad_s_.z, lane) -= noise[2];
+    Lane(unit_.drift_rad_s.x, lane) += noise[0];
+    Lane(unit_.drift_rad_s.y, lane) += noise[1];
+    Lane(unit_.drift_rad_s.z, lane) += noise[2];
   }
 }
 
@@ -88,6 +140,7 @@ const T* Batch<T>::FedForward(T* program) const {
   for (int lane = 0; lane < kLanes; ++lane) {
     const double tick = Min(Lane(tick_, lane), model_.reference_rows().last_tick);
     row[lane] = table.rows.data() + FeedForwardRows::kRowSize * static_cast<long>(tick);
+    if (IsSteered(lane)) row[lane] = slot_[lane].record->guided->feed_forward_row();
   }
   LoadFour(row, program);
   return program;
@@ -125,6 +178,7 @@ void Batch<T>::PassCommands(M powered) {
       SetStop(lane);
     }
   }
+  step_.MarkCommanded(powered);
   line_at_ = (line_at_ + 1) & (kDelayLine - 1);
 }
 
@@ -170,6 +224,37 @@ void Batch<T>::FlyThrusters() {
   step_.MarkStale(changes | fires);
 }
 
+/// Closed-loop guidance sees the lanes whose time has come: each by itself, as ordinary code.
+template <class T>
+void Batch<T>::Guide() {
+  for (int lane = 0; lane < kLanes; ++lane) {
+    FlightRecord* const record = slot_[lane].record;
+    if (record == nullptr || Lane(tick_, lane) < record->guided->next_tick()) continue;
+    StateValues y;
+    step_.ReadLane(lane, y);
+    const LauncherPhase phase = PhaseOf(lane);
+    const Instant<T>& now = step_.now();
+    const auto size_of = [lane](const Vector<T>& v) {
+      const double x = Lane(v.x, lane), y_ = Lane(v.y, lane), z = Lane(v.z, lane);
+      return Sqrt(x * x + y_ * y_ + z * z);
+    };
+    LaneSight sight;
+    sight.time_s = Lane(time_s_, lane);
+    for (int i = 0; i < 3; ++i) {
+      sight.p_EoC_I[i] = y[i];
+      sight.v_IC_I[i] = y[3 + i];
+    }
+    sight.stack = phase.stack;
+    sight.burning = phase.burning;
+    sight.ignition_s = phase.ignition_s;
+    sight.expelled_kg = phase.expelled_mass_kg;
+    sight.specific_force_m_s2 = size_of(now.force_n) / Lane(now.mass_kg, lane);
+    sight.measured_angle_rad = size_of(measured_angle_rad_);
+    sight.measured_rate_rad_s = size_of(measured_rate_rad_s_);
+    if (record->Guide(sight)) SetStop(lane);
+  }
+}
+
 /// Metrics of this tick.
 template <class T>
 void Batch<T>::Meter(M powered) {
@@ -191,11 +276,14 @@ void Batch<T>::Meter(M powered) {
   const T pitch_angle = T(0.5) * (n[0] + n[1]), yaw = T(0.5) * (n[2] + n[3]);
   for (int lane = 0; lane < kLanes; ++lane) {
     if (!(metered >> lane & 1u)) continue;
-    LimitCycleMeter& meter = slot_[lane].record->limit_cycle;
-    if (interrupted >> lane & 1u)
-      meter.Interrupt();
-    else
-      meter.Add(Lane(roll, lane), Lane(pitch_angle, lane), Lane(yaw, lane));
+    FlightRecord& record = *slot_[lane].record;
+    if (interrupted >> lane & 1u) {
+      record.ripple.Interrupt();
+      record.limit_cycle.Interrupt();
+    } else {
+      record.ripple.Add(Lane(roll, lane), Lane(pitch_angle, lane), Lane(yaw, lane));
+      record.limit_cycle.Add(Lane(roll, lane), Lane(pitch_angle, lane), Lane(yaw, lane));
+    }
   }
 }
 

@@ -21,9 +21,19 @@ class ColumnList {
       columns_.push_back(
           {stem + "_stage" + std::to_string(i + 1) + unit_suffix, unit, OffsetOf(&(nominal_.*field)[i])});
   }
+  void EachMode(std::array<double, kModes> FlightInputs::*field, const std::string& stem) {
+    for (std::size_t i = 0; i < kModes; ++i)
+      columns_.push_back({stem + "_mode" + std::to_string(i + 1), 1.0, OffsetOf(&(nominal_.*field)[i])});
+  }
   void EachLevel(std::array<double, kWindLevels> FlightInputs::*field, const std::string& stem) {
     for (std::size_t i = 0; i < kWindLevels; ++i)
       columns_.push_back({stem + "_" + std::to_string(i + 1), 1.0, OffsetOf(&(nominal_.*field)[i])});
+  }
+  void EachLaunchAxis(std::array<double, 3> FlightInputs::*field, const std::string& stem,
+                      const std::string& unit_suffix) {
+    const char* const axes[] = {"_downrange", "_right", "_down"};
+    for (std::size_t i = 0; i < 3; ++i)
+      columns_.push_back({stem + axes[i] + unit_suffix, 1.0, OffsetOf(&(nominal_.*field)[i])});
   }
   std::vector<InputColumn> Take() { return std::move(columns_); }
 
@@ -56,6 +66,9 @@ std::vector<InputColumn> MakeColumns() {
   list.One(&In::gust_azimuth_rad, "gust_azimuth_deg", kRadPerDeg);
   list.EachLevel(&In::wind_profile_north, "wind_profile_north");
   list.EachLevel(&In::wind_profile_east, "wind_profile_east");
+  list.One(&In::turbulence_exceedance, "turbulence_exceedance");
+  list.One(&In::turbulence_wind_20ft_m_s, "turbulence_wind_20ft_m_s");
+  list.One(&In::turbulence_scale, "turbulence_scale");
   list.One(&In::drag_factor, "drag_factor");
   list.One(&In::lift_factor, "lift_factor");
   list.One(&In::cg_factor, "cg_factor");
@@ -63,6 +76,9 @@ std::vector<InputColumn> MakeColumns() {
   list.One(&In::density_factor, "density_factor");
   list.One(&In::inertia_factor, "inertia_factor");
   list.One(&In::actuator_bandwidth_factor, "actuator_bandwidth_factor");
+  list.EachMode(&In::bending_frequency_factor, "bending_frequency_factor");
+  list.One(&In::bending_damping_factor, "bending_damping_factor");
+  list.One(&In::bending_slope_factor, "bending_slope_factor");
   list.EachStage(&In::tip_off_pitch_rad_s, "tip_off_pitch", "_deg_s", kRadPerDeg);
   list.EachStage(&In::tip_off_yaw_rad_s, "tip_off_yaw", "_deg_s", kRadPerDeg);
   list.EachStage(&In::tip_off_roll_rad_s, "tip_off_roll", "_deg_s", kRadPerDeg);
@@ -78,6 +94,9 @@ std::vector<InputColumn> MakeColumns() {
   list.One(&In::loop_gain_factor, "loop_gain_factor");
   list.One(&In::loop_delay_s, "loop_delay_s");
   list.One(&In::loop_stage, "loop_stage");
+  list.EachLaunchAxis(&In::navigation_position_error_m, "navigation_position_error", "_m");
+  list.EachLaunchAxis(&In::navigation_velocity_error_m_s, "navigation_velocity_error", "_m_s");
+  list.One(&In::accelerometer_scale_factor, "accelerometer_scale_factor");
   std::vector<InputColumn> columns = list.Take();
   assert(columns.size() == kInputCount);
   return columns;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/structure/bending_table.h"
 #include "core/vehicle/vehicle.h"
 
 namespace dispersa {
@@ -40,6 +41,9 @@ struct FlightInputs {
   double gust_azimuth_rad = 0.0;
   std::array<double, kWindLevels> wind_profile_north{};  ///< standard normal draws of a wind climatology
   std::array<double, kWindLevels> wind_profile_east{};
+  double turbulence_exceedance = 0.0;        ///< probability that picks the intensity; 0: none
+  double turbulence_wind_20ft_m_s = 0.0;     ///< mean wind near the ground, which makes the turbulence there
+  double turbulence_scale = 1.0;             ///< of all intensities
   double drag_factor = 1.0;                  ///< of the axial force
   double lift_factor = 1.0;                  ///< of the normal force
   double cg_factor = 1.0;                    ///< of the CG's distance from the nose of the current stack
@@ -47,6 +51,9 @@ struct FlightInputs {
   double density_factor = 1.0;
   double inertia_factor = 1.0;
   double actuator_bandwidth_factor = 1.0;
+  std::array<double, kModes> bending_frequency_factor = {1.0, 1.0, 1.0, 1.0, 1.0};  ///< of each mode, both planes
+  double bending_damping_factor = 1.0;       ///< of the modes' damping ratio
+  double bending_slope_factor = 1.0;         ///< of the slopes that sensors feel
   PerStage tip_off_pitch_rad_s{};            ///< rate added to the upper stack as stage i separates
   PerStage tip_off_yaw_rad_s{};
   PerStage tip_off_roll_rad_s{};
@@ -62,6 +69,9 @@ struct FlightInputs {
   double loop_gain_factor = 1.0;             ///< of every commanded deflection: measures the gain margin
   double loop_delay_s = 0.0;                 ///< further delay of the commands: measures the delay margin
   double loop_stage = 0.0;                   ///< the stage (1-based) whose loop they change, 0 all
+  std::array<double, 3> navigation_position_error_m{};    ///< navigated less true, constant, along L's axes
+  std::array<double, 3> navigation_velocity_error_m_s{};  ///< likewise
+  double accelerometer_scale_factor = 1.0;   ///< of the sensed specific force
 };
 
 /// A column of the applied inputs: its name carries the unit, e.g. "thrust_misalignment_stage1_deg".

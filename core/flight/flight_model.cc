@@ -3,7 +3,9 @@
 #include <cassert>
 
 #include "core/dynamics/aero_grid.h"
+#include "core/math/constants.h"
 #include "core/math/functions.h"
+#include "core/random/draws.h"
 #include "core/vehicle/aerodynamics_build_up.h"
 
 namespace dispersa {
@@ -25,6 +27,15 @@ LauncherPlant BuildNominalPlant(const Vehicle& vehicle) {
     plant.stacks.push_back(stack);
   }
   return plant;
+}
+
+void AddBending(const Vehicle& vehicle, double tick_s, LauncherPlant& plant) {
+  if (!vehicle.structure_beam || vehicle.structure_beam->flown_modes == 0) return;
+  plant.bending.damping_ratio = vehicle.structure_beam->damping_ratio;
+  const std::vector<StackModes> stacks = BuildBendingModes(vehicle);
+  for (std::size_t i = 0; i < stacks.size(); ++i)
+    plant.stacks[i].bending =
+        std::make_shared<const BendingTable>(BuildBendingTable(vehicle, stacks[i], kPi / tick_s));
 }
 
 StageControl BuildStageControl(const LauncherStack& stack) {
@@ -86,6 +97,34 @@ FeedForwardRows TabulateFeedForward(const AttitudeProgram& program, const Autopi
   return table;
 }
 
+GuidanceMission BuildMission(const FlightDefinition& definition, const LauncherPlant& plant,
+                             const LaunchFrame& frame) {
+  // Fine enough that straight pieces stand for a program whose rates change by some 0.1 deg/s in a second.
+  constexpr double kStep_s = 0.5;
+  GuidanceMission mission;
+  mission.config = definition.guidance;
+  mission.earth = plant.environment.earth;
+  mission.R_IL = frame.R_IL;
+  const InjectionTarget& target = definition.target;
+  mission.target = {target.altitude_m, target.velocity_m_s, target.flight_path_angle_rad,
+                    target.inclination_rad};
+  const auto stage = [&](std::size_t i) {
+    const LauncherStack& stack = plant.stacks[i];
+    return GuidedStage{stack.burn, stack.mass.fixed_mass_kg + stack.burn.propellant_mass_kg};
+  };
+  const std::size_t last = plant.stacks.size() - 1;
+  mission.below = stage(last - 1);
+  mission.last = stage(last);
+  mission.last_ignition_s = definition.last_ignition_s;
+  mission.velocity_reserve_m_s = definition.velocity_reserve_m_s;
+  mission.program.step_s = kStep_s;
+  for (double time_s = 0.0; time_s <= definition.program.knots.back().time_s + kStep_s; time_s += kStep_s) {
+    const PitchYawRoll at = definition.program.At(time_s).angles;
+    mission.program.at.push_back({at.pitch, at.yaw});
+  }
+  return mission;
+}
+
 }  // namespace
 
 FlightModel::FlightModel(FlightDefinition definition)
@@ -93,20 +132,25 @@ FlightModel::FlightModel(FlightDefinition definition)
       nominal_(BuildNominalPlant(definition_.vehicle)) {
   frame_ = BuildLaunchFrame(nominal_.environment.earth, definition_.vehicle.site,
                             definition_.program.launch_azimuth_rad);
+  AddBending(definition_.vehicle, definition_.autopilot.tick_s, nominal_);
   if (definition_.wind_table) nominal_.environment.wind.tables.push_back(*definition_.wind_table);
   std::vector<StageControl> controls;
   for (const LauncherStack& stack : nominal_.stacks) controls.push_back(BuildStageControl(stack));
   autopilot_ = BuildAutopilot(definition_.autopilot, std::move(controls),
                               definition_.vehicle.reaction_control.minimum_on_time_s);
+  sensors_ = BuildSensors(definition_.vehicle, definition_.autopilot);
   reference_rows_ = TabulateReference(definition_.program, frame_, definition_.autopilot.tick_s);
   feed_forward_rows_ = TabulateFeedForward(definition_.program, definition_.autopilot,
                                            static_cast<long>(reference_rows_.last_tick) + 1);
+  if (definition_.guidance.closed_loop)
+    guidance_mission_ = BuildMission(definition_, nominal_, frame_);
 }
 
 FlightModel FlightModel::WithAutopilot(const AutopilotConfig& autopilot) const {
   assert(autopilot.tick_s == definition_.autopilot.tick_s);
   FlightModel model = *this;
   model.definition_.autopilot = autopilot;
+  model.sensors_ = BuildSensors(definition_.vehicle, autopilot);
   model.autopilot_ =
       BuildAutopilot(autopilot, autopilot_.stages, definition_.vehicle.reaction_control.minimum_on_time_s);
   model.feed_forward_rows_ =
@@ -131,12 +175,24 @@ WindTable DrawnProfile(const WindStatistics& statistics, const FlightInputs& inp
   return DrawWind(statistics, normals);
 }
 
+TurbulenceField TurbulenceOf(const FlightInputs& in, const TurbulencePath& path, std::uint64_t seed,
+                             std::uint64_t case_index) {
+  Stream along(seed, case_index, "turbulence/along"), across(seed, case_index, "turbulence/across"),
+      normal(seed, case_index, "turbulence/normal");
+  return DrawTurbulence(
+      {in.turbulence_exceedance, in.turbulence_wind_20ft_m_s, in.turbulence_scale}, path,
+      {[&] { return along.Normal(); }, [&] { return across.Normal(); }, [&] { return normal.Normal(); }});
+}
+
 }  // namespace
 
-LauncherPlant FlightModel::PlantFor(const FlightInputs& in) const {
+LauncherPlant FlightModel::PlantFor(const FlightInputs& in, std::optional<std::uint64_t> case_index) const {
   LauncherPlant plant = nominal_;
   plant.cg_factor = in.cg_factor;
   plant.inertia_factor = in.inertia_factor;
+  plant.bending.frequency = in.bending_frequency_factor;
+  plant.bending.damping_ratio *= in.bending_damping_factor;
+  plant.bending.slope = in.bending_slope_factor;
   plant.environment.density.scale *= in.density_factor;
 
   Wind& wind = plant.environment.wind;
@@ -148,6 +204,10 @@ LauncherPlant FlightModel::PlantFor(const FlightInputs& in) const {
         {in.gust_speed_m_s, in.gust_altitude_m, in.gust_length_m, in.gust_azimuth_rad});
   if (definition_.wind_statistics)
     wind.tables.push_back(DrawnProfile(*definition_.wind_statistics, in));
+
+  if (case_index && definition_.turbulence_path && in.turbulence_exceedance > 0.0)
+    plant.environment.turbulence = std::make_shared<const TurbulenceField>(
+        TurbulenceOf(in, *definition_.turbulence_path, definition_.noise_seed, *case_index));
 
   for (std::size_t i = 0; i < plant.stacks.size(); ++i) {
     LauncherStack& stack = plant.stacks[i];

@@ -1,17 +1,21 @@
 // What all flights of a campaign share, and the plant of one of them.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "core/control/autopilot.h"
 #include "core/dynamics/integrator.h"
 #include "core/dynamics/launcher.h"
+#include "core/environment/turbulence.h"
 #include "core/environment/wind_statistics.h"
 #include "core/flight/attitude_program.h"
 #include "core/flight/flight_inputs.h"
 #include "core/flight/launch_frame.h"
+#include "core/flight/sensor_model.h"
 #include "core/flight/sequence.h"
+#include "core/guidance/mission.h"
 #include "core/vehicle/vehicle.h"
 
 namespace dispersa {
@@ -21,6 +25,7 @@ struct InjectionTarget {
   double altitude_m = 0.0;
   double velocity_m_s = 0.0;
   double flight_path_angle_rad = 0.0;
+  double inclination_rad = 0.0;       ///< of the reference's orbit
 };
 
 /// What decides a flight besides its inputs.
@@ -34,7 +39,11 @@ struct FlightDefinition {
   InjectionTarget target;
   std::optional<WindTable> wind_table;
   std::optional<WindStatistics> wind_statistics;
-  std::uint64_t noise_seed = 0;  ///< of the sensors
+  std::uint64_t noise_seed = 0;  ///< of the sensors and of turbulence
+  /// Along which turbulence is laid. Null: no flight meets any, whatever its inputs ask.
+  std::shared_ptr<const TurbulencePath> turbulence_path = {};
+  GuidanceConfig guidance;
+  double velocity_reserve_m_s = 0.0;  ///< by which the program arrives faster than the target
 };
 
 /// The reference attitude at the autopilot's ticks, for flights that are flown side by side. A row has 8 doubles: q_IR
@@ -65,23 +74,32 @@ class FlightModel {
   const LaunchFrame& frame() const { return frame_; }
   const AutopilotModel& autopilot() const { return autopilot_; }
   const LauncherPlant& nominal_plant() const { return nominal_; }
+  const SensorModel& sensors() const { return sensors_; }
   const ReferenceRows& reference_rows() const { return reference_rows_; }
   const FeedForwardRows& feed_forward_rows() const { return feed_forward_rows_; }
+  /// What closed-loop guidance knows beforehand; none of an open loop.
+  const std::optional<GuidanceMission>& guidance_mission() const { return guidance_mission_; }
 
-  /// The nominal plant with a flight's factors, winds and misalignments applied.
-  LauncherPlant PlantFor(const FlightInputs& inputs) const;
+  /// The nominal plant with a flight's factors, winds and misalignments applied; with a case, whose random
+  /// draws they are, its turbulence too.
+  LauncherPlant PlantFor(const FlightInputs& inputs, std::optional<std::uint64_t> case_index = {}) const;
 
  private:
   FlightDefinition definition_;
   LaunchFrame frame_;
   LauncherPlant nominal_;
   AutopilotModel autopilot_;
+  SensorModel sensors_;
   ReferenceRows reference_rows_;
   FeedForwardRows feed_forward_rows_;
+  std::optional<GuidanceMission> guidance_mission_;
 };
 
 /// The vehicle without dispersions: aerodynamics built up where the file gives no tables.
 LauncherPlant BuildNominalPlant(const Vehicle& vehicle);
+/// Gives a vehicle with a beam that flies its bending: modes that stay below half the sampling frequency all the
+/// burn.
+void AddBending(const Vehicle& vehicle, double tick_s, LauncherPlant& plant);
 /// Angular acceleration per radian of deflection, over the time since ignition, of a nominal stack.
 StageControl BuildStageControl(const LauncherStack& stack);
 

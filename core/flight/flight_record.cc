@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/dynamics/integrator.h"
+#include "core/dynamics/launcher_lanes.h"
 #include "core/flight/history_columns.h"
 #include "core/flight/sequence.h"
 #include "core/flight/tick_sample.h"
@@ -50,16 +51,20 @@ class FlightRecord::JudgedMotion {
   JudgedMotion(const LauncherModel& equations, Scheme scheme)
       : equations_(equations),
         tolerances_(AbsoluteTolerances()),
-        integrator_(scheme, kLauncherSize, &Rhs, this, tolerances_.data()) {}
+        integrator_(scheme, equations.plant().state_size(), &Rhs, this, tolerances_.data()) {}
 
   bool Advance(const LauncherPhase& phase, double from_s, double to_s, int steps, double* y) {
     phase_ = phase;
-    if (!integrator_.Advance(from_s, to_s, steps, y)) return false;
+    const Gimbal& gimbal = equations_.plant().stacks[static_cast<std::size_t>(phase.stack)].gimbal;
+    if (gimbal.friction_rad > 0.0) {
+      if (!SlideTo(gimbal, from_s, to_s, steps, y)) return false;
+    } else if (!integrator_.Advance(from_s, to_s, steps, y)) {
+      return false;
+    }
     RigidBodyState s = ReadState(y);
     s.q_IB = Normalized(s.q_IB);
     WriteState(s, y);
     // Mechanical stops, and the drives' greatest rate, which a step may overshoot.
-    const Gimbal& gimbal = equations_.plant().stacks[static_cast<std::size_t>(phase.stack)].gimbal;
     for (int i = 0; i < kNozzles; ++i) {
       if (i == phase.stuck_nozzle) continue;
       double& angle = y[kNozzleAngle + i];
@@ -78,6 +83,57 @@ class FlightRecord::JudgedMotion {
     self->equations_.Derivative(self->phase_, t, y, dydt);
   }
 
+  using State = std::array<double, kLauncherSize>;
+
+  // From rest to rest of the drives, each found by bisection: in between friction is constant and all is
+  // smooth.
+  bool SlideTo(const Gimbal& gimbal, double from_s, double to_s, int steps, double* y) {
+    lanes::Drives<double> drives{};
+    lanes::SetLane(drives, 0, gimbal, phase_.stuck_nozzle);
+    State start;
+    std::copy(y, y + kLauncherSize, start.begin());
+    // A drive turns round a few times a second; more rests than these within a tick are a fault of ours.
+    for (int rests = 0; rests < 64; ++rests) {
+      for (int i = 0; i < kNozzles; ++i) {
+        const std::size_t nozzle = static_cast<std::size_t>(i);
+        phase_.slides[nozzle] = lanes::SlidesIn(drives, lanes::Followed(drives, phase_.command_rad[nozzle]),
+                                                start[nozzle + kNozzleAngle], start[nozzle + kNozzleRate]);
+      }
+      State end = start;
+      if (!integrator_.Advance(from_s, to_s, steps, end.data())) return false;
+      if (!TurnsRound(end)) {
+        std::copy(end.begin(), end.end(), y);
+        return true;
+      }
+      double before_s = from_s, after_s = to_s;
+      for (int halving = 0; halving < 30; ++halving) {
+        const double middle_s = 0.5 * (before_s + after_s);
+        State middle = start;
+        if (!integrator_.Advance(from_s, middle_s, steps, middle.data())) return false;
+        if (TurnsRound(middle)) {
+          after_s = middle_s;
+          end = middle;
+        } else {
+          before_s = middle_s;
+        }
+      }
+      for (std::size_t i = 0; i < kNozzles; ++i)
+        if (phase_.slides[i] * end[kNozzleRate + i] < 0.0) end[kNozzleRate + i] = 0.0;
+      start = end;
+      from_s = after_s;
+      if (!(to_s - from_s > 1e-12)) {
+        std::copy(end.begin(), end.end(), y);
+        return true;
+      }
+    }
+    return false;
+  }
+  bool TurnsRound(const State& y) const {
+    for (std::size_t i = 0; i < kNozzles; ++i)
+      if (phase_.slides[i] * y[kNozzleRate + i] < 0.0) return true;
+    return false;
+  }
+
   const LauncherModel& equations_;
   LauncherPhase phase_;
   std::array<double, kLauncherSize> tolerances_;
@@ -87,8 +143,9 @@ class FlightRecord::JudgedMotion {
 FlightRecord::FlightRecord(const FlightModel& model, const FlightOrder& order)
     : inputs(order.inputs),
       options(order.options),
-      plant(model.PlantFor(order.inputs)),
-      weather(PrepareWeather(plant.environment.wind, plant.environment.density)),
+      plant(model.PlantFor(order.inputs, order.options.case_index)),
+      weather(PrepareWeather(plant.environment.wind, plant.environment.density,
+                             plant.environment.turbulence.get())),
       events(EventsOf(model, plant)),
       lift_off{},
       watched(options.history != nullptr || options.observe != nullptr),
@@ -96,10 +153,15 @@ FlightRecord::FlightRecord(const FlightModel& model, const FlightOrder& order)
                                                                model.definition().autopilot.tick_s))
                                     : 0),
       noisy(inputs.gyro_noise_rad_s > 0.0),
+      ripple(model.definition().autopilot.tick_s),
       limit_cycle(model.definition().autopilot.tick_s),
       model_(model),
       gyro_noise_(model.definition().noise_seed, options.case_index, "gyro_noise") {
   WriteState(LiftOffState(model), lift_off);
+  if (model.guidance_mission()) {
+    guided_ = std::make_unique<GuidedFlight>(model, inputs);
+    guided = guided_.get();
+  }
   if (options.history) options.history->values.clear();
   if (watched || is_judged()) equations_ = std::make_unique<const LauncherModel>(plant);
   if (is_judged()) judged_ = std::make_unique<JudgedMotion>(*equations_, options.scheme);
@@ -113,7 +175,22 @@ void FlightRecord::DrawNoise(double* rate_rad_s) {
 
 void FlightRecord::AddToDigest(double time_s, const double* y) {
   digester_.Add(&time_s, 1);
-  digester_.Add(y, kLauncherSize);
+  digester_.Add(y, static_cast<std::size_t>(plant.state_size()));
+}
+
+bool FlightRecord::Guide(const LaneSight& sight) {
+  if (!guided->See(sight)) return false;
+  // The last stage's events keep their distances from its ignition.
+  const int last = events.back().stage;
+  std::size_t first = events.size();
+  while (events[first - 1].stage == last) --first;
+  const double shift_s = guided->ignition_s() - events[first].time_s;
+  for (std::size_t i = first; i < events.size(); ++i) events[i].time_s += shift_s;
+  return true;
+}
+
+ReferenceAttitude FlightRecord::ReferenceAt(double time_s) const {
+  return guided && guided->steers() ? guided->ReferenceAt(time_s) : model_.definition().program.At(time_s);
 }
 
 TickSample FlightRecord::SampleOf(const LaneView& view) const {
@@ -128,9 +205,10 @@ TickSample FlightRecord::SampleOf(const LaneView& view) const {
     s.nozzle_rad[static_cast<std::size_t>(i)] = view.y[kNozzleAngle + i];
     s.nozzle_rate_rad_s[static_cast<std::size_t>(i)] = view.y[kNozzleRate + i];
   }
+  std::copy(view.y + kModalState, view.y + kLauncherSize, s.bending.begin());
   s.command_rad = view.phase.command_rad;
   s.limit_rad = plant.stacks[static_cast<std::size_t>(s.stack)].gimbal.limit_rad;
-  s.reference = model_.definition().program.At(view.time_s);
+  s.reference = ReferenceAt(view.time_s);
   if (view.has_error) {
     for (int axis = 0; axis < kAxes; ++axis) {
       s.error.angle_rad[axis] = view.error_angle_rad[axis];
@@ -170,7 +248,7 @@ void FlightRecord::WatchEvent(const LaneView& view) {
 }
 
 void FlightRecord::HandOver(double time_s, const double* y) {
-  const AttitudeError error = ErrorAt(model_, model_.definition().program.At(time_s), ReadState(y));
+  const AttitudeError error = ErrorAt(model_, ReferenceAt(time_s), ReadState(y));
   sums.handed_over = true;
   sums.handover_angle_rad = error.angle_rad.norm();
   sums.handover_rate_rad_s = error.rate_rad_s.norm();
@@ -206,9 +284,11 @@ void FlightRecord::End(Outcome outcome, const char* reason, double time_s, int s
 }
 
 FlightResult FlightRecord::Result() {
+  sums.ripple_rad = ripple.worst_rad();
   sums.limit_cycle_rad = limit_cycle.worst_rad();
+  if (guided) sums.guidance = guided->outcome();
   result_.metrics = MetricsOf(sums, model_.definition());
-  digester_.Add(result_.metrics.data(), result_.metrics.size());
+  digester_.Add(result_.metrics.data(), DigestedMetrics());
   result_.digest = digester_.Finish();
   return std::move(result_);
 }

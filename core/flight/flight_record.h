@@ -12,7 +12,9 @@
 #include "core/environment/weather_profile.h"
 #include "core/flight/flight.h"
 #include "core/flight/flight_sums.h"
+#include "core/flight/guided_flight.h"
 #include "core/flight/limit_cycle.h"
+#include "core/flight/ripple.h"
 #include "core/flight/tick_sample.h"
 #include "core/random/draws.h"
 
@@ -61,19 +63,23 @@ class FlightRecord {
   const FlightOptions options;
   const LauncherPlant plant;
   const FlightWeather weather;
-  const std::vector<FlightEvent> events;
+  std::vector<FlightEvent> events;  ///< their number and order stay
   StateValues lift_off;
   bool watched;        ///< has a history or an observer
   long history_ticks;  ///< between rows; 0: no history
   bool noisy;          ///< its gyros are
 
   // ---- while it flies ----
+  GuidedFlight* guided = nullptr;  ///< null: the reference's attitude is flown
   FlightSums sums;
+  RippleMeter ripple;
   LimitCycleMeter limit_cycle;
 
   /// The three gyros' noise of a tick, rad/s.
   void DrawNoise(double* rate_rad_s);
   void AddToDigest(double time_s, const double* y);
+  /// The guidance sees the lane. True when events have moved.
+  bool Guide(const LaneSight& sight);
   /// A tick: `row` says whether the history has one here.
   void Watch(const LaneView& view, bool row);
   /// An event: a row of the history.
@@ -95,10 +101,12 @@ class FlightRecord {
 
  private:
   class JudgedMotion;
+  ReferenceAttitude ReferenceAt(double time_s) const;
   TickSample SampleOf(const LaneView& view) const;
   void AppendRow(const TickSample& sample);
 
   const FlightModel& model_;
+  std::unique_ptr<GuidedFlight> guided_;
   Stream gyro_noise_;
   Digester digester_;
   std::unique_ptr<const LauncherModel> equations_;  ///< of a flight that is watched or judged

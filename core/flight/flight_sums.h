@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "core/flight/orbit.h"
+#include "core/guidance/outcome.h"
 #include "core/vehicle/vehicle.h"
 
 namespace dispersa {
@@ -26,7 +27,8 @@ struct FlightSums {
   double deflection_rate_peak_rad_s = 0.0;
   double saturated_ticks = 0.0;
   double travel_rad = 0.0;
-  double limit_cycle_rad = -1.0;  ///< negative without a whole window
+  double ripple_rad = -1.0;       ///< negative without a whole window
+  double limit_cycle_rad = -1.0;  ///< likewise; 0: none
   double q_max_pa = 0.0, q_alpha_max_pa_rad = 0.0, alpha_max_rad = 0.0;
   double axial_load_max_g = 0.0, lateral_load_max_g = 0.0;
   bool handed_over = false;
@@ -35,6 +37,7 @@ struct FlightSums {
   bool injected = false;
   double injection_altitude_m = 0.0;
   OrbitElements orbit;
+  GuidanceOutcome guidance;  ///< of a flight that is guided
   double v_outside_ticks = 0.0, v_falling_ticks = 0.0;
   double adaptation_peak_rad_s2 = 0.0;
   std::uint32_t rules_fired = 0;

@@ -1,5 +1,7 @@
 #include "core/flight/linear_axis.h"
 
+#include <algorithm>
+
 #include "core/math/rotation.h"
 
 namespace dispersa {
@@ -9,10 +11,13 @@ namespace {
 // A twentieth of a degree: well inside the cells of the aerodynamic tables, far above rounding.
 constexpr double kAngleStep_rad = 1e-3;
 constexpr double kRateStep_rad_s = 1e-3;
+// The equations are linear in the modes.
+constexpr double kDeflectionStep_m = 1e-3;
 
 }  // namespace
 
-AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Axis axis) {
+AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Axis axis,
+                        const SensorModel& sensors) {
   LauncherPhase phase;
   phase.stack = sample.stack;
   phase.burning = true;
@@ -26,33 +31,97 @@ AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Ax
   Vector3 about = Vector3::Zero();
   about[axis] = 1.0;
 
+  // The modes of the plane that the axis turns in; nothing here twists.
+  const LauncherStack& stack = plant.stacks[static_cast<std::size_t>(sample.stack)];
+  const int modes = stack.bending && axis != kRoll ? stack.bending->modes : 0;
+  const int plane = axis == kPitch ? 1 : 0;
+  const int first_mode = plane * kModes;
+
   const LauncherModel equations(plant);
-  const auto acceleration = [&](double angle_rad, double rate_rad_s, double deflection_rad) {
+  // The accelerations of axis and modes where one state, by its place in the linear plant, or the command (-1)
+  // departs by `step`.
+  const auto accelerations = [&](int departed, double step) {
     RigidBodyState state = sample.state;
-    state.q_IB = state.q_IB * FromRotationVector(angle_rad * about);
-    state.w_IB_B += rate_rad_s * about;
+    if (departed == 0) state.q_IB = state.q_IB * FromRotationVector(step * about);
+    if (departed == 1) state.w_IB_B += step * about;
     std::array<double, kLauncherSize> y{}, dydt{};
     WriteState(state, y.data());
-    for (std::size_t i = 0; i < kNozzles; ++i) y[kNozzleAngle + i] = sample.nozzle_rad[i] + deflection_rad * pattern[i];
-    equations.Derivative(phase, sample.time_s, y.data(), dydt.data());
-    return ReadState(dydt.data()).w_IB_B[axis];
-  };
-  const auto slope = [&](double angle_rad, double rate_rad_s, double deflection_rad) {
-    return acceleration(angle_rad, rate_rad_s, deflection_rad) -
-           acceleration(-angle_rad, -rate_rad_s, -deflection_rad);
+    LauncherPhase at = phase;
+    for (std::size_t i = 0; i < kNozzles; ++i) {
+      y[kNozzleAngle + i] = sample.nozzle_rad[i] + (departed == 2 ? step * pattern[i] : 0.0);
+      y[kNozzleRate + i] = departed == 3 ? step * pattern[i] : 0.0;
+      at.command_rad[i] = sample.nozzle_rad[i] + (departed == -1 ? step * pattern[i] : 0.0);
+    }
+    std::copy(sample.bending.begin(), sample.bending.end(), y.begin() + kModalState);
+    if (departed >= 4 + modes)
+      y[static_cast<std::size_t>(kModalRate + first_mode + departed - 4 - modes)] += step;
+    else if (departed >= 4)
+      y[static_cast<std::size_t>(kModalState + first_mode + departed - 4)] += step;
+    equations.Derivative(at, sample.time_s, y.data(), dydt.data());
+    Eigen::VectorXd found(1 + modes);
+    found[0] = ReadState(dydt.data()).w_IB_B[axis];
+    for (int k = 0; k < modes; ++k) found[1 + k] = dydt[static_cast<std::size_t>(kModalRate + first_mode + k)];
+    return found;
   };
 
-  const Gimbal& gimbal = plant.stacks[static_cast<std::size_t>(sample.stack)].gimbal;
+  const Gimbal& gimbal = stack.gimbal;
   const double w = gimbal.bandwidth_rad_s;
+  const int size = 4 + 2 * modes;
   AxisPlant linear;
+  linear.a = Eigen::MatrixXd::Zero(size, size);
+  linear.b = Eigen::VectorXd::Zero(size);
+  const auto put = [&](int departed, double step) {
+    const Eigen::VectorXd slope = (accelerations(departed, step) - accelerations(departed, -step)) / (2.0 * step);
+    for (int k = 0; k <= modes; ++k) {
+      const int row = k == 0 ? 1 : 3 + modes + k;
+      (departed < 0 ? linear.b[row] : linear.a(row, departed)) = slope[k];
+    }
+  };
+  put(0, kAngleStep_rad);
+  put(1, kRateStep_rad_s);
+  put(2, kAngleStep_rad);
+  if (gimbal.nozzle_inertia_kg_m2 > 0.0) {
+    put(3, kRateStep_rad_s);
+    put(-1, kAngleStep_rad);
+  }
+  for (int k = 0; k < modes; ++k) {
+    put(4 + k, kDeflectionStep_m);
+    put(4 + modes + k, kDeflectionStep_m);
+    linear.a(4 + k, 4 + modes + k) = 1.0;
+  }
   linear.a(0, 1) = 1.0;
-  linear.a(1, 0) = slope(kAngleStep_rad, 0.0, 0.0) / (2.0 * kAngleStep_rad);
-  linear.a(1, 1) = slope(0.0, kRateStep_rad_s, 0.0) / (2.0 * kRateStep_rad_s);
-  linear.a(1, 2) = slope(0.0, 0.0, kAngleStep_rad) / (2.0 * kAngleStep_rad);
   linear.a(2, 3) = 1.0;
   linear.a(3, 2) = -w * w;
   linear.a(3, 3) = -2.0 * gimbal.damping_ratio * w;
   linear.b[3] = w * w;
+
+  linear.attitude = Eigen::RowVectorXd::Unit(size, 0);
+  linear.rates.clear();
+  const SensorModel::Weights& weights = sensors.stages[static_cast<std::size_t>(sample.stack)];
+  const double sign = axis == kPitch ? 1.0 : -1.0;
+  const auto slope_of = [&](int column, int mode) {
+    const BendingTable& table = *stack.bending;
+    const double propellant = stack.burn.Propellant(sample.since_ignition_s);
+    return sign * plant.bending.slope * table.At(table.planes == 1 ? 0 : plane, mode, column, propellant);
+  };
+  const auto rate_at = [&](int column) {
+    Eigen::RowVectorXd row = Eigen::RowVectorXd::Unit(size, 1);
+    for (int k = 0; k < modes; ++k) row[4 + modes + k] = slope_of(column, k);
+    return row;
+  };
+  for (int k = 0; k < modes; ++k) linear.attitude[4 + k] = slope_of(BendingTable::kUnitSlope, k);
+  if (weights.unit != 0.0) linear.rates.push_back({rate_at(BendingTable::kUnitSlope), {}, weights.unit, 0.0});
+  for (std::size_t g = 0; g < sensors.gyros.size(); ++g) {
+    if (weights.gyro[g] == 0.0) continue;
+    linear.rates.push_back({rate_at(BendingTable::kGyroSlope + static_cast<int>(g)), sensors.gyros[g].section,
+                            weights.gyro[g], 0.5 * (sensors.gyros[g].sample_ticks - 1)});
+  }
+  if (modes > 0) {
+    const BendingTable& table = *stack.bending;
+    linear.lowest_mode_rad_s =
+        plant.bending.frequency[0] * table.At(table.planes == 1 ? 0 : plane, 0, BendingTable::kFrequency,
+                                              stack.burn.Propellant(sample.since_ignition_s));
+  }
   return linear;
 }
 

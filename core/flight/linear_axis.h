@@ -4,6 +4,7 @@
 #include "core/control/autopilot.h"
 #include "core/control/loop_margins.h"
 #include "core/dynamics/launcher.h"
+#include "core/flight/sensor_model.h"
 #include "core/flight/tick_sample.h"
 
 namespace dispersa {
@@ -11,7 +12,8 @@ namespace dispersa {
 /// Central differences of LauncherModel::Derivative about a powered instant, so that nothing of the plant is
 /// written twice. The vehicle turns about the axis through its centre of gravity while its path and the wind
 /// stay: incidence changes with attitude alone, which the loop's frequencies justify.
-AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Axis axis);
+AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Axis axis,
+                        const SensorModel& sensors);
 
 /// The autopilot's law of an axis about zero error. `adapting` includes the adaptation, if the law has any;
 /// adaptive augmenting control is linearised at its total gain of 1.

@@ -34,7 +34,7 @@ FlightOrder Spoilt(const FlightInputs& unspoilt, int stage, double gain_db, doub
 bool Holds(const FlightResult& result) {
   const auto metric = [&](const char* name) { return result.metrics[MetricColumn(name)]; };
   const auto above = [&](const char* name, double limit) { return metric(name) > limit; };
-  return result.outcome == Outcome::kCompleted && !above("deflection_limit_cycle_deg", kLostCycle_deg) &&
+  return result.outcome == Outcome::kCompleted && !above("deflection_ripple_deg", kLostCycle_deg) &&
          !above("pitch_error_peak_deg", kLostError_deg) && !above("yaw_error_peak_deg", kLostError_deg);
 }
 
@@ -64,7 +64,7 @@ class Bisection {
 
 void LeastMargins::Take(const LoopMargins& m) {
   gain_db = std::min({gain_db, m.gain_up_db, m.gain_down_db});
-  phase_deg = std::min(phase_deg, m.phase_deg);
+  phase_deg = std::min({phase_deg, m.phase_deg, m.bending_phase_6db_deg});
   delay_s = std::min(delay_s, m.delay_s);
 }
 
@@ -82,7 +82,10 @@ LoopMargins Least(const LoopMargins& a, const LoopMargins& b) {
           std::min(a.gain_down_db, b.gain_down_db),
           std::min(a.phase_deg, b.phase_deg),
           std::min(a.delay_s, b.delay_s),
-          std::max(a.crossover_rad_s, b.crossover_rad_s)};
+          std::max(a.crossover_rad_s, b.crossover_rad_s),
+          std::max(a.bending_peak_db, b.bending_peak_db),
+          std::min(a.bending_phase_6db_deg, b.bending_phase_6db_deg),
+          std::min(a.bending_phase_3db_deg, b.bending_phase_3db_deg)};
 }
 
 // Those of one flight, and how it ended.
@@ -128,12 +131,45 @@ std::vector<MarginInstant> InstantsOf(const FlightModel& model, const FlightOrde
   return instants;
 }
 
+// One axis at one instant: the plants that a law must hold, each linearised once.
+class InstantLoop {
+ public:
+  /// `frequency_factors`: with the bending frequencies so multiplied, where the stack bends.
+  InstantLoop(LauncherPlant plant, const SensorModel& sensors, const TickSample& sample, Axis axis, double tick_s,
+              const std::vector<double>& frequency_factors)
+      : tick_s_(tick_s),
+        delay_ticks_(plant.stacks[static_cast<std::size_t>(sample.stack)].gimbal.delay_ticks) {
+    const std::array<double, kModes> nominal = plant.bending.frequency;
+    for (const double factor : frequency_factors) {
+      for (std::size_t k = 0; k < kModes; ++k) plant.bending.frequency[k] = factor * nominal[k];
+      plants_.push_back(LineariseAxis(plant, sample, axis, sensors));
+      if (plants_.back().lowest_mode_rad_s == 0.0) break;
+    }
+  }
+  LoopMargins Of(const LinearLaw& law) const {
+    LoopMargins least = SampledLoop(plants_.front(), law, tick_s_, delay_ticks_).Margins();
+    for (std::size_t i = 1; i < plants_.size(); ++i)
+      least = Least(least, SampledLoop(plants_[i], law, tick_s_, delay_ticks_).Margins());
+    return least;
+  }
+
+ private:
+  double tick_s_;
+  int delay_ticks_;
+  std::vector<AxisPlant> plants_;
+};
+
+const std::vector<double> kOfGates = {1.0, 1.0 - kFrequencyBand, 1.0 + kFrequencyBand};
+const std::vector<double> kAsFlown = {1.0};
+
 // Of each axis: all laws of ComputedMargins. `learnt` is the sample whose memories count.
-void AddMarginsAt(const LauncherPlant& plant, const AutopilotModel& autopilot, const FlightInputs& inputs,
-                  const MarginInstant& instant, const TickSample& learnt, std::vector<ComputedMargins>& all) {
+void AddMarginsAt(const LauncherPlant& plant, const FlightModel& model, const FlightInputs& inputs,
+                  const MarginInstant& instant, const TickSample& learnt,
+                  const std::vector<double>& frequency_factors, std::vector<ComputedMargins>& all) {
+  const AutopilotModel& autopilot = model.autopilot();
   const TickSample& s = instant.sample;
   for (const Axis axis : {kPitch, kYaw, kRoll}) {
-    const AxisPlant linear = LineariseAxis(plant, s, axis);
+    const InstantLoop loop(plant, model.sensors(), s, axis, autopilot.config.tick_s, frequency_factors);
     const auto margins_of = [&](LinearLaw law) {
       const bool is_spoilt = inputs.loop_stage == 0.0 || inputs.loop_stage == s.stack + 1;
       if (is_spoilt) law.effectiveness_1_s2 /= inputs.loop_gain_factor;
@@ -142,16 +178,15 @@ void AddMarginsAt(const LauncherPlant& plant, const AutopilotModel& autopilot, c
         law.drive_rate *= inputs.pn_rate_factor;
         law.drive_prediction *= inputs.pn_rate_factor;
       }
-      return SampledLoop(linear, law, autopilot.config.tick_s,
-                         plant.stacks[static_cast<std::size_t>(s.stack)].gimbal.delay_ticks)
-          .Margins();
+      return loop.Of(law);
     };
     const auto law = [&](bool adapting) {
       return LineariseLaw(autopilot, s.stack, s.since_ignition_s, axis, adapting);
     };
-    ComputedMargins each{instant.place,         s.stack, s.time_s, axis, margins_of(law(false)),
-                         margins_of(law(true)), {}};
+    const LoopMargins frozen = margins_of(law(false));
+    ComputedMargins each{instant.place, s.stack, s.time_s, axis, frozen, frozen, {}};
     if (Learns(autopilot, axis)) {
+      each.adapting = margins_of(law(true));
       each.learnt = each.adapting;
       each.is_augmented = InfoOf(autopilot.laws[static_cast<std::size_t>(axis)].config.law).augmentation;
       for (const int error : {-1, 1}) {
@@ -188,26 +223,23 @@ std::vector<ComputedMargins> ComputeMargins(const FlightModel& model, double eve
   for (std::size_t i = 0; i < instants.size(); ++i) {
     // A flight that ends early learns nothing more.
     const TickSample& sample = i < learnt.size() ? learnt[i] : instants[i].sample;
-    AddMarginsAt(plant, model.autopilot(), inputs, instants[i], sample, all);
+    AddMarginsAt(plant, model, inputs, instants[i], sample, kOfGates, all);
   }
   return all;
 }
 
 DispersedMargins ComputeDispersedMargins(const FlightModel& model, const FlightOrder& order, double every_s) {
   DispersedMargins found;
-  const LauncherPlant plant = model.PlantFor(order.inputs);
+  const LauncherPlant plant = model.PlantFor(order.inputs, order.options.case_index);
   for (const MarginInstant& instant : InstantsOf(model, order, every_s, &found.outcome))
-    AddMarginsAt(plant, model.autopilot(), order.inputs, instant, instant.sample, found.margins);
+    AddMarginsAt(plant, model, order.inputs, instant, instant.sample, kAsFlown, found.margins);
   return found;
 }
 
-LoopMargins MarginsAt(const LauncherPlant& plant, const AutopilotModel& autopilot, const TickSample& s,
-                      Axis axis, bool adapting) {
-  return SampledLoop(LineariseAxis(plant, s, axis),
-                     LineariseLaw(autopilot, s.stack, s.since_ignition_s, axis, adapting),
-                     autopilot.config.tick_s,
-                     plant.stacks[static_cast<std::size_t>(s.stack)].gimbal.delay_ticks)
-      .Margins();
+LoopMargins MarginsAt(const LauncherPlant& plant, const SensorModel& sensors, const AutopilotModel& autopilot,
+                      const TickSample& s, Axis axis, bool adapting) {
+  return InstantLoop(plant, sensors, s, axis, autopilot.config.tick_s, kOfGates)
+      .Of(LineariseLaw(autopilot, s.stack, s.since_ignition_s, axis, adapting));
 }
 
 std::vector<MeasuredMargins> MeasureMargins(const FlightModel& model, const FlightInputs& inputs) {
@@ -246,7 +278,8 @@ std::vector<MeasuredMargins> MeasureMargins(const FlightModel& model, const Flig
 
 bool PassesGates(const LoopMargins& m) {
   return m.stable && m.gain_up_db >= kGainMarginGate_db && m.gain_down_db >= kGainMarginGate_db &&
-         m.phase_deg >= kPhaseMarginGate_deg && m.delay_s >= kDelayMarginGate_s;
+         m.phase_deg >= kPhaseMarginGate_deg && m.delay_s >= kDelayMarginGate_s &&
+         m.bending_phase_6db_deg >= kPhaseMarginGate_deg;
 }
 
 bool LearntPasses(const ComputedMargins& m) {
@@ -259,7 +292,7 @@ bool PassesGates(const ComputedMargins& m) {
 
 bool PassesDispersedGates(const LoopMargins& m) {
   return m.stable && m.gain_up_db >= kDispersedGainGate_db && m.gain_down_db >= kDispersedGainGate_db &&
-         m.phase_deg >= kDispersedPhaseGate_deg;
+         m.phase_deg >= kDispersedPhaseGate_deg && m.bending_phase_3db_deg >= kDispersedPhaseGate_deg;
 }
 
 bool PassesDispersedGates(const ComputedMargins& m) {

@@ -1,8 +1,8 @@
 // Stability margins of an autopilot along its nominal flight: computed from a linearisation, and measured by
 // spoiling the loop of the flight until it fails.
 //
-// They are rigid-body margins: the vehicle has no bending modes and no slosh here, and an autopilot that is
-// to fly a real one must be shown to hold them too.
+// A vehicle that bends is linearised with its modes, and its margins are the least over their frequencies times
+// 1 and 1 -+ kFrequencyBand; one without a beam has rigid-body margins. There is no slosh.
 #pragma once
 
 #include <limits>
@@ -21,6 +21,8 @@ namespace dispersa {
 inline constexpr double kGainMarginGate_db = 6.0;  ///< both ways
 inline constexpr double kPhaseMarginGate_deg = 30.0;
 inline constexpr double kDelayMarginGate_s = 0.020;
+/// Wherever the bending is not attenuated by the gain margin's gate it must keep the phase margin's from -1.
+inline constexpr double kFrequencyBand = 0.15;
 /// What every powered phase of a dispersed flight must have.
 inline constexpr double kDispersedGainGate_db = 3.0;
 inline constexpr double kDispersedPhaseGate_deg = 20.0;
@@ -72,8 +74,8 @@ struct MarginInstant {
 std::vector<MarginInstant> MarginInstants(const FlightModel& model, double every_s = 5.0,
                                           const FlightInputs& inputs = {});
 /// The margins of an autopilot at an instant, be it of another autopilot's flight of the same plant.
-LoopMargins MarginsAt(const LauncherPlant& plant, const AutopilotModel& autopilot, const TickSample& sample,
-                      Axis axis, bool adapting);
+LoopMargins MarginsAt(const LauncherPlant& plant, const SensorModel& sensors, const AutopilotModel& autopilot,
+                      const TickSample& sample, Axis axis, bool adapting);
 
 /// At each of MarginInstants, in all axes, of the plant and along the flight that `inputs` make; the
 /// autopilot knows of the nominal plant only. What is learnt is learnt in a flight with the misalignment of

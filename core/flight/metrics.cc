@@ -19,6 +19,7 @@ constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
 double Rms(const ErrorSums& e) { return e.count > 0.0 ? Sqrt(e.squares / e.count) * kDegPerRad : kUndefined; }
 double Peak(const ErrorSums& e) { return e.count > 0.0 ? e.peak * kDegPerRad : kUndefined; }
+double Swing(double rad) { return rad >= 0.0 ? rad * kDegPerRad : kUndefined; }
 double Ratio(double part, double whole) { return whole > 0.0 ? part / whole : kUndefined; }
 
 // What a metric is computed from.
@@ -29,6 +30,7 @@ struct Measured {
 
   /// Of a flight that got there.
   double AtHandover(double value) const { return sums.handed_over ? value : kUndefined; }
+  double Guided(double value) const { return sums.guidance.acted ? value : kUndefined; }
   double AtInjection(double value) const {
     return sums.injected && std::isfinite(value) ? value : kUndefined;
   }
@@ -84,14 +86,14 @@ constexpr Row kOfFlight[] = {
     {"deflection_travel", "_deg", "Deflection travel",
      "path of a nozzle added up, mean of the four: wear of the actuators", kLarger,
      [](const Measured& m) { return m.sums.travel_rad * kDegPerRad; }},
-    {"deflection_limit_cycle", "_deg", "Limit cycle of the deflection",
+    {"deflection_ripple", "_deg", "Deflection ripple",
      "worst peak-to-peak deflection, detrended over sliding 1 s windows, from 5 s after each ignition, "
-     "outside "
-     "the kick and gusts",
-     kLarger,
-     [](const Measured& m) {
-       return m.sums.limit_cycle_rad >= 0.0 ? m.sums.limit_cycle_rad * kDegPerRad : kUndefined;
-     }},
+     "outside the kick and gusts: of whatever origin",
+     kLarger, [](const Measured& m) { return Swing(m.sums.ripple_rad); }},
+    {"deflection_limit_cycle", "_deg", "Limit cycle of the deflection",
+     "largest peak-to-peak of a sustained periodic oscillation, 12 to 24 periods of 0.3125 to 10 Hz with one "
+     "phase, from 5 s after each ignition, outside the kick and gusts; 0: none",
+     kLarger, [](const Measured& m) { return Swing(m.sums.limit_cycle_rad); }},
 
     {"q_max", "_pa", "Dynamic pressure, maximum", "", kLarger,
      [](const Measured& m) { return m.sums.q_max_pa; }},
@@ -157,6 +159,40 @@ constexpr Row kOfFlight[] = {
      [](const Measured& m) { return static_cast<double>(std::popcount(m.sums.rules_fired)); }},
 };
 
+double SemiMajorAxis(const Earth& earth, double radius_m, double speed_m_s) {
+  return 1.0 / (2.0 / radius_m - speed_m_s * speed_m_s / earth.mu_m3_s2);
+}
+
+// Of the flight too, outside its digest: they follow from its end, or from what led there.
+constexpr Row kOfArrival[] = {
+    {"semi_major_axis_error", "_km", "Semi-major axis error",
+     "at injection, against that of the target's speed at the target's altitude there", kFarther,
+     [](const Measured& m) {
+       const OrbitElements& orbit = m.sums.orbit;
+       const Earth earth = Wgs84();
+       const double target_radius_m =
+           orbit.radius_m - m.sums.injection_altitude_m + m.definition.target.altitude_m;
+       return m.AtInjection((SemiMajorAxis(earth, orbit.radius_m, orbit.speed_m_s) -
+                             SemiMajorAxis(earth, target_radius_m, m.definition.target.velocity_m_s)) *
+                            1e-3);
+     }},
+    {"inclination_error", "_deg", "Inclination error", "at injection, against the reference's orbit", kFarther,
+     [](const Measured& m) {
+       return m.AtInjection((m.sums.orbit.inclination_rad - m.definition.target.inclination_rad) * kDegPerRad);
+     }},
+    {"guidance_converged", "", "Guidance converged",
+     "1 when the last plan in which altitude still counted reaches the target; of closed-loop guidance",
+     kSmaller, [](const Measured& m) { return m.Guided(m.sums.guidance.arrives ? 1.0 : 0.0); }},
+    {"guidance_ignition_shift", "_s", "Last ignition, moved by guidance", "against the reference", kAnyway,
+     [](const Measured& m) { return m.Guided(m.sums.guidance.ignition_shift_s); }},
+    {"guidance_postponement", "_s", "Last ignition, postponed",
+     "because the attitude had not settled", kLarger,
+     [](const Measured& m) { return m.Guided(m.sums.guidance.postponed_s); }},
+    {"guidance_excess_velocity", "_m_s", "Excess velocity",
+     "of the last burn, that its turn in yaw takes away, as planned at ignition", kAnyway,
+     [](const Measured& m) { return m.Guided(m.sums.guidance.excess_m_s); }},
+};
+
 // The phases of kByPhase: 0 all powered flight, then the stages, then the coast.
 constexpr int kPhases = 1 + kMaxStages + 1;
 
@@ -179,6 +215,7 @@ void ForEach(F f) {
   for (int phase = 0; phase < kPhases; ++phase)
     for (const Row& row : kByPhase) f(row, phase);
   for (const Row& row : kOfFlight) f(row, 0);
+  for (const Row& row : kOfArrival) f(row, 0);
 }
 
 }  // namespace
@@ -203,6 +240,8 @@ const std::vector<std::string>& MetricNames() {
   }();
   return names;
 }
+
+std::size_t DigestedMetrics() { return MetricNames().size() - std::size(kOfArrival); }
 
 std::size_t MetricColumn(const std::string& name) {
   const std::vector<std::string>& names = MetricNames();

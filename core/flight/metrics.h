@@ -32,6 +32,8 @@ struct Metric {
 /// In the order of their columns.
 const std::vector<Metric>& Metrics();
 const std::vector<std::string>& MetricNames();
+/// The first so many of them are part of a flight's digest; the later ones follow from its end state, which is too.
+std::size_t DigestedMetrics();
 /// The column of a metric that exists.
 std::size_t MetricColumn(const std::string& name);
 

@@ -9,6 +9,7 @@ namespace dispersa {
 OrbitElements ElementsOf(const Earth& earth, const Vector3& p, const Vector3& v) {
   OrbitElements e;
   const double r = p.norm();
+  e.radius_m = r;
   e.speed_m_s = v.norm();
   const Vector3 h = p.cross(v);
   e.flight_path_angle_rad = Atan2(p.dot(v), h.norm());

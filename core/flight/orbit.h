@@ -12,6 +12,7 @@ struct OrbitElements {
   double inclination_rad = 0.0;
   double apogee_altitude_m = 0.0;       ///< above the equatorial radius; infinite if unbound
   double perigee_altitude_m = 0.0;      ///< negative when the orbit meets the Earth
+  double radius_m = 0.0;                ///< of the place
 };
 
 /// Osculating Keplerian elements about a point mass at the Earth's centre.

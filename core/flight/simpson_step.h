@@ -9,6 +9,9 @@
 //   end         p + h v + h²/6 (a0 + 2 a1), q turned by h w + h²/6 (alpha0 + 2 alpha1) + h³/12 w1 x alpha1:
 //               final before the last evaluation, of which only the velocities are a guess: v + h a1, w + h
 //               alpha1; there a2, alpha2
+//   bending     each mode swings exactly (bending.h) under its drive as it is at the start, rising as in the last
+//               step, for the middle; under the line through start and middle for the last evaluation; in the end
+//               under the parabola through all three. Frequencies are those of the step's middle
 //   velocities  v + h/6 (a0 + 4 a1 + a2), w + h/6 (alpha0 + 4 alpha1 + alpha2)
 //
 // with a0' the slope at its end of the parabola through the last step's three accelerations, 0 after an
@@ -28,6 +31,7 @@ inline namespace DISPERSA_ISA {
 
 /// Commands of so many ticks are remembered for delays.
 inline constexpr int kDelayLine = 128;
+inline constexpr int kModalValues = kPlanes * kModes;
 
 template <class T>
 class StepState {
@@ -35,10 +39,12 @@ class StepState {
   // ---- what moves ----
   Motion<T> motion;
   DriveState<T> drive_state;
+  BendingState<T> bending_state;
   // ---- what it moves under ----
   Plant<T> plant;
   Phase<T> phase;
   Drives<T> drives;
+  Bending<T> bending;
   T command_rad[kNozzles];  ///< at the actuators
 
   void Configure(const Earth& earth, bool jet_damping, double tick_s) {
@@ -66,6 +72,8 @@ class StepState {
       y[kNozzleAngle + i] = Lane(drive_state.angle_rad[i], lane);
       y[kNozzleRate + i] = Lane(drive_state.rate_rad_s[i], lane);
     }
+    const T* modal = reinterpret_cast<const T*>(&bending_state);
+    for (int i = kModalState; i < kLauncherSize; ++i) y[i] = Lane(modal[i - kModalState], lane);
   }
   void WriteLane(int lane, const double* y) {
     T* values = reinterpret_cast<T*>(&motion);
@@ -74,6 +82,8 @@ class StepState {
       Lane(drive_state.angle_rad[i], lane) = y[kNozzleAngle + i];
       Lane(drive_state.rate_rad_s[i], lane) = y[kNozzleRate + i];
     }
+    T* modal = reinterpret_cast<T*>(&bending_state);
+    for (int i = kModalState; i < kLauncherSize; ++i) Lane(modal[i - kModalState], lane) = y[i];
   }
   /// After a lane's drives have changed.
   void SetTickTransition(int lane) { SetTransition(tick_over_half_, lane, 0.5 * tick_s_); }
@@ -82,11 +92,19 @@ class StepState {
   void MarkMoved(int lane) {
     SetLane(moved_, lane, true);
     SetLane(stale_, lane, true);
+    SetLane(jumped_, lane, true);
     any_stale_ = any_moved_ = true;
   }
   /// The lanes' mass or torque has changed in place.
   void MarkStale(MaskOf<T> lanes) {
     if (!Any(lanes)) return;
+    stale_ = stale_ | lanes;
+    jumped_ = jumped_ | lanes;
+    any_stale_ = true;
+  }
+  /// The lanes' commands have changed, which counts at once where nozzles have mass.
+  void MarkCommanded(MaskOf<T> lanes) {
+    if (!plant.nozzles_have_mass) return;
     stale_ = stale_ | lanes;
     any_stale_ = true;
   }
@@ -98,9 +116,14 @@ class StepState {
     Point p;
     p.around = SurroundingsAt(earth_, *air_, plant.weather, motion.p);
     p.masses = MassesAt(plant, phase, time_s);
-    p.nozzles = NozzlesAt(drive_state.angle_rad);
-    RatesAt(p, motion, &p.instant);
+    p.nozzles = NozzlesOf(drive_state);
+    RatesAt(p, motion, bending_state, &p.instant);
     return LaneOf(p.instant, lane);
+  }
+
+  /// Shapes of the modes at the lanes' propellant, where bending is looked at between steps.
+  void UpdateShapes(T time_s) {
+    if (any_stale_) ShapesAt(bending, MassesAt(plant, phase, time_s).propellant_kg);
   }
 
   /// Evaluates the lanes at which the last step's end does not hold any more.
@@ -112,13 +135,18 @@ class StepState {
       any_moved_ = false;
     }
     Blend<T>(stale_, MassesAt(plant, phase, time_s), start_->masses);
-    Blend<T>(stale_, NozzlesAt(drive_state.angle_rad), start_->nozzles);
-    p.rates = RatesAt(*start_, motion, &p.instant);
+    Blend<T>(stale_, NozzlesOf(drive_state), start_->nozzles);
+    if (bending.modes > 0) ShapesAt(bending, start_->masses.propellant_kg);
+    const ModalForce<T> modal = start_->modal;
+    p.rates = RatesAt(*start_, motion, bending_state, &p.instant);
+    Blend<T>(!stale_, modal, start_->modal);
     Blend<T>(stale_, p.rates, start_->rates);
     Blend<T>(stale_, p.instant, start_->instant);
     const Rates<T> none{Zero<T>(), Zero<T>()};
-    Blend<T>(stale_, none, start_->slopes);
-    stale_ = moved_ = NoLane<T>();
+    const ModalForce<T> no_modal{};
+    Blend<T>(jumped_, none, start_->slopes);
+    Blend<T>(jumped_, no_modal, start_->modal_slopes);
+    stale_ = moved_ = jumped_ = NoLane<T>();
     any_stale_ = false;
   }
 
@@ -133,12 +161,20 @@ class StepState {
     TimedMasses<T> masses;
     Nozzles<T> nozzles;
     Rates<T> rates, slopes;  ///< slopes: of the rates, at the end of a step
+    ModalForce<T> modal, modal_slopes;
     Instant<T> instant;
   };
 
-  DISPERSA_INLINE Rates<T> RatesAt(const Point& at, const Motion<T>& s, Instant<T>* instant) const {
+  DISPERSA_INLINE Rates<T> RatesAt(Point& at, const Motion<T>& s, const BendingState<T>& bent_by,
+                                   Instant<T>* instant) const {
+    const BentBody<T> bent{&bending, &bent_by, &at.modal};
     return RatesOf(earth_.rotation_rate_rad_s, jet_damping_, plant, phase, Any(phase.burning), at.around,
-                   at.masses, at.nozzles, s, instant);
+                   at.masses, at.nozzles, s, bending.modes > 0 ? &bent : nullptr, instant);
+  }
+  DISPERSA_INLINE Nozzles<T> NozzlesOf(const DriveState<T>& s) const {
+    Nozzles<T> nozzles = NozzlesAt(s.angle_rad);
+    if (plant.nozzles_have_mass) SetAccelerations(drives, command_rad, s, nozzles);
+    return nozzles;
   }
   void SetTransition(Transition<T>& over, int lane, double time_s) const {
     const Transition<double> one =
@@ -160,7 +196,7 @@ class StepState {
   double tick_s_;
   Point points_[3];
   Point *start_, *middle_, *end_;
-  MaskOf<T> stale_, moved_;
+  MaskOf<T> stale_, moved_, jumped_;
   bool any_stale_, any_moved_;
   Transition<T> tick_over_half_;  ///< over half a tick
 };
@@ -190,8 +226,17 @@ MaskOf<T> StepState<T>::Step(MaskOf<T> moving, bool all, T from_s, T to_s) {
         if (Bits(odd) >> lane & 1u) SetTransition(over, lane, 0.5 * Lane(h, lane));
     drives_half = Propagate(drives, command_rad, over, half, drive_state);
     drives_end = Propagate(drives, command_rad, over, half, drives_half);
-    b.nozzles = NozzlesAt(drives_half.angle_rad);
-    c.nozzles = NozzlesAt(drives_end.angle_rad);
+    b.nozzles = NozzlesOf(drives_half);
+    c.nozzles = NozzlesOf(drives_end);
+  }
+  BendingState<T> bent_middle, bent_end;
+  Swing<T> over_half, over_step;
+  const ModalForce<T> no_curvature{};
+  if (bending.modes > 0) {
+    ShapesAt(bending, MassesAt(plant, phase, from_s + half).propellant_kg);
+    over_half = SwingOver(bending, half);
+    over_step = Twice(bending, over_half);
+    bent_middle = Swung(bending, over_half, bending_state, a.modal, a.modal_slopes, no_curvature);
   }
 
   Motion<T> middle;
@@ -201,7 +246,7 @@ MaskOf<T> StepState<T>::Step(MaskOf<T> moving, bool all, T from_s, T to_s) {
   middle.w = Along(Along(motion.w, half, a.rates.dw), h2_8, a.slopes.dw);
   b.around = SurroundingsAt(earth_, *air_, plant.weather, middle.p);
   b.masses = MassesAt(plant, phase, from_s + half);
-  b.rates = RatesAt(b, middle, nullptr);
+  b.rates = RatesAt(b, middle, bent_middle, nullptr);
 
   Motion<T> end;
   end.p = Along(Along(motion.p, h, motion.v), h2_6, Along(a.rates.dv, two, b.rates.dv));
@@ -211,28 +256,52 @@ MaskOf<T> StepState<T>::Step(MaskOf<T> moving, bool all, T from_s, T to_s) {
   end.w = Along(motion.w, h, b.rates.dw);
   c.around = SurroundingsAt(earth_, *air_, plant.weather, end.p);
   c.masses = MassesAt(plant, phase, to_s);
-  c.rates = RatesAt(c, end, &c.instant);
+  const T per_s = T(1.0) / h;
+  if (bending.modes > 0) {
+    ModalForce<T> rising;
+    for (int i = 0; i < kModalValues; ++i)
+      (&rising.drive_m_s2[0][0])[i] = two * per_s * ((&b.modal.drive_m_s2[0][0])[i] - (&a.modal.drive_m_s2[0][0])[i]);
+    bent_end = Swung(bending, over_step, bending_state, a.modal, rising, no_curvature);
+    ShapesAt(bending, c.masses.propellant_kg);
+  }
+  c.rates = RatesAt(c, end, bent_end, &c.instant);
   end.v = Along(motion.v, sixth, Along(a.rates.dv + c.rates.dv, four, b.rates.dv));
   end.w = Along(motion.w, sixth, Along(a.rates.dw + c.rates.dw, four, b.rates.dw));
-  const T per_s = T(1.0) / h;
   c.slopes.dv = per_s * Along(Along(a.rates.dv, three, c.rates.dv), -four, b.rates.dv);
   c.slopes.dw = per_s * Along(Along(a.rates.dw, three, c.rates.dw), -four, b.rates.dw);
+
+  if (bending.modes > 0) {
+    // The parabola a + rise t + curve t² through the three.
+    ModalForce<T> rise, curve;
+    for (int i = 0; i < kModalValues; ++i) {
+      const T from = (&a.modal.drive_m_s2[0][0])[i], at = (&b.modal.drive_m_s2[0][0])[i];
+      const T to = (&c.modal.drive_m_s2[0][0])[i];
+      (&rise.drive_m_s2[0][0])[i] = per_s * (four * at - three * from - to);
+      (&curve.drive_m_s2[0][0])[i] = two * per_s * per_s * ((from + to) - two * at);
+      (&c.modal_slopes.drive_m_s2[0][0])[i] = per_s * (from + three * to - four * at);
+    }
+    bent_end = Swung(bending, over_step, bending_state, a.modal, rise, curve);
+  }
 
   // 0 or not a number.
   T none(0.0);
   const T* values = reinterpret_cast<const T*>(&end);
   for (int i = 0; i < kRigidBodySize; ++i) none = Fma(values[i], T(0.0), none);
   for (const T& rate : drives_end.rate_rad_s) none = Fma(rate, T(0.0), none);
+  if (bending.modes > 0)
+    for (int i = 0; i < kModalValues; ++i) none = Fma((&bent_end.q_m[0][0])[i], T(0.0), none);
   const auto accepted = moving & (none <= T(0.0));
   if (all && !Any(moving & !accepted)) {
     motion = end;
     drive_state = drives_end;
+    if (bending.modes > 0) bending_state = bent_end;
     Point* const last = start_;
     start_ = end_;
     end_ = last;
   } else {
     Blend<T>(accepted, end, motion);
     Blend<T>(accepted, drives_end, drive_state);
+    if (bending.modes > 0) Blend<T>(accepted, bent_end, bending_state);
     Blend<T>(accepted, c, *start_);
   }
   return accepted;

@@ -18,6 +18,7 @@ struct TickSample {
   RigidBodyState state;
   std::array<double, kNozzles> nozzle_rad{};
   std::array<double, kNozzles> nozzle_rate_rad_s{};
+  std::array<double, 2 * kPlanes * kModes> bending{};  ///< modal coordinates (m), then their rates
   std::array<double, kNozzles> command_rad{};  ///< at the actuators
   double limit_rad = 0.0;
   AttitudeError error;             ///< true, not measured

@@ -84,7 +84,7 @@ std::vector<LeastMargins> PnMargins(const PaperFlights& sweep) {
       stage.pn_rate *= rates[row];
     }
     for (const MarginInstant& instant : instants)
-      all[row].Take(MarginsAt(model.nominal_plant(), autopilot, instant.sample, kPitch, true));
+      all[row].Take(MarginsAt(model.nominal_plant(), model.sensors(), autopilot, instant.sample, kPitch, true));
   }
   return all;
 }

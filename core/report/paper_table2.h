@@ -13,7 +13,8 @@ inline constexpr double kPaperAngle_deg = 0.0000055;
 
 /// Whether a problem's target is the paper's: 500 km, 7612.60 m/s, 0°.
 inline bool IsPaperTarget(const TrajectoryProblem& problem) {
-  return problem.target_altitude_m == 500e3 && std::fabs(problem.target_velocity_m_s - 7612.60) < 1e-9 &&
+  return problem.velocity_reserve_m_s == 0.0 && problem.target_altitude_m == 500e3 &&
+         std::fabs(problem.target_velocity_m_s - 7612.60) < 1e-9 &&
          problem.target_flight_path_angle_rad == 0.0;
 }
 

@@ -43,7 +43,7 @@ std::string InjectionTable(const OptimizationResult& result, const std::optional
   const OrbitErrors arrived = flown.value_or(OrbitErrors{});
   row("Height, km", 6, problem.target_altitude_m * 1e-3, kPaperHeight_km, reference.orbit.altitude_m * 1e-3,
       result.errors.altitude_m * 1e-3, halved.altitude_m * 1e-3, arrived.altitude_m * 1e-3);
-  row("Velocity, m/s", 6, problem.target_velocity_m_s, kPaperVelocity_m_s, reference.orbit.velocity_m_s,
+  row("Velocity, m/s", 6, AimedVelocity(problem), kPaperVelocity_m_s, reference.orbit.velocity_m_s,
       result.errors.velocity_m_s, halved.velocity_m_s, arrived.velocity_m_s);
   row("Angle of injection, °", 9, Deg(problem.target_flight_path_angle_rad), kPaperAngle_deg,
       Deg(reference.orbit.flight_path_angle_rad), Deg(result.errors.flight_path_angle_rad),

@@ -119,7 +119,7 @@ GeneticAlgorithmResult Search(const AscentModel& model, const TrajectoryProblem&
 }  // namespace
 
 OrbitErrors ErrorsOf(const TrajectoryProblem& problem, const Orbit& orbit) {
-  return {orbit.altitude_m - problem.target_altitude_m, orbit.velocity_m_s - problem.target_velocity_m_s,
+  return {orbit.altitude_m - problem.target_altitude_m, orbit.velocity_m_s - AimedVelocity(problem),
           orbit.flight_path_angle_rad - problem.target_flight_path_angle_rad};
 }
 

@@ -12,7 +12,7 @@
 
 namespace dispersa {
 
-/// Errors of an orbit against the target: reached less desired.
+/// Errors of an orbit against the target with its reserve: reached less desired.
 struct OrbitErrors {
   double altitude_m = 0.0;
   double velocity_m_s = 0.0;

@@ -47,6 +47,7 @@ struct TrajectoryProblem {
   double target_altitude_m = 0.0;
   double target_velocity_m_s = 0.0;
   double target_flight_path_angle_rad = 0.0;
+  double velocity_reserve_m_s = 0.0;  ///< the trajectory shall be so much faster, for guidance to spend
   Bounds alpha_max_rad, t1_s, t3_s, t2_s, coast_s, launch_azimuth_rad;
   double weight_altitude_1_m = 0.0;   ///< G1 of (8)
   double weight_velocity_s_m = 0.0;   ///< G2
@@ -65,6 +66,11 @@ struct TrajectoryProblem {
   int generations = 0;
   std::uint64_t seed = 0;
 };
+
+/// The speed that the trajectory is found for.
+inline double AimedVelocity(const TrajectoryProblem& problem) {
+  return problem.target_velocity_m_s + problem.velocity_reserve_m_s;
+}
 
 struct Reference {
   std::string name;

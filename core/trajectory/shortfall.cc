@@ -77,7 +77,7 @@ std::string CauseText(const AscentModel& model, const TrajectoryProblem& problem
     for (const std::size_t held : fast.held)
       text += " Bound: for altitude and angle" + HeldText(problem, fast.program, held);
   }
-  const double asked = problem.target_velocity_m_s;
+  const double asked = AimedVelocity(problem);
   if (fast.velocity_m_s < asked)
     text += fmt::format(
         " Energy: {} the vehicle has at most {:.1f} m/s (launch azimuth {:.6g} deg), {:.1f} m/s less than the "

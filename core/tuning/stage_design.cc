@@ -37,6 +37,28 @@ void ApplyDesign(const StageDesign& design, int stage, AutopilotConfig& autopilo
     const double p12 = SolveLyapunov(gains, axis->adaptation.q)(0, 1);
     axis->adaptation.gamma[at] = RoundToDigits(integral_1_s3 * kFuzzyRules / p12, kDesignDigits);
   }
+  const StageFilters& f = design.filters;
+  if (f.low_pass_rad_s == 0.0) return;
+  const auto round = [](double value) { return RoundToDigits(value, kDesignDigits); };
+  for (AxisConfig* axis : {&autopilot.pitch, &autopilot.yaw}) {
+    std::erase_if(axis->filters, [&](const FilterSection& section) { return section.stage == stage + 1; });
+    axis->filters.push_back({0.0, 0.0, round(f.low_pass_rad_s), round(f.low_pass_damping), stage + 1});
+    const double notch = round(f.notch_rad_s);
+    axis->filters.push_back(
+        {notch, round(f.notch_zeros_damping), notch, round(f.notch_poles_damping), stage + 1});
+  }
+  const std::vector<std::size_t> blend = BlendedGyros(autopilot, stage);
+  if (blend.empty()) return;
+  autopilot.rate_gyros[blend[0]].weight = round(f.first_gyro_weight);
+  autopilot.rate_gyros[blend[1]].weight = 1.0 - autopilot.rate_gyros[blend[0]].weight;
+}
+
+std::vector<std::size_t> BlendedGyros(const AutopilotConfig& autopilot, int stage) {
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < autopilot.rate_gyros.size(); ++i)
+    if (autopilot.rate_gyros[i].stage == stage + 1) found.push_back(i);
+  if (found.size() != 2) found.clear();
+  return found;
 }
 
 bool IsAugmented(const AutopilotConfig& autopilot) {

@@ -1,9 +1,22 @@
 // What is searched, as quantities of which one range suits every stage and vehicle.
 #pragma once
 
+#include <vector>
+
 #include "core/control/autopilot_config.h"
 
 namespace dispersa {
+
+/// What is behind the law in pitch and yaw of a stage that bends: a low pass of second order and a notch; and how
+/// two gyros share the rates.
+struct StageFilters {
+  double low_pass_rad_s = 0.0;  ///< 0: no filters
+  double low_pass_damping = 0.7;
+  double notch_rad_s = 0.0;
+  double notch_zeros_damping = 0.0;
+  double notch_poles_damping = 0.0;
+  double first_gyro_weight = 1.0;  ///< of the stage's two, if the autopilot names two
+};
 
 /// The error dynamics of one stage and the learning of its adaptation or integral.
 struct StageDesign {
@@ -12,6 +25,7 @@ struct StageDesign {
   /// What lasts of the adaptation is an integrator of gain gamma p12 / 25 (of the mean of 25 rules, see
   /// LinearLaw); that of a PID law is ki. Its ratio to w³, where the law has one.
   double learning = 0.0;
+  StageFilters filters;
 };
 
 /// What augments PD in every stage alike (AdaptiveAugmentation); its leakage, filters and floor are given.
@@ -28,6 +42,10 @@ bool Learns(const AutopilotConfig& autopilot);
 /// rounded to `kDesignDigits`, so that a file that prints them holds exactly what was flown.
 void ApplyDesign(const StageDesign& design, int stage, AutopilotConfig& autopilot);
 inline constexpr int kDesignDigits = 3;
+
+/// The places in the autopilot's rate_gyros of a stage's (0-based) two gyros that are named for it alone; empty where
+/// there are not two.
+std::vector<std::size_t> BlendedGyros(const AutopilotConfig& autopilot, int stage);
 
 /// Whether an axis is PD with augmentation.
 bool IsAugmented(const AutopilotConfig& autopilot);

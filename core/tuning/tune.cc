@@ -112,13 +112,25 @@ class Tuner {
     campaign_.autopilot = autopilot;
     campaign_.sampling = {SamplingMethod::kMonteCarlo, static_cast<std::uint64_t>(options.cases),
                           options.seed};
+    // Of the plant alone what stages are like is asked below.
+    start_ = std::make_unique<CampaignFlights>(campaign_);
     for (int stage = 0; stage < StageCount(); ++stage) {
-      ApplyDesign({kStartBandwidthOfActuator * ActuatorOf(stage), kStartDamping, kStartLearning}, stage,
-                  campaign_.autopilot);
+      StageDesign cautious;
+      cautious.bandwidth_rad_s = kStartBandwidthOfActuator * ActuatorOf(stage);
+      cautious.damping = kStartDamping;
+      cautious.learning = kStartLearning;
+      if (FirstMode(stage) > 0.0)
+        cautious.filters = FiltersAt({kStartLowPassPower, kStartLowPassDamping, kStartNotchPower,
+                                      kStartNotchZerosDamping, kStartNotchPolesDamping, kStartGyroWeight},
+                                     stage);
+      ApplyDesign(cautious, stage, campaign_.autopilot);
     }
     ApplyDesign(kStartAugmentation, campaign_.autopilot);
     start_ = std::make_unique<CampaignFlights>(campaign_);
-    instants_ = MarginInstants(start_->model());
+    // Of a vehicle that bends the instants are those of its rigid self: untuned, the other may be lost.
+    Campaign rigid = campaign_;
+    if (rigid.vehicle.structure_beam) rigid.vehicle.structure_beam->flown_modes = 0;
+    instants_ = MarginInstants(CampaignFlights(rigid).model());
   }
 
   TuningResult Run(const TuningObserver& observer) {
@@ -169,11 +181,12 @@ class Tuner {
 
   LeastMargins LeastOf(const AutopilotConfig& autopilot, int stage, bool adapting) const {
     const AutopilotModel model = ModelOf(autopilot);
+    const SensorModel sensors = BuildSensors(campaign_.vehicle, autopilot);
     LeastMargins least;
     for (const MarginInstant& instant : instants_) {
       if (instant.sample.stack != stage) continue;
       for (const Axis axis : {kPitch, kYaw, kRoll})
-        least.Take(MarginsAt(start_->model().nominal_plant(), model, instant.sample, axis, adapting));
+        least.Take(MarginsAt(start_->model().nominal_plant(), sensors, model, instant.sample, axis, adapting));
     }
     return least;
   }
@@ -182,6 +195,7 @@ class Tuner {
   // tried one after another are alike, so that one far from admissible costs next to nothing.
   bool HasMargins(const AutopilotConfig& autopilot, int stage, std::size_t* failed_last) const {
     const AutopilotModel model = ModelOf(autopilot);
+    const SensorModel sensors = BuildSensors(campaign_.vehicle, autopilot);
     const std::size_t sets = instants_.size() * kAxes * 2;
     for (std::size_t k = 0; k < sets; ++k) {
       const std::size_t set = (*failed_last + k) % sets;
@@ -189,7 +203,7 @@ class Tuner {
       if (instant.sample.stack != stage) continue;
       const Axis axis = static_cast<Axis>(set / 2 % kAxes);
       LeastMargins least;
-      least.Take(MarginsAt(start_->model().nominal_plant(), model, instant.sample, axis, set % 2 == 0));
+      least.Take(MarginsAt(start_->model().nominal_plant(), sensors, model, instant.sample, axis, set % 2 == 0));
       if (Suffices(least)) continue;
       *failed_last = set;
       return false;
@@ -197,18 +211,49 @@ class Tuner {
     return true;
   }
 
-  // Damping and learning at a point of the search.
-  StageDesign ShapeOf(const std::vector<double>& point) const {
-    if (!options_.regulator) return {0.0, point[1], learns_ ? point[2] : 0.0};
-    const RegulatorGains k = SolveRegulator({std::pow(10.0, point[1]), 1.0, std::pow(10.0, point[2])});
-    const double w = std::sqrt(k.kp_1_s2);
-    return {0.0, k.kd_1_s / (2.0 * w), k.ki_1_s3 / (w * w * w)};
+  // The first mode of a stage in the middle of its burn; 0 where it does not bend.
+  double FirstMode(int stage) const {
+    const LauncherStack& stack = start_->model().nominal_plant().stacks[static_cast<std::size_t>(stage)];
+    if (!stack.bending || stack.bending->modes == 0) return 0.0;
+    return stack.bending->At(0, 0, BendingTable::kFrequency, 0.5 * stack.burn.propellant_mass_kg);
+  }
+
+  // All but the bandwidth at a point of the search.
+  StageDesign ShapeOf(const std::vector<double>& point, int stage) const {
+    StageDesign design;
+    std::size_t next = 1;
+    if (options_.regulator) {
+      const RegulatorGains k = SolveRegulator({std::pow(10.0, point[1]), 1.0, std::pow(10.0, point[2])});
+      const double w = std::sqrt(k.kp_1_s2);
+      design.damping = k.kd_1_s / (2.0 * w);
+      design.learning = k.ki_1_s3 / (w * w * w);
+      next = 3;
+    } else {
+      design.damping = point[next++];
+      design.learning = learns_ ? point[next++] : 0.0;
+    }
+    if (FirstMode(stage) > 0.0)
+      design.filters = FiltersAt({point.begin() + static_cast<std::ptrdiff_t>(next), point.end()}, stage);
+    return design;
+  }
+
+  // Of the last variables of a point.
+  StageFilters FiltersAt(const std::vector<double>& point, int stage) const {
+    const double first_mode_rad_s = FirstMode(stage);
+    StageFilters filters;
+    filters.low_pass_rad_s = std::pow(10.0, point[0]) * first_mode_rad_s;
+    filters.low_pass_damping = point[1];
+    filters.notch_rad_s = std::pow(10.0, point[2]) * first_mode_rad_s;
+    filters.notch_zeros_damping = point[3];
+    filters.notch_poles_damping = point[4];
+    if (!BlendedGyros(campaign_.autopilot, stage).empty()) filters.first_gyro_weight = point[5];
+    return filters;
   }
 
   // Of a point of the search: bandwidth as a fraction of the largest admissible one, and its shape. Where
   // none is admissible the least one stands, and its margins say by how much they are missed.
   StageDesign DesignOf(const std::vector<double>& point, int stage) const {
-    StageDesign design = ShapeOf(point);
+    StageDesign design = ShapeOf(point, stage);
     AutopilotConfig autopilot = campaign_.autopilot;
     const double lowest_rad_s = kBandwidthOfActuator.low * ActuatorOf(stage);
     double w = kBandwidthOfActuator.high * ActuatorOf(stage);
@@ -246,7 +291,7 @@ class Tuner {
       }
       sum_deg += Metric(flown, "pitch_error_rms" + suffix);
       evaluation.tie_breaker = std::max(evaluation.tie_breaker, Metric(flown, "pitch_error_peak" + suffix));
-      cycle_deg = std::max(cycle_deg, Metric(flown, "deflection_limit_cycle_deg"));
+      cycle_deg = std::max(cycle_deg, Metric(flown, "deflection_ripple_deg"));
     }
     evaluation.objective = sum_deg / options_.cases;
     evaluation.constraint_violations.push_back(lost / options_.cases);
@@ -314,6 +359,15 @@ class Tuner {
     } else {
       variables.push_back({kDamping, kStartDamping});
       if (learns_) variables.push_back({kLearning, kStartLearning});
+    }
+    if (FirstMode(stage) > 0.0) {
+      variables.push_back({kLowPassPower, kStartLowPassPower});
+      variables.push_back({kLowPassDamping, kStartLowPassDamping});
+      variables.push_back({kNotchPower, kStartNotchPower});
+      variables.push_back({kNotchZerosDamping, kStartNotchZerosDamping});
+      variables.push_back({kNotchPolesDamping, kStartNotchPolesDamping});
+      if (!BlendedGyros(campaign_.autopilot, stage).empty())
+        variables.push_back({kGyroWeight, kStartGyroWeight});
     }
     problem.known_points = {{}};
     for (const Variable& variable : variables) {

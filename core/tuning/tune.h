@@ -8,8 +8,8 @@
 // seed;
 //   tie-breaker within kObjectiveTolerance_deg: the largest peak;
 // - subject to: every computed margin of all axes, gains frozen and adapting, at every instant of
-//   MarginInstants at or above its gate plus a reserve; every case completed; every limit cycle below
-//   kLimitCycleLimit_deg.
+//   MarginInstants at or above its gate plus a reserve; every case completed; every ripple of the deflection
+//   below kLimitCycleLimit_deg.
 // A PID may be searched as a linear-quadratic regulator instead (regulator.h): weights take the place of
 // damping and learning. Margins come first: a design that misses one is not flown. What augments PD acts in
 // every stage; it is searched last, over whole flights, with the measured margins at their gates instead of
@@ -49,6 +49,13 @@ inline constexpr Bounds kLearning = {0.0, 0.5};
 /// make it so.
 inline constexpr Bounds kIntegralWeightPower = {-4.0, 3.0};
 inline constexpr Bounds kRateWeightPower = {-2.0, 2.0};
+/// Of a stage that bends. Frequencies are of ten, of its first mode's in the middle of the burn.
+inline constexpr Bounds kLowPassPower = {-0.5, 1.0};
+inline constexpr Bounds kLowPassDamping = {0.3, 1.0};
+inline constexpr Bounds kNotchPower = {-0.4, 0.7};
+inline constexpr Bounds kNotchZerosDamping = {0.02, 0.6};
+inline constexpr Bounds kNotchPolesDamping = {0.1, 1.2};
+inline constexpr Bounds kGyroWeight = {-1.0, 2.0};
 inline constexpr Bounds kAdaptiveGainPower = {3.0, 8.0};  ///< of ten, 1/s
 inline constexpr Bounds kSpectralGainPower = {0.0, 4.0};  ///< of ten, 1/s
 inline constexpr Bounds kMaximumTotalGain = {1.1, 2.5};
@@ -56,6 +63,9 @@ inline constexpr Bounds kMaximumTotalGain = {1.1, 2.5};
 inline constexpr double kStartBandwidthOfActuator = 0.1;
 inline constexpr double kStartDamping = 0.9;
 inline constexpr double kStartLearning = 0.05;
+inline constexpr double kStartLowPassPower = 0.85, kStartLowPassDamping = 0.5;
+inline constexpr double kStartNotchPower = 0.0, kStartNotchZerosDamping = 0.3, kStartNotchPolesDamping = 0.3;
+inline constexpr double kStartGyroWeight = 0.6;
 /// What makes about that damping and learning.
 inline constexpr double kStartIntegralWeightPower = -2.5;
 inline constexpr double kStartRateWeightPower = 0.14;

@@ -80,6 +80,9 @@ struct TabledMode {
   std::vector<double> slope_1_m;  ///< by the station
 };
 
+/// Modes that fly in one plane at most.
+inline constexpr int kMostFlownModes = 5;
+
 struct StructureBeam {
   bool timoshenko = false;  ///< the beam shears; else Euler's and Bernoulli's, which does not
   bool rotary_inertia =
@@ -87,6 +90,8 @@ struct StructureBeam {
   int modes = 3;  ///< in each plane
   int propellant_levels = 11;  ///< evenly from full to empty
   int elements = 60;           ///< at least so many along a stack
+  int flown_modes = 3;         ///< in each plane; 0: the vehicle flies as a rigid one
+  double damping_ratio = 0.01;  ///< of every mode in flight
   std::vector<BeamSensor> sensors;
   std::vector<BeamStage> stages;  ///< as those of the vehicle; none with a table
   std::vector<TabledMode> table;  ///< by stage, falling propellant, plane and mode; none with stages

@@ -95,6 +95,13 @@ void CheckStage(const Vehicle& vehicle, std::size_t i, Checker& check) {
   check.Positive(gimbal.radius_m, path + ".gimbal.radius_m");
   check.Require(gimbal.delay_ticks >= 0 && gimbal.delay_ticks <= 50, path + ".gimbal.delay_ticks",
                 "is out of range", "0 to 50");
+  const auto below_limit = [&](double angle_rad, const char* key) {
+    check.Require(angle_rad == 0.0 || (angle_rad > 0.0 && angle_rad < gimbal.limit_rad),
+                  path + ".gimbal." + key, "leaves the nozzle no travel", "0 to below the gimbal's limit");
+  };
+  below_limit(gimbal.dead_zone_rad, "dead_zone_deg");
+  below_limit(gimbal.friction_rad, "friction_deg");
+  below_limit(gimbal.resolution_rad, "resolution_deg");
   if (dry > 0.0 && fractions > 0.0 && density > 0.0) {
     const StackMass stack = BuildStackMasses(vehicle)[i];
     const double aftmost =

@@ -57,6 +57,14 @@ struct Gimbal {
   double bandwidth_rad_s = 0.0;   ///< natural frequency of the second-order actuator
   double damping_ratio = 0.7;
   int delay_ticks = 1;            ///< whole autopilot ticks between command and actuator
+  double nozzle_mass_kg = 0.0;    ///< what turns, of one nozzle; 0: turning it takes no momentum
+  double nozzle_cg_m = 0.0;       ///< its centre of gravity, aft of the pivot
+  double nozzle_inertia_kg_m2 = 0.0;  ///< about the hinge
+  // What a real drive has besides; 0: not this one.
+  double dead_zone_rad = 0.0;  ///< distance from the command that does not move the servo yet
+  double friction_rad =
+      0.0;  ///< Coulomb's: the distance from the command at which a drive at rest breaks loose
+  double resolution_rad = 0.0;  ///< step in which the command reaches the servo
 };
 
 enum class IgnitionTrigger {
@@ -127,6 +135,24 @@ struct LaunchSite {
   double altitude_m = 0.0;     ///< geodetic, of the vehicle's CG at rest
 };
 
+/// A rate gyro of three axes: second order over the true rate of its place, sampled and rounded.
+struct RateGyro {
+  std::string name;
+  double station_m = 0.0;
+  double bandwidth_rad_s = 0.0;  ///< natural frequency; 0: follows at once
+  double damping_ratio = 0.7;
+  double quantum_rad_s = 0.0;  ///< of its output; 0: none
+  int sample_ticks = 1;        ///< ticks of the autopilot between samples
+};
+/// Rate gyros a vehicle has at most.
+inline constexpr int kRateGyros = 3;
+
+/// What measures attitude and rates. Without rate gyros the inertial unit gives the rates.
+struct Sensors {
+  double inertial_unit_station_m = 0.0;  ///< whose attitude is measured
+  std::vector<RateGyro> rate_gyros;
+};
+
 struct Vehicle {
   std::string name;
   LaunchSite site;
@@ -138,6 +164,7 @@ struct Vehicle {
   std::vector<AeroTable> aerodynamics;  ///< one a stack; empty: built up from the profile
   ReactionControl reaction_control;
   StructuralLimits limits;
+  Sensors sensors;
   std::optional<StructureBeam> structure_beam;  ///< none: the vehicle is rigid
 };
 

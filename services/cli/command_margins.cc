@@ -30,6 +30,7 @@ struct MarginsResult {
   std::vector<ComputedMargins> computed;
   std::vector<MeasuredMargins> measured;
   std::optional<CampaignMargins> dispersed;
+  bool bends = false;
   bool passed = false;
 };
 
@@ -42,6 +43,8 @@ nlohmann::ordered_json LoopJson(const LoopMargins& m, bool passed) {
           {"phase_deg", JsonNumber(m.phase_deg)},
           {"delay_ms", JsonNumber(1e3 * m.delay_s)},
           {"crossover_rad_s", JsonNumber(m.crossover_rad_s)},
+          {"bending_peak_db", JsonNumber(m.bending_peak_db)},
+          {"bending_phase_deg", m.bending_phase_6db_deg},
           {"passed", passed}};
 }
 
@@ -87,7 +90,7 @@ void PrintJson(const MarginsResult& result) {
                         {"passed", PassesGates(m)}});
   }
   nlohmann::ordered_json json = {{"schema", "dispersa/margins/1"},
-                                 {"model", "rigid body: no bending, no slosh"},
+                                 {"model", result.bends ? "bending, no slosh" : "rigid body: no bending, no slosh"},
                                  {"autopilot", result.autopilot},
                                  {"gates",
                                   {{"gain_db", kGainMarginGate_db},
@@ -111,10 +114,15 @@ std::string Number(double value, const char* format) {
 
 void PrintLoop(const std::string& place, const char* kind, const ComputedMargins& at, const LoopMargins& m) {
   const bool passed = &m == (at.learnt ? &*at.learnt : nullptr) ? LearntPasses(at) : PassesGates(m);
-  fmt::print("{:<24} {:>8.2f} {:<5}  {:<8} {:>8} {:>8} {:>8.1f} {:>8}  {}\n", place, at.time_s,
+  const std::string bending =
+      std::isfinite(m.bending_peak_db)
+          ? fmt::format("{:>8.1f} {:>8}", m.bending_peak_db,
+                        m.bending_phase_6db_deg < 180.0 ? fmt::format("{:.1f}", m.bending_phase_6db_deg) : "-")
+          : "";
+  fmt::print("{:<24} {:>8.2f} {:<5}  {:<8} {:>8} {:>8} {:>8.1f} {:>8} {} {}\n", place, at.time_s,
              kAxisNames[at.axis], kind, Number(m.gain_up_db, "{:.1f}"),
              m.gain_down_db == 0.0 ? "0.0" : "-" + Number(m.gain_down_db, "{:.1f}"), m.phase_deg,
-             Number(1e3 * m.delay_s, "{:.0f}"),
+             Number(1e3 * m.delay_s, "{:.0f}"), bending,
              !m.stable ? "FAIL: unstable"
              : passed  ? ""
                        : "FAIL");
@@ -123,7 +131,8 @@ void PrintLoop(const std::string& place, const char* kind, const ComputedMargins
 // How near a margin set is to its nearest gate, as a fraction of it.
 double Nearness(const LoopMargins& m) {
   return std::min({m.gain_up_db / kGainMarginGate_db, m.gain_down_db / kGainMarginGate_db,
-                   m.phase_deg / kPhaseMarginGate_deg, m.delay_s / kDelayMarginGate_s});
+                   m.phase_deg / kPhaseMarginGate_deg, m.delay_s / kDelayMarginGate_s,
+                   m.bending_phase_6db_deg / kPhaseMarginGate_deg});
 }
 
 void PrintDispersed(const CampaignMargins& dispersed) {
@@ -152,16 +161,22 @@ void PrintDispersed(const CampaignMargins& dispersed) {
 void PrintText(const MarginsResult& result) {
   fmt::print(
       "Margins of autopilot {} along the nominal flight.\n"
-      "RIGID-BODY MARGINS: no bending modes, no slosh. Gates: gain {:.0f} dB both ways, phase {:.0f} deg, "
-      "delay {:.0f} ms.\n\n"
+      "{}\nGates: gain {:.0f} dB both ways, phase {:.0f} deg, delay {:.0f} ms.\n\n"
       "Computed: linearised; frozen = gains held, adapting = with the adaptation about zero error,\n"
       "learnt = the same with what was learnt by then from a thrust misalignment of 0.25 deg (an "
       "augmentation's\n"
       "gain need only leave {:.0f} dB and {:.0f} deg).\n",
-      result.autopilot, kGainMarginGate_db, kPhaseMarginGate_deg, 1e3 * kDelayMarginGate_s,
+      result.autopilot,
+      result.bends
+          ? fmt::format("Bending modes, no slosh; each margin the least with the modes' frequencies as they are, "
+                        "{0:.0f} % lower and {0:.0f} % higher.\nBending: largest response, and its least angle "
+                        "from -1 where it is not {1:.0f} dB down, to the phase's gate.",
+                        100.0 * kFrequencyBand, kGainMarginGate_db)
+          : "RIGID-BODY MARGINS: no bending modes, no slosh.",
+      kGainMarginGate_db, kPhaseMarginGate_deg, 1e3 * kDelayMarginGate_s,
       kDispersedGainGate_db, kDispersedPhaseGate_deg);
-  fmt::print("{:<24} {:>8} {:<5}  {:<8} {:>8} {:>8} {:>8} {:>8}\n", "", "time s", "axis", "", "gain dB",
-             "gain dB", "phase", "delay ms");
+  fmt::print("{:<24} {:>8} {:<5}  {:<8} {:>8} {:>8} {:>8} {:>8}{}\n", "", "time s", "axis", "", "gain dB",
+             "gain dB", "phase", "delay ms", result.bends ? "  bend dB    phase" : "");
   for (const ComputedMargins& m : result.computed) {
     // Between the named instants only what fails.
     const bool named = !m.place.empty();
@@ -205,6 +220,7 @@ ExitCode Margins(const MarginsOptions& options, const GlobalOptions& global) {
   const CampaignFlights flights(campaign);
   MarginsResult result;
   result.autopilot = campaign.autopilot.name;
+  result.bends = flights.model().nominal_plant().bending_modes() > 0;
   result.computed = ComputeMargins(flights.model());
   result.measured = MeasureMargins(flights.model());
   result.passed = std::all_of(result.computed.begin(), result.computed.end(),

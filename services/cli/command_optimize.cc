@@ -89,7 +89,7 @@ void PrintInjection(const OptimizationResult& result, const std::optional<OrbitE
   const OrbitErrors arrived = flown.value_or(OrbitErrors{});
   row("altitude, km", problem.target_altitude_m * 1e-3, kPaperHeight_km, reference.orbit.altitude_m * 1e-3,
       result.errors.altitude_m * 1e-3, halved.altitude_m * 1e-3, arrived.altitude_m * 1e-3);
-  row("velocity, m/s", problem.target_velocity_m_s, kPaperVelocity_m_s, reference.orbit.velocity_m_s,
+  row("velocity, m/s", AimedVelocity(problem), kPaperVelocity_m_s, reference.orbit.velocity_m_s,
       result.errors.velocity_m_s, halved.velocity_m_s, arrived.velocity_m_s);
   row("injection angle, deg", problem.target_flight_path_angle_rad * kDegPerRad, kPaperAngle_deg,
       reference.orbit.flight_path_angle_rad * kDegPerRad, result.errors.flight_path_angle_rad * kDegPerRad,

@@ -18,16 +18,29 @@ namespace dispersa {
 namespace {
 
 // The shipped definition with all that a file may give it besides.
-FlightDefinition Definition(const std::string& autopilot, bool with_winds) {
-  FlightDefinition definition = Slv4Definition(DISPERSA_CAMPAIGNS, autopilot);
+FlightDefinition Definition(const std::string& autopilot, bool with_winds, bool guided = false) {
+  FlightDefinition definition =
+      Slv4Definition(DISPERSA_CAMPAIGNS, autopilot, guided ? "slv4_500km_reserve" : "slv4_500km");
+  definition.guidance.closed_loop = guided;
   if (autopilot == "pid")  // stages with and without a notch, side by side
     definition.autopilot.pitch.filters = definition.autopilot.yaw.filters = {
         {.poles_rad_s = 80.0, .poles_damping = 0.7},
         {.zeros_rad_s = 25.0, .zeros_damping = 0.2, .poles_rad_s = 25.0, .poles_damping = 0.6, .stage = 1}};
   if (autopilot == "pid_aac")  // axes that feed forward beside one that does not
     definition.autopilot.pitch.feed_forward = definition.autopilot.yaw.feed_forward = FeedForward{0.066};
+  if (autopilot == "flexible")
+    definition.vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml");
+  if (autopilot == "pid_aac" ||
+      autopilot == "pid") {  // drives of all kinds, side by side as their flights' stages are
+    definition.vehicle.stages[0].gimbal.dead_zone_rad = 0.03 * kRadPerDeg;
+    definition.vehicle.stages[0].gimbal.friction_rad = 0.02 * kRadPerDeg;
+    definition.vehicle.stages[1].gimbal.resolution_rad = 0.01 * kRadPerDeg;
+    definition.vehicle.stages[2].gimbal.friction_rad = 0.01 * kRadPerDeg;
+  }
   definition.noise_seed = 11;
   if (with_winds) {
+    definition.turbulence_path =
+        std::make_shared<const TurbulencePath>(ClimbPath{{0.0, 1000.0, 40e3}, {1.0, 1.0, 0.5}, 3.0});
     definition.wind_table = WindTable{{0.0, 5000.0, 12000.0}, {1.0, 12.0, -20.0}, {3.0, -8.0, 30.0}};
     definition.wind_statistics = WindStatistics{{0.0, 6000.0, 14000.0},
                                                 {0.0, 5.0, 20.0},
@@ -69,12 +82,18 @@ FlightInputs DrawnInputs(std::uint64_t flight) {
     some(in.wind_profile_east[level], draws.Normal());
   }
   for (double* factor : {&in.drag_factor, &in.lift_factor, &in.cg_factor, &in.cp_factor, &in.density_factor,
-                         &in.inertia_factor, &in.actuator_bandwidth_factor})
+                         &in.inertia_factor, &in.actuator_bandwidth_factor, &in.bending_damping_factor,
+                         &in.bending_slope_factor, &in.bending_frequency_factor[0], &in.bending_frequency_factor[1]})
     some(*factor, 1.0 + 0.03 * draws.Normal());
   some(in.gyro_bias_roll_rad_s, 1e-6 * draws.Normal());
   some(in.gyro_bias_pitch_rad_s, 1e-6 * draws.Normal());
   some(in.gyro_bias_yaw_rad_s, 1e-6 * draws.Normal());
   some(in.gyro_noise_rad_s, 0.005 * kRadPerDeg);
+  // Only guided flights feel these, so they are no draws of the stream that the inputs after them follow from.
+  Stream navigation(5, flight, "navigation");
+  for (double& error_m : in.navigation_position_error_m) error_m = 30.0 * navigation.Normal();
+  for (double& error_m_s : in.navigation_velocity_error_m_s) error_m_s = 0.3 * navigation.Normal();
+  in.accelerometer_scale_factor = 1.0 + 1e-3 * navigation.Normal();
   if (draws.Uniform() < 0.3) {
     in.stuck_nozzle = std::floor(1.0 + 4.0 * draws.Uniform());
     in.stuck_nozzle_stage = std::floor(1.0 + 4.0 * draws.Uniform());
@@ -85,6 +104,9 @@ FlightInputs DrawnInputs(std::uint64_t flight) {
   some(in.loop_gain_factor, 1.0 + 0.5 * draws.Uniform());
   some(in.loop_delay_s, 0.03 * draws.Uniform());
   some(in.loop_stage, std::floor(5.0 * draws.Uniform()));
+  some(in.turbulence_exceedance, 1e-3);
+  some(in.turbulence_wind_20ft_m_s, 15.0);
+  some(in.turbulence_scale, 1.0 + 0.2 * draws.Uniform());
   return in;
 }
 
@@ -156,9 +178,11 @@ class GuardedQueue : public FlightQueue {
   std::vector<void*> pages_;
 };
 
-TEST(FlightRecords, AreNotTouchedOnceDone) {
+class FlightRecords : public testing::TestWithParam<bool> {};
+
+TEST_P(FlightRecords, AreNotTouchedOnceDone) {
   constexpr std::uint64_t kFlights = 9;  // so that lanes stand empty in the end, whatever their number
-  const FlightModel model(Definition("adaptive_fuzzy", true));
+  const FlightModel model(Definition("adaptive_fuzzy", true, GetParam()));
   for (const LaneEngine& engine : UsableEngines()) {
     GuardedQueue queue(model, kFlights);
     engine.fly(model, queue);
@@ -166,12 +190,16 @@ TEST(FlightRecords, AreNotTouchedOnceDone) {
   }
 }
 
+INSTANTIATE_TEST_SUITE_P(OpenLoopAndGuided, FlightRecords, testing::Bool());
+
 class FlightLanes : public testing::TestWithParam<const char*> {};
 
 TEST_P(FlightLanes, AreTheFlightsAlone) {
   constexpr std::uint64_t kFlights = 12;
-  const bool with_winds = std::string(GetParam()) != "pd";
-  const FlightModel model(Definition(GetParam(), with_winds));
+  std::string law = GetParam();
+  const bool guided = law.starts_with("guided_");
+  if (guided) law = law.substr(7);
+  const FlightModel model(Definition(law, law != "pd", guided));
   std::vector<std::uint64_t> order(kFlights);
   std::iota(order.begin(), order.end(), 0);
 
@@ -209,7 +237,8 @@ TEST_P(FlightLanes, AreTheFlightsAlone) {
   }
 }
 INSTANTIATE_TEST_SUITE_P(Laws, FlightLanes,
-                         testing::Values("adaptive_fuzzy", "frozen_fuzzy", "pd", "pid", "pd_aac", "pid_aac"),
+                         testing::Values("adaptive_fuzzy", "frozen_fuzzy", "pd", "pid", "pd_aac", "pid_aac",
+                                         "flexible", "guided_adaptive_fuzzy", "guided_pid_aac"),
                          [](const auto& law) { return std::string(law.param); });
 
 }  // namespace

@@ -66,9 +66,9 @@ TEST(CampaignYamlBeam, TheCanonicalTextHoldsBaseAndBeam) {
 
 TEST(CampaignYamlBeam, TakesATableOfModes) {
   const InputFiles files;
-  files.Write(
-      "flexible.yaml",
-      "schema: dispersa/vehicle/1\nbased_on: vehicle.yaml\nstructure_beam: {modes_table: modes.csv}\n");
+  files.Write("flexible.yaml",
+              "schema: dispersa/vehicle/1\nbased_on: vehicle.yaml\nsensors: {inertial_unit: {station_m: 2}}\n"
+              "structure_beam: {modes_table: modes.csv}\n");
   const Vehicle vehicle = LoadVehicle(files.Path("flexible.yaml"));
   const std::vector<StackModes> stacks = BuildBendingModes(vehicle);
   ASSERT_EQ(stacks.size(), 2u);
@@ -102,6 +102,17 @@ TEST_P(BadBeamTest, IsReportedInFull) {
 }
 
 constexpr BadInput kBadInputs[] = {
+    {"NoSensors", "\nsensors: {inertial_unit: {station_m: 2}}", "",
+     "flexible.yaml:1:1: missing key 'sensors', allowed: where the sensors of a vehicle that bends are: "
+     "sensors: "
+     "{inertial_unit: {station_m: x}}\n"},
+    {"DampingNegative", "theory: timoshenko", "damping_ratio: -0.01\n  theory: timoshenko",
+     "flexible.yaml:4:18: structure_beam.damping_ratio: -0.01 is out of range, allowed: a number from 0 to "
+     "0.5\n"},
+    {"NozzlesOfOneStage", "\nsensors:",
+     "\nnozzles: [{mass_kg: 5, cg_aft_of_pivot_m: 0.1, inertia_about_hinge_kg_m2: 1}]\nsensors:",
+     "flexible.yaml:15:10: nozzles: the list has 1, the vehicle 2 stages, allowed: one entry a stage, or "
+     "none\n"},
     {"NoStiffness", "outer_diameter_m: 1, thickness_mm: 4, modulus_gpa: 200", "z_to_y_stiffness: 1",
      "flexible.yaml:10:11: structure_beam.stages[0].sections[0]: no stiffness is given, allowed: "
      "bending_stiffness_n_m2, or a tube: outer_diameter_m, thickness_m and modulus_gpa\n"},
@@ -194,9 +205,9 @@ class BadModesTest : public testing::TestWithParam<BadInput> {};
 
 TEST_P(BadModesTest, IsReportedInFull) {
   const InputFiles files;
-  files.Write(
-      "flexible.yaml",
-      "schema: dispersa/vehicle/1\nbased_on: vehicle.yaml\nstructure_beam:\n  modes_table: modes.csv\n");
+  files.Write("flexible.yaml",
+              "schema: dispersa/vehicle/1\nbased_on: vehicle.yaml\nsensors: {inertial_unit: {station_m: 2}}\n"
+              "structure_beam:\n  modes_table: modes.csv\n");
   files.Edit("modes.csv", GetParam().from, GetParam().to);
   EXPECT_EQ(files.Texts(ValidateFile(files.Path("flexible.yaml"))), GetParam().texts);
 }

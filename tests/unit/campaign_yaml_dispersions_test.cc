@@ -117,6 +117,24 @@ TEST(CampaignYamlDispersions, WindIsFixedOrUniformUpToItsMaximum) {
   EXPECT_THAT(uniform[3].distribution.values, ElementsAre(6e3));
 }
 
+TEST(CampaignYamlDispersions, TurbulenceIsNamedOrGivenByNumbers) {
+  const auto named = Decode("turbulence: {severity: severe}");
+  EXPECT_THAT(Names(named), ElementsAre("turbulence/exceedance", "turbulence/wind_20ft", "turbulence/scale"));
+  EXPECT_THAT(Inputs(named[0]), ElementsAre("turbulence_exceedance"));
+  EXPECT_THAT(Inputs(named[1]), ElementsAre("turbulence_wind_20ft_m_s"));
+  EXPECT_THAT(Inputs(named[2]), ElementsAre("turbulence_scale"));
+  EXPECT_EQ(named[0].distribution.values, std::vector<double>{1e-5});
+  EXPECT_NEAR(named[1].distribution.values.at(0), 45.0 * 1852.0 / 3600.0, 1e-12);
+  EXPECT_EQ(named[2].distribution.values, std::vector<double>{1.0});
+  const auto given = Decode(
+      "turbulence: {exceedance: 0.02, wind_20ft_m_s: 12, scale: {distribution: uniform, low_factor: 0.5, "
+      "high_factor: 2}}");
+  EXPECT_EQ(given[0].distribution.values, std::vector<double>{0.02});
+  EXPECT_EQ(given[1].distribution.values, std::vector<double>{12.0});
+  EXPECT_EQ(given[2].distribution.low, 0.5);
+  EXPECT_EQ(given[2].distribution.high, 2.0);
+}
+
 TEST(CampaignYamlDispersions, GustIsFixedOrDrawn) {
   const auto list = Decode(
       "gust: {speed_m_s: 9, altitude: {distribution: uniform, low_km: 5, high_km: 15}, length_m: 120, "
@@ -146,6 +164,18 @@ TEST(CampaignYamlDispersions, RatesSensorsActuatorsAndLoop) {
               ElementsAre("gyro_bias_roll_deg_s"));
   EXPECT_THAT(Decode("gyro_noise: {distribution: constant, value_deg_s: 0.1}")[0].distribution.values,
               ElementsAre(0.1 * kRadPerDeg));
+  const auto position =
+      Decode("navigation_position_error: {distribution: normal, three_sigma_m: 30}");
+  EXPECT_THAT(Names(position),
+              ElementsAre("navigation_position_error/downrange", "navigation_position_error/right",
+                          "navigation_position_error/down"));
+  EXPECT_THAT(Inputs(position[2]), ElementsAre("navigation_position_error_down_m"));
+  EXPECT_EQ(position[0].distribution.sigma, 10.0);
+  const auto velocity =
+      Decode("navigation_velocity_error: {distribution: normal, sigma_m_s: 0.1}");
+  EXPECT_THAT(Inputs(velocity[1]), ElementsAre("navigation_velocity_error_right_m_s"));
+  EXPECT_THAT(Inputs(Decode("accelerometer_scale: {distribution: normal, sigma_percent: 0.1}")[0]),
+              ElementsAre("accelerometer_scale_factor"));
   EXPECT_THAT(Inputs(Decode("actuator_bandwidth: {distribution: uniform, bound_percent: 30}")[0]),
               ElementsAre("actuator_bandwidth_factor"));
   EXPECT_THAT(Decode("loop_delay: {distribution: values, values_ms: [0, 20]}")[0].distribution.values,

@@ -33,11 +33,25 @@ TEST_P(BadInputTest, IsReportedInFull) {
 constexpr BadInput kBadInputs[] = {
     {"UnknownKey", "campaign.yaml", "dispersions:\n", "dispersion:\n", "campaign.yaml",
      "campaign.yaml:7:1: dispersion: unknown key 'dispersion' (did you mean 'dispersions'?), "
-     "allowed: autopilot, correlations, description, dispersions, name, optimize, reference, "
+     "allowed: autopilot, correlations, description, dispersions, guidance, name, optimize, reference, "
      "requirements, sampling, schema, vehicle, verdicts\n"},
     {"UnknownKeyLikeNoOther", "campaign.yaml", "name: trial", "name: trial\nzebra: 1", "campaign.yaml",
      "campaign.yaml:3:1: zebra: unknown key 'zebra', allowed: autopilot, correlations, "
-     "description, dispersions, name, optimize, reference, requirements, sampling, schema, vehicle, verdicts\n"},
+     "description, dispersions, guidance, name, optimize, reference, requirements, sampling, schema, vehicle, verdicts\n"},
+    {"UnknownSeverity", "campaign.yaml", "dispersions:\n", "dispersions:\n  turbulence: {severity: rough}\n",
+     "campaign.yaml",
+     "campaign.yaml:8:26: dispersions.turbulence.severity: 'rough' is not a choice, allowed: one of light, "
+     "moderate, severe\n"},
+    {"ExceedanceOffTheFigure", "campaign.yaml", "dispersions:\n",
+     "dispersions:\n  turbulence: {exceedance: 0.5, wind_20ft_m_s: 10}\n", "campaign.yaml",
+     "campaign.yaml:8:28: dispersions.turbulence.exceedance: 0.5 is out of range, allowed: a number from "
+     "1e-06 to 0.2\n"},
+    {"GuidanceOfNoKind", "campaign.yaml", "name: trial", "name: trial\nguidance: {mode: closed}",
+     "campaign.yaml",
+     "campaign.yaml:3:18: guidance.mode: 'closed' is not a choice, allowed: one of open_loop, closed_loop\n"},
+    {"GuidanceTooFast", "campaign.yaml", "name: trial",
+     "name: trial\nguidance: {mode: closed_loop, period_s: 0.01}", "campaign.yaml",
+     "campaign.yaml:3:41: guidance.period_s: 0.01 is out of range, allowed: a number from 0.1 to 10\n"},
     {"WordForCount", "campaign.yaml", "cases: 100", "cases: many", "campaign.yaml",
      "campaign.yaml:6:40: sampling.cases: 'many' is not a number, allowed: a whole number "
      "from 1 to 4294967295\n"},
@@ -156,12 +170,14 @@ constexpr BadInput kBadInputs[] = {
     {"NoDistribution", "campaign.yaml", "distribution: normal, three_sigma_percent: 6.7",
      "three_sigma_percent: 6.7", "campaign.yaml",
      "campaign.yaml:10:21: dispersions.drag_coefficient: missing key 'distribution', allowed: "
-     "one of normal, uniform, two_point, values, constant, truncated_normal, triangular, lognormal, rayleigh, "
+     "one of normal, uniform, two_point, values, constant, truncated_normal, triangular, lognormal, "
+     "rayleigh, "
      "empirical\n"},
     {"UnknownDistribution", "campaign.yaml", "distribution: normal, three_sigma_percent: 6.7",
      "distribution: gaussian, three_sigma_percent: 6.7", "campaign.yaml",
      "campaign.yaml:10:36: dispersions.drag_coefficient.distribution: 'gaussian' is not a "
-     "choice, allowed: one of normal, uniform, two_point, values, constant, truncated_normal, triangular, lognormal, "
+     "choice, allowed: one of normal, uniform, two_point, values, constant, truncated_normal, triangular, "
+     "lognormal, "
      "rayleigh, empirical\n"},
     {"ParameterOfAnotherDistribution", "campaign.yaml", "distribution: normal, three_sigma_percent: 6.7",
      "distribution: uniform, three_sigma_percent: 6.7", "campaign.yaml",
@@ -209,44 +225,54 @@ constexpr BadInput kBadInputs[] = {
      "campaign.yaml:13:84: requirements[0].consumer_risk: 1 is out of range, allowed: a "
      "number above 0 and below 0.5\n"},
     {"ThreeLimits", "campaign.yaml", "below: 0.5", "below: 0.5, within: [0, 1]", "campaign.yaml",
-     "campaign.yaml:13:5: requirements[0]: more than one limit is given, allowed: either below: x, above: x or "
+     "campaign.yaml:13:5: requirements[0]: more than one limit is given, allowed: either below: x, above: x "
+     "or "
      "within: [low, high]\n"},
     {"LimitsTheWrongWayRound", "campaign.yaml", "below: 0.5", "within: [1, 0]", "campaign.yaml",
      "campaign.yaml:13:44: requirements[0].within: the first limit is not below the second, allowed: [low, "
      "high]\n"},
     {"TwoPlans", "campaign.yaml", "below: 0.5", "below: 0.5, looks: 3, anytime: true", "campaign.yaml",
-     "campaign.yaml:13:67: requirements[0].anytime: 'looks' and 'anytime' are both given, allowed: either looks: "
+     "campaign.yaml:13:67: requirements[0].anytime: 'looks' and 'anytime' are both given, allowed: either "
+     "looks: "
      "K or anytime: true\n"},
     {"SpendingOfOneLook", "campaign.yaml", "below: 0.5", "below: 0.5, spending: pocock", "campaign.yaml",
-     "campaign.yaml:13:58: requirements[0].spending: one look has nothing to share, allowed: looks: 2 or more\n"},
+     "campaign.yaml:13:58: requirements[0].spending: one look has nothing to share, allowed: looks: 2 or "
+     "more\n"},
     {"NoLooks", "campaign.yaml", "below: 0.5", "below: 0.5, looks: 0", "campaign.yaml",
-     "campaign.yaml:13:55: requirements[0].looks: 0 is out of range, allowed: a whole number from 1 to 100\n"},
-    {"MaxCasesWithoutStop", "campaign.yaml", "requirements:", "verdicts: {max_cases: 500}\nrequirements:",
-     "campaign.yaml",
+     "campaign.yaml:13:55: requirements[0].looks: 0 is out of range, allowed: a whole number from 1 to "
+     "100\n"},
+    {"MaxCasesWithoutStop", "campaign.yaml",
+     "requirements:", "verdicts: {max_cases: 500}\nrequirements:", "campaign.yaml",
      "campaign.yaml:12:23: verdicts.max_cases: every case is flown, allowed: stop: when_decided\n"},
     {"StudyThatStops", "campaign.yaml", "sampling: {method: monte_carlo",
      "verdicts: {stop: when_decided}\nsampling: {method: sobol", "campaign.yaml",
      "campaign.yaml:6:18: verdicts.stop: a design study decides nothing, allowed: method: monte_carlo\n"},
     {"ReplicatesOfDraws", "campaign.yaml", "seed: 20260101", "seed: 20260101, replicates: 4", "campaign.yaml",
-     "campaign.yaml:6:73: sampling.replicates: only a Latin hypercube or Sobol design has replicates, allowed: "
+     "campaign.yaml:6:73: sampling.replicates: only a Latin hypercube or Sobol design has replicates, "
+     "allowed: "
      "method: latin_hypercube or sobol\n"},
     {"UnevenReplicates", "campaign.yaml", "sampling: {method: monte_carlo, cases: 100, seed: 20260101}",
      "sampling: {method: sobol, cases: 100, seed: 1, replicates: 3}", "campaign.yaml",
-     "campaign.yaml:6:60: sampling.replicates: 100 cases are not divisible into 3 designs of one size, allowed: a "
+     "campaign.yaml:6:60: sampling.replicates: 100 cases are not divisible into 3 designs of one size, "
+     "allowed: a "
      "divisor of the number of cases\n"},
     {"NotPositiveDefinite", "campaign.yaml", "requirements:",
      "correlations:\n  - {of: [drag_coefficient, thrust/stage1], matrix: [[1, 1], [1, 1]]}\nrequirements:",
      "campaign.yaml",
-     "campaign.yaml:13:53: correlations[0].matrix: the matrix is not positive definite, allowed: correlations "
+     "campaign.yaml:13:53: correlations[0].matrix: the matrix is not positive definite, allowed: "
+     "correlations "
      "that can hold together\n"},
     {"CorrelationOfAUniform", "campaign.yaml", "requirements:",
      "correlations:\n  - {of: [drag_coefficient, wind/azimuth], matrix: [[1, 0.5], [0.5, 1]]}\nrequirements:",
      "campaign.yaml",
-     "campaign.yaml:13:29: correlations[0].of[1]: 'wind/azimuth' is not normal, allowed: distribution: normal\n"},
+     "campaign.yaml:13:29: correlations[0].of[1]: 'wind/azimuth' is not normal, allowed: distribution: "
+     "normal\n"},
     {"CrookedMatrix", "campaign.yaml", "requirements:",
-     "correlations:\n  - {of: [drag_coefficient, thrust/stage1], matrix: [[1, 0.5], [0.4, 1]]}\nrequirements:",
+     "correlations:\n  - {of: [drag_coefficient, thrust/stage1], matrix: [[1, 0.5], [0.4, "
+     "1]]}\nrequirements:",
      "campaign.yaml",
-     "campaign.yaml:13:53: correlations[0].matrix: the matrix is not symmetric, allowed: equal numbers across the "
+     "campaign.yaml:13:53: correlations[0].matrix: the matrix is not symmetric, allowed: equal numbers "
+     "across the "
      "diagonal\n"},
     {"ModeOutside", "campaign.yaml", "distribution: normal, three_sigma_percent: 6.7",
      "distribution: triangular, low_percent: -5, mode_percent: 6, high_percent: 5", "campaign.yaml",
@@ -254,7 +280,8 @@ constexpr BadInput kBadInputs[] = {
      "allowed: low <= mode <= high\n"},
     {"WeightsAndValues", "campaign.yaml", "distribution: normal, three_sigma_percent: 6.7",
      "distribution: values, values_percent: [1, 2], weights: [1]", "campaign.yaml",
-     "campaign.yaml:10:77: dispersions.drag_coefficient.weights: there are 1 weights for 2 values, allowed: one "
+     "campaign.yaml:10:77: dispersions.drag_coefficient.weights: there are 1 weights for 2 values, allowed: "
+     "one "
      "weight a value\n"},
     {"FactorAsMagnitude", "campaign.yaml", "distribution: normal, three_sigma_percent: 6.7",
      "distribution: rayleigh, sigma_percent: 2", "campaign.yaml",
@@ -379,7 +406,7 @@ TEST(CampaignYamlErrors, UnknownDispersionNamesTheNearest) {
       files.Texts(ValidateFile(files.Path("campaign.yaml"))),
       HasSubstr(
           "campaign.yaml:10:3: dispersions.drag_coeficient: unknown key 'drag_coeficient' (did you mean "
-          "'drag_coefficient'?), allowed: actuator_bandwidth, "));
+          "'drag_coefficient'?), allowed: accelerometer_scale, actuator_bandwidth, "));
 }
 
 TEST(CampaignYamlErrors, BadCellsOfATableAreFoundByLineAndColumn) {
@@ -447,6 +474,17 @@ TEST(CampaignYamlErrors, TextWithoutFilesNamesNone) {
         "its "
         "contents in its place");
   }
+}
+
+TEST(GuidanceOfAVehicle, NeedsALastStageOnATimer) {
+  const InputFiles files;
+  files.Edit("campaign.yaml", "name: trial", "name: trial\nguidance: {mode: closed_loop}");
+  EXPECT_EQ(files.Texts(ValidateFile(files.Path("campaign.yaml"))), "");
+  files.Edit("vehicle.yaml", "ignition: {trigger: timer}", "ignition: {trigger: burnout_detection}");
+  EXPECT_EQ(files.Texts(ValidateFile(files.Path("campaign.yaml"))),
+            "campaign.yaml:3:18: guidance.mode: the vehicle 'two-stage' has no last stage whose ignition guidance "
+            "could move, allowed: open_loop, or a vehicle whose last of two stages or more has ignition: "
+            "{trigger: timer}\n");
 }
 
 }  // namespace

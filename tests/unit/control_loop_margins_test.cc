@@ -182,6 +182,78 @@ TEST(SampledLoop, FiltersTurnTheResponseAndMoveTheCriticalGain) {
   EXPECT_GT(filtered.SpectralRadius(std::pow(10.0, (m.gain_up_db + 0.1) / 20.0)), 1.0);
 }
 
+// A body with a mode that a gyro feels: 5 Hz, 1 % damped, driven by the nozzle.
+AxisPlant Bending(double slope) {
+  AxisPlant plant = WithActuator(25.0, 3.0);
+  const Eigen::MatrixXd rigid = plant.a;
+  plant.a = Eigen::MatrixXd::Zero(6, 6);
+  plant.a.topLeftCorner(4, 4) = rigid;
+  plant.b.conservativeResize(6);
+  plant.b[4] = plant.b[5] = 0.0;
+  const double w = 31.4;
+  plant.a(4, 5) = 1.0;
+  plant.a(5, 2) = 20.0;
+  plant.a(5, 4) = -w * w;
+  plant.a(5, 5) = -0.02 * w;
+  plant.attitude = Eigen::RowVectorXd::Unit(6, 0);
+  plant.attitude[4] = 0.3 * slope;
+  Eigen::RowVectorXd rate = Eigen::RowVectorXd::Unit(6, 1);
+  rate[5] = slope;
+  plant.rates = {{rate, {.b0 = 0.2, .b1 = 0.5, .b2 = 0.1, .a1 = -0.3, .a2 = 0.1}, 0.6, 2.0},
+                 {Eigen::RowVectorXd::Unit(6, 1), {}, 0.4, 0.0}};
+  plant.lowest_mode_rad_s = w;
+  return plant;
+}
+
+TEST(SampledLoop, OfABodyThatBendsIsCriticalWhereTheResponseSaysSo) {
+  for (const double slope : {0.0, 0.01, -0.01, -0.04}) {
+    for (const double gamma : {0.0, 8000.0}) {
+      const SampledLoop loop(Bending(slope), AdaptingLaw(9.0, 5.0, gamma), kTick_s, 1);
+      const LoopMargins m = loop.Margins();
+      ASSERT_TRUE(m.stable) << slope;
+      for (const double db : {m.gain_up_db, -m.gain_down_db}) {
+        if (std::isinf(db)) continue;
+        EXPECT_NEAR(loop.SpectralRadius(std::pow(10.0, db / 20.0)), 1.0, 1e-9) << slope << " " << gamma;
+      }
+    }
+  }
+}
+
+TEST(SampledLoop, ABendingModeThatIsNotFeltChangesNothing) {
+  AxisPlant unfelt = Bending(0.0);
+  unfelt.rates = {{Eigen::RowVectorXd::Unit(6, 1), {}, 1.0, 0.0}};
+  const LinearLaw law = AdaptingLaw(9.0, 5.0, 8000.0);
+  const SampledLoop bent(unfelt, law, kTick_s, 1), rigid(WithActuator(25.0, 3.0), law, kTick_s, 1);
+  for (const double w : {0.05, 1.0, 5.0, 31.4, 200.0})
+    EXPECT_LT(std::abs(bent.Response(w) / rigid.Response(w) - 1.0), 1e-9) << w;
+  const LoopMargins a = bent.Margins(), b = rigid.Margins();
+  EXPECT_NEAR(a.gain_up_db, b.gain_up_db, 1e-6);
+  EXPECT_NEAR(a.phase_deg, b.phase_deg, 1e-6);
+}
+
+TEST(SampledLoop, TheBendingPeakIsTheResponsesAndItsPhaseCountsWhereItIsHigh) {
+  const LinearLaw law = AdaptingLaw(9.0, 5.0, 0.0);
+  double last_db = -100.0;
+  for (const double slope : {0.1, 0.3, 1.0}) {
+    const SampledLoop loop(Bending(slope), law, kTick_s, 1);
+    const LoopMargins m = loop.Margins();
+    double peak = 0.0, least_deg = 180.0;
+    for (double w = 0.7 * 31.4; w < 314.0; w *= 1.00002) {
+      const std::complex<double> l = loop.Response(w);
+      peak = std::max(peak, std::abs(l));
+      if (std::abs(l) >= std::pow(10.0, -0.3))
+        least_deg = std::min(least_deg, 180.0 / kPi * std::abs(std::arg(-l)));
+    }
+    EXPECT_NEAR(m.bending_peak_db, 20.0 * std::log10(peak), 0.02) << slope;
+    if (m.stable) {
+      EXPECT_NEAR(m.bending_phase_6db_deg, least_deg, 1.0) << slope;
+    }
+    EXPECT_GT(m.bending_peak_db, last_db);
+    last_db = m.bending_peak_db;
+  }
+  EXPECT_GT(last_db, 10.0);
+}
+
 TEST(SampledLoop, IsStableForAsManyTicksMoreAsTheDelayMarginAllows) {
   for (const double gamma : {0.0, 8000.0}) {
     const AxisPlant plant = WithActuator(25.0);

@@ -52,7 +52,7 @@ TEST(LineariseAxis, IsTheStiffnessDampingAndEffectivenessByHand) {
   const TickSample s = SampleAt(model, 20.0);
   const MassProperties mass = plant.stacks[0].mass.At(plant.stacks[0].burn.Propellant(s.since_ignition_s));
   const double inertia = mass.transverse_inertia_kg_m2;
-  const AxisPlant pitch = LineariseAxis(plant, s, kPitch);
+  const AxisPlant pitch = LineariseAxis(plant, s, kPitch, model.sensors());
   // CN = 3 a on 1 m² at station 4 m; the slope over 0.06° differs from that at 0 by rounding alone.
   const double stiffness = 3.0 * s.instant.air.qbar_pa * (mass.cg_station_m - 4.0) / inertia;
   EXPECT_GT(stiffness, 0.1);
@@ -67,10 +67,10 @@ TEST(LineariseAxis, IsTheStiffnessDampingAndEffectivenessByHand) {
   EXPECT_EQ(pitch.b[3], 625.0);
 
   // An axisymmetric vehicle: yaw as pitch; roll with all four nozzles on the radius, and no stiffness.
-  const AxisPlant yaw = LineariseAxis(plant, s, kYaw);
+  const AxisPlant yaw = LineariseAxis(plant, s, kYaw, model.sensors());
   EXPECT_NEAR(yaw.a(1, 0), pitch.a(1, 0), 1e-5 * stiffness);
   EXPECT_NEAR(yaw.a(1, 2), pitch.a(1, 2), 1e-6 * effectiveness);
-  const AxisPlant roll = LineariseAxis(plant, s, kRoll);
+  const AxisPlant roll = LineariseAxis(plant, s, kRoll, model.sensors());
   EXPECT_NEAR(roll.a(1, 0), 0.0, 1e-9);
   const double roll_effectiveness = 200e3 * 0.4 / mass.axial_inertia_kg_m2;
   EXPECT_NEAR(roll.a(1, 2), roll_effectiveness, 1e-6 * roll_effectiveness);

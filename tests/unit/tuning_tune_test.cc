@@ -64,7 +64,7 @@ TEST(ApplyDesign, TurnsRatiosIntoRoundedGains) {
   AutopilotConfig autopilot = SampleAutopilot();
   const AutopilotConfig before = autopilot;
   // kp = 5² and kd = 2 * 0.7 * 5. p12 = q11 / (2 kp) = 0.02; gamma = 0.1 * 5³ * 25 / 0.02.
-  ApplyDesign({5.0, 0.7, 0.1}, 1, autopilot);
+  ApplyDesign({5.0, 0.7, 0.1, {}}, 1, autopilot);
   for (const AxisConfig* axis : {&autopilot.pitch, &autopilot.yaw, &autopilot.roll}) {
     EXPECT_EQ(axis->gains[1].kp_1_s2, 25.0);
     EXPECT_EQ(axis->gains[1].kd_1_s, 7.0);
@@ -73,7 +73,7 @@ TEST(ApplyDesign, TurnsRatiosIntoRoundedGains) {
   EXPECT_EQ(autopilot.pitch.adaptation.gamma[1], 15600.0) << "15,625 to three digits";
   EXPECT_EQ(autopilot.pitch.adaptation.gamma[0], before.pitch.adaptation.gamma[0]);
   EXPECT_EQ(autopilot.yaw.adaptation.gamma[1], before.yaw.adaptation.gamma[1]) << "yaw does not adapt";
-  ApplyDesign({3.085, 0.7, 0.1}, 0, autopilot);
+  ApplyDesign({3.085, 0.7, 0.1, {}}, 0, autopilot);
   EXPECT_EQ(autopilot.pitch.gains[0].kp_1_s2, 9.52) << "3.085² = 9.517";
 }
 
@@ -144,7 +144,7 @@ TEST(Tune, ImprovesOnItsStart) {
   const Campaign campaign = SampleCampaign();
   AutopilotConfig start = campaign.autopilot;
   for (int stage = 0; stage < 2; ++stage)
-    ApplyDesign({kStartBandwidthOfActuator * 25.0, kStartDamping, kStartLearning}, stage, start);
+    ApplyDesign({kStartBandwidthOfActuator * 25.0, kStartDamping, kStartLearning, {}}, stage, start);
   TuningOptions options = Small();
   const TuningResult result = Tune(campaign, campaign.autopilot, options);
   // The mean of the same cases under the start design.

@@ -45,13 +45,14 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"FiveStages",
                 [](Vehicle& v) { v.stages.assign(5, v.stages[0]); },
                 {"stages: has 5 entries | 1 to 4 stages"}},
-        Mistake{"PropellantMoreThanTheStageWeighs",
-                [](Vehicle& v) {
-                  v.stages[1].propellant_mass_kg = 3100.0;
-                  v.stages[1].grain = {2.0, 9.0, 0.9, 0.3};
-                },
-                {"stages[1].propellant_mass_kg: leaves the stage no dry mass: lift-off mass less what is "
-                 "above it and its propellant is -100.000000 kg | less propellant than the stage's own mass"}},
+        Mistake{
+            "PropellantMoreThanTheStageWeighs",
+            [](Vehicle& v) {
+              v.stages[1].propellant_mass_kg = 3100.0;
+              v.stages[1].grain = {2.0, 9.0, 0.9, 0.3};
+            },
+            {"stages[1].propellant_mass_kg: leaves the stage no dry mass: lift-off mass less what is "
+             "above it and its propellant is -100.000000 kg | less propellant than the stage's own mass"}},
         Mistake{"UpperStageHeavierThanTheOneBelow",
                 [](Vehicle& v) { v.stages[1].liftoff_mass_kg = 13000.0; },
                 {"stages[0].propellant_mass_kg: leaves the stage no dry mass: lift-off mass less what is "
@@ -75,12 +76,26 @@ INSTANTIATE_TEST_SUITE_P(
                 [](Vehicle& v) { v.stages[1].gimbal.pivot_station_m = 5.0; },
                 {"stages[1].gimbal.pivot_station_m: is not aft of the centre of gravity, which reaches "
                  "station 6.333333 m | a station aft of the centre of gravity"}},
+        Mistake{
+            "DriveThatNeverMoves",
+            [](Vehicle& v) {
+              v.stages[0].gimbal.dead_zone_rad = v.stages[0].gimbal.limit_rad;
+              v.stages[1].gimbal.friction_rad = 1.0;
+              v.stages[1].gimbal.resolution_rad = -1e-3;
+            },
+            {"stages[0].gimbal.dead_zone_deg: leaves the nozzle no travel | 0 to below the gimbal's limit",
+             "stages[1].gimbal.friction_deg: leaves the nozzle no travel | 0 to below the gimbal's limit",
+             "stages[1].gimbal.resolution_deg: leaves the nozzle no travel | 0 to below the gimbal's limit"}},
         Mistake{"GrainTooSmallForItsPropellant",
-                [](Vehicle& v) { v.stages[1].grain = {8.5, 9.0, 0.9, 0.3}; },
+                [](Vehicle& v) {
+                  v.stages[1].grain = {8.5, 9.0, 0.9, 0.3};
+                },
                 {"stages[1].grain: implies a propellant density of 3536.776513 kg/m3 | a volume that gives "
                  "less than 2100 kg/m3"}},
         Mistake{"GrainUpsideDown",
-                [](Vehicle& v) { v.stages[1].grain = {9.0, 6.0, 0.9, 0.3}; },
+                [](Vehicle& v) {
+                  v.stages[1].grain = {9.0, 6.0, 0.9, 0.3};
+                },
                 {"stages[1].grain.bottom_station_m: is not aft of top_station_m | a station larger than "
                  "top_station_m",
                  "stages[1].grain: implies a propellant density of -589.462752 kg/m3 | a volume that gives "
@@ -92,7 +107,9 @@ INSTANTIATE_TEST_SUITE_P(
                  "stages[1].grain: implies a propellant density of -2233.753587 kg/m3 | a volume that gives "
                  "less than 2100 kg/m3"}},
         Mistake{"GrainOutOfTheStack",
-                [](Vehicle& v) { v.stages[1].grain = {8.5, 11.5, 0.9, 0.3}; },
+                [](Vehicle& v) {
+                  v.stages[1].grain = {8.5, 11.5, 0.9, 0.3};
+                },
                 {"stages[1].grain.bottom_station_m: lies aft of the stage's bottom_station_m | at most "
                  "bottom_station_m of the stage"}},
         Mistake{"FractionsDoNotSumTo1",
@@ -109,34 +126,37 @@ INSTANTIATE_TEST_SUITE_P(
                 {"stages[1].structure[0].outer_diameter_m: " + kPositive,
                  "stages[1].structure[0].inner_diameter_m: is not smaller than outer_diameter_m | less than "
                  "outer_diameter_m"}},
-        Mistake{"NoThrustAndNoTime",
-                [](Vehicle& v) {
-                  v.stages[0].motor.thrust_n = 0.0;
-                  v.stages[0].motor.burning_time_s = -1.0;
-                },
-                {"stages[0].motor.thrust_n: " + kPositive, "stages[0].motor.burning_time_s: " + kPositive,
-                 "stages[0].motor.tail_off_s: leaves no time at full thrust | ramps that are together shorter "
-                 "than twice burning_time_s"}},
-        Mistake{"RampsLongerThanTheBurn",
-                [](Vehicle& v) {
-                  v.stages[0].motor.ignition_rise_s = 40.0;
-                  v.stages[0].motor.tail_off_s = 40.0;
-                },
-                {"stages[0].motor.tail_off_s: leaves no time at full thrust | ramps that are together shorter "
-                 "than twice burning_time_s"}},
+        Mistake{
+            "NoThrustAndNoTime",
+            [](Vehicle& v) {
+              v.stages[0].motor.thrust_n = 0.0;
+              v.stages[0].motor.burning_time_s = -1.0;
+            },
+            {"stages[0].motor.thrust_n: " + kPositive, "stages[0].motor.burning_time_s: " + kPositive,
+             "stages[0].motor.tail_off_s: leaves no time at full thrust | ramps that are together shorter "
+             "than twice burning_time_s"}},
+        Mistake{
+            "RampsLongerThanTheBurn",
+            [](Vehicle& v) {
+              v.stages[0].motor.ignition_rise_s = 40.0;
+              v.stages[0].motor.tail_off_s = 40.0;
+            },
+            {"stages[0].motor.tail_off_s: leaves no time at full thrust | ramps that are together shorter "
+             "than twice burning_time_s"}},
         Mistake{"NegativeExitArea",
                 [](Vehicle& v) { v.stages[0].motor.nozzle_exit_area_m2 = -0.1; },
                 {"stages[0].motor.nozzle_exit_area_m2: is negative | 0 or more"}},
-        Mistake{"Gimbal",
-                [](Vehicle& v) {
-                  Gimbal& g = v.stages[0].gimbal;
-                  g.limit_rad = g.rate_limit_rad_s = g.bandwidth_rad_s = g.damping_ratio = g.radius_m = 0.0;
-                  g.delay_ticks = 51;
-                },
-                {"stages[0].gimbal.limit_deg: " + kPositive, "stages[0].gimbal.rate_limit_deg_s: " + kPositive,
-                 "stages[0].gimbal.bandwidth_rad_s: " + kPositive, "stages[0].gimbal.damping_ratio: " + kPositive,
-                 "stages[0].gimbal.radius_m: " + kPositive,
-                 "stages[0].gimbal.delay_ticks: is out of range | 0 to 50"}},
+        Mistake{
+            "Gimbal",
+            [](Vehicle& v) {
+              Gimbal& g = v.stages[0].gimbal;
+              g.limit_rad = g.rate_limit_rad_s = g.bandwidth_rad_s = g.damping_ratio = g.radius_m = 0.0;
+              g.delay_ticks = 51;
+            },
+            {"stages[0].gimbal.limit_deg: " + kPositive, "stages[0].gimbal.rate_limit_deg_s: " + kPositive,
+             "stages[0].gimbal.bandwidth_rad_s: " + kPositive, "stages[0].gimbal.damping_ratio: " + kPositive,
+             "stages[0].gimbal.radius_m: " + kPositive,
+             "stages[0].gimbal.delay_ticks: is out of range | 0 to 50"}},
         Mistake{"FirstStageOnATimer",
                 [](Vehicle& v) { v.stages[0].ignition = IgnitionTrigger::kTimer; },
                 {"stages[0].ignition.trigger: the first stage does not ignite at lift-off | lift_off",
@@ -174,12 +194,12 @@ INSTANTIATE_TEST_SUITE_P(
                  "aerodynamics.tables[1].incidence_deg: is not strictly increasing | at least two strictly "
                  "increasing numbers",
                  "aerodynamics.tables[1].reference_area_m2: " + kPositive}},
-        Mistake{"ReactionControlOfNothing",
-                [](Vehicle& v) { v.reaction_control = {}; },
-                {"reaction_control.thrust_n: " + kPositive, "reaction_control.pitch_yaw_arm_m: " + kPositive,
-                 "reaction_control.roll_arm_m: " + kPositive,
-                 "reaction_control.specific_impulse_s: " + kPositive,
-                 "reaction_control.minimum_on_time_s: " + kPositive}}),
+        Mistake{
+            "ReactionControlOfNothing",
+            [](Vehicle& v) { v.reaction_control = {}; },
+            {"reaction_control.thrust_n: " + kPositive, "reaction_control.pitch_yaw_arm_m: " + kPositive,
+             "reaction_control.roll_arm_m: " + kPositive, "reaction_control.specific_impulse_s: " + kPositive,
+             "reaction_control.minimum_on_time_s: " + kPositive}}),
     [](const testing::TestParamInfo<Mistake>& test) { return std::string(test.param.name); });
 
 }  // namespace

@@ -50,7 +50,8 @@ TEST(Surroundings, AreThoseOfTheDefinitions) {
                              {{1000.0, 20000.0}, {0.5, 2.5}, {-4.0, 1.0}}};
   environment.wind.steady = {0.3, -0.2};
   environment.density = {1.05, {{0.0, 10000.0, 40000.0}, {0.9, 1.1, 1.0}}};
-  const FlightWeather prepared = PrepareWeather(environment.wind, environment.density);
+  const FlightWeather prepared =
+      PrepareWeather(environment.wind, environment.density, environment.turbulence.get());
   lanes::Weather<double> weather;
   lanes::SetLane(weather, 0, prepared);
   Stream draws(3, 0, "places");

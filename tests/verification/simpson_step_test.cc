@@ -51,7 +51,7 @@ class Stretch {
     for (double& t : tolerances) t = 1e-15;
     const LauncherModel equations(plant_);
     equations_ = &equations;
-    Integrator cvode(Scheme::kCvode, kLauncherSize, &Rhs, this, tolerances);
+    Integrator cvode(Scheme::kCvode, kRigidLauncherSize, &Rhs, this, tolerances);
     EXPECT_TRUE(cvode.Advance(kFrom_s, kTo_s, 1, y));
     return ReadState(y);
   }

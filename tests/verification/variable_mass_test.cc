@@ -141,7 +141,7 @@ class TurningLauncher : public testing::Test {
     WriteState(start, y.data());
     const LauncherModel equations(plant_);
     equations_ = &equations;
-    Integrator integrator(Scheme::kRungeKutta4, kLauncherSize, &Rhs, this, nullptr);
+    Integrator integrator(Scheme::kRungeKutta4, kRigidLauncherSize, &Rhs, this, nullptr);
     EXPECT_TRUE(integrator.Advance(0.0, stack().burn.duration_s, 2000, y.data()));
     return ReadState(y.data()).w_IB_B;
   }

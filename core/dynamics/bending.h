@@ -1,0 +1,278 @@
+// Bending of W launch vehicles side by side (core/math/lanes.h): modes of free-free beams (core/structure)
+// in the mean axes of the body, to first order in the deflections.
+//
+// A mode of plane z moves station s by deflection(s) q along body z and turns the cross-section by
+// slope(s) q about y; one of plane y moves it along y and turns it by -slope(s) q about z. In mean axes (R. D.
+// Milne, "Dynamics of the Deformable Aeroplane", ARC R&M 3345, 1964) momentum and angular momentum are those of
+// the rigid body, so bending enters its equations through the forces alone, and each mode follows
+//   q'' + 2 zeta omega q' + omega² q = Q / m,  Q = sum of force deflection + moment slope
+// over all forces but gravitation. Left out: Coriolis and centrifugal terms of the turning body (below 1e-4 of
+// omega² at a roll rate of 10 deg/s), couples of the reaction control, and the change of shapes within a step.
+#pragma once
+
+#include "core/dynamics/body_flow.h"
+#include "core/math/lane_vector.h"
+#include "core/structure/bending_table.h"
+
+namespace dispersa::lanes {
+inline namespace DISPERSA_ISA {
+
+/// One mode at a lane's propellant, its flight's factors applied. A mode that does not fly has no shape.
+template <class T>
+struct ModeNow {
+  T stiffness_1_s2, damping_1_s;      ///< omega², 2 zeta omega
+  T decay_1_s, damped_frequency_rad_s;  ///< of the free motion
+  T inverse_mass_1_kg;
+  T pivot_deflection, pivot_slope_1_m;
+  T unit_slope_1_m, gyro_slope_1_m[kRateGyros];
+  T shortening_1_m[kModes];
+  T strip_deflection[kStrips], strip_slope_1_m[kStrips];
+};
+
+/// The bending of each lane's stack.
+template <class T>
+struct Bending {
+  int modes = 0;   ///< of any stack: the same in all lanes, as
+  int planes = 1;  ///< 1: plane z is plane y in every stack
+  const BendingTable* table[kWidth<T>] = {};
+  T frequency_factor[kModes], damping_ratio, slope_factor;
+  T strip_station_m[kStrips], slender[kStrips], shift_1_m[kStrips], slender_station_m;
+  ModeNow<T> now[kPlanes][kModes];
+
+  DISPERSA_INLINE const ModeNow<T>& At(int plane, int mode) const { return now[planes == 1 ? 0 : plane][mode]; }
+};
+
+/// Modal coordinates (m) and their rates: plane y, plane z.
+template <class T>
+struct BendingState {
+  T q_m[kPlanes][kModes], rate_m_s[kPlanes][kModes];
+};
+/// Q / m.
+template <class T>
+struct ModalForce {
+  T drive_m_s2[kPlanes][kModes];
+};
+
+/// Sets what the lane's propellant decides.
+template <class T>
+DISPERSA_INLINE void ShapesAt(Bending<T>& b, T propellant_kg) {
+  alignas(128) static constexpr double kNone[BendingTable::kRowSize] = {};
+  int level[kWidth<T>];
+  T within;
+  for (int lane = 0; lane < kWidth<T>; ++lane) {
+    level[lane] = 0;
+    Lane(within, lane) = 0.0;
+    if (b.table[lane] == nullptr) continue;
+    const double* levels = b.table[lane]->propellant_kg.data();
+    const int last = static_cast<int>(b.table[lane]->propellant_kg.size()) - 1;
+    const double here = Lane(propellant_kg, lane);
+    int at = 0;
+    while (at < last - 1 && here < levels[at + 1]) ++at;
+    level[lane] = at;
+    if (last > 0) Lane(within, lane) = Clamp((levels[at] - here) / (levels[at] - levels[at + 1]), 0.0, 1.0);
+  }
+  for (int plane = 0; plane < b.planes; ++plane) {
+    for (int mode = 0; mode < b.modes; ++mode) {
+      const double *low[kWidth<T>], *high[kWidth<T>];
+      for (int lane = 0; lane < kWidth<T>; ++lane) {
+        const BendingTable* table = b.table[lane];
+        low[lane] = high[lane] = kNone;
+        if (table == nullptr || mode >= table->modes) continue;
+        const int of = table->planes == 1 ? 0 : plane;
+        const int next = level[lane] + 1 < static_cast<int>(table->propellant_kg.size()) ? 1 : 0;
+        low[lane] = table->Row(of, level[lane], mode);
+        high[lane] = table->Row(of, level[lane] + next, mode);
+      }
+      T c[BendingTable::kRowSize], d[BendingTable::kRowSize];
+      LoadRow(low, BendingTable::kRowSize / 4, c);
+      LoadRow(high, BendingTable::kRowSize / 4, d);
+      for (int i = 0; i < BendingTable::kRowSize; ++i) c[i] = Fma(within, d[i] - c[i], c[i]);
+      ModeNow<T>& m = b.now[plane][mode];
+      const auto flies = c[BendingTable::kFrequency] > T(0.0);
+      const T frequency = Select(flies, c[BendingTable::kFrequency] * b.frequency_factor[mode], T(1.0));
+      m.stiffness_1_s2 = frequency * frequency;
+      m.decay_1_s = b.damping_ratio * frequency;
+      m.damping_1_s = T(2.0) * m.decay_1_s;
+      m.damped_frequency_rad_s = frequency * Sqrt(Fma(-b.damping_ratio, b.damping_ratio, T(1.0)));
+      m.inverse_mass_1_kg = c[BendingTable::kInverseMass];
+      m.pivot_deflection = c[BendingTable::kPivotDeflection];
+      m.pivot_slope_1_m = c[BendingTable::kPivotSlope];
+      m.unit_slope_1_m = b.slope_factor * c[BendingTable::kUnitSlope];
+      for (int i = 0; i < kRateGyros; ++i)
+        m.gyro_slope_1_m[i] = b.slope_factor * c[BendingTable::kGyroSlope + i];
+      for (int i = 0; i < kModes; ++i) m.shortening_1_m[i] = c[BendingTable::kShortening + i];
+      for (int i = 0; i < kStrips; ++i) {
+        m.strip_deflection[i] = c[BendingTable::kStripsAt + i];
+        m.strip_slope_1_m[i] = c[BendingTable::kStripsAt + kStrips + i];
+      }
+    }
+  }
+}
+
+/// What a place of the bent body is displaced (m), turned (rad), and turns at (rad/s).
+template <class T>
+struct Bent {
+  T y_m, z_m;
+  T about_y_rad, about_z_rad;
+};
+template <class T>
+DISPERSA_INLINE Bent<T> BentAtPivot(const Bending<T>& b, const BendingState<T>& s) {
+  Bent<T> o{T(0.0), T(0.0), T(0.0), T(0.0)};
+  for (int mode = 0; mode < b.modes; ++mode) {
+    const ModeNow<T>&y = b.At(0, mode), &z = b.At(1, mode);
+    o.y_m = Fma(y.pivot_deflection, s.q_m[0][mode], o.y_m);
+    o.z_m = Fma(z.pivot_deflection, s.q_m[1][mode], o.z_m);
+    o.about_z_rad = Fma(-y.pivot_slope_1_m, s.q_m[0][mode], o.about_z_rad);
+    o.about_y_rad = Fma(z.pivot_slope_1_m, s.q_m[1][mode], o.about_y_rad);
+  }
+  return o;
+}
+/// How far the inertial unit is turned against the mean axes, rad about x, y, z.
+template <class T>
+DISPERSA_INLINE Vector<T> UnitTurn(const Bending<T>& b, const BendingState<T>& s) {
+  Vector<T> turn = Zero<T>();
+  for (int mode = 0; mode < b.modes; ++mode) {
+    turn.y = Fma(b.At(1, mode).unit_slope_1_m, s.q_m[1][mode], turn.y);
+    turn.z = Fma(-b.At(0, mode).unit_slope_1_m, s.q_m[0][mode], turn.z);
+  }
+  return turn;
+}
+/// How fast the inertial unit turns against the mean axes, rad/s; or, of `gyro` from 0, that gyro.
+template <class T>
+DISPERSA_INLINE Vector<T> TurnRate(const Bending<T>& b, const BendingState<T>& s, int gyro) {
+  Vector<T> rate = Zero<T>();
+  for (int mode = 0; mode < b.modes; ++mode) {
+    const ModeNow<T>&y = b.At(0, mode), &z = b.At(1, mode);
+    rate.y = Fma(gyro < 0 ? z.unit_slope_1_m : z.gyro_slope_1_m[gyro], s.rate_m_s[1][mode], rate.y);
+    rate.z = Fma(gyro < 0 ? -y.unit_slope_1_m : -y.gyro_slope_1_m[gyro], s.rate_m_s[0][mode], rate.z);
+  }
+  return rate;
+}
+
+/// Adds a force and a couple at the pivots to the modes' generalised forces.
+template <class T>
+DISPERSA_INLINE void DriveAtPivot(const Bending<T>& b, Vector<T> force_n, Vector<T> couple_n_m,
+                                  ModalForce<T>& o) {
+  for (int mode = 0; mode < b.modes; ++mode) {
+    const ModeNow<T>&y = b.At(0, mode), &z = b.At(1, mode);
+    T& of_y = o.drive_m_s2[0][mode];
+    T& of_z = o.drive_m_s2[1][mode];
+    of_y = Fma(force_n.y, y.pivot_deflection, Fma(-couple_n_m.z, y.pivot_slope_1_m, of_y));
+    of_z = Fma(force_n.z, z.pivot_deflection, Fma(couple_n_m.y, z.pivot_slope_1_m, of_z));
+  }
+}
+
+/// What the flow does besides to a body that bends: each strip meets it at the incidence of its own, the body's
+/// plus slope q + deflection q' / V in its plane, and takes its share of the normal force by the slope of the
+/// coefficient at the body's incidence. Adds to the body's force and moment about C and to the modes.
+template <class T>
+DISPERSA_INLINE void BendFlow(const Bending<T>& b, const BendingState<T>& s, T cg_station_m,
+                              FlowForce<T>& flow, ModalForce<T>& o) {
+  const T inverse_airspeed = T(1.0) / Max(flow.airspeed_m_s, T(1e-30));
+  const T aft = flow.xcp_station_m - b.slender_station_m;
+  for (int strip = 0; strip < kStrips; ++strip) {
+    const T share = Fma(aft, b.shift_1_m[strip], b.slender[strip]);
+    T incidence[kPlanes] = {T(0.0), T(0.0)};
+    for (int plane = 0; plane < kPlanes; ++plane)
+      for (int mode = 0; mode < b.modes; ++mode) {
+        const ModeNow<T>& m = b.At(plane, mode);
+        incidence[plane] =
+            Fma(m.strip_slope_1_m[strip], s.q_m[plane][mode],
+                Fma(m.strip_deflection[strip] * inverse_airspeed, s.rate_m_s[plane][mode], incidence[plane]));
+      }
+    const T stiffness = flow.normal_slope_n * share;
+    const T by_bending[kPlanes] = {-(stiffness * incidence[0]), -(stiffness * incidence[1])};
+    const T rigid[kPlanes] = {-(flow.normal_n * share * flow.across_y), -(flow.normal_n * share * flow.across_z)};
+    const T aft_of_cg = b.strip_station_m[strip] - cg_station_m;
+    flow.force_n.y = flow.force_n.y + by_bending[0];
+    flow.force_n.z = flow.force_n.z + by_bending[1];
+    flow.moment_n_m.y = Fma(aft_of_cg, by_bending[1], flow.moment_n_m.y);
+    flow.moment_n_m.z = Fma(-aft_of_cg, by_bending[0], flow.moment_n_m.z);
+    for (int plane = 0; plane < kPlanes; ++plane) {
+      const T force = rigid[plane] + by_bending[plane];
+      for (int mode = 0; mode < b.modes; ++mode)
+        o.drive_m_s2[plane][mode] = Fma(force, b.At(plane, mode).strip_deflection[strip], o.drive_m_s2[plane][mode]);
+    }
+  }
+}
+
+/// Ends the sum of generalised forces: compression by the force along the axis, over the masses.
+template <class T>
+DISPERSA_INLINE void FinishDrive(const Bending<T>& b, const BendingState<T>& s, T axial_n, ModalForce<T>& o) {
+  for (int plane = 0; plane < kPlanes; ++plane)
+    for (int mode = 0; mode < b.modes; ++mode) {
+      const ModeNow<T>& m = b.At(plane, mode);
+      T shortened(0.0);
+      for (int other = 0; other < b.modes; ++other)
+        shortened = Fma(m.shortening_1_m[other], s.q_m[plane][other], shortened);
+      o.drive_m_s2[plane][mode] = m.inverse_mass_1_kg * Fma(axial_n, shortened, o.drive_m_s2[plane][mode]);
+    }
+}
+
+/// A time over which every mode swings freely, exactly.
+template <class T>
+struct Swing {
+  T time_s;
+  T stiffness_1_s2[kPlanes][kModes], damping_1_s[kPlanes][kModes];
+  T aa[kPlanes][kModes], ar[kPlanes][kModes], ra[kPlanes][kModes], rr[kPlanes][kModes];
+};
+template <class T>
+DISPERSA_INLINE Swing<T> SwingOver(const Bending<T>& b, T time_s) {
+  Swing<T> o;
+  o.time_s = time_s;
+  for (int plane = 0; plane < b.planes; ++plane)
+    for (int mode = 0; mode < b.modes; ++mode) {
+      const ModeNow<T>& m = b.now[plane][mode];
+      o.stiffness_1_s2[plane][mode] = m.stiffness_1_s2;
+      o.damping_1_s[plane][mode] = m.damping_1_s;
+      const T e = Exp(-(m.decay_1_s * time_s)), angle = m.damped_frequency_rad_s * time_s;
+      const T cosine = e * Cos(angle), sine = e * Sin(angle) / m.damped_frequency_rad_s;
+      o.aa[plane][mode] = Fma(m.decay_1_s, sine, cosine);
+      o.ar[plane][mode] = sine;
+      o.ra[plane][mode] = -(m.stiffness_1_s2 * sine);
+      o.rr[plane][mode] = Fma(-m.decay_1_s, sine, cosine);
+    }
+  return o;
+}
+/// Twice the time.
+template <class T>
+DISPERSA_INLINE Swing<T> Twice(const Bending<T>& b, const Swing<T>& s) {
+  Swing<T> o = s;
+  o.time_s = s.time_s + s.time_s;
+  for (int plane = 0; plane < b.planes; ++plane)
+    for (int mode = 0; mode < b.modes; ++mode) {
+      const T aa = s.aa[plane][mode], ar = s.ar[plane][mode], ra = s.ra[plane][mode], rr = s.rr[plane][mode];
+      o.aa[plane][mode] = Fma(aa, aa, ar * ra);
+      o.ar[plane][mode] = Fma(aa, ar, ar * rr);
+      o.ra[plane][mode] = Fma(ra, aa, rr * ra);
+      o.rr[plane][mode] = Fma(ra, ar, rr * rr);
+    }
+  return o;
+}
+
+/// Where the modes are after the time of `swing` under drives d0 + d1 t + d2 t², exactly: a particular motion
+/// a + b t + c t² and the free one of what is left.
+template <class T>
+DISPERSA_INLINE BendingState<T> Swung(const Bending<T>& b, const Swing<T>& swing, const BendingState<T>& from,
+                                      const ModalForce<T>& d0, const ModalForce<T>& d1,
+                                      const ModalForce<T>& d2) {
+  BendingState<T> to = from;
+  const T t = swing.time_s, two(2.0);
+  for (int plane = 0; plane < kPlanes; ++plane)
+    for (int mode = 0; mode < b.modes; ++mode) {
+      const int of = b.planes == 1 ? 0 : plane;
+      const T softness = T(1.0) / swing.stiffness_1_s2[of][mode], damping = swing.damping_1_s[of][mode];
+      const T c = d2.drive_m_s2[plane][mode] * softness;
+      const T v = Fma(-(two * damping), c, d1.drive_m_s2[plane][mode]) * softness;
+      const T a = Fma(-damping, v, Fma(-two, c, d0.drive_m_s2[plane][mode])) * softness;
+      const T q = from.q_m[plane][mode] - a, rate = from.rate_m_s[plane][mode] - v;
+      to.q_m[plane][mode] =
+          Fma(swing.aa[of][mode], q, Fma(swing.ar[of][mode], rate, Fma(t, Fma(t, c, v), a)));
+      to.rate_m_s[plane][mode] =
+          Fma(swing.ra[of][mode], q, Fma(swing.rr[of][mode], rate, Fma(two * t, c, v)));
+    }
+  return to;
+}
+
+}  // namespace DISPERSA_ISA
+}  // namespace dispersa::lanes

@@ -1,0 +1,91 @@
+// Atmospheric turbulence after Dryden: how strong and how long its gusts are over altitude, and a realisation
+// of it as a field that stands in the air, met by whoever flies through.
+//
+// Spectra, intensities and scales: MIL-F-8785C, 3.7.1.2 (Dryden form), 3.7.2.1 and figure 7 (medium to high
+// altitude), 3.7.3.4 and figures 10, 11 (low altitude). Feet and knots only inside turbulence.cc.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace dispersa {
+
+/// How rough the air of one flight is.
+struct TurbulenceStrength {
+  double exceedance = 0.0;     ///< probability with which the intensity is exceeded: which curve of figure 7
+  double wind_20ft_m_s = 0.0;  ///< mean wind 20 ft above the ground: it makes the turbulence below 1000 ft
+  double scale = 1.0;          ///< of all intensities
+};
+inline constexpr double kLeastExceedance = 1e-6, kLargestExceedance = 0.2;  ///< of figure 7's curves
+
+/// Standard deviations (m/s) and lengths (m) of the horizontal components and of the vertical one.
+struct TurbulenceScales {
+  double sigma_horizontal_m_s, sigma_vertical_m_s;
+  double length_horizontal_m, length_vertical_m;
+};
+
+/// Figure 7: standard deviation (m/s) at an altitude for a probability of exceedance, linear over altitude
+/// and over the logarithm of the probability; the end values hold outside.
+double TurbulenceIntensity(double exceedance, double altitude_m);
+
+/// At an altitude over a ground: up to 1000 ft above it the low-altitude model (from 10 ft, below which its
+/// values there hold), from 2000 ft on figure 7 with 1750 ft for every length, in between both in turn,
+/// linear over height. Figure 7 ends at 80 000 ft: above, intensities fade to zero over kWindFade_m (wind.h).
+TurbulenceScales TurbulenceAt(const TurbulenceStrength& strength, double ground_m, double altitude_m);
+
+/// The way up through the air along which a field is laid: points of increasing altitude with the sine of the
+/// path's angle over the horizon, in a vertical plane. It decides where along the path an altitude is.
+struct ClimbPath {
+  std::vector<double> altitude_m;  ///< strictly increasing, at least two; the first is the ground's
+  std::vector<double> sine_angle;
+  double azimuth_rad = 0.0;  ///< of the plane, clockwise from north
+};
+
+/// What is common to the fields along a path: nodes a fiftieth of the vertical length apart (2 m at least),
+/// and how each follows from the one below.
+class TurbulencePath {
+ public:
+  explicit TurbulencePath(const ClimbPath& path);
+
+  struct Node {
+    double altitude_m;
+    double sine, cosine;  ///< of the path's angle
+    /// exp(-d / length) from the last node and what is added anew, of a component along the path
+    double along_keeps, along_renews;
+    /// The same of a component across, of two states: [1 0; ratio 1] keeps, lower triangle of the new.
+    double across_keeps, across_ratio, renews_11, renews_21, renews_22;
+  };
+  const std::vector<Node>& nodes() const { return nodes_; }
+  double ground_m() const { return nodes_.front().altitude_m; }
+  double azimuth_sine() const { return azimuth_sine_; }
+  double azimuth_cosine() const { return azimuth_cosine_; }
+
+ private:
+  std::vector<Node> nodes_;
+  double azimuth_sine_, azimuth_cosine_;
+};
+
+/// Velocity of the air over altitude, linear between points; the first value holds below, above the last
+/// there is none.
+struct TurbulenceField {
+  std::vector<double> altitude_m, north_m_s, east_m_s, up_m_s;
+};
+struct TurbulentWind {
+  double north_m_s = 0.0, east_m_s = 0.0, up_m_s = 0.0;
+};
+TurbulentWind Evaluate(const TurbulenceField& field, double altitude_m);
+
+/// Standard normals of the component along the path, of the horizontal one across it and of the third.
+struct TurbulenceNormals {
+  std::function<double()> along, across, normal;
+};
+/// One realisation. The component along the path has the longitudinal spectrum 2 L / pi / (1 + (L k)²), those
+/// across it the lateral one L / pi (1 + 3 (L k)²) / (1 + (L k)²)², k the wave number along the path (rad/m),
+/// times the square of the deviation. Each is a Markov sequence with exactly their correlations exp(-d/L) and
+/// (1 - d / 2L) exp(-d/L) between nodes d apart where L is constant. Where the path is vertical, along is
+/// vertical.
+TurbulenceField DrawTurbulence(const TurbulenceStrength& strength, const TurbulencePath& path,
+                               const TurbulenceNormals& draw);
+
+}  // namespace dispersa

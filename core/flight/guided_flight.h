@@ -1,0 +1,65 @@
+// A flight of the engine under closed-loop guidance: what stands between its lane and core/guidance/.
+//
+// The lane gives true values; navigation's errors and the accelerometers' are added here, so that the
+// guidance sees nothing else. It runs about once a second, as ordinary code of one flight, and gives the lane
+// its own rows of reference attitude in place of those that all flights share.
+#pragma once
+
+#include <memory>
+
+#include "core/flight/attitude_program.h"
+#include "core/flight/flight_inputs.h"
+#include "core/flight/flight_model.h"
+#include "core/guidance/outcome.h"
+
+namespace dispersa {
+
+class ClosedLoopGuidance;
+
+/// A lane at a tick, as it is.
+struct LaneSight {
+  double time_s = 0.0;
+  double p_EoC_I[3] = {};
+  double v_IC_I[3] = {};
+  int stack = 0;
+  bool burning = false;
+  double ignition_s = 0.0;
+  double expelled_kg = 0.0;
+  double specific_force_m_s2 = 0.0;
+  double measured_angle_rad = 0.0;  ///< by the gyros
+  double measured_rate_rad_s = 0.0;
+};
+
+class GuidedFlight {
+ public:
+  GuidedFlight(const FlightModel& model, const FlightInputs& inputs);
+  ~GuidedFlight();
+
+  /// The tick from which on it wants to see the lane again.
+  double next_tick() const { return next_tick_; }
+  /// True when the last stage's ignition is to be at ignition_s() from now on.
+  bool See(const LaneSight& sight);
+  double ignition_s() const;
+
+  /// Whether the lane's reference is its own.
+  bool steers() const { return steers_; }
+  /// The lane's row of ReferenceRows at a tick, and then of FeedForwardRows. Ticks do not fall.
+  const double* RowAt(double tick);
+  const double* feed_forward_row() const { return feed_forward_row_; }
+  /// Near the last tick; changes nothing.
+  ReferenceAttitude ReferenceAt(double time_s) const;
+
+  const GuidanceOutcome& outcome() const;
+
+ private:
+  const FlightModel& model_;
+  const Vector3 position_error_I_, velocity_error_I_;
+  const double accelerometer_factor_;
+  const std::unique_ptr<ClosedLoopGuidance> guidance_;
+  double next_tick_ = 0.0;
+  bool steers_ = false;
+  alignas(64) double row_[ReferenceRows::kRowSize] = {};
+  alignas(64) double feed_forward_row_[FeedForwardRows::kRowSize] = {};
+};
+
+}  // namespace dispersa

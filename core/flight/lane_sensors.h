@@ -1,0 +1,83 @@
+// What W flights' sensors make of the truth (core/math/lanes.h): inertial unit and rate gyros.
+//
+// The inertial unit integrates the rates of its own place strap-down: from measurement to measurement its attitude
+// turns by what the vehicle really turned there, between two halves of what the gyros' bias and noise add; the
+// errors turn with the vehicle. Rate gyros are second-order over the true rate of their places, which rises in a
+// straight line from tick to tick, then sampled and rounded. While nothing burns the rates are the inertial unit's.
+#pragma once
+
+#include "core/dynamics/bending.h"
+#include "core/flight/sensor_model.h"
+#include "core/math/lane_vector.h"
+
+namespace dispersa::lanes {
+inline namespace DISPERSA_ISA {
+
+template <class T>
+struct InertialUnit {
+  Turn<T> truth, measured;  ///< at the last measurement
+  T time_s;                 ///< of it
+  Vector<T> drift_rad_s;    ///< bias and noise since
+
+  /// A lane at rest: aligned without an error.
+  DISPERSA_INLINE void Start(int lane, const Turn<T>& q) {
+    for (Turn<T>* turn : {&truth, &measured}) {
+      Lane(turn->w, lane) = Lane(q.w, lane);
+      Lane(turn->x, lane) = Lane(q.x, lane);
+      Lane(turn->y, lane) = Lane(q.y, lane);
+      Lane(turn->z, lane) = Lane(q.z, lane);
+    }
+    Lane(time_s, lane) = 0.0;
+    SetLane(drift_rad_s, lane, Zero<double>());
+  }
+  DISPERSA_INLINE void Measure(MaskOf<T> lanes, T now_s, Turn<T> now) {
+    const Vector<T> half = (T(0.5) * (now_s - time_s)) * drift_rad_s;
+    const Turn<T> turned = Compose(Inverse(truth), now);
+    const Turn<T> then = TurnedBy(Compose(TurnedBy(measured, half), turned), half);
+    Blend<T>(lanes, then, measured);
+    Blend<T>(lanes, now, truth);
+    time_s = Select(lanes, now_s, time_s);
+  }
+};
+
+template <class T>
+struct GyroMemory {
+  Vector<T> first, second;  ///< of the section, direct form II transposed
+  Vector<T> output_rad_s;
+};
+
+DISPERSA_INLINE double RoundedTo(double quantum, double x) {
+  // Beyond 2^51 quanta a double has no fraction left to round.
+  constexpr double kShift = 6755399441055744.0;
+  return ((x / quantum + kShift) - kShift) * quantum;
+}
+template <int W>
+DISPERSA_INLINE Pack<W> RoundedTo(double quantum, Pack<W> x) {
+  constexpr double kShift = 6755399441055744.0;
+  return ((x / Pack<W>(quantum) + Pack<W>(kShift)) - Pack<W>(kShift)) * Pack<W>(quantum);
+}
+
+/// One tick of the lanes that burn; `fresh`: those that have just begun, at rest in their rate; `sampled`: those at a
+/// tick of the gyro.
+template <class T>
+DISPERSA_INLINE void StepGyro(const GyroModel& gyro, MaskOf<T> acting, MaskOf<T> fresh, MaskOf<T> sampled,
+                              Vector<T> rate_rad_s, GyroMemory<T>& memory) {
+  const DigitalSection& f = gyro.section;
+  const T* u = &rate_rad_s.x;
+  T* first = &memory.first.x;
+  T* second = &memory.second.x;
+  T* output = &memory.output_rad_s.x;
+  for (int axis = 0; axis < 3; ++axis) {
+    const T at_rest2 = T(f.b2 - f.a2) * u[axis];
+    const T s2 = Select(fresh, at_rest2, second[axis]);
+    const T s1 = Select(fresh, Fma(T(f.b1 - f.a1), u[axis], at_rest2), first[axis]);
+    const T y = Fma(T(f.b0), u[axis], s1);
+    first[axis] = Select(acting, Fma(T(f.b1), u[axis], Fma(T(-f.a1), y, s2)), s1);
+    second[axis] = Select(acting, Fma(T(f.b2), u[axis], T(-f.a2) * y), s2);
+    const T shown = gyro.quantum_rad_s > 0.0 ? RoundedTo(gyro.quantum_rad_s, y) : y;
+    output[axis] = Select((acting & sampled) | fresh, shown, output[axis]);
+  }
+}
+
+}  // namespace DISPERSA_ISA
+}  // namespace dispersa::lanes

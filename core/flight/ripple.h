@@ -1,0 +1,40 @@
+// The ripple of a flight's deflections: how far they swing within a second, whatever swings them.
+#pragma once
+
+#include <vector>
+
+namespace dispersa {
+
+/// Worst peak-to-peak of pitch, yaw and roll deflection in windows of one second with the straight line taken
+/// out. A window is ten blocks of a tenth of a second, rounded down to whole ticks, and starts with each
+/// block: neighbours overlap by nine tenths, so no oscillation hides between them.
+class RippleMeter {
+ public:
+  explicit RippleMeter(double tick_s);
+
+  /// Windows start anew: a transient, a gust, a coast.
+  void Interrupt() { filled_ = 0; }
+  /// One tick's deflections (rad).
+  void Add(double roll_rad, double pitch_rad, double yaw_rad);
+  double worst_rad() const { return worst_; }  ///< negative without a whole window
+
+ private:
+  static constexpr int kChannels = 3;
+  static constexpr int kBlocks = 10;
+  /// Of one channel over one block; the moment counts samples from the block's first.
+  struct Block {
+    double sum, moment, low, high;
+  };
+
+  void Evaluate(int channel);
+
+  int block_size_;
+  int blocks_;                              ///< in a window
+  int at_ = 0;                              ///< where the next sample goes
+  int filled_ = 0;                          ///< samples since the last interruption, up to a window
+  std::vector<double> samples_[kChannels];  ///< the window as a ring
+  Block block_[kChannels][kBlocks];
+  double worst_ = -1.0;
+};
+
+}  // namespace dispersa

@@ -1,0 +1,63 @@
+// The guidance of one flight: sees the navigated state now and then, plans, and commands an attitude at every
+// tick from the last but one burn on.
+#pragma once
+
+#include "core/guidance/attitude_command.h"
+#include "core/guidance/corrector.h"
+#include "core/guidance/motor_estimate.h"
+#include "core/guidance/outcome.h"
+
+namespace dispersa {
+
+/// What the flight computer knows at a call. Nothing here is a true value.
+struct GuidanceSight {
+  NavigatedState state;
+  GuidancePhase phase = GuidancePhase::kCoast;
+  double burn_ignition_s = 0.0;      ///< of the motor that burns
+  double specific_force_m_s2 = 0.0;  ///< by the accelerometers, its magnitude
+  double expelled_kg = 0.0;          ///< by the reaction control, from its valves' times
+  double attitude_error_rad = 0.0;   ///< measured, to the command
+  double rate_error_rad_s = 0.0;
+};
+
+class ClosedLoopGuidance {
+ public:
+  explicit ClosedLoopGuidance(const GuidanceMission& mission);
+
+  /// When it wants to see again, s since lift-off.
+  double next_call_s() const { return next_call_s_; }
+  /// Plans. True when the last stage's ignition is to be at ignition_s() from now on.
+  bool See(const GuidanceSight& sight);
+  double ignition_s() const { return plan_.ignition_s(); }
+
+  /// Whether the attitude is its own and no longer the reference's.
+  bool steers() const { return steers_; }
+  /// Moves the command on to a tick; times do not fall.
+  void Command(double time_s);
+  const AttitudeCommand& command() const { return command_; }
+  const Plan& plan() const { return plan_; }
+  const GuidanceOutcome& outcome() const { return outcome_; }
+
+ private:
+  void SeeBelowBurn(const GuidanceSight& sight);
+  bool SeeCoast(const GuidanceSight& sight);
+  void SeeLastBurn(const GuidanceSight& sight);
+  void MeasureThrust(const GuidanceSight& sight);
+  CorrectorTask Task(std::initializer_list<PlanUnknown> free, const Plan& prior, int iterations) const;
+
+  const GuidanceMission& mission_;
+  const PlanPrior prior_;
+  Plan plan_;
+  AttitudeCommand command_;
+  bool steers_ = false;
+  GuidancePhase phase_ = GuidancePhase::kBelowBurns;
+  double next_call_s_ = 0.0;
+  MotorEstimate below_, last_;
+  Vector3 thrust_offset_rad_I_ = Vector3::Zero();
+  NavigatedState previous_;  ///< of the burn's last call, and where thrust was to point then
+  Vector3 previous_direction_L_ = Vector3::Zero();
+  bool has_previous_ = false;
+  GuidanceOutcome outcome_;
+};
+
+}  // namespace dispersa

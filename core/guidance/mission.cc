@@ -1,0 +1,52 @@
+#include "core/guidance/mission.h"
+
+#include <cstddef>
+
+#include "core/math/functions.h"
+
+namespace dispersa {
+
+Vector3 UnitVector(const Direction& direction) {
+  const SinCos pitch = SineCosine(direction.pitch_rad), yaw = SineCosine(direction.yaw_rad);
+  return {pitch.cos * yaw.cos, yaw.sin, -pitch.sin * yaw.cos};
+}
+
+namespace {
+
+// The interval that a time falls into, and how far into it.
+struct Place {
+  std::size_t interval = 0;
+  double part = 0.0;
+  bool outside = false;
+};
+Place Find(const DirectionTable& table, double time_s) {
+  const double last = static_cast<double>(table.at.size() - 1);
+  const double place = (time_s - table.start_s) / table.step_s;
+  if (!(place > 0.0)) return {0, 0.0, place < 0.0};
+  if (place >= last) return {table.at.size() - 2, 1.0, true};
+  const auto interval = static_cast<std::size_t>(place);
+  return {interval, place - static_cast<double>(interval), false};
+}
+
+}  // namespace
+
+Direction DirectionTable::At(double time_s) const {
+  const Place place = Find(*this, time_s);
+  const Direction &from = at[place.interval], &to = at[place.interval + 1];
+  return {from.pitch_rad + place.part * (to.pitch_rad - from.pitch_rad),
+          from.yaw_rad + place.part * (to.yaw_rad - from.yaw_rad)};
+}
+
+Direction DirectionTable::RateAt(double time_s) const {
+  const Place place = Find(*this, time_s);
+  if (place.outside) return {};
+  const Direction &from = at[place.interval], &to = at[place.interval + 1];
+  return {(to.pitch_rad - from.pitch_rad) / step_s, (to.yaw_rad - from.yaw_rad) / step_s};
+}
+
+double IdealVelocity(const GuidedStage& stage) {
+  const double exhaust_m_s = stage.burn.vacuum_thrust_n / stage.burn.full_flow_kg_s;
+  return exhaust_m_s * Log(stage.ignition_mass_kg / (stage.ignition_mass_kg - stage.burn.propellant_mass_kg));
+}
+
+}  // namespace dispersa

@@ -1,0 +1,14 @@
+// What became of the guidance of a flight, for its metrics.
+#pragma once
+
+namespace dispersa {
+
+struct GuidanceOutcome {
+  bool acted = false;             ///< it has planned at least once
+  bool arrives = false;           ///< the last plan in which altitude still counted reaches the target
+  double ignition_shift_s = 0.0;  ///< of the last stage, against the reference
+  double excess_m_s = 0.0;   ///< of the last burn, that its turn in yaw takes away as planned at ignition
+  double postponed_s = 0.0;  ///< because the attitude had not settled
+};
+
+}  // namespace dispersa

@@ -1,0 +1,104 @@
+#include "core/guidance/predictor.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/math/functions.h"
+
+namespace dispersa {
+
+namespace {
+
+// Equal steps of no more than `longest_s` from the state's time to `to_s`. `thrust` is the specific force in
+// I at a time since the state's; the end of a step and the beginning of the next share it.
+template <class ThrustAt>
+void Advance(const Earth& earth, double to_s, double longest_s, const ThrustAt& thrust,
+             NavigatedState& state) {
+  const double way_s = to_s - state.time_s;
+  if (!(way_s > 0.0)) return;
+  const int steps = std::max(1, static_cast<int>(std::ceil(way_s / longest_s)));
+  const double h = way_s / steps, half = 0.5 * h, from_s = state.time_s;
+  Vector3 &p = state.p_EoC_I, &v = state.v_IC_I;
+  Vector3 at_start = thrust(from_s);
+  for (int i = 0; i < steps; ++i) {
+    const double end_s = i + 1 == steps ? to_s : from_s + (i + 1) * h;
+    const Vector3 at_middle = thrust(from_s + (i + 0.5) * h), at_end = thrust(end_s);
+    const Vector3 a1 = Gravitation(earth, p) + at_start;
+    const Vector3 v2 = v + half * a1;
+    const Vector3 a2 = Gravitation(earth, p + half * v) + at_middle;
+    const Vector3 v3 = v + half * a2;
+    const Vector3 a3 = Gravitation(earth, p + half * v2) + at_middle;
+    const Vector3 v4 = v + h * a3;
+    const Vector3 a4 = Gravitation(earth, p + h * v3) + at_end;
+    p += h / 6.0 * (v + 2.0 * (v2 + v3) + v4);
+    v += h / 6.0 * (a1 + 2.0 * (a2 + a3) + a4);
+    at_start = at_end;
+  }
+  state.time_s = to_s;
+}
+
+// Through the rest of a burn. Steps end where the thrust has kinks; on either side of one the burn is smooth,
+// so the fraction is taken just inside the piece.
+template <class DirectionAt>
+void Burn(const GuidanceMission& mission, const GuidedStage& stage, double ignition_s, double longest_s,
+          const Vector3& offset_rad_I, const DirectionAt& direction_at, NavigatedState& state) {
+  const MotorBurn& burn = stage.burn;
+  const double empty_kg = stage.ignition_mass_kg - burn.propellant_mass_kg;
+  double ends[] = {burn.rise_s, burn.duration_s - burn.tail_s, burn.duration_s};
+  std::sort(std::begin(ends), std::end(ends));
+  for (const double end : ends) {
+    const double begin = state.time_s - ignition_s;
+    if (!(end > begin)) continue;
+    // Both ends of a piece belong to it.
+    constexpr double kInside = 1e-9;
+    const auto thrust = [&](double time_s) -> Vector3 {
+      const double since = std::clamp(time_s - ignition_s, begin + kInside, end - kInside);
+      const double acceleration =
+          burn.vacuum_thrust_n * burn.Fraction(since) / (empty_kg + burn.Propellant(since));
+      const Vector3 along = mission.R_IL * UnitVector(direction_at(time_s));
+      return acceleration * (along + offset_rad_I.cross(along));
+    };
+    Advance(mission.earth, ignition_s + end, longest_s, thrust, state);
+  }
+}
+
+}  // namespace
+
+Arrival ArrivalOf(const Earth& earth, double time_s, const Vector3& p, const Vector3& v) {
+  Arrival arrival;
+  arrival.altitude_m = ToGeodetic(earth, InertialToEarth(earth, time_s, p)).altitude_m;
+  const Vector3 h = p.cross(v);
+  arrival.velocity_m_s = v.norm();
+  arrival.flight_path_angle_rad = Atan2(p.dot(v), h.norm());
+  arrival.inclination_rad = Atan2(Sqrt(h.x() * h.x() + h.y() * h.y()), h.z());
+  return arrival;
+}
+
+Injection Predict(const GuidanceMission& mission, const PlanPrior& prior, const Knowledge& known,
+                  const NavigatedState& from, const Plan& plan, const PredictorSteps& steps) {
+  NavigatedState state = from;
+  if (known.phase == GuidancePhase::kBelowBurns) {
+    const auto direction = [&](double time_s) {
+      Direction along = mission.program.At(time_s);
+      along.pitch_rad += plan.value[kBelowPitch];
+      along.yaw_rad += plan.value[kBelowYaw];
+      return along;
+    };
+    Burn(mission, known.below, known.burn_ignition_s, steps.burn_s, known.thrust_offset_rad_I, direction,
+         state);
+  }
+  const bool lit = known.phase == GuidancePhase::kLastBurns;
+  const double ignition_s = lit ? known.burn_ignition_s : plan.ignition_s();
+  if (!lit)
+    Advance(
+        mission.earth, ignition_s, steps.coast_s, [](double) { return Vector3(0.0, 0.0, 0.0); }, state);
+  const double nominal_s = mission.last.burn.duration_s;
+  const auto direction = [&](double time_s) {
+    return plan.LastBurnAt(time_s - ignition_s, nominal_s, prior.yaw_half_rad);
+  };
+  const Vector3 offset = lit ? known.thrust_offset_rad_I : Vector3(0.0, 0.0, 0.0);
+  Burn(mission, known.last, ignition_s, steps.burn_s, offset, direction, state);
+  return {ArrivalOf(mission.earth, state.time_s, state.p_EoC_I, state.v_IC_I), state.time_s};
+}
+
+}  // namespace dispersa

@@ -1,0 +1,45 @@
+// Where a flight arrives: a point mass under gravitation (central and J2) and the thrust of known motors,
+// through the rest of a burn, the coast and the last burn.
+#pragma once
+
+#include "core/guidance/plan.h"
+
+namespace dispersa {
+
+/// As the navigation has it.
+struct NavigatedState {
+  double time_s = 0.0;
+  Vector3 p_EoC_I = Vector3::Zero();
+  Vector3 v_IC_I = Vector3::Zero();
+};
+
+enum class GuidancePhase { kBelowBurns, kCoast, kLastBurns };
+
+/// What is known when the prediction is made.
+struct Knowledge {
+  GuidancePhase phase = GuidancePhase::kCoast;
+  double burn_ignition_s = 0.0;  ///< of the motor that burns
+  GuidedStage below;             ///< as estimated, while it burns
+  GuidedStage last;  ///< nominal until it burns, then as estimated; less what reaction control expelled
+  /// Small rotation from where thrust shall point to where it does, as measured.
+  Vector3 thrust_offset_rad_I = Vector3::Zero();
+};
+
+struct Injection {
+  Arrival at;
+  double time_s = 0.0;
+};
+
+/// Classical Runge-Kutta steps, at most so long; they end at a thrust's kinks.
+struct PredictorSteps {
+  double burn_s = 2.5;
+  double coast_s = 40.0;
+};
+
+Injection Predict(const GuidanceMission& mission, const PlanPrior& prior, const Knowledge& known,
+                  const NavigatedState& from, const Plan& plan, const PredictorSteps& steps = {});
+
+/// Of a state: how it would be judged as an injection.
+Arrival ArrivalOf(const Earth& earth, double time_s, const Vector3& p_EoC_I, const Vector3& v_IC_I);
+
+}  // namespace dispersa

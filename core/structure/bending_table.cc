@@ -1,0 +1,145 @@
+#include "core/structure/bending_table.h"
+
+#include <algorithm>
+
+#include "core/vehicle/beam_masses.h"
+#include "core/vehicle/mould_line.h"
+
+namespace dispersa {
+
+namespace {
+
+/// Places along the beam at which the shortening is summed.
+constexpr int kShorteningSteps = 400;
+
+// Slender-body shares follow the growth of the cross-section, shifts the planform about its centroid, so that all
+// shares together are 1 and their centroid is where the centre of pressure is.
+void ShareOut(const Vehicle& vehicle, const Stage& stage, BendingTable& table) {
+  const std::vector<MouldSection> body = CutMouldLine(vehicle.profile, stage.bottom_station_m);
+  const auto radius = [&](double station_m) {
+    for (const MouldSection& section : body)
+      if (station_m <= section.end_m) return section.Radius(std::max(station_m, section.start_m));
+    return body.back().Radius(body.back().end_m);
+  };
+  constexpr int kPieces = 50;  // of a strip
+  const double strip_m = stage.bottom_station_m / kStrips;
+  const double base2 = radius(stage.bottom_station_m) * radius(stage.bottom_station_m);
+  std::array<double, kStrips> planform{};
+  double planform_sum = 0.0, planform_moment = 0.0;
+  for (std::size_t i = 0; i < kStrips; ++i) {
+    const double from = strip_m * static_cast<double>(i), to = from + strip_m;
+    table.slender[i] = (radius(to) * radius(to) - radius(from) * radius(from)) / base2;
+    table.strip_station_m[i] = 0.5 * (from + to);
+    for (int k = 0; k < kPieces; ++k) planform[i] += radius(from + strip_m * (k + 0.5) / kPieces);
+    table.slender_station_m += table.slender[i] * table.strip_station_m[i];
+    planform_sum += planform[i];
+    planform_moment += planform[i] * table.strip_station_m[i];
+  }
+  // The nose tip is a point: the first strip begins with no cross-section, whatever a blunt file says.
+  const double blunt = radius(0.0) * radius(0.0) / base2;
+  table.slender[0] += blunt;
+  table.slender_station_m += blunt * table.strip_station_m[0];
+  const double centroid_m = planform_moment / planform_sum;
+  double spread = 0.0;
+  for (std::size_t i = 0; i < kStrips; ++i) {
+    const double arm = table.strip_station_m[i] - centroid_m;
+    table.shift_1_m[i] = planform[i] * arm;
+    spread += table.shift_1_m[i] * table.strip_station_m[i];
+  }
+  for (double& shift : table.shift_1_m) shift /= spread;
+}
+
+bool FliesAtAllLevels(const StackModes& stack, std::size_t mode, double highest_rad_s) {
+  for (const std::vector<BendingLevel>& plane : stack.levels)
+    for (const BendingLevel& level : plane)
+      if (mode >= level.modes.size() || level.modes[mode].frequency_rad_s >= highest_rad_s) return false;
+  return true;
+}
+
+// The share of the mass ahead of each place, from the nose aft.
+std::vector<double> MassAhead(const Vehicle& vehicle, const StackModes& stack, double propellant_kg,
+                              const std::vector<double>& places) {
+  const BeamMasses masses = BuildBeamMasses(vehicle, stack.stage, propellant_kg);
+  const double step = places[1] - places[0];
+  std::vector<double> ahead(places.size());
+  double sum = 0.0;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    double here = 0.0;
+    for (const SpreadMass& m : masses.spread)
+      if (places[i] >= m.top_station_m && places[i] < m.bottom_station_m)
+        here += m.MassPerLength(places[i]) * step;
+    for (const FixedMass& m : masses.fixed)
+      if (m.station_m >= places[i] - 0.5 * step && m.station_m < places[i] + 0.5 * step) here += m.mass_kg;
+    ahead[i] = sum + 0.5 * here;
+    sum += here;
+  }
+  for (double& share : ahead) share /= sum;
+  return ahead;
+}
+
+}  // namespace
+
+double BendingTable::At(int plane, int mode, int column, double kg) const {
+  std::size_t level = 0;
+  while (level + 2 < propellant_kg.size() && kg < propellant_kg[level + 1]) ++level;
+  const int low = static_cast<int>(level);
+  if (propellant_kg.size() == 1) return Row(plane, 0, mode)[column];
+  const double fraction = std::clamp(
+      (propellant_kg[level] - kg) / (propellant_kg[level] - propellant_kg[level + 1]), 0.0, 1.0);
+  const double from = Row(plane, low, mode)[column], to = Row(plane, low + 1, mode)[column];
+  return from + fraction * (to - from);
+}
+
+BendingTable BuildBendingTable(const Vehicle& vehicle, const StackModes& stack, double highest_rad_s) {
+  const StructureBeam& beam = *vehicle.structure_beam;
+  const Stage& stage = vehicle.stages[static_cast<std::size_t>(stack.stage)];
+  BendingTable table;
+  ShareOut(vehicle, stage, table);
+  while (table.modes < std::min(kModes, beam.flown_modes) &&
+         FliesAtAllLevels(stack, static_cast<std::size_t>(table.modes), highest_rad_s))
+    ++table.modes;
+  table.planes = stack.axisymmetric ? 1 : 2;
+  for (const BendingLevel& level : stack.levels[0]) table.propellant_kg.push_back(level.propellant_kg);
+
+  for (std::size_t p = 0; p < static_cast<std::size_t>(table.planes); ++p) {
+    const BeamPlane plane = kBeamPlanes[p];
+    const double top = stack.station_m[p].front();
+    const double step = (stack.station_m[p].back() - top) / kShorteningSteps;
+    std::vector<double> places;
+    for (int i = 0; i < kShorteningSteps; ++i) places.push_back(top + step * (i + 0.5));
+    for (const BendingLevel& level : stack.levels[p]) {
+      const std::vector<double> ahead = MassAhead(vehicle, stack, level.propellant_kg, places);
+      std::vector<std::vector<double>> slopes(static_cast<std::size_t>(table.modes));
+      for (std::size_t k = 0; k < slopes.size(); ++k)
+        for (const double place : places)
+          slopes[k].push_back(ShapeOf(stack, plane, level.modes[k], place).slope_1_m);
+      for (std::size_t k = 0; k < slopes.size(); ++k) {
+        const BendingMode& mode = level.modes[k];
+        const auto at = [&](double station_m) { return ShapeOf(stack, plane, mode, station_m); };
+        std::array<double, BendingTable::kRowSize> row{};
+        row[BendingTable::kFrequency] = mode.frequency_rad_s;
+        row[BendingTable::kInverseMass] = 1.0 / mode.generalized_mass_kg;
+        const StationShape pivot = at(stage.gimbal.pivot_station_m);
+        row[BendingTable::kPivotDeflection] = pivot.deflection;
+        row[BendingTable::kPivotSlope] = pivot.slope_1_m;
+        row[BendingTable::kUnitSlope] = at(vehicle.sensors.inertial_unit_station_m).slope_1_m;
+        for (std::size_t g = 0; g < vehicle.sensors.rate_gyros.size(); ++g)
+          row[BendingTable::kGyroSlope + g] = at(vehicle.sensors.rate_gyros[g].station_m).slope_1_m;
+        for (std::size_t j = 0; j < slopes.size(); ++j) {
+          double sum = 0.0;
+          for (std::size_t i = 0; i < places.size(); ++i) sum += ahead[i] * slopes[j][i] * slopes[k][i];
+          row[BendingTable::kShortening + j] = sum * step;
+        }
+        for (std::size_t i = 0; i < kStrips; ++i) {
+          const StationShape shape = at(table.strip_station_m[i]);
+          row[BendingTable::kStripsAt + i] = shape.deflection;
+          row[BendingTable::kStripsAt + kStrips + i] = shape.slope_1_m;
+        }
+        table.rows.insert(table.rows.end(), row.begin(), row.end());
+      }
+    }
+  }
+  return table;
+}
+
+}  // namespace dispersa
