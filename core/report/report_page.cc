@@ -64,13 +64,13 @@ std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary,
     page += DistributionFigures(worst.metric, summary, cases);
   page += "</div>\n";
   if (summary.flown > 0) {
+    page += "<h3>Spread of the orbit</h3>\n<p>";
     page +=
-        "<h3>Spread of the orbit</h3>\n<p>Guidance is open loop: the autopilot follows the pitch program, "
-        "and nothing "
-        "corrects what dispersed thrust, flow and drag do to speed and altitude. No requirement rests on "
-        "it.</p>\n"
-        "<div class=\"figures\">\n" +
-        InjectionFigures(summary, cases) + "</div>\n";
+        campaign.guidance.closed_loop
+            ? "Guidance is closed loop: it steers the last stages by a navigated state to the orbit."
+            : "Guidance is open loop: the autopilot follows the pitch program, and nothing corrects what "
+              "dispersed thrust, flow and drag do to speed and altitude. No requirement should rest on it.";
+    page += "</p>\n<div class=\"figures\">\n" + InjectionFigures(summary, cases) + "</div>\n";
     if (summary.injection) page += InjectionSection(*summary.injection);
   }
 
@@ -85,7 +85,7 @@ std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary,
                       : "<p>This report was made without time histories.</p>\n";
   page += StatisticsSection(summary);
   page += DispersionsSection(summary);
-  page += NotModelledSection();
+  page += NotModelledSection(campaign);
   page += ProvenanceSection(campaign, summary);
   page += "<script type=\"application/json\" id=\"cases\">" + CaseData(summary, cases) + "</script>\n<script>";
   page += PageScript();

@@ -323,24 +323,45 @@ std::string DispersionsSection(const CampaignSummary& summary) {
   return html + table.Html();
 }
 
-std::string NotModelledSection() {
-  return R"html(<h2 id="limits">What is not modelled</h2>
-<ul>
-<li>The vehicle is rigid: no bending modes, no slosh (all stages are solid), no inertia of the swinging
-nozzles. Gain and phase margins against flexible modes cannot be read from this report.</li>
-<li>Guidance is open loop: the pitch program is flown over time, and nothing steers out errors of speed or
+std::string NotModelledSection(const Campaign& campaign) {
+  const std::optional<StructureBeam>& beam = campaign.vehicle.structure_beam;
+  const bool has_turbulence =
+      std::any_of(campaign.dispersions.begin(), campaign.dispersions.end(),
+                  [](const Dispersion& d) { return d.name.starts_with("turbulence"); });
+  std::string html = "<h2 id=\"limits\">What is not modelled</h2>\n<ul>\n";
+  html +=
+      beam && beam->flown_modes > 0
+          ? R"html(<li>The vehicle bends by the modes of its file; they are only as good as that stiffness and damping. There is
+no slosh (all stages are solid), no torsion, no local mode, and the body's acceleration does not move the nozzles.</li>
+)html"
+          : R"html(<li>The vehicle is rigid: no bending modes, no slosh (all stages are solid). Gain and phase margins against
+flexible modes cannot be read from this report.</li>
+)html";
+  html +=
+      campaign.guidance.closed_loop
+          ? R"html(<li>Guidance knows each motor's shape of thrust exactly, and is told its state with the constant errors that
+the campaign declares: no navigation filter, no error that grows.</li>
+)html"
+          : R"html(<li>Guidance is open loop: the pitch program is flown over time, and nothing steers out errors of speed or
 altitude. Thrust, mass flow and drag therefore spread the orbit by tens of kilometres whatever the autopilot
 does; injection metrics are reported for that spread and are no measure of the autopilot.</li>
-<li>Navigation is ideal but for the gyro bias and noise that a campaign declares: no filter, no alignment
-error.</li>
+)html";
+  html +=
+      R"html(<li>The attitude is measured without other errors than the gyro bias and noise that a campaign declares: no
+filter, no alignment error.</li>
 <li>Separation is instantaneous: no contact forces and no re-contact analysis; what disturbs it is the
 declared tip-off rate.</li>
 <li>Motors burn with constant thrust between two ramps, through four equal nozzles, without thrust
 oscillation. The reaction control gives ideal couples.</li>
-<li>Aerodynamic coefficients come from one table or build-up for each stack, without plume interaction,
-aeroelasticity or hysteresis; their uncertainty is what the campaign disperses.</li>
-<li>Wind stands still during a flight: a profile and a discrete gust, no continuous turbulence. The
-atmosphere is the US Standard Atmosphere 1976 with the density factor that the campaign declares.</li>
+<li>Aerodynamic coefficients come from one table or build-up for each stack, without plume interaction or
+hysteresis; their uncertainty is what the campaign disperses.</li>
+)html";
+  html +=
+      has_turbulence
+          ? R"html(<li>Turbulence is a frozen field over altitude, the same all over the vehicle. The)html"
+          : R"html(<li>Wind stands still during a flight: a profile and a discrete gust, no continuous turbulence. The)html";
+  return html +
+         R"html( atmosphere is the US Standard Atmosphere 1976 with the density factor that the campaign declares.</li>
 </ul>
 )html";
 }

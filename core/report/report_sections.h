@@ -17,7 +17,7 @@ std::string WorstCasesSection(const CampaignSummary& summary, const FlightHistor
 std::string CausesSection(const CampaignSummary& summary);
 std::string StatisticsSection(const CampaignSummary& summary);
 std::string DispersionsSection(const CampaignSummary& summary);
-std::string NotModelledSection();
+std::string NotModelledSection(const Campaign& campaign);
 std::string ProvenanceSection(const Campaign& campaign, const CampaignSummary& summary);
 
 }  // namespace dispersa
