@@ -54,7 +54,18 @@ struct OneLane {
     std::copy_n(y + kModalRate, kPlanes * kModes, &bending_state.rate_m_s[0][0]);
   }
 
-  const lanes::BentBody<double>* bent() const { return bending.modes > 0 ? &bent_ : nullptr; }
+  lanes::LoadsOf<double> Loads() const {
+    return WithBody([this](const auto& body) {
+      return lanes::LoadsAt(earth.rotation_rate_rad_s, jet_damping, plant, phase, phase.burning, around, masses,
+                            nozzles, motion, body);
+    });
+  }
+  lanes::Rates<double> Rates() const {
+    return WithBody([this](const auto& body) {
+      return lanes::RatesOf<double>(earth.rotation_rate_rad_s, jet_damping, plant, phase, phase.burning, around,
+                                    masses, nozzles, motion, body, nullptr);
+    });
+  }
 
   const Earth& earth;
   bool jet_damping;
@@ -71,7 +82,11 @@ struct OneLane {
   mutable lanes::ModalForce<double> modal{};  ///< of the last evaluation
 
  private:
-  const lanes::BentBody<double> bent_{&bending, &bending_state, &modal};
+  template <class Function>
+  auto WithBody(const Function& function) const -> decltype(function(lanes::StraightBody{})) {
+    if (bending.modes > 0) return function(lanes::BentBody<double>{&bending, &bending_state, &modal});
+    return function(lanes::StraightBody{});
+  }
 };
 
 }  // namespace
@@ -93,9 +108,7 @@ LauncherInstant LauncherModel::Evaluate(const LauncherPhase& phase, double time_
   const OneLane one(prepared_->plant, prepared_->stacks[static_cast<std::size_t>(phase.stack)], phase, time_s, y);
   const lanes::Motion<double>& s = one.motion;
   const lanes::TimedMasses<double>& masses = one.masses;
-  const lanes::LoadsOf<double> loads =
-      lanes::LoadsAt(one.earth.rotation_rate_rad_s, one.jet_damping, one.plant, one.phase, phase.burning,
-                     one.around, masses, one.nozzles, s, one.bent());
+  const lanes::LoadsOf<double> loads = one.Loads();
   LauncherInstant now;
   now.air.place = ToGeodetic(one.earth, Vector3(y[0], y[1], y[2]));
   now.air.v_AP_I = ToEigen(loads.v_air);
@@ -126,9 +139,7 @@ void LauncherModel::Derivative(const LauncherPhase& phase, double time_s, const 
   const std::size_t stack = static_cast<std::size_t>(phase.stack);
   const OneLane one(prepared_->plant, prepared_->stacks[stack], phase, time_s, y);
   const lanes::Motion<double>& s = one.motion;
-  const auto rates =
-      lanes::RatesOf<double>(one.earth.rotation_rate_rad_s, one.jet_damping, one.plant, one.phase,
-                             phase.burning, one.around, one.masses, one.nozzles, s, one.bent(), nullptr);
+  const lanes::Rates<double> rates = one.Rates();
   const Quaternion dq = dispersa::Derivative({s.q.w, s.q.x, s.q.y, s.q.z}, ToEigen(s.w));
   WriteState({ToEigen(s.v), ToEigen(rates.dv), dq, ToEigen(rates.dw)}, dydt);
   for (int i = 0; i < kNozzles; ++i) {

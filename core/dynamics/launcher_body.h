@@ -162,12 +162,17 @@ DISPERSA_INLINE NozzleReaction<T> ReactionOf(const Plant<T>& plant, const Nozzle
            plant.nozzle_inertia_kg_m2 * yaw}};
 }
 
-/// A body that bends, at an instant.
+/// A body that bends, at an instant; or one that does not, whose flight is code of its own: where bending may
+/// follow, the compiler keeps forces in memory for it.
 template <class T>
 struct BentBody {
+  static constexpr bool kBends = true;
   const Bending<T>* bending;
   const BendingState<T>* state;
   ModalForce<T>* modal;  ///< receives Q / m
+};
+struct StraightBody {
+  static constexpr bool kBends = false;
 };
 
 /// Everything that acts on a lane's body, body axes, moments about C.
@@ -200,13 +205,13 @@ DISPERSA_INLINE void BendThrust(const Plant<T>& plant, const Phase<T>& phase, co
   Blend<T>(phase.burning, driven, *bent.modal);
 }
 
-/// `any_burns`: some lane does. With jet damping the flow leaves with the velocity of the nozzle about the
+/// `any_burns`: some lane does. `body`: bent or straight. With jet damping the flow leaves with the velocity of the nozzle about the
 /// CG: -m_dot r x (w x r), r on the axis, and for roll the nozzle circle's radius.
-template <class T>
+template <class T, class Body>
 DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, bool jet_damping, const Plant<T>& plant,
                                    const Phase<T>& phase, bool any_burns, const Surroundings<T>& around,
                                    const TimedMasses<T>& masses, const Nozzles<T>& nozzles,
-                                   const Motion<T>& s, const BentBody<T>* bent) {
+                                   const Motion<T>& s, const Body& body) {
   LoadsOf<T> o;
   o.R_IB = RotationMatrix(s.q);
   const T omega(earth_rate_rad_s), none(0.0);
@@ -216,16 +221,16 @@ DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, bool jet_damping, co
   const Vector<T> w_EB_B = Along(s.w, -omega, o.R_IB.row[2]);
   o.flow = ForceOfFlow(plant.aero, o.v_AB_B, w_EB_B, around.density_kg_m3, around.inverse_sound_s_m,
                        masses.cg_station_m);
-  if (bent) {
+  if constexpr (Body::kBends) {
     for (int plane = 0; plane < kPlanes; ++plane)
-      for (int mode = 0; mode < kModes; ++mode) bent->modal->drive_m_s2[plane][mode] = none;
-    BendFlow(*bent->bending, *bent->state, masses.cg_station_m, o.flow, *bent->modal);
+      for (int mode = 0; mode < kModes; ++mode) body.modal->drive_m_s2[plane][mode] = none;
+    BendFlow(*body.bending, *body.state, masses.cg_station_m, o.flow, *body.modal);
   }
   o.force_n = o.flow.force_n;
   o.moment_n_m = o.flow.moment_n_m + phase.control_torque_n_m;
   o.thrust_n = o.flow_kg_s = o.jet_axial = o.jet_transverse = none;
   if (!any_burns) {
-    if (bent) FinishDrive(*bent->bending, *bent->state, o.force_n.x, *bent->modal);
+    if constexpr (Body::kBends) FinishDrive(*body.bending, *body.state, o.force_n.x, *body.modal);
     return o;
   }
   Thrust<T> thrust = ThrustOf(plant, masses, nozzles, around.pressure_pa);
@@ -236,7 +241,7 @@ DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, bool jet_damping, co
     thrust.couple_n_m = thrust.couple_n_m + reaction.couple_n_m;
     thrust.moment_n_m = thrust.moment_n_m + Cross(arm, reaction.force_n) + reaction.couple_n_m;
   }
-  if (bent) BendThrust(plant, phase, masses, *bent, thrust);
+  if constexpr (Body::kBends) BendThrust(plant, phase, masses, body, thrust);
   o.force_n = Select(phase.burning, o.force_n + thrust.force_n, o.force_n);
   o.moment_n_m = Select(phase.burning, o.moment_n_m + thrust.moment_n_m, o.moment_n_m);
   o.thrust_n = Select(phase.burning, thrust.thrust_n, none);
@@ -246,19 +251,19 @@ DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, bool jet_damping, co
     o.jet_axial = o.flow_kg_s * plant.nozzle_radius_m * plant.nozzle_radius_m;
     o.jet_transverse = o.flow_kg_s * lever * lever;
   }
-  if (bent) FinishDrive(*bent->bending, *bent->state, o.force_n.x, *bent->modal);
+  if constexpr (Body::kBends) FinishDrive(*body.bending, *body.state, o.force_n.x, *body.modal);
   return o;
 }
 
 /// dv/dt = gravitation + R_IB F / m and I dw/dt = M - w x I w - (dI/dt) w, as rigid_body.h explains, of an
 /// axisymmetric body.
-template <class T>
+template <class T, class Body>
 DISPERSA_INLINE Rates<T> RatesOf(double earth_rate_rad_s, bool jet_damping, const Plant<T>& plant,
                                  const Phase<T>& phase, bool any_burns, const Surroundings<T>& around,
                                  const TimedMasses<T>& masses, const Nozzles<T>& nozzles, const Motion<T>& s,
-                                 const BentBody<T>* bent, Instant<T>* instant) {
+                                 const Body& body, Instant<T>* instant) {
   const LoadsOf<T> loads =
-      LoadsAt(earth_rate_rad_s, jet_damping, plant, phase, any_burns, around, masses, nozzles, s, bent);
+      LoadsAt(earth_rate_rad_s, jet_damping, plant, phase, any_burns, around, masses, nozzles, s, body);
   Rates<T> o;
   o.dv = around.gravitation_m_s2 + loads.R_IB * (masses.inverse_mass_1_kg * loads.force_n);
   // What the flow takes along, less what the body's inertia loses to it.

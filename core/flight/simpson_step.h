@@ -117,7 +117,8 @@ class StepState {
     p.around = SurroundingsAt(earth_, *air_, plant.weather, motion.p);
     p.masses = MassesAt(plant, phase, time_s);
     p.nozzles = NozzlesOf(drive_state);
-    RatesAt(p, motion, bending_state, &p.instant);
+    bending.modes > 0 ? RatesAt<true>(p, motion, bending_state, &p.instant)
+                      : RatesAt<false>(p, motion, bending_state, &p.instant);
     return LaneOf(p.instant, lane);
   }
 
@@ -129,32 +130,19 @@ class StepState {
   /// Evaluates the lanes at which the last step's end does not hold any more.
   void EvaluateStart(T time_s) {
     if (!any_stale_) return;
-    Point p;
-    if (any_moved_) {
-      Blend<T>(moved_, SurroundingsAt(earth_, *air_, plant.weather, motion.p), start_->around);
-      any_moved_ = false;
-    }
-    Blend<T>(stale_, MassesAt(plant, phase, time_s), start_->masses);
-    Blend<T>(stale_, NozzlesOf(drive_state), start_->nozzles);
-    if (bending.modes > 0) ShapesAt(bending, start_->masses.propellant_kg);
-    const ModalForce<T> modal = start_->modal;
-    p.rates = RatesAt(*start_, motion, bending_state, &p.instant);
-    Blend<T>(!stale_, modal, start_->modal);
-    Blend<T>(stale_, p.rates, start_->rates);
-    Blend<T>(stale_, p.instant, start_->instant);
-    const Rates<T> none{Zero<T>(), Zero<T>()};
-    const ModalForce<T> no_modal{};
-    Blend<T>(jumped_, none, start_->slopes);
-    Blend<T>(jumped_, no_modal, start_->modal_slopes);
-    stale_ = moved_ = jumped_ = NoLane<T>();
-    any_stale_ = false;
+    bending.modes > 0 ? EvaluateStartOf<true>(time_s) : EvaluateStartOf<false>(time_s);
   }
 
   /// Moves lanes from their times to others; `all`: the rest does not fly. Returns those that hold a finite
   /// state; the others stay as they were.
-  MaskOf<T> Step(MaskOf<T> moving, bool all, T from_s, T to_s);
+  MaskOf<T> Step(MaskOf<T> moving, bool all, T from_s, T to_s) {
+    return bending.modes > 0 ? StepOf<true>(moving, all, from_s, to_s) : StepOf<false>(moving, all, from_s, to_s);
+  }
 
  private:
+  template <bool kBends>
+  MaskOf<T> StepOf(MaskOf<T> moving, bool all, T from_s, T to_s);
+
   /// Everything of an instant that a step uses.
   struct Point {
     Surroundings<T> around;
@@ -165,11 +153,42 @@ class StepState {
     Instant<T> instant;
   };
 
+  template <bool kBends>
+  void EvaluateStartOf(T time_s) {
+    Point p;
+    if (any_moved_) {
+      Blend<T>(moved_, SurroundingsAt(earth_, *air_, plant.weather, motion.p), start_->around);
+      any_moved_ = false;
+    }
+    Blend<T>(stale_, MassesAt(plant, phase, time_s), start_->masses);
+    Blend<T>(stale_, NozzlesOf(drive_state), start_->nozzles);
+    const ModalForce<T> modal = start_->modal;
+    if constexpr (kBends) ShapesAt(bending, start_->masses.propellant_kg);
+    p.rates = RatesAt<kBends>(*start_, motion, bending_state, &p.instant);
+    Blend<T>(stale_, p.rates, start_->rates);
+    Blend<T>(stale_, p.instant, start_->instant);
+    const Rates<T> none{Zero<T>(), Zero<T>()};
+    Blend<T>(jumped_, none, start_->slopes);
+    if constexpr (kBends) {
+      const ModalForce<T> no_modal{};
+      Blend<T>(!stale_, modal, start_->modal);
+      Blend<T>(jumped_, no_modal, start_->modal_slopes);
+    }
+    stale_ = moved_ = jumped_ = NoLane<T>();
+    any_stale_ = false;
+  }
+  template <bool kBends>
   DISPERSA_INLINE Rates<T> RatesAt(Point& at, const Motion<T>& s, const BendingState<T>& bent_by,
                                    Instant<T>* instant) const {
-    const BentBody<T> bent{&bending, &bent_by, &at.modal};
     return RatesOf(earth_.rotation_rate_rad_s, jet_damping_, plant, phase, Any(phase.burning), at.around,
-                   at.masses, at.nozzles, s, bending.modes > 0 ? &bent : nullptr, instant);
+                   at.masses, at.nozzles, s, BodyAs<kBends>(bent_by, at.modal), instant);
+  }
+  template <bool kBends>
+  DISPERSA_INLINE auto BodyAs(const BendingState<T>& bent_by, ModalForce<T>& modal) const {
+    if constexpr (kBends)
+      return BentBody<T>{&bending, &bent_by, &modal};
+    else
+      return StraightBody{};
   }
   DISPERSA_INLINE Nozzles<T> NozzlesOf(const DriveState<T>& s) const {
     Nozzles<T> nozzles = NozzlesAt(s.angle_rad);
@@ -206,7 +225,8 @@ class StepState {
 inline constexpr double kSameStep_s = 1e-10;
 
 template <class T>
-MaskOf<T> StepState<T>::Step(MaskOf<T> moving, bool all, T from_s, T to_s) {
+template <bool kBends>
+MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
   EvaluateStart(from_s);
   const T h = to_s - from_s, half = T(0.5) * h, sixth = h * T(1.0 / 6.0);
   const T two(2.0), three(3.0), four(4.0);
@@ -232,7 +252,7 @@ MaskOf<T> StepState<T>::Step(MaskOf<T> moving, bool all, T from_s, T to_s) {
   BendingState<T> bent_middle, bent_end;
   Swing<T> over_half, over_step;
   const ModalForce<T> no_curvature{};
-  if (bending.modes > 0) {
+  if constexpr (kBends) {
     ShapesAt(bending, MassesAt(plant, phase, from_s + half).propellant_kg);
     over_half = SwingOver(bending, half);
     over_step = Twice(bending, over_half);
@@ -246,7 +266,7 @@ MaskOf<T> StepState<T>::Step(MaskOf<T> moving, bool all, T from_s, T to_s) {
   middle.w = Along(Along(motion.w, half, a.rates.dw), h2_8, a.slopes.dw);
   b.around = SurroundingsAt(earth_, *air_, plant.weather, middle.p);
   b.masses = MassesAt(plant, phase, from_s + half);
-  b.rates = RatesAt(b, middle, bent_middle, nullptr);
+  b.rates = RatesAt<kBends>(b, middle, bent_middle, nullptr);
 
   Motion<T> end;
   end.p = Along(Along(motion.p, h, motion.v), h2_6, Along(a.rates.dv, two, b.rates.dv));
@@ -257,20 +277,20 @@ MaskOf<T> StepState<T>::Step(MaskOf<T> moving, bool all, T from_s, T to_s) {
   c.around = SurroundingsAt(earth_, *air_, plant.weather, end.p);
   c.masses = MassesAt(plant, phase, to_s);
   const T per_s = T(1.0) / h;
-  if (bending.modes > 0) {
+  if constexpr (kBends) {
     ModalForce<T> rising;
     for (int i = 0; i < kModalValues; ++i)
       (&rising.drive_m_s2[0][0])[i] = two * per_s * ((&b.modal.drive_m_s2[0][0])[i] - (&a.modal.drive_m_s2[0][0])[i]);
     bent_end = Swung(bending, over_step, bending_state, a.modal, rising, no_curvature);
     ShapesAt(bending, c.masses.propellant_kg);
   }
-  c.rates = RatesAt(c, end, bent_end, &c.instant);
+  c.rates = RatesAt<kBends>(c, end, bent_end, &c.instant);
   end.v = Along(motion.v, sixth, Along(a.rates.dv + c.rates.dv, four, b.rates.dv));
   end.w = Along(motion.w, sixth, Along(a.rates.dw + c.rates.dw, four, b.rates.dw));
   c.slopes.dv = per_s * Along(Along(a.rates.dv, three, c.rates.dv), -four, b.rates.dv);
   c.slopes.dw = per_s * Along(Along(a.rates.dw, three, c.rates.dw), -four, b.rates.dw);
 
-  if (bending.modes > 0) {
+  if constexpr (kBends) {
     // The parabola a + rise t + curve t² through the three.
     ModalForce<T> rise, curve;
     for (int i = 0; i < kModalValues; ++i) {
@@ -288,20 +308,20 @@ MaskOf<T> StepState<T>::Step(MaskOf<T> moving, bool all, T from_s, T to_s) {
   const T* values = reinterpret_cast<const T*>(&end);
   for (int i = 0; i < kRigidBodySize; ++i) none = Fma(values[i], T(0.0), none);
   for (const T& rate : drives_end.rate_rad_s) none = Fma(rate, T(0.0), none);
-  if (bending.modes > 0)
+  if constexpr (kBends)
     for (int i = 0; i < kModalValues; ++i) none = Fma((&bent_end.q_m[0][0])[i], T(0.0), none);
   const auto accepted = moving & (none <= T(0.0));
   if (all && !Any(moving & !accepted)) {
     motion = end;
     drive_state = drives_end;
-    if (bending.modes > 0) bending_state = bent_end;
+    if constexpr (kBends) bending_state = bent_end;
     Point* const last = start_;
     start_ = end_;
     end_ = last;
   } else {
     Blend<T>(accepted, end, motion);
     Blend<T>(accepted, drives_end, drive_state);
-    if (bending.modes > 0) Blend<T>(accepted, bent_end, bending_state);
+    if constexpr (kBends) Blend<T>(accepted, bent_end, bending_state);
     Blend<T>(accepted, c, *start_);
   }
   return accepted;

@@ -56,7 +56,7 @@ void DISPERSA_INSTANCE(Evaluate)(const StepSetting& setting, long evaluations, d
         lanes::MassesAt(at->plant, at->phase, LaneValue(setting.from_s));
     const lanes::Nozzles<LaneValue> nozzles = lanes::NozzlesAt(at->drive_state.angle_rad);
     rates = lanes::RatesOf<LaneValue>(earth.rotation_rate_rad_s, true, at->plant, at->phase, setting.burning,
-                                      around, masses, nozzles, at->motion, nullptr, nullptr);
+                                      around, masses, nozzles, at->motion, lanes::StraightBody{}, nullptr);
     // The compiler may neither keep what the next evaluation reads nor leave out what this one found.
     asm volatile("" : : "r"(at), "r"(&rates) : "memory");
   }
