@@ -40,6 +40,7 @@ class DispersionDecoder {
     Lateral("thrust_misalignment", {kAngle, kAnyNumber}, {"thrust_misalignment", "_deg"},
             {"thrust_misalignment_clock", "_deg"});
     Lateral("thrust_offset", {kLength, kAnyNumber}, {"thrust_offset", "_m"}, {"thrust_offset_clock", "_deg"});
+    Lateral("center_of_gravity_offset", {kLength, kAnyNumber}, {"cg_offset", "_m"}, {"cg_offset_clock", "_deg"});
     Thrust();
     StageFactor("burn_rate", {{"thrust_factor", ""}, {"mass_flow_factor", ""}});
     StageFactor("specific_impulse", {{"specific_impulse_factor", ""}});

@@ -248,6 +248,7 @@ Vehicle DecodeVehicle(const InputNode& node, const std::string& path, std::vecto
     vehicle.site = DecodeSite(map.Required("site", "a map"), map.PathOf("site"), problems);
     vehicle.hold_down_s = map.Quantity("hold_down", kTime, kNonNegative, 0.0);
     vehicle.jet_damping = map.Flag("jet_damping", true);
+    vehicle.flow_coriolis = map.Flag("flow_coriolis", true);
     vehicle.surface_roughness_m = map.Quantity("surface_roughness", kLength, kNonNegative, 0.0);
     map.Each("stages", 1, kMaxStages, [&](const InputNode& item, const std::string& item_path) {
       vehicle.stages.push_back(DecodeStage(item, item_path, problems));

@@ -34,7 +34,6 @@ struct OneLane {
   OneLane(const LauncherPlant& from, const lanes::Plant<double>& stack, const LauncherPhase& now, double time_s,
           const double* y)
       : earth(from.environment.earth),
-        jet_damping(from.jet_damping),
         plant(stack),
         phase{now.burning, now.burnt, now.ignition_s, now.expelled_mass_kg, ToLanes(now.control_torque_n_m)},
         motion{{y[0], y[1], y[2]}, {y[3], y[4], y[5]}, {y[6], y[7], y[8], y[9]}, {y[10], y[11], y[12]}},
@@ -56,19 +55,18 @@ struct OneLane {
 
   lanes::LoadsOf<double> Loads() const {
     return WithBody([this](const auto& body) {
-      return lanes::LoadsAt(earth.rotation_rate_rad_s, jet_damping, plant, phase, phase.burning, around, masses,
+      return lanes::LoadsAt(earth.rotation_rate_rad_s, plant, phase, phase.burning, around, masses,
                             nozzles, motion, body);
     });
   }
   lanes::Rates<double> Rates() const {
     return WithBody([this](const auto& body) {
-      return lanes::RatesOf<double>(earth.rotation_rate_rad_s, jet_damping, plant, phase, phase.burning, around,
+      return lanes::RatesOf<double>(earth.rotation_rate_rad_s, plant, phase, phase.burning, around,
                                     masses, nozzles, motion, body, nullptr);
     });
   }
 
   const Earth& earth;
-  bool jet_damping;
   const lanes::Plant<double>& plant;
   lanes::Phase<double> phase;
   lanes::Motion<double> motion;
@@ -94,9 +92,15 @@ struct OneLane {
 RigidBodyState AfterSeparation(const LauncherPlant& plant, int below, const RigidBodyState& state) {
   const StackMass& whole = plant.stacks[static_cast<std::size_t>(below)].mass;
   const StackMass& upper = plant.stacks[static_cast<std::size_t>(below) + 1].mass;
-  const double old_cg = whole.At(0.0).cg_station_m * plant.cg_factor;
-  const double new_cg = upper.At(upper.propellant_mass_kg).cg_station_m * plant.cg_factor;
-  return AtPoint(state, Vector3(old_cg - new_cg, 0.0, 0.0));
+  const MassProperties old_mass = whole.At(0.0), new_mass = upper.At(upper.propellant_mass_kg);
+  const LauncherStack& old_stack = plant.stacks[static_cast<std::size_t>(below)];
+  const LauncherStack& new_stack = plant.stacks[static_cast<std::size_t>(below) + 1];
+  const auto aside = [&](double LauncherStack::*moment) {
+    return new_stack.*moment / new_mass.mass_kg - old_stack.*moment / old_mass.mass_kg;
+  };
+  return AtPoint(state, Vector3((old_mass.cg_station_m - new_mass.cg_station_m) * plant.cg_factor,
+                                aside(&LauncherStack::lateral_moment_y_kg_m),
+                                aside(&LauncherStack::lateral_moment_z_kg_m)));
 }
 
 LauncherModel::LauncherModel(const LauncherPlant& plant) : prepared_(std::make_unique<Prepared>(plant)) {}
@@ -141,7 +145,9 @@ void LauncherModel::Derivative(const LauncherPhase& phase, double time_s, const 
   const lanes::Motion<double>& s = one.motion;
   const lanes::Rates<double> rates = one.Rates();
   const Quaternion dq = dispersa::Derivative({s.q.w, s.q.x, s.q.y, s.q.z}, ToEigen(s.w));
-  WriteState({ToEigen(s.v), ToEigen(rates.dv), dq, ToEigen(rates.dw)}, dydt);
+  Vector3 dp = ToEigen(s.v);
+  if (prepared_->plant.flow_coriolis) dp += ToEigen(lanes::CgVelocityOf(one.plant, one.masses, s.q));
+  WriteState({dp, ToEigen(rates.dv), dq, ToEigen(rates.dw)}, dydt);
   for (int i = 0; i < kNozzles; ++i) {
     const std::size_t nozzle = static_cast<std::size_t>(i);
     const double command = lanes::Followed(one.drives, phase.command_rad[nozzle]);

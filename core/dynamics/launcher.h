@@ -35,6 +35,9 @@ struct LauncherStack {
   Matrix3 thrust_tilt = Matrix3::Identity();  ///< turns the nozzles' thrust by the misalignment
   double thrust_offset_y_m = 0.0;
   double thrust_offset_z_m = 0.0;
+  /// Of everything but the burning propellant, whose own centre is on the axis: mass times lateral offset.
+  double lateral_moment_y_kg_m = 0.0;
+  double lateral_moment_z_kg_m = 0.0;
   std::shared_ptr<const BendingTable> bending;  ///< null: this stack is rigid
 };
 
@@ -52,6 +55,7 @@ struct LauncherPlant {
   double cg_factor = 1.0;
   double inertia_factor = 1.0;
   bool jet_damping = true;
+  bool flow_coriolis = true;
   BendingFactors bending;
 
   // Of all stacks, so that what is computed does not depend on where a flight stands.

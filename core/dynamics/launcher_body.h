@@ -24,9 +24,11 @@ struct Plant {
   T pivot_station_m, nozzle_radius_m;
   T nozzle_moment_kg_m;    ///< mass of a nozzle times the distance of its centre of gravity aft of the pivot
   T nozzle_inertia_kg_m2;  ///< about the hinge
-  bool nozzles_have_mass;  ///< of any stage: the same in all lanes
+  bool nozzles_have_mass;  ///< of any stage: the same in all lanes, as
+  bool jet_damping, flow_coriolis;
   Matrix<T> thrust_tilt;
   T thrust_offset_y_m, thrust_offset_z_m;
+  T lateral_moment_y_kg_m, lateral_moment_z_kg_m;
 };
 
 /// What stays constant between two events of each lane (LauncherPhase).
@@ -51,6 +53,8 @@ template <class T>
 struct TimedMasses {
   T propellant_kg;
   T mass_kg, inverse_mass_1_kg, cg_station_m, axial_kg_m2, transverse_kg_m2;
+  T cg_y_m, cg_z_m;  ///< off the axis
+  T cg_per_kg_m;     ///< of the station, by the propellant
   T axial_per_kg_m2, transverse_per_kg_m2;
   T thrust_fraction;  ///< 0 when not burning
 };
@@ -65,6 +69,9 @@ DISPERSA_INLINE TimedMasses<T> MassesAt(const Plant<T>& plant, const Phase<T>& p
   o.mass_kg = m.mass_kg - phase.expelled_kg;
   o.inverse_mass_1_kg = T(1.0) / o.mass_kg;
   o.cg_station_m = m.cg_station_m * plant.cg_factor;
+  o.cg_per_kg_m = (plant.stack.grain_station_m - m.cg_station_m) * o.inverse_mass_1_kg * plant.cg_factor;
+  o.cg_y_m = plant.lateral_moment_y_kg_m * o.inverse_mass_1_kg;
+  o.cg_z_m = plant.lateral_moment_z_kg_m * o.inverse_mass_1_kg;
   o.axial_kg_m2 = m.axial_kg_m2 * plant.inertia_factor;
   o.transverse_kg_m2 = m.transverse_kg_m2 * plant.inertia_factor;
   o.axial_per_kg_m2 = m.axial_per_kg_m2 * plant.inertia_factor;
@@ -109,6 +116,18 @@ struct Rates {
   Vector<T> dv, dw;
 };
 
+/// How fast C moves forward through the body, m/s: the flow takes propellant away at the grain.
+template <class T>
+DISPERSA_INLINE T CgSpeedOf(const Plant<T>& plant, const TimedMasses<T>& masses) {
+  return plant.burn.full_flow_kg_s * masses.thrust_fraction * masses.cg_per_kg_m;
+}
+/// The same as a velocity in I.
+template <class T>
+DISPERSA_INLINE Vector<T> CgVelocityOf(const Plant<T>& plant, const TimedMasses<T>& masses, const Turn<T>& q) {
+  const Matrix<T> R_IB = RotationMatrix(q);
+  return CgSpeedOf(plant, masses) * Vector<T>{R_IB.row[0].x, R_IB.row[1].x, R_IB.row[2].x};
+}
+
 template <class T>
 struct Thrust {
   T thrust_n, flow_kg_s;
@@ -137,8 +156,8 @@ DISPERSA_INLINE Thrust<T> ThrustOf(const Plant<T>& plant, const TimedMasses<T>& 
       plant.thrust_tilt * Vector<T>{couple * (cosine[0] - cosine[1]), T(0.0), couple * (sine[0] - sine[1])};
   const Vector<T> across_z = plant.thrust_tilt * Vector<T>{couple * (cosine[2] - cosine[3]),
                                                            -(couple * (sine[2] - sine[3])), T(0.0)};
-  const Vector<T> arm{masses.cg_station_m - plant.pivot_station_m, plant.thrust_offset_y_m,
-                      plant.thrust_offset_z_m};
+  const Vector<T> arm{masses.cg_station_m - plant.pivot_station_m, plant.thrust_offset_y_m - masses.cg_y_m,
+                      plant.thrust_offset_z_m - masses.cg_z_m};
   o.couple_n_m = {across_y.z - across_z.y, across_z.x, -across_y.x};
   o.moment_n_m = Cross(arm, o.force_n) + o.couple_n_m;
   return o;
@@ -194,8 +213,8 @@ DISPERSA_INLINE void BendThrust(const Plant<T>& plant, const Phase<T>& phase, co
   const Bent<T> at = BentAtPivot(*bent.bending, *bent.state);
   const Vector<T> turn{T(0.0), at.about_y_rad, at.about_z_rad};
   const Vector<T> turned_n = Cross(turn, thrust.force_n);
-  const Vector<T> arm{masses.cg_station_m - plant.pivot_station_m, plant.thrust_offset_y_m,
-                      plant.thrust_offset_z_m};
+  const Vector<T> arm{masses.cg_station_m - plant.pivot_station_m, plant.thrust_offset_y_m - masses.cg_y_m,
+                      plant.thrust_offset_z_m - masses.cg_z_m};
   const Vector<T> moved{T(0.0), at.y_m, at.z_m};
   thrust.moment_n_m = thrust.moment_n_m + Cross(arm, turned_n) + Cross(moved, thrust.force_n);
   thrust.force_n = thrust.force_n + turned_n;
@@ -205,10 +224,12 @@ DISPERSA_INLINE void BendThrust(const Plant<T>& plant, const Phase<T>& phase, co
   Blend<T>(phase.burning, driven, *bent.modal);
 }
 
-/// `any_burns`: some lane does. `body`: bent or straight. With jet damping the flow leaves with the velocity of the nozzle about the
-/// CG: -m_dot r x (w x r), r on the axis, and for roll the nozzle circle's radius.
+/// `any_burns`: some lane does. `body`: bent or straight. With jet damping the flow leaves with the velocity of
+/// the nozzle about the CG: -m_dot r x (w x r), r on the axis, and for roll the nozzle circle's radius. On its
+/// way from the grain's middle to the pivots, aft by s, a turning body pushes it aside: Coriolis's force
+/// 2 m_dot s w x e_x on the body.
 template <class T, class Body>
-DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, bool jet_damping, const Plant<T>& plant,
+DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, const Plant<T>& plant,
                                    const Phase<T>& phase, bool any_burns, const Surroundings<T>& around,
                                    const TimedMasses<T>& masses, const Nozzles<T>& nozzles,
                                    const Motion<T>& s, const Body& body) {
@@ -227,7 +248,9 @@ DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, bool jet_damping, co
     BendFlow(*body.bending, *body.state, masses.cg_station_m, o.flow, *body.modal);
   }
   o.force_n = o.flow.force_n;
-  o.moment_n_m = o.flow.moment_n_m + phase.control_torque_n_m;
+  // The flow acts about the axis, from which C may be off.
+  const Vector<T> to_axis{none, -masses.cg_y_m, -masses.cg_z_m};
+  o.moment_n_m = o.flow.moment_n_m + Cross(to_axis, o.flow.force_n) + phase.control_torque_n_m;
   o.thrust_n = o.flow_kg_s = o.jet_axial = o.jet_transverse = none;
   if (!any_burns) {
     if constexpr (Body::kBends) FinishDrive(*body.bending, *body.state, o.force_n.x, *body.modal);
@@ -236,17 +259,22 @@ DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, bool jet_damping, co
   Thrust<T> thrust = ThrustOf(plant, masses, nozzles, around.pressure_pa);
   if (plant.nozzles_have_mass) {
     const NozzleReaction<T> reaction = ReactionOf(plant, nozzles);
-    const Vector<T> arm{masses.cg_station_m - plant.pivot_station_m, none, none};
+    const Vector<T> arm{masses.cg_station_m - plant.pivot_station_m, -masses.cg_y_m, -masses.cg_z_m};
     thrust.force_n = thrust.force_n + reaction.force_n;
     thrust.couple_n_m = thrust.couple_n_m + reaction.couple_n_m;
     thrust.moment_n_m = thrust.moment_n_m + Cross(arm, reaction.force_n) + reaction.couple_n_m;
   }
   if constexpr (Body::kBends) BendThrust(plant, phase, masses, body, thrust);
-  o.force_n = Select(phase.burning, o.force_n + thrust.force_n, o.force_n);
-  o.moment_n_m = Select(phase.burning, o.moment_n_m + thrust.moment_n_m, o.moment_n_m);
   o.thrust_n = Select(phase.burning, thrust.thrust_n, none);
   o.flow_kg_s = Select(phase.burning, thrust.flow_kg_s, none);
-  if (jet_damping) {
+  o.force_n = Select(phase.burning, o.force_n + thrust.force_n, o.force_n);
+  if (plant.flow_coriolis) {
+    const T turned = T(2.0) * o.flow_kg_s * (plant.pivot_station_m - plant.stack.grain_station_m);
+    o.force_n.y = Fma(turned, s.w.z, o.force_n.y);
+    o.force_n.z = Fma(-turned, s.w.y, o.force_n.z);
+  }
+  o.moment_n_m = Select(phase.burning, o.moment_n_m + thrust.moment_n_m, o.moment_n_m);
+  if (plant.jet_damping) {
     const T lever = plant.pivot_station_m - masses.cg_station_m;
     o.jet_axial = o.flow_kg_s * plant.nozzle_radius_m * plant.nozzle_radius_m;
     o.jet_transverse = o.flow_kg_s * lever * lever;
@@ -255,17 +283,26 @@ DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, bool jet_damping, co
   return o;
 }
 
-/// dv/dt = gravitation + R_IB F / m and I dw/dt = M - w x I w - (dI/dt) w, as rigid_body.h explains, of an
-/// axisymmetric body.
+/// dv/dt = gravitation + R_IB (F / m + u w x e_x) and I dw/dt = M - w x I w - (dI/dt) w, as rigid_body.h explains,
+/// of an axisymmetric body. v is the velocity of the body where C is, and u e_x that of C through the body:
+/// dp/dt = v + R_IB u e_x. So the momentum of what is on board, m v + m_dot times the way of the flow (aft),
+/// changes by gravitation, the outer forces and what leaves; a burn that begins or ends moves v by nothing. The
+/// motion of an offset C across the body (mm/s) is left out.
 template <class T, class Body>
-DISPERSA_INLINE Rates<T> RatesOf(double earth_rate_rad_s, bool jet_damping, const Plant<T>& plant,
+DISPERSA_INLINE Rates<T> RatesOf(double earth_rate_rad_s, const Plant<T>& plant,
                                  const Phase<T>& phase, bool any_burns, const Surroundings<T>& around,
                                  const TimedMasses<T>& masses, const Nozzles<T>& nozzles, const Motion<T>& s,
                                  const Body& body, Instant<T>* instant) {
   const LoadsOf<T> loads =
-      LoadsAt(earth_rate_rad_s, jet_damping, plant, phase, any_burns, around, masses, nozzles, s, body);
+      LoadsAt(earth_rate_rad_s, plant, phase, any_burns, around, masses, nozzles, s, body);
   Rates<T> o;
-  o.dv = around.gravitation_m_s2 + loads.R_IB * (masses.inverse_mass_1_kg * loads.force_n);
+  Vector<T> specific_n_kg = masses.inverse_mass_1_kg * loads.force_n;
+  if (plant.flow_coriolis) {
+    const T cg_speed_m_s = CgSpeedOf(plant, masses);
+    specific_n_kg.y = Fma(cg_speed_m_s, s.w.z, specific_n_kg.y);
+    specific_n_kg.z = Fma(-cg_speed_m_s, s.w.y, specific_n_kg.z);
+  }
+  o.dv = around.gravitation_m_s2 + loads.R_IB * specific_n_kg;
   // What the flow takes along, less what the body's inertia loses to it.
   const T axial_loss = loads.jet_axial - loads.flow_kg_s * masses.axial_per_kg_m2;
   const T transverse_loss = loads.jet_transverse - loads.flow_kg_s * masses.transverse_per_kg_m2;

@@ -65,6 +65,8 @@ DISPERSA_INLINE void SetLane(Plant<T>& p, int lane, const LauncherPlant& plant, 
   Lane(p.nozzle_moment_kg_m, lane) = s.gimbal.nozzle_mass_kg * s.gimbal.nozzle_cg_m;
   Lane(p.nozzle_inertia_kg_m2, lane) = s.gimbal.nozzle_inertia_kg_m2;
   p.nozzles_have_mass = plant.nozzles_have_mass();
+  p.jet_damping = plant.jet_damping;
+  p.flow_coriolis = plant.flow_coriolis;
   const double* tilt = reinterpret_cast<const double*>(&s.thrust_tilt);  // column by column
   for (int i = 0; i < 3; ++i) {
     Lane(p.thrust_tilt.row[i].x, lane) = tilt[i];
@@ -73,6 +75,8 @@ DISPERSA_INLINE void SetLane(Plant<T>& p, int lane, const LauncherPlant& plant, 
   }
   Lane(p.thrust_offset_y_m, lane) = s.thrust_offset_y_m;
   Lane(p.thrust_offset_z_m, lane) = s.thrust_offset_z_m;
+  Lane(p.lateral_moment_y_kg_m, lane) = s.lateral_moment_y_kg_m;
+  Lane(p.lateral_moment_z_kg_m, lane) = s.lateral_moment_z_kg_m;
 }
 
 /// The bending of a lane on its stack; what its propellant decides is set by ShapesAt.

@@ -34,9 +34,8 @@ struct BodyLoads {
 /// dp/dt = v, dv/dt = gravitation + R_IB F / m, dq/dt by w, and
 ///   I dw/dt = M - w x I w - (dI/dt) w,
 /// I and dI/dt about the moving C. With the jet damping -m_dot r x (w x r), r from C to the nozzle, in M, I w
-/// is the angular momentum of what stays on board. Left out: the force of the flow through a turning body, of
-/// the order m_dot |w| |r| (below 1e-4 of a launcher's thrust), and the motion of C through the body (metres
-/// a burn). q is used as it is: its norm drifts by the integrator's error and is restored between steps.
+/// is the angular momentum of what stays on board. Left to launcher_body.h: the force of the flow through a
+/// turning body and the motion of C through the body. q is used as it is: its norm drifts by the integrator's error and is restored between steps.
 void RigidBodyDerivative(const Earth& earth, const RigidBodyState& state, const BodyLoads& loads,
                          double* dydt);
 

@@ -148,7 +148,7 @@ Batch<T>::Batch(const FlightModel& model, FlightQueue& queue)
   __builtin_memset(static_cast<void*>(&unit_), 0, sizeof unit_);
   __builtin_memset(static_cast<void*>(&gyros_), 0, sizeof gyros_);
   const LauncherPlant& nominal = model.nominal_plant();
-  step_.Configure(nominal.environment.earth, nominal.jet_damping, tick_s_);
+  step_.Configure(nominal.environment.earth, tick_s_);
   for (int lane = 0; lane < kLanes; ++lane) {
     SetLane(live_, lane, false);
     SetLane(coasting_, lane, false);

@@ -53,6 +53,8 @@ std::vector<InputColumn> MakeColumns() {
   list.EachStage(&In::thrust_misalignment_clock_rad, "thrust_misalignment_clock", "_deg", kRadPerDeg);
   list.EachStage(&In::thrust_offset_m, "thrust_offset", "_m");
   list.EachStage(&In::thrust_offset_clock_rad, "thrust_offset_clock", "_deg", kRadPerDeg);
+  list.EachStage(&In::cg_offset_m, "cg_offset", "_m");
+  list.EachStage(&In::cg_offset_clock_rad, "cg_offset_clock", "_deg", kRadPerDeg);
   list.EachStage(&In::thrust_factor, "thrust_factor");
   list.EachStage(&In::mass_flow_factor, "mass_flow_factor");
   list.EachStage(&In::specific_impulse_factor, "specific_impulse_factor");

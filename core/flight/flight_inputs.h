@@ -28,6 +28,8 @@ struct FlightInputs {
   PerStage thrust_misalignment_clock_rad{};  ///< direction of the tilt: from body y towards body z
   PerStage thrust_offset_m{};                ///< lateral offset of the thrust line
   PerStage thrust_offset_clock_rad{};        ///< direction of the offset, likewise
+  PerStage cg_offset_m{};                    ///< of the CG off the axis, of the stack without what it burns
+  PerStage cg_offset_clock_rad{};            ///< direction of the offset, likewise
   PerStage thrust_factor = AllStages(1.0);
   PerStage mass_flow_factor = AllStages(1.0);        ///< flow at full thrust; the burn shortens with it
   PerStage specific_impulse_factor = AllStages(1.0); ///< thrust at the same flow

@@ -13,6 +13,7 @@ namespace dispersa {
 LauncherPlant BuildNominalPlant(const Vehicle& vehicle) {
   LauncherPlant plant;
   plant.jet_damping = vehicle.jet_damping;
+  plant.flow_coriolis = vehicle.flow_coriolis;
   const std::vector<StackMass> masses = BuildStackMasses(vehicle);
   const std::vector<AeroTable> tables =
       vehicle.aerodynamics.empty() ? BuildAerodynamics(vehicle) : vehicle.aerodynamics;
@@ -222,6 +223,9 @@ LauncherPlant FlightModel::PlantFor(const FlightInputs& in, std::optional<std::u
     const SinCos offset = SineCosine(in.thrust_offset_clock_rad[i]);
     stack.thrust_offset_y_m = in.thrust_offset_m[i] * offset.cos;
     stack.thrust_offset_z_m = in.thrust_offset_m[i] * offset.sin;
+    const SinCos aside = SineCosine(in.cg_offset_clock_rad[i]);
+    stack.lateral_moment_y_kg_m = stack.mass.fixed_mass_kg * in.cg_offset_m[i] * aside.cos;
+    stack.lateral_moment_z_kg_m = stack.mass.fixed_mass_kg * in.cg_offset_m[i] * aside.sin;
   }
   return plant;
 }

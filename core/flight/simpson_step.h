@@ -9,6 +9,8 @@
 //   end         p + h v + h²/6 (a0 + 2 a1), q turned by h w + h²/6 (alpha0 + 2 alpha1) + h³/12 w1 x alpha1:
 //               final before the last evaluation, of which only the velocities are a guess: v + h a1, w + h
 //               alpha1; there a2, alpha2
+//   CG          moves through the body at u, known where masses and attitude are: p takes the integral of u by the
+//               trapezium to the middle and by Simpson's rule to the end
 //   bending     each mode swings exactly (bending.h) under its drive as it is at the start, rising as in the last
 //               step, for the middle; under the line through start and middle for the last evaluation; in the end
 //               under the parabola through all three. Frequencies are those of the step's middle
@@ -47,10 +49,9 @@ class StepState {
   Bending<T> bending;
   T command_rad[kNozzles];  ///< at the actuators
 
-  void Configure(const Earth& earth, bool jet_damping, double tick_s) {
+  void Configure(const Earth& earth, double tick_s) {
     earth_ = earth;
     air_ = &StandardAir();
-    jet_damping_ = jet_damping;
     tick_s_ = tick_s;
     start_ = &points_[0];
     middle_ = &points_[1];
@@ -148,6 +149,7 @@ class StepState {
     Surroundings<T> around;
     TimedMasses<T> masses;
     Nozzles<T> nozzles;
+    Vector<T> cg_velocity;  ///< of C through the body, in I
     Rates<T> rates, slopes;  ///< slopes: of the rates, at the end of a step
     ModalForce<T> modal, modal_slopes;
     Instant<T> instant;
@@ -162,6 +164,7 @@ class StepState {
     }
     Blend<T>(stale_, MassesAt(plant, phase, time_s), start_->masses);
     Blend<T>(stale_, NozzlesOf(drive_state), start_->nozzles);
+    Blend<T>(stale_, CgVelocityAt(start_->masses, motion.q), start_->cg_velocity);
     const ModalForce<T> modal = start_->modal;
     if constexpr (kBends) ShapesAt(bending, start_->masses.propellant_kg);
     p.rates = RatesAt<kBends>(*start_, motion, bending_state, &p.instant);
@@ -180,8 +183,7 @@ class StepState {
   template <bool kBends>
   DISPERSA_INLINE Rates<T> RatesAt(Point& at, const Motion<T>& s, const BendingState<T>& bent_by,
                                    Instant<T>* instant) const {
-    return RatesOf(earth_.rotation_rate_rad_s, jet_damping_, plant, phase, Any(phase.burning), at.around,
-                   at.masses, at.nozzles, s, BodyAs<kBends>(bent_by, at.modal), instant);
+    return RatesOf(earth_.rotation_rate_rad_s, plant, phase, Any(phase.burning), at.around, at.masses, at.nozzles, s, BodyAs<kBends>(bent_by, at.modal), instant);
   }
   template <bool kBends>
   DISPERSA_INLINE auto BodyAs(const BendingState<T>& bent_by, ModalForce<T>& modal) const {
@@ -194,6 +196,10 @@ class StepState {
     Nozzles<T> nozzles = NozzlesAt(s.angle_rad);
     if (plant.nozzles_have_mass) SetAccelerations(drives, command_rad, s, nozzles);
     return nozzles;
+  }
+  // How C moves through the body where the lanes are turned by q, in I.
+  DISPERSA_INLINE Vector<T> CgVelocityAt(const TimedMasses<T>& masses, const Turn<T>& q) const {
+    return plant.flow_coriolis ? CgVelocityOf(plant, masses, q) : Zero<T>();
   }
   void SetTransition(Transition<T>& over, int lane, double time_s) const {
     const Transition<double> one =
@@ -211,7 +217,6 @@ class StepState {
 
   Earth earth_;
   const AirTable* air_;
-  bool jet_damping_;
   double tick_s_;
   Point points_[3];
   Point *start_, *middle_, *end_;
@@ -264,8 +269,10 @@ MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
   middle.v = Along(Along(motion.v, half, a.rates.dv), h2_8, a.slopes.dv);
   middle.q = TurnedBy(motion.q, Along(half * motion.w, h2_8, a.rates.dw));
   middle.w = Along(Along(motion.w, half, a.rates.dw), h2_8, a.slopes.dw);
-  b.around = SurroundingsAt(earth_, *air_, plant.weather, middle.p);
   b.masses = MassesAt(plant, phase, from_s + half);
+  b.cg_velocity = CgVelocityAt(b.masses, middle.q);
+  if (plant.flow_coriolis) middle.p = Along(middle.p, T(0.5) * half, a.cg_velocity + b.cg_velocity);
+  b.around = SurroundingsAt(earth_, *air_, plant.weather, middle.p);
   b.rates = RatesAt<kBends>(b, middle, bent_middle, nullptr);
 
   Motion<T> end;
@@ -274,8 +281,11 @@ MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
   end.q = TurnedBy(motion.q, Along(turn, h2 * h * T(1.0 / 12.0), Cross(middle.w, b.rates.dw)));
   end.v = Along(motion.v, h, b.rates.dv);
   end.w = Along(motion.w, h, b.rates.dw);
-  c.around = SurroundingsAt(earth_, *air_, plant.weather, end.p);
   c.masses = MassesAt(plant, phase, to_s);
+  c.cg_velocity = CgVelocityAt(c.masses, end.q);
+  if (plant.flow_coriolis)
+    end.p = Along(end.p, sixth, Along(a.cg_velocity + c.cg_velocity, four, b.cg_velocity));
+  c.around = SurroundingsAt(earth_, *air_, plant.weather, end.p);
   const T per_s = T(1.0) / h;
   if constexpr (kBends) {
     ModalForce<T> rising;

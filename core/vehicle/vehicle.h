@@ -158,6 +158,7 @@ struct Vehicle {
   LaunchSite site;
   double hold_down_s = 0.0;             ///< stage 1 burns this long before release; lift-off is time 0
   bool jet_damping = true;              ///< moment of the flow from CG to nozzle on a turning vehicle
+  bool flow_coriolis = true;            ///< force of that flow, and the motion of the CG through the body
   std::vector<Stage> stages;            ///< in the order of flight
   std::vector<ProfileSection> profile;  ///< outer mould line of the full vehicle
   double surface_roughness_m = 0.0;     ///< equivalent sand grain, for skin friction

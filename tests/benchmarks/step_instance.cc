@@ -12,7 +12,7 @@ namespace {
 lanes::StepState<LaneValue>* NewStep(const StepSetting& setting) {
   lanes::StepState<LaneValue>* step = new lanes::StepState<LaneValue>;
   __builtin_memset(static_cast<void*>(step), 0, sizeof *step);
-  step->Configure(setting.plant->environment.earth, setting.plant->jet_damping, setting.tick_s);
+  step->Configure(setting.plant->environment.earth, setting.tick_s);
   for (int lane = 0; lane < DISPERSA_LANES; ++lane) {
     step->StartFlight(lane);
     lanes::SetLane(step->plant.weather, lane, *setting.weather);
@@ -55,7 +55,7 @@ void DISPERSA_INSTANCE(Evaluate)(const StepSetting& setting, long evaluations, d
     const lanes::TimedMasses<LaneValue> masses =
         lanes::MassesAt(at->plant, at->phase, LaneValue(setting.from_s));
     const lanes::Nozzles<LaneValue> nozzles = lanes::NozzlesAt(at->drive_state.angle_rad);
-    rates = lanes::RatesOf<LaneValue>(earth.rotation_rate_rad_s, true, at->plant, at->phase, setting.burning,
+    rates = lanes::RatesOf<LaneValue>(earth.rotation_rate_rad_s, at->plant, at->phase, setting.burning,
                                       around, masses, nozzles, at->motion, lanes::StraightBody{}, nullptr);
     // The compiler may neither keep what the next evaluation reads nor leave out what this one found.
     asm volatile("" : : "r"(at), "r"(&rates) : "memory");

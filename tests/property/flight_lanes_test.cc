@@ -65,6 +65,8 @@ FlightInputs DrawnInputs(std::uint64_t flight) {
     some(in.thrust_misalignment_clock_rad[stage], kTwoPi * draws.Uniform());
     some(in.thrust_offset_m[stage], 0.005 * draws.Uniform());
     some(in.thrust_offset_clock_rad[stage], kTwoPi * draws.Uniform());
+    some(in.cg_offset_m[stage], 0.005 * draws.Uniform());
+    some(in.cg_offset_clock_rad[stage], kTwoPi * draws.Uniform());
     some(in.thrust_factor[stage], 1.0 + 0.02 * draws.Normal());
     some(in.mass_flow_factor[stage], 1.0 + 0.02 * draws.Normal());
     some(in.specific_impulse_factor[stage], 1.0 + 0.01 * draws.Normal());

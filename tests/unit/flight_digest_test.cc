@@ -57,6 +57,8 @@ TEST(InputColumns, NameTheFieldsOfFlightInputs) {
     expect("thrust_misalignment_clock" + stage + "_deg", in.thrust_misalignment_clock_rad[i], kRadPerDeg);
     expect("thrust_offset" + stage + "_m", in.thrust_offset_m[i], 1.0);
     expect("thrust_offset_clock" + stage + "_deg", in.thrust_offset_clock_rad[i], kRadPerDeg);
+    expect("cg_offset" + stage + "_m", in.cg_offset_m[i], 1.0);
+    expect("cg_offset_clock" + stage + "_deg", in.cg_offset_clock_rad[i], kRadPerDeg);
     expect("thrust_factor" + stage, in.thrust_factor[i], 1.0);
     expect("mass_flow_factor" + stage, in.mass_flow_factor[i], 1.0);
     expect("specific_impulse_factor" + stage, in.specific_impulse_factor[i], 1.0);

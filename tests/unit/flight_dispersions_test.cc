@@ -67,6 +67,42 @@ TEST(Dispersions, ThrustOffsetGivesAMomentTowardsItsClockAngle) {
   }
 }
 
+// The centre of gravity of what does not burn is given; the propellant, about the axis, draws it back.
+TEST(Dispersions, ACentreOfGravityOffTheAxisGivesThrustAndDragALever) {
+  FlightInputs inputs;
+  inputs.cg_offset_m[0] = 0.01;
+  const LauncherPlant nominal = FlightModel(SampleDefinition()).PlantFor({});
+  for (const double clock : {0.0, 0.5 * kPi, 2.5}) {
+    inputs.cg_offset_clock_rad[0] = clock;
+    const LauncherInstant in_space = InstantOf(inputs, kSpace_m);
+    const double aside =
+        0.01 * nominal.stacks[0].mass.fixed_mass_kg / in_space.loads.mass_kg;  // the inertia's own is left out
+    EXPECT_LT(aside, 0.009);
+    // The thrust passes the CG on the other side.
+    EXPECT_NEAR(in_space.loads.moment_n_m.y(), -200e3 * aside * std::sin(clock), 1e-9) << clock;
+    EXPECT_NEAR(in_space.loads.moment_n_m.z(), 200e3 * aside * std::cos(clock), 1e-9) << clock;
+    const Vector3 axis_from_cg(0.0, -aside * std::cos(clock), -aside * std::sin(clock));
+    const LauncherInstant low = InstantOf(inputs, 5e3), straight = InstantOf({}, 5e3);
+    const Vector3 expected = axis_from_cg.cross(straight.loads.force_n);
+    EXPECT_GT(std::fabs(straight.loads.force_n.x() - 200e3), 1.0);
+    EXPECT_NEAR((low.loads.moment_n_m - straight.loads.moment_n_m - expected).norm(), 0.0, 1e-8) << clock;
+  }
+}
+
+TEST(Dispersions, TheUpperStackLeavesWithTheVelocityOfItsOwnOffsetCg) {
+  FlightInputs inputs;
+  inputs.cg_offset_m[1] = 0.02;
+  const LauncherPlant offset = FlightModel(SampleDefinition()).PlantFor(inputs),
+                      straight = FlightModel(SampleDefinition()).PlantFor({});
+  RigidBodyState state;
+  state.w_IB_B = {0.1, 0.0, 0.0};
+  const StackMass& upper = offset.stacks[1].mass;
+  const double aside = 0.02 * upper.fixed_mass_kg / (upper.fixed_mass_kg + upper.propellant_mass_kg);
+  const RigidBodyState off = AfterSeparation(offset, 0, state), on = AfterSeparation(straight, 0, state);
+  EXPECT_NEAR((off.p_EoC_I - on.p_EoC_I - Vector3(0.0, aside, 0.0)).norm(), 0.0, 1e-15);
+  EXPECT_NEAR((off.v_IC_I - on.v_IC_I - Vector3(0.0, 0.0, 0.1 * aside)).norm(), 0.0, 1e-15);
+}
+
 TEST(Dispersions, EachStageHasItsOwnThrust) {
   FlightInputs inputs;
   inputs.thrust_misalignment_rad[1] = 0.01;

@@ -127,7 +127,7 @@ std::unique_ptr<lanes::StepState<double>> StepOf(const InSpace& flight, double t
   static const FlightWeather calm;
   auto step = std::make_unique<lanes::StepState<double>>();
   *step = {};
-  step->Configure(flight.plant.environment.earth, flight.plant.jet_damping, tick_s);
+  step->Configure(flight.plant.environment.earth, tick_s);
   step->StartFlight(0);
   lanes::SetLane(step->plant.weather, 0, calm);
   lanes::SetLane(step->plant, 0, flight.plant, 0);

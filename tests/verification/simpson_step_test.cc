@@ -59,7 +59,7 @@ class Stretch {
     const FlightWeather calm;
     auto step = std::make_unique<lanes::StepState<double>>();
     *step = {};
-    step->Configure(plant_.environment.earth, plant_.jet_damping, (kTo_s - kFrom_s) / steps);
+    step->Configure(plant_.environment.earth, (kTo_s - kFrom_s) / steps);
     step->StartFlight(0);
     lanes::SetLane(step->plant.weather, 0, calm);
     lanes::SetLane(step->plant, 0, plant_, 0);
@@ -117,7 +117,7 @@ TEST(SimpsonStep, AStateThatIsNotFiniteIsNotTaken) {
   auto step = std::make_unique<lanes::StepState<lanes::Pack<4>>>();
   __builtin_memset(static_cast<void*>(step.get()), 0, sizeof *step);
   const LauncherPlant plant = BuildNominalPlant(LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml"));
-  step->Configure(plant.environment.earth, true, 0.01);
+  step->Configure(plant.environment.earth, 0.01);
   const FlightWeather calm;
   double y[kLauncherSize] = {6.4e6, 0, 0, 0, 100, 0, 1};
   for (int lane = 0; lane < 4; ++lane) {
