@@ -230,6 +230,7 @@ StructuralLimits DecodeLimits(const InputNode& node, const std::string& path, Pr
   limits.q_alpha_pa_rad = map.Quantity("q_alpha", kPressureAngle, kPositive, 0.0);
   limits.axial_load_g = map.Quantity("axial_load", kAcceleration, kPositive, 0.0);
   limits.lateral_load_g = map.Quantity("lateral_load", kAcceleration, kPositive, 0.0);
+  limits.bending_moment_n_m = map.Quantity("bending_moment", kMoment, kPositive, 0.0);
   limits.terminate = map.Flag("terminate", false);
   return limits;
 }

@@ -25,6 +25,7 @@ inline constexpr Unit kMassPerLength[] = {{"kg_m", 1.0}};
 inline constexpr Unit kModulus[] = {{"gpa", 1e9}, {"mpa", 1e6}, {"pa", 1.0}};
 inline constexpr Unit kBendingStiffness[] = {{"n_m2", 1.0}, {"kn_m2", 1e3}, {"mn_m2", 1e6}};
 inline constexpr Unit kForce[] = {{"n", 1.0}, {"kn", 1e3}};
+inline constexpr Unit kMoment[] = {{"n_m", 1.0}, {"kn_m", 1e3}};
 inline constexpr Unit kPressure[] = {{"pa", 1.0}, {"kpa", 1e3}};
 inline constexpr Unit kPressureAngle[] = {{"pa_rad", 1.0}, {"kpa_rad", 1e3}, {"pa_deg", kRadPerDeg}};
 inline constexpr Unit kSpeed[] = {{"m_s", 1.0}, {"km_s", 1e3}};
@@ -48,6 +49,7 @@ inline constexpr std::string_view kUnitLike[] = {
     "bar",    "psf",   "psi",  "pa_rad", "pa_deg", "kpa_rad", "m_s",     "km_s",    "ft_s",    "kt",
     "kts",    "mph",   "deg",  "rad",    "arcmin", "deg_s",   "rad_s",   "hz",      "rpm",     "deg_s2",
     "rad_s2", "1_s",   "1_s2", "1_s3",   "per_km", "per_m",   "per_m_s", "per_deg", "per_rad", "percent",
-    "factor", "kg_m2", "kg_m", "gpa",    "mpa",    "n_m2",    "kn_m2",   "mn_m2",   "1_m"};
+    "factor", "kg_m2", "kg_m", "gpa",    "mpa",    "n_m2",    "kn_m2",   "mn_m2",   "1_m",
+    "n_m",    "kn_m"};
 
 }  // namespace dispersa

@@ -10,7 +10,7 @@
 // omega² at a roll rate of 10 deg/s), couples of the reaction control, and the change of shapes within a step.
 #pragma once
 
-#include "core/dynamics/body_flow.h"
+#include "core/dynamics/body_sections.h"
 #include "core/math/lane_vector.h"
 #include "core/structure/bending_table.h"
 
@@ -27,6 +27,7 @@ struct ModeNow {
   T unit_slope_1_m, gyro_slope_1_m[kRateGyros];
   T shortening_1_m[kModes];
   T strip_deflection[kStrips], strip_slope_1_m[kStrips];
+  T section_moment_kg_m[kLoadStations];  ///< of its inertia, by its acceleration
 };
 
 /// The bending of each lane's stack.
@@ -36,7 +37,6 @@ struct Bending {
   int planes = 1;  ///< 1: plane z is plane y in every stack
   const BendingTable* table[kWidth<T>] = {};
   T frequency_factor[kModes], damping_ratio, slope_factor;
-  T strip_station_m[kStrips], slender[kStrips], shift_1_m[kStrips], slender_station_m;
   ModeNow<T> now[kPlanes][kModes];
 
   DISPERSA_INLINE const ModeNow<T>& At(int plane, int mode) const { return now[planes == 1 ? 0 : plane][mode]; }
@@ -105,6 +105,7 @@ DISPERSA_INLINE void ShapesAt(Bending<T>& b, T propellant_kg) {
         m.strip_deflection[i] = c[BendingTable::kStripsAt + i];
         m.strip_slope_1_m[i] = c[BendingTable::kStripsAt + kStrips + i];
       }
+      for (int i = 0; i < kLoadStations; ++i) m.section_moment_kg_m[i] = c[BendingTable::kMomentAt + i];
     }
   }
 }
@@ -162,16 +163,15 @@ DISPERSA_INLINE void DriveAtPivot(const Bending<T>& b, Vector<T> force_n, Vector
   }
 }
 
-/// What the flow does besides to a body that bends: each strip meets it at the incidence of its own, the body's
-/// plus slope q + deflection q' / V in its plane, and takes its share of the normal force by the slope of the
-/// coefficient at the body's incidence. Adds to the body's force and moment about C and to the modes.
+/// The flow's forces by bending: each strip meets it at the incidence of its own, the body's plus
+/// slope q + deflection q' / V in its plane, and takes its share of the normal force by the slope of the coefficient
+/// at the body's incidence.
 template <class T>
-DISPERSA_INLINE void BendFlow(const Bending<T>& b, const BendingState<T>& s, T cg_station_m,
-                              FlowForce<T>& flow, ModalForce<T>& o) {
-  const T inverse_airspeed = T(1.0) / Max(flow.airspeed_m_s, T(1e-30));
-  const T aft = flow.xcp_station_m - b.slender_station_m;
+DISPERSA_INLINE StripForces<T> ForcesByBending(const Bending<T>& b, const BendingState<T>& s,
+                                               const Sections<T>& body, const NormalForce<T>& air) {
+  const T inverse_airspeed = T(1.0) / Max(air.airspeed_m_s, T(1e-30));
+  StripForces<T> o;
   for (int strip = 0; strip < kStrips; ++strip) {
-    const T share = Fma(aft, b.shift_1_m[strip], b.slender[strip]);
     T incidence[kPlanes] = {T(0.0), T(0.0)};
     for (int plane = 0; plane < kPlanes; ++plane)
       for (int mode = 0; mode < b.modes; ++mode) {
@@ -180,20 +180,63 @@ DISPERSA_INLINE void BendFlow(const Bending<T>& b, const BendingState<T>& s, T c
             Fma(m.strip_slope_1_m[strip], s.q_m[plane][mode],
                 Fma(m.strip_deflection[strip] * inverse_airspeed, s.rate_m_s[plane][mode], incidence[plane]));
       }
-    const T stiffness = flow.normal_slope_n * share;
-    const T by_bending[kPlanes] = {-(stiffness * incidence[0]), -(stiffness * incidence[1])};
-    const T rigid[kPlanes] = {-(flow.normal_n * share * flow.across_y), -(flow.normal_n * share * flow.across_z)};
-    const T aft_of_cg = b.strip_station_m[strip] - cg_station_m;
-    flow.force_n.y = flow.force_n.y + by_bending[0];
-    flow.force_n.z = flow.force_n.z + by_bending[1];
-    flow.moment_n_m.y = Fma(aft_of_cg, by_bending[1], flow.moment_n_m.y);
-    flow.moment_n_m.z = Fma(-aft_of_cg, by_bending[0], flow.moment_n_m.z);
-    for (int plane = 0; plane < kPlanes; ++plane) {
-      const T force = rigid[plane] + by_bending[plane];
+    const T stiffness = air.slope_n * body.Share(strip, air.xcp_station_m);
+    o.y_n[strip] = -(stiffness * incidence[0]);
+    o.z_n[strip] = -(stiffness * incidence[1]);
+  }
+  return o;
+}
+
+/// What the flow does besides to a body that bends. Adds to the body's force and moment about C and to the modes.
+template <class T>
+DISPERSA_INLINE void BendFlow(const Bending<T>& b, const BendingState<T>& s, const Sections<T>& body,
+                              T cg_station_m, FlowForce<T>& flow, ModalForce<T>& o) {
+  const NormalForce<T>& air = flow.normal;
+  const StripForces<T> by_bending = ForcesByBending(b, s, body, flow.normal);
+  for (int strip = 0; strip < kStrips; ++strip) {
+    const T aft_of_cg = body.strip_station_m[strip] - cg_station_m;
+    flow.force_n.y = flow.force_n.y + by_bending.y_n[strip];
+    flow.force_n.z = flow.force_n.z + by_bending.z_n[strip];
+    flow.moment_n_m.y = Fma(aft_of_cg, by_bending.z_n[strip], flow.moment_n_m.y);
+    flow.moment_n_m.z = Fma(-aft_of_cg, by_bending.y_n[strip], flow.moment_n_m.z);
+    const T straight = air.normal_n * body.Share(strip, air.xcp_station_m);
+    const T force[kPlanes] = {Fma(-straight, air.across_y, by_bending.y_n[strip]),
+                              Fma(-straight, air.across_z, by_bending.z_n[strip])};
+    for (int plane = 0; plane < kPlanes; ++plane)
       for (int mode = 0; mode < b.modes; ++mode)
-        o.drive_m_s2[plane][mode] = Fma(force, b.At(plane, mode).strip_deflection[strip], o.drive_m_s2[plane][mode]);
+        o.drive_m_s2[plane][mode] =
+            Fma(force[plane], b.At(plane, mode).strip_deflection[strip], o.drive_m_s2[plane][mode]);
+  }
+}
+
+/// What bending does to the sections' moments: `drive` is Q / m.
+template <class T>
+DISPERSA_INLINE SectionMoments<T> MomentsByBending(const Bending<T>& b, const BendingState<T>& s,
+                                                   const ModalForce<T>& drive, const Sections<T>& body,
+                                                   const NormalForce<T>& air) {
+  SectionMoments<T> o;
+  const StripForces<T> forces = ForcesByBending(b, s, body, air);
+  for (int i = 0; i < kLoadStations; ++i) {
+    o.y_n_m[i] = o.z_n_m[i] = T(0.0);
+    for (int strip = 0; strip <= i; ++strip) {
+      const T arm = body.station_m[i] - body.strip_station_m[strip];
+      o.y_n_m[i] = Fma(-arm, forces.y_n[strip], o.y_n_m[i]);
+      o.z_n_m[i] = Fma(-arm, forces.z_n[strip], o.z_n_m[i]);
     }
   }
+  for (int mode = 0; mode < b.modes; ++mode) {
+    T acceleration[kPlanes];
+    for (int plane = 0; plane < kPlanes; ++plane) {
+      const ModeNow<T>& m = b.At(plane, mode);
+      acceleration[plane] = drive.drive_m_s2[plane][mode] -
+                            Fma(m.damping_1_s, s.rate_m_s[plane][mode], m.stiffness_1_s2 * s.q_m[plane][mode]);
+    }
+    for (int i = 0; i < kLoadStations; ++i) {
+      o.y_n_m[i] = Fma(acceleration[0], b.At(0, mode).section_moment_kg_m[i], o.y_n_m[i]);
+      o.z_n_m[i] = Fma(acceleration[1], b.At(1, mode).section_moment_kg_m[i], o.z_n_m[i]);
+    }
+  }
+  return o;
 }
 
 /// Ends the sum of generalised forces: compression by the force along the axis, over the masses.

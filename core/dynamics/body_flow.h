@@ -93,14 +93,20 @@ DISPERSA_INLINE T IncidenceOf(T across, T along) {
   return angle;
 }
 
+/// What presses on the body from the side.
+template <class T>
+struct NormalForce {
+  T normal_n, slope_n;  ///< the slope is by the incidence in rad
+  T xcp_station_m;
+  T across_y, across_z;  ///< unit vector of the flow across the axis
+  T airspeed_m_s;
+};
+
 template <class T>
 struct FlowForce {
   Vector<T> force_n, moment_n_m;
   T qbar_pa, mach, incidence_rad;
-  // For a body that bends:
-  T airspeed_m_s, normal_n, normal_slope_n;  ///< the slope is by the incidence in rad
-  T xcp_station_m;
-  T across_y, across_z;  ///< unit vector of the flow across the axis
+  NormalForce<T> normal;
 };
 
 /// v: velocity through the air (m/s), w: angular velocity (rad/s) that the damping derivatives see, both in
@@ -123,12 +129,7 @@ DISPERSA_INLINE FlowForce<T> ForceOfFlow(const AeroBody<T>& body, Vector<T> v, V
   const T ny = v.y * inverse_across, nz = v.z * inverse_across;
   const T normal = qs * c.cn;
   const T turning = normal * (cg_station_m - c.xcp_station_m);
-  o.airspeed_m_s = airspeed;
-  o.normal_n = normal;
-  o.normal_slope_n = qs * c.cn_slope_1_rad;
-  o.xcp_station_m = c.xcp_station_m;
-  o.across_y = ny;
-  o.across_z = nz;
+  o.normal = {normal, qs * c.cn_slope_1_rad, c.xcp_station_m, ny, nz, airspeed};
   o.force_n = {-(qs * c.ca), -(normal * ny), -(normal * nz)};
   // q S d² / (2 V) = rho V S d² / 4, or with the floor in the place of a lower V.
   T damped_airspeed = airspeed;

@@ -146,7 +146,7 @@ void LauncherModel::Derivative(const LauncherPhase& phase, double time_s, const 
   const lanes::Rates<double> rates = one.Rates();
   const Quaternion dq = dispersa::Derivative({s.q.w, s.q.x, s.q.y, s.q.z}, ToEigen(s.w));
   Vector3 dp = ToEigen(s.v);
-  if (prepared_->plant.flow_coriolis) dp += ToEigen(lanes::CgVelocityOf(one.plant, one.masses, s.q));
+  if (prepared_->plant.flow_coriolis) dp += ToEigen(lanes::CgVelocityOf(one.masses, s.q));
   WriteState({dp, ToEigen(rates.dv), dq, ToEigen(rates.dw)}, dydt);
   for (int i = 0; i < kNozzles; ++i) {
     const std::size_t nozzle = static_cast<std::size_t>(i);

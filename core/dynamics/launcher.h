@@ -38,6 +38,7 @@ struct LauncherStack {
   /// Of everything but the burning propellant, whose own centre is on the axis: mass times lateral offset.
   double lateral_moment_y_kg_m = 0.0;
   double lateral_moment_z_kg_m = 0.0;
+  std::shared_ptr<const LoadTable> loads;
   std::shared_ptr<const BendingTable> bending;  ///< null: this stack is rigid
 };
 

@@ -20,6 +20,7 @@ struct Plant {
   Stack<T> stack;
   Burn<T> burn;
   AeroBody<T> aero;
+  Sections<T> sections;
   T cg_factor, inertia_factor;
   T pivot_station_m, nozzle_radius_m;
   T nozzle_moment_kg_m;    ///< mass of a nozzle times the distance of its centre of gravity aft of the pivot
@@ -54,7 +55,7 @@ struct TimedMasses {
   T propellant_kg;
   T mass_kg, inverse_mass_1_kg, cg_station_m, axial_kg_m2, transverse_kg_m2;
   T cg_y_m, cg_z_m;  ///< off the axis
-  T cg_per_kg_m;     ///< of the station, by the propellant
+  T cg_speed_m_s;    ///< of C forward through the body: the flow takes propellant away at the grain
   T axial_per_kg_m2, transverse_per_kg_m2;
   T thrust_fraction;  ///< 0 when not burning
 };
@@ -69,7 +70,6 @@ DISPERSA_INLINE TimedMasses<T> MassesAt(const Plant<T>& plant, const Phase<T>& p
   o.mass_kg = m.mass_kg - phase.expelled_kg;
   o.inverse_mass_1_kg = T(1.0) / o.mass_kg;
   o.cg_station_m = m.cg_station_m * plant.cg_factor;
-  o.cg_per_kg_m = (plant.stack.grain_station_m - m.cg_station_m) * o.inverse_mass_1_kg * plant.cg_factor;
   o.cg_y_m = plant.lateral_moment_y_kg_m * o.inverse_mass_1_kg;
   o.cg_z_m = plant.lateral_moment_z_kg_m * o.inverse_mass_1_kg;
   o.axial_kg_m2 = m.axial_kg_m2 * plant.inertia_factor;
@@ -77,6 +77,8 @@ DISPERSA_INLINE TimedMasses<T> MassesAt(const Plant<T>& plant, const Phase<T>& p
   o.axial_per_kg_m2 = m.axial_per_kg_m2 * plant.inertia_factor;
   o.transverse_per_kg_m2 = m.transverse_per_kg_m2 * plant.inertia_factor;
   o.thrust_fraction = Select(phase.burning, burn.fraction, T(0.0));
+  o.cg_speed_m_s = plant.burn.full_flow_kg_s * o.thrust_fraction * o.inverse_mass_1_kg * plant.cg_factor *
+                   (plant.stack.grain_station_m - m.cg_station_m);
   return o;
 }
 
@@ -108,6 +110,7 @@ template <class T>
 struct Instant {
   T altitude_m, qbar_pa, mach, incidence_rad, mass_kg, thrust_n;
   Vector<T> force_n;  ///< all but gravitation, body axes
+  NormalForce<T> normal;
 };
 
 /// Accelerations of a body: of C in I, and of the rotation in B.
@@ -116,16 +119,11 @@ struct Rates {
   Vector<T> dv, dw;
 };
 
-/// How fast C moves forward through the body, m/s: the flow takes propellant away at the grain.
+/// The velocity of C through the body, in I.
 template <class T>
-DISPERSA_INLINE T CgSpeedOf(const Plant<T>& plant, const TimedMasses<T>& masses) {
-  return plant.burn.full_flow_kg_s * masses.thrust_fraction * masses.cg_per_kg_m;
-}
-/// The same as a velocity in I.
-template <class T>
-DISPERSA_INLINE Vector<T> CgVelocityOf(const Plant<T>& plant, const TimedMasses<T>& masses, const Turn<T>& q) {
+DISPERSA_INLINE Vector<T> CgVelocityOf(const TimedMasses<T>& masses, const Turn<T>& q) {
   const Matrix<T> R_IB = RotationMatrix(q);
-  return CgSpeedOf(plant, masses) * Vector<T>{R_IB.row[0].x, R_IB.row[1].x, R_IB.row[2].x};
+  return masses.cg_speed_m_s * Vector<T>{R_IB.row[0].x, R_IB.row[1].x, R_IB.row[2].x};
 }
 
 template <class T>
@@ -245,12 +243,13 @@ DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, const Plant<T>& plan
   if constexpr (Body::kBends) {
     for (int plane = 0; plane < kPlanes; ++plane)
       for (int mode = 0; mode < kModes; ++mode) body.modal->drive_m_s2[plane][mode] = none;
-    BendFlow(*body.bending, *body.state, masses.cg_station_m, o.flow, *body.modal);
+    BendFlow(*body.bending, *body.state, plant.sections, masses.cg_station_m, o.flow, *body.modal);
   }
   o.force_n = o.flow.force_n;
   // The flow acts about the axis, from which C may be off.
-  const Vector<T> to_axis{none, -masses.cg_y_m, -masses.cg_z_m};
-  o.moment_n_m = o.flow.moment_n_m + Cross(to_axis, o.flow.force_n) + phase.control_torque_n_m;
+  const Vector<T>& f = o.flow.force_n;
+  const Vector<T> off_axis{Fma(masses.cg_z_m, f.y, -(masses.cg_y_m * f.z)), -(masses.cg_z_m * f.x), masses.cg_y_m * f.x};
+  o.moment_n_m = o.flow.moment_n_m + off_axis + phase.control_torque_n_m;
   o.thrust_n = o.flow_kg_s = o.jet_axial = o.jet_transverse = none;
   if (!any_burns) {
     if constexpr (Body::kBends) FinishDrive(*body.bending, *body.state, o.force_n.x, *body.modal);
@@ -298,9 +297,8 @@ DISPERSA_INLINE Rates<T> RatesOf(double earth_rate_rad_s, const Plant<T>& plant,
   Rates<T> o;
   Vector<T> specific_n_kg = masses.inverse_mass_1_kg * loads.force_n;
   if (plant.flow_coriolis) {
-    const T cg_speed_m_s = CgSpeedOf(plant, masses);
-    specific_n_kg.y = Fma(cg_speed_m_s, s.w.z, specific_n_kg.y);
-    specific_n_kg.z = Fma(-cg_speed_m_s, s.w.y, specific_n_kg.z);
+    specific_n_kg.y = Fma(masses.cg_speed_m_s, s.w.z, specific_n_kg.y);
+    specific_n_kg.z = Fma(-masses.cg_speed_m_s, s.w.y, specific_n_kg.z);
   }
   o.dv = around.gravitation_m_s2 + loads.R_IB * specific_n_kg;
   // What the flow takes along, less what the body's inertia loses to it.
@@ -316,7 +314,7 @@ DISPERSA_INLINE Rates<T> RatesOf(double earth_rate_rad_s, const Plant<T>& plant,
   o.dw.z = inverse_transverse * Fma(-transverse_loss, s.w.z, Fma(-gyroscopic, s.w.y, moment.z));
   if (instant)
     *instant = {around.altitude_m, loads.flow.qbar_pa, loads.flow.mach, loads.flow.incidence_rad,
-                masses.mass_kg,    loads.thrust_n,     loads.force_n};
+                masses.mass_kg,    loads.thrust_n,     loads.force_n,   loads.flow.normal};
   return o;
 }
 

@@ -64,6 +64,7 @@ DISPERSA_INLINE void SetLane(Plant<T>& p, int lane, const LauncherPlant& plant, 
   Lane(p.nozzle_radius_m, lane) = s.gimbal.radius_m;
   Lane(p.nozzle_moment_kg_m, lane) = s.gimbal.nozzle_mass_kg * s.gimbal.nozzle_cg_m;
   Lane(p.nozzle_inertia_kg_m2, lane) = s.gimbal.nozzle_inertia_kg_m2;
+  SetLane(p.sections, lane, s.loads.get());
   p.nozzles_have_mass = plant.nozzles_have_mass();
   p.jet_damping = plant.jet_damping;
   p.flow_coriolis = plant.flow_coriolis;
@@ -89,12 +90,6 @@ DISPERSA_INLINE void SetLane(Bending<T>& b, int lane, const LauncherPlant& plant
     Lane(b.frequency_factor[mode], lane) = plant.bending.frequency.data()[mode];
   Lane(b.damping_ratio, lane) = plant.bending.damping_ratio;
   Lane(b.slope_factor, lane) = plant.bending.slope;
-  for (int strip = 0; strip < kStrips; ++strip) {
-    Lane(b.strip_station_m[strip], lane) = table ? table->strip_station_m.data()[strip] : 0.0;
-    Lane(b.slender[strip], lane) = table ? table->slender.data()[strip] : 0.0;
-    Lane(b.shift_1_m[strip], lane) = table ? table->shift_1_m.data()[strip] : 0.0;
-  }
-  Lane(b.slender_station_m, lane) = table ? table->slender_station_m : 0.0;
   b.modes = plant.bending_modes();
   b.planes = plant.bending_planes();
 }

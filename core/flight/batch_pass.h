@@ -24,6 +24,7 @@ void Batch<T>::Pass() {
   step_.EvaluateStart(time_s_);
   if (definition_.guidance.closed_loop) Guide();
   metrics_.AddLoads(live_ & !coasting_, step_.now());
+  metrics_.AddMoment(live_ & !coasting_, step_.LargestMomentNow());
   Meter(live_ & step_.phase.burning);
   WatchAndDigest();
   CheckEnds();
@@ -331,7 +332,8 @@ void Batch<T>::CheckEnds() {
     const auto above = [](T value, double limit) { return value > T(limit > 0.0 ? limit : kFarFuture); };
     suspects = suspects | (live_ & (above(metrics_.q_alpha_max_pa_rad, limits.q_alpha_pa_rad) |
                                     above(metrics_.axial_load_max_g, limits.axial_load_g) |
-                                    above(metrics_.lateral_load_max_g, limits.lateral_load_g)));
+                                    above(metrics_.lateral_load_max_g, limits.lateral_load_g) |
+                                    above(metrics_.bending_moment_max_n_m, limits.bending_moment_n_m)));
   }
   if (!Any(suspects)) return;
   for (int lane = 0; lane < kLanes; ++lane) {

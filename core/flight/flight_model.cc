@@ -25,6 +25,7 @@ LauncherPlant BuildNominalPlant(const Vehicle& vehicle) {
     stack.aero_grid = std::make_shared<const AeroGrid>(BuildAeroGrid(stack.aerodynamics));
     stack.burn = BuildBurn(stage, 1.0, 1.0);
     stack.gimbal = stage.gimbal;
+    stack.loads = std::make_shared<const LoadTable>(BuildLoadTable(vehicle, static_cast<int>(i)));
     plant.stacks.push_back(stack);
   }
   return plant;
@@ -36,7 +37,7 @@ void AddBending(const Vehicle& vehicle, double tick_s, LauncherPlant& plant) {
   const std::vector<StackModes> stacks = BuildBendingModes(vehicle);
   for (std::size_t i = 0; i < stacks.size(); ++i)
     plant.stacks[i].bending =
-        std::make_shared<const BendingTable>(BuildBendingTable(vehicle, stacks[i], kPi / tick_s));
+        std::make_shared<const BendingTable>(BuildBendingTable(vehicle, stacks[i], *plant.stacks[i].loads, kPi / tick_s));
 }
 
 StageControl BuildStageControl(const LauncherStack& stack) {

@@ -31,6 +31,7 @@ struct FlightSums {
   double limit_cycle_rad = -1.0;  ///< likewise; 0: none
   double q_max_pa = 0.0, q_alpha_max_pa_rad = 0.0, alpha_max_rad = 0.0;
   double axial_load_max_g = 0.0, lateral_load_max_g = 0.0;
+  double bending_moment_max_n_m = 0.0, bending_moment_station_m = 0.0;
   bool handed_over = false;
   double handover_angle_rad = 0.0, handover_rate_rad_s = 0.0;
   double expelled_kg = 0.0;

@@ -68,6 +68,7 @@ struct LaneMetrics {
   T itae_rad_s2, deflection_rate_peak_rad_s, saturated_ticks, travel_rad;
   T has_previous, previous_rad[kNozzles];
   T q_max_pa, q_alpha_max_pa_rad, alpha_max_rad, axial_load_max_g, lateral_load_max_g;
+  T bending_moment_max_n_m, bending_moment_station_m;
   T v_outside_ticks, v_falling_ticks, departure_norm2_peak;
 
   /// Before a lane's first tick.
@@ -133,6 +134,12 @@ struct LaneMetrics {
     lateral_load_max_g = Select(lanes, Max(lateral_load_max_g, lateral), lateral_load_max_g);
   }
 
+  DISPERSA_INLINE void AddMoment(MaskOf<T> lanes, const LargestMoment<T>& now) {
+    const auto is_larger = lanes & (now.moment_n_m > bending_moment_max_n_m);
+    bending_moment_max_n_m = Select(is_larger, now.moment_n_m, bending_moment_max_n_m);
+    bending_moment_station_m = Select(is_larger, now.station_m, bending_moment_station_m);
+  }
+
   /// What the lane has, but for what its record keeps itself (stages, handover, orbit, limit cycle).
   DISPERSA_INLINE void Read(int lane, FlightSums& s) const {
     s.coast = LaneOf(coast, lane);
@@ -148,6 +155,8 @@ struct LaneMetrics {
     s.alpha_max_rad = Lane(alpha_max_rad, lane);
     s.axial_load_max_g = Lane(axial_load_max_g, lane);
     s.lateral_load_max_g = Lane(lateral_load_max_g, lane);
+    s.bending_moment_max_n_m = Lane(bending_moment_max_n_m, lane);
+    s.bending_moment_station_m = Lane(bending_moment_station_m, lane);
     s.v_outside_ticks = Lane(v_outside_ticks, lane);
     s.v_falling_ticks = Lane(v_falling_ticks, lane);
     s.adaptation_peak_rad_s2 = Sqrt(Lane(departure_norm2_peak, lane));

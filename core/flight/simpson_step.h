@@ -112,6 +112,19 @@ class StepState {
 
   /// Where the lanes stand: valid after EvaluateStart.
   const Instant<T>& now() const { return start_->instant; }
+  /// The largest bending moment of the lanes' bodies now.
+  LargestMoment<T> LargestMomentNow() const {
+    const Point& now = *start_;
+    const Vector<T>&w = motion.w, &dw = now.rates.dw;
+    const T per_kg = now.masses.inverse_mass_1_kg;
+    const BodyMotion<T> moved{now.masses.propellant_kg,          now.masses.cg_station_m,
+                              per_kg * now.instant.force_n.y,    per_kg * now.instant.force_n.z,
+                              Fma(-w.x, w.z, dw.y),              Fma(w.x, w.y, dw.z)};
+    if (bending.modes == 0) return LargestOf(plant.sections, now.instant.normal, moved);
+    return LargestOf(plant.sections, now.instant.normal, moved,
+                     MomentsByBending(bending, bending_state, now.modal, plant.sections, now.instant.normal));
+  }
+
   /// Of one lane at its time, evaluated anew.
   Instant<double> InstantOf(int lane, T time_s) const {
     Point p;
@@ -199,7 +212,7 @@ class StepState {
   }
   // How C moves through the body where the lanes are turned by q, in I.
   DISPERSA_INLINE Vector<T> CgVelocityAt(const TimedMasses<T>& masses, const Turn<T>& q) const {
-    return plant.flow_coriolis ? CgVelocityOf(plant, masses, q) : Zero<T>();
+    return plant.flow_coriolis ? CgVelocityOf(masses, q) : Zero<T>();
   }
   void SetTransition(Transition<T>& over, int lane, double time_s) const {
     const Transition<double> one =

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "core/vehicle/beam_masses.h"
-#include "core/vehicle/mould_line.h"
 
 namespace dispersa {
 
@@ -11,43 +10,6 @@ namespace {
 
 /// Places along the beam at which the shortening is summed.
 constexpr int kShorteningSteps = 400;
-
-// Slender-body shares follow the growth of the cross-section, shifts the planform about its centroid, so that all
-// shares together are 1 and their centroid is where the centre of pressure is.
-void ShareOut(const Vehicle& vehicle, const Stage& stage, BendingTable& table) {
-  const std::vector<MouldSection> body = CutMouldLine(vehicle.profile, stage.bottom_station_m);
-  const auto radius = [&](double station_m) {
-    for (const MouldSection& section : body)
-      if (station_m <= section.end_m) return section.Radius(std::max(station_m, section.start_m));
-    return body.back().Radius(body.back().end_m);
-  };
-  constexpr int kPieces = 50;  // of a strip
-  const double strip_m = stage.bottom_station_m / kStrips;
-  const double base2 = radius(stage.bottom_station_m) * radius(stage.bottom_station_m);
-  std::array<double, kStrips> planform{};
-  double planform_sum = 0.0, planform_moment = 0.0;
-  for (std::size_t i = 0; i < kStrips; ++i) {
-    const double from = strip_m * static_cast<double>(i), to = from + strip_m;
-    table.slender[i] = (radius(to) * radius(to) - radius(from) * radius(from)) / base2;
-    table.strip_station_m[i] = 0.5 * (from + to);
-    for (int k = 0; k < kPieces; ++k) planform[i] += radius(from + strip_m * (k + 0.5) / kPieces);
-    table.slender_station_m += table.slender[i] * table.strip_station_m[i];
-    planform_sum += planform[i];
-    planform_moment += planform[i] * table.strip_station_m[i];
-  }
-  // The nose tip is a point: the first strip begins with no cross-section, whatever a blunt file says.
-  const double blunt = radius(0.0) * radius(0.0) / base2;
-  table.slender[0] += blunt;
-  table.slender_station_m += blunt * table.strip_station_m[0];
-  const double centroid_m = planform_moment / planform_sum;
-  double spread = 0.0;
-  for (std::size_t i = 0; i < kStrips; ++i) {
-    const double arm = table.strip_station_m[i] - centroid_m;
-    table.shift_1_m[i] = planform[i] * arm;
-    spread += table.shift_1_m[i] * table.strip_station_m[i];
-  }
-  for (double& shift : table.shift_1_m) shift /= spread;
-}
 
 bool FliesAtAllLevels(const StackModes& stack, std::size_t mode, double highest_rad_s) {
   for (const std::vector<BendingLevel>& plane : stack.levels)
@@ -57,9 +19,7 @@ bool FliesAtAllLevels(const StackModes& stack, std::size_t mode, double highest_
 }
 
 // The share of the mass ahead of each place, from the nose aft.
-std::vector<double> MassAhead(const Vehicle& vehicle, const StackModes& stack, double propellant_kg,
-                              const std::vector<double>& places) {
-  const BeamMasses masses = BuildBeamMasses(vehicle, stack.stage, propellant_kg);
+std::vector<double> MassAhead(const BeamMasses& masses, const std::vector<double>& places) {
   const double step = places[1] - places[0];
   std::vector<double> ahead(places.size());
   double sum = 0.0;
@@ -77,6 +37,31 @@ std::vector<double> MassAhead(const Vehicle& vehicle, const StackModes& stack, d
   return ahead;
 }
 
+// What the mass ahead of a station, accelerated as a mode's shape says, loads it with: the integral of
+// m deflection (s - x) - m g² slope.
+template <typename Shape>
+double InertiaMoment(const BeamMasses& masses, double station_m, const Shape& shape_at) {
+  double sum = 0.0;
+  for (const SpreadMass& m : masses.spread) {
+    const double from = m.top_station_m, to = std::min(m.bottom_station_m, station_m);
+    if (to <= from) continue;
+    const double step = (to - from) / kShorteningSteps;
+    for (int i = 0; i < kShorteningSteps; ++i) {
+      const double x = from + step * (i + 0.5);
+      const StationShape shape = shape_at(x);
+      sum += step * m.MassPerLength(x) *
+             (shape.deflection * (station_m - x) - m.Gyration2(x) * shape.slope_1_m);
+    }
+  }
+  for (const FixedMass& m : masses.fixed) {
+    if (m.station_m > station_m) continue;
+    const StationShape shape = shape_at(m.station_m);
+    const double deflection = shape.deflection + shape.slope_1_m * (m.cg_station_m - m.station_m);
+    sum += m.mass_kg * deflection * (station_m - m.cg_station_m) - m.inertia_kg_m2 * shape.slope_1_m;
+  }
+  return sum;
+}
+
 }  // namespace
 
 double BendingTable::At(int plane, int mode, int column, double kg) const {
@@ -90,11 +75,11 @@ double BendingTable::At(int plane, int mode, int column, double kg) const {
   return from + fraction * (to - from);
 }
 
-BendingTable BuildBendingTable(const Vehicle& vehicle, const StackModes& stack, double highest_rad_s) {
+BendingTable BuildBendingTable(const Vehicle& vehicle, const StackModes& stack, const LoadTable& loads,
+                               double highest_rad_s) {
   const StructureBeam& beam = *vehicle.structure_beam;
   const Stage& stage = vehicle.stages[static_cast<std::size_t>(stack.stage)];
   BendingTable table;
-  ShareOut(vehicle, stage, table);
   while (table.modes < std::min(kModes, beam.flown_modes) &&
          FliesAtAllLevels(stack, static_cast<std::size_t>(table.modes), highest_rad_s))
     ++table.modes;
@@ -108,7 +93,8 @@ BendingTable BuildBendingTable(const Vehicle& vehicle, const StackModes& stack, 
     std::vector<double> places;
     for (int i = 0; i < kShorteningSteps; ++i) places.push_back(top + step * (i + 0.5));
     for (const BendingLevel& level : stack.levels[p]) {
-      const std::vector<double> ahead = MassAhead(vehicle, stack, level.propellant_kg, places);
+      const BeamMasses masses = BuildBeamMasses(vehicle, stack.stage, level.propellant_kg);
+      const std::vector<double> ahead = MassAhead(masses, places);
       std::vector<std::vector<double>> slopes(static_cast<std::size_t>(table.modes));
       for (std::size_t k = 0; k < slopes.size(); ++k)
         for (const double place : places)
@@ -131,10 +117,12 @@ BendingTable BuildBendingTable(const Vehicle& vehicle, const StackModes& stack, 
           row[BendingTable::kShortening + j] = sum * step;
         }
         for (std::size_t i = 0; i < kStrips; ++i) {
-          const StationShape shape = at(table.strip_station_m[i]);
+          const StationShape shape = at(loads.strip_station_m[i]);
           row[BendingTable::kStripsAt + i] = shape.deflection;
           row[BendingTable::kStripsAt + kStrips + i] = shape.slope_1_m;
         }
+        for (std::size_t i = 0; i < kLoadStations; ++i)
+          row[BendingTable::kMomentAt + i] = InertiaMoment(masses, loads.station_m[i], at);
         table.rows.insert(table.rows.end(), row.begin(), row.end());
       }
     }

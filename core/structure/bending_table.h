@@ -7,18 +7,18 @@
 
 #include "core/math/aligned_rows.h"
 #include "core/structure/bending_modes.h"
+#include "core/structure/load_table.h"
 
 namespace dispersa {
 
 /// Modes that fly in one plane at most.
 inline constexpr int kModes = kMostFlownModes;
 inline constexpr int kPlanes = 2;
-/// Lengths of the body that feel an incidence of their own.
-inline constexpr int kStrips = 8;
 
 struct BendingTable {
   /// Frequency (rad/s), 1 / generalised mass; at the pivot: deflection, slope; slopes at the inertial unit and at
-  /// each rate gyro; shortening with each mode; from kStripsAt deflection, then slope of each strip.
+  /// each rate gyro; shortening with each mode; from kStripsAt deflection, then slope of each strip; from kMomentAt
+  /// the bending moment of the mode's inertia at each load station, for a unit acceleration of it.
   enum Column : int {
     kFrequency = 0,
     kInverseMass = 1,
@@ -28,20 +28,17 @@ struct BendingTable {
     kGyroSlope = 5,
     kShortening = 8,
     kStripsAt = 16,
-    kRowSize = 32
+    kMomentAt = 32,
+    kRowSize = 40
   };
   static_assert(kGyroSlope + kRateGyros == kShortening && kShortening + kModes <= kStripsAt &&
-                kStripsAt + 2 * kStrips == kRowSize);
+                kStripsAt + 2 * kStrips == kMomentAt &&
+                kMomentAt + kLoadStations <= kRowSize);
 
   int modes = 0;  ///< that fly, in each plane
   int planes = 1;  ///< 1: plane z is plane y
   std::vector<double> propellant_kg;  ///< of the levels, falling
   AlignedRows rows;                   ///< by plane, level, mode; linear between levels, held beyond
-
-  /// Where the normal force acts along the body: `slender` share of it by slender-body theory, plus for each
-  /// metre that the centre of pressure is aft of slender_station_m `shift`.
-  std::array<double, kStrips> strip_station_m{}, slender{}, shift_1_m{};
-  double slender_station_m = 0.0;
 
   /// A column at a propellant, for what is not flown.
   double At(int plane, int mode, int column, double propellant_kg) const;
@@ -59,6 +56,7 @@ struct BendingTable {
 /// lies ahead. The axial force F carried by the stack lowers the stiffness by F times that (the potential
 /// energy of a compressed beam, e.g. S. Timoshenko and J. Gere, "Theory of Elastic Stability", 1.11; drag
 /// taken as carried like thrust).
-BendingTable BuildBendingTable(const Vehicle& vehicle, const StackModes& stack, double highest_rad_s);
+BendingTable BuildBendingTable(const Vehicle& vehicle, const StackModes& stack, const LoadTable& loads,
+                               double highest_rad_s);
 
 }  // namespace dispersa

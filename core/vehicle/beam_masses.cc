@@ -136,12 +136,13 @@ OwnMassScale ScaleOwnMasses(const Vehicle& vehicle, int stage) {
 }
 
 BeamMasses BuildBeamMasses(const Vehicle& vehicle, int stage, double propellant_kg) {
-  const BeamStage nothing_lumped;  // a table of modes has no stages
+  const BeamStage nothing_lumped;  // a rigid vehicle, or one with a table of modes
   BeamMasses masses;
   for (std::size_t i = static_cast<std::size_t>(stage); i < vehicle.stages.size(); ++i) {
     const Stage& s = vehicle.stages[i];
-    const BeamStage& beam =
-        i < vehicle.structure_beam->stages.size() ? vehicle.structure_beam->stages[i] : nothing_lumped;
+    const BeamStage& beam = vehicle.structure_beam && i < vehicle.structure_beam->stages.size()
+                                ? vehicle.structure_beam->stages[i]
+                                : nothing_lumped;
     const double dry_kg = DryMass(vehicle, static_cast<int>(i));
     if (beam.own_masses) {
       const OwnMassScale scale = ScaleOwnMasses(vehicle, static_cast<int>(i));

@@ -39,7 +39,7 @@ struct BeamMasses {
 ///
 /// Structure elements and grains are the tubes of the mass model, spread evenly over their length, or fixed
 /// at one station if the beam lumps them. So mass, centre of gravity and transverse inertia are
-/// StackMass::At's but for rounding, whatever the level. A stage that gives its own masses has them scaled
+/// StackMass::At's but for rounding, whatever the level; so is that of a vehicle without a beam. A stage that gives its own masses has them scaled
 /// (ScaleOwnMasses).
 BeamMasses BuildBeamMasses(const Vehicle& vehicle, int stage, double propellant_kg);
 

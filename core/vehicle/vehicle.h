@@ -126,6 +126,7 @@ struct StructuralLimits {
   double q_alpha_pa_rad = 0.0;
   double axial_load_g = 0.0;
   double lateral_load_g = 0.0;
+  double bending_moment_n_m = 0.0;
   bool terminate = false;  ///< end the flight as `structural_limit`, else only flag it
 };
 

@@ -1,0 +1,100 @@
+// Cross-sections of W launch vehicles side by side (core/math/lanes.h): where the flow presses along the body, and
+// the bending moment that each section carries.
+#pragma once
+
+#include "core/dynamics/body_flow.h"
+#include "core/math/lane_vector.h"
+#include "core/structure/load_table.h"
+
+namespace dispersa::lanes {
+inline namespace DISPERSA_ISA {
+
+/// LoadTable of each lane's stack.
+template <class T>
+struct Sections {
+  T strip_station_m[kStrips], slender[kStrips], shift_1_m[kStrips], slender_station_m;
+  T station_m[kLoadStations], first_kg_m[kLoadStations][2], second_kg_m2[kLoadStations][3];
+  T slender_arm_m[kLoadStations], shift_arm[kLoadStations];  ///< lever of the shares ahead of each station
+
+  /// The share of the normal force that acts on a strip.
+  DISPERSA_INLINE T Share(int strip, T xcp_station_m) const {
+    return Fma(xcp_station_m - slender_station_m, shift_1_m[strip], slender[strip]);
+  }
+};
+/// `table` null: nothing is known of this lane's sections.
+template <class T>
+DISPERSA_INLINE void SetLane(Sections<T>& s, int lane, const LoadTable* table) {
+  static constexpr LoadTable kNone{};
+  const LoadTable& from = table ? *table : kNone;
+  for (int i = 0; i < kStrips; ++i) {
+    Lane(s.strip_station_m[i], lane) = from.strip_station_m.data()[i];
+    Lane(s.slender[i], lane) = from.slender.data()[i];
+    Lane(s.shift_1_m[i], lane) = from.shift_1_m.data()[i];
+  }
+  Lane(s.slender_station_m, lane) = from.slender_station_m;
+  for (int i = 0; i < kLoadStations; ++i) {
+    Lane(s.station_m[i], lane) = from.station_m.data()[i];
+    for (int k = 0; k < 2; ++k) Lane(s.first_kg_m[i][k], lane) = from.first_kg_m.data()[i].data()[k];
+    for (int k = 0; k < 3; ++k) Lane(s.second_kg_m2[i][k], lane) = from.second_kg_m2.data()[i].data()[k];
+    double slender = 0.0, shift = 0.0;
+    for (int strip = 0; strip <= i; ++strip) {
+      const double arm = from.station_m.data()[i] - from.strip_station_m.data()[strip];
+      slender += from.slender.data()[strip] * arm;
+      shift += from.shift_1_m.data()[strip] * arm;
+    }
+    Lane(s.slender_arm_m[i], lane) = slender;
+    Lane(s.shift_arm[i], lane) = shift;
+  }
+}
+
+/// Forces along the body, across its axis, in body axes.
+template <class T>
+struct StripForces {
+  T y_n[kStrips], z_n[kStrips];
+};
+/// Moments about z (of forces along y) and about -y (along z) at each load station.
+template <class T>
+struct SectionMoments {
+  T y_n_m[kLoadStations], z_n_m[kLoadStations];
+};
+/// How the body moves: its acceleration at C but for gravitation, and by how much that grows with each metre ahead of
+/// C, `turn_z` along y and `turn_y` along -z.
+template <class T>
+struct BodyMotion {
+  T propellant_kg, cg_station_m;
+  T lateral_y_m_s2, lateral_z_m_s2, turn_y_1_s2, turn_z_1_s2;
+};
+/// The largest bending moment, and where.
+template <class T>
+struct LargestMoment {
+  T moment_n_m, station_m;
+};
+
+/// Of all load stations. A section holds what the acceleration of the mass ahead takes, less what the flow gives there
+/// (force summation: R. L. Bisplinghoff, H. Ashley, R. L. Halfman, "Aeroelasticity", 1955, chapter 10), plus `further`.
+/// Left out: the flow's damping moment, forces of the flow of propellant, the axial force on the bent axis.
+template <class T, class... Further>
+DISPERSA_INLINE LargestMoment<T> LargestOf(const Sections<T>& body, const NormalForce<T>& air, const BodyMotion<T>& m,
+                                           const Further&... further) {
+  T largest2(0.0), station(0.0);
+  const T aft = air.xcp_station_m - body.slender_station_m;
+  const T y_n = air.normal_n * air.across_y, z_n = air.normal_n * air.across_z;
+  for (int i = 0; i < kLoadStations; ++i) {
+    const T* f = body.first_kg_m[i];
+    const T* s = body.second_kg_m2[i];
+    const T first = Fma(m.propellant_kg, f[1], f[0]);
+    const T turned = Fma(m.cg_station_m, first, -Fma(m.propellant_kg, Fma(m.propellant_kg, s[2], s[1]), s[0]));
+    const T arm = Fma(aft, body.shift_arm[i], body.slender_arm_m[i]);
+    T y = Fma(m.lateral_y_m_s2, first, Fma(m.turn_z_1_s2, turned, y_n * arm));
+    T z = Fma(m.lateral_z_m_s2, first, Fma(-m.turn_y_1_s2, turned, z_n * arm));
+    ((y = y + further.y_n_m[i], z = z + further.z_n_m[i]), ...);
+    const T size2 = Fma(y, y, z * z);
+    const auto is_larger = size2 > largest2;
+    largest2 = Select(is_larger, size2, largest2);
+    station = Select(is_larger, body.station_m[i], station);
+  }
+  return {Sqrt(largest2), station};
+}
+
+}  // namespace DISPERSA_ISA
+}  // namespace dispersa::lanes

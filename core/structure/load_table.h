@@ -1,0 +1,34 @@
+// What a stack's cross-sections have to carry: where the normal force acts along the body, and what the mass ahead
+// of a station resists. Plain data, for body_loads.h.
+#pragma once
+
+#include <array>
+
+#include "core/vehicle/vehicle.h"
+
+namespace dispersa {
+
+/// Lengths of the body, all the same, that feel an incidence of their own.
+inline constexpr int kStrips = 8;
+/// The cross-sections between them.
+inline constexpr int kLoadStations = kStrips - 1;
+
+struct LoadTable {
+  /// `slender` share of the normal force by slender-body theory, at the middle of each strip, plus for each metre
+  /// that the centre of pressure is aft of slender_station_m `shift`.
+  std::array<double, kStrips> strip_station_m{}, slender{}, shift_1_m{};
+  double slender_station_m = 0.0;
+
+  /// Stations s, and of the mass ahead of each, with m(x) its mass per length, g(x) the radius of gyration of its
+  /// cross-section and p the propellant: the integral of m (s - x) = first[0] + first[1] p, and that of
+  /// m (s - x) x - m g² = second[0] + second[1] p + second[2] p².
+  std::array<double, kLoadStations> station_m{};
+  std::array<std::array<double, 2>, kLoadStations> first_kg_m{};
+  std::array<std::array<double, 3>, kLoadStations> second_kg_m2{};
+};
+
+/// Of the stack of stages `stage` (from 0) and above. Masses as the beam of finite elements has them
+/// (beam_masses.h).
+LoadTable BuildLoadTable(const Vehicle& vehicle, int stage);
+
+}  // namespace dispersa
