@@ -1,0 +1,150 @@
+// Bending moments along the body against the equilibrium of what lies behind each section, and against the
+// curvature of a beam that rings.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "core/dynamics/body_sections.h"
+#include "core/flight/flight_model.h"
+#include "core/math/constants.h"
+#include "core/structure/bending_table.h"
+#include "core/vehicle/mass.h"
+#include "tests/slv4_flight.h"
+
+namespace dispersa {
+namespace {
+
+// A part of the vehicle as its file has it.
+struct Tube {
+  double mass_kg, top_m, bottom_m, gyration2_m2;
+};
+std::vector<Tube> Tubes(const Vehicle& vehicle, double propellant_kg) {
+  std::vector<Tube> tubes;
+  for (std::size_t i = 0; i < vehicle.stages.size(); ++i) {
+    const Stage& stage = vehicle.stages[i];
+    for (const MassElement& e : stage.structure)
+      tubes.push_back(
+          {DryMass(vehicle, static_cast<int>(i)) * e.fraction, e.top_station_m, e.bottom_station_m,
+           (e.outer_diameter_m * e.outer_diameter_m + e.inner_diameter_m * e.inner_diameter_m) / 16.0});
+    const Grain& g = stage.grain;
+    const double kg = i == 0 ? propellant_kg : stage.propellant_mass_kg;
+    const double outer2 = 0.25 * g.outer_diameter_m * g.outer_diameter_m;
+    const double inner2 =
+        outer2 - kg / (kPi * PropellantDensity(stage) * (g.bottom_station_m - g.top_station_m));
+    tubes.push_back({kg, g.top_station_m, g.bottom_station_m, 0.25 * (outer2 + inner2)});
+  }
+  return tubes;
+}
+
+// One section alone, so that it is the largest.
+lanes::Sections<double> Only(const LoadTable& table, int station) {
+  lanes::Sections<double> s{};
+  lanes::SetLane(s, 0, &table);
+  for (int i = 0; i < kLoadStations; ++i) {
+    if (i == station) continue;
+    for (double& value : s.first_kg_m[i]) value = 0.0;
+    for (double& value : s.second_kg_m2[i]) value = 0.0;
+    s.slender_arm_m[i] = s.shift_arm[i] = 0.0;
+  }
+  return s;
+}
+
+// A side force at the pivot and the flow from the side, in each plane, at three propellant levels.
+TEST(SectionMoments, HoldTheBalanceOfWhatLiesBehindTheSection) {
+  const Vehicle vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml");
+  const LauncherPlant plant = BuildNominalPlant(vehicle);
+  const LoadTable& table = *plant.stacks[0].loads;
+  const double side_n = 4e3, normal_n = 2e4, xcp_m = 9.3, pivot_m = vehicle.stages[0].gimbal.pivot_station_m;
+  double shares = 0.0, centroid = 0.0;
+  for (std::size_t i = 0; i < kStrips; ++i) {
+    const double share = table.slender[i] + (xcp_m - table.slender_station_m) * table.shift_1_m[i];
+    shares += share;
+    centroid += share * table.strip_station_m[i];
+  }
+  EXPECT_NEAR(shares, 1.0, 1e-12);
+  EXPECT_NEAR(centroid, xcp_m, 1e-9);
+
+  for (const double part : {1.0, 0.37, 0.0}) {
+    const double propellant = part * vehicle.stages[0].propellant_mass_kg;
+    const MassProperties mass = plant.stacks[0].mass.At(propellant);
+    const double acceleration = (side_n - normal_n) / mass.mass_kg;
+    const double turn = (side_n * (mass.cg_station_m - pivot_m) - normal_n * (mass.cg_station_m - xcp_m)) /
+                        mass.transverse_inertia_kg_m2;
+    for (int station = 0; station < kLoadStations; ++station) {
+      const double s = table.station_m[static_cast<std::size_t>(station)];
+      double behind = side_n * (s - pivot_m);
+      for (std::size_t i = static_cast<std::size_t>(station) + 1; i < kStrips; ++i)
+        behind -= normal_n * (table.slender[i] + (xcp_m - table.slender_station_m) * table.shift_1_m[i]) *
+                  (s - table.strip_station_m[i]);
+      for (const Tube& tube : Tubes(vehicle, propellant)) {
+        const double from = std::max(tube.top_m, s), length = tube.bottom_m - from;
+        if (length <= 0.0) continue;
+        const double kg = tube.mass_kg * length / (tube.bottom_m - tube.top_m);
+        const double middle = 0.5 * (from + tube.bottom_m), second = length * length / 12.0;
+        // The integral of (a + turn (cg - x)) (s - x) over the piece.
+        behind -= kg * ((acceleration + turn * (mass.cg_station_m - middle)) * (s - middle) + turn * second);
+        behind -= kg * turn * tube.gyration2_m2;
+      }
+      const lanes::Sections<double> body = Only(table, station);
+      const lanes::NormalForce<double> along_y{normal_n, 0.0, xcp_m, 1.0, 0.0, 500.0},
+          along_z{normal_n, 0.0, xcp_m, 0.0, 1.0, 500.0};
+      const double y = lanes::LargestOf(body, along_y,
+                                        lanes::BodyMotion<double>{propellant, mass.cg_station_m, acceleration,
+                                                                  0.0, 0.0, turn})
+                           .moment_n_m;
+      // Turning about -y moves what lies ahead along z.
+      const double z = lanes::LargestOf(body, along_z,
+                                        lanes::BodyMotion<double>{propellant, mass.cg_station_m, 0.0,
+                                                                  acceleration, -turn, 0.0})
+                           .moment_n_m;
+      EXPECT_NEAR(y, std::fabs(behind), 1e-6) << station;  // of up to 1e5 N m
+      EXPECT_NEAR(z, std::fabs(behind), 1e-6) << station;
+    }
+  }
+}
+
+// Of a ringing beam what its inertia loads a section with is what the section's stiffness holds: E I theta'.
+// They share the mode alone.
+TEST(SectionMoments, OfARingingBeamAreItsStiffnessTimesItsCurvature) {
+  const Vehicle vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml");
+  LauncherPlant plant = BuildNominalPlant(vehicle);
+  const std::vector<StackModes> stacks = BuildBendingModes(vehicle);
+  AddBending(vehicle, 0.01, plant);
+  const BendingTable& table = *plant.stacks[0].bending;
+  const LoadTable& loads = *plant.stacks[0].loads;
+  const BendingLevel& level = stacks[0].levels[0].front();
+  constexpr double kStep_m = 0.02;
+  double largest = 0.0;
+  for (std::size_t mode = 0; mode < 2; ++mode) {
+    const double omega2 = std::pow(level.modes[mode].frequency_rad_s, 2);
+    double most = 0.0;
+    std::vector<double> held, loaded;
+    for (std::size_t i = 0; i < kLoadStations; ++i) {
+      const double s = loads.station_m[i];
+      double stiffness = 0.0;
+      for (const BeamStage& stage : vehicle.structure_beam->stages)
+        for (const BeamSection& section : stage.sections)
+          if (s > section.top_station_m && s < section.bottom_station_m)
+            stiffness += section.BendingStiffness(BeamPlane::kY, s);
+      const auto slope = [&](double at) {
+        return ShapeOf(stacks[0], BeamPlane::kY, level.modes[mode], at).slope_1_m;
+      };
+      held.push_back(stiffness * (slope(s + kStep_m) - slope(s - kStep_m)) / (2.0 * kStep_m));
+      loaded.push_back(omega2 * table.Row(0, 0, static_cast<int>(mode))[BendingTable::kMomentAt + i]);
+      most = std::max(most, std::fabs(held.back()));
+    }
+    for (std::size_t i = 0; i < held.size(); ++i) {
+      std::printf("mode %zu, %5.2f m: held %11.4e, loaded %11.4e N\n", mode + 1, loads.station_m[i], held[i],
+                  loaded[i]);
+      largest = std::max(largest, std::fabs(std::fabs(held[i]) - std::fabs(loaded[i])) / most);
+      EXPECT_GT(held[i] * loaded[i] * held[3] * loaded[3], 0.0) << "one sign along the beam";
+    }
+  }
+  // The elements' curvature is linear within each.
+  EXPECT_LT(largest, 0.02);
+}
+
+}  // namespace
+}  // namespace dispersa
