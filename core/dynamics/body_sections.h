@@ -70,9 +70,10 @@ struct LargestMoment {
   T moment_n_m, station_m;
 };
 
-/// Of all load stations. A section holds what the acceleration of the mass ahead takes, less what the flow gives there
-/// (force summation: R. L. Bisplinghoff, H. Ashley, R. L. Halfman, "Aeroelasticity", 1955, chapter 10), plus `further`.
-/// Left out: the flow's damping moment, forces of the flow of propellant, the axial force on the bent axis.
+/// Of all load stations. A section holds what the acceleration of the mass ahead takes, less what the flow
+/// gives there (force summation: R. L. Bisplinghoff, H. Ashley, R. L. Halfman, "Aeroelasticity", 1955), plus
+/// `further`. Left out: the flow's damping moment, forces of the flow of propellant, the axial force on the
+/// bent axis.
 template <class T, class... Further>
 DISPERSA_INLINE LargestMoment<T> LargestOf(const Sections<T>& body, const NormalForce<T>& air, const BodyMotion<T>& m,
                                            const Further&... further) {

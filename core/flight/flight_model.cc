@@ -25,7 +25,8 @@ LauncherPlant BuildNominalPlant(const Vehicle& vehicle) {
     stack.aero_grid = std::make_shared<const AeroGrid>(BuildAeroGrid(stack.aerodynamics));
     stack.burn = BuildBurn(stage, 1.0, 1.0);
     stack.gimbal = stage.gimbal;
-    stack.loads = std::make_shared<const LoadTable>(BuildLoadTable(vehicle, static_cast<int>(i)));
+    if (!vehicle.profile.empty())
+      stack.loads = std::make_shared<const LoadTable>(BuildLoadTable(vehicle, static_cast<int>(i)));
     plant.stacks.push_back(stack);
   }
   return plant;

@@ -107,10 +107,16 @@ constexpr Row kOfFlight[] = {
      "specific force normal to the body axis at the centre of gravity", kLarger,
      [](const Measured& m) { return m.sums.lateral_load_max_g; }},
     {"bending_moment_max", "_n_m", "Bending moment, maximum",
-     "of the cross-sections at eighths of the stack's length: inertia and flow ahead of them, bending included", kLarger,
-     [](const Measured& m) { return m.sums.bending_moment_max_n_m; }},
+     "of the cross-sections at eighths of the stack's length: inertia and flow ahead of them, bending "
+     "included",
+     kLarger,
+     [](const Measured& m) {
+       return m.sums.bending_moment_max_n_m > 0.0 ? m.sums.bending_moment_max_n_m : kUndefined;
+     }},
     {"bending_moment_station", "_m", "Station of the largest bending moment", "aft of the nose tip", kAnyway,
-     [](const Measured& m) { return m.sums.bending_moment_max_n_m > 0.0 ? m.sums.bending_moment_station_m : kUndefined; }},
+     [](const Measured& m) {
+       return m.sums.bending_moment_max_n_m > 0.0 ? m.sums.bending_moment_station_m : kUndefined;
+     }},
     {"structural_limit_exceeded", "", "Structural limit exceeded",
      "1 when a limit of the vehicle file was exceeded", kLarger,
      [](const Measured& m) { return ExceedsStructure(m.definition.vehicle.limits, m.sums) ? 1.0 : 0.0; }},

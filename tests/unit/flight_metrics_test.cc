@@ -74,6 +74,7 @@ class MetricsRecorder {
           0.5 * (s.nozzle_rad[0] + s.nozzle_rad[1]), 0.5 * (s.nozzle_rad[2] + s.nozzle_rad[3]));
   }
   void AddLoads(const LauncherInstant& now) { metrics_.AddLoadsOfLane(0, InstantOf(now)); }
+  void AddMoment(double moment_n_m, double station_m) { metrics_.AddMoment(true, {moment_n_m, station_m}); }
   void AddHandover(const AttitudeError& error) {
     sums_.handed_over = true;
     sums_.handover_angle_rad = error.angle_rad.norm();
@@ -102,8 +103,8 @@ class MetricsRecorder {
  private:
   static lanes::Instant<double> InstantOf(const LauncherInstant& now) {
     const Vector3& f = now.loads.force_n;
-    return {now.air.place.altitude_m, now.air.qbar_pa, now.air.mach, TotalIncidence(now.v_AB_B), now.loads.mass_kg,
-            now.thrust_n, {f.x(), f.y(), f.z()}};
+    return {now.air.place.altitude_m, now.air.qbar_pa, now.air.mach,          TotalIncidence(now.v_AB_B),
+            now.loads.mass_kg,        now.thrust_n,    {f.x(), f.y(), f.z()}, {}};
   }
   void EndStage() {
     metrics_.EndStage(0, stage_, sums_);
@@ -223,6 +224,9 @@ TEST(MetricsRecorder, EveryMetricOfAMadeUpFlight) {
   burnout.loads.mass_kg = 100.0;
   burnout.loads.force_n = Vector3(-6.0 * 100.0 * kStandardGravity, 0.0, 0.0);
   flight.recorder.AddLoads(burnout);
+  flight.recorder.AddMoment(12e3, 6.75);
+  flight.recorder.AddMoment(25e3, 20.25);
+  flight.recorder.AddMoment(24e3, 13.5);
   for (int i = 0; i < 5000; ++i) {
     Tick s = Coasting(10.0 + i * kTick_s);
     SetErrors(s, 50.0, i == 2000 ? 3.0 : -0.1, 60.0);
@@ -292,6 +296,8 @@ TEST(MetricsRecorder, EveryMetricOfAMadeUpFlight) {
       {"alpha_max_deg", 4.0},
       {"axial_load_max_g", 6.0},
       {"lateral_load_max_g", 0.5},
+      {"bending_moment_max_n_m", 25e3},
+      {"bending_moment_station_m", 20.25},
       {"structural_limit_exceeded", 1.0},
       {"handover_attitude_error_deg", 0.05},
       {"handover_rate_error_deg_s", 0.2},
@@ -311,8 +317,7 @@ TEST(MetricsRecorder, EveryMetricOfAMadeUpFlight) {
       {"rules_fired", 4.0},
       // The target's orbit where it was reached: 12 km lower at 7600 m/s.
       {"semi_major_axis_error_km",
-       1e-3 * (0.5 * (apogee + perigee) -
-               1.0 / (2.0 / (radius - 12e3) - 7600.0 * 7600.0 / earth.mu_m3_s2))},
+       1e-3 * (0.5 * (apogee + perigee) - 1.0 / (2.0 / (radius - 12e3) - 7600.0 * 7600.0 / earth.mu_m3_s2))},
       {"inclination_error_deg", 0.5},
       {"guidance_converged", nan},
       {"guidance_ignition_shift_s", nan},
@@ -389,12 +394,14 @@ TEST(MetricsRecorder, StructuralFlagNamesOnlyGivenLimits) {
   flight.recorder.AddTick(s);
   EXPECT_EQ(flight["structural_limit_exceeded"], 0.0);
 
-  for (const StructuralLimits& limits : {StructuralLimits{.q_alpha_pa_rad = 1e3}, StructuralLimits{.axial_load_g = 1.0},
-                                         StructuralLimits{.lateral_load_g = 1.0}}) {
+  for (const StructuralLimits& limits :
+       {StructuralLimits{.q_alpha_pa_rad = 1e3}, StructuralLimits{.axial_load_g = 1.0},
+        StructuralLimits{.lateral_load_g = 1.0}, StructuralLimits{.bending_moment_n_m = 20e3}}) {
     FlightDefinition limited = Definition();
     limited.vehicle.limits = limits;
     Recording other({}, limited);
     other.recorder.AddTick(s);
+    other.recorder.AddMoment(21e3, 1.0);
     EXPECT_EQ(other["structural_limit_exceeded"], 1.0);
     EXPECT_TRUE(other.recorder.structural_limit_exceeded());
   }

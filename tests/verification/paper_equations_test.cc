@@ -83,6 +83,7 @@ struct Setting {
     static const LauncherPlant nominal = BuildNominalPlant(Slv4());
     plant = nominal;
     plant.environment.earth = SphericalEarth(kRadius_m, true);
+    plant.flow_coriolis = false;  // the paper knows nothing of the flow inside
     phase.stack = stack;
     phase.burning = true;
     frame = BuildLaunchFrame(plant.environment.earth, Slv4().site, 2.8);
