@@ -67,9 +67,8 @@ DISPERSA_INLINE Transition<double> TransitionOver(double bandwidth2, double twic
 template <class T>
 DISPERSA_INLINE T Followed(const Drives<T>& d, T command_rad) {
   if (d.is_coarse) {
-    const T to_integer(0x1.8p52);  // added, it leaves the nearest integer; taken away, that alone is left
-    const T steps = (command_rad / d.resolution_rad + to_integer) - to_integer;
-    command_rad = Select(d.resolution_rad > T(0.0), steps * d.resolution_rad, command_rad);
+    const T stepped = Nearest(command_rad / d.resolution_rad) * d.resolution_rad;
+    command_rad = Select(d.resolution_rad > T(0.0), stepped, command_rad);
   }
   return Clamp(command_rad, -d.limit_rad, d.limit_rad);
 }

@@ -46,17 +46,6 @@ struct GyroMemory {
   Vector<T> output_rad_s;
 };
 
-DISPERSA_INLINE double RoundedTo(double quantum, double x) {
-  // Beyond 2^51 quanta a double has no fraction left to round.
-  constexpr double kShift = 6755399441055744.0;
-  return ((x / quantum + kShift) - kShift) * quantum;
-}
-template <int W>
-DISPERSA_INLINE Pack<W> RoundedTo(double quantum, Pack<W> x) {
-  constexpr double kShift = 6755399441055744.0;
-  return ((x / Pack<W>(quantum) + Pack<W>(kShift)) - Pack<W>(kShift)) * Pack<W>(quantum);
-}
-
 /// One tick of the lanes that burn; `fresh`: those that have just begun, at rest in their rate; `sampled`: those at a
 /// tick of the gyro.
 template <class T>
@@ -74,7 +63,8 @@ DISPERSA_INLINE void StepGyro(const GyroModel& gyro, MaskOf<T> acting, MaskOf<T>
     const T y = Fma(T(f.b0), u[axis], s1);
     first[axis] = Select(acting, Fma(T(f.b1), u[axis], Fma(T(-f.a1), y, s2)), s1);
     second[axis] = Select(acting, Fma(T(f.b2), u[axis], T(-f.a2) * y), s2);
-    const T shown = gyro.quantum_rad_s > 0.0 ? RoundedTo(gyro.quantum_rad_s, y) : y;
+    const T quantum(gyro.quantum_rad_s);
+    const T shown = gyro.quantum_rad_s > 0.0 ? Nearest(y / quantum) * quantum : y;
     output[axis] = Select((acting & sampled) | fresh, shown, output[axis]);
   }
 }

@@ -328,6 +328,13 @@ DISPERSA_INLINE void Each(F f) {
   EachOf(f, std::make_integer_sequence<int, N>{});
 }
 
+/// The nearest integer, the even one of two; below 2^51 in size.
+template <class T>
+DISPERSA_INLINE T Nearest(T x) {
+  const T to_integer(0x1.8p52);  // added, it leaves the integer; taken away, that alone is left
+  return (x + to_integer) - to_integer;
+}
+
 template <class T>
 DISPERSA_INLINE T Clamp(T x, T low, T high) {
   return Max(Min(x, high), low);
