@@ -13,6 +13,7 @@ constexpr double kAngleStep_rad = 1e-3;
 constexpr double kRateStep_rad_s = 1e-3;
 // The equations are linear in the modes.
 constexpr double kDeflectionStep_m = 1e-3;
+// A thousandth of the speed at which air begins to matter.
 constexpr double kDriftStep_m_s = 0.1;
 
 }  // namespace
@@ -45,8 +46,7 @@ AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Ax
 
   const LauncherModel equations(plant);
   // The accelerations of axis, modes and drift where one state, by its place in the linear plant, or the
-  // command
-  // (-1) departs by `step`.
+  // command (-1) departs by `step`.
   const auto accelerations = [&](int departed, double step) {
     RigidBodyState state = sample.state;
     if (departed == 0) state.q_IB = state.q_IB * FromRotationVector(step * about);

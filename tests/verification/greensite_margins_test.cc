@@ -128,7 +128,7 @@ struct Margins {
 Margins ByBand(const Crossings& crossings) {
   Margins m;
   for (const Crossing& c : crossings.gain) {
-    if (c.frequency_rad_s >= 0.6 * kMode_rad_s + 0.8) continue;  // 11.9 rad/s is the rigid body's in June's
+    if (c.frequency_rad_s >= 0.9 * kMode_rad_s) continue;  // the mode's own
     if (c.value < 0.0 && m.aero_db == kInfinity) m.aero_db = -c.value, m.aero_at_rad_s = c.frequency_rad_s;
     if (c.value > 0.0) m.rigid_db = std::min(m.rigid_db, c.value);
   }
