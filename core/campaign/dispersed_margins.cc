@@ -34,10 +34,10 @@ void Take(const LeastLoopMargins& from, LeastLoopMargins& least) {
     Take((from.*margin).value, (from.*margin).case_index, (from.*margin).time_s, least.*margin);
 }
 
-CaseMargins MarginsOf(const CampaignFlights& flights, std::uint64_t case_index) {
+CaseMargins MarginsOf(const CampaignFlights& flights, std::uint64_t case_index, LateralPath path) {
   FlightOrder order{flights.Draw(case_index), {}};
   order.options.case_index = case_index;
-  const DispersedMargins flown = ComputeDispersedMargins(flights.model(), order);
+  const DispersedMargins flown = ComputeDispersedMargins(flights.model(), order, 5.0, path);
   CaseMargins found;
   found.ended_early = flown.outcome != Outcome::kCompleted;
   for (const ComputedMargins& at : flown.margins) {
@@ -58,10 +58,11 @@ CaseMargins MarginsOf(const CampaignFlights& flights, std::uint64_t case_index) 
 
 }  // namespace
 
-CampaignMargins ComputeCampaignMargins(const CampaignFlights& flights, std::uint64_t cases, int threads) {
+CampaignMargins ComputeCampaignMargins(const CampaignFlights& flights, std::uint64_t cases, int threads,
+                                       LateralPath path) {
   std::vector<CaseMargins> of_case(cases);
   ParallelFor(cases, static_cast<std::size_t>(threads),
-              [&](std::size_t i) { of_case[i] = MarginsOf(flights, i); });
+              [&](std::size_t i) { of_case[i] = MarginsOf(flights, i, path); });
   CampaignMargins all;
   all.cases = cases;
   for (std::uint64_t i = 0; i < cases; ++i) {

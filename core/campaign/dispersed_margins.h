@@ -32,6 +32,7 @@ struct CampaignMargins {
 };
 
 /// ComputeDispersedMargins of all cases of a campaign. The same on any number of threads.
-CampaignMargins ComputeCampaignMargins(const CampaignFlights& flights, std::uint64_t cases, int threads);
+CampaignMargins ComputeCampaignMargins(const CampaignFlights& flights, std::uint64_t cases, int threads,
+                                       LateralPath path = LateralPath::kHeld);
 
 }  // namespace dispersa

@@ -297,7 +297,7 @@ std::vector<double> SampledLoop::Frequencies() const {
 
 LoopMargins SampledLoop::Margins() const {
   LoopMargins margins;
-  margins.stable = SpectralRadius(1.0) < 1.0;
+  margins.stable = SpectralRadius(1.0) < (plant_.drifts ? Exp(kLowest_rad_s * tick_s_) : 1.0);
   if (!margins.stable && is_rigid_) return margins;
   margins.gain_up_db = margins.gain_down_db = margins.delay_s = kInfinity;
   margins.phase_deg = 180.0;

@@ -22,14 +22,16 @@ struct RateSensor {
 };
 
 /// Continuous plant of one axis about an operating point, x' = a x + b d. State: attitude (rad), its rate,
-/// nozzle deflection (rad), its rate, and of a body that bends the modal coordinates and their rates; d: commanded
-/// deflection, rad.
+/// nozzle deflection (rad), its rate, of a body that bends the modal coordinates and their rates, and of one
+/// that drifts its lateral velocity (m/s); d: commanded deflection, rad.
 struct AxisPlant {
   Eigen::MatrixXd a = Eigen::MatrixXd::Zero(4, 4);
   Eigen::VectorXd b = Eigen::VectorXd::Zero(4);
   Eigen::RowVectorXd attitude = Eigen::RowVectorXd::Unit(4, 0);  ///< as measured
   std::vector<RateSensor> rates = {{Eigen::RowVectorXd::Unit(4, 1), {}, 1.0, 0.0}};
   double lowest_mode_rad_s = 0.0;  ///< 0: a rigid body
+  /// Its path takes part: one that departs more slowly than 0.01 1/s is guidance's matter, and no loss.
+  bool drifts = false;
 };
 
 /// A control law about zero error: u = kp e + kd e' + w, and the command is u, filtered, / effectiveness.

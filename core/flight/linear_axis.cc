@@ -13,11 +13,13 @@ constexpr double kAngleStep_rad = 1e-3;
 constexpr double kRateStep_rad_s = 1e-3;
 // The equations are linear in the modes.
 constexpr double kDeflectionStep_m = 1e-3;
+// A thousandth of the speed at which air begins to matter.
+constexpr double kDriftStep_m_s = 0.1;
 
 }  // namespace
 
 AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Axis axis,
-                        const SensorModel& sensors) {
+                        const SensorModel& sensors, LateralPath path) {
   LauncherPhase phase;
   phase.stack = sample.stack;
   phase.burning = true;
@@ -37,13 +39,19 @@ AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Ax
   const int plane = axis == kPitch ? 1 : 0;
   const int first_mode = plane * kModes;
 
+  const bool drifts = path == LateralPath::kDrifts && axis != kRoll;
+  const int size = 4 + 2 * modes + (drifts ? 1 : 0);
+  const int drift = drifts ? size - 1 : size;
+  const Vector3 across_I = Rotate(sample.state.q_IB, Vector3::UnitX().cross(about));
+
   const LauncherModel equations(plant);
-  // The accelerations of axis and modes where one state, by its place in the linear plant, or the command (-1)
-  // departs by `step`.
+  // The accelerations of axis, modes and drift where one state, by its place in the linear plant, or the
+  // command (-1) departs by `step`.
   const auto accelerations = [&](int departed, double step) {
     RigidBodyState state = sample.state;
     if (departed == 0) state.q_IB = state.q_IB * FromRotationVector(step * about);
     if (departed == 1) state.w_IB_B += step * about;
+    if (departed == drift) state.v_IC_I += step * across_I;
     std::array<double, kLauncherSize> y{}, dydt{};
     WriteState(state, y.data());
     LauncherPhase at = phase;
@@ -53,27 +61,29 @@ AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Ax
       at.command_rad[i] = sample.nozzle_rad[i] + (departed == -1 ? step * pattern[i] : 0.0);
     }
     std::copy(sample.bending.begin(), sample.bending.end(), y.begin() + kModalState);
-    if (departed >= 4 + modes)
+    if (departed >= 4 + modes && departed < drift)
       y[static_cast<std::size_t>(kModalRate + first_mode + departed - 4 - modes)] += step;
-    else if (departed >= 4)
+    else if (departed >= 4 && departed < drift)
       y[static_cast<std::size_t>(kModalState + first_mode + departed - 4)] += step;
     equations.Derivative(at, sample.time_s, y.data(), dydt.data());
-    Eigen::VectorXd found(1 + modes);
-    found[0] = ReadState(dydt.data()).w_IB_B[axis];
+    const RigidBodyState rates = ReadState(dydt.data());
+    Eigen::VectorXd found(2 + modes);
+    found[0] = rates.w_IB_B[axis];
+    found[1 + modes] = rates.v_IC_I.dot(across_I);
     for (int k = 0; k < modes; ++k) found[1 + k] = dydt[static_cast<std::size_t>(kModalRate + first_mode + k)];
     return found;
   };
 
   const Gimbal& gimbal = stack.gimbal;
   const double w = gimbal.bandwidth_rad_s;
-  const int size = 4 + 2 * modes;
   AxisPlant linear;
+  linear.drifts = drifts;
   linear.a = Eigen::MatrixXd::Zero(size, size);
   linear.b = Eigen::VectorXd::Zero(size);
   const auto put = [&](int departed, double step) {
     const Eigen::VectorXd slope = (accelerations(departed, step) - accelerations(departed, -step)) / (2.0 * step);
-    for (int k = 0; k <= modes; ++k) {
-      const int row = k == 0 ? 1 : 3 + modes + k;
+    for (int k = 0; k <= modes + (drifts ? 1 : 0); ++k) {
+      const int row = k == 0 ? 1 : 3 + modes + k;  // the drift's follows the modes'
       (departed < 0 ? linear.b[row] : linear.a(row, departed)) = slope[k];
     }
   };
@@ -89,6 +99,7 @@ AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Ax
     put(4 + modes + k, kDeflectionStep_m);
     linear.a(4 + k, 4 + modes + k) = 1.0;
   }
+  if (drifts) put(drift, kDriftStep_m_s);
   linear.a(0, 1) = 1.0;
   linear.a(2, 3) = 1.0;
   linear.a(3, 2) = -w * w;

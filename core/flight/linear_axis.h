@@ -9,11 +9,18 @@
 
 namespace dispersa {
 
+/// What becomes of the vehicle's path while it turns.
+enum class LateralPath {
+  kHeld,    ///< stays: incidence changes with attitude alone, which the frequencies of most loops justify
+  kDrifts,  ///< the lateral velocity is a state: it changes the incidence too
+};
+
 /// Central differences of LauncherModel::Derivative about a powered instant, so that nothing of the plant is
-/// written twice. The vehicle turns about the axis through its centre of gravity while its path and the wind
-/// stay: incidence changes with attitude alone, which the loop's frequencies justify.
+/// written twice. The vehicle turns about the axis through its centre of gravity while the wind stays. A path
+/// that drifts adds a last state, in pitch and yaw: the velocity, m/s, across the body's axis as it points at
+/// the instant, positive where it adds to the incidence as attitude does (along +z in pitch, -y in yaw).
 AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Axis axis,
-                        const SensorModel& sensors);
+                        const SensorModel& sensors, LateralPath path = LateralPath::kHeld);
 
 /// The autopilot's law of an axis about zero error. `adapting` includes the adaptation, if the law has any;
 /// adaptive augmenting control is linearised at its total gain of 1.

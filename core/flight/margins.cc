@@ -134,16 +134,15 @@ std::vector<MarginInstant> InstantsOf(const FlightModel& model, const FlightOrde
 // One axis at one instant: the plants that a law must hold, each linearised once.
 class InstantLoop {
  public:
-  /// `frequency_factors`: with the bending frequencies so multiplied, where the stack bends.
-  InstantLoop(LauncherPlant plant, const SensorModel& sensors, const TickSample& sample, Axis axis, double tick_s,
-              const std::vector<double>& frequency_factors)
+  InstantLoop(LauncherPlant plant, const SensorModel& sensors, const TickSample& sample, Axis axis,
+              double tick_s, const MarginModel& of)
       : tick_s_(tick_s),
         delay_ticks_(plant.stacks[static_cast<std::size_t>(sample.stack)].gimbal.delay_ticks) {
     const std::array<double, kModes> nominal = plant.bending.frequency;
-    for (const double factor : frequency_factors) {
-      for (std::size_t k = 0; k < kModes; ++k) plant.bending.frequency[k] = factor * nominal[k];
-      plants_.push_back(LineariseAxis(plant, sample, axis, sensors));
-      if (plants_.back().lowest_mode_rad_s == 0.0) break;
+    for (const double departure : {0.0, -of.frequency_band, of.frequency_band}) {
+      for (std::size_t k = 0; k < kModes; ++k) plant.bending.frequency[k] = (1.0 + departure) * nominal[k];
+      plants_.push_back(LineariseAxis(plant, sample, axis, sensors, of.path));
+      if (plants_.back().lowest_mode_rad_s == 0.0 || of.frequency_band == 0.0) break;
     }
   }
   LoopMargins Of(const LinearLaw& law) const {
@@ -159,17 +158,14 @@ class InstantLoop {
   std::vector<AxisPlant> plants_;
 };
 
-const std::vector<double> kOfGates = {1.0, 1.0 - kFrequencyBand, 1.0 + kFrequencyBand};
-const std::vector<double> kAsFlown = {1.0};
-
 // Of each axis: all laws of ComputedMargins. `learnt` is the sample whose memories count.
 void AddMarginsAt(const LauncherPlant& plant, const FlightModel& model, const FlightInputs& inputs,
-                  const MarginInstant& instant, const TickSample& learnt,
-                  const std::vector<double>& frequency_factors, std::vector<ComputedMargins>& all) {
+                  const MarginInstant& instant, const TickSample& learnt, const MarginModel& of,
+                  std::vector<ComputedMargins>& all) {
   const AutopilotModel& autopilot = model.autopilot();
   const TickSample& s = instant.sample;
   for (const Axis axis : {kPitch, kYaw, kRoll}) {
-    const InstantLoop loop(plant, model.sensors(), s, axis, autopilot.config.tick_s, frequency_factors);
+    const InstantLoop loop(plant, model.sensors(), s, axis, autopilot.config.tick_s, of);
     const auto margins_of = [&](LinearLaw law) {
       const bool is_spoilt = inputs.loop_stage == 0.0 || inputs.loop_stage == s.stack + 1;
       if (is_spoilt) law.effectiveness_1_s2 /= inputs.loop_gain_factor;
@@ -208,7 +204,7 @@ std::vector<MarginInstant> MarginInstants(const FlightModel& model, double every
 }
 
 std::vector<ComputedMargins> ComputeMargins(const FlightModel& model, double every_s,
-                                            const FlightInputs& inputs) {
+                                            const FlightInputs& inputs, const MarginModel& of) {
   const LauncherPlant plant = model.PlantFor(inputs);
   const std::vector<MarginInstant> instants = MarginInstants(model, every_s, inputs);
   // The same ticks of the flight in which something is to be learnt: its stages burn as long.
@@ -223,22 +219,23 @@ std::vector<ComputedMargins> ComputeMargins(const FlightModel& model, double eve
   for (std::size_t i = 0; i < instants.size(); ++i) {
     // A flight that ends early learns nothing more.
     const TickSample& sample = i < learnt.size() ? learnt[i] : instants[i].sample;
-    AddMarginsAt(plant, model, inputs, instants[i], sample, kOfGates, all);
+    AddMarginsAt(plant, model, inputs, instants[i], sample, of, all);
   }
   return all;
 }
 
-DispersedMargins ComputeDispersedMargins(const FlightModel& model, const FlightOrder& order, double every_s) {
+DispersedMargins ComputeDispersedMargins(const FlightModel& model, const FlightOrder& order, double every_s,
+                                         LateralPath path) {
   DispersedMargins found;
   const LauncherPlant plant = model.PlantFor(order.inputs, order.options.case_index);
   for (const MarginInstant& instant : InstantsOf(model, order, every_s, &found.outcome))
-    AddMarginsAt(plant, model, order.inputs, instant, instant.sample, kAsFlown, found.margins);
+    AddMarginsAt(plant, model, order.inputs, instant, instant.sample, {0.0, path}, found.margins);
   return found;
 }
 
 LoopMargins MarginsAt(const LauncherPlant& plant, const SensorModel& sensors, const AutopilotModel& autopilot,
-                      const TickSample& s, Axis axis, bool adapting) {
-  return InstantLoop(plant, sensors, s, axis, autopilot.config.tick_s, kOfGates)
+                      const TickSample& s, Axis axis, bool adapting, const MarginModel& of) {
+  return InstantLoop(plant, sensors, s, axis, autopilot.config.tick_s, of)
       .Of(LineariseLaw(autopilot, s.stack, s.since_ignition_s, axis, adapting));
 }
 

@@ -1,8 +1,9 @@
 // Stability margins of an autopilot along its nominal flight: computed from a linearisation, and measured by
 // spoiling the loop of the flight until it fails.
 //
-// A vehicle that bends is linearised with its modes, and its margins are the least over their frequencies times
-// 1 and 1 -+ kFrequencyBand; one without a beam has rigid-body margins. There is no slosh.
+// A vehicle that bends is linearised with its modes, and its margins are the least over their frequencies
+// times 1 and 1 -+ kFrequencyBand; one without a beam has rigid-body margins. There is no slosh. The path is
+// held unless a MarginModel says that it drifts.
 #pragma once
 
 #include <limits>
@@ -13,6 +14,7 @@
 #include "core/control/loop_margins.h"
 #include "core/flight/flight.h"
 #include "core/flight/flight_model.h"
+#include "core/flight/linear_axis.h"
 #include "core/flight/tick_sample.h"
 
 namespace dispersa {
@@ -26,6 +28,13 @@ inline constexpr double kFrequencyBand = 0.15;
 /// What every powered phase of a dispersed flight must have.
 inline constexpr double kDispersedGainGate_db = 3.0;
 inline constexpr double kDispersedPhaseGate_deg = 20.0;
+
+/// What margins are computed of.
+struct MarginModel {
+  double frequency_band =
+      kFrequencyBand;  ///< the modes' frequencies are also so much lower and higher; 0: as they are
+  LateralPath path = LateralPath::kHeld;
+};
 
 /// One axis at one instant of the nominal flight.
 struct ComputedMargins {
@@ -75,21 +84,21 @@ std::vector<MarginInstant> MarginInstants(const FlightModel& model, double every
                                           const FlightInputs& inputs = {});
 /// The margins of an autopilot at an instant, be it of another autopilot's flight of the same plant.
 LoopMargins MarginsAt(const LauncherPlant& plant, const SensorModel& sensors, const AutopilotModel& autopilot,
-                      const TickSample& sample, Axis axis, bool adapting);
+                      const TickSample& sample, Axis axis, bool adapting, const MarginModel& of = {});
 
 /// At each of MarginInstants, in all axes, of the plant and along the flight that `inputs` make; the
 /// autopilot knows of the nominal plant only. What is learnt is learnt in a flight with the misalignment of
 /// MeasureMargins besides. A further delay of the loop (`inputs`) is left out.
 std::vector<ComputedMargins> ComputeMargins(const FlightModel& model, double every_s = 5.0,
-                                            const FlightInputs& inputs = {});
+                                            const FlightInputs& inputs = {}, const MarginModel& of = {});
 
-/// The same of a dispersed flight, with what was learnt in itself.
+/// The same of a dispersed flight, with what was learnt in itself and the modes' frequencies as they are.
 struct DispersedMargins {
   Outcome outcome = Outcome::kCompleted;  ///< the margins end with the flight
   std::vector<ComputedMargins> margins;
 };
 DispersedMargins ComputeDispersedMargins(const FlightModel& model, const FlightOrder& order,
-                                         double every_s = 5.0);
+                                         double every_s = 5.0, LateralPath path = LateralPath::kHeld);
 
 /// By bisection over flights in which the gain or the delay of one stage's loop is changed, with a steady
 /// thrust misalignment of 0.25° in every stage that keeps the adaptation at work. A loop counts as lost when

@@ -23,6 +23,8 @@ namespace {
 struct MarginsOptions {
   std::string campaign;
   CampaignOverrides overrides;
+  double frequency_band_percent = 100.0 * kFrequencyBand;
+  bool drift = false;
 };
 
 struct MarginsResult {
@@ -30,6 +32,7 @@ struct MarginsResult {
   std::vector<ComputedMargins> computed;
   std::vector<MeasuredMargins> measured;
   std::optional<CampaignMargins> dispersed;
+  MarginModel of;
   bool bends = false;
   bool passed = false;
 };
@@ -89,21 +92,24 @@ void PrintJson(const MarginsResult& result) {
                         {"delay_ms", 1e3 * m.delay_s},
                         {"passed", PassesGates(m)}});
   }
-  nlohmann::ordered_json json = {{"schema", "dispersa/margins/1"},
-                                 {"model", result.bends ? "bending, no slosh" : "rigid body: no bending, no slosh"},
-                                 {"autopilot", result.autopilot},
-                                 {"gates",
-                                  {{"gain_db", kGainMarginGate_db},
-                                   {"phase_deg", kPhaseMarginGate_deg},
-                                   {"delay_ms", 1e3 * kDelayMarginGate_s}}},
-                                 {"measured_resolution",
-                                  {{"gain_db", kMeasuredGainStep_db},
-                                   {"gain_ceiling_db", kMeasuredGainCeiling_db},
-                                   {"delay_ms", 1e3 * kMeasuredDelayStep_s},
-                                   {"delay_ceiling_ms", 1e3 * kMeasuredDelayCeiling_s}}},
-                                 {"computed", std::move(computed)},
-                                 {"measured", std::move(measured)},
-                                 {"passed", result.passed}};
+  nlohmann::ordered_json json = {
+      {"schema", "dispersa/margins/1"},
+      {"model", result.bends ? "bending, no slosh" : "rigid body: no bending, no slosh"},
+      {"frequency_band_percent", 100.0 * result.of.frequency_band},
+      {"drift", result.of.path == LateralPath::kDrifts},
+      {"autopilot", result.autopilot},
+      {"gates",
+       {{"gain_db", kGainMarginGate_db},
+        {"phase_deg", kPhaseMarginGate_deg},
+        {"delay_ms", 1e3 * kDelayMarginGate_s}}},
+      {"measured_resolution",
+       {{"gain_db", kMeasuredGainStep_db},
+        {"gain_ceiling_db", kMeasuredGainCeiling_db},
+        {"delay_ms", 1e3 * kMeasuredDelayStep_s},
+        {"delay_ceiling_ms", 1e3 * kMeasuredDelayCeiling_s}}},
+      {"computed", std::move(computed)},
+      {"measured", std::move(measured)},
+      {"passed", result.passed}};
   if (result.dispersed) json["dispersed"] = DispersedJson(*result.dispersed);
   fmt::print("{}\n", json.dump(2));
 }
@@ -158,23 +164,32 @@ void PrintDispersed(const CampaignMargins& dispersed) {
              dispersed.ended_early);
 }
 
+std::string FrequenciesText(const MarginModel& of) {
+  if (of.frequency_band == 0.0) return "the modes' frequencies as they are";
+  return fmt::format(
+      "each margin the least with the modes' frequencies as they are, {0:g} % lower and {0:g} % higher",
+      100.0 * of.frequency_band);
+}
+
 void PrintText(const MarginsResult& result) {
   fmt::print(
       "Margins of autopilot {} along the nominal flight.\n"
-      "{}\nGates: gain {:.0f} dB both ways, phase {:.0f} deg, delay {:.0f} ms.\n\n"
+      "{}\n{}Gates: gain {:.0f} dB both ways, phase {:.0f} deg, delay {:.0f} ms.\n\n"
       "Computed: linearised; frozen = gains held, adapting = with the adaptation about zero error,\n"
       "learnt = the same with what was learnt by then from a thrust misalignment of 0.25 deg (an "
       "augmentation's\n"
       "gain need only leave {:.0f} dB and {:.0f} deg).\n",
       result.autopilot,
       result.bends
-          ? fmt::format("Bending modes, no slosh; each margin the least with the modes' frequencies as they are, "
-                        "{0:.0f} % lower and {0:.0f} % higher.\nBending: largest response, and its least angle "
-                        "from -1 where it is not {1:.0f} dB down, to the phase's gate.",
-                        100.0 * kFrequencyBand, kGainMarginGate_db)
+          ? fmt::format("Bending modes, no slosh; {}.\nBending: largest response, and its least angle "
+                        "from -1 where it is not {:.0f} dB down, to the phase's gate.",
+                        FrequenciesText(result.of), kGainMarginGate_db)
           : "RIGID-BODY MARGINS: no bending modes, no slosh.",
-      kGainMarginGate_db, kPhaseMarginGate_deg, 1e3 * kDelayMarginGate_s,
-      kDispersedGainGate_db, kDispersedPhaseGate_deg);
+      result.of.path == LateralPath::kDrifts
+          ? "The path drifts: lateral velocity changes the incidence of pitch and yaw too.\n"
+          : "",
+      kGainMarginGate_db, kPhaseMarginGate_deg, 1e3 * kDelayMarginGate_s, kDispersedGainGate_db,
+      kDispersedPhaseGate_deg);
   fmt::print("{:<24} {:>8} {:<5}  {:<8} {:>8} {:>8} {:>8} {:>8}{}\n", "", "time s", "axis", "", "gain dB",
              "gain dB", "phase", "delay ms", result.bends ? "  bend dB    phase" : "");
   for (const ComputedMargins& m : result.computed) {
@@ -221,14 +236,17 @@ ExitCode Margins(const MarginsOptions& options, const GlobalOptions& global) {
   MarginsResult result;
   result.autopilot = campaign.autopilot.name;
   result.bends = flights.model().nominal_plant().bending_modes() > 0;
-  result.computed = ComputeMargins(flights.model());
+  result.of = {options.frequency_band_percent / 100.0,
+               options.drift ? LateralPath::kDrifts : LateralPath::kHeld};
+  result.computed = ComputeMargins(flights.model(), 5.0, {}, result.of);
   result.measured = MeasureMargins(flights.model());
   result.passed = std::all_of(result.computed.begin(), result.computed.end(),
                               [](const ComputedMargins& m) { return PassesGates(m); }) &&
                   std::all_of(result.measured.begin(), result.measured.end(),
                               [](const MeasuredMargins& m) { return PassesGates(m); });
   if (options.overrides.cases) {
-    result.dispersed = ComputeCampaignMargins(flights, *options.overrides.cases, UsableCores());
+    result.dispersed =
+        ComputeCampaignMargins(flights, *options.overrides.cases, UsableCores(), result.of.path);
     result.passed = result.passed && result.dispersed->Passed();
   }
   if (global.json) {
@@ -243,12 +261,20 @@ ExitCode Margins(const MarginsOptions& options, const GlobalOptions& global) {
 
 void AddMarginsCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<MarginsOptions>();
-  CLI::App* command =
-      app.add_subcommand("margins", "gain, phase and delay margins of the autopilot (rigid body)");
+  CLI::App* command = app.add_subcommand("margins", "gain, phase and delay margins of the autopilot");
   command->add_option("campaign", options->campaign, "campaign file")->required();
   command->add_option("--autopilot", options->overrides.autopilot,
                       "autopilot file, instead of the campaign's");
   command->add_option("--cases", options->overrides.cases, "also of so many dispersed cases of the campaign");
+  command
+      ->add_option(
+          "--frequency-band", options->frequency_band_percent,
+          "bending: margins also with the modes' frequencies so many percent lower and higher (15); 0: as "
+          "they are")
+      ->check(CLI::Range(0.0, 50.0));
+  command->add_flag(
+      "--drift", options->drift,
+      "linearise pitch and yaw with the lateral velocity, whose incidence takes from the least gain");
   command->footer(
       "Computed from a linearisation at lift-off, max q, ignitions and burnouts, and measured by spoiling\n"
       "the loop in flight. Ends with 3 when a gate is not met.\n"

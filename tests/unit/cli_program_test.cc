@@ -299,6 +299,38 @@ TEST(CliProgram, FlyScenario) {
             "--case, --seed: a scenario has no cases, allowed: a campaign file with these options\n");
 }
 
+// Greensite's launch vehicle: what was published of it (tests/data/greensite/SOURCE.md).
+TEST(CliProgram, MarginsOfAPublishedLauncher) {
+  const std::string campaign = DISPERSA_TEST_DATA "/greensite/campaign.yaml";
+  const auto at_end = [](const Output& output) {
+    const auto json = nlohmann::json::parse(output.text);
+    for (const auto& m : json["computed"])
+      if (m["place"] == "stage 1 burnout" && m["axis"] == "pitch") return m["frozen"];
+    return nlohmann::json();
+  };
+  const Output passed = Dispersa("margins " + campaign + " --frequency-band 0 --drift --json");
+  EXPECT_EQ(passed.code, 0) << passed.error;
+  EXPECT_EQ(nlohmann::json::parse(passed.text)["drift"], true);
+  EXPECT_EQ(nlohmann::json::parse(passed.text)["frequency_band_percent"], 0.0);
+  const auto notch = at_end(passed);
+  EXPECT_NEAR(notch["gain_up_db"].get<double>(), 7.56, 0.02);
+  EXPECT_NEAR(notch["phase_deg"].get<double>(), 30.0, 0.5);
+  EXPECT_NEAR(notch["delay_ms"].get<double>(), 165.0, 1.0);
+
+  // The notch stands on the mode's exact frequency.
+  const Output band = Dispersa("margins " + campaign);
+  EXPECT_EQ(band.code, 3);
+  EXPECT_THAT(band.text, HasSubstr("15 % lower and 15 % higher"));
+
+  const Output bare =
+      Dispersa("margins " + campaign +
+               " --autopilot " DISPERSA_TEST_DATA "/greensite/no_filter_june.yaml --frequency-band 0 --json");
+  EXPECT_EQ(bare.code, 3);
+  EXPECT_EQ(at_end(bare)["stable"], false);
+  EXPECT_NEAR(at_end(bare)["bending_peak_db"].get<double>(), 39.0, 0.5);
+  EXPECT_EQ(Dispersa("margins " + campaign + " --frequency-band 80").code, 2);
+}
+
 TEST(CliProgram, TuneWritesAnAutopilotThatSaysWhereItComesFrom) {
   const InputFiles folder;
   const std::string file = folder.Path("tuned.yaml");

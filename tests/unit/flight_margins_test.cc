@@ -76,6 +76,63 @@ TEST(LineariseAxis, IsTheStiffnessDampingAndEffectivenessByHand) {
   EXPECT_NEAR(roll.a(1, 2), roll_effectiveness, 1e-6 * roll_effectiveness);
 }
 
+// m z'' = -(X + N) angle - N z' / V + P / 2 deflection, I angle'' += N arm z' / V, with N a radian's normal
+// force.
+TEST(LineariseAxis, OfAPathThatDriftsIsTheShortPeriodByHand) {
+  const FlightModel model(HotStaged());
+  const LauncherPlant& plant = model.nominal_plant();
+  const TickSample s = SampleAt(model, 20.0);
+  const MassProperties mass = plant.stacks[0].mass.At(plant.stacks[0].burn.Propellant(s.since_ignition_s));
+  const AxisPlant held = LineariseAxis(plant, s, kPitch, model.sensors());
+  const AxisPlant pitch = LineariseAxis(plant, s, kPitch, model.sensors(), LateralPath::kDrifts);
+  ASSERT_EQ(pitch.a.rows(), 5);
+  EXPECT_TRUE(pitch.drifts);
+  EXPECT_FALSE(held.drifts);
+  EXPECT_EQ(pitch.a.topLeftCorner(4, 4), held.a);
+  EXPECT_EQ(pitch.b.head(4), held.b);
+  EXPECT_EQ(pitch.attitude[4], 0.0);
+  const double speed = s.instant.v_AB_B.norm(), normal_n = 3.0 * s.instant.air.qbar_pa;
+  const double axial_n = 200e3 - 0.3 * s.instant.air.qbar_pa;
+  const auto near = [](double value, double by_hand, const char* name) {
+    EXPECT_NEAR(value, by_hand, 2e-5 * std::fabs(by_hand)) << name;
+  };
+  near(pitch.a(1, 4), pitch.a(1, 0) / speed, "moment by drift");
+  near(pitch.a(4, 4), -normal_n / (mass.mass_kg * speed), "damping of the drift");
+  near(pitch.a(4, 0), -(axial_n + normal_n) / mass.mass_kg, "force by attitude");
+  near(pitch.a(4, 2), 0.5 * 200e3 / mass.mass_kg, "force by deflection");
+  EXPECT_NEAR(pitch.a(4, 1), 0.0, 1e-9);
+  EXPECT_EQ(pitch.b[4], 0.0);
+
+  const AxisPlant yaw = LineariseAxis(plant, s, kYaw, model.sensors(), LateralPath::kDrifts);
+  for (const int column : {0, 2, 4}) near(yaw.a(4, column), pitch.a(4, column), "yaw as pitch");
+  near(yaw.a(1, 4), pitch.a(1, 4), "yaw as pitch");
+  const AxisPlant roll = LineariseAxis(plant, s, kRoll, model.sensors(), LateralPath::kDrifts);
+  EXPECT_EQ(roll.a, LineariseAxis(plant, s, kRoll, model.sensors()).a);
+  EXPECT_FALSE(roll.drifts);
+}
+
+// The air turns this vehicle over: where the path gives way, the least gain is larger. Where there is no air,
+// the drift neither acts nor is it lost.
+TEST(ComputeMargins, OfAPathThatDrifts) {
+  const FlightModel model(HotStaged()), in_space(HighDefinition());
+  const auto at = [](const FlightModel& of, LateralPath path, const std::string& place) {
+    const std::vector<ComputedMargins> all = ComputeMargins(of, 10.0, {}, {kFrequencyBand, path});
+    return std::find_if(all.begin(), all.end(),
+                        [&](const ComputedMargins& m) { return m.place == place && m.axis == kYaw; })
+        ->frozen;
+  };
+  const LoopMargins held = at(model, LateralPath::kHeld, "max q"),
+                    drifting = at(model, LateralPath::kDrifts, "max q");
+  EXPECT_TRUE(drifting.stable);
+  EXPECT_LT(drifting.gain_down_db, held.gain_down_db);
+  EXPECT_NEAR(drifting.gain_up_db, held.gain_up_db, 0.05);
+  const LoopMargins still = at(in_space, LateralPath::kHeld, "lift-off"),
+                    free = at(in_space, LateralPath::kDrifts, "lift-off");
+  EXPECT_TRUE(free.stable);
+  EXPECT_NEAR(free.gain_up_db, still.gain_up_db, 1e-6);
+  EXPECT_NEAR(free.phase_deg, still.phase_deg, 1e-6);
+}
+
 TEST(ComputeMargins, NamesEveryPhaseOnAllAxes) {
   const FlightModel model(HotStaged());
   const std::vector<ComputedMargins> all = ComputeMargins(model, 10.0);
