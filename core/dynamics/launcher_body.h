@@ -13,6 +13,13 @@
 namespace dispersa::lanes {
 inline namespace DISPERSA_ISA {
 
+/// What one nozzle's quarter of the thrust has besides that of a nominal one (NozzleDeparture).
+template <class T>
+struct Departure {
+  Matrix<T> extra;  ///< its factor times its tilt, less 1
+  T offset_y_m, offset_z_m;
+};
+
 /// Each lane's current stack, its flight's factors applied (LauncherPlant, LauncherStack).
 template <class T>
 struct Plant {
@@ -29,6 +36,9 @@ struct Plant {
   bool jet_damping, flow_coriolis;
   Matrix<T> thrust_tilt;
   T thrust_offset_y_m, thrust_offset_z_m;
+  bool any_departs;  ///< some lane's nozzles are not all the same
+  MaskOf<T> departs;
+  Departure<T> nozzles[kNozzles];
   T lateral_moment_y_kg_m, lateral_moment_z_kg_m;
 };
 
@@ -132,6 +142,27 @@ struct Thrust {
   Vector<T> force_n, moment_n_m;
   Vector<T> couple_n_m;  ///< the part of the moment that acts as a couple at the pivots
 };
+/// Adds what the nozzles have besides a nominal one's quarter: force, and couple about the pivots' centre.
+template <class T>
+DISPERSA_INLINE void AddDepartures(const Plant<T>& plant, const Nozzles<T>& nozzles, T quarter_n,
+                                   Thrust<T>& o) {
+  const T none(0.0), r = plant.nozzle_radius_m;
+  const Vector<T> place[kNozzles] = {{none, r, none}, {none, -r, none}, {none, none, r}, {none, none, -r}};
+  Vector<T> force = Zero<T>(), couple = Zero<T>();
+  for (int i = 0; i < kNozzles; ++i) {
+    const Departure<T>& nozzle = plant.nozzles[i];
+    const bool pitches = i < 2;
+    const Vector<T> nominal = quarter_n * Vector<T>{nozzles.cosine[i], pitches ? none : -nozzles.sine[i],
+                                                    pitches ? nozzles.sine[i] : none};
+    const Vector<T> extra = plant.thrust_tilt * (nozzle.extra * nominal);
+    const Vector<T> moved{none, nozzle.offset_y_m, nozzle.offset_z_m};
+    force = force + extra;
+    couple = couple + Cross(place[i], extra) + Cross(moved, plant.thrust_tilt * nominal + extra);
+  }
+  o.force_n = Select(plant.departs, o.force_n + force, o.force_n);
+  o.couple_n_m = Select(plant.departs, o.couple_n_m + couple, o.couple_n_m);
+}
+
 /// Each nozzle carries a quarter of the thrust, deflected in its hinge plane. Right (+y) and left (-y) turn
 /// the force towards +z, bottom (+z) and top (-z) towards -y. P = P_vac - p A_e; a nozzle that the ambient
 /// pressure would turn inwards gives nothing.
@@ -157,6 +188,7 @@ DISPERSA_INLINE Thrust<T> ThrustOf(const Plant<T>& plant, const TimedMasses<T>& 
   const Vector<T> arm{masses.cg_station_m - plant.pivot_station_m, plant.thrust_offset_y_m - masses.cg_y_m,
                       plant.thrust_offset_z_m - masses.cg_z_m};
   o.couple_n_m = {across_y.z - across_z.y, across_z.x, -across_y.x};
+  if (plant.any_departs) AddDepartures(plant, nozzles, quarter, o);
   o.moment_n_m = Cross(arm, o.force_n) + o.couple_n_m;
   return o;
 }

@@ -65,6 +65,12 @@ FlightInputs DrawnInputs(std::uint64_t flight) {
     some(in.thrust_misalignment_clock_rad[stage], kTwoPi * draws.Uniform());
     some(in.thrust_offset_m[stage], 0.005 * draws.Uniform());
     some(in.thrust_offset_clock_rad[stage], kTwoPi * draws.Uniform());
+    for (std::size_t nozzle = 0; nozzle < kNozzles; ++nozzle) {
+      some(in.nozzle_misalignment_rad[stage][nozzle], 0.25 * kRadPerDeg * draws.Uniform());
+      some(in.nozzle_misalignment_clock_rad[stage][nozzle], kTwoPi * draws.Uniform());
+      some(in.nozzle_offset_m[stage][nozzle], 0.002 * draws.Uniform());
+      some(in.nozzle_thrust_factor[stage][nozzle], 0.99 + 0.02 * draws.Uniform());
+    }
     some(in.cg_offset_m[stage], 0.005 * draws.Uniform());
     some(in.cg_offset_clock_rad[stage], kTwoPi * draws.Uniform());
     some(in.thrust_factor[stage], 1.0 + 0.02 * draws.Normal());

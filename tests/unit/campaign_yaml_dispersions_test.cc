@@ -63,6 +63,25 @@ TEST(CampaignYamlDispersions, PerVehicleIsOneDrawForAllStages) {
   EXPECT_THAT(list[1].distribution.values, ElementsAre(90.0 * kRadPerDeg));
 }
 
+TEST(CampaignYamlDispersions, PerNozzleIsOneDrawForEach) {
+  const auto list = Decode(
+      "thrust_misalignment: {distribution: normal, three_sigma_deg: 0.25, clock_angle: uniform, per: "
+      "nozzle}");
+  ASSERT_EQ(list.size(), 16u);
+  EXPECT_EQ(list[0].name, "thrust_misalignment/stage1_right");
+  EXPECT_TRUE(list[0].absolute);
+  EXPECT_THAT(Inputs(list[0]), ElementsAre("nozzle_misalignment_stage1_right_deg"));
+  EXPECT_EQ(list[15].name, "thrust_misalignment/clock/stage2_top");
+  EXPECT_THAT(Inputs(list[15]), ElementsAre("nozzle_misalignment_clock_stage2_top_deg"));
+  EXPECT_THAT(
+      Inputs(Decode(
+          "thrust_offset: {distribution: uniform, bound_mm: 3, clock_angle: uniform, per: nozzle}")[5]),
+      ElementsAre("nozzle_offset_stage2_left_m"));
+  EXPECT_THAT(Inputs(Decode(
+                  "thrust: {distribution: normal, sigma_percent: 1, conserve: propellant, per: nozzle}")[7]),
+              ElementsAre("nozzle_thrust_factor_stage2_top"));
+}
+
 TEST(CampaignYamlDispersions, WhatThrustConservesDecidesTheFlow) {
   const auto impulse =
       Decode("thrust: {distribution: normal, three_sigma_percent: 2, conserve: total_impulse, per: stage}");

@@ -37,7 +37,8 @@ constexpr BadInput kBadInputs[] = {
      "requirements, sampling, schema, vehicle, verdicts\n"},
     {"UnknownKeyLikeNoOther", "campaign.yaml", "name: trial", "name: trial\nzebra: 1", "campaign.yaml",
      "campaign.yaml:3:1: zebra: unknown key 'zebra', allowed: autopilot, correlations, "
-     "description, dispersions, guidance, name, optimize, reference, requirements, sampling, schema, vehicle, verdicts\n"},
+     "description, dispersions, guidance, name, optimize, reference, requirements, sampling, schema, "
+     "vehicle, verdicts\n"},
     {"UnknownSeverity", "campaign.yaml", "dispersions:\n", "dispersions:\n  turbulence: {severity: rough}\n",
      "campaign.yaml",
      "campaign.yaml:8:26: dispersions.turbulence.severity: 'rough' is not a choice, allowed: one of light, "
@@ -208,7 +209,12 @@ constexpr BadInput kBadInputs[] = {
     {"PerWhat", "campaign.yaml", "conserve: total_impulse, per: stage", "conserve: total_impulse",
      "campaign.yaml",
      "campaign.yaml:11:11: dispersions.thrust: missing key 'per', allowed: one of stage, "
-     "vehicle\n"},
+     "vehicle, nozzle\n"},
+    {"FlowOfANozzle", "campaign.yaml", "conserve: total_impulse, per: stage",
+     "conserve: total_impulse, per: nozzle", "campaign.yaml",
+     "campaign.yaml:11:11: dispersions.thrust.conserve: the flow is the whole motor's, not a nozzle's, "
+     "allowed: "
+     "conserve: propellant with per: nozzle\n"},
     {"BareAzimuth", "campaign.yaml", "azimuth: uniform", "azimuth: 270", "campaign.yaml",
      "campaign.yaml:9:41: dispersions.wind.azimuth: '270' is not a direction, allowed: "
      "uniform, {fixed_deg: x} or a distribution\n"},
