@@ -48,39 +48,53 @@ LoopTable::LoopTable(const AxisPlant& plant, double tick_s, int delay_ticks)
 double LoopTable::Surplus(const LinearLaw& law, const std::vector<double>& weights, const LoopGates& gates) const {
   // Of one integrator, at z = 1.
   const bool integrates = law.adapts() && law.leakage_1_s == 0.0;
-  double least = HUGE_VAL, turned = 0.0;
+  double least = HUGE_VAL;
   const auto take = [&](double value, double gate) { least = std::min(least, (value - gate) / gate); };
-  std::complex<double> before = 0.0;
+  const auto by_phase = [&](std::complex<double> l) {
+    return (kDegPerRad * std::fabs(Angle(-l)) - gates.phase_deg) / gates.phase_deg;
+  };
+  // Most bending responses are so small that they cannot be the least: no logarithm for them.
+  double least_known = least, worth_looking = 0.0;
+  const auto may_be_least = [&](double size) {
+    if (least != least_known) {
+      least_known = least;
+      worth_looking = Pow(10.0, -0.1 * gates.gain_db * (1.0 + least));
+    }
+    return size > worth_looking;
+  };
+  // Of 1 + L: how often it crosses the negative axis upwards, less downwards.
+  int turns = 0;
+  std::complex<double> before = 0.0, first = 0.0;
   for (std::size_t i = 0; i < s_.size(); ++i) {
     std::complex<double> rate = 0.0;
-    for (std::size_t k = 0; k < weights.size(); ++k) rate += weights[k] * rates_[i][k];
+    for (std::size_t k = 0; k < weights.size(); ++k)
+      if (weights[k] != 0.0) rate += weights[k] * rates_[i][k];
     const std::complex<double> l = ResponseOf(law, s_[i], angle_[i], rate, tick_s_) / law.effectiveness_1_s2;
     const double w = frequency_rad_s_[i], size = std::norm(l);
-    const double from_critical = Angle(-l);
-    if (w >= bends_above_rad_s_) {
-      const double attenuated = (-10.0 * Log10(size) - gates.gain_db) / gates.gain_db;
-      const double turned_away = (kDegPerRad * std::fabs(from_critical) - gates.phase_deg) / gates.phase_deg;
-      least = std::min(least, std::max(attenuated, turned_away));
+    if (w >= bends_above_rad_s_ && may_be_least(size)) {
+      const double by_gain = (-10.0 * Log10(size) - gates.gain_db) / gates.gain_db;
+      least = std::min(least, std::max(by_gain, by_phase(l)));
     }
     if (i == 0) {
+      first = l;
       // Without an integrator an unstable body diverges at rest.
       if (!integrates && l.real() < 0.0) take(std::fabs(10.0 * Log10(size)), gates.gain_db);
     } else {
-      const std::complex<double> step = (1.0 + l) * std::conj(1.0 + before);
-      turned += Angle(step);
       if ((l.imag() < 0.0) != (before.imag() < 0.0)) {
         const double share = before.imag() / (before.imag() - l.imag());
         const double real = before.real() + share * (l.real() - before.real());
         if (real < 0.0) take(std::fabs(20.0 * Log10(-real)), gates.gain_db);
+        if (real < -1.0) turns += l.imag() < 0.0 ? 1 : -1;
       }
       if (w < bends_above_rad_s_ && (size < 1.0) != (std::norm(before) < 1.0)) {
-        take(kDegPerRad * std::fabs(from_critical), gates.phase_deg);
-        const double lead = from_critical < 0.0 ? from_critical + kTwoPi : from_critical;
+        least = std::min(least, by_phase(l));
+        const double lead = Angle(-l) < 0.0 ? Angle(-l) + kTwoPi : Angle(-l);
         if (gates.delay_s > 0.0) take(lead / w, gates.delay_s);
       }
     }
     before = l;
   }
+  const double turned = Angle(1.0 + before) - Angle(1.0 + first) + kTwoPi * turns;
   const double missing = std::fabs(turned / kPi - half_turns_ - (integrates ? 0.5 : 0.0));
   return missing < 0.5 ? least : kUnstable - missing;
 }

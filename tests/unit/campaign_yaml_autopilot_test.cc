@@ -151,12 +151,17 @@ TEST(ReadAutopilot, SaysWhereAScheduleIsWrong) {
     }
     return std::string();
   };
-  EXPECT_EQ(error_of("    - {stage: 1, at_s: 5, kp_1_s2: 6, kd_1_s: 6}\n"
-                     "    - {stage: 1, at_s: 4, kp_1_s2: 6, kd_1_s: 6}\n"),
-            "text:47:22: roll.schedule[1].at_s: is not after the entry before; allowed: times since ignition that "
-            "rise, the first above 0, where the stage's own gains hold");
-  EXPECT_EQ(error_of("    - {stage: 1, at_s: 5, kp_1_s2: 6, kd_1_s: 6, gain: 3}\n"), "");
-  EXPECT_EQ(error_of("    - {stage: 1, kp_1_s2: 6, kd_1_s: 6}\n"), "");
+  EXPECT_EQ(
+      error_of("    - {stage: 1, at_s: 5, kp_1_s2: 6, kd_1_s: 6}\n"
+               "    - {stage: 1, at_s: 4, kp_1_s2: 6, kd_1_s: 6}\n"),
+      "text:45:24: roll.schedule[1].at_s: is not after the entry before, allowed: times since ignition that "
+      "rise, the first above 0, where the stage's own gains hold");
+  EXPECT_EQ(error_of("    - {stage: 1, at_s: 5, kp_1_s2: 6, kd_1_s: 6, gain: 3}\n"),
+            "text:44:50: roll.schedule[0].gain: unknown key 'gain', allowed: at_ms, at_s, filters, kd_1_s, "
+            "ki_1_s3, "
+            "kp_1_s2, stage");
+  EXPECT_EQ(error_of("    - {stage: 1, kp_1_s2: 6, kd_1_s: 6}\n"),
+            "text:44:7: roll.schedule[0]: missing key 'at_s' or 'at_ms', allowed: a number above 0");
 }
 
 // Reads the names that it visits.

@@ -143,7 +143,7 @@ void ExpectLanesAsAlone() {
       lanes::SetLane(rate, lane, {error.rate_rad_s.x(), error.rate_rad_s.y(), error.rate_rad_s.z()});
     }
     lanes::GimbalOutput<T> out;
-    lanes::StepGimbals<true>(model, loop, since == since, since, angle, rate, static_cast<const T*>(nullptr),
+    lanes::StepGimbals<true>(model, loop, since > T(-1.0), since, angle, rate, static_cast<const T*>(nullptr),
                              memory, out);
     for (int lane = 0; lane < kLanes; ++lane) {
       const GimbalCommand c = StepGimbals(model, lane == 2 ? 1 : 0, lanes::Lane(since, lane), Error(tick, lane),
