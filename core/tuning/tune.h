@@ -45,8 +45,8 @@ inline constexpr double kPhaseReserve_deg = 2.0;
 inline constexpr double kDelayReserve_s = 0.002;
 /// Where dispersed plants are held themselves, a reserve need not stand for them: this is for the instants
 /// and cases between those that are looked at.
-inline constexpr double kHeldGainReserve_db = 0.1;
-inline constexpr double kHeldPhaseReserve_deg = 0.3;
+inline constexpr double kHeldGainReserve_db = 0.05;
+inline constexpr double kHeldPhaseReserve_deg = 0.2;
 inline constexpr double kHeldDelayReserve_s = 0.001;
 /// Small: a stage has two or three variables, and generations are what a budget of flights is best spent on.
 inline constexpr int kTuningPopulation = 8;
