@@ -19,7 +19,7 @@ struct LoopGates {
 
 class LoopTable {
  public:
-  /// `plant` with every sensor that a law may come to weigh; its weights do not matter.
+  /// `plant` with every sensor that a law may come to weigh; its weights do not matter. No undamped oscillation.
   LoopTable(const AxisPlant& plant, double tick_s, int delay_ticks);
 
   /// The least of (margin - gate) / gate over all gates; where the body bends the larger of gain's and phase's at each
