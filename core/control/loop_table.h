@@ -1,5 +1,5 @@
 // Many laws for one plant: what its sensors answer, tabulated over frequency once, makes a law's margins a matter of
-// some ten microseconds. For searches; LoopMargins' are exact where these interpolate, which is worth 0.1 dB and 0.5°.
+// some ten microseconds. For searches; LoopMargins' are exact where these interpolate, which is worth 0.1 dB and 1°.
 #pragma once
 
 #include <complex>
