@@ -32,6 +32,7 @@ std::string CommandText(const TuneOptions& options) {
   std::string text = "dispersa tune " + options.campaign;
   if (!options.autopilot.empty()) text += " --autopilot " + options.autopilot;
   if (options.tuning.regulator) text += " --lqr";
+  if (options.tuning.dispersed > 0) text += fmt::format(" --dispersed {}", options.tuning.dispersed);
   return text + fmt::format(" --out {} --seed {} --cases {} --evaluations {}", options.out,
                             options.tuning.seed, options.tuning.cases, options.tuning.evaluations);
 }
@@ -89,6 +90,10 @@ std::string Header(const TuneOptions& options, const TuningResult& result) {
     text += fmt::format("#   stage {}: {} | {}\n", i + 1, MarginsText(result.stages[i].frozen),
                         MarginsText(result.stages[i].adapting));
   }
+  if (options.tuning.dispersed > 0)
+    text += fmt::format(
+        "# The plants of {} draws meet the gates of dispersed flights, {:.0f} dB and {:.0f} deg, too.\n",
+        options.tuning.dispersed, kDispersedGainGate_db, kDispersedPhaseGate_deg);
   return text;
 }
 
@@ -115,6 +120,7 @@ nlohmann::ordered_json ResultJson(const TuneOptions& options, const TuningResult
                       {"pitch_error_peak_deg", JsonNumber(stage.peak_deg)},
                       {"frozen", MarginsJson(stage.frozen)},
                       {"adapting", MarginsJson(stage.adapting)}});
+    if (stage.surplus) stages.back()["surplus"] = JsonNumber(*stage.surplus);
   }
   auto generations = nlohmann::ordered_json::array();
   for (const TuningRecord& record : log) {
@@ -241,6 +247,11 @@ void AddTuneCommand(CLI::App& app, Invocation& invocation) {
       ->add_option("--evaluations", options->tuning.evaluations,
                    "designs tried, shared by the stages and the augmentation of PD")
       ->capture_default_str();
+  command
+      ->add_option(
+          "--dispersed", options->tuning.dispersed,
+          "draws of the campaign whose plants must meet the gates of dispersed flights, by every design")
+      ->capture_default_str();
   command->add_flag(
       "--lqr", options->tuning.regulator,
       "search the weights of a linear-quadratic regulator, whose gains the law flies: pid, pid_aac");
@@ -249,7 +260,8 @@ void AddTuneCommand(CLI::App& app, Invocation& invocation) {
   command->footer(
       "Minimises the mean RMS pitch error of each stage, subject to computed margins above the gates of\n"
       "`dispersa margins` with a reserve; then what augments PD, subject to the measured ones. The gains\n"
-      "that the file has are not looked at. Ends with 3 when no design meets the constraints.\n"
+      "that the file has are not looked at; the times of its schedule are kept. Ends with 3 when no design "
+      "meets the constraints.\n"
       "Example: dispersa tune campaigns/table3.yaml --autopilot campaigns/autopilots/pd.yaml --out pd.yaml");
   command->callback([options, &invocation] {
     invocation.command = [options](const GlobalOptions& global) { return RunTuning(*options, global); };

@@ -28,6 +28,12 @@ FlightDefinition Definition(const std::string& autopilot, bool with_winds, bool 
         {.zeros_rad_s = 25.0, .zeros_damping = 0.2, .poles_rad_s = 25.0, .poles_damping = 0.6, .stage = 1}};
   if (autopilot == "pid_aac")  // axes that feed forward beside one that does not
     definition.autopilot.pitch.feed_forward = definition.autopilot.yaw.feed_forward = FeedForward{0.066};
+  if (autopilot == "pd") {  // a law that changes within a stage beside some that do not
+    AxisConfig& pitch = definition.autopilot.pitch;
+    pitch.filters = {{.poles_rad_s = 90.0, .poles_damping = 0.7, .stage = 1}};
+    pitch.schedule = {{1, 20.0, {20.0, 8.0}, 0.0, {{.poles_rad_s = 60.0, .poles_damping = 0.7}}},
+                      {3, 10.0, {30.0, 9.0}, 0.0, {}}};
+  }
   if (autopilot == "flexible")
     definition.vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml");
   if (autopilot == "pid_aac" ||

@@ -274,6 +274,23 @@ TEST(MeasureMargins, AgreeWithTheComputedOnesOfAFilteredPid) {
   ExpectMeasuredAsComputed(definition);
 }
 
+TEST(MeasureMargins, AgreeWithTheComputedOnesOfAScheduledPid) {
+  FlightDefinition definition = HotStaged();
+  for (AxisConfig* axis : {&definition.autopilot.pitch, &definition.autopilot.yaw}) {
+    axis->law = ControlLaw::kPid;
+    axis->filters = {{.poles_rad_s = 90.0, .poles_damping = 0.7}};
+    // For half of stage 1 with twice the rate gain, which the stage's own do not know of.
+    const FilterSection wider = {.poles_rad_s = 120.0, .poles_damping = 0.7};
+    axis->schedule = {{1, 10.0, {20.0, 10.0}, 8.0, {wider}}, {1, 30.0, {20.0, 10.0}, 8.0, {wider}}};
+  }
+  ExpectMeasuredAsComputed(definition);
+  // And the schedule decides them.
+  FlightDefinition held = definition;
+  held.autopilot.pitch.schedule.clear();
+  held.autopilot.yaw.schedule.clear();
+  EXPECT_GT(MeasureMargins(FlightModel(held))[0].gain_up_db, MeasureMargins(FlightModel(definition))[0].gain_up_db + 1.0);
+}
+
 TEST(LoopInputs, ChangeTheLoopOfTheirStageAlone) {
   const FlightModel model(HotStaged());
   FlightInputs inputs;

@@ -99,6 +99,53 @@ TEST(Tune, HoldsEveryGateWithItsReserveAtEveryInstant) {
   }
 }
 
+TEST(ApplyDesign, GivesAScheduledStageADesignAtEachOfPitchsTimes) {
+  AutopilotConfig autopilot = SampleAutopilot();
+  autopilot.pitch.schedule = {{1, 10.0, {1.0, 1.0}, 0.0, {}}, {2, 5.0, {3.0, 3.0}, 0.0, {}}};
+  autopilot.yaw.schedule = {{1, 99.0, {1.0, 1.0}, 0.0, {}}};
+  EXPECT_EQ(ScheduledTimes(autopilot, 0), (std::vector<double>{0.0, 10.0}));
+  StageDesign first{4.0, 0.5, 0.1, {}}, then{5.0, 0.7, 0.1, {}};
+  first.filters = then.filters = {60.0, 0.5, 20.0, 0.1, 0.6, 1.0};
+  then.filters.low_pass_rad_s = 80.0;
+  ApplyDesign(std::vector<StageDesign>{first, then}, 0, autopilot);
+  for (const AxisConfig* axis : {&autopilot.pitch, &autopilot.yaw, &autopilot.roll}) {
+    EXPECT_EQ(axis->gains[0].kp_1_s2, 16.0);
+    ASSERT_FALSE(axis->schedule.empty());
+    EXPECT_EQ(axis->schedule[0].at_s, 10.0);
+    EXPECT_EQ(axis->schedule[0].gains.kp_1_s2, 25.0);
+    EXPECT_EQ(axis->schedule[0].gains.kd_1_s, 7.0);
+    if (axis == &autopilot.roll) continue;
+    ASSERT_EQ(axis->schedule[0].filters.size(), 2u);
+    EXPECT_EQ(axis->filters[0].poles_rad_s, 60.0);
+    EXPECT_EQ(axis->schedule[0].filters[0].poles_rad_s, 80.0);
+  }
+  ASSERT_EQ(autopilot.pitch.schedule.size(), 2u);
+  EXPECT_EQ(autopilot.pitch.schedule[1].gains.kp_1_s2, 3.0) << "another stage's stays";
+  EXPECT_EQ(autopilot.yaw.schedule.size(), 1u);
+  EXPECT_EQ(Problems(autopilot, 2).size(), 0u);
+}
+
+TEST(Tune, HoldsDispersedPlantsWithAScheduledStage) {
+  const Campaign campaign = SampleCampaign();
+  AutopilotConfig scheduled = campaign.autopilot;
+  scheduled.pitch.schedule = {{1, 20.0, {1.0, 1.0}, 0.0, {}}};
+  TuningOptions options = Small();
+  options.dispersed = 2;
+  options.evaluations = 2 * 2 * kHeldPopulation;
+  const TuningResult result = Tune(campaign, scheduled, options);
+  ASSERT_TRUE(result.feasible);
+  Campaign tuned = campaign;
+  tuned.autopilot = result.autopilot;
+  ASSERT_EQ(tuned.autopilot.yaw.schedule.size(), 1u);
+  for (const StageTuning& stage : result.stages) EXPECT_GE(stage.surplus.value_or(-1.0), 0.0);
+  for (const ComputedMargins& m : ComputeMargins(CampaignFlights(tuned).model()))
+    EXPECT_TRUE(PassesGates(m.frozen) && PassesGates(m.adapting)) << m.time_s;
+  options.threads = 3;
+  const TuningResult again = Tune(campaign, result.autopilot, options);
+  EXPECT_EQ(WriteAutopilot(again.autopilot), WriteAutopilot(result.autopilot))
+      << "threads, and gains as found";
+}
+
 TEST(Tune, IsTheSameForAnyNumberOfThreads) {
   const Campaign campaign = SampleCampaign();
   std::vector<GenerationRecord> logs[2];
