@@ -125,7 +125,8 @@ std::string Card(const RequirementSummary& requirement, const CampaignSummary& s
       requirement.post_hoc ? " <span class=\"badge design\">post hoc</span>" : "", HtmlText(info.title),
       HtmlText(LimitWords(requirement, info.unit)), PercentText(requirement.probability),
       PercentText(requirement.consumer_risk), HtmlText(requirement.metric),
-      study ? "" : " <span class=\"value\">" + BoundWords(requirement, info.unit) + "</span>",
+      std::string(requirement.by_default ? ", required because the vehicle gives limits" : "") +
+          (study ? "" : " <span class=\"value\">" + BoundWords(requirement, info.unit) + "</span>"),
       HtmlText(requirement.sentence));
   html += Fact("cases", std::to_string(requirement.n));
   html += Fact("failures", std::to_string(requirement.failures));

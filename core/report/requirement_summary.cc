@@ -245,6 +245,7 @@ std::vector<RequirementSummary> JudgeAll(const std::vector<Requirement>& require
     const Limits limits = LimitsOf(requirement);
     RequirementSummary summary;
     summary.metric = requirement.metric;
+    summary.by_default = requirement.by_default;
     summary.below = !requirement.above.has_value();
     summary.limit = summary.below ? limits.high : limits.low;
     if (requirement.within) summary.low_limit = limits.low;
