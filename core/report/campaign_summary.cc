@@ -194,7 +194,7 @@ std::vector<std::string> Warnings(const CampaignSummary& summary) {
   if (completed < summary.flown) {
     warnings.push_back(
         fmt::format("{} of {} flights were lost: statistics and percentiles cover the {} that were "
-                    "completed, and every lost flight fails every requirement.",
+                    "completed, and every lost flight fails every requirement of the campaign.",
                     summary.flown - completed, summary.flown, completed));
   }
   return warnings;

@@ -177,7 +177,8 @@ std::string HeaderSection(const CampaignSummary& summary) {
                   [](const RequirementSummary& requirement) { return requirement.verdict == "fail"; });
   const char* beyond =
       summary.beyond_limits == 0 ? "" : "<span class=\"badge fail\">structural limit exceeded</span>";
-  html += fmt::format("<div class=\"headline\">{}{}{}<p>{}</p></div>\n",
+  html += fmt::format("<div class=\"headline{}\">{}{}{}<p>{}</p></div>\n",
+                      summary.beyond_limits == 0 ? "" : " exceeded",
                       VerdictBadge(CampaignVerdictName(summary.verdict)), beyond,
                       certain_fail ? VerdictBadge("fail")
                       : IsIndependent(summary.sampling) || summary.verdict == CampaignVerdict::kStudy ||

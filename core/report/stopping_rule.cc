@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "core/report/loss_fails.h"
 #include "core/report/requirement_summary.h"
 #include "core/report/sampling_text.h"
 
@@ -64,7 +65,7 @@ void StoppingRule::Add(std::uint64_t case_index, bool completed, const std::vect
   if (!stops_) return;
   present_.push_back(case_index);
   for (std::size_t i = 0; i < requirements_.size(); ++i) {
-    if (!completed || !LimitsOf(requirements_[i]).Meets(values[i]))
+    if ((!completed && LossFails(requirements_[i])) || !LimitsOf(requirements_[i]).Meets(values[i]))
       failed_[i].push_back(static_cast<std::int64_t>(case_index));
   }
 }

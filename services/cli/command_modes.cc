@@ -132,10 +132,10 @@ fs::path PageFile(const std::string& out) {
 ExitCode Modes(const ModesOptions& options, const GlobalOptions& global) {
   std::vector<InputProblem> warnings;
   const Vehicle vehicle = LoadVehicle(options.vehicle, &warnings);
-  Warn(warnings);
   if (!vehicle.structure_beam)
     throw InputError(
         {{options.vehicle, 1, 1, "", "the vehicle is rigid", "a vehicle with a structure_beam"}});
+  Warn(warnings);
   const fs::path page = options.out.empty() ? fs::path() : PageFile(options.out);
   RequireWritableFile("--out", page);
   const std::vector<StackModes> stacks = BuildBendingModes(vehicle);

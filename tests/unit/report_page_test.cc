@@ -239,7 +239,7 @@ TEST_F(ReportPageTest, AFlightBeyondALimitIsInTheHeadAndAmongTheOutcomes) {
   summary_.beyond_limits = 3;
   summary_.requirements[0].by_default = true;
   const std::string page = ReportPage(campaign_, summary_, cases_, histories_);
-  const std::size_t head = page.find("<div class=\"headline\">");
+  const std::size_t head = page.find("<div class=\"headline exceeded\">");
   EXPECT_LT(page.find("<span class=\"badge fail\">structural limit exceeded</span>", head),
             page.find("<nav>"));
   EXPECT_THAT(page, HasSubstr("<li>Structural limits of the vehicle were exceeded in 3 of 40 flights: "));

@@ -243,8 +243,10 @@ TEST_F(FiveCases, StatisticsAreThoseWorkedOutByHand) {
   EXPECT_NEAR(peak.std, std::sqrt(5.0 / 3.0), 1e-15);
   EXPECT_EQ(peak.p50, 2.5);
   EXPECT_EQ(peak.max, 4.0);
-  EXPECT_THAT(Warnings(summary), ElementsAre("1 of 5 flights were lost: statistics and percentiles cover the 4 "
-                                             "that were completed, and every lost flight fails every requirement."));
+  EXPECT_THAT(
+      Warnings(summary),
+      ElementsAre("1 of 5 flights were lost: statistics and percentiles cover the 4 "
+                  "that were completed, and every lost flight fails every requirement of the campaign."));
 }
 
 TEST_F(FiveCases, WorstCasesBeginWithALostOne) {
@@ -572,6 +574,18 @@ TEST(StructuralLimits, ExceededByEveryFlightFailTheCampaign) {
   EXPECT_EQ(all.Summary().verdict, CampaignVerdict::kFail);
   all.campaign.sampling.method = SamplingMethod::kSobol;
   EXPECT_EQ(all.Summary().verdict, CampaignVerdict::kStudyViolated);
+}
+
+TEST(StructuralLimits, AreHeldAgainstWhatALostFlightBore) {
+  LimitedCampaign lost(20);
+  lost.results[3].outcome = Outcome::kLostControl;
+  lost.results[4].outcome = Outcome::kLostControl;
+  lost.Set(4, "structural_limit_exceeded", 1.0);
+  const CampaignSummary summary = lost.Summary();
+  EXPECT_EQ(summary.requirements[0].failures, 2);
+  EXPECT_EQ(summary.requirements[0].lost_flights, 2);
+  EXPECT_EQ(summary.requirements[1].failures, 1);
+  EXPECT_EQ(summary.requirements[1].lost_flights, 0);
 }
 
 TEST(StructuralLimits, OfAStudyThatAsksNothingLeaveItAsItWas) {
