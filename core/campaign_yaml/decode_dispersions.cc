@@ -295,6 +295,7 @@ class DispersionDecoder {
                  "one value an altitude in each column");
       return false;
     }
+    if (!CheckIncreasing(node, path, "altitude_m", table.altitude_m, problems_)) return false;
     for (const std::string& sentence : Problems(table)) AddProblem(problems_, node, path, sentence);
     return problems_.size() == problems_before;
   }

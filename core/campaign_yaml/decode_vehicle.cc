@@ -5,6 +5,7 @@
 #include "core/campaign_yaml/inline_files.h"
 #include "core/campaign_yaml/struct_problems.h"
 #include "core/campaign_yaml/yaml_reader.h"
+#include "core/vehicle/plausibility.h"
 
 namespace dispersa {
 namespace {
@@ -227,6 +228,7 @@ Sensors DecodeSensors(const InputNode& node, const std::string& path, ProblemLis
 StructuralLimits DecodeLimits(const InputNode& node, const std::string& path, ProblemList& problems) {
   MapReader map(node, path, problems);
   StructuralLimits limits;
+  limits.q_max_pa = map.Quantity("q_max", kPressure, kPositive, 0.0);
   limits.q_alpha_pa_rad = map.Quantity("q_alpha", kPressureAngle, kPositive, 0.0);
   limits.axial_load_g = map.Quantity("axial_load", kAcceleration, kPositive, 0.0);
   limits.lateral_load_g = map.Quantity("lateral_load", kAcceleration, kPositive, 0.0);
@@ -235,9 +237,22 @@ StructuralLimits DecodeLimits(const InputNode& node, const std::string& path, Pr
   return limits;
 }
 
+void CheckPlausibility(const Vehicle& vehicle, const InputNode& node, const std::string& path,
+                       ProblemList& problems, ProblemList* warnings) {
+  std::vector<PlausibilityFinding> impossible, unusual;
+  for (PlausibilityFinding& finding : Plausibility(vehicle))
+    (finding.impossible ? impossible : unusual).push_back(std::move(finding));
+  AddStructProblems(impossible, node, path, problems);
+  if (warnings == nullptr) return;
+  const std::size_t before = warnings->size();
+  AddStructProblems(unusual, node, path, *warnings);
+  for (std::size_t i = before; i < warnings->size(); ++i) (*warnings)[i].unusual = true;
+}
+
 }  // namespace
 
-Vehicle DecodeVehicle(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems) {
+Vehicle DecodeVehicle(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems,
+                      std::vector<InputProblem>* warnings) {
   const std::size_t before = problems.size();
   Vehicle vehicle;
   if (node.file == nullptr) return vehicle;  // already reported
@@ -289,6 +304,7 @@ Vehicle DecodeVehicle(const InputNode& node, const std::string& path, std::vecto
     }
   }
   if (problems.size() == before) AddStructProblems(Problems(vehicle), node, path, problems);
+  if (problems.size() == before) CheckPlausibility(vehicle, node, path, problems, warnings);
   return vehicle;
 }
 

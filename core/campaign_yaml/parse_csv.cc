@@ -4,6 +4,7 @@
 #include <optional>
 #include <string_view>
 
+#include "core/campaign_yaml/text_problems.h"
 #include "core/campaign_yaml/yaml_reader.h"
 
 namespace dispersa {
@@ -61,6 +62,7 @@ std::vector<std::size_t> MatchHeader(const std::vector<Cell>& header, const std:
 
 InputNode ParseCsv(const std::string& text, const std::string& file, const std::vector<std::string>& wanted,
                    std::vector<InputProblem>& problems) {
+  if (!CheckUtf8(text, file, problems)) return {};
   std::vector<std::string> columns = wanted;
   const std::size_t before = problems.size();
   InputNode place;

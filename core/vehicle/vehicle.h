@@ -121,8 +121,9 @@ struct AeroTable {
   std::vector<double> clp_per_rad;      ///< shape (mach): roll damping on p d / (2 V)
 };
 
-/// Limits of the structure; 0 = none given.
+/// Limits of the structure; 0 = none given. core/flight/structural_limits.h says which load each one limits.
 struct StructuralLimits {
+  double q_max_pa = 0.0;
   double q_alpha_pa_rad = 0.0;
   double axial_load_g = 0.0;
   double lateral_load_g = 0.0;

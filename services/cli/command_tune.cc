@@ -14,7 +14,9 @@
 #include "services/cli/flight_json.h"
 #include "services/cli/progress.h"
 #include "services/cli/warn.h"
+#include "services/cli/writable.h"
 #include "services/coordinator/threads.h"
+#include "services/coordinator/whole_number.h"
 
 namespace dispersa {
 namespace {
@@ -77,14 +79,23 @@ std::string MarginsText(const LeastMargins& m) {
 }
 
 // The comment at the head of the file.
+/// Behind the name of an autopilot that no gate has let pass.
+constexpr char kMissed[] = " (misses a constraint)";
+
 std::string Header(const TuneOptions& options, const TuningResult& result) {
   std::string text = LawText(result.autopilot.pitch.law);
+  if (!result.feasible)
+    text += "# NOT TO BE FLOWN: no design was found that meets every constraint; this is the best.\n";
   if (options.tuning.regulator) text += RegulatorText(result.autopilot.pitch);
   text += fmt::format("#\n# Tuned by\n#   {}\n", CommandText(options));
-  text += fmt::format("# which tried {} designs in {} flights. Over the {} cases of its seed:\n",
-                      result.evaluations, result.flights, options.tuning.cases);
-  text += fmt::format("#   median powered RMS pitch error {:.5f} deg, largest peak {:.4f} deg\n",
-                      result.median_rms_deg, result.largest_peak_deg);
+  text += fmt::format("# which tried {} designs in {} flights.", result.evaluations, result.flights);
+  if (result.feasible)
+    text += fmt::format(
+        " Over the {} cases of its seed:\n#   median powered RMS pitch error {:.5f} deg, largest peak "
+        "{:.4f} deg\n",
+        options.tuning.cases, result.median_rms_deg, result.largest_peak_deg);
+  else
+    text += "\n";
   text += "# Least computed margins (gain either way, phase, delay), gains frozen | adapting:\n";
   for (std::size_t i = 0; i < result.stages.size(); ++i) {
     text += fmt::format("#   stage {}: {} | {}\n", i + 1, MarginsText(result.stages[i].frozen),
@@ -143,7 +154,8 @@ nlohmann::ordered_json ResultJson(const TuneOptions& options, const TuningResult
                     {"pitch_error_peak_deg", JsonNumber(tuned.peak_deg)}};
   }
   return {{"schema", "dispersa/tune/1"},
-          {"autopilot", result.feasible ? nlohmann::ordered_json(options.out) : nullptr},
+          {"autopilot", options.out},
+          {"feasible", result.feasible},
           {"seed", options.tuning.seed},
           {"cases", options.tuning.cases},
           {"evaluations", result.evaluations},
@@ -196,6 +208,7 @@ void PrintText(const TuneOptions& options, const TuningResult& result, const std
 ExitCode RunTuning(const TuneOptions& given, const GlobalOptions& global) {
   TuneOptions options = given;
   options.tuning.threads = ThreadsOrAll(options.threads);
+  RequireWritableFile("--out", options.out);
   const Campaign campaign = LoadAndWarn(options.campaign);
   const AutopilotConfig autopilot =
       options.autopilot.empty() ? campaign.autopilot : LoadAutopilot(options.autopilot);
@@ -214,14 +227,17 @@ ExitCode RunTuning(const TuneOptions& given, const GlobalOptions& global) {
     };
     result = Tune(campaign, autopilot, options.tuning, observe);
   }
-  if (result.feasible) WriteFile(options.out, Header(options, result) + WriteAutopilot(result.autopilot));
+  // A search that misses its gates has still found something, which says so itself.
+  if (!result.feasible) result.autopilot.name += kMissed;
+  WriteFile(options.out, Header(options, result) + WriteAutopilot(result.autopilot));
   if (global.json) {
     fmt::print("{}\n", ResultJson(options, result, log).dump(2));
   } else {
     PrintText(options, result, log);
   }
   if (result.feasible) return kExitDone;
-  fmt::print(stderr, "no design was found that meets every constraint; nothing is written\n");
+  fmt::print(stderr, "no design was found that meets every constraint; {} holds the best that was found\n",
+             options.out);
   return kExitRequirementFailed;
 }
 
@@ -234,7 +250,7 @@ void AddTuneCommand(CLI::App& app, Invocation& invocation) {
       ->required();
   command
       ->add_option("-o,--out", options->out,
-                   "autopilot file to write; nothing is written if a constraint is not met")
+                   "autopilot file to write; one that misses a constraint says so in its name")
       ->required();
   command->add_option("--autopilot", options->autopilot,
                       "autopilot file whose law and fixed parameters are taken, instead of the campaign's");
@@ -242,7 +258,9 @@ void AddTuneCommand(CLI::App& app, Invocation& invocation) {
       ->add_option("--seed", options->tuning.seed,
                    "seed of the search and of its cases; never the campaign's own")
       ->capture_default_str();
-  command->add_option("--cases", options->tuning.cases, "cases flown for each design")->capture_default_str();
+  command->add_option("--cases", options->tuning.cases, "cases flown for each design")
+      ->check(CaseCountProblem)
+      ->capture_default_str();
   command
       ->add_option("--evaluations", options->tuning.evaluations,
                    "designs tried, shared by the stages and the augmentation of PD")

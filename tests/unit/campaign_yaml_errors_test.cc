@@ -141,7 +141,7 @@ constexpr BadInput kBadInputs[] = {
     {"NotYaml", "campaign.yaml", "sampling: {", "sampling: [", "campaign.yaml",
      "campaign.yaml:6:59: not YAML: illegal flow end\n"},
     {"TabForIndent", "campaign.yaml", "  wind:", "\twind:", "campaign.yaml",
-     "campaign.yaml:9:2: not YAML: end of map not found\n"},
+     "campaign.yaml:9:1: a tab indents the line, allowed: spaces\n"},
     {"Alias", "autopilot.yaml", "name: plain", "name: &n plain", "autopilot.yaml",
      "autopilot.yaml:2:7: an anchor ('&name') is not supported, allowed: the value itself\n"},
     {"BarePercentBesideDistribution", "campaign.yaml", "three_sigma_percent: 6.7", "percent: 20",
@@ -225,8 +225,8 @@ constexpr BadInput kBadInputs[] = {
      "campaign.yaml:13:5: requirements[0]: the limit is missing, allowed: either below: x, "
      "above: x or within: [low, high]\n"},
     {"ProbabilityInPercent", "campaign.yaml", "probability: 0.9973", "probability: 99.73", "campaign.yaml",
-     "campaign.yaml:13:61: requirements[0].probability: 99.73 is out of range, allowed: a "
-     "number above 0 and below 1\n"},
+     "campaign.yaml:13:61: requirements[0].probability: 99.73 is out of range, it is in percent (did "
+     "you mean 0.9973?), allowed: a number above 0 and below 1\n"},
     {"CertainRisk", "campaign.yaml", "consumer_risk: 0.10", "consumer_risk: 1", "campaign.yaml",
      "campaign.yaml:13:84: requirements[0].consumer_risk: 1 is out of range, allowed: a "
      "number above 0 and below 0.5\n"},
