@@ -263,6 +263,7 @@ Vehicle DecodeVehicle(const InputNode& node, const std::string& path, std::vecto
     vehicle.name = map.Text("name");
     vehicle.site = DecodeSite(map.Required("site", "a map"), map.PathOf("site"), problems);
     vehicle.hold_down_s = map.Quantity("hold_down", kTime, kNonNegative, 0.0);
+    vehicle.made_up = map.Flag("made_up", false);
     vehicle.jet_damping = map.Flag("jet_damping", true);
     vehicle.flow_coriolis = map.Flag("flow_coriolis", true);
     vehicle.surface_roughness_m = map.Quantity("surface_roughness", kLength, kNonNegative, 0.0);

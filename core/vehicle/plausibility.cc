@@ -263,8 +263,9 @@ void Apply(const Check (&checks)[N], const Subject& subject, const std::string& 
   for (const Check& check : checks) {
     const double value = check.value(subject);
     if (std::isnan(value)) continue;
-    const bool impossible = !check.possible.Holds(value);
-    if (!impossible && check.usual.Holds(value)) continue;
+    const bool beyond = !check.possible.Holds(value);
+    if (!beyond && check.usual.Holds(value)) continue;
+    const bool impossible = beyond && !subject.vehicle.made_up;
     const std::string unit = check.unit;
     findings.push_back({prefix + check.field,
                         std::string(check.implies) + " " + Readable(value) +

@@ -157,6 +157,7 @@ struct Sensors {
 
 struct Vehicle {
   std::string name;
+  bool made_up = false;  ///< it need not be possible: a textbook's coefficients, a limiting case
   LaunchSite site;
   double hold_down_s = 0.0;             ///< stage 1 burns this long before release; lift-off is time 0
   bool jet_damping = true;              ///< moment of the flow from CG to nozzle on a turning vehicle
