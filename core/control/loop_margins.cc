@@ -371,15 +371,18 @@ LoopMargins SampledLoop::Margins() const {
     if (next_w >= bends_above_rad_s) bend(next);
     if ((l.imag() < 0.0) != (next.imag() < 0.0) && i + 1 < grid.size())
       critical(Response(Refine(w, next_w, false)).real());
-    if (w < bends_above_rad_s && (std::norm(l) < 1.0) != (std::norm(next) < 1.0)) {
+    if ((std::norm(l) < 1.0) != (std::norm(next) < 1.0)) {
       const double crossover = Refine(w, next_w, true);
       const std::complex<double> at = Response(crossover);
       // Angle from -1, counter-clockwise, to L, in [0, 2 pi): what a delay may turn.
       double lead = Atan2(at.imag(), at.real()) + kPi;
       if (lead >= kTwoPi) lead -= kTwoPi;
       margins.delay_s = std::min(margins.delay_s, lead / crossover);
-      margins.phase_deg = std::min(margins.phase_deg, kDegPerRad * std::min(lead, kTwoPi - lead));
-      margins.crossover_rad_s = std::max(margins.crossover_rad_s, crossover);
+      // A mode's phase has a gate of its own; a delay turns it as it turns the rest, and sooner.
+      if (w < bends_above_rad_s) {
+        margins.phase_deg = std::min(margins.phase_deg, kDegPerRad * std::min(lead, kTwoPi - lead));
+        margins.crossover_rad_s = std::max(margins.crossover_rad_s, crossover);
+      }
     }
     l = next;
   }

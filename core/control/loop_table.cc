@@ -86,8 +86,9 @@ double LoopTable::Surplus(const LinearLaw& law, const std::vector<double>& weigh
         if (real < 0.0) take(std::fabs(20.0 * Log10(-real)), gates.gain_db);
         if (real < -1.0) turns += l.imag() < 0.0 ? 1 : -1;
       }
-      if (w < bends_above_rad_s_ && (size < 1.0) != (std::norm(before) < 1.0)) {
-        least = std::min(least, by_phase(l));
+      if ((size < 1.0) != (std::norm(before) < 1.0)) {
+        if (w < bends_above_rad_s_) least = std::min(least, by_phase(l));
+        // A delay turns a mode's crossover as any other, and sooner.
         const double lead = Angle(-l) < 0.0 ? Angle(-l) + kTwoPi : Angle(-l);
         if (gates.delay_s > 0.0) take(lead / w, gates.delay_s);
       }

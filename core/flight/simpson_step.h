@@ -143,7 +143,6 @@ class StepState {
 
   /// Evaluates the lanes at which the last step's end does not hold any more.
   void EvaluateStart(T time_s) {
-    if (!any_stale_) return;
     bending.modes > 0 ? EvaluateStartOf<true>(time_s) : EvaluateStartOf<false>(time_s);
   }
 
@@ -170,6 +169,7 @@ class StepState {
 
   template <bool kBends>
   void EvaluateStartOf(T time_s) {
+    if (!any_stale_) return;
     Point p;
     if (any_moved_) {
       Blend<T>(moved_, SurroundingsAt(earth_, *air_, plant.weather, motion.p), start_->around);
@@ -245,7 +245,7 @@ inline constexpr double kSameStep_s = 1e-10;
 template <class T>
 template <bool kBends>
 MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
-  EvaluateStart(from_s);
+  EvaluateStartOf<kBends>(from_s);
   const T h = to_s - from_s, half = T(0.5) * h, sixth = h * T(1.0 / 6.0);
   const T two(2.0), three(3.0), four(4.0);
   const T h2 = h * h, h2_8 = T(0.125) * h2, h2_6 = T(1.0 / 6.0) * h2;

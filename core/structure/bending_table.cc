@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/structure/inertia_moment.h"
 #include "core/vehicle/beam_masses.h"
 
 namespace dispersa {
@@ -35,31 +36,6 @@ std::vector<double> MassAhead(const BeamMasses& masses, const std::vector<double
   }
   for (double& share : ahead) share /= sum;
   return ahead;
-}
-
-// What the mass ahead of a station, accelerated as a mode's shape says, loads it with: the integral of
-// m deflection (s - x) - m g² slope.
-template <typename Shape>
-double InertiaMoment(const BeamMasses& masses, double station_m, const Shape& shape_at) {
-  double sum = 0.0;
-  for (const SpreadMass& m : masses.spread) {
-    const double from = m.top_station_m, to = std::min(m.bottom_station_m, station_m);
-    if (to <= from) continue;
-    const double step = (to - from) / kShorteningSteps;
-    for (int i = 0; i < kShorteningSteps; ++i) {
-      const double x = from + step * (i + 0.5);
-      const StationShape shape = shape_at(x);
-      sum += step * m.MassPerLength(x) *
-             (shape.deflection * (station_m - x) - m.Gyration2(x) * shape.slope_1_m);
-    }
-  }
-  for (const FixedMass& m : masses.fixed) {
-    if (m.station_m > station_m) continue;
-    const StationShape shape = shape_at(m.station_m);
-    const double deflection = shape.deflection + shape.slope_1_m * (m.cg_station_m - m.station_m);
-    sum += m.mass_kg * deflection * (station_m - m.cg_station_m) - m.inertia_kg_m2 * shape.slope_1_m;
-  }
-  return sum;
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/math/functions.h"
+#include "core/structure/inertia_moment.h"
 #include "core/vehicle/beam_masses.h"
 #include "core/vehicle/mould_line.h"
 
@@ -48,37 +49,6 @@ void ShareOut(const Vehicle& vehicle, const Stage& stage, LoadTable& table) {
   for (double& shift : table.shift_1_m) shift /= spread;
 }
 
-// The two integrals over the mass ahead of a station, about it.
-struct MassAheadOf {
-  double first_kg_m = 0.0, second_kg_m2 = 0.0;
-};
-MassAheadOf Ahead(const BeamMasses& masses, double station_m) {
-  constexpr int kPieces = 200;
-  MassAheadOf o;
-  for (const SpreadMass& m : masses.spread) {
-    const double from = m.top_station_m, to = std::min(m.bottom_station_m, station_m);
-    if (to <= from) continue;
-    const double step = (to - from) / kPieces;
-    for (int i = 0; i < kPieces; ++i) {
-      // Simpson's rule: exact up to the third power.
-      const double a = from + step * i;
-      const double x[3] = {a, a + 0.5 * step, a + step}, weight[3] = {1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0};
-      for (int k = 0; k < 3; ++k) {
-        const double here = weight[k] * step * m.MassPerLength(x[k]);
-        o.first_kg_m += here * (station_m - x[k]);
-        o.second_kg_m2 += here * ((station_m - x[k]) * x[k] - m.Gyration2(x[k]));
-      }
-    }
-  }
-  for (const FixedMass& m : masses.fixed) {
-    if (m.station_m > station_m) continue;
-    const double arm = m.mass_kg * (station_m - m.cg_station_m);
-    o.first_kg_m += arm;
-    o.second_kg_m2 += arm * m.cg_station_m - m.inertia_kg_m2;
-  }
-  return o;
-}
-
 }  // namespace
 
 LoadTable BuildLoadTable(const Vehicle& vehicle, int stage) {
@@ -91,13 +61,17 @@ LoadTable BuildLoadTable(const Vehicle& vehicle, int stage) {
   for (std::size_t i = 0; i < kLoadStations; ++i) {
     const double station = lowest.bottom_station_m / kStrips * static_cast<double>(i + 1);
     table.station_m[i] = station;
-    MassAheadOf at[3];
-    for (int k = 0; k < 3; ++k) at[k] = Ahead(masses[k], station);
+    // The body accelerated sideways, and turning about the nose.
+    double first[3], second[3];
+    for (int k = 0; k < 3; ++k) {
+      first[k] = InertiaMoment(masses[k], station, [](double) { return StationShape{1.0, 0.0}; });
+      second[k] = InertiaMoment(masses[k], station, [](double x) { return StationShape{x, 1.0}; });
+    }
     // The grain's mass per length follows its mass, its section's inertia the square of it: parabolas.
-    table.first_kg_m[i] = {at[0].first_kg_m, (at[2].first_kg_m - at[0].first_kg_m) / full};
-    const double curve = 2.0 * (at[2].second_kg_m2 + at[0].second_kg_m2 - 2.0 * at[1].second_kg_m2) / Square(full);
-    const double rise = (at[2].second_kg_m2 - at[0].second_kg_m2) / full - curve * full;
-    table.second_kg_m2[i] = {at[0].second_kg_m2, rise, curve};
+    table.first_kg_m[i] = {first[0], (first[2] - first[0]) / full};
+    const double curve = 2.0 * (second[2] + second[0] - 2.0 * second[1]) / Square(full);
+    const double rise = (second[2] - second[0]) / full - curve * full;
+    table.second_kg_m2[i] = {second[0], rise, curve};
   }
   return table;
 }

@@ -85,14 +85,21 @@ TEST(WriteAutopilot, ShippedAutopilotsKeepEveryKey) {
   }
 }
 
-TEST(WriteAutopilot, WritesThePidLawAndFilters) {
-  const std::string pid = R"(
+const std::string kPidRoll = R"(
 roll:
   law: pid
   gains:
     - {kp_1_s2: 5, kd_1_s: 6}
     - {kp_1_s2: 7, kd_1_s: 8}
-  filters:
+)";
+
+std::string WithRoll(const std::string& roll) {
+  const std::string all = kEverything;
+  return all.substr(0, all.find("\nroll:")) + roll + all.substr(all.find("reaction_control:"));
+}
+
+TEST(WriteAutopilot, WritesThePidLawAndFilters) {
+  const std::string pid = kPidRoll + R"(  filters:
     - {zeros_rad_s: 20, zeros_damping: 0.05, poles_rad_s: 20, poles_damping: 0.7, stage: 1}
     - {poles_rad_s: 60, poles_damping: 0.7}
   feed_forward: {lead_s: 0.066}
@@ -101,39 +108,33 @@ roll:
     bound_deg_s2: 20
     reset_at_ignition: true
 )";
-  const std::string all = kEverything;
-  const std::string text =
-      all.substr(0, all.find("\nroll:")) + pid + all.substr(all.find("reaction_control:"));
+  const std::string text = WithRoll(pid);
   EXPECT_EQ(WriteAutopilot(ReadAutopilot(text, "text")), text);
 }
 
 TEST(WriteAutopilot, WritesAScheduleInFull) {
-  const std::string all = kEverything;
-  const auto with_roll = [&](const std::string& schedule) {
-    const std::string pid = R"(
-roll:
-  law: pid
-  gains:
-    - {kp_1_s2: 5, kd_1_s: 6}
-    - {kp_1_s2: 7, kd_1_s: 8}
-  filters:
+  const auto with_schedule = [](const std::string& schedule) {
+    return WithRoll(kPidRoll + R"(  filters:
     - {poles_rad_s: 20, poles_damping: 0.7, stage: 1}
   schedule:
 )" + schedule + R"(  integral:
     ki_1_s3: [9.5, 0]
-)";
-    return all.substr(0, all.find("\nroll:")) + pid + all.substr(all.find("reaction_control:"));
+)");
   };
   // An entry without filters has those before it; stages without any have none.
-  const std::string short_text = with_roll(
+  const std::string short_text = with_schedule(
       "    - {stage: 1, at_s: 5, kp_1_s2: 6, kd_1_s: 6, ki_1_s3: 1}\n"
-      "    - {stage: 1, at_s: 9, kp_1_s2: 6, kd_1_s: 7, ki_1_s3: 1, filters: [{poles_rad_s: 30, poles_damping: 1}]}\n"
+      "    - {stage: 1, at_s: 9, kp_1_s2: 6, kd_1_s: 7, ki_1_s3: 1, filters: [{poles_rad_s: 30, "
+      "poles_damping: 1}]}\n"
       "    - {stage: 1, at_s: 12.5, kp_1_s2: 8, kd_1_s: 7, ki_1_s3: 0}\n"
       "    - {stage: 2, at_s: 3, kp_1_s2: 8, kd_1_s: 7, ki_1_s3: 2}\n");
-  const std::string full_text = with_roll(
-      "    - {stage: 1, at_s: 5, kp_1_s2: 6, kd_1_s: 6, ki_1_s3: 1, filters: [{poles_rad_s: 20, poles_damping: 0.7}]}\n"
-      "    - {stage: 1, at_s: 9, kp_1_s2: 6, kd_1_s: 7, ki_1_s3: 1, filters: [{poles_rad_s: 30, poles_damping: 1}]}\n"
-      "    - {stage: 1, at_s: 12.5, kp_1_s2: 8, kd_1_s: 7, ki_1_s3: 0, filters: [{poles_rad_s: 30, poles_damping: 1}]}\n"
+  const std::string full_text = with_schedule(
+      "    - {stage: 1, at_s: 5, kp_1_s2: 6, kd_1_s: 6, ki_1_s3: 1, filters: [{poles_rad_s: 20, "
+      "poles_damping: 0.7}]}\n"
+      "    - {stage: 1, at_s: 9, kp_1_s2: 6, kd_1_s: 7, ki_1_s3: 1, filters: [{poles_rad_s: 30, "
+      "poles_damping: 1}]}\n"
+      "    - {stage: 1, at_s: 12.5, kp_1_s2: 8, kd_1_s: 7, ki_1_s3: 0, filters: [{poles_rad_s: 30, "
+      "poles_damping: 1}]}\n"
       "    - {stage: 2, at_s: 3, kp_1_s2: 8, kd_1_s: 7, ki_1_s3: 2}\n");
   EXPECT_EQ(WriteAutopilot(ReadAutopilot(short_text, "text")), full_text);
   EXPECT_EQ(WriteAutopilot(ReadAutopilot(full_text, "text")), full_text);

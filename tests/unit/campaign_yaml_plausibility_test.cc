@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/campaign_yaml/load.h"
-#include "tests/unit/input_files.h"
+#include "tests/unit/bad_input.h"
 
 namespace dispersa {
 namespace {
@@ -109,24 +109,13 @@ TEST(CampaignYamlPlausibility, AReferenceThatMissesItsTargetSaysSo) {
   EXPECT_EQ(ReadReference(WriteReference(campaign.reference), "again").target_missed, "12 km short");
 }
 
-struct BadText {
-  const char* name;
-  const char* edited;
-  const char* from;
-  const char* to;
-  const char* texts;
-};
-void PrintTo(const BadText& bad, std::ostream* out) { *out << bad.name; }
-
-class BadTextTest : public testing::TestWithParam<BadText> {};
+class BadTextTest : public testing::TestWithParam<BadInput> {};
 
 TEST_P(BadTextTest, IsReportedInFull) {
-  const InputFiles files;
-  files.Edit(GetParam().edited, GetParam().from, GetParam().to);
-  EXPECT_EQ(files.Texts(ValidateFile(files.Path("campaign.yaml"))), GetParam().texts);
+  EXPECT_EQ(TextsAbout("campaign.yaml", GetParam()), GetParam().texts);
 }
 
-constexpr BadText kBadTexts[] = {
+constexpr BadInput kBadTexts[] = {
     {"Tab", "campaign.yaml", "  drag_coefficient", "\tdrag_coefficient",
      "campaign.yaml:10:1: a tab indents the line, allowed: spaces\n"},
     {"Latin1", "vehicle.yaml", "name: first", "name: premi\xe8re",

@@ -3,7 +3,7 @@
 
 #include "core/campaign_yaml/load.h"
 #include "core/math/constants.h"
-#include "tests/unit/input_files.h"
+#include "tests/unit/bad_input.h"
 
 namespace dispersa {
 namespace {
@@ -83,26 +83,13 @@ TEST(CampaignYamlScenario, IsReadCompletely) {
   EXPECT_TRUE(upper.aerodynamics.ca.empty());
 }
 
-// One edit of the valid files, and what `validate` then says about the scenario.
-struct BadScenario {
-  const char* name;
-  const char* edited;
-  const char* from;
-  const char* to;
-  const char* texts;
-};
-
-void PrintTo(const BadScenario& bad, std::ostream* out) { *out << bad.name; }
-
-class BadScenarioTest : public testing::TestWithParam<BadScenario> {};
+class BadScenarioTest : public testing::TestWithParam<BadInput> {};
 
 TEST_P(BadScenarioTest, IsReportedInFull) {
-  const InputFiles files;
-  files.Edit(GetParam().edited, GetParam().from, GetParam().to);
-  EXPECT_EQ(files.Texts(ValidateFile(files.Path("scenario.yaml"))), GetParam().texts);
+  EXPECT_EQ(TextsAbout("scenario.yaml", GetParam()), GetParam().texts);
 }
 
-constexpr BadScenario kBadScenarios[] = {
+constexpr BadInput kBadScenarios[] = {
     {"ZeroInertia", "scenario.yaml", "ixx_kg_m2: [10, 30]", "ixx_kg_m2: [0, 30]",
      "scenario.yaml:45:19: stages[1].mass_properties.ixx_kg_m2[0]: the inertia tensor is not positive "
      "definite, allowed: positive moments, and products small enough that every principal moment is "

@@ -13,6 +13,7 @@
 #include "core/dynamics/aero_grid.h"
 #include "core/dynamics/integrator.h"
 #include "core/flight/flight_model.h"
+#include "core/flight/linear_axis.h"
 #include "core/flight/margins.h"
 #include "core/flight/simpson_step.h"
 #include "core/structure/beam_elements.h"
@@ -314,25 +315,54 @@ TEST(BendingFlight, ABentBodyTurnsAndMovesItsThrustAndIsCompressedByIt) {
   }
 }
 
+// By how much, as a logarithm, a stage's loop lets a disturbance grow while it is unstable with so many
+// further ticks of delay: the linearised growth over its burn.
+double GrowthWithDelay(const FlightModel& model, int stage, int ticks) {
+  const LauncherPlant& plant = model.nominal_plant();
+  const double tick_s = model.autopilot().config.tick_s;
+  double growth = 0.0, before_s = -1.0;
+  for (const MarginInstant& instant : MarginInstants(model)) {
+    const TickSample& s = instant.sample;
+    if (s.stack != stage) continue;
+    const SampledLoop loop(LineariseAxis(plant, s, kPitch, model.sensors()),
+                           LineariseLaw(model.autopilot(), stage, s.since_ignition_s, kPitch, true), tick_s,
+                           plant.stacks[static_cast<std::size_t>(stage)].gimbal.delay_ticks + ticks);
+    if (before_s >= 0.0)
+      growth += std::max(0.0, std::log(loop.SpectralRadius(1.0)) / tick_s) * (s.time_s - before_s);
+    before_s = s.time_s;
+  }
+  return growth;
+}
+
 // What is computed of the linearised loop, with modes, gyros, filters and the nozzles' masses, is lost in
-// flight where it says so.
+// flight where it says so. A mode beyond its delay margin grows slowly, or for a few seconds only: a flight
+// holds such a delay as long as nothing grows much, and no longer.
 TEST(BendingFlight, MarginsMeasuredInFlightAreTheComputedOnes) {
-  FlightDefinition definition = Slv4Definition(DISPERSA_CAMPAIGNS, "flexible");
-  definition.vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml");
-  const FlightModel model(definition);
-  const std::vector<ComputedMargins> computed = ComputeDispersedMargins(model, {}).margins;
-  for (const MeasuredMargins& m : MeasureMargins(model)) {
-    double up_db = 1e9, delay_s = 1e9;
-    for (const ComputedMargins& c : computed) {
-      if (c.stage != m.stage) continue;
-      up_db = std::min(up_db, c.adapting.gain_up_db);
-      delay_s = std::min(delay_s, c.adapting.delay_s);
+  constexpr double kNoticed = 3.0;  // twentyfold
+  for (const char* autopilot : {"flexible", "flexible_scheduled"}) {
+    FlightDefinition definition = Slv4Definition(DISPERSA_CAMPAIGNS, autopilot);
+    definition.vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml");
+    const FlightModel model(definition);
+    const std::vector<ComputedMargins> computed = ComputeDispersedMargins(model, {}).margins;
+    for (const MeasuredMargins& m : MeasureMargins(model)) {
+      double up_db = 1e9, delay_s = 1e9;
+      for (const ComputedMargins& c : computed) {
+        if (c.stage != m.stage) continue;
+        up_db = std::min(up_db, c.adapting.gain_up_db);
+        delay_s = std::min(delay_s, c.adapting.delay_s);
+      }
+      int noticed_ticks = 1;
+      while (noticed_ticks < 25 && GrowthWithDelay(model, m.stage, noticed_ticks) < kNoticed) ++noticed_ticks;
+      const double noticed_s = noticed_ticks * definition.autopilot.tick_s;
+      std::printf(
+          "%s, stage %d: %.1f dB computed, %.1f dB measured; %.0f ms computed, %.0f ms measured, "
+          "grown by then at %.0f ms\n",
+          autopilot, m.stage + 1, up_db, m.gain_up_db, 1e3 * delay_s, 1e3 * m.delay_s, 1e3 * noticed_s);
+      // Both axes at work on a disturbed flight: up to 0.6 dB were found of rigid ones.
+      EXPECT_NEAR(m.gain_up_db, up_db, 0.8) << m.stage;
+      EXPECT_GT(m.delay_s, 0.85 * delay_s) << m.stage;
+      EXPECT_LE(m.delay_s, noticed_s) << m.stage;
     }
-    std::printf("stage %d: %.1f dB computed, %.1f dB measured; %.0f and %.0f ms\n", m.stage + 1, up_db,
-                m.gain_up_db, 1e3 * delay_s, 1e3 * m.delay_s);
-    // Both axes at work on a disturbed flight: up to 0.6 dB were found of rigid ones.
-    EXPECT_NEAR(m.gain_up_db, up_db, 0.8) << m.stage;
-    EXPECT_NEAR(m.delay_s, delay_s, 0.15 * delay_s) << m.stage;
   }
 }
 
