@@ -15,13 +15,22 @@ namespace dispersa {
 
 namespace {
 
+AscentResult FlyReference(const Campaign& campaign) {
+  AscentOptions options;
+  options.record = true;
+  return FlyAscent(BuildAscentModel(campaign.vehicle, campaign.autopilot.tick_s), campaign.reference.program,
+                   options);
+}
+
+bool Jettisons(const Vehicle& vehicle) {
+  return std::any_of(vehicle.stages.begin(), vehicle.stages.end(),
+                     [](const Stage& stage) { return !stage.jettisoned.empty(); });
+}
+
 // The reference's own way up, the same for every autopilot: over the ground, until it leaves the air that
 // matters or climbs no more.
 ClimbPath ClimbOf(const Campaign& campaign) {
-  AscentOptions options;
-  options.record = true;
-  const AscentResult ascent = FlyAscent(BuildAscentModel(campaign.vehicle, campaign.autopilot.tick_s),
-                                        campaign.reference.program, options);
+  const AscentResult ascent = FlyReference(campaign);
   ClimbPath path;
   path.azimuth_rad = campaign.reference.program.launch_azimuth_rad;
   const double ground_m = campaign.vehicle.site.altitude_m;
@@ -64,6 +73,7 @@ FlightDefinition DefinitionOf(const Campaign& campaign) {
   definition.wind_table = campaign.wind_table;
   definition.wind_statistics = campaign.wind_statistics;
   definition.noise_seed = campaign.sampling.seed;
+  if (Jettisons(campaign.vehicle)) definition.jettison_s = FlyReference(campaign).jettison_s;
   if (MeetsTurbulence(campaign))
     definition.turbulence_path = std::make_shared<const TurbulencePath>(ClimbOf(campaign));
   return definition;

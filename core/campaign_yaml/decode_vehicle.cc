@@ -74,6 +74,35 @@ Gimbal DecodeGimbal(const InputNode& node, const std::string& path, ProblemList&
   return gimbal;
 }
 
+Jettison DecodeJettison(const InputNode& node, const std::string& path, ProblemList& problems) {
+  MapReader map(node, path, problems);
+  Jettison jettison;
+  jettison.name = map.Text("name");
+  jettison.mass_kg = map.Quantity("mass", kMass, kPositive);
+  jettison.top_station_m = map.Quantity("top_station", kLength, kNonNegative);
+  jettison.bottom_station_m = map.Quantity("bottom_station", kLength, kPositive);
+  jettison.outer_diameter_m = map.Quantity("outer_diameter", kLength, kPositive);
+  jettison.inner_diameter_m = map.Quantity("inner_diameter", kLength, kNonNegative, 0.0);
+  MapReader at(map.Required("at", "a map"), map.PathOf("at"), problems);
+  int given = 0;
+  const auto take = [&](const char* stem, Dimension dimension, JettisonTrigger trigger) {
+    const std::optional<double> threshold = at.OptionalQuantity(stem, dimension, kPositive);
+    if (!threshold) return;
+    ++given;
+    jettison.trigger = trigger;
+    jettison.threshold = *threshold;
+  };
+  take("time", kTime, JettisonTrigger::kAtTime);
+  take("altitude", kLength, JettisonTrigger::kAtAltitude);
+  take("heat_flux", kHeatFlux, JettisonTrigger::kAtHeatFlux);
+  if (given == 0)
+    at.ReportMissing({"time_s", "altitude_km", "heat_flux_w_m2"}, "one of them");
+  else if (given > 1)
+    AddProblem(problems, at.node(), at.path(), "says more than once when",
+               "time_s, altitude_km or heat_flux_w_m2");
+  return jettison;
+}
+
 Stage DecodeStage(const InputNode& node, const std::string& path, ProblemList& problems) {
   MapReader map(node, path, problems);
   Stage stage;
@@ -86,6 +115,9 @@ Stage DecodeStage(const InputNode& node, const std::string& path, ProblemList& p
   stage.grain = DecodeGrain(map.Required("grain", "a map"), map.PathOf("grain"), problems);
   map.Each("structure", 1, SIZE_MAX, [&](const InputNode& item, const std::string& item_path) {
     stage.structure.push_back(DecodeMassElement(item, item_path, problems));
+  });
+  map.Each("jettisoned", 0, kMaxJettisons, [&](const InputNode& item, const std::string& item_path) {
+    stage.jettisoned.push_back(DecodeJettison(item, item_path, problems));
   });
   stage.gimbal = DecodeGimbal(map.Required("gimbal", "a map"), map.PathOf("gimbal"), problems);
   {

@@ -28,6 +28,7 @@ inline constexpr Unit kForce[] = {{"n", 1.0}, {"kn", 1e3}};
 inline constexpr Unit kMoment[] = {{"n_m", 1.0}, {"kn_m", 1e3}};
 inline constexpr Unit kPressure[] = {{"pa", 1.0}, {"kpa", 1e3}};
 inline constexpr Unit kPressureAngle[] = {{"pa_rad", 1.0}, {"kpa_rad", 1e3}, {"pa_deg", kRadPerDeg}};
+inline constexpr Unit kHeatFlux[] = {{"w_m2", 1.0}, {"kw_m2", 1e3}};
 inline constexpr Unit kSpeed[] = {{"m_s", 1.0}, {"km_s", 1e3}, {"km_h", 1.0 / 3.6}};
 inline constexpr Unit kAcceleration[] = {{"g", 1.0}};
 inline constexpr Unit kAngle[] = {{"deg", kRadPerDeg}, {"rad", 1.0}};
@@ -50,7 +51,7 @@ inline constexpr std::string_view kUnitLike[] = {
     "kt",      "kts",    "mph",   "deg",    "rad",    "arcmin",  "deg_s", "rad_s",   "hz",      "rpm",
     "deg_s2",  "rad_s2", "1_s",   "1_s2",   "1_s3",   "per_km",  "per_m", "per_m_s", "per_deg", "per_rad",
     "percent", "factor", "kg_m2", "kg_m",   "gpa",    "mpa",     "n_m2",  "kn_m2",   "mn_m2",   "1_m",
-    "n_m",     "kn_m"};
+    "n_m",     "kn_m",   "w_m2",  "kw_m2"};
 
 /// How people write a unit else, and what it is called here.
 struct UnitSpelling {

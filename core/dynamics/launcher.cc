@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/dynamics/jettison.h"
 #include "core/dynamics/launcher_lanes.h"
 #include "core/math/lane_eigen.h"
 
@@ -31,10 +32,10 @@ namespace {
 
 // An instant of one lane.
 struct OneLane {
-  OneLane(const LauncherPlant& from, const lanes::Plant<double>& stack, const LauncherPhase& now, double time_s,
-          const double* y)
+  OneLane(const LauncherPlant& from, const lanes::Plant<double>& stack, const LauncherPhase& now,
+          double time_s, const double* y)
       : earth(from.environment.earth),
-        plant(stack),
+        plant(InPhase(from, stack, now)),
         phase{now.burning, now.burnt, now.ignition_s, now.expelled_mass_kg, ToLanes(now.control_torque_n_m)},
         motion{{y[0], y[1], y[2]}, {y[3], y[4], y[5]}, {y[6], y[7], y[8], y[9]}, {y[10], y[11], y[12]}},
         around(lanes::SurroundingsAt(earth, StandardAir(), plant.weather, motion.p)),
@@ -53,6 +54,11 @@ struct OneLane {
     std::copy_n(y + kModalRate, kPlanes * kModes, &bending_state.rate_m_s[0][0]);
   }
 
+  static lanes::Plant<double> InPhase(const LauncherPlant& from, lanes::Plant<double> stack,
+                                      const LauncherPhase& now) {
+    if (now.jettisoned != 0) lanes::SetLane(stack.stack, 0, MassOf(from, now.stack, now.jettisoned));
+    return stack;
+  }
   lanes::LoadsOf<double> Loads() const {
     return WithBody([this](const auto& body) {
       return lanes::LoadsAt(earth.rotation_rate_rad_s, plant, phase, phase.burning, around, masses,
@@ -67,7 +73,7 @@ struct OneLane {
   }
 
   const Earth& earth;
-  const lanes::Plant<double>& plant;
+  lanes::Plant<double> plant;
   lanes::Phase<double> phase;
   lanes::Motion<double> motion;
   lanes::Surroundings<double> around;
@@ -88,20 +94,6 @@ struct OneLane {
 };
 
 }  // namespace
-
-RigidBodyState AfterSeparation(const LauncherPlant& plant, int below, const RigidBodyState& state) {
-  const StackMass& whole = plant.stacks[static_cast<std::size_t>(below)].mass;
-  const StackMass& upper = plant.stacks[static_cast<std::size_t>(below) + 1].mass;
-  const MassProperties old_mass = whole.At(0.0), new_mass = upper.At(upper.propellant_mass_kg);
-  const LauncherStack& old_stack = plant.stacks[static_cast<std::size_t>(below)];
-  const LauncherStack& new_stack = plant.stacks[static_cast<std::size_t>(below) + 1];
-  const auto aside = [&](double LauncherStack::*moment) {
-    return new_stack.*moment / new_mass.mass_kg - old_stack.*moment / old_mass.mass_kg;
-  };
-  return AtPoint(state, Vector3((old_mass.cg_station_m - new_mass.cg_station_m) * plant.cg_factor,
-                                aside(&LauncherStack::lateral_moment_y_kg_m),
-                                aside(&LauncherStack::lateral_moment_z_kg_m)));
-}
 
 LauncherModel::LauncherModel(const LauncherPlant& plant) : prepared_(std::make_unique<Prepared>(plant)) {}
 LauncherModel::~LauncherModel() = default;

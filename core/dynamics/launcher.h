@@ -62,6 +62,8 @@ struct BendingFactors {
 struct LauncherPlant {
   Environment environment;
   std::vector<LauncherStack> stacks;
+  std::vector<Jettison> jettisons;  ///< of all stages
+  std::vector<JettisonedMass> jettisoned_masses;
   double cg_factor = 1.0;
   double inertia_factor = 1.0;
   bool jet_damping = true;
@@ -79,6 +81,7 @@ struct LauncherPlant {
 /// What stays constant between two events.
 struct LauncherPhase {
   int stack = 0;
+  unsigned jettisoned = 0;  ///< bit i: of the plant's jettisons
   bool burning = false;
   bool burnt = false;            ///< the stack's propellant is used up
   double ignition_s = 0.0;       ///< of the stack's motor, when burning
@@ -100,8 +103,9 @@ struct LauncherInstant {
 };
 
 /// `state` after the empty lowest stage of stack `below` has left: it follows the centre of gravity, which
-/// jumps forward to that of the stack above, full.
-RigidBodyState AfterSeparation(const LauncherPlant& plant, int below, const RigidBodyState& state);
+/// jumps forward to that of the stack above, full. `jettisoned`: as in LauncherPhase.
+RigidBodyState AfterSeparation(const LauncherPlant& plant, int below, unsigned jettisoned,
+                               const RigidBodyState& state);
 
 /// The equations of motion of one flight, prepared once for many instants: one lane of launcher_body.h and
 /// actuators.h, whose step flights take. For the judges among the integrators, histories, linearisation and tests.

@@ -51,7 +51,7 @@ DISPERSA_INLINE void SetLane(AeroBody<T>& b, int lane, const BodyAerodynamics& b
   }
 }
 
-/// The plant of a lane on its stack; its weather is set by itself, once a flight.
+/// The plant of a lane on its stack, nothing jettisoned; its weather is set by itself, once a flight.
 template <class T>
 DISPERSA_INLINE void SetLane(Plant<T>& p, int lane, const LauncherPlant& plant, int stack) {
   const LauncherStack& s = plant.stacks.data()[stack];

@@ -40,6 +40,7 @@ class Batch {
     const FlightEvent* next_event = nullptr;
     const FlightEvent* last_event = nullptr;  ///< one past
     int stack = 0;
+    unsigned jettisoned = 0;  ///< LauncherPhase's
     int stuck_nozzle = -1;
     int whole_delay = 0;        ///< ticks between command and actuator, and
     double part_delay_s = 0.0;  ///< a part of one
@@ -50,6 +51,7 @@ class Batch {
   void Refill();
   void Start(int lane, FlightRecord* record);
   void SetStack(int lane, int stack);
+  void SetMass(int lane);
   void SetStop(int lane);
   /// Whether guidance gives the lane a reference of its own.
   bool IsSteered(int lane) const {
@@ -72,6 +74,7 @@ class Batch {
   const T* FedForward(T* program) const;
   void PassCommands(M powered);
   void FlyThrusters();
+  void LetGo();
   void Guide();
   void Meter(M powered);
   void WatchAndDigest();
@@ -91,6 +94,7 @@ class Batch {
   FlightQueue& queue_;
   const double tick_s_;
   const double ticks_a_second_;
+  const bool has_jettisons_;
   Slot slot_[kLanes];
   int flying_ = 0;         ///< lanes
   unsigned patience_ = 0;  ///< passes until the queue is asked again
@@ -137,7 +141,8 @@ Batch<T>::Batch(const FlightModel& model, FlightQueue& queue)
       definition_(model.definition()),
       queue_(queue),
       tick_s_(definition_.autopilot.tick_s),
-      ticks_a_second_(static_cast<double>(static_cast<long>(1.0 / tick_s_ + 0.5))) {
+      ticks_a_second_(static_cast<double>(static_cast<long>(1.0 / tick_s_ + 0.5))),
+      has_jettisons_(!model.nominal_plant().jettisons.empty()) {
   // Lanes that never fly compute along with the others, on numbers that do no harm.
   __builtin_memset(static_cast<void*>(&step_), 0, sizeof step_);
   __builtin_memset(static_cast<void*>(&delay_line_), 0, sizeof delay_line_);
@@ -260,10 +265,21 @@ void Batch<T>::SetStack(int lane, int stack) {
   slot.stuck_nozzle = -1;
   slot.switch_s = kFarFuture;
   SetLane(step_.plant, lane, slot.record->plant, stack);
+  SetMass(lane);
   SetLane(step_.bending, lane, slot.record->plant, stack);
   SetLane(step_.drives, lane, slot.record->plant.stacks.data()[stack].gimbal, -1);
   step_.SetTickTransition(lane);
   step_.MarkMoved(lane);
+}
+
+/// Of what the lane's stack still carries.
+template <class T>
+void Batch<T>::SetMass(int lane) {
+  const Slot& slot = slot_[lane];
+  if (slot.jettisoned == 0) return;
+  StackMass mass;
+  slot.record->MassWithout(slot.stack, slot.jettisoned, mass);
+  SetLane(step_.plant.stack, lane, mass);
 }
 
 template <class T>
@@ -300,6 +316,7 @@ template <class T>
 LauncherPhase Batch<T>::PhaseOf(int lane) const {
   LauncherPhase phase;
   phase.stack = slot_[lane].stack;
+  phase.jettisoned = slot_[lane].jettisoned;
   phase.burning = Bits(step_.phase.burning) >> lane & 1u;
   phase.burnt = Bits(step_.phase.burnt) >> lane & 1u;
   phase.ignition_s = Lane(step_.phase.ignition_s, lane);

@@ -126,7 +126,7 @@ void Batch<T>::Happen(int lane) {
     case EventKind::kSeparation: {
       StateValues y;
       step_.ReadLane(lane, y);
-      record.Separate(event.stage, y);
+      record.Separate(event.stage, slot.jettisoned, y);
       step_.WriteLane(lane, y);
       SetStack(lane, event.stage + 1);
       SetLane(step_.phase.burnt, lane, false);

@@ -22,6 +22,7 @@ void Batch<T>::Pass() {
   FlyGimbals();
   if (Any(coasting_)) FlyThrusters();
   step_.EvaluateStart(time_s_);
+  if (has_jettisons_) LetGo();
   if (definition_.guidance.closed_loop) Guide();
   metrics_.AddLoads(live_ & !coasting_, step_.now());
   metrics_.AddMoment(live_ & !coasting_, step_.LargestMomentNow());
@@ -29,6 +30,28 @@ void Batch<T>::Pass() {
   WatchAndDigest();
   CheckEnds();
   if (flying_ > 0) Advance();
+}
+
+/// Jettisons, which the flight computer decides on its ticks.
+template <class T>
+void Batch<T>::LetGo() {
+  for (int lane = 0; lane < kLanes; ++lane) {
+    if (!(Bits(live_) >> lane & 1u)) continue;
+    Slot& slot = slot_[lane];
+    StateValues y;
+    step_.ReadLane(lane, y);
+    const unsigned due = slot.record->LetGo(
+        slot.stack, slot.jettisoned, Lane(time_s_, lane), Lane(step_.now().altitude_m, lane),
+        Lane(step_.density_kg_m3(), lane), Lane(step_.propellant_kg(), lane), y);
+    if (due == 0) continue;
+    slot.jettisoned |= due;
+    step_.WriteLane(lane, y);
+    SetMass(lane);
+    step_.MarkMoved(lane);
+    slot.record->AddToDigest(Lane(time_s_, lane), y);
+    if (slot.record->watched) slot.record->WatchEvent(ViewOf(lane));
+  }
+  step_.EvaluateStart(time_s_);
 }
 
 /// Error of the lanes' attitudes against the reference at their ticks, true and as the sensors see it.

@@ -3,6 +3,7 @@
 #include <cassert>
 
 #include "core/dynamics/aero_grid.h"
+#include "core/dynamics/jettison.h"
 #include "core/math/constants.h"
 #include "core/math/functions.h"
 #include "core/random/draws.h"
@@ -28,7 +29,9 @@ LauncherPlant BuildNominalPlant(const Vehicle& vehicle) {
     if (!vehicle.profile.empty())
       stack.loads = std::make_shared<const LoadTable>(BuildLoadTable(vehicle, static_cast<int>(i)));
     plant.stacks.push_back(stack);
+    plant.jettisons.insert(plant.jettisons.end(), stage.jettisoned.begin(), stage.jettisoned.end());
   }
+  plant.jettisoned_masses = BuildJettisonedMasses(vehicle);
   return plant;
 }
 
@@ -41,14 +44,28 @@ void AddBending(const Vehicle& vehicle, double tick_s, LauncherPlant& plant) {
         std::make_shared<const BendingTable>(BuildBendingTable(vehicle, stacks[i], *plant.stacks[i].loads, kPi / tick_s));
 }
 
-StageControl BuildStageControl(const LauncherStack& stack) {
+namespace {
+
+unsigned GoneAt(const std::vector<double>& jettison_s, double time_s) {
+  unsigned gone = 0;
+  for (std::size_t i = 0; i < jettison_s.size(); ++i)
+    if (jettison_s[i] <= time_s) gone |= 1u << i;
+  return gone;
+}
+
+}  // namespace
+
+StageControl BuildStageControl(const LauncherPlant& plant, int index, double ignition_s,
+                               const std::vector<double>& jettison_s) {
+  const LauncherStack& stack = plant.stacks[static_cast<std::size_t>(index)];
   // The effectiveness changes slowly and smoothly: this many points follow it to a part in a thousand.
   constexpr int kPoints = 33;
   StageControl control;
   control.limit_rad = stack.gimbal.limit_rad;
   for (int i = 0; i < kPoints; ++i) {
     const double since = stack.burn.duration_s * i / (kPoints - 1);
-    const MassProperties mass = stack.mass.At(stack.burn.Propellant(since));
+    const MassProperties mass =
+        MassOf(plant, index, GoneAt(jettison_s, ignition_s + since)).At(stack.burn.Propellant(since));
     const double thrust = stack.burn.vacuum_thrust_n;
     const double lever = stack.gimbal.pivot_station_m - mass.cg_station_m;
     control.pitch_effectiveness_1_s2.x.push_back(since);
@@ -101,7 +118,7 @@ FeedForwardRows TabulateFeedForward(const AttitudeProgram& program, const Autopi
 }
 
 GuidanceMission BuildMission(const FlightDefinition& definition, const LauncherPlant& plant,
-                             const LaunchFrame& frame) {
+                             const LaunchFrame& frame, const std::vector<StageTimes>& times) {
   // Fine enough that straight pieces stand for a program whose rates change by some 0.1 deg/s in a second.
   constexpr double kStep_s = 0.5;
   GuidanceMission mission;
@@ -113,7 +130,10 @@ GuidanceMission BuildMission(const FlightDefinition& definition, const LauncherP
                     target.inclination_rad};
   const auto stage = [&](std::size_t i) {
     const LauncherStack& stack = plant.stacks[i];
-    return GuidedStage{stack.burn, stack.mass.fixed_mass_kg + stack.burn.propellant_mass_kg};
+    // One mass for all of the burn: what leaves during it is gone, or not, by its middle.
+    const unsigned gone = GoneAt(definition.jettison_s, 0.5 * (times[i].ignition_s + times[i].burnout_s));
+    const double fixed_kg = MassOf(plant, static_cast<int>(i), gone).fixed_mass_kg;
+    return GuidedStage{stack.burn, fixed_kg + stack.burn.propellant_mass_kg};
   };
   const std::size_t last = plant.stacks.size() - 1;
   mission.below = stage(last - 1);
@@ -137,8 +157,14 @@ FlightModel::FlightModel(FlightDefinition definition)
                             definition_.program.launch_azimuth_rad);
   AddBending(definition_.vehicle, definition_.autopilot.tick_s, nominal_);
   if (definition_.wind_table) nominal_.environment.wind.tables.push_back(*definition_.wind_table);
+  std::vector<MotorBurn> burns;
+  for (const LauncherStack& stack : nominal_.stacks) burns.push_back(stack.burn);
+  const std::vector<StageTimes> times =
+      BuildTimeline(definition_.vehicle, burns, definition_.autopilot.tick_s, definition_.last_ignition_s);
   std::vector<StageControl> controls;
-  for (const LauncherStack& stack : nominal_.stacks) controls.push_back(BuildStageControl(stack));
+  for (std::size_t i = 0; i < times.size(); ++i)
+    controls.push_back(
+        BuildStageControl(nominal_, static_cast<int>(i), times[i].ignition_s, definition_.jettison_s));
   autopilot_ = BuildAutopilot(definition_.autopilot, std::move(controls),
                               definition_.vehicle.reaction_control.minimum_on_time_s);
   sensors_ = BuildSensors(definition_.vehicle, definition_.autopilot);
@@ -146,7 +172,7 @@ FlightModel::FlightModel(FlightDefinition definition)
   feed_forward_rows_ = TabulateFeedForward(definition_.program, definition_.autopilot,
                                            static_cast<long>(reference_rows_.last_tick) + 1);
   if (definition_.guidance.closed_loop)
-    guidance_mission_ = BuildMission(definition_, nominal_, frame_);
+    guidance_mission_ = BuildMission(definition_, nominal_, frame_, times);
 }
 
 FlightModel FlightModel::WithAutopilot(const AutopilotConfig& autopilot) const {

@@ -44,6 +44,9 @@ struct FlightDefinition {
   std::shared_ptr<const TurbulencePath> turbulence_path = {};
   GuidanceConfig guidance;
   double velocity_reserve_m_s = 0.0;  ///< by which the program arrives faster than the target
+  /// When the reference's ascent lets go of each of the plant's jettisons, s since lift-off: what autopilot
+  /// and guidance know beforehand. Infinite, or missing: never.
+  std::vector<double> jettison_s = {};
 };
 
 /// The reference attitude at the autopilot's ticks, for flights that are flown side by side. A row has 8 doubles: q_IR
@@ -100,7 +103,9 @@ LauncherPlant BuildNominalPlant(const Vehicle& vehicle);
 /// Gives a vehicle with a beam that flies its bending: modes that stay below half the sampling frequency all the
 /// burn.
 void AddBending(const Vehicle& vehicle, double tick_s, LauncherPlant& plant);
-/// Angular acceleration per radian of deflection, over the time since ignition, of a nominal stack.
-StageControl BuildStageControl(const LauncherStack& stack);
+/// Angular acceleration per radian of deflection, over the time since ignition, of a nominal stack that
+/// ignites at `ignition_s`. `jettison_s`: as FlightDefinition's.
+StageControl BuildStageControl(const LauncherPlant& plant, int stack, double ignition_s = 0.0,
+                               const std::vector<double>& jettison_s = {});
 
 }  // namespace dispersa

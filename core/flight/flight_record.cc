@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/dynamics/integrator.h"
+#include "core/dynamics/jettison.h"
 #include "core/dynamics/launcher_lanes.h"
 #include "core/flight/history_columns.h"
 #include "core/flight/sequence.h"
@@ -261,9 +262,23 @@ void FlightRecord::Inject(double altitude_m, const double* y) {
   sums.orbit = ElementsOf(plant.environment.earth, s.p_EoC_I, s.v_IC_I);
 }
 
-void FlightRecord::Separate(int stage, double* y) {
+unsigned FlightRecord::LetGo(int stack, unsigned jettisoned, double time_s, double altitude_m,
+                             double density_kg_m3, double propellant_kg, double* y) {
+  const RigidBodyState s = ReadState(y);
+  const Vector3 ground = s.p_EoC_I.cross(Vector3(0.0, 0.0, -plant.environment.earth.rotation_rate_rad_s));
+  const unsigned due =
+      DueJettisons(plant, stack, jettisoned, {time_s, altitude_m, density_kg_m3, (s.v_IC_I - ground).norm()});
+  if (due != 0) WriteState(AfterJettison(plant, stack, jettisoned, jettisoned | due, propellant_kg, s), y);
+  return due;
+}
+
+void FlightRecord::MassWithout(int stack, unsigned jettisoned, StackMass& mass) const {
+  mass = MassOf(plant, stack, jettisoned);
+}
+
+void FlightRecord::Separate(int stage, unsigned jettisoned, double* y) {
   const std::size_t below = static_cast<std::size_t>(stage);
-  RigidBodyState s = AfterSeparation(plant, stage, ReadState(y));
+  RigidBodyState s = AfterSeparation(plant, stage, jettisoned, ReadState(y));
   s.w_IB_B += Vector3(inputs.tip_off_roll_rad_s[below], inputs.tip_off_pitch_rad_s[below],
                       inputs.tip_off_yaw_rad_s[below]);
   std::fill(y, y + kLauncherSize, 0.0);

@@ -88,8 +88,14 @@ class FlightRecord {
   void HandOver(double time_s, const double* y);
   /// The injection of a flight that completes.
   void Inject(double altitude_m, const double* y);
-  /// Replaces the state by that of the stack above, with its tip-off rates.
-  void Separate(int stage, double* y);
+  /// Lets go of what is due; returns it as bits of LauncherPhase::jettisoned. The state follows the centre of
+  /// gravity.
+  unsigned LetGo(int stack, unsigned jettisoned, double time_s, double altitude_m, double density_kg_m3,
+                 double propellant_kg, double* y);
+  void MassWithout(int stack, unsigned jettisoned, StackMass& mass) const;
+  /// Replaces the state by that of the stack above, with its tip-off rates. `jettisoned`: as in
+  /// LauncherPhase.
+  void Separate(int stage, unsigned jettisoned, double* y);
   /// Advances the state by one of the judges among the integrators instead of the engine's own step. False
   /// when it fails.
   bool Judge(const LauncherPhase& phase, double from_s, double to_s, double* y);

@@ -112,6 +112,9 @@ class StepState {
 
   /// Where the lanes stand: valid after EvaluateStart.
   const Instant<T>& now() const { return start_->instant; }
+  const T& density_kg_m3() const { return start_->around.density_kg_m3; }
+  /// Of the lanes' lowest stages.
+  const T& propellant_kg() const { return start_->masses.propellant_kg; }
   /// The largest bending moment of the lanes' bodies now.
   LargestMoment<T> LargestMomentNow() const {
     const Point& now = *start_;

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "core/dynamics/jettison.h"
 #include "core/flight/launch_frame.h"
 #include "core/flight/orbit.h"
 #include "core/flight/sequence.h"
@@ -50,6 +51,7 @@ struct Flight {
   int step = 0, steps = 1, steps_per_knot = 1;
 
   int stack = 0;
+  unsigned jettisoned = 0;  // LauncherPhase's
   bool burning = false, burnt = false, turning = false;
   double ignition_s = 0.0;
   LaneVector turn_offset_I = lanes::Zero<double>();
@@ -65,7 +67,7 @@ template <class T>
 void SetLane(lanes::Leg<T>& leg, int lane, const AscentModel& model, const Flight& flight) {
   const std::size_t stack = static_cast<std::size_t>(flight.stack);
   SetLane(leg.program, lane, *flight.program);
-  SetLane(leg.stack, lane, model.plant.stacks[stack].mass);
+  SetLane(leg.stack, lane, MassOf(model.plant, flight.stack, flight.jettisoned));
   SetLane(leg.burn, lane, model.plant.stacks[stack].burn);
   SetLane(leg.aero, lane, model.plant.stacks[stack].aerodynamics, *model.plant.stacks[stack].aero_grid);
   SetLane(leg.weather, lane, model.weather);
@@ -142,6 +144,8 @@ class Fleet {
   void GoOn(int lane);
   void SetOut(int lane, double to_s);
   void Happen(int lane, const AscentEvent& event);
+  unsigned DueAt(int lane, double time_s, const LaneVector& p, const LaneVector& v) const;
+  void LetGo(int lane, double from_s, const LaneVector& p, const LaneVector& v);
   void Conclude(int lane, bool completed);
   void Inject(int lane);
 
@@ -155,6 +159,22 @@ class Fleet {
     point.p = LaneOf(p_, lane);
     point.v = LaneOf(v_, lane);
     return point;
+  }
+
+  // The state of a body that turns with its program.
+  RigidBodyState BodyOf(int lane) const {
+    const AscentPoint point = PointOf(lane);
+    RigidBodyState state;
+    state.p_EoC_I = ToEigen(point.p);
+    state.v_IC_I = ToEigen(point.v);
+    const Matrix3 R_IB = AttitudeOf(flights_[lane].frame, ForwardOf(ground_, point));
+    state.q_IB = QuaternionOf(R_IB);
+    state.w_IB_B = R_IB.transpose() * R_IB.col(0).cross(ToEigen(AxisRateOf(ground_, point)));
+    return state;
+  }
+  void SetBody(int lane, const RigidBodyState& state) {
+    SetLane(p_, lane, ToLanes(state.p_EoC_I));
+    SetLane(v_, lane, ToLanes(state.v_IC_I));
   }
 
   const AscentModel& model_;
@@ -207,6 +227,7 @@ void Fleet<T>::TakeOff(int lane, const FlightProgram& program, AscentResult* res
   if (!result) return;
   *result = {};
   result->last_ignition_s = all.last_ignition_s;
+  result->jettison_s.assign(model_.plant.jettisons.size(), HUGE_VAL);
   result->attitude.launch_azimuth_rad = program.launch_azimuth_rad;
   GoOn(lane);
 }
@@ -223,8 +244,74 @@ void Fleet<T>::AdvanceAll() {
     if (options_.record && flights_[0].IsAtKnot())
       Record(flights_[0].frame, ground_, PointOf(0), now, flights_[0].result);
   }
+  const lanes::Vector<T> p = p_, v = v_;
+  const T from_s = time_s_;
   lanes::Step(ground_, leg_, time_s_, next_s_, now.acceleration_I, &p_, &v_);
   time_s_ = next_s_;
+  const unsigned all = (1u << model_.plant.jettisons.size()) - 1u;
+  if (all == 0) return;
+  for (int lane = 0; lane < kWidth; ++lane)
+    if (flights_[lane].result && !flights_[lane].in_reserve && flights_[lane].jettisoned != all)
+      LetGo(lane, Lane(from_s, lane), LaneOf(p, lane), LaneOf(v, lane));
+}
+
+template <class T>
+unsigned Fleet<T>::DueAt(int lane, double time_s, const LaneVector& p, const LaneVector& v) const {
+  const Flight& flight = flights_[lane];
+  const lanes::Surroundings<double> around =
+      lanes::SurroundingsAt(ground_.earth, *ground_.air, PointOf(lane).leg.weather, p);
+  const LaneVector ground = lanes::VelocityOverGround(ground_, p, v);
+  return DueJettisons(
+      model_.plant, flight.stack, flight.jettisoned,
+      {time_s, around.altitude_m, around.density_kg_m3, std::sqrt(lanes::Dot(ground, ground))});
+}
+
+// After a step of a lane that began at `from_s`: what has become due leaves on the first of the flight
+// computer's ticks on which it is due, and the way to the next event begins there.
+template <class T>
+void Fleet<T>::LetGo(int lane, double from_s, const LaneVector& p, const LaneVector& v) {
+  Flight& flight = flights_[lane];
+  if (DueAt(lane, Lane(time_s_, lane), LaneOf(p_, lane), LaneOf(v_, lane)) == 0) return;
+  AscentPoint start = PointOf(lane);
+  start.time_s = from_s;
+  start.p = p;
+  start.v = v;
+  const LaneVector acceleration = InstantOf(ground_, start).acceleration_I;
+  const auto move_to = [&](double time_s) {
+    LaneVector there = p, then = v;
+    lanes::Step(ground_, start.leg, from_s, time_s, acceleration, &there, &then);
+    SetLane(p_, lane, there);
+    SetLane(v_, lane, then);
+    Lane(time_s_, lane) = time_s;
+    return DueAt(lane, time_s, there, then);
+  };
+  const double end_s = Lane(time_s_, lane);
+  long tick = static_cast<long>(std::floor(from_s / model_.tick_s + kSameInstant_s)) + 1;
+  long after = static_cast<long>(std::ceil(end_s / model_.tick_s - kSameInstant_s));
+  while (tick < after) {
+    const long middle = tick + (after - tick) / 2;
+    if (move_to(std::min(static_cast<double>(middle) * model_.tick_s, end_s)) != 0)
+      after = middle;
+    else
+      tick = middle + 1;
+  }
+  const unsigned due = move_to(std::min(static_cast<double>(tick) * model_.tick_s, end_s));
+  const double since_s = Lane(time_s_, lane) - flight.ignition_s;
+  const MotorBurn& burn = model_.plant.stacks[static_cast<std::size_t>(flight.stack)].burn;
+  const double propellant_kg = flight.burning ? burn.Propellant(since_s)
+                               : flight.burnt ? 0.0
+                                              : burn.propellant_mass_kg;
+  SetBody(lane, AfterJettison(model_.plant, flight.stack, flight.jettisoned, flight.jettisoned | due,
+                              propellant_kg, BodyOf(lane)));
+  flight.jettisoned |= due;
+  for (std::size_t i = 0; i < flight.result->jettison_s.size(); ++i)
+    if (due >> i & 1u) flight.result->jettison_s[i] = Lane(time_s_, lane);
+  SetLane(leg_, lane, model_, flight);
+  const double event_s = flight.to_s;
+  if (event_s > Lane(time_s_, lane) + kSameInstant_s) {
+    SetOut(lane, event_s);
+    flight.step = -1;  // the step that has been made was cut short: it does not count
+  }
 }
 
 // From an event, or from lift-off, to the next one.
@@ -293,18 +380,7 @@ void Fleet<T>::Happen(int lane, const AscentEvent& event) {
     }
     case AscentEvent::kSeparation: {
       // The vehicle turns with its program: the stack above leaves with the velocity of its own CG.
-      const AscentPoint point = PointOf(lane);
-      const LaneVector forward = ForwardOf(ground_, point);
-      const LaneVector rate = AxisRateOf(ground_, point);
-      RigidBodyState state;
-      state.p_EoC_I = ToEigen(point.p);
-      state.v_IC_I = ToEigen(point.v);
-      const Matrix3 R_IB = AttitudeOf(flight.frame, forward);
-      state.q_IB = QuaternionOf(R_IB);
-      state.w_IB_B = R_IB.transpose() * R_IB.col(0).cross(ToEigen(rate));
-      state = AfterSeparation(model_.plant, event.stage, state);
-      SetLane(p_, lane, ToLanes(state.p_EoC_I));
-      SetLane(v_, lane, ToLanes(state.v_IC_I));
+      SetBody(lane, AfterSeparation(model_.plant, event.stage, flight.jettisoned, BodyOf(lane)));
       flight.stack = event.stage + 1;
       flight.burnt = false;
       break;

@@ -167,6 +167,10 @@ BeamMasses BuildBeamMasses(const Vehicle& vehicle, int stage, double propellant_
                                 mass_kg * (spread.gyration2_m2.top + Square(length) / 12.0)});
       }
     }
+    // As long as they are carried; of a stack that has let go of them its loads are nothing to speak of.
+    for (const Jettison& j : s.jettisoned)
+      masses.spread.push_back(
+          Spread(j.mass_kg, j.top_station_m, j.bottom_station_m, j.outer_diameter_m, j.inner_diameter_m));
     const bool burning = i == static_cast<std::size_t>(stage);
     const double grain_kg = burning ? propellant_kg : s.propellant_mass_kg;
     const Grain& g = s.grain;

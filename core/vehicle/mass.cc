@@ -27,6 +27,11 @@ void Add(const Tube& tube, StackMass& stack) {
   stack.fixed_axial_inertia_kg_m2 += 0.5 * tube.mass_kg * radii;
 }
 
+Tube TubeOf(const Jettison& jettison) {
+  return {jettison.mass_kg, jettison.top_station_m, jettison.bottom_station_m,
+          0.5 * jettison.outer_diameter_m, 0.5 * jettison.inner_diameter_m};
+}
+
 }  // namespace
 
 MassProperties StackMass::At(double propellant_kg) const {
@@ -41,13 +46,40 @@ double DryMass(const Vehicle& vehicle, int stage) {
   const auto& stages = vehicle.stages;
   const std::size_t i = static_cast<std::size_t>(stage);
   const double above = i + 1 < stages.size() ? stages[i + 1].liftoff_mass_kg : 0.0;
-  return stages[i].liftoff_mass_kg - above - stages[i].propellant_mass_kg;
+  double dry = stages[i].liftoff_mass_kg - above - stages[i].propellant_mass_kg;
+  for (const Jettison& jettison : stages[i].jettisoned) dry -= jettison.mass_kg;
+  return dry;
 }
 
 double PropellantDensity(const Stage& stage) {
   const Grain& g = stage.grain;
   const double area = 0.25 * kPi * (Square(g.outer_diameter_m) - Square(g.inner_diameter_m));
   return stage.propellant_mass_kg / (area * (g.bottom_station_m - g.top_station_m));
+}
+
+std::vector<JettisonedMass> BuildJettisonedMasses(const Vehicle& vehicle) {
+  std::vector<JettisonedMass> all;
+  for (std::size_t i = 0; i < vehicle.stages.size(); ++i)
+    for (const Jettison& jettison : vehicle.stages[i].jettisoned) {
+      StackMass alone;
+      Add(TubeOf(jettison), alone);
+      all.push_back({static_cast<int>(i), alone.fixed_mass_kg, alone.fixed_first_moment_kg_m,
+                     alone.fixed_second_moment_kg_m2, alone.fixed_axial_inertia_kg_m2});
+    }
+  return all;
+}
+
+StackMass Without(StackMass stack, int lowest_stage, const std::vector<JettisonedMass>& jettisons,
+                  unsigned gone) {
+  for (std::size_t i = 0; i < jettisons.size(); ++i) {
+    const JettisonedMass& jettison = jettisons[i];
+    if (!(gone >> i & 1u) || jettison.stage < lowest_stage) continue;
+    stack.fixed_mass_kg -= jettison.mass_kg;
+    stack.fixed_first_moment_kg_m -= jettison.first_moment_kg_m;
+    stack.fixed_second_moment_kg_m2 -= jettison.second_moment_kg_m2;
+    stack.fixed_axial_inertia_kg_m2 -= jettison.axial_inertia_kg_m2;
+  }
+  return stack;
 }
 
 std::vector<StackMass> BuildStackMasses(const Vehicle& vehicle) {
@@ -62,6 +94,7 @@ std::vector<StackMass> BuildStackMasses(const Vehicle& vehicle) {
         Add({dry * e.fraction, e.top_station_m, e.bottom_station_m, 0.5 * e.outer_diameter_m,
              0.5 * e.inner_diameter_m},
             stack);
+      for (const Jettison& jettison : stage.jettisoned) Add(TubeOf(jettison), stack);
       const Grain& g = stage.grain;
       if (i > lowest)
         Add({stage.propellant_mass_kg, g.top_station_m, g.bottom_station_m, 0.5 * g.outer_diameter_m,

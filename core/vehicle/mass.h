@@ -35,11 +35,27 @@ struct StackMass {
   MassProperties At(double propellant_kg) const;
 };
 
-/// Dry mass of a stage: its lift-off mass less what is above and its propellant.
+/// What is jettisoned, as a stack's sums count it. Jettisons are numbered in the order of the stages, and as
+/// each stage lists its own.
+struct JettisonedMass {
+  int stage = 0;  ///< that carries it, 0-based
+  double mass_kg = 0.0;
+  double first_moment_kg_m = 0.0;
+  double second_moment_kg_m2 = 0.0;
+  double axial_inertia_kg_m2 = 0.0;
+};
+std::vector<JettisonedMass> BuildJettisonedMasses(const Vehicle& vehicle);
+
+/// A stack without what has been jettisoned: bit i of `gone` stands for jettison i, whether the stack carried
+/// it or not.
+StackMass Without(StackMass stack, int lowest_stage, const std::vector<JettisonedMass>& jettisons,
+                  unsigned gone);
+
+/// Dry mass of a stage: its lift-off mass less what is above, its propellant and what it jettisons.
 double DryMass(const Vehicle& vehicle, int stage);
 /// Propellant density that the grain's volume implies, kg/m³.
 double PropellantDensity(const Stage& stage);
-/// One entry a stack; stack i has stages i, i+1, ... attached.
+/// One entry a stack; stack i has stages i, i+1, ... attached, with everything that they carry at lift-off.
 std::vector<StackMass> BuildStackMasses(const Vehicle& vehicle);
 
 }  // namespace dispersa

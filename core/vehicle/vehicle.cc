@@ -83,6 +83,13 @@ void CheckStage(const Vehicle& vehicle, std::size_t i, Checker& check) {
               stage.bottom_station_m, check);
     fractions += e.fraction;
   }
+  for (std::size_t k = 0; k < stage.jettisoned.size(); ++k) {
+    const Jettison& jettison = stage.jettisoned[k];
+    const std::string element = path + ".jettisoned[" + std::to_string(k) + "]";
+    check.Positive(jettison.mass_kg, element + ".mass_kg");
+    CheckTube(element, jettison.top_station_m, jettison.bottom_station_m, jettison.outer_diameter_m,
+              jettison.inner_diameter_m, stage.bottom_station_m, check);
+  }
   // Fractions are written with a few digits.
   check.Require(std::fabs(fractions - 1.0) < 1e-6, path + ".structure",
                 "has fractions that sum to " + std::to_string(fractions), "fractions that sum to 1");
@@ -140,6 +147,20 @@ void CheckTables(const Vehicle& vehicle, Checker& check) {
   }
 }
 
+void CheckJettisons(const Vehicle& vehicle, Checker& check) {
+  int count = 0;
+  for (std::size_t i = 0; i < vehicle.stages.size(); ++i) {
+    const std::string path = "stages[" + std::to_string(i) + "].jettisoned";
+    const std::size_t here = vehicle.stages[i].jettisoned.size();
+    count += static_cast<int>(here);
+    check.Require(count <= kMaxJettisons, path, "makes " + std::to_string(count) + " in all",
+                  "up to " + std::to_string(kMaxJettisons) + " of a vehicle");
+    check.Require(here == 0 || !vehicle.structure_beam, path,
+                  "changes the modes of a vehicle that bends, which is not modelled",
+                  "none beside structure_beam");
+  }
+}
+
 }  // namespace
 
 std::vector<VehicleProblem> Problems(const Vehicle& vehicle) {
@@ -164,6 +185,7 @@ std::vector<VehicleProblem> Problems(const Vehicle& vehicle) {
   for (const VehicleProblem& problem : ProfileProblems(vehicle.profile))
     check.Require(false, problem.path, problem.message, problem.allowed);
   CheckTables(vehicle, check);
+  CheckJettisons(vehicle, check);
   const ReactionControl& rcs = vehicle.reaction_control;
   if (count > 1) {
     check.Positive(rcs.thrust_n, "reaction_control.thrust_n");

@@ -67,6 +67,28 @@ struct Gimbal {
   double resolution_rad = 0.0;  ///< step in which the command reaches the servo
 };
 
+/// What makes the flight computer let go of a mass.
+enum class JettisonTrigger {
+  kAtTime,      ///< s since lift-off
+  kAtAltitude,  ///< m, geodetic
+  kAtHeatFlux,  ///< W/m², free-molecular: has fallen to this; Jettison says where it counts
+};
+
+/// A mass on the axis that leaves while a stage is attached: fairing, skirt, escape tower. A tube, let go of
+/// at rest against the body: no impulse, no flow about it; what is left keeps its aerodynamics.
+struct Jettison {
+  std::string name;
+  double mass_kg = 0.0;  ///< part of the stage's lift-off mass, beside its dry mass
+  double top_station_m = 0.0;
+  double bottom_station_m = 0.0;
+  double outer_diameter_m = 0.0;
+  double inner_diameter_m = 0.0;
+  JettisonTrigger trigger = JettisonTrigger::kAtTime;
+  double threshold = 0.0;
+};
+/// Of a vehicle, at most.
+inline constexpr int kMaxJettisons = 8;
+
 enum class IgnitionTrigger {
   kLiftOff,           ///< the first stage
   kBurnoutDetection,  ///< `delay_s` after the stage below has separated
@@ -82,6 +104,7 @@ struct Stage {
   Motor motor;
   Grain grain;
   std::vector<MassElement> structure;  ///< the dry mass; the fractions sum to 1
+  std::vector<Jettison> jettisoned;
   Gimbal gimbal;
   IgnitionTrigger ignition = IgnitionTrigger::kLiftOff;
   double ignition_delay_s = 0.0;    ///< after separation of the stage below (kBurnoutDetection)

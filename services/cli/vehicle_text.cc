@@ -17,6 +17,15 @@ double TotalDeltaV(const std::vector<StageFigures>& figures) {
   return sum_m_s;
 }
 
+std::string JettisonText(const Stage& stage, const Jettison& jettison) {
+  const char* when = jettison.trigger == JettisonTrigger::kAtTime       ? "at {} s"
+                     : jettison.trigger == JettisonTrigger::kAtAltitude ? "at {} m"
+                                                                        : "at a heat flux of {} W/m2";
+  return fmt::format("jettisoned from {}: {}, {} kg, {}; it counts into every mass above\n", stage.name,
+                     jettison.name, ReadableText(jettison.mass_kg),
+                     fmt::format(fmt::runtime(when), ReadableText(jettison.threshold)));
+}
+
 }  // namespace
 
 std::string VehicleText(const Vehicle& vehicle) {
@@ -43,6 +52,8 @@ std::string VehicleText(const Vehicle& vehicle) {
       "dry/own of the last stage with its payload; dv and Isp in vacuum, without losses; T/W of stage 1 "
       "where it "
       "is released\n";
+  for (const Stage& stage : vehicle.stages)
+    for (const Jettison& jettison : stage.jettisoned) text += JettisonText(stage, jettison);
   std::string limits;
   for (const StructuralLimit& limit : AllStructuralLimits()) {
     const double value = vehicle.limits.*limit.limit;

@@ -34,6 +34,13 @@ FlightDefinition Definition(const std::string& autopilot, bool with_winds, bool 
     pitch.schedule = {{1, 20.0, {20.0, 8.0}, 0.0, {{.poles_rad_s = 60.0, .poles_damping = 0.7}}},
                       {3, 10.0, {30.0, 9.0}, 0.0, {}}};
   }
+  if (autopilot == "pd") {  // masses that leave at times of their own, of flights in different stages
+    std::vector<Stage>& stages = definition.vehicle.stages;
+    stages[0].jettisoned = {{"skirt", 40.0, 14.0, 15.0, 1.2, 1.0, JettisonTrigger::kAtTime, 20.0}};
+    stages[3].jettisoned = {{"tower", 15.0, 0.1, 0.5, 0.2, 0.1, JettisonTrigger::kAtAltitude, 60e3},
+                            {"fairing", 50.0, 0.2, 2.5, 1.0, 0.97, JettisonTrigger::kAtHeatFlux, 1135.0}};
+    definition.jettison_s = {20.0, 85.0, 180.0};
+  }
   if (autopilot == "flexible")
     definition.vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml");
   if (autopilot == "pid_aac" ||

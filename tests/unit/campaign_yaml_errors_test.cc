@@ -39,6 +39,26 @@ constexpr BadInput kBadInputs[] = {
      "campaign.yaml:3:1: zebra: unknown key 'zebra', allowed: autopilot, correlations, "
      "description, dispersions, guidance, name, optimize, reference, requirements, sampling, schema, "
      "vehicle, verdicts\n"},
+    {"JettisonWithoutTrigger", "vehicle.yaml", "    gimbal:",
+     "    jettisoned:\n      - {name: skirt, mass_kg: 10, top_station_m: 1, bottom_station_m: 2, "
+     "outer_diameter_m: 1, at: {}}\n    gimbal:",
+     "vehicle.yaml",
+     "vehicle.yaml:17:100: stages[0].jettisoned[0].at: missing key 'time_s' or 'altitude_km' or "
+     "'heat_flux_w_m2', allowed: one of them\n"},
+    {"JettisonWithTwo", "vehicle.yaml", "    gimbal:",
+     "    jettisoned:\n      - {name: skirt, mass_kg: 10, top_station_m: 1, bottom_station_m: 2, "
+     "outer_diameter_m: 1, at: {time_s: 5, altitude_km: 50}}\n    gimbal:",
+     "vehicle.yaml",
+     "vehicle.yaml:17:100: stages[0].jettisoned[0].at: says more than once when, allowed: time_s, "
+     "altitude_km or "
+     "heat_flux_w_m2\n"},
+    {"JettisonOutsideTheStage", "vehicle.yaml", "    gimbal:",
+     "    jettisoned:\n      - {name: skirt, mass_kg: 10, top_station_m: 1, bottom_station_m: 200, "
+     "outer_diameter_m: 1, at: {time_s: 5}}\n    gimbal:",
+     "vehicle.yaml",
+     "vehicle.yaml:17:72: stages[0].jettisoned[0].bottom_station_m: lies aft of the stage's "
+     "bottom_station_m, "
+     "allowed: at most bottom_station_m of the stage\n"},
     {"UnknownSeverity", "campaign.yaml", "dispersions:\n", "dispersions:\n  turbulence: {severity: rough}\n",
      "campaign.yaml",
      "campaign.yaml:8:26: dispersions.turbulence.severity: 'rough' is not a choice, allowed: one of light, "

@@ -148,7 +148,7 @@ TEST(StartStage, AugmentationStartsEveryStageAnew) {
 
 TEST(BuildStageControl, IsThrustTimesLeverOverInertia) {
   const LauncherPlant plant = BuildNominalPlant(SampleVehicle());
-  const StageControl control = BuildStageControl(plant.stacks[1]);
+  const StageControl control = BuildStageControl(plant, 1);
   for (const double since : {0.0, 20.0}) {
     const MassProperties m = plant.stacks[1].mass.At(1000.0 * (1.0 - since / 20.0));
     // Two of four nozzles in pitch, all four on a radius of 0.3 m in roll; table nodes fall on both times.

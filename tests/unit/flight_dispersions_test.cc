@@ -126,7 +126,8 @@ TEST(Dispersions, TheUpperStackLeavesWithTheVelocityOfItsOwnOffsetCg) {
   state.w_IB_B = {0.1, 0.0, 0.0};
   const StackMass& upper = offset.stacks[1].mass;
   const double aside = 0.02 * upper.fixed_mass_kg / (upper.fixed_mass_kg + upper.propellant_mass_kg);
-  const RigidBodyState off = AfterSeparation(offset, 0, state), on = AfterSeparation(straight, 0, state);
+  const RigidBodyState off = AfterSeparation(offset, 0, 0u, state),
+                       on = AfterSeparation(straight, 0, 0u, state);
   EXPECT_NEAR((off.p_EoC_I - on.p_EoC_I - Vector3(0.0, aside, 0.0)).norm(), 0.0, 1e-15);
   EXPECT_NEAR((off.v_IC_I - on.v_IC_I - Vector3(0.0, 0.0, 0.1 * aside)).norm(), 0.0, 1e-15);
 }

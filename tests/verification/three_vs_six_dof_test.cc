@@ -60,7 +60,7 @@ class SixDof {
     RigidBodyState s{p(), v(), steering_(time_s_, p(), v()), Vector3::Zero()};
     const Vector3 axis_rate = (axis(kDifference_s) - axis(-kDifference_s)) / (2.0 * kDifference_s);
     s.w_IB_B = Rotate(Inverse(s.q_IB), axis(0.0).cross(axis_rate));
-    s = AfterSeparation(equations_.plant(), phase_.stack, s);
+    s = AfterSeparation(equations_.plant(), phase_.stack, 0u, s);
     SetMotion(s.p_EoC_I, s.v_IC_I);
     ++phase_.stack;
     phase_.burnt = false;

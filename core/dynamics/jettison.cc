@@ -1,0 +1,69 @@
+#include "core/dynamics/jettison.h"
+
+#include "core/math/functions.h"
+
+namespace dispersa {
+
+namespace {
+
+// From the centre of gravity of one stack to that of another, in the body: lateral moments stay with what is
+// left, whose mass has changed.
+Vector3 CgStep(const LauncherPlant& plant, const LauncherStack& from_stack, const MassProperties& from,
+               const LauncherStack& to_stack, const MassProperties& to) {
+  const auto aside = [&](double LauncherStack::*moment) {
+    return to_stack.*moment / to.mass_kg - from_stack.*moment / from.mass_kg;
+  };
+  return Vector3((from.cg_station_m - to.cg_station_m) * plant.cg_factor,
+                 aside(&LauncherStack::lateral_moment_y_kg_m), aside(&LauncherStack::lateral_moment_z_kg_m));
+}
+
+const LauncherStack& StackOf(const LauncherPlant& plant, int stack) {
+  return plant.stacks[static_cast<std::size_t>(stack)];
+}
+
+}  // namespace
+
+StackMass MassOf(const LauncherPlant& plant, int stack, unsigned jettisoned) {
+  const StackMass& whole = StackOf(plant, stack).mass;
+  return jettisoned == 0 ? whole : Without(whole, stack, plant.jettisoned_masses, jettisoned);
+}
+
+double HeatFlux(const JettisonSight& sight) {
+  return 0.5 * sight.density_kg_m3 * sight.ground_speed_m_s * Square(sight.ground_speed_m_s);
+}
+
+unsigned DueJettisons(const LauncherPlant& plant, int stack, unsigned jettisoned,
+                      const JettisonSight& sight) {
+  const auto is_due = [&](const Jettison& jettison) {
+    switch (jettison.trigger) {
+      case JettisonTrigger::kAtTime:
+        return sight.time_s >= jettison.threshold;
+      case JettisonTrigger::kAtAltitude:
+        return sight.altitude_m >= jettison.threshold;
+      case JettisonTrigger::kAtHeatFlux:
+        return sight.altitude_m >= kFreeMolecularAltitude_m && HeatFlux(sight) <= jettison.threshold;
+    }
+    return false;
+  };
+  unsigned due = 0;
+  for (std::size_t i = 0; i < plant.jettisons.size(); ++i)
+    if (!(jettisoned >> i & 1u) && plant.jettisoned_masses[i].stage >= stack && is_due(plant.jettisons[i]))
+      due |= 1u << i;
+  return due;
+}
+
+RigidBodyState AfterJettison(const LauncherPlant& plant, int stack, unsigned before, unsigned after,
+                             double propellant_kg, const RigidBodyState& state) {
+  const LauncherStack& same = StackOf(plant, stack);
+  return AtPoint(state, CgStep(plant, same, MassOf(plant, stack, before).At(propellant_kg), same,
+                               MassOf(plant, stack, after).At(propellant_kg)));
+}
+
+RigidBodyState AfterSeparation(const LauncherPlant& plant, int below, unsigned jettisoned,
+                               const RigidBodyState& state) {
+  const StackMass upper = MassOf(plant, below + 1, jettisoned);
+  return AtPoint(state, CgStep(plant, StackOf(plant, below), MassOf(plant, below, jettisoned).At(0.0),
+                               StackOf(plant, below + 1), upper.At(upper.propellant_mass_kg)));
+}
+
+}  // namespace dispersa
