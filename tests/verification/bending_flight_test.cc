@@ -339,7 +339,7 @@ double GrowthWithDelay(const FlightModel& model, int stage, int ticks) {
 // holds such a delay as long as nothing grows much, and no longer.
 TEST(BendingFlight, MarginsMeasuredInFlightAreTheComputedOnes) {
   constexpr double kNoticed = 3.0;  // twentyfold
-  for (const char* autopilot : {"flexible", "flexible_scheduled"}) {
+  for (const char* autopilot : {"flexible", "flexible_unscheduled"}) {
     FlightDefinition definition = Slv4Definition(DISPERSA_CAMPAIGNS, autopilot);
     definition.vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml");
     const FlightModel model(definition);
