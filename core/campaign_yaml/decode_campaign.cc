@@ -13,6 +13,7 @@
 #include "core/flight/engine_version.h"
 #include "core/flight/metrics.h"
 #include "core/flight/sensor_model.h"
+#include "core/flight/step_limits.h"
 #include "core/flight/structural_limits.h"
 #include "core/math/functions.h"
 
@@ -471,6 +472,9 @@ DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vect
     if (problems.empty())
       AddStructProblems(GyroProblems(campaign.vehicle, campaign.autopilot), *autopilot,
                         PathOfPart(*autopilot, root, "autopilot"), problems);
+    if (problems.empty())
+      AddStructProblems(StepProblems(campaign.vehicle, campaign.autopilot.tick_s), vehicle,
+                        PathOfPart(vehicle, root, "vehicle"), problems);
   }
   if (const InputNode* guidance = map.Optional("guidance"))
     campaign.guidance = DecodeGuidance(*guidance, campaign.vehicle, problems);
@@ -478,7 +482,7 @@ DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vect
   if (sampling != nullptr) campaign.sampling = DecodeSampling(*sampling, "sampling", problems);
   const std::size_t before = problems.size();
   if (const InputNode* dispersions = map.Optional("dispersions")) {
-    DecodeDispersions(*dispersions, "dispersions", stages, campaign, problems);
+    DecodeDispersions(*dispersions, "dispersions", campaign, problems);
   }
   if (const InputNode* table = sampling == nullptr ? nullptr : sampling->Find("table")) {
     DecodeListTable(*table, table->file == root.file ? "sampling.table" : "", campaign, problems);

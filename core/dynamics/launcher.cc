@@ -98,8 +98,9 @@ RigidBodyState AfterSeparation(const LauncherPlant& plant, int below, const Rigi
   const auto aside = [&](double LauncherStack::*moment) {
     return new_stack.*moment / new_mass.mass_kg - old_stack.*moment / old_mass.mass_kg;
   };
-  return AtPoint(state, Vector3((old_mass.cg_station_m - new_mass.cg_station_m) * plant.cg_factor,
-                                aside(&LauncherStack::lateral_moment_y_kg_m),
+  const double ahead_m =
+      old_mass.cg_station_m * old_stack.cg_factor - new_mass.cg_station_m * new_stack.cg_factor;
+  return AtPoint(state, Vector3(ahead_m * plant.cg_factor, aside(&LauncherStack::lateral_moment_y_kg_m),
                                 aside(&LauncherStack::lateral_moment_z_kg_m)));
 }
 
@@ -129,6 +130,10 @@ LauncherInstant LauncherModel::Evaluate(const LauncherPhase& phase, double time_
   now.loads.force_n = ToEigen(loads.force_n);
   now.loads.inertia_kg_m2 =
       Vector3(masses.axial_kg_m2, masses.transverse_kg_m2, masses.transverse_kg_m2).asDiagonal();
+  Matrix3& inertia = now.loads.inertia_kg_m2;
+  inertia(0, 1) = inertia(1, 0) = -one.plant.product_xy_kg_m2;
+  inertia(0, 2) = inertia(2, 0) = -one.plant.product_xz_kg_m2;
+  inertia(1, 2) = inertia(2, 1) = -one.plant.product_yz_kg_m2;
   now.loads.inertia_rate_kg_m2_s =
       -loads.flow_kg_s *
       Matrix3(Vector3(masses.axial_per_kg_m2, masses.transverse_per_kg_m2, masses.transverse_per_kg_m2)
