@@ -508,6 +508,17 @@ DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vect
 
   if (HasLimits(campaign.vehicle.limits)) RequireLimitsKept(plan, campaign.requirements);
 
+  const double on_time_s = campaign.vehicle.reaction_control.minimum_on_time_s;
+  if (warnings != nullptr && problems.empty() && flies && on_time_s > 0.0 &&
+      campaign.autopilot.tick_s > on_time_s * (1.0 + 1e-9)) {
+    std::string path;
+    const InputNode& at = FindField(vehicle, "reaction_control.minimum_on_time_s", &path);
+    const std::string part = PathOfPart(vehicle, root, "vehicle");
+    AddProblem(*warnings, at, part.empty() ? path : part + "." + path,
+               "thrusters fire for whole ticks of " + FormatRounded(campaign.autopilot.tick_s) +
+                   " s, which is longer than they have to",
+               "at least a tick of the autopilot");
+  }
   if (warnings != nullptr && problems.empty() && !campaign.reference.target_missed.empty()) {
     AddProblem(
         *warnings, *reference->Find("target_missed"),

@@ -52,11 +52,15 @@ class FlightRecord::JudgedMotion {
  public:
   JudgedMotion(const LauncherModel& equations, Scheme scheme)
       : equations_(equations),
+        is_fixed_(scheme == Scheme::kRungeKutta4),
         tolerances_(AbsoluteTolerances()),
         integrator_(scheme, equations.plant().state_size(), &Rhs, this, tolerances_.data()) {}
 
   bool Advance(const LauncherPhase& phase, double from_s, double to_s, int steps, double* y) {
     phase_ = phase;
+    // An explicit method is unstable where its step is longer than the fastest part's own motion.
+    if (is_fixed_)
+      steps = lanes::StepsOver(FastestPart(equations_.plant(), phase.stack), to_s - from_s, steps);
     const Gimbal& gimbal = equations_.plant().stacks[static_cast<std::size_t>(phase.stack)].gimbal;
     if (gimbal.friction_rad > 0.0) {
       if (!SlideTo(gimbal, from_s, to_s, steps, y)) return false;
@@ -138,6 +142,7 @@ class FlightRecord::JudgedMotion {
 
   const LauncherModel& equations_;
   LauncherPhase phase_;
+  const bool is_fixed_;  ///< its steps do not find their own length
   std::array<double, kLauncherSize> tolerances_;
   Integrator integrator_;
 };

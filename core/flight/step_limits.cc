@@ -1,7 +1,6 @@
 #include "core/flight/step_limits.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 
 #include "core/flight/dispersed_vehicle.h"
@@ -27,17 +26,19 @@ void Take(const std::string& part, double rad_s, double tick_s, double limit_rad
     greatest = {fraction, part + " (" + Text(rad_s / kTwoPi) + " Hz)", limit_rad / tick_s / kTwoPi};
 }
 
-// Of every mode that flies, at any level and with the flight's factor.
-void TakeModes(const LauncherPlant& plant, std::size_t stack, double tick_s, StepUse& greatest) {
+// f(mode, its highest frequency over the burn in either plane, with the flight's factor) of every mode that flies.
+template <typename F>
+void EachMode(const LauncherPlant& plant, std::size_t stack, F f) {
   const BendingTable* table = plant.stacks[stack].bending.get();
   if (table == nullptr) return;
-  for (int plane = 0; plane < table->planes; ++plane)
-    for (int mode = 0; mode < table->modes; ++mode)
+  for (int mode = 0; mode < table->modes; ++mode) {
+    double highest_rad_s = 0.0;
+    for (int plane = 0; plane < table->planes; ++plane)
       for (std::size_t level = 0; level < table->propellant_kg.size(); ++level)
-        Take("bending mode " + std::to_string(mode + 1) + " of stage " + std::to_string(stack + 1),
-             plant.bending.frequency[static_cast<std::size_t>(mode)] *
-                 table->Row(plane, static_cast<int>(level), mode)[BendingTable::kFrequency],
-             tick_s, kModeLimit_rad, greatest);
+        highest_rad_s = std::max(
+            highest_rad_s, table->Row(plane, static_cast<int>(level), mode)[BendingTable::kFrequency]);
+    f(mode, plant.bending.frequency[static_cast<std::size_t>(mode)] * highest_rad_s);
+  }
 }
 
 // Sylvester's criterion for the tensor of a stack that has burnt out, where the moments are least.
@@ -57,9 +58,19 @@ StepUse GreatestStepUse(const LauncherPlant& plant, double tick_s) {
     const Gimbal& gimbal = plant.stacks[i].gimbal;
     Take("the actuators of stage " + std::to_string(i + 1), gimbal.bandwidth_rad_s, tick_s,
          ActuatorLimit(gimbal.nozzle_inertia_kg_m2), greatest);
-    TakeModes(plant, i, tick_s, greatest);
+    EachMode(plant, i, [&](int mode, double rad_s) {
+      Take("bending mode " + std::to_string(mode + 1) + " of stage " + std::to_string(i + 1), rad_s, tick_s,
+           kModeLimit_rad, greatest);
+    });
   }
   return greatest;
+}
+
+double FastestPart(const LauncherPlant& plant, int stack) {
+  const auto i = static_cast<std::size_t>(stack);
+  double fastest_rad_s = plant.stacks[i].gimbal.bandwidth_rad_s;
+  EachMode(plant, i, [&](int, double rad_s) { fastest_rad_s = std::max(fastest_rad_s, rad_s); });
+  return fastest_rad_s;
 }
 
 std::string RefusalOf(const Vehicle& vehicle, const FlightInputs& in, const LauncherPlant& plant,

@@ -33,6 +33,8 @@ struct StepUse {
   double limit_hz = 0.0;
 };
 StepUse GreatestStepUse(const LauncherPlant& plant, double tick_s);
+/// The highest natural frequency of a stack's actuators and bending modes, rad/s.
+double FastestPart(const LauncherPlant& plant, int stack);
 
 /// Why a flight with these inputs and their plant cannot be computed, as a sentence; empty if it can.
 std::string RefusalOf(const Vehicle& vehicle, const FlightInputs& inputs, const LauncherPlant& plant,
