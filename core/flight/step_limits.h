@@ -12,6 +12,7 @@
 
 #include "core/dynamics/launcher.h"
 #include "core/flight/flight_inputs.h"
+#include "core/math/constants.h"
 #include "core/vehicle/vehicle.h"
 
 namespace dispersa {
@@ -20,11 +21,11 @@ namespace dispersa {
 inline constexpr double kActuatorLimit_rad = 10.0;
 /// Of nozzles whose turning accelerates the body, by the acceleration at those three instants: 32 Hz.
 inline constexpr double kHeavyActuatorLimit_rad = 2.0;
-/// Bending modes: half the sampling frequency.
-inline constexpr double kModeLimit_rad = 3.14159265358979323846;
-
 /// From this share of a limit on a case is flagged.
 inline constexpr double kNearStepLimit = 0.8;
+/// Bending modes: flagged beyond half the sampling frequency, below which nominal ones fly (AddBending). What the
+/// autopilot then sees of one is its alias, as of a real one; what the body feels of it is still its own motion.
+inline constexpr double kModeLimit_rad = kPi / kNearStepLimit;
 
 /// The part of a vehicle that comes nearest to its limit.
 struct StepUse {
