@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "core/math/functions.h"
+#include "core/campaign/drawn_value.h"
 #include "core/random/draws.h"
 #include "core/random/normal.h"
 
@@ -36,47 +36,6 @@ std::vector<std::size_t> Factors(const Campaign& campaign) {
 bool IsFactor(int column) {
   constexpr std::string_view kMark = "_factor";
   return InputColumns()[static_cast<std::size_t>(column)].name.find(kMark) != std::string::npos;
-}
-
-// The element of a list that a uniform number in (0, 1) selects.
-double Select(const ScalarDistribution& d, double uniform) {
-  std::size_t index = 0;
-  if (d.weights.empty()) {
-    index = static_cast<std::size_t>(uniform * static_cast<double>(d.values.size()));
-  } else {
-    double total = 0.0;
-    for (const double weight : d.weights) total += weight;
-    double sum = d.weights[0];
-    while (index + 1 < d.values.size() && uniform * total >= sum) sum += d.weights[++index];
-  }
-  return d.values[std::min(index, d.values.size() - 1)];
-}
-
-// The quantile of a sample, linear between its order statistics.
-double SampleQuantile(const std::vector<double>& ascending, double uniform) {
-  const double position = uniform * static_cast<double>(ascending.size() - 1);
-  const auto below = static_cast<std::size_t>(position);
-  if (below + 1 >= ascending.size()) return ascending.back();
-  const double share = position - static_cast<double>(below);
-  return ascending[below] + share * (ascending[below + 1] - ascending[below]);
-}
-
-double Triangular(const ScalarDistribution& d, double uniform) {
-  const double range = d.high - d.low;
-  const double rising = (d.nominal - d.low) / range;  // probability below the mode
-  return uniform < rising ? d.low + Sqrt(uniform * range * (d.nominal - d.low))
-                          : d.high - Sqrt((1.0 - uniform) * range * (d.high - d.nominal));
-}
-
-// The probability below x, by bisection: the inverse is at hand, and has the same bits on every machine.
-double NormalProbability(double x) {
-  double low = 0.0;
-  double high = 1.0;
-  for (int i = 0; i < 80; ++i) {
-    const double middle = 0.5 * (low + high);
-    (InverseNormal(middle) < x ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
 }
 
 // The dimension of Sobol's sequence that belongs to each dispersion: that of the first input which it feeds.
@@ -123,13 +82,8 @@ CaseDesign::CaseDesign(const Campaign& campaign)
       dispersions_(campaign.dispersions),
       factors_(Factors(campaign)),
       size_(DesignSize(campaign)) {
-  for (const Dispersion& dispersion : dispersions_) {
-    const ScalarDistribution& d = dispersion.distribution;
-    const bool truncated = d.kind == Distribution::kTruncatedNormal;
-    truncation_.push_back(truncated ? std::array{NormalProbability((d.low - d.nominal) / d.sigma),
-                                                 NormalProbability((d.high - d.nominal) / d.sigma)}
-                                    : std::array{0.0, 1.0});
-  }
+  for (const Dispersion& dispersion : dispersions_)
+    truncation_.push_back(TruncationOf(dispersion.distribution));
   std::vector<std::string> names;
   for (const Dispersion& d : dispersions_) names.push_back(d.name);
   replicate_size_ = sampling_.cases / sampling_.replicates;
@@ -185,31 +139,13 @@ double CaseDesign::Value(std::uint64_t case_index, std::size_t dispersion) const
     }
   }
   switch (d.kind) {
+    case Distribution::kConstant:
+      return d.values.front();
     case Distribution::kNormal:
       return d.nominal + d.sigma * Normal(case_index, dispersion);
-    case Distribution::kTruncatedNormal: {
-      const auto& [from, to] = truncation_[dispersion];
-      const double draw = InverseNormal(from + (to - from) * Uniform(case_index, dispersion));
-      return Clamp(d.nominal + d.sigma * draw, d.low, d.high);  // of rounding alone
-    }
-    case Distribution::kLogNormal:
-      return d.nominal * Exp(d.sigma * InverseNormal(Uniform(case_index, dispersion)));
-    case Distribution::kRayleigh:
-      return d.sigma * Sqrt(-2.0 * Log(Uniform(case_index, dispersion)));
-    case Distribution::kTriangular:
-      return Triangular(d, Uniform(case_index, dispersion));
-    case Distribution::kEmpirical:
-      return SampleQuantile(d.values, Uniform(case_index, dispersion));
-    case Distribution::kUniform:
-      return d.low + (d.high - d.low) * Uniform(case_index, dispersion);
-    case Distribution::kTwoPoint:
-      return Uniform(case_index, dispersion) < 0.5 ? d.low : d.high;
-    case Distribution::kValues:
-      return Select(d, Uniform(case_index, dispersion));
-    case Distribution::kConstant:
-      break;
+    default:
+      return DrawnValue(d, truncation_[dispersion], Uniform(case_index, dispersion));
   }
-  return d.values.front();
 }
 
 FlightInputs CaseDesign::Draw(std::uint64_t case_index) const {

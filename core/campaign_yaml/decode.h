@@ -26,8 +26,9 @@ Reference DecodeReference(const InputNode& node, const std::string& path,
 /// A reference's `problem`, a campaign's `optimize`.
 TrajectoryProblem DecodeTrajectoryProblem(const InputNode& node, const std::string& path,
                                           std::vector<InputProblem>& problems);
-/// A campaign's `dispersions`: fills dispersions, wind_statistics and wind_table. `stages` as above.
-void DecodeDispersions(const InputNode& node, const std::string& path, int stages, Campaign& campaign,
+/// A campaign's `dispersions`: fills dispersions, wind_statistics and wind_table. The campaign has its
+/// vehicle, or one without stages if that is unknown (then nothing is checked against it).
+void DecodeDispersions(const InputNode& node, const std::string& path, Campaign& campaign,
                        std::vector<InputProblem>& problems);
 
 }  // namespace dispersa

@@ -13,6 +13,7 @@
 #include "core/flight/engine_version.h"
 #include "core/flight/metrics.h"
 #include "core/flight/sensor_model.h"
+#include "core/flight/step_limits.h"
 #include "core/flight/structural_limits.h"
 #include "core/math/functions.h"
 
@@ -471,6 +472,9 @@ DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vect
     if (problems.empty())
       AddStructProblems(GyroProblems(campaign.vehicle, campaign.autopilot), *autopilot,
                         PathOfPart(*autopilot, root, "autopilot"), problems);
+    if (problems.empty())
+      AddStructProblems(StepProblems(campaign.vehicle, campaign.autopilot.tick_s), vehicle,
+                        PathOfPart(vehicle, root, "vehicle"), problems);
   }
   if (const InputNode* guidance = map.Optional("guidance"))
     campaign.guidance = DecodeGuidance(*guidance, campaign.vehicle, problems);
@@ -478,7 +482,7 @@ DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vect
   if (sampling != nullptr) campaign.sampling = DecodeSampling(*sampling, "sampling", problems);
   const std::size_t before = problems.size();
   if (const InputNode* dispersions = map.Optional("dispersions")) {
-    DecodeDispersions(*dispersions, "dispersions", stages, campaign, problems);
+    DecodeDispersions(*dispersions, "dispersions", campaign, problems);
   }
   if (const InputNode* table = sampling == nullptr ? nullptr : sampling->Find("table")) {
     DecodeListTable(*table, table->file == root.file ? "sampling.table" : "", campaign, problems);
@@ -504,6 +508,17 @@ DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vect
 
   if (HasLimits(campaign.vehicle.limits)) RequireLimitsKept(plan, campaign.requirements);
 
+  const double on_time_s = campaign.vehicle.reaction_control.minimum_on_time_s;
+  if (warnings != nullptr && problems.empty() && flies && on_time_s > 0.0 &&
+      campaign.autopilot.tick_s > on_time_s * (1.0 + 1e-9)) {
+    std::string path;
+    const InputNode& at = FindField(vehicle, "reaction_control.minimum_on_time_s", &path);
+    const std::string part = PathOfPart(vehicle, root, "vehicle");
+    AddProblem(*warnings, at, part.empty() ? path : part + "." + path,
+               "thrusters fire for whole ticks of " + FormatRounded(campaign.autopilot.tick_s) +
+                   " s, which is longer than they have to",
+               "at least a tick of the autopilot");
+  }
   if (warnings != nullptr && problems.empty() && !campaign.reference.target_missed.empty()) {
     AddProblem(
         *warnings, *reference->Find("target_missed"),

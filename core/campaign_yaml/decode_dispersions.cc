@@ -1,10 +1,17 @@
+#include <algorithm>
 #include <cassert>
 #include <functional>
+#include <limits>
+#include <optional>
+#include <set>
 
 #include "core/campaign_yaml/decode.h"
 #include "core/campaign_yaml/decode_distribution.h"
+#include "core/campaign_yaml/number_text.h"
 #include "core/campaign_yaml/yaml_reader.h"
 #include "core/environment/turbulence.h"
+#include "core/flight/dispersed_vehicle.h"
+#include "core/vehicle/mass.h"
 
 namespace dispersa {
 namespace {
@@ -29,33 +36,41 @@ struct StageColumn {
 
 class DispersionDecoder {
  public:
-  DispersionDecoder(const InputNode& node, const std::string& path, int stages, Campaign& campaign,
-                    ProblemList& problems)
+  DispersionDecoder(const InputNode& node, const std::string& path, Campaign& campaign, ProblemList& problems)
       : map_(node, path, problems),
-        stages_(stages > 0 ? stages : kMaxStages),
+        vehicle_(campaign.vehicle),
+        is_sound_(problems.empty()),
+        stages_(vehicle_.stages.empty() ? kMaxStages : static_cast<int>(vehicle_.stages.size())),
         campaign_(campaign),
         problems_(problems) {}
 
   void Decode() {
-    Lateral("thrust_misalignment", {kAngle, kAnyNumber}, {"thrust_misalignment", "_deg"},
-            {"thrust_misalignment_clock", "_deg"}, "nozzle_misalignment");
-    Lateral("thrust_offset", {kLength, kAnyNumber}, {"thrust_offset", "_m"}, {"thrust_offset_clock", "_deg"},
-            "nozzle_offset");
-    Lateral("center_of_gravity_offset", {kLength, kAnyNumber}, {"cg_offset", "_m"}, {"cg_offset_clock", "_deg"});
+    Lateral("thrust_misalignment", {kAngle, kAnyNumber}, "_deg", "thrust_misalignment",
+            "nozzle_misalignment");
+    Lateral("thrust_offset", {kLength, kAnyNumber}, "_m", "thrust_offset", "nozzle_offset");
+    Lateral("center_of_gravity_offset", {kLength, kAnyNumber}, "_m", "cg_offset");
     Thrust();
     StageFactor("burn_rate", {{"thrust_factor", ""}, {"mass_flow_factor", ""}});
     StageFactor("specific_impulse", {{"specific_impulse_factor", ""}});
+    StageFactor("dry_mass", {{"dry_mass_factor", ""}});
+    PropellantLoad();
+    PayloadMass();
+    ProductsOfInertia();
+    Delay("ignition_delay", 2, stages_, &DispersionDecoder::LeastIgnitionDelay);
+    Delay("separation_delay", 1, stages_ - 1, &DispersionDecoder::LeastSeparationDelay);
+    Scalar("launch_azimuth_error", {kAngle, kAnyNumber}, "launch_azimuth_error_deg");
+    InitialAttitude();
     Wind();
     Gust();
     WindProfile();
     Turbulence();
-    Scalar("drag_coefficient", kPositiveFactor, "drag_factor");
-    Scalar("lift_coefficient", kPositiveFactor, "lift_factor");
-    Scalar("center_of_gravity", kPositiveFactor, "cg_factor");
-    Scalar("center_of_pressure", kPositiveFactor, "cp_factor");
+    VehicleOrStageFactor("drag_coefficient", "drag_factor");
+    VehicleOrStageFactor("lift_coefficient", "lift_factor");
+    VehicleOrStageFactor("center_of_gravity", "cg_factor");
+    VehicleOrStageFactor("center_of_pressure", "cp_factor");
     Scalar("density", kPositiveFactor, "density_factor");
-    Scalar("inertia", kPositiveFactor, "inertia_factor");
-    Scalar("actuator_bandwidth", kPositiveFactor, "actuator_bandwidth_factor");
+    VehicleOrStageFactor("inertia", "inertia_factor");
+    VehicleOrStageFactor("actuator_bandwidth", "actuator_bandwidth_factor");
     BendingFrequency();
     Scalar("bending_damping", kPositiveFactor, "bending_damping_factor");
     Scalar("bending_slope", {{}, kNonNegative}, "bending_slope_factor");
@@ -79,83 +94,311 @@ class DispersionDecoder {
     campaign_.dispersions.push_back({name, distribution, std::move(inputs), absolute});
   }
 
-  // One draw a stage, or one for all of them, as `per` says.
-  void AddStages(const std::string& name, bool per_stage, const ScalarDistribution& distribution,
-                 const std::vector<StageColumn>& columns, bool absolute = false) {
-    std::vector<int> all;
-    for (int stage = 1; stage <= stages_; ++stage) {
-      std::vector<int> inputs;
-      for (const StageColumn& column : columns) inputs.push_back(column.Of(stage));
-      all.insert(all.end(), inputs.begin(), inputs.end());
-      if (per_stage) Add(name + "/" + StageName(stage), distribution, std::move(inputs), absolute);
+  // ---- stages ----
+
+  // Stages `first` to `last`, counted from 1.
+  static std::vector<int> StagesBetween(int first, int last) {
+    std::vector<int> stages;
+    for (int stage = first; stage <= last; ++stage) stages.push_back(stage);
+    return stages;
+  }
+  std::vector<int> AllStages() const { return StagesBetween(1, stages_); }
+
+  // A dispersion of stages, as one of its maps says: which, and how many draws.
+  enum class Per { kStage, kVehicle, kNozzle };
+  struct Selection {
+    std::vector<int> stages;
+    bool all = true;  // `stage` is not given
+    Per per = Per::kStage;
+  };
+
+  // f(map, stages that it may be about) for the one map of a key, or for each of a list; no stage may come
+  // twice.
+  template <typename F>
+  void EachOfStages(MapReader& parent, const std::string& key, const std::vector<int>& possible, F f) {
+    const InputNode* node = parent.Optional(key);
+    if (node == nullptr) return;
+    std::set<int> taken;
+    const auto read = [&](const InputNode& item, const std::string& path) {
+      MapReader map(item, path, problems_);
+      const std::optional<std::vector<int>> stages = Stages(map, possible);
+      Selection selection;
+      selection.all = !stages.has_value();
+      selection.stages = stages.value_or(possible);
+      for (const int stage : selection.stages) {
+        if (taken.insert(stage).second) continue;
+        const InputNode* named = item.Find("stage");
+        AddProblem(problems_, named != nullptr ? *named : item, named != nullptr ? map.PathOf("stage") : path,
+                   "stage " + std::to_string(stage) + " is given twice", "each stage in one of the list");
+        break;
+      }
+      f(map, selection);
+    };
+    if (node->kind != InputNode::Kind::kList) {
+      read(*node, parent.PathOf(key));
+      return;
     }
-    if (!per_stage) Add(name, distribution, std::move(all), absolute);
+    if (node->items.empty())
+      AddProblem(problems_, *node, parent.PathOf(key), "the list is empty",
+                 "a map, or a list of maps with stage");
+    for (std::size_t i = 0; i < node->items.size(); ++i)
+      read(node->items[i], parent.PathOf(key) + "[" + std::to_string(i) + "]");
+  }
+  template <typename F>
+  void EachOfStages(const std::string& key, const std::vector<int>& possible, F f) {
+    EachOfStages(map_, key, possible, f);
   }
 
-  enum class Per { kStage, kVehicle, kNozzle };
+  // `stage: 3` or `stage: [2, 3]`; none if it is not given.
+  std::optional<std::vector<int>> Stages(MapReader& map, const std::vector<int>& possible) {
+    const InputNode* node = map.Optional("stage");
+    if (node == nullptr) return std::nullopt;
+    const std::string allowed = possible.empty() ? "no stage of this vehicle"
+                                : possible.size() == 1
+                                    ? std::to_string(possible[0])
+                                    : "one of " + std::to_string(possible.front()) + " to " +
+                                          std::to_string(possible.back()) + ", or a list of them";
+    std::vector<int> stages;
+    const auto read = [&](const InputNode& item, const std::string& path) {
+      const std::optional<double> number =
+          item.kind == InputNode::Kind::kScalar && !item.quoted ? ParseNumber(item.text) : std::nullopt;
+      const auto found = std::find_if(possible.begin(), possible.end(),
+                                      [&](int stage) { return number && *number == stage; });
+      if (found == possible.end()) {
+        AddProblem(problems_, item, path, item.Describe() + " is no stage that this disperses", allowed);
+      } else if (std::find(stages.begin(), stages.end(), *found) != stages.end()) {
+        AddProblem(problems_, item, path, "stage " + item.text + " is given twice", "each stage once");
+      } else {
+        stages.push_back(*found);
+      }
+    };
+    if (node->kind != InputNode::Kind::kList) {
+      read(*node, map.PathOf("stage"));
+      return stages;
+    }
+    if (node->items.empty()) AddProblem(problems_, *node, map.PathOf("stage"), "the list is empty", allowed);
+    for (std::size_t i = 0; i < node->items.size(); ++i)
+      read(node->items[i], map.PathOf("stage") + "[" + std::to_string(i) + "]");
+    std::sort(stages.begin(), stages.end());
+    return stages;
+  }
+
   static Per PerWhat(MapReader& map, bool nozzles) {
-    if (!nozzles) return PerStage(map) ? Per::kStage : Per::kVehicle;
+    if (!nozzles) return map.Choice<Per>("per", {{"stage", Per::kStage}, {"vehicle", Per::kVehicle}});
     return map.Choice<Per>("per",
                            {{"stage", Per::kStage}, {"vehicle", Per::kVehicle}, {"nozzle", Per::kNozzle}});
   }
-  static bool PerStage(MapReader& map) {
-    return map.Choice<bool>("per", {{"stage", true}, {"vehicle", false}});
+
+  // One draw a stage, or one for all of them, as `per` says. A draw for some of the stages has their numbers
+  // in its name: of two of a list each is a draw of its own.
+  void AddStages(const std::string& name, const Selection& of, const ScalarDistribution& distribution,
+                 const std::vector<StageColumn>& columns, bool absolute = false) {
+    std::vector<int> all;
+    std::string numbers;
+    for (const int stage : of.stages) {
+      std::vector<int> inputs;
+      for (const StageColumn& column : columns) inputs.push_back(column.Of(stage));
+      all.insert(all.end(), inputs.begin(), inputs.end());
+      numbers += "_" + std::to_string(stage);
+      if (of.per == Per::kStage)
+        Add(name + "/" + StageName(stage), distribution, std::move(inputs), absolute);
+    }
+    if (of.per == Per::kVehicle && !all.empty())
+      Add(of.all ? name : name + "/stages" + numbers, distribution, std::move(all), absolute);
   }
+
   // One draw a nozzle.
-  void AddNozzles(const std::string& name, const ScalarDistribution& distribution, const StageColumn& column,
-                  bool absolute = false) {
-    for (int stage = 1; stage <= stages_; ++stage)
+  void AddNozzles(const std::string& name, const Selection& of, const ScalarDistribution& distribution,
+                  const StageColumn& column, bool absolute = false) {
+    for (const int stage : of.stages)
       for (const std::string nozzle : kNozzleNames)
         Add(name + "/" + StageName(stage) + "_" + nozzle, distribution,
             {Column(column.stem + "_" + StageName(stage) + "_" + nozzle + column.unit_suffix)}, absolute);
   }
 
-  // A magnitude and the direction of it around the axis; `of_nozzle`: the stem of a nozzle's own columns, if
-  // it has.
-  void Lateral(const std::string& key, const DispersedScalar& scalar, const StageColumn& magnitude,
-               const StageColumn& clock, const std::string& of_nozzle = "") {
-    const InputNode* node = map_.Optional(key);
-    if (node == nullptr) return;
-    MapReader map(*node, map_.PathOf(key), problems_);
-    const ScalarDistribution distribution = ReadDistribution(map, scalar);
-    const ScalarDistribution direction =
-        ReadDirection(map.Required("clock_angle", "uniform, {fixed_deg: x} or a distribution"),
-                      map.PathOf("clock_angle"), problems_);
-    const Per per = PerWhat(map, !of_nozzle.empty());
-    if (per == Per::kNozzle) {
-      AddNozzles(key, distribution, {of_nozzle, magnitude.unit_suffix}, true);
-      AddNozzles(key + "/clock", direction, {of_nozzle + "_clock", clock.unit_suffix});
-      return;
-    }
-    AddStages(key, per == Per::kStage, distribution, {magnitude}, true);
-    AddStages(key + "/clock", per == Per::kStage, direction, {clock});
+  // A departure from the axis: a magnitude and the direction of it around the axis, or its two components.
+  // `of_nozzle`: the stem of a nozzle's own columns, if it has.
+  void Lateral(const std::string& key, const DispersedScalar& scalar, const std::string& unit_suffix,
+               const std::string& stem, const std::string& of_nozzle = "") {
+    EachOfStages(key, AllStages(), [&](MapReader& map, Selection of) {
+      const ScalarDistribution distribution = ReadDistribution(map, scalar);
+      const bool by_axis = map.Choice<bool>("draw", {{"magnitude", false}, {"per_axis", true}}, false);
+      ScalarDistribution direction;
+      if (!by_axis) {
+        direction = ReadDirection(map.Required("clock_angle", "uniform, {fixed_deg: x} or a distribution"),
+                                  map.PathOf("clock_angle"), problems_);
+      } else if (const InputNode* clock = map.Optional("clock_angle")) {
+        AddProblem(problems_, *clock, map.PathOf("clock_angle"), "components have no direction besides",
+                   "draw: magnitude with clock_angle");
+      }
+      of.per = PerWhat(map, !of_nozzle.empty());
+      const auto add = [&](const std::string& name, const std::string& part, const ScalarDistribution& drawn,
+                           const std::string& suffix, bool absolute) {
+        if (of.per == Per::kNozzle)
+          AddNozzles(name, of, drawn, {of_nozzle + part, suffix}, absolute);
+        else
+          AddStages(name, of, drawn, {{stem + part, suffix}}, absolute);
+      };
+      if (by_axis) {
+        add(key + "/y", "_y", distribution, unit_suffix, false);
+        add(key + "/z", "_z", distribution, unit_suffix, false);
+        return;
+      }
+      add(key, "", distribution, unit_suffix, true);
+      add(key + "/clock", "_clock", direction, "_deg", false);
+    });
   }
 
   void Thrust() {
-    const InputNode* node = map_.Optional("thrust");
-    if (node == nullptr) return;
-    MapReader map(*node, map_.PathOf("thrust"), problems_);
-    const ScalarDistribution distribution = ReadDistribution(map, kPositiveFactor);
-    const bool flow_follows = map.Choice<bool>("conserve", {{"total_impulse", true}, {"propellant", false}});
-    std::vector<StageColumn> columns = {{"thrust_factor", ""}};
-    if (flow_follows) columns.push_back({"mass_flow_factor", ""});
-    const Per per = PerWhat(map, true);
-    if (per != Per::kNozzle) {
-      AddStages("thrust", per == Per::kStage, distribution, columns);
-      return;
-    }
-    if (flow_follows)
-      AddProblem(problems_, *node, map.PathOf("conserve"), "the flow is the whole motor's, not a nozzle's",
-                 "conserve: propellant with per: nozzle");
-    AddNozzles("thrust", distribution, {"nozzle_thrust_factor", ""});
+    EachOfStages("thrust", AllStages(), [&](MapReader& map, Selection of) {
+      const ScalarDistribution distribution = ReadDistribution(map, kPositiveFactor);
+      const bool flow_follows =
+          map.Choice<bool>("conserve", {{"total_impulse", true}, {"propellant", false}});
+      std::vector<StageColumn> columns = {{"thrust_factor", ""}};
+      if (flow_follows) columns.push_back({"mass_flow_factor", ""});
+      of.per = PerWhat(map, true);
+      if (of.per != Per::kNozzle) {
+        AddStages("thrust", of, distribution, columns);
+        return;
+      }
+      if (flow_follows)
+        AddProblem(problems_, map.node(), map.PathOf("conserve"),
+                   "the flow is the whole motor's, not a nozzle's", "conserve: propellant with per: nozzle");
+      AddNozzles("thrust", of, distribution, {"nozzle_thrust_factor", ""});
+    });
   }
 
   void StageFactor(const std::string& key, const std::vector<StageColumn>& columns) {
+    EachOfStages(key, AllStages(), [&](MapReader& map, Selection of) {
+      const ScalarDistribution distribution = ReadDistribution(map, kPositiveFactor);
+      of.per = PerWhat(map, false);
+      AddStages(key, of, distribution, columns);
+    });
+  }
+
+  // The whole vehicle's, unless stages or `per: stage` are named.
+  void VehicleOrStageFactor(const std::string& key, const std::string& column) {
+    EachOfStages(key, AllStages(), [&](MapReader& map, Selection of) {
+      const ScalarDistribution distribution = ReadDistribution(map, kPositiveFactor);
+      const bool listed = map.node().Find("stage") != nullptr;
+      of.per = map.Choice<Per>("per", {{"stage", Per::kStage}, {"vehicle", Per::kVehicle}},
+                               listed ? Per::kStage : Per::kVehicle);
+      if (of.per == Per::kVehicle && of.all)
+        Add(key, distribution, {Column(column)});
+      else
+        AddStages(key, of, distribution, {{column, ""}});
+    });
+  }
+
+  // ---- masses ----
+
+  const Stage* StageAt(int stage) const {
+    const auto i = static_cast<std::size_t>(stage) - 1;
+    return is_sound_ && i < vehicle_.stages.size() ? &vehicle_.stages[i] : nullptr;
+  }
+
+  // At most what the grain's case holds.
+  void PropellantLoad() {
+    EachOfStages("propellant_load", AllStages(), [&](MapReader& map, Selection of) {
+      double most = std::numeric_limits<double>::infinity();
+      for (const int stage : of.stages)
+        if (const Stage* s = StageAt(stage)) most = std::min(most, LargestPropellantFactor(*s));
+      const ScalarDistribution distribution = ReadDistribution(map, {{}, Inside(0.0, most)});
+      of.per = PerWhat(map, false);
+      AddStages("propellant_load", of, distribution, {{"propellant_factor", ""}});
+    });
+  }
+
+  // So many kilograms more than nominal, of one element of the last stage, which cannot weigh less than
+  // nothing.
+  void PayloadMass() {
+    const InputNode* node = map_.Optional("payload_mass");
+    if (node == nullptr) return;
+    MapReader map(*node, map_.PathOf("payload_mass"), problems_);
+    const std::string name = map.Text("element");
+    double element_kg = std::numeric_limits<double>::infinity();
+    std::size_t position = 0;
+    if (is_sound_ && !vehicle_.stages.empty() && !name.empty()) {
+      const std::vector<MassElement>& structure = vehicle_.stages.back().structure;
+      std::vector<std::string> names;
+      for (const MassElement& element : structure) names.push_back(element.name);
+      position = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+      if (position == names.size()) {
+        AddProblem(problems_, *node->Find("element"), map.PathOf("element"),
+                   "'" + name + "' is no element of the last stage's structure" + DidYouMean(name, names),
+                   "one of " + JoinWords(names));
+      } else {
+        element_kg =
+            structure[position].fraction * DryMass(vehicle_, static_cast<int>(vehicle_.stages.size()) - 1);
+      }
+    }
+    Add("payload_mass",
+        ReadDistribution(map, {kMass, {-element_kg, std::numeric_limits<double>::infinity(), true, false}}),
+        {Column("payload_mass_kg")});
+    Add("payload_mass/element", Constant(static_cast<double>(position + 1)), {Column("payload_element")});
+  }
+
+  // Half the least moment of inertia at most: with three such products the tensor is still one of a body.
+  void ProductsOfInertia() {
+    const InputNode* node = map_.Optional("product_of_inertia");
+    if (node == nullptr) return;
+    MapReader parent(*node, map_.PathOf("product_of_inertia"), problems_);
+    bool any = false;
+    for (const std::string plane : {"xy", "xz", "yz"}) {
+      any = any || node->Find(plane) != nullptr;
+      EachOfStages(parent, plane, AllStages(), [&](MapReader& map, Selection of) {
+        double most = std::numeric_limits<double>::infinity();
+        for (const int stage : of.stages)
+          if (StageAt(stage) != nullptr) most = std::min(most, 0.5 * LeastInertia(stage));
+        const ScalarDistribution distribution = ReadDistribution(map, {kInertia, Between(-most, most)});
+        of.per = PerWhat(map, false);
+        AddStages("product_of_inertia/" + plane, of, distribution,
+                  {{"product_of_inertia_" + plane, "_kg_m2"}});
+      });
+    }
+    if (!any && node->members.empty())
+      AddProblem(problems_, *node, parent.path(), "no product is given", "one or more of xy, xz, yz");
+  }
+  // Of the stack without what it burns, about either axis.
+  double LeastInertia(int stage) const {
+    const MassProperties empty = BuildStackMasses(vehicle_)[static_cast<std::size_t>(stage) - 1].At(0.0);
+    return std::min(empty.axial_inertia_kg_m2, empty.transverse_inertia_kg_m2);
+  }
+
+  // ---- sequence and lift-off ----
+
+  // By how much less than nominal a stage may be late: nothing happens before what triggers it.
+  double LeastIgnitionDelay(const Stage& stage) const {
+    return stage.ignition == IgnitionTrigger::kBurnoutDetection ? -stage.ignition_delay_s
+                                                                : -std::numeric_limits<double>::infinity();
+  }
+  double LeastSeparationDelay(const Stage& stage) const { return -stage.separation_delay_s; }
+
+  void Delay(const std::string& key, int first, int last,
+             double (DispersionDecoder::*least)(const Stage&) const) {
     const InputNode* node = map_.Optional(key);
     if (node == nullptr) return;
-    MapReader map(*node, map_.PathOf(key), problems_);
-    const ScalarDistribution distribution = ReadDistribution(map, kPositiveFactor);
-    AddStages(key, PerStage(map), distribution, columns);
+    if (first > last) {
+      map_.Ignore(key);
+      AddProblem(problems_, *node, map_.PathOf(key), "the vehicle has one stage", "a vehicle of two or more");
+      return;
+    }
+    EachOfStages(key, StagesBetween(first, last), [&](MapReader& map, Selection of) {
+      double from_s = -std::numeric_limits<double>::infinity();
+      for (const int stage : of.stages)
+        if (const Stage* s = StageAt(stage)) from_s = std::max(from_s, (this->*least)(*s));
+      const ScalarDistribution distribution =
+          ReadDistribution(map, {kTime, {from_s, std::numeric_limits<double>::infinity(), false, false}});
+      of.per = PerWhat(map, false);
+      AddStages(key, of, distribution, {{key, "_s"}});
+    });
+  }
+
+  void InitialAttitude() {
+    EachAxis("initial_attitude_error", [this](const std::string& axis, MapReader& map) {
+      Add("initial_attitude_error/" + axis, ReadDistribution(map, {kAngle, kAnyNumber}),
+          {Column("initial_" + axis + "_error_deg")});
+    });
   }
 
   // One draw a mode, or one for all of them.
@@ -363,14 +606,21 @@ class DispersionDecoder {
     }
   }
 
+  // The last stage does not separate.
   void TipOff() {
-    EachAxis("tip_off_rate", [this](const std::string& axis, MapReader& map) {
-      const ScalarDistribution rate = ReadDistribution(map, {kAngularRate, kAnyNumber});
-      const StageColumn column{"tip_off_" + axis, "_deg_s"};
-      for (int stage = 1; stage < stages_; ++stage) {
-        Add("tip_off_rate/" + axis + "/" + StageName(stage), rate, {column.Of(stage)});
-      }
-    });
+    const InputNode* node = map_.Optional("tip_off_rate");
+    if (node == nullptr) return;
+    MapReader parent(*node, map_.PathOf("tip_off_rate"), problems_);
+    bool any = false;
+    for (const std::string axis : {"roll", "pitch", "yaw"}) {
+      any = any || node->Find(axis) != nullptr;
+      EachOfStages(parent, axis, StagesBetween(1, stages_ - 1), [&](MapReader& map, Selection of) {
+        AddStages("tip_off_rate/" + axis, of, ReadDistribution(map, {kAngularRate, kAnyNumber}),
+                  {{"tip_off_" + axis, "_deg_s"}});
+      });
+    }
+    if (!any && node->members.empty())
+      AddProblem(problems_, *node, parent.path(), "no axis is given", "one or more of roll, pitch, yaw");
   }
 
   void GyroBias() {
@@ -409,6 +659,8 @@ class DispersionDecoder {
   }
 
   MapReader map_;
+  const Vehicle& vehicle_;  ///< without stages if it is unknown
+  const bool is_sound_;     ///< else nothing is checked against it
   int stages_;
   Campaign& campaign_;
   ProblemList& problems_;
@@ -416,9 +668,9 @@ class DispersionDecoder {
 
 }  // namespace
 
-void DecodeDispersions(const InputNode& node, const std::string& path, int stages, Campaign& campaign,
+void DecodeDispersions(const InputNode& node, const std::string& path, Campaign& campaign,
                        std::vector<InputProblem>& problems) {
-  DispersionDecoder(node, path, stages, campaign, problems).Decode();
+  DispersionDecoder(node, path, campaign, problems).Decode();
 }
 
 }  // namespace dispersa

@@ -55,6 +55,8 @@ Parse CsvParser(const std::vector<std::string>& columns, std::vector<InputProble
 // The samples_* of an empirical distribution, anywhere among the dispersions, may be a file with that column.
 void InlineSamples(InputNode& node, const std::string& path, FileNames names,
                    std::vector<InputProblem>& problems) {
+  for (std::size_t i = 0; i < node.items.size(); ++i)
+    InlineSamples(node.items[i], path + "[" + std::to_string(i) + "]", names, problems);
   for (InputMember& member : node.members) {
     const std::string member_path = path + "." + member.key;
     if (!member.key.starts_with("samples_")) {

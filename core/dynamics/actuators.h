@@ -30,7 +30,25 @@ struct Drives {
   T friction_1_s2;  ///< w² friction: the deceleration by it, rad/s²
   T resolution_rad;
   bool is_rough, is_coarse;  ///< whether any lane has a dead zone or friction; a resolution
+  // What one propagation of a lane is divided into where it is numerical (StepsOver).
+  T limited_steps, limited_part, rough_steps, rough_part;
+  int most_limited_steps, most_rough_steps;  ///< of any lane
+  T fast_limit2_rad2_s2;  ///< of a drive that may reach its rate limit between the ends: the limit squared
+  bool is_fast;           ///< any lane has such drives
 };
+
+/// Steps of one propagation: at least so many, and none longer than half a radian of the drive's own motion,
+/// at which the classical Runge-Kutta method errs by 3e-4 of the motion in a step.
+inline constexpr double kLongestStep_rad = 0.5;
+inline int StepsOver(double bandwidth_rad_s, double time_s, int least) {
+  const double steps = bandwidth_rad_s * time_s / kLongestStep_rad;
+  const int whole = static_cast<int>(steps);
+  const int enough = whole < steps ? whole + 1 : whole;
+  return enough > least ? enough : least;
+}
+inline constexpr double kNeverReached_rad2_s2 = 1e300;
+/// In a longer propagation (radians of its own motion) a drive's rate has its peak between the ends.
+inline constexpr double kFastDrive_rad = 1.0;
 
 template <class T>
 struct DriveState {
@@ -134,22 +152,25 @@ DISPERSA_INLINE void StepDrive(const Drives<T>& d, int i, T command_rad, T slide
       Clamp(Fma(sixth, (r1 + r4) + T(2.0) * (r2 + r3), rate), -d.rate_limit_rad_s, d.rate_limit_rad_s);
 }
 
-/// Steps that one propagation of a drive with a dead zone or friction takes: of 0.6 ms in half a tick of 10
-/// ms. A step that meets the edge of the zone or a rest within it errs by the cube of its length.
+/// Steps that one propagation of a drive with a dead zone or friction takes at least: of 0.6 ms in half a
+/// tick of 10 ms. A step that meets the edge of the zone or a rest within it errs by the cube of its length.
 inline constexpr int kRoughSteps = 8;
+/// Steps of the classical Runge-Kutta method that one propagation takes at least where a rate limit acts.
+inline constexpr int kLimitedSteps = 4;
 
 /// Replaces the lanes whose drives have a dead zone or friction by their numerical propagation.
 template <class T>
 void PropagateRough(const Drives<T>& d, const T* command_rad, T time_s, const DriveState<T>& from,
                     DriveState<T>& to) {
-  const T none(0.0), half(0.5), h = time_s * T(1.0 / kRoughSteps);
+  const T none(0.0), half(0.5), h = time_s * d.rough_part;
   const auto rough = (d.dead_zone_rad > none) | (d.friction_1_s2 > none);
   for (int i = 0; i < kNozzles; ++i) {
     const auto moves = rough & (d.moves[i] > none);
     T angle = from.angle_rad[i], rate = from.rate_rad_s[i];
-    for (int step = 0; step < kRoughSteps; ++step) {
+    for (int step = 0; step < d.most_rough_steps; ++step) {
       const T slides = SlidesIn(d, command_rad[i], angle, rate);
       const T start = angle, speed = rate;
+      const auto takes = T(static_cast<double>(step)) < d.rough_steps;
       StepDrive(d, i, command_rad[i], slides, h, angle, rate);
       // It came to rest on the way, and is held or slides back from there.
       const auto rests = (d.friction_1_s2 > none) & (slides * rate < none);
@@ -162,6 +183,8 @@ void PropagateRough(const Drives<T>& d, const T* command_rad, T time_s, const Dr
       const auto beyond = Abs(angle) > d.limit_rad;
       angle = Clamp(angle, -d.limit_rad, d.limit_rad);
       rate = Select(beyond, none, rate);
+      angle = Select(takes, angle, start);
+      rate = Select(takes, rate, speed);
     }
     to.angle_rad[i] = Select(moves, angle, to.angle_rad[i]);
     to.rate_rad_s[i] = Select(moves, rate, to.rate_rad_s[i]);
@@ -180,17 +203,15 @@ DISPERSA_INLINE void SetAccelerations(const Drives<T>& d, const T* command_rad, 
   }
 }
 
-/// Steps of the classical Runge-Kutta method that one propagation takes where a rate limit acts.
-inline constexpr int kLimitedSteps = 4;
-
 /// After a time that `over` belongs to. A lane in which any drive reaches its rate limit at either end is
-/// integrated numerically. Commands are limited in angle here; the mechanical stop is at the same angle and
-/// takes the rate.
+/// integrated numerically; so is one whose drives are fast enough to reach it in between: rate² + w²
+/// distance² does not grow, so that a rate within the limit by that never leaves it. Commands are limited in
+/// angle here; the mechanical stop is at the same angle and takes the rate.
 template <class T>
 DISPERSA_INLINE DriveState<T> Propagate(const Drives<T>& d, const T* command_rad, const Transition<T>& over,
                                         T time_s, const DriveState<T>& from) {
   DriveState<T> to;
-  T fastest(0.0), farthest(0.0);
+  T fastest(0.0), farthest(0.0), energy(0.0);
   T command[kNozzles];
   for (int i = 0; i < kNozzles; ++i) {
     command[i] = Followed(d, command_rad[i]);
@@ -200,13 +221,21 @@ DISPERSA_INLINE DriveState<T> Propagate(const Drives<T>& d, const T* command_rad
     to.rate_rad_s[i] = Select(moves, Fma(over.ra, x, over.rr * r), r);
     fastest = Max(fastest, Max(Abs(r), Abs(to.rate_rad_s[i])));
     farthest = Max(farthest, Abs(to.angle_rad[i]));
+    if (d.is_fast) energy = Max(energy, Fma(d.bandwidth2_1_s2 * x, x, r * r));
   }
-  const auto limited = fastest >= d.rate_limit_rad_s;
+  auto limited = fastest >= d.rate_limit_rad_s;
+  if (d.is_fast) limited = limited | (energy >= d.fast_limit2_rad2_s2);
   if (Any(limited)) {
-    const T h = time_s * T(1.0 / kLimitedSteps);
+    const T h = time_s * d.limited_part;
     for (int i = 0; i < kNozzles; ++i) {
       T angle = from.angle_rad[i], rate = from.rate_rad_s[i];
-      for (int step = 0; step < kLimitedSteps; ++step) StepDrive(d, i, command[i], T(0.0), h, angle, rate);
+      for (int step = 0; step < d.most_limited_steps; ++step) {
+        T next_angle = angle, next_rate = rate;
+        StepDrive(d, i, command[i], T(0.0), h, next_angle, next_rate);
+        const auto takes = T(static_cast<double>(step)) < d.limited_steps;
+        angle = Select(takes, next_angle, angle);
+        rate = Select(takes, next_rate, rate);
+      }
       to.angle_rad[i] = Select(limited, angle, to.angle_rad[i]);
       to.rate_rad_s[i] = Select(limited, rate, to.rate_rad_s[i]);
     }

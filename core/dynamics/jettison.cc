@@ -13,8 +13,9 @@ Vector3 CgStep(const LauncherPlant& plant, const LauncherStack& from_stack, cons
   const auto aside = [&](double LauncherStack::*moment) {
     return to_stack.*moment / to.mass_kg - from_stack.*moment / from.mass_kg;
   };
-  return Vector3((from.cg_station_m - to.cg_station_m) * plant.cg_factor,
-                 aside(&LauncherStack::lateral_moment_y_kg_m), aside(&LauncherStack::lateral_moment_z_kg_m));
+  const double ahead_m = from.cg_station_m * from_stack.cg_factor - to.cg_station_m * to_stack.cg_factor;
+  return Vector3(ahead_m * plant.cg_factor, aside(&LauncherStack::lateral_moment_y_kg_m),
+                 aside(&LauncherStack::lateral_moment_z_kg_m));
 }
 
 const LauncherStack& StackOf(const LauncherPlant& plant, int stack) {

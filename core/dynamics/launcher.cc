@@ -121,6 +121,10 @@ LauncherInstant LauncherModel::Evaluate(const LauncherPhase& phase, double time_
   now.loads.force_n = ToEigen(loads.force_n);
   now.loads.inertia_kg_m2 =
       Vector3(masses.axial_kg_m2, masses.transverse_kg_m2, masses.transverse_kg_m2).asDiagonal();
+  Matrix3& inertia = now.loads.inertia_kg_m2;
+  inertia(0, 1) = inertia(1, 0) = -one.plant.product_xy_kg_m2;
+  inertia(0, 2) = inertia(2, 0) = -one.plant.product_xz_kg_m2;
+  inertia(1, 2) = inertia(2, 1) = -one.plant.product_yz_kg_m2;
   now.loads.inertia_rate_kg_m2_s =
       -loads.flow_kg_s *
       Matrix3(Vector3(masses.axial_per_kg_m2, masses.transverse_per_kg_m2, masses.transverse_per_kg_m2)

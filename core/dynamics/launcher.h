@@ -47,6 +47,12 @@ struct LauncherStack {
   /// Of everything but the burning propellant, whose own centre is on the axis: mass times lateral offset.
   double lateral_moment_y_kg_m = 0.0;
   double lateral_moment_z_kg_m = 0.0;
+  // Besides the plant's own.
+  double cg_factor = 1.0;
+  double inertia_factor = 1.0;
+  /// Integrals of x y, x z and y z over the mass about C in body axes, constant over the burn: what burns
+  /// lies about the axis. The inertia's off-diagonal elements are their negatives.
+  double product_xy_kg_m2 = 0.0, product_xz_kg_m2 = 0.0, product_yz_kg_m2 = 0.0;
   std::shared_ptr<const LoadTable> loads;
   std::shared_ptr<const BendingTable> bending;  ///< null: this stack is rigid
 };

@@ -40,6 +40,9 @@ struct Plant {
   MaskOf<T> departs;
   Departure<T> nozzles[kNozzles];
   T lateral_moment_y_kg_m, lateral_moment_z_kg_m;
+  bool any_products;  ///< some lane has products of inertia
+  MaskOf<T> has_products;
+  T product_xy_kg_m2, product_xz_kg_m2, product_yz_kg_m2;
 };
 
 /// What stays constant between two events of each lane (LauncherPhase).
@@ -314,11 +317,29 @@ DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, const Plant<T>& plan
   return o;
 }
 
-/// dv/dt = gravitation + R_IB (F / m + u w x e_x) and I dw/dt = M - w x I w - (dI/dt) w, as rigid_body.h explains,
-/// of an axisymmetric body. v is the velocity of the body where C is, and u e_x that of C through the body:
-/// dp/dt = v + R_IB u e_x. So the momentum of what is on board, m v + m_dot times the way of the flow (aft),
-/// changes by gravitation, the outer forces and what leaves; a burn that begins or ends moves v by nothing. The
-/// motion of an offset C across the body (mm/s) is left out.
+/// dw/dt of I dw/dt = `moment` - w x I w with products of inertia: I's inverse by cofactors. `moment`:
+/// without what w x I w gives.
+template <class T>
+DISPERSA_INLINE Vector<T> TurnedUnderProducts(const Plant<T>& plant, const TimedMasses<T>& masses,
+                                              const Vector<T>& moment, const Vector<T>& w) {
+  const T a = masses.axial_kg_m2, t = masses.transverse_kg_m2;
+  const T xy = plant.product_xy_kg_m2, xz = plant.product_xz_kg_m2, yz = plant.product_yz_kg_m2;
+  const Vector<T> spin{a * w.x - (xy * w.y + xz * w.z), t * w.y - (xy * w.x + yz * w.z),
+                       t * w.z - (xz * w.x + yz * w.y)};
+  const Vector<T> m = moment - Cross(w, spin);
+  const T c_xx = t * t - yz * yz, c_yy = a * t - xz * xz, c_zz = a * t - xy * xy;
+  const T c_xy = xy * t + xz * yz, c_xz = xz * t + xy * yz, c_yz = a * yz + xy * xz;
+  const T inverse = T(1.0) / (a * c_xx - (xy * c_xy + xz * c_xz));
+  return inverse * Vector<T>{c_xx * m.x + c_xy * m.y + c_xz * m.z, c_xy * m.x + c_yy * m.y + c_yz * m.z,
+                             c_xz * m.x + c_yz * m.y + c_zz * m.z};
+}
+
+/// dv/dt = gravitation + R_IB (F / m + u w x e_x) and I dw/dt = M - w x I w - (dI/dt) w, as rigid_body.h
+/// explains, of an axisymmetric body, or of one with products of inertia besides. v is the velocity of the
+/// body where C is, and u e_x that of C through the body: dp/dt = v + R_IB u e_x. So the momentum of what is
+/// on board, m v + m_dot times the way of the flow (aft), changes by gravitation, the outer forces and what
+/// leaves; a burn that begins or ends moves v by nothing. The motion of an offset C across the body (mm/s) is
+/// left out.
 template <class T, class Body>
 DISPERSA_INLINE Rates<T> RatesOf(double earth_rate_rad_s, const Plant<T>& plant,
                                  const Phase<T>& phase, bool any_burns, const Surroundings<T>& around,
@@ -344,6 +365,11 @@ DISPERSA_INLINE Rates<T> RatesOf(double earth_rate_rad_s, const Plant<T>& plant,
   o.dw.x = inverse_axial * Fma(-axial_loss, s.w.x, moment.x);
   o.dw.y = inverse_transverse * Fma(-transverse_loss, s.w.y, Fma(gyroscopic, s.w.z, moment.y));
   o.dw.z = inverse_transverse * Fma(-transverse_loss, s.w.z, Fma(-gyroscopic, s.w.y, moment.z));
+  if (plant.any_products) {
+    const Vector<T> left{Fma(-axial_loss, s.w.x, moment.x), Fma(-transverse_loss, s.w.y, moment.y),
+                         Fma(-transverse_loss, s.w.z, moment.z)};
+    o.dw = Select(plant.has_products, TurnedUnderProducts(plant, masses, left, s.w), o.dw);
+  }
   if (instant)
     *instant = {around.altitude_m, loads.flow.qbar_pa, loads.flow.mach, loads.flow.incidence_rad,
                 masses.mass_kg,    loads.thrust_n,     loads.force_n,   loads.flow.normal};

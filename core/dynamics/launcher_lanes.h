@@ -58,8 +58,15 @@ DISPERSA_INLINE void SetLane(Plant<T>& p, int lane, const LauncherPlant& plant, 
   SetLane(p.stack, lane, s.mass);
   SetLane(p.burn, lane, s.burn);
   SetLane(p.aero, lane, s.aerodynamics, *s.aero_grid.get());
-  Lane(p.cg_factor, lane) = plant.cg_factor;
-  Lane(p.inertia_factor, lane) = plant.inertia_factor;
+  Lane(p.cg_factor, lane) = plant.cg_factor * s.cg_factor;
+  const double inertia_factor = plant.inertia_factor * s.inertia_factor;
+  Lane(p.inertia_factor, lane) = inertia_factor;
+  Lane(p.product_xy_kg_m2, lane) = s.product_xy_kg_m2 * inertia_factor;
+  Lane(p.product_xz_kg_m2, lane) = s.product_xz_kg_m2 * inertia_factor;
+  Lane(p.product_yz_kg_m2, lane) = s.product_yz_kg_m2 * inertia_factor;
+  SetLane(p.has_products, lane,
+          s.product_xy_kg_m2 != 0.0 || s.product_xz_kg_m2 != 0.0 || s.product_yz_kg_m2 != 0.0);
+  p.any_products = Any(p.has_products);
   Lane(p.pivot_station_m, lane) = s.gimbal.pivot_station_m;
   Lane(p.nozzle_radius_m, lane) = s.gimbal.radius_m;
   Lane(p.nozzle_moment_kg_m, lane) = s.gimbal.nozzle_mass_kg * s.gimbal.nozzle_cg_m;
@@ -110,9 +117,10 @@ DISPERSA_INLINE void SetLane(Bending<T>& b, int lane, const LauncherPlant& plant
   b.planes = plant.bending_planes();
 }
 
-/// `stuck`: index of a nozzle that does not move, or -1.
+/// `stuck`: index of a nozzle that does not move, or -1. `longest_s`: of what Propagate will be asked for.
 template <class T>
-DISPERSA_INLINE void SetLane(Drives<T>& d, int lane, const Gimbal& gimbal, int stuck) {
+DISPERSA_INLINE void SetLane(Drives<T>& d, int lane, const Gimbal& gimbal, int stuck,
+                             double longest_s = 0.0) {
   const double w = gimbal.bandwidth_rad_s;
   Lane(d.limit_rad, lane) = gimbal.limit_rad;
   Lane(d.rate_limit_rad_s, lane) = gimbal.rate_limit_rad_s;
@@ -122,10 +130,24 @@ DISPERSA_INLINE void SetLane(Drives<T>& d, int lane, const Gimbal& gimbal, int s
   Lane(d.dead_zone_rad, lane) = gimbal.dead_zone_rad;
   Lane(d.friction_1_s2, lane) = w * w * gimbal.friction_rad;
   Lane(d.resolution_rad, lane) = gimbal.resolution_rad;
-  d.is_rough = d.is_coarse = false;
+  const int limited = StepsOver(w, longest_s, kLimitedSteps), rough = StepsOver(w, longest_s, kRoughSteps);
+  Lane(d.limited_steps, lane) = limited;
+  Lane(d.limited_part, lane) = 1.0 / limited;
+  Lane(d.rough_steps, lane) = rough;
+  Lane(d.rough_part, lane) = 1.0 / rough;
+  Lane(d.fast_limit2_rad2_s2, lane) = w * longest_s > kFastDrive_rad
+                                          ? gimbal.rate_limit_rad_s * gimbal.rate_limit_rad_s
+                                          : kNeverReached_rad2_s2;
+  d.is_rough = d.is_coarse = d.is_fast = false;
+  d.most_limited_steps = d.most_rough_steps = 0;
   for (int i = 0; i < kWidth<T>; ++i) {
     d.is_rough |= Lane(d.dead_zone_rad, i) > 0.0 || Lane(d.friction_1_s2, i) > 0.0;
     d.is_coarse |= Lane(d.resolution_rad, i) > 0.0;
+    d.is_fast |= Lane(d.fast_limit2_rad2_s2, i) < kNeverReached_rad2_s2;
+    const int limited_steps = static_cast<int>(Lane(d.limited_steps, i));
+    const int rough_steps = static_cast<int>(Lane(d.rough_steps, i));
+    if (limited_steps > d.most_limited_steps) d.most_limited_steps = limited_steps;
+    if (rough_steps > d.most_rough_steps) d.most_rough_steps = rough_steps;
   }
 }
 

@@ -115,7 +115,7 @@ class Batch {
   Vector<T> measured_angle_rad_, measured_rate_rad_s_;
   Vector<T> gyro_bias_rad_s_;
   InertialUnit<T> unit_;
-  M drifts_;  ///< whose gyros have a bias or noise
+  M drifts_;  ///< whose gyros have a bias or noise, or whose unit is misaligned
   GyroMemory<T> gyros_[kRateGyros];
   T gyro_weight_[kRateGyros], unit_weight_;  ///< of the measured rates
   M gyros_fresh_;                            ///< have not been read since ignition
@@ -163,7 +163,7 @@ Batch<T>::Batch(const FlightModel& model, FlightQueue& queue)
     SetLane(gyros_fresh_, lane, false);
     SetLane(step_.plant, lane, nominal, 0);
     SetLane(step_.bending, lane, nominal, 0);
-    SetLane(step_.drives, lane, nominal.stacks.data()->gimbal, -1);
+    SetLane(step_.drives, lane, nominal.stacks.data()->gimbal, -1, 0.5 * tick_s_);
     step_.SetTickTransition(lane);
   }
   time_s_ = tick_ = next_tick_ = lost_ticks_ = T(0.0);
@@ -234,8 +234,8 @@ void Batch<T>::Start(int lane, FlightRecord* record) {
       in.gust_speed_m_s != 0.0 ? in.gust_altitude_m + in.gust_length_m : in.gust_altitude_m;
   Lane(steps_a_tick_, lane) = record->options.steps_per_tick;
   SetLane(drifts_, lane,
-          record->noisy || in.gyro_bias_roll_rad_s != 0.0 || in.gyro_bias_pitch_rad_s != 0.0 ||
-              in.gyro_bias_yaw_rad_s != 0.0);
+          record->noisy || in.launch_azimuth_error_rad != 0.0 || in.gyro_bias_roll_rad_s != 0.0 ||
+              in.gyro_bias_pitch_rad_s != 0.0 || in.gyro_bias_yaw_rad_s != 0.0);
   Lane(unit_weight_, lane) = 1.0;
   for (T& weight : gyro_weight_) Lane(weight, lane) = 0.0;
   any_drift_ = Any(drifts_ & live_);
@@ -249,8 +249,12 @@ void Batch<T>::Start(int lane, FlightRecord* record) {
   step_.StartFlight(lane);
   SetLane(step_.plant.weather, lane, record->weather);
   step_.WriteLane(lane, record->lift_off);
-  unit_.Start(lane, step_.motion.q);
+  unit_.Start(lane, step_.motion.q, record->believed_attitude);
   SetStack(lane, 0);
+  if (record->refusal != nullptr) {
+    End(lane, Outcome::kNumericalFailure, record->refusal);
+    return;
+  }
   // What happened before lift-off happens at lift-off.
   while (slot.record != nullptr && slot.next_event < slot.last_event &&
          slot.next_event->time_s <= kSameInstant_s)
@@ -267,7 +271,7 @@ void Batch<T>::SetStack(int lane, int stack) {
   SetLane(step_.plant, lane, slot.record->plant, stack);
   SetMass(lane);
   SetLane(step_.bending, lane, slot.record->plant, stack);
-  SetLane(step_.drives, lane, slot.record->plant.stacks.data()[stack].gimbal, -1);
+  SetLane(step_.drives, lane, slot.record->plant.stacks.data()[stack].gimbal, -1, 0.5 * tick_s_);
   step_.SetTickTransition(lane);
   step_.MarkMoved(lane);
 }

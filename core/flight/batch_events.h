@@ -204,7 +204,7 @@ void Batch<T>::Ignite(int lane, int stage) {
     slot.stuck_nozzle = stuck - 1;
     Lane(step_.drive_state.angle_rad[slot.stuck_nozzle], lane) = in.stuck_nozzle_rad;
   }
-  SetLane(step_.drives, lane, gimbal, slot.stuck_nozzle);
+  SetLane(step_.drives, lane, gimbal, slot.stuck_nozzle, 0.5 * tick_s_);
   if (stage > 0 && stage + 1 == static_cast<int>(record.plant.stacks.size())) {
     StateValues y;
     step_.ReadLane(lane, y);

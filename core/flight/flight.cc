@@ -36,6 +36,9 @@ class OrderQueue : public FlightQueue {
   std::size_t next_ = 0;
 };
 
+// About the vertical of the launch site: z of the launch-inertial frame is down.
+Quaternion TurnedClockwise(double angle_rad) { return FromRotationVector(Vector3(0.0, 0.0, angle_rad)); }
+
 }  // namespace
 
 FlightResult Fly(const FlightModel& model, const FlightInputs& inputs, const FlightOptions& options) {
@@ -51,15 +54,25 @@ std::vector<FlightResult> FlyAll(const FlightModel& model, const std::vector<Fli
   return queue.Take();
 }
 
-RigidBodyState LiftOffState(const FlightModel& model) {
+RigidBodyState LiftOffState(const FlightModel& model, const FlightInputs& in) {
   const LaunchFrame& frame = model.frame();
   RigidBodyState s;
   s.p_EoC_I = frame.p_EoL_I;
   s.v_IC_I = frame.v_IL_I;
   s.q_IB = frame.q_IL * model.definition().program.At(0.0).q_LR;
+  if (in.launch_azimuth_error_rad != 0.0)
+    s.q_IB = frame.q_IL * TurnedClockwise(in.launch_azimuth_error_rad) * Inverse(frame.q_IL) * s.q_IB;
+  const Vector3 aside(in.initial_roll_error_rad, in.initial_pitch_error_rad, in.initial_yaw_error_rad);
+  if (aside != Vector3::Zero()) s.q_IB = s.q_IB * FromRotationVector(aside);
   const Vector3 earth_rate_I(0.0, 0.0, model.nominal_plant().environment.earth.rotation_rate_rad_s);
   s.w_IB_B = Rotate(Inverse(s.q_IB), earth_rate_I);
   return s;
+}
+
+Quaternion BelievedAttitude(const FlightModel& model, const FlightInputs& in, const Quaternion& q_IB) {
+  if (in.launch_azimuth_error_rad == 0.0) return q_IB;
+  const Quaternion& q_IL = model.frame().q_IL;
+  return q_IL * TurnedClockwise(-in.launch_azimuth_error_rad) * Inverse(q_IL) * q_IB;
 }
 
 AttitudeError ErrorAt(const FlightModel& model, const ReferenceAttitude& reference,

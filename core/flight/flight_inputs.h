@@ -89,6 +89,38 @@ struct FlightInputs {
   std::array<double, 3> navigation_position_error_m{};    ///< navigated less true, constant, along L's axes
   std::array<double, 3> navigation_velocity_error_m_s{};  ///< likewise
   double accelerometer_scale_factor = 1.0;   ///< of the sensed specific force
+  // Later inputs go to the end: a Sobol design's dimensions are the columns' positions.
+  PerStage dry_mass_factor = AllStages(1.0);    ///< of a stage's dry mass (dispersed_vehicle.h)
+  PerStage propellant_factor = AllStages(1.0);  ///< of the propellant at ignition
+  double payload_mass_kg = 0.0;                 ///< above the nominal payload's
+  double payload_element = 0.0;                 ///< 1-based: of the last stage's structure, where that is
+  PerStage product_of_inertia_xy_kg_m2{};       ///< integral of x y dm about C, of the stack, all the burn
+  PerStage product_of_inertia_xz_kg_m2{};
+  PerStage product_of_inertia_yz_kg_m2{};
+  PerStage ignition_delay_s{};    ///< by which the stage ignites late; the first stage's does not count
+  PerStage separation_delay_s{};  ///< by which the stage separates late
+  double launch_azimuth_error_rad = 0.0;  ///< vehicle and inertial unit turned clockwise, unnoticed
+  double initial_roll_error_rad = 0.0;    ///< of the body at lift-off, about its axes; the unit sees it
+  double initial_pitch_error_rad = 0.0;
+  double initial_yaw_error_rad = 0.0;
+  // Of one stack each, besides the factor of the whole vehicle.
+  PerStage stack_drag_factor = AllStages(1.0);
+  PerStage stack_lift_factor = AllStages(1.0);
+  PerStage stack_cg_factor = AllStages(1.0);
+  PerStage stack_cp_factor = AllStages(1.0);
+  PerStage stack_inertia_factor = AllStages(1.0);
+  PerStage stack_actuator_bandwidth_factor = AllStages(1.0);
+  // Components towards body y and z, besides magnitude and clock angle.
+  PerStage thrust_misalignment_y_rad{};
+  PerStage thrust_misalignment_z_rad{};
+  PerStage thrust_offset_y_m{};
+  PerStage thrust_offset_z_m{};
+  PerStage cg_offset_y_m{};
+  PerStage cg_offset_z_m{};
+  PerNozzle nozzle_misalignment_y_rad{};
+  PerNozzle nozzle_misalignment_z_rad{};
+  PerNozzle nozzle_offset_y_m{};
+  PerNozzle nozzle_offset_z_m{};
 };
 
 /// A column of the applied inputs: its name carries the unit, e.g. "thrust_misalignment_stage1_deg".

@@ -4,6 +4,7 @@
 
 #include "core/dynamics/aero_grid.h"
 #include "core/dynamics/jettison.h"
+#include "core/flight/dispersed_vehicle.h"
 #include "core/math/constants.h"
 #include "core/math/functions.h"
 #include "core/random/draws.h"
@@ -15,24 +16,38 @@ LauncherPlant BuildNominalPlant(const Vehicle& vehicle) {
   LauncherPlant plant;
   plant.jet_damping = vehicle.jet_damping;
   plant.flow_coriolis = vehicle.flow_coriolis;
-  const std::vector<StackMass> masses = BuildStackMasses(vehicle);
   const std::vector<AeroTable> tables =
       vehicle.aerodynamics.empty() ? BuildAerodynamics(vehicle) : vehicle.aerodynamics;
   for (std::size_t i = 0; i < vehicle.stages.size(); ++i) {
     const Stage& stage = vehicle.stages[i];
     LauncherStack stack;
-    stack.mass = masses[i];
     stack.aerodynamics = FromTable(tables[i]);
     stack.aero_grid = std::make_shared<const AeroGrid>(BuildAeroGrid(stack.aerodynamics));
     stack.burn = BuildBurn(stage, 1.0, 1.0);
     stack.gimbal = stage.gimbal;
-    if (!vehicle.profile.empty())
-      stack.loads = std::make_shared<const LoadTable>(BuildLoadTable(vehicle, static_cast<int>(i)));
     plant.stacks.push_back(stack);
     plant.jettisons.insert(plant.jettisons.end(), stage.jettisoned.begin(), stage.jettisoned.end());
   }
-  plant.jettisoned_masses = BuildJettisonedMasses(vehicle);
+  SetMasses(vehicle, plant);
   return plant;
+}
+
+void SetMasses(const Vehicle& vehicle, LauncherPlant& plant) {
+  plant.jettisoned_masses = BuildJettisonedMasses(vehicle);
+  const std::vector<StackMass> masses = BuildStackMasses(vehicle);
+  for (std::size_t i = 0; i < masses.size(); ++i) {
+    LauncherStack& stack = plant.stacks[i];
+    stack.mass = masses[i];
+    if (!vehicle.profile.empty())
+      stack.loads = std::make_shared<const LoadTable>(BuildLoadTable(vehicle, static_cast<int>(i)));
+  }
+  if (plant.bending_modes() == 0) return;
+  const std::vector<StackModes> stacks = BuildBendingModes(vehicle);
+  for (std::size_t i = 0; i < stacks.size(); ++i) {
+    LauncherStack& stack = plant.stacks[i];
+    stack.bending = std::make_shared<const BendingTable>(
+        BuildBendingTable(vehicle, stacks[i], *stack.loads, stack.bending->modes));
+  }
 }
 
 void AddBending(const Vehicle& vehicle, double tick_s, LauncherPlant& plant) {
@@ -40,8 +55,8 @@ void AddBending(const Vehicle& vehicle, double tick_s, LauncherPlant& plant) {
   plant.bending.damping_ratio = vehicle.structure_beam->damping_ratio;
   const std::vector<StackModes> stacks = BuildBendingModes(vehicle);
   for (std::size_t i = 0; i < stacks.size(); ++i)
-    plant.stacks[i].bending =
-        std::make_shared<const BendingTable>(BuildBendingTable(vehicle, stacks[i], *plant.stacks[i].loads, kPi / tick_s));
+    plant.stacks[i].bending = std::make_shared<const BendingTable>(BuildBendingTable(
+        vehicle, stacks[i], *plant.stacks[i].loads, ModesBelow(vehicle, stacks[i], kPi / tick_s)));
 }
 
 namespace {
@@ -189,10 +204,22 @@ FlightModel FlightModel::WithAutopilot(const AutopilotConfig& autopilot) const {
 
 namespace {
 
-// Turns the thrust by `tilt` towards the direction `clock` (from body y towards body z).
-Matrix3 ThrustTilt(double tilt, double clock) {
+// A departure from the axis: towards body y, and towards body z.
+struct Aside {
+  double y = 0.0, z = 0.0;
+};
+// Of a magnitude with its direction (from body y towards body z) and of components besides.
+Aside AsideOf(double magnitude, double clock, double y, double z) {
   const SinCos c = SineCosine(clock);
-  return RotationMatrix(FromRotationVector(Vector3(0.0, -tilt * c.sin, tilt * c.cos)));
+  Aside aside{magnitude * c.cos, magnitude * c.sin};
+  if (y != 0.0) aside.y += y;
+  if (z != 0.0) aside.z += z;
+  return aside;
+}
+
+// Turns the thrust by the angles of `tilt`.
+Matrix3 ThrustTilt(const Aside& tilt) {
+  return RotationMatrix(FromRotationVector(Vector3(0.0, -tilt.z, tilt.y)));
 }
 
 WindTable DrawnProfile(const WindStatistics& statistics, const FlightInputs& inputs) {
@@ -238,29 +265,45 @@ LauncherPlant FlightModel::PlantFor(const FlightInputs& in, std::optional<std::u
     plant.environment.turbulence = std::make_shared<const TurbulenceField>(
         TurbulenceOf(in, *definition_.turbulence_path, definition_.noise_seed, *case_index));
 
+  std::optional<Vehicle> dispersed;
+  if (ChangesMasses(in)) {
+    dispersed = WithDispersedMasses(definition_.vehicle, in);
+    SetMasses(*dispersed, plant);
+  }
+  const Vehicle& vehicle = dispersed ? *dispersed : definition_.vehicle;
+
   for (std::size_t i = 0; i < plant.stacks.size(); ++i) {
     LauncherStack& stack = plant.stacks[i];
-    const Stage& stage = definition_.vehicle.stages[i];
-    stack.burn = BuildBurn(stage, in.thrust_factor[i] * in.specific_impulse_factor[i],
+    stack.burn = BuildBurn(vehicle.stages[i], in.thrust_factor[i] * in.specific_impulse_factor[i],
                            in.mass_flow_factor[i]);
-    stack.gimbal.bandwidth_rad_s *= in.actuator_bandwidth_factor;
-    stack.aerodynamics.ca.factor = in.drag_factor;
-    stack.aerodynamics.cn.factor = in.lift_factor;
-    stack.aerodynamics.xcp_station_m.factor = in.cp_factor;
-    stack.thrust_tilt = ThrustTilt(in.thrust_misalignment_rad[i], in.thrust_misalignment_clock_rad[i]);
-    const SinCos offset = SineCosine(in.thrust_offset_clock_rad[i]);
-    stack.thrust_offset_y_m = in.thrust_offset_m[i] * offset.cos;
-    stack.thrust_offset_z_m = in.thrust_offset_m[i] * offset.sin;
+    stack.gimbal.bandwidth_rad_s *= in.actuator_bandwidth_factor * in.stack_actuator_bandwidth_factor[i];
+    stack.aerodynamics.ca.factor = in.drag_factor * in.stack_drag_factor[i];
+    stack.aerodynamics.cn.factor = in.lift_factor * in.stack_lift_factor[i];
+    stack.aerodynamics.xcp_station_m.factor = in.cp_factor * in.stack_cp_factor[i];
+    stack.cg_factor = in.stack_cg_factor[i];
+    stack.inertia_factor = in.stack_inertia_factor[i];
+    stack.product_xy_kg_m2 = in.product_of_inertia_xy_kg_m2[i];
+    stack.product_xz_kg_m2 = in.product_of_inertia_xz_kg_m2[i];
+    stack.product_yz_kg_m2 = in.product_of_inertia_yz_kg_m2[i];
+    stack.thrust_tilt = ThrustTilt(AsideOf(in.thrust_misalignment_rad[i], in.thrust_misalignment_clock_rad[i],
+                                           in.thrust_misalignment_y_rad[i], in.thrust_misalignment_z_rad[i]));
+    const Aside offset = AsideOf(in.thrust_offset_m[i], in.thrust_offset_clock_rad[i],
+                                 in.thrust_offset_y_m[i], in.thrust_offset_z_m[i]);
+    stack.thrust_offset_y_m = offset.y;
+    stack.thrust_offset_z_m = offset.z;
     for (std::size_t nozzle = 0; nozzle < kNozzles; ++nozzle) {
-      const SinCos at = SineCosine(in.nozzle_offset_clock_rad[i][nozzle]);
-      stack.nozzles[nozzle] = {
-          ThrustTilt(in.nozzle_misalignment_rad[i][nozzle], in.nozzle_misalignment_clock_rad[i][nozzle]),
-          in.nozzle_thrust_factor[i][nozzle], in.nozzle_offset_m[i][nozzle] * at.cos,
-          in.nozzle_offset_m[i][nozzle] * at.sin};
+      const Aside tilt =
+          AsideOf(in.nozzle_misalignment_rad[i][nozzle], in.nozzle_misalignment_clock_rad[i][nozzle],
+                  in.nozzle_misalignment_y_rad[i][nozzle], in.nozzle_misalignment_z_rad[i][nozzle]);
+      const Aside moved = AsideOf(in.nozzle_offset_m[i][nozzle], in.nozzle_offset_clock_rad[i][nozzle],
+                                  in.nozzle_offset_y_m[i][nozzle], in.nozzle_offset_z_m[i][nozzle]);
+      stack.nozzles[nozzle] = {ThrustTilt(tilt), in.nozzle_thrust_factor[i][nozzle], moved.y, moved.z};
     }
-    const SinCos aside = SineCosine(in.cg_offset_clock_rad[i]);
-    stack.lateral_moment_y_kg_m = stack.mass.fixed_mass_kg * in.cg_offset_m[i] * aside.cos;
-    stack.lateral_moment_z_kg_m = stack.mass.fixed_mass_kg * in.cg_offset_m[i] * aside.sin;
+    const double fixed_kg = stack.mass.fixed_mass_kg;
+    const Aside lateral = AsideOf(fixed_kg * in.cg_offset_m[i], in.cg_offset_clock_rad[i],
+                                  fixed_kg * in.cg_offset_y_m[i], fixed_kg * in.cg_offset_z_m[i]);
+    stack.lateral_moment_y_kg_m = lateral.y;
+    stack.lateral_moment_z_kg_m = lateral.z;
   }
   return plant;
 }

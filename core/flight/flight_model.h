@@ -100,6 +100,9 @@ class FlightModel {
 
 /// The vehicle without dispersions: aerodynamics built up where the file gives no tables.
 LauncherPlant BuildNominalPlant(const Vehicle& vehicle);
+/// Gives every stack the masses that a vehicle of the same stages has, with what its sections carry and, if
+/// it bends, as many of its modes as before.
+void SetMasses(const Vehicle& vehicle, LauncherPlant& plant);
 /// Gives a vehicle with a beam that flies its bending: modes that stay below half the sampling frequency all the
 /// burn.
 void AddBending(const Vehicle& vehicle, double tick_s, LauncherPlant& plant);

@@ -9,6 +9,7 @@
 #include "core/dynamics/launcher_lanes.h"
 #include "core/flight/history_columns.h"
 #include "core/flight/sequence.h"
+#include "core/flight/step_limits.h"
 #include "core/flight/tick_sample.h"
 #include "core/math/functions.h"
 
@@ -16,12 +17,13 @@ namespace dispersa {
 
 namespace {
 
-std::vector<FlightEvent> EventsOf(const FlightModel& model, const LauncherPlant& plant) {
+std::vector<FlightEvent> EventsOf(const FlightModel& model, const LauncherPlant& plant,
+                                  const FlightInputs& in) {
   const FlightDefinition& definition = model.definition();
   std::vector<MotorBurn> burns;
   for (const LauncherStack& stack : plant.stacks) burns.push_back(stack.burn);
   const std::vector<StageTimes> timeline =
-      BuildTimeline(definition.vehicle, burns, definition.autopilot.tick_s, definition.last_ignition_s);
+      BuildTimeline(definition.vehicle, burns, definition.autopilot.tick_s, definition.last_ignition_s, in);
   std::vector<FlightEvent> events;
   for (std::size_t i = 0; i < timeline.size(); ++i) {
     const int stage = static_cast<int>(i);
@@ -51,11 +53,15 @@ class FlightRecord::JudgedMotion {
  public:
   JudgedMotion(const LauncherModel& equations, Scheme scheme)
       : equations_(equations),
+        is_fixed_(scheme == Scheme::kRungeKutta4),
         tolerances_(AbsoluteTolerances()),
         integrator_(scheme, equations.plant().state_size(), &Rhs, this, tolerances_.data()) {}
 
   bool Advance(const LauncherPhase& phase, double from_s, double to_s, int steps, double* y) {
     phase_ = phase;
+    // An explicit method is unstable where its step is longer than the fastest part's own motion.
+    if (is_fixed_)
+      steps = lanes::StepsOver(FastestPart(equations_.plant(), phase.stack), to_s - from_s, steps);
     const Gimbal& gimbal = equations_.plant().stacks[static_cast<std::size_t>(phase.stack)].gimbal;
     if (gimbal.friction_rad > 0.0) {
       if (!SlideTo(gimbal, from_s, to_s, steps, y)) return false;
@@ -137,6 +143,7 @@ class FlightRecord::JudgedMotion {
 
   const LauncherModel& equations_;
   LauncherPhase phase_;
+  const bool is_fixed_;  ///< its steps do not find their own length
   std::array<double, kLauncherSize> tolerances_;
   Integrator integrator_;
 };
@@ -147,7 +154,7 @@ FlightRecord::FlightRecord(const FlightModel& model, const FlightOrder& order)
       plant(model.PlantFor(order.inputs, order.options.case_index)),
       weather(PrepareWeather(plant.environment.wind, plant.environment.density,
                              plant.environment.turbulence.get())),
-      events(EventsOf(model, plant)),
+      events(EventsOf(model, plant, inputs)),
       lift_off{},
       watched(options.history != nullptr || options.observe != nullptr),
       history_ticks(options.history ? std::max(1L, std::lround(options.history->step_s /
@@ -158,7 +165,14 @@ FlightRecord::FlightRecord(const FlightModel& model, const FlightOrder& order)
       limit_cycle(model.definition().autopilot.tick_s),
       model_(model),
       gyro_noise_(model.definition().noise_seed, options.case_index, "gyro_noise") {
-  WriteState(LiftOffState(model), lift_off);
+  const double tick_s = model.definition().autopilot.tick_s;
+  sums.step_limit_fraction = GreatestStepUse(plant, tick_s).fraction;
+  refusal_ = RefusalOf(model.definition().vehicle, inputs, plant, tick_s);
+  if (!refusal_.empty()) refusal = refusal_.c_str();
+  WriteState(LiftOffState(model, inputs), lift_off);
+  const Quaternion believed = BelievedAttitude(model, inputs, ReadState(lift_off).q_IB);
+  const double wxyz[] = {believed.w, believed.x, believed.y, believed.z};
+  std::copy(std::begin(wxyz), std::end(wxyz), believed_attitude);
   if (model.guidance_mission()) {
     guided_ = std::make_unique<GuidedFlight>(model, inputs);
     guided = guided_.get();
@@ -185,7 +199,11 @@ bool FlightRecord::Guide(const LaneSight& sight) {
   const int last = events.back().stage;
   std::size_t first = events.size();
   while (events[first - 1].stage == last) --first;
-  const double shift_s = guided->ignition_s() - events[first].time_s;
+  // What the guidance commands, the motor does late.
+  const double late_s = inputs.ignition_delay_s[static_cast<std::size_t>(last)];
+  const double ignition_s =
+      late_s != 0.0 ? std::max(guided->ignition_s() + late_s, sight.time_s) : guided->ignition_s();
+  const double shift_s = ignition_s - events[first].time_s;
   for (std::size_t i = first; i < events.size(); ++i) events[i].time_s += shift_s;
   return true;
 }

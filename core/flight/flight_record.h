@@ -6,6 +6,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "core/control/autopilot.h"
@@ -65,6 +66,8 @@ class FlightRecord {
   const FlightWeather weather;
   std::vector<FlightEvent> events;  ///< their number and order stay
   StateValues lift_off;
+  const char* refusal = nullptr;  ///< why its inputs cannot be flown; null: they can
+  double believed_attitude[4];    ///< q_IB (w, x, y, z) that the inertial unit is aligned to at lift-off
   bool watched;        ///< has a history or an observer
   long history_ticks;  ///< between rows; 0: no history
   bool noisy;          ///< its gyros are
@@ -118,6 +121,7 @@ class FlightRecord {
   std::unique_ptr<const LauncherModel> equations_;  ///< of a flight that is watched or judged
   std::unique_ptr<JudgedMotion> judged_;
   FlightResult result_;
+  std::string refusal_;
 };
 
 }  // namespace dispersa

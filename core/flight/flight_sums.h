@@ -42,6 +42,7 @@ struct FlightSums {
   double v_outside_ticks = 0.0, v_falling_ticks = 0.0;
   double adaptation_peak_rad_s2 = 0.0;
   std::uint32_t rules_fired = 0;
+  double step_limit_fraction = 0.0;  ///< known before the flight (step_limits.h)
 };
 
 /// Of all stages together; a peak that several share is the first one's.

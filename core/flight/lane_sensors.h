@@ -19,14 +19,16 @@ struct InertialUnit {
   T time_s;                 ///< of it
   Vector<T> drift_rad_s;    ///< bias and noise since
 
-  /// A lane at rest: aligned without an error.
-  DISPERSA_INLINE void Start(int lane, const Turn<T>& q) {
-    for (Turn<T>* turn : {&truth, &measured}) {
-      Lane(turn->w, lane) = Lane(q.w, lane);
-      Lane(turn->x, lane) = Lane(q.x, lane);
-      Lane(turn->y, lane) = Lane(q.y, lane);
-      Lane(turn->z, lane) = Lane(q.z, lane);
-    }
+  /// A lane at rest at a true attitude, aligned to `believed` (w, x, y, z).
+  DISPERSA_INLINE void Start(int lane, const Turn<T>& q, const double* believed) {
+    Lane(truth.w, lane) = Lane(q.w, lane);
+    Lane(truth.x, lane) = Lane(q.x, lane);
+    Lane(truth.y, lane) = Lane(q.y, lane);
+    Lane(truth.z, lane) = Lane(q.z, lane);
+    Lane(measured.w, lane) = believed[0];
+    Lane(measured.x, lane) = believed[1];
+    Lane(measured.y, lane) = believed[2];
+    Lane(measured.z, lane) = believed[3];
     Lane(time_s, lane) = 0.0;
     SetLane(drift_rad_s, lane, Zero<double>());
   }

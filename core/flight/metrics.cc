@@ -175,7 +175,7 @@ double SemiMajorAxis(const Earth& earth, double radius_m, double speed_m_s) {
   return 1.0 / (2.0 / radius_m - speed_m_s * speed_m_s / earth.mu_m3_s2);
 }
 
-// Of the flight too, outside its digest: they follow from its end, or from what led there.
+// Of the flight too, outside its digest: they follow from its end, from what led there, or from its inputs.
 constexpr Row kOfArrival[] = {
     {"semi_major_axis_error", "_km", "Semi-major axis error",
      "at injection, against that of the target's speed at the target's altitude there", kFarther,
@@ -188,7 +188,8 @@ constexpr Row kOfArrival[] = {
                              SemiMajorAxis(earth, target_radius_m, m.definition.target.velocity_m_s)) *
                             1e-3);
      }},
-    {"inclination_error", "_deg", "Inclination error", "at injection, against the reference's orbit", kFarther,
+    {"inclination_error", "_deg", "Inclination error", "at injection, against the reference's orbit",
+     kFarther,
      [](const Measured& m) {
        return m.AtInjection((m.sums.orbit.inclination_rad - m.definition.target.inclination_rad) * kDegPerRad);
      }},
@@ -197,12 +198,16 @@ constexpr Row kOfArrival[] = {
      kSmaller, [](const Measured& m) { return m.Guided(m.sums.guidance.arrives ? 1.0 : 0.0); }},
     {"guidance_ignition_shift", "_s", "Last ignition, moved by guidance", "against the reference", kAnyway,
      [](const Measured& m) { return m.Guided(m.sums.guidance.ignition_shift_s); }},
-    {"guidance_postponement", "_s", "Last ignition, postponed",
-     "because the attitude had not settled", kLarger,
-     [](const Measured& m) { return m.Guided(m.sums.guidance.postponed_s); }},
+    {"guidance_postponement", "_s", "Last ignition, postponed", "because the attitude had not settled",
+     kLarger, [](const Measured& m) { return m.Guided(m.sums.guidance.postponed_s); }},
     {"guidance_excess_velocity", "_m_s", "Excess velocity",
      "of the last burn, that its turn in yaw takes away, as planned at ignition", kAnyway,
      [](const Measured& m) { return m.Guided(m.sums.guidance.excess_m_s); }},
+    {"step_limit_fraction", "", "Fastest part, of what a step resolves",
+     "frequency of the actuator or bending mode, as dispersed, that comes nearest to the limit of the "
+     "integration's "
+     "step, as a fraction of that limit",
+     kLarger, [](const Measured& m) { return m.sums.step_limit_fraction; }},
 };
 
 // The phases of kByPhase: 0 all powered flight, then the stages, then the coast.

@@ -1,11 +1,12 @@
 #include "core/flight/sequence.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace dispersa {
 
 std::vector<StageTimes> BuildTimeline(const Vehicle& vehicle, const std::vector<MotorBurn>& burns,
-                                      double tick_s, double last_ignition_s) {
+                                      double tick_s, double last_ignition_s, const FlightInputs& in) {
   std::vector<StageTimes> times(burns.size());
   for (std::size_t i = 0; i < burns.size(); ++i) {
     const Stage& stage = vehicle.stages[i];
@@ -14,17 +15,19 @@ std::vector<StageTimes> BuildTimeline(const Vehicle& vehicle, const std::vector<
         times[i].ignition_s = -vehicle.hold_down_s;
         break;
       case IgnitionTrigger::kBurnoutDetection:
-        times[i].ignition_s = times[i - 1].separation_s + stage.ignition_delay_s;
+        times[i].ignition_s =
+            times[i - 1].separation_s + std::max(stage.ignition_delay_s + in.ignition_delay_s[i], 0.0);
         break;
       case IgnitionTrigger::kTimer:
-        times[i].ignition_s =
-            last_ignition_s > times[i - 1].separation_s ? last_ignition_s : times[i - 1].separation_s;
+        times[i].ignition_s = std::max(last_ignition_s + in.ignition_delay_s[i], times[i - 1].separation_s);
         break;
     }
     times[i].burnout_s = times[i].ignition_s + burns[i].duration_s;
     const double detection_s = std::ceil((times[i].burnout_s - kSameInstant_s) / tick_s) * tick_s;
     const bool last = i + 1 == burns.size();
-    times[i].separation_s = last ? times[i].burnout_s : detection_s + stage.separation_delay_s;
+    times[i].separation_s =
+        last ? times[i].burnout_s
+             : detection_s + std::max(stage.separation_delay_s + in.separation_delay_s[i], 0.0);
   }
   return times;
 }

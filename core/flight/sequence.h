@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "core/flight/flight_inputs.h"
 #include "core/vehicle/propulsion.h"
 #include "core/vehicle/vehicle.h"
 
@@ -20,8 +21,9 @@ inline constexpr double kSameInstant_s = 1e-9;
 
 /// Times since lift-off. Burnout is exact; it is detected on the next tick, and the stage separates
 /// `separation_delay_s` later. A stage on burnout detection ignites `ignition_delay_s` after that; a stage
-/// on the timer at last_ignition_s, or at separation of the stage below if that is later.
+/// on the timer at last_ignition_s, or at separation of the stage below if that is later. `in` has the delays
+/// of a flight, which add; none takes an event before what triggers it.
 std::vector<StageTimes> BuildTimeline(const Vehicle& vehicle, const std::vector<MotorBurn>& burns,
-                                      double tick_s, double last_ignition_s);
+                                      double tick_s, double last_ignition_s, const FlightInputs& in = {});
 
 }  // namespace dispersa

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/flight/dispersed_vehicle.h"
 #include "core/flight/flight.h"
 #include "core/math/constants.h"
 #include "core/optimization/parallel_for.h"
@@ -58,8 +59,8 @@ double TopStation(const Vehicle& vehicle, int stage) {
 
 std::vector<ImpactPoint> ImpactPoints(const CampaignFlights& flights, const CaseResult& result,
                                       const History& history, const FallSteps& steps) {
-  const Vehicle& vehicle = flights.model().definition().vehicle;
   const FlightInputs inputs = flights.Draw(result.case_index);
+  const Vehicle vehicle = WithDispersedMasses(flights.model().definition().vehicle, inputs);
   const LauncherPlant plant = flights.model().PlantFor(inputs);
   const Environment& environment = plant.environment;
   const HistoryReader rows(history);

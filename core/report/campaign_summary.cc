@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "core/campaign/case_design.h"
+#include "core/flight/step_limits.h"
 #include "core/flight/structural_limits.h"
 #include "core/report/metric_catalogue.h"
 #include "core/report/sampling_text.h"
@@ -95,6 +96,13 @@ void HoldAgainstLimits(const StructuralLimits& limits, const CaseColumns& cases,
   const std::vector<double> any = cases.metrics.at(MetricColumn("structural_limit_exceeded"));
   summary->beyond_limits = static_cast<std::uint64_t>(
       std::count_if(any.begin(), any.end(), [](double exceeded) { return exceeded > 0.0; }));
+}
+
+/// Flights with a part that a step hardly resolves, and those that were refused for one.
+std::uint64_t NearStepLimit(const CaseColumns& cases) {
+  const std::vector<double> fractions = cases.metrics.at(MetricColumn("step_limit_fraction"));
+  return static_cast<std::uint64_t>(std::count_if(fractions.begin(), fractions.end(),
+                                                  [](double fraction) { return fraction > kNearStepLimit; }));
 }
 
 /// Cases that the campaign flies: where it stops, if it stops by itself.
@@ -190,6 +198,13 @@ std::vector<std::string> Warnings(const CampaignSummary& summary) {
     warnings.push_back(fmt::format("Structural limits of the vehicle were exceeded in {} of {} flights: {}.",
                                    summary.beyond_limits, summary.flown, loads));
   }
+  if (summary.near_step_limit > 0) {
+    warnings.push_back(
+        fmt::format("Near the limit of the integration's step: in {} of {} flights the fastest actuator or "
+                    "bending mode has more than {:.0f} % of the frequency that a step resolves "
+                    "(step_limit_fraction); shorter ticks of the autopilot resolve more.",
+                    summary.near_step_limit, summary.flown, 100.0 * kNearStepLimit));
+  }
   const std::uint64_t completed = summary.outcomes[static_cast<std::size_t>(Outcome::kCompleted)];
   if (completed < summary.flown) {
     warnings.push_back(
@@ -279,6 +294,7 @@ CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaig
                                Skewness(sorted), Percentiles(sorted)});
   }
   HoldAgainstLimits(campaign.vehicle.limits, cases, &summary);
+  summary.near_step_limit = NearStepLimit(cases);
   summary.requirements = JudgeAll(campaign.requirements, context, cases);
   for (const Requirement& requirement : campaign.requirements) {
     summary.overall_risk = std::max(summary.overall_risk, requirement.consumer_risk);

@@ -76,6 +76,7 @@ struct CampaignSummary {
   };
   std::vector<Limit> limits;
   std::uint64_t beyond_limits = 0;  ///< flights that exceeded any
+  std::uint64_t near_step_limit = 0;  ///< flights whose fastest part comes near what a step resolves
   bool holm = false;                ///< the requirements' verdicts hold together
   /// How likely it is at most that a campaign that misses any requirement passes them all, and that any of
   /// the requirements' own verdicts to pass is wrong.

@@ -41,7 +41,7 @@ bool RankAlike(const Ranked& a, const Ranked& b) {
 }
 
 bool IsAngle(const std::string& column) {
-  return column.find("_clock") != std::string::npos || column.find("_azimuth") != std::string::npos;
+  return column.find("_clock") != std::string::npos || column.find("_azimuth_deg") != std::string::npos;
 }
 
 /// The column of the magnitude that an angle gives a direction to, if there is one.

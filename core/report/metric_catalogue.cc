@@ -14,12 +14,13 @@ struct UnitSuffix {
 };
 
 /// Longer suffixes before those that end them.
-constexpr std::array<UnitSuffix, 19> kUnits = {{
+constexpr std::array<UnitSuffix, 20> kUnits = {{
     {"_itae_deg_s2", "° s²"},
     {"_deg_s2", "°/s²"},
     {"_pa_rad", "Pa rad"},
     {"_deg_s", "°/s"},
     {"_rad_s", "rad/s"},
+    {"_kg_m2", "kg m²"},
     {"_kg_s", "kg/s"},
     {"_km_s", "km/s"},
     {"_m_s", "m/s"},

@@ -186,6 +186,7 @@ std::string SummaryJson(const CampaignSummary& summary) {
          {"largest", OrNull(one.largest)},
          {"largest_case", one.largest ? Json(one.largest_case) : Json(nullptr)}});
   }
+  json["near_step_limit"] = summary.near_step_limit;
   json["requirements"] = Json::array();
   for (const RequirementSummary& requirement : summary.requirements) {
     json["requirements"].push_back(RequirementJson(requirement));

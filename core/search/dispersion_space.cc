@@ -6,13 +6,13 @@
 #include <boost/math/distributions/normal.hpp>
 
 #include "core/campaign/case_design.h"
+#include "core/campaign/drawn_value.h"
 #include "core/math/constants.h"
 
 namespace dispersa {
 namespace {
 
 double Probability(double z) { return boost::math::cdf(boost::math::normal(), z); }
-double Quantile(double p) { return boost::math::quantile(boost::math::normal(), p); }
 
 CoordinateKind KindOf(const ScalarDistribution& d) {
   switch (d.kind) {
@@ -27,41 +27,20 @@ CoordinateKind KindOf(const ScalarDistribution& d) {
   }
 }
 
-/// A sample's value at a probability, linear between its order statistics.
-double SampleValue(const std::vector<double>& sorted, double p) {
-  const double at = p * static_cast<double>(sorted.size() - 1);
-  const auto below = std::min(static_cast<std::size_t>(at), sorted.size() - 1);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  return sorted[below] + (at - static_cast<double>(below)) * (sorted[above] - sorted[below]);
-}
-
-double TriangularValue(const ScalarDistribution& d, double p) {
-  const double width = d.high - d.low;
-  const double left = (d.nominal - d.low) / width;
-  return p < left ? d.low + std::sqrt(p * width * (d.nominal - d.low))
-                  : d.high - std::sqrt((1.0 - p) * width * (d.high - d.nominal));
-}
-
-/// The law's value where a standard normal is z.
-double ValueAt(const ScalarDistribution& d, double z) {
+/// The law's value where a standard normal is z. What is exact far out is written in z.
+double ValueAt(const ScalarDistribution& d, const std::array<double, 2>& truncation, double z) {
   switch (d.kind) {
     case Distribution::kNormal:
       return d.nominal + d.sigma * z;
-    case Distribution::kTruncatedNormal: {
-      const double from = Probability((d.low - d.nominal) / d.sigma);
-      const double to = Probability((d.high - d.nominal) / d.sigma);
-      return std::clamp(d.nominal + d.sigma * Quantile(from + (to - from) * Probability(z)), d.low, d.high);
-    }
     case Distribution::kLogNormal:
       return d.nominal * std::exp(d.sigma * z);
     case Distribution::kRayleigh:  // as likely to be exceeded as |z|
-      return d.sigma * std::sqrt(-2.0 * std::log(2.0 * Probability(-std::fabs(z))));
+      return DrawnValue(d, truncation, 2.0 * Probability(-std::fabs(z)));
+    case Distribution::kTruncatedNormal:
     case Distribution::kTriangular:
-      return TriangularValue(d, Probability(z));
     case Distribution::kEmpirical:
-      return SampleValue(d.values, Probability(z));
     case Distribution::kUniform:
-      return d.low + (d.high - d.low) * Probability(z);
+      return DrawnValue(d, truncation, Probability(z));
     case Distribution::kTwoPoint:
       return d.nominal;
     case Distribution::kValues:
@@ -75,8 +54,10 @@ double ValueAt(const ScalarDistribution& d, double z) {
 }  // namespace
 
 DispersionSpace::DispersionSpace(const Campaign& campaign) : dispersions_(campaign.dispersions) {
-  for (const Dispersion& dispersion : dispersions_)
+  for (const Dispersion& dispersion : dispersions_) {
     coordinates_.push_back({dispersion.name, KindOf(dispersion.distribution)});
+    truncation_.push_back(TruncationOf(dispersion.distribution));
+  }
   list_.sampling.method = SamplingMethod::kList;
 }
 
@@ -87,7 +68,7 @@ double DispersionSpace::Value(std::size_t coordinate, const std::vector<double>&
     z = 0.0;
     for (const auto& [other, weight] : dispersion.mix) z += weight * point[other];
   }
-  const double value = ValueAt(dispersion.distribution, z);
+  const double value = ValueAt(dispersion.distribution, truncation_[coordinate], z);
   return dispersion.absolute ? std::fabs(value) : value;
 }
 

@@ -3,6 +3,7 @@
 // 111-121).
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -39,6 +40,7 @@ class DispersionSpace {
   Campaign list_;  ///< only what a design of listed points needs
   std::vector<Dispersion> dispersions_;
   std::vector<Coordinate> coordinates_;
+  std::vector<std::array<double, 2>> truncation_;
 };
 
 }  // namespace dispersa

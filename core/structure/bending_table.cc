@@ -51,14 +51,19 @@ double BendingTable::At(int plane, int mode, int column, double kg) const {
   return from + fraction * (to - from);
 }
 
+int ModesBelow(const Vehicle& vehicle, const StackModes& stack, double highest_rad_s) {
+  int modes = 0;
+  while (modes < std::min(kModes, vehicle.structure_beam->flown_modes) &&
+         FliesAtAllLevels(stack, static_cast<std::size_t>(modes), highest_rad_s))
+    ++modes;
+  return modes;
+}
+
 BendingTable BuildBendingTable(const Vehicle& vehicle, const StackModes& stack, const LoadTable& loads,
-                               double highest_rad_s) {
-  const StructureBeam& beam = *vehicle.structure_beam;
+                               int modes) {
   const Stage& stage = vehicle.stages[static_cast<std::size_t>(stack.stage)];
   BendingTable table;
-  while (table.modes < std::min(kModes, beam.flown_modes) &&
-         FliesAtAllLevels(stack, static_cast<std::size_t>(table.modes), highest_rad_s))
-    ++table.modes;
+  table.modes = modes;
   table.planes = stack.axisymmetric ? 1 : 2;
   for (const BendingLevel& level : stack.levels[0]) table.propellant_kg.push_back(level.propellant_kg);
 

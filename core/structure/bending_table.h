@@ -49,14 +49,17 @@ struct BendingTable {
   }
 };
 
-/// The table of one stack. Only modes whose frequency stays below `highest_rad_s` all the burn fly, and no more
-/// than the beam's flown_modes: of the rest none, from the first on that does not.
+/// Modes of a stack that fly: only those whose frequency stays below `highest_rad_s` all the burn, and no
+/// more than the beam's flown_modes: of the rest none, from the first on that does not.
+int ModesBelow(const Vehicle& vehicle, const StackModes& stack, double highest_rad_s);
+
+/// The table of the first `modes` modes of one stack.
 ///
-/// `shortening` of modes j and k: the integral of w_j' w_k' over the beam, weighted with the share of the mass that
-/// lies ahead. The axial force F carried by the stack lowers the stiffness by F times that (the potential
-/// energy of a compressed beam, e.g. S. Timoshenko and J. Gere, "Theory of Elastic Stability", 1.11; drag
-/// taken as carried like thrust).
+/// `shortening` of modes j and k: the integral of w_j' w_k' over the beam, weighted with the share of the
+/// mass that lies ahead. The axial force F carried by the stack lowers the stiffness by F times that (the
+/// potential energy of a compressed beam, e.g. S. Timoshenko and J. Gere, "Theory of Elastic
+/// Stability", 1.11; drag taken as carried like thrust).
 BendingTable BuildBendingTable(const Vehicle& vehicle, const StackModes& stack, const LoadTable& loads,
-                               double highest_rad_s);
+                               int modes);
 
 }  // namespace dispersa

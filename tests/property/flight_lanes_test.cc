@@ -115,6 +115,34 @@ FlightInputs DrawnInputs(std::uint64_t flight) {
   for (double& error_m : in.navigation_position_error_m) error_m = 30.0 * navigation.Normal();
   for (double& error_m_s : in.navigation_velocity_error_m_s) error_m_s = 0.3 * navigation.Normal();
   in.accelerometer_scale_factor = 1.0 + 1e-3 * navigation.Normal();
+  // Later inputs have a stream of their own for the same reason.
+  Stream later(5, flight, "later inputs");
+  const auto seldom = [&](double& value, double drawn) {
+    if (later.Uniform() < 0.3) value = drawn;
+  };
+  for (std::size_t stage = 0; stage < kMaxStages; ++stage) {
+    seldom(in.dry_mass_factor[stage], 1.0 + 0.01 * later.Normal());
+    seldom(in.propellant_factor[stage], 1.0 + 0.005 * later.Normal());
+    seldom(in.product_of_inertia_xy_kg_m2[stage], 2.0 * later.Normal());
+    seldom(in.product_of_inertia_xz_kg_m2[stage], 2.0 * later.Normal());
+    seldom(in.product_of_inertia_yz_kg_m2[stage], 2.0 * later.Normal());
+    seldom(in.ignition_delay_s[stage], 0.2 * later.Uniform());
+    seldom(in.separation_delay_s[stage], 0.1 * later.Uniform());
+    seldom(in.thrust_misalignment_y_rad[stage], 0.1 * kRadPerDeg * later.Normal());
+    seldom(in.cg_offset_z_m[stage], 0.002 * later.Normal());
+    for (double* factor : {&in.stack_drag_factor[stage], &in.stack_lift_factor[stage], &in.stack_cg_factor[stage],
+                           &in.stack_cp_factor[stage], &in.stack_inertia_factor[stage],
+                           &in.stack_actuator_bandwidth_factor[stage]})
+      seldom(*factor, 1.0 + 0.02 * later.Normal());
+  }
+  // In some flights so fast that a rate limit may act within a tick.
+  seldom(in.stack_actuator_bandwidth_factor[1], 9.0);
+  seldom(in.payload_mass_kg, 5.0 * later.Normal());
+  in.payload_element = 1.0;
+  seldom(in.launch_azimuth_error_rad, 0.3 * kRadPerDeg * later.Normal());
+  seldom(in.initial_roll_error_rad, 0.5 * kRadPerDeg * later.Normal());
+  seldom(in.initial_pitch_error_rad, 0.2 * kRadPerDeg * later.Normal());
+  seldom(in.initial_yaw_error_rad, 0.2 * kRadPerDeg * later.Normal());
   if (draws.Uniform() < 0.3) {
     in.stuck_nozzle = std::floor(1.0 + 4.0 * draws.Uniform());
     in.stuck_nozzle_stage = std::floor(1.0 + 4.0 * draws.Uniform());

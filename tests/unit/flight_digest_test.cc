@@ -65,9 +65,32 @@ TEST(InputColumns, NameTheFieldsOfFlightInputs) {
       expect("nozzle_offset" + of + "_m", in.nozzle_offset_m[i][nozzle], 1.0);
       expect("nozzle_offset_clock" + of + "_deg", in.nozzle_offset_clock_rad[i][nozzle], kRadPerDeg);
       expect("nozzle_thrust_factor" + of, in.nozzle_thrust_factor[i][nozzle], 1.0);
+      expect("nozzle_misalignment_y" + of + "_deg", in.nozzle_misalignment_y_rad[i][nozzle], kRadPerDeg);
+      expect("nozzle_misalignment_z" + of + "_deg", in.nozzle_misalignment_z_rad[i][nozzle], kRadPerDeg);
+      expect("nozzle_offset_y" + of + "_m", in.nozzle_offset_y_m[i][nozzle], 1.0);
+      expect("nozzle_offset_z" + of + "_m", in.nozzle_offset_z_m[i][nozzle], 1.0);
     }
     expect("cg_offset" + stage + "_m", in.cg_offset_m[i], 1.0);
     expect("cg_offset_clock" + stage + "_deg", in.cg_offset_clock_rad[i], kRadPerDeg);
+    expect("dry_mass_factor" + stage, in.dry_mass_factor[i], 1.0);
+    expect("propellant_factor" + stage, in.propellant_factor[i], 1.0);
+    expect("product_of_inertia_xy" + stage + "_kg_m2", in.product_of_inertia_xy_kg_m2[i], 1.0);
+    expect("product_of_inertia_xz" + stage + "_kg_m2", in.product_of_inertia_xz_kg_m2[i], 1.0);
+    expect("product_of_inertia_yz" + stage + "_kg_m2", in.product_of_inertia_yz_kg_m2[i], 1.0);
+    expect("ignition_delay" + stage + "_s", in.ignition_delay_s[i], 1.0);
+    expect("separation_delay" + stage + "_s", in.separation_delay_s[i], 1.0);
+    expect("drag_factor" + stage, in.stack_drag_factor[i], 1.0);
+    expect("lift_factor" + stage, in.stack_lift_factor[i], 1.0);
+    expect("cg_factor" + stage, in.stack_cg_factor[i], 1.0);
+    expect("cp_factor" + stage, in.stack_cp_factor[i], 1.0);
+    expect("inertia_factor" + stage, in.stack_inertia_factor[i], 1.0);
+    expect("actuator_bandwidth_factor" + stage, in.stack_actuator_bandwidth_factor[i], 1.0);
+    expect("thrust_misalignment_y" + stage + "_deg", in.thrust_misalignment_y_rad[i], kRadPerDeg);
+    expect("thrust_misalignment_z" + stage + "_deg", in.thrust_misalignment_z_rad[i], kRadPerDeg);
+    expect("thrust_offset_y" + stage + "_m", in.thrust_offset_y_m[i], 1.0);
+    expect("thrust_offset_z" + stage + "_m", in.thrust_offset_z_m[i], 1.0);
+    expect("cg_offset_y" + stage + "_m", in.cg_offset_y_m[i], 1.0);
+    expect("cg_offset_z" + stage + "_m", in.cg_offset_z_m[i], 1.0);
     expect("thrust_factor" + stage, in.thrust_factor[i], 1.0);
     expect("mass_flow_factor" + stage, in.mass_flow_factor[i], 1.0);
     expect("specific_impulse_factor" + stage, in.specific_impulse_factor[i], 1.0);
@@ -112,6 +135,12 @@ TEST(InputColumns, NameTheFieldsOfFlightInputs) {
            1.0);
   }
   expect("accelerometer_scale_factor", in.accelerometer_scale_factor, 1.0);
+  expect("payload_mass_kg", in.payload_mass_kg, 1.0);
+  expect("payload_element", in.payload_element, 1.0);
+  expect("launch_azimuth_error_deg", in.launch_azimuth_error_rad, kRadPerDeg);
+  expect("initial_roll_error_deg", in.initial_roll_error_rad, kRadPerDeg);
+  expect("initial_pitch_error_deg", in.initial_pitch_error_rad, kRadPerDeg);
+  expect("initial_yaw_error_deg", in.initial_yaw_error_rad, kRadPerDeg);
 }
 
 TEST(InputColumns, CoverEveryDoubleOnceWithDistinctNames) {

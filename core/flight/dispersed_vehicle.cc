@@ -1,0 +1,58 @@
+#include "core/flight/dispersed_vehicle.h"
+
+#include <cmath>
+
+#include "core/math/functions.h"
+#include "core/vehicle/mass.h"
+
+namespace dispersa {
+namespace {
+
+// The element of a stage's structure has `added_kg` more; the others keep their masses.
+void AddToElement(std::size_t element, double added_kg, double& dry_kg, Stage& stage) {
+  for (std::size_t i = 0; i < stage.structure.size(); ++i) {
+    const double own_kg = dry_kg * stage.structure[i].fraction + (i == element ? added_kg : 0.0);
+    stage.structure[i].fraction = own_kg / (dry_kg + added_kg);
+  }
+  dry_kg += added_kg;
+}
+
+}  // namespace
+
+bool ChangesMasses(const FlightInputs& in) {
+  for (std::size_t i = 0; i < kMaxStages; ++i)
+    if (in.dry_mass_factor[i] != 1.0 || in.propellant_factor[i] != 1.0) return true;
+  return in.payload_mass_kg != 0.0;
+}
+
+Vehicle WithDispersedMasses(const Vehicle& vehicle, const FlightInputs& in) {
+  Vehicle dispersed = vehicle;
+  if (!ChangesMasses(in)) return dispersed;
+  double above_kg = 0.0;
+  for (std::size_t i = vehicle.stages.size(); i-- > 0;) {
+    Stage& stage = dispersed.stages[i];
+    double dry_kg = DryMass(vehicle, static_cast<int>(i)) * in.dry_mass_factor[i];
+    const int element = static_cast<int>(in.payload_element + 0.5) - 1;
+    if (i + 1 == vehicle.stages.size() && element >= 0 && element < static_cast<int>(stage.structure.size()))
+      AddToElement(static_cast<std::size_t>(element), in.payload_mass_kg, dry_kg, stage);
+    stage.propellant_mass_kg *= in.propellant_factor[i];
+    stage.motor.burning_time_s *= in.propellant_factor[i];
+    // The density that its volume implies is to stay.
+    Grain& grain = stage.grain;
+    const double web2 = Square(grain.outer_diameter_m) - Square(grain.inner_diameter_m);
+    const double bore2 = Square(grain.outer_diameter_m) - in.propellant_factor[i] * web2;
+    grain.inner_diameter_m = bore2 > 0.0 ? Sqrt(bore2) : 0.0;
+    above_kg += dry_kg + stage.propellant_mass_kg;
+    for (const Jettison& jettison : stage.jettisoned) above_kg += jettison.mass_kg;
+    stage.liftoff_mass_kg = above_kg;
+  }
+  return dispersed;
+}
+
+double LargestPropellantFactor(const Stage& stage) {
+  const double outer2 = Square(stage.grain.outer_diameter_m);
+  // A number that a message can show.
+  return std::round(1e6 * outer2 / (outer2 - Square(stage.grain.inner_diameter_m))) * 1e-6;
+}
+
+}  // namespace dispersa

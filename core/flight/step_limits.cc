@@ -1,0 +1,112 @@
+#include "core/flight/step_limits.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "core/flight/dispersed_vehicle.h"
+#include "core/math/constants.h"
+#include "core/vehicle/mass.h"
+
+namespace dispersa {
+namespace {
+
+std::string Text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+double ActuatorLimit(double nozzle_inertia_kg_m2) {
+  return nozzle_inertia_kg_m2 > 0.0 ? kHeavyActuatorLimit_rad : kActuatorLimit_rad;
+}
+
+void Take(const std::string& part, double rad_s, double tick_s, double limit_rad, StepUse& greatest) {
+  const double fraction = rad_s * tick_s / limit_rad;
+  if (fraction > greatest.fraction)
+    greatest = {fraction, part + " (" + Text(rad_s / kTwoPi) + " Hz)", limit_rad / tick_s / kTwoPi};
+}
+
+// f(mode, its highest frequency over the burn in either plane, with the flight's factor) of every mode that flies.
+template <typename F>
+void EachMode(const LauncherPlant& plant, std::size_t stack, F f) {
+  const BendingTable* table = plant.stacks[stack].bending.get();
+  if (table == nullptr) return;
+  for (int mode = 0; mode < table->modes; ++mode) {
+    double highest_rad_s = 0.0;
+    for (int plane = 0; plane < table->planes; ++plane)
+      for (std::size_t level = 0; level < table->propellant_kg.size(); ++level)
+        highest_rad_s = std::max(
+            highest_rad_s, table->Row(plane, static_cast<int>(level), mode)[BendingTable::kFrequency]);
+    f(mode, plant.bending.frequency[static_cast<std::size_t>(mode)] * highest_rad_s);
+  }
+}
+
+// Sylvester's criterion for the tensor of a stack that has burnt out, where the moments are least.
+bool IsInertia(const LauncherStack& stack) {
+  const MassProperties empty = stack.mass.At(0.0);
+  const double a = empty.axial_inertia_kg_m2, t = empty.transverse_inertia_kg_m2;
+  const double xy = stack.product_xy_kg_m2, xz = stack.product_xz_kg_m2, yz = stack.product_yz_kg_m2;
+  const double determinant = a * (t * t - yz * yz) - xy * (xy * t + xz * yz) - xz * (xz * t + xy * yz);
+  return a * t - xy * xy > 0.0 && determinant > 0.0;
+}
+
+}  // namespace
+
+StepUse GreatestStepUse(const LauncherPlant& plant, double tick_s) {
+  StepUse greatest;
+  for (std::size_t i = 0; i < plant.stacks.size(); ++i) {
+    const Gimbal& gimbal = plant.stacks[i].gimbal;
+    Take("the actuators of stage " + std::to_string(i + 1), gimbal.bandwidth_rad_s, tick_s,
+         ActuatorLimit(gimbal.nozzle_inertia_kg_m2), greatest);
+    EachMode(plant, i, [&](int mode, double rad_s) {
+      Take("bending mode " + std::to_string(mode + 1) + " of stage " + std::to_string(i + 1), rad_s, tick_s,
+           kModeLimit_rad, greatest);
+    });
+  }
+  return greatest;
+}
+
+double FastestPart(const LauncherPlant& plant, int stack) {
+  const auto i = static_cast<std::size_t>(stack);
+  double fastest_rad_s = plant.stacks[i].gimbal.bandwidth_rad_s;
+  EachMode(plant, i, [&](int, double rad_s) { fastest_rad_s = std::max(fastest_rad_s, rad_s); });
+  return fastest_rad_s;
+}
+
+std::string RefusalOf(const Vehicle& vehicle, const FlightInputs& in, const LauncherPlant& plant,
+                      double tick_s) {
+  for (std::size_t i = 0; i < vehicle.stages.size(); ++i) {
+    const std::string stage = "stage " + std::to_string(i + 1);
+    if (!(in.dry_mass_factor[i] > 0.0)) return "the dry mass of " + stage + " is not above 0";
+    if (!(in.propellant_factor[i] > 0.0)) return "the propellant of " + stage + " is not above 0";
+    if (in.propellant_factor[i] > LargestPropellantFactor(vehicle.stages[i]))
+      return "the grain of " + stage + " does not hold " + Text(in.propellant_factor[i]) +
+             " times its propellant";
+    if (!IsInertia(plant.stacks[i])) return "the products of inertia of " + stage + " are no body's";
+  }
+  if (ChangesMasses(in))
+    for (const MassElement& element : WithDispersedMasses(vehicle, in).stages.back().structure)
+      if (!(element.fraction >= 0.0)) return "the element '" + element.name + "' weighs less than nothing";
+  const StepUse use = GreatestStepUse(plant, tick_s);
+  if (use.fraction <= 1.0) return "";
+  return use.part + ": too fast for ticks of " + Text(1e3 * tick_s) + " ms, at most " + Text(use.limit_hz) +
+         " Hz";
+}
+
+std::vector<VehicleProblem> StepProblems(const Vehicle& vehicle, double tick_s) {
+  std::vector<VehicleProblem> problems;
+  for (std::size_t i = 0; i < vehicle.stages.size(); ++i) {
+    const Gimbal& gimbal = vehicle.stages[i].gimbal;
+    const double most_rad_s = ActuatorLimit(gimbal.nozzle_inertia_kg_m2) / tick_s;
+    if (gimbal.bandwidth_rad_s <= most_rad_s) continue;
+    problems.push_back(
+        {"stages[" + std::to_string(i) + "].gimbal.bandwidth_rad_s",
+         "is too fast for the autopilot's ticks of " + Text(1e3 * tick_s) +
+             " ms, which are the "
+             "integration's steps",
+         "at most " + Text(most_rad_s) + " rad/s (" + Text(most_rad_s / kTwoPi) + " Hz), or shorter ticks"});
+  }
+  return problems;
+}
+
+}  // namespace dispersa

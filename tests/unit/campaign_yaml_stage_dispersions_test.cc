@@ -1,0 +1,209 @@
+// Dispersions of stages, masses, events and lift-off: what they become, and the full texts of what is wrong
+// with them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/campaign/case_design.h"
+#include "core/campaign_yaml/load.h"
+#include "core/math/constants.h"
+#include "tests/unit/input_files.h"
+
+namespace dispersa {
+namespace {
+
+using testing::ElementsAre;
+
+// The test campaign (two stages) with one dispersion in place of its own.
+void SetDispersion(const InputFiles& files, const std::string& line) {
+  std::string text = ReadWholeFile(files.Path("campaign.yaml"));
+  const std::size_t begin = text.find("dispersions:\n");
+  text.replace(begin, text.find("requirements:") - begin, "dispersions:\n  " + line + "\n");
+  files.Write("campaign.yaml", text);
+}
+
+Campaign Load(const std::string& line) {
+  const InputFiles files;
+  SetDispersion(files, line);
+  return LoadCampaign(files.Path("campaign.yaml"));
+}
+
+// "name: input input" of each.
+std::vector<std::string> Fed(const std::string& line) {
+  std::vector<std::string> all;
+  for (const Dispersion& dispersion : Load(line).dispersions) {
+    std::string text = dispersion.name + ":";
+    for (const int input : dispersion.inputs)
+      text += " " + InputColumns()[static_cast<std::size_t>(input)].name;
+    all.push_back(text);
+  }
+  return all;
+}
+
+std::string Problems(const std::string& line) {
+  const InputFiles files;
+  SetDispersion(files, line);
+  return files.Texts(ValidateFile(files.Path("campaign.yaml")));
+}
+
+TEST(StageDispersions, NameTheirStages) {
+  EXPECT_THAT(Fed("burn_rate: {distribution: normal, sigma_percent: 2, per: stage, stage: 2}"),
+              ElementsAre("burn_rate/stage2: thrust_factor_stage2 mass_flow_factor_stage2"));
+  EXPECT_THAT(Fed("dry_mass: {distribution: normal, sigma_percent: 1, per: vehicle, stage: [2, 1]}"),
+              ElementsAre("dry_mass/stages_1_2: dry_mass_factor_stage1 dry_mass_factor_stage2"));
+  EXPECT_THAT(Fed("dry_mass: {distribution: normal, sigma_percent: 1, per: vehicle}"),
+              ElementsAre("dry_mass: dry_mass_factor_stage1 dry_mass_factor_stage2"));
+  EXPECT_THAT(
+      Fed("thrust: [{distribution: normal, sigma_percent: 2, conserve: propellant, per: stage, stage: 1}, "
+          "{distribution: uniform, bound_percent: 1, conserve: propellant, per: nozzle, stage: 2}]"),
+      ElementsAre("thrust/stage1: thrust_factor_stage1",
+                  "thrust/stage2_right: nozzle_thrust_factor_stage2_right",
+                  "thrust/stage2_left: nozzle_thrust_factor_stage2_left",
+                  "thrust/stage2_bottom: nozzle_thrust_factor_stage2_bottom",
+                  "thrust/stage2_top: nozzle_thrust_factor_stage2_top"));
+  EXPECT_THAT(Fed("tip_off_rate: {roll: {distribution: normal, sigma_deg_s: 1, stage: 1}}"),
+              ElementsAre("tip_off_rate/roll/stage1: tip_off_roll_stage1_deg_s"));
+}
+
+TEST(StageDispersions, OfTheWholeVehicleUnlessStagesAreNamed) {
+  const std::string normal = "{distribution: normal, sigma_percent: 1";
+  EXPECT_THAT(Fed("drag_coefficient: " + normal + "}"), ElementsAre("drag_coefficient: drag_factor"));
+  EXPECT_THAT(Fed("drag_coefficient: " + normal + ", stage: 2}"),
+              ElementsAre("drag_coefficient/stage2: drag_factor_stage2"));
+  EXPECT_THAT(Fed("actuator_bandwidth: " + normal + ", per: stage}"),
+              ElementsAre("actuator_bandwidth/stage1: actuator_bandwidth_factor_stage1",
+                          "actuator_bandwidth/stage2: actuator_bandwidth_factor_stage2"));
+  EXPECT_THAT(Fed("inertia: " + normal + ", per: vehicle, stage: [1, 2]}"),
+              ElementsAre("inertia/stages_1_2: inertia_factor_stage1 inertia_factor_stage2"));
+}
+
+TEST(StageDispersions, MassesEventsAndLiftOff) {
+  EXPECT_THAT(Fed("propellant_load: {distribution: normal, sigma_percent: 1, per: stage}"),
+              ElementsAre("propellant_load/stage1: propellant_factor_stage1",
+                          "propellant_load/stage2: propellant_factor_stage2"));
+  const Campaign payload = Load("payload_mass: {distribution: uniform, bound_kg: 20, element: case}");
+  EXPECT_EQ(payload.dispersions[0].distribution.low, -20.0);
+  EXPECT_THAT(payload.dispersions[1].distribution.values, ElementsAre(1.0));
+  EXPECT_THAT(Fed("payload_mass: {distribution: uniform, bound_kg: 20, element: case}"),
+              ElementsAre("payload_mass: payload_mass_kg", "payload_mass/element: payload_element"));
+  EXPECT_THAT(Fed("product_of_inertia: {xz: {distribution: normal, sigma_kg_m2: 1, per: stage, stage: 1}}"),
+              ElementsAre("product_of_inertia/xz/stage1: product_of_inertia_xz_stage1_kg_m2"));
+  // The first stage's ignition is before lift-off, the last one does not separate.
+  EXPECT_THAT(Fed("ignition_delay: {distribution: uniform, low_ms: 0, high_ms: 200, per: stage}"),
+              ElementsAre("ignition_delay/stage2: ignition_delay_stage2_s"));
+  EXPECT_THAT(Fed("separation_delay: {distribution: normal, sigma_s: 0.05, per: stage}"),
+              ElementsAre("separation_delay/stage1: separation_delay_stage1_s"));
+  EXPECT_THAT(Fed("launch_azimuth_error: {distribution: normal, three_sigma_deg: 0.3}"),
+              ElementsAre("launch_azimuth_error: launch_azimuth_error_deg"));
+  EXPECT_THAT(Fed("initial_attitude_error: {pitch: {distribution: normal, three_sigma_deg: 0.1}, "
+                  "yaw: {distribution: normal, three_sigma_deg: 0.1}}"),
+              ElementsAre("initial_attitude_error/pitch: initial_pitch_error_deg",
+                          "initial_attitude_error/yaw: initial_yaw_error_deg"));
+}
+
+TEST(StageDispersions, DepartureByItsComponents) {
+  const std::string line =
+      "thrust_misalignment: {distribution: normal, three_sigma_deg: 0.25, draw: per_axis, per: stage, stage: "
+      "2}";
+  EXPECT_THAT(Fed(line), ElementsAre("thrust_misalignment/y/stage2: thrust_misalignment_y_stage2_deg",
+                                     "thrust_misalignment/z/stage2: thrust_misalignment_z_stage2_deg"));
+  EXPECT_THAT(
+      Fed("center_of_gravity_offset: {distribution: normal, sigma_mm: 3, draw: per_axis, per: vehicle}"),
+      ElementsAre("center_of_gravity_offset/y: cg_offset_y_stage1_m cg_offset_y_stage2_m",
+                  "center_of_gravity_offset/z: cg_offset_z_stage1_m cg_offset_z_stage2_m"));
+  EXPECT_EQ(Fed("thrust_offset: {distribution: normal, sigma_mm: 3, draw: per_axis, per: nozzle}").at(8),
+            "thrust_offset/z/stage1_right: nozzle_offset_z_stage1_right_m");
+}
+
+// Three standard deviations about an axis: 0.25 deg drawn by components; with a half-normal magnitude and a
+// uniform clock angle the mean square of the magnitude is shared by the axes, 0.25 / sqrt(2).
+TEST(StageDispersions, WhatTheTwoReadingsOfAMisalignmentHaveAboutAnAxis) {
+  const auto three_sigma_deg = [](const std::string& how) {
+    const CaseDesign design(
+        Load("thrust_misalignment: {distribution: normal, three_sigma_deg: 0.25, " + how + "}"));
+    constexpr int kCases = 20000;
+    double squares = 0.0;
+    for (int i = 0; i < kCases; ++i) {
+      const FlightInputs in = design.Draw(static_cast<std::uint64_t>(i));
+      const double y = in.thrust_misalignment_rad[0] * std::cos(in.thrust_misalignment_clock_rad[0]) +
+                       in.thrust_misalignment_y_rad[0];
+      squares += y * y / kCases;
+    }
+    return 3.0 * std::sqrt(squares) * kDegPerRad;
+  };
+  // Four standard errors of a standard deviation, of the half-normal's heavier tail too.
+  EXPECT_NEAR(three_sigma_deg("draw: per_axis, per: stage"), 0.25, 4.0 * 0.25 / std::sqrt(2.0 * 20000));
+  EXPECT_NEAR(three_sigma_deg("clock_angle: uniform, per: stage"), 0.25 / std::sqrt(2.0),
+              4.0 * 0.177 / std::sqrt(20000));
+}
+
+TEST(StageDispersions, WhatIsWrongIsSaidInFull) {
+  EXPECT_EQ(Problems("dry_mass: {distribution: normal, sigma_percent: 1, per: stage, stage: 3}"),
+            "campaign.yaml:8:76: dispersions.dry_mass.stage: '3' is no stage that this disperses, allowed: "
+            "one of 1 "
+            "to 2, or a list of them\n");
+  EXPECT_EQ(Problems("dry_mass: {distribution: normal, sigma_percent: 1, per: stage, stage: [1, 1]}"),
+            "campaign.yaml:8:80: dispersions.dry_mass.stage[1]: stage 1 is given twice, allowed: each stage "
+            "once\n");
+  EXPECT_EQ(
+      Problems("separation_delay: {distribution: constant, value_s: 1, per: stage, stage: 2}"),
+      "campaign.yaml:8:77: dispersions.separation_delay.stage: '2' is no stage that this disperses, allowed: "
+      "1\n");
+  EXPECT_EQ(
+      Problems("dry_mass: [{distribution: normal, sigma_percent: 1, per: stage, stage: 1}, {distribution: "
+               "normal, sigma_percent: 2, per: stage, stage: [1, 2]}]"),
+      "campaign.yaml:8:148: dispersions.dry_mass[1].stage: stage 1 is given twice, allowed: each stage in "
+      "one "
+      "of the list\n");
+  EXPECT_EQ(
+      Problems("dry_mass: []"),
+      "campaign.yaml:8:13: dispersions.dry_mass: the list is empty, allowed: a map, or a list of maps with "
+      "stage\n");
+  EXPECT_EQ(
+      Problems("dry_mass: {distribution: normal, sigma_percent: 20, per: stage}"),
+      "campaign.yaml:8:13: dispersions.dry_mass: a draw at 6 sigma is -0.2 (factor), allowed: a number above "
+      "0\n");
+  EXPECT_EQ(Problems("propellant_load: {distribution: uniform, bound_percent: 20, per: stage}"),
+            "campaign.yaml:8:20: dispersions.propellant_load: a draw can be 1.2 (factor), allowed: a number "
+            "above 0 "
+            "and below 1.125\n");
+  EXPECT_EQ(
+      Problems("payload_mass: {distribution: uniform, bound_kg: 20, element: payload}"),
+      "campaign.yaml:8:64: dispersions.payload_mass.element: 'payload' is no element of the last stage's "
+      "structure, allowed: one of case\n");
+  EXPECT_EQ(Problems("payload_mass: {distribution: uniform, bound_kg: 501, element: case}"),
+            "campaign.yaml:8:17: dispersions.payload_mass: a draw can be -501 (kg), allowed: a number above "
+            "-500\n");
+  EXPECT_EQ(
+      Problems("product_of_inertia: {}"),
+      "campaign.yaml:8:23: dispersions.product_of_inertia: no product is given, allowed: one or more of xy, "
+      "xz, yz\n");
+  EXPECT_EQ(
+      Problems("product_of_inertia: {xy: {distribution: uniform, bound_kg_m2: 1000, per: stage, stage: 2}}")
+          .substr(0, 97),
+      "campaign.yaml:8:28: dispersions.product_of_inertia.xy: a draw can be -1000 (kg_m2), allowed: a nu");
+  EXPECT_EQ(
+      Problems("separation_delay: {distribution: uniform, low_s: -0.6, high_s: 1, per: stage}"),
+      "campaign.yaml:8:21: dispersions.separation_delay: a draw can be -0.6 (s), allowed: a number not below "
+      "-0.5\n");
+  EXPECT_EQ(
+      Problems(
+          "thrust_offset: {distribution: normal, sigma_mm: 3, draw: per_axis, clock_angle: uniform, per: "
+          "stage}"),
+      "campaign.yaml:8:83: dispersions.thrust_offset.clock_angle: components have no direction besides, "
+      "allowed: draw: magnitude with clock_angle\n");
+  EXPECT_EQ(
+      Problems("thrust_offset: {distribution: normal, sigma_mm: 3, draw: axes, clock_angle: uniform, per: "
+               "stage}"),
+      "campaign.yaml:8:60: dispersions.thrust_offset.draw: 'axes' is not a choice, allowed: one of "
+      "magnitude, "
+      "per_axis\n");
+  EXPECT_EQ(Problems("initial_attitude_error: {}"),
+            "campaign.yaml:8:27: dispersions.initial_attitude_error: no axis is given, allowed: one or more "
+            "of roll, "
+            "pitch, yaw\n");
+}
+
+}  // namespace
+}  // namespace dispersa
