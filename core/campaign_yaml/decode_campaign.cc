@@ -484,7 +484,7 @@ DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vect
     CheckTimers(campaign.vehicle, *optimize, "optimize.bounds", "coast_s: [low, high]",
                 [&](std::size_t stage) { return decoded.optimize->earlier_coast_s[stage].high > 0.0; }, problems);
   else if (problems.empty() && reference != nullptr)
-    CheckTimers(campaign.vehicle, *reference, "reference.flight_program", "ignition_s",
+    CheckTimers(campaign.vehicle, *reference, PathOfPart(*reference, root, "reference"), "ignition_s",
                 [&](std::size_t stage) { return campaign.reference.earlier_ignition_s[stage] > 0.0; }, problems);
 
   const bool flies = use != CampaignUse::kOptimize && optimize == nullptr;

@@ -61,7 +61,7 @@ Placed Place(const Gimbal& gimbal) {
       placed.ease[drive] = ease * ease;
     }
   }
-  o.flow_radius_m = std::sqrt(radius2_m2);
+  o.flow_radius_m = Sqrt(radius2_m2);
   return placed;
 }
 
@@ -69,11 +69,12 @@ Placed Place(const Gimbal& gimbal) {
 double Independence(const Placed& placed, int first_axis) {
   Eigen::MatrixXd rows = placed.effect.bottomRows(kSteeredAxes - first_axis);
   for (Eigen::Index i = 0; i < rows.rows(); ++i) {
-    const double length = std::sqrt((rows.row(i).array().square() * placed.ease.transpose().array()).sum());
+    const double length = Sqrt((rows.row(i).array().square() * placed.ease.transpose().array()).sum());
     if (!(length > 0.0)) return 0.0;
     rows.row(i) /= length;
   }
-  return (rows * placed.ease.asDiagonal() * rows.transpose()).determinant();
+  const Eigen::MatrixXd product = rows * placed.ease.asDiagonal() * rows.transpose();
+  return product.determinant();
 }
 
 bool TurnsInRoll(const Placed& placed) { return placed.effect.row(0).cwiseAbs().maxCoeff() > 1e-9; }
@@ -87,21 +88,22 @@ NozzleLayout BuildNozzleLayout(const Gimbal& gimbal) {
   const int first = o.rolls ? 0 : 1;  // without authority in roll, of pitch and yaw alone
   const Eigen::MatrixXd effect = placed.effect.bottomRows(kSteeredAxes - first);
   const Eigen::MatrixXd eased = placed.ease.asDiagonal() * effect.transpose();
-  const Eigen::MatrixXd inverse = eased * (effect * eased).inverse();
+  const Eigen::MatrixXd product = effect * eased;
+  const Eigen::MatrixXd inverse = eased * product.inverse();
   // Deflections over the nozzles' limits, at a command of the gimbal's limit.
   const auto reach = [&](int axis) {
     double most = 0.0;
     for (int k = 0; k < o.nozzles; ++k) {
       const double a = inverse(k, axis - first), b = inverse(k + kNozzles, axis - first);
-      most = std::max(most, std::sqrt(a * a + b * b) * gimbal.limit_rad / o.limit_rad[k]);
+      most = std::max(most, Sqrt(a * a + b * b) * gimbal.limit_rad / o.limit_rad[k]);
     }
     return most;
   };
   double scale[kSteeredAxes] = {};
   if (o.rolls) scale[0] = 1.0 / reach(0);
   scale[1] = scale[2] = 1.0 / std::max(reach(1), reach(2));
-  // To 1e-12, so that what is meant to be 1 or 0 is.
-  const auto rounded = [](double x) { return std::nearbyint(x * 0x1p40) * 0x1p-40; };
+  // To 1e-12, so that what is meant to be 1 or 0 is: doubles about 6144 are so far apart.
+  const auto rounded = [](double x) { return (x + 0x1.8p12) - 0x1.8p12; };
   for (int axis = first; axis < kSteeredAxes; ++axis) {
     for (int drive = 0; drive < kDrives; ++drive) {
       o.allocation[drive][axis] = rounded(scale[axis] * inverse(drive, axis - first));
