@@ -526,6 +526,15 @@ TEST(ElementsOf, RetrogradeAndDescending) {
   EXPECT_LT(e.flight_path_angle_rad, 0.0);
 }
 
+TEST(ElementsOf, TheNodeIsWhereTheOrbitGoesNorth) {
+  const Earth earth = Wgs84();
+  const Vector3 p(0.0, 7e6, 0.0);
+  EXPECT_NEAR(ElementsOf(earth, p, Vector3(-5e3, 0.0, 5e3)).ascending_node_rad, 90.0 * kDeg, 1e-15);
+  EXPECT_NEAR(ElementsOf(earth, p, Vector3(-5e3, 0.0, -5e3)).ascending_node_rad, 270.0 * kDeg, 1e-15);
+  EXPECT_NEAR(ElementsOf(earth, p, Vector3(5e3, 0.0, 5e3)).ascending_node_rad, 90.0 * kDeg, 1e-15);
+  EXPECT_EQ(ElementsOf(earth, p, Vector3(-7e3, 0.0, 0.0)).ascending_node_rad, 0.0);
+}
+
 TEST(OutcomeNames, ReadBackAsTheyAreWritten) {
   std::set<std::string> names;
   for (int i = 0; i < kOutcomeCount; ++i) {
