@@ -210,10 +210,23 @@ class DispersionDecoder {
   // One draw a nozzle.
   void AddNozzles(const std::string& name, const Selection& of, const ScalarDistribution& distribution,
                   const StageColumn& column, bool absolute = false) {
-    for (const int stage : of.stages)
-      for (const std::string nozzle : kNozzleNames)
-        Add(name + "/" + StageName(stage) + "_" + nozzle, distribution,
-            {Column(column.stem + "_" + StageName(stage) + "_" + nozzle + column.unit_suffix)}, absolute);
+    for (const int stage : of.stages) {
+      const std::vector<std::string> names = NozzleNames(stage);
+      for (std::size_t i = 0; i < names.size(); ++i)
+        Add(name + "/" + StageName(stage) + "_" + names[i], distribution,
+            {Column(column.stem + "_" + StageName(stage) + "_" + kNozzleNames[i] + column.unit_suffix)}, absolute);
+    }
+  }
+  // Of the cross, or of the stage's list; none of a vehicle that is already refused.
+  std::vector<std::string> NozzleNames(int stage) const {
+    std::vector<std::string> names(std::begin(kNozzleNames), std::end(kNozzleNames));
+    const std::vector<Stage>& stages = vehicle_.stages;
+    if (static_cast<std::size_t>(stage) > stages.size()) return names;
+    const std::vector<Nozzle>& list = stages[static_cast<std::size_t>(stage) - 1].gimbal.nozzles;
+    if (list.empty()) return names;
+    names.clear();
+    for (const Nozzle& nozzle : list) names.push_back(nozzle.name);
+    return names;
   }
 
   // A departure from the axis: a magnitude and the direction of it around the axis, or its two components.
@@ -644,16 +657,21 @@ class DispersionDecoder {
     const InputNode* node = map_.Optional("stuck_nozzle");
     if (node == nullptr) return;
     MapReader map(*node, map_.PathOf("stuck_nozzle"), problems_);
-    ScalarDistribution nozzle = Constant(map.Choice<double>(
-        "nozzle", {{"right", 1.0}, {"left", 2.0}, {"bottom", 3.0}, {"top", 4.0}, {"any", 0.0}}));
+    const std::uint64_t stage = map.Integer("stage", 1, static_cast<std::uint64_t>(stages_));
+    std::vector<std::pair<std::string, double>> choices;
+    std::vector<double> numbers;
+    for (const std::string& name : NozzleNames(static_cast<int>(stage))) {
+      numbers.push_back(static_cast<double>(numbers.size() + 1));
+      choices.emplace_back(name, numbers.back());
+    }
+    choices.emplace_back("any", 0.0);
+    ScalarDistribution nozzle = Constant(map.Choice<double>("nozzle", choices));
     if (nozzle.nominal == 0.0) {
       nozzle.kind = Distribution::kValues;
-      nozzle.values = {1.0, 2.0, 3.0, 4.0};
+      nozzle.values = numbers;
     }
     Add("stuck_nozzle/nozzle", nozzle, {Column("stuck_nozzle")});
-    Add("stuck_nozzle/stage",
-        Constant(static_cast<double>(map.Integer("stage", 1, static_cast<std::uint64_t>(stages_)))),
-        {Column("stuck_nozzle_stage")});
+    Add("stuck_nozzle/stage", Constant(static_cast<double>(stage)), {Column("stuck_nozzle_stage")});
     FixedOrDrawn(map, "stuck_nozzle/angle", "angle", {kAngle, Inside(-kPi / 2.0, kPi / 2.0)},
                  "stuck_nozzle_deg", true);
   }

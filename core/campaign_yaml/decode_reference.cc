@@ -1,7 +1,10 @@
 #include "core/campaign_yaml/attitude_columns.h"
 #include "core/campaign_yaml/decode.h"
 #include "core/campaign_yaml/inline_files.h"
+#include <cmath>
+
 #include "core/campaign_yaml/yaml_reader.h"
+#include "core/environment/earth.h"
 
 namespace dispersa {
 namespace {
@@ -22,8 +25,52 @@ Bounds DecodeBounds(MapReader& map, const std::string& stem, Dimension dimension
   return {limits[0], limits[1]};
 }
 
+// Of the launch azimuth: bounds that fall go through north, [350, 10] as [350, 370] does.
+Bounds DecodeAzimuthBounds(MapReader& map) {
+  const std::vector<double> limits = map.Quantities("launch_azimuth", kAngle, Between(0.0, 2.0 * kTwoPi), 2, 2);
+  if (limits.size() != 2) return {};
+  const Bounds bounds{limits[0], limits[0] <= limits[1] ? limits[1] : limits[1] + kTwoPi};
+  if (limits[0] >= kTwoPi || bounds.high - bounds.low > kTwoPi)
+    AddProblem(map.problems(), map.node(), map.PathOf("launch_azimuth_deg"), "is more than a turn",
+               "[low, high], low from 0 to below 360; [350, 10] goes through north");
+  return bounds;
+}
+
+std::string CoastStem(std::size_t stage) { return "stage" + std::to_string(stage + 1) + "_coast"; }
+std::string IgnitionStem(std::size_t stage) { return "stage" + std::to_string(stage + 1) + "_ignition"; }
+
+// The speed at the perigee of an ellipse about a point mass; altitudes over the equator's radius.
+double PerigeeSpeed(double perigee_m, double apogee_m) {
+  const Earth earth = Wgs84();
+  const double perigee_radius_m = earth.equatorial_radius_m + perigee_m;
+  const double axis_m = earth.equatorial_radius_m + 0.5 * (perigee_m + apogee_m);
+  return std::sqrt(earth.mu_m3_s2 * (2.0 / perigee_radius_m - 1.0 / axis_m));
+}
+
+void DecodeTarget(const InputNode& node, const std::string& path, TrajectoryProblem& problem,
+                  ProblemList& problems) {
+  MapReader target(node, path, problems);
+  problem.target_inclination_rad = target.OptionalQuantity("inclination", kAngle, Between(0.0, kPi));
+  problem.target_node_rad = target.OptionalQuantity("node", kAngle, Between(0.0, kTwoPi));
+  if (target.Has("perigee_altitude", kLength) || target.Has("apogee_altitude", kLength)) {
+    problem.target_altitude_m = target.Quantity("perigee_altitude", kLength, kPositive);
+    problem.target_apogee_m = target.Quantity("apogee_altitude", kLength, kPositive);
+    if (problem.target_altitude_m > *problem.target_apogee_m)
+      AddProblem(problems, node, path, "the perigee is above the apogee", "perigee_altitude up to apogee_altitude");
+    else
+      problem.target_velocity_m_s = PerigeeSpeed(problem.target_altitude_m, *problem.target_apogee_m);
+    return;
+  }
+  problem.target_altitude_m = target.Quantity("altitude", kLength, kPositive);
+  const bool may_lack = problem.target_inclination_rad.has_value();
+  problem.velocity_is_free = may_lack && !target.Has("velocity", kSpeed);
+  if (!problem.velocity_is_free) problem.target_velocity_m_s = target.Quantity("velocity", kSpeed, kPositive);
+  problem.target_flight_path_angle_rad =
+      target.Quantity("flight_path_angle", kAngle, Inside(-kPi / 2.0, kPi / 2.0));
+}
+
 FlightProgram DecodeProgram(const InputNode& node, const std::string& path, double* last_ignition_s,
-                            ProblemList& problems) {
+                            std::array<double, kMaxStages>* earlier_ignition_s, ProblemList& problems) {
   const std::size_t before = problems.size();
   MapReader map(node, path, problems);
   FlightProgram program;
@@ -34,6 +81,11 @@ FlightProgram DecodeProgram(const InputNode& node, const std::string& path, doub
   program.coast_s = map.Quantity("coast", kTime, kNonNegative);
   program.launch_azimuth_rad = map.Quantity("launch_azimuth", kAngle, kAzimuth);
   *last_ignition_s = map.Quantity("last_ignition", kTime, kPositive);
+  for (std::size_t stage = 1; stage < kMaxStages; ++stage) {
+    if (!map.Has(CoastStem(stage), kTime) && !map.Has(IgnitionStem(stage), kTime)) continue;
+    program.earlier_coast_s[stage] = map.Quantity(CoastStem(stage), kTime, kNonNegative);
+    (*earlier_ignition_s)[stage] = map.Quantity(IgnitionStem(stage), kTime, kPositive);
+  }
   if (node.file != nullptr && problems.size() == before &&
       !(program.t1_s < program.t3_s && program.t3_s < program.t2_s)) {
     AddProblem(problems, node, path, "the times are out of order", "t1 < t3 < t2");
@@ -48,6 +100,7 @@ Orbit DecodeOrbit(const InputNode& node, const std::string& path, ProblemList& p
   orbit.velocity_m_s = map.Quantity("velocity", kSpeed, kNonNegative);
   orbit.flight_path_angle_rad = map.Quantity("flight_path_angle", kAngle, kAnyNumber);
   orbit.inclination_rad = map.Quantity("inclination", kAngle, Between(0.0, kPi));
+  orbit.node_longitude_rad = map.Quantity("node_longitude", kAngle, Between(0.0, kTwoPi), 0.0);
   return orbit;
 }
 
@@ -57,6 +110,7 @@ void CheckErrors(const InputNode& node, const std::string& path, ProblemList& pr
   map.Quantity("altitude", kLength, kAnyNumber);
   map.Quantity("velocity", kSpeed, kAnyNumber);
   map.Quantity("flight_path_angle", kAngle, kAnyNumber);
+  map.OptionalQuantity("inclination", kAngle, kAnyNumber);
 }
 
 ConstraintMargin DecodeConstraint(const InputNode& node, const std::string& path, ProblemList& problems) {
@@ -116,13 +170,7 @@ TrajectoryProblem DecodeTrajectoryProblem(const InputNode& node, const std::stri
                                           std::vector<InputProblem>& problems) {
   TrajectoryProblem problem;
   MapReader map(node, path, problems);
-  {
-    MapReader target(map.Required("target", "a map"), map.PathOf("target"), problems);
-    problem.target_altitude_m = target.Quantity("altitude", kLength, kPositive);
-    problem.target_velocity_m_s = target.Quantity("velocity", kSpeed, kPositive);
-    problem.target_flight_path_angle_rad =
-        target.Quantity("flight_path_angle", kAngle, Inside(-kPi / 2.0, kPi / 2.0));
-  }
+  DecodeTarget(map.Required("target", "a map"), map.PathOf("target"), problem, problems);
   {
     MapReader bounds(map.Required("bounds", "a map"), map.PathOf("bounds"), problems);
     problem.alpha_max_rad = DecodeBounds(bounds, "alpha_max", kAngle, kIncidence);
@@ -130,13 +178,18 @@ TrajectoryProblem DecodeTrajectoryProblem(const InputNode& node, const std::stri
     problem.t3_s = DecodeBounds(bounds, "t3", kTime, kNonNegative);
     problem.t2_s = DecodeBounds(bounds, "t2", kTime, kNonNegative);
     problem.coast_s = DecodeBounds(bounds, "coast", kTime, kNonNegative);
-    problem.launch_azimuth_rad = DecodeBounds(bounds, "launch_azimuth", kAngle, kAzimuth);
+    problem.launch_azimuth_rad = DecodeAzimuthBounds(bounds);
+    for (std::size_t stage = 1; stage < kMaxStages; ++stage)
+      if (bounds.Has(CoastStem(stage), kTime))
+        problem.earlier_coast_s[stage] = DecodeBounds(bounds, CoastStem(stage), kTime, kNonNegative);
   }
   {
     MapReader weights(map.Required("weights", "a map"), map.PathOf("weights"), problems);
     problem.weight_altitude_1_m = weights.Quantity("altitude", kPerLength, kNonNegative);
     problem.weight_velocity_s_m = weights.Quantity("velocity", kPerSpeed, kNonNegative);
     problem.weight_angle_1_rad = weights.Quantity("flight_path_angle", kPerAngle, kNonNegative);
+    if (problem.target_inclination_rad)
+      problem.weight_inclination_1_rad = weights.Quantity("inclination", kPerAngle, kNonNegative);
   }
   {
     MapReader limits(map.Required("limits", "a map"), map.PathOf("limits"), problems);
@@ -169,7 +222,7 @@ Reference DecodeReference(const InputNode& node, const std::string& path,
   reference.problem =
       DecodeTrajectoryProblem(map.Required("problem", "a map"), map.PathOf("problem"), problems);
   reference.program = DecodeProgram(map.Required("flight_program", "a map"), map.PathOf("flight_program"),
-                                    &reference.last_ignition_s, problems);
+                                    &reference.last_ignition_s, &reference.earlier_ignition_s, problems);
   reference.orbit = DecodeOrbit(map.Required("orbit", "a map"), map.PathOf("orbit"), problems);
   CheckErrors(map.Required("errors", "a map"), map.PathOf("errors"), problems);
   map.Each("constraints", 0, SIZE_MAX, [&](const InputNode& item, const std::string& item_path) {

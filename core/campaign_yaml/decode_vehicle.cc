@@ -58,11 +58,28 @@ MassElement DecodeMassElement(const InputNode& node, const std::string& path, Pr
   return element;
 }
 
+// One of `count` nozzles of a list.
+Nozzle DecodeListedNozzle(const InputNode& node, const std::string& path, std::size_t count, ProblemList& problems) {
+  MapReader map(node, path, problems);
+  Nozzle nozzle;
+  nozzle.name = map.Text("name");
+  nozzle.y_m = map.Quantity("y", kLength, kAnyNumber, 0.0);
+  nozzle.z_m = map.Quantity("z", kLength, kAnyNumber, 0.0);
+  nozzle.thrust_share = map.Number("thrust_share", {0.0, 1.0, true, false}, 1.0 / static_cast<double>(count));
+  nozzle.towards_rad = map.Quantities("turns_towards", kAngle, Between(-2.0 * kPi, 2.0 * kPi), 0, 2);
+  nozzle.limit_rad = map.Quantity("limit", kAngle, {0.0, kQuarterTurn, true, true}, 0.0);
+  return nozzle;
+}
+
 Gimbal DecodeGimbal(const InputNode& node, const std::string& path, ProblemList& problems) {
   MapReader map(node, path, problems);
   Gimbal gimbal;
   gimbal.pivot_station_m = map.Quantity("pivot_station", kLength, kPositive);
-  gimbal.radius_m = map.Quantity("radius", kLength, kPositive);
+  const InputNode* const list = node.Find("nozzles");
+  map.Each("nozzles", 0, kNozzles, [&](const InputNode& item, const std::string& item_path) {
+    gimbal.nozzles.push_back(DecodeListedNozzle(item, item_path, list->items.size(), problems));
+  });
+  if (list == nullptr || list->items.empty()) gimbal.radius_m = map.Quantity("radius", kLength, kPositive);
   gimbal.limit_rad = map.Quantity("limit", kAngle, {0.0, kQuarterTurn, true, true});
   gimbal.rate_limit_rad_s = map.Quantity("rate_limit", kAngularRate, kPositive);
   gimbal.bandwidth_rad_s = map.Quantity("bandwidth", kFrequency, kPositive);
@@ -311,8 +328,12 @@ Vehicle DecodeVehicle(const InputNode& node, const std::string& path, std::vecto
         vehicle.aerodynamics.push_back(DecodeAeroTable(item, item_path, problems));
       });
     }
-    vehicle.reaction_control = DecodeReactionControl(map.Required("reaction_control", "a map"),
-                                                     map.PathOf("reaction_control"), problems);
+    // A single stage has no coast.
+    const bool may_lack = vehicle.stages.size() == 1;
+    const InputNode* const thrusters =
+        may_lack ? map.Optional("reaction_control") : &map.Required("reaction_control", "a map");
+    if (thrusters != nullptr)
+      vehicle.reaction_control = DecodeReactionControl(*thrusters, map.PathOf("reaction_control"), problems);
     if (const InputNode* limits = map.Optional("limits")) {
       vehicle.limits = DecodeLimits(*limits, map.PathOf("limits"), problems);
     }

@@ -2,6 +2,7 @@
 #include "core/campaign_yaml/inline_files.h"
 #include "core/campaign_yaml/load.h"
 #include "core/campaign_yaml/number_text.h"
+#include "core/trajectory/optimize.h"
 
 namespace dispersa {
 namespace {
@@ -21,12 +22,29 @@ std::string Quoted(const std::string& text) {
   return quoted + "'";
 }
 
+std::string TargetText(const TrajectoryProblem& problem) {
+  std::string text = "  target: {";
+  if (problem.target_apogee_m) {
+    text += "perigee_altitude_km: " + Km(problem.target_altitude_m) +
+            ", apogee_altitude_km: " + Km(*problem.target_apogee_m);
+  } else {
+    text += "altitude_km: " + Km(problem.target_altitude_m);
+    if (!problem.velocity_is_free) text += ", velocity_m_s: " + FormatNumber(problem.target_velocity_m_s);
+    text += ", flight_path_angle_deg: " + Deg(problem.target_flight_path_angle_rad);
+  }
+  if (problem.target_inclination_rad) text += ", inclination_deg: " + Deg(*problem.target_inclination_rad);
+  if (problem.target_node_rad) text += ", node_deg: " + Deg(*problem.target_node_rad);
+  return text + "}\n";
+}
+
+std::string StageKey(std::size_t stage, const char* what) {
+  return "stage" + std::to_string(stage + 1) + "_" + what + "_s: ";
+}
+
 std::string ProblemText(const TrajectoryProblem& problem) {
   std::string text;
   text += "problem:\n";
-  text += "  target: {altitude_km: " + Km(problem.target_altitude_m) +
-          ", velocity_m_s: " + FormatNumber(problem.target_velocity_m_s) +
-          ", flight_path_angle_deg: " + Deg(problem.target_flight_path_angle_rad) + "}\n";
+  text += TargetText(problem);
   text += "  bounds:\n";
   text += "    alpha_max_deg: " + DegBounds(problem.alpha_max_rad) + "\n";
   text += "    t1_s: " + Limits(problem.t1_s) + "\n";
@@ -34,9 +52,15 @@ std::string ProblemText(const TrajectoryProblem& problem) {
   text += "    t2_s: " + Limits(problem.t2_s) + "\n";
   text += "    coast_s: " + Limits(problem.coast_s) + "\n";
   text += "    launch_azimuth_deg: " + DegBounds(problem.launch_azimuth_rad) + "\n";
+  for (std::size_t stage = 1; stage < problem.earlier_coast_s.size(); ++stage)
+    if (problem.earlier_coast_s[stage].high > 0.0)
+      text += "    " + StageKey(stage, "coast") + Limits(problem.earlier_coast_s[stage]) + "\n";
   text += "  weights: {altitude_per_km: " + FormatScaled(problem.weight_altitude_1_m, 1e-3) +
           ", velocity_per_m_s: " + FormatNumber(problem.weight_velocity_s_m) +
-          ", flight_path_angle_per_deg: " + FormatScaled(problem.weight_angle_1_rad, kDegPerRad) + "}\n";
+          ", flight_path_angle_per_deg: " + FormatScaled(problem.weight_angle_1_rad, kDegPerRad);
+  if (problem.target_inclination_rad)
+    text += ", inclination_per_deg: " + FormatScaled(problem.weight_inclination_1_rad, kDegPerRad);
+  text += "}\n";
   text += "  limits:\n";
   text += "    axial_load_g: " + FormatNumber(problem.axial_load_limit_g) + "\n";
   text += "    lateral_load_g: " + FormatNumber(problem.lateral_load_limit_g) + "\n";
@@ -79,15 +103,22 @@ std::string WriteReference(const Reference& reference) {
   text += "  coast_s: " + FormatNumber(program.coast_s) + "\n";
   text += "  launch_azimuth_deg: " + Deg(program.launch_azimuth_rad) + "\n";
   text += "  last_ignition_s: " + FormatNumber(reference.last_ignition_s) + "\n";
+  for (std::size_t stage = 1; stage < reference.earlier_ignition_s.size(); ++stage)
+    if (reference.earlier_ignition_s[stage] > 0.0)
+      text += "  " + StageKey(stage, "coast") + FormatNumber(program.earlier_coast_s[stage]) + "\n  " +
+              StageKey(stage, "ignition") + FormatNumber(reference.earlier_ignition_s[stage]) + "\n";
   text += "orbit: {altitude_km: " + Km(orbit.altitude_m) +
           ", velocity_m_s: " + FormatNumber(orbit.velocity_m_s) +
           ", flight_path_angle_deg: " + Deg(orbit.flight_path_angle_rad) +
-          ", inclination_deg: " + Deg(orbit.inclination_rad) + "}\n";
-  text +=
-      "errors: {altitude_km: " + Km(orbit.altitude_m - problem.target_altitude_m) +
-      ", velocity_m_s: " + FormatNumber(orbit.velocity_m_s - AimedVelocity(problem)) +
-      ", flight_path_angle_deg: " + Deg(orbit.flight_path_angle_rad - problem.target_flight_path_angle_rad) +
-      "}\n";
+          ", inclination_deg: " + Deg(orbit.inclination_rad);
+  if (problem.target_node_rad) text += ", node_longitude_deg: " + Deg(orbit.node_longitude_rad);
+  text += "}\n";
+  const OrbitErrors errors = ErrorsOf(problem, orbit);
+  text += "errors: {altitude_km: " + Km(errors.altitude_m) +
+          ", velocity_m_s: " + FormatNumber(errors.velocity_m_s) +
+          ", flight_path_angle_deg: " + Deg(errors.flight_path_angle_rad);
+  if (problem.target_inclination_rad) text += ", inclination_deg: " + Deg(errors.inclination_rad);
+  text += "}\n";
   text += reference.constraints.empty() ? "constraints: []\n" : "constraints:\n";
   for (const ConstraintMargin& constraint : reference.constraints) {
     text += "  - {name: " + constraint.name + ", value: " + FormatNumber(constraint.value) +

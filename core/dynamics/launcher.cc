@@ -40,13 +40,11 @@ struct OneLane {
         motion{{y[0], y[1], y[2]}, {y[3], y[4], y[5]}, {y[6], y[7], y[8], y[9]}, {y[10], y[11], y[12]}},
         around(lanes::SurroundingsAt(earth, StandardAir(), plant.weather, motion.p)),
         masses(lanes::MassesAt(plant, phase, time_s)),
-        nozzles(lanes::NozzlesAt(y + kNozzleAngle)) {
+        nozzles(lanes::NozzlesAt(y + kNozzleAngle)),
+        second(lanes::NozzlesAt(y + kSecondAngle)) {
     lanes::SetLane(drives, 0, from.stacks[static_cast<std::size_t>(now.stack)].gimbal, now.stuck_nozzle);
-    for (int i = 0; i < kNozzles; ++i) {
-      drive_state.angle_rad[i] = y[kNozzleAngle + i];
-      drive_state.rate_rad_s[i] = y[kNozzleRate + i];
-    }
-    lanes::SetAccelerations(drives, now.command_rad.data(), drive_state, nozzles);
+    Accelerate(now.command_rad.data(), y + kNozzleAngle, y + kNozzleRate, nozzles);
+    if (plant.nozzles_listed) Accelerate(now.command_rad.data() + kNozzles, y + kSecondAngle, y + kSecondRate, second);
     lanes::SetLane(bending, 0, from, now.stack);
     if (bending.modes == 0) return;
     lanes::ShapesAt(bending, masses.propellant_kg);
@@ -60,15 +58,15 @@ struct OneLane {
     return stack;
   }
   lanes::LoadsOf<double> Loads() const {
-    return WithBody([this](const auto& body) {
+    return WithBody([this](const auto& turned, const auto& body) {
       return lanes::LoadsAt(earth.rotation_rate_rad_s, plant, phase, phase.burning, around, masses,
-                            nozzles, motion, body);
+                            turned, motion, body);
     });
   }
   lanes::Rates<double> Rates() const {
-    return WithBody([this](const auto& body) {
+    return WithBody([this](const auto& turned, const auto& body) {
       return lanes::RatesOf<double>(earth.rotation_rate_rad_s, plant, phase, phase.burning, around,
-                                    masses, nozzles, motion, body, nullptr);
+                                    masses, turned, motion, body, nullptr);
     });
   }
 
@@ -78,18 +76,27 @@ struct OneLane {
   lanes::Motion<double> motion;
   lanes::Surroundings<double> around;
   lanes::TimedMasses<double> masses;
-  lanes::Nozzles<double> nozzles;
+  lanes::Nozzles<double> nozzles, second;
   lanes::Drives<double> drives{};
-  lanes::DriveState<double> drive_state{};
   lanes::Bending<double> bending{};
   lanes::BendingState<double> bending_state{};
   mutable lanes::ModalForce<double> modal{};  ///< of the last evaluation
 
  private:
+  void Accelerate(const double* command_rad, const double* angle_rad, const double* rate_rad_s,
+                  lanes::Nozzles<double>& of) const {
+    lanes::DriveState<double> state;
+    std::copy_n(angle_rad, kNozzles, state.angle_rad);
+    std::copy_n(rate_rad_s, kNozzles, state.rate_rad_s);
+    lanes::SetAccelerations(drives, command_rad, state, of);
+  }
+
   template <class Function>
-  auto WithBody(const Function& function) const -> decltype(function(lanes::StraightBody{})) {
-    if (bending.modes > 0) return function(lanes::BentBody<double>{&bending, &bending_state, &modal});
-    return function(lanes::StraightBody{});
+  auto WithBody(const Function& function) const -> decltype(function(nozzles, lanes::StraightBody{})) {
+    const lanes::ListedNozzles<double> listed{nozzles, second};
+    const lanes::BentBody<double> bent{&bending, &bending_state, &modal};
+    if (bending.modes > 0) return plant.nozzles_listed ? function(listed, bent) : function(nozzles, bent);
+    return plant.nozzles_listed ? function(listed, lanes::StraightBody{}) : function(nozzles, lanes::StraightBody{});
   }
 };
 
@@ -144,11 +151,11 @@ void LauncherModel::Derivative(const LauncherPhase& phase, double time_s, const 
   Vector3 dp = ToEigen(s.v);
   if (prepared_->plant.flow_coriolis) dp += ToEigen(lanes::CgVelocityOf(one.masses, s.q));
   WriteState({dp, ToEigen(rates.dv), dq, ToEigen(rates.dw)}, dydt);
-  for (int i = 0; i < kNozzles; ++i) {
-    const std::size_t nozzle = static_cast<std::size_t>(i);
-    const double command = lanes::Followed(one.drives, phase.command_rad[nozzle]);
-    lanes::DriveRates(one.drives, i, command, y[kNozzleAngle + i], y[kNozzleRate + i], phase.slides[nozzle],
-                      dydt[kNozzleAngle + i], dydt[kNozzleRate + i]);
+  for (int i = 0; i < (one.plant.nozzles_listed ? kDrives : kNozzles); ++i) {
+    const std::size_t drive = static_cast<std::size_t>(i);
+    const double command = lanes::Followed(one.drives, phase.command_rad[drive]);
+    lanes::DriveRates(one.drives, i % kNozzles, command, y[AngleOf(i)], y[RateOf(i)], phase.slides[drive],
+                      dydt[AngleOf(i)], dydt[RateOf(i)]);
   }
   if (prepared_->plant.state_size() == kRigidLauncherSize) return;
   for (int plane = 0; plane < kPlanes; ++plane)
@@ -181,6 +188,11 @@ int LauncherPlant::bending_planes() const {
 bool LauncherPlant::nozzles_have_mass() const {
   return std::any_of(stacks.begin(), stacks.end(),
                      [](const LauncherStack& s) { return s.gimbal.nozzle_inertia_kg_m2 > 0.0; });
+}
+
+bool LauncherPlant::nozzles_are_listed() const {
+  return std::any_of(stacks.begin(), stacks.end(),
+                     [](const LauncherStack& s) { return !s.gimbal.nozzles.empty(); });
 }
 
 }  // namespace dispersa

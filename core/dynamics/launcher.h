@@ -9,27 +9,35 @@
 #include "core/dynamics/rigid_body.h"
 #include "core/structure/bending_table.h"
 #include "core/vehicle/mass.h"
+#include "core/vehicle/nozzle_layout.h"
 #include "core/vehicle/propulsion.h"
 
 namespace dispersa {
 
-inline constexpr int kNozzles = 4;
+/// Of the cross; a list's nozzles stand in their order in the same places.
 inline constexpr const char* kNozzleNames[kNozzles] = {"right", "left", "bottom", "top"};
-/// State: rigid body, then the angle and the rate of each nozzle (right, left, bottom, top).
+/// State: rigid body, then the angle and the rate of each nozzle (right, left, bottom, top), about its first hinge.
 inline constexpr int kNozzleAngle = kRigidBodySize;
 inline constexpr int kNozzleRate = kNozzleAngle + kNozzles;
 inline constexpr int kRigidLauncherSize = kNozzleRate + kNozzles;
 /// Of a vehicle that bends, then the modal coordinates by plane and mode, and their rates.
 inline constexpr int kModalState = kRigidLauncherSize;
 inline constexpr int kModalRate = kModalState + kPlanes * kModes;
-inline constexpr int kLauncherSize = kModalRate + kPlanes * kModes;
+inline constexpr int kBentLauncherSize = kModalRate + kPlanes * kModes;
+/// Of a vehicle with a list of nozzles, then the angles and rates about the second hinges.
+inline constexpr int kSecondAngle = kBentLauncherSize;
+inline constexpr int kSecondRate = kSecondAngle + kNozzles;
+inline constexpr int kLauncherSize = kSecondRate + kNozzles;
+/// Where the state has a drive (nozzle_layout.h).
+constexpr int AngleOf(int drive) { return drive < kNozzles ? kNozzleAngle + drive : kSecondAngle + drive - kNozzles; }
+constexpr int RateOf(int drive) { return drive < kNozzles ? kNozzleRate + drive : kSecondRate + drive - kNozzles; }
 
 struct AeroGrid;
 
 /// What sets one nozzle apart from the others.
 struct NozzleDeparture {
   Matrix3 tilt = Matrix3::Identity();  ///< turns its thrust
-  double thrust_factor = 1.0;          ///< of its quarter
+  double thrust_factor = 1.0;          ///< of its share
   double offset_y_m = 0.0, offset_z_m = 0.0;
 };
 
@@ -40,6 +48,7 @@ struct LauncherStack {
   std::shared_ptr<const AeroGrid> aero_grid;  ///< of the aerodynamics without factors; made where it is missing
   MotorBurn burn;
   Gimbal gimbal;
+  NozzleLayout layout;
   Matrix3 thrust_tilt = Matrix3::Identity();  ///< turns the nozzles' thrust by the misalignment
   double thrust_offset_y_m = 0.0;
   double thrust_offset_z_m = 0.0;
@@ -80,8 +89,12 @@ struct LauncherPlant {
   int bending_modes() const;   ///< in a plane; 0: the vehicle is rigid
   int bending_planes() const;  ///< that differ
   bool nozzles_have_mass() const;
+  bool nozzles_are_listed() const;  ///< of any stage; then a cross counts as a list too
   /// Doubles of a state that count: a rigid vehicle's state ends with its nozzles.
-  int state_size() const { return bending_modes() > 0 ? kLauncherSize : kRigidLauncherSize; }
+  int state_size() const {
+    if (nozzles_are_listed()) return kLauncherSize;
+    return bending_modes() > 0 ? kBentLauncherSize : kRigidLauncherSize;
+  }
 };
 
 /// What stays constant between two events.
@@ -93,9 +106,9 @@ struct LauncherPhase {
   double ignition_s = 0.0;       ///< of the stack's motor, when burning
   double expelled_mass_kg = 0.0; ///< by the reaction control so far
   Vector3 control_torque_n_m = Vector3::Zero();  ///< of the reaction control
-  std::array<double, kNozzles> command_rad{};    ///< to the actuators
+  std::array<double, kDrives> command_rad{};     ///< to the actuators
   int stuck_nozzle = -1;         ///< index of a nozzle that does not move, or -1
-  std::array<double, kNozzles> slides{};  ///< sense in which friction's drives slide, 0: held (actuators.h)
+  std::array<double, kDrives> slides{};  ///< sense in which friction's drives slide, 0: held (actuators.h)
 };
 
 /// Everything of one instant that forces, metrics and histories need.
@@ -126,7 +139,8 @@ class LauncherModel {
 
   LauncherInstant Evaluate(const LauncherPhase& phase, double time_s, const double* y) const;
 
-  /// Right-hand side of the flight. Thrust: each nozzle carries a quarter, deflected in its hinge plane;
+  /// Right-hand side of the flight. Thrust: each nozzle carries a quarter, deflected in its hinge plane, or its share
+  /// of a list, deflected about its hinges;
   /// positive pitch, yaw and roll deflections give positive moments about body y, z and x. Actuators are
   /// second order with a limited rate: d(angle)/dt = rate within the limit; the command is limited in angle.
   void Derivative(const LauncherPhase& phase, double time_s, const double* y, double* dydt) const;

@@ -13,7 +13,14 @@
 namespace dispersa::lanes {
 inline namespace DISPERSA_ISA {
 
-/// What one nozzle's quarter of the thrust has besides that of a nominal one (NozzleDeparture).
+/// Where a nozzle of a list is, and towards which directions across the body its hinges turn its thrust.
+template <class T>
+struct ListedNozzle {
+  T share, y_m, z_m;
+  T first_y, first_z, second_y, second_z;
+};
+
+/// What one nozzle's share of the thrust has besides that of a nominal one (NozzleDeparture).
 template <class T>
 struct Departure {
   Matrix<T> extra;  ///< its factor times its tilt, less 1
@@ -39,6 +46,8 @@ struct Plant {
   bool any_departs;  ///< some lane's nozzles are not all the same
   MaskOf<T> departs;
   Departure<T> nozzles[kNozzles];
+  bool nozzles_listed;  ///< of any stage: the same in all lanes. The cross is one of the lists then
+  ListedNozzle<T> listed[kNozzles];
   T lateral_moment_y_kg_m, lateral_moment_z_kg_m;
   bool any_products;  ///< some lane has products of inertia
   MaskOf<T> has_products;
@@ -118,6 +127,12 @@ DISPERSA_INLINE Nozzles<T> NozzlesAt(const T* angle_rad) {
   return n;
 }
 
+/// Both drives of each nozzle of a list.
+template <class T>
+struct ListedNozzles {
+  const Nozzles<T>&first, &second;
+};
+
 /// What metrics and histories need of an instant.
 template <class T>
 struct Instant {
@@ -196,6 +211,36 @@ DISPERSA_INLINE Thrust<T> ThrustOf(const Plant<T>& plant, const TimedMasses<T>& 
   return o;
 }
 
+/// The same of a list of nozzles (core/vehicle/nozzle_layout.h), whatever each has besides its nominal share included.
+template <class T>
+DISPERSA_INLINE Thrust<T> ThrustOf(const Plant<T>& plant, const TimedMasses<T>& masses,
+                                   const ListedNozzles<T>& nozzles, T pressure_pa) {
+  Thrust<T> o;
+  const T none(0.0);
+  const T net_n =
+      Fma(plant.burn.vacuum_thrust_n, masses.thrust_fraction, -(pressure_pa * plant.burn.exit_area_m2));
+  o.thrust_n = Select(net_n < none, none, net_n);
+  o.flow_kg_s = plant.burn.full_flow_kg_s * masses.thrust_fraction;
+  o.force_n = o.couple_n_m = Zero<T>();
+  for (int i = 0; i < kNozzles; ++i) {
+    const ListedNozzle<T>& nozzle = plant.listed[i];
+    const Departure<T>& departs = plant.nozzles[i];
+    const T across = nozzles.first.sine[i] * nozzles.second.cosine[i], second = nozzles.second.sine[i];
+    const Vector<T> turned{nozzles.first.cosine[i] * nozzles.second.cosine[i],
+                           Fma(across, nozzle.first_y, second * nozzle.second_y),
+                           Fma(across, nozzle.first_z, second * nozzle.second_z)};
+    const Vector<T> nominal = (nozzle.share * o.thrust_n) * turned;
+    const Vector<T> force = plant.thrust_tilt * (nominal + departs.extra * nominal);
+    const Vector<T> place{none, nozzle.y_m + departs.offset_y_m, nozzle.z_m + departs.offset_z_m};
+    o.force_n = o.force_n + force;
+    o.couple_n_m = o.couple_n_m + Cross(place, force);
+  }
+  const Vector<T> arm{masses.cg_station_m - plant.pivot_station_m, plant.thrust_offset_y_m - masses.cg_y_m,
+                      plant.thrust_offset_z_m - masses.cg_z_m};
+  o.moment_n_m = Cross(arm, o.force_n) + o.couple_n_m;
+  return o;
+}
+
 /// What turning nozzles do to the body besides turning the thrust, "tail wags dog": a nozzle whose deflection
 /// grows pushes its pivot the way that it turns the force, and turns the body with its inertia about the
 /// hinge, against its own turning. (A. L. Greensite, "Analysis and Design of Space Vehicle Flight Control
@@ -212,6 +257,23 @@ DISPERSA_INLINE NozzleReaction<T> ReactionOf(const Plant<T>& plant, const Nozzle
   return {{T(0.0), -(plant.nozzle_moment_kg_m * yaw), plant.nozzle_moment_kg_m * pitch},
           {plant.nozzle_moment_kg_m * plant.nozzle_radius_m * roll, plant.nozzle_inertia_kg_m2 * pitch,
            plant.nozzle_inertia_kg_m2 * yaw}};
+}
+
+template <class T>
+DISPERSA_INLINE NozzleReaction<T> ReactionOf(const Plant<T>& plant, const ListedNozzles<T>& nozzles) {
+  const T none(0.0);
+  NozzleReaction<T> o{Zero<T>(), Zero<T>()};
+  for (int i = 0; i < kNozzles; ++i) {
+    const ListedNozzle<T>& nozzle = plant.listed[i];
+    const T a = nozzles.first.acceleration_rad_s2[i], b = nozzles.second.acceleration_rad_s2[i];
+    const Vector<T> towards{none, Fma(a, nozzle.first_y, b * nozzle.second_y),
+                            Fma(a, nozzle.first_z, b * nozzle.second_z)};
+    const Vector<T> force = plant.nozzle_moment_kg_m * towards;
+    o.force_n = o.force_n + force;
+    o.couple_n_m = o.couple_n_m + Cross({none, nozzle.y_m, nozzle.z_m}, force) +
+                   plant.nozzle_inertia_kg_m2 * Vector<T>{none, towards.z, -towards.y};
+  }
+  return o;
 }
 
 /// A body that bends, at an instant; or one that does not, whose flight is code of its own: where bending may
@@ -260,11 +322,11 @@ DISPERSA_INLINE void BendThrust(const Plant<T>& plant, const Phase<T>& phase, co
 /// `any_burns`: some lane does. `body`: bent or straight. With jet damping the flow leaves with the velocity of
 /// the nozzle about the CG: -m_dot r x (w x r), r on the axis, and for roll the nozzle circle's radius. On its
 /// way from the grain's middle to the pivots, aft by s, a turning body pushes it aside: Coriolis's force
-/// 2 m_dot s w x e_x on the body.
-template <class T, class Body>
+/// 2 m_dot s w x e_x on the body. `nozzles`: the cross's, or ListedNozzles.
+template <class T, class Turned, class Body>
 DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, const Plant<T>& plant,
                                    const Phase<T>& phase, bool any_burns, const Surroundings<T>& around,
-                                   const TimedMasses<T>& masses, const Nozzles<T>& nozzles,
+                                   const TimedMasses<T>& masses, const Turned& nozzles,
                                    const Motion<T>& s, const Body& body) {
   LoadsOf<T> o;
   o.R_IB = RotationMatrix(s.q);
@@ -290,9 +352,9 @@ DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, const Plant<T>& plan
     if constexpr (Body::kBends) FinishDrive(*body.bending, *body.state, o.force_n.x, *body.modal);
     return o;
   }
-  Thrust<T> thrust = ThrustOf(plant, masses, nozzles, around.pressure_pa);
+  Thrust<T> thrust = ThrustOf<T>(plant, masses, nozzles, around.pressure_pa);
   if (plant.nozzles_have_mass) {
-    const NozzleReaction<T> reaction = ReactionOf(plant, nozzles);
+    const NozzleReaction<T> reaction = ReactionOf<T>(plant, nozzles);
     const Vector<T> arm{masses.cg_station_m - plant.pivot_station_m, -masses.cg_y_m, -masses.cg_z_m};
     thrust.force_n = thrust.force_n + reaction.force_n;
     thrust.couple_n_m = thrust.couple_n_m + reaction.couple_n_m;
@@ -340,10 +402,10 @@ DISPERSA_INLINE Vector<T> TurnedUnderProducts(const Plant<T>& plant, const Timed
 /// on board, m v + m_dot times the way of the flow (aft), changes by gravitation, the outer forces and what
 /// leaves; a burn that begins or ends moves v by nothing. The motion of an offset C across the body (mm/s) is
 /// left out.
-template <class T, class Body>
+template <class T, class Turned, class Body>
 DISPERSA_INLINE Rates<T> RatesOf(double earth_rate_rad_s, const Plant<T>& plant,
                                  const Phase<T>& phase, bool any_burns, const Surroundings<T>& around,
-                                 const TimedMasses<T>& masses, const Nozzles<T>& nozzles, const Motion<T>& s,
+                                 const TimedMasses<T>& masses, const Turned& nozzles, const Motion<T>& s,
                                  const Body& body, Instant<T>* instant) {
   const LoadsOf<T> loads =
       LoadsAt(earth_rate_rad_s, plant, phase, any_burns, around, masses, nozzles, s, body);

@@ -68,7 +68,7 @@ DISPERSA_INLINE void SetLane(Plant<T>& p, int lane, const LauncherPlant& plant, 
           s.product_xy_kg_m2 != 0.0 || s.product_xz_kg_m2 != 0.0 || s.product_yz_kg_m2 != 0.0);
   p.any_products = Any(p.has_products);
   Lane(p.pivot_station_m, lane) = s.gimbal.pivot_station_m;
-  Lane(p.nozzle_radius_m, lane) = s.gimbal.radius_m;
+  Lane(p.nozzle_radius_m, lane) = s.gimbal.nozzles.empty() ? s.gimbal.radius_m : s.layout.flow_radius_m;
   Lane(p.nozzle_moment_kg_m, lane) = s.gimbal.nozzle_mass_kg * s.gimbal.nozzle_cg_m;
   Lane(p.nozzle_inertia_kg_m2, lane) = s.gimbal.nozzle_inertia_kg_m2;
   SetLane(p.sections, lane, s.loads.get());
@@ -97,6 +97,17 @@ DISPERSA_INLINE void SetLane(Plant<T>& p, int lane, const LauncherPlant& plant, 
     Lane(p.nozzles[i].offset_z_m, lane) = nozzle.offset_z_m;
     departs |= nozzle.offset_y_m != 0.0 || nozzle.offset_z_m != 0.0;
   }
+  p.nozzles_listed = plant.nozzles_are_listed();
+  for (int i = 0; p.nozzles_listed && i < kNozzles; ++i) {
+    ListedNozzle<T>& nozzle = p.listed[i];
+    Lane(nozzle.share, lane) = s.layout.share[i];
+    Lane(nozzle.y_m, lane) = s.layout.y_m[i];
+    Lane(nozzle.z_m, lane) = s.layout.z_m[i];
+    Lane(nozzle.first_y, lane) = s.layout.towards_y[i];
+    Lane(nozzle.first_z, lane) = s.layout.towards_z[i];
+    Lane(nozzle.second_y, lane) = s.layout.towards_y[i + kNozzles];
+    Lane(nozzle.second_z, lane) = s.layout.towards_z[i + kNozzles];
+  }
   SetLane(p.departs, lane, departs);
   p.any_departs = Any(p.departs);
   Lane(p.lateral_moment_y_kg_m, lane) = s.lateral_moment_y_kg_m;
@@ -117,7 +128,8 @@ DISPERSA_INLINE void SetLane(Bending<T>& b, int lane, const LauncherPlant& plant
   b.planes = plant.bending_planes();
 }
 
-/// `stuck`: index of a nozzle that does not move, or -1. `longest_s`: of what Propagate will be asked for.
+/// Of the first hinges as of the second. `stuck`: index of a nozzle that does not move, or -1. `longest_s`: of what
+/// Propagate will be asked for.
 template <class T>
 DISPERSA_INLINE void SetLane(Drives<T>& d, int lane, const Gimbal& gimbal, int stuck,
                              double longest_s = 0.0) {

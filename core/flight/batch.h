@@ -15,6 +15,7 @@
 #include "core/flight/flight_queue.h"
 #include "core/flight/lane_metrics.h"
 #include "core/flight/lane_sensors.h"
+#include "core/flight/nozzle_allocation.h"
 #include "core/flight/sequence.h"
 #include "core/flight/simpson_step.h"
 #include "core/flight/structural_limits.h"
@@ -73,6 +74,7 @@ class Batch {
   void FlyGimbalsOf(M powered);
   const T* FedForward(T* program) const;
   void PassCommands(M powered);
+  void RollByThrusters(M rolling);
   void FlyThrusters();
   void LetGo();
   void Guide();
@@ -105,8 +107,8 @@ class Batch {
   T next_digest_tick_, next_row_tick_;
   T lost_ticks_;  ///< for which the attitude has been lost
   StepState<T> step_;
-  T next_command_rad_[kNozzles];
-  T delay_line_[kDelayLine][kNozzles];  ///< commands by pass
+  T next_command_rad_[kDrives];
+  T delay_line_[kDelayLine][kDrives];  ///< commands by pass
   int line_at_ = 0;
   bool same_delay_ = true;  ///< all lanes that burn have one of whole ticks:
   int common_delay_ = 0;
@@ -124,6 +126,7 @@ class Batch {
   int most_steps_ = 1;
 
   GimbalLoop<T> loop_;
+  Allocation<T> allocation_;  ///< of listed nozzles
   AxisMemory<T> axes_[kAxes];
   GimbalOutput<T> gimbals_;
   ThrusterMemory<T> thrusters_[kAxes];
@@ -147,6 +150,7 @@ Batch<T>::Batch(const FlightModel& model, FlightQueue& queue)
   __builtin_memset(static_cast<void*>(&step_), 0, sizeof step_);
   __builtin_memset(static_cast<void*>(&delay_line_), 0, sizeof delay_line_);
   __builtin_memset(static_cast<void*>(&loop_), 0, sizeof loop_);
+  __builtin_memset(static_cast<void*>(&allocation_), 0, sizeof allocation_);
   __builtin_memset(static_cast<void*>(&axes_), 0, sizeof axes_);
   __builtin_memset(static_cast<void*>(&gimbals_), 0, sizeof gimbals_);
   __builtin_memset(static_cast<void*>(&thrusters_), 0, sizeof thrusters_);
@@ -272,6 +276,7 @@ void Batch<T>::SetStack(int lane, int stack) {
   SetMass(lane);
   SetLane(step_.bending, lane, slot.record->plant, stack);
   SetLane(step_.drives, lane, slot.record->plant.stacks.data()[stack].gimbal, -1, 0.5 * tick_s_);
+  if (step_.plant.nozzles_listed) SetLane(allocation_, lane, slot.record->plant.stacks.data()[stack].layout);
   step_.SetTickTransition(lane);
   step_.MarkMoved(lane);
 }
@@ -329,7 +334,7 @@ LauncherPhase Batch<T>::PhaseOf(int lane) const {
   torque[0] = Lane(step_.phase.control_torque_n_m.x, lane);
   torque[1] = Lane(step_.phase.control_torque_n_m.y, lane);
   torque[2] = Lane(step_.phase.control_torque_n_m.z, lane);
-  for (int i = 0; i < kNozzles; ++i) phase.command_rad.data()[i] = Lane(step_.command_rad[i], lane);
+  for (int i = 0; i < kDrives; ++i) phase.command_rad.data()[i] = Lane(step_.command_rad[i], lane);
   phase.stuck_nozzle = slot_[lane].stuck_nozzle;
   return phase;
 }

@@ -57,7 +57,7 @@ void Batch<T>::AdvanceThroughEvents(T target) {
       }
       if (slot.switch_s <= Lane(time_s_, lane)) {
         slot.switch_s = kFarFuture;
-        for (int i = 0; i < kNozzles; ++i)
+        for (int i = 0; i < kDrives; ++i)
           Lane(step_.command_rad[i], lane) = Lane(next_command_rad_[i], lane);
         M commanded = NoLane<T>();
         SetLane(commanded, lane, true);
@@ -130,7 +130,9 @@ void Batch<T>::Happen(int lane) {
       step_.WriteLane(lane, y);
       SetStack(lane, event.stage + 1);
       SetLane(step_.phase.burnt, lane, false);
-      SetLane(coasting_, lane, event.stage + 2 == static_cast<int>(record.plant.stacks.size()));
+      SetLane(coasting_, lane,
+              event.stage + 2 == static_cast<int>(record.plant.stacks.size()) ||
+                  definition_.vehicle.stages.data()[event.stage + 1].ignition == IgnitionTrigger::kTimer);
       for (T& command : step_.command_rad) Lane(command, lane) = 0.0;
       break;
     }
@@ -227,6 +229,9 @@ void Batch<T>::BurnOut(int lane, int stage) {
   Lane(unit_weight_, lane) = 1.0;
   SetLane(step_.phase.burning, lane, false);
   SetLane(step_.phase.burnt, lane, true);
+  // Where thrusters held the roll.
+  SetLane(step_.phase.control_torque_n_m, lane, Zero<double>());
+  Lane(thrusters_[kRoll].direction, lane) = Lane(thrusters_[kRoll].cycles_on, lane) = 0.0;
   if (stage + 1 == static_cast<int>(record.plant.stacks.size())) record.Inject(now.altitude_m, y);
 }
 

@@ -144,14 +144,24 @@ void Batch<T>::FlyGimbals() {
   else
     FlyGimbalsOf<false>(powered);
   PassCommands(powered);
+  if (!step_.plant.nozzles_listed) return;
+  const M rolling = powered & (allocation_.rolls_by_thrusters > T(0.0));
+  if (Any(rolling)) RollByThrusters(rolling);
 }
 
 template <class T>
 template <bool kAll>
 void Batch<T>::FlyGimbalsOf(M powered) {
   T program[FeedForwardRows::kRowSize];
-  StepGimbals<kAll>(model_.autopilot(), loop_, powered, time_s_ - step_.phase.ignition_s, measured_angle_rad_,
-                    measured_rate_rad_s_, FedForward(program), axes_, gimbals_);
+  Vector<T> angle = measured_angle_rad_, rate = measured_rate_rad_s_;
+  if (step_.plant.nozzles_listed) {
+    // A law whose commands nothing carries out learns nothing.
+    const M rolls = allocation_.rolls_by_thrusters > T(0.0);
+    angle.x = Select(rolls, T(0.0), angle.x);
+    rate.x = Select(rolls, T(0.0), rate.x);
+  }
+  StepGimbals<kAll>(model_.autopilot(), loop_, powered, time_s_ - step_.phase.ignition_s, angle, rate,
+                    FedForward(program), axes_, gimbals_);
 }
 
 // What the program asks of the lanes' axes at their ticks; null where nothing is fed forward. Body axes stand
@@ -177,13 +187,20 @@ void Batch<T>::PassCommands(M powered) {
   const T roll = gimbals_.deflection_rad[kRoll], pitch = gimbals_.deflection_rad[kPitch];
   const T yaw = gimbals_.deflection_rad[kYaw];
   T* entry = delay_line_[line_at_];
-  entry[0] = pitch + roll;
-  entry[1] = pitch - roll;
-  entry[2] = yaw + roll;
-  entry[3] = yaw - roll;
+  const bool listed = step_.plant.nozzles_listed;
+  if (listed) {
+    Allocate(allocation_, roll, pitch, yaw, entry);
+  } else {
+    entry[0] = pitch + roll;
+    entry[1] = pitch - roll;
+    entry[2] = yaw + roll;
+    entry[3] = yaw - roll;
+  }
   if (same_delay_) {
     const T* leaving = delay_line_[(line_at_ - common_delay_) & (kDelayLine - 1)];
     for (int i = 0; i < kNozzles; ++i)
+      step_.command_rad[i] = Select(powered, leaving[i], step_.command_rad[i]);
+    for (int i = kNozzles; listed && i < kDrives; ++i)
       step_.command_rad[i] = Select(powered, leaving[i], step_.command_rad[i]);
   } else {
     const unsigned acting = Bits(powered);
@@ -193,7 +210,7 @@ void Batch<T>::PassCommands(M powered) {
       const bool within = slot.part_delay_s > 0.0;
       const T* next = delay_line_[(line_at_ - slot.whole_delay) & (kDelayLine - 1)];
       const T* now = delay_line_[(line_at_ - slot.whole_delay - (within ? 1 : 0)) & (kDelayLine - 1)];
-      for (int i = 0; i < kNozzles; ++i) {
+      for (int i = 0; i < (listed ? kDrives : kNozzles); ++i) {
         Lane(step_.command_rad[i], lane) = Lane(now[i], lane);
         Lane(next_command_rad_[i], lane) = Lane(next[i], lane);
       }
@@ -204,6 +221,31 @@ void Batch<T>::PassCommands(M powered) {
   }
   step_.MarkCommanded(powered);
   line_at_ = (line_at_ + 1) & (kDelayLine - 1);
+}
+
+/// Of stages whose nozzles cannot: by the couples of the coast, decided at the same cycles, while the motor burns.
+template <class T>
+void Batch<T>::RollByThrusters(M rolling) {
+  const AutopilotModel& autopilot = model_.autopilot();
+  const ReactionControlLogic& logic = autopilot.config.reaction_control;
+  const ReactionControl& rcs = definition_.vehicle.reaction_control;
+  M decides = NoLane<T>();
+  for (int lane = 0; lane < kLanes; ++lane)
+    SetLane(decides, lane, static_cast<long>(Lane(tick_, lane)) % logic.cycle_ticks == 0);
+  decides = decides & rolling;
+  StepThrusters(logic, autopilot.thruster_minimum_cycles, decides, measured_angle_rad_.x, measured_rate_rad_s_.x,
+                thrusters_[kRoll]);
+  const double couple_n = 2.0 * rcs.thrust_n;
+  const double flow_kg = couple_n / (rcs.specific_impulse_s * kStandardGravity) * tick_s_;  // a tick
+  const T direction = thrusters_[kRoll].direction;
+  T& torque = step_.phase.control_torque_n_m.x;
+  const T anew = T(couple_n * rcs.roll_arm_m) * direction;
+  const M changes = rolling & ((anew < torque) | (anew > torque));
+  torque = Select(rolling, anew, torque);
+  const M fires = rolling & (Abs(direction) > T(0.0));
+  step_.phase.expelled_kg =
+      Select(fires, Fma(T(flow_kg), Abs(direction), step_.phase.expelled_kg), step_.phase.expelled_kg);
+  step_.MarkStale(changes | fires);
 }
 
 /// The coast: decisions fall on the thrusters' cycles, and on the first tick after an event.
@@ -288,16 +330,26 @@ void Batch<T>::Meter(M powered) {
   const AxisOutput<T>& pitch = gimbals_.axes[kPitch];
   const LyapunovSample<T> law{pitch.v, Select(pitch.v_rate_sign < T(0.0), T(1.0), T(0.0)),
                               loop_.axes[kPitch].p11, pitch.departure_norm2};
-  metrics_.AddPowered(powered, T(tick_s_), time_s_, {-angle_rad_.x, pitch_error, -angle_rad_.z},
-                      step_.drive_state, step_.command_rad, loop_.limit_rad, law);
+  metrics_.AddPowered(powered, T(tick_s_), time_s_, {-angle_rad_.x, pitch_error, -angle_rad_.z}, law);
+  const bool listed = step_.plant.nozzles_listed;
+  if (listed)
+    metrics_.AddDeflections(powered, time_s_, step_.drive_state, step_.second_drives, step_.command_rad, allocation_);
+  else
+    metrics_.AddDeflections(powered, time_s_, step_.drive_state, step_.command_rad, loop_.limit_rad);
 
   const M is_transient =
       InTransient(time_s_, time_s_ - step_.phase.ignition_s, step_.now().altitude_m, definition_.kick_start_s,
                   definition_.kick_end_s, gust_bottom_m_, gust_top_m_);
   const unsigned metered = Bits(powered), interrupted = Bits(is_transient);
   const T* n = step_.drive_state.angle_rad;
-  const T roll = T(0.25) * ((n[0] - n[1]) + (n[2] - n[3]));
-  const T pitch_angle = T(0.5) * (n[0] + n[1]), yaw = T(0.5) * (n[2] + n[3]);
+  T roll = T(0.25) * ((n[0] - n[1]) + (n[2] - n[3]));
+  T pitch_angle = T(0.5) * (n[0] + n[1]), yaw = T(0.5) * (n[2] + n[3]);
+  if (listed) {
+    const T* second = step_.second_drives.angle_rad;
+    roll = FeltAbout(allocation_, kRoll, n, second);
+    pitch_angle = FeltAbout(allocation_, kPitch, n, second);
+    yaw = FeltAbout(allocation_, kYaw, n, second);
+  }
   for (int lane = 0; lane < kLanes; ++lane) {
     if (!(metered >> lane & 1u)) continue;
     FlightRecord& record = *slot_[lane].record;

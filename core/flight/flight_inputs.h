@@ -19,7 +19,7 @@ constexpr PerStage AllStages(double value) {
   return values;
 }
 
-/// Of each nozzle (right, left, bottom, top) of each stage.
+/// Of each nozzle (right, left, bottom, top; of a list, in its order) of each stage.
 using PerNozzle = std::array<std::array<double, kNozzles>, kMaxStages>;
 
 constexpr PerNozzle AllNozzles(double value) {
@@ -42,7 +42,7 @@ struct FlightInputs {
   PerNozzle nozzle_misalignment_clock_rad{};
   PerNozzle nozzle_offset_m{};
   PerNozzle nozzle_offset_clock_rad{};
-  PerNozzle nozzle_thrust_factor = AllNozzles(1.0);  ///< of its quarter of the thrust, at the same flow
+  PerNozzle nozzle_thrust_factor = AllNozzles(1.0);  ///< of its share of the thrust, at the same flow
   PerStage cg_offset_m{};                    ///< of the CG off the axis, of the stack without what it burns
   PerStage cg_offset_clock_rad{};            ///< direction of the offset, likewise
   PerStage thrust_factor = AllStages(1.0);

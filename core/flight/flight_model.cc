@@ -25,6 +25,7 @@ LauncherPlant BuildNominalPlant(const Vehicle& vehicle) {
     stack.aero_grid = std::make_shared<const AeroGrid>(BuildAeroGrid(stack.aerodynamics));
     stack.burn = BuildBurn(stage, 1.0, 1.0);
     stack.gimbal = stage.gimbal;
+    stack.layout = BuildNozzleLayout(stage.gimbal);
     plant.stacks.push_back(stack);
     plant.jettisons.insert(plant.jettisons.end(), stage.jettisoned.begin(), stage.jettisoned.end());
   }
@@ -85,10 +86,13 @@ StageControl BuildStageControl(const LauncherPlant& plant, int index, double ign
     const double lever = stack.gimbal.pivot_station_m - mass.cg_station_m;
     control.pitch_effectiveness_1_s2.x.push_back(since);
     control.roll_effectiveness_1_s2.x.push_back(since);
-    // Two of the four nozzles turn in pitch (the paper's 2P), all four in roll.
-    control.pitch_effectiveness_1_s2.y.push_back(0.5 * thrust * lever / mass.transverse_inertia_kg_m2);
-    control.roll_effectiveness_1_s2.y.push_back(thrust * stack.gimbal.radius_m /
-                                                mass.axial_inertia_kg_m2);
+    // Of a cross two of the four nozzles turn in pitch (the paper's 2P), all four in roll.
+    const bool is_cross = stack.gimbal.nozzles.empty();
+    const double share = is_cross ? 0.5 : stack.layout.pitch_share;
+    const double arm_m = is_cross ? stack.gimbal.radius_m : stack.layout.roll_arm_m;
+    control.pitch_effectiveness_1_s2.y.push_back(share * thrust * lever / mass.transverse_inertia_kg_m2);
+    // Commands of roll that nothing carries out may be any number.
+    control.roll_effectiveness_1_s2.y.push_back(stack.layout.rolls ? thrust * arm_m / mass.axial_inertia_kg_m2 : 1.0);
   }
   return control;
 }
@@ -175,7 +179,8 @@ FlightModel::FlightModel(FlightDefinition definition)
   std::vector<MotorBurn> burns;
   for (const LauncherStack& stack : nominal_.stacks) burns.push_back(stack.burn);
   const std::vector<StageTimes> times =
-      BuildTimeline(definition_.vehicle, burns, definition_.autopilot.tick_s, definition_.last_ignition_s);
+      BuildTimeline(definition_.vehicle, burns, definition_.autopilot.tick_s, definition_.last_ignition_s,
+                    definition_.earlier_ignition_s);
   std::vector<StageControl> controls;
   for (std::size_t i = 0; i < times.size(); ++i)
     controls.push_back(

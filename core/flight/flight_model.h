@@ -34,6 +34,7 @@ struct FlightDefinition {
   AutopilotConfig autopilot;
   AttitudeProgram program;
   double last_ignition_s = 0.0;
+  std::array<double, kMaxStages> earlier_ignition_s{};  ///< timers of stages before the last
   double kick_start_s = 0.0;   ///< t1 and t2 of the flight program: the pitch-over
   double kick_end_s = 0.0;
   InjectionTarget target;

@@ -23,7 +23,8 @@ std::vector<FlightEvent> EventsOf(const FlightModel& model, const LauncherPlant&
   std::vector<MotorBurn> burns;
   for (const LauncherStack& stack : plant.stacks) burns.push_back(stack.burn);
   const std::vector<StageTimes> timeline =
-      BuildTimeline(definition.vehicle, burns, definition.autopilot.tick_s, definition.last_ignition_s, in);
+      BuildTimeline(definition.vehicle, burns, definition.autopilot.tick_s, definition.last_ignition_s,
+                    definition.earlier_ignition_s, in);
   std::vector<FlightEvent> events;
   for (std::size_t i = 0; i < timeline.size(); ++i) {
     const int stage = static_cast<int>(i);
@@ -72,10 +73,10 @@ class FlightRecord::JudgedMotion {
     s.q_IB = Normalized(s.q_IB);
     WriteState(s, y);
     // Mechanical stops, and the drives' greatest rate, which a step may overshoot.
-    for (int i = 0; i < kNozzles; ++i) {
-      if (i == phase.stuck_nozzle) continue;
-      double& angle = y[kNozzleAngle + i];
-      double& rate = y[kNozzleRate + i];
+    for (int i = 0; i < kDrives; ++i) {
+      if (i % kNozzles == phase.stuck_nozzle) continue;
+      double& angle = y[AngleOf(i)];
+      double& rate = y[RateOf(i)];
       rate = Clamp(rate, -gimbal.rate_limit_rad_s, gimbal.rate_limit_rad_s);
       if (std::fabs(angle) <= gimbal.limit_rad) continue;
       angle = std::copysign(gimbal.limit_rad, angle);
@@ -101,10 +102,11 @@ class FlightRecord::JudgedMotion {
     std::copy(y, y + kLauncherSize, start.begin());
     // A drive turns round a few times a second; more rests than these within a tick are a fault of ours.
     for (int rests = 0; rests < 64; ++rests) {
-      for (int i = 0; i < kNozzles; ++i) {
-        const std::size_t nozzle = static_cast<std::size_t>(i);
-        phase_.slides[nozzle] = lanes::SlidesIn(drives, lanes::Followed(drives, phase_.command_rad[nozzle]),
-                                                start[nozzle + kNozzleAngle], start[nozzle + kNozzleRate]);
+      for (int i = 0; i < kDrives; ++i) {
+        const std::size_t drive = static_cast<std::size_t>(i);
+        phase_.slides[drive] = lanes::SlidesIn(drives, lanes::Followed(drives, phase_.command_rad[drive]),
+                                               start[static_cast<std::size_t>(AngleOf(i))],
+                                               start[static_cast<std::size_t>(RateOf(i))]);
       }
       State end = start;
       if (!integrator_.Advance(from_s, to_s, steps, end.data())) return false;
@@ -124,8 +126,10 @@ class FlightRecord::JudgedMotion {
           before_s = middle_s;
         }
       }
-      for (std::size_t i = 0; i < kNozzles; ++i)
-        if (phase_.slides[i] * end[kNozzleRate + i] < 0.0) end[kNozzleRate + i] = 0.0;
+      for (int i = 0; i < kDrives; ++i) {
+        double& rate = end[static_cast<std::size_t>(RateOf(i))];
+        if (phase_.slides[static_cast<std::size_t>(i)] * rate < 0.0) rate = 0.0;
+      }
       start = end;
       from_s = after_s;
       if (!(to_s - from_s > 1e-12)) {
@@ -136,8 +140,8 @@ class FlightRecord::JudgedMotion {
     return false;
   }
   bool TurnsRound(const State& y) const {
-    for (std::size_t i = 0; i < kNozzles; ++i)
-      if (phase_.slides[i] * y[kNozzleRate + i] < 0.0) return true;
+    for (int i = 0; i < kDrives; ++i)
+      if (phase_.slides[static_cast<std::size_t>(i)] * y[static_cast<std::size_t>(RateOf(i))] < 0.0) return true;
     return false;
   }
 
@@ -220,11 +224,11 @@ TickSample FlightRecord::SampleOf(const LaneView& view) const {
   s.coasting = view.coasting;
   s.since_ignition_s = view.time_s - view.phase.ignition_s;
   s.state = ReadState(view.y);
-  for (int i = 0; i < kNozzles; ++i) {
-    s.nozzle_rad[static_cast<std::size_t>(i)] = view.y[kNozzleAngle + i];
-    s.nozzle_rate_rad_s[static_cast<std::size_t>(i)] = view.y[kNozzleRate + i];
+  for (int i = 0; i < kDrives; ++i) {
+    s.nozzle_rad[static_cast<std::size_t>(i)] = view.y[AngleOf(i)];
+    s.nozzle_rate_rad_s[static_cast<std::size_t>(i)] = view.y[RateOf(i)];
   }
-  std::copy(view.y + kModalState, view.y + kLauncherSize, s.bending.begin());
+  std::copy(view.y + kModalState, view.y + kBentLauncherSize, s.bending.begin());
   s.command_rad = view.phase.command_rad;
   s.limit_rad = plant.stacks[static_cast<std::size_t>(s.stack)].gimbal.limit_rad;
   s.reference = ReferenceAt(view.time_s);

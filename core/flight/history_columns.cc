@@ -70,13 +70,21 @@ void AppendLauncher(const FlightModel& model, const TickSample& s, std::vector<d
   const AxisTelemetry& t = s.gimbal.telemetry[kPitch];
   const auto powered = [&](double value) { return s.burning ? value : kUndefined; };
   const auto& n = s.nozzle_rad;
+  const LauncherStack& stack = model.nominal_plant().stacks[static_cast<std::size_t>(s.stack)];
+  const NozzleLayout* const list = stack.gimbal.nozzles.empty() ? nullptr : &stack.layout;
+  const auto felt = [&](Axis axis, double of_cross_rad) {
+    if (list == nullptr) return of_cross_rad * kDegPerRad;
+    double rad = 0.0;
+    for (std::size_t i = 0; i < kDrives; ++i) rad += list->felt[axis][i] * n[i];
+    return rad * kDegPerRad;
+  };
   row.insert(row.end(),
              {s.stack + 1.0, now.thrust_n, orbit.speed_m_s, orbit.flight_path_angle_rad * kDegPerRad,
               s.reference.angles.pitch * kDegPerRad, attitude.pitch * kDegPerRad,
               -s.error.angle_rad.y() * kDegPerRad, -s.error.angle_rad.z() * kDegPerRad,
               -s.error.angle_rad.x() * kDegPerRad, -s.error.rate_rad_s.y() * kDegPerRad,
-              0.5 * (n[0] + n[1]) * kDegPerRad, 0.5 * (n[2] + n[3]) * kDegPerRad,
-              0.25 * (n[0] - n[1] + n[2] - n[3]) * kDegPerRad, n[0] * kDegPerRad, n[1] * kDegPerRad,
+              felt(kPitch, 0.5 * (n[0] + n[1])), felt(kYaw, 0.5 * (n[2] + n[3])),
+              felt(kRoll, 0.25 * (n[0] - n[1] + n[2] - n[3])), n[0] * kDegPerRad, n[1] * kDegPerRad,
               n[2] * kDegPerRad, n[3] * kDegPerRad, powered(s.gimbal.pitch_rad * kDegPerRad),
               powered(t.command_rad_s2 * kDegPerRad), powered(t.adaptation_norm * kDegPerRad), powered(t.v),
               powered(t.v_rate_sign), powered(t.projected ? 1.0 : 0.0), powered(t.frozen ? 1.0 : 0.0),

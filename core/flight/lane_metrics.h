@@ -5,6 +5,7 @@
 #include "core/dynamics/actuators.h"
 #include "core/dynamics/launcher_body.h"
 #include "core/flight/flight_sums.h"
+#include "core/flight/nozzle_allocation.h"
 #include "core/math/constants.h"
 
 namespace dispersa::lanes {
@@ -66,7 +67,7 @@ template <class T>
 struct LaneMetrics {
   ErrorStatistics<T> pitch, coast, yaw, roll, deflection;  ///< pitch: of the current stage
   T itae_rad_s2, deflection_rate_peak_rad_s, saturated_ticks, travel_rad;
-  T has_previous, previous_rad[kNozzles];
+  T has_previous, previous_rad[kDrives];
   T q_max_pa, q_alpha_max_pa_rad, alpha_max_rad, axial_load_max_g, lateral_load_max_g;
   T bending_moment_max_n_m, bending_moment_station_m;
   T v_outside_ticks, v_falling_ticks, departure_norm2_peak;
@@ -84,15 +85,24 @@ struct LaneMetrics {
     Lane(has_previous, lane) = 0.0;
   }
 
-  /// One tick of powered flight. Errors are true less reference, about x, y, z; deflections of the actuators,
-  /// commands as they reach them.
+  /// One tick of powered flight. Errors are true less reference, about x, y, z.
   DISPERSA_INLINE void AddPowered(MaskOf<T> lanes, T tick_s, T time_s, Vector<T> error_rad,
-                                  const DriveState<T>& drives, const T* command_rad, T limit_rad,
                                   const LyapunovSample<T>& law) {
     pitch.Add(lanes, error_rad.y, time_s);
     yaw.Add(lanes, error_rad.z, time_s);
     roll.Add(lanes, error_rad.x, time_s);
     itae_rad_s2 = Select(lanes, Fma(tick_s * time_s, Abs(error_rad.y), itae_rad_s2), itae_rad_s2);
+    const T one(1.0), none(0.0);
+    const auto is_outside = lanes & (law.v > T(0.5 * kResidualError_rad * kResidualError_rad) * law.p11);
+    v_outside_ticks = v_outside_ticks + Select(is_outside, one, none);
+    v_falling_ticks = v_falling_ticks + Select(is_outside, law.v_falls, none);
+    departure_norm2_peak =
+        Select(lanes, Max(departure_norm2_peak, law.departure_norm2), departure_norm2_peak);
+  }
+
+  /// Of the cross, at the same tick: deflections of the actuators, commands as they reach them.
+  DISPERSA_INLINE void AddDeflections(MaskOf<T> lanes, T time_s, const DriveState<T>& drives, const T* command_rad,
+                                      T limit_rad) {
     T travel(0.0), largest(0.0), fastest(0.0);
     for (int i = 0; i < kNozzles; ++i) {
       const T angle = drives.angle_rad[i];
@@ -102,18 +112,30 @@ struct LaneMetrics {
       travel = travel + Abs(angle - previous_rad[i]);
       previous_rad[i] = Select(lanes, angle, previous_rad[i]);
     }
+    AddTravel(lanes, fastest, T(1.0 / kNozzles), travel, largest >= limit_rad);
+  }
+  /// Of listed nozzles: each drive that the lane's stage has counts.
+  DISPERSA_INLINE void AddDeflections(MaskOf<T> lanes, T time_s, const DriveState<T>& first,
+                                      const DriveState<T>& second, const T* command_rad,
+                                      const Allocation<T>& list) {
+    T travel(0.0), fastest(0.0);
+    for (int i = 0; i < kDrives; ++i) {
+      const DriveState<T>& drives = i < kNozzles ? first : second;
+      const T angle = drives.angle_rad[i % kNozzles];
+      deflection.Add(lanes & (list.there[i] > T(0.0)), angle, time_s);
+      fastest = Max(fastest, Abs(drives.rate_rad_s[i % kNozzles]));
+      travel = travel + Abs(angle - previous_rad[i]);
+      previous_rad[i] = Select(lanes, angle, previous_rad[i]);
+    }
+    AddTravel(lanes, fastest, list.per_drive, travel, IsSaturated(list, command_rad));
+  }
+  DISPERSA_INLINE void AddTravel(MaskOf<T> lanes, T fastest_rad_s, T per_drive, T moved_rad, MaskOf<T> saturated) {
     const T one(1.0), none(0.0);
     deflection_rate_peak_rad_s =
-        Select(lanes, Max(deflection_rate_peak_rad_s, fastest), deflection_rate_peak_rad_s);
-    saturated_ticks = saturated_ticks + Select(lanes & (largest >= limit_rad), one, none);
-    travel_rad =
-        Select(lanes & (has_previous > none), Fma(T(1.0 / kNozzles), travel, travel_rad), travel_rad);
+        Select(lanes, Max(deflection_rate_peak_rad_s, fastest_rad_s), deflection_rate_peak_rad_s);
+    saturated_ticks = saturated_ticks + Select(lanes & saturated, one, none);
+    travel_rad = Select(lanes & (has_previous > none), Fma(per_drive, moved_rad, travel_rad), travel_rad);
     has_previous = Select(lanes, one, has_previous);
-    const auto is_outside = lanes & (law.v > T(0.5 * kResidualError_rad * kResidualError_rad) * law.p11);
-    v_outside_ticks = v_outside_ticks + Select(is_outside, one, none);
-    v_falling_ticks = v_falling_ticks + Select(is_outside, law.v_falls, none);
-    departure_norm2_peak =
-        Select(lanes, Max(departure_norm2_peak, law.departure_norm2), departure_norm2_peak);
   }
 
   DISPERSA_INLINE void AddCoast(MaskOf<T> lanes, T time_s, T pitch_error_rad) {

@@ -26,15 +26,14 @@ AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Ax
   phase.ignition_s = sample.time_s - sample.since_ignition_s;
   phase.expelled_mass_kg = sample.expelled_mass_kg;
 
-  GimbalCommand unit;
-  (axis == kRoll ? unit.roll_rad : axis == kPitch ? unit.pitch_rad : unit.yaw_rad) = 1.0;
-  std::array<double, kNozzles> pattern = unit.Nozzles();
-  if (sample.stuck_nozzle >= 0) pattern[static_cast<std::size_t>(sample.stuck_nozzle)] = 0.0;
+  const LauncherStack& stack = plant.stacks[static_cast<std::size_t>(sample.stack)];
+  std::array<double, kDrives> pattern{};
+  for (int i = 0; i < kDrives; ++i)
+    if (i % kNozzles != sample.stuck_nozzle) pattern[static_cast<std::size_t>(i)] = stack.layout.allocation[i][axis];
   Vector3 about = Vector3::Zero();
   about[axis] = 1.0;
 
   // The modes of the plane that the axis turns in; nothing here twists.
-  const LauncherStack& stack = plant.stacks[static_cast<std::size_t>(sample.stack)];
   const int modes = stack.bending && axis != kRoll ? stack.bending->modes : 0;
   const int plane = axis == kPitch ? 1 : 0;
   const int first_mode = plane * kModes;
@@ -55,9 +54,10 @@ AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Ax
     std::array<double, kLauncherSize> y{}, dydt{};
     WriteState(state, y.data());
     LauncherPhase at = phase;
-    for (std::size_t i = 0; i < kNozzles; ++i) {
-      y[kNozzleAngle + i] = sample.nozzle_rad[i] + (departed == 2 ? step * pattern[i] : 0.0);
-      y[kNozzleRate + i] = departed == 3 ? step * pattern[i] : 0.0;
+    for (std::size_t i = 0; i < kDrives; ++i) {
+      const int drive = static_cast<int>(i);
+      y[static_cast<std::size_t>(AngleOf(drive))] = sample.nozzle_rad[i] + (departed == 2 ? step * pattern[i] : 0.0);
+      y[static_cast<std::size_t>(RateOf(drive))] = departed == 3 ? step * pattern[i] : 0.0;
       at.command_rad[i] = sample.nozzle_rad[i] + (departed == -1 ? step * pattern[i] : 0.0);
     }
     std::copy(sample.bending.begin(), sample.bending.end(), y.begin() + kModalState);

@@ -70,6 +70,11 @@ void LeastMargins::Take(const LoopMargins& m) {
 
 namespace {
 
+// Roll that thrusters hold has no linear loop.
+bool HasLoop(const LauncherPlant& plant, const TickSample& sample, Axis axis) {
+  return axis != kRoll || plant.stacks[static_cast<std::size_t>(sample.stack)].layout.rolls;
+}
+
 // What learning changes a law's slopes in.
 bool Learns(const AutopilotModel& autopilot, Axis axis) {
   const LawInfo& info = InfoOf(autopilot.laws[static_cast<std::size_t>(axis)].config.law);
@@ -165,6 +170,7 @@ void AddMarginsAt(const LauncherPlant& plant, const FlightModel& model, const Fl
   const AutopilotModel& autopilot = model.autopilot();
   const TickSample& s = instant.sample;
   for (const Axis axis : {kPitch, kYaw, kRoll}) {
+    if (!HasLoop(plant, s, axis)) continue;
     const InstantLoop loop(plant, model.sensors(), s, axis, autopilot.config.tick_s, of);
     const auto margins_of = [&](LinearLaw law) {
       const bool is_spoilt = inputs.loop_stage == 0.0 || inputs.loop_stage == s.stack + 1;
@@ -235,6 +241,14 @@ DispersedMargins ComputeDispersedMargins(const FlightModel& model, const FlightO
 
 LoopMargins MarginsAt(const LauncherPlant& plant, const SensorModel& sensors, const AutopilotModel& autopilot,
                       const TickSample& s, Axis axis, bool adapting, const MarginModel& of) {
+  if (!HasLoop(plant, s, axis)) {
+    constexpr double kAny = std::numeric_limits<double>::infinity();
+    LoopMargins unlimited;
+    unlimited.stable = true;
+    unlimited.gain_up_db = unlimited.gain_down_db = unlimited.delay_s = kAny;
+    unlimited.phase_deg = 180.0;
+    return unlimited;
+  }
   return InstantLoop(plant, sensors, s, axis, autopilot.config.tick_s, of)
       .Of(LineariseLaw(autopilot, s.stack, s.since_ignition_s, axis, adapting));
 }

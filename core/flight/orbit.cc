@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "core/math/constants.h"
 #include "core/math/functions.h"
 
 namespace dispersa {
@@ -13,6 +14,8 @@ OrbitElements ElementsOf(const Earth& earth, const Vector3& p, const Vector3& v)
   e.speed_m_s = v.norm();
   const Vector3 h = p.cross(v);
   e.flight_path_angle_rad = Atan2(p.dot(v), h.norm());
+  const double node = Atan2(h.x(), -h.y());
+  e.ascending_node_rad = h.x() == 0.0 && h.y() == 0.0 ? 0.0 : node < 0.0 ? node + kTwoPi : node;
   e.inclination_rad = Atan2(Sqrt(h.x() * h.x() + h.y() * h.y()), h.z());
   const double energy = 0.5 * e.speed_m_s * e.speed_m_s - earth.mu_m3_s2 / r;
   const Vector3 eccentricity_vector = v.cross(h) / earth.mu_m3_s2 - p / r;

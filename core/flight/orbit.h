@@ -13,6 +13,7 @@ struct OrbitElements {
   double apogee_altitude_m = 0.0;       ///< above the equatorial radius; infinite if unbound
   double perigee_altitude_m = 0.0;      ///< negative when the orbit meets the Earth
   double radius_m = 0.0;                ///< of the place
+  double ascending_node_rad = 0.0;      ///< from I's x axis, 0 to 2 pi; 0 of an equatorial orbit
 };
 
 /// Osculating Keplerian elements about a point mass at the Earth's centre.

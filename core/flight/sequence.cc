@@ -6,7 +6,9 @@
 namespace dispersa {
 
 std::vector<StageTimes> BuildTimeline(const Vehicle& vehicle, const std::vector<MotorBurn>& burns,
-                                      double tick_s, double last_ignition_s, const FlightInputs& in) {
+                                      double tick_s, double last_ignition_s,
+                                      const std::array<double, kMaxStages>& earlier_ignition_s,
+                                      const FlightInputs& in) {
   std::vector<StageTimes> times(burns.size());
   for (std::size_t i = 0; i < burns.size(); ++i) {
     const Stage& stage = vehicle.stages[i];
@@ -18,9 +20,11 @@ std::vector<StageTimes> BuildTimeline(const Vehicle& vehicle, const std::vector<
         times[i].ignition_s =
             times[i - 1].separation_s + std::max(stage.ignition_delay_s + in.ignition_delay_s[i], 0.0);
         break;
-      case IgnitionTrigger::kTimer:
-        times[i].ignition_s = std::max(last_ignition_s + in.ignition_delay_s[i], times[i - 1].separation_s);
+      case IgnitionTrigger::kTimer: {
+        const double timer_s = i + 1 == burns.size() ? last_ignition_s : earlier_ignition_s[i];
+        times[i].ignition_s = std::max(timer_s + in.ignition_delay_s[i], times[i - 1].separation_s);
         break;
+      }
     }
     times[i].burnout_s = times[i].ignition_s + burns[i].duration_s;
     const double detection_s = std::ceil((times[i].burnout_s - kSameInstant_s) / tick_s) * tick_s;

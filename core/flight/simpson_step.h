@@ -41,13 +41,14 @@ class StepState {
   // ---- what moves ----
   Motion<T> motion;
   DriveState<T> drive_state;
+  DriveState<T> second_drives;  ///< of second hinges; nothing touches them unless nozzles are listed
   BendingState<T> bending_state;
   // ---- what it moves under ----
   Plant<T> plant;
   Phase<T> phase;
   Drives<T> drives;
   Bending<T> bending;
-  T command_rad[kNozzles];  ///< at the actuators
+  T command_rad[kDrives];  ///< at the actuators
 
   void Configure(const Earth& earth, double tick_s) {
     earth_ = earth;
@@ -74,7 +75,11 @@ class StepState {
       y[kNozzleRate + i] = Lane(drive_state.rate_rad_s[i], lane);
     }
     const T* modal = reinterpret_cast<const T*>(&bending_state);
-    for (int i = kModalState; i < kLauncherSize; ++i) y[i] = Lane(modal[i - kModalState], lane);
+    for (int i = kModalState; i < kBentLauncherSize; ++i) y[i] = Lane(modal[i - kModalState], lane);
+    for (int i = 0; i < kNozzles; ++i) {
+      y[kSecondAngle + i] = Lane(second_drives.angle_rad[i], lane);
+      y[kSecondRate + i] = Lane(second_drives.rate_rad_s[i], lane);
+    }
   }
   void WriteLane(int lane, const double* y) {
     T* values = reinterpret_cast<T*>(&motion);
@@ -84,7 +89,11 @@ class StepState {
       Lane(drive_state.rate_rad_s[i], lane) = y[kNozzleRate + i];
     }
     T* modal = reinterpret_cast<T*>(&bending_state);
-    for (int i = kModalState; i < kLauncherSize; ++i) Lane(modal[i - kModalState], lane) = y[i];
+    for (int i = kModalState; i < kBentLauncherSize; ++i) Lane(modal[i - kModalState], lane) = y[i];
+    for (int i = 0; i < kNozzles; ++i) {
+      Lane(second_drives.angle_rad[i], lane) = y[kSecondAngle + i];
+      Lane(second_drives.rate_rad_s[i], lane) = y[kSecondRate + i];
+    }
   }
   /// After a lane's drives have changed.
   void SetTickTransition(int lane) { SetTransition(tick_over_half_, lane, 0.5 * tick_s_); }
@@ -133,9 +142,15 @@ class StepState {
     Point p;
     p.around = SurroundingsAt(earth_, *air_, plant.weather, motion.p);
     p.masses = MassesAt(plant, phase, time_s);
-    p.nozzles = NozzlesOf(drive_state);
-    bending.modes > 0 ? RatesAt<true>(p, motion, bending_state, &p.instant)
-                      : RatesAt<false>(p, motion, bending_state, &p.instant);
+    p.nozzles = NozzlesOf(drive_state, command_rad);
+    if (plant.nozzles_listed) {
+      p.second = NozzlesOf(second_drives, command_rad + kNozzles);
+      bending.modes > 0 ? RatesAt<true, true>(p, motion, bending_state, &p.instant)
+                        : RatesAt<false, true>(p, motion, bending_state, &p.instant);
+    } else {
+      bending.modes > 0 ? RatesAt<true, false>(p, motion, bending_state, &p.instant)
+                        : RatesAt<false, false>(p, motion, bending_state, &p.instant);
+    }
     return LaneOf(p.instant, lane);
   }
 
@@ -146,31 +161,39 @@ class StepState {
 
   /// Evaluates the lanes at which the last step's end does not hold any more.
   void EvaluateStart(T time_s) {
-    bending.modes > 0 ? EvaluateStartOf<true>(time_s) : EvaluateStartOf<false>(time_s);
+    if (plant.nozzles_listed)
+      bending.modes > 0 ? EvaluateStartOf<true, true>(time_s) : EvaluateStartOf<false, true>(time_s);
+    else
+      bending.modes > 0 ? EvaluateStartOf<true, false>(time_s) : EvaluateStartOf<false, false>(time_s);
   }
 
   /// Moves lanes from their times to others; `all`: the rest does not fly. Returns those that hold a finite
   /// state; the others stay as they were.
   MaskOf<T> Step(MaskOf<T> moving, bool all, T from_s, T to_s) {
-    return bending.modes > 0 ? StepOf<true>(moving, all, from_s, to_s) : StepOf<false>(moving, all, from_s, to_s);
+    if (plant.nozzles_listed)
+      return bending.modes > 0 ? StepOf<true, true>(moving, all, from_s, to_s)
+                               : StepOf<false, true>(moving, all, from_s, to_s);
+    return bending.modes > 0 ? StepOf<true, false>(moving, all, from_s, to_s)
+                             : StepOf<false, false>(moving, all, from_s, to_s);
   }
 
  private:
-  template <bool kBends>
+  /// Code of its own for each kind of vehicle: whether it bends, whether its nozzles are listed.
+  template <bool kBends, bool kListed>
   MaskOf<T> StepOf(MaskOf<T> moving, bool all, T from_s, T to_s);
 
   /// Everything of an instant that a step uses.
   struct Point {
     Surroundings<T> around;
     TimedMasses<T> masses;
-    Nozzles<T> nozzles;
+    Nozzles<T> nozzles, second;  ///< second: about their second hinges
     Vector<T> cg_velocity;  ///< of C through the body, in I
     Rates<T> rates, slopes;  ///< slopes: of the rates, at the end of a step
     ModalForce<T> modal, modal_slopes;
     Instant<T> instant;
   };
 
-  template <bool kBends>
+  template <bool kBends, bool kListed>
   void EvaluateStartOf(T time_s) {
     if (!any_stale_) return;
     Point p;
@@ -179,11 +202,12 @@ class StepState {
       any_moved_ = false;
     }
     Blend<T>(stale_, MassesAt(plant, phase, time_s), start_->masses);
-    Blend<T>(stale_, NozzlesOf(drive_state), start_->nozzles);
+    Blend<T>(stale_, NozzlesOf(drive_state, command_rad), start_->nozzles);
+    if constexpr (kListed) Blend<T>(stale_, NozzlesOf(second_drives, command_rad + kNozzles), start_->second);
     Blend<T>(stale_, CgVelocityAt(start_->masses, motion.q), start_->cg_velocity);
     const ModalForce<T> modal = start_->modal;
     if constexpr (kBends) ShapesAt(bending, start_->masses.propellant_kg);
-    p.rates = RatesAt<kBends>(*start_, motion, bending_state, &p.instant);
+    p.rates = RatesAt<kBends, kListed>(*start_, motion, bending_state, &p.instant);
     Blend<T>(stale_, p.rates, start_->rates);
     Blend<T>(stale_, p.instant, start_->instant);
     const Rates<T> none{Zero<T>(), Zero<T>()};
@@ -196,10 +220,18 @@ class StepState {
     stale_ = moved_ = jumped_ = NoLane<T>();
     any_stale_ = false;
   }
-  template <bool kBends>
+  template <bool kBends, bool kListed>
   DISPERSA_INLINE Rates<T> RatesAt(Point& at, const Motion<T>& s, const BendingState<T>& bent_by,
                                    Instant<T>* instant) const {
-    return RatesOf(earth_.rotation_rate_rad_s, plant, phase, Any(phase.burning), at.around, at.masses, at.nozzles, s, BodyAs<kBends>(bent_by, at.modal), instant);
+    return RatesOf(earth_.rotation_rate_rad_s, plant, phase, Any(phase.burning), at.around, at.masses,
+                   TurnedAs<kListed>(at), s, BodyAs<kBends>(bent_by, at.modal), instant);
+  }
+  template <bool kListed>
+  DISPERSA_INLINE static decltype(auto) TurnedAs(const Point& at) {
+    if constexpr (kListed)
+      return ListedNozzles<T>{at.nozzles, at.second};
+    else
+      return (at.nozzles);
   }
   template <bool kBends>
   DISPERSA_INLINE auto BodyAs(const BendingState<T>& bent_by, ModalForce<T>& modal) const {
@@ -208,9 +240,9 @@ class StepState {
     else
       return StraightBody{};
   }
-  DISPERSA_INLINE Nozzles<T> NozzlesOf(const DriveState<T>& s) const {
+  DISPERSA_INLINE Nozzles<T> NozzlesOf(const DriveState<T>& s, const T* commands_rad) const {
     Nozzles<T> nozzles = NozzlesAt(s.angle_rad);
-    if (plant.nozzles_have_mass) SetAccelerations(drives, command_rad, s, nozzles);
+    if (plant.nozzles_have_mass) SetAccelerations(drives, commands_rad, s, nozzles);
     return nozzles;
   }
   // How C moves through the body where the lanes are turned by q, in I.
@@ -246,9 +278,9 @@ class StepState {
 inline constexpr double kSameStep_s = 1e-10;
 
 template <class T>
-template <bool kBends>
+template <bool kBends, bool kListed>
 MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
-  EvaluateStartOf<kBends>(from_s);
+  EvaluateStartOf<kBends, kListed>(from_s);
   const T h = to_s - from_s, half = T(0.5) * h, sixth = h * T(1.0 / 6.0);
   const T two(2.0), three(3.0), four(4.0);
   const T h2 = h * h, h2_8 = T(0.125) * h2, h2_6 = T(1.0 / 6.0) * h2;
@@ -257,7 +289,8 @@ MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
   Point& c = *end_;
 
   // In the coast angles, rates and commands are zero, and stay so.
-  DriveState<T> drives_half = drive_state, drives_end = drive_state;
+  DriveState<T> drives_half = drive_state, drives_end = drive_state, second_end;
+  if constexpr (kListed) second_end = second_drives;
   const auto driven = phase.burning | phase.burnt;
   if (Any(driven)) {
     const auto odd = moving & driven & (Abs(h - T(tick_s_)) > T(kSameStep_s));
@@ -267,8 +300,15 @@ MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
         if (Bits(odd) >> lane & 1u) SetTransition(over, lane, 0.5 * Lane(h, lane));
     drives_half = Propagate(drives, command_rad, over, half, drive_state);
     drives_end = Propagate(drives, command_rad, over, half, drives_half);
-    b.nozzles = NozzlesOf(drives_half);
-    c.nozzles = NozzlesOf(drives_end);
+    b.nozzles = NozzlesOf(drives_half, command_rad);
+    c.nozzles = NozzlesOf(drives_end, command_rad);
+    if constexpr (kListed) {
+      const T* const commands = command_rad + kNozzles;
+      const DriveState<T> second_half = Propagate(drives, commands, over, half, second_drives);
+      second_end = Propagate(drives, commands, over, half, second_half);
+      b.second = NozzlesOf(second_half, commands);
+      c.second = NozzlesOf(second_end, commands);
+    }
   }
   BendingState<T> bent_middle, bent_end;
   Swing<T> over_half, over_step;
@@ -289,7 +329,7 @@ MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
   b.cg_velocity = CgVelocityAt(b.masses, middle.q);
   if (plant.flow_coriolis) middle.p = Along(middle.p, T(0.5) * half, a.cg_velocity + b.cg_velocity);
   b.around = SurroundingsAt(earth_, *air_, plant.weather, middle.p);
-  b.rates = RatesAt<kBends>(b, middle, bent_middle, nullptr);
+  b.rates = RatesAt<kBends, kListed>(b, middle, bent_middle, nullptr);
 
   Motion<T> end;
   end.p = Along(Along(motion.p, h, motion.v), h2_6, Along(a.rates.dv, two, b.rates.dv));
@@ -310,7 +350,7 @@ MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
     bent_end = Swung(bending, over_step, bending_state, a.modal, rising, no_curvature);
     ShapesAt(bending, c.masses.propellant_kg);
   }
-  c.rates = RatesAt<kBends>(c, end, bent_end, &c.instant);
+  c.rates = RatesAt<kBends, kListed>(c, end, bent_end, &c.instant);
   end.v = Along(motion.v, sixth, Along(a.rates.dv + c.rates.dv, four, b.rates.dv));
   end.w = Along(motion.w, sixth, Along(a.rates.dw + c.rates.dw, four, b.rates.dw));
   c.slopes.dv = per_s * Along(Along(a.rates.dv, three, c.rates.dv), -four, b.rates.dv);
@@ -334,12 +374,15 @@ MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
   const T* values = reinterpret_cast<const T*>(&end);
   for (int i = 0; i < kRigidBodySize; ++i) none = Fma(values[i], T(0.0), none);
   for (const T& rate : drives_end.rate_rad_s) none = Fma(rate, T(0.0), none);
+  if constexpr (kListed)
+    for (const T& rate : second_end.rate_rad_s) none = Fma(rate, T(0.0), none);
   if constexpr (kBends)
     for (int i = 0; i < kModalValues; ++i) none = Fma((&bent_end.q_m[0][0])[i], T(0.0), none);
   const auto accepted = moving & (none <= T(0.0));
   if (all && !Any(moving & !accepted)) {
     motion = end;
     drive_state = drives_end;
+    if constexpr (kListed) second_drives = second_end;
     if constexpr (kBends) bending_state = bent_end;
     Point* const last = start_;
     start_ = end_;
@@ -347,6 +390,7 @@ MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
   } else {
     Blend<T>(accepted, end, motion);
     Blend<T>(accepted, drives_end, drive_state);
+    if constexpr (kListed) Blend<T>(accepted, second_end, second_drives);
     if constexpr (kBends) Blend<T>(accepted, bent_end, bending_state);
     Blend<T>(accepted, c, *start_);
   }

@@ -58,7 +58,9 @@ std::string FlightProgramFigures(const FlightProgram& program, const std::vector
   kick.Mark(program.t3_s, "t3");
   kick.Mark(program.t2_s, "t2");
   kick.Line(time_s, alpha_deg, "line-0", "");
-  return Draw(std::move(whole), "Flight program over the whole flight; S1 to S4: ignitions.") +
+  const int stages = history.empty() ? 1 : history.back().stage;
+  return Draw(std::move(whole), stages > 1 ? fmt::format("Flight program over the whole flight; S1 to S{}: ignitions.", stages)
+                                           : std::string("Flight program over the whole flight; S1: ignition.")) +
          Draw(std::move(kick), "The same in the initial pitch-over, with the program's three times.");
 }
 
@@ -77,9 +79,9 @@ std::string ReferenceFigures(const std::vector<AscentSample>& history) {
       "Geodetic height.");
   add("velocity, m/s", Column(history, [](const AscentSample& s) { return s.velocity_m_s; }),
       "Inertial speed; it begins with the Earth's rotation.");
-  add("injection angle, °",
+  add("flight path angle, °",
       Column(history, [](const AscentSample& s) { return s.flight_path_angle_rad * kDegPerRad; }),
-      "Inertial flight path angle, which the paper calls the angle of injection.");
+      "Inertial flight path angle, above the plane at right angles to the radius.");
   return figures;
 }
 

@@ -1,4 +1,4 @@
-// Figures 2 and 3 of the paper: the flight program and the reference trajectories that it produces.
+// The flight program and the trajectory that it produces, as figures.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ namespace dispersa {
 /// <figure>s.
 std::string FlightProgramFigures(const FlightProgram& program, const std::vector<AscentSample>& history);
 
-/// Pitch, height, velocity and angle of injection (inertial flight path angle) over time: <figure>s.
+/// Pitch, height, velocity and inertial flight path angle over time: <figure>s.
 std::string ReferenceFigures(const std::vector<AscentSample>& history);
 
 /// The time history for other tools; the header names the columns with their units.

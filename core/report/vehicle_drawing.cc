@@ -107,8 +107,11 @@ class Drawing {
     for (const MassElement& element : stage.structure)
       Tube("part", element.top_station_m, element.bottom_station_m, element.outer_diameter_m);
     const Gimbal& gimbal = stage.gimbal;
-    for (const double side : {-1.0, 0.0, 1.0}) {
-      const double y = Y(side * gimbal.radius_m);
+    std::vector<double> beside_m = {-gimbal.radius_m, 0.0, gimbal.radius_m};
+    if (!gimbal.nozzles.empty()) beside_m.clear();
+    for (const Nozzle& nozzle : gimbal.nozzles) beside_m.push_back(nozzle.y_m);
+    for (const double at_m : beside_m) {
+      const double y = Y(at_m);
       Line("hinge", X(gimbal.pivot_station_m), y - 4.0, X(gimbal.pivot_station_m), y + 4.0);
     }
     const StackMass stack = BuildStackMasses(vehicle_)[i];

@@ -77,6 +77,7 @@ struct AscentResult {
   Vector3 v_IC_I = Vector3::Zero();
   double last_ignition_s = 0.0;
   std::vector<double> jettison_s;  ///< of each of the plant's jettisons; infinite: never
+  std::array<double, kMaxStages> earlier_ignition_s{};  ///< of stages before the last that a timer ignites
   double q_max_pa = 0.0;
   double q_alpha_max_pa_rad = 0.0;
   double axial_load_max_g = 0.0;

@@ -11,10 +11,18 @@ AscentEvents EventsOf(const AscentModel& model, const FlightProgram& program) {
   for (const LauncherStack& stack : model.plant.stacks) burns.push_back(stack.burn);
   const std::size_t last = burns.size() - 1;
   AscentEvents all;
-  // The coast counts from the burnout below, which does not depend on the timer.
-  std::vector<StageTimes> times = BuildTimeline(model.vehicle, burns, model.tick_s, 0.0);
+  // A coast counts from the burnout below, which no later timer moves.
+  const auto timeline = [&] {
+    return BuildTimeline(model.vehicle, burns, model.tick_s, all.last_ignition_s, all.earlier_ignition_s);
+  };
+  std::vector<StageTimes> times = timeline();
+  for (std::size_t i = 1; i < last; ++i) {
+    if (model.vehicle.stages[i].ignition != IgnitionTrigger::kTimer) continue;
+    all.earlier_ignition_s[i] = times[i - 1].burnout_s + program.earlier_coast_s[i];
+    times = timeline();
+  }
   if (last > 0) all.last_ignition_s = times[last - 1].burnout_s + program.coast_s;
-  times = BuildTimeline(model.vehicle, burns, model.tick_s, all.last_ignition_s);
+  times = timeline();
 
   std::vector<AscentEvent>& events = all.events;
   for (std::size_t i = 0; i <= last; ++i) {

@@ -19,6 +19,7 @@ struct AscentEvent {
 struct AscentEvents {
   std::vector<AscentEvent> events;
   double last_ignition_s = 0.0;  ///< the last stage's timer; 0 of a single stage
+  std::array<double, kMaxStages> earlier_ignition_s{};  ///< the others'
 };
 AscentEvents EventsOf(const AscentModel& model, const FlightProgram& program);
 

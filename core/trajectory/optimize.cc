@@ -6,6 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/environment/earth.h"
+#include "core/math/constants.h"
 #include "core/flight/engine_version.h"
 #include "core/optimization/feasibility_rules.h"
 #include "core/trajectory/constraints.h"
@@ -60,6 +62,8 @@ Evaluation Judge(const TrajectoryProblem& problem, const TrajectoryOptions& opti
   evaluation.objective = problem.weight_altitude_1_m * std::fabs(errors.altitude_m) +
                          problem.weight_velocity_s_m * std::fabs(errors.velocity_m_s) +
                          problem.weight_angle_1_rad * std::fabs(errors.flight_path_angle_rad);
+  if (problem.target_inclination_rad)
+    evaluation.objective += problem.weight_inclination_1_rad * std::fabs(errors.inclination_rad);
   evaluation.constraint_violations =
       Violations(ConstraintsOf(problem, program, ascent), options.limit_reserve);
   evaluation.tie_breaker = ascent.q_alpha_max_pa_rad;
@@ -97,12 +101,17 @@ GeneticAlgorithmResult Search(const AscentModel& model, const TrajectoryProblem&
     bounded.lower.push_back(b.low);
     bounded.upper.push_back(b.high);
   }
+  for (const std::size_t stage : EarlierCoasts(model.vehicle)) {
+    bounded.lower.push_back(problem.earlier_coast_s[stage].low);
+    bounded.upper.push_back(problem.earlier_coast_s[stage].high);
+  }
+  const auto program_of = [&](const std::vector<double>& v) { return ProgramOf(v, EarlierCoasts(model.vehicle)); };
   bounded.evaluate = [&](const std::vector<double>& v) {
-    return Evaluate(model, problem, options, {ProgramOf(v)}).front();
+    return Evaluate(model, problem, options, {program_of(v)}).front();
   };
   bounded.evaluate_together = [&](std::span<const std::vector<double>> points) {
     std::vector<FlightProgram> programs;
-    for (const std::vector<double>& v : points) programs.push_back(ProgramOf(v));
+    for (const std::vector<double>& v : points) programs.push_back(program_of(v));
     return Evaluate(model, problem, options, programs);
   };
   bounded.together = kTogether;
@@ -119,14 +128,20 @@ GeneticAlgorithmResult Search(const AscentModel& model, const TrajectoryProblem&
 }  // namespace
 
 OrbitErrors ErrorsOf(const TrajectoryProblem& problem, const Orbit& orbit) {
-  return {orbit.altitude_m - problem.target_altitude_m, orbit.velocity_m_s - AimedVelocity(problem),
-          orbit.flight_path_angle_rad - problem.target_flight_path_angle_rad};
+  // An ellipse's altitudes count from the equator's radius, as its elements do.
+  const double altitude_m =
+      problem.target_apogee_m ? orbit.radius_m - Wgs84().equatorial_radius_m : orbit.altitude_m;
+  return {altitude_m - problem.target_altitude_m,
+          problem.velocity_is_free ? 0.0 : orbit.velocity_m_s - AimedVelocity(problem),
+          orbit.flight_path_angle_rad - problem.target_flight_path_angle_rad,
+          problem.target_inclination_rad ? orbit.inclination_rad - *problem.target_inclination_rad : 0.0};
 }
 
 bool IsWithin(const OrbitErrors& errors, const OrbitErrors& tolerance) {
   return std::fabs(errors.altitude_m) <= tolerance.altitude_m &&
          std::fabs(errors.velocity_m_s) <= tolerance.velocity_m_s &&
-         std::fabs(errors.flight_path_angle_rad) <= tolerance.flight_path_angle_rad;
+         std::fabs(errors.flight_path_angle_rad) <= tolerance.flight_path_angle_rad &&
+         std::fabs(errors.inclination_rad) <= tolerance.inclination_rad;
 }
 
 double DisorderOf(const FlightProgram& program, const TrajectoryOptions& options) {
@@ -134,7 +149,14 @@ double DisorderOf(const FlightProgram& program, const TrajectoryOptions& options
          std::max(0.0, program.t3_s + options.shortest_ramp_s - program.t2_s);
 }
 
-FlightProgram ProgramOf(const std::vector<double>& v) {
+std::vector<std::size_t> EarlierCoasts(const Vehicle& vehicle) {
+  std::vector<std::size_t> stages;
+  for (std::size_t i = 1; i + 1 < vehicle.stages.size(); ++i)
+    if (vehicle.stages[i].ignition == IgnitionTrigger::kTimer) stages.push_back(i);
+  return stages;
+}
+
+FlightProgram ProgramOf(const std::vector<double>& v, const std::vector<std::size_t>& earlier_coasts) {
   FlightProgram program;
   program.alpha_max_rad = v[0];
   program.t1_s = v[1];
@@ -142,6 +164,7 @@ FlightProgram ProgramOf(const std::vector<double>& v) {
   program.t2_s = v[3];
   program.coast_s = v[4];
   program.launch_azimuth_rad = v[5];
+  for (std::size_t i = 0; i < earlier_coasts.size(); ++i) program.earlier_coast_s[earlier_coasts[i]] = v[6 + i];
   return program;
 }
 
@@ -155,6 +178,7 @@ Reference BuildReference(const AscentModel& model, const TrajectoryProblem& prob
   reference.problem = problem;
   reference.program = program;
   reference.last_ignition_s = ascent.last_ignition_s;
+  reference.earlier_ignition_s = ascent.earlier_ignition_s;
   reference.orbit = ascent.orbit;
   reference.constraints = ConstraintsOf(problem, program, ascent);
   reference.engine = EngineVersion();
@@ -171,7 +195,8 @@ OptimizationResult OptimizeTrajectory(const Vehicle& vehicle, const TrajectoryPr
   model.reaction_control_propellant_kg = problem.reaction_control_propellant_kg;
   OptimizationResult result;
   result.genetic = Search(model, problem, options, observer);
-  FlightProgram program = ProgramOf(result.genetic.variables);
+  const std::vector<std::size_t> earlier_coasts = EarlierCoasts(vehicle);
+  FlightProgram program = ProgramOf(result.genetic.variables, earlier_coasts);
   std::int64_t ascents = static_cast<std::int64_t>(result.genetic.evaluations);
   result.refinement = RefineProgram(model, problem, options, &program);
   ascents += result.refinement.evaluations;
@@ -184,10 +209,12 @@ OptimizationResult OptimizeTrajectory(const Vehicle& vehicle, const TrajectoryPr
   result.refined = program;
   if (result.refinement.status != LeastSquaresStatus::kConverged) {
     // The refinement knows neither constraints nor weights: what it ends with may be worse.
-    const FlightProgram searched = ProgramOf(result.genetic.variables);
+    const FlightProgram searched = ProgramOf(result.genetic.variables, earlier_coasts);
     const std::vector<Evaluation> both = Evaluate(model, problem, options, {searched, program});
     if (IsBetter(MeritOf(both[0]), MeritOf(both[1]), 0.0)) program = searched;
   }
+  // Bounds may go on beyond north.
+  if (program.launch_azimuth_rad >= kTwoPi) program.launch_azimuth_rad -= kTwoPi;
   result.reference = BuildReference(model, problem, program, options, &result.history);
   result.reference.evaluations = ascents;
   result.errors = ErrorsOf(problem, result.reference.orbit);

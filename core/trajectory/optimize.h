@@ -17,6 +17,7 @@ struct OrbitErrors {
   double altitude_m = 0.0;
   double velocity_m_s = 0.0;
   double flight_path_angle_rad = 0.0;
+  double inclination_rad = 0.0;  ///< 0 where the target does not name it
 };
 OrbitErrors ErrorsOf(const TrajectoryProblem& problem, const Orbit& orbit);
 /// Whether no error is larger than its tolerance.
@@ -54,7 +55,7 @@ struct TrajectoryOptions {
   int selection_population = 24;
   int selection_generations = 20;
   /// A target is reached when the refinement ends within these and every constraint holds; positive.
-  OrbitErrors tolerance = {1.0, 1e-3, 1.7453292519943296e-8};
+  OrbitErrors tolerance = {1.0, 1e-3, 1.7453292519943296e-8, 1.7453292519943296e-8};
   /// Of the refinement: steps tried; 1 to 100,000.
   int refinement_iterations = 60;
 };
@@ -77,8 +78,11 @@ struct OptimizationResult {
 /// How far, s, a program's times are from order: t1, a ramp, t3, a ramp, t2. 0: in order.
 double DisorderOf(const FlightProgram& program, const TrajectoryOptions& options);
 
-/// Variables in the order alpha_max, t1, t3, t2, coast, launch azimuth.
-FlightProgram ProgramOf(const std::vector<double>& variables);
+/// The stages before the last that a timer ignites, each after a coast of its own.
+std::vector<std::size_t> EarlierCoasts(const Vehicle& vehicle);
+
+/// Variables in the order alpha_max, t1, t3, t2, coast, launch azimuth, then the earlier coasts.
+FlightProgram ProgramOf(const std::vector<double>& variables, const std::vector<std::size_t>& earlier_coasts = {});
 
 /// `observer`, if given, sees each generation. A target that cannot be reached is a result, not an error.
 /// Throws std::invalid_argument for options out of range.

@@ -2,11 +2,14 @@
 // and the full attitude in the launch-inertial frame over time.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/flight/attitude_program.h"
+#include "core/vehicle/vehicle.h"
 
 namespace dispersa {
 
@@ -19,14 +22,19 @@ struct FlightProgram {
   double t2_s = 0.0;
   double coast_s = 0.0;             ///< from the third stage's burnout to the last stage's ignition
   double launch_azimuth_rad = 0.0;  ///< clockwise from north
+  /// By stage: from the burnout below to the ignition of a stage before the last that a timer ignites.
+  std::array<double, kMaxStages> earlier_coast_s{};
 };
 
-/// Injection: geodetic altitude, inertial speed, inertial flight path angle, inclination.
+/// Injection: geodetic altitude, inertial speed, inertial flight path angle, inclination, where the plane crosses the
+/// equator northwards (east of Greenwich as it stood at lift-off), distance from the Earth's centre.
 struct Orbit {
   double altitude_m = 0.0;
   double velocity_m_s = 0.0;
   double flight_path_angle_rad = 0.0;
   double inclination_rad = 0.0;
+  double node_longitude_rad = 0.0;
+  double radius_m = 0.0;
 };
 
 struct ConstraintMargin {
@@ -44,14 +52,20 @@ struct Bounds {
 
 /// Target, decision variables' bounds, objective (8) and constraints of section II.
 struct TrajectoryProblem {
-  double target_altitude_m = 0.0;
+  double target_altitude_m = 0.0;  ///< geodetic; of an ellipse the perigee's, over the equator's radius
   double target_velocity_m_s = 0.0;
   double target_flight_path_angle_rad = 0.0;
+  std::optional<double> target_apogee_m;  ///< over the equator's radius: an ellipse, entered at its perigee
+  bool velocity_is_free = false;          ///< the target does not name it
+  std::optional<double> target_inclination_rad;
+  std::optional<double> target_node_rad;  ///< right ascension; the time of day of the lift-off meets it
   double velocity_reserve_m_s = 0.0;  ///< the trajectory shall be so much faster, for guidance to spend
   Bounds alpha_max_rad, t1_s, t3_s, t2_s, coast_s, launch_azimuth_rad;
+  std::array<Bounds, kMaxStages> earlier_coast_s{};
   double weight_altitude_1_m = 0.0;   ///< G1 of (8)
   double weight_velocity_s_m = 0.0;   ///< G2
   double weight_angle_1_rad = 0.0;    ///< G3
+  double weight_inclination_1_rad = 0.0;
   double axial_load_limit_g = 12.0;
   double lateral_load_limit_g = 1.5;
   double alpha_limit_rad = 0.0;
@@ -78,6 +92,7 @@ struct Reference {
   TrajectoryProblem problem;
   FlightProgram program;
   double last_ignition_s = 0.0;  ///< timer since lift-off of the last stage
+  std::array<double, kMaxStages> earlier_ignition_s{};  ///< and of the others that have one
   Orbit orbit;                   ///< reached, by the optimiser's own simulation
   std::vector<ConstraintMargin> constraints;
   std::string engine;            ///< version that found it

@@ -11,11 +11,19 @@ namespace dispersa {
 
 namespace {
 
-// One unknown of the refinement.
+// One unknown of the refinement: where it is in a program, and its bounds in a problem.
 struct Freedom {
   double FlightProgram::*variable;
   Bounds TrajectoryProblem::*bounds;
   double scale;
+  std::size_t earlier_coast = 0;  ///< or the coast before this stage
+
+  double& Of(FlightProgram& program) const {
+    return earlier_coast > 0 ? program.earlier_coast_s[earlier_coast] : program.*variable;
+  }
+  const Bounds& BoundsOf(const TrajectoryProblem& problem) const {
+    return earlier_coast > 0 ? problem.earlier_coast_s[earlier_coast] : problem.*bounds;
+  }
 };
 
 constexpr Freedom kAlphaMax = {&FlightProgram::alpha_max_rad, &TrajectoryProblem::alpha_max_rad,
@@ -23,6 +31,17 @@ constexpr Freedom kAlphaMax = {&FlightProgram::alpha_max_rad, &TrajectoryProblem
 constexpr Freedom kCoast = {&FlightProgram::coast_s, &TrajectoryProblem::coast_s, 1.0};
 constexpr Freedom kAzimuth = {&FlightProgram::launch_azimuth_rad, &TrajectoryProblem::launch_azimuth_rad,
                               0.1 * kRadPerDeg};
+constexpr Freedom kTurnEnd = {&FlightProgram::t2_s, &TrajectoryProblem::t2_s, 1.0};
+
+// Three conditions have three unknowns. An inclination beside a speed is a fourth: the earlier coasts serve it, or
+// where there are none the end of the pitch-over, which spends a little more or less on the way.
+std::vector<Freedom> FreedomsOf(const AscentModel& model, const TrajectoryProblem& problem) {
+  std::vector<Freedom> freedoms = {kAlphaMax, kCoast, kAzimuth};
+  if (!problem.target_inclination_rad || problem.velocity_is_free) return freedoms;
+  for (const std::size_t stage : EarlierCoasts(model.vehicle)) freedoms.push_back({nullptr, nullptr, 1.0, stage});
+  if (freedoms.size() == 3) freedoms.push_back(kTurnEnd);
+  return freedoms;
+}
 // Forward differences over this fraction of a scale: the ascent's rounding and its curvature both spoil about
 // 1e-5 of a derivative, which costs Newton's method nothing.
 constexpr double kDifference = 1e-5;
@@ -38,7 +57,7 @@ LeastSquaresResult Solve(const AscentModel& model, const TrajectoryProblem& prob
   std::vector<double> start;
   for (std::size_t i = 0; i < freedoms.size(); ++i) {
     const Freedom& freedom = freedoms[i];
-    const Bounds& bounds = problem.*freedom.bounds;
+    const Bounds& bounds = freedom.BoundsOf(problem);
     // Equal bounds freeze a variable.
     if (!(bounds.low < bounds.high)) continue;
     Unknown unknown;
@@ -50,8 +69,10 @@ LeastSquaresResult Solve(const AscentModel& model, const TrajectoryProblem& prob
     least_squares.unknowns.push_back(unknown);
     free.push_back(freedom);
     index.push_back(i);
-    start.push_back(program->*freedom.variable);
+    start.push_back(freedom.Of(*program));
   }
+  const bool speed = with_speed && !problem.velocity_is_free;
+  const bool plane = with_speed && problem.target_inclination_rad.has_value();
   const auto residuals = [&](const AscentResult& flown) {
     std::vector<double> values(least_squares.residual_scales.size(),
                                std::numeric_limits<double>::quiet_NaN());
@@ -59,17 +80,20 @@ LeastSquaresResult Solve(const AscentModel& model, const TrajectoryProblem& prob
     const OrbitErrors errors = ErrorsOf(problem, flown.orbit);
     values[0] = errors.altitude_m;
     values[1] = errors.flight_path_angle_rad;
-    if (with_speed) values[2] = errors.velocity_m_s;
+    std::size_t next = 2;
+    if (speed) values[next++] = errors.velocity_m_s;
+    if (plane) values[next] = errors.inclination_rad;
     return values;
   };
   const AscentOptions ascent_options = AscentOptionsOf(problem, options.steps);
   const auto program_at = [&](const std::vector<double>& unknowns) {
     FlightProgram trial = *program;
-    for (std::size_t i = 0; i < free.size(); ++i) trial.*free[i].variable = unknowns[i];
+    for (std::size_t i = 0; i < free.size(); ++i) free[i].Of(trial) = unknowns[i];
     return trial;
   };
   least_squares.residual_scales = {options.tolerance.altitude_m, options.tolerance.flight_path_angle_rad};
-  if (with_speed) least_squares.residual_scales.push_back(options.tolerance.velocity_m_s);
+  if (speed) least_squares.residual_scales.push_back(options.tolerance.velocity_m_s);
+  if (plane) least_squares.residual_scales.push_back(options.tolerance.inclination_rad);
   // Of every point that is tried; one of them is the end.
   std::vector<std::pair<std::vector<double>, AscentResult>> tried;
   least_squares.residuals = [&](const std::vector<double>& unknowns) {
@@ -112,7 +136,7 @@ LeastSquaresResult Solve(const AscentModel& model, const TrajectoryProblem& prob
 LeastSquaresResult RefineProgram(const AscentModel& model, const TrajectoryProblem& problem,
                                  const TrajectoryOptions& options, FlightProgram* program,
                                  AscentResult* ascent) {
-  return Solve(model, problem, options, {kAlphaMax, kCoast, kAzimuth}, true, program, ascent);
+  return Solve(model, problem, options, FreedomsOf(model, problem), true, program, ascent);
 }
 
 LeastSquaresResult RefineAltitudeAndAngle(const AscentModel& model, const TrajectoryProblem& problem,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <iterator>
 #include <optional>
 
 #include "core/math/constants.h"
@@ -27,6 +28,7 @@ std::string HeldText(const TrajectoryProblem& problem, const FlightProgram& prog
       {"alpha_max", program.alpha_max_rad, problem.alpha_max_rad, kRadPerDeg, "deg"},
       {"coast", program.coast_s, problem.coast_s, 1.0, "s"},
       {"launch_azimuth", program.launch_azimuth_rad, problem.launch_azimuth_rad, kRadPerDeg, "deg"}};
+  if (held >= std::size(variables)) return " an earlier coast, or t2, is at an end of its bounds.";
   const Variable& v = variables[held];
   const bool upper = v.value - v.bounds.low > v.bounds.high - v.value;
   return fmt::format(" {} is at the {} end of its bounds ({:.6g} {}).", v.name, upper ? "upper" : "lower",
@@ -77,6 +79,7 @@ std::string CauseText(const AscentModel& model, const TrajectoryProblem& problem
     for (const std::size_t held : fast.held)
       text += " Bound: for altitude and angle" + HeldText(problem, fast.program, held);
   }
+  if (problem.velocity_is_free) return text;
   const double asked = AimedVelocity(problem);
   if (fast.velocity_m_s < asked)
     text += fmt::format(
@@ -104,6 +107,7 @@ std::string DescribeShortfall(const AscentModel& model, const TrajectoryProblem&
   std::string text = fmt::format(
       "The target is out of reach: the best program ends {:+.3f} km, {:+.3f} m/s and {:+.4f} deg from it.",
       e.altitude_m * 1e-3, e.velocity_m_s, Deg(e.flight_path_angle_rad));
+  if (problem.target_inclination_rad) text += fmt::format(" Its inclination is off by {:+.4f} deg.", Deg(e.inclination_rad));
   const std::size_t before = text.size();
   for (const ConstraintMargin& c : result.reference.constraints)
     if (c.enforced && c.margin < 0.0)

@@ -298,10 +298,12 @@ class Tuner {
       // Roll neither bends nor diverges: the nominal plant stands for all.
       const std::vector<Axis> axes =
           frequency_factors.size() > 1 ? std::vector{kPitch, kYaw, kRoll} : std::vector{kPitch, kYaw};
-      for (const Axis axis : axes)
+      for (const Axis axis : axes) {
+        if (axis == kRoll && !plant.stacks[stage].layout.rolls) continue;  // thrusters hold it
         held_[stage].push_back({sample.since_ignition_s, axis, gates,
                                 LoopTable(LineariseAxis(plant, sample, axis, all), campaign_.autopilot.tick_s,
                                           plant.stacks[stage].gimbal.delay_ticks)});
+      }
     }
   }
 

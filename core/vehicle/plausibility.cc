@@ -163,7 +163,10 @@ constexpr Check kStageChecks[] = {
      kAnything,
      {0.0, 1.0},
      "the hinges are inside the base",
-     [](const Subject& s) { return s.stage().gimbal.radius_m / (0.5 * s.stage().diameter_m); }},
+     [](const Subject& s) {
+       if (!s.stage().gimbal.nozzles.empty()) return kNothing;
+       return s.stage().gimbal.radius_m / (0.5 * s.stage().diameter_m);
+     }},
 };
 
 constexpr Check kNozzleChecks[] = {

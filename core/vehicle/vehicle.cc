@@ -99,7 +99,9 @@ void CheckStage(const Vehicle& vehicle, std::size_t i, Checker& check) {
   check.Positive(gimbal.rate_limit_rad_s, path + ".gimbal.rate_limit_deg_s");
   check.Positive(gimbal.bandwidth_rad_s, path + ".gimbal.bandwidth_rad_s");
   check.Positive(gimbal.damping_ratio, path + ".gimbal.damping_ratio");
-  check.Positive(gimbal.radius_m, path + ".gimbal.radius_m");
+  if (gimbal.nozzles.empty()) check.Positive(gimbal.radius_m, path + ".gimbal.radius_m");
+  for (const VehicleProblem& problem : NozzleProblems(gimbal, path + ".gimbal"))
+    check.Require(false, problem.path, problem.message, problem.allowed);
   check.Require(gimbal.delay_ticks >= 0 && gimbal.delay_ticks <= 50, path + ".gimbal.delay_ticks",
                 "is out of range", "0 to 50");
   const auto below_limit = [&](double angle_rad, const char* key) {
@@ -122,9 +124,6 @@ void CheckStage(const Vehicle& vehicle, std::size_t i, Checker& check) {
   check.Require(first == (stage.ignition == IgnitionTrigger::kLiftOff), path + ".ignition.trigger",
                 first ? "the first stage does not ignite at lift-off" : "only the first stage ignites at lift-off",
                 first ? "lift_off" : "burnout_detection or timer");
-  check.Require(stage.ignition != IgnitionTrigger::kTimer || i + 1 == vehicle.stages.size(),
-                path + ".ignition.trigger", "only the last stage ignites on the timer",
-                "burnout_detection");
   check.NotNegative(stage.ignition_delay_s, path + ".ignition.delay_s");
   check.NotNegative(stage.separation_delay_s, path + ".separation_delay_s");
 }
@@ -195,6 +194,11 @@ std::vector<VehicleProblem> Problems(const Vehicle& vehicle) {
     check.Positive(rcs.minimum_on_time_s, "reaction_control.minimum_on_time_s");
   }
   std::vector<VehicleProblem> problems = check.Take();
+  for (std::size_t i = 0; problems.empty() && i < count; ++i)
+    if (!(rcs.thrust_n > 0.0) && !BuildNozzleLayout(vehicle.stages[i].gimbal).rolls)
+      problems.push_back({"stages[" + std::to_string(i) + "].gimbal.nozzles",
+                          "cannot turn the vehicle in roll, and there is no reaction control that could",
+                          "reaction_control, or nozzles that command roll"});
   if (problems.empty() && vehicle.structure_beam) problems = BeamProblems(vehicle);
   return problems;
 }

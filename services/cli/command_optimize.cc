@@ -14,7 +14,6 @@
 #include "core/campaign_yaml/load.h"
 #include "core/math/constants.h"
 #include "core/report/output_file.h"
-#include "core/report/paper_table2.h"
 #include "core/report/trajectory_figures.h"
 #include "core/report/trajectory_page.h"
 #include "core/trajectory/optimize.h"
@@ -54,11 +53,16 @@ nlohmann::ordered_json ResultJson(const OptimizationResult& result, const std::s
            {{"altitude_km", JsonNumber(reference.orbit.altitude_m * 1e-3)},
             {"velocity_m_s", JsonNumber(reference.orbit.velocity_m_s)},
             {"flight_path_angle_deg", JsonNumber(reference.orbit.flight_path_angle_rad * kDegPerRad)},
-            {"inclination_deg", JsonNumber(reference.orbit.inclination_rad * kDegPerRad)}}},
+            {"inclination_deg", JsonNumber(reference.orbit.inclination_rad * kDegPerRad)},
+            {"node_longitude_deg", JsonNumber(reference.orbit.node_longitude_rad * kDegPerRad)}}},
+          {"lift_off_sidereal_deg", LiftOffSidereal(reference)
+                                        ? nlohmann::ordered_json(*LiftOffSidereal(reference) * kDegPerRad)
+                                        : nlohmann::ordered_json(nullptr)},
           {"errors",
            {{"altitude_km", JsonNumber(result.errors.altitude_m * 1e-3)},
             {"velocity_m_s", JsonNumber(result.errors.velocity_m_s)},
-            {"flight_path_angle_deg", JsonNumber(result.errors.flight_path_angle_rad * kDegPerRad)}}},
+            {"flight_path_angle_deg", JsonNumber(result.errors.flight_path_angle_rad * kDegPerRad)},
+            {"inclination_deg", JsonNumber(result.errors.inclination_rad * kDegPerRad)}}},
           {"variables",
            {{"alpha_max_deg", program.alpha_max_rad * kDegPerRad},
             {"t1_s", program.t1_s},
@@ -71,33 +75,16 @@ nlohmann::ordered_json ResultJson(const OptimizationResult& result, const std::s
           {"evaluations", reference.evaluations}};
 }
 
-// Table 2; the paper's column only beside the paper's target.
 void PrintInjection(const OptimizationResult& result, const std::optional<OrbitErrors>& flown) {
-  const Reference& reference = result.reference;
-  const TrajectoryProblem& problem = reference.problem;
-  const bool paper = IsPaperTarget(problem);
-  fmt::print("{:<22}{:>12}", "injection", "desired");
-  if (paper) fmt::print("{:>14}{:>12}", "paper", "its error");
-  fmt::print("{:>16}{:>12}{:>14}", "reached", "error", "half the step");
+  fmt::print("{:<26}{:>12}{:>16}{:>12}{:>14}", "injection", "desired", "reached", "error", "half the step");
   fmt::print("{}\n", flown ? fmt::format("{:>14}", "closed loop") : "");
-  const auto row = [&](const char* name, double desired, double published, double reached, double error,
-                       double halved, double arrived) {
-    fmt::print("{:<22}{:>12.6g}", name, desired);
-    if (paper) fmt::print("{:>14.7f}{:>+12.2g}", published, published - desired);
+  for (const InjectionRow& row : InjectionRows(result, flown)) {
     // Rounded to what is shown, and never a negative zero.
-    fmt::print("{:>16.7f}{:>+12.2g}{:>+14.2g}", std::round(reached * 1e7) / 1e7 + 0.0, error, halved);
-    fmt::print("{}\n", flown ? fmt::format("{:>+14.2g}", arrived) : "");
-  };
-  const OrbitErrors& halved = result.halved_step_errors;
-  const OrbitErrors arrived = flown.value_or(OrbitErrors{});
-  row("altitude, km", problem.target_altitude_m * 1e-3, kPaperHeight_km, reference.orbit.altitude_m * 1e-3,
-      result.errors.altitude_m * 1e-3, halved.altitude_m * 1e-3, arrived.altitude_m * 1e-3);
-  row("velocity, m/s", AimedVelocity(problem), kPaperVelocity_m_s, reference.orbit.velocity_m_s,
-      result.errors.velocity_m_s, halved.velocity_m_s, arrived.velocity_m_s);
-  row("injection angle, deg", problem.target_flight_path_angle_rad * kDegPerRad, kPaperAngle_deg,
-      reference.orbit.flight_path_angle_rad * kDegPerRad, result.errors.flight_path_angle_rad * kDegPerRad,
-      halved.flight_path_angle_rad * kDegPerRad, arrived.flight_path_angle_rad * kDegPerRad);
-  fmt::print("inclination {:.4f} deg\n", reference.orbit.inclination_rad * kDegPerRad);
+    fmt::print("{:<26}{:>12.6g}{:>16.7f}{:>+12.2g}{:>+14.2g}", row.name, row.desired,
+               std::round(row.reached * 1e7) / 1e7 + 0.0, row.error, row.halved);
+    fmt::print("{}\n", row.flown ? fmt::format("{:>+14.2g}", *row.flown) : "");
+  }
+  fmt::print("{}\n", OrbitSentence(result.reference));
   if (flown) fmt::print("closed loop: errors of the nominal flight under the campaign's autopilot\n");
 }
 
@@ -107,10 +94,14 @@ void PrintText(const OptimizationResult& result, const std::optional<OrbitErrors
   PrintInjection(result, flown);
   fmt::print(
       "\nflight program: alpha_max {:.6f} deg, t1 {:.4f} s, t3 {:.4f} s, t2 {:.4f} s, coast {:.4f} s, "
-      "launch azimuth {:.6f} deg\n\n",
+      "launch azimuth {:.6f} deg\n",
       program.alpha_max_rad * kDegPerRad, program.t1_s, program.t3_s, program.t2_s, program.coast_s,
       program.launch_azimuth_rad * kDegPerRad);
-  fmt::print("{:<28}{:>14}{:>14}{:>14}\n", "constraint", "value", "limit", "margin");
+  for (std::size_t i = 1; i < program.earlier_coast_s.size(); ++i)
+    if (reference.earlier_ignition_s[i] > 0.0)
+      fmt::print("coast before stage {}: {:.4f} s, its ignition at {:.4f} s\n", i + 1, program.earlier_coast_s[i],
+                 reference.earlier_ignition_s[i]);
+  fmt::print("\n{:<28}{:>14}{:>14}{:>14}\n", "constraint", "value", "limit", "margin");
   for (const ConstraintMargin& constraint : reference.constraints) {
     if (constraint.enforced) {
       fmt::print("{:<28}{:>14.6g}{:>14.6g}{:>14.6g}\n", constraint.name, constraint.value, constraint.limit,

@@ -88,7 +88,8 @@ std::optional<OrbitErrors> FlyReference(const OptimizationInput& input, const Re
   if (result.outcome != Outcome::kCompleted) return std::nullopt;
   const auto metric = [&](const char* name) { return result.metrics[MetricColumn(name)]; };
   return OrbitErrors{metric("injection_altitude_error_km") * 1e3, metric("injection_velocity_error_m_s"),
-                     metric("injection_flight_path_angle_error_deg") * kRadPerDeg};
+                     metric("injection_flight_path_angle_error_deg") * kRadPerDeg,
+                     metric("inclination_error_deg") * kRadPerDeg};
 }
 
 std::vector<SeedRow> RunSeedStudy(const OptimizationInput& input, int seeds, const TrajectoryOptions& options,

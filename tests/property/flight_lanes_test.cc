@@ -18,7 +18,8 @@ namespace dispersa {
 namespace {
 
 // The shipped definition with all that a file may give it besides.
-FlightDefinition Definition(const std::string& autopilot, bool with_winds, bool guided = false) {
+FlightDefinition Definition(const std::string& law, bool with_winds, bool guided = false) {
+  const std::string autopilot = law.starts_with("listed_") ? law.substr(7) : law;
   FlightDefinition definition =
       Slv4Definition(DISPERSA_CAMPAIGNS, autopilot, guided ? "slv4_500km_reserve" : "slv4_500km");
   definition.guidance.closed_loop = guided;
@@ -40,6 +41,14 @@ FlightDefinition Definition(const std::string& autopilot, bool with_winds, bool 
     stages[3].jettisoned = {{"tower", 15.0, 0.1, 0.5, 0.2, 0.1, JettisonTrigger::kAtAltitude, 60e3},
                             {"fairing", 50.0, 0.2, 2.5, 1.0, 0.97, JettisonTrigger::kAtHeatFlux, 1135.0}};
     definition.jettison_s = {20.0, 85.0, 180.0};
+  }
+  if (law == "listed_pid_aac") {  // one nozzle, three, and crosses among them
+    std::vector<Stage>& stages = definition.vehicle.stages;
+    stages[0].gimbal.nozzles = {{"main", 0.0, 0.0, 1.0, {90.0 * kRadPerDeg, 180.0 * kRadPerDeg}, 5.0 * kRadPerDeg}};
+    const double r = stages[1].gimbal.radius_m;
+    for (const double at : {0.0, 120.0 * kRadPerDeg, 240.0 * kRadPerDeg})
+      stages[1].gimbal.nozzles.push_back({"at " + std::to_string(at), r * std::cos(at), r * std::sin(at), 1.0 / 3.0,
+                                          {at + 90.0 * kRadPerDeg}, 0.0});
   }
   if (autopilot == "flexible")
     definition.vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml");
@@ -287,7 +296,7 @@ TEST_P(FlightLanes, AreTheFlightsAlone) {
 }
 INSTANTIATE_TEST_SUITE_P(Laws, FlightLanes,
                          testing::Values("adaptive_fuzzy", "frozen_fuzzy", "pd", "pid", "pd_aac", "pid_aac",
-                                         "flexible", "guided_adaptive_fuzzy", "guided_pid_aac"),
+                                         "flexible", "guided_adaptive_fuzzy", "guided_pid_aac", "listed_pid_aac"),
                          [](const auto& law) { return std::string(law.param); });
 
 }  // namespace

@@ -124,6 +124,62 @@ TEST(CampaignYamlReference, KeepsEveryField) {
   EXPECT_EQ(read.attitude.launch_azimuth_rad, read.program.launch_azimuth_rad);
 }
 
+TEST(CampaignYamlReference, KeepsWhatATargetAndCoastsHaveBesides) {
+  Reference original = RandomReference();
+  TrajectoryProblem& problem = original.problem;
+  problem.target_inclination_rad = 51.6 * kRadPerDeg;
+  problem.target_node_rad = 200.0 * kRadPerDeg;
+  problem.velocity_is_free = true;
+  problem.weight_inclination_1_rad = 10.0 * kDegPerRad;
+  problem.earlier_coast_s[2] = {5.0, 90.0};
+  problem.launch_azimuth_rad = {350.0 * kRadPerDeg, 370.0 * kRadPerDeg};
+  original.program.earlier_coast_s[2] = 33.25;
+  original.earlier_ignition_s[2] = 222.5;
+  original.orbit.inclination_rad = 51.5 * kRadPerDeg;
+  original.orbit.node_longitude_rad = 123.0 * kRadPerDeg;
+  const std::string text = WriteReference(original);
+  const Reference read = ReadReference(text, "reference.yaml");
+  EXPECT_EQ(WriteReference(read), text);
+  EXPECT_EQ(read.problem.target_inclination_rad, 51.6 * kRadPerDeg);
+  EXPECT_EQ(read.problem.target_node_rad, 200.0 * kRadPerDeg);
+  EXPECT_TRUE(read.problem.velocity_is_free);
+  EXPECT_EQ(read.problem.weight_inclination_1_rad, problem.weight_inclination_1_rad);
+  EXPECT_EQ(read.problem.earlier_coast_s[2].low, 5.0);
+  EXPECT_EQ(read.problem.earlier_coast_s[2].high, 90.0);
+  EXPECT_EQ(read.problem.earlier_coast_s[1].high, 0.0);
+  EXPECT_EQ(read.problem.launch_azimuth_rad.high, 370.0 * kRadPerDeg);
+  EXPECT_EQ(read.program.earlier_coast_s[2], 33.25);
+  EXPECT_EQ(read.earlier_ignition_s[2], 222.5);
+  EXPECT_EQ(read.orbit.node_longitude_rad, 123.0 * kRadPerDeg);
+  // Without any of it there is nothing of it in the file.
+  const std::string plain = WriteReference(RandomReference());
+  for (const char* key : {"node", "perigee", "inclination_per", "stage"}) EXPECT_EQ(plain.find(key), std::string::npos) << key;
+}
+
+TEST(CampaignYamlReference, AzimuthBoundsThatFallGoThroughNorth) {
+  std::string text = ReadWholeFile(DISPERSA_TEST_DATA "/yaml/reference.yaml");
+  const std::string from = "launch_azimuth_deg: [90, 170]";
+  text.replace(text.find(from), from.size(), "launch_azimuth_deg: [350, 10]");
+  const Reference read = ReadReference(text, "reference.yaml");
+  EXPECT_EQ(read.problem.launch_azimuth_rad.low, 350.0 * kRadPerDeg);
+  EXPECT_NEAR(read.problem.launch_azimuth_rad.high, 370.0 * kRadPerDeg, 1e-15);
+}
+
+// v² = mu (2/r - 1/a).
+TEST(CampaignYamlReference, AnEllipseIsEnteredAtItsPerigee) {
+  Reference original = RandomReference();
+  original.problem.target_altitude_m = 200e3;
+  original.problem.target_apogee_m = 800e3;
+  original.problem.target_flight_path_angle_rad = 0.0;
+  const Reference read = ReadReference(WriteReference(original), "reference.yaml");
+  const double mu = 3.986004418e14, radius = 6378137.0;
+  EXPECT_EQ(read.problem.target_altitude_m, 200e3);
+  EXPECT_EQ(read.problem.target_apogee_m, 800e3);
+  EXPECT_EQ(read.problem.target_flight_path_angle_rad, 0.0);
+  EXPECT_NEAR(read.problem.target_velocity_m_s,
+              std::sqrt(mu * (2.0 / (radius + 200e3) - 1.0 / (radius + 500e3))), 1e-6);
+}
+
 // 90 degrees at lift-off is exactly the constant that the loader makes of it.
 TEST(CampaignYamlReference, AnglesBecomeRadiansOnce) {
   const Reference reference = LoadReference(DISPERSA_TEST_DATA "/yaml/reference.yaml");

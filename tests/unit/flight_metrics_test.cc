@@ -60,9 +60,9 @@ class MetricsRecorder {
     }
     const AxisTelemetry& t = s.gimbal.telemetry[kPitch];
     const double p11 = model_.autopilot().laws[kPitch].stages[static_cast<std::size_t>(s.stack)].p11;
-    metrics_.AddPowered(true, kTick_s, s.time_s, {-s.error.angle_rad.x(), pitch, -s.error.angle_rad.z()}, drives,
-                        s.command_rad.data(), s.limit_rad,
+    metrics_.AddPowered(true, kTick_s, s.time_s, {-s.error.angle_rad.x(), pitch, -s.error.angle_rad.z()},
                         {t.v, t.v_rate_sign < 0.0 ? 1.0 : 0.0, p11, t.adaptation_norm * t.adaptation_norm});
+    metrics_.AddDeflections(true, s.time_s, drives, s.command_rad.data(), s.limit_rad);
     sums_.rules_fired = t.rules_fired;
     const double bottom_m = inputs_.gust_altitude_m;
     const double top_m = inputs_.gust_speed_m_s != 0.0 ? bottom_m + inputs_.gust_length_m : bottom_m;
@@ -524,6 +524,15 @@ TEST(ElementsOf, RetrogradeAndDescending) {
   const OrbitElements e = ElementsOf(earth, s.p_EoC_I, s.v_IC_I);
   EXPECT_NEAR(e.inclination_rad, 97.5 * kDeg, 1e-14);
   EXPECT_LT(e.flight_path_angle_rad, 0.0);
+}
+
+TEST(ElementsOf, TheNodeIsWhereTheOrbitGoesNorth) {
+  const Earth earth = Wgs84();
+  const Vector3 p(0.0, 7e6, 0.0);
+  EXPECT_NEAR(ElementsOf(earth, p, Vector3(-5e3, 0.0, 5e3)).ascending_node_rad, 90.0 * kDeg, 1e-15);
+  EXPECT_NEAR(ElementsOf(earth, p, Vector3(-5e3, 0.0, -5e3)).ascending_node_rad, 270.0 * kDeg, 1e-15);
+  EXPECT_NEAR(ElementsOf(earth, p, Vector3(5e3, 0.0, 5e3)).ascending_node_rad, 90.0 * kDeg, 1e-15);
+  EXPECT_EQ(ElementsOf(earth, p, Vector3(-7e3, 0.0, 0.0)).ascending_node_rad, 0.0);
 }
 
 TEST(OutcomeNames, ReadBackAsTheyAreWritten) {

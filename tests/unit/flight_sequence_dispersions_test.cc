@@ -46,7 +46,7 @@ TEST(Delays, MoveWhatTheyTriggerAndNothingBefore) {
   const std::vector<MotorBurn> burns = {BuildBurn(vehicle.stages[0], 1.0, 1.0),
                                         BuildBurn(vehicle.stages[1], 1.0, 1.0)};
   const auto nominal = BuildTimeline(vehicle, burns, 0.01, 0.0),
-             late = BuildTimeline(vehicle, burns, 0.01, 0.0, inputs);
+             late = BuildTimeline(vehicle, burns, 0.01, 0.0, {}, inputs);
   EXPECT_EQ(late[0].burnout_s, nominal[0].burnout_s);
   EXPECT_NEAR(late[0].separation_s, nominal[0].separation_s + 0.3, 1e-12);
   EXPECT_NEAR(late[1].ignition_s, nominal[1].ignition_s + 1.0, 1e-12);
@@ -54,12 +54,12 @@ TEST(Delays, MoveWhatTheyTriggerAndNothingBefore) {
   // Nothing happens before what triggers it.
   inputs.separation_delay_s[0] = -9.0;
   inputs.ignition_delay_s[1] = -9.0;
-  const auto early = BuildTimeline(vehicle, burns, 0.01, 0.0, inputs);
+  const auto early = BuildTimeline(vehicle, burns, 0.01, 0.0, {}, inputs);
   EXPECT_EQ(early[0].separation_s, 40.0);
   EXPECT_EQ(early[1].ignition_s, 40.0);
   // The first stage ignites when it ignites.
   inputs.ignition_delay_s[0] = 3.0;
-  EXPECT_EQ(BuildTimeline(vehicle, burns, 0.01, 0.0, inputs)[0].ignition_s, 0.0);
+  EXPECT_EQ(BuildTimeline(vehicle, burns, 0.01, 0.0, {}, inputs)[0].ignition_s, 0.0);
 }
 
 TEST(Delays, OfATimerAddToIt) {
@@ -68,7 +68,7 @@ TEST(Delays, OfATimerAddToIt) {
   const Vehicle vehicle = SampleVehicle();
   const std::vector<MotorBurn> burns = {BuildBurn(vehicle.stages[0], 1.0, 1.0),
                                         BuildBurn(vehicle.stages[1], 1.0, 1.0)};
-  EXPECT_EQ(BuildTimeline(vehicle, burns, 0.01, 60.0, inputs)[1].ignition_s, 60.25);
+  EXPECT_EQ(BuildTimeline(vehicle, burns, 0.01, 60.0, {}, inputs)[1].ignition_s, 60.25);
 }
 
 // Until it ignites the vehicle falls freely: it is slower by gravitation times the delay, and has gone on

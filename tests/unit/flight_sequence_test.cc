@@ -53,6 +53,23 @@ TEST(BuildTimeline, TimerIsExactAndNeverBeforeSeparation) {
   EXPECT_DOUBLE_EQ(Timeline(SampleVehicle(), 1.0, 10.0)[1].ignition_s, 40.5);
 }
 
+// The sample's second stage between its first and a third that is like it.
+TEST(BuildTimeline, EveryStageButTheFirstMayHaveATimer) {
+  Vehicle vehicle = SampleVehicle();
+  vehicle.stages.push_back(vehicle.stages[1]);
+  std::vector<MotorBurn> burns;
+  for (const Stage& stage : vehicle.stages) burns.push_back(BuildBurn(stage, 1.0, 1.0));
+  const auto t = BuildTimeline(vehicle, burns, kTick_s, 200.0, {0.0, 70.00314});
+  EXPECT_EQ(t[1].ignition_s, 70.00314);
+  EXPECT_DOUBLE_EQ(t[1].burnout_s, 90.00314);
+  EXPECT_NEAR(t[1].separation_s, 90.01 + 0.5, 1e-12);
+  EXPECT_EQ(t[2].ignition_s, 200.0);
+  // Neither before the stage below has gone.
+  const auto early = BuildTimeline(vehicle, burns, kTick_s, 50.0, {0.0, 10.0});
+  EXPECT_DOUBLE_EQ(early[1].ignition_s, 40.5);
+  EXPECT_DOUBLE_EQ(early[2].ignition_s, 61.0);
+}
+
 TEST(BuildTimeline, HoldDownIgnitesBeforeLiftOff) {
   Vehicle vehicle = SampleVehicle();
   vehicle.hold_down_s = 1.5;

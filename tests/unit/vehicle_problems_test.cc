@@ -159,9 +159,20 @@ INSTANTIATE_TEST_SUITE_P(
              "stages[0].gimbal.delay_ticks: is out of range | 0 to 50"}},
         Mistake{"FirstStageOnATimer",
                 [](Vehicle& v) { v.stages[0].ignition = IgnitionTrigger::kTimer; },
-                {"stages[0].ignition.trigger: the first stage does not ignite at lift-off | lift_off",
-                 "stages[0].ignition.trigger: only the last stage ignites on the timer | "
-                 "burnout_detection"}},
+                {"stages[0].ignition.trigger: the first stage does not ignite at lift-off | lift_off"}},
+        Mistake{"NozzlesOfWhichOneTurnsNothingInYaw",
+                [](Vehicle& v) { v.stages[1].gimbal.nozzles = {{"main", 0.0, 0.0, 1.0, {0.5 * kPi}, 0.0}}; },
+                {"stages[1].gimbal.nozzles: do not turn the vehicle in yaw | hinges by which pitch and yaw are "
+                 "commanded, as turns_towards_deg: [90, 180] of one nozzle"}},
+        Mistake{"NothingThatTurnsInRoll",
+                [](Vehicle& v) {
+                  v.stages.resize(1);
+                  v.aerodynamics.resize(1);
+                  v.reaction_control = {};
+                  v.stages[0].gimbal.nozzles = {{"main", 0.0, 0.0, 1.0, {0.5 * kPi, kPi}, 0.0}};
+                },
+                {"stages[0].gimbal.nozzles: cannot turn the vehicle in roll, and there is no reaction control that "
+                 "could | reaction_control, or nozzles that command roll"}},
         Mistake{"SecondStageAtLiftOff",
                 [](Vehicle& v) { v.stages[1].ignition = IgnitionTrigger::kLiftOff; },
                 {"stages[1].ignition.trigger: only the first stage ignites at lift-off | burnout_detection "

@@ -221,7 +221,7 @@ TEST(BendingFlight, TheStepConvergesToCvode) {
   Judge judge{LauncherModel(flight.plant), flight.phase};
   std::array<double, kLauncherSize> exact = flight.y, tolerances;
   tolerances.fill(1e-14);
-  Integrator cvode(Scheme::kCvode, kLauncherSize, &Judge::Rhs, &judge, tolerances.data());
+  Integrator cvode(Scheme::kCvode, kBentLauncherSize, &Judge::Rhs, &judge, tolerances.data());
   // Its tolerance is of the change within a call.
   for (int i = 0; i < 100; ++i) ASSERT_TRUE(cvode.Advance(20.0 + 0.01 * i, 20.0 + 0.01 * (i + 1), 1, exact.data()));
 

@@ -1,0 +1,170 @@
+#include "core/vehicle/nozzle_layout.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "core/math/constants.h"
+#include "core/math/functions.h"
+#include "core/vehicle/vehicle.h"
+
+namespace dispersa {
+
+namespace {
+
+// What a matrix of rank 3 or 2 has at least, its rows scaled: 1 where axes are commanded by drives of their own.
+constexpr double kIndependence = 1e-6;
+constexpr double kOnAxis_m = 1e-3;
+
+using Effect = Eigen::Matrix<double, kSteeredAxes, kDrives>;
+
+struct Placed {
+  NozzleLayout layout;
+  Effect effect = Effect::Zero();  // G: of roll in m, of pitch and yaw without unit
+  Eigen::Matrix<double, kDrives, 1> ease = Eigen::Matrix<double, kDrives, 1>::Zero();  // W^-1
+};
+
+// The cross as a list: the numbering of core/README.md.
+std::vector<Nozzle> Cross(double radius_m) {
+  constexpr double kTowardsZ = 0.5 * kPi, kTowardsMinusY = kPi;
+  return {{"right", radius_m, 0.0, 0.25, {kTowardsZ}, 0.0},
+          {"left", -radius_m, 0.0, 0.25, {kTowardsZ}, 0.0},
+          {"bottom", 0.0, radius_m, 0.25, {kTowardsMinusY}, 0.0},
+          {"top", 0.0, -radius_m, 0.25, {kTowardsMinusY}, 0.0}};
+}
+
+Placed Place(const Gimbal& gimbal) {
+  const std::vector<Nozzle> nozzles = gimbal.nozzles.empty() ? Cross(gimbal.radius_m) : gimbal.nozzles;
+  Placed placed;
+  NozzleLayout& o = placed.layout;
+  o.nozzles = static_cast<int>(nozzles.size());
+  double radius2_m2 = 0.0;
+  for (int k = 0; k < o.nozzles; ++k) {
+    const Nozzle& nozzle = nozzles[static_cast<std::size_t>(k)];
+    o.share[k] = nozzle.thrust_share;
+    o.y_m[k] = nozzle.y_m;
+    o.z_m[k] = nozzle.z_m;
+    o.limit_rad[k] = nozzle.limit_rad > 0.0 ? nozzle.limit_rad : gimbal.limit_rad;
+    radius2_m2 += nozzle.thrust_share * (nozzle.y_m * nozzle.y_m + nozzle.z_m * nozzle.z_m);
+    for (std::size_t hinge = 0; hinge < nozzle.towards_rad.size(); ++hinge) {
+      const int drive = k + static_cast<int>(hinge) * kNozzles;
+      const SinCos towards = SineCosine(nozzle.towards_rad[hinge]);
+      // A quarter turn's cosine is 6e-17; it is meant to be nothing.
+      const auto exact = [](double x) { return std::fabs(x) < 1e-15 ? 0.0 : x; };
+      o.there[drive] = 1.0;
+      o.towards_y[drive] = exact(towards.cos);
+      o.towards_z[drive] = exact(towards.sin);
+      const double y = o.towards_y[drive], z = o.towards_z[drive];
+      placed.effect.col(drive) =
+          nozzle.thrust_share * Eigen::Vector3d(nozzle.y_m * z - nozzle.z_m * y, z, -y);
+      const double ease = o.limit_rad[k] / gimbal.limit_rad;
+      placed.ease[drive] = ease * ease;
+    }
+  }
+  o.flow_radius_m = Sqrt(radius2_m2);
+  return placed;
+}
+
+// Determinant of G W^-1 G' with rows scaled to length 1; 0 where an axis has nothing.
+double Independence(const Placed& placed, int first_axis) {
+  Eigen::MatrixXd rows = placed.effect.bottomRows(kSteeredAxes - first_axis);
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+    const double length = Sqrt((rows.row(i).array().square() * placed.ease.transpose().array()).sum());
+    if (!(length > 0.0)) return 0.0;
+    rows.row(i) /= length;
+  }
+  const Eigen::MatrixXd product = rows * placed.ease.asDiagonal() * rows.transpose();
+  return product.determinant();
+}
+
+bool TurnsInRoll(const Placed& placed) { return placed.effect.row(0).cwiseAbs().maxCoeff() > 1e-9; }
+
+}  // namespace
+
+NozzleLayout BuildNozzleLayout(const Gimbal& gimbal) {
+  Placed placed = Place(gimbal);
+  NozzleLayout& o = placed.layout;
+  o.rolls = TurnsInRoll(placed);
+  const int first = o.rolls ? 0 : 1;  // without authority in roll, of pitch and yaw alone
+  const Eigen::MatrixXd effect = placed.effect.bottomRows(kSteeredAxes - first);
+  const Eigen::MatrixXd eased = placed.ease.asDiagonal() * effect.transpose();
+  const Eigen::MatrixXd product = effect * eased;
+  const Eigen::MatrixXd inverse = eased * product.inverse();
+  // Deflections over the nozzles' limits, at a command of the gimbal's limit.
+  const auto reach = [&](int axis) {
+    double most = 0.0;
+    for (int k = 0; k < o.nozzles; ++k) {
+      const double a = inverse(k, axis - first), b = inverse(k + kNozzles, axis - first);
+      most = std::max(most, Sqrt(a * a + b * b) * gimbal.limit_rad / o.limit_rad[k]);
+    }
+    return most;
+  };
+  double scale[kSteeredAxes] = {};
+  if (o.rolls) scale[0] = 1.0 / reach(0);
+  scale[1] = scale[2] = 1.0 / std::max(reach(1), reach(2));
+  // To 1e-12, so that what is meant to be 1 or 0 is: doubles about 6144 are so far apart.
+  const auto rounded = [](double x) { return (x + 0x1.8p12) - 0x1.8p12; };
+  for (int axis = first; axis < kSteeredAxes; ++axis) {
+    for (int drive = 0; drive < kDrives; ++drive) {
+      o.allocation[drive][axis] = rounded(scale[axis] * inverse(drive, axis - first));
+      o.felt[axis][drive] = placed.effect(axis, drive) / scale[axis];
+    }
+  }
+  o.pitch_share = scale[1];
+  o.roll_arm_m = scale[0];
+  return o;
+}
+
+std::vector<VehicleProblem> NozzleProblems(const Gimbal& gimbal, const std::string& path) {
+  std::vector<VehicleProblem> problems;
+  if (gimbal.nozzles.empty()) return problems;
+  const std::string list = path + ".nozzles";
+  double shares = 0.0, y_m = 0.0, z_m = 0.0;
+  for (std::size_t k = 0; k < gimbal.nozzles.size(); ++k) {
+    const Nozzle& nozzle = gimbal.nozzles[k];
+    const std::string item = list + "[" + std::to_string(k) + "]";
+    shares += nozzle.thrust_share;
+    y_m += nozzle.thrust_share * nozzle.y_m;
+    z_m += nozzle.thrust_share * nozzle.z_m;
+    if (nozzle.limit_rad > gimbal.limit_rad)
+      problems.push_back({item + ".limit_deg", "is beyond the limit_deg of its drives",
+                          "up to the gimbal's limit_deg"});
+    const bool has_two = nozzle.towards_rad.size() > 1;
+    const double between = has_two ? nozzle.towards_rad[1] - nozzle.towards_rad[0] : 0.0;
+    if (has_two && std::fabs(Cos(between)) > 1e-9)
+      problems.push_back({item + ".turns_towards_deg",
+                          "has hinges that are not at right angles, but " +
+                              std::to_string(between * kDegPerRad) + " deg apart",
+                          "one direction, or two that are 90 deg apart"});
+    for (std::size_t other = 0; other < k; ++other)
+      if (gimbal.nozzles[other].name == nozzle.name)
+        problems.push_back({item + ".name", "is that of another nozzle, " + nozzle.name, "a name of its own"});
+  }
+  // Shares and places are written with a few digits.
+  if (std::fabs(shares - 1.0) > 1e-6)
+    problems.push_back(
+        {list, "have shares of the thrust that sum to " + std::to_string(shares), "thrust_share that sum to 1"});
+  if (std::fabs(y_m) > kOnAxis_m || std::fabs(z_m) > kOnAxis_m)
+    problems.push_back({list,
+                        "push beside the axis: the mean of their places, by thrust_share, is y " +
+                            std::to_string(y_m) + " m, z " + std::to_string(z_m) + " m",
+                        "a mean on the axis, to 1 mm"});
+  if (!problems.empty()) return problems;
+
+  const Placed placed = Place(gimbal);
+  const std::string pitch_and_yaw = "hinges by which pitch and yaw are commanded, as turns_towards_deg: [90, 180] "
+                                    "of one nozzle";
+  for (int axis = 1; axis < kSteeredAxes; ++axis)
+    if (!(placed.effect.row(axis).cwiseAbs().maxCoeff() > 1e-9))
+      problems.push_back(
+          {list, std::string("do not turn the vehicle in ") + (axis == 1 ? "pitch" : "yaw"), pitch_and_yaw});
+  if (!problems.empty()) return problems;
+  if (Independence(placed, 1) < kIndependence)
+    problems.push_back({list, "cannot turn the vehicle in pitch and in yaw one without the other", pitch_and_yaw});
+  else if (TurnsInRoll(placed) && Independence(placed, 0) < kIndependence)
+    problems.push_back({list, "turn the vehicle in roll with every command of pitch or yaw, and cannot undo it",
+                        "hinges by which roll is commanded too, or none that turn the vehicle in roll"});
+  return problems;
+}
+
+}  // namespace dispersa
