@@ -23,14 +23,80 @@ LaunchSite DecodeSite(const InputNode& node, const std::string& path, ProblemLis
   return site;
 }
 
+// Times and thrusts of a curve, each problem at its own line of the table.
+ThrustCurve DecodeCurveTable(const InputNode& node, const std::string& path, ProblemList& problems) {
+  ThrustCurve curve;
+  const std::size_t before = problems.size();
+  std::string time_key, thrust_key;
+  {
+    MapReader map(node, path, problems);
+    curve.time_s = map.Quantities("time", kTime, kNonNegative, 2, kThrustCurveCorners, &time_key);
+    curve.thrust_n = map.Quantities("thrust", kForce, kNonNegative, 2, kThrustCurveCorners, &thrust_key);
+  }
+  if (node.file == nullptr || problems.size() > before) return {};
+  const auto path_of = [&](const std::string& key, std::size_t i) {
+    return (path.empty() ? key : path + "." + key) + "[" + std::to_string(i) + "]";
+  };
+  const std::vector<InputNode>& times = node.Find(time_key)->items;
+  if (curve.time_s.size() != curve.thrust_n.size()) {
+    AddProblem(problems, node, path,
+               "there are " + std::to_string(curve.time_s.size()) + " times and " +
+                   std::to_string(curve.thrust_n.size()) + " thrusts",
+               "one thrust for each time");
+    return {};
+  }
+  if (curve.time_s[0] != 0.0)
+    AddProblem(problems, times[0], path_of(time_key, 0), times[0].Describe() + " is not the time of ignition",
+               "0 as the first time");
+  for (std::size_t i = 1; i < times.size(); ++i)
+    if (!(curve.time_s[i] > curve.time_s[i - 1]))
+      AddProblem(problems, times[i], path_of(time_key, i),
+                 times[i].Describe() + " is not later than " + times[i - 1].Describe() + " before it",
+                 "times that increase");
+  if (curve.Greatest() == 0.0)
+    AddProblem(problems, *node.Find(thrust_key), path.empty() ? thrust_key : path + "." + thrust_key,
+               "the thrust is 0 at all times", "a thrust above 0 somewhere");
+  return problems.size() > before ? ThrustCurve{} : curve;
+}
+
+// In vacuum. Empty after a problem.
+ThrustCurve DecodeThrustCurve(const InputNode& node, const std::string& path, double exit_area_m2,
+                              ProblemList& problems) {
+  MapReader map(node, path, problems);
+  const bool is_in_vacuum = map.Choice<bool>("reference", {{"vacuum", true}, {"sea_level", false}});
+  const InputNode& table = map.Required("table", "a CSV file (time_s, thrust_n), an .eng file, or both columns");
+  const ThrustCurve curve =
+      DecodeCurveTable(table, table.file == node.file ? map.PathOf("table") : "", problems);
+  if (is_in_vacuum) return curve;
+  if (exit_area_m2 == 0.0)
+    AddProblem(problems, *node.Find("reference"), map.PathOf("reference"),
+               "the thrust in vacuum is that at sea level and p A_e, but the motor has no nozzle_exit_area_m2",
+               "nozzle_exit_area_m2 above 0, or reference: vacuum");
+  return InVacuum(curve, exit_area_m2);
+}
+
 Motor DecodeMotor(const InputNode& node, const std::string& path, ProblemList& problems) {
   MapReader map(node, path, problems);
   Motor motor;
-  motor.thrust_n = map.Quantity("thrust", kForce, kPositive);
-  motor.burning_time_s = map.Quantity("burning_time", kTime, kPositive);
-  motor.ignition_rise_s = map.Quantity("ignition_rise", kTime, kNonNegative, 0.0);
-  motor.tail_off_s = map.Quantity("tail_off", kTime, kNonNegative, 0.0);
   motor.nozzle_exit_area_m2 = map.Quantity("nozzle_exit_area", kArea, kNonNegative, 0.0);
+  if (const InputNode* curve = map.Optional("thrust_curve")) {
+    const std::pair<const char*, Dimension> contradicted[] = {
+        {"thrust", kForce}, {"burning_time", kTime}, {"ignition_rise", kTime}, {"tail_off", kTime}};
+    for (const auto& [stem, dimension] : contradicted) {
+      std::string key;
+      if (map.OptionalQuantity(stem, dimension, kAnyNumber, &key))
+        AddProblem(problems, *node.Find(key), map.PathOf(key),
+                   "'" + key + "' and 'thrust_curve' are both given, and the curve says it all",
+                   "either thrust_curve, or thrust_* with burning_time_* and ramps");
+    }
+    ThrustCurve found = DecodeThrustCurve(*curve, map.PathOf("thrust_curve"), motor.nozzle_exit_area_m2, problems);
+    if (!found.empty()) SetThrustCurve(std::move(found), motor);
+  } else {
+    motor.thrust_n = map.Quantity("thrust", kForce, kPositive);
+    motor.burning_time_s = map.Quantity("burning_time", kTime, kPositive);
+    motor.ignition_rise_s = map.Quantity("ignition_rise", kTime, kNonNegative, 0.0);
+    motor.tail_off_s = map.Quantity("tail_off", kTime, kNonNegative, 0.0);
+  }
   motor.published_mass_flow_kg_s = map.Quantity("published_mass_flow", kMassFlow, kNonNegative, 0.0);
   return motor;
 }

@@ -1,5 +1,6 @@
 #include "core/flight/flight_model.h"
 
+#include <algorithm>
 #include <cassert>
 
 #include "core/dynamics/aero_grid.h"
@@ -42,14 +43,17 @@ void AddBending(const Vehicle& vehicle, double tick_s, LauncherPlant& plant) {
 }
 
 StageControl BuildStageControl(const LauncherStack& stack) {
-  // The effectiveness changes slowly and smoothly: this many points follow it to a part in a thousand.
-  constexpr int kPoints = 33;
+  // Under constant thrust the effectiveness changes slowly and smoothly: 33 points follow it to a part in a
+  // thousand. With a thrust curve it follows the curve to a thousandth of the burn; ramps it does not know.
+  const int points = stack.burn.curve ? 1025 : 33;
   StageControl control;
   control.limit_rad = stack.gimbal.limit_rad;
-  for (int i = 0; i < kPoints; ++i) {
-    const double since = stack.burn.duration_s * i / (kPoints - 1);
+  for (int i = 0; i < points; ++i) {
+    const double since = stack.burn.duration_s * i / (points - 1);
     const MassProperties mass = stack.mass.At(stack.burn.Propellant(since));
-    const double thrust = stack.burn.vacuum_thrust_n;
+    const double level =
+        stack.burn.curve ? std::max(stack.burn.Fraction(since), kLeastThrustFraction) : 1.0;
+    const double thrust = stack.burn.vacuum_thrust_n * level;
     const double lever = stack.gimbal.pivot_station_m - mass.cg_station_m;
     control.pitch_effectiveness_1_s2.x.push_back(since);
     control.roll_effectiveness_1_s2.x.push_back(since);
@@ -216,7 +220,7 @@ LauncherPlant FlightModel::PlantFor(const FlightInputs& in, std::optional<std::u
     LauncherStack& stack = plant.stacks[i];
     const Stage& stage = definition_.vehicle.stages[i];
     stack.burn = BuildBurn(stage, in.thrust_factor[i] * in.specific_impulse_factor[i],
-                           in.mass_flow_factor[i]);
+                           in.mass_flow_factor[i], stack.burn.curve);
     stack.gimbal.bandwidth_rad_s *= in.actuator_bandwidth_factor;
     stack.aerodynamics.ca.factor = in.drag_factor;
     stack.aerodynamics.cn.factor = in.lift_factor;

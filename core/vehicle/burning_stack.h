@@ -59,7 +59,12 @@ template <class T>
 struct Burn {
   T vacuum_thrust_n, full_flow_kg_s, propellant_kg, duration_s, exit_area_m2;
   T rise_s, rise_slope_1_s, rise_base, tail_s, tail_slope_1_s, tail_base;
+  T curve_rate, curve_flow_kg_s;  ///< of the curve's own time; 0 where there is none
+  const BurnCurve* curve[kWidth<T>];
+  bool has_curves;  ///< of any lane
 };
+/// What a lane without a curve looks up.
+alignas(32) inline constexpr double kNoPiece[BurnCurve::kRowSize] = {};
 template <class T>
 DISPERSA_INLINE void SetLane(Burn<T>& b, int lane, const MotorBurn& burn) {
   Lane(b.vacuum_thrust_n, lane) = burn.vacuum_thrust_n;
@@ -73,6 +78,23 @@ DISPERSA_INLINE void SetLane(Burn<T>& b, int lane, const MotorBurn& burn) {
   Lane(b.tail_s, lane) = burn.tail_s;
   Lane(b.tail_slope_1_s, lane) = burn.tail_s > 0.0 ? 1.0 / burn.tail_s : 0.0;
   Lane(b.tail_base, lane) = burn.tail_s > 0.0 ? 0.0 : 1.0;
+  b.curve[lane] = burn.curve.get();
+  Lane(b.curve_rate, lane) = b.curve[lane] ? burn.curve_rate : 0.0;
+  Lane(b.curve_flow_kg_s, lane) = b.curve[lane] ? burn.full_flow_kg_s / burn.curve_rate : 0.0;
+  b.has_curves = false;
+  for (int i = 0; i < kWidth<T>; ++i) b.has_curves |= b.curve[i] != nullptr;
+}
+
+/// The piece of a curve that a time of the curve falls into.
+DISPERSA_INLINE const double* PieceAt(const BurnCurve* curve, double time_s) {
+  if (curve == nullptr) return kNoPiece;
+  const double* begin_s = curve->begin_s.data();
+  int low = 0, high = static_cast<int>(curve->begin_s.size());
+  while (high - low > 1) {
+    const int middle = (low + high) / 2;
+    (time_s < begin_s[middle] ? high : low) = middle;
+  }
+  return curve->rows.data() + BurnCurve::kRowSize * low;
 }
 
 /// Fraction of full thrust and flow, and propellant left, at a time within the burn.
@@ -93,6 +115,20 @@ DISPERSA_INLINE BurnState<T> BurnAt(const Burn<T>& b, T since_ignition_s) {
       Min(T(1.0), Min(Fma(since, b.rise_slope_1_s, b.rise_base), Fma(left, b.tail_slope_1_s, b.tail_base)));
   const T left_kg = b.propellant_kg - b.full_flow_kg_s * (full_s - lacking_s);
   state.propellant_kg = Select(left_kg < T(0.0), T(0.0), left_kg);
+  if (b.has_curves) {
+    const auto curved = b.curve_rate > T(0.0);
+    const T time_s = since * b.curve_rate;
+    const double* piece[kWidth<T>];
+    for (int lane = 0; lane < kWidth<T>; ++lane) piece[lane] = PieceAt(b.curve[lane], Lane(time_s, lane));
+    T row[BurnCurve::kRowSize];
+    LoadFour(piece, row);
+    const T from_s = time_s - row[0];
+    const T burnt_s = from_s * Fma(T(0.5) * from_s, row[2], row[1]);
+    const T curve_kg = Fma(-b.curve_flow_kg_s, burnt_s, b.propellant_kg * row[3]);
+    const T level = Max(Fma(from_s, row[2], row[1]), T(0.0));
+    state.fraction = Select(curved, level, state.fraction);
+    state.propellant_kg = Select(curved, Select(curve_kg < T(0.0), T(0.0), curve_kg), state.propellant_kg);
+  }
   return state;
 }
 

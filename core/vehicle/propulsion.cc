@@ -1,5 +1,7 @@
 #include "core/vehicle/propulsion.h"
 
+#include <algorithm>
+
 #include "core/vehicle/burning_stack.h"
 
 namespace dispersa {
@@ -20,7 +22,30 @@ double MotorBurn::Fraction(double since_ignition_s) const {
 
 double MotorBurn::Propellant(double since_ignition_s) const { return At(*this, since_ignition_s).propellant_kg; }
 
+std::vector<double> MotorBurn::Kinks(double ignition_s) const {
+  const double burnout_s = ignition_s + duration_s;
+  std::vector<double> kinks;
+  const auto add = [&](double kink_s) {
+    if (kink_s > ignition_s && kink_s < burnout_s) kinks.push_back(kink_s);
+  };
+  if (curve) {
+    for (const double begin_s : curve->begin_s) add(ignition_s + begin_s / curve_rate);
+  } else {
+    add(ignition_s + rise_s);
+    add(burnout_s - tail_s);
+    std::sort(kinks.begin(), kinks.end());
+  }
+  return kinks;
+}
+
 MotorBurn BuildBurn(const Stage& stage, double thrust_factor, double flow_factor) {
+  const ThrustCurve& curve = stage.motor.thrust_curve;
+  return BuildBurn(stage, thrust_factor, flow_factor,
+                   curve.empty() ? nullptr : std::make_shared<const BurnCurve>(Prepare(curve)));
+}
+
+MotorBurn BuildBurn(const Stage& stage, double thrust_factor, double flow_factor,
+                    std::shared_ptr<const BurnCurve> curve) {
   const Motor& motor = stage.motor;
   MotorBurn burn;
   burn.vacuum_thrust_n = motor.thrust_n * thrust_factor;
@@ -31,6 +56,11 @@ MotorBurn BuildBurn(const Stage& stage, double thrust_factor, double flow_factor
   burn.exit_area_m2 = motor.nozzle_exit_area_m2;
   // The area under the trapezoid is the propellant: two half ramps lengthen the burn.
   burn.duration_s = stage.propellant_mass_kg / burn.full_flow_kg_s + 0.5 * (burn.rise_s + burn.tail_s);
+  if (curve) {
+    burn.curve_rate = flow_factor;
+    burn.duration_s = curve->end_s / flow_factor;
+    burn.curve = std::move(curve);
+  }
   return burn;
 }
 

@@ -41,18 +41,46 @@ void CheckTube(const std::string& path, double top, double bottom, double outer,
                 "lies aft of the stage's bottom_station_m", "at most bottom_station_m of the stage");
 }
 
+// The same of a file's curve, whose reader sets thrust and burning time by it, and of one set in code.
+void CheckThrustCurve(const Motor& motor, const std::string& path, Checker& check) {
+  const ThrustCurve& curve = motor.thrust_curve;
+  const auto at = [&](const char* column, std::size_t i) {
+    return path + ".thrust_curve.table." + column + "[" + std::to_string(i) + "]";
+  };
+  check.Require(curve.time_s.size() == curve.thrust_n.size() && curve.time_s.size() >= 2 &&
+                    curve.time_s.size() <= kThrustCurveCorners,
+                path + ".thrust_curve", "has " + std::to_string(curve.time_s.size()) + " times and " +
+                    std::to_string(curve.thrust_n.size()) + " thrusts",
+                "as many of both, 2 to " + std::to_string(kThrustCurveCorners));
+  if (curve.time_s.size() != curve.thrust_n.size() || curve.time_s.size() < 2) return;
+  check.Require(curve.time_s[0] == 0.0, at("time_s", 0), "is not the ignition", "0 as the first time");
+  for (std::size_t i = 1; i < curve.time_s.size(); ++i)
+    check.Require(curve.time_s[i] > curve.time_s[i - 1], at("time_s", i), "is not later than the time before it",
+                  "times that increase");
+  for (std::size_t i = 0; i < curve.thrust_n.size(); ++i)
+    check.NotNegative(curve.thrust_n[i], at("thrust_n", i));
+  check.Require(curve.Greatest() > 0.0, path + ".thrust_curve", "has no thrust", "a thrust above 0 somewhere");
+  check.Require(motor.ignition_rise_s == 0.0 && motor.tail_off_s == 0.0, path + ".thrust_curve",
+                "stands beside ramps", "no ignition_rise_* and tail_off_*");
+}
+
 void CheckStage(const Vehicle& vehicle, std::size_t i, Checker& check) {
   const Stage& stage = vehicle.stages[i];
   const std::string path = "stages[" + std::to_string(i) + "]";
   check.Positive(stage.liftoff_mass_kg, path + ".liftoff_mass_kg");
   check.Positive(stage.propellant_mass_kg, path + ".propellant_mass_kg");
   check.Positive(stage.diameter_m, path + ".diameter_m");
-  check.Positive(stage.motor.thrust_n, path + ".motor.thrust_n");
-  check.Positive(stage.motor.burning_time_s, path + ".motor.burning_time_s");
+  if (!stage.motor.thrust_curve.empty()) {
+    CheckThrustCurve(stage.motor, path + ".motor", check);
+  } else {
+    check.Positive(stage.motor.thrust_n, path + ".motor.thrust_n");
+    check.Positive(stage.motor.burning_time_s, path + ".motor.burning_time_s");
+  }
   check.NotNegative(stage.motor.ignition_rise_s, path + ".motor.ignition_rise_s");
   check.NotNegative(stage.motor.tail_off_s, path + ".motor.tail_off_s");
   check.NotNegative(stage.motor.nozzle_exit_area_m2, path + ".motor.nozzle_exit_area_m2");
-  check.Require(0.5 * (stage.motor.ignition_rise_s + stage.motor.tail_off_s) < stage.motor.burning_time_s,
+  check.Require(!stage.motor.thrust_curve.empty() ||
+                    0.5 * (stage.motor.ignition_rise_s + stage.motor.tail_off_s) < stage.motor.burning_time_s,
                 path + ".motor.tail_off_s", "leaves no time at full thrust",
                 "ramps that are together shorter than twice burning_time_s");
   if (i > 0)
@@ -175,6 +203,12 @@ std::vector<VehicleProblem> Problems(const Vehicle& vehicle) {
   std::vector<VehicleProblem> problems = check.Take();
   if (problems.empty() && vehicle.structure_beam) problems = BeamProblems(vehicle);
   return problems;
+}
+
+void SetThrustCurve(ThrustCurve curve, Motor& motor) {
+  motor.thrust_n = curve.Greatest();
+  motor.burning_time_s = curve.Impulse() / motor.thrust_n;
+  motor.thrust_curve = std::move(curve);
 }
 
 }  // namespace dispersa
