@@ -64,14 +64,16 @@ ThrustCurve DecodeThrustCurve(const InputNode& node, const std::string& path, do
                               ProblemList& problems) {
   MapReader map(node, path, problems);
   const bool is_in_vacuum = map.Choice<bool>("reference", {{"vacuum", true}, {"sea_level", false}});
-  const InputNode& table = map.Required("table", "a CSV file (time_s, thrust_n), an .eng file, or both columns");
+  const InputNode& table =
+      map.Required("table", "a CSV file (time_s, thrust_n), an .eng file, or both columns");
   const ThrustCurve curve =
       DecodeCurveTable(table, table.file == node.file ? map.PathOf("table") : "", problems);
   if (is_in_vacuum) return curve;
   if (exit_area_m2 == 0.0)
-    AddProblem(problems, *node.Find("reference"), map.PathOf("reference"),
-               "the thrust in vacuum is that at sea level and p A_e, but the motor has no nozzle_exit_area_m2",
-               "nozzle_exit_area_m2 above 0, or reference: vacuum");
+    AddProblem(
+        problems, *node.Find("reference"), map.PathOf("reference"),
+        "the thrust in vacuum is that at sea level and p A_e, but the motor has no nozzle_exit_area_m2",
+        "nozzle_exit_area_m2 above 0, or reference: vacuum");
   return InVacuum(curve, exit_area_m2);
 }
 
@@ -89,7 +91,8 @@ Motor DecodeMotor(const InputNode& node, const std::string& path, ProblemList& p
                    "'" + key + "' and 'thrust_curve' are both given, and the curve says it all",
                    "either thrust_curve, or thrust_* with burning_time_* and ramps");
     }
-    ThrustCurve found = DecodeThrustCurve(*curve, map.PathOf("thrust_curve"), motor.nozzle_exit_area_m2, problems);
+    ThrustCurve found =
+        DecodeThrustCurve(*curve, map.PathOf("thrust_curve"), motor.nozzle_exit_area_m2, problems);
     if (!found.empty()) SetThrustCurve(std::move(found), motor);
   } else {
     motor.thrust_n = map.Quantity("thrust", kForce, kPositive);

@@ -36,8 +36,8 @@ enum class FileNames { kAllowed, kRefused };
 InputNode ReadYamlFile(const std::string& path, std::vector<InputProblem>& problems);
 
 /// Replaces what names a file: a campaign's vehicle, reference, autopilot and wind tables, a vehicle's base,
-/// thrust curves, aerodynamic tables and table of modes, a scenario's wind, mass and coefficient tables. Names are relative
-/// to the file in which they stand.
+/// thrust curves, aerodynamic tables and table of modes, a scenario's wind, mass and coefficient tables.
+/// Names are relative to the file in which they stand.
 void InlineCampaignFiles(InputNode& campaign, FileNames names, std::vector<InputProblem>& problems);
 void InlineVehicleFiles(InputNode& vehicle, FileNames names, std::vector<InputProblem>& problems);
 void InlineScenarioFiles(InputNode& scenario, FileNames names, std::vector<InputProblem>& problems);

@@ -83,19 +83,22 @@ class RaspReader {
   std::optional<double> Number(const Word& word, const std::string& what, bool may_be_zero) {
     const std::optional<double> number = ParseNumber(word.text);
     if (number && std::isfinite(*number) && (*number > 0.0 || (may_be_zero && *number == 0.0))) return number;
-    Report(word, what + " is '" + word.text + "'", may_be_zero ? "a number of 0 or more" : "a number above 0");
+    Report(word, what + " is '" + word.text + "'",
+           may_be_zero ? "a number of 0 or more" : "a number above 0");
     return {};
   }
 
   void TakeHeader(const std::vector<Word>& words) {
     if (words.size() != 7)
-      return Report(words[0], "the header has " + std::to_string(words.size()) + " fields in place of 7", kHeader);
+      return Report(words[0], "the header has " + std::to_string(words.size()) + " fields in place of 7",
+                    kHeader);
     Number(words[1], "the diameter", false);
     Number(words[2], "the length", false);
     const std::optional<double> propellant = Number(words[4], "the propellant's mass", false);
     const std::optional<double> whole = Number(words[5], "the motor's mass", false);
     if (propellant && whole && *propellant > *whole)
-      Report(words[4], "the propellant of " + words[4].text + " kg is more than the motor's " + words[5].text + " kg",
+      Report(words[4],
+             "the propellant of " + words[4].text + " kg is more than the motor's " + words[5].text + " kg",
              "a part of the motor's mass");
   }
 

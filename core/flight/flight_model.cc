@@ -51,8 +51,7 @@ StageControl BuildStageControl(const LauncherStack& stack) {
   for (int i = 0; i < points; ++i) {
     const double since = stack.burn.duration_s * i / (points - 1);
     const MassProperties mass = stack.mass.At(stack.burn.Propellant(since));
-    const double level =
-        stack.burn.curve ? std::max(stack.burn.Fraction(since), kLeastThrustFraction) : 1.0;
+    const double level = stack.burn.curve ? std::max(stack.burn.Fraction(since), kLeastThrustFraction) : 1.0;
     const double thrust = stack.burn.vacuum_thrust_n * level;
     const double lever = stack.gimbal.pivot_station_m - mass.cg_station_m;
     control.pitch_effectiveness_1_s2.x.push_back(since);
@@ -219,8 +218,8 @@ LauncherPlant FlightModel::PlantFor(const FlightInputs& in, std::optional<std::u
   for (std::size_t i = 0; i < plant.stacks.size(); ++i) {
     LauncherStack& stack = plant.stacks[i];
     const Stage& stage = definition_.vehicle.stages[i];
-    stack.burn = BuildBurn(stage, in.thrust_factor[i] * in.specific_impulse_factor[i],
-                           in.mass_flow_factor[i], stack.burn.curve);
+    stack.burn = BuildBurn(stage, in.thrust_factor[i] * in.specific_impulse_factor[i], in.mass_flow_factor[i],
+                           stack.burn.curve);
     stack.gimbal.bandwidth_rad_s *= in.actuator_bandwidth_factor;
     stack.aerodynamics.ca.factor = in.drag_factor;
     stack.aerodynamics.cn.factor = in.lift_factor;

@@ -26,7 +26,8 @@ std::vector<FlightEvent> EventsOf(const FlightModel& model, const LauncherPlant&
     const int stage = static_cast<int>(i);
     const StageTimes& t = timeline[i];
     events.push_back({t.ignition_s, EventKind::kIgnition, stage});
-    for (const double kink_s : burns[i].Kinks(t.ignition_s)) events.push_back({kink_s, EventKind::kKink, stage});
+    for (const double kink_s : burns[i].Kinks(t.ignition_s))
+      events.push_back({kink_s, EventKind::kKink, stage});
     events.push_back({t.burnout_s, EventKind::kBurnout, stage});
     if (i + 1 < timeline.size()) events.push_back({t.separation_s, EventKind::kSeparation, stage});
   }

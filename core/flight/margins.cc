@@ -227,7 +227,8 @@ std::vector<MarginInstant> MarginInstants(const FlightModel& model, double every
   return InstantsOf(model, {inputs, {}}, every_s).instants;
 }
 
-std::vector<SkippedInstant> SkippedInstants(const FlightModel& model, double every_s, const FlightInputs& inputs) {
+std::vector<SkippedInstant> SkippedInstants(const FlightModel& model, double every_s,
+                                            const FlightInputs& inputs) {
   return InstantsOf(model, {inputs, {}}, every_s).skipped;
 }
 

@@ -79,8 +79,8 @@ struct MarginInstant {
 };
 
 /// Lift-off, max q, each ignition + 1 s and burnout, and every `every_s` of powered flight between, in the
-/// order of time, less those whose thrust is below kLeastThrustFraction of full thrust (SkippedInstants). Of a burnout
-/// that is left out for this the last instant before it that is not stands in: "stage 1 tail-off".
+/// order of time, less those whose thrust is below kLeastThrustFraction of full thrust (SkippedInstants). Of
+/// a burnout that is left out for this the last instant before it that is not stands in: "stage 1 tail-off".
 std::vector<MarginInstant> MarginInstants(const FlightModel& model, double every_s = 5.0,
                                           const FlightInputs& inputs = {});
 /// An instant that MarginInstants leaves out.

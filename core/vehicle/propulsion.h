@@ -8,8 +8,8 @@
 
 namespace dispersa {
 
-/// Of full thrust: below it a motor has little say in attitude control. An autopilot that knows a thrust curve
-/// raises its commands no further, and no margins are taken.
+/// Of full thrust: below it a motor has little say in attitude control. An autopilot that knows a thrust
+/// curve raises its commands no further, and no margins are taken.
 inline constexpr double kLeastThrustFraction = 0.2;
 
 /// A motor as one flight burns it: nominal data times the flight's factors.
@@ -34,8 +34,8 @@ struct MotorBurn {
   std::vector<double> Kinks(double ignition_s) const;
 };
 
-/// The burn with thrust and flow multiplied; propellant is conserved. Ramps keep their durations; a thrust curve
-/// is drawn together in time by the flow's factor. `curve`: that of the stage, prepared, or null.
+/// The burn with thrust and flow multiplied; propellant is conserved. Ramps keep their durations; a thrust
+/// curve is drawn together in time by the flow's factor. `curve`: that of the stage, prepared, or null.
 MotorBurn BuildBurn(const Stage& stage, double thrust_factor, double flow_factor,
                     std::shared_ptr<const BurnCurve> curve);
 /// The same, preparing the curve if the stage has one.

@@ -32,9 +32,10 @@ BurnCurve Prepare(const ThrustCurve& curve) {
     const double from_n = curve.thrust_n[i], to_n = curve.thrust_n[i + 1];
     const bool is_last = i + 1 == pieces;
     prepared.begin_s.push_back(curve.time_s[i]);
-    prepared.rows.insert(prepared.rows.end(),
-                         {is_last ? prepared.end_s : curve.time_s[i], (is_last ? to_n : from_n) / greatest_n,
-                          (to_n - from_n) / length_s / greatest_n, is_last ? 0.0 : 1.0 - burnt_n_s / impulse_n_s});
+    prepared.rows.insert(
+        prepared.rows.end(),
+        {is_last ? prepared.end_s : curve.time_s[i], (is_last ? to_n : from_n) / greatest_n,
+         (to_n - from_n) / length_s / greatest_n, is_last ? 0.0 : 1.0 - burnt_n_s / impulse_n_s});
     burnt_n_s += 0.5 * (from_n + to_n) * length_s;
   }
   return prepared;

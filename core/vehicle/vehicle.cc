@@ -49,17 +49,19 @@ void CheckThrustCurve(const Motor& motor, const std::string& path, Checker& chec
   };
   check.Require(curve.time_s.size() == curve.thrust_n.size() && curve.time_s.size() >= 2 &&
                     curve.time_s.size() <= kThrustCurveCorners,
-                path + ".thrust_curve", "has " + std::to_string(curve.time_s.size()) + " times and " +
+                path + ".thrust_curve",
+                "has " + std::to_string(curve.time_s.size()) + " times and " +
                     std::to_string(curve.thrust_n.size()) + " thrusts",
                 "as many of both, 2 to " + std::to_string(kThrustCurveCorners));
   if (curve.time_s.size() != curve.thrust_n.size() || curve.time_s.size() < 2) return;
   check.Require(curve.time_s[0] == 0.0, at("time_s", 0), "is not the ignition", "0 as the first time");
   for (std::size_t i = 1; i < curve.time_s.size(); ++i)
-    check.Require(curve.time_s[i] > curve.time_s[i - 1], at("time_s", i), "is not later than the time before it",
-                  "times that increase");
+    check.Require(curve.time_s[i] > curve.time_s[i - 1], at("time_s", i),
+                  "is not later than the time before it", "times that increase");
   for (std::size_t i = 0; i < curve.thrust_n.size(); ++i)
     check.NotNegative(curve.thrust_n[i], at("thrust_n", i));
-  check.Require(curve.Greatest() > 0.0, path + ".thrust_curve", "has no thrust", "a thrust above 0 somewhere");
+  check.Require(curve.Greatest() > 0.0, path + ".thrust_curve", "has no thrust",
+                "a thrust above 0 somewhere");
   check.Require(motor.ignition_rise_s == 0.0 && motor.tail_off_s == 0.0, path + ".thrust_curve",
                 "stands beside ramps", "no ignition_rise_* and tail_off_*");
 }

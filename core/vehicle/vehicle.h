@@ -37,16 +37,16 @@ struct Grain {
   double inner_diameter_m = 0.0;  ///< of the bore at ignition
 };
 
-/// Constant thrust between two linear ramps whose impulse is part of the whole, or a thrust curve: propellant flow
-/// is proportional to thrust, and the propellant is used up exactly at burnout.
+/// Constant thrust between two linear ramps whose impulse is part of the whole, or a thrust curve: propellant
+/// flow is proportional to thrust, and the propellant is used up exactly at burnout.
 struct Motor {
-  double thrust_n = 0.0;            ///< all four nozzles together (the paper's 4P), in vacuum; of a curve the greatest
+  double thrust_n = 0.0;  ///< all four nozzles together (the paper's 4P), in vacuum; of a curve the greatest
   double burning_time_s = 0.0;      ///< propellant_mass / burning_time is the flow at full thrust
   double ignition_rise_s = 0.0;     ///< linear rise to full thrust
   double tail_off_s = 0.0;          ///< linear decay at the end
   double nozzle_exit_area_m2 = 0.0; ///< of all nozzles; P = P_vac - p A_e; 0 switches the term off
   double published_mass_flow_kg_s = 0.0;  ///< as printed in the source, 0 if none; only compared
-  ThrustCurve thrust_curve;         ///< empty: none. Sets thrust_n and burning_time_s; without ramps
+  ThrustCurve thrust_curve;               ///< empty: none. Sets thrust_n and burning_time_s; without ramps
 };
 /// Gives a motor a curve, and the greatest thrust and the time that its propellant would last at that.
 void SetThrustCurve(ThrustCurve curve, Motor& motor);

@@ -178,8 +178,9 @@ void PrintSkipped(const std::vector<SkippedInstant>& skipped) {
   if (skipped.empty()) return;
   fmt::print("Skipped, with less than {:g} % of full thrust:\n", 100.0 * kLeastThrustFraction);
   for (const SkippedInstant& at : skipped)
-    fmt::print("{:<24} {:>8.2f} stage {}, {:.1f} % of full thrust\n", at.place.empty() ? "(between)" : at.place,
-               at.time_s, at.stage + 1, 100.0 * at.thrust_fraction);
+    fmt::print("{:<24} {:>8.2f} stage {}, {:.1f} % of full thrust\n",
+               at.place.empty() ? "(between)" : at.place, at.time_s, at.stage + 1,
+               100.0 * at.thrust_fraction);
 }
 
 std::string FrequenciesText(const MarginModel& of) {

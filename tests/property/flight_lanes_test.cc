@@ -28,7 +28,8 @@ FlightDefinition Definition(const std::string& autopilot, bool with_winds, bool 
         {.zeros_rad_s = 25.0, .zeros_damping = 0.2, .poles_rad_s = 25.0, .poles_damping = 0.6, .stage = 1}};
   if (autopilot == "pid_aac")  // axes that feed forward beside one that does not
     definition.autopilot.pitch.feed_forward = definition.autopilot.yaw.feed_forward = FeedForward{0.066};
-  if (autopilot == "pid") {  // a thrust curve beside constant thrust, as stages and flights stand side by side
+  if (autopilot ==
+      "pid") {  // a thrust curve beside constant thrust, as stages and flights stand side by side
     const ThrustCurve shape{{0.0, 0.7, 13.3, 41.1234567, 60.0, 61.7}, {0.3, 0.9, 1.0, 0.8, 0.7, 0.0}};
     for (const std::size_t stage : {0u, 2u}) {
       Motor& motor = definition.vehicle.stages[stage].motor;

@@ -8,7 +8,8 @@ namespace dispersa {
 namespace {
 
 constexpr char kMotor[] =
-    "{thrust_kn: 60, burning_time_s: 60, ignition_rise_s: 0.2, tail_off_s: 0.4, published_mass_flow_kg_s: 25}";
+    "{thrust_kn: 60, burning_time_s: 60, ignition_rise_s: 0.2, tail_off_s: 0.4, published_mass_flow_kg_s: "
+    "25}";
 
 // Made up.
 constexpr char kEng[] =
@@ -42,14 +43,16 @@ TEST(ThrustCurveFile, OfACsv) {
 
 TEST(ThrustCurveFile, Inline) {
   const InputFiles files;
-  ExpectCurve(MotorOf(files, "{thrust_curve: {reference: vacuum, table: {time_s: [0, 20], thrust_kn: [80, 60]}}}"),
-              {0.0, 20.0}, {80e3, 60e3});
+  ExpectCurve(
+      MotorOf(files, "{thrust_curve: {reference: vacuum, table: {time_s: [0, 20], thrust_kn: [80, 60]}}}"),
+      {0.0, 20.0}, {80e3, 60e3});
 }
 
 TEST(ThrustCurveFile, AtSeaLevelIsWithoutThePressureOfTheAir) {
   const InputFiles files;
-  ExpectCurve(MotorOf(files, "{nozzle_exit_area_m2: 0.2, thrust_curve: {reference: sea_level, table: {time_s: [0, "
-                             "1, 20], thrust_n: [0, 60000, 0]}}}"),
+  ExpectCurve(MotorOf(files,
+                      "{nozzle_exit_area_m2: 0.2, thrust_curve: {reference: sea_level, table: {time_s: [0, "
+                      "1, 20], thrust_n: [0, 60000, 0]}}}"),
               {0.0, 1.0, 20.0}, {0.0, 60000.0 + 0.2 * 101325.0, 0.0});
 }
 
@@ -96,22 +99,30 @@ TEST_P(BadCurveTest, IsReportedInFull) {
 
 constexpr char kCsvMotor[] = "{thrust_curve: {reference: vacuum, table: curve.csv}}";
 constexpr char kEngMotor[] = "{thrust_curve: {reference: vacuum, table: curve.eng}}";
-#define HEADER "name, diameter in mm, length in mm, delays, propellant in kg, mass in kg, maker, apart by blanks"
+#define HEADER \
+  "name, diameter in mm, length in mm, delays, propellant in kg, mass in kg, maker, apart by blanks"
 
 INSTANTIATE_TEST_SUITE_P(
     Curves, BadCurveTest,
     testing::Values(
-        BadCurve{"BesideThrust", "{thrust_kn: 60, thrust_curve: {reference: vacuum, table: {time_s: [0, 20], thrust_kn: [80, 60]}}}",
-                 "", "",
-                 "vehicle.yaml:11:24: stages[0].motor.thrust_kn: 'thrust_kn' and 'thrust_curve' are both given, and the "
-                 "curve says it all, allowed: either thrust_curve, or thrust_* with burning_time_* and ramps\n"},
-        BadCurve{"SeaLevelWithoutArea", "{thrust_curve: {reference: sea_level, table: {time_s: [0, 20], thrust_kn: [80, 60]}}}",
-                 "", "",
-                 "vehicle.yaml:11:39: stages[0].motor.thrust_curve.reference: the thrust in vacuum is that at sea level "
-                 "and p A_e, but the motor has no nozzle_exit_area_m2, allowed: nozzle_exit_area_m2 above 0, or "
-                 "reference: vacuum\n"},
+        BadCurve{
+            "BesideThrust",
+            "{thrust_kn: 60, thrust_curve: {reference: vacuum, table: {time_s: [0, 20], thrust_kn: [80, "
+            "60]}}}",
+            "", "",
+            "vehicle.yaml:11:24: stages[0].motor.thrust_kn: 'thrust_kn' and 'thrust_curve' are both given, "
+            "and the "
+            "curve says it all, allowed: either thrust_curve, or thrust_* with burning_time_* and ramps\n"},
+        BadCurve{
+            "SeaLevelWithoutArea",
+            "{thrust_curve: {reference: sea_level, table: {time_s: [0, 20], thrust_kn: [80, 60]}}}", "", "",
+            "vehicle.yaml:11:39: stages[0].motor.thrust_curve.reference: the thrust in vacuum is that at sea "
+            "level "
+            "and p A_e, but the motor has no nozzle_exit_area_m2, allowed: nozzle_exit_area_m2 above 0, or "
+            "reference: vacuum\n"},
         BadCurve{"NoReference", "{thrust_curve: {table: {time_s: [0, 20], thrust_kn: [80, 60]}}}", "", "",
-                 "vehicle.yaml:11:27: stages[0].motor.thrust_curve: missing key 'reference', allowed: one of vacuum, "
+                 "vehicle.yaml:11:27: stages[0].motor.thrust_curve: missing key 'reference', allowed: one of "
+                 "vacuum, "
                  "sea_level\n"},
         BadCurve{"TimesThatTurnBack", kCsvMotor, "curve.csv", "time_s,thrust_n\n0,100\n5,90\n4,80\n6,0\n",
                  "curve.csv:4:1: time_s[2]: 4 is not later than 5 before it, allowed: times that increase\n"},
@@ -119,29 +130,36 @@ INSTANTIATE_TEST_SUITE_P(
                  "curve.csv:2:1: time_s[0]: 1 is not the time of ignition, allowed: 0 as the first time\n"},
         BadCurve{"PushesBackwards", kCsvMotor, "curve.csv", "time_s,thrust_n\n0,100\n5,-90\n",
                  "curve.csv:3:3: thrust_n[1]: -90 is out of range, allowed: a number of 0 or more\n"},
-        BadCurve{"NoThrust", kCsvMotor, "curve.csv", "time_s,thrust_n\n0,0\n5,0\n",
-                 "curve.csv:1:8: thrust_n: the thrust is 0 at all times, allowed: a thrust above 0 somewhere\n"},
-        BadCurve{"LessThrustsThanTimes", "{thrust_curve: {reference: vacuum, table: {time_s: [0, 20, 30], thrust_kn: [80, 60]}}}",
-                 "", "",
-                 "vehicle.yaml:11:54: stages[0].motor.thrust_curve.table: there are 3 times and 2 thrusts, allowed: one "
+        BadCurve{
+            "NoThrust", kCsvMotor, "curve.csv", "time_s,thrust_n\n0,0\n5,0\n",
+            "curve.csv:1:8: thrust_n: the thrust is 0 at all times, allowed: a thrust above 0 somewhere\n"},
+        BadCurve{"LessThrustsThanTimes",
+                 "{thrust_curve: {reference: vacuum, table: {time_s: [0, 20, 30], thrust_kn: [80, 60]}}}", "",
+                 "",
+                 "vehicle.yaml:11:54: stages[0].motor.thrust_curve.table: there are 3 times and 2 thrusts, "
+                 "allowed: one "
                  "thrust for each time\n"},
         BadCurve{"ShortHeader", kEngMotor, "curve.eng", Eng(" NOBODY", ""),
                  "curve.eng:2:1: the header has 6 fields in place of 7, allowed: " HEADER "\n"},
         BadCurve{"DiameterOfWords", kEngMotor, "curve.eng", Eng(" 98 ", " wide "),
                  "curve.eng:2:9: the diameter is 'wide', allowed: a number above 0\n"},
         BadCurve{"MorePropellantThanMotor", kEngMotor, "curve.eng", Eng("1.20", "3.20"),
-                 "curve.eng:2:21: the propellant of 3.20 kg is more than the motor's 2.10 kg, allowed: a part of the "
+                 "curve.eng:2:21: the propellant of 3.20 kg is more than the motor's 2.10 kg, allowed: a "
+                 "part of the "
                  "motor's mass\n"},
-        BadCurve{"ThreeNumbers", kEngMotor, "curve.eng", Eng("0.50 1000", "0.50 1000 7"),
-                 "curve.eng:4:4: the line has 3 fields in place of 2, allowed: a time in s and a thrust in N\n"},
+        BadCurve{
+            "ThreeNumbers", kEngMotor, "curve.eng", Eng("0.50 1000", "0.50 1000 7"),
+            "curve.eng:4:4: the line has 3 fields in place of 2, allowed: a time in s and a thrust in N\n"},
         BadCurve{"NegativeThrust", kEngMotor, "curve.eng", Eng(" 800", " -8"),
                  "curve.eng:5:9: the thrust is '-8', allowed: a number of 0 or more\n"},
-        BadCurve{"TimeStandsStill", kEngMotor, "curve.eng", Eng("2.00", "0.50"),
-                 "curve.eng:5:4: the time 0.50 is not later than that before it, allowed: times that increase\n"},
+        BadCurve{
+            "TimeStandsStill", kEngMotor, "curve.eng", Eng("2.00", "0.50"),
+            "curve.eng:5:4: the time 0.50 is not later than that before it, allowed: times that increase\n"},
         BadCurve{"NoEnd", kEngMotor, "curve.eng", Eng("   2.60 0.0\n", ""),
                  "curve.eng:6:1: the curve does not end, allowed: a last line with a thrust of 0\n"},
         BadCurve{"SecondMotor", kEngMotor, "curve.eng", std::string(kEng) + "TRIAL-2 98 640 0 1 2 NOBODY\n",
-                 "curve.eng:8:1: the line comes after the thrust of 0 that ends the motor's curve, allowed: one motor in "
+                 "curve.eng:8:1: the line comes after the thrust of 0 that ends the motor's curve, allowed: "
+                 "one motor in "
                  "a file, and nothing but comments after it\n"},
         BadCurve{"NoMotor", kEngMotor, "curve.eng", "; nothing\n",
                  "curve.eng:1:1: the file holds no motor, allowed: " HEADER "\n"}),

@@ -61,7 +61,8 @@ TEST(MotorBurn, ThrustFactorKeepsPropellantAndTimeFlowFactorShortensTheBurn) {
   EXPECT_NEAR(faster.Propellant(faster.duration_s - 2.0), 125.0, 1e-9);
 }
 
-// Uneven pieces, a rise, a sag, a tail: 0.5 * 0.5 * 200 + 9.5 * 190 + 20 * 150 + 10 * 110 + 0.5 * 2.5 * 100 kN s.
+// Uneven pieces, a rise, a sag, a tail: 0.5 * 0.5 * 200 + 9.5 * 190 + 20 * 150 + 10 * 110 + 0.5 * 2.5 * 100
+// kN s.
 Stage CurvedStage() {
   Stage stage = SampleVehicle().stages[0];
   SetThrustCurve({{0.0, 0.5, 10.0, 30.0, 40.0, 42.5}, {0.0, 200e3, 180e3, 120e3, 100e3, 0.0}}, stage.motor);
@@ -85,8 +86,14 @@ TEST(MotorBurn, FollowsTheCurveAndUsesThePropellantUpAtItsEnd) {
   const MotorBurn burn = BuildBurn(CurvedStage(), 1.0, 1.0);
   EXPECT_EQ(burn.duration_s, 42.5);
   EXPECT_DOUBLE_EQ(burn.full_flow_kg_s, 4000.0 * 200e3 / kCurveImpulse_n_s);
-  for (const auto& [time_s, thrust_n] : {std::pair{0.0, 0.0}, {0.25, 100e3}, {0.5, 200e3}, {5.25, 190e3}, {20.0, 150e3},
-                                         {40.0, 100e3}, {41.25, 50e3}, {42.5, 0.0}})
+  for (const auto& [time_s, thrust_n] : {std::pair{0.0, 0.0},
+                                         {0.25, 100e3},
+                                         {0.5, 200e3},
+                                         {5.25, 190e3},
+                                         {20.0, 150e3},
+                                         {40.0, 100e3},
+                                         {41.25, 50e3},
+                                         {42.5, 0.0}})
     EXPECT_NEAR(burn.vacuum_thrust_n * burn.Fraction(time_s), thrust_n, 1e-9) << "at " << time_s << " s";
   EXPECT_EQ(burn.Propellant(0.0), 4000.0);
   EXPECT_EQ(burn.Propellant(42.5), 0.0);

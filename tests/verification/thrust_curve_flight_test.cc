@@ -1,6 +1,6 @@
-// Flights of motors with thrust curves: every corner ends a step, so that the engine's steps keep their order on curves
-// whose corners fall between ticks, as CVODE shows, which is started anew at each of them; and what a burn in space
-// gains is the rocket equation's, whatever the curve and the burn rate.
+// Flights of motors with thrust curves: every corner ends a step, so that the engine's steps keep their order
+// on curves whose corners fall between ticks, as CVODE shows, which is started anew at each of them; and what
+// a burn in space gains is the rocket equation's, whatever the curve and the burn rate.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,8 +15,8 @@
 namespace dispersa {
 namespace {
 
-// SLV-4 with motors that rise, sag, step and tail off within and between ticks of 10 ms; impulse and propellant are
-// those of its own motors, thrusts about.
+// SLV-4 with motors that rise, sag, step and tail off within and between ticks of 10 ms; impulse and
+// propellant are those of its own motors, thrusts about.
 FlightDefinition CurvedDefinition() {
   FlightDefinition definition = Slv4Definition(DISPERSA_CAMPAIGNS);
   for (Stage& stage : definition.vehicle.stages) {
@@ -49,7 +49,7 @@ Flown FlyWith(const FlightModel& model, const FlightInputs& inputs, Scheme schem
 
 // The largest difference of a column as long as two flights are to be compared.
 double Apart(const Flown& a, const Flown& b, const char* column, double until_s) {
-  const std::size_t at = FindHistoryColumn(column), time = FindHistoryColumn("time_s");
+  const int at = FindHistoryColumn(column), time = FindHistoryColumn("time_s");
   double largest = 0.0;
   for (std::size_t row = 0; row < std::min(a.history.rows(), b.history.rows()); ++row)
     if (a.history.at(row, time) < until_s)
@@ -57,7 +57,8 @@ double Apart(const Flown& a, const Flown& b, const char* column, double until_s)
   return largest;
 }
 
-// Up to the coast, in which a thruster's firing one cycle earlier is another flight (flight_convergence_test.cc).
+// Up to the coast, in which a thruster's firing one cycle earlier is another flight
+// (flight_convergence_test.cc).
 void ExpectOrder(const FlightInputs& inputs) {
   constexpr double kPowered_s = 165.0;
   const FlightModel model(CurvedDefinition());
@@ -91,8 +92,8 @@ TEST(ThrustCurveFlight, KeepsTheStepsOrderWithDispersedRates) {
   ExpectOrder(inputs);
 }
 
-// The first stack burns alone in empty space, from rest along its axis. Steps of `step_s` end on the corners too,
-// unless they are to be passed over.
+// The first stack burns alone in empty space, from rest along its axis. Steps of `step_s` end on the corners
+// too, unless they are to be passed over.
 double SpeedGained(double burn_rate, double step_s, bool stops_at_corners) {
   const Vehicle vehicle = CurvedDefinition().vehicle;
   LauncherPlant plant = BuildNominalPlant(vehicle);
@@ -145,8 +146,8 @@ TEST(ThrustCurveFlight, GainsTheRocketEquationsSpeed) {
     const double coarse = std::fabs(SpeedGained(rate, 0.4, true) - exact_m_s);
     const double fine = std::fabs(SpeedGained(rate, 0.2, true) - exact_m_s);
     const double across = std::fabs(SpeedGained(rate, 0.2, false) - exact_m_s);
-    std::printf("burn rate %.2f: %.2e m/s in steps of 0.4 s, %.2e of 0.2 s, %.2e across the corners\n", rate, coarse,
-                fine, across);
+    std::printf("burn rate %.2f: %.2e m/s in steps of 0.4 s, %.2e of 0.2 s, %.2e across the corners\n", rate,
+                coarse, fine, across);
     EXPECT_LT(fine, std::max(coarse / 12.0, 1e-9));  // order 4 gives 16
     EXPECT_LT(fine, 1e-5);
     EXPECT_GT(across, 100.0 * fine) << "the corners hardly matter: this shows nothing";
