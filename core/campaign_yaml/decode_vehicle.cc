@@ -93,7 +93,10 @@ Motor DecodeMotor(const InputNode& node, const std::string& path, ProblemList& p
     }
     ThrustCurve found =
         DecodeThrustCurve(*curve, map.PathOf("thrust_curve"), motor.nozzle_exit_area_m2, problems);
-    if (!found.empty()) SetThrustCurve(std::move(found), motor);
+    if (!found.empty())
+      SetThrustCurve(std::move(found), motor);
+    else
+      motor.thrust_n = motor.burning_time_s = 1.0;  // harmless: what is wrong has been said
   } else {
     motor.thrust_n = map.Quantity("thrust", kForce, kPositive);
     motor.burning_time_s = map.Quantity("burning_time", kTime, kPositive);

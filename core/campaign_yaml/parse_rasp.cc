@@ -84,7 +84,7 @@ class RaspReader {
     const std::optional<double> number = ParseNumber(word.text);
     if (number && std::isfinite(*number) && (*number > 0.0 || (may_be_zero && *number == 0.0))) return number;
     Report(word, what + " is '" + word.text + "'",
-           may_be_zero ? "a number of 0 or more" : "a number above 0");
+           may_be_zero ? "a number not below 0" : "a number above 0");
     return {};
   }
 

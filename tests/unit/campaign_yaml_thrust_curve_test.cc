@@ -125,11 +125,11 @@ INSTANTIATE_TEST_SUITE_P(
                  "vacuum, "
                  "sea_level\n"},
         BadCurve{"TimesThatTurnBack", kCsvMotor, "curve.csv", "time_s,thrust_n\n0,100\n5,90\n4,80\n6,0\n",
-                 "curve.csv:4:1: time_s[2]: 4 is not later than 5 before it, allowed: times that increase\n"},
+                 "curve.csv:4:1: time_s[2]: '4' is not later than '5' before it, allowed: times that increase\n"},
         BadCurve{"StartsLate", kCsvMotor, "curve.csv", "time_s,thrust_n\n1,100\n5,90\n",
-                 "curve.csv:2:1: time_s[0]: 1 is not the time of ignition, allowed: 0 as the first time\n"},
+                 "curve.csv:2:1: time_s[0]: '1' is not the time of ignition, allowed: 0 as the first time\n"},
         BadCurve{"PushesBackwards", kCsvMotor, "curve.csv", "time_s,thrust_n\n0,100\n5,-90\n",
-                 "curve.csv:3:3: thrust_n[1]: -90 is out of range, allowed: a number of 0 or more\n"},
+                 "curve.csv:3:3: thrust_n[1]: -90 is out of range, allowed: a number not below 0\n"},
         BadCurve{
             "NoThrust", kCsvMotor, "curve.csv", "time_s,thrust_n\n0,0\n5,0\n",
             "curve.csv:1:8: thrust_n: the thrust is 0 at all times, allowed: a thrust above 0 somewhere\n"},
@@ -151,7 +151,7 @@ INSTANTIATE_TEST_SUITE_P(
             "ThreeNumbers", kEngMotor, "curve.eng", Eng("0.50 1000", "0.50 1000 7"),
             "curve.eng:4:4: the line has 3 fields in place of 2, allowed: a time in s and a thrust in N\n"},
         BadCurve{"NegativeThrust", kEngMotor, "curve.eng", Eng(" 800", " -8"),
-                 "curve.eng:5:9: the thrust is '-8', allowed: a number of 0 or more\n"},
+                 "curve.eng:5:9: the thrust is '-8', allowed: a number not below 0\n"},
         BadCurve{
             "TimeStandsStill", kEngMotor, "curve.eng", Eng("2.00", "0.50"),
             "curve.eng:5:4: the time 0.50 is not later than that before it, allowed: times that increase\n"},
