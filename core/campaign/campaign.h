@@ -66,6 +66,9 @@ struct Requirement {
   double consumer_risk = 0.0;
   std::optional<std::array<double, 2>> within = {};  ///< between both, strictly
   VerdictPlan plan = {};
+  /// Not the campaign's own: the vehicle gives limits of its structure, and the campaign does not say how
+  /// they are to be judged. While it is undecided and nothing has failed it, it holds no verdict up.
+  bool by_default = false;
 };
 
 /// How the requirements are judged together, and whether their verdicts end the campaign.

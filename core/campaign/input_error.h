@@ -17,9 +17,10 @@ struct InputProblem {
   std::string
       path;  ///< of the value in its file, e.g. "stages[1].motor.thrust_kn"; empty: the file as a whole
   std::string message;  ///< what is wrong
-  std::string allowed;  ///< what is allowed; may be empty
+  std::string allowed;  ///< what is allowed, or usual; may be empty
+  bool unusual = false;  ///< a warning: it is legal, and `allowed` is what is usual
 
-  /// "file:line:col: path: message, allowed: ..." without the parts that are empty.
+  /// "file:line:col: path: message, allowed: ..." (or "usual: ...") without the parts that are empty.
   std::string Text() const {
     std::string text;
     if (!file.empty()) {
@@ -29,7 +30,7 @@ struct InputProblem {
     }
     if (!path.empty()) text += path + ": ";
     text += message;
-    if (!allowed.empty()) text += ", allowed: " + allowed;
+    if (!allowed.empty()) text += (unusual ? ", usual: " : ", allowed: ") + allowed;
     return text;
   }
 };

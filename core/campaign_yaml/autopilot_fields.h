@@ -7,6 +7,8 @@
 //   f.Flag(key, value)                                false where absent
 //   f.EachStage(key, range, values)                   a list of one number a stage
 //   f.Stage(key, stage)                               1-based; 0, all of them, where absent
+//   f.Sections(key, sections)                         a list of filter sections; as before where absent
+//   f.OfOtherLaws(key)                                read by laws that this one is compared with
 //   f.Matrix(key, value), f.OptionalPair(key, value)  [[a, b], [b, c]]; [a, b] or nothing
 #pragma once
 
@@ -73,12 +75,29 @@ void VisitFeedForward(F& f, A& feed_forward) {
 }
 
 template <class F, class A>
-void VisitFilter(F& f, A& section) {
+void VisitSection(F& f, A& section) {
   f.Guard("zeros", kFrequency, kPositive, section.zeros_rad_s);
   f.NumberGuard("zeros_damping", kNonNegative, section.zeros_damping);
   f.Quantity("poles", kFrequency, kPositive, section.poles_rad_s);
   f.Number("poles_damping", kPositive, section.poles_damping);
+}
+
+template <class F, class A>
+void VisitFilter(F& f, A& section) {
+  VisitSection(f, section);
   f.Stage("stage", section.stage);
+}
+
+template <class F, class A>
+void VisitScheduleEntry(F& f, const LawInfo& law, A& entry) {
+  f.Stage("stage", entry.stage);
+  f.Quantity("at", kTime, kPositive, entry.at_s);
+  VisitGains(f, entry.gains);
+  if (law.integral)
+    f.Number("ki_1_s3", kNonNegative, entry.ki_1_s3);
+  else
+    f.OfOtherLaws("ki_1_s3");
+  f.Sections("filters", entry.filters);
 }
 
 /// on(key, whether the axis' law needs it, visit) for each block; `visit` takes a visitor.

@@ -14,7 +14,9 @@
 
 namespace dispersa {
 
-Vehicle DecodeVehicle(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems);
+/// `warnings`, if given, receives what is possible but unusual (core/vehicle/plausibility.h).
+Vehicle DecodeVehicle(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems,
+                      std::vector<InputProblem>* warnings = nullptr);
 /// `stages`: of the vehicle that it flies, 0 if that is unknown (then nothing is checked against it).
 AutopilotConfig DecodeAutopilot(const InputNode& node, const std::string& path, int stages,
                                 std::vector<InputProblem>& problems);

@@ -30,6 +30,15 @@ class FieldReader {
     values = map_.Numbers(key, range, 1, kMaxStages);
   }
   void Stage(const char* key, int& stage) { stage = static_cast<int>(map_.Integer(key, 1, kMaxStages, 0)); }
+  void Sections(const char* key, std::vector<FilterSection>& sections) {
+    if (map_.Optional(key) == nullptr) return;
+    sections.clear();
+    map_.Each(key, 0, kFilterSections, [&](const InputNode& item, const std::string& item_path) {
+      FieldReader fields(item, item_path, map_.problems());
+      VisitSection(fields, sections.emplace_back());
+    });
+  }
+  void OfOtherLaws(const char* key) { map_.Ignore(key); }
   void Matrix(const char* key, Matrix2& value) {
     map_.Each(key, 2, 2, [&](const InputNode& row, const std::string& row_path) {
       if (row.kind != InputNode::Kind::kList || row.items.size() != 2) {
@@ -54,6 +63,14 @@ class FieldReader {
   MapReader map_;
 };
 
+// What a schedule's next entry has if it names no filters: those of the entry before, else the stage's own.
+std::vector<FilterSection> FiltersBefore(const AxisConfig& axis, int stage) {
+  if (!axis.schedule.empty() && axis.schedule.back().stage == stage) return axis.schedule.back().filters;
+  std::vector<FilterSection> own;
+  for (const std::size_t i : FiltersOfStage(axis, stage)) own.push_back(axis.filters[i]);
+  return own;
+}
+
 // The blocks that a law reads must be there; others may be (the same file with another law is a comparison).
 AxisConfig DecodeAxis(const InputNode& node, const std::string& path, ProblemList& problems) {
   MapReader map(node, path, problems);
@@ -70,6 +87,13 @@ AxisConfig DecodeAxis(const InputNode& node, const std::string& path, ProblemLis
   map.Each("filters", 0, kFilterSections, [&](const InputNode& item, const std::string& item_path) {
     FieldReader fields(item, item_path, problems);
     VisitFilter(fields, axis.filters.emplace_back());
+  });
+  map.Each("schedule", 0, SIZE_MAX, [&](const InputNode& item, const std::string& item_path) {
+    ScheduleEntry entry;
+    FieldReader fields(item, item_path, problems);
+    VisitScheduleEntry(fields, InfoOf(axis.law), entry);
+    if (item.Find("filters") == nullptr) entry.filters = FiltersBefore(axis, entry.stage);
+    axis.schedule.push_back(entry);
   });
   if (const InputNode* block = map.Optional("feed_forward")) {
     FieldReader fields(*block, map.PathOf("feed_forward"), problems);

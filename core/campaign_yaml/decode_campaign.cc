@@ -13,6 +13,7 @@
 #include "core/flight/engine_version.h"
 #include "core/flight/metrics.h"
 #include "core/flight/sensor_model.h"
+#include "core/flight/structural_limits.h"
 #include "core/math/functions.h"
 
 namespace dispersa {
@@ -23,6 +24,8 @@ using ProblemList = std::vector<InputProblem>;
 // A stream's index is 32 bits wide.
 constexpr std::uint64_t kMaxCases = 4294967295;
 constexpr std::uint64_t kMaxReplicates = 10000;
+// A workstation has so much for each process that flies.
+constexpr double kMaxDesignBytes = 4e9;
 // More looks than these are better served by an anytime plan.
 constexpr std::uint64_t kMaxLooks = 100;
 
@@ -265,6 +268,23 @@ void CheckDesign(const Campaign& campaign, const InputNode& sampling, ProblemLis
         add("the design has nothing to vary", "one dispersion or more with distribution: two_point");
       }
       break;
+    case SamplingMethod::kLatinHypercube: {
+      // Each process that flies holds the whole design.
+      const double bytes = 4.0 * static_cast<double>(campaign.sampling.cases) *
+                           static_cast<double>(campaign.dispersions.size());
+      if (bytes > kMaxDesignBytes) {
+        const auto most = static_cast<std::uint64_t>(kMaxDesignBytes / 4.0 /
+                                                     static_cast<double>(campaign.dispersions.size()));
+        AddProblem(problems, *sampling.Find("cases"), "sampling.cases",
+                   "a Latin hypercube of " + std::to_string(campaign.sampling.cases) + " cases and " +
+                       std::to_string(campaign.dispersions.size()) + " dispersions takes " +
+                       std::to_string(static_cast<std::uint64_t>(bytes / 1e9)) +
+                       " GB of memory in each process",
+                   "up to " + std::to_string(most) +
+                       " cases (4 GB), or method: monte_carlo or sobol, which take none");
+      }
+      break;
+    }
     case SamplingMethod::kGrid:
     case SamplingMethod::kList: {
       if (count(Distribution::kValues) == 0) {
@@ -283,10 +303,24 @@ void CheckDesign(const Campaign& campaign, const InputNode& sampling, ProblemLis
       break;
     }
     case SamplingMethod::kMonteCarlo:
-    case SamplingMethod::kLatinHypercube:
     case SamplingMethod::kSobol:
       break;
   }
+}
+
+// To the digits that people write: 1 - 0.95 is 0.05.
+double ShortShare(double value) { return std::round(value * 1e9) / 1e9; }
+
+// A number that was written as its counterpart: a share in percent, a risk as the confidence that it leaves.
+void HintAt(MapReader& map, const std::string& key, const Range& mistaken, const char* what,
+            double (*meant)(double), std::size_t problems_before) {
+  ProblemList& problems = map.problems();
+  const InputNode* node = map.node().Find(key);
+  if (node == nullptr || node->kind != InputNode::Kind::kScalar || problems.size() == problems_before) return;
+  const std::optional<double> value = ParseNumber(node->text);
+  if (value && mistaken.Contains(*value))
+    problems.back().message +=
+        std::string(", it is ") + what + " (did you mean " + FormatNumber(meant(*value)) + "?)";
 }
 
 Requirement DecodeRequirement(const InputNode& node, const std::string& path, const VerdictPlan& plan,
@@ -324,10 +358,35 @@ Requirement DecodeRequirement(const InputNode& node, const std::string& path, co
                            : "more than one limit is given",
                "either below: x, above: x or within: [low, high]");
   }
+  std::size_t before = problems.size();
   requirement.probability = map.Number("probability", Inside(0.0, 1.0));
+  HintAt(
+      map, "probability", Inside(1.0, 100.0), "in percent", [](double x) { return ShortShare(x / 100.0); },
+      before);
+  before = problems.size();
   requirement.consumer_risk = map.Number("consumer_risk", Inside(0.0, 0.5));
+  HintAt(
+      map, "consumer_risk", Inside(0.5, 1.0), "a confidence", [](double x) { return ShortShare(1.0 - x); },
+      before);
   requirement.plan = ReadPlan(map, plan);
   return requirement;
+}
+
+// Limits of a structure that nobody judges are none. A campaign that means something else by them states its
+// own requirement on the metric.
+void RequireLimitsKept(const VerdictPlan& plan, std::vector<Requirement>& requirements) {
+  constexpr char kMetric[] = "structural_limit_exceeded";
+  if (std::any_of(requirements.begin(), requirements.end(),
+                  [&](const Requirement& requirement) { return requirement.metric == kMetric; }))
+    return;
+  Requirement kept;
+  kept.metric = kMetric;
+  kept.below = 1.0;
+  kept.probability = 0.9973;  // what "3 sigma" of a normal variable means, both sides
+  kept.consumer_risk = 0.10;  // usual of such verdicts (NASA/TP-2010-216447)
+  kept.plan = plan;
+  kept.by_default = true;
+  requirements.push_back(std::move(kept));
 }
 
 GuidanceConfig DecodeGuidance(const InputNode& node, const Vehicle& vehicle, ProblemList& problems) {
@@ -384,7 +443,7 @@ DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vect
   map.Text("description", "");
 
   const InputNode& vehicle = map.Required("vehicle", "a vehicle file");
-  campaign.vehicle = DecodeVehicle(vehicle, PathOfPart(vehicle, root, "vehicle"), problems);
+  campaign.vehicle = DecodeVehicle(vehicle, PathOfPart(vehicle, root, "vehicle"), problems, warnings);
   const int stages = static_cast<int>(campaign.vehicle.stages.size());
 
   const InputNode* reference = map.Optional("reference");
@@ -443,6 +502,15 @@ DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vect
              campaign.requirements.push_back(DecodeRequirement(item, path, plan, problems));
            });
 
+  if (HasLimits(campaign.vehicle.limits)) RequireLimitsKept(plan, campaign.requirements);
+
+  if (warnings != nullptr && problems.empty() && !campaign.reference.target_missed.empty()) {
+    AddProblem(
+        *warnings, *reference->Find("target_missed"),
+        PathOfPart(*reference, root, "reference").empty() ? "target_missed" : "reference.target_missed",
+        "the reference misses its own target: " + campaign.reference.target_missed,
+        "a reference that reaches it");
+  }
   if (warnings != nullptr && problems.empty() && reference != nullptr &&
       campaign.reference.vehicle_sha256 != VehicleSha256(vehicle)) {
     AddProblem(*warnings, *reference, PathOfPart(*reference, root, "reference"),
@@ -455,9 +523,10 @@ DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vect
 std::string VehicleSha256(const InputNode& vehicle) {
   InputNode rigid = vehicle;
   std::erase_if(rigid.members, [](const InputMember& member) {
-    return member.key == "structure_beam" || member.key == "sensors" || member.key == "nozzles";
+    return member.key == "structure_beam" || member.key == "sensors" || member.key == "nozzles" ||
+           member.key == "limits";
   });
-  // Nor does a point mass know what its actuators lack.
+  // Nor does a point mass know what its actuators lack, or what its structure bears.
   if (InputNode* stages = rigid.Find("stages"))
     for (InputNode& stage : stages->items)
       if (InputNode* gimbal = stage.Find("gimbal"))

@@ -5,6 +5,7 @@
 #include "core/campaign_yaml/decode_distribution.h"
 #include "core/campaign_yaml/yaml_reader.h"
 #include "core/environment/turbulence.h"
+#include "core/math/functions.h"
 
 namespace dispersa {
 namespace {
@@ -38,11 +39,13 @@ class DispersionDecoder {
 
   void Decode() {
     Lateral("thrust_misalignment", {kAngle, kAnyNumber}, {"thrust_misalignment", "_deg"},
-            {"thrust_misalignment_clock", "_deg"});
-    Lateral("thrust_offset", {kLength, kAnyNumber}, {"thrust_offset", "_m"}, {"thrust_offset_clock", "_deg"});
+            {"thrust_misalignment_clock", "_deg"}, "nozzle_misalignment");
+    Lateral("thrust_offset", {kLength, kAnyNumber}, {"thrust_offset", "_m"}, {"thrust_offset_clock", "_deg"},
+            "nozzle_offset");
     Lateral("center_of_gravity_offset", {kLength, kAnyNumber}, {"cg_offset", "_m"}, {"cg_offset_clock", "_deg"});
     Thrust();
     StageFactor("burn_rate", {{"thrust_factor", ""}, {"mass_flow_factor", ""}});
+    PropellantTemperature();
     StageFactor("specific_impulse", {{"specific_impulse_factor", ""}});
     Wind();
     Gust();
@@ -91,13 +94,28 @@ class DispersionDecoder {
     if (!per_stage) Add(name, distribution, std::move(all), absolute);
   }
 
+  enum class Per { kStage, kVehicle, kNozzle };
+  static Per PerWhat(MapReader& map, bool nozzles) {
+    if (!nozzles) return PerStage(map) ? Per::kStage : Per::kVehicle;
+    return map.Choice<Per>("per",
+                           {{"stage", Per::kStage}, {"vehicle", Per::kVehicle}, {"nozzle", Per::kNozzle}});
+  }
   static bool PerStage(MapReader& map) {
     return map.Choice<bool>("per", {{"stage", true}, {"vehicle", false}});
   }
+  // One draw a nozzle.
+  void AddNozzles(const std::string& name, const ScalarDistribution& distribution, const StageColumn& column,
+                  bool absolute = false) {
+    for (int stage = 1; stage <= stages_; ++stage)
+      for (const std::string nozzle : kNozzleNames)
+        Add(name + "/" + StageName(stage) + "_" + nozzle, distribution,
+            {Column(column.stem + "_" + StageName(stage) + "_" + nozzle + column.unit_suffix)}, absolute);
+  }
 
-  // A magnitude and the direction of it around the axis.
+  // A magnitude and the direction of it around the axis; `of_nozzle`: the stem of a nozzle's own columns, if
+  // it has.
   void Lateral(const std::string& key, const DispersedScalar& scalar, const StageColumn& magnitude,
-               const StageColumn& clock) {
+               const StageColumn& clock, const std::string& of_nozzle = "") {
     const InputNode* node = map_.Optional(key);
     if (node == nullptr) return;
     MapReader map(*node, map_.PathOf(key), problems_);
@@ -105,9 +123,14 @@ class DispersionDecoder {
     const ScalarDistribution direction =
         ReadDirection(map.Required("clock_angle", "uniform, {fixed_deg: x} or a distribution"),
                       map.PathOf("clock_angle"), problems_);
-    const bool per_stage = PerStage(map);
-    AddStages(key, per_stage, distribution, {magnitude}, true);
-    AddStages(key + "/clock", per_stage, direction, {clock});
+    const Per per = PerWhat(map, !of_nozzle.empty());
+    if (per == Per::kNozzle) {
+      AddNozzles(key, distribution, {of_nozzle, magnitude.unit_suffix}, true);
+      AddNozzles(key + "/clock", direction, {of_nozzle + "_clock", clock.unit_suffix});
+      return;
+    }
+    AddStages(key, per == Per::kStage, distribution, {magnitude}, true);
+    AddStages(key + "/clock", per == Per::kStage, direction, {clock});
   }
 
   void Thrust() {
@@ -118,7 +141,15 @@ class DispersionDecoder {
     const bool flow_follows = map.Choice<bool>("conserve", {{"total_impulse", true}, {"propellant", false}});
     std::vector<StageColumn> columns = {{"thrust_factor", ""}};
     if (flow_follows) columns.push_back({"mass_flow_factor", ""});
-    AddStages("thrust", PerStage(map), distribution, columns);
+    const Per per = PerWhat(map, true);
+    if (per != Per::kNozzle) {
+      AddStages("thrust", per == Per::kStage, distribution, columns);
+      return;
+    }
+    if (flow_follows)
+      AddProblem(problems_, *node, map.PathOf("conserve"), "the flow is the whole motor's, not a nozzle's",
+                 "conserve: propellant with per: nozzle");
+    AddNozzles("thrust", distribution, {"nozzle_thrust_factor", ""});
   }
 
   void StageFactor(const std::string& key, const std::vector<StageColumn>& columns) {
@@ -127,6 +158,41 @@ class DispersionDecoder {
     MapReader map(*node, map_.PathOf(key), problems_);
     const ScalarDistribution distribution = ReadDistribution(map, kPositiveFactor);
     AddStages(key, PerStage(map), distribution, columns);
+  }
+
+  // A grain burns the faster the warmer it is: at constant burning surface pressure, thrust and flow grow as
+  // exp(pi_K dT), and the total impulse stays (Sutton and Biblarz, Rocket Propulsion Elements, 7th ed., sect. 11.1).
+  void PropellantTemperature() {
+    const InputNode* node = map_.Optional("propellant_temperature");
+    if (node == nullptr) return;
+    const std::string path = map_.PathOf("propellant_temperature");
+    MapReader map(*node, path, problems_);
+    const std::size_t before = problems_.size();
+    ScalarDistribution rate = ReadDistribution(map, {kTemperatureDifference, Between(-200.0, 200.0)});
+    const double sensitivity_1_k = map.Quantity("sensitivity", kPerTemperature, {0.0, 0.02, true, false});
+    const bool per_stage = PerStage(map);
+    if (problems_.size() > before) return;
+    const auto rate_at = [&](double warmer_k) { return Exp(sensitivity_1_k * warmer_k); };
+    switch (rate.kind) {
+      case Distribution::kNormal:  // of the temperature, hence lognormal of the rate
+        rate.kind = Distribution::kLogNormal;
+        rate.sigma *= sensitivity_1_k;
+        break;
+      case Distribution::kConstant:
+      case Distribution::kTwoPoint:
+      case Distribution::kValues:
+        rate.low = rate_at(rate.low);
+        rate.high = rate_at(rate.high);
+        for (double& value : rate.values) value = rate_at(value);
+        break;
+      default:
+        AddProblem(problems_, *node->Find("distribution"), path + ".distribution",
+                   "'" + node->Find("distribution")->text + "' is not among those of a temperature",
+                   "normal, two_point, values or constant");
+        return;
+    }
+    rate.nominal = rate_at(rate.nominal);
+    AddStages("propellant_temperature", per_stage, rate, {{"thrust_factor", ""}, {"mass_flow_factor", ""}});
   }
 
   // One draw a mode, or one for all of them.
@@ -266,6 +332,7 @@ class DispersionDecoder {
                  "one value an altitude in each column");
       return false;
     }
+    if (!CheckIncreasing(node, path, "altitude_m", table.altitude_m, problems_)) return false;
     for (const std::string& sentence : Problems(table)) AddProblem(problems_, node, path, sentence);
     return problems_.size() == problems_before;
   }

@@ -165,6 +165,7 @@ Reference DecodeReference(const InputNode& node, const std::string& path,
   MapReader map(node, path, problems);
   map.Ignore("schema");
   reference.name = map.Text("name");
+  reference.target_missed = map.Text("target_missed", "");
   reference.problem =
       DecodeTrajectoryProblem(map.Required("problem", "a map"), map.PathOf("problem"), problems);
   reference.program = DecodeProgram(map.Required("flight_program", "a map"), map.PathOf("flight_program"),

@@ -30,19 +30,6 @@ bool HaveEqualSizes(const InputNode& node, const std::string& path,
   return true;
 }
 
-// The first value of a column that is not above the one before; true if there is none.
-bool IsIncreasing(const InputNode& node, const std::string& path, const std::string& key,
-                  const std::vector<double>& values, ProblemList& problems) {
-  for (std::size_t i = 1; i < values.size(); ++i) {
-    if (values[i] > values[i - 1]) continue;
-    const std::string item = key + "[" + std::to_string(i) + "]";
-    AddProblem(problems, node.Find(key)->items[i], path.empty() ? item : path + "." + item,
-               "is not above the one before", "values strictly increasing");
-    return false;
-  }
-  return true;
-}
-
 Table2D ConstantTable(double value) { return {{0.0, 1.0}, {0.0, 1.0}, {value, value, value, value}}; }
 
 // A grid needs two points of each argument; one that does not vary gets a second one.
@@ -95,8 +82,8 @@ Table2D DecodeGrid(const InputNode& node, const std::string& path, const std::st
   for (std::size_t i = 0; i < values.size(); i += columns) table.x.push_back(mach[i]);
   table.y.assign(incidence.begin(), incidence.begin() + static_cast<std::ptrdiff_t>(columns));
   table.z = values;
-  if (!has_incidence && columns == 1 && !IsIncreasing(node, path, "mach", mach, problems)) return {};
-  if (!has_mach && !IsIncreasing(node, path, incidence_key, incidence, problems)) return {};
+  if (!has_incidence && columns == 1 && !CheckIncreasing(node, path, "mach", mach, problems)) return {};
+  if (!has_mach && !CheckIncreasing(node, path, incidence_key, incidence, problems)) return {};
   for (std::size_t row = 0; row < values.size(); ++row) {
     const std::size_t column = row % columns;
     const bool mach_fits = column > 0 ? mach[row] == mach[row - 1] : row == 0 || mach[row] > mach[row - 1];
@@ -320,7 +307,7 @@ WindTable DecodeWindTable(const InputNode& node, const std::string& path, Proble
   }
   if (problems.size() > before || node.file == nullptr) return table;
   if (HaveEqualSizes(node, path, {&table.altitude_m, &table.north_m_s, &table.east_m_s}, problems))
-    IsIncreasing(node, path, "altitude_m", table.altitude_m, problems);
+    CheckIncreasing(node, path, "altitude_m", table.altitude_m, problems);
   return table;
 }
 

@@ -5,6 +5,7 @@
 #include "core/campaign_yaml/inline_files.h"
 #include "core/campaign_yaml/struct_problems.h"
 #include "core/campaign_yaml/yaml_reader.h"
+#include "core/vehicle/plausibility.h"
 
 namespace dispersa {
 namespace {
@@ -23,15 +24,19 @@ LaunchSite DecodeSite(const InputNode& node, const std::string& path, ProblemLis
   return site;
 }
 
-// Times and thrusts of a curve, each problem at its own line of the table.
+// Times, thrusts and flows, if there are any, of a curve, each problem at its own line of the table.
 ThrustCurve DecodeCurveTable(const InputNode& node, const std::string& path, ProblemList& problems) {
   ThrustCurve curve;
   const std::size_t before = problems.size();
-  std::string time_key, thrust_key;
+  std::string time_key, thrust_key, flow_key;
   {
     MapReader map(node, path, problems);
     curve.time_s = map.Quantities("time", kTime, kNonNegative, 2, kThrustCurveCorners, &time_key);
     curve.thrust_n = map.Quantities("thrust", kForce, kNonNegative, 2, kThrustCurveCorners, &thrust_key);
+    if (map.Has("mass_flow", kMassFlow))
+      curve.flow_kg_s = map.Quantities("mass_flow", kMassFlow, kNonNegative, 2, kThrustCurveCorners, &flow_key);
+    else
+      map.IgnoreQuantity("mass_flow", kMassFlow);
   }
   if (node.file == nullptr || problems.size() > before) return {};
   const auto path_of = [&](const std::string& key, std::size_t i) {
@@ -45,6 +50,13 @@ ThrustCurve DecodeCurveTable(const InputNode& node, const std::string& path, Pro
                "one thrust for each time");
     return {};
   }
+  if (!flow_key.empty() && curve.flow_kg_s.size() != curve.time_s.size()) {
+    AddProblem(problems, node, path,
+               "there are " + std::to_string(curve.time_s.size()) + " times and " +
+                   std::to_string(curve.flow_kg_s.size()) + " mass flows",
+               "one mass flow for each time, or none at all");
+    return {};
+  }
   if (curve.time_s[0] != 0.0)
     AddProblem(problems, times[0], path_of(time_key, 0), times[0].Describe() + " is not the time of ignition",
                "0 as the first time");
@@ -56,6 +68,9 @@ ThrustCurve DecodeCurveTable(const InputNode& node, const std::string& path, Pro
   if (curve.Greatest() == 0.0)
     AddProblem(problems, *node.Find(thrust_key), path.empty() ? thrust_key : path + "." + thrust_key,
                "the thrust is 0 at all times", "a thrust above 0 somewhere");
+  if (!flow_key.empty() && curve.Flown() == 0.0)
+    AddProblem(problems, *node.Find(flow_key), path.empty() ? flow_key : path + "." + flow_key,
+               "the mass flow is 0 at all times", "a mass flow above 0 somewhere");
   return problems.size() > before ? ThrustCurve{} : curve;
 }
 
@@ -65,7 +80,7 @@ ThrustCurve DecodeThrustCurve(const InputNode& node, const std::string& path, do
   MapReader map(node, path, problems);
   const bool is_in_vacuum = map.Choice<bool>("reference", {{"vacuum", true}, {"sea_level", false}});
   const InputNode& table =
-      map.Required("table", "a CSV file (time_s, thrust_n), an .eng file, or both columns");
+      map.Required("table", "a CSV file (time_s, thrust_n, optional mass_flow_kg_s), an .eng file, or the columns");
   const ThrustCurve curve =
       DecodeCurveTable(table, table.file == node.file ? map.PathOf("table") : "", problems);
   if (is_in_vacuum) return curve;
@@ -299,6 +314,7 @@ Sensors DecodeSensors(const InputNode& node, const std::string& path, ProblemLis
 StructuralLimits DecodeLimits(const InputNode& node, const std::string& path, ProblemList& problems) {
   MapReader map(node, path, problems);
   StructuralLimits limits;
+  limits.q_max_pa = map.Quantity("q_max", kPressure, kPositive, 0.0);
   limits.q_alpha_pa_rad = map.Quantity("q_alpha", kPressureAngle, kPositive, 0.0);
   limits.axial_load_g = map.Quantity("axial_load", kAcceleration, kPositive, 0.0);
   limits.lateral_load_g = map.Quantity("lateral_load", kAcceleration, kPositive, 0.0);
@@ -307,9 +323,22 @@ StructuralLimits DecodeLimits(const InputNode& node, const std::string& path, Pr
   return limits;
 }
 
+void CheckPlausibility(const Vehicle& vehicle, const InputNode& node, const std::string& path,
+                       ProblemList& problems, ProblemList* warnings) {
+  std::vector<PlausibilityFinding> impossible, unusual;
+  for (PlausibilityFinding& finding : Plausibility(vehicle))
+    (finding.impossible ? impossible : unusual).push_back(std::move(finding));
+  AddStructProblems(impossible, node, path, problems);
+  if (warnings == nullptr) return;
+  const std::size_t before = warnings->size();
+  AddStructProblems(unusual, node, path, *warnings);
+  for (std::size_t i = before; i < warnings->size(); ++i) (*warnings)[i].unusual = true;
+}
+
 }  // namespace
 
-Vehicle DecodeVehicle(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems) {
+Vehicle DecodeVehicle(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems,
+                      std::vector<InputProblem>* warnings) {
   const std::size_t before = problems.size();
   Vehicle vehicle;
   if (node.file == nullptr) return vehicle;  // already reported
@@ -320,6 +349,7 @@ Vehicle DecodeVehicle(const InputNode& node, const std::string& path, std::vecto
     vehicle.name = map.Text("name");
     vehicle.site = DecodeSite(map.Required("site", "a map"), map.PathOf("site"), problems);
     vehicle.hold_down_s = map.Quantity("hold_down", kTime, kNonNegative, 0.0);
+    vehicle.made_up = map.Flag("made_up", false);
     vehicle.jet_damping = map.Flag("jet_damping", true);
     vehicle.flow_coriolis = map.Flag("flow_coriolis", true);
     vehicle.surface_roughness_m = map.Quantity("surface_roughness", kLength, kNonNegative, 0.0);
@@ -361,6 +391,7 @@ Vehicle DecodeVehicle(const InputNode& node, const std::string& path, std::vecto
     }
   }
   if (problems.size() == before) AddStructProblems(Problems(vehicle), node, path, problems);
+  if (problems.size() == before) CheckPlausibility(vehicle, node, path, problems, warnings);
   return vehicle;
 }
 

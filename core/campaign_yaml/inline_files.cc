@@ -59,7 +59,7 @@ Parse ThrustCurveParser(std::vector<InputProblem>& problems) {
     std::string end = std::filesystem::path(file).extension().string();
     for (char& c : end) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
     return end == ".eng" ? ParseRasp(text, file, problems)
-                         : ParseCsv(text, file, kThrustCurveColumns, problems);
+                         : ParseCsv(text, file, kThrustCurveColumns, problems, {kFlowColumn});
   };
 }
 

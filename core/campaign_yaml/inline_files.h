@@ -22,6 +22,7 @@ inline const std::vector<std::string> kWindStatisticsColumns = {
 inline const std::vector<std::string> kAeroTableColumns = {
     "mach", "incidence_deg", "ca", "cn", "xcp_station_m", "cmq_per_rad", "clp_per_rad"};
 inline const std::vector<std::string> kThrustCurveColumns = {"time_s", "thrust_n"};
+inline constexpr char kFlowColumn[] = "mass_flow_kg_s";  ///< which a thrust curve may have besides
 inline const std::vector<std::string> kMassTableColumns = {"propellant_kg", "mass_kg",   "cg_station_m",
                                                            "ixx_kg_m2",     "iyy_kg_m2", "izz_kg_m2",
                                                            "ixy_kg_m2",     "ixz_kg_m2", "iyz_kg_m2"};

@@ -92,11 +92,12 @@ Campaign ParseCampaign(const std::string& yaml_text, const std::string& display_
   return FinishCampaign(std::move(root), FileNames::kRefused, {}, std::move(problems), nullptr);
 }
 
-OptimizationInput LoadOptimization(const std::string& path, std::optional<std::uint64_t> seed) {
+OptimizationInput LoadOptimization(const std::string& path, std::optional<std::uint64_t> seed,
+                                   std::vector<InputProblem>* warnings) {
   ProblemList problems;
   InputNode root = ReadYamlFile(path, problems);
   InlineCampaignFiles(root, FileNames::kAllowed, problems);
-  DecodedCampaign decoded = DecodeCampaign(root, CampaignUse::kOptimize, problems, nullptr);
+  DecodedCampaign decoded = DecodeCampaign(root, CampaignUse::kOptimize, problems, warnings);
   ThrowIfAny(std::move(problems));
   OptimizationInput input;
   input.name = decoded.campaign.name;
@@ -109,11 +110,11 @@ OptimizationInput LoadOptimization(const std::string& path, std::optional<std::u
   return input;
 }
 
-Vehicle LoadVehicle(const std::string& path) {
+Vehicle LoadVehicle(const std::string& path, std::vector<InputProblem>* warnings) {
   ProblemList problems;
   InputNode root = ReadYamlFile(path, problems);
   InlineVehicleFiles(root, FileNames::kAllowed, problems);
-  Vehicle vehicle = DecodeVehicle(root, "", problems);
+  Vehicle vehicle = DecodeVehicle(root, "", problems, warnings);
   ThrowIfAny(std::move(problems));
   return vehicle;
 }
@@ -166,8 +167,9 @@ AutopilotConfig ReadAutopilot(const std::string& yaml_text, const std::string& d
   return autopilot;
 }
 
-std::vector<InputProblem> ValidateFile(const std::string& path) {
-  ProblemList problems;
+FileCheck CheckFile(const std::string& path) {
+  FileCheck check;
+  ProblemList& problems = check.errors;
   InputNode root = ReadYamlFile(path, problems);
   const InputNode* schema = root.Find("schema");
   if (root.file == nullptr) {
@@ -176,10 +178,11 @@ std::vector<InputProblem> ValidateFile(const std::string& path) {
     AddProblem(problems, root, "", "missing key 'schema'", SchemaNames());
   } else if (schema->text == kCampaignSchema) {
     InlineCampaignFiles(root, FileNames::kAllowed, problems);
-    DecodeCampaign(root, CampaignUse::kCheck, problems, nullptr);
+    check.vehicle = DecodeCampaign(root, CampaignUse::kCheck, problems, &check.warnings).campaign.vehicle;
   } else if (schema->text == kVehicleSchema) {
     InlineVehicleFiles(root, FileNames::kAllowed, problems);
-    DecodeVehicle(root, "", problems);
+    check.vehicle = DecodeVehicle(root, "", problems, &check.warnings);
+    check.is_vehicle = true;
   } else if (schema->text == kAutopilotSchema) {
     DecodeAutopilot(root, "", 0, problems);
   } else if (schema->text == kReferenceSchema) {
@@ -190,8 +193,15 @@ std::vector<InputProblem> ValidateFile(const std::string& path) {
   } else {
     AddProblem(problems, *schema, "schema", schema->Describe() + " is not a schema", SchemaNames());
   }
+  if (!problems.empty()) {
+    check.vehicle.reset();
+    check.warnings.clear();
+  }
   SortByPlace(problems);
-  return problems;
+  SortByPlace(check.warnings);
+  return check;
 }
+
+std::vector<InputProblem> ValidateFile(const std::string& path) { return CheckFile(path).errors; }
 
 }  // namespace dispersa

@@ -24,7 +24,8 @@ struct CampaignOverrides {
 };
 
 /// The campaign of a file, to be flown: it must have a `reference`, not an `optimize` block. `warnings`, if
-/// given, receives what looks wrong but is legal (a reference that was found for another vehicle).
+/// given, receives what looks wrong but is legal (a reference that was found for another vehicle, a vehicle
+/// like none that is known).
 Campaign LoadCampaign(const std::string& path, const CampaignOverrides& overrides = {},
                       std::vector<InputProblem>* warnings = nullptr);
 /// The campaign of a canonical text (Campaign::canonical_yaml, a result folder's campaign.yaml), in which
@@ -43,9 +44,10 @@ struct OptimizationInput {
   std::optional<AutopilotConfig> autopilot;  ///< the campaign's, if it has one: to fly what was found
 };
 /// `seed` replaces the problem's.
-OptimizationInput LoadOptimization(const std::string& path, std::optional<std::uint64_t> seed = {});
+OptimizationInput LoadOptimization(const std::string& path, std::optional<std::uint64_t> seed = {},
+                                   std::vector<InputProblem>* warnings = nullptr);
 
-Vehicle LoadVehicle(const std::string& path);
+Vehicle LoadVehicle(const std::string& path, std::vector<InputProblem>* warnings = nullptr);
 AutopilotConfig LoadAutopilot(const std::string& path);
 Reference LoadReference(const std::string& path);
 Scenario LoadScenario(const std::string& path);
@@ -66,7 +68,15 @@ std::string WriteAutopilot(const AutopilotConfig& autopilot);
 /// The autopilot in a text, as LoadAutopilot.
 AutopilotConfig ReadAutopilot(const std::string& yaml_text, const std::string& display_name);
 
-/// Every problem of a file of any kind, found by its `schema`; empty when it is valid.
+/// What is to be said of a file of any kind, found by its `schema`.
+struct FileCheck {
+  std::vector<InputProblem> errors;    ///< every one; empty when the file is valid
+  std::vector<InputProblem> warnings;  ///< of a valid one
+  bool is_vehicle = false;
+  std::optional<Vehicle> vehicle;  ///< of a valid vehicle or campaign
+};
+FileCheck CheckFile(const std::string& path);
+/// Its errors.
 std::vector<InputProblem> ValidateFile(const std::string& path);
 
 /// 64 lower-case hexadecimal digits.

@@ -11,6 +11,8 @@
 #include <set>
 #include <sstream>
 
+#include "core/campaign_yaml/text_problems.h"
+
 namespace dispersa {
 namespace {
 
@@ -158,6 +160,7 @@ InputNode ParseYaml(const std::string& text, const std::string& file, std::vecto
     problems.push_back({file, 1, 1, "", "the file is too large", "up to 64 MiB"});
     return {};
   }
+  if (!CheckUtf8(text, file, problems)) return {};
   const auto shared_file = std::make_shared<const std::string>(file);
   TreeBuilder builder(shared_file, problems);
   try {
@@ -177,6 +180,8 @@ InputNode ParseYaml(const std::string& text, const std::string& file, std::vecto
     problems.push_back({file, limit.mark.line + 1, limit.mark.column + 1, "", limit.message, limit.allowed});
     return {};
   } catch (const YAML::Exception& error) {
+    // The parser's own words are of what the tab led to.
+    if (!CheckIndentation(text, file, error.mark.line + 1, problems)) return {};
     problems.push_back({file, error.mark.line + 1, error.mark.column + 1, "", "not YAML: " + error.msg, ""});
     return {};
   }

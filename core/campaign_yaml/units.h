@@ -28,7 +28,7 @@ inline constexpr Unit kForce[] = {{"n", 1.0}, {"kn", 1e3}};
 inline constexpr Unit kMoment[] = {{"n_m", 1.0}, {"kn_m", 1e3}};
 inline constexpr Unit kPressure[] = {{"pa", 1.0}, {"kpa", 1e3}};
 inline constexpr Unit kPressureAngle[] = {{"pa_rad", 1.0}, {"kpa_rad", 1e3}, {"pa_deg", kRadPerDeg}};
-inline constexpr Unit kSpeed[] = {{"m_s", 1.0}, {"km_s", 1e3}};
+inline constexpr Unit kSpeed[] = {{"m_s", 1.0}, {"km_s", 1e3}, {"km_h", 1.0 / 3.6}};
 inline constexpr Unit kAcceleration[] = {{"g", 1.0}};
 inline constexpr Unit kAngle[] = {{"deg", kRadPerDeg}, {"rad", 1.0}};
 inline constexpr Unit kAngularRate[] = {{"deg_s", kRadPerDeg}, {"rad_s", 1.0}};
@@ -38,18 +38,35 @@ inline constexpr Unit kPerTime[] = {{"1_s", 1.0}};
 inline constexpr Unit kPerTimeSquared[] = {{"1_s2", 1.0}};
 inline constexpr Unit kPerLength[] = {{"per_km", 1e-3}, {"per_m", 1.0}};
 inline constexpr Unit kPerSpeed[] = {{"per_m_s", 1.0}};
+inline constexpr Unit kTemperatureDifference[] = {{"k", 1.0}};
+inline constexpr Unit kPerTemperature[] = {{"percent_per_k", 1e-2}};
 inline constexpr Unit kPerAngle[] = {{"per_deg", kDegPerRad}, {"per_rad", 1.0}};
 
 /// What may stand behind the last underscores of a key and is a unit, ours or not: to tell a wrong unit from
 /// a wrong name.
 inline constexpr std::string_view kUnitLike[] = {
-    "m",      "km",    "mm",   "um",     "cm",     "ft",      "in",      "mi",      "nmi",     "m2",
-    "ft2",    "s",     "ms",   "min",    "h",      "kg",      "ton",     "t",       "g",       "lb",
-    "lbm",    "slug",  "kg_s", "lb_s",   "n",      "kn",      "mn",      "lbf",     "pa",      "kpa",
-    "bar",    "psf",   "psi",  "pa_rad", "pa_deg", "kpa_rad", "m_s",     "km_s",    "ft_s",    "kt",
-    "kts",    "mph",   "deg",  "rad",    "arcmin", "deg_s",   "rad_s",   "hz",      "rpm",     "deg_s2",
-    "rad_s2", "1_s",   "1_s2", "1_s3",   "per_km", "per_m",   "per_m_s", "per_deg", "per_rad", "percent",
-    "factor", "kg_m2", "kg_m", "gpa",    "mpa",    "n_m2",    "kn_m2",   "mn_m2",   "1_m",
-    "n_m",    "kn_m"};
+    "m",       "km",     "mm",    "um",     "cm",     "ft",      "in",    "mi",      "nmi",     "m2",
+    "ft2",     "s",      "ms",    "min",    "h",      "kg",      "ton",   "t",       "g",       "lb",
+    "lbm",     "slug",   "kg_s",  "lb_s",   "n",      "kn",      "mn",    "lbf",     "pa",      "kpa",
+    "bar",     "psf",    "psi",   "pa_rad", "pa_deg", "kpa_rad", "m_s",   "km_s",    "km_h",    "ft_s",
+    "kt",      "kts",    "mph",   "deg",    "rad",    "arcmin",  "deg_s", "rad_s",   "hz",      "rpm",
+    "deg_s2",  "rad_s2", "1_s",   "1_s2",   "1_s3",   "per_km",  "per_m", "per_m_s", "per_deg", "per_rad",
+    "percent", "factor", "kg_m2", "kg_m",   "gpa",    "mpa",     "n_m2",  "kn_m2",   "mn_m2",   "1_m",
+    "n_m",     "kn_m",   "k",     "percent_per_k"};
+
+/// How people write a unit else, and what it is called here.
+struct UnitSpelling {
+  std::string_view written;
+  std::string_view meant;
+};
+inline constexpr UnitSpelling kUnitSpellings[] = {
+    {"kmh", "km_h"},   {"kph", "km_h"},    {"kmph", "km_h"},     {"km_hr", "km_h"},    {"mps", "m_s"},
+    {"ms", "m_s"},     {"kms", "km_s"},    {"kmps", "km_s"},     {"meter", "m"},       {"meters", "m"},
+    {"metre", "m"},    {"metres", "m"},    {"kilometers", "km"}, {"kilometres", "km"}, {"sec", "s"},
+    {"secs", "s"},     {"seconds", "s"},   {"msec", "ms"},       {"degree", "deg"},    {"degrees", "deg"},
+    {"radian", "rad"}, {"radians", "rad"}, {"degs", "deg_s"},    {"dps", "deg_s"},     {"deg_sec", "deg_s"},
+    {"rads", "rad_s"}, {"rps", "rad_s"},   {"rad_sec", "rad_s"}, {"hertz", "hz"},      {"tons", "ton"},
+    {"tonne", "ton"},  {"tonnes", "ton"},  {"t", "ton"},         {"kgs", "kg"},        {"newton", "n"},
+    {"newtons", "n"},  {"pascal", "pa"},   {"kgm2", "kg_m2"},    {"kgs2", "kg_s"},     {"sqm", "m2"}};
 
 }  // namespace dispersa

@@ -42,6 +42,8 @@ class FieldWriter {
   void Stage(const char* key, int stage) {
     if (stage != 0) Add(key, std::to_string(stage));
   }
+  void Sections(const char* key, const std::vector<FilterSection>& sections);
+  void OfOtherLaws(const char*) {}
   void Matrix(const char* key, const Matrix2& value) {
     Add(key, "[" + Row(value(0, 0), value(0, 1)) + ", " + Row(value(1, 0), value(1, 1)) + "]");
   }
@@ -59,6 +61,16 @@ std::string OnOneLine(const std::vector<std::string>& texts) {
   return line + "}";
 }
 
+void FieldWriter::Sections(const char* key, const std::vector<FilterSection>& sections) {
+  std::string list;
+  for (const FilterSection& section : sections) {
+    FieldWriter fields;
+    VisitSection(fields, section);
+    list += (list.empty() ? "[" : ", ") + OnOneLine(fields.texts);
+  }
+  if (!list.empty()) Add(key, list + "]");
+}
+
 std::string AxisText(const char* name, const AxisConfig& axis) {
   std::string text = std::string(name) + ":\n  law: " + InfoOf(axis.law).name + "\n  gains:\n";
   for (const AxisGains& gains : axis.gains) {
@@ -70,6 +82,12 @@ std::string AxisText(const char* name, const AxisConfig& axis) {
   for (const FilterSection& section : axis.filters) {
     FieldWriter fields;
     VisitFilter(fields, section);
+    text += "    - " + OnOneLine(fields.texts) + "\n";
+  }
+  if (!axis.schedule.empty()) text += "  schedule:\n";
+  for (const ScheduleEntry& entry : axis.schedule) {
+    FieldWriter fields;
+    VisitScheduleEntry(fields, InfoOf(axis.law), entry);
     text += "    - " + OnOneLine(fields.texts) + "\n";
   }
   if (axis.feed_forward) {

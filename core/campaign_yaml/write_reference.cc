@@ -69,6 +69,7 @@ std::string WriteReference(const Reference& reference) {
   const TrajectoryProblem& problem = reference.problem;
   std::string text = std::string("schema: ") + kReferenceSchema + "\n";
   text += "name: " + Quoted(reference.name) + "\n";
+  if (!reference.target_missed.empty()) text += "target_missed: " + Quoted(reference.target_missed) + "\n";
   text += ProblemText(problem);
   text += "flight_program:\n";
   text += "  alpha_max_deg: " + Deg(program.alpha_max_rad) + "\n";

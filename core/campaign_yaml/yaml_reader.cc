@@ -55,6 +55,17 @@ bool IsUnitLike(std::string_view suffix) {
   return std::find(std::begin(kUnitLike), std::end(kUnitLike), suffix) != std::end(kUnitLike);
 }
 
+// The key among `keys` that a unit written otherwise stands for, or empty.
+std::string MeantKey(const std::string& stem, std::string suffix, const std::vector<std::string>& keys) {
+  for (char& c : suffix) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  std::vector<std::string> candidates = {stem + "_" + suffix};
+  for (const UnitSpelling& spelling : kUnitSpellings)
+    if (spelling.written == suffix) candidates.push_back(stem + "_" + std::string(spelling.meant));
+  for (const std::string& candidate : candidates)
+    if (std::find(keys.begin(), keys.end(), candidate) != keys.end()) return candidate;
+  return "";
+}
+
 std::string CountText(std::size_t low, std::size_t high) {
   if (low == high) return "a list of " + std::to_string(low);
   if (high == SIZE_MAX) return "a list of " + std::to_string(low) + " or more";
@@ -109,6 +120,18 @@ double ReadNumber(const InputNode& node, const std::string& path, std::vector<In
     return 0.0;
   }
   return *value * scale;
+}
+
+bool CheckIncreasing(const InputNode& table, const std::string& path, const std::string& key,
+                     const std::vector<double>& values, std::vector<InputProblem>& problems) {
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    if (values[i] > values[i - 1]) continue;
+    const std::string item = key + "[" + std::to_string(i) + "]";
+    AddProblem(problems, table.Find(key)->items[i], path.empty() ? item : path + "." + item,
+               "is not above the one before", "values strictly increasing");
+    return false;
+  }
+  return true;
 }
 
 std::string ReadText(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems) {
@@ -348,16 +371,21 @@ void MapReader::Finish() {
     at.column = member.column;
     const std::string path = PathOf(member.key);
 
+    std::string meant;
     const auto quantity = std::find_if(quantities_.begin(), quantities_.end(), [&](const auto& entry) {
-      const std::string& stem = entry.first;
-      return member.key == stem || (member.key.starts_with(stem + "_") &&
-                                    IsUnitLike(std::string_view(member.key).substr(stem.size() + 1)));
+      const auto& [stem, keys] = entry;
+      if (member.key == stem) meant = keys.front();
+      if (!member.key.starts_with(stem + "_")) return member.key == stem;
+      const std::string suffix = member.key.substr(stem.size() + 1);
+      meant = MeantKey(stem, suffix, keys);
+      return !meant.empty() || IsUnitLike(suffix);
     });
     if (quantity != quantities_.end()) {
-      const bool bare = member.key == quantity->first;
+      const std::string guess = meant.empty() ? "" : " (did you mean '" + meant + "'?)";
       AddProblem(problems_, at, path,
-                 bare ? "missing unit (did you mean '" + quantity->second.front() + "'?)"
-                      : "the unit of '" + member.key + "' is not known here",
+                 (member.key == quantity->first ? "missing unit"
+                                                : "the unit of '" + member.key + "' is not known here") +
+                     guess,
                  JoinWords(quantity->second));
       explained.insert(quantity->second.begin(), quantity->second.end());
       continue;

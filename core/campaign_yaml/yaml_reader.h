@@ -44,6 +44,11 @@ void AddProblem(std::vector<InputProblem>& problems, const InputNode& at, std::s
 double ReadNumber(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems,
                   const Range& range = kAnyNumber, double scale = 1.0);
 
+/// Records the first value of a table's column that is not above the one before, at its own line; true if
+/// there is none. `values` are the column's, read without a problem.
+bool CheckIncreasing(const InputNode& table, const std::string& path, const std::string& key,
+                     const std::vector<double>& values, std::vector<InputProblem>& problems);
+
 /// The keys of one map. Keys that nothing asked for are reported when the reader goes out of scope.
 class MapReader {
  public:

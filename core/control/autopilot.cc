@@ -32,6 +32,7 @@ AutopilotModel BuildAutopilot(const AutopilotConfig& config, std::vector<StageCo
   model.config = config;
   model.laws = {BuildAxisLaw(config.roll, config.tick_s), BuildAxisLaw(config.pitch, config.tick_s),
                 BuildAxisLaw(config.yaw, config.tick_s)};
+  for (const AxisLaw& law : model.laws) model.is_scheduled |= !law.config.schedule.empty();
   for (const StageControl& stage : stages) model.effectiveness.push_back(RowsOf(stage));
   model.stages = std::move(stages);
   const double cycle_s = config.tick_s * config.reaction_control.cycle_ticks;

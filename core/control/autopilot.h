@@ -40,6 +40,7 @@ struct EffectivenessRows {
 struct AutopilotModel {
   AutopilotConfig config;
   std::array<AxisLaw, kAxes> laws;
+  bool is_scheduled = false;  ///< a law changes within a stage
   std::vector<StageControl> stages;
   std::vector<EffectivenessRows> effectiveness;  ///< one a stage
   int thruster_minimum_cycles = 1;

@@ -1,6 +1,7 @@
 #include "core/control/autopilot_config.h"
 
 #include <cmath>
+#include <functional>
 #include <string>
 
 #include "core/control/lyapunov.h"
@@ -10,11 +11,51 @@ namespace dispersa {
 
 namespace {
 
+using AddProblem = std::function<void(const std::string& path, const std::string& message, const std::string& allowed)>;
+
+void CheckGains(const AxisGains& gains, const std::string& path, const AddProblem& add) {
+  if (!(gains.kp_1_s2 > 0.0)) add(path + ".kp_1_s2", "is not positive", "a number above 0");
+  if (!(gains.kd_1_s > 0.0)) add(path + ".kd_1_s", "is not positive", "a number above 0");
+}
+
+void CheckSection(const FilterSection& section, const std::string& path, double tick_s, const AddProblem& add) {
+  if (!(section.poles_rad_s > 0.0) || !(section.poles_rad_s * tick_s < kPi))
+    add(path + ".poles_rad_s", "is not below half of the sampling frequency",
+        "a frequency above 0 and below pi / tick_s");
+  if (!(section.poles_damping > 0.0)) add(path + ".poles_damping", "is not positive", "a number above 0");
+}
+
+void CheckSchedule(const AxisConfig& axis, int stages, double tick_s, const AddProblem& add) {
+  const ScheduleEntry ignition;
+  const ScheduleEntry* before = &ignition;
+  for (std::size_t i = 0; i < axis.schedule.size(); ++i) {
+    const ScheduleEntry& entry = axis.schedule[i];
+    const std::string path = "schedule[" + std::to_string(i) + "]";
+    if (entry.stage < 1 || entry.stage > stages) {
+      add(path + ".stage", "is not a stage of the vehicle", "1 to " + std::to_string(stages));
+      return;
+    }
+    if (entry.stage < before->stage)
+      add(path + ".stage", "comes after a later stage", "entries by stage and then by time");
+    else if (!(entry.at_s > (entry.stage == before->stage ? before->at_s : 0.0)))
+      add(path + ".at_s", "is not after " + std::string(entry.stage == before->stage ? "the entry before" : "ignition"),
+          "times since ignition that rise, the first above 0, where the stage's own gains hold");
+    CheckGains(entry.gains, path, add);
+    const std::size_t filters = FiltersOfStage(axis, entry.stage).size();
+    if (entry.filters.size() != filters)
+      add(path + ".filters", "has " + std::to_string(entry.filters.size()) + " sections",
+          "as many as act in the stage, " + std::to_string(filters));
+    for (std::size_t k = 0; k < entry.filters.size(); ++k)
+      CheckSection(entry.filters[k], path + ".filters[" + std::to_string(k) + "]", tick_s, add);
+    before = &entry;
+  }
+}
+
 void CheckAxis(const AxisConfig& axis, const std::string& name, int stages, double tick_s,
                std::vector<AutopilotProblem>& problems) {
   const std::size_t before = problems.size();
   const LawInfo& law = InfoOf(axis.law);
-  const auto add = [&](const std::string& path, const std::string& message, const std::string& allowed) {
+  const AddProblem add = [&](const std::string& path, const std::string& message, const std::string& allowed) {
     problems.push_back({name + "." + path, message, allowed});
   };
   const auto is_one_a_stage = [&](const std::string& path, std::size_t entries) {
@@ -24,24 +65,19 @@ void CheckAxis(const AxisConfig& axis, const std::string& name, int stages, doub
     return false;
   };
   if (!is_one_a_stage("gains", axis.gains.size())) return;
-  for (std::size_t i = 0; i < axis.gains.size(); ++i) {
-    const std::string path = "gains[" + std::to_string(i) + "]";
-    if (!(axis.gains[i].kp_1_s2 > 0.0)) add(path + ".kp_1_s2", "is not positive", "a number above 0");
-    if (!(axis.gains[i].kd_1_s > 0.0)) add(path + ".kd_1_s", "is not positive", "a number above 0");
-  }
+  for (std::size_t i = 0; i < axis.gains.size(); ++i)
+    CheckGains(axis.gains[i], "gains[" + std::to_string(i) + "]", add);
   if (axis.filters.size() > kFilterSections)
     add("filters", "has " + std::to_string(axis.filters.size()) + " sections",
         "at most " + std::to_string(kFilterSections));
   for (std::size_t i = 0; i < axis.filters.size(); ++i) {
     const FilterSection& section = axis.filters[i];
     const std::string path = "filters[" + std::to_string(i) + "]";
-    if (!(section.poles_rad_s > 0.0) || !(section.poles_rad_s * tick_s < kPi))
-      add(path + ".poles_rad_s", "is not below half of the sampling frequency",
-          "a frequency above 0 and below pi / tick_s");
-    if (!(section.poles_damping > 0.0)) add(path + ".poles_damping", "is not positive", "a number above 0");
+    CheckSection(section, path, tick_s, add);
     if (section.stage > stages)
       add(path + ".stage", "is not a stage of the vehicle", "1 to " + std::to_string(stages));
   }
+  CheckSchedule(axis, stages, tick_s, add);
   if (law.integral) is_one_a_stage("integral.ki_1_s3", axis.integral.ki_1_s3.size());
   if (law.rules) {
     if (!(axis.rules.error_range_rad > 0.0))
@@ -68,14 +104,17 @@ void CheckAxis(const AxisConfig& axis, const std::string& name, int stages, doub
           "two positive numbers, or allow_unproven: true to study it");
       return;
     }
-    for (std::size_t i = 0; i < axis.gains.size(); ++i) {
-      const Vector2 solved = SolveLyapunov(axis.gains[i], a.q).col(1);
+    std::vector<std::pair<int, AxisGains>> all;
+    for (std::size_t i = 0; i < axis.gains.size(); ++i) all.emplace_back(static_cast<int>(i) + 1, axis.gains[i]);
+    for (const ScheduleEntry& entry : axis.schedule) all.emplace_back(entry.stage, entry.gains);
+    for (const auto& [stage, gains] : all) {
+      const Vector2 solved = SolveLyapunov(gains, a.q).col(1);
       // The file prints a handful of digits: a part in a thousand tells agreement from another P.
       if (std::fabs(a.p_n->x() - solved.x()) > 1e-3 * solved.x() ||
           std::fabs(a.p_n->y() - solved.y()) > 1e-3 * solved.y()) {
         add("adaptation.p_n",
             "is not the last column of the P that solves A'P + PA = -Q for the gains of stage " +
-                std::to_string(i + 1) + ", which is [" + std::to_string(solved.x()) + ", " +
+                std::to_string(stage) + ", which is [" + std::to_string(solved.x()) + ", " +
                 std::to_string(solved.y()) + "]",
             "that column, no p_n at all, or allow_unproven: true to study it");
         return;
@@ -85,6 +124,13 @@ void CheckAxis(const AxisConfig& axis, const std::string& name, int stages, doub
 }
 
 }  // namespace
+
+std::vector<std::size_t> FiltersOfStage(const AxisConfig& axis, int stage) {
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < axis.filters.size(); ++i)
+    if (axis.filters[i].stage == 0 || axis.filters[i].stage == stage) found.push_back(i);
+  return found;
+}
 
 std::vector<AutopilotProblem> Problems(const AutopilotConfig& autopilot, int stages) {
   std::vector<AutopilotProblem> problems;

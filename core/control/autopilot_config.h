@@ -126,6 +126,16 @@ struct FilterSection {
 /// Most sections of an axis.
 inline constexpr int kFilterSections = 6;
 
+/// What a law holds at a time within a stage's burn. The stage's own gains, integral and filters are those at
+/// ignition; between two times all are interpolated, and after the last they stay.
+struct ScheduleEntry {
+  int stage = 0;      ///< 1-based
+  double at_s = 0.0;  ///< since its ignition
+  AxisGains gains;
+  double ki_1_s3 = 0.0;                ///< of a law with an integral
+  std::vector<FilterSection> filters;  ///< one for each that acts in the stage, in their order
+};
+
 struct AxisConfig {
   ControlLaw law = ControlLaw::kPd;
   std::vector<AxisGains> gains;  ///< one a stage
@@ -134,8 +144,11 @@ struct AxisConfig {
   IntegralAction integral;
   AdaptiveAugmentation augmentation;
   std::vector<FilterSection> filters;  ///< in series, on the law's output
+  std::vector<ScheduleEntry> schedule;  ///< by stage and time
   std::optional<FeedForward> feed_forward;
 };
+/// The places among an axis' filters of those that act in a stage (1-based).
+std::vector<std::size_t> FiltersOfStage(const AxisConfig& axis, int stage);
 
 /// Phase-plane logic of the reaction control in unpowered flight.
 struct ReactionControlLogic {

@@ -14,6 +14,8 @@ template <class T>
 struct GimbalLoop {
   AxisStage<T> axes[kAxes];
   T gain;  ///< of every command
+  T pn_error_factor, pn_rate_factor;
+  int stage[kWidth<T>];
   T limit_rad;
   const EffectivenessRows* effectiveness[kWidth<T>];
 };
@@ -24,6 +26,9 @@ DISPERSA_INLINE void SetLane(GimbalLoop<T>& loop, int lane, const AutopilotModel
     SetLane(loop.axes[axis], lane, model.laws.data()[axis].stages.data()[stage], pn_error_factor,
             pn_rate_factor);
   Lane(loop.gain, lane) = gain;
+  Lane(loop.pn_error_factor, lane) = pn_error_factor;
+  Lane(loop.pn_rate_factor, lane) = pn_rate_factor;
+  loop.stage[lane] = stage;
   Lane(loop.limit_rad, lane) = model.stages.data()[stage].limit_rad;
   loop.effectiveness[lane] = model.effectiveness.data() + stage;
 }
@@ -34,12 +39,26 @@ struct GimbalOutput {
   AxisOutput<T> axes[kAxes];
 };
 
+/// Brings the laws that change within a stage to the lanes' times.
+template <class T>
+DISPERSA_INLINE void FollowSchedule(const AutopilotModel& model, T since_ignition_s, GimbalLoop<T>& loop) {
+  for (int lane = 0; lane < kWidth<T>; ++lane) {
+    for (int axis = 0; axis < kAxes; ++axis) {
+      const AxisLaw& law = model.laws.data()[axis];
+      if (law.pieces.data()[loop.stage[lane]].empty()) continue;
+      SetLane(loop.axes[axis], lane, LawAtTime(law, loop.stage[lane], Lane(since_ignition_s, lane)),
+              Lane(loop.pn_error_factor, lane), Lane(loop.pn_rate_factor, lane));
+    }
+  }
+}
+
 /// One tick of the lanes that act. Errors reference less true, about x, y, z. `program_rad_s2`: what is fed
 /// forward to each axis, or null. Of what the laws have learnt, pitch alone is reported.
 template <bool kAll, class T>
-DISPERSA_INLINE void StepGimbals(const AutopilotModel& model, const GimbalLoop<T>& loop, MaskOf<T> acting,
+DISPERSA_INLINE void StepGimbals(const AutopilotModel& model, GimbalLoop<T>& loop, MaskOf<T> acting,
                                  T since_ignition_s, Vector<T> angle_rad, Vector<T> rate_rad_s,
                                  const T* program_rad_s2, AxisMemory<T>* memory, GimbalOutput<T>& out) {
+  if (model.is_scheduled) FollowSchedule(model, since_ignition_s, loop);
   T since;
   const double* row[kWidth<T>];
   for (int lane = 0; lane < kWidth<T>; ++lane) {

@@ -26,6 +26,24 @@ DISPERSA_INLINE void SetLane(AxisStage<T>& s, int lane, const StageLaw& law, dou
   Lane(s.pn_rate, lane) *= pn_rate_factor;
 }
 
+/// The law in a stage at a time since its ignition: the same source for a flight's ticks and its margins.
+DISPERSA_INLINE StageLaw LawAtTime(const AxisLaw& law, int stage, double since_ignition_s) {
+  const std::vector<LawPiece>& pieces = law.pieces.data()[stage];
+  const LawPiece* piece = pieces.data();
+  const LawPiece* const end = piece + pieces.size();
+  if (piece == end) return law.stages.data()[stage];
+  while (piece + 1 != end && since_ignition_s >= piece[1].from_s) ++piece;
+  constexpr unsigned kNumbers = sizeof(StageLaw) / sizeof(double);
+  double at[kNumbers], rate[kNumbers];
+  __builtin_memcpy(at, &piece->at, sizeof at);
+  __builtin_memcpy(rate, &piece->rate, sizeof rate);
+  const double since = since_ignition_s - piece->from_s;
+  for (unsigned i = 0; i < kNumbers; ++i) at[i] = Fma(since, rate[i], at[i]);
+  StageLaw now;
+  __builtin_memcpy(static_cast<void*>(&now), at, sizeof now);
+  return now;
+}
+
 /// All memory of one axis: plain values, AxisState lane by lane.
 template <class T>
 struct AxisMemory {

@@ -115,7 +115,7 @@ std::complex<double> SectionAt(const DigitalSection& f, std::complex<double> s) 
 }  // namespace
 
 // (s I - H) x = driven by Gaussian elimination with exchanges of neighbouring rows; then the sensors.
-SampledLoop::Measured SampledLoop::Bent(std::complex<double> s, double angle_rad) const {
+SampledLoop::Sensed SampledLoop::BentSensed(std::complex<double> s, double angle_rad) const {
   const Eigen::Index n = hessenberg_.rows();
   Eigen::MatrixXcd m = -hessenberg_.cast<std::complex<double>>();
   m.diagonal().array() += s;
@@ -138,37 +138,71 @@ SampledLoop::Measured SampledLoop::Bent(std::complex<double> s, double angle_rad
     for (Eigen::Index i = 0; i < n; ++i) sum += r[i] * x[i];
     return sum;
   };
-  Measured measured{row(attitude_row_), 0.0};
+  Sensed sensed{row(attitude_row_), {}};
   for (std::size_t i = 0; i < rate_rows_.size(); ++i) {
     const RateSensor& sensor = plant_.rates[i];
     std::complex<double> rate = Times(row(rate_rows_[i]), SectionAt(sensor.section, s));
     if (sensor.delay_ticks > 0.0) rate = Times(rate, UnitCircle(-angle_rad * sensor.delay_ticks));
-    measured.rate += sensor.weight * rate;
+    sensed.rates.push_back(rate);
   }
+  return sensed;
+}
+
+SampledLoop::Measured SampledLoop::Bent(std::complex<double> s, double angle_rad) const {
+  const Sensed sensed = BentSensed(s, angle_rad);
+  Measured measured{sensed.angle, 0.0};
+  for (std::size_t i = 0; i < sensed.rates.size(); ++i) measured.rate += plant_.rates[i].weight * sensed.rates[i];
   return measured;
 }
 
-std::complex<double> SampledLoop::Response(double frequency_rad_s) const {
-  // s = z - 1 keeps its digits near z = 1, where rigid body and integrators have their poles.
-  const SinCos half = SineCosine(0.5 * frequency_rad_s * tick_s_);
-  const std::complex<double> s(-2.0 * half.sin * half.sin, 2.0 * half.sin * half.cos);
-  const Measured measured = is_rigid_ ? Rigid(s) : Bent(s, frequency_rad_s * tick_s_);
-  const std::complex<double> angle = measured.angle, rate = measured.rate;
-  std::complex<double> u = law_.kp_1_s2 * angle + law_.kd_1_s * rate;
-  if (law_.adapts()) {
-    const double share = 1.0 / law_.rules;
-    const std::complex<double> mean = s + tick_s_ * law_.leakage_1_s;
-    const std::complex<double> departure = mean + tick_s_ * law_.spread_1_s;
-    std::complex<double> drive = law_.drive_error * angle + law_.drive_rate * rate;
-    if (law_.drive_prediction > 0.0) {
-      const std::complex<double> forced = (law_.predictor_1_s - law_.kd_1_s) * rate - law_.kp_1_s2 * angle;
-      const std::complex<double> predicted =
-          tick_s_ * Times(forced, Inverse(s + tick_s_ * law_.predictor_1_s));
-      drive += law_.drive_prediction * (rate - predicted);
+std::complex<double> ResponseOf(const LinearLaw& law, std::complex<double> s, std::complex<double> angle,
+                                std::complex<double> rate, double tick_s) {
+  std::complex<double> u = law.kp_1_s2 * angle + law.kd_1_s * rate;
+  if (law.adapts()) {
+    const double share = 1.0 / law.rules;
+    const std::complex<double> mean = s + tick_s * law.leakage_1_s;
+    const std::complex<double> departure = mean + tick_s * law.spread_1_s;
+    std::complex<double> drive = law.drive_error * angle + law.drive_rate * rate;
+    if (law.drive_prediction > 0.0) {
+      const std::complex<double> forced = (law.predictor_1_s - law.kd_1_s) * rate - law.kp_1_s2 * angle;
+      const std::complex<double> predicted = tick_s * Times(forced, Inverse(s + tick_s * law.predictor_1_s));
+      drive += law.drive_prediction * (rate - predicted);
     }
-    u += tick_s_ * Times(drive, share * Inverse(mean) + (1.0 - share) * Inverse(departure));
+    u += tick_s * Times(drive, share * Inverse(mean) + (1.0 - share) * Inverse(departure));
   }
-  for (const DigitalSection& f : law_.filters) u = Times(u, SectionAt(f, s));
+  for (const DigitalSection& f : law.filters) u = Times(u, SectionAt(f, s));
+  return u;
+}
+
+namespace {
+
+// z - 1, which keeps its digits near z = 1, where rigid body and integrators have their poles.
+std::complex<double> FromOne(double angle_rad) {
+  const SinCos half = SineCosine(0.5 * angle_rad);
+  return {-2.0 * half.sin * half.sin, 2.0 * half.sin * half.cos};
+}
+
+}  // namespace
+
+SampledLoop::Sensed SampledLoop::SensedAt(double frequency_rad_s) const {
+  const std::complex<double> s = FromOne(frequency_rad_s * tick_s_);
+  Sensed sensed;
+  if (is_rigid_) {
+    const Measured measured = Rigid(s);
+    sensed = {measured.angle, {measured.rate}};
+  } else {
+    sensed = BentSensed(s, frequency_rad_s * tick_s_);
+  }
+  const std::complex<double> late = UnitCircle(-frequency_rad_s * tick_s_ * delay_ticks_);
+  sensed.angle = Times(sensed.angle, late);
+  for (std::complex<double>& rate : sensed.rates) rate = Times(rate, late);
+  return sensed;
+}
+
+std::complex<double> SampledLoop::Response(double frequency_rad_s) const {
+  const std::complex<double> s = FromOne(frequency_rad_s * tick_s_);
+  const Measured measured = is_rigid_ ? Rigid(s) : Bent(s, frequency_rad_s * tick_s_);
+  const std::complex<double> u = ResponseOf(law_, s, measured.angle, measured.rate, tick_s_);
   return Times(u, UnitCircle(-frequency_rad_s * tick_s_ * delay_ticks_)) / law_.effectiveness_1_s2;
 }
 

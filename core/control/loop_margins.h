@@ -74,6 +74,10 @@ struct LoopMargins {
   double bending_phase_3db_deg = 180.0;
 };
 
+/// u, filtered, of what is measured: angle and rate at z = 1 + s.
+std::complex<double> ResponseOf(const LinearLaw& law, std::complex<double> s, std::complex<double> angle,
+                                std::complex<double> rate, double tick_s);
+
 /// The loop cut at the command: measurement at a tick, command held over a tick, `delay_ticks` later.
 class SampledLoop {
  public:
@@ -85,6 +89,15 @@ class SampledLoop {
   double SpectralRadius(double gain_factor) const;
   LoopMargins Margins() const;
 
+  /// Where Margins() looks, rising: 2 % apart, and closer about the modes.
+  std::vector<double> Frequencies() const;
+  /// Attitude and the rate that each sensor shows, before its weight, per command that is on its way for the delay.
+  struct Sensed {
+    std::complex<double> angle;
+    std::vector<std::complex<double>> rates;
+  };
+  Sensed SensedAt(double frequency_rad_s) const;
+
  private:
   /// Attitude and rate as measured, per command, at s = z - 1.
   struct Measured {
@@ -92,8 +105,8 @@ class SampledLoop {
   };
   Measured Rigid(std::complex<double> s) const;
   Measured Bent(std::complex<double> s, double angle_rad) const;
+  Sensed BentSensed(std::complex<double> s, double angle_rad) const;
   double Refine(double low, double high, bool of_gain) const;
-  std::vector<double> Frequencies() const;
 
   AxisPlant plant_;
   bool is_rigid_;       ///< of four states, measured as they are

@@ -14,6 +14,7 @@
 namespace dispersa {
 
 inline constexpr int kNozzles = 4;
+inline constexpr const char* kNozzleNames[kNozzles] = {"right", "left", "bottom", "top"};
 /// State: rigid body, then the angle and the rate of each nozzle (right, left, bottom, top).
 inline constexpr int kNozzleAngle = kRigidBodySize;
 inline constexpr int kNozzleRate = kNozzleAngle + kNozzles;
@@ -25,6 +26,13 @@ inline constexpr int kLauncherSize = kModalRate + kPlanes * kModes;
 
 struct AeroGrid;
 
+/// What sets one nozzle apart from the others.
+struct NozzleDeparture {
+  Matrix3 tilt = Matrix3::Identity();  ///< turns its thrust
+  double thrust_factor = 1.0;          ///< of its quarter
+  double offset_y_m = 0.0, offset_z_m = 0.0;
+};
+
 /// One stack as one flight flies it: nominal data with the flight's factors applied.
 struct LauncherStack {
   StackMass mass;
@@ -35,6 +43,7 @@ struct LauncherStack {
   Matrix3 thrust_tilt = Matrix3::Identity();  ///< turns the nozzles' thrust by the misalignment
   double thrust_offset_y_m = 0.0;
   double thrust_offset_z_m = 0.0;
+  std::array<NozzleDeparture, kNozzles> nozzles;
   /// Of everything but the burning propellant, whose own centre is on the axis: mass times lateral offset.
   double lateral_moment_y_kg_m = 0.0;
   double lateral_moment_z_kg_m = 0.0;

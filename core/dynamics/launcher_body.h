@@ -13,6 +13,13 @@
 namespace dispersa::lanes {
 inline namespace DISPERSA_ISA {
 
+/// What one nozzle's quarter of the thrust has besides that of a nominal one (NozzleDeparture).
+template <class T>
+struct Departure {
+  Matrix<T> extra;  ///< its factor times its tilt, less 1
+  T offset_y_m, offset_z_m;
+};
+
 /// Each lane's current stack, its flight's factors applied (LauncherPlant, LauncherStack).
 template <class T>
 struct Plant {
@@ -29,6 +36,9 @@ struct Plant {
   bool jet_damping, flow_coriolis;
   Matrix<T> thrust_tilt;
   T thrust_offset_y_m, thrust_offset_z_m;
+  bool any_departs;  ///< some lane's nozzles are not all the same
+  MaskOf<T> departs;
+  Departure<T> nozzles[kNozzles];
   T lateral_moment_y_kg_m, lateral_moment_z_kg_m;
 };
 
@@ -57,7 +67,7 @@ struct TimedMasses {
   T cg_y_m, cg_z_m;  ///< off the axis
   T cg_speed_m_s;    ///< of C forward through the body: the flow takes propellant away at the grain
   T axial_per_kg_m2, transverse_per_kg_m2;
-  T thrust_fraction;  ///< 0 when not burning
+  T thrust_fraction, flow_fraction;  ///< of full thrust and flow; 0 when not burning
 };
 template <class T>
 DISPERSA_INLINE TimedMasses<T> MassesAt(const Plant<T>& plant, const Phase<T>& phase, T time_s) {
@@ -77,7 +87,8 @@ DISPERSA_INLINE TimedMasses<T> MassesAt(const Plant<T>& plant, const Phase<T>& p
   o.axial_per_kg_m2 = m.axial_per_kg_m2 * plant.inertia_factor;
   o.transverse_per_kg_m2 = m.transverse_per_kg_m2 * plant.inertia_factor;
   o.thrust_fraction = Select(phase.burning, burn.fraction, T(0.0));
-  o.cg_speed_m_s = plant.burn.full_flow_kg_s * o.thrust_fraction * o.inverse_mass_1_kg * plant.cg_factor *
+  o.flow_fraction = Select(phase.burning, burn.flow_fraction, T(0.0));
+  o.cg_speed_m_s = plant.burn.full_flow_kg_s * o.flow_fraction * o.inverse_mass_1_kg * plant.cg_factor *
                    (plant.stack.grain_station_m - m.cg_station_m);
   return o;
 }
@@ -132,6 +143,27 @@ struct Thrust {
   Vector<T> force_n, moment_n_m;
   Vector<T> couple_n_m;  ///< the part of the moment that acts as a couple at the pivots
 };
+/// Adds what the nozzles have besides a nominal one's quarter: force, and couple about the pivots' centre.
+template <class T>
+DISPERSA_INLINE void AddDepartures(const Plant<T>& plant, const Nozzles<T>& nozzles, T quarter_n,
+                                   Thrust<T>& o) {
+  const T none(0.0), r = plant.nozzle_radius_m;
+  const Vector<T> place[kNozzles] = {{none, r, none}, {none, -r, none}, {none, none, r}, {none, none, -r}};
+  Vector<T> force = Zero<T>(), couple = Zero<T>();
+  for (int i = 0; i < kNozzles; ++i) {
+    const Departure<T>& nozzle = plant.nozzles[i];
+    const bool pitches = i < 2;
+    const Vector<T> nominal = quarter_n * Vector<T>{nozzles.cosine[i], pitches ? none : -nozzles.sine[i],
+                                                    pitches ? nozzles.sine[i] : none};
+    const Vector<T> extra = plant.thrust_tilt * (nozzle.extra * nominal);
+    const Vector<T> moved{none, nozzle.offset_y_m, nozzle.offset_z_m};
+    force = force + extra;
+    couple = couple + Cross(place[i], extra) + Cross(moved, plant.thrust_tilt * nominal + extra);
+  }
+  o.force_n = Select(plant.departs, o.force_n + force, o.force_n);
+  o.couple_n_m = Select(plant.departs, o.couple_n_m + couple, o.couple_n_m);
+}
+
 /// Each nozzle carries a quarter of the thrust, deflected in its hinge plane. Right (+y) and left (-y) turn
 /// the force towards +z, bottom (+z) and top (-z) towards -y. P = P_vac - p A_e; a nozzle that the ambient
 /// pressure would turn inwards gives nothing.
@@ -143,7 +175,7 @@ DISPERSA_INLINE Thrust<T> ThrustOf(const Plant<T>& plant, const TimedMasses<T>& 
   const T net_n =
       Fma(plant.burn.vacuum_thrust_n, masses.thrust_fraction, -(pressure_pa * plant.burn.exit_area_m2));
   o.thrust_n = Select(net_n < T(0.0), T(0.0), net_n);
-  o.flow_kg_s = plant.burn.full_flow_kg_s * masses.thrust_fraction;
+  o.flow_kg_s = plant.burn.full_flow_kg_s * masses.flow_fraction;
   const T* sine = nozzles.sine;
   const T* cosine = nozzles.cosine;
   const T quarter = T(0.25) * o.thrust_n;
@@ -157,6 +189,7 @@ DISPERSA_INLINE Thrust<T> ThrustOf(const Plant<T>& plant, const TimedMasses<T>& 
   const Vector<T> arm{masses.cg_station_m - plant.pivot_station_m, plant.thrust_offset_y_m - masses.cg_y_m,
                       plant.thrust_offset_z_m - masses.cg_z_m};
   o.couple_n_m = {across_y.z - across_z.y, across_z.x, -across_y.x};
+  if (plant.any_departs) AddDepartures(plant, nozzles, quarter, o);
   o.moment_n_m = Cross(arm, o.force_n) + o.couple_n_m;
   return o;
 }

@@ -76,6 +76,22 @@ DISPERSA_INLINE void SetLane(Plant<T>& p, int lane, const LauncherPlant& plant, 
   }
   Lane(p.thrust_offset_y_m, lane) = s.thrust_offset_y_m;
   Lane(p.thrust_offset_z_m, lane) = s.thrust_offset_z_m;
+  bool departs = false;
+  for (int i = 0; i < kNozzles; ++i) {
+    const NozzleDeparture& nozzle = s.nozzles.data()[i];
+    const double* turn = reinterpret_cast<const double*>(&nozzle.tilt);  // column by column
+    for (int row = 0; row < 3; ++row)
+      for (int column = 0; column < 3; ++column) {
+        const double extra = nozzle.thrust_factor * turn[3 * column + row] - (row == column ? 1.0 : 0.0);
+        Lane((&p.nozzles[i].extra.row[row].x)[column], lane) = extra;
+        departs |= extra != 0.0;
+      }
+    Lane(p.nozzles[i].offset_y_m, lane) = nozzle.offset_y_m;
+    Lane(p.nozzles[i].offset_z_m, lane) = nozzle.offset_z_m;
+    departs |= nozzle.offset_y_m != 0.0 || nozzle.offset_z_m != 0.0;
+  }
+  SetLane(p.departs, lane, departs);
+  p.any_departs = Any(p.departs);
   Lane(p.lateral_moment_y_kg_m, lane) = s.lateral_moment_y_kg_m;
   Lane(p.lateral_moment_z_kg_m, lane) = s.lateral_moment_z_kg_m;
 }

@@ -17,6 +17,7 @@
 #include "core/flight/lane_sensors.h"
 #include "core/flight/sequence.h"
 #include "core/flight/simpson_step.h"
+#include "core/flight/structural_limits.h"
 
 namespace dispersa::lanes {
 inline namespace DISPERSA_ISA {

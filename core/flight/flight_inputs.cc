@@ -21,6 +21,14 @@ class ColumnList {
       columns_.push_back(
           {stem + "_stage" + std::to_string(i + 1) + unit_suffix, unit, OffsetOf(&(nominal_.*field)[i])});
   }
+  void EachNozzle(PerNozzle FlightInputs::*field, const std::string& stem,
+                  const std::string& unit_suffix = "", double unit = 1.0) {
+    for (std::size_t i = 0; i < kMaxStages; ++i)
+      for (std::size_t nozzle = 0; nozzle < kNozzles; ++nozzle)
+        columns_.push_back(
+            {stem + "_stage" + std::to_string(i + 1) + "_" + kNozzleNames[nozzle] + unit_suffix, unit,
+             OffsetOf(&(nominal_.*field)[i][nozzle])});
+  }
   void EachMode(std::array<double, kModes> FlightInputs::*field, const std::string& stem) {
     for (std::size_t i = 0; i < kModes; ++i)
       columns_.push_back({stem + "_mode" + std::to_string(i + 1), 1.0, OffsetOf(&(nominal_.*field)[i])});
@@ -53,6 +61,11 @@ std::vector<InputColumn> MakeColumns() {
   list.EachStage(&In::thrust_misalignment_clock_rad, "thrust_misalignment_clock", "_deg", kRadPerDeg);
   list.EachStage(&In::thrust_offset_m, "thrust_offset", "_m");
   list.EachStage(&In::thrust_offset_clock_rad, "thrust_offset_clock", "_deg", kRadPerDeg);
+  list.EachNozzle(&In::nozzle_misalignment_rad, "nozzle_misalignment", "_deg", kRadPerDeg);
+  list.EachNozzle(&In::nozzle_misalignment_clock_rad, "nozzle_misalignment_clock", "_deg", kRadPerDeg);
+  list.EachNozzle(&In::nozzle_offset_m, "nozzle_offset", "_m");
+  list.EachNozzle(&In::nozzle_offset_clock_rad, "nozzle_offset_clock", "_deg", kRadPerDeg);
+  list.EachNozzle(&In::nozzle_thrust_factor, "nozzle_thrust_factor");
   list.EachStage(&In::cg_offset_m, "cg_offset", "_m");
   list.EachStage(&In::cg_offset_clock_rad, "cg_offset_clock", "_deg", kRadPerDeg);
   list.EachStage(&In::thrust_factor, "thrust_factor");

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/structure/bending_table.h"
+#include "core/dynamics/launcher.h"
 #include "core/vehicle/vehicle.h"
 
 namespace dispersa {
@@ -19,6 +19,16 @@ constexpr PerStage AllStages(double value) {
   return values;
 }
 
+/// Of each nozzle (right, left, bottom, top) of each stage.
+using PerNozzle = std::array<std::array<double, kNozzles>, kMaxStages>;
+
+constexpr PerNozzle AllNozzles(double value) {
+  PerNozzle values{};
+  for (auto& stage : values)
+    for (double& v : stage) v = value;
+  return values;
+}
+
 /// Largest number of altitude levels of a drawn wind profile: every kilometre up to 30 km.
 inline constexpr int kWindLevels = 30;
 
@@ -28,6 +38,11 @@ struct FlightInputs {
   PerStage thrust_misalignment_clock_rad{};  ///< direction of the tilt: from body y towards body z
   PerStage thrust_offset_m{};                ///< lateral offset of the thrust line
   PerStage thrust_offset_clock_rad{};        ///< direction of the offset, likewise
+  PerNozzle nozzle_misalignment_rad{};       ///< the same of one nozzle, besides the stage's
+  PerNozzle nozzle_misalignment_clock_rad{};
+  PerNozzle nozzle_offset_m{};
+  PerNozzle nozzle_offset_clock_rad{};
+  PerNozzle nozzle_thrust_factor = AllNozzles(1.0);  ///< of its quarter of the thrust, at the same flow
   PerStage cg_offset_m{};                    ///< of the CG off the axis, of the stack without what it burns
   PerStage cg_offset_clock_rad{};            ///< direction of the offset, likewise
   PerStage thrust_factor = AllStages(1.0);

@@ -228,6 +228,13 @@ LauncherPlant FlightModel::PlantFor(const FlightInputs& in, std::optional<std::u
     const SinCos offset = SineCosine(in.thrust_offset_clock_rad[i]);
     stack.thrust_offset_y_m = in.thrust_offset_m[i] * offset.cos;
     stack.thrust_offset_z_m = in.thrust_offset_m[i] * offset.sin;
+    for (std::size_t nozzle = 0; nozzle < kNozzles; ++nozzle) {
+      const SinCos at = SineCosine(in.nozzle_offset_clock_rad[i][nozzle]);
+      stack.nozzles[nozzle] = {
+          ThrustTilt(in.nozzle_misalignment_rad[i][nozzle], in.nozzle_misalignment_clock_rad[i][nozzle]),
+          in.nozzle_thrust_factor[i][nozzle], in.nozzle_offset_m[i][nozzle] * at.cos,
+          in.nozzle_offset_m[i][nozzle] * at.sin};
+    }
     const SinCos aside = SineCosine(in.cg_offset_clock_rad[i]);
     stack.lateral_moment_y_kg_m = stack.mass.fixed_mass_kg * in.cg_offset_m[i] * aside.cos;
     stack.lateral_moment_z_kg_m = stack.mass.fixed_mass_kg * in.cg_offset_m[i] * aside.sin;

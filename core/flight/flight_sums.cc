@@ -14,12 +14,4 @@ ErrorSums Total(const ErrorSums (&stages)[kMaxStages]) {
   return total;
 }
 
-bool ExceedsStructure(const StructuralLimits& limits, const FlightSums& sums) {
-  const auto exceeded = [](double value, double limit) { return limit > 0.0 && value > limit; };
-  return exceeded(sums.q_alpha_max_pa_rad, limits.q_alpha_pa_rad) ||
-         exceeded(sums.axial_load_max_g, limits.axial_load_g) ||
-         exceeded(sums.lateral_load_max_g, limits.lateral_load_g) ||
-         exceeded(sums.bending_moment_max_n_m, limits.bending_moment_n_m);
-}
-
 }  // namespace dispersa

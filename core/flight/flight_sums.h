@@ -46,7 +46,4 @@ struct FlightSums {
 
 /// Of all stages together; a peak that several share is the first one's.
 ErrorSums Total(const ErrorSums (&stages)[kMaxStages]);
-/// Whether the loads so far exceed a limit that the vehicle gives.
-bool ExceedsStructure(const StructuralLimits& limits, const FlightSums& sums);
-
 }  // namespace dispersa

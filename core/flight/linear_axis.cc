@@ -139,7 +139,7 @@ AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Ax
 LinearLaw LineariseLaw(const AutopilotModel& autopilot, int stage, double since_ignition_s, Axis axis,
                        bool adapting) {
   const AxisLaw& law = autopilot.laws[static_cast<std::size_t>(axis)];
-  const StageLaw& of_stage = law.stages[static_cast<std::size_t>(stage)];
+  const StageLaw of_stage = LawAt(law, stage, since_ignition_s);
   const StageControl& control = autopilot.stages[static_cast<std::size_t>(stage)];
   LinearLaw linear;
   linear.kp_1_s2 = of_stage.kp_1_s2;

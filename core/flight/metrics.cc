@@ -8,6 +8,7 @@
 
 #include "core/flight/flight_model.h"
 #include "core/flight/flight_sums.h"
+#include "core/flight/structural_limits.h"
 #include "core/math/constants.h"
 #include "core/math/functions.h"
 

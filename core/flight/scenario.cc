@@ -22,6 +22,14 @@ bool IsPositiveDefinite(const Matrix3& m) {
   return m(0, 0) > 0.0 && m.topLeftCorner<2, 2>().determinant() > 0.0 && m.determinant() > 0.0;
 }
 
+// No principal moment exceeds the sum of the two others: the second moments of mass, of which they are sums,
+// are not negative. A thin plate has equality, a published one that or a rounding less.
+bool IsOfABody(const Matrix3& inertia) {
+  constexpr double kRounding = 1e-6;
+  const double half_trace = 0.5 * inertia.trace();
+  return IsPositiveDefinite((1.0 + kRounding) * half_trace * Matrix3::Identity() - inertia);
+}
+
 void CheckMass(const ScenarioMass& mass, std::vector<ScenarioProblem>& problems) {
   const std::string path = "mass_properties.";
   for (std::size_t i = 0; i < mass.propellant_kg.size(); ++i) {
@@ -39,6 +47,9 @@ void CheckMass(const ScenarioMass& mass, std::vector<ScenarioProblem>& problems)
       problems.push_back({At(path + "ixx_kg_m2", i), "the inertia tensor is not positive definite",
                           "positive moments, and products small enough that every principal moment is "
                           "positive"});
+    else if (!IsOfABody(mass.inertia_kg_m2[i]))
+      problems.push_back({At(path + "ixx_kg_m2", i), "no body has these moments of inertia",
+                          "principal moments of which none exceeds the sum of the two others"});
   }
 }
 

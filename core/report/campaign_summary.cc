@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "core/campaign/case_design.h"
+#include "core/flight/structural_limits.h"
 #include "core/report/metric_catalogue.h"
 #include "core/report/sampling_text.h"
 #include "core/report/stopping_rule.h"
@@ -59,14 +60,41 @@ CampaignVerdict Overall(const CampaignSummary& summary) {
   const auto is = [](const char* verdict) {
     return [verdict](const RequirementSummary& requirement) { return requirement.verdict == verdict; };
   };
-  if (!summary.requirements.empty() && !IsIndependent(summary.sampling)) {
+  // What the campaign did not ask itself counts from its first failure on.
+  const auto counts = [](const RequirementSummary& requirement) {
+    return !requirement.by_default || requirement.failures > 0;
+  };
+  if (any(counts) && !IsIndependent(summary.sampling)) {
     if (summary.cases < summary.design_points) return CampaignVerdict::kIncomplete;
     return any([](const RequirementSummary& requirement) { return requirement.failures > 0; })
                ? CampaignVerdict::kStudyViolated
                : CampaignVerdict::kStudy;
   }
   if (any(is("fail"))) return CampaignVerdict::kFail;
-  return any(is("inconclusive")) ? CampaignVerdict::kInconclusive : CampaignVerdict::kPass;
+  return any([&](const RequirementSummary& requirement) {
+    return counts(requirement) && requirement.verdict == "inconclusive";
+  })
+             ? CampaignVerdict::kInconclusive
+             : CampaignVerdict::kPass;
+}
+
+void HoldAgainstLimits(const StructuralLimits& limits, const CaseColumns& cases, CampaignSummary* summary) {
+  for (const StructuralLimit& one : AllStructuralLimits()) {
+    if (!(limits.*one.limit > 0.0)) continue;
+    CampaignSummary::Limit held{.metric = one.metric, .limit = limits.*one.limit};
+    const std::vector<double> loads = cases.metrics.at(MetricColumn(one.metric));
+    for (std::size_t i = 0; i < cases.rows(); ++i) {
+      held.exceeded += loads[i] > held.limit;
+      if (!(loads[i] > held.largest.value_or(-HUGE_VAL))) continue;
+      held.largest = loads[i];
+      held.largest_case = cases.index[i];
+    }
+    summary->limits.push_back(std::move(held));
+  }
+  if (summary->limits.empty()) return;
+  const std::vector<double> any = cases.metrics.at(MetricColumn("structural_limit_exceeded"));
+  summary->beyond_limits = static_cast<std::uint64_t>(
+      std::count_if(any.begin(), any.end(), [](double exceeded) { return exceeded > 0.0; }));
 }
 
 /// Cases that the campaign flies: where it stops, if it stops by itself.
@@ -149,11 +177,24 @@ std::vector<std::string> Warnings(const CampaignSummary& summary) {
         "Post hoc: requirements were left out, or the way they are judged was changed, after the first case "
         "was flown.");
   }
+  if (summary.beyond_limits > 0) {
+    std::string loads;
+    for (const CampaignSummary::Limit& one : summary.limits) {
+      if (one.exceeded == 0) continue;
+      const MetricInfo info = DescribeMetric(one.metric);
+      const std::string unit = info.unit.empty() ? "" : " " + info.unit;
+      loads += fmt::format("{}{} above {}{} in {}, up to {}{} in case {}", loads.empty() ? "" : "; ",
+                           one.metric, ReadableText(one.limit), unit, one.exceeded,
+                           ReadableText(*one.largest), unit, one.largest_case);
+    }
+    warnings.push_back(fmt::format("Structural limits of the vehicle were exceeded in {} of {} flights: {}.",
+                                   summary.beyond_limits, summary.flown, loads));
+  }
   const std::uint64_t completed = summary.outcomes[static_cast<std::size_t>(Outcome::kCompleted)];
   if (completed < summary.flown) {
     warnings.push_back(
         fmt::format("{} of {} flights were lost: statistics and percentiles cover the {} that were "
-                    "completed, and every lost flight fails every requirement.",
+                    "completed, and every lost flight fails every requirement of the campaign.",
                     summary.flown - completed, summary.flown, completed));
   }
   return warnings;
@@ -188,7 +229,8 @@ std::vector<std::string> KeyMetrics(const Campaign& campaign) {
     const bool exists = std::find(MetricNames().begin(), MetricNames().end(), name) != MetricNames().end();
     if (exists && std::find(metrics.begin(), metrics.end(), name) == metrics.end()) metrics.push_back(name);
   };
-  for (const Requirement& requirement : campaign.requirements) add(requirement.metric);
+  for (const Requirement& requirement : campaign.requirements)
+    if (!requirement.by_default) add(requirement.metric);
   for (const char* name : kUsualMetrics) add(name);
   return metrics;
 }
@@ -236,6 +278,7 @@ CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaig
     summary.metrics.push_back({MetricNames()[i], SummarizeSorted(sorted, cases.rows() - sorted.size()),
                                Skewness(sorted), Percentiles(sorted)});
   }
+  HoldAgainstLimits(campaign.vehicle.limits, cases, &summary);
   summary.requirements = JudgeAll(campaign.requirements, context, cases);
   for (const Requirement& requirement : campaign.requirements) {
     summary.overall_risk = std::max(summary.overall_risk, requirement.consumer_risk);

@@ -66,7 +66,17 @@ struct CampaignSummary {
   std::vector<LostFlight> lost_flights;  ///< the first kListedLostFlights
   std::vector<MetricSummary> metrics;    ///< in the order of MetricNames()
   std::vector<RequirementSummary> requirements;
-  bool holm = false;  ///< the requirements' verdicts hold together
+  /// One that the vehicle gives, against the largest load of every flown case, completed or not.
+  struct Limit {
+    std::string metric;  ///< of the load
+    double limit = 0.0;  ///< in the metric's unit
+    std::uint64_t exceeded = 0;
+    std::optional<double> largest = {};  ///< and the case that it is of; none: no case defines it
+    std::uint64_t largest_case = 0;
+  };
+  std::vector<Limit> limits;
+  std::uint64_t beyond_limits = 0;  ///< flights that exceeded any
+  bool holm = false;                ///< the requirements' verdicts hold together
   /// How likely it is at most that a campaign that misses any requirement passes them all, and that any of
   /// the requirements' own verdicts to pass is wrong.
   double overall_risk = 0.0;

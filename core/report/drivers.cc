@@ -228,6 +228,7 @@ std::vector<FailureDrivers> FindFailureDrivers(const Campaign& campaign, const C
       marked.push_back(failed);
     }
     result.flights = static_cast<std::size_t>(std::count(marked.begin(), marked.end(), true));
+    if (requirement.by_default && result.flights < kEnoughFailures) continue;  // 0 or 1: none is nearest
     if (result.flights < kEnoughFailures && rows.size() >= kLeastFlights) {
       std::vector<double> margins;
       for (const std::size_t row : rows)

@@ -97,7 +97,7 @@ code { font: 12.5px/1.4 ui-monospace, "DejaVu Sans Mono", "Liberation Mono", mon
 .headline { display: flex; flex-wrap: wrap; gap: 8px 16px; align-items: center; margin: 16px 0 4px; padding: 12px 16px;
   border-radius: 7px;
   border: 1px solid var(--rule); background: var(--panel); } .headline p { margin: 0; }
-.headline .badge { font-size: 17px; padding: 5px 14px; }
+.headline .badge { font-size: 17px; padding: 5px 14px; } .headline.exceeded { border: 2px solid var(--fail); }
 .badge { display: inline-block; border-radius: 4px; padding: 1px 8px; font-size: 13px; font-weight: 650;
   color: #fff;
   white-space: nowrap; print-color-adjust: exact; -webkit-print-color-adjust: exact; }

@@ -42,6 +42,18 @@ std::ptrdiff_t Violated(const CampaignSummary& summary) {
                        [](const RequirementSummary& requirement) { return requirement.failures > 0; });
 }
 
+std::string PassSentence(const CampaignSummary& summary) {
+  const auto met =
+      std::count_if(summary.requirements.begin(), summary.requirements.end(),
+                    [](const RequirementSummary& requirement) { return requirement.verdict == "pass"; });
+  const bool open = static_cast<std::size_t>(met) < summary.requirements.size();
+  // All that may be open in a pass: the limits that nobody asked for, kept by too few flights to say more.
+  return (met == 0   ? "The campaign states no requirements"
+          : met == 1 ? "The one requirement is met"
+                     : fmt::format("All {} requirements are met", met)) +
+         std::string(open ? ", and no flight exceeded a limit of the vehicle." : ".");
+}
+
 /// What the requirements come to together, in one sentence.
 std::string VerdictSentence(const CampaignSummary& summary) {
   const auto count = [&](const char* verdict) {
@@ -70,9 +82,7 @@ std::string VerdictSentence(const CampaignSummary& summary) {
       return fmt::format("{} of {} requirements cannot be decided with {} cases; none has failed.",
                          count("inconclusive"), all, summary.flown);
     case CampaignVerdict::kPass:
-      return all == 0   ? "The campaign states no requirements."
-             : all == 1 ? "The one requirement is met."
-                        : fmt::format("All {} requirements are met.", all);
+      return PassSentence(summary);
   }
   return "";
 }
@@ -133,6 +143,20 @@ std::string PercentileCell(const MetricSummary& metric, const std::string& name)
   return "–";
 }
 
+std::string LimitsTable(const CampaignSummary& summary) {
+  if (summary.limits.empty()) return "";
+  HtmlTable table(
+      {{"Load"}, {"Limit", true}, {"Largest", true}, {"of case", true}, {"Flights beyond", true}});
+  for (const CampaignSummary::Limit& one : summary.limits) {
+    const MetricInfo info = DescribeMetric(one.metric);
+    table.Row({HtmlText(info.title), WithUnit(one.limit, info.unit),
+               one.largest ? WithUnit(*one.largest, info.unit) : "–",
+               one.largest ? std::to_string(one.largest_case) : "–",
+               one.exceeded == 0 ? "0" : fmt::format("<span class=\"badge fail\">{}</span>", one.exceeded)});
+  }
+  return "<h3>Limits of the vehicle</h3>\n" + table.Html("narrow");
+}
+
 double NominalValue(const CampaignSummary& summary, std::size_t metric) {
   return summary.nominal ? summary.nominal->metrics[metric] : std::nan("");
 }
@@ -151,14 +175,17 @@ std::string HeaderSection(const CampaignSummary& summary) {
       summary.verdict == CampaignVerdict::kIncomplete &&
       std::any_of(summary.requirements.begin(), summary.requirements.end(),
                   [](const RequirementSummary& requirement) { return requirement.verdict == "fail"; });
-  html += fmt::format(
-      "<div class=\"headline\">{}{}<p>{}</p></div>\n", VerdictBadge(CampaignVerdictName(summary.verdict)),
-      certain_fail                        ? VerdictBadge("fail")
-      : IsIndependent(summary.sampling) || summary.verdict == CampaignVerdict::kStudy ||
-              summary.verdict == CampaignVerdict::kStudyViolated
-          ? ""
-          : "<span class=\"badge design\">design study</span>",
-      VerdictSentence(summary));
+  const char* beyond =
+      summary.beyond_limits == 0 ? "" : "<span class=\"badge fail\">structural limit exceeded</span>";
+  html += fmt::format("<div class=\"headline{}\">{}{}{}<p>{}</p></div>\n",
+                      summary.beyond_limits == 0 ? "" : " exceeded",
+                      VerdictBadge(CampaignVerdictName(summary.verdict)), beyond,
+                      certain_fail ? VerdictBadge("fail")
+                      : IsIndependent(summary.sampling) || summary.verdict == CampaignVerdict::kStudy ||
+                              summary.verdict == CampaignVerdict::kStudyViolated
+                          ? ""
+                          : "<span class=\"badge design\">design study</span>",
+                      VerdictSentence(summary));
   const std::vector<std::string> warnings = Warnings(summary);
   if (!warnings.empty()) {
     html += "<ul class=\"warnings\">";
@@ -189,7 +216,18 @@ std::string OutcomesSection(const CampaignSummary& summary) {
         summary.flown == 0 ? std::nan("") : static_cast<double>(count) / static_cast<double>(summary.flown);
     table.Row({OutcomeWords(static_cast<Outcome>(i)), std::to_string(count), PercentText(share)});
   }
+  if (!summary.limits.empty()) {
+    const double share =
+        summary.flown == 0 ? std::nan("")
+                           : static_cast<double>(summary.beyond_limits) / static_cast<double>(summary.flown);
+    table.Row({"a limit of the structure exceeded, however it ended",
+               summary.beyond_limits == 0
+                   ? "0"
+                   : fmt::format("<span class=\"badge fail\">{}</span>", summary.beyond_limits),
+               PercentText(share)});
+  }
   html += table.Html("narrow");
+  html += LimitsTable(summary);
   if (!summary.lost_flights.empty()) {
     const std::uint64_t lost =
         summary.flown - summary.outcomes[static_cast<std::size_t>(Outcome::kCompleted)];

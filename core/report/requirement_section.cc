@@ -1,6 +1,7 @@
 // The requirements of a report: one card each, so that a verdict stays beside its numbers on any screen.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/report/html_parts.h"
@@ -125,7 +126,9 @@ std::string Card(const RequirementSummary& requirement, const CampaignSummary& s
       requirement.post_hoc ? " <span class=\"badge design\">post hoc</span>" : "", HtmlText(info.title),
       HtmlText(LimitWords(requirement, info.unit)), PercentText(requirement.probability),
       PercentText(requirement.consumer_risk), HtmlText(requirement.metric),
-      study ? "" : " <span class=\"value\">" + BoundWords(requirement, info.unit) + "</span>",
+      requirement.by_default ? ", required because the vehicle gives limits"
+      : study                ? ""
+                             : " <span class=\"value\">" + BoundWords(requirement, info.unit) + "</span>",
       HtmlText(requirement.sentence));
   html += Fact("cases", std::to_string(requirement.n));
   html += Fact("failures", std::to_string(requirement.failures));
@@ -153,6 +156,9 @@ std::string RequirementsSection(const CampaignSummary& summary) {
   std::string html = "<h2 id=\"requirements\">Requirements</h2>\n";
   if (summary.requirements.empty()) return html + "<p>The campaign states none.</p>\n";
   std::string convergence;
+  const bool by_default =
+      std::any_of(summary.requirements.begin(), summary.requirements.end(),
+                  [](const RequirementSummary& requirement) { return requirement.by_default; });
   for (const RequirementSummary& requirement : summary.requirements) {
     html += Card(requirement, summary);
     convergence += ConvergenceFigure(requirement);
@@ -172,9 +178,15 @@ std::string RequirementsSection(const CampaignSummary& summary) {
          "confidence "
          "bound is one-sided. The bound in the metric’s unit is the order statistic that decides: the "
          "requirement passes exactly when it keeps to the limit. A lost flight counts as a failure of every "
-         "requirement, and so does an undefined metric.</p>\n" +
-         (convergence.empty() ? ""
-                              : "<h3>How the verdicts converged</h3>\n<div class=\"figures\">\n" + convergence + "</div>\n");
+         "requirement, and so does an undefined metric" +
+         (by_default ? "; of the vehicle’s own limits a loss says nothing: they are held against what the "
+                       "flight bore "
+                       "until then"
+                     : "") +
+         ".</p>\n" +
+         (convergence.empty()
+              ? ""
+              : "<h3>How the verdicts converged</h3>\n<div class=\"figures\">\n" + convergence + "</div>\n");
 }
 
 }  // namespace dispersa

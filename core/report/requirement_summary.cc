@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/report/loss_fails.h"
 #include "core/report/metric_catalogue.h"
 #include "core/report/sampling_text.h"
 #include "core/report/text.h"
@@ -34,8 +35,9 @@ std::string Plural(std::int64_t count, const char* noun) {
 }
 
 /// A case of a requirement: what it measured, undefined when the flight was lost.
-std::vector<double> ValuesOf(const std::string& metric, const CaseColumns& cases) {
-  std::vector<double> values = cases.metrics.at(MetricColumn(metric));
+std::vector<double> ValuesOf(const Requirement& requirement, const CaseColumns& cases) {
+  std::vector<double> values = cases.metrics.at(MetricColumn(requirement.metric));
+  if (!LossFails(requirement)) return values;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (cases.outcome[i] != Outcome::kCompleted) values[i] = kUndefined;
   }
@@ -245,6 +247,7 @@ std::vector<RequirementSummary> JudgeAll(const std::vector<Requirement>& require
     const Limits limits = LimitsOf(requirement);
     RequirementSummary summary;
     summary.metric = requirement.metric;
+    summary.by_default = requirement.by_default;
     summary.below = !requirement.above.has_value();
     summary.limit = summary.below ? limits.high : limits.low;
     if (requirement.within) summary.low_limit = limits.low;
@@ -252,10 +255,10 @@ std::vector<RequirementSummary> JudgeAll(const std::vector<Requirement>& require
     summary.consumer_risk = requirement.consumer_risk;
     summary.plan = requirement.plan;
     summary.planned = context.planned;
-    tallies.push_back(TallyOf(limits, ValuesOf(requirement.metric, cases), cases, context.cases));
+    tallies.push_back(TallyOf(limits, ValuesOf(requirement, cases), cases, context.cases));
     summary.n = std::ssize(cases.index);
     summary.failures = std::ssize(tallies.back().failed);
-    summary.lost_flights = static_cast<std::int64_t>(LostCount(cases));
+    if (LossFails(requirement)) summary.lost_flights = static_cast<std::int64_t>(LostCount(cases));
     summary.post_hoc =
         !context.registered.empty() && std::find(context.registered.begin(), context.registered.end(),
                                                  RequirementLine(requirement)) == context.registered.end();
@@ -293,7 +296,7 @@ std::vector<RequirementSummary> JudgeAll(const std::vector<Requirement>& require
     summary.contradicted = verdict.contradicted;
     summary.beyond_plan = verdict.beyond_plan;
     summary.naive_risk = verdict.naive_risk;
-    SetBound(LimitsOf(requirements[i]), ValuesOf(summary.metric, cases), verdict.boundary.accept, missing,
+    SetBound(LimitsOf(requirements[i]), ValuesOf(requirements[i], cases), verdict.boundary.accept, missing,
              summary);
     SetPassChances(summary);
     SetConvergence(tallies[i], cases, summary);

@@ -14,7 +14,8 @@
 namespace dispersa {
 
 struct RequirementSummary {
-  std::string metric;  ///< without the prefix
+  std::string metric;       ///< without the prefix
+  bool by_default = false;  ///< because the vehicle gives limits
   bool below = true;   ///< else above; of `within` the high limit
   double limit = 0.0;
   std::optional<double> low_limit;  ///< of `within`

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "core/report/loss_fails.h"
 #include "core/report/requirement_summary.h"
 #include "core/report/sampling_text.h"
 
@@ -33,7 +34,8 @@ StoppingRule::StoppingRule(const Campaign& campaign, std::int64_t planned,
     : requirements_(campaign.requirements),
       holm_(campaign.verdicts.holm),
       stops_(campaign.verdicts.stop_when_decided && IsIndependent(campaign.sampling.method) &&
-             !campaign.requirements.empty()),
+             std::any_of(campaign.requirements.begin(), campaign.requirements.end(),
+                         [](const Requirement& requirement) { return !requirement.by_default; })),
       planned_(planned),
       past_looks_(std::move(past_looks)),
       looks_(stops_ ? StoppingLooks(campaign, planned) : std::vector{campaign.sampling.cases}),
@@ -63,7 +65,7 @@ void StoppingRule::Add(std::uint64_t case_index, bool completed, const std::vect
   if (!stops_) return;
   present_.push_back(case_index);
   for (std::size_t i = 0; i < requirements_.size(); ++i) {
-    if (!completed || !LimitsOf(requirements_[i]).Meets(values[i]))
+    if ((!completed && LossFails(requirements_[i])) || !LimitsOf(requirements_[i]).Meets(values[i]))
       failed_[i].push_back(static_cast<std::int64_t>(case_index));
   }
 }
@@ -95,8 +97,11 @@ bool StoppingRule::Decided(const std::vector<std::uint64_t>& given_up) const {
     tallies.push_back(std::move(tally));
   }
   const auto verdicts = DecideAll(planned, holm_, static_cast<std::int64_t>(target_), tallies, past_looks_);
-  return std::all_of(verdicts.begin(), verdicts.end(),
-                     [](const PlannedVerdict& verdict) { return verdict.verdict != Verdict::kInconclusive; });
+  for (std::size_t i = 0; i < verdicts.size(); ++i) {
+    const bool waits = !requirements_[i].by_default || !tallies[i].failed.empty();
+    if (waits && verdicts[i].verdict == Verdict::kInconclusive) return false;
+  }
+  return true;
 }
 
 }  // namespace dispersa

@@ -59,6 +59,7 @@ const char* LookVerdict(Verdict verdict) {
 
 Json RequirementJson(const RequirementSummary& requirement) {
   Json json = {{"metric", requirement.metric}};
+  json["by_default"] = requirement.by_default;
   json["side"] = requirement.low_limit ? "within" : requirement.below ? "below" : "above";
   json["limit"] = Number(requirement.limit);
   json["low_limit"] = OrNull(requirement.low_limit);
@@ -175,6 +176,15 @@ std::string SummaryJson(const CampaignSummary& summary) {
                                     {"end_time_s", Number(lost.end_time_s)},
                                     {"end_stage", lost.end_stage},
                                     {"reason", lost.reason}});
+  }
+  json["limits"] = {{"exceeded", summary.beyond_limits}, {"loads", Json::array()}};
+  for (const CampaignSummary::Limit& one : summary.limits) {
+    json["limits"]["loads"].push_back(
+        {{"metric", one.metric},
+         {"limit", one.limit},
+         {"exceeded", one.exceeded},
+         {"largest", OrNull(one.largest)},
+         {"largest_case", one.largest ? Json(one.largest_case) : Json(nullptr)}});
   }
   json["requirements"] = Json::array();
   for (const RequirementSummary& requirement : summary.requirements) {

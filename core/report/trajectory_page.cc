@@ -146,6 +146,8 @@ std::string TrajectoryPage(const OptimizationResult& result, const std::optional
       "<p>Genetic algorithm on objective (8) with {} individuals, selection of the least peak of q·α along the "
       "programs that reach the target, refinement by least squares. Seed {}, {} ascents flown, engine {}.</p>\n",
       problem.population, problem.seed, reference.evaluations, HtmlText(reference.engine));
+  if (!result.reached)
+    page += "<p>" + VerdictBadge("fail") + " The target is missed: " + HtmlText(result.statement) + "</p>\n";
   page += "<h2>Table 2: injection</h2>\n" + InjectionTable(result, flown);
   page += fmt::format("<p>Inclination {:.3f}°.{}</p>\n", Deg(reference.orbit.inclination_rad),
                       flown ? " Flown closed loop: the errors of the nominal flight with six degrees of freedom "

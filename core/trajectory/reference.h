@@ -74,6 +74,7 @@ inline double AimedVelocity(const TrajectoryProblem& problem) {
 
 struct Reference {
   std::string name;
+  std::string target_missed;  ///< how far the search got when it missed its target; empty: it did not
   TrajectoryProblem problem;
   FlightProgram program;
   double last_ignition_s = 0.0;  ///< timer since lift-off of the last stage

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdlib>
 
+#include "core/control/autopilot.h"
 #include "core/control/fuzzy.h"
 #include "core/control/lyapunov.h"
 
@@ -51,6 +54,45 @@ void ApplyDesign(const StageDesign& design, int stage, AutopilotConfig& autopilo
   if (blend.empty()) return;
   autopilot.rate_gyros[blend[0]].weight = round(f.first_gyro_weight);
   autopilot.rate_gyros[blend[1]].weight = 1.0 - autopilot.rate_gyros[blend[0]].weight;
+}
+
+std::vector<double> ScheduledTimes(const AutopilotConfig& autopilot, int stage) {
+  std::vector<double> times = {0.0};
+  for (const ScheduleEntry& entry : autopilot.pitch.schedule)
+    if (entry.stage == stage + 1) times.push_back(entry.at_s);
+  return times;
+}
+
+void ApplyDesign(const std::vector<StageDesign>& designs, int stage, AutopilotConfig& autopilot) {
+  const std::vector<double> times = ScheduledTimes(autopilot, stage);
+  // What a design makes of the stage's own gains and filters is what its entry holds.
+  std::vector<std::vector<ScheduleEntry>> entries(kAxes);
+  const auto axes_of = [](AutopilotConfig& config) {
+    return std::array<AxisConfig*, kAxes>{&config.pitch, &config.yaw, &config.roll};
+  };
+  for (std::size_t k = 1; k < designs.size(); ++k) {
+    AutopilotConfig then = autopilot;
+    ApplyDesign(designs[k], stage, then);
+    const auto axes = axes_of(then);
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+      const std::size_t at = static_cast<std::size_t>(stage);
+      const bool integrates = InfoOf(axes[i]->law).integral;
+      ScheduleEntry entry{
+          stage + 1, times[k], axes[i]->gains[at], integrates ? axes[i]->integral.ki_1_s3[at] : 0.0, {}};
+      for (const std::size_t filter : FiltersOfStage(*axes[i], stage + 1))
+        entry.filters.push_back(axes[i]->filters[filter]);
+      entries[i].push_back(std::move(entry));
+    }
+  }
+  ApplyDesign(designs.front(), stage, autopilot);
+  const auto axes = axes_of(autopilot);
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    std::vector<ScheduleEntry>& schedule = axes[i]->schedule;
+    std::erase_if(schedule, [&](const ScheduleEntry& entry) { return entry.stage == stage + 1; });
+    schedule.insert(schedule.end(), entries[i].begin(), entries[i].end());
+    std::stable_sort(schedule.begin(), schedule.end(),
+                     [](const ScheduleEntry& a, const ScheduleEntry& b) { return a.stage < b.stage; });
+  }
 }
 
 std::vector<std::size_t> BlendedGyros(const AutopilotConfig& autopilot, int stage) {

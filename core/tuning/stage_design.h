@@ -43,6 +43,13 @@ bool Learns(const AutopilotConfig& autopilot);
 void ApplyDesign(const StageDesign& design, int stage, AutopilotConfig& autopilot);
 inline constexpr int kDesignDigits = 3;
 
+/// The times within a stage (0-based) at which pitch's schedule has an entry; 0, the ignition, is the first.
+std::vector<double> ScheduledTimes(const AutopilotConfig& autopilot, int stage);
+
+/// The same for a scheduled stage: designs at its ScheduledTimes. Every axis gets pitch's times, and all
+/// filters of a time those of its design; the blend of gyros is the first one's.
+void ApplyDesign(const std::vector<StageDesign>& designs, int stage, AutopilotConfig& autopilot);
+
 /// The places in the autopilot's rate_gyros of a stage's (0-based) two gyros that are named for it alone; empty where
 /// there are not two.
 std::vector<std::size_t> BlendedGyros(const AutopilotConfig& autopilot, int stage);

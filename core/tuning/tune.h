@@ -10,11 +10,17 @@
 // - subject to: every computed margin of all axes, gains frozen and adapting, at every instant of
 //   MarginInstants at or above its gate plus a reserve; every case completed; every ripple of the deflection
 //   below kLimitCycleLimit_deg.
-// A PID may be searched as a linear-quadratic regulator instead (regulator.h): weights take the place of
-// damping and learning. Margins come first: a design that misses one is not flown. What augments PD acts in
-// every stage; it is searched last, over whole flights, with the measured margins at their gates instead of
-// the computed ones, which know it at rest only. The budget is shared by the stages and the augmentation. The
-// search does not depend on the gains that the autopilot had before, nor on the number of threads.
+// A stage whose schedule has times (autopilot_config.h; pitch's count, with any gains) has a design at each:
+// its damping, learning and blend are searched for all, filters follow the first mode's frequency at that
+// time, bandwidth is the largest that suffices about it, and where none does the design of that time is
+// refined by itself. With `dispersed`, as many draws of the campaign are plants to be held: their margins
+// must be above the gates of dispersed flights, those of the nominal plant above theirs, each plus the
+// smaller reserve kHeld...; they come from tables (loop_table.h), with exact ones at the end. A PID may be
+// searched as a linear-quadratic regulator instead (regulator.h): weights take the place of damping and
+// learning. Margins come first: a design that misses one is not flown. What augments PD acts in every stage;
+// it is searched last, over whole flights, with the measured margins at their gates instead of the computed
+// ones, which know it at rest only. The budget is shared by the stages and the augmentation. The search does
+// not depend on the gains that the autopilot had before, nor on the number of threads.
 #pragma once
 
 #include <cstdint>
@@ -37,8 +43,27 @@ inline constexpr double kLimitCycleLimit_deg = 0.2;
 inline constexpr double kGainReserve_db = 0.8;
 inline constexpr double kPhaseReserve_deg = 2.0;
 inline constexpr double kDelayReserve_s = 0.002;
+/// Where dispersed plants are held themselves, a reserve need not stand for them: this is for the instants
+/// and cases between those that are looked at.
+inline constexpr double kHeldGainReserve_db = 0.05;
+inline constexpr double kHeldPhaseReserve_deg = 0.2;
+inline constexpr double kHeldDelayReserve_s = 0.001;
 /// Small: a stage has two or three variables, and generations are what a budget of flights is best spent on.
 inline constexpr int kTuningPopulation = 8;
+/// Where dispersed plants are held: margins are tabulated, designs that miss them cost next to nothing, and
+/// the region of those that do not is small.
+inline constexpr int kHeldPopulation = 24;
+inline constexpr Bounds kHeldLearning = {0.0, 0.06};
+inline constexpr double kHeldLearningStart = 0.002;
+inline constexpr Bounds kHeldBandwidthOfActuator = {0.04, 0.22};
+/// Such a search begins with this as well: a first mode that keeps its phase instead of being attenuated, by
+/// a section that leads far above it, for as much bandwidth as there is.
+inline constexpr double kHeldDampingStart = 0.53;
+inline constexpr double kHeldLowPassPowerStart = 1.158, kHeldLowPassDampingStart = 0.363;
+inline constexpr double kHeldNotchPowerStart = 0.441, kHeldNotchZerosDampingStart = 0.265;
+inline constexpr double kHeldNotchPolesDampingStart = 0.1, kHeldGyroWeightStart = 0.853;
+/// At each of its times a scheduled stage may have these of its damping.
+inline constexpr double kDampingFactors[] = {1.0, 0.9, 1.11};
 /// What is searched. Bandwidths are fractions: of the largest admissible one, which is looked for between
 /// those of the actuator's.
 inline constexpr Bounds kBandwidthOfLargest = {0.6, 1.0};
@@ -50,7 +75,9 @@ inline constexpr Bounds kLearning = {0.0, 0.5};
 inline constexpr Bounds kIntegralWeightPower = {-4.0, 3.0};
 inline constexpr Bounds kRateWeightPower = {-2.0, 2.0};
 /// Of a stage that bends. Frequencies are of ten, of its first mode's in the middle of the burn.
-inline constexpr Bounds kLowPassPower = {-0.5, 1.0};
+inline constexpr Bounds kLowPassPower = {-0.5, 1.2};
+/// Of half the sampling frequency, at most.
+inline constexpr double kFastestPoles = 0.95;
 inline constexpr Bounds kLowPassDamping = {0.3, 1.0};
 inline constexpr Bounds kNotchPower = {-0.4, 0.7};
 inline constexpr Bounds kNotchZerosDamping = {0.02, 0.6};
@@ -76,6 +103,9 @@ struct TuningOptions {
   int cases = 4;           ///< flown for each design; 1 to 10,000
   int evaluations = 160;   ///< designs tried in all searches; at least 2 kTuningPopulation in each
   int threads = 1;         ///< 1 to 1024; the result does not depend on it
+  /// Draws whose plants must meet the gates of dispersed flights, at every instant and by every design; 0:
+  /// none. 0 to 1000
+  int dispersed = 0;
   bool regulator = false;  ///< search the weights of a linear-quadratic regulator; for laws with an integral
 };
 
@@ -92,6 +122,11 @@ struct StageTuning {
   double peak_deg = 0.0;      ///< largest of the stage over the cases, pitch
   LeastMargins frozen;        ///< of the stage
   LeastMargins adapting;  ///< as frozen where nothing adapts
+  /// The least of (margin - gate with reserve) / gate over the dispersed plants and the nominal one, where
+  /// they are held.
+  std::optional<double> surplus;
+  /// Of a stage that is not feasible: the constraint that is missed by most, where and by how much.
+  std::string missed;
 };
 
 struct AugmentationTuning {
@@ -99,11 +134,13 @@ struct AugmentationTuning {
   bool feasible = false;
   double mean_rms_deg = 0.0;  ///< of powered flight, pitch
   double peak_deg = 0.0;      ///< largest over the cases, pitch
+  std::string missed;         ///< as a stage's
 };
 
 struct TuningResult {
   AutopilotConfig autopilot;  ///< tuned
   std::vector<StageTuning> stages;
+  std::vector<SkippedInstant> skipped;  ///< of the nominal flight, at which no margins were asked for
   std::optional<AugmentationTuning> augmentation;  ///< where PD is augmented and every stage is feasible
   bool feasible = false;                           ///< all of them
   /// Powered pitch error of the tuned autopilot over the tuning's cases; 0 if it is not feasible.

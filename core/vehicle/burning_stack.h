@@ -97,10 +97,10 @@ DISPERSA_INLINE const double* PieceAt(const BurnCurve* curve, double time_s) {
   return curve->rows.data() + BurnCurve::kRowSize * low;
 }
 
-/// Fraction of full thrust and flow, and propellant left, at a time within the burn.
+/// Fractions of full thrust and of full flow, and propellant left, at a time within the burn.
 template <class T>
 struct BurnState {
-  T fraction, propellant_kg;
+  T fraction, flow_fraction, propellant_kg;
 };
 template <class T>
 DISPERSA_INLINE BurnState<T> BurnAt(const Burn<T>& b, T since_ignition_s) {
@@ -113,6 +113,7 @@ DISPERSA_INLINE BurnState<T> BurnAt(const Burn<T>& b, T since_ignition_s) {
   BurnState<T> state;
   state.fraction =
       Min(T(1.0), Min(Fma(since, b.rise_slope_1_s, b.rise_base), Fma(left, b.tail_slope_1_s, b.tail_base)));
+  state.flow_fraction = state.fraction;
   const T left_kg = b.propellant_kg - b.full_flow_kg_s * (full_s - lacking_s);
   state.propellant_kg = Select(left_kg < T(0.0), T(0.0), left_kg);
   if (b.has_curves) {
@@ -121,12 +122,14 @@ DISPERSA_INLINE BurnState<T> BurnAt(const Burn<T>& b, T since_ignition_s) {
     const double* piece[kWidth<T>];
     for (int lane = 0; lane < kWidth<T>; ++lane) piece[lane] = PieceAt(b.curve[lane], Lane(time_s, lane));
     T row[BurnCurve::kRowSize];
-    LoadFour(piece, row);
+    LoadRow(piece, BurnCurve::kRowSize / 4, row);
     const T from_s = time_s - row[0];
-    const T burnt_s = from_s * Fma(T(0.5) * from_s, row[2], row[1]);
+    const T burnt_s = from_s * Fma(T(0.5) * from_s, row[5], row[4]);
     const T curve_kg = Fma(-b.curve_flow_kg_s, burnt_s, b.propellant_kg * row[3]);
     const T level = Max(Fma(from_s, row[2], row[1]), T(0.0));
+    const T flow_level = Max(Fma(from_s, row[5], row[4]), T(0.0));
     state.fraction = Select(curved, level, state.fraction);
+    state.flow_fraction = Select(curved, flow_level, state.flow_fraction);
     state.propellant_kg = Select(curved, Select(curve_kg < T(0.0), T(0.0), curve_kg), state.propellant_kg);
   }
   return state;

@@ -22,6 +22,11 @@ double MotorBurn::Fraction(double since_ignition_s) const {
 
 double MotorBurn::Propellant(double since_ignition_s) const { return At(*this, since_ignition_s).propellant_kg; }
 
+double MotorBurn::ExhaustVelocity() const {
+  const double at_full_thrust_m_s = vacuum_thrust_n / full_flow_kg_s;
+  return curve ? at_full_thrust_m_s * curve->impulse_per_flow : at_full_thrust_m_s;
+}
+
 std::vector<double> MotorBurn::Kinks(double ignition_s) const {
   const double burnout_s = ignition_s + duration_s;
   std::vector<double> kinks;

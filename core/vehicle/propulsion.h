@@ -29,6 +29,8 @@ struct MotorBurn {
   double Fraction(double since_ignition_s) const;
   /// Propellant left, from propellant_mass_kg to 0.
   double Propellant(double since_ignition_s) const;
+  /// Impulse over propellant, m/s.
+  double ExhaustVelocity() const;
   /// Times within the burn of a motor ignited at ignition_s at which the thrust bends, in their order: no
   /// integration step may go across.
   std::vector<double> Kinks(double ignition_s) const;

@@ -3,16 +3,30 @@
 #include <algorithm>
 
 namespace dispersa {
+namespace {
 
-double ThrustCurve::Greatest() const {
-  return thrust_n.empty() ? 0.0 : *std::max_element(thrust_n.begin(), thrust_n.end());
+double GreatestOf(const std::vector<double>& values) {
+  return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
 }
 
-double ThrustCurve::Impulse() const {
+// Of a value that is linear between the times.
+double AreaUnder(const std::vector<double>& values, const std::vector<double>& time_s) {
   double sum = 0.0;
   for (std::size_t i = 0; i + 1 < time_s.size(); ++i)
-    sum += 0.5 * (thrust_n[i] + thrust_n[i + 1]) * (time_s[i + 1] - time_s[i]);
+    sum += 0.5 * (values[i] + values[i + 1]) * (time_s[i + 1] - time_s[i]);
   return sum;
+}
+
+}  // namespace
+
+double ThrustCurve::Greatest() const { return GreatestOf(thrust_n); }
+
+double ThrustCurve::Impulse() const { return AreaUnder(thrust_n, time_s); }
+
+double ThrustCurve::Flown() const { return flow_kg_s.empty() ? 0.0 : AreaUnder(flow_kg_s, time_s); }
+
+double ThrustCurve::FullFlowTime() const {
+  return flow_kg_s.empty() ? Impulse() / Greatest() : Flown() / GreatestOf(flow_kg_s);
 }
 
 ThrustCurve InVacuum(ThrustCurve at_sea_level, double exit_area_m2) {
@@ -22,21 +36,26 @@ ThrustCurve InVacuum(ThrustCurve at_sea_level, double exit_area_m2) {
 }
 
 BurnCurve Prepare(const ThrustCurve& curve) {
-  const double greatest_n = curve.Greatest(), impulse_n_s = curve.Impulse();
+  const std::vector<double>& flow = curve.flow_kg_s.empty() ? curve.thrust_n : curve.flow_kg_s;
+  const double greatest_n = curve.Greatest(), greatest_flow = GreatestOf(flow);
+  const double flown = AreaUnder(flow, curve.time_s);
   const std::size_t pieces = curve.time_s.size() - 1;
   BurnCurve prepared;
   prepared.end_s = curve.time_s.back();
-  double burnt_n_s = 0.0;
+  if (!curve.flow_kg_s.empty())
+    prepared.impulse_per_flow = curve.Impulse() / greatest_n / (flown / greatest_flow);
+  double burnt = 0.0;
   for (std::size_t i = 0; i < pieces; ++i) {
     const double length_s = curve.time_s[i + 1] - curve.time_s[i];
-    const double from_n = curve.thrust_n[i], to_n = curve.thrust_n[i + 1];
     const bool is_last = i + 1 == pieces;
+    const std::size_t at = is_last ? i + 1 : i;
     prepared.begin_s.push_back(curve.time_s[i]);
-    prepared.rows.insert(
-        prepared.rows.end(),
-        {is_last ? prepared.end_s : curve.time_s[i], (is_last ? to_n : from_n) / greatest_n,
-         (to_n - from_n) / length_s / greatest_n, is_last ? 0.0 : 1.0 - burnt_n_s / impulse_n_s});
-    burnt_n_s += 0.5 * (from_n + to_n) * length_s;
+    prepared.rows.insert(prepared.rows.end(),
+                         {curve.time_s[at], curve.thrust_n[at] / greatest_n,
+                          (curve.thrust_n[i + 1] - curve.thrust_n[i]) / length_s / greatest_n,
+                          is_last ? 0.0 : 1.0 - burnt / flown, flow[at] / greatest_flow,
+                          (flow[i + 1] - flow[i]) / length_s / greatest_flow, 0.0, 0.0});
+    burnt += 0.5 * (flow[i] + flow[i + 1]) * length_s;
   }
   return prepared;
 }

@@ -42,7 +42,8 @@ void CheckTube(const std::string& path, double top, double bottom, double outer,
 }
 
 // The same of a file's curve, whose reader sets thrust and burning time by it, and of one set in code.
-void CheckThrustCurve(const Motor& motor, const std::string& path, Checker& check) {
+void CheckThrustCurve(const Stage& stage, const std::string& path, Checker& check) {
+  const Motor& motor = stage.motor;
   const ThrustCurve& curve = motor.thrust_curve;
   const auto at = [&](const char* column, std::size_t i) {
     return path + ".thrust_curve.table." + column + "[" + std::to_string(i) + "]";
@@ -64,6 +65,20 @@ void CheckThrustCurve(const Motor& motor, const std::string& path, Checker& chec
                 "a thrust above 0 somewhere");
   check.Require(motor.ignition_rise_s == 0.0 && motor.tail_off_s == 0.0, path + ".thrust_curve",
                 "stands beside ramps", "no ignition_rise_* and tail_off_*");
+  if (curve.flow_kg_s.empty()) return;
+  check.Require(curve.flow_kg_s.size() == curve.time_s.size(), path + ".thrust_curve",
+                "has " + std::to_string(curve.flow_kg_s.size()) + " mass flows for " +
+                    std::to_string(curve.time_s.size()) + " times",
+                "as many of both");
+  if (curve.flow_kg_s.size() != curve.time_s.size()) return;
+  for (std::size_t i = 0; i < curve.flow_kg_s.size(); ++i)
+    check.NotNegative(curve.flow_kg_s[i], at("mass_flow_kg_s", i));
+  const double flown_kg = curve.Flown();
+  check.Require(std::fabs(flown_kg - stage.propellant_mass_kg) <= kFlowSumTolerance * stage.propellant_mass_kg,
+                path + ".thrust_curve.table.mass_flow_kg_s",
+                "flows " + std::to_string(flown_kg) + " kg in all, but propellant_mass_kg is " +
+                    std::to_string(stage.propellant_mass_kg),
+                "flows that sum up to the propellant within 1 %");
 }
 
 void CheckStage(const Vehicle& vehicle, std::size_t i, Checker& check) {
@@ -73,7 +88,7 @@ void CheckStage(const Vehicle& vehicle, std::size_t i, Checker& check) {
   check.Positive(stage.propellant_mass_kg, path + ".propellant_mass_kg");
   check.Positive(stage.diameter_m, path + ".diameter_m");
   if (!stage.motor.thrust_curve.empty()) {
-    CheckThrustCurve(stage.motor, path + ".motor", check);
+    CheckThrustCurve(stage, path + ".motor", check);
   } else {
     check.Positive(stage.motor.thrust_n, path + ".motor.thrust_n");
     check.Positive(stage.motor.burning_time_s, path + ".motor.burning_time_s");
@@ -209,7 +224,7 @@ std::vector<VehicleProblem> Problems(const Vehicle& vehicle) {
 
 void SetThrustCurve(ThrustCurve curve, Motor& motor) {
   motor.thrust_n = curve.Greatest();
-  motor.burning_time_s = curve.Impulse() / motor.thrust_n;
+  motor.burning_time_s = curve.FullFlowTime();
   motor.thrust_curve = std::move(curve);
 }
 

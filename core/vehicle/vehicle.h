@@ -38,7 +38,7 @@ struct Grain {
 };
 
 /// Constant thrust between two linear ramps whose impulse is part of the whole, or a thrust curve: propellant
-/// flow is proportional to thrust, and the propellant is used up exactly at burnout.
+/// flow is proportional to thrust, unless the curve gives it, and the propellant is used up exactly at burnout.
 struct Motor {
   double thrust_n = 0.0;  ///< all four nozzles together (the paper's 4P), in vacuum; of a curve the greatest
   double burning_time_s = 0.0;      ///< propellant_mass / burning_time is the flow at full thrust
@@ -48,7 +48,7 @@ struct Motor {
   double published_mass_flow_kg_s = 0.0;  ///< as printed in the source, 0 if none; only compared
   ThrustCurve thrust_curve;               ///< empty: none. Sets thrust_n and burning_time_s; without ramps
 };
-/// Gives a motor a curve, and the greatest thrust and the time that its propellant would last at that.
+/// Gives a motor a curve, and the greatest thrust and the time that its propellant would last at the greatest flow.
 void SetThrustCurve(ThrustCurve curve, Motor& motor);
 
 /// Four nozzles at 90°, each hinged in one plane: two for pitch (right, left), two for yaw (bottom, top);
@@ -125,8 +125,9 @@ struct AeroTable {
   std::vector<double> clp_per_rad;      ///< shape (mach): roll damping on p d / (2 V)
 };
 
-/// Limits of the structure; 0 = none given.
+/// Limits of the structure; 0 = none given. core/flight/structural_limits.h says which load each one limits.
 struct StructuralLimits {
+  double q_max_pa = 0.0;
   double q_alpha_pa_rad = 0.0;
   double axial_load_g = 0.0;
   double lateral_load_g = 0.0;
@@ -160,6 +161,7 @@ struct Sensors {
 
 struct Vehicle {
   std::string name;
+  bool made_up = false;  ///< it need not be possible: a textbook's coefficients, a limiting case
   LaunchSite site;
   double hold_down_s = 0.0;             ///< stage 1 burns this long before release; lift-off is time 0
   bool jet_damping = true;              ///< moment of the flow from CG to nozzle on a turning vehicle

@@ -11,6 +11,7 @@
 
 #include "core/report/text.h"
 #include "services/cli/progress.h"
+#include "services/coordinator/whole_number.h"
 
 namespace dispersa {
 
@@ -24,7 +25,7 @@ void AddReflownOptions(CLI::App& command, ReflownFlights& flights) {
           "so many first cases, or all, are flown again for the percentiles over time; the extremes of every "
           "metric besides")
       ->transform(CLI::Transformer(words))
-      ->check(CLI::PositiveNumber)
+      ->check([](const std::string& text) { return WholeNumberProblem(text, UINT64_MAX); })
       ->default_str(std::to_string(flights.envelope));
 }
 

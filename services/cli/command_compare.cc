@@ -18,6 +18,7 @@
 #include "services/cli/campaign_differences.h"
 #include "services/cli/command.h"
 #include "services/cli/stored_campaign.h"
+#include "services/cli/writable.h"
 
 namespace dispersa {
 namespace {
@@ -90,6 +91,7 @@ void PrintText(const Comparison& comparison) {
 
 ExitCode CompareFolders(const CompareOptions& options, const GlobalOptions& global) {
   CheckMetrics(options.metrics);
+  RequireWritableFolder("--out", options.out);
   const StoredCampaign a = OpenStored(options.a);
   const StoredCampaign b = OpenStored(options.b);
   const CaseColumns cases_a = AllColumns(a.folder);

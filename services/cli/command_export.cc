@@ -14,6 +14,7 @@
 #include "services/cli/command.h"
 #include "services/cli/progress.h"
 #include "services/cli/stored_campaign.h"
+#include "services/cli/writable.h"
 #include "services/coordinator/threads.h"
 
 namespace dispersa {
@@ -51,6 +52,7 @@ void ExportImpacts(const StoredCampaign& stored, const ExportOptions& options, c
 
 ExitCode Export(const ExportOptions& options, const GlobalOptions& global) {
   const StoredCampaign stored = OpenStored(options.directory);
+  RequireWritableFile("--out", options.out);
   switch (options.format) {
     case ExportFormat::kCsv:
       WriteCasesCsv(stored.folder, options.out);

@@ -6,6 +6,7 @@
 
 #include "core/report/output_file.h"
 #include "services/cli/session.h"
+#include "services/cli/writable.h"
 
 namespace dispersa {
 namespace {
@@ -34,6 +35,7 @@ ExitCode Fetch(const std::string& id, const std::string& target, Session& sessio
   if (fs::exists(out) && !(fs::is_directory(out) && fs::is_empty(out))) {
     throw Failure{kExitBadInput, out.string() + ": not an empty folder, allowed: a new or an empty folder"};
   }
+  RequireWritableFolder("--out", out);
   const fs::path incomplete = out.string() + ".dispersa-fetch";
   const Json answer = Json::parse(session.Ask("files", {{"id", id}}).text);
   fs::remove_all(incomplete);  // of a fetch that was killed

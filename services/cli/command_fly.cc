@@ -15,6 +15,7 @@
 #include "services/cli/flight_json.h"
 #include "services/cli/fly_scenario.h"
 #include "services/cli/warn.h"
+#include "services/cli/writable.h"
 
 namespace dispersa {
 namespace {
@@ -68,6 +69,7 @@ ExitCode FlyOne(const FlyOptions& options, const GlobalOptions& global) {
     return FlyScenarioFile(options.campaign, scheme, options.history, global);
   }
   const Campaign campaign = LoadAndWarn(options.campaign, options.overrides);
+  RequireWritableFile("--history", options.history);
   if (options.case_index && *options.case_index >= campaign.sampling.cases) {
     throw InputError("--case: the campaign has no case " + std::to_string(*options.case_index),
                      "0 to " + std::to_string(campaign.sampling.cases - 1));

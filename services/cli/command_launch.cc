@@ -1,6 +1,5 @@
 // dispersa launch: gives a campaign to a coordinator.
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <chrono>
 #include <memory>
@@ -9,6 +8,8 @@
 
 #include "core/campaign_yaml/load.h"
 #include "services/cli/session.h"
+#include "services/cli/warn.h"
+#include "services/coordinator/whole_number.h"
 
 namespace dispersa {
 namespace {
@@ -34,9 +35,7 @@ void Upload(Session& session, const Campaign& campaign) {
 }
 
 ExitCode Launch(const LaunchOptions& options, Session& session, const GlobalOptions& global) {
-  std::vector<InputProblem> warnings;
-  const Campaign campaign = LoadCampaign(options.campaign, options.overrides, &warnings);
-  for (const InputProblem& warning : warnings) spdlog::warn("{}", warning.Text());
+  const Campaign campaign = LoadAndWarn(options.campaign, options.overrides);
   const Json launch = {
       {"id", campaign.id}, {"flight_id", campaign.flight_id}, {"priority", options.priority}};
   std::string state;
@@ -69,7 +68,7 @@ void AddLaunchCommand(CLI::App& app, Invocation& invocation) {
   CLI::App* command = app.add_subcommand("launch", "give a campaign to a coordinator and print its id");
   command->add_option("campaign", options->campaign, "campaign file")->required();
   command->add_option("--cases", options->overrides.cases, "number of cases, instead of the file's")
-      ->check(CLI::PositiveNumber);
+      ->check(CaseCountProblem);
   command->add_option("--seed", options->overrides.seed, "seed, instead of the file's");
   command->add_option("--priority", options->priority, "campaigns of a higher one fly first; default 0")
       ->check(CLI::Range(-1000, 1000));

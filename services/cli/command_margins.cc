@@ -16,6 +16,7 @@
 #include "services/cli/flight_json.h"
 #include "services/cli/warn.h"
 #include "services/coordinator/threads.h"
+#include "services/coordinator/whole_number.h"
 
 namespace dispersa {
 namespace {
@@ -286,7 +287,8 @@ void AddMarginsCommand(CLI::App& app, Invocation& invocation) {
   command->add_option("campaign", options->campaign, "campaign file")->required();
   command->add_option("--autopilot", options->overrides.autopilot,
                       "autopilot file, instead of the campaign's");
-  command->add_option("--cases", options->overrides.cases, "also of so many dispersed cases of the campaign");
+  command->add_option("--cases", options->overrides.cases, "also of so many dispersed cases of the campaign")
+      ->check(CaseCountProblem);
   command
       ->add_option(
           "--frequency-band", options->frequency_band_percent,

@@ -18,6 +18,8 @@
 #include "core/vehicle/mass.h"
 #include "services/cli/command.h"
 #include "services/cli/flight_json.h"
+#include "services/cli/warn.h"
+#include "services/cli/writable.h"
 
 namespace dispersa {
 namespace {
@@ -128,11 +130,14 @@ fs::path PageFile(const std::string& out) {
 }
 
 ExitCode Modes(const ModesOptions& options, const GlobalOptions& global) {
-  const Vehicle vehicle = LoadVehicle(options.vehicle);
+  std::vector<InputProblem> warnings;
+  const Vehicle vehicle = LoadVehicle(options.vehicle, &warnings);
   if (!vehicle.structure_beam)
     throw InputError(
         {{options.vehicle, 1, 1, "", "the vehicle is rigid", "a vehicle with a structure_beam"}});
+  Warn(warnings);
   const fs::path page = options.out.empty() ? fs::path() : PageFile(options.out);
+  RequireWritableFile("--out", page);
   const std::vector<StackModes> stacks = BuildBendingModes(vehicle);
   if (!page.empty()) WriteFile(page, ModesPage(vehicle, stacks));
   if (global.json) {

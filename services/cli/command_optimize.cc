@@ -22,6 +22,8 @@
 #include "services/cli/flight_json.h"
 #include "services/cli/progress.h"
 #include "services/cli/seed_study.h"
+#include "services/cli/warn.h"
+#include "services/cli/writable.h"
 #include "services/coordinator/threads.h"
 
 namespace dispersa {
@@ -46,7 +48,8 @@ nlohmann::ordered_json ResultJson(const OptimizationResult& result, const std::s
                            {"margin", constraint.enforced ? JsonNumber(constraint.margin) : nullptr}});
   }
   return {{"schema", "dispersa/optimize/1"},
-          {"reference", result.reached ? nlohmann::ordered_json(file) : nullptr},
+          {"reference", file},
+          {"reached", result.reached},
           {"orbit",
            {{"altitude_km", JsonNumber(reference.orbit.altitude_m * 1e-3)},
             {"velocity_m_s", JsonNumber(reference.orbit.velocity_m_s)},
@@ -165,30 +168,35 @@ ExitCode StudySeeds(const OptimizationInput& input, const OptimizeOptions& optio
 }
 
 ExitCode Optimize(const OptimizeOptions& options, const GlobalOptions& global) {
-  const OptimizationInput input = LoadOptimization(options.campaign, options.seed);
+  std::vector<InputProblem> warnings;
+  const OptimizationInput input = LoadOptimization(options.campaign, options.seed, &warnings);
+  Warn(warnings);
   const int threads = ThreadsOrAll(options.threads);
   if (options.seeds > 0) return StudySeeds(input, options, threads, global);
+  const std::filesystem::path file = options.out.empty() ? input.name + "_reference.yaml" : options.out;
+  const auto beside = [&](const char* extension) {
+    std::filesystem::path path = file;
+    return path.replace_extension(extension);
+  };
+  for (const std::filesystem::path& path : {file, beside(".csv"), beside(".html")})
+    RequireWritableFile("--out", path);
   OptimizationResult result = Search(input, threads, global.quiet);
   result.reference.name = input.name;
   result.reference.vehicle_sha256 = input.vehicle_sha256;
 
-  const std::filesystem::path file = options.out.empty() ? input.name + "_reference.yaml" : options.out;
+  result.reference.target_missed = result.statement;
+
+  // A search that misses its target has still found something, which says so itself.
   std::optional<OrbitErrors> flown;
-  if (result.reached) {
-    flown = FlyReference(input, result.reference);
-    const auto beside = [&](const char* extension) {
-      std::filesystem::path path = file;
-      return path.replace_extension(extension);
-    };
-    WriteFile(file, WriteReference(result.reference));
-    WriteFile(beside(".csv"), AscentCsv(result.history));
-    WriteFile(beside(".html"), TrajectoryPage(result, flown));
-  }
+  if (result.reached) flown = FlyReference(input, result.reference);
+  WriteFile(file, WriteReference(result.reference));
+  WriteFile(beside(".csv"), AscentCsv(result.history));
+  WriteFile(beside(".html"), TrajectoryPage(result, flown));
   if (global.json) {
     fmt::print("{}\n", ResultJson(result, file.string()).dump(2));
   } else {
     PrintText(result, flown);
-    if (result.reached) fmt::print("reference: {}\n", file.string());
+    fmt::print("reference{}: {}\n", result.reached ? "" : ", which misses its target", file.string());
   }
   if (result.reached) return kExitDone;
   fmt::print(stderr, "{}\n", result.statement);
@@ -203,9 +211,10 @@ void AddOptimizeCommand(CLI::App& app, Invocation& invocation) {
       app.add_subcommand("optimize", "find the trajectory that reaches a campaign's target orbit");
   command->add_option("campaign", options->campaign, "campaign file, with an optimize block or a reference")
       ->required();
-  command->add_option("-o,--out", options->out,
-                      "reference file to write; the time history goes beside it as .csv, figures and tables as "
-                      ".html; default <name>_reference.yaml. Nothing is written when the target is not reached");
+  command->add_option(
+      "-o,--out", options->out,
+      "reference file to write; the time history goes beside it as .csv, figures and tables as "
+      ".html; default <name>_reference.yaml. One that misses its target is written too, and says so");
   command->add_option("--seed", options->seed, "seed, instead of the file's");
   command->add_option("--seeds", options->seeds,
                       "optimise with so many seeds, from the file's or --seed on, and print how well and how alike "

@@ -12,6 +12,7 @@
 #include "services/cli/command.h"
 #include "services/cli/progress.h"
 #include "services/cli/warn.h"
+#include "services/cli/writable.h"
 #include "services/coordinator/threads.h"
 
 namespace dispersa {
@@ -50,6 +51,7 @@ void CheckEmpty(const fs::path& directory) {
 ExitCode MakePaper(const PaperCommandOptions& options, const GlobalOptions& global) {
   const fs::path directory = options.out;
   CheckEmpty(directory);
+  RequireWritableFolder("--out", directory);
   const fs::path folder = options.campaigns.empty() ? ShippedCampaigns() : fs::path(options.campaigns);
   std::vector<Campaign> campaigns;
   for (const PaperCampaign& campaign : PaperCampaigns())

@@ -15,6 +15,7 @@
 #include "services/cli/flight_json.h"
 #include "services/cli/plan_text.h"
 #include "services/cli/warn.h"
+#include "services/coordinator/whole_number.h"
 
 namespace dispersa {
 namespace {
@@ -78,7 +79,7 @@ void AddPlanCommand(CLI::App& app, Invocation& invocation) {
   CLI::App* command = app.add_subcommand("plan", "print the inputs of every case, without flying");
   command->add_option("campaign", options->campaign, "campaign file")->required();
   command->add_option("--cases", options->overrides.cases, "number of cases, instead of the file's")
-      ->check(CLI::PositiveNumber);
+      ->check(CaseCountProblem);
   command->add_option("--seed", options->overrides.seed, "seed, instead of the file's");
   command->add_flag("--csv", options->csv, "all inputs, in the columns of cases.csv");
   command->footer(

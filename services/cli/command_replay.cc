@@ -18,6 +18,7 @@
 #include "services/cli/command.h"
 #include "services/cli/flight_json.h"
 #include "services/cli/stored_campaign.h"
+#include "services/cli/writable.h"
 
 namespace dispersa {
 namespace {
@@ -95,6 +96,7 @@ void PrintText(const CaseResult& stored, const CaseResult& replayed,
 
 ExitCode Replay(const ReplayOptions& options, const GlobalOptions& global) {
   const StoredCampaign stored = OpenStored(options.directory);
+  RequireWritableFile("--history", options.history);
   const std::string engine = stored.folder.Provenance("engine");
   if (engine != EngineVersion()) {
     spdlog::warn("the folder was flown by engine {}, this is {}: the flights may differ", engine,

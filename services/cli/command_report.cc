@@ -10,6 +10,7 @@
 #include "services/cli/command.h"
 #include "services/cli/render_template.h"
 #include "services/cli/stored_campaign.h"
+#include "services/cli/writable.h"
 #include "services/coordinator/campaign_book.h"
 #include "services/coordinator/threads.h"
 
@@ -26,6 +27,7 @@ struct ReportCommand {
 /// Nothing is flown and nothing in the folder changes: the template reads summary.json as it stands.
 ExitCode Fill(const ReportCommand& options) {
   const StoredCampaign stored = OpenStored(options.directory);
+  RequireWritableFile("--out", options.out);
   const std::string text = RenderTemplate(stored.folder.directory() / "summary.json", options.template_file);
   if (options.out.empty()) {
     fmt::print("{}", text);
@@ -40,6 +42,7 @@ ExitCode Report(const ReportCommand& options, const GlobalOptions& global) {
   if (!options.out.empty())
     throw InputError("--out: the reports stand in the result folder", "--out with --template");
   StoredCampaign stored = OpenStored(options.directory);
+  RequireWritableFile("the report", stored.folder.directory() / "report.html");
   stored.folder.Lock();
   const CampaignSummary summary =
       MakeReports(stored.folder, stored.campaign, UsableCores(), global.quiet, options.reflown);

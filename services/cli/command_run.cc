@@ -34,6 +34,7 @@
 #include "services/coordinator/stop_signal.h"
 #include "services/coordinator/threads.h"
 #include "services/coordinator/utc.h"
+#include "services/coordinator/whole_number.h"
 #include "services/transport/private_domain.h"
 
 namespace dispersa {
@@ -351,7 +352,7 @@ void AddRunCommand(CLI::App& app, Invocation& invocation) {
   command->add_option("--out", request.out, "result folder; default: results/<name>-<first 8 of id>")
       ->check([](const std::string& text) { return text.empty() ? "must not be empty" : ""; });
   command->add_option("--cases", request.overrides.cases, "number of cases, instead of the file's")
-      ->check(CLI::PositiveNumber);
+      ->check(CaseCountProblem);
   command->add_option("--seed", request.overrides.seed, "seed, instead of the file's");
   command->add_option("--autopilot", request.overrides.autopilot,
                       "autopilot file, instead of the campaign's");

@@ -23,6 +23,7 @@
 #include "services/cli/flight_json.h"
 #include "services/cli/progress.h"
 #include "services/cli/warn.h"
+#include "services/cli/writable.h"
 #include "services/coordinator/threads.h"
 
 namespace dispersa {
@@ -56,7 +57,8 @@ Requirement WantedRequirement(const SearchCommand& command, const Campaign& camp
     return requirement;
   }
   for (const Requirement& requirement : campaign.requirements)
-    if (command.metric.empty() || requirement.metric == command.metric) return requirement;
+    if (command.metric.empty() ? !requirement.by_default : requirement.metric == command.metric)
+      return requirement;
   throw InputError(command.metric.empty() ? command.campaign + ": states no requirement"
                                           : command.campaign + ": states no requirement of " + command.metric,
                    "--metric with --below or --above");
@@ -141,6 +143,7 @@ std::string Sentence(const FailureSearchResult& result, const Requirement& requi
 
 ExitCode SearchFor(const SearchCommand& command, const GlobalOptions& global) {
   const Campaign campaign = LoadAndWarn(command.campaign);
+  RequireWritableFile("--out", command.out);
   const Requirement requirement = WantedRequirement(command, campaign);
   Searcher searcher(campaign, requirement, command.options.max_flights, global.quiet);
   const DispersionSpace& space = searcher.space();

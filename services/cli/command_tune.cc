@@ -14,7 +14,9 @@
 #include "services/cli/flight_json.h"
 #include "services/cli/progress.h"
 #include "services/cli/warn.h"
+#include "services/cli/writable.h"
 #include "services/coordinator/threads.h"
+#include "services/coordinator/whole_number.h"
 
 namespace dispersa {
 namespace {
@@ -32,6 +34,7 @@ std::string CommandText(const TuneOptions& options) {
   std::string text = "dispersa tune " + options.campaign;
   if (!options.autopilot.empty()) text += " --autopilot " + options.autopilot;
   if (options.tuning.regulator) text += " --lqr";
+  if (options.tuning.dispersed > 0) text += fmt::format(" --dispersed {}", options.tuning.dispersed);
   return text + fmt::format(" --out {} --seed {} --cases {} --evaluations {}", options.out,
                             options.tuning.seed, options.tuning.cases, options.tuning.evaluations);
 }
@@ -76,19 +79,40 @@ std::string MarginsText(const LeastMargins& m) {
 }
 
 // The comment at the head of the file.
+/// Behind the name of an autopilot that no gate has let pass.
+constexpr char kMissed[] = " (misses a constraint)";
+
 std::string Header(const TuneOptions& options, const TuningResult& result) {
   std::string text = LawText(result.autopilot.pitch.law);
+  if (!result.feasible)
+    text += "# NOT TO BE FLOWN: no design was found that meets every constraint; this is the best.\n";
   if (options.tuning.regulator) text += RegulatorText(result.autopilot.pitch);
   text += fmt::format("#\n# Tuned by\n#   {}\n", CommandText(options));
-  text += fmt::format("# which tried {} designs in {} flights. Over the {} cases of its seed:\n",
-                      result.evaluations, result.flights, options.tuning.cases);
-  text += fmt::format("#   median powered RMS pitch error {:.5f} deg, largest peak {:.4f} deg\n",
-                      result.median_rms_deg, result.largest_peak_deg);
+  text += fmt::format("# which tried {} designs in {} flights.", result.evaluations, result.flights);
+  if (result.feasible)
+    text += fmt::format(
+        " Over the {} cases of its seed:\n#   median powered RMS pitch error {:.5f} deg, largest peak "
+        "{:.4f} deg\n",
+        options.tuning.cases, result.median_rms_deg, result.largest_peak_deg);
+  else
+    text += "\n";
+  for (std::size_t i = 0; i < result.stages.size(); ++i)
+    if (!result.stages[i].missed.empty())
+      text += fmt::format("# Stage {} misses by most: {}\n", i + 1, result.stages[i].missed);
+  if (result.augmentation && !result.augmentation->missed.empty())
+    text += fmt::format("# The augmentation misses by most: {}\n", result.augmentation->missed);
   text += "# Least computed margins (gain either way, phase, delay), gains frozen | adapting:\n";
   for (std::size_t i = 0; i < result.stages.size(); ++i) {
     text += fmt::format("#   stage {}: {} | {}\n", i + 1, MarginsText(result.stages[i].frozen),
                         MarginsText(result.stages[i].adapting));
   }
+  if (!result.skipped.empty())
+    text += fmt::format("# None at {} instants with less than {:g} % of full thrust.\n", result.skipped.size(),
+                        100.0 * kLeastThrustFraction);
+  if (result.feasible && options.tuning.dispersed > 0)
+    text += fmt::format(
+        "# The plants of {} draws meet the gates of dispersed flights, {:.0f} dB and {:.0f} deg, too.\n",
+        options.tuning.dispersed, kDispersedGainGate_db, kDispersedPhaseGate_deg);
   return text;
 }
 
@@ -96,6 +120,10 @@ nlohmann::ordered_json MarginsJson(const LeastMargins& m) {
   return {{"gain_db", JsonNumber(m.gain_db)},
           {"phase_deg", JsonNumber(m.phase_deg)},
           {"delay_ms", JsonNumber(1e3 * m.delay_s)}};
+}
+
+nlohmann::ordered_json MissedJson(const std::string& missed) {
+  return missed.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(missed);
 }
 
 nlohmann::ordered_json ResultJson(const TuneOptions& options, const TuningResult& result,
@@ -114,8 +142,16 @@ nlohmann::ordered_json ResultJson(const TuneOptions& options, const TuningResult
                       {"pitch_error_rms_mean_deg", JsonNumber(stage.mean_rms_deg)},
                       {"pitch_error_peak_deg", JsonNumber(stage.peak_deg)},
                       {"frozen", MarginsJson(stage.frozen)},
-                      {"adapting", MarginsJson(stage.adapting)}});
+                      {"adapting", MarginsJson(stage.adapting)},
+                      {"missed", MissedJson(stage.missed)}});
+    if (stage.surplus) stages.back()["surplus"] = JsonNumber(*stage.surplus);
   }
+  auto skipped = nlohmann::ordered_json::array();
+  for (const SkippedInstant& at : result.skipped)
+    skipped.push_back({{"place", at.place},
+                       {"stage", at.stage + 1},
+                       {"time_s", at.time_s},
+                       {"thrust_percent", 100.0 * at.thrust_fraction}});
   auto generations = nlohmann::ordered_json::array();
   for (const TuningRecord& record : log) {
     const GenerationRecord& g = record.generation;
@@ -134,10 +170,12 @@ nlohmann::ordered_json ResultJson(const TuneOptions& options, const TuningResult
                     {"spectral_gain_1_s", tuned.design.spectral_gain_1_s},
                     {"maximum_total_gain", tuned.design.maximum_total_gain},
                     {"pitch_error_rms_mean_deg", JsonNumber(tuned.mean_rms_deg)},
-                    {"pitch_error_peak_deg", JsonNumber(tuned.peak_deg)}};
+                    {"pitch_error_peak_deg", JsonNumber(tuned.peak_deg)},
+                    {"missed", MissedJson(tuned.missed)}};
   }
   return {{"schema", "dispersa/tune/1"},
-          {"autopilot", result.feasible ? nlohmann::ordered_json(options.out) : nullptr},
+          {"autopilot", options.out},
+          {"feasible", result.feasible},
           {"seed", options.tuning.seed},
           {"cases", options.tuning.cases},
           {"evaluations", result.evaluations},
@@ -145,6 +183,7 @@ nlohmann::ordered_json ResultJson(const TuneOptions& options, const TuningResult
           {"pitch_error_rms_median_deg", result.feasible ? JsonNumber(result.median_rms_deg) : nullptr},
           {"pitch_error_peak_deg", result.feasible ? JsonNumber(result.largest_peak_deg) : nullptr},
           {"stages", std::move(stages)},
+          {"skipped", std::move(skipped)},
           {"augmentation", std::move(augmentation)},
           {"log", std::move(generations)}};
 }
@@ -172,13 +211,19 @@ void PrintText(const TuneOptions& options, const TuningResult& result, const std
     fmt::print("{:<6}{:>9}{:>9}{:>10}{:>13.5f}{:>10.4f}  {} | {}{}\n", i + 1, axis.gains[i].kp_1_s2,
                axis.gains[i].kd_1_s, learning, stage.mean_rms_deg, stage.peak_deg, MarginsText(stage.frozen),
                MarginsText(stage.adapting), stage.feasible ? "" : "  INFEASIBLE");
+    if (!stage.missed.empty()) fmt::print("      misses by most: {}\n", stage.missed);
   }
+  if (!result.skipped.empty())
+    fmt::print("No margins were asked for with less than {:g} % of full thrust:\n", 100.0 * kLeastThrustFraction);
+  for (const SkippedInstant& at : result.skipped)
+    fmt::print("      {:.2f} s, stage {}{}\n", at.time_s, at.stage + 1, at.place.empty() ? "" : ", " + at.place);
   if (result.augmentation) {
     const AugmentationTuning& tuned = *result.augmentation;
     fmt::print("augmentation: adaptive gain {:.3g} 1/s, spectral gain {:.3g} 1/s, total gain to {:.3g}; mean rms "
                "{:.5f} deg, peak {:.4f} deg{}\n",
                tuned.design.adaptive_gain_1_s, tuned.design.spectral_gain_1_s, tuned.design.maximum_total_gain,
                tuned.mean_rms_deg, tuned.peak_deg, tuned.feasible ? "" : "  INFEASIBLE");
+    if (!tuned.missed.empty()) fmt::print("      misses by most: {}\n", tuned.missed);
   }
   fmt::print("\n{} designs, {} flights\n", result.evaluations, result.flights);
   if (!result.feasible) return;
@@ -190,6 +235,7 @@ void PrintText(const TuneOptions& options, const TuningResult& result, const std
 ExitCode RunTuning(const TuneOptions& given, const GlobalOptions& global) {
   TuneOptions options = given;
   options.tuning.threads = ThreadsOrAll(options.threads);
+  RequireWritableFile("--out", options.out);
   const Campaign campaign = LoadAndWarn(options.campaign);
   const AutopilotConfig autopilot =
       options.autopilot.empty() ? campaign.autopilot : LoadAutopilot(options.autopilot);
@@ -208,14 +254,17 @@ ExitCode RunTuning(const TuneOptions& given, const GlobalOptions& global) {
     };
     result = Tune(campaign, autopilot, options.tuning, observe);
   }
-  if (result.feasible) WriteFile(options.out, Header(options, result) + WriteAutopilot(result.autopilot));
+  // A search that misses its gates has still found something, which says so itself.
+  if (!result.feasible) result.autopilot.name += kMissed;
+  WriteFile(options.out, Header(options, result) + WriteAutopilot(result.autopilot));
   if (global.json) {
     fmt::print("{}\n", ResultJson(options, result, log).dump(2));
   } else {
     PrintText(options, result, log);
   }
   if (result.feasible) return kExitDone;
-  fmt::print(stderr, "no design was found that meets every constraint; nothing is written\n");
+  fmt::print(stderr, "no design was found that meets every constraint; {} holds the best that was found\n",
+             options.out);
   return kExitRequirementFailed;
 }
 
@@ -228,7 +277,7 @@ void AddTuneCommand(CLI::App& app, Invocation& invocation) {
       ->required();
   command
       ->add_option("-o,--out", options->out,
-                   "autopilot file to write; nothing is written if a constraint is not met")
+                   "autopilot file to write; one that misses a constraint says so in its name")
       ->required();
   command->add_option("--autopilot", options->autopilot,
                       "autopilot file whose law and fixed parameters are taken, instead of the campaign's");
@@ -236,10 +285,17 @@ void AddTuneCommand(CLI::App& app, Invocation& invocation) {
       ->add_option("--seed", options->tuning.seed,
                    "seed of the search and of its cases; never the campaign's own")
       ->capture_default_str();
-  command->add_option("--cases", options->tuning.cases, "cases flown for each design")->capture_default_str();
+  command->add_option("--cases", options->tuning.cases, "cases flown for each design")
+      ->check(CaseCountProblem)
+      ->capture_default_str();
   command
       ->add_option("--evaluations", options->tuning.evaluations,
                    "designs tried, shared by the stages and the augmentation of PD")
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--dispersed", options->tuning.dispersed,
+          "draws of the campaign whose plants must meet the gates of dispersed flights, by every design")
       ->capture_default_str();
   command->add_flag(
       "--lqr", options->tuning.regulator,
@@ -249,7 +305,8 @@ void AddTuneCommand(CLI::App& app, Invocation& invocation) {
   command->footer(
       "Minimises the mean RMS pitch error of each stage, subject to computed margins above the gates of\n"
       "`dispersa margins` with a reserve; then what augments PD, subject to the measured ones. The gains\n"
-      "that the file has are not looked at. Ends with 3 when no design meets the constraints.\n"
+      "that the file has are not looked at; the times of its schedule are kept. Ends with 3 when no design "
+      "meets the constraints.\n"
       "Example: dispersa tune campaigns/table3.yaml --autopilot campaigns/autopilots/pd.yaml --out pd.yaml");
   command->callback([options, &invocation] {
     invocation.command = [options](const GlobalOptions& global) { return RunTuning(*options, global); };

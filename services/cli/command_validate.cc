@@ -1,4 +1,5 @@
-// dispersa validate: what is wrong with input files.
+// dispersa validate: what is wrong with input files, what is unusual about them, and what a vehicle amounts
+// to.
 #include <fmt/format.h>
 
 #include <memory>
@@ -7,31 +8,68 @@
 #include <vector>
 
 #include "core/campaign_yaml/load.h"
+#include "core/report/output_file.h"
+#include "core/report/vehicle_drawing.h"
 #include "services/cli/command.h"
+#include "services/cli/vehicle_text.h"
+#include "services/cli/writable.h"
 
 namespace dispersa {
 namespace {
+
+struct ValidateOptions {
+  std::vector<std::string> files;
+  bool strict = false;
+  std::string picture;
+};
 
 nlohmann::ordered_json Json(const InputProblem& problem) {
   return {{"file", problem.file}, {"line", problem.line},       {"column", problem.column},
           {"path", problem.path}, {"message", problem.message}, {"allowed", problem.allowed}};
 }
 
-ExitCode Validate(const std::vector<std::string>& files, const GlobalOptions& global) {
+void Draw(const FileCheck& check, const ValidateOptions& options) {
+  if (!check.errors.empty()) return;
+  if (!check.vehicle)
+    throw InputError("--picture: " + options.files[0] + " has no vehicle to draw", "a vehicle or a campaign");
+  WriteFile(options.picture, VehicleDrawing(*check.vehicle));
+}
+
+ExitCode Validate(const ValidateOptions& options, const GlobalOptions& global) {
+  if (!options.picture.empty() && options.files.size() != 1)
+    throw InputError("--picture: one file is drawn at a time", "one vehicle or campaign file");
+  RequireWritableFile("--picture", options.picture);
   auto errors = nlohmann::ordered_json::array();
-  for (const std::string& file : files) {
-    const std::vector<InputProblem> problems = ValidateFile(file);
-    for (const InputProblem& problem : problems) {
+  auto warnings = nlohmann::ordered_json::array();
+  auto vehicles = nlohmann::ordered_json::array();
+  for (const std::string& file : options.files) {
+    const FileCheck check = CheckFile(file);
+    for (const InputProblem& problem : check.errors) {
       errors.push_back(Json(problem));
       if (!global.json) fmt::print("{}\n", problem.Text());
     }
-    if (problems.empty() && !global.json && !global.quiet) fmt::print("{}: valid\n", file);
+    for (const InputProblem& problem : check.warnings) {
+      warnings.push_back(Json(problem));
+      if (!global.json) fmt::print("warning: {}\n", problem.Text());
+    }
+    const bool valid = check.errors.empty() && !(options.strict && !check.warnings.empty());
+    if (valid && !global.json && !global.quiet) fmt::print("{}: valid\n", file);
+    if (check.is_vehicle && check.vehicle) {
+      vehicles.push_back(VehicleJson(*check.vehicle));
+      if (!global.json && !global.quiet) fmt::print("{}", VehicleText(*check.vehicle));
+    }
+    if (!options.picture.empty()) Draw(check, options);
   }
-  const bool valid = errors.empty();
+  const bool valid = errors.empty() && !(options.strict && !warnings.empty());
   if (global.json) {
-    const nlohmann::ordered_json report = {
-        {"schema", "dispersa/validate/1"}, {"valid", valid}, {"errors", std::move(errors)}};
+    const nlohmann::ordered_json report = {{"schema", "dispersa/validate/1"},
+                                           {"valid", valid},
+                                           {"errors", std::move(errors)},
+                                           {"warnings", std::move(warnings)},
+                                           {"vehicles", std::move(vehicles)}};
     fmt::print("{}\n", report.dump(2));
+  } else if (valid && !options.picture.empty() && !global.quiet) {
+    fmt::print("picture: {}\n", options.picture);
   }
   return valid ? kExitDone : kExitBadInput;
 }
@@ -39,13 +77,20 @@ ExitCode Validate(const std::vector<std::string>& files, const GlobalOptions& gl
 }  // namespace
 
 void AddValidateCommand(CLI::App& app, Invocation& invocation) {
-  auto files = std::make_shared<std::vector<std::string>>();
+  auto options = std::make_shared<ValidateOptions>();
   CLI::App* command =
       app.add_subcommand("validate", "check campaign, vehicle, reference and autopilot files");
-  command->add_option("files", *files, "files of any kind")->required();
-  command->footer("Example: dispersa validate campaigns/*.yaml campaigns/vehicles/slv4.yaml");
-  command->callback([files, &invocation] {
-    invocation.command = [files](const GlobalOptions& global) { return Validate(*files, global); };
+  command->add_option("files", options->files, "files of any kind")->required();
+  command->add_flag("--strict", options->strict, "warnings are errors");
+  command->add_option("--picture", options->picture, "file for a drawing of the vehicle to scale, SVG");
+  command->footer(
+      "A warning names what a vehicle's numbers imply that no known one has; of a valid vehicle file masses, "
+      "Isp,\n"
+      "ideal delta-v and thrust to weight are printed.\n"
+      "Example: dispersa validate campaigns/*.yaml campaigns/vehicles/slv4.yaml\n"
+      "         dispersa validate --strict --picture slv4.svg campaigns/vehicles/slv4.yaml");
+  command->callback([options, &invocation] {
+    invocation.command = [options](const GlobalOptions& global) { return Validate(*options, global); };
   });
 }
 

@@ -11,6 +11,7 @@
 #include "core/report/output_file.h"
 #include "core/report/text.h"
 #include "services/cli/flight_json.h"
+#include "services/cli/writable.h"
 
 namespace dispersa {
 namespace {
@@ -28,6 +29,7 @@ std::string Csv(const std::vector<std::string>& columns, const std::vector<doubl
 ExitCode FlyScenarioFile(const std::string& path, Scheme scheme, const std::string& history,
                          const GlobalOptions& global) {
   const Scenario scenario = LoadScenario(path);
+  RequireWritableFile("--history", history);
   const ScenarioFlight flight = FlyScenario(scenario, scheme);
   const std::vector<std::string>& columns = KinematicColumnNames();
   const std::vector<double> rows = HistoryRows(scenario, flight.samples);

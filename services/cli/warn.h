@@ -1,4 +1,4 @@
-// Loading a campaign for a command: what looks wrong but is legal goes to the log.
+// Loading for a command: what looks wrong but is legal goes to the log, each once.
 #pragma once
 
 #include <spdlog/spdlog.h>
@@ -10,11 +10,15 @@
 
 namespace dispersa {
 
+inline void Warn(const std::vector<InputProblem>& warnings) {
+  for (const InputProblem& warning : warnings) spdlog::warn("{}", warning.Text());
+}
+
 /// As LoadCampaign.
 inline Campaign LoadAndWarn(const std::string& path, const CampaignOverrides& overrides = {}) {
   std::vector<InputProblem> warnings;
   Campaign campaign = LoadCampaign(path, overrides, &warnings);
-  for (const InputProblem& warning : warnings) spdlog::warn("{}", warning.Text());
+  Warn(warnings);
   return campaign;
 }
 

@@ -14,6 +14,7 @@
 #include "core/report/result_error.h"
 #include "services/coordinator/serve.h"
 #include "services/coordinator/stop_signal.h"
+#include "services/coordinator/whole_number.h"
 #include "services/transport/admission.h"
 #include "services/transport/exit_code.h"
 
@@ -50,7 +51,7 @@ int Main(int argc, char** argv) {
       ->check(CLI::Range(0.0, 1.0));
   app.add_option("--out", request.out, "result folder; default: results/<name>-<first 8 of id>");
   app.add_option("--cases", request.overrides.cases, "number of cases, instead of the file's")
-      ->check(CLI::PositiveNumber);
+      ->check(CaseCountProblem);
   app.add_option("--seed", request.overrides.seed, "seed, instead of the file's");
   app.add_flag("--resume", request.resume, "go on in a folder of the same flight id");
   app.add_option("--domain", network.domain, "DDS domain")

@@ -4,6 +4,7 @@
 
 #include "core/flight/metrics.h"
 #include "core/report/campaign_summary.h"
+#include "core/report/loss_fails.h"
 #include "core/report/requirement_summary.h"
 #include "core/report/sampling_text.h"
 #include "core/statistics/intervals.h"
@@ -22,7 +23,7 @@ RunningTally::RunningTally(const Campaign& campaign)
 void RunningTally::Add(const CaseResult& result) {
   ++n_;
   for (std::size_t i = 0; i < requirements_.size(); ++i) {
-    const bool met = result.outcome == Outcome::kCompleted &&
+    const bool met = (result.outcome == Outcome::kCompleted || !LossFails(requirements_[i])) &&
                      LimitsOf(requirements_[i]).Meets(result.metrics[columns_[i]]);
     failures_[i] += met ? 0 : 1;
   }

@@ -4,6 +4,7 @@ Environment as of processes.py. DISPERSA_RESTARTS: how many kills (default 15; t
 """
 import os
 import pathlib
+import re
 import random
 import shutil
 import signal
@@ -24,7 +25,9 @@ NETWORK = ["--domain", "37", "--address", "127.0.0.1"]
 def write_tiny_campaign(folder):
     """The campaign of the tests with a vehicle that its first second of flight breaks."""
     source = pathlib.Path(CAMPAIGN)
-    vehicle = (source.parent / "vehicles/slv4.yaml").read_text() + "\nlimits: {axial_load_g: 0.5, terminate: true}\n"
+    vehicle, changed = re.subn(r"(?m)^limits: .*$", "limits: {axial_load_g: 0.5, terminate: true}",
+                               (source.parent / "vehicles/slv4.yaml").read_text())
+    assert changed == 1
     (folder / "vehicle.yaml").write_text(vehicle)
     text = source.read_text().replace("vehicles/slv4.yaml", str(folder / "vehicle.yaml"))
     for name in ("references", "autopilots", "winds"):

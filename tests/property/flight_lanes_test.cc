@@ -39,6 +39,12 @@ FlightDefinition Definition(const std::string& autopilot, bool with_winds, bool 
       SetThrustCurve(curve, motor);
     }
   }
+  if (autopilot == "pd") {  // a law that changes within a stage beside some that do not
+    AxisConfig& pitch = definition.autopilot.pitch;
+    pitch.filters = {{.poles_rad_s = 90.0, .poles_damping = 0.7, .stage = 1}};
+    pitch.schedule = {{1, 20.0, {20.0, 8.0}, 0.0, {{.poles_rad_s = 60.0, .poles_damping = 0.7}}},
+                      {3, 10.0, {30.0, 9.0}, 0.0, {}}};
+  }
   if (autopilot == "flexible")
     definition.vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml");
   if (autopilot == "pid_aac" ||
@@ -76,6 +82,12 @@ FlightInputs DrawnInputs(std::uint64_t flight) {
     some(in.thrust_misalignment_clock_rad[stage], kTwoPi * draws.Uniform());
     some(in.thrust_offset_m[stage], 0.005 * draws.Uniform());
     some(in.thrust_offset_clock_rad[stage], kTwoPi * draws.Uniform());
+    for (std::size_t nozzle = 0; nozzle < kNozzles; ++nozzle) {
+      some(in.nozzle_misalignment_rad[stage][nozzle], 0.25 * kRadPerDeg * draws.Uniform());
+      some(in.nozzle_misalignment_clock_rad[stage][nozzle], kTwoPi * draws.Uniform());
+      some(in.nozzle_offset_m[stage][nozzle], 0.002 * draws.Uniform());
+      some(in.nozzle_thrust_factor[stage][nozzle], 0.99 + 0.02 * draws.Uniform());
+    }
     some(in.cg_offset_m[stage], 0.005 * draws.Uniform());
     some(in.cg_offset_clock_rad[stage], kTwoPi * draws.Uniform());
     some(in.thrust_factor[stage], 1.0 + 0.02 * draws.Normal());

@@ -107,6 +107,63 @@ roll:
   EXPECT_EQ(WriteAutopilot(ReadAutopilot(text, "text")), text);
 }
 
+TEST(WriteAutopilot, WritesAScheduleInFull) {
+  const std::string all = kEverything;
+  const auto with_roll = [&](const std::string& schedule) {
+    const std::string pid = R"(
+roll:
+  law: pid
+  gains:
+    - {kp_1_s2: 5, kd_1_s: 6}
+    - {kp_1_s2: 7, kd_1_s: 8}
+  filters:
+    - {poles_rad_s: 20, poles_damping: 0.7, stage: 1}
+  schedule:
+)" + schedule + R"(  integral:
+    ki_1_s3: [9.5, 0]
+)";
+    return all.substr(0, all.find("\nroll:")) + pid + all.substr(all.find("reaction_control:"));
+  };
+  // An entry without filters has those before it; stages without any have none.
+  const std::string short_text = with_roll(
+      "    - {stage: 1, at_s: 5, kp_1_s2: 6, kd_1_s: 6, ki_1_s3: 1}\n"
+      "    - {stage: 1, at_s: 9, kp_1_s2: 6, kd_1_s: 7, ki_1_s3: 1, filters: [{poles_rad_s: 30, poles_damping: 1}]}\n"
+      "    - {stage: 1, at_s: 12.5, kp_1_s2: 8, kd_1_s: 7, ki_1_s3: 0}\n"
+      "    - {stage: 2, at_s: 3, kp_1_s2: 8, kd_1_s: 7, ki_1_s3: 2}\n");
+  const std::string full_text = with_roll(
+      "    - {stage: 1, at_s: 5, kp_1_s2: 6, kd_1_s: 6, ki_1_s3: 1, filters: [{poles_rad_s: 20, poles_damping: 0.7}]}\n"
+      "    - {stage: 1, at_s: 9, kp_1_s2: 6, kd_1_s: 7, ki_1_s3: 1, filters: [{poles_rad_s: 30, poles_damping: 1}]}\n"
+      "    - {stage: 1, at_s: 12.5, kp_1_s2: 8, kd_1_s: 7, ki_1_s3: 0, filters: [{poles_rad_s: 30, poles_damping: 1}]}\n"
+      "    - {stage: 2, at_s: 3, kp_1_s2: 8, kd_1_s: 7, ki_1_s3: 2}\n");
+  EXPECT_EQ(WriteAutopilot(ReadAutopilot(short_text, "text")), full_text);
+  EXPECT_EQ(WriteAutopilot(ReadAutopilot(full_text, "text")), full_text);
+}
+
+TEST(ReadAutopilot, SaysWhereAScheduleIsWrong) {
+  const auto error_of = [](const std::string& entries) {
+    std::string text = kEverything;
+    const std::string gains = "    - {kp_1_s2: 7, kd_1_s: 8}\n";
+    text.insert(text.find(gains) + gains.size(), "  schedule:\n" + entries);
+    try {
+      ReadAutopilot(text, "text");
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(
+      error_of("    - {stage: 1, at_s: 5, kp_1_s2: 6, kd_1_s: 6}\n"
+               "    - {stage: 1, at_s: 4, kp_1_s2: 6, kd_1_s: 6}\n"),
+      "text:45:24: roll.schedule[1].at_s: is not after the entry before, allowed: times since ignition that "
+      "rise, the first above 0, where the stage's own gains hold");
+  EXPECT_EQ(error_of("    - {stage: 1, at_s: 5, kp_1_s2: 6, kd_1_s: 6, gain: 3}\n"),
+            "text:44:50: roll.schedule[0].gain: unknown key 'gain', allowed: at_ms, at_s, filters, kd_1_s, "
+            "ki_1_s3, "
+            "kp_1_s2, stage");
+  EXPECT_EQ(error_of("    - {stage: 1, kp_1_s2: 6, kd_1_s: 6}\n"),
+            "text:44:7: roll.schedule[0]: missing key 'at_s' or 'at_ms', allowed: a number above 0");
+}
+
 // Reads the names that it visits.
 struct FieldNames {
   std::vector<std::string> names;
@@ -122,6 +179,8 @@ struct FieldNames {
   void Flag(const char* key, bool) { names.push_back(key); }
   void EachStage(const char* key, const Range&, const std::vector<double>&) { names.push_back(key); }
   void Stage(const char* key, int) { names.push_back(key); }
+  void Sections(const char* key, const std::vector<FilterSection>&) { names.push_back(key); }
+  void OfOtherLaws(const char*) {}
   void Matrix(const char* key, const Matrix2&) { names.push_back(key); }
   void OptionalPair(const char* key, const std::optional<Vector2>&) { names.push_back(key); }
 };
@@ -141,6 +200,8 @@ TEST(AutopilotKeys, AreDocumentedAllAndByTheirBlocks) {
   };
   const FilterSection section;
   expect("filters", [&](auto& fields) { VisitFilter(fields, section); });
+  const ScheduleEntry entry;
+  expect("schedule", [&](auto& fields) { VisitScheduleEntry(fields, InfoOf(ControlLaw::kPid), entry); });
   const FeedForward feed_forward;
   expect("feed_forward", [&](auto& fields) { VisitFeedForward(fields, feed_forward); });
   const AxisConfig axis;

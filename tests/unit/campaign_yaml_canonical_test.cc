@@ -172,17 +172,20 @@ TEST(CampaignYamlCanonical, AnInlinedFileIsTheSameCampaign) {
 
 TEST(CampaignYamlCanonical, ReferenceOfAnotherVehicleIsAWarning) {
   const InputFiles files;
-  std::vector<InputProblem> warnings;
-  LoadCampaign(files.Path("campaign.yaml"), {}, &warnings);
-  EXPECT_EQ(files.Texts(warnings),
+  // Of the reference; the files' vehicle has some of its own.
+  const auto warning = [&] {
+    std::vector<InputProblem> warnings;
+    LoadCampaign(files.Path("campaign.yaml"), {}, &warnings);
+    std::erase_if(warnings, [](const InputProblem& one) { return one.unusual; });
+    return files.Texts(warnings);
+  };
+  EXPECT_EQ(warning(),
             "reference.yaml:1:1: the reference was found for another vehicle; flights will miss its orbit, "
             "allowed: a "
             "reference that `dispersa optimize` wrote for this vehicle\n");
-  warnings.clear();
   const std::string sha = LoadOptimization(files.Path("campaign.yaml")).vehicle_sha256;
   files.Edit("reference.yaml", "vehicle_sha256: none", "vehicle_sha256: '" + sha + "'");
-  LoadCampaign(files.Path("campaign.yaml"), {}, &warnings);
-  EXPECT_EQ(files.Texts(warnings), "");
+  EXPECT_EQ(warning(), "");
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/campaign_yaml/load.h"
 #include "core/math/constants.h"
 #include "tests/unit/input_files.h"
@@ -52,6 +54,25 @@ TEST(CampaignYamlDispersions, MisalignmentHasAMagnitudeAndAClockAngleAStage) {
   EXPECT_THAT(Inputs(list[3]), ElementsAre("thrust_misalignment_clock_stage2_deg"));
 }
 
+// 0.2 %/K and 15 K: the rate's logarithm has 3 %.
+TEST(CampaignYamlDispersions, PropellantTemperatureIsABurnRate) {
+  const auto list = Decode(
+      "propellant_temperature: {distribution: normal, three_sigma_k: 45, mean_k: -5, sensitivity_percent_per_k: 0.2, "
+      "per: vehicle}");
+  EXPECT_THAT(Names(list), ElementsAre("propellant_temperature"));
+  EXPECT_THAT(Inputs(list[0]), ElementsAre("thrust_factor_stage1", "mass_flow_factor_stage1", "thrust_factor_stage2",
+                                           "mass_flow_factor_stage2"));
+  EXPECT_EQ(list[0].distribution.kind, Distribution::kLogNormal);
+  EXPECT_DOUBLE_EQ(list[0].distribution.sigma, 0.03);
+  EXPECT_DOUBLE_EQ(list[0].distribution.nominal, std::exp(-0.01));
+  const auto corners = Decode(
+      "propellant_temperature: {distribution: two_point, plus_minus_k: 30, sensitivity_percent_per_k: 0.2, per: stage}");
+  ASSERT_EQ(corners.size(), 2u);
+  EXPECT_DOUBLE_EQ(corners[1].distribution.low, std::exp(-0.06));
+  EXPECT_DOUBLE_EQ(corners[1].distribution.high, std::exp(0.06));
+  EXPECT_EQ(corners[1].distribution.nominal, 1.0);
+}
+
 TEST(CampaignYamlDispersions, PerVehicleIsOneDrawForAllStages) {
   const auto list = Decode(
       "thrust_offset: {distribution: uniform, bound_mm: 3, clock_angle: {fixed_deg: 90}, per: vehicle}");
@@ -61,6 +82,25 @@ TEST(CampaignYamlDispersions, PerVehicleIsOneDrawForAllStages) {
   EXPECT_THAT(Inputs(list[0]), ElementsAre("thrust_offset_stage1_m", "thrust_offset_stage2_m"));
   EXPECT_EQ(list[1].distribution.kind, Distribution::kConstant);
   EXPECT_THAT(list[1].distribution.values, ElementsAre(90.0 * kRadPerDeg));
+}
+
+TEST(CampaignYamlDispersions, PerNozzleIsOneDrawForEach) {
+  const auto list = Decode(
+      "thrust_misalignment: {distribution: normal, three_sigma_deg: 0.25, clock_angle: uniform, per: "
+      "nozzle}");
+  ASSERT_EQ(list.size(), 16u);
+  EXPECT_EQ(list[0].name, "thrust_misalignment/stage1_right");
+  EXPECT_TRUE(list[0].absolute);
+  EXPECT_THAT(Inputs(list[0]), ElementsAre("nozzle_misalignment_stage1_right_deg"));
+  EXPECT_EQ(list[15].name, "thrust_misalignment/clock/stage2_top");
+  EXPECT_THAT(Inputs(list[15]), ElementsAre("nozzle_misalignment_clock_stage2_top_deg"));
+  EXPECT_THAT(
+      Inputs(Decode(
+          "thrust_offset: {distribution: uniform, bound_mm: 3, clock_angle: uniform, per: nozzle}")[5]),
+      ElementsAre("nozzle_offset_stage2_left_m"));
+  EXPECT_THAT(Inputs(Decode(
+                  "thrust: {distribution: normal, sigma_percent: 1, conserve: propellant, per: nozzle}")[7]),
+              ElementsAre("nozzle_thrust_factor_stage2_top"));
 }
 
 TEST(CampaignYamlDispersions, WhatThrustConservesDecidesTheFlow) {

@@ -37,7 +37,8 @@ constexpr BadInput kBadInputs[] = {
      "requirements, sampling, schema, vehicle, verdicts\n"},
     {"UnknownKeyLikeNoOther", "campaign.yaml", "name: trial", "name: trial\nzebra: 1", "campaign.yaml",
      "campaign.yaml:3:1: zebra: unknown key 'zebra', allowed: autopilot, correlations, "
-     "description, dispersions, guidance, name, optimize, reference, requirements, sampling, schema, vehicle, verdicts\n"},
+     "description, dispersions, guidance, name, optimize, reference, requirements, sampling, schema, "
+     "vehicle, verdicts\n"},
     {"UnknownSeverity", "campaign.yaml", "dispersions:\n", "dispersions:\n  turbulence: {severity: rough}\n",
      "campaign.yaml",
      "campaign.yaml:8:26: dispersions.turbulence.severity: 'rough' is not a choice, allowed: one of light, "
@@ -140,7 +141,7 @@ constexpr BadInput kBadInputs[] = {
     {"NotYaml", "campaign.yaml", "sampling: {", "sampling: [", "campaign.yaml",
      "campaign.yaml:6:59: not YAML: illegal flow end\n"},
     {"TabForIndent", "campaign.yaml", "  wind:", "\twind:", "campaign.yaml",
-     "campaign.yaml:9:2: not YAML: end of map not found\n"},
+     "campaign.yaml:9:1: a tab indents the line, allowed: spaces\n"},
     {"Alias", "autopilot.yaml", "name: plain", "name: &n plain", "autopilot.yaml",
      "autopilot.yaml:2:7: an anchor ('&name') is not supported, allowed: the value itself\n"},
     {"BarePercentBesideDistribution", "campaign.yaml", "three_sigma_percent: 6.7", "percent: 20",
@@ -208,7 +209,12 @@ constexpr BadInput kBadInputs[] = {
     {"PerWhat", "campaign.yaml", "conserve: total_impulse, per: stage", "conserve: total_impulse",
      "campaign.yaml",
      "campaign.yaml:11:11: dispersions.thrust: missing key 'per', allowed: one of stage, "
-     "vehicle\n"},
+     "vehicle, nozzle\n"},
+    {"FlowOfANozzle", "campaign.yaml", "conserve: total_impulse, per: stage",
+     "conserve: total_impulse, per: nozzle", "campaign.yaml",
+     "campaign.yaml:11:11: dispersions.thrust.conserve: the flow is the whole motor's, not a nozzle's, "
+     "allowed: "
+     "conserve: propellant with per: nozzle\n"},
     {"BareAzimuth", "campaign.yaml", "azimuth: uniform", "azimuth: 270", "campaign.yaml",
      "campaign.yaml:9:41: dispersions.wind.azimuth: '270' is not a direction, allowed: "
      "uniform, {fixed_deg: x} or a distribution\n"},
@@ -219,8 +225,8 @@ constexpr BadInput kBadInputs[] = {
      "campaign.yaml:13:5: requirements[0]: the limit is missing, allowed: either below: x, "
      "above: x or within: [low, high]\n"},
     {"ProbabilityInPercent", "campaign.yaml", "probability: 0.9973", "probability: 99.73", "campaign.yaml",
-     "campaign.yaml:13:61: requirements[0].probability: 99.73 is out of range, allowed: a "
-     "number above 0 and below 1\n"},
+     "campaign.yaml:13:61: requirements[0].probability: 99.73 is out of range, it is in percent (did "
+     "you mean 0.9973?), allowed: a number above 0 and below 1\n"},
     {"CertainRisk", "campaign.yaml", "consumer_risk: 0.10", "consumer_risk: 1", "campaign.yaml",
      "campaign.yaml:13:84: requirements[0].consumer_risk: 1 is out of range, allowed: a "
      "number above 0 and below 0.5\n"},

@@ -111,6 +111,10 @@ constexpr BadScenario kBadScenarios[] = {
      "scenario.yaml:45:23: stages[1].mass_properties.ixx_kg_m2[1]: the inertia tensor is not positive "
      "definite, allowed: positive moments, and products small enough that every principal moment is "
      "positive\n"},
+    {"InertiaOfNoBody", "scenario.yaml", "ixx_kg_m2: [10, 30]", "ixx_kg_m2: [10, 3000]",
+     "scenario.yaml:45:23: stages[1].mass_properties.ixx_kg_m2[1]: no body has these moments of inertia, "
+     "allowed: "
+     "principal moments of which none exceeds the sum of the two others\n"},
     {"PropellantNotMonotone", "scenario_mass.csv", "400,900", "1000,1500",
      "scenario_mass.csv:4:1: stages[0].mass_properties.propellant_kg[2]: is not above the one before, "
      "allowed: propellant strictly increasing\n"},
@@ -160,7 +164,7 @@ constexpr BadScenario kBadScenarios[] = {
      "allowed: a number above 0\n"},
     {"FeetPerSecond", "scenario.yaml", "velocity_north_m_s: 1", "velocity_north_ft_s: 1",
      "scenario.yaml:16:3: initial.velocity_north_ft_s: the unit of 'velocity_north_ft_s' is not known here, "
-     "allowed: velocity_north_m_s, velocity_north_km_s\n"},
+     "allowed: velocity_north_m_s, velocity_north_km_s, velocity_north_km_h\n"},
     {"WithoutRateFrame", "scenario.yaml", "  rates_relative_to: earth\n", "",
      "scenario.yaml:10:3: initial: missing key 'rates_relative_to', allowed: one of inertial, earth\n"},
     {"BodyAndStages", "scenario.yaml", "stages:\n",

@@ -67,6 +67,16 @@ TEST(ThrustCurveFile, OfAnEngFileBeginsAtIgnition) {
   }
 }
 
+// Of the first stage's 1500 kg the flow is 20 to 30 kg/s: 1505 kg in all.
+TEST(ThrustCurveFile, MayGiveTheMassFlow) {
+  const InputFiles files;
+  files.Write("curve.csv", "time_s,mass_flow_kg_s,thrust_n\n0,20,50000\n30.1,30,70000\n60.2,20,50000\n");
+  const Motor motor = MotorOf(files, "{thrust_curve: {reference: vacuum, table: curve.csv}}");
+  EXPECT_EQ(motor.thrust_curve.flow_kg_s, (std::vector<double>{20.0, 30.0, 20.0}));
+  EXPECT_EQ(motor.thrust_curve.thrust_n, (std::vector<double>{50e3, 70e3, 50e3}));
+  EXPECT_DOUBLE_EQ(motor.burning_time_s, 25.0 * 60.2 / 30.0);
+}
+
 TEST(ThrustCurveFile, StandsInTheIdOfWhatFlies) {
   const InputFiles files;
   files.Edit("vehicle.yaml", kMotor, "{thrust_curve: {reference: vacuum, table: curve.eng}}");
@@ -139,6 +149,22 @@ INSTANTIATE_TEST_SUITE_P(
                  "vehicle.yaml:11:54: stages[0].motor.thrust_curve.table: there are 3 times and 2 thrusts, "
                  "allowed: one "
                  "thrust for each time\n"},
+        BadCurve{"LessFlowsThanTimes",
+                 "{thrust_curve: {reference: vacuum, table: {time_s: [0, 20, 30], thrust_kn: [80, 60, 50], "
+                 "mass_flow_kg_s: [50, 50]}}}",
+                 "", "",
+                 "vehicle.yaml:11:54: stages[0].motor.thrust_curve.table: there are 3 times and 2 mass flows, allowed: "
+                 "one mass flow for each time, or none at all\n"},
+        BadCurve{"NoFlow", kCsvMotor, "curve.csv", "time_s,thrust_n,mass_flow_kg_s\n0,9,0\n5,9,0\n",
+                 "curve.csv:1:17: mass_flow_kg_s: the mass flow is 0 at all times, allowed: a mass flow above 0 "
+                 "somewhere\n"},
+        BadCurve{"FlowOfAnotherPropellant", kCsvMotor, "curve.csv",
+                 "time_s,thrust_n,mass_flow_kg_s\n0,60000,25\n66,60000,25\n",
+                 "curve.csv:1:17: stages[0].motor.thrust_curve.table.mass_flow_kg_s: flows 1650.000000 kg in all, but "
+                 "propellant_mass_kg is 1500.000000, allowed: flows that sum up to the propellant within 1 %\n"},
+        BadCurve{"FlowMisspelt", kCsvMotor, "curve.csv", "time_s,thrust_n,mass_flow_kgs\n0,9,1\n5,9,1\n",
+                 "curve.csv:1:17: unknown column 'mass_flow_kgs', allowed: the columns time_s, thrust_n, and "
+                 "mass_flow_kg_s if there is one\n"},
         BadCurve{"ShortHeader", kEngMotor, "curve.eng", Eng(" NOBODY", ""),
                  "curve.eng:2:1: the header has 6 fields in place of 7, allowed: " HEADER "\n"},
         BadCurve{"DiameterOfWords", kEngMotor, "curve.eng", Eng(" 98 ", " wide "),

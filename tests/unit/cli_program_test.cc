@@ -131,24 +131,201 @@ TEST(CliProgram, ModesOfARigidOrWrongVehicleAreBadInput) {
 
 TEST(CliProgram, ValidateSaysWhatIsWrongAndWhere) {
   const InputFiles files;
-  const Output valid = Dispersa("validate " + files.Path("campaign.yaml") + " " + files.Path("vehicle.yaml"));
+  const Output valid =
+      Dispersa("validate --quiet " + files.Path("autopilot.yaml") + " " + files.Path("reference.yaml"));
   EXPECT_EQ(valid.code, 0);
-  EXPECT_EQ(valid.text, files.Path("campaign.yaml") + ": valid\n" + files.Path("vehicle.yaml") + ": valid\n");
+  EXPECT_EQ(valid.text, "");
+  const std::string two = files.Path("campaign.yaml") + " " + files.Path("autopilot.yaml");
+  EXPECT_THAT(Dispersa("validate " + two).text,
+              testing::EndsWith(files.Path("campaign.yaml") + ": valid\n" + files.Path("autopilot.yaml") +
+                                ": valid\n"));
   files.Edit("campaign.yaml", "cases: 100", "cases: many");
-  const Output invalid =
-      Dispersa("validate " + files.Path("campaign.yaml") + " " + files.Path("vehicle.yaml"));
+  const Output invalid = Dispersa("validate " + two);
   EXPECT_EQ(invalid.code, 2);
   EXPECT_EQ(invalid.text,
             files.Path("campaign.yaml") +
                 ":6:40: sampling.cases: 'many' is not a number, allowed: a whole number from 1 to "
                 "4294967295\n" +
-                files.Path("vehicle.yaml") + ": valid\n");
+                files.Path("autopilot.yaml") + ": valid\n");
+}
+
+const std::string kVehicle = DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml";
+
+TEST(CliProgram, ValidateShowsWhatAVehicleAmountsTo) {
+  const Output output = Dispersa("validate --strict " + kVehicle);
+  EXPECT_EQ(output.code, 0) << output.text;
+  EXPECT_THAT(output.text, StartsWith(kVehicle + ": valid\n\nslv4: 31340 kg, 27 m\n"));
+  const std::vector<std::string> lines = Lines(output.text);
+  ASSERT_LE(lines.size(), 24u) << "one screen";
+  for (const std::string& line : lines) EXPECT_LE(line.size(), 120u);
+  // Table 1's stage 4: 30 kN for 46.9 s from 540 kg, 370 kg left.
+  EXPECT_EQ(
+      lines[8],
+      "stage4               910         540       370     0.407      30.0     46.9    265.7       2345      "
+      "3.36     8.27");
+  EXPECT_EQ(lines.back(),
+            "limits: q_max_pa 120000, q_alpha_max_pa_rad 6000, axial_load_max_g 12, lateral_load_max_g 1.5");
+  const auto json = nlohmann::json::parse(Dispersa("validate --json " + kVehicle).text);
+  EXPECT_EQ(json["warnings"].size(), 0u);
+  ASSERT_EQ(json["vehicles"].size(), 1u);
+  EXPECT_NEAR(json["vehicles"][0]["stages"][3]["specific_impulse_s"], 30e3 * 46.9 / (540 * 9.80665), 1e-9);
+}
+
+TEST(CliProgram, ValidateWarnsAndStrictTakesItForAnError) {
+  const InputFiles files;
+  const std::string warning =
+      "warning: " + files.Path("vehicle.yaml") +
+      ":12:12: stages[0].grain: implies a propellant density of 663.1 kg/m3, usual: 1500 to 1950 "
+      "kg/m3 (solid propellants: Sutton and Biblarz, table 12-1)\n";
+  const Output output = Dispersa("validate " + files.Path("vehicle.yaml"));
+  EXPECT_EQ(output.code, 0);
+  EXPECT_THAT(output.text, StartsWith(warning));
+  EXPECT_THAT(output.text, HasSubstr("vehicle.yaml: valid\n"));
+  const Output strict = Dispersa("validate --strict " + files.Path("vehicle.yaml"));
+  EXPECT_EQ(strict.code, 2);
+  EXPECT_THAT(strict.text, StartsWith(warning));
+  EXPECT_THAT(strict.text, Not(HasSubstr("valid\n")));
+  const auto json =
+      nlohmann::json::parse(Dispersa("validate --json --strict " + files.Path("vehicle.yaml")).text);
+  EXPECT_EQ(json["valid"], false);
+  EXPECT_EQ(json["errors"].size(), 0u);
+  EXPECT_EQ(json["warnings"].size(), 2u);
+  EXPECT_EQ(json["warnings"][0]["line"], 12);
+  // Whoever flies it hears of it once, on stderr.
+  const Output plan = Dispersa("plan --cases 1 " + files.Path("campaign.yaml"));
+  EXPECT_EQ(plan.code, 0) << plan.error;
+  EXPECT_EQ(plan.error.find("warning: " + files.Path("vehicle.yaml") + ":12:12: "),
+            plan.error.rfind("warning: " + files.Path("vehicle.yaml") + ":12:12: "));
+  EXPECT_THAT(plan.error, HasSubstr("implies a propellant density of 663.1 kg/m3"));
+}
+
+TEST(CliProgram, TonsTypedForKilogramsAreRefusedByEveryCommand) {
+  const InputFiles files;
+  files.Edit("vehicle.yaml", "liftoff_mass_ton: 3\n    propellant_mass_kg: 1500",
+             "liftoff_mass_ton: 3\n    propellant_mass_kg: 1.5");
+  for (const std::string command : {"plan", "fly", "optimize", "margins", "run --workers 0", "validate"}) {
+    const Output output = Dispersa(command + " " + files.Path("campaign.yaml"));
+    EXPECT_EQ(output.code, 2) << command;
+    EXPECT_THAT(output.error + output.text,
+                StartsWith(files.Path("vehicle.yaml") +
+                           ":8:25: stages[0].propellant_mass_kg: implies with thrust and "
+                           "burning time a specific impulse of 244732 s, which cannot be, "
+                           "allowed: up to 1000 s ("))
+        << command;
+  }
+}
+
+TEST(CliProgram, ValidateDrawsAVehicleToScale) {
+  const InputFiles files;
+  const std::string picture = files.Path("slv4.svg");
+  const Output output = Dispersa("validate --picture " + picture + " " + kVehicle);
+  EXPECT_EQ(output.code, 0) << output.error;
+  EXPECT_EQ(Lines(output.text).back(), "picture: " + picture);
+  const std::string svg = ReadWholeFile(picture);
+  EXPECT_THAT(svg, StartsWith("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 1200 "));
+  // 27 m are 1080 px: stage 1's grain from 16.5 m, 9.56 m long, 1.26 m thick.
+  EXPECT_THAT(
+      svg, HasSubstr("<rect class=\"grain\" x=\"720.00\" y=\"78.80\" width=\"382.40\" height=\"50.40\"/>"));
+  for (const char* name : {"stage1", "stage2", "stage3", "stage4"})
+    EXPECT_THAT(svg, HasSubstr(">" + std::string(name) + "</text>"));
+  EXPECT_EQ(Dispersa("validate --picture " + picture + " " + kSmoke).code, 0) << "a campaign's vehicle";
+  const Output none = Dispersa("validate --picture " + picture + " " + files.Path("autopilot.yaml"));
+  EXPECT_EQ(none.code, 2);
+  EXPECT_EQ(none.error, "--picture: " + files.Path("autopilot.yaml") +
+                            " has no vehicle to draw, allowed: a vehicle or a campaign\n");
+}
+
+TEST(CliProgram, OutputsAreTriedBeforeAnythingIsComputed) {
+  const InputFiles files;
+  const std::string nowhere = files.Path("none/out");
+  const std::string why = " cannot be written: there is no folder " + files.Path("none") +
+                          ", allowed: a file in a folder that exists\n";
+  // Were it flown first, tuning and optimising would outlast the test.
+  for (const auto& [command, option] : std::vector<std::pair<std::string, std::string>>{
+           {"tune " DISPERSA_CAMPAIGNS "/table3.yaml --cases 4000000 --out ", "--out"},
+           {"search " + kSmoke + " --flights 1000000 --out ", "--out"},
+           {"fly " + kSmoke + " --history ", "--history"},
+           {"fly " DISPERSA_CAMPAIGNS "/scenarios/nesc_case09.yaml --history ", "--history"},
+           {"validate " + kVehicle + " --picture ", "--picture"}}) {
+    const Output output = Dispersa(command + nowhere);
+    EXPECT_EQ(output.code, 2) << command;
+    EXPECT_EQ(output.error, option + ": " + nowhere + why) << command;
+    EXPECT_EQ(output.text, "") << command;
+  }
+  const Output optimize =
+      Dispersa("optimize " DISPERSA_CAMPAIGNS "/slv4_500km.yaml --out " + nowhere + ".yaml");
+  EXPECT_EQ(optimize.code, 2);
+  EXPECT_EQ(optimize.error, "--out: " + nowhere + ".yaml" + why);
+  const Output folder = Dispersa("tune " + kSmoke + " --out " + files.Path("."));
+  EXPECT_EQ(folder.code, 2);
+  EXPECT_EQ(folder.error,
+            "--out: " + files.Path(".") + " cannot be written: it is a folder, allowed: a file\n");
+  const Output paper = Dispersa("paper --out " + files.Path("vehicle.yaml/paper"));
+  EXPECT_EQ(paper.code, 2);
+  EXPECT_EQ(paper.error,
+            "--out: " + files.Path("vehicle.yaml/paper") +
+                " cannot be written: " + files.Path("vehicle.yaml") +
+                ": Not a directory, allowed: a folder that is there or can be made, and can be written\n");
+}
+
+TEST(CliProgram, ASearchThatMissesItsTargetWritesWhatItFound) {
+  const InputFiles files;
+  std::string campaign = ReadWholeFile(DISPERSA_CAMPAIGNS "/slv4_500km.yaml");
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    const std::size_t at = campaign.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    campaign.replace(at, from.size(), to);
+  };
+  replace("vehicle: vehicles", "vehicle: " DISPERSA_CAMPAIGNS "/vehicles");
+  replace("autopilot: autopilots", "autopilot: " DISPERSA_CAMPAIGNS "/autopilots");
+  replace("velocity_m_s: 7612.6", "velocity_m_s: 9900");
+  replace("population: 60", "population: 8");
+  replace("generations: 60", "generations: 2");
+  files.Write("far.yaml", campaign);
+  const Output output = Dispersa("--quiet --json optimize " + files.Path("far.yaml") + " --out " +
+                                 files.Path("far_reference.yaml"));
+  EXPECT_EQ(output.code, 3) << output.error;
+  const auto json = nlohmann::json::parse(output.text);
+  EXPECT_EQ(json["reached"], false);
+  EXPECT_EQ(json["reference"], files.Path("far_reference.yaml"));
+  EXPECT_THAT(ReadWholeFile(files.Path("far_reference.yaml")), HasSubstr("\ntarget_missed: "));
+  EXPECT_THAT(ReadWholeFile(files.Path("far_reference.html")), HasSubstr("The target is missed: "));
+  EXPECT_EQ(Dispersa("validate " + files.Path("far_reference.yaml")).code, 0);
+  std::string flown = ReadWholeFile(kSmoke);
+  flown.replace(flown.find("references/"), std::string("references/slv4_500km.yaml").size(),
+                files.Path("far_reference.yaml"));
+  flown.replace(flown.find("vehicles/"), 0, DISPERSA_CAMPAIGNS "/");
+  flown.replace(flown.find("autopilots/"), 0, DISPERSA_CAMPAIGNS "/");
+  files.Write("flown.yaml", flown);
+  const Output plan = Dispersa("plan --cases 1 " + files.Path("flown.yaml"));
+  EXPECT_EQ(plan.code, 0) << plan.error;
+  EXPECT_THAT(plan.error, HasSubstr("target_missed: the reference misses its own target: "));
+}
+
+TEST(CliProgram, NumbersOfCasesThatAreNone) {
+  for (const auto& [given, text] : std::vector<std::pair<std::string, std::string>>{
+           {"0", "'0' is out of range"},
+           {"-1", "'-1' is out of range"},
+           {"100000000000000000000", "'100000000000000000000' is out of range"},
+           {"1e3", "'1e3' is not a whole number"},
+           {"many", "'many' is not a whole number"}}) {
+    for (const std::string command : {"run", "plan", "launch"}) {
+      const Output output = Dispersa(command + " " + kSmoke + " --cases " + given);
+      EXPECT_EQ(output.code, 2) << given;
+      EXPECT_EQ(output.error,
+                "--cases: " + text +
+                    ", allowed: a whole number from 1 to 4294967295\nRun with --help for more information.\n")
+          << command;
+    }
+  }
 }
 
 TEST(CliProgram, ValidateAsJson) {
   const InputFiles files;
-  EXPECT_EQ(Dispersa("--json validate " + files.Path("campaign.yaml")).text,
-            "{\n  \"schema\": \"dispersa/validate/1\",\n  \"valid\": true,\n  \"errors\": []\n}\n");
+  EXPECT_EQ(
+      Dispersa("--json validate " + files.Path("autopilot.yaml")).text,
+      "{\n  \"schema\": \"dispersa/validate/1\",\n  \"valid\": true,\n  \"errors\": [],\n  \"warnings\": "
+      "[],\n  \"vehicles\": []\n}\n");
   const Output missing = Dispersa("validate --json nothing.yaml");
   EXPECT_EQ(missing.code, 2);
   EXPECT_EQ(
@@ -156,7 +333,7 @@ TEST(CliProgram, ValidateAsJson) {
       "{\n  \"schema\": \"dispersa/validate/1\",\n  \"valid\": false,\n  \"errors\": [\n    {\n"
       "      \"file\": \"nothing.yaml\",\n      \"line\": 1,\n      \"column\": 1,\n      \"path\": \"\",\n"
       "      \"message\": \"cannot be read: No such file or directory\",\n"
-      "      \"allowed\": \"a readable file\"\n    }\n  ]\n}\n");
+      "      \"allowed\": \"a readable file\"\n    }\n  ],\n  \"warnings\": [],\n  \"vehicles\": []\n}\n");
 }
 
 TEST(CliProgram, BadInputToAnyCommandIsTwoWithTheSameText) {
@@ -346,6 +523,49 @@ TEST(CliProgram, TuneWritesAnAutopilotThatSaysWhereItComesFrom) {
   EXPECT_THAT(text, HasSubstr(" --out " + file + budget + "\n"));
   EXPECT_THAT(text, HasSubstr("\nname: pd\n"));
   EXPECT_EQ(Dispersa("validate " + file).code, 0);
+}
+
+// Motors with transients and tail-off: SLV-4's with made-up curves.
+TEST(CliProgram, MarginsAndTuneNameWhatTheySkip) {
+  const std::string campaign = DISPERSA_TEST_DATA "/thrust_curves/campaign.yaml";
+  EXPECT_EQ(Dispersa("validate --strict " + campaign).code, 0);
+  const Output margins = Dispersa("margins " + campaign);
+  EXPECT_THAT(margins.text, HasSubstr("Skipped, with less than 20 % of full thrust:\nlift-off"));
+  EXPECT_THAT(margins.text, HasSubstr("stage 4 burnout"));
+  const InputFiles folder;
+  const std::string file = folder.Path("tuned.yaml");
+  const Output tuned = Dispersa("--quiet tune " + campaign + " --autopilot " DISPERSA_CAMPAIGNS
+                                "/autopilots/pd.yaml --seed 9 --cases 1 --evaluations 64 --out " + file);
+  EXPECT_EQ(tuned.code, 0) << tuned.error << tuned.text;
+  EXPECT_THAT(tuned.text, HasSubstr("No margins were asked for with less than 20 % of full thrust:\n"));
+  EXPECT_THAT(ReadWholeFile(file), HasSubstr(" instants with less than 20 % of full thrust.\n"));
+}
+
+// Pitch's nozzles answer after a third of a second.
+TEST(CliProgram, TuneNamesTheGateThatItMisses) {
+  const InputFiles folder;
+  std::string vehicle = ReadWholeFile(DISPERSA_TEST_DATA "/thrust_curves/vehicle.yaml");
+  for (std::size_t at = 0; (at = vehicle.find("delay_ticks: 1", at)) != std::string::npos; ++at)
+    vehicle.replace(at, 14, "delay_ticks: 33");
+  const auto point_to = [&](std::string& text, const std::string& from, const std::string& to) {
+    for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+      text.replace(at, from.size(), to);
+  };
+  point_to(vehicle, "../../../campaigns", DISPERSA_CAMPAIGNS);
+  point_to(vehicle, "table: ", "table: " DISPERSA_TEST_DATA "/thrust_curves/");
+  folder.Write("vehicle.yaml", vehicle);
+  std::string campaign = ReadWholeFile(DISPERSA_TEST_DATA "/thrust_curves/campaign.yaml");
+  point_to(campaign, "../../../campaigns", DISPERSA_CAMPAIGNS);
+  folder.Write("campaign.yaml", campaign);
+  const std::string file = folder.Path("tuned.yaml");
+  const Output tuned = Dispersa("--quiet --json tune " + folder.Path("campaign.yaml") + " --autopilot " DISPERSA_CAMPAIGNS
+                                "/autopilots/pd.yaml --seed 9 --cases 1 --evaluations 64 --out " + file);
+  EXPECT_EQ(tuned.code, 3) << tuned.error;
+  const auto json = nlohmann::json::parse(tuned.text);
+  const std::string missed = json["stages"][0]["missed"];
+  EXPECT_THAT(missed, testing::MatchesRegex("(gain|phase|delay) margin .* are needed: .*% of full thrust"));
+  EXPECT_THAT(ReadWholeFile(file), HasSubstr("\n# Stage 1 misses by most: " + missed + "\n"));
+  EXPECT_GT(json["skipped"].size(), 0u);
 }
 
 TEST(CliProgram, TuneRefusesTheSeedOfTheVerdict) {

@@ -57,6 +57,15 @@ TEST(InputColumns, NameTheFieldsOfFlightInputs) {
     expect("thrust_misalignment_clock" + stage + "_deg", in.thrust_misalignment_clock_rad[i], kRadPerDeg);
     expect("thrust_offset" + stage + "_m", in.thrust_offset_m[i], 1.0);
     expect("thrust_offset_clock" + stage + "_deg", in.thrust_offset_clock_rad[i], kRadPerDeg);
+    for (std::size_t nozzle = 0; nozzle < kNozzles; ++nozzle) {
+      const std::string of = stage + "_" + kNozzleNames[nozzle];
+      expect("nozzle_misalignment" + of + "_deg", in.nozzle_misalignment_rad[i][nozzle], kRadPerDeg);
+      expect("nozzle_misalignment_clock" + of + "_deg", in.nozzle_misalignment_clock_rad[i][nozzle],
+             kRadPerDeg);
+      expect("nozzle_offset" + of + "_m", in.nozzle_offset_m[i][nozzle], 1.0);
+      expect("nozzle_offset_clock" + of + "_deg", in.nozzle_offset_clock_rad[i][nozzle], kRadPerDeg);
+      expect("nozzle_thrust_factor" + of, in.nozzle_thrust_factor[i][nozzle], 1.0);
+    }
     expect("cg_offset" + stage + "_m", in.cg_offset_m[i], 1.0);
     expect("cg_offset_clock" + stage + "_deg", in.cg_offset_clock_rad[i], kRadPerDeg);
     expect("thrust_factor" + stage, in.thrust_factor[i], 1.0);

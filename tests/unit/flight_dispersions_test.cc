@@ -67,6 +67,34 @@ TEST(Dispersions, ThrustOffsetGivesAMomentTowardsItsClockAngle) {
   }
 }
 
+// One nozzle alone, its quarter of 200 kN turned, moved and strengthened; radius and pivot of the sample
+// vehicle.
+TEST(Dispersions, EachNozzleHasItsOwnThrust) {
+  const LauncherInstant straight = InstantOf({}, kSpace_m);
+  const double radius = FlightModel(SampleDefinition()).PlantFor({}).stacks[0].gimbal.radius_m;
+  const double lever = 19.5 - straight.cg_station_m;
+  const Vector3 place[] = {
+      {-lever, radius, 0.0}, {-lever, -radius, 0.0}, {-lever, 0.0, radius}, {-lever, 0.0, -radius}};
+  for (std::size_t nozzle = 0; nozzle < kNozzles; ++nozzle) {
+    FlightInputs inputs;
+    inputs.nozzle_misalignment_rad[0][nozzle] = 0.01;
+    inputs.nozzle_misalignment_clock_rad[0][nozzle] = 0.7;
+    inputs.nozzle_offset_m[0][nozzle] = 0.02;
+    inputs.nozzle_offset_clock_rad[0][nozzle] = 2.5;
+    inputs.nozzle_thrust_factor[0][nozzle] = 1.03;
+    const LauncherInstant now = InstantOf(inputs, kSpace_m);
+    const Vector3 nominal(50e3, 0.0, 0.0);
+    const Vector3 force =
+        1.03 * 50e3 * Vector3(std::cos(0.01), std::sin(0.01) * std::cos(0.7), std::sin(0.01) * std::sin(0.7));
+    const Vector3 moved(0.0, 0.02 * std::cos(2.5), 0.02 * std::sin(2.5));
+    const Vector3 moment = (place[nozzle] + moved).cross(force) - place[nozzle].cross(nominal);
+    EXPECT_NEAR((now.loads.force_n - straight.loads.force_n - (force - nominal)).norm(), 0.0, 1e-9) << nozzle;
+    EXPECT_NEAR((now.loads.moment_n_m - straight.loads.moment_n_m - moment).norm(), 0.0, 1e-8) << nozzle;
+    EXPECT_GT(std::fabs(now.loads.moment_n_m.x()), 1.0) << nozzle;
+    EXPECT_EQ(now.flow_kg_s, straight.flow_kg_s);
+  }
+}
+
 // The centre of gravity of what does not burn is given; the propellant, about the axis, draws it back.
 TEST(Dispersions, ACentreOfGravityOffTheAxisGivesThrustAndDragALever) {
   FlightInputs inputs;

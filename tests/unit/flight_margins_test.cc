@@ -79,7 +79,9 @@ TEST(LineariseAxis, IsTheStiffnessDampingAndEffectivenessByHand) {
 // m z'' = -(X + N) angle - N z' / V + P / 2 deflection, I angle'' += N arm z' / V, with N a radian's normal
 // force.
 TEST(LineariseAxis, OfAPathThatDriftsIsTheShortPeriodByHand) {
-  const FlightModel model(HotStaged());
+  FlightDefinition definition = HotStaged();
+  definition.vehicle.flow_coriolis = false;  // the flow pushes a turning vehicle sideways: variable_mass_test
+  const FlightModel model(definition);
   const LauncherPlant& plant = model.nominal_plant();
   const TickSample s = SampleAt(model, 20.0);
   const MassProperties mass = plant.stacks[0].mass.At(plant.stacks[0].burn.Propellant(s.since_ignition_s));
@@ -304,6 +306,23 @@ TEST(MeasureMargins, AgreeWithTheComputedOnesOfAFilteredPid) {
     axis->filters = {{.poles_rad_s = 90.0, .poles_damping = 0.7}};
   }
   ExpectMeasuredAsComputed(definition);
+}
+
+TEST(MeasureMargins, AgreeWithTheComputedOnesOfAScheduledPid) {
+  FlightDefinition definition = HotStaged();
+  for (AxisConfig* axis : {&definition.autopilot.pitch, &definition.autopilot.yaw}) {
+    axis->law = ControlLaw::kPid;
+    axis->filters = {{.poles_rad_s = 90.0, .poles_damping = 0.7}};
+    // For half of stage 1 with twice the rate gain, which the stage's own do not know of.
+    const FilterSection wider = {.poles_rad_s = 120.0, .poles_damping = 0.7};
+    axis->schedule = {{1, 10.0, {20.0, 10.0}, 8.0, {wider}}, {1, 30.0, {20.0, 10.0}, 8.0, {wider}}};
+  }
+  ExpectMeasuredAsComputed(definition);
+  // And the schedule decides them.
+  FlightDefinition held = definition;
+  held.autopilot.pitch.schedule.clear();
+  held.autopilot.yaw.schedule.clear();
+  EXPECT_GT(MeasureMargins(FlightModel(held))[0].gain_up_db, MeasureMargins(FlightModel(definition))[0].gain_up_db + 1.0);
 }
 
 TEST(LoopInputs, ChangeTheLoopOfTheirStageAlone) {

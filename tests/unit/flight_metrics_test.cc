@@ -4,6 +4,7 @@
 #include "core/flight/lane_metrics.h"
 #include "core/flight/limit_cycle.h"
 #include "core/flight/ripple.h"
+#include "core/flight/structural_limits.h"
 #include "core/flight/tick_sample.h"
 
 #include <gtest/gtest.h>
@@ -395,8 +396,9 @@ TEST(MetricsRecorder, StructuralFlagNamesOnlyGivenLimits) {
   EXPECT_EQ(flight["structural_limit_exceeded"], 0.0);
 
   for (const StructuralLimits& limits :
-       {StructuralLimits{.q_alpha_pa_rad = 1e3}, StructuralLimits{.axial_load_g = 1.0},
-        StructuralLimits{.lateral_load_g = 1.0}, StructuralLimits{.bending_moment_n_m = 20e3}}) {
+       {StructuralLimits{.q_max_pa = 1e3}, StructuralLimits{.q_alpha_pa_rad = 1e3},
+        StructuralLimits{.axial_load_g = 1.0}, StructuralLimits{.lateral_load_g = 1.0},
+        StructuralLimits{.bending_moment_n_m = 20e3}}) {
     FlightDefinition limited = Definition();
     limited.vehicle.limits = limits;
     Recording other({}, limited);

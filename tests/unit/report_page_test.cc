@@ -231,5 +231,29 @@ TEST_F(ReportPageTest, LabelsADesignStudy) {
               HasSubstr("<span class=\"badge study\">◇ study</span>"));
 }
 
+TEST_F(ReportPageTest, AFlightBeyondALimitIsInTheHeadAndAmongTheOutcomes) {
+  Build(40, 40);
+  EXPECT_THAT(page_, Not(HasSubstr("structural limit exceeded</span>")));
+  EXPECT_THAT(page_, Not(HasSubstr("Limits of the vehicle")));
+  summary_.limits = {{"q_max_pa", 100e3, 0, 97e3, 4}, {"axial_load_max_g", 9.0, 3, 9.5, 17}};
+  summary_.beyond_limits = 3;
+  summary_.requirements[0].by_default = true;
+  const std::string page = ReportPage(campaign_, summary_, cases_, histories_);
+  const std::size_t head = page.find("<div class=\"headline exceeded\">");
+  EXPECT_LT(page.find("<span class=\"badge fail\">structural limit exceeded</span>", head),
+            page.find("<nav>"));
+  EXPECT_THAT(page, HasSubstr("<li>Structural limits of the vehicle were exceeded in 3 of 40 flights: "));
+  EXPECT_THAT(page,
+              HasSubstr("<td>a limit of the structure exceeded, however it ended</td><td class=\"n\"><span "
+                        "class=\"badge fail\">3</span></td><td class=\"n\">7.5 %</td>"));
+  EXPECT_THAT(page,
+              HasSubstr("<td>Axial load, maximum</td><td class=\"n\">9 g</td><td class=\"n\">9.5 g</td><td "
+                        "class=\"n\">17</td><td class=\"n\"><span class=\"badge fail\">3</span></td>"));
+  EXPECT_THAT(
+      page,
+      HasSubstr("<td>Dynamic pressure, maximum</td><td class=\"n\">100000 Pa</td><td class=\"n\">97000 Pa"));
+  EXPECT_THAT(page, HasSubstr("required because the vehicle gives limits"));
+}
+
 }  // namespace
 }  // namespace dispersa

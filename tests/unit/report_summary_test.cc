@@ -243,8 +243,10 @@ TEST_F(FiveCases, StatisticsAreThoseWorkedOutByHand) {
   EXPECT_NEAR(peak.std, std::sqrt(5.0 / 3.0), 1e-15);
   EXPECT_EQ(peak.p50, 2.5);
   EXPECT_EQ(peak.max, 4.0);
-  EXPECT_THAT(Warnings(summary), ElementsAre("1 of 5 flights were lost: statistics and percentiles cover the 4 "
-                                             "that were completed, and every lost flight fails every requirement."));
+  EXPECT_THAT(
+      Warnings(summary),
+      ElementsAre("1 of 5 flights were lost: statistics and percentiles cover the 4 "
+                  "that were completed, and every lost flight fails every requirement of the campaign."));
 }
 
 TEST_F(FiveCases, WorstCasesBeginWithALostOne) {
@@ -485,6 +487,128 @@ TEST(SummaryJson, DoesNotDependOnTheOrderOfArrival) {
     descending.Append({{MakeCase(29 - k)}});
   }
   EXPECT_EQ(SummaryJson(BuildSummary(ascending, campaign)), SummaryJson(BuildSummary(descending, campaign)));
+}
+
+// A vehicle with limits, and a campaign whose one requirement every case meets.
+struct LimitedCampaign {
+  explicit LimitedCampaign(std::uint64_t cases) : campaign(MakeCampaign(cases)) {
+    campaign.vehicle.limits.q_max_pa = 100e3;
+    campaign.vehicle.limits.axial_load_g = 9.0;
+    campaign.requirements = {PeakBelow(1e3, 0.5, 0.10),
+                             {.metric = "structural_limit_exceeded",
+                              .below = 1.0,
+                              .above = std::nullopt,
+                              .probability = 0.9973,
+                              .consumer_risk = 0.10,
+                              .by_default = true}};
+    for (std::uint64_t k = 0; k < cases; ++k) {
+      results.push_back(MakeCase(k));
+      Set(k, "q_max_pa", 80e3 + static_cast<double>(k));
+      Set(k, "axial_load_max_g", 8.0);
+      Set(k, "structural_limit_exceeded", 0.0);
+    }
+  }
+  void Set(std::uint64_t case_index, const char* metric, double value) {
+    results[case_index].metrics[MetricColumn(metric)] = value;
+  }
+  CampaignSummary Summary() const {
+    const TemporaryFolder temporary;
+    ResultFolder folder = ResultFolder::Create(temporary / "out", campaign);
+    folder.Append(results);
+    return BuildSummary(folder, campaign);
+  }
+
+  Campaign campaign;
+  std::vector<CaseResult> results;
+};
+
+TEST(StructuralLimits, ThatAreKeptByTooFewFlightsHoldNothingUp) {
+  const LimitedCampaign kept(20);
+  const CampaignSummary summary = kept.Summary();
+  EXPECT_EQ(summary.requirements[1].verdict, "inconclusive");
+  EXPECT_TRUE(summary.requirements[1].by_default);
+  EXPECT_EQ(summary.verdict, CampaignVerdict::kPass);
+  EXPECT_EQ(summary.beyond_limits, 0u);
+  ASSERT_EQ(summary.limits.size(), 2u);
+  EXPECT_EQ(summary.limits[0].metric, "q_max_pa");
+  EXPECT_EQ(summary.limits[0].limit, 100e3);
+  EXPECT_EQ(*summary.limits[0].largest, 80e3 + 19.0);
+  EXPECT_EQ(summary.limits[0].largest_case, 19u);
+  EXPECT_THAT(Warnings(summary), testing::IsEmpty());
+  // Stated by the campaign itself, the same requirement needs its cases.
+  LimitedCampaign stated(20);
+  stated.campaign.requirements[1].by_default = false;
+  EXPECT_EQ(stated.Summary().verdict, CampaignVerdict::kInconclusive);
+}
+
+TEST(StructuralLimits, CountFromTheFirstFlightBeyondThem) {
+  LimitedCampaign one(100);
+  one.Set(7, "axial_load_max_g", 9.5);
+  one.Set(7, "structural_limit_exceeded", 1.0);
+  const CampaignSummary summary = one.Summary();
+  EXPECT_EQ(summary.requirements[1].failures, 1);
+  EXPECT_EQ(summary.verdict, CampaignVerdict::kInconclusive) << "1 of 100 is no proof of 0.27 % either way";
+  EXPECT_EQ(summary.beyond_limits, 1u);
+  EXPECT_EQ(summary.limits[0].exceeded, 0u);
+  EXPECT_EQ(summary.limits[1].exceeded, 1u);
+  EXPECT_THAT(
+      Warnings(summary),
+      ElementsAre(
+          "Structural limits of the vehicle were exceeded in 1 of 100 flights: axial_load_max_g above 9 g "
+          "in 1, up to 9.5 g in case 7."));
+  const auto json = nlohmann::json::parse(SummaryJson(summary));
+  EXPECT_EQ(json["limits"]["exceeded"], 1);
+  EXPECT_EQ(json["limits"]["loads"][1]["largest_case"], 7);
+  EXPECT_EQ(json["requirements"][1]["by_default"], true);
+}
+
+TEST(StructuralLimits, ExceededByEveryFlightFailTheCampaign) {
+  LimitedCampaign all(100);
+  for (std::uint64_t k = 0; k < 100; ++k) {
+    all.Set(k, "q_max_pa", 110e3);
+    all.Set(k, "structural_limit_exceeded", 1.0);
+  }
+  EXPECT_EQ(all.Summary().verdict, CampaignVerdict::kFail);
+  // Also of a campaign that states nothing, and at any point of a design study.
+  all.campaign.requirements.erase(all.campaign.requirements.begin());
+  EXPECT_EQ(all.Summary().verdict, CampaignVerdict::kFail);
+  all.campaign.sampling.method = SamplingMethod::kSobol;
+  EXPECT_EQ(all.Summary().verdict, CampaignVerdict::kStudyViolated);
+}
+
+TEST(StructuralLimits, AreHeldAgainstWhatALostFlightBore) {
+  LimitedCampaign lost(20);
+  lost.results[3].outcome = Outcome::kLostControl;
+  lost.results[4].outcome = Outcome::kLostControl;
+  lost.Set(4, "structural_limit_exceeded", 1.0);
+  const CampaignSummary summary = lost.Summary();
+  EXPECT_EQ(summary.requirements[0].failures, 2);
+  EXPECT_EQ(summary.requirements[0].lost_flights, 2);
+  EXPECT_EQ(summary.requirements[1].failures, 1);
+  EXPECT_EQ(summary.requirements[1].lost_flights, 0);
+}
+
+TEST(StructuralLimits, OfAStudyThatAsksNothingLeaveItAsItWas) {
+  LimitedCampaign study(10);
+  study.campaign.requirements.erase(study.campaign.requirements.begin());
+  study.campaign.sampling.method = SamplingMethod::kSobol;
+  EXPECT_EQ(study.Summary().verdict, CampaignVerdict::kPass);
+}
+
+TEST(StructuralLimits, DoNotKeepACampaignFromStopping) {
+  LimitedCampaign kept(2000);
+  kept.campaign.verdicts.stop_when_decided = true;
+  kept.campaign.requirements[0].plan = {.kind = PlanKind::kGroupSequential, .looks = 10};
+  const auto target_after = [&](std::uint64_t cases) {
+    StoppingRule rule(kept.campaign, 2000, {});
+    for (std::uint64_t k = 0; k < cases; ++k) rule.Add(kept.results[k]);
+    while (rule.Advance({})) {
+    }
+    return rule.target();
+  };
+  EXPECT_EQ(target_after(200), 200u) << "half of the flights below a limit that none comes near";
+  kept.Set(5, "structural_limit_exceeded", 1.0);
+  EXPECT_GT(target_after(200), 200u);
 }
 
 }  // namespace

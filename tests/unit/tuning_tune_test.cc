@@ -99,6 +99,53 @@ TEST(Tune, HoldsEveryGateWithItsReserveAtEveryInstant) {
   }
 }
 
+TEST(ApplyDesign, GivesAScheduledStageADesignAtEachOfPitchsTimes) {
+  AutopilotConfig autopilot = SampleAutopilot();
+  autopilot.pitch.schedule = {{1, 10.0, {1.0, 1.0}, 0.0, {}}, {2, 5.0, {3.0, 3.0}, 0.0, {}}};
+  autopilot.yaw.schedule = {{1, 99.0, {1.0, 1.0}, 0.0, {}}};
+  EXPECT_EQ(ScheduledTimes(autopilot, 0), (std::vector<double>{0.0, 10.0}));
+  StageDesign first{4.0, 0.5, 0.1, {}}, then{5.0, 0.7, 0.1, {}};
+  first.filters = then.filters = {60.0, 0.5, 20.0, 0.1, 0.6, 1.0};
+  then.filters.low_pass_rad_s = 80.0;
+  ApplyDesign(std::vector<StageDesign>{first, then}, 0, autopilot);
+  for (const AxisConfig* axis : {&autopilot.pitch, &autopilot.yaw, &autopilot.roll}) {
+    EXPECT_EQ(axis->gains[0].kp_1_s2, 16.0);
+    ASSERT_FALSE(axis->schedule.empty());
+    EXPECT_EQ(axis->schedule[0].at_s, 10.0);
+    EXPECT_EQ(axis->schedule[0].gains.kp_1_s2, 25.0);
+    EXPECT_EQ(axis->schedule[0].gains.kd_1_s, 7.0);
+    if (axis == &autopilot.roll) continue;
+    ASSERT_EQ(axis->schedule[0].filters.size(), 2u);
+    EXPECT_EQ(axis->filters[0].poles_rad_s, 60.0);
+    EXPECT_EQ(axis->schedule[0].filters[0].poles_rad_s, 80.0);
+  }
+  ASSERT_EQ(autopilot.pitch.schedule.size(), 2u);
+  EXPECT_EQ(autopilot.pitch.schedule[1].gains.kp_1_s2, 3.0) << "another stage's stays";
+  EXPECT_EQ(autopilot.yaw.schedule.size(), 1u);
+  EXPECT_EQ(Problems(autopilot, 2).size(), 0u);
+}
+
+TEST(Tune, HoldsDispersedPlantsWithAScheduledStage) {
+  const Campaign campaign = SampleCampaign();
+  AutopilotConfig scheduled = campaign.autopilot;
+  scheduled.pitch.schedule = {{1, 20.0, {1.0, 1.0}, 0.0, {}}};
+  TuningOptions options = Small();
+  options.dispersed = 2;
+  options.evaluations = 2 * 2 * kHeldPopulation;
+  const TuningResult result = Tune(campaign, scheduled, options);
+  ASSERT_TRUE(result.feasible);
+  Campaign tuned = campaign;
+  tuned.autopilot = result.autopilot;
+  ASSERT_EQ(tuned.autopilot.yaw.schedule.size(), 1u);
+  for (const StageTuning& stage : result.stages) EXPECT_GE(stage.surplus.value_or(-1.0), 0.0);
+  for (const ComputedMargins& m : ComputeMargins(CampaignFlights(tuned).model()))
+    EXPECT_TRUE(PassesGates(m.frozen) && PassesGates(m.adapting)) << m.time_s;
+  options.threads = 3;
+  const TuningResult again = Tune(campaign, result.autopilot, options);
+  EXPECT_EQ(WriteAutopilot(again.autopilot), WriteAutopilot(result.autopilot))
+      << "threads, and gains as found";
+}
+
 TEST(Tune, IsTheSameForAnyNumberOfThreads) {
   const Campaign campaign = SampleCampaign();
   std::vector<GenerationRecord> logs[2];
@@ -236,6 +283,70 @@ TEST(Tune, SearchesWhatAugmentsPdLastWithinTheSameBudget) {
   EXPECT_EQ(ErrorOf(campaign, augmented, options),
             "evaluations: 47 is out of range, allowed: 48 (two generations of 8 for each stage and the "
             "augmentation) to 1000000");
+}
+
+// Motors that take 0.5 s to their thrust and tail off over some seconds.
+Campaign CurvedCampaign() {
+  Campaign campaign = SampleCampaign();
+  SetThrustCurve({{0.0, 0.5, 20.0, 38.0, 41.0, 44.0}, {0.0, 190e3, 220e3, 180e3, 30e3, 0.0}},
+                 campaign.vehicle.stages[0].motor);
+  SetThrustCurve({{0.0, 0.5, 10.0, 18.5, 20.0, 22.0}, {0.0, 52e3, 55e3, 48e3, 8e3, 0.0}},
+                 campaign.vehicle.stages[1].motor);
+  return campaign;
+}
+
+TEST(Tune, AsksForNoMarginsWhereThereIsHardlyThrust) {
+  const Campaign campaign = CurvedCampaign();
+  const TuningResult result = Tune(campaign, campaign.autopilot, Small());
+  ASSERT_TRUE(result.feasible) << result.stages[0].missed << "; " << result.stages[1].missed;
+  // Lift-off and burnout, what is between these of the tail-off, and the other stage's burnout.
+  std::vector<std::string> places;
+  for (const SkippedInstant& at : result.skipped) {
+    places.push_back(at.place);
+    EXPECT_LT(at.thrust_fraction, kLeastThrustFraction) << at.place;
+  }
+  EXPECT_THAT(places, testing::IsSupersetOf({"lift-off", "stage 1 burnout", "stage 2 burnout"}));
+  for (const StageTuning& stage : result.stages) EXPECT_EQ(stage.missed, "");
+  Campaign tuned = campaign;
+  tuned.autopilot = result.autopilot;
+  for (const ComputedMargins& m : ComputeMargins(CampaignFlights(tuned).model()))
+    EXPECT_TRUE(PassesGates(m.frozen) && PassesGates(m.adapting)) << m.place << " " << m.time_s;
+}
+
+TEST(Tune, NamesTheGateThatItMissesByMost) {
+  Campaign campaign = CurvedCampaign();
+  for (Stage& stage : campaign.vehicle.stages) stage.gimbal.delay_ticks = 30;  // 0.3 s
+  TuningResult result = Tune(campaign, campaign.autopilot, Small());
+  ASSERT_FALSE(result.feasible);
+  EXPECT_THAT(result.stages[0].missed,
+              testing::MatchesRegex("(gain|phase|delay) margin -?[0-9.]+ (dB|deg|ms), [0-9.]+ are needed: "
+                                    "(gains held|adapting), (roll|pitch|yaw) at [0-9.]+ s( \\(.*\\))?, "
+                                    "[0-9]+ % of full thrust"));
+  // What it names is the least of all instants, axes and kinds, as a part of what is needed.
+  const LeastMargins& m = result.stages[0].frozen.delay_s < result.stages[0].adapting.delay_s
+                              ? result.stages[0].frozen
+                              : result.stages[0].adapting;
+  EXPECT_LT(m.delay_s, kDelayMarginGate_s + kDelayReserve_s);
+  TuningOptions options = Small();
+  options.dispersed = 2;
+  options.evaluations = 2 * 2 * kHeldPopulation;
+  result = Tune(campaign, campaign.autopilot, options);
+  ASSERT_FALSE(result.feasible);
+  EXPECT_THAT(result.stages[0].missed,
+              testing::MatchesRegex("(the loop is unstable|(gain|phase|delay) margin [0-9]+ % below its gate with "
+                                    "reserve): (nominal plant|plant of draw [01])(, modes at (85|115) %)?, (gains "
+                                    "held|adapting), (roll|pitch|yaw) [0-9.]+ s after ignition"));
+}
+
+TEST(Tune, NamesFlightsThatAreLost) {
+  Campaign campaign = SampleCampaign();
+  // Far more misalignment than the nozzles can turn against: margins are what they were.
+  campaign.dispersions[0].distribution.sigma = 40.0 * kRadPerDeg;
+  TuningOptions options = Small();
+  options.cases = 4;
+  const TuningResult result = Tune(campaign, campaign.autopilot, options);
+  ASSERT_FALSE(result.feasible);
+  EXPECT_THAT(result.stages[0].missed, testing::MatchesRegex("[1-4] of 4 flights are lost"));
 }
 
 TEST(Tune, DoesNotFlyADesignThatMissesAMargin) {

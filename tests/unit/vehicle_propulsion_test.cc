@@ -77,6 +77,26 @@ TEST(ThrustCurve, ImpulseIsItsArea) {
   EXPECT_DOUBLE_EQ(stage.motor.burning_time_s, kCurveImpulse_n_s / 200e3);
 }
 
+// Thrust and flow of shapes of their own: the exhaust gets slower while the flow grows.
+TEST(MotorBurn, FollowsTheFlowThatIsGiven) {
+  Stage stage = SampleVehicle().stages[0];
+  SetThrustCurve({{0.0, 10.0, 40.0}, {200e3, 180e3, 0.0}, {80.0, 100.0, 100.0}}, stage.motor);  // 3900 kg
+  const MotorBurn burn = BuildBurn(stage, 1.0, 1.0);
+  EXPECT_EQ(burn.duration_s, 40.0);
+  EXPECT_DOUBLE_EQ(burn.full_flow_kg_s, 100.0 * 4000.0 / 3900.0);
+  EXPECT_DOUBLE_EQ(burn.ExhaustVelocity(), (1900e3 + 2700e3) / 4000.0);
+  const double scale = 4000.0 / 3900.0;  // what flows is the propellant
+  EXPECT_NEAR(burn.Propellant(5.0), 4000.0 - scale * (80.0 * 5.0 + 0.5 * 2.0 * 25.0), 1e-9);
+  EXPECT_NEAR(burn.Propellant(10.0), scale * 3000.0, 1e-9);
+  EXPECT_NEAR(burn.Propellant(39.0), scale * 100.0, 1e-9);
+  EXPECT_EQ(burn.Propellant(40.0), 0.0);
+  EXPECT_NEAR(burn.vacuum_thrust_n * burn.Fraction(25.0), 90e3, 1e-9);
+  const MotorBurn faster = BuildBurn(stage, 1.1, 1.1);
+  EXPECT_DOUBLE_EQ(faster.duration_s, 40.0 / 1.1);
+  EXPECT_NEAR(faster.Propellant(10.0 / 1.1), scale * 3000.0, 1e-9);
+  EXPECT_DOUBLE_EQ(faster.ExhaustVelocity(), burn.ExhaustVelocity());
+}
+
 TEST(ThrustCurve, AtSeaLevelGainsPressureTimesAreaWhereItBurns) {
   const ThrustCurve curve = InVacuum({{0.0, 1.0, 2.0}, {0.0, 1000.0, 0.0}}, 0.1);
   EXPECT_EQ(curve.thrust_n, (std::vector<double>{0.0, 1000.0 + 10132.5, 0.0}));

@@ -1,0 +1,19 @@
+// What is wrong with a text before it is YAML or CSV: bytes that are no UTF-8, tabs that indent.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/campaign/input_error.h"
+
+namespace dispersa {
+
+/// Records the first byte that is not part of UTF-8 text; true if there is none.
+bool CheckUtf8(const std::string& text, const std::string& file, std::vector<InputProblem>& problems);
+
+/// Records the first tab that indents a line up to `last_line`; true if there is none. Tabs elsewhere are
+/// harmless.
+bool CheckIndentation(const std::string& text, const std::string& file, int last_line,
+                      std::vector<InputProblem>& problems);
+
+}  // namespace dispersa

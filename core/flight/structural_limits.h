@@ -1,0 +1,26 @@
+// Which load of a flight each limit of the vehicle's structure is held against: one row a limit. A new one
+// takes a member of StructuralLimits with its key, a load in FlightSums with its metric, a row in
+// structural_limits.cc, and, so that `terminate` sees it, its lanes in Batch::CheckEnds.
+#pragma once
+
+#include <span>
+
+#include "core/flight/flight_sums.h"
+#include "core/vehicle/vehicle.h"
+
+namespace dispersa {
+
+struct StructuralLimit {
+  const char* metric;  ///< of the load, in the limit's unit
+  double StructuralLimits::*limit;
+  double FlightSums::*load;  ///< largest so far
+};
+
+std::span<const StructuralLimit> AllStructuralLimits();
+
+/// Whether the vehicle gives any.
+bool HasLimits(const StructuralLimits& limits);
+/// Whether the loads so far exceed a limit that the vehicle gives.
+bool ExceedsStructure(const StructuralLimits& limits, const FlightSums& sums);
+
+}  // namespace dispersa

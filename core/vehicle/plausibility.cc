@@ -1,0 +1,302 @@
+#include "core/vehicle/plausibility.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "core/math/constants.h"
+#include "core/math/functions.h"
+#include "core/vehicle/mass.h"
+#include "core/vehicle/mould_line.h"
+#include "core/vehicle/vehicle_figures.h"
+
+namespace dispersa {
+namespace {
+
+constexpr double kAny = std::numeric_limits<double>::infinity();
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+
+struct Span {
+  double low = -kAny;
+  double high = kAny;
+  bool Holds(double value) const { return value >= low && value <= high; }
+};
+constexpr Span kAnything{};
+
+/// What a check looks at: the vehicle, and one of its stages, nozzles or gyros.
+struct Subject {
+  const Vehicle& vehicle;
+  const std::vector<StageFigures>& figures;
+  std::size_t index = 0;
+
+  const Stage& stage() const { return vehicle.stages[index]; }
+  const StageFigures& figure() const { return figures[index]; }
+  bool is_last() const { return index + 1 == vehicle.stages.size(); }
+  double length_m() const { return vehicle.stages[0].bottom_station_m; }
+};
+
+struct Check {
+  const char* field;    ///< of the value that most probably is wrong
+  const char* implies;  ///< "implies a specific impulse of"
+  const char* unit;
+  Span possible;  ///< beyond: no such thing can exist
+  Span usual;     ///< beyond: none is known
+  const char* source;
+  double (*value)(const Subject&);  ///< NaN: does not apply
+};
+
+// Of the mould line between two stations.
+double WidestDiameter(const Vehicle& vehicle, double top_m, double bottom_m) {
+  constexpr int kSamples = 64;  // sections are far longer than a 64th of a grain
+  double widest_m = 0.0;
+  for (const MouldSection& section : CutMouldLine(vehicle.profile, vehicle.stages[0].bottom_station_m)) {
+    for (int k = 0; k <= kSamples; ++k) {
+      const double station_m = top_m + (bottom_m - top_m) * k / kSamples;
+      if (station_m >= section.start_m && station_m <= section.end_m)
+        widest_m = std::max(widest_m, 2.0 * section.Radius(station_m));
+    }
+  }
+  return widest_m;
+}
+
+constexpr Check kStageChecks[] = {
+    {"propellant_mass_kg",
+     "implies with thrust and burning time a specific impulse of",
+     "s",
+     {0.0, 1000.0},
+     {180.0, 470.0},
+     "200 to 410 s of solid and liquid rockets: Sutton and Biblarz, Rocket Propulsion Elements, 7th ed., "
+     "table 2-1; "
+     "465 s of hydrogen stages in vacuum; combustion never gave more than 550 s, reactors 900 s",
+     [](const Subject& s) { return s.figure().specific_impulse_s; }},
+    {"motor.thrust_n",
+     "implies a thrust to weight at lift-off of",
+     "",
+     {1.0, kAny},
+     {1.15, 12.0},
+     "Saturn V 1.2, solid launchers 1.6 to 2.5, sounding rockets to 12; below 1 it never leaves the pad",
+     [](const Subject& s) { return s.index == 0 ? s.figure().thrust_to_weight : kNothing; }},
+    {"motor.thrust_n",
+     "implies a thrust to weight at ignition of",
+     "",
+     kAnything,
+     {0.05, 12.0},
+     "small liquid upper stages from 0.08, solid ones to 8",
+     [](const Subject& s) { return s.index > 0 ? s.figure().thrust_to_weight : kNothing; }},
+    {"motor.thrust_n",
+     "implies towards burnout a load of",
+     "g",
+     kAnything,
+     {0.05, 20.0},
+     "user's manuals of solid launchers state up to 13 g",
+     [](const Subject& s) { return s.figure().burnout_load_g; }},
+    {"liftoff_mass_kg",
+     "implies a dry mass of the stage, as part of its own, of",
+     "",
+     kAnything,
+     {0.03, 0.35},
+     "0.05 of large liquid stages, 0.07 to 0.15 of solid ones, more only of the smallest",
+     [](const Subject& s) { return s.is_last() ? kNothing : s.figure().structural_fraction; }},
+    {"liftoff_mass_kg",
+     "implies a dry mass of the last stage with payload, as part of its own, of",
+     "",
+     kAnything,
+     {0.05, 0.95},
+     "0.2 to 0.8 of upper stages with what they carry",
+     [](const Subject& s) { return s.is_last() ? s.figure().structural_fraction : kNothing; }},
+    {"grain",
+     "implies a propellant density of",
+     "kg/m3",
+     kAnything,
+     {1500.0, 1950.0},
+     "solid propellants: Sutton and Biblarz, table 12-1",
+     [](const Subject& s) { return PropellantDensity(s.stage()); }},
+    {"grain.outer_diameter_m",
+     "is, as part of the stage's diameter_m,",
+     "",
+     {0.0, 1.0},
+     {0.5, 1.0},
+     "the propellant is inside",
+     [](const Subject& s) { return s.stage().grain.outer_diameter_m / s.stage().diameter_m; }},
+    {"diameter_m",
+     "is, as part of the profile's largest diameter about this stage's grain,",
+     "",
+     kAnything,
+     {0.4, 1.02},
+     "1 where the case is the skin, less inside a wider fairing",
+     [](const Subject& s) {
+       const Grain& grain = s.stage().grain;
+       const double widest_m = WidestDiameter(s.vehicle, grain.top_station_m, grain.bottom_station_m);
+       return widest_m > 0.0 ? s.stage().diameter_m / widest_m : kNothing;
+     }},
+    {"motor.nozzle_exit_area_m2",
+     "is, as part of the stage's cross-section,",
+     "",
+     kAnything,
+     {0.02, 1.0},
+     "the nozzles end inside the base, or inside the interstage below",
+     [](const Subject& s) {
+       const double area_m2 = s.stage().motor.nozzle_exit_area_m2;
+       return area_m2 > 0.0 ? area_m2 / (0.25 * kPi * Square(s.stage().diameter_m)) : kNothing;
+     }},
+    {"motor.published_mass_flow_kg_s",
+     "is the flow that propellant and burning time give times",
+     "",
+     kAnything,
+     {0.8, 1.25},
+     "near 1: what a source prints as mean flow",
+     [](const Subject& s) {
+       const double published_kg_s = s.stage().motor.published_mass_flow_kg_s;
+       return published_kg_s > 0.0 ? published_kg_s / s.figure().flow_kg_s : kNothing;
+     }},
+    {"gimbal.limit_rad",
+     "lets a nozzle turn by",
+     "deg",
+     {0.0, 89.0},
+     {1.0, 15.0},
+     "the Space Shuttle's boosters 8 deg, its main engines 10.5 deg",
+     [](const Subject& s) { return s.stage().gimbal.limit_rad * kDegPerRad; }},
+    {"gimbal.radius_m",
+     "is, as part of half the stage's diameter_m,",
+     "",
+     kAnything,
+     {0.0, 1.0},
+     "the hinges are inside the base",
+     [](const Subject& s) { return s.stage().gimbal.radius_m / (0.5 * s.stage().diameter_m); }},
+};
+
+constexpr Check kNozzleChecks[] = {
+    {"inertia_about_hinge_kg_m2",
+     "is the nozzle's mass at its centre of gravity, about the hinge, times",
+     "",
+     {1.0, kAny},
+     {1.0, 10.0},
+     "the parallel axis theorem: above 1 by the nozzle's own extent",
+     [](const Subject& s) {
+       const Gimbal& gimbal = s.stage().gimbal;
+       const double point_kg_m2 = gimbal.nozzle_mass_kg * Square(gimbal.nozzle_cg_m);
+       return point_kg_m2 > 0.0 ? gimbal.nozzle_inertia_kg_m2 / point_kg_m2 : kNothing;
+     }},
+};
+
+constexpr Check kGyroChecks[] = {
+    {"station_m",
+     "lies, as part of the vehicle's length,",
+     "",
+     {0.0, 1.0},
+     {0.0, 1.0},
+     "inside the body",
+     [](const Subject& s) { return s.vehicle.sensors.rate_gyros[s.index].station_m / s.length_m(); }},
+};
+
+constexpr Check kVehicleChecks[] = {
+    {"sensors.inertial_unit.station_m",
+     "lies, as part of the vehicle's length,",
+     "",
+     {0.0, 1.0},
+     {0.0, 1.0},
+     "inside the body",
+     [](const Subject& s) { return s.vehicle.sensors.inertial_unit_station_m / s.length_m(); }},
+    {"profile",
+     "implies a length, in diameters, of",
+     "",
+     kAnything,
+     {4.0, 30.0},
+     "Vega 10, Saturn V 11, Falcon 9 19, Scout 20",
+     [](const Subject& s) {
+       const double widest_m = WidestDiameter(s.vehicle, 0.0, s.length_m());
+       return widest_m > 0.0 ? s.length_m() / widest_m : kNothing;
+     }},
+    {"stages",
+     "imply together an ideal change of velocity, without losses, of",
+     "m/s",
+     kAnything,
+     {500.0, 14000.0},
+     "low orbits ask 9 to 10 km/s with losses, sounding rockets 1 to 4 km/s",
+     [](const Subject& s) {
+       double sum_m_s = 0.0;
+       for (const StageFigures& one : s.figures) sum_m_s += one.ideal_delta_v_m_s;
+       return sum_m_s;
+     }},
+    {"reaction_control.specific_impulse_s",
+     "is",
+     "s",
+     {0.0, 1000.0},
+     {30.0, 340.0},
+     "cold gas 40 to 75 s, hydrazine 220 to 240 s, two propellants to 330 s",
+     [](const Subject& s) {
+       return s.vehicle.stages.size() > 1 ? s.vehicle.reaction_control.specific_impulse_s : kNothing;
+     }},
+    {"reaction_control.thrust_n",
+     "turns the last stage in pitch and yaw by",
+     "deg/s2",
+     kAnything,
+     {0.01, 60.0},
+     "a rate of 1 deg/s should take neither minutes nor less than a cycle to stop",
+     [](const Subject& s) {
+       if (s.vehicle.stages.size() < 2) return kNothing;
+       const StackMass stack = BuildStackMasses(s.vehicle).back();
+       const ReactionControl& control = s.vehicle.reaction_control;
+       return 2.0 * control.thrust_n * control.pitch_yaw_arm_m /
+              stack.At(stack.propellant_mass_kg).transverse_inertia_kg_m2 * kDegPerRad;
+     }},
+};
+
+std::string Readable(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, std::fabs(value) >= 1e4 && std::fabs(value) < 1e9 ? "%.0f" : "%.4g",
+                value);
+  return text;
+}
+
+std::string SpanText(const Span& span, const std::string& unit) {
+  const std::string end = unit.empty() ? "" : " " + unit;
+  if (!(span.high < kAny)) return Readable(span.low) + end + " or more";
+  if (!(span.low > 0.0)) return "up to " + Readable(span.high) + end;
+  return Readable(span.low) + " to " + Readable(span.high) + end;
+}
+
+// A thrust curve stands in the place of the thrust.
+std::string PathOf(const Check& check, const Subject& subject) {
+  const std::string field = check.field;
+  const bool has_curve = subject.index < subject.vehicle.stages.size() && !subject.stage().motor.thrust_curve.empty();
+  return has_curve && field == "motor.thrust_n" ? "motor.thrust_curve" : field;
+}
+
+template <std::size_t N>
+void Apply(const Check (&checks)[N], const Subject& subject, const std::string& prefix,
+           std::vector<PlausibilityFinding>& findings) {
+  for (const Check& check : checks) {
+    const double value = check.value(subject);
+    if (std::isnan(value)) continue;
+    const bool beyond = !check.possible.Holds(value);
+    if (!beyond && check.usual.Holds(value)) continue;
+    const bool impossible = beyond && !subject.vehicle.made_up;
+    const std::string unit = check.unit;
+    findings.push_back({prefix + PathOf(check, subject),
+                        std::string(check.implies) + " " + Readable(value) +
+                            (unit.empty() ? "" : " " + unit) + (impossible ? ", which cannot be" : ""),
+                        SpanText(impossible ? check.possible : check.usual, unit) + " (" + check.source + ")",
+                        impossible});
+  }
+}
+
+}  // namespace
+
+std::vector<PlausibilityFinding> Plausibility(const Vehicle& vehicle) {
+  const std::vector<StageFigures> figures = FiguresOf(vehicle);
+  std::vector<PlausibilityFinding> findings;
+  for (std::size_t i = 0; i < vehicle.stages.size(); ++i) {
+    const std::string index = "[" + std::to_string(i) + "].";
+    Apply(kStageChecks, {vehicle, figures, i}, "stages" + index, findings);
+    if (vehicle.stages[i].gimbal.nozzle_mass_kg > 0.0)
+      Apply(kNozzleChecks, {vehicle, figures, i}, "nozzles" + index, findings);
+  }
+  for (std::size_t i = 0; i < vehicle.sensors.rate_gyros.size(); ++i)
+    Apply(kGyroChecks, {vehicle, figures, i}, "sensors.rate_gyros[" + std::to_string(i) + "].", findings);
+  Apply(kVehicleChecks, {vehicle, figures}, "", findings);
+  return findings;
+}
+
+}  // namespace dispersa

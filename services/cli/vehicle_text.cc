@@ -1,0 +1,73 @@
+#include "services/cli/vehicle_text.h"
+
+#include <fmt/format.h>
+
+#include <vector>
+
+#include "core/flight/structural_limits.h"
+#include "core/report/text.h"
+#include "core/vehicle/vehicle_figures.h"
+
+namespace dispersa {
+namespace {
+
+double TotalDeltaV(const std::vector<StageFigures>& figures) {
+  double sum_m_s = 0.0;
+  for (const StageFigures& one : figures) sum_m_s += one.ideal_delta_v_m_s;
+  return sum_m_s;
+}
+
+}  // namespace
+
+std::string VehicleText(const Vehicle& vehicle) {
+  const std::vector<StageFigures> figures = FiguresOf(vehicle);
+  std::string text =
+      fmt::format("\n{}: {} kg, {} m\n", vehicle.name, ReadableText(vehicle.stages[0].liftoff_mass_kg),
+                  ReadableText(vehicle.stages[0].bottom_station_m));
+  text +=
+      fmt::format("{:<12}{:>12}{:>12}{:>10}{:>10}{:>10}{:>9}{:>9}{:>11}{:>10}{:>9}\n", "stage", "at ignition",
+                  "propellant", "dry", "dry/own", "thrust", "burn", "Isp", "ideal dv", "T/W", "burnout");
+  text += fmt::format("{:<12}{:>12}{:>12}{:>10}{:>10}{:>10}{:>9}{:>9}{:>11}{:>10}{:>9}\n", "", "kg", "kg",
+                      "kg", "", "kN", "s", "s", "m/s", "ignition", "g");
+  for (std::size_t i = 0; i < figures.size(); ++i) {
+    const Stage& stage = vehicle.stages[i];
+    const StageFigures& one = figures[i];
+    text += fmt::format(
+        "{:<12}{:>12.0f}{:>12.0f}{:>10.0f}{:>10.3f}{:>10.1f}{:>9.1f}{:>9.1f}{:>11.0f}{:>10.2f}{:>9.2f}\n",
+        stage.name.substr(0, 11), stage.liftoff_mass_kg, stage.propellant_mass_kg, one.dry_mass_kg,
+        one.structural_fraction, stage.motor.thrust_n * 1e-3, one.burning_time_s,
+        one.specific_impulse_s, one.ideal_delta_v_m_s, one.thrust_to_weight, one.burnout_load_g);
+  }
+  text += fmt::format("{:<12}{:>84.0f}\n", "together", TotalDeltaV(figures));
+  text +=
+      "dry/own of the last stage with its payload; dv and Isp in vacuum, without losses; T/W of stage 1 "
+      "where it "
+      "is released\n";
+  std::string limits;
+  for (const StructuralLimit& limit : AllStructuralLimits()) {
+    const double value = vehicle.limits.*limit.limit;
+    if (value > 0.0)
+      limits += fmt::format("{}{} {}", limits.empty() ? "" : ", ", limit.metric, ReadableText(value));
+  }
+  return text + "limits: " + (limits.empty() ? "none: no load is judged" : limits) + "\n";
+}
+
+nlohmann::ordered_json VehicleJson(const Vehicle& vehicle) {
+  const std::vector<StageFigures> figures = FiguresOf(vehicle);
+  auto stages = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < figures.size(); ++i) {
+    const StageFigures& one = figures[i];
+    stages.push_back({{"name", vehicle.stages[i].name},
+                      {"liftoff_mass_kg", vehicle.stages[i].liftoff_mass_kg},
+                      {"propellant_mass_kg", vehicle.stages[i].propellant_mass_kg},
+                      {"dry_mass_kg", one.dry_mass_kg},
+                      {"structural_fraction", one.structural_fraction},
+                      {"specific_impulse_s", one.specific_impulse_s},
+                      {"ideal_delta_v_m_s", one.ideal_delta_v_m_s},
+                      {"thrust_to_weight", one.thrust_to_weight},
+                      {"burnout_load_g", one.burnout_load_g}});
+  }
+  return {{"name", vehicle.name}, {"ideal_delta_v_m_s", TotalDeltaV(figures)}, {"stages", std::move(stages)}};
+}
+
+}  // namespace dispersa

@@ -1,0 +1,192 @@
+// Implausible vehicles, texts in other encodings and slips of the pen, as a user reads them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "core/campaign_yaml/load.h"
+#include "tests/unit/input_files.h"
+
+namespace dispersa {
+namespace {
+
+using testing::HasSubstr;
+
+// The files' vehicle is of round numbers, and light.
+const std::string kLightGrains =
+    "vehicle.yaml:12:12: stages[0].grain: implies a propellant density of 663.1 kg/m3, usual: 1500 to 1950 "
+    "kg/m3 "
+    "(solid propellants: Sutton and Biblarz, table 12-1)\n"
+    "vehicle.yaml:25:12: stages[1].grain: implies a propellant density of 589.5 kg/m3, usual: 1500 to 1950 "
+    "kg/m3 "
+    "(solid propellants: Sutton and Biblarz, table 12-1)\n";
+
+TEST(CampaignYamlPlausibility, WhatIsUnusualIsAWarningAndNoError) {
+  const InputFiles files;
+  const FileCheck vehicle = CheckFile(files.Path("vehicle.yaml"));
+  EXPECT_TRUE(vehicle.errors.empty());
+  EXPECT_TRUE(vehicle.is_vehicle);
+  ASSERT_TRUE(vehicle.vehicle);
+  EXPECT_EQ(files.Texts(vehicle.warnings), kLightGrains);
+  const FileCheck campaign = CheckFile(files.Path("campaign.yaml"));
+  EXPECT_TRUE(campaign.errors.empty());
+  EXPECT_FALSE(campaign.is_vehicle);
+  EXPECT_THAT(files.Texts(campaign.warnings), HasSubstr(kLightGrains));
+  std::vector<InputProblem> warnings;
+  LoadVehicle(files.Path("vehicle.yaml"), &warnings);
+  EXPECT_EQ(files.Texts(warnings), kLightGrains);
+}
+
+TEST(CampaignYamlPlausibility, WhatCannotBeIsAnErrorOfEveryReader) {
+  const InputFiles files;
+  files.Edit("vehicle.yaml", "burning_time_s: 60, ignition_rise_s: 0.2, tail_off_s: 0.4, p",
+             "burning_time_s: 6000, ignition_rise_s: 0.2, tail_off_s: 0.4, p");
+  const std::string text =
+      "vehicle.yaml:8:25: stages[0].propellant_mass_kg: implies with thrust and burning time a specific "
+      "impulse of "
+      "24473 s, which cannot be, allowed: up to 1000 s (200 to 410 s of solid and liquid rockets: Sutton and "
+      "Biblarz, "
+      "Rocket Propulsion Elements, 7th ed., table 2-1; 465 s of hydrogen stages in vacuum; combustion never "
+      "gave more "
+      "than 550 s, reactors 900 s)\n";
+  EXPECT_EQ(files.Texts(CheckFile(files.Path("vehicle.yaml")).errors), text);
+  EXPECT_TRUE(CheckFile(files.Path("vehicle.yaml")).warnings.empty()) << "errors come first";
+  EXPECT_FALSE(CheckFile(files.Path("vehicle.yaml")).vehicle);
+  const auto thrown = [&](const auto& load) {
+    try {
+      load();
+    } catch (const InputError& error) {
+      return files.Texts(error.problems());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(thrown([&] { LoadVehicle(files.Path("vehicle.yaml")); }), text);
+  EXPECT_EQ(thrown([&] { LoadCampaign(files.Path("campaign.yaml")); }), text);
+  EXPECT_EQ(thrown([&] { LoadOptimization(files.Path("campaign.yaml")); }), text);
+}
+
+TEST(CampaignYamlPlausibility, LimitsAreRequiredUnlessTheCampaignSaysHow) {
+  const InputFiles files;
+  const Campaign campaign = LoadCampaign(files.Path("campaign.yaml"));
+  ASSERT_EQ(campaign.requirements.size(), 2u);
+  EXPECT_FALSE(campaign.requirements[0].by_default);
+  const Requirement& kept = campaign.requirements[1];
+  EXPECT_TRUE(kept.by_default);
+  EXPECT_EQ(kept.metric, "structural_limit_exceeded");
+  EXPECT_EQ(kept.below, 1.0);
+  EXPECT_EQ(kept.probability, 0.9973);
+  EXPECT_EQ(kept.consumer_risk, 0.10);
+
+  files.Edit("campaign.yaml", "requirements:\n",
+             "requirements:\n  - {metric: structural_limit_exceeded, below: 1, probability: 0.9, "
+             "consumer_risk: 0.2}\n");
+  const Campaign own = LoadCampaign(files.Path("campaign.yaml"));
+  ASSERT_EQ(own.requirements.size(), 2u);
+  EXPECT_EQ(own.requirements[0].probability, 0.9);
+  EXPECT_FALSE(own.requirements[0].by_default);
+  EXPECT_EQ(own.flight_id, campaign.flight_id) << "requirements decide no case";
+
+  files.Edit("vehicle.yaml", "limits: {q_alpha_kpa_rad: 10, axial_load_g: 12, terminate: false}\n", "");
+  const Campaign unlimited = LoadCampaign(files.Path("campaign.yaml"));
+  EXPECT_NE(unlimited.flight_id, campaign.flight_id) << "limits decide a metric";
+  EXPECT_EQ(LoadOptimization(files.Path("campaign.yaml")).vehicle_sha256,
+            LoadOptimization(DISPERSA_TEST_DATA "/yaml/campaign.yaml").vehicle_sha256)
+      << "and no trajectory";
+}
+
+TEST(CampaignYamlPlausibility, AReferenceThatMissesItsTargetSaysSo) {
+  const InputFiles files;
+  files.Edit("reference.yaml", "problem:", "target_missed: 12 km short\nproblem:");
+  std::vector<InputProblem> warnings;
+  const Campaign campaign = LoadCampaign(files.Path("campaign.yaml"), {}, &warnings);
+  EXPECT_EQ(campaign.reference.target_missed, "12 km short");
+  EXPECT_THAT(
+      files.Texts(warnings),
+      HasSubstr(
+          "reference.yaml:3:16: target_missed: the reference misses its own target: 12 km short, allowed: "
+          "a reference that reaches it\n"));
+  EXPECT_EQ(ReadReference(WriteReference(campaign.reference), "again").target_missed, "12 km short");
+}
+
+struct BadText {
+  const char* name;
+  const char* edited;
+  const char* from;
+  const char* to;
+  const char* texts;
+};
+void PrintTo(const BadText& bad, std::ostream* out) { *out << bad.name; }
+
+class BadTextTest : public testing::TestWithParam<BadText> {};
+
+TEST_P(BadTextTest, IsReportedInFull) {
+  const InputFiles files;
+  files.Edit(GetParam().edited, GetParam().from, GetParam().to);
+  EXPECT_EQ(files.Texts(ValidateFile(files.Path("campaign.yaml"))), GetParam().texts);
+}
+
+constexpr BadText kBadTexts[] = {
+    {"Tab", "campaign.yaml", "  drag_coefficient", "\tdrag_coefficient",
+     "campaign.yaml:10:1: a tab indents the line, allowed: spaces\n"},
+    {"Latin1", "vehicle.yaml", "name: first", "name: premi\xe8re",
+     "vehicle.yaml:6:16: the byte 0xE8 is no UTF-8: the file is in another encoding, such as Latin-1, "
+     "allowed: text in "
+     "UTF-8\n"},
+    {"CutCharacter", "vehicle.yaml", "name: first", "name: \xe2\x82",
+     "vehicle.yaml:6:11: the byte 0xE2 is no UTF-8: the file is in another encoding, such as Latin-1, "
+     "allowed: text in "
+     "UTF-8\n"},
+    {"ConfidenceForRisk", "campaign.yaml", "consumer_risk: 0.10", "consumer_risk: 0.95",
+     "campaign.yaml:13:84: requirements[0].consumer_risk: 0.95 is out of range, it is a confidence (did you "
+     "mean "
+     "0.05?), allowed: a number above 0 and below 0.5\n"},
+    {"PercentForProbability", "campaign.yaml", "probability: 0.9973", "probability: 99.73",
+     "campaign.yaml:13:61: requirements[0].probability: 99.73 is out of range, it is in percent (did you "
+     "mean "
+     "0.9973?), allowed: a number above 0 and below 1\n"},
+    {"KilometresAnHour", "campaign.yaml", "max_speed_m_s", "max_speed_kmh",
+     "campaign.yaml:9:10: dispersions.wind.max_speed_kmh: the unit of 'max_speed_kmh' is not known here (did "
+     "you mean "
+     "'max_speed_km_h'?), allowed: max_speed_m_s, max_speed_km_s, max_speed_km_h\n"},
+    {"SpelledOut", "vehicle.yaml", "burning_time_s: 60, ignition_rise_s: 0.2, tail_off_s: 0.4, p",
+     "burning_time_seconds: 60, ignition_rise_s: 0.2, tail_off_s: 0.4, p",
+     "vehicle.yaml:11:28: stages[0].motor.burning_time_seconds: the unit of 'burning_time_seconds' is not "
+     "known here "
+     "(did you mean 'burning_time_s'?), allowed: burning_time_s, burning_time_ms\n"},
+    {"DesignBeyondMemory", "campaign.yaml", "method: monte_carlo, cases: 100",
+     "method: latin_hypercube, cases: 4000000000",
+     "campaign.yaml:6:44: sampling.cases: a Latin hypercube of 4000000000 cases and 10 dispersions takes 160 "
+     "GB of memory "
+     "in each process, allowed: up to 100000000 cases (4 GB), or method: monte_carlo or sobol, which take "
+     "none\n"},
+};
+
+INSTANTIATE_TEST_SUITE_P(Each, BadTextTest, testing::ValuesIn(kBadTexts),
+                         [](const auto& bad) { return std::string(bad.param.name); });
+
+TEST(CampaignYamlPlausibility, UnsortedWindNamesTheLineOfTheCulprit) {
+  const InputFiles files;
+  files.Write("wind.csv",
+              "# a sounding\naltitude_m,north_m_s,east_m_s\n0,1,2\n2000,3,4\n1500,5,6\n9000,7,8\n");
+  files.Edit("campaign.yaml", "  wind:", "  wind_profile: {table: wind.csv}\n  wind:");
+  EXPECT_EQ(
+      files.Texts(ValidateFile(files.Path("campaign.yaml"))),
+      "wind.csv:5:1: altitude_m[2]: is not above the one before, allowed: values strictly increasing\n");
+}
+
+TEST(CampaignYamlPlausibility, KilometresAnHourAreASpeed) {
+  const InputFiles files;
+  files.Edit("campaign.yaml", "max_speed_m_s: ", "max_speed_km_h: ");
+  EXPECT_TRUE(ValidateFile(files.Path("campaign.yaml")).empty());
+}
+
+// Inside of a line a tab is legal YAML.
+TEST(CampaignYamlPlausibility, HarmlessTabsStay) {
+  const InputFiles files;
+  files.Edit("campaign.yaml", "name: trial", "name:\ttrial");
+  EXPECT_TRUE(ValidateFile(files.Path("campaign.yaml")).empty());
+}
+
+}  // namespace
+}  // namespace dispersa

@@ -1,0 +1,267 @@
+// What a vehicle's numbers imply, held against physics and known launchers: every check, with the full text.
+#include "core/vehicle/plausibility.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/vehicle/vehicle_figures.h"
+#include "tests/unit/sample_vehicle.h"
+
+namespace dispersa {
+namespace {
+
+/// The sample's two stages with the propellant that solid motors of their size hold, about which nothing is
+/// unusual.
+Vehicle UsualVehicle() {
+  Vehicle vehicle = SampleVehicle();
+  vehicle.stages[0].propellant_mass_kg = 9200.0;  // 6.03 m3 of grain: 1525 kg/m3
+  vehicle.stages[0].motor.burning_time_s = 100.0;
+  vehicle.stages[1].propellant_mass_kg = 2600.0;  // 1.70 m3: 1533 kg/m3
+  vehicle.stages[1].motor.burning_time_s = 120.0;
+  vehicle.profile = {{ProfileShape::kCone, 2.0, 1.2}, {ProfileShape::kCylinder, 18.0, 1.2}};
+  return vehicle;
+}
+
+std::vector<std::string> Texts(const Vehicle& vehicle) {
+  std::vector<std::string> texts;
+  for (const PlausibilityFinding& f : Plausibility(vehicle))
+    texts.push_back((f.impossible ? "impossible " : "unusual ") + f.path + " " + f.message + " | " +
+                    f.allowed);
+  return texts;
+}
+
+TEST(VehicleFigures, AreThoseOfTheRocketEquation) {
+  Vehicle vehicle = UsualVehicle();
+  vehicle.stages[0].motor.nozzle_exit_area_m2 = 0.2;
+  vehicle.hold_down_s = 1.0;  // burns 92 kg
+  const std::vector<StageFigures> figures = FiguresOf(vehicle);
+  ASSERT_EQ(figures.size(), 2u);
+  EXPECT_DOUBLE_EQ(figures[0].own_mass_kg, 10000.0);
+  EXPECT_DOUBLE_EQ(figures[0].dry_mass_kg, 800.0);
+  EXPECT_DOUBLE_EQ(figures[0].structural_fraction, 0.08);
+  EXPECT_DOUBLE_EQ(figures[0].flow_kg_s, 92.0);
+  EXPECT_DOUBLE_EQ(figures[0].specific_impulse_s, 200e3 / (92.0 * 9.80665));
+  EXPECT_NEAR(figures[0].ideal_delta_v_m_s, 200e3 / 92.0 * std::log(13000.0 / 3800.0), 1e-9);
+  EXPECT_NEAR(figures[0].thrust_to_weight, (200e3 - 0.2 * 101325.0) / ((13000.0 - 92.0) * 9.80665), 1e-12);
+  EXPECT_DOUBLE_EQ(figures[0].burnout_load_g, 200e3 / (3800.0 * 9.80665));
+  EXPECT_DOUBLE_EQ(figures[1].thrust_to_weight, 50e3 / (3000.0 * 9.80665));
+}
+
+// The same impulse with a hump late in the burn: what lifts off is the thrust of the first second.
+TEST(VehicleFigures, OfAThrustCurveAreThoseOfItsTimes) {
+  Vehicle vehicle = UsualVehicle();
+  vehicle.hold_down_s = 0.5;
+  SetThrustCurve({{0.0, 0.2, 2.0, 60.0, 100.0, 106.0}, {0.0, 180e3, 170e3, 240e3, 120e3, 0.0}},
+                 vehicle.stages[0].motor);
+  const MotorBurn burn = BuildBurn(vehicle.stages[0], 1.0, 1.0);
+  const double impulse_n_s = 18e3 + 315e3 + 11890e3 + 7200e3 + 360e3;
+  const std::vector<StageFigures> figures = FiguresOf(vehicle);
+  EXPECT_EQ(figures[0].burning_time_s, 106.0);
+  EXPECT_DOUBLE_EQ(figures[0].flow_kg_s, 9200.0 / 106.0);
+  EXPECT_NEAR(figures[0].specific_impulse_s, impulse_n_s / 9200.0 / 9.80665, 1e-9);
+  const double released_n = 180e3 - 10e3 * 0.3 / 1.8;  // falls from 0.2 s on
+  EXPECT_NEAR(figures[0].thrust_to_weight, released_n / ((3800.0 + burn.Propellant(0.5)) * 9.80665), 1e-9);
+  EXPECT_NEAR(figures[0].burnout_load_g,
+              std::max(240e3 / (3800.0 + burn.Propellant(60.0)), 120e3 / (3800.0 + burn.Propellant(100.0))) / 9.80665,
+              1e-9);
+}
+
+TEST(VehiclePlausibility, NamesTheCurveInPlaceOfTheThrust) {
+  Vehicle vehicle = UsualVehicle();
+  SetThrustCurve({{0.0, 50.0, 100.0}, {100e3, 300e3, 0.0}}, vehicle.stages[0].motor);
+  const std::vector<std::string> texts = Texts(vehicle);
+  ASSERT_EQ(texts.size(), 1u);
+  EXPECT_EQ(texts[0].rfind("impossible stages[0].motor.thrust_curve implies a thrust to weight at lift-off of 0.8", 0), 0u)
+      << texts[0];
+}
+
+TEST(VehicleFigures, PressureOfTheSiteIsTheStandards) {
+  EXPECT_EQ(SitePressure(0.0), 101325.0);
+  EXPECT_NEAR(SitePressure(5000.0), 54048.0, 60.0);  // its table, at that geometric altitude
+  EXPECT_NEAR(SitePressure(11000.0), 22700.0, 80.0);
+}
+
+TEST(VehiclePlausibility, AUsualVehicleIsNoNews) {
+  EXPECT_EQ(Texts(UsualVehicle()), std::vector<std::string>{});
+}
+
+struct Slip {
+  const char* name;
+  std::function<void(Vehicle&)> make;
+  std::vector<std::string> texts;
+};
+void PrintTo(const Slip& slip, std::ostream* out) { *out << slip.name; }
+
+class VehicleSlips : public testing::TestWithParam<Slip> {};
+
+TEST_P(VehicleSlips, AreNamedInFull) {
+  Vehicle vehicle = UsualVehicle();
+  GetParam().make(vehicle);
+  EXPECT_EQ(Texts(vehicle), GetParam().texts);
+}
+
+const std::string kImpulse =
+    "200 to 410 s of solid and liquid rockets: Sutton and Biblarz, Rocket Propulsion Elements, 7th ed., "
+    "table 2-1; "
+    "465 s of hydrogen stages in vacuum; combustion never gave more than 550 s, reactors 900 s)";
+const std::string kLiftOff =
+    "Saturn V 1.2, solid launchers 1.6 to 2.5, sounding rockets to 12; below 1 it never leaves the pad)";
+
+INSTANTIATE_TEST_SUITE_P(
+    Each, VehicleSlips,
+    testing::Values(
+        Slip{"NewtonsForKilonewtons",
+             [](Vehicle& v) { v.stages[1].motor.thrust_n = 50.0; },
+             {"unusual stages[1].propellant_mass_kg implies with thrust and burning time a specific impulse "
+              "of 0.2353 s "
+              "| 180 to 470 s (" +
+                  kImpulse,
+              "unusual stages[1].motor.thrust_n implies a thrust to weight at ignition of 0.0017 | 0.05 to "
+              "12 (small "
+              "liquid upper stages from 0.08, solid ones to 8)",
+              "unusual stages[1].motor.thrust_n implies towards burnout a load of 0.01275 g | 0.05 to 20 g "
+              "(user's manuals of "
+              "solid launchers state up to 13 g)"}},
+        Slip{"BurningTimeTenfold",
+             [](Vehicle& v) { v.stages[0].motor.burning_time_s = 1000.0; },
+             {"impossible stages[0].propellant_mass_kg implies with thrust and burning time a specific "
+              "impulse of 2217 s, "
+              "which cannot be | up to 1000 s (" +
+                  kImpulse,
+              "unusual stages imply together an ideal change of velocity, without losses, of 31388 m/s | 500 "
+              "to 14000 "
+              "m/s (low orbits ask 9 to 10 km/s with losses, sounding rockets 1 to 4 km/s)"}},
+        Slip{"ThrustBelowWeight",
+             [](Vehicle& v) {
+               v.stages[0].motor.thrust_n = 120e3;
+               v.stages[0].motor.burning_time_s = 160.0;
+             },
+             {"impossible stages[0].motor.thrust_n implies a thrust to weight at lift-off of 0.9413, which "
+              "cannot be | 1 "
+              "or more (" +
+              kLiftOff}},
+        Slip{"NozzleThatTheAirHoldsDown",
+             [](Vehicle& v) { v.stages[0].motor.nozzle_exit_area_m2 = 0.8; },
+             {"impossible stages[0].motor.thrust_n implies a thrust to weight at lift-off of 0.933, which "
+              "cannot be | 1 or "
+              "more (" +
+              kLiftOff}},
+        Slip{"ThrustOfOneNozzleTakenForAllFour",
+             [](Vehicle& v) {
+               v.stages[1].motor.thrust_n *= 4.0;
+               v.stages[1].motor.burning_time_s /= 4.0;
+             },
+             {"unusual stages[1].motor.thrust_n implies towards burnout a load of 50.99 g | 0.05 to 20 g (user's "
+              "manuals of "
+              "solid launchers state up to 13 g)"}},
+        Slip{"HeavyStage",
+             [](Vehicle& v) {
+               v.stages[0].liftoff_mass_kg = 20000.0;
+               v.stages[0].motor.thrust_n = 260e3;
+             },
+             {"unusual stages[0].liftoff_mass_kg implies a dry mass of the stage, as part of its own, of "
+              "0.4588 | 0.03 to "
+              "0.35 (0.05 of large liquid stages, 0.07 to 0.15 of solid ones, more only of the smallest)"}},
+        Slip{"NoPayload",
+             [](Vehicle& v) {
+               v.stages[1].liftoff_mass_kg = 2700.0;
+               v.stages[0].liftoff_mass_kg = 12700.0;
+               v.stages[1].motor.thrust_n = 15e3;
+               v.stages[1].motor.burning_time_s = 400.0;
+             },
+             {"unusual stages[1].liftoff_mass_kg implies a dry mass of the last stage with payload, as part "
+              "of its own, "
+              "of 0.03704 | 0.05 to 0.95 (0.2 to 0.8 of upper stages with what they carry)"}},
+        Slip{
+            "LightGrain",
+            [](Vehicle& v) { v.stages[0].grain.top_station_m = 11.0; },
+            {"unusual stages[0].grain implies a propellant density of 1307 kg/m3 | 1500 to 1950 kg/m3 (solid "
+             "propellants: Sutton and Biblarz, table 12-1)"}},
+        Slip{"GrainOutsideTheStage",
+             [](Vehicle& v) {
+               v.stages[1].grain.outer_diameter_m = 1.05;
+               v.stages[1].grain.inner_diameter_m = 0.65;
+             },
+             {"impossible stages[1].grain.outer_diameter_m is, as part of the stage's diameter_m, 1.05, "
+              "which cannot be | "
+              "up to 1 (the propellant is inside)"}},
+        Slip{"StageOutsideTheProfile",
+             [](Vehicle& v) { v.stages[0].diameter_m = 1.3; },
+             {"unusual stages[0].diameter_m is, as part of the profile's largest diameter about this stage's "
+              "grain, 1.083 "
+              "| 0.4 to 1.02 (1 where the case is the skin, less inside a wider fairing)"}},
+        Slip{"NozzleWiderThanTheBase",
+             [](Vehicle& v) { v.stages[1].motor.nozzle_exit_area_m2 = 1.0; },
+             {"unusual stages[1].motor.nozzle_exit_area_m2 is, as part of the stage's cross-section, 1.273 | "
+              "0.02 to 1 "
+              "(the nozzles end inside the base, or inside the interstage below)"}},
+        Slip{"AnotherPublishedFlow",
+             [](Vehicle& v) { v.stages[0].motor.published_mass_flow_kg_s = 46.0; },
+             {"unusual stages[0].motor.published_mass_flow_kg_s is the flow that propellant and burning time "
+              "give times "
+              "0.5 | 0.8 to 1.25 (near 1: what a source prints as mean flow)"}},
+        Slip{"RadiansForDegrees",
+             [](Vehicle& v) { v.stages[0].gimbal.limit_rad = 6.0; },
+             {"impossible stages[0].gimbal.limit_rad lets a nozzle turn by 343.8 deg, which cannot be | up "
+              "to 89 deg (the "
+              "Space Shuttle's boosters 8 deg, its main engines 10.5 deg)"}},
+        Slip{"HingesOutsideTheBase",
+             [](Vehicle& v) { v.stages[1].gimbal.radius_m = 0.6; },
+             {"unusual stages[1].gimbal.radius_m is, as part of half the stage's diameter_m, 1.2 | up to 1 "
+              "(the hinges are "
+              "inside the base)"}},
+        Slip{"NozzleWithoutExtent",
+             [](Vehicle& v) {
+               for (Stage& stage : v.stages) {
+                 stage.gimbal.nozzle_mass_kg = 20.0;
+                 stage.gimbal.nozzle_cg_m = 0.5;
+                 stage.gimbal.nozzle_inertia_kg_m2 = 8.0;
+               }
+               v.stages[1].gimbal.nozzle_inertia_kg_m2 = 4.0;
+             },
+             {"impossible nozzles[1].inertia_about_hinge_kg_m2 is the nozzle's mass at its centre of "
+              "gravity, about the "
+              "hinge, times 0.8, which cannot be | 1 or more (the parallel axis theorem: above 1 by the "
+              "nozzle's own "
+              "extent)"}},
+        Slip{"SensorsBehindTheVehicle",
+             [](Vehicle& v) {
+               v.sensors.inertial_unit_station_m = 25.0;
+               v.sensors.rate_gyros = {{.name = "gyro", .station_m = 30.0}};
+             },
+             {"impossible sensors.rate_gyros[0].station_m lies, as part of the vehicle's length, 1.5, which "
+              "cannot be | up "
+              "to 1 (inside the body)",
+              "impossible sensors.inertial_unit.station_m lies, as part of the vehicle's length, 1.25, which "
+              "cannot be | "
+              "up to 1 (inside the body)"}},
+        Slip{"StoutVehicle",
+             [](Vehicle& v) {
+               v.profile = {{ProfileShape::kCone, 2.0, 6.0}, {ProfileShape::kCylinder, 18.0, 6.0}};
+             },
+             {"unusual stages[0].diameter_m is, as part of the profile's largest diameter about this stage's "
+              "grain, 0.2 | "
+              "0.4 to 1.02 (1 where the case is the skin, less inside a wider fairing)",
+              "unusual stages[1].diameter_m is, as part of the profile's largest diameter about this stage's "
+              "grain, "
+              "0.1667 | 0.4 to 1.02 (1 where the case is the skin, less inside a wider fairing)",
+              "unusual profile implies a length, in diameters, of 3.333 | 4 to 30 (Vega 10, Saturn V 11, "
+              "Falcon 9 19, "
+              "Scout 20)"}},
+        Slip{"GasThatCannotBe",
+             [](Vehicle& v) { v.reaction_control.specific_impulse_s = 7000.0; },
+             {"impossible reaction_control.specific_impulse_s is 7000 s, which cannot be | up to 1000 s "
+              "(cold gas 40 to 75 "
+              "s, hydrazine 220 to 240 s, two propellants to 330 s)"}},
+        Slip{"KilonewtonsOfReactionControl",
+             [](Vehicle& v) { v.reaction_control.thrust_n = 20e3; },
+             {"unusual reaction_control.thrust_n turns the last stage in pitch and yaw by 369 deg/s2 | "
+              "0.01 to 60 "
+              "deg/s2 (a rate of 1 deg/s should take neither minutes nor less than a cycle to stop)"}}),
+    [](const auto& bad) { return std::string(bad.param.name); });
+
+}  // namespace
+}  // namespace dispersa
