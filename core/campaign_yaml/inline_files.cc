@@ -149,6 +149,10 @@ void InlineVehicleFiles(InputNode& vehicle, FileNames names, std::vector<InputPr
   if (InputNode* stages = vehicle.Find("stages")) {
     for (std::size_t i = 0; i < stages->items.size(); ++i) {
       InputNode* motor = stages->items[i].Find("motor");
+      InputNode* liquid = motor == nullptr ? nullptr : motor->Find("liquid");
+      if (liquid != nullptr)
+        Replace(liquid->Find("throttle"), "stages[" + std::to_string(i) + "].motor.liquid.throttle", names,
+                CsvParser(kThrottleColumns, problems), problems);
       InputNode* curve = motor == nullptr ? nullptr : motor->Find("thrust_curve");
       if (curve != nullptr)
         Replace(curve->Find("table"), "stages[" + std::to_string(i) + "].motor.thrust_curve.table", names,

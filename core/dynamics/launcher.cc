@@ -92,8 +92,8 @@ struct OneLane {
 RigidBodyState AfterSeparation(const LauncherPlant& plant, int below, const RigidBodyState& state) {
   const StackMass& whole = plant.stacks[static_cast<std::size_t>(below)].mass;
   const StackMass& upper = plant.stacks[static_cast<std::size_t>(below) + 1].mass;
-  const MassProperties old_mass = whole.At(0.0), new_mass = upper.At(upper.propellant_mass_kg);
   const LauncherStack& old_stack = plant.stacks[static_cast<std::size_t>(below)];
+  const MassProperties old_mass = whole.At(old_stack.burn.left_kg), new_mass = upper.At(upper.propellant_mass_kg);
   const LauncherStack& new_stack = plant.stacks[static_cast<std::size_t>(below) + 1];
   const auto aside = [&](double LauncherStack::*moment) {
     return new_stack.*moment / new_mass.mass_kg - old_stack.*moment / old_mass.mass_kg;

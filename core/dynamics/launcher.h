@@ -99,7 +99,7 @@ struct LauncherInstant {
   double flow_kg_s = 0.0;
 };
 
-/// `state` after the empty lowest stage of stack `below` has left: it follows the centre of gravity, which
+/// `state` after the burnt lowest stage of stack `below` has left: it follows the centre of gravity, which
 /// jumps forward to that of the stack above, full.
 RigidBodyState AfterSeparation(const LauncherPlant& plant, int below, const RigidBodyState& state);
 

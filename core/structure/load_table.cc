@@ -94,10 +94,13 @@ LoadTable BuildLoadTable(const Vehicle& vehicle, int stage) {
     MassAheadOf at[3];
     for (int k = 0; k < 3; ++k) at[k] = Ahead(masses[k], station);
     // The grain's mass per length follows its mass, its section's inertia the square of it: parabolas.
-    table.first_kg_m[i] = {at[0].first_kg_m, (at[2].first_kg_m - at[0].first_kg_m) / full};
-    const double curve = 2.0 * (at[2].second_kg_m2 + at[0].second_kg_m2 - 2.0 * at[1].second_kg_m2) / Square(full);
-    const double rise = (at[2].second_kg_m2 - at[0].second_kg_m2) / full - curve * full;
-    table.second_kg_m2[i] = {at[0].second_kg_m2, rise, curve};
+    const auto parabola = [&](double MassAheadOf::*of) -> std::array<double, 3> {
+      const double curve = 2.0 * (at[2].*of + at[0].*of - 2.0 * (at[1].*of)) / Square(full);
+      return {at[0].*of, (at[2].*of - at[0].*of) / full - curve * full, curve};
+    };
+    table.first_kg_m[i] = {at[0].first_kg_m, (at[2].first_kg_m - at[0].first_kg_m) / full, 0.0};
+    if (lowest.is_liquid()) table.first_kg_m[i] = parabola(&MassAheadOf::first_kg_m);
+    table.second_kg_m2[i] = parabola(&MassAheadOf::second_kg_m2);
   }
   return table;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/vehicle/burning_stack.h"
+#include "core/vehicle/throttled_burn.h"
 
 namespace dispersa {
 
@@ -53,6 +54,7 @@ MotorBurn BuildBurn(const Stage& stage, double thrust_factor, double flow_factor
                     std::shared_ptr<const BurnCurve> curve) {
   const Motor& motor = stage.motor;
   MotorBurn burn;
+  if (stage.is_liquid()) curve = nullptr;
   burn.vacuum_thrust_n = motor.thrust_n * thrust_factor;
   burn.full_flow_kg_s = stage.propellant_mass_kg / motor.burning_time_s * flow_factor;
   burn.propellant_mass_kg = stage.propellant_mass_kg;
@@ -65,6 +67,12 @@ MotorBurn BuildBurn(const Stage& stage, double thrust_factor, double flow_factor
     burn.curve_rate = flow_factor;
     burn.duration_s = curve->end_s / flow_factor;
     burn.curve = std::move(curve);
+  }
+  if (stage.is_liquid()) {
+    const ThrottledBurn throttled = Throttled(motor, burn.propellant_mass_kg, burn.full_flow_kg_s);
+    burn.duration_s = throttled.curve.end_s;
+    burn.left_kg = throttled.left_kg;
+    burn.curve = std::make_shared<const BurnCurve>(throttled.curve);
   }
   return burn;
 }

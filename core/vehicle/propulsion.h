@@ -21,13 +21,14 @@ struct MotorBurn {
   double tail_s = 0.0;
   double exit_area_m2 = 0.0;
   double duration_s = 0.0;         ///< ignition to burnout
+  double left_kg = 0.0;            ///< of the propellant, then
   /// In place of the ramps, at the flight's rate: its time runs so many times as fast as the file's.
   std::shared_ptr<const BurnCurve> curve;
   double curve_rate = 1.0;
 
   /// Fraction of full thrust and flow, 0 outside [0, duration_s].
   double Fraction(double since_ignition_s) const;
-  /// Propellant left, from propellant_mass_kg to 0.
+  /// Propellant left, from propellant_mass_kg to left_kg.
   double Propellant(double since_ignition_s) const;
   /// Impulse over propellant, m/s.
   double ExhaustVelocity() const;
@@ -37,7 +38,8 @@ struct MotorBurn {
 };
 
 /// The burn with thrust and flow multiplied; propellant is conserved. Ramps keep their durations; a thrust
-/// curve is drawn together in time by the flow's factor. `curve`: that of the stage, prepared, or null.
+/// curve is drawn together in time by the flow's factor. `curve`: that of the stage, prepared, or null. A throttle
+/// keeps its times, being commanded, and depletion comes when it comes.
 MotorBurn BuildBurn(const Stage& stage, double thrust_factor, double flow_factor,
                     std::shared_ptr<const BurnCurve> curve);
 /// The same, preparing the curve if the stage has one.

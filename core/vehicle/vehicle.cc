@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/math/constants.h"
+#include "core/math/functions.h"
 #include "core/math/table.h"
 #include "core/vehicle/mass.h"
 #include "core/vehicle/mould_line.h"
@@ -39,6 +41,59 @@ void CheckTube(const std::string& path, double top, double bottom, double outer,
   check.NotNegative(top, path + ".top_station_m");
   check.Require(bottom <= stack_bottom, path + ".bottom_station_m",
                 "lies aft of the stage's bottom_station_m", "at most bottom_station_m of the stage");
+}
+
+// Engine and tanks of a liquid stage.
+void CheckLiquid(const Stage& stage, const std::string& path, Checker& check) {
+  const Motor& motor = stage.motor;
+  check.Require(motor.ignition_rise_s == 0.0 && motor.tail_off_s == 0.0 && motor.thrust_curve.empty(), path + ".motor",
+                "has ramps or a thrust curve beside tanks", "a throttle, of a liquid stage");
+  const Throttle& throttle = motor.throttle;
+  const std::string table = path + ".motor.liquid.throttle";
+  check.Require(throttle.time_s.size() == throttle.level.size() && throttle.time_s.size() != 1 &&
+                    throttle.time_s.size() <= kThrustCurveCorners,
+                table,
+                "has " + std::to_string(throttle.time_s.size()) + " times and " +
+                    std::to_string(throttle.level.size()) + " levels",
+                "as many of both, 2 to " + std::to_string(kThrustCurveCorners));
+  if (throttle.time_s.size() != throttle.level.size()) return;
+  for (std::size_t i = 0; i < throttle.time_s.size(); ++i) {
+    const std::string index = "[" + std::to_string(i) + "]";
+    check.Require(i == 0 ? throttle.time_s[0] == 0.0 : throttle.time_s[i] > throttle.time_s[i - 1],
+                  table + ".time_s" + index, i == 0 ? "is not the ignition" : "is not later than the time before it",
+                  i == 0 ? "0 as the first time" : "times that increase");
+    check.Require(throttle.level[i] >= 0.0 && throttle.level[i] <= 1.0, table + ".level_percent" + index,
+                  "is out of range", "0 to full thrust");
+  }
+  check.Require(throttle.empty() || *std::max_element(throttle.level.begin(), throttle.level.end()) > 0.0, table,
+                "gives no thrust", "a level above 0 somewhere");
+  if (motor.cut_off == CutOff::kTime) check.Positive(motor.cut_off_s, path + ".motor.liquid.cut_off.after_s");
+  check.Require(motor.residual_mass_kg >= 0.0 && motor.residual_mass_kg < stage.propellant_mass_kg,
+                path + ".motor.liquid.residual_mass_kg", "leaves nothing to burn", "0 to below propellant_mass_kg");
+  double sum_kg = 0.0;
+  for (std::size_t k = 0; k < stage.tanks.size(); ++k) {
+    const Tank& tank = stage.tanks[k];
+    const std::string at = path + ".tanks[" + std::to_string(k) + "]";
+    check.Positive(tank.propellant_mass_kg, at + ".propellant_mass_kg");
+    check.Positive(tank.density_kg_m3, at + ".density_kg_m3");
+    check.Positive(tank.diameter_m, at + ".diameter_m");
+    check.NotNegative(tank.top_station_m, at + ".top_station_m");
+    check.Require(tank.bottom_station_m > tank.top_station_m, at + ".bottom_station_m", "is not aft of top_station_m",
+                  "a station larger than top_station_m");
+    check.Require(tank.bottom_station_m <= stage.bottom_station_m, at + ".bottom_station_m",
+                  "lies aft of the stage's bottom_station_m", "at most bottom_station_m of the stage");
+    sum_kg += tank.propellant_mass_kg;
+    if (!(tank.diameter_m > 0.0 && tank.density_kg_m3 > 0.0 && tank.bottom_station_m > tank.top_station_m)) continue;
+    const double volume_m3 = tank.propellant_mass_kg / tank.density_kg_m3;
+    check.Require(volume_m3 <= tank.Volume(), at + ".propellant_mass_kg",
+                  "takes " + std::to_string(volume_m3) + " m3, the tank has " + std::to_string(tank.Volume()),
+                  "at most what the tank holds, " + std::to_string(tank.Volume() * tank.density_kg_m3) + " kg");
+  }
+  // Masses are written with a few digits.
+  check.Require(std::fabs(sum_kg - stage.propellant_mass_kg) <= 1e-6 * stage.propellant_mass_kg,
+                path + ".propellant_mass_kg",
+                "is " + std::to_string(stage.propellant_mass_kg) + ", the tanks hold " + std::to_string(sum_kg),
+                "the sum of the tanks' propellant_mass_kg");
 }
 
 // The same of a file's curve, whose reader sets thrust and burning time by it, and of one set in code.
@@ -111,13 +166,19 @@ void CheckStage(const Vehicle& vehicle, std::size_t i, Checker& check) {
                     std::to_string(dry) + " kg",
                 "less propellant than the stage's own mass");
 
-  const Grain& g = stage.grain;
-  CheckTube(path + ".grain", g.top_station_m, g.bottom_station_m, g.outer_diameter_m, g.inner_diameter_m,
-            stage.bottom_station_m, check);
-  const double density = PropellantDensity(stage);
-  check.Require(density > 0.0 && density < 2100.0, path + ".grain",
-                "implies a propellant density of " + std::to_string(density) + " kg/m3",
-                "a volume that gives less than 2100 kg/m3");
+  double density = 0.0;
+  if (stage.is_liquid()) {
+    CheckLiquid(stage, path, check);
+    density = stage.tanks[0].density_kg_m3;
+  } else {
+    const Grain& g = stage.grain;
+    CheckTube(path + ".grain", g.top_station_m, g.bottom_station_m, g.outer_diameter_m, g.inner_diameter_m,
+              stage.bottom_station_m, check);
+    density = PropellantDensity(stage);
+    check.Require(density > 0.0 && density < 2100.0, path + ".grain",
+                  "implies a propellant density of " + std::to_string(density) + " kg/m3",
+                  "a volume that gives less than 2100 kg/m3");
+  }
 
   double fractions = 0.0;
   for (std::size_t k = 0; k < stage.structure.size(); ++k) {
@@ -149,8 +210,11 @@ void CheckStage(const Vehicle& vehicle, std::size_t i, Checker& check) {
   below_limit(gimbal.resolution_rad, "resolution_deg");
   if (dry > 0.0 && fractions > 0.0 && density > 0.0) {
     const StackMass stack = BuildStackMasses(vehicle)[i];
-    const double aftmost =
-        std::max(stack.At(stack.propellant_mass_kg).cg_station_m, stack.At(0.0).cg_station_m);
+    // As tanks drain, it may be farthest aft in between.
+    constexpr int kParts = 16;
+    double aftmost = 0.0;
+    for (int part = 0; part <= kParts; ++part)
+      aftmost = std::max(aftmost, stack.At(stack.propellant_mass_kg * part / kParts).cg_station_m);
     check.Require(aftmost < gimbal.pivot_station_m, path + ".gimbal.pivot_station_m",
                   "is not aft of the centre of gravity, which reaches station " + std::to_string(aftmost) +
                       " m",
@@ -220,6 +284,24 @@ std::vector<VehicleProblem> Problems(const Vehicle& vehicle) {
   std::vector<VehicleProblem> problems = check.Take();
   if (problems.empty() && vehicle.structure_beam) problems = BeamProblems(vehicle);
   return problems;
+}
+
+double Tank::Volume() const {
+  return 0.25 * kPi * Square(diameter_m) * (bottom_station_m - top_station_m);
+}
+
+double Stage::PropellantTop() const {
+  if (!is_liquid()) return grain.top_station_m;
+  double top_m = tanks[0].top_station_m;
+  for (const Tank& tank : tanks) top_m = std::min(top_m, tank.top_station_m);
+  return top_m;
+}
+
+double Stage::PropellantBottom() const {
+  if (!is_liquid()) return grain.bottom_station_m;
+  double bottom_m = tanks[0].bottom_station_m;
+  for (const Tank& tank : tanks) bottom_m = std::max(bottom_m, tank.bottom_station_m);
+  return bottom_m;
 }
 
 void SetThrustCurve(ThrustCurve curve, Motor& motor) {

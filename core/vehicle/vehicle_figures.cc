@@ -45,14 +45,15 @@ std::vector<StageFigures> FiguresOf(const Vehicle& vehicle) {
     const Stage& stage = vehicle.stages[i];
     const MotorBurn burn = BuildBurn(stage, 1.0, 1.0);
     const double empty_kg = stage.liftoff_mass_kg - stage.propellant_mass_kg;
+    const double burnt_kg = stage.propellant_mass_kg - burn.left_kg;
     StageFigures one;
     one.dry_mass_kg = DryMass(vehicle, static_cast<int>(i));
     one.own_mass_kg = one.dry_mass_kg + stage.propellant_mass_kg;
     one.structural_fraction = one.dry_mass_kg / one.own_mass_kg;
     one.burning_time_s = burn.curve ? burn.duration_s : stage.motor.burning_time_s;
-    one.flow_kg_s = stage.propellant_mass_kg / one.burning_time_s;
+    one.flow_kg_s = burnt_kg / one.burning_time_s;
     one.specific_impulse_s = burn.ExhaustVelocity() / kStandardGravity;
-    one.ideal_delta_v_m_s = burn.ExhaustVelocity() * Log(stage.liftoff_mass_kg / empty_kg);
+    one.ideal_delta_v_m_s = burn.ExhaustVelocity() * Log(stage.liftoff_mass_kg / (stage.liftoff_mass_kg - burnt_kg));
     const double thrust_n = GreatestOfFirstSecond(burn, i == 0 ? vehicle.hold_down_s : 0.0);
     if (i == 0) {
       const double released_kg = empty_kg + burn.Propellant(vehicle.hold_down_s);

@@ -191,7 +191,7 @@ INSTANTIATE_TEST_SUITE_P(
         Slip{"StageOutsideTheProfile",
              [](Vehicle& v) { v.stages[0].diameter_m = 1.3; },
              {"unusual stages[0].diameter_m is, as part of the profile's largest diameter about this stage's "
-              "grain, 1.083 "
+              "propellant, 1.083 "
               "| 0.4 to 1.02 (1 where the case is the skin, less inside a wider fairing)"}},
         Slip{"NozzleWiderThanTheBase",
              [](Vehicle& v) { v.stages[1].motor.nozzle_exit_area_m2 = 1.0; },
@@ -243,10 +243,10 @@ INSTANTIATE_TEST_SUITE_P(
                v.profile = {{ProfileShape::kCone, 2.0, 6.0}, {ProfileShape::kCylinder, 18.0, 6.0}};
              },
              {"unusual stages[0].diameter_m is, as part of the profile's largest diameter about this stage's "
-              "grain, 0.2 | "
+              "propellant, 0.2 | "
               "0.4 to 1.02 (1 where the case is the skin, less inside a wider fairing)",
               "unusual stages[1].diameter_m is, as part of the profile's largest diameter about this stage's "
-              "grain, "
+              "propellant, "
               "0.1667 | 0.4 to 1.02 (1 where the case is the skin, less inside a wider fairing)",
               "unusual profile implies a length, in diameters, of 3.333 | 4 to 30 (Vega 10, Saturn V 11, "
               "Falcon 9 19, "
