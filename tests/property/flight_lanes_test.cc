@@ -12,6 +12,7 @@
 
 #include "core/flight/lane_engine.h"
 #include "core/random/draws.h"
+#include "tests/liquid_stage.h"
 #include "tests/slv4_flight.h"
 
 namespace dispersa {
@@ -38,6 +39,14 @@ FlightDefinition Definition(const std::string& autopilot, bool with_winds, bool 
       for (double& thrust_n : curve.thrust_n) thrust_n *= 1.1 * motor.thrust_n;
       SetThrustCurve(curve, motor);
     }
+  }
+  if (autopilot == "pid") {  // and a throttled liquid stage, which leaves a rest, in between
+    Stage& liquid = definition.vehicle.stages[1];
+    MakeLiquid(liquid);
+    liquid.motor.residual_mass_kg = 0.01 * liquid.propellant_mass_kg;
+    liquid.motor.throttle = {{0.0, 0.333, 40.0, 41.7}, {0.4, 1.0, 1.0, 0.8}};
+    liquid.motor.cut_off = CutOff::kTime;
+    liquid.motor.cut_off_s = 55.0123;
   }
   if (autopilot == "pd") {  // a law that changes within a stage beside some that do not
     AxisConfig& pitch = definition.autopilot.pitch;
