@@ -75,7 +75,7 @@ struct Motor {
   ThrustCurve thrust_curve;               ///< empty: none. Sets thrust_n and burning_time_s; without ramps
   // Of a liquid stage; without ramps and curve. thrust_n is at full thrust, burning_time_s what all propellant would
   // last at that.
-  Throttle throttle;
+  Throttle throttle = {};
   CutOff cut_off = CutOff::kDepletion;
   double cut_off_s = 0.0;
   double residual_mass_kg = 0.0;  ///< of the propellant: never flows

@@ -96,7 +96,7 @@ INSTANTIATE_TEST_SUITE_P(
                   "vehicle.yaml:12:12: stages[0].tanks: the motor is not liquid, allowed: a grain in place of the tanks, "
                   "or motor: {liquid: {...}}\n"},
         BadLiquid{"NoTanks", kLiquid, "# no tanks",
-                  "vehicle.yaml:6:5: stages[0]: missing key 'tanks', allowed: a list of 1 or more entries\n"},
+                  "vehicle.yaml:6:5: stages[0]: missing key 'tanks', allowed: a list of 1 or more\n"},
         BadLiquid{"BesideThrust", "motor: {thrust_kn: 60, liquid: {thrust_kn: 75, specific_impulse_s: 290}}", kTanks,
                   "vehicle.yaml:11:24: stages[0].motor.thrust_kn: 'thrust_kn' and 'liquid' are both given, and the "
                   "engine has them inside, allowed: either liquid, or what a solid motor has\n"},
@@ -119,7 +119,7 @@ INSTANTIATE_TEST_SUITE_P(
                   "vehicle.yaml:11:73: stages[0].motor.liquid.throttle: gives no thrust, allowed: a level above 0 "
                   "somewhere\n"},
         BadLiquid{"CutOffByWish", With("cut_off: {at: will}"), kTanks,
-                  "vehicle.yaml:11:77: stages[0].motor.liquid.cut_off.at: 'will' is unknown, allowed: one of depletion, "
+                  "vehicle.yaml:11:77: stages[0].motor.liquid.cut_off.at: 'will' is not a choice, allowed: one of depletion, "
                   "time\n"},
         BadLiquid{"CutOffWithoutTime", With("cut_off: {at: time}"), kTanks,
                   "vehicle.yaml:11:72: stages[0].motor.liquid.cut_off: missing key 'after_s', allowed: a number above "
