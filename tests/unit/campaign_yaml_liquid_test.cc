@@ -104,37 +104,37 @@ INSTANTIATE_TEST_SUITE_P(
                   "vehicle.yaml:11:21: stages[0].motor.liquid: missing key 'specific_impulse_s', allowed: a number above "
                   "0\n"},
         BadLiquid{"TooMuchThrottle", With("throttle: {time_s: [0, 9], level_percent: [100, 120]}"), kTanks,
-                  "vehicle.yaml:11:111: stages[0].motor.liquid.throttle.level_percent[1]: 120 is out of range, allowed: a "
+                  "vehicle.yaml:11:110: stages[0].motor.liquid.throttle.level_percent[1]: 120 is out of range, allowed: a "
                   "number from 0 to 100\n"},
         BadLiquid{"TimesThatTurnBack", With("throttle: {time_s: [0, 9, 8], level_percent: [100, 100, 90]}"), kTanks,
-                  "vehicle.yaml:11:89: stages[0].motor.liquid.throttle.time_s[2]: is not above the one before, allowed: "
+                  "vehicle.yaml:11:88: stages[0].motor.liquid.throttle.time_s[2]: is not above the one before, allowed: "
                   "values strictly increasing\n"},
         BadLiquid{"LessLevelsThanTimes", With("throttle: {time_s: [0, 9, 12], level_percent: [100, 100]}"), kTanks,
-                  "vehicle.yaml:11:73: stages[0].motor.liquid.throttle: there are 3 times and 2 levels, allowed: one "
+                  "vehicle.yaml:11:72: stages[0].motor.liquid.throttle: there are 3 times and 2 levels, allowed: one "
                   "level for each time\n"},
         BadLiquid{"StartsLate", With("throttle: {time_s: [1, 9], level_percent: [100, 100]}"), kTanks,
-                  "vehicle.yaml:11:83: stages[0].motor.liquid.throttle.time_s[0]: is not the ignition, allowed: 0 as the "
+                  "vehicle.yaml:11:82: stages[0].motor.liquid.throttle.time_s[0]: is not the ignition, allowed: 0 as the "
                   "first time\n"},
         BadLiquid{"NoThrust", With("throttle: {time_s: [0, 9], level_percent: [0, 0]}"), kTanks,
-                  "vehicle.yaml:11:73: stages[0].motor.liquid.throttle: gives no thrust, allowed: a level above 0 "
+                  "vehicle.yaml:11:72: stages[0].motor.liquid.throttle: gives no thrust, allowed: a level above 0 "
                   "somewhere\n"},
         BadLiquid{"CutOffByWish", With("cut_off: {at: will}"), kTanks,
-                  "vehicle.yaml:11:77: stages[0].motor.liquid.cut_off.at: 'will' is not a choice, allowed: one of depletion, "
+                  "vehicle.yaml:11:76: stages[0].motor.liquid.cut_off.at: 'will' is not a choice, allowed: one of depletion, "
                   "time\n"},
         BadLiquid{"CutOffWithoutTime", With("cut_off: {at: time}"), kTanks,
-                  "vehicle.yaml:11:72: stages[0].motor.liquid.cut_off: missing key 'after_s', allowed: a number above "
+                  "vehicle.yaml:11:71: stages[0].motor.liquid.cut_off: missing key 'after_s', allowed: a number above "
                   "0\n"},
         BadLiquid{"AllResidual", With("residual_mass_kg: 1500"), kTanks,
-                  "vehicle.yaml:11:81: stages[0].motor.liquid.residual_mass_kg: leaves nothing to burn, allowed: 0 to "
+                  "vehicle.yaml:11:80: stages[0].motor.liquid.residual_mass_kg: leaves nothing to burn, allowed: 0 to "
                   "below propellant_mass_kg\n"},
         BadLiquid{"TanksOfAnotherSum", kLiquid, Tanks("450", "440"),
                   "vehicle.yaml:8:25: stages[0].propellant_mass_kg: is 1500.000000, the tanks hold 1490.000000, allowed: "
                   "the sum of the tanks' propellant_mass_kg\n"},
         BadLiquid{"TankTooSmall", kLiquid, Tanks("6.6", "6.3"),
-                  "vehicle.yaml:12:49: stages[0].tanks[0].propellant_mass_kg: takes 0.920245 m3, the tank has 0.827024, "
-                  "allowed: at most what the tank holds, 943.634362 kg\n"},
+                  "vehicle.yaml:12:48: stages[0].tanks[0].propellant_mass_kg: takes 0.920245 m3, the tank has 0.827024, "
+                  "allowed: at most what the tank holds, 943.634688 kg\n"},
         BadLiquid{"TankBehindTheStage", kLiquid, Tanks("top_station_m: 7, bottom_station_m: 7.95", "top_station_m: 9.2, bottom_station_m: 10.15"),
-                  "vehicle.yaml:12:256: stages[0].tanks[1].bottom_station_m: lies aft of the stage's bottom_station_m, "
+                  "vehicle.yaml:12:234: stages[0].tanks[1].bottom_station_m: lies aft of the stage's bottom_station_m, "
                   "allowed: at most bottom_station_m of the stage\n"}),
     [](const auto& bad) { return std::string(bad.param.name); });
 
@@ -145,14 +145,14 @@ TEST(LiquidFile, UnusualLiquidsAreWarnedAbout) {
   std::vector<InputProblem> warnings;
   LoadVehicle(files.Path("vehicle.yaml"), &warnings);
   EXPECT_EQ(files.Texts(warnings),
-            "vehicle.yaml:11:68: stages[0].motor.liquid.specific_impulse_s: is 520 s, usual: 200 to 470 s (in vacuum 220 "
+            "vehicle.yaml:11:57: stages[0].motor.liquid.specific_impulse_s: is 520 s, usual: 200 to 470 s (in vacuum 220 "
             "to 240 s of hydrazine alone, 280 to 330 s of storable pairs, 300 to 360 s of oxygen with kerosene, to 465 s "
             "with hydrogen; combustion never gave more than 550 s, reactors 900 s)\n"
-            "vehicle.yaml:11:91: stages[0].motor.liquid.residual_mass_kg: is, as part of the propellant, 0.1, usual: up "
+            "vehicle.yaml:11:80: stages[0].motor.liquid.residual_mass_kg: is, as part of the propellant, 0.1, usual: up "
             "to 0.05 (0.5 to 3 % of a liquid stage's propellant stays in tanks and lines)\n"
-            "vehicle.yaml:12:189: stages[0].tanks[1].density_kg_m3: is 2810 kg/m3, usual: 60 to 1700 kg/m3 (liquid "
+            "vehicle.yaml:12:191: stages[0].tanks[1].density_kg_m3: is 2810 kg/m3, usual: 60 to 1700 kg/m3 (liquid "
             "hydrogen 71, kerosene 810, oxygen 1141, nitrogen tetroxide 1443 kg/m3)\n"
-            "vehicle.yaml:12:161: stages[0].tanks[1].propellant_mass_kg: fills of the tank 0.265, usual: 0.5 to 0.99 (a "
+            "vehicle.yaml:12:171: stages[0].tanks[1].propellant_mass_kg: fills of the tank 0.265, usual: 0.5 to 0.99 (a "
             "few per cent of a tank are left to the gas that presses the liquid out)\n");
 }
 
