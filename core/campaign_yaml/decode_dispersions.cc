@@ -11,6 +11,7 @@
 #include "core/campaign_yaml/yaml_reader.h"
 #include "core/environment/turbulence.h"
 #include "core/flight/dispersed_vehicle.h"
+#include "core/math/functions.h"
 #include "core/vehicle/mass.h"
 
 namespace dispersa {
@@ -51,6 +52,7 @@ class DispersionDecoder {
     Lateral("center_of_gravity_offset", {kLength, kAnyNumber}, "_m", "cg_offset");
     Thrust();
     StageFactor("burn_rate", {{"thrust_factor", ""}, {"mass_flow_factor", ""}});
+    PropellantTemperature();
     StageFactor("specific_impulse", {{"specific_impulse_factor", ""}});
     StageFactor("dry_mass", {{"dry_mass_factor", ""}});
     PropellantLoad();
@@ -411,6 +413,39 @@ class DispersionDecoder {
     EachAxis("initial_attitude_error", [this](const std::string& axis, MapReader& map) {
       Add("initial_attitude_error/" + axis, ReadDistribution(map, {kAngle, kAnyNumber}),
           {Column("initial_" + axis + "_error_deg")});
+    });
+  }
+
+  // A grain burns the faster the warmer it is: at constant burning surface pressure, thrust and flow grow as
+  // exp(pi_K dT), and the total impulse stays (Sutton and Biblarz, Rocket Propulsion Elements, 7th ed., sect. 11.1).
+  void PropellantTemperature() {
+    EachOfStages("propellant_temperature", AllStages(), [&](MapReader& map, Selection of) {
+      const std::size_t before = problems_.size();
+      ScalarDistribution rate = ReadDistribution(map, {kTemperatureDifference, Between(-200.0, 200.0)});
+      const double sensitivity_1_k = map.Quantity("sensitivity", kPerTemperature, {0.0, 0.02, true, false});
+      of.per = PerWhat(map, false);
+      if (problems_.size() > before) return;
+      const auto rate_at = [&](double warmer_k) { return Exp(sensitivity_1_k * warmer_k); };
+      switch (rate.kind) {
+        case Distribution::kNormal:  // of the temperature, hence lognormal of the rate
+          rate.kind = Distribution::kLogNormal;
+          rate.sigma *= sensitivity_1_k;
+          break;
+        case Distribution::kConstant:
+        case Distribution::kTwoPoint:
+        case Distribution::kValues:
+          rate.low = rate_at(rate.low);
+          rate.high = rate_at(rate.high);
+          for (double& value : rate.values) value = rate_at(value);
+          break;
+        default:
+          AddProblem(problems_, *map.node().Find("distribution"), map.PathOf("distribution"),
+                     "'" + map.node().Find("distribution")->text + "' is not among those of a temperature",
+                     "normal, two_point, values or constant");
+          return;
+      }
+      rate.nominal = rate_at(rate.nominal);
+      AddStages("propellant_temperature", of, rate, {{"thrust_factor", ""}, {"mass_flow_factor", ""}});
     });
   }
 

@@ -24,14 +24,163 @@ LaunchSite DecodeSite(const InputNode& node, const std::string& path, ProblemLis
   return site;
 }
 
-Motor DecodeMotor(const InputNode& node, const std::string& path, ProblemList& problems) {
+// Times, thrusts and flows, if there are any, of a curve, each problem at its own line of the table.
+ThrustCurve DecodeCurveTable(const InputNode& node, const std::string& path, ProblemList& problems) {
+  ThrustCurve curve;
+  const std::size_t before = problems.size();
+  std::string time_key, thrust_key, flow_key;
+  {
+    MapReader map(node, path, problems);
+    curve.time_s = map.Quantities("time", kTime, kNonNegative, 2, kThrustCurveCorners, &time_key);
+    curve.thrust_n = map.Quantities("thrust", kForce, kNonNegative, 2, kThrustCurveCorners, &thrust_key);
+    if (map.Has("mass_flow", kMassFlow))
+      curve.flow_kg_s = map.Quantities("mass_flow", kMassFlow, kNonNegative, 2, kThrustCurveCorners, &flow_key);
+    else
+      map.IgnoreQuantity("mass_flow", kMassFlow);
+  }
+  if (node.file == nullptr || problems.size() > before) return {};
+  const auto path_of = [&](const std::string& key, std::size_t i) {
+    return (path.empty() ? key : path + "." + key) + "[" + std::to_string(i) + "]";
+  };
+  const std::vector<InputNode>& times = node.Find(time_key)->items;
+  if (curve.time_s.size() != curve.thrust_n.size()) {
+    AddProblem(problems, node, path,
+               "there are " + std::to_string(curve.time_s.size()) + " times and " +
+                   std::to_string(curve.thrust_n.size()) + " thrusts",
+               "one thrust for each time");
+    return {};
+  }
+  if (!flow_key.empty() && curve.flow_kg_s.size() != curve.time_s.size()) {
+    AddProblem(problems, node, path,
+               "there are " + std::to_string(curve.time_s.size()) + " times and " +
+                   std::to_string(curve.flow_kg_s.size()) + " mass flows",
+               "one mass flow for each time, or none at all");
+    return {};
+  }
+  if (curve.time_s[0] != 0.0)
+    AddProblem(problems, times[0], path_of(time_key, 0), times[0].Describe() + " is not the time of ignition",
+               "0 as the first time");
+  for (std::size_t i = 1; i < times.size(); ++i)
+    if (!(curve.time_s[i] > curve.time_s[i - 1]))
+      AddProblem(problems, times[i], path_of(time_key, i),
+                 times[i].Describe() + " is not later than " + times[i - 1].Describe() + " before it",
+                 "times that increase");
+  if (curve.Greatest() == 0.0)
+    AddProblem(problems, *node.Find(thrust_key), path.empty() ? thrust_key : path + "." + thrust_key,
+               "the thrust is 0 at all times", "a thrust above 0 somewhere");
+  if (!flow_key.empty() && curve.Flown() == 0.0)
+    AddProblem(problems, *node.Find(flow_key), path.empty() ? flow_key : path + "." + flow_key,
+               "the mass flow is 0 at all times", "a mass flow above 0 somewhere");
+  return problems.size() > before ? ThrustCurve{} : curve;
+}
+
+// In vacuum. Empty after a problem.
+ThrustCurve DecodeThrustCurve(const InputNode& node, const std::string& path, double exit_area_m2,
+                              ProblemList& problems) {
+  MapReader map(node, path, problems);
+  const bool is_in_vacuum = map.Choice<bool>("reference", {{"vacuum", true}, {"sea_level", false}});
+  const InputNode& table =
+      map.Required("table", "a CSV file (time_s, thrust_n, optional mass_flow_kg_s), an .eng file, or the columns");
+  const ThrustCurve curve =
+      DecodeCurveTable(table, table.file == node.file ? map.PathOf("table") : "", problems);
+  if (is_in_vacuum) return curve;
+  if (exit_area_m2 == 0.0)
+    AddProblem(
+        problems, *node.Find("reference"), map.PathOf("reference"),
+        "the thrust in vacuum is that at sea level and p A_e, but the motor has no nozzle_exit_area_m2",
+        "nozzle_exit_area_m2 above 0, or reference: vacuum");
+  return InVacuum(curve, exit_area_m2);
+}
+
+// Times and levels, each problem at its own line of the table. What is wrong among them Problems() says.
+Throttle DecodeThrottle(const InputNode& node, const std::string& path, ProblemList& problems) {
+  Throttle throttle;
+  const std::size_t before = problems.size();
+  std::string time_key;
+  {
+    MapReader map(node, path, problems);
+    throttle.time_s = map.Quantities("time", kTime, kNonNegative, 2, kThrustCurveCorners, &time_key);
+    throttle.level = map.Quantities("level", kShare, Between(0.0, 1.0), 2, kThrustCurveCorners);
+  }
+  if (node.file == nullptr || problems.size() > before) return {};
+  if (throttle.time_s.size() != throttle.level.size())
+    AddProblem(problems, node, path,
+               "there are " + std::to_string(throttle.time_s.size()) + " times and " +
+                   std::to_string(throttle.level.size()) + " levels",
+               "one level for each time");
+  CheckIncreasing(node, path, time_key, throttle.time_s, problems);
+  return throttle;
+}
+
+// An engine with tanks. Its full flow is thrust over specific impulse.
+void DecodeLiquid(const InputNode& node, const std::string& path, double propellant_kg, Motor& motor,
+                  ProblemList& problems) {
+  MapReader map(node, path, problems);
+  motor.thrust_n = map.Quantity("thrust", kForce, kPositive);
+  const double specific_impulse_s = map.Quantity("specific_impulse", kTime, kPositive);
+  motor.burning_time_s = propellant_kg * specific_impulse_s * kStandardGravity / motor.thrust_n;
+  motor.residual_mass_kg = map.Quantity("residual_mass", kMass, kNonNegative, 0.0);
+  if (const InputNode* throttle = map.Optional("throttle"))
+    motor.throttle = DecodeThrottle(*throttle, throttle->file == node.file ? map.PathOf("throttle") : "", problems);
+  if (const InputNode* cut_off = map.Optional("cut_off")) {
+    MapReader cut(*cut_off, map.PathOf("cut_off"), problems);
+    motor.cut_off = cut.Choice<CutOff>("at", {{"depletion", CutOff::kDepletion}, {"time", CutOff::kTime}});
+    if (motor.cut_off == CutOff::kTime) motor.cut_off_s = cut.Quantity("after", kTime, kPositive);
+  }
+}
+
+Tank DecodeTank(const InputNode& node, const std::string& path, ProblemList& problems) {
+  MapReader map(node, path, problems);
+  Tank tank;
+  tank.name = map.Text("name");
+  tank.propellant_mass_kg = map.Quantity("propellant_mass", kMass, kPositive);
+  tank.density_kg_m3 = map.Quantity("density", kDensity, kPositive);
+  tank.top_station_m = map.Quantity("top_station", kLength, kNonNegative);
+  tank.bottom_station_m = map.Quantity("bottom_station", kLength, kPositive);
+  tank.diameter_m = map.Quantity("diameter", kLength, kPositive);
+  return tank;
+}
+
+// What says the same in another way stands beside `other`.
+void RefuseBeside(MapReader& map, const InputNode& node, const std::string& other, const std::string& why,
+                  const std::string& allowed) {
+  const std::pair<const char*, Dimension> contradicted[] = {
+      {"thrust", kForce}, {"burning_time", kTime}, {"ignition_rise", kTime}, {"tail_off", kTime}};
+  for (const auto& [stem, dimension] : contradicted) {
+    std::string key;
+    if (map.OptionalQuantity(stem, dimension, kAnyNumber, &key))
+      AddProblem(map.problems(), *node.Find(key), map.PathOf(key),
+                 "'" + key + "' and '" + other + "' are both given, and " + why, allowed);
+  }
+}
+
+Motor DecodeMotor(const InputNode& node, const std::string& path, double propellant_kg, ProblemList& problems) {
   MapReader map(node, path, problems);
   Motor motor;
-  motor.thrust_n = map.Quantity("thrust", kForce, kPositive);
-  motor.burning_time_s = map.Quantity("burning_time", kTime, kPositive);
-  motor.ignition_rise_s = map.Quantity("ignition_rise", kTime, kNonNegative, 0.0);
-  motor.tail_off_s = map.Quantity("tail_off", kTime, kNonNegative, 0.0);
   motor.nozzle_exit_area_m2 = map.Quantity("nozzle_exit_area", kArea, kNonNegative, 0.0);
+  const InputNode* liquid = map.Optional("liquid");
+  const InputNode* curve = map.Optional("thrust_curve");
+  if (liquid != nullptr) {
+    const std::string allowed = "either liquid, or what a solid motor has";
+    RefuseBeside(map, node, "liquid", "the engine has them inside", allowed);
+    if (curve != nullptr)
+      AddProblem(problems, *curve, map.PathOf("thrust_curve"), "'thrust_curve' and 'liquid' are both given", allowed);
+    DecodeLiquid(*liquid, map.PathOf("liquid"), propellant_kg, motor, problems);
+  } else if (curve != nullptr) {
+    RefuseBeside(map, node, "thrust_curve", "the curve says it all",
+                 "either thrust_curve, or thrust_* with burning_time_* and ramps");
+    ThrustCurve found =
+        DecodeThrustCurve(*curve, map.PathOf("thrust_curve"), motor.nozzle_exit_area_m2, problems);
+    if (!found.empty())
+      SetThrustCurve(std::move(found), motor);
+    else
+      motor.thrust_n = motor.burning_time_s = 1.0;  // harmless: what is wrong has been said
+  } else {
+    motor.thrust_n = map.Quantity("thrust", kForce, kPositive);
+    motor.burning_time_s = map.Quantity("burning_time", kTime, kPositive);
+    motor.ignition_rise_s = map.Quantity("ignition_rise", kTime, kNonNegative, 0.0);
+    motor.tail_off_s = map.Quantity("tail_off", kTime, kNonNegative, 0.0);
+  }
   motor.published_mass_flow_kg_s = map.Quantity("published_mass_flow", kMassFlow, kNonNegative, 0.0);
   return motor;
 }
@@ -128,8 +277,21 @@ Stage DecodeStage(const InputNode& node, const std::string& path, ProblemList& p
   stage.propellant_mass_kg = map.Quantity("propellant_mass", kMass, kPositive);
   stage.diameter_m = map.Quantity("diameter", kLength, kPositive);
   stage.bottom_station_m = map.Quantity("bottom_station", kLength, kPositive);
-  stage.motor = DecodeMotor(map.Required("motor", "a map"), map.PathOf("motor"), problems);
-  stage.grain = DecodeGrain(map.Required("grain", "a map"), map.PathOf("grain"), problems);
+  const InputNode& motor = map.Required("motor", "a map");
+  stage.motor = DecodeMotor(motor, map.PathOf("motor"), stage.propellant_mass_kg, problems);
+  const InputNode* tanks = map.Optional("tanks");
+  if (motor.Find("liquid") != nullptr) {
+    if (const InputNode* grain = map.Optional("grain"))
+      AddProblem(problems, *grain, map.PathOf("grain"), "the motor is liquid", "tanks in place of the grain");
+    map.Each("tanks", 1, SIZE_MAX, [&](const InputNode& item, const std::string& item_path) {
+      stage.tanks.push_back(DecodeTank(item, item_path, problems));
+    });
+  } else {
+    if (tanks != nullptr)
+      AddProblem(problems, *tanks, map.PathOf("tanks"), "the motor is not liquid",
+                 "a grain in place of the tanks, or motor: {liquid: {...}}");
+    stage.grain = DecodeGrain(map.Required("grain", "a map"), map.PathOf("grain"), problems);
+  }
   map.Each("structure", 1, SIZE_MAX, [&](const InputNode& item, const std::string& item_path) {
     stage.structure.push_back(DecodeMassElement(item, item_path, problems));
   });

@@ -6,6 +6,7 @@
 
 #include "core/campaign_yaml/number_text.h"
 #include "core/campaign_yaml/parse_csv.h"
+#include "core/campaign_yaml/parse_rasp.h"
 #include "core/campaign_yaml/parse_yaml.h"
 #include "core/campaign_yaml/yaml_reader.h"
 
@@ -49,6 +50,16 @@ Parse YamlParser(std::vector<InputProblem>& problems) {
 Parse CsvParser(const std::vector<std::string>& columns, std::vector<InputProblem>& problems) {
   return [columns, &problems](const std::string& text, const std::string& file) {
     return ParseCsv(text, file, columns, problems);
+  };
+}
+
+// A thrust curve is a CSV, or what hobby motors have: by the end of its name.
+Parse ThrustCurveParser(std::vector<InputProblem>& problems) {
+  return [&problems](const std::string& text, const std::string& file) {
+    std::string end = std::filesystem::path(file).extension().string();
+    for (char& c : end) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    return end == ".eng" ? ParseRasp(text, file, problems)
+                         : ParseCsv(text, file, kThrustCurveColumns, problems, {kFlowColumn});
   };
 }
 
@@ -137,6 +148,19 @@ void InlineVehicleFiles(InputNode& vehicle, FileNames names, std::vector<InputPr
   if (InputNode* beam = vehicle.Find("structure_beam"))
     Replace(beam->Find("modes_table"), "structure_beam.modes_table", names,
             CsvParser(kModeTableColumns, problems), problems);
+  if (InputNode* stages = vehicle.Find("stages")) {
+    for (std::size_t i = 0; i < stages->items.size(); ++i) {
+      InputNode* motor = stages->items[i].Find("motor");
+      InputNode* liquid = motor == nullptr ? nullptr : motor->Find("liquid");
+      if (liquid != nullptr)
+        Replace(liquid->Find("throttle"), "stages[" + std::to_string(i) + "].motor.liquid.throttle", names,
+                CsvParser(kThrottleColumns, problems), problems);
+      InputNode* curve = motor == nullptr ? nullptr : motor->Find("thrust_curve");
+      if (curve != nullptr)
+        Replace(curve->Find("table"), "stages[" + std::to_string(i) + "].motor.thrust_curve.table", names,
+                ThrustCurveParser(problems), problems);
+    }
+  }
   InputNode* aerodynamics = vehicle.Find("aerodynamics");
   InputNode* tables = aerodynamics == nullptr ? nullptr : aerodynamics->Find("tables");
   if (tables == nullptr) return;

@@ -21,6 +21,9 @@ inline const std::vector<std::string> kWindStatisticsColumns = {
     "altitude_m", "mean_north_m_s", "mean_east_m_s", "sigma_north_m_s", "sigma_east_m_s"};
 inline const std::vector<std::string> kAeroTableColumns = {
     "mach", "incidence_deg", "ca", "cn", "xcp_station_m", "cmq_per_rad", "clp_per_rad"};
+inline const std::vector<std::string> kThrustCurveColumns = {"time_s", "thrust_n"};
+inline const std::vector<std::string> kThrottleColumns = {"time_s", "level_percent"};
+inline constexpr char kFlowColumn[] = "mass_flow_kg_s";  ///< which a thrust curve may have besides
 inline const std::vector<std::string> kMassTableColumns = {"propellant_kg", "mass_kg",   "cg_station_m",
                                                            "ixx_kg_m2",     "iyy_kg_m2", "izz_kg_m2",
                                                            "ixy_kg_m2",     "ixz_kg_m2", "iyz_kg_m2"};
@@ -35,8 +38,8 @@ enum class FileNames { kAllowed, kRefused };
 InputNode ReadYamlFile(const std::string& path, std::vector<InputProblem>& problems);
 
 /// Replaces what names a file: a campaign's vehicle, reference, autopilot and wind tables, a vehicle's base,
-/// aerodynamic tables and table of modes, a scenario's wind, mass and coefficient tables. Names are relative
-/// to the file in which they stand.
+/// thrust curves, throttles, aerodynamic tables and table of modes, a scenario's wind, mass and coefficient tables.
+/// Names are relative to the file in which they stand.
 void InlineCampaignFiles(InputNode& campaign, FileNames names, std::vector<InputProblem>& problems);
 void InlineVehicleFiles(InputNode& vehicle, FileNames names, std::vector<InputProblem>& problems);
 void InlineScenarioFiles(InputNode& scenario, FileNames names, std::vector<InputProblem>& problems);

@@ -32,8 +32,8 @@ std::vector<Cell> SplitLine(std::string_view line) {
 
 // For each wanted column its place in the header; empty after a problem.
 std::vector<std::size_t> MatchHeader(const std::vector<Cell>& header, const std::vector<std::string>& columns,
-                                     const std::string& file, int line, std::vector<InputProblem>& problems) {
-  const std::string allowed = "the columns " + JoinWords(columns);
+                                     const std::string& allowed, const std::string& file, int line,
+                                     std::vector<InputProblem>& problems) {
   const std::size_t before = problems.size();
   std::vector<std::size_t> places;
   for (const std::string& column : columns) {
@@ -61,9 +61,11 @@ std::vector<std::size_t> MatchHeader(const std::vector<Cell>& header, const std:
 }  // namespace
 
 InputNode ParseCsv(const std::string& text, const std::string& file, const std::vector<std::string>& wanted,
-                   std::vector<InputProblem>& problems) {
+                   std::vector<InputProblem>& problems, const std::vector<std::string>& optional) {
   if (!CheckUtf8(text, file, problems)) return {};
   std::vector<std::string> columns = wanted;
+  const std::string allowed = "the columns " + JoinWords(wanted) +
+                              (optional.empty() ? "" : ", and " + JoinWords(optional) + " if there is one");
   const std::size_t before = problems.size();
   InputNode place;
   place.file = std::make_shared<const std::string>(file);
@@ -87,7 +89,11 @@ InputNode ParseCsv(const std::string& text, const std::string& file, const std::
             columns.push_back(cell.text);
         }
       }
-      places = MatchHeader(cells, columns, file, line_number, problems);
+      for (const std::string& column : optional)
+        if (std::any_of(cells.begin(), cells.end(), [&](const Cell& cell) { return cell.text == column; }))
+          columns.push_back(column);
+      places = MatchHeader(cells, columns, wanted.empty() ? "the columns " + JoinWords(columns) : allowed, file,
+                           line_number, problems);
       if (places->empty()) return {};
       place.line = line_number;
       for (std::size_t c = 0; c < columns.size(); ++c) {
@@ -112,7 +118,7 @@ InputNode ParseCsv(const std::string& text, const std::string& file, const std::
   if (!places)
     problems.push_back(
         {file, 1, 1, "", "the table is empty",
-         columns.empty() ? "a line with the names of its columns" : "the columns " + JoinWords(columns)});
+         columns.empty() ? "a line with the names of its columns" : allowed});
   if (problems.size() > before) return {};
   return table;
 }

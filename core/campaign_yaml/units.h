@@ -39,6 +39,10 @@ inline constexpr Unit kPerTime[] = {{"1_s", 1.0}};
 inline constexpr Unit kPerTimeSquared[] = {{"1_s2", 1.0}};
 inline constexpr Unit kPerLength[] = {{"per_km", 1e-3}, {"per_m", 1.0}};
 inline constexpr Unit kPerSpeed[] = {{"per_m_s", 1.0}};
+inline constexpr Unit kDensity[] = {{"kg_m3", 1.0}};
+inline constexpr Unit kShare[] = {{"percent", 1e-2}};
+inline constexpr Unit kTemperatureDifference[] = {{"k", 1.0}};
+inline constexpr Unit kPerTemperature[] = {{"percent_per_k", 1e-2}};
 inline constexpr Unit kPerAngle[] = {{"per_deg", kDegPerRad}, {"per_rad", 1.0}};
 
 /// What may stand behind the last underscores of a key and is a unit, ours or not: to tell a wrong unit from
@@ -51,7 +55,8 @@ inline constexpr std::string_view kUnitLike[] = {
     "kt",      "kts",    "mph",   "deg",    "rad",    "arcmin",  "deg_s", "rad_s",   "hz",      "rpm",
     "deg_s2",  "rad_s2", "1_s",   "1_s2",   "1_s3",   "per_km",  "per_m", "per_m_s", "per_deg", "per_rad",
     "percent", "factor", "kg_m2", "kg_m",   "gpa",    "mpa",     "n_m2",  "kn_m2",   "mn_m2",   "1_m",
-    "n_m",     "kn_m",   "w_m2",  "kw_m2"};
+    "n_m",     "kn_m",   "w_m2",  "kw_m2",  "k",       "percent_per_k",
+    "kg_m3"};
 
 /// How people write a unit else, and what it is called here.
 struct UnitSpelling {

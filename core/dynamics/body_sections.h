@@ -13,7 +13,7 @@ inline namespace DISPERSA_ISA {
 template <class T>
 struct Sections {
   T strip_station_m[kStrips], slender[kStrips], shift_1_m[kStrips], slender_station_m;
-  T station_m[kLoadStations], first_kg_m[kLoadStations][2], second_kg_m2[kLoadStations][3];
+  T station_m[kLoadStations], first_kg_m[kLoadStations][3], second_kg_m2[kLoadStations][3];
   T slender_arm_m[kLoadStations], shift_arm[kLoadStations];  ///< lever of the shares ahead of each station
 
   /// The share of the normal force that acts on a strip.
@@ -34,7 +34,7 @@ DISPERSA_INLINE void SetLane(Sections<T>& s, int lane, const LoadTable* table) {
   Lane(s.slender_station_m, lane) = from.slender_station_m;
   for (int i = 0; i < kLoadStations; ++i) {
     Lane(s.station_m[i], lane) = from.station_m.data()[i];
-    for (int k = 0; k < 2; ++k) Lane(s.first_kg_m[i][k], lane) = from.first_kg_m.data()[i].data()[k];
+    for (int k = 0; k < 3; ++k) Lane(s.first_kg_m[i][k], lane) = from.first_kg_m.data()[i].data()[k];
     for (int k = 0; k < 3; ++k) Lane(s.second_kg_m2[i][k], lane) = from.second_kg_m2.data()[i].data()[k];
     double slender = 0.0, shift = 0.0;
     for (int strip = 0; strip <= i; ++strip) {
@@ -83,7 +83,7 @@ DISPERSA_INLINE LargestMoment<T> LargestOf(const Sections<T>& body, const Normal
   for (int i = 0; i < kLoadStations; ++i) {
     const T* f = body.first_kg_m[i];
     const T* s = body.second_kg_m2[i];
-    const T first = Fma(m.propellant_kg, f[1], f[0]);
+    const T first = Fma(m.propellant_kg, Fma(m.propellant_kg, f[2], f[1]), f[0]);
     const T turned = Fma(m.cg_station_m, first, -Fma(m.propellant_kg, Fma(m.propellant_kg, s[2], s[1]), s[0]));
     const T arm = Fma(aft, body.shift_arm[i], body.slender_arm_m[i]);
     T y = Fma(m.lateral_y_m_s2, first, Fma(m.turn_z_1_s2, turned, y_n * arm));

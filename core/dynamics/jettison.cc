@@ -63,7 +63,8 @@ RigidBodyState AfterJettison(const LauncherPlant& plant, int stack, unsigned bef
 RigidBodyState AfterSeparation(const LauncherPlant& plant, int below, unsigned jettisoned,
                                const RigidBodyState& state) {
   const StackMass upper = MassOf(plant, below + 1, jettisoned);
-  return AtPoint(state, CgStep(plant, StackOf(plant, below), MassOf(plant, below, jettisoned).At(0.0),
+  const LauncherStack& burnt = StackOf(plant, below);
+  return AtPoint(state, CgStep(plant, burnt, MassOf(plant, below, jettisoned).At(burnt.burn.left_kg),
                                StackOf(plant, below + 1), upper.At(upper.propellant_mass_kg)));
 }
 

@@ -121,7 +121,7 @@ struct LauncherInstant {
   double flow_kg_s = 0.0;
 };
 
-/// `state` after the empty lowest stage of stack `below` has left: it follows the centre of gravity, which
+/// `state` after the burnt lowest stage of stack `below` has left: it follows the centre of gravity, which
 /// jumps forward to that of the stack above, full. `jettisoned`: as in LauncherPhase.
 RigidBodyState AfterSeparation(const LauncherPlant& plant, int below, unsigned jettisoned,
                                const RigidBodyState& state);

@@ -77,15 +77,16 @@ struct TimedMasses {
   T propellant_kg;
   T mass_kg, inverse_mass_1_kg, cg_station_m, axial_kg_m2, transverse_kg_m2;
   T cg_y_m, cg_z_m;  ///< off the axis
-  T cg_speed_m_s;    ///< of C forward through the body: the flow takes propellant away at the grain
+  T cg_speed_m_s;    ///< of C forward through the body: the flow takes propellant away at
+  T source_station_m;
   T axial_per_kg_m2, transverse_per_kg_m2;
-  T thrust_fraction;  ///< 0 when not burning
+  T thrust_fraction, flow_fraction;  ///< of full thrust and flow; 0 when not burning
 };
 template <class T>
 DISPERSA_INLINE TimedMasses<T> MassesAt(const Plant<T>& plant, const Phase<T>& phase, T time_s) {
   // BurnAt holds the time within the burn, so that the ends of a step, which rounding may put outside, count.
   const BurnState<T> burn = BurnAt(plant.burn, time_s - phase.ignition_s);
-  const T unlit = Select(phase.burnt, T(0.0), plant.burn.propellant_kg);
+  const T unlit = Select(phase.burnt, plant.burn.left_kg, plant.burn.propellant_kg);
   TimedMasses<T> o;
   o.propellant_kg = Select(phase.burning, burn.propellant_kg, unlit);
   const Masses<T> m = MassesAt(plant.stack, o.propellant_kg);
@@ -99,8 +100,10 @@ DISPERSA_INLINE TimedMasses<T> MassesAt(const Plant<T>& plant, const Phase<T>& p
   o.axial_per_kg_m2 = m.axial_per_kg_m2 * plant.inertia_factor;
   o.transverse_per_kg_m2 = m.transverse_per_kg_m2 * plant.inertia_factor;
   o.thrust_fraction = Select(phase.burning, burn.fraction, T(0.0));
-  o.cg_speed_m_s = plant.burn.full_flow_kg_s * o.thrust_fraction * o.inverse_mass_1_kg * plant.cg_factor *
-                   (plant.stack.grain_station_m - m.cg_station_m);
+  o.flow_fraction = Select(phase.burning, burn.flow_fraction, T(0.0));
+  o.cg_speed_m_s = plant.burn.full_flow_kg_s * o.flow_fraction * o.inverse_mass_1_kg * plant.cg_factor *
+                   (m.source_station_m - m.cg_station_m);
+  o.source_station_m = m.source_station_m;
   return o;
 }
 
@@ -192,7 +195,7 @@ DISPERSA_INLINE Thrust<T> ThrustOf(const Plant<T>& plant, const TimedMasses<T>& 
   const T net_n =
       Fma(plant.burn.vacuum_thrust_n, masses.thrust_fraction, -(pressure_pa * plant.burn.exit_area_m2));
   o.thrust_n = Select(net_n < T(0.0), T(0.0), net_n);
-  o.flow_kg_s = plant.burn.full_flow_kg_s * masses.thrust_fraction;
+  o.flow_kg_s = plant.burn.full_flow_kg_s * masses.flow_fraction;
   const T* sine = nozzles.sine;
   const T* cosine = nozzles.cosine;
   const T quarter = T(0.25) * o.thrust_n;
@@ -321,7 +324,7 @@ DISPERSA_INLINE void BendThrust(const Plant<T>& plant, const Phase<T>& phase, co
 
 /// `any_burns`: some lane does. `body`: bent or straight. With jet damping the flow leaves with the velocity of
 /// the nozzle about the CG: -m_dot r x (w x r), r on the axis, and for roll the nozzle circle's radius. On its
-/// way from the grain's middle to the pivots, aft by s, a turning body pushes it aside: Coriolis's force
+/// way from the grain's middle or the liquids' surfaces to the pivots, aft by s, a turning body pushes it aside: Coriolis's force
 /// 2 m_dot s w x e_x on the body. `nozzles`: the cross's, or ListedNozzles.
 template <class T, class Turned, class Body>
 DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, const Plant<T>& plant,
@@ -365,7 +368,7 @@ DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, const Plant<T>& plan
   o.flow_kg_s = Select(phase.burning, thrust.flow_kg_s, none);
   o.force_n = Select(phase.burning, o.force_n + thrust.force_n, o.force_n);
   if (plant.flow_coriolis) {
-    const T turned = T(2.0) * o.flow_kg_s * (plant.pivot_station_m - plant.stack.grain_station_m);
+    const T turned = T(2.0) * o.flow_kg_s * (plant.pivot_station_m - masses.source_station_m);
     o.force_n.y = Fma(turned, s.w.z, o.force_n.y);
     o.force_n.z = Fma(-turned, s.w.y, o.force_n.z);
   }

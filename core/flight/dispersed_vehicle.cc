@@ -1,5 +1,6 @@
 #include "core/flight/dispersed_vehicle.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/math/functions.h"
@@ -37,6 +38,9 @@ Vehicle WithDispersedMasses(const Vehicle& vehicle, const FlightInputs& in) {
       AddToElement(static_cast<std::size_t>(element), in.payload_mass_kg, dry_kg, stage);
     stage.propellant_mass_kg *= in.propellant_factor[i];
     stage.motor.burning_time_s *= in.propellant_factor[i];
+    for (Tank& tank : stage.tanks) tank.propellant_mass_kg *= in.propellant_factor[i];
+    ThrustCurve& curve = stage.motor.thrust_curve;
+    for (double& time_s : curve.time_s) time_s *= in.propellant_factor[i];
     // The density that its volume implies is to stay.
     Grain& grain = stage.grain;
     const double web2 = Square(grain.outer_diameter_m) - Square(grain.inner_diameter_m);
@@ -50,6 +54,12 @@ Vehicle WithDispersedMasses(const Vehicle& vehicle, const FlightInputs& in) {
 }
 
 double LargestPropellantFactor(const Stage& stage) {
+  if (stage.is_liquid()) {
+    double most = HUGE_VAL;
+    for (const Tank& tank : stage.tanks)
+      most = std::min(most, tank.Volume() * tank.density_kg_m3 / tank.propellant_mass_kg);
+    return std::floor(1e6 * most) * 1e-6;
+  }
   const double outer2 = Square(stage.grain.outer_diameter_m);
   // A number that a message can show.
   return std::round(1e6 * outer2 / (outer2 - Square(stage.grain.inner_diameter_m))) * 1e-6;

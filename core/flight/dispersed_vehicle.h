@@ -23,7 +23,7 @@ namespace dispersa {
 bool ChangesMasses(const FlightInputs& inputs);
 /// The vehicle with a flight's masses.
 Vehicle WithDispersedMasses(const Vehicle& vehicle, const FlightInputs& inputs);
-/// The most that a stage's grain holds, as a factor of its propellant: until the bore is gone.
+/// The most that a stage's grain holds, as a factor of its propellant: until the bore is gone, or a tank is full.
 double LargestPropellantFactor(const Stage& stage);
 
 }  // namespace dispersa

@@ -1,5 +1,6 @@
 #include "core/flight/flight_model.h"
 
+#include <algorithm>
 #include <cassert>
 
 #include "core/dynamics/aero_grid.h"
@@ -74,15 +75,17 @@ unsigned GoneAt(const std::vector<double>& jettison_s, double time_s) {
 StageControl BuildStageControl(const LauncherPlant& plant, int index, double ignition_s,
                                const std::vector<double>& jettison_s) {
   const LauncherStack& stack = plant.stacks[static_cast<std::size_t>(index)];
-  // The effectiveness changes slowly and smoothly: this many points follow it to a part in a thousand.
-  constexpr int kPoints = 33;
+  // Under constant thrust the effectiveness changes slowly and smoothly: 33 points follow it to a part in a
+  // thousand. With a thrust curve it follows the curve to a thousandth of the burn; ramps it does not know.
+  const int points = stack.burn.curve ? 1025 : 33;
   StageControl control;
   control.limit_rad = stack.gimbal.limit_rad;
-  for (int i = 0; i < kPoints; ++i) {
-    const double since = stack.burn.duration_s * i / (kPoints - 1);
+  for (int i = 0; i < points; ++i) {
+    const double since = stack.burn.duration_s * i / (points - 1);
     const MassProperties mass =
         MassOf(plant, index, GoneAt(jettison_s, ignition_s + since)).At(stack.burn.Propellant(since));
-    const double thrust = stack.burn.vacuum_thrust_n;
+    const double level = stack.burn.curve ? std::max(stack.burn.Fraction(since), kLeastThrustFraction) : 1.0;
+    const double thrust = stack.burn.vacuum_thrust_n * level;
     const double lever = stack.gimbal.pivot_station_m - mass.cg_station_m;
     control.pitch_effectiveness_1_s2.x.push_back(since);
     control.roll_effectiveness_1_s2.x.push_back(since);
@@ -279,8 +282,10 @@ LauncherPlant FlightModel::PlantFor(const FlightInputs& in, std::optional<std::u
 
   for (std::size_t i = 0; i < plant.stacks.size(); ++i) {
     LauncherStack& stack = plant.stacks[i];
-    stack.burn = BuildBurn(vehicle.stages[i], in.thrust_factor[i] * in.specific_impulse_factor[i],
-                           in.mass_flow_factor[i]);
+    const double thrust_factor = in.thrust_factor[i] * in.specific_impulse_factor[i];
+    stack.burn = dispersed
+                     ? BuildBurn(vehicle.stages[i], thrust_factor, in.mass_flow_factor[i])
+                     : BuildBurn(vehicle.stages[i], thrust_factor, in.mass_flow_factor[i], stack.burn.curve);
     stack.gimbal.bandwidth_rad_s *= in.actuator_bandwidth_factor * in.stack_actuator_bandwidth_factor[i];
     stack.aerodynamics.ca.factor = in.drag_factor * in.stack_drag_factor[i];
     stack.aerodynamics.cn.factor = in.lift_factor * in.stack_lift_factor[i];

@@ -30,10 +30,8 @@ std::vector<FlightEvent> EventsOf(const FlightModel& model, const LauncherPlant&
     const int stage = static_cast<int>(i);
     const StageTimes& t = timeline[i];
     events.push_back({t.ignition_s, EventKind::kIgnition, stage});
-    double kinks[] = {t.ignition_s + burns[i].rise_s, t.burnout_s - burns[i].tail_s};
-    std::sort(std::begin(kinks), std::end(kinks));
-    for (const double kink_s : kinks)
-      if (kink_s > t.ignition_s && kink_s < t.burnout_s) events.push_back({kink_s, EventKind::kKink, stage});
+    for (const double kink_s : burns[i].Kinks(t.ignition_s))
+      events.push_back({kink_s, EventKind::kKink, stage});
     events.push_back({t.burnout_s, EventKind::kBurnout, stage});
     if (i + 1 < timeline.size()) events.push_back({t.separation_s, EventKind::kSeparation, stage});
   }

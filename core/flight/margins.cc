@@ -93,20 +93,36 @@ LoopMargins Least(const LoopMargins& a, const LoopMargins& b) {
           std::min(a.bending_phase_3db_deg, b.bending_phase_3db_deg)};
 }
 
-// Those of one flight, and how it ended.
-std::vector<MarginInstant> InstantsOf(const FlightModel& model, const FlightOrder& order, double every_s,
-                                      Outcome* outcome) {
+// Those of one flight, those that hardly have thrust, and how it ended.
+struct FlownInstants {
   std::vector<MarginInstant> instants;
-  MarginInstant max_q, last;
+  std::vector<SkippedInstant> skipped;
+  Outcome outcome = Outcome::kCompleted;
+};
+FlownInstants InstantsOf(const FlightModel& model, const FlightOrder& order, double every_s) {
+  const LauncherPlant plant = model.PlantFor(order.inputs);
+  const auto fraction_of = [&](const TickSample& s) {
+    const MotorBurn& burn = plant.stacks[static_cast<std::size_t>(s.stack)].burn;
+    // Burnout as good as on a tick is on it.
+    return burn.Fraction(std::clamp(s.since_ignition_s, 0.0, burn.duration_s));
+  };
+  std::vector<MarginInstant> instants;
+  MarginInstant max_q, last, last_strong;
+  last_strong.sample.stack = -1;  // none yet
   double q_max = 0.0, next_s = 0.0;
   int stage = -1;
   bool ignited = false;
+  const auto end_stage = [&] {
+    if (last_strong.sample.stack == stage && last_strong.sample.time_s < last.sample.time_s)
+      instants.push_back(last_strong);
+    instants.push_back(last);
+  };
   FlightOptions options = order.options;
   options.observe = [&](const TickSample& s) {
     if (!s.burning) return;
     const std::string name = "stage " + std::to_string(s.stack + 1);
     if (s.stack != stage) {
-      if (stage >= 0) instants.push_back(last);
+      if (stage >= 0) end_stage();
       stage = s.stack;
       ignited = false;
       next_s = every_s;
@@ -125,15 +141,24 @@ std::vector<MarginInstant> InstantsOf(const FlightModel& model, const FlightOrde
       max_q = {"max q", s};
     }
     last = {name + " burnout", s};
+    if (fraction_of(s) >= kLeastThrustFraction) last_strong = {name + " tail-off", s};
   };
-  *outcome = Fly(model, order.inputs, options).outcome;
-  if (stage < 0) return instants;
-  instants.push_back(last);
+  FlownInstants flown;
+  flown.outcome = Fly(model, order.inputs, options).outcome;
+  if (stage < 0) return flown;
+  end_stage();
   if (q_max > 0.0) instants.push_back(max_q);
   std::stable_sort(instants.begin(), instants.end(), [](const MarginInstant& a, const MarginInstant& b) {
     return a.sample.time_s < b.sample.time_s;
   });
-  return instants;
+  for (MarginInstant& instant : instants) {
+    const double fraction = fraction_of(instant.sample);
+    if (fraction >= kLeastThrustFraction)
+      flown.instants.push_back(std::move(instant));
+    else
+      flown.skipped.push_back({instant.place, instant.sample.stack, instant.sample.time_s, fraction});
+  }
+  return flown;
 }
 
 // One axis at one instant: the plants that a law must hold, each linearised once.
@@ -205,8 +230,12 @@ void AddMarginsAt(const LauncherPlant& plant, const FlightModel& model, const Fl
 
 std::vector<MarginInstant> MarginInstants(const FlightModel& model, double every_s,
                                           const FlightInputs& inputs) {
-  Outcome outcome;
-  return InstantsOf(model, {inputs, {}}, every_s, &outcome);
+  return InstantsOf(model, {inputs, {}}, every_s).instants;
+}
+
+std::vector<SkippedInstant> SkippedInstants(const FlightModel& model, double every_s,
+                                            const FlightInputs& inputs) {
+  return InstantsOf(model, {inputs, {}}, every_s).skipped;
 }
 
 std::vector<ComputedMargins> ComputeMargins(const FlightModel& model, double every_s,
@@ -234,7 +263,9 @@ DispersedMargins ComputeDispersedMargins(const FlightModel& model, const FlightO
                                          LateralPath path) {
   DispersedMargins found;
   const LauncherPlant plant = model.PlantFor(order.inputs, order.options.case_index);
-  for (const MarginInstant& instant : InstantsOf(model, order, every_s, &found.outcome))
+  const FlownInstants flown = InstantsOf(model, order, every_s);
+  found.outcome = flown.outcome;
+  for (const MarginInstant& instant : flown.instants)
     AddMarginsAt(plant, model, order.inputs, instant, instant.sample, {0.0, path}, found.margins);
   return found;
 }

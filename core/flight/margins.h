@@ -79,9 +79,19 @@ struct MarginInstant {
 };
 
 /// Lift-off, max q, each ignition + 1 s and burnout, and every `every_s` of powered flight between, in the
-/// order of time.
+/// order of time, less those whose thrust is below kLeastThrustFraction of full thrust (SkippedInstants). Of
+/// a burnout that is left out for this the last instant before it that is not stands in: "stage 1 tail-off".
 std::vector<MarginInstant> MarginInstants(const FlightModel& model, double every_s = 5.0,
                                           const FlightInputs& inputs = {});
+/// An instant that MarginInstants leaves out.
+struct SkippedInstant {
+  std::string place;
+  int stage = 0;  ///< 0-based
+  double time_s = 0.0;
+  double thrust_fraction = 0.0;  ///< of full thrust
+};
+std::vector<SkippedInstant> SkippedInstants(const FlightModel& model, double every_s = 5.0,
+                                            const FlightInputs& inputs = {});
 /// The margins of an autopilot at an instant, be it of another autopilot's flight of the same plant.
 LoopMargins MarginsAt(const LauncherPlant& plant, const SensorModel& sensors, const AutopilotModel& autopilot,
                       const TickSample& sample, Axis axis, bool adapting, const MarginModel& of = {});

@@ -45,8 +45,8 @@ Direction DirectionTable::RateAt(double time_s) const {
 }
 
 double IdealVelocity(const GuidedStage& stage) {
-  const double exhaust_m_s = stage.burn.vacuum_thrust_n / stage.burn.full_flow_kg_s;
-  return exhaust_m_s * Log(stage.ignition_mass_kg / (stage.ignition_mass_kg - stage.burn.propellant_mass_kg));
+  return stage.burn.ExhaustVelocity() *
+         Log(stage.ignition_mass_kg / (stage.ignition_mass_kg - stage.burn.propellant_mass_kg + stage.burn.left_kg));
 }
 
 }  // namespace dispersa

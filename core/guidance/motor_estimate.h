@@ -2,7 +2,8 @@
 //
 // At full thrust a = c q / (m0 - q t), c the exhaust velocity, q the flow, t the time since ignition less
 // half of the rise: 1/a is a straight line over time, of slope -1/c through m0 / (c q) at t = 0. The line of
-// least squares gives both; until it has enough to go by the motor is nominal.
+// least squares gives both; until it has enough to go by the motor is nominal. So is one with a thrust curve
+// or a throttle all the time, whose readings lie on no line: what its burn rate did shows in the state alone.
 #pragma once
 
 #include "core/guidance/mission.h"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "core/math/functions.h"
 
@@ -44,8 +45,8 @@ void Burn(const GuidanceMission& mission, const GuidedStage& stage, double ignit
           const Vector3& offset_rad_I, const DirectionAt& direction_at, NavigatedState& state) {
   const MotorBurn& burn = stage.burn;
   const double empty_kg = stage.ignition_mass_kg - burn.propellant_mass_kg;
-  double ends[] = {burn.rise_s, burn.duration_s - burn.tail_s, burn.duration_s};
-  std::sort(std::begin(ends), std::end(ends));
+  std::vector<double> ends = burn.Kinks(0.0);
+  ends.push_back(burn.duration_s);
   for (const double end : ends) {
     const double begin = state.time_s - ignition_s;
     if (!(end > begin)) continue;

@@ -86,7 +86,8 @@ std::vector<ImpactPoint> ImpactPoints(const CampaignFlights& flights, const Case
     const RigidBodyState spent = AtPoint(above, Vector3(-aft_m, 0.0, 0.0));
     const double length_m = vehicle.stages[stage].bottom_station_m - TopStation(vehicle, below);
     fall({.stage = below + 1, .lost = false},
-         {DryMass(vehicle, below), TumblingCylinderDragArea(length_m, vehicle.stages[stage].diameter_m)},
+         {DryMass(vehicle, below) + plant.stacks[stage].burn.left_kg,
+          TumblingCylinderDragArea(length_m, vehicle.stages[stage].diameter_m)},
          {rows.At(row, "time_s"), spent.p_EoC_I, spent.v_IC_I});
   }
 

@@ -393,8 +393,8 @@ does; injection metrics are reported for that spread and are no measure of the a
 filter, no alignment error.</li>
 <li>Separation is instantaneous: no contact forces and no re-contact analysis; what disturbs it is the
 declared tip-off rate.</li>
-<li>Motors burn with constant thrust between two ramps, shared out among the nozzles, without thrust
-oscillation. The reaction control gives ideal couples.</li>
+<li>Motors burn with constant thrust between two ramps, or along a thrust curve where the vehicle gives one, shared out
+among the nozzles, without thrust oscillation. The reaction control gives ideal couples.</li>
 <li>Aerodynamic coefficients come from one table or build-up for each stack, without plume interaction or
 hysteresis; their uncertainty is what the campaign disperses.</li>
 )html";

@@ -101,8 +101,15 @@ class Drawing {
     const Stage& stage = vehicle_.stages[i];
     const bool is_last = i + 1 == vehicle_.stages.size();
     const double top_m = is_last ? 0.0 : vehicle_.stages[i + 1].bottom_station_m;
-    Tube("grain", stage.grain.top_station_m, stage.grain.bottom_station_m, stage.grain.outer_diameter_m);
-    if (stage.grain.inner_diameter_m > 0.0)
+    for (const Tank& tank : stage.tanks) {
+      const double height_m =
+          (tank.bottom_station_m - tank.top_station_m) * tank.propellant_mass_kg / (tank.density_kg_m3 * tank.Volume());
+      Tube("bore", tank.top_station_m, tank.bottom_station_m, tank.diameter_m);
+      Tube("grain", tank.bottom_station_m - height_m, tank.bottom_station_m, tank.diameter_m);
+    }
+    if (!stage.is_liquid())
+      Tube("grain", stage.grain.top_station_m, stage.grain.bottom_station_m, stage.grain.outer_diameter_m);
+    if (!stage.is_liquid() && stage.grain.inner_diameter_m > 0.0)
       Tube("bore", stage.grain.top_station_m, stage.grain.bottom_station_m, stage.grain.inner_diameter_m);
     for (const MassElement& element : stage.structure)
       Tube("part", element.top_station_m, element.bottom_station_m, element.outer_diameter_m);

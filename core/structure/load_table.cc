@@ -68,10 +68,13 @@ LoadTable BuildLoadTable(const Vehicle& vehicle, int stage) {
       second[k] = InertiaMoment(masses[k], station, [](double x) { return StationShape{x, 1.0}; });
     }
     // The grain's mass per length follows its mass, its section's inertia the square of it: parabolas.
-    table.first_kg_m[i] = {first[0], (first[2] - first[0]) / full};
-    const double curve = 2.0 * (second[2] + second[0] - 2.0 * second[1]) / Square(full);
-    const double rise = (second[2] - second[0]) / full - curve * full;
-    table.second_kg_m2[i] = {second[0], rise, curve};
+    const auto parabola = [&](const double(&at)[3]) -> std::array<double, 3> {
+      const double curve = 2.0 * (at[2] + at[0] - 2.0 * at[1]) / Square(full);
+      return {at[0], (at[2] - at[0]) / full - curve * full, curve};
+    };
+    table.first_kg_m[i] = {first[0], (first[2] - first[0]) / full, 0.0};
+    if (lowest.is_liquid()) table.first_kg_m[i] = parabola(first);
+    table.second_kg_m2[i] = parabola(second);
   }
   return table;
 }

@@ -20,10 +20,11 @@ struct LoadTable {
   double slender_station_m = 0.0;
 
   /// Stations s, and of the mass ahead of each, with m(x) its mass per length, g(x) the radius of gyration of its
-  /// cross-section and p the propellant: the integral of m (s - x) = first[0] + first[1] p, and that of
-  /// m (s - x) x - m g² = second[0] + second[1] p + second[2] p².
+  /// cross-section and p the propellant: the integral of m (s - x) = first[0] + first[1] p + first[2] p², and that of
+  /// m (s - x) x - m g² = second[0] + second[1] p + second[2] p². Of a grain that is exact, with first[2] = 0; of
+  /// liquids whose surface passes the station it is the parabola through full, half full and empty.
   std::array<double, kLoadStations> station_m{};
-  std::array<std::array<double, 2>, kLoadStations> first_kg_m{};
+  std::array<std::array<double, 3>, kLoadStations> first_kg_m{};
   std::array<std::array<double, 3>, kLoadStations> second_kg_m2{};
 };
 

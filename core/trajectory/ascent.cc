@@ -300,7 +300,7 @@ void Fleet<T>::LetGo(int lane, double from_s, const LaneVector& p, const LaneVec
   const double since_s = Lane(time_s_, lane) - flight.ignition_s;
   const MotorBurn& burn = model_.plant.stacks[static_cast<std::size_t>(flight.stack)].burn;
   const double propellant_kg = flight.burning ? burn.Propellant(since_s)
-                               : flight.burnt ? 0.0
+                               : flight.burnt ? burn.left_kg
                                               : burn.propellant_mass_kg;
   SetBody(lane, AfterJettison(model_.plant, flight.stack, flight.jettisoned, flight.jettisoned | due,
                               propellant_kg, BodyOf(lane)));

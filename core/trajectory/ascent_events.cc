@@ -28,8 +28,8 @@ AscentEvents EventsOf(const AscentModel& model, const FlightProgram& program) {
   for (std::size_t i = 0; i <= last; ++i) {
     const int stage = static_cast<int>(i);
     events.push_back({times[i].ignition_s, AscentEvent::kIgnition, stage});
-    events.push_back({times[i].ignition_s + burns[i].rise_s, AscentEvent::kKink, stage});
-    events.push_back({times[i].burnout_s - burns[i].tail_s, AscentEvent::kKink, stage});
+    for (const double kink_s : burns[i].Kinks(times[i].ignition_s))
+      events.push_back({kink_s, AscentEvent::kKink, stage});
     events.push_back({times[i].burnout_s, AscentEvent::kBurnout, stage});
     if (i < last) events.push_back({times[i].separation_s, AscentEvent::kSeparation, stage});
   }

@@ -116,7 +116,7 @@ DISPERSA_INLINE AscentInstant<T> InstantAt(const Ground& ground, const Leg<T>& l
                                            Vector<T> v) {
   const Surroundings<T> around = SurroundingsAt(ground.earth, *ground.air, leg.weather, p);
   const BurnState<T> burn = BurnAt(leg.burn, time_s - leg.ignition_s);
-  const T unlit = Select(leg.burnt, T(0.0), leg.burn.propellant_kg);
+  const T unlit = Select(leg.burnt, leg.burn.left_kg, leg.burn.propellant_kg);
   Masses<T> masses = MassesAt(leg.stack, Select(leg.burning, burn.propellant_kg, unlit));
   masses.mass_kg = masses.mass_kg - leg.expelled_kg;
 

@@ -1,8 +1,11 @@
 #include "core/tuning/tune.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <random>
 
@@ -123,6 +126,11 @@ constexpr int kRefinements = 500;
 constexpr double kRefinementStep = 0.05, kRefinementGrowth = 1.5, kRefinementDecay = 0.97;
 constexpr double kStiffBandwidthOfActuator = 0.165;
 
+constexpr const char* kGateNames[] = {"gain", "phase", "delay"};
+constexpr const char* kAxisNames[kAxes] = {"roll", "pitch", "yaw"};
+// LoopTable's of a loop that is unstable, or more.
+constexpr double kUnstableSurplus = -2.0;
+
 // The campaign as the tuning flies it, and what it has found so far.
 class Tuner {
  public:
@@ -153,13 +161,16 @@ class Tuner {
     // Of a vehicle that bends the instants are those of its rigid self: untuned, the other may be lost.
     Campaign rigid = campaign_;
     if (rigid.vehicle.structure_beam) rigid.vehicle.structure_beam->flown_modes = 0;
-    instants_ = MarginInstants(CampaignFlights(rigid).model());
+    const CampaignFlights held(rigid);
+    instants_ = MarginInstants(held.model());
+    skipped_ = SkippedInstants(held.model());
     if (options.dispersed > 0) TabulateHeld(CampaignFlights(Stiff(rigid)));
   }
 
   TuningResult Run(const TuningObserver& observer) {
     TuningResult result;
     result.feasible = true;
+    result.skipped = skipped_;
     for (int stage = 0; stage < StageCount(); ++stage) {
       result.stages.push_back(TuneStage(stage, observer, result.evaluations));
       result.feasible = result.feasible && result.stages.back().feasible;
@@ -215,6 +226,83 @@ class Tuner {
     return least;
   }
 
+  // Of the design that campaign_ has: the constraint that is missed by most, in the order of Evaluate.
+  std::string MissedBy(const std::vector<double>& violations, int stage) const {
+    const auto most = std::max_element(violations.begin(), violations.end());
+    const std::size_t kind = static_cast<std::size_t>(most - violations.begin());
+    const std::size_t margins = options_.dispersed > 0 ? 1 : 6;
+    if (kind >= margins) return MissedInFlight(kind - margins, *most);
+    return options_.dispersed > 0 ? MissedByHeld(stage) : MissedByNominal(kind % 3, kind >= 3, stage);
+  }
+
+  // The constraints of FlyCandidate.
+  std::string MissedInFlight(std::size_t kind, double violation) const {
+    if (kind == 0) return fmt::format("{:.0f} of {} flights are lost", violation * options_.cases, options_.cases);
+    return fmt::format("a deflection swings by {:.2f} deg, {:.2f} are allowed",
+                       (1.0 + violation) * kLimitCycleLimit_deg, kLimitCycleLimit_deg);
+  }
+
+  // `kind`: 0 gain, 1 phase, 2 delay.
+  std::string MissedByNominal(std::size_t kind, bool adapting, int stage) const {
+    constexpr const char* kUnits[] = {"dB", "deg", "ms"};
+    constexpr double kNeeded[] = {kGainMarginGate_db + kGainReserve_db, kPhaseMarginGate_deg + kPhaseReserve_deg,
+                                  1e3 * (kDelayMarginGate_s + kDelayReserve_s)};
+    const AutopilotModel model = ModelOf(campaign_.autopilot);
+    const SensorModel sensors = BuildSensors(campaign_.vehicle, campaign_.autopilot);
+    const LauncherPlant& plant = start_->model().nominal_plant();
+    const MotorBurn& burn = plant.stacks[static_cast<std::size_t>(stage)].burn;
+    std::string where;
+    double least = std::numeric_limits<double>::infinity();
+    for (const MarginInstant& instant : instants_) {
+      if (instant.sample.stack != stage) continue;
+      for (const Axis axis : {kPitch, kYaw, kRoll}) {
+        LeastMargins m;
+        m.Take(MarginsAt(plant, sensors, model, instant.sample, axis, adapting));
+        const double value = kind == 0 ? m.gain_db : kind == 1 ? m.phase_deg : 1e3 * m.delay_s;
+        if (!(value < least)) continue;
+        least = value;
+        const double thrust = burn.Fraction(std::min(instant.sample.since_ignition_s, burn.duration_s));
+        where = fmt::format("{} at {:.2f} s{}, {:.0f} % of full thrust", kAxisNames[axis], instant.sample.time_s,
+                            instant.place.empty() ? "" : " (" + instant.place + ")", 100.0 * thrust);
+      }
+    }
+    return fmt::format("{} margin {:.1f} {}, {:.1f} are needed: {}, {}", kGateNames[kind], least, kUnits[kind],
+                       kNeeded[kind], adapting ? "adapting" : "gains held", where);
+  }
+
+  std::string MissedByHeld(int stage) const {
+    const AutopilotModel model = ModelOf(campaign_.autopilot);
+    const std::vector<double> shares = SharesOf(campaign_.autopilot, stage);
+    const Held* worst = nullptr;
+    bool worst_adapts = false;
+    double least = HUGE_VAL;
+    for (const Held& each : held_[static_cast<std::size_t>(stage)]) {
+      for (const bool adapting : {true, false}) {
+        const double surplus = each.table.Surplus(
+            LineariseLaw(model, stage, each.since_ignition_s, each.axis, adapting), shares, each.gates);
+        if (!(surplus < least)) continue;
+        worst = &each;
+        worst_adapts = adapting;
+        least = surplus;
+      }
+    }
+    const LinearLaw law = LineariseLaw(model, stage, worst->since_ignition_s, worst->axis, worst_adapts);
+    // With the other gates next to nothing; where the body bends either gain or phase does.
+    constexpr double kHardly = 1e-9;
+    const LoopGates alone[] = {{worst->gates.gain_db, kHardly, 0.0},
+                               {kHardly, worst->gates.phase_deg, 0.0},
+                               {kHardly, kHardly, worst->gates.delay_s}};
+    std::string gate = "gain and phase margin of bending";
+    for (std::size_t kind = 0; kind < 3; ++kind)
+      if (worst->table.Surplus(law, shares, alone[kind]) == least) gate = fmt::format("{} margin", kGateNames[kind]);
+    return fmt::format("{}: {}, {}, {} {:.1f} s after ignition",
+                       least <= kUnstableSurplus
+                           ? std::string("the loop is unstable")
+                           : fmt::format("{} {:.0f} % below its gate with reserve", gate, -100.0 * least),
+                       worst->plant, worst_adapts ? "adapting" : "gains held", kAxisNames[worst->axis],
+                       worst->since_ignition_s);
+  }
+
   // Ends at the first set of margins that fails, and begins with the one that failed last: designs that are
   // tried one after another are alike, so that one far from admissible costs next to nothing.
   bool HasMargins(const AutopilotConfig& autopilot, int stage, std::size_t* failed_last) const {
@@ -262,6 +350,7 @@ class Tuner {
 
   // A plant at an instant, about one axis, that designs must hold.
   struct Held {
+    std::string plant;  ///< which it is, in words
     double since_ignition_s = 0.0;
     Axis axis = kPitch;
     LoopGates gates;
@@ -271,7 +360,7 @@ class Tuner {
   void TabulateHeld(const CampaignFlights& rigid) {
     held_.resize(static_cast<std::size_t>(StageCount()));
     for (const MarginInstant& instant : instants_)
-      Hold(start_->model().nominal_plant(), instant.sample, {1.0, 1.0 - kFrequencyBand, 1.0 + kFrequencyBand},
+      Hold(start_->model().nominal_plant(), "nominal plant", instant.sample, {1.0, 1.0 - kFrequencyBand, 1.0 + kFrequencyBand},
            {kGainMarginGate_db + kHeldGainReserve_db, kPhaseMarginGate_deg + kHeldPhaseReserve_deg,
             kDelayMarginGate_s + kHeldDelayReserve_s});
     for (int i = 0; i < options_.dispersed; ++i) {
@@ -280,14 +369,14 @@ class Tuner {
       const FlightInputs inputs = start_->Draw(draw);
       const LauncherPlant plant = start_->model().PlantFor(inputs, draw);
       for (const MarginInstant& instant : MarginInstants(rigid.model(), 5.0, inputs))
-        Hold(plant, instant.sample, {1.0},
+        Hold(plant, fmt::format("plant of draw {}", i), instant.sample, {1.0},
              {kDispersedGainGate_db + kHeldGainReserve_db, kDispersedPhaseGate_deg + kHeldPhaseReserve_deg,
               0.0});
     }
   }
 
-  void Hold(LauncherPlant plant, const TickSample& sample, const std::vector<double>& frequency_factors,
-            const LoopGates& gates) {
+  void Hold(LauncherPlant plant, const std::string& name, const TickSample& sample,
+            const std::vector<double>& frequency_factors, const LoopGates& gates) {
     const std::size_t stage = static_cast<std::size_t>(sample.stack);
     SensorModel all = start_->model().sensors();
     all.stages[stage].unit = 1.0;
@@ -300,11 +389,21 @@ class Tuner {
           frequency_factors.size() > 1 ? std::vector{kPitch, kYaw, kRoll} : std::vector{kPitch, kYaw};
       for (const Axis axis : axes) {
         if (axis == kRoll && !plant.stacks[stage].layout.rolls) continue;  // thrusters hold it
-        held_[stage].push_back({sample.since_ignition_s, axis, gates,
+        held_[stage].push_back({factor == 1.0 ? name : fmt::format("{}, modes at {:.0f} %", name, 100.0 * factor),
+                                sample.since_ignition_s, axis, gates,
                                 LoopTable(LineariseAxis(plant, sample, axis, all), campaign_.autopilot.tick_s,
                                           plant.stacks[stage].gimbal.delay_ticks)});
       }
     }
+  }
+
+  // What an autopilot makes of the rates of each sensor in a stage.
+  std::vector<double> SharesOf(const AutopilotConfig& autopilot, int stage) const {
+    const SensorModel sensors = BuildSensors(campaign_.vehicle, autopilot);
+    const SensorModel::Weights& weights = sensors.stages[static_cast<std::size_t>(stage)];
+    std::vector<double> shares = {weights.unit};
+    for (std::size_t g = 0; g < sensors.gyros.size(); ++g) shares.push_back(weights.gyro[g]);
+    return shares;
   }
 
   // The least surplus of all held plants of a stage, or of those nearer to one of its times than to others.
@@ -312,10 +411,7 @@ class Tuner {
   double SurplusOf(const AutopilotConfig& autopilot, int stage, std::size_t* last, double enough,
                    std::optional<std::size_t> about = {}) const {
     const AutopilotModel model = ModelOf(autopilot);
-    const SensorModel sensors = BuildSensors(campaign_.vehicle, autopilot);
-    const SensorModel::Weights& weights = sensors.stages[static_cast<std::size_t>(stage)];
-    std::vector<double> shares = {weights.unit};
-    for (std::size_t g = 0; g < sensors.gyros.size(); ++g) shares.push_back(weights.gyro[g]);
+    const std::vector<double> shares = SharesOf(autopilot, stage);
     const std::vector<double> times = TimesOf(stage);
     const auto nearest = [&](double at_s) {
       std::size_t found = 0;
@@ -545,8 +641,22 @@ class Tuner {
     tuned.feasible = AllZero(found.evaluation.constraint_violations);
     tuned.mean_rms_deg = found.evaluation.objective;
     tuned.peak_deg = found.evaluation.tie_breaker;
+    if (!tuned.feasible) tuned.missed = MissedByAugmentation(found.evaluation.constraint_violations);
     evaluations += found.evaluations;
     return tuned;
+  }
+
+  // Of the augmentation that campaign_ has, likewise: one constraint a stage, then those of flight.
+  std::string MissedByAugmentation(const std::vector<double>& violations) const {
+    const auto most = std::max_element(violations.begin(), violations.end());
+    const std::size_t kind = static_cast<std::size_t>(most - violations.begin());
+    const std::vector<MeasuredMargins> measured = MeasureMargins(ModelWith(campaign_.autopilot));
+    if (kind >= measured.size()) return MissedInFlight(kind - measured.size(), *most);
+    const MeasuredMargins& m = measured[kind];
+    return fmt::format("measured margins of stage {}: gain {:.1f} dB up, {:.1f} dB down, delay {:.0f} ms; {:.1f} dB and "
+                       "{:.0f} ms are needed",
+                       m.stage + 1, m.gain_up_db, m.gain_down_db, 1e3 * m.delay_s, kGainMarginGate_db,
+                       1e3 * kDelayMarginGate_s);
   }
 
   StageTuning TuneStage(int stage, const TuningObserver& observer, std::uint64_t& evaluations) {
@@ -600,6 +710,7 @@ class Tuner {
       std::size_t last = 0;
       tuned.surplus = SurplusOf(campaign_.autopilot, stage, &last, -HUGE_VAL);
     }
+    if (!tuned.feasible) tuned.missed = MissedBy(found.evaluation.constraint_violations, stage);
     evaluations += found.evaluations;
     return tuned;
   }
@@ -610,6 +721,7 @@ class Tuner {
   std::unique_ptr<CampaignFlights>
       start_;  ///< all stages untuned: margins are taken about its nominal flight
   std::vector<MarginInstant> instants_;
+  std::vector<SkippedInstant> skipped_;
   std::vector<std::vector<Held>> held_;  ///< by stage
   std::atomic<std::uint64_t> flights_ = 0;
 };

@@ -125,6 +125,8 @@ struct StageTuning {
   /// The least of (margin - gate with reserve) / gate over the dispersed plants and the nominal one, where
   /// they are held.
   std::optional<double> surplus;
+  /// Of a stage that is not feasible: the constraint that is missed by most, where and by how much.
+  std::string missed;
 };
 
 struct AugmentationTuning {
@@ -132,11 +134,13 @@ struct AugmentationTuning {
   bool feasible = false;
   double mean_rms_deg = 0.0;  ///< of powered flight, pitch
   double peak_deg = 0.0;      ///< largest over the cases, pitch
+  std::string missed;         ///< as a stage's
 };
 
 struct TuningResult {
   AutopilotConfig autopilot;  ///< tuned
   std::vector<StageTuning> stages;
+  std::vector<SkippedInstant> skipped;  ///< of the nominal flight, at which no margins were asked for
   std::optional<AugmentationTuning> augmentation;  ///< where PD is augmented and every stage is feasible
   bool feasible = false;                           ///< all of them
   /// Powered pitch error of the tuned autopilot over the tuning's cases; 0 if it is not feasible.

@@ -173,12 +173,22 @@ BeamMasses BuildBeamMasses(const Vehicle& vehicle, int stage, double propellant_
           Spread(j.mass_kg, j.top_station_m, j.bottom_station_m, j.outer_diameter_m, j.inner_diameter_m));
     const bool burning = i == static_cast<std::size_t>(stage);
     const double grain_kg = burning ? propellant_kg : s.propellant_mass_kg;
+    if (!(grain_kg > 0.0)) continue;
+    if (s.is_liquid()) {
+      // Each tank's liquid stands on its bottom (StackMass).
+      for (const Tank& tank : s.tanks) {
+        const double mass_kg = grain_kg * tank.propellant_mass_kg / s.propellant_mass_kg;
+        const double height = mass_kg / (tank.density_kg_m3 * 0.25 * kPi * Square(tank.diameter_m));
+        masses.spread.push_back(
+            Spread(mass_kg, tank.bottom_station_m - height, tank.bottom_station_m, tank.diameter_m, 0.0));
+      }
+      continue;
+    }
     const Grain& g = s.grain;
     const double length = g.bottom_station_m - g.top_station_m;
     const double outer2 = Square(g.outer_diameter_m);
     // It burns from the bore outwards (StackMass).
     const double inner2 = outer2 - 4.0 * grain_kg / (kPi * PropellantDensity(s) * length);
-    if (!(grain_kg > 0.0)) continue;
     const double gyration2 = (outer2 + inner2) / 16.0;
     masses.spread.push_back({g.top_station_m,
                              g.bottom_station_m,

@@ -18,6 +18,9 @@ struct Stack {
   T outer2_m2;        ///< the grain's outer radius squared
   T inner_per_kg_m2;  ///< by which each kilogram lowers the bore's radius squared
   T length2_m2;       ///< the grain's length squared, over 12
+  bool any_drains;    ///< of any lane:
+  T drains;           ///< 1 where tanks stand in the place of the grain (DrainingMass), else 0
+  T first_per_kg_m, first_per_kg2_m, second_per_kg_m2, second_per_kg2_m2, second_per_kg3_m2;
 };
 template <class T>
 DISPERSA_INLINE void SetLane(Stack<T>& s, int lane, const StackMass& mass) {
@@ -27,14 +30,24 @@ DISPERSA_INLINE void SetLane(Stack<T>& s, int lane, const StackMass& mass) {
   Lane(s.fixed_axial_kg_m2, lane) = mass.fixed_axial_inertia_kg_m2;
   Lane(s.grain_station_m, lane) = mass.grain_station_m;
   Lane(s.outer2_m2, lane) = mass.grain_outer_radius_m * mass.grain_outer_radius_m;
-  Lane(s.inner_per_kg_m2, lane) = 1.0 / (kPi * mass.grain_density_kg_m3 * mass.grain_length_m);
+  Lane(s.inner_per_kg_m2, lane) =
+      mass.drains ? 0.0 : 1.0 / (kPi * mass.grain_density_kg_m3 * mass.grain_length_m);
   Lane(s.length2_m2, lane) = mass.grain_length_m * mass.grain_length_m / 12.0;
+  Lane(s.drains, lane) = mass.drains ? 1.0 : 0.0;
+  Lane(s.first_per_kg_m, lane) = mass.tanks.first_per_kg_m;
+  Lane(s.first_per_kg2_m, lane) = mass.tanks.first_per_kg2_m;
+  Lane(s.second_per_kg_m2, lane) = mass.tanks.second_per_kg_m2;
+  Lane(s.second_per_kg2_m2, lane) = mass.tanks.second_per_kg2_m2;
+  Lane(s.second_per_kg3_m2, lane) = mass.tanks.second_per_kg3_m2;
+  s.any_drains = false;
+  for (int i = 0; i < kWidth<T>; ++i) s.any_drains |= Lane(s.drains, i) > 0.0;
 }
 
 /// MassProperties of StackMass::At.
 template <class T>
 struct Masses {
   T mass_kg, cg_station_m, axial_kg_m2, transverse_kg_m2, axial_per_kg_m2, transverse_per_kg_m2;
+  T source_station_m;  ///< where mass goes: the grain's middle, or the surfaces of the liquids, by their shares
 };
 template <class T>
 DISPERSA_INLINE Masses<T> MassesAt(const Stack<T>& s, T propellant_kg) {
@@ -51,6 +64,26 @@ DISPERSA_INLINE Masses<T> MassesAt(const Stack<T>& s, T propellant_kg) {
   // d(grain_axial)/dm = r_i², because the propellant goes at the bore.
   m.axial_per_kg_m2 = inner2;
   m.transverse_per_kg_m2 = Fma(T(0.5), inner2, s.length2_m2) + Square(s.grain_station_m - cg);
+  m.source_station_m = s.grain_station_m;
+  if (s.any_drains) {
+    const auto drains = s.drains > T(0.0);
+    const T p = propellant_kg;
+    const T first = Fma(p, Fma(p, s.first_per_kg2_m, s.first_per_kg_m), s.first_moment_kg_m);
+    const T surface = Fma(T(2.0) * p, s.first_per_kg2_m, s.first_per_kg_m);  // of the first moment by mass
+    const T second = Fma(p, Fma(p, Fma(p, s.second_per_kg3_m2, s.second_per_kg2_m2), s.second_per_kg_m2),
+                         s.second_moment_kg_m2);
+    const T second_per_kg =
+        Fma(p, Fma(T(3.0) * p, s.second_per_kg3_m2, T(2.0) * s.second_per_kg2_m2), s.second_per_kg_m2);
+    const T at = first / m.mass_kg;
+    m.cg_station_m = Select(drains, at, m.cg_station_m);
+    m.axial_kg_m2 = Select(drains, s.fixed_axial_kg_m2, m.axial_kg_m2);
+    m.transverse_kg_m2 = Select(drains, second - m.mass_kg * at * at, m.transverse_kg_m2);
+    m.axial_per_kg_m2 = Select(drains, T(0.0), m.axial_per_kg_m2);
+    // About C, which moves by (surface - C) / m for each kilogram.
+    m.transverse_per_kg_m2 =
+        Select(drains, Fma(at, at, second_per_kg) - T(2.0) * at * surface, m.transverse_per_kg_m2);
+    m.source_station_m = Select(drains, surface, m.source_station_m);
+  }
   return m;
 }
 
@@ -59,7 +92,13 @@ template <class T>
 struct Burn {
   T vacuum_thrust_n, full_flow_kg_s, propellant_kg, duration_s, exit_area_m2;
   T rise_s, rise_slope_1_s, rise_base, tail_s, tail_slope_1_s, tail_base;
+  T left_kg;  ///< that stays when the burn has ended
+  T curve_rate, curve_flow_kg_s;  ///< of the curve's own time; 0 where there is none
+  const BurnCurve* curve[kWidth<T>];
+  bool has_curves;  ///< of any lane
 };
+/// What a lane without a curve looks up.
+alignas(32) inline constexpr double kNoPiece[BurnCurve::kRowSize] = {};
 template <class T>
 DISPERSA_INLINE void SetLane(Burn<T>& b, int lane, const MotorBurn& burn) {
   Lane(b.vacuum_thrust_n, lane) = burn.vacuum_thrust_n;
@@ -73,12 +112,30 @@ DISPERSA_INLINE void SetLane(Burn<T>& b, int lane, const MotorBurn& burn) {
   Lane(b.tail_s, lane) = burn.tail_s;
   Lane(b.tail_slope_1_s, lane) = burn.tail_s > 0.0 ? 1.0 / burn.tail_s : 0.0;
   Lane(b.tail_base, lane) = burn.tail_s > 0.0 ? 0.0 : 1.0;
+  Lane(b.left_kg, lane) = burn.left_kg;
+  b.curve[lane] = burn.curve.get();
+  Lane(b.curve_rate, lane) = b.curve[lane] ? burn.curve_rate : 0.0;
+  Lane(b.curve_flow_kg_s, lane) = b.curve[lane] ? burn.full_flow_kg_s / burn.curve_rate : 0.0;
+  b.has_curves = false;
+  for (int i = 0; i < kWidth<T>; ++i) b.has_curves |= b.curve[i] != nullptr;
 }
 
-/// Fraction of full thrust and flow, and propellant left, at a time within the burn.
+/// The piece of a curve that a time of the curve falls into.
+DISPERSA_INLINE const double* PieceAt(const BurnCurve* curve, double time_s) {
+  if (curve == nullptr) return kNoPiece;
+  const double* begin_s = curve->begin_s.data();
+  int low = 0, high = static_cast<int>(curve->begin_s.size());
+  while (high - low > 1) {
+    const int middle = (low + high) / 2;
+    (time_s < begin_s[middle] ? high : low) = middle;
+  }
+  return curve->rows.data() + BurnCurve::kRowSize * low;
+}
+
+/// Fractions of full thrust and of full flow, and propellant left, at a time within the burn.
 template <class T>
 struct BurnState {
-  T fraction, propellant_kg;
+  T fraction, flow_fraction, propellant_kg;
 };
 template <class T>
 DISPERSA_INLINE BurnState<T> BurnAt(const Burn<T>& b, T since_ignition_s) {
@@ -91,8 +148,25 @@ DISPERSA_INLINE BurnState<T> BurnAt(const Burn<T>& b, T since_ignition_s) {
   BurnState<T> state;
   state.fraction =
       Min(T(1.0), Min(Fma(since, b.rise_slope_1_s, b.rise_base), Fma(left, b.tail_slope_1_s, b.tail_base)));
+  state.flow_fraction = state.fraction;
   const T left_kg = b.propellant_kg - b.full_flow_kg_s * (full_s - lacking_s);
   state.propellant_kg = Select(left_kg < T(0.0), T(0.0), left_kg);
+  if (b.has_curves) {
+    const auto curved = b.curve_rate > T(0.0);
+    const T time_s = since * b.curve_rate;
+    const double* piece[kWidth<T>];
+    for (int lane = 0; lane < kWidth<T>; ++lane) piece[lane] = PieceAt(b.curve[lane], Lane(time_s, lane));
+    T row[BurnCurve::kRowSize];
+    LoadRow(piece, BurnCurve::kRowSize / 4, row);
+    const T from_s = time_s - row[0];
+    const T burnt_s = from_s * Fma(T(0.5) * from_s, row[5], row[4]);
+    const T curve_kg = Fma(-b.curve_flow_kg_s, burnt_s, b.propellant_kg * row[3]);
+    const T level = Max(Fma(from_s, row[2], row[1]), T(0.0));
+    const T flow_level = Max(Fma(from_s, row[5], row[4]), T(0.0));
+    state.fraction = Select(curved, level, state.fraction);
+    state.flow_fraction = Select(curved, flow_level, state.flow_fraction);
+    state.propellant_kg = Select(curved, Select(curve_kg < T(0.0), T(0.0), curve_kg), state.propellant_kg);
+  }
   return state;
 }
 

@@ -32,6 +32,32 @@ Tube TubeOf(const Jettison& jettison) {
           0.5 * jettison.outer_diameter_m, 0.5 * jettison.inner_diameter_m};
 }
 
+// Full tanks of a stage that does not burn: no moment of inertia about the axis (DrainingMass).
+void Add(const Tank& tank, StackMass& stack) {
+  const double radius2 = 0.25 * Square(tank.diameter_m);
+  const double height = tank.propellant_mass_kg / (tank.density_kg_m3 * kPi * radius2);
+  const double station = tank.bottom_station_m - 0.5 * height;
+  stack.fixed_mass_kg += tank.propellant_mass_kg;
+  stack.fixed_first_moment_kg_m += tank.propellant_mass_kg * station;
+  stack.fixed_second_moment_kg_m2 +=
+      tank.propellant_mass_kg * (0.25 * radius2 + Square(height) / 12.0 + Square(station));
+}
+
+DrainingMass Draining(const Stage& stage) {
+  DrainingMass sum;
+  for (const Tank& tank : stage.tanks) {
+    const double share = tank.propellant_mass_kg / stage.propellant_mass_kg, bottom = tank.bottom_station_m;
+    const double radius2 = 0.25 * Square(tank.diameter_m);
+    const double height_per_kg = share / (tank.density_kg_m3 * kPi * radius2);  // of the stage's propellant
+    sum.first_per_kg_m += share * bottom;
+    sum.first_per_kg2_m -= share * 0.5 * height_per_kg;
+    sum.second_per_kg_m2 += share * (Square(bottom) + 0.25 * radius2);
+    sum.second_per_kg2_m2 -= share * bottom * height_per_kg;
+    sum.second_per_kg3_m2 += share * Square(height_per_kg) / 3.0;
+  }
+  return sum;
+}
+
 }  // namespace
 
 MassProperties StackMass::At(double propellant_kg) const {
@@ -96,17 +122,24 @@ std::vector<StackMass> BuildStackMasses(const Vehicle& vehicle) {
             stack);
       for (const Jettison& jettison : stage.jettisoned) Add(TubeOf(jettison), stack);
       const Grain& g = stage.grain;
-      if (i > lowest)
+      for (const Tank& tank : stage.tanks)
+        if (i > lowest) Add(tank, stack);
+      if (i > lowest && !stage.is_liquid())
         Add({stage.propellant_mass_kg, g.top_station_m, g.bottom_station_m, 0.5 * g.outer_diameter_m,
              0.5 * g.inner_diameter_m},
             stack);
     }
     const Stage& burning = vehicle.stages[static_cast<std::size_t>(lowest)];
+    stack.propellant_mass_kg = burning.propellant_mass_kg;
+    if (burning.is_liquid()) {
+      stack.drains = true;
+      stack.tanks = Draining(burning);
+      continue;
+    }
     stack.grain_station_m = 0.5 * (burning.grain.top_station_m + burning.grain.bottom_station_m);
     stack.grain_length_m = burning.grain.bottom_station_m - burning.grain.top_station_m;
     stack.grain_outer_radius_m = 0.5 * burning.grain.outer_diameter_m;
     stack.grain_density_kg_m3 = PropellantDensity(burning);
-    stack.propellant_mass_kg = burning.propellant_mass_kg;
   }
   return stacks;
 }

@@ -17,7 +17,21 @@ struct MassProperties {
   double transverse_inertia_per_kg = 0.0;  ///< likewise, about the moving CG
 };
 
-/// Everything of a stack but the burning propellant, summed once, and the grain that burns.
+/// Liquids that drain, all in the same proportion (a constant mixture): polynomials of the mass m that is left.
+///
+/// In a cylinder of radius r, its bottom at station b, mass m_k = s_k m of density rho stands h = m_k / (rho pi r²)
+/// high. Its first moment about station 0 is m_k (b - h/2), its second m_k (b² - b h + h²/3 + r²/4): in pitch and
+/// yaw the liquid counts as if frozen, which is the most that it can resist; in roll as none at all, since a smooth
+/// wall does not turn an inviscid liquid. (H. N. Abramson (ed.), "The Dynamic Behavior of Liquids in Moving
+/// Containers", NASA SP-106, 1966, chapters 2 and 6: liquid that is free resists pitching less, by up to a half in
+/// a squat tank.) Sloshing is not in it.
+struct DrainingMass {
+  double first_per_kg_m = 0.0, first_per_kg2_m = 0.0;  ///< first moment m (a + b m)
+  /// Second moment m (a + b m + c m²).
+  double second_per_kg_m2 = 0.0, second_per_kg2_m2 = 0.0, second_per_kg3_m2 = 0.0;
+};
+
+/// Everything of a stack but the burning propellant, summed once, and the grain that burns, or the tanks that drain.
 ///
 /// The grain burns from its bore outwards at constant length: with rho the propellant's density,
 /// r_i² = r_o² - m / (pi rho L); its inertias are those of a tube. Parallel axes by Huygens and Steiner.
@@ -31,6 +45,8 @@ struct StackMass {
   double grain_outer_radius_m = 0.0;
   double grain_density_kg_m3 = 0.0;
   double propellant_mass_kg = 0.0;           ///< at ignition
+  bool drains = false;                       ///< tanks in place of the grain
+  DrainingMass tanks;
 
   MassProperties At(double propellant_kg) const;
 };
@@ -53,7 +69,7 @@ StackMass Without(StackMass stack, int lowest_stage, const std::vector<Jettisone
 
 /// Dry mass of a stage: its lift-off mass less what is above, its propellant and what it jettisons.
 double DryMass(const Vehicle& vehicle, int stage);
-/// Propellant density that the grain's volume implies, kg/m³.
+/// Propellant density that the grain's volume implies, kg/m³; of a solid motor.
 double PropellantDensity(const Stage& stage);
 /// One entry a stack; stack i has stages i, i+1, ... attached, with everything that they carry at lift-off.
 std::vector<StackMass> BuildStackMasses(const Vehicle& vehicle);

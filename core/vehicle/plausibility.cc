@@ -29,7 +29,9 @@ struct Subject {
   const Vehicle& vehicle;
   const std::vector<StageFigures>& figures;
   std::size_t index = 0;
+  std::size_t part = 0;  ///< tank of the stage
 
+  const Tank& tank() const { return stage().tanks[part]; }
   const Stage& stage() const { return vehicle.stages[index]; }
   const StageFigures& figure() const { return figures[index]; }
   bool is_last() const { return index + 1 == vehicle.stages.size(); }
@@ -69,7 +71,34 @@ constexpr Check kStageChecks[] = {
      "200 to 410 s of solid and liquid rockets: Sutton and Biblarz, Rocket Propulsion Elements, 7th ed., "
      "table 2-1; "
      "465 s of hydrogen stages in vacuum; combustion never gave more than 550 s, reactors 900 s",
-     [](const Subject& s) { return s.figure().specific_impulse_s; }},
+     [](const Subject& s) { return s.stage().is_liquid() ? kNothing : s.figure().specific_impulse_s; }},
+    {"motor.liquid.specific_impulse_s",
+     "is",
+     "s",
+     {0.0, 1000.0},
+     {200.0, 470.0},
+     "in vacuum 220 to 240 s of hydrazine alone, 280 to 330 s of storable pairs, 300 to 360 s of oxygen with "
+     "kerosene, to 465 s with hydrogen; combustion never gave more than 550 s, reactors 900 s",
+     [](const Subject& s) { return s.stage().is_liquid() ? s.figure().specific_impulse_s : kNothing; }},
+    {"motor.liquid.residual_mass_kg",
+     "is, as part of the propellant,",
+     "",
+     kAnything,
+     {0.0, 0.05},
+     "0.5 to 3 % of a liquid stage's propellant stays in tanks and lines",
+     [](const Subject& s) { return s.stage().motor.residual_mass_kg / s.stage().propellant_mass_kg; }},
+    {"tanks",
+     "take together, as part of the stage's diameter_m from its bottom to the next stage's,",
+     "",
+     {0.0, 1.0},
+     {0.1, 0.95},
+     "the tanks are inside the stage",
+     [](const Subject& s) {
+       if (!s.stage().is_liquid()) return kNothing;
+       double volume_m3 = 0.0, top_m = s.is_last() ? 0.0 : s.vehicle.stages[s.index + 1].bottom_station_m;
+       for (const Tank& tank : s.stage().tanks) volume_m3 += tank.Volume();
+       return volume_m3 / (0.25 * kPi * Square(s.stage().diameter_m) * (s.stage().bottom_station_m - top_m));
+     }},
     {"motor.thrust_n",
      "implies a thrust to weight at lift-off of",
      "",
@@ -85,7 +114,7 @@ constexpr Check kStageChecks[] = {
      "small liquid upper stages from 0.08, solid ones to 8",
      [](const Subject& s) { return s.index > 0 ? s.figure().thrust_to_weight : kNothing; }},
     {"motor.thrust_n",
-     "implies at burnout a load of",
+     "implies towards burnout a load of",
      "g",
      kAnything,
      {0.05, 20.0},
@@ -111,23 +140,25 @@ constexpr Check kStageChecks[] = {
      kAnything,
      {1500.0, 1950.0},
      "solid propellants: Sutton and Biblarz, table 12-1",
-     [](const Subject& s) { return PropellantDensity(s.stage()); }},
+     [](const Subject& s) { return s.stage().is_liquid() ? kNothing : PropellantDensity(s.stage()); }},
     {"grain.outer_diameter_m",
      "is, as part of the stage's diameter_m,",
      "",
      {0.0, 1.0},
      {0.5, 1.0},
      "the propellant is inside",
-     [](const Subject& s) { return s.stage().grain.outer_diameter_m / s.stage().diameter_m; }},
+     [](const Subject& s) {
+       return s.stage().is_liquid() ? kNothing : s.stage().grain.outer_diameter_m / s.stage().diameter_m;
+     }},
     {"diameter_m",
-     "is, as part of the profile's largest diameter about this stage's grain,",
+     "is, as part of the profile's largest diameter about this stage's propellant,",
      "",
      kAnything,
      {0.4, 1.02},
      "1 where the case is the skin, less inside a wider fairing",
      [](const Subject& s) {
-       const Grain& grain = s.stage().grain;
-       const double widest_m = WidestDiameter(s.vehicle, grain.top_station_m, grain.bottom_station_m);
+       const double widest_m =
+           WidestDiameter(s.vehicle, s.stage().PropellantTop(), s.stage().PropellantBottom());
        return widest_m > 0.0 ? s.stage().diameter_m / widest_m : kNothing;
      }},
     {"motor.nozzle_exit_area_m2",
@@ -167,6 +198,30 @@ constexpr Check kStageChecks[] = {
        if (!s.stage().gimbal.nozzles.empty()) return kNothing;
        return s.stage().gimbal.radius_m / (0.5 * s.stage().diameter_m);
      }},
+};
+
+constexpr Check kTankChecks[] = {
+    {"density_kg_m3",
+     "is",
+     "kg/m3",
+     kAnything,
+     {60.0, 1700.0},
+     "liquid hydrogen 71, kerosene 810, oxygen 1141, nitrogen tetroxide 1443 kg/m3",
+     [](const Subject& s) { return s.tank().density_kg_m3; }},
+    {"propellant_mass_kg",
+     "fills of the tank",
+     "",
+     kAnything,
+     {0.5, 0.99},
+     "a few per cent of a tank are left to the gas that presses the liquid out",
+     [](const Subject& s) { return s.tank().propellant_mass_kg / (s.tank().density_kg_m3 * s.tank().Volume()); }},
+    {"diameter_m",
+     "is, as part of the stage's diameter_m,",
+     "",
+     {0.0, 1.0},
+     {0.2, 1.0},
+     "the tank is inside the stage",
+     [](const Subject& s) { return s.tank().diameter_m / s.stage().diameter_m; }},
 };
 
 constexpr Check kNozzleChecks[] = {
@@ -260,6 +315,14 @@ std::string SpanText(const Span& span, const std::string& unit) {
   return Readable(span.low) + " to " + Readable(span.high) + end;
 }
 
+// A thrust curve or an engine stands in the place of the thrust.
+std::string PathOf(const Check& check, const Subject& subject) {
+  const std::string field = check.field;
+  if (field != "motor.thrust_n") return field;
+  if (subject.stage().is_liquid()) return "motor.liquid.thrust_n";
+  return subject.stage().motor.thrust_curve.empty() ? field : "motor.thrust_curve";
+}
+
 template <std::size_t N>
 void Apply(const Check (&checks)[N], const Subject& subject, const std::string& prefix,
            std::vector<PlausibilityFinding>& findings) {
@@ -270,7 +333,7 @@ void Apply(const Check (&checks)[N], const Subject& subject, const std::string& 
     if (!beyond && check.usual.Holds(value)) continue;
     const bool impossible = beyond && !subject.vehicle.made_up;
     const std::string unit = check.unit;
-    findings.push_back({prefix + check.field,
+    findings.push_back({prefix + PathOf(check, subject),
                         std::string(check.implies) + " " + Readable(value) +
                             (unit.empty() ? "" : " " + unit) + (impossible ? ", which cannot be" : ""),
                         SpanText(impossible ? check.possible : check.usual, unit) + " (" + check.source + ")",
@@ -286,6 +349,8 @@ std::vector<PlausibilityFinding> Plausibility(const Vehicle& vehicle) {
   for (std::size_t i = 0; i < vehicle.stages.size(); ++i) {
     const std::string index = "[" + std::to_string(i) + "].";
     Apply(kStageChecks, {vehicle, figures, i}, "stages" + index, findings);
+    for (std::size_t k = 0; k < vehicle.stages[i].tanks.size(); ++k)
+      Apply(kTankChecks, {vehicle, figures, i, k}, "stages" + index + "tanks[" + std::to_string(k) + "].", findings);
     if (vehicle.stages[i].gimbal.nozzle_mass_kg > 0.0)
       Apply(kNozzleChecks, {vehicle, figures, i}, "nozzles" + index, findings);
   }

@@ -1,6 +1,9 @@
 #include "core/vehicle/propulsion.h"
 
+#include <algorithm>
+
 #include "core/vehicle/burning_stack.h"
+#include "core/vehicle/throttled_burn.h"
 
 namespace dispersa {
 
@@ -20,9 +23,38 @@ double MotorBurn::Fraction(double since_ignition_s) const {
 
 double MotorBurn::Propellant(double since_ignition_s) const { return At(*this, since_ignition_s).propellant_kg; }
 
+double MotorBurn::ExhaustVelocity() const {
+  const double at_full_thrust_m_s = vacuum_thrust_n / full_flow_kg_s;
+  return curve ? at_full_thrust_m_s * curve->impulse_per_flow : at_full_thrust_m_s;
+}
+
+std::vector<double> MotorBurn::Kinks(double ignition_s) const {
+  const double burnout_s = ignition_s + duration_s;
+  std::vector<double> kinks;
+  const auto add = [&](double kink_s) {
+    if (kink_s > ignition_s && kink_s < burnout_s) kinks.push_back(kink_s);
+  };
+  if (curve) {
+    for (const double begin_s : curve->begin_s) add(ignition_s + begin_s / curve_rate);
+  } else {
+    add(ignition_s + rise_s);
+    add(burnout_s - tail_s);
+    std::sort(kinks.begin(), kinks.end());
+  }
+  return kinks;
+}
+
 MotorBurn BuildBurn(const Stage& stage, double thrust_factor, double flow_factor) {
+  const ThrustCurve& curve = stage.motor.thrust_curve;
+  return BuildBurn(stage, thrust_factor, flow_factor,
+                   curve.empty() ? nullptr : std::make_shared<const BurnCurve>(Prepare(curve)));
+}
+
+MotorBurn BuildBurn(const Stage& stage, double thrust_factor, double flow_factor,
+                    std::shared_ptr<const BurnCurve> curve) {
   const Motor& motor = stage.motor;
   MotorBurn burn;
+  if (stage.is_liquid()) curve = nullptr;
   burn.vacuum_thrust_n = motor.thrust_n * thrust_factor;
   burn.full_flow_kg_s = stage.propellant_mass_kg / motor.burning_time_s * flow_factor;
   burn.propellant_mass_kg = stage.propellant_mass_kg;
@@ -31,6 +63,17 @@ MotorBurn BuildBurn(const Stage& stage, double thrust_factor, double flow_factor
   burn.exit_area_m2 = motor.nozzle_exit_area_m2;
   // The area under the trapezoid is the propellant: two half ramps lengthen the burn.
   burn.duration_s = stage.propellant_mass_kg / burn.full_flow_kg_s + 0.5 * (burn.rise_s + burn.tail_s);
+  if (curve) {
+    burn.curve_rate = flow_factor;
+    burn.duration_s = curve->end_s / flow_factor;
+    burn.curve = std::move(curve);
+  }
+  if (stage.is_liquid()) {
+    const ThrottledBurn throttled = Throttled(motor, burn.propellant_mass_kg, burn.full_flow_kg_s);
+    burn.duration_s = throttled.curve.end_s;
+    burn.left_kg = throttled.left_kg;
+    burn.curve = std::make_shared<const BurnCurve>(throttled.curve);
+  }
   return burn;
 }
 

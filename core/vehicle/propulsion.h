@@ -1,9 +1,16 @@
 // A motor's thrust, flow and remaining propellant in closed form over the time since ignition.
 #pragma once
 
+#include <memory>
+#include <vector>
+
 #include "core/vehicle/vehicle.h"
 
 namespace dispersa {
+
+/// Of full thrust: below it a motor has little say in attitude control. An autopilot that knows a thrust
+/// curve raises its commands no further, and no margins are taken.
+inline constexpr double kLeastThrustFraction = 0.2;
 
 /// A motor as one flight burns it: nominal data times the flight's factors.
 struct MotorBurn {
@@ -14,14 +21,28 @@ struct MotorBurn {
   double tail_s = 0.0;
   double exit_area_m2 = 0.0;
   double duration_s = 0.0;         ///< ignition to burnout
+  double left_kg = 0.0;            ///< of the propellant, then
+  /// In place of the ramps, at the flight's rate: its time runs so many times as fast as the file's.
+  std::shared_ptr<const BurnCurve> curve;
+  double curve_rate = 1.0;
 
   /// Fraction of full thrust and flow, 0 outside [0, duration_s].
   double Fraction(double since_ignition_s) const;
-  /// Propellant left, from propellant_mass_kg to 0.
+  /// Propellant left, from propellant_mass_kg to left_kg.
   double Propellant(double since_ignition_s) const;
+  /// Impulse over propellant, m/s.
+  double ExhaustVelocity() const;
+  /// Times within the burn of a motor ignited at ignition_s at which the thrust bends, in their order: no
+  /// integration step may go across.
+  std::vector<double> Kinks(double ignition_s) const;
 };
 
-/// The burn with thrust and flow multiplied; ramps keep their durations, propellant is conserved.
+/// The burn with thrust and flow multiplied; propellant is conserved. Ramps keep their durations; a thrust
+/// curve is drawn together in time by the flow's factor. `curve`: that of the stage, prepared, or null. A throttle
+/// keeps its times, being commanded, and depletion comes when it comes.
+MotorBurn BuildBurn(const Stage& stage, double thrust_factor, double flow_factor,
+                    std::shared_ptr<const BurnCurve> curve);
+/// The same, preparing the curve if the stage has one.
 MotorBurn BuildBurn(const Stage& stage, double thrust_factor, double flow_factor);
 
 }  // namespace dispersa

@@ -123,8 +123,10 @@ class Checker {
     const std::string beam = "the beam, which reaches from station " + std::to_string(top) + " m to " +
                              std::to_string(bottom) + " m";
     const Stage& stage = vehicle_.stages[i];
-    if (!inside(stage.grain.top_station_m, stage.grain.bottom_station_m))
-      Add(path + ".sections", "the stage's grain lies outside of " + beam, "sections along the whole grain");
+    if (!inside(stage.PropellantTop(), stage.PropellantBottom()))
+      Add(path + ".sections",
+          "the stage's " + std::string(stage.is_liquid() ? "tanks lie" : "grain lies") + " outside of " + beam,
+          stage.is_liquid() ? "sections along all tanks" : "sections along the whole grain");
     for (std::size_t k = 0; k < beam_.stages[i].lumped_masses.size(); ++k) {
       const LumpedMass& lump = beam_.stages[i].lumped_masses[k];
       if (!inside(lump.station_m, lump.station_m))

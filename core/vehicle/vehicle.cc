@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/math/constants.h"
+#include "core/math/functions.h"
 #include "core/math/table.h"
 #include "core/vehicle/mass.h"
 #include "core/vehicle/mould_line.h"
@@ -41,18 +43,116 @@ void CheckTube(const std::string& path, double top, double bottom, double outer,
                 "lies aft of the stage's bottom_station_m", "at most bottom_station_m of the stage");
 }
 
+// Engine and tanks of a liquid stage.
+void CheckLiquid(const Stage& stage, const std::string& path, Checker& check) {
+  const Motor& motor = stage.motor;
+  check.Require(motor.ignition_rise_s == 0.0 && motor.tail_off_s == 0.0 && motor.thrust_curve.empty(), path + ".motor",
+                "has ramps or a thrust curve beside tanks", "a throttle, of a liquid stage");
+  const Throttle& throttle = motor.throttle;
+  const std::string table = path + ".motor.liquid.throttle";
+  check.Require(throttle.time_s.size() == throttle.level.size() && throttle.time_s.size() != 1 &&
+                    throttle.time_s.size() <= kThrustCurveCorners,
+                table,
+                "has " + std::to_string(throttle.time_s.size()) + " times and " +
+                    std::to_string(throttle.level.size()) + " levels",
+                "as many of both, 2 to " + std::to_string(kThrustCurveCorners));
+  if (throttle.time_s.size() != throttle.level.size()) return;
+  for (std::size_t i = 0; i < throttle.time_s.size(); ++i) {
+    const std::string index = "[" + std::to_string(i) + "]";
+    check.Require(i == 0 ? throttle.time_s[0] == 0.0 : throttle.time_s[i] > throttle.time_s[i - 1],
+                  table + ".time_s" + index, i == 0 ? "is not the ignition" : "is not later than the time before it",
+                  i == 0 ? "0 as the first time" : "times that increase");
+    check.Require(throttle.level[i] >= 0.0 && throttle.level[i] <= 1.0, table + ".level_percent" + index,
+                  "is out of range", "0 to full thrust");
+  }
+  check.Require(throttle.empty() || *std::max_element(throttle.level.begin(), throttle.level.end()) > 0.0, table,
+                "gives no thrust", "a level above 0 somewhere");
+  if (motor.cut_off == CutOff::kTime) check.Positive(motor.cut_off_s, path + ".motor.liquid.cut_off.after_s");
+  check.Require(motor.residual_mass_kg >= 0.0 && motor.residual_mass_kg < stage.propellant_mass_kg,
+                path + ".motor.liquid.residual_mass_kg", "leaves nothing to burn", "0 to below propellant_mass_kg");
+  double sum_kg = 0.0;
+  for (std::size_t k = 0; k < stage.tanks.size(); ++k) {
+    const Tank& tank = stage.tanks[k];
+    const std::string at = path + ".tanks[" + std::to_string(k) + "]";
+    check.Positive(tank.propellant_mass_kg, at + ".propellant_mass_kg");
+    check.Positive(tank.density_kg_m3, at + ".density_kg_m3");
+    check.Positive(tank.diameter_m, at + ".diameter_m");
+    check.NotNegative(tank.top_station_m, at + ".top_station_m");
+    check.Require(tank.bottom_station_m > tank.top_station_m, at + ".bottom_station_m", "is not aft of top_station_m",
+                  "a station larger than top_station_m");
+    check.Require(tank.bottom_station_m <= stage.bottom_station_m, at + ".bottom_station_m",
+                  "lies aft of the stage's bottom_station_m", "at most bottom_station_m of the stage");
+    sum_kg += tank.propellant_mass_kg;
+    if (!(tank.diameter_m > 0.0 && tank.density_kg_m3 > 0.0 && tank.bottom_station_m > tank.top_station_m)) continue;
+    const double volume_m3 = tank.propellant_mass_kg / tank.density_kg_m3;
+    check.Require(volume_m3 <= tank.Volume(), at + ".propellant_mass_kg",
+                  "takes " + std::to_string(volume_m3) + " m3, the tank has " + std::to_string(tank.Volume()),
+                  "at most what the tank holds, " + std::to_string(tank.Volume() * tank.density_kg_m3) + " kg");
+  }
+  // Masses are written with a few digits.
+  check.Require(std::fabs(sum_kg - stage.propellant_mass_kg) <= 1e-6 * stage.propellant_mass_kg,
+                path + ".propellant_mass_kg",
+                "is " + std::to_string(stage.propellant_mass_kg) + ", the tanks hold " + std::to_string(sum_kg),
+                "the sum of the tanks' propellant_mass_kg");
+}
+
+// The same of a file's curve, whose reader sets thrust and burning time by it, and of one set in code.
+void CheckThrustCurve(const Stage& stage, const std::string& path, Checker& check) {
+  const Motor& motor = stage.motor;
+  const ThrustCurve& curve = motor.thrust_curve;
+  const auto at = [&](const char* column, std::size_t i) {
+    return path + ".thrust_curve.table." + column + "[" + std::to_string(i) + "]";
+  };
+  check.Require(curve.time_s.size() == curve.thrust_n.size() && curve.time_s.size() >= 2 &&
+                    curve.time_s.size() <= kThrustCurveCorners,
+                path + ".thrust_curve",
+                "has " + std::to_string(curve.time_s.size()) + " times and " +
+                    std::to_string(curve.thrust_n.size()) + " thrusts",
+                "as many of both, 2 to " + std::to_string(kThrustCurveCorners));
+  if (curve.time_s.size() != curve.thrust_n.size() || curve.time_s.size() < 2) return;
+  check.Require(curve.time_s[0] == 0.0, at("time_s", 0), "is not the ignition", "0 as the first time");
+  for (std::size_t i = 1; i < curve.time_s.size(); ++i)
+    check.Require(curve.time_s[i] > curve.time_s[i - 1], at("time_s", i),
+                  "is not later than the time before it", "times that increase");
+  for (std::size_t i = 0; i < curve.thrust_n.size(); ++i)
+    check.NotNegative(curve.thrust_n[i], at("thrust_n", i));
+  check.Require(curve.Greatest() > 0.0, path + ".thrust_curve", "has no thrust",
+                "a thrust above 0 somewhere");
+  check.Require(motor.ignition_rise_s == 0.0 && motor.tail_off_s == 0.0, path + ".thrust_curve",
+                "stands beside ramps", "no ignition_rise_* and tail_off_*");
+  if (curve.flow_kg_s.empty()) return;
+  check.Require(curve.flow_kg_s.size() == curve.time_s.size(), path + ".thrust_curve",
+                "has " + std::to_string(curve.flow_kg_s.size()) + " mass flows for " +
+                    std::to_string(curve.time_s.size()) + " times",
+                "as many of both");
+  if (curve.flow_kg_s.size() != curve.time_s.size()) return;
+  for (std::size_t i = 0; i < curve.flow_kg_s.size(); ++i)
+    check.NotNegative(curve.flow_kg_s[i], at("mass_flow_kg_s", i));
+  const double flown_kg = curve.Flown();
+  check.Require(std::fabs(flown_kg - stage.propellant_mass_kg) <= kFlowSumTolerance * stage.propellant_mass_kg,
+                path + ".thrust_curve.table.mass_flow_kg_s",
+                "flows " + std::to_string(flown_kg) + " kg in all, but propellant_mass_kg is " +
+                    std::to_string(stage.propellant_mass_kg),
+                "flows that sum up to the propellant within 1 %");
+}
+
 void CheckStage(const Vehicle& vehicle, std::size_t i, Checker& check) {
   const Stage& stage = vehicle.stages[i];
   const std::string path = "stages[" + std::to_string(i) + "]";
   check.Positive(stage.liftoff_mass_kg, path + ".liftoff_mass_kg");
   check.Positive(stage.propellant_mass_kg, path + ".propellant_mass_kg");
   check.Positive(stage.diameter_m, path + ".diameter_m");
-  check.Positive(stage.motor.thrust_n, path + ".motor.thrust_n");
-  check.Positive(stage.motor.burning_time_s, path + ".motor.burning_time_s");
+  if (!stage.motor.thrust_curve.empty()) {
+    CheckThrustCurve(stage, path + ".motor", check);
+  } else {
+    check.Positive(stage.motor.thrust_n, path + ".motor.thrust_n");
+    check.Positive(stage.motor.burning_time_s, path + ".motor.burning_time_s");
+  }
   check.NotNegative(stage.motor.ignition_rise_s, path + ".motor.ignition_rise_s");
   check.NotNegative(stage.motor.tail_off_s, path + ".motor.tail_off_s");
   check.NotNegative(stage.motor.nozzle_exit_area_m2, path + ".motor.nozzle_exit_area_m2");
-  check.Require(0.5 * (stage.motor.ignition_rise_s + stage.motor.tail_off_s) < stage.motor.burning_time_s,
+  check.Require(!stage.motor.thrust_curve.empty() ||
+                    0.5 * (stage.motor.ignition_rise_s + stage.motor.tail_off_s) < stage.motor.burning_time_s,
                 path + ".motor.tail_off_s", "leaves no time at full thrust",
                 "ramps that are together shorter than twice burning_time_s");
   if (i > 0)
@@ -66,13 +166,19 @@ void CheckStage(const Vehicle& vehicle, std::size_t i, Checker& check) {
                     std::to_string(dry) + " kg",
                 "less propellant than the stage's own mass");
 
-  const Grain& g = stage.grain;
-  CheckTube(path + ".grain", g.top_station_m, g.bottom_station_m, g.outer_diameter_m, g.inner_diameter_m,
-            stage.bottom_station_m, check);
-  const double density = PropellantDensity(stage);
-  check.Require(density > 0.0 && density < 2100.0, path + ".grain",
-                "implies a propellant density of " + std::to_string(density) + " kg/m3",
-                "a volume that gives less than 2100 kg/m3");
+  double density = 0.0;
+  if (stage.is_liquid()) {
+    CheckLiquid(stage, path, check);
+    density = stage.tanks[0].density_kg_m3;
+  } else {
+    const Grain& g = stage.grain;
+    CheckTube(path + ".grain", g.top_station_m, g.bottom_station_m, g.outer_diameter_m, g.inner_diameter_m,
+              stage.bottom_station_m, check);
+    density = PropellantDensity(stage);
+    check.Require(density > 0.0 && density < 2100.0, path + ".grain",
+                  "implies a propellant density of " + std::to_string(density) + " kg/m3",
+                  "a volume that gives less than 2100 kg/m3");
+  }
 
   double fractions = 0.0;
   for (std::size_t k = 0; k < stage.structure.size(); ++k) {
@@ -113,8 +219,11 @@ void CheckStage(const Vehicle& vehicle, std::size_t i, Checker& check) {
   below_limit(gimbal.resolution_rad, "resolution_deg");
   if (dry > 0.0 && fractions > 0.0 && density > 0.0) {
     const StackMass stack = BuildStackMasses(vehicle)[i];
-    const double aftmost =
-        std::max(stack.At(stack.propellant_mass_kg).cg_station_m, stack.At(0.0).cg_station_m);
+    // As tanks drain, it may be farthest aft in between.
+    constexpr int kParts = 16;
+    double aftmost = 0.0;
+    for (int part = 0; part <= kParts; ++part)
+      aftmost = std::max(aftmost, stack.At(stack.propellant_mass_kg * part / kParts).cg_station_m);
     check.Require(aftmost < gimbal.pivot_station_m, path + ".gimbal.pivot_station_m",
                   "is not aft of the centre of gravity, which reaches station " + std::to_string(aftmost) +
                       " m",
@@ -201,6 +310,30 @@ std::vector<VehicleProblem> Problems(const Vehicle& vehicle) {
                           "reaction_control, or nozzles that command roll"});
   if (problems.empty() && vehicle.structure_beam) problems = BeamProblems(vehicle);
   return problems;
+}
+
+double Tank::Volume() const {
+  return 0.25 * kPi * Square(diameter_m) * (bottom_station_m - top_station_m);
+}
+
+double Stage::PropellantTop() const {
+  if (!is_liquid()) return grain.top_station_m;
+  double top_m = tanks[0].top_station_m;
+  for (const Tank& tank : tanks) top_m = std::min(top_m, tank.top_station_m);
+  return top_m;
+}
+
+double Stage::PropellantBottom() const {
+  if (!is_liquid()) return grain.bottom_station_m;
+  double bottom_m = tanks[0].bottom_station_m;
+  for (const Tank& tank : tanks) bottom_m = std::max(bottom_m, tank.bottom_station_m);
+  return bottom_m;
+}
+
+void SetThrustCurve(ThrustCurve curve, Motor& motor) {
+  motor.thrust_n = curve.Greatest();
+  motor.burning_time_s = curve.FullFlowTime();
+  motor.thrust_curve = std::move(curve);
 }
 
 }  // namespace dispersa

@@ -13,6 +13,7 @@
 #include "core/math/table.h"
 #include "core/vehicle/nozzle_layout.h"
 #include "core/vehicle/structure_beam.h"
+#include "core/vehicle/thrust_curve.h"
 
 namespace dispersa {
 
@@ -37,16 +38,51 @@ struct Grain {
   double inner_diameter_m = 0.0;  ///< of the bore at ignition
 };
 
-/// Constant thrust between two linear ramps whose impulse is part of the whole: propellant flow is
-/// proportional to thrust, and the propellant is used up exactly at burnout.
+/// Liquid propellant in an upright cylinder with flat ends, round the axis. It drains at the bottom: the liquid stands
+/// there, and its surface falls.
+struct Tank {
+  std::string name;
+  double top_station_m = 0.0;
+  double bottom_station_m = 0.0;
+  double diameter_m = 0.0;  ///< inside
+  double propellant_mass_kg = 0.0;  ///< at ignition, with what stays as residual
+  double density_kg_m3 = 0.0;
+
+  double Volume() const;  ///< m³, of the tank
+};
+
+/// What the engine of a liquid stage does by command: thrust as a part of its full one over the time since ignition,
+/// linear between the times, and when it ends. Thrust and flow are in proportion whatever the level.
+struct Throttle {
+  std::vector<double> time_s;  ///< from 0, each larger than the one before; empty: full thrust throughout
+  std::vector<double> level;   ///< 0 to 1; the last one holds. A last one of 0 ends the burn
+
+  bool empty() const { return time_s.empty(); }
+};
+enum class CutOff {
+  kDepletion,  ///< when all but the residual has flown
+  kTime,       ///< `cut_off_s` after ignition, or by depletion if that comes first
+};
+
+/// Constant thrust between two linear ramps whose impulse is part of the whole, or a thrust curve: propellant
+/// flow is proportional to thrust, unless the curve gives it, and the propellant is used up exactly at burnout.
 struct Motor {
-  double thrust_n = 0.0;            ///< all four nozzles together (the paper's 4P), in vacuum
+  double thrust_n = 0.0;  ///< all four nozzles together (the paper's 4P), in vacuum; of a curve the greatest
   double burning_time_s = 0.0;      ///< propellant_mass / burning_time is the flow at full thrust
   double ignition_rise_s = 0.0;     ///< linear rise to full thrust
   double tail_off_s = 0.0;          ///< linear decay at the end
   double nozzle_exit_area_m2 = 0.0; ///< of all nozzles; P = P_vac - p A_e; 0 switches the term off
   double published_mass_flow_kg_s = 0.0;  ///< as printed in the source, 0 if none; only compared
+  ThrustCurve thrust_curve;               ///< empty: none. Sets thrust_n and burning_time_s; without ramps
+  // Of a liquid stage; without ramps and curve. thrust_n is at full thrust, burning_time_s what all propellant would
+  // last at that.
+  Throttle throttle = {};
+  CutOff cut_off = CutOff::kDepletion;
+  double cut_off_s = 0.0;
+  double residual_mass_kg = 0.0;  ///< of the propellant: never flows
 };
+/// Gives a motor a curve, and the greatest thrust and the time that its propellant would last at the greatest flow.
+void SetThrustCurve(ThrustCurve curve, Motor& motor);
 
 /// One nozzle of a list (core/vehicle/nozzle_layout.h).
 struct Nozzle {
@@ -115,13 +151,19 @@ struct Stage {
   double diameter_m = 0.0;
   double bottom_station_m = 0.0;    ///< where the stack ends while this stage is its lowest
   Motor motor;
-  Grain grain;
+  Grain grain;               ///< of a solid motor
+  std::vector<Tank> tanks;   ///< of a liquid stage, else empty; their propellant is the stage's
   std::vector<MassElement> structure;  ///< the dry mass; the fractions sum to 1
   std::vector<Jettison> jettisoned;
   Gimbal gimbal;
   IgnitionTrigger ignition = IgnitionTrigger::kLiftOff;
   double ignition_delay_s = 0.0;    ///< after separation of the stage below (kBurnoutDetection)
   double separation_delay_s = 0.0;  ///< after burnout detection; the last stage does not separate
+
+  bool is_liquid() const { return !tanks.empty(); }
+  /// Where its propellant is, of all tanks together.
+  double PropellantTop() const;
+  double PropellantBottom() const;
 };
 
 /// Cold-gas couples about each axis, on the stack of the last stage: torque without net force.

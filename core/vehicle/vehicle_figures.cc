@@ -15,27 +15,54 @@ double SitePressure(double altitude_m) {
   return 101325.0 * Pow(1.0 - 6.5e-3 / 288.15 * std::min(altitude_m, 11000.0), 5.25588);
 }
 
+namespace {
+
+// Of a burn; the ramps of a motor without curve are held to last no time.
+double GreatestOfFirstSecond(const MotorBurn& burn, double from_s) {
+  if (!burn.curve) return burn.vacuum_thrust_n;
+  double level = std::max(burn.Fraction(from_s), burn.Fraction(from_s + 1.0));
+  for (const double kink_s : burn.Kinks(0.0))
+    if (kink_s > from_s && kink_s < from_s + 1.0) level = std::max(level, burn.Fraction(kink_s));
+  return burn.vacuum_thrust_n * level;
+}
+
+// At corners of the curve: between them it grows no further than by a piece's curvature.
+double GreatestLoad_m_s2(const MotorBurn& burn, double empty_kg) {
+  if (!burn.curve) return burn.vacuum_thrust_n / empty_kg;
+  double greatest = 0.0;
+  std::vector<double> corners = burn.Kinks(0.0);
+  corners.insert(corners.end(), {0.0, burn.duration_s});
+  for (const double at_s : corners)
+    greatest = std::max(greatest, burn.vacuum_thrust_n * burn.Fraction(at_s) / (empty_kg + burn.Propellant(at_s)));
+  return greatest;
+}
+
+}  // namespace
+
 std::vector<StageFigures> FiguresOf(const Vehicle& vehicle) {
   std::vector<StageFigures> all;
   for (std::size_t i = 0; i < vehicle.stages.size(); ++i) {
     const Stage& stage = vehicle.stages[i];
-    const double thrust_n = stage.motor.thrust_n;
+    const MotorBurn burn = BuildBurn(stage, 1.0, 1.0);
     const double empty_kg = stage.liftoff_mass_kg - stage.propellant_mass_kg;
+    const double burnt_kg = stage.propellant_mass_kg - burn.left_kg;
     StageFigures one;
     one.dry_mass_kg = DryMass(vehicle, static_cast<int>(i));
     one.own_mass_kg = one.dry_mass_kg + stage.propellant_mass_kg;
     one.structural_fraction = one.dry_mass_kg / one.own_mass_kg;
-    one.flow_kg_s = stage.propellant_mass_kg / stage.motor.burning_time_s;
-    one.specific_impulse_s = thrust_n / (one.flow_kg_s * kStandardGravity);
-    one.ideal_delta_v_m_s = thrust_n / one.flow_kg_s * Log(stage.liftoff_mass_kg / empty_kg);
+    one.burning_time_s = burn.curve ? burn.duration_s : stage.motor.burning_time_s;
+    one.flow_kg_s = burnt_kg / one.burning_time_s;
+    one.specific_impulse_s = burn.ExhaustVelocity() / kStandardGravity;
+    one.ideal_delta_v_m_s = burn.ExhaustVelocity() * Log(stage.liftoff_mass_kg / (stage.liftoff_mass_kg - burnt_kg));
+    const double thrust_n = GreatestOfFirstSecond(burn, i == 0 ? vehicle.hold_down_s : 0.0);
     if (i == 0) {
-      const double released_kg = empty_kg + BuildBurn(stage, 1.0, 1.0).Propellant(vehicle.hold_down_s);
+      const double released_kg = empty_kg + burn.Propellant(vehicle.hold_down_s);
       const double against_air_n = SitePressure(vehicle.site.altitude_m) * stage.motor.nozzle_exit_area_m2;
       one.thrust_to_weight = (thrust_n - against_air_n) / (released_kg * kStandardGravity);
     } else {
       one.thrust_to_weight = thrust_n / (stage.liftoff_mass_kg * kStandardGravity);
     }
-    one.burnout_load_g = thrust_n / (empty_kg * kStandardGravity);
+    one.burnout_load_g = GreatestLoad_m_s2(burn, empty_kg) / kStandardGravity;
     all.push_back(one);
   }
   return all;

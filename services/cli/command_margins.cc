@@ -31,6 +31,7 @@ struct MarginsOptions {
 struct MarginsResult {
   std::string autopilot;
   std::vector<ComputedMargins> computed;
+  std::vector<SkippedInstant> skipped;
   std::vector<MeasuredMargins> measured;
   std::optional<CampaignMargins> dispersed;
   MarginModel of;
@@ -85,6 +86,13 @@ void PrintJson(const MarginsResult& result) {
                         {"adapting", LoopJson(m.adapting, PassesGates(m.adapting))},
                         {"learnt", m.learnt ? LoopJson(*m.learnt, LearntPasses(m)) : nullptr}});
   }
+  auto skipped = nlohmann::ordered_json::array();
+  for (const SkippedInstant& at : result.skipped) {
+    skipped.push_back({{"place", at.place},
+                       {"stage", at.stage + 1},
+                       {"time_s", at.time_s},
+                       {"thrust_percent", 100.0 * at.thrust_fraction}});
+  }
   auto measured = nlohmann::ordered_json::array();
   for (const MeasuredMargins& m : result.measured) {
     measured.push_back({{"stage", m.stage + 1},
@@ -108,6 +116,8 @@ void PrintJson(const MarginsResult& result) {
         {"gain_ceiling_db", kMeasuredGainCeiling_db},
         {"delay_ms", 1e3 * kMeasuredDelayStep_s},
         {"delay_ceiling_ms", 1e3 * kMeasuredDelayCeiling_s}}},
+      {"least_thrust_percent", 100.0 * kLeastThrustFraction},
+      {"skipped", std::move(skipped)},
       {"computed", std::move(computed)},
       {"measured", std::move(measured)},
       {"passed", result.passed}};
@@ -165,6 +175,15 @@ void PrintDispersed(const CampaignMargins& dispersed) {
              dispersed.ended_early);
 }
 
+void PrintSkipped(const std::vector<SkippedInstant>& skipped) {
+  if (skipped.empty()) return;
+  fmt::print("Skipped, with less than {:g} % of full thrust:\n", 100.0 * kLeastThrustFraction);
+  for (const SkippedInstant& at : skipped)
+    fmt::print("{:<24} {:>8.2f} stage {}, {:.1f} % of full thrust\n",
+               at.place.empty() ? "(between)" : at.place, at.time_s, at.stage + 1,
+               100.0 * at.thrust_fraction);
+}
+
 std::string FrequenciesText(const MarginModel& of) {
   if (of.frequency_band == 0.0) return "the modes' frequencies as they are";
   return fmt::format(
@@ -201,6 +220,7 @@ void PrintText(const MarginsResult& result) {
     if (m.learnt && (named || !LearntPasses(m)))
       PrintLoop(named ? m.place : "(between)", "learnt", m, *m.learnt);
   }
+  PrintSkipped(result.skipped);
   fmt::print("\nNearest to a gate in each stage, named instants or between:\n");
   for (const MeasuredMargins& stage : result.measured) {
     for (const char* kind : {"frozen", "adapting", "learnt"}) {
@@ -240,6 +260,7 @@ ExitCode Margins(const MarginsOptions& options, const GlobalOptions& global) {
   result.of = {options.frequency_band_percent / 100.0,
                options.drift ? LateralPath::kDrifts : LateralPath::kHeld};
   result.computed = ComputeMargins(flights.model(), 5.0, {}, result.of);
+  result.skipped = SkippedInstants(flights.model());
   result.measured = MeasureMargins(flights.model());
   result.passed = std::all_of(result.computed.begin(), result.computed.end(),
                               [](const ComputedMargins& m) { return PassesGates(m); }) &&

@@ -96,12 +96,20 @@ std::string Header(const TuneOptions& options, const TuningResult& result) {
         options.tuning.cases, result.median_rms_deg, result.largest_peak_deg);
   else
     text += "\n";
+  for (std::size_t i = 0; i < result.stages.size(); ++i)
+    if (!result.stages[i].missed.empty())
+      text += fmt::format("# Stage {} misses by most: {}\n", i + 1, result.stages[i].missed);
+  if (result.augmentation && !result.augmentation->missed.empty())
+    text += fmt::format("# The augmentation misses by most: {}\n", result.augmentation->missed);
   text += "# Least computed margins (gain either way, phase, delay), gains frozen | adapting:\n";
   for (std::size_t i = 0; i < result.stages.size(); ++i) {
     text += fmt::format("#   stage {}: {} | {}\n", i + 1, MarginsText(result.stages[i].frozen),
                         MarginsText(result.stages[i].adapting));
   }
-  if (options.tuning.dispersed > 0)
+  if (!result.skipped.empty())
+    text += fmt::format("# None at {} instants with less than {:g} % of full thrust.\n", result.skipped.size(),
+                        100.0 * kLeastThrustFraction);
+  if (result.feasible && options.tuning.dispersed > 0)
     text += fmt::format(
         "# The plants of {} draws meet the gates of dispersed flights, {:.0f} dB and {:.0f} deg, too.\n",
         options.tuning.dispersed, kDispersedGainGate_db, kDispersedPhaseGate_deg);
@@ -112,6 +120,10 @@ nlohmann::ordered_json MarginsJson(const LeastMargins& m) {
   return {{"gain_db", JsonNumber(m.gain_db)},
           {"phase_deg", JsonNumber(m.phase_deg)},
           {"delay_ms", JsonNumber(1e3 * m.delay_s)}};
+}
+
+nlohmann::ordered_json MissedJson(const std::string& missed) {
+  return missed.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(missed);
 }
 
 nlohmann::ordered_json ResultJson(const TuneOptions& options, const TuningResult& result,
@@ -130,9 +142,16 @@ nlohmann::ordered_json ResultJson(const TuneOptions& options, const TuningResult
                       {"pitch_error_rms_mean_deg", JsonNumber(stage.mean_rms_deg)},
                       {"pitch_error_peak_deg", JsonNumber(stage.peak_deg)},
                       {"frozen", MarginsJson(stage.frozen)},
-                      {"adapting", MarginsJson(stage.adapting)}});
+                      {"adapting", MarginsJson(stage.adapting)},
+                      {"missed", MissedJson(stage.missed)}});
     if (stage.surplus) stages.back()["surplus"] = JsonNumber(*stage.surplus);
   }
+  auto skipped = nlohmann::ordered_json::array();
+  for (const SkippedInstant& at : result.skipped)
+    skipped.push_back({{"place", at.place},
+                       {"stage", at.stage + 1},
+                       {"time_s", at.time_s},
+                       {"thrust_percent", 100.0 * at.thrust_fraction}});
   auto generations = nlohmann::ordered_json::array();
   for (const TuningRecord& record : log) {
     const GenerationRecord& g = record.generation;
@@ -151,7 +170,8 @@ nlohmann::ordered_json ResultJson(const TuneOptions& options, const TuningResult
                     {"spectral_gain_1_s", tuned.design.spectral_gain_1_s},
                     {"maximum_total_gain", tuned.design.maximum_total_gain},
                     {"pitch_error_rms_mean_deg", JsonNumber(tuned.mean_rms_deg)},
-                    {"pitch_error_peak_deg", JsonNumber(tuned.peak_deg)}};
+                    {"pitch_error_peak_deg", JsonNumber(tuned.peak_deg)},
+                    {"missed", MissedJson(tuned.missed)}};
   }
   return {{"schema", "dispersa/tune/1"},
           {"autopilot", options.out},
@@ -163,6 +183,7 @@ nlohmann::ordered_json ResultJson(const TuneOptions& options, const TuningResult
           {"pitch_error_rms_median_deg", result.feasible ? JsonNumber(result.median_rms_deg) : nullptr},
           {"pitch_error_peak_deg", result.feasible ? JsonNumber(result.largest_peak_deg) : nullptr},
           {"stages", std::move(stages)},
+          {"skipped", std::move(skipped)},
           {"augmentation", std::move(augmentation)},
           {"log", std::move(generations)}};
 }
@@ -190,13 +211,19 @@ void PrintText(const TuneOptions& options, const TuningResult& result, const std
     fmt::print("{:<6}{:>9}{:>9}{:>10}{:>13.5f}{:>10.4f}  {} | {}{}\n", i + 1, axis.gains[i].kp_1_s2,
                axis.gains[i].kd_1_s, learning, stage.mean_rms_deg, stage.peak_deg, MarginsText(stage.frozen),
                MarginsText(stage.adapting), stage.feasible ? "" : "  INFEASIBLE");
+    if (!stage.missed.empty()) fmt::print("      misses by most: {}\n", stage.missed);
   }
+  if (!result.skipped.empty())
+    fmt::print("No margins were asked for with less than {:g} % of full thrust:\n", 100.0 * kLeastThrustFraction);
+  for (const SkippedInstant& at : result.skipped)
+    fmt::print("      {:.2f} s, stage {}{}\n", at.time_s, at.stage + 1, at.place.empty() ? "" : ", " + at.place);
   if (result.augmentation) {
     const AugmentationTuning& tuned = *result.augmentation;
     fmt::print("augmentation: adaptive gain {:.3g} 1/s, spectral gain {:.3g} 1/s, total gain to {:.3g}; mean rms "
                "{:.5f} deg, peak {:.4f} deg{}\n",
                tuned.design.adaptive_gain_1_s, tuned.design.spectral_gain_1_s, tuned.design.maximum_total_gain,
                tuned.mean_rms_deg, tuned.peak_deg, tuned.feasible ? "" : "  INFEASIBLE");
+    if (!tuned.missed.empty()) fmt::print("      misses by most: {}\n", tuned.missed);
   }
   fmt::print("\n{} designs, {} flights\n", result.evaluations, result.flights);
   if (!result.feasible) return;

@@ -44,7 +44,7 @@ std::string VehicleText(const Vehicle& vehicle) {
     text += fmt::format(
         "{:<12}{:>12.0f}{:>12.0f}{:>10.0f}{:>10.3f}{:>10.1f}{:>9.1f}{:>9.1f}{:>11.0f}{:>10.2f}{:>9.2f}\n",
         stage.name.substr(0, 11), stage.liftoff_mass_kg, stage.propellant_mass_kg, one.dry_mass_kg,
-        one.structural_fraction, stage.motor.thrust_n * 1e-3, stage.motor.burning_time_s,
+        one.structural_fraction, stage.motor.thrust_n * 1e-3, one.burning_time_s,
         one.specific_impulse_s, one.ideal_delta_v_m_s, one.thrust_to_weight, one.burnout_load_g);
   }
   text += fmt::format("{:<12}{:>84.0f}\n", "together", TotalDeltaV(figures));

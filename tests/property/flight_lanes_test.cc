@@ -12,6 +12,7 @@
 
 #include "core/flight/lane_engine.h"
 #include "core/random/draws.h"
+#include "tests/liquid_stage.h"
 #include "tests/slv4_flight.h"
 
 namespace dispersa {
@@ -29,6 +30,25 @@ FlightDefinition Definition(const std::string& law, bool with_winds, bool guided
         {.zeros_rad_s = 25.0, .zeros_damping = 0.2, .poles_rad_s = 25.0, .poles_damping = 0.6, .stage = 1}};
   if (autopilot == "pid_aac")  // axes that feed forward beside one that does not
     definition.autopilot.pitch.feed_forward = definition.autopilot.yaw.feed_forward = FeedForward{0.066};
+  if (autopilot ==
+      "pid") {  // a thrust curve beside constant thrust, as stages and flights stand side by side
+    const ThrustCurve shape{{0.0, 0.7, 13.3, 41.1234567, 60.0, 61.7}, {0.3, 0.9, 1.0, 0.8, 0.7, 0.0}};
+    for (const std::size_t stage : {0u, 2u}) {
+      Motor& motor = definition.vehicle.stages[stage].motor;
+      ThrustCurve curve = shape;
+      for (double& time_s : curve.time_s) time_s *= motor.burning_time_s / 55.0;
+      for (double& thrust_n : curve.thrust_n) thrust_n *= 1.1 * motor.thrust_n;
+      SetThrustCurve(curve, motor);
+    }
+  }
+  if (autopilot == "pid") {  // and a throttled liquid stage, which leaves a rest, in between
+    Stage& liquid = definition.vehicle.stages[1];
+    MakeLiquid(liquid);
+    liquid.motor.residual_mass_kg = 0.01 * liquid.propellant_mass_kg;
+    liquid.motor.throttle = {{0.0, 0.333, 40.0, 41.7}, {0.4, 1.0, 1.0, 0.8}};
+    liquid.motor.cut_off = CutOff::kTime;
+    liquid.motor.cut_off_s = 55.0123;
+  }
   if (autopilot == "pd") {  // a law that changes within a stage beside some that do not
     AxisConfig& pitch = definition.autopilot.pitch;
     pitch.filters = {{.poles_rad_s = 90.0, .poles_damping = 0.7, .stage = 1}};

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/campaign_yaml/load.h"
 #include "core/math/constants.h"
 #include "tests/unit/input_files.h"
@@ -50,6 +52,25 @@ TEST(CampaignYamlDispersions, MisalignmentHasAMagnitudeAndAClockAngleAStage) {
   EXPECT_EQ(list[2].distribution.high, kTwoPi);
   EXPECT_FALSE(list[2].absolute);
   EXPECT_THAT(Inputs(list[3]), ElementsAre("thrust_misalignment_clock_stage2_deg"));
+}
+
+// 0.2 %/K and 15 K: the rate's logarithm has 3 %.
+TEST(CampaignYamlDispersions, PropellantTemperatureIsABurnRate) {
+  const auto list = Decode(
+      "propellant_temperature: {distribution: normal, three_sigma_k: 45, mean_k: -5, sensitivity_percent_per_k: 0.2, "
+      "per: vehicle}");
+  EXPECT_THAT(Names(list), ElementsAre("propellant_temperature"));
+  EXPECT_THAT(Inputs(list[0]), ElementsAre("thrust_factor_stage1", "mass_flow_factor_stage1", "thrust_factor_stage2",
+                                           "mass_flow_factor_stage2"));
+  EXPECT_EQ(list[0].distribution.kind, Distribution::kLogNormal);
+  EXPECT_DOUBLE_EQ(list[0].distribution.sigma, 0.03);
+  EXPECT_DOUBLE_EQ(list[0].distribution.nominal, std::exp(-0.01));
+  const auto corners = Decode(
+      "propellant_temperature: {distribution: two_point, plus_minus_k: 30, sensitivity_percent_per_k: 0.2, per: stage}");
+  ASSERT_EQ(corners.size(), 2u);
+  EXPECT_DOUBLE_EQ(corners[1].distribution.low, std::exp(-0.06));
+  EXPECT_DOUBLE_EQ(corners[1].distribution.high, std::exp(0.06));
+  EXPECT_EQ(corners[1].distribution.nominal, 1.0);
 }
 
 TEST(CampaignYamlDispersions, PerVehicleIsOneDrawForAllStages) {

@@ -525,6 +525,49 @@ TEST(CliProgram, TuneWritesAnAutopilotThatSaysWhereItComesFrom) {
   EXPECT_EQ(Dispersa("validate " + file).code, 0);
 }
 
+// Motors with transients and tail-off: SLV-4's with made-up curves.
+TEST(CliProgram, MarginsAndTuneNameWhatTheySkip) {
+  const std::string campaign = DISPERSA_TEST_DATA "/thrust_curves/campaign.yaml";
+  EXPECT_EQ(Dispersa("validate --strict " + campaign).code, 0);
+  const Output margins = Dispersa("margins " + campaign);
+  EXPECT_THAT(margins.text, HasSubstr("Skipped, with less than 20 % of full thrust:\nlift-off"));
+  EXPECT_THAT(margins.text, HasSubstr("stage 4 burnout"));
+  const InputFiles folder;
+  const std::string file = folder.Path("tuned.yaml");
+  const Output tuned = Dispersa("--quiet tune " + campaign + " --autopilot " DISPERSA_CAMPAIGNS
+                                "/autopilots/pd.yaml --seed 9 --cases 1 --evaluations 64 --out " + file);
+  EXPECT_EQ(tuned.code, 0) << tuned.error << tuned.text;
+  EXPECT_THAT(tuned.text, HasSubstr("No margins were asked for with less than 20 % of full thrust:\n"));
+  EXPECT_THAT(ReadWholeFile(file), HasSubstr(" instants with less than 20 % of full thrust.\n"));
+}
+
+// Pitch's nozzles answer after a third of a second.
+TEST(CliProgram, TuneNamesTheGateThatItMisses) {
+  const InputFiles folder;
+  std::string vehicle = ReadWholeFile(DISPERSA_TEST_DATA "/thrust_curves/vehicle.yaml");
+  for (std::size_t at = 0; (at = vehicle.find("delay_ticks: 1", at)) != std::string::npos; ++at)
+    vehicle.replace(at, 14, "delay_ticks: 33");
+  const auto point_to = [&](std::string& text, const std::string& from, const std::string& to) {
+    for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+      text.replace(at, from.size(), to);
+  };
+  point_to(vehicle, "../../../campaigns", DISPERSA_CAMPAIGNS);
+  point_to(vehicle, "table: ", "table: " DISPERSA_TEST_DATA "/thrust_curves/");
+  folder.Write("vehicle.yaml", vehicle);
+  std::string campaign = ReadWholeFile(DISPERSA_TEST_DATA "/thrust_curves/campaign.yaml");
+  point_to(campaign, "../../../campaigns", DISPERSA_CAMPAIGNS);
+  folder.Write("campaign.yaml", campaign);
+  const std::string file = folder.Path("tuned.yaml");
+  const Output tuned = Dispersa("--quiet --json tune " + folder.Path("campaign.yaml") + " --autopilot " DISPERSA_CAMPAIGNS
+                                "/autopilots/pd.yaml --seed 9 --cases 1 --evaluations 64 --out " + file);
+  EXPECT_EQ(tuned.code, 3) << tuned.error;
+  const auto json = nlohmann::json::parse(tuned.text);
+  const std::string missed = json["stages"][0]["missed"];
+  EXPECT_THAT(missed, testing::MatchesRegex("(gain|phase|delay) margin .* are needed: .*% of full thrust"));
+  EXPECT_THAT(ReadWholeFile(file), HasSubstr("\n# Stage 1 misses by most: " + missed + "\n"));
+  EXPECT_GT(json["skipped"].size(), 0u);
+}
+
 TEST(CliProgram, TuneRefusesTheSeedOfTheVerdict) {
   const InputFiles folder;
   const std::string file = folder.Path("tuned.yaml");

@@ -160,6 +160,38 @@ TEST(ComputeMargins, NamesEveryPhaseOnAllAxes) {
   }
 }
 
+// Stage 1 falls to a tenth of its thrust at 31.5 s, and below a fifth just after 31 s.
+TEST(SkippedInstants, HaveLittleThrustAndAreNotAmongTheOthers) {
+  FlightDefinition definition = HotStaged();
+  Motor& motor = definition.vehicle.stages[0].motor;
+  SetThrustCurve({{0.0, 28.0, 31.5, 45.0}, {200e3, 200e3, 20e3, 0.0}}, motor);
+  const FlightModel model(definition);
+  const std::vector<SkippedInstant> skipped = SkippedInstants(model, 5.0);
+  ASSERT_GE(skipped.size(), 3u);
+  EXPECT_EQ(skipped.back().place, "stage 1 burnout");
+  for (const SkippedInstant& at : skipped) {
+    EXPECT_EQ(at.stage, 0);
+    EXPECT_GT(at.time_s, 31.0);
+    EXPECT_LT(at.thrust_fraction, kLeastThrustFraction);
+  }
+  const std::vector<MarginInstant> instants = MarginInstants(model, 5.0);
+  const auto tail_off = std::find_if(instants.begin(), instants.end(),
+                                     [](const MarginInstant& at) { return at.place == "stage 1 tail-off"; });
+  ASSERT_NE(tail_off, instants.end());
+  const MotorBurn& burn = model.nominal_plant().stacks[0].burn;
+  const double level = burn.Fraction(tail_off->sample.since_ignition_s);
+  EXPECT_GE(level, kLeastThrustFraction);
+  EXPECT_NEAR(level, kLeastThrustFraction, 0.01);  // a tick of 10 ms before it
+  for (const MarginInstant& at : instants) {
+    EXPECT_NE(at.place, "stage 1 burnout");
+    if (at.sample.stack == 0) {
+      EXPECT_LE(at.sample.time_s, tail_off->sample.time_s);
+    }
+  }
+  // Constant thrust has none to skip.
+  EXPECT_TRUE(SkippedInstants(FlightModel(HotStaged()), 5.0).empty());
+}
+
 TEST(ComputeMargins, OfAVehicleThatIsNotTheNominal) {
   const FlightModel model(HotStaged());
   FlightInputs light;

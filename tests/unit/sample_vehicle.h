@@ -36,7 +36,7 @@ inline Vehicle SampleVehicle() {
   first.propellant_mass_kg = 4000.0;
   first.diameter_m = 1.2;
   first.bottom_station_m = 20.0;
-  first.motor = {.thrust_n = 200e3, .burning_time_s = 40.0};
+  first.motor = {.thrust_n = 200e3, .burning_time_s = 40.0, .thrust_curve = {}};
   first.grain = {12.0, 18.0, 1.2, 0.4};
   first.structure = {{"case", 0.75, 11.0, 19.0, 1.2, 1.1}, {"nozzle", 0.25, 19.0, 20.0, 0.8, 0.0}};
   first.gimbal = {.pivot_station_m = 19.5,
@@ -51,7 +51,7 @@ inline Vehicle SampleVehicle() {
   second.propellant_mass_kg = 1000.0;
   second.diameter_m = 1.0;
   second.bottom_station_m = 11.0;
-  second.motor = {.thrust_n = 50e3, .burning_time_s = 20.0};
+  second.motor = {.thrust_n = 50e3, .burning_time_s = 20.0, .thrust_curve = {}};
   second.grain = {6.0, 9.0, 0.9, 0.3};
   second.structure = {{"all", 1.0, 1.0, 10.5, 1.0, 0.9}};
   second.gimbal.pivot_station_m = 10.0;

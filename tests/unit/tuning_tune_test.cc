@@ -285,6 +285,70 @@ TEST(Tune, SearchesWhatAugmentsPdLastWithinTheSameBudget) {
             "augmentation) to 1000000");
 }
 
+// Motors that take 0.5 s to their thrust and tail off over some seconds.
+Campaign CurvedCampaign() {
+  Campaign campaign = SampleCampaign();
+  SetThrustCurve({{0.0, 0.5, 20.0, 38.0, 41.0, 44.0}, {0.0, 190e3, 220e3, 180e3, 30e3, 0.0}},
+                 campaign.vehicle.stages[0].motor);
+  SetThrustCurve({{0.0, 0.5, 10.0, 18.5, 20.0, 22.0}, {0.0, 52e3, 55e3, 48e3, 8e3, 0.0}},
+                 campaign.vehicle.stages[1].motor);
+  return campaign;
+}
+
+TEST(Tune, AsksForNoMarginsWhereThereIsHardlyThrust) {
+  const Campaign campaign = CurvedCampaign();
+  const TuningResult result = Tune(campaign, campaign.autopilot, Small());
+  ASSERT_TRUE(result.feasible) << result.stages[0].missed << "; " << result.stages[1].missed;
+  // Lift-off and burnout, what is between these of the tail-off, and the other stage's burnout.
+  std::vector<std::string> places;
+  for (const SkippedInstant& at : result.skipped) {
+    places.push_back(at.place);
+    EXPECT_LT(at.thrust_fraction, kLeastThrustFraction) << at.place;
+  }
+  EXPECT_THAT(places, testing::IsSupersetOf({"lift-off", "stage 1 burnout", "stage 2 burnout"}));
+  for (const StageTuning& stage : result.stages) EXPECT_EQ(stage.missed, "");
+  Campaign tuned = campaign;
+  tuned.autopilot = result.autopilot;
+  for (const ComputedMargins& m : ComputeMargins(CampaignFlights(tuned).model()))
+    EXPECT_TRUE(PassesGates(m.frozen) && PassesGates(m.adapting)) << m.place << " " << m.time_s;
+}
+
+TEST(Tune, NamesTheGateThatItMissesByMost) {
+  Campaign campaign = CurvedCampaign();
+  for (Stage& stage : campaign.vehicle.stages) stage.gimbal.delay_ticks = 30;  // 0.3 s
+  TuningResult result = Tune(campaign, campaign.autopilot, Small());
+  ASSERT_FALSE(result.feasible);
+  EXPECT_THAT(result.stages[0].missed,
+              testing::MatchesRegex("(gain|phase|delay) margin -?[0-9.]+ (dB|deg|ms), [0-9.]+ are needed: "
+                                    "(gains held|adapting), (roll|pitch|yaw) at [0-9.]+ s( \\(.*\\))?, "
+                                    "[0-9]+ % of full thrust"));
+  // What it names is the least of all instants, axes and kinds, as a part of what is needed.
+  const LeastMargins& m = result.stages[0].frozen.delay_s < result.stages[0].adapting.delay_s
+                              ? result.stages[0].frozen
+                              : result.stages[0].adapting;
+  EXPECT_LT(m.delay_s, kDelayMarginGate_s + kDelayReserve_s);
+  TuningOptions options = Small();
+  options.dispersed = 2;
+  options.evaluations = 2 * 2 * kHeldPopulation;
+  result = Tune(campaign, campaign.autopilot, options);
+  ASSERT_FALSE(result.feasible);
+  EXPECT_THAT(result.stages[0].missed,
+              testing::MatchesRegex("(the loop is unstable|(gain|phase|delay) margin [0-9]+ % below its gate with "
+                                    "reserve): (nominal plant|plant of draw [01])(, modes at (85|115) %)?, (gains "
+                                    "held|adapting), (roll|pitch|yaw) [0-9.]+ s after ignition"));
+}
+
+TEST(Tune, NamesFlightsThatAreLost) {
+  Campaign campaign = SampleCampaign();
+  // Far more misalignment than the nozzles can turn against: margins are what they were.
+  campaign.dispersions[0].distribution.sigma = 40.0 * kRadPerDeg;
+  TuningOptions options = Small();
+  options.cases = 4;
+  const TuningResult result = Tune(campaign, campaign.autopilot, options);
+  ASSERT_FALSE(result.feasible);
+  EXPECT_THAT(result.stages[0].missed, testing::MatchesRegex("[1-4] of 4 flights are lost"));
+}
+
 TEST(Tune, DoesNotFlyADesignThatMissesAMargin) {
   Campaign campaign = SampleCampaign();
   // An actuator that rings a hundredfold: the slowest, least damped design of the box still crosses -1 there.

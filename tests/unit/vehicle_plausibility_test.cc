@@ -50,6 +50,34 @@ TEST(VehicleFigures, AreThoseOfTheRocketEquation) {
   EXPECT_DOUBLE_EQ(figures[1].thrust_to_weight, 50e3 / (3000.0 * 9.80665));
 }
 
+// The same impulse with a hump late in the burn: what lifts off is the thrust of the first second.
+TEST(VehicleFigures, OfAThrustCurveAreThoseOfItsTimes) {
+  Vehicle vehicle = UsualVehicle();
+  vehicle.hold_down_s = 0.5;
+  SetThrustCurve({{0.0, 0.2, 2.0, 60.0, 100.0, 106.0}, {0.0, 180e3, 170e3, 240e3, 120e3, 0.0}},
+                 vehicle.stages[0].motor);
+  const MotorBurn burn = BuildBurn(vehicle.stages[0], 1.0, 1.0);
+  const double impulse_n_s = 18e3 + 315e3 + 11890e3 + 7200e3 + 360e3;
+  const std::vector<StageFigures> figures = FiguresOf(vehicle);
+  EXPECT_EQ(figures[0].burning_time_s, 106.0);
+  EXPECT_DOUBLE_EQ(figures[0].flow_kg_s, 9200.0 / 106.0);
+  EXPECT_NEAR(figures[0].specific_impulse_s, impulse_n_s / 9200.0 / 9.80665, 1e-9);
+  const double released_n = 180e3 - 10e3 * 0.3 / 1.8;  // falls from 0.2 s on
+  EXPECT_NEAR(figures[0].thrust_to_weight, released_n / ((3800.0 + burn.Propellant(0.5)) * 9.80665), 1e-9);
+  EXPECT_NEAR(figures[0].burnout_load_g,
+              std::max(240e3 / (3800.0 + burn.Propellant(60.0)), 120e3 / (3800.0 + burn.Propellant(100.0))) / 9.80665,
+              1e-9);
+}
+
+TEST(VehiclePlausibility, NamesTheCurveInPlaceOfTheThrust) {
+  Vehicle vehicle = UsualVehicle();
+  SetThrustCurve({{0.0, 50.0, 100.0}, {100e3, 300e3, 0.0}}, vehicle.stages[0].motor);
+  const std::vector<std::string> texts = Texts(vehicle);
+  ASSERT_EQ(texts.size(), 1u);
+  EXPECT_EQ(texts[0].rfind("impossible stages[0].motor.thrust_curve implies a thrust to weight at lift-off of 0.8", 0), 0u)
+      << texts[0];
+}
+
 TEST(VehicleFigures, PressureOfTheSiteIsTheStandards) {
   EXPECT_EQ(SitePressure(0.0), 101325.0);
   EXPECT_NEAR(SitePressure(5000.0), 54048.0, 60.0);  // its table, at that geometric altitude
@@ -94,7 +122,7 @@ INSTANTIATE_TEST_SUITE_P(
               "unusual stages[1].motor.thrust_n implies a thrust to weight at ignition of 0.0017 | 0.05 to "
               "12 (small "
               "liquid upper stages from 0.08, solid ones to 8)",
-              "unusual stages[1].motor.thrust_n implies at burnout a load of 0.01275 g | 0.05 to 20 g "
+              "unusual stages[1].motor.thrust_n implies towards burnout a load of 0.01275 g | 0.05 to 20 g "
               "(user's manuals of "
               "solid launchers state up to 13 g)"}},
         Slip{"BurningTimeTenfold",
@@ -126,7 +154,7 @@ INSTANTIATE_TEST_SUITE_P(
                v.stages[1].motor.thrust_n *= 4.0;
                v.stages[1].motor.burning_time_s /= 4.0;
              },
-             {"unusual stages[1].motor.thrust_n implies at burnout a load of 50.99 g | 0.05 to 20 g (user's "
+             {"unusual stages[1].motor.thrust_n implies towards burnout a load of 50.99 g | 0.05 to 20 g (user's "
               "manuals of "
               "solid launchers state up to 13 g)"}},
         Slip{"HeavyStage",
@@ -163,7 +191,7 @@ INSTANTIATE_TEST_SUITE_P(
         Slip{"StageOutsideTheProfile",
              [](Vehicle& v) { v.stages[0].diameter_m = 1.3; },
              {"unusual stages[0].diameter_m is, as part of the profile's largest diameter about this stage's "
-              "grain, 1.083 "
+              "propellant, 1.083 "
               "| 0.4 to 1.02 (1 where the case is the skin, less inside a wider fairing)"}},
         Slip{"NozzleWiderThanTheBase",
              [](Vehicle& v) { v.stages[1].motor.nozzle_exit_area_m2 = 1.0; },
@@ -215,10 +243,10 @@ INSTANTIATE_TEST_SUITE_P(
                v.profile = {{ProfileShape::kCone, 2.0, 6.0}, {ProfileShape::kCylinder, 18.0, 6.0}};
              },
              {"unusual stages[0].diameter_m is, as part of the profile's largest diameter about this stage's "
-              "grain, 0.2 | "
+              "propellant, 0.2 | "
               "0.4 to 1.02 (1 where the case is the skin, less inside a wider fairing)",
               "unusual stages[1].diameter_m is, as part of the profile's largest diameter about this stage's "
-              "grain, "
+              "propellant, "
               "0.1667 | 0.4 to 1.02 (1 where the case is the skin, less inside a wider fairing)",
               "unusual profile implies a length, in diameters, of 3.333 | 4 to 30 (Vega 10, Saturn V 11, "
               "Falcon 9 19, "

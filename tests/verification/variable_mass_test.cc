@@ -16,6 +16,7 @@
 #include "core/dynamics/launcher.h"
 #include "core/flight/fly_scenario.h"
 #include "core/math/constants.h"
+#include "tests/liquid_stage.h"
 #include "tests/slv4_flight.h"
 #include "tests/fourth_order.h"
 
@@ -182,6 +183,22 @@ TEST_F(TurningLauncher, KeepsItsAngularMomentumButForTheFlows) {
     std::printf("rates at burnout / at ignition, %s jet damping: across %.4f, about the axis %.4f\n",
                 jet_damping ? "with" : "without", lateral, axial);
   }
+}
+
+// Tanks that drain have their own moments and derivatives; the law is the same.
+TEST_F(TurningLauncher, KeepsItsAngularMomentumButForTheFlowsOfDrainingTanks) {
+  Vehicle vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml");
+  MakeLiquid(vehicle.stages[0]);
+  vehicle.stages[0].motor.residual_mass_kg = 0.02 * vehicle.stages[0].propellant_mass_kg;
+  plant_.stacks[0].mass = BuildStackMasses(vehicle)[0];
+  plant_.stacks[0].burn = BuildBurn(vehicle.stages[0], 1.0, 1.0);
+  const double lateral = RateKept(&MassProperties::transverse_inertia_kg_m2, [&](const MassProperties& m) {
+    return std::pow(stack().gimbal.pivot_station_m - m.cg_station_m, 2);
+  });
+  const double axial = RateKept(&MassProperties::axial_inertia_kg_m2,
+                                [&](const MassProperties&) { return std::pow(stack().gimbal.radius_m, 2); });
+  EXPECT_NEAR(RatesAtBurnout({0.0, 0.01, 0.0}).y() / 0.01, lateral, 1e-11);
+  EXPECT_NEAR(RatesAtBurnout({0.01, 0.0, 0.0}).x() / 0.01, axial, 1e-11);
 }
 
 // Momentum and centre of mass of everything, the flow inside and what has left included. On board: the body's

@@ -1,0 +1,150 @@
+#include "core/campaign_yaml/parse_rasp.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string_view>
+
+#include "core/campaign_yaml/number_text.h"
+
+namespace dispersa {
+namespace {
+
+struct Word {
+  std::string text;
+  int column = 1;  // of its first character
+};
+
+std::vector<Word> Words(std::string_view line) {
+  const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
+  std::vector<Word> words;
+  for (std::size_t at = 0; at < line.size();) {
+    if (is_blank(line[at])) {
+      ++at;
+      continue;
+    }
+    const std::size_t begin = at;
+    while (at < line.size() && !is_blank(line[at])) ++at;
+    words.push_back({std::string(line.substr(begin, at - begin)), static_cast<int>(begin) + 1});
+  }
+  return words;
+}
+
+class RaspReader {
+ public:
+  RaspReader(const std::string& file, std::vector<InputProblem>& problems) : problems_(problems) {
+    place_.file = std::make_shared<const std::string>(file);
+    times_ = ListAt(place_);
+    thrusts_ = ListAt(place_);
+  }
+
+  void Take(std::string_view line, int number) {
+    place_.line = number;
+    place_.column = 1;
+    if (line.starts_with(';')) return;
+    const std::vector<Word> words = Words(line);
+    if (words.empty()) return;
+    if (ended_) {
+      Report(words[0], "the line comes after the thrust of 0 that ends the motor's curve",
+             "one motor in a file, and nothing but comments after it");
+    } else if (!has_header_) {
+      has_header_ = true;
+      TakeHeader(words);
+    } else {
+      TakePoint(words);
+    }
+  }
+
+  InputNode Finish(int lines) {
+    place_.line = lines < 1 ? 1 : lines;
+    place_.column = 1;
+    if (!has_header_)
+      Report({}, "the file holds no motor", kHeader);
+    else if (!ended_ && !failed_)
+      Report({}, "the curve does not end", "a last line with a thrust of 0");
+    if (failed_) return {};
+    place_.line = 1;
+    InputNode table = MapAt(place_);
+    SetMember(table, "time_s", std::move(times_));
+    SetMember(table, "thrust_n", std::move(thrusts_));
+    return table;
+  }
+
+ private:
+  static constexpr const char* kHeader =
+      "name, diameter in mm, length in mm, delays, propellant in kg, mass in kg, maker, apart by blanks";
+
+  void Report(const Word& at, const std::string& message, const std::string& allowed) {
+    failed_ = true;
+    problems_.push_back({*place_.file, place_.line, at.column, "", message, allowed});
+  }
+
+  // A finite number above 0, or 0 itself.
+  std::optional<double> Number(const Word& word, const std::string& what, bool may_be_zero) {
+    const std::optional<double> number = ParseNumber(word.text);
+    if (number && std::isfinite(*number) && (*number > 0.0 || (may_be_zero && *number == 0.0))) return number;
+    Report(word, what + " is '" + word.text + "'",
+           may_be_zero ? "a number not below 0" : "a number above 0");
+    return {};
+  }
+
+  void TakeHeader(const std::vector<Word>& words) {
+    if (words.size() != 7)
+      return Report(words[0], "the header has " + std::to_string(words.size()) + " fields in place of 7",
+                    kHeader);
+    Number(words[1], "the diameter", false);
+    Number(words[2], "the length", false);
+    const std::optional<double> propellant = Number(words[4], "the propellant's mass", false);
+    const std::optional<double> whole = Number(words[5], "the motor's mass", false);
+    if (propellant && whole && *propellant > *whole)
+      Report(words[4],
+             "the propellant of " + words[4].text + " kg is more than the motor's " + words[5].text + " kg",
+             "a part of the motor's mass");
+  }
+
+  void TakePoint(const std::vector<Word>& words) {
+    if (words.size() != 2)
+      return Report(words[0], "the line has " + std::to_string(words.size()) + " fields in place of 2",
+                    "a time in s and a thrust in N");
+    const std::optional<double> time_s = Number(words[0], "the time", times_.items.empty());
+    const std::optional<double> thrust_n = Number(words[1], "the thrust", true);
+    if (!time_s || !thrust_n) return;
+    if (times_.items.empty() && *time_s > 0.0) Add({"0", words[0].column}, {"0", words[1].column});
+    if (!times_.items.empty() && !(*time_s > last_s_))
+      return Report(words[0], "the time " + words[0].text + " is not later than that before it",
+                    "times that increase");
+    ended_ = *thrust_n == 0.0 && *time_s > 0.0;
+    last_s_ = *time_s;
+    Add(words[0], words[1]);
+  }
+
+  void Add(const Word& time, const Word& thrust) {
+    place_.column = time.column;
+    times_.items.push_back(ScalarAt(place_, time.text));
+    place_.column = thrust.column;
+    thrusts_.items.push_back(ScalarAt(place_, thrust.text));
+  }
+
+  std::vector<InputProblem>& problems_;
+  InputNode place_, times_, thrusts_;
+  double last_s_ = 0.0;
+  bool has_header_ = false, ended_ = false, failed_ = false;
+};
+
+}  // namespace
+
+InputNode ParseRasp(const std::string& text, const std::string& file, std::vector<InputProblem>& problems) {
+  RaspReader reader(file, problems);
+  std::string_view rest = text;
+  int line_number = 0;
+  while (!rest.empty()) {
+    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    std::string_view line = rest.substr(0, end);
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    reader.Take(line, ++line_number);
+  }
+  return reader.Finish(line_number);
+}
+
+}  // namespace dispersa

@@ -1,0 +1,63 @@
+#include "core/vehicle/thrust_curve.h"
+
+#include <algorithm>
+
+namespace dispersa {
+namespace {
+
+double GreatestOf(const std::vector<double>& values) {
+  return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
+}
+
+// Of a value that is linear between the times.
+double AreaUnder(const std::vector<double>& values, const std::vector<double>& time_s) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i + 1 < time_s.size(); ++i)
+    sum += 0.5 * (values[i] + values[i + 1]) * (time_s[i + 1] - time_s[i]);
+  return sum;
+}
+
+}  // namespace
+
+double ThrustCurve::Greatest() const { return GreatestOf(thrust_n); }
+
+double ThrustCurve::Impulse() const { return AreaUnder(thrust_n, time_s); }
+
+double ThrustCurve::Flown() const { return flow_kg_s.empty() ? 0.0 : AreaUnder(flow_kg_s, time_s); }
+
+double ThrustCurve::FullFlowTime() const {
+  return flow_kg_s.empty() ? Impulse() / Greatest() : Flown() / GreatestOf(flow_kg_s);
+}
+
+ThrustCurve InVacuum(ThrustCurve at_sea_level, double exit_area_m2) {
+  for (double& thrust_n : at_sea_level.thrust_n)
+    if (thrust_n > 0.0) thrust_n += kSeaLevelPressure_pa * exit_area_m2;
+  return at_sea_level;
+}
+
+BurnCurve Prepare(const ThrustCurve& curve) {
+  const std::vector<double>& flow = curve.flow_kg_s.empty() ? curve.thrust_n : curve.flow_kg_s;
+  const double greatest_n = curve.Greatest(), greatest_flow = GreatestOf(flow);
+  const double flown = AreaUnder(flow, curve.time_s);
+  const std::size_t pieces = curve.time_s.size() - 1;
+  BurnCurve prepared;
+  prepared.end_s = curve.time_s.back();
+  if (!curve.flow_kg_s.empty())
+    prepared.impulse_per_flow = curve.Impulse() / greatest_n / (flown / greatest_flow);
+  double burnt = 0.0;
+  for (std::size_t i = 0; i < pieces; ++i) {
+    const double length_s = curve.time_s[i + 1] - curve.time_s[i];
+    const bool is_last = i + 1 == pieces;
+    const std::size_t at = is_last ? i + 1 : i;
+    prepared.begin_s.push_back(curve.time_s[i]);
+    prepared.rows.insert(prepared.rows.end(),
+                         {curve.time_s[at], curve.thrust_n[at] / greatest_n,
+                          (curve.thrust_n[i + 1] - curve.thrust_n[i]) / length_s / greatest_n,
+                          is_last ? 0.0 : 1.0 - burnt / flown, flow[at] / greatest_flow,
+                          (flow[i + 1] - flow[i]) / length_s / greatest_flow, 0.0, 0.0});
+    burnt += 0.5 * (flow[i] + flow[i + 1]) * length_s;
+  }
+  return prepared;
+}
+
+}  // namespace dispersa

@@ -1,0 +1,53 @@
+// A motor's thrust over the time since ignition, as tests give it, and the same prepared for burns.
+//
+// Thrust is linear between the corners, and so is the mass flow: as given, or, where none is, proportional to the
+// vacuum thrust (a constant exhaust velocity). What has been burnt is then a parabola on each piece, in closed form;
+// the propellant is used up where the curve ends.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "core/math/aligned_rows.h"
+
+namespace dispersa {
+
+/// Sea level of the U.S. Standard Atmosphere, 1976: what a static firing "at sea level" stands for.
+inline constexpr double kSeaLevelPressure_pa = 101325.0;
+/// Every corner ends an integration step.
+inline constexpr std::size_t kThrustCurveCorners = 1000;
+
+struct ThrustCurve {
+  std::vector<double> time_s;    ///< since ignition, from 0, each larger than the one before
+  std::vector<double> thrust_n;  ///< in vacuum; 0 or more
+  /// 0 or more; empty: proportional to the thrust. Its sum is the propellant to a percent, and is made it exactly.
+  std::vector<double> flow_kg_s = {};
+
+  bool empty() const { return time_s.empty(); }
+  double Greatest() const;
+  double Impulse() const;   ///< N s
+  double Flown() const;     ///< the sum of flow_kg_s, kg
+  double FullFlowTime() const;  ///< in which the greatest flow would use up what flows in all, s
+};
+
+/// Flows given sum up to the propellant within this.
+inline constexpr double kFlowSumTolerance = 0.01;
+
+/// A curve measured under the pressure of sea level, in vacuum: P + p A_e. Where the measured thrust is 0
+/// nothing flows, and it stays 0.
+ThrustCurve InVacuum(ThrustCurve at_sea_level, double exit_area_m2);
+
+/// A curve by level, thrust over its greatest thrust, prepared to be looked up.
+struct BurnCurve {
+  /// Of each piece: a time on it, s, the level of thrust there, its slope, 1/s, the part of the propellant that
+  /// is left there, the level of the flow (over its greatest) and its slope, 1/s, and two for nothing. That time is
+  /// the piece's beginning, but of the last piece its end, so that nothing is left there.
+  static constexpr int kRowSize = 8;
+  AlignedRows rows;
+  std::vector<double> begin_s;  ///< of each piece
+  double end_s = 0.0;
+  double impulse_per_flow = 1.0;  ///< the area under the levels of thrust over that under those of the flow
+};
+BurnCurve Prepare(const ThrustCurve& curve);
+
+}  // namespace dispersa

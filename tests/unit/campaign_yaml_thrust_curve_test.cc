@@ -1,0 +1,195 @@
+// Thrust curves of vehicle files: tables, .eng files, what contradicts them, each bad input's full text.
+#include <gtest/gtest.h>
+
+#include "core/campaign_yaml/load.h"
+#include "tests/unit/input_files.h"
+
+namespace dispersa {
+namespace {
+
+constexpr char kMotor[] =
+    "{thrust_kn: 60, burning_time_s: 60, ignition_rise_s: 0.2, tail_off_s: 0.4, published_mass_flow_kg_s: "
+    "25}";
+
+// Made up.
+constexpr char kEng[] =
+    "; a made-up motor\n"
+    "TRIAL-1 98 640 5-10 1.20 2.10 NOBODY\n"
+    "   0.05 900.0\n"
+    "   0.50 1000\n"
+    "   2.00 800\n"
+    "   2.60 0.0\n"
+    ";\n";
+
+Motor MotorOf(const InputFiles& files, const std::string& motor) {
+  files.Edit("vehicle.yaml", kMotor, motor);
+  return LoadVehicle(files.Path("vehicle.yaml")).stages[0].motor;
+}
+
+void ExpectCurve(const Motor& motor, const std::vector<double>& time_s, const std::vector<double>& thrust_n) {
+  EXPECT_EQ(motor.thrust_curve.time_s, time_s);
+  EXPECT_EQ(motor.thrust_curve.thrust_n, thrust_n);
+  EXPECT_EQ(motor.thrust_n, motor.thrust_curve.Greatest());
+  EXPECT_DOUBLE_EQ(motor.burning_time_s * motor.thrust_n, motor.thrust_curve.Impulse());
+  EXPECT_EQ(motor.ignition_rise_s, 0.0);
+}
+
+TEST(ThrustCurveFile, OfACsv) {
+  const InputFiles files;
+  files.Write("curve.csv", "# as fired\nthrust_n,time_s\n0,0\n70000,1.5\n50000,50\n0,60\n");
+  ExpectCurve(MotorOf(files, "{thrust_curve: {reference: vacuum, table: curve.csv}}"), {0.0, 1.5, 50.0, 60.0},
+              {0.0, 70e3, 50e3, 0.0});
+}
+
+TEST(ThrustCurveFile, Inline) {
+  const InputFiles files;
+  ExpectCurve(
+      MotorOf(files, "{thrust_curve: {reference: vacuum, table: {time_s: [0, 20], thrust_kn: [80, 60]}}}"),
+      {0.0, 20.0}, {80e3, 60e3});
+}
+
+TEST(ThrustCurveFile, AtSeaLevelIsWithoutThePressureOfTheAir) {
+  const InputFiles files;
+  ExpectCurve(MotorOf(files,
+                      "{nozzle_exit_area_m2: 0.2, thrust_curve: {reference: sea_level, table: {time_s: [0, "
+                      "1, 20], thrust_n: [0, 60000, 0]}}}"),
+              {0.0, 1.0, 20.0}, {0.0, 60000.0 + 0.2 * 101325.0, 0.0});
+}
+
+TEST(ThrustCurveFile, OfAnEngFileBeginsAtIgnition) {
+  for (const std::string line_end : {"\n", "\r\n"}) {
+    const InputFiles files;
+    std::string text;
+    for (const char c : std::string(kEng)) text += c == '\n' ? line_end : std::string(1, c);
+    files.Write("curve.ENG", text);
+    ExpectCurve(MotorOf(files, "{thrust_curve: {reference: vacuum, table: curve.ENG}}"),
+                {0.0, 0.05, 0.5, 2.0, 2.6}, {0.0, 900.0, 1000.0, 800.0, 0.0});
+  }
+}
+
+// Of the first stage's 1500 kg the flow is 20 to 30 kg/s: 1505 kg in all.
+TEST(ThrustCurveFile, MayGiveTheMassFlow) {
+  const InputFiles files;
+  files.Write("curve.csv", "time_s,mass_flow_kg_s,thrust_n\n0,20,50000\n30.1,30,70000\n60.2,20,50000\n");
+  const Motor motor = MotorOf(files, "{thrust_curve: {reference: vacuum, table: curve.csv}}");
+  EXPECT_EQ(motor.thrust_curve.flow_kg_s, (std::vector<double>{20.0, 30.0, 20.0}));
+  EXPECT_EQ(motor.thrust_curve.thrust_n, (std::vector<double>{50e3, 70e3, 50e3}));
+  EXPECT_DOUBLE_EQ(motor.burning_time_s, 25.0 * 60.2 / 30.0);
+}
+
+TEST(ThrustCurveFile, StandsInTheIdOfWhatFlies) {
+  const InputFiles files;
+  files.Edit("vehicle.yaml", kMotor, "{thrust_curve: {reference: vacuum, table: curve.eng}}");
+  files.Write("curve.eng", kEng);
+  EXPECT_EQ(files.Texts(ValidateFile(files.Path("vehicle.yaml"))), "");
+}
+
+struct BadCurve {
+  const char* name;
+  const char* motor;
+  const char* file;  // and what stands in it
+  std::string text;
+  const char* said;
+};
+void PrintTo(const BadCurve& bad, std::ostream* out) { *out << bad.name; }
+
+std::string Eng(const std::string& from, const std::string& to) {
+  std::string text = kEng;
+  return text.replace(text.find(from), from.size(), to);
+}
+
+class BadCurveTest : public testing::TestWithParam<BadCurve> {};
+
+TEST_P(BadCurveTest, IsReportedInFull) {
+  const InputFiles files;
+  files.Edit("vehicle.yaml", kMotor, GetParam().motor);
+  if (*GetParam().file != '\0') files.Write(GetParam().file, GetParam().text);
+  EXPECT_EQ(files.Texts(ValidateFile(files.Path("vehicle.yaml"))), GetParam().said);
+}
+
+constexpr char kCsvMotor[] = "{thrust_curve: {reference: vacuum, table: curve.csv}}";
+constexpr char kEngMotor[] = "{thrust_curve: {reference: vacuum, table: curve.eng}}";
+#define HEADER \
+  "name, diameter in mm, length in mm, delays, propellant in kg, mass in kg, maker, apart by blanks"
+
+INSTANTIATE_TEST_SUITE_P(
+    Curves, BadCurveTest,
+    testing::Values(
+        BadCurve{
+            "BesideThrust",
+            "{thrust_kn: 60, thrust_curve: {reference: vacuum, table: {time_s: [0, 20], thrust_kn: [80, "
+            "60]}}}",
+            "", "",
+            "vehicle.yaml:11:24: stages[0].motor.thrust_kn: 'thrust_kn' and 'thrust_curve' are both given, "
+            "and the "
+            "curve says it all, allowed: either thrust_curve, or thrust_* with burning_time_* and ramps\n"},
+        BadCurve{
+            "SeaLevelWithoutArea",
+            "{thrust_curve: {reference: sea_level, table: {time_s: [0, 20], thrust_kn: [80, 60]}}}", "", "",
+            "vehicle.yaml:11:39: stages[0].motor.thrust_curve.reference: the thrust in vacuum is that at sea "
+            "level "
+            "and p A_e, but the motor has no nozzle_exit_area_m2, allowed: nozzle_exit_area_m2 above 0, or "
+            "reference: vacuum\n"},
+        BadCurve{"NoReference", "{thrust_curve: {table: {time_s: [0, 20], thrust_kn: [80, 60]}}}", "", "",
+                 "vehicle.yaml:11:27: stages[0].motor.thrust_curve: missing key 'reference', allowed: one of "
+                 "vacuum, "
+                 "sea_level\n"},
+        BadCurve{"TimesThatTurnBack", kCsvMotor, "curve.csv", "time_s,thrust_n\n0,100\n5,90\n4,80\n6,0\n",
+                 "curve.csv:4:1: time_s[2]: '4' is not later than '5' before it, allowed: times that increase\n"},
+        BadCurve{"StartsLate", kCsvMotor, "curve.csv", "time_s,thrust_n\n1,100\n5,90\n",
+                 "curve.csv:2:1: time_s[0]: '1' is not the time of ignition, allowed: 0 as the first time\n"},
+        BadCurve{"PushesBackwards", kCsvMotor, "curve.csv", "time_s,thrust_n\n0,100\n5,-90\n",
+                 "curve.csv:3:3: thrust_n[1]: -90 is out of range, allowed: a number not below 0\n"},
+        BadCurve{
+            "NoThrust", kCsvMotor, "curve.csv", "time_s,thrust_n\n0,0\n5,0\n",
+            "curve.csv:1:8: thrust_n: the thrust is 0 at all times, allowed: a thrust above 0 somewhere\n"},
+        BadCurve{"LessThrustsThanTimes",
+                 "{thrust_curve: {reference: vacuum, table: {time_s: [0, 20, 30], thrust_kn: [80, 60]}}}", "",
+                 "",
+                 "vehicle.yaml:11:54: stages[0].motor.thrust_curve.table: there are 3 times and 2 thrusts, "
+                 "allowed: one "
+                 "thrust for each time\n"},
+        BadCurve{"LessFlowsThanTimes",
+                 "{thrust_curve: {reference: vacuum, table: {time_s: [0, 20, 30], thrust_kn: [80, 60, 50], "
+                 "mass_flow_kg_s: [50, 50]}}}",
+                 "", "",
+                 "vehicle.yaml:11:54: stages[0].motor.thrust_curve.table: there are 3 times and 2 mass flows, allowed: "
+                 "one mass flow for each time, or none at all\n"},
+        BadCurve{"NoFlow", kCsvMotor, "curve.csv", "time_s,thrust_n,mass_flow_kg_s\n0,9,0\n5,9,0\n",
+                 "curve.csv:1:17: mass_flow_kg_s: the mass flow is 0 at all times, allowed: a mass flow above 0 "
+                 "somewhere\n"},
+        BadCurve{"FlowOfAnotherPropellant", kCsvMotor, "curve.csv",
+                 "time_s,thrust_n,mass_flow_kg_s\n0,60000,25\n66,60000,25\n",
+                 "curve.csv:1:17: stages[0].motor.thrust_curve.table.mass_flow_kg_s: flows 1650.000000 kg in all, but "
+                 "propellant_mass_kg is 1500.000000, allowed: flows that sum up to the propellant within 1 %\n"},
+        BadCurve{"FlowMisspelt", kCsvMotor, "curve.csv", "time_s,thrust_n,mass_flow_kgs\n0,9,1\n5,9,1\n",
+                 "curve.csv:1:17: unknown column 'mass_flow_kgs', allowed: the columns time_s, thrust_n, and "
+                 "mass_flow_kg_s if there is one\n"},
+        BadCurve{"ShortHeader", kEngMotor, "curve.eng", Eng(" NOBODY", ""),
+                 "curve.eng:2:1: the header has 6 fields in place of 7, allowed: " HEADER "\n"},
+        BadCurve{"DiameterOfWords", kEngMotor, "curve.eng", Eng(" 98 ", " wide "),
+                 "curve.eng:2:9: the diameter is 'wide', allowed: a number above 0\n"},
+        BadCurve{"MorePropellantThanMotor", kEngMotor, "curve.eng", Eng("1.20", "3.20"),
+                 "curve.eng:2:21: the propellant of 3.20 kg is more than the motor's 2.10 kg, allowed: a "
+                 "part of the "
+                 "motor's mass\n"},
+        BadCurve{
+            "ThreeNumbers", kEngMotor, "curve.eng", Eng("0.50 1000", "0.50 1000 7"),
+            "curve.eng:4:4: the line has 3 fields in place of 2, allowed: a time in s and a thrust in N\n"},
+        BadCurve{"NegativeThrust", kEngMotor, "curve.eng", Eng(" 800", " -8"),
+                 "curve.eng:5:9: the thrust is '-8', allowed: a number not below 0\n"},
+        BadCurve{
+            "TimeStandsStill", kEngMotor, "curve.eng", Eng("2.00", "0.50"),
+            "curve.eng:5:4: the time 0.50 is not later than that before it, allowed: times that increase\n"},
+        BadCurve{"NoEnd", kEngMotor, "curve.eng", Eng("   2.60 0.0\n", ""),
+                 "curve.eng:6:1: the curve does not end, allowed: a last line with a thrust of 0\n"},
+        BadCurve{"SecondMotor", kEngMotor, "curve.eng", std::string(kEng) + "TRIAL-2 98 640 0 1 2 NOBODY\n",
+                 "curve.eng:8:1: the line comes after the thrust of 0 that ends the motor's curve, allowed: "
+                 "one motor in "
+                 "a file, and nothing but comments after it\n"},
+        BadCurve{"NoMotor", kEngMotor, "curve.eng", "; nothing\n",
+                 "curve.eng:1:1: the file holds no motor, allowed: " HEADER "\n"}),
+    [](const auto& bad) { return std::string(bad.param.name); });
+
+}  // namespace
+}  // namespace dispersa

@@ -1,0 +1,195 @@
+// Flights of motors with thrust curves: every corner ends a step, so that the engine's steps keep their order
+// on curves whose corners fall between ticks, as CVODE shows, which is started anew at each of them; and what
+// a burn in space gains is the rocket equation's, whatever the curve and the burn rate.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <vector>
+
+#include "core/flight/simpson_step.h"
+#include "tests/slv4_flight.h"
+
+namespace dispersa {
+namespace {
+
+// SLV-4 with motors that rise, sag, step and tail off within and between ticks of 10 ms; impulse and
+// propellant are those of its own motors, thrusts about.
+FlightDefinition CurvedDefinition() {
+  FlightDefinition definition = Slv4Definition(DISPERSA_CAMPAIGNS);
+  for (Stage& stage : definition.vehicle.stages) {
+    const double impulse_n_s = stage.motor.thrust_n * stage.motor.burning_time_s;
+    ThrustCurve curve{{0.0, 0.0713, 0.2351, 11.1234567, 17.4567891, 17.4612345, 29.3, 52.0077, 53.4441},
+                      {0.4, 1.02, 0.97, 1.05, 1.0, 0.93, 0.95, 0.9, 0.0}};
+    const double stretch = stage.motor.burning_time_s / curve.time_s.back();
+    for (double& time_s : curve.time_s) time_s *= stretch;
+    const double level = impulse_n_s / curve.Impulse();
+    for (double& thrust_n : curve.thrust_n) thrust_n *= level;
+    SetThrustCurve(curve, stage.motor);
+  }
+  return definition;
+}
+
+struct Flown {
+  FlightResult result;
+  History history;
+};
+Flown FlyWith(const FlightModel& model, const FlightInputs& inputs, Scheme scheme, int steps_per_tick) {
+  Flown flown;
+  flown.history.step_s = 0.1;
+  FlightOptions options;
+  options.scheme = scheme;
+  options.steps_per_tick = steps_per_tick;
+  options.history = &flown.history;
+  flown.result = Fly(model, inputs, options);
+  return flown;
+}
+
+// The largest difference of a column as long as two flights are to be compared.
+double Apart(const Flown& a, const Flown& b, const char* column, double until_s) {
+  const int at = FindHistoryColumn(column), time = FindHistoryColumn("time_s");
+  double largest = 0.0;
+  for (std::size_t row = 0; row < std::min(a.history.rows(), b.history.rows()); ++row)
+    if (a.history.at(row, time) < until_s)
+      largest = std::max(largest, std::fabs(a.history.at(row, at) - b.history.at(row, at)));
+  return largest;
+}
+
+// The speed is held to a limit alone: it differs from CVODE's by 3e-7 m/s at most and 1e-8 in quarter steps,
+// with curves and with constant thrust alike. Up to the coast, in which a thruster's firing one cycle earlier
+// is another flight (flight_convergence_test.cc).
+void ExpectOrder(const FlightInputs& inputs) {
+  constexpr double kPowered_s = 165.0;
+  const FlightModel model(CurvedDefinition());
+  const Flown exact = FlyWith(model, inputs, Scheme::kCvode, 1);
+  ASSERT_EQ(exact.result.outcome, Outcome::kCompleted) << exact.result.reason;
+  double first_deg = 0.0;
+  for (const int steps : {1, 2, 4}) {
+    const Flown flown = FlyWith(model, inputs, Scheme::kSimpson, steps);
+    ASSERT_EQ(flown.history.rows(), exact.history.rows());
+    const double pitch_deg = Apart(flown, exact, "pitch_error_deg", kPowered_s);
+    const double speed_m_s = Apart(flown, exact, "inertial_velocity_m_s", kPowered_s);
+    std::printf("%d steps a tick - CVODE: %.2e m/s, %.2e deg\n", steps, speed_m_s, pitch_deg);
+    EXPECT_LT(pitch_deg, 1e-4);
+    EXPECT_LT(speed_m_s, 1.5e-6);
+    if (steps == 1)
+      first_deg = pitch_deg;
+    else  // halving divides by 6 at least, down to CVODE's own tolerance
+      EXPECT_LT(pitch_deg, std::max(first_deg / 6.0, 1e-7));
+  }
+}
+
+TEST(ThrustCurveFlight, KeepsTheStepsOrder) { ExpectOrder({}); }
+
+TEST(ThrustCurveFlight, KeepsTheStepsOrderWithDispersedRates) {
+  FlightInputs inputs = Table3Inputs();
+  inputs.mass_flow_factor = inputs.thrust_factor;  // a burn rate: the curve is drawn together in time
+  ExpectOrder(inputs);
+}
+
+// The first stack burns alone in empty space, from rest along its axis. Steps of `step_s` end on the corners
+// too, unless they are to be passed over.
+double SpeedGained(const Vehicle& vehicle, double burn_rate, double step_s, bool stops_at_corners) {
+  LauncherPlant plant = BuildNominalPlant(vehicle);
+  plant.stacks[0].burn = BuildBurn(vehicle.stages[0], burn_rate, burn_rate);
+  plant.environment.earth = SphericalEarth(6371000.0, false);
+  plant.environment.earth.mu_m3_s2 = 0.0;
+  const MotorBurn& burn = plant.stacks[0].burn;
+  std::vector<double> stops_s;
+  for (int i = 1; i * step_s < burn.duration_s; ++i) stops_s.push_back(i * step_s);
+  if (stops_at_corners)
+    for (const double kink_s : burn.Kinks(0.0)) stops_s.push_back(kink_s);
+  stops_s.push_back(burn.duration_s);
+  std::sort(stops_s.begin(), stops_s.end());
+
+  const FlightWeather calm;
+  auto step = std::make_unique<lanes::StepState<double>>();
+  *step = {};
+  step->Configure(plant.environment.earth, step_s);
+  step->StartFlight(0);
+  lanes::SetLane(step->plant.weather, 0, calm);
+  lanes::SetLane(step->plant, 0, plant, 0);
+  lanes::SetLane(step->drives, 0, plant.stacks[0].gimbal, -1);
+  step->SetTickTransition(0);
+  step->phase.burning = true;
+  double y[kLauncherSize] = {};
+  RigidBodyState state;
+  state.p_EoC_I = Vector3(6371000.0 + 2000e3, 0.0, 0.0);  // above the atmosphere
+  WriteState(state, y);
+  step->WriteLane(0, y);
+  double from_s = 0.0;
+  for (const double to_s : stops_s) {
+    if (!(to_s > from_s)) continue;
+    step->MarkMoved(0);
+    step->EvaluateStart(from_s);
+    EXPECT_TRUE(step->Step(true, true, from_s, to_s));
+    from_s = to_s;
+  }
+  step->ReadLane(0, y);
+  return ReadState(y).v_IC_I.norm();
+}
+
+TEST(ThrustCurveFlight, GainsTheRocketEquationsSpeed) {
+  const Vehicle vehicle = CurvedDefinition().vehicle;
+  const Stage& stage = vehicle.stages[0];
+  const double exhaust_m_s = stage.motor.thrust_curve.Impulse() / stage.propellant_mass_kg;
+  const StackMass mass = BuildStackMasses(vehicle)[0];
+  const double full_kg = mass.At(stage.propellant_mass_kg).mass_kg, empty_kg = mass.At(0.0).mass_kg;
+  const double exact_m_s = exhaust_m_s * std::log(full_kg / empty_kg);
+  for (const double rate : {1.0, 1.03}) {
+    const double coarse = std::fabs(SpeedGained(vehicle, rate, 0.4, true) - exact_m_s);
+    const double fine = std::fabs(SpeedGained(vehicle, rate, 0.2, true) - exact_m_s);
+    const double across = std::fabs(SpeedGained(vehicle, rate, 0.2, false) - exact_m_s);
+    std::printf("burn rate %.2f: %.2e m/s in steps of 0.4 s, %.2e of 0.2 s, %.2e across the corners\n", rate,
+                coarse, fine, across);
+    EXPECT_LT(fine, std::max(coarse / 12.0, 1e-9));  // order 4 gives 16
+    EXPECT_LT(fine, 1e-5);
+    EXPECT_GT(across, 100.0 * fine) << "the corners hardly matter: this shows nothing";
+  }
+}
+
+// A flow with a shape of its own: no rocket equation holds, the speed is the integral of P/m. Between corners P is
+// linear and m a parabola; ten-point Gauss-Legendre sums over a hundredth of each piece are exact to rounding.
+TEST(ThrustCurveFlight, GainsTheIntegralOfThrustOverMassWithItsOwnFlow) {
+  Vehicle vehicle = CurvedDefinition().vehicle;
+  Stage& stage = vehicle.stages[0];
+  ThrustCurve curve = stage.motor.thrust_curve;
+  for (std::size_t i = 0; i < curve.time_s.size(); ++i)  // the exhaust gets slower by a quarter
+    curve.flow_kg_s.push_back(curve.thrust_n[i] * (1.0 + 0.25 * curve.time_s[i] / curve.time_s.back()));
+  const double scale = stage.propellant_mass_kg / curve.Flown();
+  for (double& flow_kg_s : curve.flow_kg_s) flow_kg_s *= scale;
+  SetThrustCurve(curve, stage.motor);
+  const double empty_kg = BuildStackMasses(vehicle)[0].At(0.0).mass_kg;
+  for (const double rate : {1.0, 1.03}) {
+    constexpr double kPoint[] = {0.1488743389816312, 0.4333953941292472, 0.6794095682990244, 0.8650633666889845,
+                                 0.9739065285171717};
+    constexpr double kWeight[] = {0.2955242247147529, 0.2692667193099963, 0.2190863625159820, 0.1494513491505806,
+                                  0.0666713443086881};
+    double exact_m_s = 0.0, left_kg = stage.propellant_mass_kg;
+    for (std::size_t i = 0; i + 1 < curve.time_s.size(); ++i) {
+      const double length_s = (curve.time_s[i + 1] - curve.time_s[i]) / rate;
+      const double flow = rate * curve.flow_kg_s[i], flow_rise = (rate * curve.flow_kg_s[i + 1] - flow) / length_s;
+      const double thrust = rate * curve.thrust_n[i], rise = (rate * curve.thrust_n[i + 1] - thrust) / length_s;
+      for (int part = 0; part < 100; ++part) {
+        for (int k = 0; k < 10; ++k) {
+          const double x = k % 2 == 0 ? kPoint[k / 2] : -kPoint[k / 2];
+          const double t = length_s / 100.0 * (part + 0.5 + 0.5 * x);
+          exact_m_s += 0.5 * length_s / 100.0 * kWeight[k / 2] * (thrust + rise * t) /
+                       (empty_kg + left_kg - t * (flow + 0.5 * flow_rise * t));
+        }
+      }
+      left_kg -= length_s * (flow + 0.5 * flow_rise * length_s);
+    }
+    EXPECT_NEAR(left_kg, 0.0, 1e-8);
+    const double coarse = std::fabs(SpeedGained(vehicle, rate, 0.4, true) - exact_m_s);
+    const double fine = std::fabs(SpeedGained(vehicle, rate, 0.2, true) - exact_m_s);
+    std::printf("own flow, burn rate %.2f: %.2e m/s in steps of 0.4 s, %.2e of 0.2 s\n", rate, coarse, fine);
+    EXPECT_LT(fine, std::max(coarse / 12.0, 1e-9));
+    EXPECT_LT(fine, 1e-5);
+  }
+}
+
+}  // namespace
+}  // namespace dispersa
