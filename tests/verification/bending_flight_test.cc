@@ -358,8 +358,10 @@ TEST(BendingFlight, MarginsMeasuredInFlightAreTheComputedOnes) {
           "%s, stage %d: %.1f dB computed, %.1f dB measured; %.0f ms computed, %.0f ms measured, "
           "grown by then at %.0f ms\n",
           autopilot, m.stage + 1, up_db, m.gain_up_db, 1e3 * delay_s, 1e3 * m.delay_s, 1e3 * noticed_s);
-      // Both axes at work on a disturbed flight: up to 0.6 dB were found of rigid ones.
-      EXPECT_NEAR(m.gain_up_db, up_db, 0.8) << m.stage;
+      // Lost counts an oscillation of 0.2 deg, which excitation reaches before the loop is unstable: 1 dB
+      // below its margin a loop amplifies ninefold, 1 / (1 - 10^(-1/20)).
+      EXPECT_GT(m.gain_up_db, up_db - 1.0) << m.stage;
+      EXPECT_LT(m.gain_up_db, up_db + 0.5) << m.stage;
       EXPECT_GT(m.delay_s, 0.85 * delay_s) << m.stage;
       EXPECT_LE(m.delay_s, noticed_s) << m.stage;
     }
