@@ -28,14 +28,17 @@ std::vector<Nozzle> CrossAsList(double radius_m) {
           {"bottom", 0.0, radius_m, 0.25, {180.0 * kDeg}, 0.0},
           {"top", 0.0, -radius_m, 0.25, {180.0 * kDeg}, 0.0}};
 }
-// At 0, 120 and 240 deg, each turning about the vehicle's axis.
-std::vector<Nozzle> Three(double radius_m) {
+// `count` on a circle, each turning about the vehicle's axis.
+std::vector<Nozzle> Ring(int count, double radius_m) {
   std::vector<Nozzle> nozzles;
-  for (const double at : {0.0, 120.0 * kDeg, 240.0 * kDeg})
-    nozzles.push_back({"at " + std::to_string(static_cast<int>(at / kDeg + 0.5)), radius_m * std::cos(at),
-                       radius_m * std::sin(at), 1.0 / 3.0, {at + 90.0 * kDeg}, 0.0});
+  for (int k = 0; k < count; ++k) {
+    const double at = kTwoPi * k / count;
+    nozzles.push_back({std::to_string(k), radius_m * std::cos(at), radius_m * std::sin(at), 1.0 / count,
+                       {at + 90.0 * kDeg}, 0.0});
+  }
   return nozzles;
 }
+std::vector<Nozzle> Three(double radius_m) { return Ring(3, radius_m); }
 
 FlightDefinition Definition(const std::vector<Nozzle>& nozzles) {
   FlightDefinition definition = HighDefinition();
@@ -180,10 +183,24 @@ TEST(ListedNozzles, JudgesFlyTheSameFlight) {
   }
 }
 
+// A nozzle in two planes between two that are fixed, a metre beside the axis.
+std::vector<Nozzle> OneBetweenFixed() {
+  return {{"main", 0.0, 0.0, 0.5, {90.0 * kDeg, 180.0 * kDeg}, 0.0},
+          {"right", 1.0, 0.0, 0.25, {}, 0.0},
+          {"left", -1.0, 0.0, 0.25, {}, 0.0}};
+}
+// The right one's 50 kN 8e-5 rad towards z: 4 N m of roll, half of what the couple of two thrusters of 10 N, 0.4 m from the
+// axis, can do. (One nozzle on the axis that trims pitch and yaw turns no vehicle in roll: its thrust passes the CG.)
+FlightInputs Rolled() {
+  FlightInputs inputs;
+  inputs.nozzle_misalignment_rad[0][1] = 8e-5;
+  inputs.nozzle_misalignment_clock_rad[0][1] = 0.5 * kPi;
+  return inputs;
+}
+
 TEST(ListedNozzles, TheReactionControlHoldsTheRollThatOneNozzleCannot) {
-  FlightDefinition definition = Definition(OneNozzle());
-  FlightInputs inputs = Disturbed();
-  // The nozzle trims a misalignment in yaw from beside the centre of gravity: a moment of roll all the time.
+  FlightDefinition definition = Definition(OneBetweenFixed());
+  const FlightInputs inputs = Rolled();
   FlightResult held;
   const auto ticks = Ticks(definition, inputs, &held);
   ASSERT_EQ(held.outcome, Outcome::kCompleted) << held.reason;
@@ -195,7 +212,6 @@ TEST(ListedNozzles, TheReactionControlHoldsTheRollThatOneNozzleCannot) {
     worst_pitch = std::max(worst_pitch, std::fabs(s.error.angle_rad.y()));
     for (std::size_t drive : {1u, 2u, 3u, 5u, 6u, 7u})
       roll_commanded = std::max(roll_commanded, std::fabs(s.nozzle_rad[drive]));
-    // Two thrusters of 10 N, 0.4 m from the axis, and nothing else about the others.
     EXPECT_EQ(s.thrusters[kPitch], 0);
     EXPECT_EQ(s.thrusters[kYaw], 0);
     fired += s.thrusters[kRoll] != 0;
@@ -218,8 +234,8 @@ TEST(ListedNozzles, TheReactionControlHoldsTheRollThatOneNozzleCannot) {
 
 // 2 F arm / Ixx from one tick to the next while a couple fires, beside the steady moment.
 TEST(ListedNozzles, ACoupleTurnsTheBurningVehicleByItsMoment) {
-  const FlightDefinition definition = Definition(OneNozzle());
-  const auto ticks = Ticks(definition, Disturbed());
+  const FlightDefinition definition = Definition(OneBetweenFixed());
+  const auto ticks = Ticks(definition, Rolled());
   const LauncherPlant plant = FlightModel(definition).PlantFor({});
   int compared = 0;
   for (std::size_t i = 2; i + 1 < ticks.size() && ticks[i + 1].burning; ++i) {
@@ -238,21 +254,21 @@ TEST(ListedNozzles, ACoupleTurnsTheBurningVehicleByItsMoment) {
   EXPECT_GT(compared, 3);
 }
 
-TEST(ListedNozzles, AStuckNozzleOfThreeStandsAndTheOthersTakeItsPart) {
+// Of four that each turn in one plane three suffice for three axes.
+TEST(ListedNozzles, AStuckNozzleOfFourStandsAndTheOthersTakeItsPart) {
   FlightInputs inputs;
   inputs.stuck_nozzle = 2.0;
   inputs.stuck_nozzle_stage = 1.0;
   inputs.stuck_nozzle_rad = 0.3 * kDeg;
   double others = 0.0;
   FlightResult result;
-  for (const TickSample& s : Ticks(Definition(Three(0.4)), inputs, &result)) {
+  for (const TickSample& s : Ticks(Definition(Ring(4, 0.4)), inputs, &result)) {
     if (!s.burning || s.stack != 0) continue;
     EXPECT_EQ(s.nozzle_rad[1], 0.3 * kDeg) << s.time_s;
-    EXPECT_EQ(s.nozzle_rad[3], 0.0);
     others = std::max({others, std::fabs(s.nozzle_rad[0]), std::fabs(s.nozzle_rad[2])});
   }
   EXPECT_EQ(result.outcome, Outcome::kCompleted);
-  EXPECT_GT(others, 0.1 * kDeg);
+  EXPECT_GT(others, 0.05 * kDeg);
 }
 
 // A nozzle stuck about both hinges of its Cardan joint: none of its drives moves.
