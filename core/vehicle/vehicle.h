@@ -60,8 +60,8 @@ struct Throttle {
   bool empty() const { return time_s.empty(); }
 };
 enum class CutOff {
-  kDepletion,  ///< when all but the residual has flown
-  kTime,       ///< `cut_off_s` after ignition, or by depletion if that comes first
+  kAtDepletion,  ///< when all but the residual has flown
+  kAtTime,       ///< `cut_off_s` after ignition, or by depletion if that comes first
 };
 
 /// Constant thrust between two linear ramps whose impulse is part of the whole, or a thrust curve: propellant
@@ -77,7 +77,7 @@ struct Motor {
   // Of a liquid stage; without ramps and curve. thrust_n is at full thrust, burning_time_s what all propellant would
   // last at that.
   Throttle throttle = {};
-  CutOff cut_off = CutOff::kDepletion;
+  CutOff cut_off = CutOff::kAtDepletion;
   double cut_off_s = 0.0;
   double residual_mass_kg = 0.0;  ///< of the propellant: never flows
 };

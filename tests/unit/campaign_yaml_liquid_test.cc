@@ -32,7 +32,7 @@ TEST(LiquidFile, IsReadAndIsUsual) {
   EXPECT_EQ(stage.motor.thrust_n, 75e3);
   EXPECT_DOUBLE_EQ(1500.0 / stage.motor.burning_time_s, 75e3 / (290.0 * 9.80665));
   EXPECT_EQ(stage.motor.residual_mass_kg, 15.0);
-  EXPECT_EQ(stage.motor.cut_off, CutOff::kDepletion);
+  EXPECT_EQ(stage.motor.cut_off, CutOff::kAtDepletion);
   EXPECT_TRUE(stage.motor.throttle.empty());
   ASSERT_EQ(stage.tanks.size(), 2u);
   EXPECT_EQ(stage.tanks[1].name, "kerosene");
@@ -52,7 +52,7 @@ TEST(LiquidFile, ThrottlesAndIsCutOff) {
   const Motor motor = StageOf(files).motor;
   EXPECT_EQ(motor.throttle.time_s, (std::vector<double>{0.0, 40.0, 41.0}));
   EXPECT_EQ(motor.throttle.level, (std::vector<double>{1.0, 1.0, 0.65}));
-  EXPECT_EQ(motor.cut_off, CutOff::kTime);
+  EXPECT_EQ(motor.cut_off, CutOff::kAtTime);
   EXPECT_EQ(motor.cut_off_s, 50.0);
 }
 
