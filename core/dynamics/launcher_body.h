@@ -223,7 +223,7 @@ DISPERSA_INLINE Thrust<T> ThrustOf(const Plant<T>& plant, const TimedMasses<T>& 
   const T net_n =
       Fma(plant.burn.vacuum_thrust_n, masses.thrust_fraction, -(pressure_pa * plant.burn.exit_area_m2));
   o.thrust_n = Select(net_n < none, none, net_n);
-  o.flow_kg_s = plant.burn.full_flow_kg_s * masses.thrust_fraction;
+  o.flow_kg_s = plant.burn.full_flow_kg_s * masses.flow_fraction;
   o.force_n = o.couple_n_m = Zero<T>();
   for (int i = 0; i < kNozzles; ++i) {
     const ListedNozzle<T>& nozzle = plant.listed[i];
