@@ -246,6 +246,7 @@ TickSample FlightRecord::SampleOf(const LaneView& view) const {
   }
   s.stuck_nozzle = view.phase.stuck_nozzle;
   s.expelled_mass_kg = view.phase.expelled_mass_kg;
+  s.jettisoned = view.phase.jettisoned;
   s.instant = equations_->Evaluate(view.phase, view.time_s, view.y);
   return s;
 }

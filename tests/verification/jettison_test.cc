@@ -7,7 +7,7 @@
 
 #include "core/dynamics/jettison.h"
 #include "core/flight/flight.h"
-#include "core/flight/history_columns.h"
+#include "core/flight/linear_axis.h"
 #include "core/math/constants.h"
 #include "core/trajectory/ascent.h"
 #include "tests/slv4_flight.h"
@@ -149,6 +149,26 @@ TEST(Jettison, HappensOnATickWhateverTheSteps) {
     std::printf("3DOF at %.2f s, 6DOF at %.2f s (%.1f km, %.0f W/m2)\n", at_s, flown_s, 1e-3 * altitude_m,
                 flux);
   }
+}
+
+// Margins are those of what is left: its loop's gain is the effectiveness that the autopilot counts on, before and
+// after.
+TEST(Jettison, MarginsAreOfWhatIsLeft) {
+  FlightDefinition definition = Slv4Definition(DISPERSA_CAMPAIGNS, "pd");
+  definition.vehicle = WithFairing(JettisonTrigger::kAtTime, 100.0);
+  definition.jettison_s = {100.0};
+  const FlightModel model(definition);
+  std::vector<double> found_1_s2, known_1_s2;
+  FlightOptions options;
+  options.observe = [&](const TickSample& s) {
+    if (!s.burning || s.stack != 1 || std::fabs(std::fabs(s.time_s - 100.0) - 4.0) > 1e-6) return;
+    found_1_s2.push_back(
+        LineariseAxis(model.nominal_plant(), s, kPitch, model.sensors()).a(1, 2));
+    known_1_s2.push_back(LineariseLaw(model.autopilot(), 1, s.since_ignition_s, kPitch, false).effectiveness_1_s2);
+  };
+  Fly(model, {}, options);
+  ASSERT_EQ(found_1_s2.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(found_1_s2[i], known_1_s2[i], 1e-3 * known_1_s2[i]) << i;
 }
 
 // The autopilot's knowledge follows the nominal jettison.
