@@ -25,7 +25,9 @@ FlightDefinition ThreeStages() {
   third.liftoff_mass_kg = 1200.0;
   third.propellant_mass_kg = 400.0;
   third.bottom_station_m = 5.0;
-  third.motor = {.thrust_n = 30e3, .burning_time_s = 10.0};
+  third.motor = {};
+  third.motor.thrust_n = 30e3;
+  third.motor.burning_time_s = 10.0;
   third.grain = {2.0, 4.0, 0.8, 0.3};
   third.structure = {{"all", 1.0, 1.0, 4.8, 0.9, 0.8}};
   third.gimbal.pivot_station_m = 4.7;

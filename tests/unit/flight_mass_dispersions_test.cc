@@ -142,8 +142,8 @@ TEST(DispersedMasses, AreNotKnownOnBoard) {
   const FlightModel model(SampleDefinition());
   FlightInputs inputs;
   inputs.dry_mass_factor[0] = 1.1;
-  const StageControl nominal = BuildStageControl(model.nominal_plant().stacks[0]);
-  EXPECT_NE(BuildStageControl(model.PlantFor(inputs).stacks[0]).pitch_effectiveness_1_s2.y,
+  const StageControl nominal = BuildStageControl(model.nominal_plant(), 0);
+  EXPECT_NE(BuildStageControl(model.PlantFor(inputs), 0).pitch_effectiveness_1_s2.y,
             nominal.pitch_effectiveness_1_s2.y);
   EXPECT_EQ(model.autopilot().stages[0].pitch_effectiveness_1_s2.y, nominal.pitch_effectiveness_1_s2.y);
 }
