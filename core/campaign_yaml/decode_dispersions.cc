@@ -162,11 +162,9 @@ class DispersionDecoder {
                                           std::to_string(possible.back()) + ", or a list of them";
     std::vector<int> stages;
     const auto read = [&](const InputNode& item, const std::string& path) {
-      const double number = item.kind == InputNode::Kind::kScalar && !item.quoted
-                                ? ParseNumber(item.text).value_or(0.0)
-                                : 0.0;
-      const auto found = std::find_if(possible.begin(), possible.end(),
-                                      [&](int stage) { return number == stage; });
+      const bool plain = item.kind == InputNode::Kind::kScalar && !item.quoted;
+      const double number = plain ? ParseNumber(item.text).value_or(0.0) : 0.0;
+      const auto found = std::find(possible.begin(), possible.end(), number);
       if (found == possible.end()) {
         AddProblem(problems_, item, path, item.Describe() + " is no stage that this disperses", allowed);
       } else if (std::find(stages.begin(), stages.end(), *found) != stages.end()) {

@@ -140,11 +140,11 @@ TEST(StageDispersions, WhatTheTwoReadingsOfAMisalignmentHaveAboutAnAxis) {
 
 TEST(StageDispersions, WhatIsWrongIsSaidInFull) {
   EXPECT_EQ(Problems("dry_mass: {distribution: normal, sigma_percent: 1, per: stage, stage: 3}"),
-            "campaign.yaml:8:76: dispersions.dry_mass.stage: '3' is no stage that this disperses, allowed: "
+            "campaign.yaml:8:73: dispersions.dry_mass.stage: '3' is no stage that this disperses, allowed: "
             "one of 1 "
             "to 2, or a list of them\n");
   EXPECT_EQ(Problems("dry_mass: {distribution: normal, sigma_percent: 1, per: stage, stage: [1, 1]}"),
-            "campaign.yaml:8:80: dispersions.dry_mass.stage[1]: stage 1 is given twice, allowed: each stage "
+            "campaign.yaml:8:77: dispersions.dry_mass.stage[1]: stage 1 is given twice, allowed: each stage "
             "once\n");
   EXPECT_EQ(
       Problems("separation_delay: {distribution: constant, value_s: 1, per: stage, stage: 2}"),
@@ -153,7 +153,7 @@ TEST(StageDispersions, WhatIsWrongIsSaidInFull) {
   EXPECT_EQ(
       Problems("dry_mass: [{distribution: normal, sigma_percent: 1, per: stage, stage: 1}, {distribution: "
                "normal, sigma_percent: 2, per: stage, stage: [1, 2]}]"),
-      "campaign.yaml:8:148: dispersions.dry_mass[1].stage: stage 1 is given twice, allowed: each stage in "
+      "campaign.yaml:8:138: dispersions.dry_mass[1].stage: stage 1 is given twice, allowed: each stage in "
       "one "
       "of the list\n");
   EXPECT_EQ(
