@@ -31,8 +31,8 @@ namespace {
 
 // An instant of one lane.
 struct OneLane {
-  OneLane(const LauncherPlant& from, const lanes::Plant<double>& stack, const LauncherPhase& now, double time_s,
-          const double* y)
+  OneLane(const LauncherPlant& from, const lanes::Plant<double>& stack, const LauncherPhase& now,
+          double time_s, const double* y)
       : earth(from.environment.earth),
         plant(stack),
         phase{now.burning, now.burnt, now.ignition_s, now.expelled_mass_kg, ToLanes(now.control_torque_n_m)},
@@ -43,7 +43,8 @@ struct OneLane {
         second(lanes::NozzlesAt(y + kSecondAngle)) {
     lanes::SetLane(drives, 0, from.stacks[static_cast<std::size_t>(now.stack)].gimbal, now.stuck_nozzle);
     Accelerate(now.command_rad.data(), y + kNozzleAngle, y + kNozzleRate, nozzles);
-    if (plant.nozzles_listed) Accelerate(now.command_rad.data() + kNozzles, y + kSecondAngle, y + kSecondRate, second);
+    if (plant.nozzles_listed)
+      Accelerate(now.command_rad.data() + kNozzles, y + kSecondAngle, y + kSecondRate, second);
     lanes::SetLane(bending, 0, from, now.stack);
     if (bending.modes == 0) return;
     lanes::ShapesAt(bending, masses.propellant_kg);
@@ -53,14 +54,14 @@ struct OneLane {
 
   lanes::LoadsOf<double> Loads() const {
     return WithBody([this](const auto& turned, const auto& body) {
-      return lanes::LoadsAt(earth.rotation_rate_rad_s, plant, phase, phase.burning, around, masses,
-                            turned, motion, body);
+      return lanes::LoadsAt(earth.rotation_rate_rad_s, plant, phase, phase.burning, around, masses, turned,
+                            motion, body);
     });
   }
   lanes::Rates<double> Rates() const {
     return WithBody([this](const auto& turned, const auto& body) {
-      return lanes::RatesOf<double>(earth.rotation_rate_rad_s, plant, phase, phase.burning, around,
-                                    masses, turned, motion, body, nullptr);
+      return lanes::RatesOf<double>(earth.rotation_rate_rad_s, plant, phase, phase.burning, around, masses,
+                                    turned, motion, body, nullptr);
     });
   }
 
@@ -90,7 +91,8 @@ struct OneLane {
     const lanes::ListedNozzles<double> listed{nozzles, second};
     const lanes::BentBody<double> bent{&bending, &bending_state, &modal};
     if (bending.modes > 0) return plant.nozzles_listed ? function(listed, bent) : function(nozzles, bent);
-    return plant.nozzles_listed ? function(listed, lanes::StraightBody{}) : function(nozzles, lanes::StraightBody{});
+    return plant.nozzles_listed ? function(listed, lanes::StraightBody{})
+                                : function(nozzles, lanes::StraightBody{});
   }
 };
 

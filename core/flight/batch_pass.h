@@ -200,7 +200,8 @@ void Batch<T>::PassCommands(M powered) {
   line_at_ = (line_at_ + 1) & (kDelayLine - 1);
 }
 
-/// Of stages whose nozzles cannot: by the couples of the coast, decided at the same cycles, while the motor burns.
+/// Of stages whose nozzles cannot: by the couples of the coast, decided at the same cycles, while the motor
+/// burns.
 template <class T>
 void Batch<T>::RollByThrusters(M rolling) {
   const AutopilotModel& autopilot = model_.autopilot();
@@ -210,8 +211,8 @@ void Batch<T>::RollByThrusters(M rolling) {
   for (int lane = 0; lane < kLanes; ++lane)
     SetLane(decides, lane, static_cast<long>(Lane(tick_, lane)) % logic.cycle_ticks == 0);
   decides = decides & rolling;
-  StepThrusters(logic, autopilot.thruster_minimum_cycles, decides, measured_angle_rad_.x, measured_rate_rad_s_.x,
-                thrusters_[kRoll]);
+  StepThrusters(logic, autopilot.thruster_minimum_cycles, decides, measured_angle_rad_.x,
+                measured_rate_rad_s_.x, thrusters_[kRoll]);
   const double couple_n = 2.0 * rcs.thrust_n;
   const double flow_kg = couple_n / (rcs.specific_impulse_s * kStandardGravity) * tick_s_;  // a tick
   const T direction = thrusters_[kRoll].direction;
@@ -310,7 +311,8 @@ void Batch<T>::Meter(M powered) {
   metrics_.AddPowered(powered, T(tick_s_), time_s_, {-angle_rad_.x, pitch_error, -angle_rad_.z}, law);
   const bool listed = step_.plant.nozzles_listed;
   if (listed)
-    metrics_.AddDeflections(powered, time_s_, step_.drive_state, step_.second_drives, step_.command_rad, allocation_);
+    metrics_.AddDeflections(powered, time_s_, step_.drive_state, step_.second_drives, step_.command_rad,
+                            allocation_);
   else
     metrics_.AddDeflections(powered, time_s_, step_.drive_state, step_.command_rad, loop_.limit_rad);
 

@@ -98,8 +98,8 @@ TEST(OptimizeTrajectory, SaysWhichConstraintStoppedIt) {
   EXPECT_THAT(result.statement, HasSubstr(" Constraint: axial_load_max_g = 8."));
 }
 
-// Azimuth has the inclination to itself once the speed is free: an inclination that the shipped orbit does not have is met
-// beside altitude and angle.
+// Azimuth has the inclination to itself once the speed is free: an inclination that the shipped orbit does
+// not have is met beside altitude and angle.
 TEST(OptimizeTrajectory, MeetsAnInclinationInPlaceOfASpeed) {
   OptimizationInput input = ShortSearch("slv4_500km.yaml");
   const double inclination = 70.0 * kRadPerDeg;
@@ -123,7 +123,8 @@ TEST(OptimizeTrajectory, SearchesAzimuthsAcrossNorth) {
   input.problem.target_inclination_rad = 92.0 * kRadPerDeg;
   input.problem.weight_inclination_1_rad = 10.0 / kRadPerDeg;
   input.problem.launch_azimuth_rad = {350.0 * kRadPerDeg, 370.0 * kRadPerDeg};
-  const OptimizationResult retrograde = OptimizeTrajectory(input.vehicle, input.problem, OptionsFor(input, 2));
+  const OptimizationResult retrograde =
+      OptimizeTrajectory(input.vehicle, input.problem, OptionsFor(input, 2));
   ASSERT_TRUE(retrograde.reached) << retrograde.statement;
   // West of north: the orbit goes west, and the Earth's rotation is to be undone.
   EXPECT_GT(retrograde.reference.program.launch_azimuth_rad, 350.0 * kRadPerDeg);
@@ -142,7 +143,8 @@ TEST(OptimizeTrajectory, EntersAnEllipseAtItsPerigee) {
   problem.target_altitude_m = 490e3;
   const double r = earth.equatorial_radius_m + 490e3;
   problem.target_velocity_m_s = std::sqrt(earth.mu_m3_s2 / r) + 5.0;
-  const double axis = 1.0 / (2.0 / r - problem.target_velocity_m_s * problem.target_velocity_m_s / earth.mu_m3_s2);
+  const double axis =
+      1.0 / (2.0 / r - problem.target_velocity_m_s * problem.target_velocity_m_s / earth.mu_m3_s2);
   problem.target_apogee_m = 2.0 * axis - r - earth.equatorial_radius_m;
   const OptimizationResult result = OptimizeTrajectory(input.vehicle, problem, OptionsFor(input, 2));
   ASSERT_TRUE(result.reached) << result.statement;
