@@ -116,29 +116,27 @@ template <class T>
 void Batch<T>::FlyGimbals() {
   const M powered = live_ & step_.phase.burning;
   if (!Any(powered)) return;
+  const bool listed = step_.plant.nozzles_listed;
+  AxisMemory<T> of_roll;
+  if (listed) of_roll = axes_[kRoll];
   if (All(powered))
     FlyGimbalsOf<true>(powered);
   else
     FlyGimbalsOf<false>(powered);
   PassCommands(powered);
-  if (!step_.plant.nozzles_listed) return;
+  if (!listed) return;
   const M rolling = powered & (allocation_.rolls_by_thrusters > T(0.0));
-  if (Any(rolling)) RollByThrusters(rolling);
+  if (!Any(rolling)) return;
+  Blend<T>(rolling, of_roll, axes_[kRoll]);  // a law whose commands nothing carries out learns nothing
+  RollByThrusters(rolling);
 }
 
 template <class T>
 template <bool kAll>
 void Batch<T>::FlyGimbalsOf(M powered) {
   T program[FeedForwardRows::kRowSize];
-  Vector<T> angle = measured_angle_rad_, rate = measured_rate_rad_s_;
-  if (step_.plant.nozzles_listed) {
-    // A law whose commands nothing carries out learns nothing.
-    const M rolls = allocation_.rolls_by_thrusters > T(0.0);
-    angle.x = Select(rolls, T(0.0), angle.x);
-    rate.x = Select(rolls, T(0.0), rate.x);
-  }
-  StepGimbals<kAll>(model_.autopilot(), loop_, powered, time_s_ - step_.phase.ignition_s, angle, rate,
-                    FedForward(program), axes_, gimbals_);
+  StepGimbals<kAll>(model_.autopilot(), loop_, powered, time_s_ - step_.phase.ignition_s, measured_angle_rad_,
+                    measured_rate_rad_s_, FedForward(program), axes_, gimbals_);
 }
 
 // What the program asks of the lanes' axes at their ticks; null where nothing is fed forward. Body axes stand
