@@ -69,10 +69,11 @@ FlightDefinition DefinitionOf(const Campaign& campaign) {
   definition.earlier_ignition_s = campaign.reference.earlier_ignition_s;
   // What the target leaves open, or counts from elsewhere, is the reference's.
   const Orbit& reached = campaign.reference.orbit;
-  definition.target = {
-      problem.target_apogee_m ? reached.altitude_m : problem.target_altitude_m,
-      problem.velocity_is_free ? reached.velocity_m_s - problem.velocity_reserve_m_s : problem.target_velocity_m_s,
-      problem.target_flight_path_angle_rad, problem.target_inclination_rad.value_or(reached.inclination_rad)};
+  definition.target = {problem.target_apogee_m ? reached.altitude_m : problem.target_altitude_m,
+                       problem.velocity_is_free ? reached.velocity_m_s - problem.velocity_reserve_m_s
+                                                : problem.target_velocity_m_s,
+                       problem.target_flight_path_angle_rad,
+                       problem.target_inclination_rad.value_or(reached.inclination_rad)};
   definition.guidance = campaign.guidance;
   definition.velocity_reserve_m_s = problem.velocity_reserve_m_s;
   definition.wind_table = campaign.wind_table;

@@ -1,8 +1,8 @@
 #include "core/campaign_yaml/decode_campaign.h"
 
 #include <algorithm>
-#include <functional>
 #include <cmath>
+#include <functional>
 
 #include "core/campaign_yaml/canonical.h"
 #include "core/campaign_yaml/decode.h"
@@ -419,17 +419,18 @@ GuidanceConfig DecodeGuidance(const InputNode& node, const Vehicle& vehicle, Pro
 }
 
 // Stages before the last that a timer ignites, and only they, have a coast of their own.
-void CheckTimers(const Vehicle& vehicle, const InputNode& node, const std::string& path, const std::string& key,
-                 const std::function<bool(std::size_t)>& has, ProblemList& problems) {
+void CheckTimers(const Vehicle& vehicle, const InputNode& node, const std::string& path,
+                 const std::string& key, const std::function<bool(std::size_t)>& has, ProblemList& problems) {
   for (std::size_t stage = 1; stage < kMaxStages; ++stage) {
-    const bool wants = stage + 1 < vehicle.stages.size() && vehicle.stages[stage].ignition == IgnitionTrigger::kTimer;
+    const bool wants =
+        stage + 1 < vehicle.stages.size() && vehicle.stages[stage].ignition == IgnitionTrigger::kTimer;
     if (wants == has(stage)) continue;
     const std::string name = "stage" + std::to_string(stage + 1);
     const std::string number = "stage " + std::to_string(stage + 1);
     AddProblem(problems, node, path,
                wants ? number + " of the vehicle ignites on a timer, and " + name + "_" + key + " is missing"
-                     : name + "_" + key + " is given, and " + number + " of the vehicle is not one before the last " +
-                           "that ignites on a timer",
+                     : name + "_" + key + " is given, and " + number +
+                           " of the vehicle is not one before the last that ignites on a timer",
                wants ? name + "_" + key : "no coast of that stage");
   }
 }
@@ -482,11 +483,13 @@ DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vect
   if (optimize != nullptr) decoded.optimize = DecodeTrajectoryProblem(*optimize, "optimize", problems);
 
   if (problems.empty() && optimize != nullptr)
-    CheckTimers(campaign.vehicle, *optimize, "optimize.bounds", "coast_s: [low, high]",
-                [&](std::size_t stage) { return decoded.optimize->earlier_coast_s[stage].high > 0.0; }, problems);
+    CheckTimers(
+        campaign.vehicle, *optimize, "optimize.bounds", "coast_s: [low, high]",
+        [&](std::size_t stage) { return decoded.optimize->earlier_coast_s[stage].high > 0.0; }, problems);
   else if (problems.empty() && reference != nullptr)
-    CheckTimers(campaign.vehicle, *reference, PathOfPart(*reference, root, "reference"), "ignition_s",
-                [&](std::size_t stage) { return campaign.reference.earlier_ignition_s[stage] > 0.0; }, problems);
+    CheckTimers(
+        campaign.vehicle, *reference, PathOfPart(*reference, root, "reference"), "ignition_s",
+        [&](std::size_t stage) { return campaign.reference.earlier_ignition_s[stage] > 0.0; }, problems);
 
   const bool flies = use != CampaignUse::kOptimize && optimize == nullptr;
   if (const InputNode* autopilot =

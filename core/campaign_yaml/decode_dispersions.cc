@@ -215,7 +215,8 @@ class DispersionDecoder {
       const std::vector<std::string> names = NozzleNames(stage);
       for (std::size_t i = 0; i < names.size(); ++i)
         Add(name + "/" + StageName(stage) + "_" + names[i], distribution,
-            {Column(column.stem + "_" + StageName(stage) + "_" + kNozzleNames[i] + column.unit_suffix)}, absolute);
+            {Column(column.stem + "_" + StageName(stage) + "_" + kNozzleNames[i] + column.unit_suffix)},
+            absolute);
     }
   }
   // Of the cross, or of the stage's list; none of a vehicle that is already refused.

@@ -1,7 +1,7 @@
+#include <cmath>
 #include "core/campaign_yaml/attitude_columns.h"
 #include "core/campaign_yaml/decode.h"
 #include "core/campaign_yaml/inline_files.h"
-#include <cmath>
 
 #include "core/campaign_yaml/yaml_reader.h"
 #include "core/environment/earth.h"
@@ -27,7 +27,8 @@ Bounds DecodeBounds(MapReader& map, const std::string& stem, Dimension dimension
 
 // Of the launch azimuth: bounds that fall go through north, [350, 10] as [350, 370] does.
 Bounds DecodeAzimuthBounds(MapReader& map) {
-  const std::vector<double> limits = map.Quantities("launch_azimuth", kAngle, Between(0.0, 2.0 * kTwoPi), 2, 2);
+  const std::vector<double> limits =
+      map.Quantities("launch_azimuth", kAngle, Between(0.0, 2.0 * kTwoPi), 2, 2);
   if (limits.size() != 2) return {};
   const Bounds bounds{limits[0], limits[0] <= limits[1] ? limits[1] : limits[1] + kTwoPi};
   if (limits[0] >= kTwoPi || bounds.high - bounds.low > kTwoPi)
@@ -56,7 +57,8 @@ void DecodeTarget(const InputNode& node, const std::string& path, TrajectoryProb
     problem.target_altitude_m = target.Quantity("perigee_altitude", kLength, kPositive);
     problem.target_apogee_m = target.Quantity("apogee_altitude", kLength, kPositive);
     if (problem.target_altitude_m > *problem.target_apogee_m)
-      AddProblem(problems, node, path, "the perigee is above the apogee", "perigee_altitude up to apogee_altitude");
+      AddProblem(problems, node, path, "the perigee is above the apogee",
+                 "perigee_altitude up to apogee_altitude");
     else
       problem.target_velocity_m_s = PerigeeSpeed(problem.target_altitude_m, *problem.target_apogee_m);
     return;

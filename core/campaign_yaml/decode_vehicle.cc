@@ -208,7 +208,8 @@ MassElement DecodeMassElement(const InputNode& node, const std::string& path, Pr
 }
 
 // One of `count` nozzles of a list.
-Nozzle DecodeListedNozzle(const InputNode& node, const std::string& path, std::size_t count, ProblemList& problems) {
+Nozzle DecodeListedNozzle(const InputNode& node, const std::string& path, std::size_t count,
+                          ProblemList& problems) {
   MapReader map(node, path, problems);
   Nozzle nozzle;
   nozzle.name = map.Text("name");

@@ -44,7 +44,8 @@ struct OneLane {
         second(lanes::NozzlesAt(y + kSecondAngle)) {
     lanes::SetLane(drives, 0, from.stacks[static_cast<std::size_t>(now.stack)].gimbal, now.stuck_nozzle);
     Accelerate(now.command_rad.data(), y + kNozzleAngle, y + kNozzleRate, nozzles);
-    if (plant.nozzles_listed) Accelerate(now.command_rad.data() + kNozzles, y + kSecondAngle, y + kSecondRate, second);
+    if (plant.nozzles_listed)
+      Accelerate(now.command_rad.data() + kNozzles, y + kSecondAngle, y + kSecondRate, second);
     lanes::SetLane(bending, 0, from, now.stack);
     if (bending.modes == 0) return;
     lanes::ShapesAt(bending, masses.propellant_kg);
@@ -59,14 +60,14 @@ struct OneLane {
   }
   lanes::LoadsOf<double> Loads() const {
     return WithBody([this](const auto& turned, const auto& body) {
-      return lanes::LoadsAt(earth.rotation_rate_rad_s, plant, phase, phase.burning, around, masses,
-                            turned, motion, body);
+      return lanes::LoadsAt(earth.rotation_rate_rad_s, plant, phase, phase.burning, around, masses, turned,
+                            motion, body);
     });
   }
   lanes::Rates<double> Rates() const {
     return WithBody([this](const auto& turned, const auto& body) {
-      return lanes::RatesOf<double>(earth.rotation_rate_rad_s, plant, phase, phase.burning, around,
-                                    masses, turned, motion, body, nullptr);
+      return lanes::RatesOf<double>(earth.rotation_rate_rad_s, plant, phase, phase.burning, around, masses,
+                                    turned, motion, body, nullptr);
     });
   }
 
@@ -96,7 +97,8 @@ struct OneLane {
     const lanes::ListedNozzles<double> listed{nozzles, second};
     const lanes::BentBody<double> bent{&bending, &bending_state, &modal};
     if (bending.modes > 0) return plant.nozzles_listed ? function(listed, bent) : function(nozzles, bent);
-    return plant.nozzles_listed ? function(listed, lanes::StraightBody{}) : function(nozzles, lanes::StraightBody{});
+    return plant.nozzles_listed ? function(listed, lanes::StraightBody{})
+                                : function(nozzles, lanes::StraightBody{});
   }
 };
 

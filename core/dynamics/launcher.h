@@ -16,7 +16,8 @@ namespace dispersa {
 
 /// Of the cross; a list's nozzles stand in their order in the same places.
 inline constexpr const char* kNozzleNames[kNozzles] = {"right", "left", "bottom", "top"};
-/// State: rigid body, then the angle and the rate of each nozzle (right, left, bottom, top), about its first hinge.
+/// State: rigid body, then the angle and the rate of each nozzle (right, left, bottom, top), about its first
+/// hinge.
 inline constexpr int kNozzleAngle = kRigidBodySize;
 inline constexpr int kNozzleRate = kNozzleAngle + kNozzles;
 inline constexpr int kRigidLauncherSize = kNozzleRate + kNozzles;
@@ -29,8 +30,12 @@ inline constexpr int kSecondAngle = kBentLauncherSize;
 inline constexpr int kSecondRate = kSecondAngle + kNozzles;
 inline constexpr int kLauncherSize = kSecondRate + kNozzles;
 /// Where the state has a drive (nozzle_layout.h).
-constexpr int AngleOf(int drive) { return drive < kNozzles ? kNozzleAngle + drive : kSecondAngle + drive - kNozzles; }
-constexpr int RateOf(int drive) { return drive < kNozzles ? kNozzleRate + drive : kSecondRate + drive - kNozzles; }
+constexpr int AngleOf(int drive) {
+  return drive < kNozzles ? kNozzleAngle + drive : kSecondAngle + drive - kNozzles;
+}
+constexpr int RateOf(int drive) {
+  return drive < kNozzles ? kNozzleRate + drive : kSecondRate + drive - kNozzles;
+}
 
 struct AeroGrid;
 
@@ -139,10 +144,10 @@ class LauncherModel {
 
   LauncherInstant Evaluate(const LauncherPhase& phase, double time_s, const double* y) const;
 
-  /// Right-hand side of the flight. Thrust: each nozzle carries a quarter, deflected in its hinge plane, or its share
-  /// of a list, deflected about its hinges;
-  /// positive pitch, yaw and roll deflections give positive moments about body y, z and x. Actuators are
-  /// second order with a limited rate: d(angle)/dt = rate within the limit; the command is limited in angle.
+  /// Right-hand side of the flight. Thrust: each nozzle carries a quarter, deflected in its hinge plane, or
+  /// its share of a list, deflected about its hinges; positive pitch, yaw and roll deflections give positive
+  /// moments about body y, z and x. Actuators are second order with a limited rate: d(angle)/dt = rate within
+  /// the limit; the command is limited in angle.
   void Derivative(const LauncherPhase& phase, double time_s, const double* y, double* dydt) const;
 
  private:

@@ -214,7 +214,8 @@ DISPERSA_INLINE Thrust<T> ThrustOf(const Plant<T>& plant, const TimedMasses<T>& 
   return o;
 }
 
-/// The same of a list of nozzles (core/vehicle/nozzle_layout.h), whatever each has besides its nominal share included.
+/// The same of a list of nozzles (core/vehicle/nozzle_layout.h), whatever each has besides its nominal share
+/// included.
 template <class T>
 DISPERSA_INLINE Thrust<T> ThrustOf(const Plant<T>& plant, const TimedMasses<T>& masses,
                                    const ListedNozzles<T>& nozzles, T pressure_pa) {
@@ -327,10 +328,10 @@ DISPERSA_INLINE void BendThrust(const Plant<T>& plant, const Phase<T>& phase, co
 /// way from the grain's middle or the liquids' surfaces to the pivots, aft by s, a turning body pushes it aside: Coriolis's force
 /// 2 m_dot s w x e_x on the body. `nozzles`: the cross's, or ListedNozzles.
 template <class T, class Turned, class Body>
-DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, const Plant<T>& plant,
-                                   const Phase<T>& phase, bool any_burns, const Surroundings<T>& around,
-                                   const TimedMasses<T>& masses, const Turned& nozzles,
-                                   const Motion<T>& s, const Body& body) {
+DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, const Plant<T>& plant, const Phase<T>& phase,
+                                   bool any_burns, const Surroundings<T>& around,
+                                   const TimedMasses<T>& masses, const Turned& nozzles, const Motion<T>& s,
+                                   const Body& body) {
   LoadsOf<T> o;
   o.R_IB = RotationMatrix(s.q);
   const T omega(earth_rate_rad_s), none(0.0);
@@ -406,10 +407,10 @@ DISPERSA_INLINE Vector<T> TurnedUnderProducts(const Plant<T>& plant, const Timed
 /// leaves; a burn that begins or ends moves v by nothing. The motion of an offset C across the body (mm/s) is
 /// left out.
 template <class T, class Turned, class Body>
-DISPERSA_INLINE Rates<T> RatesOf(double earth_rate_rad_s, const Plant<T>& plant,
-                                 const Phase<T>& phase, bool any_burns, const Surroundings<T>& around,
-                                 const TimedMasses<T>& masses, const Turned& nozzles, const Motion<T>& s,
-                                 const Body& body, Instant<T>* instant) {
+DISPERSA_INLINE Rates<T> RatesOf(double earth_rate_rad_s, const Plant<T>& plant, const Phase<T>& phase,
+                                 bool any_burns, const Surroundings<T>& around, const TimedMasses<T>& masses,
+                                 const Turned& nozzles, const Motion<T>& s, const Body& body,
+                                 Instant<T>* instant) {
   const LoadsOf<T> loads =
       LoadsAt(earth_rate_rad_s, plant, phase, any_burns, around, masses, nozzles, s, body);
   Rates<T> o;

@@ -57,8 +57,7 @@ void Batch<T>::AdvanceThroughEvents(T target) {
       }
       if (slot.switch_s <= Lane(time_s_, lane)) {
         slot.switch_s = kFarFuture;
-        for (int i = 0; i < kDrives; ++i)
-          Lane(step_.command_rad[i], lane) = Lane(next_command_rad_[i], lane);
+        for (int i = 0; i < kDrives; ++i) Lane(step_.command_rad[i], lane) = Lane(next_command_rad_[i], lane);
         M commanded = NoLane<T>();
         SetLane(commanded, lane, true);
         step_.MarkCommanded(commanded);

@@ -139,29 +139,27 @@ template <class T>
 void Batch<T>::FlyGimbals() {
   const M powered = live_ & step_.phase.burning;
   if (!Any(powered)) return;
+  const bool listed = step_.plant.nozzles_listed;
+  AxisMemory<T> of_roll;
+  if (listed) of_roll = axes_[kRoll];
   if (All(powered))
     FlyGimbalsOf<true>(powered);
   else
     FlyGimbalsOf<false>(powered);
   PassCommands(powered);
-  if (!step_.plant.nozzles_listed) return;
+  if (!listed) return;
   const M rolling = powered & (allocation_.rolls_by_thrusters > T(0.0));
-  if (Any(rolling)) RollByThrusters(rolling);
+  if (!Any(rolling)) return;
+  Blend<T>(rolling, of_roll, axes_[kRoll]);  // a law whose commands nothing carries out learns nothing
+  RollByThrusters(rolling);
 }
 
 template <class T>
 template <bool kAll>
 void Batch<T>::FlyGimbalsOf(M powered) {
   T program[FeedForwardRows::kRowSize];
-  Vector<T> angle = measured_angle_rad_, rate = measured_rate_rad_s_;
-  if (step_.plant.nozzles_listed) {
-    // A law whose commands nothing carries out learns nothing.
-    const M rolls = allocation_.rolls_by_thrusters > T(0.0);
-    angle.x = Select(rolls, T(0.0), angle.x);
-    rate.x = Select(rolls, T(0.0), rate.x);
-  }
-  StepGimbals<kAll>(model_.autopilot(), loop_, powered, time_s_ - step_.phase.ignition_s, angle, rate,
-                    FedForward(program), axes_, gimbals_);
+  StepGimbals<kAll>(model_.autopilot(), loop_, powered, time_s_ - step_.phase.ignition_s, measured_angle_rad_,
+                    measured_rate_rad_s_, FedForward(program), axes_, gimbals_);
 }
 
 // What the program asks of the lanes' axes at their ticks; null where nothing is fed forward. Body axes stand
@@ -223,7 +221,8 @@ void Batch<T>::PassCommands(M powered) {
   line_at_ = (line_at_ + 1) & (kDelayLine - 1);
 }
 
-/// Of stages whose nozzles cannot: by the couples of the coast, decided at the same cycles, while the motor burns.
+/// Of stages whose nozzles cannot: by the couples of the coast, decided at the same cycles, while the motor
+/// burns.
 template <class T>
 void Batch<T>::RollByThrusters(M rolling) {
   const AutopilotModel& autopilot = model_.autopilot();
@@ -233,8 +232,8 @@ void Batch<T>::RollByThrusters(M rolling) {
   for (int lane = 0; lane < kLanes; ++lane)
     SetLane(decides, lane, static_cast<long>(Lane(tick_, lane)) % logic.cycle_ticks == 0);
   decides = decides & rolling;
-  StepThrusters(logic, autopilot.thruster_minimum_cycles, decides, measured_angle_rad_.x, measured_rate_rad_s_.x,
-                thrusters_[kRoll]);
+  StepThrusters(logic, autopilot.thruster_minimum_cycles, decides, measured_angle_rad_.x,
+                measured_rate_rad_s_.x, thrusters_[kRoll]);
   const double couple_n = 2.0 * rcs.thrust_n;
   const double flow_kg = couple_n / (rcs.specific_impulse_s * kStandardGravity) * tick_s_;  // a tick
   const T direction = thrusters_[kRoll].direction;
@@ -333,7 +332,8 @@ void Batch<T>::Meter(M powered) {
   metrics_.AddPowered(powered, T(tick_s_), time_s_, {-angle_rad_.x, pitch_error, -angle_rad_.z}, law);
   const bool listed = step_.plant.nozzles_listed;
   if (listed)
-    metrics_.AddDeflections(powered, time_s_, step_.drive_state, step_.second_drives, step_.command_rad, allocation_);
+    metrics_.AddDeflections(powered, time_s_, step_.drive_state, step_.second_drives, step_.command_rad,
+                            allocation_);
   else
     metrics_.AddDeflections(powered, time_s_, step_.drive_state, step_.command_rad, loop_.limit_rad);
 

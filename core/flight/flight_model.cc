@@ -95,7 +95,8 @@ StageControl BuildStageControl(const LauncherPlant& plant, int index, double ign
     const double arm_m = is_cross ? stack.gimbal.radius_m : stack.layout.roll_arm_m;
     control.pitch_effectiveness_1_s2.y.push_back(share * thrust * lever / mass.transverse_inertia_kg_m2);
     // Commands of roll that nothing carries out may be any number.
-    control.roll_effectiveness_1_s2.y.push_back(stack.layout.rolls ? thrust * arm_m / mass.axial_inertia_kg_m2 : 1.0);
+    control.roll_effectiveness_1_s2.y.push_back(stack.layout.rolls ? thrust * arm_m / mass.axial_inertia_kg_m2
+                                                                   : 1.0);
   }
   return control;
 }

@@ -139,7 +139,8 @@ class FlightRecord::JudgedMotion {
   }
   bool TurnsRound(const State& y) const {
     for (int i = 0; i < kDrives; ++i)
-      if (phase_.slides[static_cast<std::size_t>(i)] * y[static_cast<std::size_t>(RateOf(i))] < 0.0) return true;
+      if (phase_.slides[static_cast<std::size_t>(i)] * y[static_cast<std::size_t>(RateOf(i))] < 0.0)
+        return true;
     return false;
   }
 

@@ -101,8 +101,8 @@ struct LaneMetrics {
   }
 
   /// Of the cross, at the same tick: deflections of the actuators, commands as they reach them.
-  DISPERSA_INLINE void AddDeflections(MaskOf<T> lanes, T time_s, const DriveState<T>& drives, const T* command_rad,
-                                      T limit_rad) {
+  DISPERSA_INLINE void AddDeflections(MaskOf<T> lanes, T time_s, const DriveState<T>& drives,
+                                      const T* command_rad, T limit_rad) {
     T travel(0.0), largest(0.0), fastest(0.0);
     for (int i = 0; i < kNozzles; ++i) {
       const T angle = drives.angle_rad[i];
@@ -129,7 +129,8 @@ struct LaneMetrics {
     }
     AddTravel(lanes, fastest, list.per_drive, travel, IsSaturated(list, command_rad));
   }
-  DISPERSA_INLINE void AddTravel(MaskOf<T> lanes, T fastest_rad_s, T per_drive, T moved_rad, MaskOf<T> saturated) {
+  DISPERSA_INLINE void AddTravel(MaskOf<T> lanes, T fastest_rad_s, T per_drive, T moved_rad,
+                                 MaskOf<T> saturated) {
     const T one(1.0), none(0.0);
     deflection_rate_peak_rad_s =
         Select(lanes, Max(deflection_rate_peak_rad_s, fastest_rad_s), deflection_rate_peak_rad_s);

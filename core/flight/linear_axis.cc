@@ -30,7 +30,8 @@ AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Ax
   const LauncherStack& stack = plant.stacks[static_cast<std::size_t>(sample.stack)];
   std::array<double, kDrives> pattern{};
   for (int i = 0; i < kDrives; ++i)
-    if (i % kNozzles != sample.stuck_nozzle) pattern[static_cast<std::size_t>(i)] = stack.layout.allocation[i][axis];
+    if (i % kNozzles != sample.stuck_nozzle)
+      pattern[static_cast<std::size_t>(i)] = stack.layout.allocation[i][axis];
   Vector3 about = Vector3::Zero();
   about[axis] = 1.0;
 
@@ -57,7 +58,8 @@ AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Ax
     LauncherPhase at = phase;
     for (std::size_t i = 0; i < kDrives; ++i) {
       const int drive = static_cast<int>(i);
-      y[static_cast<std::size_t>(AngleOf(drive))] = sample.nozzle_rad[i] + (departed == 2 ? step * pattern[i] : 0.0);
+      y[static_cast<std::size_t>(AngleOf(drive))] =
+          sample.nozzle_rad[i] + (departed == 2 ? step * pattern[i] : 0.0);
       y[static_cast<std::size_t>(RateOf(drive))] = departed == 3 ? step * pattern[i] : 0.0;
       at.command_rad[i] = sample.nozzle_rad[i] + (departed == -1 ? step * pattern[i] : 0.0);
     }

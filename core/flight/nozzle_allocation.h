@@ -1,5 +1,5 @@
-// From commands about roll, pitch and yaw to the drives of a list of nozzles, and back, of W flights side by side
-// (core/math/lanes.h). core/vehicle/nozzle_layout.h makes the numbers; the cross has code of its own.
+// From commands about roll, pitch and yaw to the drives of a list of nozzles, and back, of W flights side by
+// side (core/math/lanes.h). core/vehicle/nozzle_layout.h makes the numbers; the cross has code of its own.
 #pragma once
 
 #include "core/math/lanes.h"
@@ -15,8 +15,8 @@ struct Allocation {
   T felt[kSteeredAxes][kDrives];
   T limit_rad[kNozzles];
   T there[kDrives];
-  T per_drive;            ///< 1 over their number
-  T rolls_by_thrusters;   ///< 1 of a stage whose nozzles cannot
+  T per_drive;           ///< 1 over their number
+  T rolls_by_thrusters;  ///< 1 of a stage whose nozzles cannot
 };
 template <class T>
 DISPERSA_INLINE void SetLane(Allocation<T>& a, int lane, const NozzleLayout& layout) {
@@ -34,7 +34,8 @@ DISPERSA_INLINE void SetLane(Allocation<T>& a, int lane, const NozzleLayout& lay
   Lane(a.rolls_by_thrusters, lane) = layout.rolls ? 0.0 : 1.0;
 }
 
-/// Commands of the drives. A nozzle that would turn by more than its limit keeps the direction: a cone of two hinges.
+/// Commands of the drives. A nozzle that would turn by more than its limit keeps the direction: a cone of two
+/// hinges.
 template <class T>
 DISPERSA_INLINE void Allocate(const Allocation<T>& a, T roll_rad, T pitch_rad, T yaw_rad, T* command_rad) {
   const auto commanded = [&](int drive) __attribute__((always_inline)) {

@@ -19,7 +19,7 @@ struct TickSample {
   std::array<double, kDrives> nozzle_rad{};  ///< about first hinges, then about second ones
   std::array<double, kDrives> nozzle_rate_rad_s{};
   std::array<double, 2 * kPlanes * kModes> bending{};  ///< modal coordinates (m), then their rates
-  std::array<double, kDrives> command_rad{};   ///< at the actuators
+  std::array<double, kDrives> command_rad{};           ///< at the actuators
   double limit_rad = 0.0;
   AttitudeError error;             ///< true, not measured
   ReferenceAttitude reference;

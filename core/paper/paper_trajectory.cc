@@ -7,9 +7,9 @@
 
 #include "core/math/constants.h"
 #include "core/paper/paper_sections.h"
+#include "core/paper/paper_table2.h"
 #include "core/report/dispersion_summary.h"
 #include "core/report/html_parts.h"
-#include "core/paper/paper_table2.h"
 #include "core/report/text.h"
 #include "core/report/trajectory_figures.h"
 

@@ -59,8 +59,9 @@ std::string FlightProgramFigures(const FlightProgram& program, const std::vector
   kick.Mark(program.t2_s, "t2");
   kick.Line(time_s, alpha_deg, "line-0", "");
   const int stages = history.empty() ? 1 : history.back().stage;
-  return Draw(std::move(whole), stages > 1 ? fmt::format("Flight program over the whole flight; S1 to S{}: ignitions.", stages)
-                                           : std::string("Flight program over the whole flight; S1: ignition.")) +
+  return Draw(std::move(whole),
+              stages > 1 ? fmt::format("Flight program over the whole flight; S1 to S{}: ignitions.", stages)
+                         : std::string("Flight program over the whole flight; S1: ignition.")) +
          Draw(std::move(kick), "The same in the initial pitch-over, with the program's three times.");
 }
 

@@ -23,7 +23,8 @@ std::string InjectionTable(const OptimizationResult& result, const std::optional
   HtmlTable table(columns);
   for (const InjectionRow& row : InjectionRows(result, flown)) {
     std::vector<std::string> cells = {HtmlText(row.name), ReadableText(row.desired),
-                                      FixedText(row.reached, row.decimals), Signed(row.error), Signed(row.halved)};
+                                      FixedText(row.reached, row.decimals), Signed(row.error),
+                                      Signed(row.halved)};
     if (flown) cells.push_back(row.flown ? Signed(*row.flown) : "–");
     table.Row(cells);
   }
@@ -41,8 +42,9 @@ std::string BoundReached(double value, const Bounds& bounds) {
 
 // Within bounds that go on beyond north.
 double Unwrapped(double azimuth_rad, const Bounds& bounds) {
-  return azimuth_rad < bounds.low && azimuth_rad + kTwoPi <= bounds.high * (1.0 + 1e-12) ? azimuth_rad + kTwoPi
-                                                                                          : azimuth_rad;
+  return azimuth_rad < bounds.low && azimuth_rad + kTwoPi <= bounds.high * (1.0 + 1e-12)
+             ? azimuth_rad + kTwoPi
+             : azimuth_rad;
 }
 
 std::string VariableTable(const Reference& reference) {
@@ -95,11 +97,11 @@ std::string SearchFigures(const OptimizationResult& result) {
   objective.Line(generation, mean, "line-1", "mean of the feasible");
   SvgChart fraction({.label = "generation"}, {.label = "feasible", .low = 0.0, .high = 1.0, .percent = true});
   fraction.Line(generation, feasible, "line-0", "");
-  std::string figures =
-      Draw(objective,
-           "Search over all variables of the flight program. Misses within the tie tolerance of the best are equal, so the "
-           "best may rise while the peak of q·α falls.") +
-      Draw(fraction, "Individuals that break no constraint.");
+  std::string figures = Draw(objective,
+                             "Search over all variables of the flight program. Misses within the tie "
+                             "tolerance of the best are equal, so the "
+                             "best may rise while the peak of q·α falls.") +
+                        Draw(fraction, "Individuals that break no constraint.");
   if (result.selection.log.empty()) return figures;
   std::vector<double> step, load;
   for (const GenerationRecord& record : result.selection.log) {
@@ -118,15 +120,18 @@ std::string ObjectiveText(const TrajectoryProblem& problem) {
   std::string text = fmt::format("{} per km of altitude", ReadableText(problem.weight_altitude_1_m * 1e3));
   if (!problem.velocity_is_free)
     text += fmt::format(", {} per m/s of speed", ReadableText(problem.weight_velocity_s_m));
-  text += fmt::format(", {} per degree of flight path angle", ReadableText(problem.weight_angle_1_rad * kRadPerDeg));
+  text += fmt::format(", {} per degree of flight path angle",
+                      ReadableText(problem.weight_angle_1_rad * kRadPerDeg));
   if (problem.target_inclination_rad)
-    text += fmt::format(", {} per degree of inclination", ReadableText(problem.weight_inclination_1_rad * kRadPerDeg));
+    text += fmt::format(", {} per degree of inclination",
+                        ReadableText(problem.weight_inclination_1_rad * kRadPerDeg));
   return text;
 }
 
 }  // namespace
 
-std::vector<InjectionRow> InjectionRows(const OptimizationResult& result, const std::optional<OrbitErrors>& flown) {
+std::vector<InjectionRow> InjectionRows(const OptimizationResult& result,
+                                        const std::optional<OrbitErrors>& flown) {
   const Reference& reference = result.reference;
   const TrajectoryProblem& problem = reference.problem;
   const Orbit& orbit = reference.orbit;
@@ -146,7 +151,8 @@ std::vector<InjectionRow> InjectionRows(const OptimizationResult& result, const 
                     halved.velocity_m_s, arrived(&OrbitErrors::velocity_m_s, 1.0)});
   rows.push_back({"flight path angle, deg", 9, Deg(problem.target_flight_path_angle_rad),
                   Deg(orbit.flight_path_angle_rad), Deg(error.flight_path_angle_rad),
-                  Deg(halved.flight_path_angle_rad), arrived(&OrbitErrors::flight_path_angle_rad, kDegPerRad)});
+                  Deg(halved.flight_path_angle_rad),
+                  arrived(&OrbitErrors::flight_path_angle_rad, kDegPerRad)});
   if (problem.target_inclination_rad)
     rows.push_back({"inclination, deg", 6, Deg(*problem.target_inclination_rad), Deg(orbit.inclination_rad),
                     Deg(error.inclination_rad), Deg(halved.inclination_rad),
@@ -162,13 +168,14 @@ std::optional<double> LiftOffSidereal(const Reference& reference) {
 
 std::string OrbitSentence(const Reference& reference) {
   const Orbit& orbit = reference.orbit;
-  std::string text =
-      fmt::format("inclination {:.4f} deg, ascending node {:.4f} deg east of Greenwich as it stands at lift-off",
-                  Deg(orbit.inclination_rad), Deg(orbit.node_longitude_rad));
+  std::string text = fmt::format(
+      "inclination {:.4f} deg, ascending node {:.4f} deg east of Greenwich as it stands at lift-off",
+      Deg(orbit.inclination_rad), Deg(orbit.node_longitude_rad));
   if (reference.problem.velocity_is_free) text += fmt::format(", velocity {:.3f} m/s", orbit.velocity_m_s);
   if (const std::optional<double> sidereal_rad = LiftOffSidereal(reference))
-    text += fmt::format("; for the node at {:.6g} deg lift off at {:.4f} deg ({:.4f} h) of Greenwich sidereal time",
-                        Deg(*reference.problem.target_node_rad), Deg(*sidereal_rad), Deg(*sidereal_rad) / 15.0);
+    text += fmt::format(
+        "; for the node at {:.6g} deg lift off at {:.4f} deg ({:.4f} h) of Greenwich sidereal time",
+        Deg(*reference.problem.target_node_rad), Deg(*sidereal_rad), Deg(*sidereal_rad) / 15.0);
   return text;
 }
 
@@ -190,17 +197,21 @@ std::string TrajectoryPage(const OptimizationResult& result, const std::optional
   std::string page = PageHead(title, fmt::format("{} · engine {}", title, reference.engine)) + "<h1>" +
                      HtmlText(title) + "</h1>\n";
   page += fmt::format(
-      "<p>Genetic algorithm on the weighted miss of the target ({}) with {} individuals, selection of the least peak "
-      "of q·α along the programs that reach the target, refinement by least squares. Seed {}, {} ascents flown, "
+      "<p>Genetic algorithm on the weighted miss of the target ({}) with {} individuals, selection of the "
+      "least peak "
+      "of q·α along the programs that reach the target, refinement by least squares. Seed {}, {} ascents "
+      "flown, "
       "engine {}.</p>\n",
-      ObjectiveText(problem), problem.population, problem.seed, reference.evaluations, HtmlText(reference.engine));
+      ObjectiveText(problem), problem.population, problem.seed, reference.evaluations,
+      HtmlText(reference.engine));
   if (!result.reached)
     page += "<p>" + VerdictBadge("fail") + " The target is missed: " + HtmlText(result.statement) + "</p>\n";
   page += "<h2>Injection</h2>\n" + InjectionTable(result, flown);
-  page += fmt::format("<p>The orbit reached: {}.{}</p>\n", HtmlText(OrbitSentence(reference)),
-                      flown ? " Flown closed loop: the errors of the nominal flight with six degrees of freedom "
-                              "under the campaign’s autopilot, reaction control included."
-                            : "");
+  page +=
+      fmt::format("<p>The orbit reached: {}.{}</p>\n", HtmlText(OrbitSentence(reference)),
+                  flown ? " Flown closed loop: the errors of the nominal flight with six degrees of freedom "
+                          "under the campaign’s autopilot, reaction control included."
+                        : "");
   page += "<h2>Flight program</h2>\n" + VariableTable(reference);
   page += "<p class=\"soft\">A variable at a bound was held back by it: what lies beyond was not searched, and may be "
           "better.</p>\n";
@@ -209,8 +220,7 @@ std::string TrajectoryPage(const OptimizationResult& result, const std::optional
     page += "<p>" + HtmlText(text) + ".</p>\n";
   page += "<h2>Programmed incidence</h2>\n<div class=\"figures\">\n" +
           FlightProgramFigures(reference.program, result.history) + "</div>\n";
-  page += "<h2>Trajectory</h2>\n<div class=\"figures\">\n" + ReferenceFigures(result.history) +
-          "</div>\n";
+  page += "<h2>Trajectory</h2>\n<div class=\"figures\">\n" + ReferenceFigures(result.history) + "</div>\n";
   page += "<h2>The search</h2>\n<div class=\"figures\">\n" + SearchFigures(result) + "</div>\n";
   return page + "</body>\n</html>\n";
 }

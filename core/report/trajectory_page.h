@@ -1,5 +1,5 @@
-// What `dispersa optimize` found, as one self-contained page: the injection, the flight program and its trajectory,
-// the constraints, and how the search went.
+// What `dispersa optimize` found, as one self-contained page: the injection, the flight program and its
+// trajectory, the constraints, and how the search went.
 #pragma once
 
 #include <optional>
@@ -22,10 +22,11 @@ struct InjectionRow {
   std::optional<double> flown;  ///< the error of the closed-loop flight, where it is measured
 };
 /// What the target names, and nothing else.
-std::vector<InjectionRow> InjectionRows(const OptimizationResult& result, const std::optional<OrbitErrors>& flown);
+std::vector<InjectionRow> InjectionRows(const OptimizationResult& result,
+                                        const std::optional<OrbitErrors>& flown);
 
-/// Greenwich's right ascension (rad, 0 to 2 pi) at a lift-off that brings the orbit's node to the target's; none of a
-/// target without node.
+/// Greenwich's right ascension (rad, 0 to 2 pi) at a lift-off that brings the orbit's node to the target's;
+/// none of a target without node.
 std::optional<double> LiftOffSidereal(const Reference& reference);
 /// Inclination and node of the orbit reached, and when to lift off for the target's node.
 std::string OrbitSentence(const Reference& reference);

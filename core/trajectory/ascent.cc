@@ -410,8 +410,12 @@ void Fleet<T>::Conclude(int lane, bool completed) {
   result.p_EoC_I = ToEigen(LaneOf(p_, lane));
   result.v_IC_I = ToEigen(LaneOf(v_, lane));
   const OrbitElements e = ElementsOf(ground_.earth, result.p_EoC_I, result.v_IC_I);
-  result.orbit = {ToGeodetic(ground_.earth, result.p_EoC_I).altitude_m, e.speed_m_s, e.flight_path_angle_rad,
-                  e.inclination_rad, e.ascending_node_rad, e.radius_m};
+  result.orbit = {ToGeodetic(ground_.earth, result.p_EoC_I).altitude_m,
+                  e.speed_m_s,
+                  e.flight_path_angle_rad,
+                  e.inclination_rad,
+                  e.ascending_node_rad,
+                  e.radius_m};
   const Peaks<double> peaks = LaneOf(peaks_, lane);
   result.q_max_pa = peaks.qbar_pa;
   result.q_alpha_max_pa_rad = peaks.q_alpha_pa_rad;

@@ -7,8 +7,8 @@
 #include <stdexcept>
 
 #include "core/environment/earth.h"
-#include "core/math/constants.h"
 #include "core/flight/engine_version.h"
+#include "core/math/constants.h"
 #include "core/optimization/feasibility_rules.h"
 #include "core/trajectory/constraints.h"
 #include "core/trajectory/refine.h"
@@ -105,7 +105,9 @@ GeneticAlgorithmResult Search(const AscentModel& model, const TrajectoryProblem&
     bounded.lower.push_back(problem.earlier_coast_s[stage].low);
     bounded.upper.push_back(problem.earlier_coast_s[stage].high);
   }
-  const auto program_of = [&](const std::vector<double>& v) { return ProgramOf(v, EarlierCoasts(model.vehicle)); };
+  const auto program_of = [&](const std::vector<double>& v) {
+    return ProgramOf(v, EarlierCoasts(model.vehicle));
+  };
   bounded.evaluate = [&](const std::vector<double>& v) {
     return Evaluate(model, problem, options, {program_of(v)}).front();
   };
@@ -164,7 +166,8 @@ FlightProgram ProgramOf(const std::vector<double>& v, const std::vector<std::siz
   program.t2_s = v[3];
   program.coast_s = v[4];
   program.launch_azimuth_rad = v[5];
-  for (std::size_t i = 0; i < earlier_coasts.size(); ++i) program.earlier_coast_s[earlier_coasts[i]] = v[6 + i];
+  for (std::size_t i = 0; i < earlier_coasts.size(); ++i)
+    program.earlier_coast_s[earlier_coasts[i]] = v[6 + i];
   return program;
 }
 

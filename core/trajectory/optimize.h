@@ -82,7 +82,8 @@ double DisorderOf(const FlightProgram& program, const TrajectoryOptions& options
 std::vector<std::size_t> EarlierCoasts(const Vehicle& vehicle);
 
 /// Variables in the order alpha_max, t1, t3, t2, coast, launch azimuth, then the earlier coasts.
-FlightProgram ProgramOf(const std::vector<double>& variables, const std::vector<std::size_t>& earlier_coasts = {});
+FlightProgram ProgramOf(const std::vector<double>& variables,
+                        const std::vector<std::size_t>& earlier_coasts = {});
 
 /// `observer`, if given, sees each generation. A target that cannot be reached is a result, not an error.
 /// Throws std::invalid_argument for options out of range.

@@ -26,8 +26,9 @@ struct FlightProgram {
   std::array<double, kMaxStages> earlier_coast_s{};
 };
 
-/// Injection: geodetic altitude, inertial speed, inertial flight path angle, inclination, where the plane crosses the
-/// equator northwards (east of Greenwich as it stood at lift-off), distance from the Earth's centre.
+/// Injection: geodetic altitude, inertial speed, inertial flight path angle, inclination, where the plane
+/// crosses the equator northwards (east of Greenwich as it stood at lift-off), distance from the Earth's
+/// centre.
 struct Orbit {
   double altitude_m = 0.0;
   double velocity_m_s = 0.0;

@@ -33,12 +33,13 @@ constexpr Freedom kAzimuth = {&FlightProgram::launch_azimuth_rad, &TrajectoryPro
                               0.1 * kRadPerDeg};
 constexpr Freedom kTurnEnd = {&FlightProgram::t2_s, &TrajectoryProblem::t2_s, 1.0};
 
-// Three conditions have three unknowns. An inclination beside a speed is a fourth: the earlier coasts serve it, or
-// where there are none the end of the pitch-over, which spends a little more or less on the way.
+// Three conditions have three unknowns. An inclination beside a speed is a fourth: the earlier coasts serve
+// it, or where there are none the end of the pitch-over, which spends a little more or less on the way.
 std::vector<Freedom> FreedomsOf(const AscentModel& model, const TrajectoryProblem& problem) {
   std::vector<Freedom> freedoms = {kAlphaMax, kCoast, kAzimuth};
   if (!problem.target_inclination_rad || problem.velocity_is_free) return freedoms;
-  for (const std::size_t stage : EarlierCoasts(model.vehicle)) freedoms.push_back({nullptr, nullptr, 1.0, stage});
+  for (const std::size_t stage : EarlierCoasts(model.vehicle))
+    freedoms.push_back({nullptr, nullptr, 1.0, stage});
   if (freedoms.size() == 3) freedoms.push_back(kTurnEnd);
   return freedoms;
 }

@@ -9,10 +9,10 @@
 
 namespace dispersa {
 
-/// Changes `program` to the best found within the problem's bounds; variables with equal bounds stay. Of a target that
-/// names speed and inclination both, the earlier coasts are unknowns too, or else t2.
-/// `held_at_bound` of the result: 0 alpha_max, 1 coast, 2 launch azimuth, then those. `ascent`, if given, is the program's, with
-/// the steps of the refinement.
+/// Changes `program` to the best found within the problem's bounds; variables with equal bounds stay. Of a
+/// target that names speed and inclination both, the earlier coasts are unknowns too, or else t2.
+/// `held_at_bound` of the result: 0 alpha_max, 1 coast, 2 launch azimuth, then those. `ascent`, if given, is
+/// the program's, with the steps of the refinement.
 LeastSquaresResult RefineProgram(const AscentModel& model, const TrajectoryProblem& problem,
                                  const TrajectoryOptions& options, FlightProgram* program,
                                  AscentResult* ascent = nullptr);

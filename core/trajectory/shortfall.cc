@@ -107,7 +107,8 @@ std::string DescribeShortfall(const AscentModel& model, const TrajectoryProblem&
   std::string text = fmt::format(
       "The target is out of reach: the best program ends {:+.3f} km, {:+.3f} m/s and {:+.4f} deg from it.",
       e.altitude_m * 1e-3, e.velocity_m_s, Deg(e.flight_path_angle_rad));
-  if (problem.target_inclination_rad) text += fmt::format(" Its inclination is off by {:+.4f} deg.", Deg(e.inclination_rad));
+  if (problem.target_inclination_rad)
+    text += fmt::format(" Its inclination is off by {:+.4f} deg.", Deg(e.inclination_rad));
   const std::size_t before = text.size();
   for (const ConstraintMargin& c : result.reference.constraints)
     if (c.enforced && c.margin < 0.0)

@@ -12,7 +12,8 @@ namespace dispersa {
 
 namespace {
 
-// What a matrix of rank 3 or 2 has at least, its rows scaled: 1 where axes are commanded by drives of their own.
+// What a matrix of rank 3 or 2 has at least, its rows scaled: 1 where axes are commanded by drives of their
+// own.
 constexpr double kIndependence = 1e-6;
 constexpr double kOnAxis_m = 1e-3;
 
@@ -127,8 +128,8 @@ std::vector<VehicleProblem> NozzleProblems(const Gimbal& gimbal, const std::stri
     y_m += nozzle.thrust_share * nozzle.y_m;
     z_m += nozzle.thrust_share * nozzle.z_m;
     if (nozzle.limit_rad > gimbal.limit_rad)
-      problems.push_back({item + ".limit_deg", "is beyond the limit_deg of its drives",
-                          "up to the gimbal's limit_deg"});
+      problems.push_back(
+          {item + ".limit_deg", "is beyond the limit_deg of its drives", "up to the gimbal's limit_deg"});
     const bool has_two = nozzle.towards_rad.size() > 1;
     const double between = has_two ? nozzle.towards_rad[1] - nozzle.towards_rad[0] : 0.0;
     if (has_two && std::fabs(Cos(between)) > 1e-9)
@@ -138,12 +139,13 @@ std::vector<VehicleProblem> NozzleProblems(const Gimbal& gimbal, const std::stri
                           "one direction, or two that are 90 deg apart"});
     for (std::size_t other = 0; other < k; ++other)
       if (gimbal.nozzles[other].name == nozzle.name)
-        problems.push_back({item + ".name", "is that of another nozzle, " + nozzle.name, "a name of its own"});
+        problems.push_back(
+            {item + ".name", "is that of another nozzle, " + nozzle.name, "a name of its own"});
   }
   // Shares and places are written with a few digits.
   if (std::fabs(shares - 1.0) > 1e-6)
-    problems.push_back(
-        {list, "have shares of the thrust that sum to " + std::to_string(shares), "thrust_share that sum to 1"});
+    problems.push_back({list, "have shares of the thrust that sum to " + std::to_string(shares),
+                        "thrust_share that sum to 1"});
   if (std::fabs(y_m) > kOnAxis_m || std::fabs(z_m) > kOnAxis_m)
     problems.push_back({list,
                         "push beside the axis: the mean of their places, by thrust_share, is y " +
@@ -152,17 +154,20 @@ std::vector<VehicleProblem> NozzleProblems(const Gimbal& gimbal, const std::stri
   if (!problems.empty()) return problems;
 
   const Placed placed = Place(gimbal);
-  const std::string pitch_and_yaw = "hinges by which pitch and yaw are commanded, as turns_towards_deg: [90, 180] "
-                                    "of one nozzle";
+  const std::string pitch_and_yaw =
+      "hinges by which pitch and yaw are commanded, as turns_towards_deg: [90, 180] "
+      "of one nozzle";
   for (int axis = 1; axis < kSteeredAxes; ++axis)
     if (!(placed.effect.row(axis).cwiseAbs().maxCoeff() > 1e-9))
       problems.push_back(
           {list, std::string("do not turn the vehicle in ") + (axis == 1 ? "pitch" : "yaw"), pitch_and_yaw});
   if (!problems.empty()) return problems;
   if (Independence(placed, 1) < kIndependence)
-    problems.push_back({list, "cannot turn the vehicle in pitch and in yaw one without the other", pitch_and_yaw});
+    problems.push_back(
+        {list, "cannot turn the vehicle in pitch and in yaw one without the other", pitch_and_yaw});
   else if (TurnsInRoll(placed) && Independence(placed, 0) < kIndependence)
-    problems.push_back({list, "turn the vehicle in roll with every command of pitch or yaw, and cannot undo it",
+    problems.push_back({list,
+                        "turn the vehicle in roll with every command of pitch or yaw, and cannot undo it",
                         "hinges by which roll is commanded too, or none that turn the vehicle in roll"});
   return problems;
 }

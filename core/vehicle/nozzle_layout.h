@@ -1,9 +1,10 @@
 // How the nozzles of a stage stand and turn, and which of them a command about an axis turns by how much.
 //
 // A nozzle has up to two hinges, each with a drive of its own. A hinge is named by the direction across the
-// body, u, towards which a positive angle turns the nozzle's thrust; its axis, across the body too, is at right
-// angles to u. Two hinges of a nozzle are at right angles, the second carried by the first as in a Cardan
-// joint: deflections a and b turn the thrust to cos a cos b x + sin a cos b u1 + sin b u2, of unit length.
+// body, u, towards which a positive angle turns the nozzle's thrust; its axis, across the body too, is at
+// right angles to u. Two hinges of a nozzle are at right angles, the second carried by the first as in a
+// Cardan joint: deflections a and b turn the thrust to cos a cos b x + sin a cos b u1 + sin b u2, of unit
+// length.
 //
 // To first order drive i of a nozzle at (y, z) that has the share q of the thrust T turns the body with
 // T q (y u_z - z u_y) about x, T L q u_z about y and -T L q u_y about z, L the pivots' distance aft of the
@@ -33,7 +34,7 @@ inline constexpr int kSteeredAxes = 3;  ///< roll, pitch, yaw
 /// have has zeros.
 struct NozzleLayout {
   int nozzles = 0;
-  bool rolls = false;  ///< commands of roll turn the vehicle; without, its reaction control has to
+  bool rolls = false;           ///< commands of roll turn the vehicle; without, its reaction control has to
   double share[kNozzles] = {};  ///< of the thrust
   double y_m[kNozzles] = {}, z_m[kNozzles] = {};
   double limit_rad[kNozzles] = {};  ///< of the whole deflection that is commanded
@@ -41,8 +42,8 @@ struct NozzleLayout {
   double towards_y[kDrives] = {}, towards_z[kDrives] = {};
   double allocation[kDrives][kSteeredAxes] = {};  ///< rad of a drive for a radian commanded about an axis
   double felt[kSteeredAxes][kDrives] = {};        ///< and back: what deflections stand for
-  double pitch_share = 0.0;  ///< moment of a radian of pitch, or yaw, over T L
-  double roll_arm_m = 0.0;   ///< moment of a radian of roll over T; 0 without
+  double pitch_share = 0.0;                       ///< moment of a radian of pitch, or yaw, over T L
+  double roll_arm_m = 0.0;                        ///< moment of a radian of roll over T; 0 without
   double flow_radius_m = 0.0;  ///< of gyration of the flow about the axis, for the damping of roll
 };
 /// Of a gimbal without problems. One without a list of nozzles has four in a cross.

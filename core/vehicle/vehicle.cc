@@ -230,9 +230,10 @@ void CheckStage(const Vehicle& vehicle, std::size_t i, Checker& check) {
                   "a station aft of the centre of gravity");
   }
   const bool first = i == 0;
-  check.Require(first == (stage.ignition == IgnitionTrigger::kLiftOff), path + ".ignition.trigger",
-                first ? "the first stage does not ignite at lift-off" : "only the first stage ignites at lift-off",
-                first ? "lift_off" : "burnout_detection or timer");
+  check.Require(
+      first == (stage.ignition == IgnitionTrigger::kLiftOff), path + ".ignition.trigger",
+      first ? "the first stage does not ignite at lift-off" : "only the first stage ignites at lift-off",
+      first ? "lift_off" : "burnout_detection or timer");
   check.NotNegative(stage.ignition_delay_s, path + ".ignition.delay_s");
   check.NotNegative(stage.separation_delay_s, path + ".separation_delay_s");
 }

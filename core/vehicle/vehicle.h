@@ -87,21 +87,21 @@ void SetThrustCurve(ThrustCurve curve, Motor& motor);
 /// One nozzle of a list (core/vehicle/nozzle_layout.h).
 struct Nozzle {
   std::string name;
-  double y_m = 0.0, z_m = 0.0;      ///< of its pivot, off the axis: right, down
-  double thrust_share = 1.0;        ///< of the stage's thrust
-  /// Directions towards which positive angles of its hinges turn the thrust, from body y towards body z; none:
-  /// the nozzle is fixed, two: at right angles.
+  double y_m = 0.0, z_m = 0.0;  ///< of its pivot, off the axis: right, down
+  double thrust_share = 1.0;    ///< of the stage's thrust
+  /// Directions towards which positive angles of its hinges turn the thrust, from body y towards body z;
+  /// none: the nozzle is fixed, two: at right angles.
   std::vector<double> towards_rad = {};
-  double limit_rad = 0.0;           ///< of its whole deflection, as commanded; 0: the gimbal's
+  double limit_rad = 0.0;  ///< of its whole deflection, as commanded; 0: the gimbal's
 };
 
 /// Without a list four nozzles at 90°, each hinged in one plane: two for pitch (right, left), two for yaw
 /// (bottom, top); all four differentially for roll.
 struct Gimbal {
   double pivot_station_m = 0.0;
-  double radius_m = 0.0;          ///< of the cross's nozzle centres from the axis (the paper's z_r)
+  double radius_m = 0.0;             ///< of the cross's nozzle centres from the axis (the paper's z_r)
   std::vector<Nozzle> nozzles = {};  ///< in place of the cross
-  double limit_rad = 0.0;         ///< of each drive
+  double limit_rad = 0.0;            ///< of each drive
   double rate_limit_rad_s = 0.0;
   double bandwidth_rad_s = 0.0;   ///< natural frequency of the second-order actuator
   double damping_ratio = 0.7;

@@ -99,8 +99,8 @@ void PrintText(const OptimizationResult& result, const std::optional<OrbitErrors
       program.launch_azimuth_rad * kDegPerRad);
   for (std::size_t i = 1; i < program.earlier_coast_s.size(); ++i)
     if (reference.earlier_ignition_s[i] > 0.0)
-      fmt::print("coast before stage {}: {:.4f} s, its ignition at {:.4f} s\n", i + 1, program.earlier_coast_s[i],
-                 reference.earlier_ignition_s[i]);
+      fmt::print("coast before stage {}: {:.4f} s, its ignition at {:.4f} s\n", i + 1,
+                 program.earlier_coast_s[i], reference.earlier_ignition_s[i]);
   fmt::print("\n{:<28}{:>14}{:>14}{:>14}\n", "constraint", "value", "limit", "margin");
   for (const ConstraintMargin& constraint : reference.constraints) {
     if (constraint.enforced) {

@@ -64,11 +64,16 @@ FlightDefinition Definition(const std::string& law, bool with_winds, bool guided
   }
   if (law == "listed_pid_aac") {  // one nozzle, three, and crosses among them
     std::vector<Stage>& stages = definition.vehicle.stages;
-    stages[0].gimbal.nozzles = {{"main", 0.0, 0.0, 1.0, {90.0 * kRadPerDeg, 180.0 * kRadPerDeg}, 5.0 * kRadPerDeg}};
+    stages[0].gimbal.nozzles = {
+        {"main", 0.0, 0.0, 1.0, {90.0 * kRadPerDeg, 180.0 * kRadPerDeg}, 5.0 * kRadPerDeg}};
     const double r = stages[1].gimbal.radius_m;
     for (const double at : {0.0, 120.0 * kRadPerDeg, 240.0 * kRadPerDeg})
-      stages[1].gimbal.nozzles.push_back({"at " + std::to_string(at), r * std::cos(at), r * std::sin(at), 1.0 / 3.0,
-                                          {at + 90.0 * kRadPerDeg}, 0.0});
+      stages[1].gimbal.nozzles.push_back({"at " + std::to_string(at),
+                                          r * std::cos(at),
+                                          r * std::sin(at),
+                                          1.0 / 3.0,
+                                          {at + 90.0 * kRadPerDeg},
+                                          0.0});
   }
   if (autopilot == "flexible")
     definition.vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml");
@@ -316,7 +321,8 @@ TEST_P(FlightLanes, AreTheFlightsAlone) {
 }
 INSTANTIATE_TEST_SUITE_P(Laws, FlightLanes,
                          testing::Values("adaptive_fuzzy", "frozen_fuzzy", "pd", "pid", "pd_aac", "pid_aac",
-                                         "flexible", "guided_adaptive_fuzzy", "guided_pid_aac", "listed_pid_aac"),
+                                         "flexible", "guided_adaptive_fuzzy", "guided_pid_aac",
+                                         "listed_pid_aac"),
                          [](const auto& law) { return std::string(law.param); });
 
 }  // namespace

@@ -137,22 +137,30 @@ constexpr BadInput kBadInputs[] = {
      "gravity\n"},
     {"NozzlesWithoutYaw", "vehicle.yaml", "pivot_station_m: 3.9, radius_m: 0.3,",
      "pivot_station_m: 3.9, nozzles: [{name: main, turns_towards_deg: [90]}],", "vehicle.yaml",
-     "vehicle.yaml:28:45: stages[1].gimbal.nozzles: do not turn the vehicle in yaw, allowed: hinges by which pitch and "
+     "vehicle.yaml:28:45: stages[1].gimbal.nozzles: do not turn the vehicle in yaw, allowed: hinges by which "
+     "pitch and "
      "yaw are commanded, as turns_towards_deg: [90, 180] of one nozzle\n"},
     {"NozzleOfSkewHinges", "vehicle.yaml", "pivot_station_m: 3.9, radius_m: 0.3,",
      "pivot_station_m: 3.9, nozzles: [{name: main, turns_towards_deg: [90, 150]}],", "vehicle.yaml",
-     "vehicle.yaml:28:84: stages[1].gimbal.nozzles[0].turns_towards_deg: has hinges that are not at right angles, but "
+     "vehicle.yaml:28:78: stages[1].gimbal.nozzles[0].turns_towards_deg: has hinges that are not at right "
+     "angles, but "
      "60.000000 deg apart, allowed: one direction, or two that are 90 deg apart\n"},
     {"ListAndCross", "vehicle.yaml", "pivot_station_m: 3.9, radius_m: 0.3,",
-     "pivot_station_m: 3.9, radius_m: 0.3, nozzles: [{name: main, turns_towards_deg: [90, 180]}],", "vehicle.yaml",
-     "vehicle.yaml:28:36: stages[1].gimbal: unknown key 'radius_m', allowed: bandwidth_hz, bandwidth_rad_s\n"},
+     "pivot_station_m: 3.9, radius_m: 0.3, nozzles: [{name: main, turns_towards_deg: [90, 180]}],",
+     "vehicle.yaml",
+     "vehicle.yaml:28:36: stages[1].gimbal.radius_m: unknown key 'radius_m', allowed: bandwidth_hz, bandwidth_rad_s, "
+     "damping_ratio, dead_zone_deg, dead_zone_rad, delay_ticks, friction_deg, friction_rad, limit_deg, limit_rad, "
+     "nozzles, pivot_station_km, pivot_station_m, pivot_station_mm, pivot_station_um, rate_limit_deg_s, "
+     "rate_limit_rad_s, resolution_deg, resolution_rad\n"},
     {"TimerOfNoStage", "reference.yaml", "  last_ignition_s: 420.5\n",
      "  last_ignition_s: 420.5\n  stage2_coast_s: 5\n  stage2_ignition_s: 90\n", "campaign.yaml",
-     "reference.yaml:1:1: stage2_ignition_s is given, and stage 2 of the vehicle is not one before the last that "
+     "reference.yaml:1:1: stage2_ignition_s is given, and stage 2 of the vehicle is not one before the last "
+     "that "
      "ignites on a timer, allowed: no coast of that stage\n"},
-    {"AzimuthOfMoreThanATurn", "reference.yaml", "launch_azimuth_deg: [90, 170]", "launch_azimuth_deg: [10, 375]",
-     "reference.yaml",
-     "reference.yaml:5:5: problem.bounds.launch_azimuth_deg: is more than a turn, allowed: [low, high], low from 0 to "
+    {"AzimuthOfMoreThanATurn", "reference.yaml", "launch_azimuth_deg: [90, 170]",
+     "launch_azimuth_deg: [10, 375]", "reference.yaml",
+     "reference.yaml:6:5: problem.bounds.launch_azimuth_deg: is more than a turn, allowed: [low, high], low "
+     "from 0 to "
      "below 360; [350, 10] goes through north\n"},
     {"MissingKey", "vehicle.yaml", "radius_m: 0.3, limit_deg: 6, rate_limit_deg_s: 30, bandwidth_rad_s: 40",
      "radius_m: 0.3, rate_limit_deg_s: 30, bandwidth_rad_s: 40", "vehicle.yaml",

@@ -153,7 +153,8 @@ TEST(CampaignYamlReference, KeepsWhatATargetAndCoastsHaveBesides) {
   EXPECT_EQ(read.orbit.node_longitude_rad, 123.0 * kRadPerDeg);
   // Without any of it there is nothing of it in the file.
   const std::string plain = WriteReference(RandomReference());
-  for (const char* key : {"node", "perigee", "inclination_per", "stage"}) EXPECT_EQ(plain.find(key), std::string::npos) << key;
+  for (const char* key : {"node", "perigee", "inclination_per", "stage"})
+    EXPECT_EQ(plain.find(key), std::string::npos) << key;
 }
 
 TEST(CampaignYamlReference, AzimuthBoundsThatFallGoThroughNorth) {

@@ -1,5 +1,5 @@
-// Coasts before stages other than the last: timed ignition and reaction control there, in six degrees of freedom and of
-// the optimiser's point mass.
+// Coasts before stages other than the last: timed ignition and reaction control there, in six degrees of
+// freedom and of the optimiser's point mass.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -33,7 +33,8 @@ FlightDefinition ThreeStages() {
   third.gimbal.pivot_station_m = 4.7;
   vehicle.stages.push_back(third);
   vehicle.aerodynamics.push_back(SampleTable());
-  for (AxisConfig* axis : {&definition.autopilot.roll, &definition.autopilot.pitch, &definition.autopilot.yaw}) {
+  for (AxisConfig* axis :
+       {&definition.autopilot.roll, &definition.autopilot.pitch, &definition.autopilot.yaw}) {
     axis->gains.push_back({25.0, 9.0});
     axis->adaptation.gamma.push_back(1000.0);
     axis->integral.ki_1_s3.push_back(12.0);

@@ -1,5 +1,5 @@
-// Flights whose nozzles are a list: forces by hand, a list that is the cross, roll by the reaction control under thrust,
-// stuck and departing nozzles.
+// Flights whose nozzles are a list: forces by hand, a list that is the cross, roll by the reaction control
+// under thrust, stuck and departing nozzles.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -33,8 +33,12 @@ std::vector<Nozzle> Ring(int count, double radius_m) {
   std::vector<Nozzle> nozzles;
   for (int k = 0; k < count; ++k) {
     const double at = kTwoPi * k / count;
-    nozzles.push_back({std::to_string(k), radius_m * std::cos(at), radius_m * std::sin(at), 1.0 / count,
-                       {at + 90.0 * kDeg}, 0.0});
+    nozzles.push_back({std::to_string(k),
+                       radius_m * std::cos(at),
+                       radius_m * std::sin(at),
+                       1.0 / count,
+                       {at + 90.0 * kDeg},
+                       0.0});
   }
   return nozzles;
 }
@@ -47,7 +51,8 @@ FlightDefinition Definition(const std::vector<Nozzle>& nozzles) {
 }
 
 // At rest above the air, burning for 10 s, the drives at these angles.
-LauncherInstant InstantAt(const FlightModel& model, const FlightInputs& inputs, const std::vector<double>& angles) {
+LauncherInstant InstantAt(const FlightModel& model, const FlightInputs& inputs,
+                          const std::vector<double>& angles) {
   RigidBodyState state;
   state.p_EoC_I = {Wgs84().equatorial_radius_m + kSpace_m, 0.0, 0.0};
   std::array<double, kLauncherSize> y{};
@@ -65,8 +70,7 @@ TEST(ListedNozzles, OneNozzleTurnsItsWholeThrustInTwoPlanes) {
   const FlightModel model(Definition(OneNozzle()));
   const double a = 3.0 * kDeg, b = -2.0 * kDeg;
   const LauncherInstant now = InstantAt(model, {}, {a, 0, 0, 0, b, 0, 0, 0});
-  const Vector3 force =
-      200e3 * Vector3(std::cos(a) * std::cos(b), -std::sin(b), std::sin(a) * std::cos(b));
+  const Vector3 force = 200e3 * Vector3(std::cos(a) * std::cos(b), -std::sin(b), std::sin(a) * std::cos(b));
   const double lever = 19.5 - now.cg_station_m;
   EXPECT_NEAR((now.loads.force_n - force).norm(), 0.0, 1e-8);
   EXPECT_NEAR(now.loads.moment_n_m.x(), 0.0, 1e-9);
@@ -89,7 +93,8 @@ TEST(ListedNozzles, ThreeNozzlesAddTheirMoments) {
   Vector3 force = Vector3::Zero(), moment = Vector3::Zero();
   for (std::size_t k = 0; k < 3; ++k) {
     const double at = 120.0 * kDeg * static_cast<double>(k), d = angles[k];
-    Vector3 each = 200e3 / 3.0 * Vector3(std::cos(d), -std::sin(d) * std::sin(at), std::sin(d) * std::cos(at));
+    Vector3 each =
+        200e3 / 3.0 * Vector3(std::cos(d), -std::sin(d) * std::sin(at), std::sin(d) * std::cos(at));
     if (k == 0) each *= 1.03;
     if (k == 1)  // by 0.01 towards clock 0.7
       each = Eigen::AngleAxisd(0.01, Vector3(0.0, -std::sin(0.7), std::cos(0.7))) * each;
@@ -189,8 +194,9 @@ std::vector<Nozzle> OneBetweenFixed() {
           {"right", 1.0, 0.0, 0.25, {}, 0.0},
           {"left", -1.0, 0.0, 0.25, {}, 0.0}};
 }
-// The right one's 50 kN 8e-5 rad towards z: 4 N m of roll, half of what the couple of two thrusters of 10 N, 0.4 m from the
-// axis, can do. (One nozzle on the axis that trims pitch and yaw turns no vehicle in roll: its thrust passes the CG.)
+// The right one's 50 kN 8e-5 rad towards z: 4 N m of roll, half of what the couple of two thrusters of 10 N,
+// 0.4 m from the axis, can do. (One nozzle on the axis that trims pitch and yaw turns no vehicle in roll: its
+// thrust passes the CG.)
 FlightInputs Rolled() {
   FlightInputs inputs;
   inputs.nozzle_misalignment_rad[0][1] = 8e-5;
@@ -245,8 +251,9 @@ TEST(ListedNozzles, ACoupleTurnsTheBurningVehicleByItsMoment) {
     const auto acceleration = [&](std::size_t at) {
       return (ticks[at + 1].state.w_IB_B.x() - ticks[at].state.w_IB_B.x()) / rate;
     };
-    const double inertia =
-        plant.stacks[0].mass.At(plant.stacks[0].burn.Propellant(ticks[i].since_ignition_s)).axial_inertia_kg_m2;
+    const double inertia = plant.stacks[0]
+                               .mass.At(plant.stacks[0].burn.Propellant(ticks[i].since_ignition_s))
+                               .axial_inertia_kg_m2;
     EXPECT_NEAR(acceleration(i) - acceleration(i - 1), (now - before) * 2.0 * 10.0 * 0.4 / inertia, 3e-5);
     EXPECT_GT(8.0 / inertia, 1e-3);
     ++compared;
@@ -289,7 +296,8 @@ TEST(ListedNozzles, AStuckNozzleOfTwoPlanesStandsInBoth) {
   EXPECT_TRUE(moves);
 }
 
-// The cone of a nozzle in two planes: commanded beyond it in both, its deflection is the limit and keeps the direction.
+// The cone of a nozzle in two planes: commanded beyond it in both, its deflection is the limit and keeps the
+// direction.
 TEST(ListedNozzles, TheLimitIsOfTheWholeDeflection) {
   FlightDefinition definition = Definition(OneNozzle());
   definition.vehicle.stages[0].gimbal.nozzles[0].limit_rad = 1.0 * kDeg;
@@ -311,12 +319,14 @@ TEST(ListedNozzles, TheLimitIsOfTheWholeDeflection) {
   EXPECT_GT(result.metrics[MetricColumn("deflection_saturated_fraction")], 0.1);
 }
 
-// The law divides by what the layout gives, so margins do not depend on it; roll that thrusters hold has none.
+// The law divides by what the layout gives, so margins do not depend on it; roll that thrusters hold has
+// none.
 TEST(ListedNozzles, MarginsAreOfTheLayout) {
   const auto margins = [](const FlightDefinition& definition) {
     return ComputeMargins(FlightModel(definition), 1000.0);
   };
-  const auto cross = margins(HighDefinition()), one = margins(Definition(OneNozzle())), ring = margins(Definition(Three(0.4)));
+  const auto cross = margins(HighDefinition()), one = margins(Definition(OneNozzle())),
+             ring = margins(Definition(Three(0.4)));
   std::size_t seen = 0;
   for (const ComputedMargins& m : cross) {
     if (m.stage != 0) continue;

@@ -39,7 +39,8 @@ TEST(TrajectoryPage, SpeaksOfTheTargetAndOfNothingElse) {
   problem.target_altitude_m = 500e3;  // a published target is a target
   problem.target_velocity_m_s = 7612.60;
   const std::string page = TrajectoryPage(result, std::nullopt);
-  for (const char* text : {"Table 2", "Fig. ", "(8)", "the paper", "inclination, deg"}) EXPECT_THAT(page, Not(HasSubstr(text)));
+  for (const char* text : {"Table 2", "Fig. ", "(8)", "the paper", "inclination, deg"})
+    EXPECT_THAT(page, Not(HasSubstr(text)));
   EXPECT_THAT(page, HasSubstr("velocity, m/s"));
   EXPECT_EQ(InjectionRows(result, std::nullopt).size(), 3u);
 
@@ -57,7 +58,8 @@ TEST(TrajectoryPage, SaysWhenToLiftOffForANode) {
   result.reference.orbit.node_longitude_rad = 110.0 * kRadPerDeg;
   EXPECT_NEAR(*LiftOffSidereal(result.reference), 270.0 * kRadPerDeg, 1e-14);
   EXPECT_EQ(OrbitSentence(result.reference),
-            "inclination 0.0000 deg, ascending node 110.0000 deg east of Greenwich as it stands at lift-off; for the "
+            "inclination 0.0000 deg, ascending node 110.0000 deg east of Greenwich as it stands at lift-off; "
+            "for the "
             "node at 20 deg lift off at 270.0000 deg (18.0000 h) of Greenwich sidereal time");
 }
 

@@ -98,16 +98,24 @@ TEST(OptimizeTrajectory, SaysWhichConstraintStoppedIt) {
   EXPECT_THAT(result.statement, HasSubstr(" Constraint: axial_load_max_g = 8."));
 }
 
-// Azimuth has the inclination to itself once the speed is free: an inclination that the shipped orbit does not have is met
-// beside altitude and angle.
+// The shipped search, all of it.
+TrajectoryOptions FullSearch(const OptimizationInput& input) {
+  TrajectoryOptions options;
+  options.tick_s = input.tick_s;
+  options.threads = 2;
+  return options;
+}
+
+// Azimuth has the inclination to itself once the speed is free: an inclination that the shipped orbit does
+// not have is met beside altitude and angle.
 TEST(OptimizeTrajectory, MeetsAnInclinationInPlaceOfASpeed) {
-  OptimizationInput input = ShortSearch("slv4_500km.yaml");
+  OptimizationInput input = LoadOptimization(DISPERSA_CAMPAIGNS "/slv4_500km.yaml");
   const double inclination = 70.0 * kRadPerDeg;
   input.problem.velocity_is_free = true;
   input.problem.target_velocity_m_s = 0.0;
   input.problem.target_inclination_rad = inclination;
   input.problem.weight_inclination_1_rad = 10.0 / kRadPerDeg;
-  const OptimizationResult result = OptimizeTrajectory(input.vehicle, input.problem, OptionsFor(input, 2));
+  const OptimizationResult result = OptimizeTrajectory(input.vehicle, input.problem, FullSearch(input));
   ASSERT_TRUE(result.reached) << result.statement;
   EXPECT_NEAR(result.reference.orbit.inclination_rad, inclination, 1e-6 * kRadPerDeg);
   EXPECT_NEAR(result.reference.orbit.altitude_m, 500e3, 1.0);
@@ -118,37 +126,39 @@ TEST(OptimizeTrajectory, MeetsAnInclinationInPlaceOfASpeed) {
 
 // Northwards from the site: an azimuth of 355 to 5 deg is one range, and its answer is written within a turn.
 TEST(OptimizeTrajectory, SearchesAzimuthsAcrossNorth) {
-  OptimizationInput input = ShortSearch("slv4_500km.yaml");
+  OptimizationInput input = LoadOptimization(DISPERSA_CAMPAIGNS "/slv4_500km.yaml");
   input.problem.velocity_is_free = true;
   input.problem.target_inclination_rad = 92.0 * kRadPerDeg;
   input.problem.weight_inclination_1_rad = 10.0 / kRadPerDeg;
   input.problem.launch_azimuth_rad = {350.0 * kRadPerDeg, 370.0 * kRadPerDeg};
-  const OptimizationResult retrograde = OptimizeTrajectory(input.vehicle, input.problem, OptionsFor(input, 2));
+  const OptimizationResult retrograde =
+      OptimizeTrajectory(input.vehicle, input.problem, FullSearch(input));
   ASSERT_TRUE(retrograde.reached) << retrograde.statement;
   // West of north: the orbit goes west, and the Earth's rotation is to be undone.
   EXPECT_GT(retrograde.reference.program.launch_azimuth_rad, 350.0 * kRadPerDeg);
   input.problem.target_inclination_rad = 83.0 * kRadPerDeg;
-  const OptimizationResult prograde = OptimizeTrajectory(input.vehicle, input.problem, OptionsFor(input, 2));
+  const OptimizationResult prograde = OptimizeTrajectory(input.vehicle, input.problem, FullSearch(input));
   ASSERT_TRUE(prograde.reached) << prograde.statement;
   EXPECT_LT(prograde.reference.program.launch_azimuth_rad, 10.0 * kRadPerDeg);
 }
 
 // The osculating ellipse of where the search ends, by the elements of the flight's own state.
 TEST(OptimizeTrajectory, EntersAnEllipseAtItsPerigee) {
-  OptimizationInput input = ShortSearch("slv4_500km.yaml");
+  OptimizationInput input = LoadOptimization(DISPERSA_CAMPAIGNS "/slv4_500km.yaml");
   TrajectoryProblem& problem = input.problem;
   // The shipped orbit's speed at 490 km over the equator's radius.
   const Earth earth = Wgs84();
   problem.target_altitude_m = 490e3;
   const double r = earth.equatorial_radius_m + 490e3;
   problem.target_velocity_m_s = std::sqrt(earth.mu_m3_s2 / r) + 5.0;
-  const double axis = 1.0 / (2.0 / r - problem.target_velocity_m_s * problem.target_velocity_m_s / earth.mu_m3_s2);
+  const double axis =
+      1.0 / (2.0 / r - problem.target_velocity_m_s * problem.target_velocity_m_s / earth.mu_m3_s2);
   problem.target_apogee_m = 2.0 * axis - r - earth.equatorial_radius_m;
-  const OptimizationResult result = OptimizeTrajectory(input.vehicle, problem, OptionsFor(input, 2));
+  const OptimizationResult result = OptimizeTrajectory(input.vehicle, problem, FullSearch(input));
   ASSERT_TRUE(result.reached) << result.statement;
   const AscentModel model = BuildAscentModel(input.vehicle, input.tick_s);
   AscentOptions options;
-  options.steps = OptionsFor(input, 1).steps;
+  options.steps = FullSearch(input).steps;
   const AscentResult ascent = FlyAscent(model, result.reference.program, options);
   const OrbitElements e = ElementsOf(earth, ascent.p_EoC_I, ascent.v_IC_I);
   EXPECT_NEAR(e.perigee_altitude_m, 490e3, 5.0);

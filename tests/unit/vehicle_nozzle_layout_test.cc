@@ -1,4 +1,5 @@
-// Lists of nozzles: what commands do with them, against geometry by hand and closed forms of the pseudo-inverse.
+// Lists of nozzles: what commands do with them, against geometry by hand and closed forms of the
+// pseudo-inverse.
 #include "core/vehicle/nozzle_layout.h"
 
 #include <gtest/gtest.h>
@@ -24,13 +25,18 @@ Gimbal With(std::vector<Nozzle> nozzles) {
   return gimbal;
 }
 
-// `count` nozzles on a circle, the first at `from` (from body y towards z), each turning about the axis of the vehicle.
+// `count` nozzles on a circle, the first at `from` (from body y towards z), each turning about the axis of
+// the vehicle.
 Gimbal Ring(int count, double from_rad, double radius_m) {
   std::vector<Nozzle> nozzles;
   for (int k = 0; k < count; ++k) {
     const double at = from_rad + kTwoPi * k / count;
-    nozzles.push_back({"n" + std::to_string(k), radius_m * std::cos(at), radius_m * std::sin(at), 1.0 / count,
-                       {at + 0.5 * kPi}, 0.0});
+    nozzles.push_back({"n" + std::to_string(k),
+                       radius_m * std::cos(at),
+                       radius_m * std::sin(at),
+                       1.0 / count,
+                       {at + 0.5 * kPi},
+                       0.0});
   }
   return With(nozzles);
 }
@@ -41,8 +47,8 @@ Gimbal Two() {
                {"left", -0.8, 0.0, 0.5, {90.0 * kDeg, 180.0 * kDeg}, 0.0}});
 }
 
-// The exact moment about a point `lever` ahead of the pivots, of 1 N, each nozzle turned as a Cardan joint turns it:
-// first about the second hinge, then the whole about the first.
+// The exact moment about a point `lever` ahead of the pivots, of 1 N, each nozzle turned as a Cardan joint
+// turns it: first about the second hinge, then the whole about the first.
 Vector3 MomentOf(const NozzleLayout& layout, const double* deflection_rad, double lever_m) {
   Vector3 moment = Vector3::Zero();
   for (int k = 0; k < layout.nozzles; ++k) {
@@ -50,7 +56,8 @@ Vector3 MomentOf(const NozzleLayout& layout, const double* deflection_rad, doubl
       // The hinge's axis turns x towards the direction that names it.
       const Vector3 towards(0.0, layout.towards_y[drive], layout.towards_z[drive]);
       if (towards.norm() == 0.0) return Matrix3(Matrix3::Identity());
-      return Matrix3(Eigen::AngleAxisd(deflection_rad[drive], Vector3::UnitX().cross(towards)).toRotationMatrix());
+      return Matrix3(
+          Eigen::AngleAxisd(deflection_rad[drive], Vector3::UnitX().cross(towards)).toRotationMatrix());
     };
     const Vector3 force = layout.share[k] * (turn(k) * turn(k + kNozzles) * Vector3::UnitX());
     moment += Vector3(-lever_m, layout.y_m[k], layout.z_m[k]).cross(force);
@@ -58,18 +65,21 @@ Vector3 MomentOf(const NozzleLayout& layout, const double* deflection_rad, doubl
   return moment;
 }
 
-// A command of each axis gives the moment that the layout promises about it, and none about the others; and what the
-// drives' angles are felt as is the command.
+// A command of each axis gives the moment that the layout promises about it, and none about the others; and
+// what the drives' angles are felt as is the command.
 void ExpectCommandsGiveTheirMoments(const Gimbal& gimbal) {
   const NozzleLayout layout = BuildNozzleLayout(gimbal);
   constexpr double kSmall_rad = 1e-5, kLever_m = 7.0;
   for (int axis = layout.rolls ? 0 : 1; axis < 3; ++axis) {
     double deflection[kDrives];
-    for (int drive = 0; drive < kDrives; ++drive) deflection[drive] = kSmall_rad * layout.allocation[drive][axis];
+    for (int drive = 0; drive < kDrives; ++drive)
+      deflection[drive] = kSmall_rad * layout.allocation[drive][axis];
     Vector3 expected = Vector3::Zero();
     expected[axis] = kSmall_rad * (axis == 0 ? layout.roll_arm_m : layout.pitch_share * kLever_m);
     // The rest is of second order: of nozzles beside the axis that turn unlike.
-    EXPECT_NEAR((MomentOf(layout, deflection, kLever_m) - expected).norm(), 0.0, 2.0 * kSmall_rad * kSmall_rad) << axis;
+    EXPECT_NEAR((MomentOf(layout, deflection, kLever_m) - expected).norm(), 0.0,
+                2.0 * kSmall_rad * kSmall_rad)
+        << axis;
     for (int felt = 0; felt < 3; ++felt) {
       double command = 0.0;
       for (int drive = 0; drive < kDrives; ++drive) command += layout.felt[felt][drive] * deflection[drive];
@@ -79,8 +89,8 @@ void ExpectCommandsGiveTheirMoments(const Gimbal& gimbal) {
 }
 
 TEST(NozzleLayout, CommandsGiveTheirMomentsAndNoOthers) {
-  for (const Gimbal& gimbal : {One(), Two(), Ring(3, 0.0, 0.5), Ring(3, 0.4, 0.5), Ring(4, 45.0 * kDeg, 0.5),
-                               Ring(4, 0.0, 0.5)})
+  for (const Gimbal& gimbal :
+       {One(), Two(), Ring(3, 0.0, 0.5), Ring(3, 0.4, 0.5), Ring(4, 45.0 * kDeg, 0.5), Ring(4, 0.0, 0.5)})
     ExpectCommandsGiveTheirMoments(gimbal);
   Gimbal cross;
   cross.limit_rad = 6.0 * kDeg;
@@ -101,7 +111,8 @@ TEST(NozzleLayout, TheCrossIsTheListItStandsFor) {
   // Right, left: pitch and roll; bottom, top: yaw and roll. To the bit: margins are of these numbers.
   const double expected[kDrives][3] = {{1, 1, 0}, {-1, 1, 0}, {1, 0, 1}, {-1, 0, 1}};
   for (int drive = 0; drive < kDrives; ++drive)
-    for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(layout.allocation[drive][axis], expected[drive][axis]) << drive << axis;
+    for (int axis = 0; axis < 3; ++axis)
+      EXPECT_EQ(layout.allocation[drive][axis], expected[drive][axis]) << drive << axis;
   EXPECT_DOUBLE_EQ(layout.pitch_share, 0.5);
   EXPECT_DOUBLE_EQ(layout.roll_arm_m, 0.4);
   EXPECT_DOUBLE_EQ(layout.flow_radius_m, 0.4);
@@ -134,8 +145,9 @@ TEST(NozzleLayout, TwoNozzlesTurnTogetherInPitchAndYawAndApartInRoll) {
   }
 }
 
-// n nozzles that turn about the vehicle's axis have G G' = diag(r²/n, 1/(2n), 1/(2n)), so that the pseudo-inverse is
-// (1/r, 2 cos, 2 sin) of each nozzle's place; scaled, the nozzle that turns most in pitch or yaw turns by 1.
+// n nozzles that turn about the vehicle's axis have G G' = diag(r²/n, 1/(2n), 1/(2n)), so that the
+// pseudo-inverse is (1/r, 2 cos, 2 sin) of each nozzle's place; scaled, the nozzle that turns most in pitch
+// or yaw turns by 1.
 TEST(NozzleLayout, ARingHasTheClosedFormOfItsPseudoInverse) {
   struct Case {
     int count;
@@ -154,14 +166,16 @@ TEST(NozzleLayout, ARingHasTheClosedFormOfItsPseudoInverse) {
   }
 }
 
-// Of two nozzles one may turn half as far. Where their sum is given and nothing else, (d1/2)² + d2² is least at d1 = 4 d2.
+// Of two nozzles one may turn half as far. Where their sum is given and nothing else, (d1/2)² + d2² is least
+// at d1 = 4 d2.
 TEST(NozzleLayout, WeighsDeflectionsByTheirLimits) {
   Gimbal gimbal = Two();
   gimbal.nozzles[1].limit_rad = 3.0 * kDeg;
   const NozzleLayout layout = BuildNozzleLayout(gimbal);
   EXPECT_EQ(layout.limit_rad[0], 6.0 * kDeg);
   EXPECT_EQ(layout.limit_rad[1], 3.0 * kDeg);
-  // Pitch and roll share the first hinges: with both free, pitch alone wants them equal, or it would turn in roll.
+  // Pitch and roll share the first hinges: with both free, pitch alone wants them equal, or it would turn in
+  // roll.
   EXPECT_NEAR(layout.allocation[0][1], layout.allocation[1][1], 1e-12);
   // Yaw is not tied to roll.
   EXPECT_NEAR(layout.allocation[kNozzles][2], 4.0 * layout.allocation[1 + kNozzles][2], 1e-11);
@@ -183,16 +197,20 @@ TEST(NozzleLayout, WhatCannotBeIsNamedInFull) {
       " | hinges by which pitch and yaw are commanded, as turns_towards_deg: [90, 180] of one nozzle";
   using Found = std::vector<std::string>;
   EXPECT_EQ(Texts({{"a", 0.0, 0.0, 1.0, both, 0.0}}), Found{});
-  EXPECT_EQ(Texts({{"a", 0.0, 0.0, 0.9, both, 0.0}}),
-            Found{"gimbal.nozzles: have shares of the thrust that sum to 0.900000 | thrust_share that sum to 1"});
+  EXPECT_EQ(
+      Texts({{"a", 0.0, 0.0, 0.9, both, 0.0}}),
+      Found{"gimbal.nozzles: have shares of the thrust that sum to 0.900000 | thrust_share that sum to 1"});
   EXPECT_EQ(Texts({{"a", 0.0, 0.2, 1.0, both, 0.0}}),
-            Found{"gimbal.nozzles: push beside the axis: the mean of their places, by thrust_share, is y 0.000000 m, z "
+            Found{"gimbal.nozzles: push beside the axis: the mean of their places, by thrust_share, is y "
+                  "0.000000 m, z "
                   "0.200000 m | a mean on the axis, to 1 mm"});
-  EXPECT_EQ(Texts({{"a", 0.0, 0.0, 1.0, {0.0, 60.0 * kDeg}, 0.0}}),
-            Found{"gimbal.nozzles[0].turns_towards_deg: has hinges that are not at right angles, but 60.000000 deg "
-                  "apart | one direction, or two that are 90 deg apart"});
+  EXPECT_EQ(
+      Texts({{"a", 0.0, 0.0, 1.0, {0.0, 60.0 * kDeg}, 0.0}}),
+      Found{"gimbal.nozzles[0].turns_towards_deg: has hinges that are not at right angles, but 60.000000 deg "
+            "apart | one direction, or two that are 90 deg apart"});
   EXPECT_EQ(Texts({{"a", 0.0, 0.0, 1.0, both, 7.0 * kDeg}}),
-            Found{"gimbal.nozzles[0].limit_deg: is beyond the limit_deg of its drives | up to the gimbal's limit_deg"});
+            Found{"gimbal.nozzles[0].limit_deg: is beyond the limit_deg of its drives | up to the gimbal's "
+                  "limit_deg"});
   EXPECT_EQ(Texts({{"a", 1.0, 0.0, 0.5, both, 0.0}, {"a", -1.0, 0.0, 0.5, both, 0.0}}),
             Found{"gimbal.nozzles[1].name: is that of another nozzle, a | a name of its own"});
   EXPECT_EQ(Texts({{"a", 0.0, 0.0, 1.0, {90.0 * kDeg}, 0.0}}),
@@ -203,11 +221,14 @@ TEST(NozzleLayout, WhatCannotBeIsNamedInFull) {
             (Found{"gimbal.nozzles: do not turn the vehicle in pitch" + pitch_and_yaw,
                    "gimbal.nozzles: do not turn the vehicle in yaw" + pitch_and_yaw}));
   EXPECT_EQ(Texts({{"a", 0.0, 0.0, 1.0, {45.0 * kDeg}, 0.0}}),
-            Found{"gimbal.nozzles: cannot turn the vehicle in pitch and in yaw one without the other" + pitch_and_yaw});
+            Found{"gimbal.nozzles: cannot turn the vehicle in pitch and in yaw one without the other" +
+                  pitch_and_yaw});
   // The right one turns in pitch, the left one in yaw.
-  EXPECT_EQ(Texts({{"a", 1.0, 0.0, 0.5, {90.0 * kDeg}, 0.0}, {"b", -1.0, 0.0, 0.5, {180.0 * kDeg}, 0.0}}),
-            Found{"gimbal.nozzles: turn the vehicle in roll with every command of pitch or yaw, and cannot undo it | "
-                  "hinges by which roll is commanded too, or none that turn the vehicle in roll"});
+  EXPECT_EQ(
+      Texts({{"a", 1.0, 0.0, 0.5, {90.0 * kDeg}, 0.0}, {"b", -1.0, 0.0, 0.5, {180.0 * kDeg}, 0.0}}),
+      Found{
+          "gimbal.nozzles: turn the vehicle in roll with every command of pitch or yaw, and cannot undo it | "
+          "hinges by which roll is commanded too, or none that turn the vehicle in roll"});
 }
 
 }  // namespace

@@ -160,10 +160,13 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"FirstStageOnATimer",
                 [](Vehicle& v) { v.stages[0].ignition = IgnitionTrigger::kTimer; },
                 {"stages[0].ignition.trigger: the first stage does not ignite at lift-off | lift_off"}},
-        Mistake{"NozzlesOfWhichOneTurnsNothingInYaw",
-                [](Vehicle& v) { v.stages[1].gimbal.nozzles = {{"main", 0.0, 0.0, 1.0, {0.5 * kPi}, 0.0}}; },
-                {"stages[1].gimbal.nozzles: do not turn the vehicle in yaw | hinges by which pitch and yaw are "
-                 "commanded, as turns_towards_deg: [90, 180] of one nozzle"}},
+        Mistake{
+            "NozzlesOfWhichOneTurnsNothingInYaw",
+            [](Vehicle& v) {
+              v.stages[1].gimbal.nozzles = {{"main", 0.0, 0.0, 1.0, {0.5 * kPi}, 0.0}};
+            },
+            {"stages[1].gimbal.nozzles: do not turn the vehicle in yaw | hinges by which pitch and yaw are "
+             "commanded, as turns_towards_deg: [90, 180] of one nozzle"}},
         Mistake{"NothingThatTurnsInRoll",
                 [](Vehicle& v) {
                   v.stages.resize(1);
@@ -171,7 +174,8 @@ INSTANTIATE_TEST_SUITE_P(
                   v.reaction_control = {};
                   v.stages[0].gimbal.nozzles = {{"main", 0.0, 0.0, 1.0, {0.5 * kPi, kPi}, 0.0}};
                 },
-                {"stages[0].gimbal.nozzles: cannot turn the vehicle in roll, and there is no reaction control that "
+                {"stages[0].gimbal.nozzles: cannot turn the vehicle in roll, and there is no reaction "
+                 "control that "
                  "could | reaction_control, or nozzles that command roll"}},
         Mistake{"SecondStageAtLiftOff",
                 [](Vehicle& v) { v.stages[1].ignition = IgnitionTrigger::kLiftOff; },
