@@ -124,8 +124,8 @@ void DecodeLiquid(const InputNode& node, const std::string& path, double propell
     motor.throttle = DecodeThrottle(*throttle, throttle->file == node.file ? map.PathOf("throttle") : "", problems);
   if (const InputNode* cut_off = map.Optional("cut_off")) {
     MapReader cut(*cut_off, map.PathOf("cut_off"), problems);
-    motor.cut_off = cut.Choice<CutOff>("at", {{"depletion", CutOff::kDepletion}, {"time", CutOff::kTime}});
-    if (motor.cut_off == CutOff::kTime) motor.cut_off_s = cut.Quantity("after", kTime, kPositive);
+    motor.cut_off = cut.Choice<CutOff>("at", {{"depletion", CutOff::kDepletion}, {"time", CutOff::kAtTime}});
+    if (motor.cut_off == CutOff::kAtTime) motor.cut_off_s = cut.Quantity("after", kTime, kPositive);
   }
 }
 

@@ -41,7 +41,7 @@ double TimeToBurn(const Piece& piece, double wanted_s) {
 
 ThrottledBurn Throttled(const Motor& engine, double propellant_kg, double full_flow_kg_s) {
   const double usable_s = (propellant_kg - engine.residual_mass_kg) / full_flow_kg_s;
-  const double cut_s = engine.cut_off == CutOff::kTime ? engine.cut_off_s : kNever_s;
+  const double cut_s = engine.cut_off == CutOff::kAtTime ? engine.cut_off_s : kNever_s;
   ThrottledBurn burn;
   double burnt_s = 0.0;  // at full flow
   bool ended = false;

@@ -67,7 +67,7 @@ void CheckLiquid(const Stage& stage, const std::string& path, Checker& check) {
   }
   check.Require(throttle.empty() || *std::max_element(throttle.level.begin(), throttle.level.end()) > 0.0, table,
                 "gives no thrust", "a level above 0 somewhere");
-  if (motor.cut_off == CutOff::kTime) check.Positive(motor.cut_off_s, path + ".motor.liquid.cut_off.after_s");
+  if (motor.cut_off == CutOff::kAtTime) check.Positive(motor.cut_off_s, path + ".motor.liquid.cut_off.after_s");
   check.Require(motor.residual_mass_kg >= 0.0 && motor.residual_mass_kg < stage.propellant_mass_kg,
                 path + ".motor.liquid.residual_mass_kg", "leaves nothing to burn", "0 to below propellant_mass_kg");
   double sum_kg = 0.0;

@@ -60,7 +60,7 @@ struct Throttle {
 };
 enum class CutOff {
   kDepletion,  ///< when all but the residual has flown
-  kTime,       ///< `cut_off_s` after ignition, or by depletion if that comes first
+  kAtTime,     ///< `cut_off_s` after ignition, or by depletion if that comes first
 };
 
 /// Constant thrust between two linear ramps whose impulse is part of the whole, or a thrust curve: propellant

@@ -45,7 +45,7 @@ FlightDefinition Definition(const std::string& autopilot, bool with_winds, bool 
     MakeLiquid(liquid);
     liquid.motor.residual_mass_kg = 0.01 * liquid.propellant_mass_kg;
     liquid.motor.throttle = {{0.0, 0.333, 40.0, 41.7}, {0.4, 1.0, 1.0, 0.8}};
-    liquid.motor.cut_off = CutOff::kTime;
+    liquid.motor.cut_off = CutOff::kAtTime;
     liquid.motor.cut_off_s = 55.0123;
   }
   if (autopilot == "pd") {  // a law that changes within a stage beside some that do not

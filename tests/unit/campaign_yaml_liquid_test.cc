@@ -52,7 +52,7 @@ TEST(LiquidFile, ThrottlesAndIsCutOff) {
   const Motor motor = StageOf(files).motor;
   EXPECT_EQ(motor.throttle.time_s, (std::vector<double>{0.0, 40.0, 41.0}));
   EXPECT_EQ(motor.throttle.level, (std::vector<double>{1.0, 1.0, 0.65}));
-  EXPECT_EQ(motor.cut_off, CutOff::kTime);
+  EXPECT_EQ(motor.cut_off, CutOff::kAtTime);
   EXPECT_EQ(motor.cut_off_s, 50.0);
 }
 

@@ -193,7 +193,7 @@ TEST(LiquidBurn, RunsDryWithinARamp) {
 TEST(LiquidBurn, EndsByCommandAndKeepsTheRest) {
   const auto by_time = [](Motor& m) {
     m.throttle = {{0.0, 10.0, 20.0}, {1.0, 1.0, 0.5}};
-    m.cut_off = CutOff::kTime;
+    m.cut_off = CutOff::kAtTime;
     m.cut_off_s = 16.0;
   };
   const MotorBurn burn = BurnWith(by_time);
@@ -203,7 +203,7 @@ TEST(LiquidBurn, EndsByCommandAndKeepsTheRest) {
   ExpectFlowToFit(burn);
   // Dry before the command.
   const MotorBurn dry = BurnWith([](Motor& m) {
-    m.cut_off = CutOff::kTime;
+    m.cut_off = CutOff::kAtTime;
     m.cut_off_s = 50.0;
   });
   EXPECT_DOUBLE_EQ(dry.duration_s, 39.6);

@@ -70,7 +70,7 @@ TEST(LiquidFlight, GainsTheRocketEquationsSpeedWhateverTheThrottle) {
   for (const Throttle& throttle : throttles) {
     for (const bool cut : {false, true}) {
       stage.motor.throttle = throttle;
-      stage.motor.cut_off = cut ? CutOff::kTime : CutOff::kDepletion;
+      stage.motor.cut_off = cut ? CutOff::kAtTime : CutOff::kDepletion;
       stage.motor.cut_off_s = 51.7;
       for (const auto& [thrust, flow] : {std::pair{1.0, 1.0}, {1.02, 0.97}}) {
         const MotorBurn burn = BuildBurn(stage, thrust, flow);

@@ -223,7 +223,7 @@ TEST_F(ThreeVsSixDof, LiquidStages) {
   Vehicle vehicle = model_.vehicle;
   for (Stage& stage : vehicle.stages) MakeLiquid(stage);
   Motor& third = vehicle.stages[2].motor;
-  third.cut_off = CutOff::kTime;
+  third.cut_off = CutOff::kAtTime;
   third.cut_off_s = 0.98 * third.burning_time_s;
   vehicle.stages[3].motor.residual_mass_kg = 0.01 * vehicle.stages[3].propellant_mass_kg;
   model_ = BuildAscentModel(vehicle, 0.01);
