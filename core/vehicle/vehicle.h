@@ -73,7 +73,7 @@ struct Motor {
   double tail_off_s = 0.0;          ///< linear decay at the end
   double nozzle_exit_area_m2 = 0.0; ///< of all nozzles; P = P_vac - p A_e; 0 switches the term off
   double published_mass_flow_kg_s = 0.0;  ///< as printed in the source, 0 if none; only compared
-  ThrustCurve thrust_curve;               ///< empty: none. Sets thrust_n and burning_time_s; without ramps
+  ThrustCurve thrust_curve = {};          ///< empty: none. Sets thrust_n and burning_time_s; without ramps
   // Of a liquid stage; without ramps and curve. thrust_n is at full thrust, burning_time_s what all propellant would
   // last at that.
   Throttle throttle = {};
