@@ -312,6 +312,28 @@ Stage DecodeStage(const InputNode& node, const std::string& path, ProblemList& p
   return stage;
 }
 
+Boosters DecodeBoosters(const InputNode& node, const std::string& path, ProblemList& problems) {
+  MapReader map(node, path, problems);
+  Boosters boosters;
+  boosters.count = static_cast<int>(map.Integer("count", 2, kMaxBoosters));
+  boosters.dry_mass_kg = map.Quantity("dry_mass", kMass, kPositive);
+  boosters.propellant_mass_kg = map.Quantity("propellant_mass", kMass, kPositive);
+  boosters.radius_m = map.Quantity("radius", kLength, kPositive);
+  boosters.diameter_m = map.Quantity("diameter", kLength, kPositive);
+  boosters.top_station_m = map.Quantity("top_station", kLength, kNonNegative);
+  boosters.bottom_station_m = map.Quantity("bottom_station", kLength, kPositive);
+  boosters.nozzle_station_m = map.Quantity("nozzle_station", kLength, kPositive);
+  const InputNode& motor = map.Required("motor", "a map");
+  if (motor.Find("liquid") != nullptr)
+    AddProblem(problems, *motor.Find("liquid"), map.PathOf("motor.liquid"), "boosters are solid",
+               "thrust_* with burning_time_*, or thrust_curve");
+  else
+    boosters.motor = DecodeMotor(motor, map.PathOf("motor"), boosters.propellant_mass_kg, problems);
+  boosters.grain = DecodeGrain(map.Required("grain", "a map"), map.PathOf("grain"), problems);
+  boosters.separation_delay_s = map.Quantity("separation_delay", kTime, kNonNegative, 0.0);
+  return boosters;
+}
+
 ProfileSection DecodeProfileSection(const InputNode& node, const std::string& path, ProblemList& problems) {
   MapReader map(node, path, problems);
   ProfileSection section;
@@ -482,6 +504,8 @@ Vehicle DecodeVehicle(const InputNode& node, const std::string& path, std::vecto
     map.Each("stages", 1, kMaxStages, [&](const InputNode& item, const std::string& item_path) {
       vehicle.stages.push_back(DecodeStage(item, item_path, problems));
     });
+    if (const InputNode* boosters = map.Optional("boosters"))
+      vehicle.boosters = DecodeBoosters(*boosters, map.PathOf("boosters"), problems);
     map.Each("profile", 1, SIZE_MAX, [&](const InputNode& item, const std::string& item_path) {
       vehicle.profile.push_back(DecodeProfileSection(item, item_path, problems));
     });

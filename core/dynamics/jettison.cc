@@ -1,6 +1,7 @@
 #include "core/dynamics/jettison.h"
 
 #include "core/math/functions.h"
+#include "core/vehicle/burning_stack.h"
 
 namespace dispersa {
 
@@ -26,7 +27,24 @@ const LauncherStack& StackOf(const LauncherPlant& plant, int stack) {
 
 StackMass MassOf(const LauncherPlant& plant, int stack, unsigned jettisoned) {
   const StackMass& whole = StackOf(plant, stack).mass;
-  return jettisoned == 0 ? whole : Without(whole, stack, plant.jettisoned_masses, jettisoned);
+  if (jettisoned == 0) return whole;
+  StackMass left = Without(whole, stack, plant.jettisoned_masses, jettisoned);
+  if (stack == 0 && (jettisoned & kBoostersGone) != 0) left = Without(left, 0, {plant.boosters->empty}, 1u);
+  return left;
+}
+
+MassProperties MassesOn(const LauncherPlant& plant, int stack, unsigned jettisoned, double propellant_kg,
+                        double since_ignition_s) {
+  const StackMass mass = MassOf(plant, stack, jettisoned);
+  if (stack > 0 || !plant.boosters || (jettisoned & kBoostersGone) != 0) return mass.At(propellant_kg);
+  lanes::Stack<double> own;
+  lanes::SetLane(own, 0, mass);
+  lanes::Masses<double> m = lanes::MassesAt(own, propellant_kg);
+  lanes::BesideStage<double> beside;
+  lanes::SetLane(beside, 0, plant.boosters->burn, plant.boosters->grains);
+  lanes::AddBeside(beside, plant.boosters->burn.Propellant(since_ignition_s), 0.0, 0.0, m);
+  return {m.mass_kg,          m.cg_station_m,    m.axial_kg_m2,
+          m.transverse_kg_m2, m.axial_per_kg_m2, m.transverse_per_kg_m2};
 }
 
 double HeatFlux(const JettisonSight& sight) {
@@ -54,10 +72,11 @@ unsigned DueJettisons(const LauncherPlant& plant, int stack, unsigned jettisoned
 }
 
 RigidBodyState AfterJettison(const LauncherPlant& plant, int stack, unsigned before, unsigned after,
-                             double propellant_kg, const RigidBodyState& state) {
+                             double propellant_kg, double since_ignition_s, const RigidBodyState& state) {
   const LauncherStack& same = StackOf(plant, stack);
-  return AtPoint(state, CgStep(plant, same, MassOf(plant, stack, before).At(propellant_kg), same,
-                               MassOf(plant, stack, after).At(propellant_kg)));
+  const MassProperties whole = MassesOn(plant, stack, before, propellant_kg, since_ignition_s);
+  return AtPoint(state, CgStep(plant, same, whole, same,
+                               MassesOn(plant, stack, after, propellant_kg, since_ignition_s)));
 }
 
 RigidBodyState AfterSeparation(const LauncherPlant& plant, int below, unsigned jettisoned,

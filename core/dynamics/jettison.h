@@ -5,8 +5,13 @@
 
 namespace dispersa {
 
-/// The stack as it is without what has been jettisoned (bits of LauncherPhase::jettisoned).
+/// The stack as it is without what has been jettisoned (bits of LauncherPhase::jettisoned, the boosters' among
+/// them), and without propellant of boosters.
 StackMass MassOf(const LauncherPlant& plant, int stack, unsigned jettisoned);
+
+/// Those with the propellant on board: `since_ignition_s` of the first stage says how much the boosters have.
+MassProperties MassesOn(const LauncherPlant& plant, int stack, unsigned jettisoned, double propellant_kg,
+                        double since_ignition_s);
 
 /// What jettisons depend on.
 struct JettisonSight {
@@ -27,8 +32,8 @@ double HeatFlux(const JettisonSight& sight);
 unsigned DueJettisons(const LauncherPlant& plant, int stack, unsigned jettisoned, const JettisonSight& sight);
 
 /// `state` after more has been jettisoned: it follows the centre of gravity, which jumps. `propellant_kg`: of
-/// the stack's lowest stage.
+/// the stack's lowest stage; `since_ignition_s`: of the first stage, if that is it.
 RigidBodyState AfterJettison(const LauncherPlant& plant, int stack, unsigned before, unsigned after,
-                             double propellant_kg, const RigidBodyState& state);
+                             double propellant_kg, double since_ignition_s, const RigidBodyState& state);
 
 }  // namespace dispersa

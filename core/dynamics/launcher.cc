@@ -36,7 +36,7 @@ struct OneLane {
           double time_s, const double* y)
       : earth(from.environment.earth),
         plant(InPhase(from, stack, now)),
-        phase{now.burning, now.burnt, now.ignition_s, now.expelled_mass_kg, ToLanes(now.control_torque_n_m)},
+        phase{now.burning, now.burnt, now.boosting, now.ignition_s, now.expelled_mass_kg, ToLanes(now.control_torque_n_m)},
         motion{{y[0], y[1], y[2]}, {y[3], y[4], y[5]}, {y[6], y[7], y[8], y[9]}, {y[10], y[11], y[12]}},
         around(lanes::SurroundingsAt(earth, StandardAir(), plant.weather, motion.p)),
         masses(lanes::MassesAt(plant, phase, time_s)),

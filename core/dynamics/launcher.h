@@ -78,12 +78,24 @@ struct BendingFactors {
   double slope = 1.0;  ///< of the slopes that sensors feel
 };
 
+/// What burns beside the first stage: all boosters together.
+struct BoosterSet {
+  MotorBurn burn;
+  BoosterGrains grains;
+  JettisonedMass empty;
+  double nozzle_station_m = 0.0;
+  double radius_m = 0.0;
+};
+/// The boosters' bit of LauncherPhase::jettisoned.
+inline constexpr unsigned kBoostersGone = 1u << kMaxJettisons;
+
 /// A vehicle of one flight.
 struct LauncherPlant {
   Environment environment;
   std::vector<LauncherStack> stacks;
   std::vector<Jettison> jettisons;  ///< of all stages
   std::vector<JettisonedMass> jettisoned_masses;
+  std::shared_ptr<const BoosterSet> boosters;  ///< null: none
   double cg_factor = 1.0;
   double inertia_factor = 1.0;
   bool jet_damping = true;
@@ -108,6 +120,7 @@ struct LauncherPhase {
   unsigned jettisoned = 0;  ///< bit i: of the plant's jettisons
   bool burning = false;
   bool burnt = false;            ///< the stack's propellant is used up
+  bool boosting = false;         ///< the boosters burn too
   double ignition_s = 0.0;       ///< of the stack's motor, when burning
   double expelled_mass_kg = 0.0; ///< by the reaction control so far
   Vector3 control_torque_n_m = Vector3::Zero();  ///< of the reaction control

@@ -49,6 +49,9 @@ struct Plant {
   bool nozzles_listed;  ///< of any stage: the same in all lanes. The cross is one of the lists then
   ListedNozzle<T> listed[kNozzles];
   T lateral_moment_y_kg_m, lateral_moment_z_kg_m;
+  bool has_boosters;  ///< of the vehicle: the same in all lanes, and stacks
+  BesideStage<T> beside;
+  T beside_nozzle_m, beside_radius_m;
   bool any_products;  ///< some lane has products of inertia
   MaskOf<T> has_products;
   T product_xy_kg_m2, product_xz_kg_m2, product_yz_kg_m2;
@@ -57,7 +60,7 @@ struct Plant {
 /// What stays constant between two events of each lane (LauncherPhase).
 template <class T>
 struct Phase {
-  MaskOf<T> burning, burnt;
+  MaskOf<T> burning, burnt, boosting;
   T ignition_s;
   T expelled_kg;
   Vector<T> control_torque_n_m;
@@ -81,6 +84,7 @@ struct TimedMasses {
   T source_station_m;
   T axial_per_kg_m2, transverse_per_kg_m2;
   T thrust_fraction, flow_fraction;  ///< of full thrust and flow; 0 when not burning
+  T beside_thrust_fraction, beside_flow_kg_s;  ///< of boosters; count where the vehicle has any
 };
 template <class T>
 DISPERSA_INLINE TimedMasses<T> MassesAt(const Plant<T>& plant, const Phase<T>& phase, T time_s) {
@@ -89,7 +93,19 @@ DISPERSA_INLINE TimedMasses<T> MassesAt(const Plant<T>& plant, const Phase<T>& p
   const T unlit = Select(phase.burnt, plant.burn.left_kg, plant.burn.propellant_kg);
   TimedMasses<T> o;
   o.propellant_kg = Select(phase.burning, burn.propellant_kg, unlit);
-  const Masses<T> m = MassesAt(plant.stack, o.propellant_kg);
+  Masses<T> m = MassesAt(plant.stack, o.propellant_kg);
+  o.thrust_fraction = Select(phase.burning, burn.fraction, T(0.0));
+  o.flow_fraction = Select(phase.burning, burn.flow_fraction, T(0.0));
+  T flow_kg_s = plant.burn.full_flow_kg_s * o.flow_fraction;
+  if (plant.has_boosters) {
+    const BurnState<T> beside = BurnAt(plant.beside.burn, time_s - phase.ignition_s);
+    o.beside_thrust_fraction = Select(phase.boosting, beside.fraction, T(0.0));
+    o.beside_flow_kg_s =
+        Select(phase.boosting, plant.beside.burn.full_flow_kg_s * beside.flow_fraction, T(0.0));
+    AddBeside(plant.beside, Select(phase.boosting, beside.propellant_kg, T(0.0)), o.beside_flow_kg_s, flow_kg_s,
+              m);
+    flow_kg_s = flow_kg_s + o.beside_flow_kg_s;
+  }
   o.mass_kg = m.mass_kg - phase.expelled_kg;
   o.inverse_mass_1_kg = T(1.0) / o.mass_kg;
   o.cg_station_m = m.cg_station_m * plant.cg_factor;
@@ -99,10 +115,8 @@ DISPERSA_INLINE TimedMasses<T> MassesAt(const Plant<T>& plant, const Phase<T>& p
   o.transverse_kg_m2 = m.transverse_kg_m2 * plant.inertia_factor;
   o.axial_per_kg_m2 = m.axial_per_kg_m2 * plant.inertia_factor;
   o.transverse_per_kg_m2 = m.transverse_per_kg_m2 * plant.inertia_factor;
-  o.thrust_fraction = Select(phase.burning, burn.fraction, T(0.0));
-  o.flow_fraction = Select(phase.burning, burn.flow_fraction, T(0.0));
-  o.cg_speed_m_s = plant.burn.full_flow_kg_s * o.flow_fraction * o.inverse_mass_1_kg * plant.cg_factor *
-                   (m.source_station_m - m.cg_station_m);
+  o.cg_speed_m_s =
+      flow_kg_s * o.inverse_mass_1_kg * plant.cg_factor * (m.source_station_m - m.cg_station_m);
   o.source_station_m = m.source_station_m;
   return o;
 }
@@ -323,6 +337,26 @@ DISPERSA_INLINE void BendThrust(const Plant<T>& plant, const Phase<T>& phase, co
   Blend<T>(phase.burning, driven, *bent.modal);
 }
 
+/// Boosters push along the axis, from where they are; a lateral offset of C turns that into a moment. Returns where
+/// the flow of stage and boosters leaves, in the mean.
+template <class T>
+DISPERSA_INLINE T AddBoosters(const Plant<T>& plant, const TimedMasses<T>& masses, T pressure_pa, Thrust<T>& thrust,
+                              LoadsOf<T>& o) {
+  const T none(0.0);
+  const Burn<T>& burn = plant.beside.burn;
+  const T net_n =
+      Fma(burn.vacuum_thrust_n, masses.beside_thrust_fraction, -(pressure_pa * burn.exit_area_m2));
+  const T push_n = Select((masses.beside_thrust_fraction > none) & (net_n > none), net_n, none);
+  o.thrust_n = o.thrust_n + push_n;
+  o.force_n.x = o.force_n.x + push_n;
+  thrust.moment_n_m.y = thrust.moment_n_m.y - masses.cg_z_m * push_n;
+  thrust.moment_n_m.z = thrust.moment_n_m.z + masses.cg_y_m * push_n;
+  o.flow_kg_s = o.flow_kg_s + masses.beside_flow_kg_s;
+  const T share =
+      Select(o.flow_kg_s > none, masses.beside_flow_kg_s / Select(o.flow_kg_s > none, o.flow_kg_s, T(1.0)), none);
+  return plant.pivot_station_m + share * (plant.beside_nozzle_m - plant.pivot_station_m);
+}
+
 /// `any_burns`: some lane does. `body`: bent or straight. With jet damping the flow leaves with the velocity of
 /// the nozzle about the CG: -m_dot r x (w x r), r on the axis, and for roll the nozzle circle's radius. On its
 /// way from the grain's middle or the liquids' surfaces to the pivots, aft by s, a turning body pushes it aside: Coriolis's force
@@ -368,8 +402,10 @@ DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, const Plant<T>& plan
   o.thrust_n = Select(phase.burning, thrust.thrust_n, none);
   o.flow_kg_s = Select(phase.burning, thrust.flow_kg_s, none);
   o.force_n = Select(phase.burning, o.force_n + thrust.force_n, o.force_n);
+  T exit_station_m = plant.pivot_station_m;  // of what flows
+  if (plant.has_boosters) exit_station_m = AddBoosters(plant, masses, around.pressure_pa, thrust, o);
   if (plant.flow_coriolis) {
-    const T turned = T(2.0) * o.flow_kg_s * (plant.pivot_station_m - masses.source_station_m);
+    const T turned = T(2.0) * o.flow_kg_s * (exit_station_m - masses.source_station_m);
     o.force_n.y = Fma(turned, s.w.z, o.force_n.y);
     o.force_n.z = Fma(-turned, s.w.y, o.force_n.z);
   }
@@ -378,6 +414,13 @@ DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, const Plant<T>& plan
     const T lever = plant.pivot_station_m - masses.cg_station_m;
     o.jet_axial = o.flow_kg_s * plant.nozzle_radius_m * plant.nozzle_radius_m;
     o.jet_transverse = o.flow_kg_s * lever * lever;
+    if (plant.has_boosters) {
+      // Of the stage's own flow so far; each booster's nozzle is off the axis by its radius.
+      const T beside = plant.beside_nozzle_m - masses.cg_station_m, r = plant.beside_radius_m;
+      o.jet_axial = o.jet_axial + masses.beside_flow_kg_s * (r * r - plant.nozzle_radius_m * plant.nozzle_radius_m);
+      o.jet_transverse =
+          o.jet_transverse + masses.beside_flow_kg_s * (Fma(beside, beside, T(0.5) * r * r) - lever * lever);
+    }
   }
   if constexpr (Body::kBends) FinishDrive(*body.bending, *body.state, o.force_n.x, *body.modal);
   return o;

@@ -110,6 +110,13 @@ DISPERSA_INLINE void SetLane(Plant<T>& p, int lane, const LauncherPlant& plant, 
   }
   SetLane(p.departs, lane, departs);
   p.any_departs = Any(p.departs);
+  const BoosterSet* const boosters = plant.boosters.get();
+  p.has_boosters = boosters != nullptr;
+  if (boosters != nullptr) {  // of stacks above, which do not boost, they do not count
+    SetLane(p.beside, lane, boosters->burn, boosters->grains);
+    Lane(p.beside_nozzle_m, lane) = boosters->nozzle_station_m;
+    Lane(p.beside_radius_m, lane) = boosters->radius_m;
+  }
   Lane(p.lateral_moment_y_kg_m, lane) = s.lateral_moment_y_kg_m;
   Lane(p.lateral_moment_z_kg_m, lane) = s.lateral_moment_z_kg_m;
 }

@@ -317,6 +317,7 @@ void Batch<T>::End(int lane, Outcome outcome, const char* reason) {
   SetLane(live_, lane, false);
   SetLane(coasting_, lane, false);
   SetLane(step_.phase.burning, lane, false);
+  SetLane(step_.phase.boosting, lane, false);
   Lane(stop_s_, lane) = Lane(next_digest_tick_, lane) = Lane(next_row_tick_, lane) = kFarFuture;
   queue_.Done(record);
 }
@@ -326,6 +327,7 @@ LauncherPhase Batch<T>::PhaseOf(int lane) const {
   LauncherPhase phase;
   phase.stack = slot_[lane].stack;
   phase.jettisoned = slot_[lane].jettisoned;
+  phase.boosting = Bits(step_.phase.boosting) >> lane & 1u;
   phase.burning = Bits(step_.phase.burning) >> lane & 1u;
   phase.burnt = Bits(step_.phase.burnt) >> lane & 1u;
   phase.ignition_s = Lane(step_.phase.ignition_s, lane);

@@ -135,6 +135,21 @@ void Batch<T>::Happen(int lane) {
       for (T& command : step_.command_rad) Lane(command, lane) = 0.0;
       break;
     }
+    case EventKind::kBoosterBurnout:
+      SetLane(step_.phase.boosting, lane, false);
+      break;
+    case EventKind::kBoosterSeparation: {
+      StateValues y;
+      step_.ReadLane(lane, y);
+      const double time_s = Lane(time_s_, lane);
+      // Straight from the burn: what was evaluated last is at an earlier time.
+      const double propellant_kg = record.plant.stacks.data()->burn.Propellant(time_s - Lane(step_.phase.ignition_s, lane));
+      record.LetGoOfBoosters(slot.jettisoned, time_s, propellant_kg, y);
+      slot.jettisoned |= kBoostersGone;
+      step_.WriteLane(lane, y);
+      SetMass(lane);
+      break;
+    }
     case EventKind::kKink:
       step_.MarkMoved(lane);
       return;
@@ -155,6 +170,7 @@ void Batch<T>::Ignite(int lane, int stage) {
   const FlightInputs& in = record.inputs;
   const AutopilotModel& autopilot = model_.autopilot();
   SetLane(step_.phase.burning, lane, true);
+  SetLane(step_.phase.boosting, lane, stage == 0 && step_.plant.has_boosters);
   SetLane(coasting_, lane, false);
   SetLane(step_.phase.control_torque_n_m, lane, Zero<double>());
   for (T& command : step_.command_rad) Lane(command, lane) = 0.0;

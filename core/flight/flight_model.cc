@@ -13,6 +13,16 @@
 
 namespace dispersa {
 
+namespace {
+
+std::shared_ptr<const BoosterSet> BuildBoosterSet(const Boosters& boosters, double thrust_factor, double flow_factor) {
+  return std::make_shared<const BoosterSet>(
+      BoosterSet{BuildBoosterBurn(boosters, thrust_factor, flow_factor), BuildBoosterGrains(boosters),
+                 BuildBoosterMass(boosters), boosters.nozzle_station_m, boosters.radius_m});
+}
+
+}  // namespace
+
 LauncherPlant BuildNominalPlant(const Vehicle& vehicle) {
   LauncherPlant plant;
   plant.jet_damping = vehicle.jet_damping;
@@ -31,6 +41,7 @@ LauncherPlant BuildNominalPlant(const Vehicle& vehicle) {
     plant.jettisons.insert(plant.jettisons.end(), stage.jettisoned.begin(), stage.jettisoned.end());
   }
   SetMasses(vehicle, plant);
+  if (vehicle.boosters.count > 0) plant.boosters = BuildBoosterSet(vehicle.boosters, 1.0, 1.0);
   return plant;
 }
 
@@ -40,7 +51,8 @@ void SetMasses(const Vehicle& vehicle, LauncherPlant& plant) {
   for (std::size_t i = 0; i < masses.size(); ++i) {
     LauncherStack& stack = plant.stacks[i];
     stack.mass = masses[i];
-    if (!vehicle.profile.empty())
+    // What boosters load sections of the core with is not modelled.
+    if (!vehicle.profile.empty() && (i > 0 || vehicle.boosters.count == 0))
       stack.loads = std::make_shared<const LoadTable>(BuildLoadTable(vehicle, static_cast<int>(i)));
   }
   if (plant.bending_modes() == 0) return;
@@ -82,8 +94,9 @@ StageControl BuildStageControl(const LauncherPlant& plant, int index, double ign
   control.limit_rad = stack.gimbal.limit_rad;
   for (int i = 0; i < points; ++i) {
     const double since = stack.burn.duration_s * i / (points - 1);
-    const MassProperties mass =
-        MassOf(plant, index, GoneAt(jettison_s, ignition_s + since)).At(stack.burn.Propellant(since));
+    unsigned gone = GoneAt(jettison_s, ignition_s + since);
+    if (plant.boosters && since > plant.boosters->burn.duration_s) gone |= kBoostersGone;
+    const MassProperties mass = MassesOn(plant, index, gone, stack.burn.Propellant(since), since);
     const double level = stack.burn.curve ? std::max(stack.burn.Fraction(since), kLeastThrustFraction) : 1.0;
     const double thrust = stack.burn.vacuum_thrust_n * level;
     const double lever = stack.gimbal.pivot_station_m - mass.cg_station_m;
@@ -287,6 +300,8 @@ LauncherPlant FlightModel::PlantFor(const FlightInputs& in, std::optional<std::u
     stack.burn = dispersed
                      ? BuildBurn(vehicle.stages[i], thrust_factor, in.mass_flow_factor[i])
                      : BuildBurn(vehicle.stages[i], thrust_factor, in.mass_flow_factor[i], stack.burn.curve);
+    if (i == 0 && plant.boosters)
+      plant.boosters = BuildBoosterSet(vehicle.boosters, thrust_factor, in.mass_flow_factor[i]);
     stack.gimbal.bandwidth_rad_s *= in.actuator_bandwidth_factor * in.stack_actuator_bandwidth_factor[i];
     stack.aerodynamics.ca.factor = in.drag_factor * in.stack_drag_factor[i];
     stack.aerodynamics.cn.factor = in.lift_factor * in.stack_lift_factor[i];

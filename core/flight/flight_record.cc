@@ -30,8 +30,19 @@ std::vector<FlightEvent> EventsOf(const FlightModel& model, const LauncherPlant&
     const int stage = static_cast<int>(i);
     const StageTimes& t = timeline[i];
     events.push_back({t.ignition_s, EventKind::kIgnition, stage});
+    const std::size_t first = events.size();
     for (const double kink_s : burns[i].Kinks(t.ignition_s))
       events.push_back({kink_s, EventKind::kKink, stage});
+    if (i == 0 && plant.boosters) {
+      const BoosterTimes beside = BuildBoosterTimes(definition.vehicle.boosters, plant.boosters->burn, t,
+                                                    definition.autopilot.tick_s);
+      for (const double kink_s : plant.boosters->burn.Kinks(t.ignition_s))
+        events.push_back({kink_s, EventKind::kKink, stage});
+      events.push_back({beside.burnout_s, EventKind::kBoosterBurnout, stage});
+      events.push_back({beside.separation_s, EventKind::kBoosterSeparation, stage});
+      std::stable_sort(events.begin() + static_cast<std::ptrdiff_t>(first), events.end(),
+                       [](const FlightEvent& a, const FlightEvent& b) { return a.time_s < b.time_s; });
+    }
     events.push_back({t.burnout_s, EventKind::kBurnout, stage});
     if (i + 1 < timeline.size()) events.push_back({t.separation_s, EventKind::kSeparation, stage});
   }
@@ -248,6 +259,7 @@ TickSample FlightRecord::SampleOf(const LaneView& view) const {
   s.stuck_nozzle = view.phase.stuck_nozzle;
   s.expelled_mass_kg = view.phase.expelled_mass_kg;
   s.jettisoned = view.phase.jettisoned;
+  s.boosting = view.phase.boosting;
   s.instant = equations_->Evaluate(view.phase, view.time_s, view.y);
   return s;
 }
@@ -290,8 +302,17 @@ unsigned FlightRecord::LetGo(int stack, unsigned jettisoned, double time_s, doub
   const Vector3 ground = s.p_EoC_I.cross(Vector3(0.0, 0.0, -plant.environment.earth.rotation_rate_rad_s));
   const unsigned due =
       DueJettisons(plant, stack, jettisoned, {time_s, altitude_m, density_kg_m3, (s.v_IC_I - ground).norm()});
-  if (due != 0) WriteState(AfterJettison(plant, stack, jettisoned, jettisoned | due, propellant_kg, s), y);
+  if (due != 0)
+    WriteState(AfterJettison(plant, stack, jettisoned, jettisoned | due, propellant_kg,
+                             time_s - events.front().time_s, s),
+               y);
   return due;
+}
+
+void FlightRecord::LetGoOfBoosters(unsigned jettisoned, double time_s, double propellant_kg, double* y) {
+  WriteState(AfterJettison(plant, 0, jettisoned, jettisoned | kBoostersGone, propellant_kg,
+                           time_s - events.front().time_s, ReadState(y)),
+             y);
 }
 
 void FlightRecord::MassWithout(int stack, unsigned jettisoned, StackMass& mass) const {

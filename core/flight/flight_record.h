@@ -26,6 +26,8 @@ enum class EventKind {
   kIgnition,
   kBurnout,
   kSeparation,
+  kBoosterBurnout,
+  kBoosterSeparation,
   kKink,  ///< the thrust's ramp ends or begins: nothing but a step that ends there
 };
 struct FlightEvent {
@@ -96,6 +98,8 @@ class FlightRecord {
   unsigned LetGo(int stack, unsigned jettisoned, double time_s, double altitude_m, double density_kg_m3,
                  double propellant_kg, double* y);
   void MassWithout(int stack, unsigned jettisoned, StackMass& mass) const;
+  /// The boosters leave.
+  void LetGoOfBoosters(unsigned jettisoned, double time_s, double propellant_kg, double* y);
   /// Replaces the state by that of the stack above, with its tip-off rates. `jettisoned`: as in
   /// LauncherPhase.
   void Separate(int stage, unsigned jettisoned, double* y);

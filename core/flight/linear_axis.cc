@@ -26,6 +26,7 @@ AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Ax
   phase.ignition_s = sample.time_s - sample.since_ignition_s;
   phase.expelled_mass_kg = sample.expelled_mass_kg;
   phase.jettisoned = sample.jettisoned;
+  phase.boosting = sample.boosting;
 
   const LauncherStack& stack = plant.stacks[static_cast<std::size_t>(sample.stack)];
   std::array<double, kDrives> pattern{};

@@ -5,6 +5,23 @@
 
 namespace dispersa {
 
+namespace {
+
+double DetectionOf(double burnout_s, double tick_s) {
+  return std::ceil((burnout_s - kSameInstant_s) / tick_s) * tick_s;
+}
+
+}  // namespace
+
+BoosterTimes BuildBoosterTimes(const Boosters& boosters, const MotorBurn& burn, const StageTimes& stage,
+                               double tick_s) {
+  BoosterTimes times;
+  times.burnout_s = std::min(stage.ignition_s + burn.duration_s, stage.burnout_s);
+  times.separation_s =
+      std::min(DetectionOf(times.burnout_s, tick_s) + boosters.separation_delay_s, stage.burnout_s);
+  return times;
+}
+
 std::vector<StageTimes> BuildTimeline(const Vehicle& vehicle, const std::vector<MotorBurn>& burns,
                                       double tick_s, double last_ignition_s,
                                       const std::array<double, kMaxStages>& earlier_ignition_s,
@@ -27,7 +44,7 @@ std::vector<StageTimes> BuildTimeline(const Vehicle& vehicle, const std::vector<
       }
     }
     times[i].burnout_s = times[i].ignition_s + burns[i].duration_s;
-    const double detection_s = std::ceil((times[i].burnout_s - kSameInstant_s) / tick_s) * tick_s;
+    const double detection_s = DetectionOf(times[i].burnout_s, tick_s);
     const bool last = i + 1 == burns.size();
     times[i].separation_s =
         last ? times[i].burnout_s

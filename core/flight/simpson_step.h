@@ -63,6 +63,7 @@ class StepState {
   void StartFlight(int lane) {
     SetLane(phase.burning, lane, false);
     SetLane(phase.burnt, lane, false);
+    SetLane(phase.boosting, lane, false);
     Lane(phase.ignition_s, lane) = Lane(phase.expelled_kg, lane) = 0.0;
     SetLane(phase.control_torque_n_m, lane, Zero<double>());
     for (T& command : command_rad) Lane(command, lane) = 0.0;

@@ -28,7 +28,8 @@ struct TickSample {
   int stuck_nozzle = -1;                    ///< index, or none
   std::array<int, kAxes> thrusters{};
   double expelled_mass_kg = 0.0;
-  unsigned jettisoned = 0;  ///< as in LauncherPhase
+  unsigned jettisoned = 0;  ///< as in LauncherPhase, as is
+  bool boosting = false;
   LauncherInstant instant;
 };
 

@@ -44,6 +44,7 @@ class Drawing {
   std::string Svg() {
     DrawBody();
     for (std::size_t i = 0; i < vehicle_.stages.size(); ++i) DrawStage(i);
+    DrawBoosters();
     DrawSensors();
     DrawScale();
     const double width = kLength_px + 2.0 * kMargin_px;
@@ -95,6 +96,21 @@ class Drawing {
       points += fmt::format("{:.2f},{:.2f} ", X(station_m), Y(-radius_m));
     if (!points.empty()) svg_ += "<polygon class=\"body\" points=\"" + points + "\"/>\n";
     Line("axis", X(0.0) - 18.0, axis_px_, X(length_m_) + 18.0, axis_px_);
+  }
+
+  // Seen from the side, two of them.
+  void DrawBoosters() {
+    const Boosters& b = vehicle_.boosters;
+    if (b.count == 0) return;
+    const double middle_px = axis_px_;
+    for (const double side : {-1.0, 1.0}) {
+      axis_px_ = middle_px + side * b.radius_m * scale_;
+      Tube("part", b.top_station_m, b.bottom_station_m, b.diameter_m);
+      Tube("grain", b.grain.top_station_m, b.grain.bottom_station_m, b.grain.outer_diameter_m);
+      if (b.grain.inner_diameter_m > 0.0)
+        Tube("bore", b.grain.top_station_m, b.grain.bottom_station_m, b.grain.inner_diameter_m);
+    }
+    axis_px_ = middle_px;
   }
 
   void DrawStage(std::size_t i) {

@@ -52,7 +52,7 @@ struct Flight {
 
   int stack = 0;
   unsigned jettisoned = 0;  // LauncherPhase's
-  bool burning = false, burnt = false, turning = false;
+  bool burning = false, burnt = false, boosting = false, turning = false;
   double ignition_s = 0.0;
   LaneVector turn_offset_I = lanes::Zero<double>();
 
@@ -71,6 +71,9 @@ void SetLane(lanes::Leg<T>& leg, int lane, const AscentModel& model, const Fligh
   SetLane(leg.burn, lane, model.plant.stacks[stack].burn);
   SetLane(leg.aero, lane, model.plant.stacks[stack].aerodynamics, *model.plant.stacks[stack].aero_grid);
   SetLane(leg.weather, lane, model.weather);
+  leg.has_boosters = model.plant.boosters != nullptr;
+  if (leg.has_boosters) SetLane(leg.beside, lane, model.plant.boosters->burn, model.plant.boosters->grains);
+  lanes::SetLane(leg.boosting, lane, flight.boosting);
   lanes::SetLane(leg.burning, lane, flight.burning);
   lanes::SetLane(leg.burnt, lane, flight.burnt);
   lanes::SetLane(leg.turning, lane, flight.turning);
@@ -146,6 +149,7 @@ class Fleet {
   void Happen(int lane, const AscentEvent& event);
   unsigned DueAt(int lane, double time_s, const LaneVector& p, const LaneVector& v) const;
   void LetGo(int lane, double from_s, const LaneVector& p, const LaneVector& v);
+  void Drop(int lane, unsigned due);
   void Conclude(int lane, bool completed);
   void Inject(int lane);
 
@@ -252,7 +256,7 @@ void Fleet<T>::AdvanceAll() {
   const unsigned all = (1u << model_.plant.jettisons.size()) - 1u;
   if (all == 0) return;
   for (int lane = 0; lane < kWidth; ++lane)
-    if (flights_[lane].result && !flights_[lane].in_reserve && flights_[lane].jettisoned != all)
+    if (flights_[lane].result && !flights_[lane].in_reserve && (flights_[lane].jettisoned & all) != all)
       LetGo(lane, Lane(from_s, lane), LaneOf(p, lane), LaneOf(v, lane));
 }
 
@@ -265,6 +269,20 @@ unsigned Fleet<T>::DueAt(int lane, double time_s, const LaneVector& p, const Lan
   return DueJettisons(
       model_.plant, flight.stack, flight.jettisoned,
       {time_s, around.altitude_m, around.density_kg_m3, std::sqrt(lanes::Dot(ground, ground))});
+}
+
+// So much less is on board: the state goes on with the centre of gravity of the rest.
+template <class T>
+void Fleet<T>::Drop(int lane, unsigned due) {
+  Flight& flight = flights_[lane];
+  const double since_s = Lane(time_s_, lane) - flight.ignition_s;
+  const MotorBurn& burn = model_.plant.stacks[static_cast<std::size_t>(flight.stack)].burn;
+  const double propellant_kg = flight.burning ? burn.Propellant(since_s)
+                               : flight.burnt ? burn.left_kg
+                                              : burn.propellant_mass_kg;
+  SetBody(lane, AfterJettison(model_.plant, flight.stack, flight.jettisoned, flight.jettisoned | due,
+                              propellant_kg, since_s, BodyOf(lane)));
+  flight.jettisoned |= due;
 }
 
 // After a step of a lane that began at `from_s`: what has become due leaves on the first of the flight
@@ -297,14 +315,7 @@ void Fleet<T>::LetGo(int lane, double from_s, const LaneVector& p, const LaneVec
       tick = middle + 1;
   }
   const unsigned due = move_to(std::min(static_cast<double>(tick) * model_.tick_s, end_s));
-  const double since_s = Lane(time_s_, lane) - flight.ignition_s;
-  const MotorBurn& burn = model_.plant.stacks[static_cast<std::size_t>(flight.stack)].burn;
-  const double propellant_kg = flight.burning ? burn.Propellant(since_s)
-                               : flight.burnt ? burn.left_kg
-                                              : burn.propellant_mass_kg;
-  SetBody(lane, AfterJettison(model_.plant, flight.stack, flight.jettisoned, flight.jettisoned | due,
-                              propellant_kg, BodyOf(lane)));
-  flight.jettisoned |= due;
+  Drop(lane, due);
   for (std::size_t i = 0; i < flight.result->jettison_s.size(); ++i)
     if (due >> i & 1u) flight.result->jettison_s[i] = Lane(time_s_, lane);
   SetLane(leg_, lane, model_, flight);
@@ -366,7 +377,14 @@ void Fleet<T>::Happen(int lane, const AscentEvent& event) {
   switch (event.kind) {
     case AscentEvent::kIgnition:
       flight.burning = true;
+      flight.boosting = event.stage == 0 && model_.plant.boosters != nullptr;
       flight.ignition_s = event.time_s;
+      break;
+    case AscentEvent::kBoosterBurnout:
+      flight.boosting = false;
+      break;
+    case AscentEvent::kBoosterSeparation:
+      Drop(lane, kBoostersGone);
       break;
     case AscentEvent::kBurnout: {
       const AscentPoint point = PointOf(lane);

@@ -33,6 +33,14 @@ AscentEvents EventsOf(const AscentModel& model, const FlightProgram& program) {
     events.push_back({times[i].burnout_s, AscentEvent::kBurnout, stage});
     if (i < last) events.push_back({times[i].separation_s, AscentEvent::kSeparation, stage});
   }
+  if (const BoosterSet* boosters = model.plant.boosters.get()) {
+    const BoosterTimes beside =
+        BuildBoosterTimes(model.vehicle.boosters, boosters->burn, times[0], model.tick_s);
+    for (const double kink_s : boosters->burn.Kinks(times[0].ignition_s))
+      events.push_back({kink_s, AscentEvent::kKink, 0});
+    events.push_back({beside.burnout_s, AscentEvent::kBoosterBurnout, 0});
+    events.push_back({beside.separation_s, AscentEvent::kBoosterSeparation, 0});
+  }
   events.push_back({program.t1_s, AscentEvent::kTurnBegin, 0});
   events.push_back({program.t3_s, AscentEvent::kKink, 0});
   events.push_back({program.t2_s, AscentEvent::kTurnEnd, 0});

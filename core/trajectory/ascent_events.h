@@ -8,7 +8,7 @@
 namespace dispersa {
 
 struct AscentEvent {
-  enum Kind { kIgnition, kBurnout, kSeparation, kTurnBegin, kTurnEnd, kKink };
+  enum Kind { kIgnition, kBurnout, kSeparation, kBoosterBurnout, kBoosterSeparation, kTurnBegin, kTurnEnd, kKink };
 
   double time_s;  ///< since lift-off, exact; an ignition may be earlier
   Kind kind;      ///< kKink: thrust or program bend there, and no step may go across

@@ -42,7 +42,9 @@ struct Leg {
   Stack<T> stack;
   Burn<T> burn;
   AeroBody<T> aero;
-  MaskOf<T> burning, burnt;
+  bool has_boosters;  ///< of the vehicle
+  BesideStage<T> beside;
+  MaskOf<T> burning, burnt, boosting;
   T ignition_s;
   T expelled_kg;            ///< by the reaction control
   MaskOf<T> turning;        ///< t1 is past
@@ -118,6 +120,15 @@ DISPERSA_INLINE AscentInstant<T> InstantAt(const Ground& ground, const Leg<T>& l
   const BurnState<T> burn = BurnAt(leg.burn, time_s - leg.ignition_s);
   const T unlit = Select(leg.burnt, leg.burn.left_kg, leg.burn.propellant_kg);
   Masses<T> masses = MassesAt(leg.stack, Select(leg.burning, burn.propellant_kg, unlit));
+  T beside_thrust_n(0.0);
+  if (leg.has_boosters) {
+    const Burn<T>& beside = leg.beside.burn;
+    const BurnState<T> boost = BurnAt(beside, time_s - leg.ignition_s);
+    AddBeside(leg.beside, Select(leg.boosting, boost.propellant_kg, T(0.0)), T(0.0), T(0.0), masses);
+    const T push = Max(Fma(beside.vacuum_thrust_n, boost.fraction, -(around.pressure_pa * beside.exit_area_m2)),
+                       T(0.0));
+    beside_thrust_n = Select(leg.boosting, push, T(0.0));
+  }
   masses.mass_kg = masses.mass_kg - leg.expelled_kg;
 
   const Vector<T> forward = ForwardAt(ground, leg, time_s, p, v);
@@ -137,6 +148,7 @@ DISPERSA_INLINE AscentInstant<T> InstantAt(const Ground& ground, const Leg<T>& l
   o.incidence_rad = air.incidence_rad;
   o.mass_kg = masses.mass_kg;
   o.axial_n = air.force_n.x + Select(leg.burning, thrust, T(0.0));
+  if (leg.has_boosters) o.axial_n = o.axial_n + beside_thrust_n;
   o.lateral_n = air.force_n.z;
   const T inverse_mass = T(1.0) / masses.mass_kg;
   const T across_1_kg = o.lateral_n * inverse_mass / Max(across, T(1e-30));

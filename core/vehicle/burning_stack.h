@@ -170,5 +170,51 @@ DISPERSA_INLINE BurnState<T> BurnAt(const Burn<T>& b, T since_ignition_s) {
   return state;
 }
 
+/// What burns beside the first stage (Boosters), all together.
+template <class T>
+struct BesideStage {
+  Burn<T> burn;
+  T station_m, outer2_m2, inner_per_kg_m2, length2_m2, radius2_m2;
+};
+template <class T>
+DISPERSA_INLINE void SetLane(BesideStage<T>& b, int lane, const MotorBurn& burn, const BoosterGrains& grains) {
+  SetLane(b.burn, lane, burn);
+  Lane(b.station_m, lane) = grains.station_m;
+  Lane(b.outer2_m2, lane) = grains.outer_radius_m * grains.outer_radius_m;
+  Lane(b.inner_per_kg_m2, lane) =
+      grains.kilograms_per_area_m2 > 0.0 ? 1.0 / grains.kilograms_per_area_m2 : 0.0;
+  Lane(b.length2_m2, lane) = grains.length_m * grains.length_m / 12.0;
+  Lane(b.radius2_m2, lane) = grains.radius_m * grains.radius_m;
+}
+
+/// Adds `beside_kg` of the boosters' propellant, of which `beside_kg_s` flows beside the stage's own `flow_kg_s`. Rates by
+/// mass and the place that mass comes from become those of both flows together.
+template <class T>
+DISPERSA_INLINE void AddBeside(const BesideStage<T>& b, T beside_kg, T beside_kg_s, T flow_kg_s, Masses<T>& m) {
+  const T inner2 = Fma(-beside_kg, b.inner_per_kg_m2, b.outer2_m2);
+  const T own_axial = T(0.5) * beside_kg * (b.outer2_m2 + inner2);
+  const T apart = beside_kg * b.radius2_m2;
+  const T old_cg = m.cg_station_m, old_kg = m.mass_kg;
+  m.mass_kg = old_kg + beside_kg;
+  m.cg_station_m = Fma(beside_kg, b.station_m, old_kg * old_cg) / m.mass_kg;
+  m.axial_kg_m2 = m.axial_kg_m2 + own_axial + apart;
+  // Huygens and Steiner, from both centres to the common one.
+  m.transverse_kg_m2 = m.transverse_kg_m2 + old_kg * Square(m.cg_station_m - old_cg) +
+                       Fma(T(0.5), own_axial + apart,
+                           beside_kg * (b.length2_m2 + Square(b.station_m - m.cg_station_m)));
+  const T total_kg_s = beside_kg_s + flow_kg_s;
+  const T none(0.0), one(1.0);
+  const T share = Select(total_kg_s > none, beside_kg_s / Select(total_kg_s > none, total_kg_s, one), none);
+  // The stage's own rate was about its own centre.
+  const T moved = Square(m.source_station_m - m.cg_station_m) - Square(m.source_station_m - old_cg);
+  const T beside_axial = inner2 + b.radius2_m2;
+  const T beside_transverse =
+      Fma(T(0.5), beside_axial, b.length2_m2) + Square(b.station_m - m.cg_station_m);
+  m.axial_per_kg_m2 = m.axial_per_kg_m2 + share * (beside_axial - m.axial_per_kg_m2);
+  const T own_transverse = m.transverse_per_kg_m2 + moved;
+  m.transverse_per_kg_m2 = own_transverse + share * (beside_transverse - own_transverse);
+  m.source_station_m = m.source_station_m + share * (b.station_m - m.source_station_m);
+}
+
 }  // namespace DISPERSA_ISA
 }  // namespace dispersa::lanes

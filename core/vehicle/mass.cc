@@ -74,7 +74,28 @@ double DryMass(const Vehicle& vehicle, int stage) {
   const double above = i + 1 < stages.size() ? stages[i + 1].liftoff_mass_kg : 0.0;
   double dry = stages[i].liftoff_mass_kg - above - stages[i].propellant_mass_kg;
   for (const Jettison& jettison : stages[i].jettisoned) dry -= jettison.mass_kg;
+  const Boosters& boosters = vehicle.boosters;
+  if (i == 0) dry -= boosters.count * (boosters.dry_mass_kg + boosters.propellant_mass_kg);
   return dry;
+}
+
+JettisonedMass BuildBoosterMass(const Boosters& boosters) {
+  StackMass one;
+  Add(Tube{boosters.dry_mass_kg, boosters.top_station_m, boosters.bottom_station_m, 0.5 * boosters.diameter_m,
+           0.5 * boosters.diameter_m},
+      one);
+  // Two or more at equal angles: their distances from the axis count whole in roll and by half across.
+  const double apart = boosters.dry_mass_kg * Square(boosters.radius_m);
+  const double n = boosters.count;
+  return {0, n * one.fixed_mass_kg, n * one.fixed_first_moment_kg_m,
+          n * (one.fixed_second_moment_kg_m2 + 0.5 * apart), n * (one.fixed_axial_inertia_kg_m2 + apart)};
+}
+
+BoosterGrains BuildBoosterGrains(const Boosters& boosters) {
+  const Grain& g = boosters.grain;
+  const double area_m2 = 0.25 * (Square(g.outer_diameter_m) - Square(g.inner_diameter_m));
+  return {0.5 * (g.top_station_m + g.bottom_station_m), g.bottom_station_m - g.top_station_m,
+          0.5 * g.outer_diameter_m, boosters.radius_m, boosters.count * boosters.propellant_mass_kg / area_m2};
 }
 
 double PropellantDensity(const Stage& stage) {
@@ -128,6 +149,13 @@ std::vector<StackMass> BuildStackMasses(const Vehicle& vehicle) {
         Add({stage.propellant_mass_kg, g.top_station_m, g.bottom_station_m, 0.5 * g.outer_diameter_m,
              0.5 * g.inner_diameter_m},
             stack);
+    }
+    if (lowest == 0 && vehicle.boosters.count > 0) {
+      const JettisonedMass empty = BuildBoosterMass(vehicle.boosters);
+      stack.fixed_mass_kg += empty.mass_kg;
+      stack.fixed_first_moment_kg_m += empty.first_moment_kg_m;
+      stack.fixed_second_moment_kg_m2 += empty.second_moment_kg_m2;
+      stack.fixed_axial_inertia_kg_m2 += empty.axial_inertia_kg_m2;
     }
     const Stage& burning = vehicle.stages[static_cast<std::size_t>(lowest)];
     stack.propellant_mass_kg = burning.propellant_mass_kg;

@@ -67,7 +67,19 @@ std::vector<JettisonedMass> BuildJettisonedMasses(const Vehicle& vehicle);
 StackMass Without(StackMass stack, int lowest_stage, const std::vector<JettisonedMass>& jettisons,
                   unsigned gone);
 
-/// Dry mass of a stage: its lift-off mass less what is above, its propellant and what it jettisons.
+/// Everything of a vehicle's boosters together, empty, as the first stack's sums count it.
+JettisonedMass BuildBoosterMass(const Boosters& boosters);
+/// The propellant of all boosters together: the sums grow with its mass. Each grain burns from its bore outwards.
+struct BoosterGrains {
+  double station_m = 0.0;  ///< of the middles
+  double length_m = 0.0;
+  double outer_radius_m = 0.0;
+  double radius_m = 0.0;              ///< of their axes from the vehicle's
+  double kilograms_per_area_m2 = 0.0; ///< of all: by which the sections' area, over pi, shrinks
+};
+BoosterGrains BuildBoosterGrains(const Boosters& boosters);
+
+/// Dry mass of a stage: its lift-off mass less what is above, its propellant, what it jettisons and boosters.
 double DryMass(const Vehicle& vehicle, int stage);
 /// Propellant density that the grain's volume implies, kg/m³; of a solid motor.
 double PropellantDensity(const Stage& stage);

@@ -8,6 +8,7 @@
 #include "core/math/constants.h"
 #include "core/math/functions.h"
 #include "core/vehicle/mass.h"
+#include "core/vehicle/propulsion.h"
 #include "core/vehicle/mould_line.h"
 #include "core/vehicle/vehicle_figures.h"
 
@@ -249,6 +250,27 @@ constexpr Check kGyroChecks[] = {
 };
 
 constexpr Check kVehicleChecks[] = {
+    {"boosters.propellant_mass_kg",
+     "implies with thrust and burning time a specific impulse of",
+     "s",
+     {0.0, 1000.0},
+     {180.0, 310.0},
+     "200 to 300 s of solid rockets: Sutton and Biblarz, Rocket Propulsion Elements, 7th ed., table 2-1",
+     [](const Subject& s) {
+       const Boosters& b = s.vehicle.boosters;
+       return b.count > 0 ? BuildBoosterBurn(b, 1.0, 1.0).ExhaustVelocity() / kStandardGravity : kNothing;
+     }},
+    {"boosters.grain",
+     "implies a propellant density of",
+     "kg/m3",
+     {0.0, 2100.0},
+     {1500.0, 1950.0},
+     "solid propellants: Sutton and Biblarz, table 12-1",
+     [](const Subject& s) {
+       const Boosters& b = s.vehicle.boosters;
+       const BoosterGrains grains = BuildBoosterGrains(b);
+       return b.count > 0 ? grains.kilograms_per_area_m2 / (b.count * kPi * grains.length_m) : kNothing;
+     }},
     {"sensors.inertial_unit.station_m",
      "lies, as part of the vehicle's length,",
      "",

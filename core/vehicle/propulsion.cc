@@ -50,6 +50,18 @@ MotorBurn BuildBurn(const Stage& stage, double thrust_factor, double flow_factor
                    curve.empty() ? nullptr : std::make_shared<const BurnCurve>(Prepare(curve)));
 }
 
+MotorBurn BuildBoosterBurn(const Boosters& boosters, double thrust_factor, double flow_factor) {
+  Stage one;
+  one.propellant_mass_kg = boosters.propellant_mass_kg;
+  one.motor = boosters.motor;
+  MotorBurn all = BuildBurn(one, thrust_factor, flow_factor);
+  all.vacuum_thrust_n *= boosters.count;
+  all.full_flow_kg_s *= boosters.count;
+  all.propellant_mass_kg *= boosters.count;
+  all.exit_area_m2 *= boosters.count;
+  return all;
+}
+
 MotorBurn BuildBurn(const Stage& stage, double thrust_factor, double flow_factor,
                     std::shared_ptr<const BurnCurve> curve) {
   const Motor& motor = stage.motor;

@@ -45,4 +45,7 @@ MotorBurn BuildBurn(const Stage& stage, double thrust_factor, double flow_factor
 /// The same, preparing the curve if the stage has one.
 MotorBurn BuildBurn(const Stage& stage, double thrust_factor, double flow_factor);
 
+/// Of all boosters together, with the first stage's factors.
+MotorBurn BuildBoosterBurn(const Boosters& boosters, double thrust_factor, double flow_factor);
+
 }  // namespace dispersa

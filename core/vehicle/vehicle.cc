@@ -8,6 +8,7 @@
 #include "core/math/table.h"
 #include "core/vehicle/mass.h"
 #include "core/vehicle/mould_line.h"
+#include "core/vehicle/propulsion.h"
 
 namespace dispersa {
 
@@ -256,6 +257,41 @@ void CheckTables(const Vehicle& vehicle, Checker& check) {
   }
 }
 
+void CheckBoosters(const Vehicle& vehicle, Checker& check) {
+  const Boosters& b = vehicle.boosters;
+  if (b.count == 0) return;
+  check.Require(b.count >= 2 && b.count <= kMaxBoosters, "boosters.count", "is out of range",
+                "2 to " + std::to_string(kMaxBoosters));
+  check.Positive(b.dry_mass_kg, "boosters.dry_mass_kg");
+  check.Positive(b.propellant_mass_kg, "boosters.propellant_mass_kg");
+  check.Positive(b.diameter_m, "boosters.diameter_m");
+  check.NotNegative(b.separation_delay_s, "boosters.separation_delay_s");
+  const Stage& core = vehicle.stages[0];
+  check.Require(2.0 * b.radius_m >= core.diameter_m, "boosters.radius_m",
+                "puts their axes inside the stage that they stand beside",
+                "at least half its diameter_m, " + std::to_string(0.5 * core.diameter_m));
+  check.NotNegative(b.top_station_m, "boosters.top_station_m");
+  check.Require(b.bottom_station_m > b.top_station_m, "boosters.bottom_station_m", "is not aft of top_station_m",
+                "a station larger than top_station_m");
+  CheckTube("boosters.grain", b.grain.top_station_m, b.grain.bottom_station_m, b.grain.outer_diameter_m,
+            b.grain.inner_diameter_m, b.bottom_station_m, check);
+  check.Require(b.grain.outer_diameter_m <= b.diameter_m, "boosters.grain.outer_diameter_m",
+                "is larger than the booster", "at most diameter_m");
+  check.Require(!vehicle.structure_beam, "boosters", "change the modes of a vehicle that bends, which is not modelled",
+                "none beside structure_beam");
+  Stage one;
+  one.propellant_mass_kg = b.propellant_mass_kg;
+  one.motor = b.motor;
+  if (!b.motor.thrust_curve.empty()) CheckThrustCurve(one, "boosters.motor", check);
+  if (!(b.propellant_mass_kg > 0.0 && b.motor.burning_time_s > 0.0 && core.motor.burning_time_s > 0.0)) return;
+  const double beside_s = BuildBoosterBurn(b, 1.0, 1.0).duration_s + b.separation_delay_s;
+  const double core_s = BuildBurn(core, 1.0, 1.0).duration_s;
+  check.Require(beside_s < core_s, "boosters.motor",
+                "burns, and the boosters leave, after " + std::to_string(beside_s) + " s, the stage burns " +
+                    std::to_string(core_s) + " s",
+                "boosters that leave while their stage burns");
+}
+
 void CheckJettisons(const Vehicle& vehicle, Checker& check) {
   int count = 0;
   for (std::size_t i = 0; i < vehicle.stages.size(); ++i) {
@@ -295,6 +331,7 @@ std::vector<VehicleProblem> Problems(const Vehicle& vehicle) {
     check.Require(false, problem.path, problem.message, problem.allowed);
   CheckTables(vehicle, check);
   CheckJettisons(vehicle, check);
+  CheckBoosters(vehicle, check);
   const ReactionControl& rcs = vehicle.reaction_control;
   if (count > 1) {
     check.Positive(rcs.thrust_n, "reaction_control.thrust_n");

@@ -175,6 +175,25 @@ struct ReactionControl {
   double minimum_on_time_s = 0.0;     ///< minimum impulse bit / thrust
 };
 
+/// Solid motors beside the first stage, all alike, at equal angles round it and ignited with it. Their nozzles are
+/// fixed, along the axis. They leave together after they have burnt out, at rest against the body, ahead of the
+/// stage's burnout; the aerodynamics of the first stack are theirs too, and stay.
+struct Boosters {
+  int count = 0;                    ///< 0: none; else 2 to 8
+  double dry_mass_kg = 0.0;         ///< of one, a thin tube from top to bottom station
+  double propellant_mass_kg = 0.0;  ///< of one
+  double radius_m = 0.0;            ///< of their axes from the vehicle's
+  double diameter_m = 0.0;          ///< of one
+  double top_station_m = 0.0;
+  double bottom_station_m = 0.0;
+  double nozzle_station_m = 0.0;    ///< where the thrust acts
+  Motor motor;                      ///< of one
+  Grain grain;                      ///< of one, about its own axis
+  double separation_delay_s = 0.0;  ///< after burnout is detected
+};
+/// Boosters at most.
+inline constexpr int kMaxBoosters = 8;
+
 enum class ProfileShape { kTangentOgive, kCone, kCylinder, kFrustum };
 
 /// A piece of the outer mould line; the pieces follow one another from the nose tip aft.
@@ -241,6 +260,7 @@ struct Vehicle {
   bool jet_damping = true;              ///< moment of the flow from CG to nozzle on a turning vehicle
   bool flow_coriolis = true;            ///< force of that flow, and the motion of the CG through the body
   std::vector<Stage> stages;            ///< in the order of flight
+  Boosters boosters;                    ///< of the first stage, part of its lift-off mass
   std::vector<ProfileSection> profile;  ///< outer mould line of the full vehicle
   double surface_roughness_m = 0.0;     ///< equivalent sand grain, for skin friction
   std::vector<AeroTable> aerodynamics;  ///< one a stack; empty: built up from the profile

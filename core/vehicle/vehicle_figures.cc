@@ -37,6 +37,20 @@ double GreatestLoad_m_s2(const MotorBurn& burn, double empty_kg) {
   return greatest;
 }
 
+// Of the first stage: at first both flows with their thrusts, means over the boosters' burn, then the stage's alone.
+double BoostedDeltaV(const Vehicle& vehicle, const MotorBurn& core, const MotorBurn& boost) {
+  const double boost_s = boost.duration_s;
+  const double core_kg = core.propellant_mass_kg - core.Propellant(boost_s);
+  const double flown_kg = core_kg + boost.propellant_mass_kg;
+  const double impulse_n_s =
+      core_kg * core.ExhaustVelocity() + boost.propellant_mass_kg * boost.ExhaustVelocity();
+  const double whole_kg = vehicle.stages[0].liftoff_mass_kg, left_kg = whole_kg - flown_kg;
+  const double alone_kg = left_kg - vehicle.boosters.count * vehicle.boosters.dry_mass_kg;
+  const double last_kg = core.Propellant(boost_s) - core.left_kg;
+  return impulse_n_s / flown_kg * Log(whole_kg / left_kg) +
+         core.ExhaustVelocity() * Log(alone_kg / (alone_kg - last_kg));
+}
+
 }  // namespace
 
 std::vector<StageFigures> FiguresOf(const Vehicle& vehicle) {
@@ -44,7 +58,9 @@ std::vector<StageFigures> FiguresOf(const Vehicle& vehicle) {
   for (std::size_t i = 0; i < vehicle.stages.size(); ++i) {
     const Stage& stage = vehicle.stages[i];
     const MotorBurn burn = BuildBurn(stage, 1.0, 1.0);
-    const double empty_kg = stage.liftoff_mass_kg - stage.propellant_mass_kg;
+    const Boosters& beside = vehicle.boosters;
+    const double beside_kg = i == 0 ? beside.count * (beside.dry_mass_kg + beside.propellant_mass_kg) : 0.0;
+    const double empty_kg = stage.liftoff_mass_kg - stage.propellant_mass_kg - beside_kg;
     const double burnt_kg = stage.propellant_mass_kg - burn.left_kg;
     StageFigures one;
     one.dry_mass_kg = DryMass(vehicle, static_cast<int>(i));
@@ -54,10 +70,18 @@ std::vector<StageFigures> FiguresOf(const Vehicle& vehicle) {
     one.flow_kg_s = burnt_kg / one.burning_time_s;
     one.specific_impulse_s = burn.ExhaustVelocity() / kStandardGravity;
     one.ideal_delta_v_m_s = burn.ExhaustVelocity() * Log(stage.liftoff_mass_kg / (stage.liftoff_mass_kg - burnt_kg));
-    const double thrust_n = GreatestOfFirstSecond(burn, i == 0 ? vehicle.hold_down_s : 0.0);
+    double thrust_n = GreatestOfFirstSecond(burn, i == 0 ? vehicle.hold_down_s : 0.0);
     if (i == 0) {
-      const double released_kg = empty_kg + burn.Propellant(vehicle.hold_down_s);
-      const double against_air_n = SitePressure(vehicle.site.altitude_m) * stage.motor.nozzle_exit_area_m2;
+      double released_kg = empty_kg + burn.Propellant(vehicle.hold_down_s);
+      double exit_area_m2 = stage.motor.nozzle_exit_area_m2;
+      if (beside.count > 0) {
+        const MotorBurn boost = BuildBoosterBurn(beside, 1.0, 1.0);
+        one.ideal_delta_v_m_s = BoostedDeltaV(vehicle, burn, boost);
+        released_kg += beside.count * beside.dry_mass_kg + boost.Propellant(vehicle.hold_down_s);
+        thrust_n += GreatestOfFirstSecond(boost, vehicle.hold_down_s);
+        exit_area_m2 += boost.exit_area_m2;
+      }
+      const double against_air_n = SitePressure(vehicle.site.altitude_m) * exit_area_m2;
       one.thrust_to_weight = (thrust_n - against_air_n) / (released_kg * kStandardGravity);
     } else {
       one.thrust_to_weight = thrust_n / (stage.liftoff_mass_kg * kStandardGravity);

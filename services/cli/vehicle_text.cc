@@ -6,6 +6,7 @@
 
 #include "core/flight/structural_limits.h"
 #include "core/report/text.h"
+#include "core/vehicle/propulsion.h"
 #include "core/vehicle/vehicle_figures.h"
 
 namespace dispersa {
@@ -15,6 +16,16 @@ double TotalDeltaV(const std::vector<StageFigures>& figures) {
   double sum_m_s = 0.0;
   for (const StageFigures& one : figures) sum_m_s += one.ideal_delta_v_m_s;
   return sum_m_s;
+}
+
+std::string BoosterText(const Vehicle& vehicle) {
+  const Boosters& b = vehicle.boosters;
+  const MotorBurn burn = BuildBoosterBurn(b, 1.0, 1.0);
+  return fmt::format(
+      "{} boosters beside {}, each of {} kg with {} kg of propellant, {} kN and {} s{}\n", b.count,
+      vehicle.stages[0].name, ReadableText(b.dry_mass_kg + b.propellant_mass_kg),
+      ReadableText(b.propellant_mass_kg), ReadableText(1e-3 * b.motor.thrust_n), ReadableText(burn.duration_s),
+      vehicle.aerodynamics.empty() ? "; the aerodynamics are built up from the core's profile alone" : "");
 }
 
 std::string JettisonText(const Stage& stage, const Jettison& jettison) {
@@ -52,6 +63,7 @@ std::string VehicleText(const Vehicle& vehicle) {
       "dry/own of the last stage with its payload; dv and Isp in vacuum, without losses; T/W of stage 1 "
       "where it "
       "is released\n";
+  if (vehicle.boosters.count > 0) text += BoosterText(vehicle);
   for (const Stage& stage : vehicle.stages)
     for (const Jettison& jettison : stage.jettisoned) text += JettisonText(stage, jettison);
   std::string limits;

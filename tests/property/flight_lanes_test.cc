@@ -62,6 +62,13 @@ FlightDefinition Definition(const std::string& law, bool with_winds, bool guided
                             {"fairing", 50.0, 0.2, 2.5, 1.0, 0.97, JettisonTrigger::kAtHeatFlux, 1135.0}};
     definition.jettison_s = {20.0, 85.0, 180.0};
   }
+  if (autopilot == "pd_aac") {
+    Boosters& b = definition.vehicle.boosters;
+    b = {4,    150.0, 900.0, 0.97, 0.62, 21.0, 26.5, 26.4, {}, {22.0, 24.05, 0.6, 0.2}, 0.5};
+    b.motor.thrust_n = 80e3;
+    b.motor.burning_time_s = 30.0;
+    definition.vehicle.stages[0].liftoff_mass_kg += 4.0 * 1050.0;
+  }
   if (law == "listed_pid_aac") {  // one nozzle, three, and crosses among them
     std::vector<Stage>& stages = definition.vehicle.stages;
     stages[0].gimbal.nozzles = {
