@@ -242,7 +242,7 @@ TEST(StackFactors, ActOnTheirStackAlone) {
                      (stack == 1 ? 1.4 : 1.0) * before.loads.inertia_kg_m2(1, 1));
   }
   // The upper stack leaves from where its own centre is.
-  const RigidBodyState left = AfterSeparation(plant, 0, state);
+  const RigidBodyState left = AfterSeparation(plant, 0, 0u, state);
   const double from = plant.stacks[0].mass.At(0.0).cg_station_m;
   const double to = 0.9 * plant.stacks[1].mass.At(1000.0).cg_station_m;
   EXPECT_NEAR((left.p_EoC_I - state.p_EoC_I).norm(), from - to, 1e-8);
