@@ -414,6 +414,11 @@ GuidanceConfig DecodeGuidance(const InputNode& node, const Vehicle& vehicle, Pro
     AddProblem(problems, mode != nullptr ? *mode : node, map.PathOf("mode"),
                "the vehicle '" + vehicle.name + "' has no last stage whose ignition guidance could move",
                "open_loop, or a vehicle whose last of two stages or more has ignition: {trigger: timer}");
+  } else if (guidance.closed_loop && vehicle.boosters.count > 0 && vehicle.stages.size() < 3) {
+    const InputNode* mode = node.Find("mode");
+    AddProblem(problems, mode != nullptr ? *mode : node, map.PathOf("mode"),
+               "guidance would steer the stage of '" + vehicle.name + "' that has boosters, whose thrust it does not know",
+               "open_loop, or a vehicle of three stages or more");
   }
   return guidance;
 }

@@ -374,9 +374,12 @@ class DispersionDecoder {
     if (!any && node->members.empty())
       AddProblem(problems_, *node, parent.path(), "no product is given", "one or more of xy, xz, yz");
   }
-  // Of the stack without what it burns, about either axis.
+  // Of the stack without what it burns and what may leave it, about either axis.
   double LeastInertia(int stage) const {
-    const MassProperties empty = BuildStackMasses(vehicle_)[static_cast<std::size_t>(stage) - 1].At(0.0);
+    StackMass left = Without(BuildStackMasses(vehicle_)[static_cast<std::size_t>(stage) - 1], stage - 1,
+                             BuildJettisonedMasses(vehicle_), ~0u);
+    if (stage == 1 && vehicle_.boosters.count > 0) left = Without(left, 0, {BuildBoosterMass(vehicle_.boosters)}, 1u);
+    const MassProperties empty = left.At(0.0);
     return std::min(empty.axial_inertia_kg_m2, empty.transverse_inertia_kg_m2);
   }
 
@@ -424,6 +427,10 @@ class DispersionDecoder {
       ScalarDistribution rate = ReadDistribution(map, {kTemperatureDifference, Between(-200.0, 200.0)});
       const double sensitivity_1_k = map.Quantity("sensitivity", kPerTemperature, {0.0, 0.02, true, false});
       of.per = PerWhat(map, false);
+      for (const int stage : of.stages)
+        if (const Stage* s = StageAt(stage); s != nullptr && s->is_liquid())
+          AddProblem(problems_, map.node(), map.path(), "stage " + std::to_string(stage) + " is liquid",
+                     "stage: those with solid motors");
       if (problems_.size() > before) return;
       const auto rate_at = [&](double warmer_k) { return Exp(sensitivity_1_k * warmer_k); };
       switch (rate.kind) {

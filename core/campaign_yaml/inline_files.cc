@@ -161,6 +161,10 @@ void InlineVehicleFiles(InputNode& vehicle, FileNames names, std::vector<InputPr
                 ThrustCurveParser(problems), problems);
     }
   }
+  InputNode* boosters = vehicle.Find("boosters");
+  InputNode* boosting = boosters == nullptr ? nullptr : boosters->Find("motor");
+  if (InputNode* curve = boosting == nullptr ? nullptr : boosting->Find("thrust_curve"))
+    Replace(curve->Find("table"), "boosters.motor.thrust_curve.table", names, ThrustCurveParser(problems), problems);
   InputNode* aerodynamics = vehicle.Find("aerodynamics");
   InputNode* tables = aerodynamics == nullptr ? nullptr : aerodynamics->Find("tables");
   if (tables == nullptr) return;

@@ -65,8 +65,8 @@ struct LoopMargins {
   double phase_deg = 0.0;     ///< least at any crossover of 0 dB, either way
   double delay_s = 0.0;       ///< further delay that destabilises
   double crossover_rad_s = 0.0;  ///< highest crossover of 0 dB
-  // Where the body bends, above 0.7 of its lowest mode; phase, delay and crossover above are then those below it. The
-  // peak is that of the open loop, known of an unstable one too.
+  // Where the body bends, above 0.7 of its lowest mode; phase and crossover above are then those below it, delay
+  // that of every crossover. The peak is that of the open loop, known of an unstable one too.
   double bending_peak_db = -std::numeric_limits<double>::infinity();
   /// Least angle of the response from -1 wherever it is not attenuated by 6 dB, and by 3 dB; 180 where it is
   /// everywhere.

@@ -48,6 +48,8 @@ Vehicle WithDispersedMasses(const Vehicle& vehicle, const FlightInputs& in) {
     grain.inner_diameter_m = bore2 > 0.0 ? Sqrt(bore2) : 0.0;
     above_kg += dry_kg + stage.propellant_mass_kg;
     for (const Jettison& jettison : stage.jettisoned) above_kg += jettison.mass_kg;
+    const Boosters& boosters = vehicle.boosters;
+    if (i == 0) above_kg += boosters.count * (boosters.dry_mass_kg + boosters.propellant_mass_kg);
     stage.liftoff_mass_kg = above_kg;
   }
   return dispersed;

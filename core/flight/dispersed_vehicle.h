@@ -2,11 +2,10 @@
 //
 // What changes with a mass, and what is held (definitions of ours, one key for one cause):
 //   dry mass of a stage   every element of its structure by the same factor, so its own centre of gravity and
-//   radii
-//                         of gyration stay; of the last stage the payload too.
+//                         radii of gyration stay; of the last stage the payload too. Boosters and what is
+//                         jettisoned stay as they are.
 //   propellant load       the grain's outer diameter, length and density stay: more propellant narrows the
-//   bore, up
-//                         to a grain without one. Thrust, flow at full thrust and specific impulse stay, so
+//                         bore, up to a grain without one; tanks are filled higher, up to full ones. Thrust, flow at full thrust and specific impulse stay, so
 //                         the burn lasts longer by what there is more. (A heavier charge that burns in the
 //                         same time is propellant_load and burn_rate together: correlate the two.)
 //   payload mass          added to one element of the last stage's structure, whose place and shape it has.

@@ -85,7 +85,7 @@ constexpr Row kOfFlight[] = {
      "fraction of powered flight in which a nozzle is commanded to its limit", kLarger,
      [](const Measured& m) { return Ratio(m.sums.saturated_ticks, m.pitch.count); }},
     {"deflection_travel", "_deg", "Deflection travel",
-     "path of a nozzle added up, mean of the four: wear of the actuators", kLarger,
+     "path of a nozzle added up, mean of the drives: wear of the actuators", kLarger,
      [](const Measured& m) { return m.sums.travel_rad * kDegPerRad; }},
     {"deflection_ripple", "_deg", "Deflection ripple",
      "worst peak-to-peak deflection, detrended over sliding 1 s windows, from 5 s after each ignition, "
@@ -127,7 +127,7 @@ constexpr Row kOfFlight[] = {
      [](const Measured& m) { return m.AtHandover(m.sums.handover_angle_rad * kDegPerRad); }},
     {"handover_rate_error", "_deg_s", "Rate error at the last ignition", "magnitude, likewise", kLarger,
      [](const Measured& m) { return m.AtHandover(m.sums.handover_rate_rad_s * kDegPerRad); }},
-    {"rcs_propellant", "_kg", "Reaction control propellant", "used in the coast", kLarger,
+    {"rcs_propellant", "_kg", "Reaction control propellant", "used in coasts, and in roll under thrust where nozzles cannot", kLarger,
      [](const Measured& m) { return m.sums.expelled_kg; }},
 
     {"injection_altitude", "_km", "Injection altitude", "geodetic, at the end of the last burn", kAnyway,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "core/dynamics/jettison.h"
 #include "core/flight/dispersed_vehicle.h"
 #include "core/math/constants.h"
 #include "core/vehicle/mass.h"
@@ -41,9 +42,12 @@ void EachMode(const LauncherPlant& plant, std::size_t stack, F f) {
   }
 }
 
-// Sylvester's criterion for the tensor of a stack that has burnt out, where the moments are least.
-bool IsInertia(const LauncherStack& stack) {
-  const MassProperties empty = stack.mass.At(0.0);
+// Sylvester's criterion for the tensor of a stack that has burnt out and let go of all it may, where the moments are
+// least.
+bool IsInertia(const LauncherPlant& plant, std::size_t index) {
+  const LauncherStack& stack = plant.stacks[index];
+  const unsigned gone = ((1u << plant.jettisons.size()) - 1u) | (plant.boosters ? kBoostersGone : 0u);
+  const MassProperties empty = MassOf(plant, static_cast<int>(index), gone).At(0.0);
   const double a = empty.axial_inertia_kg_m2, t = empty.transverse_inertia_kg_m2;
   const double xy = stack.product_xy_kg_m2, xz = stack.product_xz_kg_m2, yz = stack.product_yz_kg_m2;
   const double determinant = a * (t * t - yz * yz) - xy * (xy * t + xz * yz) - xz * (xz * t + xy * yz);
@@ -80,9 +84,9 @@ std::string RefusalOf(const Vehicle& vehicle, const FlightInputs& in, const Laun
     if (!(in.dry_mass_factor[i] > 0.0)) return "the dry mass of " + stage + " is not above 0";
     if (!(in.propellant_factor[i] > 0.0)) return "the propellant of " + stage + " is not above 0";
     if (in.propellant_factor[i] > LargestPropellantFactor(vehicle.stages[i]))
-      return "the grain of " + stage + " does not hold " + Text(in.propellant_factor[i]) +
+      return (vehicle.stages[i].is_liquid() ? "a tank of " : "the grain of ") + stage + " does not hold " + Text(in.propellant_factor[i]) +
              " times its propellant";
-    if (!IsInertia(plant.stacks[i])) return "the products of inertia of " + stage + " are no body's";
+    if (!IsInertia(plant, i)) return "the products of inertia of " + stage + " are no body's";
   }
   if (ChangesMasses(in))
     for (const MassElement& element : WithDispersedMasses(vehicle, in).stages.back().structure)

@@ -13,7 +13,7 @@ struct TickSample {
   double time_s = 0.0;
   int stack = 0;                   ///< 0-based
   bool burning = false;
-  bool coasting = false;           ///< the last stack before its ignition
+  bool coasting = false;           ///< before an ignition by a timer; the last stack before its own
   double since_ignition_s = 0.0;   ///< of the burning stage
   RigidBodyState state;
   std::array<double, kDrives> nozzle_rad{};  ///< about first hinges, then about second ones

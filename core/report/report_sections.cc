@@ -374,9 +374,9 @@ std::string NotModelledSection(const Campaign& campaign) {
   html +=
       beam && beam->flown_modes > 0
           ? R"html(<li>The vehicle bends by the modes of its file; they are only as good as that stiffness and damping. There is
-no slosh (all stages are solid), no torsion, no local mode, and the body's acceleration does not move the nozzles.</li>
+no slosh, no torsion, no local mode, and the body's acceleration does not move the nozzles.</li>
 )html"
-          : R"html(<li>The vehicle is rigid: no bending modes, no slosh (all stages are solid). Gain and phase margins against
+          : R"html(<li>The vehicle is rigid: no bending modes, no slosh. Gain and phase margins against
 flexible modes cannot be read from this report.</li>
 )html";
   html +=
@@ -393,7 +393,7 @@ does; injection metrics are reported for that spread and are no measure of the a
 filter, no alignment error.</li>
 <li>Separation is instantaneous: no contact forces and no re-contact analysis; what disturbs it is the
 declared tip-off rate.</li>
-<li>Motors burn with constant thrust between two ramps, or along a thrust curve where the vehicle gives one, shared out
+<li>Motors burn with constant thrust between two ramps, along a thrust curve, or as their throttle commands, shared out
 among the nozzles, without thrust oscillation. The reaction control gives ideal couples.</li>
 <li>Aerodynamic coefficients come from one table or build-up for each stack, without plume interaction or
 hysteresis; their uncertainty is what the campaign disperses.</li>

@@ -275,6 +275,9 @@ void CheckBoosters(const Vehicle& vehicle, Checker& check) {
                 "a station larger than top_station_m");
   CheckTube("boosters.grain", b.grain.top_station_m, b.grain.bottom_station_m, b.grain.outer_diameter_m,
             b.grain.inner_diameter_m, b.bottom_station_m, check);
+  check.Require(0.5 * (b.motor.ignition_rise_s + b.motor.tail_off_s) < b.motor.burning_time_s,
+                "boosters.motor.tail_off_s", "leaves no time at full thrust",
+                "ramps that are together shorter than twice burning_time_s");
   check.Require(b.grain.outer_diameter_m <= b.diameter_m, "boosters.grain.outer_diameter_m",
                 "is larger than the booster", "at most diameter_m");
   check.Require(!vehicle.structure_beam, "boosters", "change the modes of a vehicle that bends, which is not modelled",

@@ -81,7 +81,12 @@ TEST(ThrustCurveFile, StandsInTheIdOfWhatFlies) {
   const InputFiles files;
   files.Edit("vehicle.yaml", kMotor, "{thrust_curve: {reference: vacuum, table: curve.eng}}");
   files.Write("curve.eng", kEng);
-  EXPECT_EQ(files.Texts(ValidateFile(files.Path("vehicle.yaml"))), "");
+  const std::string id = LoadCampaign(files.Path("campaign.yaml")).flight_id;
+  std::string other = kEng;
+  const std::size_t at = other.find(" 800");
+  ASSERT_NE(at, std::string::npos);
+  files.Write("curve.eng", other.replace(at, 4, " 801"));
+  EXPECT_NE(LoadCampaign(files.Path("campaign.yaml")).flight_id, id);
 }
 
 struct BadCurve {
