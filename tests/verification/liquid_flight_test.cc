@@ -115,8 +115,7 @@ TEST(LiquidFlight, CarriesItsResidualAsDeadMass) {
   EXPECT_NEAR(full.end_time_s - less.end_time_s, 0.01 * last.motor.burning_time_s, 1e-9);
 }
 
-// Half thrust at the end of stage 1 halves the load there; flow and thrust go together, so that only gravity and drag
-// change the speed. The 3DOF flies the same burn.
+// Half thrust at the end of stage 1 halves the load there. The 3DOF burns as long and leaves as much.
 TEST(LiquidFlight, ThrottlesItsLoads) {
   FlightDefinition definition = Slv4Definition(DISPERSA_CAMPAIGNS);
   Stage& first = definition.vehicle.stages[0];
