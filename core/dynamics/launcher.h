@@ -85,6 +85,7 @@ struct BoosterSet {
   JettisonedMass empty;
   double nozzle_station_m = 0.0;
   double radius_m = 0.0;
+  double separation_delay_s = 0.0;
 };
 /// The boosters' bit of LauncherPhase::jettisoned.
 inline constexpr unsigned kBoostersGone = 1u << kMaxJettisons;

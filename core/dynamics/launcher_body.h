@@ -340,15 +340,15 @@ DISPERSA_INLINE void BendThrust(const Plant<T>& plant, const Phase<T>& phase, co
 /// Boosters push along the axis, from where they are; a lateral offset of C turns that into a moment. Returns where
 /// the flow of stage and boosters leaves, in the mean.
 template <class T>
-DISPERSA_INLINE T AddBoosters(const Plant<T>& plant, const TimedMasses<T>& masses, T pressure_pa, Thrust<T>& thrust,
-                              LoadsOf<T>& o) {
+DISPERSA_INLINE T AddBoosters(const Plant<T>& plant, const Phase<T>& phase, const TimedMasses<T>& masses,
+                              T pressure_pa, Thrust<T>& thrust, LoadsOf<T>& o) {
   const T none(0.0);
   const Burn<T>& burn = plant.beside.burn;
   const T net_n =
       Fma(burn.vacuum_thrust_n, masses.beside_thrust_fraction, -(pressure_pa * burn.exit_area_m2));
   const T push_n = Select((masses.beside_thrust_fraction > none) & (net_n > none), net_n, none);
   o.thrust_n = o.thrust_n + push_n;
-  o.force_n.x = o.force_n.x + push_n;
+  o.force_n.x = Select(phase.boosting, o.force_n.x + push_n, o.force_n.x);
   thrust.moment_n_m.y = thrust.moment_n_m.y - masses.cg_z_m * push_n;
   thrust.moment_n_m.z = thrust.moment_n_m.z + masses.cg_y_m * push_n;
   o.flow_kg_s = o.flow_kg_s + masses.beside_flow_kg_s;
@@ -403,7 +403,7 @@ DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, const Plant<T>& plan
   o.flow_kg_s = Select(phase.burning, thrust.flow_kg_s, none);
   o.force_n = Select(phase.burning, o.force_n + thrust.force_n, o.force_n);
   T exit_station_m = plant.pivot_station_m;  // of what flows
-  if (plant.has_boosters) exit_station_m = AddBoosters(plant, masses, around.pressure_pa, thrust, o);
+  if (plant.has_boosters) exit_station_m = AddBoosters(plant, phase, masses, around.pressure_pa, thrust, o);
   if (plant.flow_coriolis) {
     const T turned = T(2.0) * o.flow_kg_s * (exit_station_m - masses.source_station_m);
     o.force_n.y = Fma(turned, s.w.z, o.force_n.y);

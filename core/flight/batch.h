@@ -311,7 +311,10 @@ void Batch<T>::End(int lane, Outcome outcome, const char* reason) {
   record->End(outcome, reason, Lane(time_s_, lane), slot.stack, y);
   slot.record = nullptr;
   slot.switch_s = kFarFuture;
-  step_.plant.weather.profile[lane] = nullptr;  // the record's; an empty lane is computed on
+  // The record's; an empty lane is computed on.
+  step_.plant.weather.profile[lane] = nullptr;
+  step_.plant.burn.curve[lane] = step_.plant.beside.burn.curve[lane] = nullptr;
+  step_.bending.table[lane] = nullptr;
   --flying_;
   patience_ = 0;
   SetLane(live_, lane, false);

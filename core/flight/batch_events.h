@@ -136,6 +136,7 @@ void Batch<T>::Happen(int lane) {
       break;
     }
     case EventKind::kBoosterBurnout:
+      metrics_.AddLoadsOfLane(lane, step_.InstantOf(lane, time_s_));  // they peak here, between ticks
       SetLane(step_.phase.boosting, lane, false);
       break;
     case EventKind::kBoosterSeparation: {

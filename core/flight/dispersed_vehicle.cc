@@ -60,7 +60,7 @@ double LargestPropellantFactor(const Stage& stage) {
     double most = HUGE_VAL;
     for (const Tank& tank : stage.tanks)
       most = std::min(most, tank.Volume() * tank.density_kg_m3 / tank.propellant_mass_kg);
-    return std::floor(1e6 * most) * 1e-6;
+    return std::max(1.0, std::floor(1e6 * most) * 1e-6);
   }
   const double outer2 = Square(stage.grain.outer_diameter_m);
   // A number that a message can show.

@@ -16,9 +16,9 @@ namespace dispersa {
 namespace {
 
 std::shared_ptr<const BoosterSet> BuildBoosterSet(const Boosters& boosters, double thrust_factor, double flow_factor) {
-  return std::make_shared<const BoosterSet>(
-      BoosterSet{BuildBoosterBurn(boosters, thrust_factor, flow_factor), BuildBoosterGrains(boosters),
-                 BuildBoosterMass(boosters), boosters.nozzle_station_m, boosters.radius_m});
+  return std::make_shared<const BoosterSet>(BoosterSet{
+      BuildBoosterBurn(boosters, thrust_factor, flow_factor), BuildBoosterGrains(boosters),
+      BuildBoosterMass(boosters), boosters.nozzle_station_m, boosters.radius_m, boosters.separation_delay_s});
 }
 
 }  // namespace
@@ -89,13 +89,16 @@ StageControl BuildStageControl(const LauncherPlant& plant, int index, double ign
   const LauncherStack& stack = plant.stacks[static_cast<std::size_t>(index)];
   // Under constant thrust the effectiveness changes slowly and smoothly: 33 points follow it to a part in a
   // thousand. With a thrust curve it follows the curve to a thousandth of the burn; ramps it does not know.
-  const int points = stack.burn.curve ? 1025 : 33;
+  // What leaves at once makes it jump, and is followed as closely.
+  const bool jumps = (index == 0 && plant.boosters) || !plant.jettisons.empty();
+  const int points = stack.burn.curve || jumps ? 1025 : 33;
   StageControl control;
   control.limit_rad = stack.gimbal.limit_rad;
   for (int i = 0; i < points; ++i) {
     const double since = stack.burn.duration_s * i / (points - 1);
     unsigned gone = GoneAt(jettison_s, ignition_s + since);
-    if (plant.boosters && since > plant.boosters->burn.duration_s) gone |= kBoostersGone;
+    if (plant.boosters && since > plant.boosters->burn.duration_s + plant.boosters->separation_delay_s)
+      gone |= kBoostersGone;
     const MassProperties mass = MassesOn(plant, index, gone, stack.burn.Propellant(since), since);
     const double level = stack.burn.curve ? std::max(stack.burn.Fraction(since), kLeastThrustFraction) : 1.0;
     const double thrust = stack.burn.vacuum_thrust_n * level;
@@ -169,7 +172,12 @@ GuidanceMission BuildMission(const FlightDefinition& definition, const LauncherP
     // One mass for all of the burn: what leaves during it is gone, or not, by its middle.
     const unsigned gone = GoneAt(definition.jettison_s, 0.5 * (times[i].ignition_s + times[i].burnout_s));
     const double fixed_kg = MassOf(plant, static_cast<int>(i), gone).fixed_mass_kg;
-    return GuidedStage{stack.burn, fixed_kg + stack.burn.propellant_mass_kg};
+    bool loses_mass = false;
+    for (std::size_t k = 0; k < definition.jettison_s.size(); ++k)
+      loses_mass |= plant.jettisoned_masses[k].stage >= static_cast<int>(i) &&
+                    definition.jettison_s[k] > times[i].ignition_s &&
+                    definition.jettison_s[k] <= times[i].burnout_s;
+    return GuidedStage{stack.burn, fixed_kg + stack.burn.propellant_mass_kg, loses_mass};
   };
   const std::size_t last = plant.stacks.size() - 1;
   mission.below = stage(last - 1);

@@ -91,6 +91,8 @@ std::string RefusalOf(const Vehicle& vehicle, const FlightInputs& in, const Laun
   if (ChangesMasses(in))
     for (const MassElement& element : WithDispersedMasses(vehicle, in).stages.back().structure)
       if (!(element.fraction >= 0.0)) return "the element '" + element.name + "' weighs less than nothing";
+  if (plant.boosters && plant.boosters->burn.duration_s >= plant.stacks[0].burn.duration_s)
+    return "the boosters burn as long as their stage, or longer";
   const StepUse use = GreatestStepUse(plant, tick_s);
   if (use.fraction <= 1.0) return "";
   return use.part + ": too fast for ticks of " + Text(1e3 * tick_s) + " ms, at most " + Text(use.limit_hz) +

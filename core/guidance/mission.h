@@ -42,6 +42,7 @@ struct DirectionTable {
 struct GuidedStage {
   MotorBurn burn;
   double ignition_mass_kg = 0.0;  ///< with everything above
+  bool loses_mass = false;        ///< the reference lets go of something while it burns
 };
 
 struct GuidanceMission {

@@ -17,7 +17,8 @@ constexpr double kFarthest = 0.15;
 
 void MotorEstimate::Add(double since_ignition_s, double specific_force_m_s2) {
   const MotorBurn& burn = nominal_.burn;
-  if (burn.curve) return;  // never at full thrust for long: no line
+  // Never at full thrust for long, or lighter at once: no line.
+  if (burn.curve || nominal_.loses_mass) return;
   const double full_until_s = (1.0 - kFarthest) * burn.duration_s - burn.tail_s;
   if (since_ignition_s < burn.rise_s + kClear_s || since_ignition_s > full_until_s ||
       !(specific_force_m_s2 > 0.0))

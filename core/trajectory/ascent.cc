@@ -150,6 +150,7 @@ class Fleet {
   unsigned DueAt(int lane, double time_s, const LaneVector& p, const LaneVector& v) const;
   void LetGo(int lane, double from_s, const LaneVector& p, const LaneVector& v);
   void Drop(int lane, unsigned due);
+  void ObserveHere(int lane);
   void Conclude(int lane, bool completed);
   void Inject(int lane);
 
@@ -371,6 +372,15 @@ void Fleet<T>::SetOut(int lane, double to_s) {
   flight.step = 0;
 }
 
+// The near side of a kink at which loads peak.
+template <class T>
+void Fleet<T>::ObserveHere(int lane) {
+  const AscentPoint point = PointOf(lane);
+  Peaks<double> peaks = LaneOf(peaks_, lane);
+  Observe(options_, ground_, point.leg, point.time_s, point.p, point.v, InstantOf(ground_, point), peaks);
+  SetLane(peaks_, lane, peaks);
+}
+
 template <class T>
 void Fleet<T>::Happen(int lane, const AscentEvent& event) {
   Flight& flight = flights_[lane];
@@ -381,18 +391,16 @@ void Fleet<T>::Happen(int lane, const AscentEvent& event) {
       flight.ignition_s = event.time_s;
       break;
     case AscentEvent::kBoosterBurnout:
+      ObserveHere(lane);
       flight.boosting = false;
       break;
     case AscentEvent::kBoosterSeparation:
       Drop(lane, kBoostersGone);
       break;
     case AscentEvent::kBurnout: {
+      ObserveHere(lane);
       const AscentPoint point = PointOf(lane);
-      const lanes::AscentInstant<double> now = InstantOf(ground_, point);
-      Peaks<double> peaks = LaneOf(peaks_, lane);
-      Observe(options_, ground_, point.leg, point.time_s, point.p, point.v, now, peaks);
-      SetLane(peaks_, lane, peaks);
-      if (options_.record) Record(flight.frame, ground_, point, now, flight.result);
+      if (options_.record) Record(flight.frame, ground_, point, InstantOf(ground_, point), flight.result);
       flight.burning = false;
       flight.burnt = true;
       break;

@@ -87,6 +87,14 @@ std::vector<StageFigures> FiguresOf(const Vehicle& vehicle) {
       one.thrust_to_weight = thrust_n / (stage.liftoff_mass_kg * kStandardGravity);
     }
     one.burnout_load_g = GreatestLoad_m_s2(burn, empty_kg) / kStandardGravity;
+    if (i == 0 && beside.count > 0) {
+      const MotorBurn boost = BuildBoosterBurn(beside, 1.0, 1.0);
+      const double at_s = boost.duration_s;
+      const double at_kg = empty_kg + burn.Propellant(at_s) + beside.count * beside.dry_mass_kg;
+      const double together_n =
+          burn.vacuum_thrust_n * burn.Fraction(at_s) + boost.vacuum_thrust_n * boost.Fraction(at_s);
+      one.burnout_load_g = std::max(one.burnout_load_g, together_n / (at_kg * kStandardGravity));
+    }
     all.push_back(one);
   }
   return all;

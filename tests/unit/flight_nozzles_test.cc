@@ -339,7 +339,9 @@ TEST(ListedNozzles, MarginsAreOfTheLayout) {
     EXPECT_NEAR(of_ring->frozen.phase_deg, m.frozen.phase_deg, 0.5);
     const auto of_one = std::find_if(one.begin(), one.end(), same);
     EXPECT_EQ(of_one == one.end(), m.axis == kRoll);
-    if (of_one != one.end()) EXPECT_NEAR(of_one->frozen.gain_up_db, m.frozen.gain_up_db, 0.05);
+    if (of_one != one.end()) {
+      EXPECT_NEAR(of_one->frozen.gain_up_db, m.frozen.gain_up_db, 0.05);
+    }
     ++seen;
   }
   EXPECT_GE(seen, 6u);

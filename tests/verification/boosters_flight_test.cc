@@ -109,6 +109,23 @@ TEST(Boosters, MassesAreThoseOfTubesAtTheirPlaces) {
   EXPECT_NEAR(left.transverse_inertia_kg_m2, is.transverse_inertia_kg_m2, 1e-9 * is.transverse_inertia_kg_m2);
 }
 
+// A heavier second stage, or more propellant in the last, is all that a flight with dispersed masses has
+// more.
+TEST(Boosters, StayAsTheyAreWhereMassesAreDispersed) {
+  FlightDefinition definition = Slv4Definition(DISPERSA_CAMPAIGNS);
+  definition.vehicle = Boosted();
+  definition.vehicle.stages[3].jettisoned = {
+      {"fairing", 60.0, 0.2, 2.5, 1.0, 0.97, JettisonTrigger::kAtTime, 150.0}};
+  const FlightModel model(definition);
+  FlightInputs inputs;
+  inputs.dry_mass_factor[1] = 1.1;
+  inputs.propellant_factor[3] = 1.02;
+  const double more_kg =
+      0.1 * DryMass(definition.vehicle, 1) + 0.02 * definition.vehicle.stages[3].propellant_mass_kg;
+  const double nominal_kg = model.nominal_plant().stacks[0].mass.fixed_mass_kg;
+  EXPECT_NEAR(model.PlantFor(inputs).stacks[0].mass.fixed_mass_kg - nominal_kg, more_kg, 1e-8);
+}
+
 // d(I w)/dt = -sum of m_dot l² w, l from C to where each flow leaves: variable_mass_test has the law for one.
 TEST(Boosters, TheirFlowTakesAngularMomentumWithIt) {
   const Vehicle vehicle = Boosted();
