@@ -84,9 +84,11 @@ std::string RefusalOf(const Vehicle& vehicle, const FlightInputs& in, const Laun
              " times its propellant";
     if (!IsInertia(plant.stacks[i])) return "the products of inertia of " + stage + " are no body's";
   }
-  if (ChangesMasses(in))
-    for (const MassElement& element : WithDispersedMasses(vehicle, in).stages.back().structure)
+  if (in.payload_mass_kg != 0.0) {
+    const Vehicle dispersed = WithDispersedMasses(vehicle, in);
+    for (const MassElement& element : dispersed.stages.back().structure)
       if (!(element.fraction >= 0.0)) return "the element '" + element.name + "' weighs less than nothing";
+  }
   const StepUse use = GreatestStepUse(plant, tick_s);
   if (use.fraction <= 1.0) return "";
   return use.part + ": too fast for ticks of " + Text(1e3 * tick_s) + " ms, at most " + Text(use.limit_hz) +
