@@ -86,8 +86,9 @@ std::string RefusalOf(const Vehicle& vehicle, const FlightInputs& in, const Laun
   }
   if (in.payload_mass_kg != 0.0) {
     const Vehicle dispersed = WithDispersedMasses(vehicle, in);
+    const double dry_kg = DryMass(dispersed, static_cast<int>(dispersed.stages.size()) - 1);
     for (const MassElement& element : dispersed.stages.back().structure)
-      if (!(element.fraction >= 0.0)) return "the element '" + element.name + "' weighs less than nothing";
+      if (!(element.fraction * dry_kg >= 0.0)) return "the element '" + element.name + "' weighs less than nothing";
   }
   const StepUse use = GreatestStepUse(plant, tick_s);
   if (use.fraction <= 1.0) return "";
