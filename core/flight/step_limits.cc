@@ -88,9 +88,12 @@ std::string RefusalOf(const Vehicle& vehicle, const FlightInputs& in, const Laun
              " times its propellant";
     if (!IsInertia(plant, i)) return "the products of inertia of " + stage + " are no body's";
   }
-  if (ChangesMasses(in))
-    for (const MassElement& element : WithDispersedMasses(vehicle, in).stages.back().structure)
-      if (!(element.fraction >= 0.0)) return "the element '" + element.name + "' weighs less than nothing";
+  if (in.payload_mass_kg != 0.0) {
+    const Vehicle dispersed = WithDispersedMasses(vehicle, in);
+    const double dry_kg = DryMass(dispersed, static_cast<int>(dispersed.stages.size()) - 1);
+    for (const MassElement& element : dispersed.stages.back().structure)
+      if (!(element.fraction * dry_kg >= 0.0)) return "the element '" + element.name + "' weighs less than nothing";
+  }
   if (plant.boosters && plant.boosters->burn.duration_s >= plant.stacks[0].burn.duration_s)
     return "the boosters burn as long as their stage, or longer";
   const StepUse use = GreatestStepUse(plant, tick_s);

@@ -236,7 +236,7 @@ constexpr BadInput kBadInputs[] = {
      "allowed: bound_percent, or both low_percent or low_factor and high_percent or "
      "high_factor\ncampaign.yaml:10:45: dispersions.drag_coefficient.three_sigma_percent: "
      "unknown key 'three_sigma_percent', allowed: bound_percent, distribution, high_factor, "
-     "high_percent, low_factor, low_percent\n"},
+     "high_percent, low_factor, low_percent, per, stage\n"},
     {"DistributionWithoutUnit", "campaign.yaml", "three_sigma_percent: 6.7", "three_sigma: 6.7",
      "campaign.yaml",
      "campaign.yaml:10:44: dispersions.drag_coefficient.three_sigma: missing unit (did you "

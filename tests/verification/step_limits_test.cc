@@ -42,6 +42,11 @@ Compared Compare(const FlightModel& model, const FlightInputs& inputs, Scheme sc
     for (const char* stage : {"1", "2", "3"}) most = std::max(most, apart(stem + stage + "_deg"));
     return most;
   };
+  const Gimbal& gimbal = model.definition().vehicle.stages[0].gimbal;
+  if (gimbal.rate_limit_rad_s < 15.0 * kRadPerDeg) {
+    EXPECT_NEAR(MetricOf(flown, "deflection_rate_peak_deg_s"), gimbal.rate_limit_rad_s * kDegPerRad, 1e-9)
+        << "the limit was not reached";
+  }
   const Compared c{MetricOf(judged, "pitch_error_rms_deg"),  MetricOf(judged, "pitch_error_peak_deg"),
                    MetricOf(judged, "yaw_error_peak_deg"),   worst("pitch_error_rms_stage"),
                    worst("pitch_error_peak_stage"),          apart("yaw_error_peak_deg")};
