@@ -148,8 +148,10 @@ constexpr BadInput kBadInputs[] = {
     {"ListAndCross", "vehicle.yaml", "pivot_station_m: 3.9, radius_m: 0.3,",
      "pivot_station_m: 3.9, radius_m: 0.3, nozzles: [{name: main, turns_towards_deg: [90, 180]}],",
      "vehicle.yaml",
-     "vehicle.yaml:28:36: stages[1].gimbal.radius_m: unknown key 'radius_m', allowed: bandwidth_hz, bandwidth_rad_s, "
-     "damping_ratio, dead_zone_deg, dead_zone_rad, delay_ticks, friction_deg, friction_rad, limit_deg, limit_rad, "
+     "vehicle.yaml:28:36: stages[1].gimbal.radius_m: unknown key 'radius_m', allowed: bandwidth_hz, "
+     "bandwidth_rad_s, "
+     "damping_ratio, dead_zone_deg, dead_zone_rad, delay_ticks, friction_deg, friction_rad, limit_deg, "
+     "limit_rad, "
      "nozzles, pivot_station_km, pivot_station_m, pivot_station_mm, pivot_station_um, rate_limit_deg_s, "
      "rate_limit_rad_s, resolution_deg, resolution_rad\n"},
     {"TimerOfNoStage", "reference.yaml", "  last_ignition_s: 420.5\n",

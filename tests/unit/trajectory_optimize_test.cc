@@ -131,8 +131,7 @@ TEST(OptimizeTrajectory, SearchesAzimuthsAcrossNorth) {
   input.problem.target_inclination_rad = 92.0 * kRadPerDeg;
   input.problem.weight_inclination_1_rad = 10.0 / kRadPerDeg;
   input.problem.launch_azimuth_rad = {350.0 * kRadPerDeg, 370.0 * kRadPerDeg};
-  const OptimizationResult retrograde =
-      OptimizeTrajectory(input.vehicle, input.problem, FullSearch(input));
+  const OptimizationResult retrograde = OptimizeTrajectory(input.vehicle, input.problem, FullSearch(input));
   ASSERT_TRUE(retrograde.reached) << retrograde.statement;
   // West of north: the orbit goes west, and the Earth's rotation is to be undone.
   EXPECT_GT(retrograde.reference.program.launch_azimuth_rad, 350.0 * kRadPerDeg);
