@@ -471,6 +471,23 @@ StructuralLimits DecodeLimits(const InputNode& node, const std::string& path, Pr
   return limits;
 }
 
+// A motor's table is in a file that could not be read, which has been said: what stands in its place is not the
+// vehicle's.
+bool HasUnreadTable(const InputNode& vehicle) {
+  const InputNode* stages = vehicle.Find("stages");
+  if (stages == nullptr) return false;
+  for (const InputNode& stage : stages->items) {
+    const InputNode* motor = stage.Find("motor");
+    if (motor == nullptr) continue;
+    for (const auto& [map, table] : {std::pair{"thrust_curve", "table"}, {"liquid", "throttle"}}) {
+      const InputNode* within = motor->Find(map);
+      const InputNode* found = within == nullptr ? nullptr : within->Find(table);
+      if (found != nullptr && found->file == nullptr) return true;
+    }
+  }
+  return false;
+}
+
 void CheckPlausibility(const Vehicle& vehicle, const InputNode& node, const std::string& path,
                        ProblemList& problems, ProblemList* warnings) {
   std::vector<PlausibilityFinding> impossible, unusual;
@@ -544,6 +561,7 @@ Vehicle DecodeVehicle(const InputNode& node, const std::string& path, std::vecto
                                        "{inertial_unit: {station_m: x}}");
     }
   }
+  if (HasUnreadTable(node)) return vehicle;
   if (problems.size() == before) AddStructProblems(Problems(vehicle), node, path, problems);
   if (problems.size() == before) CheckPlausibility(vehicle, node, path, problems, warnings);
   return vehicle;

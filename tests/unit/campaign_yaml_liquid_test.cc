@@ -101,8 +101,8 @@ INSTANTIATE_TEST_SUITE_P(
                   "vehicle.yaml:11:24: stages[0].motor.thrust_kn: 'thrust_kn' and 'liquid' are both given, and the "
                   "engine has them inside, allowed: either liquid, or what a solid motor has\n"},
         BadLiquid{"NoImpulse", "motor: {liquid: {thrust_kn: 75}}", kTanks,
-                  "vehicle.yaml:11:21: stages[0].motor.liquid: missing key 'specific_impulse_s', allowed: a number above "
-                  "0\n"},
+                  "vehicle.yaml:11:21: stages[0].motor.liquid: missing key 'specific_impulse_s' or "
+                  "'specific_impulse_ms', allowed: a number above 0\n"},
         BadLiquid{"TooMuchThrottle", With("throttle: {time_s: [0, 9], level_percent: [100, 120]}"), kTanks,
                   "vehicle.yaml:11:110: stages[0].motor.liquid.throttle.level_percent[1]: 120 is out of range, allowed: a "
                   "number from 0 to 100\n"},
@@ -122,8 +122,8 @@ INSTANTIATE_TEST_SUITE_P(
                   "vehicle.yaml:11:76: stages[0].motor.liquid.cut_off.at: 'will' is not a choice, allowed: one of depletion, "
                   "time\n"},
         BadLiquid{"CutOffWithoutTime", With("cut_off: {at: time}"), kTanks,
-                  "vehicle.yaml:11:71: stages[0].motor.liquid.cut_off: missing key 'after_s', allowed: a number above "
-                  "0\n"},
+                  "vehicle.yaml:11:71: stages[0].motor.liquid.cut_off: missing key 'after_s' or 'after_ms', allowed: a "
+                  "number above 0\n"},
         BadLiquid{"AllResidual", With("residual_mass_kg: 1500"), kTanks,
                   "vehicle.yaml:11:80: stages[0].motor.liquid.residual_mass_kg: leaves nothing to burn, allowed: 0 to "
                   "below propellant_mass_kg\n"},
@@ -153,7 +153,9 @@ TEST(LiquidFile, UnusualLiquidsAreWarnedAbout) {
             "vehicle.yaml:12:191: stages[0].tanks[1].density_kg_m3: is 2810 kg/m3, usual: 60 to 1700 kg/m3 (liquid "
             "hydrogen 71, kerosene 810, oxygen 1141, nitrogen tetroxide 1443 kg/m3)\n"
             "vehicle.yaml:12:171: stages[0].tanks[1].propellant_mass_kg: fills of the tank 0.265, usual: 0.5 to 0.99 (a "
-            "few per cent of a tank are left to the gas that presses the liquid out)\n");
+            "few per cent of a tank are left to the gas that presses the liquid out)\n"
+            "vehicle.yaml:25:12: stages[1].grain: implies a propellant density of 589.5 kg/m3, usual: 1500 to 1950 kg/m3 "
+            "(solid propellants: Sutton and Biblarz, table 12-1)\n");
 }
 
 }  // namespace

@@ -15,9 +15,9 @@ constexpr char kMotor[] =
 constexpr char kEng[] =
     "; a made-up motor\n"
     "TRIAL-1 98 640 5-10 1.20 2.10 NOBODY\n"
-    "   0.05 900.0\n"
-    "   0.50 1000\n"
-    "   2.00 800\n"
+    "   0.05 90000.0\n"
+    "   0.50 100000\n"
+    "   2.00 80000\n"
     "   2.60 0.0\n"
     ";\n";
 
@@ -63,7 +63,7 @@ TEST(ThrustCurveFile, OfAnEngFileBeginsAtIgnition) {
     for (const char c : std::string(kEng)) text += c == '\n' ? line_end : std::string(1, c);
     files.Write("curve.ENG", text);
     ExpectCurve(MotorOf(files, "{thrust_curve: {reference: vacuum, table: curve.ENG}}"),
-                {0.0, 0.05, 0.5, 2.0, 2.6}, {0.0, 900.0, 1000.0, 800.0, 0.0});
+                {0.0, 0.05, 0.5, 2.0, 2.6}, {0.0, 90e3, 100e3, 80e3, 0.0});
   }
 }
 
@@ -181,7 +181,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadCurve{
             "ThreeNumbers", kEngMotor, "curve.eng", Eng("0.50 1000", "0.50 1000 7"),
             "curve.eng:4:4: the line has 3 fields in place of 2, allowed: a time in s and a thrust in N\n"},
-        BadCurve{"NegativeThrust", kEngMotor, "curve.eng", Eng(" 800", " -8"),
+        BadCurve{"NegativeThrust", kEngMotor, "curve.eng", Eng(" 80000", " -8"),
                  "curve.eng:5:9: the thrust is '-8', allowed: a number not below 0\n"},
         BadCurve{
             "TimeStandsStill", kEngMotor, "curve.eng", Eng("2.00", "0.50"),
