@@ -27,7 +27,8 @@ void Take(const std::string& part, double rad_s, double tick_s, double limit_rad
     greatest = {fraction, part + " (" + Text(rad_s / kTwoPi) + " Hz)", limit_rad / tick_s / kTwoPi};
 }
 
-// f(mode, its highest frequency over the burn in either plane, with the flight's factor) of every mode that flies.
+// f(mode, its highest frequency over the burn in either plane, with the flight's factor) of every mode that
+// flies.
 template <typename F>
 void EachMode(const LauncherPlant& plant, std::size_t stack, F f) {
   const BendingTable* table = plant.stacks[stack].bending.get();
@@ -36,8 +37,8 @@ void EachMode(const LauncherPlant& plant, std::size_t stack, F f) {
     double highest_rad_s = 0.0;
     for (int plane = 0; plane < table->planes; ++plane)
       for (std::size_t level = 0; level < table->propellant_kg.size(); ++level)
-        highest_rad_s = std::max(
-            highest_rad_s, table->Row(plane, static_cast<int>(level), mode)[BendingTable::kFrequency]);
+        highest_rad_s = std::max(highest_rad_s,
+                                 table->Row(plane, static_cast<int>(level), mode)[BendingTable::kFrequency]);
     f(mode, plant.bending.frequency[static_cast<std::size_t>(mode)] * highest_rad_s);
   }
 }
@@ -92,7 +93,8 @@ std::string RefusalOf(const Vehicle& vehicle, const FlightInputs& in, const Laun
     const Vehicle dispersed = WithDispersedMasses(vehicle, in);
     const double dry_kg = DryMass(dispersed, static_cast<int>(dispersed.stages.size()) - 1);
     for (const MassElement& element : dispersed.stages.back().structure)
-      if (!(element.fraction * dry_kg >= 0.0)) return "the element '" + element.name + "' weighs less than nothing";
+      if (!(element.fraction * dry_kg >= 0.0))
+        return "the element '" + element.name + "' weighs less than nothing";
   }
   if (plant.boosters && plant.boosters->burn.duration_s >= plant.stacks[0].burn.duration_s)
     return "the boosters burn as long as their stage, or longer";

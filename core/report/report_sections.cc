@@ -227,9 +227,10 @@ std::string OutcomesSection(const CampaignSummary& summary) {
                PercentText(share)});
   }
   if (summary.near_step_limit > 0)
-    table.Row({"near the limit of the integration's step, however it ended",
-               std::to_string(summary.near_step_limit),
-               PercentText(static_cast<double>(summary.near_step_limit) / static_cast<double>(summary.flown))});
+    table.Row(
+        {"near the limit of the integration's step, however it ended",
+         std::to_string(summary.near_step_limit),
+         PercentText(static_cast<double>(summary.near_step_limit) / static_cast<double>(summary.flown))});
   html += table.Html("narrow");
   html += LimitsTable(summary);
   if (!summary.lost_flights.empty()) {

@@ -68,7 +68,8 @@ constexpr BadInput kBadInputs[] = {
      "campaign.yaml:8:28: dispersions.turbulence.exceedance: 0.5 is out of range, allowed: a number from "
      "1e-06 to 0.2\n"},
     {"ActuatorTooFastForTheTick", "vehicle.yaml", "bandwidth_rad_s: 25", "bandwidth_hz: 200", "campaign.yaml",
-     "vehicle.yaml:16:101: stages[0].gimbal.bandwidth_hz: is too fast for the autopilot's ticks of 10 ms, which are "
+     "vehicle.yaml:16:101: stages[0].gimbal.bandwidth_hz: is too fast for the autopilot's ticks of 10 ms, "
+     "which are "
      "the integration's steps, allowed: at most 1000 rad/s (159.2 Hz), or shorter ticks\n"},
     {"GuidanceOfNoKind", "campaign.yaml", "name: trial", "name: trial\nguidance: {mode: closed}",
      "campaign.yaml",

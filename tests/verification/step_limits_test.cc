@@ -1,5 +1,5 @@
-// What the engine's step resolves: whole closed-loop flights with ever faster actuators against CVODE, which steps as
-// short as it has to; and what happens beyond the limits.
+// What the engine's step resolves: whole closed-loop flights with ever faster actuators against CVODE, which
+// steps as short as it has to; and what happens beyond the limits.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -47,9 +47,9 @@ Compared Compare(const FlightModel& model, const FlightInputs& inputs, Scheme sc
     EXPECT_NEAR(MetricOf(flown, "deflection_rate_peak_deg_s"), gimbal.rate_limit_rad_s * kDegPerRad, 1e-9)
         << "the limit was not reached";
   }
-  const Compared c{MetricOf(judged, "pitch_error_rms_deg"),  MetricOf(judged, "pitch_error_peak_deg"),
-                   MetricOf(judged, "yaw_error_peak_deg"),   worst("pitch_error_rms_stage"),
-                   worst("pitch_error_peak_stage"),          apart("yaw_error_peak_deg")};
+  const Compared c{MetricOf(judged, "pitch_error_rms_deg"), MetricOf(judged, "pitch_error_peak_deg"),
+                   MetricOf(judged, "yaw_error_peak_deg"),  worst("pitch_error_rms_stage"),
+                   worst("pitch_error_peak_stage"),         apart("yaw_error_peak_deg")};
   std::printf("%s: pitch RMS %.4f deg, %.1e apart; peak %.4f, %.1e; yaw peak %.4f, %.1e\n", what, c.rms_deg,
               c.rms_apart_deg, c.peak_deg, c.peak_apart_deg, c.yaw_peak_deg, c.yaw_peak_apart_deg);
   return c;
@@ -88,7 +88,8 @@ TEST(StepLimits, ADispersedActuatorBeyondIsRefusedAndSaysSo) {
   FlightInputs inputs;
   inputs.actuator_bandwidth_factor = 1.5;
   EXPECT_EQ(Fly(model, inputs).outcome, Outcome::kCompleted);
-  EXPECT_NEAR(MetricOf(Fly(model, inputs), "step_limit_fraction"), 150.0 * kTwoPi * 0.01 / kActuatorLimit_rad, 1e-12);
+  EXPECT_NEAR(MetricOf(Fly(model, inputs), "step_limit_fraction"), 150.0 * kTwoPi * 0.01 / kActuatorLimit_rad,
+              1e-12);
   inputs.actuator_bandwidth_factor = 1.0;
   inputs.stack_actuator_bandwidth_factor[2] = 2.0;
   const FlightResult refused = Fly(model, inputs);
