@@ -32,7 +32,7 @@ class Checker {
 };
 
 void CheckTube(const std::string& path, double top, double bottom, double outer, double inner,
-               double stack_bottom, Checker& check) {
+               double stack_bottom, Checker& check, const std::string& part = "stage") {
   check.Require(bottom > top, path + ".bottom_station_m", "is not aft of top_station_m",
                 "a station larger than top_station_m");
   check.Positive(outer, path + ".outer_diameter_m");
@@ -41,7 +41,7 @@ void CheckTube(const std::string& path, double top, double bottom, double outer,
                 "less than outer_diameter_m");
   check.NotNegative(top, path + ".top_station_m");
   check.Require(bottom <= stack_bottom, path + ".bottom_station_m",
-                "lies aft of the stage's bottom_station_m", "at most bottom_station_m of the stage");
+                "lies aft of the " + part + "'s bottom_station_m", "at most bottom_station_m of the " + part);
 }
 
 // Engine and tanks of a liquid stage.
@@ -274,7 +274,7 @@ void CheckBoosters(const Vehicle& vehicle, Checker& check) {
   check.Require(b.bottom_station_m > b.top_station_m, "boosters.bottom_station_m", "is not aft of top_station_m",
                 "a station larger than top_station_m");
   CheckTube("boosters.grain", b.grain.top_station_m, b.grain.bottom_station_m, b.grain.outer_diameter_m,
-            b.grain.inner_diameter_m, b.bottom_station_m, check);
+            b.grain.inner_diameter_m, b.bottom_station_m, check, "booster");
   check.Require(0.5 * (b.motor.ignition_rise_s + b.motor.tail_off_s) < b.motor.burning_time_s,
                 "boosters.motor.tail_off_s", "leaves no time at full thrust",
                 "ramps that are together shorter than twice burning_time_s");

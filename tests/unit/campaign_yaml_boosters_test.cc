@@ -51,13 +51,31 @@ TEST_P(BadBoostersTest, AreReportedInFull) {
 }
 
 constexpr BadInput kBadBoosters[] = {
-    {"One", "", "count: 2", "count: 1", "?"},
-    {"Inside", "", "radius_m: 0.7", "radius_m: 0.4", "?"},
-    {"Longer", "", "burning_time_s: 30", "burning_time_s: 61", "?"},
-    {"Liquid", "", "motor: {thrust_kn: 5, burning_time_s: 30}", "motor: {liquid: {thrust_kn: 5}}", "?"},
-    {"GrainTooThick", "", "outer_diameter_m: 0.28", "outer_diameter_m: 0.31", "?"},
-    {"GrainOutside", "", "bottom_station_m: 8.9", "bottom_station_m: 9.9", "?"},
-    {"TooHeavy", "", "propellant_mass_kg: 60", "propellant_mass_kg: 600", "?"},
+    {"One", "", "count: 2", "count: 1",
+     "vehicle.yaml:34:19: boosters.count: 1 is out of range, allowed: a whole number from 2 to 8\n"},
+    {"Inside", "", "radius_m: 0.7", "radius_m: 0.4",
+     "vehicle.yaml:34:73: boosters.radius_m: puts their axes inside the stage that they stand beside, "
+     "allowed: at least "
+     "half its diameter_m, 0.500000\n"},
+    {"Longer", "", "burning_time_s: 30", "burning_time_s: 61",
+     "vehicle.yaml:34:191: boosters.motor: burns, and the boosters leave, after 61.500000 s, the stage burns "
+     "60.300000 s, "
+     "allowed: boosters that leave while their stage burns\n"},
+    {"Liquid", "", "motor: {thrust_kn: 5, burning_time_s: 30}", "motor: {liquid: {thrust_kn: 5}}",
+     "vehicle.yaml:34:200: boosters.motor.liquid: boosters are solid, allowed: thrust_* with burning_time_*, "
+     "or "
+     "thrust_curve\n"},
+    {"GrainTooThick", "", "outer_diameter_m: 0.28", "outer_diameter_m: 0.31",
+     "vehicle.yaml:34:294: boosters.grain.outer_diameter_m: is larger than the booster, allowed: at most "
+     "diameter_m\n"},
+    {"GrainOutside", "", "bottom_station_m: 8.9", "bottom_station_m: 9.9",
+     "vehicle.yaml:34:271: boosters.grain.bottom_station_m: lies aft of the booster's bottom_station_m, "
+     "allowed: at most "
+     "bottom_station_m of the booster\n"},
+    {"TooHeavy", "", "propellant_mass_kg: 60", "propellant_mass_kg: 600",
+     "vehicle.yaml:8:25: stages[0].propellant_mass_kg: leaves the stage no dry mass: lift-off mass less what "
+     "is above it "
+     "and its propellant is -740.000000 kg, allowed: less propellant than the stage's own mass\n"},
 };
 INSTANTIATE_TEST_SUITE_P(BoostersFile, BadBoostersTest, testing::ValuesIn(kBadBoosters),
                          [](const auto& each) { return std::string(each.param.name); });

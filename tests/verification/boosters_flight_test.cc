@@ -9,6 +9,7 @@
 #include "core/dynamics/integrator.h"
 #include "core/dynamics/jettison.h"
 #include "core/flight/flight.h"
+#include "core/flight/tick_sample.h"
 #include "core/math/constants.h"
 #include "core/trajectory/ascent.h"
 #include "core/vehicle/vehicle_figures.h"

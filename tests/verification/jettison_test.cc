@@ -68,7 +68,7 @@ TEST(Jettison, MovesTheStateToTheCentreOfGravityOfWhatIsLeft) {
   s.q_IB = FromRotationVector(Vector3(0.3, -0.7, 1.1));
   s.w_IB_B = {0.01, -0.03, 0.02};
   const double propellant_kg = 1000.0;
-  const RigidBodyState after = AfterJettison(plant, 1, 0u, 1u, propellant_kg, s);
+  const RigidBodyState after = AfterJettison(plant, 1, 0u, 1u, propellant_kg, 0.0, s);
   const double step_m = MassOf(plant, 1, 0u).At(propellant_kg).cg_station_m -
                         MassOf(plant, 1, 1u).At(propellant_kg).cg_station_m;
   ASSERT_LT(step_m, -0.05);  // aft
