@@ -323,7 +323,8 @@ TEST(MetricsRecorder, EveryMetricOfAMadeUpFlight) {
       {"guidance_converged", nan},
       {"guidance_ignition_shift_s", nan},
       {"guidance_postponement_s", nan},
-      {"guidance_excess_velocity_m_s", nan}};
+      {"guidance_excess_velocity_m_s", nan},
+      {"step_limit_fraction", 0.0}};
 
   const std::vector<double> values = flight.recorder.Finish();
   ASSERT_EQ(values.size(), MetricNames().size());

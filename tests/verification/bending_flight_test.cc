@@ -371,7 +371,10 @@ TEST(BendingFlight, MarginsMeasuredInFlightAreTheComputedOnes) {
 // As stiffness grows the flight becomes the rigid one, in proportion to the compliance.
 TEST(BendingFlight, AStiffBodyIsARigidOne) {
   FlightDefinition definition = Slv4Definition(DISPERSA_CAMPAIGNS, "flexible");
-  definition.vehicle = Flexible();
+  // One mode, and ticks of half, whose steps resolve 125 Hz; the fourth stage is rigid.
+  definition.vehicle = Flexible(1);
+  definition.autopilot.tick_s *= 0.5;
+  for (Stage& stage : definition.vehicle.stages) stage.gimbal.delay_ticks *= 2;
   FlightInputs inputs = Table3Inputs();
   FlightDefinition rigid = definition;
   rigid.vehicle.structure_beam->flown_modes = 0;
@@ -379,7 +382,7 @@ TEST(BendingFlight, AStiffBodyIsARigidOne) {
   ASSERT_EQ(exact.outcome, Outcome::kCompleted);
   const FlightModel model(definition);
   double last[3] = {};
-  for (const double factor : {4.0, 8.0, 16.0}) {
+  for (const double factor : {1.0, 2.0, 4.0}) {
     inputs.bending_frequency_factor.fill(factor);
     const FlightResult stiff = Fly(model, inputs);
     ASSERT_EQ(stiff.outcome, Outcome::kCompleted);
