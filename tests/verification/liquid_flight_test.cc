@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <memory>
 #include <vector>
 
-#include "core/flight/simpson_step.h"
 #include "core/trajectory/ascent.h"
+#include "tests/burn_in_space.h"
 #include "tests/liquid_stage.h"
 #include "tests/slv4_flight.h"
 
@@ -20,44 +19,6 @@ Vehicle LiquidVehicle() {
   Vehicle vehicle = Slv4Definition(DISPERSA_CAMPAIGNS).vehicle;
   MakeLiquid(vehicle.stages[0]);
   return vehicle;
-}
-
-// The first stack alone in empty space, from rest along its axis, in steps that end on the corners of the throttle.
-double SpeedGained(const Vehicle& vehicle, double thrust_factor, double flow_factor, double step_s) {
-  LauncherPlant plant = BuildNominalPlant(vehicle);
-  plant.stacks[0].burn = BuildBurn(vehicle.stages[0], thrust_factor, flow_factor);
-  plant.environment.earth = SphericalEarth(6371000.0, false);
-  plant.environment.earth.mu_m3_s2 = 0.0;
-  const MotorBurn& burn = plant.stacks[0].burn;
-  std::vector<double> stops_s = burn.Kinks(0.0);
-  for (int i = 1; i * step_s < burn.duration_s; ++i) stops_s.push_back(i * step_s);
-  stops_s.push_back(burn.duration_s);
-  std::sort(stops_s.begin(), stops_s.end());
-  const FlightWeather calm;
-  auto step = std::make_unique<lanes::StepState<double>>();
-  *step = {};
-  step->Configure(plant.environment.earth, step_s);
-  step->StartFlight(0);
-  lanes::SetLane(step->plant.weather, 0, calm);
-  lanes::SetLane(step->plant, 0, plant, 0);
-  lanes::SetLane(step->drives, 0, plant.stacks[0].gimbal, -1);
-  step->SetTickTransition(0);
-  step->phase.burning = true;
-  double y[kLauncherSize] = {};
-  RigidBodyState state;
-  state.p_EoC_I = Vector3(6371000.0 + 2000e3, 0.0, 0.0);  // above the atmosphere
-  WriteState(state, y);
-  step->WriteLane(0, y);
-  double from_s = 0.0;
-  for (const double to_s : stops_s) {
-    if (!(to_s > from_s)) continue;
-    step->MarkMoved(0);
-    step->EvaluateStart(from_s);
-    EXPECT_TRUE(step->Step(true, true, from_s, to_s));
-    from_s = to_s;
-  }
-  step->ReadLane(0, y);
-  return ReadState(y).v_IC_I.norm();
 }
 
 // c ln(m0 / m1), of all that flows and of nothing else: throttle and cut-off decide m1, factors c.

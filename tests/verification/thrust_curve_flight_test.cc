@@ -6,10 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <memory>
 #include <vector>
 
-#include "core/flight/simpson_step.h"
+#include "tests/burn_in_space.h"
 #include "tests/slv4_flight.h"
 
 namespace dispersa {
@@ -89,48 +88,6 @@ TEST(ThrustCurveFlight, KeepsTheStepsOrderWithDispersedRates) {
   ExpectOrder(inputs);
 }
 
-// The first stack burns alone in empty space, from rest along its axis. Steps of `step_s` end on the corners
-// too, unless they are to be passed over.
-double SpeedGained(const Vehicle& vehicle, double burn_rate, double step_s, bool stops_at_corners) {
-  LauncherPlant plant = BuildNominalPlant(vehicle);
-  plant.stacks[0].burn = BuildBurn(vehicle.stages[0], burn_rate, burn_rate);
-  plant.environment.earth = SphericalEarth(6371000.0, false);
-  plant.environment.earth.mu_m3_s2 = 0.0;
-  const MotorBurn& burn = plant.stacks[0].burn;
-  std::vector<double> stops_s;
-  for (int i = 1; i * step_s < burn.duration_s; ++i) stops_s.push_back(i * step_s);
-  if (stops_at_corners)
-    for (const double kink_s : burn.Kinks(0.0)) stops_s.push_back(kink_s);
-  stops_s.push_back(burn.duration_s);
-  std::sort(stops_s.begin(), stops_s.end());
-
-  const FlightWeather calm;
-  auto step = std::make_unique<lanes::StepState<double>>();
-  *step = {};
-  step->Configure(plant.environment.earth, step_s);
-  step->StartFlight(0);
-  lanes::SetLane(step->plant.weather, 0, calm);
-  lanes::SetLane(step->plant, 0, plant, 0);
-  lanes::SetLane(step->drives, 0, plant.stacks[0].gimbal, -1);
-  step->SetTickTransition(0);
-  step->phase.burning = true;
-  double y[kLauncherSize] = {};
-  RigidBodyState state;
-  state.p_EoC_I = Vector3(6371000.0 + 2000e3, 0.0, 0.0);  // above the atmosphere
-  WriteState(state, y);
-  step->WriteLane(0, y);
-  double from_s = 0.0;
-  for (const double to_s : stops_s) {
-    if (!(to_s > from_s)) continue;
-    step->MarkMoved(0);
-    step->EvaluateStart(from_s);
-    EXPECT_TRUE(step->Step(true, true, from_s, to_s));
-    from_s = to_s;
-  }
-  step->ReadLane(0, y);
-  return ReadState(y).v_IC_I.norm();
-}
-
 TEST(ThrustCurveFlight, GainsTheRocketEquationsSpeed) {
   const Vehicle vehicle = CurvedDefinition().vehicle;
   const Stage& stage = vehicle.stages[0];
@@ -139,9 +96,9 @@ TEST(ThrustCurveFlight, GainsTheRocketEquationsSpeed) {
   const double full_kg = mass.At(stage.propellant_mass_kg).mass_kg, empty_kg = mass.At(0.0).mass_kg;
   const double exact_m_s = exhaust_m_s * std::log(full_kg / empty_kg);
   for (const double rate : {1.0, 1.03}) {
-    const double coarse = std::fabs(SpeedGained(vehicle, rate, 0.4, true) - exact_m_s);
-    const double fine = std::fabs(SpeedGained(vehicle, rate, 0.2, true) - exact_m_s);
-    const double across = std::fabs(SpeedGained(vehicle, rate, 0.2, false) - exact_m_s);
+    const double coarse = std::fabs(SpeedGained(vehicle, rate, rate, 0.4, true) - exact_m_s);
+    const double fine = std::fabs(SpeedGained(vehicle, rate, rate, 0.2, true) - exact_m_s);
+    const double across = std::fabs(SpeedGained(vehicle, rate, rate, 0.2, false) - exact_m_s);
     std::printf("burn rate %.2f: %.2e m/s in steps of 0.4 s, %.2e of 0.2 s, %.2e across the corners\n", rate,
                 coarse, fine, across);
     EXPECT_LT(fine, std::max(coarse / 12.0, 1e-9));  // order 4 gives 16
@@ -183,8 +140,8 @@ TEST(ThrustCurveFlight, GainsTheIntegralOfThrustOverMassWithItsOwnFlow) {
       left_kg -= length_s * (flow + 0.5 * flow_rise * length_s);
     }
     EXPECT_NEAR(left_kg, 0.0, 1e-8);
-    const double coarse = std::fabs(SpeedGained(vehicle, rate, 0.4, true) - exact_m_s);
-    const double fine = std::fabs(SpeedGained(vehicle, rate, 0.2, true) - exact_m_s);
+    const double coarse = std::fabs(SpeedGained(vehicle, rate, rate, 0.4, true) - exact_m_s);
+    const double fine = std::fabs(SpeedGained(vehicle, rate, rate, 0.2, true) - exact_m_s);
     std::printf("own flow, burn rate %.2f: %.2e m/s in steps of 0.4 s, %.2e of 0.2 s\n", rate, coarse, fine);
     EXPECT_LT(fine, std::max(coarse / 12.0, 1e-9));
     EXPECT_LT(fine, 1e-5);

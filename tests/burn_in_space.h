@@ -1,0 +1,57 @@
+// The first stack burns alone in empty space, by the engine's own step.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include "core/flight/flight_model.h"
+#include "core/flight/simpson_step.h"
+
+namespace dispersa {
+
+/// What it gains from rest along its axis, m/s, in steps of `step_s` that end on the corners of the burn too,
+/// unless they are to be passed over.
+inline double SpeedGained(const Vehicle& vehicle, double thrust_factor, double flow_factor, double step_s,
+                          bool stops_at_corners = true) {
+  LauncherPlant plant = BuildNominalPlant(vehicle);
+  plant.stacks[0].burn = BuildBurn(vehicle.stages[0], thrust_factor, flow_factor);
+  plant.environment.earth = SphericalEarth(6371000.0, false);
+  plant.environment.earth.mu_m3_s2 = 0.0;
+  const MotorBurn& burn = plant.stacks[0].burn;
+  std::vector<double> stops_s;
+  if (stops_at_corners) stops_s = burn.Kinks(0.0);
+  for (int i = 1; i * step_s < burn.duration_s; ++i) stops_s.push_back(i * step_s);
+  stops_s.push_back(burn.duration_s);
+  std::sort(stops_s.begin(), stops_s.end());
+
+  const FlightWeather calm;
+  auto step = std::make_unique<lanes::StepState<double>>();
+  *step = {};
+  step->Configure(plant.environment.earth, step_s);
+  step->StartFlight(0);
+  lanes::SetLane(step->plant.weather, 0, calm);
+  lanes::SetLane(step->plant, 0, plant, 0);
+  lanes::SetLane(step->drives, 0, plant.stacks[0].gimbal, -1);
+  step->SetTickTransition(0);
+  step->phase.burning = true;
+  double y[kLauncherSize] = {};
+  RigidBodyState state;
+  state.p_EoC_I = Vector3(6371000.0 + 2000e3, 0.0, 0.0);  // above the atmosphere
+  WriteState(state, y);
+  step->WriteLane(0, y);
+  double from_s = 0.0;
+  for (const double to_s : stops_s) {
+    if (!(to_s > from_s)) continue;
+    step->MarkMoved(0);
+    step->EvaluateStart(from_s);
+    EXPECT_TRUE(step->Step(true, true, from_s, to_s));
+    from_s = to_s;
+  }
+  step->ReadLane(0, y);
+  return ReadState(y).v_IC_I.norm();
+}
+
+}  // namespace dispersa
