@@ -79,20 +79,25 @@ FlightDefinition DefinitionOf(const Campaign& campaign) {
   definition.wind_table = campaign.wind_table;
   definition.wind_statistics = campaign.wind_statistics;
   definition.noise_seed = campaign.sampling.seed;
-  if (Jettisons(campaign.vehicle)) definition.jettison_s = FlyReference(campaign).jettison_s;
+  if (Jettisons(campaign.vehicle) || CutsOffAtVelocity(campaign.vehicle)) {
+    const AscentResult ascent = FlyReference(campaign);
+    definition.jettison_s = ascent.jettison_s;
+    definition.cut_off_s = ascent.cut_off_s;
+  }
   if (MeetsTurbulence(campaign))
     definition.turbulence_path = std::make_shared<const TurbulencePath>(ClimbOf(campaign));
   return definition;
 }
 
-CaseResult ResultOf(std::uint64_t case_index, const FlightInputs& inputs, FlightResult flight) {
+CaseResult ResultOf(const FlightModel& model, std::uint64_t case_index, const FlightInputs& inputs,
+                    FlightResult flight) {
   CaseResult result;
   result.case_index = case_index;
   result.outcome = flight.outcome;
   result.end_time_s = flight.end_time_s;
   result.end_stage = flight.end_stage;
   result.reason = std::move(flight.reason);
-  result.inputs = InputValues(inputs);
+  result.inputs = InputValues(inputs, model.definition().vehicle.stages.size());
   result.metrics = std::move(flight.metrics);
   result.digest = flight.digest;
   return result;
@@ -117,7 +122,7 @@ CaseResult CampaignFlights::Fly(const FlightInputs& inputs, std::uint64_t case_i
   options.scheme = scheme;
   options.case_index = case_index;
   options.history = history;
-  return ResultOf(case_index, inputs, dispersa::Fly(*model_, inputs, options));
+  return ResultOf(*model_, case_index, inputs, dispersa::Fly(*model_, inputs, options));
 }
 
 namespace {
@@ -139,7 +144,7 @@ class FlyingCases : public FlightQueue {
   }
   void Done(FlightRecord* record) override {
     const auto ended = flying_.extract(record);
-    cases_.Done(ResultOf(record->options.case_index, record->inputs, record->Result()));
+    cases_.Done(ResultOf(flights_.model(), record->options.case_index, record->inputs, record->Result()));
   }
 
  private:
@@ -186,7 +191,8 @@ class FlyingOrders : public FlightQueue {
   }
   void Done(FlightRecord* record) override {
     const auto ended = flying_.extract(record);
-    CaseResult result = ResultOf(record->options.case_index, record->inputs, record->Result());
+    CaseResult result =
+        ResultOf(shared_.flights.model(), record->options.case_index, record->inputs, record->Result());
     const std::lock_guard lock(shared_.mutex);
     if (shared_.problem) return;
     try {

@@ -17,7 +17,7 @@ struct CaseResult {
   int end_stage = 0;            ///< 1-based stage burning, or last burnt, at the end
   std::string reason;           ///< one sentence; empty when completed
   std::vector<double> inputs;   ///< as applied, in the order of InputNames()
-  std::vector<double> metrics;  ///< in the order of MetricNames(); NaN = undefined
+  std::vector<double> metrics;  ///< of the vehicle, in the order of MetricNames(); NaN = undefined
   Digest digest;
 };
 

@@ -73,12 +73,13 @@ void DecodeListTable(const InputNode& table, const std::string& path, Campaign& 
                      ProblemList& problems) {
   if (table.file == nullptr) return;  // already reported
   std::vector<std::string> names;
-  for (const InputColumn& column : InputColumns()) names.push_back(column.name);
+  const std::size_t count = InputCount(campaign.vehicle.stages.size());
+  for (std::size_t i = 0; i < count; ++i) names.push_back(InputColumns()[i].name);
   MapReader map(table, path, problems);
   std::size_t length = 0;
   for (const InputMember& member : table.members) {
     const int input = FindInput(member.key);
-    if (input < 0) {
+    if (input < 0 || static_cast<std::size_t>(input) >= count) {
       map.Ignore(member.key);
       InputNode at = MapAt(member.value);
       AddProblem(problems, at, map.PathOf(member.key),
@@ -391,6 +392,11 @@ void RequireLimitsKept(const VerdictPlan& plan, std::vector<Requirement>& requir
   requirements.push_back(std::move(kept));
 }
 
+bool Restarts(const Vehicle& vehicle) {
+  return std::any_of(vehicle.stages.begin(), vehicle.stages.end(),
+                     [](const Stage& stage) { return stage.restarts; });
+}
+
 GuidanceConfig DecodeGuidance(const InputNode& node, const Vehicle& vehicle, ProblemList& problems) {
   MapReader map(node, "guidance", problems);
   GuidanceConfig guidance;
@@ -414,6 +420,12 @@ GuidanceConfig DecodeGuidance(const InputNode& node, const Vehicle& vehicle, Pro
     AddProblem(problems, mode != nullptr ? *mode : node, map.PathOf("mode"),
                "the vehicle '" + vehicle.name + "' has no last stage whose ignition guidance could move",
                "open_loop, or a vehicle whose last of two stages or more has ignition: {trigger: timer}");
+  } else if (guidance.closed_loop && (CutsOffAtVelocity(vehicle) || Restarts(vehicle))) {
+    const InputNode* mode = node.Find("mode");
+    AddProblem(problems, mode != nullptr ? *mode : node, map.PathOf("mode"),
+               "guidance knows burns that end by themselves, and an engine of '" + vehicle.name +
+                   "' is cut off at a velocity or burns again",
+               "open_loop, or engines that end by time or depletion");
   } else if (guidance.closed_loop && vehicle.boosters.count > 0 && vehicle.stages.size() < 3) {
     const InputNode* mode = node.Find("mode");
     AddProblem(problems, mode != nullptr ? *mode : node, map.PathOf("mode"),
@@ -421,6 +433,18 @@ GuidanceConfig DecodeGuidance(const InputNode& node, const Vehicle& vehicle, Pro
                "open_loop, or a vehicle of three stages or more");
   }
   return guidance;
+}
+
+// Only stages that there are, above the first, are steered.
+template <class T>
+void CheckSteering(const Vehicle& vehicle, const std::array<T, kMaxStages>& steering, const InputNode& node,
+                   const std::string& path, ProblemList& problems) {
+  for (std::size_t stage = vehicle.stages.size(); stage < kMaxStages; ++stage)
+    if (!steering[stage].empty())
+      AddProblem(problems, node, path,
+                 "stage" + std::to_string(stage + 1) + "_incidence_* is given, and the vehicle has " +
+                     std::to_string(vehicle.stages.size()) + " stages",
+                 "incidence of stages that there are");
 }
 
 // Stages before the last that a timer ignites, and only they, have a coast of their own.
@@ -495,6 +519,12 @@ DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vect
     CheckTimers(
         campaign.vehicle, *reference, PathOfPart(*reference, root, "reference"), "ignition_s",
         [&](std::size_t stage) { return campaign.reference.earlier_ignition_s[stage] > 0.0; }, problems);
+
+  if (problems.empty() && optimize != nullptr)
+    CheckSteering(campaign.vehicle, decoded.optimize->steering, *optimize, "optimize.bounds", problems);
+  else if (problems.empty() && reference != nullptr)
+    CheckSteering(campaign.vehicle, campaign.reference.program.steering, *reference,
+                  PathOfPart(*reference, root, "reference"), problems);
 
   const bool flies = use != CampaignUse::kOptimize && optimize == nullptr;
   if (const InputNode* autopilot =

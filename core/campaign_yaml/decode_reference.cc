@@ -40,6 +40,11 @@ Bounds DecodeAzimuthBounds(MapReader& map) {
 std::string CoastStem(std::size_t stage) { return "stage" + std::to_string(stage + 1) + "_coast"; }
 std::string IgnitionStem(std::size_t stage) { return "stage" + std::to_string(stage + 1) + "_ignition"; }
 
+std::string SteeringStem(std::size_t stage, const char* when) {
+  return "stage" + std::to_string(stage + 1) + "_incidence_" + when;
+}
+constexpr Range kSteered = Between(-kPi / 4.0, kPi / 4.0);
+
 // The speed at the perigee of an ellipse about a point mass; altitudes over the equator's radius.
 double PerigeeSpeed(double perigee_m, double apogee_m) {
   const Earth earth = Wgs84();
@@ -84,6 +89,9 @@ FlightProgram DecodeProgram(const InputNode& node, const std::string& path, doub
   program.launch_azimuth_rad = map.Quantity("launch_azimuth", kAngle, kAzimuth);
   *last_ignition_s = map.Quantity("last_ignition", kTime, kPositive);
   for (std::size_t stage = 1; stage < kMaxStages; ++stage) {
+    if (map.Has(SteeringStem(stage, "begin"), kAngle) || map.Has(SteeringStem(stage, "end"), kAngle))
+      program.steering[stage] = {map.Quantity(SteeringStem(stage, "begin"), kAngle, kSteered),
+                                 map.Quantity(SteeringStem(stage, "end"), kAngle, kSteered)};
     if (!map.Has(CoastStem(stage), kTime) && !map.Has(IgnitionStem(stage), kTime)) continue;
     program.earlier_coast_s[stage] = map.Quantity(CoastStem(stage), kTime, kNonNegative);
     (*earlier_ignition_s)[stage] = map.Quantity(IgnitionStem(stage), kTime, kPositive);
@@ -181,9 +189,13 @@ TrajectoryProblem DecodeTrajectoryProblem(const InputNode& node, const std::stri
     problem.t2_s = DecodeBounds(bounds, "t2", kTime, kNonNegative);
     problem.coast_s = DecodeBounds(bounds, "coast", kTime, kNonNegative);
     problem.launch_azimuth_rad = DecodeAzimuthBounds(bounds);
-    for (std::size_t stage = 1; stage < kMaxStages; ++stage)
+    for (std::size_t stage = 1; stage < kMaxStages; ++stage) {
       if (bounds.Has(CoastStem(stage), kTime))
         problem.earlier_coast_s[stage] = DecodeBounds(bounds, CoastStem(stage), kTime, kNonNegative);
+      if (bounds.Has(SteeringStem(stage, "begin"), kAngle) || bounds.Has(SteeringStem(stage, "end"), kAngle))
+        problem.steering[stage] = {DecodeBounds(bounds, SteeringStem(stage, "begin"), kAngle, kSteered),
+                                   DecodeBounds(bounds, SteeringStem(stage, "end"), kAngle, kSteered)};
+    }
   }
   {
     MapReader weights(map.Required("weights", "a map"), map.PathOf("weights"), problems);

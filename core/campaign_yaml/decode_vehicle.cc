@@ -6,6 +6,7 @@
 #include "core/campaign_yaml/struct_problems.h"
 #include "core/campaign_yaml/yaml_reader.h"
 #include "core/vehicle/plausibility.h"
+#include "core/vehicle/propulsion.h"
 
 namespace dispersa {
 namespace {
@@ -112,6 +113,25 @@ Throttle DecodeThrottle(const InputNode& node, const std::string& path, ProblemL
   return throttle;
 }
 
+void DecodeCutOff(const InputNode& node, const std::string& path, Motor& motor, ProblemList& problems) {
+  MapReader cut(node, path, problems);
+  motor.cut_off = cut.Choice<CutOff>("at", {{"depletion", CutOff::kAtDepletion},
+                                            {"time", CutOff::kAtTime},
+                                            {"inertial_velocity", CutOff::kAtVelocity}});
+  if (motor.cut_off == CutOff::kAtTime) motor.cut_off_s = cut.Quantity("after", kTime, kPositive);
+  if (motor.cut_off == CutOff::kAtVelocity)
+    motor.cut_off_velocity_m_s = cut.Quantity("velocity", kSpeed, kPositive);
+}
+
+// What an engine does by command in one of its burns.
+void DecodeCommands(MapReader& map, const InputNode& node, Motor& motor, ProblemList& problems) {
+  if (const InputNode* throttle = map.Optional("throttle"))
+    motor.throttle =
+        DecodeThrottle(*throttle, throttle->file == node.file ? map.PathOf("throttle") : "", problems);
+  if (const InputNode* cut_off = map.Optional("cut_off"))
+    DecodeCutOff(*cut_off, map.PathOf("cut_off"), motor, problems);
+}
+
 // An engine with tanks. Its full flow is thrust over specific impulse.
 void DecodeLiquid(const InputNode& node, const std::string& path, double propellant_kg, Motor& motor,
                   ProblemList& problems) {
@@ -120,13 +140,7 @@ void DecodeLiquid(const InputNode& node, const std::string& path, double propell
   const double specific_impulse_s = map.Quantity("specific_impulse", kTime, kPositive);
   motor.burning_time_s = propellant_kg * specific_impulse_s * kStandardGravity / motor.thrust_n;
   motor.residual_mass_kg = map.Quantity("residual_mass", kMass, kNonNegative, 0.0);
-  if (const InputNode* throttle = map.Optional("throttle"))
-    motor.throttle = DecodeThrottle(*throttle, throttle->file == node.file ? map.PathOf("throttle") : "", problems);
-  if (const InputNode* cut_off = map.Optional("cut_off")) {
-    MapReader cut(*cut_off, map.PathOf("cut_off"), problems);
-    motor.cut_off = cut.Choice<CutOff>("at", {{"depletion", CutOff::kAtDepletion}, {"time", CutOff::kAtTime}});
-    if (motor.cut_off == CutOff::kAtTime) motor.cut_off_s = cut.Quantity("after", kTime, kPositive);
-  }
+  DecodeCommands(map, node, motor, problems);
 }
 
 Tank DecodeTank(const InputNode& node, const std::string& path, ProblemList& problems) {
@@ -270,9 +284,54 @@ Jettison DecodeJettison(const InputNode& node, const std::string& path, ProblemL
   return jettison;
 }
 
-Stage DecodeStage(const InputNode& node, const std::string& path, ProblemList& problems) {
+void DecodeIgnition(const InputNode& node, const std::string& path, Stage& stage, ProblemList& problems) {
+  MapReader ignition(node, path, problems);
+  stage.ignition =
+      ignition.Choice<IgnitionTrigger>("trigger", {{"lift_off", IgnitionTrigger::kLiftOff},
+                                                   {"burnout_detection", IgnitionTrigger::kBurnoutDetection},
+                                                   {"timer", IgnitionTrigger::kTimer}});
+  stage.ignition_delay_s = ignition.Quantity("delay", kTime, kNonNegative, 0.0);
+}
+
+// Another burn of the stage before: its body, and what its engine is commanded now. `before` gives up what it
+// would jettison, which stays on until the last burn has ended.
+Stage DecodeRestart(const InputNode& node, const std::string& path, Stage* before, ProblemList& problems) {
+  MapReader map(node, path, problems);
+  if (before == nullptr || !before->is_liquid()) {
+    AddProblem(problems, *node.Find("restarts"), map.PathOf("restarts"),
+               before == nullptr ? "there is no stage before" : "the stage before has no liquid engine",
+               "restarts: true after a stage with motor: {liquid: {...}}");
+    for (const InputMember& member : node.members) map.Ignore(member.key);
+    return {};
+  }
+  Stage stage = *before;
+  before->jettisoned.clear();
+  stage.restarts = true;
+  map.Ignore("restarts");
+  stage.name = map.Text("name");
+  stage.motor.throttle = {};
+  stage.motor.cut_off = CutOff::kAtDepletion;
+  DecodeCommands(map, node, stage.motor, problems);
+  DecodeIgnition(map.Required("ignition", "a map"), map.PathOf("ignition"), stage, problems);
+  stage.separation_delay_s = map.Quantity("separation_delay", kTime, kNonNegative, 0.0);
+  // What the burn before leaves; of a cut-off by velocity a flight tells, and until then all stands for it.
+  const Motor& first = before->motor;
+  if (first.cut_off == CutOff::kAtVelocity || !(first.thrust_n > 0.0 && first.burning_time_s > 0.0))
+    return stage;
+  const double left = BuildBurn(*before, 1.0, 1.0).left_kg / before->propellant_mass_kg;
+  stage.liftoff_mass_kg -= (1.0 - left) * before->propellant_mass_kg;
+  stage.propellant_mass_kg *= left;
+  stage.motor.burning_time_s *= left;
+  for (Tank& tank : stage.tanks) tank.propellant_mass_kg *= left;
+  return stage;
+}
+
+Stage DecodeStage(const InputNode& node, const std::string& path, Stage* before, ProblemList& problems) {
+  if (const InputNode* restarts = node.Find("restarts"); restarts != nullptr && restarts->text != "false")
+    return DecodeRestart(node, path, before, problems);
   MapReader map(node, path, problems);
   Stage stage;
+  map.Flag("restarts", false);
   stage.name = map.Text("name");
   stage.liftoff_mass_kg = map.Quantity("liftoff_mass", kMass, kPositive);
   stage.propellant_mass_kg = map.Quantity("propellant_mass", kMass, kPositive);
@@ -300,14 +359,7 @@ Stage DecodeStage(const InputNode& node, const std::string& path, ProblemList& p
     stage.jettisoned.push_back(DecodeJettison(item, item_path, problems));
   });
   stage.gimbal = DecodeGimbal(map.Required("gimbal", "a map"), map.PathOf("gimbal"), problems);
-  {
-    MapReader ignition(map.Required("ignition", "a map"), map.PathOf("ignition"), problems);
-    stage.ignition = ignition.Choice<IgnitionTrigger>(
-        "trigger", {{"lift_off", IgnitionTrigger::kLiftOff},
-                    {"burnout_detection", IgnitionTrigger::kBurnoutDetection},
-                    {"timer", IgnitionTrigger::kTimer}});
-    stage.ignition_delay_s = ignition.Quantity("delay", kTime, kNonNegative, 0.0);
-  }
+  DecodeIgnition(map.Required("ignition", "a map"), map.PathOf("ignition"), stage, problems);
   stage.separation_delay_s = map.Quantity("separation_delay", kTime, kNonNegative, 0.0);
   return stage;
 }
@@ -519,7 +571,8 @@ Vehicle DecodeVehicle(const InputNode& node, const std::string& path, std::vecto
     vehicle.flow_coriolis = map.Flag("flow_coriolis", true);
     vehicle.surface_roughness_m = map.Quantity("surface_roughness", kLength, kNonNegative, 0.0);
     map.Each("stages", 1, kMaxStages, [&](const InputNode& item, const std::string& item_path) {
-      vehicle.stages.push_back(DecodeStage(item, item_path, problems));
+      Stage* const last = vehicle.stages.empty() ? nullptr : &vehicle.stages.back();
+      vehicle.stages.push_back(DecodeStage(item, item_path, last, problems));
     });
     if (const InputNode* boosters = map.Optional("boosters"))
       vehicle.boosters = DecodeBoosters(*boosters, map.PathOf("boosters"), problems);

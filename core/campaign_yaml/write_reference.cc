@@ -41,6 +41,10 @@ std::string StageKey(std::size_t stage, const char* what) {
   return "stage" + std::to_string(stage + 1) + "_" + what + "_s: ";
 }
 
+std::string IncidenceKey(std::size_t stage, const char* when) {
+  return "stage" + std::to_string(stage + 1) + "_incidence_" + when + "_deg: ";
+}
+
 std::string ProblemText(const TrajectoryProblem& problem) {
   std::string text;
   text += "problem:\n";
@@ -55,6 +59,10 @@ std::string ProblemText(const TrajectoryProblem& problem) {
   for (std::size_t stage = 1; stage < problem.earlier_coast_s.size(); ++stage)
     if (problem.earlier_coast_s[stage].high > 0.0)
       text += "    " + StageKey(stage, "coast") + Limits(problem.earlier_coast_s[stage]) + "\n";
+  for (std::size_t stage = 1; stage < problem.steering.size(); ++stage)
+    if (!problem.steering[stage].empty())
+      text += "    " + IncidenceKey(stage, "begin") + DegBounds(problem.steering[stage].begin_rad) +
+              "\n    " + IncidenceKey(stage, "end") + DegBounds(problem.steering[stage].end_rad) + "\n";
   text += "  weights: {altitude_per_km: " + FormatScaled(problem.weight_altitude_1_m, 1e-3) +
           ", velocity_per_m_s: " + FormatNumber(problem.weight_velocity_s_m) +
           ", flight_path_angle_per_deg: " + FormatScaled(problem.weight_angle_1_rad, kDegPerRad);
@@ -107,6 +115,10 @@ std::string WriteReference(const Reference& reference) {
     if (reference.earlier_ignition_s[stage] > 0.0)
       text += "  " + StageKey(stage, "coast") + FormatNumber(program.earlier_coast_s[stage]) + "\n  " +
               StageKey(stage, "ignition") + FormatNumber(reference.earlier_ignition_s[stage]) + "\n";
+  for (std::size_t stage = 1; stage < program.steering.size(); ++stage)
+    if (!program.steering[stage].empty())
+      text += "  " + IncidenceKey(stage, "begin") + Deg(program.steering[stage].begin_rad) + "\n  " +
+              IncidenceKey(stage, "end") + Deg(program.steering[stage].end_rad) + "\n";
   text += "orbit: {altitude_km: " + Km(orbit.altitude_m) +
           ", velocity_m_s: " + FormatNumber(orbit.velocity_m_s) +
           ", flight_path_angle_deg: " + Deg(orbit.flight_path_angle_rad) +

@@ -80,11 +80,11 @@ RigidBodyState AfterJettison(const LauncherPlant& plant, int stack, unsigned bef
 }
 
 RigidBodyState AfterSeparation(const LauncherPlant& plant, int below, unsigned jettisoned,
-                               const RigidBodyState& state) {
-  const StackMass upper = MassOf(plant, below + 1, jettisoned);
-  const LauncherStack& burnt = StackOf(plant, below);
-  return AtPoint(state, CgStep(plant, burnt, MassOf(plant, below, jettisoned).At(burnt.burn.left_kg),
-                               StackOf(plant, below + 1), upper.At(upper.propellant_mass_kg)));
+                               const RigidBodyState& state, std::optional<double> left_kg) {
+  const LauncherStack &burnt = StackOf(plant, below), &above = StackOf(plant, below + 1);
+  return AtPoint(
+      state, CgStep(plant, burnt, MassOf(plant, below, jettisoned).At(left_kg.value_or(burnt.burn.left_kg)),
+                    above, MassOf(plant, below + 1, jettisoned).At(above.burn.propellant_mass_kg)));
 }
 
 }  // namespace dispersa

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/dynamics/aerodynamics.h"
@@ -141,9 +142,10 @@ struct LauncherInstant {
 };
 
 /// `state` after the burnt lowest stage of stack `below` has left: it follows the centre of gravity, which
-/// jumps forward to that of the stack above, full. `jettisoned`: as in LauncherPhase.
+/// jumps forward to that of the stack above, full. `jettisoned`: as in LauncherPhase; `left_kg`: propellant
+/// that the burnt stage leaves with, unless the plant's burn says so.
 RigidBodyState AfterSeparation(const LauncherPlant& plant, int below, unsigned jettisoned,
-                               const RigidBodyState& state);
+                               const RigidBodyState& state, std::optional<double> left_kg = {});
 
 /// The equations of motion of one flight, prepared once for many instants: one lane of launcher_body.h and
 /// actuators.h, whose step flights take. For the judges among the integrators, histories, linearisation and tests.

@@ -77,6 +77,7 @@ class Batch {
   void RollByThrusters(M rolling);
   void FlyThrusters();
   void LetGo();
+  void CutOff();
   void Guide();
   void Meter(M powered);
   void WatchAndDigest();
@@ -96,7 +97,7 @@ class Batch {
   FlightQueue& queue_;
   const double tick_s_;
   const double ticks_a_second_;
-  const bool has_jettisons_;
+  const bool has_jettisons_, cuts_off_at_velocity_;
   Slot slot_[kLanes];
   int flying_ = 0;         ///< lanes
   unsigned patience_ = 0;  ///< passes until the queue is asked again
@@ -145,7 +146,8 @@ Batch<T>::Batch(const FlightModel& model, FlightQueue& queue)
       queue_(queue),
       tick_s_(definition_.autopilot.tick_s),
       ticks_a_second_(static_cast<double>(static_cast<long>(1.0 / tick_s_ + 0.5))),
-      has_jettisons_(!model.nominal_plant().jettisons.empty()) {
+      has_jettisons_(!model.nominal_plant().jettisons.empty()),
+      cuts_off_at_velocity_(CutsOffAtVelocity(definition_.vehicle)) {
   // Lanes that never fly compute along with the others, on numbers that do no harm.
   __builtin_memset(static_cast<void*>(&step_), 0, sizeof step_);
   __builtin_memset(static_cast<void*>(&delay_line_), 0, sizeof delay_line_);

@@ -11,7 +11,7 @@ inline constexpr double kLostAngle_rad = 15.0 * kRadPerDeg;
 inline constexpr double kLostFor_s = 0.5;
 inline constexpr double kLostRate_rad_s = 60.0 * kRadPerDeg;
 /// Simulated time that no flight needs.
-inline constexpr double kTimeLimit_s = 3600.0;
+inline constexpr double kTimeLimit_s = 21600.0;
 /// A vehicle this far below its site has hit the ground.
 inline constexpr double kImpactDepth_m = 10.0;
 
@@ -23,6 +23,7 @@ void Batch<T>::Pass() {
   if (Any(coasting_)) FlyThrusters();
   step_.EvaluateStart(time_s_);
   if (has_jettisons_) LetGo();
+  if (cuts_off_at_velocity_) CutOff();
   if (definition_.guidance.closed_loop) Guide();
   metrics_.AddLoads(live_ & !coasting_, step_.now());
   metrics_.AddMoment(live_ & !coasting_, step_.LargestMomentNow());
@@ -52,6 +53,35 @@ void Batch<T>::LetGo() {
     if (slot.record->watched) slot.record->WatchEvent(ViewOf(lane));
   }
   step_.EvaluateStart(time_s_);
+}
+
+/// Engines that are cut off at an inertial speed: the flight computer commands it for the instant within the
+/// tick to come at which the speed, growing as it does now, is reached.
+template <class T>
+void Batch<T>::CutOff() {
+  const unsigned burning = Bits(live_ & step_.phase.burning);
+  for (int lane = 0; lane < kLanes; ++lane) {
+    if (!(burning >> lane & 1u)) continue;
+    Slot& slot = slot_[lane];
+    const double wanted_m_s = slot.record->CutOffVelocity(slot.stack);
+    if (!(wanted_m_s > 0.0)) continue;
+    const Vector<double> v = LaneOf(step_.motion.v, lane);
+    const double speed_m_s = Sqrt(Dot(v, v));
+    const double rate_m_s2 = Dot(v, LaneOf(step_.acceleration_m_s2(), lane)) / speed_m_s;
+    const double lacking_m_s = wanted_m_s - speed_m_s;
+    if (lacking_m_s > rate_m_s2 * tick_s_) continue;
+    const double at_s = Lane(time_s_, lane) + (lacking_m_s > 0.0 ? lacking_m_s / rate_m_s2 : 0.0);
+    FlightRecord& record = *slot.record;
+    // By then it has burnt out.
+    if (at_s >= Lane(step_.phase.ignition_s, lane) + record.plant.stacks.data()[slot.stack].burn.duration_s)
+      continue;
+    const auto happened = slot.next_event - record.events.data();
+    record.CutOff(slot.stack, at_s);
+    slot.next_event = record.events.data() + happened;
+    slot.last_event = record.events.data() + record.events.size();
+    SetLane(step_.plant.burn, lane, record.plant.stacks.data()[slot.stack].burn);
+    SetStop(lane);
+  }
 }
 
 /// Error of the lanes' attitudes against the reference at their ticks, true and as the sensors see it.

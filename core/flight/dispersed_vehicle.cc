@@ -32,25 +32,31 @@ Vehicle WithDispersedMasses(const Vehicle& vehicle, const FlightInputs& in) {
   double above_kg = 0.0;
   for (std::size_t i = vehicle.stages.size(); i-- > 0;) {
     Stage& stage = dispersed.stages[i];
-    double dry_kg = DryMass(vehicle, static_cast<int>(i)) * in.dry_mass_factor[i];
+    std::size_t first = i;  // burn of the stage, whose factors are the stage's
+    while (vehicle.stages[first].restarts) --first;
+    double dry_kg = DryMass(vehicle, static_cast<int>(i)) * in.dry_mass_factor[first];
     const int element = static_cast<int>(in.payload_element + 0.5) - 1;
-    if (i + 1 == vehicle.stages.size() && element >= 0 && element < static_cast<int>(stage.structure.size()))
+    const bool is_last =
+        LastBurn(vehicle, static_cast<int>(i)) + 1 == static_cast<int>(vehicle.stages.size());
+    if (is_last && element >= 0 && element < static_cast<int>(stage.structure.size()))
       AddToElement(static_cast<std::size_t>(element), in.payload_mass_kg, dry_kg, stage);
-    stage.propellant_mass_kg *= in.propellant_factor[i];
-    stage.motor.burning_time_s *= in.propellant_factor[i];
-    for (Tank& tank : stage.tanks) tank.propellant_mass_kg *= in.propellant_factor[i];
+    stage.propellant_mass_kg *= in.propellant_factor[first];
+    stage.motor.burning_time_s *= in.propellant_factor[first];
+    for (Tank& tank : stage.tanks) tank.propellant_mass_kg *= in.propellant_factor[first];
     ThrustCurve& curve = stage.motor.thrust_curve;
-    for (double& time_s : curve.time_s) time_s *= in.propellant_factor[i];
+    for (double& time_s : curve.time_s) time_s *= in.propellant_factor[first];
     // The density that its volume implies is to stay.
     Grain& grain = stage.grain;
     const double web2 = Square(grain.outer_diameter_m) - Square(grain.inner_diameter_m);
-    const double bore2 = Square(grain.outer_diameter_m) - in.propellant_factor[i] * web2;
+    const double bore2 = Square(grain.outer_diameter_m) - in.propellant_factor[first] * web2;
     grain.inner_diameter_m = bore2 > 0.0 ? Sqrt(bore2) : 0.0;
-    above_kg += dry_kg + stage.propellant_mass_kg;
-    for (const Jettison& jettison : stage.jettisoned) above_kg += jettison.mass_kg;
+    double own_kg = dry_kg + stage.propellant_mass_kg;
+    const Stage& at_last = vehicle.stages[static_cast<std::size_t>(LastBurn(vehicle, static_cast<int>(i)))];
+    for (const Jettison& jettison : at_last.jettisoned) own_kg += jettison.mass_kg;
     const Boosters& boosters = vehicle.boosters;
-    if (i == 0) above_kg += boosters.count * (boosters.dry_mass_kg + boosters.propellant_mass_kg);
-    stage.liftoff_mass_kg = above_kg;
+    if (i == 0) own_kg += boosters.count * (boosters.dry_mass_kg + boosters.propellant_mass_kg);
+    stage.liftoff_mass_kg = above_kg + own_kg;
+    if (!stage.restarts) above_kg = stage.liftoff_mass_kg;
   }
   return dispersed;
 }

@@ -9,7 +9,8 @@ namespace {
 
 constexpr std::size_t kInputCount = sizeof(FlightInputs) / sizeof(double);
 
-// Names the fields of FlightInputs, in the order of the columns.
+// Names the fields of FlightInputs, in the order of the columns: of stages that few vehicles have behind all
+// others.
 class ColumnList {
  public:
   void One(double FlightInputs::*field, const std::string& name, double unit = 1.0) {
@@ -18,14 +19,14 @@ class ColumnList {
   void EachStage(PerStage FlightInputs::*field, const std::string& stem, const std::string& unit_suffix = "",
                  double unit = 1.0) {
     for (std::size_t i = 0; i < kMaxStages; ++i)
-      columns_.push_back(
+      ColumnsWith(i).push_back(
           {stem + "_stage" + std::to_string(i + 1) + unit_suffix, unit, OffsetOf(&(nominal_.*field)[i])});
   }
   void EachNozzle(PerNozzle FlightInputs::*field, const std::string& stem,
                   const std::string& unit_suffix = "", double unit = 1.0) {
     for (std::size_t i = 0; i < kMaxStages; ++i)
       for (std::size_t nozzle = 0; nozzle < kNozzles; ++nozzle)
-        columns_.push_back(
+        ColumnsWith(i).push_back(
             {stem + "_stage" + std::to_string(i + 1) + "_" + kNozzleNames[nozzle] + unit_suffix, unit,
              OffsetOf(&(nominal_.*field)[i][nozzle])});
   }
@@ -43,18 +44,29 @@ class ColumnList {
     for (std::size_t i = 0; i < 3; ++i)
       columns_.push_back({stem + axes[i] + unit_suffix, 1.0, OffsetOf(&(nominal_.*field)[i])});
   }
-  std::vector<InputColumn> Take() { return std::move(columns_); }
+  std::size_t usual() const { return columns_.size(); }
+  std::vector<InputColumn> Take() {
+    columns_.insert(columns_.end(), rare_.begin(), rare_.end());
+    return std::move(columns_);
+  }
 
  private:
   std::size_t OffsetOf(const double* value) const {
     return static_cast<std::size_t>(value - reinterpret_cast<const double*>(&nominal_));
   }
 
+  std::vector<InputColumn>& ColumnsWith(std::size_t stage) { return stage < kUsualStages ? columns_ : rare_; }
+
   const FlightInputs nominal_;
-  std::vector<InputColumn> columns_;
+  std::vector<InputColumn> columns_, rare_;
 };
 
-std::vector<InputColumn> MakeColumns() {
+struct Columns {
+  std::vector<InputColumn> all;
+  std::size_t usual;
+};
+
+Columns MakeColumns() {
   using In = FlightInputs;
   ColumnList list;
   list.EachStage(&In::thrust_misalignment_rad, "thrust_misalignment", "_deg", kRadPerDeg);
@@ -141,16 +153,23 @@ std::vector<InputColumn> MakeColumns() {
   list.EachNozzle(&In::nozzle_misalignment_z_rad, "nozzle_misalignment_z", "_deg", kRadPerDeg);
   list.EachNozzle(&In::nozzle_offset_y_m, "nozzle_offset_y", "_m");
   list.EachNozzle(&In::nozzle_offset_z_m, "nozzle_offset_z", "_m");
-  std::vector<InputColumn> columns = list.Take();
-  assert(columns.size() == kInputCount);
+  Columns columns{{}, list.usual()};
+  columns.all = list.Take();
+  assert(columns.all.size() == kInputCount);
+  return columns;
+}
+
+const Columns& AllColumns() {
+  static const Columns columns = MakeColumns();
   return columns;
 }
 
 }  // namespace
 
-const std::vector<InputColumn>& InputColumns() {
-  static const std::vector<InputColumn> columns = MakeColumns();
-  return columns;
+const std::vector<InputColumn>& InputColumns() { return AllColumns().all; }
+
+std::size_t InputCount(std::size_t stages) {
+  return stages <= kUsualStages ? AllColumns().usual : AllColumns().all.size();
 }
 
 int FindInput(const std::string& name) {
@@ -165,12 +184,13 @@ double& InputValue(FlightInputs& inputs, int column) {
   return reinterpret_cast<double*>(&inputs)[InputColumns()[static_cast<std::size_t>(column)].offset];
 }
 
-std::vector<double> InputValues(const FlightInputs& inputs) {
+std::vector<double> InputValues(const FlightInputs& inputs, std::size_t stages) {
   const double* first = reinterpret_cast<const double*>(&inputs);
-  std::vector<double> values;
-  values.reserve(InputColumns().size());
-  // + 0.0: results hold no -0.
-  for (const InputColumn& column : InputColumns()) values.push_back(first[column.offset] / column.unit + 0.0);
+  std::vector<double> values(InputCount(stages));
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const InputColumn& column = InputColumns()[i];
+    values[i] = first[column.offset] / column.unit + 0.0;  // + 0.0: results hold no -0
+  }
   return values;
 }
 

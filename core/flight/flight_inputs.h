@@ -136,7 +136,9 @@ const std::vector<InputColumn>& InputColumns();
 int FindInput(const std::string& name);
 /// The input of a column, in internal units.
 double& InputValue(FlightInputs& inputs, int column);
-/// Values of all columns, in the units of their names.
-std::vector<double> InputValues(const FlightInputs& inputs);
+/// Columns that a vehicle of so many stages has: the first so many of InputColumns().
+std::size_t InputCount(std::size_t stages);
+/// Values of a vehicle's columns, in the units of their names.
+std::vector<double> InputValues(const FlightInputs& inputs, std::size_t stages = kUsualStages);
 
 }  // namespace dispersa

@@ -21,6 +21,12 @@ std::shared_ptr<const BoosterSet> BuildBoosterSet(const Boosters& boosters, doub
       BuildBoosterMass(boosters), boosters.nozzle_station_m, boosters.radius_m, boosters.separation_delay_s});
 }
 
+// What a burn leaves is there for the next one of the same engine.
+void PassOnPropellant(const Vehicle& vehicle, std::size_t from, LauncherPlant& plant) {
+  for (std::size_t i = from + 1; i < plant.stacks.size() && vehicle.stages[i].restarts; ++i)
+    SetPropellant(vehicle.stages[i].motor, plant.stacks[i - 1].burn.left_kg, plant.stacks[i].burn);
+}
+
 }  // namespace
 
 LauncherPlant BuildNominalPlant(const Vehicle& vehicle) {
@@ -42,6 +48,8 @@ LauncherPlant BuildNominalPlant(const Vehicle& vehicle) {
   }
   SetMasses(vehicle, plant);
   if (vehicle.boosters.count > 0) plant.boosters = BuildBoosterSet(vehicle.boosters, 1.0, 1.0);
+  for (std::size_t i = 0; i < vehicle.stages.size(); ++i)
+    if (!vehicle.stages[i].restarts) PassOnPropellant(vehicle, i, plant);
   return plant;
 }
 
@@ -52,7 +60,9 @@ void SetMasses(const Vehicle& vehicle, LauncherPlant& plant) {
     LauncherStack& stack = plant.stacks[i];
     stack.mass = masses[i];
     // What boosters load sections of the core with is not modelled.
-    if (!vehicle.profile.empty() && (i > 0 || vehicle.boosters.count == 0))
+    if (vehicle.stages[i].restarts)
+      stack.loads = plant.stacks[i - 1].loads;
+    else if (!vehicle.profile.empty() && (i > 0 || vehicle.boosters.count == 0))
       stack.loads = std::make_shared<const LoadTable>(BuildLoadTable(vehicle, static_cast<int>(i)));
   }
   if (plant.bending_modes() == 0) return;
@@ -62,6 +72,12 @@ void SetMasses(const Vehicle& vehicle, LauncherPlant& plant) {
     stack.bending = std::make_shared<const BendingTable>(
         BuildBendingTable(vehicle, stacks[i], *stack.loads, stack.bending->modes));
   }
+}
+
+void CutOffStage(const Vehicle& vehicle, int stage, double since_ignition_s, LauncherPlant& plant) {
+  const std::size_t i = static_cast<std::size_t>(stage);
+  CutOffAt(since_ignition_s, plant.stacks[i].burn);
+  PassOnPropellant(vehicle, i, plant);
 }
 
 void AddBending(const Vehicle& vehicle, double tick_s, LauncherPlant& plant) {
@@ -92,10 +108,12 @@ StageControl BuildStageControl(const LauncherPlant& plant, int index, double ign
   // What leaves at once makes it jump, and is followed as closely.
   const bool jumps = (index == 0 && plant.boosters) || !plant.jettisons.empty();
   const int points = stack.burn.curve || jumps ? 1025 : 33;
+  // A restart of a reference that leaves it nothing: any time at all.
+  const double duration_s = std::max(stack.burn.duration_s, 1e-3);
   StageControl control;
   control.limit_rad = stack.gimbal.limit_rad;
   for (int i = 0; i < points; ++i) {
-    const double since = stack.burn.duration_s * i / (points - 1);
+    const double since = duration_s * i / (points - 1);
     unsigned gone = GoneAt(jettison_s, ignition_s + since);
     if (plant.boosters && since > plant.boosters->burn.duration_s + plant.boosters->separation_delay_s)
       gone |= kBoostersGone;
@@ -201,23 +219,26 @@ FlightModel::FlightModel(FlightDefinition definition)
                             definition_.program.launch_azimuth_rad);
   AddBending(definition_.vehicle, definition_.autopilot.tick_s, nominal_);
   if (definition_.wind_table) nominal_.environment.wind.tables.push_back(*definition_.wind_table);
+  LauncherPlant planned = nominal_;
+  for (std::size_t i = 0; i < planned.stacks.size(); ++i)
+    if (definition_.vehicle.stages[i].motor.cut_off == CutOff::kAtVelocity)
+      CutOffStage(definition_.vehicle, static_cast<int>(i), definition_.cut_off_s[i], planned);
   std::vector<MotorBurn> burns;
-  for (const LauncherStack& stack : nominal_.stacks) burns.push_back(stack.burn);
+  for (const LauncherStack& stack : planned.stacks) burns.push_back(stack.burn);
   const std::vector<StageTimes> times =
       BuildTimeline(definition_.vehicle, burns, definition_.autopilot.tick_s, definition_.last_ignition_s,
                     definition_.earlier_ignition_s);
   std::vector<StageControl> controls;
   for (std::size_t i = 0; i < times.size(); ++i)
     controls.push_back(
-        BuildStageControl(nominal_, static_cast<int>(i), times[i].ignition_s, definition_.jettison_s));
+        BuildStageControl(planned, static_cast<int>(i), times[i].ignition_s, definition_.jettison_s));
   autopilot_ = BuildAutopilot(definition_.autopilot, std::move(controls),
                               definition_.vehicle.reaction_control.minimum_on_time_s);
   sensors_ = BuildSensors(definition_.vehicle, definition_.autopilot);
   reference_rows_ = TabulateReference(definition_.program, frame_, definition_.autopilot.tick_s);
   feed_forward_rows_ = TabulateFeedForward(definition_.program, definition_.autopilot,
                                            static_cast<long>(reference_rows_.last_tick) + 1);
-  if (definition_.guidance.closed_loop)
-    guidance_mission_ = BuildMission(definition_, nominal_, frame_, times);
+  if (definition_.guidance.closed_loop) guidance_mission_ = BuildMission(definition_, planned, frame_, times);
 }
 
 FlightModel FlightModel::WithAutopilot(const AutopilotConfig& autopilot) const {
@@ -339,6 +360,8 @@ LauncherPlant FlightModel::PlantFor(const FlightInputs& in, std::optional<std::u
     stack.lateral_moment_y_kg_m = lateral.y;
     stack.lateral_moment_z_kg_m = lateral.z;
   }
+  for (std::size_t i = 0; i < plant.stacks.size(); ++i)
+    if (!vehicle.stages[i].restarts) PassOnPropellant(vehicle, i, plant);
   return plant;
 }
 

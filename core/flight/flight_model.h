@@ -1,6 +1,7 @@
 // What all flights of a campaign share, and the plant of one of them.
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -48,7 +49,13 @@ struct FlightDefinition {
   /// When the reference's ascent lets go of each of the plant's jettisons, s since lift-off: what autopilot
   /// and guidance know beforehand. Infinite, or missing: never.
   std::vector<double> jettison_s = {};
+  /// How long the reference's engines burn that are cut off at a velocity, by stage, s: known beforehand
+  /// likewise. Infinite: to depletion.
+  std::array<double, kMaxStages> cut_off_s = AllStages(HUGE_VAL);
 };
+
+/// Ends a stage's burn by command. What it leaves is the next one's if that restarts it.
+void CutOffStage(const Vehicle& vehicle, int stage, double since_ignition_s, LauncherPlant& plant);
 
 /// The reference attitude at the autopilot's ticks, for flights that are flown side by side. A row has 8 doubles: q_IR
 /// (w, x, y, z), w_LR_R (x, y, z), unused. The last row holds for all later ticks.

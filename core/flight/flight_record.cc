@@ -192,6 +192,11 @@ FlightRecord::FlightRecord(const FlightModel& model, const FlightOrder& order)
     guided = guided_.get();
   }
   if (options.history) options.history->values.clear();
+  SetEquations();
+}
+
+void FlightRecord::SetEquations() {
+  judged_.reset();
   if (watched || is_judged()) equations_ = std::make_unique<const LauncherModel>(plant);
   if (is_judged()) judged_ = std::make_unique<JudgedMotion>(*equations_, options.scheme);
 }
@@ -309,6 +314,19 @@ unsigned FlightRecord::LetGo(int stack, unsigned jettisoned, double time_s, doub
   return due;
 }
 
+double FlightRecord::CutOffVelocity(int stage) const {
+  const Motor& engine = model_.definition().vehicle.stages[static_cast<std::size_t>(stage)].motor;
+  return engine.cut_off == CutOff::kAtVelocity ? engine.cut_off_velocity_m_s : 0.0;
+}
+
+void FlightRecord::CutOff(int stage, double time_s) {
+  const auto ignition = std::find_if(events.begin(), events.end(),
+                                     [&](const FlightEvent& event) { return event.stage == stage; });
+  CutOffStage(model_.definition().vehicle, stage, time_s - ignition->time_s, plant);
+  events = EventsOf(model_, plant, inputs);
+  SetEquations();
+}
+
 void FlightRecord::LetGoOfBoosters(unsigned jettisoned, double time_s, double propellant_kg, double* y) {
   WriteState(AfterJettison(plant, 0, jettisoned, jettisoned | kBoostersGone, propellant_kg,
                            time_s - events.front().time_s, ReadState(y)),
@@ -322,8 +340,9 @@ void FlightRecord::MassWithout(int stack, unsigned jettisoned, StackMass& mass) 
 void FlightRecord::Separate(int stage, unsigned jettisoned, double* y) {
   const std::size_t below = static_cast<std::size_t>(stage);
   RigidBodyState s = AfterSeparation(plant, stage, jettisoned, ReadState(y));
-  s.w_IB_B += Vector3(inputs.tip_off_roll_rad_s[below], inputs.tip_off_pitch_rad_s[below],
-                      inputs.tip_off_yaw_rad_s[below]);
+  if (!model_.definition().vehicle.stages[below + 1].restarts)  // nothing has left
+    s.w_IB_B += Vector3(inputs.tip_off_roll_rad_s[below], inputs.tip_off_pitch_rad_s[below],
+                        inputs.tip_off_yaw_rad_s[below]);
   std::fill(y, y + kLauncherSize, 0.0);
   WriteState(s, y);
 }

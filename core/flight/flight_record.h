@@ -64,9 +64,9 @@ class FlightRecord {
   // ---- prepared ----
   const FlightInputs inputs;
   const FlightOptions options;
-  const LauncherPlant plant;
+  LauncherPlant plant;  ///< an engine that is cut off at a velocity changes its burns
   const FlightWeather weather;
-  std::vector<FlightEvent> events;  ///< their number and order stay
+  std::vector<FlightEvent> events;  ///< their number and order stay, but for CutOff
   StateValues lift_off;
   const char* refusal = nullptr;  ///< why its inputs cannot be flown; null: they can
   double believed_attitude[4];    ///< q_IB (w, x, y, z) that the inertial unit is aligned to at lift-off
@@ -98,6 +98,10 @@ class FlightRecord {
   unsigned LetGo(int stack, unsigned jettisoned, double time_s, double altitude_m, double density_kg_m3,
                  double propellant_kg, double* y);
   void MassWithout(int stack, unsigned jettisoned, StackMass& mass) const;
+  /// The inertial speed, m/s, at which a stage's engine is cut off; 0: at none.
+  double CutOffVelocity(int stage) const;
+  /// Its engine will be cut off at `time_s`, by command: events from there on are new.
+  void CutOff(int stage, double time_s);
   /// The boosters leave.
   void LetGoOfBoosters(unsigned jettisoned, double time_s, double propellant_kg, double* y);
   /// Replaces the state by that of the stack above, with its tip-off rates. `jettisoned`: as in
@@ -114,6 +118,7 @@ class FlightRecord {
 
  private:
   class JudgedMotion;
+  void SetEquations();
   ReferenceAttitude ReferenceAt(double time_s) const;
   TickSample SampleOf(const LaneView& view) const;
   void AppendRow(const TickSample& sample);

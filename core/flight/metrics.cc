@@ -226,14 +226,21 @@ std::string PhaseTitle(int phase) {
   return phase == 0 ? "" : ", stage " + std::to_string(phase);
 }
 
-// f(row, phase) for each metric in the order of the columns.
+// f(row, phase) for each metric in the order of the columns: of stages that few vehicles have behind all
+// others.
 template <class F>
 void ForEach(F f) {
+  const auto is_rare = [](int phase) { return phase > kUsualStages && phase <= kMaxStages; };
   for (int phase = 0; phase < kPhases; ++phase)
-    for (const Row& row : kByPhase) f(row, phase);
+    if (!is_rare(phase))
+      for (const Row& row : kByPhase) f(row, phase);
   for (const Row& row : kOfFlight) f(row, 0);
   for (const Row& row : kOfArrival) f(row, 0);
+  for (int phase = 0; phase < kPhases; ++phase)
+    if (is_rare(phase))
+      for (const Row& row : kByPhase) f(row, phase);
 }
+constexpr std::size_t kRareMetrics = (kMaxStages - kUsualStages) * std::size(kByPhase);
 
 }  // namespace
 
@@ -258,7 +265,11 @@ const std::vector<std::string>& MetricNames() {
   return names;
 }
 
-std::size_t DigestedMetrics() { return MetricNames().size() - std::size(kOfArrival); }
+std::size_t MetricCount(std::size_t stages) {
+  return MetricNames().size() - (stages <= kUsualStages ? kRareMetrics : 0);
+}
+
+std::size_t DigestedMetrics() { return MetricCount(kUsualStages) - std::size(kOfArrival); }
 
 std::size_t MetricColumn(const std::string& name) {
   const std::vector<std::string>& names = MetricNames();
@@ -274,6 +285,7 @@ std::vector<double> MetricsOf(const FlightSums& sums, const FlightDefinition& de
     const ErrorSums pitch = PitchOf(phase, sums);
     values.push_back(row.value({sums, definition, pitch}));
   });
+  values.resize(MetricCount(definition.vehicle.stages.size()));
   return values;
 }
 

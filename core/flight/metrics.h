@@ -32,12 +32,15 @@ struct Metric {
 /// In the order of their columns.
 const std::vector<Metric>& Metrics();
 const std::vector<std::string>& MetricNames();
-/// The first so many of them are part of a flight's digest; the later ones follow from its end state, which is too.
+/// Metrics that a vehicle of so many stages has: the first so many of Metrics().
+std::size_t MetricCount(std::size_t stages);
+/// The first so many of them are part of a flight's digest; the later ones follow from its states, which are
+/// too.
 std::size_t DigestedMetrics();
 /// The column of a metric that exists.
 std::size_t MetricColumn(const std::string& name);
 
-/// In the order of Metrics(), in the units of their names.
+/// Those that the vehicle has, in the order of Metrics(), in the units of their names.
 std::vector<double> MetricsOf(const FlightSums& sums, const FlightDefinition& definition);
 
 }  // namespace dispersa

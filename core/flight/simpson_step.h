@@ -122,6 +122,7 @@ class StepState {
 
   /// Where the lanes stand: valid after EvaluateStart.
   const Instant<T>& now() const { return start_->instant; }
+  const Vector<T>& acceleration_m_s2() const { return start_->rates.dv; }
   const T& density_kg_m3() const { return start_->around.density_kg_m3; }
   /// Of the lanes' lowest stages.
   const T& propellant_kg() const { return start_->masses.propellant_kg; }

@@ -50,9 +50,8 @@ double DryStation(const Stage& stage) {
 
 /// From the bottom of the stage above, or from the nose, to its own.
 double TopStation(const Vehicle& vehicle, int stage) {
-  return stage + 1 < static_cast<int>(vehicle.stages.size())
-             ? vehicle.stages[static_cast<std::size_t>(stage) + 1].bottom_station_m
-             : 0.0;
+  const std::size_t above = static_cast<std::size_t>(LastBurn(vehicle, stage)) + 1;
+  return above < vehicle.stages.size() ? vehicle.stages[above].bottom_station_m : 0.0;
 }
 
 }  // namespace
@@ -78,16 +77,20 @@ std::vector<ImpactPoint> ImpactPoints(const CampaignFlights& flights, const Case
     if (rows.Stack(row) == below) continue;
     // The row shows the stack above, full, with its tip-off rates, which the stage below does not have.
     const auto stage = static_cast<std::size_t>(below);
+    if (vehicle.stages[stage + 1].restarts) continue;  // nothing has left
     RigidBodyState above = rows.State(environment.earth, row);
     above.w_IB_B -= Vector3(inputs.tip_off_roll_rad_s[stage], inputs.tip_off_pitch_rad_s[stage],
                             inputs.tip_off_yaw_rad_s[stage]);
     const StackMass& mass = plant.stacks[stage + 1].mass;
     const double aft_m = DryStation(vehicle.stages[stage]) - mass.At(mass.propellant_mass_kg).cg_station_m;
     const RigidBodyState spent = AtPoint(above, Vector3(-aft_m, 0.0, 0.0));
+    // What a cut-off by velocity leaves only the flight knows.
+    const double spent_kg = vehicle.stages[stage].motor.cut_off == CutOff::kAtVelocity
+                                ? rows.At(row - 1, "mass_kg") - rows.At(row, "mass_kg")
+                                : DryMass(vehicle, below) + plant.stacks[stage].burn.left_kg;
     const double length_m = vehicle.stages[stage].bottom_station_m - TopStation(vehicle, below);
     fall({.stage = below + 1, .lost = false},
-         {DryMass(vehicle, below) + plant.stacks[stage].burn.left_kg,
-          TumblingCylinderDragArea(length_m, vehicle.stages[stage].diameter_m)},
+         {spent_kg, TumblingCylinderDragArea(length_m, vehicle.stages[stage].diameter_m)},
          {rows.At(row, "time_s"), spent.p_EoC_I, spent.v_IC_I});
   }
 

@@ -96,8 +96,8 @@ std::string CampaignSection(const PaperStudy& study) {
 /// Cases with their inputs and metrics, as cases.csv has them.
 std::string CasesData(const CaseColumns& cases) {
   std::string csv = "case_index,outcome";
-  for (const InputColumn& column : InputColumns()) csv += ",input_" + column.name;
-  for (const std::string& name : MetricNames()) csv += ",metric_" + name;
+  for (std::size_t i = 0; i < cases.inputs.size(); ++i) csv += ",input_" + InputColumns()[i].name;
+  for (std::size_t i = 0; i < cases.metrics.size(); ++i) csv += ",metric_" + MetricNames()[i];
   csv += "\n";
   for (std::size_t row = 0; row < cases.rows(); ++row) {
     csv += fmt::format("{},{}", cases.index[row], OutcomeName(cases.outcome[row]));

@@ -23,8 +23,10 @@ StudyFlights FlyStudy(const Campaign& campaign, const StudyOptions& options) {
   });
 
   CaseColumns& cases = study.cases;
-  cases.inputs.resize(InputColumns().size());
-  cases.metrics.resize(MetricNames().size());
+  if (!results.empty()) {
+    cases.inputs.resize(results.front().inputs.size());
+    cases.metrics.resize(results.front().metrics.size());
+  }
   for (const CaseResult& result : results) {
     cases.index.push_back(result.case_index);
     cases.outcome.push_back(result.outcome);

@@ -288,7 +288,7 @@ CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaig
   summary.autopilot = campaign.autopilot.name;
   for (const Outcome outcome : cases.outcome) ++summary.outcomes[static_cast<std::size_t>(outcome)];
   summary.lost_flights = cases.lost_flights;
-  for (std::size_t i = 0; i < MetricNames().size(); ++i) {
+  for (std::size_t i = 0; i < cases.metrics.size(); ++i) {
     const std::vector<double> sorted = SortedFinite(CompletedValues(cases, MetricNames()[i]));
     summary.metrics.push_back({MetricNames()[i], SummarizeSorted(sorted, cases.rows() - sorted.size()),
                                Skewness(sorted), Percentiles(sorted)});

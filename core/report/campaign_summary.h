@@ -64,7 +64,7 @@ struct CampaignSummary {
   CampaignVerdict verdict = CampaignVerdict::kIncomplete;
   std::array<std::uint64_t, kOutcomeCount> outcomes{};
   std::vector<LostFlight> lost_flights;  ///< the first kListedLostFlights
-  std::vector<MetricSummary> metrics;    ///< in the order of MetricNames()
+  std::vector<MetricSummary> metrics;    ///< of the vehicle, in the order of MetricNames()
   std::vector<RequirementSummary> requirements;
   /// One that the vehicle gives, against the largest load of every flown case, completed or not.
   struct Limit {

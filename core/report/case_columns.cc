@@ -12,7 +12,7 @@ namespace dispersa {
 CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& wanted_inputs,
                         const std::function<void(const CaseResult&)>& observe) {
   CaseColumns cases;
-  const std::size_t metrics = MetricNames().size();
+  const std::size_t metrics = MetricCount(folder.stages());
   const auto file = std::make_shared<ColumnFile>(folder.directory(), metrics + wanted_inputs.size());
   std::vector<double> row(metrics + wanted_inputs.size());
   folder.ForEach([&](const CaseResult& result) {
@@ -29,14 +29,17 @@ CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& want
     file->Append(row);
   });
   for (std::size_t i = 0; i < metrics; ++i) cases.metrics.emplace_back(file, i);
-  cases.inputs.resize(InputColumns().size());
+  cases.inputs.resize(InputCount(folder.stages()));
   for (std::size_t i = 0; i < wanted_inputs.size(); ++i)
     cases.inputs[static_cast<std::size_t>(wanted_inputs[i])] = CaseColumn(file, metrics + i);
   return cases;
 }
 
 std::vector<double> CompletedValues(const CaseColumns& cases, const std::string& metric) {
-  std::vector<double> values = cases.metrics[MetricColumn(metric)];
+  const std::size_t column = MetricColumn(metric);
+  if (column >= cases.metrics.size())
+    return std::vector<double>(cases.rows(), kUndefined);  // a stage too far
+  std::vector<double> values = cases.metrics[column];
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (cases.outcome[i] != Outcome::kCompleted) values[i] = kUndefined;
   }

@@ -18,8 +18,8 @@ namespace dispersa {
 struct CaseColumns {
   std::vector<std::uint64_t> index;
   std::vector<Outcome> outcome;
-  std::vector<CaseColumn> inputs;   ///< one an entry of InputColumns(); empty are those that were not asked for
-  std::vector<CaseColumn> metrics;  ///< one an entry of MetricNames()
+  std::vector<CaseColumn> inputs;   ///< one an input of the vehicle; empty are those that were not asked for
+  std::vector<CaseColumn> metrics;  ///< one a metric of the vehicle
   std::vector<LostFlight> lost_flights;  ///< the first kListedLostFlights
 
   std::size_t rows() const { return index.size(); }

@@ -9,10 +9,10 @@
 
 namespace dispersa {
 
-std::string CasesCsvHeader() {
+std::string CasesCsvHeader(std::size_t stages) {
   std::string line = "case_index,outcome,end_time_s,end_stage,reason";
-  for (const InputColumn& input : InputColumns()) line += ",input_" + input.name;
-  for (const std::string& metric : MetricNames()) line += ",metric_" + metric;
+  for (std::size_t i = 0; i < InputCount(stages); ++i) line += ",input_" + InputColumns()[i].name;
+  for (std::size_t i = 0; i < MetricCount(stages); ++i) line += ",metric_" + MetricNames()[i];
   return line + ",digest\n";
 }
 
@@ -24,10 +24,12 @@ std::string CasesCsvLine(const CaseResult& result) {
   return line + "," + result.digest.Hex() + "\n";
 }
 
-CasesCsv::CasesCsv(const std::filesystem::path& file) : file_(file) { file_.Write(CasesCsvHeader()); }
+CasesCsv::CasesCsv(const std::filesystem::path& file, std::size_t stages) : file_(file) {
+  file_.Write(CasesCsvHeader(stages));
+}
 
 void WriteCasesCsv(const ResultFolder& folder, const std::filesystem::path& file) {
-  CasesCsv csv(file);
+  CasesCsv csv(file, folder.stages());
   folder.ForEach([&csv](const CaseResult& result) { csv.Write(result); });
   csv.Commit();
 }

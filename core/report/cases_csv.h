@@ -10,14 +10,15 @@
 
 namespace dispersa {
 
-/// Both with their line break. Doubles in the shortest text that reads back to the same bits.
-std::string CasesCsvHeader();
+/// Both with their line break, of a vehicle with so many stages. Doubles in the shortest text that reads back
+/// to the same bits.
+std::string CasesCsvHeader(std::size_t stages);
 std::string CasesCsvLine(const CaseResult& result);
 
 /// The file as it grows; it takes its place as a whole.
 class CasesCsv {
  public:
-  explicit CasesCsv(const std::filesystem::path& file);
+  CasesCsv(const std::filesystem::path& file, std::size_t stages);
 
   /// In ascending order of case index.
   void Write(const CaseResult& result) { file_.Write(CasesCsvLine(result)); }

@@ -47,7 +47,7 @@ Pairing FindPairing(const CaseColumns& a, const CaseColumns& b, const SharedRows
   pairing.only_a = a.rows() - pairing.shared;
   pairing.only_b = b.rows() - pairing.shared;
   std::size_t varying = 0;
-  for (std::size_t input = 0; input < InputColumns().size(); ++input) {
+  for (std::size_t input = 0; input < std::min(a.inputs.size(), b.inputs.size()); ++input) {
     if (a.inputs[input].empty() || b.inputs[input].empty()) continue;
     const std::vector<double> of_a = a.inputs[input];
     const std::vector<double> of_b = b.inputs[input];

@@ -107,7 +107,7 @@ class Hdf5File {
 void ExportHdf5(const ResultFolder& folder, const std::filesystem::path& file) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // what goes wrong is thrown, not printed
   std::vector<int> inputs;
-  for (std::size_t i = 0; i < InputColumns().size(); ++i) inputs.push_back(static_cast<int>(i));
+  for (std::size_t i = 0; i < InputCount(folder.stages()); ++i) inputs.push_back(static_cast<int>(i));
   std::vector<double> end_time_s;
   std::vector<std::uint64_t> end_stage;
   std::vector<std::string> outcome, reason, digest;
@@ -140,10 +140,10 @@ void ExportHdf5(const ResultFolder& folder, const std::filesystem::path& file) {
         output.Attribute(path, "unit", SplitUnit(name).unit);
       };
       output.Group("/inputs");
-      for (std::size_t i = 0; i < InputColumns().size(); ++i)
+      for (std::size_t i = 0; i < cases.inputs.size(); ++i)
         column("/inputs/" + InputColumns()[i].name, InputColumns()[i].name, cases.inputs[i]);
       output.Group("/metrics");
-      for (std::size_t i = 0; i < MetricNames().size(); ++i)
+      for (std::size_t i = 0; i < cases.metrics.size(); ++i)
         column("/metrics/" + MetricNames()[i], MetricNames()[i], cases.metrics[i]);
     }
     std::filesystem::rename(temporary, file);

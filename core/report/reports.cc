@@ -19,7 +19,7 @@ CampaignSummary WriteReports(const ResultFolder& folder, const Campaign& campaig
                                  folder.directory().string(), folder.Provenance("engine"), EngineVersion()),
                      "the engine that flew it, or --no-histories");
   }
-  CasesCsv csv(folder.directory() / "cases.csv");
+  CasesCsv csv(folder.directory() / "cases.csv", folder.stages());
   const CaseColumns cases =
       ReadColumns(folder, DispersedInputs(campaign), [&csv](const CaseResult& result) { csv.Write(result); });
   csv.Commit();

@@ -32,16 +32,25 @@ constexpr char kSchema[] = "dispersa/results/1";
 /// Columns of `cases` before the inputs; the digests of the flight and of the row follow the metrics.
 constexpr int kFirstInput = 5;
 
-std::string CaseColumns(const char* type) {
+std::string CaseColumns(std::size_t stages, const char* type) {
   std::string columns;
-  for (const InputColumn& input : InputColumns()) columns += fmt::format(", input_{}{}", input.name, type);
-  for (const std::string& metric : MetricNames()) columns += fmt::format(", metric_{}{}", metric, type);
+  for (std::size_t i = 0; i < InputCount(stages); ++i)
+    columns += fmt::format(", input_{}{}", InputColumns()[i].name, type);
+  for (std::size_t i = 0; i < MetricCount(stages); ++i)
+    columns += fmt::format(", metric_{}{}", MetricNames()[i], type);
   return columns;
 }
 
-std::string SelectCases() {
-  return "SELECT case_index, outcome, end_time_s, end_stage, reason" + CaseColumns("") +
+std::string SelectCases(std::size_t stages) {
+  return "SELECT case_index, outcome, end_time_s, end_stage, reason" + CaseColumns(stages, "") +
          ", digest, row_digest FROM cases";
+}
+
+/// Vehicles of few stages have fewer columns.
+std::size_t StagesOf(Database& database) {
+  Statement rare = database.Prepare(
+      fmt::format("SELECT name FROM pragma_table_info('cases') WHERE name LIKE '%_stage{}%'", kMaxStages));
+  return rare.Step() ? kMaxStages : kUsualStages;
 }
 
 /// Younger than other tables: a folder may lack it.
@@ -51,11 +60,11 @@ void CreateAudits(Database& database) {
       "PRIMARY KEY (case_index, worker))");
 }
 
-void CreateTables(Database& database) {
+void CreateTables(Database& database, std::size_t stages) {
   database.Execute(
       "CREATE TABLE cases (case_index INTEGER PRIMARY KEY, outcome TEXT NOT NULL, end_time_s REAL, "
       "end_stage INTEGER NOT NULL, reason TEXT NOT NULL" +
-      CaseColumns(" REAL") + ", digest TEXT NOT NULL, row_digest TEXT NOT NULL)");
+      CaseColumns(stages, " REAL") + ", digest TEXT NOT NULL, row_digest TEXT NOT NULL)");
   database.Execute("CREATE TABLE quarantined (case_index INTEGER PRIMARY KEY, reason TEXT NOT NULL)");
   database.Execute("CREATE TABLE provenance (key TEXT PRIMARY KEY, value TEXT NOT NULL)");
   database.Execute(
@@ -111,15 +120,15 @@ std::optional<Digest> ParseDigest(const std::string& hex) {
 }
 
 /// None if the row is damaged.
-std::optional<CaseResult> ReadRow(const Statement& row) {
+std::optional<CaseResult> ReadRow(const Statement& row, std::size_t stages) {
   CaseResult result;
   result.case_index = static_cast<std::uint64_t>(row.Integer(0));
   result.end_time_s = row.Real(2);
   result.end_stage = static_cast<int>(row.Integer(3));
   result.reason = row.Text(4);
   int column = kFirstInput;
-  for (std::size_t i = 0; i < InputColumns().size(); ++i) result.inputs.push_back(row.Real(column++));
-  for (std::size_t i = 0; i < MetricNames().size(); ++i) result.metrics.push_back(row.Real(column++));
+  for (std::size_t i = 0; i < InputCount(stages); ++i) result.inputs.push_back(row.Real(column++));
+  for (std::size_t i = 0; i < MetricCount(stages); ++i) result.metrics.push_back(row.Real(column++));
   const std::optional<Digest> digest = ParseDigest(row.Text(column));
   if (!ParseOutcome(row.Text(1), &result.outcome) || !digest) return std::nullopt;
   result.digest = *digest;
@@ -128,8 +137,8 @@ std::optional<CaseResult> ReadRow(const Statement& row) {
   return result;
 }
 
-CaseResult ReadCase(const Statement& row, const fs::path& directory) {
-  if (auto result = ReadRow(row)) return *std::move(result);
+CaseResult ReadCase(const Statement& row, std::size_t stages, const fs::path& directory) {
+  if (auto result = ReadRow(row, stages)) return *std::move(result);
   throw ResultError(Kind::kFile,
                     fmt::format("{}: the row of case {} is damaged; --resume flies it again",
                                 (directory / kDatabaseName).string(), row.Integer(0)));
@@ -147,7 +156,7 @@ CaseResult ReadCase(const Statement& row, const fs::path& directory) {
 }  // namespace
 
 ResultFolder::ResultFolder(fs::path directory, std::unique_ptr<Database> database)
-    : directory_(std::move(directory)), database_(std::move(database)) {}
+    : directory_(std::move(directory)), stages_(StagesOf(*database)), database_(std::move(database)) {}
 
 ResultFolder::ResultFolder(ResultFolder&&) noexcept = default;
 ResultFolder& ResultFolder::operator=(ResultFolder&&) noexcept = default;
@@ -178,7 +187,7 @@ ResultFolder ResultFolder::Create(const fs::path& directory, const Campaign& cam
   {
     Database fresh(temporary, Database::Mode::kCreate);
     Transaction transaction(fresh);
-    CreateTables(fresh);
+    CreateTables(fresh, campaign.vehicle.stages.size());
     WriteProvenance(fresh, campaign, true);
     transaction.Commit();
   }
@@ -203,7 +212,7 @@ ResultFolder ResultFolder::Open(const fs::path& directory) {
   std::string schema;
   try {
     schema = folder.Provenance("schema");
-    folder.database_->Prepare(SelectCases());
+    folder.database_->Prepare(SelectCases(folder.stages_));
   } catch (const ResultError& unreadable) {
     if (schema != kSchema) {
       throw InputError(fmt::format("{}: not a result folder: {}", directory.string(), unreadable.what()));
@@ -250,9 +259,9 @@ void ResultFolder::Lock() {
 
 void ResultFolder::RemoveDamaged() {
   {
-    Statement select = database_->Prepare(SelectCases());
+    Statement select = database_->Prepare(SelectCases(stages_));
     while (select.Step()) {
-      if (!ReadRow(select)) damaged_.push_back(static_cast<std::uint64_t>(select.Integer(0)));
+      if (!ReadRow(select, stages_)) damaged_.push_back(static_cast<std::uint64_t>(select.Integer(0)));
     }
   }
   Remove(damaged_);
@@ -312,7 +321,7 @@ void ResultFolder::Store(std::span<const CaseResult> results, std::span<const Ex
 
 std::size_t ResultFolder::Insert(std::span<const CaseResult> results) {
   std::string parameters = "?, ?, ?, ?, ?, ?, ?";
-  for (std::size_t i = 0; i < InputColumns().size() + MetricNames().size(); ++i) parameters += ", ?";
+  for (std::size_t i = 0; i < InputCount(stages_) + MetricCount(stages_); ++i) parameters += ", ?";
   Statement stored = database_->Prepare("SELECT digest FROM cases WHERE case_index = ?");
   Statement insert = database_->Prepare("INSERT INTO cases VALUES (" + parameters + ")");
   Statement lift = database_->Prepare("DELETE FROM quarantined WHERE case_index = ?");
@@ -329,11 +338,11 @@ std::size_t ResultFolder::Insert(std::span<const CaseResult> results) {
                                     "{} arrived",
                                     index, stored.Text(0), digest));
     }
-    if (result.inputs.size() != InputColumns().size() || result.metrics.size() != MetricNames().size()) {
+    if (result.inputs.size() != InputCount(stages_) || result.metrics.size() != MetricCount(stages_)) {
       throw ResultError(Kind::kConflict,
-                        fmt::format("case {} has {} inputs and {} metrics, this engine has {} and {}", index,
-                                    result.inputs.size(), result.metrics.size(), InputColumns().size(),
-                                    MetricNames().size()));
+                        fmt::format("case {} has {} inputs and {} metrics, its vehicle has {} and {}", index,
+                                    result.inputs.size(), result.metrics.size(), InputCount(stages_),
+                                    MetricCount(stages_)));
     }
     insert.Reset();
     int parameter = 0;
@@ -449,17 +458,17 @@ bool ResultFolder::Contains(std::uint64_t case_index) const {
 }
 
 CaseResult ResultFolder::Load(std::uint64_t case_index) const {
-  Statement select = database_->Prepare(SelectCases() + " WHERE case_index = ?");
+  Statement select = database_->Prepare(SelectCases(stages_) + " WHERE case_index = ?");
   select.BindInteger(1, static_cast<std::int64_t>(case_index));
   if (!select.Step()) {
     throw InputError(fmt::format("{}: has no result of case {}", directory_.string(), case_index));
   }
-  return ReadCase(select, directory_);
+  return ReadCase(select, stages_, directory_);
 }
 
 void ResultFolder::ForEach(const std::function<void(const CaseResult&)>& callback) const {
-  Statement select = database_->Prepare(SelectCases() + " ORDER BY case_index");
-  while (select.Step()) callback(ReadCase(select, directory_));
+  Statement select = database_->Prepare(SelectCases(stages_) + " ORDER BY case_index");
+  while (select.Step()) callback(ReadCase(select, stages_, directory_));
 }
 
 }  // namespace dispersa

@@ -55,6 +55,8 @@ class ResultFolder : public ResultStore {
   ~ResultFolder() override;
 
   const std::filesystem::path& directory() const { return directory_; }
+  /// Of the vehicle, as far as its results' columns depend on it: kUsualStages or kMaxStages.
+  std::size_t stages() const { return stages_; }
   /// Value of "campaign_id", "flight_id", "engine", "name", "seed", "cases", "sampling"; and as they were before
   /// the first case was flown: "planned_cases", "requirements_id" and "requirements" (RequirementLine() each).
   std::string Provenance(const std::string& key) const;
@@ -103,6 +105,7 @@ class ResultFolder : public ResultStore {
   void Remove(const std::vector<std::uint64_t>& cases);
 
   std::filesystem::path directory_;
+  std::size_t stages_;
   std::optional<FolderLock> lock_;
   std::unique_ptr<Database> database_;
   std::vector<std::uint64_t> damaged_;

@@ -43,6 +43,7 @@ struct Flight {
   const FlightProgram* program = nullptr;
   AscentResult* result = nullptr;  // none: the lane is idle
   LaunchFrame frame;
+  std::vector<MotorBurn> burns;  // as this flight burns them
   std::vector<AscentEvent> events;
   std::size_t next_event = 0;
 
@@ -55,6 +56,7 @@ struct Flight {
   bool burning = false, burnt = false, boosting = false, turning = false;
   double ignition_s = 0.0;
   LaneVector turn_offset_I = lanes::Zero<double>();
+  double steer_rad = 0.0, steer_rad_s = 0.0, steer_from_s = 0.0, fade_rad = 0.0, fade_from_s = 0.0;  // Leg's
 
   bool in_reserve = false;  // injected already
   std::size_t samples = 0;  // to the injection
@@ -63,12 +65,18 @@ struct Flight {
   bool IsAtKnot() const { return step % steps_per_knot == 0; }
 };
 
+bool Steers(const AscentModel& model, const FlightProgram& program) {
+  for (std::size_t i = 0; i < model.vehicle.stages.size(); ++i)
+    if (!program.steering[i].empty()) return true;
+  return false;
+}
+
 template <class T>
 void SetLane(lanes::Leg<T>& leg, int lane, const AscentModel& model, const Flight& flight) {
   const std::size_t stack = static_cast<std::size_t>(flight.stack);
   SetLane(leg.program, lane, *flight.program);
   SetLane(leg.stack, lane, MassOf(model.plant, flight.stack, flight.jettisoned));
-  SetLane(leg.burn, lane, model.plant.stacks[stack].burn);
+  SetLane(leg.burn, lane, flight.burns[stack]);
   SetLane(leg.aero, lane, model.plant.stacks[stack].aerodynamics, *model.plant.stacks[stack].aero_grid);
   SetLane(leg.weather, lane, model.weather);
   leg.has_boosters = model.plant.boosters != nullptr;
@@ -82,6 +90,12 @@ void SetLane(lanes::Leg<T>& leg, int lane, const AscentModel& model, const Fligh
   Lane(leg.expelled_kg, lane) = is_last ? model.reaction_control_propellant_kg : 0.0;
   SetLane(leg.right_I, lane, ToLanes(flight.frame.R_IL.col(1)));
   SetLane(leg.turn_offset_I, lane, flight.turn_offset_I);
+  leg.any_steers = Steers(model, *flight.program) || (leg.any_steers && lanes::kWidth<T> > 1);
+  Lane(leg.steer_rad, lane) = flight.steer_rad;
+  Lane(leg.steer_rad_s, lane) = flight.steer_rad_s;
+  Lane(leg.steer_from_s, lane) = flight.steer_from_s;
+  Lane(leg.fade_rad, lane) = flight.fade_rad;
+  Lane(leg.fade_from_s, lane) = flight.fade_from_s;
 }
 
 // The largest of what limits are set on.
@@ -135,7 +149,10 @@ template <class T>
 class Fleet {
  public:
   Fleet(const AscentModel& model, const AscentOptions& options)
-      : model_(model), options_(options), ground_(GroundOf(model)) {}
+      : model_(model),
+        options_(options),
+        ground_(GroundOf(model)),
+        cuts_off_at_velocity_(CutsOffAtVelocity(model.vehicle)) {}
 
   void Fly(std::span<const FlightProgram> programs, std::span<AscentResult> results);
 
@@ -150,7 +167,10 @@ class Fleet {
   unsigned DueAt(int lane, double time_s, const LaneVector& p, const LaneVector& v) const;
   void LetGo(int lane, double from_s, const LaneVector& p, const LaneVector& v);
   void Drop(int lane, unsigned due);
+  void CutOff(int lane, double from_s, const LaneVector& p, const LaneVector& v);
   void ObserveHere(int lane);
+  void Steer(int lane, int stage);
+  void StopSteering(int lane);
   void Conclude(int lane, bool completed);
   void Inject(int lane);
 
@@ -185,6 +205,7 @@ class Fleet {
   const AscentModel& model_;
   const AscentOptions& options_;
   lanes::Ground ground_;
+  const bool cuts_off_at_velocity_;
   std::array<Flight, kWidth> flights_;
   lanes::Leg<T> leg_{};
   T time_s_ = T(0.0), next_s_ = T(0.0);
@@ -222,7 +243,8 @@ void Fleet<T>::TakeOff(int lane, const FlightProgram& program, AscentResult* res
   flight.program = &program;
   flight.result = result;
   flight.frame = BuildLaunchFrame(ground_.earth, model_.vehicle.site, program.launch_azimuth_rad);
-  AscentEvents all = EventsOf(model_, program);
+  flight.burns = BurnsOf(model_);
+  AscentEvents all = EventsOf(model_, flight.burns, program);
   flight.events = std::move(all.events);
   SetLane(p_, lane, ToLanes(flight.frame.p_EoL_I));
   SetLane(v_, lane, ToLanes(flight.frame.v_IL_I));
@@ -254,6 +276,10 @@ void Fleet<T>::AdvanceAll() {
   const T from_s = time_s_;
   lanes::Step(ground_, leg_, time_s_, next_s_, now.acceleration_I, &p_, &v_);
   time_s_ = next_s_;
+  if (cuts_off_at_velocity_)
+    for (int lane = 0; lane < kWidth; ++lane)
+      if (flights_[lane].result && flights_[lane].burning)
+        CutOff(lane, Lane(from_s, lane), LaneOf(p, lane), LaneOf(v, lane));
   const unsigned all = (1u << model_.plant.jettisons.size()) - 1u;
   if (all == 0) return;
   for (int lane = 0; lane < kWidth; ++lane)
@@ -277,7 +303,7 @@ template <class T>
 void Fleet<T>::Drop(int lane, unsigned due) {
   Flight& flight = flights_[lane];
   const double since_s = Lane(time_s_, lane) - flight.ignition_s;
-  const MotorBurn& burn = model_.plant.stacks[static_cast<std::size_t>(flight.stack)].burn;
+  const MotorBurn& burn = flight.burns[static_cast<std::size_t>(flight.stack)];
   const double propellant_kg = flight.burning ? burn.Propellant(since_s)
                                : flight.burnt ? burn.left_kg
                                               : burn.propellant_mass_kg;
@@ -325,6 +351,65 @@ void Fleet<T>::LetGo(int lane, double from_s, const LaneVector& p, const LaneVec
     SetOut(lane, event_s);
     flight.step = -1;  // the step that has been made was cut short: it does not count
   }
+}
+
+// After a step of a lane that began at `from_s`: an engine that has taken it beyond the speed at which it is
+// cut off is, at that speed, and all that follows has other times.
+template <class T>
+void Fleet<T>::CutOff(int lane, double from_s, const LaneVector& p, const LaneVector& v) {
+  Flight& flight = flights_[lane];
+  const std::size_t stack = static_cast<std::size_t>(flight.stack);
+  const Motor& engine = model_.vehicle.stages[stack].motor;
+  if (engine.cut_off != CutOff::kAtVelocity) return;
+  const auto beyond_m_s = [&](const LaneVector& then) {
+    return std::sqrt(lanes::Dot(then, then)) - engine.cut_off_velocity_m_s;
+  };
+  double after_m_s = beyond_m_s(LaneOf(v_, lane));
+  if (after_m_s < 0.0) return;
+  AscentPoint start = PointOf(lane);
+  start.time_s = from_s;
+  start.p = p;
+  start.v = v;
+  const LaneVector acceleration = InstantOf(ground_, start).acceleration_I;
+  const auto move_to = [&](double time_s) {
+    LaneVector there = p, then = v;
+    lanes::Step(ground_, start.leg, from_s, time_s, acceleration, &there, &then);
+    SetLane(p_, lane, there);
+    SetLane(v_, lane, then);
+    Lane(time_s_, lane) = time_s;
+    return beyond_m_s(then);
+  };
+  // Regula falsi (Illinois): within a step the speed grows almost in proportion to time.
+  constexpr double kNear_m_s = 1e-9;
+  double before_s = from_s, after_s = Lane(time_s_, lane), before_m_s = beyond_m_s(v);
+  if (before_m_s >= 0.0) move_to(from_s);  // it was too fast when it ignited
+  for (int i = 0; i < 60 && before_m_s < 0.0 && after_m_s > kNear_m_s; ++i) {
+    const double time_s = before_s + (after_s - before_s) * before_m_s / (before_m_s - after_m_s);
+    const double there_m_s = move_to(time_s);
+    if (there_m_s < 0.0) {
+      before_s = time_s;
+      before_m_s = there_m_s;
+      after_m_s *= 0.5;
+      if (there_m_s > -kNear_m_s) break;
+    } else {
+      after_s = time_s;
+      after_m_s = there_m_s;
+      before_m_s *= 0.5;
+    }
+  }
+  const double burnt_s = Lane(time_s_, lane) - flight.ignition_s;
+  if (burnt_s >= flight.burns[stack].duration_s) return;  // it ends by itself
+  CutOffAt(burnt_s, flight.burns[stack]);
+  for (std::size_t i = stack + 1; i < flight.burns.size() && model_.vehicle.stages[i].restarts; ++i)
+    SetPropellant(model_.vehicle.stages[i].motor, flight.burns[i - 1].left_kg, flight.burns[i]);
+  AscentResult& result = *flight.result;
+  result.cut_off_s[stack] = burnt_s;
+  AscentEvents all = EventsOf(model_, flight.burns, *flight.program);
+  flight.events = std::move(all.events);
+  result.last_ignition_s = all.last_ignition_s;
+  result.earlier_ignition_s = all.earlier_ignition_s;
+  SetLane(leg_, lane, model_, flight);
+  flight.step = flight.steps - 1;  // on to the cut-off
 }
 
 // From an event, or from lift-off, to the next one.
@@ -382,6 +467,28 @@ void Fleet<T>::ObserveHere(int lane) {
 }
 
 template <class T>
+void Fleet<T>::Steer(int lane, int stage) {
+  Flight& flight = flights_[lane];
+  const std::size_t i = static_cast<std::size_t>(stage);
+  const Steering& steering = flight.program->steering[i];
+  flight.steer_from_s = flight.ignition_s;
+  flight.steer_rad = steering.begin_rad;
+  // To depletion, whenever it is cut off.
+  const double whole_s = model_.plant.stacks[i].burn.duration_s;
+  flight.steer_rad_s = steering.empty() ? 0.0 : (steering.end_rad - steering.begin_rad) / whole_s;
+}
+
+template <class T>
+void Fleet<T>::StopSteering(int lane) {
+  Flight& flight = flights_[lane];
+  if (!Steers(model_, *flight.program)) return;
+  const AscentPoint point = PointOf(lane);
+  flight.fade_rad = lanes::SteeringAt(point.leg, point.time_s);
+  flight.fade_from_s = point.time_s;
+  flight.steer_rad = flight.steer_rad_s = 0.0;
+}
+
+template <class T>
 void Fleet<T>::Happen(int lane, const AscentEvent& event) {
   Flight& flight = flights_[lane];
   switch (event.kind) {
@@ -389,6 +496,7 @@ void Fleet<T>::Happen(int lane, const AscentEvent& event) {
       flight.burning = true;
       flight.boosting = event.stage == 0 && model_.plant.boosters != nullptr;
       flight.ignition_s = event.time_s;
+      Steer(lane, event.stage);
       break;
     case AscentEvent::kBoosterBurnout:
       ObserveHere(lane);
@@ -403,11 +511,14 @@ void Fleet<T>::Happen(int lane, const AscentEvent& event) {
       if (options_.record) Record(flight.frame, ground_, point, InstantOf(ground_, point), flight.result);
       flight.burning = false;
       flight.burnt = true;
+      StopSteering(lane);
       break;
     }
     case AscentEvent::kSeparation: {
       // The vehicle turns with its program: the stack above leaves with the velocity of its own CG.
-      SetBody(lane, AfterSeparation(model_.plant, event.stage, flight.jettisoned, BodyOf(lane)));
+      if (!model_.vehicle.stages[static_cast<std::size_t>(event.stage) + 1].restarts)
+        SetBody(lane, AfterSeparation(model_.plant, event.stage, flight.jettisoned, BodyOf(lane),
+                                      flight.burns[static_cast<std::size_t>(event.stage)].left_kg));
       flight.stack = event.stage + 1;
       flight.burnt = false;
       break;

@@ -3,6 +3,7 @@
 // planar equations (1) to (7) are its limit.
 #pragma once
 
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -76,6 +77,8 @@ struct AscentResult {
   Vector3 p_EoC_I = Vector3::Zero();
   Vector3 v_IC_I = Vector3::Zero();
   double last_ignition_s = 0.0;
+  /// How long engines that are cut off at a velocity burnt, by stage; infinite: to depletion.
+  std::array<double, kMaxStages> cut_off_s = AllStages(HUGE_VAL);
   std::vector<double> jettison_s;  ///< of each of the plant's jettisons; infinite: never
   std::array<double, kMaxStages> earlier_ignition_s{};  ///< of stages before the last that a timer ignites
   double q_max_pa = 0.0;

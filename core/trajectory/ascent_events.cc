@@ -6,9 +6,14 @@
 
 namespace dispersa {
 
-AscentEvents EventsOf(const AscentModel& model, const FlightProgram& program) {
+std::vector<MotorBurn> BurnsOf(const AscentModel& model) {
   std::vector<MotorBurn> burns;
   for (const LauncherStack& stack : model.plant.stacks) burns.push_back(stack.burn);
+  return burns;
+}
+
+AscentEvents EventsOf(const AscentModel& model, const std::vector<MotorBurn>& burns,
+                      const FlightProgram& program) {
   const std::size_t last = burns.size() - 1;
   AscentEvents all;
   // A coast counts from the burnout below, which no later timer moves.

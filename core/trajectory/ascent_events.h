@@ -21,6 +21,9 @@ struct AscentEvents {
   double last_ignition_s = 0.0;  ///< the last stage's timer; 0 of a single stage
   std::array<double, kMaxStages> earlier_ignition_s{};  ///< the others'
 };
-AscentEvents EventsOf(const AscentModel& model, const FlightProgram& program);
+AscentEvents EventsOf(const AscentModel& model, const std::vector<MotorBurn>& burns,
+                      const FlightProgram& program);
+/// Nominal ones of a model's stages.
+std::vector<MotorBurn> BurnsOf(const AscentModel& model);
 
 }  // namespace dispersa

@@ -77,6 +77,8 @@ void Record(const LaunchFrame& frame, const lanes::Ground& ground, const AscentP
   s.flight_path_angle_rad = Atan2(p.dot(v), p.cross(v).norm());
   s.relative_path_angle_rad = Atan2(p.dot(relative), p.cross(relative).norm());
   s.alpha_rad = lanes::IncidenceAt(point.leg.program, point.time_s);
+  if (point.leg.any_steers && point.time_s >= point.leg.program.t2_s)
+    s.alpha_rad += lanes::SteeringAt(point.leg, point.time_s);
   s.pitch_rad = angles.pitch;
   s.yaw_rad = angles.yaw;
   s.roll_rad = angles.roll;

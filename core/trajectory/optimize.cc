@@ -96,18 +96,12 @@ std::vector<Evaluation> Evaluate(const AscentModel& model, const TrajectoryProbl
 GeneticAlgorithmResult Search(const AscentModel& model, const TrajectoryProblem& problem,
                               const TrajectoryOptions& options, const GeneticAlgorithm::Observer& observer) {
   BoundedProblem bounded;
-  for (const Bounds& b : {problem.alpha_max_rad, problem.t1_s, problem.t3_s, problem.t2_s, problem.coast_s,
-                          problem.launch_azimuth_rad}) {
-    bounded.lower.push_back(b.low);
-    bounded.upper.push_back(b.high);
+  const std::vector<ProgramVariable> variables = VariablesOf(model.vehicle, problem);
+  for (const ProgramVariable& variable : variables) {
+    bounded.lower.push_back(variable.BoundsOf(problem).low);
+    bounded.upper.push_back(variable.BoundsOf(problem).high);
   }
-  for (const std::size_t stage : EarlierCoasts(model.vehicle)) {
-    bounded.lower.push_back(problem.earlier_coast_s[stage].low);
-    bounded.upper.push_back(problem.earlier_coast_s[stage].high);
-  }
-  const auto program_of = [&](const std::vector<double>& v) {
-    return ProgramOf(v, EarlierCoasts(model.vehicle));
-  };
+  const auto program_of = [&](const std::vector<double>& v) { return ProgramOf(v, variables); };
   bounded.evaluate = [&](const std::vector<double>& v) {
     return Evaluate(model, problem, options, {program_of(v)}).front();
   };
@@ -151,26 +145,6 @@ double DisorderOf(const FlightProgram& program, const TrajectoryOptions& options
          std::max(0.0, program.t3_s + options.shortest_ramp_s - program.t2_s);
 }
 
-std::vector<std::size_t> EarlierCoasts(const Vehicle& vehicle) {
-  std::vector<std::size_t> stages;
-  for (std::size_t i = 1; i + 1 < vehicle.stages.size(); ++i)
-    if (vehicle.stages[i].ignition == IgnitionTrigger::kTimer) stages.push_back(i);
-  return stages;
-}
-
-FlightProgram ProgramOf(const std::vector<double>& v, const std::vector<std::size_t>& earlier_coasts) {
-  FlightProgram program;
-  program.alpha_max_rad = v[0];
-  program.t1_s = v[1];
-  program.t3_s = v[2];
-  program.t2_s = v[3];
-  program.coast_s = v[4];
-  program.launch_azimuth_rad = v[5];
-  for (std::size_t i = 0; i < earlier_coasts.size(); ++i)
-    program.earlier_coast_s[earlier_coasts[i]] = v[6 + i];
-  return program;
-}
-
 Reference BuildReference(const AscentModel& model, const TrajectoryProblem& problem,
                          const FlightProgram& program, const TrajectoryOptions& options,
                          std::vector<AscentSample>* history) {
@@ -198,8 +172,8 @@ OptimizationResult OptimizeTrajectory(const Vehicle& vehicle, const TrajectoryPr
   model.reaction_control_propellant_kg = problem.reaction_control_propellant_kg;
   OptimizationResult result;
   result.genetic = Search(model, problem, options, observer);
-  const std::vector<std::size_t> earlier_coasts = EarlierCoasts(vehicle);
-  FlightProgram program = ProgramOf(result.genetic.variables, earlier_coasts);
+  const std::vector<ProgramVariable> variables = VariablesOf(vehicle, problem);
+  FlightProgram program = ProgramOf(result.genetic.variables, variables);
   std::int64_t ascents = static_cast<std::int64_t>(result.genetic.evaluations);
   result.refinement = RefineProgram(model, problem, options, &program);
   ascents += result.refinement.evaluations;
@@ -212,7 +186,7 @@ OptimizationResult OptimizeTrajectory(const Vehicle& vehicle, const TrajectoryPr
   result.refined = program;
   if (result.refinement.status != LeastSquaresStatus::kConverged) {
     // The refinement knows neither constraints nor weights: what it ends with may be worse.
-    const FlightProgram searched = ProgramOf(result.genetic.variables, earlier_coasts);
+    const FlightProgram searched = ProgramOf(result.genetic.variables, variables);
     const std::vector<Evaluation> both = Evaluate(model, problem, options, {searched, program});
     if (IsBetter(MeritOf(both[0]), MeritOf(both[1]), 0.0)) program = searched;
   }

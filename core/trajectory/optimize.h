@@ -8,6 +8,7 @@
 #include "core/optimization/genetic_algorithm.h"
 #include "core/optimization/levenberg_marquardt.h"
 #include "core/trajectory/ascent.h"
+#include "core/trajectory/program_variables.h"
 #include "core/trajectory/reference.h"
 
 namespace dispersa {
@@ -77,13 +78,6 @@ struct OptimizationResult {
 
 /// How far, s, a program's times are from order: t1, a ramp, t3, a ramp, t2. 0: in order.
 double DisorderOf(const FlightProgram& program, const TrajectoryOptions& options);
-
-/// The stages before the last that a timer ignites, each after a coast of its own.
-std::vector<std::size_t> EarlierCoasts(const Vehicle& vehicle);
-
-/// Variables in the order alpha_max, t1, t3, t2, coast, launch azimuth, then the earlier coasts.
-FlightProgram ProgramOf(const std::vector<double>& variables,
-                        const std::vector<std::size_t>& earlier_coasts = {});
 
 /// `observer`, if given, sees each generation. A target that cannot be reached is a result, not an error.
 /// Throws std::invalid_argument for options out of range.

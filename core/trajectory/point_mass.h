@@ -50,6 +50,9 @@ struct Leg {
   MaskOf<T> turning;        ///< t1 is past
   Vector<T> right_I;        ///< y axis of the launch frame
   Vector<T> turn_offset_I;  ///< body axis less direction of flight as the turn began
+  bool any_steers;          ///< some lane's program has Steering:
+  T steer_rad, steer_rad_s, steer_from_s;  ///< at ignition, its growth, ignition
+  T fade_rad, fade_from_s;                 ///< what the burn before ended with, and when
 };
 
 /// 10 s³ - 15 s⁴ + 6 s⁵: no rate or acceleration at 0 and 1.
@@ -64,6 +67,15 @@ DISPERSA_INLINE T IncidenceAt(const Program<T>& program, T time_s) {
   const T s = Select(time_s < program.t3_s, (time_s - program.t1_s) * program.inverse_fall_1_s,
                      (program.t2_s - time_s) * program.inverse_rise_1_s);
   return T(0.0) - program.alpha_max_rad * SmoothStep(Clamp(s, T(0.0), T(1.0)));
+}
+
+/// Incidence of Steering.
+template <class T>
+DISPERSA_INLINE T SteeringAt(const Leg<T>& leg, T time_s) {
+  const T since = time_s - leg.steer_from_s;
+  const T rise = SmoothStep(Clamp(since * T(1.0 / kSteeringRise_s), T(0.0), T(1.0)));
+  const T fade = SmoothStep(Clamp((time_s - leg.fade_from_s) * T(1.0 / kSteeringFade_s), T(0.0), T(1.0)));
+  return Fma(rise, Fma(leg.steer_rad_s, since, leg.steer_rad), leg.fade_rad * (T(1.0) - fade));
 }
 
 template <class T>
@@ -93,6 +105,14 @@ DISPERSA_INLINE Vector<T> ForwardAt(const Ground& ground, const Leg<T>& leg, T t
     const T faded = Clamp((time_s - leg.program.t1_s) * leg.program.inverse_fall_1_s, T(0.0), T(1.0));
     forward =
         Select(kicking, Normalized(Along(turned, T(1.0) - SmoothStep(faded), leg.turn_offset_I)), forward);
+  }
+  if (leg.any_steers) {
+    const T alpha = SteeringAt(leg, time_s);
+    const auto steering = leg.turning & !kicking & ((alpha < T(0.0)) | (alpha > T(0.0)));
+    if (Any(steering)) {
+      const Vector<T> right = Normalized(Along(leg.right_I, -Dot(leg.right_I, along), along));
+      forward = Select(steering, Cos(alpha) * along + Sin(alpha) * Cross(right, along), forward);
+    }
   }
   if (!All(leg.turning)) {
     const T turn = T(ground.earth.rotation_rate_rad_s) * time_s;

@@ -13,6 +13,18 @@
 
 namespace dispersa {
 
+/// Of a stage above the first while it burns: incidence in the plane of ascent, nose up, from ignition on in
+/// proportion to time, over the zero incidence of a gravity turn. A long burn needs it: a gravity turn falls
+/// too low. It sets in within kSteeringRise_s and, once the burn has ended, fades within kSteeringFade_s.
+struct Steering {
+  double begin_rad = 0.0;  ///< at ignition
+  double end_rad = 0.0;    ///< where the propellant would be used up
+
+  bool empty() const { return begin_rad == 0.0 && end_rad == 0.0; }
+};
+inline constexpr double kSteeringRise_s = 20.0;
+inline constexpr double kSteeringFade_s = 60.0;
+
 /// Section II of the paper: vertical to t1, turning with incidence to t2, then zero incidence; maximum
 /// incidence at t3. Times since lift-off.
 struct FlightProgram {
@@ -24,6 +36,7 @@ struct FlightProgram {
   double launch_azimuth_rad = 0.0;  ///< clockwise from north
   /// By stage: from the burnout below to the ignition of a stage before the last that a timer ignites.
   std::array<double, kMaxStages> earlier_coast_s{};
+  std::array<Steering, kMaxStages> steering{};  ///< by stage
 };
 
 /// Injection: geodetic altitude, inertial speed, inertial flight path angle, inclination, where the plane
@@ -49,6 +62,13 @@ struct ConstraintMargin {
 struct Bounds {
   double low = 0.0;
   double high = 0.0;
+
+  bool empty() const { return low == 0.0 && high == 0.0; }
+};
+struct SteeringBounds {
+  Bounds begin_rad, end_rad;
+
+  bool empty() const { return begin_rad.empty() && end_rad.empty(); }
 };
 
 /// Target, decision variables' bounds, objective (8) and constraints of section II.
@@ -63,6 +83,7 @@ struct TrajectoryProblem {
   double velocity_reserve_m_s = 0.0;  ///< the trajectory shall be so much faster, for guidance to spend
   Bounds alpha_max_rad, t1_s, t3_s, t2_s, coast_s, launch_azimuth_rad;
   std::array<Bounds, kMaxStages> earlier_coast_s{};
+  std::array<SteeringBounds, kMaxStages> steering{};
   double weight_altitude_1_m = 0.0;   ///< G1 of (8)
   double weight_velocity_s_m = 0.0;   ///< G2
   double weight_angle_1_rad = 0.0;    ///< G3

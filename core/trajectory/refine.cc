@@ -11,38 +11,8 @@ namespace dispersa {
 
 namespace {
 
-// One unknown of the refinement: where it is in a program, and its bounds in a problem.
-struct Freedom {
-  double FlightProgram::*variable;
-  Bounds TrajectoryProblem::*bounds;
-  double scale;
-  std::size_t earlier_coast = 0;  ///< or the coast before this stage
+using Kind = ProgramVariable::Kind;
 
-  double& Of(FlightProgram& program) const {
-    return earlier_coast > 0 ? program.earlier_coast_s[earlier_coast] : program.*variable;
-  }
-  const Bounds& BoundsOf(const TrajectoryProblem& problem) const {
-    return earlier_coast > 0 ? problem.earlier_coast_s[earlier_coast] : problem.*bounds;
-  }
-};
-
-constexpr Freedom kAlphaMax = {&FlightProgram::alpha_max_rad, &TrajectoryProblem::alpha_max_rad,
-                               0.1 * kRadPerDeg};
-constexpr Freedom kCoast = {&FlightProgram::coast_s, &TrajectoryProblem::coast_s, 1.0};
-constexpr Freedom kAzimuth = {&FlightProgram::launch_azimuth_rad, &TrajectoryProblem::launch_azimuth_rad,
-                              0.1 * kRadPerDeg};
-constexpr Freedom kTurnEnd = {&FlightProgram::t2_s, &TrajectoryProblem::t2_s, 1.0};
-
-// Three conditions have three unknowns. An inclination beside a speed is a fourth: the earlier coasts serve
-// it, or where there are none the end of the pitch-over, which spends a little more or less on the way.
-std::vector<Freedom> FreedomsOf(const AscentModel& model, const TrajectoryProblem& problem) {
-  std::vector<Freedom> freedoms = {kAlphaMax, kCoast, kAzimuth};
-  if (!problem.target_inclination_rad || problem.velocity_is_free) return freedoms;
-  for (const std::size_t stage : EarlierCoasts(model.vehicle))
-    freedoms.push_back({nullptr, nullptr, 1.0, stage});
-  if (freedoms.size() == 3) freedoms.push_back(kTurnEnd);
-  return freedoms;
-}
 // Forward differences over this fraction of a scale: the ascent's rounding and its curvature both spoil about
 // 1e-5 of a derivative, which costs Newton's method nothing.
 constexpr double kDifference = 1e-5;
@@ -50,23 +20,23 @@ constexpr double kDifference = 1e-5;
 constexpr double kWithinTolerance = 0.02;
 
 LeastSquaresResult Solve(const AscentModel& model, const TrajectoryProblem& problem,
-                         const TrajectoryOptions& options, const std::vector<Freedom>& freedoms,
+                         const TrajectoryOptions& options, const std::vector<ProgramVariable>& freedoms,
                          bool with_speed, FlightProgram* program, AscentResult* ascent = nullptr) {
   LeastSquaresProblem least_squares;
-  std::vector<Freedom> free;
+  std::vector<ProgramVariable> free;
   std::vector<std::size_t> index;
   std::vector<double> start;
   for (std::size_t i = 0; i < freedoms.size(); ++i) {
-    const Freedom& freedom = freedoms[i];
+    const ProgramVariable& freedom = freedoms[i];
     const Bounds& bounds = freedom.BoundsOf(problem);
     // Equal bounds freeze a variable.
     if (!(bounds.low < bounds.high)) continue;
     Unknown unknown;
     unknown.lower = bounds.low;
     unknown.upper = bounds.high;
-    unknown.scale = freedom.scale;
+    unknown.scale = freedom.scale();
     unknown.difference = Difference::kForward;
-    unknown.difference_step = std::fmin(kDifference * freedom.scale, 0.5 * (bounds.high - bounds.low));
+    unknown.difference_step = std::fmin(kDifference * freedom.scale(), 0.5 * (bounds.high - bounds.low));
     least_squares.unknowns.push_back(unknown);
     free.push_back(freedom);
     index.push_back(i);
@@ -134,15 +104,38 @@ LeastSquaresResult Solve(const AscentModel& model, const TrajectoryProblem& prob
 
 }  // namespace
 
+std::vector<ProgramVariable> AltitudeAndAngleVariables(const Vehicle& vehicle,
+                                                       const TrajectoryProblem& problem) {
+  std::vector<ProgramVariable> variables = {{Kind::kAlphaMax}, {Kind::kCoast}};
+  const std::vector<ProgramVariable> steering = SteeringVariables(vehicle, problem);
+  variables.insert(variables.end(), steering.begin(), steering.end());
+  return variables;
+}
+
+// Three conditions have three unknowns. An inclination beside a speed is a fourth: the earlier coasts serve
+// it, or where there are none the end of the pitch-over, which spends a little more or less on the way. What
+// steers upper stages always helps.
+std::vector<ProgramVariable> RefinedVariables(const Vehicle& vehicle, const TrajectoryProblem& problem) {
+  std::vector<ProgramVariable> variables = {{Kind::kAlphaMax}, {Kind::kCoast}, {Kind::kAzimuth}};
+  const std::vector<ProgramVariable> steering = SteeringVariables(vehicle, problem);
+  if (problem.target_inclination_rad && !problem.velocity_is_free) {
+    const std::vector<std::size_t> coasts = EarlierCoasts(vehicle);
+    for (const std::size_t stage : coasts) variables.push_back({Kind::kEarlierCoast, stage});
+    if (coasts.empty() && steering.empty()) variables.push_back({Kind::kT2});
+  }
+  variables.insert(variables.end(), steering.begin(), steering.end());
+  return variables;
+}
+
 LeastSquaresResult RefineProgram(const AscentModel& model, const TrajectoryProblem& problem,
                                  const TrajectoryOptions& options, FlightProgram* program,
                                  AscentResult* ascent) {
-  return Solve(model, problem, options, FreedomsOf(model, problem), true, program, ascent);
+  return Solve(model, problem, options, RefinedVariables(model.vehicle, problem), true, program, ascent);
 }
 
 LeastSquaresResult RefineAltitudeAndAngle(const AscentModel& model, const TrajectoryProblem& problem,
                                           const TrajectoryOptions& options, FlightProgram* program) {
-  return Solve(model, problem, options, {kAlphaMax, kCoast}, false, program);
+  return Solve(model, problem, options, AltitudeAndAngleVariables(model.vehicle, problem), false, program);
 }
 
 AscentOptions AscentOptionsOf(const TrajectoryProblem& problem, const AscentSteps& steps) {

@@ -9,16 +9,22 @@
 
 namespace dispersa {
 
-/// Changes `program` to the best found within the problem's bounds; variables with equal bounds stay. Of a
-/// target that names speed and inclination both, the earlier coasts are unknowns too, or else t2.
-/// `held_at_bound` of the result: 0 alpha_max, 1 coast, 2 launch azimuth, then those. `ascent`, if given, is
-/// the program's, with the steps of the refinement.
+/// alpha_max, coast, launch azimuth and what steers upper stages; of a target that names speed and
+/// inclination both, the earlier coasts too, or else t2.
+std::vector<ProgramVariable> RefinedVariables(const Vehicle& vehicle, const TrajectoryProblem& problem);
+/// alpha_max, coast and what steers upper stages.
+std::vector<ProgramVariable> AltitudeAndAngleVariables(const Vehicle& vehicle,
+                                                       const TrajectoryProblem& problem);
+
+/// Changes `program` to the best found in RefinedVariables within the problem's bounds; variables with equal
+/// bounds stay. `held_at_bound` of the result: positions in that list. `ascent`, if given, is the program's,
+/// with the steps of the refinement.
 LeastSquaresResult RefineProgram(const AscentModel& model, const TrajectoryProblem& problem,
                                  const TrajectoryOptions& options, FlightProgram* program,
                                  AscentResult* ascent = nullptr);
 
-/// Altitude and flight path angle only, by (alpha_max, coast) at the program's azimuth: the speed that is left
-/// then tells the vehicle's energy.
+/// Altitude and flight path angle only, by AltitudeAndAngleVariables at the program's azimuth: the speed that
+/// is left then tells the vehicle's energy.
 LeastSquaresResult RefineAltitudeAndAngle(const AscentModel& model, const TrajectoryProblem& problem,
                                           const TrajectoryOptions& options, FlightProgram* program);
 

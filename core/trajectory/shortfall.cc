@@ -16,23 +16,13 @@ namespace {
 double Deg(double radians) { return radians / kRadPerDeg; }
 
 // A variable that the refinement holds at the end of its bounds.
-std::string HeldText(const TrajectoryProblem& problem, const FlightProgram& program, std::size_t held) {
-  struct Variable {
-    const char* name;
-    double value;
-    Bounds bounds;
-    double unit;
-    const char* suffix;
-  };
-  const Variable variables[] = {
-      {"alpha_max", program.alpha_max_rad, problem.alpha_max_rad, kRadPerDeg, "deg"},
-      {"coast", program.coast_s, problem.coast_s, 1.0, "s"},
-      {"launch_azimuth", program.launch_azimuth_rad, problem.launch_azimuth_rad, kRadPerDeg, "deg"}};
-  if (held >= std::size(variables)) return " an earlier coast, or t2, is at an end of its bounds.";
-  const Variable& v = variables[held];
-  const bool upper = v.value - v.bounds.low > v.bounds.high - v.value;
-  return fmt::format(" {} is at the {} end of its bounds ({:.6g} {}).", v.name, upper ? "upper" : "lower",
-                     v.value / v.unit, v.suffix);
+std::string HeldText(const TrajectoryProblem& problem, const FlightProgram& program,
+                     const ProgramVariable& held) {
+  const double value = held.Of(program);
+  const Bounds& bounds = held.BoundsOf(problem);
+  const bool upper = value - bounds.low > bounds.high - value;
+  return fmt::format(" {} is at the {} end of its bounds ({:.6g} {}).", held.Name(),
+                     upper ? "upper" : "lower", value / held.unit(), held.unit_name());
 }
 
 struct SpeedAtTarget {
@@ -76,8 +66,9 @@ std::string CauseText(const AscentModel& model, const TrajectoryProblem& problem
   if (slow.velocity_m_s > fast.velocity_m_s) std::swap(slow, fast);
   std::string text;
   if (!fast.on_target) {
+    const std::vector<ProgramVariable> variables = AltitudeAndAngleVariables(model.vehicle, problem);
     for (const std::size_t held : fast.held)
-      text += " Bound: for altitude and angle" + HeldText(problem, fast.program, held);
+      text += " Bound: for altitude and angle" + HeldText(problem, fast.program, variables[held]);
   }
   if (problem.velocity_is_free) return text;
   const double asked = AimedVelocity(problem);
@@ -116,8 +107,9 @@ std::string DescribeShortfall(const AscentModel& model, const TrajectoryProblem&
   if (result.refinement.status != LeastSquaresStatus::kConverged) {
     text += CauseText(model, problem, options, result.refined);
     if (text.size() > before) return text;
+    const std::vector<ProgramVariable> variables = RefinedVariables(model.vehicle, problem);
     for (const std::size_t held : result.refinement.held_at_bound)
-      text += " Bound:" + HeldText(problem, result.refined, held);
+      text += " Bound:" + HeldText(problem, result.refined, variables[held]);
   }
   if (text.size() == before) text += fmt::format(" The refinement {}.", Describe(result.refinement.status));
   return text;

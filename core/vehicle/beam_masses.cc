@@ -138,7 +138,8 @@ OwnMassScale ScaleOwnMasses(const Vehicle& vehicle, int stage) {
 BeamMasses BuildBeamMasses(const Vehicle& vehicle, int stage, double propellant_kg) {
   const BeamStage nothing_lumped;  // a rigid vehicle, or one with a table of modes
   BeamMasses masses;
-  for (std::size_t i = static_cast<std::size_t>(stage); i < vehicle.stages.size(); ++i) {
+  for (std::size_t i = static_cast<std::size_t>(stage), last; i < vehicle.stages.size(); i = last + 1) {
+    last = static_cast<std::size_t>(LastBurn(vehicle, static_cast<int>(i)));
     const Stage& s = vehicle.stages[i];
     const BeamStage& beam = vehicle.structure_beam && i < vehicle.structure_beam->stages.size()
                                 ? vehicle.structure_beam->stages[i]
@@ -168,7 +169,7 @@ BeamMasses BuildBeamMasses(const Vehicle& vehicle, int stage, double propellant_
       }
     }
     // As long as they are carried; of a stack that has let go of them its loads are nothing to speak of.
-    for (const Jettison& j : s.jettisoned)
+    for (const Jettison& j : vehicle.stages[last].jettisoned)
       masses.spread.push_back(
           Spread(j.mass_kg, j.top_station_m, j.bottom_station_m, j.outer_diameter_m, j.inner_diameter_m));
     const bool burning = i == static_cast<std::size_t>(stage);

@@ -70,7 +70,7 @@ MassProperties StackMass::At(double propellant_kg) const {
 
 double DryMass(const Vehicle& vehicle, int stage) {
   const auto& stages = vehicle.stages;
-  const std::size_t i = static_cast<std::size_t>(stage);
+  const std::size_t i = static_cast<std::size_t>(LastBurn(vehicle, stage));
   const double above = i + 1 < stages.size() ? stages[i + 1].liftoff_mass_kg : 0.0;
   double dry = stages[i].liftoff_mass_kg - above - stages[i].propellant_mass_kg;
   for (const Jettison& jettison : stages[i].jettisoned) dry -= jettison.mass_kg;
@@ -134,14 +134,20 @@ std::vector<StackMass> BuildStackMasses(const Vehicle& vehicle) {
   std::vector<StackMass> stacks(vehicle.stages.size());
   for (int lowest = 0; lowest < count; ++lowest) {
     StackMass& stack = stacks[static_cast<std::size_t>(lowest)];
-    for (int i = lowest; i < count; ++i) {
+    if (vehicle.stages[static_cast<std::size_t>(lowest)].restarts) {
+      stack = stacks[static_cast<std::size_t>(lowest) - 1];  // by what is left in the tanks
+      stack.propellant_mass_kg = vehicle.stages[static_cast<std::size_t>(lowest)].propellant_mass_kg;
+      continue;
+    }
+    for (int i = lowest; i < count; i = LastBurn(vehicle, i) + 1) {
       const Stage& stage = vehicle.stages[static_cast<std::size_t>(i)];
       const double dry = DryMass(vehicle, i);
       for (const MassElement& e : stage.structure)
         Add({dry * e.fraction, e.top_station_m, e.bottom_station_m, 0.5 * e.outer_diameter_m,
              0.5 * e.inner_diameter_m},
             stack);
-      for (const Jettison& jettison : stage.jettisoned) Add(TubeOf(jettison), stack);
+      const Stage& at_last = vehicle.stages[static_cast<std::size_t>(LastBurn(vehicle, i))];
+      for (const Jettison& jettison : at_last.jettisoned) Add(TubeOf(jettison), stack);
       const Grain& g = stage.grain;
       for (const Tank& tank : stage.tanks)
         if (i > lowest) Add(tank, stack);

@@ -79,7 +79,8 @@ struct BoosterGrains {
 };
 BoosterGrains BuildBoosterGrains(const Boosters& boosters);
 
-/// Dry mass of a stage: its lift-off mass less what is above, its propellant, what it jettisons and boosters.
+/// Dry mass of a stage, whichever burn of it is asked for: its lift-off mass less what is above, its
+/// propellant, what it jettisons and boosters.
 double DryMass(const Vehicle& vehicle, int stage);
 /// Propellant density that the grain's volume implies, kg/m³; of a solid motor.
 double PropellantDensity(const Stage& stage);

@@ -96,7 +96,9 @@ constexpr Check kStageChecks[] = {
      "the tanks are inside the stage",
      [](const Subject& s) {
        if (!s.stage().is_liquid()) return kNothing;
-       double volume_m3 = 0.0, top_m = s.is_last() ? 0.0 : s.vehicle.stages[s.index + 1].bottom_station_m;
+       const auto above = static_cast<std::size_t>(LastBurn(s.vehicle, static_cast<int>(s.index))) + 1;
+       double volume_m3 = 0.0,
+              top_m = above < s.vehicle.stages.size() ? s.vehicle.stages[above].bottom_station_m : 0.0;
        for (const Tank& tank : s.stage().tanks) volume_m3 += tank.Volume();
        return volume_m3 / (0.25 * kPi * Square(s.stage().diameter_m) * (s.stage().bottom_station_m - top_m));
      }},
@@ -369,6 +371,7 @@ std::vector<PlausibilityFinding> Plausibility(const Vehicle& vehicle) {
   const std::vector<StageFigures> figures = FiguresOf(vehicle);
   std::vector<PlausibilityFinding> findings;
   for (std::size_t i = 0; i < vehicle.stages.size(); ++i) {
+    if (vehicle.stages[i].restarts) continue;  // the same body
     const std::string index = "[" + std::to_string(i) + "].";
     Apply(kStageChecks, {vehicle, figures, i}, "stages" + index, findings);
     for (std::size_t k = 0; k < vehicle.stages[i].tanks.size(); ++k)

@@ -80,13 +80,22 @@ MotorBurn BuildBurn(const Stage& stage, double thrust_factor, double flow_factor
     burn.duration_s = curve->end_s / flow_factor;
     burn.curve = std::move(curve);
   }
-  if (stage.is_liquid()) {
-    const ThrottledBurn throttled = Throttled(motor, burn.propellant_mass_kg, burn.full_flow_kg_s);
-    burn.duration_s = throttled.curve.end_s;
-    burn.left_kg = throttled.left_kg;
-    burn.curve = std::make_shared<const BurnCurve>(throttled.curve);
-  }
+  if (stage.is_liquid()) SetPropellant(motor, burn.propellant_mass_kg, burn);
   return burn;
+}
+
+void SetPropellant(const Motor& engine, double propellant_kg, MotorBurn& burn) {
+  const ThrottledBurn throttled = Throttled(engine, propellant_kg, burn.full_flow_kg_s);
+  burn.propellant_mass_kg = propellant_kg;
+  burn.duration_s = throttled.curve.end_s;
+  burn.left_kg = throttled.left_kg;
+  burn.curve = std::make_shared<const BurnCurve>(throttled.curve);
+}
+
+void CutOffAt(double since_ignition_s, MotorBurn& burn) {
+  if (since_ignition_s >= burn.duration_s) return;
+  burn.left_kg = burn.Propellant(since_ignition_s);
+  burn.duration_s = since_ignition_s;
 }
 
 }  // namespace dispersa

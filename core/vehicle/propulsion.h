@@ -45,6 +45,11 @@ MotorBurn BuildBurn(const Stage& stage, double thrust_factor, double flow_factor
 /// The same, preparing the curve if the stage has one.
 MotorBurn BuildBurn(const Stage& stage, double thrust_factor, double flow_factor);
 
+/// Gives a restarted engine's burn the propellant that its burn before left.
+void SetPropellant(const Motor& engine, double propellant_kg, MotorBurn& burn);
+/// Ends a throttled burn by command.
+void CutOffAt(double since_ignition_s, MotorBurn& burn);
+
 /// Of all boosters together, with the first stage's factors.
 MotorBurn BuildBoosterBurn(const Boosters& boosters, double thrust_factor, double flow_factor);
 

@@ -40,7 +40,7 @@ double TimeToBurn(const Piece& piece, double wanted_s) {
 }  // namespace
 
 ThrottledBurn Throttled(const Motor& engine, double propellant_kg, double full_flow_kg_s) {
-  const double usable_s = (propellant_kg - engine.residual_mass_kg) / full_flow_kg_s;
+  const double usable_s = std::max(propellant_kg - engine.residual_mass_kg, 0.0) / full_flow_kg_s;
   const double cut_s = engine.cut_off == CutOff::kAtTime ? engine.cut_off_s : kNever_s;
   ThrottledBurn burn;
   double burnt_s = 0.0;  // at full flow
@@ -56,11 +56,13 @@ ThrottledBurn Throttled(const Motor& engine, double propellant_kg, double full_f
     const double length_s = end_s - piece.begin_s;
     const double burnt_then_s = burnt_s + BurntBy(piece, length_s);
     if (ended) {
-      burn.left_kg = depletes ? engine.residual_mass_kg : propellant_kg - full_flow_kg_s * burnt_then_s;
+      burn.left_kg = depletes ? std::min(engine.residual_mass_kg, propellant_kg)
+                              : propellant_kg - full_flow_kg_s * burnt_then_s;
       burn.curve.end_s = end_s;
     }
     const double level = ended ? piece.level + piece.slope_1_s * length_s : piece.level;
-    const double left = ended ? burn.left_kg / propellant_kg : 1.0 - burnt_s * full_flow_kg_s / propellant_kg;
+    const double whole_kg = propellant_kg > 0.0 ? propellant_kg : 1.0;  // of a restart with nothing left
+    const double left = ended ? burn.left_kg / whole_kg : 1.0 - burnt_s * full_flow_kg_s / whole_kg;
     burn.curve.begin_s.push_back(piece.begin_s);
     burn.curve.rows.insert(burn.curve.rows.end(), {ended ? end_s : piece.begin_s, level, piece.slope_1_s, left, level,
                                                    piece.slope_1_s, 0.0, 0.0});

@@ -44,13 +44,10 @@ void CheckTube(const std::string& path, double top, double bottom, double outer,
                 "lies aft of the " + part + "'s bottom_station_m", "at most bottom_station_m of the " + part);
 }
 
-// Engine and tanks of a liquid stage.
-void CheckLiquid(const Stage& stage, const std::string& path, Checker& check) {
-  const Motor& motor = stage.motor;
-  check.Require(motor.ignition_rise_s == 0.0 && motor.tail_off_s == 0.0 && motor.thrust_curve.empty(), path + ".motor",
-                "has ramps or a thrust curve beside tanks", "a throttle, of a liquid stage");
+// Of a liquid engine in one burn.
+void CheckCommands(const Motor& motor, const std::string& path, Checker& check) {
   const Throttle& throttle = motor.throttle;
-  const std::string table = path + ".motor.liquid.throttle";
+  const std::string table = path + ".throttle";
   check.Require(throttle.time_s.size() == throttle.level.size() && throttle.time_s.size() != 1 &&
                     throttle.time_s.size() <= kThrustCurveCorners,
                 table,
@@ -68,7 +65,17 @@ void CheckLiquid(const Stage& stage, const std::string& path, Checker& check) {
   }
   check.Require(throttle.empty() || *std::max_element(throttle.level.begin(), throttle.level.end()) > 0.0, table,
                 "gives no thrust", "a level above 0 somewhere");
-  if (motor.cut_off == CutOff::kAtTime) check.Positive(motor.cut_off_s, path + ".motor.liquid.cut_off.after_s");
+  if (motor.cut_off == CutOff::kAtTime) check.Positive(motor.cut_off_s, path + ".cut_off.after_s");
+  if (motor.cut_off == CutOff::kAtVelocity)
+    check.Positive(motor.cut_off_velocity_m_s, path + ".cut_off.velocity_m_s");
+}
+
+// Engine and tanks of a liquid stage.
+void CheckLiquid(const Stage& stage, const std::string& path, Checker& check) {
+  const Motor& motor = stage.motor;
+  check.Require(motor.ignition_rise_s == 0.0 && motor.tail_off_s == 0.0 && motor.thrust_curve.empty(),
+                path + ".motor", "has ramps or a thrust curve beside tanks", "a throttle, of a liquid stage");
+  CheckCommands(motor, path + ".motor.liquid", check);
   check.Require(motor.residual_mass_kg >= 0.0 && motor.residual_mass_kg < stage.propellant_mass_kg,
                 path + ".motor.liquid.residual_mass_kg", "leaves nothing to burn", "0 to below propellant_mass_kg");
   double sum_kg = 0.0;
@@ -137,9 +144,23 @@ void CheckThrustCurve(const Stage& stage, const std::string& path, Checker& chec
                 "flows that sum up to the propellant within 1 %");
 }
 
+void CheckIgnition(const Stage& stage, bool first, const std::string& path, Checker& check) {
+  check.Require(
+      first == (stage.ignition == IgnitionTrigger::kLiftOff), path + ".ignition.trigger",
+      first ? "the first stage does not ignite at lift-off" : "only the first stage ignites at lift-off",
+      first ? "lift_off" : "burnout_detection or timer");
+  check.NotNegative(stage.ignition_delay_s, path + ".ignition.delay_s");
+  check.NotNegative(stage.separation_delay_s, path + ".separation_delay_s");
+}
+
 void CheckStage(const Vehicle& vehicle, std::size_t i, Checker& check) {
   const Stage& stage = vehicle.stages[i];
   const std::string path = "stages[" + std::to_string(i) + "]";
+  if (stage.restarts) {  // the body has been checked
+    CheckIgnition(stage, i == 0, path, check);
+    CheckCommands(stage.motor, path, check);
+    return;
+  }
   check.Positive(stage.liftoff_mass_kg, path + ".liftoff_mass_kg");
   check.Positive(stage.propellant_mass_kg, path + ".propellant_mass_kg");
   check.Positive(stage.diameter_m, path + ".diameter_m");
@@ -230,13 +251,7 @@ void CheckStage(const Vehicle& vehicle, std::size_t i, Checker& check) {
                       " m",
                   "a station aft of the centre of gravity");
   }
-  const bool first = i == 0;
-  check.Require(
-      first == (stage.ignition == IgnitionTrigger::kLiftOff), path + ".ignition.trigger",
-      first ? "the first stage does not ignite at lift-off" : "only the first stage ignites at lift-off",
-      first ? "lift_off" : "burnout_detection or timer");
-  check.NotNegative(stage.ignition_delay_s, path + ".ignition.delay_s");
-  check.NotNegative(stage.separation_delay_s, path + ".separation_delay_s");
+  CheckIgnition(stage, i == 0, path, check);
 }
 
 void CheckTables(const Vehicle& vehicle, Checker& check) {
@@ -295,6 +310,23 @@ void CheckBoosters(const Vehicle& vehicle, Checker& check) {
                 "boosters that leave while their stage burns");
 }
 
+void CheckRestarts(const Vehicle& vehicle, Checker& check) {
+  for (std::size_t i = 0; i < vehicle.stages.size(); ++i) {
+    if (!vehicle.stages[i].restarts) continue;
+    const std::string path = "stages[" + std::to_string(i) + "].restarts";
+    check.Require(!vehicle.structure_beam, path, "of a vehicle that bends is not modelled",
+                  "none beside structure_beam");
+    if (i == 0) continue;  // said at its ignition
+    const Stage& before = vehicle.stages[i - 1];
+    if (before.motor.cut_off == CutOff::kAtVelocity) continue;  // what it leaves a flight tells
+    const double left_kg = BuildBurn(before, 1.0, 1.0).left_kg;
+    check.Require(
+        left_kg > before.motor.residual_mass_kg, path,
+        "has nothing to burn: the burn before leaves " + std::to_string(left_kg) + " kg, the residual",
+        "a cut_off of the burn before that leaves propellant");
+  }
+}
+
 void CheckJettisons(const Vehicle& vehicle, Checker& check) {
   int count = 0;
   for (std::size_t i = 0; i < vehicle.stages.size(); ++i) {
@@ -311,6 +343,17 @@ void CheckJettisons(const Vehicle& vehicle, Checker& check) {
 
 }  // namespace
 
+int LastBurn(const Vehicle& vehicle, int stage) {
+  std::size_t last = static_cast<std::size_t>(stage);
+  while (last + 1 < vehicle.stages.size() && vehicle.stages[last + 1].restarts) ++last;
+  return static_cast<int>(last);
+}
+
+bool CutsOffAtVelocity(const Vehicle& vehicle) {
+  return std::any_of(vehicle.stages.begin(), vehicle.stages.end(),
+                     [](const Stage& stage) { return stage.motor.cut_off == CutOff::kAtVelocity; });
+}
+
 std::vector<VehicleProblem> Problems(const Vehicle& vehicle) {
   Checker check;
   const std::size_t count = vehicle.stages.size();
@@ -319,9 +362,10 @@ std::vector<VehicleProblem> Problems(const Vehicle& vehicle) {
   if (count < 1 || count > static_cast<std::size_t>(kMaxStages)) return check.Take();
   for (std::size_t i = 0; i < count; ++i) CheckStage(vehicle, i, check);
   for (std::size_t i = 0; i + 1 < count; ++i)
-    check.Require(vehicle.stages[i].bottom_station_m > vehicle.stages[i + 1].bottom_station_m,
-                  "stages[" + std::to_string(i) + "].bottom_station_m",
-                  "is not aft of the next stage's", "stations that decrease in the order of flight");
+    check.Require(vehicle.stages[i + 1].restarts ||
+                      vehicle.stages[i].bottom_station_m > vehicle.stages[i + 1].bottom_station_m,
+                  "stages[" + std::to_string(i) + "].bottom_station_m", "is not aft of the next stage's",
+                  "stations that decrease in the order of flight");
   double length = 0.0;
   for (const ProfileSection& section : vehicle.profile) length += section.length_m;
   if (vehicle.aerodynamics.empty())
@@ -333,6 +377,7 @@ std::vector<VehicleProblem> Problems(const Vehicle& vehicle) {
   for (const VehicleProblem& problem : ProfileProblems(vehicle.profile))
     check.Require(false, problem.path, problem.message, problem.allowed);
   CheckTables(vehicle, check);
+  CheckRestarts(vehicle, check);
   CheckJettisons(vehicle, check);
   CheckBoosters(vehicle, check);
   const ReactionControl& rcs = vehicle.reaction_control;

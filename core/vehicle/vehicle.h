@@ -17,8 +17,11 @@
 
 namespace dispersa {
 
-/// Results, inputs and metrics have one column a stage; this is the largest number of stages.
-inline constexpr int kMaxStages = 4;
+/// The largest number of stages.
+inline constexpr int kMaxStages = 6;
+/// Inputs and metrics have one column a stage: of vehicles with up to so many stages this many, of others
+/// kMaxStages.
+inline constexpr int kUsualStages = 4;
 
 /// A homogeneous hollow or solid cylinder on the axis: the building block of mass properties.
 struct MassElement {
@@ -62,6 +65,7 @@ struct Throttle {
 enum class CutOff {
   kAtDepletion,  ///< when all but the residual has flown
   kAtTime,       ///< `cut_off_s` after ignition, or by depletion if that comes first
+  kAtVelocity,   ///< at the inertial speed `cut_off_velocity_m_s`, or by depletion if that comes first
 };
 
 /// Constant thrust between two linear ramps whose impulse is part of the whole, or a thrust curve: propellant
@@ -79,6 +83,7 @@ struct Motor {
   Throttle throttle = {};
   CutOff cut_off = CutOff::kAtDepletion;
   double cut_off_s = 0.0;
+  double cut_off_velocity_m_s = 0.0;
   double residual_mass_kg = 0.0;  ///< of the propellant: never flows
 };
 /// Gives a motor a curve, and the greatest thrust and the time that its propellant would last at the greatest flow.
@@ -159,6 +164,9 @@ struct Stage {
   IgnitionTrigger ignition = IgnitionTrigger::kLiftOff;
   double ignition_delay_s = 0.0;    ///< after separation of the stage below (kBurnoutDetection)
   double separation_delay_s = 0.0;  ///< after burnout detection; the last stage does not separate
+  /// It is the stage before, whose engine burns again: the same body, with the propellant that was left.
+  /// Nothing separates in between. Each burn counts as a stage of its own.
+  bool restarts = false;
 
   bool is_liquid() const { return !tanks.empty(); }
   /// Where its propellant is, of all tanks together.
@@ -269,6 +277,11 @@ struct Vehicle {
   Sensors sensors;
   std::optional<StructureBeam> structure_beam;  ///< none: the vehicle is rigid
 };
+
+/// The last burn of the stage whose burn this is: itself unless the next one restarts it.
+int LastBurn(const Vehicle& vehicle, int stage);
+/// Whether some engine is cut off at a velocity: when it will is known only in flight.
+bool CutsOffAtVelocity(const Vehicle& vehicle);
 
 /// What contradicts itself in a vehicle, each with the path of the value ("stages[1].propellant_mass_kg").
 struct VehicleProblem {

@@ -31,7 +31,7 @@ struct CompareOptions {
 };
 
 CaseColumns AllColumns(const ResultFolder& folder) {
-  std::vector<int> inputs(InputColumns().size());
+  std::vector<int> inputs(InputCount(folder.stages()));
   std::iota(inputs.begin(), inputs.end(), 0);
   return ReadColumns(folder, inputs);
 }

@@ -42,7 +42,7 @@ void PrintJson(const CaseResult& result) {
 
 void PrintText(const CaseResult& result) {
   fmt::print("outcome  {}\ndigest   {}\n", OutcomeText(result), result.digest.Hex());
-  const std::vector<double> nominal = InputValues(FlightInputs{});
+  const std::vector<double> nominal = InputValues(FlightInputs{}, kMaxStages);
   for (std::size_t i = 0; i < result.inputs.size(); ++i) {
     if (result.inputs[i] == nominal[i]) continue;
     fmt::print("{:<44} {}\n", "input_" + InputColumns()[i].name, ShortestText(result.inputs[i]));

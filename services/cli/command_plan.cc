@@ -36,11 +36,12 @@ std::size_t TerminalWidth() {
 
 void PrintCsv(const Campaign& campaign, const CaseDesign& design) {
   std::string line = "case_index";
-  for (const InputColumn& column : InputColumns()) line += ",input_" + column.name;
+  const std::size_t stages = campaign.vehicle.stages.size();
+  for (std::size_t i = 0; i < InputCount(stages); ++i) line += ",input_" + InputColumns()[i].name;
   fmt::print("{}\n", line);
   for (std::uint64_t index = 0; index < campaign.sampling.cases; ++index) {
     line = std::to_string(index);
-    for (const double value : InputValues(design.Draw(index))) line += "," + ShortestText(value);
+    for (const double value : InputValues(design.Draw(index), stages)) line += "," + ShortestText(value);
     fmt::print("{}\n", line);
   }
 }
@@ -48,7 +49,9 @@ void PrintCsv(const Campaign& campaign, const CaseDesign& design) {
 void PrintJson(const Campaign& campaign, const CaseDesign& design) {
   auto cases = nlohmann::ordered_json::array();
   for (std::uint64_t index = 0; index < campaign.sampling.cases; ++index) {
-    cases.push_back({{"case_index", index}, {"inputs", InputsJson(InputValues(design.Draw(index)))}});
+    cases.push_back(
+        {{"case_index", index},
+         {"inputs", InputsJson(InputValues(design.Draw(index), campaign.vehicle.stages.size()))}});
   }
   const nlohmann::ordered_json plan = {{"schema", "dispersa/plan/1"},
                                        {"id", campaign.id},

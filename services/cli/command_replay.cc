@@ -60,10 +60,10 @@ std::vector<Difference> Differences(const CaseResult& stored, const CaseResult& 
   CompareText("reason", stored.reason, replayed.reason, differences);
   CompareNumber("end_time_s", stored.end_time_s, replayed.end_time_s, differences);
   CompareNumber("end_stage", stored.end_stage, replayed.end_stage, differences);
-  for (std::size_t i = 0; i < InputColumns().size(); ++i) {
+  for (std::size_t i = 0; i < stored.inputs.size(); ++i) {
     CompareNumber("input_" + InputColumns()[i].name, stored.inputs[i], replayed.inputs[i], differences);
   }
-  for (std::size_t i = 0; i < MetricNames().size(); ++i) {
+  for (std::size_t i = 0; i < stored.metrics.size(); ++i) {
     CompareNumber("metric_" + MetricNames()[i], stored.metrics[i], replayed.metrics[i], differences);
   }
   CompareText("digest", stored.digest.Hex(), replayed.digest.Hex(), differences);

@@ -18,10 +18,11 @@ constexpr std::size_t kNumberWidth = 13, kCaseWidth = 8;
 CaseColumns DrawnColumns(const Campaign& campaign, const std::vector<int>& inputs) {
   const CaseDesign design(campaign);
   CaseColumns cases;
-  cases.inputs.resize(InputColumns().size());
+  const std::size_t stages = campaign.vehicle.stages.size();
+  cases.inputs.resize(InputCount(stages));
   for (std::uint64_t index = 0; index < campaign.sampling.cases; ++index) {
     cases.index.push_back(index);
-    const std::vector<double> values = InputValues(design.Draw(index));
+    const std::vector<double> values = InputValues(design.Draw(index), stages);
     for (const int input : inputs) {
       const auto column = static_cast<std::size_t>(input);
       cases.inputs[column].push_back(values[column]);

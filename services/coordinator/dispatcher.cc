@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/flight/flight_inputs.h"
 #include "services/transport/complaints.h"
 #include "services/transport/validity.h"
 
@@ -211,6 +212,10 @@ std::vector<const FlownCase*> Dispatcher::On(const std::string& sender, const Re
   CampaignBook& book = *campaign->second.book;
   std::vector<const FlownCase*> accepted;
   for (const FlownCase& flown : report.flown) {
+    if (flown.result.inputs.size() != InputCount(book.campaign().vehicle.stages.size())) {
+      Disagree(sender, "a result is of another vehicle");
+      continue;
+    }
     const Acceptance acceptance =
         book.Accept(report.worker, known->second.host, follows ? flown.attempt : 0, flown.result, now_s);
     if (acceptance == Acceptance::kAccepted) accepted.push_back(&flown);

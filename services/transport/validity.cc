@@ -61,8 +61,11 @@ std::string Problem(const Orders& orders) {
 
 std::string Problem(const Report& report) {
   const auto has_sizes = [](const FlownCase& flown) {
-    return flown.result.inputs.size() == InputColumns().size() &&
-           flown.result.metrics.size() == MetricNames().size();
+    const auto are_of = [&](std::size_t stages) {
+      return flown.result.inputs.size() == InputCount(stages) &&
+             flown.result.metrics.size() == MetricCount(stages);
+    };
+    return are_of(kUsualStages) || are_of(kMaxStages);
   };
   const auto is_sane = [](const FlownCase& flown) {
     return flown.result.reason.size() <= kMaxReason && flown.result.end_stage >= 0 &&

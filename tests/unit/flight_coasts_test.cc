@@ -102,7 +102,8 @@ TEST(Coasts, ThePointMassCoastsBeforeTheSameStages) {
   const FlightDefinition definition = ThreeStages();
   EXPECT_EQ(EarlierCoasts(definition.vehicle), std::vector<std::size_t>{1});
   const AscentModel model = BuildAscentModel(definition.vehicle, definition.autopilot.tick_s);
-  FlightProgram program = ProgramOf({0.02, 5.0, 8.0, 15.0, 15.0, 0.5 * kPi, 20.0}, {1});
+  FlightProgram program =
+      ProgramOf({0.02, 5.0, 8.0, 15.0, 15.0, 0.5 * kPi, 20.0}, VariablesOf(definition.vehicle, {}));
   EXPECT_EQ(program.earlier_coast_s[1], 20.0);
   AscentOptions options;
   options.record = true;

@@ -37,7 +37,7 @@ TEST(CasesCsv, QuotesFieldsThatNeedIt) {
 }
 
 TEST(CasesCsv, NamesEveryColumn) {
-  const std::string header = CasesCsvHeader();
+  const std::string header = CasesCsvHeader(kUsualStages);
   EXPECT_THAT(header, StartsWith("case_index,outcome,end_time_s,end_stage,reason,input_" +
                                  InputColumns()[0].name + ","));
   EXPECT_THAT(header, EndsWith(",metric_" + MetricNames().back() + ",digest\n"));
@@ -72,7 +72,7 @@ TEST(CasesCsv, DoesNotDependOnTheOrderOfArrival) {
   WriteCasesCsv(shuffled, temporary / "shuffled" / "cases.csv");
   const std::string csv = ReadText(temporary / "ascending" / "cases.csv");
   EXPECT_EQ(csv, ReadText(temporary / "shuffled" / "cases.csv"));
-  std::string expected = CasesCsvHeader();
+  std::string expected = CasesCsvHeader(kUsualStages);
   for (std::uint64_t k = 0; k < 50; ++k) expected += CasesCsvLine(MakeCase(k));
   EXPECT_EQ(csv, expected);
 }
@@ -87,7 +87,8 @@ TEST(CasesCsv, ShowsNegativeZeroAsZeroAndUndefinedAsEmpty) {
   WriteCasesCsv(folder, temporary / "out" / "cases.csv");
   CaseResult normalised = result;
   normalised.metrics[0] = 0.0;
-  EXPECT_EQ(ReadText(temporary / "out" / "cases.csv"), CasesCsvHeader() + CasesCsvLine(normalised));
+  EXPECT_EQ(ReadText(temporary / "out" / "cases.csv"),
+            CasesCsvHeader(kUsualStages) + CasesCsvLine(normalised));
 }
 
 }  // namespace

@@ -1,0 +1,50 @@
+// The variables of a flight program that a search moves, and their bounds in a problem: one list for the
+// genetic algorithm, the refinement and what is said of them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/trajectory/reference.h"
+
+namespace dispersa {
+
+struct ProgramVariable {
+  enum class Kind {
+    kAlphaMax,
+    kT1,
+    kT3,
+    kT2,
+    kCoast,
+    kAzimuth,
+    kEarlierCoast,  ///< of a stage, as
+    kSteeringBegin,
+    kSteeringEnd,
+  };
+  Kind kind;
+  std::size_t stage = 0;
+
+  double& Of(FlightProgram& program) const;
+  double Of(const FlightProgram& program) const;
+  const Bounds& BoundsOf(const TrajectoryProblem& problem) const;
+  /// As its key in the file, without the unit: "stage3_coast".
+  std::string Name() const;
+  /// SI value of the file's unit, and that unit's name.
+  double unit() const;
+  const char* unit_name() const;
+  /// A small step of it.
+  double scale() const;
+};
+
+/// In the order alpha_max, t1, t3, t2, coast, launch azimuth, earlier coasts, steering by stage.
+std::vector<ProgramVariable> VariablesOf(const Vehicle& vehicle, const TrajectoryProblem& problem);
+/// Those of Steering that the problem lets move, a part of VariablesOf.
+std::vector<ProgramVariable> SteeringVariables(const Vehicle& vehicle, const TrajectoryProblem& problem);
+
+/// The stages before the last that a timer ignites, each after a coast of its own.
+std::vector<std::size_t> EarlierCoasts(const Vehicle& vehicle);
+
+/// The program whose variables have these values.
+FlightProgram ProgramOf(const std::vector<double>& values, const std::vector<ProgramVariable>& variables);
+
+}  // namespace dispersa
