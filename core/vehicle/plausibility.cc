@@ -89,14 +89,18 @@ constexpr Check kStageChecks[] = {
      "0.5 to 3 % of a liquid stage's propellant stays in tanks and lines",
      [](const Subject& s) { return s.stage().motor.residual_mass_kg / s.stage().propellant_mass_kg; }},
     {"tanks",
-     "take together, as part of the stage's diameter_m from its bottom to the next stage's,",
+     "take together, as part of the stage's diameter_m from its bottom to the next stage's (of the last: to "
+     "their top),",
      "",
      {0.0, 1.0},
-     {0.1, 0.95},
-     "the tanks are inside the stage",
+     {0.05, 0.95},
+     "the tanks are inside the stage; of Vega's upper stage they take 0.09",
      [](const Subject& s) {
        if (!s.stage().is_liquid()) return kNothing;
-       double volume_m3 = 0.0, top_m = s.is_last() ? 0.0 : s.vehicle.stages[s.index + 1].bottom_station_m;
+       // Above the last stage's tanks are payload and fairing.
+       const double top_m =
+           s.is_last() ? s.stage().PropellantTop() : s.vehicle.stages[s.index + 1].bottom_station_m;
+       double volume_m3 = 0.0;
        for (const Tank& tank : s.stage().tanks) volume_m3 += tank.Volume();
        return volume_m3 / (0.25 * kPi * Square(s.stage().diameter_m) * (s.stage().bottom_station_m - top_m));
      }},
