@@ -158,5 +158,35 @@ TEST(LiquidFile, UnusualLiquidsAreWarnedAbout) {
             "(solid propellants: Sutton and Biblarz, table 12-1)\n");
 }
 
+// Above the last stage's tanks stand payload and fairing, which are no part of what the tanks are measured
+// against.
+TEST(LiquidFile, TanksOfTheLastStageAreMeasuredFromTheirTopOn) {
+  const InputFiles files;
+  MakeLiquid(files);
+  files.Edit("vehicle.yaml", "propellant_mass_kg: 500", "propellant_mass_kg: 60");
+  files.Edit("vehicle.yaml",
+             "motor: {thrust_kn: 20, burning_time_s: 60, ignition_rise_s: 0.2, tail_off_s: 0.4}",
+             "motor: {liquid: {thrust_kn: 1, specific_impulse_s: 300}}");
+  const std::string tank =
+      "tanks: [{name: pair, propellant_mass_kg: 60, density_kg_m3: 1400, top_station_m: 2, "
+      "bottom_station_m: 3, diameter_m: 0.";
+  files.Edit("vehicle.yaml",
+             "grain: {top_station_m: 2, bottom_station_m: 3.5, outer_diameter_m: 0.9, inner_diameter_m: 0.3}",
+             tank + "246}]");
+  std::vector<InputProblem> warnings;
+  LoadVehicle(files.Path("vehicle.yaml"), &warnings);
+  // 0.0475 m3 of the two metres below 2 m, 1.571 m3.
+  EXPECT_EQ(files.Texts(warnings),
+            "vehicle.yaml:25:12: stages[1].tanks: take together, as part of the stage's diameter_m from its "
+            "bottom to the "
+            "next stage's (of the last: to their top), 0.03026, usual: 0.05 to 0.95 (the tanks are inside "
+            "the stage; of "
+            "Vega's upper stage they take 0.09)\n");
+  files.Edit("vehicle.yaml", tank + "246}]", tank + "32}]");  // 0.0512, a fill of 0.53
+  warnings.clear();
+  LoadVehicle(files.Path("vehicle.yaml"), &warnings);
+  EXPECT_EQ(files.Texts(warnings), "");
+}
+
 }  // namespace
 }  // namespace dispersa

@@ -18,6 +18,7 @@ TEST(CampaignYamlShipped, FilesAreValid) {
   int files = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(DISPERSA_CAMPAIGNS)) {
     if (entry.path().extension() != ".yaml") continue;
+    if (entry.path().filename() == "published.yaml") continue;  // the gallery's: what others flew, no input
     EXPECT_EQ(Texts(ValidateFile(entry.path().string())), "");
     ++files;
   }
