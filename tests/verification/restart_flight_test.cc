@@ -243,8 +243,11 @@ TEST(Steering, IsTheIncidenceOfTheBurn) {
   }
   EXPECT_GT(seen, 20.0);
   // Faded before the last burn, after a long coast.
-  for (const AscentSample& s : steered.samples)
-    if (s.stage == 4 && s.time_s > steered.last_ignition_s) EXPECT_EQ(s.alpha_rad, 0.0);
+  for (const AscentSample& s : steered.samples) {
+    if (s.stage == 4 && s.time_s > steered.last_ignition_s) {
+      EXPECT_EQ(s.alpha_rad, 0.0);
+    }
+  }
   // The autopilot follows.
   FlightDefinition definition = Slv4Definition(DISPERSA_CAMPAIGNS);
   definition.program = steered.attitude;
