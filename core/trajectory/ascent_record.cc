@@ -1,5 +1,7 @@
 #include "core/trajectory/ascent_record.h"
 
+#include <cmath>
+
 #include "core/flight/sequence.h"
 #include "core/math/constants.h"
 #include "core/math/functions.h"
@@ -26,7 +28,7 @@ AttitudeKnot KnotOf(const LaunchFrame& frame, const lanes::Ground& ground, const
   const PitchYawRoll now = AnglesOf(frame, ground, point);
   const PitchYawRoll after = AnglesOf(frame, ground, Beside(point, lanes::kDifference_s, acceleration));
   const auto rate = [&](double PitchYawRoll::*angle) {
-    return (after.*angle - before.*angle) / (2.0 * lanes::kDifference_s);
+    return std::remainder(after.*angle - before.*angle, kTwoPi) / (2.0 * lanes::kDifference_s);
   };
   return {point.time_s,
           now.pitch,
@@ -90,8 +92,14 @@ void Record(const LaunchFrame& frame, const lanes::Ground& ground, const AscentP
   s.v_IC_I = v;
   result->samples.push_back(s);
   std::vector<AttitudeKnot>& knots = result->attitude.knots;
-  if (knots.empty() || point.time_s > knots.back().time_s + kSameInstant_s)
-    knots.push_back(KnotOf(frame, ground, point, now.acceleration_I));
+  if (!knots.empty() && point.time_s <= knots.back().time_s + kSameInstant_s) return;
+  AttitudeKnot knot = KnotOf(frame, ground, point, now.acceleration_I);
+  // A long coast turns by more than half a turn; between knots angles are interpolated.
+  if (!knots.empty())
+    for (double AttitudeKnot::*angle : {&AttitudeKnot::pitch, &AttitudeKnot::yaw, &AttitudeKnot::roll})
+      while (std::fabs(knot.*angle - knots.back().*angle) > kPi)
+        knot.*angle += std::copysign(kTwoPi, knots.back().*angle - knot.*angle);
+  knots.push_back(knot);
 }
 
 }  // namespace dispersa

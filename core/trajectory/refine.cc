@@ -22,6 +22,9 @@ constexpr double kWithinTolerance = 0.02;
 LeastSquaresResult Solve(const AscentModel& model, const TrajectoryProblem& problem,
                          const TrajectoryOptions& options, const std::vector<ProgramVariable>& freedoms,
                          bool with_speed, FlightProgram* program, AscentResult* ascent = nullptr) {
+  const bool speed = with_speed && !problem.velocity_is_free;
+  const bool plane = with_speed && problem.target_inclination_rad.has_value();
+  const std::size_t conditions = 2 + (speed ? 1 : 0) + (plane ? 1 : 0);
   LeastSquaresProblem least_squares;
   std::vector<ProgramVariable> free;
   std::vector<std::size_t> index;
@@ -29,8 +32,8 @@ LeastSquaresResult Solve(const AscentModel& model, const TrajectoryProblem& prob
   for (std::size_t i = 0; i < freedoms.size(); ++i) {
     const ProgramVariable& freedom = freedoms[i];
     const Bounds& bounds = freedom.BoundsOf(problem);
-    // Equal bounds freeze a variable.
-    if (!(bounds.low < bounds.high)) continue;
+    // Equal bounds freeze a variable. More unknowns than conditions would leave a manifold.
+    if (!(bounds.low < bounds.high) || free.size() == conditions) continue;
     Unknown unknown;
     unknown.lower = bounds.low;
     unknown.upper = bounds.high;
@@ -42,8 +45,6 @@ LeastSquaresResult Solve(const AscentModel& model, const TrajectoryProblem& prob
     index.push_back(i);
     start.push_back(freedom.Of(*program));
   }
-  const bool speed = with_speed && !problem.velocity_is_free;
-  const bool plane = with_speed && problem.target_inclination_rad.has_value();
   const auto residuals = [&](const AscentResult& flown) {
     std::vector<double> values(least_squares.residual_scales.size(),
                                std::numeric_limits<double>::quiet_NaN());

@@ -9,8 +9,8 @@
 
 namespace dispersa {
 
-/// alpha_max, coast, launch azimuth and what steers upper stages; of a target that names speed and
-/// inclination both, the earlier coasts too, or else t2.
+/// alpha_max, coast, launch azimuth and what steers upper stages, of these as many as there are conditions;
+/// of a target that names speed and inclination both, the earlier coasts too, or else t2.
 std::vector<ProgramVariable> RefinedVariables(const Vehicle& vehicle, const TrajectoryProblem& problem);
 /// alpha_max, coast and what steers upper stages.
 std::vector<ProgramVariable> AltitudeAndAngleVariables(const Vehicle& vehicle,

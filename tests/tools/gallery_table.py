@@ -1,0 +1,139 @@
+#!/usr/bin/env python3
+"""Events of the gallery's nominal flights beside the published ones.
+
+gallery_table.py DISPERSA GALLERY            prints the tables
+gallery_table.py DISPERSA GALLERY --write    writes them into GALLERY/README.md, between their markers
+gallery_table.py DISPERSA GALLERY --check    compares README.md with them, and every difference with 2 %; ends with 1
+                                             if a number is farther away and published.yaml does not explain it
+"""
+
+import csv
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+import yaml
+
+WITHIN = 0.02
+LAUNCHERS = ("vega", "electron", "scout")
+TITLES = {
+    "lift_off": "lift-off",
+    "mach_1": "Mach 1",
+    "max_dynamic_pressure": "highest dynamic pressure",
+    "injection": "injection",
+}
+
+
+def fly(dispersa, campaign):
+    """Rows of the nominal flight's history, as floats by column."""
+    with tempfile.TemporaryDirectory() as folder:
+        history = pathlib.Path(folder) / "history.csv"
+        done = subprocess.run([dispersa, "fly", campaign, "--history", history], capture_output=True, text=True, timeout=300)
+        if done.returncode != 0 or "completed" not in done.stdout:
+            sys.exit(f"{campaign}: {done.stdout[:200]}{done.stderr}")
+        with open(history, newline="") as file:
+            return [{key: float(value) if value else 0.0 for key, value in row.items()} for row in csv.DictReader(file)]
+
+
+def speed(row, frame):
+    if frame == "inertial":
+        return row["inertial_velocity_m_s"]
+    return sum(row[f"ned_v_{axis}_m_s"] ** 2 for axis in "ned") ** 0.5
+
+
+def events_of(rows, vehicle):
+    """Row of each event, by name."""
+    events = {"lift_off": rows[0], "injection": rows[-1]}
+    events["ignition"] = rows[0] | {"time_s": -vehicle.get("hold_down_s", 0)}
+    events["mach_1"] = next(row for row in rows if row["mach"] >= 1)
+    events["max_dynamic_pressure"] = max(rows, key=lambda row: row["qbar_pa"])
+    for before, row in zip(rows, rows[1:]):
+        stage = int(row["stage"])
+        if stage > before["stage"]:
+            events[f"stage{stage - 1}_separation"] = row
+        if row["thrust_n"] > 0:
+            events.setdefault(f"stage{stage}_ignition", row)
+            events[f"stage{stage}_cut_off"] = row
+    for stage in vehicle["stages"]:
+        for jettison in stage.get("jettisoned", []):
+            drop = jettison["mass_kg"]
+            for before, row in zip(rows, rows[1:]):
+                lost = before["mass_kg"] - row["mass_kg"]
+                # A row's burning beside it is less than half of what leaves.
+                if row["stage"] == before["stage"] and 0.9 * drop < lost < 1.5 * drop:
+                    events.setdefault(f"{jettison['name'].replace(' ', '_')}_jettison", row)
+    return events
+
+
+def title_of(name):
+    return TITLES.get(name) or re.sub(r"^stage(\d)", r"stage \1:", name).replace("_", " ")
+
+
+def compare(launcher, dispersa, gallery):
+    """Lines of the table, and what is farther from the published number than 2 % without an explanation."""
+    folder = gallery / launcher
+    vehicle = yaml.safe_load((folder / "vehicle.yaml").read_text())
+    published = yaml.safe_load((folder / "published.yaml").read_text())
+    rows = fly(dispersa, folder / "campaign.yaml")
+    flown = events_of(rows, vehicle)
+    shift = vehicle.get("hold_down_s", 0) if published["time_zero"] == "ignition" else 0
+    lines = ["| event | time, s: published | flown | altitude, km: published | flown | velocity, m/s: published | flown | difference |",
+             "|---|---|---|---|---|---|---|---|"]
+    beyond = []
+    for event in published["events"]:
+        row = flown.get(event.get("flown_as", event["event"]))
+        if row is None:
+            sys.exit(f"{launcher}: {event['event']} does not happen")
+        cells, differences = [], []
+        for key, value, digits in (
+            ("time_s", row["time_s"] + shift, 1),
+            ("altitude_km", row["altitude_m"] / 1000, 1),
+            ("velocity_m_s", speed(row, event.get("frame", "relative")), 0),
+        ):
+            wanted = event.get(key)
+            cells += [f"{wanted:g}" if wanted is not None else "", f"{value:.{digits}f}"]
+            if not wanted:
+                continue
+            off = value / wanted - 1
+            differences.append(f"{100 * off:+.1f} %")
+            is_near = key == "time_s" and abs(value - wanted) <= event.get("tolerance_s", 0)
+            if abs(off) > WITHIN and not is_near and "explained" not in event:
+                beyond.append(f"{launcher}: {event['event']}: {key} is {value:.{digits}f}, published {wanted:g}")
+        frame = event.get("frame")
+        if frame and event.get("velocity_m_s"):
+            cells[4] += f", {frame.replace('_', ' ')}"
+        note = f"; {event['explained']}" if "explained" in event else ""
+        lines.append(f"| {title_of(event['event'])} | {' | '.join(cells)} | {', '.join(differences)}{note} |")
+    return lines, beyond
+
+
+def main():
+    dispersa, gallery = map(pathlib.Path, sys.argv[1:3])
+    mode = sys.argv[3] if len(sys.argv) > 3 else ""
+    readme = gallery / "README.md"
+    text = readme.read_text()
+    wanted, beyond = text, []
+    for launcher in LAUNCHERS:
+        lines, farther = compare(launcher, dispersa, gallery)
+        beyond += farther
+        if mode == "":
+            print("\n".join([f"{launcher}:"] + lines))
+        begin, end = f"<!-- {launcher}:begin -->\n", f"<!-- {launcher}:end -->"
+        if begin not in wanted:
+            sys.exit(f"{readme}: no marker {begin.strip()}")
+        head, rest = wanted.split(begin)
+        wanted = head + begin + "\n".join(lines) + "\n" + end + rest.split(end)[1]
+    for line in beyond:
+        print(line)
+    if mode == "--write":
+        readme.write_text(wanted)
+    if mode == "--check":
+        if wanted != text:
+            print(f"{readme}: its tables are not those of today's flights; gallery_table.py --write")
+        sys.exit(1 if beyond or wanted != text else 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,54 @@
+"""The gallery as its reader uses it: files that are valid and usual, a few cases flown, events as published."""
+
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+BINARY = pathlib.Path(os.environ["DISPERSA_BINARIES"]) / "dispersa"
+GALLERY = pathlib.Path(os.environ["DISPERSA_CAMPAIGNS"]) / "gallery"
+TABLE = pathlib.Path(__file__).parent.parent / "tools" / "gallery_table.py"
+LAUNCHERS = ("vega", "electron", "scout")
+CASES = 8
+
+
+def run(*arguments, environment=None):
+    return subprocess.run(arguments, capture_output=True, text=True, timeout=300, env=os.environ | (environment or {}))
+
+
+class Gallery(unittest.TestCase):
+    def test_vehicles_are_valid_and_usual(self):
+        for launcher in LAUNCHERS:
+            done = run(BINARY, "validate", "--strict", GALLERY / launcher / "vehicle.yaml")
+            self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_cases_complete_with_the_same_bits_in_any_lanes(self):
+        for launcher in LAUNCHERS:
+            with tempfile.TemporaryDirectory() as folder:
+                tables = []
+                for lanes in ("1", "4", "8"):
+                    out = pathlib.Path(folder) / lanes
+                    done = run(BINARY, "run", GALLERY / launcher / "campaign.yaml", "--cases", str(CASES), "--workers", "0",
+                               "--no-histories", "--out", out, environment={"DISPERSA_LANES": lanes, "DISPERSA_ISA": "v3"})
+                    self.assertIn(done.returncode, (0, 4), done.stderr)  # 4: so few cases decide nothing
+                    tables.append((out / "cases.csv").read_bytes())
+                self.assertEqual(tables[0], tables[1], launcher)
+                self.assertEqual(tables[0], tables[2], launcher)
+                self.assertEqual(tables[0].count(b",completed,"), CASES, launcher)
+                # A fifth stage has columns, which vehicles of four do without.
+                self.assertEqual(b"_stage5_" in tables[0], launcher == "vega", launcher)
+
+    def test_autopilots_meet_the_gates(self):
+        for launcher in LAUNCHERS:
+            done = run(BINARY, "margins", GALLERY / launcher / "campaign.yaml")
+            self.assertEqual(done.returncode, 0, done.stdout[-400:])
+
+    def test_events_are_those_of_the_table_and_as_published(self):
+        done = run(sys.executable, "-B", TABLE, BINARY, GALLERY, "--check")
+        self.assertEqual(done.returncode, 0, done.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()
