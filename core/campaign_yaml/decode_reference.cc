@@ -58,6 +58,12 @@ void DecodeTarget(const InputNode& node, const std::string& path, TrajectoryProb
   MapReader target(node, path, problems);
   problem.target_inclination_rad = target.OptionalQuantity("inclination", kAngle, Between(0.0, kPi));
   problem.target_node_rad = target.OptionalQuantity("node", kAngle, Between(0.0, kTwoPi));
+  problem.target_argument_of_perigee_rad =
+      target.OptionalQuantity("argument_of_perigee", kAngle, Between(0.0, kTwoPi));
+  if (problem.target_argument_of_perigee_rad &&
+      !(problem.target_inclination_rad && target.Has("perigee_altitude", kLength)))
+    AddProblem(problems, node, path, "an argument of perigee counts along an ellipse from its node",
+               "argument_of_perigee_deg beside perigee_altitude_km, apogee_altitude_km and inclination_deg");
   if (target.Has("perigee_altitude", kLength) || target.Has("apogee_altitude", kLength)) {
     problem.target_altitude_m = target.Quantity("perigee_altitude", kLength, kPositive);
     problem.target_apogee_m = target.Quantity("apogee_altitude", kLength, kPositive);
@@ -111,6 +117,7 @@ Orbit DecodeOrbit(const InputNode& node, const std::string& path, ProblemList& p
   orbit.flight_path_angle_rad = map.Quantity("flight_path_angle", kAngle, kAnyNumber);
   orbit.inclination_rad = map.Quantity("inclination", kAngle, Between(0.0, kPi));
   orbit.node_longitude_rad = map.Quantity("node_longitude", kAngle, Between(0.0, kTwoPi), 0.0);
+  orbit.argument_of_latitude_rad = map.Quantity("argument_of_latitude", kAngle, Between(0.0, kTwoPi), 0.0);
   return orbit;
 }
 
@@ -121,6 +128,7 @@ void CheckErrors(const InputNode& node, const std::string& path, ProblemList& pr
   map.Quantity("velocity", kSpeed, kAnyNumber);
   map.Quantity("flight_path_angle", kAngle, kAnyNumber);
   map.OptionalQuantity("inclination", kAngle, kAnyNumber);
+  map.OptionalQuantity("argument_of_perigee", kAngle, kAnyNumber);
 }
 
 ConstraintMargin DecodeConstraint(const InputNode& node, const std::string& path, ProblemList& problems) {
@@ -204,6 +212,8 @@ TrajectoryProblem DecodeTrajectoryProblem(const InputNode& node, const std::stri
     problem.weight_angle_1_rad = weights.Quantity("flight_path_angle", kPerAngle, kNonNegative);
     if (problem.target_inclination_rad)
       problem.weight_inclination_1_rad = weights.Quantity("inclination", kPerAngle, kNonNegative);
+    if (problem.target_argument_of_perigee_rad)
+      problem.weight_argument_1_rad = weights.Quantity("argument_of_perigee", kPerAngle, kNonNegative);
   }
   {
     MapReader limits(map.Required("limits", "a map"), map.PathOf("limits"), problems);

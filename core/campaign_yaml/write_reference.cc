@@ -34,6 +34,8 @@ std::string TargetText(const TrajectoryProblem& problem) {
   }
   if (problem.target_inclination_rad) text += ", inclination_deg: " + Deg(*problem.target_inclination_rad);
   if (problem.target_node_rad) text += ", node_deg: " + Deg(*problem.target_node_rad);
+  if (problem.target_argument_of_perigee_rad)
+    text += ", argument_of_perigee_deg: " + Deg(*problem.target_argument_of_perigee_rad);
   return text + "}\n";
 }
 
@@ -68,6 +70,8 @@ std::string ProblemText(const TrajectoryProblem& problem) {
           ", flight_path_angle_per_deg: " + FormatScaled(problem.weight_angle_1_rad, kDegPerRad);
   if (problem.target_inclination_rad)
     text += ", inclination_per_deg: " + FormatScaled(problem.weight_inclination_1_rad, kDegPerRad);
+  if (problem.target_argument_of_perigee_rad)
+    text += ", argument_of_perigee_per_deg: " + FormatScaled(problem.weight_argument_1_rad, kDegPerRad);
   text += "}\n";
   text += "  limits:\n";
   text += "    axial_load_g: " + FormatNumber(problem.axial_load_limit_g) + "\n";
@@ -124,12 +128,16 @@ std::string WriteReference(const Reference& reference) {
           ", flight_path_angle_deg: " + Deg(orbit.flight_path_angle_rad) +
           ", inclination_deg: " + Deg(orbit.inclination_rad);
   if (problem.target_node_rad) text += ", node_longitude_deg: " + Deg(orbit.node_longitude_rad);
+  if (problem.target_argument_of_perigee_rad)
+    text += ", argument_of_latitude_deg: " + Deg(orbit.argument_of_latitude_rad);
   text += "}\n";
   const OrbitErrors errors = ErrorsOf(problem, orbit);
   text += "errors: {altitude_km: " + Km(errors.altitude_m) +
           ", velocity_m_s: " + FormatNumber(errors.velocity_m_s) +
           ", flight_path_angle_deg: " + Deg(errors.flight_path_angle_rad);
   if (problem.target_inclination_rad) text += ", inclination_deg: " + Deg(errors.inclination_rad);
+  if (problem.target_argument_of_perigee_rad)
+    text += ", argument_of_perigee_deg: " + Deg(errors.argument_of_perigee_rad);
   text += "}\n";
   text += reference.constraints.empty() ? "constraints: []\n" : "constraints:\n";
   for (const ConstraintMargin& constraint : reference.constraints) {

@@ -14,6 +14,8 @@ struct OrbitElements {
   double perigee_altitude_m = 0.0;      ///< negative when the orbit meets the Earth
   double radius_m = 0.0;                ///< of the place
   double ascending_node_rad = 0.0;      ///< from I's x axis, 0 to 2 pi; 0 of an equatorial orbit
+  double argument_of_latitude_rad =
+      0.0;  ///< of the place, from the node, 0 to 2 pi; 0 of an equatorial orbit
 };
 
 /// Osculating Keplerian elements about a point mass at the Earth's centre.

@@ -52,10 +52,11 @@ std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary,
                           "not flown again may.",
                           bands.extreme_flights);
     page += fmt::format(
-        "<p>Pointwise percentiles over {}, flown again and sampled every {} s; a lost flight counts until it is "
-        "lost.{} S1 to S4 mark ignitions. Peaks between the samples are in the metrics, not here. Numbers: "
+        "<p>Pointwise percentiles over {}, flown again and sampled every {} s; a lost flight counts until it "
+        "is "
+        "lost.{} S1 to S{} mark ignitions. Peaks between the samples are in the metrics, not here. Numbers: "
         "<code>histories/bands.csv</code>.</p>\n",
-        sample, ReadableText(bands.step_s), extremes);
+        sample, ReadableText(bands.step_s), extremes, campaign.vehicle.stages.size());
     page += EnvelopeFigures(histories, summary, campaign.reference.program.t2_s);
   }
 

@@ -132,6 +132,9 @@ std::string ObjectiveText(const TrajectoryProblem& problem) {
   if (problem.target_inclination_rad)
     text += fmt::format(", {} per degree of inclination",
                         ReadableText(problem.weight_inclination_1_rad * kRadPerDeg));
+  if (problem.target_argument_of_perigee_rad)
+    text += fmt::format(", {} per degree of the argument of perigee",
+                        ReadableText(problem.weight_argument_1_rad * kRadPerDeg));
   return text;
 }
 
@@ -164,6 +167,10 @@ std::vector<InjectionRow> InjectionRows(const OptimizationResult& result,
     rows.push_back({"inclination, deg", 6, Deg(*problem.target_inclination_rad), Deg(orbit.inclination_rad),
                     Deg(error.inclination_rad), Deg(halved.inclination_rad),
                     arrived(&OrbitErrors::inclination_rad, kDegPerRad)});
+  if (problem.target_argument_of_perigee_rad)
+    rows.push_back({"argument of perigee, deg", 4, Deg(*problem.target_argument_of_perigee_rad),
+                    Deg(orbit.argument_of_latitude_rad), Deg(error.argument_of_perigee_rad),
+                    Deg(halved.argument_of_perigee_rad), std::nullopt});
   return rows;
 }
 

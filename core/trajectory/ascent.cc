@@ -552,7 +552,8 @@ void Fleet<T>::Conclude(int lane, bool completed) {
                   e.flight_path_angle_rad,
                   e.inclination_rad,
                   e.ascending_node_rad,
-                  e.radius_m};
+                  e.radius_m,
+                  e.argument_of_latitude_rad};
   const Peaks<double> peaks = LaneOf(peaks_, lane);
   result.q_max_pa = peaks.qbar_pa;
   result.q_alpha_max_pa_rad = peaks.q_alpha_pa_rad;

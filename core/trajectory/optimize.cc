@@ -64,6 +64,8 @@ Evaluation Judge(const TrajectoryProblem& problem, const TrajectoryOptions& opti
                          problem.weight_angle_1_rad * std::fabs(errors.flight_path_angle_rad);
   if (problem.target_inclination_rad)
     evaluation.objective += problem.weight_inclination_1_rad * std::fabs(errors.inclination_rad);
+  if (problem.target_argument_of_perigee_rad)
+    evaluation.objective += problem.weight_argument_1_rad * std::fabs(errors.argument_of_perigee_rad);
   evaluation.constraint_violations =
       Violations(ConstraintsOf(problem, program, ascent), options.limit_reserve);
   evaluation.tie_breaker = ascent.q_alpha_max_pa_rad;
@@ -127,17 +129,22 @@ OrbitErrors ErrorsOf(const TrajectoryProblem& problem, const Orbit& orbit) {
   // An ellipse's altitudes count from the equator's radius, as its elements do.
   const double altitude_m =
       problem.target_apogee_m ? orbit.radius_m - Wgs84().equatorial_radius_m : orbit.altitude_m;
-  return {altitude_m - problem.target_altitude_m,
-          problem.velocity_is_free ? 0.0 : orbit.velocity_m_s - AimedVelocity(problem),
-          orbit.flight_path_angle_rad - problem.target_flight_path_angle_rad,
-          problem.target_inclination_rad ? orbit.inclination_rad - *problem.target_inclination_rad : 0.0};
+  return {
+      altitude_m - problem.target_altitude_m,
+      problem.velocity_is_free ? 0.0 : orbit.velocity_m_s - AimedVelocity(problem),
+      orbit.flight_path_angle_rad - problem.target_flight_path_angle_rad,
+      problem.target_inclination_rad ? orbit.inclination_rad - *problem.target_inclination_rad : 0.0,
+      problem.target_argument_of_perigee_rad
+          ? std::remainder(orbit.argument_of_latitude_rad - *problem.target_argument_of_perigee_rad, kTwoPi)
+          : 0.0};
 }
 
 bool IsWithin(const OrbitErrors& errors, const OrbitErrors& tolerance) {
   return std::fabs(errors.altitude_m) <= tolerance.altitude_m &&
          std::fabs(errors.velocity_m_s) <= tolerance.velocity_m_s &&
          std::fabs(errors.flight_path_angle_rad) <= tolerance.flight_path_angle_rad &&
-         std::fabs(errors.inclination_rad) <= tolerance.inclination_rad;
+         std::fabs(errors.inclination_rad) <= tolerance.inclination_rad &&
+         std::fabs(errors.argument_of_perigee_rad) <= tolerance.argument_of_perigee_rad;
 }
 
 double DisorderOf(const FlightProgram& program, const TrajectoryOptions& options) {

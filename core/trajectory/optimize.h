@@ -18,7 +18,8 @@ struct OrbitErrors {
   double altitude_m = 0.0;
   double velocity_m_s = 0.0;
   double flight_path_angle_rad = 0.0;
-  double inclination_rad = 0.0;  ///< 0 where the target does not name it
+  double inclination_rad = 0.0;  ///< 0 where the target does not name it, as
+  double argument_of_perigee_rad = 0.0;
 };
 OrbitErrors ErrorsOf(const TrajectoryProblem& problem, const Orbit& orbit);
 /// Whether no error is larger than its tolerance.
@@ -56,7 +57,7 @@ struct TrajectoryOptions {
   int selection_population = 24;
   int selection_generations = 20;
   /// A target is reached when the refinement ends within these and every constraint holds; positive.
-  OrbitErrors tolerance = {1.0, 1e-3, 1.7453292519943296e-8, 1.7453292519943296e-8};
+  OrbitErrors tolerance = {1.0, 1e-3, 1.7453292519943296e-8, 1.7453292519943296e-8, 1.7453292519943296e-6};
   /// Of the refinement: steps tried; 1 to 100,000.
   int refinement_iterations = 60;
 };

@@ -41,7 +41,7 @@ struct FlightProgram {
 
 /// Injection: geodetic altitude, inertial speed, inertial flight path angle, inclination, where the plane
 /// crosses the equator northwards (east of Greenwich as it stood at lift-off), distance from the Earth's
-/// centre.
+/// centre, angle from the node along the orbit: at the perigee of an ellipse its argument.
 struct Orbit {
   double altitude_m = 0.0;
   double velocity_m_s = 0.0;
@@ -49,6 +49,7 @@ struct Orbit {
   double inclination_rad = 0.0;
   double node_longitude_rad = 0.0;
   double radius_m = 0.0;
+  double argument_of_latitude_rad = 0.0;
 };
 
 struct ConstraintMargin {
@@ -80,6 +81,7 @@ struct TrajectoryProblem {
   bool velocity_is_free = false;          ///< the target does not name it
   std::optional<double> target_inclination_rad;
   std::optional<double> target_node_rad;  ///< right ascension; the time of day of the lift-off meets it
+  std::optional<double> target_argument_of_perigee_rad;  ///< of an ellipse, with an inclination
   double velocity_reserve_m_s = 0.0;  ///< the trajectory shall be so much faster, for guidance to spend
   Bounds alpha_max_rad, t1_s, t3_s, t2_s, coast_s, launch_azimuth_rad;
   std::array<Bounds, kMaxStages> earlier_coast_s{};
@@ -88,6 +90,7 @@ struct TrajectoryProblem {
   double weight_velocity_s_m = 0.0;   ///< G2
   double weight_angle_1_rad = 0.0;    ///< G3
   double weight_inclination_1_rad = 0.0;
+  double weight_argument_1_rad = 0.0;
   double axial_load_limit_g = 12.0;
   double lateral_load_limit_g = 1.5;
   double alpha_limit_rad = 0.0;

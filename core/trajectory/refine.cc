@@ -24,7 +24,8 @@ LeastSquaresResult Solve(const AscentModel& model, const TrajectoryProblem& prob
                          bool with_speed, FlightProgram* program, AscentResult* ascent = nullptr) {
   const bool speed = with_speed && !problem.velocity_is_free;
   const bool plane = with_speed && problem.target_inclination_rad.has_value();
-  const std::size_t conditions = 2 + (speed ? 1 : 0) + (plane ? 1 : 0);
+  const bool turned = with_speed && problem.target_argument_of_perigee_rad.has_value();
+  const std::size_t conditions = 2 + (speed ? 1 : 0) + (plane ? 1 : 0) + (turned ? 1 : 0);
   LeastSquaresProblem least_squares;
   std::vector<ProgramVariable> free;
   std::vector<std::size_t> index;
@@ -54,7 +55,8 @@ LeastSquaresResult Solve(const AscentModel& model, const TrajectoryProblem& prob
     values[1] = errors.flight_path_angle_rad;
     std::size_t next = 2;
     if (speed) values[next++] = errors.velocity_m_s;
-    if (plane) values[next] = errors.inclination_rad;
+    if (plane) values[next++] = errors.inclination_rad;
+    if (turned) values[next] = errors.argument_of_perigee_rad;
     return values;
   };
   const AscentOptions ascent_options = AscentOptionsOf(problem, options.steps);
@@ -66,6 +68,7 @@ LeastSquaresResult Solve(const AscentModel& model, const TrajectoryProblem& prob
   least_squares.residual_scales = {options.tolerance.altitude_m, options.tolerance.flight_path_angle_rad};
   if (speed) least_squares.residual_scales.push_back(options.tolerance.velocity_m_s);
   if (plane) least_squares.residual_scales.push_back(options.tolerance.inclination_rad);
+  if (turned) least_squares.residual_scales.push_back(options.tolerance.argument_of_perigee_rad);
   // Of every point that is tried; one of them is the end.
   std::vector<std::pair<std::vector<double>, AscentResult>> tried;
   least_squares.residuals = [&](const std::vector<double>& unknowns) {
@@ -113,9 +116,9 @@ std::vector<ProgramVariable> AltitudeAndAngleVariables(const Vehicle& vehicle,
   return variables;
 }
 
-// Three conditions have three unknowns. An inclination beside a speed is a fourth: the earlier coasts serve
-// it, or where there are none the end of the pitch-over, which spends a little more or less on the way. What
-// steers upper stages always helps.
+// Three conditions have three unknowns. An inclination beside a speed is a fourth, an argument of perigee a
+// fifth: the earlier coasts serve them, or where there are none the end of the pitch-over, which spends a
+// little more or less on the way. What steers upper stages always helps.
 std::vector<ProgramVariable> RefinedVariables(const Vehicle& vehicle, const TrajectoryProblem& problem) {
   std::vector<ProgramVariable> variables = {{Kind::kAlphaMax}, {Kind::kCoast}, {Kind::kAzimuth}};
   const std::vector<ProgramVariable> steering = SteeringVariables(vehicle, problem);

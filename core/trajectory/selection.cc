@@ -32,7 +32,8 @@ Selection SelectProgram(const AscentModel& model, const TrajectoryProblem& probl
   coarse.steps = options.search_steps;
   coarse.tolerance = {kLooser * options.tolerance.altitude_m, kLooser * options.tolerance.velocity_m_s,
                       kLooser * options.tolerance.flight_path_angle_rad,
-                      kLooser * options.tolerance.inclination_rad};
+                      kLooser * options.tolerance.inclination_rad,
+                      kLooser * options.tolerance.argument_of_perigee_rad};
   coarse.refinement_iterations = kIterations;
   TrajectoryProblem steep = problem;
   steep.alpha_max_rad.high = std::max(problem.alpha_max_rad.high, kSteepest_rad);

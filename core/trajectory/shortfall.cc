@@ -100,6 +100,8 @@ std::string DescribeShortfall(const AscentModel& model, const TrajectoryProblem&
       e.altitude_m * 1e-3, e.velocity_m_s, Deg(e.flight_path_angle_rad));
   if (problem.target_inclination_rad)
     text += fmt::format(" Its inclination is off by {:+.4f} deg.", Deg(e.inclination_rad));
+  if (problem.target_argument_of_perigee_rad)
+    text += fmt::format(" Its argument of perigee is off by {:+.3f} deg.", Deg(e.argument_of_perigee_rad));
   const std::size_t before = text.size();
   for (const ConstraintMargin& c : result.reference.constraints)
     if (c.enforced && c.margin < 0.0)

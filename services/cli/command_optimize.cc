@@ -36,7 +36,8 @@ struct OptimizeOptions {
   int seeds = 0;    ///< 0: one optimisation that writes its reference; else a study that writes nothing
 };
 
-nlohmann::ordered_json ResultJson(const OptimizationResult& result, const std::string& file) {
+nlohmann::ordered_json ResultJson(const Vehicle& vehicle, const OptimizationResult& result,
+                                  const std::string& file) {
   const Reference& reference = result.reference;
   const FlightProgram& program = reference.program;
   auto constraints = nlohmann::ordered_json::array();
@@ -46,6 +47,9 @@ nlohmann::ordered_json ResultJson(const OptimizationResult& result, const std::s
                            {"limit", constraint.enforced ? JsonNumber(constraint.limit) : nullptr},
                            {"margin", constraint.enforced ? JsonNumber(constraint.margin) : nullptr}});
   }
+  nlohmann::ordered_json variables;
+  for (const ProgramVariable& variable : VariablesOf(vehicle, reference.problem))
+    variables[variable.Name() + "_" + variable.unit_name()] = variable.Of(program) / variable.unit();
   return {{"schema", "dispersa/optimize/1"},
           {"reference", file},
           {"reached", result.reached},
@@ -62,14 +66,9 @@ nlohmann::ordered_json ResultJson(const OptimizationResult& result, const std::s
            {{"altitude_km", JsonNumber(result.errors.altitude_m * 1e-3)},
             {"velocity_m_s", JsonNumber(result.errors.velocity_m_s)},
             {"flight_path_angle_deg", JsonNumber(result.errors.flight_path_angle_rad * kDegPerRad)},
-            {"inclination_deg", JsonNumber(result.errors.inclination_rad * kDegPerRad)}}},
-          {"variables",
-           {{"alpha_max_deg", program.alpha_max_rad * kDegPerRad},
-            {"t1_s", program.t1_s},
-            {"t3_s", program.t3_s},
-            {"t2_s", program.t2_s},
-            {"coast_s", program.coast_s},
-            {"launch_azimuth_deg", program.launch_azimuth_rad * kDegPerRad}}},
+            {"inclination_deg", JsonNumber(result.errors.inclination_rad * kDegPerRad)},
+            {"argument_of_perigee_deg", JsonNumber(result.errors.argument_of_perigee_rad * kDegPerRad)}}},
+          {"variables", std::move(variables)},
           {"constraints", std::move(constraints)},
           {"seed", reference.problem.seed},
           {"evaluations", reference.evaluations}};
@@ -188,7 +187,7 @@ ExitCode Optimize(const OptimizeOptions& options, const GlobalOptions& global) {
   WriteFile(beside(".csv"), AscentCsv(result.history));
   WriteFile(beside(".html"), TrajectoryPage(result, flown));
   if (global.json) {
-    fmt::print("{}\n", ResultJson(result, file.string()).dump(2));
+    fmt::print("{}\n", ResultJson(input.vehicle, result, file.string()).dump(2));
   } else {
     PrintText(result, flown);
     fmt::print("reference{}: {}\n", result.reached ? "" : ", which misses its target", file.string());

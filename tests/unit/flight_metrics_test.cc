@@ -327,9 +327,10 @@ TEST(MetricsRecorder, EveryMetricOfAMadeUpFlight) {
       {"step_limit_fraction", 0.0}};
 
   const std::vector<double> values = flight.recorder.Finish();
-  ASSERT_EQ(values.size(), MetricNames().size());
-  std::set<std::string> names(MetricNames().begin(), MetricNames().end());
-  ASSERT_EQ(names.size(), MetricNames().size()) << "a name occurs twice";
+  ASSERT_EQ(values.size(), MetricCount(kUsualStages));
+  const std::set<std::string> all(MetricNames().begin(), MetricNames().end());
+  ASSERT_EQ(all.size(), MetricNames().size()) << "a name occurs twice";
+  std::set<std::string> names(MetricNames().begin(), MetricNames().begin() + std::ssize(values));
   for (std::size_t i = 0; i < values.size(); ++i) {
     const std::string& name = MetricNames()[i];
     const auto known = expected.find(name);
@@ -525,6 +526,23 @@ TEST(ElementsOf, RetrogradeAndDescending) {
   const OrbitElements e = ElementsOf(earth, s.p_EoC_I, s.v_IC_I);
   EXPECT_NEAR(e.inclination_rad, 97.5 * kDeg, 1e-14);
   EXPECT_LT(e.flight_path_angle_rad, 0.0);
+}
+
+TEST(ElementsOf, TheArgumentOfLatitudeCountsFromTheNodeAlongTheOrbit) {
+  const Earth earth = Wgs84();
+  const double inclination = 97.0 * kDeg, node = 200.0 * kDeg;
+  for (const double argument : {0.1, 80.0, 179.0, 181.0, 300.0, 359.9}) {
+    const auto at = [&](double u) {
+      return Vector3(std::cos(node) * std::cos(u) - std::sin(node) * std::sin(u) * std::cos(inclination),
+                     std::sin(node) * std::cos(u) + std::cos(node) * std::sin(u) * std::cos(inclination),
+                     std::sin(u) * std::sin(inclination));
+    };
+    const double u = argument * kDeg;
+    const OrbitElements e = ElementsOf(earth, 7e6 * at(u), 7.5e3 * at(u + 0.5 * kPi));
+    EXPECT_NEAR(e.argument_of_latitude_rad, u, 1e-12);
+    EXPECT_NEAR(e.ascending_node_rad, node, 1e-12);
+    EXPECT_NEAR(e.inclination_rad, inclination, 1e-12);
+  }
 }
 
 TEST(ElementsOf, TheNodeIsWhereTheOrbitGoesNorth) {

@@ -199,6 +199,34 @@ TEST(CutOffAtVelocity, EndsAtThatSpeedInBothModels) {
   EXPECT_NEAR(own.end_kg[kSecondBurn], judge.end_kg[kSecondBurn], 1e-5);
 }
 
+// Six stages: three burns of the last one.
+TEST(CutOffAtVelocity, OfThreeBurns) {
+  Vehicle vehicle = CutAtVelocity(6200.0);
+  vehicle.stages.push_back(vehicle.stages[kSecondBurn]);
+  const double speeds_m_s[] = {6200.0, 6500.0, 6900.0};
+  for (std::size_t i = 0; i < 3; ++i) {
+    Motor& engine = vehicle.stages[kFirstBurn + i].motor;
+    engine.cut_off = CutOff::kAtVelocity;
+    engine.cut_off_velocity_m_s = speeds_m_s[i];
+  }
+  FlightProgram program = Program();
+  program.earlier_coast_s[kSecondBurn] = 40.0;
+  const AscentResult ascent = Ascend(vehicle, program);
+  ASSERT_TRUE(ascent.completed);
+  FlightDefinition definition = Following(vehicle, ascent);
+  for (AxisConfig* axis :
+       {&definition.autopilot.roll, &definition.autopilot.pitch, &definition.autopilot.yaw}) {
+    if (axis->gains.size() == 5) axis->gains.push_back(axis->gains.back());
+    if (axis->adaptation.gamma.size() == 5) axis->adaptation.gamma.push_back(axis->adaptation.gamma.back());
+    if (axis->integral.ki_1_s3.size() == 5) axis->integral.ki_1_s3.push_back(axis->integral.ki_1_s3.back());
+  }
+  const Burns burns = FlyBurns(definition, {});
+  ASSERT_EQ(burns.result.outcome, Outcome::kCompleted) << burns.result.reason;
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(burns.end_m_s[kFirstBurn + i], speeds_m_s[i], 1e-3) << i;
+  ASSERT_EQ(burns.result.metrics.size(), MetricNames().size());
+  EXPECT_GT(MetricOf(burns.result, "pitch_error_peak_stage6_deg"), 0.0);
+}
+
 // A speed that it cannot reach is none: it burns to depletion, and nothing is left to burn again.
 TEST(CutOffAtVelocity, OutOfReachIsDepletion) {
   const Vehicle vehicle = CutAtVelocity(20e3);

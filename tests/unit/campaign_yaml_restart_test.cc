@@ -1,0 +1,122 @@
+// Engines that burn again and cut-off at a velocity in vehicle files, and each bad input's full text.
+#include <gtest/gtest.h>
+
+#include "core/campaign_yaml/load.h"
+#include "core/vehicle/mass.h"
+#include "core/vehicle/propulsion.h"
+#include "tests/unit/bad_input.h"
+#include "tests/unit/input_files.h"
+
+namespace dispersa {
+namespace {
+
+constexpr char kGallery[] = DISPERSA_CAMPAIGNS "/gallery/vega/";
+
+// Vega, whose upper stage burns twice.
+class Vega {
+ public:
+  Vega() { files_.Write("vehicle.yaml", ReadWholeFile(std::string(kGallery) + "vehicle.yaml")); }
+  void Edit(const std::string& from, const std::string& to) const { files_.Edit("vehicle.yaml", from, to); }
+  Vehicle Load() const { return LoadVehicle(files_.Path("vehicle.yaml")); }
+  std::string Problems() const { return files_.Texts(ValidateFile(files_.Path("vehicle.yaml"))); }
+
+ private:
+  InputFiles files_;
+};
+constexpr char kFirstCutOff[] = "cut_off: {at: inertial_velocity, velocity_m_s: 8030}";
+constexpr char kAgain[] = "    cut_off: {at: inertial_velocity, velocity_m_s: 7136}\n";
+
+TEST(RestartFile, IsTheStageBeforeWithCommandsOfItsOwn) {
+  const Vehicle vehicle = Vega().Load();
+  ASSERT_EQ(vehicle.stages.size(), 5u);
+  const Stage &first = vehicle.stages[3], &again = vehicle.stages[4];
+  EXPECT_TRUE(again.restarts && !first.restarts);
+  EXPECT_EQ(again.name, "avum again");
+  EXPECT_EQ(first.motor.cut_off, CutOff::kAtVelocity);
+  EXPECT_EQ(first.motor.cut_off_velocity_m_s, 8030.0);
+  EXPECT_EQ(again.motor.cut_off_velocity_m_s, 7136.0);
+  EXPECT_EQ(again.ignition, IgnitionTrigger::kTimer);
+  EXPECT_EQ(again.tanks.size(), first.tanks.size());
+  // What is jettisoned stays on until it is due, in whichever burn.
+  EXPECT_TRUE(first.jettisoned.empty());
+  EXPECT_EQ(again.jettisoned.size(), 1u);
+  EXPECT_EQ(LastBurn(vehicle, 3), 4);
+  EXPECT_EQ(DryMass(vehicle, 3), DryMass(vehicle, 4));
+}
+
+TEST(RestartFile, KnowsWhatATimedBurnLeaves) {
+  const Vega file;
+  file.Edit(kFirstCutOff, "cut_off: {at: time, after_s: 170.9}");
+  const Vehicle vehicle = file.Load();
+  const Stage &first = vehicle.stages[3], &again = vehicle.stages[4];
+  const double burnt_kg = 2450.0 / (315.5 * 9.80665) * 170.9;
+  EXPECT_NEAR(first.propellant_mass_kg - again.propellant_mass_kg, burnt_kg, 1e-6);
+  EXPECT_NEAR(first.liftoff_mass_kg - again.liftoff_mass_kg, burnt_kg, 1e-6);
+  // The same body with emptier tanks.
+  const std::vector<StackMass> stacks = BuildStackMasses(vehicle);
+  const double left_kg = again.propellant_mass_kg;
+  EXPECT_EQ(stacks[3].At(left_kg).mass_kg, stacks[4].At(left_kg).mass_kg);
+  EXPECT_EQ(stacks[3].At(left_kg).cg_station_m, stacks[4].At(left_kg).cg_station_m);
+  EXPECT_NEAR(stacks[4].At(left_kg).mass_kg, again.liftoff_mass_kg, 1e-9);
+  EXPECT_EQ(file.Problems(), "");
+}
+
+// Six stages and no more.
+TEST(RestartFile, MayFollowARestart) {
+  const std::string once_more = "  - {name: once more, restarts: true, ignition: {trigger: timer}}\n";
+  const Vega file;
+  file.Edit("\n# Axial: (from memory", "\n" + once_more + "\n# Axial: (from memory");
+  const Vehicle vehicle = file.Load();
+  ASSERT_EQ(vehicle.stages.size(), 6u);
+  EXPECT_EQ(LastBurn(vehicle, 3), 5);
+  EXPECT_EQ(vehicle.stages[5].motor.cut_off, CutOff::kAtDepletion);
+  EXPECT_EQ(vehicle.stages[5].jettisoned.size(), 1u);
+  file.Edit(once_more, once_more + once_more);
+  EXPECT_NE(file.Problems().find("stages: has 7 entries, allowed: 1 to 6 entries"), std::string::npos)
+      << file.Problems();
+}
+
+TEST(RestartFile, OfAnEngineThatIsEmptyIsRefused) {
+  const Vega file;
+  file.Edit(kFirstCutOff, "cut_off: {at: depletion}");
+  const std::string said = file.Problems();
+  EXPECT_NE(
+      said.find("stages[4].restarts: has nothing to burn: the burn before leaves 17.000000 kg, the residual, "
+                "allowed: a cut_off of the burn before that leaves propellant"),
+      std::string::npos)
+      << said;
+}
+
+TEST(RestartFile, NeedsALiquidStageBefore) {
+  const InputFiles files;
+  files.Edit("vehicle.yaml", "stages:\n", "stages:\n  - {name: none, restarts: true}\n");
+  const std::string said = files.Texts(ValidateFile(files.Path("vehicle.yaml")));
+  EXPECT_NE(
+      said.find(
+          "stages[0].restarts: there is no stage before, allowed: restarts: true after a stage with motor: "
+          "{liquid: {...}}"),
+      std::string::npos)
+      << said;
+}
+
+TEST(RestartFile, SaysNothingTwice) {
+  const Vega file;
+  file.Edit(kAgain, std::string(kAgain) + "    propellant_mass_kg: 300\n");
+  const std::string said = file.Problems();
+  EXPECT_NE(said.find("stages[4].propellant_mass_kg"), std::string::npos) << said;
+}
+
+TEST(CutOffFile, AtAVelocityNeedsOneAndAUnit) {
+  for (const auto& [text, expected] :
+       {std::pair{"cut_off: {at: inertial_velocity}", "stages[3].motor.liquid.cut_off"},
+        {"cut_off: {at: inertial_velocity, velocity_m_s: -1}", "stages[3].motor.liquid.cut_off.velocity_m_s"},
+        {"cut_off: {at: velocity, velocity_m_s: 8000}", "stages[3].motor.liquid.cut_off.at"}}) {
+    const Vega file;
+    file.Edit(kFirstCutOff, text);
+    const std::string said = file.Problems();
+    EXPECT_NE(said.find(expected), std::string::npos) << text << ": " << said;
+  }
+}
+
+}  // namespace
+}  // namespace dispersa
