@@ -41,7 +41,7 @@ inline FlightInputs Table3Inputs() {
 
 /// A metric by its name.
 inline double MetricOf(const FlightResult& flight, const std::string& name) {
-  for (std::size_t i = 0; i < MetricNames().size(); ++i)
+  for (std::size_t i = 0; i < flight.metrics.size(); ++i)
     if (MetricNames()[i] == name) return flight.metrics[i];
   throw std::out_of_range("no metric " + name);
 }

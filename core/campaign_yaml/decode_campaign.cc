@@ -327,12 +327,13 @@ void HintAt(MapReader& map, const std::string& key, const Range& mistaken, const
 }
 
 Requirement DecodeRequirement(const InputNode& node, const std::string& path, const VerdictPlan& plan,
-                              ProblemList& problems) {
+                              std::size_t stages, ProblemList& problems) {
   MapReader map(node, path, problems);
   Requirement requirement;
   const InputNode& metric = map.Required("metric", "the name of a metric");
   requirement.metric = ReadText(metric, map.PathOf("metric"), problems);
-  const std::vector<std::string>& names = MetricNames();
+  const auto last = MetricNames().begin() + static_cast<std::ptrdiff_t>(MetricCount(stages));
+  const std::vector<std::string> names(MetricNames().begin(), last);
   if (metric.kind == InputNode::Kind::kScalar &&
       std::find(names.begin(), names.end(), metric.text) == names.end()) {
     AddProblem(problems, metric, map.PathOf("metric"),
@@ -565,7 +566,8 @@ DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vect
   }
   map.Each("requirements", map.node().Find("requirements") == nullptr ? 0 : 1, SIZE_MAX,
            [&](const InputNode& item, const std::string& path) {
-             campaign.requirements.push_back(DecodeRequirement(item, path, plan, problems));
+             campaign.requirements.push_back(
+                 DecodeRequirement(item, path, plan, campaign.vehicle.stages.size(), problems));
            });
 
   if (HasLimits(campaign.vehicle.limits)) RequireLimitsKept(plan, campaign.requirements);

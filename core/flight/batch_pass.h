@@ -460,7 +460,7 @@ void Batch<T>::CheckEnds() {
     else if (limits.terminate && ExceedsStructure(limits, loads))
       End(lane, Outcome::kStructuralLimit, "a structural limit of the vehicle was exceeded");
     else if (Bits(is_late) >> lane & 1u)
-      End(lane, Outcome::kTimeout, "3600 s of simulated time passed");
+      End(lane, Outcome::kTimeout, "21600 s of simulated time passed");
   }
 }
 

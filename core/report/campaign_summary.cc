@@ -26,7 +26,7 @@ const char* const kUsualMetrics[] = {"pitch_error_peak_deg", "pitch_error_rms_de
                                      "q_alpha_max_pa_rad"};
 
 WorstCases FindWorst(const std::string& metric, Worse worse, const CaseColumns& cases) {
-  const std::vector<double> values = cases.metrics.at(MetricColumn(metric));
+  const std::vector<double> values = MeasuredValues(cases, metric);
   const auto is_worse = [&](std::size_t a, std::size_t b) {
     const double badness_a = std::isfinite(values[a]) ? Badness(worse, values[a]) : HUGE_VAL;
     const double badness_b = std::isfinite(values[b]) ? Badness(worse, values[b]) : HUGE_VAL;

@@ -35,11 +35,15 @@ CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& want
   return cases;
 }
 
-std::vector<double> CompletedValues(const CaseColumns& cases, const std::string& metric) {
+std::vector<double> MeasuredValues(const CaseColumns& cases, const std::string& metric) {
   const std::size_t column = MetricColumn(metric);
   if (column >= cases.metrics.size())
-    return std::vector<double>(cases.rows(), kUndefined);  // a stage too far
-  std::vector<double> values = cases.metrics[column];
+    return std::vector<double>(cases.rows(), kUndefined);  // of a stage too far
+  return cases.metrics[column];
+}
+
+std::vector<double> CompletedValues(const CaseColumns& cases, const std::string& metric) {
+  std::vector<double> values = MeasuredValues(cases, metric);
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (cases.outcome[i] != Outcome::kCompleted) values[i] = kUndefined;
   }

@@ -33,7 +33,9 @@ inline constexpr std::size_t kListedLostFlights = 10000;
 CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& wanted_inputs,
                         const std::function<void(const CaseResult&)>& observe = {});
 
-/// A metric's values, NaN for every flight that was not completed whatever it measured until then.
+/// A metric's values, NaN where the vehicle does not have it.
+std::vector<double> MeasuredValues(const CaseColumns& cases, const std::string& metric);
+/// The same, NaN for every flight that was not completed whatever it measured until then.
 std::vector<double> CompletedValues(const CaseColumns& cases, const std::string& metric);
 
 /// Flights that were not completed.

@@ -95,7 +95,7 @@ struct MetricValues {
 
 MetricValues ValuesOf(const CaseColumns& cases, const std::vector<std::size_t>& rows,
                       const std::string& metric, Worse worse) {
-  const std::vector<double> all = cases.metrics[MetricColumn(metric)];
+  const std::vector<double> all = MeasuredValues(cases, metric);
   MetricValues result;
   for (const std::size_t row : rows) {
     const bool lost = cases.outcome[row] != Outcome::kCompleted;

@@ -36,7 +36,7 @@ std::string Plural(std::int64_t count, const char* noun) {
 
 /// A case of a requirement: what it measured, undefined when the flight was lost.
 std::vector<double> ValuesOf(const Requirement& requirement, const CaseColumns& cases) {
-  std::vector<double> values = cases.metrics.at(MetricColumn(requirement.metric));
+  std::vector<double> values = MeasuredValues(cases, requirement.metric);
   if (!LossFails(requirement)) return values;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (cases.outcome[i] != Outcome::kCompleted) values[i] = kUndefined;

@@ -44,7 +44,9 @@ struct SearchCommand {
 
 /// A limit of the command line, or the campaign's own.
 Requirement WantedRequirement(const SearchCommand& command, const Campaign& campaign) {
-  const std::vector<std::string>& names = MetricNames();
+  const auto last =
+      MetricNames().begin() + static_cast<std::ptrdiff_t>(MetricCount(campaign.vehicle.stages.size()));
+  const std::vector<std::string> names(MetricNames().begin(), last);
   if (!command.metric.empty() && std::find(names.begin(), names.end(), command.metric) == names.end())
     throw InputError("--metric: '" + command.metric + "' is not a metric",
                      "a name in cases.csv without its prefix 'metric_'");

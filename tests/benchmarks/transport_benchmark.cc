@@ -48,8 +48,8 @@ void Answer(WorkerLink& link, const std::string& worker, const std::atomic<bool>
                 .started = {}};
   CaseResult result;
   result.outcome = Outcome::kCompleted;
-  result.inputs.assign(InputColumns().size(), 1.0 / 3.0);
-  result.metrics.assign(MetricNames().size(), 2.0 / 3.0);
+  result.inputs.assign(InputCount(kUsualStages), 1.0 / 3.0);
+  result.metrics.assign(MetricCount(kUsualStages), 2.0 / 3.0);
   // A coordinator listens to nobody who has not introduced himself.
   WorkerStatus status;
   status.worker = worker;

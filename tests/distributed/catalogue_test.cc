@@ -138,7 +138,7 @@ TEST(RunningTally, CountsWhatBreaksARequirementInAnyOrder) {
   campaign.requirements = {requirement};
   RunningTally tally(campaign);
   CaseResult result;
-  result.metrics.assign(MetricNames().size(), 0.1);
+  result.metrics.assign(MetricCount(kUsualStages), 0.1);
   result.outcome = Outcome::kCompleted;
   EXPECT_EQ(tally.Standings().at(0).so_far, "inconclusive") << "none flown";
   EXPECT_EQ(tally.histograms().at(0).metric, "pitch_error_peak_deg");

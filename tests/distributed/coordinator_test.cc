@@ -40,8 +40,8 @@ CaseResult ResultOf(std::uint64_t case_index) {
   result.end_time_s = 570.0;
   result.end_stage = 4;
   const auto k = static_cast<double>(case_index);
-  for (std::size_t i = 0; i < InputColumns().size(); ++i) result.inputs.push_back(std::sqrt(k + 1.0));
-  result.metrics.assign(MetricNames().size(), k / 3.0);
+  for (std::size_t i = 0; i < InputCount(kUsualStages); ++i) result.inputs.push_back(std::sqrt(k + 1.0));
+  result.metrics.assign(MetricCount(kUsualStages), k / 3.0);
   result.metrics.back() = std::numeric_limits<double>::quiet_NaN();
   result.digest = {case_index, 1};
   return result;

@@ -81,8 +81,8 @@ TEST(Rules, ResumingWithFewerCasesDropsNoRow) {
     OpenedCampaign opened = OpenCampaign(request);
     CaseResult result;
     result.case_index = 7;
-    result.inputs.assign(InputColumns().size(), 0.5);
-    result.metrics.assign(MetricNames().size(), 0.5);
+    result.inputs.assign(InputCount(kUsualStages), 0.5);
+    result.metrics.assign(MetricCount(kUsualStages), 0.5);
     opened.folder.Append({{result}});
   }
   request.resume = true;

@@ -77,8 +77,8 @@ CaseResult ResultOf(std::uint64_t case_index) {
   result.end_time_s = 123.456;
   result.end_stage = 3;
   result.reason = "attitude error";
-  result.inputs.assign(InputColumns().size(), 1.0 / 3.0);
-  result.metrics.assign(MetricNames().size(), -0.0);
+  result.inputs.assign(InputCount(kUsualStages), 1.0 / 3.0);
+  result.metrics.assign(MetricCount(kUsualStages), -0.0);
   result.digest = {0xfeedull << 48, 1};
   return result;
 }

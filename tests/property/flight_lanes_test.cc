@@ -114,7 +114,7 @@ FlightInputs DrawnInputs(std::uint64_t flight) {
   const auto some = [&](double& value, double drawn) {
     if (draws.Uniform() < 0.5) value = drawn;
   };
-  for (std::size_t stage = 0; stage < kMaxStages; ++stage) {
+  for (std::size_t stage = 0; stage < kUsualStages; ++stage) {
     some(in.thrust_misalignment_rad[stage], 0.25 * kRadPerDeg * draws.Uniform());
     some(in.thrust_misalignment_clock_rad[stage], kTwoPi * draws.Uniform());
     some(in.thrust_offset_m[stage], 0.005 * draws.Uniform());
@@ -161,7 +161,7 @@ FlightInputs DrawnInputs(std::uint64_t flight) {
   const auto seldom = [&](double& value, double drawn) {
     if (later.Uniform() < 0.3) value = drawn;
   };
-  for (std::size_t stage = 0; stage < kMaxStages; ++stage) {
+  for (std::size_t stage = 0; stage < kUsualStages; ++stage) {
     seldom(in.dry_mass_factor[stage], 1.0 + 0.01 * later.Normal());
     seldom(in.propellant_factor[stage], 1.0 + 0.005 * later.Normal());
     seldom(in.product_of_inertia_xy_kg_m2[stage], 2.0 * later.Normal());

@@ -197,9 +197,9 @@ TEST_F(HostileFiles, NoWrongNumberComesOutOfADamagedDatabase) {
       result.case_index = i;
       result.outcome = Outcome::kCompleted;
       result.reason = "a reason";
-      for (std::size_t k = 0; k < InputColumns().size(); ++k)
+      for (std::size_t k = 0; k < InputCount(kUsualStages); ++k)
         result.inputs.push_back(0.1 * static_cast<double>(k));
-      for (std::size_t k = 0; k < MetricNames().size(); ++k)
+      for (std::size_t k = 0; k < MetricCount(kUsualStages); ++k)
         result.metrics.push_back(1.0 / static_cast<double>(k + i + 1));
       result.digest = {i, 5};
       folder.Append({{result}});

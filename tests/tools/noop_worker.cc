@@ -23,8 +23,8 @@ CaseResult MadeUp(std::uint64_t case_index) {
   result.outcome = Outcome::kCompleted;
   result.end_time_s = 500.0;
   result.end_stage = 4;
-  result.inputs.assign(InputColumns().size(), 1.0 / 3.0);
-  result.metrics.assign(MetricNames().size(), 1.0 / static_cast<double>(case_index + 1));
+  result.inputs.assign(InputCount(kUsualStages), 1.0 / 3.0);
+  result.metrics.assign(MetricCount(kUsualStages), 1.0 / static_cast<double>(case_index + 1));
   result.digest = {case_index, ~case_index};
   return result;
 }

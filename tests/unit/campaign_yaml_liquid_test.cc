@@ -91,51 +91,70 @@ INSTANTIATE_TEST_SUITE_P(
     Liquids, BadLiquidTest,
     testing::Values(
         BadLiquid{"GrainBesideTheEngine", kLiquid, std::string(kTanks) + "\n    " + kGrain,
-                  "vehicle.yaml:13:12: stages[0].grain: the motor is liquid, allowed: tanks in place of the grain\n"},
+                  "vehicle.yaml:13:12: stages[0].grain: the motor is liquid, allowed: tanks in place of the "
+                  "grain\n"},
         BadLiquid{"TanksOfASolidMotor", kMotor, std::string(kTanks) + "\n    " + kGrain,
-                  "vehicle.yaml:12:12: stages[0].tanks: the motor is not liquid, allowed: a grain in place of the tanks, "
+                  "vehicle.yaml:12:12: stages[0].tanks: the motor is not liquid, allowed: a grain in place "
+                  "of the tanks, "
                   "or motor: {liquid: {...}}\n"},
         BadLiquid{"NoTanks", kLiquid, "# no tanks",
                   "vehicle.yaml:6:5: stages[0]: missing key 'tanks', allowed: a list of 1 or more\n"},
-        BadLiquid{"BesideThrust", "motor: {thrust_kn: 60, liquid: {thrust_kn: 75, specific_impulse_s: 290}}", kTanks,
-                  "vehicle.yaml:11:24: stages[0].motor.thrust_kn: 'thrust_kn' and 'liquid' are both given, and the "
-                  "engine has them inside, allowed: either liquid, or what a solid motor has\n"},
+        BadLiquid{
+            "BesideThrust", "motor: {thrust_kn: 60, liquid: {thrust_kn: 75, specific_impulse_s: 290}}",
+            kTanks,
+            "vehicle.yaml:11:24: stages[0].motor.thrust_kn: 'thrust_kn' and 'liquid' are both given, and the "
+            "engine has them inside, allowed: either liquid, or what a solid motor has\n"},
         BadLiquid{"NoImpulse", "motor: {liquid: {thrust_kn: 75}}", kTanks,
                   "vehicle.yaml:11:21: stages[0].motor.liquid: missing key 'specific_impulse_s' or "
                   "'specific_impulse_ms', allowed: a number above 0\n"},
         BadLiquid{"TooMuchThrottle", With("throttle: {time_s: [0, 9], level_percent: [100, 120]}"), kTanks,
-                  "vehicle.yaml:11:110: stages[0].motor.liquid.throttle.level_percent[1]: 120 is out of range, allowed: a "
+                  "vehicle.yaml:11:110: stages[0].motor.liquid.throttle.level_percent[1]: 120 is out of "
+                  "range, allowed: a "
                   "number from 0 to 100\n"},
-        BadLiquid{"TimesThatTurnBack", With("throttle: {time_s: [0, 9, 8], level_percent: [100, 100, 90]}"), kTanks,
-                  "vehicle.yaml:11:88: stages[0].motor.liquid.throttle.time_s[2]: is not above the one before, allowed: "
+        BadLiquid{"TimesThatTurnBack", With("throttle: {time_s: [0, 9, 8], level_percent: [100, 100, 90]}"),
+                  kTanks,
+                  "vehicle.yaml:11:88: stages[0].motor.liquid.throttle.time_s[2]: is not above the one "
+                  "before, allowed: "
                   "values strictly increasing\n"},
-        BadLiquid{"LessLevelsThanTimes", With("throttle: {time_s: [0, 9, 12], level_percent: [100, 100]}"), kTanks,
-                  "vehicle.yaml:11:72: stages[0].motor.liquid.throttle: there are 3 times and 2 levels, allowed: one "
+        BadLiquid{"LessLevelsThanTimes", With("throttle: {time_s: [0, 9, 12], level_percent: [100, 100]}"),
+                  kTanks,
+                  "vehicle.yaml:11:72: stages[0].motor.liquid.throttle: there are 3 times and 2 levels, "
+                  "allowed: one "
                   "level for each time\n"},
         BadLiquid{"StartsLate", With("throttle: {time_s: [1, 9], level_percent: [100, 100]}"), kTanks,
-                  "vehicle.yaml:11:82: stages[0].motor.liquid.throttle.time_s[0]: is not the ignition, allowed: 0 as the "
+                  "vehicle.yaml:11:82: stages[0].motor.liquid.throttle.time_s[0]: is not the ignition, "
+                  "allowed: 0 as the "
                   "first time\n"},
-        BadLiquid{"NoThrust", With("throttle: {time_s: [0, 9], level_percent: [0, 0]}"), kTanks,
-                  "vehicle.yaml:11:72: stages[0].motor.liquid.throttle: gives no thrust, allowed: a level above 0 "
-                  "somewhere\n"},
+        BadLiquid{
+            "NoThrust", With("throttle: {time_s: [0, 9], level_percent: [0, 0]}"), kTanks,
+            "vehicle.yaml:11:72: stages[0].motor.liquid.throttle: gives no thrust, allowed: a level above 0 "
+            "somewhere\n"},
         BadLiquid{"CutOffByWish", With("cut_off: {at: will}"), kTanks,
-                  "vehicle.yaml:11:76: stages[0].motor.liquid.cut_off.at: 'will' is not a choice, allowed: one of depletion, "
-                  "time\n"},
+                  "vehicle.yaml:11:76: stages[0].motor.liquid.cut_off.at: 'will' is not a choice, allowed: "
+                  "one of depletion, "
+                  "time, inertial_velocity\n"},
         BadLiquid{"CutOffWithoutTime", With("cut_off: {at: time}"), kTanks,
-                  "vehicle.yaml:11:71: stages[0].motor.liquid.cut_off: missing key 'after_s' or 'after_ms', allowed: a "
+                  "vehicle.yaml:11:71: stages[0].motor.liquid.cut_off: missing key 'after_s' or 'after_ms', "
+                  "allowed: a "
                   "number above 0\n"},
         BadLiquid{"AllResidual", With("residual_mass_kg: 1500"), kTanks,
-                  "vehicle.yaml:11:80: stages[0].motor.liquid.residual_mass_kg: leaves nothing to burn, allowed: 0 to "
+                  "vehicle.yaml:11:80: stages[0].motor.liquid.residual_mass_kg: leaves nothing to burn, "
+                  "allowed: 0 to "
                   "below propellant_mass_kg\n"},
         BadLiquid{"TanksOfAnotherSum", kLiquid, Tanks("450", "440"),
-                  "vehicle.yaml:8:25: stages[0].propellant_mass_kg: is 1500.000000, the tanks hold 1490.000000, allowed: "
+                  "vehicle.yaml:8:25: stages[0].propellant_mass_kg: is 1500.000000, the tanks hold "
+                  "1490.000000, allowed: "
                   "the sum of the tanks' propellant_mass_kg\n"},
         BadLiquid{"TankTooSmall", kLiquid, Tanks("6.6", "6.3"),
-                  "vehicle.yaml:12:48: stages[0].tanks[0].propellant_mass_kg: takes 0.920245 m3, the tank has 0.827024, "
+                  "vehicle.yaml:12:48: stages[0].tanks[0].propellant_mass_kg: takes 0.920245 m3, the tank "
+                  "has 0.827024, "
                   "allowed: at most what the tank holds, 943.634688 kg\n"},
-        BadLiquid{"TankBehindTheStage", kLiquid, Tanks("top_station_m: 7, bottom_station_m: 7.95", "top_station_m: 9.2, bottom_station_m: 10.15"),
-                  "vehicle.yaml:12:234: stages[0].tanks[1].bottom_station_m: lies aft of the stage's bottom_station_m, "
-                  "allowed: at most bottom_station_m of the stage\n"}),
+        BadLiquid{
+            "TankBehindTheStage", kLiquid,
+            Tanks("top_station_m: 7, bottom_station_m: 7.95", "top_station_m: 9.2, bottom_station_m: 10.15"),
+            "vehicle.yaml:12:234: stages[0].tanks[1].bottom_station_m: lies aft of the stage's "
+            "bottom_station_m, "
+            "allowed: at most bottom_station_m of the stage\n"}),
     [](const auto& bad) { return std::string(bad.param.name); });
 
 TEST(LiquidFile, UnusualLiquidsAreWarnedAbout) {

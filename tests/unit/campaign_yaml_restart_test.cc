@@ -72,7 +72,7 @@ TEST(RestartFile, MayFollowARestart) {
   EXPECT_EQ(vehicle.stages[5].motor.cut_off, CutOff::kAtDepletion);
   EXPECT_EQ(vehicle.stages[5].jettisoned.size(), 1u);
   file.Edit(once_more, once_more + once_more);
-  EXPECT_NE(file.Problems().find("stages: has 7 entries, allowed: 1 to 6 entries"), std::string::npos)
+  EXPECT_NE(file.Problems().find("stages: the list has 7, allowed: a list of 1 to 6"), std::string::npos)
       << file.Problems();
 }
 

@@ -357,7 +357,7 @@ TEST(CliProgram, PlanPrintsTheInputsThatAFlightApplies) {
   ASSERT_EQ(lines.size(), 5u);
   const std::vector<std::string> names = Cells(lines[0]);
   const std::vector<std::string> values = Cells(lines[4]);
-  ASSERT_EQ(names.size(), InputColumns().size() + 1);
+  ASSERT_EQ(names.size(), InputCount(kUsualStages) + 1);
   ASSERT_EQ(values.size(), names.size());
   EXPECT_EQ(names[0], "case_index");
   EXPECT_EQ(values[0], "3");
@@ -414,7 +414,8 @@ TEST(CliProgram, FlyRepeatsToTheLastBit) {
   EXPECT_THAT(first.text,
               StartsWith("{\n  \"schema\": \"dispersa/fly/1\",\n  \"outcome\": \"completed\",\n"));
   EXPECT_THAT(first.text, Not(HasSubstr("-0.0,")));
-  for (const std::string& metric : MetricNames()) EXPECT_THAT(first.text, HasSubstr("\"" + metric + "\": "));
+  for (std::size_t i = 0; i < MetricCount(kUsualStages); ++i)
+    EXPECT_THAT(first.text, HasSubstr("\"" + MetricNames()[i] + "\": "));
   EXPECT_EQ(Dispersa("fly --json --case 1 " + kSmoke).text, first.text);
   EXPECT_NE(Dispersa("fly --json --case 1 --seed 5 " + kSmoke).text, first.text);
 }

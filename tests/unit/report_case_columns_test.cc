@@ -16,7 +16,7 @@ TEST(ReportCaseColumns, OnlyCompletedFlightsHaveValues) {
   CaseColumns cases;
   cases.index = {0, 1, 2};
   cases.outcome = {Outcome::kCompleted, Outcome::kLostControl, Outcome::kImpact};
-  cases.metrics.resize(MetricNames().size());
+  cases.metrics.resize(MetricCount(kUsualStages));
   cases.metrics[MetricColumn("pitch_error_rms_deg")] = std::vector{0.1, 0.2, 0.3};
   const std::vector<double> values = CompletedValues(cases, "pitch_error_rms_deg");
   EXPECT_EQ(values[0], 0.1);

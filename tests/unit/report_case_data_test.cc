@@ -16,7 +16,7 @@ using Json = nlohmann::json;
 /// Apogee rises with the case, perigee falls; every other metric is undefined. Case 7 was lost.
 CaseColumns Cases(std::size_t rows) {
   CaseColumns cases;
-  cases.metrics.resize(MetricNames().size());
+  cases.metrics.resize(MetricCount(kUsualStages));
   for (std::size_t k = 0; k < rows; ++k) {
     cases.index.push_back(k);
     cases.outcome.push_back(k == 7 ? Outcome::kImpact : Outcome::kCompleted);

@@ -30,9 +30,9 @@ CaseColumns Columns(const std::vector<std::uint64_t>& index, const std::vector<d
   CaseColumns cases;
   cases.index = index;
   cases.outcome.assign(index.size(), Outcome::kCompleted);
-  cases.inputs.resize(InputColumns().size());
+  cases.inputs.resize(InputCount(kUsualStages));
   cases.inputs[0] = input;
-  cases.metrics.assign(MetricNames().size(), CaseColumn(std::vector<double>(index.size(), kNaN)));
+  cases.metrics.assign(MetricCount(kUsualStages), CaseColumn(std::vector<double>(index.size(), kNaN)));
   cases.metrics[MetricColumn(name)] = metric;
   return cases;
 }

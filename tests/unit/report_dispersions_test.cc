@@ -33,7 +33,7 @@ DispersionSummary Summarized(const Dispersion& dispersion, std::size_t n, Draw d
   campaign.sampling.method = method;
   campaign.dispersions = {dispersion};
   CaseColumns cases;
-  cases.inputs.resize(InputColumns().size());
+  cases.inputs.resize(InputCount(kUsualStages));
   for (std::size_t i = 0; i < n; ++i)
     cases.inputs[static_cast<std::size_t>(dispersion.inputs[0])].push_back(draw());
   return SummarizeDispersions(campaign, cases).at(0);
@@ -114,7 +114,7 @@ TEST(Dispersions, TwoThatFeedOneInputPromiseNothingAboutIt) {
   Campaign campaign = MakeCampaign(20);
   campaign.dispersions = {Normal("drag_factor", 1.0, 0.1), Normal("drag_factor", 1.0, 0.2)};
   CaseColumns cases;
-  cases.inputs.resize(InputColumns().size());
+  cases.inputs.resize(InputCount(kUsualStages));
   cases.inputs[static_cast<std::size_t>(FindInput("drag_factor"))] = std::vector<double>(20, 1.0);
   for (const DispersionSummary& summary : SummarizeDispersions(campaign, cases)) {
     EXPECT_FALSE(summary.expected_mean.has_value());

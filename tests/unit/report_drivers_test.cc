@@ -24,8 +24,8 @@ class Planted : public testing::Test {
       dispersion.inputs = {FindInput(name)};
       campaign_.dispersions.push_back(dispersion);
     }
-    cases_.inputs.resize(InputColumns().size());
-    cases_.metrics.resize(MetricNames().size());
+    cases_.inputs.resize(InputCount(kUsualStages));
+    cases_.metrics.resize(MetricCount(kUsualStages));
     for (std::uint64_t k = 0; k < 1000; ++k) {
       cases_.index.push_back(k);
       cases_.outcome.push_back(Outcome::kCompleted);

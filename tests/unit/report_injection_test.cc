@@ -13,7 +13,7 @@ namespace {
 
 CaseColumns Injections(int count) {
   CaseColumns cases;
-  cases.metrics.assign(MetricNames().size(),
+  cases.metrics.assign(MetricCount(kUsualStages),
                        CaseColumn(std::vector<double>(static_cast<std::size_t>(count), report_test::kNaN)));
   for (int i = 0; i < count; ++i) {
     Stream stream(9, static_cast<std::uint64_t>(i), "injection");

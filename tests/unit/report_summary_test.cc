@@ -32,8 +32,8 @@ Requirement PeakBelow(double limit, double probability, double consumer_risk) {
 /// n completed cases whose peak is 0.1, but for the first `failures`, whose peak is 0.9.
 CaseColumns Columns(std::size_t n, std::size_t failures) {
   CaseColumns cases;
-  cases.inputs.resize(InputColumns().size());
-  cases.metrics.resize(MetricNames().size());
+  cases.inputs.resize(InputCount(kUsualStages));
+  cases.metrics.resize(MetricCount(kUsualStages));
   for (std::size_t i = 0; i < n; ++i) {
     cases.index.push_back(i);
     cases.outcome.push_back(Outcome::kCompleted);
@@ -312,7 +312,7 @@ TEST_F(FiveCases, JsonHoldsTheContract) {
   EXPECT_EQ(json["outcomes"],
             nlohmann::json::parse(R"({"completed": 4, "lost_control": 1, "structural_limit": 0, "impact": 0,
                                                         "numerical_failure": 0, "timeout": 0})"));
-  EXPECT_EQ(json["metrics"].size(), MetricNames().size());
+  EXPECT_EQ(json["metrics"].size(), MetricCount(kUsualStages));
   EXPECT_EQ(json["metrics"][kPeak]["n"], 4);
   EXPECT_EQ(json["metrics"][kPeak]["p50"], 2.5);
   EXPECT_EQ(json["metrics"][kPeak]["min"], 1.0);

@@ -72,9 +72,9 @@ inline CaseResult MakeCase(std::uint64_t index) {
   result.end_time_s = 569.25;
   result.end_stage = 4;
   const auto k = static_cast<double>(index);
-  for (std::size_t i = 0; i < InputColumns().size(); ++i)
+  for (std::size_t i = 0; i < InputCount(kUsualStages); ++i)
     result.inputs.push_back(0.1 * static_cast<double>(i) + k / 7.0);
-  for (std::size_t i = 0; i < MetricNames().size(); ++i) {
+  for (std::size_t i = 0; i < MetricCount(kUsualStages); ++i) {
     result.metrics.push_back(1.0 + static_cast<double>(i) + k / 3.0);
   }
   result.metrics[MetricColumn("step_limit_fraction")] = 0.5;  // nobody is to be warned

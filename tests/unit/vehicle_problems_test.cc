@@ -41,10 +41,10 @@ INSTANTIATE_TEST_SUITE_P(
     Each, VehicleProblems,
     testing::Values(
         Mistake{"None", [](Vehicle&) {}, {}},
-        Mistake{"NoStages", [](Vehicle& v) { v.stages.clear(); }, {"stages: has 0 entries | 1 to 4 stages"}},
-        Mistake{"FiveStages",
-                [](Vehicle& v) { v.stages.assign(5, v.stages[0]); },
-                {"stages: has 5 entries | 1 to 4 stages"}},
+        Mistake{"NoStages", [](Vehicle& v) { v.stages.clear(); }, {"stages: has 0 entries | 1 to 6 stages"}},
+        Mistake{"SevenStages",
+                [](Vehicle& v) { v.stages.assign(7, v.stages[0]); },
+                {"stages: has 7 entries | 1 to 6 stages"}},
         Mistake{
             "PropellantMoreThanTheStageWeighs",
             [](Vehicle& v) {
