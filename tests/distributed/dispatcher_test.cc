@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/flight/engine_version.h"
+#include "core/flight/flight_inputs.h"
 #include "core/report/fingerprint.h"
 
 namespace dispersa {
@@ -62,6 +63,7 @@ Campaign MadeUp(const std::string& flight_id, std::uint64_t cases) {
 CaseResult ResultOf(std::uint64_t case_index) {
   CaseResult result;
   result.case_index = case_index;
+  result.inputs.resize(InputCount(kUsualStages));
   return result;
 }
 

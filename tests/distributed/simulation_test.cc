@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "core/flight/engine_version.h"
+#include "core/flight/flight_inputs.h"
 #include "core/report/fingerprint.h"
 #include "services/coordinator/dispatcher.h"
 #include "services/worker/flight_desk.h"
@@ -79,6 +80,7 @@ class DiskStore : public ResultStore {
 CaseResult ResultOf(std::uint64_t case_index) {
   CaseResult result;
   result.case_index = case_index;
+  result.inputs.resize(InputCount(kUsualStages));
   result.digest = {case_index, 7};
   result.metrics = {static_cast<double>(case_index) / 3.0};
   return result;
