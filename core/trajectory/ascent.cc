@@ -143,6 +143,12 @@ void Observe(const AscentOptions& options, const lanes::Ground& ground, const la
   }
 }
 
+// The beginning of a step.
+struct AscentStep {
+  AscentPoint start;
+  LaneVector acceleration_I;
+};
+
 // W ascents side by side, each from event to event in steps of its own. A lane that has ended takes the next
 // program, so that few idle.
 template <class T>
@@ -165,6 +171,8 @@ class Fleet {
   void SetOut(int lane, double to_s);
   void Happen(int lane, const AscentEvent& event);
   unsigned DueAt(int lane, double time_s, const LaneVector& p, const LaneVector& v) const;
+  AscentStep StepAgain(int lane, double from_s, const LaneVector& p, const LaneVector& v) const;
+  void MoveTo(int lane, const AscentStep& step, double time_s);
   void LetGo(int lane, double from_s, const LaneVector& p, const LaneVector& v);
   void Drop(int lane, unsigned due);
   void CutOff(int lane, double from_s, const LaneVector& p, const LaneVector& v);
@@ -312,24 +320,35 @@ void Fleet<T>::Drop(int lane, unsigned due) {
   flight.jettisoned |= due;
 }
 
+// A step of a lane that ended beyond what happened in it, to be made again to where that is.
+template <class T>
+AscentStep Fleet<T>::StepAgain(int lane, double from_s, const LaneVector& p, const LaneVector& v) const {
+  AscentPoint start = PointOf(lane);
+  start.time_s = from_s;
+  start.p = p;
+  start.v = v;
+  return {start, InstantOf(ground_, start).acceleration_I};
+}
+
+template <class T>
+void Fleet<T>::MoveTo(int lane, const AscentStep& step, double time_s) {
+  LaneVector p = step.start.p, v = step.start.v;
+  lanes::Step(ground_, step.start.leg, step.start.time_s, time_s, step.acceleration_I, &p, &v);
+  SetLane(p_, lane, p);
+  SetLane(v_, lane, v);
+  Lane(time_s_, lane) = time_s;
+}
+
 // After a step of a lane that began at `from_s`: what has become due leaves on the first of the flight
 // computer's ticks on which it is due, and the way to the next event begins there.
 template <class T>
 void Fleet<T>::LetGo(int lane, double from_s, const LaneVector& p, const LaneVector& v) {
   Flight& flight = flights_[lane];
   if (DueAt(lane, Lane(time_s_, lane), LaneOf(p_, lane), LaneOf(v_, lane)) == 0) return;
-  AscentPoint start = PointOf(lane);
-  start.time_s = from_s;
-  start.p = p;
-  start.v = v;
-  const LaneVector acceleration = InstantOf(ground_, start).acceleration_I;
+  const AscentStep again = StepAgain(lane, from_s, p, v);
   const auto move_to = [&](double time_s) {
-    LaneVector there = p, then = v;
-    lanes::Step(ground_, start.leg, from_s, time_s, acceleration, &there, &then);
-    SetLane(p_, lane, there);
-    SetLane(v_, lane, then);
-    Lane(time_s_, lane) = time_s;
-    return DueAt(lane, time_s, there, then);
+    MoveTo(lane, again, time_s);
+    return DueAt(lane, time_s, LaneOf(p_, lane), LaneOf(v_, lane));
   };
   const double end_s = Lane(time_s_, lane);
   long tick = static_cast<long>(std::floor(from_s / model_.tick_s + kSameInstant_s)) + 1;
@@ -366,18 +385,10 @@ void Fleet<T>::CutOff(int lane, double from_s, const LaneVector& p, const LaneVe
   };
   double after_m_s = beyond_m_s(LaneOf(v_, lane));
   if (after_m_s < 0.0) return;
-  AscentPoint start = PointOf(lane);
-  start.time_s = from_s;
-  start.p = p;
-  start.v = v;
-  const LaneVector acceleration = InstantOf(ground_, start).acceleration_I;
+  const AscentStep again = StepAgain(lane, from_s, p, v);
   const auto move_to = [&](double time_s) {
-    LaneVector there = p, then = v;
-    lanes::Step(ground_, start.leg, from_s, time_s, acceleration, &there, &then);
-    SetLane(p_, lane, there);
-    SetLane(v_, lane, then);
-    Lane(time_s_, lane) = time_s;
-    return beyond_m_s(then);
+    MoveTo(lane, again, time_s);
+    return beyond_m_s(LaneOf(v_, lane));
   };
   // Regula falsi (Illinois): within a step the speed grows almost in proportion to time.
   constexpr double kNear_m_s = 1e-9;
