@@ -43,7 +43,8 @@ class Drawing {
 
   std::string Svg() {
     DrawBody();
-    for (std::size_t i = 0; i < vehicle_.stages.size(); ++i) DrawStage(i);
+    for (std::size_t i = 0; i < vehicle_.stages.size(); ++i)
+      if (!vehicle_.stages[i].restarts) DrawStage(i);  // one body, however often it burns
     DrawBoosters();
     DrawSensors();
     DrawScale();
@@ -115,8 +116,9 @@ class Drawing {
 
   void DrawStage(std::size_t i) {
     const Stage& stage = vehicle_.stages[i];
-    const bool is_last = i + 1 == vehicle_.stages.size();
-    const double top_m = is_last ? 0.0 : vehicle_.stages[i + 1].bottom_station_m;
+    const std::size_t above = static_cast<std::size_t>(LastBurn(vehicle_, static_cast<int>(i))) + 1;
+    const bool is_last = above == vehicle_.stages.size();
+    const double top_m = is_last ? 0.0 : vehicle_.stages[above].bottom_station_m;
     for (const Tank& tank : stage.tanks) {
       const double height_m =
           (tank.bottom_station_m - tank.top_station_m) * tank.propellant_mass_kg / (tank.density_kg_m3 * tank.Volume());

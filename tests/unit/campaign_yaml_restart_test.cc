@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "core/campaign_yaml/load.h"
+#include "core/report/vehicle_drawing.h"
 #include "core/vehicle/mass.h"
 #include "core/vehicle/propulsion.h"
 #include "tests/unit/bad_input.h"
@@ -42,6 +43,13 @@ TEST(RestartFile, IsTheStageBeforeWithCommandsOfItsOwn) {
   EXPECT_EQ(again.jettisoned.size(), 1u);
   EXPECT_EQ(LastBurn(vehicle, 3), 4);
   EXPECT_EQ(DryMass(vehicle, 3), DryMass(vehicle, 4));
+}
+
+TEST(RestartFile, IsDrawnOnce) {
+  const std::string drawing = VehicleDrawing(Vega().Load());
+  EXPECT_NE(drawing.find(">avum<"), std::string::npos);
+  EXPECT_EQ(drawing.find("avum again"), std::string::npos);
+  EXPECT_EQ(drawing.find(">0 m"), std::string::npos);
 }
 
 TEST(RestartFile, KnowsWhatATimedBurnLeaves) {
