@@ -6,6 +6,8 @@
 #include <mutex>
 #include <thread>
 
+#include "core/campaign/contained.h"
+#include "core/campaign/contained_flights.h"
 #include "core/flight/flight.h"
 #include "core/flight/lane_engine.h"
 #include "core/math/functions.h"
@@ -118,6 +120,7 @@ CaseResult CampaignFlights::FlyNominal(History* history) const { return Fly(Flig
 
 CaseResult CampaignFlights::Fly(const FlightInputs& inputs, std::uint64_t case_index, History* history,
                                 Scheme scheme) const {
+  if (NeedsChild()) return FlyContained(*this, inputs, case_index, history, scheme);
   FlightOptions options;
   options.scheme = scheme;
   options.case_index = case_index;
@@ -153,31 +156,42 @@ class FlyingCases : public FlightQueue {
   std::map<FlightRecord*, std::unique_ptr<FlightRecord>> flying_;
 };
 
-// One thread's share of a list of cases.
+// A list of cases that threads share.
+struct SharedOrders {
+  const CampaignFlights& flights;
+  const std::vector<CaseOrder>& orders;
+  const CaseObserver& done;
+  std::mutex mutex = {};
+  std::size_t next = 0;
+  std::exception_ptr problem = {};
+
+  std::optional<std::size_t> Next() {
+    const std::lock_guard lock(mutex);
+    if (next == orders.size() || problem) return std::nullopt;
+    return next++;
+  }
+  void Done(std::size_t order, CaseResult result, const History& history) {
+    const std::lock_guard lock(mutex);
+    if (problem) return;
+    try {
+      done(order, std::move(result), history);
+    } catch (...) {
+      problem = std::current_exception();
+    }
+  }
+};
+
+// What one thread flies of them.
 class FlyingOrders : public FlightQueue {
  public:
-  // Common to the threads.
-  struct Shared {
-    const CampaignFlights& flights;
-    const std::vector<CaseOrder>& orders;
-    const CaseObserver& done;
-    std::mutex mutex = {};
-    std::size_t next = 0;
-    std::exception_ptr problem = {};
-  };
-
-  explicit FlyingOrders(Shared& shared) : shared_(shared) {}
+  explicit FlyingOrders(SharedOrders& shared) : shared_(shared) {}
 
   FlightRecord* Next(bool) override {
-    std::size_t order = 0;
-    {
-      const std::lock_guard lock(shared_.mutex);
-      if (shared_.next == shared_.orders.size() || shared_.problem) return nullptr;
-      order = shared_.next++;
-    }
-    const CaseOrder& wanted = shared_.orders[order];
+    const std::optional<std::size_t> order = shared_.Next();
+    if (!order) return nullptr;
+    const CaseOrder& wanted = shared_.orders[*order];
     auto flight = std::make_unique<InFlight>();
-    flight->order = order;
+    flight->order = *order;
     FlightOrder to_fly{shared_.flights.Draw(wanted.case_index), {}};
     to_fly.options.case_index = wanted.case_index;
     if (wanted.history_step_s > 0.0) {
@@ -193,13 +207,7 @@ class FlyingOrders : public FlightQueue {
     const auto ended = flying_.extract(record);
     CaseResult result =
         ResultOf(shared_.flights.model(), record->options.case_index, record->inputs, record->Result());
-    const std::lock_guard lock(shared_.mutex);
-    if (shared_.problem) return;
-    try {
-      shared_.done(ended.mapped()->order, std::move(result), ended.mapped()->history);
-    } catch (...) {
-      shared_.problem = std::current_exception();
-    }
+    shared_.Done(ended.mapped()->order, std::move(result), ended.mapped()->history);
   }
 
  private:
@@ -208,21 +216,42 @@ class FlyingOrders : public FlightQueue {
     History history;
     std::unique_ptr<FlightRecord> record;
   };
-  Shared& shared_;
+  SharedOrders& shared_;
   std::map<FlightRecord*, std::unique_ptr<InFlight>> flying_;
 };
 
+// The same where every flight has a process of its own.
+void FlyOneByOne(SharedOrders& shared) {
+  while (const std::optional<std::size_t> order = shared.Next()) {
+    const CaseOrder& wanted = shared.orders[*order];
+    History history;
+    history.step_s = wanted.history_step_s;
+    try {
+      CaseResult result =
+          shared.flights.FlyCase(wanted.case_index, wanted.history_step_s > 0.0 ? &history : nullptr);
+      shared.Done(*order, std::move(result), history);
+    } catch (...) {
+      const std::lock_guard lock(shared.mutex);
+      if (!shared.problem) shared.problem = std::current_exception();
+    }
+  }
+}
+
 }  // namespace
 
+bool CampaignFlights::NeedsChild() const { return model_->autopilot().plugin != nullptr && !IsContained(); }
+
 void CampaignFlights::FlyCases(CaseQueue& queue) const {
+  if (NeedsChild()) return FlyContained(*this, queue);
   FlyingCases flying(*this, queue);
   ChosenEngine().fly(*model_, flying);
 }
 
 void CampaignFlights::FlyCases(const std::vector<CaseOrder>& orders, int threads,
                                const CaseObserver& done) const {
-  FlyingOrders::Shared shared{*this, orders, done};
+  SharedOrders shared{*this, orders, done};
   const auto fly = [&] {
+    if (NeedsChild()) return FlyOneByOne(shared);
     FlyingOrders flying(shared);
     ChosenEngine().fly(*model_, flying);
   };

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/campaign/campaign.h"
@@ -25,6 +26,8 @@ class CaseQueue {
   /// The next case, or none now. `idle`: nothing else is in flight on this thread; none then ends FlyCases.
   virtual std::optional<std::uint64_t> Next(bool idle) = 0;
   virtual void Done(CaseResult result) = 0;
+  /// A case that ended every process that flew it, alone too: it has no result.
+  virtual void GivenUp(std::uint64_t case_index, const std::string& reason) = 0;
 };
 
 /// A case of a list, and whether its history is wanted.
@@ -35,7 +38,10 @@ struct CaseOrder {
 /// What becomes of it: its position in the list, its result, and its history (empty where none was wanted).
 using CaseObserver = std::function<void(std::size_t order, CaseResult result, const History& history)>;
 
-/// Holds what all flights of a campaign share (tables, schedules, design); flying is const and thread-safe.
+/// Holds what all flights of a campaign share (tables, schedules, design); flying is const and thread-safe. A
+/// campaign whose control law is a plug-in is flown in child processes (contained_flights.h); flying it
+/// throws PluginError where the plug-in cannot be used, and ContainedEnd where it ends the process of a
+/// flight that is not of a queue.
 class CampaignFlights {
  public:
   explicit CampaignFlights(const Campaign& campaign);
@@ -58,6 +64,8 @@ class CampaignFlights {
   void FlyCases(const std::vector<CaseOrder>& orders, int threads, const CaseObserver& done) const;
 
  private:
+  bool NeedsChild() const;
+
   CaseDesign design_;
   std::unique_ptr<FlightModel> model_;
 };

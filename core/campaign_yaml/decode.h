@@ -20,6 +20,9 @@ Vehicle DecodeVehicle(const InputNode& node, const std::string& path, std::vecto
 /// `stages`: of the vehicle that it flies, 0 if that is unknown (then nothing is checked against it).
 AutopilotConfig DecodeAutopilot(const InputNode& node, const std::string& path, int stages,
                                 std::vector<InputProblem>& problems);
+/// An autopilot's `plugin`, its library inlined; what the library says of itself is asked in a child process.
+PluginConfig DecodePlugin(const InputNode& node, const std::string& path,
+                          std::vector<InputProblem>& problems);
 Scenario DecodeScenario(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems);
 Reference DecodeReference(const InputNode& node, const std::string& path,
                           std::vector<InputProblem>& problems);

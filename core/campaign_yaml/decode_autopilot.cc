@@ -142,6 +142,8 @@ AutopilotConfig DecodeAutopilot(const InputNode& node, const std::string& path, 
       gyro.weight = share.Number("weight", Between(-10.0, 10.0), 1.0);
       gyro.stage = static_cast<int>(share.Integer("stage", 0, kMaxStages, 0));
     });
+    if (const InputNode* plugin = map.Optional("plugin"))
+      autopilot.plugin = DecodePlugin(*plugin, map.PathOf("plugin"), problems);
     autopilot.reaction_control = DecodeReactionControl(map.Required("reaction_control", "a map"),
                                                        map.PathOf("reaction_control"), problems);
   }

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <functional>
 
+#include "core/campaign_yaml/base64.h"
+#include "core/campaign_yaml/load.h"
 #include "core/campaign_yaml/number_text.h"
 #include "core/campaign_yaml/parse_csv.h"
 #include "core/campaign_yaml/parse_rasp.h"
@@ -174,11 +176,30 @@ void InlineVehicleFiles(InputNode& vehicle, FileNames names, std::vector<InputPr
   }
 }
 
+void InlineAutopilotFiles(InputNode& autopilot, const std::string& path, FileNames names,
+                          std::vector<InputProblem>& problems) {
+  InputNode* plugin = autopilot.Find("plugin");
+  InputNode* library = plugin == nullptr ? nullptr : plugin->Find("library");
+  if (library == nullptr) return;
+  const InputNode place = *library;
+  Replace(
+      library, path + "plugin.library", names,
+      [&](const std::string& bytes, const std::string&) {
+        InputNode inlined = MapAt(place);
+        SetMember(inlined, "sha256", TextAt(place, Sha256Hex(bytes)));
+        SetMember(inlined, "base64", TextAt(place, Base64(bytes)));
+        return inlined;
+      },
+      problems);
+}
+
 void InlineCampaignFiles(InputNode& campaign, FileNames names, std::vector<InputProblem>& problems) {
   for (const char* key : {"vehicle", "reference", "autopilot"}) {
     Replace(campaign.Find(key), key, names, YamlParser(problems), problems);
   }
   if (InputNode* vehicle = campaign.Find("vehicle")) InlineVehicleFiles(*vehicle, names, problems);
+  if (InputNode* autopilot = campaign.Find("autopilot"))
+    InlineAutopilotFiles(*autopilot, "autopilot.", names, problems);
   if (InputNode* sampling = campaign.Find("sampling"))
     Replace(sampling->Find("table"), "sampling.table", names, CsvParser({}, problems), problems);
   InputNode* dispersions = campaign.Find("dispersions");

@@ -38,8 +38,11 @@ enum class FileNames { kAllowed, kRefused };
 InputNode ReadYamlFile(const std::string& path, std::vector<InputProblem>& problems);
 
 /// Replaces what names a file: a campaign's vehicle, reference, autopilot and wind tables, a vehicle's base,
-/// thrust curves, throttles, aerodynamic tables and table of modes, a scenario's wind, mass and coefficient tables.
-/// Names are relative to the file in which they stand.
+/// thrust curves, throttles, aerodynamic tables and table of modes, a scenario's wind, mass and coefficient
+/// tables. Names are relative to the file in which they stand. A plug-in's library becomes its bytes:
+/// {sha256, base64}.
+void InlineAutopilotFiles(InputNode& autopilot, const std::string& path, FileNames names,
+                          std::vector<InputProblem>& problems);
 void InlineCampaignFiles(InputNode& campaign, FileNames names, std::vector<InputProblem>& problems);
 void InlineVehicleFiles(InputNode& vehicle, FileNames names, std::vector<InputProblem>& problems);
 void InlineScenarioFiles(InputNode& scenario, FileNames names, std::vector<InputProblem>& problems);

@@ -47,6 +47,12 @@ InputNode ScalarAt(const InputNode& place, std::string text) {
   return node;
 }
 
+InputNode TextAt(const InputNode& place, std::string text) {
+  InputNode node = ScalarAt(place, std::move(text));
+  node.quoted = true;
+  return node;
+}
+
 InputNode ListAt(const InputNode& place) { return NodeAt(place, InputNode::Kind::kList); }
 
 InputNode MapAt(const InputNode& place) { return NodeAt(place, InputNode::Kind::kMap); }

@@ -39,6 +39,8 @@ struct InputMember {
 
 /// A scalar, list or map that stands at the place of another node.
 InputNode ScalarAt(const InputNode& place, std::string text);
+/// A scalar that is text, whatever it looks like.
+InputNode TextAt(const InputNode& place, std::string text);
 InputNode ListAt(const InputNode& place);
 InputNode MapAt(const InputNode& place);
 /// Sets a key of a map, replacing its value if it has one.

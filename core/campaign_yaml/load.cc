@@ -121,7 +121,8 @@ Vehicle LoadVehicle(const std::string& path, std::vector<InputProblem>* warnings
 
 AutopilotConfig LoadAutopilot(const std::string& path) {
   ProblemList problems;
-  const InputNode root = ReadYamlFile(path, problems);
+  InputNode root = ReadYamlFile(path, problems);
+  InlineAutopilotFiles(root, "", FileNames::kAllowed, problems);
   AutopilotConfig autopilot = DecodeAutopilot(root, "", 0, problems);
   ThrowIfAny(std::move(problems));
   return autopilot;
@@ -184,6 +185,7 @@ FileCheck CheckFile(const std::string& path) {
     check.vehicle = DecodeVehicle(root, "", problems, &check.warnings);
     check.is_vehicle = true;
   } else if (schema->text == kAutopilotSchema) {
+    InlineAutopilotFiles(root, "", FileNames::kAllowed, problems);
     DecodeAutopilot(root, "", 0, problems);
   } else if (schema->text == kReferenceSchema) {
     DecodeReference(root, "", problems);

@@ -35,6 +35,7 @@ AutopilotModel BuildAutopilot(const AutopilotConfig& config, std::vector<StageCo
   for (const AxisLaw& law : model.laws) model.is_scheduled |= !law.config.schedule.empty();
   for (const StageControl& stage : stages) model.effectiveness.push_back(RowsOf(stage));
   model.stages = std::move(stages);
+  if (config.plugin && PluginAxes(config) != 0) model.plugin = std::make_shared<PluginLaw>(*config.plugin);
   const double cycle_s = config.tick_s * config.reaction_control.cycle_ticks;
   model.thruster_minimum_cycles = static_cast<int>(std::ceil(thruster_minimum_on_time_s / cycle_s - 1e-9));
   return model;
@@ -67,7 +68,8 @@ GimbalCommand StepGimbals(const AutopilotModel& model, int stage, double since_i
   const double program[kAxes] = {error.program_rad_s2.x(), error.program_rad_s2.y(),
                                  error.program_rad_s2.z()};
   GimbalOutput<double> out;
-  lanes::StepGimbals<true>(model, loop, true, since_ignition_s, angle, rate, program, memory, out);
+  lanes::StepGimbals<true>(model, loop, true, since_ignition_s, angle, rate, program,
+                           static_cast<const double*>(nullptr), memory, out);
   GimbalCommand command{out.deflection_rad[kRoll], out.deflection_rad[kPitch], out.deflection_rad[kYaw], {}};
   for (int axis = 0; axis < kAxes; ++axis) {
     ReadLane(memory[axis], 0, state.axes[axis]);

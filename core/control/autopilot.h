@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "core/control/axis_controller.h"
@@ -44,6 +45,7 @@ struct AutopilotModel {
   std::vector<StageControl> stages;
   std::vector<EffectivenessRows> effectiveness;  ///< one a stage
   int thruster_minimum_cycles = 1;
+  std::shared_ptr<const PluginLaw> plugin;  ///< null: no axis needs one
 };
 AutopilotModel BuildAutopilot(const AutopilotConfig& config, std::vector<StageControl> stages,
                               double thruster_minimum_on_time_s);

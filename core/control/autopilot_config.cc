@@ -78,6 +78,9 @@ void CheckAxis(const AxisConfig& axis, const std::string& name, int stages, doub
       add(path + ".stage", "is not a stage of the vehicle", "1 to " + std::to_string(stages));
   }
   CheckSchedule(axis, stages, tick_s, add);
+  if (law.foreign && !axis.schedule.empty())
+    add("schedule", "changes gains that a plug-in's law is told at ignition alone",
+        "no schedule with law: plugin");
   if (law.integral) is_one_a_stage("integral.ki_1_s3", axis.integral.ki_1_s3.size());
   if (law.rules) {
     if (!(axis.rules.error_range_rad > 0.0))
@@ -132,12 +135,23 @@ std::vector<std::size_t> FiltersOfStage(const AxisConfig& axis, int stage) {
   return found;
 }
 
+unsigned PluginAxes(const AutopilotConfig& autopilot) {
+  unsigned axes = 0;
+  const AxisConfig* const configs[] = {&autopilot.roll, &autopilot.pitch, &autopilot.yaw};
+  for (unsigned axis = 0; axis < 3; ++axis)
+    if (InfoOf(configs[axis]->law).foreign) axes |= 1u << axis;
+  return axes;
+}
+
 std::vector<AutopilotProblem> Problems(const AutopilotConfig& autopilot, int stages) {
   std::vector<AutopilotProblem> problems;
   if (!(autopilot.tick_s > 0.0)) problems.push_back({"tick_s", "is not positive", "a number above 0"});
   CheckAxis(autopilot.pitch, "pitch", stages, autopilot.tick_s, problems);
   CheckAxis(autopilot.yaw, "yaw", stages, autopilot.tick_s, problems);
   CheckAxis(autopilot.roll, "roll", stages, autopilot.tick_s, problems);
+  if (PluginAxes(autopilot) != 0 && !autopilot.plugin)
+    problems.push_back(
+        {"", "has an axis whose law is a plug-in's, and names no plug-in", "plugin: {library: FILE}"});
   return problems;
 }
 

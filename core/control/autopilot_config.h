@@ -5,11 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "core/control/plugin.h"
 #include "core/math/linear.h"
 
 namespace dispersa {
 
-enum class ControlLaw { kAdaptiveFuzzy, kFrozenFuzzy, kPd, kPid, kPdAac, kPidAac };
+enum class ControlLaw { kAdaptiveFuzzy, kFrozenFuzzy, kPd, kPid, kPdAac, kPidAac, kPlugin };
 
 /// What a law is called, what it is, and which blocks of its axis it needs.
 struct LawInfo {
@@ -20,6 +21,7 @@ struct LawInfo {
   bool adaptation = false;
   bool integral = false;
   bool augmentation = false;
+  bool foreign = false;  ///< commands come from the autopilot's plug-in
 };
 /// In the order of ControlLaw.
 inline constexpr LawInfo kLaws[] = {
@@ -52,6 +54,12 @@ inline constexpr LawInfo kLaws[] = {
                 "gain multiplies the integral too, and the reference model has one of its own.",
      .integral = true,
      .augmentation = true},
+    {.law = ControlLaw::kPlugin,
+     .name = "plugin",
+     .meaning =
+         "A law of your own, from the shared object that the autopilot's `plugin` names. The gains are the "
+         "error dynamics that are wanted: the law is told them, and V is computed with them.",
+     .foreign = true},
 };
 constexpr const LawInfo& InfoOf(ControlLaw law) { return kLaws[static_cast<int>(law)]; }
 
@@ -173,7 +181,10 @@ struct AutopilotConfig {
   AxisConfig roll;
   ReactionControlLogic reaction_control;
   std::vector<GyroShare> rate_gyros;  ///< empty: the inertial unit gives the rates
+  std::optional<PluginConfig> plugin;  ///< of the axes whose law it is
 };
+/// Bits (1 << Axis) of the axes whose law is a plug-in's.
+unsigned PluginAxes(const AutopilotConfig& autopilot);
 
 /// As Problems(Vehicle): what contradicts itself, by path. `stages` is the vehicle's number of stages.
 struct AutopilotProblem {

@@ -52,13 +52,9 @@ DISPERSA_INLINE void FollowSchedule(const AutopilotModel& model, T since_ignitio
   }
 }
 
-/// One tick of the lanes that act. Errors reference less true, about x, y, z. `program_rad_s2`: what is fed
-/// forward to each axis, or null. Of what the laws have learnt, pitch alone is reported.
-template <bool kAll, class T>
-DISPERSA_INLINE void StepGimbals(const AutopilotModel& model, GimbalLoop<T>& loop, MaskOf<T> acting,
-                                 T since_ignition_s, Vector<T> angle_rad, Vector<T> rate_rad_s,
-                                 const T* program_rad_s2, AxisMemory<T>* memory, GimbalOutput<T>& out) {
-  if (model.is_scheduled) FollowSchedule(model, since_ignition_s, loop);
+/// Angular acceleration per radian of deflection now, about roll and about pitch and yaw, 1/s².
+template <class T>
+DISPERSA_INLINE void Effectiveness(const GimbalLoop<T>& loop, T since_ignition_s, T& of_roll, T& of_pitch) {
   T since;
   const double* row[kWidth<T>];
   for (int lane = 0; lane < kWidth<T>; ++lane) {
@@ -70,7 +66,21 @@ DISPERSA_INLINE void StepGimbals(const AutopilotModel& model, GimbalLoop<T>& loo
   }
   T c[4];
   LoadFour(row, c);
-  const T of_pitch = Fma(since, c[1], c[0]), of_roll = Fma(since, c[3], c[2]);
+  of_pitch = Fma(since, c[1], c[0]);
+  of_roll = Fma(since, c[3], c[2]);
+}
+
+/// One tick of the lanes that act. Errors reference less true, about x, y, z. `program_rad_s2`: what is fed
+/// forward to each axis, or null; `foreign_rad_s2`: what a plug-in commands of each, or null. Of what the
+/// laws have learnt, pitch alone is reported.
+template <bool kAll, class T>
+DISPERSA_INLINE void StepGimbals(const AutopilotModel& model, GimbalLoop<T>& loop, MaskOf<T> acting,
+                                 T since_ignition_s, Vector<T> angle_rad, Vector<T> rate_rad_s,
+                                 const T* program_rad_s2, const T* foreign_rad_s2, AxisMemory<T>* memory,
+                                 GimbalOutput<T>& out) {
+  if (model.is_scheduled) FollowSchedule(model, since_ignition_s, loop);
+  T of_roll, of_pitch;
+  Effectiveness(loop, since_ignition_s, of_roll, of_pitch);
   const T gain_over_both = loop.gain / (of_pitch * of_roll);
   const T per_pitch = gain_over_both * of_roll, per_roll = gain_over_both * of_pitch;
 
@@ -78,7 +88,8 @@ DISPERSA_INLINE void StepGimbals(const AutopilotModel& model, GimbalLoop<T>& loo
   const T* rate = &rate_rad_s.x;
   for (int axis = 0; axis < kAxes; ++axis) {
     StepAxis<kAll>(model.laws.data()[axis].config, model.config.tick_s, loop.axes[axis], acting, angle[axis],
-                   rate[axis], axis == kPitch, memory[axis], out.axes[axis]);
+                   rate[axis], foreign_rad_s2 != nullptr ? foreign_rad_s2[axis] : T(0.0), axis == kPitch,
+                   memory[axis], out.axes[axis]);
     if (program_rad_s2 != nullptr)
       out.axes[axis].command_rad_s2 = out.axes[axis].command_rad_s2 + program_rad_s2[axis];
     const T deflection = out.axes[axis].command_rad_s2 * (axis == kRoll ? per_roll : per_pitch);

@@ -282,12 +282,12 @@ DISPERSA_INLINE T Filter(int count, const T (*sections)[5], MaskOf<T> acting, T 
   return x;
 }
 
-/// One tick of the lanes that act; the others' memory stays as it is. `is_reported`: what the law has learnt
-/// is read afterwards.
+/// One tick of the lanes that act; the others' memory stays as it is. `foreign_rad_s2`: the command of a law
+/// that is not ours. `is_reported`: what the law has learnt is read afterwards.
 template <bool kAll, class T>
 DISPERSA_INLINE void StepAxis(const AxisConfig& config, double tick_s, const AxisStage<T>& stage,
-                              MaskOf<T> acting, T error, T rate, bool is_reported, AxisMemory<T>& memory,
-                              AxisOutput<T>& out) {
+                              MaskOf<T> acting, T error, T rate, T foreign_rad_s2, bool is_reported,
+                              AxisMemory<T>& memory, AxisOutput<T>& out) {
   out.command_rad_s2 = out.departure_norm2 = out.frozen = T(0.0);
   out.v =
       T(0.5) * Fma(stage.p11 * error, error, Fma(T(2.0) * stage.p12 * error, rate, stage.p22 * rate * rate));
@@ -309,6 +309,9 @@ DISPERSA_INLINE void StepAxis(const AxisConfig& config, double tick_s, const Axi
     case ControlLaw::kPdAac:
     case ControlLaw::kPidAac:
       out.command_rad_s2 = StepAugmented<kAll>(config, tick_s, stage, acting, error, rate, memory);
+      break;
+    case ControlLaw::kPlugin:
+      out.command_rad_s2 = foreign_rad_s2;
       break;
   }
   const int sections = static_cast<int>(config.filters.size());

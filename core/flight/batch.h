@@ -72,6 +72,7 @@ class Batch {
   void FlyGimbals();
   template <bool kAll>
   void FlyGimbalsOf(M powered);
+  const T* PluginCommands(M powered, const T* program, T* command);
   const T* FedForward(T* program) const;
   void PassCommands(M powered);
   void RollByThrusters(M rolling);
@@ -97,7 +98,7 @@ class Batch {
   FlightQueue& queue_;
   const double tick_s_;
   const double ticks_a_second_;
-  const bool has_jettisons_, cuts_off_at_velocity_;
+  const bool has_jettisons_, cuts_off_at_velocity_, has_plugin_;
   Slot slot_[kLanes];
   int flying_ = 0;         ///< lanes
   unsigned patience_ = 0;  ///< passes until the queue is asked again
@@ -115,7 +116,8 @@ class Batch {
   int common_delay_ = 0;
 
   Vector<T> angle_rad_, rate_rad_s_;  ///< error, reference less true
-  Vector<T> measured_angle_rad_, measured_rate_rad_s_;
+  Vector<T> measured_angle_rad_, measured_rate_rad_s_;  ///< as the sensors see it, and
+  Vector<T> measured_body_rate_rad_s_;                  ///< the rate of the body itself
   Vector<T> gyro_bias_rad_s_;
   InertialUnit<T> unit_;
   M drifts_;  ///< whose gyros have a bias or noise, or whose unit is misaligned
@@ -147,7 +149,8 @@ Batch<T>::Batch(const FlightModel& model, FlightQueue& queue)
       tick_s_(definition_.autopilot.tick_s),
       ticks_a_second_(static_cast<double>(static_cast<long>(1.0 / tick_s_ + 0.5))),
       has_jettisons_(!model.nominal_plant().jettisons.empty()),
-      cuts_off_at_velocity_(CutsOffAtVelocity(definition_.vehicle)) {
+      cuts_off_at_velocity_(CutsOffAtVelocity(definition_.vehicle)),
+      has_plugin_(model.autopilot().plugin != nullptr) {
   // Lanes that never fly compute along with the others, on numbers that do no harm.
   __builtin_memset(static_cast<void*>(&step_), 0, sizeof step_);
   __builtin_memset(static_cast<void*>(&delay_line_), 0, sizeof delay_line_);

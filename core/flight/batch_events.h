@@ -185,6 +185,17 @@ void Batch<T>::Ignite(int lane, int stage) {
     SetLane(axes_[axis], lane, state.axes[axis]);
     Lane(thrusters_[axis].direction, lane) = Lane(thrusters_[axis].cycles_on, lane) = 0.0;
   }
+  if (has_plugin_) {
+    dispersa_law_stage of_stage{};
+    of_stage.stage = static_cast<std::uint32_t>(stage);
+    for (int axis = 0; axis < kAxes; ++axis) {
+      const StageLaw& law = autopilot.laws.data()[axis].stages.data()[stage];
+      of_stage.kp_1_s2[axis] = law.kp_1_s2;
+      of_stage.kd_1_s[axis] = law.kd_1_s;
+    }
+    of_stage.limit_rad = autopilot.stages.data()[stage].limit_rad;
+    record.law->StartStage(of_stage, Lane(time_s_, lane));
+  }
   // The last stage's are nobody's now.
   const AxisOutput<double> nothing{};
   for (int axis = 0; axis < kAxes; ++axis) {

@@ -101,6 +101,7 @@ void Batch<T>::Measure() {
   rate_rad_s_ = Rotate(q_BR, {c[4], c[5], c[6]}) - step_.motion.w;
   measured_angle_rad_ = angle_rad_;
   measured_rate_rad_s_ = rate_rad_s_;
+  if (has_plugin_) measured_body_rate_rad_s_ = step_.motion.w;
   if (any_drift_ || step_.bending.modes > 0 || model_.sensors().uses_gyros) MeasureBySensors(c);
 }
 
@@ -128,6 +129,7 @@ void Batch<T>::MeasureBySensors(const T* reference) {
   const M imperfect = everywhere ? live_ : live_ & drifts_;
   measured_angle_rad_ = Select(imperfect, angle, measured_angle_rad_);
   measured_rate_rad_s_ = Select(imperfect, error_rate, measured_rate_rad_s_);
+  if (has_plugin_) measured_body_rate_rad_s_ = Select(imperfect, rate, measured_body_rate_rad_s_);
 }
 
 /// The blend of gyros and inertial unit; while nothing burns the weights are the inertial unit's alone.
@@ -187,9 +189,41 @@ void Batch<T>::FlyGimbals() {
 template <class T>
 template <bool kAll>
 void Batch<T>::FlyGimbalsOf(M powered) {
-  T program[FeedForwardRows::kRowSize];
+  T program[FeedForwardRows::kRowSize], foreign[kAxes];
+  const T* const fed = FedForward(program);
   StepGimbals<kAll>(model_.autopilot(), loop_, powered, time_s_ - step_.phase.ignition_s, measured_angle_rad_,
-                    measured_rate_rad_s_, FedForward(program), axes_, gimbals_);
+                    measured_rate_rad_s_, fed, has_plugin_ ? PluginCommands(powered, fed, foreign) : nullptr,
+                    axes_, gimbals_);
+}
+
+/// What a law that is not ours commands: each lane by itself, as ordinary code.
+template <class T>
+const T* Batch<T>::PluginCommands(M powered, const T* program, T* command) {
+  T of_roll, of_pitch;
+  Effectiveness(loop_, time_s_ - step_.phase.ignition_s, of_roll, of_pitch);
+  const T* angle = &measured_angle_rad_.x;
+  const T* rate = &measured_rate_rad_s_.x;
+  const T* body = &measured_body_rate_rad_s_.x;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    dispersa_law_input input{};
+    double wanted[kAxes] = {};
+    if (Bits(powered) >> lane & 1u) {
+      input.time_s = Lane(time_s_, lane);
+      input.since_ignition_s = Lane(time_s_ - step_.phase.ignition_s, lane);
+      input.stage = static_cast<std::uint32_t>(slot_[lane].stack);
+      for (int axis = 0; axis < kAxes; ++axis) {
+        input.angle_error_rad[axis] = Lane(angle[axis], lane);
+        input.rate_error_rad_s[axis] = Lane(rate[axis], lane);
+        input.rate_rad_s[axis] = Lane(body[axis], lane);
+        input.effectiveness_1_s2[axis] = Lane(axis == kRoll ? of_roll : of_pitch, lane);
+        if (program != nullptr) input.program_rad_s2[axis] = Lane(program[axis], lane);
+        input.saturation[axis] = Lane(axes_[axis].saturation, lane);
+      }
+      slot_[lane].record->law->Step(input, wanted);
+    }
+    for (int axis = 0; axis < kAxes; ++axis) Lane(command[axis], lane) = wanted[axis];
+  }
+  return command;
 }
 
 // What the program asks of the lanes' axes at their ticks; null where nothing is fed forward. Body axes stand
@@ -440,6 +474,12 @@ void Batch<T>::CheckEnds() {
                                     above(metrics_.axial_load_max_g, limits.axial_load_g) |
                                     above(metrics_.lateral_load_max_g, limits.lateral_load_g) |
                                     above(metrics_.bending_moment_max_n_m, limits.bending_moment_n_m)));
+  }
+  if (has_plugin_) {
+    for (int lane = 0; lane < kLanes; ++lane)
+      if (slot_[lane].record != nullptr && slot_[lane].record->law->failure() != nullptr)
+        End(lane, Outcome::kNumericalFailure, slot_[lane].record->law->failure());
+    suspects = suspects & live_;
   }
   if (!Any(suspects)) return;
   for (int lane = 0; lane < kLanes; ++lane) {

@@ -191,6 +191,11 @@ FlightRecord::FlightRecord(const FlightModel& model, const FlightOrder& order)
     guided_ = std::make_unique<GuidedFlight>(model, inputs);
     guided = guided_.get();
   }
+  if (const PluginLaw* const plugin = model.autopilot().plugin.get()) {
+    law_ = std::make_unique<PluginFlight>(*plugin, tick_s, model.autopilot().stages.size(),
+                                          PluginAxes(model.autopilot().config), options.case_index);
+    law = law_.get();
+  }
   if (options.history) options.history->values.clear();
   SetEquations();
 }
@@ -261,6 +266,7 @@ TickSample FlightRecord::SampleOf(const LaneView& view) const {
     s.memories[axis] = view.memories[axis];
     s.thrusters[axis] = view.thrusters[axis];
   }
+  if (law) s.law_telemetry = law->telemetry();
   s.stuck_nozzle = view.phase.stuck_nozzle;
   s.expelled_mass_kg = view.phase.expelled_mass_kg;
   s.jettisoned = view.phase.jettisoned;

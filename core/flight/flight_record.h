@@ -76,6 +76,7 @@ class FlightRecord {
 
   // ---- while it flies ----
   GuidedFlight* guided = nullptr;  ///< null: the reference's attitude is flown
+  PluginFlight* law = nullptr;     ///< null: no axis' law is a plug-in's
   FlightSums sums;
   RippleMeter ripple;
   LimitCycleMeter limit_cycle;
@@ -125,6 +126,7 @@ class FlightRecord {
 
   const FlightModel& model_;
   std::unique_ptr<GuidedFlight> guided_;
+  std::unique_ptr<PluginFlight> law_;
   Stream gyro_noise_;
   Digester digester_;
   std::unique_ptr<const LauncherModel> equations_;  ///< of a flight that is watched or judged

@@ -26,16 +26,43 @@ const std::vector<std::string>& KinematicColumnNames() {
 }
 
 const std::vector<std::string>& LauncherColumnNames() {
-  static const std::vector<std::string> names = {
-      "stage", "thrust_n", "inertial_velocity_m_s", "flight_path_angle_deg",
-      "pitch_program_deg", "pitch_launch_deg", "pitch_error_deg", "yaw_error_deg", "roll_error_deg",
-      "pitch_rate_error_deg_s",
-      "deflection_pitch_deg", "deflection_yaw_deg", "deflection_roll_deg",
-      "nozzle1_deg", "nozzle2_deg", "nozzle3_deg", "nozzle4_deg",
-      "command_pitch_deg", "control_pitch_deg_s2", "adaptation_norm_deg_s2",
-      "lyapunov_v", "lyapunov_v_rate_sign", "adaptation_projected", "adaptation_frozen", "rules_fired",
-      "total_gain", "thruster_roll", "thruster_pitch", "thruster_yaw", "rcs_propellant_kg",
-      "axial_load_g", "lateral_load_g", "incidence_deg"};
+  static const std::vector<std::string> names = {"stage",
+                                                 "thrust_n",
+                                                 "inertial_velocity_m_s",
+                                                 "flight_path_angle_deg",
+                                                 "pitch_program_deg",
+                                                 "pitch_launch_deg",
+                                                 "pitch_error_deg",
+                                                 "yaw_error_deg",
+                                                 "roll_error_deg",
+                                                 "pitch_rate_error_deg_s",
+                                                 "deflection_pitch_deg",
+                                                 "deflection_yaw_deg",
+                                                 "deflection_roll_deg",
+                                                 "nozzle1_deg",
+                                                 "nozzle2_deg",
+                                                 "nozzle3_deg",
+                                                 "nozzle4_deg",
+                                                 "command_pitch_deg",
+                                                 "control_pitch_deg_s2",
+                                                 "adaptation_norm_deg_s2",
+                                                 "lyapunov_v",
+                                                 "lyapunov_v_rate_sign",
+                                                 "adaptation_projected",
+                                                 "adaptation_frozen",
+                                                 "rules_fired",
+                                                 "total_gain",
+                                                 "thruster_roll",
+                                                 "thruster_pitch",
+                                                 "thruster_yaw",
+                                                 "rcs_propellant_kg",
+                                                 "axial_load_g",
+                                                 "lateral_load_g",
+                                                 "incidence_deg",
+                                                 "law_telemetry_1",
+                                                 "law_telemetry_2",
+                                                 "law_telemetry_3",
+                                                 "law_telemetry_4"};
   return names;
 }
 
@@ -69,6 +96,9 @@ void AppendLauncher(const FlightModel& model, const TickSample& s, std::vector<d
   const Vector3 specific = now.loads.force_n / (now.loads.mass_kg * kStandardGravity);
   const AxisTelemetry& t = s.gimbal.telemetry[kPitch];
   const auto powered = [&](double value) { return s.burning ? value : kUndefined; };
+  const auto told = [&](std::size_t i) {
+    return s.law_telemetry ? powered((*s.law_telemetry)[i]) : kUndefined;
+  };
   const auto& n = s.nozzle_rad;
   const LauncherStack& stack = model.nominal_plant().stacks[static_cast<std::size_t>(s.stack)];
   const NozzleLayout* const list = stack.gimbal.nozzles.empty() ? nullptr : &stack.layout;
@@ -110,7 +140,12 @@ void AppendLauncher(const FlightModel& model, const TickSample& s, std::vector<d
                          s.expelled_mass_kg,
                          specific.x(),
                          Sqrt(specific.y() * specific.y() + specific.z() * specific.z()),
-                         TotalIncidence(now.v_AB_B) * kDegPerRad});
+                         TotalIncidence(now.v_AB_B) * kDegPerRad,
+                         told(0),
+                         told(1),
+                         told(2),
+                         told(3)});
+  static_assert(kLawTelemetry == 4);
 }
 
 }  // namespace dispersa

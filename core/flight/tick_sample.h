@@ -2,8 +2,10 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "core/control/autopilot.h"
+#include "core/control/plugin.h"
 #include "core/dynamics/launcher.h"
 #include "core/flight/attitude_program.h"
 
@@ -25,6 +27,8 @@ struct TickSample {
   ReferenceAttitude reference;
   GimbalCommand gimbal;            ///< of this tick
   std::array<AxisState, kAxes> memories{};  ///< of the burning stage's laws, after this tick
+  std::optional<std::array<double, kLawTelemetry>> law_telemetry =
+      {};                                   ///< of a plug-in's law, after this tick
   int stuck_nozzle = -1;                    ///< index, or none
   std::array<int, kAxes> thrusters{};
   double expelled_mass_kg = 0.0;

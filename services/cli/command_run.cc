@@ -184,6 +184,12 @@ class CampaignRun {
       }
       changed_.notify_all();
     }
+    void GivenUp(std::uint64_t case_index, const std::string& reason) override {
+      const std::lock_guard lock(mutex_);
+      run_.book_.ledger().GiveUp(kSelf, case_index, attempts_.extract(case_index).mapped(), reason,
+                                 run_.Now());
+      changed_.notify_all();
+    }
     void RethrowProblem() const {
       if (problem_) std::rethrow_exception(problem_);
     }

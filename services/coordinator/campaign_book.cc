@@ -175,7 +175,9 @@ void CampaignBook::Flush() {
   if (ledger_.Progress().quarantined != quarantined_) {
     for (const BlamedCase& blamed : ledger_.Quarantined()) {
       // The reasons of each attempt name processes and signals; what is stored must not differ between runs.
-      store_->Quarantine({blamed.case_index, "every attempt to fly it ended or hung its worker"});
+      store_->Quarantine({blamed.case_index, blamed.is_certain
+                                                 ? blamed.reasons.back()
+                                                 : "every attempt to fly it ended or hung its worker"});
     }
     quarantined_ = ledger_.Progress().quarantined;
   }

@@ -78,8 +78,8 @@ void Ledger::Started(const std::string& worker, std::uint64_t case_index, std::u
   if (!held->second.started_s) held->second.started_s = now_s;
 }
 
-Acceptance Ledger::Finished(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,
-                            const Digest& fingerprint, double now_s) {
+void Ledger::Settle(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,
+                    double now_s) {
   const auto entry = workers_.find(worker);
   if (entry != workers_.end()) {
     entry->second.last_report_s = now_s;
@@ -95,7 +95,25 @@ Acceptance Ledger::Finished(const std::string& worker, std::uint64_t case_index,
       Release(entry->second, held);
     }
   }
+}
 
+void Ledger::GiveUp(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,
+                    const std::string& reason, double now_s) {
+  Settle(worker, case_index, attempt, now_s);
+  if (case_index >= cases_.size()) return;
+  Case& given_up = cases_[case_index];
+  if (given_up.state == State::kDone || given_up.state == State::kQuarantined) return;
+  if (given_up.state == State::kWaiting) waiting_.Remove(case_index);
+  if (given_up.state == State::kSuspect) suspects_.Remove(case_index);
+  blames_[case_index].push_back(reason);
+  given_up_.insert(case_index);
+  given_up.state = State::kQuarantined;
+  ++progress_.quarantined;
+}
+
+Acceptance Ledger::Finished(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,
+                            const Digest& fingerprint, double now_s) {
+  Settle(worker, case_index, attempt, now_s);
   if (case_index >= cases_.size()) return Acceptance::kUnknown;
   Case& flown = cases_[case_index];
   if (flown.state == State::kDone) {
@@ -110,6 +128,7 @@ Acceptance Ledger::Finished(const std::string& worker, std::uint64_t case_index,
   if (flown.state == State::kSuspect) suspects_.Remove(case_index);
   if (flown.state == State::kQuarantined) --progress_.quarantined;
   blames_.erase(case_index);
+  given_up_.erase(case_index);
   flown = {State::kDone, fingerprint};
   ++progress_.done;
   return Acceptance::kAccepted;
@@ -238,7 +257,8 @@ LedgerProgress Ledger::Progress() const {
 std::vector<BlamedCase> Ledger::Quarantined() const {
   std::vector<BlamedCase> quarantined;
   for (const auto& [case_index, reasons] : blames_) {
-    if (cases_[case_index].state == State::kQuarantined) quarantined.push_back({case_index, reasons});
+    if (cases_[case_index].state == State::kQuarantined)
+      quarantined.push_back({case_index, reasons, given_up_.contains(case_index)});
   }
   return quarantined;
 }

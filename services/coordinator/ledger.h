@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,7 @@ enum class Acceptance {
 struct BlamedCase {
   std::uint64_t case_index = 0;
   std::vector<std::string> reasons;  ///< one of each blame
+  bool is_certain = false;  ///< its worker has seen alone what it does, and gave it up: the last reason
 
   bool operator==(const BlamedCase&) const = default;
 };
@@ -96,6 +98,10 @@ class Ledger {
   /// `fingerprint` covers every bit of the result.
   Acceptance Finished(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,
                       const Digest& fingerprint, double now_s);
+  /// The worker survived what the case does to every process that flies it: it is quarantined at once, unless
+  /// it has a result.
+  void GiveUp(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,
+              const std::string& reason, double now_s);
   /// The worker is gone: its cases return to the queue. `reason` is kept with each blame.
   void Lost(const std::string& worker, WorkerEnd end, const std::string& reason);
 
@@ -151,6 +157,8 @@ class Ledger {
   void Release(Worker& worker, std::map<std::uint64_t, Held>::iterator held);
   void Return(std::uint64_t case_index);
   void Blame(std::uint64_t case_index, const std::string& reason);
+  // What the worker owed is no longer owed.
+  void Settle(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt, double now_s);
 
   std::string engine_version_;
   LedgerOptions options_;
@@ -158,6 +166,7 @@ class Ledger {
   IndexSet waiting_;
   IndexSet suspects_;
   std::map<std::uint64_t, std::vector<std::string>> blames_;  ///< case index -> reasons
+  std::set<std::uint64_t> given_up_;
   std::map<std::string, Worker> workers_;
   std::uint64_t next_attempt_ = 1;
   std::uint64_t slots_ = 0;

@@ -3,6 +3,9 @@
 namespace dispersa {
 namespace {
 
+/// In place of an outcome.
+constexpr char kGivenUp[] = "given_up";
+
 std::vector<std::uint8_t> Octets(const std::string& bytes) { return {bytes.begin(), bytes.end()}; }
 std::string Bytes(const std::vector<std::uint8_t>& octets) { return {octets.begin(), octets.end()}; }
 
@@ -11,7 +14,7 @@ idl::FlownCaseV2 ToIdl(const FlownCase& flown) {
   idl::FlownCaseV2 message;
   message.case_index(result.case_index);
   message.attempt(flown.attempt);
-  message.outcome(OutcomeName(result.outcome));
+  message.outcome(flown.given_up ? kGivenUp : OutcomeName(result.outcome));
   message.end_time_s(result.end_time_s);
   message.end_stage(result.end_stage);
   message.reason(result.reason);
@@ -23,10 +26,11 @@ idl::FlownCaseV2 ToIdl(const FlownCase& flown) {
 }
 
 bool FromIdl(const idl::FlownCaseV2& message, FlownCase* flown) {
+  flown->given_up = message.outcome() == kGivenUp;
   CaseResult& result = flown->result;
   result.case_index = message.case_index();
   flown->attempt = message.attempt();
-  if (!ParseOutcome(message.outcome(), &result.outcome)) return false;
+  if (!flown->given_up && !ParseOutcome(message.outcome(), &result.outcome)) return false;
   result.end_time_s = message.end_time_s();
   result.end_stage = message.end_stage();
   result.reason = message.reason();

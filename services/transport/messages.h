@@ -56,6 +56,7 @@ struct Orders {
 struct FlownCase {
   std::uint64_t attempt = 0;
   CaseResult result;
+  bool given_up = false;  ///< it has no result but its number and why: it ends every process that flies it
 };
 
 struct Report {

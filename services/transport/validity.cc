@@ -65,6 +65,8 @@ std::string Problem(const Report& report) {
       return flown.result.inputs.size() == InputCount(stages) &&
              flown.result.metrics.size() == MetricCount(stages);
     };
+    if (flown.given_up)
+      return flown.result.inputs.empty() && flown.result.metrics.empty() && !flown.result.reason.empty();
     return are_of(kUsualStages) || are_of(kMaxStages);
   };
   const auto is_sane = [](const FlownCase& flown) {

@@ -205,6 +205,17 @@ void FlightDesk::Finish(double now_s) {
 }
 
 void FlightDesk::Done(const Job& job, CaseResult result, double now_s) {
+  Give(job, {job.attempt, std::move(result)}, now_s);
+}
+
+void FlightDesk::GivenUp(const Job& job, const std::string& reason, double now_s) {
+  FlownCase flown{job.attempt, {}, true};
+  flown.result.case_index = job.case_index;
+  flown.result.reason = reason;
+  Give(job, std::move(flown), now_s);
+}
+
+void FlightDesk::Give(const Job& job, FlownCase flown, double now_s) {
   const double seconds = now_s - job.started_s;
   mean_flight_s_ =
       mean_flight_s_ == 0.0 ? seconds : mean_flight_s_ + kMeanWeight * (seconds - mean_flight_s_);
@@ -226,7 +237,7 @@ void FlightDesk::Done(const Job& job, CaseResult result, double now_s) {
   next_.flight_id = job.flight_id;
   next_.coordinator_epoch = job.coordinator_epoch;
   if (next_.flown.empty()) gathered_s_ = now_s;
-  next_.flown.push_back({job.attempt, std::move(result)});
+  next_.flown.push_back(std::move(flown));
   ++unstored_;
 }
 

@@ -65,6 +65,8 @@ class FlightDesk {
   /// so that the coordinator knows what to blame if this process ends in it.
   std::optional<Job> Next(double now_s);
   void Done(const Job& job, CaseResult result, double now_s);
+  /// It ended every process that flew it.
+  void GivenUp(const Job& job, const std::string& reason, double now_s);
   /// Reports that are ready. Results wait for the start of the next case, unless there is none.
   std::vector<Report> TakeReports(double now_s);
 
@@ -115,6 +117,7 @@ class FlightDesk {
   void Take(const FlyOrder& order);
   void Revoke(std::uint64_t attempt);
   bool Announce(double now_s);
+  void Give(const Job& job, FlownCase flown, double now_s);
   void DropAttempt(std::map<std::uint64_t, Attempt>::iterator attempt);
   void Forget();
   void Finish(double now_s);

@@ -134,13 +134,22 @@ class Worker::SlotQueue : public CaseQueue {
     return case_index;
   }
   void Done(CaseResult result) override {
-    const auto job = std::find_if(flying_.begin(), flying_.end(),
-                                  [&](const Job& each) { return each.case_index == result.case_index; });
-    worker_.Done(*job, std::move(result));
-    flying_.erase(job);
+    const Job job = Take(result.case_index);
+    worker_.Done(job, std::move(result));
+  }
+  void GivenUp(std::uint64_t case_index, const std::string& reason) override {
+    worker_.GivenUp(Take(case_index), reason);
   }
 
  private:
+  Job Take(std::uint64_t case_index) {
+    const auto found = std::find_if(flying_.begin(), flying_.end(),
+                                    [&](const Job& each) { return each.case_index == case_index; });
+    Job job = std::move(*found);
+    flying_.erase(found);
+    return job;
+  }
+
   Worker& worker_;
   std::shared_ptr<const CampaignFlights> flights_;
   std::optional<Job> next_;
@@ -172,6 +181,11 @@ std::optional<Job> Worker::Next(bool wait) {
 void Worker::Done(const Job& job, CaseResult result) {
   const Lock lock(mutex_);
   desk_.Done(job, std::move(result), Now());
+}
+
+void Worker::GivenUp(const Job& job, const std::string& reason) {
+  const Lock lock(mutex_);
+  desk_.GivenUp(job, reason, Now());
 }
 
 void Worker::Send(const FlightDesk::Due& due) {

@@ -1,0 +1,51 @@
+// Runs what may crash, hang, end the process or never stop allocating, in a child process.
+//
+// The child is forked without a new program: it has all that this process has prepared, and no files of it
+// but its standard streams. It runs on one thread, and must take no lock that another thread may hold here.
+#pragma once
+
+#include <functional>
+#include <stdexcept>
+#include <string>
+
+#include "core/control/plugin.h"
+
+namespace dispersa {
+
+/// A child that did not end well, in words for the user.
+class ContainedEnd : public std::runtime_error {
+ public:
+  ContainedEnd(const std::string& text, const PluginMark& at) : std::runtime_error(text), at_(at) {}
+
+  /// The call into a plug-in that was under way, or the last one.
+  const PluginMark& at() const { return at_; }
+
+ private:
+  PluginMark at_;
+};
+
+struct ContainmentLimits {
+  double call_cpu_s = 5.0;    ///< a call of more computing time counts as one that does not return,
+  double call_wait_s = 60.0;  ///< or of more time
+  std::size_t memory_bytes = std::size_t{1} << 30;  ///< beyond what this process has
+};
+
+using Say = std::function<void(const std::string& message)>;
+
+/// Runs `work` in a child. What it says is heard here, in order, until the child has ended. Throws
+/// PluginError with the text of what `work` throws; ContainedEnd when the child ends otherwise; and what
+/// `hear` throws, after ending the child.
+void RunContained(const std::function<void(const Say& say)>& work, const Say& hear,
+                  const ContainmentLimits& limits = {});
+/// Whether this is such a child.
+bool IsContained();
+
+/// What a plug-in says of itself, asked in a child. Throws PluginError, ContainedEnd.
+PluginDescription DescribeContained(const PluginConfig& config);
+
+/// Whether this process runs plug-ins at all. Until RefusePlugins it does; then whoever would load one throws
+/// PluginError with this text.
+void RefusePlugins(const std::string& why);
+const std::string& PluginRefusal();
+
+}  // namespace dispersa

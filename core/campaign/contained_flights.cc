@@ -1,0 +1,284 @@
+#include "core/campaign/contained_flights.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "core/campaign/contained.h"
+#include "core/flight/flight_model.h"
+#include "core/flight/history.h"
+#include "core/flight/lane_engine.h"
+
+namespace dispersa {
+namespace {
+
+// A child's words are bytes of the same program: values as they are, lists and texts behind their lengths.
+class Packer {
+ public:
+  template <typename T>
+  void Value(const T& value) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
+  }
+  void Text(const std::string& text) {
+    Value(text.size());
+    bytes_ += text;
+  }
+  void Numbers(const std::vector<double>& numbers) {
+    Value(numbers.size());
+    bytes_.append(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(double));
+  }
+  std::string Take() { return std::move(bytes_); }
+
+ private:
+  std::string bytes_;
+};
+
+// What a plug-in may have spoilt is read with care: beyond the end there are zeros.
+class Unpacker {
+ public:
+  explicit Unpacker(const std::string& bytes) : bytes_(bytes) {}
+
+  template <typename T>
+  T Value() {
+    T value{};
+    std::memcpy(&value, Part(sizeof value), sizeof value);
+    return value;
+  }
+  std::string Text() {
+    const auto size = Value<std::size_t>();
+    return {Part(size), is_whole_ ? size : 0};
+  }
+  std::vector<double> Numbers() {
+    const auto count = Value<std::size_t>();
+    const char* const part = Part(count > bytes_.size() ? bytes_.size() + 1 : count * sizeof(double));
+    if (!is_whole_) return {};
+    std::vector<double> numbers(count);
+    std::memcpy(numbers.data(), part, count * sizeof(double));
+    return numbers;
+  }
+  bool is_whole() const { return is_whole_ && at_ == bytes_.size(); }
+
+ private:
+  const char* Part(std::size_t size) {
+    static constexpr char kNothing[256] = {};
+    if (!is_whole_ || size > bytes_.size() - at_) {
+      is_whole_ = false;
+      return kNothing;
+    }
+    at_ += size;
+    return bytes_.data() + at_ - size;
+  }
+
+  const std::string& bytes_;
+  std::size_t at_ = 0;
+  bool is_whole_ = true;
+};
+
+void Pack(const CaseResult& result, Packer& out) {
+  out.Value(result.case_index);
+  out.Value(result.outcome);
+  out.Value(result.end_time_s);
+  out.Value(result.end_stage);
+  out.Text(result.reason);
+  out.Numbers(result.inputs);
+  out.Numbers(result.metrics);
+  out.Value(result.digest);
+}
+
+CaseResult UnpackResult(Unpacker& in) {
+  CaseResult result;
+  result.case_index = in.Value<std::uint64_t>();
+  result.outcome = in.Value<Outcome>();
+  result.end_time_s = in.Value<double>();
+  result.end_stage = in.Value<int>();
+  result.reason = in.Text();
+  result.inputs = in.Numbers();
+  result.metrics = in.Numbers();
+  result.digest = in.Value<Digest>();
+  return result;
+}
+
+ContainedEnd Garbled() { return {"answered with what is no result", PluginMark{}}; }
+
+// The queue of a child: cases that are known, results that are said.
+class ListedCases : public CaseQueue {
+ public:
+  ListedCases(std::vector<std::uint64_t> cases, const Say& say) : cases_(std::move(cases)), say_(say) {}
+
+  std::optional<std::uint64_t> Next(bool) override {
+    if (next_ == cases_.size()) return std::nullopt;
+    return cases_[next_++];
+  }
+  void Done(CaseResult result) override {
+    Packer out;
+    Pack(result, out);
+    say_(out.Take());
+  }
+  void GivenUp(std::uint64_t, const std::string&) override {}
+
+ private:
+  std::vector<std::uint64_t> cases_;
+  const Say& say_;
+  std::size_t next_ = 0;
+};
+
+// Flies `cases` in one child and takes those that it flew from them. Returns how the child ended, if not
+// well.
+std::optional<std::string> FlyInChild(const CampaignFlights& flights, std::vector<std::uint64_t>& cases,
+                                      CaseQueue& queue) {
+  const std::vector<std::uint64_t> wanted = cases;
+  try {
+    RunContained(
+        [&](const Say& say) {
+          ListedCases listed(wanted, say);
+          flights.FlyCases(listed);
+        },
+        [&](const std::string& message) {
+          Unpacker in(message);
+          CaseResult result = UnpackResult(in);
+          if (!in.is_whole() || std::erase(cases, result.case_index) == 0) throw Garbled();
+          queue.Done(std::move(result));
+        });
+  } catch (const ContainedEnd& end) {
+    return end.what();
+  } catch (const PluginError& error) {
+    return error.what();
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+CaseResult FlyContained(const CampaignFlights& flights, const FlightInputs& inputs, std::uint64_t case_index,
+                        History* history, Scheme scheme) {
+  std::optional<CaseResult> result;
+  RunContained(
+      [&](const Say& say) {
+        History flown;
+        if (history != nullptr) flown.step_s = history->step_s;
+        Packer out;
+        Pack(flights.Fly(inputs, case_index, history != nullptr ? &flown : nullptr, scheme), out);
+        out.Numbers(flown.values);
+        say(out.Take());
+      },
+      [&](const std::string& message) {
+        Unpacker in(message);
+        result = UnpackResult(in);
+        std::vector<double> values = in.Numbers();
+        if (!in.is_whole()) throw Garbled();
+        if (history != nullptr) history->values = std::move(values);
+      });
+  if (!result) throw Garbled();
+  return *std::move(result);
+}
+
+void FlyContained(const CampaignFlights& flights, CaseQueue& queue) {
+  // Twice the lanes: most of the flights of a child find their lanes filled.
+  const std::size_t most = 2 * static_cast<std::size_t>(ChosenEngine().lanes);
+  for (;;) {
+    std::vector<std::uint64_t> cases;
+    while (cases.size() < most) {
+      const std::optional<std::uint64_t> next = queue.Next(cases.empty());
+      if (!next) break;
+      cases.push_back(*next);
+    }
+    if (cases.empty()) return;
+    if (!FlyInChild(flights, cases, queue)) continue;
+    for (const std::uint64_t case_index : std::vector<std::uint64_t>(cases)) {
+      std::vector<std::uint64_t> alone = {case_index};
+      if (const auto end = FlyInChild(flights, alone, queue))
+        queue.GivenUp(case_index, "the control law " + *end);
+    }
+  }
+}
+
+namespace {
+
+FlightOrder OrderOf(const CampaignFlights& flights, std::optional<std::uint64_t> case_index,
+                    History& history) {
+  history.step_s = flights.model().definition().autopilot.tick_s;
+  FlightOrder order;
+  if (case_index) order.inputs = flights.Draw(*case_index);
+  order.options.case_index = case_index.value_or(0);
+  order.options.history = &history;
+  return order;
+}
+
+// None is the nominal flight.
+std::vector<std::vector<double>> FlySideBySide(const CampaignFlights& flights,
+                                               const std::vector<std::optional<std::uint64_t>>& cases) {
+  std::vector<std::vector<double>> rows;
+  RunContained(
+      [&](const Say& say) {
+        std::vector<History> histories(cases.size());
+        std::vector<FlightOrder> orders;
+        for (std::size_t i = 0; i < cases.size(); ++i)
+          orders.push_back(OrderOf(flights, cases[i], histories[i]));
+        FlyAll(flights.model(), orders);
+        for (const History& history : histories) {
+          Packer out;
+          out.Numbers(history.values);
+          say(out.Take());
+        }
+      },
+      [&](const std::string& message) {
+        Unpacker in(message);
+        rows.push_back(in.Numbers());
+        if (!in.is_whole()) throw Garbled();
+      });
+  return rows;
+}
+
+std::string Difference(const std::vector<double>& first, const std::vector<double>& second) {
+  const std::vector<std::string>& columns = HistoryColumns();
+  const std::size_t size = std::min(first.size(), second.size());
+  for (std::size_t i = 0; i < size; ++i) {
+    if (std::memcmp(&first[i], &second[i], sizeof(double)) == 0) continue;
+    char text[160];
+    std::snprintf(text, sizeof text, "at %.3f s %s is %.17g once and %.17g again",
+                  first[i - i % columns.size()], columns[i % columns.size()].c_str(), first[i], second[i]);
+    return text;
+  }
+  return first.size() == second.size() ? "" : "one of the flights ends earlier";
+}
+
+}  // namespace
+
+void CheckPluginIsDeterministic(const CampaignFlights& flights, std::uint64_t cases) {
+  try {
+    FlySideBySide(flights, {std::nullopt});
+  } catch (const ContainedEnd& end) {
+    throw PluginError(std::string("in the nominal flight it ") + end.what());
+  }
+  std::vector<std::optional<std::uint64_t>> checked = {std::nullopt};
+  for (std::uint64_t i = 0; i < std::min<std::uint64_t>(cases, 2); ++i) checked.emplace_back(i);
+  std::vector<std::vector<double>> together;
+  try {
+    together = FlySideBySide(flights, checked);
+  } catch (const ContainedEnd&) {
+    return;
+  }
+  if (together.size() != checked.size()) throw PluginError("answered with what is no result");
+  for (std::size_t i = 0; i < checked.size(); ++i) {
+    std::vector<std::vector<double>> alone;
+    try {
+      alone = FlySideBySide(flights, {checked[i]});
+    } catch (const ContainedEnd& end) {
+      throw PluginError("is not deterministic: the same flight ended well once, and again it " +
+                        std::string(end.what()));
+    }
+    const std::string difference = alone.empty() ? "" : Difference(together[i], alone[0]);
+    if (difference.empty()) continue;
+    throw PluginError(
+        "is not deterministic: of " +
+        (checked[i] ? "case " + std::to_string(*checked[i]) : std::string("the nominal flight")) +
+        ", flown twice, " + difference);
+  }
+}
+
+}  // namespace dispersa

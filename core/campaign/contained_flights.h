@@ -1,0 +1,22 @@
+// Flights whose control law is a plug-in: flown in child processes, so that nothing that the plug-in does
+// ends this one.
+#pragma once
+
+#include "core/campaign/campaign_flights.h"
+
+namespace dispersa {
+
+/// CampaignFlights::Fly in a child. Throws PluginError, ContainedEnd.
+CaseResult FlyContained(const CampaignFlights& flights, const FlightInputs& inputs, std::uint64_t case_index,
+                        History* history, Scheme scheme);
+/// CampaignFlights::FlyCases in children that fly some cases each. What such a child did not fly before it
+/// ended is flown again, each case in a child of its own; one that ends it again is given up.
+void FlyContained(const CampaignFlights& flights, CaseQueue& queue);
+
+/// Flies the nominal flight and the first two cases side by side, and each again alone, in children of their
+/// own, and compares them tick by tick. Throws PluginError when they differ, with the first instant at which
+/// they do, and when the nominal flight ends its process. Cases that end theirs are left to whoever flies the
+/// campaign.
+void CheckPluginIsDeterministic(const CampaignFlights& flights, std::uint64_t cases);
+
+}  // namespace dispersa

@@ -1,0 +1,117 @@
+// A control law from a shared object (control_law.h): its file, its functions, and the memory of a flight.
+//
+// Nothing here protects this process from what the object does: core/campaign/contained.h does.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/control/control_law.h"
+
+namespace dispersa {
+
+inline constexpr int kLawTelemetry = DISPERSA_LAW_TELEMETRY;
+
+/// What an autopilot file says of it. The object is its bytes: where they came from does not matter.
+struct PluginConfig {
+  std::shared_ptr<const std::string> library;
+  std::string sha256;  ///< of the bytes
+  std::vector<std::pair<std::string, double>> parameters;
+};
+
+/// A plug-in that cannot be used, in words for the user.
+class PluginError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// What a plug-in says of itself.
+struct PluginDescription {
+  std::string name;
+  std::string version;
+  std::vector<std::string> parameters;
+};
+
+/// The functions of a law, and what is always given to them.
+class PluginLaw {
+ public:
+  explicit PluginLaw(const PluginConfig& config) : config_(config) {}
+  ~PluginLaw();
+  PluginLaw(const PluginLaw&) = delete;
+  PluginLaw& operator=(const PluginLaw&) = delete;
+
+  const PluginConfig& config() const { return config_; }
+  /// Loads the object at the first call, which runs code of it. Throws PluginError. Not for several threads
+  /// at once before it has returned once.
+  void Open() const;
+  /// Opens it.
+  PluginDescription Describe() const;
+
+  struct Functions {
+    const dispersa_law_description* (*describe)(void) = nullptr;
+    int (*create)(const dispersa_law_setup*, void*) = nullptr;
+    int (*start_stage)(const dispersa_law_stage*, void*) = nullptr;
+    int (*step)(const dispersa_law_input*, dispersa_law_output*, void*) = nullptr;
+  };
+  /// Of an open one.
+  const Functions& functions() const { return functions_; }
+  const dispersa_law_description& description() const { return *description_; }
+  /// In the order of the description. Throws PluginError.
+  std::vector<double> OrderedParameters() const;
+
+ private:
+  PluginConfig config_;
+  mutable void* handle_ = nullptr;
+  mutable Functions functions_;
+  mutable const dispersa_law_description* description_ = nullptr;
+};
+
+/// Where a call into a plug-in is: for who watches from another process. Written before and after each.
+struct PluginMark {
+  std::uint64_t case_index = 0;
+  std::uint64_t calls = 0;  ///< odd while a call is under way
+  double time_s = 0.0;      ///< since lift-off
+  std::int32_t stage = -1;  ///< from 0; -1: before the first
+};
+/// Where this process writes it; null at first: nowhere.
+void MarkPluginCallsIn(volatile PluginMark* mark);
+
+/// The law of one flight.
+class PluginFlight {
+ public:
+  /// Opens the law. `axes`: bits of those that it commands.
+  PluginFlight(const PluginLaw& law, double tick_s, std::size_t stages, unsigned axes,
+               std::uint64_t case_index);
+
+  /// False, here and in Step, when the law fails; then it is not called any more.
+  bool StartStage(const dispersa_law_stage& stage, double time_s);
+  /// Angular accelerations, rad/s², whatever the law commands.
+  bool Step(const dispersa_law_input& input, double* command_rad_s2);
+
+  /// Why the flight ends; null while it goes on. A text of program life.
+  const char* failure() const { return failure_; }
+  const std::array<double, kLawTelemetry>& telemetry() const { return telemetry_; }
+
+ private:
+  bool Succeeded(int code, const char* otherwise);
+  void Begin(double time_s, int stage);
+  void End();
+
+  struct Free {
+    void operator()(void* memory) const;
+  };
+
+  const PluginLaw& law_;
+  const std::uint64_t case_index_;
+  std::unique_ptr<void, Free> memory_;
+  std::array<double, kLawTelemetry> telemetry_{};
+  const char* failure_ = nullptr;
+};
+
+}  // namespace dispersa
