@@ -43,9 +43,10 @@ bool IsContained();
 /// What a plug-in says of itself, asked in a child. Throws PluginError, ContainedEnd.
 PluginDescription DescribeContained(const PluginConfig& config);
 
-/// Whether this process runs plug-ins at all. Until RefusePlugins it does; then whoever would load one throws
-/// PluginError with this text.
+/// Whether this process loads campaigns with plug-ins at all: until RefusePlugins, which says why not. To be called
+/// before any thread starts.
 void RefusePlugins(const std::string& why);
+/// Empty: it does.
 const std::string& PluginRefusal();
 
 }  // namespace dispersa

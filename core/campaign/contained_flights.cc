@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/campaign/contained.h"
+#include "core/campaign/input_error.h"
 #include "core/flight/flight_model.h"
 #include "core/flight/history.h"
 #include "core/flight/lane_engine.h"
@@ -247,9 +248,7 @@ std::string Difference(const std::vector<double>& first, const std::vector<doubl
   return first.size() == second.size() ? "" : "one of the flights ends earlier";
 }
 
-}  // namespace
-
-void CheckPluginIsDeterministic(const CampaignFlights& flights, std::uint64_t cases) {
+void CompareFlights(const CampaignFlights& flights, std::uint64_t cases) {
   try {
     FlySideBySide(flights, {std::nullopt});
   } catch (const ContainedEnd& end) {
@@ -278,6 +277,18 @@ void CheckPluginIsDeterministic(const CampaignFlights& flights, std::uint64_t ca
         "is not deterministic: of " +
         (checked[i] ? "case " + std::to_string(*checked[i]) : std::string("the nominal flight")) +
         ", flown twice, " + difference);
+  }
+}
+
+}  // namespace
+
+void CheckPluginIsDeterministic(const CampaignFlights& flights, std::uint64_t cases) {
+  const PluginLaw* const plugin = flights.model().autopilot().plugin.get();
+  if (plugin == nullptr) return;
+  try {
+    CompareFlights(flights, cases);
+  } catch (const PluginError& error) {
+    throw InputError("the control law " + plugin->config().name + " " + error.what());
   }
 }
 

@@ -39,6 +39,10 @@ PluginConfig DecodePlugin(const InputNode& node, const std::string& path,
   plugin.library = DecodeLibrary(library, map.PathOf("library"), problems, plugin.sha256);
   if (plugin.library == nullptr) return plugin;
   PluginDescription description;
+  if (!PluginRefusal().empty()) {
+    AddProblem(problems, library, map.PathOf("library"), "the control law " + PluginRefusal());
+    return plugin;
+  }
   try {
     description = DescribeContained(plugin);
   } catch (const std::runtime_error& error) {
@@ -46,6 +50,8 @@ PluginConfig DecodePlugin(const InputNode& node, const std::string& path,
                "a shared object with the functions of dispersa/control_law.h");
     return plugin;
   }
+  plugin.name = description.name;
+  plugin.version = description.version;
   const InputNode empty = MapAt(node);
   MapReader values(parameters != nullptr ? *parameters : empty, map.PathOf("parameters"), problems);
   for (const std::string& name : description.parameters)

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/control/autopilot_step.h"
+#include "core/control/plugin.h"
 
 namespace dispersa {
 

@@ -14,6 +14,8 @@
 
 namespace dispersa {
 
+class PluginLaw;
+
 enum Axis : int { kRoll = 0, kPitch = 1, kYaw = 2 };
 inline constexpr int kAxes = 3;
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/control/plugin.h"
+#include "core/control/plugin_config.h"
 #include "core/math/linear.h"
 
 namespace dispersa {

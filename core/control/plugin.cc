@@ -63,6 +63,7 @@ PluginLaw::~PluginLaw() {
 
 void PluginLaw::Open() const {
   if (description_ != nullptr) return;
+  if (mark == nullptr) throw PluginError("is flown in a process of its own, which this command does not start");
   CountCall();
   if (handle_ == nullptr) handle_ = Load(*config_.library);
   Find(handle_, "dispersa_law_describe", functions_.describe);

@@ -6,24 +6,16 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "core/control/control_law.h"
+#include "core/control/plugin_config.h"
 
 namespace dispersa {
 
 inline constexpr int kLawTelemetry = DISPERSA_LAW_TELEMETRY;
-
-/// What an autopilot file says of it. The object is its bytes: where they came from does not matter.
-struct PluginConfig {
-  std::shared_ptr<const std::string> library;
-  std::string sha256;  ///< of the bytes
-  std::vector<std::pair<std::string, double>> parameters;
-};
 
 /// A plug-in that cannot be used, in words for the user.
 class PluginError : public std::runtime_error {
@@ -47,8 +39,9 @@ class PluginLaw {
   PluginLaw& operator=(const PluginLaw&) = delete;
 
   const PluginConfig& config() const { return config_; }
-  /// Loads the object at the first call, which runs code of it. Throws PluginError. Not for several threads
-  /// at once before it has returned once.
+  /// Loads the object at the first call, which runs code of it: only in a process whose calls are marked
+  /// (MarkPluginCallsIn), so that somebody watches. Throws PluginError. Not for several threads at once before it has
+  /// returned once.
   void Open() const;
   /// Opens it.
   PluginDescription Describe() const;

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "core/control/autopilot.h"
+#include "core/control/autopilot.h"
+#include "core/control/plugin.h"
 #include "core/environment/weather_profile.h"
 #include "core/flight/flight.h"
 #include "core/flight/flight_sums.h"

@@ -435,6 +435,9 @@ std::string ProvenanceSection(const Campaign& campaign, const CampaignSummary& s
                    ReadableText(orbit.inclination_rad * kDegPerRad), HtmlText(campaign.reference.engine))});
   table.Row({"Autopilot", fmt::format("{}, tick {} s", HtmlText(summary.autopilot),
                                       ReadableText(campaign.autopilot.tick_s))});
+  if (const auto& plugin = campaign.autopilot.plugin)
+    table.Row({"Control law", fmt::format("shared object {} {}, SHA-256 {}", HtmlText(plugin->name),
+                                          HtmlText(plugin->version), Code(plugin->sha256))});
   return html + table.Html() +
          "<p>To fly the campaign again, in this folder; <code>campaign.yaml</code> holds everything that it "
          "needs, and "

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/campaign/contained.h"
 #include "core/campaign/input_error.h"
 #include "core/campaign_yaml/yaml_reader.h"
 #include "core/flight/engine_version.h"
@@ -57,6 +58,12 @@ ExitCode Execute(const Invocation& invocation) {
     return code;
   } catch (const InputError& error) {
     return Say(error, kExitBadInput);
+  } catch (const PluginError& error) {
+    fmt::print(stderr, "the control law {}\n", error.what());
+    return kExitBadInput;
+  } catch (const ContainedEnd& end) {
+    fmt::print(stderr, "the control law {}\n", end.what());
+    return kExitIncomplete;
   } catch (const ResultError& error) {
     return Say(error, error.kind() == ResultError::Kind::kDiskFull ? kExitIncomplete : kExitInternalError);
   } catch (const std::exception& error) {

@@ -61,6 +61,7 @@ int Main(int argc, char** argv) {
       ->check(CLI::ValidIPV4);
   app.add_option("--keys", admission.keys, kKeysHelp);
   app.add_flag("--insecure", admission.insecure, kInsecureHelp);
+  app.add_flag("--allow-plugins", admission.allow_plugins, kAllowPluginsHelp);
   app.add_option("--patience", patience_s,
                  "give up (exit code 5) after so many seconds without a worker; default: never")
       ->check(CLI::NonNegativeNumber);
@@ -84,6 +85,7 @@ int Main(int argc, char** argv) {
       return AskHealth(Admit(network, admission, {Role::kCoordinator, Role::kClient}, host), host);
     }
     network = Admit(network, admission, {Role::kCoordinator});
+    AdmitPlugins(network, admission.allow_plugins);
     std::vector<std::string> again(argv, argv + argc);
     if (data.empty() && !request.resume) again.emplace_back("--resume");
     const ServeOptions options{network, audit, std::move(again)};

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/campaign/contained_flights.h"
+
 namespace dispersa {
 namespace {
 
@@ -44,6 +46,7 @@ OpenedCampaign OpenCampaign(const CampaignRequest& request) {
   std::vector<InputProblem> warnings;
   Campaign campaign = LoadCampaign(request.campaign, request.overrides, &warnings);
   for (const InputProblem& warning : warnings) spdlog::warn("{}", warning.Text());
+  if (campaign.autopilot.plugin) CheckPluginIsDeterministic(CampaignFlights(campaign), campaign.sampling.cases);
   const fs::path directory =
       request.out.empty() ? DefaultFolder(campaign, request.resume) : fs::path(request.out);
 

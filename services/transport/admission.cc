@@ -1,5 +1,7 @@
 #include "services/transport/admission.h"
 
+#include "core/campaign/contained.h"
+
 #include <arpa/inet.h>
 #include <spdlog/spdlog.h>
 
@@ -36,6 +38,11 @@ NetworkOptions Admit(NetworkOptions network, const Admission& admission, std::in
   }
   spdlog::warn("without keys: whoever reaches this network can read, join and forge (--insecure)");
   return network;
+}
+
+void AdmitPlugins(const NetworkOptions& network, bool allowed) {
+  if (allowed || IsLoopback(network.address)) return;
+  RefusePlugins("is a shared object, which is run here only where --allow-plugins says so");
 }
 
 std::string NameOnNetwork(const NetworkOptions& network, const std::string& uuid) {

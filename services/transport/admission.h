@@ -12,6 +12,7 @@ namespace dispersa {
 struct Admission {
   std::string keys;       ///< folder; empty: none
   bool insecure = false;  ///< none, and beyond this machine all the same
+  bool allow_plugins = false;
 };
 
 inline constexpr char kKeysHelp[] = "folder that `dispersa keys issue` made: who we are";
@@ -22,6 +23,12 @@ inline constexpr char kInsecureHelp[] = "beyond this machine without keys: on ne
 /// loopback interface nor --insecure is there. A coordinator has no peer.
 NetworkOptions Admit(NetworkOptions network, const Admission& admission, std::initializer_list<Role> roles,
                      const std::string& peer = "");
+
+inline constexpr char kAllowPluginsHelp[] =
+    "take campaigns whose control law is a shared object, which runs here; without it on the loopback interface alone";
+
+/// Without `allowed`, control laws that are shared objects are refused beyond the loopback interface.
+void AdmitPlugins(const NetworkOptions& network, bool allowed);
 
 /// A name on the network: `uuid`, after the name of our keys if we have any.
 std::string NameOnNetwork(const NetworkOptions& network, const std::string& uuid);

@@ -36,6 +36,7 @@ int main(int argc, char** argv) {
       ->check(CLI::ValidIPV4);
   app.add_option("--keys", admission.keys, kKeysHelp);
   app.add_flag("--insecure", admission.insecure, kInsecureHelp);
+  app.add_flag("--allow-plugins", admission.allow_plugins, kAllowPluginsHelp);
   app.add_option("--slots", options.slots, "cases flown at the same time")->check(CLI::Range(1, 1024));
   app.add_option("--idle-exit", options.idle_exit_s,
                  "leave (exit code 0) after so many seconds without a case")
@@ -67,6 +68,7 @@ int main(int argc, char** argv) {
   try {
     options.peer = ParsePeer(peer, options.network.domain);
     options.network = Admit(options.network, admission, {Role::kWorker}, options.peer.host);
+    AdmitPlugins(options.network, admission.allow_plugins);
     options.uuid = NameOnNetwork(options.network, options.uuid.empty() ? MakeUuid() : options.uuid);
     Worker worker(options);
     std::thread([&] {

@@ -8,6 +8,7 @@
 #include <thread>
 #include <utility>
 
+#include "core/campaign/contained_flights.h"
 #include "core/campaign_yaml/load.h"
 #include "core/flight/engine_version.h"
 
@@ -101,6 +102,7 @@ void Worker::Load(const CampaignText& text) {
       const Campaign campaign = ParseCampaign(text.text, text.name);
       if (campaign.flight_id == text.flight_id) {
         flights = std::make_shared<CampaignFlights>(campaign);
+        CheckPluginIsDeterministic(*flights, campaign.sampling.cases);
       } else {
         problem = "flight id " + text.flight_id + " of the coordinator differs from the worker's " +
                   campaign.flight_id;
@@ -109,6 +111,7 @@ void Worker::Load(const CampaignText& text) {
   } catch (const std::exception& error) {
     problem = error.what();
   }
+  if (!problem.empty()) flights.reset();
   if (!problem.empty()) spdlog::error("campaign {} is refused: {}", text.name, problem);
   {
     const Lock lock(mutex_);

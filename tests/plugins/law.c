@@ -1,0 +1,131 @@
+/* Proportional-derivative control that misbehaves as it is compiled: -D DISPERSA_MISBEHAVES=<one of the numbers below>. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "dispersa/control_law.h"
+
+#define CRASHES 1          /* in step, of one flight in four */
+#define HANGS 2            /* in step, of one flight in four */
+#define ALLOCATES 3        /* without bound, in step, of one flight in four */
+#define ENDS 4             /* the process, in step, of one flight in four */
+#define READS_THE_CLOCK 5
+#define KEEPS_A_GLOBAL 6   /* across flights */
+#define FAILS 7            /* says so, of one flight in four */
+#define COMMANDS_NAN 8     /* of one flight in four */
+#define ROUNDS_UP 9        /* leaves the processor in another rounding mode */
+#define OTHER_ABI 10
+#define CRASHES_AT_ONCE 11 /* in describe */
+#define CRASHES_ALWAYS 12
+#define PRINTS 13          /* on the standard output */
+#define DEFLECTS 14        /* commands deflections */
+
+#ifndef DISPERSA_MISBEHAVES
+#define DISPERSA_MISBEHAVES 0
+#endif
+
+struct memory {
+  double kp_1_s2[DISPERSA_LAW_AXES], kd_1_s[DISPERSA_LAW_AXES];
+  int is_chosen; /* one of the flights in four: drawn from its first errors */
+  int has_seen;
+};
+
+static int global_count;
+
+const dispersa_law_description* dispersa_law_describe(void) {
+  static dispersa_law_description description = {DISPERSA_LAW_ABI, sizeof(struct memory),
+                                                 DISPERSA_LAW_ANGULAR_ACCELERATION, 0, "pd_test", "1", 0};
+  if (DISPERSA_MISBEHAVES == OTHER_ABI) description.abi = 77;
+  if (DISPERSA_MISBEHAVES == DEFLECTS) description.command = DISPERSA_LAW_DEFLECTION;
+  if (DISPERSA_MISBEHAVES == CRASHES_AT_ONCE) abort();
+  return &description;
+}
+
+int dispersa_law_create(const dispersa_law_setup* setup, void* memory) {
+  (void)setup;
+  (void)memory;
+  return 0;
+}
+
+int dispersa_law_start_stage(const dispersa_law_stage* stage, void* memory) {
+  struct memory* m = memory;
+  memcpy(m->kp_1_s2, stage->kp_1_s2, sizeof m->kp_1_s2);
+  memcpy(m->kd_1_s, stage->kd_1_s, sizeof m->kd_1_s);
+  return 0;
+}
+
+/* What it does in the flights that it has chosen, in the third second. */
+static int misbehave(dispersa_law_output* output) {
+  switch (DISPERSA_MISBEHAVES) {
+    case CRASHES:
+      *(volatile int*)8 = 1;
+      return 0;
+    case HANGS:
+      for (volatile int forever = 1; forever;) continue;
+      return 0;
+    case ALLOCATES:
+      for (;;) {
+        volatile char* bytes = malloc(16u << 20);
+        for (int i = 0; i < 16 << 20; i += 4096) bytes[i] = 1;
+      }
+    case ENDS:
+      exit(0);
+    case FAILS:
+      return 3;
+    case COMMANDS_NAN:
+      output->command[DISPERSA_PITCH] = NAN;
+      return 0;
+  }
+  return 0;
+}
+
+int dispersa_law_step(const dispersa_law_input* input, dispersa_law_output* output, void* memory) {
+  struct memory* m = memory;
+  for (int axis = 0; axis < DISPERSA_LAW_AXES; ++axis) {
+    output->command[axis] =
+        fma(m->kp_1_s2[axis], input->angle_error_rad[axis], m->kd_1_s[axis] * input->rate_error_rad_s[axis]);
+    if (DISPERSA_MISBEHAVES == DEFLECTS) output->command[axis] /= input->effectiveness_1_s2[axis];
+  }
+  output->telemetry[0] = input->since_ignition_s;
+  if (!m->has_seen && input->time_s > 2.0) {
+    /* Of dispersed flights alone: the nominal one has no roll. */
+    unsigned long long bits;
+    memcpy(&bits, &input->angle_error_rad[DISPERSA_PITCH], sizeof bits);
+    bits ^= bits >> 32;
+    bits ^= bits >> 16;
+    bits ^= bits >> 8;
+    m->is_chosen = (bits & 3) == 3;
+    m->has_seen = 1;
+  }
+  if (m->is_chosen && input->time_s > 3.0) return misbehave(output);
+  switch (DISPERSA_MISBEHAVES) {
+    case READS_THE_CLOCK: {
+      struct timespec now;
+      clock_gettime(CLOCK_MONOTONIC, &now);
+      output->command[DISPERSA_PITCH] *= 1.0 + 1e-12 * (double)(now.tv_nsec & 1023);
+      break;
+    }
+    case KEEPS_A_GLOBAL:
+      output->command[DISPERSA_PITCH] *= 1.0 + 1e-12 * global_count++;
+      break;
+    case ROUNDS_UP: {
+      unsigned mode = 0;
+      __asm__ volatile("stmxcsr %0" : "=m"(mode));
+      mode |= 0x4000;
+      __asm__ volatile("ldmxcsr %0" : : "m"(mode));
+      break;
+    }
+    case CRASHES_ALWAYS:
+      if (input->time_s > 3.0) abort();
+      break;
+    case PRINTS:
+      if (input->time_s < 0.05) {
+        static const char words[] = "a law prints this\n";
+        extern long write(int, const void*, unsigned long);
+        if (write(1, words, sizeof words - 1) < 0) return 1;
+      }
+      break;
+  }
+  return 0;
+}

@@ -1,0 +1,285 @@
+"""Control laws from shared objects: theirs are the built-in laws' bytes, and whatever they do is contained and named.
+
+Environment: DISPERSA_BINARIES, DISPERSA_CAMPAIGNS; DISPERSA_SOURCE: the repository.
+"""
+import json
+import os
+import pathlib
+import re
+import shutil
+import sqlite3
+import subprocess
+import tempfile
+import unittest
+
+BINARIES = pathlib.Path(os.environ["DISPERSA_BINARIES"])
+CAMPAIGNS = pathlib.Path(os.environ["DISPERSA_CAMPAIGNS"])
+SOURCE = pathlib.Path(os.environ["DISPERSA_SOURCE"])
+TIMEOUT_S = 240
+CASES = 24
+
+BEHAVIOURS = {name: int(number) for name, number in
+              re.findall(r"#define (\w+) +(\d+)", (SOURCE / "tests/plugins/law.c").read_text())}
+
+
+def built_in(law):
+    text = (CAMPAIGNS / f"autopilots/{law}.yaml").read_text()
+    return "\n".join(line for line in text.splitlines() if not line.startswith("#")) + "\n"
+
+
+class PluginTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(tempfile.mkdtemp())
+        include = cls.folder / "include/dispersa"
+        include.mkdir(parents=True)
+        shutil.copy(SOURCE / "core/control/control_law.h", include)
+        cls.pd = cls.run_cases("built_in", CAMPAIGNS / "autopilots/pd.yaml").read_bytes()
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.folder)
+
+    @classmethod
+    def dispersa(cls, *arguments):
+        return subprocess.run([BINARIES / "dispersa", *map(str, arguments)], cwd=cls.folder, text=True,
+                              capture_output=True, timeout=TIMEOUT_S)
+
+    @classmethod
+    def compile(cls, name, *sources, flags=()):
+        library = cls.folder / f"{name}.so"
+        cxx = any(str(source).endswith(".cc") for source in sources)
+        subprocess.run(["g++" if cxx else "gcc", "-O2", "-Wall", "-Wextra", "-Werror", "-fPIC", "-shared",
+                        "-fvisibility=hidden", f"-I{cls.folder}/include", *flags, *map(str, sources), "-lm", "-o",
+                        library], check=True, timeout=TIMEOUT_S)
+        return library
+
+    @classmethod
+    def autopilot(cls, name, parameters=""):
+        text = built_in("pd").replace("law: pd", "law: plugin").replace(
+            "tick_s:", f"plugin: {{library: {name}.so{parameters}}}\ntick_s:")
+        path = cls.folder / f"{name}.yaml"
+        path.write_text(text)
+        return path
+
+    @classmethod
+    def law(cls, behaviour):
+        """An autopilot file with the misbehaving law."""
+        name = behaviour.lower()
+        cls.compile(name, SOURCE / "tests/plugins/law.c",
+                    flags=[f"-DDISPERSA_MISBEHAVES={BEHAVIOURS[behaviour]}", "-fno-delete-null-pointer-checks"])
+        return cls.autopilot(name)
+
+    @classmethod
+    def campaign_run(cls, name, autopilot, *options, workers=0, cases=CASES):
+        out = cls.folder / "out" / name
+        return out, cls.dispersa("run", CAMPAIGNS / "table3.yaml", "--autopilot", autopilot, "--cases", cases,
+                                 "--workers", workers, "--no-histories", "--out", out, *options)
+
+    @classmethod
+    def run_cases(cls, name, autopilot, **options):
+        out, ended = cls.campaign_run(name, autopilot, **options)
+        if ended.returncode not in (0, 3, 4):
+            raise AssertionError(ended.stderr)
+        return out / "cases.csv"
+
+    # ---- what a law may do ----
+
+    def test_a_pd_gives_the_built_in_ones_bytes(self):
+        self.compile("pd", SOURCE / "campaigns/control_laws/c/pd.c", flags=["-std=c99"])
+        pd = self.autopilot("pd")
+        self.assertEqual(self.run_cases("pd_here", pd).read_bytes(), self.pd)
+        self.assertEqual(self.run_cases("pd_workers", pd, workers=2).read_bytes(), self.pd)
+
+    def test_the_examples_fly_and_are_told_apart(self):
+        sources = SOURCE / "campaigns/control_laws"
+        self.compile("pid_filtered", sources / "cpp/pid_filtered.cc", flags=["-std=c++17"])
+        self.compile("pitch_autopilot", *sorted((sources / "simulink").glob("*.c")), flags=["-std=c99"])
+        flown = {self.pd}
+        for name, parameters in (("pid_filtered", ", parameters: {integral_time_s: 2, filter_rad_s: 200}"),
+                                 ("pitch_autopilot", "")):
+            cases = self.run_cases(name, self.autopilot(name, parameters))
+            self.assertEqual(len(cases.read_text().splitlines()), CASES + 1)
+            self.assertIn(",completed,", cases.read_text())
+            flown.add(cases.read_bytes())
+        self.assertEqual(len(flown), 3)
+
+    def test_deflections_are_commands_too(self):
+        for ours, theirs in zip(self.rows(self.run_cases("deflects", self.law("DEFLECTS")).read_text()),
+                                self.rows(self.pd.decode())):
+            self.assertAlmostEqual(ours["metric_pitch_error_rms_deg"], theirs["metric_pitch_error_rms_deg"], delta=1e-6)
+
+    @staticmethod
+    def rows(text):
+        head, *lines = (line.split(",") for line in text.splitlines())
+        names = ["metric_pitch_error_rms_deg"]
+        return [{name: float(line[head.index(name)]) for name in names} for line in lines]
+
+    def test_a_result_folder_flies_again_without_the_object(self):
+        library = self.compile("away", SOURCE / "tests/plugins/law.c")
+        out, ended = self.campaign_run("away", self.autopilot("away"))
+        self.assertEqual(ended.returncode, 4, ended.stderr)
+        sha256 = subprocess.run(["sha256sum", library], check=True, text=True, capture_output=True).stdout.split()[0]
+        self.assertIn(sha256, (out / "campaign.yaml").read_text())
+        self.assertIn(sha256, (out / "report.html").read_text())
+        library.unlink()
+        again = self.dispersa("replay", out, "--case", 7)
+        self.assertEqual(again.returncode, 0, again.stdout + again.stderr)
+
+    def test_another_object_is_another_flight_id(self):
+        ids = set()
+        for flags in ([], ["-DOTHER=1", "-g"]):
+            self.compile("twin", SOURCE / "tests/plugins/law.c", flags=flags)
+            out, ended = self.campaign_run(f"twin{len(ids)}", self.autopilot("twin"), cases=2)
+            self.assertEqual(ended.returncode, 4, ended.stderr)
+            ids.add(json.loads((out / "summary.json").read_text())["campaign"]["flight_id"])
+        self.assertEqual(len(ids), 2)
+
+    def test_telemetry_stands_in_histories(self):
+        history = self.folder / "history.csv"
+        flown = self.dispersa("fly", CAMPAIGNS / "table3.yaml", "--autopilot", self.law("PRINTS"), "--case", 1,
+                              "--history", history)
+        self.assertEqual(flown.returncode, 0, flown.stderr)
+        head, *rows = (line.split(",") for line in history.read_text().splitlines())
+        at = head.index("law_telemetry_1")
+        self.assertEqual(rows[10][at], rows[10][head.index("time_s")])  # this law tells the time
+        # What it prints is no result.
+        self.assertNotIn("a law prints this", flown.stdout)
+        self.assertIn("a law prints this", flown.stderr)
+
+    def test_another_rounding_mode_does_not_last(self):
+        self.assertEqual(self.run_cases("rounds_up", self.law("ROUNDS_UP")).read_bytes(), self.pd)
+
+    # ---- what it may not do ----
+
+    def quarantined(self, behaviour, reason, **options):
+        """The run of a law that spoils one flight in four; the others have the built-in law's bytes."""
+        out, ended = self.campaign_run(f"{behaviour}{options.get('workers', 0)}", self.law(behaviour), **options)
+        self.assertEqual(ended.returncode, 5, ended.stderr)
+        given_up = json.loads((out / "summary.json").read_text())["quarantined"]
+        self.assertGreater(len(given_up), 0)
+        for case in given_up:
+            self.assertRegex(case["reason"], "^the control law " + reason + r".* at 3\.0\d\d s, in stage 1$")
+        cases = {case["case"] if "case" in case else case["case_index"] for case in given_up}
+        ours = (out / "cases.csv").read_text().splitlines()
+        theirs = self.pd.decode().splitlines()
+        self.assertEqual(ours, [row for row in theirs if not row.split(",")[0].isdigit()
+                                or int(row.split(",")[0]) not in cases])
+        with sqlite3.connect(f"file:{out}/results.sqlite?mode=ro", uri=True) as database:
+            self.assertEqual(database.execute("SELECT count(*) FROM cases").fetchone()[0], CASES - len(cases))
+
+    def test_a_crash_is_contained_and_named(self):
+        self.quarantined("CRASHES", r"ended by signal 11 \(SIGSEGV\)")
+        self.quarantined("CRASHES", r"ended by signal 11 \(SIGSEGV\)", workers=2)
+
+    def test_the_end_of_the_process_is_contained(self):
+        self.quarantined("ENDS", "ended the process with exit code 0")
+
+    def test_memory_without_bound_is_contained(self):
+        self.quarantined("ALLOCATES", r"ended by signal 11 \(SIGSEGV\), in a process that may allocate 1024 MiB")
+
+    def test_a_hang_is_contained(self):
+        autopilot = self.law("HANGS")
+        # The first case that hangs takes its five seconds twice: once among others, once alone.
+        out, ended = self.campaign_run("hangs", autopilot, cases=4)
+        self.assertEqual(ended.returncode, 5, ended.stderr)
+        for case in json.loads((out / "summary.json").read_text())["quarantined"]:
+            self.assertRegex(case["reason"], r"^the control law did not return from a call within 5 s of computing")
+
+    def test_failures_are_flights(self):
+        for behaviour, reason in (("FAILS", "the plug-in's step failed"),
+                                  ("COMMANDS_NAN", "the plug-in commanded what is no finite number")):
+            out, ended = self.campaign_run(behaviour, self.law(behaviour))
+            self.assertIn(ended.returncode, (3, 4), ended.stderr)
+            cases = (out / "cases.csv").read_text()
+            self.assertEqual(len(cases.splitlines()), CASES + 1)
+            self.assertIn("numerical_failure", cases)
+            self.assertIn(reason, cases)
+
+    def test_what_is_not_deterministic_is_refused(self):
+        for behaviour in ("READS_THE_CLOCK", "KEEPS_A_GLOBAL"):
+            out, ended = self.campaign_run(behaviour, self.law(behaviour))
+            self.assertEqual(ended.returncode, 2, ended.stderr)
+            self.assertRegex(ended.stderr, r"the control law pd_test is not deterministic: of (the nominal flight|case "
+                                           r"\d), flown twice, at \d+\.\d+ s \w+ is \S+ once and \S+ again")
+            self.assertFalse((out / "results.sqlite").exists())
+
+    def test_one_that_always_crashes_is_refused_at_once(self):
+        _, ended = self.campaign_run("always", self.law("CRASHES_ALWAYS"))
+        self.assertEqual(ended.returncode, 2, ended.stderr)
+        self.assertRegex(ended.stderr, r"the control law pd_test in the nominal flight it ended by signal 6 \(SIGABRT\)"
+                                       r".* at 3\.0\d+ s, in stage 1")
+
+    def test_a_single_flight_that_crashes_says_so(self):
+        autopilot = self.law("CRASHES_ALWAYS")
+        flown = self.dispersa("fly", CAMPAIGNS / "table3.yaml", "--autopilot", autopilot)
+        self.assertEqual(flown.returncode, 5)
+        self.assertRegex(flown.stderr, r"^the control law ended by signal 6 \(SIGABRT\)")
+
+    def test_files_that_are_no_laws(self):
+        place = r"^\S+/bad\.yaml:2:19: plugin\.library: "
+        allowed = r", allowed: a shared object with the functions of dispersa/control_law\.h\n$"
+        self.compile("nothing", SOURCE / "core/control/control_law.h", flags=["-xc"])
+        (self.folder / "text.so").write_text("no object\n")
+        for name, words in (
+                ("missing", r"cannot read '\S+missing\.so': No such file or directory, "
+                            r"allowed: a readable file, named relative to this one\n$"),
+                ("text", "the control law cannot be loaded: file too short" + allowed),
+                ("nothing", "the control law has no function 'dispersa_law_describe'" + allowed),
+                ("other_abi", "the control law speaks version 77 of the interface of control laws, this program "
+                              "version 1" + allowed),
+                ("crashes_at_once", r"the control law ended by signal 6 \(SIGABRT\), in a process that may allocate "
+                                    "1024 MiB" + allowed)):
+            if name.upper() in BEHAVIOURS:
+                self.law(name.upper())
+            bad = self.folder / "bad.yaml"
+            bad.write_text(built_in("pd").replace("law: pd", "law: plugin").replace(
+                "tick_s:", f"tick_s:").replace("name: pd\n", f"plugin: {{library: {name}.so}}\nname: pd\n"))
+            checked = self.dispersa("validate", bad)
+            self.assertEqual(checked.returncode, 2)
+            self.assertRegex(checked.stdout + checked.stderr, place + words)
+
+    def test_parameters_are_checked(self):
+        self.compile("pid_filtered", SOURCE / "campaigns/control_laws/cpp/pid_filtered.cc", flags=["-std=c++17"])
+        path = self.autopilot("pid_filtered", ", parameters: {integral_time_s: 2, filter_rad: 200}")
+        checked = self.dispersa("validate", path)
+        self.assertEqual(checked.returncode, 2)
+        self.assertIn("unknown key 'filter_rad' (did you mean 'filter_rad_s'?)", checked.stdout + checked.stderr)
+
+    def test_commands_that_fly_here_refuse(self):
+        self.compile("pd", SOURCE / "campaigns/control_laws/c/pd.c", flags=["-std=c99"])
+        refused = self.dispersa("margins", CAMPAIGNS / "table3.yaml", "--autopilot", self.autopilot("pd"))
+        self.assertEqual(refused.returncode, 2, refused.stderr)
+        self.assertIn("the control law is flown in a process of its own, which this command does not start",
+                      refused.stderr)
+
+    # ---- the installed interface ----
+
+    def test_the_template_builds_against_an_installed_dispersa(self):
+        prefix, laws = self.folder / "prefix", self.folder / "laws"
+        build = pathlib.Path(os.environ["DISPERSA_BUILD"])
+        subprocess.run(["cmake", "--install", build / "core/control", "--prefix", prefix], check=True,
+                       capture_output=True, timeout=TIMEOUT_S)
+        moved = self.folder / "moved"
+        prefix.rename(moved)
+        shutil.copytree(SOURCE / "campaigns/control_laws", laws)
+        for command in (["cmake", "-S", laws, "-B", laws / "build", f"-DCMAKE_PREFIX_PATH={moved}"],
+                        ["cmake", "--build", laws / "build"]):
+            ended = subprocess.run(command, text=True, capture_output=True, timeout=TIMEOUT_S)
+            self.assertEqual(ended.returncode, 0, ended.stdout + ended.stderr)
+        shutil.copy(laws / "build/pd.so", self.folder / "pd_template.so")
+        self.assertEqual(self.run_cases("template", self.autopilot("pd_template")).read_bytes(), self.pd)
+        # Only the interface is seen from outside.
+        names = subprocess.run(["nm", "-D", "--defined-only", laws / "build/pid_filtered.so"], check=True, text=True,
+                               capture_output=True).stdout
+        self.assertEqual({line.split()[-1] for line in names.splitlines() if " T " in line},
+                         {f"dispersa_law_{name}" for name in ("describe", "create", "start_stage", "step")})
+        folder = next(moved.glob("**/pkgconfig"))
+        flags = subprocess.run(["pkg-config", "--cflags", "dispersa"], check=True, text=True, capture_output=True,
+                               env={**os.environ, "PKG_CONFIG_PATH": str(folder)}).stdout
+        self.assertTrue((pathlib.Path(flags.strip()[2:]) / "dispersa/control_law.h").samefile(
+            moved / "include/dispersa/control_law.h"))
+
+
+if __name__ == "__main__":
+    unittest.main()
