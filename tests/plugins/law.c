@@ -32,6 +32,7 @@ struct memory {
 };
 
 static int global_count;
+static char* volatile nowhere; /* the compiler must not know */
 
 const dispersa_law_description* dispersa_law_describe(void) {
   static dispersa_law_description description = {DISPERSA_LAW_ABI, sizeof(struct memory),
@@ -59,7 +60,7 @@ int dispersa_law_start_stage(const dispersa_law_stage* stage, void* memory) {
 static int misbehave(dispersa_law_output* output) {
   switch (DISPERSA_MISBEHAVES) {
     case CRASHES:
-      *(volatile int*)8 = 1;
+      *(volatile int*)nowhere = 1;
       return 0;
     case HANGS:
       for (volatile int forever = 1; forever;) continue;

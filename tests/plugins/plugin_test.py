@@ -67,7 +67,7 @@ class PluginTest(unittest.TestCase):
         """An autopilot file with the misbehaving law."""
         name = behaviour.lower()
         cls.compile(name, SOURCE / "tests/plugins/law.c",
-                    flags=[f"-DDISPERSA_MISBEHAVES={BEHAVIOURS[behaviour]}", "-fno-delete-null-pointer-checks"])
+                    flags=[f"-DDISPERSA_MISBEHAVES={BEHAVIOURS[behaviour]}"])
         return cls.autopilot(name)
 
     @classmethod
