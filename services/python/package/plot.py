@@ -149,9 +149,9 @@ def drivers(results, metric, *, count=3, axes=None):
             _, axes = pyplot.subplots(1, len(found), sharey=True, squeeze=False, figsize=(0.8 + 2.9 * len(found), 3.0))
         axes = numpy.ravel(axes)
         for ax, driver in zip(axes, found):
-            name = driver["input"]
-            ax.plot(results.inputs[name][completed], results.metrics[metric][completed], ".", markersize=4, alpha=0.6)
-            ax.set_xlabel(_wrapped(label(name), 26))
+            values, says = _driver_axis(results.inputs, driver)
+            ax.plot(values[completed], results.metrics[metric][completed], ".", markersize=4, alpha=0.6)
+            ax.set_xlabel(_wrapped(says, 30))
             ax.set_title(f"{100 * driver['index']:.0f} % of the variance", fontweight="normal", color=SOFT)
         axes[0].set_ylabel(_wrapped(label(metric), 30))
     return axes
@@ -200,6 +200,17 @@ def _completed(results, metric):
         raise BadInput(f"'{metric}' is not a metric of this vehicle")
     values = results.metrics[metric][numpy.array([outcome == "completed" for outcome in results.outcome], dtype=bool)]
     return values[numpy.isfinite(values)]
+
+
+def _driver_axis(inputs, driver):
+    """Values and label of a driver: an input, or a magnitude's component along its direction."""
+    name, _, direction = driver["input"].partition(" along ")
+    if not direction:
+        return inputs[name], label(name)
+    part = driver["feature"].split()[1]  # of "m cos x" or "m sin x"
+    turn = {"cos": numpy.cos, "sin": numpy.sin}[part](numpy.radians(inputs[direction]))
+    title, _, unit = label(name).rpartition(", ")
+    return inputs[name] * turn, f"{title} × {part} of {label(direction).rpartition(', ')[0]}, {unit}"
 
 
 def _wrapped(text, width=24):
