@@ -50,6 +50,7 @@ ExitCode Run(const RunCommand& options, const GlobalOptions& global) {
     fmt::print(stderr, "interrupted; to go on: {}\n", ResumeCommand(options, directory));
     return kExitInterrupted;
   } catch (const ResultError& error) {
+    observer.EndPhase();
     if (error.kind() != ResultError::Kind::kDiskFull) throw;
     spdlog::error("{}", error.what());
     fmt::print(stderr, "to go on when there is space: {}\n", ResumeCommand(options, directory));

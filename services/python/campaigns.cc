@@ -21,6 +21,7 @@
 #include "services/python/arrays.h"
 #include "services/python/growing_rows.h"
 #include "services/python/module.h"
+#include "services/python/python_law.h"
 #include "services/python/python_observer.h"
 #include "services/python/result_columns.h"
 
@@ -127,9 +128,10 @@ Scheme SchemeOf(const std::string& name) {
 }
 
 // A case's draws, or the nominal's, with some of them replaced by values in the units of their columns.
-FlightInputs InputsOf(const LoadedCampaign& campaign, std::optional<std::uint64_t> case_index,
+FlightInputs InputsOf(const LoadedCampaign& campaign, const CampaignFlights& flights,
+                      std::optional<std::uint64_t> case_index,
                       const std::map<std::string, double>& replaced) {
-  FlightInputs inputs = case_index ? campaign.flights().Draw(*case_index) : FlightInputs{};
+  FlightInputs inputs = case_index ? flights.Draw(*case_index) : FlightInputs{};
   for (const auto& [name, value] : replaced) {
     const int column = FindInput(name);
     if (column < 0 || static_cast<std::size_t>(column) >= InputCount(campaign.stages()))
@@ -156,18 +158,46 @@ py::dict FlightValues(CaseResult result) {
   return flight;
 }
 
+/// The flights of a campaign, with a law in Python on some axes if one is given.
+class FlownWith {
+ public:
+  /// `axes`: bits 1 << Axis.
+  FlownWith(const LoadedCampaign& campaign, const py::object& law, unsigned axes) : campaign_(campaign) {
+    if (law.is_none()) return;
+    law_ = std::make_unique<PythonLaw>(law, axes);
+    flights_ = std::make_unique<const CampaignFlights>(law_->Apply(campaign.campaign()));
+  }
+
+  /// To be asked without the interpreter's lock.
+  const CampaignFlights& flights() const { return flights_ ? *flights_ : campaign_.flights(); }
+  /// A law in Python runs under the interpreter's lock: more threads would wait for it.
+  int Threads(int asked) const { return law_ ? 1 : ThreadsOrAll(asked); }
+  void RethrowProblem() const {
+    if (law_) law_->RethrowProblem();
+  }
+
+ private:
+  const LoadedCampaign& campaign_;
+  std::unique_ptr<PythonLaw> law_;
+  std::unique_ptr<const CampaignFlights> flights_;
+};
+
 /// One flight. `step_s` of its history; 0: none.
 py::dict FlyOne(const LoadedCampaign& campaign, std::optional<std::uint64_t> case_index,
-                const std::map<std::string, double>& replaced, double step_s, const std::string& integrator) {
+                const std::map<std::string, double>& replaced, double step_s, const std::string& integrator,
+                const py::object& law, unsigned axes) {
   const Scheme scheme = SchemeOf(integrator);
+  const FlownWith with(campaign, law, axes);
   History history;
   history.step_s = step_s;
   CaseResult result;
   {
     const py::gil_scoped_release free;
-    result = campaign.flights().Fly(InputsOf(campaign, case_index, replaced), case_index.value_or(0),
-                                    step_s > 0.0 ? &history : nullptr, scheme);
+    const CampaignFlights& flights = with.flights();
+    result = flights.Fly(InputsOf(campaign, flights, case_index, replaced), case_index.value_or(0),
+                         step_s > 0.0 ? &history : nullptr, scheme);
   }
+  with.RethrowProblem();
   py::dict flight = FlightValues(std::move(result));
   flight["history"] = step_s > 0.0 ? py::object(HistoryArray(std::move(history))) : py::none();
   return flight;
@@ -215,7 +245,9 @@ class Gathering {
 /// Many cases, side by side. `columns`: positions in history_columns() that are kept of each history of step `step_s`;
 /// 0: no histories.
 py::dict FlyMany(const LoadedCampaign& campaign, const std::vector<std::uint64_t>& cases, double step_s,
-                 const std::vector<int>& columns, int threads, const py::object& progress) {
+                 const std::vector<int>& columns, int threads, const py::object& progress,
+                 const py::object& law, unsigned axes) {
+  const FlownWith with(campaign, law, axes);
   std::vector<CaseResult> results(cases.size());
   Gathering histories(columns, cases.size());
   PythonObserver observer(progress);
@@ -223,14 +255,15 @@ py::dict FlyMany(const LoadedCampaign& campaign, const std::vector<std::uint64_t
     std::vector<CaseOrder> orders;
     for (const std::uint64_t case_index : cases) orders.push_back({case_index, step_s});
     std::uint64_t done = 0;
-    campaign.flights().FlyCases(orders, ThreadsOrAll(threads),
-                                [&](std::size_t order, CaseResult result, const History& history) {
-                                  results[order] = std::move(result);
-                                  if (step_s > 0.0) histories.Add(order, history);
-                                  observer.Show(campaign.campaign().name, ++done, cases.size());
-                                  if (observer.Stop()) throw Interrupted();
-                                });
+    with.flights().FlyCases(orders, with.Threads(threads),
+                            [&](std::size_t order, CaseResult result, const History& history) {
+                              results[order] = std::move(result);
+                              if (step_s > 0.0) histories.Add(order, history);
+                              observer.Show(campaign.campaign().name, ++done, cases.size());
+                              if (observer.Stop()) throw Interrupted();
+                            });
   });
+  with.RethrowProblem();
   ResultColumns table(InputCount(campaign.stages()), MetricCount(campaign.stages()));
   for (const CaseResult& result : results) table.Add(result);
   py::dict answer = table.Take();
@@ -245,6 +278,7 @@ py::dict FlyMany(const LoadedCampaign& campaign, const std::vector<std::uint64_t
 }  // namespace
 
 void AddCampaigns(py::module_& module) {
+  AddLawTick(module);
   module.def("load", &Load);
   module.def("check", &Check);
   module.def("read_tree", &ReadTree);

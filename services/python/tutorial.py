@@ -58,6 +58,28 @@ for speed_m_s in (0.0, 30.0, 60.0):
     print(f"{speed_m_s:4.0f} m/s: {flown.metrics['pitch_error_peak_deg']:.3f} deg")
 
 # %% [markdown]
+# ## A control law of your own
+#
+# For a prototype a function is enough: it is called at every tick of powered flight with what the autopilot measures, and
+# returns the angular acceleration that it wants, rad/s². What is to be remembered goes into `tick.memory`, which belongs to
+# the flight. A law that is to fly in campaigns becomes a shared object (`campaigns/control_laws`).
+
+
+# %%
+def damped(tick):
+    """Proportional-derivative, with a leaky integral."""
+    pitch = 1
+    integral = 0.9995 * tick.memory.get("integral", 0.0) + 0.01 * tick.angle_error_rad[pitch]
+    tick.memory["integral"] = tick.telemetry[0] = integral
+    return (tick.kp_1_s2[pitch] * (tick.angle_error_rad[pitch] + 0.3 * integral)
+            + tick.kd_1_s[pitch] * tick.rate_error_rad_s[pitch])
+
+
+prototype = campaign.fly(17, law=damped)
+print(f"pitch error, peak: {prototype.metrics['pitch_error_peak_deg']:.3f} deg, with the campaign's law "
+      f"{case.metrics['pitch_error_peak_deg']:.3f} deg")
+
+# %% [markdown]
 # ## Many flights
 #
 # `fly_many` flies cases side by side and keeps the columns that are asked for, all flights in one array.

@@ -30,10 +30,12 @@ def plan(what, cases=None, **options):
     return (what if isinstance(what, Campaign) and not options else load(what, **options)).plan(cases)
 
 
-def fly(what, case=None, *, inputs=None, history=True, step_s=0.1, integrator="simpson", **options):
+def fly(what, case=None, *, inputs=None, history=True, step_s=0.1, integrator="simpson", law=None, axes=("pitch",),
+        **options):
     """One flight: `load(what, **options).fly(case, ...)`."""
     campaign = what if isinstance(what, Campaign) and not options else load(what, **options)
-    return campaign.fly(case, inputs=inputs, history=history, step_s=step_s, integrator=integrator)
+    return campaign.fly(case, inputs=inputs, history=history, step_s=step_s, integrator=integrator, law=law,
+                        axes=axes)
 
 
 __all__ = ["BadInput", "Campaign", "Error", "ExitCode", "Flight", "Flights", "History", "Incomplete", "InputWarning",

@@ -1,7 +1,7 @@
 import dataclasses
 import os
 import pathlib
-from typing import Any, Callable, Iterable, Iterator, Mapping, Sequence
+from typing import Any, Callable, Iterable, Iterator, Mapping, Protocol, Sequence
 
 import numpy
 import numpy.typing
@@ -15,6 +15,23 @@ _Structured = numpy.typing.NDArray[numpy.void]
 _Path = str | os.PathLike[str]
 _Source = _Path | Mapping[str, Any] | Campaign
 _Progress = Callable[[str, int, int, str], object] | None
+_Law = Callable[[_Tick], float | Sequence[float] | _Floats] | None
+
+class _Tick(Protocol):
+    time_s: float
+    since_ignition_s: float
+    stage: int
+    angle_error_rad: _Floats
+    rate_error_rad_s: _Floats
+    rate_rad_s: _Floats
+    effectiveness_1_s2: _Floats
+    program_rad_s2: _Floats
+    saturation: _Floats
+    kp_1_s2: _Floats
+    kd_1_s: _Floats
+    limit_rad: float
+    telemetry: _Floats
+    memory: dict[Any, Any]
 
 __version__: str
 
@@ -63,10 +80,10 @@ class Campaign:
     def dispersed(self) -> list[str]: ...
     def plan(self, cases: int | None = ...) -> _Structured: ...
     def fly(self, case: int | None = ..., *, inputs: Mapping[str, float] | None = ..., history: bool = ...,
-            step_s: float = ..., integrator: str = ...) -> Flight: ...
+            step_s: float = ..., integrator: str = ..., law: _Law = ..., axes: str | Iterable[str] = ...) -> Flight: ...
     def fly_many(self, cases: int | Iterable[int] | None = ..., *, histories: bool = ...,
                  columns: Iterable[str] | None = ..., step_s: float = ..., threads: int = ...,
-                 progress: _Progress = ...) -> Flights: ...
+                 progress: _Progress = ..., law: _Law = ..., axes: str | Iterable[str] = ...) -> Flights: ...
 
 class History:
     rows: _Floats
@@ -150,7 +167,8 @@ def load(what: _Source, *, cases: int | None = ..., seed: int | None = ..., auto
          base: _Path | None = ...) -> Campaign: ...
 def plan(what: _Source, cases: int | None = ..., **options: Any) -> _Structured: ...
 def fly(what: _Source, case: int | None = ..., *, inputs: Mapping[str, float] | None = ..., history: bool = ...,
-        step_s: float = ..., integrator: str = ..., **options: Any) -> Flight: ...
+        step_s: float = ..., integrator: str = ..., law: _Law = ..., axes: str | Iterable[str] = ...,
+        **options: Any) -> Flight: ...
 def run(what: _Source, out: _Path = ..., *, cases: int | None = ..., seed: int | None = ..., autopilot: _Path | None = ...,
         base: _Path | None = ..., workers: int | None = ..., threads: int = ..., resume: bool = ..., histories: bool = ...,
         envelope: int = ..., progress: _Progress = ..., peer: str | None = ..., domain: int = ..., address: str = ...,

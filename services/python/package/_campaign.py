@@ -153,25 +153,37 @@ class Campaign:
             raise BadInput([("", 0, 0, "", f"cases: {count} is no number of cases", "0 or more")])
         return structured(_core.plan(self._core, 0, count), self.input_names)
 
-    def fly(self, case=None, *, inputs=None, history=True, step_s=0.1, integrator="simpson"):
+    def fly(self, case=None, *, inputs=None, history=True, step_s=0.1, integrator="simpson", law=None, axes=("pitch",)):
         """One flight in this process: case `case`, or without one the nominal flight.
 
         `inputs`: values by name that replace those drawn, in the units of the names. `history`: with the time history,
         a row every `step_s` seconds and at every event. `integrator`: simpson (what campaigns fly), erk4 or cvode.
+
+        `law(tick)`: a control law of your own, for prototypes, in the place of the autopilot's on `axes` (of roll, pitch
+        and yaw). It is called at every tick of powered flight and returns commanded angular accelerations, rad/s²: of
+        roll, pitch and yaw, or one number where it commands one axis. `tick` has time_s, since_ignition_s, stage (from
+        1); as arrays of roll, pitch and yaw angle_error_rad and rate_error_rad_s (reference less true, as the sensors see
+        it), rate_rad_s, effectiveness_1_s2 (angular acceleration by deflection), program_rad_s2, saturation (-1, 0, 1), the
+        autopilot's gains kp_1_s2 and kd_1_s; limit_rad of the nozzles; `telemetry`, four numbers that go to the history;
+        and `memory`, a dict of this flight's own. What the law raises is raised.
+
         Releases the interpreter's lock while it flies. Returns a Flight.
         """
         index = None if case is None else self._check([case])[0]
-        values = _core.fly(self._core, index, dict(inputs or {}), _step(step_s) if history else 0.0, integrator)
+        values = _core.fly(self._core, index, dict(inputs or {}), _step(step_s) if history else 0.0, integrator, law,
+                           _axis_bits(axes))
         rows = values.pop("history")
         return Flight(self, index, values, None if rows is None else History(rows, _core.history_columns()))
 
-    def fly_many(self, cases=None, *, histories=True, columns=None, step_s=1.0, threads=0, progress=None):
+    def fly_many(self, cases=None, *, histories=True, columns=None, step_s=1.0, threads=0, progress=None, law=None,
+                 axes=("pitch",)):
         """Cases in this process, side by side on `threads` threads (0: the usable cores).
 
         `cases`: a number of cases from the first, or indices; default: all. `histories`: with the time histories of
         all in one array, with only `columns` (names) of them, if given, and a row every `step_s` seconds and at every
         event; each row of all columns takes half a kilobyte. `progress(phase, done, total, note)` is called now and
-        then. Releases the interpreter's lock; Ctrl-C stops it. Returns Flights.
+        then. `law`, `axes`: as of fly; calls for one flight alternate with calls for others, so a law keeps what it
+        remembers in `tick.memory`. Releases the interpreter's lock; Ctrl-C stops it. Returns Flights.
         """
         if cases is None or isinstance(cases, (int, numpy.integer)):
             count = self.cases if cases is None else int(cases)
@@ -180,7 +192,8 @@ class Campaign:
         else:
             indices = self._check(cases)
         names, positions = column_positions(columns)
-        values = _core.fly_many(self._core, indices, _step(step_s) if histories else 0.0, positions, int(threads), progress)
+        values = _core.fly_many(self._core, indices, _step(step_s) if histories else 0.0, positions, int(threads), progress,
+                                law, _axis_bits(axes))
         return Flights(self, values, names)
 
     def _check(self, cases):
@@ -190,6 +203,15 @@ class Campaign:
             if not 0 <= index < self.cases:
                 raise BadInput([("", 0, 0, "", f"case: the campaign has no case {index}", f"0 to {self.cases - 1}")])
         return indices
+
+
+def _axis_bits(axes):
+    """A set of axes as the interface of control laws has it."""
+    names = ("roll", "pitch", "yaw")
+    chosen = {axes} if isinstance(axes, str) else set(axes)
+    if not chosen or not chosen <= set(names):
+        raise BadInput([("", 0, 0, "", f"axes: {axes!r} are not axes", "some of roll, pitch and yaw")])
+    return sum(1 << names.index(name) for name in chosen)
 
 
 def _step(step_s):

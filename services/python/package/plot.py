@@ -5,6 +5,7 @@ Each function draws into `ax` or makes a figure of its own, and returns the axes
 """
 import contextlib
 import math
+import re
 
 import matplotlib
 import matplotlib.pyplot as pyplot
@@ -46,7 +47,7 @@ def label(name):
     title, unit, definition, _ = _core.describe(name)
     if not definition:
         stem, unit = _core.split_unit(name)
-        title = stem.replace("_", " ")
+        title = re.sub(r"(?<=stage)(?=\d)", " ", stem).replace("_", " ")
     return f"{title}, {unit}" if unit else title
 
 
@@ -72,7 +73,8 @@ def history(flights, columns, *, labels=None, axes=None):
             _mark_burns(ax, histories[0])
         axes[-1].set_xlabel(TIME)
         if labels:
-            axes[0].legend(loc="best")
+            _legend(axes[0])
+        axes[0].figure.align_ylabels(axes)
     return axes
 
 
@@ -105,7 +107,7 @@ def bands(what, column, *, nominal=True, ax=None):
             _mark_burns(ax, flown)
         ax.set(xlabel=TIME, ylabel=label(column))
         ax.margins(x=0)
-        ax.legend(loc="best")
+        _legend(ax)
     return ax
 
 
@@ -131,7 +133,7 @@ def exceedance(results, metric, *, ax=None):
         ax.set_ylim(0.5 / n, 1.2)
         ax.yaxis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda y, _: f"{100 * y:g} %"))
         ax.set(xlabel=label(metric), ylabel="flights that exceed it")
-        ax.legend(loc="best")
+        _legend(ax)
     return ax
 
 
@@ -163,7 +165,7 @@ def ground_track(flights, *, labels=None, ax=None):
     several = list(flights) if isinstance(flights, (list, tuple, Flights)) else [flights]
     histories = [_history_of(each) for each in several]
     with style():
-        ax = _axes(ax)
+        ax = pyplot.subplots(figsize=(5.6, 5.2))[1] if ax is None else ax
         many = len(histories) > len(LINES)
         for i, each in enumerate(histories):
             longitude = numpy.degrees(numpy.unwrap(numpy.radians(each["longitude_deg"])))
@@ -179,12 +181,17 @@ def ground_track(flights, *, labels=None, ax=None):
             ax.set_ylim(0.5 * (low + high) - 1.0, 0.5 * (low + high) + 1.0)
         ax.set_aspect(1.0 / math.cos(math.radians(0.5 * (low + high))), adjustable="datalim")
         ax.set(xlabel="longitude, °", ylabel="latitude, °")
-        ax.legend(loc="best")
+        _legend(ax)
     return ax
 
 
 def _axes(ax):
     return pyplot.subplots(figsize=(7.2, 3.6))[1] if ax is None else ax
+
+
+def _legend(ax):
+    """Above the picture, where it hides nothing; the burns' names stand between."""
+    ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.05), borderaxespad=0.0, ncol=5, handlelength=1.6, columnspacing=1.4)
 
 
 def _history_of(flight):
@@ -237,6 +244,11 @@ def _mark_burns(ax, flown):
     for i, (stage, begin, _) in enumerate(burns):
         if i and begin - burns[i - 1][2] > COAST_S:
             ax.axvspan(burns[i - 1][2], begin, facecolor=PANEL, zorder=0)
+            _mark(ax, burns[i - 1][2], "coast")
         ax.axvline(begin, color=SOFT, linewidth=0.7, linestyle=(0, (2, 3)), zorder=1)
-        ax.annotate(f"S{stage:.0f}", (begin, 1.0), xycoords=("data", "axes fraction"), xytext=(2, -1),
-                    textcoords="offset points", va="top", fontsize=8, color=SOFT)
+        _mark(ax, begin, f"S{stage:.0f}")
+
+
+def _mark(ax, time_s, text):
+    ax.annotate(text, (time_s, 1.0), xycoords=("data", "axes fraction"), xytext=(0, 1), textcoords="offset points",
+                va="bottom", fontsize=8, color=SOFT)
