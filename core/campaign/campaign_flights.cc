@@ -8,6 +8,7 @@
 
 #include "core/campaign/contained.h"
 #include "core/campaign/contained_flights.h"
+#include "core/control/law_here.h"
 #include "core/flight/flight.h"
 #include "core/flight/lane_engine.h"
 #include "core/math/functions.h"
@@ -239,7 +240,10 @@ void FlyOneByOne(SharedOrders& shared) {
 
 }  // namespace
 
-bool CampaignFlights::NeedsChild() const { return model_->autopilot().plugin != nullptr && !IsContained(); }
+bool CampaignFlights::NeedsChild() const {
+  const PluginLaw* const plugin = model_->autopilot().plugin.get();
+  return plugin != nullptr && !IsContained() && FunctionsHere(plugin->config()) == nullptr;
+}
 
 void CampaignFlights::FlyCases(CaseQueue& queue) const {
   if (NeedsChild()) return FlyContained(*this, queue);

@@ -10,6 +10,8 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "core/control/law_here.h"
+
 namespace dispersa {
 namespace {
 
@@ -63,13 +65,19 @@ PluginLaw::~PluginLaw() {
 
 void PluginLaw::Open() const {
   if (description_ != nullptr) return;
-  if (mark == nullptr) throw PluginError("is flown in a process of its own, which this command does not start");
+  const Functions* const here = FunctionsHere(config_);
+  if (here == nullptr && mark == nullptr)
+    throw PluginError("is flown in a process of its own, which this command does not start");
   CountCall();
-  if (handle_ == nullptr) handle_ = Load(*config_.library);
-  Find(handle_, "dispersa_law_describe", functions_.describe);
-  Find(handle_, "dispersa_law_create", functions_.create);
-  Find(handle_, "dispersa_law_start_stage", functions_.start_stage);
-  Find(handle_, "dispersa_law_step", functions_.step);
+  if (here != nullptr) {
+    functions_ = *here;
+  } else {
+    if (handle_ == nullptr) handle_ = Load(*config_.library);
+    Find(handle_, "dispersa_law_describe", functions_.describe);
+    Find(handle_, "dispersa_law_create", functions_.create);
+    Find(handle_, "dispersa_law_start_stage", functions_.start_stage);
+    Find(handle_, "dispersa_law_step", functions_.step);
+  }
   const dispersa_law_description* const description = functions_.describe();
   CountCall();
   if (description == nullptr) throw PluginError("describes nothing");

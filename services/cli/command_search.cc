@@ -20,10 +20,10 @@
 #include "core/report/text.h"
 #include "core/search/smallest_failure.h"
 #include "services/cli/command.h"
-#include "services/cli/flight_json.h"
+#include "services/client/flight_json.h"
 #include "services/cli/progress.h"
 #include "services/cli/warn.h"
-#include "services/cli/writable.h"
+#include "services/client/writable.h"
 #include "services/coordinator/threads.h"
 
 namespace dispersa {

@@ -12,7 +12,7 @@
 #include "core/report/vehicle_drawing.h"
 #include "services/cli/command.h"
 #include "services/cli/vehicle_text.h"
-#include "services/cli/writable.h"
+#include "services/client/writable.h"
 
 namespace dispersa {
 namespace {

@@ -10,8 +10,8 @@
 #include "core/flight/history_columns.h"
 #include "core/report/output_file.h"
 #include "core/report/text.h"
-#include "services/cli/flight_json.h"
-#include "services/cli/writable.h"
+#include "services/client/flight_json.h"
+#include "services/client/writable.h"
 
 namespace dispersa {
 namespace {

@@ -37,7 +37,7 @@ int Main(int argc, char** argv) {
   bool health = false;
   double audit = 0.0;
   std::optional<std::uint16_t> metrics_port;
-  app.add_option("campaign", request.campaign, "campaign file");
+  app.add_option("campaign", request.campaign.name, "campaign file");
   app.add_option("--data", data, "folder of the campaigns that were launched, made if it is not there");
   app.add_option("--metrics", metrics_port,
                  "with --data: port of 127.0.0.1 for metrics in Prometheus' text format")
@@ -74,7 +74,7 @@ int Main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : kExitBadInput;
   }
-  if (int(health) + int(!data.empty()) + int(!request.campaign.empty()) != 1) {
+  if (int(health) + int(!data.empty()) + int(!request.campaign.name.empty()) != 1) {
     fmt::print(stderr, "one of --data, a campaign, or --health is needed\n");
     return kExitBadInput;
   }

@@ -1,0 +1,32 @@
+// A control law whose functions are in this process: a prototype. Nothing contains what it does.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/control/plugin.h"
+
+namespace dispersa {
+
+/// As long as it lives, its configuration stands for these functions as for those of a shared object, and
+/// flights under it are flown in this process. It must outlive them.
+class LawHere {
+ public:
+  explicit LawHere(const PluginLaw::Functions& functions);
+  ~LawHere();
+  LawHere(const LawHere&) = delete;
+  LawHere& operator=(const LawHere&) = delete;
+
+  /// To be an autopilot's plug-in, with what it describes as its parameters.
+  PluginConfig Config(std::vector<std::pair<std::string, double>> parameters) const;
+
+ private:
+  std::shared_ptr<const std::string> library_;  ///< empty: its address is the law's name
+};
+
+/// The functions that a configuration stands for, or null: those of a shared object.
+const PluginLaw::Functions* FunctionsHere(const PluginConfig& config);
+
+}  // namespace dispersa
