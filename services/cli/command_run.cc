@@ -346,7 +346,7 @@ void AddRunCommand(CLI::App& app, Invocation& invocation) {
   CLI::App* command =
       app.add_subcommand("run", "fly a campaign on local workers and write its result folder");
   CampaignRequest& request = options->request;
-  command->add_option("campaign", request.campaign, "campaign file")->required();
+  command->add_option("campaign", request.campaign, "campaign file")->required()->type_name(kFileType);
   command
       ->add_option("--workers", options->workers,
                    "worker processes; default: the usable cores; 0 flies in this process without DDS")
@@ -356,12 +356,13 @@ void AddRunCommand(CLI::App& app, Invocation& invocation) {
                    "threads that fly in this process with --workers 0; default: the usable cores")
       ->check(CLI::Range(1, 1024));
   command->add_option("--out", request.out, "result folder; default: results/<name>-<first 8 of id>")
+      ->type_name(kFolderType)
       ->check([](const std::string& text) { return text.empty() ? "must not be empty" : ""; });
   command->add_option("--cases", request.overrides.cases, "number of cases, instead of the file's")
       ->check(CaseCountProblem);
   command->add_option("--seed", request.overrides.seed, "seed, instead of the file's");
-  command->add_option("--autopilot", request.overrides.autopilot,
-                      "autopilot file, instead of the campaign's");
+  command->add_option("--autopilot", request.overrides.autopilot, "autopilot file, instead of the campaign's")
+      ->type_name(kFileType);
   AddReflownOptions(*command, options->reflown);
   command->add_flag("--resume", request.resume, "go on in a folder of the same flight id");
   command->footer(

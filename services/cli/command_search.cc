@@ -207,7 +207,7 @@ void AddSearchCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<SearchCommand>();
   CLI::App* command = app.add_subcommand(
       "search", "the smallest dispersion that fails a requirement: a bounded local search that flies");
-  command->add_option("campaign", options->campaign, "campaign file")->required();
+  command->add_option("campaign", options->campaign, "campaign file")->required()->type_name(kFileType);
   command->add_option("--metric", options->metric,
                       "metric whose requirement shall fail; default: the first one's");
   auto* below =
@@ -223,7 +223,7 @@ void AddSearchCommand(CLI::App& app, Invocation& invocation) {
       ->check(CLI::Range(0.1, 8.0));
   command->add_option("--seed", options->options.seed,
                       "of the points that are drawn to begin with, default 1");
-  command->add_option("--out", options->out, "file for what --json prints");
+  command->add_option("--out", options->out, "file for what --json prints")->type_name(kFileType);
   command->footer(
       "Example: dispersa search campaigns/full.yaml --metric pitch_error_peak_deg --below 0.5 --flights "
       "2000");

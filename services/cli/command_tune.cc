@@ -274,13 +274,17 @@ void AddTuneCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<TuneOptions>();
   CLI::App* command = app.add_subcommand("tune", "find the gains of an autopilot, whatever its law");
   command->add_option("campaign", options->campaign, "campaign file: vehicle, reference and dispersions")
-      ->required();
+      ->required()
+      ->type_name(kFileType);
   command
       ->add_option("-o,--out", options->out,
                    "autopilot file to write; one that misses a constraint says so in its name")
-      ->required();
-  command->add_option("--autopilot", options->autopilot,
-                      "autopilot file whose law and fixed parameters are taken, instead of the campaign's");
+      ->required()
+      ->type_name(kFileType);
+  command
+      ->add_option("--autopilot", options->autopilot,
+                   "autopilot file whose law and fixed parameters are taken, instead of the campaign's")
+      ->type_name(kFileType);
   command
       ->add_option("--seed", options->tuning.seed,
                    "seed of the search and of its cases; never the campaign's own")
