@@ -22,6 +22,7 @@
 #include "services/cli/command.h"
 #include "services/cli/flight_json.h"
 #include "services/cli/progress.h"
+#include "services/cli/stream_beside.h"
 #include "services/cli/warn.h"
 #include "services/cli/writable.h"
 #include "services/coordinator/threads.h"
@@ -145,6 +146,7 @@ std::string Sentence(const FailureSearchResult& result, const Requirement& requi
 
 ExitCode SearchFor(const SearchCommand& command, const GlobalOptions& global) {
   const Campaign campaign = LoadAndWarn(command.campaign);
+  std::FILE* const stream = StreamBeside("--out", command.out, global);
   RequireWritableFile("--out", command.out);
   const Requirement requirement = WantedRequirement(command, campaign);
   Searcher searcher(campaign, requirement, command.options.max_flights, global.quiet);
@@ -197,7 +199,7 @@ ExitCode SearchFor(const SearchCommand& command, const GlobalOptions& global) {
   }
   const std::string written = json.dump(2) + "\n";
   if (!command.out.empty()) WriteFile(command.out, written);
-  fmt::print("{}", global.json ? written : text);
+  fmt::print(stream, "{}", global.json ? written : text);
   return kExitDone;
 }
 
