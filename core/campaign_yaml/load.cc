@@ -23,6 +23,10 @@ std::string SchemaNames() {
          JoinWords({kCampaignSchema, kVehicleSchema, kAutopilotSchema, kReferenceSchema, kScenarioSchema});
 }
 
+InputNode Read(const InputSource& source, ProblemList& problems) {
+  return source.text ? ParseYaml(*source.text, source.name, problems) : ReadYamlFile(source.name, problems);
+}
+
 // In the order of the text, file by file as they were met first.
 void SortByPlace(ProblemList& problems) {
   std::vector<std::string> files;
@@ -84,10 +88,10 @@ Campaign FinishCampaign(InputNode root, FileNames names, const CampaignOverrides
 
 }  // namespace
 
-Campaign LoadCampaign(const std::string& path, const CampaignOverrides& overrides,
+Campaign LoadCampaign(const InputSource& source, const CampaignOverrides& overrides,
                       std::vector<InputProblem>* warnings) {
   ProblemList problems;
-  InputNode root = ReadYamlFile(path, problems);
+  InputNode root = Read(source, problems);
   return FinishCampaign(std::move(root), FileNames::kAllowed, overrides, std::move(problems), warnings);
 }
 
@@ -97,10 +101,10 @@ Campaign ParseCampaign(const std::string& yaml_text, const std::string& display_
   return FinishCampaign(std::move(root), FileNames::kRefused, {}, std::move(problems), nullptr);
 }
 
-OptimizationInput LoadOptimization(const std::string& path, std::optional<std::uint64_t> seed,
+OptimizationInput LoadOptimization(const InputSource& source, std::optional<std::uint64_t> seed,
                                    std::vector<InputProblem>* warnings) {
   ProblemList problems;
-  InputNode root = ReadYamlFile(path, problems);
+  InputNode root = Read(source, problems);
   InlineCampaignFiles(root, FileNames::kAllowed, problems);
   DecodedCampaign decoded = DecodeCampaign(root, CampaignUse::kOptimize, problems, warnings);
   ThrowIfAny(std::move(problems));
@@ -173,10 +177,10 @@ AutopilotConfig ReadAutopilot(const std::string& yaml_text, const std::string& d
   return autopilot;
 }
 
-FileCheck CheckFile(const std::string& path) {
+FileCheck CheckFile(const InputSource& source) {
   FileCheck check;
   ProblemList& problems = check.errors;
-  InputNode root = ReadYamlFile(path, problems);
+  InputNode root = Read(source, problems);
   const InputNode* schema = root.Find("schema");
   if (root.file == nullptr) {
     // Unreadable or not YAML: reported.

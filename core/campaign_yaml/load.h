@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/campaign/campaign.h"
@@ -15,6 +16,16 @@
 #include "core/flight/scenario.h"
 
 namespace dispersa {
+
+/// A file, or a text that stands in for it: names in the text are relative to where the file would be.
+struct InputSource {
+  InputSource(const char* file) : name(file) {}
+  InputSource(std::string file) : name(std::move(file)) {}
+  InputSource(std::string file, std::string yaml_text) : name(std::move(file)), text(std::move(yaml_text)) {}
+
+  std::string name;
+  std::optional<std::string> text = {};  ///< none: what the file holds
+};
 
 /// Values of the command line that replace the file's before anything is checked or hashed.
 struct CampaignOverrides {
@@ -26,7 +37,7 @@ struct CampaignOverrides {
 /// The campaign of a file, to be flown: it must have a `reference`, not an `optimize` block. `warnings`, if
 /// given, receives what looks wrong but is legal (a reference that was found for another vehicle, a vehicle
 /// like none that is known).
-Campaign LoadCampaign(const std::string& path, const CampaignOverrides& overrides = {},
+Campaign LoadCampaign(const InputSource& source, const CampaignOverrides& overrides = {},
                       std::vector<InputProblem>* warnings = nullptr);
 /// The campaign of a canonical text (Campaign::canonical_yaml, a result folder's campaign.yaml), in which
 /// everything is inlined. `display_name` stands for the file in messages. The same campaign, the same
@@ -44,7 +55,7 @@ struct OptimizationInput {
   std::optional<AutopilotConfig> autopilot;  ///< the campaign's, if it has one: to fly what was found
 };
 /// `seed` replaces the problem's.
-OptimizationInput LoadOptimization(const std::string& path, std::optional<std::uint64_t> seed = {},
+OptimizationInput LoadOptimization(const InputSource& source, std::optional<std::uint64_t> seed = {},
                                    std::vector<InputProblem>* warnings = nullptr);
 
 Vehicle LoadVehicle(const std::string& path, std::vector<InputProblem>* warnings = nullptr);
@@ -75,7 +86,7 @@ struct FileCheck {
   bool is_vehicle = false;
   std::optional<Vehicle> vehicle;  ///< of a valid vehicle or campaign
 };
-FileCheck CheckFile(const std::string& path);
+FileCheck CheckFile(const InputSource& source);
 /// Its errors.
 std::vector<InputProblem> ValidateFile(const std::string& path);
 

@@ -2,15 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <limits>
 #include <map>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "core/report/text.h"
-#include "services/cli/progress.h"
 #include "services/coordinator/whole_number.h"
 
 namespace dispersa {
@@ -27,26 +24,6 @@ void AddReflownOptions(CLI::App& command, ReflownFlights& flights) {
       ->transform(CLI::Transformer(words).description("{all}"))
       ->check([](const std::string& text) { return WholeNumberProblem(text, UINT64_MAX); })
       ->default_str(std::to_string(flights.envelope));
-}
-
-CampaignSummary MakeReports(const ResultFolder& folder, const Campaign& campaign, int threads, bool quiet,
-                            const ReflownFlights& reflown, const std::function<void()>& check) {
-  std::string phase;
-  std::unique_ptr<Progress> progress;
-  ReportOptions options;
-  options.threads = std::max(threads, 1);
-  options.histories = !reflown.none;
-  options.history_cases = reflown.envelope;
-  options.progress = [&](const std::string& what, std::uint64_t done, std::uint64_t total) {
-    if (check) check();
-    if (!progress || what != phase) {
-      progress.reset();
-      progress = std::make_unique<Progress>(what, quiet);
-      phase = what;
-    }
-    progress->Show(done, total);
-  };
-  return WriteReports(folder, campaign, options);
 }
 
 void PrintSummary(const CampaignSummary& summary, const std::filesystem::path& directory, bool json) {

@@ -5,20 +5,13 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
-#include <numeric>
 #include <string>
 #include <vector>
 
-#include "core/campaign/input_error.h"
-#include "core/flight/flight_inputs.h"
-#include "core/report/case_columns.h"
 #include "core/report/comparison.h"
-#include "core/report/output_file.h"
-#include "core/report/text.h"
-#include "services/cli/campaign_differences.h"
 #include "services/cli/command.h"
-#include "services/cli/stored_campaign.h"
-#include "services/cli/writable.h"
+#include "services/client/folder_comparison.h"
+#include "services/client/writable.h"
 
 namespace dispersa {
 namespace {
@@ -29,28 +22,6 @@ struct CompareOptions {
   std::vector<std::string> metrics;
   std::string out;
 };
-
-CaseColumns AllColumns(const ResultFolder& folder) {
-  std::vector<int> inputs(InputCount(folder.stages()));
-  std::iota(inputs.begin(), inputs.end(), 0);
-  return ReadColumns(folder, inputs);
-}
-
-void CheckMetrics(const std::vector<std::string>& metrics) {
-  const std::vector<std::string>& names = MetricNames();
-  for (const std::string& metric : metrics) {
-    if (std::find(names.begin(), names.end(), metric) == names.end())
-      throw InputError("--metric: '" + metric + "' is not a metric",
-                       "a name in cases.csv without its prefix 'metric_'");
-  }
-}
-
-std::vector<CampaignChange> ChangesOf(const Campaign& a, const Campaign& b) {
-  std::vector<CampaignChange> changes;
-  for (const ValueDifference& each : DifferencesOf(a.canonical_yaml, b.canonical_yaml))
-    changes.push_back({each.path, each.a, each.b});
-  return changes;
-}
 
 std::string IntervalText(const Interval& interval) {
   const auto text = [](double value, const char* none) {
@@ -89,32 +60,14 @@ void PrintText(const Comparison& comparison) {
   }
 }
 
-ExitCode CompareFolders(const CompareOptions& options, const GlobalOptions& global) {
-  CheckMetrics(options.metrics);
+ExitCode CompareAndShow(const CompareOptions& options, const GlobalOptions& global) {
   RequireWritableFolder("--out", options.out);
-  const StoredCampaign a = OpenStored(options.a);
-  const StoredCampaign b = OpenStored(options.b);
-  const CaseColumns cases_a = AllColumns(a.folder);
-  const CaseColumns cases_b = AllColumns(b.folder);
-  for (const auto& [name, cases] : {std::pair{&options.a, &cases_a}, std::pair{&options.b, &cases_b}})
-    if (cases->rows() == 0) throw InputError(*name + ": no case has a result");
-  const Comparison comparison = Compare({options.a, a.folder.Provenance("engine"), a.campaign, cases_a},
-                                        {options.b, b.folder.Provenance("engine"), b.campaign, cases_b},
-                                        options.metrics, ChangesOf(a.campaign, b.campaign));
-  const std::string json = ComparisonJson(comparison);
-  if (!options.out.empty()) {
-    const std::filesystem::path out = options.out;
-    std::error_code error;
-    std::filesystem::create_directories(out, error);
-    if (error)
-      throw InputError("--out: " + options.out + ": " + error.message(), "a folder that can be written");
-    WriteFile(out / "compare.json", json);
-    WriteFile(out / "compare.html", ComparisonPage(comparison, cases_a, cases_b));
-  }
+  const FolderComparison compared = CompareFolders(options.a, options.b, options.metrics);
+  if (!options.out.empty()) WriteComparison(compared, options.out);
   if (global.json) {
-    fmt::print("{}", json);
+    fmt::print("{}", ComparisonJson(compared.comparison));
   } else {
-    PrintText(comparison);
+    PrintText(compared.comparison);
     if (!options.out.empty())
       fmt::print("\ncomparison: {}\n", (std::filesystem::path(options.out) / "compare.html").string());
   }
@@ -136,7 +89,7 @@ void AddCompareCommand(CLI::App& app, Invocation& invocation) {
       "Example: dispersa compare results/controllers-1a2b3c4d results/controllers_pd-5e6f7a8b --out "
       "comparison");
   command->callback([options, &invocation] {
-    invocation.command = [options](const GlobalOptions& global) { return CompareFolders(*options, global); };
+    invocation.command = [options](const GlobalOptions& global) { return CompareAndShow(*options, global); };
   });
 }
 

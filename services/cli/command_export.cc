@@ -13,9 +13,9 @@
 #include "core/report/text.h"
 #include "services/cli/command.h"
 #include "services/cli/progress.h"
-#include "services/cli/stored_campaign.h"
 #include "services/cli/stream_beside.h"
-#include "services/cli/writable.h"
+#include "services/client/stored_campaign.h"
+#include "services/client/writable.h"
 #include "services/coordinator/threads.h"
 
 namespace dispersa {

@@ -12,11 +12,11 @@
 #include "core/report/output_file.h"
 #include "core/report/text.h"
 #include "services/cli/command.h"
-#include "services/cli/flight_json.h"
+#include "services/client/flight_json.h"
 #include "services/cli/fly_scenario.h"
 #include "services/cli/stream_beside.h"
 #include "services/cli/warn.h"
-#include "services/cli/writable.h"
+#include "services/client/writable.h"
 
 namespace dispersa {
 namespace {

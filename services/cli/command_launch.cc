@@ -1,14 +1,12 @@
 // dispersa launch: gives a campaign to a coordinator.
 #include <fmt/format.h>
 
-#include <chrono>
 #include <memory>
-#include <thread>
-#include <vector>
+#include <string>
 
-#include "core/campaign_yaml/load.h"
-#include "services/cli/session.h"
+#include "services/cli/session_options.h"
 #include "services/cli/warn.h"
+#include "services/client/remote_campaign.h"
 #include "services/coordinator/whole_number.h"
 
 namespace dispersa {
@@ -16,39 +14,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kPart = 256 << 10;
-constexpr std::chrono::milliseconds kAskAgain(200);
-
 struct LaunchOptions {
   std::string campaign;
   CampaignOverrides overrides;
   int priority = 0;
 };
 
-void Upload(Session& session, const Campaign& campaign) {
-  const std::string& text = campaign.canonical_yaml;
-  std::uint64_t received = 0;
-  do {
-    const Json part = {{"id", campaign.id}, {"size", text.size()}, {"offset", received}};
-    received = Json::parse(session.Ask("upload", part, text.substr(received, kPart)).text).at("received");
-  } while (received < text.size());
-}
-
 ExitCode Launch(const LaunchOptions& options, Session& session, const GlobalOptions& global) {
   const Campaign campaign = LoadAndWarn(options.campaign, options.overrides);
-  const Json launch = {
-      {"id", campaign.id}, {"flight_id", campaign.flight_id}, {"priority", options.priority}};
-  std::string state;
-  for (;;) {
-    state = Json::parse(session.Ask("launch", launch).text).at("state");
-    if (state == "unknown") {
-      Upload(session, campaign);  // again if the coordinator is started again meanwhile
-    } else if (state == "checked") {
-      std::this_thread::sleep_for(kAskAgain);
-    } else {
-      break;
-    }
-  }
+  const std::string state = LaunchCampaign(session, campaign, options.priority);
   if (global.json) {
     const Json object = {{"schema", "dispersa/launch/1"},
                          {"id", campaign.id},

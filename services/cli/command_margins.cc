@@ -4,126 +4,25 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "core/campaign/campaign_flights.h"
-#include "core/campaign/dispersed_margins.h"
-#include "core/flight/margins.h"
 #include "services/cli/command.h"
-#include "services/cli/flight_json.h"
 #include "services/cli/warn.h"
-#include "services/coordinator/threads.h"
+#include "services/client/margins_of.h"
 #include "services/coordinator/whole_number.h"
 
 namespace dispersa {
 namespace {
 
-struct MarginsOptions {
+struct MarginsCommand {
   std::string campaign;
-  CampaignOverrides overrides;
-  double frequency_band_percent = 100.0 * kFrequencyBand;
-  bool drift = false;
-};
-
-struct MarginsResult {
-  std::string autopilot;
-  std::vector<ComputedMargins> computed;
-  std::vector<SkippedInstant> skipped;
-  std::vector<MeasuredMargins> measured;
-  std::optional<CampaignMargins> dispersed;
-  MarginModel of;
-  bool bends = false;
-  bool passed = false;
+  std::optional<std::string> autopilot;
+  MarginsOptions margins;
 };
 
 constexpr const char* kAxisNames[kAxes] = {"roll", "pitch", "yaw"};
-
-nlohmann::ordered_json LoopJson(const LoopMargins& m, bool passed) {
-  return {{"stable", m.stable},
-          {"gain_up_db", JsonNumber(m.gain_up_db)},
-          {"gain_down_db", JsonNumber(m.gain_down_db)},
-          {"phase_deg", JsonNumber(m.phase_deg)},
-          {"delay_ms", JsonNumber(1e3 * m.delay_s)},
-          {"crossover_rad_s", JsonNumber(m.crossover_rad_s)},
-          {"bending_peak_db", JsonNumber(m.bending_peak_db)},
-          {"bending_phase_deg", m.bending_phase_6db_deg},
-          {"passed", passed}};
-}
-
-nlohmann::ordered_json LeastJson(const LeastMargin& m, double unit = 1.0) {
-  return {{"value", JsonNumber(unit * m.value)}, {"case", m.case_index}, {"time_s", m.time_s}};
-}
-
-nlohmann::ordered_json DispersedJson(const CampaignMargins& dispersed) {
-  auto loops = nlohmann::ordered_json::array();
-  for (const LeastLoopMargins& loop : dispersed.loops) {
-    loops.push_back({{"stage", loop.stage + 1},
-                     {"axis", kAxisNames[loop.axis]},
-                     {"gain_up_db", LeastJson(loop.gain_up_db)},
-                     {"gain_down_db", LeastJson(loop.gain_down_db)},
-                     {"phase_deg", LeastJson(loop.phase_deg)},
-                     {"delay_ms", LeastJson(loop.delay_s, 1e3)}});
-  }
-  return {{"cases", dispersed.cases},
-          {"gates", {{"gain_db", kDispersedGainGate_db}, {"phase_deg", kDispersedPhaseGate_deg}}},
-          {"ended_early", dispersed.ended_early},
-          {"missed", dispersed.missed},
-          {"least", std::move(loops)},
-          {"passed", dispersed.Passed()}};
-}
-
-void PrintJson(const MarginsResult& result) {
-  auto computed = nlohmann::ordered_json::array();
-  for (const ComputedMargins& m : result.computed) {
-    computed.push_back({{"place", m.place},
-                        {"stage", m.stage + 1},
-                        {"time_s", m.time_s},
-                        {"axis", kAxisNames[m.axis]},
-                        {"frozen", LoopJson(m.frozen, PassesGates(m.frozen))},
-                        {"adapting", LoopJson(m.adapting, PassesGates(m.adapting))},
-                        {"learnt", m.learnt ? LoopJson(*m.learnt, LearntPasses(m)) : nullptr}});
-  }
-  auto skipped = nlohmann::ordered_json::array();
-  for (const SkippedInstant& at : result.skipped) {
-    skipped.push_back({{"place", at.place},
-                       {"stage", at.stage + 1},
-                       {"time_s", at.time_s},
-                       {"thrust_percent", 100.0 * at.thrust_fraction}});
-  }
-  auto measured = nlohmann::ordered_json::array();
-  for (const MeasuredMargins& m : result.measured) {
-    measured.push_back({{"stage", m.stage + 1},
-                        {"gain_up_db", m.gain_up_db},
-                        {"gain_down_db", m.gain_down_db},
-                        {"delay_ms", 1e3 * m.delay_s},
-                        {"passed", PassesGates(m)}});
-  }
-  nlohmann::ordered_json json = {
-      {"schema", "dispersa/margins/1"},
-      {"model", result.bends ? "bending, no slosh" : "rigid body: no bending, no slosh"},
-      {"frequency_band_percent", 100.0 * result.of.frequency_band},
-      {"drift", result.of.path == LateralPath::kDrifts},
-      {"autopilot", result.autopilot},
-      {"gates",
-       {{"gain_db", kGainMarginGate_db},
-        {"phase_deg", kPhaseMarginGate_deg},
-        {"delay_ms", 1e3 * kDelayMarginGate_s}}},
-      {"measured_resolution",
-       {{"gain_db", kMeasuredGainStep_db},
-        {"gain_ceiling_db", kMeasuredGainCeiling_db},
-        {"delay_ms", 1e3 * kMeasuredDelayStep_s},
-        {"delay_ceiling_ms", 1e3 * kMeasuredDelayCeiling_s}}},
-      {"least_thrust_percent", 100.0 * kLeastThrustFraction},
-      {"skipped", std::move(skipped)},
-      {"computed", std::move(computed)},
-      {"measured", std::move(measured)},
-      {"passed", result.passed}};
-  if (result.dispersed) json["dispersed"] = DispersedJson(*result.dispersed);
-  fmt::print("{}\n", json.dump(2));
-}
 
 std::string Number(double value, const char* format) {
   return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "none";
@@ -251,28 +150,14 @@ void PrintText(const MarginsResult& result) {
   fmt::print("\n{}\n", result.passed ? "PASS: every gate is met" : "FAIL: a gate is not met");
 }
 
-ExitCode Margins(const MarginsOptions& options, const GlobalOptions& global) {
-  const Campaign campaign = LoadAndWarn(options.campaign, options.overrides);
-  const CampaignFlights flights(campaign);
-  MarginsResult result;
-  result.autopilot = campaign.autopilot.name;
-  result.bends = flights.model().nominal_plant().bending_modes() > 0;
-  result.of = {options.frequency_band_percent / 100.0,
-               options.drift ? LateralPath::kDrifts : LateralPath::kHeld};
-  result.computed = ComputeMargins(flights.model(), 5.0, {}, result.of);
-  result.skipped = SkippedInstants(flights.model());
-  result.measured = MeasureMargins(flights.model());
-  result.passed = std::all_of(result.computed.begin(), result.computed.end(),
-                              [](const ComputedMargins& m) { return PassesGates(m); }) &&
-                  std::all_of(result.measured.begin(), result.measured.end(),
-                              [](const MeasuredMargins& m) { return PassesGates(m); });
-  if (options.overrides.cases) {
-    result.dispersed =
-        ComputeCampaignMargins(flights, *options.overrides.cases, UsableCores(), result.of.path);
-    result.passed = result.passed && result.dispersed->Passed();
-  }
+ExitCode Margins(const MarginsCommand& options, const GlobalOptions& global) {
+  CampaignOverrides overrides;
+  overrides.autopilot = options.autopilot;
+  overrides.cases = options.margins.cases;
+  const Campaign campaign = LoadAndWarn(options.campaign, overrides);
+  const MarginsResult result = MarginsOf(campaign, options.margins);
   if (global.json) {
-    PrintJson(result);
+    fmt::print("{}\n", MarginsJson(result).dump(2));
   } else {
     PrintText(result);
   }
@@ -282,22 +167,21 @@ ExitCode Margins(const MarginsOptions& options, const GlobalOptions& global) {
 }  // namespace
 
 void AddMarginsCommand(CLI::App& app, Invocation& invocation) {
-  auto options = std::make_shared<MarginsOptions>();
+  auto options = std::make_shared<MarginsCommand>();
   CLI::App* command = app.add_subcommand("margins", "gain, phase and delay margins of the autopilot");
   command->add_option("campaign", options->campaign, "campaign file")->required()->type_name(kFileType);
-  command
-      ->add_option("--autopilot", options->overrides.autopilot, "autopilot file, instead of the campaign's")
+  command->add_option("--autopilot", options->autopilot, "autopilot file, instead of the campaign's")
       ->type_name(kFileType);
-  command->add_option("--cases", options->overrides.cases, "also of so many dispersed cases of the campaign")
+  command->add_option("--cases", options->margins.cases, "also of so many dispersed cases of the campaign")
       ->check(CaseCountProblem);
   command
       ->add_option(
-          "--frequency-band", options->frequency_band_percent,
+          "--frequency-band", options->margins.frequency_band_percent,
           "bending: margins also with the modes' frequencies so many percent lower and higher (15); 0: as "
           "they are")
       ->check(CLI::Range(0.0, 50.0));
   command->add_flag(
-      "--drift", options->drift,
+      "--drift", options->margins.drift,
       "linearise pitch and yaw with the lateral velocity, whose incidence takes from the least gain");
   command->footer(
       "Computed from a linearisation at lift-off, max q, ignitions and burnouts, and measured by spoiling\n"

@@ -17,9 +17,9 @@
 #include "core/structure/bending_modes.h"
 #include "core/vehicle/mass.h"
 #include "services/cli/command.h"
-#include "services/cli/flight_json.h"
+#include "services/client/flight_json.h"
 #include "services/cli/warn.h"
-#include "services/cli/writable.h"
+#include "services/client/writable.h"
 
 namespace dispersa {
 namespace {

@@ -1,28 +1,21 @@
 // dispersa optimize: the trajectory that reaches the target orbit, as a reference file.
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
-#include <stdexcept>
 #include <string>
 
 #include "core/campaign_yaml/load.h"
 #include "core/math/constants.h"
-#include "core/report/output_file.h"
-#include "core/report/trajectory_figures.h"
 #include "core/report/trajectory_page.h"
-#include "core/trajectory/optimize.h"
 #include "services/cli/command.h"
-#include "services/cli/flight_json.h"
-#include "services/cli/progress.h"
 #include "services/cli/seed_study.h"
+#include "services/cli/terminal_observer.h"
 #include "services/cli/warn.h"
-#include "services/cli/writable.h"
+#include "services/client/reference_search.h"
 #include "services/coordinator/threads.h"
 
 namespace dispersa {
@@ -35,44 +28,6 @@ struct OptimizeOptions {
   int threads = 0;  ///< 0: the processor's
   int seeds = 0;    ///< 0: one optimisation that writes its reference; else a study that writes nothing
 };
-
-nlohmann::ordered_json ResultJson(const Vehicle& vehicle, const OptimizationResult& result,
-                                  const std::string& file) {
-  const Reference& reference = result.reference;
-  const FlightProgram& program = reference.program;
-  auto constraints = nlohmann::ordered_json::array();
-  for (const ConstraintMargin& constraint : reference.constraints) {
-    constraints.push_back({{"name", constraint.name},
-                           {"value", JsonNumber(constraint.value)},
-                           {"limit", constraint.enforced ? JsonNumber(constraint.limit) : nullptr},
-                           {"margin", constraint.enforced ? JsonNumber(constraint.margin) : nullptr}});
-  }
-  nlohmann::ordered_json variables;
-  for (const ProgramVariable& variable : VariablesOf(vehicle, reference.problem))
-    variables[variable.Name() + "_" + variable.unit_name()] = variable.Of(program) / variable.unit();
-  return {{"schema", "dispersa/optimize/1"},
-          {"reference", file},
-          {"reached", result.reached},
-          {"orbit",
-           {{"altitude_km", JsonNumber(reference.orbit.altitude_m * 1e-3)},
-            {"velocity_m_s", JsonNumber(reference.orbit.velocity_m_s)},
-            {"flight_path_angle_deg", JsonNumber(reference.orbit.flight_path_angle_rad * kDegPerRad)},
-            {"inclination_deg", JsonNumber(reference.orbit.inclination_rad * kDegPerRad)},
-            {"node_longitude_deg", JsonNumber(reference.orbit.node_longitude_rad * kDegPerRad)}}},
-          {"lift_off_sidereal_deg", LiftOffSidereal(reference)
-                                        ? nlohmann::ordered_json(*LiftOffSidereal(reference) * kDegPerRad)
-                                        : nlohmann::ordered_json(nullptr)},
-          {"errors",
-           {{"altitude_km", JsonNumber(result.errors.altitude_m * 1e-3)},
-            {"velocity_m_s", JsonNumber(result.errors.velocity_m_s)},
-            {"flight_path_angle_deg", JsonNumber(result.errors.flight_path_angle_rad * kDegPerRad)},
-            {"inclination_deg", JsonNumber(result.errors.inclination_rad * kDegPerRad)},
-            {"argument_of_perigee_deg", JsonNumber(result.errors.argument_of_perigee_rad * kDegPerRad)}}},
-          {"variables", std::move(variables)},
-          {"constraints", std::move(constraints)},
-          {"seed", reference.problem.seed},
-          {"evaluations", reference.evaluations}};
-}
 
 void PrintInjection(const OptimizationResult& result, const std::optional<OrbitErrors>& flown) {
   fmt::print("{:<26}{:>12}{:>16}{:>12}{:>14}", "injection", "desired", "reached", "error", "half the step");
@@ -117,42 +72,12 @@ void PrintText(const OptimizationResult& result, const std::optional<OrbitErrors
   fmt::print("\nseed {}, {} ascents\n", reference.problem.seed, reference.evaluations);
 }
 
-TrajectoryOptions OptionsFor(const OptimizationInput& input, int threads) {
-  TrajectoryOptions options;
-  options.tick_s = input.tick_s;
-  options.threads = threads;
-  return options;
-}
-
-// What the problem asks of the search may be out of its range: the user's fault.
-template <typename Function>
-auto OrInputError(const Function& function) {
-  try {
-    return function();
-  } catch (const std::invalid_argument& error) {
-    throw InputError(std::string("the optimisation problem cannot be solved as given: ") + error.what());
-  }
-}
-
-OptimizationResult Search(const OptimizationInput& input, int threads, bool quiet) {
-  Progress progress("optimize", quiet);
-  const auto generations = static_cast<std::uint64_t>(input.problem.generations);
-  const auto observe = [&](const GenerationRecord& record) {
-    progress.Show(static_cast<std::uint64_t>(record.generation), generations,
-                  record.best_objective ? fmt::format("best {:.4g}", *record.best_objective)
-                                        : std::string("no feasible trajectory yet"));
-  };
-  return OrInputError([&] {
-    return OptimizeTrajectory(input.vehicle, input.problem, OptionsFor(input, threads), observe);
-  });
-}
-
 ExitCode StudySeeds(const OptimizationInput& input, const OptimizeOptions& options, int threads,
                     const GlobalOptions& global) {
   Progress progress("optimize", global.quiet);
   std::uint64_t done = 0;
-  const std::vector<SeedRow> rows = OrInputError([&] {
-    return RunSeedStudy(input, options.seeds, OptionsFor(input, threads), [&](const SeedRow& row) {
+  const std::vector<SeedRow> rows = SearchOrInputError([&] {
+    return RunSeedStudy(input, options.seeds, SearchOptions(input, threads), [&](const SeedRow& row) {
       progress.Show(++done, static_cast<std::uint64_t>(options.seeds), fmt::format("seed {}", row.seed));
     });
   });
@@ -168,28 +93,17 @@ ExitCode Optimize(const OptimizeOptions& options, const GlobalOptions& global) {
   const int threads = ThreadsOrAll(options.threads);
   if (options.seeds > 0) return StudySeeds(input, options, threads, global);
   const std::filesystem::path file = options.out.empty() ? input.name + "_reference.yaml" : options.out;
-  const auto beside = [&](const char* extension) {
-    std::filesystem::path path = file;
-    return path.replace_extension(extension);
-  };
-  for (const std::filesystem::path& path : {file, beside(".csv"), beside(".html")})
-    RequireWritableFile("--out", path);
-  OptimizationResult result = Search(input, threads, global.quiet);
-  result.reference.name = input.name;
-  result.reference.vehicle_sha256 = input.vehicle_sha256;
-
-  result.reference.target_missed = result.statement;
-
-  // A search that misses its target has still found something, which says so itself.
-  std::optional<OrbitErrors> flown;
-  if (result.reached) flown = FlyReference(input, result.reference);
-  WriteFile(file, WriteReference(result.reference));
-  WriteFile(beside(".csv"), AscentCsv(result.history));
-  WriteFile(beside(".html"), TrajectoryPage(result, flown));
+  if (file == "-") throw InputError("--out: '-' is one stream, and three files are written", "a file name");
+  RequireWritableReference("--out", file);
+  TerminalObserver observer(global.quiet);
+  const FoundReference found = FindReference(input, threads, observer);
+  observer.EndPhase();
+  WriteFoundReference(found, file);
+  const OptimizationResult& result = found.result;
   if (global.json) {
-    fmt::print("{}\n", ResultJson(input.vehicle, result, file.string()).dump(2));
+    fmt::print("{}\n", FoundReferenceJson(input.vehicle, result, file.string()).dump(2));
   } else {
-    PrintText(result, flown);
+    PrintText(result, found.flown);
     fmt::print("reference{}: {}\n", result.reached ? "" : ", which misses its target", file.string());
   }
   if (result.reached) return kExitDone;

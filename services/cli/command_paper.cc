@@ -12,7 +12,7 @@
 #include "services/cli/command.h"
 #include "services/cli/progress.h"
 #include "services/cli/warn.h"
-#include "services/cli/writable.h"
+#include "services/client/writable.h"
 #include "services/coordinator/threads.h"
 
 namespace dispersa {

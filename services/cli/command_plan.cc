@@ -12,7 +12,7 @@
 #include "core/campaign_yaml/load.h"
 #include "core/report/text.h"
 #include "services/cli/command.h"
-#include "services/cli/flight_json.h"
+#include "services/client/flight_json.h"
 #include "services/cli/plan_text.h"
 #include "services/cli/warn.h"
 #include "services/coordinator/whole_number.h"

@@ -9,8 +9,9 @@
 #include "services/cli/campaign_output.h"
 #include "services/cli/command.h"
 #include "services/cli/render_template.h"
-#include "services/cli/stored_campaign.h"
-#include "services/cli/writable.h"
+#include "services/cli/terminal_observer.h"
+#include "services/client/stored_campaign.h"
+#include "services/client/writable.h"
 #include "services/coordinator/campaign_book.h"
 #include "services/coordinator/threads.h"
 
@@ -44,8 +45,9 @@ ExitCode Report(const ReportCommand& options, const GlobalOptions& global) {
   StoredCampaign stored = OpenStored(options.directory);
   RequireWritableFile("the report", stored.folder.directory() / "report.html");
   stored.folder.Lock();
+  TerminalObserver observer(global.quiet);
   const CampaignSummary summary =
-      MakeReports(stored.folder, stored.campaign, UsableCores(), global.quiet, options.reflown);
+      MakeReports(stored.folder, stored.campaign, UsableCores(), options.reflown, observer);
   PrintSummary(summary, stored.folder.directory(), global.json);
   return CampaignExitCode(summary.verdict, 0);
 }

@@ -20,11 +20,11 @@
 #include "core/report/text.h"
 #include "core/search/smallest_failure.h"
 #include "services/cli/command.h"
-#include "services/cli/flight_json.h"
+#include "services/client/flight_json.h"
 #include "services/cli/progress.h"
 #include "services/cli/stream_beside.h"
 #include "services/cli/warn.h"
-#include "services/cli/writable.h"
+#include "services/client/writable.h"
 #include "services/coordinator/threads.h"
 
 namespace dispersa {

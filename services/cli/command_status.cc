@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "services/cli/campaign_text.h"
-#include "services/cli/session.h"
+#include "services/cli/session_options.h"
 
 namespace dispersa {
 namespace {

@@ -14,7 +14,7 @@
 #include "services/cli/command.h"
 #include "services/cli/stream_beside.h"
 #include "services/cli/vehicle_text.h"
-#include "services/cli/writable.h"
+#include "services/client/writable.h"
 #include "services/program/error_json.h"
 
 namespace dispersa {

@@ -12,7 +12,7 @@
 #include "services/cli/campaign_text.h"
 #include "services/cli/live_page.h"
 #include "services/cli/progress.h"
-#include "services/cli/session.h"
+#include "services/cli/session_options.h"
 #include "services/coordinator/stop_signal.h"
 
 namespace dispersa {

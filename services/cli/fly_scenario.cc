@@ -10,9 +10,9 @@
 #include "core/flight/history_columns.h"
 #include "core/report/output_file.h"
 #include "core/report/text.h"
-#include "services/cli/flight_json.h"
 #include "services/cli/stream_beside.h"
-#include "services/cli/writable.h"
+#include "services/client/flight_json.h"
+#include "services/client/writable.h"
 
 namespace dispersa {
 namespace {

@@ -6,10 +6,9 @@
 #include <chrono>
 #include <cmath>
 
-#include "core/campaign/campaign_flights.h"
-#include "core/flight/metrics.h"
 #include "core/math/constants.h"
 #include "core/trajectory/refine.h"
+#include "services/client/reference_search.h"
 
 namespace dispersa {
 namespace {
@@ -77,20 +76,6 @@ Range RangeOf(const std::vector<SeedRow>& rows, const Column& column) {
 }
 
 }  // namespace
-
-std::optional<OrbitErrors> FlyReference(const OptimizationInput& input, const Reference& reference) {
-  if (!input.autopilot) return std::nullopt;
-  Campaign campaign;
-  campaign.vehicle = input.vehicle;
-  campaign.autopilot = *input.autopilot;
-  campaign.reference = reference;
-  const CaseResult result = CampaignFlights(campaign).FlyNominal();
-  if (result.outcome != Outcome::kCompleted) return std::nullopt;
-  const auto metric = [&](const char* name) { return result.metrics[MetricColumn(name)]; };
-  return OrbitErrors{metric("injection_altitude_error_km") * 1e3, metric("injection_velocity_error_m_s"),
-                     metric("injection_flight_path_angle_error_deg") * kRadPerDeg,
-                     metric("inclination_error_deg") * kRadPerDeg};
-}
 
 std::vector<SeedRow> RunSeedStudy(const OptimizationInput& input, int seeds, const TrajectoryOptions& options,
                                   const std::function<void(const SeedRow&)>& done) {

@@ -26,10 +26,6 @@ struct SeedRow {
   double wall_s = 0.0;
 };
 
-/// Injection errors of the nominal flight with six degrees of freedom under the input's autopilot. Nothing
-/// without an autopilot, or when the flight does not complete.
-std::optional<OrbitErrors> FlyReference(const OptimizationInput& input, const Reference& reference);
-
 /// Seeds problem.seed, problem.seed + 1, ... `done` is called after each row.
 std::vector<SeedRow> RunSeedStudy(const OptimizationInput& input, int seeds, const TrajectoryOptions& options,
                                   const std::function<void(const SeedRow&)>& done);

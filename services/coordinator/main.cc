@@ -40,7 +40,7 @@ int Main(int argc, char** argv) {
   bool health = false;
   double audit = 0.0;
   std::optional<std::uint16_t> metrics_port;
-  app.add_option("campaign", request.campaign, "campaign file")->type_name(kFileType);
+  app.add_option("campaign", request.campaign.name, "campaign file")->type_name(kFileType);
   app.add_option("--data", data, "folder of the campaigns that were launched, made if it is not there")
       ->type_name(kFolderType);
   app.add_option("--metrics", metrics_port,
@@ -75,11 +75,11 @@ int Main(int argc, char** argv) {
       "         dispersa-worker --domain 7 --peer coordinator-host --keys worker-node1\n"
       "         dispersa-coordinator campaigns/table3.yaml --out results/table3 --address 127.0.0.1");
   if (const auto code = ParseCommandLine(app, argc, argv)) return *code;
-  if (int(health) + int(!data.empty()) + int(!request.campaign.empty()) != 1) {
+  if (int(health) + int(!data.empty()) + int(!request.campaign.name.empty()) != 1) {
     fmt::print(stderr, "one of --data, a campaign, or --health is needed\n");
     return kExitBadInput;
   }
-  if (request.campaign == kStandardInput) {
+  if (request.campaign.name == kStandardInput) {
     fmt::print(stderr,
                "the campaign cannot come from standard input: a coordinator may start itself again, "
                "allowed: a campaign file\n");

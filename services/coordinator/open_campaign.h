@@ -10,7 +10,7 @@
 namespace dispersa {
 
 struct CampaignRequest {
-  std::string campaign;  ///< file
+  InputSource campaign = "";
   CampaignOverrides overrides;
   std::string out;  ///< empty: results/<name>-<first 8 of id>, then -2, -3, ...
   bool resume = false;

@@ -10,7 +10,7 @@
 
 #include "core/flight/flight_inputs.h"
 #include "core/flight/metrics.h"
-#include "services/cli/local_workers.h"
+#include "services/client/local_workers.h"
 #include "services/coordinator/campaign_book.h"
 #include "services/coordinator/open_campaign.h"
 #include "services/coordinator/watchdog.h"

@@ -15,6 +15,7 @@ OWNED = [
     (r"Random123/", {"random"}),
     (r"hdf5", {"report"}),
     (r"CLI/", {"program", "cli", "coordinator", "worker"}),
+    (r"(pybind11/|Python\.h)", {"python"}),
 ]
 
 

@@ -1,4 +1,4 @@
-#include "services/cli/campaign_differences.h"
+#include "services/client/campaign_differences.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "services/cli/local_workers.h"
+#include "services/client/local_workers.h"
 
 #include <sys/prctl.h>
 #include <sys/wait.h>

@@ -1,17 +1,15 @@
-// What the commands that speak to a coordinator share.
+// A connection to a coordinator: what everything that asks one something shares.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <chrono>
-#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
-#include "services/cli/command.h"
 #include "services/transport/admission.h"
 #include "services/transport/client_link.h"
+#include "services/transport/exit_code.h"
 
 namespace dispersa {
 
@@ -52,12 +50,5 @@ class Session {
   Peer peer_;
   std::unique_ptr<ClientLink> link_;
 };
-
-/// Adds the options of a session to a command, and `run` as what it does.
-void BindSession(CLI::App* command, Invocation& invocation,
-                 std::function<ExitCode(Session&, const GlobalOptions&)> run);
-
-/// The option that names a campaign: its id or how that begins.
-std::shared_ptr<std::string> AddIdOption(CLI::App* command, bool required = true);
 
 }  // namespace dispersa

@@ -1,4 +1,4 @@
-#include "services/cli/flight_json.h"
+#include "services/client/flight_json.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "services/cli/writable.h"
+#include "services/client/writable.h"
 
 #include <unistd.h>
 

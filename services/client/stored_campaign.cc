@@ -1,4 +1,4 @@
-#include "services/cli/stored_campaign.h"
+#include "services/client/stored_campaign.h"
 
 #include <utility>
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "services/cli/local_workers.h"
+#include "services/client/local_workers.h"
 
 namespace dispersa {
 

@@ -1,4 +1,4 @@
-#include "services/cli/execution_file.h"
+#include "services/client/execution_file.h"
 
 #include <unistd.h>
 

@@ -1,0 +1,20 @@
+// What the commands that speak to a coordinator have in common on the command line.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "services/cli/command.h"
+#include "services/client/session.h"
+
+namespace dispersa {
+
+/// Adds the options of a session to a command, and `run` as what it does.
+void BindSession(CLI::App* command, Invocation& invocation,
+                 std::function<ExitCode(Session&, const GlobalOptions&)> run);
+
+/// The option that names a campaign: its id or how that begins.
+std::shared_ptr<std::string> AddIdOption(CLI::App* command, bool required = true);
+
+}  // namespace dispersa

@@ -1,0 +1,21 @@
+// The reports of a result folder, under the eyes of an observer.
+#pragma once
+
+#include <cstdint>
+
+#include "core/report/reports.h"
+#include "services/client/observer.h"
+
+namespace dispersa {
+
+/// Which flights are flown again for the report.
+struct ReflownFlights {
+  bool none = false;
+  std::uint64_t envelope = ReportOptions().history_cases;
+};
+
+/// Writes all reports of a folder. Errors as WriteReports; throws Interrupted.
+CampaignSummary MakeReports(const ResultFolder& folder, const Campaign& campaign, int threads,
+                            const ReflownFlights& reflown, Observer& observer);
+
+}  // namespace dispersa

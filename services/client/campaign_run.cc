@@ -1,0 +1,301 @@
+#include "services/client/campaign_run.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <condition_variable>
+#include <cstring>
+#include <deque>
+#include <exception>
+#include <map>
+#include <mutex>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "core/campaign/campaign_flights.h"
+#include "core/flight/engine_version.h"
+#include "services/client/execution_file.h"
+#include "services/client/local_workers.h"
+#include "services/coordinator/campaign_book.h"
+#include "services/coordinator/coordinator.h"
+#include "services/coordinator/threads.h"
+#include "services/coordinator/utc.h"
+#include "services/transport/private_domain.h"
+
+namespace dispersa {
+namespace {
+
+constexpr char kLoopback[] = "127.0.0.1";
+// Replacements of workers that end again and again while no case gets done or given up.
+constexpr int kFruitlessEndsAllowed = 10;
+// So many cases given up and not one flown: it is not the cases.
+constexpr std::uint64_t kHopelessCases = 20;
+constexpr double kJoinPatience_s = 60.0;
+constexpr double kLeavePatience_s = 0.3;
+
+double SecondsSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Flies what is missing. Returns why it gave up, if it did. Throws Interrupted.
+class CampaignRun {
+ public:
+  CampaignRun(CampaignBook& book, ExecutionFile& execution, Observer& observer)
+      : book_(book), execution_(execution), observer_(observer) {}
+
+  std::optional<std::string> FlyHere(int threads) {
+    const CampaignFlights flights(book_.campaign());
+    HereQueue queue(*this, threads);
+    {
+      std::vector<std::jthread> others;  // joined at the end of this block
+      for (int i = 1; i < threads; ++i) others.emplace_back([&] { queue.FlyOn(flights); });
+      queue.FlyOn(flights);
+    }
+    queue.RethrowProblem();
+    if (observer_.Stop()) throw Interrupted();
+    return std::nullopt;
+  }
+
+  std::optional<std::string> FlyWithWorkers(const std::filesystem::path& program, int count) {
+    if (access(program.c_str(), X_OK) != 0) {
+      return fmt::format("{}: no worker can be started: {}", program.string(), std::strerror(errno));
+    }
+    const PrivateDomain domain;
+    execution_.domain = domain.domain();
+    Coordinator coordinator({domain.domain(), kLoopback}, book_);
+    LocalWorkers workers(program,
+                         {"--domain", std::to_string(domain.domain()), "--address", kLoopback, "--peer",
+                          fmt::format("{}:{}", kLoopback, CoordinatorPort(domain.domain()))},
+                         count);
+    std::optional<std::string> problem;
+    double joined_s = Now();
+    while (!book_.Complete() && !problem) {
+      if (observer_.Stop()) {
+        workers.End(0.0);
+        Note(workers);
+        throw Interrupted();
+      }
+      Supervise(coordinator, workers);
+      coordinator.Step(std::chrono::milliseconds(50));
+      for (const std::string& uuid : coordinator.TakeUnresponsive()) {
+        spdlog::warn("worker {} does not answer: it is killed", uuid);
+        workers.Kill(uuid);
+      }
+      ShowProgress(fmt::format("{} worker{}", workers.alive(), workers.alive() == 1 ? "" : "s"));
+      if (coordinator.joined() > 0) joined_s = Now();
+      problem = Problem(coordinator, workers, Now() - joined_s);
+    }
+    book_.Flush();
+    coordinator.Dismiss();
+    workers.End(problem ? 0.0 : kLeavePatience_s);
+    Note(workers);
+    return problem;
+  }
+
+ private:
+  /// The ledger's cases for threads of this process.
+  class HereQueue : public CaseQueue {
+   public:
+    HereQueue(CampaignRun& run, int threads) : run_(run) {
+      const auto slots = static_cast<std::uint32_t>(threads);
+      run_.book_.ledger().Join(kSelf, {EngineVersion(), slots, kAssignmentsAhead * slots}, run_.Now());
+    }
+
+    /// Until the campaign is complete or the run is stopped.
+    void FlyOn(const CampaignFlights& flights) {
+      for (;;) {
+        flights.FlyCases(*this);
+        std::unique_lock lock(mutex_);
+        if (run_.observer_.Stop() || problem_) return;
+        try {
+          if (run_.book_.Complete()) return;  // else the plan may have asked for more
+        } catch (...) {
+          problem_ = std::current_exception();
+          return;
+        }
+        changed_.wait_for(lock, std::chrono::milliseconds(50));
+      }
+    }
+    std::optional<std::uint64_t> Next(bool) override {
+      const std::lock_guard lock(mutex_);
+      if (run_.observer_.Stop() || problem_) return std::nullopt;
+      try {
+        if (waiting_.empty()) {
+          for (const Assignment& assignment : run_.book_.ledger().Assign(run_.Now()))
+            for (const std::uint64_t case_index : assignment.cases) waiting_.emplace_back(case_index, assignment.attempt);
+        }
+        if (waiting_.empty()) return std::nullopt;
+        const auto [case_index, attempt] = waiting_.front();
+        waiting_.pop_front();
+        attempts_[case_index] = attempt;
+        run_.book_.Start(kSelf, case_index, attempt, run_.Now());
+        return case_index;
+      } catch (...) {
+        problem_ = std::current_exception();
+        return std::nullopt;
+      }
+    }
+    void Done(CaseResult result) override {
+      const std::lock_guard lock(mutex_);
+      if (problem_) return;
+      try {
+        run_.book_.Accept(kSelf, "", attempts_.extract(result.case_index).mapped(), result, run_.Now());
+        run_.book_.FlushIfDue(run_.Now());
+        run_.ShowProgress("in process");
+      } catch (...) {
+        problem_ = std::current_exception();
+      }
+      changed_.notify_all();
+    }
+    void GivenUp(std::uint64_t case_index, const std::string& reason) override {
+      const std::lock_guard lock(mutex_);
+      run_.book_.ledger().GiveUp(kSelf, case_index, attempts_.extract(case_index).mapped(), reason,
+                                 run_.Now());
+      changed_.notify_all();
+    }
+    void RethrowProblem() const {
+      if (problem_) std::rethrow_exception(problem_);
+    }
+
+   private:
+    static constexpr char kSelf[] = "in process";
+    static constexpr std::uint32_t kAssignmentsAhead = 4;
+
+    CampaignRun& run_;
+    std::mutex mutex_;  ///< of all that follows, and of the book
+    std::condition_variable changed_;
+    std::deque<std::pair<std::uint64_t, std::uint64_t>> waiting_;  ///< case and attempt
+    std::map<std::uint64_t, std::uint64_t> attempts_;              ///< of the cases in flight
+    std::exception_ptr problem_;
+  };
+
+  double Now() const { return SecondsSince(start_); }
+
+  void Supervise(Coordinator& coordinator, LocalWorkers& workers) {
+    const std::uint64_t settled = book_.flown_now() + book_.ledger().Progress().quarantined;
+    const LocalWorkers::Changes changes = workers.Poll(Now(), settled);
+    for (const WorkerProcess& ended : changes.ended) {
+      spdlog::warn("worker {} (process {}) ended with {}; another takes its place", ended.uuid, ended.pid,
+                   ended.how);
+      coordinator.WorkerEnded(ended.uuid, ended.end, ended.how);
+    }
+    for (const WorkerProcess& started : changes.started) coordinator.Supervise(started.uuid);
+    if (!changes.ended.empty() || !changes.started.empty()) Note(workers);
+  }
+
+  std::optional<std::string> Problem(const Coordinator& coordinator, const LocalWorkers& workers,
+                                     double nobody_joined_s) const {
+    if (coordinator.joined() == 0 && coordinator.refusal()) {
+      return "no worker may fly this campaign: " + *coordinator.refusal();
+    }
+    if (workers.fruitless_ends() > kFruitlessEndsAllowed) {
+      return fmt::format("{} workers ended in a row without a result, the last one with {}",
+                         workers.fruitless_ends(), LastEnd(workers));
+    }
+    if (const auto given_up = book_.ledger().Progress().quarantined;
+        given_up >= kHopelessCases && book_.flown_now() == 0) {
+      return fmt::format("the first {} cases ended every worker that flew them, the last one with {}",
+                         given_up, LastEnd(workers));
+    }
+    if (nobody_joined_s > kJoinPatience_s) {
+      return fmt::format("no worker has joined for {:.0f} s", kJoinPatience_s);
+    }
+    return std::nullopt;
+  }
+
+  static std::string LastEnd(const LocalWorkers& workers) {
+    std::string how;
+    for (const WorkerProcess& worker : workers.history()) {
+      if (worker.ended_utc) how = worker.how;
+    }
+    return how;
+  }
+
+  void Note(const LocalWorkers& workers) {
+    execution_.workers = workers.history();
+    execution_.Write();
+  }
+
+  void ShowProgress(const std::string& who) {
+    const LedgerProgress progress = book_.ledger().Progress();
+    std::string note = who;
+    if (progress.quarantined > 0) note += fmt::format(", {} quarantined", progress.quarantined);
+    observer_.Show(book_.campaign().name, progress.done, progress.total, note);
+  }
+
+  CampaignBook& book_;
+  ExecutionFile& execution_;
+  Observer& observer_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+RunResult FlyAndReport(const RunOptions& options, OpenedCampaign opened, ExecutionFile& execution,
+                       Observer& observer) {
+  const int workers = options.workers >= 0 ? options.workers : UsableCores();
+  CampaignBook book(opened.campaign, std::move(opened.folder));
+  execution.workers_wanted = workers;
+  execution.cases_before = book.ledger().Progress().done;
+  execution.Write();
+
+  const auto start = std::chrono::steady_clock::now();
+  const auto note_end = [&] {
+    book.Flush();
+    execution.cases_flown = book.flown_now();
+    execution.flying_s = SecondsSince(start);
+  };
+  ExitCode code = kExitDone;
+  if (!book.Complete()) {
+    try {
+      CampaignRun run(book, execution, observer);
+      execution.problem = workers == 0 ? run.FlyHere(ThreadsOrAll(options.threads))
+                                       : run.FlyWithWorkers(options.worker_program, workers);
+    } catch (const NetworkError& error) {
+      execution.problem = error.what();
+    } catch (const Interrupted&) {
+      note_end();
+      throw;
+    }
+  }
+  observer.EndPhase();
+  note_end();
+  if (execution.problem) {
+    spdlog::error("{}", *execution.problem);
+    code = WorseOf(code, kExitIncomplete);
+  }
+  for (const BlamedCase& blamed : book.ledger().Quarantined()) {
+    spdlog::warn("case {} is quarantined: {}", blamed.case_index, fmt::join(blamed.reasons, "; "));
+  }
+  CampaignSummary summary =
+      MakeReports(book.folder(), book.campaign(), workers, options.reflown, observer);
+  execution.ended_utc = UtcNow();
+  execution.Write();
+  code = WorseOf(code, CampaignExitCode(summary.verdict, book.ledger().Progress().conflicts));
+  return {std::move(summary), code, execution.problem};
+}
+
+}  // namespace
+
+RunResult RunCampaign(OpenedCampaign opened, const RunOptions& options, Observer& observer) {
+  ExecutionFile execution;
+  execution.directory = opened.folder.directory();
+  execution.started_utc = UtcNow();
+  try {
+    return FlyAndReport(options, std::move(opened), execution, observer);
+  } catch (const Interrupted&) {
+    execution.ended_utc = UtcNow();
+    execution.problem = "interrupted";
+    try {
+      execution.Write();
+    } catch (const ResultError& error) {
+      spdlog::error("{}", error.what());
+    }
+    throw;
+  }
+}
+
+}  // namespace dispersa

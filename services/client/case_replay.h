@@ -1,0 +1,34 @@
+// One stored case flown again, and every difference to what is stored.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "core/campaign/case_result.h"
+#include "core/flight/history.h"
+#include "services/client/stored_campaign.h"
+
+namespace dispersa {
+
+struct ReplayDifference {
+  std::string name;  ///< of the column in cases.csv
+  std::string stored;
+  std::string replayed;
+};
+
+struct CaseReplay {
+  CaseResult stored;
+  CaseResult replayed;
+  std::vector<ReplayDifference> differences;  ///< none: reproduced to the last bit
+};
+
+/// `history`, if given, receives the flight's. A folder of another engine is warned about. Errors as
+/// ResultFolder::Load.
+CaseReplay ReplayCase(const StoredCampaign& stored, std::uint64_t case_index, History* history = nullptr);
+
+/// Schema "dispersa/replay/1".
+nlohmann::ordered_json ReplayJson(const CaseReplay& replay);
+
+}  // namespace dispersa

@@ -1,0 +1,64 @@
+#include "services/client/folder_comparison.h"
+
+#include <algorithm>
+#include <numeric>
+#include <system_error>
+#include <utility>
+
+#include "core/campaign/input_error.h"
+#include "core/flight/flight_inputs.h"
+#include "core/report/output_file.h"
+#include "services/client/campaign_differences.h"
+#include "services/client/stored_campaign.h"
+
+namespace dispersa {
+namespace {
+
+CaseColumns AllColumns(const ResultFolder& folder) {
+  std::vector<int> inputs(InputCount(folder.stages()));
+  std::iota(inputs.begin(), inputs.end(), 0);
+  return ReadColumns(folder, inputs);
+}
+
+void CheckMetrics(const std::vector<std::string>& metrics) {
+  const std::vector<std::string>& names = MetricNames();
+  for (const std::string& metric : metrics) {
+    if (std::find(names.begin(), names.end(), metric) == names.end())
+      throw InputError("--metric: '" + metric + "' is not a metric",
+                       "a name in cases.csv without its prefix 'metric_'");
+  }
+}
+
+std::vector<CampaignChange> ChangesOf(const Campaign& a, const Campaign& b) {
+  std::vector<CampaignChange> changes;
+  for (const ValueDifference& each : DifferencesOf(a.canonical_yaml, b.canonical_yaml))
+    changes.push_back({each.path, each.a, each.b});
+  return changes;
+}
+
+}  // namespace
+
+FolderComparison CompareFolders(const std::string& name_a, const std::string& name_b,
+                                const std::vector<std::string>& metrics) {
+  CheckMetrics(metrics);
+  const StoredCampaign a = OpenStored(name_a);
+  const StoredCampaign b = OpenStored(name_b);
+  FolderComparison compared = {{}, AllColumns(a.folder), AllColumns(b.folder)};
+  for (const auto& [name, cases] : {std::pair{&name_a, &compared.a}, std::pair{&name_b, &compared.b}})
+    if (cases->rows() == 0) throw InputError(*name + ": no case has a result");
+  compared.comparison = Compare({name_a, a.folder.Provenance("engine"), a.campaign, compared.a},
+                                {name_b, b.folder.Provenance("engine"), b.campaign, compared.b}, metrics,
+                                ChangesOf(a.campaign, b.campaign));
+  return compared;
+}
+
+void WriteComparison(const FolderComparison& compared, const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error)
+    throw InputError("--out: " + folder.string() + ": " + error.message(), "a folder that can be written");
+  WriteFile(folder / "compare.json", ComparisonJson(compared.comparison));
+  WriteFile(folder / "compare.html", ComparisonPage(compared.comparison, compared.a, compared.b));
+}
+
+}  // namespace dispersa

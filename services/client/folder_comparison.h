@@ -1,0 +1,25 @@
+// Two result folders compared.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/report/case_columns.h"
+#include "core/report/comparison.h"
+
+namespace dispersa {
+
+struct FolderComparison {
+  Comparison comparison;
+  CaseColumns a, b;  ///< with all inputs
+};
+
+/// `metrics`: names without prefix; empty: every metric that a flight of both defines. InputError for a folder
+/// that is none or has no case, and for a name that is no metric.
+FolderComparison CompareFolders(const std::string& a, const std::string& b, const std::vector<std::string>& metrics);
+
+/// compare.json and compare.html, in a folder that is made if it is missing.
+void WriteComparison(const FolderComparison& compared, const std::filesystem::path& folder);
+
+}  // namespace dispersa

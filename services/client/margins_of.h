@@ -1,0 +1,39 @@
+// The margins of a campaign's autopilot: computed, measured in flight, and of dispersed flights.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/campaign/campaign.h"
+#include "core/campaign/dispersed_margins.h"
+#include "core/flight/margins.h"
+
+namespace dispersa {
+
+struct MarginsOptions {
+  std::optional<std::uint64_t> cases = {};  ///< none: of the nominal flight only
+  double frequency_band_percent = 100.0 * kFrequencyBand;
+  bool drift = false;
+};
+
+struct MarginsResult {
+  std::string autopilot;
+  std::vector<ComputedMargins> computed;
+  std::vector<SkippedInstant> skipped;
+  std::vector<MeasuredMargins> measured;
+  std::optional<CampaignMargins> dispersed;
+  MarginModel of;  ///< what was linearised
+  bool bends = false;  ///< the vehicle has bending modes
+  bool passed = false;  ///< every gate is met
+};
+
+/// Flies on all usable cores.
+MarginsResult MarginsOf(const Campaign& campaign, const MarginsOptions& options);
+
+/// Schema "dispersa/margins/1".
+nlohmann::ordered_json MarginsJson(const MarginsResult& result);
+
+}  // namespace dispersa

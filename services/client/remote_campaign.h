@@ -1,0 +1,29 @@
+// A campaign that a coordinator flies: given to it, followed, brought home.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "core/campaign/campaign.h"
+#include "services/client/observer.h"
+#include "services/client/session.h"
+
+namespace dispersa {
+
+/// Uploads what the coordinator does not have; launching again changes nothing but the priority. Returns the
+/// campaign's state ("queued", "flying", ...). Throws Failure.
+std::string LaunchCampaign(Session& session, const Campaign& campaign, int priority);
+
+/// Until the campaign has ended; its exit code. A coordinator that is away is waited for. Throws Failure,
+/// Interrupted: then the campaign goes on.
+ExitCode FollowCampaign(Session& session, const std::string& id, Observer& observer);
+
+struct FetchedCampaign {
+  std::string id;
+  std::filesystem::path directory;
+};
+/// The result folder of a campaign that has ended, into `target`, new or empty. Throws Failure, InputError,
+/// ResultError.
+FetchedCampaign FetchCampaign(Session& session, const std::string& id, const std::string& target);
+
+}  // namespace dispersa

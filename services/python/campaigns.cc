@@ -1,0 +1,279 @@
+// Campaigns from files and texts, their draws and flights.
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/campaign/campaign_flights.h"
+#include "core/campaign_yaml/inline_files.h"
+#include "core/campaign_yaml/load.h"
+#include "core/campaign_yaml/number_text.h"
+#include "core/flight/flight_inputs.h"
+#include "core/flight/history.h"
+#include "core/flight/metrics.h"
+#include "services/coordinator/threads.h"
+#include "services/python/arrays.h"
+#include "services/python/growing_rows.h"
+#include "services/python/module.h"
+#include "services/python/python_observer.h"
+#include "services/python/result_columns.h"
+
+namespace py = pybind11;
+
+namespace dispersa {
+namespace {
+
+/// A campaign, and what its flights share once one is asked for.
+class LoadedCampaign {
+ public:
+  LoadedCampaign(const InputSource& source, const CampaignOverrides& overrides)
+      : campaign_(LoadCampaign(source, overrides, &warnings_)) {}
+
+  const Campaign& campaign() const { return campaign_; }
+  const std::vector<InputProblem>& warnings() const { return warnings_; }
+  std::size_t stages() const { return campaign_.vehicle.stages.size(); }
+  /// Without the interpreter's lock: building takes a while.
+  const CampaignFlights& flights() const {
+    std::call_once(once_, [this] { flights_ = std::make_unique<const CampaignFlights>(campaign_); });
+    return *flights_;
+  }
+
+ private:
+  std::vector<InputProblem> warnings_;
+  Campaign campaign_;
+  mutable std::once_flag once_;
+  mutable std::unique_ptr<const CampaignFlights> flights_;
+};
+
+std::unique_ptr<LoadedCampaign> Load(const std::string& name, const std::optional<std::string>& text,
+                                     std::optional<std::uint64_t> cases, std::optional<std::uint64_t> seed,
+                                     const std::optional<std::string>& autopilot) {
+  const py::gil_scoped_release free;
+  return std::make_unique<LoadedCampaign>(SourceOf(name, text), CampaignOverrides{cases, seed, autopilot});
+}
+
+py::tuple Check(const std::string& name, const std::optional<std::string>& text) {
+  const FileCheck check = CheckFile(SourceOf(name, text));
+  return py::make_tuple(ProblemsOf(check.errors), ProblemsOf(check.warnings));
+}
+
+// As the canonical text takes a scalar: what is plain and a number is one.
+py::object ScalarValue(const InputNode& node) {
+  if (!node.quoted) {
+    if (const auto integer = ParseInteger(node.text)) return py::int_(*integer);
+    if (const auto number = ParseNumber(node.text)) return py::float_(*number);
+    if (node.text == "true" || node.text == "false") return py::bool_(node.text == "true");
+  }
+  return py::str(node.text);
+}
+
+py::object ValueOf(const InputNode& node) {
+  switch (node.kind) {
+    case InputNode::Kind::kScalar: return ScalarValue(node);
+    case InputNode::Kind::kList: {
+      py::list list;
+      for (const InputNode& item : node.items) list.append(ValueOf(item));
+      return list;
+    }
+    case InputNode::Kind::kMap: {
+      py::dict map;
+      for (const InputMember& member : node.members) map[py::str(member.key)] = ValueOf(member.value);
+      return map;
+    }
+    default: return py::none();
+  }
+}
+
+/// What a file holds, as dicts, lists and scalars; `inlined`: with what it refers to in the place of names.
+py::object ReadTree(const std::string& path, bool inlined) {
+  std::vector<InputProblem> problems;
+  InputNode root = ReadYamlFile(path, problems);
+  const InputNode* schema = root.Find("schema");
+  const std::string kind = schema == nullptr ? "" : schema->text;
+  if (inlined && kind == kCampaignSchema) InlineCampaignFiles(root, FileNames::kAllowed, problems);
+  if (inlined && kind == kVehicleSchema) InlineVehicleFiles(root, FileNames::kAllowed, problems);
+  if (inlined && kind == kScenarioSchema) InlineScenarioFiles(root, FileNames::kAllowed, problems);
+  if (!problems.empty()) throw InputError(std::move(problems));
+  return ValueOf(root);
+}
+
+/// The inputs of cases first to first + count - 1; shape (count, inputs), in the units of the columns.
+py::array Plan(const LoadedCampaign& campaign, std::uint64_t first, std::uint64_t count) {
+  std::vector<double> rows;
+  {
+    const py::gil_scoped_release free;
+    const CaseDesign design(campaign.campaign());
+    rows.reserve(count * InputCount(campaign.stages()));
+    for (std::uint64_t i = 0; i < count; ++i) {
+      const std::vector<double> inputs = InputValues(design.Draw(first + i), campaign.stages());
+      rows.insert(rows.end(), inputs.begin(), inputs.end());
+    }
+  }
+  return ArrayOf(std::move(rows),
+                 {static_cast<py::ssize_t>(count), static_cast<py::ssize_t>(InputCount(campaign.stages()))});
+}
+
+Scheme SchemeOf(const std::string& name) {
+  Scheme scheme = Scheme::kSimpson;
+  if (!ParseScheme(name, &scheme))
+    throw InputError("integrator: '" + name + "' is not an integrator", "simpson, erk4 or cvode");
+  return scheme;
+}
+
+// A case's draws, or the nominal's, with some of them replaced by values in the units of their columns.
+FlightInputs InputsOf(const LoadedCampaign& campaign, std::optional<std::uint64_t> case_index,
+                      const std::map<std::string, double>& replaced) {
+  FlightInputs inputs = case_index ? campaign.flights().Draw(*case_index) : FlightInputs{};
+  for (const auto& [name, value] : replaced) {
+    const int column = FindInput(name);
+    if (column < 0 || static_cast<std::size_t>(column) >= InputCount(campaign.stages()))
+      throw InputError("inputs: '" + name + "' is not an input of this vehicle", "a name of Campaign.input_names");
+    InputValue(inputs, column) = value * InputColumns()[static_cast<std::size_t>(column)].unit;
+  }
+  return inputs;
+}
+
+py::array HistoryArray(History history) {
+  const auto rows = static_cast<py::ssize_t>(history.rows());
+  return ArrayOf(std::move(history.values), {rows, static_cast<py::ssize_t>(HistoryColumns().size())});
+}
+
+py::dict FlightValues(CaseResult result) {
+  py::dict flight;
+  flight["outcome"] = OutcomeName(result.outcome);
+  flight["end_time_s"] = result.end_time_s;
+  flight["end_stage"] = result.end_stage;
+  flight["reason"] = result.reason;
+  flight["digest"] = result.digest.Hex();
+  flight["inputs"] = ArrayOf(std::move(result.inputs));
+  flight["metrics"] = ArrayOf(std::move(result.metrics));
+  return flight;
+}
+
+/// One flight. `step_s` of its history; 0: none.
+py::dict FlyOne(const LoadedCampaign& campaign, std::optional<std::uint64_t> case_index,
+                const std::map<std::string, double>& replaced, double step_s, const std::string& integrator) {
+  const Scheme scheme = SchemeOf(integrator);
+  History history;
+  history.step_s = step_s;
+  CaseResult result;
+  {
+    const py::gil_scoped_release free;
+    result = campaign.flights().Fly(InputsOf(campaign, case_index, replaced), case_index.value_or(0),
+                                    step_s > 0.0 ? &history : nullptr, scheme);
+  }
+  py::dict flight = FlightValues(std::move(result));
+  flight["history"] = step_s > 0.0 ? py::object(HistoryArray(std::move(history))) : py::none();
+  return flight;
+}
+
+/// The histories of many flights in one buffer, in the order of their list. Flights end in nearly that order: the few
+/// that end before an earlier one wait for it.
+class Gathering {
+ public:
+  Gathering(std::vector<int> columns, std::size_t flights) : columns_(std::move(columns)) {
+    offsets_.reserve(flights + 1);
+    offsets_.push_back(0);
+  }
+
+  void Add(std::size_t order, const History& history) {
+    if (order + 1 != offsets_.size()) {
+      waiting_[order] = history;
+      return;
+    }
+    Append(history);
+    while (!waiting_.empty() && waiting_.begin()->first + 1 == offsets_.size())
+      Append(waiting_.extract(waiting_.begin()).mapped());
+  }
+  /// (rows, where each flight begins and the last ends).
+  std::pair<py::array, py::array> Take() {
+    double* const values = rows_->data();
+    const std::vector<py::ssize_t> shape = {offsets_.back(), static_cast<py::ssize_t>(columns_.size())};
+    return {ArrayOver(values, shape, std::move(rows_)), ArrayOf(std::move(offsets_))};
+  }
+
+ private:
+  void Append(const History& history) {
+    double* value = rows_->Extend(history.rows() * columns_.size());
+    for (std::size_t row = 0; row < history.rows(); ++row)
+      for (const int column : columns_) *value++ = history.at(row, column);
+    offsets_.push_back(offsets_.back() + static_cast<std::int64_t>(history.rows()));
+  }
+
+  std::vector<int> columns_;  ///< that are kept
+  std::unique_ptr<GrowingRows> rows_ = std::make_unique<GrowingRows>();
+  std::vector<std::int64_t> offsets_;
+  std::map<std::size_t, History> waiting_;
+};
+
+/// Many cases, side by side. `columns`: positions in history_columns() that are kept of each history of step `step_s`;
+/// 0: no histories.
+py::dict FlyMany(const LoadedCampaign& campaign, const std::vector<std::uint64_t>& cases, double step_s,
+                 const std::vector<int>& columns, int threads, const py::object& progress) {
+  std::vector<CaseResult> results(cases.size());
+  Gathering histories(columns, cases.size());
+  PythonObserver observer(progress);
+  observer.Watch([&] {
+    std::vector<CaseOrder> orders;
+    for (const std::uint64_t case_index : cases) orders.push_back({case_index, step_s});
+    std::uint64_t done = 0;
+    campaign.flights().FlyCases(orders, ThreadsOrAll(threads),
+                                [&](std::size_t order, CaseResult result, const History& history) {
+                                  results[order] = std::move(result);
+                                  if (step_s > 0.0) histories.Add(order, history);
+                                  observer.Show(campaign.campaign().name, ++done, cases.size());
+                                  if (observer.Stop()) throw Interrupted();
+                                });
+  });
+  ResultColumns table(InputCount(campaign.stages()), MetricCount(campaign.stages()));
+  for (const CaseResult& result : results) table.Add(result);
+  py::dict answer = table.Take();
+  if (step_s > 0.0) {
+    auto [rows, offsets] = histories.Take();
+    answer["histories"] = rows;
+    answer["offsets"] = offsets;
+  }
+  return answer;
+}
+
+}  // namespace
+
+void AddCampaigns(py::module_& module) {
+  module.def("load", &Load);
+  module.def("check", &Check);
+  module.def("read_tree", &ReadTree);
+  module.def("plan", &Plan);
+  module.def("fly", &FlyOne);
+  module.def("fly_many", &FlyMany);
+  const auto text = [](std::string Campaign::*member) {
+    return [member](const LoadedCampaign& loaded) { return loaded.campaign().*member; };
+  };
+  py::class_<LoadedCampaign>(module, "Campaign")
+      .def_property_readonly("name", text(&Campaign::name))
+      .def_property_readonly("id", text(&Campaign::id))
+      .def_property_readonly("flight_id", text(&Campaign::flight_id))
+      .def_property_readonly("requirements_id", text(&Campaign::requirements_id))
+      .def_property_readonly("canonical_yaml", text(&Campaign::canonical_yaml))
+      .def_property_readonly("cases", [](const LoadedCampaign& c) { return c.campaign().sampling.cases; })
+      .def_property_readonly("seed", [](const LoadedCampaign& c) { return c.campaign().sampling.seed; })
+      .def_property_readonly("stages", &LoadedCampaign::stages)
+      .def_property_readonly("autopilot", [](const LoadedCampaign& c) { return c.campaign().autopilot.name; })
+      .def_property_readonly("vehicle", [](const LoadedCampaign& c) { return c.campaign().vehicle.name; })
+      .def_property_readonly("dispersed",
+                             [](const LoadedCampaign& c) {
+                               std::vector<std::string> names;
+                               for (const Dispersion& dispersion : c.campaign().dispersions)
+                                 for (const int input : dispersion.inputs)
+                                   names.push_back(InputColumns()[static_cast<std::size_t>(input)].name);
+                               return names;
+                             })
+      .def_property_readonly("warnings", [](const LoadedCampaign& c) { return ProblemsOf(c.warnings()); });
+}
+
+}  // namespace dispersa

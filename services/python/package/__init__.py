@@ -1,0 +1,41 @@
+"""dispersa: Monte Carlo dispersion campaigns of launch vehicles, from Python.
+
+    import dispersa
+    campaign = dispersa.load("campaigns/table3.yaml", cases=200)
+    flight = campaign.fly(case=17)
+    results = dispersa.run(campaign, "results/trial")
+    results.verdict, results.cases["metric_pitch_error_peak_deg"].max()
+
+Results are those of the program `dispersa`, to the last bit. SI and radians nowhere: every name carries its unit.
+"""
+from . import _processor
+
+_processor.check()
+
+from ._core import engine_version as _engine_version  # noqa: E402
+from ._source import Tree, read, write  # noqa: E402
+from ._campaign import Campaign, Validation, load, validate  # noqa: E402
+from .errors import (BadInput, Error, ExitCode, Incomplete, InputWarning, InternalError, Problem,  # noqa: E402
+                     ReplayMismatch)
+from ._flight import Flight, Flights, History  # noqa: E402
+from ._results import (Optimization, Results, compare, margins, optimize, report, results, run,  # noqa: E402
+                      worker_program)
+
+__version__ = _engine_version()
+"""The engine's version: results of different ones are never mixed."""
+
+
+def plan(what, cases=None, **options):
+    """What a campaign's cases fly with: `load(what, **options).plan(cases)`."""
+    return (what if isinstance(what, Campaign) and not options else load(what, **options)).plan(cases)
+
+
+def fly(what, case=None, *, inputs=None, history=True, step_s=0.1, integrator="simpson", **options):
+    """One flight: `load(what, **options).fly(case, ...)`."""
+    campaign = what if isinstance(what, Campaign) and not options else load(what, **options)
+    return campaign.fly(case, inputs=inputs, history=history, step_s=step_s, integrator=integrator)
+
+
+__all__ = ["BadInput", "Campaign", "Error", "ExitCode", "Flight", "Flights", "History", "Incomplete", "InputWarning",
+           "InternalError", "Optimization", "Problem", "ReplayMismatch", "Results", "Tree", "Validation", "compare", "fly",
+           "load", "margins", "optimize", "plan", "read", "report", "results", "run", "validate", "worker_program", "write"]

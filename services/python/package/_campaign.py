@@ -1,0 +1,202 @@
+"""Campaigns: loaded, planned, flown in this process."""
+import dataclasses
+import functools
+import os
+import warnings
+
+import numpy
+
+from . import _core
+from ._source import placed, source, without_place
+from ._tables import structured
+from .errors import BadInput, ExitCode, InputWarning, Problem
+from ._flight import Flight, Flights, History, column_positions
+
+
+@dataclasses.dataclass(frozen=True)
+class Validation:
+    """What is to be said of a file."""
+
+    errors: list
+    """Problems, in the order of the text; empty when the file is valid."""
+    warnings: list
+    """Of a valid file: Problems that are legal."""
+    strict: bool = False
+
+    @property
+    def valid(self):
+        return not self.errors and not (self.strict and self.warnings)
+
+    @property
+    def exit_code(self):
+        return ExitCode.DONE if self.valid else ExitCode.BAD_INPUT
+
+    def __bool__(self):
+        return self.valid
+
+
+def validate(what, *, base=None, strict=False):
+    """Every error of a campaign, vehicle, reference, autopilot or scenario: a path, or a dict.
+
+    `base`: the folder that names in a dict are relative to. `strict`: warnings are errors. Raises nothing for what is
+    wrong with the input; the result says it.
+    """
+    name, text = source(what, base)
+    errors, found = _core.check(name, text)
+    return Validation(*([without_place(Problem(*p), name, text) for p in each] for each in (errors, found)), strict)
+
+
+def load(what, *, cases=None, seed=None, autopilot=None, base=None):
+    """The campaign of a path or a dict, to be planned, flown and run.
+
+    `cases`, `seed` and `autopilot` (a file) replace the campaign's own. `base`: the folder that names in a dict are
+    relative to. Raises BadInput with every problem; warns (InputWarning) of what looks wrong but is legal.
+    """
+    name, text = source(what, base)
+    with placed(name, text):
+        campaign = Campaign(_core.load(name, text, cases, seed, None if autopilot is None else os.fspath(autopilot)))
+    for problem in campaign.warnings:
+        warnings.warn(str(problem), InputWarning, stacklevel=2)
+    return campaign
+
+
+class Campaign:
+    """A dispersion campaign, immutable. Two with the same `id` are the same; `load` makes one."""
+
+    def __init__(self, core):
+        self._core = core
+
+    def __repr__(self):
+        return f"<dispersa.Campaign {self.name} {self.id[:8]}: {self.cases} cases, seed {self.seed}>"
+
+    def __eq__(self, other):
+        return isinstance(other, Campaign) and self.id == other.id
+
+    def __hash__(self):
+        return hash(self.id)
+
+    def __reduce__(self):
+        return _from_canonical, (self.name, self.canonical_yaml)
+
+    @property
+    def name(self):
+        return self._core.name
+
+    @property
+    def id(self):
+        """SHA-256 of canonical_yaml, hexadecimal."""
+        return self._core.id
+
+    @property
+    def flight_id(self):
+        """SHA-256 of what decides a case."""
+        return self._core.flight_id
+
+    @property
+    def requirements_id(self):
+        """SHA-256 of the requirements and how they are judged."""
+        return self._core.requirements_id
+
+    @property
+    def canonical_yaml(self):
+        """Everything inlined, keys sorted: the bytes of a result folder's campaign.yaml."""
+        return self._core.canonical_yaml
+
+    @property
+    def cases(self):
+        return self._core.cases
+
+    @property
+    def seed(self):
+        return self._core.seed
+
+    @property
+    def stages(self):
+        """Of the vehicle; inputs and metrics depend on it."""
+        return self._core.stages
+
+    @property
+    def vehicle(self):
+        """The vehicle's name."""
+        return self._core.vehicle
+
+    @property
+    def autopilot(self):
+        """The autopilot's name."""
+        return self._core.autopilot
+
+    @functools.cached_property
+    def warnings(self):
+        """Problems that are legal."""
+        return [Problem(*p) for p in self._core.warnings]
+
+    @functools.cached_property
+    def input_names(self):
+        """Of the inputs of a case, with units; cases.csv has them as input_NAME."""
+        return _core.input_names(self.stages)
+
+    @functools.cached_property
+    def metric_names(self):
+        """Of the metrics of a flight, with units; cases.csv has them as metric_NAME."""
+        return _core.metric_names(self.stages)
+
+    @functools.cached_property
+    def dispersed(self):
+        """Names of the inputs that this campaign disperses."""
+        return list(dict.fromkeys(self._core.dispersed))
+
+    def plan(self, cases=None):
+        """What cases fly with, without flying: a structured array of shape (cases,), a float64 field an input, in the
+        unit of its name. `cases`: how many from the first; default: all."""
+        count = self.cases if cases is None else int(cases)
+        if count < 0:
+            raise BadInput([("", 0, 0, "", f"cases: {count} is no number of cases", "0 or more")])
+        return structured(_core.plan(self._core, 0, count), self.input_names)
+
+    def fly(self, case=None, *, inputs=None, history=True, step_s=0.1, integrator="simpson"):
+        """One flight in this process: case `case`, or without one the nominal flight.
+
+        `inputs`: values by name that replace those drawn, in the units of the names. `history`: with the time history,
+        a row every `step_s` seconds and at every event. `integrator`: simpson (what campaigns fly), erk4 or cvode.
+        Releases the interpreter's lock while it flies. Returns a Flight.
+        """
+        index = None if case is None else self._check([case])[0]
+        values = _core.fly(self._core, index, dict(inputs or {}), _step(step_s) if history else 0.0, integrator)
+        rows = values.pop("history")
+        return Flight(self, index, values, None if rows is None else History(rows, _core.history_columns()))
+
+    def fly_many(self, cases=None, *, histories=True, columns=None, step_s=1.0, threads=0, progress=None):
+        """Cases in this process, side by side on `threads` threads (0: the usable cores).
+
+        `cases`: a number of cases from the first, or indices; default: all. `histories`: with the time histories of
+        all in one array, with only `columns` (names) of them, if given, and a row every `step_s` seconds and at every
+        event; each row of all columns takes half a kilobyte. `progress(phase, done, total, note)` is called now and
+        then. Releases the interpreter's lock; Ctrl-C stops it. Returns Flights.
+        """
+        if cases is None or isinstance(cases, (int, numpy.integer)):
+            count = self.cases if cases is None else int(cases)
+            self._check([max(count - 1, 0)])
+            indices = list(range(count))
+        else:
+            indices = self._check(cases)
+        names, positions = column_positions(columns)
+        values = _core.fly_many(self._core, indices, _step(step_s) if histories else 0.0, positions, int(threads), progress)
+        return Flights(self, values, names)
+
+    def _check(self, cases):
+        """Case indices as ints. Raises BadInput for one that the campaign does not have."""
+        indices = [int(case) for case in cases]
+        for index in indices:
+            if not 0 <= index < self.cases:
+                raise BadInput([("", 0, 0, "", f"case: the campaign has no case {index}", f"0 to {self.cases - 1}")])
+        return indices
+
+
+def _step(step_s):
+    if not 0.0 < step_s < float("inf"):
+        raise BadInput([("", 0, 0, "", f"step_s: {step_s} is no output step", "above 0 s")])
+    return float(step_s)
+
+
+def _from_canonical(name, text):
+    return Campaign(_core.load(name, text, None, None, None))

@@ -1,0 +1,130 @@
+"""What was flown: outcomes, inputs, metrics, time histories."""
+import numpy
+
+from . import _core
+from ._tables import structured
+from .errors import BadInput
+
+FLIGHT_VALUES = ("outcome", "end_time_s", "end_stage", "reason", "digest", "inputs", "metrics")
+
+
+def column_positions(columns):
+    """Names and positions of history columns; None: all of them. Raises BadInput for a name that is none."""
+    known = _core.history_columns()
+    if columns is None:
+        return known, list(range(len(known)))
+    names = list(columns)
+    for name in names:
+        if name not in known:
+            raise BadInput([("", 0, 0, "", f"columns: '{name}' is not a column of histories", ", ".join(known))])
+    return names, [known.index(name) for name in names]
+
+
+class History:
+    """The time history of one flight: rows at the output step and at every event.
+
+    `rows` is a float64 array of shape (rows, columns) over the memory that the flight wrote, not a copy;
+    `history["altitude_m"]` is a column of it, a view of shape (rows,). NaN: undefined.
+    """
+
+    def __init__(self, rows, columns):
+        self.rows = rows
+        self.columns = list(columns)
+        self._positions = {name: i for i, name in enumerate(self.columns)}
+
+    def __repr__(self):
+        return f"<dispersa.History: {self.rows.shape[0]} rows of {len(self.columns)} columns>"
+
+    def __len__(self):
+        return self.rows.shape[0]
+
+    def __contains__(self, name):
+        return name in self._positions
+
+    def __getitem__(self, name):
+        try:
+            return self.rows[:, self._positions[name]]
+        except KeyError:
+            raise KeyError(f"the history has no column {name!r}") from None
+
+    def frame(self):
+        """A pandas.DataFrame over the same memory."""
+        import pandas
+        return pandas.DataFrame(self.rows, columns=self.columns, copy=False)
+
+
+class Flight:
+    """One flight.
+
+    `case`: its index, None for the nominal flight. `outcome`: "completed", "lost_control", ...; `reason`: one
+    sentence, empty when completed. `inputs`, `metrics`: dicts of floats, in the units of their names; an undefined
+    metric is NaN. `digest`: of the flight's bits, 32 hexadecimal digits. `history`: a History, or None.
+    """
+
+    def __init__(self, campaign, case, values, history):
+        self.case = case
+        self.outcome = values["outcome"]
+        self.end_time_s = float(values["end_time_s"])
+        self.end_stage = int(values["end_stage"])
+        self.reason = values["reason"]
+        self.digest = values["digest"]
+        self.inputs = dict(zip(campaign.input_names, values["inputs"].tolist()))
+        self.metrics = dict(zip(campaign.metric_names, values["metrics"].tolist()))
+        self.history = history
+
+    def __repr__(self):
+        who = "nominal" if self.case is None else f"case {self.case}"
+        return f"<dispersa.Flight {who}: {self.outcome} at {self.end_time_s:.2f} s>"
+
+    @property
+    def completed(self):
+        return self.outcome == "completed"
+
+
+class Flights:
+    """Many flights, a sequence of Flight.
+
+    `cases`: indices, shape (flights,). `outcome`: names. `inputs`, `metrics`: structured arrays of shape (flights,), a
+    float64 field a name. `histories`: the rows of all, one flight after the other, as one float64 array of shape (total
+    rows, columns) over the memory that the flights were gathered in, not a copy; flight i has rows offsets[i] to
+    offsets[i + 1]. Without histories both are None.
+    """
+
+    def __init__(self, campaign, values, columns):
+        self._campaign = campaign
+        self._values = values
+        self.cases = values["case_index"]
+        self.outcome = values["outcome"]
+        self.inputs = structured(values["inputs"], campaign.input_names)
+        self.metrics = structured(values["metrics"], campaign.metric_names)
+        self.columns = columns
+        self.histories = values.get("histories")
+        self.offsets = values.get("offsets")
+
+    def __repr__(self):
+        return f"<dispersa.Flights of {self._campaign.name}: {len(self)}, {self.outcome.count('completed')} completed>"
+
+    def __len__(self):
+        return len(self.cases)
+
+    def __getitem__(self, i):
+        i = range(len(self))[i]
+        return Flight(self._campaign, int(self.cases[i]), {name: self._values[name][i] for name in FLIGHT_VALUES},
+                      self.history(i))
+
+    def history(self, i):
+        """The History of flight i: rows of `histories`, not a copy. None without histories."""
+        if self.histories is None:
+            return None
+        return History(self.histories[self.offsets[i]:self.offsets[i + 1]], self.columns)
+
+    def sample(self, column, times_s):
+        """A column of every flight at these times, linear between rows; NaN after its end: shape (flights, times)."""
+        times = numpy.asarray(times_s, dtype=float)
+        if self.histories is None or not {"time_s", column} <= set(self.columns):
+            raise BadInput(f"sample: the flights have no histories with time_s and {column}")
+        sampled = numpy.empty((len(self), times.size))
+        for i in range(len(self)):
+            history = self.history(i)
+            sampled[i] = numpy.interp(times, history["time_s"], history[column], right=numpy.nan)
+        return sampled

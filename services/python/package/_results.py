@@ -1,0 +1,251 @@
+"""Result folders: runs, reports, comparisons; margins and references."""
+import functools
+import json
+import os
+import pathlib
+import shutil
+
+import numpy
+
+from . import _core
+from ._source import placed, source
+from ._tables import structured
+from ._campaign import Campaign, _from_canonical, load
+from .errors import BadInput, ExitCode, Incomplete, InternalError, ReplayMismatch
+from ._flight import History
+
+ENVELOPE = 500  # flights that reports fly again for the percentiles over time, unless told otherwise
+
+
+class Results:
+    """A result folder, as it is on the disk when it is opened.
+
+    `directory`: a pathlib.Path. `exit_code`: the verdict as the program's exit code: 0 every requirement met, 3 one
+    failed, 4 more cases needed, 5 cases missing. `inputs`, `metrics`: structured arrays of shape (cases,), a float64
+    field a name; an undefined metric is NaN.
+    """
+
+    def __init__(self, directory):
+        self.directory = pathlib.Path(directory)
+        values = _core.results(os.fspath(directory))
+        self.exit_code = ExitCode(values["exit_code"])
+        self.engine = values["engine"]
+        self.case_index = values["case_index"]
+        self.outcome = values["outcome"]
+        self.end_time_s = values["end_time_s"]
+        self.end_stage = values["end_stage"]
+        self.reason = values["reason"]
+        self.digest = values["digest"]
+        self.inputs = structured(values["inputs"], self.campaign.input_names)
+        self.metrics = structured(values["metrics"], self.campaign.metric_names)
+
+    def __repr__(self):
+        return f"<dispersa.Results {self.directory}: {len(self)} cases, {self.verdict}>"
+
+    def __len__(self):
+        return len(self.case_index)
+
+    @functools.cached_property
+    def campaign(self):
+        """The Campaign as flown."""
+        file = self.directory / "campaign.yaml"
+        return _from_canonical(str(file), file.read_text())
+
+    @functools.cached_property
+    def summary(self):
+        """summary.json as a dict: every number of the report."""
+        return json.loads((self.directory / "summary.json").read_text())
+
+    @property
+    def verdict(self):
+        """"pass", "fail", "inconclusive", "study" or "incomplete"."""
+        return self.summary["verdict"]
+
+    @property
+    def requirements(self):
+        """A dict for each requirement, as in summary.json."""
+        return self.summary["requirements"]
+
+    @property
+    def report(self):
+        """Path of report.html."""
+        return self.directory / "report.html"
+
+    def table(self):
+        """A structured array of shape (cases,) with the columns of cases.csv."""
+        names = ([("case_index", "u8"), ("outcome", "U24"), ("end_time_s", "f8"), ("end_stage", "i4"), ("reason", object)]
+                 + [("input_" + name, "f8") for name in self.inputs.dtype.names]
+                 + [("metric_" + name, "f8") for name in self.metrics.dtype.names] + [("digest", "U32")])
+        table = numpy.empty(len(self), dtype=names)
+        for name in ("case_index", "outcome", "end_time_s", "end_stage", "reason", "digest"):
+            table[name] = getattr(self, name)
+        for prefix, columns in (("input_", self.inputs), ("metric_", self.metrics)):
+            for name in columns.dtype.names:
+                table[prefix + name] = columns[name]
+        return table
+
+    @functools.cached_property
+    def cases(self):
+        """The columns of cases.csv: a pandas.DataFrame, or where pandas is not installed what table() returns."""
+        try:
+            import pandas
+        except ImportError:
+            return self.table()
+        first = {name: getattr(self, name) for name in ("case_index", "outcome", "end_time_s", "end_stage", "reason")}
+        parts = [pandas.DataFrame(first)]
+        for prefix, columns in (("input_", self.inputs), ("metric_", self.metrics)):
+            names = columns.dtype.names
+            plain = columns.view(numpy.float64).reshape(len(self), len(names))
+            parts.append(pandas.DataFrame(plain, columns=[prefix + name for name in names], copy=False))
+        parts.append(pandas.DataFrame({"digest": self.digest}))
+        return pandas.concat(parts, axis=1)
+
+    def bands(self):
+        """histories/bands.csv: percentiles over time as a History with columns NAME_min, _p01, _p05, _p50, _p95, _p99
+        and _max beside time_s. Raises BadInput when the report was made without histories."""
+        return self._csv("bands.csv")
+
+    def history(self, case=None):
+        """A History that the report wrote: of a case that it shows, or without one of the nominal flight."""
+        return self._csv("nominal.csv" if case is None else f"case_{int(case)}.csv")
+
+    def _csv(self, name):
+        file = self.directory / "histories" / name
+        if not file.is_file():
+            raise BadInput([(str(file), 0, 0, "", "there is no such history",
+                             "Campaign.fly, or report() with histories")])
+        with open(file) as stream:
+            columns = stream.readline().strip().split(",")
+            return History(numpy.genfromtxt(stream, delimiter=",", ndmin=2), columns)
+
+    def replay(self, case):
+        """Flies a stored case again; a dict with its digest. Raises ReplayMismatch unless it is the same to the last
+        bit."""
+        answer = json.loads(_core.replay(os.fspath(self.directory), int(case)))
+        if not answer["match"]:
+            error = ReplayMismatch(f"case {case} is not reproduced: "
+                                   + "; ".join(f"{d['name']} stored {d['stored']}, replayed {d['replayed']}"
+                                               for d in answer["differences"]))
+            error.differences = answer["differences"]
+            raise error
+        return answer
+
+
+def results(directory):
+    """Opens a result folder. Raises BadInput if it is none."""
+    return Results(directory)
+
+
+def worker_program():
+    """The program dispersa-worker of this build or installation, else the one in PATH. None: there is none."""
+    package = pathlib.Path(__file__).resolve().parent
+    # build/release/python/dispersa, PREFIX/lib/python3/dist-packages/dispersa
+    for prefix in (package.parents[1], *package.parents[2:4]):
+        program = prefix / "bin" / "dispersa-worker"
+        if os.access(program, os.X_OK):
+            return str(program)
+    return shutil.which("dispersa-worker")
+
+
+def run(what, out="", *, cases=None, seed=None, autopilot=None, base=None, workers=None, threads=0, resume=False,
+        histories=True, envelope=ENVELOPE, progress=None, peer=None, domain=0, address="", keys="", insecure=False,
+        priority=0):
+    """Flies a campaign and writes its result folder, as `dispersa run` does. Returns its Results.
+
+    `what`: a Campaign, a path, or a dict. `out`: the folder, new or empty unless `resume`; default
+    results/NAME-ID. `workers`: processes (default: the usable cores); 0 flies on `threads` threads of this one.
+    `histories`, `envelope`: whether, and of how many cases, the report flies time histories again.
+    `progress(phase, done, total, note)` is called now and then.
+
+    `peer` ("HOST[:PORT]"): the coordinator there flies it, in DDS domain `domain`, and the folder is fetched; `keys` is
+    the folder of the client's keys, `insecure` says that there are none, `priority` that of `dispersa launch`.
+
+    The verdict is a value: Results.exit_code. Raises BadInput; Incomplete, with `results`, when cases are missing;
+    InternalError, with `results`, when results contradict each other. Ctrl-C raises KeyboardInterrupt: what was flown is
+    kept, and `resume` goes on.
+    """
+    overrides = {"cases": cases, "seed": seed, "autopilot": autopilot}
+    if isinstance(what, Campaign) and all(value is None for value in overrides.values()):
+        campaign = what
+    else:
+        campaign = load(what, base=base, **overrides)
+    if peer is not None:
+        folder = os.fspath(out) or os.path.join("results", f"{campaign.name}-{campaign.id[:8]}")
+        code = _core.run_remotely(campaign.name, campaign.canonical_yaml, folder, domain, peer, address, keys, insecure,
+                                  priority, progress)
+        problem = None
+    else:
+        program = "" if workers == 0 else worker_program() or "dispersa-worker"
+        folder, code, problem = _core.run(campaign.name, campaign.canonical_yaml, os.fspath(out), resume,
+                                          -1 if workers is None else int(workers), int(threads), program,
+                                          int(envelope) if histories else None, progress)
+    return _judge(folder, code, problem)
+
+
+def report(directory, *, histories=True, envelope=ENVELOPE, progress=None):
+    """Makes the reports of a result folder again, as `dispersa report` does; its Results. Arguments as of run."""
+    _core.report(os.fspath(directory), int(envelope) if histories else None, progress)
+    return Results(directory)
+
+
+def compare(a, b, *, metrics=(), out=""):
+    """Two result folders (paths or Results), paired by case where the draws match: compare.json as a dict.
+
+    `metrics`: names without prefix, instead of all. `out`: a folder for compare.html and compare.json. Raises BadInput.
+    """
+    folders = [os.fspath(each.directory if isinstance(each, Results) else each) for each in (a, b)]
+    return json.loads(_core.compare(*folders, list(metrics), os.fspath(out)))
+
+
+def margins(what, *, cases=None, autopilot=None, base=None, frequency_band_percent=15.0, drift=False):
+    """Gain, phase and delay margins of a campaign's autopilot, computed and measured in flight, as a dict: what
+    `dispersa margins --json` prints; `passed` is whether every gate is met.
+
+    `cases`: also of so many dispersed cases. `frequency_band_percent`: how far bending frequencies may be off. `drift`:
+    linearise with the lateral velocity. Raises BadInput.
+    """
+    campaign = what if isinstance(what, Campaign) and autopilot is None else load(what, autopilot=autopilot, base=base)
+    return json.loads(_core.margins(campaign.name, campaign.canonical_yaml, cases, float(frequency_band_percent), drift))
+
+
+class Optimization(dict):
+    """What `dispersa optimize --json` prints, as a dict. `yaml`: the reference file. `statement`: how far the search
+    got, if it misses its target; else empty."""
+
+    yaml = ""
+    statement = ""
+
+    @property
+    def reached(self):
+        """Whether the target is reached; one that misses it is a result all the same."""
+        return self["reached"]
+
+    @property
+    def exit_code(self):
+        return ExitCode.DONE if self.reached else ExitCode.REQUIREMENT_FAILED
+
+
+def optimize(what, out="", *, seed=None, threads=0, base=None, progress=None):
+    """The flight program that reaches a campaign's target orbit: an Optimization.
+
+    `what`: a path, a dict or a Campaign, with an optimize block or a reference. `out`: a file for the reference; time
+    history and figures go beside it. The result does not depend on `threads` (0: the usable cores). Raises BadInput.
+    """
+    name, text = source(what, base)
+    with placed(name, text):
+        printed, yaml, statement = _core.optimize(name, text, seed, int(threads), os.fspath(out), progress)
+    optimization = Optimization(json.loads(printed))
+    optimization.yaml, optimization.statement = yaml, statement
+    return optimization
+
+
+def _judge(folder, code, problem):
+    """The Results of a run, or what stands in the verdict's way."""
+    found = Results(folder)
+    if code in (ExitCode.INCOMPLETE, ExitCode.INTERNAL_ERROR):
+        missing = f"{folder}: cases are missing" + (f": {problem}" if problem else "")
+        error = Incomplete(missing) if code == ExitCode.INCOMPLETE else InternalError(
+            f"{folder}: a case was returned twice with different bits")
+        error.results = found
+        raise error
+    return found

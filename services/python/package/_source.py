@@ -1,0 +1,73 @@
+"""Files, and dicts that stand in for files."""
+import contextlib
+import dataclasses
+import json
+import os
+import pathlib
+
+from . import _core
+from .errors import BadInput
+
+
+class Tree(dict):
+    """What a file holds, to be read and edited: dicts, lists, numbers, texts. `folder`: what names in it are
+    relative to."""
+
+    folder = "."
+
+
+def read(path, inlined=False):
+    """A file of any kind as a Tree of dicts, lists and scalars.
+
+    `inlined`: what a campaign or a vehicle refers to stands in the place of the names, so that it can be edited too.
+    Raises BadInput for a file that is no YAML.
+    """
+    tree = Tree(_core.read_tree(os.fspath(path), inlined))
+    tree.folder = os.path.dirname(os.fspath(path)) or "."
+    return tree
+
+
+def _plain(value):
+    """NumPy's scalars and arrays, tuples and paths as what JSON has."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    raise TypeError(f"{type(value).__name__} has no place in a file")
+
+
+def text_of(tree):
+    """A dict as text that YAML reads, every number as the shortest that reads back to the same bits."""
+    try:
+        return json.dumps(tree, default=_plain, ensure_ascii=False, allow_nan=False, indent=1) + "\n"
+    except (TypeError, ValueError) as error:
+        raise BadInput(f"the campaign is no tree of dicts, lists, texts and finite numbers: {error}") from None
+
+
+def source(what, base=None):
+    """(name, text or None) of a path, a dict, or a Campaign."""
+    if hasattr(what, "canonical_yaml"):
+        return what.name, what.canonical_yaml
+    if isinstance(what, dict):
+        folder = pathlib.Path(base if base is not None else getattr(what, "folder", "."))
+        return str(folder / "<dict>"), text_of(what)
+    return os.fspath(what), None
+
+
+def without_place(problem, name, text):
+    """A problem of a dict: its path tells where, not a line of the text that stands in for it."""
+    return dataclasses.replace(problem, line=0, column=0) if text is not None and problem.file == name else problem
+
+
+@contextlib.contextmanager
+def placed(name, text):
+    """Problems of a dict are raised without lines."""
+    try:
+        yield
+    except BadInput as error:
+        raise BadInput([without_place(problem, name, text) for problem in error.problems]) from None
+
+
+def write(tree, path):
+    """Writes a tree as a file of YAML that `dispersa` reads. Names in it stay as they are: relative to its folder."""
+    pathlib.Path(path).write_text(text_of(tree))

@@ -1,0 +1,80 @@
+"""What ends a command of the program with an exit code, as exceptions, and the codes themselves."""
+import dataclasses
+import enum
+
+
+class ExitCode(enum.IntEnum):
+    """The program's exit codes. Those of a verdict are values of results; the others are exceptions."""
+
+    DONE = 0
+    INTERNAL_ERROR = 1
+    BAD_INPUT = 2
+    REQUIREMENT_FAILED = 3
+    INCONCLUSIVE = 4
+    INCOMPLETE = 5
+    REPLAY_MISMATCH = 6
+    INTERRUPTED = 130
+
+
+@dataclasses.dataclass(frozen=True)
+class Problem:
+    """One thing to change in an input. Line and column count from 1; 0: it has no place in a text."""
+
+    file: str
+    line: int
+    column: int
+    path: str
+    """Of the value in its file: "stages[1].motor.thrust_kn"; empty: the file as a whole."""
+    message: str
+    allowed: str
+    """What is allowed; of a warning what is usual; may be empty."""
+
+    def __str__(self):
+        place = f"{self.file}:{self.line}:{self.column}: " if self.line else f"{self.file}: " if self.file else ""
+        return (place + (f"{self.path}: " if self.path else "") + self.message
+                + (f", allowed: {self.allowed}" if self.allowed else ""))
+
+
+class Error(Exception):
+    """Anything that the program would end with `code` for."""
+
+    code = ExitCode.INTERNAL_ERROR
+
+
+class BadInput(Error, ValueError):
+    """Bad usage or bad input (2); `problems` has every one that was found."""
+
+    code = ExitCode.BAD_INPUT
+
+    def __init__(self, problems):
+        if isinstance(problems, str):
+            problems = [("", 0, 0, "", problems, "")]
+        self.problems = [p if isinstance(p, Problem) else Problem(*p) for p in problems]
+        super().__init__("\n".join(map(str, self.problems)))
+
+    def __reduce__(self):
+        return type(self), (self.problems,)
+
+
+class Incomplete(Error):
+    """Cases are missing (5): no workers, disk full, quarantined, cancelled. `results`: what there is, or None."""
+
+    code = ExitCode.INCOMPLETE
+    results = None
+
+
+class ReplayMismatch(Error):
+    """A case does not fly as it is stored (6); `differences`: dicts of name, stored, replayed."""
+
+    code = ExitCode.REPLAY_MISMATCH
+    differences = ()
+
+
+class InternalError(Error, RuntimeError):
+    """An error of the program or of the machine (1). `results`: what there is, or None."""
+
+    results = None
+
+
+class InputWarning(UserWarning):
+    """Something of an input looks wrong but is legal."""

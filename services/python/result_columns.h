@@ -1,0 +1,57 @@
+// Results by column, as Python has them.
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/campaign/case_result.h"
+#include "core/flight/outcome.h"
+#include "services/python/arrays.h"
+
+namespace dispersa {
+
+/// Gathered without the interpreter's lock, taken with it.
+class ResultColumns {
+ public:
+  ResultColumns(std::size_t inputs, std::size_t metrics) : input_count_(inputs), metric_count_(metrics) {}
+
+  /// A result with as many inputs and metrics.
+  void Add(const CaseResult& result) {
+    index_.push_back(result.case_index);
+    outcome_.push_back(OutcomeName(result.outcome));
+    end_time_s_.push_back(result.end_time_s);
+    end_stage_.push_back(result.end_stage);
+    reason_.push_back(result.reason);
+    inputs_.insert(inputs_.end(), result.inputs.begin(), result.inputs.end());
+    metrics_.insert(metrics_.end(), result.metrics.begin(), result.metrics.end());
+    digest_.push_back(result.digest.Hex());
+  }
+  /// The columns of cases.csv; inputs and metrics of shape (results, names).
+  pybind11::dict Take() {
+    const auto rows = static_cast<pybind11::ssize_t>(index_.size());
+    pybind11::dict columns;
+    columns["case_index"] = ArrayOf(std::move(index_));
+    columns["outcome"] = outcome_;
+    columns["end_time_s"] = ArrayOf(std::move(end_time_s_));
+    columns["end_stage"] = ArrayOf(std::move(end_stage_));
+    columns["reason"] = reason_;
+    columns["inputs"] = ArrayOf(std::move(inputs_), {rows, static_cast<pybind11::ssize_t>(input_count_)});
+    columns["metrics"] = ArrayOf(std::move(metrics_), {rows, static_cast<pybind11::ssize_t>(metric_count_)});
+    columns["digest"] = digest_;
+    return columns;
+  }
+
+ private:
+  std::size_t input_count_, metric_count_;
+  std::vector<std::uint64_t> index_;
+  std::vector<std::string> outcome_, reason_, digest_;
+  std::vector<double> end_time_s_, inputs_, metrics_;
+  std::vector<std::int32_t> end_stage_;
+};
+
+}  // namespace dispersa

@@ -1,0 +1,161 @@
+// Runs, result folders, comparisons, margins, references.
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/campaign_yaml/load.h"
+#include "core/flight/flight_inputs.h"
+#include "core/flight/metrics.h"
+#include "core/report/comparison.h"
+#include "core/report/result_folder.h"
+#include "services/client/campaign_reports.h"
+#include "services/client/campaign_run.h"
+#include "services/client/case_replay.h"
+#include "services/client/folder_comparison.h"
+#include "services/client/margins_of.h"
+#include "services/client/reference_search.h"
+#include "services/client/remote_campaign.h"
+#include "services/client/stored_campaign.h"
+#include "services/client/writable.h"
+#include "services/coordinator/campaign_book.h"
+#include "services/coordinator/threads.h"
+#include "services/python/module.h"
+#include "services/python/python_observer.h"
+#include "services/python/result_columns.h"
+
+namespace py = pybind11;
+
+namespace dispersa {
+namespace {
+
+ReflownFlights Reflown(std::optional<std::uint64_t> envelope) {
+  return envelope ? ReflownFlights{false, *envelope} : ReflownFlights{true};
+}
+
+/// A campaign flown on this machine: (folder, exit code, why cases are missing or None). `envelope`: as
+/// ReflownFlights; None flies nothing again.
+py::tuple Run(const std::string& name, const std::string& text, const std::string& out, bool resume, int workers,
+              int threads, const std::string& worker_program, std::optional<std::uint64_t> envelope,
+              const py::object& progress) {
+  PythonObserver observer(progress);
+  std::filesystem::path folder;
+  const RunResult result = observer.Watch([&] {
+    OpenedCampaign opened = OpenCampaign({InputSource(name, text), {}, out, resume});
+    folder = opened.folder.directory();
+    return RunCampaign(std::move(opened), {workers, threads, worker_program, Reflown(envelope)}, observer);
+  });
+  return py::make_tuple(folder.string(), static_cast<int>(result.code), result.problem);
+}
+
+/// A campaign flown by a coordinator and fetched into a folder; its exit code.
+int RunRemotely(const std::string& name, const std::string& text, const std::string& out, int domain,
+                const std::string& peer, const std::string& address, const std::string& keys, bool insecure, int priority,
+                const py::object& progress) {
+  PythonObserver observer(progress);
+  return observer.Watch([&] {
+    RequireWritableFolder("out", out);
+    const Campaign campaign = LoadCampaign(InputSource(name, text));
+    SessionOptions options = {domain, peer, address, {}};
+    options.admission.keys = keys;
+    options.admission.insecure = insecure;
+    Session session(options);
+    LaunchCampaign(session, campaign, priority);
+    const ExitCode code = FollowCampaign(session, campaign.id, observer);
+    FetchCampaign(session, campaign.id, out);
+    return static_cast<int>(code);
+  });
+}
+
+/// The reports of a folder made again; its exit code.
+int MakeAgain(const std::string& directory, std::optional<std::uint64_t> envelope, const py::object& progress) {
+  PythonObserver observer(progress);
+  return observer.Watch([&] {
+    StoredCampaign stored = OpenStored(directory);
+    RequireWritableFile("the report", stored.folder.directory() / "report.html");
+    stored.folder.Lock();
+    const CampaignSummary summary =
+        MakeReports(stored.folder, stored.campaign, UsableCores(), Reflown(envelope), observer);
+    return static_cast<int>(CampaignExitCode(summary.verdict, 0));
+  });
+}
+
+/// The columns of cases.csv, and the verdict's exit code, from what is stored.
+py::dict Results(const std::string& directory) {
+  std::string engine;
+  ExitCode code = kExitDone;
+  std::optional<ResultColumns> columns;
+  {
+    const py::gil_scoped_release free;
+    const StoredCampaign stored = OpenStored(directory);
+    const std::size_t stages = stored.campaign.vehicle.stages.size();
+    columns.emplace(InputCount(stages), MetricCount(stages));
+    stored.folder.ForEach([&](const CaseResult& result) { columns->Add(result); });
+    engine = stored.folder.Provenance("engine");
+    code = CampaignExitCode(BuildSummary(stored.folder, stored.campaign).verdict, 0);
+  }
+  py::dict answer = columns->Take();
+  answer["engine"] = engine;
+  answer["exit_code"] = static_cast<int>(code);
+  return answer;
+}
+
+/// compare.json.
+std::string CompareResults(const std::string& a, const std::string& b, const std::vector<std::string>& metrics,
+                           const std::string& out) {
+  const py::gil_scoped_release free;
+  RequireWritableFolder("out", out);
+  const FolderComparison compared = CompareFolders(a, b, metrics);
+  if (!out.empty()) WriteComparison(compared, out);
+  return ComparisonJson(compared.comparison);
+}
+
+/// What `dispersa margins --json` prints.
+std::string Margins(const std::string& name, const std::string& text, std::optional<std::uint64_t> cases,
+                    double frequency_band_percent, bool drift) {
+  const py::gil_scoped_release free;
+  const Campaign campaign = LoadCampaign(InputSource(name, text), {.cases = cases});
+  return MarginsJson(MarginsOf(campaign, {cases, frequency_band_percent, drift})).dump(2);
+}
+
+/// (what `dispersa optimize --json` prints, the reference as YAML, how far it got if it misses its target).
+py::tuple Optimize(const std::string& name, const std::optional<std::string>& text, std::optional<std::uint64_t> seed,
+                   int threads, const std::string& out, const py::object& progress) {
+  PythonObserver observer(progress);
+  std::string json, reference, statement;
+  observer.Watch([&] {
+    const OptimizationInput input = LoadOptimization(SourceOf(name, text), seed);
+    if (!out.empty()) RequireWritableReference("out", out);
+    const FoundReference found = FindReference(input, ThreadsOrAll(threads), observer);
+    if (!out.empty()) WriteFoundReference(found, out);
+    json = FoundReferenceJson(input.vehicle, found.result, out).dump(2);
+    reference = WriteReference(found.result.reference);
+    statement = found.result.statement;
+  });
+  return py::make_tuple(json, reference, statement);
+}
+
+/// What `dispersa replay --json` prints.
+std::string Replay(const std::string& directory, std::uint64_t case_index) {
+  const py::gil_scoped_release free;
+  return ReplayJson(ReplayCase(OpenStored(directory), case_index)).dump(2);
+}
+
+}  // namespace
+
+void AddResults(py::module_& module) {
+  module.def("run", &Run);
+  module.def("run_remotely", &RunRemotely);
+  module.def("report", &MakeAgain);
+  module.def("results", &Results);
+  module.def("compare", &CompareResults);
+  module.def("margins", &Margins);
+  module.def("optimize", &Optimize);
+  module.def("replay", &Replay);
+}
+
+}  // namespace dispersa

@@ -1,0 +1,118 @@
+"""Loading, validating, editing and planning from Python: the same ids, texts, problems and draws as the program's."""
+import csv
+import pickle
+import unittest
+import warnings
+
+import numpy
+
+import dispersa
+from program import CAMPAIGNS, SMOKE, folder_of, printed, program, shipped_campaigns
+
+
+class Loading(unittest.TestCase):
+    def test_every_shipped_campaign_has_the_programs_ids(self):
+        files = shipped_campaigns()
+        self.assertGreater(len(files), 20)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", dispersa.InputWarning)
+            for file in files:
+                with self.subTest(file.name):
+                    campaign = dispersa.load(file)
+                    for tree in (dispersa.read(file), dispersa.read(file, inlined=True)):
+                        self.assertEqual(dispersa.load(tree).canonical_yaml, campaign.canonical_yaml)
+        for name in ("smoke", "full", "table3_sobol", "gallery/electron/campaign"):
+            file = CAMPAIGNS / f"{name}.yaml"
+            if file.exists():
+                plan = printed("plan", file, "--cases", 4)
+                with warnings.catch_warnings():
+                    warnings.simplefilter("ignore", dispersa.InputWarning)
+                    campaign = dispersa.load(file, cases=4)
+                self.assertEqual((campaign.id, campaign.flight_id), (plan["id"], plan["flight_id"]), name)
+
+    def test_overrides(self):
+        campaign = dispersa.load(SMOKE, cases=3, seed=2**63 + 1)
+        plan = printed("plan", SMOKE, "--cases", 3, "--seed", 2**63 + 1)
+        self.assertEqual((campaign.cases, campaign.seed, campaign.id), (3, 2**63 + 1, plan["id"]))
+        self.assertEqual(dispersa.load(SMOKE, autopilot=CAMPAIGNS / "autopilots/pd.yaml").autopilot,
+                         dispersa.read(CAMPAIGNS / "autopilots/pd.yaml")["name"])
+
+    def test_an_edited_tree_is_the_edited_file(self):
+        tree = dispersa.read(SMOKE)
+        tree["sampling"]["cases"] = numpy.int64(5)
+        tree["dispersions"]["wind"]["max_speed_m_s"] = numpy.float64(0.1) * 3
+        tree["name"] = "edited.true"
+        edited = dispersa.load(tree)
+        folder = folder_of(type(self))
+        tree["vehicle"], tree["reference"], tree["autopilot"] = (
+            str(CAMPAIGNS / tree[key]) for key in ("vehicle", "reference", "autopilot"))
+        dispersa.write(tree, folder / "edited.yaml")
+        self.assertEqual(dispersa.load(folder / "edited.yaml").id, edited.id)
+        self.assertEqual(printed("plan", folder / "edited.yaml")["id"], edited.id)
+        self.assertEqual(edited.name, "edited.true")
+
+    def test_names_in_a_dict_are_relative_to_base(self):
+        plain = dict(dispersa.read(SMOKE))
+        with self.assertRaises(dispersa.BadInput) as caught:
+            dispersa.load(plain)
+        self.assertIn("cannot read 'vehicles/slv4.yaml'", str(caught.exception))
+        self.assertEqual(dispersa.load(plain, base=CAMPAIGNS), dispersa.load(SMOKE))
+
+    def test_pickled(self):
+        campaign = dispersa.load(SMOKE)
+        self.assertEqual(pickle.loads(pickle.dumps(campaign)), campaign)
+
+
+class Validating(unittest.TestCase):
+    def test_problems_are_objects_with_what_the_program_says(self):
+        folder = folder_of(type(self))
+        text = SMOKE.read_text().replace(": vehicles/", f": {CAMPAIGNS}/vehicles/").replace("cases: 12", "cases: -12")
+        (folder / "bad.yaml").write_text(text.replace("drag_coefficient", "drag_coeficient"))
+        said = printed("validate", folder / "bad.yaml", code=2)
+        validation = dispersa.validate(folder / "bad.yaml")
+        self.assertFalse(validation)
+        self.assertEqual(validation.exit_code, 2)
+        self.assertEqual([vars(problem) for problem in validation.errors], said["errors"])
+        self.assertGreaterEqual(len(said["errors"]), 3)  # cases, a key, the files beside
+        self.assertEqual("\n".join(map(str, validation.errors)) + "\n",
+                         program("validate", folder / "bad.yaml", "--quiet", code=2))
+        with self.assertRaises(dispersa.BadInput) as caught:
+            dispersa.load(folder / "bad.yaml")
+        self.assertEqual(caught.exception.problems, validation.errors)
+        self.assertEqual((caught.exception.code, pickle.loads(pickle.dumps(caught.exception)).problems),
+                         (dispersa.ExitCode.BAD_INPUT, validation.errors))
+
+    def test_dicts(self):
+        tree = dispersa.read(SMOKE)
+        self.assertTrue(dispersa.validate(tree))
+        tree["sampling"]["method"] = "dice"
+        problem, = dispersa.validate(tree).errors
+        self.assertEqual(str(problem), f"{CAMPAIGNS}/<dict>: sampling.method: 'dice' is not a choice, allowed: one of "
+                         "monte_carlo, latin_hypercube, sobol, corners, one_at_a_time, grid, list")
+        tree["sampling"] = {"cases": float("nan")}
+        with self.assertRaises(dispersa.BadInput):
+            dispersa.validate(tree)
+        tree["sampling"] = {"cases": object()}
+        with self.assertRaisesRegex(dispersa.BadInput, "object has no place in a file"):
+            dispersa.load(tree)
+
+    def test_missing_file(self):
+        with self.assertRaisesRegex(dispersa.BadInput, "nothing.yaml:1:1: cannot be read: No such file or directory"):
+            dispersa.load("nothing.yaml")
+
+
+class Planning(unittest.TestCase):
+    def test_draws_are_the_programs_to_the_bit(self):
+        rows = list(csv.reader(program("plan", CAMPAIGNS / "full.yaml", "--cases", 7, "--csv").splitlines()))
+        plan = dispersa.load(CAMPAIGNS / "full.yaml", cases=7).plan()
+        self.assertEqual(["input_" + name for name in plan.dtype.names], rows[0][1:])
+        for i, row in enumerate(rows[1:]):
+            self.assertEqual(list(plan[i]), [float(cell) for cell in row[1:]])
+        self.assertEqual(len(plan), 7)
+        self.assertEqual(dispersa.plan(SMOKE, 3).tobytes(), dispersa.plan(SMOKE)[:3].tobytes())
+        with self.assertRaises(dispersa.BadInput):
+            dispersa.plan(SMOKE, -1)
+
+
+if __name__ == "__main__":
+    unittest.main()

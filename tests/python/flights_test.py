@@ -1,0 +1,168 @@
+"""Flights from Python: the program's bits, and their histories without copies."""
+import csv
+import math
+import resource
+import threading
+import time
+import unittest
+
+import numpy
+
+import dispersa
+from program import CAMPAIGNS, SMOKE, folder_of, printed, program
+
+
+def resident_bytes():
+    with open("/proc/self/statm") as stream:
+        return int(stream.read().split()[1]) * resource.getpagesize()
+
+
+def owner(array):
+    """What a view's memory belongs to in the end."""
+    while isinstance(array.base, numpy.ndarray):
+        array = array.base
+    return array.base
+
+
+class One(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = folder_of(cls)
+        cls.campaign = dispersa.load(SMOKE)
+
+    def check(self, arguments, flight):
+        said = printed("fly", SMOKE, *arguments, "--history", self.folder / "history.csv")
+        undefined = {name: (math.nan if value is None else value) for name, value in said["metrics"].items()}
+        self.assertEqual((flight.outcome, flight.end_time_s, flight.end_stage, flight.reason, flight.digest),
+                         tuple(said[key] for key in ("outcome", "end_time_s", "end_stage", "reason", "digest")))
+        self.assertEqual(flight.inputs, said["inputs"])
+        self.assertEqual(list(flight.metrics), list(undefined))
+        numpy.testing.assert_array_equal(list(flight.metrics.values()), list(undefined.values()))
+        with open(self.folder / "history.csv", newline="") as stream:
+            rows = list(csv.reader(stream))
+        self.assertEqual(flight.history.columns, rows[0])
+        numpy.testing.assert_array_equal(flight.history.rows, [[float(c or "nan") for c in row] for row in rows[1:]])
+
+    def test_a_case_is_the_programs_to_the_bit(self):
+        self.check(["--case", 7], self.campaign.fly(7))
+
+    def test_the_nominal_flight_is_the_programs_to_the_bit(self):
+        self.check([], dispersa.fly(SMOKE))
+
+    def test_replaced_inputs(self):
+        drawn = self.campaign.fly(3, history=False)
+        self.assertIsNone(drawn.history)
+        # Values in degrees go back to radians, which rounds.
+        same = self.campaign.fly(inputs=drawn.inputs, history=False)
+        for name in ("pitch_error_peak_deg", "apogee_km"):
+            self.assertAlmostEqual(same.metrics[name], drawn.metrics[name], delta=1e-9 * abs(drawn.metrics[name]))
+        heavier = self.campaign.fly(3, inputs={"drag_factor": 2.0}, history=False)
+        self.assertEqual(heavier.inputs, {**drawn.inputs, "drag_factor": 2.0})
+        self.assertNotEqual(heavier.digest, drawn.digest)
+        with self.assertRaisesRegex(dispersa.BadInput, "'drag' is not an input of this vehicle"):
+            self.campaign.fly(inputs={"drag": 2.0})
+
+    def test_history_is_the_flights_memory(self):
+        history = self.campaign.fly(1).history
+        column = history["altitude_m"]
+        self.assertFalse(history.rows.flags.owndata or column.flags.owndata)
+        self.assertTrue(numpy.shares_memory(column, history.rows))
+        self.assertEqual(type(owner(column)).__name__, "PyCapsule")
+        self.assertIs(owner(column), owner(history.rows))
+        kept = column[-1]
+        del history  # the column keeps the memory
+        self.assertEqual(column[-1], kept)
+
+    def test_bad_arguments(self):
+        for arguments, said in (((12,), "the campaign has no case 12, allowed: 0 to 11"), ((-1,), "no case -1")):
+            with self.assertRaisesRegex(dispersa.BadInput, said):
+                self.campaign.fly(*arguments)
+        with self.assertRaisesRegex(dispersa.BadInput, "'euler' is not an integrator, allowed: simpson, erk4 or cvode"):
+            self.campaign.fly(integrator="euler")
+        with self.assertRaisesRegex(dispersa.BadInput, "step_s: 0.0 is no output step"):
+            self.campaign.fly(step_s=0.0)
+        with self.assertRaises(KeyError):
+            self.campaign.fly().history["nothing"]
+
+
+class Many(unittest.TestCase):
+    COLUMNS = ["time_s", "altitude_m", "pitch_error_deg"]
+
+    def test_each_is_the_case_alone(self):
+        campaign = dispersa.load(SMOKE)
+        flights = campaign.fly_many([5, 0, 11], step_s=0.1)
+        self.assertEqual(flights.cases.tolist(), [5, 0, 11])
+        for i, index in enumerate((5, 0, 11)):
+            alone = campaign.fly(index)
+            self.assertEqual(flights[i].digest, alone.digest)
+            self.assertEqual(flights[i].history.columns, alone.history.columns)
+            numpy.testing.assert_array_equal(flights[i].history.rows, alone.history.rows)
+            self.assertEqual(flights.inputs["drag_factor"][i], alone.inputs["drag_factor"])
+            self.assertEqual(flights.metrics["pitch_error_peak_deg"][i], alone.metrics["pitch_error_peak_deg"])
+        self.assertEqual(len(list(flights)), 3)
+
+    def test_a_thousand_histories_without_copies(self):
+        campaign = dispersa.load(CAMPAIGNS / "table3.yaml", cases=1000)
+        before = resident_bytes()
+        flights = campaign.fly_many(columns=self.COLUMNS, step_s=0.2)
+        size = flights.histories.nbytes
+        grown = resident_bytes() - before
+        self.assertEqual(len(flights), 1000)
+        self.assertEqual(flights.histories.shape, (flights.offsets[-1], len(self.COLUMNS)))
+        self.assertGreater(size, 50e6)  # enough for a copy to be seen
+        self.assertFalse(flights.histories.flags.owndata)
+        self.assertEqual(type(owner(flights.histories)).__name__, "PyCapsule")
+        before_reading = resident_bytes()
+        histories = [flights.history(i) for i in range(1000)]
+        end = sum(history["altitude_m"][-1] for history in histories)
+        self.assertGreater(end / 1000, 400e3)
+        for history in histories:
+            self.assertIs(owner(history["altitude_m"]), owner(flights.histories))
+        # Views alone; reading the array's pages makes none.
+        self.assertLess(resident_bytes() - before_reading, 0.25 * size)
+        # The array, what the flights returned besides, and the engine's tables; not the array twice.
+        self.assertLess(grown, size + 30e6, f"{grown / 1e6:.0f} MB for {size / 1e6:.0f} MB of histories")
+
+    def test_other_threads_run_meanwhile(self):
+        campaign = dispersa.load(CAMPAIGNS / "table3.yaml", cases=60)
+        campaign.fly(0, history=False)  # what flights share is built
+        ticks, stop = [], threading.Event()
+
+        def tick():
+            while not stop.is_set():
+                ticks.append(time.monotonic())
+                time.sleep(0.005)
+
+        ticker = threading.Thread(target=tick)
+        ticker.start()
+        begin = time.monotonic()
+        campaign.fly_many(threads=1, histories=False)
+        end = time.monotonic()
+        stop.set()
+        ticker.join()
+        during = sum(begin < each < end for each in ticks)
+        self.assertGreater(during, 5, f"{during} ticks in {end - begin:.2f} s")
+
+    def test_the_callers_function_sees_progress_and_can_stop(self):
+        campaign = dispersa.load(SMOKE)
+        seen = []
+        campaign.fly_many(histories=False, progress=lambda *what: seen.append(what))
+        self.assertEqual(seen[-1], ("smoke", 12, 12, ""))
+
+        def refuse(*_):
+            raise LookupError("enough")
+
+        with self.assertRaisesRegex(LookupError, "enough"):
+            campaign.fly_many(histories=False, progress=refuse)
+
+    def test_samples_end_with_the_flight(self):
+        flights = dispersa.load(SMOKE).fly_many(2, columns=["time_s", "altitude_m"], step_s=1.0)
+        sampled = flights.sample("altitude_m", [0.0, 10.0, 1e6])
+        self.assertEqual(sampled[:, 0].tolist(), [flights.history(i)["altitude_m"][0] for i in (0, 1)])
+        self.assertTrue(numpy.isnan(sampled[:, 2]).all() and (sampled[:, 1] > sampled[:, 0]).all())
+        with self.assertRaisesRegex(dispersa.BadInput, "'altitude' is not a column of histories"):
+            dispersa.load(SMOKE).fly_many(2, columns=["altitude"])
+
+
+if __name__ == "__main__":
+    unittest.main()

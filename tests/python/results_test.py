@@ -1,0 +1,251 @@
+"""Runs and result folders from Python: the bytes, numbers and verdicts of the program, and its exit codes as exceptions."""
+import csv
+import json
+import math
+import signal
+import sqlite3
+import subprocess
+import sys
+import time
+import unittest
+import warnings
+
+import numpy
+
+import dispersa
+from program import BINARIES, CAMPAIGNS, SMOKE, TIMEOUT_S, folder_of, printed, program
+
+FILES = ("cases.csv", "campaign.yaml", "summary.json", "report.html")
+
+
+def cells(value):
+    """A value as cases.csv has it."""
+    if isinstance(value, (float, numpy.floating)):
+        return "" if math.isnan(value) else float(value)
+    return str(value)
+
+
+class Runs(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = folder_of(cls)
+        cls.theirs = cls.folder / "theirs"
+        program("run", SMOKE, "--workers", "1", "--quiet", "--out", cls.theirs)
+        cls.ours = dispersa.run(SMOKE, cls.folder / "ours", workers=0, threads=2)
+
+    def test_the_folder_has_the_programs_bytes(self):
+        for name in FILES:
+            self.assertEqual((self.ours.directory / name).read_bytes(), (self.theirs / name).read_bytes(), name)
+        for file in (self.theirs / "histories").iterdir():
+            self.assertEqual((self.ours.directory / "histories" / file.name).read_bytes(), file.read_bytes(), file.name)
+
+    def test_workers_over_dds(self):
+        seen = []
+        results = dispersa.run(SMOKE, self.folder / "workers", workers=1, histories=False,
+                               progress=lambda *what: seen.append(what))
+        self.assertEqual((results.directory / "cases.csv").read_bytes(), (self.theirs / "cases.csv").read_bytes())
+        self.assertIn(("smoke", 12, 12), {what[:3] for what in seen})
+        execution = json.loads((results.directory / "execution.json").read_text())
+        self.assertEqual(len(execution["workers"]), 1)
+
+    def test_dicts_run_too(self):
+        tree = dispersa.read(SMOKE)
+        tree["sampling"]["cases"] = 2
+        results = dispersa.run(tree, self.folder / "dict", workers=0, histories=False)
+        self.assertEqual((len(results), results.campaign), (2, dispersa.load(SMOKE, cases=2)))
+
+    def test_columns_are_those_of_cases_csv(self):
+        with open(self.theirs / "cases.csv", newline="") as stream:
+            rows = list(csv.reader(stream))
+        table = self.ours.table()
+        self.assertEqual(list(table.dtype.names), rows[0])
+        self.assertEqual(list(self.ours.cases.columns), rows[0])
+        for i, row in enumerate(rows[1:]):
+            expected = [float(cell) if cell and (name.startswith(("input_", "metric_")) or name == "end_time_s") else cell
+                        for name, cell in zip(rows[0], row)]
+            self.assertEqual([cells(value) for value in table[i]], expected)
+            self.assertEqual([cells(value) for value in self.ours.cases.iloc[i]], expected)
+
+    def test_verdict_is_a_value(self):
+        said = json.loads((self.theirs / "summary.json").read_text())
+        self.assertEqual((self.ours.verdict, self.ours.exit_code, self.ours.requirements),
+                         ("pass", dispersa.ExitCode.DONE, said["requirements"]))
+        tree = dispersa.read(SMOKE)
+        tree["requirements"][0]["below"] = 1e-9
+        failed = dispersa.run(tree, self.folder / "failed", workers=0, histories=False)
+        self.assertEqual((failed.verdict, failed.exit_code), ("fail", 3))
+
+    def test_histories_of_the_report(self):
+        bands, nominal = self.ours.bands(), self.ours.history()
+        self.assertEqual(bands.columns[0], "time_s")
+        numpy.testing.assert_array_equal(nominal.rows, dispersa.fly(SMOKE).history.rows)
+        with self.assertRaises(dispersa.BadInput):
+            self.ours.history(9999)
+
+    def test_replay(self):
+        self.assertEqual(self.ours.replay(5), printed("replay", self.theirs, "--case", "5"))
+        changed = dispersa.run(SMOKE, self.folder / "changed", workers=0, histories=False)
+        with sqlite3.connect(changed.directory / "results.sqlite") as database:
+            database.execute("update cases set digest = (select digest from cases where case_index = 4) where case_index = 3")
+        database.close()
+        # The row no longer fits its fingerprint: an internal error, as the program says.
+        with self.assertRaises(dispersa.InternalError):
+            changed.replay(3)
+        program("replay", changed.directory, "--case", "3", code=1)
+
+    def test_a_flight_that_differs_is_a_mismatch(self):
+        # The campaign of another seed beside the results of this one.
+        other = dispersa.run(SMOKE, self.folder / "other", workers=0, histories=False)
+        (other.directory / "campaign.yaml").write_text(dispersa.load(SMOKE, seed=5).canonical_yaml)
+        with self.assertRaisesRegex(dispersa.ReplayMismatch, "case 2 is not reproduced: .*digest stored ") as caught:
+            other.replay(2)
+        self.assertEqual(caught.exception.code, 6)
+        self.assertIn("digest", {each["name"] for each in caught.exception.differences})
+        program("replay", other.directory, "--case", "2", code=6)
+
+    def test_report_again(self):
+        copy = dispersa.run(SMOKE, self.folder / "again", workers=0, histories=False)
+        (copy.directory / "report.html").unlink()
+        dispersa.report(copy.directory)
+        for name in FILES:
+            self.assertEqual((copy.directory / name).read_bytes(), (self.theirs / name).read_bytes(), name)
+
+    def test_compare(self):
+        pd = self.folder / "pd"
+        program("run", SMOKE, "--autopilot", CAMPAIGNS / "autopilots/pd.yaml", "--workers", "0", "--no-histories", "--quiet",
+                "--out", pd)
+        ours = dispersa.compare(self.theirs, pd, out=self.folder / "comparison")
+        self.assertEqual(ours, printed("compare", self.theirs, pd))
+        self.assertEqual(json.loads((self.folder / "comparison" / "compare.json").read_text()), ours)
+        self.assertTrue((self.folder / "comparison" / "compare.html").is_file())
+        with self.assertRaisesRegex(dispersa.BadInput, "'pitch' is not a metric"):
+            dispersa.compare(self.ours, pd, metrics=["pitch"])
+
+    def test_refusals(self):
+        with self.assertRaisesRegex(dispersa.BadInput, "theirs"):
+            dispersa.run(SMOKE, self.theirs, workers=0)
+        with self.assertRaises(dispersa.BadInput):
+            dispersa.results(self.folder / "nothing")
+        with self.assertRaisesRegex(TypeError, "unexpected keyword"):
+            dispersa.run(SMOKE, thread=1)
+
+    def test_no_worker_is_incomplete(self):
+        original = dispersa._results.worker_program
+        dispersa._results.worker_program = lambda: "/nowhere/dispersa-worker"
+        try:
+            with self.assertRaisesRegex(dispersa.Incomplete, "/nowhere/dispersa-worker: no worker can be started") as caught:
+                dispersa.run(SMOKE, self.folder / "none", workers=1, histories=False)
+        finally:
+            dispersa._results.worker_program = original
+        self.assertEqual((caught.exception.code, len(caught.exception.results)), (5, 0))
+        again = dispersa.run(SMOKE, self.folder / "none", workers=0, histories=False, resume=True)
+        self.assertEqual((again.directory / "cases.csv").read_bytes(), (self.theirs / "cases.csv").read_bytes())
+
+
+class Stages(unittest.TestCase):
+    def test_a_vehicle_of_two_stages(self):
+        """Columns depend on the vehicle's number of stages."""
+        folder = folder_of(type(self))
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", dispersa.InputWarning)
+            campaign = dispersa.load(CAMPAIGNS / "gallery/electron/campaign.yaml", cases=3)
+            ours = dispersa.run(campaign, folder / "ours", workers=0, histories=False)
+        self.assertEqual(ours.campaign.stages, 2)
+        with open(ours.directory / "cases.csv", newline="") as stream:
+            rows = list(csv.reader(stream))
+        self.assertEqual(list(ours.cases.columns), rows[0])
+        flights = campaign.fly_many(histories=False)
+        numpy.testing.assert_array_equal(flights.metrics.view("f8"), ours.metrics.view("f8"))
+        self.assertEqual(dispersa.compare(ours, ours), printed("compare", ours.directory, ours.directory))
+        with self.assertRaises(dispersa.BadInput):
+            dispersa.compare(ours, ours, metrics=["pitch_error_peak_stage9_deg"])
+
+
+class Studies(unittest.TestCase):
+    def test_margins(self):
+        said = json.loads(program("margins", SMOKE, "--json", "--cases", "3"))
+        self.assertEqual(dispersa.margins(dispersa.load(SMOKE), cases=3), said)
+        self.assertTrue(said["passed"])
+
+    def test_optimize(self):
+        folder = folder_of(type(self))
+        theirs = printed("optimize", CAMPAIGNS / "slv4_500km.yaml", "--seed", "2", "-o", folder / "theirs.yaml")
+        ours = dispersa.optimize(CAMPAIGNS / "slv4_500km.yaml", folder / "ours.yaml", seed=2)
+        self.assertEqual({**ours, "reference": ""}, {**theirs, "reference": ""})
+        self.assertEqual((folder / "ours.yaml").read_text(), ours.yaml)
+        self.assertEqual(ours.yaml, (folder / "theirs.yaml").read_text())
+        self.assertEqual((folder / "ours.csv").read_bytes(), (folder / "theirs.csv").read_bytes())
+        self.assertTrue(ours.reached and ours.exit_code == 0 and ours.statement == "")
+
+
+class Interruption(unittest.TestCase):
+    SCRIPT = """
+import sys, dispersa
+print("ready", flush=True)
+try:
+    dispersa.run(sys.argv[1], sys.argv[2], cases=100000, workers=int(sys.argv[3]), histories=False,
+                 progress=lambda phase, done, *_: print("flying", done, flush=True))
+except KeyboardInterrupt:
+    print("interrupted", flush=True)
+"""
+
+    def interrupt(self, workers):
+        folder = folder_of(type(self)) / "results"
+        process = subprocess.Popen([sys.executable, "-c", self.SCRIPT, str(SMOKE), str(folder), workers],
+                                   stdout=subprocess.PIPE, text=True)
+        try:
+            done = 0
+            while done < 20:
+                word, *numbers = process.stdout.readline().split()
+                done = int(numbers[0]) if word == "flying" else 0
+            process.send_signal(signal.SIGINT)
+            begin = time.monotonic()
+            said, _ = process.communicate(timeout=30)
+            self.assertEqual(said.split()[-1], "interrupted")
+            self.assertLess(time.monotonic() - begin, 10.0)
+            self.assertEqual(process.returncode, 0)
+        finally:
+            process.kill()
+            process.wait()
+        self.assertGreater(len(dispersa.results(folder)), 0)
+        self.assertEqual(json.loads((folder / "execution.json").read_text())["problem"], "interrupted")
+
+    def test_in_process(self):
+        self.interrupt("0")
+
+    def test_workers(self):
+        self.interrupt("1")
+
+
+class Service(unittest.TestCase):
+    DOMAIN = 87
+
+    def test_a_coordinator_flies_it(self):
+        folder = folder_of(type(self))
+        programs = []
+        deadline = time.monotonic() + TIMEOUT_S / 2
+
+        def hurry(*_):
+            if time.monotonic() > deadline:
+                raise TimeoutError("the coordinator does not end")
+
+        try:
+            for name, arguments in (("dispersa-coordinator", ["--data", folder / "data"]),
+                                    ("dispersa-worker", ["--peer", "127.0.0.1"])):
+                programs.append(subprocess.Popen(
+                    [str(BINARIES / name), *map(str, arguments), "--domain", str(self.DOMAIN), "--address", "127.0.0.1"],
+                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL))
+            results = dispersa.run(SMOKE, folder / "fetched", peer="127.0.0.1", domain=self.DOMAIN, address="127.0.0.1",
+                                   progress=hurry)
+        finally:
+            for each in programs:
+                each.terminate()
+            for each in programs:
+                each.wait(timeout=20)
+        local = dispersa.run(SMOKE, folder / "local", workers=0, histories=False)
+        self.assertEqual((results.directory / "cases.csv").read_bytes(), (local.directory / "cases.csv").read_bytes())
+        self.assertEqual(results.exit_code, 0)
+
+
+if __name__ == "__main__":
+    unittest.main()
