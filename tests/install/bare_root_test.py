@@ -70,9 +70,9 @@ class BareRoot(unittest.TestCase):
 
         said = self.inside("for program in dispersa dispersa-coordinator dispersa-worker; do $program --version; done")
         self.assertEqual(len({line.split()[1] for line in said.splitlines()}), 1, said)
-        self.inside("cd /root; dispersa run /usr/share/dispersa/campaigns/table3.yaml --cases 8 --workers 2 --no-histories --quiet "
+        self.inside("cd; dispersa run /usr/share/dispersa/campaigns/table3.yaml --cases 8 --workers 2 --no-histories --quiet "
                     "--out results || [ $? = 4 ]")
-        cases = self.inside("cat /root/results/cases.csv").splitlines()
+        cases = self.inside("cat ~/results/cases.csv").splitlines()
         self.assertEqual(len(cases), 9)
         # The same bytes as here.
         here = run(BUILD / "bin/dispersa", "run", self.root / "usr/share/dispersa/campaigns/table3.yaml", "--cases", 8, "--workers", 0,

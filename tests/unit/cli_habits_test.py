@@ -183,6 +183,10 @@ class Streams(unittest.TestCase):
                 piped = dispersa("export", results, "--format", form, "--out", "-", "--quiet")
                 self.assertEqual((piped.returncode, piped.stdout), (0, file.read_text()), form)
             self.assertEqual(dispersa("export", results, "--format", "hdf5", "--out", "-").returncode, 2)
+            history = dispersa("replay", results, "--case", "1", "--history", "-")
+            self.assertEqual(history.stdout, dispersa("fly", SMOKE, "--case", "1", "--history", "-").stdout)
+            self.assertIn("case 1: reproduced to the last bit", history.stderr)
+            self.assertEqual(dispersa("optimize", CAMPAIGNS / "slv4_500km.yaml", "--out", "-").returncode, 2)
 
     def test_a_full_standard_output_is_no_success(self):
         with open("/dev/full", "w") as full:
