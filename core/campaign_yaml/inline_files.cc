@@ -10,6 +10,7 @@
 #include "core/campaign_yaml/parse_csv.h"
 #include "core/campaign_yaml/parse_rasp.h"
 #include "core/campaign_yaml/parse_yaml.h"
+#include "core/campaign_yaml/standard_input.h"
 #include "core/campaign_yaml/yaml_reader.h"
 
 namespace dispersa {
@@ -138,11 +139,13 @@ void InlineBase(InputNode& vehicle, FileNames names, std::vector<InputProblem>& 
 InputNode ReadYamlFile(const std::string& path, std::vector<InputProblem>& problems) {
   std::string text;
   std::string reason;
-  if (!ReadFile(path, &text, &reason)) {
-    problems.push_back({path, 1, 1, "", "cannot be read: " + reason, "a readable file"});
+  // Without a folder, so that the names in it are relative to the current one.
+  const std::string file = path == kStandardInput ? kStandardInputName : path;
+  if (!(path == kStandardInput ? ReadStandardInput(&text, &reason) : ReadFile(path, &text, &reason))) {
+    problems.push_back({file, 1, 1, "", "cannot be read: " + reason, "a readable file"});
     return {};
   }
-  return ParseYaml(text, path, problems);
+  return ParseYaml(text, file, problems);
 }
 
 void InlineVehicleFiles(InputNode& vehicle, FileNames names, std::vector<InputProblem>& problems) {

@@ -10,6 +10,7 @@
 #include "core/campaign_yaml/decode_campaign.h"
 #include "core/campaign_yaml/inline_files.h"
 #include "core/campaign_yaml/parse_yaml.h"
+#include "core/campaign_yaml/standard_input.h"
 #include "core/campaign_yaml/yaml_reader.h"
 
 namespace dispersa {
@@ -61,14 +62,18 @@ void Override(InputNode& root, const CampaignOverrides& overrides) {
 }
 
 // A name in a file is relative to that file; one of the command line is not.
-void OverrideAutopilot(InputNode& root, const CampaignOverrides& overrides) {
+void OverrideAutopilot(InputNode& root, const CampaignOverrides& overrides, ProblemList& problems) {
   if (!overrides.autopilot || root.kind != InputNode::Kind::kMap) return;
+  if (*overrides.autopilot == kStandardInput) {
+    SetMember(root, "autopilot", ReadYamlFile(kStandardInput, problems));
+    return;
+  }
   SetMember(root, "autopilot", ScalarAt(root, std::filesystem::absolute(*overrides.autopilot).string()));
 }
 
 Campaign FinishCampaign(InputNode root, FileNames names, const CampaignOverrides& overrides,
                         ProblemList problems, std::vector<InputProblem>* warnings) {
-  OverrideAutopilot(root, overrides);
+  OverrideAutopilot(root, overrides, problems);
   InlineCampaignFiles(root, names, problems);
   Override(root, overrides);
   DecodedCampaign decoded = DecodeCampaign(root, CampaignUse::kFly, problems, warnings);

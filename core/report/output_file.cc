@@ -14,6 +14,10 @@ namespace dispersa {
 
 OutputFile::OutputFile(std::filesystem::path target)
     : target_(std::move(target)), temporary_(target_.string() + ".tmp") {
+  if (target_ == "-") {
+    stream_ = stdout;
+    return;
+  }
   // What lies there is of a process that was killed, or was put there: a link would lead the writing elsewhere.
   if (unlink(temporary_.c_str()) != 0 && errno != ENOENT) Fail(errno);
   const int file = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
@@ -22,6 +26,7 @@ OutputFile::OutputFile(std::filesystem::path target)
 }
 
 OutputFile::~OutputFile() {
+  if (stream_ == stdout) return;
   if (stream_ != nullptr) std::fclose(stream_);
   std::error_code ignored;
   std::filesystem::remove(temporary_, ignored);  // no more there after a commit
@@ -32,6 +37,10 @@ void OutputFile::Write(std::string_view bytes) {
 }
 
 void OutputFile::Commit() {
+  if (stream_ == stdout) {
+    if (std::fflush(stdout) != 0) Fail(errno);
+    return;
+  }
   if (std::fflush(stream_) != 0 || fsync(fileno(stream_)) != 0) Fail(errno);
   std::FILE* stream = std::exchange(stream_, nullptr);
   if (std::fclose(stream) != 0 || std::rename(temporary_.c_str(), target_.c_str()) != 0) Fail(errno);

@@ -9,7 +9,7 @@
 namespace dispersa {
 
 /// Writes beside the target and takes its place on Commit(); without it the target stays as it was.
-/// Throws ResultError (kDiskFull, else kFile).
+/// The target "-" is standard output, written at once. Throws ResultError (kDiskFull, else kFile).
 class OutputFile {
  public:
   explicit OutputFile(std::filesystem::path target);

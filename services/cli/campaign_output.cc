@@ -21,7 +21,7 @@ void AddReflownOptions(CLI::App& command, ReflownFlights& flights) {
           "--envelope", flights.envelope,
           "so many first cases, or all, are flown again for the percentiles over time; the extremes of every "
           "metric besides")
-      ->transform(CLI::Transformer(words))
+      ->transform(CLI::Transformer(words).description("{all}"))
       ->check([](const std::string& text) { return WholeNumberProblem(text, UINT64_MAX); })
       ->default_str(std::to_string(flights.envelope));
 }

@@ -11,12 +11,14 @@
 //
 // which is declared below and called in main.cc; the function that flies returns an ExitCode. Results go to
 // stdout, everything else to stderr (spdlog's default logger writes there). Exceptions need no handling:
-// InputError ends with its text and 2, any other with its message and 1.
+// InputError ends with its text and 2, any other with its message and 1, and with --json as an object too.
+// The type names below say in help texts what a value is, and completion goes by them.
 #pragma once
 
 #include <CLI/CLI.hpp>
 #include <functional>
 
+#include "services/program/completion_words.h"
 #include "services/transport/exit_code.h"
 
 namespace dispersa {
@@ -52,5 +54,6 @@ void AddStatusCommands(CLI::App& app, Invocation& invocation);
 void AddWatchCommand(CLI::App& app, Invocation& invocation);
 void AddFetchCommand(CLI::App& app, Invocation& invocation);
 void AddKeysCommand(CLI::App& app, Invocation& invocation);
+void AddCompletionCommand(CLI::App& app, Invocation& invocation);
 
 }  // namespace dispersa

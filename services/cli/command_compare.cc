@@ -80,9 +80,10 @@ void AddCompareCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<CompareOptions>();
   CLI::App* command =
       app.add_subcommand("compare", "compare two result folders, paired by case where the draws match");
-  command->add_option("a", options->a, "result folder")->required();
-  command->add_option("b", options->b, "result folder")->required();
-  command->add_option("--out", options->out, "folder for compare.html and compare.json");
+  command->add_option("a", options->a, "result folder")->required()->type_name(kFolderType);
+  command->add_option("b", options->b, "result folder")->required()->type_name(kFolderType);
+  command->add_option("--out", options->out, "folder for compare.html and compare.json")
+      ->type_name(kFolderType);
   command->add_option("--metric", options->metrics, "metric to compare, instead of all; may be repeated");
   command->footer(
       "Example: dispersa compare results/controllers-1a2b3c4d results/controllers_pd-5e6f7a8b --out "

@@ -13,6 +13,7 @@
 #include "core/report/text.h"
 #include "services/cli/command.h"
 #include "services/cli/progress.h"
+#include "services/cli/stream_beside.h"
 #include "services/client/stored_campaign.h"
 #include "services/client/writable.h"
 #include "services/coordinator/threads.h"
@@ -29,28 +30,32 @@ struct ExportOptions {
 };
 
 /// Flies the cases again: their rows do not say where stages separated.
-void ExportImpacts(const StoredCampaign& stored, const ExportOptions& options, const GlobalOptions& global) {
-  Progress progress("flights", global.quiet);
+void ExportImpacts(const StoredCampaign& stored, const ExportOptions& options, std::FILE* stream,
+                   bool quiet) {
+  Progress progress("flights", quiet);
   const std::vector<Footprint> footprints =
       FootprintsOf(stored.folder, stored.campaign, UsableCores(),
                    [&](std::size_t done, std::size_t total) { progress.Show(done, total); });
   WriteFile(options.out, options.format == ExportFormat::kKml ? Kml(stored.campaign, footprints)
                                                               : GeoJson(stored.campaign, footprints));
   for (const Footprint& footprint : footprints) {
-    fmt::print("{}: {} down{}", FootprintTitle(footprint), footprint.points.size(),
+    fmt::print(stream, "{}: {} down{}", FootprintTitle(footprint), footprint.points.size(),
                footprint.aloft > 0 ? fmt::format(", {} aloft", footprint.aloft) : "");
     for (std::size_t i = 0; i < footprint.containment.size(); ++i) {
       if (footprint.containment[i].stated != 0.95) continue;
-      fmt::print(", mean {:.4f}° N {:.4f}° E, 95 % ellipse {:.2f} km by {:.2f} km holds {}",
+      fmt::print(stream, ", mean {:.4f}° N {:.4f}° E, 95 % ellipse {:.2f} km by {:.2f} km holds {}",
                  footprint.mean.latitude_rad * kDegPerRad, footprint.mean.longitude_rad * kDegPerRad,
                  footprint.ellipses[i].semi_major * 1e-3, footprint.ellipses[i].semi_minor * 1e-3,
                  PercentText(footprint.containment[i].empirical));
     }
-    fmt::print("\n");
+    fmt::print(stream, "\n");
   }
 }
 
 ExitCode Export(const ExportOptions& options, const GlobalOptions& global) {
+  std::FILE* const stream = StreamBeside("--out", options.out, global);
+  if (stream == stderr && options.format == ExportFormat::kHdf5)
+    throw InputError("--out: HDF5 is written in many places of its file", "a file");
   const StoredCampaign stored = OpenStored(options.directory);
   RequireWritableFile("--out", options.out);
   switch (options.format) {
@@ -65,13 +70,13 @@ ExitCode Export(const ExportOptions& options, const GlobalOptions& global) {
       break;
     case ExportFormat::kGeoJson:
     case ExportFormat::kKml:
-      ExportImpacts(stored, options, global);
+      ExportImpacts(stored, options, stream, global.quiet);
       break;
     case ExportFormat::kJUnit:
       WriteFile(options.out, JUnitXml(BuildSummary(stored.folder, stored.campaign)));
       break;
   }
-  fmt::print("export: {}\n", options.out);
+  if (stream == stdout) fmt::print("export: {}\n", options.out);
   return kExitDone;
 }
 
@@ -80,21 +85,20 @@ ExitCode Export(const ExportOptions& options, const GlobalOptions& global) {
 void AddExportCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<ExportOptions>();
   CLI::App* command = app.add_subcommand("export", "write the results of a folder for other tools");
-  command->add_option("directory", options->directory, "result folder")->required();
+  command->add_option("directory", options->directory, "result folder")->required()->type_name(kFolderType);
+  const std::map<std::string, ExportFormat> formats = {
+      {"csv", ExportFormat::kCsv},         {"geojson", ExportFormat::kGeoJson}, {"hdf5", ExportFormat::kHdf5},
+      {"jsonl", ExportFormat::kJsonLines}, {"junit", ExportFormat::kJUnit},     {"kml", ExportFormat::kKml}};
   command
       ->add_option(
           "--format", options->format,
           "csv or jsonl: one line a case; hdf5: one dataset a column; junit: a test case a requirement; "
           "geojson or kml: impact points of spent stages and lost flights, flown again, and their footprints")
       ->required()
-      ->transform(
-          CLI::CheckedTransformer(std::map<std::string, ExportFormat>{{"csv", ExportFormat::kCsv},
-                                                                      {"jsonl", ExportFormat::kJsonLines},
-                                                                      {"hdf5", ExportFormat::kHdf5},
-                                                                      {"junit", ExportFormat::kJUnit},
-                                                                      {"geojson", ExportFormat::kGeoJson},
-                                                                      {"kml", ExportFormat::kKml}}));
-  command->add_option("--out", options->out, "file to write")->required();
+      ->transform(CLI::CheckedTransformer(formats).description(CLI::detail::generate_map(formats, true)));
+  command->add_option("--out", options->out, "file to write; -: standard output")
+      ->required()
+      ->type_name(kFileType);
   command->footer("Example: dispersa export results/table3-1a2b3c4d --format junit --out requirements.xml");
   command->callback([options, &invocation] {
     invocation.command = [options](const GlobalOptions& global) { return Export(*options, global); };

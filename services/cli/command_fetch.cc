@@ -29,7 +29,7 @@ ExitCode Fetch(const std::string& id, const std::string& target, Session& sessio
 void AddFetchCommand(CLI::App& app, Invocation& invocation) {
   CLI::App* command = app.add_subcommand("fetch", "copy the result folder of a campaign that has ended");
   const auto id = AddIdOption(command), out = std::make_shared<std::string>();
-  command->add_option("--out", *out, "folder, new or empty")->required();
+  command->add_option("--out", *out, "folder, new or empty")->required()->type_name(kFolderType);
   command->footer("Example: dispersa fetch 1a2b3c4d --out results/table3 --peer coordinator-host");
   BindSession(command, invocation, [id, out](Session& session, const GlobalOptions& global) {
     return Fetch(*id, *out, session, global);

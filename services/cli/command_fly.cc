@@ -14,6 +14,7 @@
 #include "services/cli/command.h"
 #include "services/client/flight_json.h"
 #include "services/cli/fly_scenario.h"
+#include "services/cli/stream_beside.h"
 #include "services/cli/warn.h"
 #include "services/client/writable.h"
 
@@ -40,20 +41,21 @@ void PrintJson(const CaseResult& result) {
   fmt::print("{}\n", json.dump(2));
 }
 
-void PrintText(const CaseResult& result) {
-  fmt::print("outcome  {}\ndigest   {}\n", OutcomeText(result), result.digest.Hex());
+void PrintText(std::FILE* stream, const CaseResult& result) {
+  fmt::print(stream, "outcome  {}\ndigest   {}\n", OutcomeText(result), result.digest.Hex());
   const std::vector<double> nominal = InputValues(FlightInputs{}, kMaxStages);
   for (std::size_t i = 0; i < result.inputs.size(); ++i) {
     if (result.inputs[i] == nominal[i]) continue;
-    fmt::print("{:<44} {}\n", "input_" + InputColumns()[i].name, ShortestText(result.inputs[i]));
+    fmt::print(stream, "{:<44} {}\n", "input_" + InputColumns()[i].name, ShortestText(result.inputs[i]));
   }
   for (std::size_t i = 0; i < result.metrics.size(); ++i) {
     const std::string value = ShortestText(result.metrics[i]);
-    fmt::print("{:<44} {}\n", "metric_" + MetricNames()[i], value.empty() ? "-" : value);
+    fmt::print(stream, "{:<44} {}\n", "metric_" + MetricNames()[i], value.empty() ? "-" : value);
   }
 }
 
 ExitCode FlyOne(const FlyOptions& options, const GlobalOptions& global) {
+  std::FILE* const stream = StreamBeside("--history", options.history, global);
   const bool is_scenario = IsScenarioFile(options.campaign);
   Scheme scheme = is_scenario ? Scheme::kRungeKutta4 : Scheme::kSimpson;
   if (!options.integrator.empty() && !ParseScheme(options.integrator, &scheme)) {
@@ -83,7 +85,7 @@ ExitCode FlyOne(const FlyOptions& options, const GlobalOptions& global) {
   if (global.json) {
     PrintJson(result);
   } else {
-    PrintText(result);
+    PrintText(stream, result);
   }
   return kExitDone;
 }
@@ -93,15 +95,22 @@ ExitCode FlyOne(const FlyOptions& options, const GlobalOptions& global) {
 void AddFlyCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<FlyOptions>();
   CLI::App* command = app.add_subcommand("fly", "fly the nominal flight, one case, or a scenario, in this process");
-  command->add_option("campaign", options->campaign, "campaign or scenario file")->required();
+  command->add_option("campaign", options->campaign, "campaign or scenario file")
+      ->required()
+      ->type_name(kFileType);
   command->add_option("--case", options->case_index, "case index, from 0; without it the nominal flight");
-  command->add_option("--history", options->history, "file for the time history, CSV");
-  command->add_option("--integrator", options->integrator,
-                      "simpson (what campaigns fly), erk4 (what scenarios fly; classical Runge-Kutta through SUNDIALS) "
-                      "or cvode (high accuracy, to compare)");
+  command->add_option("--history", options->history, "file for the time history, CSV; -: standard output")
+      ->type_name(kFileType);
+  command
+      ->add_option(
+          "--integrator", options->integrator,
+          "simpson (what campaigns fly), erk4 (what scenarios fly; classical Runge-Kutta through SUNDIALS) "
+          "or cvode (high accuracy, to compare)")
+      ->type_name("{simpson,erk4,cvode}");
   command->add_option("--seed", options->overrides.seed, "seed, instead of the file's");
-  command->add_option("--autopilot", options->overrides.autopilot,
-                      "autopilot file, instead of the campaign's");
+  command
+      ->add_option("--autopilot", options->overrides.autopilot, "autopilot file, instead of the campaign's")
+      ->type_name(kFileType);
   command->footer(
       "Example: dispersa fly campaigns/nominal.yaml --history nominal.csv\n"
       "         dispersa fly campaigns/table3.yaml --case 17 --json\n"

@@ -50,7 +50,9 @@ std::pair<CLI::App*, std::shared_ptr<KeysOptions>> AddCommand(
   auto options = std::make_shared<KeysOptions>();
   options->days = days;
   CLI::App* command = keys->add_subcommand(name, what);
-  command->add_option("directory", options->directory, "folder of the authority")->required();
+  command->add_option("directory", options->directory, "folder of the authority")
+      ->required()
+      ->type_name(kFolderType);
   command->add_option("--days", options->days, fmt::format("valid for so long; default {}", days))
       ->check(CLI::Range(1, kMostDays));
   command->callback([options, &invocation, run] {

@@ -164,9 +164,13 @@ ExitCode Modes(const ModesOptions& options, const GlobalOptions& global) {
 void AddModesCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<ModesOptions>();
   CLI::App* command = app.add_subcommand("modes", "bending modes of a vehicle, by stack and propellant");
-  command->add_option("vehicle", options->vehicle, "vehicle file with a structure_beam")->required();
-  command->add_option("--out", options->out,
-                      "write the plots too: a folder for modes.html, or a name that ends in .html");
+  command->add_option("vehicle", options->vehicle, "vehicle file with a structure_beam")
+      ->required()
+      ->type_name(kFileType);
+  command
+      ->add_option("--out", options->out,
+                   "write the plots too: a folder for modes.html, or a name that ends in .html")
+      ->type_name(kFolderType);
   command->add_flag("--shapes", options->shapes, "with --json: the whole shapes, node by node");
   command->footer(
       "Frequencies, generalised masses, and deflection and slope at the beam's sensors and the nozzle "

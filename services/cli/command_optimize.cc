@@ -93,6 +93,7 @@ ExitCode Optimize(const OptimizeOptions& options, const GlobalOptions& global) {
   const int threads = ThreadsOrAll(options.threads);
   if (options.seeds > 0) return StudySeeds(input, options, threads, global);
   const std::filesystem::path file = options.out.empty() ? input.name + "_reference.yaml" : options.out;
+  if (file == "-") throw InputError("--out: '-' is one stream, and three files are written", "a file name");
   RequireWritableReference("--out", file);
   TerminalObserver observer(global.quiet);
   const FoundReference found = FindReference(input, threads, observer);
@@ -117,11 +118,14 @@ void AddOptimizeCommand(CLI::App& app, Invocation& invocation) {
   CLI::App* command =
       app.add_subcommand("optimize", "find the trajectory that reaches a campaign's target orbit");
   command->add_option("campaign", options->campaign, "campaign file, with an optimize block or a reference")
-      ->required();
-  command->add_option(
-      "-o,--out", options->out,
-      "reference file to write; the time history goes beside it as .csv, figures and tables as "
-      ".html; default <name>_reference.yaml. One that misses its target is written too, and says so");
+      ->required()
+      ->type_name(kFileType);
+  command
+      ->add_option(
+          "-o,--out", options->out,
+          "reference file to write; the time history goes beside it as .csv, figures and tables as "
+          ".html; default <name>_reference.yaml. One that misses its target is written too, and says so")
+      ->type_name(kFileType);
   command->add_option("--seed", options->seed, "seed, instead of the file's");
   command->add_option("--seeds", options->seeds,
                       "optimise with so many seeds, from the file's or --seed on, and print how well and how alike "

@@ -83,13 +83,17 @@ void AddPaperCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<PaperCommandOptions>();
   CLI::App* command =
       app.add_subcommand("paper", "every table and figure of the paper on one page, from flights flown now");
-  command->add_option("--out", options->out, "folder for paper.html and its data, empty or new")->required();
+  command->add_option("--out", options->out, "folder for paper.html and its data, empty or new")
+      ->required()
+      ->type_name(kFolderType);
   command
       ->add_option("--cases", options->cases, "size of a Monte Carlo campaign; designs repeat in proportion")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1000000}))
       ->capture_default_str();
-  command->add_option("--campaigns", options->campaigns,
-                      "folder of the campaign files, instead of the shipped ones");
+  command
+      ->add_option("--campaigns", options->campaigns,
+                   "folder of the campaign files, instead of the shipped ones")
+      ->type_name(kFolderType);
   command->add_option("--threads", options->threads, "threads; the page does not depend on them")
       ->check(CLI::Range(1, 1024));
   command->footer(

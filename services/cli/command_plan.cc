@@ -24,9 +24,9 @@ struct PlanOptions {
   std::string campaign;
   CampaignOverrides overrides;
   bool csv = false;
+  bool all = false;
 };
 
-constexpr std::uint64_t kShownOnATerminal = 10;
 constexpr std::size_t kUsualWidth = 100;
 
 std::size_t TerminalWidth() {
@@ -68,9 +68,7 @@ ExitCode Plan(const PlanOptions& options, const GlobalOptions& global) {
   } else if (options.csv) {
     PrintCsv(campaign, design);
   } else {
-    const bool terminal = isatty(STDOUT_FILENO) != 0;
-    fmt::print("{}",
-               PlanText(campaign, terminal ? kShownOnATerminal : campaign.sampling.cases, TerminalWidth()));
+    fmt::print("{}", PlanText(campaign, options.all, TerminalWidth()));
   }
   return kExitDone;
 }
@@ -80,15 +78,16 @@ ExitCode Plan(const PlanOptions& options, const GlobalOptions& global) {
 void AddPlanCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<PlanOptions>();
   CLI::App* command = app.add_subcommand("plan", "print the inputs of every case, without flying");
-  command->add_option("campaign", options->campaign, "campaign file")->required();
+  command->add_option("campaign", options->campaign, "campaign file")->required()->type_name(kFileType);
   command->add_option("--cases", options->overrides.cases, "number of cases, instead of the file's")
       ->check(CaseCountProblem);
   command->add_option("--seed", options->overrides.seed, "seed, instead of the file's");
   command->add_flag("--csv", options->csv, "all inputs, in the columns of cases.csv");
+  command->add_flag("--all", options->all,
+                    "every dispersed input of every case, not only what fits on a screen");
   command->footer(
-      "Prints the dispersed inputs of every case (on a terminal of the first ten), then of each input what "
-      "was\n"
-      "drawn and what was declared.\n"
+      "Prints of each dispersed input what was declared and what all cases drew, then its value in the first "
+      "cases.\n"
       "Example: dispersa plan campaigns/table3.yaml --cases 20 --csv");
   command->callback([options, &invocation] {
     invocation.command = [options](const GlobalOptions& global) { return Plan(*options, global); };

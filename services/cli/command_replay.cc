@@ -9,6 +9,7 @@
 #include "core/report/histories.h"
 #include "core/report/output_file.h"
 #include "services/cli/command.h"
+#include "services/cli/stream_beside.h"
 #include "services/client/case_replay.h"
 #include "services/client/flight_json.h"
 #include "services/client/writable.h"
@@ -22,18 +23,19 @@ struct ReplayOptions {
   std::string history;
 };
 
-void PrintText(const CaseResult& stored, const CaseResult& replayed,
+void PrintText(std::FILE* stream, const CaseResult& stored, const CaseResult& replayed,
                const std::vector<ReplayDifference>& differences) {
-  fmt::print("case {}: {}, {}\ndigest {}\n", stored.case_index,
+  fmt::print(stream, "case {}: {}, {}\ndigest {}\n", stored.case_index,
              differences.empty() ? "reproduced to the last bit" : "NOT reproduced", OutcomeText(replayed),
              replayed.digest.Hex());
   for (const ReplayDifference& difference : differences) {
-    fmt::print("{:<44} stored {}, replayed {}\n", difference.name, difference.stored, difference.replayed);
+    fmt::print(stream, "{:<44} stored {}, replayed {}\n", difference.name, difference.stored, difference.replayed);
   }
 }
 
 ExitCode Replay(const ReplayOptions& options, const GlobalOptions& global) {
   const StoredCampaign stored = OpenStored(options.directory);
+  std::FILE* const stream = StreamBeside("--history", options.history, global);
   RequireWritableFile("--history", options.history);
   History history;
   const CaseReplay replay =
@@ -42,7 +44,7 @@ ExitCode Replay(const ReplayOptions& options, const GlobalOptions& global) {
   if (global.json) {
     fmt::print("{}\n", ReplayJson(replay).dump(2));
   } else {
-    PrintText(replay.stored, replay.replayed, replay.differences);
+    PrintText(stream, replay.stored, replay.replayed, replay.differences);
   }
   return replay.differences.empty() ? kExitDone : kExitReplayMismatch;
 }
@@ -52,9 +54,9 @@ ExitCode Replay(const ReplayOptions& options, const GlobalOptions& global) {
 void AddReplayCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<ReplayOptions>();
   CLI::App* command = app.add_subcommand("replay", "fly a stored case again and compare it to the last bit");
-  command->add_option("directory", options->directory, "result folder")->required();
+  command->add_option("directory", options->directory, "result folder")->required()->type_name(kFolderType);
   command->add_option("--case", options->case_index, "case index, from 0")->required();
-  command->add_option("--history", options->history, "file for the time history, CSV");
+  command->add_option("--history", options->history, "file for the time history, CSV; -: standard output")->type_name(kFileType);
   command->footer("Example: dispersa replay results/table3-1a2b3c4d --case 17 --history case17.csv");
   command->callback([options, &invocation] {
     invocation.command = [options](const GlobalOptions& global) { return Replay(*options, global); };

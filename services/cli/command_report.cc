@@ -57,11 +57,14 @@ ExitCode Report(const ReportCommand& options, const GlobalOptions& global) {
 void AddReportCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<ReportCommand>();
   CLI::App* command = app.add_subcommand("report", "make the reports of a result folder again");
-  command->add_option("directory", options->directory, "result folder")->required();
+  command->add_option("directory", options->directory, "result folder")->required()->type_name(kFolderType);
   AddReflownOptions(*command, options->reflown);
-  command->add_option("--template", options->template_file,
-                      "Jinja template to fill from summary.json, instead of making the reports");
-  command->add_option("--out", options->out, "file for what the template gives; default: standard output");
+  command
+      ->add_option("--template", options->template_file,
+                   "Jinja template to fill from summary.json, instead of making the reports")
+      ->type_name(kFileType);
+  command->add_option("--out", options->out, "file for what the template gives; default: standard output")
+      ->type_name(kFileType);
   command->footer(
       "Examples: dispersa report results/table3-1a2b3c4d\n"
       "          dispersa report results/table3-1a2b3c4d --template campaigns/templates/report.md --out "

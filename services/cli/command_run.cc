@@ -14,6 +14,7 @@
 #include "services/client/campaign_run.h"
 #include "services/coordinator/stop_signal.h"
 #include "services/coordinator/whole_number.h"
+#include "services/program/error_json.h"
 
 namespace dispersa {
 namespace {
@@ -48,12 +49,14 @@ ExitCode Run(const RunCommand& options, const GlobalOptions& global) {
   } catch (const Interrupted&) {
     observer.EndPhase();
     fmt::print(stderr, "interrupted; to go on: {}\n", ResumeCommand(options, directory));
+    if (global.json) PrintErrorJson(kExitInterrupted, "interrupted");
     return kExitInterrupted;
   } catch (const ResultError& error) {
     observer.EndPhase();
     if (error.kind() != ResultError::Kind::kDiskFull) throw;
     spdlog::error("{}", error.what());
     fmt::print(stderr, "to go on when there is space: {}\n", ResumeCommand(options, directory));
+    if (global.json) PrintErrorJson(kExitIncomplete, error.what());
     return kExitIncomplete;
   }
 }
@@ -65,7 +68,7 @@ void AddRunCommand(CLI::App& app, Invocation& invocation) {
   CLI::App* command =
       app.add_subcommand("run", "fly a campaign on local workers and write its result folder");
   CampaignRequest& request = options->request;
-  command->add_option("campaign", request.campaign.name, "campaign file")->required();
+  command->add_option("campaign", request.campaign.name, "campaign file")->required()->type_name(kFileType);
   command
       ->add_option("--workers", options->run.workers,
                    "worker processes; default: the usable cores; 0 flies in this process without DDS")
@@ -75,12 +78,13 @@ void AddRunCommand(CLI::App& app, Invocation& invocation) {
                    "threads that fly in this process with --workers 0; default: the usable cores")
       ->check(CLI::Range(1, 1024));
   command->add_option("--out", request.out, "result folder; default: results/<name>-<first 8 of id>")
+      ->type_name(kFolderType)
       ->check([](const std::string& text) { return text.empty() ? "must not be empty" : ""; });
   command->add_option("--cases", request.overrides.cases, "number of cases, instead of the file's")
       ->check(CaseCountProblem);
   command->add_option("--seed", request.overrides.seed, "seed, instead of the file's");
-  command->add_option("--autopilot", request.overrides.autopilot,
-                      "autopilot file, instead of the campaign's");
+  command->add_option("--autopilot", request.overrides.autopilot, "autopilot file, instead of the campaign's")
+      ->type_name(kFileType);
   AddReflownOptions(*command, options->run.reflown);
   command->add_flag("--resume", request.resume, "go on in a folder of the same flight id");
   command->footer(

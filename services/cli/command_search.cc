@@ -22,6 +22,7 @@
 #include "services/cli/command.h"
 #include "services/client/flight_json.h"
 #include "services/cli/progress.h"
+#include "services/cli/stream_beside.h"
 #include "services/cli/warn.h"
 #include "services/client/writable.h"
 #include "services/coordinator/threads.h"
@@ -145,6 +146,7 @@ std::string Sentence(const FailureSearchResult& result, const Requirement& requi
 
 ExitCode SearchFor(const SearchCommand& command, const GlobalOptions& global) {
   const Campaign campaign = LoadAndWarn(command.campaign);
+  std::FILE* const stream = StreamBeside("--out", command.out, global);
   RequireWritableFile("--out", command.out);
   const Requirement requirement = WantedRequirement(command, campaign);
   Searcher searcher(campaign, requirement, command.options.max_flights, global.quiet);
@@ -197,7 +199,7 @@ ExitCode SearchFor(const SearchCommand& command, const GlobalOptions& global) {
   }
   const std::string written = json.dump(2) + "\n";
   if (!command.out.empty()) WriteFile(command.out, written);
-  fmt::print("{}", global.json ? written : text);
+  fmt::print(stream, "{}", global.json ? written : text);
   return kExitDone;
 }
 
@@ -207,7 +209,7 @@ void AddSearchCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<SearchCommand>();
   CLI::App* command = app.add_subcommand(
       "search", "the smallest dispersion that fails a requirement: a bounded local search that flies");
-  command->add_option("campaign", options->campaign, "campaign file")->required();
+  command->add_option("campaign", options->campaign, "campaign file")->required()->type_name(kFileType);
   command->add_option("--metric", options->metric,
                       "metric whose requirement shall fail; default: the first one's");
   auto* below =
@@ -223,7 +225,7 @@ void AddSearchCommand(CLI::App& app, Invocation& invocation) {
       ->check(CLI::Range(0.1, 8.0));
   command->add_option("--seed", options->options.seed,
                       "of the points that are drawn to begin with, default 1");
-  command->add_option("--out", options->out, "file for what --json prints");
+  command->add_option("--out", options->out, "file for what --json prints")->type_name(kFileType);
   command->footer(
       "Example: dispersa search campaigns/full.yaml --metric pitch_error_peak_deg --below 0.5 --flights "
       "2000");

@@ -13,6 +13,7 @@
 #include "services/cli/command.h"
 #include "services/client/flight_json.h"
 #include "services/cli/progress.h"
+#include "services/cli/stream_beside.h"
 #include "services/cli/warn.h"
 #include "services/client/writable.h"
 #include "services/coordinator/threads.h"
@@ -188,18 +189,19 @@ nlohmann::ordered_json ResultJson(const TuneOptions& options, const TuningResult
           {"log", std::move(generations)}};
 }
 
-void PrintText(const TuneOptions& options, const TuningResult& result, const std::vector<TuningRecord>& log) {
-  fmt::print("{:<6}{:>11}{:>10}{:>14}{:>14}\n", "stage", "generation", "feasible", "best rms deg",
+void PrintText(std::FILE* stream, const TuneOptions& options, const TuningResult& result,
+               const std::vector<TuningRecord>& log) {
+  fmt::print(stream, "{:<6}{:>11}{:>10}{:>14}{:>14}\n", "stage", "generation", "feasible", "best rms deg",
              "mean rms deg");
   const auto number = [](const std::optional<double>& value) {
     return value ? fmt::format("{:.5f}", *value) : std::string("-");
   };
   for (const TuningRecord& record : log) {
     const GenerationRecord& g = record.generation;
-    fmt::print("{:<6}{:>11}{:>9.0f}%{:>14}{:>14}\n", PartText(record, result), g.generation,
+    fmt::print(stream, "{:<6}{:>11}{:>9.0f}%{:>14}{:>14}\n", PartText(record, result), g.generation,
                100.0 * g.feasible_fraction, number(g.best_objective), number(g.mean_objective));
   }
-  fmt::print("\n{:<6}{:>9}{:>9}{:>10}{:>13}{:>10}  {}\n", "stage", "kp 1/s2", "kd 1/s", "gamma, ki",
+  fmt::print(stream, "\n{:<6}{:>9}{:>9}{:>10}{:>13}{:>10}  {}\n", "stage", "kp 1/s2", "kd 1/s", "gamma, ki",
              "mean rms deg", "peak deg", "least margins, frozen | adapting");
   for (std::size_t i = 0; i < result.stages.size(); ++i) {
     const StageTuning& stage = result.stages[i];
@@ -208,33 +210,39 @@ void PrintText(const TuneOptions& options, const TuningResult& result, const std
     const std::string learning = law.adaptation ? fmt::format("{}", axis.adaptation.gamma[i])
                                  : law.integral ? fmt::format("{}", axis.integral.ki_1_s3[i])
                                                 : std::string("-");
-    fmt::print("{:<6}{:>9}{:>9}{:>10}{:>13.5f}{:>10.4f}  {} | {}{}\n", i + 1, axis.gains[i].kp_1_s2,
+    fmt::print(stream, "{:<6}{:>9}{:>9}{:>10}{:>13.5f}{:>10.4f}  {} | {}{}\n", i + 1, axis.gains[i].kp_1_s2,
                axis.gains[i].kd_1_s, learning, stage.mean_rms_deg, stage.peak_deg, MarginsText(stage.frozen),
                MarginsText(stage.adapting), stage.feasible ? "" : "  INFEASIBLE");
-    if (!stage.missed.empty()) fmt::print("      misses by most: {}\n", stage.missed);
+    if (!stage.missed.empty()) fmt::print(stream, "      misses by most: {}\n", stage.missed);
   }
   if (!result.skipped.empty())
-    fmt::print("No margins were asked for with less than {:g} % of full thrust:\n", 100.0 * kLeastThrustFraction);
+    fmt::print(stream, "No margins were asked for with less than {:g} % of full thrust:\n",
+               100.0 * kLeastThrustFraction);
   for (const SkippedInstant& at : result.skipped)
-    fmt::print("      {:.2f} s, stage {}{}\n", at.time_s, at.stage + 1, at.place.empty() ? "" : ", " + at.place);
+    fmt::print(stream, "      {:.2f} s, stage {}{}\n", at.time_s, at.stage + 1,
+               at.place.empty() ? "" : ", " + at.place);
   if (result.augmentation) {
     const AugmentationTuning& tuned = *result.augmentation;
-    fmt::print("augmentation: adaptive gain {:.3g} 1/s, spectral gain {:.3g} 1/s, total gain to {:.3g}; mean rms "
-               "{:.5f} deg, peak {:.4f} deg{}\n",
-               tuned.design.adaptive_gain_1_s, tuned.design.spectral_gain_1_s, tuned.design.maximum_total_gain,
-               tuned.mean_rms_deg, tuned.peak_deg, tuned.feasible ? "" : "  INFEASIBLE");
-    if (!tuned.missed.empty()) fmt::print("      misses by most: {}\n", tuned.missed);
+    fmt::print(
+        stream,
+        "augmentation: adaptive gain {:.3g} 1/s, spectral gain {:.3g} 1/s, total gain to {:.3g}; mean rms "
+        "{:.5f} deg, peak {:.4f} deg{}\n",
+        tuned.design.adaptive_gain_1_s, tuned.design.spectral_gain_1_s, tuned.design.maximum_total_gain,
+        tuned.mean_rms_deg, tuned.peak_deg, tuned.feasible ? "" : "  INFEASIBLE");
+    if (!tuned.missed.empty()) fmt::print(stream, "      misses by most: {}\n", tuned.missed);
   }
-  fmt::print("\n{} designs, {} flights\n", result.evaluations, result.flights);
+  fmt::print(stream, "\n{} designs, {} flights\n", result.evaluations, result.flights);
   if (!result.feasible) return;
-  fmt::print("median powered RMS pitch error {:.5f} deg, largest peak {:.4f} deg over {} cases of seed {}\n",
+  fmt::print(stream,
+             "median powered RMS pitch error {:.5f} deg, largest peak {:.4f} deg over {} cases of seed {}\n",
              result.median_rms_deg, result.largest_peak_deg, options.tuning.cases, options.tuning.seed);
-  fmt::print("autopilot: {}\n", options.out);
+  fmt::print(stream, "autopilot: {}\n", options.out);
 }
 
 ExitCode RunTuning(const TuneOptions& given, const GlobalOptions& global) {
   TuneOptions options = given;
   options.tuning.threads = ThreadsOrAll(options.threads);
+  std::FILE* const stream = StreamBeside("--out", options.out, global);
   RequireWritableFile("--out", options.out);
   const Campaign campaign = LoadAndWarn(options.campaign);
   const AutopilotConfig autopilot =
@@ -260,7 +268,7 @@ ExitCode RunTuning(const TuneOptions& given, const GlobalOptions& global) {
   if (global.json) {
     fmt::print("{}\n", ResultJson(options, result, log).dump(2));
   } else {
-    PrintText(options, result, log);
+    PrintText(stream, options, result, log);
   }
   if (result.feasible) return kExitDone;
   fmt::print(stderr, "no design was found that meets every constraint; {} holds the best that was found\n",
@@ -274,13 +282,18 @@ void AddTuneCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<TuneOptions>();
   CLI::App* command = app.add_subcommand("tune", "find the gains of an autopilot, whatever its law");
   command->add_option("campaign", options->campaign, "campaign file: vehicle, reference and dispersions")
-      ->required();
+      ->required()
+      ->type_name(kFileType);
   command
-      ->add_option("-o,--out", options->out,
-                   "autopilot file to write; one that misses a constraint says so in its name")
-      ->required();
-  command->add_option("--autopilot", options->autopilot,
-                      "autopilot file whose law and fixed parameters are taken, instead of the campaign's");
+      ->add_option(
+          "-o,--out", options->out,
+          "autopilot file to write; one that misses a constraint says so in its name; -: standard output")
+      ->required()
+      ->type_name(kFileType);
+  command
+      ->add_option("--autopilot", options->autopilot,
+                   "autopilot file whose law and fixed parameters are taken, instead of the campaign's")
+      ->type_name(kFileType);
   command
       ->add_option("--seed", options->tuning.seed,
                    "seed of the search and of its cases; never the campaign's own")

@@ -8,11 +8,14 @@
 #include <vector>
 
 #include "core/campaign_yaml/load.h"
+#include "core/campaign_yaml/standard_input.h"
 #include "core/report/output_file.h"
 #include "core/report/vehicle_drawing.h"
 #include "services/cli/command.h"
+#include "services/cli/stream_beside.h"
 #include "services/cli/vehicle_text.h"
 #include "services/client/writable.h"
+#include "services/program/error_json.h"
 
 namespace dispersa {
 namespace {
@@ -22,11 +25,6 @@ struct ValidateOptions {
   bool strict = false;
   std::string picture;
 };
-
-nlohmann::ordered_json Json(const InputProblem& problem) {
-  return {{"file", problem.file}, {"line", problem.line},       {"column", problem.column},
-          {"path", problem.path}, {"message", problem.message}, {"allowed", problem.allowed}};
-}
 
 void Draw(const FileCheck& check, const ValidateOptions& options) {
   if (!check.errors.empty()) return;
@@ -39,24 +37,26 @@ ExitCode Validate(const ValidateOptions& options, const GlobalOptions& global) {
   if (!options.picture.empty() && options.files.size() != 1)
     throw InputError("--picture: one file is drawn at a time", "one vehicle or campaign file");
   RequireWritableFile("--picture", options.picture);
+  std::FILE* const stream = StreamBeside("--picture", options.picture, global);
   auto errors = nlohmann::ordered_json::array();
   auto warnings = nlohmann::ordered_json::array();
   auto vehicles = nlohmann::ordered_json::array();
   for (const std::string& file : options.files) {
     const FileCheck check = CheckFile(file);
     for (const InputProblem& problem : check.errors) {
-      errors.push_back(Json(problem));
-      if (!global.json) fmt::print("{}\n", problem.Text());
+      errors.push_back(ProblemJson(problem));
+      if (!global.json) fmt::print(stream, "{}\n", problem.Text());
     }
     for (const InputProblem& problem : check.warnings) {
-      warnings.push_back(Json(problem));
-      if (!global.json) fmt::print("warning: {}\n", problem.Text());
+      warnings.push_back(ProblemJson(problem));
+      if (!global.json) fmt::print(stream, "warning: {}\n", problem.Text());
     }
     const bool valid = check.errors.empty() && !(options.strict && !check.warnings.empty());
-    if (valid && !global.json && !global.quiet) fmt::print("{}: valid\n", file);
+    if (valid && !global.json && !global.quiet)
+      fmt::print(stream, "{}: valid\n", file == kStandardInput ? kStandardInputName : file);
     if (check.is_vehicle && check.vehicle) {
       vehicles.push_back(VehicleJson(*check.vehicle));
-      if (!global.json && !global.quiet) fmt::print("{}", VehicleText(*check.vehicle));
+      if (!global.json && !global.quiet) fmt::print(stream, "{}", VehicleText(*check.vehicle));
     }
     if (!options.picture.empty()) Draw(check, options);
   }
@@ -68,7 +68,7 @@ ExitCode Validate(const ValidateOptions& options, const GlobalOptions& global) {
                                            {"warnings", std::move(warnings)},
                                            {"vehicles", std::move(vehicles)}};
     fmt::print("{}\n", report.dump(2));
-  } else if (valid && !options.picture.empty() && !global.quiet) {
+  } else if (valid && !options.picture.empty() && stream == stdout && !global.quiet) {
     fmt::print("picture: {}\n", options.picture);
   }
   return valid ? kExitDone : kExitBadInput;
@@ -80,9 +80,12 @@ void AddValidateCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<ValidateOptions>();
   CLI::App* command =
       app.add_subcommand("validate", "check campaign, vehicle, reference and autopilot files");
-  command->add_option("files", options->files, "files of any kind")->required();
+  command->add_option("files", options->files, "files of any kind")->required()->type_name(kFileType);
   command->add_flag("--strict", options->strict, "warnings are errors");
-  command->add_option("--picture", options->picture, "file for a drawing of the vehicle to scale, SVG");
+  command
+      ->add_option("--picture", options->picture,
+                   "file for a drawing of the vehicle to scale, SVG; -: standard output")
+      ->type_name(kFileType);
   command->footer(
       "A warning names what a vehicle's numbers imply that no known one has; of a valid vehicle file masses, "
       "Isp,\n"

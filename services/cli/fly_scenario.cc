@@ -10,6 +10,7 @@
 #include "core/flight/history_columns.h"
 #include "core/report/output_file.h"
 #include "core/report/text.h"
+#include "services/cli/stream_beside.h"
 #include "services/client/flight_json.h"
 #include "services/client/writable.h"
 
@@ -53,10 +54,11 @@ ExitCode FlyScenarioFile(const std::string& path, Scheme scheme, const std::stri
     fmt::print("{}\n", json.dump(2));
     return kExitDone;
   }
-  fmt::print("outcome  {}\ndigest   {}\n", OutcomeName(flight.outcome), flight.digest.Hex());
-  fmt::print("{:<44} {}\n", "end_time_s", ShortestText(flight.end_time_s));
+  std::FILE* const stream = StreamBeside("--history", history, global);
+  fmt::print(stream, "outcome  {}\ndigest   {}\n", OutcomeName(flight.outcome), flight.digest.Hex());
+  fmt::print(stream, "{:<44} {}\n", "end_time_s", ShortestText(flight.end_time_s));
   for (std::size_t i = 1; i < columns.size(); ++i)
-    fmt::print("{:<44} {}\n", "metric_final_" + columns[i], ShortestText(rows[last + i]));
+    fmt::print(stream, "{:<44} {}\n", "metric_final_" + columns[i], ShortestText(rows[last + i]));
   return kExitDone;
 }
 

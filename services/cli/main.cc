@@ -1,22 +1,20 @@
 // dispersa: command line to command to exit code.
 #include <fmt/format.h>
-#include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <exception>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 
 #include "core/campaign/contained.h"
 #include "core/campaign/input_error.h"
-#include "core/campaign_yaml/yaml_reader.h"
-#include "core/flight/engine_version.h"
 #include "core/flight/lane_engine.h"
 #include "core/report/result_error.h"
 #include "services/cli/command.h"
+#include "services/cli/log_color.h"
+#include "services/program/command_line.h"
+#include "services/program/error_json.h"
 
 namespace dispersa {
 namespace {
@@ -41,102 +39,70 @@ void AddCommands(CLI::App& app, Invocation& invocation) {
   AddWatchCommand(app, invocation);
   AddFetchCommand(app, invocation);
   AddKeysCommand(app, invocation);
+  AddCompletionCommand(app, invocation);
 }
 
-ExitCode Say(const std::exception& error, ExitCode code) {
+ExitCode Fail(ExitCode code, const InputError& error, const GlobalOptions& global) {
   fmt::print(stderr, "{}\n", error.what());
+  if (global.json) PrintErrorJson(code, error.problems());
+  return code;
+}
+
+ExitCode Fail(ExitCode code, const std::string& message, const GlobalOptions& global) {
+  if (global.json) PrintErrorJson(code, message);
   return code;
 }
 
 ExitCode Execute(const Invocation& invocation) {
+  const GlobalOptions& global = invocation.global;
   try {
-    const ExitCode code = invocation.command(invocation.global);
+    const ExitCode code = invocation.command(global);
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
       spdlog::error("the results cannot be written to standard output");
       return WorseOf(code, kExitInternalError);
     }
     return code;
   } catch (const InputError& error) {
-    return Say(error, kExitBadInput);
+    return Fail(kExitBadInput, error, global);
   } catch (const PluginError& error) {
-    fmt::print(stderr, "the control law {}\n", error.what());
-    return kExitBadInput;
+    return Fail(kExitBadInput, InputError(std::string("the control law ") + error.what()), global);
   } catch (const ContainedEnd& end) {
-    fmt::print(stderr, "the control law {}\n", end.what());
-    return kExitIncomplete;
+    return Fail(kExitIncomplete, InputError(std::string("the control law ") + end.what()), global);
   } catch (const ResultError& error) {
-    return Say(error, error.kind() == ResultError::Kind::kDiskFull ? kExitIncomplete : kExitInternalError);
+    fmt::print(stderr, "{}\n", error.what());
+    const bool is_full = error.kind() == ResultError::Kind::kDiskFull;
+    return Fail(is_full ? kExitIncomplete : kExitInternalError, error.what(), global);
   } catch (const std::exception& error) {
     spdlog::error("internal error: {}", error.what());
-    return kExitInternalError;
+    return Fail(kExitInternalError, std::string("internal error: ") + error.what(), global);
   }
-}
-
-// Help and version are errors to CLI11, of code 0.
-ExitCode Usage(const CLI::App& app, const CLI::ParseError& error) {
-  return app.exit(error) == 0 ? kExitDone : kExitBadInput;
-}
-
-InputError UnknownCommand(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands(nullptr)) names.push_back(command->get_name());
-  const std::string word = app.remaining().front();
-  return InputError("unknown command '" + word + "'" + DidYouMean(word, names), JoinWords(names));
-}
-
-// CLI11 ends at --version, whatever else is asked for.
-bool AsksForVersionAsJson(int argc, char** argv) {
-  const auto has = [&](const char* flag) {
-    return std::any_of(argv + 1, argv + argc, [&](const char* word) { return std::string(word) == flag; });
-  };
-  return has("--version") && has("--json");
-}
-
-void PrintVersionJson() {
-  const nlohmann::ordered_json json = {{"schema", "dispersa/version/1"},
-                                       {"version", EngineVersion().substr(0, EngineVersion().find('+'))},
-                                       {"engine", EngineVersion()},
-                                       {"isa", ChosenEngine().isa},
-                                       {"lanes", ChosenEngine().lanes}};
-  fmt::print("{}\n", json.dump(2));
 }
 
 int Main(int argc, char** argv) {
-  spdlog::set_default_logger(spdlog::stderr_color_mt("dispersa"));
-  spdlog::set_pattern("%^%l%$: %v");
+  StartLog();
   try {
     ChosenEngine();
   } catch (const std::invalid_argument& error) {
-    return Say(error, kExitBadInput);
-  }
-  if (AsksForVersionAsJson(argc, argv)) {
-    PrintVersionJson();
-    return kExitDone;
+    return Fail(kExitBadInput, InputError(error.what()), {AsksForJson(argc, argv), false});
   }
 
   Invocation invocation;
+  std::string color = "auto";
   CLI::App app("Monte Carlo dispersion campaigns of launch vehicles.", "dispersa");
-  app.set_version_flag("--version", "dispersa " + EngineVersion());
-  app.add_flag("--json", invocation.global.json, "print one JSON object instead of text");
+  BeginCommandLine(app, invocation.global.json, "print one JSON object instead of text, of an error too");
   app.add_flag("--quiet", invocation.global.quiet, "no progress, only warnings and errors");
+  app.add_option("--color", color, "of what goes to stderr; auto: on a terminal unless NO_COLOR is set")
+      ->check(CLI::IsMember(kLogColors));
   app.require_subcommand(1);
   app.fallthrough();
   app.footer(
       "Examples: dispersa validate campaigns/table3.yaml\n"
       "          dispersa fly campaigns/table3.yaml --case 17 --history case17.csv\n"
       "          dispersa run campaigns/table3.yaml --cases 200\n"
-      "`dispersa COMMAND --help` tells more.");
+      "`dispersa COMMAND --help` tells more. A FILE that is read may be -, standard input.");
   AddCommands(app, invocation);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::RequiredError& error) {
-    // CLI11 says of an unknown command only that one is required.
-    if (!app.get_subcommands().empty() || app.remaining().empty()) return Usage(app, error);
-    fmt::print(stderr, "{}\n", UnknownCommand(app).what());
-    return kExitBadInput;
-  } catch (const CLI::ParseError& error) {
-    return Usage(app, error);
-  }
+  if (const auto code = ParseCommandLine(app, argc, argv)) return *code;
+  SetLogColor(color);
   if (invocation.global.quiet) spdlog::set_level(spdlog::level::warn);
   return Execute(invocation);
 }

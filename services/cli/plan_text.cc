@@ -8,11 +8,13 @@
 #include "core/campaign/case_design.h"
 #include "core/flight/flight_inputs.h"
 #include "core/report/dispersion_summary.h"
+#include "core/report/metric_catalogue.h"
 
 namespace dispersa {
 namespace {
 
-constexpr std::size_t kNumberWidth = 13, kCaseWidth = 8;
+constexpr std::size_t kShownInputs = 20;
+constexpr std::size_t kIndent = 2, kUnitWidth = 6, kNumberWidth = 11;
 
 /// Of the inputs that any dispersion feeds; the others stay empty.
 CaseColumns DrawnColumns(const Campaign& campaign, const std::vector<int>& inputs) {
@@ -31,59 +33,117 @@ CaseColumns DrawnColumns(const Campaign& campaign, const std::vector<int>& input
   return cases;
 }
 
-std::string Number(double value) { return fmt::format("{:>{}.6g}", value, kNumberWidth); }
+bool IsDoubtful(const DispersionSummary& one) { return one.consistent && !*one.consistent; }
 
-/// The columns from one input to before another.
-std::string Block(const std::vector<std::vector<double>>& columns, std::size_t from, std::size_t to) {
-  std::string text = fmt::format("\n{:>{}}", "case", kCaseWidth);
-  for (std::size_t i = from; i < to; ++i)
-    text += fmt::format("{:>{}}", fmt::format("[{}]", i + 1), kNumberWidth);
-  text += "\n";
-  for (std::size_t index = 0; index < columns[from].size(); ++index) {
-    text += fmt::format("{:>{}}", index, kCaseWidth);
-    for (std::size_t i = from; i < to; ++i) text += Number(columns[i][index]);
-    text += "\n";
+/// The rows of both tables.
+class Plan {
+ public:
+  Plan(const Campaign& campaign, bool all, std::size_t width)
+      : campaign_(campaign),
+        inputs_(DispersedInputs(campaign)),
+        cases_(DrawnColumns(campaign, inputs_)),
+        summaries_(SummarizeDispersions(campaign, cases_)),
+        all_(all) {
+    for (const int input : inputs_) name_width_ = std::max(name_width_, SplitUnit(Name(input)).stem.size());
+    name_width_ += kIndent + 2;
+    const std::size_t left = name_width_ + kUnitWidth;
+    across_ = std::max<std::size_t>(
+        (std::max<std::size_t>(std::max<std::size_t>(width, 80), left) - left) / kNumberWidth, 1);
   }
-  return text;
-}
 
-std::string SummaryLines(std::size_t number, const DispersionSummary& one) {
-  const Summary& drawn = one.drawn;
-  return fmt::format(
-      "\n[{}] {}\n    {}{}\n    drawn: mean {:.6g}, standard deviation {:.4g}, {:.6g} to {:.6g}\n", number,
-      one.input, one.declared,
-      !one.consistent   ? ""
-      : *one.consistent ? ", as drawn"
-                        : ": THE DRAWS DO NOT AGREE",
-      drawn.mean, drawn.std, drawn.min, drawn.max);
-}
+  std::string Text() const {
+    std::string text = fmt::format("{}: {} cases, seed {}, {} dispersed inputs\n", campaign_.name,
+                                   campaign_.sampling.cases, campaign_.sampling.seed, inputs_.size());
+    if (inputs_.empty()) return text;
+    text += DrawnTable();
+    const std::size_t blocks = all_ ? (cases_.rows() + across_ - 1) / across_ : 1;
+    for (std::size_t block = 0; block < blocks; ++block) text += CasesTable(block * across_);
+    return text + Rest();
+  }
+
+ private:
+  static const std::string& Name(int input) { return InputColumns()[static_cast<std::size_t>(input)].name; }
+
+  std::string Row(const std::string& name) const {
+    const NameAndUnit split = SplitUnit(name);
+    return fmt::format("{:<{}}{:<{}}", std::string(kIndent, ' ') + split.stem, name_width_, split.unit,
+                       kUnitWidth);
+  }
+  static std::string Number(double value) { return fmt::format("{:>{}.5g}", value, kNumberWidth); }
+  static std::string Heading(const std::string& text) { return fmt::format("{:>{}}", text, kNumberWidth); }
+
+  /// The dispersion without its parts: "thrust" of "thrust/stage1".
+  static std::string Block(const DispersionSummary& one) {
+    return one.dispersion.substr(0, one.dispersion.find('/'));
+  }
+
+  /// Inputs of one law stand together under it.
+  std::string DrawnTable() const {
+    std::string text =
+        fmt::format("\n{:<{}}{:<{}}{}{}{}{}\n", "drawn", name_width_, "unit", kUnitWidth, Heading("mean"),
+                    Heading("std dev"), Heading("least"), Heading("greatest"));
+    const DispersionSummary* above = nullptr;
+    std::size_t row = 0;
+    for (const DispersionSummary& one : summaries_) {
+      if (!IsShown(row++) && !IsDoubtful(one)) continue;
+      if (above == nullptr || Block(*above) != Block(one) || above->declared != one.declared)
+        text += fmt::format("{}: {}\n", Block(one), one.declared);
+      above = &one;
+      const Summary& drawn = one.drawn;
+      text += Row(one.input) + Number(drawn.mean) + Number(drawn.std) + Number(drawn.min) + Number(drawn.max);
+      text += IsDoubtful(one) ? "  THE DRAWS DO NOT AGREE\n" : "\n";
+    }
+    return text;
+  }
+
+  std::string CasesTable(std::size_t from) const {
+    const std::size_t to = std::min(from + across_, cases_.rows());
+    std::string text = fmt::format("\n{:<{}}{:<{}}", "case", name_width_, "unit", kUnitWidth);
+    for (std::size_t i = from; i < to; ++i) text += Heading(std::to_string(i));
+    text += "\n";
+    for (std::size_t row = 0; row < inputs_.size() && IsShown(row); ++row) {
+      text += Row(Name(inputs_[row]));
+      for (std::size_t i = from; i < to; ++i)
+        text += Number(cases_.inputs[static_cast<std::size_t>(inputs_[row])][i]);
+      text += "\n";
+    }
+    return text;
+  }
+
+  std::string Rest() const {
+    std::string text = "\n";
+    const auto judged = std::count_if(summaries_.begin(), summaries_.end(), [](const DispersionSummary& one) {
+      return one.consistent.has_value();
+    });
+    const auto doubtful = std::count_if(summaries_.begin(), summaries_.end(), IsDoubtful);
+    if (judged > 0 && doubtful == 0)
+      text += fmt::format("Drawn as declared: mean and standard deviation of all {} that can be judged.\n",
+                          judged);
+    const bool fewer_inputs = !all_ && summaries_.size() > kShownInputs,
+               fewer_cases = !all_ && cases_.rows() > across_;
+    if (fewer_inputs || fewer_cases)
+      text += fmt::format(
+          "Shown: {} of {} inputs, {} of {} cases; --all shows the rest, --csv writes a table of it.\n",
+          std::min(kShownInputs, inputs_.size()), inputs_.size(), std::min(across_, cases_.rows()),
+          cases_.rows());
+    return text == "\n" ? "" : text;
+  }
+
+  bool IsShown(std::size_t row) const { return all_ || row < kShownInputs; }
+
+  const Campaign& campaign_;
+  std::vector<int> inputs_;
+  CaseColumns cases_;
+  std::vector<DispersionSummary> summaries_;
+  bool all_;
+  std::size_t name_width_ = 0;  ///< of the first column
+  std::size_t across_ = 1;      ///< cases beside each other
+};
 
 }  // namespace
 
-std::string PlanText(const Campaign& campaign, std::uint64_t shown, std::size_t width) {
-  const std::vector<int> inputs = DispersedInputs(campaign);
-  const CaseColumns cases = DrawnColumns(campaign, inputs);
-  std::string text = fmt::format("{}: {} cases, seed {}, {} dispersed inputs\n", campaign.name,
-                                 campaign.sampling.cases, campaign.sampling.seed, inputs.size());
-  std::vector<std::vector<double>> columns;
-  for (const int input : inputs) {
-    const CaseColumn& all = cases.inputs[static_cast<std::size_t>(input)];
-    columns.emplace_back();
-    for (std::uint64_t index = 0; index < std::min<std::uint64_t>(shown, cases.rows()); ++index)
-      columns.back().push_back(all[index]);
-  }
-  const std::size_t in_a_block = (std::max<std::size_t>(width, 80) - kCaseWidth) / kNumberWidth;
-  for (std::size_t from = 0; from < columns.size(); from += in_a_block)
-    text += Block(columns, from, std::min(columns.size(), from + in_a_block));
-  if (shown < cases.rows()) text += fmt::format("\nThe first {} cases; --csv prints them all.\n", shown);
-
-  const std::vector<DispersionSummary> summaries = SummarizeDispersions(campaign, cases);
-  for (std::size_t i = 0; i < inputs.size(); ++i) {
-    const std::string& name = InputColumns()[static_cast<std::size_t>(inputs[i])].name;
-    for (const DispersionSummary& one : summaries)
-      if (one.input == name) text += SummaryLines(i + 1, one);
-  }
-  return text;
+std::string PlanText(const Campaign& campaign, bool all, std::size_t width) {
+  return Plan(campaign, all, width).Text();
 }
 
 }  // namespace dispersa

@@ -2,16 +2,16 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <string>
 
 #include "core/campaign/campaign.h"
 
 namespace dispersa {
 
-/// The dispersed inputs of the first `shown` cases in blocks of numbered columns, then every dispersed input
-/// by number with what all cases drew of it, the law that it was declared to follow, and whether the draws
-/// agree. No line is longer than `width` (at least 80) but for names and laws that are.
-std::string PlanText(const Campaign& campaign, std::uint64_t shown, std::size_t width);
+/// Two tables with a row for each dispersed input: what all cases drew of it under the law that was declared,
+/// and its value in the first cases. No line is longer than `width` (at least 80) but for laws that are.
+/// Without `all` the tables are cut after so many inputs as a screen holds and the cases that fit beside each
+/// other; an input whose draws do not agree with its law is never cut, and what is missing is said.
+std::string PlanText(const Campaign& campaign, bool all, std::size_t width);
 
 }  // namespace dispersa

@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "services/program/error_json.h"
+
 namespace dispersa {
 
 void BindSession(CLI::App* command, Invocation& invocation,
@@ -15,7 +17,7 @@ void BindSession(CLI::App* command, Invocation& invocation,
   command->add_option("--peer", options->peer, "HOST[:PORT] of the coordinator; default: this machine");
   command->add_option("--address", options->address, "IPv4 address of the only network interface to use")
       ->check(CLI::ValidIPV4);
-  command->add_option("--keys", options->admission.keys, kKeysHelp);
+  command->add_option("--keys", options->admission.keys, kKeysHelp)->type_name(kFolderType);
   command->add_flag("--insecure", options->admission.insecure, kInsecureHelp);
   command->callback([options, &invocation, run = std::move(run)] {
     invocation.command = [options, run](const GlobalOptions& global) {
@@ -24,6 +26,7 @@ void BindSession(CLI::App* command, Invocation& invocation,
         return run(session, global);
       } catch (const Failure& failure) {
         fmt::print(stderr, "{}\n", failure.message);
+        if (global.json) PrintErrorJson(failure.code, failure.message);
         return failure.code;
       }
     };

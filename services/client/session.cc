@@ -4,6 +4,7 @@
 
 #include <utility>
 
+
 namespace dispersa {
 
 Session::Session(const SessionOptions& options) : has_keys_(!options.admission.keys.empty()) {

@@ -14,7 +14,7 @@ namespace dispersa {
 namespace fs = std::filesystem;
 
 void RequireWritableFile(const std::string& option, const fs::path& path) {
-  if (path.empty()) return;
+  if (path.empty() || path == "-") return;
   const auto refuse = [&](const std::string& why, const std::string& allowed) {
     throw InputError(option + ": " + path.string() + " cannot be written: " + why, allowed);
   };

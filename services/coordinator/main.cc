@@ -10,11 +10,13 @@
 #include <utility>
 #include <vector>
 
-#include "core/flight/engine_version.h"
+#include "core/campaign_yaml/standard_input.h"
 #include "core/report/result_error.h"
 #include "services/coordinator/serve.h"
 #include "services/coordinator/stop_signal.h"
 #include "services/coordinator/whole_number.h"
+#include "services/program/command_line.h"
+#include "services/program/completion_words.h"
 #include "services/transport/admission.h"
 #include "services/transport/exit_code.h"
 
@@ -32,13 +34,15 @@ int Main(int argc, char** argv) {
       "domain, until it is\n"
       "told to stop. With a campaign: serves that one, writes its reports and ends.",
       "dispersa-coordinator");
-  app.set_version_flag("--version", EngineVersion());
+  bool json = false;
+  BeginCommandLine(app, json, "with --version, and of an unusable command line: one JSON object");
   std::string data;
   bool health = false;
   double audit = 0.0;
   std::optional<std::uint16_t> metrics_port;
-  app.add_option("campaign", request.campaign.name, "campaign file");
-  app.add_option("--data", data, "folder of the campaigns that were launched, made if it is not there");
+  app.add_option("campaign", request.campaign.name, "campaign file")->type_name(kFileType);
+  app.add_option("--data", data, "folder of the campaigns that were launched, made if it is not there")
+      ->type_name(kFolderType);
   app.add_option("--metrics", metrics_port,
                  "with --data: port of 127.0.0.1 for metrics in Prometheus' text format")
       ->check(CLI::Range(1, 65535));
@@ -49,7 +53,8 @@ int Main(int argc, char** argv) {
          "share of the results, 0 to 1, that the coordinator flies again; a worker whose result differs "
          "is expelled, and\nwhatever it returned is flown again")
       ->check(CLI::Range(0.0, 1.0));
-  app.add_option("--out", request.out, "result folder; default: results/<name>-<first 8 of id>");
+  app.add_option("--out", request.out, "result folder; default: results/<name>-<first 8 of id>")
+      ->type_name(kFolderType);
   app.add_option("--cases", request.overrides.cases, "number of cases, instead of the file's")
       ->check(CaseCountProblem);
   app.add_option("--seed", request.overrides.seed, "seed, instead of the file's");
@@ -59,7 +64,7 @@ int Main(int argc, char** argv) {
       ->check(CLI::Range(0, 99));
   app.add_option("--address", network.address, "IPv4 address of the only network interface to use")
       ->check(CLI::ValidIPV4);
-  app.add_option("--keys", admission.keys, kKeysHelp);
+  app.add_option("--keys", admission.keys, kKeysHelp)->type_name(kFolderType);
   app.add_flag("--insecure", admission.insecure, kInsecureHelp);
   app.add_flag("--allow-plugins", admission.allow_plugins, kAllowPluginsHelp);
   app.add_option("--patience", patience_s,
@@ -69,13 +74,15 @@ int Main(int argc, char** argv) {
       "Example: dispersa-coordinator --data /var/lib/dispersa --domain 7 --keys coordinator-main\n"
       "         dispersa-worker --domain 7 --peer coordinator-host --keys worker-node1\n"
       "         dispersa-coordinator campaigns/table3.yaml --out results/table3 --address 127.0.0.1");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kExitBadInput;
-  }
+  if (const auto code = ParseCommandLine(app, argc, argv)) return *code;
   if (int(health) + int(!data.empty()) + int(!request.campaign.name.empty()) != 1) {
     fmt::print(stderr, "one of --data, a campaign, or --health is needed\n");
+    return kExitBadInput;
+  }
+  if (request.campaign.name == kStandardInput) {
+    fmt::print(stderr,
+               "the campaign cannot come from standard input: a coordinator may start itself again, "
+               "allowed: a campaign file\n");
     return kExitBadInput;
   }
   CatchStopSignals();

@@ -9,8 +9,9 @@
 #include <stdexcept>
 #include <thread>
 
-#include "core/flight/engine_version.h"
 #include "core/flight/lane_engine.h"
+#include "services/program/command_line.h"
+#include "services/program/completion_words.h"
 #include "services/transport/admission.h"
 #include "services/transport/exit_code.h"
 #include "services/worker/worker.h"
@@ -27,14 +28,15 @@ int main(int argc, char** argv) {
       "it flies,\n"
       "hands back the rest and leaves; a second one ends it at once.",
       "dispersa-worker");
-  app.set_version_flag("--version", EngineVersion());
+  bool json = false;
+  BeginCommandLine(app, json, "with --version, and of an unusable command line: one JSON object");
   app.add_option("--domain", options.network.domain, "DDS domain")
       ->envname("DISPERSA_DOMAIN")
       ->check(CLI::Range(0, 99));
   app.add_option("--peer", peer, "HOST[:PORT] of the coordinator")->required();
   app.add_option("--address", options.network.address, "IPv4 address of the only network interface to use")
       ->check(CLI::ValidIPV4);
-  app.add_option("--keys", admission.keys, kKeysHelp);
+  app.add_option("--keys", admission.keys, kKeysHelp)->type_name(kFolderType);
   app.add_flag("--insecure", admission.insecure, kInsecureHelp);
   app.add_flag("--allow-plugins", admission.allow_plugins, kAllowPluginsHelp);
   app.add_option("--slots", options.slots, "cases flown at the same time")->check(CLI::Range(1, 1024));
@@ -45,11 +47,7 @@ int main(int argc, char** argv) {
                  "give up (exit code 5) after so many seconds without a coordinator; default: never")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--uuid", options.uuid, "name of this incarnation, drawn if not given");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kExitDone : kExitBadInput;
-  }
+  if (const auto code = ParseCommandLine(app, argc, argv)) return *code;
   try {
     ChosenEngine();
   } catch (const std::invalid_argument& error) {

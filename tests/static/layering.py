@@ -14,7 +14,7 @@ OWNED = [
     (r"sleef\.h", {"math"}),
     (r"Random123/", {"random"}),
     (r"hdf5", {"report"}),
-    (r"CLI/", {"cli", "coordinator", "worker"}),
+    (r"CLI/", {"program", "cli", "coordinator", "worker"}),
     (r"(pybind11/|Python\.h)", {"python"}),
 ]
 

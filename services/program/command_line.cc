@@ -1,0 +1,97 @@
+#include "services/program/command_line.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "core/campaign/input_error.h"
+#include "core/campaign_yaml/yaml_reader.h"
+#include "services/program/completion_words.h"
+#include "services/program/error_json.h"
+#include "services/program/help_formatter.h"
+#include "services/program/version.h"
+
+namespace dispersa {
+namespace {
+
+using Words = std::vector<std::string>;
+
+bool Has(const Words& words, const char* word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+ExitCode BadUsage(const InputProblem& problem, bool json) {
+  if (json) PrintErrorJson(kExitBadInput, {problem});
+  return kExitBadInput;
+}
+
+InputProblem UnknownCommand(const CLI::App& app) {
+  Words names;
+  for (const CLI::App* command : app.get_subcommands(nullptr)) names.push_back(command->get_name());
+  const std::string word = app.remaining().front();
+  return {"", 0, 0, "", "unknown command '" + word + "'" + DidYouMean(word, names), JoinWords(names)};
+}
+
+/// "--cases: what is wrong, allowed: what is allowed"
+InputProblem ProblemOf(const CLI::ParseError& error) {
+  const std::string text = error.what();
+  const std::string separator = ", allowed: ";
+  const std::size_t at = text.find(separator);
+  if (at == std::string::npos) return {"", 0, 0, "", text, ""};
+  return {"", 0, 0, "", text.substr(0, at), text.substr(at + separator.size())};
+}
+
+// CLI11 ends at --version, whatever else is asked for.
+ExitCode PrintVersionJson() {
+  try {
+    fmt::print("{}\n", VersionJson());
+    return kExitDone;
+  } catch (const std::invalid_argument& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return BadUsage({"", 0, 0, "", error.what(), ""}, true);
+  }
+}
+
+}  // namespace
+
+bool AsksForJson(int argc, char** argv) { return Has(Words(argv + 1, argv + argc), "--json"); }
+
+void BeginCommandLine(CLI::App& app, bool& json, const char* json_help) {
+  app.formatter(std::make_shared<HelpFormatter>());
+  app.set_help_flag("-h, --help", "print this help and end");
+  app.set_version_flag("--version", VersionText(app.get_name()),
+                       "print the version and end; with --json, one object");
+  app.add_flag("--json", json, json_help);
+}
+
+std::optional<ExitCode> ParseCommandLine(CLI::App& app, int argc, char** argv) {
+  const Words words(argv + 1, argv + argc);
+  if (words.size() >= 2 && words[0] == "completion" && words[1] == "words") {
+    // Not parsed: these are words of another command line.
+    fmt::print("{}", CompletionWords(app, Words(words.begin() + 2, words.end())));
+    return kExitDone;
+  }
+  const bool json = Has(words, "--json");
+  if (json && Has(words, "--version")) return PrintVersionJson();
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    // CLI11 says of an unknown command only that one is required.
+    const bool is_required = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
+    if (is_required && app.get_subcommands().empty() && !app.remaining().empty() &&
+        !app.get_subcommands(nullptr).empty()) {
+      const InputProblem problem = UnknownCommand(app);
+      fmt::print(stderr, "{}\n", problem.Text());
+      return BadUsage(problem, json);
+    }
+    // Help and version are errors to CLI11, of code 0.
+    if (app.exit(error) == 0) return kExitDone;
+    return BadUsage(ProblemOf(error), json);
+  }
+  return std::nullopt;
+}
+
+}  // namespace dispersa

@@ -1,0 +1,20 @@
+// What may stand at the end of an unfinished command line, by the definitions that parse the finished one.
+//
+// The scripts that bash, zsh and fish load (services/cli/completion) ask `PROGRAM completion words WORD...`.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+namespace dispersa {
+
+/// What an option's value or an argument is, in help texts; completion goes by it. Values that are listed are
+/// written "{one,another}".
+inline constexpr char kFileType[] = "FILE", kFolderType[] = "DIR";
+
+/// `words` are those behind the program's name, the last one unfinished and possibly empty. One line a
+/// candidate: the word, a tab and what it is; or ":file" or ":folder", where the shell itself knows best.
+std::string CompletionWords(const CLI::App& app, const std::vector<std::string>& words);
+
+}  // namespace dispersa

@@ -1,0 +1,21 @@
+// Errors for programs that read them: with --json, one object on standard output. The text goes to stderr all
+// the same.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "core/campaign/input_error.h"
+#include "services/transport/exit_code.h"
+
+namespace dispersa {
+
+/// {file, line, column, path, message, allowed}: 0 and "" for what there is not.
+nlohmann::ordered_json ProblemJson(const InputProblem& problem);
+
+/// Prints {schema: "dispersa/error/1", code, errors}. A command that fails has printed nothing else.
+void PrintErrorJson(ExitCode code, const std::vector<InputProblem>& problems);
+/// Of one problem without a place.
+void PrintErrorJson(ExitCode code, const std::string& message);
+
+}  // namespace dispersa

@@ -1,0 +1,267 @@
+"""What people and scripts expect of any command: errors as objects, colours, standard input and output, help, versions.
+
+DISPERSA_BINARIES and DISPERSA_CAMPAIGNS name the folders of the programs and of the campaigns.
+"""
+import csv
+import json
+import os
+import pathlib
+import pty
+import re
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+BINARIES = pathlib.Path(os.environ["DISPERSA_BINARIES"])
+CAMPAIGNS = pathlib.Path(os.environ["DISPERSA_CAMPAIGNS"])
+SMOKE = CAMPAIGNS / "smoke.yaml"
+TIMEOUT_S = 120
+
+
+def run(program, *arguments, **options):
+    options.setdefault("stdin", subprocess.DEVNULL) if "input" not in options else None
+    return subprocess.run([BINARIES / program, *map(str, arguments)], capture_output=True, text=True, timeout=TIMEOUT_S,
+                          **options)
+
+
+def dispersa(*arguments, **options):
+    return run("dispersa", *arguments, **options)
+
+
+class Errors(unittest.TestCase):
+    def error(self, *arguments, code=2, **options):
+        """The object on standard output; the text stands on stderr as without --json."""
+        done = dispersa(*arguments, **options)
+        self.assertEqual(done.returncode, code, done.stderr)
+        answer = json.loads(done.stdout)
+        self.assertEqual((answer["schema"], answer["code"]), ("dispersa/error/1", code))
+        plain = [word for word in arguments if word != "--json"]
+        self.assertEqual(dispersa(*plain, **options).stderr, done.stderr)
+        return answer["errors"], done.stderr
+
+    def test_a_wrong_file_with_its_place(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "wrong.yaml"
+            file.write_text(re.sub(r"cases: \d+", "cases: many", SMOKE.read_text()).replace(
+                "vehicles/", f"{CAMPAIGNS}/vehicles/").replace("references/", f"{CAMPAIGNS}/references/").replace(
+                    "autopilots/", f"{CAMPAIGNS}/autopilots/"))
+            line = next(i for i, text in enumerate(file.read_text().splitlines(), 1) if "cases: many" in text)
+            for command in ("plan", "fly", "margins"):
+                errors, text = self.error("--json", command, file)
+                self.assertEqual(len(errors), 1)
+                self.assertEqual({key: errors[0][key] for key in ("file", "line", "path", "message", "allowed")},
+                                 {"file": str(file), "line": line, "path": "sampling.cases",
+                                  "message": "'many' is not a number", "allowed": "a whole number from 1 to 4294967295"})
+                self.assertEqual(text, f"{file}:{line}:{errors[0]['column']}: sampling.cases: 'many' is not a number, "
+                                       "allowed: a whole number from 1 to 4294967295\n")
+
+    def test_an_unusable_command_line(self):
+        errors, _ = self.error("plan", SMOKE, "--cases", "0", "--json")
+        self.assertEqual((errors[0]["message"], errors[0]["allowed"]),
+                         ("--cases: '0' is out of range", "a whole number from 1 to 4294967295"))
+        errors, _ = self.error("--json", "validat")
+        self.assertEqual(errors[0]["message"], "unknown command 'validat' (did you mean 'validate'?)")
+        self.assertTrue(errors[0]["allowed"].startswith("validate, optimize, "))
+        errors, _ = self.error("fly", "--json", "--no-such-option", SMOKE)
+        self.assertIn("--no-such-option", errors[0]["message"])
+        self.error("--json")
+
+    def test_what_a_command_finds_later(self):
+        errors, _ = self.error("fly", "--json", "--case", "12", SMOKE)
+        self.assertEqual((errors[0]["message"], errors[0]["allowed"]),
+                         ("--case: the campaign has no case 12", "0 to 11"))
+        self.error("replay", "--json", "/nowhere", "--case", "0")
+        self.error("status", "--json", "--peer", "no such host:1", code=2)
+        self.error("plan", "--json", SMOKE, env={**os.environ, "DISPERSA_LANES": "3"})
+
+    def test_no_object_without_json_and_validate_keeps_its_own(self):
+        self.assertEqual(dispersa("plan", "/nowhere").stdout, "")
+        answer = json.loads(dispersa("validate", "--json", "/nowhere").stdout)
+        self.assertEqual((answer["schema"], answer["valid"]), ("dispersa/validate/1", False))
+
+    def test_a_name_that_is_not_utf8(self):
+        done = subprocess.run([BINARIES / "dispersa", "plan", "--json", b"\xff.yaml"], capture_output=True, timeout=TIMEOUT_S)
+        self.assertEqual(json.loads(done.stdout)["errors"][0]["file"], "\ufffd.yaml")
+
+
+class Colors(unittest.TestCase):
+    # Its vehicle is like none that is known, which is warned of.
+    COMMAND = [str(BINARIES / "dispersa"), "plan", "--cases", "1", str(CAMPAIGNS.parent / "tests/data/yaml/campaign.yaml")]
+
+    def warn(self, *options, terminal, **environment):
+        variables = {key: value for key, value in os.environ.items() if key != "NO_COLOR"}
+        variables.update(environment, TERM="xterm")
+        command = [*self.COMMAND, *options]
+        if not terminal:
+            return subprocess.run(command, env=variables, capture_output=True, text=True, timeout=TIMEOUT_S).stderr
+        ours, theirs = pty.openpty()
+        process = subprocess.Popen(command, env=variables, stdout=subprocess.DEVNULL, stderr=theirs)
+        os.close(theirs)
+        text = b""
+        try:
+            while part := os.read(ours, 4096):
+                text += part
+        except OSError:
+            pass  # the other end is closed
+        os.close(ours)
+        process.wait(TIMEOUT_S)
+        return text.decode()
+
+    def test_who_wants_colours(self):
+        for expected, terminal, options, environment in [
+                (True, True, [], {}), (False, False, [], {}),
+                (False, True, [], {"NO_COLOR": "1"}), (True, True, [], {"NO_COLOR": ""}),
+                (True, False, ["--color", "always"], {}), (True, False, ["--color", "always"], {"NO_COLOR": "1"}),
+                (False, True, ["--color", "never"], {}), (False, True, ["--color", "auto"], {"NO_COLOR": "1"})]:
+            text = self.warn(*options, terminal=terminal, **environment)
+            self.assertIn("warning", text)
+            self.assertEqual("\x1b[" in text, expected, (terminal, options, environment, text))
+
+    def test_others_are_refused(self):
+        done = dispersa("--color", "sometimes", "plan", SMOKE)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("{auto,always,never}", done.stderr)
+
+
+class Streams(unittest.TestCase):
+    def test_a_campaign_from_standard_input(self):
+        from_file = dispersa("plan", "--csv", SMOKE)
+        piped = dispersa("plan", "--csv", "-", input=SMOKE.read_text(), cwd=CAMPAIGNS)
+        self.assertEqual((piped.returncode, piped.stdout), (0, from_file.stdout), piped.stderr)
+        # It is read once, though fly asks first what kind of file it is.
+        self.assertEqual(dispersa("fly", "-", "--case", "1", input=SMOKE.read_text(), cwd=CAMPAIGNS).stdout,
+                         dispersa("fly", SMOKE, "--case", "1").stdout)
+
+    def test_its_errors_are_of_stdin(self):
+        text = re.sub(r"cases: \d+", "cases: many", SMOKE.read_text())
+        done = dispersa("plan", "-", input=text, cwd=CAMPAIGNS)
+        self.assertEqual(done.returncode, 2)
+        self.assertRegex(done.stderr, r"^<stdin>:\d+:\d+: sampling\.cases: 'many' is not a number, allowed: ")
+        # Names in it are relative to the current folder.
+        with tempfile.TemporaryDirectory() as folder:
+            done = dispersa("plan", "-", input=SMOKE.read_text(), cwd=folder)
+        self.assertIn("cannot read 'vehicles/slv4.yaml'", done.stderr)
+
+    def test_other_files_from_standard_input(self):
+        vehicle = (CAMPAIGNS / "vehicles/slv4.yaml").read_text()
+        self.assertTrue(dispersa("validate", "-", input=vehicle).stdout.startswith("<stdin>: valid\n"))
+        pid = CAMPAIGNS / "autopilots/pid.yaml"
+        self.assertEqual(dispersa("fly", SMOKE, "--autopilot", "-", "--json", input=pid.read_text()).stdout,
+                         dispersa("fly", SMOKE, "--autopilot", pid, "--json").stdout)
+        done = run("dispersa-coordinator", "-", input=SMOKE.read_text())
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("the campaign cannot come from standard input", done.stderr)
+
+    def test_a_file_to_standard_output(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "history.csv"
+            told = dispersa("fly", SMOKE, "--history", file)
+            piped = dispersa("fly", SMOKE, "--history", "-", cwd=folder)
+            self.assertEqual((piped.returncode, piped.stdout, piped.stderr), (0, file.read_text(), told.stdout))
+            self.assertEqual(os.listdir(folder), ["history.csv"])
+        scenario = CAMPAIGNS / "scenarios/nesc_case09.yaml"
+        rows = list(csv.reader(dispersa("fly", scenario, "--history", "-").stdout.splitlines()))
+        self.assertEqual((rows[0][0], len(rows)), ("time_s", 32))
+        picture = dispersa("validate", CAMPAIGNS / "vehicles/slv4.yaml", "--picture", "-")
+        self.assertTrue(picture.stdout.startswith("<svg ") and picture.stdout.endswith("</svg>\n"), picture.stdout[-80:])
+        self.assertIn("valid", picture.stderr)
+
+    def test_one_thing_at_a_time_on_standard_output(self):
+        done = dispersa("fly", SMOKE, "--history", "-", "--json")
+        self.assertEqual(done.returncode, 2)
+        self.assertEqual(done.stderr, "--history: '-' is standard output, where --json prints its object, "
+                                      "allowed: a file, or no --json\n")
+
+    def test_exports(self):
+        with tempfile.TemporaryDirectory() as folder:
+            results = pathlib.Path(folder) / "results"
+            dispersa("run", SMOKE, "--workers", "0", "--no-histories", "--quiet", "--out", results)
+            for form in ("csv", "jsonl", "junit", "geojson", "kml"):
+                file = pathlib.Path(folder) / form
+                self.assertEqual(dispersa("export", results, "--format", form, "--out", file, "--quiet").returncode, 0)
+                piped = dispersa("export", results, "--format", form, "--out", "-", "--quiet")
+                self.assertEqual((piped.returncode, piped.stdout), (0, file.read_text()), form)
+            self.assertEqual(dispersa("export", results, "--format", "hdf5", "--out", "-").returncode, 2)
+            history = dispersa("replay", results, "--case", "1", "--history", "-")
+            self.assertEqual(history.stdout, dispersa("fly", SMOKE, "--case", "1", "--history", "-").stdout)
+            self.assertIn("case 1: reproduced to the last bit", history.stderr)
+            self.assertEqual(dispersa("optimize", CAMPAIGNS / "slv4_500km.yaml", "--out", "-").returncode, 2)
+
+    def test_a_full_standard_output_is_no_success(self):
+        with open("/dev/full", "w") as full:
+            done = subprocess.run([BINARIES / "dispersa", "fly", SMOKE, "--history", "-"], stdout=full,
+                                  stderr=subprocess.PIPE, text=True, timeout=TIMEOUT_S)
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("no space left", done.stderr)
+
+
+class Help(unittest.TestCase):
+    def test_every_command_shows_the_options_of_all(self):
+        words = [line.split("\t")[0] for line in dispersa("completion", "words", "").stdout.splitlines()]
+        self.assertGreater(len(words), 20)
+        for command in [[word] for word in words] + [["keys", "init"], ["keys", "issue"]]:
+            text = dispersa(*command, "--help").stdout
+            for option in ("--json", "--quiet", "--color"):
+                self.assertEqual(len(re.findall(rf"^  {option}\b", text, re.MULTILINE)), 1, command)
+            self.assertIn("Options of every command:", text)
+
+    def test_values_are_named_by_what_they_are(self):
+        text = dispersa("fly", "--help").stdout
+        self.assertRegex(text, r"\n  campaign FILE \(required\)")
+        self.assertIn("--integrator {simpson,erk4,cvode}", text)
+        self.assertIn("-h, --help", text)
+
+
+class Versions(unittest.TestCase):
+    def test_all_programs_say_the_same(self):
+        programs = ("dispersa", "dispersa-coordinator", "dispersa-worker")
+        texts = [run(program, "--version").stdout for program in programs]
+        self.assertRegex(texts[0], r"^dispersa \d+\.\d+\.\d+\+[0-9a-f]{12}\n$")
+        self.assertEqual([text.split(" ", 1) for text in texts], [[name, texts[0].split(" ", 1)[1]] for name in programs])
+        answers = [json.loads(run(program, "--version", "--json").stdout) for program in programs]
+        self.assertEqual(answers, [answers[0]] * 3)
+        self.assertEqual(answers[0]["schema"], "dispersa/version/1")
+        self.assertEqual(texts[0].split()[1], answers[0]["engine"])
+
+    def test_the_daemons_refuse_as_objects_too(self):
+        for program in ("dispersa-coordinator", "dispersa-worker"):
+            done = run(program, "--no-such-option", "--json")
+            self.assertEqual((done.returncode, json.loads(done.stdout)["schema"]), (2, "dispersa/error/1"))
+
+
+class Plan(unittest.TestCase):
+    def test_a_screen_of_a_large_campaign(self):
+        campaign = CAMPAIGNS / "full.yaml"
+        done = dispersa("plan", campaign, "--cases", "200")
+        lines = done.stdout.splitlines()
+        self.assertLess(len(lines), 80)
+        columns = next(csv.reader(dispersa("plan", campaign, "--cases", "1", "--csv").stdout.splitlines()))
+        inputs = int(re.match(r"full: 200 cases, seed \d+, (\d+) dispersed inputs$", lines[0])[1])
+        self.assertIn(f"Shown: 20 of {inputs} inputs, ", lines[-1])
+        self.assertIn("Drawn as declared: ", lines[-2])
+        heading = next(line for line in lines if line.startswith("case "))
+        self.assertRegex(heading, r"^case +unit +0 +1 ")
+        rows = [line for line in lines if line.startswith("  ")]
+        self.assertEqual(len(rows), 2 * 20)
+        # What is called by its stem and unit is an input of cases.csv, and numbers end where their headings end.
+        suffix = {"°": "_deg", "m/s": "_m_s", "m": "_m", "": "", "°/s": "_deg_s", "s": "_s", "rad": "_rad"}
+        for row in rows:
+            name, unit = row[2:row.index("  ", 2)], row[heading.index("unit"):][:6].strip()
+            self.assertIn(f"input_{name}{suffix[unit]}", columns)
+            self.assertEqual(len(row), len(heading) if row in lines[lines.index(heading):] else len(row))
+
+    def test_all_of_it(self):
+        done = dispersa("plan", SMOKE, "--cases", "30", "--all")
+        cases = [word for line in done.stdout.splitlines() if line.startswith("case ") for word in line.split()[2:]]
+        self.assertEqual(cases, [str(i) for i in range(30)])
+        self.assertNotIn("Shown: ", done.stdout)
+        # The same numbers as in the table for programs.
+        rows = list(csv.DictReader(dispersa("plan", SMOKE, "--cases", "30", "--csv").stdout.splitlines()))
+        shown = [float(word) for line in done.stdout.split("\ncase ", 1)[1].splitlines() if line.startswith("  drag_factor")
+                 for word in line.split()[1:]]
+        self.assertEqual(shown, [float(f"{float(row['input_drag_factor']):.5g}") for row in rows])
+
+
+if __name__ == "__main__":
+    unittest.main()
