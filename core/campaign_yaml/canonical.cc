@@ -24,7 +24,7 @@ bool IsPlainText(const std::string& text) {
   return lower != "true" && lower != "false" && lower != "null" && !ParseNumber(lower);
 }
 
-std::string Quoted(const std::string& text) {
+std::string WithEscapes(const std::string& text) {
   std::string quoted = "\"";
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
@@ -100,7 +100,7 @@ void Emit(const InputNode& node, const std::string& indent, std::string& out) {
   std::sort(members.begin(), members.end(),
             [](const InputMember* a, const InputMember* b) { return a->key < b->key; });
   for (const InputMember* member : members) {
-    out += indent + (IsPlainText(member->key) ? member->key : Quoted(member->key)) + ":";
+    out += indent + (IsPlainText(member->key) ? member->key : WithEscapes(member->key)) + ":";
     EmitValue(member->value, indent, out);
   }
 }
@@ -113,6 +113,6 @@ std::string CanonicalText(const InputNode& map) {
   return out;
 }
 
-std::string TextScalar(const std::string& text) { return IsPlainText(text) ? text : Quoted(text); }
+std::string TextScalar(const std::string& text) { return IsPlainText(text) ? text : WithEscapes(text); }
 
 }  // namespace dispersa

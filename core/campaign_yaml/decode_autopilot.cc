@@ -108,7 +108,7 @@ AxisConfig DecodeAxis(const InputNode& node, const std::string& path, ProblemLis
   return axis;
 }
 
-ReactionControlLogic DecodeReactionControl(const InputNode& node, const std::string& path,
+ReactionControlLogic DecodeReactionControlLogic(const InputNode& node, const std::string& path,
                                            ProblemList& problems) {
   MapReader map(node, path, problems);
   ReactionControlLogic logic;
@@ -144,7 +144,7 @@ AutopilotConfig DecodeAutopilot(const InputNode& node, const std::string& path, 
     });
     if (const InputNode* plugin = map.Optional("plugin"))
       autopilot.plugin = DecodePlugin(*plugin, map.PathOf("plugin"), problems);
-    autopilot.reaction_control = DecodeReactionControl(map.Required("reaction_control", "a map"),
+    autopilot.reaction_control = DecodeReactionControlLogic(map.Required("reaction_control", "a map"),
                                                        map.PathOf("reaction_control"), problems);
   }
   if (stages == 0) stages = static_cast<int>(autopilot.pitch.gains.size());

@@ -83,7 +83,7 @@ LumpedMass DecodeLumpedMass(const InputNode& node, const std::string& path, bool
   return lump;
 }
 
-BeamStage DecodeStage(const InputNode& node, const std::string& path, bool timoshenko,
+BeamStage DecodeBeamStage(const InputNode& node, const std::string& path, bool timoshenko,
                       ProblemList& problems) {
   MapReader map(node, path, problems);
   BeamStage stage;
@@ -269,7 +269,7 @@ std::optional<StructureBeam> DecodeStructureBeam(const InputNode& node, const st
   beam.elements = static_cast<int>(map.Integer("elements", 20, 400, 60));
   map.Each("stages", std::max<std::size_t>(stages, 1), stages > 0 ? stages : kMaxStages,
            [&](const InputNode& item, const std::string& item_path) {
-             beam.stages.push_back(DecodeStage(item, item_path, beam.timoshenko, problems));
+             beam.stages.push_back(DecodeBeamStage(item, item_path, beam.timoshenko, problems));
            });
   return beam;
 }

@@ -11,8 +11,6 @@ namespace {
 
 using ProblemList = std::vector<InputProblem>;
 
-constexpr double kHalfTurn = kPi;
-constexpr double kQuarterTurn = kPi / 2.0;
 constexpr Unit kInertia[] = {{"kg_m2", 1.0}};
 
 // A table that came from a file has its own paths.
@@ -229,7 +227,7 @@ ScenarioMass DecodeMass(const InputNode& node, const std::string& path, ProblemL
   return is_table ? DecodeMassTable(node, path, problems) : DecodeConstantMass(node, path, problems);
 }
 
-ScenarioMotor DecodeMotor(const InputNode& node, const std::string& path, double propellant_kg,
+ScenarioMotor DecodeScenarioMotor(const InputNode& node, const std::string& path, double propellant_kg,
                           ProblemList& problems) {
   MapReader map(node, path, problems);
   ScenarioMotor motor;
@@ -252,7 +250,7 @@ ScenarioMotor DecodeMotor(const InputNode& node, const std::string& path, double
   return motor;
 }
 
-ScenarioStage DecodeStage(const InputNode& node, const std::string& path, bool is_body,
+ScenarioStage DecodeScenarioStage(const InputNode& node, const std::string& path, bool is_body,
                           ProblemList& problems) {
   const std::size_t before = problems.size();
   ScenarioStage stage;
@@ -265,7 +263,7 @@ ScenarioStage DecodeStage(const InputNode& node, const std::string& path, bool i
     if (const InputNode* aerodynamics = map.Optional("aerodynamics"))
       DecodeAerodynamics(*aerodynamics, map.PathOf("aerodynamics"), stage, problems);
     if (const InputNode* motor = map.Optional("motor"))
-      stage.motor = DecodeMotor(*motor, map.PathOf("motor"), propellant_kg, problems);
+      stage.motor = DecodeScenarioMotor(*motor, map.PathOf("motor"), propellant_kg, problems);
     if (!is_body) stage.separation_time_s = map.OptionalQuantity("separation_time", kTime, kPositive);
   }
   if (problems.size() == before) AddStructProblems(Problems(stage), node, path, problems);
@@ -368,9 +366,9 @@ Scenario DecodeScenario(const InputNode& node, const std::string& path, ProblemL
       scenario.environment.wind = DecodeWind(*wind, map.PathOf("wind"), problems);
     DecodeInitial(map.Required("initial", "a map"), map.PathOf("initial"), scenario, problems);
     const InputNode* body = map.Optional("body");
-    if (body != nullptr) scenario.stages.push_back(DecodeStage(*body, map.PathOf("body"), true, problems));
+    if (body != nullptr) scenario.stages.push_back(DecodeScenarioStage(*body, map.PathOf("body"), true, problems));
     map.Each("stages", 0, SIZE_MAX, [&](const InputNode& item, const std::string& item_path) {
-      scenario.stages.push_back(DecodeStage(item, item_path, false, problems));
+      scenario.stages.push_back(DecodeScenarioStage(item, item_path, false, problems));
     });
     if ((body != nullptr) == (node.Find("stages") != nullptr)) {
       AddProblem(problems, node, path,

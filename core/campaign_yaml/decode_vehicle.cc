@@ -11,8 +11,6 @@
 namespace dispersa {
 namespace {
 
-constexpr double kHalfTurn = kPi;
-constexpr double kQuarterTurn = kPi / 2.0;
 
 using ProblemList = std::vector<InputProblem>;
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/math/constants.h"
+
 namespace dispersa {
 
 std::optional<double> ParseNumber(std::string_view text) {
@@ -70,5 +72,7 @@ std::string FormatScaled(double value, double scale) {
   }
   return best.empty() ? FormatNumber(nearest) : best;
 }
+
+std::string FormatDegrees(double radians) { return FormatScaled(radians, kRadPerDeg); }
 
 }  // namespace dispersa

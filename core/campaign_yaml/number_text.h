@@ -23,5 +23,7 @@ std::string FormatRounded(double value);
 /// Text x such that x * scale is `value` to the bit, the shortest one; where no double x is, the nearest.
 /// FormatScaled(ParseNumber(FormatScaled(v, s)) * s, s) is always FormatScaled(v, s).
 std::string FormatScaled(double value, double scale);
+/// Radians in degrees, so.
+std::string FormatDegrees(double radians);
 
 }  // namespace dispersa

@@ -73,4 +73,7 @@ inline constexpr UnitSpelling kUnitSpellings[] = {
     {"tonne", "ton"},  {"tonnes", "ton"},  {"t", "ton"},         {"kgs", "kg"},        {"newton", "n"},
     {"newtons", "n"},  {"pascal", "pa"},   {"kgm2", "kg_m2"},    {"kgs2", "kg_s"},     {"sqm", "m2"}};
 
+inline constexpr double kHalfTurn = kPi;
+inline constexpr double kQuarterTurn = kPi / 2.0;
+
 }  // namespace dispersa

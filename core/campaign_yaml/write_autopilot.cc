@@ -8,7 +8,6 @@
 namespace dispersa {
 namespace {
 
-std::string Deg(double radians) { return FormatScaled(radians, kRadPerDeg); }
 std::string Row(double a, double b) { return "[" + FormatNumber(a) + ", " + FormatNumber(b) + "]"; }
 
 // Texts "key: value" of what it visits, quantities in the first unit of their dimension. What is off is left
@@ -128,7 +127,7 @@ std::string WriteAutopilot(const AutopilotConfig& autopilot) {
   return std::string("schema: ") + kAutopilotSchema + "\nname: " + TextScalar(autopilot.name) +
          "\ntick_s: " + FormatNumber(autopilot.tick_s) + "\n" + AxisText("pitch", autopilot.pitch) +
          AxisText("yaw", autopilot.yaw) + AxisText("roll", autopilot.roll) + GyrosText(autopilot.rate_gyros) +
-         "reaction_control: {deadband_deg: " + Deg(rcs.deadband_rad) +
+         "reaction_control: {deadband_deg: " + FormatDegrees(rcs.deadband_rad) +
          ", rate_gain_s: " + FormatNumber(rcs.rate_gain_s) + ", hysteresis: " + FormatNumber(rcs.hysteresis) +
          ", cycle_ticks: " + std::to_string(rcs.cycle_ticks) + "}\n";
 }

@@ -7,10 +7,9 @@
 namespace dispersa {
 namespace {
 
-std::string Deg(double radians) { return FormatScaled(radians, kRadPerDeg); }
 std::string Km(double metres) { return FormatScaled(metres, 1e3); }
 
-std::string DegBounds(const Bounds& bounds) { return "[" + Deg(bounds.low) + ", " + Deg(bounds.high) + "]"; }
+std::string DegBounds(const Bounds& bounds) { return "[" + FormatDegrees(bounds.low) + ", " + FormatDegrees(bounds.high) + "]"; }
 std::string Limits(const Bounds& bounds) {
   return "[" + FormatNumber(bounds.low) + ", " + FormatNumber(bounds.high) + "]";
 }
@@ -30,12 +29,12 @@ std::string TargetText(const TrajectoryProblem& problem) {
   } else {
     text += "altitude_km: " + Km(problem.target_altitude_m);
     if (!problem.velocity_is_free) text += ", velocity_m_s: " + FormatNumber(problem.target_velocity_m_s);
-    text += ", flight_path_angle_deg: " + Deg(problem.target_flight_path_angle_rad);
+    text += ", flight_path_angle_deg: " + FormatDegrees(problem.target_flight_path_angle_rad);
   }
-  if (problem.target_inclination_rad) text += ", inclination_deg: " + Deg(*problem.target_inclination_rad);
-  if (problem.target_node_rad) text += ", node_deg: " + Deg(*problem.target_node_rad);
+  if (problem.target_inclination_rad) text += ", inclination_deg: " + FormatDegrees(*problem.target_inclination_rad);
+  if (problem.target_node_rad) text += ", node_deg: " + FormatDegrees(*problem.target_node_rad);
   if (problem.target_argument_of_perigee_rad)
-    text += ", argument_of_perigee_deg: " + Deg(*problem.target_argument_of_perigee_rad);
+    text += ", argument_of_perigee_deg: " + FormatDegrees(*problem.target_argument_of_perigee_rad);
   return text + "}\n";
 }
 
@@ -76,9 +75,9 @@ std::string ProblemText(const TrajectoryProblem& problem) {
   text += "  limits:\n";
   text += "    axial_load_g: " + FormatNumber(problem.axial_load_limit_g) + "\n";
   text += "    lateral_load_g: " + FormatNumber(problem.lateral_load_limit_g) + "\n";
-  text += "    alpha_deg: " + Deg(problem.alpha_limit_rad) + "\n";
+  text += "    alpha_deg: " + FormatDegrees(problem.alpha_limit_rad) + "\n";
   if (problem.turn_rate_limit_rad_s > 0.0) {
-    text += "    turn_rate_deg_s: " + Deg(problem.turn_rate_limit_rad_s) + "\n";
+    text += "    turn_rate_deg_s: " + FormatDegrees(problem.turn_rate_limit_rad_s) + "\n";
   }
   text += "    transonic_mach_low: " + FormatNumber(problem.transonic_mach_low) + "\n";
   text += "    transonic_mach_high: " + FormatNumber(problem.transonic_mach_high) + "\n";
@@ -108,12 +107,12 @@ std::string WriteReference(const Reference& reference) {
   if (!reference.target_missed.empty()) text += "target_missed: " + Quoted(reference.target_missed) + "\n";
   text += ProblemText(problem);
   text += "flight_program:\n";
-  text += "  alpha_max_deg: " + Deg(program.alpha_max_rad) + "\n";
+  text += "  alpha_max_deg: " + FormatDegrees(program.alpha_max_rad) + "\n";
   text += "  t1_s: " + FormatNumber(program.t1_s) + "\n";
   text += "  t3_s: " + FormatNumber(program.t3_s) + "\n";
   text += "  t2_s: " + FormatNumber(program.t2_s) + "\n";
   text += "  coast_s: " + FormatNumber(program.coast_s) + "\n";
-  text += "  launch_azimuth_deg: " + Deg(program.launch_azimuth_rad) + "\n";
+  text += "  launch_azimuth_deg: " + FormatDegrees(program.launch_azimuth_rad) + "\n";
   text += "  last_ignition_s: " + FormatNumber(reference.last_ignition_s) + "\n";
   for (std::size_t stage = 1; stage < reference.earlier_ignition_s.size(); ++stage)
     if (reference.earlier_ignition_s[stage] > 0.0)
@@ -121,23 +120,23 @@ std::string WriteReference(const Reference& reference) {
               StageKey(stage, "ignition") + FormatNumber(reference.earlier_ignition_s[stage]) + "\n";
   for (std::size_t stage = 1; stage < program.steering.size(); ++stage)
     if (!program.steering[stage].empty())
-      text += "  " + IncidenceKey(stage, "begin") + Deg(program.steering[stage].begin_rad) + "\n  " +
-              IncidenceKey(stage, "end") + Deg(program.steering[stage].end_rad) + "\n";
+      text += "  " + IncidenceKey(stage, "begin") + FormatDegrees(program.steering[stage].begin_rad) + "\n  " +
+              IncidenceKey(stage, "end") + FormatDegrees(program.steering[stage].end_rad) + "\n";
   text += "orbit: {altitude_km: " + Km(orbit.altitude_m) +
           ", velocity_m_s: " + FormatNumber(orbit.velocity_m_s) +
-          ", flight_path_angle_deg: " + Deg(orbit.flight_path_angle_rad) +
-          ", inclination_deg: " + Deg(orbit.inclination_rad);
-  if (problem.target_node_rad) text += ", node_longitude_deg: " + Deg(orbit.node_longitude_rad);
+          ", flight_path_angle_deg: " + FormatDegrees(orbit.flight_path_angle_rad) +
+          ", inclination_deg: " + FormatDegrees(orbit.inclination_rad);
+  if (problem.target_node_rad) text += ", node_longitude_deg: " + FormatDegrees(orbit.node_longitude_rad);
   if (problem.target_argument_of_perigee_rad)
-    text += ", argument_of_latitude_deg: " + Deg(orbit.argument_of_latitude_rad);
+    text += ", argument_of_latitude_deg: " + FormatDegrees(orbit.argument_of_latitude_rad);
   text += "}\n";
   const OrbitErrors errors = ErrorsOf(problem, orbit);
   text += "errors: {altitude_km: " + Km(errors.altitude_m) +
           ", velocity_m_s: " + FormatNumber(errors.velocity_m_s) +
-          ", flight_path_angle_deg: " + Deg(errors.flight_path_angle_rad);
-  if (problem.target_inclination_rad) text += ", inclination_deg: " + Deg(errors.inclination_rad);
+          ", flight_path_angle_deg: " + FormatDegrees(errors.flight_path_angle_rad);
+  if (problem.target_inclination_rad) text += ", inclination_deg: " + FormatDegrees(errors.inclination_rad);
   if (problem.target_argument_of_perigee_rad)
-    text += ", argument_of_perigee_deg: " + Deg(errors.argument_of_perigee_rad);
+    text += ", argument_of_perigee_deg: " + FormatDegrees(errors.argument_of_perigee_rad);
   text += "}\n";
   text += reference.constraints.empty() ? "constraints: []\n" : "constraints:\n";
   for (const ConstraintMargin& constraint : reference.constraints) {

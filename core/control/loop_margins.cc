@@ -18,8 +18,6 @@ constexpr double kLowest_rad_s = 0.01;
 // Neighbours of the frequency grid lie 2 % apart; crossings are then refined.
 constexpr int kFrequencies = 500;
 constexpr int kRefinements = 50;
-// Above this of the lowest mode's frequency a response is the bending's.
-constexpr double kBelowModes = 0.7;
 // Attenuations by 6 and 3 dB, squared.
 constexpr double k6db2 = 0.251188643150958, k3db2 = 0.501187233627272;
 

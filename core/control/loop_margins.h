@@ -13,6 +13,9 @@
 
 namespace dispersa {
 
+/// Above this of the lowest mode's frequency a response is the bending's.
+inline constexpr double kBelowModes = 0.7;
+
 /// A part of the measured rate: that of a place, through a gyro.
 struct RateSensor {
   Eigen::RowVectorXd rate;  ///< of the plant's state

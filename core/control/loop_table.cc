@@ -11,8 +11,6 @@ namespace dispersa {
 
 namespace {
 
-// As LoopMargins' own: above this of the lowest mode's frequency a response is the bending's.
-constexpr double kBelowModes = 0.7;
 // Slower than any pole whose arc has to be counted whole.
 constexpr double kSlowest_rad_s = 1e-4;
 // A modulus this near 1 is 1: an angle that nothing restores.

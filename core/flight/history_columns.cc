@@ -11,7 +11,7 @@
 namespace dispersa {
 
 namespace {
-constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
+constexpr double kEmpty = std::numeric_limits<double>::quiet_NaN();
 }
 
 const std::vector<std::string>& KinematicColumnNames() {
@@ -95,9 +95,9 @@ void AppendLauncher(const FlightModel& model, const TickSample& s, std::vector<d
   const PitchYawRoll attitude = ToPitchYawRoll(Inverse(model.frame().q_IL) * s.state.q_IB);
   const Vector3 specific = now.loads.force_n / (now.loads.mass_kg * kStandardGravity);
   const AxisTelemetry& t = s.gimbal.telemetry[kPitch];
-  const auto powered = [&](double value) { return s.burning ? value : kUndefined; };
+  const auto powered = [&](double value) { return s.burning ? value : kEmpty; };
   const auto told = [&](std::size_t i) {
-    return s.law_telemetry ? powered((*s.law_telemetry)[i]) : kUndefined;
+    return s.law_telemetry ? powered((*s.law_telemetry)[i]) : kEmpty;
   };
   const auto& n = s.nozzle_rad;
   const LauncherStack& stack = model.nominal_plant().stacks[static_cast<std::size_t>(s.stack)];

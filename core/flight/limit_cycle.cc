@@ -21,7 +21,7 @@ constexpr int kSegments = 12;
 constexpr double kSimilar = 0.4;
 constexpr double kShare = 0.25;
 constexpr int kHarmonics = 4;
-constexpr int kPhases = 64;
+constexpr int kAngles = 64;
 
 struct Phasor {
   double re = 0.0, im = 0.0;
@@ -98,8 +98,8 @@ double PeakToPeak(const double* samples, int count, double omega) {
     harmonic[harmonics] = {scale * sum.re, scale * sum.im};
   }
   double low = 0.0, high = 0.0;
-  for (int k = 0; k < kPhases; ++k) {
-    const Phasor first = Turned(kTwoPi * k / kPhases);
+  for (int k = 0; k < kAngles; ++k) {
+    const Phasor first = Turned(kTwoPi * k / kAngles);
     Phasor turn = first;
     double value = 0.0;
     for (int h = 0; h < harmonics; ++h) {

@@ -12,7 +12,7 @@
 namespace dispersa {
 namespace {
 
-constexpr char kNavigation[] =
+constexpr char kComparisonNavigation[] =
     "<nav><a href=\"#compared\">What is compared</a><a href=\"#requirements\">Requirements</a><a "
     "href=\"#cases\">Harmed and rescued</a><a href=\"#metrics\">Metrics</a><a "
     "href=\"#figures\">Figures</a><a "
@@ -20,8 +20,6 @@ constexpr char kNavigation[] =
 /// Longer lists can be folded away; all are in compare.json.
 constexpr std::size_t kOpenRows = 20;
 constexpr std::size_t kListedCases = 1000;
-
-std::string Code(const std::string& text) { return "<code>" + HtmlText(text) + "</code>"; }
 
 std::string Definition(const std::string& html) { return "<span class=\"definition\">" + html + "</span>"; }
 
@@ -66,10 +64,6 @@ std::string FindingBadge(const MetricComparison& metric) {
   if (style.empty()) return "<span class=\"soft\">not shown</span>";
   return fmt::format("<span class=\"badge {}\">{}</span>", style,
                      metric.finding == "differs" ? "differs" : "B " + metric.finding);
-}
-
-std::string Tile(const std::string& value, const std::string& label) {
-  return fmt::format("<div class=\"tile\"><b>{}</b><span>{}</span></div>", value, label);
 }
 
 std::string Header(const Comparison& c) {
@@ -437,7 +431,7 @@ std::string ComparisonPage(const Comparison& comparison, const CaseColumns& a, c
       ".metrics td:first-child {{ min-width: 11em; }} .metrics td.n .definition {{ white-space: normal; }}\n"
       "</style>\n</head>\n<body>\n",
       HtmlText(comparison.b.name), HtmlText(comparison.a.name), StyleSheet());
-  page += Header(comparison) + kNavigation + ComparedSection(comparison) + RequirementsSection(comparison) +
+  page += Header(comparison) + kComparisonNavigation + ComparedSection(comparison) + RequirementsSection(comparison) +
           CasesSection(comparison) + MetricsSection(comparison) + FiguresSection(comparison, a, b) +
           ChangesSection(comparison) + MethodsSection(comparison);
   return page + "</body>\n</html>\n";

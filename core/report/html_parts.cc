@@ -19,6 +19,16 @@ std::string CssString(std::string_view text) {
 
 }  // namespace
 
+std::string Tile(const std::string& value, const std::string& label) {
+  return fmt::format("<div class=\"tile\"><b>{}</b><span>{}</span></div>", value, label);
+}
+
+std::string Code(const std::string& text) { return "<code>" + HtmlText(text) + "</code>"; }
+
+std::string WithUnit(double value, const std::string& unit) {
+  return ReadableText(value) + (unit.empty() ? "" : " " + unit);
+}
+
 void HtmlTable::Row(const std::vector<std::string>& cells, std::string_view row_class) {
   rows_ += row_class.empty() ? std::string("<tr>") : fmt::format("<tr class=\"{}\">", row_class);
   for (std::size_t i = 0; i < cells.size(); ++i) {

@@ -34,6 +34,12 @@ std::string Figure(const std::string& svg, const std::string& caption_html);
 /// "pass", "fail", "inconclusive", "incomplete" as a coloured label that is also readable without colour.
 std::string VerdictBadge(std::string_view verdict);
 
+/// A number of the head of a page above what it counts.
+std::string Tile(const std::string& value, const std::string& label);
+std::string Code(const std::string& text);
+/// "12.5 deg"; without a unit the number alone.
+std::string WithUnit(double value, const std::string& unit);
+
 /// For the page's <style>.
 std::string_view StyleSheet();
 

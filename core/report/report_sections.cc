@@ -14,18 +14,12 @@
 namespace dispersa {
 namespace {
 
-std::string WithUnit(double value, const std::string& unit) {
-  return ReadableText(value) + (unit.empty() ? "" : " " + unit);
-}
-
 /// For the middle of a sentence.
 std::string Lower(std::string title) {
   if (!title.empty() && title[0] >= 'A' && title[0] <= 'Z')
     title[0] = static_cast<char>(title[0] - 'A' + 'a');
   return HtmlText(title);
 }
-
-std::string Code(const std::string& text) { return "<code>" + HtmlText(text) + "</code>"; }
 
 std::string ReplayCell(std::uint64_t case_index) {
   return fmt::format("<code class=\"copy\" data-case=\"{}\">{}</code>", case_index, ReplayCommand(case_index));
@@ -85,10 +79,6 @@ std::string VerdictSentence(const CampaignSummary& summary) {
       return PassSentence(summary);
   }
   return "";
-}
-
-std::string Tile(const std::string& value, const std::string& label) {
-  return fmt::format("<div class=\"tile\"><b>{}</b><span>{}</span></div>", value, label);
 }
 
 const Summary* FindMetric(const CampaignSummary& summary, const std::string& name) {

@@ -14,10 +14,6 @@
 namespace dispersa {
 namespace {
 
-std::string WithUnit(double value, const std::string& unit) {
-  return ReadableText(value) + (unit.empty() ? "" : " " + unit);
-}
-
 std::string Fact(const std::string& title, const std::string& value) {
   return fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", title, value);
 }

@@ -103,7 +103,7 @@ void SetConvergence(const CaseTally& tally, const CaseColumns& cases, Requiremen
   }
 }
 
-std::string PlanWords(const RequirementSummary& summary) {
+std::string PlanSentence(const RequirementSummary& summary) {
   switch (summary.plan.kind) {
     case PlanKind::kFixed:
       return fmt::format("one look at {} cases", summary.planned);
@@ -140,13 +140,13 @@ std::string IndependentSentence(const RequirementSummary& summary, std::int64_t 
     sentence = fmt::format("Met: {} show a probability of at least {} with {} confidence; {} is required.",
                            seen, PercentText(*summary.success_lower), confidence, required);
   } else if (summary.verdict == "pass") {
-    sentence = fmt::format("Met by its plan ({}): {} at a risk of {}; {} is required.", PlanWords(summary), seen,
+    sentence = fmt::format("Met by its plan ({}): {} at a risk of {}; {} is required.", PlanSentence(summary), seen,
                            PercentText(summary.consumer_risk), required);
   } else if (summary.verdict == "fail" && *summary.success_upper <= summary.probability) {
     sentence = fmt::format("Not met: {} show a probability of at most {} with {} confidence; {} is required.",
                            seen, PercentText(*summary.success_upper), confidence, required);
   } else if (summary.verdict == "fail") {
-    sentence = fmt::format("Not met by its plan ({}): {} at a risk of {}; {} is required.", PlanWords(summary),
+    sentence = fmt::format("Not met by its plan ({}): {} at a risk of {}; {} is required.", PlanSentence(summary),
                            seen, PercentText(summary.consumer_risk), required);
   } else if (summary.contradicted) {
     sentence = fmt::format(
@@ -169,7 +169,7 @@ std::string IndependentSentence(const RequirementSummary& summary, std::int64_t 
     sentence += fmt::format(
         " Beyond the plan ({}): read as if each look were the only one, these looks pass a design that just "
         "misses with a probability of {}, not {}; the verdict spends only what the plan left of its risk.",
-        PlanWords(summary), PercentText(*summary.naive_risk), PercentText(summary.consumer_risk));
+        PlanSentence(summary), PercentText(*summary.naive_risk), PercentText(summary.consumer_risk));
   }
   return sentence;
 }

@@ -32,7 +32,7 @@ constexpr char kSchema[] = "dispersa/results/1";
 /// Columns of `cases` before the inputs; the digests of the flight and of the row follow the metrics.
 constexpr int kFirstInput = 5;
 
-std::string CaseColumns(std::size_t stages, const char* type) {
+std::string CaseColumnList(std::size_t stages, const char* type) {
   std::string columns;
   for (std::size_t i = 0; i < InputCount(stages); ++i)
     columns += fmt::format(", input_{}{}", InputColumns()[i].name, type);
@@ -42,7 +42,7 @@ std::string CaseColumns(std::size_t stages, const char* type) {
 }
 
 std::string SelectCases(std::size_t stages) {
-  return "SELECT case_index, outcome, end_time_s, end_stage, reason" + CaseColumns(stages, "") +
+  return "SELECT case_index, outcome, end_time_s, end_stage, reason" + CaseColumnList(stages, "") +
          ", digest, row_digest FROM cases";
 }
 
@@ -64,7 +64,7 @@ void CreateTables(Database& database, std::size_t stages) {
   database.Execute(
       "CREATE TABLE cases (case_index INTEGER PRIMARY KEY, outcome TEXT NOT NULL, end_time_s REAL, "
       "end_stage INTEGER NOT NULL, reason TEXT NOT NULL" +
-      CaseColumns(stages, " REAL") + ", digest TEXT NOT NULL, row_digest TEXT NOT NULL)");
+      CaseColumnList(stages, " REAL") + ", digest TEXT NOT NULL, row_digest TEXT NOT NULL)");
   database.Execute("CREATE TABLE quarantined (case_index INTEGER PRIMARY KEY, reason TEXT NOT NULL)");
   database.Execute("CREATE TABLE provenance (key TEXT PRIMARY KEY, value TEXT NOT NULL)");
   database.Execute(

@@ -12,7 +12,7 @@
 namespace dispersa {
 namespace {
 
-constexpr char kTime[] = "time since lift-off, s";
+constexpr char kSinceLiftOff[] = "time since lift-off, s";
 
 template <typename Value>
 std::vector<double> Column(const std::vector<AscentSample>& history, Value value) {
@@ -49,10 +49,10 @@ std::string FlightProgramFigures(const FlightProgram& program, const std::vector
   const std::vector<double> time_s = Column(history, TimeOf);
   const std::vector<double> alpha_deg =
       Column(history, [](const AscentSample& s) { return s.alpha_rad * kDegPerRad; });
-  SvgChart whole({.label = kTime}, {.label = "programmed angle of attack, °"});
+  SvgChart whole({.label = kSinceLiftOff}, {.label = "programmed angle of attack, °"});
   MarkStages(history, &whole);
   whole.Line(time_s, alpha_deg, "line-0", "");
-  SvgChart kick({.label = kTime, .low = 0.0, .high = std::ceil(program.t2_s / 5.0 + 0.5) * 5.0},
+  SvgChart kick({.label = kSinceLiftOff, .low = 0.0, .high = std::ceil(program.t2_s / 5.0 + 0.5) * 5.0},
                 {.label = "programmed angle of attack, °"});
   kick.Mark(program.t1_s, "t1");
   kick.Mark(program.t3_s, "t3");
@@ -69,7 +69,7 @@ std::string ReferenceFigures(const std::vector<AscentSample>& history) {
   const std::vector<double> time_s = Column(history, TimeOf);
   std::string figures;
   const auto add = [&](const char* label, std::vector<double> values, const std::string& caption) {
-    SvgChart chart({.label = kTime}, {.label = label});
+    SvgChart chart({.label = kSinceLiftOff}, {.label = label});
     MarkStages(history, &chart);
     chart.Line(time_s, std::move(values), "line-0", "");
     figures += Draw(std::move(chart), caption);

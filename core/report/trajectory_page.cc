@@ -86,7 +86,7 @@ std::string ConstraintTable(const Reference& reference) {
   return table.Html("narrow");
 }
 
-std::string Draw(const SvgChart& chart, const std::string& caption) {
+std::string DrawSearch(const SvgChart& chart, const std::string& caption) {
   return Figure(chart.Svg(caption), HtmlText(caption));
 }
 
@@ -104,11 +104,11 @@ std::string SearchFigures(const OptimizationResult& result) {
   objective.Line(generation, mean, "line-1", "mean of the feasible");
   SvgChart fraction({.label = "generation"}, {.label = "feasible", .low = 0.0, .high = 1.0, .percent = true});
   fraction.Line(generation, feasible, "line-0", "");
-  std::string figures = Draw(objective,
+  std::string figures = DrawSearch(objective,
                              "Search over all variables of the flight program. Misses within the tie "
                              "tolerance of the best are equal, so the "
                              "best may rise while the peak of q·α falls.") +
-                        Draw(fraction, "Individuals that break no constraint.");
+                        DrawSearch(fraction, "Individuals that break no constraint.");
   if (result.selection.log.empty()) return figures;
   std::vector<double> step, load;
   for (const GenerationRecord& record : result.selection.log) {
@@ -117,7 +117,7 @@ std::string SearchFigures(const OptimizationResult& result) {
   }
   SvgChart selection({.label = "generation"}, {.label = "peak of q·α, Pa rad"});
   selection.Line(step, load, "line-0", "best");
-  return figures + Draw(selection,
+  return figures + DrawSearch(selection,
                         "Selection over t1, t3 and t2 among programs that reach the target: the least peak of "
                         "q·α.");
 }

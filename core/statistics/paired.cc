@@ -10,7 +10,7 @@
 namespace dispersa {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kWorst = std::numeric_limits<double>::infinity();
 
 /// The median of sorted values; between equal infinities, that infinity; between opposite ones, undefined.
 template <typename Middle>
@@ -46,8 +46,8 @@ PairedDifference ComparePaired(const std::vector<double>& a, const std::vector<d
     result.lost_b += has_b ? 0 : 1;
     positive = positive && (!has_a || a[i] > 0.0) && (!has_b || b[i] > 0.0);
     // A lost flight stands for an infinite value, two of them for the same one.
-    const double difference = has_a && has_b ? b[i] - a[i] : (has_a ? kInfinity : (has_b ? -kInfinity : 0.0));
-    const double ratio = has_a && has_b ? b[i] / a[i] : (has_a ? kInfinity : (has_b ? 0.0 : 1.0));
+    const double difference = has_a && has_b ? b[i] - a[i] : (has_a ? kWorst : (has_b ? -kWorst : 0.0));
+    const double ratio = has_a && has_b ? b[i] / a[i] : (has_a ? kWorst : (has_b ? 0.0 : 1.0));
     ++(difference > 0.0 ? result.worse : difference < 0.0 ? result.better : result.equal);
     differences.push_back(difference);
     ratios.push_back(ratio);

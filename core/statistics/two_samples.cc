@@ -14,7 +14,6 @@
 namespace dispersa {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double LogChoose(std::int64_t n, std::int64_t k) {
   const auto log_factorial = [](std::int64_t m) { return boost::math::lgamma(static_cast<double>(m) + 1.0); };
@@ -93,7 +92,7 @@ std::vector<double> HolmAdjusted(const std::vector<double>& p_values) {
 Interval DifferenceLimits(double a, const Interval& limits_a, double b, const Interval& limits_b,
                           double correlation) {
   const auto reach = [&](double of_b, double of_a) {
-    if (!std::isfinite(of_b) || !std::isfinite(of_a)) return kInfinity;
+    if (!std::isfinite(of_b) || !std::isfinite(of_a)) return std::numeric_limits<double>::infinity();
     return std::sqrt(std::max(0.0, of_b * of_b + of_a * of_a - 2.0 * correlation * of_b * of_a));
   };
   return {b - a - reach(b - limits_b.lower, limits_a.upper - a),

@@ -12,7 +12,7 @@ namespace {
 
 // Panels of Simpson's rule on a section: exact on straight sections (all integrands are cubic at most),
 // and 1e-6 relative on an ogive, whose slope is smooth.
-constexpr int kPanels = 64;
+constexpr int kSectionPanels = 64;
 
 MouldSection Section(ProfileShape shape, double start_m, double length_m, double fore_radius_m,
                      double aft_radius_m) {
@@ -90,11 +90,11 @@ std::vector<MouldSection> CutMouldLine(const std::vector<ProfileSection>& profil
 BodyIntegrals Integrate(const std::vector<MouldSection>& body) {
   BodyIntegrals sum;
   for (const MouldSection& section : body) {
-    const double panel_m = (section.end_m - section.start_m) / kPanels;
-    for (int i = 0; i <= kPanels; ++i) {
+    const double panel_m = (section.end_m - section.start_m) / kSectionPanels;
+    for (int i = 0; i <= kSectionPanels; ++i) {
       const double x = section.start_m + i * panel_m;
       const double r = section.Radius(x);
-      const double weight = (i == 0 || i == kPanels ? 1.0 : i % 2 == 1 ? 4.0 : 2.0) * panel_m / 3.0;
+      const double weight = (i == 0 || i == kSectionPanels ? 1.0 : i % 2 == 1 ? 4.0 : 2.0) * panel_m / 3.0;
       const double area = kPi * Square(r);
       sum.volume_m3 += weight * area;
       sum.volume_moment_m4 += weight * area * x;

@@ -25,9 +25,9 @@ double PlaneFactor(const BeamSection& section, BeamPlane plane) {
   return plane == BeamPlane::kZ ? section.z_to_y_stiffness : 1.0;
 }
 
-class Checker {
+class BeamChecker {
  public:
-  explicit Checker(const Vehicle& vehicle) : vehicle_(vehicle), beam_(*vehicle.structure_beam) {}
+  explicit BeamChecker(const Vehicle& vehicle) : vehicle_(vehicle), beam_(*vehicle.structure_beam) {}
 
   std::vector<VehicleProblem> Run() {
     for (std::size_t i = 0; i < beam_.sensors.size(); ++i) {
@@ -208,6 +208,6 @@ double BeamSection::ShearStiffness(BeamPlane plane, double station_m) const {
   return PlaneFactor(*this, plane) * coefficient * area * modulus_pa / (2.0 * (1.0 + poisson_ratio));
 }
 
-std::vector<VehicleProblem> BeamProblems(const Vehicle& vehicle) { return Checker(vehicle).Run(); }
+std::vector<VehicleProblem> BeamProblems(const Vehicle& vehicle) { return BeamChecker(vehicle).Run(); }
 
 }  // namespace dispersa

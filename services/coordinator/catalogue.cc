@@ -32,7 +32,7 @@ std::string ReadWhole(const fs::path& file) {
   return std::move(text).str();
 }
 
-CatalogueEntry Parse(const std::string& text) {
+CatalogueEntry ParseState(const std::string& text) {
   const Json json = Json::parse(text);
   CatalogueEntry entry;
   entry.id = json.at("id").get<std::string>();
@@ -81,7 +81,7 @@ Catalogue::Catalogue(const fs::path& directory) : directory_(directory) {
     // A launch that was killed before its state was written has left nothing that anybody was told of.
     if (!fs::is_regular_file(folder.path() / "state.json")) continue;
     try {
-      CatalogueEntry entry = Parse(ReadWhole(folder.path() / "state.json"));
+      CatalogueEntry entry = ParseState(ReadWhole(folder.path() / "state.json"));
       if (entry.id != folder.path().filename().string()) throw std::runtime_error("of another campaign");
       next_order_ = std::max(next_order_, entry.order + 1);
       entries_[entry.id] = std::move(entry);

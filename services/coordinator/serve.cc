@@ -27,7 +27,7 @@ constexpr double kProgress_s = 5.0;
 constexpr double kMetrics_s = 1.0;
 constexpr std::chrono::seconds kHealthPatience(8);
 
-struct Stopped {};
+struct StoppedServing {};
 
 /// True now and then.
 class Every {
@@ -79,15 +79,15 @@ int ServeCampaign(const ServeOptions& options, const CampaignRequest& request,
   ReportOptions report;
   report.threads = UsableCores();
   report.progress = [](const std::string&, std::uint64_t, std::uint64_t) {
-    if (StopRequested()) throw Stopped();
+    if (StopRequested()) throw StoppedServing();
   };
   try {
-    if (StopRequested()) throw Stopped();
+    if (StopRequested()) throw StoppedServing();
     coordinator.Dismiss();
     const CampaignSummary summary = WriteReports(book.folder(), book.campaign(), report);
     fmt::print("result: {}\n", book.folder().directory().string());
     return CampaignExitCode(summary.verdict, book.ledger().Progress().conflicts);
-  } catch (const Stopped&) {
+  } catch (const StoppedServing&) {
     spdlog::warn("stopped; the same with --resume goes on");
     return kExitInterrupted;
   }

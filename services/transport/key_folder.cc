@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr char kHowTo[] = "give a folder that `dispersa keys issue` made";
 
-[[noreturn]] void Refuse(const fs::path& what, const std::string& problem) {
+[[noreturn]] void RefuseKeys(const fs::path& what, const std::string& problem) {
   throw NetworkError(what.string() + ": " + problem);
 }
 
@@ -40,15 +40,15 @@ auto Parse(const fs::path& file, Read read) {
   } catch (const NetworkError&) {
     throw;
   } catch (const std::runtime_error& error) {
-    Refuse(file, error.what());
+    RefuseKeys(file, error.what());
   }
 }
 
 void CheckDates(const fs::path& file, X509* certificate, const char* remedy) {
   const std::time_t now = std::time(nullptr);
-  if (now > EndOf(certificate)) Refuse(file, "expired on " + DateText(EndOf(certificate)) + ": " + remedy);
+  if (now > EndOf(certificate)) RefuseKeys(file, "expired on " + DateText(EndOf(certificate)) + ": " + remedy);
   if (now < BeginOf(certificate)) {
-    Refuse(file,
+    RefuseKeys(file,
            "is valid from " + DateText(BeginOf(certificate)) + " on: the clock of this machine may be wrong");
   }
 }
@@ -63,15 +63,15 @@ std::string ReadKeyFile(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::string text{std::istreambuf_iterator<char>(in), {}};
   if (!in.is_open() || in.bad()) {
-    Refuse(file, std::string("cannot be read: ") + std::strerror(errno));
+    RefuseKeys(file, std::string("cannot be read: ") + std::strerror(errno));
   }
   return text;
 }
 
 KeyFolder OpenKeyFolder(const fs::path& directory, std::initializer_list<Role> roles) {
-  if (!fs::is_directory(directory)) Refuse(directory, std::string("no folder: ") + kHowTo);
+  if (!fs::is_directory(directory)) RefuseKeys(directory, std::string("no folder: ") + kHowTo);
   if (fs::exists(directory / "authority")) {
-    Refuse(directory, "the folder of the authority, which signs and does not speak: give one of " +
+    RefuseKeys(directory, "the folder of the authority, which signs and does not speak: give one of " +
                           (directory / "issued").string());
   }
   const auto certificate_in = [&](const char* name) { return Parse(directory / name, ReadCertificate); };
@@ -80,10 +80,10 @@ KeyFolder OpenKeyFolder(const fs::path& directory, std::initializer_list<Role> r
   const Certificate identity = certificate_in(kIdentityFile);
   const PrivateKey key = Parse(directory / kIdentityKeyFile, ReadPrivateKey);
   if (X509_check_private_key(identity.get(), key.get()) != 1) {
-    Refuse(directory / kIdentityKeyFile, std::string("not the key of ") + kIdentityFile);
+    RefuseKeys(directory / kIdentityKeyFile, std::string("not the key of ") + kIdentityFile);
   }
   if (!IsSignedBy(identity.get(), identity_ca.get())) {
-    Refuse(directory / kIdentityFile, std::string("not signed by ") + kIdentityAuthorityFile);
+    RefuseKeys(directory / kIdentityFile, std::string("not signed by ") + kIdentityAuthorityFile);
   }
   const auto document_in = [&](const char* name) {
     return Parse(directory / name,
@@ -92,12 +92,12 @@ KeyFolder OpenKeyFolder(const fs::path& directory, std::initializer_list<Role> r
   document_in(kGovernanceFile);
   const std::string permissions = document_in(kPermissionsFile);
   if (!Contains(permissions, "<subject_name>" + SubjectText(identity.get()) + "</subject_name>")) {
-    Refuse(directory / kPermissionsFile, std::string("not the permissions of the owner of ") + kIdentityFile);
+    RefuseKeys(directory / kPermissionsFile, std::string("not the permissions of the owner of ") + kIdentityFile);
   }
   const Subject subject = SubjectOf(identity.get());
   const auto role = ParseRole(subject.unit);
   if (!role || std::find(roles.begin(), roles.end(), *role) == roles.end()) {
-    Refuse(directory, "keys of the " + subject.unit + " '" + subject.name + "'; here those of a " +
+    RefuseKeys(directory, "keys of the " + subject.unit + " '" + subject.name + "'; here those of a " +
                           JoinRoles(roles) + " are needed");
   }
   CheckDates(directory / kIdentityAuthorityFile, identity_ca.get(), "make a new authority");

@@ -17,7 +17,7 @@ namespace {
 namespace dds = eprosima::fastdds::dds;
 namespace rtps = eprosima::fastrtps::rtps;
 
-constexpr std::chrono::seconds kHandshake(5);
+constexpr std::chrono::seconds kHandshakePatience(5);
 constexpr std::size_t kMostHandshakes = 1024;  // strangers may make up participants without end
 constexpr char kBadKeys[] = "its keys are of another authority, expired or damaged";
 
@@ -46,7 +46,7 @@ void Neighbours::on_participant_discovery(dds::DomainParticipant*, rtps::Partici
   const bool it_has_keys = !found.info.identity_token_.class_id().empty();
   if (we_have_keys_ && it_has_keys) {
     if (handshakes_.size() < kMostHandshakes) {
-      handshakes_[found.info.m_guid] = {std::chrono::steady_clock::now() + kHandshake, WhoIs(found.info)};
+      handshakes_[found.info.m_guid] = {std::chrono::steady_clock::now() + kHandshakePatience, WhoIs(found.info)};
     }
   } else if (we_have_keys_ != it_has_keys) {
     Complain("participant", WhoIs(found.info),
