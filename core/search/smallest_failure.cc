@@ -21,7 +21,7 @@ constexpr double kWorthIt = 0.999;    ///< a nearer point is at least so much ne
 
 class Search {
  public:
-  Search(const std::vector<Coordinate>& coordinates, const MarginsAt& margins_at,
+  Search(const std::vector<Coordinate>& coordinates, const PointMargins& margins_at,
          const FailureSearchOptions& options)
       : coordinates_(coordinates), margins_at_(margins_at), options_(options) {
     for (std::size_t i = 0; i < coordinates.size(); ++i) {
@@ -317,7 +317,7 @@ class Search {
   }
 
   const std::vector<Coordinate>& coordinates_;
-  const MarginsAt& margins_at_;
+  const PointMargins& margins_at_;
   const FailureSearchOptions options_;
   std::vector<std::size_t> counting_, directions_;
   std::size_t flights_ = 0;
@@ -337,7 +337,7 @@ double DistanceOf(const std::vector<Coordinate>& coordinates, const Point& point
 }
 
 FailureSearchResult FindSmallestFailure(const std::vector<Coordinate>& coordinates,
-                                        const MarginsAt& margins_at, const FailureSearchOptions& options) {
+                                        const PointMargins& margins_at, const FailureSearchOptions& options) {
   return Search(coordinates, margins_at, options).Run();
 }
 

@@ -12,7 +12,7 @@ namespace dispersa {
 
 /// How far inside its limit the metric is at each point, all flown side by side: positive inside, 0 or less
 /// outside, NaN of a flight that was lost.
-using MarginsAt = std::function<std::vector<double>(const std::vector<std::vector<double>>& points)>;
+using PointMargins = std::function<std::vector<double>(const std::vector<std::vector<double>>& points)>;
 
 struct FailureSearchOptions {
   std::size_t max_flights = 1000;
@@ -48,6 +48,6 @@ double DistanceOf(const std::vector<Coordinate>& coordinates, const std::vector<
 ///
 /// Steps are accepted only if they fail and are nearer, so that what is returned has been flown and fails.
 FailureSearchResult FindSmallestFailure(const std::vector<Coordinate>& coordinates,
-                                        const MarginsAt& margins_at, const FailureSearchOptions& options);
+                                        const PointMargins& margins_at, const FailureSearchOptions& options);
 
 }  // namespace dispersa

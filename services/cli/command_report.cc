@@ -38,7 +38,7 @@ ExitCode Fill(const ReportCommand& options) {
   return CampaignExitCode(BuildSummary(stored.folder, stored.campaign).verdict, 0);
 }
 
-ExitCode Report(const ReportCommand& options, const GlobalOptions& global) {
+ExitCode ReportAgain(const ReportCommand& options, const GlobalOptions& global) {
   if (!options.template_file.empty()) return Fill(options);
   if (!options.out.empty())
     throw InputError("--out: the reports stand in the result folder", "--out with --template");
@@ -70,7 +70,7 @@ void AddReportCommand(CLI::App& app, Invocation& invocation) {
       "          dispersa report results/table3-1a2b3c4d --template campaigns/templates/report.md --out "
       "report.md");
   command->callback([options, &invocation] {
-    invocation.command = [options](const GlobalOptions& global) { return Report(*options, global); };
+    invocation.command = [options](const GlobalOptions& global) { return ReportAgain(*options, global); };
   });
 }
 

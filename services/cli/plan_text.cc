@@ -36,9 +36,9 @@ CaseColumns DrawnColumns(const Campaign& campaign, const std::vector<int>& input
 bool IsDoubtful(const DispersionSummary& one) { return one.consistent && !*one.consistent; }
 
 /// The rows of both tables.
-class Plan {
+class PlanTable {
  public:
-  Plan(const Campaign& campaign, bool all, std::size_t width)
+  PlanTable(const Campaign& campaign, bool all, std::size_t width)
       : campaign_(campaign),
         inputs_(DispersedInputs(campaign)),
         cases_(DrawnColumns(campaign, inputs_)),
@@ -143,7 +143,7 @@ class Plan {
 }  // namespace
 
 std::string PlanText(const Campaign& campaign, bool all, std::size_t width) {
-  return Plan(campaign, all, width).Text();
+  return PlanTable(campaign, all, width).Text();
 }
 
 }  // namespace dispersa

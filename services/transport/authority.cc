@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 constexpr char kIdentityAuthorityKeyFile[] = "identity_ca.key";
 constexpr char kPermissionsAuthorityKeyFile[] = "permissions_ca.key";
 constexpr std::time_t kDay_s = 86400;
-constexpr std::size_t kMaxName = 31;  // with '_' and 32 random digits an identifier of 64
+constexpr std::size_t kMaxKeyName = 31;  // with '_' and 32 random digits an identifier of 64
 
 [[noreturn]] void Refuse(const fs::path& what, const std::string& problem, const std::string& allowed = "") {
   throw InputError({{what.string(), 0, 0, "", problem, allowed}});
@@ -34,7 +34,7 @@ bool IsName(const std::string& text) {
   const auto is_letter = [](char c) {
     return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
   };
-  return !text.empty() && text.size() <= kMaxName && is_letter(text.front()) &&
+  return !text.empty() && text.size() <= kMaxKeyName && is_letter(text.front()) &&
          std::all_of(text.begin(), text.end(), [&](char c) { return is_letter(c) || c == '-'; });
 }
 

@@ -29,7 +29,7 @@ TEST(SmallestFailure, FindsAPlantedCauseInFlight) {
 
   const CampaignFlights flights(campaign);
   const DispersionSpace space(campaign);
-  const MarginsAt margins_at = [&](const std::vector<std::vector<double>>& points) {
+  const PointMargins margins_at = [&](const std::vector<std::vector<double>>& points) {
     std::vector<FlightOrder> orders;
     for (const FlightInputs& inputs : space.Inputs(points)) orders.push_back({inputs, {}});
     std::vector<double> margins;

@@ -26,7 +26,7 @@ struct Counted {
   std::function<double(const Point&)> margin;
   std::size_t flights = 0;
 
-  MarginsAt At() {
+  PointMargins At() {
     return [this](const std::vector<Point>& points) {
       flights += points.size();
       std::vector<double> margins;
