@@ -38,9 +38,10 @@ class FieldReader {
       VisitSection(fields, sections.emplace_back());
     });
   }
-  void OfOtherLaws(const char* key) { map_.Ignore(key); }
+  void OfOtherLaws(const char* key) { map_.Allow(key); }
   void Matrix(const char* key, Matrix2& value) {
     map_.Each(key, 2, 2, [&](const InputNode& row, const std::string& row_path) {
+      SayExpects(row_path, {.kind = Expectation::Kind::kList, .low_count = 2, .high_count = 2});
       if (row.kind != InputNode::Kind::kList || row.items.size() != 2) {
         AddProblem(map_.problems(), row, row_path, row.Describe() + " is not a row of two numbers",
                    "[[q11, q12], [q12, q22]]");
@@ -129,7 +130,7 @@ AutopilotConfig DecodeAutopilot(const InputNode& node, const std::string& path, 
   if (!CheckSchema(node, kAutopilotSchema, !path.empty(), path, problems)) return autopilot;
   {
     MapReader map(node, path, problems);
-    map.Ignore("schema");
+    map.Allow("schema");
     autopilot.name = map.Text("name");
     autopilot.tick_s = map.Quantity("tick", kTime, {1e-4, 0.1, false, false});
     autopilot.pitch = DecodeAxis(map.Required("pitch", "a map"), map.PathOf("pitch"), problems);

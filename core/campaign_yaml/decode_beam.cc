@@ -26,6 +26,9 @@ Taper Ends(MapReader& map, const std::string& stem, Dimension dimension, const R
 void DecodeStiffness(MapReader& map, bool timoshenko, BeamSection& section, ProblemList& problems) {
   const bool tube = map.Has("outer_diameter", kLength);
   const bool given = map.Has("bending_stiffness", kBendingStiffness);
+  if (!tube && !given)
+    map.NoteMissing({"bending_stiffness_n_m2", "bending_stiffness_kn_m2", "bending_stiffness_mn_m2",
+                     "outer_diameter_m", "outer_diameter_km", "outer_diameter_mm", "outer_diameter_um"});
   if (tube == given) {
     map.IgnoreQuantity("bending_stiffness", kBendingStiffness);
     map.IgnoreQuantity("outer_diameter", kLength);
@@ -129,6 +132,7 @@ std::vector<TabledMode> DecodeModeTable(const InputNode& node, const std::string
     deflection = map.Numbers("deflection", kAnyNumber, 1);
     slope_1_m = map.Numbers("slope_1_m", kAnyNumber, 1);
     map.Each("plane", 1, SIZE_MAX, [&](const InputNode& item, const std::string& item_path) {
+      SayExpects(item_path, {.kind = Expectation::Kind::kWords, .words = {"y", "z"}});
       if (item.text != "y" && item.text != "z")
         AddProblem(problems, item, item_path, item.Describe() + " is not a choice", "one of y, z");
       plane.push_back(item.text == "z" ? BeamPlane::kZ : BeamPlane::kY);

@@ -72,6 +72,7 @@ Sampling DecodeSampling(const InputNode& node, const std::string& path, ProblemL
 void DecodeListTable(const InputNode& table, const std::string& path, Campaign& campaign,
                      ProblemList& problems) {
   if (table.file == nullptr) return;  // already reported
+  SayExpects(path, {.kind = Expectation::Kind::kColumns});
   std::vector<std::string> names;
   const std::size_t count = InputCount(campaign.vehicle.stages.size());
   for (std::size_t i = 0; i < count; ++i) names.push_back(InputColumns()[i].name);
@@ -139,11 +140,13 @@ void DecodeCorrelation(const InputNode& node, const std::string& path, Campaign&
       }
       members.push_back(position);
     });
-    const bool covariance = node.Find("covariance") != nullptr;
+    const bool covariance = map.Peek("covariance") != nullptr;
     const std::string key = covariance ? "covariance" : "matrix";
     rows = node.Find(key);
     map.Each(key, 2, SIZE_MAX, [&](const InputNode& item, const std::string& item_path) {
       std::vector<double> row;
+      SayExpects(item_path, {.kind = Expectation::Kind::kList, .low_count = 2});
+      SayExpects(item_path + "[]", {.kind = Expectation::Kind::kNumber});
       for (const InputNode& cell : item.items) row.push_back(ReadNumber(cell, item_path, problems));
       matrix.push_back(std::move(row));
     });
@@ -334,6 +337,8 @@ Requirement DecodeRequirement(const InputNode& node, const std::string& path, co
   requirement.metric = ReadText(metric, map.PathOf("metric"), problems);
   const auto last = MetricNames().begin() + static_cast<std::ptrdiff_t>(MetricCount(stages));
   const std::vector<std::string> names(MetricNames().begin(), last);
+  if (Listener() != nullptr)
+    SayExpects(map.PathOf("metric"), {.kind = Expectation::Kind::kWords, .words = MetricNames()});
   if (metric.kind == InputNode::Kind::kScalar &&
       std::find(names.begin(), names.end(), metric.text) == names.end()) {
     AddProblem(problems, metric, map.PathOf("metric"),
@@ -354,6 +359,7 @@ Requirement DecodeRequirement(const InputNode& node, const std::string& path, co
   }
   const int limits =
       (node.Find("below") != nullptr) + (node.Find("above") != nullptr) + (node.Find("within") != nullptr);
+  if (limits == 0) map.NoteMissing({"below", "above", "within"});
   if (limits != 1 && node.kind == InputNode::Kind::kMap) {
     const bool pair = limits == 2 && node.Find("within") == nullptr;
     AddProblem(problems, node, path,
@@ -486,7 +492,7 @@ DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vect
   Campaign& campaign = decoded.campaign;
   if (!CheckSchema(root, kCampaignSchema, false, "", problems)) return decoded;
   MapReader map(root, "", problems);
-  map.Ignore("schema");
+  map.Allow("schema");
   campaign.name = map.Text("name");
   CheckName(campaign.name, root, problems);
   map.Text("description", "");
@@ -497,6 +503,7 @@ DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vect
 
   const InputNode* reference = map.Optional("reference");
   const InputNode* optimize = map.Optional("optimize");
+  if (reference == nullptr && optimize == nullptr) map.NoteMissing({"reference", "optimize"});
   if (root.kind == InputNode::Kind::kMap && (reference == nullptr) == (optimize == nullptr)) {
     AddProblem(problems, root, "",
                reference == nullptr ? "there is neither 'reference' nor 'optimize'"
@@ -564,11 +571,11 @@ DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vect
                  "method: monte_carlo");
     }
   }
-  map.Each("requirements", map.node().Find("requirements") == nullptr ? 0 : 1, SIZE_MAX,
-           [&](const InputNode& item, const std::string& path) {
-             campaign.requirements.push_back(
-                 DecodeRequirement(item, path, plan, campaign.vehicle.stages.size(), problems));
-           });
+  if (map.Optional("requirements") != nullptr)
+    map.Each("requirements", 1, SIZE_MAX, [&](const InputNode& item, const std::string& path) {
+      campaign.requirements.push_back(
+          DecodeRequirement(item, path, plan, campaign.vehicle.stages.size(), problems));
+    });
 
   if (HasLimits(campaign.vehicle.limits)) RequireLimitsKept(plan, campaign.requirements);
 

@@ -162,6 +162,7 @@ class DispersionDecoder {
                                           std::to_string(possible.back()) + ", or a list of them";
     std::vector<int> stages;
     const auto read = [&](const InputNode& item, const std::string& path) {
+      SayExpects(path, {.kind = Expectation::Kind::kInteger, .low = "1", .high = std::to_string(kMaxStages)});
       const bool plain = item.kind == InputNode::Kind::kScalar && !item.quoted;
       const double number = plain ? ParseNumber(item.text).value_or(0.0) : 0.0;
       const auto found = std::find(possible.begin(), possible.end(), number);
@@ -481,10 +482,10 @@ class DispersionDecoder {
   // "stem_unit: x" or "stem: {distribution: ...}".
   void FixedOrDrawn(MapReader& map, const std::string& name, const std::string& stem,
                     const DispersedScalar& scalar, const std::string& column, bool required) {
-    const InputNode* drawn = map.node().Find(stem);
+    const InputNode* drawn = map.Peek(stem);
     ScalarDistribution distribution;
     if (drawn != nullptr && drawn->kind == InputNode::Kind::kMap) {
-      map.Ignore(stem);
+      map.Allow(stem);
       MapReader inner(*drawn, map.PathOf(stem), problems_);
       distribution = ReadDistribution(inner, scalar);
     } else if (required) {
@@ -536,7 +537,7 @@ class DispersionDecoder {
     struct Severity {
       double exceedance, wind_m_s;
     };
-    const bool named = node->Find("severity") != nullptr || node->Find("exceedance") == nullptr;
+    const bool named = map.Peek("severity") != nullptr || map.Peek("exceedance") == nullptr;
     Severity severity{kLargestExceedance, 0.0};
     if (named) {
       const int level = map.Choice<int>("severity", {{"light", 0}, {"moderate", 1}, {"severe", 2}});
@@ -564,6 +565,7 @@ class DispersionDecoder {
     MapReader map(*node, map_.PathOf("wind_profile"), problems_);
     const InputNode* table = map.Optional("table");
     const InputNode* statistics = map.Optional("statistics");
+    if (table == nullptr && statistics == nullptr) map.NoteMissing({"table", "statistics"});
     if ((table == nullptr) == (statistics == nullptr)) {
       AddProblem(problems_, *node, map.path(),
                  table == nullptr ? "no profile is given" : "'table' and 'statistics' are both given",
@@ -707,6 +709,8 @@ class DispersionDecoder {
       choices.emplace_back(name, numbers.back());
     }
     choices.emplace_back("any", 0.0);
+    SayExpects(map.PathOf("nozzle"),
+               {.kind = Expectation::Kind::kWords, .open = true});  // a vehicle names its own
     ScalarDistribution nozzle = Constant(map.Choice<double>("nozzle", choices));
     if (nozzle.nominal == 0.0) {
       nozzle.kind = Distribution::kValues;

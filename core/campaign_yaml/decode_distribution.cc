@@ -323,7 +323,8 @@ ScalarDistribution ReadDirection(const InputNode& node, const std::string& path,
     return Uniform(0.0, kTwoPi);
   }
   MapReader map(node, path, problems);
-  if (node.Find("distribution") != nullptr) return ReadDistribution(map, {kAngle, Between(-kTwoPi, kTwoPi)});
+  SayExpects(path, {.kind = Expectation::Kind::kWords, .words = {"uniform"}});
+  if (map.Peek("distribution") != nullptr) return ReadDistribution(map, {kAngle, Between(-kTwoPi, kTwoPi)});
   return Constant(map.Quantity("fixed", kAngle, Between(-kTwoPi, kTwoPi)));
 }
 

@@ -156,6 +156,7 @@ AttitudeProgram DecodeAttitude(const InputNode& node, const std::string& path, P
   const std::vector<std::string> columns = AttitudeColumnNames();
   map.Each("columns", columns.size(), columns.size(),
            [&](const InputNode& item, const std::string& item_path) {
+             SayExpects(item_path, {.kind = Expectation::Kind::kWords, .words = columns});
              const std::string& expected =
                  columns[static_cast<std::size_t>(&item - node.Find("columns")->items.data())];
              if (item.text != expected) {
@@ -163,6 +164,9 @@ AttitudeProgram DecodeAttitude(const InputNode& node, const std::string& path, P
              }
            });
   map.Each("rows", 2, SIZE_MAX, [&](const InputNode& row, const std::string& row_path) {
+    SayExpects(row_path,
+               {.kind = Expectation::Kind::kList, .low_count = columns.size(), .high_count = columns.size()});
+    SayExpects(row_path + "[]", {.kind = Expectation::Kind::kNumber});
     if (row.kind != InputNode::Kind::kList || row.items.size() != columns.size()) {
       AddProblem(problems, row, row_path, row.Describe() + " is not a row",
                  "a list of " + std::to_string(columns.size()) + " numbers: " + JoinWords(columns));
@@ -240,7 +244,7 @@ Reference DecodeReference(const InputNode& node, const std::string& path,
   Reference reference;
   if (!CheckSchema(node, kReferenceSchema, !path.empty(), path, problems)) return reference;
   MapReader map(node, path, problems);
-  map.Ignore("schema");
+  map.Allow("schema");
   reference.name = map.Text("name");
   reference.target_missed = map.Text("target_missed", "");
   reference.problem =

@@ -221,6 +221,7 @@ ScenarioMass DecodeMassTable(const InputNode& node, const std::string& path, Pro
 }
 
 ScenarioMass DecodeMass(const InputNode& node, const std::string& path, ProblemList& problems) {
+  SayHeeds(path, {"propellant_kg"});
   const bool is_table = std::any_of(node.members.begin(), node.members.end(), [](const InputMember& member) {
     return member.key.starts_with("propellant");
   });
@@ -235,6 +236,7 @@ ScenarioMotor DecodeScenarioMotor(const InputNode& node, const std::string& path
   motor.thrust_n = map.Quantity("thrust", kForce, kPositive);
   const auto flow = map.OptionalQuantity("flow", kMassFlow, kPositive);
   const auto burning_time = map.OptionalQuantity("burning_time", kTime, kPositive);
+  if (!flow && !burning_time) map.NoteMissing({"flow_kg_s", "burning_time_s", "burning_time_ms"});
   if (flow.has_value() == burning_time.has_value()) {
     AddProblem(problems, node, path,
                flow ? "'flow_kg_s' and 'burning_time_s' are both given" : "the flow is not given",
@@ -284,7 +286,7 @@ Earth DecodeEarth(const InputNode& node, const std::string& path, ProblemList& p
 
 WindNorthEast DecodeSteadyWind(const InputNode& node, const std::string& path, ProblemList& problems) {
   MapReader map(node, path, problems);
-  if (node.Find("north_m_s") != nullptr || node.Find("east_m_s") != nullptr) {
+  if (map.Peek("north_m_s") != nullptr || map.Peek("east_m_s") != nullptr) {
     WindNorthEast wind;
     wind.north_m_s = map.Quantity("north", kSpeed, kAnyNumber);
     wind.east_m_s = map.Quantity("east", kSpeed, kAnyNumber);
@@ -358,7 +360,7 @@ Scenario DecodeScenario(const InputNode& node, const std::string& path, ProblemL
   if (!CheckSchema(node, kScenarioSchema, false, path, problems)) return scenario;
   {
     MapReader map(node, path, problems);
-    map.Ignore("schema");
+    map.Allow("schema");
     map.Text("description", "");
     scenario.name = map.Text("name");
     scenario.environment.earth = DecodeEarth(map.Required("earth", "a map"), map.PathOf("earth"), problems);
@@ -370,6 +372,7 @@ Scenario DecodeScenario(const InputNode& node, const std::string& path, ProblemL
     map.Each("stages", 0, SIZE_MAX, [&](const InputNode& item, const std::string& item_path) {
       scenario.stages.push_back(DecodeScenarioStage(item, item_path, false, problems));
     });
+    if (body == nullptr && node.Find("stages") == nullptr) map.NoteMissing({"body", "stages"});
     if ((body != nullptr) == (node.Find("stages") != nullptr)) {
       AddProblem(problems, node, path,
                  body != nullptr ? "'body' and 'stages' are both given" : "nothing is there to fly",

@@ -291,6 +291,16 @@ void DecodeIgnition(const InputNode& node, const std::string& path, Stage& stage
   stage.ignition_delay_s = ignition.Quantity("delay", kTime, kNonNegative, 0.0);
 }
 
+void ReadRestart(MapReader& map, Stage& stage, ProblemList& problems) {
+  map.Flag("restarts", true);
+  stage.name = map.Text("name");
+  stage.motor.throttle = {};
+  stage.motor.cut_off = CutOff::kAtDepletion;
+  DecodeCommands(map, map.node(), stage.motor, problems);
+  DecodeIgnition(map.Required("ignition", "a map"), map.PathOf("ignition"), stage, problems);
+  stage.separation_delay_s = map.Quantity("separation_delay", kTime, kNonNegative, 0.0);
+}
+
 // Another burn of the stage before: its body, and what its engine is commanded now. `before` gives up what it
 // would jettison, which stays on until the last burn has ended.
 Stage DecodeRestart(const InputNode& node, const std::string& path, Stage* before, ProblemList& problems) {
@@ -300,18 +310,17 @@ Stage DecodeRestart(const InputNode& node, const std::string& path, Stage* befor
                before == nullptr ? "there is no stage before" : "the stage before has no liquid engine",
                "restarts: true after a stage with motor: {liquid: {...}}");
     for (const InputMember& member : node.members) map.Ignore(member.key);
+    // Nothing more is said of it, but read it is.
+    Stage nothing;
+    ProblemList unsaid;
+    MapReader again(node, path, unsaid);
+    ReadRestart(again, nothing, unsaid);
     return {};
   }
   Stage stage = *before;
   before->jettisoned.clear();
   stage.restarts = true;
-  map.Ignore("restarts");
-  stage.name = map.Text("name");
-  stage.motor.throttle = {};
-  stage.motor.cut_off = CutOff::kAtDepletion;
-  DecodeCommands(map, node, stage.motor, problems);
-  DecodeIgnition(map.Required("ignition", "a map"), map.PathOf("ignition"), stage, problems);
-  stage.separation_delay_s = map.Quantity("separation_delay", kTime, kNonNegative, 0.0);
+  ReadRestart(map, stage, problems);
   // What the burn before leaves; of a cut-off by velocity a flight tells, and until then all stands for it.
   const Motor& first = before->motor;
   if (first.cut_off == CutOff::kAtVelocity || !(first.thrust_n > 0.0 && first.burning_time_s > 0.0))
@@ -560,7 +569,10 @@ Vehicle DecodeVehicle(const InputNode& node, const std::string& path, std::vecto
   if (!CheckSchema(node, kVehicleSchema, !path.empty(), path, problems)) return vehicle;
   {
     MapReader map(node, path, problems);
-    map.Ignore("schema");
+    map.Allow("schema");
+    // Which InlineVehicleFiles has put in its place.
+    SayKnows(path, {"based_on"});
+    SayExpects(map.PathOf("based_on"), {.kind = Expectation::Kind::kFile});
     vehicle.name = map.Text("name");
     vehicle.site = DecodeSite(map.Required("site", "a map"), map.PathOf("site"), problems);
     vehicle.hold_down_s = map.Quantity("hold_down", kTime, kNonNegative, 0.0);
@@ -594,6 +606,7 @@ Vehicle DecodeVehicle(const InputNode& node, const std::string& path, std::vecto
     }
     const std::size_t stages = vehicle.stages.size();
     std::size_t stage = 0;
+    SayExpects(map.PathOf("nozzles"), {.kind = Expectation::Kind::kList, .high_count = kMaxStages});
     map.Each("nozzles", 0, stages, [&](const InputNode& item, const std::string& item_path) {
       DecodeNozzle(item, item_path, vehicle.stages[stage++].gimbal, problems);
     });

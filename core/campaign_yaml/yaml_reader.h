@@ -15,6 +15,7 @@
 
 #include "core/campaign/input_error.h"
 #include "core/campaign_yaml/input_node.h"
+#include "core/campaign_yaml/input_observer.h"
 #include "core/campaign_yaml/units.h"
 
 namespace dispersa {
@@ -65,6 +66,8 @@ class MapReader {
 
   /// The value of a key that need not exist, or null.
   const InputNode* Optional(const std::string& key);
+  /// The value of a key that decides what else is read, or null. It still has to be read.
+  const InputNode* Peek(const std::string& key) const;
   /// The value of a key that must exist; a node of kind null, which other readers ignore, if it does not.
   const InputNode& Required(const std::string& key, const std::string& allowed);
 
@@ -99,7 +102,10 @@ class MapReader {
               std::optional<Enum> absent = {}) {
     std::vector<std::string> words;
     for (const auto& choice : choices) words.push_back(choice.first);
-    const std::optional<std::size_t> index = WordIndex(key, words, !absent.has_value());
+    std::optional<std::string> absent_word;
+    for (const auto& choice : choices)
+      if (absent && choice.second == *absent) absent_word = choice.first;
+    const std::optional<std::size_t> index = WordIndex(key, words, absent_word, !absent.has_value());
     if (!index) return absent.value_or(choices.front().second);
     return choices[*index].second;
   }
@@ -115,10 +121,14 @@ class MapReader {
     }
   }
 
+  /// None of the keys, any of which would do, is there, and its own words say so: only listeners are told.
+  void NoteMissing(const std::vector<std::string>& keys) const;
   /// None of the keys, any of which would do, is there. Not reported if an unknown key evidently means one.
   void ReportMissing(std::vector<std::string> keys, const std::string& allowed);
 
   /// A key that is legal and read by someone else.
+  void Allow(const std::string& key) { Optional(key); }
+  /// A key of which something was said already.
   void Ignore(const std::string& key) { known_.insert(key); }
   void IgnoreQuantity(const std::string& stem, Dimension dimension);
 
@@ -130,13 +140,17 @@ class MapReader {
 
   const InputNode* List(const std::string& key, std::size_t low_count, std::size_t high_count);
   std::optional<std::size_t> WordIndex(const std::string& key, const std::vector<std::string>& words,
-                                       bool required);
+                                       const std::optional<std::string>& absent, bool required);
+  // Tells listeners of a quantity in each of its units, of which each or each item is a number of the range.
+  void NoteQuantity(const std::string& stem, Dimension dimension, const Range& range,
+                    std::optional<double> absent, std::optional<Expectation> list = {}) const;
   // The member of a quantity and its unit, or null.
   const InputNode* FindQuantity(const std::string& stem, Dimension dimension, std::string* key,
                                 double* scale);
   void Finish();
 
   const InputNode& node_;
+  InputObserver* const listener_;  // null: nobody, or nothing to be said of a node that is absent
   std::string path_;
   std::vector<InputProblem>& problems_;
   std::set<std::string> known_;

@@ -55,5 +55,7 @@ void AddWatchCommand(CLI::App& app, Invocation& invocation);
 void AddFetchCommand(CLI::App& app, Invocation& invocation);
 void AddKeysCommand(CLI::App& app, Invocation& invocation);
 void AddCompletionCommand(CLI::App& app, Invocation& invocation);
+void AddSchemaCommand(CLI::App& app, Invocation& invocation);
+void AddInitCommand(CLI::App& app, Invocation& invocation);
 
 }  // namespace dispersa

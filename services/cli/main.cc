@@ -40,6 +40,8 @@ void AddCommands(CLI::App& app, Invocation& invocation) {
   AddFetchCommand(app, invocation);
   AddKeysCommand(app, invocation);
   AddCompletionCommand(app, invocation);
+  AddSchemaCommand(app, invocation);
+  AddInitCommand(app, invocation);
 }
 
 ExitCode Fail(ExitCode code, const InputError& error, const GlobalOptions& global) {

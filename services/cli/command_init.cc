@@ -1,0 +1,113 @@
+// dispersa init: a folder with a campaign that flies, every key with its comment.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "core/campaign/input_error.h"
+#include "core/campaign_yaml/yaml_reader.h"
+#include "core/report/output_file.h"
+#include "services/cli/command.h"
+#include "services/cli/schema_json.h"
+#include "services/cli/starter_files.h"
+
+namespace dispersa {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct InitOptions {
+  std::string directory;
+  std::string from = "slv4";
+};
+
+std::vector<std::string> StarterNames() {
+  std::vector<std::string> names;
+  for (const StarterFile& file : kStarterFiles)
+    if (names.empty() || names.back() != file.from) names.push_back(file.from);
+  return names;
+}
+
+void RequireNewFolder(const std::string& directory) {
+  std::error_code error;
+  const fs::file_status status = fs::status(directory, error);
+  if (!fs::exists(status)) return;
+  if (!fs::is_directory(status))
+    throw InputError("'" + directory + "' is a file", "a folder that is new or empty");
+  if (!fs::is_empty(directory, error) || error)
+    throw InputError("'" + directory + "' is not empty" + (error ? ": " + error.message() : ""),
+                     "a folder that is new or empty");
+}
+
+// Editors find the schema by a file's first line.
+std::string WithSchema(const std::string& text) {
+  for (const FileKind kind : kFileKinds)
+    if (text.find("schema: " + SchemaOf(kind) + "\n") != std::string::npos ||
+        text.find("schema: " + SchemaOf(kind) + " ") != std::string::npos)
+      return "# yaml-language-server: $schema=schemas/" + NameOf(kind) + ".json\n" + text;
+  return text;
+}
+
+ExitCode Init(const InitOptions& options, const GlobalOptions& global) {
+  const std::vector<std::string> names = StarterNames();
+  if (std::find(names.begin(), names.end(), options.from) == names.end())
+    throw InputError("--from: there is no '" + options.from + "'" + DidYouMean(options.from, names),
+                     "one of " + JoinWords(names));
+  RequireNewFolder(options.directory);
+  const fs::path directory = options.directory;
+  std::error_code error;
+  fs::create_directories(directory / "schemas", error);
+  if (error)
+    throw InputError("'" + options.directory + "' cannot be made: " + error.message(),
+                     "a folder to write to");
+  std::vector<std::string> written;
+  for (const StarterFile& file : kStarterFiles) {
+    if (options.from != file.from) continue;
+    WriteFile((directory / file.name).string(), WithSchema(file.text));
+    written.push_back(file.name);
+  }
+  for (const FileKind kind : kFileKinds)
+    WriteFile((directory / "schemas" / (NameOf(kind) + ".json")).string(), SchemaJson(kind).dump(1) + "\n");
+  if (global.json) {
+    const nlohmann::ordered_json report = {{"schema", "dispersa/init/1"},
+                                           {"directory", options.directory},
+                                           {"from", options.from},
+                                           {"files", written}};
+    fmt::print("{}\n", report.dump(2));
+  } else if (!global.quiet) {
+    fmt::print(
+        "{}: {}\nNext: cd {}; dispersa validate --strict campaign.yaml; dispersa run campaign.yaml --cases "
+        "20\n",
+        options.directory, JoinWords(written), options.directory);
+  }
+  return kExitDone;
+}
+
+}  // namespace
+
+void AddInitCommand(CLI::App& app, Invocation& invocation) {
+  auto options = std::make_shared<InitOptions>();
+  CLI::App* command = app.add_subcommand("init", "write a folder with a commented campaign that flies");
+  command->add_option("directory", options->directory, "folder to make; one that is there must be empty")
+      ->required();
+  command
+      ->add_option("--from", options->from,
+                   "slv4, every key explained; or vega, electron, scout, from public data")
+      ->capture_default_str();
+  command->footer(
+      "Campaign, vehicle, autopilot, reference, the trajectory problem that it solves, and the schemas by "
+      "which\n"
+      "editors complete and check them.\n"
+      "Example: dispersa init first\n"
+      "         dispersa init launcher --from vega");
+  command->callback([options, &invocation] {
+    invocation.command = [options](const GlobalOptions& global) { return Init(*options, global); };
+  });
+}
+
+}  // namespace dispersa

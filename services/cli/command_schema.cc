@@ -1,0 +1,84 @@
+// dispersa schema: JSON Schemas of the input files, for editors.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/campaign/input_error.h"
+#include "core/campaign_yaml/yaml_reader.h"
+#include "core/report/output_file.h"
+#include "services/cli/command.h"
+#include "services/cli/schema_json.h"
+#include "services/cli/writable.h"
+
+namespace dispersa {
+namespace {
+
+struct SchemaOptions {
+  std::string kind;
+  std::string out;
+  std::string all;
+};
+
+std::vector<std::string> KindNames() {
+  std::vector<std::string> names;
+  for (const FileKind kind : kFileKinds) names.push_back(NameOf(kind));
+  return names;
+}
+
+FileKind KindOf(const std::string& name) {
+  for (const FileKind kind : kFileKinds)
+    if (NameOf(kind) == name) return kind;
+  throw InputError("'" + name + "' is not a kind of file" + DidYouMean(name, KindNames()),
+                   "one of " + JoinWords(KindNames()));
+}
+
+ExitCode Schema(const SchemaOptions& options, const GlobalOptions& global) {
+  if (options.kind.empty() == options.all.empty())
+    throw InputError("the schema of which kind of file is to be written is not said, or said twice",
+                     "one of " + JoinWords(KindNames()) + ", or --all DIR");
+  if (!options.all.empty()) {
+    if (!options.out.empty()) throw InputError("--out and --all are both given", "either of them");
+    std::filesystem::create_directories(options.all);
+    for (const FileKind kind : kFileKinds) {
+      const std::string file = (std::filesystem::path(options.all) / (NameOf(kind) + ".json")).string();
+      WriteFile(file, SchemaJson(kind).dump(1) + "\n");
+      if (!global.quiet) fmt::print("schema: {}\n", file);
+    }
+    return kExitDone;
+  }
+  const FileKind kind = KindOf(options.kind);
+  RequireWritableFile("--out", options.out);
+  const std::string text = SchemaJson(kind).dump(1) + "\n";
+  if (options.out.empty()) {
+    fmt::print("{}", text);
+    return kExitDone;
+  }
+  WriteFile(options.out, text);
+  if (!global.quiet) fmt::print("schema: {}\n", options.out);
+  return kExitDone;
+}
+
+}  // namespace
+
+void AddSchemaCommand(CLI::App& app, Invocation& invocation) {
+  auto options = std::make_shared<SchemaOptions>();
+  CLI::App* command =
+      app.add_subcommand("schema", "write the JSON Schema of a kind of input file, for editors");
+  command->add_option("kind", options->kind, "campaign, vehicle, reference, autopilot or scenario");
+  command->add_option("--out", options->out, "file to write, else standard output");
+  command->add_option("--all", options->all, "folder for the schemas of all kinds");
+  command->footer(
+      "An editor with a YAML language server completes and checks a file whose first line is\n"
+      "`# yaml-language-server: $schema=campaign.json`. `dispersa validate` knows more.\n"
+      "Example: dispersa schema campaign --out campaign.json\n"
+      "         dispersa schema --all schemas");
+  command->callback([options, &invocation] {
+    invocation.command = [options](const GlobalOptions& global) { return Schema(*options, global); };
+  });
+}
+
+}  // namespace dispersa

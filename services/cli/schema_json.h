@@ -1,0 +1,14 @@
+// JSON Schemas of input files, for editors: completion, hints, and most errors while one types.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "core/campaign_yaml/schema_model.h"
+
+namespace dispersa {
+
+/// The schema of a kind of file, in the draft that editors take (07). It refuses nothing that the reader
+/// takes; what two maps say together and how numbers are ordered only the reader knows (`dispersa validate`).
+nlohmann::ordered_json SchemaJson(FileKind kind);
+
+}  // namespace dispersa

@@ -1,0 +1,148 @@
+"""Builds the docs site: the pages beside this file, the README.md files beside the code, and what the programs say of
+themselves.
+
+    build.py --programs BIN --out SITE
+
+The README files keep their folders, so that their links to one another hold; a link to anything else of the repository
+becomes plain text. Everything is read from the repository, nothing from the network, and the pages ask for nothing.
+"""
+import argparse
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+HERE = pathlib.Path(__file__).resolve().parent
+REPOSITORY = HERE.parent.parent
+LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\[\]]*\])*)\]\(([^)\s]+)\)")
+EXIT_CODES = [
+    (0, "done; of a campaign: every requirement is met"),
+    (1, "internal error, or a machine that returned other bits"),
+    (2, "bad input: a file, an option, a command"),
+    (3, "a requirement failed"),
+    (4, "more cases are needed to decide"),
+    (5, "incomplete: cases are quarantined, the disk is full, nobody answers"),
+    (6, "`replay` found another result than the one that is stored"),
+    (130, "interrupted"),
+]
+
+
+def help_of(program, *command):
+    done = subprocess.run([program, *command, "--help"], capture_output=True, text=True, timeout=60,
+                          env={**os.environ, "NO_COLOR": "1"})
+    if done.returncode != 0:
+        raise SystemExit(f"{program} {' '.join(command)} --help: {done.stderr}")
+    return done.stdout.strip()
+
+
+def subcommands(text):
+    """The names under the heading of a help text that lists them."""
+    part = re.split(r"(?im)^subcommands:\s*$", text)
+    return re.findall(r"(?m)^  ([a-z]+)(?=\s)", part[1].split("\n\n")[0]) if len(part) > 1 else []
+
+
+def commands_page(programs):
+    page = ["# Commands", "", "What the programs say of themselves.", ""]
+    for name in ("dispersa", "dispersa-coordinator", "dispersa-worker"):
+        text = help_of(programs / name)
+        page += [f"## {name}", "", "```text", text, "```", ""]
+        for command in subcommands(text):
+            of_command = help_of(programs / name, command)
+            page += [f"### {name} {command}", "", "```text", of_command, "```", ""]
+            for part in subcommands(of_command):
+                page += [f"#### {name} {command} {part}", "", "```text", help_of(programs / name, command, part), "```", ""]
+    return "\n".join(page)
+
+
+def exit_codes_page():
+    rows = "\n".join(f"| {code} | {meaning} |" for code, meaning in EXIT_CODES)
+    return ("# Exit codes\n\nOf every command; of `run`, `watch` and `report` the code is the campaign's verdict, so that a "
+            f"script or a pipeline can act on it.\n\n| code | means |\n|---|---|\n{rows}\n\n"
+            "Where two would fit, the graver one is returned: an internal error before anything else, a failed requirement "
+            "before one that is not decided.\n")
+
+
+def schemas_page(programs, folder):
+    subprocess.run([programs / "dispersa", "--quiet", "schema", "--all", folder / "schemas"], check=True, timeout=600)
+    files = "\n".join(f"| {path.stem} | [schemas/{path.name}](schemas/{path.name}) |"
+                      for path in sorted((folder / "schemas").glob("*.json")))
+    return (HERE / "pages" / "schemas.md").read_text().replace("@FILES@", files)
+
+
+def linked(text, source, known):
+    """The text of `source` (a path in the repository) with links that the site can follow."""
+    def replace(match):
+        picture, words, target = match.groups()
+        path, _, anchor = target.partition("#")
+        if re.match(r"[a-z]+:", target) or not path:
+            return match.group(0)
+        found = os.path.normpath(os.path.join(source.parent, path))
+        if found in known or picture:
+            return match.group(0)
+        if found == "README.md":
+            return f"{picture}[{words}]({os.path.relpath('index.md', source.parent)}{'#' + anchor if anchor else ''})"
+        if os.path.join(found, "README.md") in known:
+            return f"[{words}]({os.path.join(path, 'README.md')})"
+        return words
+    # Code is no link.
+    parts = re.split(r"(```.*?```|`[^`\n]*`)", text, flags=re.S)
+    return "".join(part if i % 2 else LINK.sub(replace, part) for i, part in enumerate(parts))
+
+
+def collect(programs, folder):
+    """All sources of the site in one folder."""
+    listed = re.findall(r"([\w/.-]+\.md)\s*$", (HERE / "mkdocs.yml").read_text(), re.M)
+    known = set(listed) | {path.name for path in (HERE / "pages").glob("*.md")}
+    for name in listed:
+        target = folder / name
+        target.parent.mkdir(parents=True, exist_ok=True)
+        if name == "commands.md":
+            text = commands_page(programs)
+        elif name == "exit-codes.md":
+            text = exit_codes_page()
+        elif name == "schemas.md":
+            text = schemas_page(programs, folder)
+        elif (HERE / "pages" / name).exists():
+            text = (HERE / "pages" / name).read_text()
+        else:
+            source = REPOSITORY / name
+            text = linked(source.read_text(), pathlib.PurePosixPath(name), known)
+            for picture, _, link in LINK.findall(text):
+                if picture:
+                    place = folder / os.path.normpath(os.path.join(os.path.dirname(name), link))
+                    place.parent.mkdir(parents=True, exist_ok=True)
+                    shutil.copy(source.parent / link, place)
+        target.write_text(text)
+    shutil.copytree(HERE / "pages" / "images", folder / "images", dirs_exist_ok=True)
+    shutil.copy(HERE / "pages" / "site.css", folder / "site.css")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--programs", type=pathlib.Path, required=True, help="folder of the built programs")
+    parser.add_argument("--out", type=pathlib.Path, required=True, help="folder of the site")
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory(prefix="dispersa-docs-") as name:
+        folder = pathlib.Path(name)
+        (folder / "docs").mkdir()
+        collect(options.programs.resolve(), folder / "docs")
+        config = (HERE / "mkdocs.yml").read_text()
+        (folder / "mkdocs.yml").write_text(f"docs_dir: {folder}/docs\nsite_dir: {folder}/site\n" + config)
+        done = subprocess.run(["/usr/bin/python3", "-m", "mkdocs", "build", "--strict", "--quiet", "-f", folder / "mkdocs.yml"],
+                              capture_output=True, text=True, timeout=600)
+        if done.returncode != 0:
+            sys.stderr.write(done.stdout + done.stderr)
+            return 1
+        (folder / "site" / "404.html").unlink()  # a server's, with links from its root
+        shutil.rmtree(options.out, ignore_errors=True)
+        options.out.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copytree(folder / "site", options.out)
+    print(f"docs: {options.out / 'index.html'}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

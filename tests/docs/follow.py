@@ -1,0 +1,87 @@
+"""Does what a page says: its ```sh blocks, in order, in one shell, in an empty folder.
+
+    follow.py PAGE.md [--programs BIN]
+
+A block's last command must succeed. A ```text block right after it is what it prints: each of its lines must be among the
+block's output, in this order, where "…" stands for anything.
+"""
+import argparse
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+BLOCK = re.compile(r"^```(sh|text)\n(.*?)^```$", re.M | re.S)
+MARK = "@@follow@@"
+TIMEOUT_S = 240
+
+
+def steps(page):
+    """(commands, lines that they print or None) of each ```sh block."""
+    found = []
+    end = None
+    for match in BLOCK.finditer(page):
+        kind, text = match.groups()
+        between = page[end:match.start()].strip() if end is not None else None
+        if kind == "sh":
+            found.append((text, None))
+        elif found and found[-1][1] is None and between == "":
+            found[-1] = (found[-1][0], text.splitlines())
+        end = match.end()
+    return found
+
+
+def pattern(line):
+    return ".*".join(re.escape(part) for part in line.split("…"))
+
+
+def missing(expected, output):
+    """The first expected line that does not come, or None."""
+    lines = iter(output)
+    for line in expected:
+        if not any(re.fullmatch(pattern(line), printed) for printed in lines):
+            return line
+    return None
+
+
+def follow(page, folder, environment):
+    """What went otherwise than the page says; empty if nothing."""
+    blocks = steps(page)
+    if not blocks:
+        return ["the page has no ```sh block"]
+    script = "".join(f"{commands}\nprintf '\\n{MARK}%d\\n' $?\n" for commands, _ in blocks)
+    done = subprocess.run(["bash", "-c", script], cwd=folder, env=environment, stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, text=True, timeout=TIMEOUT_S, start_new_session=True)
+    parts = re.split(rf"\n{MARK}(\d+)\n", done.stdout)
+    problems = []
+    for i, (commands, expected) in enumerate(blocks):
+        if 2 * i + 1 >= len(parts):
+            return problems + [f"the shell ended before:\n{commands}"]
+        output, code = parts[2 * i], int(parts[2 * i + 1])
+        if code != 0:
+            problems.append(f"exit code {code} of:\n{commands}which printed:\n{output}")
+        lost = missing(expected or [], output.splitlines())
+        if lost is not None:
+            problems.append(f"not printed: {lost!r} by:\n{commands}which printed:\n{output}")
+    return problems
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("page", type=pathlib.Path)
+    parser.add_argument("--programs", type=pathlib.Path)
+    options = parser.parse_args()
+    environment = {**os.environ, "NO_COLOR": "1", "DISPERSA_DOMAIN": str(20 + os.getpid() % 79)}
+    if options.programs:
+        environment["PATH"] = f"{options.programs}:{environment['PATH']}"
+    with tempfile.TemporaryDirectory(prefix="dispersa-page-") as folder:
+        problems = follow(options.page.read_text(), folder, environment)
+    for problem in problems:
+        print(f"{options.page.name}: {problem}")
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,124 @@
+"""The docs site: every page is there, every link and anchor leads somewhere, nothing is loaded from elsewhere."""
+import html.parser
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+import unittest
+import urllib.parse
+
+BINARIES = pathlib.Path(os.environ["DISPERSA_BINARIES"])
+BUILD = pathlib.Path(__file__).resolve().parents[2] / "services" / "docs" / "build.py"
+PAGES = ["index", "first-campaign", "your-vehicle", "your-control-law", "reading-the-report", "cluster", "commands",
+         "exit-codes", "schemas", "core/index", "core/campaign_yaml/index", "core/statistics/index"]
+# What a page makes a browser load.
+LOADS = {("script", "src"), ("img", "src"), ("link", "href"), ("iframe", "src"), ("source", "src"), ("video", "src"),
+         ("audio", "src"), ("object", "data"), ("use", "href")}
+
+
+class Page(html.parser.HTMLParser):
+    def __init__(self, text):
+        super().__init__()
+        self.links, self.loads, self.anchors = [], [], set()
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        for name, value in attributes:
+            if name == "id" or (tag == "a" and name == "name"):
+                self.anchors.add(value)
+            if tag == "a" and name == "href":
+                self.links.append(value)
+            if name == "class" and "mermaid" in (value or "").split():  # the theme would load what draws it
+                self.loads.append("https://unpkg.com")
+            if (tag, name) in LOADS:
+                self.loads.append(value)
+
+
+def problems(site):
+    """What is wrong with the links and loads of a folder of pages."""
+    pages = {path.resolve(): Page(path.read_text()) for path in site.rglob("*.html")}
+    found = []
+    for path, page in pages.items():
+        where = path.relative_to(site.resolve())
+        for load in page.loads:
+            target = urllib.parse.urlsplit(load)
+            if target.scheme or target.netloc:
+                if target.scheme != "data":
+                    found.append(f"{where} loads {load}")
+            elif not (path.parent / urllib.parse.unquote(target.path)).exists():
+                found.append(f"{where} loads {load}, which is missing")
+        for link in page.links:
+            target = urllib.parse.urlsplit(link)
+            if target.scheme or target.netloc:
+                continue
+            to = (path.parent / urllib.parse.unquote(target.path)).resolve() if target.path else path
+            if to.is_dir():
+                to = to / "index.html"
+            if not to.exists():
+                found.append(f"{where} links to {link}, which is missing")
+            elif target.fragment and to in pages and urllib.parse.unquote(target.fragment) not in pages[to].anchors:
+                found.append(f"{where} links to {link}, which has no such anchor")
+    for sheet in site.rglob("*.css"):
+        for url in re.findall(r"url\(\s*['\"]?([^)'\"]+)", sheet.read_text()):
+            if re.match(r"(https?:)?//", url):
+                found.append(f"{sheet.relative_to(site)} loads {url}")
+    return found
+
+
+class SiteTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="dispersa-site-"))
+        cls.addClassCleanup(shutil.rmtree, cls.folder)
+        cls.site = cls.folder / "docs"
+        done = subprocess.run(["/usr/bin/python3", "-B", BUILD, "--programs", BINARIES, "--out", cls.site],
+                              capture_output=True, text=True, timeout=280)
+        assert done.returncode == 0, done.stdout + done.stderr
+
+    def test_the_pages_are_there(self):
+        for page in PAGES:
+            self.assertTrue((self.site / f"{page}.html").exists(), page)
+
+    def test_links_lead_somewhere_and_nothing_is_loaded_from_elsewhere(self):
+        self.assertEqual([], problems(self.site))
+
+    def test_every_command_is_shown(self):
+        text = (self.site / "commands.html").read_text()
+        for command in ("validate", "init", "schema", "run", "keys", "compare"):
+            self.assertIn(f'id="dispersa-{command}"', text)
+
+    def test_schemas_can_be_taken(self):
+        self.assertTrue((self.site / "schemas" / "campaign.json").exists())
+
+
+class CheckTest(unittest.TestCase):
+    """The check itself can fail."""
+
+    def found(self, body):
+        with tempfile.TemporaryDirectory() as name:
+            site = pathlib.Path(name)
+            (site / "other.html").write_text('<h1 id="here">x</h1>')
+            (site / "index.html").write_text(body)
+            return problems(site)
+
+    def test_good_links(self):
+        self.assertEqual([], self.found('<a href="other.html#here">x</a><a href="https://example.org">y</a>'))
+
+    def test_a_dead_link(self):
+        self.assertEqual(["index.html links to gone.html, which is missing"], self.found('<a href="gone.html">x</a>'))
+
+    def test_a_dead_anchor(self):
+        self.assertEqual(["index.html links to other.html#there, which has no such anchor"],
+                         self.found('<a href="other.html#there">x</a>'))
+
+    def test_a_missing_picture(self):
+        self.assertEqual(["index.html loads a.png, which is missing"], self.found('<img src="a.png">'))
+
+    def test_a_foreign_script(self):
+        self.assertEqual(["index.html loads https://example.org/x.js"], self.found('<script src="https://example.org/x.js"></script>'))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,216 @@
+"""JSON Schemas of the input files against the reader that they are learned from.
+
+Every file that ships is valid, and of thousands of small changes of valid files (a key left out, misspelled, of another
+type, out of range, another word) a schema refuses none that the reader takes, and all that the reader refuses for a
+reason that a schema can know.
+"""
+import copy
+import itertools
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+import jsonschema
+import yaml
+
+BINARIES = pathlib.Path(os.environ["DISPERSA_BINARIES"])
+CAMPAIGNS = pathlib.Path(os.environ["DISPERSA_CAMPAIGNS"])
+DATA = CAMPAIGNS.parent / "tests" / "data" / "yaml"
+KINDS = ["campaign", "vehicle", "reference", "autopilot", "scenario"]
+TIMEOUT_S = 300
+EVERY = int(os.environ.get("DISPERSA_SCHEMA_EVERY", "5"))  # 1: all changes, a minute of work
+
+# What a schema can know, in the reader's words.
+KNOWABLE = re.compile(r"unknown key|missing key|missing unit|the unit of|is not a number|is not a whole number|"
+                      r"is not a choice|is not a map|is not a list|is not text|is not a truth value|is out of range|"
+                      r"is not a metric|there is neither|the limit is missing|is not the schema|the list is empty|"
+                      r"the list has")
+# Where the rest of the file, or another one, decides, and why; each is a change that a schema lets pass.
+ELSEWHERE = [
+    ("missing key 'grain'|missing key 'tanks'", "the motor, a map below, says whether a stage has the one or the other"),
+    ("missing key 'ki_1_s3'", "the axis' law, a map above, says whether a schedule's gains have an integral"),
+    ("missing key '(inclination|argument_of_perigee)_per_", "the target, a map beside, says which misses are weighed"),
+    ("missing key 'reaction_control'", "a vehicle of one stage has no coast"),
+    ("missing key 'sensors'", "a beam that flies wants them"),
+    ("missing key '(name|element|mass_kg|shear_stiffness)", "the beam's theory, or the sections' masses, decide"),
+    ("missing key '(low|high)_", "of two ends one is given, and which distribution it is"),
+    ("missing key 'radius_m'", "a list of nozzles that is empty is none"),
+    (r"the list has \d+", "as many as the vehicle has stages"),
+    ("is not a choice", "a nozzle's name, which the vehicle gives"),
+]
+
+
+class Loader(yaml.SafeLoader):
+    """The reader's YAML: decimal numbers, true and false; everything else is text."""
+
+
+Loader.yaml_implicit_resolvers = {}
+NUMBER = re.compile(r"^[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$")
+Loader.add_implicit_resolver("tag:yaml.org,2002:bool", re.compile("^(true|false)$"), list("tf"))
+Loader.add_implicit_resolver("tag:yaml.org,2002:float", NUMBER, list("-+.0123456789"))
+Loader.add_constructor("tag:yaml.org,2002:float",
+                       lambda loader, node: float(node.value) if re.search("[.eE]", node.value) else int(node.value))
+
+
+def load(path):
+    return yaml.load(path.read_text(), Loader)
+
+
+def kind_of(document):
+    return document["schema"].split("/")[1]
+
+
+def shipped():
+    """Every input file in the repository."""
+    for path in sorted([*CAMPAIGNS.rglob("*.yaml"), *DATA.glob("*.yaml")]):
+        document = load(path)
+        if isinstance(document, dict) and str(document.get("schema", "")).startswith("dispersa/"):
+            yield path, document
+
+
+def places(value, path=()):
+    """Every value of a document, by the keys that lead to it."""
+    yield path, value
+    children = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else []
+    for key, child in children:
+        yield from places(child, path + (key,))
+
+
+def changed(document, path, change):
+    """A copy in which `change`(parent, last key) was done."""
+    copied = copy.deepcopy(document)
+    parent = copied
+    for key in path[:-1]:
+        parent = parent[key]
+    change(parent, path[-1])
+    return copied
+
+
+def rename(parent, key):
+    items = [(name + "_x" if name == key else name, value) for name, value in parent.items()]
+    parent.clear()
+    parent.update(items)
+
+
+def mutants(document):
+    """(what was done, the changed document)"""
+    def put(replacement):
+        def change(parent, key):
+            parent[key] = replacement
+        return change
+
+    def remove(parent, key):
+        del parent[key]
+
+    for path, value in places(document):
+        if not path or path == ("schema",):
+            continue
+        where = ".".join(str(key) for key in path)
+        if isinstance(path[-1], str):
+            yield f"{where} left out", changed(document, path, remove)
+            yield f"{where} misspelled", changed(document, path, rename)
+        if isinstance(value, (int, float)) and not isinstance(value, bool):
+            replacements = {"text": "some text", "-1e9": -10**9, "1e12": 10**12}
+        else:
+            replacements = {"text": "some text", "a list": [], "a number": 4711}
+        for name, replacement in replacements.items():
+            if type(replacement) is not type(value) or replacement != value:
+                yield f"{where} is {name}", changed(document, path, put(replacement))
+
+
+class SchemaTest(unittest.TestCase):
+    maxDiff = None
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="dispersa-schema-"))
+        cls.addClassCleanup(shutil.rmtree, cls.folder)
+        done = subprocess.run([BINARIES / "dispersa", "--quiet", "schema", "--all", cls.folder / "schemas"],
+                              capture_output=True, text=True, timeout=TIMEOUT_S)
+        assert done.returncode == 0, done.stderr
+        cls.validators = {}
+        for kind in KINDS:
+            schema = json.loads((cls.folder / "schemas" / f"{kind}.json").read_text())
+            jsonschema.Draft7Validator.check_schema(schema)
+            cls.validators[kind] = jsonschema.Draft7Validator(schema)
+
+    def refusals(self, document):
+        return [f"{list(error.absolute_path)}: {error.message[:200]}"
+                for error in self.validators[kind_of(document)].iter_errors(document)]
+
+    def test_every_file_that_ships_is_valid(self):
+        count = 0
+        for path, document in shipped():
+            with self.subTest(path=path):
+                self.assertEqual([], self.refusals(document))
+            count += 1
+        self.assertGreater(count, 50)
+
+    def test_the_schema_of_one_kind_is_printed(self):
+        done = subprocess.run([BINARIES / "dispersa", "schema", "autopilot"], capture_output=True, text=True, timeout=TIMEOUT_S)
+        self.assertEqual(0, done.returncode)
+        self.assertEqual((self.folder / "schemas" / "autopilot.json").read_text(), done.stdout)
+
+    def test_an_unknown_kind_is_refused(self):
+        done = subprocess.run([BINARIES / "dispersa", "schema", "vehicel"], capture_output=True, text=True, timeout=TIMEOUT_S)
+        self.assertEqual(2, done.returncode)
+        self.assertEqual("'vehicel' is not a kind of file (did you mean 'vehicle'?), allowed: one of campaign, vehicle, "
+                         "reference, autopilot, scenario\n", done.stderr)
+
+    def test_units_and_defaults_are_hinted(self):
+        site = self.validators["vehicle"].schema["properties"]["site"]["properties"]
+        self.assertEqual({"type": "number", "minimum": -90, "maximum": 90, "description": "°, a number from -90 to 90"},
+                         site["latitude_deg"])
+        gravel = self.validators["vehicle"].schema["properties"]["hold_down_s"]
+        self.assertEqual(0, gravel["default"])
+
+    def test_changes_are_judged_as_by_the_reader(self):
+        # The changed files stand among the ones that they name.
+        tree = self.folder / "campaigns"
+        shutil.copytree(CAMPAIGNS, tree)
+        shutil.copytree(DATA, tree / "data")
+        originals = ["full.yaml", "slv4_500km.yaml", "vehicles/slv4_flexible.yaml", "gallery/vega/vehicle.yaml",
+                     "gallery/electron/vehicle.yaml", "autopilots/pid_aac.yaml", "autopilots/adaptive_fuzzy.yaml",
+                     "autopilots/flexible.yaml", "data/reference.yaml", "data/scenario.yaml"]
+        judged = []  # what was done, file, whether the schema refuses
+        for name in originals:
+            path = tree / name
+            # Every so many: another one in each file.
+            for i, (what, document) in enumerate(itertools.islice(mutants(load(path)), len(judged) % EVERY, None, EVERY)):
+                file = path.parent / f"changed_{path.stem}_{i}.yaml"
+                file.write_text(json.dumps(document))
+                judged.append((f"{name}: {what}", str(file), bool(self.refusals(document)) if kind_of(document) else True))
+        files = [file for _, file, _ in judged]
+        errors = {file: [] for file in files}
+        for start in range(0, len(files), 500):
+            done = subprocess.run([BINARIES / "dispersa", "--json", "validate", *files[start:start + 500]],
+                                  capture_output=True, text=True, timeout=TIMEOUT_S)
+            self.assertIn(done.returncode, (0, 2), done.stderr)
+            for error in json.loads(done.stdout)["errors"]:
+                # An error in a file that is named belongs to another schema.
+                errors.setdefault(error["file"], []).append(error["message"])
+
+        too_strict = [what for what, file, refused in judged if refused and not errors[file]]
+        self.assertEqual([], too_strict[:20])
+        missed, excused = [], 0
+        for what, file, refused in judged:
+            knowable = [message for message in errors[file] if KNOWABLE.search(message)]
+            if refused or not knowable:
+                continue
+            rest = [m for m in knowable if not any(re.search(pattern, m) for pattern, _ in ELSEWHERE)]
+            excused += not rest
+            if rest:
+                missed.append(f"{what}: {rest[0][:150]}")
+        self.assertEqual([], missed[:60])
+        refused = sum(refused for _, _, refused in judged)
+        self.assertGreater(refused, 3000 / EVERY)
+        self.assertLess(excused, 0.02 * refused)
+
+
+if __name__ == "__main__":
+    unittest.main()
