@@ -42,13 +42,13 @@ std::string FrequencyFigure(const StackModes& stack, std::size_t plane) {
 }
 
 std::string ShapeFigure(const Vehicle& vehicle, const StackModes& stack, std::size_t plane) {
-  constexpr std::size_t kShown = 4;
+  constexpr std::size_t kModesShown = 4;
   SvgChart chart({.label = "station aft of the nose tip, m"},
                  {.label = "deflection", .low = -1.05, .high = 1.05});
   const BendingLevel& full = stack.levels[plane].front();
   const BendingLevel& empty = stack.levels[plane].back();
   chart.Mark(vehicle.stages[static_cast<std::size_t>(stack.stage)].gimbal.pivot_station_m, "pivot");
-  for (std::size_t mode = 0; mode < std::min(kShown, full.modes.size()); ++mode) {
+  for (std::size_t mode = 0; mode < std::min(kModesShown, full.modes.size()); ++mode) {
     const auto line = [&](const BendingMode& m, const std::string& style, const std::string& legend) {
       // Between the nodes a shape is smooth; a few points more draw it so.
       std::vector<double> station_m, deflection;

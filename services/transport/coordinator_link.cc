@@ -9,38 +9,35 @@
 #include "services/transport/topics.h"
 
 namespace dispersa {
-namespace {
 
 namespace dds = eprosima::fastdds::dds;
 
-/// What is meant for one goes through writers of its own: one that stopped blocks nobody else.
-struct Channel {
-  Channel(Participant& participant_, const std::string& who)
-      : participant(participant_), publisher(participant.MakePublisher(PartitionOf(who))) {}
-  ~Channel() {
-    orders.reset();
-    texts.reset();
-    replies.reset();
-    participant.get()->delete_publisher(publisher);
-  }
-
-  /// Made when first needed.
-  template <typename PubSubType>
-  Writer<PubSubType>& In(std::optional<Writer<PubSubType>>& writer, const std::string& topic) {
-    if (!writer) writer.emplace(participant, publisher, topic);
-    return *writer;
-  }
-
-  Participant& participant;
-  dds::Publisher* publisher;
-  std::optional<Writer<idl::OrdersV1PubSubType>> orders;
-  std::optional<Writer<idl::TextV1PubSubType>> texts;
-  std::optional<Writer<idl::ReplyV1PubSubType>> replies;
-};
-
-}  // namespace
-
 struct CoordinatorLink::Impl {
+  /// What is meant for one goes through writers of its own: one that stopped blocks nobody else.
+  struct Channel {
+    Channel(Participant& participant_, const std::string& who)
+        : participant(participant_), publisher(participant.MakePublisher(PartitionOf(who))) {}
+    ~Channel() {
+      orders.reset();
+      texts.reset();
+      replies.reset();
+      participant.get()->delete_publisher(publisher);
+    }
+
+    /// Made when first needed.
+    template <typename PubSubType>
+    Writer<PubSubType>& In(std::optional<Writer<PubSubType>>& writer, const std::string& topic) {
+      if (!writer) writer.emplace(participant, publisher, topic);
+      return *writer;
+    }
+
+    Participant& participant;
+    dds::Publisher* publisher;
+    std::optional<Writer<idl::OrdersV1PubSubType>> orders;
+    std::optional<Writer<idl::TextV1PubSubType>> texts;
+    std::optional<Writer<idl::ReplyV1PubSubType>> replies;
+  };
+
   explicit Impl(const NetworkOptions& network)
       : participant({network, "dispersa-coordinator", CoordinatorPort(network.domain), {}}),
         publisher(participant.MakePublisher("")),
@@ -92,17 +89,17 @@ std::vector<CoordinatorEvent> CoordinatorLink::Wait(std::chrono::milliseconds ti
 }
 
 void CoordinatorLink::Send(const Orders& orders) {
-  Channel& channel = impl_->ChannelTo(orders.worker);
+  Impl::Channel& channel = impl_->ChannelTo(orders.worker);
   channel.In(channel.orders, kOrdersTopic).Write(ToIdl(orders));
 }
 
 void CoordinatorLink::Send(const TextPart& part) {
-  Channel& channel = impl_->ChannelTo(part.worker);
+  Impl::Channel& channel = impl_->ChannelTo(part.worker);
   channel.In(channel.texts, kTextTopic).Write(ToIdl(part));
 }
 
 void CoordinatorLink::Send(const Reply& reply) {
-  Channel& channel = impl_->ChannelTo(reply.client);
+  Impl::Channel& channel = impl_->ChannelTo(reply.client);
   channel.In(channel.replies, kReplyTopic).Write(ToIdl(reply));
 }
 

@@ -37,6 +37,12 @@ class Loading(unittest.TestCase):
         self.assertEqual(dispersa.load(SMOKE, autopilot=CAMPAIGNS / "autopilots/pd.yaml").autopilot,
                          dispersa.read(CAMPAIGNS / "autopilots/pd.yaml")["name"])
 
+    def test_arguments_out_of_range(self):
+        for arguments, said in (({"cases": 0}, "cases: 0 is out of range, allowed: a whole number from 1 to 4294967295"),
+                                ({"seed": -1}, "seed: -1 is out of range"), ({"cases": 2.5}, "cases: 2.5 is not a whole number")):
+            with self.assertRaisesRegex(dispersa.BadInput, said):
+                dispersa.load(SMOKE, **arguments)
+
     def test_an_edited_tree_is_the_edited_file(self):
         tree = dispersa.read(SMOKE)
         tree["sampling"]["cases"] = numpy.int64(5)

@@ -53,7 +53,8 @@ class Laws(unittest.TestCase):
         told = []
 
         def listening(tick):
-            if tick.since_ignition_s == 0.0:
+            if tick.memory.get("stage") != tick.stage:
+                tick.memory["stage"] = tick.stage
                 told.append((tick.stage, tick.limit_rad, tick.kp_1_s2.shape, tick.saturation.tolist()))
             return [9.0, pd(tick), -9.0]  # those of other axes are ignored
 

@@ -7,9 +7,10 @@ import warnings
 import numpy
 
 from . import _core
+from ._arguments import MOST_CASES, MOST_THREADS, refuse, whole
 from ._source import placed, source, without_place
 from ._tables import structured
-from .errors import BadInput, ExitCode, InputWarning, Problem
+from .errors import ExitCode, InputWarning, Problem
 from ._flight import Flight, Flights, History, column_positions
 
 
@@ -54,7 +55,8 @@ def load(what, *, cases=None, seed=None, autopilot=None, base=None):
     """
     name, text = source(what, base)
     with placed(name, text):
-        campaign = Campaign(_core.load(name, text, cases, seed, None if autopilot is None else os.fspath(autopilot)))
+        campaign = Campaign(_core.load(name, text, whole("cases", cases, 1, MOST_CASES), whole("seed", seed),
+                                       None if autopilot is None else os.fspath(autopilot)))
     for problem in campaign.warnings:
         warnings.warn(str(problem), InputWarning, stacklevel=2)
     return campaign
@@ -148,9 +150,7 @@ class Campaign:
     def plan(self, cases=None):
         """What cases fly with, without flying: a structured array of shape (cases,), a float64 field an input, in the
         unit of its name. `cases`: how many from the first; default: all."""
-        count = self.cases if cases is None else int(cases)
-        if count < 0:
-            raise BadInput([("", 0, 0, "", f"cases: {count} is no number of cases", "0 or more")])
+        count = self.cases if cases is None else whole("cases", cases, 0, MOST_CASES)
         return structured(_core.plan(self._core, 0, count), self.input_names)
 
     def fly(self, case=None, *, inputs=None, history=True, step_s=0.1, integrator="simpson", law=None, axes=("pitch",)):
@@ -186,13 +186,12 @@ class Campaign:
         remembers in `tick.memory`. Releases the interpreter's lock; Ctrl-C stops it. Returns Flights.
         """
         if cases is None or isinstance(cases, (int, numpy.integer)):
-            count = self.cases if cases is None else int(cases)
-            self._check([max(count - 1, 0)])
-            indices = list(range(count))
+            indices = list(range(self.cases if cases is None else whole("cases", cases, 0, self.cases)))
         else:
             indices = self._check(cases)
         names, positions = column_positions(columns)
-        values = _core.fly_many(self._core, indices, _step(step_s) if histories else 0.0, positions, int(threads), progress,
+        values = _core.fly_many(self._core, indices, _step(step_s) if histories else 0.0, positions,
+                                whole("threads", threads, 0, MOST_THREADS), progress,
                                 law, _axis_bits(axes))
         return Flights(self, values, names)
 
@@ -201,7 +200,7 @@ class Campaign:
         indices = [int(case) for case in cases]
         for index in indices:
             if not 0 <= index < self.cases:
-                raise BadInput([("", 0, 0, "", f"case: the campaign has no case {index}", f"0 to {self.cases - 1}")])
+                raise refuse(f"case: the campaign has no case {index}", f"0 to {self.cases - 1}")
         return indices
 
 
@@ -210,13 +209,13 @@ def _axis_bits(axes):
     names = ("roll", "pitch", "yaw")
     chosen = {axes} if isinstance(axes, str) else set(axes)
     if not chosen or not chosen <= set(names):
-        raise BadInput([("", 0, 0, "", f"axes: {axes!r} are not axes", "some of roll, pitch and yaw")])
+        raise refuse(f"axes: {axes!r} are not axes", "some of roll, pitch and yaw")
     return sum(1 << names.index(name) for name in chosen)
 
 
 def _step(step_s):
     if not 0.0 < step_s < float("inf"):
-        raise BadInput([("", 0, 0, "", f"step_s: {step_s} is no output step", "above 0 s")])
+        raise refuse(f"step_s: {step_s} is no output step", "above 0 s")
     return float(step_s)
 
 

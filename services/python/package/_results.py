@@ -8,6 +8,7 @@ import shutil
 import numpy
 
 from . import _core
+from ._arguments import MOST_CASES, MOST_THREADS, refuse, whole
 from ._source import placed, source
 from ._tables import structured
 from ._campaign import Campaign, _from_canonical, load
@@ -121,7 +122,7 @@ class Results:
     def replay(self, case):
         """Flies a stored case again; a dict with its digest. Raises ReplayMismatch unless it is the same to the last
         bit."""
-        answer = json.loads(_core.replay(os.fspath(self.directory), int(case)))
+        answer = json.loads(_core.replay(os.fspath(self.directory), whole("case", case, 0, MOST_CASES)))
         if not answer["match"]:
             error = ReplayMismatch(f"case {case} is not reproduced: "
                                    + "; ".join(f"{d['name']} stored {d['stored']}, replayed {d['replayed']}"
@@ -171,20 +172,21 @@ def run(what, out="", *, cases=None, seed=None, autopilot=None, base=None, worke
         campaign = load(what, base=base, **overrides)
     if peer is not None:
         folder = os.fspath(out) or os.path.join("results", f"{campaign.name}-{campaign.id[:8]}")
-        code = _core.run_remotely(campaign.name, campaign.canonical_yaml, folder, domain, peer, address, keys, insecure,
+        code = _core.run_remotely(campaign.name, campaign.canonical_yaml, folder, whole("domain", domain, 0, 99), peer, address, keys, insecure,
                                   priority, progress)
         problem = None
     else:
         program = "" if workers == 0 else worker_program() or "dispersa-worker"
         folder, code, problem = _core.run(campaign.name, campaign.canonical_yaml, os.fspath(out), resume,
-                                          -1 if workers is None else int(workers), int(threads), program,
-                                          int(envelope) if histories else None, progress)
+                                          -1 if workers is None else whole("workers", workers, 0, MOST_THREADS),
+                                          whole("threads", threads, 0, MOST_THREADS), program,
+                                          whole("envelope", envelope, 1) if histories else None, progress)
     return _judge(folder, code, problem)
 
 
 def report(directory, *, histories=True, envelope=ENVELOPE, progress=None):
     """Makes the reports of a result folder again, as `dispersa report` does; its Results. Arguments as of run."""
-    _core.report(os.fspath(directory), int(envelope) if histories else None, progress)
+    _core.report(os.fspath(directory), whole("envelope", envelope, 1) if histories else None, progress)
     return Results(directory)
 
 
@@ -205,7 +207,15 @@ def margins(what, *, cases=None, autopilot=None, base=None, frequency_band_perce
     linearise with the lateral velocity. Raises BadInput.
     """
     campaign = what if isinstance(what, Campaign) and autopilot is None else load(what, autopilot=autopilot, base=base)
-    return json.loads(_core.margins(campaign.name, campaign.canonical_yaml, cases, float(frequency_band_percent), drift))
+    return json.loads(_core.margins(campaign.name, campaign.canonical_yaml, whole("cases", cases, 1, MOST_CASES),
+                                    _band(frequency_band_percent), drift))
+
+
+def _band(percent):
+    """As the command's --frequency-band."""
+    if not 0.0 <= percent <= 50.0:
+        raise refuse(f"frequency_band_percent: {percent} is out of range", "0 to 50")
+    return float(percent)
 
 
 class Optimization(dict):
@@ -233,7 +243,8 @@ def optimize(what, out="", *, seed=None, threads=0, base=None, progress=None):
     """
     name, text = source(what, base)
     with placed(name, text):
-        printed, yaml, statement = _core.optimize(name, text, seed, int(threads), os.fspath(out), progress)
+        printed, yaml, statement = _core.optimize(name, text, whole("seed", seed), whole("threads", threads, 0, MOST_THREADS),
+                                                  os.fspath(out), progress)
     optimization = Optimization(json.loads(printed))
     optimization.yaml, optimization.statement = yaml, statement
     return optimization
