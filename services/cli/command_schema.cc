@@ -12,7 +12,7 @@
 #include "core/report/output_file.h"
 #include "services/cli/command.h"
 #include "services/cli/schema_json.h"
-#include "services/cli/writable.h"
+#include "services/client/writable.h"
 
 namespace dispersa {
 namespace {

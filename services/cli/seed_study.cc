@@ -61,13 +61,13 @@ std::vector<Column> Columns(const std::vector<SeedRow>& rows) {
 }
 
 // Least, largest and largest magnitude of a column.
-struct Range {
+struct Spread {
   double low;
   double high;
   double Magnitude() const { return std::fmax(std::fabs(low), std::fabs(high)); }
 };
-Range RangeOf(const std::vector<SeedRow>& rows, const Column& column) {
-  Range range = {column.value(rows.front()), column.value(rows.front())};
+Spread SpreadOf(const std::vector<SeedRow>& rows, const Column& column) {
+  Spread spread = {column.value(rows.front()), column.value(rows.front())};
   for (const SeedRow& row : rows) {
     range.low = std::fmin(range.low, column.value(row));
     range.high = std::fmax(range.high, column.value(row));
@@ -120,18 +120,18 @@ std::string SeedStudyText(const std::vector<SeedRow>& rows) {
       text += fmt::format("{:>{}.{}f}", column.value(row), column.width + 1, column.decimals);
     text += "\n";
   }
-  const auto summary = [&](const char* title, bool errors, const std::function<double(const Range&)>& value) {
+  const auto summary = [&](const char* title, bool errors, const std::function<double(const Spread&)>& value) {
     text += fmt::format("{:<15}", title);
     for (const Column& column : columns) {
       text += column.is_error == errors
-                  ? fmt::format("{:>{}.{}f}", value(RangeOf(rows, column)), column.width + 1, column.decimals)
+                  ? fmt::format("{:>{}.{}f}", value(SpreadOf(rows, column)), column.width + 1, column.decimals)
                   : std::string(static_cast<std::size_t>(column.width) + 1, ' ');
     }
     text += "\n";
   };
-  summary("worst", true, [](const Range& range) { return range.Magnitude(); });
-  summary("least", false, [](const Range& range) { return range.low; });
-  summary("largest", false, [](const Range& range) { return range.high; });
+  summary("worst", true, [](const Spread& range) { return range.Magnitude(); });
+  summary("least", false, [](const Spread& range) { return range.low; });
+  summary("largest", false, [](const Spread& range) { return range.high; });
   const auto reached = std::count_if(rows.begin(), rows.end(), [](const SeedRow& row) { return row.reached; });
   return text + fmt::format("reached from {} of {} seeds\n", reached, rows.size());
 }
