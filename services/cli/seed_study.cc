@@ -69,10 +69,10 @@ struct Spread {
 Spread SpreadOf(const std::vector<SeedRow>& rows, const Column& column) {
   Spread spread = {column.value(rows.front()), column.value(rows.front())};
   for (const SeedRow& row : rows) {
-    range.low = std::fmin(range.low, column.value(row));
-    range.high = std::fmax(range.high, column.value(row));
+    spread.low = std::fmin(range.low, column.value(row));
+    spread.high = std::fmax(range.high, column.value(row));
   }
-  return range;
+  return spread;
 }
 
 }  // namespace

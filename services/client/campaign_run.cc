@@ -58,7 +58,7 @@ class CampaignRun {
     }
     queue.RethrowProblem();
     if (observer_.Stop()) throw Interrupted();
-    return std::nullopt;
+    return queue.hopeless();
   }
 
   std::optional<std::string> FlyWithWorkers(const std::filesystem::path& program, int count) {
@@ -111,7 +111,7 @@ class CampaignRun {
       for (;;) {
         flights.FlyCases(*this);
         std::unique_lock lock(mutex_);
-        if (run_.observer_.Stop() || problem_) return;
+        if (run_.observer_.Stop() || problem_ || hopeless_) return;
         try {
           if (run_.book_.Complete()) return;  // else the plan may have asked for more
         } catch (...) {
@@ -123,7 +123,7 @@ class CampaignRun {
     }
     std::optional<std::uint64_t> Next(bool) override {
       const std::lock_guard lock(mutex_);
-      if (run_.observer_.Stop() || problem_) return std::nullopt;
+      if (run_.observer_.Stop() || problem_ || hopeless_) return std::nullopt;
       try {
         if (waiting_.empty()) {
           for (const Assignment& assignment : run_.book_.ledger().Assign(run_.Now()))
@@ -156,8 +156,13 @@ class CampaignRun {
       const std::lock_guard lock(mutex_);
       run_.book_.ledger().GiveUp(kSelf, case_index, attempts_.extract(case_index).mapped(), reason,
                                  run_.Now());
+      if (const auto given_up = run_.book_.ledger().Progress().quarantined;
+          given_up >= kHopelessCases && run_.book_.flown_now() == 0)
+        hopeless_ = fmt::format("the first {} cases ended every process that flew them, the last one: {}", given_up,
+                                reason);
       changed_.notify_all();
     }
+    const std::optional<std::string>& hopeless() const { return hopeless_; }
     void RethrowProblem() const {
       if (problem_) std::rethrow_exception(problem_);
     }
@@ -171,6 +176,7 @@ class CampaignRun {
     std::condition_variable changed_;
     std::deque<std::pair<std::uint64_t, std::uint64_t>> waiting_;  ///< case and attempt
     std::map<std::uint64_t, std::uint64_t> attempts_;              ///< of the cases in flight
+    std::optional<std::string> hopeless_;
     std::exception_ptr problem_;
   };
 

@@ -42,7 +42,9 @@ def sources():
 def options(source):
     """Include paths and definitions of the build."""
     for command in json.loads((BUILD / "compile_commands.json").read_text()):
-        if pathlib.Path(command["file"]) == source:
+        file = pathlib.Path(command["file"])
+        # Or CMake compiles the whole module as one source, which names its own.
+        if file == source or (file.parent.name == "Unity" and file.exists() and f'"{source}"' in file.read_text()):
             words = shlex.split(command["command"])
             taken = [w for w in words if w.startswith(("-I", "-D", "-std=", "-march="))]
             return taken + [w for i, w in enumerate(words) for w in words[i:i + 2] if words[i] == "-isystem"]

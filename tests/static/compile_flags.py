@@ -7,6 +7,8 @@ import pathlib
 import shlex
 import sys
 
+from product_sources import name_of
+
 MARCH = "-march=x86-64-v3"
 # Sources of lanes (core/math/lanes.h) are compiled for this one as well; the program chooses at its start.
 LANES, LANES_MARCH = "-DDISPERSA_LANES=", "-march=x86-64-v4"
@@ -41,12 +43,12 @@ def check(root, commands):
     """Violations, one line each; `commands` is the parsed compile_commands.json."""
     problems, seen = [], 0
     for entry in commands:
-        path = pathlib.Path(entry["directory"], entry["file"])
-        if not path.is_relative_to(root) or path.relative_to(root).parts[0] not in ("core", "services"):
+        name = name_of(entry, root)
+        if name is None:
             continue
         seen += 1
         for violation in violations(shlex.split(entry["command"])):
-            problems.append(f"{path.relative_to(root)}: {violation}")
+            problems.append(f"{name}: {violation}")
     return problems if seen else ["no source of core/ in compile_commands.json"]
 
 

@@ -40,6 +40,12 @@ class CompileFlagsTest(unittest.TestCase):
         self.assertEqual(check("c++ -c a.cc", "/src/tests/unit/a.cc"),
                          ["no source of core/ in compile_commands.json"])
 
+    def test_a_module_that_is_one_source_counts(self):
+        self.assertEqual(check(GOOD + " -Ofast", "/src/build/core/math/CMakeFiles/m.dir/Unity/unity_0_cxx.cxx"),
+                         ["core/math: -Ofast"])
+        self.assertEqual(check(GOOD + " -Ofast", "/src/build/tests/CMakeFiles/m.dir/Unity/unity_0_cxx.cxx"),
+                         ["no source of core/ in compile_commands.json"])
+
 
 if __name__ == "__main__":
     unittest.main()

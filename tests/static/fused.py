@@ -17,6 +17,8 @@ import subprocess
 import sys
 import tempfile
 
+from product_sources import name_of
+
 # vfmadd231sd, vfnmsub132pd, vfmaddsub213ps, ... and AMD's vfmaddpd.
 FUSED = re.compile(r"^\s*[0-9a-f]+:\s+(?:\{\w+\} )?(vfn?m(?:add|sub|addsub|subadd)\w*)\s")
 FUNCTION = re.compile(r"^[0-9a-f]+ <(.*)>:$")
@@ -63,9 +65,8 @@ def check(root, commands, objdump, launcher=()):
     """Violations, one line each; `commands` is the parsed compile_commands.json."""
     entries = {}
     for entry in commands:
-        path = pathlib.Path(entry["directory"], entry["file"])
-        if path.is_relative_to(root) and path.relative_to(root).parts[0] in ("core", "services"):
-            entries.setdefault(path.relative_to(root), []).append(entry)
+        if (name := name_of(entry, root)) is not None:
+            entries.setdefault(name, []).append(entry)
     if not entries:
         return ["no source of core/ in compile_commands.json"]
     problems = []
