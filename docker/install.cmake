@@ -15,7 +15,7 @@ install(FILES core/report/summary.schema.json DESTINATION "${data}/schemas")
 # Each README.md in its folder, so that their links lead somewhere.
 file(GLOB_RECURSE documents RELATIVE "${PROJECT_SOURCE_DIR}" CONFIGURE_DEPENDS
   core/*.md services/*.md idl/*.md docker/*.md core/images/* campaigns/*.md campaigns/images/*)
-list(FILTER documents EXCLUDE REGEX "services/(docs/pages|cli/starter)/")  # sources of others
+list(FILTER documents EXCLUDE REGEX "services/cli/starter/")  # what `init` writes
 foreach(document IN LISTS documents ITEMS README.md CONTRIBUTING.md CHANGELOG.md LICENSE)
   get_filename_component(folder "${document}" DIRECTORY)
   install(FILES "${document}" DESTINATION "${CMAKE_INSTALL_DOCDIR}/${folder}")
