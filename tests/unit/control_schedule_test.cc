@@ -144,7 +144,7 @@ void ExpectLanesAsAlone() {
     }
     lanes::GimbalOutput<T> out;
     lanes::StepGimbals<true>(model, loop, since > T(-1.0), since, angle, rate, static_cast<const T*>(nullptr),
-                             memory, out);
+                             static_cast<const T*>(nullptr), memory, out);
     for (int lane = 0; lane < kLanes; ++lane) {
       const GimbalCommand c = StepGimbals(model, lane == 2 ? 1 : 0, lanes::Lane(since, lane), Error(tick, lane),
                                           Vector2::Ones(), 1.0, alone[lane]);
