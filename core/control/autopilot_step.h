@@ -88,7 +88,7 @@ DISPERSA_INLINE void StepGimbals(const AutopilotModel& model, GimbalLoop<T>& loo
   const T* rate = &rate_rad_s.x;
   for (int axis = 0; axis < kAxes; ++axis) {
     StepAxis<kAll>(model.laws.data()[axis].config, model.config.tick_s, loop.axes[axis], acting, angle[axis],
-                   rate[axis], foreign_rad_s2 != nullptr ? foreign_rad_s2[axis] : T(0.0), axis == kPitch,
+                   rate[axis], foreign_rad_s2 + (foreign_rad_s2 != nullptr ? axis : 0), axis == kPitch,
                    memory[axis], out.axes[axis]);
     if (program_rad_s2 != nullptr)
       out.axes[axis].command_rad_s2 = out.axes[axis].command_rad_s2 + program_rad_s2[axis];

@@ -286,7 +286,7 @@ DISPERSA_INLINE T Filter(int count, const T (*sections)[5], MaskOf<T> acting, T 
 /// that is not ours. `is_reported`: what the law has learnt is read afterwards.
 template <bool kAll, class T>
 DISPERSA_INLINE void StepAxis(const AxisConfig& config, double tick_s, const AxisStage<T>& stage,
-                              MaskOf<T> acting, T error, T rate, T foreign_rad_s2, bool is_reported,
+                              MaskOf<T> acting, T error, T rate, const T* foreign_rad_s2, bool is_reported,
                               AxisMemory<T>& memory, AxisOutput<T>& out) {
   out.command_rad_s2 = out.departure_norm2 = out.frozen = T(0.0);
   out.v =
@@ -311,7 +311,7 @@ DISPERSA_INLINE void StepAxis(const AxisConfig& config, double tick_s, const Axi
       out.command_rad_s2 = StepAugmented<kAll>(config, tick_s, stage, acting, error, rate, memory);
       break;
     case ControlLaw::kPlugin:
-      out.command_rad_s2 = foreign_rad_s2;
+      out.command_rad_s2 = *foreign_rad_s2;
       break;
   }
   const int sections = static_cast<int>(config.filters.size());

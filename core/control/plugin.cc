@@ -120,7 +120,7 @@ void PluginFlight::Free::operator()(void* memory) const { std::free(memory); }
 
 PluginFlight::PluginFlight(const PluginLaw& law, double tick_s, std::size_t stages, unsigned axes,
                            std::uint64_t case_index)
-    : law_(law), case_index_(case_index) {
+    : law_(law), axes_(axes), case_index_(case_index) {
   law.Open();
   constexpr std::size_t kAlignment = 64;
   const std::size_t bytes = (law.description().memory_bytes / kAlignment + 1) * kAlignment;
@@ -151,6 +151,7 @@ bool PluginFlight::Step(const dispersa_law_input& input, double* command_rad_s2)
   if (!Succeeded(code, "the plug-in's step failed")) return false;
   const bool deflects = law_.description().command == DISPERSA_LAW_DEFLECTION;
   for (int axis = 0; axis < DISPERSA_LAW_AXES; ++axis) {
+    if (!(axes_ >> axis & 1u)) continue;
     const double command = output.command[axis];
     if (!std::isfinite(command)) return Succeeded(1, "the plug-in commanded what is no finite number");
     command_rad_s2[axis] = deflects ? command * input.effectiveness_1_s2[axis] : command;

@@ -101,6 +101,7 @@ class PluginFlight {
   };
 
   const PluginLaw& law_;
+  const unsigned axes_;
   const std::uint64_t case_index_;
   std::unique_ptr<void, Free> memory_;
   std::array<double, kLawTelemetry> telemetry_{};
