@@ -69,8 +69,8 @@ struct Spread {
 Spread SpreadOf(const std::vector<SeedRow>& rows, const Column& column) {
   Spread spread = {column.value(rows.front()), column.value(rows.front())};
   for (const SeedRow& row : rows) {
-    spread.low = std::fmin(range.low, column.value(row));
-    spread.high = std::fmax(range.high, column.value(row));
+    spread.low = std::fmin(spread.low, column.value(row));
+    spread.high = std::fmax(spread.high, column.value(row));
   }
   return spread;
 }
