@@ -14,7 +14,8 @@ std::shared_ptr<const std::string> DecodeLibrary(const InputNode& node, const st
   const std::size_t before = problems.size();
   sha256 = map.Text("sha256");
   const std::string text = map.Text("base64");
-  if (problems.size() != before) return nullptr;
+  // What is missing is said at the end.
+  if (problems.size() != before || node.Find("sha256") == nullptr || node.Find("base64") == nullptr) return nullptr;
   std::optional<std::string> bytes = FromBase64(text);
   if (!bytes) {
     AddProblem(problems, *node.Find("base64"), map.PathOf("base64"), "is not base64 (RFC 4648)");

@@ -1,6 +1,6 @@
 """Does what a page says: its ```sh blocks, in order, in one shell, in an empty folder.
 
-    follow.py PAGE.md [--programs BIN]
+    follow.py PAGE.md [--programs BIN] [--header control_law.h]
 
 A block's last command must succeed. A ```text block right after it is what it prints: each of its lines must be among the
 block's output, in this order, where "…" stands for anything.
@@ -9,6 +9,7 @@ import argparse
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -72,11 +73,17 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("page", type=pathlib.Path)
     parser.add_argument("--programs", type=pathlib.Path)
+    parser.add_argument("--header", type=pathlib.Path)
     options = parser.parse_args()
     environment = {**os.environ, "NO_COLOR": "1", "DISPERSA_DOMAIN": str(20 + os.getpid() % 79)}
     if options.programs:
         environment["PATH"] = f"{options.programs}:{environment['PATH']}"
-    with tempfile.TemporaryDirectory(prefix="dispersa-page-") as folder:
+    with (tempfile.TemporaryDirectory(prefix="dispersa-page-") as folder,
+          tempfile.TemporaryDirectory(prefix="dispersa-include-") as include):
+        if options.header:  # as it is installed
+            (pathlib.Path(include) / "dispersa").mkdir()
+            shutil.copy(options.header, pathlib.Path(include) / "dispersa")
+            environment["CPATH"] = include
         problems = follow(options.page.read_text(), folder, environment)
     for problem in problems:
         print(f"{options.page.name}: {problem}")

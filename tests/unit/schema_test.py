@@ -40,6 +40,7 @@ ELSEWHERE = [
     ("missing key '(name|element|mass_kg|shear_stiffness)", "the beam's theory, or the sections' masses, decide"),
     ("missing key '(low|high)_", "of two ends one is given, and which distribution it is"),
     ("missing key 'radius_m'", "a list of nozzles that is empty is none"),
+    ("mass_properties.*is not a (number|list)", "where propellant is given, all others are lists"),
     (r"the list has \d+", "as many as the vehicle has stages"),
     ("is not a choice", "a nozzle's name, which the vehicle gives"),
 ]
@@ -202,7 +203,7 @@ class SchemaTest(unittest.TestCase):
             knowable = [message for message in errors[file] if KNOWABLE.search(message)]
             if refused or not knowable:
                 continue
-            rest = [m for m in knowable if not any(re.search(pattern, m) for pattern, _ in ELSEWHERE)]
+            rest = [m for m in knowable if not any(re.search(pattern, f"{what}: {m}") for pattern, _ in ELSEWHERE)]
             excused += not rest
             if rest:
                 missed.append(f"{what}: {rest[0][:150]}")
