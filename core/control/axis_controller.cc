@@ -88,7 +88,7 @@ double StepAxis(const AxisLaw& law, int stage, double error_rad, double rate_rad
   lanes::AxisMemory<double> memory;
   lanes::SetLane(memory, 0, state);
   lanes::AxisOutput<double> out;
-  lanes::StepAxis<true>(law.config, tick_s, of_stage, true, error_rad, rate_rad_s, nullptr, true, memory, out);
+  lanes::StepAxis<true>(law.config, tick_s, of_stage, true, error_rad, rate_rad_s, static_cast<const double*>(nullptr), true, memory, out);
   lanes::ReadLane(memory, 0, state);
   telemetry = lanes::TelemetryOf(law.config, out, memory, 0);
   return out.command_rad_s2;

@@ -283,7 +283,7 @@ DISPERSA_INLINE T Filter(int count, const T (*sections)[5], MaskOf<T> acting, T 
 }
 
 /// One tick of the lanes that act; the others' memory stays as it is. `foreign_rad_s2`: the command of a law
-/// that is not ours. `is_reported`: what the law has learnt is read afterwards.
+/// that is not ours, else null. `is_reported`: what the law has learnt is read afterwards.
 template <bool kAll, class T>
 DISPERSA_INLINE void StepAxis(const AxisConfig& config, double tick_s, const AxisStage<T>& stage,
                               MaskOf<T> acting, T error, T rate, const T* foreign_rad_s2, bool is_reported,
