@@ -40,6 +40,7 @@ ELSEWHERE = [
     ("missing key '(name|element|mass_kg|shear_stiffness)", "the beam's theory, or the sections' masses, decide"),
     ("missing key '(low|high)_", "of two ends one is given, and which distribution it is"),
     ("missing key 'radius_m'", "a list of nozzles that is empty is none"),
+    ("missing key '(span|chord)_", "a coefficient wants its length, if its table is one"),
     ("mass_properties.*is not a (number|list)", "where propellant is given, all others are lists"),
     (r"the list has \d+", "as many as the vehicle has stages"),
     ("is not a choice", "a nozzle's name, which the vehicle gives"),
