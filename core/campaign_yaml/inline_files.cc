@@ -16,6 +16,9 @@
 namespace dispersa {
 namespace {
 
+// A campaign's text carries it to every worker.
+constexpr std::size_t kLargestLibrary = std::size_t{32} << 20;
+
 using Parse = std::function<InputNode(const std::string& text, const std::string& file)>;
 
 // Replaces a scalar, a file's name, by what the file holds; leaves it if that is impossible.
@@ -188,7 +191,11 @@ void InlineAutopilotFiles(InputNode& autopilot, const std::string& path, FileNam
   const InputNode place = *library;
   Replace(
       library, path + "plugin.library", names,
-      [&](const std::string& bytes, const std::string&) {
+      [&](const std::string& bytes, const std::string& file) {
+        if (bytes.size() > kLargestLibrary) {
+          AddProblem(problems, place, path + "plugin.library", "'" + file + "' is larger than 32 MiB");
+          return InputNode();
+        }
         InputNode inlined = MapAt(place);
         SetMember(inlined, "sha256", TextAt(place, Sha256Hex(bytes)));
         SetMember(inlined, "base64", TextAt(place, Base64(bytes)));
