@@ -29,7 +29,7 @@ std::time_t clock_behind_s = 0;
 }
 
 // In the place of the C library's, for OpenSSL and Fast DDS too.
-extern "C" std::time_t time(std::time_t* out) noexcept {
+extern "C" __attribute__((visibility("default"))) std::time_t time(std::time_t* out) noexcept {
   timespec now{};
   clock_gettime(CLOCK_REALTIME, &now);
   const std::time_t shown = now.tv_sec - clock_behind_s;
