@@ -109,7 +109,10 @@ CaseResult ResultOf(const FlightModel& model, std::uint64_t case_index, const Fl
 }  // namespace
 
 CampaignFlights::CampaignFlights(const Campaign& campaign)
-    : design_(campaign), model_(std::make_unique<FlightModel>(DefinitionOf(campaign))) {}
+    : design_(campaign), model_(std::make_unique<FlightModel>(DefinitionOf(campaign))) {
+  HistoryColumns();  // made here: a child may be forked while another thread would make them
+  MetricNames();
+}
 
 CampaignFlights::~CampaignFlights() = default;
 

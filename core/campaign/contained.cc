@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -16,6 +17,7 @@
 #include <cstring>
 #include <ctime>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -26,7 +28,15 @@ bool contained = false;
 std::string refusal;
 
 // Kinds of frames in the pipe: a byte, the size as 8 bytes, the bytes.
-constexpr char kSaid = 's', kProblem = 'p', kDone = 'd';
+constexpr char kSaid = 's', kProblem = 'p', kThrew = 't', kDone = 'd';
+
+// What a plug-in says may be anything: so much of it, on one line.
+std::string Clean(const std::string& text, std::size_t limit = 1000) {
+  std::string clean = text.substr(0, limit);
+  for (char& c : clean)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+  return text.size() > limit ? clean + "..." : clean;
+}
 
 void WriteAll(int file, const void* bytes, std::size_t size) {
   const char* at = static_cast<const char*>(bytes);
@@ -66,9 +76,13 @@ void Limit(int resource, rlim_t value) {
                           const std::function<void(const Say& say)>& work) {
   contained = true;
   MarkPluginCallsIn(mark);
+  setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(1);
-  // An interrupt reaches the whole group; the parent decides what it means. Other signals mean what they do.
+  // An exit within a call destroys nothing of the parent's: handlers run in the reverse order of their
+  // registration.
+  on_exit([](int status, void*) { _exit(status); }, nullptr);
+  // The parent decides what an interrupt means. Other signals mean what they do.
   std::signal(SIGINT, SIG_IGN);
   std::signal(SIGTERM, SIG_IGN);
   for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGPIPE}) std::signal(signal, SIG_DFL);
@@ -88,10 +102,12 @@ void Limit(int resource, rlim_t value) {
   try {
     work([out](const std::string& message) { WriteFrame(out, kSaid, message); });
     WriteFrame(out, kDone, "");
-  } catch (const std::exception& error) {
+  } catch (const PluginError& error) {
     WriteFrame(out, kProblem, error.what());
+  } catch (const std::exception& error) {
+    WriteFrame(out, kThrew, error.what());
   } catch (...) {
-    WriteFrame(out, kProblem, "threw what is no std::exception");
+    WriteFrame(out, kThrew, "no std::exception");
   }
   _exit(0);  // nothing of the parent's is destroyed here
 }
@@ -128,23 +144,29 @@ class CallWatch {
     const std::uint64_t calls = mark_.calls;
     const auto now = std::chrono::steady_clock::now();
     const double cpu_s = CpuSeconds(clock_);
-    if (calls != calls_ || calls % 2 == 0) {
+    // While this process was stopped, so was the child.
+    waited_s_ += std::min(std::chrono::duration<double>(now - looked_).count(), 0.5);
+    looked_ = now;
+    if (!at_end_ && (calls != calls_ || calls % 2 == 0)) {
       calls_ = calls;
-      since_ = now;
+      waited_s_ = 0.0;
       since_cpu_s_ = cpu_s;
       return false;
     }
-    return cpu_s - since_cpu_s_ > limits_.call_cpu_s ||
-           std::chrono::duration<double>(now - since_).count() > limits_.call_wait_s;
+    return cpu_s - since_cpu_s_ > limits_.call_cpu_s || waited_s_ > limits_.call_wait_s;
   }
+  /// From now on the child has nothing to do but to end.
+  void AwaitEnd() { at_end_ = true; }
 
  private:
   const volatile PluginMark& mark_;
   const ContainmentLimits limits_;
   clockid_t clock_ = CLOCK_MONOTONIC;
   std::uint64_t calls_ = 0;
-  std::chrono::steady_clock::time_point since_ = std::chrono::steady_clock::now();
+  std::chrono::steady_clock::time_point looked_ = std::chrono::steady_clock::now();
+  double waited_s_ = 0.0;
   double since_cpu_s_ = 0.0;
+  bool at_end_ = false;
 };
 
 // A child, which does not outlive this object.
@@ -153,30 +175,23 @@ class Child {
   Child(const std::function<void(const Say& say)>& work, const ContainmentLimits& limits) {
     void* const shared =
         mmap(nullptr, sizeof(PluginMark), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    int ends[2];
-    if (shared == MAP_FAILED || pipe2(ends, O_CLOEXEC) != 0)
-      throw std::runtime_error(std::string("no process for a plug-in can be prepared: ") +
-                               std::strerror(errno));
+    if (shared == MAP_FAILED) Refuse();
     mark_ = new (shared) PluginMark();
+    int ends[2];
+    if (pipe2(ends, O_CLOEXEC) != 0) Refuse();
+    in_ = ends[0];
     const pid_t parent = getpid();
     std::fflush(nullptr);
     pid_ = fork();
     if (pid_ == 0) BeChild(ends[1], parent, mark_, limits, work);
     const int error = errno;
     close(ends[1]);
-    in_ = ends[0];
-    if (pid_ < 0)
-      throw std::runtime_error(std::string("no process for a plug-in can be started: ") +
-                               std::strerror(error));
+    errno = error;
+    if (pid_ < 0) Refuse();
+    setpgid(pid_, pid_);  // whichever of the two comes first
+    group_ = pid_;
   }
-  ~Child() {
-    if (pid_ > 0) {
-      kill(pid_, SIGKILL);
-      Wait();
-    }
-    close(in_);
-    munmap(const_cast<PluginMark*>(mark_), sizeof(PluginMark));
-  }
+  ~Child() { End(); }
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
@@ -184,16 +199,32 @@ class Child {
   int in() const { return in_; }
   const volatile PluginMark& mark() const { return *mark_; }
   PluginMark At() const { return {mark_->case_index, mark_->calls, mark_->time_s, mark_->stage}; }
-  int Wait() {
+  /// How it has ended; none while it runs.
+  std::optional<int> Ended() {
     int status = 0;
-    while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) continue;
+    if (waitpid(pid_, &status, WNOHANG) != pid_) return std::nullopt;
     pid_ = -1;
     return status;
   }
 
  private:
+  [[noreturn]] void Refuse() {
+    const std::string reason = std::strerror(errno);
+    End();
+    throw NoChild("no process for a control law can be started: " + reason);
+  }
+  void End() {
+    if (group_ > 0) kill(-group_, SIGKILL);
+    if (pid_ > 0) {
+      kill(pid_, SIGKILL);
+      while (waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) continue;
+    }
+    if (in_ >= 0) close(in_);
+    if (mark_ != nullptr) munmap(const_cast<PluginMark*>(mark_), sizeof(PluginMark));
+  }
+
   volatile PluginMark* mark_ = nullptr;
-  pid_t pid_ = -1;
+  pid_t pid_ = -1, group_ = -1;
   int in_ = -1;
 };
 
@@ -204,26 +235,19 @@ void RunContained(const std::function<void(const Say& say)>& work, const Say& he
   Child child(work, limits);
   CallWatch watch(child.pid(), child.mark(), limits);
   std::string bytes;
-  bool is_done = false;
+  bool is_open = true;  // a process that the child started may hold the pipe open, and the child may close it
   for (;;) {
-    pollfd ready{child.in(), POLLIN, 0};
-    const int count = poll(&ready, 1, 100);
-    if (count < 0 && errno != EINTR) throw std::runtime_error(std::strerror(errno));
-    if (count <= 0) {
-      if (watch.TookTooLong()) {
-        char text[128];
-        std::snprintf(text, sizeof text,
-                      "did not return from a call within %g s of computing or %g s of waiting",
-                      limits.call_cpu_s, limits.call_wait_s);
-        throw ContainedEnd(text + Place(child.At()), child.At());
-      }
-      continue;
+    const std::optional<int> ended = child.Ended();
+    // Of one that has ended, all that is left; else what comes now.
+    for (int patience_ms = ended ? 0 : 100; is_open; patience_ms = 0) {
+      pollfd ready{child.in(), POLLIN, 0};
+      if (poll(&ready, 1, patience_ms) <= 0) break;
+      char part[65536];
+      const ssize_t size = read(child.in(), part, sizeof part);
+      if (size > 0) bytes.append(part, static_cast<std::size_t>(size));
+      if (size == 0 || (size < 0 && errno != EINTR)) is_open = false;
+      if (!ended) break;
     }
-    char part[65536];
-    const ssize_t size = read(child.in(), part, sizeof part);
-    if (size < 0 && errno == EINTR) continue;
-    if (size <= 0) break;
-    bytes.append(part, static_cast<std::size_t>(size));
     std::size_t at = 0;
     for (;;) {
       std::uint64_t length = 0;
@@ -233,14 +257,25 @@ void RunContained(const std::function<void(const Say& say)>& work, const Say& he
       const char kind = bytes[at];
       const std::string message = bytes.substr(at + 1 + sizeof length, length);
       at += 1 + sizeof length + length;
-      if (kind == kProblem) throw PluginError(message);
-      is_done |= kind == kDone;
+      if (kind == kDone) return;
+      if (kind == kProblem) throw PluginError(Clean(message));
+      if (kind == kThrew) throw ContainedEnd("threw " + Clean(message) + Place(child.At()), child.At());
       if (kind == kSaid) hear(message);
     }
     bytes.erase(0, at);
+    if (ended) throw ContainedEnd(HowItEnded(*ended, limits) + Place(child.At()), child.At());
+    if (!is_open) {
+      watch.AwaitEnd();
+      poll(nullptr, 0, 20);
+    }
+    if (watch.TookTooLong()) {
+      char text[128];
+      std::snprintf(text, sizeof text,
+                    "did not return from a call within %g s of computing or %g s of waiting",
+                    limits.call_cpu_s, limits.call_wait_s);
+      throw ContainedEnd(text + Place(child.At()), child.At());
+    }
   }
-  const int status = child.Wait();
-  if (!is_done) throw ContainedEnd(HowItEnded(status, limits) + Place(child.At()), child.At());
 }
 
 bool IsContained() { return contained; }
@@ -257,7 +292,7 @@ PluginDescription DescribeContained(const PluginConfig& config) {
         say(description.version);
         for (const std::string& name : description.parameters) say(name);
       },
-      [&](const std::string& text) { texts.push_back(text); });
+      [&](const std::string& text) { texts.push_back(Clean(text, 200)); });
   if (texts.size() < 2) throw PluginError("describes nothing");
   return {texts[0], texts[1], {texts.begin() + 2, texts.end()}};
 }

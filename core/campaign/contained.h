@@ -25,16 +25,24 @@ class ContainedEnd : public std::runtime_error {
 };
 
 struct ContainmentLimits {
-  double call_cpu_s = 5.0;    ///< a call of more computing time counts as one that does not return,
-  double call_wait_s = 60.0;  ///< or of more time
+  double call_cpu_s = 2.0;   ///< a call of more computing time counts as one that does not return,
+  double call_wait_s = 5.0;  ///< or of more time while this process was awake
   std::size_t memory_bytes = std::size_t{1} << 30;  ///< beyond what this process has
 };
 
 using Say = std::function<void(const std::string& message)>;
 
-/// Runs `work` in a child. What it says is heard here, in order, until the child has ended. Throws
-/// PluginError with the text of what `work` throws; ContainedEnd when the child ends otherwise; and what
-/// `hear` throws, after ending the child.
+/// There is no memory, file or process for a child now: the system's matter, and no fault of what it would
+/// run.
+class NoChild : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Runs `work` in a child. What it says is heard here, in order, until it is done or the child has ended;
+/// processes that the child started are ended with it. Throws PluginError with the text of one that `work`
+/// throws; ContainedEnd when it throws something else, or the child ends otherwise; NoChild; and what `hear`
+/// throws.
 void RunContained(const std::function<void(const Say& say)>& work, const Say& hear,
                   const ContainmentLimits& limits = {});
 /// Whether this is such a child.

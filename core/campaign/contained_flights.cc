@@ -1,10 +1,12 @@
 #include "core/campaign/contained_flights.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <optional>
 #include <string>
+#include <thread>
 #include <type_traits>
 #include <vector>
 
@@ -104,6 +106,10 @@ CaseResult UnpackResult(Unpacker& in) {
   return result;
 }
 
+// For a child that the system cannot give now.
+constexpr int kTries = 20;
+constexpr std::chrono::milliseconds kBetweenTries(500);
+
 ContainedEnd Garbled() { return {"answered with what is no result", PluginMark{}}; }
 
 // The queue of a child: cases that are known, results that are said.
@@ -128,29 +134,39 @@ class ListedCases : public CaseQueue {
   std::size_t next_ = 0;
 };
 
-// Flies `cases` in one child and takes those that it flew from them. Returns how the child ended, if not
-// well.
-std::optional<std::string> FlyInChild(const CampaignFlights& flights, std::vector<std::uint64_t>& cases,
-                                      CaseQueue& queue) {
+// How a child ended that did not fly all its cases, and the case that it flew then.
+struct BrokenOff {
+  std::string how;
+  std::uint64_t case_index;
+};
+
+// Flies `cases` in one child and takes those that it flew from them.
+std::optional<BrokenOff> FlyInChild(const CampaignFlights& flights, std::vector<std::uint64_t>& cases,
+                                    CaseQueue& queue) {
   const std::vector<std::uint64_t> wanted = cases;
-  try {
-    RunContained(
-        [&](const Say& say) {
-          ListedCases listed(wanted, say);
-          flights.FlyCases(listed);
-        },
-        [&](const std::string& message) {
-          Unpacker in(message);
-          CaseResult result = UnpackResult(in);
-          if (!in.is_whole() || std::erase(cases, result.case_index) == 0) throw Garbled();
-          queue.Done(std::move(result));
-        });
-  } catch (const ContainedEnd& end) {
-    return end.what();
-  } catch (const PluginError& error) {
-    return error.what();
+  for (int tries = 1;; ++tries) {
+    try {
+      RunContained(
+          [&](const Say& say) {
+            ListedCases listed(wanted, say);
+            flights.FlyCases(listed);
+          },
+          [&](const std::string& message) {
+            Unpacker in(message);
+            CaseResult result = UnpackResult(in);
+            if (!in.is_whole() || std::erase(cases, result.case_index) == 0) throw Garbled();
+            queue.Done(std::move(result));
+          });
+      return std::nullopt;
+    } catch (const ContainedEnd& end) {
+      return BrokenOff{end.what(), end.at().case_index};
+    } catch (const PluginError& error) {
+      return BrokenOff{error.what(), wanted.front()};
+    } catch (const NoChild&) {
+      if (tries == kTries) throw;
+      std::this_thread::sleep_for(kBetweenTries);
+    }
   }
-  return std::nullopt;
 }
 
 }  // namespace
@@ -189,11 +205,16 @@ void FlyContained(const CampaignFlights& flights, CaseQueue& queue) {
       cases.push_back(*next);
     }
     if (cases.empty()) return;
-    if (!FlyInChild(flights, cases, queue)) continue;
-    for (const std::uint64_t case_index : std::vector<std::uint64_t>(cases)) {
+    while (!cases.empty()) {
+      const std::optional<BrokenOff> broken = FlyInChild(flights, cases, queue);
+      if (!broken || cases.empty()) break;
+      // The case that it flew is flown alone, before the others go on together.
+      const auto found = std::find(cases.begin(), cases.end(), broken->case_index);
+      const std::uint64_t case_index = found == cases.end() ? cases.front() : *found;
+      std::erase(cases, case_index);
       std::vector<std::uint64_t> alone = {case_index};
-      if (const auto end = FlyInChild(flights, alone, queue))
-        queue.GivenUp(case_index, "the control law " + *end);
+      if (const auto again = FlyInChild(flights, alone, queue); again && !alone.empty())
+        queue.GivenUp(case_index, "the control law " + again->how);
     }
   }
 }
@@ -249,18 +270,18 @@ std::string Difference(const std::vector<double>& first, const std::vector<doubl
 }
 
 void CompareFlights(const CampaignFlights& flights, std::uint64_t cases) {
-  try {
-    FlySideBySide(flights, {std::nullopt});
-  } catch (const ContainedEnd& end) {
-    throw PluginError(std::string("in the nominal flight it ") + end.what());
-  }
   std::vector<std::optional<std::uint64_t>> checked = {std::nullopt};
-  for (std::uint64_t i = 0; i < std::min<std::uint64_t>(cases, 2); ++i) checked.emplace_back(i);
   std::vector<std::vector<double>> together;
   try {
     together = FlySideBySide(flights, checked);
+  } catch (const ContainedEnd& end) {
+    throw PluginError(std::string("cannot fly the nominal flight: it ") + end.what());
+  }
+  for (std::uint64_t i = 0; i < std::min<std::uint64_t>(cases, 2); ++i) checked.emplace_back(i);
+  try {
+    together = FlySideBySide(flights, checked);
   } catch (const ContainedEnd&) {
-    return;
+    checked.resize(1);  // such a case is left to whoever flies the campaign
   }
   if (together.size() != checked.size()) throw PluginError("answered with what is no result");
   for (std::size_t i = 0; i < checked.size(); ++i) {

@@ -192,8 +192,10 @@ void InlineAutopilotFiles(InputNode& autopilot, const std::string& path, FileNam
   Replace(
       library, path + "plugin.library", names,
       [&](const std::string& bytes, const std::string& file) {
-        if (bytes.size() > kLargestLibrary) {
-          AddProblem(problems, place, path + "plugin.library", "'" + file + "' is larger than 32 MiB");
+        if (bytes.empty() || bytes.size() > kLargestLibrary) {
+          AddProblem(problems, place, path + "plugin.library",
+                     "'" + file + "' " + (bytes.empty() ? "is empty" : "is larger than 32 MiB"),
+                     "a shared object of at most 32 MiB");
           return InputNode();
         }
         InputNode inlined = MapAt(place);

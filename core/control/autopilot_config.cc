@@ -149,9 +149,12 @@ std::vector<AutopilotProblem> Problems(const AutopilotConfig& autopilot, int sta
   CheckAxis(autopilot.pitch, "pitch", stages, autopilot.tick_s, problems);
   CheckAxis(autopilot.yaw, "yaw", stages, autopilot.tick_s, problems);
   CheckAxis(autopilot.roll, "roll", stages, autopilot.tick_s, problems);
-  if (PluginAxes(autopilot) != 0 && !autopilot.plugin)
-    problems.push_back(
-        {"", "has an axis whose law is a plug-in's, and names no plug-in", "plugin: {library: FILE}"});
+  if (PluginAxes(autopilot) != 0 && !autopilot.plugin) {
+    const char* const axis = InfoOf(autopilot.pitch.law).foreign ? "pitch.law"
+                             : InfoOf(autopilot.yaw.law).foreign ? "yaw.law"
+                                                                 : "roll.law";
+    problems.push_back({axis, "is a plug-in's, and the autopilot names none", "plugin: {library: FILE}"});
+  }
   return problems;
 }
 

@@ -14,8 +14,8 @@
  * for each flight. It may be moved between calls, so it must not point into itself. Flights are flown side by
  * side and calls for one alternate with calls for others. A law reads no clock, file, random number or
  * environment, and starts no thread. Functions return 0, or anything else for a failure, which ends the
- * flight as a numerical failure; so does a command that is not finite. A call of more than five seconds of
- * CPU time counts as one that does not return.
+ * flight as a numerical failure; so does a command that is not finite. A call of more than two seconds of
+ * CPU time, or five of waiting, counts as one that does not return.
  *
  * Axes are in the order roll, pitch, yaw: about body x forward, y right, z down. An error is reference less
  * true attitude, so a positive command, which accelerates the body in the positive sense, reduces a positive

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <set>
 
 #include "core/control/law_here.h"
 
@@ -59,13 +60,10 @@ std::string Checked(const char* text) { return text == nullptr ? "" : text; }
 
 void MarkPluginCallsIn(volatile PluginMark* where) { mark = where; }
 
-PluginLaw::~PluginLaw() {
-  if (handle_ != nullptr) dlclose(handle_);
-}
-
 void PluginLaw::Open() const {
   if (description_ != nullptr) return;
-  const Functions* const here = FunctionsHere(config_);
+  // In a child no lock may be taken that another thread of the parent held.
+  const Functions* const here = mark == nullptr ? FunctionsHere(config_) : nullptr;
   if (here == nullptr && mark == nullptr)
     throw PluginError("is flown in a process of its own, which this command does not start");
   CountCall();
@@ -94,6 +92,11 @@ void PluginLaw::Open() const {
     throw PluginError("commands neither angular accelerations nor deflections");
   if (description->parameter_count > 0 && description->parameters == nullptr)
     throw PluginError("does not name its parameters");
+  std::set<std::string> names;
+  for (std::uint32_t i = 0; i < description->parameter_count; ++i)
+    if (const std::string name = Checked(description->parameters[i]);
+        name.empty() || !names.insert(name).second)
+      throw PluginError("has a parameter without a name of its own");
   description_ = description;
 }
 

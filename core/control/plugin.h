@@ -34,7 +34,7 @@ struct PluginDescription {
 class PluginLaw {
  public:
   explicit PluginLaw(const PluginConfig& config) : config_(config) {}
-  ~PluginLaw();
+  /// What was loaded stays: unloading it would run code of it where nobody watches.
   PluginLaw(const PluginLaw&) = delete;
   PluginLaw& operator=(const PluginLaw&) = delete;
 

@@ -109,7 +109,12 @@ class CampaignRun {
     /// Until the campaign is complete or the run is stopped.
     void FlyOn(const CampaignFlights& flights) {
       for (;;) {
-        flights.FlyCases(*this);
+        try {
+          flights.FlyCases(*this);
+        } catch (...) {
+          const std::lock_guard lock(mutex_);
+          if (!problem_) problem_ = std::current_exception();
+        }
         std::unique_lock lock(mutex_);
         if (run_.observer_.Stop() || problem_ || hopeless_) return;
         try {
@@ -154,6 +159,7 @@ class CampaignRun {
     }
     void GivenUp(std::uint64_t case_index, const std::string& reason) override {
       const std::lock_guard lock(mutex_);
+      if (problem_) return;
       run_.book_.ledger().GiveUp(kSelf, case_index, attempts_.extract(case_index).mapped(), reason,
                                  run_.Now());
       if (const auto given_up = run_.book_.ledger().Progress().quarantined;

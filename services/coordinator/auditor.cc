@@ -1,5 +1,7 @@
 #include "services/coordinator/auditor.h"
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <optional>
@@ -36,11 +38,15 @@ class Auditor::Queue : public CaseQueue {
     flying_.erase(claim);
   }
 
-  // Another's claim of a result where there is none here is no match.
-  void GivenUp(std::uint64_t case_index, const std::string&) override {
-    CaseResult none;
-    none.case_index = case_index;
-    Done(std::move(none));
+  // What cannot be flown here tells nothing of who could.
+  void GivenUp(std::uint64_t case_index, const std::string& reason) override {
+    const auto claim = std::find_if(flying_.begin(), flying_.end(),
+                                    [&](const Claim& each) { return each.case_index == case_index; });
+    spdlog::warn("case {} is not audited: {}", case_index, reason);
+    const Lock lock(auditor_.mutex_);
+    const Digest claimed = claim->fingerprint;
+    auditor_.verdicts_.push_back({flight_id_, std::move(*claim), claimed});
+    flying_.erase(claim);
   }
 
  private:

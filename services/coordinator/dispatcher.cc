@@ -212,6 +212,10 @@ std::vector<const FlownCase*> Dispatcher::On(const std::string& sender, const Re
   CampaignBook& book = *campaign->second.book;
   std::vector<const FlownCase*> accepted;
   for (const FlownCase& flown : report.flown) {
+    if (flown.given_up && !book.campaign().autopilot.plugin) {
+      Disagree(sender, "it gives up a case that no control law of the campaign's own could spoil");
+      continue;
+    }
     if (flown.given_up) {
       book.ledger().GiveUp(report.worker, flown.result.case_index, follows ? flown.attempt : 0,
                            Printable(flown.result.reason, 1000), now_s);

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <vector>
 
+#include "core/campaign/contained_flights.h"
 #include "core/campaign_yaml/load.h"
 #include "core/report/json_number.h"
 #include "core/report/requirement_summary.h"
@@ -46,6 +47,8 @@ std::vector<fs::path> FilesIn(const fs::path& directory) {
 
 CatalogueEntry Parse(const std::string& text) {
   const Campaign campaign = ParseCampaign(text, "campaign");
+  if (campaign.autopilot.plugin)
+    CheckPluginIsDeterministic(CampaignFlights(campaign), campaign.sampling.cases);
   CatalogueEntry entry;
   entry.id = campaign.id;
   entry.flight_id = campaign.flight_id;

@@ -99,8 +99,13 @@ void Ledger::Settle(const std::string& worker, std::uint64_t case_index, std::ui
 
 void Ledger::GiveUp(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,
                     const std::string& reason, double now_s) {
+  const auto entry = workers_.find(worker);
+  if (case_index >= cases_.size() || entry == workers_.end()) return;
+  const auto held = entry->second.held.find(case_index);
+  // Of nobody else: others fly it, or have flown it.
+  if (held == entry->second.held.end() || held->second.attempt != attempt) return;
+  held->second.started_s.reset();  // how long it took says nothing of the others
   Settle(worker, case_index, attempt, now_s);
-  if (case_index >= cases_.size()) return;
   Case& given_up = cases_[case_index];
   if (given_up.state == State::kDone || given_up.state == State::kQuarantined) return;
   if (given_up.state == State::kWaiting) waiting_.Remove(case_index);

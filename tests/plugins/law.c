@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 #include "dispersa/control_law.h"
 
@@ -20,6 +21,10 @@
 #define CRASHES_ALWAYS 12
 #define PRINTS 13          /* on the standard output */
 #define DEFLECTS 14        /* commands deflections */
+#define SLEEPS 15          /* in step, of one flight in four */
+#define FORKS 16           /* and the child of the child goes on, the pipe in its hands */
+#define CLOSES_FILES 17    /* all of them, in step, and hangs */
+#define HANGS_AT_THE_END 18 /* where objects are unloaded */
 
 #ifndef DISPERSA_MISBEHAVES
 #define DISPERSA_MISBEHAVES 0
@@ -41,6 +46,11 @@ const dispersa_law_description* dispersa_law_describe(void) {
   if (DISPERSA_MISBEHAVES == DEFLECTS) description.command = DISPERSA_LAW_DEFLECTION;
   if (DISPERSA_MISBEHAVES == CRASHES_AT_ONCE) abort();
   return &description;
+}
+
+__attribute__((destructor)) static void at_the_end(void) {
+  if (DISPERSA_MISBEHAVES == HANGS_AT_THE_END)
+    for (volatile int forever = 1; forever;) continue;
 }
 
 int dispersa_law_create(const dispersa_law_setup* setup, void* memory) {
@@ -72,6 +82,13 @@ static int misbehave(dispersa_law_output* output) {
       }
     case ENDS:
       exit(0);
+    case SLEEPS:
+      sleep(1000);
+      return 0;
+    case CLOSES_FILES:
+      for (int file = 0; file < 64; ++file) close(file);
+      for (volatile int forever = 1; forever;) continue;
+      return 0;
     case FAILS:
       return 3;
     case COMMANDS_NAN:
@@ -117,13 +134,18 @@ int dispersa_law_step(const dispersa_law_input* input, dispersa_law_output* outp
       __asm__ volatile("ldmxcsr %0" : : "m"(mode));
       break;
     }
+    case FORKS:
+      if (input->time_s < 0.005 && fork() == 0) {
+        sleep(30);
+        _exit(0);
+      }
+      break;
     case CRASHES_ALWAYS:
       if (input->time_s > 3.0) abort();
       break;
     case PRINTS:
       if (input->time_s < 0.05) {
         static const char words[] = "a law prints this\n";
-        extern long write(int, const void*, unsigned long);
         if (write(1, words, sizeof words - 1) < 0) return 1;
       }
       break;

@@ -174,17 +174,48 @@ class PluginTest(unittest.TestCase):
 
     def test_the_end_of_the_process_is_contained(self):
         self.quarantined("ENDS", "ended the process with exit code 0")
+        self.quarantined("ENDS", "ended the process with exit code 0", workers=2)
+
+    def test_processes_that_a_law_starts_end_with_it(self):
+        self.assertEqual(self.run_cases("forks", self.law("FORKS")).read_bytes(), self.pd)
+
+    def test_the_end_of_an_object_is_nobodys(self):
+        self.assertEqual(self.run_cases("at_the_end", self.law("HANGS_AT_THE_END")).read_bytes(), self.pd)
+
+    def test_one_that_waits_or_lets_go_of_its_files_is_contained(self):
+        words = "did not return from a call within 2 s of computing or 5 s of waiting"
+        for behaviour in ("SLEEPS", "CLOSES_FILES"):
+            out, ended = self.campaign_run(behaviour, self.law(behaviour), cases=4, workers=2)
+            self.assertEqual(ended.returncode, 5, ended.stderr)
+            given_up = json.loads((out / "summary.json").read_text())["quarantined"]
+            self.assertGreater(len(given_up), 0)
+            for case in given_up:
+                self.assertIn(words, case["reason"])
+            self.assertEqual(len((out / "cases.csv").read_text().splitlines()), 5 - len(given_up))
+
+    def test_what_a_law_throws_is_cut_and_on_one_line(self):
+        source = self.folder / "throws.cc"
+        source.write_text((SOURCE / "campaigns/control_laws/cpp/pid_filtered.cc").read_text().replace(
+            "  static_cast<Law*>(memory)->Step(*input, *output);",
+            '  if (input->time_s > 3) throw std::runtime_error(std::string(100000, 10));\n'
+            "  static_cast<Law*>(memory)->Step(*input, *output);").replace(
+                "#include <new>", "#include <new>\n#include <stdexcept>\n#include <string>"))
+        self.compile("throws", source)
+        flown = self.dispersa("fly", CAMPAIGNS / "table3.yaml", "--autopilot", self.autopilot(
+            "throws", ", parameters: {integral_time_s: 2, filter_rad_s: 200}"))
+        self.assertEqual(flown.returncode, 5, flown.stderr)
+        self.assertRegex(flown.stderr, r"^the control law threw \?{1000}\.\.\. at 3\.0\d+ s, in stage 1\n$")
 
     def test_memory_without_bound_is_contained(self):
         self.quarantined("ALLOCATES", r"ended by signal 11 \(SIGSEGV\), in a process that may allocate 1024 MiB")
 
     def test_a_hang_is_contained(self):
         autopilot = self.law("HANGS")
-        # The first case that hangs takes its five seconds twice: once among others, once alone.
+        # A case that hangs takes its two seconds twice: once among others, once alone.
         out, ended = self.campaign_run("hangs", autopilot, cases=4)
         self.assertEqual(ended.returncode, 5, ended.stderr)
         for case in json.loads((out / "summary.json").read_text())["quarantined"]:
-            self.assertRegex(case["reason"], r"^the control law did not return from a call within 5 s of computing")
+            self.assertRegex(case["reason"], r"^the control law did not return from a call within 2 s of computing")
 
     def test_failures_are_flights(self):
         for behaviour, reason in (("FAILS", "the plug-in's step failed"),
@@ -207,7 +238,7 @@ class PluginTest(unittest.TestCase):
     def test_one_that_always_crashes_is_refused_at_once(self):
         _, ended = self.campaign_run("always", self.law("CRASHES_ALWAYS"))
         self.assertEqual(ended.returncode, 2, ended.stderr)
-        self.assertRegex(ended.stderr, r"the control law pd_test in the nominal flight it ended by signal 6 \(SIGABRT\)"
+        self.assertRegex(ended.stderr, r"the control law pd_test cannot fly the nominal flight: it ended by signal 6 \(SIGABRT\)"
                                        r".* at 3\.0\d+ s, in stage 1")
 
     def test_a_single_flight_that_crashes_says_so(self):

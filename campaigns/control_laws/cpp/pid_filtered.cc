@@ -25,7 +25,7 @@ struct Axis {
 class Law {
  public:
   explicit Law(const dispersa_law_setup& setup)
-      : parameters_(*reinterpret_cast<const Parameters*>(setup.parameters)), tick_s_(setup.tick_s) {}
+      : parameters_{setup.parameters[0], setup.parameters[1]}, tick_s_(setup.tick_s) {}
 
   void StartStage(const dispersa_law_stage& stage) {
     std::copy(std::begin(stage.kp_1_s2), std::end(stage.kp_1_s2), kp_1_s2_);
@@ -70,8 +70,7 @@ const dispersa_law_description* dispersa_law_describe(void) {
 }
 
 int dispersa_law_create(const dispersa_law_setup* setup, void* memory) {
-  const Parameters& given = *reinterpret_cast<const Parameters*>(setup->parameters);
-  if (!(given.integral_time_s > 0.0) || !(given.filter_rad_s > 0.0)) return 1;
+  if (!(setup->parameters[0] > 0.0) || !(setup->parameters[1] > 0.0)) return 1;
   new (memory) Law(*setup);
   return 0;
 }
