@@ -42,7 +42,7 @@ class NewUser(unittest.TestCase):
                     done = self.root.inside(f"apt-get install --yes {' '.join(packages)}")
                     self.assertEqual(done.returncode, 0, done.stdout[-3000:] + done.stderr[-3000:])
                 shutil.copy(page, self.root.path / "opt")
-                done = self.root.inside(f"cd /home/ann; exec runuser -u ann -- env HOME=/home/ann TMPDIR=/home/ann PATH=/usr/bin:/bin "
+                done = self.root.inside("cd ~ann; exec runuser -u ann -- env HOME=\"$PWD\" TMPDIR=\"$PWD\" PATH=/usr/bin:/bin "
                                         f"python3 -B /opt/follow.py /opt/{page.name}", network=False)
                 self.assertEqual(done.returncode, 0, done.stdout[-6000:] + done.stderr[-3000:])
 
