@@ -1,5 +1,5 @@
-"""Builds the docs site: the pages beside this file, the README.md files beside the code, and what the programs say of
-themselves.
+"""Builds the docs site: the pages beside this file, the README.md files beside the code, the Python tutorial, and what
+the programs say of themselves.
 
     build.py --programs BIN --out SITE
 
@@ -18,6 +18,8 @@ import tempfile
 HERE = pathlib.Path(__file__).resolve().parent
 REPOSITORY = HERE.parent.parent
 LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\[\]]*\])*)\]\(([^)\s]+)\)")
+# Nothing here draws it: that would be a script from elsewhere.
+DIAGRAM = "\n*A diagram, as the text that Mermaid draws it from:*\n\n```text\n"
 EXIT_CODES = [
     (0, "done; of a campaign: every requirement is met"),
     (1, "internal error, or a machine that returned other bits"),
@@ -82,6 +84,8 @@ def linked(text, source, known):
         found = os.path.normpath(os.path.join(source.parent, path))
         if found in known or picture:
             return match.group(0)
+        if found.endswith(".py") and found[:-3] + ".md" in known:
+            return f"[{words}]({path[:-3]}.md)"
         if found == "README.md":
             return f"{picture}[{words}]({os.path.relpath('index.md', source.parent)}{'#' + anchor if anchor else ''})"
         if os.path.join(found, "README.md") in known:
@@ -90,6 +94,17 @@ def linked(text, source, known):
     # Code is no link.
     parts = re.split(r"(```.*?```|`[^`\n]*`)", text, flags=re.S)
     return "".join(part if i % 2 else LINK.sub(replace, part) for i, part in enumerate(parts))
+
+
+def cells_page(script):
+    """A Python script of cells (`# %%`) as a page: text cells as they are, the others as code."""
+    page = []
+    for kind, cell in re.findall(r"^# %%(.*)\n((?:(?!# %%).*\n?)*)", script, re.M):
+        if kind.strip() == "[markdown]":
+            page.append(re.sub(r"^# ?", "", cell.strip(), flags=re.M))
+        else:
+            page.append(f"```python\n{cell.strip()}\n```")
+    return "\n\n".join(page) + "\n"
 
 
 def collect(programs, folder):
@@ -109,7 +124,8 @@ def collect(programs, folder):
             text = (HERE / "pages" / name).read_text()
         else:
             source = REPOSITORY / name
-            text = linked(source.read_text(), pathlib.PurePosixPath(name), known)
+            text = source.read_text() if source.exists() else cells_page(source.with_suffix(".py").read_text())
+            text = linked(text.replace("\n```mermaid\n", DIAGRAM), pathlib.PurePosixPath(name), known)
             for picture, _, link in LINK.findall(text):
                 if picture:
                     place = folder / os.path.normpath(os.path.join(os.path.dirname(name), link))

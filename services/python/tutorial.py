@@ -1,5 +1,5 @@
 # %% [markdown]
-# # dispersa from Python
+# # Tutorial: dispersa from Python
 #
 # A campaign from the file to the verdict, in cells: each begins with `# %%`, which editors that know notebooks run one at
 # a time. Start it where `campaigns/` is. Everything here is what the program `dispersa` does, to the last bit.

@@ -10,9 +10,11 @@ import unittest
 import urllib.parse
 
 BINARIES = pathlib.Path(os.environ["DISPERSA_BINARIES"])
-BUILD = pathlib.Path(__file__).resolve().parents[2] / "services" / "docs" / "build.py"
+SERVICES = pathlib.Path(__file__).resolve().parents[2] / "services"
+BUILD = SERVICES / "docs" / "build.py"
 PAGES = ["index", "first-campaign", "your-vehicle", "your-control-law", "reading-the-report", "cluster", "commands",
-         "exit-codes", "schemas", "core/index", "core/campaign_yaml/index", "core/statistics/index"]
+         "exit-codes", "schemas", "core/index", "core/campaign_yaml/index", "core/statistics/index", "services/python/index",
+         "services/python/tutorial"]
 # What a page makes a browser load.
 LOADS = {("script", "src"), ("img", "src"), ("link", "href"), ("iframe", "src"), ("source", "src"), ("video", "src"),
          ("audio", "src"), ("object", "data"), ("use", "href")}
@@ -21,8 +23,11 @@ LOADS = {("script", "src"), ("img", "src"), ("link", "href"), ("iframe", "src"),
 class Page(html.parser.HTMLParser):
     def __init__(self, text):
         super().__init__()
-        self.links, self.loads, self.anchors = [], [], set()
+        self.links, self.loads, self.anchors, self.words = [], [], set(), []
         self.feed(text)
+
+    def handle_data(self, data):
+        self.words += data.split()
 
     def handle_starttag(self, tag, attributes):
         for name, value in attributes:
@@ -88,6 +93,14 @@ class SiteTest(unittest.TestCase):
         text = (self.site / "commands.html").read_text()
         for command in ("validate", "init", "schema", "run", "keys", "compare"):
             self.assertIn(f'id="dispersa-{command}"', text)
+
+    def test_the_python_tutorial_is_shown_whole(self):
+        shown = "".join(Page((self.site / "services/python/tutorial.html").read_text()).words)
+        for line in (SERVICES / "python" / "tutorial.py").read_text().splitlines():
+            if not line.startswith("# %%"):
+                words = re.sub("`", "", line.lstrip("# ")) if line.startswith("#") else line
+                self.assertIn("".join(words.split()), shown)
+        self.assertIn("tutorial.html", Page((self.site / "services/python/index.html").read_text()).links)
 
     def test_schemas_can_be_taken(self):
         self.assertTrue((self.site / "schemas" / "campaign.json").exists())
