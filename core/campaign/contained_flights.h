@@ -14,9 +14,9 @@ CaseResult FlyContained(const CampaignFlights& flights, const FlightInputs& inpu
 void FlyContained(const CampaignFlights& flights, CaseQueue& queue);
 
 /// Flies the nominal flight and the first two cases side by side, and each again alone, in children of their
-/// own, and compares them tick by tick. Nothing for a campaign without plug-in. Throws InputError when they differ, with the first instant at which
-/// they do, and when the nominal flight ends its process. Cases that end theirs are left to whoever flies the
-/// campaign.
+/// own, and compares them tick by tick. Nothing for a campaign without plug-in. Throws InputError when they
+/// differ, with the first instant at which they do, and when the nominal flight ends its process. Cases that
+/// end theirs are left to whoever flies the campaign.
 void CheckPluginIsDeterministic(const CampaignFlights& flights, std::uint64_t cases);
 
 }  // namespace dispersa

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "core/control/autopilot.h"
-#include "core/control/autopilot.h"
 #include "core/control/plugin.h"
 #include "core/environment/weather_profile.h"
 #include "core/flight/flight.h"

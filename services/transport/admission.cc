@@ -1,9 +1,9 @@
 #include "services/transport/admission.h"
 
-#include "core/campaign/contained.h"
-
 #include <arpa/inet.h>
 #include <spdlog/spdlog.h>
+
+#include "core/campaign/contained.h"
 
 namespace dispersa {
 namespace {
