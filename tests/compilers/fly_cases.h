@@ -17,5 +17,5 @@ inline constexpr char kFlyCasesSymbol[] = "DispersaFlyCases";
 
 }  // namespace dispersa
 
-extern "C" void DispersaFlyCases(const dispersa::Campaign& campaign, std::uint64_t first, std::uint64_t count,
+extern "C" __attribute__((visibility("default"))) void DispersaFlyCases(const dispersa::Campaign& campaign, std::uint64_t first, std::uint64_t count,
                                  std::vector<dispersa::CaseResult>* results);
