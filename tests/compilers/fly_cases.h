@@ -17,5 +17,6 @@ inline constexpr char kFlyCasesSymbol[] = "DispersaFlyCases";
 
 }  // namespace dispersa
 
-extern "C" __attribute__((visibility("default"))) void DispersaFlyCases(const dispersa::Campaign& campaign, std::uint64_t first, std::uint64_t count,
-                                 std::vector<dispersa::CaseResult>* results);
+extern "C" __attribute__((visibility("default"))) void DispersaFlyCases(
+    const dispersa::Campaign& campaign, std::uint64_t first, std::uint64_t count,
+    std::vector<dispersa::CaseResult>* results);

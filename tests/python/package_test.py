@@ -1,4 +1,4 @@
-"""The package itself: its stubs, its installation, and what it says of a processor that is too old."""
+"""The package itself: what its .pyi files declare, its installation, and what it says of a processor that is too old."""
 import ast
 import dataclasses
 import importlib
@@ -17,8 +17,8 @@ from program import BINARIES, SMOKE, folder_of
 PACKAGE = pathlib.Path(dispersa.__file__).parent
 
 
-def stubbed(path):
-    """{name: syntax tree of its last definition} of a stub's public names."""
+def declared_in(path):
+    """{name: syntax tree of its last definition} of the public names that a .pyi file declares."""
     names = {}
     for node in ast.parse(path.read_text()).body:
         if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
@@ -37,8 +37,8 @@ def parameters(function):
     return [(p.name, kind_names[p.kind], p.default is not kinds.empty) for p in inspect.signature(function).parameters.values()]
 
 
-def stub_parameters(node):
-    """The same of a stub's."""
+def declared_parameters(node):
+    """The same of a .pyi file's."""
     plain, keyword = node.args.args, node.args.kwonlyargs
     defaults = [False] * (len(plain) - len(node.args.defaults)) + [True] * len(node.args.defaults)
     return ([(each.arg, "plain", has) for each, has in zip(plain, defaults)]
@@ -46,12 +46,12 @@ def stub_parameters(node):
             + ([(node.args.kwarg.arg, "rest", False)] if node.args.kwarg else []))
 
 
-class Stubs(unittest.TestCase):
+class Declarations(unittest.TestCase):
     def test_every_public_name_has_one_and_the_other_way_round(self):
         for module in ("dispersa", "dispersa.plot", "dispersa.errors"):
             loaded = importlib.import_module(module)
-            stub = PACKAGE / f"{module.partition('.')[2] or '__init__'}.pyi"
-            declared = stubbed(stub)
+            declarations = PACKAGE / f"{module.partition('.')[2] or '__init__'}.pyi"
+            declared = declared_in(declarations)
             public = set(getattr(loaded, "__all__", ())) | {"__version__"} if module == "dispersa" else {
                 name for name, value in vars(loaded).items()
                 if not name.startswith("_") and not inspect.ismodule(value)
@@ -61,7 +61,7 @@ class Stubs(unittest.TestCase):
                 value = getattr(loaded, name)
                 with self.subTest(f"{module}.{name}"):
                     if isinstance(node, ast.FunctionDef) and name != "style":
-                        self.assertEqual(stub_parameters(node), parameters(value))
+                        self.assertEqual(declared_parameters(node), parameters(value))
                     if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
                         self.assertTrue(value.__doc__, "a docstring")
                     if isinstance(node, ast.ClassDef) and not issubclass(value, (BaseException, int)):
@@ -74,14 +74,14 @@ class Stubs(unittest.TestCase):
             # A sequence iterates by its items.
             self.assertTrue(hasattr(value, name) or name == "__iter__", name)
             if not each.decorator_list and name in vars(value) and name != "__bool__":
-                self.assertEqual(stub_parameters(each), parameters(vars(value)[name]), name)
+                self.assertEqual(declared_parameters(each), parameters(vars(value)[name]), name)
         public = {name for name in vars(value) if not name.startswith("_")}
         self.assertLessEqual(public, set(members) | fields, "in the module only")
         if dataclasses.is_dataclass(value):
             self.assertEqual({each.name for each in dataclasses.fields(value)}, fields)
 
-    def test_objects_have_the_fields_of_their_stubs(self):
-        declared = stubbed(PACKAGE / "__init__.pyi")
+    def test_objects_have_the_declared_fields(self):
+        declared = declared_in(PACKAGE / "__init__.pyi")
         campaign = dispersa.load(SMOKE, cases=2)
         flights = campaign.fly_many(1)
         for value in (flights, flights[0], flights[0].history):
