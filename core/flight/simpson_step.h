@@ -142,23 +142,26 @@ class StepState {
   /// Of one lane at its time, evaluated anew.
   Instant<double> InstantOf(int lane, T time_s) const {
     Point p;
-    p.around = SurroundingsAt(earth_, *air_, plant.weather, motion.p);
-    p.masses = MassesAt(plant, phase, time_s);
-    p.nozzles = NozzlesOf(drive_state, command_rad);
+    SetAir(motion.p, p.around);
+    SetMasses(time_s, p.masses);
+    SetNozzles(drive_state, command_rad, p.nozzles);
     if (plant.nozzles_listed) {
-      p.second = NozzlesOf(second_drives, command_rad + kNozzles);
-      bending.modes > 0 ? RatesAt<true, true>(p, motion, bending_state, &p.instant)
-                        : RatesAt<false, true>(p, motion, bending_state, &p.instant);
+      SetNozzles(second_drives, command_rad + kNozzles, p.second);
+      bending.modes > 0 ? SetRates<true, true>(motion, bending_state, p, p.rates, &p.instant)
+                        : SetRates<false, true>(motion, bending_state, p, p.rates, &p.instant);
     } else {
-      bending.modes > 0 ? RatesAt<true, false>(p, motion, bending_state, &p.instant)
-                        : RatesAt<false, false>(p, motion, bending_state, &p.instant);
+      bending.modes > 0 ? SetRates<true, false>(motion, bending_state, p, p.rates, &p.instant)
+                        : SetRates<false, false>(motion, bending_state, p, p.rates, &p.instant);
     }
     return LaneOf(p.instant, lane);
   }
 
   /// Shapes of the modes at the lanes' propellant, where bending is looked at between steps.
   void UpdateShapes(T time_s) {
-    if (any_stale_) ShapesAt(bending, MassesAt(plant, phase, time_s).propellant_kg);
+    if (!any_stale_) return;
+    TimedMasses<T> masses;
+    SetMasses(time_s, masses);
+    SetShapes(masses);
   }
 
   /// Evaluates the lanes at which the last step's end does not hold any more.
@@ -200,16 +203,22 @@ class StepState {
     if (!any_stale_) return;
     Point p;
     if (any_moved_) {
-      Blend<T>(moved_, SurroundingsAt(earth_, *air_, plant.weather, motion.p), start_->around);
+      SetAir(motion.p, p.around);
+      Blend<T>(moved_, p.around, start_->around);
       any_moved_ = false;
     }
-    Blend<T>(stale_, MassesAt(plant, phase, time_s), start_->masses);
-    Blend<T>(stale_, NozzlesOf(drive_state, command_rad), start_->nozzles);
-    if constexpr (kListed) Blend<T>(stale_, NozzlesOf(second_drives, command_rad + kNozzles), start_->second);
+    SetMasses(time_s, p.masses);
+    Blend<T>(stale_, p.masses, start_->masses);
+    SetNozzles(drive_state, command_rad, p.nozzles);
+    Blend<T>(stale_, p.nozzles, start_->nozzles);
+    if constexpr (kListed) {
+      SetNozzles(second_drives, command_rad + kNozzles, p.second);
+      Blend<T>(stale_, p.second, start_->second);
+    }
     Blend<T>(stale_, CgVelocityAt(start_->masses, motion.q), start_->cg_velocity);
     const ModalForce<T> modal = start_->modal;
-    if constexpr (kBends) ShapesAt(bending, start_->masses.propellant_kg);
-    p.rates = RatesAt<kBends, kListed>(*start_, motion, bending_state, &p.instant);
+    if constexpr (kBends) SetShapes(start_->masses);
+    SetRates<kBends, kListed>(motion, bending_state, *start_, p.rates, &p.instant);
     Blend<T>(stale_, p.rates, start_->rates);
     Blend<T>(stale_, p.instant, start_->instant);
     const Rates<T> none{Zero<T>(), Zero<T>()};
@@ -222,12 +231,40 @@ class StepState {
     stale_ = moved_ = jumped_ = NoLane<T>();
     any_stale_ = false;
   }
-  template <bool kBends, bool kListed>
-  DISPERSA_INLINE Rates<T> RatesAt(Point& at, const Motion<T>& s, const BendingState<T>& bent_by,
-                                   Instant<T>* instant) const {
-    return RatesOf(earth_.rotation_rate_rad_s, plant, phase, Any(phase.burning), at.around, at.masses,
-                   TurnedAs<kListed>(at), s, BodyAs<kBends>(bent_by, at.modal), instant);
+
+  // The parts of an evaluation. Each is code of its own, which a step's two evaluations and the start's
+  // share: inlined into all of them, in each kind of vehicle, they are three quarters of what the compiler
+  // has to do, and no faster.
+  DISPERSA_OUT_OF_LINE void SetAir(const Vector<T>& position_m, Surroundings<T>& around) const {
+    around = SurroundingsAt(earth_, *air_, plant.weather, position_m);
   }
+  DISPERSA_OUT_OF_LINE void SetMasses(T time_s, TimedMasses<T>& masses) const {
+    masses = MassesAt(plant, phase, time_s);
+  }
+  DISPERSA_OUT_OF_LINE void SetNozzles(const DriveState<T>& s, const T* commands_rad,
+                                       Nozzles<T>& nozzles) const {
+    nozzles = NozzlesAt(s.angle_rad);
+    if (plant.nozzles_have_mass) SetAccelerations(drives, commands_rad, s, nozzles);
+  }
+  DISPERSA_OUT_OF_LINE void SetShapes(const TimedMasses<T>& masses) {
+    ShapesAt(bending, masses.propellant_kg);
+  }
+  template <bool kBends, bool kListed>
+  DISPERSA_OUT_OF_LINE void SetRates(const Motion<T>& s, const BendingState<T>& bent_by, Point& at,
+                                     Rates<T>& rates, Instant<T>* instant) const {
+    rates = RatesOf(earth_.rotation_rate_rad_s, plant, phase, Any(phase.burning), at.around, at.masses,
+                    TurnedAs<kListed>(at), s, BodyAs<kBends>(bent_by, at.modal), instant);
+  }
+  DISPERSA_OUT_OF_LINE void SetDriven(const DriveState<T>& from, const T* commands_rad,
+                                      const Transition<T>& over, T step_s, DriveState<T>& to) const {
+    to = Propagate(drives, commands_rad, over, step_s, from);
+  }
+  DISPERSA_OUT_OF_LINE void SetSwung(const Swing<T>& over, const ModalForce<T>& from,
+                                     const ModalForce<T>& rise, const ModalForce<T>& curve,
+                                     BendingState<T>& bent) const {
+    bent = Swung(bending, over, bending_state, from, rise, curve);
+  }
+
   template <bool kListed>
   DISPERSA_INLINE static decltype(auto) TurnedAs(const Point& at) {
     if constexpr (kListed)
@@ -241,11 +278,6 @@ class StepState {
       return BentBody<T>{&bending, &bent_by, &modal};
     else
       return StraightBody{};
-  }
-  DISPERSA_INLINE Nozzles<T> NozzlesOf(const DriveState<T>& s, const T* commands_rad) const {
-    Nozzles<T> nozzles = NozzlesAt(s.angle_rad);
-    if (plant.nozzles_have_mass) SetAccelerations(drives, commands_rad, s, nozzles);
-    return nozzles;
   }
   // How C moves through the body where the lanes are turned by q, in I.
   DISPERSA_INLINE Vector<T> CgVelocityAt(const TimedMasses<T>& masses, const Turn<T>& q) const {
@@ -300,26 +332,28 @@ MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
     if (Any(odd))
       for (int lane = 0; lane < kWidth<T>; ++lane)
         if (Bits(odd) >> lane & 1u) SetTransition(over, lane, 0.5 * Lane(h, lane));
-    drives_half = Propagate(drives, command_rad, over, half, drive_state);
-    drives_end = Propagate(drives, command_rad, over, half, drives_half);
-    b.nozzles = NozzlesOf(drives_half, command_rad);
-    c.nozzles = NozzlesOf(drives_end, command_rad);
+    SetDriven(drive_state, command_rad, over, half, drives_half);
+    SetDriven(drives_half, command_rad, over, half, drives_end);
+    SetNozzles(drives_half, command_rad, b.nozzles);
+    SetNozzles(drives_end, command_rad, c.nozzles);
     if constexpr (kListed) {
       const T* const commands = command_rad + kNozzles;
-      const DriveState<T> second_half = Propagate(drives, commands, over, half, second_drives);
-      second_end = Propagate(drives, commands, over, half, second_half);
-      b.second = NozzlesOf(second_half, commands);
-      c.second = NozzlesOf(second_end, commands);
+      DriveState<T> second_half;
+      SetDriven(second_drives, commands, over, half, second_half);
+      SetDriven(second_half, commands, over, half, second_end);
+      SetNozzles(second_half, commands, b.second);
+      SetNozzles(second_end, commands, c.second);
     }
   }
   BendingState<T> bent_middle, bent_end;
   Swing<T> over_half, over_step;
   const ModalForce<T> no_curvature{};
+  SetMasses(from_s + half, b.masses);
   if constexpr (kBends) {
-    ShapesAt(bending, MassesAt(plant, phase, from_s + half).propellant_kg);
+    SetShapes(b.masses);
     over_half = SwingOver(bending, half);
     over_step = Twice(bending, over_half);
-    bent_middle = Swung(bending, over_half, bending_state, a.modal, a.modal_slopes, no_curvature);
+    SetSwung(over_half, a.modal, a.modal_slopes, no_curvature, bent_middle);
   }
 
   Motion<T> middle;
@@ -327,11 +361,10 @@ MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
   middle.v = Along(Along(motion.v, half, a.rates.dv), h2_8, a.slopes.dv);
   middle.q = TurnedBy(motion.q, Along(half * motion.w, h2_8, a.rates.dw));
   middle.w = Along(Along(motion.w, half, a.rates.dw), h2_8, a.slopes.dw);
-  b.masses = MassesAt(plant, phase, from_s + half);
   b.cg_velocity = CgVelocityAt(b.masses, middle.q);
   if (plant.flow_coriolis) middle.p = Along(middle.p, T(0.5) * half, a.cg_velocity + b.cg_velocity);
-  b.around = SurroundingsAt(earth_, *air_, plant.weather, middle.p);
-  b.rates = RatesAt<kBends, kListed>(b, middle, bent_middle, nullptr);
+  SetAir(middle.p, b.around);
+  SetRates<kBends, kListed>(middle, bent_middle, b, b.rates, nullptr);
 
   Motion<T> end;
   end.p = Along(Along(motion.p, h, motion.v), h2_6, Along(a.rates.dv, two, b.rates.dv));
@@ -339,20 +372,20 @@ MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
   end.q = TurnedBy(motion.q, Along(turn, h2 * h * T(1.0 / 12.0), Cross(middle.w, b.rates.dw)));
   end.v = Along(motion.v, h, b.rates.dv);
   end.w = Along(motion.w, h, b.rates.dw);
-  c.masses = MassesAt(plant, phase, to_s);
+  SetMasses(to_s, c.masses);
   c.cg_velocity = CgVelocityAt(c.masses, end.q);
   if (plant.flow_coriolis)
     end.p = Along(end.p, sixth, Along(a.cg_velocity + c.cg_velocity, four, b.cg_velocity));
-  c.around = SurroundingsAt(earth_, *air_, plant.weather, end.p);
+  SetAir(end.p, c.around);
   const T per_s = T(1.0) / h;
   if constexpr (kBends) {
     ModalForce<T> rising;
     for (int i = 0; i < kModalValues; ++i)
       (&rising.drive_m_s2[0][0])[i] = two * per_s * ((&b.modal.drive_m_s2[0][0])[i] - (&a.modal.drive_m_s2[0][0])[i]);
-    bent_end = Swung(bending, over_step, bending_state, a.modal, rising, no_curvature);
-    ShapesAt(bending, c.masses.propellant_kg);
+    SetSwung(over_step, a.modal, rising, no_curvature, bent_end);
+    SetShapes(c.masses);
   }
-  c.rates = RatesAt<kBends, kListed>(c, end, bent_end, &c.instant);
+  SetRates<kBends, kListed>(end, bent_end, c, c.rates, &c.instant);
   end.v = Along(motion.v, sixth, Along(a.rates.dv + c.rates.dv, four, b.rates.dv));
   end.w = Along(motion.w, sixth, Along(a.rates.dw + c.rates.dw, four, b.rates.dw));
   c.slopes.dv = per_s * Along(Along(a.rates.dv, three, c.rates.dv), -four, b.rates.dv);
@@ -368,7 +401,7 @@ MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
       (&curve.drive_m_s2[0][0])[i] = two * per_s * per_s * ((from + to) - two * at);
       (&c.modal_slopes.drive_m_s2[0][0])[i] = per_s * (from + three * to - four * at);
     }
-    bent_end = Swung(bending, over_step, bending_state, a.modal, rise, curve);
+    SetSwung(over_step, a.modal, rise, curve, bent_end);
   }
 
   // 0 or not a number.

@@ -26,6 +26,7 @@
 #define DISPERSA_ISA v3
 #endif
 #define DISPERSA_INLINE inline __attribute__((always_inline))
+#define DISPERSA_OUT_OF_LINE __attribute__((noinline))
 
 namespace dispersa::lanes {
 inline namespace DISPERSA_ISA {
