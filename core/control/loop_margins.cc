@@ -1,12 +1,12 @@
 #include "core/control/loop_margins.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "core/math/constants.h"
 #include "core/math/functions.h"
+#include "core/math/matrices.h"
 
 namespace dispersa {
 
@@ -38,22 +38,6 @@ double Decibel(double ratio) { return 20.0 * Log10(ratio); }
 
 }  // namespace
 
-Eigen::MatrixXd MatrixExponential(const Eigen::MatrixXd& m) {
-  int halvings = 0;
-  for (double norm = m.cwiseAbs().rowwise().sum().maxCoeff(); norm > 0.5; norm *= 0.5) ++halvings;
-  Eigen::MatrixXd scaled = m;
-  for (int i = 0; i < halvings; ++i) scaled *= 0.5;
-  // 0.5^16 / 16! is below rounding.
-  Eigen::MatrixXd term = Eigen::MatrixXd::Identity(m.rows(), m.cols());
-  Eigen::MatrixXd sum = term;
-  for (int k = 1; k <= 16; ++k) {
-    term = term * scaled / k;
-    sum += term;
-  }
-  for (int i = 0; i < halvings; ++i) sum = (sum * sum).eval();
-  return sum;
-}
-
 SampledLoop::SampledLoop(const AxisPlant& plant, const LinearLaw& law, double tick_s, int delay_ticks)
     : plant_(plant), law_(law), tick_s_(tick_s), delay_ticks_(delay_ticks) {
   // Zero-order hold: exp([a b; 0 0] T) = [ad bd; 0 1].
@@ -69,9 +53,8 @@ SampledLoop::SampledLoop(const AxisPlant& plant, const LinearLaw& law, double ti
   is_rigid_ = n == 4 && plant.rates.size() == 1 && first.weight == 1.0 && first.delay_ticks == 0.0 &&
               first.section.b0 == 1.0 && first.section.b1 == 0.0 && first.section.b2 == 0.0;
   if (!is_rigid_) {
-    const Eigen::HessenbergDecomposition<Eigen::MatrixXd> form(ad_ - Eigen::MatrixXd::Identity(n, n));
-    const Eigen::MatrixXd turn = form.matrixQ();
-    hessenberg_ = form.matrixH();
+    const auto [form, turn] = HessenbergOf(ad_ - Eigen::MatrixXd::Identity(n, n));
+    hessenberg_ = form;
     driven_ = turn.transpose() * bd_;
     attitude_row_ = plant.attitude * turn;
     for (const RateSensor& sensor : plant.rates) rate_rows_.push_back(sensor.rate * turn);
@@ -281,7 +264,7 @@ double SampledLoop::SpectralRadius(double gain_factor) const {
     for (int i = 1; i < delay_ticks_; ++i) m(first_command + i, first_command + i - 1) = 1.0;
     m.block(0, first_rule - 1, plant_states, 1) = bd_;
   }
-  const Eigen::VectorXcd values = Eigen::EigenSolver<Eigen::MatrixXd>(m, false).eigenvalues();
+  const Eigen::VectorXcd values = Eigenvalues(m);
   double largest = 0.0;
   for (Eigen::Index i = 0; i < values.size(); ++i) largest = std::max(largest, Modulus(values[i]));
   return largest;
@@ -310,7 +293,7 @@ std::vector<double> SampledLoop::Frequencies() const {
   for (int i = 0; i < kFrequencies; ++i, w *= ratio) all.push_back(w);
   all.push_back(nyquist);
   if (plant_.lowest_mode_rad_s == 0.0) return all;
-  const Eigen::VectorXcd modes = Eigen::EigenSolver<Eigen::MatrixXd>(plant_.a, false).eigenvalues();
+  const Eigen::VectorXcd modes = Eigenvalues(plant_.a);
   all.push_back(kBelowModes * plant_.lowest_mode_rad_s);
   constexpr int kNear = 40;
   for (Eigen::Index i = 0; i < modes.size(); ++i) {
@@ -347,7 +330,7 @@ LoopMargins SampledLoop::Margins() const {
   // An aerodynamically unstable body without integral action diverges without oscillation: at z = 1. With
   // the integrator of an adapting law, or of a body that the air leaves alone, L is infinite there.
   const Eigen::MatrixXd at_rest = Eigen::MatrixXd::Identity(ad_.rows(), ad_.cols()) - ad_;
-  if (!law_.adapts() && std::fabs(at_rest.determinant()) > 0.0) {
+  if (!law_.adapts() && std::fabs(DeterminantOf(at_rest)) > 0.0) {
     const std::complex<double> l = Response(0.0);
     if (std::isfinite(l.real())) critical(l.real());
   }

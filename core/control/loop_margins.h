@@ -128,7 +128,4 @@ class SampledLoop {
   int delay_ticks_;
 };
 
-/// exp(m) by a Taylor series with scaling and squaring, to rounding.
-Eigen::MatrixXd MatrixExponential(const Eigen::MatrixXd& m);
-
 }  // namespace dispersa

@@ -1,11 +1,11 @@
 #include "core/control/loop_table.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "core/math/constants.h"
 #include "core/math/functions.h"
+#include "core/math/matrices.h"
 
 namespace dispersa {
 
@@ -24,8 +24,7 @@ double Angle(std::complex<double> z) { return Atan2(z.imag(), z.real()); }
 LoopTable::LoopTable(const AxisPlant& plant, double tick_s, int delay_ticks)
     : tick_s_(tick_s),
       bends_above_rad_s_(plant.lowest_mode_rad_s > 0.0 ? kBelowModes * plant.lowest_mode_rad_s : HUGE_VAL) {
-  const Eigen::VectorXcd poles =
-      Eigen::EigenSolver<Eigen::MatrixXd>(MatrixExponential(plant.a * tick_s), false).eigenvalues();
+  const Eigen::VectorXcd poles = Eigenvalues(MatrixExponential(plant.a * tick_s));
   for (Eigen::Index i = 0; i < poles.size(); ++i) {
     const double modulus = Sqrt(std::norm(poles[i]));
     half_turns_ += modulus > 1.0 + kOnCircle ? 1.0 : modulus > 1.0 - kOnCircle ? 0.5 : 0.0;

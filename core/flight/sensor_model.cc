@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/control/loop_margins.h"
+#include "core/math/matrices.h"
 
 namespace dispersa {
 

@@ -2,13 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
 
 #include "core/math/functions.h"
+#include "core/math/matrices.h"
 
 namespace dispersa {
 
@@ -252,7 +253,7 @@ class Search {
       matrix.bottomRows(columns).diagonal().setConstant(Sqrt(damping_));
       VectorXd right = VectorXd::Zero(rows + columns);
       right.head(rows) = -model;
-      const VectorXd move = matrix.colPivHouseholderQr().solve(right);
+      const VectorXd move = LeastSquaresOf(matrix, right);
 
       std::vector<Eigen::Index> inside;
       for (Eigen::Index k = 0; k < columns; ++k) {
@@ -290,10 +291,9 @@ class Search {
   LeastSquaresStatus ReasonToStop() const {
     const std::vector<Eigen::Index> free = FreeUnknowns();
     if (free.size() < x_.size()) return LeastSquaresStatus::kAtBound;
-    Eigen::ColPivHouseholderQR<MatrixXd> factors(jacobian_);
-    factors.setThreshold(options_.rank_tolerance);
-    return factors.rank() < jacobian_.cols() ? LeastSquaresStatus::kSingularJacobian
-                                             : LeastSquaresStatus::kStalled;
+    return RankOf(jacobian_, options_.rank_tolerance) < jacobian_.cols()
+               ? LeastSquaresStatus::kSingularJacobian
+               : LeastSquaresStatus::kStalled;
   }
 
   const LevenbergMarquardtOptions& options_;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
 #include <boost/math/distributions/chi_squared.hpp>
 
 namespace dispersa {

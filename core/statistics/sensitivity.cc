@@ -6,8 +6,9 @@
 #include <numeric>
 #include <random>
 
-#include <Eigen/Dense>
 #include <boost/math/distributions/normal.hpp>
+
+#include "core/math/matrices.h"
 
 namespace dispersa {
 namespace {
@@ -168,7 +169,7 @@ std::vector<double> PartialRankCorrelations(const std::vector<const Ranked*>& x,
   }
   // Inputs that say the same twice are told apart by nothing: a little noise shares the effect among them.
   correlations.diagonal().array() += 1e-9;
-  const Eigen::MatrixXd precision = correlations.inverse();
+  const Eigen::MatrixXd precision = InverseOf(correlations);
   for (Eigen::Index i = 0; i < d; ++i) {
     const double partial = -precision(i, d) / std::sqrt(precision(i, i) * precision(d, d));
     if (std::isfinite(partial)) result[static_cast<std::size_t>(i)] = std::clamp(partial, -1.0, 1.0);

@@ -1,9 +1,10 @@
 #include "core/structure/free_free_modes.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+
+#include "core/math/matrices.h"
 
 namespace dispersa {
 
@@ -50,8 +51,7 @@ FreeFreeModes SolveFreeFree(const std::vector<double>& stations, const std::vect
   momenta.row(0) /= whole.mass_kg;
   momenta.row(1) /= whole.transverse_inertia_kg_m2;
   shape -= rigid * momenta;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(shape.transpose() * mass * shape);
-  const Eigen::VectorXd& values = solver.eigenvalues();  // rising
+  const auto [values, vectors] = EigenOfSymmetric(shape.transpose() * mass * shape);
   // Values at rounding of the greatest are no modes: what has no mass does not vibrate.
   const double least = 1e-12 * values[values.size() - 1];
   Eigen::Index found = 0;
@@ -60,7 +60,7 @@ FreeFreeModes SolveFreeFree(const std::vector<double>& stations, const std::vect
   for (Eigen::Index i = 0; i < found; ++i) {
     const Eigen::Index column = values.size() - 1 - i;
     modes.frequency_rad_s[i] = 1.0 / std::sqrt(values[column]);
-    modes.shape.col(i) = shape * solver.eigenvectors().col(column) * modes.frequency_rad_s[i];
+    modes.shape.col(i) = shape * vectors.col(column) * modes.frequency_rad_s[i];
   }
   return modes;
 }

@@ -1,11 +1,11 @@
 #include "core/vehicle/nozzle_layout.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
 #include "core/math/constants.h"
 #include "core/math/functions.h"
+#include "core/math/matrices.h"
 #include "core/vehicle/vehicle.h"
 
 namespace dispersa {
@@ -75,7 +75,7 @@ double Independence(const Placed& placed, int first_axis) {
     rows.row(i) /= length;
   }
   const Eigen::MatrixXd product = rows * placed.ease.asDiagonal() * rows.transpose();
-  return product.determinant();
+  return DeterminantOf(product);
 }
 
 bool TurnsInRoll(const Placed& placed) { return placed.effect.row(0).cwiseAbs().maxCoeff() > 1e-9; }
@@ -90,7 +90,7 @@ NozzleLayout BuildNozzleLayout(const Gimbal& gimbal) {
   const Eigen::MatrixXd effect = placed.effect.bottomRows(kSteeredAxes - first);
   const Eigen::MatrixXd eased = placed.ease.asDiagonal() * effect.transpose();
   const Eigen::MatrixXd product = effect * eased;
-  const Eigen::MatrixXd inverse = eased * product.inverse();
+  const Eigen::MatrixXd inverse = eased * InverseOf(product);
   // Deflections over the nozzles' limits, at a command of the gimbal's limit.
   const auto reach = [&](int axis) {
     double most = 0.0;

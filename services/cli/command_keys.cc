@@ -22,7 +22,7 @@ struct KeysOptions {
   int days = 0;
 };
 
-ExitCode Say(const std::string& what, const std::string& directory, const GlobalOptions& global) {
+ExitCode Tell(const std::string& what, const std::string& directory, const GlobalOptions& global) {
   if (global.json) {
     const nlohmann::ordered_json object = {{"schema", "dispersa/keys/1"}, {"directory", directory}};
     fmt::print("{}\n", object.dump(2));
@@ -34,13 +34,13 @@ ExitCode Say(const std::string& what, const std::string& directory, const Global
 
 ExitCode Init(const KeysOptions& options, const GlobalOptions& global) {
   MakeAuthority(options.directory, ValidFor(options.days));
-  return Say("authority", options.directory, global);
+  return Tell("authority", options.directory, global);
 }
 
 ExitCode Issue(const KeysOptions& options, const GlobalOptions& global) {
   const auto folder =
       IssueKeys(options.directory, *ParseRole(options.role), options.name, ValidFor(options.days));
-  return Say("issued", folder.string(), global);
+  return Tell("issued", folder.string(), global);
 }
 
 /// Returns the command and its options, to which more may be added.

@@ -7,6 +7,7 @@
 
 #include "core/control/axis_controller.h"
 #include "core/math/constants.h"
+#include "core/math/matrices.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa {
@@ -34,19 +35,6 @@ AxisPlant WithActuator(double bandwidth, double aerodynamic = 0.0, double effect
   plant.a(3, 3) = -1.4 * bandwidth;
   plant.b[3] = bandwidth * bandwidth;
   return plant;
-}
-
-TEST(MatrixExponential, OfARotationAndOfANilpotent) {
-  Eigen::MatrixXd turn(2, 2), chain = Eigen::MatrixXd::Zero(3, 3);
-  turn << 0.0, -30.0, 30.0, 0.0;
-  const Eigen::MatrixXd r = MatrixExponential(turn);
-  // Eight squarings multiply rounding by a few hundred.
-  EXPECT_NEAR(r(0, 0), std::cos(30.0), 1e-12);
-  EXPECT_NEAR(r(1, 0), std::sin(30.0), 1e-12);
-  chain(0, 1) = chain(1, 2) = 2.0;
-  const Eigen::MatrixXd c = MatrixExponential(chain);
-  EXPECT_NEAR(c(0, 1), 2.0, 1e-15);
-  EXPECT_NEAR(c(0, 2), 2.0, 1e-15);
 }
 
 TEST(SampledLoop, DoubleIntegratorWithPdAndNoDelayIsLostAtTheSampling) {

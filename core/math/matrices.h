@@ -1,0 +1,38 @@
+// What is asked of matrices of any size: decompositions of Eigen's, compiled once. In every source that uses
+// them their templates take the compiler longer than all the rest of it.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace dispersa {
+
+/// Of a square matrix, each as often as it is one, in no order.
+Eigen::VectorXcd Eigenvalues(const Eigen::MatrixXd& m);
+
+struct SymmetricEigen {
+  Eigen::VectorXd values;   ///< rising
+  Eigen::MatrixXd vectors;  ///< columns of length 1, in the order of the values
+};
+/// Of a symmetric matrix, of which the lower triangle is read.
+SymmetricEigen EigenOfSymmetric(const Eigen::MatrixXd& m);
+
+struct Hessenberg {
+  Eigen::MatrixXd form;  ///< zero below the first subdiagonal
+  Eigen::MatrixXd turn;  ///< orthogonal; m = turn form turn'
+};
+/// Of a square matrix.
+Hessenberg HessenbergOf(const Eigen::MatrixXd& m);
+
+/// exp(m) by a Taylor series with scaling and squaring, to rounding.
+Eigen::MatrixXd MatrixExponential(const Eigen::MatrixXd& m);
+
+/// Of a square matrix; not finite where it is singular.
+Eigen::MatrixXd InverseOf(const Eigen::MatrixXd& m);
+double DeterminantOf(const Eigen::MatrixXd& m);
+
+/// The x of least |m x - right|; by a QR decomposition with pivots of columns.
+Eigen::VectorXd LeastSquaresOf(const Eigen::MatrixXd& m, const Eigen::VectorXd& right);
+/// Columns that are independent: pivots above the tolerance times the greatest.
+Eigen::Index RankOf(const Eigen::MatrixXd& m, double tolerance);
+
+}  // namespace dispersa

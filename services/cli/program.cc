@@ -1,0 +1,115 @@
+#include "services/cli/program.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <cstdio>
+#include <exception>
+#include <stdexcept>
+#include <string>
+
+#include "core/campaign/contained.h"
+#include "core/campaign/input_error.h"
+#include "core/flight/lane_engine.h"
+#include "core/report/result_error.h"
+#include "services/cli/command.h"
+#include "services/cli/log_color.h"
+#include "services/program/command_line.h"
+#include "services/program/error_json.h"
+
+namespace dispersa {
+namespace {
+
+void AddCommands(CLI::App& app, Invocation& invocation) {
+  AddValidateCommand(app, invocation);
+  AddOptimizeCommand(app, invocation);
+  AddPlanCommand(app, invocation);
+  AddFlyCommand(app, invocation);
+  AddRunCommand(app, invocation);
+  AddReplayCommand(app, invocation);
+  AddReportCommand(app, invocation);
+  AddMarginsCommand(app, invocation);
+  AddModesCommand(app, invocation);
+  AddTuneCommand(app, invocation);
+  AddExportCommand(app, invocation);
+  AddCompareCommand(app, invocation);
+  AddSearchCommand(app, invocation);
+  AddPaperCommand(app, invocation);
+  AddLaunchCommand(app, invocation);
+  AddStatusCommands(app, invocation);
+  AddWatchCommand(app, invocation);
+  AddFetchCommand(app, invocation);
+  AddKeysCommand(app, invocation);
+  AddCompletionCommand(app, invocation);
+  AddSchemaCommand(app, invocation);
+  AddInitCommand(app, invocation);
+}
+
+ExitCode Fail(ExitCode code, const InputError& error, const GlobalOptions& global) {
+  fmt::print(stderr, "{}\n", error.what());
+  if (global.json) PrintErrorJson(code, error.problems());
+  return code;
+}
+
+ExitCode Fail(ExitCode code, const std::string& message, const GlobalOptions& global) {
+  if (global.json) PrintErrorJson(code, message);
+  return code;
+}
+
+ExitCode Execute(const Invocation& invocation) {
+  const GlobalOptions& global = invocation.global;
+  try {
+    const ExitCode code = invocation.command(global);
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+      spdlog::error("the results cannot be written to standard output");
+      return WorseOf(code, kExitInternalError);
+    }
+    return code;
+  } catch (const InputError& error) {
+    return Fail(kExitBadInput, error, global);
+  } catch (const PluginError& error) {
+    return Fail(kExitBadInput, InputError(std::string("the control law ") + error.what()), global);
+  } catch (const ContainedEnd& end) {
+    return Fail(kExitIncomplete, InputError(std::string("the control law ") + end.what()), global);
+  } catch (const ResultError& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    const bool is_full = error.kind() == ResultError::Kind::kDiskFull;
+    return Fail(is_full ? kExitIncomplete : kExitInternalError, error.what(), global);
+  } catch (const std::exception& error) {
+    spdlog::error("internal error: {}", error.what());
+    return Fail(kExitInternalError, std::string("internal error: ") + error.what(), global);
+  }
+}
+
+}  // namespace
+
+int RunProgram(int argc, char** argv) {
+  StartLog();
+  try {
+    ChosenEngine();
+  } catch (const std::invalid_argument& error) {
+    return Fail(kExitBadInput, InputError(error.what()), {AsksForJson(argc, argv), false});
+  }
+
+  Invocation invocation;
+  std::string color = "auto";
+  CLI::App app("Monte Carlo dispersion campaigns of launch vehicles.", "dispersa");
+  BeginCommandLine(app, invocation.global.json, "print one JSON object instead of text, of an error too");
+  app.add_flag("--quiet", invocation.global.quiet, "no progress, only warnings and errors");
+  app.add_option("--color", color, "of what goes to stderr; auto: on a terminal unless NO_COLOR is set")
+      ->check(CLI::IsMember(kLogColors));
+  app.require_subcommand(1);
+  app.fallthrough();
+  app.footer(
+      "Examples: dispersa validate campaigns/table3.yaml\n"
+      "          dispersa fly campaigns/table3.yaml --case 17 --history case17.csv\n"
+      "          dispersa run campaigns/table3.yaml --cases 200\n"
+      "`dispersa COMMAND --help` tells more. A FILE that is read may be -, standard input.");
+  AddCommands(app, invocation);
+  if (const auto code = ParseCommandLine(app, argc, argv)) return *code;
+  SetLogColor(color);
+  if (invocation.global.quiet) spdlog::set_level(spdlog::level::warn);
+  return Execute(invocation);
+}
+
+}  // namespace dispersa

@@ -1,0 +1,115 @@
+#include "services/coordinator/program.h"
+
+#include <fmt/format.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/campaign_yaml/standard_input.h"
+#include "core/report/result_error.h"
+#include "services/coordinator/serve.h"
+#include "services/coordinator/stop_signal.h"
+#include "services/coordinator/whole_number.h"
+#include "services/program/command_line.h"
+#include "services/program/completion_words.h"
+#include "services/transport/admission.h"
+#include "services/transport/exit_code.h"
+
+namespace dispersa {
+int RunCoordinator(int argc, char** argv) {
+  spdlog::set_default_logger(spdlog::stderr_logger_mt("dispersa-coordinator"));
+  NetworkOptions network;
+  CampaignRequest request;
+  std::optional<double> patience_s;
+  Admission admission;
+  CLI::App app(
+      "With --data: serves the campaigns that clients launch to all dispersa-worker processes of a DDS "
+      "domain, until it is\n"
+      "told to stop. With a campaign: serves that one, writes its reports and ends.",
+      "dispersa-coordinator");
+  bool json = false;
+  BeginCommandLine(app, json, "with --version, and of an unusable command line: one JSON object");
+  std::string data;
+  bool health = false;
+  double audit = 0.0;
+  std::optional<std::uint16_t> metrics_port;
+  app.add_option("campaign", request.campaign.name, "campaign file")->type_name(kFileType);
+  app.add_option("--data", data, "folder of the campaigns that were launched, made if it is not there")
+      ->type_name(kFolderType);
+  app.add_option("--metrics", metrics_port,
+                 "with --data: port of 127.0.0.1 for metrics in Prometheus' text format")
+      ->check(CLI::Range(1, 65535));
+  app.add_flag("--health", health,
+               "ask the coordinator of the domain on this machine: exit code 0 if it answers");
+  app.add_option(
+         "--audit", audit,
+         "share of the results, 0 to 1, that the coordinator flies again; a worker whose result differs "
+         "is expelled, and\nwhatever it returned is flown again")
+      ->check(CLI::Range(0.0, 1.0));
+  app.add_option("--out", request.out, "result folder; default: results/<name>-<first 8 of id>")
+      ->type_name(kFolderType);
+  app.add_option("--cases", request.overrides.cases, "number of cases, instead of the file's")
+      ->check(CaseCountProblem);
+  app.add_option("--seed", request.overrides.seed, "seed, instead of the file's");
+  app.add_flag("--resume", request.resume, "go on in a folder of the same flight id");
+  app.add_option("--domain", network.domain, "DDS domain")
+      ->envname("DISPERSA_DOMAIN")
+      ->check(CLI::Range(0, 99));
+  app.add_option("--address", network.address, "IPv4 address of the only network interface to use")
+      ->check(CLI::ValidIPV4);
+  app.add_option("--keys", admission.keys, kKeysHelp)->type_name(kFolderType);
+  app.add_flag("--insecure", admission.insecure, kInsecureHelp);
+  app.add_flag("--allow-plugins", admission.allow_plugins, kAllowPluginsHelp);
+  app.add_option("--patience", patience_s,
+                 "give up (exit code 5) after so many seconds without a worker; default: never")
+      ->check(CLI::NonNegativeNumber);
+  app.footer(
+      "Example: dispersa-coordinator --data /var/lib/dispersa --domain 7 --keys coordinator-main\n"
+      "         dispersa-worker --domain 7 --peer coordinator-host --keys worker-node1\n"
+      "         dispersa-coordinator campaigns/table3.yaml --out results/table3 --address 127.0.0.1");
+  if (const auto code = ParseCommandLine(app, argc, argv)) return *code;
+  if (int(health) + int(!data.empty()) + int(!request.campaign.name.empty()) != 1) {
+    fmt::print(stderr, "one of --data, a campaign, or --health is needed\n");
+    return kExitBadInput;
+  }
+  if (request.campaign.name == kStandardInput) {
+    fmt::print(stderr,
+               "the campaign cannot come from standard input: a coordinator may start itself again, "
+               "allowed: a campaign file\n");
+    return kExitBadInput;
+  }
+  CatchStopSignals();
+  try {
+    if (health) {
+      const std::string host = network.address.empty() ? "127.0.0.1" : network.address;
+      return AskHealth(Admit(network, admission, {Role::kCoordinator, Role::kClient}, host), host);
+    }
+    network = Admit(network, admission, {Role::kCoordinator});
+    AdmitPlugins(network, admission.allow_plugins);
+    std::vector<std::string> again(argv, argv + argc);
+    if (data.empty() && !request.resume) again.emplace_back("--resume");
+    const ServeOptions options{network, audit, std::move(again)};
+    if (!data.empty()) return ServeClients(options, data, metrics_port);
+    return ServeCampaign(options, request, patience_s);
+  } catch (const InputError& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return kExitBadInput;
+  } catch (const NetworkError& error) {
+    spdlog::error("{}", error.what());
+    return kExitBadInput;
+  } catch (const ResultError& error) {
+    spdlog::error("{}", error.what());
+    return error.kind() == ResultError::Kind::kDiskFull ? kExitIncomplete : kExitInternalError;
+  } catch (const std::exception& error) {
+    spdlog::error("{}", error.what());
+    return kExitInternalError;
+  }
+}
+
+}  // namespace dispersa

@@ -1,0 +1,96 @@
+#include "services/worker/program.h"
+
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <cstdlib>
+#include <exception>
+#include <stdexcept>
+#include <thread>
+
+#include "core/flight/lane_engine.h"
+#include "services/program/command_line.h"
+#include "services/program/completion_words.h"
+#include "services/transport/admission.h"
+#include "services/transport/exit_code.h"
+#include "services/worker/worker.h"
+
+namespace dispersa {
+
+int RunWorker(int argc, char** argv) {
+  spdlog::set_default_logger(spdlog::stderr_logger_mt("dispersa-worker"));
+
+  WorkerOptions options;
+  std::string peer;
+  Admission admission;
+  CLI::App app(
+      "Flies cases for a coordinator, which it waits for as long as there is none. SIGTERM: it finishes what "
+      "it flies,\n"
+      "hands back the rest and leaves; a second one ends it at once.",
+      "dispersa-worker");
+  bool json = false;
+  BeginCommandLine(app, json, "with --version, and of an unusable command line: one JSON object");
+  app.add_option("--domain", options.network.domain, "DDS domain")
+      ->envname("DISPERSA_DOMAIN")
+      ->check(CLI::Range(0, 99));
+  app.add_option("--peer", peer, "HOST[:PORT] of the coordinator")->required();
+  app.add_option("--address", options.network.address, "IPv4 address of the only network interface to use")
+      ->check(CLI::ValidIPV4);
+  app.add_option("--keys", admission.keys, kKeysHelp)->type_name(kFolderType);
+  app.add_flag("--insecure", admission.insecure, kInsecureHelp);
+  app.add_flag("--allow-plugins", admission.allow_plugins, kAllowPluginsHelp);
+  app.add_option("--slots", options.slots, "cases flown at the same time")->check(CLI::Range(1, 1024));
+  app.add_option("--idle-exit", options.idle_exit_s,
+                 "leave (exit code 0) after so many seconds without a case")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--patience", options.patience_s,
+                 "give up (exit code 5) after so many seconds without a coordinator; default: never")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--uuid", options.uuid, "name of this incarnation, drawn if not given");
+  if (const auto code = ParseCommandLine(app, argc, argv)) return *code;
+  try {
+    ChosenEngine();
+  } catch (const std::invalid_argument& error) {
+    spdlog::error("{}", error.what());
+    return kExitBadInput;
+  }
+
+  // Before any thread starts, so that every thread leaves the signals to the one that waits for them.
+  sigset_t ends;
+  sigemptyset(&ends);
+  sigaddset(&ends, SIGTERM);
+  sigaddset(&ends, SIGINT);
+  pthread_sigmask(SIG_BLOCK, &ends, nullptr);
+
+  int code = kExitInternalError;
+  try {
+    options.peer = ParsePeer(peer, options.network.domain);
+    options.network = Admit(options.network, admission, {Role::kWorker}, options.peer.host);
+    AdmitPlugins(options.network, admission.allow_plugins);
+    options.uuid = NameOnNetwork(options.network, options.uuid.empty() ? MakeUuid() : options.uuid);
+    Worker worker(options);
+    std::thread([&] {
+      int signal = 0;
+      sigwait(&ends, &signal);
+      worker.Drain();
+      sigwait(&ends, &signal);
+      // As any process that is ended by a signal: whoever started it must not take it for a crash.
+      std::signal(signal, SIG_DFL);
+      pthread_sigmask(SIG_UNBLOCK, &ends, nullptr);
+      std::raise(signal);
+    }).detach();
+    const WorkerExit exit = worker.Run();
+    code = exit == WorkerExit::kRefused || exit == WorkerExit::kNoCoordinator ? kExitIncomplete : kExitDone;
+    std::_Exit(code);  // the other threads still use what a return would destroy
+  } catch (const NetworkError& error) {
+    spdlog::error("{}", error.what());
+    code = kExitBadInput;
+  } catch (const std::exception& error) {
+    spdlog::error("{}", error.what());
+  }
+  return code;
+}
+
+}  // namespace dispersa
