@@ -134,8 +134,8 @@ struct AscentInstant {
 
 /// The nozzles are straight and the sideslip is zero: the force lies in the plane of the axis and the flow.
 template <class T>
-DISPERSA_INLINE AscentInstant<T> InstantAt(const Ground& ground, const Leg<T>& leg, T time_s, Vector<T> p,
-                                           Vector<T> v) {
+DISPERSA_OUT_OF_LINE AscentInstant<T> InstantAt(const Ground& ground, const Leg<T>& leg, T time_s,
+                                                const Vector<T>& p, const Vector<T>& v) {
   const Surroundings<T> around = SurroundingsAt(ground.earth, *ground.air, leg.weather, p);
   const BurnState<T> burn = BurnAt(leg.burn, time_s - leg.ignition_s);
   const T unlit = Select(leg.burnt, leg.burn.left_kg, leg.burn.propellant_kg);
@@ -202,8 +202,8 @@ DISPERSA_INLINE Vector<T> AxisRateAt(const Ground& ground, const Leg<T>& leg, T 
 
 /// One step of the classical Runge-Kutta method, from the acceleration at its start.
 template <class T>
-DISPERSA_INLINE void Step(const Ground& ground, const Leg<T>& leg, T from_s, T to_s, Vector<T> a1,
-                          Vector<T>* p, Vector<T>* v) {
+DISPERSA_OUT_OF_LINE void Step(const Ground& ground, const Leg<T>& leg, T from_s, T to_s, const Vector<T>& a1,
+                               Vector<T>* p, Vector<T>* v) {
   const T h = to_s - from_s, half = T(0.5) * h, middle_s = from_s + half;
   const Vector<T> v2 = Along(*v, half, a1);
   const Vector<T> a2 = InstantAt(ground, leg, middle_s, Along(*p, half, *v), v2).acceleration_I;
