@@ -6,12 +6,11 @@
 #include <cmath>
 #include <numbers>
 
-#include <boost/math/distributions/normal.hpp>
-
 #include "core/flight/flight_inputs.h"
 #include "core/report/metric_catalogue.h"
 #include "core/report/sampling_text.h"
 #include "core/report/text.h"
+#include "core/statistics/normal.h"
 
 namespace dispersa {
 namespace {
@@ -69,15 +68,14 @@ Moments FoldedNormal(double mean, double sigma) {
 }
 
 double QuantileOf(const ScalarDistribution& d, double u) {
-  const boost::math::normal normal;
   switch (d.kind) {
     case Distribution::kTruncatedNormal: {
-      const double from = cdf(normal, (d.low - d.nominal) / d.sigma);
-      const double to = cdf(normal, (d.high - d.nominal) / d.sigma);
-      return d.nominal + d.sigma * quantile(normal, from + (to - from) * u);
+      const double from = NormalProbability((d.low - d.nominal) / d.sigma);
+      const double to = NormalProbability((d.high - d.nominal) / d.sigma);
+      return d.nominal + d.sigma * NormalQuantile(from + (to - from) * u);
     }
     case Distribution::kLogNormal:
-      return d.nominal * std::exp(d.sigma * quantile(normal, u));
+      return d.nominal * std::exp(d.sigma * NormalQuantile(u));
     case Distribution::kRayleigh:
       return d.sigma * std::sqrt(-2.0 * std::log1p(-u));
     case Distribution::kTriangular: {

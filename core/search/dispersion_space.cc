@@ -3,16 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include <boost/math/distributions/normal.hpp>
-
 #include "core/campaign/case_design.h"
 #include "core/campaign/drawn_value.h"
 #include "core/math/constants.h"
+#include "core/statistics/normal.h"
 
 namespace dispersa {
 namespace {
-
-double Probability(double z) { return boost::math::cdf(boost::math::normal(), z); }
 
 CoordinateKind KindOf(const ScalarDistribution& d) {
   switch (d.kind) {
@@ -35,12 +32,12 @@ double ValueAt(const ScalarDistribution& d, const std::array<double, 2>& truncat
     case Distribution::kLogNormal:
       return d.nominal * std::exp(d.sigma * z);
     case Distribution::kRayleigh:  // as likely to be exceeded as |z|
-      return DrawnValue(d, truncation, 2.0 * Probability(-std::fabs(z)));
+      return DrawnValue(d, truncation, 2.0 * NormalProbability(-std::fabs(z)));
     case Distribution::kTruncatedNormal:
     case Distribution::kTriangular:
     case Distribution::kEmpirical:
     case Distribution::kUniform:
-      return DrawnValue(d, truncation, Probability(z));
+      return DrawnValue(d, truncation, NormalProbability(z));
     case Distribution::kTwoPoint:
       return d.nominal;
     case Distribution::kValues:

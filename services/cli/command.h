@@ -10,7 +10,7 @@
 //   }
 //
 // which is declared below and called in main.cc; the function that flies returns an ExitCode. Results go to
-// stdout, everything else to stderr (spdlog's default logger writes there). Exceptions need no handling:
+// stdout, everything else to stderr (the log writes there). Exceptions need no handling:
 // InputError ends with its text and 2, any other with its message and 1, and with --json as an object too.
 // The type names below say in help texts what a value is, and completion goes by them.
 #pragma once

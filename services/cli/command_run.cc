@@ -1,6 +1,5 @@
 // dispersa run: a campaign from the file to the report.
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <filesystem>
 #include <memory>
@@ -14,6 +13,7 @@
 #include "services/client/campaign_run.h"
 #include "services/coordinator/stop_signal.h"
 #include "services/coordinator/whole_number.h"
+#include "services/log/log.h"
 #include "services/program/error_json.h"
 
 namespace dispersa {
@@ -54,7 +54,7 @@ ExitCode Run(const RunCommand& options, const GlobalOptions& global) {
   } catch (const ResultError& error) {
     observer.EndPhase();
     if (error.kind() != ResultError::Kind::kDiskFull) throw;
-    spdlog::error("{}", error.what());
+    LogError("{}", error.what());
     fmt::print(stderr, "to go on when there is space: {}\n", ResumeCommand(options, directory));
     if (global.json) PrintErrorJson(kExitIncomplete, error.what());
     return kExitIncomplete;

@@ -1,6 +1,5 @@
 // dispersa watch: follow a campaign of a coordinator until it ends.
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <chrono>
 #include <memory>
@@ -14,6 +13,7 @@
 #include "services/cli/progress.h"
 #include "services/cli/session_options.h"
 #include "services/coordinator/stop_signal.h"
+#include "services/log/log.h"
 
 namespace dispersa {
 namespace {
@@ -49,7 +49,7 @@ class Watcher {
   void Away(const Session& session) {
     silent_ += kPatience;
     const std::string silence = session.Silence(silent_);
-    if (silent_ % kSayAgain == std::chrono::seconds(0)) spdlog::warn("{}; it is tried again", silence);
+    if (silent_ % kSayAgain == std::chrono::seconds(0)) LogWarning("{}; it is tried again", silence);
     if (page_ != nullptr)
       page_->Show(NoticeParts(silence + "; what stands here is as it was then. It is tried again."));
   }

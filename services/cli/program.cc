@@ -1,7 +1,6 @@
 #include "services/cli/program.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <cstdio>
 #include <exception>
@@ -13,7 +12,7 @@
 #include "core/flight/lane_engine.h"
 #include "core/report/result_error.h"
 #include "services/cli/command.h"
-#include "services/cli/log_color.h"
+#include "services/log/log.h"
 #include "services/program/command_line.h"
 #include "services/program/error_json.h"
 
@@ -45,6 +44,10 @@ void AddCommands(CLI::App& app, Invocation& invocation) {
   AddInitCommand(app, invocation);
 }
 
+LogColor ColorNamed(const std::string& name) {
+  return name == "always" ? LogColor::kAlways : name == "never" ? LogColor::kNever : LogColor::kAuto;
+}
+
 ExitCode Fail(ExitCode code, const InputError& error, const GlobalOptions& global) {
   fmt::print(stderr, "{}\n", error.what());
   if (global.json) PrintErrorJson(code, error.problems());
@@ -61,7 +64,7 @@ ExitCode Execute(const Invocation& invocation) {
   try {
     const ExitCode code = invocation.command(global);
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-      spdlog::error("the results cannot be written to standard output");
+      LogError("the results cannot be written to standard output");
       return WorseOf(code, kExitInternalError);
     }
     return code;
@@ -76,7 +79,7 @@ ExitCode Execute(const Invocation& invocation) {
     const bool is_full = error.kind() == ResultError::Kind::kDiskFull;
     return Fail(is_full ? kExitIncomplete : kExitInternalError, error.what(), global);
   } catch (const std::exception& error) {
-    spdlog::error("internal error: {}", error.what());
+    LogError("internal error: {}", error.what());
     return Fail(kExitInternalError, std::string("internal error: ") + error.what(), global);
   }
 }
@@ -84,7 +87,7 @@ ExitCode Execute(const Invocation& invocation) {
 }  // namespace
 
 int RunProgram(int argc, char** argv) {
-  StartLog();
+  LogForPeople(LogColor::kAuto);
   try {
     ChosenEngine();
   } catch (const std::invalid_argument& error) {
@@ -97,7 +100,7 @@ int RunProgram(int argc, char** argv) {
   BeginCommandLine(app, invocation.global.json, "print one JSON object instead of text, of an error too");
   app.add_flag("--quiet", invocation.global.quiet, "no progress, only warnings and errors");
   app.add_option("--color", color, "of what goes to stderr; auto: on a terminal unless NO_COLOR is set")
-      ->check(CLI::IsMember(kLogColors));
+      ->check(CLI::IsMember({"auto", "always", "never"}));
   app.require_subcommand(1);
   app.fallthrough();
   app.footer(
@@ -107,8 +110,8 @@ int RunProgram(int argc, char** argv) {
       "`dispersa COMMAND --help` tells more. A FILE that is read may be -, standard input.");
   AddCommands(app, invocation);
   if (const auto code = ParseCommandLine(app, argc, argv)) return *code;
-  SetLogColor(color);
-  if (invocation.global.quiet) spdlog::set_level(spdlog::level::warn);
+  LogForPeople(ColorNamed(color));
+  if (invocation.global.quiet) SetLogLevel(LogLevel::kWarning);
   return Execute(invocation);
 }
 

@@ -1,17 +1,16 @@
 // Loading for a command: what looks wrong but is legal goes to the log, each once.
 #pragma once
 
-#include <spdlog/spdlog.h>
-
 #include <string>
 #include <vector>
 
 #include "core/campaign_yaml/load.h"
+#include "services/log/log.h"
 
 namespace dispersa {
 
 inline void Warn(const std::vector<InputProblem>& warnings) {
-  for (const InputProblem& warning : warnings) spdlog::warn("{}", warning.Text());
+  for (const InputProblem& warning : warnings) LogWarning("{}", warning.Text());
 }
 
 /// As LoadCampaign.

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -25,6 +24,7 @@
 #include "services/coordinator/coordinator.h"
 #include "services/coordinator/threads.h"
 #include "services/coordinator/utc.h"
+#include "services/log/log.h"
 #include "services/transport/private_domain.h"
 
 namespace dispersa {
@@ -83,7 +83,7 @@ class CampaignRun {
       Supervise(coordinator, workers);
       coordinator.Step(std::chrono::milliseconds(50));
       for (const std::string& uuid : coordinator.TakeUnresponsive()) {
-        spdlog::warn("worker {} does not answer: it is killed", uuid);
+        LogWarning("worker {} does not answer: it is killed", uuid);
         workers.Kill(uuid);
       }
       ShowProgress(fmt::format("{} worker{}", workers.alive(), workers.alive() == 1 ? "" : "s"));
@@ -192,8 +192,8 @@ class CampaignRun {
     const std::uint64_t settled = book_.flown_now() + book_.ledger().Progress().quarantined;
     const LocalWorkers::Changes changes = workers.Poll(Now(), settled);
     for (const WorkerProcess& ended : changes.ended) {
-      spdlog::warn("worker {} (process {}) ended with {}; another takes its place", ended.uuid, ended.pid,
-                   ended.how);
+      LogWarning("worker {} (process {}) ended with {}; another takes its place", ended.uuid, ended.pid,
+                 ended.how);
       coordinator.WorkerEnded(ended.uuid, ended.end, ended.how);
     }
     for (const WorkerProcess& started : changes.started) coordinator.Supervise(started.uuid);
@@ -276,11 +276,11 @@ RunResult FlyAndReport(const RunOptions& options, OpenedCampaign opened, Executi
   observer.EndPhase();
   note_end();
   if (execution.problem) {
-    spdlog::error("{}", *execution.problem);
+    LogError("{}", *execution.problem);
     code = WorseOf(code, kExitIncomplete);
   }
   for (const BlamedCase& blamed : book.ledger().Quarantined()) {
-    spdlog::warn("case {} is quarantined: {}", blamed.case_index, fmt::join(blamed.reasons, "; "));
+    LogWarning("case {} is quarantined: {}", blamed.case_index, fmt::join(blamed.reasons, "; "));
   }
   CampaignSummary summary =
       MakeReports(book.folder(), book.campaign(), workers, options.reflown, observer);
@@ -304,7 +304,7 @@ RunResult RunCampaign(OpenedCampaign opened, const RunOptions& options, Observer
     try {
       execution.Write();
     } catch (const ResultError& error) {
-      spdlog::error("{}", error.what());
+      LogError("{}", error.what());
     }
     throw;
   }

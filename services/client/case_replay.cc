@@ -1,7 +1,5 @@
 #include "services/client/case_replay.h"
 
-#include <spdlog/spdlog.h>
-
 #include <bit>
 #include <cmath>
 #include <utility>
@@ -10,6 +8,7 @@
 #include "core/flight/engine_version.h"
 #include "core/flight/flight_inputs.h"
 #include "core/report/text.h"
+#include "services/log/log.h"
 
 namespace dispersa {
 namespace {
@@ -54,8 +53,8 @@ std::vector<ReplayDifference> Differences(const CaseResult& stored, const CaseRe
 CaseReplay ReplayCase(const StoredCampaign& stored, std::uint64_t case_index, History* history) {
   const std::string engine = stored.folder.Provenance("engine");
   if (engine != EngineVersion()) {
-    spdlog::warn("the folder was flown by engine {}, this is {}: the flights may differ", engine,
-                 EngineVersion());
+    LogWarning("the folder was flown by engine {}, this is {}: the flights may differ", engine,
+               EngineVersion());
   }
   CaseReplay replay;
   replay.stored = stored.folder.Load(case_index);

@@ -1,7 +1,5 @@
 #include "services/client/remote_campaign.h"
 
-#include <spdlog/spdlog.h>
-
 #include <chrono>
 #include <cstdint>
 #include <thread>

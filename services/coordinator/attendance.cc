@@ -1,7 +1,6 @@
 #include "services/coordinator/attendance.h"
 
-#include <spdlog/spdlog.h>
-
+#include "services/log/log.h"
 #include "services/transport/network.h"
 
 namespace dispersa {
@@ -18,8 +17,8 @@ bool Attendance::Check(bool attended, double now_s) {
   }
   if (now_s - said_s_ >= kSayAgain_s) {
     said_s_ = now_s;
-    spdlog::warn("no worker for {:.0f} s; they may come to port {}", now_s - present_s_,
-                 CoordinatorPort(domain_));
+    LogWarning("no worker for {:.0f} s; they may come to port {}", now_s - present_s_,
+               CoordinatorPort(domain_));
   }
   return !patience_s_ || now_s - present_s_ <= *patience_s_;
 }

@@ -1,13 +1,12 @@
 #include "services/coordinator/auditor.h"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <utility>
 
 #include "core/report/fingerprint.h"
+#include "services/log/log.h"
 
 namespace dispersa {
 namespace {
@@ -42,7 +41,7 @@ class Auditor::Queue : public CaseQueue {
   void GivenUp(std::uint64_t case_index, const std::string& reason) override {
     const auto claim = std::find_if(flying_.begin(), flying_.end(),
                                     [&](const Claim& each) { return each.case_index == case_index; });
-    spdlog::warn("case {} is not audited: {}", case_index, reason);
+    LogWarning("case {} is not audited: {}", case_index, reason);
     const Lock lock(auditor_.mutex_);
     const Digest claimed = claim->fingerprint;
     auditor_.verdicts_.push_back({flight_id_, std::move(*claim), claimed});

@@ -1,13 +1,12 @@
 #include "services/coordinator/campaign_book.h"
 
-#include <spdlog/spdlog.h>
-
 #include <limits>
 #include <utility>
 
 #include "core/flight/engine_version.h"
 #include "core/report/fingerprint.h"
 #include "services/coordinator/utc.h"
+#include "services/log/log.h"
 
 namespace dispersa {
 namespace {
@@ -87,8 +86,8 @@ void CampaignBook::Disown(const std::string& worker) {
   if (audit_) audit_->Drop(worker);
   const std::vector<std::uint64_t> cases = store_->Disown(worker);
   if (cases.empty()) return;
-  spdlog::warn("campaign {}: {} results of worker {} are removed; their cases are flown again",
-               campaign_.name, cases.size(), worker);
+  LogWarning("campaign {}: {} results of worker {} are removed; their cases are flown again", campaign_.name,
+             cases.size(), worker);
   ledger_.Reopen(cases);
   if (rule_) rule_ = RuleOf(campaign_, *store_);
   if (tally_) KeepTally();
@@ -138,16 +137,14 @@ Acceptance CampaignBook::Accept(const std::string& worker, const std::string& ho
       break;
     case Acceptance::kConflict:
       if (audit_) Dispute(claim);
-      spdlog::error("case {}: worker {} on {} returned other bits than were returned before: {}",
-                    result.case_index, worker, host,
-                    audit_
-                        ? "it is flown again here"
-                        : "a processor, a library or a build breaks the floating-point contract; no result "
-                          "can be trusted");
+      LogError("case {}: worker {} on {} returned other bits than were returned before: {}",
+               result.case_index, worker, host,
+               audit_ ? "it is flown again here"
+                      : "a processor, a library or a build breaks the floating-point contract; no result "
+                        "can be trusted");
       break;
     case Acceptance::kUnknown:
-      spdlog::error("case {} of worker {} on {} does not exist in this campaign", result.case_index, worker,
-                    host);
+      LogError("case {} of worker {} on {} does not exist in this campaign", result.case_index, worker, host);
       break;
     case Acceptance::kDuplicate:
       break;

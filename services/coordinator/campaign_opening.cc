@@ -1,10 +1,9 @@
 #include "services/coordinator/campaign_opening.h"
 
-#include <spdlog/spdlog.h>
-
 #include <utility>
 
 #include "core/campaign_yaml/load.h"
+#include "services/log/log.h"
 
 namespace dispersa {
 namespace {
@@ -40,10 +39,10 @@ void TryToTakeOver(const fs::path& from, const Campaign& campaign, ResultFolder&
     const ResultFolder folder = ResultFolder::Open(from);
     if (folder.Provenance("flight_id") == campaign.flight_id) TakeOver(folder, campaign.sampling.cases, to);
   } catch (const InputError& error) {
-    spdlog::warn("{}: its results are not taken over: {}", from.string(), error.what());
+    LogWarning("{}: its results are not taken over: {}", from.string(), error.what());
   } catch (const ResultError& error) {
     if (error.kind() == ResultError::Kind::kDiskFull) throw;
-    spdlog::warn("{}: its results are not taken over: {}", from.string(), error.what());
+    LogWarning("{}: its results are not taken over: {}", from.string(), error.what());
   }
 }
 
@@ -56,7 +55,7 @@ std::unique_ptr<CampaignBook> OpenBook(const CampaignOpening& opening) {
   ResultFolder folder = is_new ? ResultFolder::Create(opening.results, campaign)
                                : ResultFolder::Resume(opening.results, campaign);
   for (const std::uint64_t damaged : folder.damaged()) {
-    spdlog::warn("{}: the row of case {} is damaged; it is flown again", opening.results.string(), damaged);
+    LogWarning("{}: the row of case {} is damaged; it is flown again", opening.results.string(), damaged);
   }
   // Each time: what a start that was killed did not take over is taken now. A campaign that stops by itself
   // takes none, because what it flies depends on its own looks alone.

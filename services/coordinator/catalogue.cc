@@ -1,7 +1,5 @@
 #include "services/coordinator/catalogue.h"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <array>
 #include <fstream>
@@ -14,6 +12,7 @@
 #include "core/report/output_file.h"
 #include "core/report/result_error.h"
 #include "services/coordinator/dump_any_text.h"
+#include "services/log/log.h"
 
 namespace dispersa {
 namespace {
@@ -86,8 +85,8 @@ Catalogue::Catalogue(const fs::path& directory) : directory_(directory) {
       next_order_ = std::max(next_order_, entry.order + 1);
       entries_[entry.id] = std::move(entry);
     } catch (const std::exception& damage) {
-      spdlog::error("{}: the state is damaged, the campaign is left alone: {}", folder.path().string(),
-                    damage.what());
+      LogError("{}: the state is damaged, the campaign is left alone: {}", folder.path().string(),
+               damage.what());
     }
   }
 }

@@ -1,12 +1,11 @@
 #include "services/coordinator/dispatcher.h"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <limits>
 #include <utility>
 
 #include "core/flight/flight_inputs.h"
+#include "services/log/log.h"
 #include "services/transport/complaints.h"
 #include "services/transport/validity.h"
 
@@ -88,8 +87,8 @@ bool Dispatcher::Join(const std::string& sender, const WorkerStatus& status, dou
     known->second.spoken_s = now_s - options_.pulse_s;
     known->second.message_s = now_s;
     if (!supervised_.contains(status.worker)) {
-      spdlog::info("worker {} joined: process {} on {}, {} slots", status.worker, status.pid,
-                   Printable(status.host), status.slots);
+      LogInfo("worker {} joined: process {} on {}, {} slots", status.worker, status.pid,
+              Printable(status.host), status.slots);
     }
   }
   Worker& worker = known->second;
@@ -114,7 +113,7 @@ bool Dispatcher::Join(const std::string& sender, const WorkerStatus& status, dou
 }
 
 void Dispatcher::Refuse(const std::string& worker, const std::string& reason) {
-  spdlog::error("worker {} is refused: {}", worker, reason);
+  LogError("worker {} is refused: {}", worker, reason);
   refusal_ = reason;
   if (refused_.size() < kMaxRemembered) refused_[worker] = reason;
   TellRefusal(worker, reason);
@@ -249,8 +248,8 @@ void Dispatcher::On(const std::string& sender, const CampaignRefusal& refusal, d
   }
   known->second.heard_s = known->second.message_s = now_s;
   if (!campaign->second.refused_by.insert(refusal.worker).second) return;
-  spdlog::error("worker {} refuses the campaign {}: {}", refusal.worker,
-                campaign->second.book->campaign().name, Printable(refusal.reason, 1000));
+  LogError("worker {} refuses the campaign {}: {}", refusal.worker, campaign->second.book->campaign().name,
+           Printable(refusal.reason, 1000));
   refusal_ = Printable(refusal.reason, 1000);
   campaign->second.book->ledger().Lost(refusal.worker, WorkerEnd::kLeft, *refusal_);
   known->second.ForgetSent(refusal.flight_id);
@@ -359,7 +358,7 @@ void Dispatcher::Expire(double now_s) {
   expired_s_ = now_s;
   for (auto& [flight_id, campaign] : campaigns_) {
     for (const std::string& stuck : campaign.book->ledger().Expire(now_s)) {
-      spdlog::warn("worker {} has reported nothing for too long; its cases return to the queue", stuck);
+      LogWarning("worker {} has reported nothing for too long; its cases return to the queue", stuck);
       if (supervised_.contains(stuck)) unresponsive_.insert(stuck);
       if (const auto worker = workers_.find(stuck); worker != workers_.end())
         worker->second.ForgetSent(flight_id);
@@ -434,9 +433,9 @@ void Dispatcher::Lose(const std::string& worker, WorkerEnd end, const std::strin
   forgotten_.push_back(worker);
   if (!known || supervised) return;
   if (end == WorkerEnd::kLeft) {
-    spdlog::info("worker {} left", worker);
+    LogInfo("worker {} left", worker);
   } else {
-    spdlog::warn("worker {} is lost: {}", worker, reason);
+    LogWarning("worker {} is lost: {}", worker, reason);
   }
 }
 

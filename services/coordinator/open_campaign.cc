@@ -1,13 +1,12 @@
 #include "services/coordinator/open_campaign.h"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "core/campaign/contained_flights.h"
+#include "services/log/log.h"
 
 namespace dispersa {
 namespace {
@@ -45,7 +44,7 @@ bool IsStillborn(const fs::path& directory) {
 OpenedCampaign OpenCampaign(const CampaignRequest& request) {
   std::vector<InputProblem> warnings;
   Campaign campaign = LoadCampaign(request.campaign, request.overrides, &warnings);
-  for (const InputProblem& warning : warnings) spdlog::warn("{}", warning.Text());
+  for (const InputProblem& warning : warnings) LogWarning("{}", warning.Text());
   if (campaign.autopilot.plugin) CheckPluginIsDeterministic(CampaignFlights(campaign), campaign.sampling.cases);
   const fs::path directory =
       request.out.empty() ? DefaultFolder(campaign, request.resume) : fs::path(request.out);
@@ -71,14 +70,14 @@ OpenedCampaign OpenCampaign(const CampaignRequest& request) {
     extended.cases = present.back() + 1;
     Campaign larger = LoadCampaign(request.campaign, extended);
     if (larger.flight_id == campaign.flight_id) {
-      spdlog::warn("{} holds more cases than the {} asked for: the campaign is extended to {}",
-                   directory.string(), campaign.sampling.cases, larger.sampling.cases);
+      LogWarning("{} holds more cases than the {} asked for: the campaign is extended to {}",
+                 directory.string(), campaign.sampling.cases, larger.sampling.cases);
       campaign = std::move(larger);
     }
   }
   ResultFolder folder = ResultFolder::Resume(directory, campaign, std::move(lock));
   for (const std::uint64_t damaged : folder.damaged()) {
-    spdlog::warn("{}: the row of case {} is damaged; it is flown again", directory.string(), damaged);
+    LogWarning("{}: the row of case {} is damaged; it is flown again", directory.string(), damaged);
   }
   return {std::move(campaign), std::move(folder)};
 }

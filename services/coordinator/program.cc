@@ -1,8 +1,6 @@
 #include "services/coordinator/program.h"
 
 #include <fmt/format.h>
-#include <spdlog/sinks/stdout_sinks.h>
-#include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <exception>
@@ -16,6 +14,7 @@
 #include "services/coordinator/serve.h"
 #include "services/coordinator/stop_signal.h"
 #include "services/coordinator/whole_number.h"
+#include "services/log/log.h"
 #include "services/program/command_line.h"
 #include "services/program/completion_words.h"
 #include "services/transport/admission.h"
@@ -23,7 +22,7 @@
 
 namespace dispersa {
 int RunCoordinator(int argc, char** argv) {
-  spdlog::set_default_logger(spdlog::stderr_logger_mt("dispersa-coordinator"));
+  LogForDaemon("dispersa-coordinator");
   NetworkOptions network;
   CampaignRequest request;
   std::optional<double> patience_s;
@@ -101,13 +100,13 @@ int RunCoordinator(int argc, char** argv) {
     fmt::print(stderr, "{}\n", error.what());
     return kExitBadInput;
   } catch (const NetworkError& error) {
-    spdlog::error("{}", error.what());
+    LogError("{}", error.what());
     return kExitBadInput;
   } catch (const ResultError& error) {
-    spdlog::error("{}", error.what());
+    LogError("{}", error.what());
     return error.kind() == ResultError::Kind::kDiskFull ? kExitIncomplete : kExitInternalError;
   } catch (const std::exception& error) {
-    spdlog::error("{}", error.what());
+    LogError("{}", error.what());
     return kExitInternalError;
   }
 }

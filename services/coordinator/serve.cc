@@ -1,7 +1,6 @@
 #include "services/coordinator/serve.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <chrono>
 #include <utility>
@@ -16,6 +15,7 @@
 #include "services/coordinator/stop_signal.h"
 #include "services/coordinator/threads.h"
 #include "services/coordinator/watchdog.h"
+#include "services/log/log.h"
 #include "services/transport/client_link.h"
 #include "services/transport/exit_code.h"
 
@@ -51,9 +51,9 @@ int ServeCampaign(const ServeOptions& options, const CampaignRequest& request,
   OpenedCampaign opened = OpenCampaign(request);
   CampaignBook book(opened.campaign, std::move(opened.folder));
   Coordinator coordinator(options.network, book, options.audit);
-  spdlog::info("campaign {}, flight id {}, results in {}; domain {}, workers may come to port {}",
-               book.campaign().name, book.campaign().flight_id, book.folder().directory().string(),
-               options.network.domain, CoordinatorPort(options.network.domain));
+  LogInfo("campaign {}, flight id {}, results in {}; domain {}, workers may come to port {}",
+          book.campaign().name, book.campaign().flight_id, book.folder().directory().string(),
+          options.network.domain, CoordinatorPort(options.network.domain));
   Every progress_period(kProgress_s);
   Attendance attendance(options.network.domain, patience_s);
   std::optional<Watchdog> watchdog(std::in_place, options.again);
@@ -62,20 +62,20 @@ int ServeCampaign(const ServeOptions& options, const CampaignRequest& request,
     watchdog->Note(coordinator.Hears(), true);
     if (!attendance.Check(coordinator.joined() > 0, coordinator.now_s())) {
       book.Flush();
-      spdlog::error("no worker for {:.0f} s: given up; the same with --resume goes on", *patience_s);
+      LogError("no worker for {:.0f} s: given up; the same with --resume goes on", *patience_s);
       return kExitIncomplete;
     }
     if (progress_period.IsDue(coordinator.now_s())) {
       const LedgerProgress progress = book.ledger().Progress();
-      spdlog::info("{}/{} cases done, {} assigned, {} quarantined, {} workers", progress.done, progress.total,
-                   progress.assigned, progress.quarantined, coordinator.joined());
+      LogInfo("{}/{} cases done, {} assigned, {} quarantined, {} workers", progress.done, progress.total,
+              progress.assigned, progress.quarantined, coordinator.joined());
     }
   }
   watchdog.reset();
   // First what would be lost. Workers are sent home by a campaign that is complete on the disk and by nothing
   // else: a coordinator that stops, or is killed here, finds them again when it is back.
   book.Flush();
-  if (book.IsAudited()) spdlog::info("{} results were flown again and agree", book.confirmed());
+  if (book.IsAudited()) LogInfo("{} results were flown again and agree", book.confirmed());
   ReportOptions report;
   report.threads = UsableCores();
   report.progress = [](const std::string&, std::uint64_t, std::uint64_t) {
@@ -88,7 +88,7 @@ int ServeCampaign(const ServeOptions& options, const CampaignRequest& request,
     fmt::print("result: {}\n", book.folder().directory().string());
     return CampaignExitCode(summary.verdict, book.ledger().Progress().conflicts);
   } catch (const StoppedServing&) {
-    spdlog::warn("stopped; the same with --resume goes on");
+    LogWarning("stopped; the same with --resume goes on");
     return kExitInterrupted;
   }
 }
@@ -103,8 +103,8 @@ int ServeClients(const ServeOptions& options, const std::string& data,
   Service service(service_options, coordinator);
   FrontDesk front_desk(service, coordinator);
   coordinator.Serve([&](const Request& request) { return front_desk.Answer(request); });
-  spdlog::info("domain {}, workers and clients may come to port {}", options.network.domain,
-               CoordinatorPort(options.network.domain));
+  LogInfo("domain {}, workers and clients may come to port {}", options.network.domain,
+          CoordinatorPort(options.network.domain));
   std::optional<MetricsPort> metrics;
   if (metrics_port) metrics.emplace(*metrics_port);
   Every metrics_period(kMetrics_s);
@@ -119,7 +119,7 @@ int ServeClients(const ServeOptions& options, const std::string& data,
   }
   watchdog.reset();
   service.Flush();
-  spdlog::info("stopped; what is open goes on when the coordinator is started again");
+  LogInfo("stopped; what is open goes on when the coordinator is started again");
   return 0;
 }
 
@@ -127,7 +127,7 @@ int AskHealth(const NetworkOptions& network, const std::string& host) {
   ClientLink client(network, {host, CoordinatorPort(network.domain)});
   const auto reply = client.Call("health", "{}", "", kHealthPatience);
   if (reply && reply->code == 0) return 0;
-  spdlog::error("the coordinator of domain {} does not answer", network.domain);
+  LogError("the coordinator of domain {} does not answer", network.domain);
   return kExitIncomplete;
 }
 

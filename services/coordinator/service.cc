@@ -1,7 +1,6 @@
 #include "services/coordinator/service.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <chrono>
@@ -9,6 +8,7 @@
 
 #include "core/report/reports.h"
 #include "services/coordinator/campaign_opening.h"
+#include "services/log/log.h"
 #include "services/transport/exit_code.h"
 
 namespace dispersa {
@@ -32,7 +32,7 @@ Service::Service(const ServiceOptions& options, Coordinator& coordinator)
     : options_(options), coordinator_(coordinator), catalogue_(options.data) {
   std::size_t open = 0;
   for (const auto& [id, entry] : catalogue_.entries()) open += !HasEnded(entry.state);
-  spdlog::info("{}: {} campaigns, {} of them open", options.data.string(), catalogue_.entries().size(), open);
+  LogInfo("{}: {} campaigns, {} of them open", options.data.string(), catalogue_.entries().size(), open);
 }
 
 Service::~Service() {
@@ -61,8 +61,8 @@ void Service::CloseComplete() {
   }
   for (const std::string& id : complete) {
     if (const CampaignBook& book = *flying_.at(id).book; book.IsAudited()) {
-      spdlog::info("campaign {} ({}): {} results were flown again and agree", book.campaign().name,
-                   id.substr(0, 8), book.confirmed());
+      LogInfo("campaign {} ({}): {} results were flown again and agree", book.campaign().name,
+              id.substr(0, 8), book.confirmed());
     }
     to_report_.emplace_back(id, TakeBack(id));
     CatalogueEntry& entry = catalogue_.At(id);
@@ -132,7 +132,7 @@ bool Service::MakeRoomFor(const CatalogueEntry& entry) {
   TakeBack(lowest.id);
   lowest.state = CampaignState::kWaiting;
   catalogue_.Write(lowest);
-  spdlog::info("campaign {} ({}) waits for one of a higher priority", lowest.name, lowest.id.substr(0, 8));
+  LogInfo("campaign {} ({}) waits for one of a higher priority", lowest.name, lowest.id.substr(0, 8));
   return true;
 }
 
@@ -163,8 +163,8 @@ void Service::FinishOpening() {
     if (entry.state != CampaignState::kWaiting) return;  // cancelled meanwhile
     entry.flight_id = book->campaign().flight_id;        // another one if the engine is another one by now
     coordinator_.Open(*book, entry.priority);
-    spdlog::info("campaign {} ({}) is open: {} of {} cases are there", entry.name, opened.id.substr(0, 8),
-                 book->ledger().Progress().done, book->ledger().Progress().total);
+    LogInfo("campaign {} ({}) is open: {} of {} cases are there", entry.name, opened.id.substr(0, 8),
+            book->ledger().Progress().done, book->ledger().Progress().total);
     flying_[opened.id].book = std::move(book);
     entry.state = CampaignState::kFlying;
     catalogue_.Write(entry);
@@ -222,11 +222,11 @@ void Service::End(CatalogueEntry& entry, CampaignState state, int code, const st
   catalogue_.Write(entry);
   Publish(entry);
   if (problem.empty()) {
-    spdlog::info("campaign {} ({}) is {}, code {}", entry.name, entry.id.substr(0, 8),
-                 CampaignStateName(state), code);
+    LogInfo("campaign {} ({}) is {}, code {}", entry.name, entry.id.substr(0, 8), CampaignStateName(state),
+            code);
   } else {
-    spdlog::error("campaign {} ({}) is {}: {}", entry.name, entry.id.substr(0, 8), CampaignStateName(state),
-                  problem);
+    LogError("campaign {} ({}) is {}: {}", entry.name, entry.id.substr(0, 8), CampaignStateName(state),
+             problem);
   }
 }
 
@@ -294,7 +294,7 @@ void Service::Relaunch(const std::string& id, int priority) {
 }
 
 void Service::Launch(CatalogueEntry entry, const std::string& text) {
-  spdlog::info("campaign {} ({}): launched, {} cases", entry.name, entry.id.substr(0, 8), entry.cases);
+  LogInfo("campaign {} ({}): launched, {} cases", entry.name, entry.id.substr(0, 8), entry.cases);
   catalogue_.Add(std::move(entry), text);
 }
 

@@ -1,7 +1,7 @@
 #include "services/coordinator/watchdog.h"
+#include "services/log/log.h"
 
 #include <linux/close_range.h>
-#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -21,7 +21,7 @@ void StartAgain(std::vector<std::string>& arguments) {
   // Sockets, whose ports the new program needs, and locks.
   close_range(3, ~0U, CLOSE_RANGE_CLOEXEC);
   execv("/proc/self/exe", words.data());
-  spdlog::error("the program cannot be started again: {}", std::strerror(errno));
+  LogError("the program cannot be started again: {}", std::strerror(errno));
 }
 
 }  // namespace
@@ -47,7 +47,7 @@ void Watchdog::Watch(const std::stop_token& stop) {
        awake_s += std::chrono::duration<double>(kPeriod).count()) {
     std::this_thread::sleep_for(kPeriod);
     if (!rule.Check(awake_s, hears_, has_work_, rounds_)) continue;
-    spdlog::warn("nobody is heard any more: the coordinator starts again");
+    LogWarning("nobody is heard any more: the coordinator starts again");
     StartAgain(arguments_);
     return;
   }

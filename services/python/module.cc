@@ -2,8 +2,6 @@
 #include "services/python/module.h"
 
 #include <pybind11/stl.h>
-#include <spdlog/sinks/stdout_color_sinks.h>
-#include <spdlog/spdlog.h>
 
 #include <exception>
 
@@ -18,6 +16,7 @@
 #include "core/statistics/intervals.h"
 #include "services/client/observer.h"
 #include "services/client/session.h"
+#include "services/log/log.h"
 #include "services/transport/exit_code.h"
 
 namespace py = pybind11;
@@ -95,9 +94,8 @@ py::list ProblemsOf(const std::vector<InputProblem>& problems) {
 
 PYBIND11_MODULE(_core, module) {
   using namespace dispersa;
-  spdlog::set_default_logger(spdlog::stderr_color_mt("dispersa"));
-  spdlog::set_pattern("dispersa: %^%l%$: %v");
-  spdlog::set_level(spdlog::level::warn);
+  LogForPeople(LogColor::kAuto, "dispersa: ");
+  SetLogLevel(LogLevel::kWarning);
   ChosenEngine();  // what DISPERSA_LANES and DISPERSA_ISA ask for in vain is said at the import
 
   py::register_exception_translator(Translate);

@@ -1,9 +1,9 @@
 #include "services/transport/admission.h"
 
 #include <arpa/inet.h>
-#include <spdlog/spdlog.h>
 
 #include "core/campaign/contained.h"
+#include "services/log/log.h"
 
 namespace dispersa {
 namespace {
@@ -36,7 +36,7 @@ NetworkOptions Admit(NetworkOptions network, const Admission& admission, std::in
         "keys issue` made, --address 127.0.0.1 for this machine alone, or --insecure on a network that you "
         "trust");
   }
-  spdlog::warn("without keys: whoever reaches this network can read, join and forge (--insecure)");
+  LogWarning("without keys: whoever reaches this network can read, join and forge (--insecure)");
   return network;
 }
 

@@ -1,11 +1,10 @@
 #include "services/transport/complaints.h"
 
-#include <spdlog/spdlog.h>
-
 #include <atomic>
 #include <chrono>
 #include <map>
 
+#include "services/log/log.h"
 #include "services/transport/mutex.h"
 #include "services/transport/validity.h"
 
@@ -40,8 +39,8 @@ void Complain(const std::string& kind, const std::string& sender, const std::str
     known.quiet_until = now + kPause;
     std::swap(unsaid, known.unsaid);
   }
-  spdlog::warn("{} from {} is refused: {}{}", kind, Printable(sender), Printable(what),
-               unsaid == 0 ? "" : " (and " + std::to_string(unsaid) + " more before)");
+  LogWarning("{} from {} is refused: {}{}", kind, Printable(sender), Printable(what),
+             unsaid == 0 ? "" : " (and " + std::to_string(unsaid) + " more before)");
 }
 
 std::uint64_t Complaints() { return total; }

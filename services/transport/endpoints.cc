@@ -1,6 +1,5 @@
 #include "services/transport/endpoints.h"
-
-#include <spdlog/spdlog.h>
+#include "services/log/log.h"
 
 #include <array>
 #include <cstdio>
@@ -53,8 +52,8 @@ dds::DataReaderQos MakeReaderQos(const std::string& address, std::uint16_t port)
 }
 
 void LogIncompatibleQos(const std::string& topic, dds::QosPolicyId_t policy) {
-  spdlog::error("{}: a peer's quality of service does not match (policy {}): another version of dispersa?",
-                topic, static_cast<int>(policy));
+  LogError("{}: a peer's quality of service does not match (policy {}): another version of dispersa?", topic,
+           static_cast<int>(policy));
 }
 
 std::string ParticipantOf(const rtps::InstanceHandle_t& endpoint) {

@@ -1,8 +1,5 @@
 #include "services/worker/program.h"
 
-#include <spdlog/sinks/stdout_sinks.h>
-#include <spdlog/spdlog.h>
-
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdlib>
@@ -11,6 +8,7 @@
 #include <thread>
 
 #include "core/flight/lane_engine.h"
+#include "services/log/log.h"
 #include "services/program/command_line.h"
 #include "services/program/completion_words.h"
 #include "services/transport/admission.h"
@@ -20,7 +18,7 @@
 namespace dispersa {
 
 int RunWorker(int argc, char** argv) {
-  spdlog::set_default_logger(spdlog::stderr_logger_mt("dispersa-worker"));
+  LogForDaemon("dispersa-worker");
 
   WorkerOptions options;
   std::string peer;
@@ -53,7 +51,7 @@ int RunWorker(int argc, char** argv) {
   try {
     ChosenEngine();
   } catch (const std::invalid_argument& error) {
-    spdlog::error("{}", error.what());
+    LogError("{}", error.what());
     return kExitBadInput;
   }
 
@@ -85,10 +83,10 @@ int RunWorker(int argc, char** argv) {
     code = exit == WorkerExit::kRefused || exit == WorkerExit::kNoCoordinator ? kExitIncomplete : kExitDone;
     std::_Exit(code);  // the other threads still use what a return would destroy
   } catch (const NetworkError& error) {
-    spdlog::error("{}", error.what());
+    LogError("{}", error.what());
     code = kExitBadInput;
   } catch (const std::exception& error) {
-    spdlog::error("{}", error.what());
+    LogError("{}", error.what());
   }
   return code;
 }

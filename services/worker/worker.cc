@@ -1,6 +1,5 @@
 #include "services/worker/worker.h"
 
-#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 #include "core/campaign/contained_flights.h"
 #include "core/campaign_yaml/load.h"
 #include "core/flight/engine_version.h"
+#include "services/log/log.h"
 
 namespace dispersa {
 namespace {
@@ -85,7 +85,7 @@ void Worker::Connect() {
   try {
     link = std::make_shared<WorkerLink>(options_.network, options_.peer, options_.uuid);
   } catch (const NetworkError& error) {
-    spdlog::warn("{}; it is tried again", error.what());
+    LogWarning("{}; it is tried again", error.what());
   }
   const Lock lock(mutex_);
   link_ = std::move(link);
@@ -112,7 +112,7 @@ void Worker::Load(const CampaignText& text) {
     problem = error.what();
   }
   if (!problem.empty()) flights.reset();
-  if (!problem.empty()) spdlog::error("campaign {} is refused: {}", text.name, problem);
+  if (!problem.empty()) LogError("campaign {} is refused: {}", text.name, problem);
   {
     const Lock lock(mutex_);
     desk_.Loaded(text.flight_id, std::move(flights), problem);
@@ -208,17 +208,17 @@ std::optional<WorkerExit> Worker::Exit(double now_s) {
   const Lock lock(mutex_);
   if (desk_.IsHeard(now_s)) {
     if (told_s_ > 0.0)
-      spdlog::info("the coordinator at {}:{} answers again", options_.peer.host, options_.peer.port);
+      LogInfo("the coordinator at {}:{} answers again", options_.peer.host, options_.peer.port);
     heard_s_ = now_s;
     told_s_ = 0.0;
   } else if (now_s - std::max(heard_s_, told_s_) > kSayAgain_s) {
     told_s_ = now_s;
-    spdlog::warn("no coordinator has answered at {}:{} for {:.0f} s; it is tried again", options_.peer.host,
-                 options_.peer.port, now_s - heard_s_);
+    LogWarning("no coordinator has answered at {}:{} for {:.0f} s; it is tried again", options_.peer.host,
+               options_.peer.port, now_s - heard_s_);
   }
   if (!desk_.IsIdle()) busy_s_ = now_s;
   if (!desk_.refusal().empty()) {
-    spdlog::error("refused by the coordinator: {}", desk_.refusal());
+    LogError("refused by the coordinator: {}", desk_.refusal());
     return WorkerExit::kRefused;
   }
   if (desk_.left()) return WorkerExit::kTold;
@@ -233,8 +233,8 @@ std::optional<WorkerExit> Worker::Exit(double now_s) {
     if (desk_.IsFlying()) busy_since_drain_s_ = now_s;
   }
   if (options_.patience_s && now_s - heard_s_ > *options_.patience_s) {
-    spdlog::error("no coordinator has answered at {}:{} for {:.0f} s; given up", options_.peer.host,
-                  options_.peer.port, now_s - heard_s_);
+    LogError("no coordinator has answered at {}:{} for {:.0f} s; given up", options_.peer.host,
+             options_.peer.port, now_s - heard_s_);
     return WorkerExit::kNoCoordinator;
   }
   if (options_.idle_exit_s && now_s - busy_s_ > *options_.idle_exit_s) return WorkerExit::kIdle;

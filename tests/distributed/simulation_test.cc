@@ -3,7 +3,6 @@
 // is audited, and still every campaign comes to its end with the right results. DISPERSA_SIMULATED_WORLDS:
 // how many worlds (default 2000; tests/run --long: 1,000,000).
 #include <gtest/gtest.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -19,6 +18,7 @@
 #include "core/flight/flight_inputs.h"
 #include "core/report/fingerprint.h"
 #include "services/coordinator/dispatcher.h"
+#include "services/log/log.h"
 #include "services/worker/flight_desk.h"
 
 namespace dispersa {
@@ -358,7 +358,7 @@ std::uint64_t Worlds() {
 }
 
 TEST(Simulation, EveryWorldComesToItsEndSoonAfterItsTroubles) {
-  spdlog::set_level(spdlog::level::off);
+  SetLogLevel(LogLevel::kNothing);
   constexpr double kCalm_s = 20.0;
   // What may be under way when the troubles end: a lease of 20 s, a connection made anew after 30 s, and the
   // same again.
@@ -379,7 +379,7 @@ TEST(Simulation, EveryWorldComesToItsEndSoonAfterItsTroubles) {
   }
   RecordProperty("latest_s", std::to_string(latest_s));
   std::printf("the last world ended %.1f s after the troubles\n", latest_s - kCalm_s);
-  spdlog::set_level(spdlog::level::info);
+  SetLogLevel(LogLevel::kInfo);
 }
 
 }  // namespace

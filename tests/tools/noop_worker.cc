@@ -1,6 +1,5 @@
 // A worker that speaks as dispersa-worker does and flies nothing: made-up results, at once. What the service
 // itself costs is measured with it, and that made-up results are found out.
-#include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <chrono>
@@ -10,6 +9,7 @@
 #include "core/flight/engine_version.h"
 #include "core/flight/flight_inputs.h"
 #include "core/flight/metrics.h"
+#include "services/log/log.h"
 #include "services/transport/worker_link.h"
 #include "services/worker/flight_desk.h"
 
@@ -80,7 +80,7 @@ int main(int argc, char** argv) {
   try {
     Work(network, ParsePeer(peer, network.domain), slots);
   } catch (const NetworkError& error) {
-    spdlog::error("{}", error.what());
+    LogError("{}", error.what());
     return 2;
   }
   return 0;
