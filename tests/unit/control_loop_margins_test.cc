@@ -9,7 +9,7 @@
 #include "core/math/constants.h"
 #include "tests/unit/sample_vehicle.h"
 
-namespace dispersa {
+namespace dispersa::control_loop_margins_test {
 namespace {
 
 constexpr double kTick_s = 0.01;
@@ -319,4 +319,4 @@ TEST(SampledLoop, PredictsWhereTheAdaptiveFuzzyLawItselfIsLost) { ExpectLostWher
 TEST(SampledLoop, PredictsWhereTheCompositeAdaptiveLawItselfIsLost) { ExpectLostWherePredicted(1.0); }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::control_loop_margins_test
