@@ -3,7 +3,7 @@ tuner, campaigns in process and over DDS, memory and instructions.
 
 usage: table.py BUILD [OLD_BUILD]
        table.py --instructions BUILD
-BUILD is a build folder with the benchmarks and programs; OLD_BUILD, one of another commit, gives ratios. What is
+BUILD is a build folder with the benchmarks (target by_hand) and programs; OLD_BUILD, one of another commit, gives ratios. What is
 compared is measured in turn, so that a change of the machine's load meets both: medians of five turns, ratios with
 their least and greatest. Callgrind counts where valgrind is installed; --instructions counts and does nothing else.
 """

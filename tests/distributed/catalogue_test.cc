@@ -12,7 +12,7 @@
 #include "core/flight/metrics.h"
 #include "services/coordinator/running_tally.h"
 
-namespace dispersa {
+namespace dispersa::catalogue_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -167,4 +167,4 @@ TEST(RunningTally, CountsWhatBreaksARequirementInAnyOrder) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::catalogue_test

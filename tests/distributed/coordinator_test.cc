@@ -22,7 +22,7 @@
 #include "services/transport/private_domain.h"
 #include "services/transport/worker_link.h"
 
-namespace dispersa {
+namespace dispersa::coordinator_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -345,4 +345,4 @@ TEST(FingerprintTest, ChangesWithEveryField) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::coordinator_test

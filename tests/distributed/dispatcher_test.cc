@@ -14,7 +14,7 @@
 #include "core/flight/flight_inputs.h"
 #include "core/report/fingerprint.h"
 
-namespace dispersa {
+namespace dispersa::dispatcher_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -465,4 +465,4 @@ TEST_F(AuditTest, SettlesWhoIsWrongWhenTwoContradictEachOther) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::dispatcher_test

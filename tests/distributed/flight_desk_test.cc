@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace dispersa {
+namespace dispersa::flight_desk_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -193,4 +193,4 @@ TEST_F(FlightDeskTest, DrainedItHandsBackWhatItHasNotBegun) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::flight_desk_test

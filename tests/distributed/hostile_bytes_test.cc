@@ -12,7 +12,7 @@
 #include "services/transport/sieve.h"
 #include "services/transport/wire_shape.h"
 
-namespace dispersa {
+namespace dispersa::hostile_bytes_test {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -284,4 +284,4 @@ TEST(Printable, KeepsALogClean) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::hostile_bytes_test

@@ -22,7 +22,7 @@
 #include "services/transport/topics.h"
 #include "services/transport/worker_link.h"
 
-namespace dispersa {
+namespace dispersa::keys_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -150,4 +150,4 @@ TEST_F(Keys, AMessageInPlainIsNotBelieved) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::keys_test

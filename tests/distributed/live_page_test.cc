@@ -6,7 +6,7 @@
 
 #include <string>
 
-namespace dispersa {
+namespace dispersa::live_page_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -92,4 +92,4 @@ TEST(LivePage, NamesItsOwnStyleAndScriptByTheirHashes) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::live_page_test

@@ -15,7 +15,7 @@
 #include "services/coordinator/open_campaign.h"
 #include "services/coordinator/watchdog.h"
 
-namespace dispersa {
+namespace dispersa::rules_test {
 namespace {
 
 class Nowhere : public ResultStore {
@@ -117,4 +117,4 @@ TEST(DeafnessRule, AThreadThatMakesNoRoundHangs) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::rules_test

@@ -9,7 +9,7 @@
 #include <numeric>
 #include <random>
 
-namespace dispersa {
+namespace dispersa::running_histogram_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -76,4 +76,4 @@ TEST(RunningHistogram, TheSameValuesGiveTheSameBinsInAnyOrder) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::running_histogram_test

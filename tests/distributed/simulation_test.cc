@@ -21,7 +21,7 @@
 #include "services/log/log.h"
 #include "services/worker/flight_desk.h"
 
-namespace dispersa {
+namespace dispersa::simulation_test {
 namespace {
 
 constexpr double kStep_s = 0.1;
@@ -383,4 +383,4 @@ TEST(Simulation, EveryWorldComesToItsEndSoonAfterItsTroubles) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::simulation_test

@@ -18,7 +18,7 @@
 #include "services/transport/private_domain.h"
 #include "services/transport/worker_link.h"
 
-namespace dispersa {
+namespace dispersa::transport_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -294,4 +294,4 @@ TEST(SharedMemory, IsNotUsed) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::transport_test

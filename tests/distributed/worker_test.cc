@@ -16,7 +16,7 @@
 #include "services/transport/coordinator_link.h"
 #include "services/transport/private_domain.h"
 
-namespace dispersa {
+namespace dispersa::worker_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -172,4 +172,4 @@ TEST_F(WorkerTest, LeavesWhenItIsIdleForLong) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::worker_test

@@ -7,7 +7,7 @@
 #include "core/campaign/campaign_flights.h"
 #include "tests/slv4_flight.h"
 
-namespace dispersa {
+namespace dispersa::flight_determinism_test {
 namespace {
 
 const FlightModel& Model() {
@@ -140,4 +140,4 @@ TEST(CampaignDeterminism, ACaseNeedsNoOtherCaseAndNoTotal) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::flight_determinism_test

@@ -15,7 +15,7 @@
 #include "tests/liquid_stage.h"
 #include "tests/slv4_flight.h"
 
-namespace dispersa {
+namespace dispersa::flight_lanes_test {
 namespace {
 
 // The shipped definition with all that a file may give it besides.
@@ -333,4 +333,4 @@ INSTANTIATE_TEST_SUITE_P(Laws, FlightLanes,
                          [](const auto& law) { return std::string(law.param); });
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::flight_lanes_test

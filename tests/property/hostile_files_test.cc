@@ -22,7 +22,7 @@
 #include "core/report/fingerprint.h"
 #include "core/report/result_folder.h"
 
-namespace dispersa {
+namespace dispersa::hostile_files_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -258,4 +258,4 @@ TEST_F(HostileFiles, NoWrongNumberComesOutOfADamagedDatabase) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::hostile_files_test

@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-namespace dispersa {
+namespace dispersa::golden_test {
 namespace {
 
 class Golden : public testing::Test {
@@ -42,4 +42,4 @@ TEST_F(Golden, RewriteWritesAndFails) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::golden_test

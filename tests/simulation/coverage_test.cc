@@ -30,7 +30,7 @@
 #include "core/statistics/tolerance.h"
 #include "core/statistics/two_samples.h"
 
-namespace dispersa {
+namespace dispersa::coverage_test {
 namespace {
 
 constexpr int kRepetitions = 20000;
@@ -482,4 +482,4 @@ TEST(Coverage, OfComparisonsAndIndices) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::coverage_test

@@ -11,7 +11,7 @@
 #include "core/random/draws.h"
 #include "core/random/normal.h"
 
-namespace dispersa {
+namespace dispersa::campaign_case_design_test {
 namespace {
 
 Dispersion Of(const std::string& name, ScalarDistribution distribution, const std::string& input) {
@@ -286,4 +286,4 @@ TEST(CaseDesign, ReplicatesAreDesignsOfTheirOwn) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::campaign_case_design_test

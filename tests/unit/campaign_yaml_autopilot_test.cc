@@ -8,7 +8,7 @@
 #include "core/campaign_yaml/autopilot_fields.h"
 #include "core/campaign_yaml/load.h"
 
-namespace dispersa {
+namespace dispersa::campaign_yaml_autopilot_test {
 namespace {
 
 constexpr char kEverything[] = R"(schema: dispersa/autopilot/1
@@ -210,4 +210,4 @@ TEST(AutopilotKeys, AreDocumentedAllAndByTheirBlocks) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::campaign_yaml_autopilot_test

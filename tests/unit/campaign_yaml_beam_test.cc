@@ -8,7 +8,7 @@
 #include "core/structure/bending_modes.h"
 #include "tests/unit/input_files.h"
 
-namespace dispersa {
+namespace dispersa::campaign_yaml_beam_test {
 namespace {
 
 using testing::HasSubstr;
@@ -250,4 +250,4 @@ INSTANTIATE_TEST_SUITE_P(CampaignYamlBeam, BadModesTest, testing::ValuesIn(kBadM
                          [](const auto& each) { return std::string(each.param.name); });
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::campaign_yaml_beam_test

@@ -7,7 +7,7 @@
 #include "core/vehicle/mass.h"
 #include "tests/unit/bad_input.h"
 
-namespace dispersa {
+namespace dispersa::campaign_yaml_boosters_test {
 namespace {
 
 constexpr char kAfter[] = "\nreaction_control:";
@@ -81,4 +81,4 @@ INSTANTIATE_TEST_SUITE_P(BoostersFile, BadBoostersTest, testing::ValuesIn(kBadBo
                          [](const auto& each) { return std::string(each.param.name); });
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::campaign_yaml_boosters_test

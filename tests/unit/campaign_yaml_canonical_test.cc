@@ -8,7 +8,7 @@
 #include "core/math/constants.h"
 #include "tests/unit/input_files.h"
 
-namespace dispersa {
+namespace dispersa::campaign_yaml_canonical_test {
 namespace {
 
 using testing::HasSubstr;
@@ -189,4 +189,4 @@ TEST(CampaignYamlCanonical, ReferenceOfAnotherVehicleIsAWarning) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::campaign_yaml_canonical_test

@@ -5,7 +5,7 @@
 #include "core/campaign_yaml/load.h"
 #include "tests/unit/input_files.h"
 
-namespace dispersa {
+namespace dispersa::campaign_yaml_errors_test {
 namespace {
 
 using testing::HasSubstr;
@@ -547,4 +547,4 @@ TEST(GuidanceOfAVehicle, NeedsALastStageOnATimer) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::campaign_yaml_errors_test

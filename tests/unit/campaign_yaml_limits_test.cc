@@ -11,7 +11,7 @@
 #include "core/campaign_yaml/load.h"
 #include "core/campaign_yaml/parse_yaml.h"
 
-namespace dispersa {
+namespace dispersa::campaign_yaml_limits_test {
 namespace {
 
 // Each of these takes far less than a second on an idle machine; before there were limits, minutes.
@@ -96,4 +96,4 @@ TEST(YamlLimits, DamagedTextsAreRefusedOrRead) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::campaign_yaml_limits_test

@@ -4,7 +4,7 @@
 #include "core/campaign_yaml/load.h"
 #include "tests/unit/input_files.h"
 
-namespace dispersa {
+namespace dispersa::campaign_yaml_liquid_test {
 namespace {
 
 constexpr char kMotor[] =
@@ -208,4 +208,4 @@ TEST(LiquidFile, TanksOfTheLastStageAreMeasuredFromTheirTopOn) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::campaign_yaml_liquid_test

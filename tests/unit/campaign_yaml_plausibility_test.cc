@@ -8,7 +8,7 @@
 #include "core/campaign_yaml/load.h"
 #include "tests/unit/bad_input.h"
 
-namespace dispersa {
+namespace dispersa::campaign_yaml_plausibility_test {
 namespace {
 
 using testing::HasSubstr;
@@ -178,4 +178,4 @@ TEST(CampaignYamlPlausibility, HarmlessTabsStay) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::campaign_yaml_plausibility_test

@@ -10,7 +10,7 @@
 #include "core/math/constants.h"
 #include "tests/unit/input_files.h"
 
-namespace dispersa {
+namespace dispersa::campaign_yaml_reference_test {
 namespace {
 
 std::uint64_t Bits(double value) { return std::bit_cast<std::uint64_t>(value); }
@@ -190,4 +190,4 @@ TEST(CampaignYamlReference, AnglesBecomeRadiansOnce) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::campaign_yaml_reference_test

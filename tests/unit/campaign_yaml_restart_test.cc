@@ -8,7 +8,7 @@
 #include "tests/unit/bad_input.h"
 #include "tests/unit/input_files.h"
 
-namespace dispersa {
+namespace dispersa::campaign_yaml_restart_test {
 namespace {
 
 constexpr char kGallery[] = DISPERSA_CAMPAIGNS "/gallery/vega/";
@@ -127,4 +127,4 @@ TEST(CutOffFile, AtAVelocityNeedsOneAndAUnit) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::campaign_yaml_restart_test

@@ -5,7 +5,7 @@
 #include "core/math/constants.h"
 #include "tests/unit/bad_input.h"
 
-namespace dispersa {
+namespace dispersa::campaign_yaml_scenario_test {
 namespace {
 
 TEST(CampaignYamlScenario, IsReadCompletely) {
@@ -189,4 +189,4 @@ TEST(CampaignYamlScenario, BodyWithoutInertia) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::campaign_yaml_scenario_test

@@ -5,7 +5,7 @@
 
 #include "core/campaign_yaml/load.h"
 
-namespace dispersa {
+namespace dispersa::campaign_yaml_shipped_test {
 namespace {
 
 std::string Texts(const std::vector<InputProblem>& problems) {
@@ -40,4 +40,4 @@ TEST(CampaignYamlShipped, ReferencesWereFoundForTheVehicleThatFliesThem) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::campaign_yaml_shipped_test

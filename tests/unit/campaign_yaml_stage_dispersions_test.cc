@@ -10,7 +10,7 @@
 #include "core/math/constants.h"
 #include "tests/unit/input_files.h"
 
-namespace dispersa {
+namespace dispersa::campaign_yaml_stage_dispersions_test {
 namespace {
 
 using testing::ElementsAre;
@@ -206,4 +206,4 @@ TEST(StageDispersions, WhatIsWrongIsSaidInFull) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::campaign_yaml_stage_dispersions_test

@@ -4,7 +4,7 @@
 #include "core/campaign_yaml/load.h"
 #include "tests/unit/input_files.h"
 
-namespace dispersa {
+namespace dispersa::campaign_yaml_thrust_curve_test {
 namespace {
 
 constexpr char kMotor[] =
@@ -195,6 +195,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadCurve{"NoMotor", kEngMotor, "curve.eng", "; nothing\n",
                  "curve.eng:1:1: the file holds no motor, allowed: " HEADER "\n"}),
     [](const auto& bad) { return std::string(bad.param.name); });
+#undef HEADER
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::campaign_yaml_thrust_curve_test

@@ -5,7 +5,7 @@
 
 #include "core/campaign/input_error.h"
 
-namespace dispersa {
+namespace dispersa::cli_campaign_differences_test {
 namespace {
 
 using testing::ElementsAre;
@@ -30,4 +30,4 @@ TEST(Differences, NameEveryValueThatIsNotTheSame) {
 TEST(Differences, OfWhatIsNoYaml) { EXPECT_THROW(DifferencesOf("a: [", "a: 1"), InputError); }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::cli_campaign_differences_test

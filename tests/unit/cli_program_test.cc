@@ -13,7 +13,7 @@
 #include "core/flight/metrics.h"
 #include "tests/unit/input_files.h"
 
-namespace dispersa {
+namespace dispersa::cli_program_test {
 namespace {
 
 using testing::HasSubstr;
@@ -580,4 +580,4 @@ TEST(CliProgram, TuneRefusesTheSeedOfTheVerdict) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::cli_program_test

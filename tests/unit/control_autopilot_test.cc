@@ -11,7 +11,7 @@
 #include "core/vehicle/mass.h"
 #include "tests/unit/sample_vehicle.h"
 
-namespace dispersa {
+namespace dispersa::control_autopilot_test {
 namespace {
 
 const Vector2 kNoStudy = Vector2::Ones();
@@ -319,4 +319,4 @@ TEST(AutopilotProblems, AnUnprovenPnMayBeStudied) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::control_autopilot_test

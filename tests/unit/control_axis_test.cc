@@ -14,7 +14,7 @@
 #include "core/random/draws.h"
 #include "tests/unit/sample_vehicle.h"
 
-namespace dispersa {
+namespace dispersa::control_axis_test {
 namespace {
 
 constexpr double kTick_s = 0.01;
@@ -405,4 +405,4 @@ TEST(StepAxis, AugmentationLeaksBackToOne) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::control_axis_test

@@ -11,7 +11,7 @@
 #include "core/math/constants.h"
 #include "tests/unit/sample_vehicle.h"
 
-namespace dispersa {
+namespace dispersa::control_filter_test {
 namespace {
 
 constexpr double kTick_s = 0.01;
@@ -91,4 +91,4 @@ TEST(Problems, NameAFilterThatCannotBeBuilt) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::control_filter_test

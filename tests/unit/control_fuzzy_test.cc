@@ -10,7 +10,7 @@
 #include "core/control/lyapunov.h"
 #include "core/random/draws.h"
 
-namespace dispersa {
+namespace dispersa::control_fuzzy_test {
 namespace {
 
 constexpr FuzzyRules kRules = {0.08, 0.03};
@@ -120,4 +120,4 @@ TEST(IsPositiveDefinite, RefusesSemiDefiniteAndIndefinite) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::control_fuzzy_test

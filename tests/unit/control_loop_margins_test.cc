@@ -10,7 +10,7 @@
 #include "core/math/matrices.h"
 #include "tests/unit/sample_vehicle.h"
 
-namespace dispersa {
+namespace dispersa::control_loop_margins_test {
 namespace {
 
 constexpr double kTick_s = 0.01;
@@ -307,4 +307,4 @@ TEST(SampledLoop, PredictsWhereTheAdaptiveFuzzyLawItselfIsLost) { ExpectLostWher
 TEST(SampledLoop, PredictsWhereTheCompositeAdaptiveLawItselfIsLost) { ExpectLostWherePredicted(1.0); }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::control_loop_margins_test

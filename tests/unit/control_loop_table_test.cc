@@ -7,7 +7,7 @@
 
 #include "core/math/constants.h"
 
-namespace dispersa {
+namespace dispersa::control_loop_table_test {
 namespace {
 
 constexpr double kTick_s = 0.01;
@@ -80,4 +80,4 @@ TEST(LoopTable, TellsAnUnstableLoop) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::control_loop_table_test

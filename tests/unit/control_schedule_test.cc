@@ -9,7 +9,7 @@
 #include "core/math/constants.h"
 #include "tests/unit/sample_vehicle.h"
 
-namespace dispersa {
+namespace dispersa::control_schedule_test {
 namespace {
 
 constexpr double kTick_s = 0.01;
@@ -199,4 +199,4 @@ TEST(Problems, NameAScheduleThatCannotBeFollowed) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::control_schedule_test

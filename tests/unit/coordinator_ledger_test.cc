@@ -10,7 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace dispersa {
+namespace dispersa::coordinator_ledger_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -461,4 +461,4 @@ TEST(Ledger, GoesOnWhenItIsExtended) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::coordinator_ledger_test

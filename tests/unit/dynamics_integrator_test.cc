@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace dispersa {
+namespace dispersa::dynamics_integrator_test {
 namespace {
 
 // An actuator: second order, 30 rad/s, damping 0.7, at rest with a command of 0.01 from time 0.
@@ -122,4 +122,4 @@ TEST(ParseScheme, KnowsItsNamesAndNoOther) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::dynamics_integrator_test

@@ -8,7 +8,7 @@
 
 #include "core/environment/density_factor.h"
 
-namespace dispersa {
+namespace dispersa::environment_atmosphere_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -127,4 +127,4 @@ TEST(DensityFactor, Problems) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::environment_atmosphere_test

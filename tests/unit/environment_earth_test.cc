@@ -7,7 +7,7 @@
 
 #include "core/math/constants.h"
 
-namespace dispersa {
+namespace dispersa::environment_earth_test {
 namespace {
 
 constexpr double kPolarRadius = 6356752.314245;  // WGS-84, TR8350.2, to the micrometre
@@ -183,4 +183,4 @@ TEST(EarthRotation, TurnsEastward) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::environment_earth_test

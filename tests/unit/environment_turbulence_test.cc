@@ -15,7 +15,7 @@
 #include "core/math/constants.h"
 #include "core/random/draws.h"
 
-namespace dispersa {
+namespace dispersa::environment_turbulence_test {
 namespace {
 
 constexpr double kFoot_m = 0.3048;
@@ -199,4 +199,4 @@ TEST(Turbulence, TheFieldIsWhatTheFlightsEquationsSee) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::environment_turbulence_test

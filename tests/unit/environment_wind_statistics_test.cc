@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace dispersa {
+namespace dispersa::environment_wind_statistics_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -102,4 +102,4 @@ TEST(WindStatistics, Problems) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::environment_wind_statistics_test

@@ -8,7 +8,7 @@
 
 #include "core/math/constants.h"
 
-namespace dispersa {
+namespace dispersa::environment_wind_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -128,4 +128,4 @@ TEST(Wind, ProblemsSayWhichPart) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::environment_wind_test

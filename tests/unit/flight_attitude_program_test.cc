@@ -7,7 +7,7 @@
 
 #include "core/math/constants.h"
 
-namespace dispersa {
+namespace dispersa::flight_attitude_program_test {
 namespace {
 
 // Three cubics of time.
@@ -81,4 +81,4 @@ TEST(AttitudeProgram, PitchAloneTurnsAboutBodyY) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::flight_attitude_program_test

@@ -13,7 +13,7 @@
 #include "core/trajectory/optimize.h"
 #include "tests/unit/sample_vehicle.h"
 
-namespace dispersa {
+namespace dispersa::flight_coasts_test {
 namespace {
 
 // The sample with a small third stage: burns of 40, 20 and 10 s.
@@ -125,4 +125,4 @@ TEST(Coasts, ThePointMassCoastsBeforeTheSameStages) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::flight_coasts_test

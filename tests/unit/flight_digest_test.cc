@@ -8,7 +8,7 @@
 #include "core/flight/flight_inputs.h"
 #include "core/math/constants.h"
 
-namespace dispersa {
+namespace dispersa::flight_digest_test {
 namespace {
 
 Digest Of(const std::vector<double>& values) {
@@ -166,4 +166,4 @@ TEST(InputValues, AreInTheUnitsOfTheirNamesWithoutMinusZero) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::flight_digest_test

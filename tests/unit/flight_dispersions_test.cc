@@ -12,7 +12,7 @@
 #include "core/math/constants.h"
 #include "tests/unit/sample_vehicle.h"
 
-namespace dispersa {
+namespace dispersa::flight_dispersions_test {
 namespace {
 
 using Layout = std::array<double, kLauncherSize>;
@@ -342,4 +342,4 @@ TEST(Dispersions, GyroNoiseHasItsStandardDeviation) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::flight_dispersions_test

@@ -12,7 +12,7 @@
 #include "core/math/constants.h"
 #include "tests/unit/sample_vehicle.h"
 
-namespace dispersa {
+namespace dispersa::flight_engine_test {
 namespace {
 
 struct Watched {
@@ -205,4 +205,4 @@ TEST(FlyAll, KeepsTheOrderOfItsOrders) {
 TEST(FlyAll, OfNothingIsNothing) { EXPECT_TRUE(FlyAll(FlightModel(HighDefinition()), {}).empty()); }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::flight_engine_test

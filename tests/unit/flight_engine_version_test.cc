@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-namespace dispersa {
+namespace dispersa::flight_engine_version_test {
 namespace {
 
 // What the digits depend on is tested in tests/static/engine_version_test.py.
@@ -11,4 +11,4 @@ TEST(EngineVersion, IsProjectVersionAndDigest) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::flight_engine_version_test

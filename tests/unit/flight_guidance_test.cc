@@ -8,7 +8,7 @@
 #include "core/guidance/corrector.h"
 #include "tests/slv4_flight.h"
 
-namespace dispersa {
+namespace dispersa::flight_guidance_test {
 namespace {
 
 constexpr double kDeg = kRadPerDeg;
@@ -223,4 +223,4 @@ TEST(GuidedFlight, ThePredictorIsTheEnginesPointMass) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::flight_guidance_test

@@ -9,7 +9,7 @@
 #include "core/math/constants.h"
 #include "core/random/draws.h"
 
-namespace dispersa {
+namespace dispersa::flight_limit_cycle_test {
 namespace {
 
 constexpr double kTick_s = 0.01;
@@ -197,4 +197,4 @@ TEST(LimitCycle, ALoopThatHardlyDampsCannotBeToldFromOne) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::flight_limit_cycle_test

@@ -11,7 +11,7 @@
 #include "core/math/constants.h"
 #include "tests/unit/sample_vehicle.h"
 
-namespace dispersa {
+namespace dispersa::flight_margins_test {
 namespace {
 
 // The second stage takes over at once: nothing holds this vehicle's attitude in a coast through the air.
@@ -381,4 +381,4 @@ TEST(PassesGates, AsksForEveryMargin) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::flight_margins_test

@@ -17,7 +17,7 @@
 #include "core/vehicle/mass.h"
 #include "tests/unit/sample_vehicle.h"
 
-namespace dispersa {
+namespace dispersa::flight_mass_dispersions_test {
 namespace {
 
 constexpr double kExhaust_m_s = 200e3 / 100.0;  // of the sample's first stage: thrust over flow
@@ -249,4 +249,4 @@ TEST(StackFactors, ActOnTheirStackAlone) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::flight_mass_dispersions_test

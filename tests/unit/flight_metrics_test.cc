@@ -18,7 +18,7 @@
 #include "core/math/functions.h"
 #include "tests/unit/sample_vehicle.h"
 
-namespace dispersa {
+namespace dispersa::flight_metrics_test {
 namespace {
 
 constexpr double kTick_s = 0.01;
@@ -570,4 +570,4 @@ TEST(OutcomeNames, ReadBackAsTheyAreWritten) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::flight_metrics_test

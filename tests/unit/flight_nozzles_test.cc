@@ -15,7 +15,7 @@
 #include "core/math/constants.h"
 #include "tests/unit/sample_vehicle.h"
 
-namespace dispersa {
+namespace dispersa::flight_nozzles_test {
 namespace {
 
 constexpr double kDeg = kRadPerDeg;
@@ -348,4 +348,4 @@ TEST(ListedNozzles, MarginsAreOfTheLayout) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::flight_nozzles_test

@@ -8,7 +8,7 @@
 #include "core/math/constants.h"
 #include "tests/unit/sample_vehicle.h"
 
-namespace dispersa {
+namespace dispersa::flight_outcome_test {
 namespace {
 
 FlightResult FlyWith(const FlightInputs& inputs, const FlightDefinition& definition = HighDefinition(),
@@ -157,4 +157,4 @@ TEST(LiftOffState, RestsOnTheRotatingEarthWithTheProgramsAttitude) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::flight_outcome_test

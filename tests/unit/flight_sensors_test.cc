@@ -8,7 +8,7 @@
 #include "core/math/rotation.h"
 #include "tests/slv4_flight.h"
 
-namespace dispersa {
+namespace dispersa::flight_sensors_test {
 namespace {
 
 TEST(RampInvariant, FollowsARampAsTheContinuousGyroDoes) {
@@ -79,4 +79,4 @@ TEST(InertialUnit, ErrorsTurnWithTheVehicle) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::flight_sensors_test

@@ -13,7 +13,7 @@
 #include "core/math/rotation.h"
 #include "tests/unit/sample_vehicle.h"
 
-namespace dispersa {
+namespace dispersa::flight_sequence_dispersions_test {
 namespace {
 
 std::vector<TickSample> TicksOf(const FlightDefinition& definition, const FlightInputs& inputs) {
@@ -172,4 +172,4 @@ TEST(Components, AreWhatMagnitudeAndClockStandFor) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::flight_sequence_dispersions_test

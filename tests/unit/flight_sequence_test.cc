@@ -5,7 +5,7 @@
 
 #include "tests/unit/sample_vehicle.h"
 
-namespace dispersa {
+namespace dispersa::flight_sequence_test {
 namespace {
 
 constexpr double kTick_s = 0.01;
@@ -86,4 +86,4 @@ TEST(BuildTimeline, FlowFactorMovesEverythingBelowTheTimer) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::flight_sequence_test

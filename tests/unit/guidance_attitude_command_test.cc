@@ -6,7 +6,7 @@
 #include "core/guidance/attitude_command.h"
 #include "core/math/constants.h"
 
-namespace dispersa {
+namespace dispersa::guidance_attitude_command_test {
 namespace {
 
 constexpr double kDeg = kRadPerDeg;
@@ -56,4 +56,4 @@ TEST(AttitudeCommand, ItsAngularVelocityIsThatOfItsAttitude) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::guidance_attitude_command_test

@@ -8,7 +8,7 @@
 #include "core/random/draws.h"
 #include "tests/guidance_mission.h"
 
-namespace dispersa {
+namespace dispersa::guidance_corrector_test {
 namespace {
 
 CorrectorTask CoastTask(const PlanPrior& prior, int iterations) {
@@ -152,4 +152,4 @@ TEST(MotorEstimate, DoesNotBelieveNonsense) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::guidance_corrector_test

@@ -8,7 +8,7 @@
 #include "core/math/functions.h"
 #include "tests/guidance_mission.h"
 
-namespace dispersa {
+namespace dispersa::guidance_predictor_test {
 namespace {
 
 constexpr double kDeg = kRadPerDeg;
@@ -114,4 +114,4 @@ TEST(Predictor, ThrustThatPointsElsewhereByASmallRotationIsTurnedByIt) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::guidance_predictor_test

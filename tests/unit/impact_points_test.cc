@@ -10,7 +10,7 @@
 #include "core/flight/tick_sample.h"
 #include "core/vehicle/mass.h"
 
-namespace dispersa {
+namespace dispersa::impact_points_test {
 namespace {
 
 double Distance(const Geodetic& a, const Geodetic& b) {
@@ -110,4 +110,4 @@ TEST(ImpactPoints, AreTheSameForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::impact_points_test

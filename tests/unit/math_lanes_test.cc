@@ -12,7 +12,7 @@
 #include "core/math/rotation.h"
 #include "core/random/draws.h"
 
-namespace dispersa {
+namespace dispersa::math_lanes_test {
 namespace {
 
 using lanes::Lane;
@@ -176,4 +176,4 @@ TEST(LaneVector, TurnsAndMatricesAgreeWithThoseOfOneFlight) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::math_lanes_test

@@ -7,7 +7,7 @@
 #include "core/optimization/genetic_algorithm.h"
 #include "core/optimization/levenberg_marquardt.h"
 
-namespace dispersa {
+namespace dispersa::optimization_benchmarks_test {
 namespace {
 
 constexpr int kSeeds = 20;
@@ -115,4 +115,4 @@ TEST(Benchmark, WeldedBeamAgreesWithItsBindingConstraints) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::optimization_benchmarks_test

@@ -6,7 +6,7 @@
 
 #include "core/optimization/feasibility_rules.h"
 
-namespace dispersa {
+namespace dispersa::optimization_feasibility_rules_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -83,4 +83,4 @@ TEST(FeasibilityRules, OrderIsAStrictWeakOne) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::optimization_feasibility_rules_test

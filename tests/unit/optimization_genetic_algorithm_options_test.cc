@@ -9,7 +9,7 @@
 
 #include "core/optimization/genetic_algorithm.h"
 
-namespace dispersa {
+namespace dispersa::optimization_genetic_algorithm_options_test {
 namespace {
 
 std::string ErrorOf(const std::function<void()>& action) {
@@ -93,4 +93,4 @@ TEST(BoundedProblem, EachPartIsNamed) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::optimization_genetic_algorithm_options_test

@@ -11,7 +11,7 @@
 
 #include "core/optimization/genetic_algorithm.h"
 
-namespace dispersa {
+namespace dispersa::optimization_genetic_algorithm_test {
 namespace {
 
 double Squared(double x) { return x * x; }
@@ -228,4 +228,4 @@ TEST(GeneticAlgorithm, PassesOnTheFirstExceptionForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::optimization_genetic_algorithm_test

@@ -12,7 +12,7 @@
 
 #include "core/optimization/levenberg_marquardt.h"
 
-namespace dispersa {
+namespace dispersa::optimization_levenberg_marquardt_test {
 namespace {
 
 using Vector = std::vector<double>;
@@ -325,4 +325,4 @@ TEST(LevenbergMarquardt, InvalidProblemsAreNamed) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::optimization_levenberg_marquardt_test

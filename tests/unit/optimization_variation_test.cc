@@ -6,7 +6,7 @@
 
 #include "core/optimization/variation.h"
 
-namespace dispersa {
+namespace dispersa::optimization_variation_test {
 namespace {
 
 constexpr int kDraws = 20000;
@@ -116,4 +116,4 @@ TEST(Mutated, ChangeHasItsDistribution) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::optimization_variation_test

@@ -6,7 +6,7 @@
 
 #include <string>
 
-namespace dispersa {
+namespace dispersa::paper_heat_map_test {
 namespace {
 
 using testing::HasSubstr;
@@ -68,4 +68,4 @@ TEST(PaperHeatMap, EqualOrMissingValuesDraw) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::paper_heat_map_test

@@ -8,7 +8,7 @@
 #include "core/campaign/campaign_flights.h"
 #include "core/campaign_yaml/load.h"
 
-namespace dispersa {
+namespace dispersa::paper_study_flights_test {
 namespace {
 
 const Campaign& Smoke() {
@@ -57,4 +57,4 @@ TEST(PaperStudyFlights, AreTheCampaignsCasesForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::paper_study_flights_test

@@ -9,7 +9,7 @@
 #include <Random123/philox.h>
 #include <gmock/gmock.h>
 
-namespace dispersa {
+namespace dispersa::random_draws_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -142,4 +142,4 @@ TEST(Stream, NeighboursAreUncorrelated) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::random_draws_test

@@ -9,7 +9,7 @@
 
 #include "core/random/draws.h"
 
-namespace dispersa {
+namespace dispersa::random_latin_hypercube_test {
 namespace {
 
 TEST(LatinHypercube, HasOneCaseInEachStratum) {
@@ -89,4 +89,4 @@ TEST(LatinHypercube, AveragesSumsBetterThanIndependentDraws) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::random_latin_hypercube_test

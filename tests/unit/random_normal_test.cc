@@ -7,7 +7,7 @@
 #include <boost/math/distributions/normal.hpp>
 #include <gtest/gtest.h>
 
-namespace dispersa {
+namespace dispersa::random_normal_test {
 namespace {
 
 // Quantiles to 17 digits by Newton's method on the complementary error function with 60 digits, at the double
@@ -68,4 +68,4 @@ TEST(InverseNormal, EndsAndOutside) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::random_normal_test

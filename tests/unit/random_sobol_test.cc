@@ -11,7 +11,7 @@
 #include "core/random/draws.h"
 #include "tests/unit/read_csv.h"
 
-namespace dispersa {
+namespace dispersa::random_sobol_test {
 namespace {
 
 std::vector<std::string> Names(std::size_t dimensions) {
@@ -122,4 +122,4 @@ TEST(Sobol, IntegratesBetterThanIndependentDraws) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::random_sobol_test

@@ -9,7 +9,7 @@
 #include "core/report/band_counter.h"
 #include "tests/unit/report_test_support.h"
 
-namespace dispersa {
+namespace dispersa::report_bands_test {
 namespace {
 
 using report_test::kNaN;
@@ -141,4 +141,4 @@ TEST(BandCounter, WidensByExtremesWithoutCountingThem) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::report_bands_test

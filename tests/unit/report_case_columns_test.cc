@@ -7,7 +7,7 @@
 
 #include "tests/unit/report_test_support.h"
 
-namespace dispersa {
+namespace dispersa::report_case_columns_test {
 namespace {
 
 using namespace report_test;
@@ -87,4 +87,4 @@ TEST(ReportCaseColumns, OfManyLostFlightsTheFirstAreListed) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::report_case_columns_test

@@ -8,7 +8,7 @@
 
 #include "tests/unit/report_test_support.h"
 
-namespace dispersa {
+namespace dispersa::report_case_data_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -61,4 +61,4 @@ TEST(CaseData, HoldsTheExtremesOfMany) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::report_case_data_test

@@ -8,7 +8,7 @@
 #include "core/report/text.h"
 #include "tests/unit/report_test_support.h"
 
-namespace dispersa {
+namespace dispersa::report_cases_csv_test {
 namespace {
 
 using report_test::kNaN;
@@ -92,4 +92,4 @@ TEST(CasesCsv, ShowsNegativeZeroAsZeroAndUndefinedAsEmpty) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::report_cases_csv_test

@@ -10,7 +10,7 @@
 #include "core/report/case_columns.h"
 #include "tests/unit/report_test_support.h"
 
-namespace dispersa {
+namespace dispersa::report_comparison_test {
 namespace {
 
 using report_test::kNaN;
@@ -188,4 +188,4 @@ TEST(ReportComparison, ReplayCommandsSurviveAShell) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::report_comparison_test

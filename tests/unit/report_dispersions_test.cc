@@ -9,7 +9,7 @@
 
 #include "tests/unit/report_test_support.h"
 
-namespace dispersa {
+namespace dispersa::report_dispersions_test {
 namespace {
 
 using report_test::MakeCampaign;
@@ -123,4 +123,4 @@ TEST(Dispersions, TwoThatFeedOneInputPromiseNothingAboutIt) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::report_dispersions_test

@@ -9,7 +9,7 @@
 #include "core/random/draws.h"
 #include "tests/unit/report_test_support.h"
 
-namespace dispersa {
+namespace dispersa::report_drivers_test {
 namespace {
 
 constexpr char kPeak[] = "pitch_error_peak_deg";
@@ -133,4 +133,4 @@ TEST_F(Planted, InputsThatRankTheFlightsAlikeAreNamedTogether) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::report_drivers_test

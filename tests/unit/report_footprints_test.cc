@@ -10,7 +10,7 @@
 #include "core/random/draws.h"
 #include "tests/unit/report_test_support.h"
 
-namespace dispersa {
+namespace dispersa::report_footprints_test {
 namespace {
 
 /// Impacts about a place: 20 km of spread to the east, 5 km to the north, not correlated.
@@ -87,4 +87,4 @@ TEST(Footprints, OfOnePointHaveNoEllipse) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::report_footprints_test

@@ -8,7 +8,7 @@
 #include "core/random/draws.h"
 #include "tests/unit/report_test_support.h"
 
-namespace dispersa {
+namespace dispersa::report_injection_test {
 namespace {
 
 CaseColumns Injections(int count) {
@@ -55,4 +55,4 @@ TEST(InjectionSummary, OfTooFewFlights) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::report_injection_test

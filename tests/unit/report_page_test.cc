@@ -10,7 +10,7 @@
 #include "core/report/text.h"
 #include "tests/unit/report_test_support.h"
 
-namespace dispersa {
+namespace dispersa::report_page_test {
 namespace {
 
 using report_test::kNaN;
@@ -256,4 +256,4 @@ TEST_F(ReportPageTest, AFlightBeyondALimitIsInTheHeadAndAmongTheOutcomes) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::report_page_test

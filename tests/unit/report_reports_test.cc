@@ -12,7 +12,7 @@
 #include "core/report/database.h"
 #include "tests/unit/report_test_support.h"
 
-namespace dispersa {
+namespace dispersa::report_reports_test {
 namespace {
 
 using report_test::ReadText;
@@ -156,4 +156,4 @@ TEST(Reports, TellTheirProgressAndStopWhenAsked) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::report_reports_test

@@ -19,7 +19,7 @@
 #include "core/report/output_file.h"
 #include "tests/unit/report_test_support.h"
 
-namespace dispersa {
+namespace dispersa::report_result_folder_test {
 namespace {
 
 using report_test::kNaN;
@@ -411,4 +411,4 @@ TEST(OutputFile, SaysWhyAFileCannotBeWritten) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::report_result_folder_test

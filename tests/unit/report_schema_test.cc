@@ -7,7 +7,7 @@
 #include "core/report/campaign_summary.h"
 #include "tests/unit/report_test_support.h"
 
-namespace dispersa {
+namespace dispersa::report_schema_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -114,4 +114,4 @@ TEST(SummarySchema, SeesWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::report_schema_test

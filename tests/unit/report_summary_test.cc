@@ -10,7 +10,7 @@
 #include "core/report/stopping_rule.h"
 #include "tests/unit/report_test_support.h"
 
-namespace dispersa {
+namespace dispersa::report_summary_test {
 namespace {
 
 using report_test::kNaN;
@@ -612,4 +612,4 @@ TEST(StructuralLimits, DoNotKeepACampaignFromStopping) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::report_summary_test

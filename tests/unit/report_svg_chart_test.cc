@@ -7,7 +7,7 @@
 #include "core/report/chart_scale.h"
 #include "tests/unit/report_test_support.h"
 
-namespace dispersa {
+namespace dispersa::report_svg_chart_test {
 namespace {
 
 using report_test::kNaN;
@@ -116,4 +116,4 @@ TEST(SvgChart, DrawsWithoutData) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::report_svg_chart_test

@@ -5,7 +5,7 @@
 #include "core/report/metric_catalogue.h"
 #include "tests/unit/report_test_support.h"
 
-namespace dispersa {
+namespace dispersa::report_text_test {
 namespace {
 
 TEST(ReadableText, HasFiveDigitsAndNoNoise) {
@@ -81,4 +81,4 @@ TEST(FixedText, NeverShowsANegativeZero) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::report_text_test

@@ -5,7 +5,7 @@
 
 #include "core/math/constants.h"
 
-namespace dispersa {
+namespace dispersa::report_trajectory_page_test {
 namespace {
 
 using testing::HasSubstr;
@@ -71,4 +71,4 @@ TEST(TrajectoryPage, ShowsAnAzimuthWithinBoundsThatPassNorth) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::report_trajectory_page_test

@@ -9,7 +9,7 @@
 #include "core/flight/flight.h"
 #include "core/search/smallest_failure.h"
 
-namespace dispersa {
+namespace dispersa::search_planted_cause_test {
 namespace {
 
 constexpr char kMetric[] = "pitch_error_peak_stage2_deg";
@@ -58,4 +58,4 @@ TEST(SmallestFailure, FindsAPlantedCauseInFlight) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::search_planted_cause_test

@@ -10,7 +10,7 @@
 #include "core/campaign_yaml/load.h"
 #include "core/math/constants.h"
 
-namespace dispersa {
+namespace dispersa::search_smallest_failure_test {
 namespace {
 
 using Point = std::vector<double>;
@@ -140,4 +140,4 @@ TEST(DispersionSpace, AppliesWhatTheLawsMean) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::search_smallest_failure_test

@@ -6,7 +6,7 @@
 #include <boost/math/quadrature/tanh_sinh.hpp>
 #include <gtest/gtest.h>
 
-namespace dispersa {
+namespace dispersa::statistics_anytime_test {
 namespace {
 
 double Ratio(double p, double limit, int n, int failures) {
@@ -70,4 +70,4 @@ TEST(Anytime, TheConfidenceSequenceEndsWhereTheTestsTurn) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::statistics_anytime_test

@@ -7,7 +7,7 @@
 
 #include "core/statistics/order_statistics.h"
 
-namespace dispersa {
+namespace dispersa::statistics_group_sequential_test {
 namespace {
 
 using testing::ElementsAre;
@@ -129,4 +129,4 @@ TEST(GroupSequential, LooksAreCountedInIntegers) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::statistics_group_sequential_test

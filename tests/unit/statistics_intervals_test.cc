@@ -11,7 +11,7 @@
 #include "core/statistics/order_statistics.h"
 #include "tests/unit/read_csv.h"
 
-namespace dispersa {
+namespace dispersa::statistics_intervals_test {
 namespace {
 
 // SciPy's figures are printed with 12 digits.
@@ -130,4 +130,4 @@ TEST(QuantileInterval, CoversTheQuantile) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::statistics_intervals_test

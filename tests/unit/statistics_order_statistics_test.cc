@@ -6,7 +6,7 @@
 
 #include "tests/unit/read_csv.h"
 
-namespace dispersa {
+namespace dispersa::statistics_order_statistics_test {
 namespace {
 
 // SciPy's figures are printed with 10 digits.
@@ -83,4 +83,4 @@ TEST(CasesNeeded, ReachesSixNines) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::statistics_order_statistics_test

@@ -7,7 +7,7 @@
 
 #include "core/random/draws.h"
 
-namespace dispersa {
+namespace dispersa::statistics_paired_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -102,4 +102,4 @@ TEST(ComparePaired, IntervalCoversTheMedianDifference) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::statistics_paired_test

@@ -7,7 +7,7 @@
 
 #include "core/statistics/summary.h"
 
-namespace dispersa {
+namespace dispersa::statistics_percentiles_test {
 namespace {
 
 std::vector<double> Rising(int n) {
@@ -51,4 +51,4 @@ TEST(Skewness, OfSmallSamplesByHand) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::statistics_percentiles_test

@@ -12,7 +12,7 @@
 #include "core/statistics/limits.h"
 #include "core/statistics/order_statistics.h"
 
-namespace dispersa {
+namespace dispersa::statistics_planned_verdict_test {
 namespace {
 
 using testing::ElementsAre;
@@ -201,4 +201,4 @@ TEST(Extension, LookingUntilItPassesStaysWithinTheRisk) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::statistics_planned_verdict_test

@@ -7,7 +7,7 @@
 
 #include "core/random/draws.h"
 
-namespace dispersa {
+namespace dispersa::statistics_point_scatter_test {
 namespace {
 
 /// Correlated normals of the given spread.
@@ -85,4 +85,4 @@ TEST(PointScatter, AxesAndOutline) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::statistics_point_scatter_test

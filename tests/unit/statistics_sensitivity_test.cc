@@ -9,7 +9,7 @@
 
 #include "core/random/draws.h"
 
-namespace dispersa {
+namespace dispersa::statistics_sensitivity_test {
 namespace {
 
 using std::numbers::pi;
@@ -149,4 +149,4 @@ TEST(FalseDiscoveryRates, AreThoseOfThePaper) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::statistics_sensitivity_test

@@ -11,7 +11,7 @@
 
 #include "core/random/draws.h"
 
-namespace dispersa {
+namespace dispersa::statistics_summary_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -109,4 +109,4 @@ TEST(Summarize, QuantilesAreAtTheirProbabilities) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::statistics_summary_test

@@ -4,7 +4,7 @@
 
 #include "tests/unit/read_csv.h"
 
-namespace dispersa {
+namespace dispersa::statistics_tolerance_test {
 namespace {
 
 TEST(Wilks, MatchesSciPy) {
@@ -30,4 +30,4 @@ TEST(NormalToleranceFactor, MatchesSciPy) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::statistics_tolerance_test

@@ -8,7 +8,7 @@
 
 #include "core/random/draws.h"
 
-namespace dispersa {
+namespace dispersa::statistics_two_samples_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -115,4 +115,4 @@ TEST(TwoSamples, TailLimitsCoverTheTruth) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::statistics_two_samples_test

@@ -14,7 +14,7 @@
 #include "core/vehicle/mass.h"
 #include "tests/unit/flexible_sample.h"
 
-namespace dispersa {
+namespace dispersa::structure_bending_modes_test {
 namespace {
 
 Vehicle Slv4() { return LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml"); }
@@ -246,4 +246,4 @@ TEST(ModeTracking, WeighsByMass) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::structure_bending_modes_test

@@ -9,7 +9,7 @@
 #include "core/campaign_yaml/load.h"
 #include "core/trajectory/ascent.h"
 
-namespace dispersa {
+namespace dispersa::trajectory_ascent_test {
 namespace {
 
 const AscentModel& Model() {
@@ -114,4 +114,4 @@ TEST(FlyAscents, RefusesOtherWidths) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::trajectory_ascent_test

@@ -10,7 +10,7 @@
 #include "core/campaign_yaml/load.h"
 #include "core/trajectory/optimize.h"
 
-namespace dispersa {
+namespace dispersa::trajectory_optimize_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -174,4 +174,4 @@ TEST(ShippedReference, MeetsItsTargetWithTheModelsOfToday) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::trajectory_optimize_test

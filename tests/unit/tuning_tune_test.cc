@@ -15,7 +15,7 @@
 #include "core/tuning/stage_design.h"
 #include "tests/unit/sample_vehicle.h"
 
-namespace dispersa {
+namespace dispersa::tuning_tune_test {
 namespace {
 
 // The sample vehicle with its second stage taking over at once, since nothing holds its attitude in a coast
@@ -386,4 +386,4 @@ TEST(Tune, RefusesAnAutopilotThatDoesNotSuit) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::tuning_tune_test

@@ -16,7 +16,7 @@
 #include "core/vehicle/normal_force.h"
 #include "core/vehicle/shock_expansion.h"
 
-namespace dispersa {
+namespace dispersa::vehicle_aerodynamics_test {
 namespace {
 
 using Shape = ProfileShape;
@@ -511,4 +511,4 @@ TEST_F(LauncherTables, ShockExpansionIsSmoothOverMach) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::vehicle_aerodynamics_test

@@ -17,7 +17,7 @@
 #include "tests/liquid_stage.h"
 #include "tests/unit/sample_vehicle.h"
 
-namespace dispersa {
+namespace dispersa::vehicle_liquid_test {
 namespace {
 
 // 4000 kg at 100 kg/s, of which 40 kg stay.
@@ -287,4 +287,4 @@ TEST(LiquidProblems, AreNamed) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::vehicle_liquid_test

@@ -8,7 +8,7 @@
 #include "core/math/constants.h"
 #include "tests/unit/sample_vehicle.h"
 
-namespace dispersa {
+namespace dispersa::vehicle_mass_test {
 namespace {
 
 // Sums of a handful of products: rounding only.
@@ -93,4 +93,4 @@ TEST(StackMass, DerivativesByPropellantAgreeWithDifferences) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::vehicle_mass_test

@@ -12,7 +12,7 @@
 #include "core/math/linear.h"
 #include "core/vehicle/vehicle.h"
 
-namespace dispersa {
+namespace dispersa::vehicle_nozzle_layout_test {
 namespace {
 
 constexpr double kDeg = kRadPerDeg;
@@ -232,4 +232,4 @@ TEST(NozzleLayout, WhatCannotBeIsNamedInFull) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::vehicle_nozzle_layout_test

@@ -10,7 +10,7 @@
 #include "core/vehicle/vehicle_figures.h"
 #include "tests/unit/sample_vehicle.h"
 
-namespace dispersa {
+namespace dispersa::vehicle_plausibility_test {
 namespace {
 
 /// The sample's two stages with the propellant that solid motors of their size hold, about which nothing is
@@ -264,4 +264,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& bad) { return std::string(bad.param.name); });
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::vehicle_plausibility_test

@@ -8,7 +8,7 @@
 #include "core/vehicle/vehicle.h"
 #include "tests/unit/sample_vehicle.h"
 
-namespace dispersa {
+namespace dispersa::vehicle_problems_test {
 namespace {
 
 std::vector<std::string> Texts(const Vehicle& vehicle) {
@@ -218,4 +218,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const testing::TestParamInfo<Mistake>& test) { return std::string(test.param.name); });
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::vehicle_problems_test

@@ -5,7 +5,7 @@
 
 #include "tests/unit/sample_vehicle.h"
 
-namespace dispersa {
+namespace dispersa::vehicle_propulsion_test {
 namespace {
 
 Stage RampedStage() {
@@ -150,4 +150,4 @@ TEST(MotorBurn, BurnRateDrawsTheCurveTogetherAndKeepsItsImpulse) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::vehicle_propulsion_test

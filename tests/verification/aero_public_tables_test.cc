@@ -12,7 +12,7 @@
 #include "core/math/table.h"
 #include "tests/public_launcher.h"
 
-namespace dispersa {
+namespace dispersa::aero_public_tables_test {
 namespace {
 
 std::vector<PublicAeroRow> Read(const std::string& name, const std::string& kind = "") {
@@ -111,4 +111,4 @@ TEST(PublicTwoStageRocket, DragGrowsWithLiftAsItsDoes) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::aero_public_tables_test

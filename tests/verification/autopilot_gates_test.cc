@@ -7,7 +7,7 @@
 #include "core/flight/margins.h"
 #include "tests/slv4_flight.h"
 
-namespace dispersa {
+namespace dispersa::autopilot_gates_test {
 namespace {
 
 class ShippedAutopilot : public testing::TestWithParam<const char*> {
@@ -58,4 +58,4 @@ INSTANTIATE_TEST_SUITE_P(Laws, ShippedAutopilot,
                          [](const auto& law) { return std::string(law.param); });
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::autopilot_gates_test

@@ -19,7 +19,7 @@
 #include "core/structure/beam_elements.h"
 #include "tests/slv4_flight.h"
 
-namespace dispersa {
+namespace dispersa::bending_flight_test {
 namespace {
 
 constexpr double kTick_s = 0.01;
@@ -400,4 +400,4 @@ TEST(BendingFlight, AStiffBodyIsARigidOne) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::bending_flight_test

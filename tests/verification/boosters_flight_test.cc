@@ -15,7 +15,7 @@
 #include "core/vehicle/vehicle_figures.h"
 #include "tests/slv4_flight.h"
 
-namespace dispersa {
+namespace dispersa::boosters_flight_test {
 namespace {
 
 // SLV-4 with four small boosters.
@@ -234,4 +234,4 @@ TEST(Boosters, FlyInThreeAndSixDegreesOfFreedom) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::boosters_flight_test

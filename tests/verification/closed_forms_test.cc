@@ -16,7 +16,7 @@
 #include "core/math/constants.h"
 #include "tests/fourth_order.h"
 
-namespace dispersa {
+namespace dispersa::closed_forms_test {
 namespace {
 
 using State = RigidBodyState;
@@ -340,4 +340,4 @@ TEST(Conservation, RotationalEnergyAndAngularMomentumOfATumblingBody) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::closed_forms_test

@@ -8,7 +8,7 @@
 
 #include "core/math/constants.h"
 
-namespace dispersa {
+namespace dispersa::fall_test {
 namespace {
 
 constexpr double kRadius_m = 6378137.0;
@@ -126,4 +126,4 @@ TEST(Fall, ABodyInOrbitStaysUpAndOneOnTheGroundWhereItIs) {
 TEST(Fall, KlettsCylinder) { EXPECT_DOUBLE_EQ(TumblingCylinderDragArea(2.0, 1.0), (0.7198 + 0.1630) * 2.0); }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::fall_test

@@ -11,7 +11,7 @@
 
 #include "tests/slv4_flight.h"
 
-namespace dispersa {
+namespace dispersa::flight_convergence_test {
 namespace {
 
 struct Flown {
@@ -119,4 +119,4 @@ TEST(FlightConvergence, NominalByRungeKutta) { ExpectConvergence({}, Scheme::kRu
 TEST(FlightConvergence, Table3ByRungeKutta) { ExpectConvergence(Table3Inputs(), Scheme::kRungeKutta4, 8.0); }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::flight_convergence_test

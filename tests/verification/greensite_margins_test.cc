@@ -27,7 +27,7 @@
 #include "core/flight/margins.h"
 #include "core/math/constants.h"
 
-namespace dispersa {
+namespace dispersa::greensite_margins_test {
 namespace {
 
 using Complex = std::complex<double>;
@@ -435,4 +435,4 @@ TEST_F(Greensite, DriftIsAPoleOfTheAttitudeLoop) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::greensite_margins_test

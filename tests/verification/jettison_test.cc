@@ -12,7 +12,7 @@
 #include "core/trajectory/ascent.h"
 #include "tests/slv4_flight.h"
 
-namespace dispersa {
+namespace dispersa::jettison_test {
 namespace {
 
 constexpr double kFairing_kg = 60.0;
@@ -187,4 +187,4 @@ TEST(Jettison, TheAutopilotKnowsWhenItHappens) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::jettison_test

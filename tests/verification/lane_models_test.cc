@@ -13,7 +13,7 @@
 #include "core/random/draws.h"
 #include "tests/slv4_flight.h"
 
-namespace dispersa {
+namespace dispersa::lane_models_test {
 namespace {
 
 TEST(AirTable, IsWithinItsToleranceOfTheStandardEverywhere) {
@@ -194,4 +194,4 @@ TEST(Actuators, TheMechanicalStopTakesTheRate) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::lane_models_test

@@ -12,7 +12,7 @@
 #include "tests/liquid_stage.h"
 #include "tests/slv4_flight.h"
 
-namespace dispersa {
+namespace dispersa::liquid_flight_test {
 namespace {
 
 Vehicle LiquidVehicle() {
@@ -112,4 +112,4 @@ TEST(LiquidFlight, ThrottlesItsLoads) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::liquid_flight_test

@@ -37,7 +37,7 @@
 #include "core/flight/history_columns.h"
 #include "core/math/constants.h"
 
-namespace dispersa {
+namespace dispersa::nesc_check_cases_test {
 namespace {
 
 constexpr double kFoot = 0.3048;
@@ -335,4 +335,4 @@ TEST(NescCheckCases, TableOfTheReadme) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::nesc_check_cases_test

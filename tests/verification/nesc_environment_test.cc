@@ -15,7 +15,7 @@
 #include "core/environment/earth.h"
 #include "core/math/constants.h"
 
-namespace dispersa {
+namespace dispersa::nesc_environment_test {
 namespace {
 
 constexpr double kFoot = 0.3048;
@@ -106,4 +106,4 @@ INSTANTIATE_TEST_SUITE_P(Nesc, CheckCase,
                          });
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::nesc_environment_test

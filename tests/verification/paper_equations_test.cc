@@ -25,7 +25,7 @@
 #include "core/random/draws.h"
 #include "core/trajectory/ascent.h"
 
-namespace dispersa {
+namespace dispersa::paper_equations_test {
 namespace {
 
 using std::cos;
@@ -616,4 +616,4 @@ TEST(PaperEquations, PlanarFormIsTheLimitOfTheProduction3Dof) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::paper_equations_test

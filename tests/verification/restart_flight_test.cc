@@ -15,7 +15,7 @@
 #include "tests/liquid_stage.h"
 #include "tests/slv4_flight.h"
 
-namespace dispersa {
+namespace dispersa::restart_flight_test {
 namespace {
 
 constexpr std::size_t kFirstBurn = 3, kSecondBurn = 4;
@@ -286,4 +286,4 @@ TEST(Steering, IsTheIncidenceOfTheBurn) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::restart_flight_test

@@ -10,7 +10,7 @@
 #include "core/flight/limit_cycle.h"
 #include "core/math/constants.h"
 
-namespace dispersa {
+namespace dispersa::rough_actuators_test {
 namespace {
 
 constexpr double kHalfTick_s = 0.005;
@@ -211,4 +211,4 @@ TEST(RoughActuators, ACoarseCommandCyclesAsItsDescribingFunctionSays) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::rough_actuators_test

@@ -7,7 +7,7 @@
 
 #include "tests/slv4_flight.h"
 
-namespace dispersa {
+namespace dispersa::rough_flight_test {
 namespace {
 
 FlightDefinition Rough() {
@@ -118,4 +118,4 @@ TEST(RoughFlight, TurbulenceIsTheCasesAndNothingElses) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::rough_flight_test

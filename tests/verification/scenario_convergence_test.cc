@@ -12,7 +12,7 @@
 #include "core/flight/fly_scenario.h"
 #include "core/math/constants.h"
 
-namespace dispersa {
+namespace dispersa::scenario_convergence_test {
 namespace {
 
 Scenario SmoothFlight() {
@@ -118,4 +118,4 @@ TEST(ScenarioConvergence, AgreesWithCvode) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::scenario_convergence_test

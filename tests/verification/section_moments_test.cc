@@ -13,7 +13,7 @@
 #include "core/vehicle/mass.h"
 #include "tests/slv4_flight.h"
 
-namespace dispersa {
+namespace dispersa::section_moments_test {
 namespace {
 
 // A part of the vehicle as its file has it.
@@ -147,4 +147,4 @@ TEST(SectionMoments, OfARingingBeamAreItsStiffnessTimesItsCurvature) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::section_moments_test

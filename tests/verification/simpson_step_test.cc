@@ -13,7 +13,7 @@
 #include "core/flight/simpson_step.h"
 #include "tests/slv4_flight.h"
 
-namespace dispersa {
+namespace dispersa::simpson_step_test {
 namespace {
 
 constexpr double kFloors[] = {1e-7, 3e-8, 1e-10, 1e-10};  // m, m/s, rad, rad/s
@@ -141,4 +141,4 @@ TEST(SimpsonStep, AStateThatIsNotFiniteIsNotTaken) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::simpson_step_test

@@ -11,7 +11,7 @@
 #include "core/flight/step_limits.h"
 #include "tests/slv4_flight.h"
 
-namespace dispersa {
+namespace dispersa::step_limits_test {
 namespace {
 
 FlightDefinition WithActuators(double frequency_hz, double rate_limit_deg_s = 30.0) {
@@ -162,4 +162,4 @@ TEST(StepLimits, MassesThatNoVehicleHasAreRefused) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::step_limits_test

@@ -13,7 +13,7 @@
 #include "core/structure/beam_elements.h"
 #include "core/structure/free_free_modes.h"
 
-namespace dispersa {
+namespace dispersa::structure_beams_test {
 namespace {
 
 /// The first roots of cos x cosh x = 1, beta L of the uniform beam.
@@ -366,4 +366,4 @@ TEST(FreeBeams, TheOtherPlaneHasItsOwnStiffness) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::structure_beams_test

@@ -17,7 +17,7 @@
 #include "tests/liquid_stage.h"
 #include "tests/slv4_flight.h"
 
-namespace dispersa {
+namespace dispersa::three_vs_six_dof_test {
 namespace {
 
 constexpr double kStep_s = 0.01;
@@ -292,4 +292,4 @@ TEST_F(ThreeVsSixDof, TheClosedLoopArrives) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::three_vs_six_dof_test

@@ -11,7 +11,7 @@
 #include "tests/burn_in_space.h"
 #include "tests/slv4_flight.h"
 
-namespace dispersa {
+namespace dispersa::thrust_curve_flight_test {
 namespace {
 
 // SLV-4 with motors that rise, sag, step and tail off within and between ticks of 10 ms; impulse and
@@ -149,4 +149,4 @@ TEST(ThrustCurveFlight, GainsTheIntegralOfThrustOverMassWithItsOwnFlow) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::thrust_curve_flight_test

@@ -6,7 +6,7 @@
 #include "core/environment/atmosphere.h"
 #include "tests/unit/read_csv.h"
 
-namespace dispersa {
+namespace dispersa::us76_test {
 namespace {
 
 void ExpectRelative(double actual, double expected, double tolerance, double at) {
@@ -59,4 +59,4 @@ TEST(Us76, BetweenTheNodesAbove86Km) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::us76_test

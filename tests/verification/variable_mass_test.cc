@@ -20,7 +20,7 @@
 #include "tests/slv4_flight.h"
 #include "tests/fourth_order.h"
 
-namespace dispersa {
+namespace dispersa::variable_mass_test {
 namespace {
 
 // A two-stage body in empty space whose mass, CG and inertia follow its propellant.
@@ -272,4 +272,4 @@ TEST_F(FlowThroughATurningLauncher, KeepsMomentumAndCentreOfMassOfEverything) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::variable_mass_test
