@@ -8,6 +8,7 @@
 
 #include "core/campaign/contained.h"
 #include "core/campaign/contained_flights.h"
+#include "core/campaign/input_error.h"
 #include "core/control/law_here.h"
 #include "core/flight/flight.h"
 #include "core/flight/lane_engine.h"
@@ -108,8 +109,23 @@ CaseResult ResultOf(const FlightModel& model, std::uint64_t case_index, const Fl
 
 }  // namespace
 
+namespace {
+
+// What was flown with a law in Python can be read by everybody, and flown by who has the law.
+const Campaign& WithItsLaw(const Campaign& campaign) {
+  const auto& plugin = campaign.autopilot.plugin;
+  if (plugin && plugin->in_python && FunctionsHere(*plugin) == nullptr) {
+    throw InputError(
+        "flown with a Python law, '" + plugin->name + "', which is not here: its cases cannot be flown again",
+        "Python, with law=... where it flies");
+  }
+  return campaign;
+}
+
+}  // namespace
+
 CampaignFlights::CampaignFlights(const Campaign& campaign)
-    : design_(campaign), model_(std::make_unique<FlightModel>(DefinitionOf(campaign))) {
+    : design_(WithItsLaw(campaign)), model_(std::make_unique<FlightModel>(DefinitionOf(campaign))) {
   HistoryColumns();  // made here: a child may be forked while another thread would make them
   MetricNames();
 }

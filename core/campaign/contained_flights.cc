@@ -12,6 +12,7 @@
 
 #include "core/campaign/contained.h"
 #include "core/campaign/input_error.h"
+#include "core/control/law_here.h"
 #include "core/flight/flight_model.h"
 #include "core/flight/history.h"
 #include "core/flight/lane_engine.h"
@@ -231,11 +232,21 @@ FlightOrder OrderOf(const CampaignFlights& flights, std::optional<std::uint64_t>
   return order;
 }
 
+// A law of this process is flown in it.
+void RunWatched(const CampaignFlights& flights, const std::function<void(const Say& say)>& work,
+                const Say& hear) {
+  if (FunctionsHere(flights.model().autopilot().plugin->config()) != nullptr)
+    work(hear);
+  else
+    RunContained(work, hear);
+}
+
 // None is the nominal flight.
 std::vector<std::vector<double>> FlySideBySide(const CampaignFlights& flights,
                                                const std::vector<std::optional<std::uint64_t>>& cases) {
   std::vector<std::vector<double>> rows;
-  RunContained(
+  RunWatched(
+      flights,
       [&](const Say& say) {
         std::vector<History> histories(cases.size());
         std::vector<FlightOrder> orders;

@@ -17,11 +17,16 @@ namespace dispersa {
 /// `warnings`, if given, receives what is possible but unusual (core/vehicle/plausibility.h).
 Vehicle DecodeVehicle(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems,
                       std::vector<InputProblem>* warnings = nullptr);
+/// A control law written in Python is named in a file, not contained: to fly it, it must be here
+/// (OfferedLaw).
+enum class PythonLaws { kMustBeHere, kMayBeAbsent };
+
 /// `stages`: of the vehicle that it flies, 0 if that is unknown (then nothing is checked against it).
 AutopilotConfig DecodeAutopilot(const InputNode& node, const std::string& path, int stages,
-                                std::vector<InputProblem>& problems);
+                                std::vector<InputProblem>& problems,
+                                PythonLaws laws = PythonLaws::kMustBeHere);
 /// An autopilot's `plugin`, its library inlined; what the library says of itself is asked in a child process.
-PluginConfig DecodePlugin(const InputNode& node, const std::string& path,
+PluginConfig DecodePlugin(const InputNode& node, const std::string& path, PythonLaws laws,
                           std::vector<InputProblem>& problems);
 Scenario DecodeScenario(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems);
 Reference DecodeReference(const InputNode& node, const std::string& path,

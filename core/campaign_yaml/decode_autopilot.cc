@@ -123,7 +123,7 @@ ReactionControlLogic DecodeReactionControlLogic(const InputNode& node, const std
 }  // namespace
 
 AutopilotConfig DecodeAutopilot(const InputNode& node, const std::string& path, int stages,
-                                std::vector<InputProblem>& problems) {
+                                std::vector<InputProblem>& problems, PythonLaws laws) {
   const std::size_t before = problems.size();
   AutopilotConfig autopilot;
   if (node.file == nullptr) return autopilot;  // already reported
@@ -144,7 +144,7 @@ AutopilotConfig DecodeAutopilot(const InputNode& node, const std::string& path, 
       gyro.stage = static_cast<int>(share.Integer("stage", 0, kMaxStages, 0));
     });
     if (const InputNode* plugin = map.Optional("plugin"))
-      autopilot.plugin = DecodePlugin(*plugin, map.PathOf("plugin"), problems);
+      autopilot.plugin = DecodePlugin(*plugin, map.PathOf("plugin"), laws, problems);
     autopilot.reaction_control = DecodeReactionControlLogic(map.Required("reaction_control", "a map"),
                                                        map.PathOf("reaction_control"), problems);
   }

@@ -509,7 +509,7 @@ DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vect
                reference == nullptr ? "there is neither 'reference' nor 'optimize'"
                                     : "'reference' and 'optimize' are both given",
                "one of the two");
-  } else if (optimize != nullptr && use == CampaignUse::kFly) {
+  } else if (optimize != nullptr && (use == CampaignUse::kFly || use == CampaignUse::kRead)) {
     AddProblem(problems, *optimize, "optimize", "the campaign has no trajectory to fly yet",
                "run `dispersa optimize " + (root.file ? *root.file : std::string("CAMPAIGN")) +
                    " -o REFERENCE.yaml`, then write `reference: REFERENCE.yaml` in place of `optimize:`");
@@ -538,7 +538,8 @@ DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vect
   if (const InputNode* autopilot =
           flies ? &map.Required("autopilot", "an autopilot file") : map.Optional("autopilot")) {
     campaign.autopilot =
-        DecodeAutopilot(*autopilot, PathOfPart(*autopilot, root, "autopilot"), stages, problems);
+        DecodeAutopilot(*autopilot, PathOfPart(*autopilot, root, "autopilot"), stages, problems,
+                        use == CampaignUse::kRead ? PythonLaws::kMayBeAbsent : PythonLaws::kMustBeHere);
     if (problems.empty())
       AddStructProblems(GyroProblems(campaign.vehicle, campaign.autopilot), *autopilot,
                         PathOfPart(*autopilot, root, "autopilot"), problems);

@@ -20,6 +20,7 @@ struct DecodedCampaign {
 /// What the campaign is read for decides what it must have.
 enum class CampaignUse {
   kFly,       ///< autopilot, sampling and a reference
+  kRead,      ///< likewise, but a control law in Python need not be here
   kOptimize,  ///< a vehicle, and a reference or an `optimize` block
   kCheck,     ///< the first if it has a reference, else the second
 };

@@ -3,6 +3,7 @@
 #include "core/campaign_yaml/decode.h"
 #include "core/campaign_yaml/load.h"
 #include "core/campaign_yaml/yaml_reader.h"
+#include "core/control/law_here.h"
 
 namespace dispersa {
 namespace {
@@ -28,10 +29,43 @@ std::shared_ptr<const std::string> DecodeLibrary(const InputNode& node, const st
   return nullptr;
 }
 
+bool IsSha256(const std::string& text) {
+  return text.size() == 64 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
+}
+
+// What a campaign that was flown under a law in Python says of it. No file of a user's own has it, so nobody
+// who listens for keys hears of it.
+PluginConfig DecodePythonLaw(const InputNode& node, const std::string& path, PythonLaws laws,
+                             std::vector<InputProblem>& problems) {
+  PluginConfig plugin;
+  plugin.in_python = true;
+  const std::size_t before = problems.size();
+  {
+    MapReader map(node, path, problems);
+    plugin.name = map.Text("name");
+    plugin.sha256 = map.Text("sha256");
+  }
+  if (problems.size() != before) return plugin;
+  if (!IsSha256(plugin.sha256)) {
+    AddProblem(problems, *node.Find("sha256"), path + ".sha256", "is no SHA-256", "64 hexadecimal digits");
+  } else if (std::optional<PluginConfig> here = OfferedLaw(plugin.sha256)) {
+    plugin.library = std::move(here->library);
+    plugin.parameters = std::move(here->parameters);
+  } else if (laws == PythonLaws::kMustBeHere) {
+    AddProblem(problems, node, path,
+               "flown with a Python law, '" + plugin.name +
+                   "', which is not in the file: without it the campaign cannot be flown",
+               "dispersa.run(..., workers=0, law=...) in Python, with that law");
+  }
+  return plugin;
+}
+
 }  // namespace
 
-PluginConfig DecodePlugin(const InputNode& node, const std::string& path,
+PluginConfig DecodePlugin(const InputNode& node, const std::string& path, PythonLaws laws,
                           std::vector<InputProblem>& problems) {
+  if (const InputNode* python = node.Find("python"); python != nullptr && node.members.size() == 1)
+    return DecodePythonLaw(*python, path + ".python", laws, problems);
   PluginConfig plugin;
   MapReader map(node, path, problems);
   const InputNode& library = map.Required("library", "the file name of a shared object");

@@ -71,12 +71,12 @@ void OverrideAutopilot(InputNode& root, const CampaignOverrides& overrides, Prob
   SetMember(root, "autopilot", ScalarAt(root, std::filesystem::absolute(*overrides.autopilot).string()));
 }
 
-Campaign FinishCampaign(InputNode root, FileNames names, const CampaignOverrides& overrides,
+Campaign FinishCampaign(InputNode root, FileNames names, const CampaignOverrides& overrides, CampaignUse use,
                         ProblemList problems, std::vector<InputProblem>* warnings) {
   OverrideAutopilot(root, overrides, problems);
   InlineCampaignFiles(root, names, problems);
   Override(root, overrides);
-  DecodedCampaign decoded = DecodeCampaign(root, CampaignUse::kFly, problems, warnings);
+  DecodedCampaign decoded = DecodeCampaign(root, use, problems, warnings);
   ThrowIfAny(std::move(problems));
   Campaign& campaign = decoded.campaign;
   campaign.canonical_yaml = CanonicalText(root);
@@ -92,13 +92,22 @@ Campaign LoadCampaign(const InputSource& source, const CampaignOverrides& overri
                       std::vector<InputProblem>* warnings) {
   ProblemList problems;
   InputNode root = Read(source, problems);
-  return FinishCampaign(std::move(root), FileNames::kAllowed, overrides, std::move(problems), warnings);
+  return FinishCampaign(std::move(root), FileNames::kAllowed, overrides, CampaignUse::kFly,
+                        std::move(problems), warnings);
+}
+
+Campaign ReadFlownCampaign(const InputSource& source) {
+  ProblemList problems;
+  InputNode root = Read(source, problems);
+  return FinishCampaign(std::move(root), FileNames::kAllowed, {}, CampaignUse::kRead, std::move(problems),
+                        nullptr);
 }
 
 Campaign ParseCampaign(const std::string& yaml_text, const std::string& display_name) {
   ProblemList problems;
   InputNode root = ParseYaml(yaml_text, display_name, problems);
-  return FinishCampaign(std::move(root), FileNames::kRefused, {}, std::move(problems), nullptr);
+  return FinishCampaign(std::move(root), FileNames::kRefused, {}, CampaignUse::kFly, std::move(problems),
+                        nullptr);
 }
 
 OptimizationInput LoadOptimization(const InputSource& source, std::optional<std::uint64_t> seed,

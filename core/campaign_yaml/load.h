@@ -44,6 +44,10 @@ Campaign LoadCampaign(const InputSource& source, const CampaignOverrides& overri
 /// canonical text, the same ids as LoadCampaign of the original.
 Campaign ParseCampaign(const std::string& yaml_text, const std::string& display_name);
 
+/// The campaign of a result folder's campaign.yaml, to be looked at: a control law in Python that it was
+/// flown under need not be here.
+Campaign ReadFlownCampaign(const InputSource& source);
+
 /// What `optimize` needs of a campaign: the problem in its `optimize` block, or the one that its reference
 /// carries.
 struct OptimizationInput {

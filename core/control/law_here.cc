@@ -1,5 +1,6 @@
 #include "core/control/law_here.h"
 
+#include <algorithm>
 #include <map>
 #include <mutex>
 #include <utility>
@@ -14,6 +15,8 @@ std::map<const std::string*, PluginLaw::Functions>& Laws() {
   return laws;
 }
 
+thread_local std::vector<PluginConfig> offered;
+
 }  // namespace
 
 LawHere::LawHere(const PluginLaw::Functions& functions) : library_(std::make_shared<const std::string>()) {
@@ -22,6 +25,7 @@ LawHere::LawHere(const PluginLaw::Functions& functions) : library_(std::make_sha
 }
 
 LawHere::~LawHere() {
+  std::erase_if(offered, [this](const PluginConfig& config) { return config.library == library_; });
   const std::lock_guard lock(mutex);
   Laws().erase(library_.get());
 }
@@ -31,6 +35,14 @@ PluginConfig LawHere::Config(std::vector<std::pair<std::string, double>> paramet
   config.library = library_;
   config.parameters = std::move(parameters);
   return config;
+}
+
+void LawHere::Offer(PluginConfig config) { offered.push_back(std::move(config)); }
+
+std::optional<PluginConfig> OfferedLaw(const std::string& sha256) {
+  const auto found = std::find_if(offered.rbegin(), offered.rend(),
+                                  [&](const PluginConfig& config) { return config.sha256 == sha256; });
+  return found == offered.rend() ? std::nullopt : std::optional(*found);
 }
 
 const PluginLaw::Functions* FunctionsHere(const PluginConfig& config) {

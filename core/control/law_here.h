@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,6 +22,8 @@ class LawHere {
 
   /// To be an autopilot's plug-in, with what it describes as its parameters.
   PluginConfig Config(std::vector<std::pair<std::string, double>> parameters) const;
+  /// From now on campaigns that this thread loads and that name a law in Python of this hash have this one.
+  void Offer(PluginConfig config);
 
  private:
   std::shared_ptr<const std::string> library_;  ///< empty: its address is the law's name
@@ -28,5 +31,8 @@ class LawHere {
 
 /// The functions that a configuration stands for, or null: those of a shared object.
 const PluginLaw::Functions* FunctionsHere(const PluginConfig& config);
+
+/// What this thread is offered under a hash, or nothing.
+std::optional<PluginConfig> OfferedLaw(const std::string& sha256);
 
 }  // namespace dispersa

@@ -119,7 +119,10 @@ std::vector<double> PluginLaw::OrderedParameters() const {
   return ordered;
 }
 
-void PluginFlight::Free::operator()(void* memory) const { std::free(memory); }
+void PluginFlight::Free::operator()(void* memory) const {
+  if (end != nullptr) end(memory);
+  std::free(memory);
+}
 
 PluginFlight::PluginFlight(const PluginLaw& law, double tick_s, std::size_t stages, unsigned axes,
                            std::uint64_t case_index)
@@ -129,6 +132,8 @@ PluginFlight::PluginFlight(const PluginLaw& law, double tick_s, std::size_t stag
   const std::size_t bytes = (law.description().memory_bytes / kAlignment + 1) * kAlignment;
   memory_.reset(std::aligned_alloc(kAlignment, bytes));
   std::memset(memory_.get(), 0, bytes);
+  if (law.functions().begin != nullptr) law.functions().begin(case_index, memory_.get());
+  memory_.get_deleter().end = law.functions().end;
   const std::vector<double> parameters = law.OrderedParameters();
   const dispersa_law_setup setup{tick_s, static_cast<std::uint32_t>(stages), axes, parameters.data()};
   Begin(0.0, -1);

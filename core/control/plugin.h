@@ -51,6 +51,9 @@ class PluginLaw {
     int (*create)(const dispersa_law_setup*, void*) = nullptr;
     int (*start_stage)(const dispersa_law_stage*, void*) = nullptr;
     int (*step)(const dispersa_law_input*, dispersa_law_output*, void*) = nullptr;
+    /// Of a law in this process: before it is created for a case, and after its flight. Null: not asked for.
+    void (*begin)(std::uint64_t case_index, void* memory) = nullptr;
+    void (*end)(void* memory) = nullptr;
   };
   /// Of an open one.
   const Functions& functions() const { return functions_; }
@@ -97,6 +100,8 @@ class PluginFlight {
   void End();
 
   struct Free {
+    Free() : end(nullptr) {}
+    void (*end)(void* memory);
     void operator()(void* memory) const;
   };
 

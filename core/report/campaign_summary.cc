@@ -145,6 +145,10 @@ const char* CampaignVerdictName(CampaignVerdict verdict) {
 
 std::vector<std::string> Warnings(const CampaignSummary& summary) {
   std::vector<std::string> warnings;
+  if (summary.python_law)
+    warnings.push_back(
+        fmt::format("Flown with a Python law, {}: nobody without it can fly these cases again.",
+                    summary.python_law->name));
   const bool independent = IsIndependent(summary.sampling);
   if (summary.flown < summary.cases) {
     warnings.push_back(
@@ -286,6 +290,8 @@ CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaig
   summary.reference = campaign.reference.name;
   summary.reference_orbit = campaign.reference.orbit;
   summary.autopilot = campaign.autopilot.name;
+  if (const auto& plugin = campaign.autopilot.plugin; plugin && plugin->in_python)
+    summary.python_law = {plugin->name, plugin->sha256};
   for (const Outcome outcome : cases.outcome) ++summary.outcomes[static_cast<std::size_t>(outcome)];
   summary.lost_flights = cases.lost_flights;
   for (std::size_t i = 0; i < cases.metrics.size(); ++i) {

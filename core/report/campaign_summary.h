@@ -61,6 +61,12 @@ struct CampaignSummary {
   std::string reference;
   Orbit reference_orbit;  ///< that the optimiser reached with it
   std::string autopilot;
+  /// A control law in Python: nobody without it can fly these cases again, so nobody is told how to.
+  struct PythonLaw {
+    std::string name;
+    std::string sha256;
+  };
+  std::optional<PythonLaw> python_law;
   CampaignVerdict verdict = CampaignVerdict::kIncomplete;
   std::array<std::uint64_t, kOutcomeCount> outcomes{};
   std::vector<LostFlight> lost_flights;  ///< the first kListedLostFlights
@@ -121,6 +127,8 @@ std::vector<std::string> KeyMetrics(const Campaign& campaign);
 
 /// What re-flies a case, for a shell in the result folder: no report holds the folder's path.
 std::string ReplayCommand(std::uint64_t case_index);
+/// The same up to the index.
+std::string ReplayCommand();
 
 /// The contents of summary.json: schema "dispersa/summary/1", two spaces of indent, a final newline.
 std::string SummaryJson(const CampaignSummary& summary);

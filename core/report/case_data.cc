@@ -60,7 +60,9 @@ std::string CaseData(const CampaignSummary& summary, const CaseColumns& cases) {
     const MetricInfo info = DescribeMetric(metric);
     names.push_back({{"name", metric}, {"title", info.title}, {"unit", info.unit}});
   }
-  std::string json = fmt::format("{{\"flown\":{},\"metrics\":{},\"cases\":[", cases.rows(), names.dump());
+  std::string json =
+      fmt::format("{{\"flown\":{},{}\"metrics\":{},\"cases\":[", cases.rows(),
+                  summary.python_law ? "" : "\"replay\":\"" + ReplayCommand() + "\",", names.dump());
   std::string lost, values;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     json += fmt::format("{}{}", i == 0 ? "" : ",", cases.index[rows[i]]);

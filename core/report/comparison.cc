@@ -402,7 +402,8 @@ Comparison::Side SideOf(const ComparedCampaign& compared) {
           campaign.sampling.seed,
           campaign.sampling.cases,
           compared.cases.rows(),
-          compared.cases.rows() - LostCount(compared.cases)};
+          compared.cases.rows() - LostCount(compared.cases),
+          !(campaign.autopilot.plugin && campaign.autopilot.plugin->in_python)};
 }
 
 std::string SentenceOf(const Comparison& comparison) {
@@ -464,6 +465,10 @@ Comparison Compare(const ComparedCampaign& a, const ComparedCampaign& b,
 
 std::string ReplayCommand(const std::string& folder, std::uint64_t case_index) {
   return fmt::format("dispersa replay {} --case {}", ShellWord(folder), case_index);
+}
+
+std::string ReplayCommand(const Comparison::Side& side, std::uint64_t case_index) {
+  return side.has_its_law ? ReplayCommand(side.folder, case_index) : "";
 }
 
 }  // namespace dispersa

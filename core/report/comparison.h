@@ -117,6 +117,7 @@ struct Comparison {
     std::string folder, name, id, flight_id, engine, vehicle, reference, autopilot, sampling;
     std::uint64_t seed = 0, cases = 0;
     std::size_t flown = 0, completed = 0;
+    bool has_its_law = true;  ///< false: flown with a law in Python, which no folder holds
   };
   Side a, b;
   std::vector<CampaignChange> changes;
@@ -139,6 +140,8 @@ Comparison Compare(const ComparedCampaign& a, const ComparedCampaign& b,
 
 /// "dispersa replay FOLDER --case N", for the shell and the folder in which the comparison was started.
 std::string ReplayCommand(const std::string& folder, std::uint64_t case_index);
+/// Empty where the folder does not hold the law.
+std::string ReplayCommand(const Comparison::Side& side, std::uint64_t case_index);
 
 /// The contents of compare.json: schema "dispersa/compare/1".
 std::string ComparisonJson(const Comparison& comparison);

@@ -42,14 +42,19 @@ Json PairingJson(const Pairing& pairing) {
           {"changed_inputs", changed},      {"sentence", pairing.sentence}};
 }
 
+Json ReplayJson(const Comparison::Side& side, std::uint64_t case_index) {
+  const std::string command = ReplayCommand(side, case_index);
+  return command.empty() ? Json(nullptr) : Json(command);
+}
+
 Json PairsJson(const std::vector<MetricComparison::Pair>& pairs, const Comparison& comparison) {
   Json list = Json::array();
   for (const MetricComparison::Pair& pair : pairs) {
     list.push_back({{"case_index", pair.case_index},
                     {"a", Number(pair.a)},
                     {"b", Number(pair.b)},
-                    {"replay_a", ReplayCommand(comparison.a.folder, pair.case_index)},
-                    {"replay_b", ReplayCommand(comparison.b.folder, pair.case_index)}});
+                    {"replay_a", ReplayJson(comparison.a, pair.case_index)},
+                    {"replay_b", ReplayJson(comparison.b, pair.case_index)}});
   }
   return list;
 }
@@ -133,8 +138,8 @@ Json CasesJson(const std::vector<ChangedCase>& cases, const Comparison& comparis
                     {"outcome_a", OutcomeName(one.outcome_a)},
                     {"outcome_b", OutcomeName(one.outcome_b)},
                     {"requirements", std::move(reasons)},
-                    {"replay_a", ReplayCommand(comparison.a.folder, one.case_index)},
-                    {"replay_b", ReplayCommand(comparison.b.folder, one.case_index)}});
+                    {"replay_a", ReplayJson(comparison.a, one.case_index)},
+                    {"replay_b", ReplayJson(comparison.b, one.case_index)}});
   }
   return list;
 }

@@ -165,6 +165,17 @@ std::string RequirementsSection(const Comparison& c) {
   return html;
 }
 
+/// The commands that fly a case of both again, of those that can be.
+std::string ReplayBoth(const Comparison& c, std::uint64_t case_index) {
+  std::string html;
+  for (const Comparison::Side* side : {&c.a, &c.b}) {
+    const std::string command = ReplayCommand(*side, case_index);
+    if (command.empty()) continue;
+    html += (html.empty() ? "" : "<br>") + ("<code class=\"copy\">" + HtmlText(command) + "</code>");
+  }
+  return html.empty() ? "–" : html;
+}
+
 std::string CasesTable(const std::vector<ChangedCase>& cases, const Comparison& c, const char* title,
                        const char* what) {
   std::string html = fmt::format("<h3>{}: {}</h3>\n", title, cases.size());
@@ -183,10 +194,7 @@ std::string CasesTable(const std::vector<ChangedCase>& cases, const Comparison& 
       };
       table.Row({i == 0 ? std::to_string(one.case_index) : "", HtmlText(reason.requirement),
                  value(reason.a, one.outcome_a), value(reason.b, one.outcome_b),
-                 i > 0 ? ""
-                       : "<code class=\"copy\">" + HtmlText(ReplayCommand(c.a.folder, one.case_index)) +
-                             "</code><br><code class=\"copy\">" +
-                             HtmlText(ReplayCommand(c.b.folder, one.case_index)) + "</code>"});
+                 i > 0 ? "" : ReplayBoth(c, one.case_index)});
     }
   }
   return html +
@@ -361,9 +369,7 @@ std::string ChangesSection(const Comparison& c) {
                           : HtmlText(metric->info.title +
                                      (metric->info.unit.empty() ? "" : ", " + metric->info.unit)),
                    word, std::to_string(pair.case_index), value(pair.a), value(pair.b),
-                   "<code class=\"copy\">" + HtmlText(ReplayCommand(c.a.folder, pair.case_index)) +
-                       "</code><br><code class=\"copy\">" +
-                       HtmlText(ReplayCommand(c.b.folder, pair.case_index)) + "</code>"});
+                   ReplayBoth(c, pair.case_index)});
         titled = true;
       }
     }

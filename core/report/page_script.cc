@@ -9,7 +9,8 @@ std::string_view PageScript() {
   const data = JSON.parse(document.getElementById("cases").textContent);
   const rowOf = new Map(data.cases.map((index, row) => [index, row]));
   const metricOf = new Map(data.metrics.map((metric, i) => [metric.name, i]));
-  const command = index => "dispersa replay . --case " + index;
+  // None where the folder does not hold what flies a case again.
+  const command = data.replay ? index => data.replay + index : null;
   const kReach = 14;  // pixels
   let marked = null, pinned = null;
 
@@ -101,7 +102,8 @@ std::string_view PageScript() {
       return `${title}: ${value === null ? "–" : value} ${unit}`;
     });
     const lost = data.lost.includes(index) ? " (lost)" : "";
-    tip.textContent = [`case ${index}${lost}`, ...values, note || "click copies: " + command(index)].join("\n");
+    tip.textContent = [`case ${index}${lost}`, ...values, note || (command ? "click copies: " + command(index) : "")]
+      .filter(Boolean).join("\n");
     tip.hidden = false;
     const left = Math.min(event.clientX + 14, document.documentElement.clientWidth - tip.offsetWidth - 6);
     const below = event.clientY + 16 + tip.offsetHeight < window.innerHeight;
@@ -213,6 +215,7 @@ std::string_view PageScript() {
       pinned = index;
       Mark(index);
       if (index === null) { tip.hidden = true; return; }
+      if (!command) { Tell(chart, index, event); return; }
       const done = await Copy(command(index));
       Tell(chart, index, event, done ? "copied: " + command(index) : command(index));
     });
@@ -236,8 +239,8 @@ std::string_view PageScript() {
 
   const some = data.cases.length < data.flown ? ` Of ${data.flown} cases the ${data.cases.length} most extreme answer.` : "";
   document.querySelector("nav").insertAdjacentHTML("afterend",
-    '<p class="hint soft">The pointer names the nearest case of a chart and marks it in all of them; a click copies the ' +
-    'command that flies it again. Drag to zoom, double click to return.' + some +
+    '<p class="hint soft">The pointer names the nearest case of a chart and marks it in all of them' +
+    (command ? '; a click copies the command that flies it again' : '') + '. Drag to zoom, double click to return.' + some +
     ' <label>Mark case <input id="find" type="number" min="0"></label></p>');
   document.getElementById("find").addEventListener("input", event => {
     pinned = event.target.value === "" ? null : +event.target.value;

@@ -38,7 +38,9 @@ std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary,
   if (summary.flown == 0) {
     page += "<p>No case has a result.</p>\n";
   } else if (!flown_again || histories.bands.flights == 0) {
-    page += "<p>This report was made without time histories: <code>dispersa report .</code> adds them.</p>\n";
+    page += summary.python_law ? "<p>This report was made without time histories.</p>\n"
+                               : "<p>This report was made without time histories: <code>dispersa report "
+                                 ".</code> adds them.</p>\n";
   } else {
     const FlightBands& bands = histories.bands;
     const std::string sample = bands.flights == summary.flown

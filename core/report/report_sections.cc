@@ -21,7 +21,8 @@ std::string Lower(std::string title) {
   return HtmlText(title);
 }
 
-std::string ReplayCell(std::uint64_t case_index) {
+std::string ReplayCell(const CampaignSummary& summary, std::uint64_t case_index) {
+  if (summary.python_law) return fmt::format("<span data-case=\"{}\">–</span>", case_index);
   return fmt::format("<code class=\"copy\" data-case=\"{}\">{}</code>", case_index, ReplayCommand(case_index));
 }
 
@@ -232,8 +233,7 @@ std::string OutcomesSection(const CampaignSummary& summary) {
     for (const LostFlight& flight : summary.lost_flights) {
       lost_table.Row({std::to_string(flight.case_index), OutcomeWords(flight.outcome),
                       ReadableText(flight.end_time_s), std::to_string(flight.end_stage),
-                      HtmlText(flight.reason),
-                      ReplayCell(flight.case_index)});
+                      HtmlText(flight.reason), ReplayCell(summary, flight.case_index)});
     }
     // A long list is folded away on screen and printed in full.
     const std::string which = lost > summary.lost_flights.size()
@@ -260,8 +260,12 @@ std::string OutcomesSection(const CampaignSummary& summary) {
 std::string WorstCasesSection(const CampaignSummary& summary, const FlightHistories& histories) {
   std::string html =
       "<h2 id=\"worst\">Worst cases</h2>\n<p>A lost flight first, if there is one; all are listed under "
-      "Outcomes. The commands run in the result folder and check that the "
-      "case comes out the same to the last bit; <code>--history FILE</code> adds its time history.</p>\n";
+      "Outcomes.";
+  html +=
+      summary.python_law
+          ? "</p>\n"
+          : " The commands run in the result folder and check that the case comes out the same to the last "
+            "bit; <code>--history FILE</code> adds its time history.</p>\n";
   HtmlTable table(
       {{"Metric"}, {"Case", true}, {"Value", true}, {"Outcome"}, {"To fly it again"}, {"Time history"}});
   for (const WorstCases& worst : summary.worst_cases) {
@@ -272,7 +276,7 @@ std::string WorstCasesSection(const CampaignSummary& summary, const FlightHistor
           std::binary_search(histories.written_cases.begin(), histories.written_cases.end(), one.case_index);
       table.Row({i == 0 ? HtmlText(info.title) : "", std::to_string(one.case_index),
                  one.value ? WithUnit(*one.value, info.unit) : "–", OutcomeWords(one.outcome),
-                 ReplayCell(one.case_index),
+                 ReplayCell(summary, one.case_index),
                  written ? Code(fmt::format("histories/case_{}.csv", one.case_index)) : ""});
     }
   }
@@ -425,10 +429,18 @@ std::string ProvenanceSection(const Campaign& campaign, const CampaignSummary& s
                    ReadableText(orbit.inclination_rad * kDegPerRad), HtmlText(campaign.reference.engine))});
   table.Row({"Autopilot", fmt::format("{}, tick {} s", HtmlText(summary.autopilot),
                                       ReadableText(campaign.autopilot.tick_s))});
-  if (const auto& plugin = campaign.autopilot.plugin)
+  if (summary.python_law)
+    table.Row({"Control law", fmt::format("written in Python: {}, SHA-256 {} of what it does",
+                                          Code(summary.python_law->name), Code(summary.python_law->sha256))});
+  else if (const auto& plugin = campaign.autopilot.plugin)
     table.Row({"Control law", fmt::format("shared object {} {}, SHA-256 {}", HtmlText(plugin->name),
                                           HtmlText(plugin->version), Code(plugin->sha256))});
-  return html + table.Html() +
+  html += table.Html();
+  if (summary.python_law)
+    return html +
+           "<p>This folder does not hold the law, so it does not hold all that it takes to fly the campaign "
+           "again.</p>\n";
+  return html +
          "<p>To fly the campaign again, in this folder; <code>campaign.yaml</code> holds everything that it "
          "needs, and "
          "<code>cases.csv</code> comes out the same byte for byte:</p>\n"

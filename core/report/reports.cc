@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/campaign/input_error.h"
+#include "core/control/law_here.h"
 #include "core/flight/engine_version.h"
 #include "core/report/case_columns.h"
 #include "core/report/cases_csv.h"
@@ -18,6 +19,13 @@ CampaignSummary WriteReports(const ResultFolder& folder, const Campaign& campaig
     throw InputError(fmt::format("{}: flown by engine {}, this one is {}: its flights cannot be flown again",
                                  folder.directory().string(), folder.Provenance("engine"), EngineVersion()),
                      "the engine that flew it, or --no-histories");
+  }
+  if (const auto& law = campaign.autopilot.plugin;
+      options.histories && law && law->in_python && FunctionsHere(*law) == nullptr) {
+    throw InputError(
+        fmt::format("{}: flown with a Python law, '{}', which is not here: its cases cannot be flown again",
+                    folder.directory().string(), law->name),
+        "--no-histories; with them dispersa.report(DIR, law=...) in Python");
   }
   CasesCsv csv(folder.directory() / "cases.csv", folder.stages());
   const CaseColumns cases =

@@ -155,6 +155,9 @@ std::string SummaryJson(const CampaignSummary& summary) {
                       {"replicates", summary.replicates},
                       {"vehicle", summary.vehicle},     {"reference", summary.reference},
                       {"autopilot", summary.autopilot}};
+  if (summary.python_law)
+    json["campaign"]["python_law"] = {{"name", summary.python_law->name},
+                                      {"sha256", summary.python_law->sha256}};
   json["engine"] = summary.engine;
   json["reference_orbit"] = {
       {"altitude_km", Number(summary.reference_orbit.altitude_m * 1e-3)},
@@ -244,11 +247,12 @@ std::string SummaryJson(const CampaignSummary& summary) {
   json["worst_cases"] = Json::array();
   for (const WorstCases& worst : summary.worst_cases) {
     for (const WorstCase& one : worst.cases) {
-      json["worst_cases"].push_back({{"metric", worst.metric},
-                                     {"case_index", one.case_index},
-                                     {"value", OrNull(one.value)},
-                                     {"outcome", OutcomeName(one.outcome)},
-                                     {"replay", ReplayCommand(one.case_index)}});
+      json["worst_cases"].push_back(
+          {{"metric", worst.metric},
+           {"case_index", one.case_index},
+           {"value", OrNull(one.value)},
+           {"outcome", OutcomeName(one.outcome)},
+           {"replay", summary.python_law ? Json(nullptr) : Json(ReplayCommand(one.case_index))}});
     }
   }
   json["dispersions"] = Json::array();
@@ -268,8 +272,8 @@ std::string SummaryJson(const CampaignSummary& summary) {
   return json.dump(2) + "\n";
 }
 
-std::string ReplayCommand(std::uint64_t case_index) {
-  return fmt::format("dispersa replay . --case {}", case_index);
-}
+std::string ReplayCommand() { return "dispersa replay . --case "; }
+
+std::string ReplayCommand(std::uint64_t case_index) { return ReplayCommand() + std::to_string(case_index); }
 
 }  // namespace dispersa

@@ -84,7 +84,8 @@ void AddCompareCommand(CLI::App& app, Invocation& invocation) {
   command->add_option("b", options->b, "result folder")->required()->type_name(kFolderType);
   command->add_option("--out", options->out, "folder for compare.html and compare.json")
       ->type_name(kFolderType);
-  command->add_option("--metric", options->metrics, "metric to compare, instead of all; may be repeated");
+  command->add_option("--metric", options->metrics, "metric to compare, instead of all; may be repeated")
+      ->type_name(kMetricType);
   command->footer(
       "Example: dispersa compare results/controllers-1a2b3c4d results/controllers_pd-5e6f7a8b --out "
       "comparison");

@@ -97,7 +97,7 @@ void AddFlyCommand(CLI::App& app, Invocation& invocation) {
   CLI::App* command = app.add_subcommand("fly", "fly the nominal flight, one case, or a scenario, in this process");
   command->add_option("campaign", options->campaign, "campaign or scenario file")
       ->required()
-      ->type_name(kFileType);
+      ->type_name(kYamlType);
   command->add_option("--case", options->case_index, "case index, from 0; without it the nominal flight");
   command->add_option("--history", options->history, "file for the time history, CSV; -: standard output")
       ->type_name(kFileType);
@@ -110,7 +110,7 @@ void AddFlyCommand(CLI::App& app, Invocation& invocation) {
   command->add_option("--seed", options->overrides.seed, "seed, instead of the file's");
   command
       ->add_option("--autopilot", options->overrides.autopilot, "autopilot file, instead of the campaign's")
-      ->type_name(kFileType);
+      ->type_name(kYamlType);
   command->footer(
       "Example: dispersa fly campaigns/nominal.yaml --history nominal.csv\n"
       "         dispersa fly campaigns/table3.yaml --case 17 --json\n"

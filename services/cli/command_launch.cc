@@ -40,7 +40,7 @@ ExitCode Launch(const LaunchOptions& options, Session& session, const GlobalOpti
 void AddLaunchCommand(CLI::App& app, Invocation& invocation) {
   const auto options = std::make_shared<LaunchOptions>();
   CLI::App* command = app.add_subcommand("launch", "give a campaign to a coordinator and print its id");
-  command->add_option("campaign", options->campaign, "campaign file")->required()->type_name(kFileType);
+  command->add_option("campaign", options->campaign, "campaign file")->required()->type_name(kYamlType);
   command->add_option("--cases", options->overrides.cases, "number of cases, instead of the file's")
       ->check(CaseCountProblem);
   command->add_option("--seed", options->overrides.seed, "seed, instead of the file's");

@@ -166,7 +166,7 @@ void AddModesCommand(CLI::App& app, Invocation& invocation) {
   CLI::App* command = app.add_subcommand("modes", "bending modes of a vehicle, by stack and propellant");
   command->add_option("vehicle", options->vehicle, "vehicle file with a structure_beam")
       ->required()
-      ->type_name(kFileType);
+      ->type_name(kYamlType);
   command
       ->add_option("--out", options->out,
                    "write the plots too: a folder for modes.html, or a name that ends in .html")

@@ -119,7 +119,7 @@ void AddOptimizeCommand(CLI::App& app, Invocation& invocation) {
       app.add_subcommand("optimize", "find the trajectory that reaches a campaign's target orbit");
   command->add_option("campaign", options->campaign, "campaign file, with an optimize block or a reference")
       ->required()
-      ->type_name(kFileType);
+      ->type_name(kYamlType);
   command
       ->add_option(
           "-o,--out", options->out,

@@ -78,7 +78,7 @@ ExitCode Plan(const PlanOptions& options, const GlobalOptions& global) {
 void AddPlanCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<PlanOptions>();
   CLI::App* command = app.add_subcommand("plan", "print the inputs of every case, without flying");
-  command->add_option("campaign", options->campaign, "campaign file")->required()->type_name(kFileType);
+  command->add_option("campaign", options->campaign, "campaign file")->required()->type_name(kYamlType);
   command->add_option("--cases", options->overrides.cases, "number of cases, instead of the file's")
       ->check(CaseCountProblem);
   command->add_option("--seed", options->overrides.seed, "seed, instead of the file's");

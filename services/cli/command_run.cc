@@ -68,7 +68,7 @@ void AddRunCommand(CLI::App& app, Invocation& invocation) {
   CLI::App* command =
       app.add_subcommand("run", "fly a campaign on local workers and write its result folder");
   CampaignRequest& request = options->request;
-  command->add_option("campaign", request.campaign.name, "campaign file")->required()->type_name(kFileType);
+  command->add_option("campaign", request.campaign.name, "campaign file")->required()->type_name(kYamlType);
   command
       ->add_option("--workers", options->run.workers,
                    "worker processes; default: the usable cores; 0 flies in this process without DDS")
@@ -84,7 +84,7 @@ void AddRunCommand(CLI::App& app, Invocation& invocation) {
       ->check(CaseCountProblem);
   command->add_option("--seed", request.overrides.seed, "seed, instead of the file's");
   command->add_option("--autopilot", request.overrides.autopilot, "autopilot file, instead of the campaign's")
-      ->type_name(kFileType);
+      ->type_name(kYamlType);
   AddReflownOptions(*command, options->run.reflown);
   command->add_flag("--resume", request.resume, "go on in a folder of the same flight id");
   command->footer(

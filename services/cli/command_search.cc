@@ -209,9 +209,11 @@ void AddSearchCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<SearchCommand>();
   CLI::App* command = app.add_subcommand(
       "search", "the smallest dispersion that fails a requirement: a bounded local search that flies");
-  command->add_option("campaign", options->campaign, "campaign file")->required()->type_name(kFileType);
-  command->add_option("--metric", options->metric,
-                      "metric whose requirement shall fail; default: the first one's");
+  command->add_option("campaign", options->campaign, "campaign file")->required()->type_name(kYamlType);
+  command
+      ->add_option("--metric", options->metric,
+                   "metric whose requirement shall fail; default: the first one's")
+      ->type_name(kMetricType);
   auto* below =
       command->add_option("--below", options->below, "limit in place of the campaign's: it fails above");
   command->add_option("--above", options->above, "limit in place of the campaign's: it fails below")

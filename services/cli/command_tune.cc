@@ -283,7 +283,7 @@ void AddTuneCommand(CLI::App& app, Invocation& invocation) {
   CLI::App* command = app.add_subcommand("tune", "find the gains of an autopilot, whatever its law");
   command->add_option("campaign", options->campaign, "campaign file: vehicle, reference and dispersions")
       ->required()
-      ->type_name(kFileType);
+      ->type_name(kYamlType);
   command
       ->add_option(
           "-o,--out", options->out,
@@ -293,7 +293,7 @@ void AddTuneCommand(CLI::App& app, Invocation& invocation) {
   command
       ->add_option("--autopilot", options->autopilot,
                    "autopilot file whose law and fixed parameters are taken, instead of the campaign's")
-      ->type_name(kFileType);
+      ->type_name(kYamlType);
   command
       ->add_option("--seed", options->tuning.seed,
                    "seed of the search and of its cases; never the campaign's own")

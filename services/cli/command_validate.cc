@@ -80,7 +80,7 @@ void AddValidateCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<ValidateOptions>();
   CLI::App* command =
       app.add_subcommand("validate", "check campaign, vehicle, reference and autopilot files");
-  command->add_option("files", options->files, "files of any kind")->required()->type_name(kFileType);
+  command->add_option("files", options->files, "files of any kind")->required()->type_name(kYamlType);
   command->add_flag("--strict", options->strict, "warnings are errors");
   command
       ->add_option("--picture", options->picture,

@@ -8,7 +8,7 @@ namespace dispersa {
 
 StoredCampaign OpenStored(const std::string& directory) {
   ResultFolder folder = ResultFolder::Open(directory);
-  Campaign campaign = LoadCampaign((folder.directory() / "campaign.yaml").string());
+  Campaign campaign = ReadFlownCampaign((folder.directory() / "campaign.yaml").string());
   return {std::move(folder), std::move(campaign)};
 }
 

@@ -1,7 +1,7 @@
 """Builds the docs site: the pages beside this file, the README.md files beside the code, the Python tutorial, and what
 the programs say of themselves.
 
-    build.py --programs BIN --out SITE
+    build.py --programs BIN --out SITE [--package FOLDER] [--python PROGRAM]
 
 The README files keep their folders, so that their links to one another hold; a link to anything else of the repository
 becomes plain text. Everything is read from the repository, nothing from the network, and the pages ask for nothing.
@@ -74,6 +74,18 @@ def schemas_page(programs, folder):
     return (HERE / "pages" / "schemas.md").read_text().replace("@FILES@", files)
 
 
+def python_page(package, python):
+    """Of the package in this folder; a build may have none."""
+    if package is None or not (package / "dispersa" / "__init__.py").exists():
+        return ("# Reference of the Python package\n\nThe build of which these pages are had no Python package: it needs "
+                "pybind11-dev and python3-dev. `help(dispersa)` shows the same.\n")
+    done = subprocess.run([python, "-B", HERE / "python_reference.py"], capture_output=True, text=True, timeout=120,
+                          env={**os.environ, "PYTHONPATH": str(package), "MPLBACKEND": "Agg"})
+    if done.returncode != 0:
+        raise SystemExit(f"python_reference.py: {done.stderr}")
+    return done.stdout
+
+
 def linked(text, source, known):
     """The text of `source` (a path in the repository) with links that the site can follow."""
     def replace(match):
@@ -107,7 +119,7 @@ def cells_page(script):
     return "\n\n".join(page) + "\n"
 
 
-def collect(programs, folder):
+def collect(programs, folder, python_reference):
     """All sources of the site in one folder."""
     listed = re.findall(r"([\w/.-]+\.md)\s*$", (HERE / "mkdocs.yml").read_text(), re.M)
     known = set(listed) | {path.name for path in (HERE / "pages").glob("*.md")}
@@ -120,6 +132,8 @@ def collect(programs, folder):
             text = exit_codes_page()
         elif name == "schemas.md":
             text = schemas_page(programs, folder)
+        elif name == "services/python/reference.md":
+            text = python_reference
         elif (HERE / "pages" / name).exists():
             text = (HERE / "pages" / name).read_text()
         else:
@@ -140,11 +154,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--programs", type=pathlib.Path, required=True, help="folder of the built programs")
     parser.add_argument("--out", type=pathlib.Path, required=True, help="folder of the site")
+    parser.add_argument("--package", type=pathlib.Path, help="folder with the built Python package, if there is one")
+    parser.add_argument("--python", default="/usr/bin/python3", help="the Python for which it is built")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="dispersa-docs-") as name:
         folder = pathlib.Path(name)
         (folder / "docs").mkdir()
-        collect(options.programs.resolve(), folder / "docs")
+        package = options.package.resolve() if options.package else None
+        collect(options.programs.resolve(), folder / "docs", python_page(package, options.python))
         config = (HERE / "mkdocs.yml").read_text()
         (folder / "mkdocs.yml").write_text(f"docs_dir: {folder}/docs\nsite_dir: {folder}/site\n" + config)
         done = subprocess.run(["/usr/bin/python3", "-m", "mkdocs", "build", "--strict", "--quiet", "-f", folder / "mkdocs.yml"],

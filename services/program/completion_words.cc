@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <sstream>
 
+#include "core/flight/metrics.h"
+
 namespace dispersa {
 namespace {
 
@@ -88,6 +90,10 @@ class Candidates {
       std::istringstream list(type.substr(from + 1, to - from - 1));
       for (std::string value; std::getline(list, value, ',');)
         Add(before + value.substr(0, value.find("->")), "");
+    } else if (type.starts_with(kMetricType)) {
+      for (const std::string& name : MetricNames()) Add(before + name, "");
+    } else if (type.starts_with(kYamlType)) {
+      AddKind("file\tyaml");
     } else if (type.starts_with(kFileType)) {
       AddKind("file");
     } else if (type.starts_with(kFolderType)) {

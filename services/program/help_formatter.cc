@@ -1,8 +1,13 @@
 #include "services/program/help_formatter.h"
 
+#include "services/program/completion_words.h"
+
 namespace dispersa {
 
-HelpFormatter::HelpFormatter() { label("REQUIRED", "(required)"); }
+HelpFormatter::HelpFormatter() {
+  label("REQUIRED", "(required)");
+  label(kYamlType, kFileType);
+}
 
 // What comes after a command's own options.
 std::string HelpFormatter::make_subcommands(const CLI::App* app, CLI::AppFormatMode mode) const {

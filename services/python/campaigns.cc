@@ -35,6 +35,7 @@ class LoadedCampaign {
  public:
   LoadedCampaign(const InputSource& source, const CampaignOverrides& overrides)
       : campaign_(LoadCampaign(source, overrides, &warnings_)) {}
+  explicit LoadedCampaign(Campaign campaign) : campaign_(std::move(campaign)) {}
 
   const Campaign& campaign() const { return campaign_; }
   const std::vector<InputProblem>& warnings() const { return warnings_; }
@@ -57,6 +58,24 @@ std::unique_ptr<LoadedCampaign> Load(const std::string& name, const std::optiona
                                      const std::optional<std::string>& autopilot) {
   const py::gil_scoped_release free;
   return std::make_unique<LoadedCampaign>(SourceOf(name, text), CampaignOverrides{cases, seed, autopilot});
+}
+
+/// Of a text that is canonical, whoever can fly it.
+std::unique_ptr<LoadedCampaign> FromCanonical(const std::string& name, const std::string& text) {
+  const py::gil_scoped_release free;
+  return std::make_unique<LoadedCampaign>(ReadFlownCampaign(InputSource(name, text)));
+}
+
+std::unique_ptr<LoadedCampaign> UnderLaw(const LoadedCampaign& campaign, unsigned axes,
+                                         const std::string& name, const std::string& sha256) {
+  return FromCanonical(campaign.campaign().name, WithPythonLaw(campaign.campaign(), axes, name, sha256));
+}
+
+/// (name, SHA-256), or None.
+py::object PythonLawOf(const LoadedCampaign& loaded) {
+  const auto& plugin = loaded.campaign().autopilot.plugin;
+  if (!plugin || !plugin->in_python) return py::none();
+  return py::make_tuple(plugin->name, plugin->sha256);
 }
 
 py::tuple Check(const std::string& name, const std::optional<std::string>& text) {
@@ -162,18 +181,19 @@ py::dict FlightValues(CaseResult result) {
 class FlownWith {
  public:
   /// `axes`: bits 1 << Axis.
-  FlownWith(const LoadedCampaign& campaign, const py::object& law, unsigned axes) : campaign_(campaign) {
+  FlownWith(const LoadedCampaign& campaign, const py::object& law, unsigned axes, PythonObserver& observer)
+      : campaign_(campaign) {
     if (law.is_none()) return;
-    law_ = std::make_unique<PythonLaw>(law, axes);
-    flights_ = std::make_unique<const CampaignFlights>(law_->Apply(campaign.campaign()));
+    law_ = std::make_unique<PythonLaw>(law, observer);
+    flights_ = std::make_unique<const CampaignFlights>(law_->OnAxes(campaign.campaign(), axes));
   }
 
   /// To be asked without the interpreter's lock.
   const CampaignFlights& flights() const { return flights_ ? *flights_ : campaign_.flights(); }
   /// A law in Python runs under the interpreter's lock: more threads would wait for it.
   int Threads(int asked) const { return law_ ? 1 : ThreadsOrAll(asked); }
-  void RethrowProblem() const {
-    if (law_) law_->RethrowProblem();
+  void FliesTheNominal() const {
+    if (law_) law_->FliesTheNominal();
   }
 
  private:
@@ -187,17 +207,16 @@ py::dict FlyOne(const LoadedCampaign& campaign, std::optional<std::uint64_t> cas
                 const std::map<std::string, double>& replaced, double step_s, const std::string& integrator,
                 const py::object& law, unsigned axes) {
   const Scheme scheme = SchemeOf(integrator);
-  const FlownWith with(campaign, law, axes);
+  PythonObserver observer{py::none()};
+  const FlownWith with(campaign, law, axes, observer);
+  if (!case_index) with.FliesTheNominal();
   History history;
   history.step_s = step_s;
-  CaseResult result;
-  {
-    const py::gil_scoped_release free;
+  CaseResult result = observer.Watch([&] {
     const CampaignFlights& flights = with.flights();
-    result = flights.Fly(InputsOf(campaign, flights, case_index, replaced), case_index.value_or(0),
-                         step_s > 0.0 ? &history : nullptr, scheme);
-  }
-  with.RethrowProblem();
+    return flights.Fly(InputsOf(campaign, flights, case_index, replaced), case_index.value_or(0),
+                       step_s > 0.0 ? &history : nullptr, scheme);
+  });
   py::dict flight = FlightValues(std::move(result));
   flight["history"] = step_s > 0.0 ? py::object(HistoryArray(std::move(history))) : py::none();
   return flight;
@@ -247,10 +266,10 @@ class Gathering {
 py::dict FlyMany(const LoadedCampaign& campaign, const std::vector<std::uint64_t>& cases, double step_s,
                  const std::vector<int>& columns, int threads, const py::object& progress,
                  const py::object& law, unsigned axes) {
-  const FlownWith with(campaign, law, axes);
+  PythonObserver observer(progress);
+  const FlownWith with(campaign, law, axes, observer);
   std::vector<CaseResult> results(cases.size());
   Gathering histories(columns, cases.size());
-  PythonObserver observer(progress);
   observer.Watch([&] {
     std::vector<CaseOrder> orders;
     for (const std::uint64_t case_index : cases) orders.push_back({case_index, step_s});
@@ -263,7 +282,6 @@ py::dict FlyMany(const LoadedCampaign& campaign, const std::vector<std::uint64_t
                               if (observer.Stop()) throw Interrupted();
                             });
   });
-  with.RethrowProblem();
   ResultColumns table(InputCount(campaign.stages()), MetricCount(campaign.stages()));
   for (const CaseResult& result : results) table.Add(result);
   py::dict answer = table.Take();
@@ -280,6 +298,8 @@ py::dict FlyMany(const LoadedCampaign& campaign, const std::vector<std::uint64_t
 void AddCampaigns(py::module_& module) {
   AddLawTick(module);
   module.def("load", &Load);
+  module.def("from_canonical", &FromCanonical);
+  module.def("under_law", &UnderLaw);
   module.def("check", &Check);
   module.def("read_tree", &ReadTree);
   module.def("plan", &Plan);
@@ -297,6 +317,7 @@ void AddCampaigns(py::module_& module) {
       .def_property_readonly("cases", [](const LoadedCampaign& c) { return c.campaign().sampling.cases; })
       .def_property_readonly("seed", [](const LoadedCampaign& c) { return c.campaign().sampling.seed; })
       .def_property_readonly("stages", &LoadedCampaign::stages)
+      .def_property_readonly("python_law", &PythonLawOf)
       .def_property_readonly("autopilot", [](const LoadedCampaign& c) { return c.campaign().autopilot.name; })
       .def_property_readonly("vehicle", [](const LoadedCampaign& c) { return c.campaign().vehicle.name; })
       .def_property_readonly("dispersed",

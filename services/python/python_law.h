@@ -5,14 +5,14 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
-#include <array>
-#include <exception>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "core/campaign/campaign.h"
 #include "core/control/law_here.h"
+#include "services/python/python_observer.h"
 
 namespace dispersa {
 
@@ -39,38 +39,53 @@ class LawTick {
   pybind11::dict memory_;
 };
 
-/// Made and destroyed with the interpreter's lock; must outlive the flights under it, which take the lock at
-/// every tick.
+/// Made and destroyed with the interpreter's lock, and used without by flights, which it must outlive and
+/// which take the lock at every tick.
 class PythonLaw {
  public:
-  /// `law(tick)` commands angular accelerations, rad/s², of these axes (bits 1 << Axis): a sequence of three,
-  /// or a number where there is one axis.
-  PythonLaw(pybind11::object law, unsigned axes);
+  /// `law(tick)` commands angular accelerations, rad/s²: three, of roll, pitch and yaw, or a number where it
+  /// commands one axis. What it raises ends what the observer watches.
+  PythonLaw(pybind11::object law, PythonObserver& observer);
   ~PythonLaw();
   PythonLaw(const PythonLaw&) = delete;
   PythonLaw& operator=(const PythonLaw&) = delete;
 
-  /// The campaign with this law on its axes. Throws InputError.
-  Campaign Apply(Campaign campaign);
-  /// Throws what the law raised, if it did: the flight that it ended means nothing.
-  void RethrowProblem() const;
+  /// The campaign with this law on these axes (bits 1 << Axis). Throws InputError.
+  Campaign OnAxes(Campaign campaign, unsigned axes) const;
+  /// Campaigns that this thread loads and that name this hash have this law.
+  void Offer(const std::string& sha256);
+  /// The note to an exception speaks of no case.
+  void FliesTheNominal() { flies_the_nominal_ = true; }
 
  private:
   static const PluginLaw::Functions& Functions();
-  int Create(void* memory);
+  /// What a flight's memory holds.
   struct Flight {
     PythonLaw* law;
+    std::uint64_t case_index;
+    unsigned axes;
     LawTick* tick;  ///< lives as long as its Python object
     pybind11::object object;
   };
-  int Step(const dispersa_law_input& input, dispersa_law_output& output, Flight& flight);
+  struct Memory {
+    std::uint64_t case_index;
+    Flight* flight;
+  };
+  void Create(const dispersa_law_setup& setup, Memory& memory);
+  void Step(const dispersa_law_input& input, dispersa_law_output& output, Flight& flight) const;
+  std::string Place(const Flight& flight, double time_s) const;
 
   pybind11::object law_;
-  unsigned axes_;
+  PythonObserver& observer_;
+  double number_ = 0.0;
   LawHere here_{Functions()};
-  std::vector<std::unique_ptr<Flight>> flights_;
-  std::exception_ptr problem_;
+  bool flies_the_nominal_ = false;
 };
+
+/// The canonical text of a campaign that is flown under a law in Python on these axes: it names the law in
+/// the place of theirs. Throws InputError.
+std::string WithPythonLaw(const Campaign& campaign, unsigned axes, const std::string& name,
+                          const std::string& sha256);
 
 void AddLawTick(pybind11::module_& module);
 

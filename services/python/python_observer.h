@@ -44,6 +44,12 @@ class PythonObserver : public Observer {
     return stopped_;
   }
 
+  /// What is watched is to end, and this to be raised. With the interpreter's lock.
+  void StopWith(std::exception_ptr problem) {
+    if (!problem_) problem_ = std::move(problem);
+    stopped_ = true;
+  }
+
   /// Calls without the interpreter's lock. What the caller's function or a signal raised is raised.
   template <typename Function>
   auto Watch(const Function& function) {
@@ -59,12 +65,6 @@ class PythonObserver : public Observer {
  private:
   static constexpr std::chrono::milliseconds kShowPeriod{100};
   static constexpr std::chrono::milliseconds kAskPeriod{50};
-
-  // With the interpreter's lock, which guards problem_ too.
-  void StopWith(std::exception_ptr problem) {
-    if (!problem_) problem_ = std::move(problem);
-    stopped_ = true;
-  }
 
   pybind11::object progress_;
   std::thread::id caller_ = std::this_thread::get_id();

@@ -25,6 +25,7 @@
 #include "services/coordinator/campaign_book.h"
 #include "services/coordinator/threads.h"
 #include "services/python/module.h"
+#include "services/python/python_law.h"
 #include "services/python/python_observer.h"
 #include "services/python/result_columns.h"
 
@@ -37,17 +38,35 @@ ReflownFlights Reflown(std::optional<std::uint64_t> envelope) {
   return envelope ? ReflownFlights{false, *envelope} : ReflownFlights{true};
 }
 
+/// The law of a call, for campaigns that name its hash; nothing where none is given.
+class CallsLaw {
+ public:
+  CallsLaw(const py::object& law, const std::string& sha256, PythonObserver& observer) {
+    if (law.is_none()) return;
+    law_.emplace(law, observer);
+    law_->Offer(sha256);
+  }
+  /// Under the interpreter's lock more threads would wait for it.
+  int Threads(int asked) const { return law_ ? 1 : asked; }
+
+ private:
+  std::optional<PythonLaw> law_;
+};
+
 /// A campaign flown on this machine: (folder, exit code, why cases are missing or None). `envelope`: as
 /// ReflownFlights; None flies nothing again.
-py::tuple Run(const std::string& name, const std::string& text, const std::string& out, bool resume, int workers,
-              int threads, const std::string& worker_program, std::optional<std::uint64_t> envelope,
-              const py::object& progress) {
+py::tuple Run(const std::string& name, const std::string& text, const std::string& out, bool resume,
+              int workers, int threads, const std::string& worker_program,
+              std::optional<std::uint64_t> envelope, const py::object& progress, const py::object& law,
+              const std::string& law_sha256) {
   PythonObserver observer(progress);
+  const CallsLaw calls_law(law, law_sha256, observer);
   std::filesystem::path folder;
   const RunResult result = observer.Watch([&] {
     OpenedCampaign opened = OpenCampaign({InputSource(name, text), {}, out, resume});
     folder = opened.folder.directory();
-    return RunCampaign(std::move(opened), {workers, threads, worker_program, Reflown(envelope)}, observer);
+    return RunCampaign(std::move(opened),
+                       {workers, calls_law.Threads(threads), worker_program, Reflown(envelope)}, observer);
   });
   return py::make_tuple(folder.string(), static_cast<int>(result.code), result.problem);
 }
@@ -72,14 +91,16 @@ int RunRemotely(const std::string& name, const std::string& text, const std::str
 }
 
 /// The reports of a folder made again; its exit code.
-int MakeAgain(const std::string& directory, std::optional<std::uint64_t> envelope, const py::object& progress) {
+int MakeAgain(const std::string& directory, std::optional<std::uint64_t> envelope, const py::object& progress,
+              const py::object& law, const std::string& law_sha256) {
   PythonObserver observer(progress);
+  const CallsLaw calls_law(law, law_sha256, observer);
   return observer.Watch([&] {
     StoredCampaign stored = OpenStored(directory);
     RequireWritableFile("the report", stored.folder.directory() / "report.html");
     stored.folder.Lock();
-    const CampaignSummary summary =
-        MakeReports(stored.folder, stored.campaign, UsableCores(), Reflown(envelope), observer);
+    const CampaignSummary summary = MakeReports(
+        stored.folder, stored.campaign, calls_law.Threads(UsableCores()), Reflown(envelope), observer);
     return static_cast<int>(CampaignExitCode(summary.verdict, 0));
   });
 }
@@ -140,9 +161,11 @@ py::tuple Optimize(const std::string& name, const std::optional<std::string>& te
 }
 
 /// What `dispersa replay --json` prints.
-std::string Replay(const std::string& directory, std::uint64_t case_index) {
-  const py::gil_scoped_release free;
-  return ReplayJson(ReplayCase(OpenStored(directory), case_index)).dump(2);
+std::string Replay(const std::string& directory, std::uint64_t case_index, const py::object& law,
+                   const std::string& law_sha256) {
+  PythonObserver observer{py::none()};
+  const CallsLaw calls_law(law, law_sha256, observer);
+  return observer.Watch([&] { return ReplayJson(ReplayCase(OpenStored(directory), case_index)).dump(2); });
 }
 
 }  // namespace

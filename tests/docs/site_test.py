@@ -14,7 +14,7 @@ SERVICES = pathlib.Path(__file__).resolve().parents[2] / "services"
 BUILD = SERVICES / "docs" / "build.py"
 PAGES = ["index", "first-campaign", "your-vehicle", "your-control-law", "reading-the-report", "cluster", "commands",
          "exit-codes", "schemas", "core/index", "core/campaign_yaml/index", "core/statistics/index", "services/python/index",
-         "services/python/tutorial"]
+         "services/python/tutorial", "services/python/reference"]
 # What a page makes a browser load.
 LOADS = {("script", "src"), ("img", "src"), ("link", "href"), ("iframe", "src"), ("source", "src"), ("video", "src"),
          ("audio", "src"), ("object", "data"), ("use", "href")}
@@ -78,7 +78,8 @@ class SiteTest(unittest.TestCase):
         cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="dispersa-site-"))
         cls.addClassCleanup(shutil.rmtree, cls.folder)
         cls.site = cls.folder / "docs"
-        done = subprocess.run(["/usr/bin/python3", "-B", BUILD, "--programs", BINARIES, "--out", cls.site],
+        of_python = ["--package", os.environ["DISPERSA_PACKAGE"]] if os.environ.get("DISPERSA_PACKAGE") else []
+        done = subprocess.run(["/usr/bin/python3", "-B", BUILD, "--programs", BINARIES, "--out", cls.site, *of_python],
                               capture_output=True, text=True, timeout=280)
         assert done.returncode == 0, done.stdout + done.stderr
 
@@ -101,6 +102,17 @@ class SiteTest(unittest.TestCase):
                 words = re.sub("`", "", line.lstrip("# ")) if line.startswith("#") else line
                 self.assertIn("".join(words.split()), shown)
         self.assertIn("tutorial.html", Page((self.site / "services/python/index.html").read_text()).links)
+
+    def test_the_target_is_the_build_folders_docs(self):
+        """What README.md names."""
+        self.assertEqual(os.environ["DISPERSA_DOCS"], str(SERVICES.parent / "build" / "docs"))
+        self.assertIn("`build/docs/index.html`", (SERVICES.parent / "README.md").read_text())
+
+    @unittest.skipUnless(os.environ.get("DISPERSA_PACKAGE"), "no Python package was built")
+    def test_the_python_reference_describes_the_package(self):
+        page = Page((self.site / "services/python/reference.html").read_text())
+        self.assertLessEqual({"dispersa-run", "dispersa-plot-bands", "campaign-fly", "results", "badinput"}, page.anchors)
+        self.assertIn("angular accelerations, rad/s²", " ".join(page.words))
 
     def test_schemas_can_be_taken(self):
         self.assertTrue((self.site / "schemas" / "campaign.json").exists())

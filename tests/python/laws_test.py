@@ -1,15 +1,19 @@
 """Control laws written in Python: flown through the same interface as those of shared objects."""
 import fractions
+import functools
+import gc
+import json
 import math
 import signal
 import subprocess
 import sys
 import unittest
+import weakref
 
 import numpy
 
 import dispersa
-from program import CAMPAIGNS, SMOKE
+from program import CAMPAIGNS, SMOKE, folder_of, printed, program
 
 PITCH = 1
 
@@ -82,12 +86,37 @@ class Laws(unittest.TestCase):
             self.campaign.fly_many(3, law=late)
 
     def test_what_a_law_may_not_return(self):
-        for returned in (None, "much", [1.0, 2.0]):
-            with self.assertRaisesRegex(TypeError, "a control law returns angular accelerations"):
+        for returned, said in ((None, r"None \(NoneType\)"), ("much", r"'much' \(str\)"), ([1.0, 2.0], r"\[1.0, 2.0\] \(list\)"),
+                               (True, r"True \(bool\)"), (1j, r"1j \(complex\)"), ([0.0, None, 0.0], r"None, 0.0\] \(list\)"),
+                               (numpy.zeros(1), r"array\(\[0.\]\) \(numpy.ndarray\)"), (numpy.bool_(True), r"True \(numpy.bool_\)"),
+                               (numpy.zeros((1, 3)), r"array\(\[\[0., 0., 0.\]\]\)"), (fractions.Fraction(1, 2), r"\(Fraction\)"),
+                               ("x" * 999, r"'x{59} … \(str\)$")):
+            with self.assertRaisesRegex(TypeError, "a control law returns angular accelerations, rad/s.2: a number, or three, of "
+                                        "roll, pitch and yaw; this one returned .*" + said) as caught:
                 self.campaign.fly(law=lambda tick: returned)
+            self.assertEqual(caught.exception.__notes__,
+                             ["raised by the control law in the nominal flight, 0.00 s after lift-off"])
+        with self.assertRaisesRegex(TypeError, "of several axes returns three .* returned one number, 0.0 .float."):
+            self.campaign.fly(law=lambda tick: 0.0, axes=("pitch", "yaw"))
         flight = self.campaign.fly(law=lambda tick: math.nan)
         self.assertEqual(flight.outcome, "numerical_failure")
         self.assertIn("no finite number", flight.reason)
+
+    def test_numbers_of_numpy_are_numbers(self):
+        digest = self.campaign.fly(law=lambda tick: 0.0, history=False).digest
+        for zero in (0, numpy.float64(0.0), numpy.float32(0.0), numpy.int64(0), numpy.uint8(0), [0, numpy.float32(0), 0.0],
+                     numpy.zeros(3), numpy.zeros(3, dtype=numpy.int32), (0.0, 0.0, 0.0)):
+            self.assertEqual(self.campaign.fly(law=lambda tick: zero, history=False).digest, digest, repr(zero))
+
+    def test_a_note_names_case_and_time(self):
+        def late(tick):
+            if tick.time_s > 20.0:
+                raise LookupError("no gain")
+            return pd(tick)
+
+        with self.assertRaisesRegex(LookupError, "^'no gain'$|^no gain$") as caught:
+            self.campaign.fly(7, law=late)
+        self.assertEqual(caught.exception.__notes__, ["raised by the control law in case 7, 20.01 s after lift-off"])
 
     def test_axes(self):
         with self.assertRaisesRegex(dispersa.BadInput, r"axes: \('climb',\) are not axes, allowed: some of roll, pitch and yaw"):
@@ -95,11 +124,6 @@ class Laws(unittest.TestCase):
         both = self.campaign.fly(law=lambda t: [0.0, pd(t), fused(t.kp_1_s2[2], t.angle_error_rad[2], t.kd_1_s[2] * t.rate_error_rad_s[2])],
                                  axes=("pitch", "yaw"), history=False)
         self.assertEqual(both.outcome, "completed")
-
-    def test_never_in_a_result_folder(self):
-        """Who opens the folder could not fly it again."""
-        with self.assertRaisesRegex(TypeError, "law"):
-            dispersa.run(self.campaign, "nowhere", workers=0, law=pd)
 
     def test_interrupted(self):
         script = ("import sys, time, dispersa\n"
@@ -117,6 +141,190 @@ class Laws(unittest.TestCase):
         finally:
             process.kill()
             process.wait()
+
+
+class Campaigns(unittest.TestCase):
+    """A law in Python in a campaign: in this process alone, and under ids that are nobody else's."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = folder_of(cls)
+        cls.campaign = dispersa.load(SMOKE, autopilot=CAMPAIGNS / "autopilots/pd.yaml", cases=3)
+        cls.results = dispersa.run(cls.campaign, cls.folder / "flown", workers=0, law=pd)
+
+    def text(self, name):
+        return (self.results.directory / name).read_text()
+
+    def run_of(self, law, name, **options):
+        return dispersa.run(self.campaign, self.folder / name, workers=0, law=law, histories=False, **options)
+
+    def test_only_in_this_process(self):
+        for where in ({}, {"workers": 1}, {"peer": "127.0.0.1"}, {"workers": 0, "peer": "127.0.0.1"}):
+            with self.assertRaisesRegex(dispersa.BadInput, "law: a control law in Python flies in this process alone, and "
+                                        "workers=0 is to say so, allowed: workers=0"):
+                dispersa.run(self.campaign, self.folder / "never", law=pd, **where)
+        with self.assertRaisesRegex(dispersa.BadInput, "law: 7 cannot be called"):
+            dispersa.run(self.campaign, self.folder / "never", workers=0, law=7)
+        self.assertFalse((self.folder / "never").exists())
+
+    def test_the_flights_are_the_built_in_laws_but_not_the_ids(self):
+        built_in = dispersa.run(self.campaign, self.folder / "built_in", workers=0, histories=False)
+        self.assertEqual(self.results.digest, built_in.digest)
+        self.assertNotEqual(self.results.campaign.flight_id, built_in.campaign.flight_id)
+        self.assertNotEqual(self.results.campaign.id, built_in.campaign.id)
+        self.assertIsNone(built_in.campaign.python_law)
+        self.assertEqual(self.results.campaign.python_law[0], "pd")
+
+    def test_the_id_is_the_laws(self):
+        def made(gain):
+            return lambda tick: gain * pd(tick)
+
+        ids = [dispersa.run(self.campaign, self.folder / f"id{i}", workers=0, law=law, cases=1, histories=False).campaign.flight_id
+               for i, law in enumerate((made(1.0), made(1.0), made(1.5), functools.partial(lambda gain, tick: gain * pd(tick), 1.0)))]
+        self.assertEqual(ids[0], ids[1])
+        self.assertEqual(len(set(ids)), 3)
+
+    def test_the_folder_says_so(self):
+        name, sha256 = self.results.campaign.python_law
+        self.assertRegex(self.text("campaign.yaml"), f"  plugin:\n    python:\n      name: pd\n      sha256: \"?{sha256}\"?\n")
+        summary = json.loads(self.text("summary.json"))
+        self.assertEqual(summary["campaign"]["python_law"], {"name": name, "sha256": sha256})
+        self.assertEqual({case["replay"] for case in summary["worst_cases"]}, {None})
+        report = self.text("report.html")
+        self.assertIn("Flown with a Python law, pd: nobody without it can fly these cases again.", report)
+        self.assertIn("pitch by pd in Python", report)
+        for promise in ("dispersa replay", "dispersa run campaign.yaml", "dispersa report ."):
+            self.assertNotIn(promise, report)
+        compared = dispersa.compare(self.results, self.results)
+        self.assertNotIn("dispersa replay", json.dumps(compared))
+
+    def test_the_file_alone_cannot_be_flown(self):
+        file = self.results.directory / "campaign.yaml"
+        said, = printed("validate", file, code=2)["errors"]
+        self.assertEqual((said["path"], said["message"], said["allowed"]),
+                         ("autopilot.plugin.python", "flown with a Python law, 'pd', which is not in the file: without it the "
+                          "campaign cannot be flown", "dispersa.run(..., workers=0, law=...) in Python, with that law"))
+        self.assertGreater(said["line"], 1)
+        self.assertFalse(dispersa.validate(file))
+        for command in ("run", "fly", "plan", "margins"):
+            program(command, file, code=2)
+        for call in (self.results.campaign.fly, lambda: dispersa.load(file), lambda: dispersa.margins(self.results.campaign),
+                     lambda: dispersa.run(self.results.campaign, self.folder / "never", workers=0)):
+            with self.assertRaisesRegex(dispersa.BadInput, "flown with a Python law, 'pd', which is not "):
+                call()
+        self.assertEqual(self.results.campaign.fly(2, law=pd).digest, self.results.digest[2])
+
+    def test_replay_wants_the_law(self):
+        program("replay", self.results.directory, "--case", 1, code=2)
+        with self.assertRaisesRegex(dispersa.BadInput, "flown with a Python law, 'pd', which is not here"):
+            self.results.replay(1)
+        with self.assertRaisesRegex(dispersa.BadInput, "other' .* is not the Python law that the campaign was flown with, "
+                                    "allowed: 'pd'"):
+            def other(tick):
+                return 0.0
+            self.results.replay(1, law=other)
+        self.assertTrue(self.results.replay(1, law=pd)["match"])
+        with self.assertRaisesRegex(dispersa.BadInput, "was flown with the autopilot that it holds"):
+            dispersa.run(self.campaign, self.folder / "plain", workers=0, histories=False).replay(1, law=pd)
+
+    def test_reports_again(self):
+        before = self.text("report.html")
+        program("report", self.results.directory, "--quiet", code=2)
+        self.assertEqual(self.text("report.html"), before)
+        with self.assertRaisesRegex(dispersa.BadInput, "flown with a Python law"):
+            dispersa.report(self.results)
+        dispersa.report(self.results, histories=False)
+        self.assertNotIn("dispersa report .", self.text("report.html"))
+        dispersa.report(self.results, law=pd)
+        self.assertEqual(self.text("report.html"), before)
+
+    def test_resumed_with_the_same_law_alone(self):
+        def other(tick):
+            return 0.9 * pd(tick)
+
+        flown = self.run_of(pd, "resumed")
+        with self.assertRaises(dispersa.BadInput):
+            self.run_of(other, "resumed", resume=True)
+        with self.assertRaises(dispersa.BadInput):
+            dispersa.run(self.campaign, flown.directory, workers=0, resume=True)
+        more = dispersa.run(dispersa.load(SMOKE, autopilot=CAMPAIGNS / "autopilots/pd.yaml", cases=4), flown.directory, workers=0,
+                            law=pd, resume=True, histories=False)
+        self.assertEqual((more.digest[:3], len(more)), (flown.digest, 4))
+
+    def test_what_a_law_raises_ends_the_run(self):
+        flown = []
+
+        def breaking(tick):
+            if tick.time_s == 0.0:
+                flown.append(1)
+            if len(flown) > 8 and tick.time_s > 30.0:
+                raise LookupError("no gain")
+            return pd(tick)
+
+        with self.assertRaisesRegex(LookupError, "no gain") as caught:
+            dispersa.run(dispersa.load(SMOKE), self.folder / "broken", workers=0, law=breaking)
+        self.assertRegex(caught.exception.__notes__[0], r"raised by the control law in case \d+.*, 30.01 s after lift-off")
+        left = dispersa.results(self.folder / "broken")
+        self.assertEqual([outcome for outcome in left.outcome if outcome != "completed"], [], "no flight of a broken law counts")
+
+    def test_a_law_that_is_not_the_same_twice(self):
+        count = [0]
+
+        def drifting(tick):
+            count[0] += 1
+            return pd(tick) * (1.0 + 1e-9 * count[0])
+
+        with self.assertRaisesRegex(dispersa.BadInput, "the control law .*drifting is not deterministic: of the nominal flight, "
+                                    "flown twice, at 0.* s "):
+            self.run_of(drifting, "drifting")
+        self.assertFalse((self.folder / "drifting").exists())
+
+    def test_every_kind_of_autopilot_gives_its_axis(self):
+        for file in sorted((CAMPAIGNS / "autopilots").glob("*.yaml")):
+            campaign = dispersa.load(SMOKE, cases=1)
+            if "flexible" not in file.name:
+                campaign = dispersa.load(SMOKE, autopilot=file, cases=1)
+            results = dispersa.run(campaign, self.folder / file.stem, workers=0, law=pd, histories=False)
+            self.assertEqual(results.outcome, ["completed"], file.name)
+
+    def test_what_a_flight_remembers_ends_with_it(self):
+        class Kept:
+            pass
+
+        kept = []
+
+        def remembering(tick):
+            if "kept" not in tick.memory:
+                tick.memory["kept"] = Kept()
+                kept.append(weakref.ref(tick.memory["kept"]))
+            return pd(tick)
+
+        alive = []
+        self.campaign.fly_many(3, histories=False, law=remembering,
+                               progress=lambda *_: (gc.collect(), alive.append(sum(each() is not None for each in kept))))
+        self.assertEqual(len(kept), 3)
+        gc.collect()
+        self.assertEqual([each() for each in kept], [None] * 3)
+
+    def test_interrupted(self):
+        script = ("import sys, dispersa\n"
+                  "def slow(tick):\n"
+                  "    if tick.time_s == 0.0: print('flying', flush=True)\n"
+                  "    return tick.kp_1_s2[1] * tick.angle_error_rad[1] + tick.kd_1_s[1] * tick.rate_error_rad_s[1]\n"
+                  "try:\n    dispersa.run(sys.argv[1], sys.argv[2], cases=500, workers=0, law=slow)\n"
+                  "except KeyboardInterrupt:\n    print('interrupted')\n")
+        process = subprocess.Popen([sys.executable, "-B", "-c", script, str(SMOKE), str(self.folder / "interrupted")],
+                                   stdout=subprocess.PIPE, text=True)
+        try:
+            for _ in range(20):
+                self.assertEqual(process.stdout.readline(), "flying\n")
+            process.send_signal(signal.SIGINT)
+            self.assertEqual(process.communicate(timeout=60)[0].split()[-1], "interrupted")
+        finally:
+            process.kill()
+            process.wait()
+        left = dispersa.results(self.folder / "interrupted")
+        self.assertEqual(set(left.reason), {""} if len(left) else set())
 
 
 if __name__ == "__main__":

@@ -4,9 +4,11 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <thread>
 
 #include "core/campaign_yaml/autopilot_fields.h"
 #include "core/campaign_yaml/load.h"
+#include "core/control/law_here.h"
 
 namespace dispersa::campaign_yaml_autopilot_test {
 namespace {
@@ -185,6 +187,37 @@ struct FieldNames {
   void Matrix(const char* key, const Matrix2&) { names.push_back(key); }
   void OptionalPair(const char* key, const std::optional<Vector2>&) { names.push_back(key); }
 };
+
+TEST(ReadAutopilot, NamesALawInPythonButDoesNotHoldIt) {
+  const std::string sha256(64, 'a');
+  const std::string text = kEverything + ("plugin: {python: {name: mine, sha256: " + sha256 + "}}\n");
+  const auto problem = [&text] {
+    try {
+      ReadAutopilot(text, "flown.yaml");
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const std::string absent =
+      "flown.yaml:45:18: plugin.python: flown with a Python law, 'mine', which is not in the file: without "
+      "it the "
+      "campaign cannot be flown, allowed: dispersa.run(..., workers=0, law=...) in Python, with that law";
+  EXPECT_EQ(problem(), absent);
+  {
+    LawHere law({});
+    PluginConfig offer = law.Config({{"law", 3.0}});
+    offer.sha256 = sha256;
+    law.Offer(offer);
+    const AutopilotConfig autopilot = ReadAutopilot(text, "flown.yaml");
+    ASSERT_TRUE(autopilot.plugin.has_value());
+    EXPECT_TRUE(autopilot.plugin->in_python);
+    EXPECT_EQ(autopilot.plugin->name, "mine");
+    EXPECT_NE(FunctionsHere(*autopilot.plugin), nullptr);
+    std::thread([&] { EXPECT_EQ(problem(), absent) << "an offer is the thread's that makes it"; }).join();
+  }
+  EXPECT_EQ(problem(), absent);
+}
 
 TEST(AutopilotKeys, AreDocumentedAllAndByTheirBlocks) {
   std::ifstream file(DISPERSA_CAMPAIGNS "/../core/campaign_yaml/README.md");

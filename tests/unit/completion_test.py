@@ -51,6 +51,13 @@ class Words(unittest.TestCase):
         self.assertEqual(words("completion", ""), ["bash", "fish", "zsh"])
         self.assertEqual(words("run", "--cases", ""), [])
 
+    def test_metrics(self):
+        self.assertEqual(words("search", "campaign.yaml", "--metric", "pitch_error_peak_d"), ["pitch_error_peak_deg"])
+        self.assertEqual(words("compare", "a", "b", "--metric=q_m"), ["--metric=q_max_pa"])
+        self.assertGreater(len(words("compare", "a", "b", "--metric", "")), 50)
+        self.assertTrue({"apogee_km", "pitch_error_rms_stage1_deg", "yaw_error_rms_deg"}
+                        <= set(words("compare", "a", "b", "--metric", "q_max_pa", "--metric", "")))
+
     def test_files_and_folders(self):
         self.assertEqual(words("fly", ""), [":file"])
         self.assertEqual(words("fly", "campaign.yaml", ""), [])
@@ -58,6 +65,16 @@ class Words(unittest.TestCase):
         self.assertEqual(words("run", "campaign.yaml", "--out", ""), [":folder"])
         self.assertEqual(words("compare", "a", ""), [":folder"])
         self.assertEqual(words("--data", "", program="dispersa-coordinator"), [":folder"])
+
+    def test_files_of_yaml(self):
+        def kinds(*line):
+            return output(BINARIES / "dispersa", "completion", "words", *line)
+
+        for line in (["run", ""], ["fly", ""], ["plan", ""], ["launch", ""], ["search", ""], ["tune", ""], ["margins", ""],
+                     ["optimize", ""], ["modes", ""], ["validate", "one.yaml", ""], ["run", "a.yaml", "--autopilot", ""]):
+            self.assertEqual(kinds(*line), ":file\tyaml\n", line)
+        for line in (["fly", "a.yaml", "--history", ""], ["report", "results", "--template", ""]):
+            self.assertEqual(kinds(*line), ":file\n", line)
 
     def test_each_candidate_is_one_line_that_says_what_it_is(self):
         for line in output(BINARIES / "dispersa", "completion", "words", "").splitlines():
@@ -71,6 +88,8 @@ class Shells(unittest.TestCase):
         (self.folder / "two words.yaml").touch()
         (self.folder / "table.yaml").touch()
         (self.folder / "tables").mkdir()
+        (self.folder / "score.csv").touch()
+        (self.folder / "score.yml").touch()
         self.environment = {"PATH": f"{BINARIES}:{os.environ['PATH']}", "HOME": str(self.folder), "TERM": "dumb",
                             "LANG": "C.UTF-8"}
 
@@ -94,6 +113,9 @@ class Shells(unittest.TestCase):
         self.assertEqual(self.bash("dispersa", "fly", "--integrator", "=", "e"), ["erk4"])
         self.assertEqual(sorted(self.bash("dispersa", "fly", "t")), ["table.yaml", "tables", "two words.yaml"])
         self.assertEqual(self.bash("dispersa", "run", "table.yaml", "--out", "t"), ["tables"])
+        self.assertEqual(self.bash("dispersa", "fly", "table.yaml", "--history", "score.c"), ["score.csv"])
+        self.assertEqual(self.bash("dispersa", "fly", "sc"), ["score.yml"])
+        self.assertEqual(self.bash("dispersa", "search", "table.yaml", "--metric", "apo"), ["apogee_km"])
         self.assertEqual(self.bash("dispersa-worker", "--pe"), ["--peer"])
 
     @unittest.skipUnless(shutil.which("fish"), "fish is not installed (tests/packages.txt)")
@@ -108,6 +130,9 @@ class Shells(unittest.TestCase):
         self.assertEqual(sorted(fish("dispersa fly --integrator ")), ["cvode", "erk4", "simpson"])
         self.assertEqual(fish("dispersa fly --integrator=e"), ["--integrator=erk4"])
         self.assertEqual(sorted(fish("dispersa fly t")), ["table.yaml", "tables/", "two words.yaml"])
+        self.assertEqual(fish("dispersa fly table.yaml --history score.c"), ["score.csv"])
+        self.assertEqual(fish("dispersa fly sc"), ["score.yml"])
+        self.assertEqual(fish("dispersa compare a b --metric apo"), ["apogee_km"])
         self.assertEqual(fish("dispersa run table.yaml --out t"), ["tables/"])
         self.assertEqual(fish("dispersa run table.yaml --out=t"), ["--out=tables/"])
         self.assertEqual(fish("dispersa-worker --pe"), ["--peer"])
@@ -147,6 +172,9 @@ class Shells(unittest.TestCase):
         for line, completed in [("dispersa fe", "dispersa fetch "), ("dispersa fly --int", "dispersa fly --integrator "),
                                 ("dispersa fly --integrator e", "dispersa fly --integrator erk4 "),
                                 ("dispersa fly tw", "dispersa fly two\\ words.yaml "),
+                                ("dispersa fly table.yaml --history score.c", "dispersa fly table.yaml --history score.csv "),
+                                ("dispersa fly sc", "dispersa fly score.yml "),
+                                ("dispersa search --metric apog", "dispersa search --metric apogee_km "),
                                 ("dispersa run table.yaml --out t", "dispersa run table.yaml --out tables/"),
                                 ("dispersa-worker --pe", "dispersa-worker --peer ")]:
             self.assertEqual(self.zsh(line), completed)

@@ -4,6 +4,11 @@ _dispersa() {
   COMPREPLY=()
   while IFS= read -r line; do
     case $line in
+      :file$'\t'yaml)
+        compopt -o filenames 2>/dev/null
+        while IFS= read -r line; do
+          [[ -d $line || $line == *.yaml || $line == *.yml ]] && COMPREPLY+=("$line")
+        done < <(compgen -f -- "${word#=}") ;;
       :file)
         compopt -o filenames 2>/dev/null
         while IFS= read -r line; do COMPREPLY+=("$line"); done < <(compgen -f -- "${word#=}") ;;

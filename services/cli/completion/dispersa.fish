@@ -6,6 +6,8 @@ function __dispersa_complete
     set -l begun (string replace -- "$before" '' $word)
     for line in (command $words[1] completion words $words[2..] "$word" 2>/dev/null)
         switch $line
+            case :file\tyaml
+                string replace -r -- '^' "$before" (__fish_complete_path "$begun" | string match -r -- '^[^\t]*(?:/|\.ya?ml)(?:\t.*)?$')
             case :file
                 string replace -r -- '^' "$before" (__fish_complete_path "$begun")
             case :folder

@@ -6,6 +6,7 @@ _dispersa() {
   for line in "${(@f)$(${(Q)words[1]/#\~/$HOME} completion words "${(@Q)words[2,CURRENT]}" 2>/dev/null)}"; do
     case $line in
       '') ;;
+      :file$'\t'yaml) compset -P '--*='; _files -g '*.(yaml|yml)' ;;
       :file) compset -P '--*='; _files ;;
       :folder) compset -P '--*='; _files -/ ;;
       *) found+=("${${line%%$'\t'*}//:/\\:}:${line#*$'\t'}") ;;

@@ -6,7 +6,7 @@
     results = dispersa.run(campaign, "results/trial")
     results.verdict, results.cases["metric_pitch_error_peak_deg"].max()
 
-Results are those of the program `dispersa`, to the last bit. SI and radians nowhere: every name carries its unit.
+What is flown is what the program `dispersa` flies, to the last bit. Every name carries its unit.
 """
 from . import _processor
 
@@ -26,13 +26,14 @@ __version__ = _engine_version()
 
 
 def plan(what, cases=None, **options):
-    """What a campaign's cases fly with: `load(what, **options).plan(cases)`."""
+    """What a campaign's cases fly with: `load(what, **options).plan(cases)`, a structured array of shape (cases,). Raises
+    BadInput."""
     return (what if isinstance(what, Campaign) and not options else load(what, **options)).plan(cases)
 
 
 def fly(what, case=None, *, inputs=None, history=True, step_s=0.1, integrator="simpson", law=None, axes=("pitch",),
         **options):
-    """One flight: `load(what, **options).fly(case, ...)`."""
+    """One flight: `load(what, **options).fly(case, ...)`, a Flight. Raises BadInput."""
     campaign = what if isinstance(what, Campaign) and not options else load(what, **options)
     return campaign.fly(case, inputs=inputs, history=history, step_s=step_s, integrator=integrator, law=law,
                         axes=axes)

@@ -8,6 +8,7 @@ import numpy
 
 from . import _core
 from ._arguments import MOST_CASES, MOST_THREADS, refuse, whole
+from ._law import identity
 from ._source import placed, source, without_place
 from ._tables import structured
 from .errors import ExitCode, InputWarning, Problem
@@ -23,13 +24,16 @@ class Validation:
     warnings: list
     """Of a valid file: Problems that are legal."""
     strict: bool = False
+    """Warnings count as errors."""
 
     @property
     def valid(self):
+        """No errors, and if strict no warnings; `bool(validation)` says the same."""
         return not self.errors and not (self.strict and self.warnings)
 
     @property
     def exit_code(self):
+        """An ExitCode: that of `dispersa validate`, 0 or 2."""
         return ExitCode.DONE if self.valid else ExitCode.BAD_INPUT
 
     def __bool__(self):
@@ -82,6 +86,7 @@ class Campaign:
 
     @property
     def name(self):
+        """As the file names it."""
         return self._core.name
 
     @property
@@ -106,10 +111,12 @@ class Campaign:
 
     @property
     def cases(self):
+        """How many; indices count from 0."""
         return self._core.cases
 
     @property
     def seed(self):
+        """Of the draws."""
         return self._core.seed
 
     @property
@@ -126,6 +133,12 @@ class Campaign:
     def autopilot(self):
         """The autopilot's name."""
         return self._core.autopilot
+
+    @property
+    def python_law(self):
+        """(name, SHA-256) of the control law in Python that the campaign was flown with, else None. It is in no file, so
+        such a campaign is flown only where the law is given as `law`."""
+        return self._core.python_law
 
     @functools.cached_property
     def warnings(self):
@@ -149,7 +162,7 @@ class Campaign:
 
     def plan(self, cases=None):
         """What cases fly with, without flying: a structured array of shape (cases,), a float64 field an input, in the
-        unit of its name. `cases`: how many from the first; default: all."""
+        unit of its name. `cases`: how many from the first; default: all. Raises BadInput for a number below 0."""
         count = self.cases if cases is None else whole("cases", cases, 0, MOST_CASES)
         return structured(_core.plan(self._core, 0, count), self.input_names)
 
@@ -161,13 +174,16 @@ class Campaign:
 
         `law(tick)`: a control law of your own, for prototypes, in the place of the autopilot's on `axes` (of roll, pitch
         and yaw). It is called at every tick of powered flight and returns commanded angular accelerations, rad/s²: of
-        roll, pitch and yaw, or one number where it commands one axis. `tick` has time_s, since_ignition_s, stage (from
+        roll, pitch and yaw as a list, tuple or array of shape (3,), or one number where it commands one axis, of
+        Python's or NumPy's; anything else is a TypeError. `tick` has time_s, since_ignition_s, stage (from
         1); as arrays of roll, pitch and yaw angle_error_rad and rate_error_rad_s (reference less true, as the sensors see
         it), rate_rad_s, effectiveness_1_s2 (angular acceleration by deflection), program_rad_s2, saturation (-1, 0, 1), the
         autopilot's gains kp_1_s2 and kd_1_s; limit_rad of the nozzles; `telemetry`, four numbers that go to the history;
-        and `memory`, a dict of this flight's own. What the law raises is raised.
+        and `memory`, a dict of this flight's own. What the law raises is raised, with a
+        note that names case and time.
 
-        Releases the interpreter's lock while it flies. Returns a Flight.
+        Releases the interpreter's lock while it flies. Returns a Flight. Raises BadInput for a case, an input or an
+        integrator that there is not.
         """
         index = None if case is None else self._check([case])[0]
         values = _core.fly(self._core, index, dict(inputs or {}), _step(step_s) if history else 0.0, integrator, law,
@@ -183,7 +199,8 @@ class Campaign:
         all in one array, with only `columns` (names) of them, if given, and a row every `step_s` seconds and at every
         event; each row of all columns takes half a kilobyte. `progress(phase, done, total, note)` is called now and
         then. `law`, `axes`: as of fly; calls for one flight alternate with calls for others, so a law keeps what it
-        remembers in `tick.memory`. Releases the interpreter's lock; Ctrl-C stops it. Returns Flights.
+        remembers in `tick.memory`. Releases the interpreter's lock; Ctrl-C stops it. Returns Flights. Raises BadInput for
+        a case or a column that there is not, and what `progress` and the law raise.
         """
         if cases is None or isinstance(cases, (int, numpy.integer)):
             indices = list(range(self.cases if cases is None else whole("cases", cases, 0, self.cases)))
@@ -220,4 +237,19 @@ def _step(step_s):
 
 
 def _from_canonical(name, text):
-    return Campaign(_core.load(name, text, None, None, None))
+    return Campaign(_core.from_canonical(name, text))
+
+
+def under_law(campaign, law, axes):
+    """(the campaign flown with this control law in Python, its SHA-256). Raises BadInput for one that was flown with
+    another law."""
+    if not callable(law):
+        raise refuse(f"law: {law!r} cannot be called", "a function of one argument")
+    name, sha256 = identity(law)
+    if campaign.python_law is None:
+        return Campaign(_core.under_law(campaign._core, _axis_bits(axes), name, sha256)), sha256
+    flown_name, flown_sha256 = campaign.python_law
+    if sha256 != flown_sha256:
+        raise refuse(f"law: '{name}' (SHA-256 {sha256[:16]}…) is not the Python law that the campaign was flown with",
+                     f"'{flown_name}' (SHA-256 {flown_sha256[:16]}…)")
+    return campaign, sha256

@@ -48,7 +48,7 @@ class History:
             raise KeyError(f"the history has no column {name!r}") from None
 
     def frame(self):
-        """A pandas.DataFrame over the same memory."""
+        """A pandas.DataFrame of shape (rows, columns) over the same memory. Needs pandas."""
         import pandas
         return pandas.DataFrame(self.rows, columns=self.columns, copy=False)
 
@@ -56,9 +56,10 @@ class History:
 class Flight:
     """One flight.
 
-    `case`: its index, None for the nominal flight. `outcome`: "completed", "lost_control", ...; `reason`: one
-    sentence, empty when completed. `inputs`, `metrics`: dicts of floats, in the units of their names; an undefined
-    metric is NaN. `digest`: of the flight's bits, 32 hexadecimal digits. `history`: a History, or None.
+    `case`: its index, None for the nominal flight. `outcome`: "completed", "lost_control", ...; `reason`: one sentence,
+    empty when completed; `end_time_s`: since lift-off; `end_stage`: from 1. `inputs`, `metrics`: dicts of floats, in the
+    units of their names; an undefined metric is NaN. `digest`: of the flight's bits, 32 hexadecimal digits. `history`: a
+    History, or None.
     """
 
     def __init__(self, campaign, case, values, history):
@@ -78,6 +79,7 @@ class Flight:
 
     @property
     def completed(self):
+        """Whether it reached the end of the last burn: `outcome` is "completed"."""
         return self.outcome == "completed"
 
 
@@ -113,13 +115,15 @@ class Flights:
                       self.history(i))
 
     def history(self, i):
-        """The History of flight i: rows of `histories`, not a copy. None without histories."""
+        """The History of flight i (a position, not a case's index): rows of `histories`, not a copy. None without
+        histories."""
         if self.histories is None:
             return None
         return History(self.histories[self.offsets[i]:self.offsets[i + 1]], self.columns)
 
     def sample(self, column, times_s):
-        """A column of every flight at these times, linear between rows; NaN after its end: shape (flights, times)."""
+        """A column of every flight at these times, linear between rows; NaN after its end: shape (flights, times).
+        Raises BadInput without histories of `time_s` and the column."""
         times = numpy.asarray(times_s, dtype=float)
         if self.histories is None or not {"time_s", column} <= set(self.columns):
             raise BadInput(f"sample: the flights have no histories with time_s and {column}")

@@ -11,7 +11,7 @@ from . import _core
 from ._arguments import MOST_CASES, MOST_THREADS, refuse, whole
 from ._source import placed, source
 from ._tables import structured
-from ._campaign import Campaign, _from_canonical, load
+from ._campaign import Campaign, _from_canonical, load, under_law
 from .errors import BadInput, ExitCode, Incomplete, InternalError, ReplayMismatch
 from ._flight import History
 
@@ -22,8 +22,10 @@ class Results:
     """A result folder, as it is on the disk when it is opened.
 
     `directory`: a pathlib.Path. `exit_code`: the verdict as the program's exit code: 0 every requirement met, 3 one
-    failed, 4 more cases needed, 5 cases missing. `inputs`, `metrics`: structured arrays of shape (cases,), a float64
-    field a name; an undefined metric is NaN.
+    failed, 4 more cases needed, 5 cases missing. `engine`: the version that flew it. In the order of `case_index`, arrays of
+    shape (cases,) or lists as long: `case_index`, `outcome`, `end_time_s` (since lift-off), `end_stage` (from 1), `reason`,
+    `digest`. `inputs`, `metrics`: structured arrays of shape (cases,), a float64 field a name, in the unit of the name; an
+    undefined metric is NaN.
     """
 
     def __init__(self, directory):
@@ -72,6 +74,21 @@ class Results:
         """Path of report.html."""
         return self.directory / "report.html"
 
+    def worst(self, metric, count=1):
+        """Indices of the worst cases in a metric, a list of at most `count`, the worst first: as in the report, lost flights
+        before all others, then by the value in its bad sense. Raises BadInput for a metric that there is not."""
+        if metric not in self.metrics.dtype.names:
+            raise refuse(f"worst: '{metric}' is not a metric of this vehicle", "a name of Campaign.metric_names")
+        worse = _core.describe(metric)[3]
+        if worse == "neither":
+            raise refuse(f"worst: of '{metric}' neither sense is worse", "a metric that has a worse sense")
+        values = self.metrics[metric]
+        badness = {"larger": values, "smaller": -values, "farther_from_zero": numpy.abs(values)}[worse]
+        completed = numpy.array([outcome == "completed" for outcome in self.outcome], dtype=bool)
+        badness = numpy.where(completed, badness, numpy.inf)
+        order = [i for i in numpy.argsort(-badness, kind="stable") if not numpy.isnan(badness[i])]
+        return [int(self.case_index[i]) for i in order[:whole("count", count, 1)]]
+
     def table(self):
         """A structured array of shape (cases,) with the columns of cases.csv."""
         names = ([("case_index", "u8"), ("outcome", "U24"), ("end_time_s", "f8"), ("end_stage", "i4"), ("reason", object)]
@@ -107,7 +124,8 @@ class Results:
         return self._csv("bands.csv")
 
     def history(self, case=None):
-        """A History that the report wrote: of a case that it shows, or without one of the nominal flight."""
+        """A History that the report wrote: of a case that it shows, or without one of the nominal flight. Raises BadInput
+        for a case that it does not show."""
         return self._csv("nominal.csv" if case is None else f"case_{int(case)}.csv")
 
     def _csv(self, name):
@@ -119,10 +137,11 @@ class Results:
             columns = stream.readline().strip().split(",")
             return History(numpy.genfromtxt(stream, delimiter=",", ndmin=2), columns)
 
-    def replay(self, case):
-        """Flies a stored case again; a dict with its digest. Raises ReplayMismatch unless it is the same to the last
-        bit."""
-        answer = json.loads(_core.replay(os.fspath(self.directory), whole("case", case, 0, MOST_CASES)))
+    def replay(self, case, *, law=None):
+        """Flies a stored case again; a dict with its digest. `law`: the control law in Python that it was flown with, if
+        it was. Raises ReplayMismatch unless it is the same to the last bit, BadInput without that law."""
+        answer = json.loads(_core.replay(os.fspath(self.directory), whole("case", case, 0, MOST_CASES), law,
+                                         _law_of(self.campaign, law)))
         if not answer["match"]:
             error = ReplayMismatch(f"case {case} is not reproduced: "
                                    + "; ".join(f"{d['name']} stored {d['stored']}, replayed {d['replayed']}"
@@ -150,7 +169,7 @@ def worker_program():
 
 def run(what, out="", *, cases=None, seed=None, autopilot=None, base=None, workers=None, threads=0, resume=False,
         histories=True, envelope=ENVELOPE, progress=None, peer=None, domain=0, address="", keys="", insecure=False,
-        priority=0):
+        priority=0, law=None, axes=("pitch",)):
     """Flies a campaign and writes its result folder, as `dispersa run` does. Returns its Results.
 
     `what`: a Campaign, a path, or a dict. `out`: the folder, new or empty unless `resume`; default
@@ -161,6 +180,11 @@ def run(what, out="", *, cases=None, seed=None, autopilot=None, base=None, worke
     `peer` ("HOST[:PORT]"): the coordinator there flies it, in DDS domain `domain`, and the folder is fetched; `keys` is
     the folder of the client's keys, `insecure` says that there are none, `priority` that of `dispersa launch`.
 
+    `law`, `axes`: a control law in Python, as of Campaign.fly, flown by this process alone: `workers=0` must be said. Name
+    and hash of what the law does (its bytecode, what it closes over and refers to) are part of the campaign, hence of its
+    ids; the law itself is in no file. So nobody without it flies these cases again, as the report says, and `replay`,
+    `report` and `resume` want it as `law` too. Nominal and first cases are flown twice, and a law that differs is refused.
+
     The verdict is a value: Results.exit_code. Raises BadInput; Incomplete, with `results`, when cases are missing;
     InternalError, with `results`, when results contradict each other. Ctrl-C raises KeyboardInterrupt: what was flown is
     kept, and `resume` goes on.
@@ -170,6 +194,12 @@ def run(what, out="", *, cases=None, seed=None, autopilot=None, base=None, worke
         campaign = what
     else:
         campaign = load(what, base=base, **overrides)
+    sha256 = ""
+    if law is not None:
+        if workers != 0 or peer is not None:
+            raise refuse("law: a control law in Python flies in this process alone, and workers=0 is to say so",
+                         "workers=0; for workers and coordinators a law from a shared object")
+        campaign, sha256 = under_law(campaign, law, axes)
     if peer is not None:
         folder = os.fspath(out) or os.path.join("results", f"{campaign.name}-{campaign.id[:8]}")
         code = _core.run_remotely(campaign.name, campaign.canonical_yaml, folder, whole("domain", domain, 0, 99), peer, address, keys, insecure,
@@ -180,14 +210,27 @@ def run(what, out="", *, cases=None, seed=None, autopilot=None, base=None, worke
         folder, code, problem = _core.run(campaign.name, campaign.canonical_yaml, os.fspath(out), resume,
                                           -1 if workers is None else whole("workers", workers, 0, MOST_THREADS),
                                           whole("threads", threads, 0, MOST_THREADS), program,
-                                          whole("envelope", envelope, 1) if histories else None, progress)
+                                          whole("envelope", envelope, 1) if histories else None, progress, law, sha256)
     return _judge(folder, code, problem)
 
 
-def report(directory, *, histories=True, envelope=ENVELOPE, progress=None):
-    """Makes the reports of a result folder again, as `dispersa report` does; its Results. Arguments as of run."""
-    _core.report(os.fspath(directory), whole("envelope", envelope, 1) if histories else None, progress)
+def report(directory, *, histories=True, envelope=ENVELOPE, progress=None, law=None):
+    """Makes the reports of a result folder (a path or Results) again, as `dispersa report` does; its Results. Arguments as
+    of run; what was flown with a control law in Python needs that `law` for histories. Raises BadInput."""
+    if isinstance(directory, Results):
+        directory = directory.directory
+    sha256 = "" if law is None else _law_of(Results(directory).campaign, law)
+    _core.report(os.fspath(directory), whole("envelope", envelope, 1) if histories else None, progress, law, sha256)
     return Results(directory)
+
+
+def _law_of(campaign, law):
+    """The hash of the law with which the campaign was flown. Raises BadInput unless `law` is that one."""
+    if law is None:
+        return ""
+    if campaign.python_law is None:
+        raise refuse("law: the campaign was flown with the autopilot that it holds", "no law")
+    return under_law(campaign, law, ())[1]
 
 
 def compare(a, b, *, metrics=(), out=""):
@@ -232,6 +275,7 @@ class Optimization(dict):
 
     @property
     def exit_code(self):
+        """An ExitCode: 0 if it is reached, 3 if it is missed."""
         return ExitCode.DONE if self.reached else ExitCode.REQUIREMENT_FAILED
 
 

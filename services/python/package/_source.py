@@ -69,5 +69,6 @@ def placed(name, text):
 
 
 def write(tree, path):
-    """Writes a tree as a file of YAML that `dispersa` reads. Names in it stay as they are: relative to its folder."""
+    """Writes a tree as a file of YAML that `dispersa` reads. Names in it stay as they are: relative to its folder. Raises
+    BadInput for what has no place in a file, OSError where it cannot be written."""
     pathlib.Path(path).write_text(text_of(tree))

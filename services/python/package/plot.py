@@ -55,7 +55,7 @@ def history(flights, columns, *, labels=None, axes=None):
     """Columns of the time history of one flight, or of several: a panel for each column.
 
     `flights`: a Flight or History, or a list of them; `labels`: of the list's. Returns the axes, an array of shape
-    (len(columns),).
+    (len(columns),). Raises BadInput for a flight without a history, KeyError for a column that it does not have.
     """
     several = list(flights) if isinstance(flights, (list, tuple, Flights)) else [flights]
     columns = [columns] if isinstance(columns, str) else list(columns)
@@ -82,7 +82,7 @@ def bands(what, column, *, nominal=True, ax=None):
     """How a history column spreads over the cases: least to largest, 5 to 95 % and median of the flights still flying.
 
     `what`: Results, whose report has made the bands, or Flights with histories of `time_s` and the column. `nominal`:
-    of Results, with the nominal flight.
+    of Results, with the nominal flight. Raises BadInput for a column that the report has no bands of.
     """
     with style():
         ax = _axes(ax)
@@ -113,7 +113,7 @@ def bands(what, column, *, nominal=True, ax=None):
 
 def exceedance(results, metric, *, ax=None):
     """The share of completed flights in which a metric exceeds a value, with Clopper's and Pearson's limits of 95 % at
-    each value, and the requirements' limits."""
+    each value, and the requirements' limits. Raises BadInput for a metric that no completed flight defines."""
     values = numpy.sort(_completed(results, metric))
     n = values.size
     if n == 0:
@@ -139,7 +139,8 @@ def exceedance(results, metric, *, ax=None):
 
 def drivers(results, metric, *, count=3, axes=None):
     """A metric of the completed flights against the inputs that drive it most, each with the share of the variance that
-    it explains by itself. Returns the axes, an array of at most `count`."""
+    it explains by itself. Returns the axes, an array of shape (at most `count`,). Raises BadInput for a metric of which the
+    report names no drivers."""
     found = [driver for driver in results.summary["drivers"].get(metric, [])]
     if not found:
         raise BadInput([("", 0, 0, "", f"drivers: the report names none of '{metric}'",
@@ -161,7 +162,7 @@ def drivers(results, metric, *, count=3, axes=None):
 
 def ground_track(flights, *, labels=None, ax=None):
     """Where flights are above the Earth, from lift-off to the end of each: longitude and latitude, to scale at the middle
-    of the picture. `flights`: a Flight or History, Flights, or a list."""
+    of the picture. `flights`: a Flight or History, Flights, or a list. Raises BadInput for a flight without a history."""
     several = list(flights) if isinstance(flights, (list, tuple, Flights)) else [flights]
     histories = [_history_of(each) for each in several]
     with style():
