@@ -1,5 +1,6 @@
 /* Proportional-derivative control that misbehaves as it is compiled: -D DISPERSA_MISBEHAVES=<one of the numbers below>. */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -25,6 +26,8 @@
 #define FORKS 16           /* and the child of the child goes on, the pipe in its hands */
 #define CLOSES_FILES 17    /* all of them, in step, and hangs */
 #define HANGS_AT_THE_END 18 /* where objects are unloaded */
+#define COUNTS_FLIGHTS 19   /* a byte each in the file that FLIGHTS_FILE names */
+#define DIFFERS_BY_WORKER 20 /* by the process that flies it: its parent's number */
 
 #ifndef DISPERSA_MISBEHAVES
 #define DISPERSA_MISBEHAVES 0
@@ -56,6 +59,10 @@ __attribute__((destructor)) static void at_the_end(void) {
 int dispersa_law_create(const dispersa_law_setup* setup, void* memory) {
   (void)setup;
   (void)memory;
+  if (DISPERSA_MISBEHAVES == COUNTS_FLIGHTS) {
+    FILE* file = fopen(getenv("FLIGHTS_FILE"), "a");
+    if (file == NULL || fputc('.', file) == EOF || fclose(file) != 0) return 1;
+  }
   return 0;
 }
 
@@ -126,6 +133,9 @@ int dispersa_law_step(const dispersa_law_input* input, dispersa_law_output* outp
     }
     case KEEPS_A_GLOBAL:
       output->command[DISPERSA_PITCH] *= 1.0 + 1e-12 * global_count++;
+      break;
+    case DIFFERS_BY_WORKER:
+      output->command[DISPERSA_PITCH] *= 1.0 + 1e-12 * getppid();
       break;
     case ROUNDS_UP: {
       unsigned mode = 0;

@@ -235,6 +235,14 @@ class PluginTest(unittest.TestCase):
                                            r"\d), flown twice, at \d+\.\d+ s \w+ is \S+ once and \S+ again")
             self.assertFalse((out / "results.sqlite").exists())
 
+    def test_the_check_flies_each_flight_twice(self):
+        counted = self.folder / "flights"
+        os.environ["FLIGHTS_FILE"] = str(counted)
+        self.addCleanup(os.environ.pop, "FLIGHTS_FILE")
+        self.run_cases("counts", self.law("COUNTS_FLIGHTS"))
+        # The nominal flight and two cases, then the campaign.
+        self.assertEqual(counted.stat().st_size, 2 * 3 + CASES)
+
     def test_one_that_always_crashes_is_refused_at_once(self):
         _, ended = self.campaign_run("always", self.law("CRASHES_ALWAYS"))
         self.assertEqual(ended.returncode, 2, ended.stderr)
