@@ -57,7 +57,7 @@ int ServeCampaign(const ServeOptions& options, const CampaignRequest& request,
   Every progress_period(kProgress_s);
   Attendance attendance(options.network.domain, patience_s);
   std::optional<Watchdog> watchdog(std::in_place, options.again);
-  while (!book.Complete() && !StopRequested()) {
+  while (!book.refusal() && !book.Complete() && !StopRequested()) {
     coordinator.Step(kRound);
     watchdog->Note(coordinator.Hears(), true);
     if (!attendance.Check(coordinator.joined() > 0, coordinator.now_s())) {
@@ -75,6 +75,10 @@ int ServeCampaign(const ServeOptions& options, const CampaignRequest& request,
   // First what would be lost. Workers are sent home by a campaign that is complete on the disk and by nothing
   // else: a coordinator that stops, or is killed here, finds them again when it is back.
   book.Flush();
+  if (book.refusal()) {
+    coordinator.Dismiss();
+    throw InputError(*book.refusal());
+  }
   if (book.IsAudited()) spdlog::info("{} results were flown again and agree", book.confirmed());
   ReportOptions report;
   report.threads = UsableCores();
