@@ -1,5 +1,4 @@
 // dispersa-coordinator: serves the campaigns of clients, or one campaign, to the workers that come.
-#include <fmt/format.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
@@ -17,6 +16,7 @@
 #include "services/coordinator/whole_number.h"
 #include "services/program/command_line.h"
 #include "services/program/completion_words.h"
+#include "services/program/failure.h"
 #include "services/transport/admission.h"
 #include "services/transport/exit_code.h"
 
@@ -35,7 +35,7 @@ int Main(int argc, char** argv) {
       "told to stop. With a campaign: serves that one, writes its reports and ends.",
       "dispersa-coordinator");
   bool json = false;
-  BeginCommandLine(app, json, "with --version, and of an unusable command line: one JSON object");
+  BeginCommandLine(app, json, "with --version, and of an error: one JSON object");
   std::string data;
   bool health = false;
   double audit = 0.0;
@@ -76,14 +76,13 @@ int Main(int argc, char** argv) {
       "         dispersa-coordinator campaigns/table3.yaml --out results/table3 --address 127.0.0.1");
   if (const auto code = ParseCommandLine(app, argc, argv)) return *code;
   if (int(health) + int(!data.empty()) + int(!request.campaign.name.empty()) != 1) {
-    fmt::print(stderr, "one of --data, a campaign, or --health is needed\n");
-    return kExitBadInput;
+    return EndFor(InputError("one of --data, a campaign, or --health is needed"), json);
   }
   if (request.campaign.name == kStandardInput) {
-    fmt::print(stderr,
-               "the campaign cannot come from standard input: a coordinator may start itself again, "
-               "allowed: a campaign file\n");
-    return kExitBadInput;
+    return EndFor(
+        InputError("the campaign cannot come from standard input: a coordinator may start itself again",
+                   "a campaign file"),
+        json);
   }
   CatchStopSignals();
   try {
@@ -99,17 +98,16 @@ int Main(int argc, char** argv) {
     if (!data.empty()) return ServeClients(options, data, metrics_port);
     return ServeCampaign(options, request, patience_s);
   } catch (const InputError& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return kExitBadInput;
+    return EndFor(error, json);
+  } catch (const Failure& failure) {
+    return EndFor(failure, json);
   } catch (const NetworkError& error) {
-    spdlog::error("{}", error.what());
-    return kExitBadInput;
+    return EndFor(Failure{kExitBadInput, error.what()}, json);
   } catch (const ResultError& error) {
-    spdlog::error("{}", error.what());
-    return error.kind() == ResultError::Kind::kDiskFull ? kExitIncomplete : kExitInternalError;
+    const bool is_full = error.kind() == ResultError::Kind::kDiskFull;
+    return EndFor(Failure{is_full ? kExitIncomplete : kExitInternalError, error.what()}, json);
   } catch (const std::exception& error) {
-    spdlog::error("{}", error.what());
-    return kExitInternalError;
+    return EndFor(Failure{kExitInternalError, error.what()}, json);
   }
 }
 

@@ -16,6 +16,7 @@
 #include "services/coordinator/stop_signal.h"
 #include "services/coordinator/threads.h"
 #include "services/coordinator/watchdog.h"
+#include "services/program/failure.h"
 #include "services/transport/client_link.h"
 #include "services/transport/exit_code.h"
 
@@ -62,8 +63,9 @@ int ServeCampaign(const ServeOptions& options, const CampaignRequest& request,
     watchdog->Note(coordinator.Hears(), true);
     if (!attendance.Check(coordinator.joined() > 0, coordinator.now_s())) {
       book.Flush();
-      spdlog::error("no worker for {:.0f} s: given up; the same with --resume goes on", *patience_s);
-      return kExitIncomplete;
+      throw Failure{
+          kExitIncomplete,
+          fmt::format("no worker for {:.0f} s: given up; the same with --resume goes on", *patience_s)};
     }
     if (progress_period.IsDue(coordinator.now_s())) {
       const LedgerProgress progress = book.ledger().Progress();
@@ -92,8 +94,7 @@ int ServeCampaign(const ServeOptions& options, const CampaignRequest& request,
     fmt::print("result: {}\n", book.folder().directory().string());
     return CampaignExitCode(summary.verdict, book.ledger().Progress().conflicts);
   } catch (const StoppedServing&) {
-    spdlog::warn("stopped; the same with --resume goes on");
-    return kExitInterrupted;
+    throw Failure{kExitInterrupted, "stopped; the same with --resume goes on"};
   }
 }
 
@@ -131,8 +132,7 @@ int AskHealth(const NetworkOptions& network, const std::string& host) {
   ClientLink client(network, {host, CoordinatorPort(network.domain)});
   const auto reply = client.Call("health", "{}", "", kHealthPatience);
   if (reply && reply->code == 0) return 0;
-  spdlog::error("the coordinator of domain {} does not answer", network.domain);
-  return kExitIncomplete;
+  throw Failure{kExitIncomplete, fmt::format("the coordinator of domain {} does not answer", network.domain)};
 }
 
 }  // namespace dispersa

@@ -115,11 +115,14 @@ class LawsTest(ServiceCase):
     def test_beyond_the_loopback_interface_it_has_to_be_allowed(self):
         _, campaign = self.campaign(0)
         # Refused before anything is sent.
-        refused = subprocess.run([BINARIES / "dispersa-coordinator", campaign, "--insecure", "--out", self.data / "out"],
+        refused = subprocess.run([BINARIES / "dispersa-coordinator", campaign, "--insecure", "--out", self.data / "out",
+                                  "--json"],
                                  capture_output=True, text=True, timeout=PATIENCE_S)
         self.assertEqual(refused.returncode, 2, refused.stderr)
         self.assertIn("plugin.library: the control law is a shared object, which is run here only where --allow-plugins "
                       "says so", refused.stderr)
+        error = json.loads(refused.stdout)
+        self.assertEqual((error["code"], error["errors"][0]["path"]), (2, "autopilot.plugin.library"))
 
 
 if __name__ == "__main__":
