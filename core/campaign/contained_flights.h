@@ -13,7 +13,7 @@ CaseResult FlyContained(const CampaignFlights& flights, const FlightInputs& inpu
 /// ended is flown again, each case in a child of its own; one that ends it again is given up.
 void FlyContained(const CampaignFlights& flights, CaseQueue& queue);
 
-/// Flies the nominal flight and the first two cases side by side, and each again alone, in children of their
+/// Flies the nominal flight and the first two cases twice, side by side and each alone, in children of their
 /// own, and compares them tick by tick. Nothing for a campaign without plug-in. Throws InputError when they
 /// differ, with the first instant at which they do, and when the nominal flight ends its process. Cases that
 /// end theirs are left to whoever flies the campaign.

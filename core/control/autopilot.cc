@@ -45,11 +45,7 @@ AutopilotModel BuildAutopilot(const AutopilotConfig& config, std::vector<StageCo
 void StartStage(const AutopilotModel& model, int stage, AutopilotState& state) {
   for (std::size_t axis = 0; axis < kAxes; ++axis) {
     const AxisConfig& config = model.laws[axis].config;
-    const LawInfo& law = InfoOf(config.law);
-    // What was learnt is a departure from the start of the stage before; it is carried over.
-    if (stage == 0 || law.augmentation || (law.rules && config.adaptation.reset_at_ignition) ||
-        (law.integral && config.integral.reset_at_ignition))
-      ResetAxis(state.axes[axis]);
+    lanes::WithLaw(config.law, [&](auto law) { decltype(law)::StartStage(config, stage, state.axes[axis]); });
     state.axes[axis].saturation = state.axes[axis].model_started = 0.0;
     for (double (&memory)[2] : state.axes[axis].filters) memory[0] = memory[1] = 0.0;
     state.thrusters[axis] = ThrusterState{};

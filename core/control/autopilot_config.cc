@@ -155,6 +155,9 @@ std::vector<AutopilotProblem> Problems(const AutopilotConfig& autopilot, int sta
                                                                  : "roll.law";
     problems.push_back({axis, "is a plug-in's, and the autopilot names none", "plugin: {library: FILE}"});
   }
+  if (PluginAxes(autopilot) == 0 && autopilot.plugin)
+    problems.push_back(
+        {"plugin", "is the law of no axis", "law: plugin of pitch, yaw or roll, or no plugin"});
   return problems;
 }
 

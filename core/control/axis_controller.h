@@ -4,7 +4,8 @@
 // plant is e'' = -u + disturbance and b = 1 > 0 as (18) and (32) need; the paper's (14) has the opposite
 // sign, u = -delta.
 //
-// Everything here is plain data; the law itself is axis_step.h, written once for any number of flights.
+// Everything here is plain data; the laws themselves are law.h and axis_step.h, written once for any number
+// of flights.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +17,7 @@
 
 namespace dispersa {
 
-/// The law of one axis in one stage: doubles only, those of AxisStage (axis_step.h).
+/// The law of one axis in one stage: doubles only, those of AxisStage (law.h).
 struct StageLaw {
   double kp_1_s2 = 0.0;
   double kd_1_s = 0.0;
@@ -49,7 +50,7 @@ AxisLaw BuildAxisLaw(const AxisConfig& config, double tick_s);
 /// The law in a stage at a time since its ignition.
 StageLaw LawAt(const AxisLaw& law, int stage, double since_ignition_s);
 
-/// All memory of one axis, made afresh for each flight: values of 64 bits, those of AxisMemory (axis_step.h).
+/// All memory of one axis, made afresh for each flight: values of 64 bits, those of AxisMemory (law.h).
 struct AxisState {
   double departure_rad_s2[kFuzzyRules] = {};  ///< of the consequents from their start
   std::uint64_t rules_fired = 0;              ///< bit i: rule i has fired

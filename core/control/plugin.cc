@@ -54,6 +54,16 @@ void Find(void* handle, const char* name, Function& function) {
   if (function == nullptr) throw PluginError(std::string("has no function '") + name + "'");
 }
 
+// Far beyond any limit, and far from what overflows in the filters behind a law.
+constexpr double kLargestCommand_rad_s2 = 1e100;
+// By axis.
+constexpr const char* kNoFiniteCommand[] = {"the plug-in's roll command is no finite number",
+                                            "the plug-in's pitch command is no finite number",
+                                            "the plug-in's yaw command is no finite number"};
+constexpr const char* kTooLargeCommand[] = {"the plug-in's roll command is beyond 1e100 rad/s^2",
+                                            "the plug-in's pitch command is beyond 1e100 rad/s^2",
+                                            "the plug-in's yaw command is beyond 1e100 rad/s^2"};
+
 std::string Checked(const char* text) { return text == nullptr ? "" : text; }
 
 }  // namespace
@@ -160,9 +170,10 @@ bool PluginFlight::Step(const dispersa_law_input& input, double* command_rad_s2)
   const bool deflects = law_.description().command == DISPERSA_LAW_DEFLECTION;
   for (int axis = 0; axis < DISPERSA_LAW_AXES; ++axis) {
     if (!(axes_ >> axis & 1u)) continue;
-    const double command = output.command[axis];
-    if (!std::isfinite(command)) return Succeeded(1, "the plug-in commanded what is no finite number");
-    command_rad_s2[axis] = deflects ? command * input.effectiveness_1_s2[axis] : command;
+    const double command = output.command[axis] * (deflects ? input.effectiveness_1_s2[axis] : 1.0);
+    if (!std::isfinite(command)) return Succeeded(1, kNoFiniteCommand[axis]);
+    if (std::fabs(command) > kLargestCommand_rad_s2) return Succeeded(1, kTooLargeCommand[axis]);
+    command_rad_s2[axis] = command;
   }
   std::copy(output.telemetry, output.telemetry + kLawTelemetry, telemetry_.begin());
   return true;

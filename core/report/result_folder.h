@@ -93,7 +93,7 @@ class ResultFolder : public ResultStore {
   bool Contains(std::uint64_t case_index) const;
   /// The stored result, NULL as NaN. InputError if there is none; ResultError if its row does not fit its
   /// fingerprint.
-  CaseResult Load(std::uint64_t case_index) const;
+  CaseResult Load(std::uint64_t case_index) const override;
   /// Calls back with each result in ascending order of index; holds one at a time.
   void ForEach(const std::function<void(const CaseResult&)>& callback) const;
 

@@ -45,6 +45,8 @@ class ResultStore {
   virtual void Store(std::span<const CaseResult> results, std::span<const ExecutionRecord> records) = 0;
   virtual void Quarantine(const QuarantinedCase& quarantined) = 0;
   virtual std::vector<std::pair<std::uint64_t, Digest>> Fingerprints() const = 0;
+  /// The stored result of a case that has one.
+  virtual CaseResult Load(std::uint64_t case_index) const = 0;
   /// Who returned the result of a case.
   virtual std::optional<std::string> WorkerOf(std::uint64_t case_index) const = 0;
   /// These results were flown again and are right.

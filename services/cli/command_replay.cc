@@ -24,12 +24,13 @@ struct ReplayOptions {
 };
 
 void PrintText(std::FILE* stream, const CaseResult& stored, const CaseResult& replayed,
-               const std::vector<ReplayDifference>& differences) {
+               const std::vector<ResultDifference>& differences) {
   fmt::print(stream, "case {}: {}, {}\ndigest {}\n", stored.case_index,
              differences.empty() ? "reproduced to the last bit" : "NOT reproduced", OutcomeText(replayed),
              replayed.digest.Hex());
-  for (const ReplayDifference& difference : differences) {
-    fmt::print(stream, "{:<44} stored {}, replayed {}\n", difference.name, difference.stored, difference.replayed);
+  for (const ResultDifference& difference : differences) {
+    fmt::print(stream, "{:<44} stored {}, replayed {}\n", difference.name, difference.first,
+               difference.second);
   }
 }
 

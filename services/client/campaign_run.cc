@@ -74,7 +74,7 @@ class CampaignRun {
                          count);
     std::optional<std::string> problem;
     double joined_s = Now();
-    while (!book_.Complete() && !problem) {
+    while (!book_.refusal() && !book_.Complete() && !problem) {
       if (observer_.Stop()) {
         workers.End(0.0);
         Note(workers);
@@ -118,7 +118,7 @@ class CampaignRun {
         std::unique_lock lock(mutex_);
         if (run_.observer_.Stop() || problem_ || hopeless_) return;
         try {
-          if (run_.book_.Complete()) return;  // else the plan may have asked for more
+          if (run_.book_.refusal() || run_.book_.Complete()) return;  // else the plan may have asked for more
         } catch (...) {
           problem_ = std::current_exception();
           return;
@@ -128,7 +128,7 @@ class CampaignRun {
     }
     std::optional<std::uint64_t> Next(bool) override {
       const std::lock_guard lock(mutex_);
-      if (run_.observer_.Stop() || problem_ || hopeless_) return std::nullopt;
+      if (run_.observer_.Stop() || problem_ || hopeless_ || run_.book_.refusal()) return std::nullopt;
       try {
         if (waiting_.empty()) {
           for (const Assignment& assignment : run_.book_.ledger().Assign(run_.Now()))
@@ -160,8 +160,7 @@ class CampaignRun {
     void GivenUp(std::uint64_t case_index, const std::string& reason) override {
       const std::lock_guard lock(mutex_);
       if (problem_) return;
-      run_.book_.ledger().GiveUp(kSelf, case_index, attempts_.extract(case_index).mapped(), reason,
-                                 run_.Now());
+      run_.book_.GiveUp(kSelf, case_index, attempts_.extract(case_index).mapped(), reason, run_.Now());
       if (const auto given_up = run_.book_.ledger().Progress().quarantined;
           given_up >= kHopelessCases && run_.book_.flown_now() == 0)
         hopeless_ = fmt::format("the first {} cases ended every process that flew them, the last one: {}", given_up,
@@ -275,6 +274,12 @@ RunResult FlyAndReport(const RunOptions& options, OpenedCampaign opened, Executi
   }
   observer.EndPhase();
   note_end();
+  if (book.refusal()) {
+    execution.problem = book.refusal();
+    execution.ended_utc = UtcNow();
+    execution.Write();
+    throw InputError(*book.refusal());
+  }
   if (execution.problem) {
     LogError("{}", *execution.problem);
     code = WorseOf(code, kExitIncomplete);

@@ -26,8 +26,9 @@ struct RunResult {
   std::optional<std::string> problem;  ///< why cases are missing, if they are for want of workers
 };
 
-/// Flies what is missing, writes the reports and execution.json. What goes wrong with single cases and workers
-/// is logged. Throws Interrupted when the observer wants it to stop, and ResultError; what was flown is kept.
+/// Flies what is missing, writes the reports and execution.json. What goes wrong with single cases and
+/// workers is logged. Throws InputError when the campaign's control law turns out not to be deterministic,
+/// Interrupted when the observer wants it to stop, and ResultError; what was flown is kept.
 RunResult RunCampaign(OpenedCampaign opened, const RunOptions& options, Observer& observer);
 
 }  // namespace dispersa

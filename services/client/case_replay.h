@@ -3,25 +3,19 @@
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
-#include <string>
 #include <vector>
 
 #include "core/campaign/case_result.h"
 #include "core/flight/history.h"
+#include "core/report/result_differences.h"
 #include "services/client/stored_campaign.h"
 
 namespace dispersa {
 
-struct ReplayDifference {
-  std::string name;  ///< of the column in cases.csv
-  std::string stored;
-  std::string replayed;
-};
-
 struct CaseReplay {
   CaseResult stored;
   CaseResult replayed;
-  std::vector<ReplayDifference> differences;  ///< none: reproduced to the last bit
+  std::vector<ResultDifference> differences;  ///< none: reproduced to the last bit
 };
 
 /// `history`, if given, receives the flight's. A folder of another engine is warned about. Errors as

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "services/program/failure.h"
 #include "services/transport/admission.h"
 #include "services/transport/client_link.h"
 #include "services/transport/exit_code.h"
@@ -19,12 +20,6 @@ struct SessionOptions {
   std::string peer = "127.0.0.1";
   std::string address;
   Admission admission;
-};
-
-/// What ends a command.
-struct Failure {
-  ExitCode code;
-  std::string message;
 };
 
 /// One connection to a coordinator. Throws Failure, with the code and the words of the coordinator when it

@@ -1,10 +1,14 @@
 #include "services/coordinator/campaign_book.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <limits>
 #include <utility>
 
 #include "core/flight/engine_version.h"
 #include "core/report/fingerprint.h"
+#include "core/report/result_differences.h"
 #include "services/coordinator/utc.h"
 #include "services/log/log.h"
 
@@ -13,6 +17,7 @@ namespace {
 
 constexpr double kFlushPeriod_s = 0.5;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr std::uint64_t kFlownTwice = 2;   // first cases of a campaign with a plug-in, by two workers
 constexpr std::size_t kFlushCount = 4000;  // 4 MB; at 20,000 results/s five transactions a second
 
 /// With what the folder holds already, so that the target is where an interrupted run left it.
@@ -58,6 +63,9 @@ CampaignBook::CampaignBook(const Campaign& campaign, std::unique_ptr<ResultStore
   for (const auto& [case_index, fingerprint] : store_->Fingerprints()) {
     if (case_index < cases) ledger_.MarkDone(case_index, fingerprint);
   }
+  if (!campaign_.autopilot.plugin) return;
+  for (std::uint64_t i = 0; i < std::min(cases, kFlownTwice); ++i)
+    ledger_.WantTwice(i, store_->WorkerOf(i).value_or(""));
 }
 
 void CampaignBook::KeepTally() {
@@ -103,6 +111,31 @@ void CampaignBook::Dispute(Claim claim) {
   audit_->Add(claim);
 }
 
+void CampaignBook::Refuse(std::uint64_t case_index, const std::string& worker,
+                          const std::string& difference) {
+  if (refusal_) return;
+  refusal_ = fmt::format(
+      "the control law {} is not deterministic: of case {}, flown by worker {} and again by {}, {}",
+      campaign_.autopilot.plugin->name, case_index, store_->WorkerOf(case_index).value_or("another"), worker,
+      difference);
+}
+
+void CampaignBook::RefuseForDifference(const std::string& worker, const CaseResult& result) {
+  Flush();
+  const std::vector<ResultDifference> differences = Differences(store_->Load(result.case_index), result);
+  if (differences.empty()) return;
+  const ResultDifference& first = differences.front();
+  Refuse(result.case_index, worker,
+         fmt::format("{} is '{}' once and '{}' again", first.name, first.first, first.second));
+}
+
+void CampaignBook::GiveUp(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,
+                          const std::string& reason, double now_s) {
+  if (!ledger_.GiveUp(worker, case_index, attempt, reason, now_s)) return;
+  Flush();
+  Refuse(case_index, worker, "the flight ended well once, and again " + reason);
+}
+
 bool CampaignBook::Complete() {
   if (!ledger_.Complete() || (audit_ && !audit_->IsSettled())) return false;
   std::vector<std::uint64_t> given_up;
@@ -136,7 +169,12 @@ Acceptance CampaignBook::Accept(const std::string& worker, const std::string& ho
       if (audit_) audit_->Consider(claim);
       break;
     case Acceptance::kConflict:
-      if (audit_) Dispute(claim);
+      if (audit_) {
+        Dispute(claim);
+      } else if (campaign_.autopilot.plugin) {
+        RefuseForDifference(worker, result);
+        if (refusal_) break;
+      }
       LogError("case {}: worker {} on {} returned other bits than were returned before: {}",
                result.case_index, worker, host,
                audit_ ? "it is flown again here"

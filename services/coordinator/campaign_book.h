@@ -43,6 +43,10 @@ class CampaignBook {
   bool Complete();
   std::uint64_t flown_now() const { return flown_now_; }  ///< accepted since construction
 
+  /// Why its results cannot be believed, in words for the user: its control law is not deterministic. Nothing
+  /// of it needs to be flown any more.
+  const std::optional<std::string>& refusal() const { return refusal_; }
+
   /// Counts from what the store holds; to be called before the first result.
   void KeepTally();
   /// How the requirements stand by what has been accepted, in a book that keeps a tally.
@@ -64,15 +68,21 @@ class CampaignBook {
 
   void Start(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt, double now_s);
   /// A result that differs from the one already accepted is logged, stored nowhere, and counted as a conflict
-  /// in the ledger's progress, until an audit tells who is wrong.
+  /// in the ledger's progress, until an audit tells who is wrong. Without audit it refuses a campaign whose
+  /// control law is a plug-in.
   Acceptance Accept(const std::string& worker, const std::string& host, std::uint64_t attempt,
                     const CaseResult& result, double now_s);
+  /// Ledger::GiveUp. A case that another worker could fly refuses the campaign, if two were to fly it.
+  void GiveUp(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,
+              const std::string& reason, double now_s);
   /// Stores what has gathered if it is time to. True: all that was accepted so far is stored.
   bool FlushIfDue(double now_s);
   void Flush();
 
  private:
   void Dispute(Claim claim);
+  void Refuse(std::uint64_t case_index, const std::string& worker, const std::string& difference);
+  void RefuseForDifference(const std::string& worker, const CaseResult& result);
 
   Campaign campaign_;
   std::unique_ptr<ResultStore> store_;
@@ -80,6 +90,7 @@ class CampaignBook {
   std::optional<RunningTally> tally_;
   std::optional<Audit> audit_;
   std::uint64_t confirmed_ = 0;
+  std::optional<std::string> refusal_;
   Ledger ledger_;
   std::vector<CaseResult> results_;
   std::vector<ExecutionRecord> records_;

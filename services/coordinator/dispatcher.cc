@@ -216,8 +216,8 @@ std::vector<const FlownCase*> Dispatcher::On(const std::string& sender, const Re
       continue;
     }
     if (flown.given_up) {
-      book.ledger().GiveUp(report.worker, flown.result.case_index, follows ? flown.attempt : 0,
-                           Printable(flown.result.reason, 1000), now_s);
+      book.GiveUp(report.worker, flown.result.case_index, follows ? flown.attempt : 0,
+                  Printable(flown.result.reason, 1000), now_s);
       continue;
     }
     if (flown.result.inputs.size() != InputCount(book.campaign().vehicle.stages.size())) {

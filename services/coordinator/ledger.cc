@@ -30,6 +30,11 @@ void Ledger::MarkDone(std::uint64_t case_index, const Digest& fingerprint) {
   ++progress_.done;
 }
 
+void Ledger::WantTwice(std::uint64_t case_index, const std::string& flown_by) {
+  assert(case_index < cases_.size());
+  twice_[case_index].first = flown_by;
+}
+
 void Ledger::Extend(std::uint64_t cases) {
   assert(cases >= cases_.size());
   if (cases == cases_.size()) return;
@@ -42,6 +47,7 @@ void Ledger::Reopen(const std::vector<std::uint64_t>& cases) {
   for (const std::uint64_t case_index : cases) {
     if (case_index >= cases_.size() || cases_[case_index].state != State::kDone) continue;
     --progress_.done;
+    if (const auto twice = twice_.find(case_index); twice != twice_.end()) twice->second = {};
     Return(case_index);
   }
 }
@@ -97,23 +103,28 @@ void Ledger::Settle(const std::string& worker, std::uint64_t case_index, std::ui
   }
 }
 
-void Ledger::GiveUp(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,
+bool Ledger::GiveUp(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,
                     const std::string& reason, double now_s) {
   const auto entry = workers_.find(worker);
-  if (case_index >= cases_.size() || entry == workers_.end()) return;
+  if (case_index >= cases_.size() || entry == workers_.end()) return false;
   const auto held = entry->second.held.find(case_index);
   // Of nobody else: others fly it, or have flown it.
-  if (held == entry->second.held.end() || held->second.attempt != attempt) return;
+  if (held == entry->second.held.end() || held->second.attempt != attempt) return false;
   held->second.started_s.reset();  // how long it took says nothing of the others
   Settle(worker, case_index, attempt, now_s);
   Case& given_up = cases_[case_index];
-  if (given_up.state == State::kDone || given_up.state == State::kQuarantined) return;
+  if (const auto twice = twice_.find(case_index);
+      twice != twice_.end() && given_up.state == State::kDone && twice->second.first != worker) {
+    return !std::exchange(twice->second.is_settled, true);
+  }
+  if (given_up.state == State::kDone || given_up.state == State::kQuarantined) return false;
   if (given_up.state == State::kWaiting) waiting_.Remove(case_index);
   if (given_up.state == State::kSuspect) suspects_.Remove(case_index);
   blames_[case_index].push_back(reason);
   given_up_.insert(case_index);
   given_up.state = State::kQuarantined;
   ++progress_.quarantined;
+  return false;
 }
 
 Acceptance Ledger::Finished(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,
@@ -121,7 +132,9 @@ Acceptance Ledger::Finished(const std::string& worker, std::uint64_t case_index,
   Settle(worker, case_index, attempt, now_s);
   if (case_index >= cases_.size()) return Acceptance::kUnknown;
   Case& flown = cases_[case_index];
+  const auto twice = twice_.find(case_index);
   if (flown.state == State::kDone) {
+    if (twice != twice_.end() && twice->second.first != worker) twice->second.is_settled = true;
     if (flown.fingerprint != fingerprint) {
       ++progress_.conflicts;
       return Acceptance::kConflict;
@@ -135,6 +148,7 @@ Acceptance Ledger::Finished(const std::string& worker, std::uint64_t case_index,
   blames_.erase(case_index);
   given_up_.erase(case_index);
   flown = {State::kDone, fingerprint};
+  if (twice != twice_.end()) twice->second.first = worker;
   ++progress_.done;
   return Acceptance::kAccepted;
 }
@@ -147,7 +161,8 @@ void Ledger::Lost(const std::string& worker, WorkerEnd end, const std::string& r
   const auto held = std::move(entry->second.held);
   workers_.erase(entry);
   for (const auto& [case_index, how] : held) {
-    if (cases_[case_index].state != State::kAssigned) continue;  // another worker's late result came
+    Drop(case_index, blames && how.started_s);
+    if (cases_[case_index].state != State::kAssigned) continue;  // another worker's result came
     if (blames && how.started_s) {
       Blame(case_index, reason);
     } else {
@@ -173,6 +188,7 @@ std::vector<std::string> Ledger::Expire(double now_s) {
     worker.alone = false;
     worker.stuck = true;
     for (const auto& [case_index, how] : held) {
+      Drop(case_index, how.started_s && now_s - *how.started_s > lease_s);
       if (cases_[case_index].state != State::kAssigned) continue;
       if (how.started_s && now_s - *how.started_s > lease_s) {
         Blame(case_index, "no result within its lease");
@@ -187,10 +203,10 @@ std::vector<std::string> Ledger::Expire(double now_s) {
 std::vector<Assignment> Ledger::Assign(double now_s) {
   std::vector<Assignment> assignments;
   // One assignment a worker in turn, so that few cases spread over all workers.
-  for (bool given = true; given && !waiting_.Empty();) {
+  for (bool given = true; given && (!waiting_.Empty() || MayBeWantedAgain());) {
     given = false;
     for (auto& [id, worker] : workers_) {
-      if (waiting_.Empty()) break;
+      if (waiting_.Empty() && !MayBeWantedAgain()) break;
       if (auto assignment = GiveTo(id, 0, now_s)) {
         assignments.push_back(*std::move(assignment));
         given = true;
@@ -211,6 +227,9 @@ std::optional<Assignment> Ledger::GiveTo(const std::string& worker, std::uint64_
   Worker& to = entry->second;
   if (to.stuck || to.leaving || to.alone || to.batches.size() + elsewhere >= to.hello.credits)
     return std::nullopt;
+  // First what may show that nothing more needs to be flown.
+  if (std::vector<std::uint64_t> again = WantedAgainOf(worker, to); !again.empty())
+    return Give(worker, to, std::move(again), now_s);
   if (!waiting_.Empty()) return Give(worker, to, waiting_.TakeRun(BatchSize()), now_s);
   if (suspects_.Empty() || !to.held.empty() || elsewhere > 0) return std::nullopt;
   to.alone = true;
@@ -250,7 +269,46 @@ bool Ledger::IsAlone(const std::string& worker) const {
   return entry != workers_.end() && entry->second.alone;
 }
 
-bool Ledger::Complete() const { return progress_.done + progress_.quarantined == progress_.total; }
+bool Ledger::Complete() const {
+  if (progress_.done + progress_.quarantined != progress_.total) return false;
+  return std::none_of(twice_.begin(), twice_.end(), [this](const auto& each) {
+    if (!IsWantedAgain(each.first, each.second)) return false;
+    return std::any_of(workers_.begin(), workers_.end(), [&](const auto& other) {
+      const auto& [id, worker] = other;
+      return id != each.second.first &&
+             (worker.held.contains(each.first) || (!worker.stuck && !worker.leaving));
+    });
+  });
+}
+
+bool Ledger::IsWantedAgain(std::uint64_t case_index, const Twice& twice) const {
+  return !twice.is_settled && cases_[case_index].state == State::kDone;
+}
+
+bool Ledger::MayBeWantedAgain() const {
+  return std::any_of(twice_.begin(), twice_.end(), [this](const auto& each) {
+    return IsWantedAgain(each.first, each.second) && !each.second.is_flown;
+  });
+}
+
+std::vector<std::uint64_t> Ledger::WantedAgainOf(const std::string& id, const Worker& worker) const {
+  std::vector<std::uint64_t> wanted;
+  for (const auto& [case_index, twice] : twice_) {
+    if (IsWantedAgain(case_index, twice) && !twice.is_flown && twice.first != id &&
+        !worker.held.contains(case_index))
+      wanted.push_back(case_index);
+  }
+  return wanted;
+}
+
+void Ledger::Drop(std::uint64_t case_index, bool blames) {
+  const auto twice = twice_.find(case_index);
+  if (twice == twice_.end()) return;
+  twice->second.is_flown = false;
+  if (blames && cases_[case_index].state == State::kDone &&
+      ++twice->second.blames >= options_.blames_to_quarantine)
+    twice->second.is_settled = true;
+}
 
 LedgerProgress Ledger::Progress() const {
   LedgerProgress progress = progress_;
@@ -286,7 +344,11 @@ Assignment Ledger::Give(const std::string& id, Worker& worker, std::vector<std::
   if (worker.held.empty()) worker.last_report_s = now_s;  // an idle worker has nothing to report
   const std::uint64_t attempt = next_attempt_++;
   for (const std::uint64_t case_index : cases) {
-    cases_[case_index].state = State::kAssigned;
+    if (cases_[case_index].state == State::kDone) {
+      twice_.at(case_index).is_flown = true;
+    } else {
+      cases_[case_index].state = State::kAssigned;
+    }
     worker.held[case_index] = Held{attempt, std::nullopt};
   }
   worker.batches[attempt] = cases.size();
@@ -296,6 +358,7 @@ Assignment Ledger::Give(const std::string& id, Worker& worker, std::vector<std::
 void Ledger::Release(Worker& worker, std::map<std::uint64_t, Held>::iterator held) {
   const auto batch = worker.batches.find(held->second.attempt);
   if (--batch->second == 0) worker.batches.erase(batch);
+  Drop(held->first, false);
   worker.held.erase(held);
   if (worker.held.empty()) worker.alone = false;
 }

@@ -82,6 +82,11 @@ class Ledger {
   /// A case whose result exists already (resume). Before any assignment.
   void MarkDone(std::uint64_t case_index, const Digest& fingerprint);
 
+  /// Two workers shall fly this case, if two attend: the one that did not fly it first does so as soon as it
+  /// has a result. Nothing is complete before, as long as somebody is there who could. `flown_by`: of a case
+  /// that is done already; empty if nobody knows.
+  void WantTwice(std::uint64_t case_index, const std::string& flown_by = "");
+
   /// Adds cases at the end: there are so many in all from now on.
   void Extend(std::uint64_t cases);
 
@@ -99,8 +104,8 @@ class Ledger {
   Acceptance Finished(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,
                       const Digest& fingerprint, double now_s);
   /// The worker survived what the case does to every process that flies it: it is quarantined at once, unless
-  /// it has a result.
-  void GiveUp(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,
+  /// it has a result. True: another worker has flown it, and this one was to do the same.
+  bool GiveUp(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,
               const std::string& reason, double now_s);
   /// The worker is gone: its cases return to the queue. `reason` is kept with each blame.
   void Lost(const std::string& worker, WorkerEnd end, const std::string& reason);
@@ -137,6 +142,13 @@ class Ledger {
     State state = State::kWaiting;
     Digest fingerprint;
   };
+  /// Of a case that two workers shall fly.
+  struct Twice {
+    std::string first;        ///< who returned its result; empty: nobody, or nobody knows
+    bool is_flown = false;    ///< now, for the second time
+    bool is_settled = false;  ///< another worker has flown it, or cannot
+    int blames = 0;           ///< of workers that were to
+  };
   struct Held {
     std::uint64_t attempt = 0;
     std::optional<double> started_s;
@@ -151,6 +163,11 @@ class Ledger {
     bool leaving = false;
   };
 
+  bool IsWantedAgain(std::uint64_t case_index, const Twice& twice) const;
+  bool MayBeWantedAgain() const;
+  std::vector<std::uint64_t> WantedAgainOf(const std::string& id, const Worker& worker) const;
+  // A worker holds it no longer, without a result.
+  void Drop(std::uint64_t case_index, bool blames);
   double Lease() const;
   std::uint64_t BatchSize() const;
   Assignment Give(const std::string& id, Worker& worker, std::vector<std::uint64_t> cases, double now_s);
@@ -167,6 +184,7 @@ class Ledger {
   IndexSet suspects_;
   std::map<std::uint64_t, std::vector<std::string>> blames_;  ///< case index -> reasons
   std::set<std::uint64_t> given_up_;
+  std::map<std::uint64_t, Twice> twice_;  ///< by case index
   std::map<std::string, Worker> workers_;
   std::uint64_t next_attempt_ = 1;
   std::uint64_t slots_ = 0;

@@ -9,8 +9,9 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <stdexcept>
 #include <utility>
+
+#include "services/transport/network.h"
 
 namespace dispersa {
 namespace {
@@ -32,7 +33,7 @@ MetricsPort::MetricsPort(std::uint16_t port) {
       listen(socket_, 16) != 0) {
     const std::string reason = std::strerror(errno);
     if (socket_ >= 0) close(socket_);
-    throw std::runtime_error("metrics: port " + std::to_string(port) + " of 127.0.0.1: " + reason);
+    throw NetworkError("metrics: port " + std::to_string(port) + " of 127.0.0.1: " + reason);
   }
   thread_ = std::jthread([this](const std::stop_token& stop) { Serve(stop); });
 }

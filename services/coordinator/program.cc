@@ -1,7 +1,5 @@
 #include "services/coordinator/program.h"
 
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <optional>
@@ -17,6 +15,7 @@
 #include "services/log/log.h"
 #include "services/program/command_line.h"
 #include "services/program/completion_words.h"
+#include "services/program/failure.h"
 #include "services/transport/admission.h"
 #include "services/transport/exit_code.h"
 
@@ -33,7 +32,7 @@ int RunCoordinator(int argc, char** argv) {
       "told to stop. With a campaign: serves that one, writes its reports and ends.",
       "dispersa-coordinator");
   bool json = false;
-  BeginCommandLine(app, json, "with --version, and of an unusable command line: one JSON object");
+  BeginCommandLine(app, json, "with --version, and of an error: one JSON object");
   std::string data;
   bool health = false;
   double audit = 0.0;
@@ -74,14 +73,13 @@ int RunCoordinator(int argc, char** argv) {
       "         dispersa-coordinator campaigns/table3.yaml --out results/table3 --address 127.0.0.1");
   if (const auto code = ParseCommandLine(app, argc, argv)) return *code;
   if (int(health) + int(!data.empty()) + int(!request.campaign.name.empty()) != 1) {
-    fmt::print(stderr, "one of --data, a campaign, or --health is needed\n");
-    return kExitBadInput;
+    return EndFor(InputError("one of --data, a campaign, or --health is needed"), json);
   }
   if (request.campaign.name == kStandardInput) {
-    fmt::print(stderr,
-               "the campaign cannot come from standard input: a coordinator may start itself again, "
-               "allowed: a campaign file\n");
-    return kExitBadInput;
+    return EndFor(
+        InputError("the campaign cannot come from standard input: a coordinator may start itself again",
+                   "a campaign file"),
+        json);
   }
   CatchStopSignals();
   try {
@@ -97,17 +95,16 @@ int RunCoordinator(int argc, char** argv) {
     if (!data.empty()) return ServeClients(options, data, metrics_port);
     return ServeCampaign(options, request, patience_s);
   } catch (const InputError& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return kExitBadInput;
+    return EndFor(error, json);
+  } catch (const Failure& failure) {
+    return EndFor(failure, json);
   } catch (const NetworkError& error) {
-    LogError("{}", error.what());
-    return kExitBadInput;
+    return EndFor(Failure{kExitBadInput, error.what()}, json);
   } catch (const ResultError& error) {
-    LogError("{}", error.what());
-    return error.kind() == ResultError::Kind::kDiskFull ? kExitIncomplete : kExitInternalError;
+    const bool is_full = error.kind() == ResultError::Kind::kDiskFull;
+    return EndFor(Failure{is_full ? kExitIncomplete : kExitInternalError, error.what()}, json);
   } catch (const std::exception& error) {
-    LogError("{}", error.what());
-    return kExitInternalError;
+    return EndFor(Failure{kExitInternalError, error.what()}, json);
   }
 }
 

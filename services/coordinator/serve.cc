@@ -16,6 +16,7 @@
 #include "services/coordinator/threads.h"
 #include "services/coordinator/watchdog.h"
 #include "services/log/log.h"
+#include "services/program/failure.h"
 #include "services/transport/client_link.h"
 #include "services/transport/exit_code.h"
 
@@ -57,13 +58,14 @@ int ServeCampaign(const ServeOptions& options, const CampaignRequest& request,
   Every progress_period(kProgress_s);
   Attendance attendance(options.network.domain, patience_s);
   std::optional<Watchdog> watchdog(std::in_place, options.again);
-  while (!book.Complete() && !StopRequested()) {
+  while (!book.refusal() && !book.Complete() && !StopRequested()) {
     coordinator.Step(kRound);
     watchdog->Note(coordinator.Hears(), true);
     if (!attendance.Check(coordinator.joined() > 0, coordinator.now_s())) {
       book.Flush();
-      LogError("no worker for {:.0f} s: given up; the same with --resume goes on", *patience_s);
-      return kExitIncomplete;
+      throw Failure{
+          kExitIncomplete,
+          fmt::format("no worker for {:.0f} s: given up; the same with --resume goes on", *patience_s)};
     }
     if (progress_period.IsDue(coordinator.now_s())) {
       const LedgerProgress progress = book.ledger().Progress();
@@ -75,6 +77,10 @@ int ServeCampaign(const ServeOptions& options, const CampaignRequest& request,
   // First what would be lost. Workers are sent home by a campaign that is complete on the disk and by nothing
   // else: a coordinator that stops, or is killed here, finds them again when it is back.
   book.Flush();
+  if (book.refusal()) {
+    coordinator.Dismiss();
+    throw InputError(*book.refusal());
+  }
   if (book.IsAudited()) LogInfo("{} results were flown again and agree", book.confirmed());
   ReportOptions report;
   report.threads = UsableCores();
@@ -88,8 +94,7 @@ int ServeCampaign(const ServeOptions& options, const CampaignRequest& request,
     fmt::print("result: {}\n", book.folder().directory().string());
     return CampaignExitCode(summary.verdict, book.ledger().Progress().conflicts);
   } catch (const StoppedServing&) {
-    LogWarning("stopped; the same with --resume goes on");
-    return kExitInterrupted;
+    throw Failure{kExitInterrupted, "stopped; the same with --resume goes on"};
   }
 }
 
@@ -127,8 +132,7 @@ int AskHealth(const NetworkOptions& network, const std::string& host) {
   ClientLink client(network, {host, CoordinatorPort(network.domain)});
   const auto reply = client.Call("health", "{}", "", kHealthPatience);
   if (reply && reply->code == 0) return 0;
-  LogError("the coordinator of domain {} does not answer", network.domain);
-  return kExitIncomplete;
+  throw Failure{kExitIncomplete, fmt::format("the coordinator of domain {} does not answer", network.domain)};
 }
 
 }  // namespace dispersa

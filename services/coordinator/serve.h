@@ -1,4 +1,5 @@
-// What dispersa-coordinator does, once it knows what is wanted. Each returns the exit code.
+// What dispersa-coordinator does, once it knows what is wanted. Each returns the exit code of what went as it
+// should, and throws Failure, InputError, NetworkError or ResultError.
 #pragma once
 
 #include <cstdint>

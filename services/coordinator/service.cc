@@ -42,6 +42,7 @@ Service::~Service() {
 }
 
 void Service::Step() {
+  CloseRefused();
   CloseComplete();
   FinishReport();
   StartReport();
@@ -52,6 +53,18 @@ void Service::Step() {
 
 void Service::Flush() {
   for (auto& [id, flying] : flying_) flying.book->Flush();
+}
+
+// Its results stay where they are, without a report.
+void Service::CloseRefused() {
+  std::vector<std::string> refused;
+  for (const auto& [id, flying] : flying_) {
+    if (flying.book->refusal()) refused.push_back(id);
+  }
+  for (const std::string& id : refused) {
+    const Book book = TakeBack(id);
+    End(catalogue_.At(id), CampaignState::kFailed, kExitBadInput, *book->refusal());
+  }
 }
 
 void Service::CloseComplete() {

@@ -88,6 +88,7 @@ class Service {
     std::future<CampaignVerdict> verdict;
   };
 
+  void CloseRefused();
   void CloseComplete();
   void FinishReport();
   void StartReport();

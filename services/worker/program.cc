@@ -11,6 +11,7 @@
 #include "services/log/log.h"
 #include "services/program/command_line.h"
 #include "services/program/completion_words.h"
+#include "services/program/failure.h"
 #include "services/transport/admission.h"
 #include "services/transport/exit_code.h"
 #include "services/worker/worker.h"
@@ -29,7 +30,7 @@ int RunWorker(int argc, char** argv) {
       "hands back the rest and leaves; a second one ends it at once.",
       "dispersa-worker");
   bool json = false;
-  BeginCommandLine(app, json, "with --version, and of an unusable command line: one JSON object");
+  BeginCommandLine(app, json, "with --version, and of an error: one JSON object");
   app.add_option("--domain", options.network.domain, "DDS domain")
       ->envname("DISPERSA_DOMAIN")
       ->check(CLI::Range(0, 99));
@@ -51,8 +52,7 @@ int RunWorker(int argc, char** argv) {
   try {
     ChosenEngine();
   } catch (const std::invalid_argument& error) {
-    LogError("{}", error.what());
-    return kExitBadInput;
+    return EndFor(Failure{kExitBadInput, error.what()}, json);
   }
 
   // Before any thread starts, so that every thread leaves the signals to the one that waits for them.
@@ -79,14 +79,13 @@ int RunWorker(int argc, char** argv) {
       pthread_sigmask(SIG_UNBLOCK, &ends, nullptr);
       std::raise(signal);
     }).detach();
-    const WorkerExit exit = worker.Run();
-    code = exit == WorkerExit::kRefused || exit == WorkerExit::kNoCoordinator ? kExitIncomplete : kExitDone;
+    worker.Run();
+    code = worker.problem().empty() ? kExitDone : EndFor(Failure{kExitIncomplete, worker.problem()}, json);
     std::_Exit(code);  // the other threads still use what a return would destroy
   } catch (const NetworkError& error) {
-    LogError("{}", error.what());
-    code = kExitBadInput;
+    code = EndFor(Failure{kExitBadInput, error.what()}, json);
   } catch (const std::exception& error) {
-    LogError("{}", error.what());
+    code = EndFor(Failure{kExitInternalError, error.what()}, json);
   }
   return code;
 }

@@ -1,5 +1,6 @@
 #include "services/worker/worker.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -218,7 +219,7 @@ std::optional<WorkerExit> Worker::Exit(double now_s) {
   }
   if (!desk_.IsIdle()) busy_s_ = now_s;
   if (!desk_.refusal().empty()) {
-    LogError("refused by the coordinator: {}", desk_.refusal());
+    problem_ = fmt::format("refused by the coordinator: {}", desk_.refusal());
     return WorkerExit::kRefused;
   }
   if (desk_.left()) return WorkerExit::kTold;
@@ -233,8 +234,8 @@ std::optional<WorkerExit> Worker::Exit(double now_s) {
     if (desk_.IsFlying()) busy_since_drain_s_ = now_s;
   }
   if (options_.patience_s && now_s - heard_s_ > *options_.patience_s) {
-    LogError("no coordinator has answered at {}:{} for {:.0f} s; given up", options_.peer.host,
-             options_.peer.port, now_s - heard_s_);
+    problem_ = fmt::format("no coordinator has answered at {}:{} for {:.0f} s; given up", options_.peer.host,
+                           options_.peer.port, now_s - heard_s_);
     return WorkerExit::kNoCoordinator;
   }
   if (options_.idle_exit_s && now_s - busy_s_ > *options_.idle_exit_s) return WorkerExit::kIdle;

@@ -35,6 +35,8 @@ class Worker {
   /// Until it is told to leave, refused, drained, idle or alone for too long. The connection is closed when
   /// it returns.
   WorkerExit Run();
+  /// Why it gave up or was refused; else empty.
+  const std::string& problem() const { return problem_; }
   /// Finish what is flown, begin nothing more, then leave. From any thread; not from a signal handler.
   void Drain();
 
@@ -55,6 +57,7 @@ class Worker {
   double Now() const;
 
   WorkerOptions options_;
+  std::string problem_;
   std::chrono::steady_clock::time_point origin_ = std::chrono::steady_clock::now();
   double heard_s_ = 0.0, busy_s_ = 0.0, told_s_ = 0.0, draining_s_ = 0.0,
          busy_since_drain_s_ = 0.0;  ///< when it last was so; thread of Run

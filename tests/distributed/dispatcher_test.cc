@@ -24,10 +24,16 @@ class MemoryStore : public ResultStore {
  public:
   void Store(std::span<const CaseResult> results, std::span<const ExecutionRecord> records) override {
     stored += results.size();
+    for (const CaseResult& result : results) rows[result.case_index] = result;
     for (const ExecutionRecord& record : records) worker_of[record.case_index] = record.worker;
   }
   void Quarantine(const QuarantinedCase&) override {}
-  std::vector<std::pair<std::uint64_t, Digest>> Fingerprints() const override { return {}; }
+  std::vector<std::pair<std::uint64_t, Digest>> Fingerprints() const override {
+    std::vector<std::pair<std::uint64_t, Digest>> all;
+    for (const auto& [case_index, result] : rows) all.emplace_back(case_index, Fingerprint(result));
+    return all;
+  }
+  CaseResult Load(std::uint64_t case_index) const override { return rows.at(case_index); }
   std::optional<std::string> WorkerOf(std::uint64_t case_index) const override {
     const auto found = worker_of.find(case_index);
     return found == worker_of.end() ? std::nullopt : std::optional(found->second);
@@ -42,9 +48,11 @@ class MemoryStore : public ResultStore {
       if (who == worker) cases.push_back(case_index);
     }
     std::erase_if(worker_of, [&](const auto& each) { return each.second == worker; });
+    for (const std::uint64_t case_index : cases) rows.erase(case_index);
     stored -= cases.size();
     return cases;
   }
+  std::map<std::uint64_t, CaseResult> rows;
   std::map<std::uint64_t, std::string> worker_of;
   std::set<std::uint64_t> audited;
   std::size_t stored = 0;
@@ -462,6 +470,114 @@ TEST_F(AuditTest, SettlesWhoIsWrongWhenTwoContradictEachOther) {
     if (the_lie_comes_first) Return("honest", ResultOf(2), 4);
     EXPECT_TRUE(book_->Complete());
   }
+}
+
+// A campaign whose control law is a plug-in, and two workers.
+class PluginTest : public DispatcherTest {
+ protected:
+  void Open(std::uint64_t cases, const MemoryStore& stored = {}) {
+    Campaign campaign = MadeUp(kFlight, cases);
+    campaign.autopilot.plugin.emplace().name = "law";
+    auto store = std::make_unique<MemoryStore>(stored);
+    store_ = store.get();
+    dispatcher_.Close(kFlight);
+    book_ = std::make_unique<CampaignBook>(campaign, std::move(store));
+    dispatcher_.Open(*book_);
+  }
+  void Come(const std::string& worker) { dispatcher_.On(worker, Status(worker), 0.0); }
+  void Return(const std::string& worker, CaseResult result) {
+    dispatcher_.On(worker, Report{worker, kEpoch, 1, kFlight, {{0, std::move(result)}}, {}}, 0.0);
+  }
+  std::vector<std::uint64_t> Given(const std::string& worker) {
+    std::vector<std::uint64_t> cases;
+    for (const FlyOrder& order : Tick(0.0, worker).assignments)
+      cases.insert(cases.end(), order.cases.begin(), order.cases.end());
+    return cases;
+  }
+};
+
+TEST_F(PluginTest, TheFirstTwoCasesAreFlownByTwoWorkers) {
+  Open(3);
+  for (const char* worker : {"a", "b"}) Come(worker);
+  for (std::uint64_t i = 0; i < 3; ++i) Return("a", ResultOf(i));
+  EXPECT_FALSE(book_->Complete());
+  EXPECT_THAT(Given("b"), ElementsAre(0, 1));
+  EXPECT_THAT(Given("a"), IsEmpty());
+  for (std::uint64_t i = 0; i < 2; ++i) Return("b", ResultOf(i));
+  EXPECT_TRUE(book_->Complete());
+  EXPECT_EQ(book_->refusal(), std::nullopt);
+  EXPECT_EQ(Progress().conflicts, 0u);
+}
+
+TEST_F(PluginTest, AnotherResultRefusesTheCampaignAndNamesTheFirstColumnThatDiffers) {
+  Open(3);
+  for (const char* worker : {"a", "b"}) Come(worker);
+  CaseResult first = ResultOf(1), second = ResultOf(1);
+  first.metrics.assign(3, 0.25);
+  second.metrics = {0.25, 0.5, 0.75};
+  second.digest.low = 1;
+  Return("a", first);
+  Return("b", second);
+  EXPECT_EQ(book_->refusal(),
+            "the control law law is not deterministic: of case 1, flown by worker a and again by b, "
+            "metric_" +
+                MetricNames()[1] + " is '0.25' once and '0.5' again");
+}
+
+TEST_F(PluginTest, ASecondFlightThatIsGivenUpRefusesTheCampaign) {
+  Open(1);
+  for (const char* worker : {"a", "b"}) Come(worker);
+  Return("a", ResultOf(0));
+  dispatcher_.On("b", Status("b"), 0.0);
+  const Orders orders = Tick(0.0, "b");
+  ASSERT_EQ(orders.assignments.size(), 1u);
+  CaseResult given_up;
+  given_up.reason = "the control law ended by signal 11 (SIGSEGV)";
+  FlownCase flown{orders.assignments[0].attempt, given_up};
+  flown.given_up = true;
+  dispatcher_.On("b", Report{"b", kEpoch, 1, kFlight, {flown}, {}}, 0.0);
+  EXPECT_EQ(book_->refusal(),
+            "the control law law is not deterministic: of case 0, flown by worker a and again by b, the "
+            "flight ended well once, and again the control law ended by signal 11 (SIGSEGV)");
+}
+
+TEST_F(PluginTest, ACoordinatorThatIsStartedAgainStillWantsAnotherWorker) {
+  Open(2);
+  for (const char* worker : {"a", "b"}) Come(worker);
+  CaseResult other = ResultOf(0);
+  other.end_stage = 3;
+  Return("a", other);
+  Return("a", ResultOf(1));
+  book_->Flush();
+  Open(2, MemoryStore(*store_));
+  EXPECT_FALSE(book_->Complete());
+  EXPECT_THAT(Given("b"), ElementsAre(0, 1));
+  Return("a", other);  // what was not acknowledged is said again
+  EXPECT_EQ(book_->refusal(), std::nullopt);
+  Return("b", ResultOf(0));
+  EXPECT_EQ(book_->refusal(),
+            "the control law law is not deterministic: of case 0, flown by worker a and again by b, "
+            "end_stage is '3' once and '0' again");
+}
+
+TEST_F(PluginTest, AContradictionOfAnyCaseRefusesTheCampaign) {
+  Open(9);
+  for (const char* worker : {"a", "b"}) Come(worker);
+  Return("a", ResultOf(8));
+  CaseResult other = ResultOf(8);
+  other.reason = "lost";
+  Return("a", other);
+  EXPECT_THAT(book_->refusal().value_or(""),
+              testing::HasSubstr("of case 8, flown by worker a and again by a, reason is "
+                                 "'' once and 'lost' again"));
+}
+
+TEST_F(PluginTest, CampaignsWithoutPluginAreFlownOnce) {
+  DispatcherTest::Open(2);
+  for (const char* worker : {"a", "b"}) Come(worker);
+  for (std::uint64_t i = 0; i < 2; ++i) Return("a", ResultOf(i));
+  EXPECT_TRUE(book_->Complete());
+  EXPECT_THAT(Given("b"), IsEmpty());
 }
 
 }  // namespace

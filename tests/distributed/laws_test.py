@@ -7,12 +7,16 @@ import os
 import pathlib
 import shutil
 import subprocess
+import tempfile
 
-from processes import BINARIES, CAMPAIGN, PATIENCE_S, Run, main
+from processes import BINARIES, CAMPAIGN, PATIENCE_S, Run, main, stored, wait_for
 from service_case import ServiceCase
 
 SOURCE = pathlib.Path(os.environ["DISPERSA_SOURCE"])
 CASES = 24
+DIFFERS_BY_WORKER = 20
+REFUSAL = (r"the control law pd_test is not deterministic: of case \d+, flown by worker \S+ and again by \S+, "
+           r"metric_\w+ is '\S+' once and '\S+' again")
 
 
 class LawsTest(ServiceCase):
@@ -37,17 +41,29 @@ class LawsTest(ServiceCase):
         return path
 
     def campaign(self, behaviour):
-        reference = Run(self.root / f"reference{behaviour}", "--workers", 0, "--cases", CASES, "--autopilot",
+        reference = Run(pathlib.Path(tempfile.mkdtemp(dir=self.root)), "--workers", 0, "--cases", CASES, "--autopilot",
                         self.autopilot(behaviour)).finish()
         return reference, reference.out / "campaign.yaml"
 
     def test_a_service_flies_it(self):
         reference, campaign = self.campaign(0)
         self.start_coordinator()
-        self.start_worker("--slots", 2)
+        self.start_worker("--slots", 2)  # alone: nobody else could fly the first cases again
         identity = self.dispersa("launch", campaign).strip()
         self.dispersa("watch", identity, code=reference.code)
         self.assert_same_folder(identity, reference)
+
+    def test_two_workers_that_agree_fly_it(self):
+        reference, campaign = self.campaign(0)
+        self.start_coordinator()
+        for _ in range(2):
+            self.start_worker()
+        wait_for(lambda: len(json.loads(self.dispersa("status", "--json"))["workers"]) == 2, "two workers")
+        identity = self.dispersa("launch", campaign).strip()
+        self.dispersa("watch", identity, code=reference.code)
+        self.assert_same_folder(identity, reference)
+        # Two cases once more than there are.
+        self.assertEqual(sum(w["flown"] for w in json.loads(self.dispersa("status", "--json"))["workers"]), CASES + 2)
 
     def test_a_crash_takes_no_worker_with_it(self):
         reference, campaign = self.campaign(1)
@@ -64,14 +80,49 @@ class LawsTest(ServiceCase):
         self.assertIsNone(worker.poll())
         self.assertEqual([w["flown"] for w in json.loads(self.dispersa("status", "--json"))["workers"]], [CASES])
 
+    def test_results_that_differ_by_worker_refuse_the_campaign(self):
+        _, campaign = self.campaign(DIFFERS_BY_WORKER)
+        self.start_coordinator()
+        for _ in range(2):
+            self.start_worker()
+        wait_for(lambda: len(json.loads(self.dispersa("status", "--json"))["workers"]) == 2, "two workers")
+        identity = self.dispersa("launch", campaign).strip()
+        self.assertRegex(self.dispersa("watch", identity, code=2), REFUSAL)
+        self.assertEqual(self.status(identity)["state"], "failed")
+        self.assertRegex(self.status(identity)["problem"], REFUSAL)
+        self.assertFalse((self.fetch(identity) / "report.html").exists())
+
+    def test_a_coordinator_that_was_killed_still_asks_a_second_worker(self):
+        _, campaign = self.campaign(DIFFERS_BY_WORKER)
+        for attempt in range(2):
+            coordinator = self.start("dispersa-coordinator", campaign, "--cases", 20000, "--out", self.data / "out",
+                                     *["--resume"] * attempt)
+            self.start_worker()
+            if attempt == 0:
+                wait_for(lambda: stored(self.data / "out") > 1, "first results")
+                coordinator.kill()
+        self.assertEqual(coordinator.wait(timeout=PATIENCE_S), 2, self.log.read_text())
+        self.assertRegex(self.log.read_text(), REFUSAL)
+        self.assertLess(stored(self.data / "out"), 20000)
+
+    def test_a_run_on_local_workers_is_refused_too(self):
+        run = Run(self.root / "refused", "--workers", 2, "--cases", 2000, "--autopilot",
+                  self.autopilot(DIFFERS_BY_WORKER)).finish()
+        self.assertEqual(run.code, 2, run.stderr)
+        self.assertRegex(run.stderr, REFUSAL)
+        self.assertNotIn("result:", run.stdout)
+
     def test_beyond_the_loopback_interface_it_has_to_be_allowed(self):
         _, campaign = self.campaign(0)
         # Refused before anything is sent.
-        refused = subprocess.run([BINARIES / "dispersa-coordinator", campaign, "--insecure", "--out", self.data / "out"],
+        refused = subprocess.run([BINARIES / "dispersa-coordinator", campaign, "--insecure", "--out", self.data / "out",
+                                  "--json"],
                                  capture_output=True, text=True, timeout=PATIENCE_S)
         self.assertEqual(refused.returncode, 2, refused.stderr)
         self.assertIn("plugin.library: the control law is a shared object, which is run here only where --allow-plugins "
                       "says so", refused.stderr)
+        error = json.loads(refused.stdout)
+        self.assertEqual((error["code"], error["errors"][0]["path"]), (2, "autopilot.plugin.library"))
 
 
 if __name__ == "__main__":

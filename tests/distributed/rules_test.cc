@@ -23,6 +23,7 @@ class Nowhere : public ResultStore {
   void Store(std::span<const CaseResult>, std::span<const ExecutionRecord>) override {}
   void Quarantine(const QuarantinedCase&) override {}
   std::vector<std::pair<std::uint64_t, Digest>> Fingerprints() const override { return {}; }
+  CaseResult Load(std::uint64_t) const override { return {}; }
   std::optional<std::string> WorkerOf(std::uint64_t) const override { return std::nullopt; }
   void AppendAudits(std::span<const Claim>) override {}
   void ForEachUnaudited(const std::function<void(const Claim&)>&) const override {}

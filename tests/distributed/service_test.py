@@ -4,6 +4,7 @@ Environment as of processes.py.
 """
 import json
 import signal
+import socket
 import subprocess
 import time
 
@@ -119,6 +120,40 @@ class ServiceTest(ServiceCase):
         self.assertEqual(second.stderr.splitlines()[-1],
                          f"{self.data}: another dispersa process is writing this folder, allowed: another folder, or to "
                          "wait for that process to end")
+
+    def test_daemons_that_cannot_go_on_say_so_as_an_object(self):
+        self.start_coordinator()
+        wait_for(lambda: subprocess.run([BINARIES / "dispersa-coordinator", "--health", *self.NETWORK],
+                                        stderr=subprocess.DEVNULL).returncode == 0, "health")
+        busy = socket.create_server(("127.0.0.1", 0))
+        self.addCleanup(busy.close)
+        other, here = ["--domain", "35", "--address", "127.0.0.1"], ["--address", "127.0.0.1"]
+        bad = self.data / "bad.yaml"
+        bad.write_text("schema: dispersa/campaign/1\nname: [1]\n")
+        coordinator, worker = "dispersa-coordinator", "dispersa-worker"
+        for code, words, *command in (
+                (2, "another dispersa process is writing", coordinator, "--data", self.data, *other),
+                (2, "UDP port", coordinator, "--data", self.root / "more", *self.NETWORK),
+                (2, "metrics: port", coordinator, "--data", self.root / "more", "--metrics", busy.getsockname()[1], *other),
+                (2, "name", coordinator, bad, "--out", self.root / "bad", *other),
+                (2, "one of --data, a campaign, or --health is needed", coordinator, *other),
+                (2, "cannot come from standard input", coordinator, "-", *other),
+                (2, "without keys", coordinator, "--data", self.root / "more"),
+                (5, "does not answer", coordinator, "--health", *other),
+                (5, "no worker for 1 s", coordinator, CAMPAIGN, "--out", self.root / "nobody", "--patience", 1, *other),
+                (2, "peer '127.0.0.1:x'", worker, "--peer", "127.0.0.1:x", *here),
+                (2, "without keys", worker, "--peer", "192.0.2.1"),
+                (5, "no coordinator has answered", worker, "--peer", "127.0.0.1", "--patience", 1, *other)):
+            with self.subTest(words=words):
+                ended = subprocess.run([BINARIES / command[0], *map(str, command[1:]), "--json"], capture_output=True,
+                                       text=True, timeout=PATIENCE_S)
+                self.assertEqual(ended.returncode, code, ended.stderr)
+                error = json.loads(ended.stdout)
+                self.assertEqual((error["schema"], error["code"]), ("dispersa/error/1", code))
+                first = next(each for each in error["errors"] if words in each["path"] + each["message"])
+                self.assertIn(first["message"], ended.stderr)
+                if command[1] == bad:
+                    self.assertEqual((first["file"], first["line"], first["column"]), (str(bad), 2, 7))
 
     def test_several_clients_at_once_and_one_that_dies(self):
         self.start_coordinator()

@@ -51,6 +51,7 @@ class DiskStore : public ResultStore {
   std::vector<std::pair<std::uint64_t, Digest>> Fingerprints() const override {
     return {disk_.rows.begin(), disk_.rows.end()};
   }
+  CaseResult Load(std::uint64_t) const override { return {}; }
   std::optional<std::string> WorkerOf(std::uint64_t case_index) const override {
     return disk_.worker_of.at(case_index);
   }

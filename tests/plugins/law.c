@@ -1,5 +1,6 @@
 /* Proportional-derivative control that misbehaves as it is compiled: -D DISPERSA_MISBEHAVES=<one of the numbers below>. */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -14,7 +15,7 @@
 #define READS_THE_CLOCK 5
 #define KEEPS_A_GLOBAL 6   /* across flights */
 #define FAILS 7            /* says so, of one flight in four */
-#define COMMANDS_NAN 8     /* of one flight in four */
+#define COMMANDS_NAN 8     /* of one flight in four, in pitch */
 #define ROUNDS_UP 9        /* leaves the processor in another rounding mode */
 #define OTHER_ABI 10
 #define CRASHES_AT_ONCE 11 /* in describe */
@@ -25,6 +26,12 @@
 #define FORKS 16           /* and the child of the child goes on, the pipe in its hands */
 #define CLOSES_FILES 17    /* all of them, in step, and hangs */
 #define HANGS_AT_THE_END 18 /* where objects are unloaded */
+#define COUNTS_FLIGHTS 19   /* a byte each in the file that FLIGHTS_FILE names */
+#define DIFFERS_BY_WORKER 20 /* by the process that flies it: its parent's number */
+#define COMMANDS_INFINITY 21 /* of one flight in four, in yaw */
+#define DEFLECTS_FAR 22      /* of one flight in four, in roll: finite, but no finite acceleration */
+#define COMMANDS_MUCH 23     /* of one flight in four, in pitch: finite, but no filter could take it */
+#define TELLS_NAN 24         /* as telemetry */
 
 #ifndef DISPERSA_MISBEHAVES
 #define DISPERSA_MISBEHAVES 0
@@ -43,7 +50,8 @@ const dispersa_law_description* dispersa_law_describe(void) {
   static dispersa_law_description description = {DISPERSA_LAW_ABI, sizeof(struct memory),
                                                  DISPERSA_LAW_ANGULAR_ACCELERATION, 0, "pd_test", "1", 0};
   if (DISPERSA_MISBEHAVES == OTHER_ABI) description.abi = 77;
-  if (DISPERSA_MISBEHAVES == DEFLECTS) description.command = DISPERSA_LAW_DEFLECTION;
+  if (DISPERSA_MISBEHAVES == DEFLECTS || DISPERSA_MISBEHAVES == DEFLECTS_FAR)
+    description.command = DISPERSA_LAW_DEFLECTION;
   if (DISPERSA_MISBEHAVES == CRASHES_AT_ONCE) abort();
   return &description;
 }
@@ -56,6 +64,10 @@ __attribute__((destructor)) static void at_the_end(void) {
 int dispersa_law_create(const dispersa_law_setup* setup, void* memory) {
   (void)setup;
   (void)memory;
+  if (DISPERSA_MISBEHAVES == COUNTS_FLIGHTS) {
+    FILE* file = fopen(getenv("FLIGHTS_FILE"), "a");
+    if (file == NULL || fputc('.', file) == EOF || fclose(file) != 0) return 1;
+  }
   return 0;
 }
 
@@ -94,6 +106,15 @@ static int misbehave(dispersa_law_output* output) {
     case COMMANDS_NAN:
       output->command[DISPERSA_PITCH] = NAN;
       return 0;
+    case COMMANDS_INFINITY:
+      output->command[DISPERSA_YAW] = -INFINITY;
+      return 0;
+    case DEFLECTS_FAR:
+      output->command[DISPERSA_ROLL] = 1.7e308;
+      return 0;
+    case COMMANDS_MUCH:
+      output->command[DISPERSA_PITCH] = -1e300;
+      return 0;
   }
   return 0;
 }
@@ -103,9 +124,11 @@ int dispersa_law_step(const dispersa_law_input* input, dispersa_law_output* outp
   for (int axis = 0; axis < DISPERSA_LAW_AXES; ++axis) {
     output->command[axis] =
         fma(m->kp_1_s2[axis], input->angle_error_rad[axis], m->kd_1_s[axis] * input->rate_error_rad_s[axis]);
-    if (DISPERSA_MISBEHAVES == DEFLECTS) output->command[axis] /= input->effectiveness_1_s2[axis];
+    if (DISPERSA_MISBEHAVES == DEFLECTS || DISPERSA_MISBEHAVES == DEFLECTS_FAR)
+      output->command[axis] /= input->effectiveness_1_s2[axis];
   }
   output->telemetry[0] = input->since_ignition_s;
+  if (DISPERSA_MISBEHAVES == TELLS_NAN) output->telemetry[1] = NAN;
   if (!m->has_seen && input->time_s > 2.0) {
     /* Of dispersed flights alone: the nominal one has no roll. */
     unsigned long long bits;
@@ -126,6 +149,9 @@ int dispersa_law_step(const dispersa_law_input* input, dispersa_law_output* outp
     }
     case KEEPS_A_GLOBAL:
       output->command[DISPERSA_PITCH] *= 1.0 + 1e-12 * global_count++;
+      break;
+    case DIFFERS_BY_WORKER:
+      output->command[DISPERSA_PITCH] *= 1.0 + 1e-12 * getppid();
       break;
     case ROUNDS_UP: {
       unsigned mode = 0;

@@ -219,13 +219,30 @@ class PluginTest(unittest.TestCase):
 
     def test_failures_are_flights(self):
         for behaviour, reason in (("FAILS", "the plug-in's step failed"),
-                                  ("COMMANDS_NAN", "the plug-in commanded what is no finite number")):
+                                  ("COMMANDS_NAN", "the plug-in's pitch command is no finite number"),
+                                  ("COMMANDS_INFINITY", "the plug-in's yaw command is no finite number"),
+                                  ("DEFLECTS_FAR", "the plug-in's roll command is no finite number"),
+                                  ("COMMANDS_MUCH", "the plug-in's pitch command is beyond 1e100 rad/s^2")):
             out, ended = self.campaign_run(behaviour, self.law(behaviour))
             self.assertIn(ended.returncode, (3, 4), ended.stderr)
             cases = (out / "cases.csv").read_text()
             self.assertEqual(len(cases.splitlines()), CASES + 1)
-            self.assertIn("numerical_failure", cases)
-            self.assertIn(reason, cases)
+            failed = [row.split(",") for row in cases.splitlines() if ",numerical_failure," in row]
+            self.assertTrue(0 < len(failed) < CASES)
+            for row in failed:
+                self.assertEqual(row[4], reason)
+                self.assertAlmostEqual(float(row[2]), 3.0, delta=0.05)  # s: at once
+            self.assertNotRegex(cases, r"(?i)\b(nan|inf)\b")
+            self.assertIn(reason, (out / "report.html").read_text().replace("&#39;", "'"))
+
+    def test_telemetry_that_is_no_number_is_an_empty_cell(self):
+        autopilot = self.law("TELLS_NAN")
+        self.assertEqual(self.run_cases("tells_nan", autopilot).read_bytes(), self.pd)
+        history = self.folder / "tells_nan.csv"
+        flown = self.dispersa("fly", CAMPAIGNS / "table3.yaml", "--autopilot", autopilot, "--history", history)
+        self.assertEqual(flown.returncode, 0, flown.stderr)
+        head, *rows = (line.split(",") for line in history.read_text().splitlines())
+        self.assertEqual({row[head.index("law_telemetry_2")] for row in rows[2:20]}, {""})
 
     def test_what_is_not_deterministic_is_refused(self):
         for behaviour in ("READS_THE_CLOCK", "KEEPS_A_GLOBAL"):
@@ -234,6 +251,14 @@ class PluginTest(unittest.TestCase):
             self.assertRegex(ended.stderr, r"the control law pd_test is not deterministic: of (the nominal flight|case "
                                            r"\d), flown twice, at \d+\.\d+ s \w+ is \S+ once and \S+ again")
             self.assertFalse((out / "results.sqlite").exists())
+
+    def test_the_check_flies_each_flight_twice(self):
+        counted = self.folder / "flights"
+        os.environ["FLIGHTS_FILE"] = str(counted)
+        self.addCleanup(os.environ.pop, "FLIGHTS_FILE")
+        self.run_cases("counts", self.law("COUNTS_FLIGHTS"))
+        # The nominal flight and two cases, then the campaign.
+        self.assertEqual(counted.stat().st_size, 2 * 3 + CASES)
 
     def test_one_that_always_crashes_is_refused_at_once(self):
         _, ended = self.campaign_run("always", self.law("CRASHES_ALWAYS"))
@@ -269,6 +294,17 @@ class PluginTest(unittest.TestCase):
             checked = self.dispersa("validate", bad)
             self.assertEqual(checked.returncode, 2)
             self.assertRegex(checked.stdout + checked.stderr, place + words)
+
+    def test_a_plugin_is_the_law_of_some_axis(self):
+        self.compile("pd", SOURCE / "campaigns/control_laws/c/pd.c", flags=["-std=c99"])
+        bad = self.folder / "unused.yaml"
+        bad.write_text(built_in("pd").replace("name: pd\n", "name: pd\nplugin: {library: pd.so}\n"))
+        for command, file in (("validate", [bad]), ("fly", [CAMPAIGNS / "table3.yaml", "--autopilot", bad])):
+            checked = self.dispersa(command, *file)
+            self.assertEqual(checked.returncode, 2, checked.stderr)
+            self.assertRegex(checked.stdout + checked.stderr,
+                             r"\S+/unused\.yaml:3:9: (autopilot\.)?plugin: is the law of no axis, allowed: law: plugin of "
+                             r"pitch, yaw or roll, or no plugin\n$")
 
     def test_parameters_are_checked(self):
         self.compile("pid_filtered", SOURCE / "campaigns/control_laws/cpp/pid_filtered.cc", flags=["-std=c++17"])

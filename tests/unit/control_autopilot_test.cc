@@ -303,6 +303,18 @@ TEST(AutopilotProblems, PnMustHoldForEveryStage) {
                   "allow_unproven: true to study it"}));
 }
 
+TEST(AutopilotProblems, APluginIsTheLawOfAnAxisAndTheLawOfAnAxisIsThere) {
+  EXPECT_EQ(Texts(With([](auto& c) { c.plugin.emplace(); })),
+            (List{"plugin: is the law of no axis | law: plugin of pitch, yaw or roll, or no plugin"}));
+  EXPECT_EQ(Texts(With([](auto& c) { c.roll.law = ControlLaw::kPlugin; })),
+            (List{"roll.law: is a plug-in's, and the autopilot names none | plugin: {library: FILE}"}));
+  EXPECT_EQ(Texts(With([](auto& c) {
+              c.plugin.emplace();
+              c.roll.law = ControlLaw::kPlugin;
+            })),
+            List{});
+}
+
 TEST(AutopilotProblems, PnMustBePositive) {
   EXPECT_EQ(Texts(WithPn(-0.03125, 0.0825 / 14.0)),
             (List{"pitch.adaptation.p_n: is not positive: no positive definite P has this last column and "

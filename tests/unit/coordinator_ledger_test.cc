@@ -257,14 +257,143 @@ TEST(Ledger, TheLeaseGrowsWithTheLongestCase) {
   EXPECT_THAT(ledger.Expire(105.1), ElementsAre("a"));
 }
 
+// Cases that two workers shall fly.
+class Twice : public testing::Test {
+ protected:
+  Twice() {
+    for (std::uint64_t i = 0; i < 2; ++i) ledger_.WantTwice(i);
+  }
+  void Come(const std::string& worker) { ledger_.Join(worker, {"1", 1, 1}, now_s_); }
+  Acceptance Fly(const Assignment& given, std::uint64_t case_index, Digest result) {
+    ledger_.Started(given.worker, case_index, given.attempt, now_s_);
+    return ledger_.Finished(given.worker, case_index, given.attempt, result, now_s_);
+  }
+  void FlyAllAlone() {
+    Come("a");
+    for (auto given = ledger_.Assign(now_s_); !given.empty(); given = ledger_.Assign(now_s_)) {
+      for (const std::uint64_t i : given[0].cases) Fly(given[0], i, ResultOf(i));
+    }
+  }
+  Ledger ledger_{"1", 4, {.lease_s = 10.0, .blames_to_quarantine = 2, .side_by_side = 1}};
+  double now_s_ = 0.0;
+};
+
+TEST_F(Twice, OneWorkerAloneBringsItToItsEnd) {
+  FlyAllAlone();
+  EXPECT_TRUE(ledger_.Complete());
+  EXPECT_EQ(ledger_.Progress().duplicates, 0u);
+}
+
+TEST_F(Twice, AnotherWorkerFliesThemBeforeAllElse) {
+  Come("a");
+  const Assignment first = ledger_.Assign(0.0)[0];
+  EXPECT_EQ(first, (Assignment{"a", 1, {0}}));
+  Fly(first, 0, ResultOf(0));
+  Come("b");
+  const auto given = ledger_.Assign(0.0);
+  EXPECT_THAT(given, ElementsAre(Assignment{"a", 2, {1}}, Assignment{"b", 3, {0}}));
+  Come("c");
+  EXPECT_THAT(ledger_.Assign(0.0), ElementsAre(Assignment{"c", 4, {2}})) << "one of them is enough";
+  EXPECT_EQ(Fly(given[1], 0, ResultOf(0)), Acceptance::kDuplicate);
+  EXPECT_THAT(ledger_.Assign(0.0), ElementsAre(Assignment{"b", 5, {3}})) << "once again is enough";
+}
+
+TEST_F(Twice, IsNotCompleteWhileAnotherWorkerCouldFlyThem) {
+  FlyAllAlone();
+  Come("b");
+  EXPECT_FALSE(ledger_.Complete());
+  const auto given = ledger_.Assign(0.0);
+  ASSERT_THAT(given, ElementsAre(Assignment{"b", 5, {0, 1}}));
+  EXPECT_EQ(ledger_.Owed("b", 5), given[0].cases);
+  EXPECT_EQ(Fly(given[0], 0, ResultOf(0)), Acceptance::kDuplicate);
+  EXPECT_FALSE(ledger_.Complete());
+  EXPECT_EQ(Fly(given[0], 1, ResultOf(7)), Acceptance::kConflict);
+  EXPECT_TRUE(ledger_.Complete());
+  EXPECT_EQ(ledger_.Batches("b"), 0u);
+  EXPECT_EQ(ledger_.Progress().done, 4u);
+}
+
+TEST_F(Twice, AWorkerThatLeavesOwesNothing) {
+  FlyAllAlone();
+  Come("b");
+  ledger_.Assign(0.0);
+  ledger_.Withdraw("b", {0});
+  EXPECT_FALSE(ledger_.Complete()) << "it ends what it flies";
+  ledger_.Lost("b", WorkerEnd::kLeft, "left");
+  EXPECT_TRUE(ledger_.Complete());
+  Come("c");
+  EXPECT_THAT(ledger_.Assign(0.0), ElementsAre(Assignment{"c", 6, {0, 1}}));
+}
+
+TEST_F(Twice, ThoseThatEndOrHangTheirWorkersAreNotAskedForForEver) {
+  FlyAllAlone();
+  Come("b");
+  ledger_.Started("b", 0, ledger_.Assign(0.0)[0].attempt, 0.0);
+  ledger_.Lost("b", WorkerEnd::kCrashed, "signal 11");
+  Come("c");
+  ledger_.Started("c", 0, ledger_.Assign(0.0)[0].attempt, 0.0);
+  EXPECT_THAT(ledger_.Expire(11.0), ElementsAre("c"));
+  EXPECT_TRUE(ledger_.Complete()) << "a worker that hangs is not waited for";
+  ledger_.Idle("c");
+  EXPECT_THAT(ledger_.Assign(11.0), ElementsAre(Assignment{"c", 7, {1}}));
+  EXPECT_EQ(ledger_.Progress().done, 4u) << "their results stay";
+  EXPECT_THAT(ledger_.Quarantined(), IsEmpty());
+}
+
+TEST_F(Twice, TheSameWorkersResultSaidAgainIsNoSecondFlight) {
+  FlyAllAlone();
+  Come("b");
+  EXPECT_EQ(ledger_.Finished("a", 0, 1, ResultOf(0), 0.0), Acceptance::kDuplicate);
+  EXPECT_FALSE(ledger_.Complete());
+  EXPECT_THAT(ledger_.Assign(0.0)[0].cases, ElementsAre(0, 1));
+}
+
+TEST_F(Twice, WhatIsNotBelievedAnyMoreIsWantedTwiceAnew) {
+  FlyAllAlone();
+  Come("b");
+  const Assignment given = ledger_.Assign(0.0)[0];
+  for (const std::uint64_t i : {0, 1}) Fly(given, i, ResultOf(i));
+  ledger_.Reopen({0});
+  ledger_.Lost("a", WorkerEnd::kKilled, "expelled");
+  const Assignment again = ledger_.Assign(0.0)[0];
+  EXPECT_EQ(again, (Assignment{"b", 6, {0}}));
+  Fly(again, 0, ResultOf(0));
+  Come("c");
+  EXPECT_FALSE(ledger_.Complete());
+  EXPECT_THAT(ledger_.Assign(0.0), ElementsAre(Assignment{"c", 7, {0}}));
+}
+
+TEST_F(Twice, OneThatSurvivesWhatAnotherDoesNotSaysSo) {
+  FlyAllAlone();
+  Come("b");
+  const Assignment given = ledger_.Assign(0.0)[0];
+  EXPECT_TRUE(ledger_.GiveUp("b", 0, given.attempt, "signal 11", 0.0));
+  EXPECT_FALSE(ledger_.GiveUp("b", 0, given.attempt, "signal 11", 0.0)) << "said again";
+  EXPECT_EQ(ledger_.Progress().quarantined, 0u);
+}
+
+TEST_F(Twice, ResumesWithWhoFlewThem) {
+  Ledger resumed("1", 2);
+  for (std::uint64_t i = 0; i < 2; ++i) resumed.MarkDone(i, ResultOf(i));
+  resumed.WantTwice(0, "a");
+  resumed.WantTwice(1);
+  EXPECT_TRUE(resumed.Complete());
+  resumed.Join("a", kHello, 0.0);
+  EXPECT_THAT(resumed.Assign(0.0), ElementsAre(Assignment{"a", 1, {1}})) << "nobody knows who flew case 1";
+  resumed.Join("b", kHello, 0.0);
+  EXPECT_THAT(resumed.Assign(0.0), ElementsAre(Assignment{"b", 2, {0}}));
+}
+
 // A world in which messages are delayed, reordered between workers and repeated, workers are killed, stop
 // beating and come back, poison cases crash or hang whoever flies them. Whatever the interleaving, every
-// other case is accepted exactly once, exactly the poison is quarantined, and the world comes to rest.
+// other case is accepted exactly once, exactly the poison is quarantined, and the world comes to rest. In
+// every other world two workers shall fly the first cases.
 class RandomWorld {
  public:
   RandomWorld(std::uint64_t seed, std::uint64_t cases)
-      : random_(seed), cases_(cases), ledger_("1", cases, {.lease_s = 3.0}) {
+      : random_(seed), cases_(cases), ledger_("1", cases, {.lease_s = 3.0}), twice_(seed % 2 == 1 ? 2 : 0) {
     for (std::uint64_t k = 0; k < cases; ++k) {
+      if (k < twice_) ledger_.WantTwice(k);
       if (Chance(0.03)) (Chance(0.5) ? crashing_ : hanging_).insert(k);
     }
   }
@@ -328,7 +457,10 @@ class RandomWorld {
       }
       for (const std::uint64_t k : assignment.cases) {
         ASSERT_LT(k, cases_);
-        ASSERT_FALSE(accepted_.contains(k)) << "flown again";
+        if (accepted_.contains(k)) {
+          ASSERT_LT(k, twice_) << "flown again";
+          ASSERT_NE(accepted_.at(k), assignment.worker) << "flown again by the same worker";
+        }
         machines_[assignment.worker].queue.emplace_back(k, assignment.attempt);
       }
     }
@@ -384,7 +516,7 @@ class RandomWorld {
         const Acceptance acceptance =
             ledger_.Finished(id, message.case_index, message.attempt, ResultOf(message.case_index), now_s_);
         if (acceptance == Acceptance::kAccepted) {
-          EXPECT_TRUE(accepted_.insert(message.case_index).second) << "accepted twice";
+          EXPECT_TRUE(accepted_.emplace(message.case_index, id).second) << "accepted twice";
         } else {
           EXPECT_EQ(acceptance, Acceptance::kDuplicate);
         }
@@ -398,7 +530,8 @@ class RandomWorld {
   Ledger ledger_;
   std::set<std::uint64_t> crashing_;
   std::set<std::uint64_t> hanging_;
-  std::set<std::uint64_t> accepted_;
+  std::uint64_t twice_;                            ///< so many of the first cases
+  std::map<std::uint64_t, std::string> accepted_;  ///< by whom
   std::map<std::string, Machine> machines_;
   int next_ = 0;
   double now_s_ = 0.0;

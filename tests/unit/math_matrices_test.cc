@@ -6,7 +6,7 @@
 #include <cmath>
 #include <complex>
 
-namespace dispersa {
+namespace dispersa::math_matrices_test {
 namespace {
 
 Eigen::MatrixXd Square(std::initializer_list<std::initializer_list<double>> rows) {
@@ -84,4 +84,4 @@ TEST(Matrices, RankCountsPivotsAboveTheTolerance) {
 }
 
 }  // namespace
-}  // namespace dispersa
+}  // namespace dispersa::math_matrices_test

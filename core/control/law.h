@@ -1,0 +1,88 @@
+// What a control law of one axis is given and returns: control_law.h, which plug-ins have, for one axis of W
+// flights side by side (core/math/lanes.h).
+//
+// A law is a struct without data whose functions are those of control_law.h:
+//   StartStage(config, stage, memory)  an ignition: what was learnt is kept, or the memory begins anew
+//   Step<kAll>(input, output, memory)  a tick of the lanes that act: their command; `kAll`: every lane acts
+// Everything that a law remembers is in the memory, and it changes no lane that does not act.
+#pragma once
+
+#include "core/control/axis_controller.h"
+#include "core/math/lanes.h"
+
+namespace dispersa::lanes {
+inline namespace DISPERSA_ISA {
+
+/// StageLaw of each lane's stage. P_n carries the flight's factors.
+template <class T>
+struct AxisStage {
+  T kp_1_s2, kd_1_s;
+  T p11, p12, p22;
+  T pn_error, pn_rate;
+  T gamma;
+  T ki_1_s3;
+  T filters[kFilterSections][5];  ///< DigitalSection's coefficients
+};
+template <class T>
+DISPERSA_INLINE void SetLane(AxisStage<T>& s, int lane, const StageLaw& law, double pn_error_factor,
+                             double pn_rate_factor) {
+  SetLaneValues<T>(s, lane, law);
+  Lane(s.pn_error, lane) *= pn_error_factor;
+  Lane(s.pn_rate, lane) *= pn_rate_factor;
+}
+
+/// All memory of one axis: plain values, AxisState lane by lane.
+template <class T>
+struct AxisMemory {
+  T departure_rad_s2[kFuzzyRules];  ///< of the consequents from their start
+  T fired;                          ///< as bits: rule i has fired
+  T previous_v;
+  T saturation;  ///< -1, 0, 1: the last deflection command was limited in this sense of u
+  T integral_rad_s2;
+  T total_gain, model_started;  ///< augmentation
+  T model_error_rad, model_rate_rad_s, model_integral_rad_s2, high_pass, low_pass;
+  T filters[kFilterSections][2];
+};
+template <class T>
+DISPERSA_INLINE void SetLane(AxisMemory<T>& m, int lane, const AxisState& s) {
+  SetLaneValues<T>(m, lane, s);
+}
+template <class T>
+DISPERSA_INLINE void ReadLane(const AxisMemory<T>& m, int lane, AxisState& s) {
+  ReadLaneValues<T>(m, lane, s);
+}
+
+/// A tick of powered flight.
+template <class T>
+struct LawInput {
+  const AxisConfig& config;
+  double tick_s;
+  const AxisStage<T>& stage;
+  MaskOf<T> acting;
+  T error_rad, rate_rad_s;  ///< e and its rate
+  const T* foreign_rad_s2;  ///< what a plug-in commands of the axis, if the law is one
+  bool is_reported;         ///< what the law has learnt is read afterwards
+};
+
+/// What a law answers, zero at first, beside V, which is there before: AxisTelemetry lane by lane.
+template <class T>
+struct AxisOutput {
+  T command_rad_s2;  ///< u
+  T v, v_rate_sign;
+  T departure_norm2;  ///< squared adaptation norm
+  T frozen;
+};
+
+template <class T>
+DISPERSA_INLINE void SetLane(AxisOutput<T>& o, int lane, const AxisOutput<double>& from) {
+  SetLaneValues<T>(o, lane, from);
+}
+/// The value that replaces another one in the lanes that act; `kAll`: every lane does.
+template <bool kAll, class T>
+DISPERSA_INLINE T Kept(MaskOf<T> acting, T anew, T old) {
+  if constexpr (kAll) return anew;
+  return Select(acting, anew, old);
+}
+
+}  // namespace DISPERSA_ISA
+}  // namespace dispersa::lanes

@@ -1,0 +1,22 @@
+// What ends a program, in words for its user.
+#pragma once
+
+#include <string>
+
+#include "core/campaign/input_error.h"
+#include "services/transport/exit_code.h"
+
+namespace dispersa {
+
+struct Failure {
+  ExitCode code;
+  std::string message;
+};
+
+/// A daemon says why it ends: to its log, and with --json to standard output as an object too. Returns the
+/// code.
+ExitCode EndFor(const Failure& failure, bool json);
+/// The same of bad input.
+ExitCode EndFor(const InputError& error, bool json);
+
+}  // namespace dispersa
