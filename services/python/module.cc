@@ -4,6 +4,9 @@
 #include <pybind11/stl.h>
 
 #include <exception>
+#include <string>
+#include <string_view>
+#include <utility>
 
 #include "core/campaign/contained.h"
 #include "core/flight/engine_version.h"
@@ -83,10 +86,24 @@ py::tuple Describe(const std::string& name) {
 
 }  // namespace
 
+namespace {
+
+// Options of the command line in Python's words.
+std::string InPython(std::string text) {
+  constexpr std::pair<std::string_view, std::string_view> kWords[] = {{"--resume", "resume=True"},
+                                                                      {"--no-histories", "histories=False"}};
+  for (const auto& [option, argument] : kWords)
+    for (std::size_t at; (at = text.find(option)) != std::string::npos;)
+      text.replace(at, option.size(), argument);
+  return text;
+}
+
+}  // namespace
+
 py::list ProblemsOf(const std::vector<InputProblem>& problems) {
   py::list list;
   for (const InputProblem& p : problems)
-    list.append(py::make_tuple(p.file, p.line, p.column, p.path, p.message, p.allowed));
+    list.append(py::make_tuple(p.file, p.line, p.column, p.path, InPython(p.message), InPython(p.allowed)));
   return list;
 }
 

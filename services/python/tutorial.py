@@ -80,6 +80,19 @@ print(f"pitch error, peak: {prototype.metrics['pitch_error_peak_deg']:.3f} deg, 
       f"{case.metrics['pitch_error_peak_deg']:.3f} deg")
 
 # %% [markdown]
+# It flies a campaign too, when `workers=0` says that this process alone does. The result folder names the law and does not
+# hold it: its ids are those of no other law, and who wants to fly a case again needs the law.
+
+# %%
+damped_results = dispersa.run(CAMPAIGNS / "smoke.yaml", OUT / "damped", workers=0, law=damped, histories=False)
+print(damped_results.verdict, damped_results.campaign.autopilot)
+try:
+    damped_results.replay(3)
+except dispersa.BadInput as error:
+    print(error)
+print(damped_results.replay(3, law=damped)["match"])
+
+# %% [markdown]
 # ## Many flights
 #
 # `fly_many` flies cases side by side and keeps the columns that are asked for, all flights in one array.
@@ -95,13 +108,19 @@ axes.figure.savefig(OUT / "ground_track.png")
 # %% [markdown]
 # ## A run, and its verdict
 #
-# `run` writes a result folder like `dispersa run`: here in this process (`workers=0`); without that in worker processes, and
-# with `peer="HOST"` on a coordinator. The verdict is a value. What is wrong with an input is an exception, and so are missing
+# `run` writes a result folder like `dispersa run`: on worker processes; with `workers=0` in this process, and with
+# `peer="HOST"` on a coordinator. `progress` is told how far it is. The verdict is a value. What is wrong with an input is an exception, and so are missing
 # cases. That 120 flights without a failure do not show 99.73 % is no failure: the verdict is `inconclusive`, and the sentence
 # says how many cases it takes.
 
 # %%
-results = dispersa.run(campaign, OUT / "table3", workers=0)
+def show(phase, done, total, note):
+    """Called some ten times a second; here the end of each phase is enough."""
+    if done == total:
+        print(f"{phase}: {done} of {total} {note}")
+
+
+results = dispersa.run(campaign, OUT / "table3", workers=2, progress=show)
 print(results.verdict, results.exit_code, results.report)
 for requirement in results.requirements:
     print(requirement["metric"], requirement["verdict"], "-", requirement["sentence"])
@@ -112,8 +131,15 @@ for requirement in results.requirements:
 
 # %%
 peak = results.metrics["pitch_error_peak_deg"]
-print("worst case:", results.case_index[numpy.argmax(peak)], "with", peak.max(), "deg")
-print(results.replay(int(results.case_index[numpy.argmax(peak)]))["match"])
+print("median:", numpy.median(peak), "deg; largest:", peak.max(), "deg")
+
+# %% [markdown]
+# `worst` names the worst cases, lost flights first. Any case can be flown again; `replay` compares it with what is stored.
+
+# %%
+worst = results.worst("pitch_error_peak_deg")[0]
+again = results.campaign.fly(worst)
+print("worst case:", worst, again.digest == results.digest[worst], results.replay(worst)["match"])
 
 # %% [markdown]
 # ## Plots
@@ -139,6 +165,20 @@ tree["dispersions"]["wind"]["max_speed_m_s"] = 80.0
 stronger = dispersa.load(tree)
 print(stronger.id == campaign.id, stronger.plan()["wind_max_speed_m_s"][:2])
 
+# %% [markdown]
+# Vehicle, reference and autopilot are files of their own. With `inlined=True` their contents stand in the place of their names
+# and can be edited too.
+
+# %%
+stiffer = dispersa.read(CAMPAIGNS / "table3.yaml", inlined=True)
+for gains in stiffer["autopilot"]["pitch"]["gains"]:
+    gains["kp_1_s2"] *= 1.2
+print(dispersa.load(stiffer, cases=campaign.cases).fly(worst, history=False).metrics["pitch_error_peak_deg"], "deg")
+
+# %% [markdown]
+# `validate` says everything that is wrong, as objects.
+
+# %%
 tree["dispersions"]["wind"]["max_speed_m_s"] = -1.0
 for problem in dispersa.validate(tree).errors:
     print(problem.path, "|", problem.message, "|", problem.allowed)

@@ -81,8 +81,8 @@ class One(unittest.TestCase):
             self.campaign.fly(integrator="euler")
         with self.assertRaisesRegex(dispersa.BadInput, "step_s: 0.0 is no output step"):
             self.campaign.fly(step_s=0.0)
-        with self.assertRaises(KeyError):
-            self.campaign.fly().history["nothing"]
+        with self.assertRaisesRegex(KeyError, "has no column 'pitch_error'; there is pitch_error_deg"):
+            self.campaign.fly().history["pitch_error"]
 
 
 class Many(unittest.TestCase):

@@ -1,4 +1,6 @@
 """What was flown: outcomes, inputs, metrics, time histories."""
+import difflib
+
 import numpy
 
 from . import _core
@@ -45,7 +47,8 @@ class History:
         try:
             return self.rows[:, self._positions[name]]
         except KeyError:
-            raise KeyError(f"the history has no column {name!r}") from None
+            near = ", ".join(difflib.get_close_matches(str(name), self.columns))
+            raise KeyError(f"the history has no column {name!r}" + (f"; there is {near}" if near else "")) from None
 
     def frame(self):
         """A pandas.DataFrame of shape (rows, columns) over the same memory. Needs pandas."""

@@ -19,7 +19,8 @@ class Tree(dict):
 def read(path, inlined=False):
     """A file of any kind as a Tree of dicts, lists and scalars.
 
-    `inlined`: what a campaign or a vehicle refers to stands in the place of the names, so that it can be edited too.
+    `inlined`: what a campaign or a vehicle refers to stands in the place of the names, so that an autopilot's gains or a
+    stage's masses can be edited too.
     Raises BadInput for a file that is no YAML.
     """
     tree = Tree(_core.read_tree(os.fspath(path), inlined))
