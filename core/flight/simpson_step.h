@@ -364,7 +364,7 @@ MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
   b.cg_velocity = CgVelocityAt(b.masses, middle.q);
   if (plant.flow_coriolis) middle.p = Along(middle.p, T(0.5) * half, a.cg_velocity + b.cg_velocity);
   SetAir(middle.p, b.around);
-  SetRates<kBends, kListed>(middle, bent_middle, b, b.rates, nullptr);
+  SetRates<kBends, kListed>(middle, kBends ? bent_middle : bending_state, b, b.rates, nullptr);
 
   Motion<T> end;
   end.p = Along(Along(motion.p, h, motion.v), h2_6, Along(a.rates.dv, two, b.rates.dv));
@@ -385,7 +385,7 @@ MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
     SetSwung(over_step, a.modal, rising, no_curvature, bent_end);
     SetShapes(c.masses);
   }
-  SetRates<kBends, kListed>(end, bent_end, c, c.rates, &c.instant);
+  SetRates<kBends, kListed>(end, kBends ? bent_end : bending_state, c, c.rates, &c.instant);
   end.v = Along(motion.v, sixth, Along(a.rates.dv + c.rates.dv, four, b.rates.dv));
   end.w = Along(motion.w, sixth, Along(a.rates.dw + c.rates.dw, four, b.rates.dw));
   c.slopes.dv = per_s * Along(Along(a.rates.dv, three, c.rates.dv), -four, b.rates.dv);
