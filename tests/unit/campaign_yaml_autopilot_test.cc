@@ -190,7 +190,9 @@ struct FieldNames {
 
 TEST(ReadAutopilot, NamesALawInPythonButDoesNotHoldIt) {
   const std::string sha256(64, 'a');
-  const std::string text = kEverything + ("plugin: {python: {name: mine, sha256: " + sha256 + "}}\n");
+  std::string roll = kPidRoll;
+  roll.replace(roll.find("pid"), 3, "plugin");
+  const std::string text = WithRoll(roll) + "plugin: {python: {name: mine, sha256: " + sha256 + "}}\n";
   const auto problem = [&text] {
     try {
       ReadAutopilot(text, "flown.yaml");
@@ -200,7 +202,7 @@ TEST(ReadAutopilot, NamesALawInPythonButDoesNotHoldIt) {
     return std::string();
   };
   const std::string absent =
-      "flown.yaml:45:18: plugin.python: flown with a Python law, 'mine', which is not in the file: without "
+      "flown.yaml:44:18: plugin.python: flown with a Python law, 'mine', which is not in the file: without "
       "it the "
       "campaign cannot be flown, allowed: dispersa.run(..., workers=0, law=...) in Python, with that law";
   EXPECT_EQ(problem(), absent);
