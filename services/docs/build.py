@@ -7,6 +7,7 @@ The README files keep their folders, so that their links to one another hold; a 
 becomes plain text. Everything is read from the repository, nothing from the network, and the pages ask for nothing.
 """
 import argparse
+import json
 import os
 import pathlib
 import re
@@ -150,6 +151,22 @@ def collect(programs, folder, python_reference):
     shutil.copy(HERE / "pages" / "site.css", folder / "site.css")
 
 
+def search_from_a_folder(site):
+    """Pages that are opened from a folder may not ask for files, which is how the theme's search gets its index and its
+    worker; for them both are in a script."""
+    worker, = (site / "assets" / "javascripts" / "workers").glob("search.*.min.js")
+    index = json.loads((site / "search" / "search_index.json").read_text())
+    (site / "search" / "offline.js").write_text(
+        f"var __search = {{index: Promise.resolve({json.dumps(index)}),\n"
+        f"  worker: URL.createObjectURL(new Blob([{json.dumps(worker.read_text())}], {{type: 'text/javascript'}}))}};\n")
+    for page in site.rglob("*.html"):
+        text = page.read_text()
+        bundle = re.search(r'<script src="([^"]*)assets/javascripts/bundle\.', text)
+        loader = (f"<script>location.protocol === 'file:' && "
+                  f"document.write('<script src=\"{bundle[1]}search/offline.js\"><\\/script>')</script>")
+        page.write_text(text[:bundle.start()] + loader + text[bundle.start():])
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--programs", type=pathlib.Path, required=True, help="folder of the built programs")
@@ -170,6 +187,7 @@ def main():
             sys.stderr.write(done.stdout + done.stderr)
             return 1
         (folder / "site" / "404.html").unlink()  # a server's, with links from its root
+        search_from_a_folder(folder / "site")
         shutil.rmtree(options.out, ignore_errors=True)
         options.out.parent.mkdir(parents=True, exist_ok=True)
         shutil.copytree(folder / "site", options.out)

@@ -13,7 +13,7 @@ import re
 import sys
 import textwrap
 
-WIDTH = 92
+WIDTH = 64  # of a call, so that a phone shows it whole
 MODULES = ("dispersa", "dispersa.plot")
 
 
@@ -61,7 +61,7 @@ class Links:
         """A docstring as Markdown: prose is escaped, code stays."""
         paragraphs = []
         for paragraph in re.split(r"\n\s*\n", inspect.cleandoc(docstring or "")):
-            if all(line.startswith("    ") for line in paragraph.splitlines()):
+            if paragraph and all(line.startswith("    ") for line in paragraph.splitlines()):
                 paragraphs.append("```python\n" + textwrap.dedent(paragraph) + "\n```")
                 continue
             parts = re.split(r"(`[^`]*`)", paragraph)

@@ -114,6 +114,11 @@ class SiteTest(unittest.TestCase):
         self.assertLessEqual({"dispersa-run", "dispersa-plot-bands", "campaign-fly", "results", "badinput"}, page.anchors)
         self.assertIn("angular accelerations, rad/s²", " ".join(page.words))
 
+    def test_every_page_can_search_without_a_server(self):
+        for page in self.site.rglob("*.html"):
+            script, = re.findall(r"location.protocol === 'file:' && document.write\('<script src=\"([^\"]*)\">", page.read_text())
+            self.assertTrue((page.parent / script).is_file(), page)
+
     def test_schemas_can_be_taken(self):
         self.assertTrue((self.site / "schemas" / "campaign.json").exists())
 

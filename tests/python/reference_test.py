@@ -54,6 +54,8 @@ class Reference(unittest.TestCase):
         for name in ("INCOMPLETE", "REPLAY_MISMATCH"):
             self.assertIn(f"| `{name}` | `{int(dispersa.ExitCode[name])}` |", self.page)
         self.assertIn("| `path` | Of the value in its file", self.page)
+        for row in re.findall(r"^\| `.*$", self.page, re.MULTILINE):
+            self.assertRegex(row, r"^\| `\w+` \| (?!`+python).{5,} \|$|^\| `[A-Z_]+` \| `\d+` \|$")
 
     def test_every_docstring_is_there(self):
         names = [value for name in dispersa.__all__ for value in [getattr(dispersa, name)]]

@@ -21,11 +21,15 @@ class Problem:
     """One thing to change in an input. Line and column count from 1; 0: it has no place in a text."""
 
     file: str
+    """As it was named; of a dict FOLDER/<dict>."""
     line: int
+    """From 1."""
     column: int
+    """From 1."""
     path: str
     """Of the value in its file: "stages[1].motor.thrust_kn"; empty: the file as a whole."""
     message: str
+    """What is wrong."""
     allowed: str
     """What is allowed; of a warning what is usual; may be empty."""
 
