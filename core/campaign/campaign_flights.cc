@@ -117,7 +117,7 @@ const Campaign& WithItsLaw(const Campaign& campaign) {
   if (plugin && plugin->in_python && FunctionsHere(*plugin) == nullptr) {
     throw InputError(
         "flown with a Python law, '" + plugin->name + "', which is not here: its cases cannot be flown again",
-        "Python, with law=... where it flies");
+        "in Python, with that law as law=...");
   }
   return campaign;
 }
