@@ -14,7 +14,7 @@ import sys
 import yaml
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-KEPT = ["CMakeLists.txt", "core", "idl", "services", "campaigns", "tests"]  # what a build reads
+KEPT = ["CMakeLists.txt", "core", "idl", "services", "docker", "campaigns", "tests"]  # what a build reads
 BUILD_LIMIT_S = 1800
 TEST_LIMIT_S = 900
 
