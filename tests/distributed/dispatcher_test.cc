@@ -553,7 +553,9 @@ TEST_F(PluginTest, ACoordinatorThatIsStartedAgainStillWantsAnotherWorker) {
   EXPECT_FALSE(book_->Complete());
   EXPECT_THAT(Given("b"), ElementsAre(0, 1));
   Return("a", other);  // what was not acknowledged is said again
+  Return("a", ResultOf(1));
   EXPECT_EQ(book_->refusal(), std::nullopt);
+  EXPECT_FALSE(book_->Complete());
   Return("b", ResultOf(0));
   EXPECT_EQ(book_->refusal(),
             "the control law law is not deterministic: of case 0, flown by worker a and again by b, "
@@ -570,6 +572,26 @@ TEST_F(PluginTest, AContradictionOfAnyCaseRefusesTheCampaign) {
   EXPECT_THAT(book_->refusal().value_or(""),
               testing::HasSubstr("of case 8, flown by worker a and again by a, reason is "
                                  "'' once and 'lost' again"));
+}
+
+TEST_F(PluginTest, OnlyACaseThatAPluginCouldSpoilIsGivenUp) {
+  for (const bool with_plugin : {true, false}) {
+    if (with_plugin) {
+      Open(1);
+    } else {
+      dispatcher_.Close(kFlight);
+      DispatcherTest::Open(1);
+    }
+    Come("a");
+    const Orders orders = Tick(with_plugin ? 0.0 : 0.5, "a");
+    ASSERT_EQ(orders.assignments.size(), 1u);
+    FlownCase flown{orders.assignments[0].attempt, {}};
+    flown.result.reason = "it ended the process";
+    flown.given_up = true;
+    dispatcher_.On("a", Report{"a", kEpoch, 1, kFlight, {flown}, {}}, 0.5);
+    EXPECT_EQ(Progress().quarantined, with_plugin ? 1u : 0u);
+    EXPECT_EQ(dispatcher_.refused_messages(), with_plugin ? 0u : 1u);
+  }
 }
 
 TEST_F(PluginTest, CampaignsWithoutPluginAreFlownOnce) {

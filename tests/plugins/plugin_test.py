@@ -2,6 +2,7 @@
 
 Environment: DISPERSA_BINARIES, DISPERSA_CAMPAIGNS; DISPERSA_SOURCE: the repository.
 """
+import hashlib
 import json
 import os
 import pathlib
@@ -125,6 +126,20 @@ class PluginTest(unittest.TestCase):
         library.unlink()
         again = self.dispersa("replay", out, "--case", 7)
         self.assertEqual(again.returncode, 0, again.stdout + again.stderr)
+
+    def test_bytes_that_are_not_those_of_their_hash_are_refused(self):
+        self.compile("hashed", SOURCE / "tests/plugins/law.c")
+        out, ended = self.campaign_run("hashed", self.autopilot("hashed"), cases=1)
+        self.assertEqual(ended.returncode, 4, ended.stderr)
+        text = (out / "campaign.yaml").read_text()
+        sha256 = hashlib.sha256((self.folder / "hashed.so").read_bytes()).hexdigest()
+        self.assertIn(sha256, text)
+        forged = self.folder / "forged.yaml"
+        forged.write_text(text.replace(sha256, "f" * 64))
+        checked = self.dispersa("validate", forged)
+        self.assertEqual(checked.returncode, 2, checked.stderr)
+        self.assertRegex(checked.stdout + checked.stderr, r"forged\.yaml:\d+:\d+: autopilot\.plugin\.library\.sha256: is not "
+                         r"that of the bytes beside it, allowed: " + sha256)
 
     def test_another_object_is_another_flight_id(self):
         ids = set()
