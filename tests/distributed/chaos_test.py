@@ -66,8 +66,8 @@ class ChaosTest(unittest.TestCase):
                 self.counts[identity] = stored(self.root / "data" / identity / "results")
         return self.counts
 
-    def keep_busy(self):
-        while sum(count < CASES for count in self.stored().values()) < OPEN:
+    def keep_busy(self, campaigns=OPEN):
+        while sum(count < CASES for count in self.stored().values()) < campaigns:
             code, out, error = self.client("launch", CAMPAIGN, "--cases", CASES, "--seed", len(self.launched) + 1)
             self.assertEqual(code, 0, error)
             self.launched.append(out.strip())
@@ -125,7 +125,7 @@ class ChaosTest(unittest.TestCase):
         """A coordinator that gets none of these packets while it flies starts again, and the bytes are the same."""
         self.coordinator = self.start_coordinator()
         self.workers = [self.start_worker(1)]
-        self.keep_busy()
+        self.keep_busy(campaigns=1)
         wait_for(lambda: sum(self.stored().values()) > 0, "first results")
         self.hosts[0].drop("in", 100, *packets)
         wait_for(lambda: "the coordinator starts again" in (self.root / "log").read_text(), "a new start")
@@ -140,15 +140,19 @@ class ChaosTest(unittest.TestCase):
         self.start_again_without("udp", "dport", "!=", "{15655,", "15656}")
 
     def assert_same_bytes(self):
-        """Of all campaigns, at their end; and that nothing has ended by itself."""
+        """Of all campaigns, at their end; and that nothing has ended by itself. Of reports the last one's: flying cases again
+        for one takes twice as long as flying them."""
         for seed, identity in enumerate(self.launched, 1):
-            reference = Run(self.root / f"reference{seed}", "--workers", 0, "--cases", CASES, "--seed", seed).finish()
+            is_last = identity == self.launched[-1]
+            reference = Run(self.root / f"reference{seed}", "--workers", 0, "--cases", CASES, "--seed", seed,
+                            *([] if is_last else ["--no-histories"])).finish()
             code, _, error = self.client("watch", identity)
             self.assertEqual(code, reference.code, error)
             out = self.root / f"fetched{seed}"
             self.assertEqual(self.client("fetch", identity, "--out", out)[0], 0)
-            for name in ("cases.csv", "summary.json", "report.html"):
+            for name in ("cases.csv", "summary.json", *(["report.html"] if is_last else [])):
                 self.assertEqual((out / name).read_bytes(), (reference.out / name).read_bytes(), name)
+            self.assertTrue((out / "report.html").read_bytes().endswith(b"</html>\n"), "cut off")
             shutil.rmtree(out), shutil.rmtree(reference.out)
         for process in self.processes:
             self.assertIsNone(process.poll(), "an end that nobody asked for")
