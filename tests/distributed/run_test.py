@@ -28,7 +28,7 @@ class RunTest(unittest.TestCase):
         probe = Run(cls.root / "probe", "--workers", 0, "--cases", 10).finish()
         per_case_s = probe.execution()["flying_s"] / 10
         cls.cases = min(max(int(FLYING_S / per_case_s), 300), 2000)  # a busy machine makes the probe slow
-        cls.reference = Run(cls.root / "reference", "--workers", 0, "--cases", cls.cases).finish()
+        cls.reference = Run(cls.root / "reference", "--workers", 0, "--cases", cls.cases, "--no-histories").finish()
         if cls.reference.code not in (0, 3, 4):
             raise AssertionError(f"reference: exit code {cls.reference.code}\n{cls.reference.stderr}")
 
@@ -53,8 +53,10 @@ class RunTest(unittest.TestCase):
             wait_for(lambda: not any(map(is_running, pids)), f"end of the processes {pids}")
         self.assertEqual(shared_memory_segments(), self.segments)
 
-    def run_dispersa(self, name, *arguments, cases=None, **options):
-        run = Run(self.root / name, "--cases", cases or self.cases, *arguments, **options)
+    def run_dispersa(self, name, *arguments, cases=None, histories=False, **options):
+        """Flying cases again for the report takes twice as long as flying them, and no bytes of it are looked at here."""
+        run = Run(self.root / name, "--cases", cases or self.cases, *arguments,
+                  *([] if histories else ["--no-histories"]), **options)
         self.runs.append(run)
         return run
 
@@ -116,7 +118,7 @@ class RunTest(unittest.TestCase):
     def test_an_interrupted_run_tells_how_to_go_on(self):
         for number in (signal.SIGINT, signal.SIGTERM):
             for workers in (0, 2):
-                run = self.run_dispersa(f"interrupted{number}-{workers}", "--workers", workers)
+                run = self.run_dispersa(f"interrupted{number}-{workers}", "--workers", workers, histories=True)
                 run.wait_half_way(self.cases)
                 run.process.send_signal(number)
                 asked = time.monotonic()
@@ -201,7 +203,7 @@ class RunTest(unittest.TestCase):
                          "^1[12] workers ended in a row without a result, the last one with exit code 7$")
 
     def test_json_is_the_summary_with_the_folder(self):
-        run = self.run_dispersa("json", "--workers", 2, "--json", "--quiet").finish()
+        run = self.run_dispersa("json", "--workers", 2, "--json", "--quiet", cases=20, histories=True).finish()
         self.assertEqual(run.stderr, "")
         printed = json.loads(run.stdout)
         self.assertEqual(printed.pop("directory"), str(run.out))

@@ -82,8 +82,12 @@ FlightDefinition Definition(const std::string& law, bool with_winds, bool guided
                                           {at + 90.0 * kRadPerDeg},
                                           0.0});
   }
-  if (autopilot == "flexible")
+  if (autopilot == "flexible") {
     definition.vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml");
+    // Each flight's masses have modes of their own, which would take ten times as long as flying them.
+    definition.vehicle.structure_beam->elements = 12;
+    definition.vehicle.structure_beam->propellant_levels = 5;
+  }
   if (autopilot == "pid_aac" ||
       autopilot == "pid") {  // drives of all kinds, side by side as their flights' stages are
     definition.vehicle.stages[0].gimbal.dead_zone_rad = 0.03 * kRadPerDeg;
