@@ -1,4 +1,5 @@
-// The engine of one width for one instruction set: compiled once for each (CMakeLists.txt).
+// The engine for one instruction set, once for each number of lanes: DISPERSA_WIDTHS is WIDTH(1) WIDTH(4) ...
+// (CMakeLists.txt).
 #include "core/flight/batch.h"
 #include "core/flight/batch_events.h"
 #include "core/flight/batch_pass.h"
@@ -6,10 +7,14 @@
 
 namespace dispersa {
 
-void DISPERSA_INSTANCE(Fly)(const FlightModel& model, FlightQueue& queue) {
-  lanes::Batch<LaneValue>* batch = new lanes::Batch<LaneValue>(model, queue);
-  batch->Run();
-  delete batch;
-}
+#define WIDTH(lane_count)                                                                 \
+  void DISPERSA_INSTANCE(Fly, lane_count)(const FlightModel& model, FlightQueue& queue) { \
+    using Batch = lanes::Batch<LaneValue<lane_count>>;                                    \
+    Batch* batch = new Batch(model, queue);                                               \
+    batch->Run();                                                                         \
+    delete batch;                                                                         \
+  }
+DISPERSA_WIDTHS
+#undef WIDTH
 
 }  // namespace dispersa

@@ -1,20 +1,26 @@
-// For sources that are compiled once for each instruction set and number of lanes
-// (core/flight/CMakeLists.txt): their value, and the names of their functions.
+// For sources that are compiled once for each instruction set (core/flight/CMakeLists.txt) and hold functions
+// for several numbers of lanes: the lanes' value, and the functions' names.
 #pragma once
 
 #include "core/math/lanes.h"
 
 namespace dispersa {
 
-#if DISPERSA_LANES == 1
-using LaneValue = double;
-#else
-using LaneValue = lanes::Pack<DISPERSA_LANES>;
-#endif
+template <int W>
+struct LaneValueOf {
+  using Type = lanes::Pack<W>;
+};
+template <>
+struct LaneValueOf<1> {
+  using Type = double;
+};
+/// Of W lanes.
+template <int W>
+using LaneValue = typename LaneValueOf<W>::Type;
 
 }  // namespace dispersa
 
-/// DISPERSA_INSTANCE(Fly) is Fly_v3_4 where four lanes are compiled for x86-64-v3.
-#define DISPERSA_INSTANCE(name) DISPERSA_INSTANCE_OF(name, DISPERSA_ISA, DISPERSA_LANES)
+/// DISPERSA_INSTANCE(Fly, 4) is Fly_v3_4 where x86-64-v3 is compiled for.
+#define DISPERSA_INSTANCE(name, lanes) DISPERSA_INSTANCE_OF(name, DISPERSA_ISA, lanes)
 #define DISPERSA_INSTANCE_OF(name, isa, lanes) DISPERSA_INSTANCE_NAME(name, isa, lanes)
 #define DISPERSA_INSTANCE_NAME(name, isa, lanes) name##_##isa##_##lanes

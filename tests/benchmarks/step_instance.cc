@@ -8,9 +8,11 @@
 namespace dispersa {
 namespace {
 
+using Value = LaneValue<DISPERSA_LANES>;
+
 // Every value and lane set before the first step.
-lanes::StepState<LaneValue>* NewStep(const StepSetting& setting) {
-  lanes::StepState<LaneValue>* step = new lanes::StepState<LaneValue>;
+lanes::StepState<Value>* NewStep(const StepSetting& setting) {
+  lanes::StepState<Value>* step = new lanes::StepState<Value>;
   __builtin_memset(static_cast<void*>(step), 0, sizeof *step);
   step->Configure(setting.plant->environment.earth, setting.tick_s);
   for (int lane = 0; lane < DISPERSA_LANES; ++lane) {
@@ -28,10 +30,10 @@ lanes::StepState<LaneValue>* NewStep(const StepSetting& setting) {
 
 }  // namespace
 
-void DISPERSA_INSTANCE(Step)(const StepSetting& setting, long ticks, double* y) {
-  lanes::StepState<LaneValue>* step = NewStep(setting);
+void DISPERSA_INSTANCE(Step, DISPERSA_LANES)(const StepSetting& setting, long ticks, double* y) {
+  lanes::StepState<Value>* step = NewStep(setting);
   const long ticks_a_second = static_cast<long>(1.0 / setting.tick_s);
-  const auto all = !lanes::NoLane<LaneValue>();
+  const auto all = !lanes::NoLane<Value>();
   for (long i = 0; i < ticks; ++i) {
     const long since = i % ticks_a_second;
     for (int lane = 0; since == 0 && lane < DISPERSA_LANES; ++lane) {
@@ -39,24 +41,23 @@ void DISPERSA_INSTANCE(Step)(const StepSetting& setting, long ticks, double* y) 
       step->MarkMoved(lane);
     }
     const double from_s = setting.from_s + static_cast<double>(since) * setting.tick_s;
-    step->Step(all, true, LaneValue(from_s), LaneValue(from_s + setting.tick_s));
+    step->Step(all, true, Value(from_s), Value(from_s + setting.tick_s));
   }
   step->ReadLane(0, y);
   delete step;
 }
 
-void DISPERSA_INSTANCE(Evaluate)(const StepSetting& setting, long evaluations, double* dv) {
-  lanes::StepState<LaneValue>* at = NewStep(setting);
+void DISPERSA_INSTANCE(Evaluate, DISPERSA_LANES)(const StepSetting& setting, long evaluations, double* dv) {
+  lanes::StepState<Value>* at = NewStep(setting);
   const Earth& earth = setting.plant->environment.earth;
-  lanes::Rates<LaneValue> rates;
+  lanes::Rates<Value> rates;
   for (long i = 0; i < evaluations; ++i) {
-    const lanes::Surroundings<LaneValue> around =
+    const lanes::Surroundings<Value> around =
         lanes::SurroundingsAt(earth, StandardAir(), at->plant.weather, at->motion.p);
-    const lanes::TimedMasses<LaneValue> masses =
-        lanes::MassesAt(at->plant, at->phase, LaneValue(setting.from_s));
-    const lanes::Nozzles<LaneValue> nozzles = lanes::NozzlesAt(at->drive_state.angle_rad);
-    rates = lanes::RatesOf<LaneValue>(earth.rotation_rate_rad_s, at->plant, at->phase, setting.burning,
-                                      around, masses, nozzles, at->motion, lanes::StraightBody{}, nullptr);
+    const lanes::TimedMasses<Value> masses = lanes::MassesAt(at->plant, at->phase, Value(setting.from_s));
+    const lanes::Nozzles<Value> nozzles = lanes::NozzlesAt(at->drive_state.angle_rad);
+    rates = lanes::RatesOf<Value>(earth.rotation_rate_rad_s, at->plant, at->phase, setting.burning, around,
+                                  masses, nozzles, at->motion, lanes::StraightBody{}, nullptr);
     // The compiler may neither keep what the next evaluation reads nor leave out what this one found.
     asm volatile("" : : "r"(at), "r"(&rates) : "memory");
   }

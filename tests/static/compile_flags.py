@@ -11,7 +11,7 @@ from product_sources import name_of
 
 MARCH = "-march=x86-64-v3"
 # Sources of lanes (core/math/lanes.h) are compiled for this one as well; the program chooses at its start.
-LANES, LANES_MARCH = "-DDISPERSA_LANES=", "-march=x86-64-v4"
+LANES, LANES_MARCH = "-DDISPERSA_WIDTHS=", "-march=x86-64-v4"
 CONTRACTION = "-ffp-contract=off"
 # GCC 12's vectorisers fuse a*b-c and a*b+c in spite of -ffp-contract=off (fused.py).
 VECTORISERS = "-fno-tree-vectorize"

@@ -28,8 +28,8 @@ class CompileFlagsTest(unittest.TestCase):
     def test_sources_of_lanes_may_be_for_a_newer_processor(self):
         newer = GOOD + " -march=x86-64-v4"
         self.assertEqual(check(newer), ["core/math/a.cc: lacks -march=x86-64-v3"])
-        self.assertEqual(check(newer + " -DDISPERSA_LANES=8"), [])
-        self.assertEqual(check(GOOD + " -march=native -DDISPERSA_LANES=8"), ["core/math/a.cc: lacks -march=x86-64-v3"])
+        self.assertEqual(check(newer + " -DDISPERSA_WIDTHS=8"), [])
+        self.assertEqual(check(GOOD + " -march=native -DDISPERSA_WIDTHS=8"), ["core/math/a.cc: lacks -march=x86-64-v3"])
 
     def test_finds_value_changing_options(self):
         self.assertEqual(check(GOOD + " -ffast-math"), ["core/math/a.cc: -ffast-math"])
