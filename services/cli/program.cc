@@ -1,7 +1,5 @@
 #include "services/cli/program.h"
 
-#include <fmt/format.h>
-
 #include <cstdio>
 #include <exception>
 #include <stdexcept>
@@ -14,7 +12,7 @@
 #include "services/cli/command.h"
 #include "services/log/log.h"
 #include "services/program/command_line.h"
-#include "services/program/error_json.h"
+#include "services/program/failure.h"
 
 namespace dispersa {
 namespace {
@@ -48,17 +46,6 @@ LogColor ColorNamed(const std::string& name) {
   return name == "always" ? LogColor::kAlways : name == "never" ? LogColor::kNever : LogColor::kAuto;
 }
 
-ExitCode Fail(ExitCode code, const InputError& error, const GlobalOptions& global) {
-  fmt::print(stderr, "{}\n", error.what());
-  if (global.json) PrintErrorJson(code, error.problems());
-  return code;
-}
-
-ExitCode Fail(ExitCode code, const std::string& message, const GlobalOptions& global) {
-  if (global.json) PrintErrorJson(code, message);
-  return code;
-}
-
 ExitCode Execute(const Invocation& invocation) {
   const GlobalOptions& global = invocation.global;
   try {
@@ -69,18 +56,16 @@ ExitCode Execute(const Invocation& invocation) {
     }
     return code;
   } catch (const InputError& error) {
-    return Fail(kExitBadInput, error, global);
+    return EndFor(error, global.json);
   } catch (const PluginError& error) {
-    return Fail(kExitBadInput, InputError(std::string("the control law ") + error.what()), global);
+    return EndFor(InputError(std::string("the control law ") + error.what()), global.json);
   } catch (const ContainedEnd& end) {
-    return Fail(kExitIncomplete, InputError(std::string("the control law ") + end.what()), global);
+    return EndFor(InputError(std::string("the control law ") + end.what()), global.json, kExitIncomplete);
   } catch (const ResultError& error) {
-    fmt::print(stderr, "{}\n", error.what());
     const bool is_full = error.kind() == ResultError::Kind::kDiskFull;
-    return Fail(is_full ? kExitIncomplete : kExitInternalError, error.what(), global);
+    return EndFor(InputError(error.what()), global.json, is_full ? kExitIncomplete : kExitInternalError);
   } catch (const std::exception& error) {
-    LogError("internal error: {}", error.what());
-    return Fail(kExitInternalError, std::string("internal error: ") + error.what(), global);
+    return EndFor(Failure{kExitInternalError, std::string("internal error: ") + error.what()}, global.json);
   }
 }
 
@@ -91,7 +76,7 @@ int RunProgram(int argc, char** argv) {
   try {
     ChosenEngine();
   } catch (const std::invalid_argument& error) {
-    return Fail(kExitBadInput, InputError(error.what()), {AsksForJson(argc, argv), false});
+    return EndFor(InputError(error.what()), AsksForJson(argc, argv));
   }
 
   Invocation invocation;

@@ -1,10 +1,8 @@
 #include "services/cli/session_options.h"
 
-#include <fmt/format.h>
-
 #include <utility>
 
-#include "services/program/error_json.h"
+#include "services/program/failure.h"
 
 namespace dispersa {
 
@@ -25,9 +23,7 @@ void BindSession(CLI::App* command, Invocation& invocation,
         Session session(*options);
         return run(session, global);
       } catch (const Failure& failure) {
-        fmt::print(stderr, "{}\n", failure.message);
-        if (global.json) PrintErrorJson(failure.code, failure.message);
-        return failure.code;
+        return EndFor(InputError(failure.message), global.json, failure.code);
       }
     };
   });

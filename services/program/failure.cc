@@ -16,10 +16,10 @@ ExitCode EndFor(const Failure& failure, bool json) {
   return failure.code;
 }
 
-ExitCode EndFor(const InputError& error, bool json) {
+ExitCode EndFor(const InputError& error, bool json, ExitCode code) {
   fmt::print(stderr, "{}\n", error.what());
-  if (json) PrintErrorJson(kExitBadInput, error.problems());
-  return kExitBadInput;
+  if (json) PrintErrorJson(code, error.problems());
+  return code;
 }
 
 }  // namespace dispersa

@@ -13,10 +13,10 @@ struct Failure {
   std::string message;
 };
 
-/// A daemon says why it ends: to its log, and with --json to standard output as an object too. Returns the
+/// Says why a program ends: to its log, and with --json to standard output as an object too. Returns the
 /// code.
 ExitCode EndFor(const Failure& failure, bool json);
-/// The same of bad input.
-ExitCode EndFor(const InputError& error, bool json);
+/// The same in the words of an input's problems, without a log's time and level.
+ExitCode EndFor(const InputError& error, bool json, ExitCode code = kExitBadInput);
 
 }  // namespace dispersa
