@@ -9,6 +9,7 @@
 #include "core/campaign_yaml/decode_distribution.h"
 #include "core/campaign_yaml/number_text.h"
 #include "core/campaign_yaml/yaml_reader.h"
+#include "core/control/autopilot.h"
 #include "core/environment/turbulence.h"
 #include "core/flight/dispersed_vehicle.h"
 #include "core/math/functions.h"
@@ -651,7 +652,7 @@ class DispersionDecoder {
     if (node == nullptr) return;
     MapReader map(*node, map_.PathOf(key), problems_);
     bool any = false;
-    for (const std::string axis : {"roll", "pitch", "yaw"}) {
+    for (const std::string axis : kAxisNames) {
       const InputNode* axis_node = map.Optional(axis);
       if (axis_node == nullptr) continue;
       any = true;
@@ -669,7 +670,7 @@ class DispersionDecoder {
     if (node == nullptr) return;
     MapReader parent(*node, map_.PathOf("tip_off_rate"), problems_);
     bool any = false;
-    for (const std::string axis : {"roll", "pitch", "yaw"}) {
+    for (const std::string axis : kAxisNames) {
       any = any || node->Find(axis) != nullptr;
       EachOfStages(parent, axis, StagesBetween(1, stages_ - 1), [&](MapReader& map, Selection of) {
         AddStages("tip_off_rate/" + axis, of, ReadDistribution(map, {kAngularRate, kAnyNumber}),

@@ -18,6 +18,7 @@ class PluginLaw;
 
 enum Axis : int { kRoll = 0, kPitch = 1, kYaw = 2 };
 inline constexpr int kAxes = 3;
+inline constexpr const char* kAxisNames[kAxes] = {"roll", "pitch", "yaw"};
 
 /// What the autopilot knows of a stage beforehand, from nominal data: angular acceleration per radian of
 /// deflection over the time since ignition, and the limits of the nozzles. Both tables share their arguments,

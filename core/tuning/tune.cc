@@ -127,7 +127,6 @@ constexpr double kRefinementStep = 0.05, kRefinementGrowth = 1.5, kRefinementDec
 constexpr double kStiffBandwidthOfActuator = 0.165;
 
 constexpr const char* kGateNames[] = {"gain", "phase", "delay"};
-constexpr const char* kAxisNames[kAxes] = {"roll", "pitch", "yaw"};
 // LoopTable's of a loop that is unstable, or more.
 constexpr double kUnstableSurplus = -2.0;
 

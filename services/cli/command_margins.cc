@@ -22,8 +22,6 @@ struct MarginsCommand {
   MarginsOptions margins;
 };
 
-constexpr const char* kAxisNames[kAxes] = {"roll", "pitch", "yaw"};
-
 std::string Number(double value, const char* format) {
   return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "none";
 }

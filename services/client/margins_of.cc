@@ -10,8 +10,6 @@
 namespace dispersa {
 namespace {
 
-constexpr const char* kAxisNames[kAxes] = {"roll", "pitch", "yaw"};
-
 nlohmann::ordered_json LoopJson(const LoopMargins& m, bool passed) {
   return {{"stable", m.stable},
           {"gain_up_db", JsonNumber(m.gain_up_db)},

@@ -13,6 +13,7 @@
 #include "core/campaign/input_error.h"
 #include "core/campaign_yaml/canonical.h"
 #include "core/campaign_yaml/parse_yaml.h"
+#include "core/control/autopilot.h"
 #include "services/python/arrays.h"
 
 namespace py = pybind11;
@@ -77,8 +78,6 @@ void RefuseOtherPlugin(const AutopilotConfig& autopilot, unsigned axes) {
     throw InputError("axes: the autopilot has a law of a shared object on others than these",
                      "all axes that it has");
 }
-
-constexpr const char* kAxisNames[] = {"roll", "pitch", "yaw"};
 
 }  // namespace
 
