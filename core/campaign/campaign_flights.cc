@@ -107,14 +107,10 @@ CaseResult ResultOf(const FlightModel& model, std::uint64_t case_index, const Fl
   return result;
 }
 
-}  // namespace
-
-namespace {
-
 // What was flown with a law in Python can be read by everybody, and flown by who has the law.
 const Campaign& WithItsLaw(const Campaign& campaign) {
   const auto& plugin = campaign.autopilot.plugin;
-  if (plugin && plugin->in_python && FunctionsHere(*plugin) == nullptr) {
+  if (plugin && IsAbsent(*plugin)) {
     throw InputError(
         "flown with a Python law, '" + plugin->name + "', which is not here: its cases cannot be flown again",
         "in Python, with that law as law=...");

@@ -45,6 +45,8 @@ std::optional<PluginConfig> OfferedLaw(const std::string& sha256) {
   return found == offered.rend() ? std::nullopt : std::optional(*found);
 }
 
+bool IsAbsent(const PluginConfig& config) { return config.in_python && FunctionsHere(config) == nullptr; }
+
 const PluginLaw::Functions* FunctionsHere(const PluginConfig& config) {
   const std::lock_guard lock(mutex);
   const auto found = Laws().find(config.library.get());

@@ -32,6 +32,9 @@ class LawHere {
 /// The functions that a configuration stands for, or null: those of a shared object.
 const PluginLaw::Functions* FunctionsHere(const PluginConfig& config);
 
+/// Whether it is a law in Python that this process does not have: its flights can be looked at, not flown.
+bool IsAbsent(const PluginConfig& config);
+
 /// What this thread is offered under a hash, or nothing.
 std::optional<PluginConfig> OfferedLaw(const std::string& sha256);
 

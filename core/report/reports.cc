@@ -20,8 +20,7 @@ CampaignSummary WriteReports(const ResultFolder& folder, const Campaign& campaig
                                  folder.directory().string(), folder.Provenance("engine"), EngineVersion()),
                      "the engine that flew it, or --no-histories");
   }
-  if (const auto& law = campaign.autopilot.plugin;
-      options.histories && law && law->in_python && FunctionsHere(*law) == nullptr) {
+  if (const auto& law = campaign.autopilot.plugin; options.histories && law && IsAbsent(*law)) {
     throw InputError(
         fmt::format("{}: flown with a Python law, '{}', which is not here: its cases cannot be flown again",
                     folder.directory().string(), law->name),
