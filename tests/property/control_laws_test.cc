@@ -126,11 +126,15 @@ TEST_P(ControlLaws, GoOnFromACopyOfTheirMemory) {
   });
 }
 
+AxisState AfterAFlight(const AxisLaw& law, Random& random) {
+  AxisState state;
+  for (const Tick& tick : AnyTicks(random)) StepAlone(law, 0, tick, state);
+  return state;
+}
+
 TEST_P(ControlLaws, KnowNothingOfAFlightBefore) {
   ForMany([](const AxisLaw& law, Random& random) {
-    const std::vector<Tick> ticks = AnyTicks(random);
-    AxisState used;
-    for (const Tick& tick : ticks) StepAlone(law, 0, tick, used);
+    AxisState used = AfterAFlight(law, random);
     Ignite(law.config, 0, used);
     AxisState fresh;
     fresh.rules_fired = used.rules_fired;  // a record of the flight
@@ -140,9 +144,7 @@ TEST_P(ControlLaws, KnowNothingOfAFlightBefore) {
 
 TEST_P(ControlLaws, KeepAtAnIgnitionAllOrNothing) {
   ForMany([](const AxisLaw& law, Random& random) {
-    const std::vector<Tick> ticks = AnyTicks(random);
-    AxisState used;
-    for (const Tick& tick : ticks) StepAlone(law, 0, tick, used);
+    const AxisState used = AfterAFlight(law, random);
     AxisState next = used, fresh;
     fresh.rules_fired = used.rules_fired;
     Ignite(law.config, 1, next);
