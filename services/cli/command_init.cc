@@ -13,8 +13,8 @@
 #include "core/campaign_yaml/yaml_reader.h"
 #include "core/report/output_file.h"
 #include "services/cli/command.h"
-#include "services/cli/schema_json.h"
 #include "services/cli/starter_files.h"
+#include "services/schema/schema_text.h"
 
 namespace dispersa {
 namespace {
@@ -72,7 +72,7 @@ ExitCode Init(const InitOptions& options, const GlobalOptions& global) {
     written.push_back(file.name);
   }
   for (const FileKind kind : kFileKinds)
-    WriteFile((directory / "schemas" / (NameOf(kind) + ".json")).string(), SchemaJson(kind).dump(1) + "\n");
+    WriteFile((directory / "schemas" / (NameOf(kind) + ".json")).string(), SchemaText(kind));
   if (global.json) {
     const nlohmann::ordered_json report = {{"schema", "dispersa/init/1"},
                                            {"directory", options.directory},

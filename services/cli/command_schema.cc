@@ -11,8 +11,8 @@
 #include "core/campaign_yaml/yaml_reader.h"
 #include "core/report/output_file.h"
 #include "services/cli/command.h"
-#include "services/cli/schema_json.h"
 #include "services/client/writable.h"
+#include "services/schema/schema_text.h"
 
 namespace dispersa {
 namespace {
@@ -45,14 +45,14 @@ ExitCode Schema(const SchemaOptions& options, const GlobalOptions& global) {
     std::filesystem::create_directories(options.all);
     for (const FileKind kind : kFileKinds) {
       const std::string file = (std::filesystem::path(options.all) / (NameOf(kind) + ".json")).string();
-      WriteFile(file, SchemaJson(kind).dump(1) + "\n");
+      WriteFile(file, SchemaText(kind));
       if (!global.quiet) fmt::print("schema: {}\n", file);
     }
     return kExitDone;
   }
   const FileKind kind = KindOf(options.kind);
   RequireWritableFile("--out", options.out);
-  const std::string text = SchemaJson(kind).dump(1) + "\n";
+  const std::string text = SchemaText(kind);
   if (options.out.empty()) {
     fmt::print("{}", text);
     return kExitDone;

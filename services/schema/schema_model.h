@@ -11,17 +11,10 @@
 #include <string>
 #include <vector>
 
+#include "core/campaign_yaml/file_kind.h"
 #include "core/campaign_yaml/input_observer.h"
 
 namespace dispersa {
-
-enum class FileKind { kCampaign, kVehicle, kReference, kAutopilot, kScenario };
-inline constexpr FileKind kFileKinds[] = {FileKind::kCampaign, FileKind::kVehicle, FileKind::kReference,
-                                          FileKind::kAutopilot, FileKind::kScenario};
-/// "campaign"
-std::string NameOf(FileKind kind);
-/// "dispersa/campaign/1"
-std::string SchemaOf(FileKind kind);
 
 /// One of `keys` is in the map; if there are `words`, with one of them.
 struct SchemaCondition {
@@ -54,7 +47,7 @@ struct SchemaModel {
   std::map<std::string, SchemaMap> maps;
 };
 
-/// Takes about a second.
+/// Takes seconds.
 SchemaModel LearnSchema(FileKind kind);
 
 }  // namespace dispersa

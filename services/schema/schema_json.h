@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/campaign_yaml/schema_model.h"
+#include "core/campaign_yaml/file_kind.h"
 
 namespace dispersa {
 

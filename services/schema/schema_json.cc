@@ -1,4 +1,4 @@
-#include "services/cli/schema_json.h"
+#include "services/schema/schema_json.h"
 
 #include <fmt/format.h>
 
@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "services/schema/schema_model.h"
 
 namespace dispersa {
 namespace {
@@ -57,7 +59,8 @@ std::string Hint(const Expectation& number) {
 
 JsonText Number(const Expectation& number) {
   JsonText json = {{"type", number.kind == Expectation::Kind::kInteger ? "integer" : "number"}};
-  if (!number.low.empty()) json[number.low_open ? "exclusiveMinimum" : "minimum"] = JsonText::parse(number.low);
+  if (!number.low.empty())
+    json[number.low_open ? "exclusiveMinimum" : "minimum"] = JsonText::parse(number.low);
   if (!number.high.empty())
     json[number.high_open ? "exclusiveMaximum" : "maximum"] = JsonText::parse(number.high);
   json["description"] = Hint(number);
@@ -104,10 +107,10 @@ class SchemaWriter {
   JsonText Write(FileKind kind) {
     JsonText root = File(kind, true);
     JsonText schema = {{"$schema", "http://json-schema.org/draft-07/schema#"},
-                   {"title", fmt::format("dispersa {} file", NameOf(kind))},
-                   {"description",
-                    "Written by `dispersa schema` from the reader of these files. What two maps say "
-                    "together only `dispersa validate` knows."}};
+                       {"title", fmt::format("dispersa {} file", NameOf(kind))},
+                       {"description",
+                        "Written by `dispersa schema` from the reader of these files. What two maps say "
+                        "together only `dispersa validate` knows."}};
     for (auto& [key, value] : root.items()) schema[key] = std::move(value);
     schema["definitions"] = std::move(documents_);
     return Shared(std::move(schema));
@@ -174,7 +177,8 @@ class SchemaWriter {
           any.push_back(List(model, path, one));
           break;
         case Expectation::Kind::kMap:
-          if (!is_document && !expects(Expectation::Kind::kColumns) && !expects(Expectation::Kind::kNumbers)) any.push_back(Map(model, path));
+          if (!is_document && !expects(Expectation::Kind::kColumns) && !expects(Expectation::Kind::kNumbers))
+            any.push_back(Map(model, path));
           break;
         case Expectation::Kind::kFile:
           any.push_back(
@@ -220,7 +224,8 @@ class SchemaWriter {
         if (!field.not_if.empty()) beside["allOf"].push_back({{"not", HoldsAny(field.not_if)}});
         // One unit of one thing.
         std::vector<JsonText> others;
-        for (std::size_t j = 0; j < i; ++j) others.push_back({{"required", JsonText::array({field.keys[j]})}});
+        for (std::size_t j = 0; j < i; ++j)
+          others.push_back({{"required", JsonText::array({field.keys[j]})}});
         if (!others.empty()) beside["allOf"].push_back({{"not", AnyOf(std::move(others))}});
         if (beside.empty()) continue;
         dependencies[key] = beside["allOf"].size() == 1 ? beside["allOf"][0] : beside;

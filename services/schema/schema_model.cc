@@ -1,4 +1,4 @@
-#include "core/campaign_yaml/schema_model.h"
+#include "services/schema/schema_model.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -306,8 +306,9 @@ class Explorer : public InputObserver {
       const bool is_in = leads || forced != nullptr || (!(is_focus && is_bare_) && Random() < share);
       if (!is_in || (path.empty() && keys.front() == "schema")) continue;
       const std::string& key = keys[Random(keys.size())];
-      SetMember(node, key,
-                forced != nullptr && !forced->word.empty() ? Scalar(forced->word) : Value(ChildPath(path, key)));
+      SetMember(
+          node, key,
+          forced != nullptr && !forced->word.empty() ? Scalar(forced->word) : Value(ChildPath(path, key)));
     }
     return node;
   }
@@ -583,26 +584,15 @@ class Explorer : public InputObserver {
   std::string focus_;  ///< the map that the run is about
   std::vector<Setting> settings_;
   bool is_bare_ = false;
-  bool is_judging_ = false;  ///< by what is expected only
-  double share_ = 0.0;       ///< of what may be in other maps, what is
+  bool is_judging_ = false;       ///< by what is expected only
+  double share_ = 0.0;            ///< of what may be in other maps, what is
   std::set<std::string> probed_;  ///< values that were given every shape
-  int shape_ = 0;            ///< of what is strange, 1 to kShapes; 0: at random
+  int shape_ = 0;                 ///< of what is strange, 1 to kShapes; 0: at random
   int depth_ = 0;
   std::map<std::string, View> run_;
 };
 
 }  // namespace
-
-std::string NameOf(FileKind kind) {
-  constexpr const char* kNames[] = {"campaign", "vehicle", "reference", "autopilot", "scenario"};
-  return kNames[static_cast<std::size_t>(kind)];
-}
-
-std::string SchemaOf(FileKind kind) {
-  constexpr const char* kSchemas[] = {kCampaignSchema, kVehicleSchema, kReferenceSchema, kAutopilotSchema,
-                                      kScenarioSchema};
-  return kSchemas[static_cast<std::size_t>(kind)];
-}
 
 SchemaModel LearnSchema(FileKind kind) { return Explorer(kind).Explore(); }
 
