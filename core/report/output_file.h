@@ -1,6 +1,8 @@
 // Files that appear as a whole or not at all.
 #pragma once
 
+#include <sys/types.h>
+
 #include <cstdio>
 #include <filesystem>
 #include <string>
@@ -8,8 +10,10 @@
 
 namespace dispersa {
 
-/// Writes beside the target and takes its place on Commit(); without it the target stays as it was.
-/// The target "-" is standard output, written at once. Throws ResultError (kDiskFull, else kFile).
+/// Writes beside the target and takes its place on Commit(), with its permissions; without it the target
+/// stays as it was. A link stays one: what it names is replaced. A pipe or a device is no file to take the
+/// place of: it is written to. The target "-" is standard output, written at once. Throws ResultError
+/// (kDiskFull, else kFile).
 class OutputFile {
  public:
   explicit OutputFile(std::filesystem::path target);
@@ -21,10 +25,12 @@ class OutputFile {
   void Commit();
 
  private:
+  void OpenTemporary(mode_t mode);
+  void OpenDirect();
   [[noreturn]] void Fail(int error) const;
 
   std::filesystem::path target_;
-  std::filesystem::path temporary_;
+  std::filesystem::path temporary_;  ///< empty: what is there is written to
   std::FILE* stream_ = nullptr;
 };
 
