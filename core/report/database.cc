@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 #include <sqlite3.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cmath>
 #include <limits>
+#include <system_error>
 
 #include "core/report/result_error.h"
 
@@ -19,14 +21,42 @@ bool IsDiskFull(int code, int system_error) {
          ((code & 0xff) == SQLITE_IOERR && (system_error == ENOSPC || system_error == EDQUOT));
 }
 
+/// A database of somebody else, or of an archive: this process may not write it, and nobody else does, who
+/// would have a write-ahead log beside it.
+bool CannotChange(const std::filesystem::path& file) {
+  const std::filesystem::path log = file.string() + "-wal";
+  std::error_code error;
+  if (std::filesystem::exists(log, error) && std::filesystem::file_size(log, error) > 0) return false;
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  return access(file.c_str(), W_OK) != 0 || access(folder.c_str(), W_OK) != 0;
+}
+
+/// Such a one is read without the files that a reader else makes beside it.
+std::string ImmutableUri(const std::filesystem::path& file) {
+  std::string uri = "file:";
+  for (const char c : std::filesystem::absolute(file).string()) {
+    if (c == '%' || c == '?' || c == '#')
+      uri += fmt::format("%{:02X}", static_cast<unsigned char>(c));
+    else
+      uri += c;
+  }
+  return uri + "?immutable=1";
+}
+
 }  // namespace
 
 Database::Database(const std::filesystem::path& file, Mode mode) : file_(file) {
   // NOMUTEX: a connection is used by one thread at a time, and a lock for each value of a row took a seventh
   // of a coordinator's time.
-  const int flags =
-      SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX | (mode == Mode::kCreate ? SQLITE_OPEN_CREATE : 0);
-  const int code = sqlite3_open_v2(file.c_str(), &handle_, flags, nullptr);
+  int flags = SQLITE_OPEN_NOMUTEX;
+  std::string name = file.string();
+  if (mode == Mode::kExisting && CannotChange(file)) {
+    flags |= SQLITE_OPEN_READONLY | SQLITE_OPEN_URI;
+    name = ImmutableUri(file);
+  } else {
+    flags |= SQLITE_OPEN_READWRITE | (mode == Mode::kCreate ? SQLITE_OPEN_CREATE : 0);
+  }
+  const int code = sqlite3_open_v2(name.c_str(), &handle_, flags, nullptr);
   try {
     if (code != SQLITE_OK) Fail(code);
     sqlite3_extended_result_codes(handle_, 1);

@@ -1,8 +1,10 @@
 // The result folder keeps every result once, exactly, whatever arrives in whatever order.
 #include "core/report/result_folder.h"
 
+#include <fcntl.h>
 #include <sched.h>
 #include <sys/mount.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -318,6 +320,34 @@ TEST(ResultFolder, KeepsTheFingerprintOfEachRow) {
               ElementsAre(Pair(1, Fingerprint(MakeCase(1))), Pair(2, Fingerprint(MakeCase(2)))));
 }
 
+// Somebody else's, or an archive's.
+TEST(ResultFolder, IsReadByWhoMayNotWriteIt) {
+  TemporaryFolder temporary;
+  const std::filesystem::path out = temporary / "100%# out?";
+  ResultFolder::Create(out, MakeCampaign(3)).Append({{MakeCase(1)}});
+  using std::filesystem::perms;
+  std::filesystem::permissions(out.parent_path(), perms(0755));
+  for (const auto& file : std::filesystem::directory_iterator(out))
+    std::filesystem::permissions(file, perms(0444));
+  std::filesystem::permissions(out, perms(0555));
+  const pid_t child = fork();
+  if (child == 0) {
+    const bool is_another = geteuid() != 0 || setuid(65534) == 0;
+    try {
+      _exit(is_another && access(out.c_str(), W_OK) != 0 &&
+                    Fingerprint(ResultFolder::Open(out).Load(1)) == Fingerprint(MakeCase(1))
+                ? 0
+                : 1);
+    } catch (const std::exception&) {
+      _exit(2);
+    }
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  std::filesystem::permissions(out, perms(0755));
+  EXPECT_EQ(status, 0);
+}
+
 TEST(OutputFile, DoesNotFollowALinkInItsPlace) {
   TemporaryFolder temporary;
   std::ofstream(temporary / "precious") << "kept";
@@ -402,6 +432,34 @@ TEST(OutputFile, ReportsAFullDisk) {
   TemporaryFolder temporary;
   const std::filesystem::path folder = (temporary / "file").parent_path();
   EXPECT_EQ(MessageOnASmallDisk(folder), (folder / "file").string() + ": no space left on the disk");
+}
+
+TEST(OutputFile, KeepsLinksAndPermissions) {
+  TemporaryFolder temporary;
+  std::ofstream(temporary / "file") << "old";
+  std::filesystem::permissions(temporary / "file", std::filesystem::perms(0600));
+  std::filesystem::create_symlink("file", temporary / "link");
+  std::filesystem::create_symlink("not yet", temporary / "dangling");
+  WriteFile(temporary / "link", "new");
+  WriteFile(temporary / "dangling", "made");
+  EXPECT_TRUE(std::filesystem::is_symlink(temporary / "link"));
+  EXPECT_EQ(ReadText(temporary / "file"), "new");
+  EXPECT_EQ(std::filesystem::status(temporary / "file").permissions(), std::filesystem::perms(0600));
+  EXPECT_TRUE(std::filesystem::is_symlink(temporary / "dangling"));
+  EXPECT_EQ(ReadText(temporary / "not yet"), "made");
+}
+
+TEST(OutputFile, WritesToAPipeThatIsThere) {
+  TemporaryFolder temporary;
+  const std::filesystem::path pipe = temporary / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+  WriteFile(pipe, "told");
+  char told[8] = "";
+  EXPECT_EQ(read(reader, told, sizeof told), 4);
+  close(reader);
+  EXPECT_EQ(std::string(told), "told");
+  EXPECT_TRUE(std::filesystem::is_fifo(pipe));
 }
 
 TEST(OutputFile, SaysWhyAFileCannotBeWritten) {
