@@ -211,10 +211,15 @@ std::vector<std::string> Warnings(const CampaignSummary& summary) {
   }
   const std::uint64_t completed = summary.outcomes[static_cast<std::size_t>(Outcome::kCompleted)];
   if (completed < summary.flown) {
-    warnings.push_back(
-        fmt::format("{} of {} flights were lost: statistics and percentiles cover the {} that were "
-                    "completed, and every lost flight fails every requirement of the campaign.",
-                    summary.flown - completed, summary.flown, completed));
+    const bool by_default = std::any_of(summary.requirements.begin(), summary.requirements.end(),
+                                        [](const RequirementSummary& r) { return r.by_default; });
+    warnings.push_back(fmt::format(
+        "{} of {} flights were lost: statistics and percentiles cover the {} that were "
+        "completed, and every lost flight fails every requirement of the campaign{}.",
+        summary.flown - completed, summary.flown, completed,
+        by_default ? "; of the vehicle's own limits a loss says nothing: they are held against what "
+                     "the flight bore until then"
+                   : ""));
   }
   return warnings;
 }
