@@ -7,7 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
+#include <cstdio>
 #include <cstring>
 #include <set>
 
@@ -129,26 +129,26 @@ std::vector<double> PluginLaw::OrderedParameters() const {
   return ordered;
 }
 
-void PluginFlight::Free::operator()(void* memory) const {
-  if (end != nullptr) end(memory);
-  std::free(memory);
+namespace {
+
+const PluginLaw& Opened(const PluginLaw& law) {
+  law.Open();
+  return law;
 }
+
+}  // namespace
 
 PluginFlight::PluginFlight(const PluginLaw& law, double tick_s, std::size_t stages, unsigned axes,
                            std::uint64_t case_index)
-    : law_(law), axes_(axes), case_index_(case_index) {
-  law.Open();
-  constexpr std::size_t kAlignment = 64;
-  const std::size_t bytes = (law.description().memory_bytes / kAlignment + 1) * kAlignment;
-  memory_.reset(std::aligned_alloc(kAlignment, bytes));
-  std::memset(memory_.get(), 0, bytes);
+    : law_(Opened(law)), axes_(axes), case_index_(case_index), memory_(law.description().memory_bytes) {
   if (law.functions().begin != nullptr) law.functions().begin(case_index, memory_.get());
-  memory_.get_deleter().end = law.functions().end;
+  farewell_.memory = memory_.get();
+  farewell_.end = law.functions().end;
   const std::vector<double> parameters = law.OrderedParameters();
   const dispersa_law_setup setup{tick_s, static_cast<std::uint32_t>(stages), axes, parameters.data()};
   Begin(0.0, -1);
   const int code = law.functions().create(&setup, memory_.get());
-  End();
+  End(0.0, -1);
   Succeeded(code, "the plug-in failed to create its law");
 }
 
@@ -156,7 +156,7 @@ bool PluginFlight::StartStage(const dispersa_law_stage& stage, double time_s) {
   if (failure_ != nullptr) return false;
   Begin(time_s, static_cast<int>(stage.stage));
   const int code = law_.functions().start_stage(&stage, memory_.get());
-  End();
+  End(time_s, static_cast<int>(stage.stage));
   return Succeeded(code, "the plug-in failed to start a stage");
 }
 
@@ -165,7 +165,7 @@ bool PluginFlight::Step(const dispersa_law_input& input, double* command_rad_s2)
   dispersa_law_output output{};
   Begin(input.time_s, static_cast<int>(input.stage));
   const int code = law_.functions().step(&input, &output, memory_.get());
-  End();
+  End(input.time_s, static_cast<int>(input.stage));
   if (!Succeeded(code, "the plug-in's step failed")) return false;
   const bool deflects = law_.description().command == DISPERSA_LAW_DEFLECTION;
   for (int axis = 0; axis < DISPERSA_LAW_AXES; ++axis) {
@@ -193,10 +193,19 @@ void PluginFlight::Begin(double time_s, int stage) {
   CountCall();
 }
 
-void PluginFlight::End() {
+void PluginFlight::End(double time_s, int stage) {
   // Rounding and exceptions of arithmetic as every flight has them, whatever the law has set.
   _mm_setcsr(0x1f80);
   CountCall();
+  // All that is watched may be a page: now and then.
+  const bool is_sound = ++calls_ % 1024 == 0 || stage < 0 ? memory_.IsSound() : memory_.IsSoundNearby();
+  if (is_sound) return;
+  if (stage < 0) throw PluginError("wrote beside the memory of its flight when it was created");
+  char text[128];
+  std::snprintf(text, sizeof text,
+                "wrote beside the memory of its flight, at %.3f s at the latest, in stage %d", time_s,
+                stage + 1);
+  throw PluginError(text);
 }
 
 }  // namespace dispersa

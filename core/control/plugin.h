@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/control/control_law.h"
+#include "core/control/law_memory.h"
 #include "core/control/plugin_config.h"
 
 namespace dispersa {
@@ -84,8 +85,11 @@ class PluginFlight {
   /// Opens the law. `axes`: bits of those that it commands.
   PluginFlight(const PluginLaw& law, double tick_s, std::size_t stages, unsigned axes,
                std::uint64_t case_index);
+  PluginFlight(const PluginFlight&) = delete;
+  PluginFlight& operator=(const PluginFlight&) = delete;
 
-  /// False, here and in Step, when the law fails; then it is not called any more.
+  /// False, here and in Step, when the law fails; then it is not called any more. Both throw PluginError when
+  /// it has written beside the flight's memory.
   bool StartStage(const dispersa_law_stage& stage, double time_s);
   /// Angular accelerations, rad/s², whatever the law commands.
   bool Step(const dispersa_law_input& input, double* command_rad_s2);
@@ -97,18 +101,23 @@ class PluginFlight {
  private:
   bool Succeeded(int code, const char* otherwise);
   void Begin(double time_s, int stage);
-  void End();
+  void End(double time_s, int stage);
 
-  struct Free {
-    Free() : end(nullptr) {}
+  // Tells a law of this process that its flight is over.
+  struct Farewell {
     void (*end)(void* memory);
-    void operator()(void* memory) const;
+    void* memory;
+    ~Farewell() {
+      if (end != nullptr) end(memory);
+    }
   };
 
   const PluginLaw& law_;
   const unsigned axes_;
   const std::uint64_t case_index_;
-  std::unique_ptr<void, Free> memory_;
+  LawMemory memory_;
+  Farewell farewell_{nullptr, nullptr};
+  std::uint64_t calls_ = 0;
   std::array<double, kLawTelemetry> telemetry_{};
   const char* failure_ = nullptr;
 };
