@@ -93,20 +93,6 @@ FlightDefinition DefinitionOf(const Campaign& campaign) {
   return definition;
 }
 
-CaseResult ResultOf(const FlightModel& model, std::uint64_t case_index, const FlightInputs& inputs,
-                    FlightResult flight) {
-  CaseResult result;
-  result.case_index = case_index;
-  result.outcome = flight.outcome;
-  result.end_time_s = flight.end_time_s;
-  result.end_stage = flight.end_stage;
-  result.reason = std::move(flight.reason);
-  result.inputs = InputValues(inputs, model.definition().vehicle.stages.size());
-  result.metrics = std::move(flight.metrics);
-  result.digest = flight.digest;
-  return result;
-}
-
 // What was flown with a law in Python can be read by everybody, and flown by who has the law.
 const Campaign& WithItsLaw(const Campaign& campaign) {
   const auto& plugin = campaign.autopilot.plugin;

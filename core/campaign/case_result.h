@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/flight/digest.h"
+#include "core/flight/flight.h"
 #include "core/flight/metrics.h"
 
 namespace dispersa {
@@ -20,5 +21,9 @@ struct CaseResult {
   std::vector<double> metrics;  ///< of the vehicle, in the order of MetricNames(); NaN = undefined
   Digest digest;
 };
+
+/// What a flight of these inputs returned, as a case's result.
+CaseResult ResultOf(const FlightModel& model, std::uint64_t case_index, const FlightInputs& inputs,
+                    FlightResult flight);
 
 }  // namespace dispersa

@@ -30,9 +30,12 @@ std::string refusal;
 // Kinds of frames in the pipe: a byte, the size as 8 bytes, the bytes.
 constexpr char kSaid = 's', kProblem = 'p', kThrew = 't', kDone = 'd';
 
-// What a plug-in says may be anything: so much of it, on one line.
+// What a plug-in says may be anything: so much of it, in whole characters, on one line.
 std::string Clean(const std::string& text, std::size_t limit = 1000) {
-  std::string clean = text.substr(0, limit);
+  std::size_t end = std::min(text.size(), limit);
+  if (end < text.size())
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
+  std::string clean = text.substr(0, end);
   for (char& c : clean)
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
   return text.size() > limit ? clean + "..." : clean;
@@ -116,8 +119,13 @@ std::string HowItEnded(int status, const ContainmentLimits& limits) {
   if (!WIFSIGNALED(status)) return "ended the process with exit code " + std::to_string(WEXITSTATUS(status));
   const int signal = WTERMSIG(status);
   const char* const name = sigabbrev_np(signal);
-  return "ended by signal " + std::to_string(signal) + (name ? " (SIG" + std::string(name) + ")" : "") +
-         ", in a process that may allocate " + std::to_string(limits.memory_bytes >> 20) + " MiB";
+  const std::string text =
+      "ended by signal " + std::to_string(signal) + (name ? " (SIG" + std::string(name) + ")" : "");
+  // What may be want of memory.
+  const bool is_of_memory = signal == SIGABRT || signal == SIGSEGV || signal == SIGKILL;
+  return is_of_memory
+             ? text + ", in a process that may allocate " + std::to_string(limits.memory_bytes >> 20) + " MiB"
+             : text;
 }
 
 std::string Place(const PluginMark& at) {
@@ -230,13 +238,14 @@ class Child {
 
 }  // namespace
 
-void RunContained(const std::function<void(const Say& say)>& work, const Say& hear,
+void RunContained(const std::function<void(const Say& say)>& work, const Say& hear, const Unwanted& unwanted,
                   const ContainmentLimits& limits) {
   Child child(work, limits);
   CallWatch watch(child.pid(), child.mark(), limits);
   std::string bytes;
   bool is_open = true;  // a process that the child started may hold the pipe open, and the child may close it
   for (;;) {
+    if (unwanted && unwanted()) throw NotWanted();
     const std::optional<int> ended = child.Ended();
     // Of one that has ended, all that is left; else what comes now.
     for (int patience_ms = ended ? 0 : 100; is_open; patience_ms = 0) {

@@ -24,6 +24,11 @@ class ContainedEnd : public std::runtime_error {
   PluginMark at_;
 };
 
+/// Who no longer wants what a child does: asked while it runs.
+using Unwanted = std::function<bool()>;
+/// Thrown when somebody did not.
+struct NotWanted {};
+
 struct ContainmentLimits {
   double call_cpu_s = 2.0;   ///< a call of more computing time counts as one that does not return,
   double call_wait_s = 5.0;  ///< or of more time while this process was awake
@@ -41,10 +46,10 @@ class NoChild : public std::runtime_error {
 
 /// Runs `work` in a child. What it says is heard here, in order, until it is done or the child has ended;
 /// processes that the child started are ended with it. Throws PluginError with the text of one that `work`
-/// throws; ContainedEnd when it throws something else, or the child ends otherwise; NoChild; and what `hear`
-/// throws.
+/// throws; ContainedEnd when it throws something else, or the child ends otherwise; NoChild; NotWanted; and
+/// what `hear` throws.
 void RunContained(const std::function<void(const Say& say)>& work, const Say& hear,
-                  const ContainmentLimits& limits = {});
+                  const Unwanted& unwanted = nullptr, const ContainmentLimits& limits = {});
 /// Whether this is such a child.
 bool IsContained();
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/campaign/campaign_flights.h"
+#include "core/campaign/contained.h"
 
 namespace dispersa {
 
@@ -14,9 +15,11 @@ CaseResult FlyContained(const CampaignFlights& flights, const FlightInputs& inpu
 void FlyContained(const CampaignFlights& flights, CaseQueue& queue);
 
 /// Flies the nominal flight and the first two cases twice, side by side and each alone, in children of their
-/// own, and compares them tick by tick. Nothing for a campaign without plug-in. Throws InputError when they
-/// differ, with the first instant at which they do, and when the nominal flight ends its process. Cases that
-/// end theirs are left to whoever flies the campaign.
-void CheckPluginIsDeterministic(const CampaignFlights& flights, std::uint64_t cases);
+/// own, and compares them tick by tick. Returns the results of those cases, with which every later one of
+/// them must agree; nothing for a campaign without plug-in. Throws InputError when they differ, with the
+/// first instant at which they do, and when the nominal flight ends its process; NotWanted. Cases that end
+/// theirs are left to whoever flies the campaign.
+std::vector<CaseResult> CheckPluginIsDeterministic(const CampaignFlights& flights, std::uint64_t cases,
+                                                   const Unwanted& unwanted = nullptr);
 
 }  // namespace dispersa

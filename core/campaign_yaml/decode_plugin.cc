@@ -2,6 +2,7 @@
 #include "core/campaign_yaml/base64.h"
 #include "core/campaign_yaml/decode.h"
 #include "core/campaign_yaml/load.h"
+#include "core/campaign_yaml/text_problems.h"
 #include "core/campaign_yaml/yaml_reader.h"
 #include "core/control/law_here.h"
 
@@ -27,6 +28,13 @@ std::shared_ptr<const std::string> DecodeLibrary(const InputNode& node, const st
     return std::make_shared<const std::string>(*std::move(bytes));
   }
   return nullptr;
+}
+
+bool IsUtf8(const PluginDescription& description) {
+  std::string all = description.name + description.version;
+  for (const std::string& name : description.parameters) all += name;
+  std::vector<InputProblem> ignored;
+  return CheckUtf8(all, "", ignored);
 }
 
 bool IsSha256(const std::string& text) {
@@ -84,6 +92,12 @@ PluginConfig DecodePlugin(const InputNode& node, const std::string& path, Python
   } catch (const std::runtime_error& error) {
     AddProblem(problems, library, map.PathOf("library"), std::string("the control law ") + error.what(),
                "a shared object with the functions of dispersa/control_law.h");
+    return plugin;
+  }
+  if (!IsUtf8(description)) {
+    AddProblem(problems, library, map.PathOf("library"),
+               "the control law describes itself in bytes that are no UTF-8",
+               "name, version, parameters in UTF-8");
     return plugin;
   }
   plugin.name = description.name;

@@ -35,9 +35,7 @@ std::string ResumeCommand(const RunCommand& options, const std::filesystem::path
   return command + " --out " + ShellWord(directory.string()) + " --resume";
 }
 
-ExitCode Run(const RunCommand& options, const GlobalOptions& global) {
-  CatchStopSignals();
-  OpenedCampaign opened = OpenCampaign(options.request);
+ExitCode Fly(const RunCommand& options, OpenedCampaign opened, const GlobalOptions& global) {
   const std::filesystem::path directory = opened.folder.directory();
   RunOptions run = options.run;
   run.worker_program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "dispersa-worker";
@@ -58,6 +56,17 @@ ExitCode Run(const RunCommand& options, const GlobalOptions& global) {
     fmt::print(stderr, "to go on when there is space: {}\n", ResumeCommand(options, directory));
     if (global.json) PrintErrorJson(kExitIncomplete, error.what());
     return kExitIncomplete;
+  }
+}
+
+ExitCode Run(const RunCommand& options, const GlobalOptions& global) {
+  CatchStopSignals();
+  try {
+    return Fly(options, OpenCampaign(options.request, StopRequested), global);
+  } catch (const NotWanted&) {
+    fmt::print(stderr, "interrupted before the first case\n");
+    if (global.json) PrintErrorJson(kExitInterrupted, "interrupted");
+    return kExitInterrupted;
   }
 }
 

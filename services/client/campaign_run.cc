@@ -103,7 +103,7 @@ class CampaignRun {
    public:
     HereQueue(CampaignRun& run, int threads) : run_(run) {
       const auto slots = static_cast<std::uint32_t>(threads);
-      run_.book_.ledger().Join(kSelf, {EngineVersion(), slots, kAssignmentsAhead * slots}, run_.Now());
+      run_.book_.ledger().Join(kInProcess, {EngineVersion(), slots, kAssignmentsAhead * slots}, run_.Now());
     }
 
     /// Until the campaign is complete or the run is stopped.
@@ -138,7 +138,7 @@ class CampaignRun {
         const auto [case_index, attempt] = waiting_.front();
         waiting_.pop_front();
         attempts_[case_index] = attempt;
-        run_.book_.Start(kSelf, case_index, attempt, run_.Now());
+        run_.book_.Start(kInProcess, case_index, attempt, run_.Now());
         return case_index;
       } catch (...) {
         problem_ = std::current_exception();
@@ -149,9 +149,9 @@ class CampaignRun {
       const std::lock_guard lock(mutex_);
       if (problem_) return;
       try {
-        run_.book_.Accept(kSelf, "", attempts_.extract(result.case_index).mapped(), result, run_.Now());
+        run_.book_.Accept(kInProcess, "", attempts_.extract(result.case_index).mapped(), result, run_.Now());
         run_.book_.FlushIfDue(run_.Now());
-        run_.ShowProgress("in process");
+        run_.ShowProgress(kInProcess);
       } catch (...) {
         problem_ = std::current_exception();
       }
@@ -160,7 +160,7 @@ class CampaignRun {
     void GivenUp(std::uint64_t case_index, const std::string& reason) override {
       const std::lock_guard lock(mutex_);
       if (problem_) return;
-      run_.book_.GiveUp(kSelf, case_index, attempts_.extract(case_index).mapped(), reason, run_.Now());
+      run_.book_.GiveUp(kInProcess, case_index, attempts_.extract(case_index).mapped(), reason, run_.Now());
       if (const auto given_up = run_.book_.ledger().Progress().quarantined;
           given_up >= kHopelessCases && run_.book_.flown_now() == 0)
         hopeless_ = fmt::format("the first {} cases ended every process that flew them, the last one: {}", given_up,
@@ -173,7 +173,6 @@ class CampaignRun {
     }
 
    private:
-    static constexpr char kSelf[] = "in process";
     static constexpr std::uint32_t kAssignmentsAhead = 4;
 
     CampaignRun& run_;
@@ -203,6 +202,10 @@ class CampaignRun {
                                      double nobody_joined_s) const {
     if (coordinator.joined() == 0 && coordinator.refusal()) {
       return "no worker may fly this campaign: " + *coordinator.refusal();
+    }
+    // Whoever takes their places would say the same.
+    if (coordinator.IsRefusedByAll(book_.campaign().flight_id)) {
+      return "no worker can fly this campaign: " + coordinator.refusal().value_or("");
     }
     if (workers.fruitless_ends() > kFruitlessEndsAllowed) {
       return fmt::format("{} workers ended in a row without a result, the last one with {}",
@@ -249,6 +252,7 @@ RunResult FlyAndReport(const RunOptions& options, OpenedCampaign opened, Executi
                        Observer& observer) {
   const int workers = options.workers >= 0 ? options.workers : UsableCores();
   CampaignBook book(opened.campaign, std::move(opened.folder));
+  book.Expect(std::move(opened.flown));
   execution.workers_wanted = workers;
   execution.cases_before = book.ledger().Progress().done;
   execution.Write();
@@ -260,7 +264,7 @@ RunResult FlyAndReport(const RunOptions& options, OpenedCampaign opened, Executi
     execution.flying_s = SecondsSince(start);
   };
   ExitCode code = kExitDone;
-  if (!book.Complete()) {
+  if (!book.refusal() && !book.Complete()) {
     try {
       CampaignRun run(book, execution, observer);
       execution.problem = workers == 0 ? run.FlyHere(ThreadsOrAll(options.threads))

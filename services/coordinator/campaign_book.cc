@@ -31,6 +31,8 @@ std::optional<StoppingRule> RuleOf(const Campaign& campaign, const ResultStore& 
   return rule;
 }
 
+std::string By(const std::string& worker) { return worker == kInProcess ? worker : "by " + worker; }
+
 }  // namespace
 
 ExitCode CampaignExitCode(CampaignVerdict verdict, std::uint64_t conflicts) {
@@ -111,29 +113,48 @@ void CampaignBook::Dispute(Claim claim) {
   audit_->Add(claim);
 }
 
-void CampaignBook::Refuse(std::uint64_t case_index, const std::string& worker,
-                          const std::string& difference) {
-  if (refusal_) return;
-  refusal_ = fmt::format(
-      "the control law {} is not deterministic: of case {}, flown by worker {} and again by {}, {}",
-      campaign_.autopilot.plugin->name, case_index, store_->WorkerOf(case_index).value_or("another"), worker,
-      difference);
+std::string CampaignBook::FlownBy(std::uint64_t case_index) const {
+  const std::string worker = store_->WorkerOf(case_index).value_or("another");
+  return worker == kInProcess ? worker : "by worker " + worker;
 }
 
-void CampaignBook::RefuseForDifference(const std::string& worker, const CaseResult& result) {
-  Flush();
-  const std::vector<ResultDifference> differences = Differences(store_->Load(result.case_index), result);
+void CampaignBook::Refuse(std::uint64_t case_index, const std::string& once, const std::string& again,
+                          const std::string& difference) {
+  if (refusal_) return;
+  refusal_ = fmt::format("the control law {} is not deterministic: of case {}, flown {} and again {}, {}",
+                         campaign_.autopilot.plugin->name, case_index, once, again, difference);
+}
+
+void CampaignBook::RefuseForDifference(const CaseResult& first, const std::string& once,
+                                       const CaseResult& second, const std::string& again) {
+  const std::vector<ResultDifference> differences = Differences(first, second);
   if (differences.empty()) return;
-  const ResultDifference& first = differences.front();
-  Refuse(result.case_index, worker,
-         fmt::format("{} is '{}' once and '{}' again", first.name, first.first, first.second));
+  const ResultDifference& at = differences.front();
+  Refuse(second.case_index, once, again,
+         fmt::format("{} is '{}' once and '{}' again", at.name, at.first, at.second));
+}
+
+void CampaignBook::Expect(std::vector<CaseResult> flown) {
+  expected_ = std::move(flown);
+  for (const CaseResult& result : expected_) {
+    const auto worker = store_->WorkerOf(result.case_index);
+    if (worker) CompareWithExpected(store_->Load(result.case_index), *worker);
+  }
+}
+
+// An audit finds out which of two workers is wrong; without one, the campaign cannot be believed.
+void CampaignBook::CompareWithExpected(const CaseResult& result, const std::string& worker) {
+  if (audit_) return;
+  for (const CaseResult& expected : expected_)
+    if (expected.case_index == result.case_index)
+      RefuseForDifference(expected, "here before the campaign", result, By(worker));
 }
 
 void CampaignBook::GiveUp(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,
                           const std::string& reason, double now_s) {
   if (!ledger_.GiveUp(worker, case_index, attempt, reason, now_s)) return;
   Flush();
-  Refuse(case_index, worker, "the flight ended well once, and again " + reason);
+  Refuse(case_index, FlownBy(case_index), By(worker), "the flight ended well once, and again " + reason);
 }
 
 bool CampaignBook::Complete() {
@@ -159,6 +180,7 @@ Acceptance CampaignBook::Accept(const std::string& worker, const std::string& ho
   auto start = starts_.extract({worker, result.case_index});
   switch (acceptance) {
     case Acceptance::kAccepted:
+      CompareWithExpected(result, worker);
       results_.push_back(result);
       if (rule_) rule_->Add(result);
       if (tally_) tally_->Add(result);
@@ -172,7 +194,8 @@ Acceptance CampaignBook::Accept(const std::string& worker, const std::string& ho
       if (audit_) {
         Dispute(claim);
       } else if (campaign_.autopilot.plugin) {
-        RefuseForDifference(worker, result);
+        Flush();
+        RefuseForDifference(store_->Load(result.case_index), FlownBy(result.case_index), result, By(worker));
         if (refusal_) break;
       }
       LogError("case {}: worker {} on {} returned other bits than were returned before: {}",

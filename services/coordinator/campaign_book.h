@@ -25,6 +25,9 @@ namespace dispersa {
 /// any is an internal error (1), whatever the verdict says.
 ExitCode CampaignExitCode(CampaignVerdict verdict, std::uint64_t conflicts);
 
+/// The worker's name when a campaign is flown by the process that writes its folder.
+inline constexpr char kInProcess[] = "in process";
+
 /// Results are stored in batches; nothing that was accepted is lost by more than one batch. Not thread-safe.
 /// Times are seconds from any origin. Storing throws ResultError.
 class CampaignBook {
@@ -46,6 +49,10 @@ class CampaignBook {
   /// Why its results cannot be believed, in words for the user: its control law is not deterministic. Nothing
   /// of it needs to be flown any more.
   const std::optional<std::string>& refusal() const { return refusal_; }
+
+  /// What the first cases of a campaign with a plug-in gave before it: every result of them must be the same,
+  /// what the store holds too.
+  void Expect(std::vector<CaseResult> flown);
 
   /// Counts from what the store holds; to be called before the first result.
   void KeepTally();
@@ -81,8 +88,12 @@ class CampaignBook {
 
  private:
   void Dispute(Claim claim);
-  void Refuse(std::uint64_t case_index, const std::string& worker, const std::string& difference);
-  void RefuseForDifference(const std::string& worker, const CaseResult& result);
+  std::string FlownBy(std::uint64_t case_index) const;
+  void Refuse(std::uint64_t case_index, const std::string& once, const std::string& again,
+              const std::string& difference);
+  void RefuseForDifference(const CaseResult& first, const std::string& once, const CaseResult& second,
+                           const std::string& again);
+  void CompareWithExpected(const CaseResult& result, const std::string& worker);
 
   Campaign campaign_;
   std::unique_ptr<ResultStore> store_;
@@ -91,6 +102,7 @@ class CampaignBook {
   std::optional<Audit> audit_;
   std::uint64_t confirmed_ = 0;
   std::optional<std::string> refusal_;
+  std::vector<CaseResult> expected_;
   Ledger ledger_;
   std::vector<CaseResult> results_;
   std::vector<ExecutionRecord> records_;

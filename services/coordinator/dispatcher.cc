@@ -255,6 +255,13 @@ void Dispatcher::On(const std::string& sender, const CampaignRefusal& refusal, d
   known->second.ForgetSent(refusal.flight_id);
 }
 
+bool Dispatcher::IsRefusedByAll(const std::string& flight_id) const {
+  const auto campaign = campaigns_.find(flight_id);
+  if (campaign == campaigns_.end() || workers_.empty()) return false;
+  return std::all_of(workers_.begin(), workers_.end(),
+                     [&](const auto& worker) { return campaign->second.refused_by.contains(worker.first); });
+}
+
 std::optional<TextPart> Dispatcher::On(const TextRequest& request, std::size_t limit, double now_s) {
   const auto campaign = campaigns_.find(request.flight_id);
   const auto known = workers_.find(request.worker);

@@ -86,6 +86,8 @@ class Dispatcher {
     std::uint64_t flown;
   };
   std::vector<WorkerView> Workers() const;
+  /// Whether every worker that has joined refuses this campaign; false without workers.
+  bool IsRefusedByAll(const std::string& flight_id) const;
   /// Why a worker was refused or refused a campaign, most recently.
   const std::optional<std::string>& refusal() const { return refusal_; }
   /// Messages that contradicted what is known: of strangers, of other senders than before, of impossible

@@ -1,6 +1,7 @@
 #include "services/coordinator/open_campaign.h"
 
 #include <algorithm>
+#include <chrono>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -39,13 +40,34 @@ bool IsStillborn(const fs::path& directory) {
   return std::all_of(fs::directory_iterator(directory), fs::directory_iterator(), IsOfAStillbornStart);
 }
 
+// A law of some hours a flight takes as long here.
+constexpr double kPatience_s = 2.0;
+
+std::vector<CaseResult> Check(const Campaign& campaign, const Unwanted& unwanted) {
+  if (!campaign.autopilot.plugin) return {};
+  const auto start = std::chrono::steady_clock::now();
+  bool is_said = false;
+  const auto wait = [&] {
+    if (!is_said &&
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() > kPatience_s) {
+      LogInfo(
+          "the control law {} is flown before the campaign, each of three flights twice, to see whether it "
+          "is deterministic",
+          campaign.autopilot.plugin->name);
+      is_said = true;
+    }
+    return unwanted && unwanted();
+  };
+  return CheckPluginIsDeterministic(CampaignFlights(campaign), campaign.sampling.cases, wait);
+}
+
 }  // namespace
 
-OpenedCampaign OpenCampaign(const CampaignRequest& request) {
+OpenedCampaign OpenCampaign(const CampaignRequest& request, const Unwanted& unwanted) {
   std::vector<InputProblem> warnings;
   Campaign campaign = LoadCampaign(request.campaign, request.overrides, &warnings);
   for (const InputProblem& warning : warnings) LogWarning("{}", warning.Text());
-  if (campaign.autopilot.plugin) CheckPluginIsDeterministic(CampaignFlights(campaign), campaign.sampling.cases);
+  std::vector<CaseResult> flown = Check(campaign, unwanted);
   const fs::path directory =
       request.out.empty() ? DefaultFolder(campaign, request.resume) : fs::path(request.out);
 
@@ -56,13 +78,13 @@ OpenedCampaign OpenCampaign(const CampaignRequest& request) {
   if (!error) lock.emplace(directory);
   if (!request.resume || !HasContent(directory)) {
     ResultFolder folder = ResultFolder::Create(directory, campaign, std::move(lock));
-    return {std::move(campaign), std::move(folder)};
+    return {std::move(campaign), std::move(folder), std::move(flown)};
   }
   if (IsStillborn(directory)) {
     const std::vector<fs::path> leftovers(fs::directory_iterator{directory}, fs::directory_iterator{});
     for (const fs::path& leftover : leftovers) fs::remove(leftover);
     ResultFolder folder = ResultFolder::Create(directory, campaign, std::move(lock));
-    return {std::move(campaign), std::move(folder)};
+    return {std::move(campaign), std::move(folder), std::move(flown)};
   }
   const std::vector<std::uint64_t> present = ResultFolder::Open(directory).PresentCases();
   if (!present.empty() && present.back() >= campaign.sampling.cases) {
@@ -79,7 +101,7 @@ OpenedCampaign OpenCampaign(const CampaignRequest& request) {
   for (const std::uint64_t damaged : folder.damaged()) {
     LogWarning("{}: the row of case {} is damaged; it is flown again", directory.string(), damaged);
   }
-  return {std::move(campaign), std::move(folder)};
+  return {std::move(campaign), std::move(folder), std::move(flown)};
 }
 
 }  // namespace dispersa

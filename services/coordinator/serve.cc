@@ -45,12 +45,21 @@ class Every {
   double due_s_ = 0.0;
 };
 
+OpenedCampaign OpenUnlessStopped(const CampaignRequest& request) {
+  try {
+    return OpenCampaign(request, StopRequested);
+  } catch (const NotWanted&) {
+    throw Failure{kExitInterrupted, "stopped before the first case"};
+  }
+}
+
 }  // namespace
 
 int ServeCampaign(const ServeOptions& options, const CampaignRequest& request,
                   std::optional<double> patience_s) {
-  OpenedCampaign opened = OpenCampaign(request);
+  OpenedCampaign opened = OpenUnlessStopped(request);
   CampaignBook book(opened.campaign, std::move(opened.folder));
+  book.Expect(std::move(opened.flown));
   Coordinator coordinator(options.network, book, options.audit);
   LogInfo("campaign {}, flight id {}, results in {}; domain {}, workers may come to port {}",
           book.campaign().name, book.campaign().flight_id, book.folder().directory().string(),

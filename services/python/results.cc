@@ -53,6 +53,14 @@ class CallsLaw {
   std::optional<PythonLaw> law_;
 };
 
+OpenedCampaign OpenUnlessStopped(const CampaignRequest& request, Observer& observer) {
+  try {
+    return OpenCampaign(request, [&observer] { return observer.Stop(); });
+  } catch (const NotWanted&) {
+    throw Interrupted();
+  }
+}
+
 /// A campaign flown on this machine: (folder, exit code, why cases are missing or None). `envelope`: as
 /// ReflownFlights; None flies nothing again.
 py::tuple Run(const std::string& name, const std::string& text, const std::string& out, bool resume,
@@ -63,7 +71,7 @@ py::tuple Run(const std::string& name, const std::string& text, const std::strin
   const CallsLaw calls_law(law, law_sha256, observer);
   std::filesystem::path folder;
   const RunResult result = observer.Watch([&] {
-    OpenedCampaign opened = OpenCampaign({InputSource(name, text), {}, out, resume});
+    OpenedCampaign opened = OpenUnlessStopped({InputSource(name, text), {}, out, resume}, observer);
     folder = opened.folder.directory();
     return RunCampaign(std::move(opened),
                        {workers, calls_law.Threads(threads), worker_program, Reflown(envelope)}, observer);

@@ -562,6 +562,45 @@ TEST_F(PluginTest, ACoordinatorThatIsStartedAgainStillWantsAnotherWorker) {
             "end_stage is '3' once and '0' again");
 }
 
+TEST_F(PluginTest, WhatWasFlownBeforeIsWhatEveryWorkerMustReturn) {
+  Open(3);
+  Come("a");
+  CaseResult flown = ResultOf(0);
+  flown.end_stage = 2;
+  book_->Expect({flown});
+  Return("a", ResultOf(1));
+  EXPECT_EQ(book_->refusal(), std::nullopt);
+  Return("a", ResultOf(0));
+  EXPECT_EQ(
+      book_->refusal(),
+      "the control law law is not deterministic: of case 0, flown here before the campaign and again by a, "
+      "end_stage is '2' once and '0' again");
+}
+
+TEST_F(PluginTest, WhatIsStoredMustBeWhatWasFlownBefore) {
+  Open(3);
+  Come("a");
+  Return("a", ResultOf(0));
+  book_->Flush();
+  book_->Expect({ResultOf(0), ResultOf(1)});
+  EXPECT_EQ(book_->refusal(), std::nullopt);
+  CaseResult flown = ResultOf(0);
+  flown.end_stage = 2;
+  book_->Expect({flown});
+  EXPECT_THAT(book_->refusal().value_or(""),
+              testing::HasSubstr("of case 0, flown here before the campaign and again by a"));
+}
+
+TEST_F(PluginTest, ACampaignIsRefusedByAllWhenNobodyIsLeft) {
+  Open(3);
+  EXPECT_FALSE(dispatcher_.IsRefusedByAll(kFlight));
+  for (const char* worker : {"a", "b"}) Come(worker);
+  dispatcher_.On("a", CampaignRefusal{"a", kEpoch, kFlight, "no"}, 0.0);
+  EXPECT_FALSE(dispatcher_.IsRefusedByAll(kFlight));
+  dispatcher_.On("b", CampaignRefusal{"b", kEpoch, kFlight, "no"}, 0.0);
+  EXPECT_TRUE(dispatcher_.IsRefusedByAll(kFlight));
+}
+
 TEST_F(PluginTest, AContradictionOfAnyCaseRefusesTheCampaign) {
   Open(9);
   for (const char* worker : {"a", "b"}) Come(worker);

@@ -32,6 +32,10 @@
 #define DEFLECTS_FAR 22      /* of one flight in four, in roll: finite, but no finite acceleration */
 #define COMMANDS_MUCH 23     /* of one flight in four, in pitch: finite, but no filter could take it */
 #define TELLS_NAN 24         /* as telemetry */
+#define WRITES_BEFORE 25     /* its memory, some way */
+#define WRITES_BEHIND 26     /* its memory, a byte */
+#define CRASHES_IN_WORKERS 27 /* when it is created there */
+#define IS_SLOW 28            /* a minute a flight */
 
 #ifndef DISPERSA_MISBEHAVES
 #define DISPERSA_MISBEHAVES 0
@@ -64,6 +68,12 @@ __attribute__((destructor)) static void at_the_end(void) {
 int dispersa_law_create(const dispersa_law_setup* setup, void* memory) {
   (void)setup;
   (void)memory;
+  if (DISPERSA_MISBEHAVES == CRASHES_IN_WORKERS) {
+    char name[32] = "";
+    FILE* file = fopen("/proc/self/comm", "r");
+    if (file == NULL || fgets(name, sizeof name, file) == NULL || fclose(file) != 0) return 1;
+    if (strncmp(name, "dispersa-worker", 15) == 0) abort();
+  }
   if (DISPERSA_MISBEHAVES == COUNTS_FLIGHTS) {
     FILE* file = fopen(getenv("FLIGHTS_FILE"), "a");
     if (file == NULL || fputc('.', file) == EOF || fclose(file) != 0) return 1;
@@ -149,6 +159,15 @@ int dispersa_law_step(const dispersa_law_input* input, dispersa_law_output* outp
     }
     case KEEPS_A_GLOBAL:
       output->command[DISPERSA_PITCH] *= 1.0 + 1e-12 * global_count++;
+      break;
+    case WRITES_BEFORE:
+      memset((char*)m - 256, 0x5a, 64);
+      break;
+    case WRITES_BEHIND:
+      *((volatile char*)m + sizeof *m) = 1;
+      break;
+    case IS_SLOW:
+      usleep(2000);
       break;
     case DIFFERS_BY_WORKER:
       output->command[DISPERSA_PITCH] *= 1.0 + 1e-12 * getppid();

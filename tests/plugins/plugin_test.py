@@ -8,9 +8,11 @@ import os
 import pathlib
 import re
 import shutil
+import signal
 import sqlite3
 import subprocess
 import tempfile
+import time
 import unittest
 
 BINARIES = pathlib.Path(os.environ["DISPERSA_BINARIES"])
@@ -266,6 +268,45 @@ class PluginTest(unittest.TestCase):
             self.assertRegex(ended.stderr, r"the control law pd_test is not deterministic: of (the nominal flight|case "
                                            r"\d), flown twice, at \d+\.\d+ s \w+ is \S+ once and \S+ again")
             self.assertFalse((out / "results.sqlite").exists())
+
+    def test_what_writes_beside_its_memory_is_refused(self):
+        for behaviour, words in (("WRITES_BEFORE", r"wrote beside the memory of its flight, at \d+\.\d+ s at the latest, in stage 1"),
+                                 ("WRITES_BEHIND", r"(wrote beside the memory of its flight, at 0|cannot fly the nominal flight: it "
+                                                   r"ended by signal 11 \(SIGSEGV\))")):
+            out, ended = self.campaign_run(behaviour, self.law(behaviour))
+            self.assertEqual(ended.returncode, 2, ended.stderr)
+            self.assertRegex(ended.stderr, "^the control law pd_test " + words)
+            self.assertFalse((out / "results.sqlite").exists())
+
+    def test_a_slow_law_says_so_and_can_be_interrupted(self):
+        for stop in (signal.SIGINT, signal.SIGTERM):
+            log = self.folder / "slow.log"
+            with open(log, "w") as stderr:
+                run = subprocess.Popen([BINARIES / "dispersa", "run", CAMPAIGNS / "table3.yaml", "--autopilot", self.law("IS_SLOW"),
+                                        "--out", self.folder / "out/slow"], stdout=stderr, stderr=stderr)
+            self.addCleanup(run.kill)
+            for _ in range(600):
+                if "is flown before the campaign" in log.read_text():
+                    break
+                time.sleep(0.1)
+            else:
+                self.fail(log.read_text())
+            run.send_signal(stop)
+            self.assertEqual(run.wait(timeout=TIMEOUT_S), 130)
+            self.assertIn("interrupted before the first case", log.read_text())
+
+    def test_workers_that_all_refuse_it_end_the_run(self):
+        for workers in (1, 2):
+            _, ended = self.campaign_run(f"refused{workers}", self.law("CRASHES_IN_WORKERS"), workers=workers)
+            self.assertEqual(ended.returncode, 5, ended.stderr)
+            self.assertIn("no worker can fly this campaign: the control law pd_test cannot fly the nominal flight: it ended by "
+                          "signal 6 (SIGABRT)", ended.stderr)
+
+    def test_a_worker_alone_must_give_what_was_flown_here(self):
+        _, ended = self.campaign_run("alone", self.law("DIFFERS_BY_WORKER"), workers=1)
+        self.assertEqual(ended.returncode, 2, ended.stderr)
+        self.assertRegex(ended.stderr, r"the control law pd_test is not deterministic: of case \d, flown here before the campaign and "
+                                       r"again by \w+, metric_\w+ is '\S+' once and '\S+' again")
 
     def test_the_check_flies_each_flight_twice(self):
         counted = self.folder / "flights"
