@@ -8,7 +8,7 @@
 #include <string>
 
 #include "core/report/text.h"
-#include "services/coordinator/whole_number.h"
+#include "services/program/option_values.h"
 
 namespace dispersa {
 
@@ -21,8 +21,8 @@ void AddReflownOptions(CLI::App& command, ReflownFlights& flights) {
           "--envelope", flights.envelope,
           "so many first cases, or all, are flown again for the percentiles over time; the extremes of every "
           "metric besides")
+      ->transform(WholeNumber(1, UINT64_MAX))
       ->transform(CLI::Transformer(words).description("{all}"))
-      ->check([](const std::string& text) { return WholeNumberProblem(text, UINT64_MAX); })
       ->default_str(std::to_string(flights.envelope));
 }
 

@@ -94,7 +94,8 @@ void AddInitCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<InitOptions>();
   CLI::App* command = app.add_subcommand("init", "write a folder with a commented campaign that flies");
   command->add_option("directory", options->directory, "folder to make; one that is there must be empty")
-      ->required();
+      ->required()
+      ->type_name(kFolderType);
   command
       ->add_option("--from", options->from,
                    "slv4, every key explained; or vega, electron, scout, from public data")

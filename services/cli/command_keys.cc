@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "services/cli/command.h"
+#include "services/program/option_values.h"
 #include "services/transport/authority.h"
 
 namespace dispersa {
@@ -54,7 +55,7 @@ std::pair<CLI::App*, std::shared_ptr<KeysOptions>> AddCommand(
       ->required()
       ->type_name(kFolderType);
   command->add_option("--days", options->days, fmt::format("valid for so long; default {}", days))
-      ->check(CLI::Range(1, kMostDays));
+      ->transform(WholeNumber(1, kMostDays));
   command->callback([options, &invocation, run] {
     invocation.command = [options, run](const GlobalOptions& global) { return run(*options, global); };
   });

@@ -7,7 +7,7 @@
 #include "services/cli/session_options.h"
 #include "services/cli/warn.h"
 #include "services/client/remote_campaign.h"
-#include "services/coordinator/whole_number.h"
+#include "services/program/option_values.h"
 
 namespace dispersa {
 namespace {
@@ -42,10 +42,10 @@ void AddLaunchCommand(CLI::App& app, Invocation& invocation) {
   CLI::App* command = app.add_subcommand("launch", "give a campaign to a coordinator and print its id");
   command->add_option("campaign", options->campaign, "campaign file")->required()->type_name(kYamlType);
   command->add_option("--cases", options->overrides.cases, "number of cases, instead of the file's")
-      ->check(CaseCountProblem);
+      ->transform(WholeNumber(1, kMostCases));
   command->add_option("--seed", options->overrides.seed, "seed, instead of the file's");
   command->add_option("--priority", options->priority, "campaigns of a higher one fly first; default 0")
-      ->check(CLI::Range(-1000, 1000));
+      ->transform(WholeNumber(-1000, 1000));
   command->footer("Example: dispersa launch campaigns/table3.yaml --cases 5000 --peer coordinator-host");
   BindSession(command, invocation, [options](Session& session, const GlobalOptions& global) {
     return Launch(*options, session, global);

@@ -11,7 +11,7 @@
 #include "services/cli/command.h"
 #include "services/cli/warn.h"
 #include "services/client/margins_of.h"
-#include "services/coordinator/whole_number.h"
+#include "services/program/option_values.h"
 
 namespace dispersa {
 namespace {
@@ -171,7 +171,7 @@ void AddMarginsCommand(CLI::App& app, Invocation& invocation) {
   command->add_option("--autopilot", options->autopilot, "autopilot file, instead of the campaign's")
       ->type_name(kYamlType);
   command->add_option("--cases", options->margins.cases, "also of so many dispersed cases of the campaign")
-      ->check(CaseCountProblem);
+      ->transform(WholeNumber(1, kMostCases));
   command
       ->add_option(
           "--frequency-band", options->margins.frequency_band_percent,

@@ -17,6 +17,7 @@
 #include "services/cli/warn.h"
 #include "services/client/reference_search.h"
 #include "services/coordinator/threads.h"
+#include "services/program/option_values.h"
 
 namespace dispersa {
 namespace {
@@ -127,12 +128,14 @@ void AddOptimizeCommand(CLI::App& app, Invocation& invocation) {
           ".html; default <name>_reference.yaml. One that misses its target is written too, and says so")
       ->type_name(kFileType);
   command->add_option("--seed", options->seed, "seed, instead of the file's");
-  command->add_option("--seeds", options->seeds,
-                      "optimise with so many seeds, from the file's or --seed on, and print how well and how alike "
-                      "they end; writes nothing; exit code 3 unless every one reaches the target")
-      ->check(CLI::Range(1, 10000));
+  command
+      ->add_option(
+          "--seeds", options->seeds,
+          "optimise with so many seeds, from the file's or --seed on, and print how well and how alike "
+          "they end; writes nothing; exit code 3 unless every one reaches the target")
+      ->transform(WholeNumber(1, 10000));
   command->add_option("--threads", options->threads, "threads; the result does not depend on them")
-      ->check(CLI::Range(1, 1024));
+      ->transform(WholeNumber(1, 1024));
   command->footer(
       "Example: dispersa optimize campaigns/nominal.yaml -o slv4_500km.yaml --seed 2\n"
       "The shipped reference: dispersa optimize campaigns/slv4_500km.yaml -o campaigns/references/slv4_500km.yaml");

@@ -14,6 +14,7 @@
 #include "services/cli/warn.h"
 #include "services/client/writable.h"
 #include "services/coordinator/threads.h"
+#include "services/program/option_values.h"
 
 namespace dispersa {
 namespace {
@@ -88,14 +89,14 @@ void AddPaperCommand(CLI::App& app, Invocation& invocation) {
       ->type_name(kFolderType);
   command
       ->add_option("--cases", options->cases, "size of a Monte Carlo campaign; designs repeat in proportion")
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1000000}))
+      ->transform(WholeNumber(1, 1000000))
       ->capture_default_str();
   command
       ->add_option("--campaigns", options->campaigns,
                    "folder of the campaign files, instead of the shipped ones")
       ->type_name(kFolderType);
   command->add_option("--threads", options->threads, "threads; the page does not depend on them")
-      ->check(CLI::Range(1, 1024));
+      ->transform(WholeNumber(1, 1024));
   command->footer(
       "Example: dispersa paper --out paper\n         dispersa paper --out paper_quick --cases 10");
   command->callback([options, &invocation] {

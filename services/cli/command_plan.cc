@@ -12,10 +12,10 @@
 #include "core/campaign_yaml/load.h"
 #include "core/report/text.h"
 #include "services/cli/command.h"
-#include "services/client/flight_json.h"
 #include "services/cli/plan_text.h"
 #include "services/cli/warn.h"
-#include "services/coordinator/whole_number.h"
+#include "services/client/flight_json.h"
+#include "services/program/option_values.h"
 
 namespace dispersa {
 namespace {
@@ -80,7 +80,7 @@ void AddPlanCommand(CLI::App& app, Invocation& invocation) {
   CLI::App* command = app.add_subcommand("plan", "print the inputs of every case, without flying");
   command->add_option("campaign", options->campaign, "campaign file")->required()->type_name(kYamlType);
   command->add_option("--cases", options->overrides.cases, "number of cases, instead of the file's")
-      ->check(CaseCountProblem);
+      ->transform(WholeNumber(1, kMostCases));
   command->add_option("--seed", options->overrides.seed, "seed, instead of the file's");
   command->add_flag("--csv", options->csv, "all inputs, in the columns of cases.csv");
   command->add_flag("--all", options->all,

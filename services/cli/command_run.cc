@@ -12,9 +12,9 @@
 #include "services/cli/terminal_observer.h"
 #include "services/client/campaign_run.h"
 #include "services/coordinator/stop_signal.h"
-#include "services/coordinator/whole_number.h"
 #include "services/log/log.h"
 #include "services/program/error_json.h"
+#include "services/program/option_values.h"
 
 namespace dispersa {
 namespace {
@@ -81,16 +81,15 @@ void AddRunCommand(CLI::App& app, Invocation& invocation) {
   command
       ->add_option("--workers", options->run.workers,
                    "worker processes; default: the usable cores; 0 flies in this process without DDS")
-      ->check(CLI::Range(0, 1024));
+      ->transform(WholeNumber(0, 1024));
   command
       ->add_option("--threads", options->run.threads,
                    "threads that fly in this process with --workers 0; default: the usable cores")
-      ->check(CLI::Range(1, 1024));
+      ->transform(WholeNumber(1, 1024));
   command->add_option("--out", request.out, "result folder; default: results/<name>-<first 8 of id>")
-      ->type_name(kFolderType)
-      ->check([](const std::string& text) { return text.empty() ? "must not be empty" : ""; });
+      ->type_name(kFolderType);
   command->add_option("--cases", request.overrides.cases, "number of cases, instead of the file's")
-      ->check(CaseCountProblem);
+      ->transform(WholeNumber(1, kMostCases));
   command->add_option("--seed", request.overrides.seed, "seed, instead of the file's");
   command->add_option("--autopilot", request.overrides.autopilot, "autopilot file, instead of the campaign's")
       ->type_name(kYamlType);

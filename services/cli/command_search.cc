@@ -20,12 +20,13 @@
 #include "core/report/text.h"
 #include "core/search/smallest_failure.h"
 #include "services/cli/command.h"
-#include "services/client/flight_json.h"
 #include "services/cli/progress.h"
 #include "services/cli/stream_beside.h"
 #include "services/cli/warn.h"
+#include "services/client/flight_json.h"
 #include "services/client/writable.h"
 #include "services/coordinator/threads.h"
+#include "services/program/option_values.h"
 
 namespace dispersa {
 namespace {
@@ -219,9 +220,9 @@ void AddSearchCommand(CLI::App& app, Invocation& invocation) {
   command->add_option("--above", options->above, "limit in place of the campaign's: it fails below")
       ->excludes(below);
   command->add_option("--flights", options->options.max_flights, "at most so many flights, default 1000")
-      ->check(CLI::Range(std::size_t{20}, std::size_t{1000000}));
+      ->transform(WholeNumber(20, 1000000));
   command->add_option("--starts", options->options.starts, "points to search from, default 4")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{100}));
+      ->transform(WholeNumber(1, 100));
   command
       ->add_option("--reach", options->options.reach, "farthest distance in standard deviations, default 6")
       ->check(CLI::Range(0.1, 8.0));

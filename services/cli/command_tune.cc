@@ -11,13 +11,13 @@
 #include "core/tuning/regulator.h"
 #include "core/tuning/tune.h"
 #include "services/cli/command.h"
-#include "services/client/flight_json.h"
 #include "services/cli/progress.h"
 #include "services/cli/stream_beside.h"
 #include "services/cli/warn.h"
+#include "services/client/flight_json.h"
 #include "services/client/writable.h"
 #include "services/coordinator/threads.h"
-#include "services/coordinator/whole_number.h"
+#include "services/program/option_values.h"
 
 namespace dispersa {
 namespace {
@@ -299,22 +299,24 @@ void AddTuneCommand(CLI::App& app, Invocation& invocation) {
                    "seed of the search and of its cases; never the campaign's own")
       ->capture_default_str();
   command->add_option("--cases", options->tuning.cases, "cases flown for each design")
-      ->check(CaseCountProblem)
+      ->transform(WholeNumber(1, 10000))
       ->capture_default_str();
   command
       ->add_option("--evaluations", options->tuning.evaluations,
                    "designs tried, shared by the stages and the augmentation of PD")
+      ->transform(WholeNumber(1, 1000000))
       ->capture_default_str();
   command
       ->add_option(
           "--dispersed", options->tuning.dispersed,
           "draws of the campaign whose plants must meet the gates of dispersed flights, by every design")
+      ->transform(WholeNumber(0, 1000))
       ->capture_default_str();
   command->add_flag(
       "--lqr", options->tuning.regulator,
       "search the weights of a linear-quadratic regulator, whose gains the law flies: pid, pid_aac");
   command->add_option("--threads", options->threads, "threads; the result does not depend on them")
-      ->check(CLI::Range(1, 1024));
+      ->transform(WholeNumber(1, 1024));
   command->footer(
       "Minimises the mean RMS pitch error of each stage, subject to computed margins above the gates of\n"
       "`dispersa margins` with a reserve; then what augments PD, subject to the measured ones. The gains\n"

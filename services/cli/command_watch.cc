@@ -14,6 +14,7 @@
 #include "services/cli/session_options.h"
 #include "services/coordinator/stop_signal.h"
 #include "services/log/log.h"
+#include "services/program/option_values.h"
 
 namespace dispersa {
 namespace {
@@ -132,7 +133,7 @@ void AddWatchCommand(CLI::App& app, Invocation& invocation) {
       "--web", options->web, "also as a page for the browsers of this machine; its address goes to stderr");
   watch->add_option("--port", options->port, "port of the page on 127.0.0.1; default: any that is free")
       ->needs(web)
-      ->check(CLI::Range(1, 65535));
+      ->transform(WholeNumber(1, 65535));
   watch->footer("Example: dispersa watch 3f2a --web --port 8080");
   BindSession(watch, invocation,
               [id = AddIdOption(watch), options](Session& session, const GlobalOptions& global) {

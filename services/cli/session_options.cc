@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "services/program/failure.h"
+#include "services/program/option_values.h"
 
 namespace dispersa {
 
@@ -11,7 +12,7 @@ void BindSession(CLI::App* command, Invocation& invocation,
   const auto options = std::make_shared<SessionOptions>();
   command->add_option("--domain", options->domain, "DDS domain of the coordinator")
       ->envname("DISPERSA_DOMAIN")
-      ->check(CLI::Range(0, 99));
+      ->transform(WholeNumber(0, 99));
   command->add_option("--peer", options->peer, "HOST[:PORT] of the coordinator; default: this machine");
   command->add_option("--address", options->address, "IPv4 address of the only network interface to use")
       ->check(CLI::ValidIPV4);

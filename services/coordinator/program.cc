@@ -11,11 +11,11 @@
 #include "core/report/result_error.h"
 #include "services/coordinator/serve.h"
 #include "services/coordinator/stop_signal.h"
-#include "services/coordinator/whole_number.h"
 #include "services/log/log.h"
 #include "services/program/command_line.h"
 #include "services/program/completion_words.h"
 #include "services/program/failure.h"
+#include "services/program/option_values.h"
 #include "services/transport/admission.h"
 #include "services/transport/exit_code.h"
 
@@ -42,7 +42,7 @@ int RunCoordinator(int argc, char** argv) {
       ->type_name(kFolderType);
   app.add_option("--metrics", metrics_port,
                  "with --data: port of 127.0.0.1 for metrics in Prometheus' text format")
-      ->check(CLI::Range(1, 65535));
+      ->transform(WholeNumber(1, 65535));
   app.add_flag("--health", health,
                "ask the coordinator of the domain on this machine: exit code 0 if it answers");
   app.add_option(
@@ -53,12 +53,12 @@ int RunCoordinator(int argc, char** argv) {
   app.add_option("--out", request.out, "result folder; default: results/<name>-<first 8 of id>")
       ->type_name(kFolderType);
   app.add_option("--cases", request.overrides.cases, "number of cases, instead of the file's")
-      ->check(CaseCountProblem);
+      ->transform(WholeNumber(1, kMostCases));
   app.add_option("--seed", request.overrides.seed, "seed, instead of the file's");
   app.add_flag("--resume", request.resume, "go on in a folder of the same flight id");
   app.add_option("--domain", network.domain, "DDS domain")
       ->envname("DISPERSA_DOMAIN")
-      ->check(CLI::Range(0, 99));
+      ->transform(WholeNumber(0, 99));
   app.add_option("--address", network.address, "IPv4 address of the only network interface to use")
       ->check(CLI::ValidIPV4);
   app.add_option("--keys", admission.keys, kKeysHelp)->type_name(kFolderType);

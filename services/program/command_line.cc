@@ -12,6 +12,7 @@
 #include "services/program/completion_words.h"
 #include "services/program/error_json.h"
 #include "services/program/help_formatter.h"
+#include "services/program/option_values.h"
 #include "services/program/version.h"
 
 namespace dispersa {
@@ -44,6 +45,18 @@ InputProblem ProblemOf(const CLI::ParseError& error) {
   return {"", 0, 0, "", text.substr(0, at), text.substr(at + separator.size())};
 }
 
+// What CLI11 parses, from behind. To it "--seed=" has no value and takes the next word for it.
+Words Spelled(const Words& words) {
+  Words spelled;
+  for (const std::string& word : words) {
+    const bool is_empty = word.starts_with("--") && word.find('=') == word.size() - 1;
+    spelled.push_back(is_empty ? word.substr(0, word.size() - 1) : word);
+    if (is_empty) spelled.emplace_back();
+  }
+  std::reverse(spelled.begin(), spelled.end());
+  return spelled;
+}
+
 // CLI11 ends at --version, whatever else is asked for.
 ExitCode PrintVersionJson() {
   try {
@@ -74,10 +87,11 @@ std::optional<ExitCode> ParseCommandLine(CLI::App& app, int argc, char** argv) {
     fmt::print("{}", CompletionWords(app, Words(words.begin() + 2, words.end())));
     return kExitDone;
   }
+  CheckValues(app);
   const bool json = Has(words, "--json");
   if (json && Has(words, "--version")) return PrintVersionJson();
   try {
-    app.parse(argc, argv);
+    app.parse(Spelled(words));
   } catch (const CLI::ParseError& error) {
     // CLI11 says of an unknown command only that one is required.
     const bool is_required = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;

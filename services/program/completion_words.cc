@@ -1,9 +1,9 @@
 #include "services/program/completion_words.h"
 
 #include <algorithm>
-#include <sstream>
 
 #include "core/flight/metrics.h"
+#include "services/program/option_values.h"
 
 namespace dispersa {
 namespace {
@@ -85,12 +85,10 @@ class Candidates {
   /// Of the type as help texts show it; `before` stands before each value.
   void AddValues(const CLI::Option& option, const std::string& before) {
     const std::string type = option.get_type_name();
-    const std::size_t from = type.find('{'), to = type.find('}', from);
-    if (from != std::string::npos && to != std::string::npos) {
-      std::istringstream list(type.substr(from + 1, to - from - 1));
-      for (std::string value; std::getline(list, value, ',');)
-        Add(before + value.substr(0, value.find("->")), "");
-    } else if (type.starts_with(kMetricType)) {
+    const std::vector<std::string> values = ListedValues(option);
+    for (const std::string& value : values) Add(before + value, "");
+    if (!values.empty()) return;
+    if (type.starts_with(kMetricType)) {
       for (const std::string& name : MetricNames()) Add(before + name, "");
     } else if (type.starts_with(kYamlType)) {
       AddKind("file\tyaml");

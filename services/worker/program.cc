@@ -12,6 +12,7 @@
 #include "services/program/command_line.h"
 #include "services/program/completion_words.h"
 #include "services/program/failure.h"
+#include "services/program/option_values.h"
 #include "services/transport/admission.h"
 #include "services/transport/exit_code.h"
 #include "services/worker/worker.h"
@@ -33,14 +34,14 @@ int RunWorker(int argc, char** argv) {
   BeginCommandLine(app, json, "with --version, and of an error: one JSON object");
   app.add_option("--domain", options.network.domain, "DDS domain")
       ->envname("DISPERSA_DOMAIN")
-      ->check(CLI::Range(0, 99));
+      ->transform(WholeNumber(0, 99));
   app.add_option("--peer", peer, "HOST[:PORT] of the coordinator")->required();
   app.add_option("--address", options.network.address, "IPv4 address of the only network interface to use")
       ->check(CLI::ValidIPV4);
   app.add_option("--keys", admission.keys, kKeysHelp)->type_name(kFolderType);
   app.add_flag("--insecure", admission.insecure, kInsecureHelp);
   app.add_flag("--allow-plugins", admission.allow_plugins, kAllowPluginsHelp);
-  app.add_option("--slots", options.slots, "cases flown at the same time")->check(CLI::Range(1, 1024));
+  app.add_option("--slots", options.slots, "cases flown at the same time")->transform(WholeNumber(1, 1024));
   app.add_option("--idle-exit", options.idle_exit_s,
                  "leave (exit code 0) after so many seconds without a case")
       ->check(CLI::NonNegativeNumber);
