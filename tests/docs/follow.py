@@ -2,7 +2,7 @@
 
     follow.py PAGE.md [--programs BIN] [--header control_law.h]
 
-A block's last command must succeed. A ```text block right after it is what it prints: each of its lines must be among the
+A block's last command must succeed, all of it if it is a pipe. A ```text block right after it is what it prints: each of its lines must be among the
 block's output, in this order, where "…" stands for anything.
 """
 import argparse
@@ -10,6 +10,7 @@ import os
 import pathlib
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -17,6 +18,7 @@ import tempfile
 BLOCK = re.compile(r"^```(sh|text)\n(.*?)^```$", re.M | re.S)
 MARK = "@@follow@@"
 TIMEOUT_S = 240
+PIPE_CLOSED = 128 + signal.SIGPIPE
 
 
 def steps(page):
@@ -47,20 +49,26 @@ def missing(expected, output):
     return None
 
 
+def exit_code(codes):
+    """Of a pipe's commands, the first that is not 0. `| head` ends whoever has more to say by SIGPIPE, which is no failure."""
+    *earlier, last = map(int, codes)
+    return next((code for code in earlier if code not in (0, PIPE_CLOSED)), last)
+
+
 def follow(page, folder, environment):
     """What went otherwise than the page says; empty if nothing."""
     blocks = steps(page)
     if not blocks:
         return ["the page has no ```sh block"]
-    script = "".join(f"{commands}\nprintf '\\n{MARK}%d\\n' $?\n" for commands, _ in blocks)
+    script = "".join(f"{commands}\nprintf '\\n{MARK}%s\\n' \"${{PIPESTATUS[*]}}\"\n" for commands, _ in blocks)
     done = subprocess.run(["bash", "-c", script], cwd=folder, env=environment, stdout=subprocess.PIPE,
                           stderr=subprocess.STDOUT, text=True, timeout=TIMEOUT_S, start_new_session=True)
-    parts = re.split(rf"\n{MARK}(\d+)\n", done.stdout)
+    parts = re.split(rf"\n{MARK}([\d ]+)\n", done.stdout)
     problems = []
     for i, (commands, expected) in enumerate(blocks):
         if 2 * i + 1 >= len(parts):
             return problems + [f"the shell ended before:\n{commands}"]
-        output, code = parts[2 * i], int(parts[2 * i + 1])
+        output, code = parts[2 * i], exit_code(parts[2 * i + 1].split())
         if code != 0:
             problems.append(f"exit code {code} of:\n{commands}which printed:\n{output}")
         lost = missing(expected or [], output.splitlines())

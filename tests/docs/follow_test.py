@@ -18,6 +18,11 @@ class FollowTest(unittest.TestCase):
     def test_a_command_that_fails(self):
         self.assertIn("exit code 3", problems("```sh\n(exit 3)\n```\n")[0])
 
+    def test_a_command_that_fails_before_a_pipe(self):
+        self.assertIn("exit code 3", problems("```sh\n(exit 3) | head -n 1\n```\n")[0])
+        self.assertIn("exit code 141", problems("```sh\ntrue | (exit 141)\n```\n")[0])
+        self.assertEqual([], problems("```sh\nyes | head -n 1\n```\n"))
+
     def test_another_output(self):
         self.assertIn("not printed: 'two'", problems("```sh\necho one\n```\n\n```text\ntwo\n```\n")[0])
 
