@@ -84,12 +84,12 @@ void OutputFile::Commit() {
 }
 
 void OutputFile::Fail(int error) const {
+  const std::string name = stream_ == stdout ? "standard output" : target_.string();
   if (error == ENOSPC || error == EDQUOT) {
-    throw ResultError(ResultError::Kind::kDiskFull,
-                      fmt::format("{}: no space left on the disk", target_.string()));
+    throw ResultError(ResultError::Kind::kDiskFull, name + ": no space left on the disk");
   }
   throw ResultError(ResultError::Kind::kFile,
-                    fmt::format("{}: cannot be written: {}", target_.string(), std::strerror(error)));
+                    fmt::format("{}: cannot be written: {}", name, std::strerror(error)));
 }
 
 void WriteFile(const std::filesystem::path& target, std::string_view bytes) {

@@ -1,9 +1,9 @@
 #include "services/cli/program.h"
 
-#include <cstdio>
 #include <exception>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 
 #include "core/campaign/contained.h"
 #include "core/campaign/input_error.h"
@@ -13,6 +13,7 @@
 #include "services/log/log.h"
 #include "services/program/command_line.h"
 #include "services/program/failure.h"
+#include "services/program/standard_output.h"
 
 namespace dispersa {
 namespace {
@@ -49,12 +50,7 @@ LogColor ColorNamed(const std::string& name) {
 ExitCode Execute(const Invocation& invocation) {
   const GlobalOptions& global = invocation.global;
   try {
-    const ExitCode code = invocation.command(global);
-    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-      LogError("the results cannot be written to standard output");
-      return WorseOf(code, kExitInternalError);
-    }
-    return code;
+    return EndOutput(invocation.command(global));
   } catch (const InputError& error) {
     return EndFor(error, global.json);
   } catch (const PluginError& error) {
@@ -62,8 +58,11 @@ ExitCode Execute(const Invocation& invocation) {
   } catch (const ContainedEnd& end) {
     return EndFor(InputError(std::string("the control law ") + end.what()), global.json, kExitIncomplete);
   } catch (const ResultError& error) {
-    const bool is_full = error.kind() == ResultError::Kind::kDiskFull;
+    const bool is_full = error.kind() == ResultError::Kind::kDiskFull || IsOutputLost();
     return EndFor(InputError(error.what()), global.json, is_full ? kExitIncomplete : kExitInternalError);
+  } catch (const std::system_error& error) {
+    if (IsOutputLost()) return EndLostOutput(error.code().value());
+    return EndFor(Failure{kExitInternalError, std::string("internal error: ") + error.what()}, global.json);
   } catch (const std::exception& error) {
     return EndFor(Failure{kExitInternalError, std::string("internal error: ") + error.what()}, global.json);
   }
@@ -72,6 +71,7 @@ ExitCode Execute(const Invocation& invocation) {
 }  // namespace
 
 int RunProgram(int argc, char** argv) {
+  HoldStandardStreams();
   LogForPeople(LogColor::kAuto);
   try {
     ChosenEngine();

@@ -16,11 +16,13 @@
 #include "services/program/completion_words.h"
 #include "services/program/failure.h"
 #include "services/program/option_values.h"
+#include "services/program/standard_output.h"
 #include "services/transport/admission.h"
 #include "services/transport/exit_code.h"
 
 namespace dispersa {
 int RunCoordinator(int argc, char** argv) {
+  HoldStandardStreams();
   LogForDaemon("dispersa-coordinator");
   NetworkOptions network;
   CampaignRequest request;
@@ -93,7 +95,7 @@ int RunCoordinator(int argc, char** argv) {
     if (data.empty() && !request.resume) again.emplace_back("--resume");
     const ServeOptions options{network, audit, std::move(again)};
     if (!data.empty()) return ServeClients(options, data, metrics_port);
-    return ServeCampaign(options, request, patience_s);
+    return EndOutput(ServeCampaign(options, request, patience_s));
   } catch (const InputError& error) {
     return EndFor(error, json);
   } catch (const Failure& failure) {

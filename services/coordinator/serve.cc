@@ -55,8 +55,8 @@ OpenedCampaign OpenUnlessStopped(const CampaignRequest& request) {
 
 }  // namespace
 
-int ServeCampaign(const ServeOptions& options, const CampaignRequest& request,
-                  std::optional<double> patience_s) {
+ExitCode ServeCampaign(const ServeOptions& options, const CampaignRequest& request,
+                       std::optional<double> patience_s) {
   OpenedCampaign opened = OpenUnlessStopped(request);
   CampaignBook book(opened.campaign, std::move(opened.folder));
   book.Expect(std::move(opened.flown));

@@ -20,8 +20,8 @@ struct ServeOptions {
 };
 
 /// One campaign: serves it, writes its reports, ends. Gives up after `patience_s` without a worker.
-int ServeCampaign(const ServeOptions& options, const CampaignRequest& request,
-                  std::optional<double> patience_s);
+ExitCode ServeCampaign(const ServeOptions& options, const CampaignRequest& request,
+                       std::optional<double> patience_s);
 
 /// The campaigns that clients launch, kept in the folder `data`, until a signal to stop. Metrics on this port
 /// of 127.0.0.1.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "services/program/error_json.h"
 #include "services/program/help_formatter.h"
 #include "services/program/option_values.h"
+#include "services/program/standard_output.h"
 #include "services/program/version.h"
 
 namespace dispersa {
@@ -60,8 +62,7 @@ Words Spelled(const Words& words) {
 // CLI11 ends at --version, whatever else is asked for.
 ExitCode PrintVersionJson() {
   try {
-    fmt::print("{}\n", VersionJson());
-    return kExitDone;
+    return PrintAndEnd(VersionJson() + "\n");
   } catch (const std::invalid_argument& error) {
     fmt::print(stderr, "{}\n", error.what());
     return BadUsage({"", 0, 0, "", error.what(), ""}, true);
@@ -84,8 +85,7 @@ std::optional<ExitCode> ParseCommandLine(CLI::App& app, int argc, char** argv) {
   const Words words(argv + 1, argv + argc);
   if (words.size() >= 2 && words[0] == "completion" && words[1] == "words") {
     // Not parsed: these are words of another command line.
-    fmt::print("{}", CompletionWords(app, Words(words.begin() + 2, words.end())));
-    return kExitDone;
+    return PrintAndEnd(CompletionWords(app, Words(words.begin() + 2, words.end())));
   }
   CheckValues(app);
   const bool json = Has(words, "--json");
@@ -102,7 +102,8 @@ std::optional<ExitCode> ParseCommandLine(CLI::App& app, int argc, char** argv) {
       return BadUsage(problem, json);
     }
     // Help and version are errors to CLI11, of code 0.
-    if (app.exit(error) == 0) return kExitDone;
+    std::ostringstream out;
+    if (app.exit(error, out) == 0) return PrintAndEnd(out.str());
     return BadUsage(ProblemOf(error), json);
   }
   return std::nullopt;

@@ -13,6 +13,7 @@
 #include "services/program/completion_words.h"
 #include "services/program/failure.h"
 #include "services/program/option_values.h"
+#include "services/program/standard_output.h"
 #include "services/transport/admission.h"
 #include "services/transport/exit_code.h"
 #include "services/worker/worker.h"
@@ -20,6 +21,7 @@
 namespace dispersa {
 
 int RunWorker(int argc, char** argv) {
+  HoldStandardStreams();
   LogForDaemon("dispersa-worker");
 
   WorkerOptions options;

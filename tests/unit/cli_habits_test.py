@@ -237,12 +237,25 @@ class Streams(unittest.TestCase):
             self.assertIn("case 1: reproduced to the last bit", history.stderr)
             self.assertEqual(dispersa("optimize", CAMPAIGNS / "slv4_500km.yaml", "--out", "-").returncode, 2)
 
-    def test_a_full_standard_output_is_no_success(self):
-        with open("/dev/full", "w") as full:
-            done = subprocess.run([BINARIES / "dispersa", "fly", SMOKE, "--history", "-"], stdout=full,
-                                  stderr=subprocess.PIPE, text=True, timeout=TIMEOUT_S)
-        self.assertNotEqual(done.returncode, 0)
-        self.assertIn("no space left", done.stderr)
+    def test_a_standard_output_that_takes_nothing_is_no_success(self):
+        for place, why in ((">/dev/full", "no space left on the disk"), (">&-", "it is closed")):
+            lost = f"standard output cannot be written: {why}\n"
+            for command in ("dispersa --help", "dispersa --version", "dispersa-worker --version --json",
+                            "dispersa-coordinator --help", "dispersa completion words ''", "dispersa completion bash",
+                            f"dispersa plan {SMOKE}", f"dispersa plan {SMOKE} --csv --cases 100"):  # at the end; sooner
+                done = subprocess.run(["sh", "-c", f"{BINARIES}/{command} {place}"], capture_output=True, text=True,
+                                      timeout=TIMEOUT_S)
+                self.assertEqual((done.returncode, done.stderr), (5, lost), command)
+            done = subprocess.run(["sh", "-c", f"{BINARIES}/dispersa fly {SMOKE} --history - {place}"], capture_output=True,
+                                  text=True, timeout=TIMEOUT_S)
+            self.assertEqual(done.returncode, 5)
+            self.assertTrue(done.stderr.startswith("standard output: "), done.stderr)
+
+    def test_no_file_takes_the_place_of_a_closed_stream(self):
+        with tempfile.TemporaryDirectory() as folder:
+            command = f"{BINARIES}/dispersa run {SMOKE} --cases 1 --workers 0 --no-histories --quiet --out {folder}/r >&- 2>&-"
+            self.assertEqual(subprocess.run(["sh", "-c", command], timeout=TIMEOUT_S).returncode, 5)
+            self.assertEqual(len((pathlib.Path(folder) / "r/cases.csv").read_text().splitlines()), 2)
 
 
 class Help(unittest.TestCase):
