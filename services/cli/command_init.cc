@@ -54,10 +54,6 @@ std::string WithSchema(const std::string& text) {
 }
 
 ExitCode Init(const InitOptions& options, const GlobalOptions& global) {
-  const std::vector<std::string> names = StarterNames();
-  if (std::find(names.begin(), names.end(), options.from) == names.end())
-    throw InputError("--from: there is no '" + options.from + "'" + DidYouMean(options.from, names),
-                     "one of " + JoinWords(names));
   RequireNewFolder(options.directory);
   const fs::path directory = options.directory;
   std::error_code error;
@@ -71,8 +67,10 @@ ExitCode Init(const InitOptions& options, const GlobalOptions& global) {
     WriteFile((directory / file.name).string(), WithSchema(file.text));
     written.push_back(file.name);
   }
-  for (const FileKind kind : kFileKinds)
-    WriteFile((directory / "schemas" / (NameOf(kind) + ".json")).string(), SchemaText(kind));
+  for (const FileKind kind : kFileKinds) {
+    written.push_back("schemas/" + NameOf(kind) + ".json");
+    WriteFile((directory / written.back()).string(), SchemaText(kind));
+  }
   if (global.json) {
     const nlohmann::ordered_json report = {{"schema", "dispersa/init/1"},
                                            {"directory", options.directory},
@@ -99,6 +97,7 @@ void AddInitCommand(CLI::App& app, Invocation& invocation) {
   command
       ->add_option("--from", options->from,
                    "slv4, every key explained; or vega, electron, scout, from public data")
+      ->type_name(fmt::format("{{{}}}", fmt::join(StarterNames(), ",")))
       ->capture_default_str();
   command->footer(
       "Campaign, vehicle, autopilot, reference, the trajectory problem that it solves, and the schemas by "

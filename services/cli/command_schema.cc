@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -30,10 +32,28 @@ std::vector<std::string> KindNames() {
 }
 
 FileKind KindOf(const std::string& name) {
-  for (const FileKind kind : kFileKinds)
-    if (NameOf(kind) == name) return kind;
-  throw InputError("'" + name + "' is not a kind of file" + DidYouMean(name, KindNames()),
-                   "one of " + JoinWords(KindNames()));
+  return *std::find_if(std::begin(kFileKinds), std::end(kFileKinds),
+                       [&](FileKind kind) { return NameOf(kind) == name; });
+}
+
+void TellWritten(const std::vector<std::string>& files, const GlobalOptions& global) {
+  if (global.json) {
+    const nlohmann::ordered_json report = {{"schema", "dispersa/schema/1"}, {"files", files}};
+    fmt::print("{}\n", report.dump(2));
+  } else if (!global.quiet) {
+    for (const std::string& file : files) fmt::print("schema: {}\n", file);
+  }
+}
+
+std::vector<std::string> WriteAll(const std::filesystem::path& folder) {
+  RequireWritableFolder("--all", folder);
+  std::filesystem::create_directories(folder);
+  std::vector<std::string> files;
+  for (const FileKind kind : kFileKinds) {
+    files.push_back((folder / (NameOf(kind) + ".json")).string());
+    WriteFile(files.back(), SchemaText(kind));
+  }
+  return files;
 }
 
 ExitCode Schema(const SchemaOptions& options, const GlobalOptions& global) {
@@ -42,12 +62,7 @@ ExitCode Schema(const SchemaOptions& options, const GlobalOptions& global) {
                      "one of " + JoinWords(KindNames()) + ", or --all DIR");
   if (!options.all.empty()) {
     if (!options.out.empty()) throw InputError("--out and --all are both given", "either of them");
-    std::filesystem::create_directories(options.all);
-    for (const FileKind kind : kFileKinds) {
-      const std::string file = (std::filesystem::path(options.all) / (NameOf(kind) + ".json")).string();
-      WriteFile(file, SchemaText(kind));
-      if (!global.quiet) fmt::print("schema: {}\n", file);
-    }
+    TellWritten(WriteAll(options.all), global);
     return kExitDone;
   }
   const FileKind kind = KindOf(options.kind);
@@ -58,7 +73,7 @@ ExitCode Schema(const SchemaOptions& options, const GlobalOptions& global) {
     return kExitDone;
   }
   WriteFile(options.out, text);
-  if (!global.quiet) fmt::print("schema: {}\n", options.out);
+  TellWritten({options.out}, global);
   return kExitDone;
 }
 
@@ -68,9 +83,10 @@ void AddSchemaCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<SchemaOptions>();
   CLI::App* command =
       app.add_subcommand("schema", "write the JSON Schema of a kind of input file, for editors");
-  command->add_option("kind", options->kind, "campaign, vehicle, reference, autopilot or scenario");
-  command->add_option("--out", options->out, "file to write, else standard output");
-  command->add_option("--all", options->all, "folder for the schemas of all kinds");
+  command->add_option("kind", options->kind, "of file")
+      ->type_name(fmt::format("{{{}}}", fmt::join(KindNames(), ",")));
+  command->add_option("--out", options->out, "file to write, else standard output")->type_name(kFileType);
+  command->add_option("--all", options->all, "folder for the schemas of all kinds")->type_name(kFolderType);
   command->footer(
       "An editor with a YAML language server completes and checks a file whose first line is\n"
       "`# yaml-language-server: $schema=campaign.json`. `dispersa validate` knows more.\n"

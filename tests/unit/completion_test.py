@@ -49,6 +49,8 @@ class Words(unittest.TestCase):
         self.assertEqual(words("export", "--format", "="), ["csv", "geojson", "hdf5", "jsonl", "junit", "kml"])
         self.assertEqual(words("keys", "issue", "authority", "--role", "w"), ["worker"])
         self.assertEqual(words("completion", ""), ["bash", "fish", "zsh"])
+        self.assertEqual(words("init", "first", "--from", ""), ["slv4", "vega", "electron", "scout"])
+        self.assertEqual(words("schema", ""), ["campaign", "vehicle", "reference", "autopilot", "scenario"])
         self.assertEqual(words("run", "--cases", ""), [])
 
     def test_metrics(self):

@@ -161,8 +161,23 @@ class SchemaTest(unittest.TestCase):
     def test_an_unknown_kind_is_refused(self):
         done = subprocess.run([BINARIES / "dispersa", "schema", "vehicel"], capture_output=True, text=True, timeout=TIMEOUT_S)
         self.assertEqual(2, done.returncode)
-        self.assertEqual("'vehicel' is not a kind of file (did you mean 'vehicle'?), allowed: one of campaign, vehicle, "
-                         "reference, autopilot, scenario\n", done.stderr)
+        self.assertEqual("kind: there is no 'vehicel' (did you mean 'vehicle'?), allowed: one of campaign, vehicle, "
+                         "reference, autopilot, scenario", done.stderr.splitlines()[0])
+
+    def test_a_folder_that_cannot_be_made_is_refused(self):
+        done = subprocess.run([BINARIES / "dispersa", "schema", "--all", "/dev/null/schemas"], capture_output=True, text=True,
+                              timeout=TIMEOUT_S)
+        self.assertEqual((2, "--all: /dev/null/schemas cannot be written: /dev/null: Not a directory, allowed: a folder that is "
+                             "there or can be made, and can be written\n"), (done.returncode, done.stderr))
+
+    def test_what_is_written_as_an_object(self):
+        for option, names in (("--all", ["campaign", "vehicle", "reference", "autopilot", "scenario"]), ("--out", ["vehicle"])):
+            with tempfile.TemporaryDirectory() as folder:
+                files = [f"{folder}/{name}.json" for name in names]
+                words = ["--all", folder] if option == "--all" else ["vehicle", "--out", files[0]]
+                done = subprocess.run([BINARIES / "dispersa", "schema", "--json", *words], capture_output=True, text=True,
+                                      timeout=TIMEOUT_S)
+                self.assertEqual({"schema": "dispersa/schema/1", "files": files}, json.loads(done.stdout))
 
     def test_units_and_defaults_are_hinted(self):
         site = self.validators["vehicle"].schema["properties"]["site"]["properties"]
