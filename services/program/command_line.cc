@@ -31,11 +31,18 @@ ExitCode BadUsage(const InputProblem& problem, bool json) {
   return kExitBadInput;
 }
 
-InputProblem UnknownCommand(const CLI::App& app) {
-  Words names;
-  for (const CLI::App* command : app.get_subcommands(nullptr)) names.push_back(command->get_name());
+/// Of a program whose first word is neither a command nor an option of it.
+InputProblem UnknownWord(const CLI::App& app) {
   const std::string word = app.remaining().front();
-  return {"", 0, 0, "", "unknown command '" + word + "'" + DidYouMean(word, names), JoinWords(names)};
+  const bool is_option = word.starts_with("-");
+  Words names;
+  if (is_option) {
+    for (const CLI::Option* option : app.get_options()) names.push_back("--" + option->get_lnames().front());
+  } else {
+    for (const CLI::App* command : app.get_subcommands(nullptr)) names.push_back(command->get_name());
+  }
+  const std::string what = is_option ? "unknown option '" : "unknown command '";
+  return {"", 0, 0, "", what + word + "'" + DidYouMean(word, names), JoinWords(names)};
 }
 
 /// "--cases: what is wrong, allowed: what is allowed"
@@ -97,7 +104,7 @@ std::optional<ExitCode> ParseCommandLine(CLI::App& app, int argc, char** argv) {
     const bool is_required = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
     if (is_required && app.get_subcommands().empty() && !app.remaining().empty() &&
         !app.get_subcommands(nullptr).empty()) {
-      const InputProblem problem = UnknownCommand(app);
+      const InputProblem problem = UnknownWord(app);
       fmt::print(stderr, "{}\n", problem.Text());
       return BadUsage(problem, json);
     }

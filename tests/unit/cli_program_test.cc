@@ -75,6 +75,9 @@ TEST(CliProgram, BadUsageIsTwo) {
       unknown.error,
       StartsWith("unknown command 'validat' (did you mean 'validate'?), allowed: validate, optimize, "));
   EXPECT_EQ(unknown.text, "");
+  EXPECT_EQ(Dispersa("--quit").error,
+            "unknown option '--quit' (did you mean '--quiet'?), allowed: --help, --version, --json, --quiet, "
+            "--color\n");
   const std::vector<std::string> bad = {"", "validate", "fly", "fly --no-such-option x",
                                         "fly " + kSmoke + " --case x"};
   for (const std::string& arguments : bad) {
