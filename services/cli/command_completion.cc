@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "services/cli/command.h"
@@ -22,8 +23,11 @@ void AddCompletionCommand(CLI::App& app, Invocation& invocation) {
       "Examples: source <(dispersa completion bash)\n"
       "          dispersa completion fish > ~/.config/fish/completions/dispersa.fish");
   command->callback([shell, &invocation] {
-    invocation.command = [shell](const GlobalOptions&) {
-      fmt::print("{}", scripts.at(*shell));
+    invocation.command = [shell](const GlobalOptions& global) {
+      const std::string script = scripts.at(*shell);
+      const nlohmann::ordered_json object = {
+          {"schema", "dispersa/completion/1"}, {"shell", *shell}, {"script", script}};
+      fmt::print("{}", global.json ? object.dump(2) + "\n" : script);
       return kExitDone;
     };
   });

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -70,13 +71,18 @@ ExitCode Export(const ExportOptions& options, const GlobalOptions& global) {
       break;
     case ExportFormat::kGeoJson:
     case ExportFormat::kKml:
-      ExportImpacts(stored, options, stream, global.quiet);
+      ExportImpacts(stored, options, global.json ? stderr : stream, global.quiet);
       break;
     case ExportFormat::kJUnit:
       WriteFile(options.out, JUnitXml(BuildSummary(stored.folder, stored.campaign)));
       break;
   }
-  if (stream == stdout) fmt::print("export: {}\n", options.out);
+  if (global.json) {
+    const nlohmann::ordered_json object = {{"schema", "dispersa/export/1"}, {"file", options.out}};
+    fmt::print("{}\n", object.dump(2));
+  } else if (stream == stdout) {
+    fmt::print("export: {}\n", options.out);
+  }
   return kExitDone;
 }
 

@@ -231,11 +231,18 @@ class Streams(unittest.TestCase):
                 self.assertEqual(dispersa("export", results, "--format", form, "--out", file, "--quiet").returncode, 0)
                 piped = dispersa("export", results, "--format", form, "--out", "-", "--quiet")
                 self.assertEqual((piped.returncode, piped.stdout), (0, file.read_text()), form)
+                told = dispersa("export", results, "--format", form, "--out", file, "--json", "--quiet")
+                self.assertEqual(json.loads(told.stdout), {"schema": "dispersa/export/1", "file": str(file)})
             self.assertEqual(dispersa("export", results, "--format", "hdf5", "--out", "-").returncode, 2)
             history = dispersa("replay", results, "--case", "1", "--history", "-")
             self.assertEqual(history.stdout, dispersa("fly", SMOKE, "--case", "1", "--history", "-").stdout)
             self.assertIn("case 1: reproduced to the last bit", history.stderr)
             self.assertEqual(dispersa("optimize", CAMPAIGNS / "slv4_500km.yaml", "--out", "-").returncode, 2)
+
+    def test_a_script_as_an_object(self):
+        answer = json.loads(dispersa("completion", "zsh", "--json").stdout)
+        self.assertEqual((answer["schema"], answer["shell"]), ("dispersa/completion/1", "zsh"))
+        self.assertEqual(answer["script"], dispersa("completion", "zsh").stdout)
 
     def test_a_standard_output_that_takes_nothing_is_no_success(self):
         for place, why in ((">/dev/full", "no space left on the disk"), (">&-", "it is closed")):
