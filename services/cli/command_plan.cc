@@ -46,18 +46,31 @@ void PrintCsv(const Campaign& campaign, const CaseDesign& design) {
   }
 }
 
-void PrintJson(const Campaign& campaign, const CaseDesign& design) {
-  auto cases = nlohmann::ordered_json::array();
-  for (std::uint64_t index = 0; index < campaign.sampling.cases; ++index) {
-    cases.push_back(
-        {{"case_index", index},
-         {"inputs", InputsJson(InputValues(design.Draw(index), campaign.vehicle.stages.size()))}});
+std::string Indented(const std::string& lines) {
+  std::string text;
+  for (const char c : lines) {
+    text += c;
+    if (c == '\n') text.append(4, ' ');
   }
+  return text;
+}
+
+void PrintJson(const Campaign& campaign, const CaseDesign& design) {
   const nlohmann::ordered_json plan = {{"schema", "dispersa/plan/1"},
                                        {"id", campaign.id},
                                        {"flight_id", campaign.flight_id},
-                                       {"cases", std::move(cases)}};
-  fmt::print("{}\n", plan.dump(2));
+                                       {"cases", nlohmann::ordered_json::array()}};
+  // Case by case, since no memory holds four billion of them: between the brackets of "cases": []\n}.
+  const std::string around = plan.dump(2);
+  const std::size_t inside = around.rfind(']');
+  fmt::print("{}", around.substr(0, inside));
+  for (std::uint64_t index = 0; index < campaign.sampling.cases; ++index) {
+    const nlohmann::ordered_json one = {
+        {"case_index", index},
+        {"inputs", InputsJson(InputValues(design.Draw(index), campaign.vehicle.stages.size()))}};
+    fmt::print("{}\n    {}", index == 0 ? "" : ",", Indented(one.dump(2)));
+  }
+  fmt::print("\n  {}\n", around.substr(inside));
 }
 
 ExitCode Plan(const PlanOptions& options, const GlobalOptions& global) {

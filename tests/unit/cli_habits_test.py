@@ -8,6 +8,7 @@ import os
 import pathlib
 import pty
 import re
+import resource
 import shutil
 import subprocess
 import tempfile
@@ -319,6 +320,18 @@ class Plan(unittest.TestCase):
             name, unit = row[2:row.index("  ", 2)], row[heading.index("unit"):][:6].strip()
             self.assertIn(f"input_{name}{suffix[unit]}", columns)
             self.assertEqual(len(row), len(heading) if row in lines[lines.index(heading):] else len(row))
+
+    def test_tables_for_programs_come_as_they_are_drawn(self):
+        for form in ("--csv", "--json"):
+            command = [BINARIES / "dispersa", "plan", SMOKE, "--cases", "4294967295", form]
+            little = lambda: resource.setrlimit(resource.RLIMIT_AS, (1 << 30, 1 << 30))
+            with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, preexec_fn=little) as process:
+                self.assertTrue(process.stdout.read(1 << 16).startswith((b"case_index,", b'{\n  "schema"')))
+                process.kill()
+        rows = csv.DictReader(dispersa("plan", SMOKE, "--cases", "3", "--csv").stdout.splitlines())
+        cases = json.loads(dispersa("plan", SMOKE, "--cases", "3", "--json").stdout)["cases"]
+        self.assertEqual([{"case_index": case["case_index"], **{f"input_{key}": value for key, value in case["inputs"].items()}}
+                          for case in cases], [{key: json.loads(value) for key, value in row.items()} for row in rows])
 
     def test_all_of_it(self):
         done = dispersa("plan", SMOKE, "--cases", "30", "--all")
