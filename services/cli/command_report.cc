@@ -39,7 +39,11 @@ ExitCode Fill(const ReportCommand& options) {
 }
 
 ExitCode ReportAgain(const ReportCommand& options, const GlobalOptions& global) {
-  if (!options.template_file.empty()) return Fill(options);
+  if (!options.template_file.empty()) {
+    if (global.json)
+      throw InputError("--template: what it gives is not the object of --json", "either of them");
+    return Fill(options);
+  }
   if (!options.out.empty())
     throw InputError("--out: the reports stand in the result folder", "--out with --template");
   StoredCampaign stored = OpenStored(options.directory);

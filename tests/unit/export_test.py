@@ -52,6 +52,12 @@ class Templates(ExportTest):
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertEqual(done.stdout, "smoke pass 1 99.731 %\npitch_error_peak_deg\nstructural_limit_exceeded\n\u2013 12346\n")
 
+    def test_no_object_of_a_template(self):
+        done = dispersa("report", self.results, "--template", self.template("x"), "--json")
+        self.assertEqual((done.returncode, done.stderr), (2, "--template: what it gives is not the object of --json, allowed: "
+                                                             "either of them\n"))
+        self.assertEqual(json.loads(done.stdout)["schema"], "dispersa/error/1")
+
     def test_shipped_templates(self):
         for name in ("report.md", "report.html"):
             done = dispersa("report", self.results, "--template", CAMPAIGNS / "templates" / name, "--out", self.folder / name)
