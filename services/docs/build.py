@@ -27,7 +27,7 @@ EXIT_CODES = [
     (2, "bad input: a file, an option, a command"),
     (3, "a requirement failed"),
     (4, "more cases are needed to decide"),
-    (5, "incomplete: cases are quarantined, the disk is full, nobody answers"),
+    (5, "incomplete: cases are quarantined, the disk is full, standard output takes nothing, nobody answers"),
     (6, "`replay` found another result than the one that is stored"),
     (130, "interrupted"),
 ]

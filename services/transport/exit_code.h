@@ -9,7 +9,7 @@ enum ExitCode : int {
   kExitBadInput = 2,           ///< bad usage or bad input
   kExitRequirementFailed = 3,  ///< or the optimiser's target cannot be reached
   kExitInconclusive = 4,       ///< more cases needed
-  kExitIncomplete = 5,         ///< no workers, disk full, quarantined cases, cancelled
+  kExitIncomplete = 5,         ///< no workers, disk full, output lost, quarantined cases, cancelled
   kExitReplayMismatch = 6,
   kExitInterrupted = 130,
 };
