@@ -23,7 +23,7 @@ struct KeysOptions {
   int days = 0;
 };
 
-ExitCode Tell(const std::string& what, const std::string& directory, const GlobalOptions& global) {
+ExitCode TellMade(const std::string& what, const std::string& directory, const GlobalOptions& global) {
   if (global.json) {
     const nlohmann::ordered_json object = {{"schema", "dispersa/keys/1"}, {"directory", directory}};
     fmt::print("{}\n", object.dump(2));
@@ -35,13 +35,13 @@ ExitCode Tell(const std::string& what, const std::string& directory, const Globa
 
 ExitCode Init(const KeysOptions& options, const GlobalOptions& global) {
   MakeAuthority(options.directory, ValidFor(options.days));
-  return Tell("authority", options.directory, global);
+  return TellMade("authority", options.directory, global);
 }
 
 ExitCode Issue(const KeysOptions& options, const GlobalOptions& global) {
   const auto folder =
       IssueKeys(options.directory, *ParseRole(options.role), options.name, ValidFor(options.days));
-  return Tell("issued", folder.string(), global);
+  return TellMade("issued", folder.string(), global);
 }
 
 /// Returns the command and its options, to which more may be added.

@@ -17,6 +17,7 @@
 #include "services/cli/warn.h"
 #include "services/client/reference_search.h"
 #include "services/coordinator/threads.h"
+#include "services/log/log.h"
 #include "services/program/option_values.h"
 
 namespace dispersa {
@@ -108,7 +109,7 @@ ExitCode Optimize(const OptimizeOptions& options, const GlobalOptions& global) {
     fmt::print("reference{}: {}\n", result.reached ? "" : ", which misses its target", file.string());
   }
   if (result.reached) return kExitDone;
-  fmt::print(stderr, "{}\n", result.statement);
+  Tell("{}\n", result.statement);
   return kExitRequirementFailed;
 }
 

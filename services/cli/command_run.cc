@@ -46,14 +46,14 @@ ExitCode Fly(const RunCommand& options, OpenedCampaign opened, const GlobalOptio
     return result.code;
   } catch (const Interrupted&) {
     observer.EndPhase();
-    fmt::print(stderr, "interrupted; to go on: {}\n", ResumeCommand(options, directory));
+    Tell("interrupted; to go on: {}\n", ResumeCommand(options, directory));
     if (global.json) PrintErrorJson(kExitInterrupted, "interrupted");
     return kExitInterrupted;
   } catch (const ResultError& error) {
     observer.EndPhase();
     if (error.kind() != ResultError::Kind::kDiskFull) throw;
     LogError("{}", error.what());
-    fmt::print(stderr, "to go on when there is space: {}\n", ResumeCommand(options, directory));
+    Tell("to go on when there is space: {}\n", ResumeCommand(options, directory));
     if (global.json) PrintErrorJson(kExitIncomplete, error.what());
     return kExitIncomplete;
   }

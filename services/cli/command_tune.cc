@@ -17,6 +17,7 @@
 #include "services/client/flight_json.h"
 #include "services/client/writable.h"
 #include "services/coordinator/threads.h"
+#include "services/log/log.h"
 #include "services/program/option_values.h"
 
 namespace dispersa {
@@ -271,8 +272,7 @@ ExitCode RunTuning(const TuneOptions& given, const GlobalOptions& global) {
     PrintText(stream, options, result, log);
   }
   if (result.feasible) return kExitDone;
-  fmt::print(stderr, "no design was found that meets every constraint; {} holds the best that was found\n",
-             options.out);
+  Tell("no design was found that meets every constraint; {} holds the best that was found\n", options.out);
   return kExitRequirementFailed;
 }
 

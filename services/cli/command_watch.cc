@@ -34,7 +34,7 @@ std::unique_ptr<LiveServer> OpenPage(const std::string& id, const WatchOptions& 
   if (!options.web) return nullptr;
   try {
     auto page = std::make_unique<LiveServer>(options.port, LivePage(id));
-    fmt::print(stderr, "watch: {}\n", page->Url());
+    Tell("watch: {}\n", page->Url());
     std::fflush(stderr);
     return page;
   } catch (const std::runtime_error& error) {

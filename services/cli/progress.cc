@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "services/log/log.h"
+
 namespace dispersa {
 namespace {
 
@@ -55,10 +57,10 @@ void Progress::Show(std::uint64_t done, std::uint64_t total, const std::string& 
   if (terminal_) {
     const auto filled = static_cast<std::size_t>(fraction * kBarWidth);
     const std::string bar = std::string(filled, '#') + std::string(kBarWidth - filled, '.');
-    fmt::print(stderr, "\r\x1b[K{} [{}] {}", what_, bar, line);
+    Tell("\r\x1b[K{} [{}] {}", what_, bar, line);
     drawn_ = true;
   } else {
-    fmt::print(stderr, "{}: {}\n", what_, line);
+    Tell("{}: {}\n", what_, line);
   }
   std::fflush(stderr);
 }

@@ -4,6 +4,7 @@
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <memory>
 #include <utility>
@@ -48,5 +49,7 @@ void LogForDaemon(const std::string& name) {
 void SetLogLevel(LogLevel least) { spdlog::set_level(LevelOf(least)); }
 
 void Log(LogLevel level, std::string_view text) { spdlog::log(LevelOf(level), text); }
+
+void TellText(std::string_view text) { std::fwrite(text.data(), 1, text.size(), stderr); }
 
 }  // namespace dispersa

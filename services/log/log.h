@@ -21,7 +21,13 @@ void LogForDaemon(const std::string& name);
 void SetLogLevel(LogLevel least);
 
 void Log(LogLevel level, std::string_view text);
+/// As it is. What stderr does not take is lost, as a log's is: no reason for a program to end.
+void TellText(std::string_view text);
 
+template <class... Values>
+void Tell(fmt::format_string<Values...> format, Values&&... values) {
+  TellText(fmt::vformat(format, fmt::make_format_args(values...)));
+}
 template <class... Values>
 void LogInfo(fmt::format_string<Values...> format, Values&&... values) {
   Log(LogLevel::kInfo, fmt::vformat(format, fmt::make_format_args(values...)));

@@ -10,6 +10,7 @@
 
 #include "core/campaign/input_error.h"
 #include "core/campaign_yaml/yaml_reader.h"
+#include "services/log/log.h"
 #include "services/program/completion_words.h"
 #include "services/program/error_json.h"
 #include "services/program/help_formatter.h"
@@ -71,7 +72,7 @@ ExitCode PrintVersionJson() {
   try {
     return PrintAndEnd(VersionJson() + "\n");
   } catch (const std::invalid_argument& error) {
-    fmt::print(stderr, "{}\n", error.what());
+    Tell("{}\n", error.what());
     return BadUsage({"", 0, 0, "", error.what(), ""}, true);
   }
 }
@@ -105,7 +106,7 @@ std::optional<ExitCode> ParseCommandLine(CLI::App& app, int argc, char** argv) {
     if (is_required && app.get_subcommands().empty() && !app.remaining().empty() &&
         !app.get_subcommands(nullptr).empty()) {
       const InputProblem problem = UnknownWord(app);
-      fmt::print(stderr, "{}\n", problem.Text());
+      Tell("{}\n", problem.Text());
       return BadUsage(problem, json);
     }
     // Help and version are errors to CLI11, of code 0.

@@ -17,7 +17,7 @@ ExitCode EndFor(const Failure& failure, bool json) {
 }
 
 ExitCode EndFor(const InputError& error, bool json, ExitCode code) {
-  fmt::print(stderr, "{}\n", error.what());
+  Tell("{}\n", error.what());
   if (json) PrintErrorJson(code, error.problems());
   return code;
 }

@@ -1,13 +1,14 @@
 #include "services/program/standard_output.h"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <string>
+
+#include "services/log/log.h"
 
 namespace dispersa {
 namespace {
@@ -39,7 +40,7 @@ ExitCode EndOutput(ExitCode code) {
 }
 
 ExitCode EndLostOutput(int error) {
-  fmt::print(stderr, "standard output cannot be written{}\n", ReasonOf(error));
+  Tell("standard output cannot be written{}\n", ReasonOf(error));
   return kExitIncomplete;
 }
 

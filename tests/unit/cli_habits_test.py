@@ -259,6 +259,14 @@ class Streams(unittest.TestCase):
             self.assertEqual(done.returncode, 5)
             self.assertTrue(done.stderr.startswith("standard output: "), done.stderr)
 
+    def test_a_standard_error_that_takes_nothing_changes_no_code(self):
+        with tempfile.TemporaryDirectory() as folder:
+            run = f"run {SMOKE} --workers 0 --no-histories --out {folder}/r"
+            for code, command in ((0, run), (2, "plan /nowhere"), (2, "validat"), (5, f"plan {SMOKE} >/dev/full")):
+                done = subprocess.run(["sh", "-c", f"{BINARIES}/dispersa {command} 2>/dev/full"], stdout=subprocess.DEVNULL,
+                                      timeout=TIMEOUT_S)
+                self.assertEqual(done.returncode, code, command)
+
     def test_no_file_takes_the_place_of_a_closed_stream(self):
         with tempfile.TemporaryDirectory() as folder:
             command = f"{BINARIES}/dispersa run {SMOKE} --cases 1 --workers 0 --no-histories --quiet --out {folder}/r >&- 2>&-"
