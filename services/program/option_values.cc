@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <limits>
 #include <sstream>
 
@@ -41,6 +42,14 @@ std::string MakeWholeNumber(std::string& text, std::int64_t least, std::uint64_t
   return "";
 }
 
+/// Not so is nan, which is in every range for CLI11.
+bool IsFinite(const std::string& text) {
+  double number = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [stopped, error] = std::from_chars(text.data(), end, number);
+  return error == std::errc() && stopped == end && std::isfinite(number);
+}
+
 bool HasValidator(CLI::Option& option, const std::string& name) {
   try {
     return option.get_validator(name) != nullptr;
@@ -52,8 +61,7 @@ bool HasValidator(CLI::Option& option, const std::string& name) {
 std::string WantedOf(const std::string& type) {
   if (type.starts_with(kFileType) || type.starts_with(kYamlType)) return "a file";
   if (type.starts_with(kFolderType)) return "a folder";
-  if (type.starts_with(kMetricType)) return "a metric";
-  return type.starts_with("FLOAT") ? "a number" : "a text";
+  return type.starts_with(kMetricType) ? "a metric" : "a text";
 }
 
 /// Before the checks that the option has: transform() puts it there.
@@ -74,6 +82,10 @@ void CheckValue(CLI::Option& option) {
     CheckFirst(option, [words](const std::string& text) {
       if (std::find(words.begin(), words.end(), text) != words.end()) return std::string();
       return "there is no '" + text + "'" + DidYouMean(text, words) + ", allowed: one of " + JoinWords(words);
+    });
+  } else if (type.starts_with("FLOAT")) {
+    CheckFirst(option, [](const std::string& text) {
+      return IsFinite(text) ? "" : "'" + text + "' is not a number, allowed: a number";
     });
   } else {
     CheckFirst(option, [type](const std::string& text) {

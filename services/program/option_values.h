@@ -19,7 +19,8 @@ CLI::Validator WholeNumber(std::int64_t least, std::uint64_t most);
 std::vector<std::string> ListedValues(const CLI::Option& option);
 
 /// Has every option and argument of a program and its commands refuse a value that is empty, that is not
-/// among those listed, or that is no WholeNumber where one is wanted. Once all are added.
+/// among those listed, or that is no WholeNumber, or no finite number, where one is wanted. Once all are
+/// added.
 void CheckValues(CLI::App& app);
 
 }  // namespace dispersa

@@ -124,9 +124,16 @@ class Values(unittest.TestCase):
         self.refused("--out: is empty, allowed: a folder", "compare", "a", "b", "--out", "")
         self.refused("--metric: is empty, allowed: a metric", "compare", "a", "b", "--metric", "")
         self.refused("files: is empty, allowed: a file", "validate", SMOKE, "")
-        self.refused("--frequency-band: is empty, allowed: a number", "margins", SMOKE, "--frequency-band", "")
         self.refused("--data: is empty, allowed: a folder", "--data", "", program="dispersa-coordinator")
         self.refused("--peer: is empty, allowed: a text", "--peer", "", program="dispersa-worker")
+
+    def test_a_number_is_finite(self):
+        for text in ("nan", "inf", "0x10", " 7", "7 %", ""):
+            self.refused(f"--frequency-band: '{text}' is not a number, allowed: a number", "margins", SMOKE,
+                         "--frequency-band", text)
+        self.refused("--audit: 'nan' is not a number, allowed: a number", "--audit", "nan", program="dispersa-coordinator")
+        for text in ("-1", "1e9"):  # by its own range
+            self.assertIn("--frequency-band: Value", dispersa("margins", SMOKE, "--frequency-band", text).stderr)
 
     def test_one_of_those_that_are_listed(self):
         formats = "allowed: one of csv, geojson, hdf5, jsonl, junit, kml"
