@@ -119,6 +119,19 @@ class Planning(unittest.TestCase):
         with self.assertRaises(dispersa.BadInput):
             dispersa.plan(SMOKE, -1)
 
+    def test_a_design_has_no_cases_beyond_its_own(self):
+        tree = dispersa.read(SMOKE)
+        for sampling in ({"method": "latin_hypercube"}, {"method": "sobol", "replicates": 3}, {"method": "monte_carlo"}):
+            tree["sampling"] = {"cases": 12, "seed": 1, **sampling}
+            campaign = dispersa.load(tree)
+            with self.assertRaisesRegex(dispersa.BadInput, "cases: 13 is out of range, allowed: a whole number from 0 to 12"):
+                campaign.plan(13)
+            self.assertEqual(campaign.plan(5).tobytes(), campaign.plan()[:5].tobytes())
+            # Another number of cases is another design, as it is for the program.
+            more = dispersa.load(tree, cases=24).plan()
+            for what in (tree, campaign):
+                self.assertEqual(dispersa.plan(what, cases=24).tobytes(), more.tobytes())
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -26,9 +26,11 @@ __version__ = _engine_version()
 
 
 def plan(what, cases=None, **options):
-    """What a campaign's cases fly with: `load(what, **options).plan(cases)`, a structured array of shape (cases,). Raises
-    BadInput."""
-    return (what if isinstance(what, Campaign) and not options else load(what, **options)).plan(cases)
+    """What a campaign's cases fly with, as `dispersa plan` says: `load(what, cases=cases, **options).plan()`, a structured
+    array of shape (cases,). Raises BadInput."""
+    if isinstance(what, Campaign) and cases is None and not options:
+        return what.plan()
+    return load(what, cases=cases, **options).plan()
 
 
 def fly(what, case=None, *, inputs=None, history=True, step_s=0.1, integrator="simpson", law=None, axes=("pitch",),

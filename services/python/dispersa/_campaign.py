@@ -162,8 +162,9 @@ class Campaign:
 
     def plan(self, cases=None):
         """What cases fly with, without flying: a structured array of shape (cases,), a float64 field an input, in the
-        unit of its name. `cases`: how many from the first; default: all. Raises BadInput for a number below 0."""
-        count = self.cases if cases is None else whole("cases", cases, 0, MOST_CASES)
+        unit of its name. `cases`: how many from the first; default: all. Raises BadInput for more than the campaign
+        has: a design of more cases is another one, which `load(..., cases=...)` makes."""
+        count = self.cases if cases is None else whole("cases", cases, 0, self.cases)
         return structured(_core.plan(self._core, 0, count), self.input_names)
 
     def fly(self, case=None, *, inputs=None, history=True, step_s=0.1, integrator="simpson", law=None, axes=("pitch",)):
