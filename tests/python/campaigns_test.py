@@ -64,6 +64,11 @@ class Loading(unittest.TestCase):
         self.assertIn("cannot read 'vehicles/slv4.yaml'", str(caught.exception))
         self.assertEqual(dispersa.load(plain, base=CAMPAIGNS), dispersa.load(SMOKE))
 
+    def test_names_that_label_results_cannot_be_changed(self):
+        campaign = dispersa.load(SMOKE)
+        for names in (campaign.input_names, campaign.metric_names, campaign.dispersed, campaign.warnings):
+            self.assertIsInstance(names, tuple)
+
     def test_pickled(self):
         campaign = dispersa.load(SMOKE)
         self.assertEqual(pickle.loads(pickle.dumps(campaign)), campaign)

@@ -143,22 +143,22 @@ class Campaign:
     @functools.cached_property
     def warnings(self):
         """Problems that are legal."""
-        return [Problem(*p) for p in self._core.warnings]
+        return tuple(Problem(*p) for p in self._core.warnings)
 
     @functools.cached_property
     def input_names(self):
         """Of the inputs of a case, with units; cases.csv has them as input_NAME."""
-        return _core.input_names(self.stages)
+        return tuple(_core.input_names(self.stages))
 
     @functools.cached_property
     def metric_names(self):
         """Of the metrics of a flight, with units; cases.csv has them as metric_NAME."""
-        return _core.metric_names(self.stages)
+        return tuple(_core.metric_names(self.stages))
 
     @functools.cached_property
     def dispersed(self):
         """Names of the inputs that this campaign disperses."""
-        return list(dict.fromkeys(self._core.dispersed))
+        return tuple(dict.fromkeys(self._core.dispersed))
 
     def plan(self, cases=None):
         """What cases fly with, without flying: a structured array of shape (cases,), a float64 field an input, in the
