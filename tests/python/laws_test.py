@@ -1,12 +1,20 @@
 """Control laws written in Python: flown through the same interface as those of shared objects."""
+import array
+import collections
+import decimal
 import fractions
 import functools
 import gc
+import itertools
 import json
 import math
+import operator
+import random
 import signal
 import subprocess
 import sys
+import threading
+import types
 import unittest
 import weakref
 
@@ -185,6 +193,22 @@ class Campaigns(unittest.TestCase):
         self.assertEqual(ids[0], ids[1])
         self.assertEqual(len(set(ids)), 3)
 
+    def test_resumed_with_a_law_that_was_another_then(self):
+        file = self.folder / "gain.txt"
+
+        def reading(tick):
+            if "gain" not in tick.memory:
+                tick.memory["gain"] = float(file.read_text())
+            return tick.memory["gain"] * pd(tick)
+
+        file.write_text("1.0")
+        self.run_of(reading, "reading")
+        file.write_text("0.9")
+        with self.assertRaisesRegex(dispersa.BadInput, "law: the folder's first cases were flown with another one: case 0 is not"):
+            self.run_of(reading, "reading", resume=True)
+        file.write_text("1.0")
+        self.assertEqual(self.run_of(reading, "reading", resume=True).digest, self.results.digest)
+
     def test_the_folder_says_so(self):
         name, sha256 = self.results.campaign.python_law
         self.assertRegex(self.text("campaign.yaml"), f"  plugin:\n    python:\n      name: pd\n      sha256: \"?{sha256}\"?\n")
@@ -332,6 +356,114 @@ class Campaigns(unittest.TestCase):
             process.wait()
         left = dispersa.results(self.folder / "interrupted")
         self.assertEqual(set(left.reason), {""} if len(left) else set())
+
+
+def holding(value):
+    return lambda tick: value
+
+
+class Identity(unittest.TestCase):
+    """What a law's hash is taken over."""
+
+    def hash_of(self, value):
+        return dispersa._law.identity(holding(value))[1]
+
+    def test_values_of_every_kind(self):
+        class Slots:
+            __slots__ = ("__k",)
+
+            def __init__(self, k):
+                self.__k = k
+
+        class Attributes(list):
+            pass
+
+        class Partial(functools.partial):
+            pass
+
+        def attributed(kind, k):
+            made = kind()
+            made.k = k
+            return made
+
+        made = {
+            "deque": lambda k: collections.deque([k]), "bytearray": lambda k: bytearray([int(k)]),
+            "array": lambda k: array.array("d", [k]), "memoryview": lambda k: memoryview(bytes([int(k)])),
+            "mappingproxy": lambda k: types.MappingProxyType({"k": k}), "range": lambda k: range(int(k)), "slice": lambda k: slice(k),
+            "objects": lambda k: numpy.array([k, None]), "fields": lambda k: numpy.zeros(1, [(f"k{k}", "f8")]),
+            "Decimal": lambda k: decimal.Decimal(k), "bound built-in": lambda k: {1: k}.get, "getter": lambda k: operator.itemgetter(int(k)),
+            "cycle": lambda k: itertools.cycle([k]), "Random": random.Random, "rng": lambda k: numpy.random.default_rng(int(k)),
+            "factory": lambda k: collections.defaultdict(holding(k)), "slots": Slots, "closure": holding,
+            "list with attributes": lambda k: attributed(Attributes, k), "function with attributes": lambda k: attributed(lambda: holding(0), k),
+            "partial with attributes": lambda k: attributed(lambda: Partial(pd), k), "set": lambda k: {k, "other"},
+            "cached": lambda k: functools.lru_cache(holding(k)), "vectorized": lambda k: numpy.vectorize(holding(k)),
+            "polynomial": lambda k: numpy.poly1d([k])}
+        for name, make in made.items():
+            with self.subTest(name):
+                self.assertEqual(self.hash_of(make(1.0)), self.hash_of(make(1.0)))
+                self.assertNotEqual(self.hash_of(make(1.0)), self.hash_of(make(2.0)))
+
+    def test_what_cannot_be_seen_is_refused(self):
+        for value, kind in (((i for i in (1, 2)), "generator"), (threading.Lock(), "_thread.lock"), (numpy.frompyfunc(holding(1), 1, 1), "numpy.ufunc")):
+            with self.assertRaisesRegex(dispersa.BadInput, f"law: it holds a '({kind}).*', whose state cannot be seen"):
+                self.hash_of(value)
+        deep = []
+        for _ in range(3000):
+            deep = [deep]
+        with self.assertRaisesRegex(dispersa.BadInput, "law: what it refers to goes deeper than can be seen"):
+            self.hash_of(deep)
+
+    def test_what_contains_itself(self):
+        class Node:
+            def __init__(self):
+                self.peers = {self}
+
+        self.assertEqual(self.hash_of(Node()), self.hash_of(Node()))
+
+    def test_modules_of_the_user(self):
+        folder = folder_of(type(self))
+        (folder / "own_gains.py").write_text("K = 1.0\n")
+        sys.path.insert(0, str(folder))
+        self.addCleanup(sys.path.remove, str(folder))
+        import own_gains
+        self.addCleanup(sys.modules.pop, "own_gains")
+
+        def importing(tick):
+            import own_gains
+            return own_gains.K
+
+        laws = {"held": lambda tick: own_gains.K, "a default": lambda tick, gains=own_gains: gains.K, "imported": importing,
+                "a field's": functools.partial(lambda own, tick: own.gains.K, types.SimpleNamespace(gains=own_gains))}
+        hashes = {name: dispersa._law.identity(law) for name, law in laws.items()}
+        own_gains.K = 2.0
+        for name, law in laws.items():
+            self.assertNotEqual(dispersa._law.identity(law), hashes[name], name)
+        own_gains.K = 1.0
+        self.assertEqual({name: dispersa._law.identity(law) for name, law in laws.items()}, hashes)
+        (folder / "own_gains.py").write_text("K = 3.0 - 2.0\n")
+        for name, law in laws.items():
+            self.assertNotEqual(dispersa._law.identity(law), hashes[name], name)
+
+    def test_libraries_go_in_by_version(self):
+        folder = folder_of(type(self)) / "site-packages"
+        folder.mkdir()
+        (folder / "own_library.py").write_text("__version__ = '1'\ndef gain():\n    return 1.0\n")
+        sys.path.insert(0, str(folder))
+        self.addCleanup(sys.path.remove, str(folder))
+        import own_library
+        self.addCleanup(sys.modules.pop, "own_library")
+        first = self.hash_of(own_library.gain)
+        own_library.__version__ = "2"
+        self.assertNotEqual(self.hash_of(own_library.gain), first)
+
+    def test_the_same_in_another_process(self):
+        script = ("import collections, numpy, dispersa\n"
+                  "table = {'a': {1.5, 'x', (2, 'y')}, 'b': collections.deque([numpy.ones(3)])}\n"
+                  "def law(tick):\n    import math\n    return math.sin(table['b'][0][1])\n"
+                  "print(dispersa._law.identity(law))\n")
+        said = {subprocess.run([sys.executable, "-B", "-c", script], capture_output=True, text=True, check=True).stdout
+                for _ in range(3)}
+        self.assertEqual(len(said), 1)
 
 
 if __name__ == "__main__":

@@ -1,25 +1,43 @@
 """The name and hash of a control law written in Python.
 
 A campaign that is flown with one is not the campaign without it, nor that with another one, so the law's hash goes into the
-flight id. It is taken over what can be seen to decide what the law does: its bytecode, defaults, closure and constants, the
-globals and attributes that it names, and functions and objects among these in turn. Libraries go in by name and version.
-What a law reads from elsewhere, and what it changes as it flies, cannot be seen.
+flight id. It is taken over what can be seen to decide what the law does: its bytecode, defaults, closure, attributes and
+constants, the globals and attributes that it names, and functions and objects among these in turn, objects by what pickle
+keeps of them. Modules of the user go in by their source too, libraries by name and version. A law that holds what pickle
+cannot keep is refused. What a law reads from elsewhere, and what it changes as it flies, cannot be seen.
 """
+import copyreg
+import dis
 import functools
 import hashlib
+import importlib
+import operator
 import os
+import pathlib
+import pickle
 import sys
 import sysconfig
 import types
+import warnings
 
 import numpy
 
+from ._arguments import refuse
+
 _LIBRARIES = tuple({os.path.realpath(path) + os.sep for key, path in sysconfig.get_paths().items() if "lib" in key})
+_SCALARS = (type(None), bool, int, float, complex, str, bytes, type(Ellipsis), type(NotImplemented))
+# Of a class: what Python keeps there for itself, and what decides nothing.
+_IDLE = ("__dict__", "__weakref__", "__doc__", "__annotations__", "_abc_impl")
 
 
 def identity(law):
-    """(name, SHA-256 in hexadecimal) of a callable."""
-    return name_of(law), _Fingerprint().of(law)
+    """(name, SHA-256 in hexadecimal) of a callable. Raises BadInput for one that holds what cannot be seen."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of iterators, which later versions of Python will not pickle
+            return name_of(law), _Fingerprint().of(law)
+    except RecursionError:
+        raise refuse("law: what it refers to goes deeper than can be seen", "a law that refers to less") from None
 
 
 def name_of(law):
@@ -30,13 +48,18 @@ def name_of(law):
 
 
 def _is_library(module_name):
-    """Whether a module is the interpreter's own or installed beside it, by its name."""
-    top = sys.modules.get((module_name or "builtins").partition(".")[0])
-    file = getattr(top, "__file__", None)
-    if file is None:
-        return module_name != "__main__"
+    """Whether a module is the interpreter's own, installed beside it, or of this package, by its name."""
+    name = module_name or ""
+    top = name.partition(".")[0]
+    file = getattr(sys.modules.get(name), "__file__", None) or getattr(sys.modules.get(top), "__file__", None)
+    if file is None or top == __package__:
+        return top == __package__ or top in sys.stdlib_module_names
     file = os.path.realpath(file)
     return file.startswith(_LIBRARIES) or f"{os.sep}dist-packages{os.sep}" in file or f"{os.sep}site-packages{os.sep}" in file
+
+
+def _version(module_name):
+    return getattr(sys.modules.get(module_name.partition(".")[0]), "__version__", "")
 
 
 class _Fingerprint:
@@ -45,59 +68,64 @@ class _Fingerprint:
     def __init__(self):
         self._hash = hashlib.sha256()
         self._seen = {}
+        self._modules = {}  # of the user, by name
+        self._names = set()  # that code has
 
     def of(self, law):
         self._add("python", sys.implementation.cache_tag)
         self._visit(law)
+        self._named_in_modules()
         return self._hash.hexdigest()
 
     def _add(self, *texts):
         for text in texts:
-            data = text if isinstance(text, bytes) else str(text).encode()
+            data = text if isinstance(text, bytes) else str(text).encode(errors="surrogatepass")
             self._hash.update(len(data).to_bytes(8, "little") + data)
 
     def _visit(self, value):
-        if value is None or isinstance(value, (bool, int, float, complex, str, bytes, type(Ellipsis), numpy.generic)):
-            self._add(type(value).__name__, repr(value))
+        kind = type(value)
+        if kind in _SCALARS or isinstance(value, numpy.generic) and not isinstance(value, numpy.void):
+            self._add(kind.__name__, repr(value))
+            return
+        if kind is tuple:  # whether equal ones are one object decides nothing
+            self._add("tuple")
+            self._all(value)
             return
         if id(value) in self._seen:
             self._add("again", self._seen[id(value)][0])
             return
         self._seen[id(value)] = (len(self._seen), value)  # kept, so that the id stays its own
-        self._add(type(value).__qualname__)
-        if isinstance(value, types.CodeType):
+        self._add(kind.__qualname__)
+        if kind is types.CodeType:
             self._code(value)
-        elif isinstance(value, numpy.ndarray) and not value.dtype.hasobject:
-            self._add(value.dtype.str, value.shape, value.tobytes())
-        elif isinstance(value, (list, tuple)):
+        elif kind is types.ModuleType or isinstance(value, types.ModuleType):
+            self._module(value)
+        elif kind is types.FunctionType:
+            self._function(value)
+        elif isinstance(value, type):
+            self._class(value)
+        elif kind is list:
             self._all(value)
+        elif kind is dict or kind is types.MappingProxyType:
+            self._all(value.items())
         elif isinstance(value, (set, frozenset)):
-            self._add(*sorted(_Fingerprint().of(item) for item in value))
-        elif isinstance(value, dict):
-            for key, item in value.items():
-                self._all((key, item))
-        elif isinstance(value, functools.partial):
-            self._all((value.func, value.args, value.keywords))
-        elif isinstance(value, types.MethodType):
+            self._add(*sorted(self._apart(item) for item in value))
+            self._fields(getattr(value, "__dict__", {}))
+        elif kind is numpy.ndarray:
+            self._add(repr(value.dtype), value.shape)
+            self._visit(value.tolist() if value.dtype.hasobject else value.tobytes())
+        elif kind is memoryview:
+            self._add(value.format, value.shape, value.tobytes())
+        elif kind is types.MethodType:
             self._all((value.__func__, value.__self__))
         elif isinstance(value, (staticmethod, classmethod)):
             self._visit(value.__func__)
+        elif isinstance(value, functools.cached_property):
+            self._visit(value.func)
         elif isinstance(value, property):
             self._all((value.fget, value.fset))
-        elif isinstance(value, types.ModuleType):
-            self._add(value.__name__, getattr(value, "__version__", ""))
-        elif isinstance(value, types.FunctionType) and not _is_library(value.__module__):
-            self._function(value)
-        elif isinstance(value, type) and not _is_library(value.__module__):
-            self._all(value.__bases__)
-            self._fields({name: each for name, each in vars(value).items() if name not in ("__dict__", "__weakref__", "__doc__")})
         else:
-            self._add(getattr(value, "__module__", "") or "", getattr(value, "__qualname__", ""))
-            if not isinstance(value, (type, types.FunctionType, types.BuiltinFunctionType)):
-                self._visit(type(value))
-                self._fields(getattr(value, "__dict__", {}))
-                self._fields({name: getattr(value, name) for cls in type(value).__mro__
-                              for name in _slots(cls) if hasattr(value, name)})
+            self._pickled(value)
 
     def _all(self, values):
         self._add(len(values))
@@ -109,40 +137,137 @@ class _Fingerprint:
             self._add(name)
             self._visit(fields[name])
 
+    def _apart(self, value):
+        """The hash of a value whose place among others decides nothing."""
+        other = _Fingerprint()
+        other._seen, other._modules, other._names = dict(self._seen), self._modules, self._names
+        other._visit(value)
+        return other._hash.hexdigest()
+
+    def _of_library(self, value):
+        """Something of a library, by its name and the library's version."""
+        self._add(value.__module__, value.__qualname__, _version(value.__module__))
+
+    def _pickled(self, value):
+        """What pickle keeps of a value."""
+        reduce = copyreg.dispatch_table.get(type(value))
+        try:
+            kept = reduce(value) if reduce else value.__reduce_ex__(4)
+        except RecursionError:
+            raise
+        except Exception:
+            raise _unseen(value) from None
+        if isinstance(kept, str):
+            self._global(value, kept)
+        else:  # function, arguments, state, and iterators over items
+            self._all([list(part) if i in (3, 4) and part is not None else part for i, part in enumerate(kept)])
+
+    def _global(self, value, name):
+        """A value of which pickle keeps a name alone."""
+        module = pickle.whichmodule(value, name)
+        try:
+            found = operator.attrgetter(name)(sys.modules[module])
+        except (AttributeError, KeyError):
+            found = None
+        if found is value and _is_library(module):
+            self._add(module, name, _version(module))
+        elif getattr(value, "__dict__", None):
+            self._fields(vars(value))
+        else:
+            raise _unseen(value)
+
+    def _class(self, value):
+        if _is_library(value.__module__):
+            self._of_library(value)
+            return
+        self._all((type(value), value.__bases__))
+        self._fields({name: each for name, each in vars(value).items() if name not in _IDLE})
+
+    def _module(self, module):
+        name = module.__name__
+        self._add(name)
+        if _is_library(name):
+            self._add(_version(name))
+            return
+        self._modules[name] = module
+        file = pathlib.Path(getattr(module, "__file__", None) or "")
+        self._add(file.read_bytes() if file.is_file() else "no source")
+
+    def _named_in_modules(self):
+        """Which attributes of the user's modules are meant cannot be seen: those that have a name that the code has."""
+        done = set()
+        while True:
+            # What is visited may name more, and refer to more modules.
+            found = sorted((module, name) for module, values in self._modules.items()
+                           for name in self._names & vars(values).keys() if (module, name) not in done)
+            if not found:
+                return
+            for module, name in found:
+                self._add(module, name)
+                self._visit(vars(self._modules[module])[name])
+            done.update(found)
+
     def _function(self, function):
+        # Those that a library makes as it runs have more to them than a name.
+        if _is_library(function.__module__) and "<" not in function.__qualname__:
+            self._of_library(function)
+            return
         self._visit(function.__code__)
-        self._all((function.__defaults__, function.__kwdefaults__))
+        self._all((function.__defaults__, function.__kwdefaults__, function.__dict__))
         for cell in function.__closure__ or ():
-            try:
-                self._visit(cell.cell_contents)
-            except ValueError:  # not bound yet
+            if cell == types.CellType():  # not bound yet
                 self._add("empty")
-        names = _names(function.__code__)
-        for name in names:
-            value = function.__globals__.get(name)
+            else:
+                self._visit(cell.cell_contents)
+        for name in _names(function.__code__):
             if name in function.__globals__:
                 self._add(name)
-                self._visit(value)
-            if isinstance(value, types.ModuleType) and not _is_library(value.__name__):
-                # Which of its attributes are meant cannot be seen: those that have a name that the code has.
-                self._fields({each: vars(value)[each] for each in names if each in vars(value)})
+                self._visit(function.__globals__[name])
+        for name, level in _imports(function.__code__):
+            self._imported(name, level, function.__globals__.get("__package__"))
+
+    def _imported(self, name, level, package):
+        """What a law imports as it flies is imported now."""
+        try:
+            module = importlib.import_module("." * level + name, package)
+        except Exception:  # whatever it raises: the law will see
+            self._add("cannot be imported", name)
+        else:
+            self._visit(module)
 
     def _code(self, code):
-        self._add(code.co_code, code.co_names, code.co_varnames, code.co_freevars, code.co_argcount,
-                  code.co_kwonlyargcount, code.co_flags)
+        self._names.update(code.co_names, (each for each in code.co_consts if isinstance(each, str)))
+        self._add(code.co_code, getattr(code, "co_exceptiontable", b""), code.co_names, code.co_varnames, code.co_freevars,
+                  code.co_cellvars, code.co_argcount, code.co_posonlyargcount, code.co_kwonlyargcount, code.co_flags)
         # A docstring decides nothing, but it cannot be told from another first constant.
         self._all(code.co_consts)
 
 
-def _names(code):
-    """Of globals and attributes, in a function and those inside it."""
-    names = set(code.co_names)
+def _unseen(value):
+    kind = f"{type(value).__module__}.{type(value).__qualname__}".removeprefix("builtins.")
+    return refuse(f"law: it holds a '{kind}', whose state cannot be seen", "functions, and objects that pickle can keep")
+
+
+def _codes(code):
+    """A function's code, and that of those inside it."""
+    yield code
     for constant in code.co_consts:
         if isinstance(constant, types.CodeType):
-            names |= set(_names(constant))
-    return sorted(names)
+            yield from _codes(constant)
 
 
-def _slots(cls):
-    slots = vars(cls).get("__slots__", ())
-    return (slots,) if isinstance(slots, str) else slots
+def _names(code):
+    """Of globals and attributes."""
+    return sorted({name for each in _codes(code) for name in each.co_names})
+
+
+def _imports(code):
+    """(module, level) of each import."""
+    found = set()
+    for each in _codes(code):
+        before = [None, None]  # IMPORT_NAME takes level and names, which are loaded before it
+        for step in dis.get_instructions(each):
+            if step.opname == "IMPORT_NAME":
+                found.add((step.argval, before[0]))
+            before = [before[1], step.argval]
+    return sorted(found)

@@ -183,7 +183,8 @@ def run(what, out="", *, cases=None, seed=None, autopilot=None, base=None, worke
     `law`, `axes`: a control law in Python, as of Campaign.fly, flown by this process alone: `workers=0` must be said. Name
     and hash of what the law does (its bytecode, what it closes over and refers to) are part of the campaign, hence of its
     ids; the law itself is in no file. So nobody without it flies these cases again, as the report says, and `replay`,
-    `report` and `resume` want it as `law` too. Nominal and first cases are flown twice, and a law that differs is refused.
+    `report` and `resume` want it as `law` too. Nominal and first cases are flown twice, and `resume` flies a stored case again:
+    a law that differs is refused, and so is one that holds what cannot be seen (a generator, an open file).
 
     The verdict is a value: Results.exit_code. Raises BadInput; Incomplete, with `results`, when cases are missing;
     InternalError, with `results`, when results contradict each other. Ctrl-C raises KeyboardInterrupt: what was flown is
@@ -200,8 +201,10 @@ def run(what, out="", *, cases=None, seed=None, autopilot=None, base=None, worke
             raise refuse("law: a control law in Python flies in this process alone, and workers=0 is to say so",
                          "workers=0; for workers and coordinators a law from a shared object")
         campaign, sha256 = under_law(campaign, law, axes)
+        if resume:
+            _fly_a_stored_case_again(_folder_of(campaign, out), law)
     if peer is not None:
-        folder = os.fspath(out) or os.path.join("results", f"{campaign.name}-{campaign.id[:8]}")
+        folder = _folder_of(campaign, out)
         code = _core.run_remotely(campaign.name, campaign.canonical_yaml, folder, whole("domain", domain, 0, 99), peer, address, keys, insecure,
                                   priority, progress)
         problem = None
@@ -212,6 +215,25 @@ def run(what, out="", *, cases=None, seed=None, autopilot=None, base=None, worke
                                           whole("threads", threads, 0, MOST_THREADS), program,
                                           whole("envelope", envelope, 1) if histories else None, progress, law, sha256)
     return _judge(folder, code, problem)
+
+
+def _folder_of(campaign, out):
+    """Where a run's results go."""
+    return os.fspath(out) or os.path.join("results", f"{campaign.name}-{campaign.id[:8]}")
+
+
+def _fly_a_stored_case_again(folder, law):
+    """What a law reads from elsewhere is not in its hash: a folder goes on only under one that has the bits of its first
+    case. Raises BadInput."""
+    if not os.path.exists(os.path.join(folder, "results.sqlite")):
+        return
+    stored = Results(folder)
+    for case in stored.case_index[:1]:
+        try:
+            stored.replay(case, law=law)
+        except ReplayMismatch as error:
+            raise refuse(f"law: the folder's first cases were flown with another one: {error}",
+                         "the law as it was then") from None
 
 
 def report(directory, *, histories=True, envelope=ENVELOPE, progress=None, law=None):
