@@ -1,5 +1,7 @@
 // The engine for one instruction set, once for each number of lanes: DISPERSA_WIDTHS is WIDTH(1) WIDTH(4) ...
 // (CMakeLists.txt).
+#include <memory>
+
 #include "core/flight/batch.h"
 #include "core/flight/batch_events.h"
 #include "core/flight/batch_pass.h"
@@ -10,9 +12,8 @@ namespace dispersa {
 #define WIDTH(lane_count)                                                                 \
   void DISPERSA_INSTANCE(Fly, lane_count)(const FlightModel& model, FlightQueue& queue) { \
     using Batch = lanes::Batch<LaneValue<lane_count>>;                                    \
-    Batch* batch = new Batch(model, queue);                                               \
+    const std::unique_ptr<Batch> batch(new Batch(model, queue)); /* laws may throw */     \
     batch->Run();                                                                         \
-    delete batch;                                                                         \
   }
 DISPERSA_WIDTHS
 #undef WIDTH

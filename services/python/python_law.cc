@@ -175,10 +175,13 @@ namespace {
 }
 
 std::string Shown(const py::handle& value) {
-  constexpr std::size_t kMost = 60;
-  std::string text = py::repr(value).cast<std::string>();
-  if (text.size() > kMost) text = text.substr(0, kMost) + " …";
-  return text + " (" + std::string(Py_TYPE(value.ptr())->tp_name) + ")";
+  constexpr py::ssize_t kMost = 60;
+  py::object text = py::repr(value);
+  const bool is_long = py::len(text) > kMost;
+  if (is_long) text = text[py::slice(0, kMost, 1)];
+  // What UTF-8 has no letters for is written out.
+  const auto utf8 = text.attr("encode")("utf-8", "backslashreplace").cast<std::string>();
+  return utf8 + (is_long ? " …" : "") + " (" + std::string(Py_TYPE(value.ptr())->tp_name) + ")";
 }
 
 // A real number of Python's or NumPy's; nothing that merely can be made one.
@@ -255,8 +258,26 @@ void PythonLaw::Step(const dispersa_law_input& input, dispersa_law_output& outpu
   }
 }
 
+namespace {
+
+// A law may put its tick into the tick's own memory: the garbage collector is to see that ring. Clearing the
+// memory, a dict, opens it.
+void LetBeCollected(PyHeapTypeObject* heap_type) {
+  PyTypeObject& type = heap_type->ht_type;
+  type.tp_flags |= Py_TPFLAGS_HAVE_GC;
+  type.tp_traverse = [](PyObject* self, visitproc visit, void* arg) {
+    Py_VISIT(Py_TYPE(self));
+    const auto* const tick = static_cast<const LawTick*>(
+        reinterpret_cast<py::detail::instance*>(self)->get_value_and_holder().value_ptr());
+    if (tick != nullptr) Py_VISIT(tick->memory().ptr());
+    return 0;
+  };
+}
+
+}  // namespace
+
 void AddLawTick(py::module_& module) {
-  py::class_<LawTick> tick(module, "LawTick");
+  py::class_<LawTick> tick(module, "LawTick", py::custom_type_setup(LetBeCollected));
   for (const char* name : {"angle_error_rad", "rate_error_rad_s", "rate_rad_s", "effectiveness_1_s2",
                            "program_rad_s2", "saturation", "kp_1_s2", "kd_1_s", "telemetry"}) {
     tick.def_property_readonly(name, [name](const LawTick& t) { return t.Array(name); });

@@ -1,7 +1,6 @@
 """Flights from Python: the program's bits, and their histories without copies."""
 import csv
 import math
-import resource
 import threading
 import time
 import unittest
@@ -9,12 +8,7 @@ import unittest
 import numpy
 
 import dispersa
-from program import CAMPAIGNS, SMOKE, folder_of, printed, program
-
-
-def resident_bytes():
-    with open("/proc/self/statm") as stream:
-        return int(stream.read().split()[1]) * resource.getpagesize()
+from program import CAMPAIGNS, SMOKE, folder_of, printed, program, resident_bytes
 
 
 def owner(array):

@@ -22,7 +22,7 @@ import jsonschema
 import numpy
 
 import dispersa
-from program import CAMPAIGNS, SMOKE, folder_of, printed, program
+from program import CAMPAIGNS, SMOKE, folder_of, printed, program, resident_bytes
 
 PITCH = 1
 
@@ -94,12 +94,25 @@ class Laws(unittest.TestCase):
         with self.assertRaisesRegex(LookupError, "no gain at 20.01 s"):
             self.campaign.fly_many(3, law=late)
 
+    def test_flights_that_raise_leave_nothing_behind(self):
+        def fly(count):
+            for _ in range(count):
+                with self.assertRaises(TypeError):
+                    self.campaign.fly(law=lambda tick: None)
+            gc.collect()
+
+        fly(20)
+        before = resident_bytes()
+        fly(80)
+        self.assertLess(resident_bytes() - before, 80 * 8192)
+
     def test_what_a_law_may_not_return(self):
         for returned, said in ((None, r"None \(NoneType\)"), ("much", r"'much' \(str\)"), ([1.0, 2.0], r"\[1.0, 2.0\] \(list\)"),
                                (True, r"True \(bool\)"), (1j, r"1j \(complex\)"), ([0.0, None, 0.0], r"None, 0.0\] \(list\)"),
                                (numpy.zeros(1), r"array\(\[0.\]\) \(numpy.ndarray\)"), (numpy.bool_(True), r"True \(numpy.bool_\)"),
                                (numpy.zeros((1, 3)), r"array\(\[\[0., 0., 0.\]\]\)"), (fractions.Fraction(1, 2), r"\(Fraction\)"),
-                               ("x" * 999, r"'x{59} … \(str\)$")):
+                               ("x" * 999, r"'x{59} … \(str\)$"), ("日" * 99, r"'日{59} … \(str\)$"),
+                               (type("Odd", (), {"__repr__": lambda self: "\ud800"})(), r"\\ud800 \(Odd\)$")):
             with self.assertRaisesRegex(TypeError, "a control law returns angular accelerations, rad/s.2: a number, or three, of "
                                         "roll, pitch and yaw; this one returned .*" + said) as caught:
                 self.campaign.fly(law=lambda tick: returned)
@@ -327,6 +340,7 @@ class Campaigns(unittest.TestCase):
         def remembering(tick):
             if "kept" not in tick.memory:
                 tick.memory["kept"] = Kept()
+                tick.memory["itself"] = tick
                 kept.append(weakref.ref(tick.memory["kept"]))
             return pd(tick)
 

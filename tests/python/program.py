@@ -2,6 +2,7 @@
 import json
 import os
 import pathlib
+import resource
 import shutil
 import subprocess
 import tempfile
@@ -29,6 +30,11 @@ def folder_of(test_class):
     folder = pathlib.Path(tempfile.mkdtemp(prefix="dispersa-python-"))
     test_class.addClassCleanup(shutil.rmtree, folder)
     return folder
+
+
+def resident_bytes():
+    with open("/proc/self/statm") as stream:
+        return int(stream.read().split()[1]) * resource.getpagesize()
 
 
 def shipped_campaigns():
