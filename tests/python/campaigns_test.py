@@ -1,4 +1,5 @@
 """Loading, validating, editing and planning from Python: the same ids, texts, problems and draws as the program's."""
+import copy
 import csv
 import pickle
 import unittest
@@ -70,8 +71,13 @@ class Loading(unittest.TestCase):
             self.assertIsInstance(names, tuple)
 
     def test_pickled(self):
-        campaign = dispersa.load(SMOKE)
-        self.assertEqual(pickle.loads(pickle.dumps(campaign)), campaign)
+        tree = dispersa.read(SMOKE, inlined=True)
+        tree["reference"]["target_missed"] = "far off"
+        with self.assertWarnsRegex(dispersa.InputWarning, "misses its own target"):
+            campaign = dispersa.load(tree)
+        self.assertTrue(campaign.warnings)
+        for copied in (pickle.loads(pickle.dumps(campaign)), copy.copy(campaign)):
+            self.assertEqual((copied, copied.warnings), (campaign, campaign.warnings))
 
 
 class Validating(unittest.TestCase):
@@ -110,6 +116,12 @@ class Validating(unittest.TestCase):
     def test_missing_file(self):
         with self.assertRaisesRegex(dispersa.BadInput, "nothing.yaml:1:1: cannot be read: No such file or directory"):
             dispersa.load("nothing.yaml")
+
+    def test_a_file_of_a_list(self):
+        file = folder_of(type(self)) / "list.yaml"
+        file.write_text("- 1\n- 2\n")
+        with self.assertRaisesRegex(dispersa.BadInput, "list.yaml:1:1: is no map of keys"):
+            dispersa.read(file)
 
 
 class Planning(unittest.TestCase):

@@ -73,8 +73,27 @@ class One(unittest.TestCase):
                 self.campaign.fly(*arguments)
         with self.assertRaisesRegex(dispersa.BadInput, "'euler' is not an integrator, allowed: simpson, erk4 or cvode"):
             self.campaign.fly(integrator="euler")
-        with self.assertRaisesRegex(dispersa.BadInput, "step_s: 0.0 is no output step"):
-            self.campaign.fly(step_s=0.0)
+        for step_s in (0.0, 0.005, 1e5):
+            with self.assertRaisesRegex(dispersa.BadInput, f"step_s: {step_s} is out of range, allowed: 0.01 to 10000"):
+                self.campaign.fly(step_s=step_s)
+        for step_s in (math.nan, "0.1", None):
+            with self.assertRaisesRegex(dispersa.BadInput, "step_s: .* is no finite number"):
+                self.campaign.fly_many(1, step_s=step_s)
+        for case in (1.7, "3", b"3", True, numpy.array([3])):
+            with self.assertRaisesRegex(dispersa.BadInput, "the campaign has no case "):
+                self.campaign.fly(case)
+        for cases in ("123", b"\1\2", True, 2.5, [2.5], ["1"], [True], 13):
+            with self.assertRaises(dispersa.BadInput):
+                self.campaign.fly_many(cases)
+        for value in (math.nan, math.inf, "5", None, True, 10**400):
+            with self.assertRaisesRegex(dispersa.BadInput, "inputs: drag_factor: .* is no finite number"):
+                self.campaign.fly(inputs={"drag_factor": value})
+        with self.assertRaisesRegex(dispersa.BadInput, "inputs: 5 is not an input of this vehicle"):
+            self.campaign.fly(inputs={5: 1.0})
+        for call in (lambda: self.campaign.fly(integrator=None), lambda: self.campaign.fly_many(1, threads=None),
+                     lambda: dispersa.load(SMOKE, autopilot="")):
+            self.assertRaises(dispersa.BadInput, call)
+        self.assertEqual(self.campaign.fly(numpy.uint8(3), inputs={"drag_factor": numpy.float32(1.0)}, history=False).case, 3)
         with self.assertRaisesRegex(KeyError, "has no column 'pitch_error'; there is pitch_error_deg"):
             self.campaign.fly().history["pitch_error"]
 
@@ -93,7 +112,22 @@ class Many(unittest.TestCase):
             numpy.testing.assert_array_equal(flights[i].history.rows, alone.history.rows)
             self.assertEqual(flights.inputs["drag_factor"][i], alone.inputs["drag_factor"])
             self.assertEqual(flights.metrics["pitch_error_peak_deg"][i], alone.metrics["pitch_error_peak_deg"])
-        self.assertEqual(len(list(flights)), 3)
+        self.assertEqual([flight.case for flight in flights], [5, 0, 11])
+        self.assertEqual([flight.case for flight in flights[1:]], [0, 11])
+        numpy.testing.assert_array_equal(flights.history(-1).rows, flights[-1].history.rows)
+        self.assertEqual(len(flights.history(-1)), len(flights.history(2)))
+        for position in (3, -4):
+            for get in (flights.__getitem__, flights.history):
+                with self.assertRaisesRegex(IndexError, f"there is no flight {position} of 3"):
+                    get(position)
+
+    def test_rows_come_at_the_output_step_and_in_coasts_where_a_stride_ends_on_it(self):
+        for step_s, in_coasts_s in ((0.03, 0.15), (0.1, 0.1)):
+            history = dispersa.fly(SMOKE, step_s=step_s).history
+            gaps_s = numpy.diff(history["time_s"])
+            flying = (history["thrust_n"] > 0.0)[1:]
+            self.assertAlmostEqual(numpy.median(gaps_s[flying]), step_s)
+            self.assertAlmostEqual(gaps_s.max(), in_coasts_s)
 
     def test_a_thousand_histories_without_copies(self):
         campaign = dispersa.load(CAMPAIGNS / "table3.yaml", cases=1000)

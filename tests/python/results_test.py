@@ -81,6 +81,9 @@ class Runs(unittest.TestCase):
         numpy.testing.assert_array_equal(nominal.rows, dispersa.fly(SMOKE).history.rows)
         with self.assertRaises(dispersa.BadInput):
             self.ours.history(9999)
+        for case in (1.9, "1", True):
+            with self.assertRaisesRegex(dispersa.BadInput, "case: .* is not a whole number"):
+                self.ours.history(case)
 
     def test_replay(self):
         self.assertEqual(self.ours.replay(5), printed("replay", self.theirs, "--case", "5"))
@@ -128,6 +131,12 @@ class Runs(unittest.TestCase):
             dispersa.results(self.folder / "nothing")
         with self.assertRaisesRegex(TypeError, "unexpected keyword"):
             dispersa.run(SMOKE, thread=1)
+        for call in (lambda: self.ours.replay(None), lambda: dispersa.compare(self.ours, self.ours, metrics=[5]),
+                     lambda: dispersa.run(SMOKE, self.folder / "never", workers=True),
+                     lambda: dispersa.run(SMOKE, self.folder / "never", workers=0, threads=None),
+                     lambda: dispersa.margins(SMOKE, frequency_band_percent="15")):
+            self.assertRaises(dispersa.BadInput, call)
+        self.assertFalse((self.folder / "never").exists())
 
     def test_no_worker_is_incomplete(self):
         original = dispersa._results.worker_program

@@ -1,4 +1,5 @@
 """Arguments that are checked before C++ sees them, in the words of the program's errors."""
+import math
 import operator
 
 from .errors import BadInput
@@ -13,14 +14,38 @@ def refuse(message, allowed):
     return BadInput([("", 0, 0, "", message, allowed)])
 
 
-def whole(name, value, least=0, most=MOST_SEED):
-    """A whole number in a range; None stays None."""
-    if value is None:
-        return None
+def as_whole(value):
+    """The int of a whole number of Python's or NumPy's; None for what is none, such as a truth."""
     try:
-        number = operator.index(value)
+        return None if isinstance(value, bool) else operator.index(value)
     except TypeError:
-        raise refuse(f"{name}: {value!r} is not a whole number", f"a whole number from {least} to {most}") from None
+        return None
+
+
+def whole(name, value, least=0, most=MOST_SEED):
+    """A whole number in a range."""
+    number = as_whole(value)
+    if number is None:
+        raise refuse(f"{name}: {value!r} is not a whole number", f"a whole number from {least} to {most}")
     if not least <= number <= most:
         raise refuse(f"{name}: {number} is out of range", f"a whole number from {least} to {most}")
+    return number
+
+
+def whole_if_given(name, value, least=0, most=MOST_SEED):
+    """The same; None stays None."""
+    return None if value is None else whole(name, value, least, most)
+
+
+def finite(name, value, least=-math.inf, most=math.inf):
+    """A finite number in a range, as a float."""
+    allowed = "a finite number" if most == math.inf else f"{least:g} to {most:g}"
+    try:
+        number = math.nan if isinstance(value, (str, bytes, bool)) else float(value)
+    except (TypeError, ValueError, OverflowError):
+        number = math.nan
+    if not math.isfinite(number):
+        raise refuse(f"{name}: {value!r} is no finite number", allowed)
+    if not least <= number <= most:
+        raise refuse(f"{name}: {number} is out of range", allowed)
     return number

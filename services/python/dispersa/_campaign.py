@@ -1,13 +1,12 @@
 """Campaigns: loaded, planned, flown in this process."""
+import collections.abc
 import dataclasses
 import functools
 import os
 import warnings
 
-import numpy
-
 from . import _core
-from ._arguments import MOST_CASES, MOST_THREADS, refuse, whole
+from ._arguments import MOST_CASES, MOST_THREADS, as_whole, finite, refuse, whole, whole_if_given
 from ._law import identity
 from ._source import placed, source, without_place
 from ._tables import structured
@@ -58,9 +57,11 @@ def load(what, *, cases=None, seed=None, autopilot=None, base=None):
     relative to. Raises BadInput with every problem; warns (InputWarning) of what looks wrong but is legal.
     """
     name, text = source(what, base)
+    if autopilot is not None and not (autopilot := os.fspath(autopilot)):
+        raise refuse("autopilot: '' is no file", "an autopilot file")
     with placed(name, text):
-        campaign = Campaign(_core.load(name, text, whole("cases", cases, 1, MOST_CASES), whole("seed", seed),
-                                       None if autopilot is None else os.fspath(autopilot)))
+        campaign = Campaign(_core.load(name, text, whole_if_given("cases", cases, 1, MOST_CASES),
+                                       whole_if_given("seed", seed), autopilot))
     for problem in campaign.warnings:
         warnings.warn(str(problem), InputWarning, stacklevel=2)
     return campaign
@@ -82,7 +83,7 @@ class Campaign:
         return hash(self.id)
 
     def __reduce__(self):
-        return _from_canonical, (self.name, self.canonical_yaml)
+        return _from_canonical, (self.name, self.canonical_yaml), {"warnings": self.warnings}
 
     @property
     def name(self):
@@ -171,7 +172,9 @@ class Campaign:
         """One flight in this process: case `case`, or without one the nominal flight.
 
         `inputs`: values by name that replace those drawn, in the units of the names. `history`: with the time history,
-        a row every `step_s` seconds and at every event. `integrator`: simpson (what campaigns fly), erk4 or cvode.
+        a row every `step_s` seconds (0.01 to 1e4, rounded to whole ticks of the autopilot) and at every event; coasts are
+        flown in strides of several ticks, and have a row where a stride ends on such a time. `integrator`: simpson (what
+        campaigns fly), erk4 or cvode.
 
         `law(tick)`: a control law of your own, for prototypes, in the place of the autopilot's on `axes` (of roll, pitch
         and yaw). It is called at every tick of powered flight and returns commanded angular accelerations, rad/s²: of
@@ -184,10 +187,12 @@ class Campaign:
         note that names case and time.
 
         Releases the interpreter's lock while it flies. Returns a Flight. Raises BadInput for a case, an input or an
-        integrator that there is not.
+        integrator that there is not, and for a value that is no finite number.
         """
-        index = None if case is None else self._check([case])[0]
-        values = _core.fly(self._core, index, dict(inputs or {}), _step(step_s) if history else 0.0, integrator, law,
+        index = None if case is None else self._index(case)
+        if not isinstance(integrator, str):
+            raise refuse(f"integrator: {integrator!r} is not an integrator", "simpson, erk4 or cvode")
+        values = _core.fly(self._core, index, self._replaced(inputs), _step(step_s) if history else 0.0, integrator, law,
                            _axis_bits(axes))
         rows = values.pop("history")
         return Flight(self, index, values, None if rows is None else History(rows, _core.history_columns()))
@@ -197,29 +202,36 @@ class Campaign:
         """Cases in this process, side by side on `threads` threads (0: the usable cores).
 
         `cases`: a number of cases from the first, or indices; default: all. `histories`: with the time histories of
-        all in one array, with only `columns` (names) of them, if given, and a row every `step_s` seconds and at every
-        event; each row of all columns takes half a kilobyte. `progress(phase, done, total, note)` is called now and
+        all in one array, with only `columns` (names) of them, if given, and rows by `step_s` as of fly; each row of all
+        columns takes half a kilobyte. `progress(phase, done, total, note)` is called now and
         then. `law`, `axes`: as of fly; calls for one flight alternate with calls for others, so a law keeps what it
         remembers in `tick.memory`. Releases the interpreter's lock; Ctrl-C stops it. Returns Flights. Raises BadInput for
         a case or a column that there is not, and what `progress` and the law raise.
         """
-        if cases is None or isinstance(cases, (int, numpy.integer)):
-            indices = list(range(self.cases if cases is None else whole("cases", cases, 0, self.cases)))
+        if isinstance(cases, collections.abc.Iterable) and not isinstance(cases, (str, bytes)):
+            indices = [self._index(case) for case in cases]
         else:
-            indices = self._check(cases)
+            indices = list(range(self.cases if cases is None else whole("cases", cases, 0, self.cases)))
         names, positions = column_positions(columns)
         values = _core.fly_many(self._core, indices, _step(step_s) if histories else 0.0, positions,
                                 whole("threads", threads, 0, MOST_THREADS), progress,
                                 law, _axis_bits(axes))
         return Flights(self, values, names)
 
-    def _check(self, cases):
-        """Case indices as ints. Raises BadInput for one that the campaign does not have."""
-        indices = [int(case) for case in cases]
-        for index in indices:
-            if not 0 <= index < self.cases:
-                raise refuse(f"case: the campaign has no case {index}", f"0 to {self.cases - 1}")
-        return indices
+    def _index(self, case):
+        """A case's index as an int. Raises BadInput for one that the campaign does not have."""
+        index = as_whole(case)
+        if index is None or not 0 <= index < self.cases:
+            raise refuse(f"case: the campaign has no case {case!r}", f"0 to {self.cases - 1}")
+        return index
+
+    def _replaced(self, inputs):
+        """Values of inputs by name. Raises BadInput for a name or a value that is none."""
+        values = {} if inputs is None else dict(inputs)
+        for name in values:
+            if name not in self.input_names:
+                raise refuse(f"inputs: {name!r} is not an input of this vehicle", "a name of Campaign.input_names")
+        return {name: finite(f"inputs: {name}", value) for name, value in values.items()}
 
 
 def _axis_bits(axes):
@@ -232,9 +244,7 @@ def _axis_bits(axes):
 
 
 def _step(step_s):
-    if not 0.0 < step_s < float("inf"):
-        raise refuse(f"step_s: {step_s} is no output step", "above 0 s")
-    return float(step_s)
+    return finite("step_s", step_s, 0.01, 1e4)
 
 
 def _from_canonical(name, text):

@@ -87,7 +87,7 @@ class Flight:
 
 
 class Flights:
-    """Many flights, a sequence of Flight.
+    """Many flights, a sequence of Flight; a slice of it is a list.
 
     `cases`: indices, shape (flights,). `outcome`: names. `inputs`, `metrics`: structured arrays of shape (flights,), a
     float64 field a name. `histories`: the rows of all, one flight after the other, as one float64 array of shape (total
@@ -112,14 +112,27 @@ class Flights:
     def __len__(self):
         return len(self.cases)
 
+    def __iter__(self):
+        return (self[i] for i in range(len(self)))
+
     def __getitem__(self, i):
-        i = range(len(self))[i]
+        if isinstance(i, slice):
+            return [self[each] for each in range(len(self))[i]]
+        i = self._position(i)
         return Flight(self._campaign, int(self.cases[i]), {name: self._values[name][i] for name in FLIGHT_VALUES},
                       self.history(i))
 
+    def _position(self, i):
+        """Of flight i, those before 0 from the end. Raises IndexError."""
+        try:
+            return range(len(self))[i]
+        except IndexError:
+            raise IndexError(f"there is no flight {i} of {len(self)}") from None
+
     def history(self, i):
-        """The History of flight i (a position, not a case's index): rows of `histories`, not a copy. None without
-        histories."""
+        """The History of flight i (a position, not a case's index; -1: the last): rows of `histories`, not a copy. None
+        without histories."""
+        i = self._position(i)
         if self.histories is None:
             return None
         return History(self.histories[self.offsets[i]:self.offsets[i + 1]], self.columns)

@@ -8,7 +8,7 @@ import shutil
 import numpy
 
 from . import _core
-from ._arguments import MOST_CASES, MOST_THREADS, refuse, whole
+from ._arguments import MOST_CASES, MOST_THREADS, finite, refuse, whole, whole_if_given
 from ._source import placed, source
 from ._tables import structured
 from ._campaign import Campaign, _from_canonical, load, under_law
@@ -87,7 +87,7 @@ class Results:
         completed = numpy.array([outcome == "completed" for outcome in self.outcome], dtype=bool)
         badness = numpy.where(completed, badness, numpy.inf)
         order = [i for i in numpy.argsort(-badness, kind="stable") if not numpy.isnan(badness[i])]
-        return [int(self.case_index[i]) for i in order[:whole("count", count, 1)]]
+        return [int(self.case_index[i]) for i in order[:whole_if_given("count", count, 1)]]
 
     def table(self):
         """A structured array of shape (cases,) with the columns of cases.csv."""
@@ -126,7 +126,7 @@ class Results:
     def history(self, case=None):
         """A History that the report wrote: of a case that it shows, or without one of the nominal flight. Raises BadInput
         for a case that it does not show."""
-        return self._csv("nominal.csv" if case is None else f"case_{int(case)}.csv")
+        return self._csv("nominal.csv" if case is None else f"case_{whole('case', case, 0, MOST_CASES)}.csv")
 
     def _csv(self, name):
         file = self.directory / "histories" / name
@@ -261,7 +261,11 @@ def compare(a, b, *, metrics=(), out=""):
     `metrics`: names without prefix, instead of all. `out`: a folder for compare.html and compare.json. Raises BadInput.
     """
     folders = [os.fspath(each.directory if isinstance(each, Results) else each) for each in (a, b)]
-    return json.loads(_core.compare(*folders, list(metrics), os.fspath(out)))
+    names = [metrics] if isinstance(metrics, str) else list(metrics)
+    for name in names:
+        if not isinstance(name, str):
+            raise refuse(f"metrics: {name!r} is not a metric", "names of metrics")
+    return json.loads(_core.compare(*folders, names, os.fspath(out)))
 
 
 def margins(what, *, cases=None, autopilot=None, base=None, frequency_band_percent=15.0, drift=False):
@@ -272,15 +276,8 @@ def margins(what, *, cases=None, autopilot=None, base=None, frequency_band_perce
     linearise with the lateral velocity. Raises BadInput.
     """
     campaign = what if isinstance(what, Campaign) and autopilot is None else load(what, autopilot=autopilot, base=base)
-    return json.loads(_core.margins(campaign.name, campaign.canonical_yaml, whole("cases", cases, 1, MOST_CASES),
-                                    _band(frequency_band_percent), drift))
-
-
-def _band(percent):
-    """As the command's --frequency-band."""
-    if not 0.0 <= percent <= 50.0:
-        raise refuse(f"frequency_band_percent: {percent} is out of range", "0 to 50")
-    return float(percent)
+    return json.loads(_core.margins(campaign.name, campaign.canonical_yaml, whole_if_given("cases", cases, 1, MOST_CASES),
+                                    finite("frequency_band_percent", frequency_band_percent, 0.0, 50.0), drift))
 
 
 class Optimization(dict):
@@ -309,7 +306,7 @@ def optimize(what, out="", *, seed=None, threads=0, base=None, progress=None):
     """
     name, text = source(what, base)
     with placed(name, text):
-        printed, yaml, statement = _core.optimize(name, text, whole("seed", seed), whole("threads", threads, 0, MOST_THREADS),
+        printed, yaml, statement = _core.optimize(name, text, whole_if_given("seed", seed), whole("threads", threads, 0, MOST_THREADS),
                                                   os.fspath(out), progress)
     optimization = Optimization(json.loads(printed))
     optimization.yaml, optimization.statement = yaml, statement

@@ -21,9 +21,12 @@ def read(path, inlined=False):
 
     `inlined`: what a campaign or a vehicle refers to stands in the place of the names, so that an autopilot's gains or a
     stage's masses can be edited too.
-    Raises BadInput for a file that is no YAML.
+    Raises BadInput for a file that is no YAML, or no map of keys.
     """
-    tree = Tree(_core.read_tree(os.fspath(path), inlined))
+    value = _core.read_tree(os.fspath(path), inlined)
+    if not isinstance(value, dict):
+        raise BadInput([(os.fspath(path), 1, 1, "", "is no map of keys", "a campaign, vehicle, reference, autopilot or scenario")])
+    tree = Tree(value)
     tree.folder = os.path.dirname(os.fspath(path)) or "."
     return tree
 
