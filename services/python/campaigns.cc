@@ -318,6 +318,7 @@ void AddCampaigns(py::module_& module) {
       .def_property_readonly("seed", [](const LoadedCampaign& c) { return c.campaign().sampling.seed; })
       .def_property_readonly("stages", &LoadedCampaign::stages)
       .def_property_readonly("python_law", &PythonLawOf)
+      .def_property_readonly("law_axes", [](const LoadedCampaign& c) { return PluginAxes(c.campaign().autopilot); })
       .def_property_readonly("autopilot", [](const LoadedCampaign& c) { return c.campaign().autopilot.name; })
       .def_property_readonly("vehicle", [](const LoadedCampaign& c) { return c.campaign().vehicle.name; })
       .def_property_readonly("dispersed",

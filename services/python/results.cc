@@ -113,9 +113,9 @@ int MakeAgain(const std::string& directory, std::optional<std::uint64_t> envelop
   });
 }
 
-/// The columns of cases.csv, and the verdict's exit code, from what is stored.
+/// The columns of cases.csv, the verdict's exit code and summary.json, from what is stored.
 py::dict Results(const std::string& directory) {
-  std::string engine;
+  std::string engine, summary;
   ExitCode code = kExitDone;
   std::optional<ResultColumns> columns;
   {
@@ -125,11 +125,14 @@ py::dict Results(const std::string& directory) {
     columns.emplace(InputCount(stages), MetricCount(stages));
     stored.folder.ForEach([&](const CaseResult& result) { columns->Add(result); });
     engine = stored.folder.Provenance("engine");
-    code = CampaignExitCode(BuildSummary(stored.folder, stored.campaign).verdict, 0);
+    const CampaignSummary built = BuildSummary(stored.folder, stored.campaign);
+    code = CampaignExitCode(built.verdict, 0);
+    summary = SummaryJson(built);
   }
   py::dict answer = columns->Take();
   answer["engine"] = engine;
   answer["exit_code"] = static_cast<int>(code);
+  answer["summary"] = summary;
   return answer;
 }
 

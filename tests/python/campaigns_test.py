@@ -1,7 +1,12 @@
 """Loading, validating, editing and planning from Python: the same ids, texts, problems and draws as the program's."""
+import collections
 import copy
 import csv
+import os
 import pickle
+import subprocess
+import sys
+import types
 import unittest
 import warnings
 
@@ -63,7 +68,25 @@ class Loading(unittest.TestCase):
         with self.assertRaises(dispersa.BadInput) as caught:
             dispersa.load(plain)
         self.assertIn("cannot read 'vehicles/slv4.yaml'", str(caught.exception))
-        self.assertEqual(dispersa.load(plain, base=CAMPAIGNS), dispersa.load(SMOKE))
+        for tree in (plain, collections.UserDict(plain), types.MappingProxyType(plain)):
+            self.assertEqual(dispersa.load(tree, base=CAMPAIGNS), dispersa.load(SMOKE))
+
+    def test_a_tree_keeps_its_folder(self):
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(CAMPAIGNS)
+        tree = dispersa.read("smoke.yaml")
+        os.chdir("/")
+        for same in (tree, tree.copy(), tree | {}, copy.deepcopy(tree)):
+            self.assertEqual(dispersa.load(same), dispersa.load(SMOKE))
+
+    def test_files_are_utf_8_whatever_the_locale(self):
+        folder = folder_of(type(self))
+        script = ("import dispersa, sys\ntree = dispersa.read(sys.argv[1], inlined=True)\ntree['vehicle']['name'] = '\\xe9t\\xe9'\n"
+                  "tree['sampling']['cases'] = 1\ndispersa.write(tree, sys.argv[2] + '/t.yaml')\n"
+                  "print(ascii(dispersa.run(sys.argv[2] + '/t.yaml', sys.argv[2] + '/r', workers=0).campaign.vehicle))\n")
+        done = subprocess.run([sys.executable, "-B", "-X", "utf8=0", "-c", script, str(SMOKE), str(folder)], text=True,
+                              capture_output=True, env={**os.environ, "LC_ALL": "C", "PYTHONCOERCECLOCALE": "0"})
+        self.assertEqual((done.stdout, done.returncode), ("'\\xe9t\\xe9'\n", 0), done.stderr)
 
     def test_names_that_label_results_cannot_be_changed(self):
         campaign = dispersa.load(SMOKE)
@@ -107,11 +130,16 @@ class Validating(unittest.TestCase):
         self.assertEqual(str(problem), f"{CAMPAIGNS}/<dict>: sampling.method: 'dice' is not a choice, allowed: one of "
                          "monte_carlo, latin_hypercube, sobol, corners, one_at_a_time, grid, list")
         tree["sampling"] = {"cases": float("nan")}
-        with self.assertRaises(dispersa.BadInput):
-            dispersa.validate(tree)
-        tree["sampling"] = {"cases": object()}
-        with self.assertRaisesRegex(dispersa.BadInput, "object has no place in a file"):
-            dispersa.load(tree)
+        deep = {}
+        for _ in range(3000):
+            deep = {"deeper": deep}
+        for value, said in ((float("nan"), "Out of range float"), (object(), "object has no place in a file"),
+                            (deep, "recursion"), ("\ud800", "surrogates not allowed")):
+            tree["sampling"] = {"cases": value}
+            problem, = dispersa.validate(tree).errors
+            self.assertIn(said, problem.message)
+            with self.assertRaisesRegex(dispersa.BadInput, said):
+                dispersa.load(tree)
 
     def test_missing_file(self):
         with self.assertRaisesRegex(dispersa.BadInput, "nothing.yaml:1:1: cannot be read: No such file or directory"):

@@ -222,6 +222,17 @@ class Campaigns(unittest.TestCase):
         file.write_text("1.0")
         self.assertEqual(self.run_of(reading, "reading", resume=True).digest, self.results.digest)
 
+    def test_axes_of_a_run(self):
+        for axes in ("roll", "climb"):
+            with self.assertRaisesRegex(dispersa.BadInput, f"axes: '{axes}' are not "):
+                dispersa.run(self.results.campaign, self.folder / "never", workers=0, law=pd, axes=axes)
+        with self.assertRaisesRegex(dispersa.BadInput, "axes: go with a law in Python"):
+            dispersa.run(self.campaign, self.folder / "never", workers=0, axes="climb")
+        self.assertFalse((self.folder / "never").exists())
+        for name, axes in (("again", "pitch"), ("once more", None)):
+            again = dispersa.run(self.results.campaign, self.folder / name, workers=0, law=pd, axes=axes, histories=False)
+            self.assertEqual(again.campaign, self.results.campaign)
+
     def test_the_folder_says_so(self):
         name, sha256 = self.results.campaign.python_law
         self.assertRegex(self.text("campaign.yaml"), f"  plugin:\n    python:\n      name: pd\n      sha256: \"?{sha256}\"?\n")

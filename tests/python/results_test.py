@@ -2,6 +2,8 @@
 import csv
 import json
 import math
+import os
+import shutil
 import signal
 import sqlite3
 import subprocess
@@ -75,6 +77,26 @@ class Runs(unittest.TestCase):
         failed = dispersa.run(tree, self.folder / "failed", workers=0, histories=False)
         self.assertEqual((failed.verdict, failed.exit_code), ("fail", 3))
 
+    def test_a_folder_is_what_it_was_when_it_was_opened(self):
+        copied = self.folder / "opened"
+        shutil.copytree(self.theirs, copied)
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(self.folder)
+        opened = dispersa.results("opened")
+        os.chdir("/")
+        self.assertEqual((opened.directory, opened.replay(1)["match"]), (copied, True))
+        summary = copied / "summary.json"
+        text = summary.read_text()
+        summary.write_text(text.replace('"verdict": "pass"', '"verdict": "fail"'))
+        for results in (opened, dispersa.results(copied)):
+            self.assertEqual((results.verdict, results.exit_code), ("pass", 0))
+        self.assertEqual(opened.summary, json.loads(text))
+        summary.write_bytes(b"\xff{]")
+        with self.assertRaisesRegex(dispersa.InternalError, "opened/summary.json is damaged: .*; dispersa.report makes it again"):
+            dispersa.results(copied).summary
+        summary.unlink()
+        self.assertEqual(dispersa.results(copied).summary["verdict"], "pass")
+
     def test_histories_of_the_report(self):
         bands, nominal = self.ours.bands(), self.ours.history()
         self.assertEqual(bands.columns[0], "time_s")
@@ -136,6 +158,14 @@ class Runs(unittest.TestCase):
                      lambda: dispersa.run(SMOKE, self.folder / "never", workers=0, threads=None),
                      lambda: dispersa.margins(SMOKE, frequency_band_percent="15")):
             self.assertRaises(dispersa.BadInput, call)
+        for argument in ({"domain": 1}, {"address": "127.0.0.1"}, {"keys": "keys"}, {"insecure": True}, {"priority": 1}):
+            with self.assertRaisesRegex(dispersa.BadInput, "has a meaning with `peer` alone"):
+                dispersa.run(SMOKE, self.folder / "never", **argument)
+        for argument in ({"workers": 1}, {"threads": 1}, {"resume": True}, {"histories": False}, {"envelope": 5}):
+            with self.assertRaisesRegex(dispersa.BadInput, "has a meaning without `peer` alone"):
+                dispersa.run(SMOKE, self.folder / "never", peer="127.0.0.1", **argument)
+        with self.assertRaisesRegex(dispersa.BadInput, "priority: 1001 is out of range, allowed: a whole number from -1000 to 1000"):
+            dispersa.run(SMOKE, self.folder / "never", peer="127.0.0.1", priority=1001)
         self.assertFalse((self.folder / "never").exists())
 
     def test_no_worker_is_incomplete(self):
@@ -216,7 +246,11 @@ except KeyboardInterrupt:
         finally:
             process.kill()
             process.wait()
-        self.assertGreater(len(dispersa.results(folder)), 0)
+        left = dispersa.results(folder)
+        self.assertGreater(len(left), 0)
+        self.assertEqual((left.verdict, left.exit_code), ("incomplete", dispersa.ExitCode.INCOMPLETE))
+        self.assertIn("incomplete", repr(left))
+        self.assertEqual({each["verdict"] for each in left.requirements}, {"inconclusive"})
         self.assertEqual(json.loads((folder / "execution.json").read_text())["problem"], "interrupted")
 
     def test_in_process(self):

@@ -38,6 +38,7 @@ __version__: str
 
 class Tree(dict[str, Any]):
     folder: str
+    def copy(self) -> Tree: ...
 
 @dataclasses.dataclass(frozen=True)
 class Validation:
@@ -179,8 +180,8 @@ def fly(what: _Source, case: int | None = ..., *, inputs: Mapping[str, float] | 
 def run(what: _Source, out: _Path = ..., *, cases: int | None = ..., seed: int | None = ..., autopilot: _Path | None = ...,
         base: _Path | None = ..., workers: int | None = ..., threads: int = ..., resume: bool = ..., histories: bool = ...,
         envelope: int = ..., progress: _Progress = ..., peer: str | None = ..., domain: int = ..., address: str = ...,
-        keys: str = ..., insecure: bool = ..., priority: int = ..., law: _Law = ...,
-        axes: str | Iterable[str] = ...) -> Results: ...
+        keys: _Path = ..., insecure: bool = ..., priority: int = ..., law: _Law = ...,
+        axes: str | Iterable[str] | None = ...) -> Results: ...
 def results(directory: _Path) -> Results: ...
 def report(directory: _Path | Results, *, histories: bool = ..., envelope: int = ..., progress: _Progress = ...,
            law: _Law = ...) -> Results: ...

@@ -10,7 +10,7 @@ from ._arguments import MOST_CASES, MOST_THREADS, as_whole, finite, refuse, whol
 from ._law import identity
 from ._source import placed, source, without_place
 from ._tables import structured
-from .errors import ExitCode, InputWarning, Problem
+from .errors import BadInput, ExitCode, InputWarning, Problem
 from ._flight import Flight, Flights, History, column_positions
 
 
@@ -45,7 +45,10 @@ def validate(what, *, base=None, strict=False):
     `base`: the folder that names in a dict are relative to. `strict`: warnings are errors. Raises nothing for what is
     wrong with the input; the result says it.
     """
-    name, text = source(what, base)
+    try:
+        name, text = source(what, base)
+    except BadInput as error:  # what has no place in a file
+        return Validation(error.problems, [], strict)
     errors, found = _core.check(name, text)
     return Validation(*([without_place(Problem(*p), name, text) for p in each] for each in (errors, found)), strict)
 
@@ -251,16 +254,19 @@ def _from_canonical(name, text):
     return Campaign(_core.from_canonical(name, text))
 
 
-def under_law(campaign, law, axes):
-    """(the campaign flown with this control law in Python, its SHA-256). Raises BadInput for one that was flown with
-    another law."""
+def under_law(campaign, law, axes=None):
+    """(the campaign flown with this control law in Python, its SHA-256). `axes`: default pitch, or those that it was flown
+    with. Raises BadInput for one that was flown with another law, or on other axes."""
     if not callable(law):
         raise refuse(f"law: {law!r} cannot be called", "a function of one argument")
+    bits = None if axes is None else _axis_bits(axes)
     name, sha256 = identity(law)
     if campaign.python_law is None:
-        return Campaign(_core.under_law(campaign._core, _axis_bits(axes), name, sha256)), sha256
+        return Campaign(_core.under_law(campaign._core, _axis_bits("pitch") if bits is None else bits, name, sha256)), sha256
     flown_name, flown_sha256 = campaign.python_law
     if sha256 != flown_sha256:
         raise refuse(f"law: '{name}' (SHA-256 {sha256[:16]}…) is not the Python law that the campaign was flown with",
                      f"'{flown_name}' (SHA-256 {flown_sha256[:16]}…)")
+    if bits is not None and bits != campaign._core.law_axes:
+        raise refuse(f"axes: {axes!r} are not those that the campaign was flown with", "no axes")
     return campaign, sha256

@@ -29,8 +29,10 @@ class Results:
     """
 
     def __init__(self, directory):
-        self.directory = pathlib.Path(directory)
-        values = _core.results(os.fspath(directory))
+        self.directory = pathlib.Path(directory).absolute()
+        values = _core.results(os.fspath(self.directory))
+        self._stored = json.loads(values["summary"])
+        self._summary_text = self._text("summary.json")
         self.exit_code = ExitCode(values["exit_code"])
         self.engine = values["engine"]
         self.case_index = values["case_index"]
@@ -51,23 +53,28 @@ class Results:
     @functools.cached_property
     def campaign(self):
         """The Campaign as flown."""
-        file = self.directory / "campaign.yaml"
-        return _from_canonical(str(file), file.read_text())
+        return _campaign_in(self.directory)
 
     @functools.cached_property
     def summary(self):
-        """summary.json as a dict: every number of the report."""
-        return json.loads((self.directory / "summary.json").read_text())
+        """summary.json as a dict: every number of the report. Of a run that ended before its report, the same of what is
+        stored. Raises InternalError for a file that is damaged."""
+        if self._summary_text is None:
+            return self._stored
+        try:
+            return json.loads(self._summary_text)
+        except ValueError as error:
+            raise InternalError(f"{self.directory / 'summary.json'} is damaged: {error}; dispersa.report makes it again") from None
 
     @property
     def verdict(self):
-        """"pass", "fail", "inconclusive", "study" or "incomplete"."""
-        return self.summary["verdict"]
+        """"pass", "fail", "inconclusive", "study" or "incomplete", of what is stored."""
+        return self._stored["verdict"]
 
     @property
     def requirements(self):
-        """A dict for each requirement, as in summary.json."""
-        return self.summary["requirements"]
+        """A dict for each requirement, as in summary.json, of what is stored."""
+        return self._stored["requirements"]
 
     @property
     def report(self):
@@ -133,9 +140,16 @@ class Results:
         if not file.is_file():
             raise BadInput([(str(file), 0, 0, "", "there is no such history",
                              "Campaign.fly, or report() with histories")])
-        with open(file) as stream:
+        with open(file, encoding="utf-8") as stream:
             columns = stream.readline().strip().split(",")
             return History(numpy.genfromtxt(stream, delimiter=",", ndmin=2), columns)
+
+    def _text(self, name):
+        """What a file holds; None: there is none."""
+        try:
+            return (self.directory / name).read_text(encoding="utf-8", errors="replace")
+        except FileNotFoundError:
+            return None
 
     def replay(self, case, *, law=None):
         """Flies a stored case again; a dict with its digest. `law`: the control law in Python that it was flown with, if
@@ -149,6 +163,11 @@ class Results:
             error.differences = answer["differences"]
             raise error
         return answer
+
+
+def _campaign_in(directory):
+    file = pathlib.Path(directory) / "campaign.yaml"
+    return _from_canonical(str(file), file.read_text(encoding="utf-8"))
 
 
 def results(directory):
@@ -169,7 +188,7 @@ def worker_program():
 
 def run(what, out="", *, cases=None, seed=None, autopilot=None, base=None, workers=None, threads=0, resume=False,
         histories=True, envelope=ENVELOPE, progress=None, peer=None, domain=0, address="", keys="", insecure=False,
-        priority=0, law=None, axes=("pitch",)):
+        priority=0, law=None, axes=None):
     """Flies a campaign and writes its result folder, as `dispersa run` does. Returns its Results.
 
     `what`: a Campaign, a path, or a dict. `out`: the folder, new or empty unless `resume`; default
@@ -178,13 +197,16 @@ def run(what, out="", *, cases=None, seed=None, autopilot=None, base=None, worke
     `progress(phase, done, total, note)` is called now and then.
 
     `peer` ("HOST[:PORT]"): the coordinator there flies it, in DDS domain `domain`, and the folder is fetched; `keys` is
-    the folder of the client's keys, `insecure` says that there are none, `priority` that of `dispersa launch`.
+    the folder of the client's keys, `insecure` says that there are none, `priority` (-1000 to 1000) that of `dispersa
+    launch`. How it flies and reports is the coordinator's: `workers`, `threads`, `resume`, `histories` and `envelope` go
+    with runs on this machine alone, as what is said of a coordinator goes with `peer`.
 
-    `law`, `axes`: a control law in Python, as of Campaign.fly, flown by this process alone: `workers=0` must be said. Name
-    and hash of what the law does (its bytecode, what it closes over and refers to) are part of the campaign, hence of its
-    ids; the law itself is in no file. So nobody without it flies these cases again, as the report says, and `replay`,
-    `report` and `resume` want it as `law` too. Nominal and first cases are flown twice, and `resume` flies a stored case again:
-    a law that differs is refused, and so is one that holds what cannot be seen (a generator, an open file).
+    `law`, `axes` (default: pitch): a control law in Python, as of Campaign.fly, flown by this process alone: `workers=0`
+    must be said. Name and hash of what the law does (its bytecode, what it closes over and refers to) are part of the
+    campaign, hence of its ids; the law itself is in no file. So nobody without it flies these cases again, as the report
+    says, and `replay`, `report` and `resume` want it as `law` too. Nominal and first cases are flown twice, and `resume`
+    flies a stored case again: a law that differs is refused, and so is one that holds what cannot be seen (a generator, an
+    open file).
 
     The verdict is a value: Results.exit_code. Raises BadInput; Incomplete, with `results`, when cases are missing;
     InternalError, with `results`, when results contradict each other. Ctrl-C raises KeyboardInterrupt: what was flown is
@@ -196,6 +218,8 @@ def run(what, out="", *, cases=None, seed=None, autopilot=None, base=None, worke
     else:
         campaign = load(what, base=base, **overrides)
     sha256 = ""
+    if law is None and axes is not None:
+        raise refuse("axes: go with a law in Python", "law=..., or no axes")
     if law is not None:
         if workers != 0 or peer is not None:
             raise refuse("law: a control law in Python flies in this process alone, and workers=0 is to say so",
@@ -203,10 +227,17 @@ def run(what, out="", *, cases=None, seed=None, autopilot=None, base=None, worke
         campaign, sha256 = under_law(campaign, law, axes)
         if resume:
             _fly_a_stored_case_again(_folder_of(campaign, out), law)
+    if peer is None:
+        _refuse_unheeded("with `peer` alone", domain=(domain, 0), address=(address, ""), keys=(keys, ""),
+                         insecure=(insecure, False), priority=(priority, 0))
+    else:
+        _refuse_unheeded("without `peer` alone", workers=(workers, None), threads=(threads, 0), resume=(resume, False),
+                         histories=(histories, True), envelope=(envelope, ENVELOPE))
     if peer is not None:
         folder = _folder_of(campaign, out)
-        code = _core.run_remotely(campaign.name, campaign.canonical_yaml, folder, whole("domain", domain, 0, 99), peer, address, keys, insecure,
-                                  priority, progress)
+        code = _core.run_remotely(campaign.name, campaign.canonical_yaml, folder, whole("domain", domain, 0, 99),
+                                  os.fspath(peer), os.fspath(address), os.fspath(keys), bool(insecure),
+                                  whole("priority", priority, -1000, 1000), progress)
         problem = None
     else:
         program = "" if workers == 0 else worker_program() or "dispersa-worker"
@@ -215,6 +246,13 @@ def run(what, out="", *, cases=None, seed=None, autopilot=None, base=None, worke
                                           whole("threads", threads, 0, MOST_THREADS), program,
                                           whole("envelope", envelope, 1) if histories else None, progress, law, sha256)
     return _judge(folder, code, problem)
+
+
+def _refuse_unheeded(where, **arguments):
+    """Raises BadInput for one of these, (value, default) each, that is given where it has no meaning."""
+    for name, (value, default) in arguments.items():
+        if value != default:
+            raise refuse(f"{name}: has a meaning {where}", "its default")
 
 
 def _folder_of(campaign, out):
@@ -241,7 +279,7 @@ def report(directory, *, histories=True, envelope=ENVELOPE, progress=None, law=N
     of run; what was flown with a control law in Python needs that `law` for histories. Raises BadInput."""
     if isinstance(directory, Results):
         directory = directory.directory
-    sha256 = "" if law is None else _law_of(Results(directory).campaign, law)
+    sha256 = "" if law is None else _law_of(_campaign_in(directory), law)
     _core.report(os.fspath(directory), whole("envelope", envelope, 1) if histories else None, progress, law, sha256)
     return Results(directory)
 
@@ -252,7 +290,7 @@ def _law_of(campaign, law):
         return ""
     if campaign.python_law is None:
         raise refuse("law: the campaign was flown with the autopilot that it holds", "no law")
-    return under_law(campaign, law, ())[1]
+    return under_law(campaign, law)[1]
 
 
 def compare(a, b, *, metrics=(), out=""):

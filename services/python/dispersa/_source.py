@@ -1,4 +1,5 @@
 """Files, and dicts that stand in for files."""
+import collections.abc
 import contextlib
 import dataclasses
 import json
@@ -15,6 +16,20 @@ class Tree(dict):
 
     folder = "."
 
+    def __or__(self, other):
+        merged = super().__or__(other)
+        return merged if merged is NotImplemented else _in_folder(merged, self.folder)
+
+    def copy(self):
+        """Another with the same folder; what is in it is shared."""
+        return self | {}
+
+
+def _in_folder(value, folder):
+    tree = Tree(value)
+    tree.folder = folder
+    return tree
+
 
 def read(path, inlined=False):
     """A file of any kind as a Tree of dicts, lists and scalars.
@@ -26,13 +41,13 @@ def read(path, inlined=False):
     value = _core.read_tree(os.fspath(path), inlined)
     if not isinstance(value, dict):
         raise BadInput([(os.fspath(path), 1, 1, "", "is no map of keys", "a campaign, vehicle, reference, autopilot or scenario")])
-    tree = Tree(value)
-    tree.folder = os.path.dirname(os.fspath(path)) or "."
-    return tree
+    return _in_folder(value, os.path.dirname(os.path.abspath(path)))
 
 
 def _plain(value):
-    """NumPy's scalars and arrays, tuples and paths as what JSON has."""
+    """NumPy's scalars and arrays, tuples, paths and what is like a dict as what JSON has."""
+    if isinstance(value, collections.abc.Mapping):
+        return dict(value)
     if hasattr(value, "tolist"):
         return value.tolist()
     if isinstance(value, os.PathLike):
@@ -43,8 +58,10 @@ def _plain(value):
 def text_of(tree):
     """A dict as text that YAML reads, every number as the shortest that reads back to the same bits."""
     try:
-        return json.dumps(tree, default=_plain, ensure_ascii=False, allow_nan=False, indent=1) + "\n"
-    except (TypeError, ValueError) as error:
+        text = json.dumps(tree, default=_plain, ensure_ascii=False, allow_nan=False, indent=1) + "\n"
+        text.encode()
+        return text
+    except (TypeError, ValueError, RecursionError) as error:
         raise BadInput(f"the campaign is no tree of dicts, lists, texts and finite numbers: {error}") from None
 
 
@@ -52,7 +69,7 @@ def source(what, base=None):
     """(name, text or None) of a path, a dict, or a Campaign."""
     if hasattr(what, "canonical_yaml"):
         return what.name, what.canonical_yaml
-    if isinstance(what, dict):
+    if isinstance(what, collections.abc.Mapping):
         folder = pathlib.Path(base if base is not None else getattr(what, "folder", "."))
         return str(folder / "<dict>"), text_of(what)
     return os.fspath(what), None
@@ -75,4 +92,4 @@ def placed(name, text):
 def write(tree, path):
     """Writes a tree as a file of YAML that `dispersa` reads. Names in it stay as they are: relative to its folder. Raises
     BadInput for what has no place in a file, OSError where it cannot be written."""
-    pathlib.Path(path).write_text(text_of(tree))
+    pathlib.Path(path).write_text(text_of(tree), encoding="utf-8")
