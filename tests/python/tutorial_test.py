@@ -86,6 +86,26 @@ class Plots(unittest.TestCase):
         with self.assertRaisesRegex(dispersa.BadInput, "a flight without a history"):
             dispersa.plot.ground_track(self.results.campaign.fly(history=False))
 
+    def test_what_cannot_be_drawn(self):
+        plot, campaign = dispersa.plot, self.results.campaign
+        flight, none, bare = campaign.fly(1), campaign.fly_many(0), campaign.fly_many(2, histories=False)
+        timeless = campaign.fly_many(2, columns=["altitude_m"])
+        for draw, said in ((lambda: plot.history([], "altitude_m"), "there are no flights"),
+                           (lambda: plot.history(flight, []), "0 columns"),
+                           (lambda: plot.history(flight, "nope"), "the history has no column 'nope'"),
+                           (lambda: plot.history([flight, flight], "altitude_m", labels=["one"]), "labels: 1 for 2 flights"),
+                           (lambda: plot.history(flight, ["altitude_m", "qbar_pa"], axes=pyplot.figure().gca()), "2 columns, 1 axes"),
+                           (lambda: plot.bands(none, "altitude_m"), "there are no flights"),
+                           (lambda: plot.bands(bare, "altitude_m"), "a flight without a history"),
+                           (lambda: plot.bands(timeless, "altitude_m"), "no column 'time_s'"),
+                           (lambda: plot.bands(None, "altitude_m"), "bands: of Results or Flights, not of a NoneType"),
+                           (lambda: plot.bands([flight], "altitude_m"), "bands: of Results or Flights"),
+                           (lambda: plot.ground_track(none), "there are no flights"),
+                           (lambda: plot.ground_track(timeless), "no column 'longitude_deg'")):
+            with self.assertRaisesRegex(dispersa.BadInput, said):
+                draw()
+        self.assertEqual(len(plot.bands(campaign.fly_many(2, law=lambda tick: numpy.nan), "altitude_m").get_lines()), 1)
+
     def test_what_is_not_there(self):
         with self.assertRaisesRegex(dispersa.BadInput, "the report has none of 'roll'"):
             dispersa.plot.bands(self.results, "roll")

@@ -55,11 +55,13 @@ def history(flights, columns, *, labels=None, axes=None):
     """Columns of the time history of one flight, or of several: a panel for each column.
 
     `flights`: a Flight or History, or a list of them; `labels`: of the list's. Returns the axes, an array of shape
-    (len(columns),). Raises BadInput for a flight without a history, KeyError for a column that it does not have.
+    (len(columns),). Raises BadInput for a flight without a history or without a column, for no flights and no columns, and
+    for labels or axes that are not as many.
     """
-    several = list(flights) if isinstance(flights, (list, tuple, Flights)) else [flights]
     columns = [columns] if isinstance(columns, str) else list(columns)
-    histories = [_history_of(each) for each in several]
+    histories = _histories_of(flights, ["time_s", *columns], labels)
+    if not columns or axes is not None and numpy.size(axes) != len(columns):
+        raise BadInput(f"plot: {len(columns)} columns, {len(columns) if axes is None else numpy.size(axes)} axes")
     with style():
         if axes is None:
             _, axes = pyplot.subplots(len(columns), 1, sharex=True, squeeze=False, figsize=(7.2, 0.6 + 2.0 * len(columns)))
@@ -82,8 +84,12 @@ def bands(what, column, *, nominal=True, ax=None):
     """How a history column spreads over the cases: least to largest, 5 to 95 % and median of the flights still flying.
 
     `what`: Results, whose report has made the bands, or Flights with histories of `time_s` and the column. `nominal`:
-    of Results, with the nominal flight. Raises BadInput for a column that the report has no bands of.
+    of Results, with the nominal flight. Raises BadInput for a column that there are no bands or histories of.
     """
+    if isinstance(what, Flights):
+        _histories_of(what, ["time_s", column])
+    elif not isinstance(what, Results):
+        raise BadInput(f"bands: of Results or Flights, not of a {type(what).__name__}")
     with style():
         ax = _axes(ax)
         if isinstance(what, Results):
@@ -94,7 +100,8 @@ def bands(what, column, *, nominal=True, ax=None):
             times = table["time_s"]
             least, low, median, high, largest = (table[f"{column}_{part}"] for part in ("min", "p05", "p50", "p95", "max"))
         else:
-            times = numpy.arange(0.0, max(float(what.history(i)["time_s"][-1]) for i in range(len(what))), 0.2)
+            end_s = max(float(what.history(i)["time_s"][-1]) for i in range(len(what)))
+            times = numpy.arange(0.0, max(end_s, 0.2), 0.2)
             values = what.sample(column, times)
             least, low, median, high, largest = numpy.nanpercentile(values, [0, 5, 50, 95, 100], axis=0)
         ax.fill_between(times, least, largest, facecolor=OUTER, edgecolor=INNER, linewidth=0.5, label="min–max")
@@ -162,9 +169,9 @@ def drivers(results, metric, *, count=3, axes=None):
 
 def ground_track(flights, *, labels=None, ax=None):
     """Where flights are above the Earth, from lift-off to the end of each: longitude and latitude, to scale at the middle
-    of the picture. `flights`: a Flight or History, Flights, or a list. Raises BadInput for a flight without a history."""
-    several = list(flights) if isinstance(flights, (list, tuple, Flights)) else [flights]
-    histories = [_history_of(each) for each in several]
+    of the picture. `flights`: a Flight or History, Flights, or a list. Raises BadInput for a flight without a history of
+    both, for no flights, and for labels that are not as many."""
+    histories = _histories_of(flights, ["longitude_deg", "latitude_deg"], labels)
     with style():
         ax = pyplot.subplots(figsize=(5.6, 5.2))[1] if ax is None else ax
         many = len(histories) > len(LINES)
@@ -195,11 +202,21 @@ def _legend(ax):
     ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.05), borderaxespad=0.0, ncol=5, handlelength=1.6, columnspacing=1.4)
 
 
-def _history_of(flight):
-    found = flight.history if isinstance(flight, Flight) else flight
-    if not isinstance(found, History):
-        raise BadInput("plot: a flight without a history")
-    return found
+def _histories_of(flights, columns, labels=None):
+    """Those of a flight or of several, each with these columns. Raises BadInput."""
+    several = list(flights) if isinstance(flights, (list, tuple, Flights)) else [flights]
+    histories = [each.history if isinstance(each, Flight) else each for each in several]
+    if not histories:
+        raise BadInput("plot: there are no flights")
+    if labels and len(labels) != len(histories):
+        raise BadInput(f"labels: {len(labels)} for {len(histories)} flights")
+    for each in histories:
+        if not isinstance(each, History):
+            raise BadInput("plot: a flight without a history")
+        for column in columns:
+            if column not in each:
+                raise BadInput([("", 0, 0, "", f"plot: the history has no column {column!r}", ", ".join(each.columns))])
+    return histories
 
 
 def _completed(results, metric):
