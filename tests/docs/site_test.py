@@ -14,7 +14,7 @@ SERVICES = pathlib.Path(__file__).resolve().parents[2] / "services"
 BUILD = SERVICES / "docs" / "build.py"
 PAGES = ["index", "first-campaign", "your-vehicle", "your-control-law", "reading-the-report", "cluster", "commands",
          "exit-codes", "schemas", "core/index", "core/campaign_yaml/index", "core/statistics/index", "services/python/index",
-         "services/python/tutorial", "services/python/reference"]
+         "services/python/tutorial/tutorial", "services/python/reference"]
 # What a page makes a browser load.
 LOADS = {("script", "src"), ("img", "src"), ("link", "href"), ("iframe", "src"), ("source", "src"), ("video", "src"),
          ("audio", "src"), ("object", "data"), ("use", "href")}
@@ -96,12 +96,12 @@ class SiteTest(unittest.TestCase):
             self.assertIn(f'id="dispersa-{command}"', text)
 
     def test_the_python_tutorial_is_shown_whole(self):
-        shown = "".join(Page((self.site / "services/python/tutorial.html").read_text()).words)
-        for line in (SERVICES / "python" / "tutorial.py").read_text().splitlines():
+        shown = "".join(Page((self.site / "services/python/tutorial/tutorial.html").read_text()).words)
+        for line in (SERVICES / "python" / "tutorial" / "tutorial.py").read_text().splitlines():
             if not line.startswith("# %%"):
                 words = re.sub("`", "", line.lstrip("# ")) if line.startswith("#") else line
                 self.assertIn("".join(words.split()), shown)
-        self.assertIn("tutorial.html", Page((self.site / "services/python/index.html").read_text()).links)
+        self.assertIn("tutorial/tutorial.html", Page((self.site / "services/python/index.html").read_text()).links)
 
     def test_the_target_is_the_build_folders_docs(self):
         """What README.md names; of a build elsewhere its own."""

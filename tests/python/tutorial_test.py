@@ -13,7 +13,7 @@ import dispersa
 import dispersa.plot
 from program import CAMPAIGNS, SMOKE, folder_of
 
-TUTORIAL = pathlib.Path(os.environ["DISPERSA_PYTHON_SOURCES"]) / "tutorial.py"
+TUTORIAL = pathlib.Path(os.environ["DISPERSA_PYTHON_SOURCES"]) / "tutorial" / "tutorial.py"
 # Where pictures are to be looked at; else they end with the test.
 PICTURES = os.environ.get("DISPERSA_PICTURES")
 
