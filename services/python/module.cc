@@ -27,6 +27,21 @@ namespace py = pybind11;
 namespace dispersa {
 namespace {
 
+// Options of the command line in Python's words.
+std::string InPython(std::string text) {
+  constexpr std::pair<std::string_view, std::string_view> kWords[] = {
+      {"--resume", "resume=True"},     {"--no-histories", "histories=False"},
+      {"--insecure", "insecure=True"}, {"--keys DIR", "keys=DIR"},
+      {"--address ", "address="},      {"--keys", "keys"},
+      {"--metric:", "metrics:"},       {"--out:", "out:"}};
+  for (const auto& [option, argument] : kWords)
+    for (std::size_t at; (at = text.find(option)) != std::string::npos;)
+      text.replace(at, option.size(), argument);
+  return text;
+}
+
+py::str Words(const std::string& text) { return InPython(text); }
+
 void Raise(const char* name, const py::object& argument) {
   const py::object type = py::module_::import("dispersa.errors").attr(name);
   PyErr_SetObject(type.ptr(), argument.ptr());
@@ -48,13 +63,13 @@ void Translate(std::exception_ptr problem) {
   } catch (const InputError& error) {
     Raise("BadInput", ProblemsOf(error.problems()));
   } catch (const ResultError& error) {
-    Raise(error.kind() == ResultError::Kind::kDiskFull ? "Incomplete" : "InternalError", py::str(error.what()));
+    Raise(error.kind() == ResultError::Kind::kDiskFull ? "Incomplete" : "InternalError", Words(error.what()));
   } catch (const PluginError& error) {
     Raise("BadInput", py::str(std::string("the control law ") + error.what()));
   } catch (const ContainedEnd& end) {
     Raise("Incomplete", py::str(std::string("the control law ") + end.what()));
   } catch (const Failure& failure) {
-    Raise(ErrorName(failure.code), py::str(failure.message));
+    Raise(ErrorName(failure.code), Words(failure.message));
   } catch (const Interrupted&) {
     PyErr_SetNone(PyExc_KeyboardInterrupt);
   }
@@ -82,20 +97,6 @@ const char* WorseName(Worse worse) {
 py::tuple Describe(const std::string& name) {
   const MetricInfo info = DescribeMetric(name);
   return py::make_tuple(info.title, info.unit, info.definition, WorseName(info.worse));
-}
-
-}  // namespace
-
-namespace {
-
-// Options of the command line in Python's words.
-std::string InPython(std::string text) {
-  constexpr std::pair<std::string_view, std::string_view> kWords[] = {{"--resume", "resume=True"},
-                                                                      {"--no-histories", "histories=False"}};
-  for (const auto& [option, argument] : kWords)
-    for (std::size_t at; (at = text.find(option)) != std::string::npos;)
-      text.replace(at, option.size(), argument);
-  return text;
 }
 
 }  // namespace

@@ -164,6 +164,10 @@ class Runs(unittest.TestCase):
         for argument in ({"workers": 1}, {"threads": 1}, {"resume": True}, {"histories": False}, {"envelope": 5}):
             with self.assertRaisesRegex(dispersa.BadInput, "has a meaning without `peer` alone"):
                 dispersa.run(SMOKE, self.folder / "never", peer="127.0.0.1", **argument)
+        with self.assertRaisesRegex(dispersa.BadInput, "allowed: keys=DIR .*, address=127.0.0.1 .*, or insecure=True on a network"):
+            dispersa.run(SMOKE, self.folder / "never", peer="198.51.100.1", domain=88)
+        with self.assertRaisesRegex(dispersa.BadInput, "^metrics: 'pitch' is not a metric"):
+            dispersa.compare(self.ours, self.ours, metrics=["pitch"])
         with self.assertRaisesRegex(dispersa.BadInput, "priority: 1001 is out of range, allowed: a whole number from -1000 to 1000"):
             dispersa.run(SMOKE, self.folder / "never", peer="127.0.0.1", priority=1001)
         self.assertFalse((self.folder / "never").exists())
