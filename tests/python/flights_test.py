@@ -91,8 +91,11 @@ class One(unittest.TestCase):
         with self.assertRaisesRegex(dispersa.BadInput, "inputs: 5 is not an input of this vehicle"):
             self.campaign.fly(inputs={5: 1.0})
         for call in (lambda: self.campaign.fly(integrator=None), lambda: self.campaign.fly_many(1, threads=None),
-                     lambda: dispersa.load(SMOKE, autopilot="")):
+                     lambda: dispersa.load(SMOKE, autopilot=""), lambda: self.campaign.fly(law=5),
+                     lambda: self.campaign.fly_many(1, law=5)):
             self.assertRaises(dispersa.BadInput, call)
+        for cases in (numpy.int8(2), numpy.array(2), [0, 1], range(2), (numpy.uint64(i) for i in range(2))):
+            self.assertEqual(self.campaign.fly_many(cases, histories=False).cases.tolist(), [0, 1])
         self.assertEqual(self.campaign.fly(numpy.uint8(3), inputs={"drag_factor": numpy.float32(1.0)}, history=False).case, 3)
         with self.assertRaisesRegex(KeyError, "has no column 'pitch_error'; there is pitch_error_deg"):
             self.campaign.fly().history["pitch_error"]

@@ -156,6 +156,7 @@ class Runs(unittest.TestCase):
         for call in (lambda: self.ours.replay(None), lambda: dispersa.compare(self.ours, self.ours, metrics=[5]),
                      lambda: dispersa.run(SMOKE, self.folder / "never", workers=True),
                      lambda: dispersa.run(SMOKE, self.folder / "never", workers=0, threads=None),
+                     lambda: dispersa.run(SMOKE, self.folder / "never", workers=0, resume="no"),
                      lambda: dispersa.margins(SMOKE, frequency_band_percent="15")):
             self.assertRaises(dispersa.BadInput, call)
         for argument in ({"domain": 1}, {"address": "127.0.0.1"}, {"keys": "keys"}, {"insecure": True}, {"priority": 1}):

@@ -2,6 +2,8 @@
 import math
 import operator
 
+import numpy
+
 from .errors import BadInput
 
 MOST_CASES = 2**32 - 1
@@ -49,3 +51,10 @@ def finite(name, value, least=-math.inf, most=math.inf):
     if not least <= number <= most:
         raise refuse(f"{name}: {number} is out of range", allowed)
     return number
+
+
+def truth(name, value):
+    """True or False, of Python's or NumPy's."""
+    if not isinstance(value, (bool, numpy.bool_)):
+        raise refuse(f"{name}: {value!r} is neither True nor False", "True or False")
+    return bool(value)

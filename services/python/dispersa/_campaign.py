@@ -195,7 +195,7 @@ class Campaign:
         index = None if case is None else self._index(case)
         if not isinstance(integrator, str):
             raise refuse(f"integrator: {integrator!r} is not an integrator", "simpson, erk4 or cvode")
-        values = _core.fly(self._core, index, self._replaced(inputs), _step(step_s) if history else 0.0, integrator, law,
+        values = _core.fly(self._core, index, self._replaced(inputs), _step(step_s) if history else 0.0, integrator, _law(law),
                            _axis_bits(axes))
         rows = values.pop("history")
         return Flight(self, index, values, None if rows is None else History(rows, _core.history_columns()))
@@ -211,14 +211,16 @@ class Campaign:
         remembers in `tick.memory`. Releases the interpreter's lock; Ctrl-C stops it. Returns Flights. Raises BadInput for
         a case or a column that there is not, and what `progress` and the law raise.
         """
-        if isinstance(cases, collections.abc.Iterable) and not isinstance(cases, (str, bytes)):
-            indices = [self._index(case) for case in cases]
+        if cases is None:
+            indices = list(range(self.cases))
+        elif isinstance(cases, (str, bytes)) or not isinstance(cases, collections.abc.Iterable) or as_whole(cases) is not None:
+            indices = list(range(whole("cases", cases, 0, self.cases)))
         else:
-            indices = list(range(self.cases if cases is None else whole("cases", cases, 0, self.cases)))
+            indices = [self._index(case) for case in cases]
         names, positions = column_positions(columns)
         values = _core.fly_many(self._core, indices, _step(step_s) if histories else 0.0, positions,
                                 whole("threads", threads, 0, MOST_THREADS), progress,
-                                law, _axis_bits(axes))
+                                _law(law), _axis_bits(axes))
         return Flights(self, values, names)
 
     def _index(self, case):
@@ -235,6 +237,13 @@ class Campaign:
             if name not in self.input_names:
                 raise refuse(f"inputs: {name!r} is not an input of this vehicle", "a name of Campaign.input_names")
         return {name: finite(f"inputs: {name}", value) for name, value in values.items()}
+
+
+def _law(law):
+    """A control law in Python, or None. Raises BadInput for what cannot be called."""
+    if law is not None and not callable(law):
+        raise refuse(f"law: {law!r} cannot be called", "a function of one argument")
+    return law
 
 
 def _axis_bits(axes):
@@ -257,10 +266,8 @@ def _from_canonical(name, text):
 def under_law(campaign, law, axes=None):
     """(the campaign flown with this control law in Python, its SHA-256). `axes`: default pitch, or those that it was flown
     with. Raises BadInput for one that was flown with another law, or on other axes."""
-    if not callable(law):
-        raise refuse(f"law: {law!r} cannot be called", "a function of one argument")
     bits = None if axes is None else _axis_bits(axes)
-    name, sha256 = identity(law)
+    name, sha256 = identity(_law(law))
     if campaign.python_law is None:
         return Campaign(_core.under_law(campaign._core, _axis_bits("pitch") if bits is None else bits, name, sha256)), sha256
     flown_name, flown_sha256 = campaign.python_law

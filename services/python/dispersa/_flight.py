@@ -1,5 +1,6 @@
 """What was flown: outcomes, inputs, metrics, time histories."""
 import difflib
+import operator
 
 import numpy
 
@@ -125,7 +126,7 @@ class Flights:
     def _position(self, i):
         """Of flight i, those before 0 from the end. Raises IndexError."""
         try:
-            return range(len(self))[i]
+            return range(len(self))[operator.index(i)]
         except IndexError:
             raise IndexError(f"there is no flight {i} of {len(self)}") from None
 

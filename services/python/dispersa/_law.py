@@ -44,7 +44,8 @@ def name_of(law):
     """As a report names it."""
     while isinstance(law, functools.partial):
         law = law.func
-    return getattr(law, "__qualname__", type(law).__qualname__)
+    name = str(getattr(law, "__qualname__", type(law).__qualname__))
+    return name.encode(errors="backslashreplace").decode()
 
 
 def _is_library(module_name):

@@ -8,7 +8,7 @@ import shutil
 import numpy
 
 from . import _core
-from ._arguments import MOST_CASES, MOST_THREADS, finite, refuse, whole, whole_if_given
+from ._arguments import MOST_CASES, MOST_THREADS, finite, refuse, truth, whole, whole_if_given
 from ._source import placed, source
 from ._tables import structured
 from ._campaign import Campaign, _from_canonical, load, under_law
@@ -236,12 +236,12 @@ def run(what, out="", *, cases=None, seed=None, autopilot=None, base=None, worke
     if peer is not None:
         folder = _folder_of(campaign, out)
         code = _core.run_remotely(campaign.name, campaign.canonical_yaml, folder, whole("domain", domain, 0, 99),
-                                  os.fspath(peer), os.fspath(address), os.fspath(keys), bool(insecure),
+                                  os.fspath(peer), os.fspath(address), os.fspath(keys), truth("insecure", insecure),
                                   whole("priority", priority, -1000, 1000), progress)
         problem = None
     else:
         program = "" if workers == 0 else worker_program() or "dispersa-worker"
-        folder, code, problem = _core.run(campaign.name, campaign.canonical_yaml, os.fspath(out), resume,
+        folder, code, problem = _core.run(campaign.name, campaign.canonical_yaml, os.fspath(out), truth("resume", resume),
                                           -1 if workers is None else whole("workers", workers, 0, MOST_THREADS),
                                           whole("threads", threads, 0, MOST_THREADS), program,
                                           whole("envelope", envelope, 1) if histories else None, progress, law, sha256)
