@@ -70,6 +70,7 @@ class Watcher {
     if (!progress_) progress_.emplace(campaign.at("name").get<std::string>(), quiet_);
     const std::string before = std::exchange(state_, campaign.at("state").get<std::string>());
     std::string note = state_;
+    if (!campaign.at("problem").is_null()) note += "; " + campaign.at("problem").get<std::string>();
     for (const Json& standing : campaign.at("requirements")) note += "; " + StandingText(standing);
     // What stands still is said once.
     if (state_ != before || state_ == "flying")

@@ -204,8 +204,8 @@ class CampaignRun {
       return "no worker may fly this campaign: " + *coordinator.refusal();
     }
     // Whoever takes their places would say the same.
-    if (coordinator.IsRefusedByAll(book_.campaign().flight_id)) {
-      return "no worker can fly this campaign: " + coordinator.refusal().value_or("");
+    if (const auto refusal = coordinator.RefusalByAll(book_.campaign().flight_id)) {
+      return "no worker can fly this campaign: " + *refusal;
     }
     if (workers.fruitless_ends() > kFruitlessEndsAllowed) {
       return fmt::format("{} workers ended in a row without a result, the last one with {}",

@@ -49,7 +49,9 @@ class Coordinator {
   std::size_t joined() const { return dispatcher_.joined(); }
   bool Hears() const { return dispatcher_.Hears(now_s_); }
   std::vector<Dispatcher::WorkerView> Workers() const { return dispatcher_.Workers(); }
-  bool IsRefusedByAll(const std::string& flight_id) const { return dispatcher_.IsRefusedByAll(flight_id); }
+  std::optional<std::string> RefusalByAll(const std::string& flight_id) const {
+    return dispatcher_.RefusalByAll(flight_id);
+  }
   const std::optional<std::string>& refusal() const { return dispatcher_.refusal(); }
   const AuditOptions& audit() const { return dispatcher_.audit(); }
   std::uint64_t audits() const { return dispatcher_.audits(); }

@@ -247,19 +247,22 @@ void Dispatcher::On(const std::string& sender, const CampaignRefusal& refusal, d
     return;
   }
   known->second.heard_s = known->second.message_s = now_s;
-  if (!campaign->second.refused_by.insert(refusal.worker).second) return;
+  const std::string reason = Printable(refusal.reason, 1000);
+  if (!campaign->second.refused_by.emplace(refusal.worker, reason).second) return;
   LogError("worker {} refuses the campaign {}: {}", refusal.worker, campaign->second.book->campaign().name,
-           Printable(refusal.reason, 1000));
-  refusal_ = Printable(refusal.reason, 1000);
+           reason);
+  refusal_ = reason;
   campaign->second.book->ledger().Lost(refusal.worker, WorkerEnd::kLeft, *refusal_);
   known->second.ForgetSent(refusal.flight_id);
 }
 
-bool Dispatcher::IsRefusedByAll(const std::string& flight_id) const {
+std::optional<std::string> Dispatcher::RefusalByAll(const std::string& flight_id) const {
   const auto campaign = campaigns_.find(flight_id);
-  if (campaign == campaigns_.end() || workers_.empty()) return false;
-  return std::all_of(workers_.begin(), workers_.end(),
-                     [&](const auto& worker) { return campaign->second.refused_by.contains(worker.first); });
+  if (campaign == campaigns_.end() || workers_.empty()) return std::nullopt;
+  const std::map<std::string, std::string>& refused_by = campaign->second.refused_by;
+  const bool by_all = std::all_of(workers_.begin(), workers_.end(),
+                                  [&](const auto& worker) { return refused_by.contains(worker.first); });
+  return by_all ? std::optional(refused_by.at(workers_.begin()->first)) : std::nullopt;
 }
 
 std::optional<TextPart> Dispatcher::On(const TextRequest& request, std::size_t limit, double now_s) {

@@ -86,8 +86,9 @@ class Dispatcher {
     std::uint64_t flown;
   };
   std::vector<WorkerView> Workers() const;
-  /// Whether every worker that has joined refuses this campaign; false without workers.
-  bool IsRefusedByAll(const std::string& flight_id) const;
+  /// Why no worker can fly this campaign, as one of them says: none while there is one that does not refuse
+  /// it, and without workers.
+  std::optional<std::string> RefusalByAll(const std::string& flight_id) const;
   /// Why a worker was refused or refused a campaign, most recently.
   const std::optional<std::string>& refusal() const { return refusal_; }
   /// Messages that contradicted what is known: of strangers, of other senders than before, of impossible
@@ -101,7 +102,7 @@ class Dispatcher {
   struct OpenCampaign {
     CampaignBook* book = nullptr;
     int priority = 0;
-    std::set<std::string> refused_by;  ///< workers that cannot fly it
+    std::map<std::string, std::string> refused_by;  ///< workers that cannot fly it, and why
     std::vector<std::pair<std::string, std::uint64_t>>
         unstored;  ///< worker, report: acknowledged when stored
   };

@@ -77,7 +77,7 @@ Json ToJson(const CampaignView& view) {
           {"eta_s", view.eta_s ? Json(*view.eta_s) : Json(nullptr)},
           {"priority", entry.priority},
           {"code", HasEnded(entry.state) ? Json(entry.code) : Json(nullptr)},
-          {"problem", entry.problem.empty() ? Json(nullptr) : Json(entry.problem)},
+          {"problem", view.problem.empty() ? Json(nullptr) : Json(view.problem)},
           {"requirements", std::move(standings)}};
 }
 

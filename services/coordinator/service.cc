@@ -253,6 +253,7 @@ CampaignView Service::View(const std::string& id) const {
   CampaignView view;
   const CatalogueEntry& entry = catalogue_.entries().at(id);
   view.entry = &entry;
+  view.problem = entry.problem;
   if (const RunningTally* tally = TallyOf(id); tally != nullptr && !HasEnded(entry.state))
     view.standings = tally->Standings();
   const auto flying = flying_.find(id);
@@ -264,6 +265,8 @@ CampaignView Service::View(const std::string& id) const {
       view.progress.waiting = entry.cases - std::min(entry.cases, entry.done + entry.quarantined);
     return view;
   }
+  if (const auto refusal = coordinator_.RefusalByAll(entry.flight_id))
+    view.problem = "no worker here can fly it: " + *refusal;
   view.progress = flying->second.book->ledger().Progress();
   const auto& past = flying->second.past;
   if (past.size() < 2) return view;

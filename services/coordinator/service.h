@@ -38,6 +38,7 @@ struct CampaignView {
   double rate_per_s = 0.0;
   std::optional<double> eta_s;
   std::vector<RequirementStanding> standings;  ///< until it has ended
+  std::string problem;                         ///< of one that failed, or that no worker here can fly
 };
 
 /// Everything that a client was told survives a restart: a campaign is on the disk before its id is answered.

@@ -593,12 +593,12 @@ TEST_F(PluginTest, WhatIsStoredMustBeWhatWasFlownBefore) {
 
 TEST_F(PluginTest, ACampaignIsRefusedByAllWhenNobodyIsLeft) {
   Open(3);
-  EXPECT_FALSE(dispatcher_.IsRefusedByAll(kFlight));
+  EXPECT_EQ(dispatcher_.RefusalByAll(kFlight), std::nullopt);
   for (const char* worker : {"a", "b"}) Come(worker);
   dispatcher_.On("a", CampaignRefusal{"a", kEpoch, kFlight, "no"}, 0.0);
-  EXPECT_FALSE(dispatcher_.IsRefusedByAll(kFlight));
-  dispatcher_.On("b", CampaignRefusal{"b", kEpoch, kFlight, "no"}, 0.0);
-  EXPECT_TRUE(dispatcher_.IsRefusedByAll(kFlight));
+  EXPECT_EQ(dispatcher_.RefusalByAll(kFlight), std::nullopt);
+  dispatcher_.On("b", CampaignRefusal{"b", kEpoch, kFlight, "neither"}, 0.0);
+  EXPECT_EQ(dispatcher_.RefusalByAll(kFlight), "no");
 }
 
 TEST_F(PluginTest, AContradictionOfAnyCaseRefusesTheCampaign) {

@@ -15,6 +15,7 @@ from service_case import ServiceCase
 SOURCE = pathlib.Path(os.environ["DISPERSA_SOURCE"])
 CASES = 24
 DIFFERS_BY_WORKER = 20
+CRASHES_IN_WORKERS = 27
 REFUSAL = (r"the control law pd_test is not deterministic: of case \d+, flown (by worker \S+|here before the campaign) and again by \S+, "
            r"metric_\w+ is '\S+' once and '\S+' again")
 
@@ -91,6 +92,16 @@ class LawsTest(ServiceCase):
         self.assertEqual(self.status(identity)["state"], "failed")
         self.assertRegex(self.status(identity)["problem"], REFUSAL)
         self.assertFalse((self.fetch(identity) / "report.html").exists())
+
+    def test_a_campaign_that_no_worker_can_fly_says_so(self):
+        _, campaign = self.campaign(CRASHES_IN_WORKERS)
+        self.start_coordinator()
+        self.start_worker()
+        identity = self.dispersa("launch", campaign).strip()
+        wait_for(lambda: self.status(identity)["problem"], "why it does not go on")
+        self.assertRegex(self.status(identity)["problem"],
+                         r"^no worker here can fly it: the control law pd_test cannot fly the nominal flight: it ended by signal 6")
+        self.assertEqual(self.status(identity)["state"], "flying")
 
     def test_a_campaigns_own_coordinator_compares_with_its_own_flights(self):
         _, campaign = self.campaign(DIFFERS_BY_WORKER)
