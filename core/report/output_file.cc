@@ -48,7 +48,9 @@ void OutputFile::OpenTemporary(mode_t mode) {
   temporary_ = target_.string() + ".tmp";
   // What lies there is of a process that was killed, or was put there: a link would lead the writing elsewhere.
   if (unlink(temporary_.c_str()) != 0 && errno != ENOENT) Fail(errno);
-  const int file = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+  // Never wider than what it takes the place of, not even before it holds anything.
+  const int file =
+      open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode != 0 ? mode : 0666);
   if (file < 0) Fail(errno);
   stream_ = fdopen(file, "wb");
   if (mode != 0 && fchmod(file, mode) != 0) Fail(errno);

@@ -64,7 +64,7 @@ ExitCode Run(const RunCommand& options, const GlobalOptions& global) {
   try {
     return Fly(options, OpenCampaign(options.request, StopRequested), global);
   } catch (const NotWanted&) {
-    fmt::print(stderr, "interrupted before the first case\n");
+    Tell("interrupted before the first case\n");
     if (global.json) PrintErrorJson(kExitInterrupted, "interrupted");
     return kExitInterrupted;
   }

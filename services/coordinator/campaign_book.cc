@@ -31,7 +31,9 @@ std::optional<StoppingRule> RuleOf(const Campaign& campaign, const ResultStore& 
   return rule;
 }
 
-std::string By(const std::string& worker) { return worker == kInProcess ? worker : "by " + worker; }
+std::string By(const std::string& worker, const std::string& title = "") {
+  return worker == kInProcess ? worker : "by " + title + worker;
+}
 
 }  // namespace
 
@@ -114,8 +116,7 @@ void CampaignBook::Dispute(Claim claim) {
 }
 
 std::string CampaignBook::FlownBy(std::uint64_t case_index) const {
-  const std::string worker = store_->WorkerOf(case_index).value_or("another");
-  return worker == kInProcess ? worker : "by worker " + worker;
+  return By(store_->WorkerOf(case_index).value_or("another"), "worker ");
 }
 
 void CampaignBook::Refuse(std::uint64_t case_index, const std::string& once, const std::string& again,

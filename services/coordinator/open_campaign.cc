@@ -40,7 +40,7 @@ bool IsStillborn(const fs::path& directory) {
   return std::all_of(fs::directory_iterator(directory), fs::directory_iterator(), IsOfAStillbornStart);
 }
 
-// A law of some hours a flight takes as long here.
+// After that it is said what takes so long.
 constexpr double kPatience_s = 2.0;
 
 std::vector<CaseResult> Check(const Campaign& campaign, const Unwanted& unwanted) {
