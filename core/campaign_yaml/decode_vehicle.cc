@@ -586,6 +586,9 @@ Vehicle DecodeVehicle(const InputNode& node, const std::string& path, std::vecto
     });
     if (const InputNode* boosters = map.Optional("boosters"))
       vehicle.boosters = DecodeBoosters(*boosters, map.PathOf("boosters"), problems);
+    // They have left before the first stage burns again.
+    for (std::size_t i = 1; i < vehicle.stages.size() && vehicle.stages[i].restarts; ++i)
+      vehicle.stages[i].liftoff_mass_kg -= vehicle.boosters.LiftOffMass();
     map.Each("profile", 1, SIZE_MAX, [&](const InputNode& item, const std::string& item_path) {
       vehicle.profile.push_back(DecodeProfileSection(item, item_path, problems));
     });

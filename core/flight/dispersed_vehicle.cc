@@ -54,7 +54,7 @@ Vehicle WithDispersedMasses(const Vehicle& vehicle, const FlightInputs& in) {
     const Stage& at_last = vehicle.stages[static_cast<std::size_t>(LastBurn(vehicle, static_cast<int>(i)))];
     for (const Jettison& jettison : at_last.jettisoned) own_kg += jettison.mass_kg;
     const Boosters& boosters = vehicle.boosters;
-    if (i == 0) own_kg += boosters.count * (boosters.dry_mass_kg + boosters.propellant_mass_kg);
+    if (i == 0) own_kg += boosters.LiftOffMass();
     stage.liftoff_mass_kg = above_kg + own_kg;
     if (!stage.restarts) above_kg = stage.liftoff_mass_kg;
   }

@@ -75,7 +75,7 @@ double DryMass(const Vehicle& vehicle, int stage) {
   double dry = stages[i].liftoff_mass_kg - above - stages[i].propellant_mass_kg;
   for (const Jettison& jettison : stages[i].jettisoned) dry -= jettison.mass_kg;
   const Boosters& boosters = vehicle.boosters;
-  if (i == 0) dry -= boosters.count * (boosters.dry_mass_kg + boosters.propellant_mass_kg);
+  if (i == 0) dry -= boosters.LiftOffMass();
   return dry;
 }
 
@@ -156,13 +156,6 @@ std::vector<StackMass> BuildStackMasses(const Vehicle& vehicle) {
              0.5 * g.inner_diameter_m},
             stack);
     }
-    if (lowest == 0 && vehicle.boosters.count > 0) {
-      const JettisonedMass empty = BuildBoosterMass(vehicle.boosters);
-      stack.fixed_mass_kg += empty.mass_kg;
-      stack.fixed_first_moment_kg_m += empty.first_moment_kg_m;
-      stack.fixed_second_moment_kg_m2 += empty.second_moment_kg_m2;
-      stack.fixed_axial_inertia_kg_m2 += empty.axial_inertia_kg_m2;
-    }
     const Stage& burning = vehicle.stages[static_cast<std::size_t>(lowest)];
     stack.propellant_mass_kg = burning.propellant_mass_kg;
     if (burning.is_liquid()) {
@@ -174,6 +167,14 @@ std::vector<StackMass> BuildStackMasses(const Vehicle& vehicle) {
     stack.grain_length_m = burning.grain.bottom_station_m - burning.grain.top_station_m;
     stack.grain_outer_radius_m = 0.5 * burning.grain.outer_diameter_m;
     stack.grain_density_kg_m3 = PropellantDensity(burning);
+  }
+  // After its restarts were copied: boosters have left before the first stage burns again.
+  if (vehicle.boosters.count > 0) {
+    const JettisonedMass empty = BuildBoosterMass(vehicle.boosters);
+    stacks[0].fixed_mass_kg += empty.mass_kg;
+    stacks[0].fixed_first_moment_kg_m += empty.first_moment_kg_m;
+    stacks[0].fixed_second_moment_kg_m2 += empty.second_moment_kg_m2;
+    stacks[0].fixed_axial_inertia_kg_m2 += empty.axial_inertia_kg_m2;
   }
   return stacks;
 }

@@ -198,6 +198,9 @@ struct Boosters {
   Motor motor;                      ///< of one
   Grain grain;                      ///< of one, about its own axis
   double separation_delay_s = 0.0;  ///< after burnout is detected
+
+  /// Of all of them, with their propellant.
+  double LiftOffMass() const { return count * (dry_mass_kg + propellant_mass_kg); }
 };
 /// Boosters at most.
 inline constexpr int kMaxBoosters = 8;

@@ -59,7 +59,7 @@ std::vector<StageFigures> FiguresOf(const Vehicle& vehicle) {
     const Stage& stage = vehicle.stages[i];
     const MotorBurn burn = BuildBurn(stage, 1.0, 1.0);
     const Boosters& beside = vehicle.boosters;
-    const double beside_kg = i == 0 ? beside.count * (beside.dry_mass_kg + beside.propellant_mass_kg) : 0.0;
+    const double beside_kg = i == 0 ? beside.LiftOffMass() : 0.0;
     const double empty_kg = stage.liftoff_mass_kg - stage.propellant_mass_kg - beside_kg;
     const double burnt_kg = stage.propellant_mass_kg - burn.left_kg;
     StageFigures one;

@@ -29,6 +29,35 @@ TEST(BoostersFile, AreRead) {
   EXPECT_NEAR(DryMass(vehicle, 0), 500.0 - 160.0, 1e-9);
 }
 
+// Electron with two boosters, and a first stage that is cut off and burns again without them.
+TEST(BoostersFile, AreGoneWhenTheFirstStageBurnsAgain) {
+  const InputFiles files;
+  files.Write("electron.yaml", ReadWholeFile(DISPERSA_CAMPAIGNS "/gallery/electron/vehicle.yaml"));
+  constexpr double kBoosters_kg = 2.0 * (100.0 + 800.0), kElectron_kg = 12744.0, kBurn_s = 100.0;
+  files.Edit("electron.yaml", "liftoff_mass_kg: 12744 ", "liftoff_mass_kg: 14544 ");
+  files.Edit("electron.yaml",
+             "        throttle: {time_s: [0, 28, 36, 85, 95, 156], level_percent: [100, 100, 70, 70, 86, 70]}\n",
+             "        cut_off: {at: time, after_s: 100}\n");
+  files.Edit("electron.yaml", "  - name: stage2\n",
+             "  - {restarts: true, name: again, ignition: {trigger: burnout_detection, delay_s: 5}}\n  - name: stage2\n");
+  files.Edit("electron.yaml", "\nreaction_control:",
+             "\nboosters: {count: 2, dry_mass_kg: 100, propellant_mass_kg: 800, radius_m: 0.9, diameter_m: 0.6, "
+             "top_station_m: 11, bottom_station_m: 16, nozzle_station_m: 15.9, motor: {thrust_kn: 60, "
+             "burning_time_s: 35}, grain: {top_station_m: 12, bottom_station_m: 14.5, outer_diameter_m: 0.58, "
+             "inner_diameter_m: 0.1}}\nreaction_control:");
+  const Vehicle vehicle = LoadVehicle(files.Path("electron.yaml"));
+  ASSERT_EQ(vehicle.stages.size(), 3u);
+  const double full_kg = 9250.0, burnt_kg = 224e3 / (311.0 * kStandardGravity) * kBurn_s;
+  EXPECT_NEAR(vehicle.stages[1].liftoff_mass_kg, kElectron_kg - burnt_kg, 1e-6);
+  EXPECT_NEAR(DryMass(vehicle, 0), kElectron_kg - 2544.0 - full_kg, 1e-9);
+  EXPECT_NEAR(DryMass(vehicle, 1), DryMass(vehicle, 0), 1e-6);
+  const std::vector<StackMass> stacks = BuildStackMasses(vehicle);  // boosters empty
+  EXPECT_NEAR(stacks[0].At(full_kg).mass_kg, kElectron_kg + kBoosters_kg - 2.0 * 800.0, 1e-6);
+  EXPECT_NEAR(stacks[1].At(full_kg - burnt_kg).mass_kg, kElectron_kg - burnt_kg, 1e-6);
+  // Structure of the bare launcher: tubes at their own places, no boosters' share among them.
+  EXPECT_NEAR(stacks[1].fixed_mass_kg, kElectron_kg - full_kg, 1e-6);
+}
+
 TEST(BoostersFile, ReadThrustCurvesAndStandInTheId) {
   const InputFiles files;
   files.Edit("vehicle.yaml", kAfter, kBoosters);
