@@ -484,9 +484,9 @@ void Fleet<T>::Steer(int lane, int stage) {
   const Steering& steering = flight.program->steering[i];
   flight.steer_from_s = flight.ignition_s;
   flight.steer_rad = steering.begin_rad;
-  // To depletion, whenever it is cut off.
-  const double whole_s = model_.plant.stacks[i].burn.duration_s;
-  flight.steer_rad_s = steering.empty() ? 0.0 : (steering.end_rad - steering.begin_rad) / whole_s;
+  // To depletion of what the burn before left, whenever it is cut off. Nothing left is no burn.
+  const double whole_s = flight.burns[i].duration_s;
+  flight.steer_rad_s = steering.empty() || whole_s == 0.0 ? 0.0 : (steering.end_rad - steering.begin_rad) / whole_s;
 }
 
 template <class T>

@@ -285,5 +285,37 @@ TEST(Steering, IsTheIncidenceOfTheBurn) {
   EXPECT_NEAR(MetricOf(flown, "injection_altitude_km"), 1e-3 * steered.orbit.altitude_m, 2.0);
 }
 
+// A burn after a cut-off at a velocity: how long it can last is known only when the burn before has ended.
+TEST(Steering, OfARestartIsOverWhatTheBurnBeforeLeft) {
+  const Vehicle vehicle = CutAtVelocity(6300.0);
+  FlightProgram program = Program();
+  const double begin_rad = 3.0 * kRadPerDeg, end_rad = 1.0 * kRadPerDeg;
+  program.steering[kSecondBurn] = {begin_rad, end_rad};
+  const AscentResult steered = Ascend(vehicle, program);
+  ASSERT_TRUE(steered.completed);
+  const double first_s = steered.cut_off_s[kFirstBurn];
+  const double whole_s = vehicle.stages[kFirstBurn].motor.burning_time_s - first_s;
+  ASSERT_GT(whole_s, 10.0);
+  int seen = 0;
+  for (const AscentSample& s : steered.samples) {
+    ASSERT_TRUE(std::isfinite(s.alpha_rad)) << s.time_s;
+    const double since_s = s.time_s - steered.last_ignition_s;
+    if (s.stage != 5 || since_s <= 0.0) continue;
+    const double x = std::min(since_s / kSteeringRise_s, 1.0), risen = x * x * x * (10.0 - 15.0 * x + 6.0 * x * x);
+    EXPECT_NEAR(s.alpha_rad, risen * (begin_rad + since_s / whole_s * (end_rad - begin_rad)), 1e-6) << since_s;
+    ++seen;
+  }
+  EXPECT_GT(seen, 10);
+}
+
+// Nothing is left to burn: nothing is steered.
+TEST(Steering, OfARestartWithoutPropellantIsNone) {
+  FlightProgram program = Program();
+  program.steering[kSecondBurn] = {0.05, 0.02};
+  const AscentResult depleted = Ascend(CutAtVelocity(20e3), program);
+  ASSERT_TRUE(depleted.completed);
+  for (const AscentSample& s : depleted.samples) ASSERT_TRUE(std::isfinite(s.alpha_rad)) << s.time_s;
+}
+
 }  // namespace
 }  // namespace dispersa::restart_flight_test
