@@ -93,7 +93,7 @@ FlightProgram DecodeProgram(const InputNode& node, const std::string& path, doub
   program.t2_s = map.Quantity("t2", kTime, kNonNegative);
   program.coast_s = map.Quantity("coast", kTime, kNonNegative);
   program.launch_azimuth_rad = map.Quantity("launch_azimuth", kAngle, kAzimuth);
-  *last_ignition_s = map.Quantity("last_ignition", kTime, kPositive);
+  *last_ignition_s = map.Quantity("last_ignition", kTime, kNonNegative);  // 0: a single stage's, at lift-off
   for (std::size_t stage = 1; stage < kMaxStages; ++stage) {
     if (map.Has(SteeringStem(stage, "begin"), kAngle) || map.Has(SteeringStem(stage, "end"), kAngle))
       program.steering[stage] = {map.Quantity(SteeringStem(stage, "begin"), kAngle, kSteered),

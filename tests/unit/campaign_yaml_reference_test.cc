@@ -124,6 +124,12 @@ TEST(CampaignYamlReference, KeepsEveryField) {
   EXPECT_EQ(read.attitude.launch_azimuth_rad, read.program.launch_azimuth_rad);
 }
 
+TEST(CampaignYamlReference, OfASingleStageIgnitesAtLiftOff) {
+  Reference original = RandomReference();
+  original.last_ignition_s = 0.0;
+  EXPECT_EQ(ReadReference(WriteReference(original), "reference.yaml").last_ignition_s, 0.0);
+}
+
 TEST(CampaignYamlReference, KeepsWhatATargetAndCoastsHaveBesides) {
   Reference original = RandomReference();
   TrajectoryProblem& problem = original.problem;
