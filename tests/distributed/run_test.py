@@ -17,7 +17,7 @@ import unittest
 from processes import (BINARIES, CAMPAIGN, ISOLATED, PATIENCE_S, Run, is_running, main, parent_and_name,
                        shared_memory_segments, stored, wait_for)
 
-FLYING_S = 3.0   # of one core for a campaign of these tests: long enough to be killed half-way
+FLYING_S = 2.0   # of one core for a campaign of these tests: long enough to be killed half-way
 
 
 class RunTest(unittest.TestCase):
