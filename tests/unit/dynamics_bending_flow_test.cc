@@ -1,0 +1,277 @@
+// Air on a body that bends, and what its sections carry by bending: against rigid motions that modes can stand for,
+// virtual work, and the balance of masses on a line.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/unit/made_up_bending.h"
+
+namespace dispersa::dynamics_bending_flow_test {
+namespace {
+
+using lanes::Bending;
+using lanes::BendingState;
+using lanes::FlowForce;
+using lanes::ModalForce;
+using lanes::NormalForce;
+using lanes::Sections;
+
+constexpr double kCg_m = 11.0, kXcp_m = 8.0, kSpeed_m_s = 400.0, kSlope_n = 6e5;
+
+// The body's incidence: the flow across it over the flow along it, along y and along z.
+struct Incidence {
+  double y, z;
+};
+
+// A normal force in proportion to the incidence, at the centre of pressure, with its moment about C.
+FlowForce<double> LinearAir(Incidence at) {
+  const double size = std::hypot(at.y, at.z);
+  FlowForce<double> flow{};
+  flow.normal = {kSlope_n * size, kSlope_n, kXcp_m, size > 0.0 ? at.y / size : 0.0, size > 0.0 ? at.z / size : 0.0,
+                 kSpeed_m_s};
+  flow.force_n = {-1e4, -kSlope_n * at.y, -kSlope_n * at.z};
+  // The arm of the force is (cg - xcp) along x.
+  flow.moment_n_m = {0.0, (kXcp_m - kCg_m) * flow.force_n.z, -(kXcp_m - kCg_m) * flow.force_n.y};
+  return flow;
+}
+
+Sections<double> BodySections() {
+  static const LoadTable loads = MadeUpLoads();
+  Sections<double> body{};
+  lanes::SetLane(body, 0, &loads);
+  return body;
+}
+
+// Modes that are no bending: the body moved aside, and turned about its centre of gravity.
+std::vector<std::vector<MadeUpMode>> RigidMotions() {
+  const MadeUpMode aside{{1.0, 0.0, 0.0, 0.0}}, turned{{-kCg_m, 1.0, 0.0, 0.0}};
+  return {{aside, turned}};
+}
+
+constexpr double kSmall_n = 1e-8;  // rounding of forces of 1e5 N on arms of 20 m
+
+// A body that moves aside meets the flow at its speed over the airspeed; one that is turned, at its turn.
+TEST(BendingFlow, OfARigidMotionIsTheFlowOfTheMovedBody) {
+  const BendingTable table = MadeUpTable(RigidMotions());
+  const Bending<double> bending = BendingOf(table, 0.0);
+  BendingState<double> s{};
+  s.rate_m_s[0][0] = 3.0;   // towards +y
+  s.rate_m_s[1][0] = -2.0;  // towards -z
+  s.q_m[0][1] = 0.01;       // nose to the left: the flow comes from the right
+  s.q_m[1][1] = -0.02;      // nose down: the flow comes from above
+  s.q_m[0][0] = s.q_m[1][0] = 5.0;  // being elsewhere changes nothing
+  const Incidence straight{0.02, 0.05};
+  const Incidence moved{straight.y + 3.0 / kSpeed_m_s + 0.01, straight.z - 2.0 / kSpeed_m_s - 0.02};
+  FlowForce<double> flow = LinearAir(straight);
+  ModalForce<double> driven{};
+  lanes::BendFlow(bending, s, BodySections(), kCg_m, flow, driven);
+  const FlowForce<double> expected = LinearAir(moved);
+  EXPECT_EQ(flow.force_n.x, -1e4);
+  EXPECT_NEAR(flow.force_n.y, expected.force_n.y, kSmall_n);
+  EXPECT_NEAR(flow.force_n.z, expected.force_n.z, kSmall_n);
+  EXPECT_NEAR(flow.moment_n_m.y, expected.moment_n_m.y, kSmall_n);
+  EXPECT_NEAR(flow.moment_n_m.z, expected.moment_n_m.z, kSmall_n);
+  EXPECT_EQ(flow.moment_n_m.x, 0.0);
+  // Virtual work: of the whole force for a metre aside, of the whole moment for a radian. Turning by +1 is about +y in
+  // plane z, and about -z in plane y.
+  EXPECT_NEAR(driven.drive_m_s2[0][0], expected.force_n.y, kSmall_n);
+  EXPECT_NEAR(driven.drive_m_s2[1][0], expected.force_n.z, kSmall_n);
+  EXPECT_NEAR(driven.drive_m_s2[0][1], -expected.moment_n_m.z, kSmall_n);
+  EXPECT_NEAR(driven.drive_m_s2[1][1], expected.moment_n_m.y, kSmall_n);
+}
+
+// A turning body's strips meet the flow at the speed of their places.
+TEST(BendingFlow, OfATurningBodyIsThatOfEachPlacesSpeed) {
+  const BendingTable table = MadeUpTable(RigidMotions());
+  const Bending<double> bending = BendingOf(table, 0.0);
+  const Sections<double> body = BodySections();
+  for (int plane = 0; plane < kPlanes; ++plane) {
+    BendingState<double> s{};
+    s.rate_m_s[plane][1] = 0.3;
+    const lanes::StripForces<double> forces = lanes::ForcesByBending(bending, s, body, LinearAir({0.0, 0.0}).normal);
+    double shares = 0.0;
+    for (int strip = 0; strip < kStrips; ++strip) {
+      const double share = body.Share(strip, kXcp_m), place_m = 1.25 + 2.5 * strip;
+      const double force = -kSlope_n * share * 0.3 * (place_m - kCg_m) / kSpeed_m_s;
+      EXPECT_NEAR(plane == 0 ? forces.y_n[strip] : forces.z_n[strip], force, kSmall_n) << strip;
+      EXPECT_EQ(plane == 0 ? forces.z_n[strip] : forces.y_n[strip], 0.0) << strip;
+      shares += share;
+    }
+    EXPECT_NEAR(shares, 1.0, 1e-14);
+  }
+}
+
+// A bent body's forces do work on each mode by their places.
+TEST(BendingFlow, DrivesEachModeByTheWorkOfItsStrips) {
+  const BendingTable table = MadeUpTable(TwoPlanes());
+  const Bending<double> bending = BendingOf(table, 0.0);
+  const Sections<double> body = BodySections();
+  const Incidence straight{-0.03, 0.04};
+  BendingState<double> s{};
+  for (int plane = 0; plane < kPlanes; ++plane)
+    for (int mode = 0; mode < 2; ++mode) {
+      s.q_m[plane][mode] = 0.02 - 0.03 * mode + 0.01 * plane;
+      s.rate_m_s[plane][mode] = 2.0 * mode - 0.5 * plane - 0.7;
+    }
+  FlowForce<double> flow = LinearAir(straight);
+  ModalForce<double> driven{};
+  driven.drive_m_s2[1][1] = 1e3;  // is added to
+  lanes::BendFlow(bending, s, body, kCg_m, flow, driven);
+  double force[kPlanes] = {}, work[kPlanes][2] = {};
+  for (std::size_t plane = 0; plane < kPlanes; ++plane) {
+    const std::vector<MadeUpMode> modes = TwoPlanes()[plane];
+    for (int strip = 0; strip < kStrips; ++strip) {
+      const double place_m = 1.25 + 2.5 * strip;
+      double incidence = plane == 0 ? straight.y : straight.z;
+      for (std::size_t mode = 0; mode < 2; ++mode)
+        incidence += s.q_m[plane][mode] * modes[mode].Slope(place_m) +
+                     s.rate_m_s[plane][mode] * modes[mode].Deflection(place_m) / kSpeed_m_s;
+      const double here_n = -kSlope_n * body.Share(strip, kXcp_m) * incidence;
+      force[plane] += here_n;
+      for (std::size_t mode = 0; mode < 2; ++mode) work[plane][mode] += here_n * modes[mode].Deflection(place_m);
+    }
+  }
+  EXPECT_NEAR(flow.force_n.y, force[0], kSmall_n);
+  EXPECT_NEAR(flow.force_n.z, force[1], kSmall_n);
+  EXPECT_NEAR(driven.drive_m_s2[0][0], work[0][0], kSmall_n);
+  EXPECT_NEAR(driven.drive_m_s2[0][1], work[0][1], kSmall_n);
+  EXPECT_NEAR(driven.drive_m_s2[1][0], work[1][0], kSmall_n);
+  EXPECT_NEAR(driven.drive_m_s2[1][1], 1e3 + work[1][1], kSmall_n);
+}
+
+TEST(BendingFlow, InVacuumIsNothingHoweverTheBodyRings) {
+  const BendingTable table = MadeUpTable(TwoPlanes());
+  const Bending<double> bending = BendingOf(table, 0.0);
+  BendingState<double> s{};
+  s.q_m[0][0] = s.q_m[1][1] = 0.1;
+  s.rate_m_s[0][1] = s.rate_m_s[1][0] = 5.0;
+  for (const double airspeed_m_s : {0.0, 7000.0}) {
+    FlowForce<double> flow{};
+    flow.normal.airspeed_m_s = airspeed_m_s;
+    ModalForce<double> driven{};
+    lanes::BendFlow(bending, s, BodySections(), kCg_m, flow, driven);
+    for (const double value : {flow.force_n.y, flow.force_n.z, flow.moment_n_m.y, flow.moment_n_m.z,
+                               driven.drive_m_s2[0][0], driven.drive_m_s2[0][1], driven.drive_m_s2[1][0],
+                               driven.drive_m_s2[1][1]})
+      EXPECT_EQ(value, 0.0) << airspeed_m_s;
+  }
+}
+
+// A section carries what the masses ahead of it take to be accelerated by the modes, less the flow's forces there.
+TEST(BendingSections, CarryTheMassesAheadLessTheirAir) {
+  const BendingTable table = MadeUpTable(TwoPlanes());
+  constexpr double kDamping = 0.04;
+  const Bending<double> bending = BendingOf(table, 0.0, kDamping);
+  const Sections<double> body = BodySections();
+  BendingState<double> s{};
+  ModalForce<double> driven{};
+  for (int plane = 0; plane < kPlanes; ++plane)
+    for (int mode = 0; mode < 2; ++mode) {
+      s.q_m[plane][mode] = 0.01 * (1 + mode) * (plane == 0 ? 1.0 : -1.0);
+      s.rate_m_s[plane][mode] = 0.3 - 0.4 * mode + 0.2 * plane;
+      driven.drive_m_s2[plane][mode] = 4.0 + 3.0 * mode - 5.0 * plane;
+    }
+  for (const bool in_air : {false, true}) {
+    NormalForce<double> air{};
+    if (in_air) air = LinearAir({0.02, -0.01}).normal;
+    const lanes::StripForces<double> forces = lanes::ForcesByBending(bending, s, body, air);
+    const lanes::SectionMoments<double> moments = lanes::MomentsByBending(bending, s, driven, body, air);
+    for (std::size_t plane = 0; plane < kPlanes; ++plane) {
+      double acceleration[2];
+      for (std::size_t mode = 0; mode < 2; ++mode) {
+        const double w = TwoPlanes()[plane][mode].frequency_rad_s;
+        acceleration[mode] = driven.drive_m_s2[plane][mode] - 2.0 * kDamping * w * s.rate_m_s[plane][mode] -
+                             w * w * s.q_m[plane][mode];
+      }
+      for (int station = 0; station < kLoadStations; ++station) {
+        const double at_m = 2.5 * (station + 1);
+        double carried = 0.0;
+        for (int strip = 0; strip <= station; ++strip) {
+          const double place_m = 1.25 + 2.5 * strip;
+          double force = -(plane == 0 ? forces.y_n[strip] : forces.z_n[strip]);
+          for (std::size_t mode = 0; mode < 2; ++mode)
+            force += BodyMass(static_cast<std::size_t>(strip)) * acceleration[mode] *
+                     TwoPlanes()[plane][mode].Deflection(place_m);
+          carried += force * (at_m - place_m);
+        }
+        EXPECT_NEAR(plane == 0 ? moments.y_n_m[station] : moments.z_n_m[station], carried, 1e-7)  // of 1e5 N m
+            << "plane " << plane << ", station " << station << (in_air ? ", in air" : ", in vacuum");
+      }
+    }
+  }
+}
+
+// All that bending says of a body, in body axes.
+struct Everything {
+  lanes::Bent<double> pivot;
+  lanes::Vector<double> unit, unit_rate, gyro_rate;
+  FlowForce<double> flow;
+  ModalForce<double> drive;
+  BendingState<double> later;
+  lanes::SectionMoments<double> sections;
+};
+Everything Of(const Bending<double>& b, const BendingState<double>& s, Incidence at, lanes::Vector<double> force,
+              lanes::Vector<double> couple) {
+  const Sections<double> body = BodySections();
+  Everything o{};
+  o.pivot = lanes::BentAtPivot(b, s);
+  o.unit = lanes::UnitTurn(b, s);
+  o.unit_rate = lanes::TurnRate(b, s, -1);
+  o.gyro_rate = lanes::TurnRate(b, s, 1);
+  o.flow = LinearAir(at);
+  lanes::BendFlow(b, s, body, kCg_m, o.flow, o.drive);
+  lanes::DriveAtPivot(b, force, couple, o.drive);
+  lanes::FinishDrive(b, s, 2e5, o.drive);
+  o.sections = lanes::MomentsByBending(b, s, o.drive, body, LinearAir(at).normal);
+  o.later = lanes::Swung(b, lanes::SwingOver(b, 0.02), s, o.drive, {}, {});
+  return o;
+}
+
+// A quarter turn about x takes y to z and z to -y. What is seen from the turned axes is turned, and else the same.
+TEST(BendingPlanes, AreOneAnotherTurnedByAQuarterAboutX) {
+  const BendingTable table = MadeUpTable({TwoPlanes()[0]});
+  const Bending<double> b = BendingOf(table, 0.0, 0.01);
+  BendingState<double> s{}, turned{};
+  for (int mode = 0; mode < 2; ++mode) {
+    s.q_m[0][mode] = 0.02 - 0.03 * mode;
+    s.q_m[1][mode] = 0.01 + 0.04 * mode;
+    s.rate_m_s[0][mode] = 0.5 + mode;
+    s.rate_m_s[1][mode] = -0.8 + 0.3 * mode;
+    turned.q_m[1][mode] = s.q_m[0][mode];
+    turned.q_m[0][mode] = -s.q_m[1][mode];
+    turned.rate_m_s[1][mode] = s.rate_m_s[0][mode];
+    turned.rate_m_s[0][mode] = -s.rate_m_s[1][mode];
+  }
+  const auto turn = [](lanes::Vector<double> v) { return lanes::Vector<double>{v.x, -v.z, v.y}; };
+  const lanes::Vector<double> force{1e5, 800.0, -300.0}, couple{10.0, 70.0, 250.0};
+  const Everything before = Of(b, s, {0.02, 0.05}, force, couple);
+  const Everything after = Of(b, turned, {-0.05, 0.02}, turn(force), turn(couple));
+  const auto expect_turned = [&](lanes::Vector<double> from, lanes::Vector<double> to, double tolerance,
+                                 const char* what) {
+    EXPECT_NEAR(to.x, from.x, tolerance) << what;
+    EXPECT_NEAR(to.y, -from.z, tolerance) << what;
+    EXPECT_NEAR(to.z, from.y, tolerance) << what;
+  };
+  constexpr double kRounding = 1e-13;
+  expect_turned({0.0, before.pivot.y_m, before.pivot.z_m}, {0.0, after.pivot.y_m, after.pivot.z_m}, kRounding, "moved");
+  expect_turned({0.0, before.pivot.about_y_rad, before.pivot.about_z_rad},
+                {0.0, after.pivot.about_y_rad, after.pivot.about_z_rad}, kRounding, "turned");
+  expect_turned(before.unit, after.unit, kRounding, "unit");
+  expect_turned(before.unit_rate, after.unit_rate, kRounding, "unit's rate");
+  expect_turned(before.gyro_rate, after.gyro_rate, kRounding, "gyro's rate");
+  expect_turned(before.flow.force_n, after.flow.force_n, kSmall_n, "force");
+  expect_turned(before.flow.moment_n_m, after.flow.moment_n_m, kSmall_n, "moment");
+  for (int mode = 0; mode < 2; ++mode) {
+    EXPECT_NEAR(after.drive.drive_m_s2[1][mode], before.drive.drive_m_s2[0][mode], kSmall_n);
+    EXPECT_NEAR(after.drive.drive_m_s2[0][mode], -before.drive.drive_m_s2[1][mode], kSmall_n);
+    EXPECT_NEAR(after.later.q_m[1][mode], before.later.q_m[0][mode], kRounding);
+    EXPECT_NEAR(after.later.q_m[0][mode], -before.later.q_m[1][mode], kRounding);
+  }
+  for (int i = 0; i < kLoadStations; ++i) {
+    EXPECT_NEAR(after.sections.z_n_m[i], before.sections.y_n_m[i], 1e-7);
+    EXPECT_NEAR(after.sections.y_n_m[i], -before.sections.z_n_m[i], 1e-7);
+  }
+}
+
+}  // namespace
+}  // namespace dispersa::dynamics_bending_flow_test
