@@ -94,6 +94,21 @@ TEST(ImpactPoints, ALostFlightFallsFromItsEnd) {
   EXPECT_GT(points[1].impact->time_s, result.end_time_s);
   EXPECT_GT(points[1].impact->peak_altitude_m, points[1].from_altitude_m);
   EXPECT_NEAR(points[1].impact->place.altitude_m, 0.0, 1e-5);
+
+  // What falls is the stack as heavy as it was then, from where the flight ended.
+  TickSample last;
+  FlightOptions options;
+  options.case_index = 2;
+  options.observe = [&](const TickSample& sample) { last = sample; };
+  const FlightResult again = dispersa::Fly(flights.model(), flights.Draw(2), options);
+  const Stage& second = campaign.vehicle.stages[1];
+  const auto expected = Fall(flights.model().PlantFor(flights.Draw(2)).environment,
+                             {last.instant.loads.mass_kg,
+                              TumblingCylinderDragArea(second.bottom_station_m, second.diameter_m)},
+                             {again.end_time_s, again.end_state.p_EoC_I, again.end_state.v_IC_I});
+  ASSERT_TRUE(expected);
+  // Within a tick it burns a ten-thousandth of its mass.
+  EXPECT_LT(Distance(points[1].impact->place, expected->place), 20.0);
 }
 
 TEST(ImpactPoints, AreTheSameForAnyNumberOfThreads) {
