@@ -12,6 +12,7 @@
 
 #include "core/flight/lane_engine.h"
 #include "core/random/draws.h"
+#include "tests/flexible_guided.h"
 #include "tests/liquid_stage.h"
 #include "tests/slv4_flight.h"
 
@@ -286,28 +287,22 @@ TEST_P(FlightRecords, AreNotTouchedOnceDone) {
 
 INSTANTIATE_TEST_SUITE_P(OpenLoopAndGuided, FlightRecords, testing::Bool());
 
-class FlightLanes : public testing::TestWithParam<const char*> {};
-
-TEST_P(FlightLanes, AreTheFlightsAlone) {
-  constexpr std::uint64_t kFlights = 12;
-  std::string law = GetParam();
-  const bool guided = law.starts_with("guided_");
-  if (guided) law = law.substr(7);
-  const FlightModel model(Definition(law, law != "pd", guided));
-  std::vector<std::uint64_t> order(kFlights);
+// Each of the flights 0, 1, ... alone in one lane, and then together in every engine.
+void ExpectTheFlightsAlone(const FlightModel& model, std::uint64_t flights) {
+  std::vector<std::uint64_t> order(flights);
   std::iota(order.begin(), order.end(), 0);
 
   Queue alone(model, order);
-  for (std::uint64_t flight = 0; flight < kFlights; ++flight) {
+  for (std::uint64_t flight = 0; flight < flights; ++flight) {
     Queue one(model, {flight});
-    one.flown.resize(kFlights);
+    one.flown.resize(flights);
     OneLaneEngine().fly(model, one);
     alone.flown[flight] = std::move(one.flown[flight]);
   }
   std::size_t completed = 0, lost = 0;
   for (const Queue::Flown& one : alone.flown)
     (one.result.outcome == Outcome::kCompleted ? completed : lost) += 1;
-  EXPECT_GT(completed, kFlights / 3) << "lanes are to be filled anew as flights end at different times";
+  EXPECT_GT(completed, flights / 3) << "lanes are to be filled anew as flights end at different times";
 
   for (const LaneEngine& engine : UsableEngines()) {
     for (const bool reversed : {false, true}) {
@@ -315,7 +310,7 @@ TEST_P(FlightLanes, AreTheFlightsAlone) {
       if (reversed) std::reverse(turned.begin(), turned.end());
       Queue together(model, turned);
       engine.fly(model, together);
-      for (std::uint64_t k = 0; k < kFlights; ++k) {
+      for (std::uint64_t k = 0; k < flights; ++k) {
         const FlightResult &a = alone.flown[k].result, &b = together.flown[k].result;
         ASSERT_EQ(a.digest, b.digest) << engine.isa << " " << engine.lanes << " lanes, flight " << k;
         EXPECT_EQ(a.outcome, b.outcome);
@@ -329,6 +324,23 @@ TEST_P(FlightLanes, AreTheFlightsAlone) {
       }
     }
   }
+}
+
+class FlightLanes : public testing::TestWithParam<const char*> {};
+
+TEST_P(FlightLanes, AreTheFlightsAlone) {
+  std::string law = GetParam();
+  const bool guided = law.starts_with("guided_");
+  if (guided) law = law.substr(7);
+  ExpectTheFlightsAlone(FlightModel(Definition(law, law != "pd", guided)), 12);
+}
+
+// Two planes, gyros that round, guidance, wind and turbulence at once. Fewer flights: their modes take longest.
+TEST(FlexibleGuidedLanes, AreTheFlightsAlone) {
+  FlightDefinition definition = Definition("flexible", true, true);
+  const FlightDefinition flexible = FlexibleGuidedDefinition();
+  definition.vehicle.structure_beam = flexible.vehicle.structure_beam;
+  ExpectTheFlightsAlone(FlightModel(definition), 4);
 }
 INSTANTIATE_TEST_SUITE_P(Laws, FlightLanes,
                          testing::Values("adaptive_fuzzy", "frozen_fuzzy", "pd", "pid", "pd_aac", "pid_aac",
