@@ -14,12 +14,12 @@ AirData ComputeAirData(const Environment& environment, const Vector3& p, const V
     const Matrix3 R_IN = NedAxes(data.place.latitude_rad, data.place.longitude_rad);
     data.v_AP_I -= wind.north_m_s * R_IN.col(0) + wind.east_m_s * R_IN.col(1);
   }
-  data.airspeed_m_s = data.v_AP_I.norm();
   if (environment.turbulence) {
     const TurbulentWind gusts = Evaluate(*environment.turbulence, data.place.altitude_m);
     const Matrix3 R_IN = NedAxes(data.place.latitude_rad, data.place.longitude_rad);
     data.v_AP_I -= R_IN * Vector3(gusts.north_m_s, gusts.east_m_s, -gusts.up_m_s);
   }
+  data.airspeed_m_s = data.v_AP_I.norm();
   const AirState air = Scaled(StandardAtmosphere1976(data.place.altitude_m),
                               environment.density(data.place.altitude_m));
   data.density_kg_m3 = air.density_kg_m3;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <fstream>
@@ -195,6 +196,47 @@ TEST(Turbulence, TheFieldIsWhatTheFlightsEquationsSee) {
     EXPECT_NEAR(air.v_AP_I.x(), omega * p.y() - seen.wind_m_s.x, 1e-9) << altitude_m;
     EXPECT_NEAR(air.v_AP_I.y(), -omega * p.x() - seen.wind_m_s.y, 1e-9) << altitude_m;
     EXPECT_NEAR(air.v_AP_I.z(), -seen.wind_m_s.z, 1e-9) << altitude_m;
+    EXPECT_EQ(air.airspeed_m_s, air.v_AP_I.norm()) << "gusts count in the airspeed";
+    EXPECT_EQ(air.mach, air.airspeed_m_s / air.speed_of_sound_m_s);
+    EXPECT_DOUBLE_EQ(air.qbar_pa, 0.5 * air.density_kg_m3 * air.airspeed_m_s * air.airspeed_m_s);
+  }
+}
+
+// Of three streams each blows along a direction of its own: the path's, level across it, and the third.
+TEST(Turbulence, EachStreamBlowsInItsOwnDirection) {
+  constexpr double kSine = 0.8, kCosine = 0.6, kAzimuth = 0.3;
+  const TurbulencePath path({{0.0, 50e3}, {kSine, kSine}, kAzimuth});
+  const Vector3 down_range(std::cos(kAzimuth), std::sin(kAzimuth), 0.0), up(0.0, 0.0, 1.0);  // north, east, up
+  const Vector3 directions[3] = {kCosine * down_range + kSine * up,
+                                 Vector3(-std::sin(kAzimuth), std::cos(kAzimuth), 0.0),
+                                 kCosine * up - kSine * down_range};
+  for (int blowing = 0; blowing < 3; ++blowing) {
+    Stream draws(7, 0, "one");
+    const auto stream = [&](int which) {
+      return [&draws, blows = which == blowing] { return blows ? draws.Normal() : 0.0; };
+    };
+    const TurbulenceField field = DrawTurbulence({1e-3, 10.0, 1.0}, path, {stream(0), stream(1), stream(2)});
+    double strongest = 0.0;
+    for (std::size_t i = 0; i < field.altitude_m.size(); ++i) {
+      const Vector3 wind(field.north_m_s[i], field.east_m_s[i], field.up_m_s[i]);
+      strongest = std::max(strongest, wind.norm());
+      ASSERT_NEAR((wind - directions[blowing] * wind.dot(directions[blowing])).norm(), 0.0, 1e-12) << blowing;
+    }
+    EXPECT_GT(strongest, 1.0) << blowing;
+  }
+}
+
+// The figure's altitudes are over the sea, the low model's heights over the ground: both meet over any ground.
+TEST(Turbulence, ItsModelsMeetOverAHighGround) {
+  for (const double ground_m : {0.0, 1800.0, 4000.0}) {
+    const double meet_m = ground_m + 2000.0 * kFoot_m;
+    const TurbulenceScales below = TurbulenceAt({1e-3, 12.0, 1.0}, ground_m, meet_m - 1e-6),
+                           above = TurbulenceAt({1e-3, 12.0, 1.0}, ground_m, meet_m);
+    // A micrometre of slopes of 0.01 1/s, and of 2 for the lengths.
+    EXPECT_NEAR(below.sigma_horizontal_m_s, above.sigma_horizontal_m_s, 1e-7) << ground_m;
+    EXPECT_NEAR(below.sigma_vertical_m_s, above.sigma_vertical_m_s, 1e-7) << ground_m;
+    EXPECT_NEAR(below.length_horizontal_m, above.length_horizontal_m, 1e-5) << ground_m;
+    EXPECT_NEAR(below.length_vertical_m, above.length_vertical_m, 1e-5) << ground_m;
   }
 }
 
