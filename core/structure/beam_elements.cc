@@ -109,10 +109,14 @@ Eigen::MatrixXd MassMatrix(const Beam& beam, const std::vector<double>& stations
   for (std::size_t i = 0; i < elements.size(); ++i) {
     const double h = elements[i].length_m;
     auto block = mass.block<4, 4>(2 * static_cast<Eigen::Index>(i), 2 * static_cast<Eigen::Index>(i));
-    const double middle = stations[i] + 0.5 * h;
     for (const SpreadMass& m : beam.masses.spread) {
-      if (middle < m.top_station_m || middle > m.bottom_station_m) continue;
-      Gauss([&](double weight, double x) {
+      // A liquid's surface falls through elements: one counts as far as it is wet. Other masses end at nodes.
+      const double ahead_m = m.top_station_m - stations[i], along_m = m.bottom_station_m - stations[i];
+      if (ahead_m > h - kSameStation_m || along_m < kSameStation_m) continue;
+      const double from = ahead_m > kSameStation_m ? ahead_m / h : 0.0;
+      const double to = along_m < h - kSameStation_m ? along_m / h : 1.0;
+      Gauss([&](double of_part, double within) {
+        const double weight = of_part * (to - from), x = from + (to - from) * within;
         const BeamShape shape = ShapeAt(x, h, elements[i].shear_ratio);
         const Eigen::Map<const Eigen::Vector4d> deflection(shape.deflection.data()),
             rotation(shape.rotation.data());

@@ -12,6 +12,7 @@
 #include "core/structure/free_free_modes.h"
 #include "core/structure/mode_tracking.h"
 #include "core/vehicle/mass.h"
+#include "tests/liquid_stage.h"
 #include "tests/unit/flexible_sample.h"
 
 namespace dispersa::structure_bending_modes_test {
@@ -51,6 +52,10 @@ void ExpectRigidMasses(const Vehicle& vehicle) {
 TEST(BendingModes, TheBeamWeighsWhatTheVehicleWeighs) {
   ExpectRigidMasses(FlexibleSample());
   ExpectRigidMasses(Slv4());
+  // Surfaces of liquids lie within elements.
+  Vehicle liquid = Slv4();
+  for (const std::size_t stage : {0u, 2u}) MakeLiquid(liquid.stages[stage]);
+  ExpectRigidMasses(liquid);
 }
 
 TEST(BendingModes, OwnMassesAreScaledToTheVehicles) {

@@ -11,6 +11,7 @@
 #include "core/math/constants.h"
 #include "core/structure/bending_table.h"
 #include "core/vehicle/mass.h"
+#include "tests/liquid_stage.h"
 #include "tests/slv4_flight.h"
 
 namespace dispersa::section_moments_test {
@@ -28,6 +29,16 @@ std::vector<Tube> Tubes(const Vehicle& vehicle, double propellant_kg) {
       tubes.push_back(
           {DryMass(vehicle, static_cast<int>(i)) * e.fraction, e.top_station_m, e.bottom_station_m,
            (e.outer_diameter_m * e.outer_diameter_m + e.inner_diameter_m * e.inner_diameter_m) / 16.0});
+    if (stage.is_liquid()) {
+      // Each tank's share stands on its bottom, as if frozen.
+      const double left = i == 0 ? propellant_kg / stage.propellant_mass_kg : 1.0;
+      for (const Tank& tank : stage.tanks) {
+        const double tank_kg = left * tank.propellant_mass_kg, d2 = tank.diameter_m * tank.diameter_m;
+        const double height_m = tank_kg / (tank.density_kg_m3 * 0.25 * kPi * d2);
+        tubes.push_back({tank_kg, tank.bottom_station_m - height_m, tank.bottom_station_m, d2 / 16.0});
+      }
+      continue;
+    }
     const Grain& g = stage.grain;
     const double kg = i == 0 ? propellant_kg : stage.propellant_mass_kg;
     const double outer2 = 0.25 * g.outer_diameter_m * g.outer_diameter_m;
@@ -51,9 +62,8 @@ lanes::Sections<double> Only(const LoadTable& table, int station) {
   return s;
 }
 
-// A side force at the pivot and the flow from the side, in each plane, at three propellant levels.
-TEST(SectionMoments, HoldTheBalanceOfWhatLiesBehindTheSection) {
-  const Vehicle vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml");
+// A side force at the pivot and the flow from the side, in each plane, with these parts of the propellant left.
+void ExpectBalance(const Vehicle& vehicle, const std::vector<double>& parts) {
   const LauncherPlant plant = BuildNominalPlant(vehicle);
   const LoadTable& table = *plant.stacks[0].loads;
   const double side_n = 4e3, normal_n = 2e4, xcp_m = 9.3, pivot_m = vehicle.stages[0].gimbal.pivot_station_m;
@@ -66,7 +76,7 @@ TEST(SectionMoments, HoldTheBalanceOfWhatLiesBehindTheSection) {
   EXPECT_NEAR(shares, 1.0, 1e-12);
   EXPECT_NEAR(centroid, xcp_m, 1e-9);
 
-  for (const double part : {1.0, 0.37, 0.0}) {
+  for (const double part : parts) {
     const double propellant = part * vehicle.stages[0].propellant_mass_kg;
     const MassProperties mass = plant.stacks[0].mass.At(propellant);
     const double acceleration = (side_n - normal_n) / mass.mass_kg;
@@ -80,7 +90,7 @@ TEST(SectionMoments, HoldTheBalanceOfWhatLiesBehindTheSection) {
                   (s - table.strip_station_m[i]);
       for (const Tube& tube : Tubes(vehicle, propellant)) {
         const double from = std::max(tube.top_m, s), length = tube.bottom_m - from;
-        if (length <= 0.0) continue;
+        if (length <= 0.0 || tube.mass_kg == 0.0) continue;
         const double kg = tube.mass_kg * length / (tube.bottom_m - tube.top_m);
         const double middle = 0.5 * (from + tube.bottom_m), second = length * length / 12.0;
         // The integral of (a + turn (cg - x)) (s - x) over the piece.
@@ -105,16 +115,26 @@ TEST(SectionMoments, HoldTheBalanceOfWhatLiesBehindTheSection) {
   }
 }
 
+TEST(SectionMoments, HoldTheBalanceOfWhatLiesBehindTheSection) {
+  ExpectBalance(LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml"), {1.0, 0.37, 0.0});
+}
+
+// Surfaces that pass a section make its load no polynomial: the table is exact where it was taken.
+TEST(SectionMoments, HoldTheBalanceOfLiquidsFullHalfFullAndEmpty) {
+  Vehicle vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml");
+  for (const std::size_t stage : {0u, 2u}) MakeLiquid(vehicle.stages[stage]);  // that drains, and that waits
+  ExpectBalance(vehicle, {1.0, 0.5, 0.0});
+}
+
 // Of a ringing beam what its inertia loads a section with is what the section's stiffness holds: E I theta'.
 // They share the mode alone.
-TEST(SectionMoments, OfARingingBeamAreItsStiffnessTimesItsCurvature) {
-  const Vehicle vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml");
+void ExpectRinging(const Vehicle& vehicle, std::size_t at_level) {
   LauncherPlant plant = BuildNominalPlant(vehicle);
   const std::vector<StackModes> stacks = BuildBendingModes(vehicle);
   AddBending(vehicle, 0.01, plant);
   const BendingTable& table = *plant.stacks[0].bending;
   const LoadTable& loads = *plant.stacks[0].loads;
-  const BendingLevel& level = stacks[0].levels[0].front();
+  const BendingLevel& level = stacks[0].levels[0][at_level];
   constexpr double kStep_m = 0.02;
   double largest = 0.0;
   for (std::size_t mode = 0; mode < 2; ++mode) {
@@ -132,7 +152,7 @@ TEST(SectionMoments, OfARingingBeamAreItsStiffnessTimesItsCurvature) {
         return ShapeOf(stacks[0], BeamPlane::kY, level.modes[mode], at).slope_1_m;
       };
       held.push_back(stiffness * (slope(s + kStep_m) - slope(s - kStep_m)) / (2.0 * kStep_m));
-      loaded.push_back(omega2 * table.Row(0, 0, static_cast<int>(mode))[BendingTable::kMomentAt + i]);
+      loaded.push_back(omega2 * table.Row(0, static_cast<int>(at_level), static_cast<int>(mode))[BendingTable::kMomentAt + i]);
       most = std::max(most, std::fabs(held.back()));
     }
     for (std::size_t i = 0; i < held.size(); ++i) {
@@ -144,6 +164,16 @@ TEST(SectionMoments, OfARingingBeamAreItsStiffnessTimesItsCurvature) {
   }
   // The elements' curvature is linear within each.
   EXPECT_LT(largest, 0.02);
+}
+
+TEST(SectionMoments, OfARingingBeamAreItsStiffnessTimesItsCurvature) {
+  ExpectRinging(LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml"), 0);
+}
+
+TEST(SectionMoments, OfARingingBeamWithLiquidsAreItsStiffnessTimesItsCurvature) {
+  Vehicle vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml");
+  MakeLiquid(vehicle.stages[0]);
+  for (const std::size_t level : {0u, 5u}) ExpectRinging(vehicle, level);
 }
 
 }  // namespace
