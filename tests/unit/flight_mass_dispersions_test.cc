@@ -248,5 +248,35 @@ TEST(StackFactors, ActOnTheirStackAlone) {
   EXPECT_NEAR((left.p_EoC_I - state.p_EoC_I).norm(), from - to, 1e-8);
 }
 
+// Where the nose is, whatever its centre of gravity does: at rest a point of the body stays when masses leave.
+Vector3 NoseOf(const LauncherPlant& plant, int stack, double propellant_kg, const RigidBodyState& state) {
+  LauncherPhase phase;
+  phase.stack = stack;
+  LauncherPlant left = plant;
+  left.stacks[static_cast<std::size_t>(stack)].burn.propellant_mass_kg = propellant_kg;
+  std::array<double, kLauncherSize> y{};
+  WriteState(state, y.data());
+  return AtPoint(state, Vector3(LauncherModel(left).Evaluate(phase, 0.0, y.data()).cg_station_m, 0.0, 0.0)).p_EoC_I;
+}
+
+TEST(CentreOfGravity, AtSeparationLeavesTheNoseWhereItIs) {
+  FlightInputs inputs;
+  inputs.cg_factor = 1.03;
+  inputs.stack_cg_factor[0] = 0.98;
+  const LauncherPlant plant = PlantOf(inputs);
+  RigidBodyState state;
+  state.p_EoC_I = {Wgs84().equatorial_radius_m + 2e6, 0.0, 0.0};
+  state.q_IB = FromRotationVector(Vector3(0.3, -0.8, 0.5));
+  for (const double left_kg : {0.0, 900.0}) {
+    const RigidBodyState above = AfterSeparation(plant, 0, 0u, state, left_kg);
+    EXPECT_GT((above.p_EoC_I - state.p_EoC_I).norm(), 1.0);
+    EXPECT_NEAR((NoseOf(plant, 1, 1000.0, above) - NoseOf(plant, 0, left_kg, state)).norm(), 0.0, 2e-9) << left_kg;
+  }
+  // What the burn says that it leaves counts where nobody says otherwise.
+  LauncherPlant leaving = plant;
+  leaving.stacks[0].burn.left_kg = 900.0;
+  EXPECT_EQ(AfterSeparation(leaving, 0, 0u, state).p_EoC_I, AfterSeparation(plant, 0, 0u, state, 900.0).p_EoC_I);
+}
+
 }  // namespace
 }  // namespace dispersa::flight_mass_dispersions_test

@@ -373,6 +373,16 @@ TEST(Drag, NozzlesTakeTheirShareOfTheBase) {
   EXPECT_NEAR(At(fifth, fifth.ca, 2.0, 0.0) - At(half, half.ca, 2.0, 0.0), 0.3 * BaseDrag(2.0), 1e-12);
 }
 
+TEST(Drag, FrictionOfABodyIsThatOfAPlateTimesHoernersFormFactor) {
+  // Fineness 4: 1 + 1.5 / 8 + 7 / 64. At rest an ogive has no pressure drag; nozzles fill the base.
+  Vehicle vehicle = Body({{Shape::kTangentOgive, 1.5, 1.0}, {Shape::kCylinder, 2.5, 1.0}});
+  vehicle.stages[0].motor.nozzle_exit_area_m2 = kPi / 4.0;
+  const AeroTable table = BuildAerodynamics(vehicle)[0];
+  const double wetted_m2 = Integrate(CutMouldLine(vehicle.profile, 4.0)).wetted_area_m2;
+  const double plate = SkinFrictionCoefficient(0.0, 4.0, vehicle.surface_roughness_m) * wetted_m2 / (kPi / 4.0);
+  EXPECT_NEAR(At(table, table.ca, 0.0, 0.0) / plate, 1.296875, 1e-9);
+}
+
 // ---- Damping ----
 
 TEST(Damping, ConeHasTheClosedForm) {

@@ -184,6 +184,14 @@ TEST(NozzleLayout, WeighsDeflectionsByTheirLimits) {
   EXPECT_NEAR(layout.pitch_share, 0.5, 1e-12);
 }
 
+// The flow leaves at its nozzles, each with its share: the radius of gyration of unlike ones.
+TEST(NozzleLayout, TheFlowsRadiusCountsEachNozzleByItsShare) {
+  const Gimbal gimbal = With({{"main", 0.0, 0.0, 0.8, {90.0 * kDeg, 180.0 * kDeg}, 0.0},
+                              {"right", 2.0, 1.0, 0.1, {90.0 * kDeg}, 0.0},
+                              {"left", -2.0, -1.0, 0.1, {90.0 * kDeg}, 0.0}});
+  EXPECT_DOUBLE_EQ(BuildNozzleLayout(gimbal).flow_radius_m, 1.0);  // 0.2 of 5 m²
+}
+
 std::vector<std::string> Texts(std::vector<Nozzle> nozzles) {
   std::vector<std::string> texts;
   for (const VehicleProblem& p : NozzleProblems(With(std::move(nozzles)), "gimbal"))

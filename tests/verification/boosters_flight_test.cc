@@ -194,6 +194,24 @@ TEST(Boosters, GainTheRocketEquationsSpeed) {
   EXPECT_NEAR(FiguresOf(vehicle)[0].ideal_delta_v_m_s, exact_m_s, 1e-6);
 }
 
+// The most that the vehicle is loaded with: at the boosters' end or at the stage's own, by hand.
+TEST(Boosters, LoadTheVehicleMostWhereItPushesMostForItsMass) {
+  for (const double boost_n : {80e3, 400e3}) {
+    Vehicle vehicle = Boosted();
+    vehicle.boosters.motor.thrust_n = boost_n;
+    const Stage& core = vehicle.stages[0];
+    const Boosters& b = vehicle.boosters;
+    const double left_kg = core.liftoff_mass_kg - b.count * b.propellant_mass_kg -
+                           core.propellant_mass_kg * b.motor.burning_time_s / core.motor.burning_time_s;
+    const double at_boosters_end = (core.motor.thrust_n + b.count * boost_n) / left_kg;
+    const double empty_kg = core.liftoff_mass_kg - core.propellant_mass_kg -
+                            b.count * (b.propellant_mass_kg + b.dry_mass_kg);
+    const double at_its_own = core.motor.thrust_n / empty_kg;
+    EXPECT_EQ(at_boosters_end > at_its_own, boost_n > 100e3);
+    EXPECT_NEAR(FiguresOf(vehicle)[0].burnout_load_g, std::max(at_boosters_end, at_its_own) / kStandardGravity, 1e-9);
+  }
+}
+
 TEST(Boosters, FlyInThreeAndSixDegreesOfFreedom) {
   FlightDefinition definition = Slv4Definition(DISPERSA_CAMPAIGNS);
   definition.vehicle = Boosted();

@@ -1,0 +1,158 @@
+// Boosters whose flight is dispersed: thrust, flow and burn times, what the vehicle weighs at every tick, and the momentum
+// that it gains, by conservation. The sample vehicle with two boosters, where there is next to no air.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/dynamics/integrator.h"
+#include "core/dynamics/jettison.h"
+#include "core/flight/flight.h"
+#include "core/flight/tick_sample.h"
+#include "core/math/constants.h"
+#include "core/vehicle/mass.h"
+#include "tests/unit/sample_vehicle.h"
+
+namespace dispersa::flight_booster_dispersions_test {
+namespace {
+
+constexpr double kBoostTime_s = 20.0, kBoostPropellant_kg = 500.0, kBoostDry_kg = 100.0, kBoostThrust_n = 60e3;
+constexpr double kBoostersWhole_kg = 2.0 * (kBoostPropellant_kg + kBoostDry_kg);
+constexpr double kCoreFlow_kg_s = 100.0, kBoostFlow_kg_s = 2.0 * kBoostPropellant_kg / kBoostTime_s;
+
+FlightDefinition Boosted() {
+  FlightDefinition definition = HighDefinition();
+  Boosters& b = definition.vehicle.boosters;
+  b = {2, kBoostDry_kg, kBoostPropellant_kg, 0.9, 0.5, 14.0, 19.0, 19.2, {}, {15.0, 18.0, 0.48, 0.2}, 0.5};
+  b.motor.thrust_n = kBoostThrust_n;
+  b.motor.burning_time_s = kBoostTime_s;
+  b.motor.nozzle_exit_area_m2 = 0.07;
+  definition.vehicle.stages[0].liftoff_mass_kg += kBoostersWhole_kg;
+  return definition;
+}
+
+// What of the first stage acts on its boosters; the last changes the masses too.
+std::vector<FlightInputs> Dispersed() {
+  FlightInputs thrust, flow, impulse, all;
+  thrust.thrust_factor[0] = 1.03;
+  flow.mass_flow_factor[0] = 0.95;
+  impulse.specific_impulse_factor[0] = 1.01;
+  all.thrust_factor[0] = 0.98;
+  all.mass_flow_factor[0] = 1.04;
+  all.specific_impulse_factor[0] = 0.99;
+  all.dry_mass_factor[0] = 1.02;
+  all.propellant_factor[0] = 0.97;
+  all.dry_mass_factor[1] = 1.05;
+  return {{}, thrust, flow, impulse, all};
+}
+double ThrustFactor(const FlightInputs& in) { return in.thrust_factor[0] * in.specific_impulse_factor[0]; }
+
+TEST(BoosterDispersions, FollowTheFirstStagesThrustAndFlow) {
+  const FlightModel model(Boosted());
+  for (const FlightInputs& in : Dispersed()) {
+    const MotorBurn burn = model.PlantFor(in).boosters->burn;
+    EXPECT_NEAR(burn.vacuum_thrust_n, 2.0 * kBoostThrust_n * ThrustFactor(in), 1e-8);
+    EXPECT_NEAR(burn.full_flow_kg_s, kBoostFlow_kg_s * in.mass_flow_factor[0], 1e-12);
+    EXPECT_NEAR(burn.duration_s, kBoostTime_s / in.mass_flow_factor[0], 1e-12);
+    EXPECT_EQ(burn.propellant_mass_kg, 2.0 * kBoostPropellant_kg);
+    EXPECT_NEAR(burn.exit_area_m2, 0.14, 1e-15);
+  }
+}
+
+// The first stage without its boosters, as the flight's masses are: dry, propellant, and what is above.
+struct Core {
+  double dry_kg, propellant_kg, above_kg;
+  explicit Core(const FlightInputs& in)
+      : dry_kg(6000.0 * in.dry_mass_factor[0]),
+        propellant_kg(4000.0 * in.propellant_factor[0]),
+        above_kg(2000.0 * in.dry_mass_factor[1] + 1000.0) {}
+};
+
+// Every kilogram is accounted for until the core's burnout: what flows, and the shells when they go.
+TEST(BoosterDispersions, MassIsWhatHasNotFlownNorLeft) {
+  const FlightModel model(Boosted());
+  for (const FlightInputs& in : Dispersed()) {
+    const Core core(in);
+    const double flow = in.mass_flow_factor[0], boost_s = kBoostTime_s / flow;
+    double gone_s = 0.0;
+    int boosting = 0, alone = 0;
+    FlightOptions options;
+    options.observe = [&](const TickSample& s) {
+      if (s.stack != 0 || !s.burning) return;
+      const double full_kg = core.dry_kg + core.propellant_kg + core.above_kg + kBoostersWhole_kg;
+      const double flown_kg = flow * (kCoreFlow_kg_s * s.time_s + kBoostFlow_kg_s * std::min(s.time_s, boost_s));
+      const double mass_kg = s.instant.loads.mass_kg;
+      const bool with_shells = std::fabs(mass_kg - (full_kg - flown_kg)) < 1e-6;
+      if (with_shells) {
+        ++boosting;
+      } else {
+        ASSERT_NEAR(mass_kg, full_kg - flown_kg - 2.0 * kBoostDry_kg, 1e-6) << s.time_s;
+        if (gone_s == 0.0) gone_s = s.time_s;
+        ++alone;
+      }
+      const double push_n = ThrustFactor(in) * (200e3 + (s.time_s < boost_s ? 2.0 * kBoostThrust_n : 0.0));
+      if (std::fabs(s.time_s - boost_s) > 0.011) {
+        EXPECT_NEAR(s.instant.thrust_n, push_n, 1e-2) << s.time_s;
+      }
+    };
+    Fly(model, in, options);
+    EXPECT_GT(boosting, 1800);
+    EXPECT_GT(alone, 1500);
+    // Detected within a tick or two, then the delay.
+    EXPECT_NEAR(gone_s, boost_s + 0.5, 0.021);
+  }
+}
+
+struct Flown {
+  const LauncherModel* equations;
+  LauncherPhase phase;
+  static void Rhs(double t, const double* y, double* dydt, void* context) {
+    const auto* self = static_cast<const Flown*>(context);
+    self->equations->Derivative(self->phase, t, y, dydt);
+  }
+};
+
+// Without gravitation and air: the speed is that of the rocket equation, of both exhausts by their flows.
+TEST(BoosterDispersions, MomentumIsThatOfWhatFlowsOut) {
+  const FlightModel model(Boosted());
+  for (const FlightInputs& in : Dispersed()) {
+    LauncherPlant plant = model.PlantFor(in);
+    plant.environment.earth = SphericalEarth(6371000.0, false);
+    plant.environment.earth.mu_m3_s2 = 0.0;
+    const LauncherModel equations(plant);
+    Flown flight{&equations, {}};
+    flight.phase.burning = flight.phase.boosting = true;
+    RigidBodyState s;
+    s.p_EoC_I = {1e9, 0.0, 0.0};
+    std::array<double, kLauncherSize> y{};
+    WriteState(s, y.data());
+    const double boost_s = kBoostTime_s / in.mass_flow_factor[0];
+    Integrator integrator(Scheme::kRungeKutta4, kRigidLauncherSize, &Flown::Rhs, &flight, nullptr);
+    ASSERT_TRUE(integrator.Advance(0.0, boost_s, 1000, y.data()));
+    const Core core(in);
+    const double full_kg = core.dry_kg + core.propellant_kg + core.above_kg + kBoostersWhole_kg;
+    const double flow_kg_s = in.mass_flow_factor[0] * (kCoreFlow_kg_s + kBoostFlow_kg_s);
+    const double exhaust_m_s = ThrustFactor(in) * (200e3 + 2.0 * kBoostThrust_n) / flow_kg_s;
+    // Of the classical Runge-Kutta method in steps of 20 ms.
+    EXPECT_NEAR(ReadState(y.data()).v_IC_I.norm(), exhaust_m_s * std::log(full_kg / (full_kg - flow_kg_s * boost_s)),
+                1e-7);
+  }
+}
+
+// Boosters' masses have no dispersions: a dispersed stage leaves them, and the stacks above, as they are.
+TEST(BoosterDispersions, MassesOfTheBoostersStay) {
+  const FlightModel model(Boosted());
+  const FlightInputs in = Dispersed().back();
+  const LauncherPlant plant = model.PlantFor(in), nominal = model.PlantFor({});
+  EXPECT_EQ(plant.boosters->empty.mass_kg, 2.0 * kBoostDry_kg);
+  EXPECT_EQ(plant.boosters->empty.first_moment_kg_m, nominal.boosters->empty.first_moment_kg_m);
+  const Core core(in);
+  const double propellant_kg = 1234.0;
+  EXPECT_NEAR(MassesOn(plant, 0, kBoostersGone, propellant_kg, 30.0).mass_kg,
+              core.dry_kg + core.above_kg + propellant_kg, 1e-8);
+  EXPECT_NEAR(MassesOn(plant, 1, kBoostersGone, 1000.0, 0.0).mass_kg, core.above_kg, 1e-8);
+}
+
+}  // namespace
+}  // namespace dispersa::flight_booster_dispersions_test
