@@ -1,4 +1,5 @@
-// SLV-4 that bends differently in its two planes, guided in a closed loop, with rate gyros weighed in two stages.
+// SLV-4 that bends differently in its two planes, guided in a closed loop, with rate gyros weighed in two
+// stages.
 #pragma once
 
 #include "core/campaign_yaml/load.h"
@@ -12,7 +13,8 @@ inline FlightDefinition FlexibleGuidedDefinition() {
   definition.vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml");
   definition.guidance.closed_loop = true;
   StructureBeam& beam = *definition.vehicle.structure_beam;
-  // Coarse: a flight whose masses are dispersed has modes of its own, which take ten times as long as flying them.
+  // Coarse: a flight whose masses are dispersed has modes of its own, which take ten times as long as flying
+  // them.
   beam.elements = 12;
   beam.propellant_levels = 5;
   beam.modes = beam.flown_modes = 2;

@@ -1,5 +1,5 @@
-// Commands go to drives and come back, for layouts drawn at random: one to four nozzles anywhere, with none to two
-// hinges each, alone and side by side.
+// Commands go to drives and come back, for layouts drawn at random: one to four nozzles anywhere, with none
+// to two hinges each, alone and side by side.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,7 +36,8 @@ Gimbal DrawnGimbal(Stream& draws) {
     z_m += nozzle.thrust_share * nozzle.z_m;
     const double towards = kTwoPi * draws.Uniform();
     const int hinges = static_cast<int>(3.0 * draws.Uniform() + 0.3);
-    for (int hinge = 0; hinge < std::min(hinges, 2); ++hinge) nozzle.towards_rad.push_back(towards + 0.5 * kPi * hinge);
+    for (int hinge = 0; hinge < std::min(hinges, 2); ++hinge)
+      nozzle.towards_rad.push_back(towards + 0.5 * kPi * hinge);
     if (draws.Uniform() < 0.5) nozzle.limit_rad = kLimit_rad * (0.3 + 0.7 * draws.Uniform());
     gimbal.nozzles.push_back(nozzle);
   }
@@ -111,7 +112,8 @@ TEST(NozzleAllocation, WhatIsFeltIsWhatWasCommanded) {
   EXPECT_GT(fixed, 20);
 }
 
-// Each nozzle within its own limit, in the direction that was asked of it; saturation is said when one is there.
+// Each nozzle within its own limit, in the direction that was asked of it; saturation is said when one is
+// there.
 TEST(NozzleAllocation, KeepsEachNozzleWithinItsLimitAndDirection) {
   Stream draws(5, 0, "commands");
   int saturated = 0, free = 0;
@@ -138,8 +140,8 @@ TEST(NozzleAllocation, KeepsEachNozzleWithinItsLimitAndDirection) {
   EXPECT_GT(free, 20);
 }
 
-// Of all deflections that turn the vehicle as commanded the allocation is the least, each over its nozzle's limit: what
-// turns nothing is at right angles to it.
+// Of all deflections that turn the vehicle as commanded the allocation is the least, each over its nozzle's
+// limit: what turns nothing is at right angles to it.
 TEST(NozzleAllocation, IsTheLeastThatDoes) {
   Stream draws(6, 0, "deflections");
   for (const NozzleLayout& layout : DrawnLayouts(100)) {

@@ -1,5 +1,5 @@
-// Air on a body that bends, and what its sections carry by bending: against rigid motions that modes can stand for,
-// virtual work, and the balance of masses on a line.
+// Air on a body that bends, and what its sections carry by bending: against rigid motions that modes can
+// stand for, virtual work, and the balance of masses on a line.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,8 +27,9 @@ struct Incidence {
 FlowForce<double> LinearAir(Incidence at) {
   const double size = std::hypot(at.y, at.z);
   FlowForce<double> flow{};
-  flow.normal = {kSlope_n * size, kSlope_n, kXcp_m, size > 0.0 ? at.y / size : 0.0, size > 0.0 ? at.z / size : 0.0,
-                 kSpeed_m_s};
+  flow.normal = {
+      kSlope_n * size, kSlope_n, kXcp_m, size > 0.0 ? at.y / size : 0.0, size > 0.0 ? at.z / size : 0.0,
+      kSpeed_m_s};
   flow.force_n = {-1e4, -kSlope_n * at.y, -kSlope_n * at.z};
   // The arm of the force is (cg - xcp) along x.
   flow.moment_n_m = {0.0, (kXcp_m - kCg_m) * flow.force_n.z, -(kXcp_m - kCg_m) * flow.force_n.y};
@@ -55,10 +56,10 @@ TEST(BendingFlow, OfARigidMotionIsTheFlowOfTheMovedBody) {
   const BendingTable table = MadeUpTable(RigidMotions());
   const Bending<double> bending = BendingOf(table, 0.0);
   BendingState<double> s{};
-  s.rate_m_s[0][0] = 3.0;   // towards +y
-  s.rate_m_s[1][0] = -2.0;  // towards -z
-  s.q_m[0][1] = 0.01;       // nose to the left: the flow comes from the right
-  s.q_m[1][1] = -0.02;      // nose down: the flow comes from above
+  s.rate_m_s[0][0] = 3.0;           // towards +y
+  s.rate_m_s[1][0] = -2.0;          // towards -z
+  s.q_m[0][1] = 0.01;               // nose to the left: the flow comes from the right
+  s.q_m[1][1] = -0.02;              // nose down: the flow comes from above
   s.q_m[0][0] = s.q_m[1][0] = 5.0;  // being elsewhere changes nothing
   const Incidence straight{0.02, 0.05};
   const Incidence moved{straight.y + 3.0 / kSpeed_m_s + 0.01, straight.z - 2.0 / kSpeed_m_s - 0.02};
@@ -72,8 +73,8 @@ TEST(BendingFlow, OfARigidMotionIsTheFlowOfTheMovedBody) {
   EXPECT_NEAR(flow.moment_n_m.y, expected.moment_n_m.y, kSmall_n);
   EXPECT_NEAR(flow.moment_n_m.z, expected.moment_n_m.z, kSmall_n);
   EXPECT_EQ(flow.moment_n_m.x, 0.0);
-  // Virtual work: of the whole force for a metre aside, of the whole moment for a radian. Turning by +1 is about +y in
-  // plane z, and about -z in plane y.
+  // Virtual work: of the whole force for a metre aside, of the whole moment for a radian. Turning by +1 is
+  // about +y in plane z, and about -z in plane y.
   EXPECT_NEAR(driven.drive_m_s2[0][0], expected.force_n.y, kSmall_n);
   EXPECT_NEAR(driven.drive_m_s2[1][0], expected.force_n.z, kSmall_n);
   EXPECT_NEAR(driven.drive_m_s2[0][1], -expected.moment_n_m.z, kSmall_n);
@@ -88,7 +89,8 @@ TEST(BendingFlow, OfATurningBodyIsThatOfEachPlacesSpeed) {
   for (int plane = 0; plane < kPlanes; ++plane) {
     BendingState<double> s{};
     s.rate_m_s[plane][1] = 0.3;
-    const lanes::StripForces<double> forces = lanes::ForcesByBending(bending, s, body, LinearAir({0.0, 0.0}).normal);
+    const lanes::StripForces<double> forces =
+        lanes::ForcesByBending(bending, s, body, LinearAir({0.0, 0.0}).normal);
     double shares = 0.0;
     for (int strip = 0; strip < kStrips; ++strip) {
       const double share = body.Share(strip, kXcp_m), place_m = 1.25 + 2.5 * strip;
@@ -128,7 +130,8 @@ TEST(BendingFlow, DrivesEachModeByTheWorkOfItsStrips) {
                      s.rate_m_s[plane][mode] * modes[mode].Deflection(place_m) / kSpeed_m_s;
       const double here_n = -kSlope_n * body.Share(strip, kXcp_m) * incidence;
       force[plane] += here_n;
-      for (std::size_t mode = 0; mode < 2; ++mode) work[plane][mode] += here_n * modes[mode].Deflection(place_m);
+      for (std::size_t mode = 0; mode < 2; ++mode)
+        work[plane][mode] += here_n * modes[mode].Deflection(place_m);
     }
   }
   EXPECT_NEAR(flow.force_n.y, force[0], kSmall_n);
@@ -150,14 +153,15 @@ TEST(BendingFlow, InVacuumIsNothingHoweverTheBodyRings) {
     flow.normal.airspeed_m_s = airspeed_m_s;
     ModalForce<double> driven{};
     lanes::BendFlow(bending, s, BodySections(), kCg_m, flow, driven);
-    for (const double value : {flow.force_n.y, flow.force_n.z, flow.moment_n_m.y, flow.moment_n_m.z,
-                               driven.drive_m_s2[0][0], driven.drive_m_s2[0][1], driven.drive_m_s2[1][0],
-                               driven.drive_m_s2[1][1]})
+    for (const double value :
+         {flow.force_n.y, flow.force_n.z, flow.moment_n_m.y, flow.moment_n_m.z, driven.drive_m_s2[0][0],
+          driven.drive_m_s2[0][1], driven.drive_m_s2[1][0], driven.drive_m_s2[1][1]})
       EXPECT_EQ(value, 0.0) << airspeed_m_s;
   }
 }
 
-// A section carries what the masses ahead of it take to be accelerated by the modes, less the flow's forces there.
+// A section carries what the masses ahead of it take to be accelerated by the modes, less the flow's forces
+// there.
 TEST(BendingSections, CarryTheMassesAheadLessTheirAir) {
   const BendingTable table = MadeUpTable(TwoPlanes());
   constexpr double kDamping = 0.04;
@@ -194,7 +198,8 @@ TEST(BendingSections, CarryTheMassesAheadLessTheirAir) {
                      TwoPlanes()[plane][mode].Deflection(place_m);
           carried += force * (at_m - place_m);
         }
-        EXPECT_NEAR(plane == 0 ? moments.y_n_m[station] : moments.z_n_m[station], carried, 1e-7)  // of 1e5 N m
+        EXPECT_NEAR(plane == 0 ? moments.y_n_m[station] : moments.z_n_m[station], carried,
+                    1e-7)  // of 1e5 N m
             << "plane " << plane << ", station " << station << (in_air ? ", in air" : ", in vacuum");
       }
     }
@@ -210,8 +215,8 @@ struct Everything {
   BendingState<double> later;
   lanes::SectionMoments<double> sections;
 };
-Everything Of(const Bending<double>& b, const BendingState<double>& s, Incidence at, lanes::Vector<double> force,
-              lanes::Vector<double> couple) {
+Everything Of(const Bending<double>& b, const BendingState<double>& s, Incidence at,
+              lanes::Vector<double> force, lanes::Vector<double> couple) {
   const Sections<double> body = BodySections();
   Everything o{};
   o.pivot = lanes::BentAtPivot(b, s);
@@ -227,7 +232,8 @@ Everything Of(const Bending<double>& b, const BendingState<double>& s, Incidence
   return o;
 }
 
-// A quarter turn about x takes y to z and z to -y. What is seen from the turned axes is turned, and else the same.
+// A quarter turn about x takes y to z and z to -y. What is seen from the turned axes is turned, and else the
+// same.
 TEST(BendingPlanes, AreOneAnotherTurnedByAQuarterAboutX) {
   const BendingTable table = MadeUpTable({TwoPlanes()[0]});
   const Bending<double> b = BendingOf(table, 0.0, 0.01);
@@ -253,7 +259,8 @@ TEST(BendingPlanes, AreOneAnotherTurnedByAQuarterAboutX) {
     EXPECT_NEAR(to.z, from.y, tolerance) << what;
   };
   constexpr double kRounding = 1e-13;
-  expect_turned({0.0, before.pivot.y_m, before.pivot.z_m}, {0.0, after.pivot.y_m, after.pivot.z_m}, kRounding, "moved");
+  expect_turned({0.0, before.pivot.y_m, before.pivot.z_m}, {0.0, after.pivot.y_m, after.pivot.z_m}, kRounding,
+                "moved");
   expect_turned({0.0, before.pivot.about_y_rad, before.pivot.about_z_rad},
                 {0.0, after.pivot.about_y_rad, after.pivot.about_z_rad}, kRounding, "turned");
   expect_turned(before.unit, after.unit, kRounding, "unit");

@@ -29,8 +29,8 @@ double Sum(int plane, const double (&by_mode)[kModes], Number of, double station
   return sum;
 }
 
-// The axis runs through (-s, y(s), z(s)). A small turn w takes its direction (1, 0, 0) to (1, -dy/ds, -dz/ds), which is
-// (1, w_z, -w_y).
+// The axis runs through (-s, y(s), z(s)). A small turn w takes its direction (1, 0, 0) to (1, -dy/ds,
+// -dz/ds), which is (1, w_z, -w_y).
 struct Turned {
   double about_y, about_z;
 };
@@ -99,7 +99,8 @@ TEST_F(BendingMotion, AForceAtThePivotDrivesAModeByItsWork) {
       const lanes::Bent<double> at = lanes::BentAtPivot(bending_, unit);
       const double work =
           force.y * at.y_m + force.z * at.z_m + couple.y * at.about_y_rad + couple.z * at.about_z_rad;
-      EXPECT_NEAR(driven.drive_m_s2[plane][mode] - before.drive_m_s2[plane][mode], work, 1e-9) << plane << mode;
+      EXPECT_NEAR(driven.drive_m_s2[plane][mode] - before.drive_m_s2[plane][mode], work, 1e-9)
+          << plane << mode;
     }
 }
 
@@ -136,7 +137,8 @@ struct Oscillator {
   double frequency_rad_s, damping_ratio;
 
   double Drive(double q, double rate, double acceleration) const {
-    return acceleration + 2.0 * damping_ratio * frequency_rad_s * rate + frequency_rad_s * frequency_rad_s * q;
+    return acceleration + 2.0 * damping_ratio * frequency_rad_s * rate +
+           frequency_rad_s * frequency_rad_s * q;
   }
 };
 Oscillator OscillatorOf(std::size_t plane, std::size_t mode, double damping_ratio) {
@@ -157,14 +159,15 @@ TEST_F(BendingMotion, FreeModesSwingAsDampedOscillators) {
           const double a = state_.q_m[plane][mode], b = (state_.rate_m_s[plane][mode] + s * a) / d;
           const double e = std::exp(-s * time_s), cosine = std::cos(d * time_s), sine = std::sin(d * time_s);
           EXPECT_NEAR(to.q_m[plane][mode], e * (a * cosine + b * sine), 1e-15);
-          EXPECT_NEAR(to.rate_m_s[plane][mode],
-                      e * ((b * d - s * a) * cosine - (a * d + s * b) * sine), 1e-13);
+          EXPECT_NEAR(to.rate_m_s[plane][mode], e * ((b * d - s * a) * cosine - (a * d + s * b) * sine),
+                      1e-13);
         }
     }
   }
 }
 
-// A mode that starts on a parabola of time and is driven so that the parabola solves its equation stays on it.
+// A mode that starts on a parabola of time and is driven so that the parabola solves its equation stays on
+// it.
 TEST_F(BendingMotion, DrivenModesFollowAParabolaExactly) {
   constexpr double kDamping = 0.05;
   const Bending<double> bending = BendingOf(table_, 0.0, kDamping);
@@ -202,7 +205,8 @@ TEST_F(BendingMotion, TwiceATimeIsOneSwingAndThenAnother) {
   ModalForce<double> d0{}, d1{}, d2{}, later0{}, later1{};
   for (int plane = 0; plane < kPlanes; ++plane)
     for (int mode = 0; mode < 2; ++mode) {
-      const double b = d1.drive_m_s2[plane][mode] = 30.0 + mode, c = d2.drive_m_s2[plane][mode] = 100.0 * plane;
+      const double b = d1.drive_m_s2[plane][mode] = 30.0 + mode,
+                   c = d2.drive_m_s2[plane][mode] = 100.0 * plane;
       const double a = d0.drive_m_s2[plane][mode] = 1.0 - plane;
       later0.drive_m_s2[plane][mode] = a + 0.04 * (b + 0.04 * c);
       later1.drive_m_s2[plane][mode] = b + 0.08 * c;

@@ -37,8 +37,8 @@ struct Between {
   int from;
   double so_far;
 };
-constexpr Between kPlaces[] = {{130.0, 0, 0.0}, {100.0, 0, 0.0},  {80.0, 0, 0.5}, {60.0, 1, 0.0},
-                               {15.0, 1, 0.75}, {0.0, 1, 1.0}, {-5.0, 1, 1.0}};
+constexpr Between kPlaces[] = {{130.0, 0, 0.0}, {100.0, 0, 0.0}, {80.0, 0, 0.5}, {60.0, 1, 0.0},
+                               {15.0, 1, 0.75}, {0.0, 1, 1.0},   {-5.0, 1, 1.0}};
 
 double Expected(const Between& at, int plane, int mode, int column) {
   return (1.0 - at.so_far) * Number(plane, at.from, mode, column) +
@@ -89,7 +89,8 @@ TEST(BendingShapes, OfOneColumnAreThoseOfAFlight) {
     for (int plane = 0; plane < kPlanes; ++plane)
       for (int mode = 0; mode < 2; ++mode)
         for (int column = 0; column < BendingTable::kRowSize; ++column)
-          EXPECT_NEAR(table.At(plane, mode, column, at.propellant_kg), Expected(at, plane, mode, column), 1e-13)
+          EXPECT_NEAR(table.At(plane, mode, column, at.propellant_kg), Expected(at, plane, mode, column),
+                      1e-13)
               << at.propellant_kg << " kg, plane " << plane << ", mode " << mode << ", column " << column;
 }
 
@@ -99,9 +100,11 @@ TEST(BendingShapes, OfOneLevelAreTheSameAtAnyPropellant) {
   for (int plane = 0; plane < kPlanes; ++plane)
     for (int mode = 0; mode < 2; ++mode) {
       EXPECT_EQ(some.At(plane, mode).pivot_deflection,
-                TwoPlanes()[static_cast<std::size_t>(plane)][static_cast<std::size_t>(mode)].Deflection(kBodyPivot_m));
+                TwoPlanes()[static_cast<std::size_t>(plane)][static_cast<std::size_t>(mode)].Deflection(
+                    kBodyPivot_m));
       EXPECT_EQ(more.At(plane, mode).pivot_deflection, some.At(plane, mode).pivot_deflection);
-      EXPECT_EQ(table.At(plane, mode, BendingTable::kPivotDeflection, 77.0), some.At(plane, mode).pivot_deflection);
+      EXPECT_EQ(table.At(plane, mode, BendingTable::kPivotDeflection, 77.0),
+                some.At(plane, mode).pivot_deflection);
     }
 }
 
@@ -129,7 +132,8 @@ TEST(BendingShapes, FollowTheFlightsFactors) {
     for (int mode = 0; mode < 2; ++mode) {
       const auto nominal = [&](int column) { return Expected(kPlaces[2], plane, mode, column); };
       const double frequency = (mode == 0 ? 1.1 : 0.8) * nominal(BendingTable::kFrequency);
-      EXPECT_NEAR(bending.At(plane, mode).stiffness_1_s2, frequency * frequency, 1e-12 * frequency * frequency);
+      EXPECT_NEAR(bending.At(plane, mode).stiffness_1_s2, frequency * frequency,
+                  1e-12 * frequency * frequency);
       // The factor is of what sensors feel. Forces act on the shapes as they are.
       ExpectColumns(bending.At(plane, mode), [&](int column) {
         const bool is_felt = column >= BendingTable::kUnitSlope && column < BendingTable::kShortening;

@@ -1,5 +1,6 @@
-// Boosters whose flight is dispersed: thrust, flow and burn times, what the vehicle weighs at every tick, and the momentum
-// that it gains, by conservation. The sample vehicle with two boosters, where there is next to no air.
+// Boosters whose flight is dispersed: thrust, flow and burn times, what the vehicle weighs at every tick, and
+// the momentum that it gains, by conservation. The sample vehicle with two boosters, where there is next to
+// no air.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +18,8 @@
 namespace dispersa::flight_booster_dispersions_test {
 namespace {
 
-constexpr double kBoostTime_s = 20.0, kBoostPropellant_kg = 500.0, kBoostDry_kg = 100.0, kBoostThrust_n = 60e3;
+constexpr double kBoostTime_s = 20.0, kBoostPropellant_kg = 500.0, kBoostDry_kg = 100.0,
+                 kBoostThrust_n = 60e3;
 constexpr double kBoostersWhole_kg = 2.0 * (kBoostPropellant_kg + kBoostDry_kg);
 constexpr double kCoreFlow_kg_s = 100.0, kBoostFlow_kg_s = 2.0 * kBoostPropellant_kg / kBoostTime_s;
 
@@ -81,7 +83,8 @@ TEST(BoosterDispersions, MassIsWhatHasNotFlownNorLeft) {
     options.observe = [&](const TickSample& s) {
       if (s.stack != 0 || !s.burning) return;
       const double full_kg = core.dry_kg + core.propellant_kg + core.above_kg + kBoostersWhole_kg;
-      const double flown_kg = flow * (kCoreFlow_kg_s * s.time_s + kBoostFlow_kg_s * std::min(s.time_s, boost_s));
+      const double flown_kg =
+          flow * (kCoreFlow_kg_s * s.time_s + kBoostFlow_kg_s * std::min(s.time_s, boost_s));
       const double mass_kg = s.instant.loads.mass_kg;
       const bool with_shells = std::fabs(mass_kg - (full_kg - flown_kg)) < 1e-6;
       if (with_shells) {
@@ -135,8 +138,8 @@ TEST(BoosterDispersions, MomentumIsThatOfWhatFlowsOut) {
     const double flow_kg_s = in.mass_flow_factor[0] * (kCoreFlow_kg_s + kBoostFlow_kg_s);
     const double exhaust_m_s = ThrustFactor(in) * (200e3 + 2.0 * kBoostThrust_n) / flow_kg_s;
     // Of the classical Runge-Kutta method in steps of 20 ms.
-    EXPECT_NEAR(ReadState(y.data()).v_IC_I.norm(), exhaust_m_s * std::log(full_kg / (full_kg - flow_kg_s * boost_s)),
-                1e-7);
+    EXPECT_NEAR(ReadState(y.data()).v_IC_I.norm(),
+                exhaust_m_s * std::log(full_kg / (full_kg - flow_kg_s * boost_s)), 1e-7);
   }
 }
 

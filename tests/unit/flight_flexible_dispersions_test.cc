@@ -1,4 +1,5 @@
-// A flexible vehicle whose masses are dispersed: its modes and what its sections carry are those of the masses that fly.
+// A flexible vehicle whose masses are dispersed: its modes and what its sections carry are those of the
+// masses that fly.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +15,8 @@ namespace {
 FlightDefinition Flexible() {
   FlightDefinition definition = SampleDefinition();
   definition.vehicle = FlexibleSample();
-  definition.vehicle.profile = {{ProfileShape::kTangentOgive, 2.0, 1.0}, {ProfileShape::kCylinder, 18.0, 1.0}};
+  definition.vehicle.profile = {{ProfileShape::kTangentOgive, 2.0, 1.0},
+                                {ProfileShape::kCylinder, 18.0, 1.0}};
   StructureBeam& beam = *definition.vehicle.structure_beam;
   beam.rotary_inertia = false;  // a fuller grain has a narrower bore, hence another inertia
   beam.modes = beam.flown_modes = 2;
@@ -26,7 +28,8 @@ FlightDefinition Flexible() {
 // Everything weighs `factor` times as much.
 FlightInputs Heavier(double factor) {
   FlightInputs inputs;
-  for (std::size_t stage = 0; stage < 2; ++stage) inputs.dry_mass_factor[stage] = inputs.propellant_factor[stage] = factor;
+  for (std::size_t stage = 0; stage < 2; ++stage)
+    inputs.dry_mass_factor[stage] = inputs.propellant_factor[stage] = factor;
   return inputs;
 }
 
@@ -36,7 +39,8 @@ TEST(FlexibleDispersions, ModesOfAHeavierVehicleAreSlowerByTheRoot) {
   const FlightModel model(Flexible());
   const LauncherPlant heavy = model.PlantFor(Heavier(kFactor));
   for (std::size_t stack = 0; stack < 2; ++stack) {
-    const BendingTable &before = *model.nominal_plant().stacks[stack].bending, &after = *heavy.stacks[stack].bending;
+    const BendingTable &before = *model.nominal_plant().stacks[stack].bending,
+                       &after = *heavy.stacks[stack].bending;
     ASSERT_EQ(after.modes, before.modes);
     ASSERT_GT(after.modes, 0);
     ASSERT_EQ(after.propellant_kg.size(), before.propellant_kg.size());
@@ -48,7 +52,8 @@ TEST(FlexibleDispersions, ModesOfAHeavierVehicleAreSlowerByTheRoot) {
         SCOPED_TRACE(testing::Message() << "stack " << stack << ", level " << level << ", mode " << mode);
         // Of the modes' numerical solution.
         constexpr double kSame = 1e-8;
-        EXPECT_NEAR(to[BendingTable::kFrequency] / from[BendingTable::kFrequency], 1.0 / std::sqrt(kFactor), kSame);
+        EXPECT_NEAR(to[BendingTable::kFrequency] / from[BendingTable::kFrequency], 1.0 / std::sqrt(kFactor),
+                    kSame);
         EXPECT_NEAR(to[BendingTable::kInverseMass] / from[BendingTable::kInverseMass], 1.0 / kFactor, kSame);
         for (int column = BendingTable::kPivotDeflection; column < BendingTable::kMomentAt; ++column)
           EXPECT_NEAR(to[column], from[column], kSame) << column;
@@ -69,7 +74,8 @@ TEST(FlexibleDispersions, AreThoseOfAVehicleOfThoseMasses) {
   second.propellant_mass_kg += 50.0;
   second.motor.burning_time_s *= 1.05;
   second.grain.inner_diameter_m = std::sqrt(0.81 - 1.05 * (0.81 - 0.09));
-  const LauncherPlant dispersed = FlightModel(Flexible()).PlantFor(inputs), expected = FlightModel(built).PlantFor({}),
+  const LauncherPlant dispersed = FlightModel(Flexible()).PlantFor(inputs),
+                      expected = FlightModel(built).PlantFor({}),
                       nominal = FlightModel(Flexible()).PlantFor({});
   for (std::size_t stack = 0; stack < 2; ++stack) {
     const BendingTable &is = *dispersed.stacks[stack].bending, &should_be = *expected.stacks[stack].bending,

@@ -1,4 +1,5 @@
-// A spent stage by hand: what it weighs, where it is when it leaves and how fast, from a history made up for it.
+// A spent stage by hand: what it weighs, where it is when it leaves and how fast, from a history made up for
+// it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,8 +16,8 @@
 namespace dispersa::impact_spent_stage_test {
 namespace {
 
-// The shipped vehicle in calm air, stage 1 of which leaves; 40 km over the equator, flying east and up, its nose to the
-// east. Then its axis is I's y, and its down I's -x.
+// The shipped vehicle in calm air, stage 1 of which leaves; 40 km over the equator, flying east and up, its
+// nose to the east. Then its axis is I's y, and its down I's -x.
 struct Separation {
   Campaign campaign = [] {
     Campaign loaded = LoadCampaign(DISPERSA_CAMPAIGNS "/smoke.yaml");
@@ -101,8 +102,10 @@ void ExpectMass(const Separation& separation, double mass_kg, double other_kg) {
   EXPECT_EQ(points[0].from_time_s, separation.time_s);
   ASSERT_TRUE(points[0].impact);
   const double behind_m = Behind(separation.campaign.vehicle);
-  EXPECT_LT(Distance(*points[0].impact, separation.Falling(mass_kg, behind_m, separation.Velocity())), kSame_m);
-  EXPECT_GT(Distance(*points[0].impact, separation.Falling(other_kg, behind_m, separation.Velocity())), 100.0);
+  EXPECT_LT(Distance(*points[0].impact, separation.Falling(mass_kg, behind_m, separation.Velocity())),
+            kSame_m);
+  EXPECT_GT(Distance(*points[0].impact, separation.Falling(other_kg, behind_m, separation.Velocity())),
+            100.0);
 }
 
 TEST(SpentStage, OfASolidMotorIsEmpty) {
@@ -119,7 +122,8 @@ TEST(SpentStage, KeepsTheResidualOfItsTanks) {
   ExpectMass(separation, dry_kg + 300.0, dry_kg);
 }
 
-// Only the flight knows what an engine that is cut off at a velocity leaves: the mass that it loses as the stage goes.
+// Only the flight knows what an engine that is cut off at a velocity leaves: the mass that it loses as the
+// stage goes.
 TEST(SpentStage, CutOffAtAVelocityKeepsWhatTheFlightLost) {
   Separation separation;
   MakeLiquid(separation.First());
@@ -144,11 +148,13 @@ TEST(SpentStage, MovesWithTheTurningStackWithoutTheTipOff) {
   separation.Disperse("tip_off_yaw_stage1_deg_s", 2.0 * kRadPerDeg);
   const std::vector<ImpactPoint> points = separation.Points();
   ASSERT_EQ(points.size(), 1u);
-  const double behind_m = Behind(separation.campaign.vehicle), dry_kg = DryMass(separation.campaign.vehicle, 0);
+  const double behind_m = Behind(separation.campaign.vehicle),
+               dry_kg = DryMass(separation.campaign.vehicle, 0);
   // Yawing to the right, nose towards the south, throws the tail to the north.
   const Vector3 aside(0.0, 0.0, 3.0 * kRadPerDeg * behind_m);
   EXPECT_GT(aside.z(), 0.2);
-  EXPECT_LT(Distance(*points[0].impact, separation.Falling(dry_kg, behind_m, separation.Velocity() + aside)), kSame_m);
+  EXPECT_LT(Distance(*points[0].impact, separation.Falling(dry_kg, behind_m, separation.Velocity() + aside)),
+            kSame_m);
 }
 
 TEST(SpentStage, IsNoneWhereTheEngineOnlyBurnsAgain) {
@@ -159,14 +165,16 @@ TEST(SpentStage, IsNoneWhereTheEngineOnlyBurnsAgain) {
   EXPECT_TRUE(separation.Points().empty());
 }
 
-// A step of the air's length in the air, of the vacuum's above: a fall through both takes as many as it should.
+// A step of the air's length in the air, of the vacuum's above: a fall through both takes as many as it
+// should.
 TEST(SpentStage, FallsInShortStepsThroughTheAir) {
   const Separation separation;
   const FallingBody light{500.0, 8.0};
   const FallState high{0.0, {Wgs84().equatorial_radius_m + 200e3, 0.0, 0.0}, {500.0, 3000.0, 0.0}};
   const auto with = [&](FallSteps steps) { return Fall(Environment{}, light, high, steps).value(); };
   const Impact exact = with({0.01, 0.01});
-  // The error is that of the part of the fall with the long steps: of fourth order, next to nothing without air.
+  // The error is that of the part of the fall with the long steps: of fourth order, next to nothing without
+  // air.
   EXPECT_LT(Distance(with({0.01, 1.0}), exact), 0.1);
   EXPECT_GT(Distance(with({1.0, 0.01}), exact), 10.0 * Distance(with({0.01, 1.0}), exact));
 }

@@ -50,7 +50,8 @@ inline std::array<double, BendingTable::kRowSize> RowOf(const MadeUpMode& mode, 
   row[BendingTable::kPivotDeflection] = mode.Deflection(kBodyPivot_m);
   row[BendingTable::kPivotSlope] = mode.Slope(kBodyPivot_m);
   row[BendingTable::kUnitSlope] = mode.Slope(kBodyUnit_m);
-  for (std::size_t i = 0; i < kRateGyros; ++i) row[BendingTable::kGyroSlope + i] = mode.Slope(kBodyGyros_m[i]);
+  for (std::size_t i = 0; i < kRateGyros; ++i)
+    row[BendingTable::kGyroSlope + i] = mode.Slope(kBodyGyros_m[i]);
   for (std::size_t i = 0; i < kModes; ++i) row[BendingTable::kShortening + i] = mode.shortening[i];
   for (std::size_t i = 0; i < kStrips; ++i) {
     row[BendingTable::kStripsAt + i] = mode.Deflection(loads.strip_station_m[i]);
@@ -63,8 +64,8 @@ inline std::array<double, BendingTable::kRowSize> RowOf(const MadeUpMode& mode, 
   return row;
 }
 
-/// Of one propellant level, so that shapes do not change. `planes`: the modes of plane y, and of plane z where it
-/// differs.
+/// Of one propellant level, so that shapes do not change. `planes`: the modes of plane y, and of plane z
+/// where it differs.
 inline BendingTable MadeUpTable(const std::vector<std::vector<MadeUpMode>>& planes) {
   const LoadTable loads = MadeUpLoads();
   BendingTable table;
@@ -80,7 +81,8 @@ inline BendingTable MadeUpTable(const std::vector<std::vector<MadeUpMode>>& plan
 }
 
 /// One lane that bends as a table says.
-inline lanes::Bending<double> BendingOf(const BendingTable& table, double propellant_kg, double damping_ratio = 0.0) {
+inline lanes::Bending<double> BendingOf(const BendingTable& table, double propellant_kg,
+                                        double damping_ratio = 0.0) {
   lanes::Bending<double> bending{};
   bending.modes = table.modes;
   bending.planes = table.planes;

@@ -1,5 +1,5 @@
-// Parts of the beam, each against a part that is the same: a lumped body against a rod, two sections against one, what is
-// jettisoned against the mass model.
+// Parts of the beam, each against a part that is the same: a lumped body against a rod, two sections against
+// one, what is jettisoned against the mass model.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,9 +13,11 @@
 namespace dispersa::structure_beam_parts_test {
 namespace {
 
-// A rod that moves as a rigid body loads a section as a body at one station does that has its mass, centre and inertia.
+// A rod that moves as a rigid body loads a section as a body at one station does that has its mass, centre
+// and inertia.
 TEST(InertiaMoment, OfALumpedBodyIsThatOfTheRodItStandsFor) {
-  constexpr double kTop_m = 2.0, kBottom_m = 5.0, kPerLength_kg_m = 40.0, kGyration2_m2 = 0.3, kSection_m = 7.5;
+  constexpr double kTop_m = 2.0, kBottom_m = 5.0, kPerLength_kg_m = 40.0, kGyration2_m2 = 0.3,
+                   kSection_m = 7.5;
   const double length_m = kBottom_m - kTop_m, mass_kg = kPerLength_kg_m * length_m;
   BeamMasses rod, lumped;
   rod.spread = {{kTop_m, kBottom_m, {kPerLength_kg_m, kPerLength_kg_m}, {kGyration2_m2, kGyration2_m2}}};
@@ -43,7 +45,8 @@ TEST(BeamMasses, HaveWhatIsStillToBeJettisoned) {
     double mass = 0.0, first = 0.0, second = 0.0;
     const BeamMasses beam = BuildBeamMasses(vehicle, stage, propellant_kg);
     for (const SpreadMass& m : beam.spread) {
-      const double length = m.bottom_station_m - m.top_station_m, middle = 0.5 * (m.bottom_station_m + m.top_station_m);
+      const double length = m.bottom_station_m - m.top_station_m,
+                   middle = 0.5 * (m.bottom_station_m + m.top_station_m);
       const double kg = m.MassPerLength(middle) * length;
       mass += kg;
       first += kg * middle;
@@ -99,7 +102,8 @@ TEST(BendingModes, AreOfOnePlaneWhereTheStackIsRound) {
   const std::vector<StackModes> stacks = BuildBendingModes(vehicle);
   EXPECT_FALSE(stacks[0].axisymmetric);
   EXPECT_TRUE(stacks[1].axisymmetric);
-  EXPECT_GT(stacks[0].levels[1][0].modes[0].frequency_rad_s, 1.001 * stacks[0].levels[0][0].modes[0].frequency_rad_s);
+  EXPECT_GT(stacks[0].levels[1][0].modes[0].frequency_rad_s,
+            1.001 * stacks[0].levels[0][0].modes[0].frequency_rad_s);
   EXPECT_EQ(stacks[1].levels[1][0].modes[0].frequency_rad_s, stacks[1].levels[0][0].modes[0].frequency_rad_s);
 
   // A flight looks each plane up, and flies only modes that are slow enough in both.
@@ -108,7 +112,8 @@ TEST(BendingModes, AreOfOnePlaneWhereTheStackIsRound) {
                of_z = stacks[0].levels[1].back().modes[0].frequency_rad_s;
   EXPECT_EQ(ModesBelow(vehicle, stacks[0], 0.5 * (of_y + of_z)), 0);
   EXPECT_GE(ModesBelow(vehicle, stacks[0], 1.001 * of_z), 1);
-  const BendingTable table = BuildBendingTable(vehicle, stacks[0], loads, 1), round = BuildBendingTable(vehicle, stacks[1], loads, 1);
+  const BendingTable table = BuildBendingTable(vehicle, stacks[0], loads, 1),
+                     round = BuildBendingTable(vehicle, stacks[1], loads, 1);
   EXPECT_EQ(table.planes, 2);
   EXPECT_EQ(round.planes, 1);
   EXPECT_EQ(table.Row(0, 1, 0)[BendingTable::kFrequency], of_y);
@@ -127,8 +132,8 @@ TEST(ShownStations, AreThoseOfTheSensorsStillThereAndThePivot) {
   EXPECT_EQ(ShownStations(vehicle, 1).back().station_m, 10.0);
 }
 
-// The work that a force along the axis does against a bent beam: each element is compressed by what has to be pushed
-// ahead of it. A uniform beam's share ahead grows evenly; a mass at its nose is ahead of all.
+// The work that a force along the axis does against a bent beam: each element is compressed by what has to be
+// pushed ahead of it. A uniform beam's share ahead grows evenly; a mass at its nose is ahead of all.
 TEST(BendingTable, ShorteningCountsTheMassAhead) {
   Vehicle vehicle = FlexibleSample();
   vehicle.structure_beam->elements = 24;
@@ -159,7 +164,8 @@ TEST(BendingTable, ShorteningCountsTheMassAhead) {
         sum += ahead * slope(j) * slope(k) * 9.5 / kPlaces;
       }
       // The table sums at 400 places, and the payload counts at one of them.
-      EXPECT_NEAR(table.Row(0, 1, k)[BendingTable::kShortening + j], sum, 5e-3 * table.Row(0, 1, j)[BendingTable::kShortening + j]);
+      EXPECT_NEAR(table.Row(0, 1, k)[BendingTable::kShortening + j], sum,
+                  5e-3 * table.Row(0, 1, j)[BendingTable::kShortening + j]);
     }
 }
 

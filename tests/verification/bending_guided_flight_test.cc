@@ -1,5 +1,5 @@
-// A whole guided flight of a body that bends differently in its two planes, through wind and air, with a rate gyro in
-// each of two stages: the engine's steps against CVODE.
+// A whole guided flight of a body that bends differently in its two planes, through wind and air, with a rate
+// gyro in each of two stages: the engine's steps against CVODE.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,15 +26,17 @@ Flown FlyBy(const FlightModel& model, Scheme scheme) {
   return flown;
 }
 
-constexpr double kSameFiring_kg = 1e-9;           // a tick of the smallest thruster expels a thousand times as much
-constexpr double kPoweredBeforeCoast_s = 170.0;   // burnout of stage 3 is after it
+constexpr double kSameFiring_kg = 1e-9;  // a tick of the smallest thruster expels a thousand times as much
+constexpr double kPoweredBeforeCoast_s = 170.0;  // burnout of stage 3 is after it
 
 double Apart(const Flown& a, const Flown& b, std::size_t row, const char* column) {
-  return std::fabs(a.history.at(row, FindHistoryColumn(column)) - b.history.at(row, FindHistoryColumn(column)));
+  return std::fabs(a.history.at(row, FindHistoryColumn(column)) -
+                   b.history.at(row, FindHistoryColumn(column)));
 }
 
-// The largest distance of the angles until the first firing of a thruster that the two do not share: from there on they
-// are two flights of the closed loop, however exact the integration (flight_convergence_test.cc).
+// The largest distance of the angles until the first firing of a thruster that the two do not share: from
+// there on they are two flights of the closed loop, however exact the integration
+// (flight_convergence_test.cc).
 struct Distance {
   double pitch_deg = 0.0, yaw_deg = 0.0, alpha_deg = 0.0, until_s = HUGE_VAL;
 };
@@ -68,16 +70,19 @@ TEST(FlexibleGuidedFlight, IsThatOfCvode) {
   EXPECT_LT(d.yaw_deg, kSame_deg);
   EXPECT_LT(d.alpha_deg, kSame_deg);
   EXPECT_GT(d.until_s, kPoweredBeforeCoast_s) << "a firing in powered flight";
-  // Peaks of the powered flight through the air. Measured: 1e-8, 1e-6 and 1e-4 of them; the ripple counts what is left
-  // when the slow motion is taken out.
-  for (const auto& [metric, relative] :
-       {std::pair{"bending_moment_max_n_m", 1e-6}, {"deflection_rate_peak_deg_s", 2e-5}, {"deflection_ripple_deg", 2e-3}})
+  // Peaks of the powered flight through the air. Measured: 1e-8, 1e-6 and 1e-4 of them; the ripple counts
+  // what is left when the slow motion is taken out.
+  for (const auto& [metric, relative] : {std::pair{"bending_moment_max_n_m", 1e-6},
+                                         {"deflection_rate_peak_deg_s", 2e-5},
+                                         {"deflection_ripple_deg", 2e-3}})
     EXPECT_NEAR(MetricOf(engine.result, metric), MetricOf(exact.result, metric),
                 relative * MetricOf(exact.result, metric))
         << metric;
   // Guidance burns for the same arrival. One firing more or less is 1e-3 m/s.
-  EXPECT_NEAR(MetricOf(engine.result, "injection_altitude_km"), MetricOf(exact.result, "injection_altitude_km"), 1e-3);
-  EXPECT_NEAR(MetricOf(engine.result, "injection_velocity_m_s"), MetricOf(exact.result, "injection_velocity_m_s"), 0.01);
+  EXPECT_NEAR(MetricOf(engine.result, "injection_altitude_km"),
+              MetricOf(exact.result, "injection_altitude_km"), 1e-3);
+  EXPECT_NEAR(MetricOf(engine.result, "injection_velocity_m_s"),
+              MetricOf(exact.result, "injection_velocity_m_s"), 0.01);
   EXPECT_EQ(MetricOf(exact.result, "guidance_converged"), 1.0);
 }
 

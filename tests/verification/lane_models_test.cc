@@ -120,6 +120,29 @@ TEST(AeroGrid, IsTheTablesThemselves) {
   }
 }
 
+// A strip of a bent body takes the normal force by this slope.
+TEST(AeroGrid, TheSlopeOfTheNormalForceIsItsDerivative) {
+  BodyAerodynamics body = BuildNominalPlant(LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml")).stacks[0].aerodynamics;
+  body.cn.factor = 1.3;
+  const AeroGrid grid = BuildAeroGrid(body);
+  lanes::AeroBody<double> one;
+  lanes::SetLane(one, 0, body, grid);
+  Stream draws(8, 0, "flow");
+  int within = 0;
+  for (int k = 0; k < 2000; ++k) {
+    constexpr double kStep_rad = 1e-6;
+    const double mach = 10.0 * draws.Uniform(), incidence = 0.01 + 0.5 * draws.Uniform();
+    const auto cn = [&](double at) { return lanes::CoefficientsAt(one, mach, at).cn; };
+    const double up = (cn(incidence + kStep_rad) - cn(incidence)) / kStep_rad,
+                 down = (cn(incidence) - cn(incidence - kStep_rad)) / kStep_rad;
+    if (std::fabs(up - down) > 1e-6) continue;  // between two cells of the table
+    ++within;
+    // Rounding of cn up to 10 over a microradian.
+    EXPECT_NEAR(lanes::CoefficientsAt(one, mach, incidence).cn_slope_1_rad, up, 1e-6);
+  }
+  EXPECT_GT(within, 1500);
+}
+
 // One drive from rest under a command, by SUNDIALS on its derivative, and by the engine in steps of half a
 // tick.
 struct OneDrive {

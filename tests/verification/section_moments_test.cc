@@ -173,7 +173,8 @@ TEST(SectionMoments, OfARingingBeamAreItsStiffnessTimesItsCurvature) {
 TEST(SectionMoments, OfARingingBeamWithLiquidsAreItsStiffnessTimesItsCurvature) {
   Vehicle vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4_flexible.yaml");
   MakeLiquid(vehicle.stages[0]);
-  for (const std::size_t level : {0u, 5u}) ExpectRinging(vehicle, level);
+  vehicle.structure_beam->propellant_levels = 3;
+  for (const std::size_t level : {0u, 1u}) ExpectRinging(vehicle, level);
 }
 
 }  // namespace
