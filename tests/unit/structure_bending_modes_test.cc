@@ -29,7 +29,9 @@ BeamMassProperties BeamWeight(const Vehicle& vehicle, int stage, double propella
   }
   beam.timoshenko = vehicle.structure_beam->timoshenko;
   beam.masses = BuildBeamMasses(vehicle, stage, propellant_kg);
-  const std::vector<double> stations = MeshStations(beam.sections, beam.masses, 30);
+  // One mesh for all levels, as BuildBendingModes has it.
+  const double full_kg = vehicle.stages[static_cast<std::size_t>(stage)].propellant_mass_kg;
+  const std::vector<double> stations = MeshStations(beam.sections, BuildBeamMasses(vehicle, stage, full_kg), 30);
   return MassPropertiesOf(MassMatrix(beam, stations, BuildElements(beam, BeamPlane::kY, stations)), stations);
 }
 
