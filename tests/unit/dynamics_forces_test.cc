@@ -155,5 +155,19 @@ TEST(Forces, BesideTheAxisDriveTheModesByTheirCouple) {
   }
 }
 
+// Each flow is pushed aside on its own way through the turning body: the core's from its grain's middle at 15
+// m to 19.5 m, the boosters' from 16.5 m to 19.2 m.
+TEST(Forces, OfCoriolisAreOfEachFlowOnItsOwnWay) {
+  Case still = CaseOf("boosted", BuildNominalPlant(Boosted()), true, true);
+  RigidBodyState s = ReadState(still.y.data());
+  s.w_IB_B = {0.0, 0.2, -0.1};
+  WriteState(s, still.y.data());
+  Case flowing = still;
+  still.plant.flow_coriolis = false;
+  const Vector3 pushed = LoadsOf(flowing).force_n - LoadsOf(still).force_n;
+  const double way_kg_m_s = 100.0 * 4.5 + 75.0 * 2.7;
+  EXPECT_NEAR((pushed - 2.0 * way_kg_m_s * s.w_IB_B.cross(Vector3::UnitX())).norm(), 0.0, 1e-8);
+}
+
 }  // namespace
 }  // namespace dispersa::dynamics_forces_test
