@@ -40,6 +40,7 @@ TEST(LawMemory, SeesWhatIsWrittenBesideIt) {
     const LawMemory behind(size);
     BytesOf(behind)[size] = 1;
     EXPECT_FALSE(behind.IsSoundNearby()) << size;
+    EXPECT_FALSE(behind.IsSound()) << size;
   }
 }
 

@@ -290,5 +290,22 @@ TEST(ClosedLoopGuidance, KeepsWhatItSaidOfItsTarget) {
   EXPECT_FALSE(earlier.guidance.outcome().arrives);
 }
 
+// One reading of the thrust's direction counts for three tenths: a single bad one does little.
+TEST(ClosedLoopGuidance, BelievesAReadingOfTheThrustsDirectionByThreeTenths) {
+  const GuidanceMission mission = ReachableMission();
+  Plan plans[2];
+  for (int aside = 0; aside < 2; ++aside) {
+    PointFlight flight(mission, CoastState());
+    flight.Coast();
+    const double ignition_s = flight.guidance.ignition_s();
+    flight.Burn(GuidancePhase::kLastBurns, ignition_s, ignition_s + 3.04);  // the first call, which has none before it
+    flight.misalignment_rad_I = aside * (mission.R_IL * Vector3(0.0, 1.5 * kDeg, 0.0));
+    flight.Burn(GuidancePhase::kLastBurns, ignition_s, ignition_s + 4.06);
+    plans[aside] = flight.guidance.plan();
+  }
+  // Of 1.5 degrees 0.45; the metre a second that was missed in that second asks for another 0.03.
+  EXPECT_NEAR(std::fabs(plans[1].value[kPitchMiddle] - plans[0].value[kPitchMiddle]), 0.45 * kDeg, 0.15 * kDeg);
+}
+
 }  // namespace
 }  // namespace dispersa::guidance_closed_loop_test

@@ -151,5 +151,14 @@ TEST(MotorEstimate, DoesNotBelieveNonsense) {
   EXPECT_LE(wild.Stage(0.0).burn.vacuum_thrust_n, 1.15 * 30e3 + 1e-6);
 }
 
+// What gets lighter at once lies on no line, however straight the readings look.
+TEST(MotorEstimate, IsNominalOfAStageThatLosesMass) {
+  GuidanceMission mission = PlainMission();
+  mission.last.loses_mass = true;
+  MotorEstimate estimate(mission.last);
+  for (double t = 1.0; t < 10.0; t += 1.0) estimate.Add(t, 1.03 * 30e3 / (910.0 - 540.0 / 46.9 * t));
+  EXPECT_EQ(estimate.Stage(0.0).burn.vacuum_thrust_n, 30e3);
+}
+
 }  // namespace
 }  // namespace dispersa::guidance_corrector_test

@@ -113,5 +113,66 @@ TEST(Predictor, ThrustThatPointsElsewhereByASmallRotationIsTurnedByIt) {
               0.02 * down_m_s / straight.velocity_m_s);
 }
 
+// The plan's offsets of the burn below are added to the program: a program that has them already needs none.
+TEST(Predictor, OffsetsOfTheBurnBelowAreThoseOfItsProgram) {
+  const GuidanceMission mission = PlainMission();
+  const PlanPrior prior = BuildPrior(mission);
+  Knowledge known;
+  known.phase = GuidancePhase::kBelowBurns;
+  known.burn_ignition_s = CoastState().time_s;
+  known.below = mission.below;
+  known.last = mission.last;
+  const Injection straight = Predict(mission, prior, known, CoastState(), prior.nominal);
+  for (const Direction& offset : {Direction{0.02, 0.0}, Direction{0.0, 0.03}, Direction{-0.01, -0.02}}) {
+    Plan plan = prior.nominal;
+    plan.value[kBelowPitch] = offset.pitch_rad;
+    plan.value[kBelowYaw] = offset.yaw_rad;
+    const Injection found = Predict(mission, prior, known, CoastState(), plan);
+    GuidanceMission moved = mission;
+    for (Direction& at : moved.program.at) {
+      at.pitch_rad += offset.pitch_rad;
+      at.yaw_rad += offset.yaw_rad;
+    }
+    // The rest of the plan is that of the program as it was.
+    const Injection expected = Predict(moved, prior, known, CoastState(), prior.nominal);
+    EXPECT_NEAR(found.at.velocity_m_s, expected.at.velocity_m_s, 1e-6);
+    EXPECT_NEAR(found.at.flight_path_angle_rad, expected.at.flight_path_angle_rad, 1e-9);
+    EXPECT_NEAR(found.at.inclination_rad, expected.at.inclination_rad, 1e-9);
+    EXPECT_GT(std::fabs(found.at.velocity_m_s - straight.at.velocity_m_s) +
+                  1e3 * std::fabs(found.at.inclination_rad - straight.at.inclination_rad),
+              0.1)
+        << "it does something";
+  }
+}
+
+TEST(DirectionTable, HasItsSlopeFromItsFirstPointOnAndNoneOutside) {
+  DirectionTable table;
+  table.start_s = 10.0;
+  table.step_s = 2.0;
+  table.at = {{0.1, -0.2}, {0.3, -0.1}, {0.2, 0.5}};
+  EXPECT_DOUBLE_EQ(table.RateAt(10.0).pitch_rad, 0.1);
+  EXPECT_DOUBLE_EQ(table.RateAt(10.0).yaw_rad, 0.05);
+  EXPECT_DOUBLE_EQ(table.RateAt(13.0).pitch_rad, -0.05);
+  EXPECT_DOUBLE_EQ(table.At(11.0).pitch_rad, 0.2);
+  EXPECT_DOUBLE_EQ(table.At(13.0).yaw_rad, 0.2);
+  for (const double outside_s : {9.999, 14.0, 20.0}) {
+    EXPECT_EQ(table.RateAt(outside_s).pitch_rad, 0.0) << outside_s;
+    EXPECT_EQ(table.RateAt(outside_s).yaw_rad, 0.0) << outside_s;
+    const Direction& end = outside_s < 10.0 ? table.at.front() : table.at.back();
+    EXPECT_EQ(table.At(outside_s).pitch_rad, end.pitch_rad) << outside_s;
+    EXPECT_EQ(table.At(outside_s).yaw_rad, end.yaw_rad) << outside_s;
+  }
+}
+
+TEST(BuildPrior, TurnsTheLastBurnByFortyFiveDegreesAtMost) {
+  PlanPrior prior = BuildPrior(PlainMission());
+  EXPECT_EQ(prior.low[kWaste], 0.0);
+  prior.nominal.value[kWaste] = prior.high[kWaste];
+  EXPECT_NEAR(prior.nominal.TurnHalf(), 45.0 * kRadPerDeg, 1e-12);
+  // What a turn from +a to -a takes away of the velocity along its middle is 1 - sin(a)/a; the next term is -a⁴/120.
+  const double a = 0.25 * kPi;
+  EXPECT_NEAR(prior.high[kWaste], 1.0 - std::sin(a) / a, std::pow(a, 4) / 120.0);
+}
+
 }  // namespace
 }  // namespace dispersa::guidance_predictor_test
