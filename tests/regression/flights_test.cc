@@ -62,7 +62,6 @@ std::string Text(const CaseResult& result, std::size_t stages) {
   if (!result.reason.empty()) text += "reason " + result.reason + "\n";
   text += "end_time_s " + FormatNumber(result.end_time_s) + "\n";
   text += "end_stage " + std::to_string(result.end_stage) + "\n";
-  text += "digest " + result.digest.Hex() + "\n";
   const std::vector<double> nominal = InputValues({}, stages);
   for (std::size_t i = 0; i < result.inputs.size(); ++i)
     if (result.inputs[i] != nominal[i])
@@ -70,7 +69,8 @@ std::string Text(const CaseResult& result, std::size_t stages) {
   for (std::size_t i = 0; i < result.metrics.size(); ++i)
     if (!std::isnan(result.metrics[i]))
       text += "metric_" + MetricNames()[i] + " " + FormatNumber(result.metrics[i]) + "\n";
-  return text;
+  // Last, so that a difference is named by what it changes.
+  return text + "digest " + result.digest.Hex() + "\n";
 }
 
 class FlightGolden : public testing::TestWithParam<Kind> {};
