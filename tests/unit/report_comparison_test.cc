@@ -7,13 +7,13 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/report/case_columns.h"
-#include "tests/unit/report_test_support.h"
+#include "tests/unit/comparison_sample.h"
 
 namespace dispersa::report_comparison_test {
 namespace {
 
-using report_test::kNaN;
+using comparison_sample::Columns;
+using comparison_sample::CompareColumns;
 using report_test::MakeCampaign;
 using testing::AllOf;
 using testing::ElementsAre;
@@ -23,27 +23,6 @@ using testing::Not;
 using testing::StartsWith;
 
 constexpr char kMetric[] = "pitch_error_rms_deg";
-
-/// One input (all the others unread) and one metric a case.
-CaseColumns Columns(const std::vector<std::uint64_t>& index, const std::vector<double>& input,
-                    const std::vector<double>& metric, const char* name = kMetric) {
-  CaseColumns cases;
-  cases.index = index;
-  cases.outcome.assign(index.size(), Outcome::kCompleted);
-  cases.inputs.resize(InputCount(kUsualStages));
-  cases.inputs[0] = input;
-  cases.metrics.assign(MetricCount(kUsualStages), CaseColumn(std::vector<double>(index.size(), kNaN)));
-  cases.metrics[MetricColumn(name)] = metric;
-  return cases;
-}
-
-Comparison CompareColumns(const CaseColumns& a, const CaseColumns& b, const std::vector<Requirement>& requirements = {},
-                          const std::vector<std::string>& metrics = {}) {
-  Campaign of_a = MakeCampaign(a.rows());
-  const Campaign of_b = MakeCampaign(b.rows());
-  of_a.requirements = requirements;
-  return Compare({"A", "engine", of_a, a}, {"B", "engine", of_b, b}, metrics, {});
-}
 
 TEST(ReportComparison, PairsCasesOfEqualIndex) {
   const Comparison comparison =

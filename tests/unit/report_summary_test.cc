@@ -114,6 +114,23 @@ TEST(Judge, BoundsTheMetricByTheOrderStatisticThatDecides) {
   EXPECT_EQ(LimitWords(inside, "km"), "between -10 and 900 km");
 }
 
+// 2000 cases allow 2 failures. Each case without a result may be one, so that the bound moves towards the worst value.
+TEST(Judge, AMissingCaseIsWorseThanTheBound) {
+  const Requirement requirement = PeakBelow(0.5, 0.9973, 0.10);
+  const std::vector<double> bounds = {1997.0, 1998.0, 1999.0};
+  for (std::size_t missing = 0; missing < 4; ++missing) {
+    CaseColumns cases = Columns(2000 - missing, 0);
+    for (std::size_t i = 0; i < cases.rows(); ++i)
+      cases.metrics[MetricColumn(kPeak)][i] = 1e-4 * static_cast<double>(i + missing);
+    const RequirementSummary summary =
+        Judge(requirement, SamplingMethod::kMonteCarlo, cases, static_cast<std::int64_t>(missing));
+    ASSERT_EQ(summary.bound.has_value(), missing < 3) << missing;
+    if (missing == 3) continue;  // as many as a third failure: no value is a bound
+    EXPECT_DOUBLE_EQ(*summary.bound, 1e-4 * bounds[missing]);
+    EXPECT_DOUBLE_EQ(*summary.margin, 0.5 - 1e-4 * bounds[missing]);
+  }
+}
+
 TEST(Judge, CountsALostFlightWhateverItMeasured) {
   CaseColumns cases = Columns(100, 0);
   cases.outcome[3] = Outcome::kLostControl;

@@ -83,6 +83,34 @@ TEST(FirstOrderIndex, TheIntervalHoldsWhatItSays) {
   EXPECT_LE(covered, 199);
 }
 
+// The mean of y within k classes of n cases varies by chance alone: by (k - 1) / (n - 1) of the variance, 9 % of 100 cases
+// in 10 classes. The degrees of freedom take it off.
+TEST(FirstOrderIndex, OfAnIdleInputIsZeroOnAverage) {
+  constexpr int kRepetitions = 400;
+  double shares = 0.0, indices = 0.0;
+  for (std::uint64_t repetition = 0; repetition < kRepetitions; ++repetition) {
+    std::vector<double> x, y;
+    for (std::uint64_t k = 0; k < 100; ++k) {
+      x.push_back(Stream(repetition, k, "idle").Uniform());
+      y.push_back(Stream(repetition, k, "y").Normal());
+    }
+    shares += FirstOrderShare(x, y) / kRepetitions;
+    indices += FirstOrderIndex(x, y).index / kRepetitions;
+  }
+  // One share spreads by sqrt(2 (k - 1)) / n = 0.042; four standard errors of 400.
+  EXPECT_NEAR(shares, 0.0, 0.0085);
+  // The index is cut off at 0: its mean is that of half a normal of that spread, 0.4 of it.
+  EXPECT_NEAR(indices, 0.4 * 0.042, 0.0085);
+}
+
+// Nine cases in three classes, by hand: of 48 about the mean 6 are within the classes.
+TEST(FirstOrderIndex, IsKelleysEpsilonSquared) {
+  const std::vector<double> x = {1, 2, 3, 4, 5, 6, 7, 8, 9};
+  const std::vector<double> y = {1, 2, 3, 2, 3, 4, 6, 7, 8};  // class means 2, 3, 7; each has 2 within
+  const double total = 2.0 * 3.0 + 3.0 * (4.0 + 1.0 + 9.0);   // about the mean of 4
+  EXPECT_NEAR(FirstOrderShare(x, y), 1.0 - 8.0 / 6.0 * 6.0 / total, 1e-12);
+}
+
 TEST(FirstOrderIndex, DegenerateDataGiveZero) {
   EXPECT_EQ(FirstOrderIndex(std::vector<double>{1, 2, 3}, {1, 2, 3}).index, 0.0);  // too few
   const std::vector<double> same(100, 2.0);

@@ -88,6 +88,20 @@ TEST(VehiclePlausibility, AUsualVehicleIsNoNews) {
   EXPECT_EQ(Texts(UsualVehicle()), std::vector<std::string>{});
 }
 
+// A textbook's vehicle is warned about and not refused: the finding stays, with the usual span.
+TEST(VehiclePlausibility, WhatCannotBeIsUnusualOfAMadeUpVehicle) {
+  Vehicle vehicle = UsualVehicle();
+  vehicle.reaction_control.specific_impulse_s = 7000.0;
+  vehicle.made_up = true;
+  EXPECT_EQ(Texts(vehicle),
+            std::vector<std::string>{"unusual reaction_control.specific_impulse_s is 7000 s | 30 to 340 s (cold gas 40 to "
+                                     "75 s, hydrazine 220 to 240 s, two propellants to 330 s)"});
+  vehicle.made_up = false;
+  EXPECT_EQ(Texts(vehicle),
+            std::vector<std::string>{"impossible reaction_control.specific_impulse_s is 7000 s, which cannot be | up to "
+                                     "1000 s (cold gas 40 to 75 s, hydrazine 220 to 240 s, two propellants to 330 s)"});
+}
+
 struct Slip {
   const char* name;
   std::function<void(Vehicle&)> make;
