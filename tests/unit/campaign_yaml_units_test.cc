@@ -1,0 +1,195 @@
+// Any quantity in any of its units is read as the same value, written so that it reads back, and limited in that unit.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "core/campaign_yaml/number_text.h"
+#include "core/campaign_yaml/parse_yaml.h"
+#include "core/campaign_yaml/units.h"
+#include "core/campaign_yaml/yaml_reader.h"
+
+namespace dispersa::campaign_yaml_units_test {
+namespace {
+
+using std::numbers::pi;
+
+/// What one of each unit is in SI and radians, by the definitions of the units.
+const std::map<std::string_view, double> kInSi = {
+    {"m", 1.0},          {"km", 1000.0},       {"mm", 0.001},          {"um", 0.000001},      {"m2", 1.0},
+    {"s", 1.0},          {"ms", 0.001},        {"kg", 1.0},            {"ton", 1000.0},       {"kg_s", 1.0},
+    {"kg_m2", 1.0},      {"kg_m", 1.0},        {"gpa", 1e9},           {"mpa", 1e6},          {"pa", 1.0},
+    {"kpa", 1e3},        {"n_m2", 1.0},        {"kn_m2", 1e3},         {"mn_m2", 1e6},        {"n", 1.0},
+    {"kn", 1e3},         {"n_m", 1.0},         {"kn_m", 1e3},          {"pa_rad", 1.0},       {"kpa_rad", 1e3},
+    {"pa_deg", pi / 180}, {"w_m2", 1.0},       {"kw_m2", 1e3},         {"m_s", 1.0},          {"km_s", 1e3},
+    {"km_h", 1000.0 / 3600.0}, {"g", 1.0},     {"deg", pi / 180},      {"rad", 1.0},          {"deg_s", pi / 180},
+    {"rad_s", 1.0},      {"hz", 2 * pi},       {"deg_s2", pi / 180},   {"rad_s2", 1.0},       {"1_s", 1.0},
+    {"1_s2", 1.0},       {"per_km", 0.001},    {"per_m", 1.0},         {"per_m_s", 1.0},      {"kg_m3", 1.0},
+    {"percent", 0.01},   {"k", 1.0},           {"percent_per_k", 0.01}, {"per_deg", 180 / pi}, {"per_rad", 1.0}};
+
+const std::vector<std::pair<const char*, Dimension>> kDimensions = {
+    {"length", kLength},
+    {"area", kArea},
+    {"time", kTime},
+    {"mass", kMass},
+    {"mass flow", kMassFlow},
+    {"inertia", kInertia},
+    {"mass per length", kMassPerLength},
+    {"modulus", kModulus},
+    {"bending stiffness", kBendingStiffness},
+    {"force", kForce},
+    {"moment", kMoment},
+    {"pressure", kPressure},
+    {"pressure times angle", kPressureAngle},
+    {"heat flux", kHeatFlux},
+    {"speed", kSpeed},
+    {"acceleration", kAcceleration},
+    {"angle", kAngle},
+    {"angular rate", kAngularRate},
+    {"frequency", kFrequency},
+    {"angular acceleration", kAngularAcceleration},
+    {"per time", kPerTime},
+    {"per time squared", kPerTimeSquared},
+    {"per length", kPerLength},
+    {"per speed", kPerSpeed},
+    {"density", kDensity},
+    {"share", kShare},
+    {"temperature difference", kTemperatureDifference},
+    {"per temperature", kPerTemperature},
+    {"per angle", kPerAngle}};
+
+constexpr double kValues[] = {0.0, 1.0, -1.0, 0.1, 7.0, 1.0 / 3.0, 123.456, 6378137.0, 1e-9, -2.5e17};
+
+/// Reads "thing_UNIT: text" as a quantity; problems as a user reads them, one a line.
+double Read(const std::string& key, const std::string& text, Dimension dimension, std::string* problems,
+            const Range& range = kAnyNumber) {
+  std::vector<InputProblem> found;
+  const InputNode node = ParseYaml(key + ": " + text + "\n", "file", found);
+  double value = 0.0;
+  {
+    MapReader map(node, "", found);
+    value = map.Quantity("thing", dimension, range);
+  }
+  problems->clear();
+  for (const InputProblem& problem : found) *problems += problem.Text() + "\n";
+  return value;
+}
+
+std::string Key(const Unit& unit) { return "thing_" + std::string(unit.suffix); }
+
+class Units : public testing::TestWithParam<std::size_t> {
+ protected:
+  Dimension dimension_ = kDimensions[GetParam()].second;
+  std::string problems_;
+};
+
+TEST_P(Units, AreReadAsWhatTheyAre) {
+  for (const Unit& unit : dimension_) {
+    ASSERT_TRUE(kInSi.contains(unit.suffix)) << unit.suffix;
+    for (const double value : kValues) {
+      EXPECT_DOUBLE_EQ(Read(Key(unit), FormatNumber(value), dimension_, &problems_), value * kInSi.at(unit.suffix))
+          << unit.suffix;
+      EXPECT_EQ(problems_, "");
+    }
+  }
+}
+
+TEST_P(Units, AreWrittenSoThatTheyReadBack) {
+  for (const Unit& unit : dimension_) {
+    for (const double value : kValues) {
+      // What was read from a text is written as a text that gives the same bits.
+      const double inside = Read(Key(unit), FormatNumber(value), dimension_, &problems_);
+      const std::string text = FormatScaled(inside, unit.scale);
+      EXPECT_EQ(Read(Key(unit), text, dimension_, &problems_), inside) << text << " " << unit.suffix;
+      EXPECT_LE(text.size(), FormatNumber(value).size()) << "longer than what was read";
+      // Of any other value the nearest: within the rounding of a division and a product.
+      EXPECT_NEAR(Read(Key(unit), FormatScaled(value, unit.scale), dimension_, &problems_), value,
+                  std::fabs(value) * 3e-16);
+    }
+  }
+}
+
+TEST_P(Units, StateTheirLimits) {
+  const Range range{-2.0, 5.0, false, true};
+  for (const Unit& unit : dimension_) {
+    const double scale = kInSi.at(unit.suffix);
+    const std::string number = FormatNumber(6.0 / scale);
+    EXPECT_EQ(Read(Key(unit), number, dimension_, &problems_, range), 0.0);
+    EXPECT_EQ(problems_, "file:1:" + std::to_string(Key(unit).size() + 3) + ": " + Key(unit) + ": " + number +
+                             " is out of range, allowed: a number not below " + FormatScaled(-2.0, unit.scale) +
+                             " and below " + FormatScaled(5.0, unit.scale) + "\n");
+    EXPECT_DOUBLE_EQ(Read(Key(unit), FormatNumber(4.0 / scale), dimension_, &problems_, range), 4.0);
+    EXPECT_EQ(problems_, "");
+  }
+}
+
+TEST_P(Units, AreGivenOnceAndAreOfTheirDimension) {
+  std::string keys;
+  for (const Unit& unit : dimension_) keys += (keys.empty() ? "" : ", ") + Key(unit);
+  if (dimension_.size() > 1) {
+    std::vector<InputProblem> found;
+    const InputNode node = ParseYaml(Key(dimension_[1]) + ": 1\n" + Key(dimension_[0]) + ": 1\n", "file", found);
+    MapReader(node, "", found).Quantity("thing", dimension_, kAnyNumber);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found[0].Text(), "file:1:" + std::to_string(Key(dimension_[1]).size() + 3) + ": " + Key(dimension_[1]) +
+                                   ": '" + Key(dimension_[0]) + "' is given too, allowed: one of the two");
+  }
+  // A unit of something else is told from a wrong name.
+  for (const auto& [suffix, si] : kInSi) {
+    const auto is_ours = [&](const Unit& unit) { return unit.suffix == suffix; };
+    if (std::any_of(dimension_.begin(), dimension_.end(), is_ours)) continue;
+    const std::string key = "thing_" + std::string(suffix);
+    Read(key, "1", dimension_, &problems_);
+    // "ms" is how some write m/s.
+    const std::string guess = suffix == "ms" && kDimensions[GetParam()].second.data() == kSpeed
+                                  ? " (did you mean 'thing_m_s'?)"
+                                  : "";
+    EXPECT_EQ(problems_, "file:1:1: " + key + ": the unit of '" + key + "' is not known here" + guess +
+                             ", allowed: " + keys + "\n");
+  }
+  Read("thing", "1", dimension_, &problems_);
+  EXPECT_EQ(problems_, "file:1:1: thing: missing unit (did you mean '" + Key(dimension_[0]) + "'?), allowed: " + keys + "\n");
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, Units, testing::Range(std::size_t{0}, kDimensions.size()), [](const auto& number) {
+  std::string name = kDimensions[number.param].first;
+  std::replace(name.begin(), name.end(), ' ', '_');
+  return name;
+});
+
+// Another spelling is guessed wherever its unit is allowed.
+TEST(UnitSpellings, AreUnderstoodWhereTheyAreMeant) {
+  for (const UnitSpelling& spelling : kUnitSpellings) {
+    ASSERT_TRUE(kInSi.contains(spelling.meant)) << spelling.written;
+    for (const auto& [name, dimension] : kDimensions) {
+      const auto has = [&, units = dimension](std::string_view suffix) {
+        return std::any_of(units.begin(), units.end(), [&](const Unit& unit) { return unit.suffix == suffix; });
+      };
+      if (!has(spelling.meant) || has(spelling.written)) continue;
+      std::string problems;
+      Read("thing_" + std::string(spelling.written), "1", dimension, &problems);
+      EXPECT_NE(problems.find("(did you mean 'thing_" + std::string(spelling.meant) + "'?)"), std::string::npos)
+          << name << ": " << problems;
+    }
+  }
+}
+
+TEST(UnitsOfLists, CountForEveryItem) {
+  std::vector<InputProblem> found;
+  const InputNode node = ParseYaml("times_ms: [0, 250, 1e3]\nwidth_mm: 40\nlength_km: [2, 3]\n", "file", found);
+  MapReader map(node, "", found);
+  std::string key;
+  EXPECT_EQ(map.Quantities("times", kTime, kAnyNumber, 1, 9, &key), (std::vector<double>{0.0, 0.25, 1.0}));
+  EXPECT_EQ(key, "times_ms");
+  EXPECT_EQ(map.Ends("width", kLength, kAnyNumber), (std::array<double, 2>{0.04, 0.04}));
+  EXPECT_EQ(map.Ends("length", kLength, kAnyNumber), (std::array<double, 2>{2000.0, 3000.0}));
+  EXPECT_EQ(map.OptionalQuantity("height", kLength, kAnyNumber), std::nullopt);
+  EXPECT_TRUE(found.empty());
+}
+
+}  // namespace
+}  // namespace dispersa::campaign_yaml_units_test
