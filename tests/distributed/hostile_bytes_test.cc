@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <random>
 #include <vector>
@@ -11,17 +10,14 @@
 #include "services/transport/endpoints.h"
 #include "services/transport/sieve.h"
 #include "services/transport/wire_shape.h"
+#include "tests/fuzz.h"
 
 namespace dispersa::hostile_bytes_test {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// How many mutated samples a fuzzing test tries; tests/run --long sets more.
-std::uint64_t Inputs() {
-  const char* text = std::getenv("DISPERSA_FUZZ_INPUTS");
-  return text == nullptr ? 100'000 : std::strtoull(text, nullptr, 10);
-}
+using fuzz::Inputs;
 
 template <typename PubSubType>
 Bytes Encode(typename PubSubType::type message) {
@@ -68,7 +64,7 @@ void Fuzz(const typename PubSubType::type& sample) {
   const Bytes good = Encode<PubSubType>(sample);
   ASSERT_TRUE(Decode<PubSubType>(good, &message));
   ASSERT_TRUE(Encode<PubSubType>(message) == good);
-  std::mt19937_64 chance(17);
+  std::mt19937_64 chance(fuzz::Seed());
   for (std::uint64_t i = 0; i < Inputs(); ++i) {
     Bytes bytes = good;
     for (std::uint64_t k = chance() % 4; k < 4; ++k) {
@@ -89,11 +85,12 @@ void Fuzz(const typename PubSubType::type& sample) {
       }
     }
     if (!Decode<PubSubType>(bytes, &message)) continue;
-    if (const auto plain = FromIdl(message)) (void)Problem(*plain);
+    if (const auto plain = FromIdl(message)) (void)Problem(*plain);  // what it answers: validity_test.cc
   }
 }
 
 TEST(HostileBytes, EveryDecoderSurvivesDamagedSamples) {
+  fuzz::Chance();  // says how to repeat it
   Fuzz<idl::ReportV2PubSubType>(ToIdl(SampleReport()));
   Fuzz<idl::OrdersV1PubSubType>(ToIdl(SampleOrders()));
   Fuzz<idl::WorkerStatusV2PubSubType>(ToIdl(SampleStatus()));
@@ -265,7 +262,7 @@ TEST(Sieve, DropsEncryptedSubmessagesThatClaimMoreThanThereIs) {
 }
 
 TEST(Sieve, JudgesAnyDatagram) {
-  std::mt19937_64 chance(3);
+  std::mt19937_64 chance = fuzz::Chance();
   for (std::uint64_t i = 0; i < Inputs(); ++i) {
     Bytes bytes = chance() % 3 == 0   ? Gap(chance() % 9, chance() % 99)
                   : chance() % 2 == 0 ? Fragment(1, 100, 2000)

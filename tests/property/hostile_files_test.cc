@@ -1,11 +1,9 @@
 // Damaged files: whatever stands in a YAML file or a stored database, the answer is what the file says or an
-// error that names what is wrong, and never a wrong number. DISPERSA_FUZZ_INPUTS: how many of each kind
-// (default 100,000; tests/run --long: 1,000,000).
+// error that names what is wrong, and never a wrong number. tests/fuzz.h: how many of each kind, and their seed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -21,16 +19,14 @@
 #include "core/flight/metrics.h"
 #include "core/report/fingerprint.h"
 #include "core/report/result_folder.h"
+#include "tests/fuzz.h"
 
 namespace dispersa::hostile_files_test {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::uint64_t Inputs() {
-  const char* text = std::getenv("DISPERSA_FUZZ_INPUTS");
-  return text == nullptr ? 100'000 : std::strtoull(text, nullptr, 10);
-}
+using fuzz::Inputs;
 
 std::string Read(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -45,7 +41,7 @@ void Write(const fs::path& file, std::string_view text) {
 class HostileFiles : public testing::Test {
  protected:
   HostileFiles() {
-    // In memory: some hundred thousand files are written.
+    // In memory: very many files are written.
     const fs::path parent = fs::exists("/dev/shm") ? fs::path("/dev/shm") : fs::temp_directory_path();
     std::string pattern = (parent / "dispersa-hostile-XXXXXX").string();
     root_ = mkdtemp(pattern.data());
@@ -143,7 +139,7 @@ class HostileFiles : public testing::Test {
   }
 
   fs::path root_;
-  std::mt19937_64 chance_{23};
+  std::mt19937_64 chance_ = fuzz::Chance();
 };
 
 TEST_F(HostileFiles, AutopilotsAreReadOrRefused) {
@@ -169,10 +165,10 @@ TEST_F(HostileFiles, CampaignsAreReadOrRefused) {
     if (fs::exists(fs::path(DISPERSA_CAMPAIGNS) / folder))
       fs::create_symlink(fs::path(DISPERSA_CAMPAIGNS) / folder, root_ / folder);
   }
-  Fuzz(DISPERSA_CAMPAIGNS "/table3.yaml", Inputs() / 200,
+  Fuzz(DISPERSA_CAMPAIGNS "/table3.yaml", Inputs() / 50,
        [](const std::string& path) { LoadCampaign(path); });
   const std::string canonical = LoadCampaign(DISPERSA_CAMPAIGNS "/smoke.yaml").canonical_yaml;
-  for (std::uint64_t i = 0; i < Inputs() / 1000; ++i) {
+  for (std::uint64_t i = 0; i < Inputs() / 100; ++i) {
     const std::string damaged = DamagedText(canonical);
     try {
       ParseCampaign(damaged, "canonical");

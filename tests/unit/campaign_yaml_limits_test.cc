@@ -2,14 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <cstdlib>
-#include <random>
 #include <string>
 #include <vector>
 
 #include "core/campaign/input_error.h"
 #include "core/campaign_yaml/load.h"
 #include "core/campaign_yaml/parse_yaml.h"
+#include "tests/fuzz.h"
 
 namespace dispersa::campaign_yaml_limits_test {
 namespace {
@@ -65,15 +64,13 @@ TEST(YamlLimits, ATextOf20MBEndsSoon) {
 }
 
 TEST(YamlLimits, DamagedTextsAreRefusedOrRead) {
-  const char* wanted = std::getenv("DISPERSA_FUZZ_INPUTS");
-  const std::uint64_t inputs = wanted == nullptr ? 100'000 : std::strtoull(wanted, nullptr, 10);
   const std::string good =
       "schema: dispersa/campaign/1\nname: \"trial\"\nsampling: {method: monte_carlo, cases: 100, seed: 1}\n"
       "requirements:\n  - {metric: pitch_error_peak_deg, below: 0.5, probability: 0.9973, consumer_risk: "
       "0.1}\n";
   const std::string bits = "{}[]:,-#&*!|>'\"%@`\\ \n\t0\xff";
-  std::mt19937_64 chance(5);
-  for (std::uint64_t i = 0; i < inputs; ++i) {
+  std::mt19937_64 chance = fuzz::Chance();
+  for (std::uint64_t i = 0; i < fuzz::Inputs(); ++i) {
     std::string text = good;
     for (std::uint64_t k = 1 + chance() % 5; k > 0; --k) {
       const std::size_t at = chance() % text.size();
