@@ -379,7 +379,6 @@ TEST(Simulation, EveryWorldComesToItsEndSoonAfterItsTroubles) {
     latest_s = std::max(latest_s, world.now_s());
   }
   RecordProperty("latest_s", std::to_string(latest_s));
-  std::printf("the last world ended %.1f s after the troubles\n", latest_s - kCalm_s);
   SetLogLevel(LogLevel::kInfo);
 }
 

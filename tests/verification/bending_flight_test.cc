@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 
 #include "core/campaign_yaml/load.h"
@@ -113,10 +112,8 @@ TEST(BendingFlight, ASteadyForceBendsTheBodyAsItBendsTheBeam) {
       }
       const double expected = plane == 1 ? exact : -exact;
       const double error = std::fabs(slope / expected - 1.0);
-      std::printf("plane %c: slope at the inertial unit %.4e rad by %d modes, %.4e by finite elements: %.3f\n",
-                  plane == 0 ? 'y' : 'z', slope, modes, expected, error);
       // Of a sum of infinitely many.
-      EXPECT_LT(error, 0.5 * last);
+      EXPECT_LT(error, 0.5 * last) << "plane " << (plane == 0 ? 'y' : 'z') << ", " << modes << " modes";
       if (plane == 1) last = error;
     }
   }
@@ -236,10 +233,9 @@ TEST(BendingFlight, TheStepConvergesToCvode) {
     double error[3] = {(at.w_IB_B - truth.w_IB_B).norm(), 0.0, 0.0};
     for (int i = kModalState; i < kModalRate; ++i) error[1] = std::max(error[1], std::fabs(y[i] - exact[static_cast<std::size_t>(i)]));
     for (int i = kModalRate; i < kLauncherSize; ++i) error[2] = std::max(error[2], std::fabs(y[i] - exact[static_cast<std::size_t>(i)]));
-    std::printf("step %.4f s: %.2e rad/s, %.2e m, %.2e m/s\n", 1.0 / steps, error[0], error[1], error[2]);
     for (int i = 0; i < 3; ++i) {
       if (last[i] > 0.0) {
-        EXPECT_LT(error[i], 0.1 * last[i]) << i;
+        EXPECT_LT(error[i], 0.1 * last[i]) << i << ", " << steps << " steps";
       }
       last[i] = error[i];
     }
@@ -354,13 +350,9 @@ TEST(BendingFlight, MarginsMeasuredInFlightAreTheComputedOnes) {
       int noticed_ticks = 1;
       while (noticed_ticks < 25 && GrowthWithDelay(model, m.stage, noticed_ticks) < kNoticed) ++noticed_ticks;
       const double noticed_s = noticed_ticks * definition.autopilot.tick_s;
-      std::printf(
-          "%s, stage %d: %.1f dB computed, %.1f dB measured; %.0f ms computed, %.0f ms measured, "
-          "grown by then at %.0f ms\n",
-          autopilot, m.stage + 1, up_db, m.gain_up_db, 1e3 * delay_s, 1e3 * m.delay_s, 1e3 * noticed_s);
       // Lost counts an oscillation of 0.2 deg, which excitation reaches before the loop is unstable: 1 dB
       // below its margin a loop amplifies ninefold, 1 / (1 - 10^(-1/20)).
-      EXPECT_GT(m.gain_up_db, up_db - 1.0) << m.stage;
+      EXPECT_GT(m.gain_up_db, up_db - 1.0) << autopilot << ", " << m.stage;
       EXPECT_LT(m.gain_up_db, up_db + 0.5) << m.stage;
       EXPECT_GT(m.delay_s, 0.85 * delay_s) << m.stage;
       EXPECT_LE(m.delay_s, noticed_s) << m.stage;
@@ -389,10 +381,9 @@ TEST(BendingFlight, AStiffBodyIsARigidOne) {
     const char* names[] = {"pitch_error_rms_stage1_deg", "pitch_error_rms_stage2_deg", "alpha_max_deg"};
     for (int i = 0; i < 3; ++i) {
       const double error = std::fabs(MetricOf(stiff, names[i]) / MetricOf(exact, names[i]) - 1.0);
-      std::printf("frequencies times %.0f: %s differs by %.2e\n", factor, names[i], error);
       // Compliance falls to a quarter.
       if (last[i] > 0.0) {
-        EXPECT_LT(error, 0.4 * last[i]) << names[i];
+        EXPECT_LT(error, 0.4 * last[i]) << names[i] << ", frequencies times " << factor;
       }
       last[i] = error;
     }

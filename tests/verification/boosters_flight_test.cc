@@ -158,7 +158,6 @@ TEST(Boosters, TheirFlowTakesAngularMomentumWithIt) {
     Advance(plant, Boosting(), 0.0, end_s, y.data());
     EXPECT_NEAR(ReadState(y.data()).w_IB_B[axis] / 0.01, expected, 1e-9) << axis;
   }
-  std::printf("rates at burnout / at ignition: across %.4f, about the axis %.4f\n", across, about);
 }
 
 // In two steps; and what `validate` calls the ideal gain is the same.
@@ -189,7 +188,6 @@ TEST(Boosters, GainTheRocketEquationsSpeed) {
       (core.motor.thrust_n + b.count * b.motor.thrust_n) / (core_kg_s + beside_kg_s) *
           std::log(core.liftoff_mass_kg / at_boost_kg) +
       core.motor.thrust_n / core_kg_s * std::log(alone_kg / (alone_kg - core_kg_s * (core_s - boost_s)));
-  std::printf("%.4f m/s\n", exact_m_s);
   EXPECT_NEAR(ReadState(y.data()).v_IC_I.norm(), exact_m_s, 1e-6);
   EXPECT_NEAR(FiguresOf(vehicle)[0].ideal_delta_v_m_s, exact_m_s, 1e-6);
 }
@@ -246,9 +244,6 @@ TEST(Boosters, FlyInThreeAndSixDegreesOfFreedom) {
   EXPECT_NEAR(dropped_kg, 4 * 150.0 + 0.01 * 18760.0 / 70.7, 1e-6);
   EXPECT_NEAR(MetricOf(flown, "injection_velocity_m_s"), ascent.orbit.velocity_m_s, 2.0);
   EXPECT_NEAR(MetricOf(flown, "injection_altitude_km"), 1e-3 * ascent.orbit.altitude_m, 2.0);
-  std::printf("3DOF %.1f km, %.2f m/s; 6DOF %.1f km, %.2f m/s\n", 1e-3 * ascent.orbit.altitude_m,
-              ascent.orbit.velocity_m_s, MetricOf(flown, "injection_altitude_km"),
-              MetricOf(flown, "injection_velocity_m_s"));
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "tests/slv4_flight.h"
@@ -93,8 +92,7 @@ void ExpectConvergence(const FlightInputs& inputs, Scheme scheme, double least_r
   for (const int steps : {1, 2, 4}) {
     const Flown flown = FlyWith(model, inputs, scheme, steps);
     const Differences d = Between(flown, exact, until_s);
-    std::printf("%d steps a tick - CVODE: %.2e m, %.2e m/s, %.2e deg; %.2e deg to the first other firing at %.1f s\n",
-                steps, d.altitude_m, d.velocity_m_s, d.pitch_error_deg, d.before_firing_deg, d.firing_s);
+    SCOPED_TRACE(std::to_string(steps) + " steps a tick");
     const Limits& limit = std::isinf(d.firing_s) ? kSameFirings : kOtherFirings;
     // One other firing may be followed by others: they are counted by what they expel.
     const double firings = std::max(1.0, std::round(d.expelled_kg / kFiring_kg));

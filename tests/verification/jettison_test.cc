@@ -95,7 +95,6 @@ TEST(Jettison, IsWorthWhatTheRocketEquationSays) {
   const double expected_m_s =
       exhaust_m_s * (gain(last.liftoff_mass_kg - kFairing_kg) - gain(last.liftoff_mass_kg));
   const double found_m_s = without.orbit.velocity_m_s - with.orbit.velocity_m_s;
-  std::printf("%.2f m/s by the rocket equation, %.2f m/s found\n", expected_m_s, found_m_s);
   // The rest is gravity along a path that the faster stage turns sooner.
   EXPECT_NEAR(found_m_s, expected_m_s, 0.01 * expected_m_s);
 }
@@ -146,8 +145,6 @@ TEST(Jettison, HappensOnATickWhateverTheSteps) {
       EXPECT_NEAR(flux, each.threshold, 0.01 * each.threshold);
     }
     EXPECT_NEAR(MetricOf(flown, "injection_velocity_m_s"), ascent.orbit.velocity_m_s, 2.0);
-    std::printf("3DOF at %.2f s, 6DOF at %.2f s (%.1f km, %.0f W/m2)\n", at_s, flown_s, 1e-3 * altitude_m,
-                flux);
   }
 }
 

@@ -26,9 +26,6 @@ TEST(AirTable, IsWithinItsToleranceOfTheStandardEverywhere) {
         std::max(density, std::fabs(looked_up.pressure_pa / looked_up.energy_j_kg / air.density_kg_m3 - 1.0));
     sound = std::max(sound, std::fabs(Sqrt(1.4 * looked_up.energy_j_kg) / air.speed_of_sound_m_s - 1.0));
   }
-  std::printf(
-      "relative error of the air table: pressure %.1e, density %.1e, speed of sound %.1e; %zu cells\n",
-      pressure, density, sound, StandardAir().edges.size() - 1);
   EXPECT_LT(pressure, kAirTableTolerance);
   EXPECT_LT(density, kAirTableTolerance);
   // The root of an energy as exact as the density.

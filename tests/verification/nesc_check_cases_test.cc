@@ -325,7 +325,6 @@ TEST(NescCheckCases, TableOfTheReadme) {
   const std::size_t first = text.find("| quantity |", begin);
   ASSERT_LT(first, end) << "no table between the markers of " << path;
   const std::string table = VerificationTable();
-  std::printf("%s", table.c_str());
   const char* rewrite = std::getenv("DISPERSA_REWRITE_GOLDENS");
   if (rewrite != nullptr && std::string(rewrite) == "1") {
     std::ofstream(path, std::ios::binary) << text.replace(first, end - first, table);

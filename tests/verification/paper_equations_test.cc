@@ -597,8 +597,6 @@ TEST(PaperEquations, PlanarFormIsTheLimitOfTheProduction3Dof) {
   EXPECT_NEAR(v.z(), 0.0, 1e-9);
   const double eta = std::atan2(p.y(), p.x());
   const double path_3dof = std::asin(p.dot(v) / (p.norm() * v.norm()));
-  std::printf("3DOF - planar: h %+.2e m, l %+.2e m, V %+.2e m/s, path angle %+.2e deg\n",
-              p.norm() - kRadius_m - h, eta * kRadius_m - l, v.norm() - V, (path_3dof - path) * kDegPerRad);
   // The kinks of the tables leave each integration centimetres (they fall between steps).
   EXPECT_NEAR(p.norm() - kRadius_m, h, 0.1);
   EXPECT_NEAR(eta * kRadius_m, l, 0.2);  // (4), (6)

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <vector>
 
 #include "core/campaign_yaml/load.h"
@@ -184,8 +183,6 @@ TEST(CutOffAtVelocity, EndsAtThatSpeedInBothModels) {
     EXPECT_NEAR(burns.begin_kg[kFirstBurn] - burns.end_kg[kFirstBurn], flow_kg_s * flown_s, 1e-6);
     const double again_s = burns.end_s[kSecondBurn] - burns.begin_s[kSecondBurn];
     EXPECT_NEAR(burns.begin_kg[kSecondBurn] - burns.end_kg[kSecondBurn], flow_kg_s * again_s, 1e-6);
-    std::printf("thrust %.2f: burns of %.3f and %.3f s, 3DOF %.3f s and then to %.3f s\n", thrust, flown_s, again_s,
-                ascent.cut_off_s[kFirstBurn], ascent.cut_off_s[kSecondBurn]);
     if (thrust == 1.0) {
       EXPECT_NEAR(flown_s, ascent.cut_off_s[kFirstBurn], 0.05);
       EXPECT_NEAR(again_s, ascent.cut_off_s[kSecondBurn], 0.05);

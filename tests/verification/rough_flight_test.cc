@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "tests/slv4_flight.h"
 
@@ -29,6 +28,7 @@ struct Difference {
   double altitude_m, velocity_m_s, error_peak_deg;
 };
 Difference Between(const FlightModel& model, const FlightInputs& inputs, const char* what) {
+  SCOPED_TRACE(what);
   FlightOptions exact;
   exact.scheme = Scheme::kCvode;
   const FlightResult judged = Fly(model, inputs, exact), flown = Fly(model, inputs);
@@ -39,10 +39,6 @@ Difference Between(const FlightModel& model, const FlightInputs& inputs, const c
   };
   const Difference d{1e3 * apart("injection_altitude_km"), apart("injection_velocity_m_s"),
                      apart("pitch_error_peak_deg")};
-  std::printf(
-      "%s: %.1e m, %.1e m/s, peak of the pitch error %.1e deg of %.3f; ripple %.4f, limit cycle %.4f deg\n",
-      what, d.altitude_m, d.velocity_m_s, d.error_peak_deg, MetricOf(flown, "pitch_error_peak_deg"),
-      MetricOf(flown, "deflection_ripple_deg"), MetricOf(flown, "deflection_limit_cycle_deg"));
   return d;
 }
 
@@ -86,7 +82,6 @@ TEST(RoughFlight, WithRealActuatorsIsCvodes) {
       low = std::min(low, MetricOf(one, metric));
       high = std::max(high, MetricOf(one, metric));
     }
-    std::printf("%s: neighbours %.6f to %.6f, CVODE %.6f\n", metric, low, high, MetricOf(judged, metric));
     EXPECT_GT(MetricOf(judged, metric), low - (high - low)) << metric;
     EXPECT_LT(MetricOf(judged, metric), high + (high - low)) << metric;
   }

@@ -3,7 +3,6 @@
 // the turning ellipsoid with J2, in wind. Differences of successive halvings fall by 2^4.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <vector>
 
@@ -110,8 +109,6 @@ TEST(ScenarioConvergence, AgreesWithCvode) {
       difference([](const auto& a, const auto& b) { return (a.v_IC_I - b.v_IC_I).norm(); });
   const double attitude_rad = difference(
       [](const auto& a, const auto& b) { return RotationVector(Inverse(a.q_IB) * b.q_IB).norm(); });
-  std::printf("2 ms - CVODE: %.1e m, %.1e m/s, %.1e deg\n", position_m, velocity_m_s,
-              attitude_rad * kDegPerRad);
   EXPECT_LT(position_m, 1e-6);
   EXPECT_LT(velocity_m_s, 1e-7);
   EXPECT_LT(attitude_rad * kDegPerRad, 1e-6);

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdio>
 #include <vector>
 
 #include "core/dynamics/body_sections.h"
@@ -156,8 +155,6 @@ void ExpectRinging(const Vehicle& vehicle, std::size_t at_level) {
       most = std::max(most, std::fabs(held.back()));
     }
     for (std::size_t i = 0; i < held.size(); ++i) {
-      std::printf("mode %zu, %5.2f m: held %11.4e, loaded %11.4e N\n", mode + 1, loads.station_m[i], held[i],
-                  loaded[i]);
       largest = std::max(largest, std::fabs(std::fabs(held[i]) - std::fabs(loaded[i])) / most);
       EXPECT_GT(held[i] * loaded[i] * held[3] * loaded[3], 0.0) << "one sign along the beam";
     }

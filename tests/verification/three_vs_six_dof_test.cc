@@ -160,8 +160,6 @@ class ThreeVsSixDof : public testing::Test {
       ASSERT_TRUE(injection || sample->time_s > mark.time_s - kSameInstant_s) << mark.event;
       const double position_m = (mark.p_EoC_I - (injection ? three.p_EoC_I : sample->p_EoC_I)).norm();
       const double velocity_m_s = (mark.v_IC_I - (injection ? three.v_IC_I : sample->v_IC_I)).norm();
-      std::printf("%9.4f s, %-21s: %8.5f m, %.1e m/s\n", mark.time_s, mark.event.c_str(), position_m,
-                  velocity_m_s);
       EXPECT_LT(position_m, limit.position_m) << mark.event;
       EXPECT_LT(velocity_m_s, limit.velocity_m_s) << mark.event;
     }
@@ -259,8 +257,6 @@ TEST_F(ThreeVsSixDof, TheClosedLoopArrives) {
   const double exhaust_m_s = last.burn.vacuum_thrust_n / last.burn.full_flow_kg_s;
   const double lighter_m_s =
       exhaust_m_s * std::log((start_kg - spent_kg) / (end_kg - spent_kg) * end_kg / start_kg);
-  std::printf("closed loop - 3DOF: %+.1f m, %+.3f m/s (%+.3f m/s by %.3f kg less), %+.5f deg\n", altitude_m,
-              velocity_m_s, lighter_m_s, spent_kg, angle_deg);
   EXPECT_LT(std::fabs(altitude_m), 1000.0);
   EXPECT_LT(std::fabs(velocity_m_s), 5.0);
   EXPECT_LT(std::fabs(angle_deg), 0.1);
@@ -284,8 +280,6 @@ TEST_F(ThreeVsSixDof, TheClosedLoopArrives) {
   const auto by_flow = [&](const char* metric) {
     return MetricOf(complete, metric) - MetricOf(flight, metric);
   };
-  std::printf("by the flow inside: %+.1f m, %+.3f m/s, %+.5f deg\n", 1e3 * by_flow("injection_altitude_km"),
-              by_flow("injection_velocity_m_s"), by_flow("injection_flight_path_angle_deg"));
   EXPECT_LT(std::fabs(by_flow("injection_altitude_km")), 0.05);
   EXPECT_GT(std::fabs(by_flow("injection_velocity_m_s")), 0.02);
   EXPECT_LT(std::fabs(by_flow("injection_velocity_m_s")), 0.2);

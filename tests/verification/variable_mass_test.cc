@@ -180,8 +180,6 @@ TEST_F(TurningLauncher, KeepsItsAngularMomentumButForTheFlows) {
     EXPECT_NEAR(RatesAtBurnout({0.0, 0.01, 0.0}).y() / 0.01, lateral, 1e-11);
     EXPECT_NEAR(RatesAtBurnout({0.0, 0.0, 0.01}).z() / 0.01, lateral, 1e-11);
     EXPECT_NEAR(RatesAtBurnout({0.01, 0.0, 0.0}).x() / 0.01, axial, 1e-11);
-    std::printf("rates at burnout / at ignition, %s jet damping: across %.4f, about the axis %.4f\n",
-                jet_damping ? "with" : "without", lateral, axial);
   }
 }
 
@@ -262,8 +260,6 @@ TEST_F(FlowThroughATurningLauncher, KeepsMomentumAndCentreOfMassOfEverything) {
   const std::array<double, 2> lost = Lost();
   plant_.flow_coriolis = false;
   const std::array<double, 2> lost_without = Lost();
-  std::printf("momentum and first moment lost, of what leaves: %.1e, %.1e; without the flow's force %.1e, %.1e\n",
-              lost[0], lost[1], lost_without[0], lost_without[1]);
   // Rounding of 4000 steps.
   EXPECT_LT(lost[0], 1e-12);
   EXPECT_LT(lost[1], 1e-12);
