@@ -1,0 +1,197 @@
+// What commands print of vehicles, searches and campaigns, in full.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "core/math/constants.h"
+#include "services/cli/campaign_text.h"
+#include "services/cli/progress.h"
+#include "services/cli/seed_study.h"
+#include "services/cli/vehicle_text.h"
+#include "tests/unit/sample_vehicle.h"
+
+namespace dispersa::cli_texts_test {
+namespace {
+
+std::vector<std::string> Lines(const std::string& text) {
+  std::vector<std::string> lines = {""};
+  for (const char c : text) {
+    if (c == '\n')
+      lines.emplace_back();
+    else
+      lines.back() += c;
+  }
+  return lines;
+}
+
+// 13 t with 4 t in 40 s at 200 kN: Isp 200e3 * 40 / (4000 * 9.80665) = 203.9 s, dv 2000 ln(13 / 9) = 735 m/s, 10 t of its
+// own of which 6 are dry, 200e3 / (13 t g) = 1.57 g at release and 200e3 / (9 t g) = 2.27 g at the end. Above it 3 t with
+// 1 t in 20 s at 50 kN: 102.0 s, 1000 ln(3 / 2) = 405 m/s, 1.70 g and 2.55 g.
+TEST(VehicleText, IsTheRocketEquationInATable) {
+  Vehicle vehicle = SampleVehicle();
+  const std::vector<std::string> lines = Lines(VehicleText(vehicle));
+  ASSERT_EQ(lines.size(), 10u);
+  EXPECT_EQ(lines[1], "sample: 13000 kg, 20 m");
+  EXPECT_EQ(lines[2], "stage        at ignition  propellant       dry   dry/own    thrust     burn      Isp   ideal dv "
+                      "      T/W  burnout");
+  EXPECT_EQ(lines[3], "                      kg          kg        kg                  kN        s        s        m/s "
+                      " ignition        g");
+  EXPECT_EQ(lines[4], "first              13000        4000      6000     0.600     200.0     40.0    203.9        735 "
+                      "     1.57     2.27");
+  EXPECT_EQ(lines[5], "second              3000        1000      2000     0.667      50.0     20.0    102.0        405 "
+                      "     1.70     2.55");
+  EXPECT_EQ(lines[6], "together" + std::string(84, ' ') + "1141");
+  EXPECT_EQ(lines[8], "limits: none: no load is judged");
+}
+
+TEST(VehicleText, NamesBoostersJettisonsAndLimits) {
+  Vehicle vehicle = SampleVehicle();
+  vehicle.limits.q_max_pa = 90e3;
+  vehicle.limits.lateral_load_g = 1.5;
+  vehicle.boosters.count = 3;
+  vehicle.boosters.dry_mass_kg = 150.0;
+  vehicle.boosters.propellant_mass_kg = 800.0;
+  vehicle.boosters.motor = {.thrust_n = 80e3, .burning_time_s = 25.0, .thrust_curve = {}};
+  vehicle.stages[1].jettisoned = {
+      {.name = "fairing", .mass_kg = 60.0, .trigger = JettisonTrigger::kAtHeatFlux, .threshold = 1135.0},
+      {.name = "skirt", .mass_kg = 20.0, .trigger = JettisonTrigger::kAtAltitude, .threshold = 9e4},
+      {.name = "ring", .mass_kg = 5.0, .trigger = JettisonTrigger::kAtTime, .threshold = 70.5}};
+  const std::string text = VehicleText(vehicle);
+  EXPECT_NE(text.find("\n3 boosters beside first, each of 950 kg with 800 kg of propellant, 80 kN and 25 s\n"
+                      "jettisoned from second: fairing, 60 kg, at a heat flux of 1135 W/m2; it counts into every mass above\n"
+                      "jettisoned from second: skirt, 20 kg, at 90000 m; it counts into every mass above\n"
+                      "jettisoned from second: ring, 5 kg, at 70.5 s; it counts into every mass above\n"
+                      "limits: q_max_pa 90000, lateral_load_max_g 1.5\n"),
+            std::string::npos)
+      << text;
+  vehicle.aerodynamics.clear();
+  EXPECT_NE(VehicleText(vehicle).find("80 kN and 25 s; the aerodynamics are built up from the core's profile alone\n"),
+            std::string::npos);
+}
+
+TEST(VehicleText, AsJsonHasTheSameNumbers) {
+  const auto json = VehicleJson(SampleVehicle());
+  EXPECT_EQ(json["name"], "sample");
+  const double first_m_s = 2000.0 * std::log(13.0 / 9.0), second_m_s = 1000.0 * std::log(1.5);
+  EXPECT_NEAR(json["ideal_delta_v_m_s"], first_m_s + second_m_s, 1e-9);
+  const auto& stage = json["stages"][0];
+  EXPECT_EQ(stage["name"], "first");
+  EXPECT_EQ(stage["liftoff_mass_kg"], 13000.0);
+  EXPECT_EQ(stage["propellant_mass_kg"], 4000.0);
+  EXPECT_EQ(stage["dry_mass_kg"], 6000.0);
+  EXPECT_NEAR(stage["structural_fraction"], 0.6, 1e-12);
+  EXPECT_NEAR(stage["specific_impulse_s"], 2000.0 / 9.80665, 1e-9);
+  EXPECT_NEAR(stage["ideal_delta_v_m_s"], first_m_s, 1e-9);
+  EXPECT_NEAR(stage["thrust_to_weight"], 200.0 / 13.0 / 9.80665, 1e-9);
+  EXPECT_NEAR(stage["burnout_load_g"], 200.0 / 9.0 / 9.80665, 1e-9);
+}
+
+TEST(DurationText, RoundsToTheSecondAndCarries) {
+  EXPECT_EQ(DurationText(0.2), "0s");
+  EXPECT_EQ(DurationText(59.4), "59s");
+  EXPECT_EQ(DurationText(59.5), "1m00s");
+  EXPECT_EQ(DurationText(185.0), "3m05s");
+  EXPECT_EQ(DurationText(3599.6), "1h00m");
+  EXPECT_EQ(DurationText(3720.0), "1h02m");
+  EXPECT_EQ(DurationText(93'600.0), "26h00m");
+}
+
+nlohmann::ordered_json SampleCampaign() {
+  return {{"id", "0123456789abcdef"}, {"state", "flying"}, {"done", 40},       {"total", 100},
+          {"name", "trial"},          {"rate_per_s", 0.0},  {"eta_s", nullptr}, {"quarantined", 0},
+          {"code", nullptr},          {"problem", nullptr}, {"requirements", nlohmann::ordered_json::array()}};
+}
+
+TEST(CampaignText, SaysHowFarACampaignIs) {
+  nlohmann::ordered_json campaign = SampleCampaign();
+  EXPECT_EQ(CampaignText(campaign), "0123456789ab  flying            40/100       trial\n");
+  campaign["rate_per_s"] = 12.34;
+  campaign["eta_s"] = 65;
+  campaign["quarantined"] = 2;
+  campaign["requirements"].push_back(
+      {{"failures", 3}, {"n", 40}, {"metric", "alpha_max_deg"}, {"so_far", "inconclusive"}});
+  EXPECT_EQ(CampaignText(campaign),
+            "0123456789ab  flying            40/100       trial  12.3/s  1m05s left  2 quarantined\n"
+            "  3 of 40 break alpha_max_deg (inconclusive so far)\n");
+  campaign = SampleCampaign();
+  campaign["state"] = "ended";
+  campaign["code"] = 1;
+  campaign["problem"] = "no space left";
+  EXPECT_EQ(CampaignText(campaign), "0123456789ab  ended             40/100       trial  exit code 1  no space left\n");
+}
+
+/// Two searches: errors of both signs, so that the worst is told from the largest.
+std::vector<SeedRow> SampleRows() {
+  SeedRow one;
+  one.seed = 7;
+  one.reached = true;
+  one.read_back = {.altitude_m = 0.5, .velocity_m_s = -0.002, .flight_path_angle_rad = 3e-6 * kRadPerDeg};
+  one.halved = {.altitude_m = 0.25, .velocity_m_s = 0.001, .flight_path_angle_rad = -2e-6 * kRadPerDeg};
+  one.flown = OrbitErrors{.altitude_m = 1500.0, .velocity_m_s = -2.5, .flight_path_angle_rad = 0.05 * kRadPerDeg};
+  one.program.alpha_max_rad = 4.0 * kRadPerDeg;
+  one.program.t1_s = 3.5;
+  one.program.t2_s = 160.0;
+  one.program.t3_s = 40.0;
+  one.program.coast_s = 250.25;
+  one.program.launch_azimuth_rad = 95.0 * kRadPerDeg;
+  one.q_alpha_max_pa_rad = 3000.5;
+  one.ascents = 1234;
+  one.wall_s = 12.5;
+  SeedRow other = one;
+  other.seed = 8;
+  other.reached = false;
+  other.read_back.altitude_m = -2.0;
+  other.program.coast_s = 240.0;
+  return {one, other};
+}
+
+TEST(SeedStudy, SaysTheWorstErrorAndTheRangeOfWhatWasFound) {
+  const std::vector<std::string> lines = Lines(SeedStudyText(SampleRows()));
+  ASSERT_EQ(lines.size(), 8u);
+  const auto row = [](const std::string& head, const std::string& dh, const std::string& coast) {
+    return head + dh + "   -2.0000    3.0000    0.2500    1.0000   -2.0000     4.0000    3.500   40.000  160.000 " + coast +
+           "      95.0000    3000.5    1.5000    -2.5000    0.05000     1234     12.5";
+  };
+  EXPECT_EQ(lines[1], row("     7      yes", "    0.5000", "  250.2500"));
+  EXPECT_EQ(lines[2], row("     8       NO", "   -2.0000", "  240.0000"));
+  EXPECT_EQ(lines[3].substr(0, 75), "worst              2.0000    2.0000    3.0000    0.2500    1.0000    2.0000");
+  EXPECT_EQ(lines[3].substr(147), "    1.5000     2.5000    0.05000                  ");
+  const std::string blank(60, ' ');
+  EXPECT_EQ(lines[4].substr(0, 124), "least          " + blank + "     4.0000    3.500   40.000  160.000   240.0000");
+  EXPECT_EQ(lines[5].substr(0, 124), "largest        " + blank + "     4.0000    3.500   40.000  160.000   250.2500");
+  EXPECT_EQ(lines[6], "reached from 1 of 2 seeds");
+}
+
+TEST(SeedStudy, AsJsonHasItsUnitsInTheNames) {
+  std::vector<SeedRow> rows = SampleRows();
+  const auto json = SeedStudyJson(rows);
+  EXPECT_EQ(json["schema"], "dispersa/optimize-seeds/1");
+  const auto& first = json["seeds"][0];
+  EXPECT_EQ(first["seed"], 7);
+  EXPECT_EQ(first["reached"], true);
+  EXPECT_EQ(json["seeds"][1]["reached"], false);
+  EXPECT_NEAR(first["altitude_error_m"], 0.5, 1e-12);
+  EXPECT_NEAR(first["velocity_error_mm_s"], -2.0, 1e-12);
+  EXPECT_NEAR(first["flight_path_angle_error_udeg"], 3.0, 1e-9);
+  EXPECT_NEAR(first["halved_altitude_error_m"], 0.25, 1e-12);
+  EXPECT_NEAR(first["halved_velocity_error_mm_s"], 1.0, 1e-12);
+  EXPECT_NEAR(first["halved_flight_path_angle_error_udeg"], -2.0, 1e-9);
+  EXPECT_NEAR(first["alpha_max_deg"], 4.0, 1e-12);
+  EXPECT_EQ(first["t1_s"], 3.5);
+  EXPECT_EQ(first["t2_s"], 160.0);
+  EXPECT_EQ(first["t3_s"], 40.0);
+  EXPECT_NEAR(first["launch_azimuth_deg"], 95.0, 1e-12);
+  EXPECT_EQ(first["flown_altitude_error_km"], 1.5);
+  EXPECT_EQ(first["flown_velocity_error_m_s"], -2.5);
+  EXPECT_NEAR(first["flown_flight_path_angle_error_deg"], 0.05, 1e-12);
+  EXPECT_EQ(first["ascents"], 1234);
+  // What one of the searches did not fly is in no row.
+  rows[1].flown.reset();
+  EXPECT_FALSE(SeedStudyJson(rows)["seeds"][0].contains("flown_altitude_error_km"));
+}
+
+}  // namespace
+}  // namespace dispersa::cli_texts_test
