@@ -71,6 +71,19 @@ TEST(ComparePaired, RatiosNeedPositiveValues) {
   }
 }
 
+TEST(ComparePaired, RatiosOfLostFlightsAndOfOnePair) {
+  // Both lost: neither is worse, in the difference and in the ratio.
+  const PairedDifference both = ComparePaired({kUndefined, kUndefined, 1.0}, {kUndefined, kUndefined, 4.0}, 0.9);
+  EXPECT_EQ(both.median_difference, 0.0);
+  EXPECT_EQ(both.median_ratio, 1.0);
+  // One pair bounds nothing: a ratio is above 0 all the same.
+  const PairedDifference one = ComparePaired({2.0}, {6.0}, 0.9);
+  EXPECT_EQ(one.median_ratio, 3.0);
+  EXPECT_EQ(one.ratio_interval.lower, 0.0);
+  EXPECT_EQ(one.ratio_interval.upper, kInfinity);
+  EXPECT_EQ(one.difference_interval.lower, -kInfinity);
+}
+
 TEST(ComparePaired, WithoutDifferences) {
   const PairedDifference equal = ComparePaired({1.0, 2.0}, {1.0, 2.0}, 0.9);
   EXPECT_EQ(equal.equal, 2u);

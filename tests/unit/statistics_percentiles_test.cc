@@ -1,7 +1,10 @@
 // Percentiles: what so many values support, and what they do not.
 #include "core/statistics/percentiles.h"
 
+#include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -14,6 +17,18 @@ std::vector<double> Rising(int n) {
   std::vector<double> values;
   for (int i = 1; i <= n; ++i) values.push_back(i);
   return values;
+}
+
+// A name says its percentile: "p99_865" is 99.865 %. Of 0, 1, ... 10,000 that is the value 9986.5.
+TEST(Percentiles, AreThoseOfTheirNames) {
+  std::vector<double> values;
+  for (int i = 0; i <= 10'000; ++i) values.push_back(i);
+  for (const Percentile& one : Percentiles(values)) {
+    std::string percent = one.name.substr(1);
+    std::replace(percent.begin(), percent.end(), '_', '.');
+    EXPECT_DOUBLE_EQ(one.probability, std::stod(percent) / 100.0) << one.name;
+    EXPECT_NEAR(one.estimate, 100.0 * std::stod(percent), 1e-8) << one.name;
+  }
 }
 
 TEST(Percentiles, BeyondTheSampleThereIsOnlyABound) {

@@ -85,6 +85,22 @@ TEST(OneLookPlan, MissingCasesAreBounded) {
   EXPECT_EQ(OneLook(2500, 9, 500).verdict, Verdict::kInconclusive);
 }
 
+// Three cases without a result of ten: at worst they failed, at best they met. P(X >= 7 of 10) = 10 % bounds the one.
+TEST(OneLookPlan, BoundsTakeAMissingCaseForTheWorseOfBoth) {
+  const PlannedVerdict open = OneLook(10, 0, 3);
+  EXPECT_EQ(open.success_upper, 1.0);
+  EXPECT_NEAR(ProducerRisk(1.0 - open.success_lower, 10, 7) /* of 7 successes or more */, 0.10, 1e-9);
+  const PlannedVerdict failed = OneLook(10, 10, 0);
+  EXPECT_NEAR(failed.success_upper, 1.0 - std::pow(0.10, 1.0 / 10.0), 1e-12);
+  EXPECT_EQ(failed.success_lower, 0.0);
+}
+
+// A campaign that was cut short after it had been read: that look is none of its cases.
+TEST(OneLookPlan, LooksBeyondItsCasesAreNone) {
+  const PlannedVerdict verdict = Decide({0.9, 0.10, {}, 30}, 30, Failing(0), {30, 31, 500});
+  EXPECT_THAT(verdict.looks, ElementsAre(Look{30, 0, true, Verdict::kPass}));
+}
+
 // The misuse: 852 cases with a failure do not pass; "1440 needed"; 1440 with one "pass".
 TEST(Extension, DoesNotBuyAPass) {
   const PlannedRequirement planned = {0.9973, 0.10, {}, 852};
@@ -148,6 +164,14 @@ TEST(AnytimePlan, MayBeReadAtEveryCase) {
   ASSERT_EQ(open.looks.size(), 3u);
   EXPECT_TRUE(open.looks[1].planned);
   EXPECT_EQ(Decide(planned, 1, Failing(1)).verdict, Verdict::kFail);
+}
+
+// What it may decide at any time it is asked at each number of three significant digits: 1104 cases without a failure are
+// enough, 1110 is the first such number.
+TEST(AnytimePlan, IsAskedAtNumbersOfThreeDigits) {
+  ASSERT_EQ(AnytimeCasesNeeded(0.9973, 0.10, 0), 1104);
+  const PlannedVerdict verdict = Decide({0.9973, 0.10, kAnytime, 0}, 3000, Failing(0));
+  EXPECT_THAT(verdict.looks, ElementsAre(Look{1110, 0, true, Verdict::kPass}, Look{3000, 0, true, Verdict::kPass}));
 }
 
 TEST(Together, HolmKeepsTheRiskOfAll) {

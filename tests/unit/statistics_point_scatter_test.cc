@@ -68,6 +68,52 @@ TEST(PointScatter, NoneWithoutSpread) {
   EXPECT_TRUE(ContainmentOf(few, PointScatterOf(few), {0.95}).empty());
 }
 
+// Of points in any direction: turned back by its angle, the ellipse's axes are the points' covariance, and every point of
+// its outline is as far away in units of that covariance. The outline runs counterclockwise, as GeoJSON asks of a ring.
+TEST(PointScatter, EllipsesHaveTheCovarianceOfTheirPoints) {
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    Stream stream(seed, 0, "made up");
+    std::vector<std::vector<double>> points;
+    const double tilt = stream.Uniform() * 6.28, stretch = 0.1 + 5.0 * stream.Uniform();
+    for (int i = 0; i < 20; ++i) {
+      const double x = stretch * stream.Normal(), y = stream.Normal();
+      points.push_back({7.0 + std::cos(tilt) * x - std::sin(tilt) * y, -3.0 + std::sin(tilt) * x + std::cos(tilt) * y});
+    }
+    const PointScatter scatter = PointScatterOf(points);
+    const auto& C = scatter.covariance;
+    constexpr double kScale = 5.99;
+    const ScatterEllipse ellipse = EllipseOf(C, kScale);
+    const double major = ellipse.semi_major * ellipse.semi_major / kScale;
+    const double minor = ellipse.semi_minor * ellipse.semi_minor / kScale;
+    const double c = std::cos(ellipse.angle_rad), s = std::sin(ellipse.angle_rad);
+    const double rounding = 1e-12 * major;
+    EXPECT_NEAR(c * c * major + s * s * minor, C[0][0], rounding) << seed;
+    EXPECT_NEAR(c * s * (major - minor), C[0][1], rounding) << seed;
+    EXPECT_NEAR(s * s * major + c * c * minor, C[1][1], rounding) << seed;
+    EXPECT_GE(major, minor);
+    const auto outline = OutlineOf(ellipse, {scatter.mean[0], scatter.mean[1]}, 36);
+    const double determinant = C[0][0] * C[1][1] - C[0][1] * C[0][1];
+    double twice_area = 0.0;
+    for (std::size_t i = 0; i + 1 < outline.size(); ++i) {
+      const double x = outline[i][0] - scatter.mean[0], y = outline[i][1] - scatter.mean[1];
+      EXPECT_NEAR((C[1][1] * x * x - 2.0 * C[0][1] * x * y + C[0][0] * y * y) / determinant, kScale, 1e-9) << seed;
+      twice_area += outline[i][0] * outline[i + 1][1] - outline[i + 1][0] * outline[i][1];
+    }
+    // 36 corners leave 0.5 % of an ellipse's area out.
+    EXPECT_NEAR(0.5 * twice_area, std::numbers::pi * ellipse.semi_major * ellipse.semi_minor,
+                0.006 * std::numbers::pi * ellipse.semi_major * ellipse.semi_minor);
+  }
+}
+
+// Five of five points inside: (1 - p)^5 = 2.5 % gives the lower limit of 95 %.
+TEST(PointScatter, ContainmentHasTheLimitsOfItsCounts) {
+  const std::vector<std::vector<double>> points = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {0, 0}};
+  const Containment all = ContainmentOf(points, PointScatterOf(points), {0.99}).at(0);
+  EXPECT_EQ(all.inside, 5);
+  EXPECT_NEAR(all.limits.lower, std::pow(0.025, 1.0 / 5.0), 1e-12);
+  EXPECT_EQ(all.limits.upper, 1.0);
+}
+
 TEST(PointScatter, AxesAndOutline) {
   // Turned by 30 degrees, half-axes 5 and 2 at scale 1.
   const double c = std::cos(std::numbers::pi / 6), s = std::sin(std::numbers::pi / 6);

@@ -154,6 +154,21 @@ TEST(PartialRankCorrelations, TellAConfounderFromACause) {
   EXPECT_NEAR(partial[1], 0.0, 0.06);
 }
 
+// A regression of three cases an input, and three more: fewer say nothing.
+TEST(PartialRankCorrelations, NeedCasesForTheirInputs) {
+  const std::vector<double> x = {1, 2, 3, 4, 5, 6, 7, 8, 9}, z = {2, 1, 4, 9, 3, 7, 5, 8, 6};
+  std::vector<double> y;
+  for (std::size_t k = 0; k < x.size(); ++k) y.push_back(x[k] + 0.1 * z[k]);
+  const Ranked enough_x(x), enough_z(z);
+  EXPECT_GT(PartialRankCorrelations({&enough_x, &enough_z}, Ranked(y))[0], 0.9);
+  const auto but_one = [](std::vector<double> values) {
+    values.pop_back();
+    return values;
+  };
+  const Ranked few_x(but_one(x)), few_z(but_one(z));
+  EXPECT_THAT(PartialRankCorrelations({&few_x, &few_z}, Ranked(but_one(y))), ElementsAre(0.0, 0.0));
+}
+
 TEST(RankSum, AgreesWithItsTable) {
   // The marked ones are the three largest of eight. Rank sum 21, mean 13.5, variance 11.25; z = 7 / 3.3541.
   const std::vector<double> x = {1, 2, 3, 4, 5, 6, 7, 8};

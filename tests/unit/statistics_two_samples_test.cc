@@ -66,6 +66,17 @@ TEST(TwoSamples, ASampleThatDoesNotReachAPercentileGivesNone) {
   EXPECT_TRUE(std::isnan(CompareQuantiles({}, {}, 0.5, 0.95, true).p));
 }
 
+// A percentile has an estimate from the number of values on that leaves one of them beyond it.
+TEST(TwoSamples, APercentileIsReachedByOneValueBeyondIt) {
+  for (const auto& [probability, needed] : {std::pair{0.99, 100}, {0.95, 20}, {0.01, 100}, {0.05, 20}, {0.5, 2}}) {
+    std::vector<double> values;
+    for (int i = 0; i < needed; ++i) values.push_back(i);
+    EXPECT_TRUE(std::isfinite(CompareQuantiles(values, values, probability, 0.95, false).a)) << probability;
+    values.pop_back();
+    EXPECT_TRUE(std::isnan(CompareQuantiles(values, values, probability, 0.95, false).a)) << probability;
+  }
+}
+
 TEST(TwoSamples, SwappingTurnsSigns) {
   std::vector<double> a, b;
   Stream stream(7, 0, "two_samples");
