@@ -56,6 +56,10 @@ std::vector<ImpactPoint> Cross(double azimuth_deg) {
     point.impact->place = PlaceAt(along_m * c - across_m * s, along_m * s + across_m * c);
     points.push_back(point);
   }
+  ImpactPoint aloft;  // counts, and moves nothing
+  aloft.case_index = points.size();
+  aloft.stage = 1;
+  points.push_back(aloft);
   return points;
 }
 
@@ -63,7 +67,7 @@ class FootprintAzimuths : public testing::TestWithParam<int> {};
 
 TEST_P(FootprintAzimuths, AreClockwiseFromNorthWithAxesInKilometres) {
   const double azimuth_deg = GetParam();
-  const json all = json::parse(GeoJson(report_test::MakeCampaign(4), GatherFootprints(Cross(azimuth_deg))));
+  const json all = json::parse(GeoJson(report_test::MakeCampaign(5), GatherFootprints(Cross(azimuth_deg))));
   std::size_t ellipses = 0;
   for (const json& feature : all["features"]) {
     const json& properties = feature["properties"];
@@ -80,15 +84,22 @@ TEST_P(FootprintAzimuths, AreClockwiseFromNorthWithAxesInKilometres) {
     EXPECT_NEAR(std::remainder(found_deg - azimuth_deg, 180.0), 0.0, 0.01);
     EXPECT_NEAR(NorthEast(properties["mean"])[0], 0.0, 0.1);
     EXPECT_NEAR(NorthEast(properties["mean"])[1], 0.0, 0.1);
+    EXPECT_EQ(properties["points"], 4);
+    EXPECT_EQ(properties["aloft"], 1);
     // All four points have the same distance in units of the covariance: 1.5, between 50 % and 95 %.
     EXPECT_EQ(properties["inside"], stated < 0.6 ? 0 : 4);
     const double c = std::cos(azimuth_deg * kRadPerDeg), s = std::sin(azimuth_deg * kRadPerDeg);
+    double twice_area = 0.0;
+    std::array<double, 2> last = NorthEast(feature["geometry"]["coordinates"][0].back());
     for (const json& position : feature["geometry"]["coordinates"][0]) {
       const auto [north_m, east_m] = NorthEast(position);
       const double along = (c * north_m + s * east_m) / (kAlong_m * scale);
       const double across = (-s * north_m + c * east_m) / (kAcross_m * scale);
       EXPECT_NEAR(along * along + across * across, 1.0, 1e-3);
+      twice_area += last[1] * north_m - east_m * last[0];
+      last = {north_m, east_m};
     }
+    EXPECT_GT(twice_area, 0.0) << "an outer ring runs counterclockwise (RFC 7946, 3.1.6)";
   }
   EXPECT_EQ(ellipses, kFootprintContainment.size());
 }
