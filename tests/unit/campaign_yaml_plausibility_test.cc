@@ -66,6 +66,21 @@ TEST(CampaignYamlPlausibility, WhatCannotBeIsAnErrorOfEveryReader) {
   EXPECT_EQ(thrown([&] { LoadOptimization(files.Path("campaign.yaml")); }), text);
 }
 
+// A file that says that its vehicle is made up is flown, and what cannot be stays a warning.
+TEST(CampaignYamlPlausibility, WhatCannotBeIsAWarningOfAMadeUpVehicle) {
+  const InputFiles files;
+  files.Edit("vehicle.yaml", "burning_time_s: 60, ignition_rise_s: 0.2, tail_off_s: 0.4, p",
+             "burning_time_s: 6000, ignition_rise_s: 0.2, tail_off_s: 0.4, p");
+  files.Edit("vehicle.yaml", "name: two-stage\n", "name: two-stage\nmade_up: true\n");
+  const FileCheck check = CheckFile(files.Path("vehicle.yaml"));
+  EXPECT_TRUE(check.errors.empty());
+  ASSERT_TRUE(check.vehicle);
+  EXPECT_TRUE(check.vehicle->made_up);
+  EXPECT_THAT(files.Texts(check.warnings),
+              HasSubstr("vehicle.yaml:9:25: stages[0].propellant_mass_kg: implies with thrust and burning time a specific "
+                        "impulse of 24473 s, usual: 180 to 470 s (200 to 410 s of solid and liquid rockets"));
+}
+
 TEST(CampaignYamlPlausibility, LimitsAreRequiredUnlessTheCampaignSaysHow) {
   const InputFiles files;
   const Campaign campaign = LoadCampaign(files.Path("campaign.yaml"));
