@@ -1,7 +1,9 @@
 // Every number of a comparison lies inside its interval, whichever way its metric is good and whichever way it moved.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -109,6 +111,42 @@ INSTANTIATE_TEST_SUITE_P(Each, ComparisonOfEveryMetric,
                          testing::Values(Sides{"PairedUp", "a", 3.0}, Sides{"PairedDown", "a", -3.0},
                                          Sides{"UnpairedUp", "b", 3.0}, Sides{"UnpairedDown", "b", -3.0}),
                          [](const auto& sides) { return std::string(sides.param.name); });
+
+// Holm: the least of m p-values counts m times. Each percentile is a family over the metrics, as the medians are.
+TEST_P(ComparisonOfEveryMetric, AdjustsEachPercentileOverTheMetrics) {
+  const CaseColumns a = Flights(0.0, "a"), b = Flights(0.01 * GetParam().moved, GetParam().draws_of_b);
+  const Comparison comparison = CompareAll(a, b);
+  std::map<std::string, std::vector<std::pair<double, double>>> families;
+  for (const MetricComparison& metric : comparison.metrics) {
+    families["median"].emplace_back(metric.p, metric.p_holm);
+    for (const PercentileComparison& tail : metric.tails)
+      if (!std::isnan(tail.p)) families[tail.name].emplace_back(tail.p, tail.p_holm);
+  }
+  EXPECT_EQ(families.size(), 3u) << "80 flights reach 5 and 95 %, and not 1 and 99 %";
+  for (const auto& [name, family] : families) {
+    const auto least = *std::min_element(family.begin(), family.end());
+    EXPECT_DOUBLE_EQ(least.second, std::min(1.0, static_cast<double>(family.size()) * least.first)) << name;
+    for (const auto& [p, adjusted] : family) EXPECT_GE(adjusted, p) << name;
+  }
+}
+
+// Where neither sample reaches a percentile there is nothing to test.
+TEST_P(ComparisonOfEveryMetric, DoesNotTestWhatNoSampleReaches) {
+  const Comparison comparison = CompareAll(Flights(0.0, "a"), Flights(GetParam().moved, GetParam().draws_of_b));
+  std::size_t unreached = 0;
+  for (const MetricComparison& metric : comparison.metrics) {
+    for (const PercentileComparison& tail : metric.tails) {
+      if (std::isfinite(tail.a) || std::isfinite(tail.b)) {
+        EXPECT_GE(tail.p, 0.0) << metric.metric << ", " << tail.name;
+        continue;
+      }
+      ++unreached;
+      EXPECT_TRUE(std::isnan(tail.p)) << metric.metric << ", " << tail.name;
+      EXPECT_TRUE(std::isnan(tail.p_holm)) << metric.metric << ", " << tail.name;
+    }
+  }
+  EXPECT_GT(unreached, comparison.metrics.size());
+}
 
 Requirement Below(double limit) {
   Requirement requirement;
