@@ -75,6 +75,35 @@ TEST_F(Planted, ACircularInputIsSeenThroughItsCosine) {
   EXPECT_GT(drivers[0].index, 0.7);
 }
 
+// The size of a factor is its distance from 1.
+TEST_F(Planted, ASizeIsTakenAboutTheNominalValue) {
+  const std::vector<double> drag = cases_.inputs[static_cast<std::size_t>(FindInput("drag_factor"))];
+  const auto drivers = DriversWhen([&](std::size_t k) { return std::fabs(drag[k] - 1.0) + 0.001 * noise_[k]; });
+  EXPECT_EQ(drivers[0].input, "drag_factor");
+  EXPECT_EQ(drivers[0].feature, "|x|");
+}
+
+// A gust's azimuth gives a direction to the gust's speed, and not to the wind's.
+TEST_F(Planted, AGustIsPairedWithItsOwnSpeed) {
+  for (const char* name : {"gust_azimuth_deg", "gust_speed_m_s", "wind_max_speed_m_s"}) {
+    ASSERT_GE(FindInput(name), 0) << name;
+    Dispersion dispersion;
+    dispersion.name = name;
+    dispersion.inputs = {FindInput(name)};
+    campaign_.dispersions.push_back(dispersion);
+    for (std::uint64_t k = 0; k < cases_.rows(); ++k)
+      cases_.inputs[static_cast<std::size_t>(FindInput(name))].push_back(
+          (std::string(name) == "gust_azimuth_deg" ? 360.0 : 20.0) * Stream(2, k, name).Uniform());
+  }
+  const std::vector<double> azimuth = cases_.inputs[static_cast<std::size_t>(FindInput("gust_azimuth_deg"))],
+                            speed = cases_.inputs[static_cast<std::size_t>(FindInput("gust_speed_m_s"))];
+  const auto drivers =
+      DriversWhen([&](std::size_t k) { return speed[k] * std::cos(azimuth[k] * kRadPerDeg) + 0.1 * noise_[k]; });
+  EXPECT_EQ(drivers[0].input, "gust_speed_m_s along gust_azimuth_deg");
+  EXPECT_EQ(drivers[0].feature, "m cos x");
+  EXPECT_GT(drivers[0].index, 0.9);
+}
+
 TEST_F(Planted, AMagnitudeInADirectionIsSeenAsAPair) {
   const auto drivers =
       DriversWhen([&](std::size_t k) { return tilt_[k] * std::sin(clock_[k] * kRadPerDeg) + 0.1 * noise_[k]; });
