@@ -1,6 +1,9 @@
 // What a cell of a map shows.
 #include "core/paper/heat_map.h"
 
+#include <string>
+#include <tuple>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -50,6 +53,30 @@ TEST(PaperHeatMap, ShadesFollowTheLogarithmOfTheCompletedFlights) {
   for (const char* shade : {"\"heat-0\"", "\"heat-1\"", "\"heat-2\"", "\"heat-3\"", "\"heat-4\""})
     EXPECT_EQ(Count(svg, shade), 1) << shade;
   EXPECT_EQ(Count(svg, "\"heat-5\""), 2);  // 0.7 and the largest itself
+}
+
+/// Where a text is drawn from the top.
+double HeightOf(const std::string& svg, const std::string& text) {
+  const std::size_t end = svg.find(">" + text + "</text>");
+  EXPECT_NE(end, std::string::npos) << text;
+  return std::stod(svg.substr(svg.rfind(" y=\"", end) + 4));
+}
+
+TEST(PaperHeatMap, GrowsUpwardsAndNamesTheRowOfEachCell) {
+  HeatMap map = Sample();
+  map.x = {1, 10};
+  map.y = {2, 4, 8};
+  map.cells = {{11.0}, {12.0}, {21.0}, {22.0}, {31.0}, {32.0}};
+  map.framed_x = 10;
+  map.framed_y = 4;
+  const std::string svg = HeatMapSvg(map, "");
+  for (const auto& [row, left, right] : {std::tuple{"2", "11.0", "12.0"}, {"4", "21.0", "22.0"}, {"8", "31.0", "32.0"}}) {
+    EXPECT_EQ(HeightOf(svg, left), HeightOf(svg, row));
+    EXPECT_EQ(HeightOf(svg, right), HeightOf(svg, row));
+  }
+  EXPECT_GT(HeightOf(svg, "2"), HeightOf(svg, "4"));
+  EXPECT_GT(HeightOf(svg, "4"), HeightOf(svg, "8"));
+  EXPECT_EQ(Count(svg, "heat-frame"), 1);  // of one cell, and not of its row and column
 }
 
 TEST(PaperHeatMap, OneCellIsFramedIfTheGridHasIt) {

@@ -121,6 +121,28 @@ TEST(SmallestFailure, NoneWithinReachAndTheNominal) {
   EXPECT_EQ(at_once.flights, 1u);
 }
 
+// A failure that is farther out than the search may go is none, though its points came across it.
+TEST(SmallestFailure, BeyondItsReachIsNone) {
+  FailureSearchOptions options;
+  options.reach = 4.0;
+  std::size_t failed = 0;
+  Counted far{[&](const Point& x) {
+    failed += std::fabs(x[0]) > 4.5;
+    return 4.5 - std::fabs(x[0]);
+  }};
+  const FailureSearchResult found = FindSmallestFailure(Normals(8), far.At(), options);
+  EXPECT_GT(failed, 0u) << "it came across none: this shows nothing";
+  EXPECT_FALSE(found.found);
+}
+
+// A lost flight has no margin; the least one is that of those that have.
+TEST(SmallestFailure, TheLeastMarginIsOfFlightsThatHaveOne) {
+  Counted lost{[](const Point& x) { return x[0] > 2.5 ? std::nan("") : 1.0 + std::fabs(x[1]); }};
+  const FailureSearchResult found = FindSmallestFailure(Normals(3), lost.At(), {});
+  EXPECT_TRUE(found.found);
+  EXPECT_EQ(found.least_margin, 1.0);
+}
+
 TEST(DispersionSpace, AppliesWhatTheLawsMean) {
   const Campaign campaign = LoadCampaign(DISPERSA_CAMPAIGNS "/table3.yaml");
   const DispersionSpace space(campaign);
