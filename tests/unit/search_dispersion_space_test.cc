@@ -74,7 +74,14 @@ TEST(DispersionSpace, WhatIsNotDrawnByAQuantileIsHeld) {
     EXPECT_EQ(ValueAt({.kind = Distribution::kValues, .values = {1.0, 2.0, 4.0}}, z), 2.0);
     EXPECT_EQ(ValueAt({.kind = Distribution::kConstant, .nominal = 7.0, .values = {7.0}}, z), 7.0);
   }
-  EXPECT_EQ(ValueAt({.kind = Distribution::kNormal, .nominal = 0.0, .sigma = 2.0, .values = {}}, -1.5, true), 3.0);
+}
+
+TEST(DispersionSpace, AMagnitudeHasNoSign) {
+  const ScalarDistribution normal = {.kind = Distribution::kNormal, .nominal = 0.0, .sigma = 2.0, .values = {}};
+  EXPECT_EQ(ValueAt(normal, -1.5, true), 3.0);
+  Campaign campaign;
+  campaign.dispersions = {Of("w", normal, "wind_altitude_m", true)};
+  EXPECT_EQ(DispersionSpace(campaign).Value(0, {-1.5}), 3.0);  // what a search tells of the point
 }
 
 TEST(DispersionSpace, OnlyAFullTurnIsADirection) {
