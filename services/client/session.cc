@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <memory>
 #include <utility>
-
 
 namespace dispersa {
 
@@ -12,15 +12,20 @@ Session::Session(const SessionOptions& options) : has_keys_(!options.admission.k
     peer_ = ParsePeer(options.peer, options.domain);
     const NetworkOptions network = Admit({options.domain, options.address}, options.admission,
                                          {Role::kClient, Role::kCoordinator}, peer_.host);
-    link_ = std::make_unique<ClientLink>(network, peer_);
+    call_ = [link = std::make_shared<ClientLink>(network, peer_)](
+                const std::string& method, const std::string& arguments, const std::string& data,
+                std::chrono::milliseconds patience) { return link->Call(method, arguments, data, patience); };
   } catch (const NetworkError& error) {
     throw Failure{kExitBadInput, error.what()};
   }
 }
 
+Session::Session(Peer peer, bool has_keys, Call call)
+    : has_keys_(has_keys), peer_(std::move(peer)), call_(std::move(call)) {}
+
 std::optional<Reply> Session::Try(const std::string& method, const Json& arguments, const std::string& data,
                                   std::chrono::milliseconds patience) {
-  auto reply = link_->Call(method, arguments.dump(), data, patience);
+  auto reply = call_(method, arguments.dump(), data, patience);
   if (reply && reply->code != 0) throw Failure{static_cast<ExitCode>(reply->code), reply->text};
   return reply;
 }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <chrono>
-#include <memory>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -22,6 +22,10 @@ struct SessionOptions {
   Admission admission;
 };
 
+/// Asks a coordinator once, for so long. None: nobody has answered.
+using Call = std::function<std::optional<Reply>(const std::string& method, const std::string& arguments,
+                                                const std::string& data, std::chrono::milliseconds patience)>;
+
 /// One connection to a coordinator. Throws Failure, with the code and the words of the coordinator when it
 /// refuses.
 class Session {
@@ -29,6 +33,8 @@ class Session {
   using Json = nlohmann::ordered_json;
 
   explicit Session(const SessionOptions& options);
+  /// Over another connection than the network: of a program that has the coordinator in it.
+  Session(Peer peer, bool has_keys, Call call);
 
   /// Asks for so long. None: nobody has answered.
   std::optional<Reply> Try(const std::string& method, const Json& arguments, const std::string& data = "",
@@ -43,7 +49,7 @@ class Session {
 
   bool has_keys_;
   Peer peer_;
-  std::unique_ptr<ClientLink> link_;
+  Call call_;
 };
 
 }  // namespace dispersa

@@ -11,12 +11,13 @@
 
 #include "services/coordinator/auditor.h"
 #include "services/coordinator/dispatcher.h"
+#include "services/coordinator/workforce.h"
 #include "services/transport/coordinator_link.h"
 
 namespace dispersa {
 
 /// The dispatcher with a clock and a network. One thread.
-class Coordinator {
+class Coordinator : public Workforce {
  public:
   /// Throws NetworkError.
   /// `audit_share`: so much of all results is flown again here, 0 to 1.
@@ -24,9 +25,8 @@ class Coordinator {
   /// Serves one campaign.
   Coordinator(const NetworkOptions& network, CampaignBook& book, double audit_share = 0.0);
 
-  /// A book must stay until it is closed.
-  void Open(CampaignBook& book, int priority = 0) { dispatcher_.Open(book, priority); }
-  void Close(const std::string& flight_id) { dispatcher_.Close(flight_id); }
+  void Open(CampaignBook& book, int priority) override { dispatcher_.Open(book, priority); }
+  void Close(const std::string& flight_id) override { dispatcher_.Close(flight_id); }
 
   /// One round: waits for messages, at most `timeout`, and does what follows from them and from the time.
   /// Throws ResultError.
@@ -44,20 +44,20 @@ class Coordinator {
 
   /// What answers clients.
   void Serve(std::function<Reply(const Request&)> answer) { answer_ = std::move(answer); }
-  void Publish(CampaignProgress progress);
+  void Publish(CampaignProgress progress) override;
 
   std::size_t joined() const { return dispatcher_.joined(); }
   bool Hears() const { return dispatcher_.Hears(now_s_); }
-  std::vector<Dispatcher::WorkerView> Workers() const { return dispatcher_.Workers(); }
-  std::optional<std::string> RefusalByAll(const std::string& flight_id) const {
+  std::vector<Dispatcher::WorkerView> Workers() const override { return dispatcher_.Workers(); }
+  std::optional<std::string> RefusalByAll(const std::string& flight_id) const override {
     return dispatcher_.RefusalByAll(flight_id);
   }
   const std::optional<std::string>& refusal() const { return dispatcher_.refusal(); }
-  const AuditOptions& audit() const { return dispatcher_.audit(); }
-  std::uint64_t audits() const { return dispatcher_.audits(); }
-  std::uint64_t expelled() const { return dispatcher_.expelled(); }
-  /// Seconds since the start, without those for which this process or machine stood still.
-  double now_s() const { return now_s_; }
+  const AuditOptions& audit() const override { return dispatcher_.audit(); }
+  std::uint64_t audits() const override { return dispatcher_.audits(); }
+  std::uint64_t expelled() const override { return dispatcher_.expelled(); }
+  /// Without the seconds for which this process or machine stood still.
+  double now_s() const override { return now_s_; }
 
  private:
   void Advance();

@@ -141,7 +141,7 @@ Reply FrontDesk::Answer(const Request& request) {
 }
 
 void FrontDesk::ForgetUploads() {
-  std::erase_if(uploads_, [now_s = coordinator_.now_s()](const auto& upload) {
+  std::erase_if(uploads_, [now_s = workforce_.now_s()](const auto& upload) {
     return now_s - upload.second.used_s > kUploadPatience_s;
   });
 }
@@ -156,7 +156,7 @@ std::string FrontDesk::TakePart(const std::string& arguments, const std::string&
                   "the coordinator takes " + std::to_string(kMaxUploads) + " texts at a time already");
   }
   Upload& upload = uploads_[id];
-  upload.used_s = coordinator_.now_s();
+  upload.used_s = workforce_.now_s();
   if (upload.size != size && !upload.parsed.valid()) {
     upload.text.clear();
     upload.size = size;
@@ -181,7 +181,7 @@ std::string FrontDesk::Launch(const std::string& arguments) {
   const auto found = uploads_.find(id);
   if (found == uploads_.end() || found->second.text.size() != found->second.size) return answer("unknown");
   Upload& upload = found->second;
-  upload.used_s = coordinator_.now_s();
+  upload.used_s = workforce_.now_s();
   if (!upload.parsed.valid()) upload.parsed = std::async(std::launch::async, Parse, upload.text);
   if (upload.parsed.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready)
     return answer("checked");
@@ -227,7 +227,7 @@ std::string FrontDesk::Status(const std::string& arguments) const {
   answer["schema"] = "dispersa/status/1";
   constexpr const char* kStates[] = {"ready", "flying", "draining", "left"};
   Json workers = Json::array();
-  for (const Dispatcher::WorkerView& worker : coordinator_.Workers()) {
+  for (const Dispatcher::WorkerView& worker : workforce_.Workers()) {
     workers.push_back({{"id", worker.worker},
                        {"host", Printable(worker.host)},
                        {"slots", worker.slots},

@@ -15,7 +15,7 @@ namespace dispersa {
 /// second time than the first.
 class FrontDesk {
  public:
-  FrontDesk(Service& service, Coordinator& coordinator) : service_(service), coordinator_(coordinator) {}
+  FrontDesk(Service& service, const Workforce& workforce) : service_(service), workforce_(workforce) {}
 
   Reply Answer(const Request& request);
 
@@ -41,7 +41,7 @@ class FrontDesk {
   void ForgetUploads();
 
   Service& service_;
-  Coordinator& coordinator_;
+  const Workforce& workforce_;
   std::map<std::string, Upload> uploads_;  ///< by id
 };
 

@@ -8,7 +8,7 @@
 
 namespace dispersa {
 
-std::string MetricsText(const Service& service, const Coordinator& coordinator) {
+std::string MetricsText(const Service& service, const Workforce& workforce) {
   std::map<std::string, int> states;
   LedgerProgress all;
   std::uint64_t conflicts = 0, slots = 0;
@@ -21,7 +21,8 @@ std::string MetricsText(const Service& service, const Coordinator& coordinator) 
     all.quarantined += progress.quarantined;
     conflicts += entry.conflicts;
   }
-  for (const Dispatcher::WorkerView& worker : coordinator.Workers()) slots += worker.slots;
+  const std::vector<Dispatcher::WorkerView> workers = workforce.Workers();
+  for (const Dispatcher::WorkerView& worker : workers) slots += worker.slots;
 
   std::string text = "# HELP dispersa_campaigns Campaigns by state.\n# TYPE dispersa_campaigns gauge\n";
   for (const auto& [state, count] : states)
@@ -35,10 +36,10 @@ std::string MetricsText(const Service& service, const Coordinator& coordinator) 
   put("cases_assigned", "gauge", "Cases that workers have.", all.assigned);
   put("cases_quarantined", "gauge", "Cases that were given up.", all.quarantined);
   put("conflicts", "gauge", "Results that contradicted others.", conflicts);
-  put("workers", "gauge", "Workers that are joined.", coordinator.joined());
+  put("workers", "gauge", "Workers that are joined.", workers.size());
   put("slots", "gauge", "Threads of theirs that fly.", slots);
-  put("audits_total", "counter", "Results that were flown again.", coordinator.audits());
-  put("expelled_total", "counter", "Workers whose results were wrong.", coordinator.expelled());
+  put("audits_total", "counter", "Results that were flown again.", workforce.audits());
+  put("expelled_total", "counter", "Workers whose results were wrong.", workforce.expelled());
   put("refused_total", "counter", "Datagrams and messages that were refused.", Complaints());
   return text;
 }

@@ -28,8 +28,8 @@ bool IsReady(const std::future<T>& future) {
 
 }  // namespace
 
-Service::Service(const ServiceOptions& options, Coordinator& coordinator)
-    : options_(options), coordinator_(coordinator), catalogue_(options.data) {
+Service::Service(const ServiceOptions& options, Workforce& workforce)
+    : options_(options), workforce_(workforce), catalogue_(options.data) {
   std::size_t open = 0;
   for (const auto& [id, entry] : catalogue_.entries()) open += !HasEnded(entry.state);
   LogInfo("{}: {} campaigns, {} of them open", options.data.string(), catalogue_.entries().size(), open);
@@ -38,7 +38,7 @@ Service::Service(const ServiceOptions& options, Coordinator& coordinator)
 Service::~Service() {
   stop_report_ = true;
   if (reporting_) reporting_->verdict.wait();
-  for (auto& [id, flying] : flying_) coordinator_.Close(catalogue_.At(id).flight_id);
+  for (auto& [id, flying] : flying_) workforce_.Close(catalogue_.At(id).flight_id);
 }
 
 void Service::Step() {
@@ -155,7 +155,7 @@ void Service::StartOpening() {
   if (entry == nullptr || !MakeRoomFor(*entry)) return;
   CampaignOpening opening{
       catalogue_.TextOf(entry->id), entry->name, catalogue_.ResultsOf(entry->id), {}, ++opened_,
-      coordinator_.audit()};
+      workforce_.audit()};
   for (const auto& [id, other] : catalogue_.entries()) {
     if (id != entry->id && other.flight_id == entry->flight_id)
       opening.same_flights.push_back(catalogue_.ResultsOf(id));
@@ -175,7 +175,7 @@ void Service::FinishOpening() {
     Book book = opened.book.get();
     if (entry.state != CampaignState::kWaiting) return;  // cancelled meanwhile
     entry.flight_id = book->campaign().flight_id;        // another one if the engine is another one by now
-    coordinator_.Open(*book, entry.priority);
+    workforce_.Open(*book, entry.priority);
     LogInfo("campaign {} ({}) is open: {} of {} cases are there", entry.name, opened.id.substr(0, 8),
             book->ledger().Progress().done, book->ledger().Progress().total);
     flying_[opened.id].book = std::move(book);
@@ -190,7 +190,7 @@ void Service::FinishOpening() {
 }
 
 void Service::Measure() {
-  const double now_s = coordinator_.now_s();
+  const double now_s = workforce_.now_s();
   if (now_s - measured_s_ < kMeasure_s) return;
   measured_s_ = now_s;
   for (auto& [id, flying] : flying_) {
@@ -217,7 +217,7 @@ Service::Book Service::TakeBack(const std::string& id) {
   CatalogueEntry& entry = catalogue_.At(id);
   found->second.book->Flush();
   NoteConflicts(entry, found->second);
-  coordinator_.Close(entry.flight_id);
+  workforce_.Close(entry.flight_id);
   Book book = std::move(found->second.book);
   std::erase_if(flew_, [&](const auto& each) { return each.first == id; });
   flew_.emplace_back(id, book->tally());
@@ -245,7 +245,7 @@ void Service::End(CatalogueEntry& entry, CampaignState state, int code, const st
 
 void Service::Publish(const CatalogueEntry& entry) {
   const LedgerProgress progress = View(entry.id).progress;
-  coordinator_.Publish({0, entry.id, entry.flight_id, entry.name, CampaignStateName(entry.state),
+  workforce_.Publish({0, entry.id, entry.flight_id, entry.name, CampaignStateName(entry.state),
                         progress.total, progress.done, progress.quarantined, progress.assigned, 0});
 }
 
@@ -265,7 +265,7 @@ CampaignView Service::View(const std::string& id) const {
       view.progress.waiting = entry.cases - std::min(entry.cases, entry.done + entry.quarantined);
     return view;
   }
-  if (const auto refusal = coordinator_.RefusalByAll(entry.flight_id))
+  if (const auto refusal = workforce_.RefusalByAll(entry.flight_id))
     view.problem = "no worker here can fly it: " + *refusal;
   view.progress = flying->second.book->ledger().Progress();
   const auto& past = flying->second.past;
@@ -306,7 +306,7 @@ void Service::Relaunch(const std::string& id, int priority) {
   }
   catalogue_.Write(entry);
   if (const auto flying = flying_.find(id); flying != flying_.end())
-    coordinator_.Open(*flying->second.book, priority);
+    workforce_.Open(*flying->second.book, priority);
 }
 
 void Service::Launch(CatalogueEntry entry, const std::string& text) {

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "services/coordinator/catalogue.h"
-#include "services/coordinator/coordinator.h"
+#include "services/coordinator/workforce.h"
 
 namespace dispersa {
 
@@ -46,10 +46,10 @@ struct CampaignView {
 class Service {
  public:
   /// Throws InputError if the data directory cannot be used.
-  Service(const ServiceOptions& options, Coordinator& coordinator);
+  Service(const ServiceOptions& options, Workforce& workforce);
   ~Service();
 
-  /// Between two steps of the coordinator. Throws ResultError when the disk is full.
+  /// Between two steps of the workforce. Throws ResultError when the disk is full.
   void Step();
   /// Stores what has gathered.
   void Flush();
@@ -104,7 +104,7 @@ class Service {
   void Publish(const CatalogueEntry& entry);
 
   ServiceOptions options_;
-  Coordinator& coordinator_;
+  Workforce& workforce_;
   Catalogue catalogue_;
   std::map<std::string, Flying> flying_;  ///< by id
   std::deque<std::pair<std::string, RunningTally>> flew_;  ///< by id: what the last ones came to

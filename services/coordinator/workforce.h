@@ -1,0 +1,35 @@
+// Who flies the campaigns of a service: the coordinator's workers, or made-up ones in a test.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "services/coordinator/dispatcher.h"
+#include "services/transport/messages.h"
+
+namespace dispersa {
+
+/// What a service, its front desk and its metrics need of a coordinator. None of it needs a network.
+class Workforce {
+ public:
+  virtual ~Workforce() = default;
+
+  /// A book must stay until it is closed.
+  virtual void Open(CampaignBook& book, int priority) = 0;
+  virtual void Close(const std::string& flight_id) = 0;
+  /// To all observers.
+  virtual void Publish(CampaignProgress progress) = 0;
+
+  virtual std::vector<Dispatcher::WorkerView> Workers() const = 0;
+  /// See Dispatcher.
+  virtual std::optional<std::string> RefusalByAll(const std::string& flight_id) const = 0;
+  virtual const AuditOptions& audit() const = 0;
+  virtual std::uint64_t audits() const = 0;
+  virtual std::uint64_t expelled() const = 0;
+  /// Seconds since the start.
+  virtual double now_s() const = 0;
+};
+
+}  // namespace dispersa
