@@ -1,0 +1,249 @@
+// What clients may ask for, and what they are refused: the front desk without a network.
+#include "services/coordinator/front_desk.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "made_up_service.h"
+#include "services/transport/exit_code.h"
+
+namespace dispersa::front_desk_test {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+using ::testing::ElementsAre;
+
+class FrontDeskTest : public ServiceTest {
+ protected:
+  FrontDeskTest() { StartService(); }
+
+  Reply Ask(const std::string& method, const Json& arguments, const std::string& data = "") {
+    return desk_->Answer({"client", 5, method, arguments.dump(), data});
+  }
+  Json AskFor(const std::string& method, const Json& arguments, const std::string& data = "") {
+    const Reply reply = Ask(method, arguments, data);
+    EXPECT_EQ(reply.code, kExitDone) << method << ": " << reply.text;
+    return Json::parse(reply.text);
+  }
+  /// "code: text"
+  std::string Refusal(const std::string& method, const Json& arguments, const std::string& data = "") {
+    const Reply reply = Ask(method, arguments, data);
+    return std::to_string(reply.code) + ": " + reply.text;
+  }
+  std::uint64_t Upload(const std::string& id, std::uint64_t size, std::uint64_t offset, const std::string& part) {
+    return AskFor("upload", {{"id", id}, {"size", size}, {"offset", offset}}, part).at("received");
+  }
+  /// The answer when the text has been parsed.
+  Reply LaunchUploaded(const Campaign& campaign, int priority = 0) {
+    const Json arguments = {
+        {"id", campaign.id}, {"flight_id", campaign.flight_id}, {"priority", priority}};
+    Reply reply = Ask("launch", arguments);
+    while (reply.code == 0 && Json::parse(reply.text).at("state") == "checked") reply = Ask("launch", arguments);
+    return reply;
+  }
+  static std::string TooMany() { return "5: the coordinator takes 8 texts at a time already"; }
+};
+
+TEST_F(FrontDeskTest, AnAnswerNamesItsClientAndItsQuestion) {
+  const Reply reply = desk_->Answer({"ann", 17, "health", "", ""});
+  EXPECT_EQ(reply.client, "ann");
+  EXPECT_EQ(reply.number, 17u);
+  EXPECT_EQ(reply.code, kExitDone);
+  EXPECT_EQ(reply.text, "{}");
+}
+
+TEST_F(FrontDeskTest, WhatItDoesNotUnderstandIsRefusedInWords) {
+  EXPECT_EQ(Refusal("fly", Json::object()), "2: the coordinator does not know the request 'fly'");
+  EXPECT_EQ(Refusal("cancel", Json::object()),
+            "2: the coordinator does not understand the arguments of 'cancel'");
+  const Reply reply = desk_->Answer({"client", 5, "list", "{", ""});
+  EXPECT_EQ(reply.text, "the coordinator does not understand the arguments of 'list'");
+  EXPECT_EQ(reply.code, kExitBadInput);
+  EXPECT_EQ(Refusal("status", {{"id", "ab\x1b"}}), "2: no campaign, or more than one, has the id 'ab\\x1b'");
+}
+
+TEST_F(FrontDeskTest, ATextComesInPartsEachOnce) {
+  const Campaign campaign = Smoke(2);
+  const std::string& text = campaign.canonical_yaml;
+  const Json launch = {{"id", campaign.id}, {"flight_id", campaign.flight_id}, {"priority", 3}};
+  EXPECT_EQ(AskFor("launch", launch).at("state"), "unknown");
+  EXPECT_EQ(Upload(campaign.id, text.size(), 0, text.substr(0, 1000)), 1000u);
+  EXPECT_EQ(Upload(campaign.id, text.size(), 0, text.substr(0, 1000)), 1000u) << "the answer got lost";
+  EXPECT_EQ(Upload(campaign.id, text.size(), 500, text.substr(500, 1000)), 1000u) << "not the next one";
+  EXPECT_EQ(AskFor("launch", launch).at("state"), "unknown") << "half a text";
+  EXPECT_EQ(Upload(campaign.id, text.size(), 1000, text.substr(1000) + "x"), 1000u) << "beyond the text";
+  EXPECT_EQ(Upload(campaign.id, text.size(), 1000, text.substr(1000)), text.size());
+  EXPECT_EQ(LaunchUploaded(campaign, 3).code, kExitDone);
+  EXPECT_EQ(service_->catalogue().TextOf(campaign.id), text);
+  EXPECT_EQ(service_->catalogue().entries().at(campaign.id).priority, 3);
+}
+
+TEST_F(FrontDeskTest, EightTextsAtATimeAndNoMore) {
+  for (int i = 0; i < 8; ++i) EXPECT_EQ(Upload(std::to_string(i), 10, 0, "12345"), 5u);
+  const Json ninth = {{"id", "ninth"}, {"size", 10}, {"offset", 0}};
+  EXPECT_EQ(Refusal("upload", ninth, "12345"), TooMany());
+  EXPECT_EQ(Upload("3", 10, 5, "67890"), 10u) << "those that have begun go on";
+  // A client that died frees its place after a minute.
+  workforce_.time_s += 59.0;
+  EXPECT_EQ(Upload("3", 10, 10, ""), 10u);
+  EXPECT_EQ(Refusal("upload", ninth, "12345"), TooMany());
+  workforce_.time_s += 2.0;
+  EXPECT_EQ(AskFor("upload", ninth, "12345").at("received"), 5);
+}
+
+TEST_F(FrontDeskTest, ATextHasAtMost64MiB) {
+  EXPECT_EQ(Upload("fits", 64 << 20, 0, ""), 0u);
+  EXPECT_EQ(Refusal("upload", {{"id", "large"}, {"size", (64 << 20) + 1}, {"offset", 0}}),
+            "2: the campaign's text is larger than 64 MiB");
+}
+
+TEST_F(FrontDeskTest, ATextOfAnotherSizeBeginsAnew) {
+  EXPECT_EQ(Upload("a", 10, 0, "12345"), 5u);
+  EXPECT_EQ(Upload("a", 12, 5, "67890"), 0u) << "half of another text";
+  EXPECT_EQ(Upload("a", 12, 0, "ab"), 2u);
+}
+
+TEST_F(FrontDeskTest, ATextIsThatOfItsIdAndOfThisEngine) {
+  const Campaign campaign = Smoke(2);
+  const std::string& text = campaign.canonical_yaml;
+  Campaign renamed = campaign;
+  renamed.id = std::string(64, 'a');
+  Upload(renamed.id, text.size(), 0, text);
+  const Reply of_another = LaunchUploaded(renamed);
+  EXPECT_EQ(of_another.code, kExitBadInput);
+  EXPECT_EQ(of_another.text, "the text is not that of campaign " + renamed.id);
+  Campaign elsewhere = campaign;
+  elsewhere.flight_id = "of another engine";
+  const std::string differs = "campaign " + campaign.id.substr(0, 8) + " has the flight id " +
+                              campaign.flight_id + " here and of another engine at the client: the engines differ";
+  Upload(campaign.id, text.size(), 0, text);
+  EXPECT_EQ(LaunchUploaded(elsewhere).text, differs);
+  EXPECT_TRUE(service_->catalogue().entries().empty());
+  Upload(campaign.id, text.size(), 0, text);
+  EXPECT_EQ(LaunchUploaded(campaign).code, kExitDone);
+  EXPECT_EQ(LaunchUploaded(elsewhere).text, differs) << "also of one that is known";
+}
+
+TEST_F(FrontDeskTest, LaunchingAgainFliesNothingTwiceAndTakesTheNewPriority) {
+  const Campaign campaign = Smoke(2);
+  Upload(campaign.id, campaign.canonical_yaml.size(), 0, campaign.canonical_yaml);
+  for (const int priority : {1, 4}) EXPECT_EQ(LaunchUploaded(campaign, priority).code, kExitDone);
+  EXPECT_EQ(service_->catalogue().entries().size(), 1u);
+  const Json listed = AskFor("list", {{"id", campaign.id.substr(0, 5)}}).at("campaigns").at(0);
+  EXPECT_EQ(listed.at("priority"), 4);
+  EXPECT_EQ(listed.at("state"), "waiting");
+  EXPECT_EQ(listed.at("total"), 2);
+  EXPECT_TRUE(listed.at("code").is_null());
+  EXPECT_TRUE(listed.at("problem").is_null());
+}
+
+TEST_F(FrontDeskTest, FilesOfARunningCampaignAreNotHandedOut) {
+  const std::string id = Launch(Smoke(2)), begin = id.substr(0, 8);
+  const Json read = {{"id", id}, {"path", "campaign.yaml"}, {"offset", 0}};
+  for (const CampaignState state : {CampaignState::kWaiting, CampaignState::kFlying}) {
+    ASSERT_TRUE(Reaches(id, state));
+    EXPECT_EQ(Refusal("files", {{"id", id}}),
+              "5: campaign " + begin + " is " + CampaignStateName(state) +
+                  ": its results can be fetched when it has ended");
+    EXPECT_EQ(Refusal("read", read), "2: campaign " + begin + " has no file campaign.yaml");
+  }
+  EXPECT_EQ(AskFor("cancel", {{"id", id}}).at("id"), id);
+  EXPECT_EQ(AskFor("list", {{"id", id}}).at("campaigns").at(0).at("code"), kExitIncomplete);
+  EXPECT_EQ(Ask("read", read).data, Smoke(2).canonical_yaml);
+}
+
+TEST_F(FrontDeskTest, OfACampaignThatHasEndedTheFilesOfItsFolderAlone) {
+  const std::string id = Launch(Smoke(2));
+  ASSERT_TRUE(Reaches(id, CampaignState::kFlying));
+  AskFor("cancel", {{"id", id}});
+  const fs::path results = service_->catalogue().ResultsOf(id);
+  fs::create_directories(results / "histories");
+  const std::string large(300 << 10, 'h');
+  std::ofstream(results / "histories" / "a.csv") << large;
+  std::ofstream(results / "half.csv.tmp") << "half";
+  fs::create_symlink("/etc/hostname", results / "link");
+  const Json answer = AskFor("files", {{"id", id}});
+  EXPECT_EQ(answer.at("code"), kExitIncomplete);
+  std::map<std::string, std::uint64_t> sizes;
+  for (const Json& file : answer.at("files")) sizes[file.at("path")] = file.at("size");
+  EXPECT_THAT(sizes, ElementsAre(std::pair("campaign.yaml", fs::file_size(results / "campaign.yaml")),
+                                 std::pair("histories/a.csv", large.size()),
+                                 std::pair("results.sqlite", fs::file_size(results / "results.sqlite"))));
+  for (const char* path : {"../state.json", "../campaign.yaml", "/etc/hostname", "link", "half.csv.tmp",
+                           "histories/../campaign.yaml", "histories", ""}) {
+    EXPECT_EQ(Refusal("read", {{"id", id}, {"path", path}, {"offset", 0}}),
+              "2: campaign " + id.substr(0, 8) + " has no file " + path);
+  }
+  // In parts of 256 KiB, and nothing at the end.
+  const auto part = [&](std::uint64_t offset) {
+    return Ask("read", {{"id", id}, {"path", "histories/a.csv"}, {"offset", offset}}).data.size();
+  };
+  EXPECT_EQ(part(0), std::size_t{256} << 10);
+  EXPECT_EQ(part(256 << 10), large.size() - (std::size_t{256} << 10));
+  EXPECT_EQ(part(large.size()), 0u);
+}
+
+// As a coordinator that was started again finds them.
+TEST_F(FrontDeskTest, AListThatIsTooLongHasAllThatLive) {
+  service_.reset();
+  const auto write = [this](const std::string& id, int order, const std::string& state) {
+    const Json entry = {{"id", id},          {"flight_id", id}, {"name", id},        {"priority", 0},
+                        {"order", order},    {"cases", 2},      {"done", 0},         {"quarantined", 0},
+                        {"conflicts", 0},    {"state", state},  {"code", 5},         {"problem", ""}};
+    fs::create_directories(folder_ / "data" / id);
+    std::ofstream(folder_ / "data" / id / "state.json") << entry.dump();
+  };
+  int order = 0;
+  for (const char* id : {"first", "second"}) write(id, ++order, "waiting");
+  for (int i = 0; i < 505; ++i) write("ended" + std::to_string(i), ++order, "cancelled");
+  for (const char* id : {"third", "fourth"}) write(id, ++order, "waiting");
+  StartService();
+  const Json list = AskFor("list", Json::object());
+  EXPECT_EQ(list.at("campaigns").size(), 500u);
+  EXPECT_EQ(list.at("unlisted"), 9);
+  std::vector<std::string> live;
+  for (const Json& campaign : list.at("campaigns")) {
+    if (campaign.at("state") == "waiting") live.push_back(campaign.at("id"));
+  }
+  EXPECT_THAT(live, ElementsAre("first", "second", "third", "fourth"));
+}
+
+TEST_F(FrontDeskTest, TheStatusNamesTheWorkers) {
+  workforce_.Join("w1", 3);
+  const Json status = AskFor("status", Json::object());
+  EXPECT_EQ(status.at("schema"), "dispersa/status/1");
+  EXPECT_EQ(status.at("workers"),
+            Json::parse(R"([{"id": "w1", "host": "host", "slots": 3, "state": "ready", "flown": 0}])"));
+}
+
+TEST_F(FrontDeskTest, TheTallyCountsWhatWasFlown) {
+  const Campaign campaign = Smoke(5);
+  const std::string id = Launch(campaign);
+  EXPECT_EQ(AskFor("tally", {{"id", id}}).at("requirements").size(), 0u) << "not open yet";
+  ASSERT_TRUE(Reaches(id, CampaignState::kFlying));
+  workforce_.Join("w");
+  for (std::uint64_t i = 0; i < 3; ++i) {
+    CaseResult result = MadeUpWorkforce::ResultOf(i);
+    result.metrics[MetricColumn("pitch_error_peak_deg")] = i == 0 ? 1.0 : 0.25;
+    workforce_.Return("w", campaign.flight_id, result);
+  }
+  const Json tally = AskFor("tally", {{"id", id}});
+  EXPECT_EQ(tally.at("n"), 3);
+  const Json& requirement = tally.at("requirements").at(0);
+  EXPECT_EQ(requirement.at("metric"), "pitch_error_peak_deg");
+  EXPECT_EQ(requirement.at("below"), 1.0);
+  EXPECT_TRUE(requirement.at("above").is_null());
+  EXPECT_EQ(requirement.at("failures"), 1) << "1 is not below 1";
+  const Json& histogram = tally.at("histograms").at(0);
+  EXPECT_EQ(histogram.at("n"), 3);
+  std::int64_t counted = 0;
+  for (const Json& count : histogram.at("counts")) counted += count.get<std::int64_t>();
+  EXPECT_EQ(counted, 3);
+}
+
+}  // namespace
+}  // namespace dispersa::front_desk_test

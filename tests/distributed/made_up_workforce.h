@@ -1,0 +1,69 @@
+// A service's workers without a network: the real dispatcher with made-up time, and workers who return made-up
+// results.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/flight/engine_version.h"
+#include "core/flight/flight_inputs.h"
+#include "core/flight/metrics.h"
+#include "services/coordinator/workforce.h"
+
+namespace dispersa {
+
+class MadeUpWorkforce : public Workforce {
+ public:
+  void Open(CampaignBook& book, int priority) override { dispatcher.Open(book, priority); }
+  void Close(const std::string& flight_id) override { dispatcher.Close(flight_id); }
+  void Publish(CampaignProgress progress) override { published.push_back(std::move(progress)); }
+  std::vector<Dispatcher::WorkerView> Workers() const override { return dispatcher.Workers(); }
+  std::optional<std::string> RefusalByAll(const std::string& flight_id) const override {
+    return dispatcher.RefusalByAll(flight_id);
+  }
+  const AuditOptions& audit() const override { return dispatcher.audit(); }
+  std::uint64_t audits() const override { return dispatcher.audits(); }
+  std::uint64_t expelled() const override { return dispatcher.expelled(); }
+  double now_s() const override { return time_s; }
+
+  void Join(const std::string& worker, std::uint32_t slots = 1) {
+    dispatcher.On(worker, WorkerStatus{worker, "host", 1, EngineVersion(), slots, 2 * slots,
+                                       WorkerState::kReady, 0, kEpoch, {}, {}},
+                  time_s);
+  }
+  /// What the workers are told to fly now.
+  std::vector<FlyOrder> Tick() {
+    std::vector<FlyOrder> all;
+    for (const Orders& orders : dispatcher.Tick(time_s))
+      all.insert(all.end(), orders.assignments.begin(), orders.assignments.end());
+    return all;
+  }
+  static std::uint64_t CasesIn(const std::vector<FlyOrder>& orders) {
+    std::uint64_t cases = 0;
+    for (const FlyOrder& order : orders) cases += order.cases.size();
+    return cases;
+  }
+  /// A result that nobody needs to have been asked for is welcome too.
+  void Return(const std::string& worker, const std::string& flight_id, CaseResult result) {
+    dispatcher.On(worker, Report{worker, kEpoch, ++reports_, flight_id, {{0, std::move(result)}}, {}}, time_s);
+  }
+  static CaseResult ResultOf(std::uint64_t case_index) {
+    CaseResult result;
+    result.case_index = case_index;
+    result.outcome = Outcome::kCompleted;
+    result.inputs.assign(InputCount(kUsualStages), 0.5);
+    result.metrics.assign(MetricCount(kUsualStages), 0.25);
+    return result;
+  }
+
+  static constexpr std::uint64_t kEpoch = 7;
+  Dispatcher dispatcher{kEpoch, EngineVersion()};
+  double time_s = 1.0;
+  std::vector<CampaignProgress> published;
+
+ private:
+  std::uint64_t reports_ = 0;
+};
+
+}  // namespace dispersa
