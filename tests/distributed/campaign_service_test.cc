@@ -1,0 +1,260 @@
+// The service of many campaigns without a network: who flies first, who waits, what a restart and a second
+// launch do.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+#include <vector>
+
+#include "core/report/result_folder.h"
+#include "made_up_service.h"
+#include "services/coordinator/campaign_opening.h"
+#include "services/transport/exit_code.h"
+
+namespace dispersa::campaign_service_test {
+namespace {
+
+using ::testing::ElementsAre;
+
+class CampaignServiceTest : public ServiceTest {
+ protected:
+  void Return(const Campaign& campaign, std::uint64_t case_index) {
+    workforce_.Return("w", campaign.flight_id, MadeUpWorkforce::ResultOf(case_index));
+  }
+  /// Three lives of a worker end in this case, the only one that is left to fly.
+  void Quarantine(const Campaign& campaign, std::uint64_t case_index) {
+    for (int life = 0; life < 3; ++life) {
+      const std::string worker = "doomed" + std::to_string(life);
+      workforce_.Join(worker);
+      const std::vector<FlyOrder> orders = workforce_.Tick();
+      ASSERT_EQ(orders.size(), 1u);
+      ASSERT_THAT(orders[0].cases, ElementsAre(case_index));
+      workforce_.dispatcher.On(worker, Report{worker, MadeUpWorkforce::kEpoch, 1, campaign.flight_id, {},
+                                              {{case_index, orders[0].attempt}}},
+                               workforce_.time_s);
+      FallSilent();
+    }
+  }
+  void FallSilent() {
+    workforce_.time_s += 10.0;
+    workforce_.Tick();
+  }
+  std::string RefusalOfCancel(const std::string& id) {
+    try {
+      service_->Cancel(id);
+      return "none";
+    } catch (const Refused& refused) {
+      return std::to_string(refused.code) + ": " + refused.what();
+    }
+  }
+};
+
+TEST_F(CampaignServiceTest, SoManyFlyAtOnceThoseOfAHigherPriorityFirst) {
+  StartService(2);
+  const std::string low = Launch(Smoke(2, 1), 0), high = Launch(Smoke(2, 2), 5), older = Launch(Smoke(2, 3), 3),
+                    younger = Launch(Smoke(2, 4), 3);
+  ASSERT_TRUE(Until([&] { return StateOf(high) == CampaignState::kFlying && StateOf(older) == CampaignState::kFlying; }));
+  for (int i = 0; i < 50; ++i) service_->Step();
+  EXPECT_EQ(StateOf(low), CampaignState::kWaiting);
+  EXPECT_EQ(StateOf(younger), CampaignState::kWaiting) << "an equal priority takes nobody's place";
+  service_->Cancel(high);
+  ASSERT_TRUE(Reaches(younger, CampaignState::kFlying));
+  EXPECT_EQ(StateOf(low), CampaignState::kWaiting);
+}
+
+TEST_F(CampaignServiceTest, AHigherPriorityTakesThePlaceOfTheLastAndNothingFlownIsLost) {
+  StartService(1);
+  const Campaign campaign = Smoke(4, 1);
+  const std::string low = Launch(campaign);
+  ASSERT_TRUE(Reaches(low, CampaignState::kFlying));
+  workforce_.Join("w");
+  Return(campaign, 2);
+  const std::string high = Launch(Smoke(2, 2), 1);
+  ASSERT_TRUE(Reaches(high, CampaignState::kFlying));
+  EXPECT_EQ(StateOf(low), CampaignState::kWaiting);
+  EXPECT_EQ(service_->View(low).progress.done, 1u);
+  EXPECT_EQ(service_->View(low).progress.waiting, 3u);
+  EXPECT_THAT(ResultFolder::Open(service_->catalogue().ResultsOf(low)).PresentCases(), ElementsAre(2));
+  service_->Cancel(high);
+  ASSERT_TRUE(Reaches(low, CampaignState::kFlying));
+  EXPECT_EQ(service_->View(low).progress.done, 1u);
+}
+
+TEST_F(CampaignServiceTest, CampaignsOfTheSameFlightsFlyOneAfterTheOther) {
+  StartService();
+  const Campaign few = Smoke(3), more = Smoke(5);
+  ASSERT_EQ(few.flight_id, more.flight_id);
+  const std::string first = Launch(few), second = Launch(more);
+  ASSERT_TRUE(Reaches(first, CampaignState::kFlying));
+  for (int i = 0; i < 50; ++i) service_->Step();
+  EXPECT_EQ(StateOf(second), CampaignState::kWaiting);
+  workforce_.Join("w");
+  Return(few, 1);
+  service_->Cancel(first);
+  ASSERT_TRUE(Reaches(second, CampaignState::kFlying));
+  EXPECT_EQ(service_->View(second).progress.done, 1u) << "taken over";
+  EXPECT_EQ(service_->View(second).progress.total, 5u);
+}
+
+TEST_F(CampaignServiceTest, WhatWasCancelledGoesOnWhereItWasWhenItIsLaunchedAgain) {
+  StartService();
+  const Campaign campaign = Smoke(4);
+  const std::string id = Launch(campaign);
+  ASSERT_TRUE(Reaches(id, CampaignState::kFlying));
+  workforce_.Join("w");
+  Return(campaign, 0);
+  service_->Cancel(id);
+  service_->Cancel(id);  // a client repeats itself
+  EXPECT_EQ(StateOf(id), CampaignState::kCancelled);
+  EXPECT_EQ(service_->catalogue().entries().at(id).code, kExitIncomplete);
+  EXPECT_EQ(service_->catalogue().entries().at(id).done, 1u);
+  EXPECT_FALSE(service_->HasWork());
+  service_->Relaunch(id, 2);
+  EXPECT_TRUE(service_->HasWork());
+  ASSERT_TRUE(Reaches(id, CampaignState::kFlying));
+  EXPECT_EQ(service_->View(id).progress.done, 1u);
+}
+
+TEST_F(CampaignServiceTest, ItsResultsAreAtRestWhenNobodyOpensThem) {
+  StartService();
+  const std::string id = Launch(Smoke(4));
+  service_->Step();  // it is being opened now
+  service_->Cancel(id);
+  EXPECT_FALSE(service_->IsAtRest(id)) << "another thread writes its folder";
+  ASSERT_TRUE(Until([&] { return service_->IsAtRest(id); }));
+  EXPECT_EQ(StateOf(id), CampaignState::kCancelled);
+}
+
+TEST_F(CampaignServiceTest, ANewPriorityReachesWhatFlies) {
+  StartService();
+  const Campaign one = Smoke(200, 1), other = Smoke(200, 2);
+  const std::string first = Launch(one, 2), second = Launch(other, 1);
+  ASSERT_TRUE(Until([&] { return StateOf(first) == CampaignState::kFlying && StateOf(second) == CampaignState::kFlying; }));
+  service_->Relaunch(second, 3);
+  workforce_.Join("w");
+  for (const FlyOrder& order : workforce_.Tick()) EXPECT_EQ(order.flight_id, other.flight_id);
+  EXPECT_GT(service_->View(second).progress.assigned, 0u);
+}
+
+TEST_F(CampaignServiceTest, QuarantinedCasesAreTriedAgainWhenItIsLaunchedAgain) {
+  StartService();
+  const Campaign campaign = Smoke(2);
+  const std::string id = Launch(campaign);
+  ASSERT_TRUE(Reaches(id, CampaignState::kFlying));
+  workforce_.Join("w");
+  Return(campaign, 1);
+  FallSilent();
+  Quarantine(campaign, 0);
+  EXPECT_EQ(service_->View(id).progress.quarantined, 1u);
+  // Its report flies the stored case again and finds that the result is made up: it has failed.
+  ASSERT_TRUE(Until([&] { return HasEnded(StateOf(id)); }));
+  EXPECT_EQ(service_->catalogue().entries().at(id).quarantined, 1u);
+  service_->Relaunch(id, 0);
+  EXPECT_EQ(StateOf(id), CampaignState::kWaiting);
+  EXPECT_EQ(service_->catalogue().entries().at(id).quarantined, 0u);
+  EXPECT_EQ(service_->catalogue().entries().at(id).problem, "");
+  ASSERT_TRUE(Reaches(id, CampaignState::kFlying));
+  EXPECT_EQ(service_->View(id).progress.done, 1u);
+  EXPECT_EQ(service_->View(id).progress.waiting, 1u);
+}
+
+TEST_F(CampaignServiceTest, WhatIsReportedOrHasEndedIsNotCancelled) {
+  StartService();
+  const Campaign campaign = Smoke(1);
+  const std::string id = Launch(campaign);
+  ASSERT_TRUE(Reaches(id, CampaignState::kFlying));
+  workforce_.Join("w");
+  Return(campaign, 0);
+  ASSERT_TRUE(Reaches(id, CampaignState::kReporting));
+  EXPECT_EQ(RefusalOfCancel(id), "2: campaign " + id.substr(0, 8) + " is reporting and cannot be cancelled");
+  ASSERT_TRUE(Reaches(id, CampaignState::kFailed)) << "a result that its flight does not give";
+  EXPECT_EQ(RefusalOfCancel(id), "2: campaign " + id.substr(0, 8) + " is failed and cannot be cancelled");
+}
+
+TEST_F(CampaignServiceTest, TimeLeftIsWhatIsMissingByTheRateOfTheLastSeconds) {
+  StartService();
+  const Campaign campaign = Smoke(100);
+  const std::string id = Launch(campaign);
+  ASSERT_TRUE(Reaches(id, CampaignState::kFlying));
+  workforce_.Join("w");
+  // Two cases a second; measured once a second.
+  for (std::uint64_t i = 0; i < 10; ++i) {
+    workforce_.time_s += 1.0;
+    service_->Step();
+    Return(campaign, 2 * i);
+    Return(campaign, 2 * i + 1);
+  }
+  workforce_.time_s += 1.0;
+  service_->Step();
+  const CampaignView view = service_->View(id);
+  EXPECT_EQ(view.rate_per_s, 2.0);
+  EXPECT_EQ(view.eta_s, 40.0) << "80 of 100 at 2 a second";
+  const CampaignProgress& told = workforce_.published.back();
+  EXPECT_EQ(told.campaign_id, id);
+  EXPECT_EQ(told.state, "flying");
+  EXPECT_EQ(told.total, 100u);
+  EXPECT_EQ(told.done, 20u);
+}
+
+TEST_F(CampaignServiceTest, ACampaignThatNoWorkerCanFlySaysWhy) {
+  StartService();
+  const Campaign campaign = Smoke(2);
+  const std::string id = Launch(campaign);
+  ASSERT_TRUE(Reaches(id, CampaignState::kFlying));
+  EXPECT_EQ(service_->View(id).problem, "");
+  workforce_.Join("w");
+  workforce_.dispatcher.On("w", CampaignRefusal{"w", MadeUpWorkforce::kEpoch, campaign.flight_id, "no law"},
+                           workforce_.time_s);
+  EXPECT_EQ(service_->View(id).problem, "no worker here can fly it: no law");
+}
+
+// What others have flown of the same flights.
+class OpeningTest : public ServiceTest {
+ protected:
+  std::filesystem::path Flown(const std::string& name, const Campaign& campaign,
+                              const std::vector<std::uint64_t>& cases) {
+    ResultFolder folder = ResultFolder::Create(folder_ / name, campaign);
+    std::vector<CaseResult> results;
+    for (const std::uint64_t i : cases) results.push_back(MadeUpWorkforce::ResultOf(i));
+    folder.Append(results);
+    return folder_ / name;
+  }
+  std::unique_ptr<CampaignBook> Open(const Campaign& campaign, std::vector<std::filesystem::path> others,
+                                     std::uint64_t number = 1) {
+    return OpenBook({campaign.canonical_yaml, campaign.name, folder_ / "results", std::move(others), number, {}});
+  }
+};
+
+TEST_F(OpeningTest, TakesOverCasesOfTheCampaignAlone) {
+  const auto more = Flown("more", Smoke(9), {1, 8});
+  const auto book = Open(Smoke(4), {more, folder_ / "nothing"});
+  EXPECT_THAT(book->folder().PresentCases(), ElementsAre(1));
+  EXPECT_EQ(book->ledger().Progress().done, 1u);
+  EXPECT_EQ(book->tally().n(), 1);
+}
+
+TEST_F(OpeningTest, TakesNothingOverOfOtherFlights) {
+  const auto other = Flown("other", Smoke(4, 2), {0, 1});
+  EXPECT_THAT(Open(Smoke(4, 1), {other})->folder().PresentCases(), ElementsAre());
+}
+
+TEST_F(OpeningTest, ACampaignThatStopsByItselfTakesNothingOver) {
+  const Campaign all = Smoke(40);
+  const Campaign stops = ParseCampaign(
+      all.canonical_yaml + "verdicts: {looks: 2, spending: pocock, stop: when_decided}\n", "stops");
+  ASSERT_EQ(stops.flight_id, all.flight_id);
+  const auto flown = Flown("flown", all, {0, 39});
+  EXPECT_THAT(Open(stops, {flown})->folder().PresentCases(), ElementsAre());
+}
+
+TEST_F(OpeningTest, AttemptsOfTwoOpeningsDiffer) {
+  std::set<std::uint64_t> attempts;
+  for (const std::uint64_t number : {1, 2}) {
+    const auto book = Open(Smoke(4), {}, number);
+    book->ledger().Join("w", {EngineVersion(), 1, 2}, 0.0);
+    for (const Assignment& assignment : book->ledger().Assign(0.0)) EXPECT_TRUE(attempts.insert(assignment.attempt).second);
+  }
+}
+
+}  // namespace
+}  // namespace dispersa::campaign_service_test
