@@ -41,6 +41,12 @@ void FetchFile(Session& session, const std::string& id, const std::string& path,
   file.Commit();
 }
 
+/// Whether it names a file below the folder that it is relative to, without a detour.
+bool IsFileBelow(const fs::path& path) {
+  return path.has_filename() && path != "." && !path.is_absolute() && path.lexically_normal() == path &&
+         *path.begin() != "..";
+}
+
 }  // namespace
 
 std::string LaunchCampaign(Session& session, const Campaign& campaign, int priority) {
@@ -89,7 +95,7 @@ FetchedCampaign FetchCampaign(Session& session, const std::string& id, const std
   for (const Json& file : answer.at("files")) {
     const fs::path path = file.at("path").get<std::string>();
     // Whatever answers there: nothing is written outside of the folder.
-    if (path.is_absolute() || path.lexically_normal() != path || *path.begin() == "..") {
+    if (!IsFileBelow(path)) {
       throw Failure{kExitInternalError, "the coordinator names a file outside of the result folder"};
     }
     FetchFile(session, answer.at("id"), path.generic_string(), file.at("size"), incomplete / path);
