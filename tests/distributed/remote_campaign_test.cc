@@ -1,0 +1,228 @@
+// A campaign that is given to a coordinator, followed and brought home: without a network, against a real front
+// desk and against coordinators that are made up.
+#include "services/client/remote_campaign.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <deque>
+#include <map>
+#include <vector>
+
+#include "made_up_service.h"
+
+namespace dispersa::remote_campaign_test {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+using ::testing::ElementsAre;
+
+/// "code: words" of what ends a call.
+template <typename Run>
+std::string FailureOf(Run run) {
+  try {
+    run();
+    return "none";
+  } catch (const Failure& failure) {
+    return std::to_string(failure.code) + ": " + failure.message;
+  }
+}
+
+/// Notes what it is shown; stops after so many looks.
+class Watcher : public Observer {
+ public:
+  void Show(const std::string& phase, std::uint64_t done, std::uint64_t total, const std::string& note) override {
+    shown.push_back(phase + " " + std::to_string(done) + "/" + std::to_string(total) + " " + note);
+  }
+  void EndPhase() override { shown.push_back("end"); }
+  bool Stop() override { return stops; }
+  std::vector<std::string> shown;
+  bool stops = false;
+};
+
+/// Answers each method as it is told to, the last answer for ever.
+class MadeUpCoordinator {
+ public:
+  Session Connect(bool has_keys = false) {
+    return {{"host", 7405}, has_keys, [this](const std::string& method, const std::string& arguments,
+                                             const std::string&, std::chrono::milliseconds) {
+              asked.push_back(method + " " + arguments);
+              std::deque<std::optional<Reply>>& left = answers[method];
+              if (left.empty()) return std::optional<Reply>();
+              const std::optional<Reply> answer = left.front();
+              if (left.size() > 1) left.pop_front();
+              return answer;
+            }};
+  }
+  void Answers(const std::string& method, const Json& text, const std::string& data = "") {
+    answers[method].push_back(Reply{"c", 1, 0, text.dump(), data});
+  }
+  void Refuses(const std::string& method, int code, const std::string& words) {
+    answers[method].push_back(Reply{"c", 1, code, words, ""});
+  }
+  void IsSilent(const std::string& method) { answers[method].push_back(std::nullopt); }
+
+  std::map<std::string, std::deque<std::optional<Reply>>> answers;
+  std::vector<std::string> asked;
+};
+
+TEST(Session, TheCoordinatorsRefusalIsTheFailure) {
+  MadeUpCoordinator coordinator;
+  coordinator.Refuses("cancel", 2, "too late");
+  Session session = coordinator.Connect();
+  EXPECT_EQ(FailureOf([&] { session.Ask("cancel", {{"id", "a"}}); }), "2: too late");
+  EXPECT_THAT(coordinator.asked, ElementsAre(R"(cancel {"id":"a"})"));
+}
+
+TEST(Session, SilenceSaysWhereAndWhetherKeysMayBeMissing) {
+  MadeUpCoordinator coordinator;
+  Session without = coordinator.Connect(), with = coordinator.Connect(true);
+  const std::string silence = "5: no coordinator has answered at host:7405 for 15 s";
+  EXPECT_EQ(FailureOf([&] { without.Ask("list", {}); }),
+            silence + "; a coordinator with keys answers only clients with keys (--keys)");
+  EXPECT_EQ(FailureOf([&] { with.Ask("list", {}); }), silence);
+  EXPECT_FALSE(with.Try("list", {}));
+}
+
+TEST(Launching, UploadsWhatTheCoordinatorLacksFromWhereItIs) {
+  MadeUpCoordinator coordinator;
+  for (const char* state : {"unknown", "checked", "waiting"}) coordinator.Answers("launch", {{"state", state}});
+  coordinator.Answers("upload", {{"received", 4}});
+  coordinator.Answers("upload", {{"received", 10}});
+  Campaign campaign;
+  campaign.id = "i";
+  campaign.flight_id = "f";
+  campaign.canonical_yaml = "0123456789";
+  Session session = coordinator.Connect();
+  EXPECT_EQ(LaunchCampaign(session, campaign, 3), "waiting");
+  const std::string launch = R"(launch {"id":"i","flight_id":"f","priority":3})";
+  EXPECT_THAT(coordinator.asked,
+              ElementsAre(launch, R"(upload {"id":"i","size":10,"offset":0})",
+                          R"(upload {"id":"i","size":10,"offset":4})", launch, launch));
+}
+
+Json Listed(int done, const Json& code) {
+  return {{"campaigns",
+           {{{"name", "smoke"}, {"done", done}, {"total", 12}, {"state", code.is_null() ? "flying" : "done"}, {"code", code}}}}};
+}
+
+TEST(Following, EndsWithTheCampaignsCodeAndWaitsForACoordinatorThatIsAway) {
+  MadeUpCoordinator coordinator;
+  coordinator.Answers("list", Listed(4, nullptr));
+  coordinator.IsSilent("list");
+  coordinator.Answers("list", Listed(12, 3));
+  Session session = coordinator.Connect();
+  Watcher watcher;
+  EXPECT_EQ(FollowCampaign(session, "i", watcher), kExitRequirementFailed);
+  EXPECT_THAT(watcher.shown, ElementsAre("smoke 4/12 flying", "smoke 12/12 done", "end"));
+}
+
+TEST(Following, StopsWhenItsWatcherWants) {
+  MadeUpCoordinator coordinator;
+  Session session = coordinator.Connect();
+  Watcher watcher;
+  watcher.stops = true;
+  EXPECT_THROW(FollowCampaign(session, "i", watcher), Interrupted);
+}
+
+class Fetching : public testing::Test {
+ protected:
+  Fetching() { fs::create_directories(folder_ / "in"); }
+
+  fs::path Target() const { return folder_ / "in" / "out"; }
+  /// Of a coordinator that says that it has such a file.
+  std::string FetchOf(const std::string& path) {
+    MadeUpCoordinator coordinator;
+    coordinator.Answers("files", {{"id", "i"}, {"files", {{{"path", path}, {"size", 4}}}}});
+    coordinator.Answers("read", Json::object(), "evil");
+    Session session = coordinator.Connect();
+    return FailureOf([&] { FetchCampaign(session, "i", Target()); });
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Fetching, NothingIsWrittenOutsideOfTheFolder) {
+  for (const std::string path : {"../evil", "../../evil", "a/../../evil", "/tmp/../tmp/dispersa-evil", "..", ".", "",
+                                 "a/../b", "./a"}) {
+    EXPECT_EQ(FetchOf(path), "1: the coordinator names a file outside of the result folder") << path;
+    EXPECT_FALSE(fs::exists(Target())) << path;
+    EXPECT_FALSE(fs::exists(folder_ / "in" / "evil")) << path;
+    EXPECT_FALSE(fs::exists(folder_ / "evil")) << path;
+  }
+  EXPECT_EQ(FetchOf((folder_ / "absolute").string()), "1: the coordinator names a file outside of the result folder");
+  EXPECT_FALSE(fs::exists(folder_ / "absolute"));
+  EXPECT_EQ(FetchOf("a/b..c"), "none") << "two dots in a name are two dots";
+  EXPECT_EQ(TextOfFile(Target() / "a" / "b..c"), "evil");
+}
+
+TEST_F(Fetching, AFileThatBecomesShorterIsAnErrorAndLeavesNoFolder) {
+  MadeUpCoordinator coordinator;
+  coordinator.Answers("files", {{"id", "i"}, {"files", {{{"path", "a"}, {"size", 9}}}}});
+  coordinator.Answers("read", Json::object(), "12345");
+  coordinator.Answers("read", Json::object(), "");
+  Session session = coordinator.Connect();
+  EXPECT_EQ(FailureOf([&] { FetchCampaign(session, "i", Target()); }),
+            "1: a: it became shorter while it was fetched");
+  EXPECT_FALSE(fs::exists(Target()));
+}
+
+TEST_F(Fetching, OnlyIntoANewOrAnEmptyFolder) {
+  fs::create_directories(Target());
+  std::ofstream(Target() / "mine") << "x";
+  MadeUpCoordinator coordinator;
+  Session session = coordinator.Connect();
+  EXPECT_EQ(FailureOf([&] { FetchCampaign(session, "i", Target()); }),
+            "2: " + Target().string() + ": not an empty folder, allowed: a new or an empty folder");
+  EXPECT_TRUE(coordinator.asked.empty());
+}
+
+TEST_F(Fetching, WhatAKilledFetchLeftIsNoPartOfTheNext) {
+  const fs::path left = Target().string() + ".dispersa-fetch";
+  fs::create_directories(left);
+  std::ofstream(left / "old") << "x";
+  EXPECT_EQ(FetchOf("new"), "none");
+  EXPECT_FALSE(fs::exists(Target() / "old"));
+  EXPECT_TRUE(fs::exists(Target() / "new"));
+  EXPECT_FALSE(fs::exists(left));
+}
+
+// Both ends, without the network between them.
+class RemoteCampaign : public ServiceTest {
+ protected:
+  RemoteCampaign() { StartService(); }
+
+  Session session_{{"here", 1}, false, [this](const std::string& method, const std::string& arguments,
+                                              const std::string& data, std::chrono::milliseconds) {
+                     service_->Step();
+                     return std::optional(desk_->Answer({"c", ++asked_, method, arguments, data}));
+                   }};
+  std::uint64_t asked_ = 0;
+};
+
+TEST_F(RemoteCampaign, IsLaunchedFollowedAndFetched) {
+  const Campaign campaign = Smoke(2);
+  EXPECT_EQ(LaunchCampaign(session_, campaign, 1), "waiting");
+  EXPECT_EQ(service_->catalogue().TextOf(campaign.id), campaign.canonical_yaml);
+  ASSERT_TRUE(Reaches(campaign.id, CampaignState::kFlying));
+  EXPECT_EQ(LaunchCampaign(session_, campaign, 2), "flying") << "again";
+  session_.Ask("cancel", {{"id", campaign.id}});
+  Watcher watcher;
+  EXPECT_EQ(FollowCampaign(session_, campaign.id.substr(0, 9), watcher), kExitIncomplete);
+  EXPECT_THAT(watcher.shown, ElementsAre("smoke 0/2 cancelled", "end"));
+  // More than one part.
+  const fs::path results = service_->catalogue().ResultsOf(campaign.id);
+  fs::create_directories(results / "histories");
+  std::ofstream(results / "histories" / "large.csv") << std::string(600 << 10, 'a') << "b";
+  const FetchedCampaign fetched =
+      FetchCampaign(session_, campaign.id.substr(0, 9), (folder_ / "fetched").string());
+  EXPECT_EQ(fetched.id, campaign.id);
+  EXPECT_EQ(fetched.directory, folder_ / "fetched");
+  for (const char* file : {"campaign.yaml", "results.sqlite", "histories/large.csv"}) {
+    EXPECT_TRUE(TextOfFile(fetched.directory / file) == TextOfFile(results / file)) << file;
+  }
+}
+
+}  // namespace
+}  // namespace dispersa::remote_campaign_test
