@@ -1,194 +1,220 @@
-// Every bound of a message that arrives: the last that is taken, the first that is refused, and what is said of it.
+// What makes a message senseless, in the words that the log has for it, and that all else passes.
 #include "services/transport/validity.h"
 
 #include <gtest/gtest.h>
 
-#include <functional>
-#include <string>
-#include <vector>
+#include <limits>
 
 #include "core/flight/flight_inputs.h"
 #include "core/flight/metrics.h"
+#include "services/transport/convert.h"
 
 namespace dispersa::validity_test {
 namespace {
 
-const std::string kFlight = std::string(60, 'a') + "09f7";
+const std::string kFlight(64, 'f');
 const char kBadWorker[] = "the worker's name is no identifier";
 const char kBadFlight[] = "the flight id is not 64 hexadecimal digits";
-const char kBadClient[] = "the client's name is no identifier";
 const char kTooLong[] = "a text is too long";
-const char kForeign[] = "a result has not the inputs and metrics of this engine";
-const char kImpossible[] = "a result has an impossible stage or reason";
 
-/// One change of a sound message, and what is then said of it: nothing where it is still sound.
-template <typename Message>
-struct Change {
-  const char* name;
-  std::function<void(Message&)> make;
-  std::string problem = "";
-};
-
-template <typename Message>
-void ExpectProblems(const Message& sound, const std::vector<Change<Message>>& changes) {
-  EXPECT_EQ(Problem(sound), "");
-  for (const Change<Message>& change : changes) {
-    Message message = sound;
-    change.make(message);
-    EXPECT_EQ(Problem(message), change.problem) << change.name;
-  }
+/// The problem of `message` after a change.
+template <typename Message, typename Change>
+std::string After(Message message, Change change) {
+  change(message);
+  return Problem(message);
 }
 
-/// What a name may be, of a worker, a client or a method.
-template <typename Message>
-std::vector<Change<Message>> NameChanges(std::string Message::* name, const std::string& problem) {
-  std::vector<Change<Message>> changes = {
-      {"longest", [=](Message& m) { m.*name = std::string(64, 'z'); }},
-      {"each kind of character", [=](Message& m) { m.*name = "AZaz09-_"; }},
-      {"none", [=](Message& m) { (m.*name).clear(); }, problem},
-      {"too long", [=](Message& m) { m.*name = std::string(65, 'z'); }, problem}};
-  // Neighbours of what is allowed, and what a partition or a shell would take for something else.
-  for (const char c : std::string("/:@[`{ *.\n\x7f\xe9") + '\0')
-    changes.push_back({"a character of no name", [=](Message& m) { m.*name = std::string("w") + c; }, problem});
-  return changes;
+WorkerStatus Status() {
+  return {"w-1_a", "host", 42, "engine", 3, 4, WorkerState::kFlying, 17, 99, {5, 6}, {{7, 5}}};
 }
-template <typename Message>
-std::vector<Change<Message>> FlightChanges() {
-  return {{"short flight id", [](Message& m) { m.flight_id.pop_back(); }, kBadFlight},
-          {"long flight id", [](Message& m) { m.flight_id += '0'; }, kBadFlight},
-          {"capital", [](Message& m) { m.flight_id[0] = 'A'; }, kBadFlight},
-          {"no digit", [](Message& m) { m.flight_id[63] = 'g'; }, kBadFlight}};
-}
-
-TEST(Validity, OfAWorkersStatus) {
-  WorkerStatus sound;
-  sound.worker = "worker-1";
-  sound.slots = 1;
-  ExpectProblems<WorkerStatus>(sound, NameChanges(&WorkerStatus::worker, kBadWorker));
-  ExpectProblems<WorkerStatus>(
-      sound, {{"longest host", [](auto& m) { m.host = std::string(256, 'h'); }},
-              {"host", [](auto& m) { m.host = std::string(257, 'h'); }, kTooLong},
-              {"longest engine", [](auto& m) { m.engine_version = std::string(256, 'e'); }},
-              {"engine", [](auto& m) { m.engine_version = std::string(257, 'e'); }, kTooLong},
-              {"no slot", [](auto& m) { m.slots = 0; }, "slots are not from 1 to 1024"},
-              {"most slots", [](auto& m) { m.slots = 1024; }},
-              {"slots", [](auto& m) { m.slots = 1025; }, "slots are not from 1 to 1024"},
-              {"most credits", [](auto& m) { m.credits = 65536; }},
-              {"credits", [](auto& m) { m.credits = 65537; }, "too many credits"},
-              {"most held", [](auto& m) { m.held.resize(65536); }},
-              {"held", [](auto& m) { m.held.resize(65537); }, "too long a list"},
-              {"most started", [](auto& m) { m.started.resize(65536); }},
-              {"started", [](auto& m) { m.started.resize(65537); }, "too long a list"}});
-}
-
-TEST(Validity, OfOrders) {
-  Orders sound;
-  sound.worker = "worker-1";
-  sound.coordinator_epoch = 1;
-  sound.assignments = {{kFlight, 1, {3, 4}}, {kFlight, 2, {}}};
-  ExpectProblems<Orders>(sound, NameChanges(&Orders::worker, kBadWorker));
-  ExpectProblems<Orders>(
-      sound, {{"no epoch", [](auto& m) { m.coordinator_epoch = 0; }, "the epoch is 0"},
-              {"no orders", [](auto& m) { m.assignments.clear(); }},
-              {"a later order's flight", [](auto& m) { m.assignments[1].flight_id = "f"; }, kBadFlight},
-              {"longest refusal", [](auto& m) { m.refusal = std::string(4096, 'r'); }},
-              {"refusal", [](auto& m) { m.refusal = std::string(4097, 'r'); }, kTooLong}});
-}
-
-Report SoundReport() {
-  Report report;
-  report.worker = "worker-1";
-  report.flight_id = kFlight;
-  FlownCase flown;
+Orders SomeOrders() { return {"w", 7, {{kFlight, 3, {1, 2}}}, {5}, {6}, false, ""}; }
+Report SomeReport() {
+  FlownCase flown{2, {}};
   flown.result.inputs.resize(InputCount(kUsualStages));
   flown.result.metrics.resize(MetricCount(kUsualStages));
-  report.flown = {flown, flown};
-  return report;
+  return {"w", 9, 3, kFlight, {flown}, {{8, 3}}};
 }
 
-TEST(Validity, OfAReport) {
-  const Report sound = SoundReport();
-  ExpectProblems<Report>(sound, NameChanges(&Report::worker, kBadWorker));
-  ExpectProblems<Report>(sound, FlightChanges<Report>());
-  const auto wide = [](CaseResult& result) {
-    result.inputs.resize(InputCount(64));
-    result.metrics.resize(MetricCount(64));
+// Names become partitions, in which * is everybody, and words of the log.
+TEST(Validity, ANameIsAnIdentifierOf64Letters) {
+  for (const std::string name : {"a", "Z-9_", "0123456789abcdef0123456789abcdef"}) {
+    EXPECT_EQ(After(Status(), [&](auto& status) { status.worker = name; }), "") << name;
+  }
+  for (const std::string& name : {std::string(), std::string("*"), std::string("a*"), std::string("a b"),
+                                  std::string("a/b"), std::string("\x1b[31m"), std::string("ä"), std::string("a."),
+                                  std::string(1, '\0'), std::string(65, 'a')}) {
+    const auto set = [&](auto& message) { message.worker = name; };
+    EXPECT_EQ(After(Status(), set), kBadWorker) << name;
+    EXPECT_EQ(After(SomeOrders(), set), kBadWorker) << name;
+    EXPECT_EQ(After(SomeReport(), set), kBadWorker) << name;
+    EXPECT_EQ(After(TextRequest{"w", kFlight, 0}, set), kBadWorker) << name;
+    EXPECT_EQ(After(TextPart{"w", kFlight, "n", "e", 9, 2, "bytes"}, set), kBadWorker) << name;
+    EXPECT_EQ(After(CampaignRefusal{"w", 1, kFlight, "why"}, set), kBadWorker) << name;
+    const char no_client[] = "the client's name is no identifier";
+    EXPECT_EQ(Problem(Request{name, 1, "list", "{}", ""}), no_client) << name;
+    EXPECT_EQ(Problem(Reply{name, 1, 0, "{}", ""}), no_client) << name;
+    EXPECT_EQ(Problem(Request{"c", 1, name, "{}", ""}), "the method is no identifier") << name;
+  }
+  EXPECT_EQ(After(Status(), [](auto& status) { status.worker = std::string(64, 'a'); }), "");
+}
+
+TEST(Validity, AFlightIdIs64HexadecimalDigits) {
+  for (const std::string& id : {std::string(), std::string(63, 'f'), std::string(65, 'f'), std::string(64, 'F'),
+                                std::string(64, 'g'), std::string(63, '0') + "/"}) {
+    const auto set = [&](auto& message) { message.flight_id = id; };
+    EXPECT_EQ(After(SomeOrders(), [&](Orders& orders) { orders.assignments[0].flight_id = id; }), kBadFlight);
+    EXPECT_EQ(After(SomeReport(), set), kBadFlight) << id;
+    EXPECT_EQ(After(TextRequest{"w", kFlight, 0}, set), kBadFlight) << id;
+    EXPECT_EQ(After(TextPart{"w", kFlight, "n", "e", 9, 2, "bytes"}, set), kBadFlight) << id;
+    EXPECT_EQ(After(CampaignRefusal{"w", 1, kFlight, "why"}, set), kBadFlight) << id;
+    EXPECT_EQ(After(CampaignProgress{}, set), kBadFlight) << id;
+  }
+  EXPECT_EQ(After(TextRequest{"w", kFlight, 0}, [](auto& text) { text.flight_id = std::string(64, '0'); }), "");
+}
+
+TEST(Validity, AStatusOfBoundedSize) {
+  EXPECT_EQ(After(Status(), [](auto& s) { s.host.assign(256, 'h'), s.engine_version.assign(256, 'e'); }), "");
+  EXPECT_EQ(After(Status(), [](auto& s) { s.host.assign(257, 'h'); }), kTooLong);
+  EXPECT_EQ(After(Status(), [](auto& s) { s.engine_version.assign(257, 'h'); }), kTooLong);
+  for (const std::uint32_t slots : {1u, 1024u}) EXPECT_EQ(After(Status(), [&](auto& s) { s.slots = slots; }), "");
+  for (const std::uint32_t slots : {0u, 1025u, std::numeric_limits<std::uint32_t>::max()})
+    EXPECT_EQ(After(Status(), [&](auto& s) { s.slots = slots; }), "slots are not from 1 to 1024");
+  EXPECT_EQ(After(Status(), [](auto& s) { s.credits = 65536; }), "");
+  EXPECT_EQ(After(Status(), [](auto& s) { s.credits = 65537; }), "too many credits");
+  EXPECT_EQ(After(Status(), [](auto& s) { s.held.resize(65536), s.started.resize(65536); }), "");
+  EXPECT_EQ(After(Status(), [](auto& s) { s.held.resize(65537); }), "too long a list");
+  EXPECT_EQ(After(Status(), [](auto& s) { s.started.resize(65537); }), "too long a list");
+}
+
+TEST(Validity, OrdersOfACoordinatorThatHasAnEpoch) {
+  EXPECT_EQ(Problem(SomeOrders()), "");
+  EXPECT_EQ(After(SomeOrders(), [](auto& orders) { orders.coordinator_epoch = 0; }), "the epoch is 0");
+  EXPECT_EQ(After(SomeOrders(), [](auto& orders) { orders.refusal.assign(4096, 'x'); }), "");
+  EXPECT_EQ(After(SomeOrders(), [](auto& orders) { orders.refusal.assign(4097, 'x'); }), kTooLong);
+}
+
+TEST(Validity, AResultHasTheInputsAndMetricsOfThisEngine) {
+  const char wrong[] = "a result has not the inputs and metrics of this engine";
+  const auto of = [](std::size_t inputs, std::size_t metrics) {
+    return After(SomeReport(), [&](Report& report) {
+      report.flown[0].result.inputs.resize(inputs);
+      report.flown[0].result.metrics.resize(metrics);
+    });
   };
-  ExpectProblems<Report>(
-      sound, {{"nothing flown", [](auto& m) { m.flown.clear(); }},
-              {"most cases", [](auto& m) { m.flown.resize(4096, m.flown[0]); }},
-              {"cases", [](auto& m) { m.flown.resize(4097, m.flown[0]); }, "too many cases"},
-              {"most started", [](auto& m) { m.started.resize(4096); }},
-              {"started", [](auto& m) { m.started.resize(4097); }, "too many cases"},
-              {"many stages", [&](auto& m) { wide(m.flown[1].result); }},
-              {"one input more", [](auto& m) { m.flown[1].result.inputs.push_back(0.0); }, kForeign},
-              {"one input less", [](auto& m) { m.flown[1].result.inputs.pop_back(); }, kForeign},
-              {"one metric more", [](auto& m) { m.flown[1].result.metrics.push_back(0.0); }, kForeign},
-              {"inputs of many stages with metrics of few",
-               [](auto& m) { m.flown[1].result.inputs.resize(InputCount(64)); }, kForeign},
-              {"nothing", [](auto& m) { m.flown[1].result = {}; }, kForeign},
-              {"last stage", [](auto& m) { m.flown[1].result.end_stage = 64; }},
-              {"stage", [](auto& m) { m.flown[1].result.end_stage = 65; }, kImpossible},
-              {"stage below 0", [](auto& m) { m.flown[1].result.end_stage = -1; }, kImpossible},
-              {"longest reason", [](auto& m) { m.flown[1].result.reason = std::string(4096, 'r'); }},
-              {"reason", [](auto& m) { m.flown[1].result.reason = std::string(4097, 'r'); }, kImpossible}});
+  const std::size_t inputs = InputCount(kUsualStages), metrics = MetricCount(kUsualStages);
+  EXPECT_EQ(of(inputs, metrics), "");
+  for (const std::size_t wrong_inputs : {std::size_t{0}, inputs - 1, inputs + 1}) EXPECT_EQ(of(wrong_inputs, metrics), wrong);
+  for (const std::size_t wrong_metrics : {std::size_t{0}, metrics - 1, metrics + 1}) EXPECT_EQ(of(inputs, wrong_metrics), wrong);
 }
 
-// A case that was given up has a reason and nothing else.
-TEST(Validity, OfAReportOfACaseGivenUp) {
-  Report sound = SoundReport();
-  sound.flown[0] = {1, {}, true};
-  sound.flown[0].result.reason = "ends the process that flies it";
-  ExpectProblems<Report>(sound,
-                         {{"no reason", [](auto& m) { m.flown[0].result.reason.clear(); }, kForeign},
-                          {"inputs", [](auto& m) { m.flown[0].result.inputs = {1.0}; }, kForeign},
-                          {"metrics", [](auto& m) { m.flown[0].result.metrics = {1.0}; }, kForeign},
-                          {"the numbers of a flight", [](auto& m) { m.flown[1].given_up = true; }, kForeign}});
+TEST(Validity, ACaseThatIsGivenUpHasAReasonAndNothingElse) {
+  const auto given_up = [](auto change) {
+    return After(SomeReport(), [&](Report& report) {
+      report.flown[0] = {2, {}, true};
+      report.flown[0].result.reason = "it ended the process";
+      change(report.flown[0].result);
+    });
+  };
+  const char wrong[] = "a result has not the inputs and metrics of this engine";
+  EXPECT_EQ(given_up([](CaseResult&) {}), "");
+  EXPECT_EQ(given_up([](CaseResult& result) { result.reason.clear(); }), wrong);
+  EXPECT_EQ(given_up([](CaseResult& result) { result.inputs = {1.0}; }), wrong);
+  EXPECT_EQ(given_up([](CaseResult& result) { result.metrics = {1.0}; }), wrong);
 }
 
-TEST(Validity, OfACampaignsText) {
-  ExpectProblems<TextRequest>({"w", kFlight, 3}, NameChanges(&TextRequest::worker, kBadWorker));
-  ExpectProblems<TextRequest>({"w", kFlight, 3}, FlightChanges<TextRequest>());
-  const TextPart sound{"w", kFlight, "name", "engine", 10, 4, "sixsix"};
+TEST(Validity, AResultEndsInAStageThatAVehicleCanHave) {
+  const char wrong[] = "a result has an impossible stage or reason";
+  for (const int stage : {0, 64}) EXPECT_EQ(After(SomeReport(), [&](auto& r) { r.flown[0].result.end_stage = stage; }), "");
+  for (const int stage : {-1, 65}) EXPECT_EQ(After(SomeReport(), [&](auto& r) { r.flown[0].result.end_stage = stage; }), wrong);
+  EXPECT_EQ(After(SomeReport(), [](auto& r) { r.flown[0].result.reason.assign(4097, 'x'); }), wrong);
+}
+
+TEST(Validity, AReportHasAtMost4096Cases) {
+  EXPECT_EQ(After(SomeReport(), [](auto& report) { report.started.resize(4096); }), "");
+  EXPECT_EQ(After(SomeReport(), [](auto& report) { report.started.resize(4097); }), "too many cases");
+  EXPECT_EQ(After(SomeReport(), [](auto& report) { report.flown.assign(4096, report.flown[0]); }), "");
+  EXPECT_EQ(After(SomeReport(), [](auto& report) { report.flown.assign(4097, report.flown[0]); }), "too many cases");
+}
+
+TEST(Validity, APartOfATextLiesWithinTheText) {
+  const auto part = [](std::uint64_t size, std::uint64_t offset, std::size_t bytes) {
+    return Problem(TextPart{"w", kFlight, "name", "engine", size, offset, std::string(bytes, 'x')});
+  };
   const char beyond[] = "a part beyond the text";
-  ExpectProblems<TextPart>(sound, NameChanges(&TextPart::worker, kBadWorker));
-  ExpectProblems<TextPart>(sound, FlightChanges<TextPart>());
-  ExpectProblems<TextPart>(
-      sound, {{"longest name", [](auto& m) { m.name = std::string(256, 'n'); }},
-              {"name", [](auto& m) { m.name = std::string(257, 'n'); }, kTooLong},
-              {"engine", [](auto& m) { m.engine_version = std::string(257, 'e'); }, kTooLong},
-              {"largest", [](auto& m) { m.size = std::uint64_t{64} << 20; }},
-              {"size", [](auto& m) { m.size = (std::uint64_t{64} << 20) + 1; }, "the campaign's text is larger than 64 MiB"},
-              {"one byte too many", [](auto& m) { m.bytes += '7'; }, beyond},
-              {"the end", [](auto& m) { m.offset = 10, m.bytes.clear(); }},
-              {"behind the end", [](auto& m) { m.offset = 11, m.bytes.clear(); }, beyond},
-              {"so far that a sum would be small again", [](auto& m) { m.offset = ~std::uint64_t{2}; }, beyond}});
+  EXPECT_EQ(part(9, 0, 9), "");
+  EXPECT_EQ(part(9, 9, 0), "");
+  EXPECT_EQ(part(9, 5, 5), beyond);
+  EXPECT_EQ(part(9, 10, 0), beyond);
+  EXPECT_EQ(part(9, std::numeric_limits<std::uint64_t>::max(), 2), beyond) << "their sum is 1";
+  EXPECT_EQ(part(std::uint64_t{64} << 20, 0, 9), "");
+  EXPECT_EQ(part((std::uint64_t{64} << 20) + 1, 0, 9), "the campaign's text is larger than 64 MiB");
+  EXPECT_EQ(Problem(TextPart{"w", kFlight, std::string(257, 'n'), "e", 9, 0, ""}), kTooLong);
+  EXPECT_EQ(Problem(TextPart{"w", kFlight, "n", std::string(257, 'e'), 9, 0, ""}), kTooLong);
 }
 
-TEST(Validity, OfARefusal) {
-  const CampaignRefusal sound{"w", 1, kFlight, "why"};
-  const char reason[] = "no reason, or too long a one";
-  ExpectProblems<CampaignRefusal>(sound, NameChanges(&CampaignRefusal::worker, kBadWorker));
-  ExpectProblems<CampaignRefusal>(sound, FlightChanges<CampaignRefusal>());
-  ExpectProblems<CampaignRefusal>(sound, {{"none", [](auto& m) { m.reason.clear(); }, reason},
-                                          {"longest", [](auto& m) { m.reason = std::string(4096, 'r'); }},
-                                          {"too long", [](auto& m) { m.reason = std::string(4097, 'r'); }, reason}});
+TEST(Validity, ARefusalSaysWhyInAFewWords) {
+  const auto refusal = [](std::size_t letters) {
+    return Problem(CampaignRefusal{"w", 1, kFlight, std::string(letters, 'x')});
+  };
+  EXPECT_EQ(refusal(4096), "");
+  for (const std::size_t letters : {0, 4097}) EXPECT_EQ(refusal(letters), "no reason, or too long a one");
 }
 
-TEST(Validity, OfProgressRequestsAndReplies) {
-  CampaignProgress progress;
-  progress.flight_id = kFlight;
-  ExpectProblems<CampaignProgress>(progress, FlightChanges<CampaignProgress>());
-  const Request request{"client", 1, "list", "{}", "data"};
-  ExpectProblems<Request>(request, NameChanges(&Request::client, kBadClient));
-  ExpectProblems<Request>(request, NameChanges(&Request::method, "the method is no identifier"));
-  ExpectProblems<Request>(request,
-                          {{"longest arguments", [](auto& m) { m.arguments = std::string(4096, ' '); }},
-                           {"arguments", [](auto& m) { m.arguments = std::string(4097, ' '); }, "too long arguments"},
-                           {"any data", [](auto& m) { m.data = std::string(1 << 20, '\0'); }}});
-  Reply reply;
-  reply.client = "client";
-  ExpectProblems<Reply>(reply, NameChanges(&Reply::client, kBadClient));
+TEST(Validity, ARequestHasFewArgumentsAndAnyData) {
+  EXPECT_EQ(Problem(Request{"c", 1, "upload", std::string(4096, ' '), std::string(300000, 'd')}), "");
+  EXPECT_EQ(Problem(Request{"c", 1, "upload", std::string(4097, ' '), ""}), "too long arguments");
+  EXPECT_EQ(Problem(Reply{"c", 1, 0, std::string(300000, 't'), std::string(300000, 'd')}), "");
+}
+
+// Each field with a value of its own: there and back again.
+TEST(Conversion, KeepsWhatObserversAndClientsAreTold) {
+  const CampaignProgress progress{1, "i", kFlight, "n", "s", 2, 3, 4, 5, 6};
+  const auto told = FromIdl(ToIdl(progress));
+  ASSERT_TRUE(told);
+  EXPECT_EQ(told->coordinator_epoch, 1u);
+  EXPECT_EQ(told->campaign_id, "i");
+  EXPECT_EQ(told->flight_id, kFlight);
+  EXPECT_EQ(told->name, "n");
+  EXPECT_EQ(told->state, "s");
+  EXPECT_EQ(told->total, 2u);
+  EXPECT_EQ(told->done, 3u);
+  EXPECT_EQ(told->quarantined, 4u);
+  EXPECT_EQ(told->assigned, 5u);
+  EXPECT_EQ(told->workers, 6u);
+  // What another vendor's observer reads.
+  const idl::ProgressV1 message = ToIdl(progress);
+  EXPECT_EQ(message.quarantined(), 4u);
+  EXPECT_EQ(message.assigned(), 5u);
+
+  const std::string bytes("\0\xff\n", 3);
+  const auto reply = FromIdl(ToIdl(Reply{"c", 7, 5, "text", bytes}));
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->client, "c");
+  EXPECT_EQ(reply->number, 7u);
+  EXPECT_EQ(reply->code, 5);
+  EXPECT_EQ(reply->text, "text");
+  EXPECT_EQ(reply->data, bytes);
+  const auto request = FromIdl(ToIdl(Request{"c", 7, "read", "{}", bytes}));
+  ASSERT_TRUE(request);
+  EXPECT_EQ(request->client, "c");
+  EXPECT_EQ(request->number, 7u);
+  EXPECT_EQ(request->method, "read");
+  EXPECT_EQ(request->arguments, "{}");
+  EXPECT_EQ(request->data, bytes);
+}
+
+TEST(Conversion, ACaseThatIsGivenUpArrivesAsSuch) {
+  FlownCase flown{3, {}, true};
+  flown.result.case_index = 8;
+  flown.result.reason = "why";
+  const Report sent{"w", 9, 3, kFlight, {flown}, {}};
+  EXPECT_EQ(ToIdl(sent).flown()[0].outcome(), "given_up");
+  const auto report = FromIdl(ToIdl(sent));
+  ASSERT_TRUE(report);
+  EXPECT_TRUE(report->flown[0].given_up);
+  EXPECT_EQ(report->flown[0].attempt, 3u);
+  EXPECT_EQ(report->flown[0].result.case_index, 8u);
+  EXPECT_EQ(report->flown[0].result.reason, "why");
 }
 
 }  // namespace

@@ -1,0 +1,313 @@
+// Authorities, the keys that they issue, and what a process takes for keys: without a network.
+#include "services/transport/key_folder.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <ctime>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/campaign/input_error.h"
+#include "services/transport/admission.h"
+#include "services/transport/authority.h"
+#include "services/transport/openssl.h"
+#include "temporary_folder.h"
+
+namespace dispersa::key_folder_test {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::ContainsRegex;
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr std::time_t kDay_s = 86400;
+
+std::string ErrorOf(const std::function<void()>& call) {
+  try {
+    call();
+    return "none";
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+}
+
+class KeyFolderTest : public testing::Test {
+ protected:
+  KeyFolderTest() { MakeAuthority(authority(), ValidFor(30)); }
+
+  fs::path authority() const { return folder_ / "ours"; }
+  std::string OpenError(const fs::path& folder, Role role = Role::kWorker) {
+    return ErrorOf([&] { OpenKeyFolder(folder, {role}); });
+  }
+  std::string IssueError(const std::string& name, const Validity& validity = ValidFor(1)) {
+    return ErrorOf([&] { IssueKeys(authority(), Role::kWorker, name, validity); });
+  }
+  fs::path Worker(const std::string& name = "one") {
+    return IssueKeys(authority(), Role::kWorker, name, ValidFor(1));
+  }
+  static Certificate CertificateIn(const fs::path& file) { return ReadCertificate(TextOfFile(file)); }
+  static void Write(const fs::path& file, const std::string& text) { std::ofstream(file) << text; }
+
+  TemporaryFolder folder_;
+  std::time_t now_ = std::time(nullptr);
+};
+
+TEST_F(KeyFolderTest, IssuedKeysAreThoseOfTheirRoleAndName) {
+  for (const Role role : kRoles) {
+    const fs::path issued = IssueKeys(authority(), role, "node-1", ValidFor(1));
+    EXPECT_EQ(issued, authority() / "issued" / (std::string(Name(role)) + "-node-1"));
+    const KeyFolder keys = OpenKeyFolder(issued, {Role::kObserver, role});
+    EXPECT_EQ(keys.name, "node-1");
+    EXPECT_EQ(keys.role, role);
+    EXPECT_EQ(ParseRole(Name(role)), role);
+    for (const Role other : kRoles) {
+      if (other == role) continue;
+      EXPECT_EQ(OpenError(issued, other), issued.string() + ": keys of the " + Name(role) +
+                                              " 'node-1'; here those of a " + Name(other) + " are needed");
+    }
+  }
+  EXPECT_EQ(ParseRole("king"), std::nullopt);
+}
+
+TEST_F(KeyFolderTest, EveryFileIsTheOwnersAlone) {
+  const fs::path issued = Worker();
+  int files = 0;
+  for (const fs::path& folder : {authority() / "authority", issued}) {
+    EXPECT_EQ(fs::status(folder).permissions(), fs::perms::owner_all) << folder;
+    for (const fs::directory_entry& file : fs::directory_iterator(folder)) {
+      ++files;
+      EXPECT_EQ(file.status().permissions(), fs::perms::owner_read | fs::perms::owner_write) << file;
+    }
+  }
+  EXPECT_EQ(files, 5 + 6);
+}
+
+TEST_F(KeyFolderTest, NothingIsOverwritten) {
+  const fs::path issued = Worker();
+  const std::string key = TextOfFile(issued / kIdentityKeyFile);
+  EXPECT_EQ(IssueError("one"),
+            issued.string() + ": these keys exist already and are not overwritten, allowed: another name, or to remove the folder first");
+  EXPECT_EQ(TextOfFile(issued / kIdentityKeyFile), key);
+  EXPECT_EQ(ErrorOf([&] { MakeAuthority(authority(), ValidFor(1)); }),
+            (authority() / "authority").string() +
+                ": there is an authority already, and it is not overwritten, allowed: another folder");
+  EXPECT_EQ(OpenError(issued), "none");
+}
+
+TEST_F(KeyFolderTest, ANameIsWhatAPartitionAndAFolderCanHave) {
+  for (const std::string& name : {std::string("a"), std::string("Node-9"), std::string(31, 'x'), std::string("0-")})
+    EXPECT_EQ(IssueError(name), "none") << name;
+  for (const std::string& name : {std::string(), std::string("-a"), std::string("a_b"), std::string("../a"),
+                                  std::string("a*"), std::string("a b"), std::string(32, 'x')}) {
+    EXPECT_EQ(IssueError(name), "'" + name + "' cannot be the name of keys, allowed: 1 to 31 letters, digits and '-', the first no '-'");
+  }
+}
+
+TEST_F(KeyFolderTest, KeysEndWithTheirAuthority) {
+  const auto end_of = [&](const std::string& name) {
+    return EndOf(CertificateIn(authority() / "issued" / ("worker-" + name) / kIdentityFile).get());
+  };
+  const std::time_t end = EndOf(CertificateIn(authority() / "authority" / kIdentityAuthorityFile).get());
+  const auto until = [&](std::time_t when) { return Validity{now_ - kDay_s, when}; };
+  EXPECT_EQ(IssueError("earlier", until(end - 5)), "none");
+  EXPECT_EQ(end_of("earlier"), end - 5);
+  // Made today for as many days as the authority of this morning.
+  EXPECT_EQ(IssueError("as-long", until(end + kDay_s)), "none");
+  EXPECT_EQ(end_of("as-long"), end);
+  EXPECT_EQ(IssueError("longer", until(end + kDay_s + 1)),
+            (authority() / "authority").string() +
+                ": the authority is valid for fewer days than the keys would be, allowed: fewer days, or a new authority");
+}
+
+TEST_F(KeyFolderTest, TheSignerOfPermissionsSignsNoCertificates) {
+  const fs::path folder = authority() / "authority";
+  const Certificate signer = CertificateIn(folder / kPermissionsAuthorityFile);
+  const PrivateKey key = ReadPrivateKey(TextOfFile(folder / "permissions_ca.key"));
+  const PrivateKey own = MakePrivateKey();
+  const Certificate forged =
+      MakeCertificate({{"one", "worker"}, false, now_ - kDay_s, now_ + kDay_s}, own.get(), signer.get(), key.get());
+  EXPECT_FALSE(IsSignedBy(forged.get(), signer.get()));
+  // Nor does whoever has keys.
+  const fs::path issued = Worker();
+  const Certificate identity = CertificateIn(issued / kIdentityFile);
+  const PrivateKey identity_key = ReadPrivateKey(TextOfFile(issued / kIdentityKeyFile));
+  const Certificate below = MakeCertificate({{"two", "coordinator"}, false, now_ - kDay_s, now_ + kDay_s}, own.get(),
+                                            identity.get(), identity_key.get());
+  EXPECT_FALSE(IsSignedBy(below.get(), identity.get()));
+}
+
+// A folder whose files are made here, one of them wrong.
+class MadeUpKeys : public KeyFolderTest {
+ protected:
+  struct Signer {
+    Certificate certificate;
+    PrivateKey key;
+  };
+  Signer MakeSigner(bool is_authority, std::time_t from, std::time_t to) const {
+    Signer signer{nullptr, MakePrivateKey()};
+    signer.certificate =
+        MakeCertificate({{"made up", ""}, is_authority, from, to}, signer.key.get(), nullptr, nullptr);
+    return signer;
+  }
+  /// Good keys, but that each certificate is valid in its own time: days from now.
+  struct Days {
+    int from, to;
+  };
+  fs::path MakeKeys(Days identities, Days permissions, Days identity) {
+    const auto at = [&](int day) { return now_ + day * kDay_s; };
+    const Signer ca = MakeSigner(true, at(identities.from), at(identities.to));
+    const Signer signer = MakeSigner(false, at(permissions.from), at(permissions.to));
+    const PrivateKey key = MakePrivateKey();
+    const Certificate own = MakeCertificate({{"one", "worker"}, false, at(identity.from), at(identity.to)}, key.get(),
+                                            ca.certificate.get(), ca.key.get());
+    const fs::path keys = folder_ / "made_up";
+    fs::remove_all(keys);
+    fs::create_directories(keys);
+    const auto sign = [&](const std::string& text) {
+      return SignDocument(text, signer.certificate.get(), signer.key.get());
+    };
+    Write(keys / kIdentityAuthorityFile, ToPem(ca.certificate.get()));
+    Write(keys / kPermissionsAuthorityFile, ToPem(signer.certificate.get()));
+    Write(keys / kIdentityFile, ToPem(own.get()));
+    Write(keys / kIdentityKeyFile, ToPem(key.get()));
+    Write(keys / kGovernanceFile, sign(GovernanceDocument()));
+    Write(keys / kPermissionsFile,
+          sign(PermissionsDocument(Role::kWorker, "one", SubjectText(own.get()), at(-1), at(1))));
+    return keys;
+  }
+};
+
+TEST_F(MadeUpKeys, WhatHasExpiredIsNamedWithItsDateAndWhatToDo) {
+  const Days good{-2, 2}, past{-9, -1}, coming{1, 9};
+  EXPECT_EQ(OpenError(MakeKeys(good, good, good)), "none");
+  const std::string made_up = (folder_ / "made_up").string();
+  const auto expired = [&](const char* file, const char* remedy) {
+    return made_up + "/" + file + ": expired on [0-9: -]+ UTC: " + remedy + "$";
+  };
+  EXPECT_THAT(OpenError(MakeKeys(past, good, good)), ContainsRegex(expired(kIdentityAuthorityFile, "make a new authority")));
+  EXPECT_THAT(OpenError(MakeKeys(good, past, good)), ContainsRegex(expired(kPermissionsAuthorityFile, "make a new authority")));
+  EXPECT_THAT(OpenError(MakeKeys(good, good, past)), ContainsRegex(expired(kIdentityFile, "issue new keys")));
+  const std::string clock = " on: the clock of this machine may be wrong";
+  for (const auto& [file, keys] : {std::pair(kIdentityAuthorityFile, std::array{coming, good, good}),
+                                   std::pair(kPermissionsAuthorityFile, std::array{good, coming, good}),
+                                   std::pair(kIdentityFile, std::array{good, good, coming})}) {
+    const std::string error = OpenError(MakeKeys(keys[0], keys[1], keys[2]));
+    EXPECT_THAT(error, HasSubstr(std::string(file) + ": is valid from "));
+    EXPECT_THAT(error, EndsWith(clock));
+  }
+}
+
+TEST_F(KeyFolderTest, WhatIsDamagedOrOfAnotherIsNamed) {
+  MakeAuthority(folder_ / "foreign", ValidFor(30));
+  const fs::path foreign = IssueKeys(folder_ / "foreign", Role::kWorker, "one", ValidFor(1));
+  const fs::path other = Worker("other"), keys = Worker();
+  const auto with = [&](const char* file, const std::string& text) {
+    const std::string good = TextOfFile(keys / file);
+    Write(keys / file, text);
+    const std::string error = OpenError(keys);
+    Write(keys / file, good);
+    return error;
+  };
+  const auto from = [&](const char* file, const fs::path& folder) { return with(file, TextOfFile(folder / file)); };
+  const auto problem = [&](const char* file, const std::string& what) { return (keys / file).string() + ": " + what; };
+  const std::string unsigned_text = "the signature does not fit: damaged, or of another authority";
+  EXPECT_EQ(with(kIdentityFile, "x"), problem(kIdentityFile, "no certificate in PEM"));
+  EXPECT_EQ(with(kIdentityKeyFile, "x"), problem(kIdentityKeyFile, "no private key in PEM"));
+  EXPECT_EQ(with(kGovernanceFile, "x"), problem(kGovernanceFile, "no signed document"));
+  EXPECT_EQ(from(kIdentityKeyFile, other), problem(kIdentityKeyFile, "not the key of identity.pem"));
+  EXPECT_EQ(from(kIdentityAuthorityFile, foreign), problem(kIdentityFile, "not signed by identity_ca.pem"));
+  EXPECT_EQ(from(kGovernanceFile, foreign), problem(kGovernanceFile, unsigned_text));
+  EXPECT_EQ(from(kPermissionsFile, foreign), problem(kPermissionsFile, unsigned_text));
+  EXPECT_EQ(from(kPermissionsFile, other), problem(kPermissionsFile, "not the permissions of the owner of identity.pem"));
+  std::string edited = TextOfFile(keys / kPermissionsFile);
+  edited.replace(edited.find("ReportV2"), 8, "OrdersV1");
+  EXPECT_EQ(with(kPermissionsFile, edited), problem(kPermissionsFile, unsigned_text));
+  EXPECT_EQ(OpenError(keys), "none");
+  fs::remove(keys / kGovernanceFile);
+  EXPECT_EQ(OpenError(keys), problem(kGovernanceFile, "cannot be read: No such file or directory"));
+  EXPECT_EQ(OpenError(folder_ / "none"), (folder_ / "none").string() + ": no folder: give a folder that `dispersa keys issue` made");
+  EXPECT_EQ(OpenError(authority()), authority().string() + ": the folder of the authority, which signs and does not speak: give one of " + (authority() / "issued").string());
+}
+
+/// "publish: topic... in partition", one a line.
+std::string RulesIn(const std::string& document) {
+  std::string rules;
+  for (std::size_t at = 0; (at = document.find("<allow_rule>", at)) != std::string::npos; ++at) {
+    const std::string rule = document.substr(at, document.find("</allow_rule>", at) - at);
+    rules += rule.find("<publish>") != std::string::npos ? "publish" : "subscribe";
+    const auto each = [&rule](const std::string& tag) {
+      std::string all;
+      const std::string open = "<" + tag + ">";
+      for (std::size_t from = 0; (from = rule.find(open, from)) != std::string::npos;) {
+        from += open.size();
+        all += " " + rule.substr(from, rule.find("</" + tag, from) - from);
+      }
+      return all;
+    };
+    rules += each("topic") + " in" + each("partition") + "\n";
+  }
+  return rules;
+}
+
+// The table of services/README.md.
+TEST(Permissions, EachRoleMayWhatItNeeds) {
+  const auto rules = [](Role role) { return RulesIn(PermissionsDocument(role, "node1", "CN=node1", 0, kDay_s)); };
+  const std::string t = " dispersa/";
+  EXPECT_EQ(rules(Role::kWorker), "publish" + t + "WorkerStatusV2" + t + "ReportV2" + t + "TextRequestV1" + t +
+                                      "CampaignRefusalV1 in wnode1_*\nsubscribe" + t + "OrdersV1" + t + "TextV1 in wnode1_*\n");
+  EXPECT_EQ(rules(Role::kClient), "publish" + t + "RequestV1 in wnode1_*\nsubscribe" + t + "ReplyV1 in wnode1_*\nsubscribe" +
+                                      t + "ProgressV1" + t + "ResultV1 in \n");
+  EXPECT_EQ(rules(Role::kObserver), "subscribe" + t + "ProgressV1" + t + "ResultV1 in \n");
+  EXPECT_EQ(rules(Role::kCoordinator),
+            "publish" + t + "ProgressV1" + t + "ResultV1 in \npublish" + t + "OrdersV1" + t + "TextV1" + t +
+                "ReplyV1 in w*\nsubscribe" + t + "WorkerStatusV2" + t + "ReportV2" + t + "TextRequestV1" + t +
+                "CampaignRefusalV1" + t + "RequestV1 in *\npublish" + t + "RequestV1 in wnode1_*\nsubscribe" + t +
+                "ReplyV1 in wnode1_*\n");
+}
+
+TEST(Permissions, AreOfTheirOwnerInTheirTimeAndNobodyElses) {
+  const std::string document = PermissionsDocument(Role::kWorker, "a", "CN=a,OU=worker", 0, 2 * kDay_s);
+  for (const char* part : {"<subject_name>CN=a,OU=worker</subject_name>", "<not_before>1970-01-01T00:00:00</not_before>",
+                           "<not_after>1970-01-03T00:00:00</not_after>", "<default>DENY</default>"})
+    EXPECT_THAT(document, HasSubstr(part));
+  EXPECT_EQ(OwnPrefix("node1"), "node1_") << "else node1 could speak for node10";
+}
+
+TEST_F(KeyFolderTest, WithoutKeysOnlyThisMachineIsSpokenTo) {
+  const auto admit = [](const std::string& address, const std::string& peer, bool insecure = false) {
+    return Admit({0, address}, {"", insecure}, {Role::kWorker}, peer).address;
+  };
+  EXPECT_EQ(admit("", "127.0.0.1"), "127.0.0.1") << "the loopback interface alone";
+  EXPECT_EQ(admit("", "localhost"), "127.0.0.1");
+  EXPECT_EQ(admit("127.0.0.2", "127.9.9.9"), "127.0.0.2");
+  EXPECT_EQ(admit("127.0.0.1", ""), "127.0.0.1") << "a coordinator";
+  EXPECT_EQ(admit("", "host", true), "");
+  const auto refused = [&](const std::string& address, const std::string& peer) {
+    return ErrorOf([&] { admit(address, peer); });
+  };
+  for (const auto& [address, peer] : std::vector<std::pair<std::string, std::string>>{
+           {"", ""}, {"", "host"}, {"", "127.evil.example"}, {"", "127.0.0.1.example"}, {"127.0.0.1", "host"},
+           {"10.0.0.1", "127.0.0.1"}, {"10.0.0.1", ""}}) {
+    EXPECT_THAT(refused(address, peer), HasSubstr("beyond this machine nobody is spoken to without keys")) << address << " " << peer;
+  }
+}
+
+TEST_F(KeyFolderTest, KeysAreNamedAndExcludeTheirAbsence) {
+  const fs::path keys = Worker("node1");
+  const NetworkOptions network = Admit({0, ""}, {keys.string()}, {Role::kWorker}, "host");
+  EXPECT_EQ(network.keys->name, "node1");
+  EXPECT_EQ(NameOnNetwork(network, "u"), "node1_u");
+  EXPECT_EQ(NameOnNetwork({0, ""}, "u"), "u");
+  EXPECT_EQ(ErrorOf([&] { Admit({0, ""}, {keys.string(), true}, {Role::kWorker}, "host"); }),
+            "--keys and --insecure exclude each other");
+  EXPECT_THAT(ErrorOf([&] { Admit({0, ""}, {keys.string()}, {Role::kClient}, "host"); }),
+              HasSubstr("keys of the worker 'node1'; here those of a client are needed"));
+}
+
+}  // namespace
+}  // namespace dispersa::key_folder_test
