@@ -13,50 +13,15 @@
 #include "core/flight/engine_version.h"
 #include "core/flight/flight_inputs.h"
 #include "core/report/fingerprint.h"
+#include "memory_store.h"
+#include "services/log/log.h"
 
 namespace dispersa::dispatcher_test {
 namespace {
 
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
-
-class MemoryStore : public ResultStore {
- public:
-  void Store(std::span<const CaseResult> results, std::span<const ExecutionRecord> records) override {
-    stored += results.size();
-    for (const CaseResult& result : results) rows[result.case_index] = result;
-    for (const ExecutionRecord& record : records) worker_of[record.case_index] = record.worker;
-  }
-  void Quarantine(const QuarantinedCase&) override {}
-  std::vector<std::pair<std::uint64_t, Digest>> Fingerprints() const override {
-    std::vector<std::pair<std::uint64_t, Digest>> all;
-    for (const auto& [case_index, result] : rows) all.emplace_back(case_index, Fingerprint(result));
-    return all;
-  }
-  CaseResult Load(std::uint64_t case_index) const override { return rows.at(case_index); }
-  std::optional<std::string> WorkerOf(std::uint64_t case_index) const override {
-    const auto found = worker_of.find(case_index);
-    return found == worker_of.end() ? std::nullopt : std::optional(found->second);
-  }
-  void AppendAudits(std::span<const Claim> claims) override {
-    for (const Claim& claim : claims) audited.insert(claim.case_index);
-  }
-  void ForEachUnaudited(const std::function<void(const Claim&)>&) const override {}
-  std::vector<std::uint64_t> Disown(const std::string& worker) override {
-    std::vector<std::uint64_t> cases;
-    for (const auto& [case_index, who] : worker_of) {
-      if (who == worker) cases.push_back(case_index);
-    }
-    std::erase_if(worker_of, [&](const auto& each) { return each.second == worker; });
-    for (const std::uint64_t case_index : cases) rows.erase(case_index);
-    stored -= cases.size();
-    return cases;
-  }
-  std::map<std::uint64_t, CaseResult> rows;
-  std::map<std::uint64_t, std::string> worker_of;
-  std::set<std::uint64_t> audited;
-  std::size_t stored = 0;
-};
+using ::testing::Not;
 
 const std::string kFlight(64, 'f');
 
@@ -319,6 +284,193 @@ TEST_F(DispatcherTest, OnlyItsOwnParticipantSpeaksForAWorker) {
   EXPECT_EQ(Progress().done, 1u);
 }
 
+TEST_F(DispatcherTest, AWorkersNewConnectionIsItsOwnAlone) {
+  Open(2);
+  dispatcher_.On("s", Status(), 0.0);
+  dispatcher_.Gone("somebody else's");
+  dispatcher_.On("forger", Status(), 0.1);
+  EXPECT_EQ(dispatcher_.refused_messages(), 1u) << "its connection is as it was";
+  dispatcher_.Gone("s");
+  dispatcher_.On("s2", Status(), 0.2);
+  EXPECT_EQ(dispatcher_.refused_messages(), 1u);
+  dispatcher_.On("forger", Status(), 0.3);
+  EXPECT_EQ(dispatcher_.refused_messages(), 2u) << "whoever had a connection that is gone has another now";
+  dispatcher_.On("forger", Report{"w", kEpoch, 1, kFlight, {{1, ResultOf(0)}}, {}}, 0.4);
+  EXPECT_EQ(Progress().done, 0u);
+  dispatcher_.On("s2", Report{"w", kEpoch, 1, kFlight, {{1, ResultOf(0)}}, {}}, 0.5);
+  EXPECT_EQ(Progress().done, 1u);
+}
+
+TEST_F(DispatcherTest, SoManyWorkersAndNoMore) {
+  Dispatcher dispatcher(kEpoch, EngineVersion(), {.max_workers = 2, .audit = {}});
+  for (const char* worker : {"a", "b", "c"}) dispatcher.On(worker, Status(worker), 0.0);
+  EXPECT_EQ(dispatcher.joined(), 2u);
+  EXPECT_EQ(dispatcher.refused_messages(), 1u);
+  WorkerStatus left = Status("a");
+  left.state = WorkerState::kLeft;
+  dispatcher.On("a", left, 0.1);
+  for (const char* worker : {"c", "b"}) dispatcher.On(worker, Status(worker), 0.2);
+  EXPECT_EQ(dispatcher.joined(), 2u);
+  EXPECT_EQ(dispatcher.refused_messages(), 1u) << "the place of one that left";
+}
+
+TEST_F(DispatcherTest, AReportIsASignOfLife) {
+  Open(100);
+  dispatcher_.On("s", Status(), 0.0);
+  for (std::uint64_t i = 0; i < 10; ++i) {
+    Fly(1, i, static_cast<double>(i), i + 1);
+    Tick(static_cast<double>(i));
+  }
+  EXPECT_EQ(dispatcher_.joined(), 1u);
+}
+
+TEST_F(DispatcherTest, WhatIsToBeSaidOfAClosedCampaignIsNot) {
+  Open(1);
+  dispatcher_.On("s", Status(), 0.0);
+  ASSERT_THAT(Tick(0.0).assignments, testing::SizeIs(1));
+  dispatcher_.On("s", Status(), 2.0);  // it got lost: to be said again
+  dispatcher_.Close(kFlight);
+  EXPECT_THAT(Tick(2.0).assignments, IsEmpty());
+}
+
+TEST_F(DispatcherTest, AResultOfAnotherVehicleIsNone) {
+  Open(2);
+  dispatcher_.On("s", Status(), 0.0);
+  CaseResult result = ResultOf(0);
+  result.inputs.resize(InputCount(64));
+  dispatcher_.On("s", Report{"w", kEpoch, 1, kFlight, {{1, result}}, {}}, 0.1);
+  EXPECT_EQ(Progress().done, 0u);
+  EXPECT_EQ(dispatcher_.refused_messages(), 1u);
+}
+
+TEST_F(DispatcherTest, ARefusalForAnEarlierCoordinatorMeansNothing) {
+  Open(2);
+  dispatcher_.On("s", Status(), 0.0);
+  dispatcher_.On("s", CampaignRefusal{"w", kEpoch - 1, kFlight, "no"}, 0.1);
+  EXPECT_EQ(dispatcher_.RefusalByAll(kFlight), std::nullopt);
+  EXPECT_THAT(Tick(0.2).assignments, testing::SizeIs(2));
+}
+
+TEST_F(DispatcherTest, WhoRefusedACampaignGetsNoCaseOfIt) {
+  Open(2);
+  dispatcher_.On("s", Status(), 0.0);
+  dispatcher_.On("s", CampaignRefusal{"w", kEpoch, kFlight, "no\x1b[31m"}, 0.1);
+  EXPECT_EQ(dispatcher_.refusal(), "no\\x1b[31m") << "in letters that a terminal may be shown";
+  dispatcher_.On("s", Status(), 0.5);
+  EXPECT_THAT(Tick(0.5).assignments, IsEmpty());
+  EXPECT_EQ(Progress().waiting, 2u);
+}
+
+TEST_F(DispatcherTest, AcknowledgementsThatDoNotFitComeNext) {
+  dispatcher_.On("s", Status(), 0.0);
+  std::set<std::uint64_t> acknowledged;
+  for (std::uint64_t number = 1; number <= 5000; ++number)
+    dispatcher_.On("s", Report{"w", kEpoch, number, kFlight, {{1, ResultOf(0)}}, {}}, 0.0);
+  for (const double now_s : {0.1, 0.2, 0.3}) {
+    const Orders orders = Tick(now_s);
+    EXPECT_LE(orders.acknowledged.size(), 4096u);
+    acknowledged.insert(orders.acknowledged.begin(), orders.acknowledged.end());
+  }
+  EXPECT_EQ(acknowledged.size(), 5000u);
+}
+
+TEST_F(DispatcherTest, ASupervisedWorkerThatIsSilentIsNamedUntilItsEndIsTold) {
+  Open(1);
+  dispatcher_.Supervise("w");
+  dispatcher_.On("s", Status(), 0.0);
+  Tick(3.0);
+  EXPECT_THAT(dispatcher_.TakeUnresponsive(), IsEmpty());
+  for (const double now_s : {3.1, 6.2}) {
+    Tick(now_s);
+    EXPECT_THAT(dispatcher_.TakeUnresponsive(), ElementsAre("w")) << now_s;
+    Tick(now_s + 0.1);
+    EXPECT_THAT(dispatcher_.TakeUnresponsive(), IsEmpty()) << now_s;
+  }
+  EXPECT_EQ(dispatcher_.joined(), 1u) << "its exit status says more";
+}
+
+TEST_F(DispatcherTest, ASupervisedWorkerThatHangsIsNamed) {
+  Open(1, {.lease_s = 10.0});
+  dispatcher_.Supervise("w");
+  dispatcher_.On("s", Status(), 0.0);
+  WorkerStatus flies = Status();
+  flies.held = {Tick(0.0).assignments.at(0).attempt};
+  flies.started = {{0, flies.held[0]}};
+  std::vector<std::string> named;
+  for (double now_s = 0.5; now_s < 12.0; now_s += 0.5) {
+    dispatcher_.On("s", flies, now_s);  // it says all the time that it lives and flies
+    Tick(now_s);
+    const auto taken = dispatcher_.TakeUnresponsive();
+    named.insert(named.end(), taken.begin(), taken.end());
+    if (now_s <= 10.5) {
+      EXPECT_THAT(named, IsEmpty()) << now_s;
+    }
+  }
+  EXPECT_THAT(named, ElementsAre("w"));
+}
+
+TEST_F(DispatcherTest, ASupervisedWorkersEndIsToldByItsParent) {
+  Open(2);
+  dispatcher_.Supervise("w");
+  dispatcher_.On("s", Status(), 0.0);
+  Tick(0.0);
+  WorkerStatus left = Status();
+  left.state = WorkerState::kLeft;
+  dispatcher_.On("s", left, 0.5);
+  EXPECT_EQ(dispatcher_.joined(), 1u);
+  EXPECT_EQ(Progress().assigned, 2u);
+  dispatcher_.WorkerEnded("w", WorkerEnd::kLeft, "exit code 0", 0.6);
+  Tick(1.0);
+  EXPECT_EQ(dispatcher_.joined(), 0u);
+  EXPECT_EQ(Progress().waiting, 2u);
+}
+
+TEST_F(DispatcherTest, ASuspectFliesBesideNoCaseOfAnotherCampaign) {
+  Open(1);
+  dispatcher_.On("s", Status("doomed"), 0.0);
+  const std::uint64_t attempt = Tick(0.0, "doomed").assignments.at(0).attempt;
+  dispatcher_.On("s", Report{"doomed", kEpoch, 1, kFlight, {}, {{0, attempt}}}, 0.1);
+  Tick(5.0);  // it fell silent
+  dispatcher_.On("s", Status(), 5.0);
+  ASSERT_THAT(Tick(5.0).assignments, testing::SizeIs(1)) << "the suspect";
+  CampaignBook other(MadeUp(std::string(64, '1'), 5), std::make_unique<MemoryStore>(), {.attempt_base = 1000});
+  dispatcher_.Open(other, 9);
+  for (const double now_s : {5.1, 6.1}) {
+    dispatcher_.On("s", Status(), now_s);
+    EXPECT_THAT(Tick(now_s).assignments, IsEmpty()) << now_s;
+  }
+  EXPECT_EQ(other.ledger().Progress().waiting, 5u);
+  // Nor does it join others.
+  dispatcher_.On("s3", Status("v"), 6.2);
+  EXPECT_THAT(Tick(6.2, "v").assignments, Not(IsEmpty()));
+}
+
+TEST_F(DispatcherTest, ANewPriorityCountsFromNowOn) {
+  CampaignBook one(MadeUp(std::string(64, '1'), 50), std::make_unique<MemoryStore>(), {.attempt_base = 1000});
+  CampaignBook other(MadeUp(std::string(64, '2'), 50), std::make_unique<MemoryStore>(), {.attempt_base = 2000});
+  dispatcher_.Open(one, 3);
+  dispatcher_.Open(other, 2);
+  dispatcher_.Open(other, 4);
+  dispatcher_.On("s", Status(), 0.0);
+  Tick(0.0);
+  EXPECT_EQ(one.ledger().Progress().assigned, 0u);
+  EXPECT_GT(other.ledger().Progress().assigned, 0u);
+}
+
+TEST_F(DispatcherTest, DismissedWorkersAreToldAtOnceAndGetNoMoreCases) {
+  Open(100);
+  dispatcher_.On("s", Status(), 0.0);
+  EXPECT_FALSE(Tick(0.0).leave);
+  dispatcher_.Dismiss();
+  dispatcher_.On("t", Status("v"), 0.1);
+  const std::vector<Orders> told = dispatcher_.Tick(0.1);
+  ASSERT_THAT(told, testing::SizeIs(2));
+  for (const Orders& orders : told) {
+    EXPECT_TRUE(orders.leave) << orders.worker;
+    EXPECT_THAT(orders.assignments, IsEmpty()) << orders.worker;
+  }
+}
+
 TEST_F(DispatcherTest, AStrangersReportIsNotCounted) {
   Open(2);
   Fly(1, 0, 0.0);
@@ -448,6 +600,34 @@ TEST_F(AuditTest, ALiarIsExpelledAndAllThatItReturnedIsFlownAgain) {
   EXPECT_EQ(Progress().done, 4u);
   for (std::uint64_t i = 4; i < 8; ++i) Return("honest", ResultOf(i), i + 1);
   EXPECT_TRUE(book_->Complete());
+}
+
+TEST_F(AuditTest, AnExpelledWorkerIsRememberedHoweverManyAreRefused) {
+  Audit(1e-9, 2);
+  SetLogLevel(LogLevel::kNothing);
+  for (int i = 0; i < 1000; ++i) {
+    WorkerStatus stranger = Status("stranger" + std::to_string(i));
+    stranger.engine_version = "other";
+    audited_->On("s", stranger, 0.0);
+  }
+  SetLogLevel(LogLevel::kInfo);
+  Return("liar", Lie(0));
+  FlyClaims(*audited_);
+  EXPECT_EQ(audited_->expelled(), 1u);
+  audited_->On("liar", Status("liar"), 1.0);
+  EXPECT_EQ(audited_->joined(), 1u) << "the honest one";
+}
+
+TEST_F(AuditTest, ADisputedResultIsNotStoredAsAudited) {
+  Audit(1e-9, 3);
+  Return("honest", ResultOf(0), 1);
+  Return("liar", ResultOf(1), 1);
+  FlyClaims(*audited_);
+  Return("liar", Lie(2), 2);
+  Return("honest", ResultOf(2), 2);  // right, and not what is stored
+  FlyClaims(*audited_);
+  book_->Flush();
+  EXPECT_THAT(store_->audited, ElementsAre(0, 1));
 }
 
 TEST_F(AuditTest, SettlesWhoIsWrongWhenTwoContradictEachOther) {
@@ -631,6 +811,16 @@ TEST_F(PluginTest, OnlyACaseThatAPluginCouldSpoilIsGivenUp) {
     EXPECT_EQ(Progress().quarantined, with_plugin ? 1u : 0u);
     EXPECT_EQ(dispatcher_.refused_messages(), with_plugin ? 0u : 1u);
   }
+}
+
+TEST_F(PluginTest, ACaseThatIsGivenUpForAnEarlierCoordinatorIsNot) {
+  Open(1);
+  Come("a");
+  const std::uint64_t attempt = Tick(0.0, "a").assignments.at(0).attempt;
+  FlownCase flown{attempt, {}, true};
+  flown.result.reason = "it ended the process";
+  dispatcher_.On("a", Report{"a", kEpoch - 1, 1, kFlight, {flown}, {}}, 0.5);
+  EXPECT_EQ(Progress().quarantined, 0u);
 }
 
 TEST_F(PluginTest, CampaignsWithoutPluginAreFlownOnce) {

@@ -60,7 +60,7 @@ class WorkerTest : public testing::Test {
       if (const auto* status = std::get_if<WorkerStatus>(&event.what)) status_ = *status;
       if (const auto* request = std::get_if<TextRequest>(&event.what)) {
         ++text_requests_;
-        coordinator_->Send(TextPart{"w", request->flight_id, campaign_.name, EngineVersion(), text_.size(),
+        coordinator_->Send(TextPart{"w", request->flight_id, campaign_.name, engine_version_, text_.size(),
                                     request->offset, text_.substr(request->offset, 4000)});
       }
       if (const auto* refusal = std::get_if<CampaignRefusal>(&event.what)) refusal_ = refusal->reason;
@@ -83,6 +83,7 @@ class WorkerTest : public testing::Test {
   NetworkOptions network_;
   Campaign campaign_;
   std::string text_ = campaign_.canonical_yaml;
+  std::string engine_version_ = EngineVersion();
   std::optional<CoordinatorLink> coordinator_;
   std::uint64_t epoch_ = 1;
   Orders orders_;
@@ -134,6 +135,15 @@ TEST_F(WorkerTest, RefusesATextOfOtherFlights) {
   ASSERT_TRUE(Until([this] { return refusal_.has_value(); }));
   EXPECT_EQ(refusal_->substr(0, 10 + campaign_.flight_id.size()), "flight id " + campaign_.flight_id);
   ASSERT_TRUE(Until([this] { return status_.held.empty(); }));
+}
+
+TEST_F(WorkerTest, RefusesATextOfAnotherEngine) {
+  engine_version_ = "other";
+  StartWorker();
+  Order(7, {0});
+  ASSERT_TRUE(Until([this] { return refusal_.has_value(); }));
+  EXPECT_EQ(*refusal_, "engine version other of the coordinator differs from the worker's " + EngineVersion());
+  EXPECT_TRUE(times_.empty());
 }
 
 TEST_F(WorkerTest, ADrainedWorkerFinishesWhatItFliesAndHandsBackTheRest) {

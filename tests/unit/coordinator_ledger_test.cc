@@ -257,6 +257,113 @@ TEST(Ledger, TheLeaseGrowsWithTheLongestCase) {
   EXPECT_THAT(ledger.Expire(105.1), ElementsAre("a"));
 }
 
+TEST(Ledger, AStartThatIsSaidAgainIsNoLater) {
+  Ledger ledger("1", 1, {.lease_s = 10.0, .blames_to_quarantine = 1});
+  ledger.Join("a", kHello, 0.0);
+  ledger.Assign(0.0);
+  for (const double now_s : {0.0, 4.0, 8.0}) ledger.Started("a", 0, 1, now_s);  // as every status says
+  EXPECT_THAT(ledger.Expire(10.0), IsEmpty());
+  EXPECT_THAT(ledger.Expire(10.1), ElementsAre("a"));
+  EXPECT_EQ(ledger.Progress().quarantined, 1u);
+}
+
+TEST(Ledger, AWorkerWhoseSuspectHungGetsOthersWhenItSpeaksAgain) {
+  Ledger ledger("1", 1, {.lease_s = 10.0});
+  ledger.Join("doomed", kHello, 0.0);
+  ledger.Assign(0.0);
+  ledger.Started("doomed", 0, 1, 0.0);
+  ledger.Lost("doomed", WorkerEnd::kCrashed, "signal 11");
+  ledger.Join("a", kHello, 1.0);
+  EXPECT_THAT(ledger.Assign(1.0), ElementsAre(Assignment{"a", 2, {0}}));
+  ledger.Started("a", 0, 2, 1.0);
+  EXPECT_THAT(ledger.Expire(11.1), ElementsAre("a"));
+  EXPECT_FALSE(ledger.IsAlone("a"));
+  ledger.Idle("a");
+  ledger.Extend(2);
+  EXPECT_EQ(ledger.GiveTo("a", 0, 12.0)->cases, std::vector<std::uint64_t>{1});
+}
+
+TEST(Ledger, ACaseThatWasFlownIsNoSuspectAnyMore) {
+  Ledger ledger("1", 1, {.blames_to_quarantine = 2});
+  const auto crash = [&](const std::string& worker) {
+    ledger.Join(worker, kHello, 0.0);
+    const auto given = ledger.Assign(0.0);
+    ASSERT_THAT(given, SizeIs(1));
+    ledger.Started(worker, 0, given[0].attempt, 0.0);
+    ledger.Lost(worker, WorkerEnd::kCrashed, "signal 11");
+  };
+  crash("a");
+  EXPECT_EQ(ledger.Finished("late", 0, 1, ResultOf(0), 1.0), Acceptance::kAccepted);
+  ledger.Reopen({0});  // its worker was expelled
+  crash("b");
+  EXPECT_EQ(ledger.Progress().quarantined, 0u) << "the first blame of a new life";
+  crash("c");
+  EXPECT_EQ(ledger.Progress().quarantined, 1u);
+}
+
+TEST(Ledger, WhatAWorkerHoldsOfOtherCampaignsCounts) {
+  Ledger ledger("1", 3, {.side_by_side = 1});
+  ledger.Join("w", kHello, 0.0);  // two credits
+  EXPECT_FALSE(ledger.GiveTo("w", 2, 0.0));
+  EXPECT_TRUE(ledger.GiveTo("w", 1, 0.0));
+  EXPECT_FALSE(ledger.GiveTo("w", 1, 0.0));
+}
+
+TEST(Ledger, ASuspectIsGivenToOneWhoHoldsNothingOfOtherCampaigns) {
+  Ledger ledger("1", 1);
+  ledger.Join("doomed", kHello, 0.0);
+  ledger.Assign(0.0);
+  ledger.Started("doomed", 0, 1, 0.0);
+  ledger.Lost("doomed", WorkerEnd::kCrashed, "signal 11");
+  ledger.Join("w", kHello, 0.0);
+  EXPECT_FALSE(ledger.GiveTo("w", 1, 0.0));
+  EXPECT_TRUE(ledger.GiveTo("w", 0, 0.0));
+  EXPECT_TRUE(ledger.IsAlone("w"));
+}
+
+TEST(Ledger, ACaseThatIsGivenUpSaysNothingOfHowLongOthersTake) {
+  Ledger ledger("1", 2, {.lease_s = 10.0, .side_by_side = 1});
+  ledger.Join("a", kHello, 0.0);
+  ledger.Assign(0.0);
+  ledger.Started("a", 0, 1, 0.0);
+  EXPECT_FALSE(ledger.GiveUp("a", 0, 99, "of another attempt", 5.0));
+  EXPECT_EQ(ledger.Progress().quarantined, 0u) << "somebody else may fly it";
+  EXPECT_FALSE(ledger.GiveUp("a", 0, 1, "it hung", 9.0));
+  EXPECT_EQ(ledger.Progress().quarantined, 1u);
+  ledger.Started("a", 1, 2, 9.0);
+  EXPECT_THAT(ledger.Expire(19.1), ElementsAre("a"));
+}
+
+// Cases of the second assignment of a worker with one slot, of 99 that are left and take 1 ms; before it, something
+// happens.
+template <typename Event>
+std::size_t NextBatch(Event event) {
+  Ledger ledger("1", 100, {.side_by_side = 1});
+  ledger.Join("w", {.engine_version = "1", .slots = 1, .credits = 1}, 0.0);
+  ledger.Assign(0.0);
+  ledger.Started("w", 0, 1, 0.0);
+  ledger.Finished("w", 0, 1, ResultOf(0), 0.001);
+  event(ledger);
+  return ledger.GiveTo("w", 0, 1.0)->cases.size();
+}
+
+TEST(Ledger, SlotsAreThoseOfWorkersThatAreHere) {
+  const WorkerHello large{.engine_version = "1", .slots = 10, .credits = 20};
+  // At least two rounds for every slot.
+  EXPECT_EQ(NextBatch([](Ledger&) {}), 99u / 2);
+  EXPECT_EQ(NextBatch([&](Ledger& ledger) { ledger.Join("v", large, 0.5); }), 99u / 22);
+  EXPECT_EQ(NextBatch([&](Ledger& ledger) {
+              for (int i = 0; i < 5; ++i) ledger.Join("v", large, 0.5);
+            }),
+            99u / 22)
+      << "a worker is counted once";
+  EXPECT_EQ(NextBatch([&](Ledger& ledger) {
+              ledger.Join("v", large, 0.5);
+              ledger.Lost("v", WorkerEnd::kLeft, "it left");
+            }),
+            99u / 2);
+}
+
 // Cases that two workers shall fly.
 class Twice : public testing::Test {
  protected:

@@ -1,0 +1,63 @@
+// Results in memory, as a result folder holds them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/report/fingerprint.h"
+#include "core/report/result_store.h"
+
+namespace dispersa {
+
+class MemoryStore : public ResultStore {
+ public:
+  void Store(std::span<const CaseResult> results, std::span<const ExecutionRecord> records) override {
+    stored += results.size();
+    for (const CaseResult& result : results) rows[result.case_index] = result;
+    for (const ExecutionRecord& record : records) {
+      worker_of[record.case_index] = record.worker;
+      seconds[record.case_index] = record.seconds;
+    }
+  }
+  void Quarantine(const QuarantinedCase& quarantined) override {
+    given_up[quarantined.case_index] = quarantined.reason;
+  }
+  std::vector<std::pair<std::uint64_t, Digest>> Fingerprints() const override {
+    std::vector<std::pair<std::uint64_t, Digest>> all;
+    for (const auto& [case_index, result] : rows) all.emplace_back(case_index, Fingerprint(result));
+    return all;
+  }
+  CaseResult Load(std::uint64_t case_index) const override { return rows.at(case_index); }
+  std::optional<std::string> WorkerOf(std::uint64_t case_index) const override {
+    const auto found = worker_of.find(case_index);
+    return found == worker_of.end() ? std::nullopt : std::optional(found->second);
+  }
+  void AppendAudits(std::span<const Claim> claims) override {
+    for (const Claim& claim : claims) audited.insert(claim.case_index);
+  }
+  void ForEachUnaudited(const std::function<void(const Claim&)>&) const override {}
+  std::vector<std::uint64_t> Disown(const std::string& worker) override {
+    std::vector<std::uint64_t> cases;
+    for (const auto& [case_index, who] : worker_of) {
+      if (who == worker) cases.push_back(case_index);
+    }
+    std::erase_if(worker_of, [&](const auto& each) { return each.second == worker; });
+    for (const std::uint64_t case_index : cases) rows.erase(case_index);
+    stored -= cases.size();
+    return cases;
+  }
+  std::map<std::uint64_t, CaseResult> rows;
+  std::map<std::uint64_t, std::string> worker_of;
+  std::map<std::uint64_t, double> seconds;  ///< that each took
+  std::map<std::uint64_t, std::string> given_up;
+  std::set<std::uint64_t> audited;
+  std::size_t stored = 0;
+};
+
+}  // namespace dispersa
