@@ -153,9 +153,12 @@ void Service::StartOpening() {
   if (opening_) return;
   const CatalogueEntry* entry = NextToOpen();
   if (entry == nullptr || !MakeRoomFor(*entry)) return;
-  CampaignOpening opening{
-      catalogue_.TextOf(entry->id), entry->name, catalogue_.ResultsOf(entry->id), {}, ++opened_,
-      workforce_.audit()};
+  CampaignOpening opening{catalogue_.TextOf(entry->id),
+                          entry->name,
+                          catalogue_.ResultsOf(entry->id),
+                          {},
+                          ++opened_,
+                          workforce_.audit()};
   for (const auto& [id, other] : catalogue_.entries()) {
     if (id != entry->id && other.flight_id == entry->flight_id)
       opening.same_flights.push_back(catalogue_.ResultsOf(id));
@@ -246,7 +249,7 @@ void Service::End(CatalogueEntry& entry, CampaignState state, int code, const st
 void Service::Publish(const CatalogueEntry& entry) {
   const LedgerProgress progress = View(entry.id).progress;
   workforce_.Publish({0, entry.id, entry.flight_id, entry.name, CampaignStateName(entry.state),
-                        progress.total, progress.done, progress.quarantined, progress.assigned, 0});
+                      progress.total, progress.done, progress.quarantined, progress.assigned, 0});
 }
 
 CampaignView Service::View(const std::string& id) const {

@@ -58,7 +58,8 @@ std::time_t EndOf(X509* certificate);
 std::time_t BeginOf(X509* certificate);
 /// Whether `authority` has signed it; its dates are not looked at.
 bool IsSignedBy(X509* certificate, X509* authority);
-/// The text of a signed document; throws if it is not one, or not signed by `signer`, whose dates are not looked at.
+/// The text of a signed document; throws if it is not one, or not signed by `signer`, whose dates are not
+/// looked at.
 std::string VerifiedDocument(const std::string& smime, X509* signer);
 
 }  // namespace dispersa

@@ -29,9 +29,11 @@ class CampaignServiceTest : public ServiceTest {
       const std::vector<FlyOrder> orders = workforce_.Tick();
       ASSERT_EQ(orders.size(), 1u);
       ASSERT_THAT(orders[0].cases, ElementsAre(case_index));
-      workforce_.dispatcher.On(worker, Report{worker, MadeUpWorkforce::kEpoch, 1, campaign.flight_id, {},
-                                              {{case_index, orders[0].attempt}}},
-                               workforce_.time_s);
+      workforce_.dispatcher.On(
+          worker,
+          Report{
+              worker, MadeUpWorkforce::kEpoch, 1, campaign.flight_id, {}, {{case_index, orders[0].attempt}}},
+          workforce_.time_s);
       FallSilent();
     }
   }
@@ -51,9 +53,10 @@ class CampaignServiceTest : public ServiceTest {
 
 TEST_F(CampaignServiceTest, SoManyFlyAtOnceThoseOfAHigherPriorityFirst) {
   StartService(2);
-  const std::string low = Launch(Smoke(2, 1), 0), high = Launch(Smoke(2, 2), 5), older = Launch(Smoke(2, 3), 3),
-                    younger = Launch(Smoke(2, 4), 3);
-  ASSERT_TRUE(Until([&] { return StateOf(high) == CampaignState::kFlying && StateOf(older) == CampaignState::kFlying; }));
+  const std::string low = Launch(Smoke(2, 1), 0), high = Launch(Smoke(2, 2), 5),
+                    older = Launch(Smoke(2, 3), 3), younger = Launch(Smoke(2, 4), 3);
+  ASSERT_TRUE(Until(
+      [&] { return StateOf(high) == CampaignState::kFlying && StateOf(older) == CampaignState::kFlying; }));
   for (int i = 0; i < 50; ++i) service_->Step();
   EXPECT_EQ(StateOf(low), CampaignState::kWaiting);
   EXPECT_EQ(StateOf(younger), CampaignState::kWaiting) << "an equal priority takes nobody's place";
@@ -129,7 +132,8 @@ TEST_F(CampaignServiceTest, ANewPriorityReachesWhatFlies) {
   StartService();
   const Campaign one = Smoke(200, 1), other = Smoke(200, 2);
   const std::string first = Launch(one, 2), second = Launch(other, 1);
-  ASSERT_TRUE(Until([&] { return StateOf(first) == CampaignState::kFlying && StateOf(second) == CampaignState::kFlying; }));
+  ASSERT_TRUE(Until(
+      [&] { return StateOf(first) == CampaignState::kFlying && StateOf(second) == CampaignState::kFlying; }));
   service_->Relaunch(second, 3);
   workforce_.Join("w");
   for (const FlyOrder& order : workforce_.Tick()) EXPECT_EQ(order.flight_id, other.flight_id);
@@ -221,7 +225,8 @@ class OpeningTest : public ServiceTest {
   }
   std::unique_ptr<CampaignBook> Open(const Campaign& campaign, std::vector<std::filesystem::path> others,
                                      std::uint64_t number = 1) {
-    return OpenBook({campaign.canonical_yaml, campaign.name, folder_ / "results", std::move(others), number, {}});
+    return OpenBook(
+        {campaign.canonical_yaml, campaign.name, folder_ / "results", std::move(others), number, {}});
   }
 };
 
@@ -252,7 +257,8 @@ TEST_F(OpeningTest, AttemptsOfTwoOpeningsDiffer) {
   for (const std::uint64_t number : {1, 2}) {
     const auto book = Open(Smoke(4), {}, number);
     book->ledger().Join("w", {EngineVersion(), 1, 2}, 0.0);
-    for (const Assignment& assignment : book->ledger().Assign(0.0)) EXPECT_TRUE(attempts.insert(assignment.attempt).second);
+    for (const Assignment& assignment : book->ledger().Assign(0.0))
+      EXPECT_TRUE(attempts.insert(assignment.attempt).second);
   }
 }
 

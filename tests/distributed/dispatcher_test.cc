@@ -433,7 +433,8 @@ TEST_F(DispatcherTest, ASuspectFliesBesideNoCaseOfAnotherCampaign) {
   Tick(5.0);  // it fell silent
   dispatcher_.On("s", Status(), 5.0);
   ASSERT_THAT(Tick(5.0).assignments, testing::SizeIs(1)) << "the suspect";
-  CampaignBook other(MadeUp(std::string(64, '1'), 5), std::make_unique<MemoryStore>(), {.attempt_base = 1000});
+  CampaignBook other(MadeUp(std::string(64, '1'), 5), std::make_unique<MemoryStore>(),
+                     {.attempt_base = 1000});
   dispatcher_.Open(other, 9);
   for (const double now_s : {5.1, 6.1}) {
     dispatcher_.On("s", Status(), now_s);
@@ -447,7 +448,8 @@ TEST_F(DispatcherTest, ASuspectFliesBesideNoCaseOfAnotherCampaign) {
 
 TEST_F(DispatcherTest, ANewPriorityCountsFromNowOn) {
   CampaignBook one(MadeUp(std::string(64, '1'), 50), std::make_unique<MemoryStore>(), {.attempt_base = 1000});
-  CampaignBook other(MadeUp(std::string(64, '2'), 50), std::make_unique<MemoryStore>(), {.attempt_base = 2000});
+  CampaignBook other(MadeUp(std::string(64, '2'), 50), std::make_unique<MemoryStore>(),
+                     {.attempt_base = 2000});
   dispatcher_.Open(one, 3);
   dispatcher_.Open(other, 2);
   dispatcher_.Open(other, 4);

@@ -240,7 +240,8 @@ TEST_F(FlightDeskTest, AnAttemptIsOfOneCoordinator) {
 TEST_F(FlightDeskTest, ACampaignWithCasesToFlyIsNotForgotten) {
   desk_.On(Say({{kFlight, 3, {10}}}), 0.0);
   for (std::uint64_t i = 0; i < 20; ++i) {
-    Orders orders = Say({{std::string(63, 'f') + static_cast<char>('a' + i % 5) + std::to_string(i), 100 + i, {1}}});
+    Orders orders =
+        Say({{std::string(63, 'f') + static_cast<char>('a' + i % 5) + std::to_string(i), 100 + i, {1}}});
     desk_.On(orders, 0.1);
     Orders revokes = Say({});
     revokes.revoked = {100 + i};

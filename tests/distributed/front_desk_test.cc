@@ -34,15 +34,16 @@ class FrontDeskTest : public ServiceTest {
     const Reply reply = Ask(method, arguments, data);
     return std::to_string(reply.code) + ": " + reply.text;
   }
-  std::uint64_t Upload(const std::string& id, std::uint64_t size, std::uint64_t offset, const std::string& part) {
+  std::uint64_t Upload(const std::string& id, std::uint64_t size, std::uint64_t offset,
+                       const std::string& part) {
     return AskFor("upload", {{"id", id}, {"size", size}, {"offset", offset}}, part).at("received");
   }
   /// The answer when the text has been parsed.
   Reply LaunchUploaded(const Campaign& campaign, int priority = 0) {
-    const Json arguments = {
-        {"id", campaign.id}, {"flight_id", campaign.flight_id}, {"priority", priority}};
+    const Json arguments = {{"id", campaign.id}, {"flight_id", campaign.flight_id}, {"priority", priority}};
     Reply reply = Ask("launch", arguments);
-    while (reply.code == 0 && Json::parse(reply.text).at("state") == "checked") reply = Ask("launch", arguments);
+    while (reply.code == 0 && Json::parse(reply.text).at("state") == "checked")
+      reply = Ask("launch", arguments);
     return reply;
   }
   static std::string TooMany() { return "5: the coordinator takes 8 texts at a time already"; }
@@ -119,7 +120,8 @@ TEST_F(FrontDeskTest, ATextIsThatOfItsIdAndOfThisEngine) {
   Campaign elsewhere = campaign;
   elsewhere.flight_id = "of another engine";
   const std::string differs = "campaign " + campaign.id.substr(0, 8) + " has the flight id " +
-                              campaign.flight_id + " here and of another engine at the client: the engines differ";
+                              campaign.flight_id +
+                              " here and of another engine at the client: the engines differ";
   Upload(campaign.id, text.size(), 0, text);
   EXPECT_EQ(LaunchUploaded(elsewhere).text, differs);
   EXPECT_TRUE(service_->catalogue().entries().empty());
@@ -146,9 +148,8 @@ TEST_F(FrontDeskTest, FilesOfARunningCampaignAreNotHandedOut) {
   const Json read = {{"id", id}, {"path", "campaign.yaml"}, {"offset", 0}};
   for (const CampaignState state : {CampaignState::kWaiting, CampaignState::kFlying}) {
     ASSERT_TRUE(Reaches(id, state));
-    EXPECT_EQ(Refusal("files", {{"id", id}}),
-              "5: campaign " + begin + " is " + CampaignStateName(state) +
-                  ": its results can be fetched when it has ended");
+    EXPECT_EQ(Refusal("files", {{"id", id}}), "5: campaign " + begin + " is " + CampaignStateName(state) +
+                                                  ": its results can be fetched when it has ended");
     EXPECT_EQ(Refusal("read", read), "2: campaign " + begin + " has no file campaign.yaml");
   }
   EXPECT_EQ(AskFor("cancel", {{"id", id}}).at("id"), id);
@@ -191,9 +192,9 @@ TEST_F(FrontDeskTest, OfACampaignThatHasEndedTheFilesOfItsFolderAlone) {
 TEST_F(FrontDeskTest, AListThatIsTooLongHasAllThatLive) {
   service_.reset();
   const auto write = [this](const std::string& id, int order, const std::string& state) {
-    const Json entry = {{"id", id},          {"flight_id", id}, {"name", id},        {"priority", 0},
-                        {"order", order},    {"cases", 2},      {"done", 0},         {"quarantined", 0},
-                        {"conflicts", 0},    {"state", state},  {"code", 5},         {"problem", ""}};
+    const Json entry = {{"id", id},       {"flight_id", id}, {"name", id}, {"priority", 0},
+                        {"order", order}, {"cases", 2},      {"done", 0},  {"quarantined", 0},
+                        {"conflicts", 0}, {"state", state},  {"code", 5},  {"problem", ""}};
     fs::create_directories(folder_ / "data" / id);
     std::ofstream(folder_ / "data" / id / "state.json") << entry.dump();
   };

@@ -90,8 +90,9 @@ TEST_F(KeyFolderTest, EveryFileIsTheOwnersAlone) {
 TEST_F(KeyFolderTest, NothingIsOverwritten) {
   const fs::path issued = Worker();
   const std::string key = TextOfFile(issued / kIdentityKeyFile);
-  EXPECT_EQ(IssueError("one"),
-            issued.string() + ": these keys exist already and are not overwritten, allowed: another name, or to remove the folder first");
+  EXPECT_EQ(IssueError("one"), issued.string() +
+                                   ": these keys exist already and are not overwritten, allowed: another "
+                                   "name, or to remove the folder first");
   EXPECT_EQ(TextOfFile(issued / kIdentityKeyFile), key);
   EXPECT_EQ(ErrorOf([&] { MakeAuthority(authority(), ValidFor(1)); }),
             (authority() / "authority").string() +
@@ -100,11 +101,14 @@ TEST_F(KeyFolderTest, NothingIsOverwritten) {
 }
 
 TEST_F(KeyFolderTest, ANameIsWhatAPartitionAndAFolderCanHave) {
-  for (const std::string& name : {std::string("a"), std::string("Node-9"), std::string(31, 'x'), std::string("0-")})
+  for (const std::string& name :
+       {std::string("a"), std::string("Node-9"), std::string(31, 'x'), std::string("0-")})
     EXPECT_EQ(IssueError(name), "none") << name;
   for (const std::string& name : {std::string(), std::string("-a"), std::string("a_b"), std::string("../a"),
                                   std::string("a*"), std::string("a b"), std::string(32, 'x')}) {
-    EXPECT_EQ(IssueError(name), "'" + name + "' cannot be the name of keys, allowed: 1 to 31 letters, digits and '-', the first no '-'");
+    EXPECT_EQ(IssueError(name),
+              "'" + name +
+                  "' cannot be the name of keys, allowed: 1 to 31 letters, digits and '-', the first no '-'");
   }
 }
 
@@ -121,7 +125,8 @@ TEST_F(KeyFolderTest, KeysEndWithTheirAuthority) {
   EXPECT_EQ(end_of("as-long"), end);
   EXPECT_EQ(IssueError("longer", until(end + kDay_s + 1)),
             (authority() / "authority").string() +
-                ": the authority is valid for fewer days than the keys would be, allowed: fewer days, or a new authority");
+                ": the authority is valid for fewer days than the keys would be, allowed: fewer days, or a "
+                "new authority");
 }
 
 TEST_F(KeyFolderTest, TheSignerOfPermissionsSignsNoCertificates) {
@@ -129,15 +134,15 @@ TEST_F(KeyFolderTest, TheSignerOfPermissionsSignsNoCertificates) {
   const Certificate signer = CertificateIn(folder / kPermissionsAuthorityFile);
   const PrivateKey key = ReadPrivateKey(TextOfFile(folder / "permissions_ca.key"));
   const PrivateKey own = MakePrivateKey();
-  const Certificate forged =
-      MakeCertificate({{"one", "worker"}, false, now_ - kDay_s, now_ + kDay_s}, own.get(), signer.get(), key.get());
+  const Certificate forged = MakeCertificate({{"one", "worker"}, false, now_ - kDay_s, now_ + kDay_s},
+                                             own.get(), signer.get(), key.get());
   EXPECT_FALSE(IsSignedBy(forged.get(), signer.get()));
   // Nor does whoever has keys.
   const fs::path issued = Worker();
   const Certificate identity = CertificateIn(issued / kIdentityFile);
   const PrivateKey identity_key = ReadPrivateKey(TextOfFile(issued / kIdentityKeyFile));
-  const Certificate below = MakeCertificate({{"two", "coordinator"}, false, now_ - kDay_s, now_ + kDay_s}, own.get(),
-                                            identity.get(), identity_key.get());
+  const Certificate below = MakeCertificate({{"two", "coordinator"}, false, now_ - kDay_s, now_ + kDay_s},
+                                            own.get(), identity.get(), identity_key.get());
   EXPECT_FALSE(IsSignedBy(below.get(), identity.get()));
 }
 
@@ -163,8 +168,8 @@ class MadeUpKeys : public KeyFolderTest {
     const Signer ca = MakeSigner(true, at(identities.from), at(identities.to));
     const Signer signer = MakeSigner(false, at(permissions.from), at(permissions.to));
     const PrivateKey key = MakePrivateKey();
-    const Certificate own = MakeCertificate({{"one", "worker"}, false, at(identity.from), at(identity.to)}, key.get(),
-                                            ca.certificate.get(), ca.key.get());
+    const Certificate own = MakeCertificate({{"one", "worker"}, false, at(identity.from), at(identity.to)},
+                                            key.get(), ca.certificate.get(), ca.key.get());
     const fs::path keys = folder_ / "made_up";
     fs::remove_all(keys);
     fs::create_directories(keys);
@@ -189,8 +194,10 @@ TEST_F(MadeUpKeys, WhatHasExpiredIsNamedWithItsDateAndWhatToDo) {
   const auto expired = [&](const char* file, const char* remedy) {
     return made_up + "/" + file + ": expired on [0-9: -]+ UTC: " + remedy + "$";
   };
-  EXPECT_THAT(OpenError(MakeKeys(past, good, good)), ContainsRegex(expired(kIdentityAuthorityFile, "make a new authority")));
-  EXPECT_THAT(OpenError(MakeKeys(good, past, good)), ContainsRegex(expired(kPermissionsAuthorityFile, "make a new authority")));
+  EXPECT_THAT(OpenError(MakeKeys(past, good, good)),
+              ContainsRegex(expired(kIdentityAuthorityFile, "make a new authority")));
+  EXPECT_THAT(OpenError(MakeKeys(good, past, good)),
+              ContainsRegex(expired(kPermissionsAuthorityFile, "make a new authority")));
   EXPECT_THAT(OpenError(MakeKeys(good, good, past)), ContainsRegex(expired(kIdentityFile, "issue new keys")));
   const std::string clock = " on: the clock of this machine may be wrong";
   for (const auto& [file, keys] : {std::pair(kIdentityAuthorityFile, std::array{coming, good, good}),
@@ -213,8 +220,12 @@ TEST_F(KeyFolderTest, WhatIsDamagedOrOfAnotherIsNamed) {
     Write(keys / file, good);
     return error;
   };
-  const auto from = [&](const char* file, const fs::path& folder) { return with(file, TextOfFile(folder / file)); };
-  const auto problem = [&](const char* file, const std::string& what) { return (keys / file).string() + ": " + what; };
+  const auto from = [&](const char* file, const fs::path& folder) {
+    return with(file, TextOfFile(folder / file));
+  };
+  const auto problem = [&](const char* file, const std::string& what) {
+    return (keys / file).string() + ": " + what;
+  };
   const std::string unsigned_text = "the signature does not fit: damaged, or of another authority";
   EXPECT_EQ(with(kIdentityFile, "x"), problem(kIdentityFile, "no certificate in PEM"));
   EXPECT_EQ(with(kIdentityKeyFile, "x"), problem(kIdentityKeyFile, "no private key in PEM"));
@@ -223,15 +234,20 @@ TEST_F(KeyFolderTest, WhatIsDamagedOrOfAnotherIsNamed) {
   EXPECT_EQ(from(kIdentityAuthorityFile, foreign), problem(kIdentityFile, "not signed by identity_ca.pem"));
   EXPECT_EQ(from(kGovernanceFile, foreign), problem(kGovernanceFile, unsigned_text));
   EXPECT_EQ(from(kPermissionsFile, foreign), problem(kPermissionsFile, unsigned_text));
-  EXPECT_EQ(from(kPermissionsFile, other), problem(kPermissionsFile, "not the permissions of the owner of identity.pem"));
+  EXPECT_EQ(from(kPermissionsFile, other),
+            problem(kPermissionsFile, "not the permissions of the owner of identity.pem"));
   std::string edited = TextOfFile(keys / kPermissionsFile);
   edited.replace(edited.find("ReportV2"), 8, "OrdersV1");
   EXPECT_EQ(with(kPermissionsFile, edited), problem(kPermissionsFile, unsigned_text));
   EXPECT_EQ(OpenError(keys), "none");
   fs::remove(keys / kGovernanceFile);
   EXPECT_EQ(OpenError(keys), problem(kGovernanceFile, "cannot be read: No such file or directory"));
-  EXPECT_EQ(OpenError(folder_ / "none"), (folder_ / "none").string() + ": no folder: give a folder that `dispersa keys issue` made");
-  EXPECT_EQ(OpenError(authority()), authority().string() + ": the folder of the authority, which signs and does not speak: give one of " + (authority() / "issued").string());
+  EXPECT_EQ(OpenError(folder_ / "none"),
+            (folder_ / "none").string() + ": no folder: give a folder that `dispersa keys issue` made");
+  EXPECT_EQ(OpenError(authority()),
+            authority().string() +
+                ": the folder of the authority, which signs and does not speak: give one of " +
+                (authority() / "issued").string());
 }
 
 /// "publish: topic... in partition", one a line.
@@ -256,24 +272,29 @@ std::string RulesIn(const std::string& document) {
 
 // The table of services/README.md.
 TEST(Permissions, EachRoleMayWhatItNeeds) {
-  const auto rules = [](Role role) { return RulesIn(PermissionsDocument(role, "node1", "CN=node1", 0, kDay_s)); };
+  const auto rules = [](Role role) {
+    return RulesIn(PermissionsDocument(role, "node1", "CN=node1", 0, kDay_s));
+  };
   const std::string t = " dispersa/";
-  EXPECT_EQ(rules(Role::kWorker), "publish" + t + "WorkerStatusV2" + t + "ReportV2" + t + "TextRequestV1" + t +
-                                      "CampaignRefusalV1 in wnode1_*\nsubscribe" + t + "OrdersV1" + t + "TextV1 in wnode1_*\n");
-  EXPECT_EQ(rules(Role::kClient), "publish" + t + "RequestV1 in wnode1_*\nsubscribe" + t + "ReplyV1 in wnode1_*\nsubscribe" +
-                                      t + "ProgressV1" + t + "ResultV1 in \n");
+  EXPECT_EQ(rules(Role::kWorker), "publish" + t + "WorkerStatusV2" + t + "ReportV2" + t + "TextRequestV1" +
+                                      t + "CampaignRefusalV1 in wnode1_*\nsubscribe" + t + "OrdersV1" + t +
+                                      "TextV1 in wnode1_*\n");
+  EXPECT_EQ(rules(Role::kClient), "publish" + t + "RequestV1 in wnode1_*\nsubscribe" + t +
+                                      "ReplyV1 in wnode1_*\nsubscribe" + t + "ProgressV1" + t +
+                                      "ResultV1 in \n");
   EXPECT_EQ(rules(Role::kObserver), "subscribe" + t + "ProgressV1" + t + "ResultV1 in \n");
-  EXPECT_EQ(rules(Role::kCoordinator),
-            "publish" + t + "ProgressV1" + t + "ResultV1 in \npublish" + t + "OrdersV1" + t + "TextV1" + t +
-                "ReplyV1 in w*\nsubscribe" + t + "WorkerStatusV2" + t + "ReportV2" + t + "TextRequestV1" + t +
-                "CampaignRefusalV1" + t + "RequestV1 in *\npublish" + t + "RequestV1 in wnode1_*\nsubscribe" + t +
-                "ReplyV1 in wnode1_*\n");
+  EXPECT_EQ(rules(Role::kCoordinator), "publish" + t + "ProgressV1" + t + "ResultV1 in \npublish" + t +
+                                           "OrdersV1" + t + "TextV1" + t + "ReplyV1 in w*\nsubscribe" + t +
+                                           "WorkerStatusV2" + t + "ReportV2" + t + "TextRequestV1" + t +
+                                           "CampaignRefusalV1" + t + "RequestV1 in *\npublish" + t +
+                                           "RequestV1 in wnode1_*\nsubscribe" + t + "ReplyV1 in wnode1_*\n");
 }
 
 TEST(Permissions, AreOfTheirOwnerInTheirTimeAndNobodyElses) {
   const std::string document = PermissionsDocument(Role::kWorker, "a", "CN=a,OU=worker", 0, 2 * kDay_s);
-  for (const char* part : {"<subject_name>CN=a,OU=worker</subject_name>", "<not_before>1970-01-01T00:00:00</not_before>",
-                           "<not_after>1970-01-03T00:00:00</not_after>", "<default>DENY</default>"})
+  for (const char* part :
+       {"<subject_name>CN=a,OU=worker</subject_name>", "<not_before>1970-01-01T00:00:00</not_before>",
+        "<not_after>1970-01-03T00:00:00</not_after>", "<default>DENY</default>"})
     EXPECT_THAT(document, HasSubstr(part));
   EXPECT_EQ(OwnPrefix("node1"), "node1_") << "else node1 could speak for node10";
 }
@@ -290,10 +311,16 @@ TEST_F(KeyFolderTest, WithoutKeysOnlyThisMachineIsSpokenTo) {
   const auto refused = [&](const std::string& address, const std::string& peer) {
     return ErrorOf([&] { admit(address, peer); });
   };
-  for (const auto& [address, peer] : std::vector<std::pair<std::string, std::string>>{
-           {"", ""}, {"", "host"}, {"", "127.evil.example"}, {"", "127.0.0.1.example"}, {"127.0.0.1", "host"},
-           {"10.0.0.1", "127.0.0.1"}, {"10.0.0.1", ""}}) {
-    EXPECT_THAT(refused(address, peer), HasSubstr("beyond this machine nobody is spoken to without keys")) << address << " " << peer;
+  for (const auto& [address, peer] :
+       std::vector<std::pair<std::string, std::string>>{{"", ""},
+                                                        {"", "host"},
+                                                        {"", "127.evil.example"},
+                                                        {"", "127.0.0.1.example"},
+                                                        {"127.0.0.1", "host"},
+                                                        {"10.0.0.1", "127.0.0.1"},
+                                                        {"10.0.0.1", ""}}) {
+    EXPECT_THAT(refused(address, peer), HasSubstr("beyond this machine nobody is spoken to without keys"))
+        << address << " " << peer;
   }
 }
 
@@ -303,9 +330,13 @@ TEST_F(KeyFolderTest, KeysAreNamedAndExcludeTheirAbsence) {
   EXPECT_EQ(network.keys->name, "node1");
   EXPECT_EQ(NameOnNetwork(network, "u"), "node1_u");
   EXPECT_EQ(NameOnNetwork({0, ""}, "u"), "u");
-  EXPECT_EQ(ErrorOf([&] { Admit({0, ""}, {keys.string(), true}, {Role::kWorker}, "host"); }),
+  EXPECT_EQ(ErrorOf([&] {
+              Admit({0, ""}, {keys.string(), true}, {Role::kWorker}, "host");
+            }),
             "--keys and --insecure exclude each other");
-  EXPECT_THAT(ErrorOf([&] { Admit({0, ""}, {keys.string()}, {Role::kClient}, "host"); }),
+  EXPECT_THAT(ErrorOf([&] {
+                Admit({0, ""}, {keys.string()}, {Role::kClient}, "host");
+              }),
               HasSubstr("keys of the worker 'node1'; here those of a client are needed"));
 }
 

@@ -92,9 +92,10 @@ TEST_F(LiveServerTest, ServesItsPageWithItsPolicy) {
   const std::string page = Get("/");
   EXPECT_THAT(page, StartsWith("HTTP/1.1 200 OK\r\n"));
   EXPECT_THAT(page, HasSubstr("\r\n\r\n<style>a{}</style><script>f()</script>the page"));
-  for (const char* header : {"Content-Security-Policy: default-src 'none'; style-src 'sha256-",
-                             "X-Content-Type-Options: nosniff\r\n", "Cross-Origin-Resource-Policy: same-origin\r\n",
-                             "Referrer-Policy: no-referrer\r\n", "Cache-Control: no-store\r\n"})
+  for (const char* header :
+       {"Content-Security-Policy: default-src 'none'; style-src 'sha256-",
+        "X-Content-Type-Options: nosniff\r\n", "Cross-Origin-Resource-Policy: same-origin\r\n",
+        "Referrer-Policy: no-referrer\r\n", "Cache-Control: no-store\r\n"})
     EXPECT_THAT(page, HasSubstr(header));
   EXPECT_THAT(Get("/else"), StartsWith("HTTP/1.1 404 "));
 }

@@ -1,4 +1,5 @@
-// What a run on this machine, its workers and its words keep to: with made-up time and the smallest processes.
+// What a run on this machine, its workers and its words keep to: with made-up time and the smallest
+// processes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -92,8 +93,13 @@ TEST(CampaignText, IsALineAndOneForEachRequirement) {
   EXPECT_EQ(CampaignText(campaign),
             "0123456789ab  flying             5/20        smoke  2.5/s  6s left\n"
             "  1 of 5 break m (inconclusive so far)\n");
-  campaign.update({{"state", "failed"}, {"rate_per_s", 0.0}, {"eta_s", nullptr}, {"quarantined", 2}, {"code", 1},
-                   {"problem", "it broke"}, {"requirements", Json::array()}});
+  campaign.update({{"state", "failed"},
+                   {"rate_per_s", 0.0},
+                   {"eta_s", nullptr},
+                   {"quarantined", 2},
+                   {"code", 1},
+                   {"problem", "it broke"},
+                   {"requirements", Json::array()}});
   EXPECT_EQ(CampaignText(campaign),
             "0123456789ab  failed             5/20        smoke  2 quarantined  exit code 1  it broke\n");
 }
@@ -109,8 +115,9 @@ TEST(DurationText, IsInTheLargestUnitsThatFit) {
 }
 
 TEST(ExitCodes, TheWorstOfTwoIsSaid) {
-  const std::vector<ExitCode> worst_first = {kExitInterrupted,    kExitBadInput,          kExitInternalError, kExitIncomplete,
-                                             kExitReplayMismatch, kExitRequirementFailed, kExitInconclusive,  kExitDone};
+  const std::vector<ExitCode> worst_first = {
+      kExitInterrupted,    kExitBadInput,          kExitInternalError, kExitIncomplete,
+      kExitReplayMismatch, kExitRequirementFailed, kExitInconclusive,  kExitDone};
   for (std::size_t i = 0; i < worst_first.size(); ++i) {
     for (std::size_t j = i; j < worst_first.size(); ++j) {
       EXPECT_EQ(WorseOf(worst_first[i], worst_first[j]), worst_first[i]);

@@ -1,5 +1,5 @@
-// A service's workers without a network: the real dispatcher with made-up time, and workers who return made-up
-// results.
+// A service's workers without a network: the real dispatcher with made-up time, and workers who return
+// made-up results.
 #pragma once
 
 #include <cstdint>
@@ -28,9 +28,11 @@ class MadeUpWorkforce : public Workforce {
   double now_s() const override { return time_s; }
 
   void Join(const std::string& worker, std::uint32_t slots = 1) {
-    dispatcher.On(worker, WorkerStatus{worker, "host", 1, EngineVersion(), slots, 2 * slots,
-                                       WorkerState::kReady, 0, kEpoch, {}, {}},
-                  time_s);
+    dispatcher.On(
+        worker,
+        WorkerStatus{
+            worker, "host", 1, EngineVersion(), slots, 2 * slots, WorkerState::kReady, 0, kEpoch, {}, {}},
+        time_s);
   }
   /// What the workers are told to fly now.
   std::vector<FlyOrder> Tick() {
@@ -46,7 +48,8 @@ class MadeUpWorkforce : public Workforce {
   }
   /// A result that nobody needs to have been asked for is welcome too.
   void Return(const std::string& worker, const std::string& flight_id, CaseResult result) {
-    dispatcher.On(worker, Report{worker, kEpoch, ++reports_, flight_id, {{0, std::move(result)}}, {}}, time_s);
+    dispatcher.On(worker, Report{worker, kEpoch, ++reports_, flight_id, {{0, std::move(result)}}, {}},
+                  time_s);
   }
   static CaseResult ResultOf(std::uint64_t case_index) {
     CaseResult result;

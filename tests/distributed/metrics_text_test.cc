@@ -27,19 +27,20 @@ TEST_F(MetricsTextTest, AnEmptyServiceIsAllZeros) {
   const auto metric = [](const char* name, const char* type, const char* help, std::uint64_t value) {
     return fmt::format("# HELP {0} {1}\n# TYPE {0} {2}\n{0} {3}\n", name, help, type, value);
   };
-  EXPECT_EQ(MetricsText(*service_, workforce_),
-            "# HELP dispersa_campaigns Campaigns by state.\n# TYPE dispersa_campaigns gauge\n" +
-                metric("dispersa_cases_done", "gauge", "Cases with a result, of all campaigns.", 0) +
-                metric("dispersa_cases_waiting", "gauge", "Cases that no worker has: the depth of the queue.", 0) +
-                metric("dispersa_cases_assigned", "gauge", "Cases that workers have.", 0) +
-                metric("dispersa_cases_quarantined", "gauge", "Cases that were given up.", 0) +
-                metric("dispersa_conflicts", "gauge", "Results that contradicted others.", 0) +
-                metric("dispersa_workers", "gauge", "Workers that are joined.", 0) +
-                metric("dispersa_slots", "gauge", "Threads of theirs that fly.", 0) +
-                metric("dispersa_audits_total", "counter", "Results that were flown again.", 0) +
-                metric("dispersa_expelled_total", "counter", "Workers whose results were wrong.", 0) +
-                metric("dispersa_refused_total", "counter", "Datagrams and messages that were refused.",
-                       Complaints()));
+  EXPECT_EQ(
+      MetricsText(*service_, workforce_),
+      "# HELP dispersa_campaigns Campaigns by state.\n# TYPE dispersa_campaigns gauge\n" +
+          metric("dispersa_cases_done", "gauge", "Cases with a result, of all campaigns.", 0) +
+          metric("dispersa_cases_waiting", "gauge", "Cases that no worker has: the depth of the queue.", 0) +
+          metric("dispersa_cases_assigned", "gauge", "Cases that workers have.", 0) +
+          metric("dispersa_cases_quarantined", "gauge", "Cases that were given up.", 0) +
+          metric("dispersa_conflicts", "gauge", "Results that contradicted others.", 0) +
+          metric("dispersa_workers", "gauge", "Workers that are joined.", 0) +
+          metric("dispersa_slots", "gauge", "Threads of theirs that fly.", 0) +
+          metric("dispersa_audits_total", "counter", "Results that were flown again.", 0) +
+          metric("dispersa_expelled_total", "counter", "Workers whose results were wrong.", 0) +
+          metric("dispersa_refused_total", "counter", "Datagrams and messages that were refused.",
+                 Complaints()));
 }
 
 TEST_F(MetricsTextTest, ACaseIsCountedOnce) {
@@ -54,7 +55,8 @@ TEST_F(MetricsTextTest, ACaseIsCountedOnce) {
   ASSERT_GT(assigned, 0u);
   ASSERT_LT(assigned, 90u);
   // The last cases, which nobody has.
-  for (const std::uint64_t i : {97, 98, 99}) workforce_.Return("one", campaign.flight_id, MadeUpWorkforce::ResultOf(i));
+  for (const std::uint64_t i : {97, 98, 99})
+    workforce_.Return("one", campaign.flight_id, MadeUpWorkforce::ResultOf(i));
   EXPECT_EQ(Value("dispersa_cases_done"), "3");
   EXPECT_EQ(Value("dispersa_cases_assigned"), std::to_string(assigned));
   EXPECT_EQ(Value("dispersa_cases_waiting"), std::to_string(100 - 3 - assigned + 30));

@@ -1,5 +1,5 @@
-// A campaign that is given to a coordinator, followed and brought home: without a network, against a real front
-// desk and against coordinators that are made up.
+// A campaign that is given to a coordinator, followed and brought home: without a network, against a real
+// front desk and against coordinators that are made up.
 #include "services/client/remote_campaign.h"
 
 #include <gmock/gmock.h>
@@ -32,7 +32,8 @@ std::string FailureOf(Run run) {
 /// Notes what it is shown; stops after so many looks.
 class Watcher : public Observer {
  public:
-  void Show(const std::string& phase, std::uint64_t done, std::uint64_t total, const std::string& note) override {
+  void Show(const std::string& phase, std::uint64_t done, std::uint64_t total,
+            const std::string& note) override {
     shown.push_back(phase + " " + std::to_string(done) + "/" + std::to_string(total) + " " + note);
   }
   void EndPhase() override { shown.push_back("end"); }
@@ -45,8 +46,10 @@ class Watcher : public Observer {
 class MadeUpCoordinator {
  public:
   Session Connect(bool has_keys = false) {
-    return {{"host", 7405}, has_keys, [this](const std::string& method, const std::string& arguments,
-                                             const std::string&, std::chrono::milliseconds) {
+    return {{"host", 7405},
+            has_keys,
+            [this](const std::string& method, const std::string& arguments, const std::string&,
+                   std::chrono::milliseconds) {
               asked.push_back(method + " " + arguments);
               std::deque<std::optional<Reply>>& left = answers[method];
               if (left.empty()) return std::optional<Reply>();
@@ -87,7 +90,8 @@ TEST(Session, SilenceSaysWhereAndWhetherKeysMayBeMissing) {
 
 TEST(Launching, UploadsWhatTheCoordinatorLacksFromWhereItIs) {
   MadeUpCoordinator coordinator;
-  for (const char* state : {"unknown", "checked", "waiting"}) coordinator.Answers("launch", {{"state", state}});
+  for (const char* state : {"unknown", "checked", "waiting"})
+    coordinator.Answers("launch", {{"state", state}});
   coordinator.Answers("upload", {{"received", 4}});
   coordinator.Answers("upload", {{"received", 10}});
   Campaign campaign;
@@ -97,14 +101,17 @@ TEST(Launching, UploadsWhatTheCoordinatorLacksFromWhereItIs) {
   Session session = coordinator.Connect();
   EXPECT_EQ(LaunchCampaign(session, campaign, 3), "waiting");
   const std::string launch = R"(launch {"id":"i","flight_id":"f","priority":3})";
-  EXPECT_THAT(coordinator.asked,
-              ElementsAre(launch, R"(upload {"id":"i","size":10,"offset":0})",
-                          R"(upload {"id":"i","size":10,"offset":4})", launch, launch));
+  EXPECT_THAT(coordinator.asked, ElementsAre(launch, R"(upload {"id":"i","size":10,"offset":0})",
+                                             R"(upload {"id":"i","size":10,"offset":4})", launch, launch));
 }
 
 Json Listed(int done, const Json& code) {
   return {{"campaigns",
-           {{{"name", "smoke"}, {"done", done}, {"total", 12}, {"state", code.is_null() ? "flying" : "done"}, {"code", code}}}}};
+           {{{"name", "smoke"},
+             {"done", done},
+             {"total", 12},
+             {"state", code.is_null() ? "flying" : "done"},
+             {"code", code}}}}};
 }
 
 TEST(Following, EndsWithTheCampaignsCodeAndWaitsForACoordinatorThatIsAway) {
@@ -144,14 +151,15 @@ class Fetching : public testing::Test {
 };
 
 TEST_F(Fetching, NothingIsWrittenOutsideOfTheFolder) {
-  for (const std::string path : {"../evil", "../../evil", "a/../../evil", "/tmp/../tmp/dispersa-evil", "..", ".", "",
-                                 "a/../b", "./a"}) {
+  for (const std::string path : {"../evil", "../../evil", "a/../../evil", "/tmp/../tmp/dispersa-evil", "..",
+                                 ".", "", "a/../b", "./a"}) {
     EXPECT_EQ(FetchOf(path), "1: the coordinator names a file outside of the result folder") << path;
     EXPECT_FALSE(fs::exists(Target())) << path;
     EXPECT_FALSE(fs::exists(folder_ / "in" / "evil")) << path;
     EXPECT_FALSE(fs::exists(folder_ / "evil")) << path;
   }
-  EXPECT_EQ(FetchOf((folder_ / "absolute").string()), "1: the coordinator names a file outside of the result folder");
+  EXPECT_EQ(FetchOf((folder_ / "absolute").string()),
+            "1: the coordinator names a file outside of the result folder");
   EXPECT_FALSE(fs::exists(folder_ / "absolute"));
   EXPECT_EQ(FetchOf("a/b..c"), "none") << "two dots in a name are two dots";
   EXPECT_EQ(TextOfFile(Target() / "a" / "b..c"), "evil");
@@ -193,8 +201,10 @@ class RemoteCampaign : public ServiceTest {
  protected:
   RemoteCampaign() { StartService(); }
 
-  Session session_{{"here", 1}, false, [this](const std::string& method, const std::string& arguments,
-                                              const std::string& data, std::chrono::milliseconds) {
+  Session session_{{"here", 1},
+                   false,
+                   [this](const std::string& method, const std::string& arguments, const std::string& data,
+                          std::chrono::milliseconds) {
                      service_->Step();
                      return std::optional(desk_->Answer({"c", ++asked_, method, arguments, data}));
                    }};

@@ -74,7 +74,8 @@ Body Head(bool little_endian, std::uint16_t offset) {
   return body.U16(0).U16(offset).U32(0).U32(0).Number(1);
 }
 Part Fragment(std::uint32_t number, std::uint16_t size, std::uint32_t sample, bool little_endian = true) {
-  return {kFragment, Head(little_endian, 28).U32(number).U16(1).U16(size).U32(sample).Fill(64), little_endian};
+  return {kFragment, Head(little_endian, 28).U32(number).U16(1).U16(size).U32(sample).Fill(64),
+          little_endian};
 }
 Part Heartbeat(std::uint64_t first, std::uint64_t last, bool little_endian = true) {
   Body body(little_endian);

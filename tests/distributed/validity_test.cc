@@ -41,8 +41,8 @@ TEST(Validity, ANameIsAnIdentifierOf64Letters) {
     EXPECT_EQ(After(Status(), [&](auto& status) { status.worker = name; }), "") << name;
   }
   for (const std::string& name : {std::string(), std::string("*"), std::string("a*"), std::string("a b"),
-                                  std::string("a/b"), std::string("\x1b[31m"), std::string("ä"), std::string("a."),
-                                  std::string(1, '\0'), std::string(65, 'a')}) {
+                                  std::string("a/b"), std::string("\x1b[31m"), std::string("ä"),
+                                  std::string("a."), std::string(1, '\0'), std::string(65, 'a')}) {
     const auto set = [&](auto& message) { message.worker = name; };
     EXPECT_EQ(After(Status(), set), kBadWorker) << name;
     EXPECT_EQ(After(SomeOrders(), set), kBadWorker) << name;
@@ -59,8 +59,8 @@ TEST(Validity, ANameIsAnIdentifierOf64Letters) {
 }
 
 TEST(Validity, AFlightIdIs64HexadecimalDigits) {
-  for (const std::string& id : {std::string(), std::string(63, 'f'), std::string(65, 'f'), std::string(64, 'F'),
-                                std::string(64, 'g'), std::string(63, '0') + "/"}) {
+  for (const std::string& id : {std::string(), std::string(63, 'f'), std::string(65, 'f'),
+                                std::string(64, 'F'), std::string(64, 'g'), std::string(63, '0') + "/"}) {
     const auto set = [&](auto& message) { message.flight_id = id; };
     EXPECT_EQ(After(SomeOrders(), [&](Orders& orders) { orders.assignments[0].flight_id = id; }), kBadFlight);
     EXPECT_EQ(After(SomeReport(), set), kBadFlight) << id;
@@ -69,14 +69,16 @@ TEST(Validity, AFlightIdIs64HexadecimalDigits) {
     EXPECT_EQ(After(CampaignRefusal{"w", 1, kFlight, "why"}, set), kBadFlight) << id;
     EXPECT_EQ(After(CampaignProgress{}, set), kBadFlight) << id;
   }
-  EXPECT_EQ(After(TextRequest{"w", kFlight, 0}, [](auto& text) { text.flight_id = std::string(64, '0'); }), "");
+  EXPECT_EQ(After(TextRequest{"w", kFlight, 0}, [](auto& text) { text.flight_id = std::string(64, '0'); }),
+            "");
 }
 
 TEST(Validity, AStatusOfBoundedSize) {
   EXPECT_EQ(After(Status(), [](auto& s) { s.host.assign(256, 'h'), s.engine_version.assign(256, 'e'); }), "");
   EXPECT_EQ(After(Status(), [](auto& s) { s.host.assign(257, 'h'); }), kTooLong);
   EXPECT_EQ(After(Status(), [](auto& s) { s.engine_version.assign(257, 'h'); }), kTooLong);
-  for (const std::uint32_t slots : {1u, 1024u}) EXPECT_EQ(After(Status(), [&](auto& s) { s.slots = slots; }), "");
+  for (const std::uint32_t slots : {1u, 1024u})
+    EXPECT_EQ(After(Status(), [&](auto& s) { s.slots = slots; }), "");
   for (const std::uint32_t slots : {0u, 1025u, std::numeric_limits<std::uint32_t>::max()})
     EXPECT_EQ(After(Status(), [&](auto& s) { s.slots = slots; }), "slots are not from 1 to 1024");
   EXPECT_EQ(After(Status(), [](auto& s) { s.credits = 65536; }), "");
@@ -103,8 +105,10 @@ TEST(Validity, AResultHasTheInputsAndMetricsOfThisEngine) {
   };
   const std::size_t inputs = InputCount(kUsualStages), metrics = MetricCount(kUsualStages);
   EXPECT_EQ(of(inputs, metrics), "");
-  for (const std::size_t wrong_inputs : {std::size_t{0}, inputs - 1, inputs + 1}) EXPECT_EQ(of(wrong_inputs, metrics), wrong);
-  for (const std::size_t wrong_metrics : {std::size_t{0}, metrics - 1, metrics + 1}) EXPECT_EQ(of(inputs, wrong_metrics), wrong);
+  for (const std::size_t wrong_inputs : {std::size_t{0}, inputs - 1, inputs + 1})
+    EXPECT_EQ(of(wrong_inputs, metrics), wrong);
+  for (const std::size_t wrong_metrics : {std::size_t{0}, metrics - 1, metrics + 1})
+    EXPECT_EQ(of(inputs, wrong_metrics), wrong);
 }
 
 TEST(Validity, ACaseThatIsGivenUpHasAReasonAndNothingElse) {
@@ -124,8 +128,10 @@ TEST(Validity, ACaseThatIsGivenUpHasAReasonAndNothingElse) {
 
 TEST(Validity, AResultEndsInAStageThatAVehicleCanHave) {
   const char wrong[] = "a result has an impossible stage or reason";
-  for (const int stage : {0, 64}) EXPECT_EQ(After(SomeReport(), [&](auto& r) { r.flown[0].result.end_stage = stage; }), "");
-  for (const int stage : {-1, 65}) EXPECT_EQ(After(SomeReport(), [&](auto& r) { r.flown[0].result.end_stage = stage; }), wrong);
+  for (const int stage : {0, 64})
+    EXPECT_EQ(After(SomeReport(), [&](auto& r) { r.flown[0].result.end_stage = stage; }), "");
+  for (const int stage : {-1, 65})
+    EXPECT_EQ(After(SomeReport(), [&](auto& r) { r.flown[0].result.end_stage = stage; }), wrong);
   EXPECT_EQ(After(SomeReport(), [](auto& r) { r.flown[0].result.reason.assign(4097, 'x'); }), wrong);
 }
 
@@ -133,7 +139,8 @@ TEST(Validity, AReportHasAtMost4096Cases) {
   EXPECT_EQ(After(SomeReport(), [](auto& report) { report.started.resize(4096); }), "");
   EXPECT_EQ(After(SomeReport(), [](auto& report) { report.started.resize(4097); }), "too many cases");
   EXPECT_EQ(After(SomeReport(), [](auto& report) { report.flown.assign(4096, report.flown[0]); }), "");
-  EXPECT_EQ(After(SomeReport(), [](auto& report) { report.flown.assign(4097, report.flown[0]); }), "too many cases");
+  EXPECT_EQ(After(SomeReport(), [](auto& report) { report.flown.assign(4097, report.flown[0]); }),
+            "too many cases");
 }
 
 TEST(Validity, APartOfATextLiesWithinTheText) {

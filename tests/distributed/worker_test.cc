@@ -142,7 +142,8 @@ TEST_F(WorkerTest, RefusesATextOfAnotherEngine) {
   StartWorker();
   Order(7, {0});
   ASSERT_TRUE(Until([this] { return refusal_.has_value(); }));
-  EXPECT_EQ(*refusal_, "engine version other of the coordinator differs from the worker's " + EngineVersion());
+  EXPECT_EQ(*refusal_,
+            "engine version other of the coordinator differs from the worker's " + EngineVersion());
   EXPECT_TRUE(times_.empty());
 }
 

@@ -334,8 +334,8 @@ TEST(Ledger, ACaseThatIsGivenUpSaysNothingOfHowLongOthersTake) {
   EXPECT_THAT(ledger.Expire(19.1), ElementsAre("a"));
 }
 
-// Cases of the second assignment of a worker with one slot, of 99 that are left and take 1 ms; before it, something
-// happens.
+// Cases of the second assignment of a worker with one slot, of 99 that are left and take 1 ms; before it,
+// something happens.
 template <typename Event>
 std::size_t NextBatch(Event event) {
   Ledger ledger("1", 100, {.side_by_side = 1});
