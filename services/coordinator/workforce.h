@@ -1,4 +1,4 @@
-// Who flies the campaigns of a service: the coordinator's workers, or made-up ones in a test.
+// The workers of a service: those of its coordinator, or made-up ones in a test.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace dispersa {
 
-/// What a service, its front desk and its metrics need of a coordinator. None of it needs a network.
+/// The part of a coordinator that a service, its front desk and its metrics use. It needs no network.
 class Workforce {
  public:
   virtual ~Workforce() = default;

@@ -147,7 +147,7 @@ class StoringTest : public BookTest {
   MemoryStore* store_ = nullptr;
 };
 
-TEST_F(StoringTest, HowLongACaseTookIsFromItsStartToItsResult) {
+TEST_F(StoringTest, ADurationIsFromACasesStartToItsResult) {
   Open(2);
   book_->Start("w", 0, 1, 10.0);
   book_->Accept("w", "host", 1, ResultOf(0), 12.5);

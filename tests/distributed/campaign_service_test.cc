@@ -99,7 +99,7 @@ TEST_F(CampaignServiceTest, CampaignsOfTheSameFlightsFlyOneAfterTheOther) {
   EXPECT_EQ(service_->View(second).progress.total, 5u);
 }
 
-TEST_F(CampaignServiceTest, WhatWasCancelledGoesOnWhereItWasWhenItIsLaunchedAgain) {
+TEST_F(CampaignServiceTest, ACancelledCampaignGoesOnWhenItIsLaunchedAgain) {
   StartService();
   const Campaign campaign = Smoke(4);
   const std::string id = Launch(campaign);
@@ -162,7 +162,7 @@ TEST_F(CampaignServiceTest, QuarantinedCasesAreTriedAgainWhenItIsLaunchedAgain) 
   EXPECT_EQ(service_->View(id).progress.waiting, 1u);
 }
 
-TEST_F(CampaignServiceTest, WhatIsReportedOrHasEndedIsNotCancelled) {
+TEST_F(CampaignServiceTest, ACampaignInItsReportOrAtItsEndIsNotCancelled) {
   StartService();
   const Campaign campaign = Smoke(1);
   const std::string id = Launch(campaign);
@@ -212,7 +212,7 @@ TEST_F(CampaignServiceTest, ACampaignThatNoWorkerCanFlySaysWhy) {
   EXPECT_EQ(service_->View(id).problem, "no worker here can fly it: no law");
 }
 
-// What others have flown of the same flights.
+// A campaign takes over results of the same flights.
 class OpeningTest : public ServiceTest {
  protected:
   std::filesystem::path Flown(const std::string& name, const Campaign& campaign,

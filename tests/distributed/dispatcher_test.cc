@@ -294,7 +294,7 @@ TEST_F(DispatcherTest, AWorkersNewConnectionIsItsOwnAlone) {
   dispatcher_.On("s2", Status(), 0.2);
   EXPECT_EQ(dispatcher_.refused_messages(), 1u);
   dispatcher_.On("forger", Status(), 0.3);
-  EXPECT_EQ(dispatcher_.refused_messages(), 2u) << "whoever had a connection that is gone has another now";
+  EXPECT_EQ(dispatcher_.refused_messages(), 2u) << "the worker has a new connection already";
   dispatcher_.On("forger", Report{"w", kEpoch, 1, kFlight, {{1, ResultOf(0)}}, {}}, 0.4);
   EXPECT_EQ(Progress().done, 0u);
   dispatcher_.On("s2", Report{"w", kEpoch, 1, kFlight, {{1, ResultOf(0)}}, {}}, 0.5);
@@ -324,7 +324,7 @@ TEST_F(DispatcherTest, AReportIsASignOfLife) {
   EXPECT_EQ(dispatcher_.joined(), 1u);
 }
 
-TEST_F(DispatcherTest, WhatIsToBeSaidOfAClosedCampaignIsNot) {
+TEST_F(DispatcherTest, AssignmentsOfAClosedCampaignAreNotRepeated) {
   Open(1);
   dispatcher_.On("s", Status(), 0.0);
   ASSERT_THAT(Tick(0.0).assignments, testing::SizeIs(1));
@@ -351,7 +351,7 @@ TEST_F(DispatcherTest, ARefusalForAnEarlierCoordinatorMeansNothing) {
   EXPECT_THAT(Tick(0.2).assignments, testing::SizeIs(2));
 }
 
-TEST_F(DispatcherTest, WhoRefusedACampaignGetsNoCaseOfIt) {
+TEST_F(DispatcherTest, AWorkerThatRefusedACampaignGetsNoCaseOfIt) {
   Open(2);
   dispatcher_.On("s", Status(), 0.0);
   dispatcher_.On("s", CampaignRefusal{"w", kEpoch, kFlight, "no\x1b[31m"}, 0.1);

@@ -278,7 +278,7 @@ TEST_F(FlightDeskTest, AReportThatIsRepeatedStartsNothingAgain) {
   EXPECT_THAT(repeated[0].started, IsEmpty()) << "the status says what is flown now";
 }
 
-TEST_F(FlightDeskTest, WhatIsNeverAcknowledgedMakesANewConnection) {
+TEST_F(FlightDeskTest, AReportThatIsNeverAcknowledgedMakesANewConnection) {
   desk_.On(Say({{kFlight, 3, {10}}}), 0.0);
   Load();
   desk_.Done(*desk_.Next(0.0), {}, 0.5);

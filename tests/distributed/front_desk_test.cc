@@ -1,4 +1,4 @@
-// What clients may ask for, and what they are refused: the front desk without a network.
+// The front desk without a network: its answers to clients and its refusals.
 #include "services/coordinator/front_desk.h"
 
 #include <gmock/gmock.h>
@@ -57,7 +57,7 @@ TEST_F(FrontDeskTest, AnAnswerNamesItsClientAndItsQuestion) {
   EXPECT_EQ(reply.text, "{}");
 }
 
-TEST_F(FrontDeskTest, WhatItDoesNotUnderstandIsRefusedInWords) {
+TEST_F(FrontDeskTest, AnUnknownRequestIsRefusedInWords) {
   EXPECT_EQ(Refusal("fly", Json::object()), "2: the coordinator does not know the request 'fly'");
   EXPECT_EQ(Refusal("cancel", Json::object()),
             "2: the coordinator does not understand the arguments of 'cancel'");

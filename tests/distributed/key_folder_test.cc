@@ -187,7 +187,7 @@ class MadeUpKeys : public KeyFolderTest {
   }
 };
 
-TEST_F(MadeUpKeys, WhatHasExpiredIsNamedWithItsDateAndWhatToDo) {
+TEST_F(MadeUpKeys, AnExpiredFileIsNamedWithItsDateAndARemedy) {
   const Days good{-2, 2}, past{-9, -1}, coming{1, 9};
   EXPECT_EQ(OpenError(MakeKeys(good, good, good)), "none");
   const std::string made_up = (folder_ / "made_up").string();
@@ -209,7 +209,7 @@ TEST_F(MadeUpKeys, WhatHasExpiredIsNamedWithItsDateAndWhatToDo) {
   }
 }
 
-TEST_F(KeyFolderTest, WhatIsDamagedOrOfAnotherIsNamed) {
+TEST_F(KeyFolderTest, ADamagedOrForeignFileIsNamed) {
   MakeAuthority(folder_ / "foreign", ValidFor(30));
   const fs::path foreign = IssueKeys(folder_ / "foreign", Role::kWorker, "one", ValidFor(1));
   const fs::path other = Worker("other"), keys = Worker();

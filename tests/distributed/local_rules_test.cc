@@ -1,5 +1,4 @@
-// What a run on this machine, its workers and its words keep to: with made-up time and the smallest
-// processes.
+// The rules of a run on this machine, and its words, with made-up time and the smallest processes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -22,7 +21,7 @@ using Json = nlohmann::ordered_json;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-TEST(Attendance, WhoAskedForPatienceHasThatMuchWithoutWorkers) {
+TEST(Attendance, ThePatienceRunsFromTheLastWorker) {
   Attendance attendance(7, 10.0);
   EXPECT_TRUE(attendance.Check(false, 9.0));
   EXPECT_TRUE(attendance.Check(true, 50.0));

@@ -34,7 +34,7 @@ class MadeUpWorkforce : public Workforce {
             worker, "host", 1, EngineVersion(), slots, 2 * slots, WorkerState::kReady, 0, kEpoch, {}, {}},
         time_s);
   }
-  /// What the workers are told to fly now.
+  /// The assignments that are said to workers now.
   std::vector<FlyOrder> Tick() {
     std::vector<FlyOrder> all;
     for (const Orders& orders : dispatcher.Tick(time_s))

@@ -186,7 +186,7 @@ TEST_F(Fetching, OnlyIntoANewOrAnEmptyFolder) {
   EXPECT_TRUE(coordinator.asked.empty());
 }
 
-TEST_F(Fetching, WhatAKilledFetchLeftIsNoPartOfTheNext) {
+TEST_F(Fetching, FilesOfAKilledFetchAreNoPartOfTheNext) {
   const fs::path left = Target().string() + ".dispersa-fetch";
   fs::create_directories(left);
   std::ofstream(left / "old") << "x";

@@ -1,4 +1,4 @@
-// Where exactly the sieve draws the line: the last datagram that passes and the first that does not.
+// The limits of the sieve: the last datagram that passes, and the first that does not.
 #include "services/transport/sieve.h"
 
 #include <gtest/gtest.h>
@@ -103,7 +103,7 @@ TEST(SieveLimits, ASampleHasAtMost1MiBAndItsHeader) {
   EXPECT_EQ(Harm({Fragment(1, 65000, (1 << 20) + 1025)}), "a sample of more than 1 MiB");
 }
 
-TEST(SieveLimits, WhatGoesToThePacketsEndIsJudgedAsAnyOther) {
+TEST(SieveLimits, ASubmessageToThePacketsEndIsJudgedAsAnyOther) {
   Part last = Fragment(3, 1000, 2000);
   last.to_the_end = true;
   EXPECT_EQ(Harm({Time(), last}), "a fragment outside of its sample");
@@ -165,7 +165,7 @@ TEST(SieveLimits, WithKeysOnlyDiscoveryIsAskedForInPlain) {
   EXPECT_EQ(Harm({AckNack(1, 0, kTopicWriter)}, true), "a message in plain where all are encrypted");
 }
 
-TEST(SieveLimits, WhatIsEncryptedHasAnEnd) {
+TEST(SieveLimits, AnEncryptedSubmessageHasAnEnd) {
   const auto encrypted = [](std::size_t end) {
     Body body(true);
     body.U32(__builtin_bswap32(96));

@@ -1,4 +1,4 @@
-// What makes a message senseless, in the words that the log has for it, and that all else passes.
+// Each rule for a message: the last one that passes, the first that does not, and the log's words for it.
 #include "services/transport/validity.h"
 
 #include <gtest/gtest.h>
@@ -188,7 +188,7 @@ TEST(Conversion, KeepsWhatObserversAndClientsAreTold) {
   EXPECT_EQ(told->quarantined, 4u);
   EXPECT_EQ(told->assigned, 5u);
   EXPECT_EQ(told->workers, 6u);
-  // What another vendor's observer reads.
+  // An observer of another vendor reads this.
   const idl::ProgressV1 message = ToIdl(progress);
   EXPECT_EQ(message.quarantined(), 4u);
   EXPECT_EQ(message.assigned(), 5u);

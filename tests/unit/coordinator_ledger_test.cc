@@ -301,7 +301,7 @@ TEST(Ledger, ACaseThatWasFlownIsNoSuspectAnyMore) {
   EXPECT_EQ(ledger.Progress().quarantined, 1u);
 }
 
-TEST(Ledger, WhatAWorkerHoldsOfOtherCampaignsCounts) {
+TEST(Ledger, AssignmentsOfOtherCampaignsCountAsCredits) {
   Ledger ledger("1", 3, {.side_by_side = 1});
   ledger.Join("w", kHello, 0.0);  // two credits
   EXPECT_FALSE(ledger.GiveTo("w", 2, 0.0));
