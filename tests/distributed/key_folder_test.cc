@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/campaign/contained.h"
 #include "core/campaign/input_error.h"
 #include "services/transport/admission.h"
 #include "services/transport/authority.h"
@@ -322,6 +323,22 @@ TEST_F(KeyFolderTest, WithoutKeysOnlyThisMachineIsSpokenTo) {
     EXPECT_THAT(refused(address, peer), HasSubstr("beyond this machine nobody is spoken to without keys"))
         << address << " " << peer;
   }
+}
+
+TEST_F(KeyFolderTest, BeyondThisMachinePlugInsNeedLeave) {
+  const auto refusal = [](const NetworkOptions& network, bool allowed) {
+    RefusePlugins("");
+    AdmitPlugins(network, allowed);
+    return PluginRefusal();
+  };
+  const std::string refused = "is a shared object, which is run here only where --allow-plugins says so";
+  NetworkOptions with_keys{0, ""};
+  with_keys.keys = OpenKeyFolder(Worker(), {Role::kWorker});
+  EXPECT_EQ(refusal({0, "127.0.0.1"}, false), "");
+  EXPECT_EQ(refusal({0, ""}, false), refused);
+  EXPECT_EQ(refusal(with_keys, false), refused) << "keys say who somebody is, not what may run here";
+  EXPECT_EQ(refusal(with_keys, true), "");
+  RefusePlugins("");
 }
 
 TEST_F(KeyFolderTest, KeysAreNamedAndExcludeTheirAbsence) {
