@@ -89,7 +89,8 @@ TEST_F(CampaignServiceTest, CampaignsOfTheSameFlightsFlyOneAfterTheOther) {
   ASSERT_EQ(few.flight_id, more.flight_id);
   const std::string first = Launch(few), second = Launch(more);
   ASSERT_TRUE(Reaches(first, CampaignState::kFlying));
-  for (int i = 0; i < 50; ++i) service_->Step();
+  // Campaigns are opened one after the other: a younger one of other flights comes before the second.
+  ASSERT_TRUE(Reaches(Launch(Smoke(2, 9)), CampaignState::kFlying));
   EXPECT_EQ(StateOf(second), CampaignState::kWaiting);
   workforce_.Join("w");
   Return(few, 1);
@@ -160,6 +161,27 @@ TEST_F(CampaignServiceTest, QuarantinedCasesAreTriedAgainWhenItIsLaunchedAgain) 
   ASSERT_TRUE(Reaches(id, CampaignState::kFlying));
   EXPECT_EQ(service_->View(id).progress.done, 1u);
   EXPECT_EQ(service_->View(id).progress.waiting, 1u);
+}
+
+TEST_F(CampaignServiceTest, ADoneCampaignGoesOnIfItHasQuarantinedCases) {
+  for (const int quarantined : {0, 1}) {
+    StartService();
+    const std::string id = Launch(Smoke(2, 10 + quarantined));
+    service_.reset();
+    const std::filesystem::path file = folder_ / "data" / id / "state.json";
+    std::string state = TextOfFile(file);
+    const auto edit = [&state](const std::string& from, const std::string& to) {
+      ASSERT_NE(state.find(from), std::string::npos) << state;
+      state.replace(state.find(from), from.size(), to);
+    };
+    edit("\"waiting\"", "\"done\"");
+    edit("\"quarantined\": 0", "\"quarantined\": " + std::to_string(quarantined));
+    std::ofstream(file) << state;
+    StartService();
+    EXPECT_EQ(StateOf(id), CampaignState::kDone);
+    service_->Relaunch(id, 0);
+    EXPECT_EQ(StateOf(id), quarantined == 0 ? CampaignState::kDone : CampaignState::kWaiting);
+  }
 }
 
 TEST_F(CampaignServiceTest, ACampaignInItsReportOrAtItsEndIsNotCancelled) {

@@ -69,7 +69,7 @@ class LiveServerTest : public testing::Test {
   std::string Get(const std::string& path, const std::string& hosts = "Host: 127.0.0.1\r\n") {
     Browser browser(port_);
     browser.Say(Request(path, hosts));
-    return browser.Hear();
+    return browser.Hear("\n\n\r\n");  // the end of an event, which no other answer has
   }
   /// A browser that follows, and has been sent what is there.
   std::unique_ptr<Browser> Follow(std::string* first = nullptr) {
