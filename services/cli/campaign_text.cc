@@ -16,7 +16,7 @@ std::string StandingText(const Json& standing) {
                      standing.at("so_far").get<std::string>());
 }
 
-std::string CampaignText(const Json& campaign) {
+std::string CampaignStatusText(const Json& campaign) {
   const auto done = campaign.at("done").get<std::uint64_t>(),
              total = campaign.at("total").get<std::uint64_t>();
   std::string text =

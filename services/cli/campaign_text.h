@@ -11,6 +11,6 @@ std::string ShortId(const nlohmann::ordered_json& what);
 /// "2 of 140 break pitch_error_peak_deg (fail so far)"
 std::string StandingText(const nlohmann::ordered_json& standing);
 /// One line, and one for each requirement, of an element of `campaigns` in the answer to `list`.
-std::string CampaignText(const nlohmann::ordered_json& campaign);
+std::string CampaignStatusText(const nlohmann::ordered_json& campaign);
 
 }  // namespace dispersa

@@ -16,7 +16,7 @@ ExitCode Show(const char* method, const std::string& id, Session& session, const
     fmt::print("{}\n", answer.dump(2));
     return kExitDone;
   }
-  for (const Json& campaign : answer.at("campaigns")) fmt::print("{}", CampaignText(campaign));
+  for (const Json& campaign : answer.at("campaigns")) fmt::print("{}", CampaignStatusText(campaign));
   if (const auto more = answer.at("unlisted").get<std::uint64_t>(); more > 0)
     fmt::print("and {} more that have ended or wait\n", more);
   if (!answer.contains("workers")) return kExitDone;

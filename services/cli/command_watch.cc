@@ -90,7 +90,7 @@ ExitCode PrintEnd(const Json& campaign, const GlobalOptions& global) {
     object.update(campaign);
     fmt::print("{}\n", object.dump(2));
   } else {
-    fmt::print("{}", CampaignText(campaign));
+    fmt::print("{}", CampaignStatusText(campaign));
   }
   return static_cast<ExitCode>(campaign.at("code").get<int>());
 }

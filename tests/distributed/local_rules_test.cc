@@ -84,12 +84,12 @@ TEST(ExecutionFile, SaysHowEachWorkerEndedOnceItHas) {
   for (const char* none : {"domain", "problem", "ended_utc"}) EXPECT_TRUE(json.at(none).is_null()) << none;
 }
 
-TEST(CampaignText, IsALineAndOneForEachRequirement) {
+TEST(CampaignStatusText, IsALineAndOneForEachRequirement) {
   Json campaign = Json::parse(
       R"({"id": "0123456789abcdef", "name": "smoke", "state": "flying", "done": 5, "total": 20, "quarantined": 0,
       "rate_per_s": 2.5, "eta_s": 6.0, "code": null, "problem": null, "requirements": [
       {"metric": "m", "n": 5, "failures": 1, "so_far": "inconclusive"}]})");
-  EXPECT_EQ(CampaignText(campaign),
+  EXPECT_EQ(CampaignStatusText(campaign),
             "0123456789ab  flying             5/20        smoke  2.5/s  6s left\n"
             "  1 of 5 break m (inconclusive so far)\n");
   campaign.update({{"state", "failed"},
@@ -99,7 +99,7 @@ TEST(CampaignText, IsALineAndOneForEachRequirement) {
                    {"code", 1},
                    {"problem", "it broke"},
                    {"requirements", Json::array()}});
-  EXPECT_EQ(CampaignText(campaign),
+  EXPECT_EQ(CampaignStatusText(campaign),
             "0123456789ab  failed             5/20        smoke  2 quarantined  exit code 1  it broke\n");
 }
 

@@ -105,22 +105,22 @@ nlohmann::ordered_json SampleCampaign() {
           {"code", nullptr},          {"problem", nullptr}, {"requirements", nlohmann::ordered_json::array()}};
 }
 
-TEST(CampaignText, SaysHowFarACampaignIs) {
+TEST(CampaignStatusText, SaysHowFarACampaignIs) {
   nlohmann::ordered_json campaign = SampleCampaign();
-  EXPECT_EQ(CampaignText(campaign), "0123456789ab  flying            40/100       trial\n");
+  EXPECT_EQ(CampaignStatusText(campaign), "0123456789ab  flying            40/100       trial\n");
   campaign["rate_per_s"] = 12.34;
   campaign["eta_s"] = 65;
   campaign["quarantined"] = 2;
   campaign["requirements"].push_back(
       {{"failures", 3}, {"n", 40}, {"metric", "alpha_max_deg"}, {"so_far", "inconclusive"}});
-  EXPECT_EQ(CampaignText(campaign),
+  EXPECT_EQ(CampaignStatusText(campaign),
             "0123456789ab  flying            40/100       trial  12.3/s  1m05s left  2 quarantined\n"
             "  3 of 40 break alpha_max_deg (inconclusive so far)\n");
   campaign = SampleCampaign();
   campaign["state"] = "ended";
   campaign["code"] = 1;
   campaign["problem"] = "no space left";
-  EXPECT_EQ(CampaignText(campaign), "0123456789ab  ended             40/100       trial  exit code 1  no space left\n");
+  EXPECT_EQ(CampaignStatusText(campaign), "0123456789ab  ended             40/100       trial  exit code 1  no space left\n");
 }
 
 /// Two searches: errors of both signs, so that the worst is told from the largest.
