@@ -4,6 +4,8 @@
 
 repository=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build_directory="$repository/build/release"
+# What one checkout has compiled serves every other one on the machine.
+export CCACHE_BASEDIR="$repository" CCACHE_NOHASHDIR=1
 
 say() { printf 'dispersa: %s\n' "$*" >&2; }
 

@@ -96,20 +96,20 @@ void ExpectAgreement(const Compared& c) {
 }
 
 TEST(StepLimits, FastActuatorsAreCvodes) {
-  for (const double frequency_hz : {40.0, 50.0, 80.0, 159.0}) {
+  for (const double frequency_hz : {50.0, 159.0}) {
     SCOPED_TRACE(frequency_hz);
     const FlightModel model(WithActuators(frequency_hz));
     const PoweredFlight judged = FlyToThirdBurnout(model, Table3Inputs(), Scheme::kCvode);
     ExpectAgreement(Compare(judged, FlyToThirdBurnout(model, Table3Inputs(), Scheme::kSimpson)));
     // The classical method in one step a tick is unstable from 45 Hz on: it steps as finely as it has to.
-    if (frequency_hz == 50.0 || frequency_hz == 80.0)
+    if (frequency_hz == 50.0)
       ExpectAgreement(Compare(judged, FlyToThirdBurnout(model, Table3Inputs(), Scheme::kRungeKutta4)));
   }
 }
 
 // At 10 deg/s every transient of a misaligned stage takes the drives to their limit.
 TEST(StepLimits, FastActuatorsAtTheirRateLimitAreCvodes) {
-  for (const double frequency_hz : {40.0, 50.0, 80.0}) {
+  for (const double frequency_hz : {40.0, 80.0}) {
     SCOPED_TRACE(frequency_hz);
     const FlightModel model(WithActuators(frequency_hz, 10.0));
     const PoweredFlight flown = FlyToThirdBurnout(model, Table3Inputs(), Scheme::kSimpson);
