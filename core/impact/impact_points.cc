@@ -60,7 +60,7 @@ std::vector<ImpactPoint> ImpactPoints(const CampaignFlights& flights, const Case
                                       const History& history, const FallSteps& steps) {
   const FlightInputs inputs = flights.Draw(result.case_index);
   const Vehicle vehicle = WithDispersedMasses(flights.model().definition().vehicle, inputs);
-  const LauncherPlant plant = flights.model().PlantFor(inputs);
+  const LauncherPlant plant = flights.model().PlantFor(inputs, result.case_index);
   const Environment& environment = plant.environment;
   const HistoryReader rows(history);
   std::vector<ImpactPoint> points;

@@ -179,5 +179,36 @@ TEST(SpentStage, FallsInShortStepsThroughTheAir) {
   EXPECT_GT(Distance(with({1.0, 0.01}), exact), 10.0 * Distance(with({0.01, 1.0}), exact));
 }
 
+// Each case has gusts of its own, and what falls meets them as the flight did.
+TEST(SpentStage, FallsThroughTheTurbulenceOfItsCase) {
+  Separation separation;
+  separation.campaign = LoadCampaign(DISPERSA_CAMPAIGNS "/table3_turbulence.yaml");
+  separation.campaign.dispersions.clear();
+  separation.Disperse("turbulence_exceedance", 1e-3);
+  separation.Disperse("turbulence_wind_20ft_m_s", 15.0);
+  separation.Disperse("turbulence_scale", 1.0);
+  const CampaignFlights flights(separation.campaign);
+  const Vehicle& vehicle = separation.campaign.vehicle;
+  const double length_m = vehicle.stages[0].bottom_station_m - vehicle.stages[1].bottom_station_m;
+  for (const std::uint64_t index : {0u, 5u}) {
+    CaseResult result;
+    result.outcome = Outcome::kCompleted;
+    result.case_index = index;
+    const std::vector<ImpactPoint> points = ImpactPoints(flights, result, separation.Rows());
+    ASSERT_EQ(points.size(), 1u);
+    const auto falling = [&](std::uint64_t through) {
+      const LauncherPlant plant = flights.model().PlantFor(flights.Draw(through), through);
+      EXPECT_TRUE(plant.environment.turbulence);
+      return Fall(plant.environment,
+                  {DryMass(vehicle, 0), TumblingCylinderDragArea(length_m, vehicle.stages[0].diameter_m)},
+                  {separation.time_s, separation.Position() - Vector3(0.0, Behind(vehicle), 0.0),
+                   separation.Velocity()})
+          .value();
+    };
+    EXPECT_LT(Distance(*points[0].impact, falling(index)), kSame_m);
+    EXPECT_GT(Distance(*points[0].impact, falling(index + 1)), 1.0) << "another case's gusts lead elsewhere";
+  }
+}
+
 }  // namespace
 }  // namespace dispersa::impact_spent_stage_test
