@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "core/campaign_yaml/load.h"
 #include "core/math/constants.h"
@@ -39,6 +40,35 @@ TEST(RefineProgram, FindsTheSameProgramFromAroundInAFewSteps) {
     EXPECT_NEAR(program.launch_azimuth_rad, shipped.program.launch_azimuth_rad, 1e-6);
     // Four flights a step of three unknowns; Newton's method doubles the right digits with each.
     EXPECT_LE(refined.evaluations, 40);
+  }
+}
+
+// One condition is tight and the others loose, in turn: a residual in another's scale would end too early.
+TEST(RefineProgram, MeetsEachConditionToItsOwnToleranceFromSeveralStarts) {
+  const AscentModel model = BuildAscentModel(LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml"), 0.01);
+  const Reference shipped = LoadReference(DISPERSA_CAMPAIGNS "/references/slv4_500km.yaml");
+  const OrbitErrors loose = {100.0, 0.1, 1e-4 * kRadPerDeg, 1.0, 1.0};
+  std::vector<OrbitErrors> tolerances(3, loose);
+  tolerances[0].altitude_m = 1.0;
+  tolerances[1].velocity_m_s = 1e-3;
+  tolerances[2].flight_path_angle_rad = 1e-6 * kRadPerDeg;
+  TrajectoryOptions options;
+  options.steps = options.search_steps;
+  for (const OrbitErrors& tolerance : tolerances) {
+    options.tolerance = tolerance;
+    for (const double off : {-1.0, 0.5, 1.0}) {
+      FlightProgram program = shipped.program;
+      program.alpha_max_rad += 0.2 * off * kRadPerDeg;
+      program.coast_s -= 20.0 * off;
+      program.launch_azimuth_rad += 5.0 * off * kRadPerDeg;
+      AscentResult ascent;
+      const LeastSquaresResult refined = RefineProgram(model, shipped.problem, options, &program, &ascent);
+      EXPECT_EQ(refined.status, LeastSquaresStatus::kConverged) << Describe(refined.status);
+      // Flown anew, and what the refinement says that it flew.
+      const AscentResult again = FlyAscent(model, program, AscentOptionsOf(shipped.problem, options.steps));
+      EXPECT_TRUE(IsWithin(ErrorsOf(shipped.problem, again.orbit), tolerance)) << off;
+      EXPECT_EQ(again.p_EoC_I, ascent.p_EoC_I);
+    }
   }
 }
 
