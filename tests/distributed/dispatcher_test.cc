@@ -59,6 +59,11 @@ class DispatcherTest : public testing::Test {
     return {};
   }
   LedgerProgress Progress() const { return book_->ledger().Progress(); }
+  /// The worker, as a child of this process.
+  void JoinSupervised() {
+    dispatcher_.Supervise("w");
+    dispatcher_.On("s", Status(), 0.0);
+  }
   void Fly(std::uint64_t attempt, std::uint64_t case_index, double now_s, std::uint64_t number = 1) {
     dispatcher_.On("s", Report{"w", kEpoch, number, kFlight, {{attempt, ResultOf(case_index)}}, {}}, now_s);
   }
@@ -239,8 +244,7 @@ TEST_F(DispatcherTest, ARefusedWorkerIsToldSoEachTimeAndNeverJoins) {
 
 TEST_F(DispatcherTest, AnEndedWorkerDoesNotComeBackByALateMessage) {
   Open(1);
-  dispatcher_.Supervise("w");
-  dispatcher_.On("s", Status(), 0.0);
+  JoinSupervised();
   Tick(0.0);
   dispatcher_.WorkerEnded("w", WorkerEnd::kKilled, "signal 9", 0.1);
   Tick(1.0);
@@ -253,8 +257,7 @@ TEST_F(DispatcherTest, AnEndedWorkerDoesNotComeBackByALateMessage) {
 
 TEST_F(DispatcherTest, TheLastMessagesOfADeadWorkerAreAwaited) {
   Open(2, {.blames_to_quarantine = 1});
-  dispatcher_.Supervise("w");
-  dispatcher_.On("s", Status(), 0.0);
+  JoinSupervised();
   const std::uint64_t attempt = Tick(0.0).assignments.at(0).attempt;
   dispatcher_.WorkerEnded("w", WorkerEnd::kCrashed, "signal 11", 1.0);
   Tick(1.1);
@@ -376,8 +379,7 @@ TEST_F(DispatcherTest, AcknowledgementsThatDoNotFitComeNext) {
 
 TEST_F(DispatcherTest, ASupervisedWorkerThatIsSilentIsNamedUntilItsEndIsTold) {
   Open(1);
-  dispatcher_.Supervise("w");
-  dispatcher_.On("s", Status(), 0.0);
+  JoinSupervised();
   Tick(3.0);
   EXPECT_THAT(dispatcher_.TakeUnresponsive(), IsEmpty());
   for (const double now_s : {3.1, 6.2}) {
@@ -391,8 +393,7 @@ TEST_F(DispatcherTest, ASupervisedWorkerThatIsSilentIsNamedUntilItsEndIsTold) {
 
 TEST_F(DispatcherTest, ASupervisedWorkerThatHangsIsNamed) {
   Open(1, {.lease_s = 10.0});
-  dispatcher_.Supervise("w");
-  dispatcher_.On("s", Status(), 0.0);
+  JoinSupervised();
   WorkerStatus flies = Status();
   flies.held = {Tick(0.0).assignments.at(0).attempt};
   flies.started = {{0, flies.held[0]}};
@@ -411,8 +412,7 @@ TEST_F(DispatcherTest, ASupervisedWorkerThatHangsIsNamed) {
 
 TEST_F(DispatcherTest, ASupervisedWorkersEndIsToldByItsParent) {
   Open(2);
-  dispatcher_.Supervise("w");
-  dispatcher_.On("s", Status(), 0.0);
+  JoinSupervised();
   Tick(0.0);
   WorkerStatus left = Status();
   left.state = WorkerState::kLeft;

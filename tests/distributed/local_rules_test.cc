@@ -1,4 +1,4 @@
-// The rules of a run on this machine, and its words, with made-up time and the smallest processes.
+// The rules of a run on this machine, with made-up time and the smallest processes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -6,8 +6,6 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "services/cli/campaign_text.h"
-#include "services/cli/progress.h"
 #include "services/client/execution_file.h"
 #include "services/client/local_workers.h"
 #include "services/coordinator/attendance.h"
@@ -82,35 +80,6 @@ TEST(ExecutionFile, SaysHowEachWorkerEndedOnceItHas) {
   EXPECT_EQ(json.at("pids").size(), 3u) << "the run's own too";
   EXPECT_EQ(json.at("pids").at(2), 13);
   for (const char* none : {"domain", "problem", "ended_utc"}) EXPECT_TRUE(json.at(none).is_null()) << none;
-}
-
-TEST(CampaignStatusText, IsALineAndOneForEachRequirement) {
-  Json campaign = Json::parse(
-      R"({"id": "0123456789abcdef", "name": "smoke", "state": "flying", "done": 5, "total": 20, "quarantined": 0,
-      "rate_per_s": 2.5, "eta_s": 6.0, "code": null, "problem": null, "requirements": [
-      {"metric": "m", "n": 5, "failures": 1, "so_far": "inconclusive"}]})");
-  EXPECT_EQ(CampaignStatusText(campaign),
-            "0123456789ab  flying             5/20        smoke  2.5/s  6s left\n"
-            "  1 of 5 break m (inconclusive so far)\n");
-  campaign.update({{"state", "failed"},
-                   {"rate_per_s", 0.0},
-                   {"eta_s", nullptr},
-                   {"quarantined", 2},
-                   {"code", 1},
-                   {"problem", "it broke"},
-                   {"requirements", Json::array()}});
-  EXPECT_EQ(CampaignStatusText(campaign),
-            "0123456789ab  failed             5/20        smoke  2 quarantined  exit code 1  it broke\n");
-}
-
-TEST(DurationText, IsInTheLargestUnitsThatFit) {
-  EXPECT_EQ(DurationText(0.0), "0s");
-  EXPECT_EQ(DurationText(59.4), "59s");
-  EXPECT_EQ(DurationText(59.5), "1m00s");
-  EXPECT_EQ(DurationText(185.0), "3m05s");
-  EXPECT_EQ(DurationText(3599.6), "1h00m");
-  EXPECT_EQ(DurationText(2.0 * 3600 + 3 * 60), "2h03m");
-  EXPECT_EQ(DurationText(100.0 * 3600), "100h00m");
 }
 
 TEST(ExitCodes, TheWorstOfTwoIsSaid) {

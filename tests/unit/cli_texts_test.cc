@@ -90,13 +90,16 @@ TEST(VehicleText, AsJsonHasTheSameNumbers) {
 }
 
 TEST(DurationText, RoundsToTheSecondAndCarries) {
+  EXPECT_EQ(DurationText(0.0), "0s");
   EXPECT_EQ(DurationText(0.2), "0s");
   EXPECT_EQ(DurationText(59.4), "59s");
   EXPECT_EQ(DurationText(59.5), "1m00s");
   EXPECT_EQ(DurationText(185.0), "3m05s");
   EXPECT_EQ(DurationText(3599.6), "1h00m");
   EXPECT_EQ(DurationText(3720.0), "1h02m");
+  EXPECT_EQ(DurationText(7380.0), "2h03m");
   EXPECT_EQ(DurationText(93'600.0), "26h00m");
+  EXPECT_EQ(DurationText(360'000.0), "100h00m");
 }
 
 nlohmann::ordered_json SampleCampaign() {
@@ -121,6 +124,10 @@ TEST(CampaignStatusText, SaysHowFarACampaignIs) {
   campaign["code"] = 1;
   campaign["problem"] = "no space left";
   EXPECT_EQ(CampaignStatusText(campaign), "0123456789ab  ended             40/100       trial  exit code 1  no space left\n");
+  campaign["quarantined"] = 2;
+  EXPECT_EQ(
+      CampaignStatusText(campaign),
+      "0123456789ab  ended             40/100       trial  2 quarantined  exit code 1  no space left\n");
 }
 
 /// Two searches: errors of both signs, so that the worst is told from the largest.

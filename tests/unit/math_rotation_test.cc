@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/math/constants.h"
@@ -86,47 +87,56 @@ TEST(Rotation, TheDerivativeIsThatOfATurningBody) {
 // With the middle angle anywhere, the ends among it: there the outer two angles are one turn, all of it the last.
 constexpr double kMiddle[] = {-0.5 * kPi, -1.2, -0.3, 0.0, 0.7, 1.5, 0.5 * kPi};
 
-TEST(Rotation, YawPitchRollAreTurnsAboutZYX) {
+using Angles = std::array<double, 3>;
+
+// `from` makes a quaternion of a turn about one axis, then another, then x; `to` takes the three angles from
+// it.
+template <typename From, typename To>
+void ExpectTurnsAbout(Matrix3 (*first)(double), Matrix3 (*second)(double), std::uint64_t seed, From from,
+                      To to) {
   for (const double middle : kMiddle) {
     for (std::uint64_t draw = 0; draw < 20; ++draw) {
-      Stream random(3, draw, "angles");
-      const double yaw = kPi * (2.0 * random.Uniform() - 1.0), roll = kPi * (2.0 * random.Uniform() - 1.0);
-      const Matrix3 exact = AboutZ(yaw) * AboutY(middle) * AboutX(roll);
-      const Quaternion q = FromYawPitchRoll({.yaw = yaw, .pitch = middle, .roll = roll});
+      Stream random(seed, draw, "angles");
+      const double outer = kPi * (2.0 * random.Uniform() - 1.0), roll = kPi * (2.0 * random.Uniform() - 1.0);
+      const Matrix3 exact = first(outer) * second(middle) * AboutX(roll);
+      const Quaternion q = from(outer, middle, roll);
       EXPECT_LT(Difference(RotationMatrix(q), exact), 1e-14);
-      const YawPitchRoll back = ToYawPitchRoll(q);
+      const Angles back = to(q);
       // At the ends the sine is flat: 1e-15 of it are 3e-8 of the angle.
-      EXPECT_LT(Difference(AboutZ(back.yaw) * AboutY(back.pitch) * AboutX(back.roll), exact), 1e-7) << middle;
+      EXPECT_LT(Difference(first(back[0]) * second(back[1]) * AboutX(back[2]), exact), 1e-7) << middle;
       if (std::fabs(middle) < 1.55) {
-        EXPECT_NEAR(back.yaw, yaw, 1e-12);
-        EXPECT_NEAR(back.pitch, middle, 1e-12);
-        EXPECT_NEAR(back.roll, roll, 1e-12);
+        EXPECT_NEAR(back[0], outer, 1e-12);
+        EXPECT_NEAR(back[1], middle, 1e-12);
+        EXPECT_NEAR(back[2], roll, 1e-12);
       } else {
-        EXPECT_EQ(back.yaw, 0.0);
+        EXPECT_EQ(back[0], 0.0);
       }
     }
   }
 }
 
+TEST(Rotation, YawPitchRollAreTurnsAboutZYX) {
+  ExpectTurnsAbout(
+      AboutZ, AboutY, 3,
+      [](double yaw, double pitch, double roll) {
+        return FromYawPitchRoll({.yaw = yaw, .pitch = pitch, .roll = roll});
+      },
+      [](const Quaternion& q) {
+        const YawPitchRoll angles = ToYawPitchRoll(q);
+        return Angles{angles.yaw, angles.pitch, angles.roll};
+      });
+}
+
 TEST(Rotation, PitchYawRollAreTurnsAboutYZX) {
-  for (const double middle : kMiddle) {
-    for (std::uint64_t draw = 0; draw < 20; ++draw) {
-      Stream random(4, draw, "angles");
-      const double pitch = kPi * (2.0 * random.Uniform() - 1.0), roll = kPi * (2.0 * random.Uniform() - 1.0);
-      const Matrix3 exact = AboutY(pitch) * AboutZ(middle) * AboutX(roll);
-      const Quaternion q = FromPitchYawRoll({.pitch = pitch, .yaw = middle, .roll = roll});
-      EXPECT_LT(Difference(RotationMatrix(q), exact), 1e-14);
-      const PitchYawRoll back = ToPitchYawRoll(q);
-      EXPECT_LT(Difference(AboutY(back.pitch) * AboutZ(back.yaw) * AboutX(back.roll), exact), 1e-7) << middle;
-      if (std::fabs(middle) < 1.55) {
-        EXPECT_NEAR(back.pitch, pitch, 1e-12);
-        EXPECT_NEAR(back.yaw, middle, 1e-12);
-        EXPECT_NEAR(back.roll, roll, 1e-12);
-      } else {
-        EXPECT_EQ(back.pitch, 0.0);
-      }
-    }
-  }
+  ExpectTurnsAbout(
+      AboutY, AboutZ, 4,
+      [](double pitch, double yaw, double roll) {
+        return FromPitchYawRoll({.pitch = pitch, .yaw = yaw, .roll = roll});
+      },
+      [](const Quaternion& q) {
+        const PitchYawRoll angles = ToPitchYawRoll(q);
+        return Angles{angles.pitch, angles.yaw, angles.roll};
+      });
 }
 
 }  // namespace

@@ -13,21 +13,13 @@
 namespace dispersa::report_summary_gaps_test {
 namespace {
 
+using report_test::kPeak;
 using report_test::MakeCampaign;
 using report_test::MakeCase;
+using report_test::PeakBelow;
 using report_test::TemporaryFolder;
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-const char kPeak[] = "pitch_error_peak_deg";
-
-Requirement PeakBelow(double limit, double probability, double consumer_risk) {
-  return {.metric = kPeak,
-          .below = limit,
-          .above = std::nullopt,
-          .probability = probability,
-          .consumer_risk = consumer_risk};
-}
 
 /// Of twelve cases those that are listed have a result.
 CampaignSummary SummaryOf(const Campaign& campaign, const std::vector<CaseResult>& results) {

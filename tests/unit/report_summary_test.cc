@@ -14,20 +14,12 @@ namespace dispersa::report_summary_test {
 namespace {
 
 using report_test::kNaN;
+using report_test::kPeak;
 using report_test::MakeCampaign;
 using report_test::MakeCase;
+using report_test::PeakBelow;
 using report_test::TemporaryFolder;
 using testing::ElementsAre;
-
-const char kPeak[] = "pitch_error_peak_deg";
-
-Requirement PeakBelow(double limit, double probability, double consumer_risk) {
-  return {.metric = kPeak,
-          .below = limit,
-          .above = std::nullopt,
-          .probability = probability,
-          .consumer_risk = consumer_risk};
-}
 
 /// n completed cases whose peak is 0.1, but for the first `failures`, whose peak is 0.9.
 CaseColumns Columns(std::size_t n, std::size_t failures) {

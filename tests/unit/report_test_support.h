@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -80,6 +81,16 @@ inline CaseResult MakeCase(std::uint64_t index) {
   result.metrics[MetricColumn("step_limit_fraction")] = 0.5;  // nobody is to be warned
   result.digest = {index + 1, 0xabcdef};
   return result;
+}
+
+inline constexpr char kPeak[] = "pitch_error_peak_deg";
+
+inline Requirement PeakBelow(double limit, double probability, double consumer_risk) {
+  return {.metric = kPeak,
+          .below = limit,
+          .above = std::nullopt,
+          .probability = probability,
+          .consumer_risk = consumer_risk};
 }
 
 }  // namespace dispersa::report_test

@@ -35,17 +35,20 @@ double Smooth(double since_s, double whole_s) {
 // time.
 TEST(FlightProgramSteering, SetsInWithin20SecondsAndFadesWithin60) {
   FlightProgram program = Shipped();
-  const double steered_rad = 3.0 * kRadPerDeg;
-  program.steering[2] = {steered_rad, steered_rad};
+  const double begin_rad = 6.0 * kRadPerDeg, end_rad = 2.0 * kRadPerDeg;
+  program.steering[2] = {begin_rad, end_rad};
   const AscentResult ascent = Recorded(program);
-  const double burnout_s = ascent.last_ignition_s - program.coast_s;
-  const double ignition_s = burnout_s - Slv4().stages[2].motor.burning_time_s;
+  const double burnout_s = ascent.last_ignition_s - program.coast_s,
+               whole_s = Slv4().stages[2].motor.burning_time_s;
+  const double ignition_s = burnout_s - whole_s;
   int rising = 0, fading = 0;
   for (const AscentSample& s : ascent.samples) {
     if (s.time_s < program.t2_s) continue;
     // A burnout is seen on the next tick of 0.01 s: 0.01 / 20 of the incidence at most twice as fast.
-    const double expected = Smooth(s.time_s - ignition_s, 20.0) * (1.0 - Smooth(s.time_s - burnout_s, 60.0));
-    EXPECT_NEAR(s.alpha_rad / steered_rad, expected, 1e-3) << s.time_s;
+    const double share = Smooth(s.time_s - ignition_s, 20.0) * (1.0 - Smooth(s.time_s - burnout_s, 60.0));
+    const double part = std::clamp((s.time_s - ignition_s) / whole_s, 0.0, 1.0);
+    EXPECT_NEAR(s.alpha_rad, share * (begin_rad + part * (end_rad - begin_rad)), 1e-3 * begin_rad)
+        << s.time_s;
     rising += s.time_s > ignition_s && s.time_s < ignition_s + 20.0;
     fading += s.time_s > burnout_s && s.time_s < burnout_s + 60.0;
   }

@@ -64,24 +64,27 @@ TEST(Shortfall, NamesPlaneAndPerigeeWhereTheTargetDoes) {
                                   "is within its tolerance."));
 }
 
-TEST(Shortfall, OfSpeedIsWhatTheTargetAndItsReserveAskBeyondTheVehicles) {
+// Of a target that is so much faster than the shipped one, with a reserve.
+std::string EnergyOf(double faster_m_s, double reserve_m_s) {
   Ended ended;
-  ended.problem.target_velocity_m_s += 60.0;
-  ended.problem.velocity_reserve_m_s = 40.0;
-  EXPECT_EQ(ended.Text(),
-            kMissed + std::string(" Energy: at the target's altitude and angle the vehicle has at "
-                                  "most 7612.6 m/s (launch azimuth 160.452 deg), 100.0 m/s less than the "
-                                  "target asks."));
+  ended.problem.target_velocity_m_s += faster_m_s;
+  ended.problem.velocity_reserve_m_s = reserve_m_s;
+  return ended.Text();
+}
+constexpr const char* kEnergy = " Energy: at the target's altitude and angle the vehicle has at ";
+
+TEST(Shortfall, OfSpeedIsWhatTheTargetAndItsReserveAskBeyondTheVehicles) {
+  EXPECT_EQ(EnergyOf(60.0, 40.0),
+            std::string(kMissed) + kEnergy +
+                "most 7612.6 m/s (launch azimuth 160.452 deg), 100.0 m/s less than the target asks.");
 }
 
 TEST(Shortfall, OfASurplusIsWhatTheVehicleHasBeyondTheTarget) {
-  Ended ended;
-  ended.problem.target_velocity_m_s -= 100.0;
-  EXPECT_EQ(ended.Text(),
-            kMissed + std::string(" Energy: at the target's altitude and angle the vehicle has at "
-                                  "least 7612.6 m/s (launch azimuth 160.452 deg), 100.0 m/s more "
-                                  "than the target asks; the bounds of the launch azimuth do not "
-                                  "let it spend the surplus."));
+  EXPECT_EQ(
+      EnergyOf(-100.0, 0.0),
+      std::string(kMissed) + kEnergy +
+          "least 7612.6 m/s (launch azimuth 160.452 deg), 100.0 m/s more than the target asks; the bounds of "
+          "the launch azimuth do not let it spend the surplus.");
 }
 
 // The Earth turns eastwards: of two azimuths the one nearer to east is the faster, whichever bound it is.

@@ -282,30 +282,6 @@ TEST(Steering, IsTheIncidenceOfTheBurn) {
   EXPECT_NEAR(MetricOf(flown, "injection_altitude_km"), 1e-3 * steered.orbit.altitude_m, 2.0);
 }
 
-// What the burn ended with fades in the coast after it.
-TEST(Steering, FadesOnceTheBurnHasEnded) {
-  const Vehicle vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml");
-  FlightProgram program = LoadReference(DISPERSA_CAMPAIGNS "/references/slv4_500km.yaml").program;
-  const double end_rad = 2.0 * kRadPerDeg;
-  program.steering[2] = {6.0 * kRadPerDeg, end_rad};
-  const AscentModel model = BuildAscentModel(vehicle, 0.01);
-  const AscentResult steered = Ascend(vehicle, program);
-  const auto third = std::find_if(steered.samples.begin(), steered.samples.end(), [](const AscentSample& s) {
-    return s.stage == 3 && s.axial_load_g > 0.1;
-  });
-  ASSERT_NE(third, steered.samples.end());
-  const double burnout_s = third->time_s + model.plant.stacks[2].burn.duration_s;
-  int seen = 0;
-  for (const AscentSample& s : steered.samples) {
-    const double x = (s.time_s - burnout_s) / kSteeringFade_s;
-    if (x < 0.01 || s.time_s > steered.last_ignition_s) continue;
-    const double y = std::min(x, 1.0), left = 1.0 - y * y * y * (10.0 - 15.0 * y + 6.0 * y * y);
-    EXPECT_NEAR(s.alpha_rad, left * end_rad, 1e-4) << s.time_s - burnout_s;
-    seen += x < 1.0;
-  }
-  EXPECT_GT(seen, 2);
-}
-
 // A burn after a cut-off at a velocity: how long it can last is known only when the burn before has ended.
 TEST(Steering, OfARestartIsOverWhatTheBurnBeforeLeft) {
   const Vehicle vehicle = CutAtVelocity(6300.0);
