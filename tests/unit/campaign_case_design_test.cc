@@ -260,6 +260,24 @@ TEST(CaseDesign, SobolColumnsBelongToTheirNames) {
   }
 }
 
+// Of two that feed one input the first by name has its column, wherever they stand; the other is always 1
+// here.
+TEST(CaseDesign, OfOneInputTheFirstNameHasTheSobolColumn) {
+  const Dispersion one = Of("b", Uniform(0.5, 1.5), "drag_factor");
+  const auto beside = [](const std::string& name) { return Of(name, Normal(1.0, 0.0), "drag_factor"); };
+  const CaseDesign alone(With(SamplingMethod::kSobol, {one}));
+  const CaseDesign before(With(SamplingMethod::kSobol, {beside("c"), one})),
+      after(With(SamplingMethod::kSobol, {one, beside("c")}));
+  const CaseDesign second(With(SamplingMethod::kSobol, {one, beside("a")}));
+  int same = 0;
+  for (std::uint64_t k = 0; k < 64; ++k) {
+    EXPECT_EQ(before.Draw(k).drag_factor, alone.Draw(k).drag_factor);
+    EXPECT_EQ(after.Draw(k).drag_factor, alone.Draw(k).drag_factor);
+    same += second.Draw(k).drag_factor == alone.Draw(k).drag_factor;
+  }
+  EXPECT_LT(same, 16) << "the first points of all columns are alike";
+}
+
 TEST(CaseDesign, ReplicatesAreDesignsOfTheirOwn) {
   for (const SamplingMethod method : {SamplingMethod::kLatinHypercube, SamplingMethod::kSobol}) {
     Campaign campaign = With(method, {Of("a", Uniform(0.0, 1.0), "wind_altitude_m")}, 64);

@@ -73,6 +73,31 @@ TEST(SampledLoop, RateLoopWithDelaysHasTheClosedFormMargins) {
   }
 }
 
+// A body that its air holds, with a rate loop: the gain rises through 0 dB below the body's frequency and
+// falls through it above. Below, the response leads by 90 degrees and what the filter adds: it is less than a
+// half turn from -1 clockwise.
+TEST(SampledLoop, PhaseMarginCountsTheNearerWayToTheCriticalPoint) {
+  AxisPlant plant = WithActuator(100.0, -9.0, 1.0);
+  plant.a(1, 1) = -0.5;
+  LinearLaw law;
+  law.kd_1_s = 3.0;
+  law.effectiveness_1_s2 = 1.0;
+  const double high_pass_rad_s = 2.0, below = 2.0 + high_pass_rad_s * kTick_s;
+  law.filters = {{2.0 / below, -2.0 / below, 0.0, -(2.0 - high_pass_rad_s * kTick_s) / below, 0.0}};
+  const SampledLoop loop(plant, law, kTick_s, 1);
+  const LoopMargins m = loop.Margins();
+  ASSERT_TRUE(m.stable);
+  double low = 0.5, high = 3.0;  // rad/s
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (std::abs(loop.Response(middle)) < 1.0 ? low : high) = middle;
+  }
+  const double lead_deg = std::arg(loop.Response(low)) * kDegPerRad;
+  ASSERT_GT(lead_deg, 110.0);
+  EXPECT_NEAR(m.phase_deg, 180.0 - lead_deg, 1e-6);
+  EXPECT_GT(m.crossover_rad_s, 3.0);
+}
+
 TEST(SampledLoop, AerodynamicInstabilityBoundsTheGainFromBelow) {
   // Steady state: the stiffness kp / b * b must exceed the aerodynamic one.
   LinearLaw law;

@@ -109,6 +109,17 @@ TEST(LimitCycle, EveryChannelCounts) {
   }
 }
 
+// What counts is the amplitude in the last third of a window over that in the first, 0.7 at least. At 1.8 Hz
+// a window lasts 9.6 s, and its outer thirds lie 6.4 s apart.
+TEST(LimitCycle, MayLoseThreeTenthsOfItsAmplitudeWithinAWindow) {
+  const auto found = [](double ratio) {
+    return Found(60.0,
+                 [ratio](double t) { return 0.5 * std::pow(ratio, t / 6.4) * std::sin(kTwoPi * 1.8 * t); });
+  };
+  EXPECT_GT(found(0.77), 0.7);
+  EXPECT_EQ(found(0.63), 0.0);
+}
+
 // ---- without
 // ------------------------------------------------------------------------------------------------
 

@@ -55,6 +55,13 @@ class PointFlight {
       Move(std::fmin(state.time_s + kTick_s, until_s), stage, ignition_s);
     }
   }
+  /// The coast, and the last burn until it lasts so much longer.
+  void UntilLastBurnHasLeft(double left_s) {
+    Coast();
+    last_ignition_s = guidance.ignition_s();
+    Burn(GuidancePhase::kLastBurns, last_ignition_s,
+         last_ignition_s + mission_.last.burn.duration_s - left_s);
+  }
   Arrival Arrived() const { return ArrivalOf(mission_.earth, state.time_s, state.p_EoC_I, state.v_IC_I); }
   void See(GuidancePhase phase, double ignition_s, double angle_rad = 0.0, double rate_rad_s = 0.0) {
     GuidanceSight sight;
@@ -98,6 +105,7 @@ class PointFlight {
  public:
   ClosedLoopGuidance guidance;
   NavigatedState state;
+  double last_ignition_s = 0.0;  ///< of UntilLastBurnHasLeft
   Vector3 misalignment_rad_I = Vector3::Zero();
 };
 
@@ -160,6 +168,41 @@ TEST(ClosedLoopGuidance, ForgetsTheStageBelowsThrustOffset) {
   // 2 degrees would be answered by as many.
   for (const PlanUnknown unknown : {kPitchMiddle, kPitchHalf, kYawMiddle})
     EXPECT_NEAR(after.value[unknown], before.value[unknown], 0.1 * kDeg) << unknown;
+}
+
+// Nor does the state at the stage below's last call: between it and the last burn's first the vehicle has
+// coasted, and what it gained since tells nothing of a thrust. Here it looks as if the thrust had pointed
+// five degrees aside.
+TEST(ClosedLoopGuidance, MeasuresNoThrustOverTheCoast) {
+  const GuidanceMission mission = ReachableMission();
+  const double below_s = CoastState().time_s - 1.0;
+  Plan plans[2];
+  NavigatedState at_first_call;
+  Vector3 pointed_L = Vector3::Zero();  // half way between where the two calls point
+  for (int aside = 0; aside < 2; ++aside) {
+    PointFlight flight(mission, CoastState());
+    if (aside == 1) {
+      const Vector3 gravity = 0.5 * (Gravitation(mission.earth, flight.state.p_EoC_I) +
+                                     Gravitation(mission.earth, at_first_call.p_EoC_I));
+      const Vector3 along = mission.R_IL * pointed_L, across = mission.R_IL * Vector3(0.0, 1.0, 0.0);
+      flight.state.v_IC_I = at_first_call.v_IC_I - (at_first_call.time_s - below_s) * gravity -
+                            1000.0 * (along + std::tan(5.0 * kDeg) * across);
+    }
+    flight.state.time_s = below_s;
+    flight.See(GuidancePhase::kBelowBurns,
+               below_s + 1.0 - mission.below.burn.duration_s);  // measures and plans nothing
+    ASSERT_FALSE(flight.guidance.outcome().acted);
+    flight.state = CoastState();
+    flight.Coast();
+    const double ignition_s = flight.guidance.ignition_s();
+    flight.Burn(GuidancePhase::kLastBurns, ignition_s, ignition_s + 3.06);  // its first call
+    at_first_call = flight.state;
+    pointed_L = (UnitVector(mission.program.At(below_s)) + UnitVector(flight.guidance.command().direction()))
+                    .normalized();
+    plans[aside] = flight.guidance.plan();
+  }
+  for (const PlanUnknown unknown : {kPitchMiddle, kPitchHalf, kYawMiddle, kWaste})
+    EXPECT_EQ(plans[1].value[unknown], plans[0].value[unknown]) << unknown;
 }
 
 TEST(ClosedLoopGuidance, LeavesTheMotorsFirstSecondsToTheAutopilot) {
@@ -252,9 +295,8 @@ TEST(ClosedLoopGuidance, SaysInTheCoastThatItsTargetIsOutOfReach) {
 TEST(ClosedLoopGuidance, LetsAltitudeAndPlaneGoInTheLastSeconds) {
   const GuidanceMission mission = ReachableMission();
   PointFlight flight(mission, CoastState());
-  flight.Coast();
-  const double ignition_s = flight.guidance.ignition_s(), burnout_s = ignition_s + mission.last.burn.duration_s;
-  flight.Burn(GuidancePhase::kLastBurns, ignition_s, burnout_s - 10.5);
+  flight.UntilLastBurnHasLeft(10.5);
+  const double ignition_s = flight.last_ignition_s, burnout_s = ignition_s + mission.last.burn.duration_s;
   ASSERT_TRUE(flight.guidance.outcome().arrives);
   const Plan before = flight.guidance.plan();
   flight.Burn(GuidancePhase::kLastBurns, ignition_s, burnout_s - 8.0);
@@ -269,16 +311,33 @@ TEST(ClosedLoopGuidance, LetsAltitudeAndPlaneGoInTheLastSeconds) {
   EXPECT_TRUE(flight.guidance.outcome().arrives) << "said of the last plan in which altitude still counted";
 }
 
+// Two unknowns are left, and speed and angle take both: nothing of them is given for altitude or plane,
+// however far these are off.
+TEST(ClosedLoopGuidance, MeetsSpeedAndAngleInTheLastSecondsWhateverAltitudeAndPlaneAre) {
+  const GuidanceMission mission = ReachableMission();
+  for (const double across_m_s : {0.0, 100.0}) {
+    PointFlight flight(mission, CoastState());
+    flight.UntilLastBurnHasLeft(8.5);
+    NavigatedState& state = flight.state;
+    if (across_m_s > 0.0)
+      state.v_IC_I += across_m_s * state.p_EoC_I.cross(state.v_IC_I).normalized();
+    else
+      state.p_EoC_I *= 1.0 + 20e3 / state.p_EoC_I.norm();
+    flight.Burn(GuidancePhase::kLastBurns, flight.last_ignition_s,
+                flight.last_ignition_s + mission.last.burn.duration_s);
+    EXPECT_LT(Miss(flight.Arrived(), mission), 0.3);
+    EXPECT_NEAR(flight.Arrived().flight_path_angle_rad, mission.target.flight_path_angle_rad, 0.002 * kDeg);
+  }
+}
+
 // What the last seconds leave of speed does not take back what was said before them.
 TEST(ClosedLoopGuidance, KeepsWhatItSaidOfItsTarget) {
   const GuidanceMission mission = ReachableMission();
   PointFlight flight(mission, CoastState());
-  flight.Coast();
-  const double ignition_s = flight.guidance.ignition_s(), burnout_s = ignition_s + mission.last.burn.duration_s;
-  flight.Burn(GuidancePhase::kLastBurns, ignition_s, burnout_s - 5.0);
+  flight.UntilLastBurnHasLeft(5.0);
   ASSERT_TRUE(flight.guidance.outcome().arrives);
   flight.state.v_IC_I *= 1.0 - 20.0 / flight.state.v_IC_I.norm();  // 20 m/s that nothing can give back
-  flight.See(GuidancePhase::kLastBurns, ignition_s);
+  flight.See(GuidancePhase::kLastBurns, flight.last_ignition_s);
   EXPECT_TRUE(flight.guidance.outcome().arrives);
   // The same loss while altitude counts is said.
   PointFlight earlier(mission, CoastState());

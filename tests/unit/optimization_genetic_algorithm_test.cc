@@ -185,6 +185,55 @@ TEST(GeneticAlgorithm, ProgressWithinTheTolerancesIsAStall) {
   EXPECT_EQ(GeneticAlgorithm(options).Minimize(ties).log.size(), 11u);
 }
 
+// Nothing is feasible here: a violation that falls is all the progress that there is.
+TEST(GeneticAlgorithm, AViolationThatFallsIsProgress) {
+  BoundedProblem problem{std::vector<double>(10, -5.0), std::vector<double>(10, 4.0), [](const auto& x) {
+                           return Evaluation{0.0, {1.0 + Sphere(x)}, 0.0};
+                         }};
+  GeneticAlgorithmOptions options = ShortRun();
+  options.stall_generations = 5;
+  const GeneticAlgorithmResult result = GeneticAlgorithm(options).Minimize(problem);
+  EXPECT_EQ(result.end, GeneticAlgorithmEnd::kGenerations);
+  EXPECT_LT(result.log.back().best_violation, 0.5 * result.log.front().best_violation);
+  // One that cannot fall stalls.
+  problem.evaluate = [](const auto&) { return Evaluation{0.0, {1.0}, 0.0}; };
+  EXPECT_EQ(GeneticAlgorithm(options).Minimize(problem).log.size(), 6u);
+}
+
+// Every individual has a value of its own in all its variables, so a variable that was not crossed is one of
+// these values.
+TEST(GeneticAlgorithm, CrossesAVariableWithItsProbability) {
+  constexpr int kPopulation = 60, kVariables = 400;
+  BoundedProblem problem{std::vector<double>(kVariables, 0.0), std::vector<double>(kVariables, 1.0), {}};
+  std::vector<double> values;
+  for (int i = 0; i < kPopulation; ++i) {
+    values.push_back((i + 0.5) / kPopulation);
+    problem.known_points.emplace_back(kVariables, values.back());
+  }
+  int children = 0, crossed = 0;
+  problem.evaluate = [&](const std::vector<double>& x) {
+    int changed = 0;
+    for (const double value : x) changed += std::find(values.begin(), values.end(), value) == values.end();
+    children += changed > 0;  // two different parents, of which the children were made variable by variable
+    crossed += changed;
+    return Evaluation{x[0], {}, 0.0};
+  };
+  GeneticAlgorithmOptions options;
+  options.population = kPopulation;
+  options.generations = 1;
+  options.crossover_probability = 1.0;
+  options.line_crossover_probability = 0.0;
+  options.mutation_probability = 0.0;
+  for (const double probability : {0.2, 0.7}) {
+    options.variable_crossover_probability = probability;
+    children = crossed = 0;
+    GeneticAlgorithm(options).Minimize(problem);
+    ASSERT_GT(children, 40);
+    // Two children share their draws: five standard deviations of a fraction of half as many are below 0.027.
+    EXPECT_NEAR(crossed / (double{kVariables} * children), probability, 0.027);
+  }
+}
+
 TEST(GeneticAlgorithm, WithoutAFeasiblePointReturnsTheLeastViolation) {
   BoundedProblem problem{{0.0}, {1.0}, [](const auto& x) { return Evaluation{-x[0], {1.0 + x[0]}, 0.0}; }};
   const GeneticAlgorithmResult result = GeneticAlgorithm(ShortRun()).Minimize(problem);

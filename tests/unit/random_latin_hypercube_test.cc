@@ -3,7 +3,10 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -68,6 +71,36 @@ TEST(LatinHypercube, PermutationsAreEquallyLikely) {
   for (const auto& [permutation, count] : counts) chi_square += std::pow(count - 1000.0, 2) / 1000.0;
   // 99.9 % point of chi-square with 23 degrees of freedom; the seeds are fixed.
   EXPECT_LT(chi_square, 49.73);
+}
+
+// Shuffled by draws below a bound, of 2^32 numbers. Where they do not divide evenly, some results have one
+// number more than the others: its first, which is drawn again. Of so many cases a few are; without it
+// everything after them is another permutation.
+TEST(LatinHypercube, DrawsAgainWhatWouldFavourAStratum) {
+  constexpr std::uint64_t kAll = std::uint64_t{1} << 32, kCases = 300000;
+  std::vector<std::uint32_t> strata(kCases);
+  std::iota(strata.begin(), strata.end(), 0u);
+  Stream stream(5, 0, "thrust/permutation");
+  int drawn_again = 0;
+  for (std::uint64_t left = kCases; left > 1; --left) {
+    for (;;) {
+      const std::uint64_t number = stream.Bits() >> 32, result = number * left / kAll;
+      const auto first_of = [&](std::uint64_t r) { return (r * kAll + left - 1) / left; };
+      const bool has_one_more = first_of(result + 1) - first_of(result) > kAll / left;
+      if (has_one_more && number == first_of(result)) {
+        ++drawn_again;
+        continue;
+      }
+      std::swap(strata[left - 1], strata[result]);
+      break;
+    }
+  }
+  ASSERT_GT(drawn_again, 0);
+  const LatinHypercube design(5, kCases, {"thrust"});
+  std::uint64_t different = 0;
+  for (std::uint64_t i = 0; i < kCases; ++i)
+    different += static_cast<std::uint32_t>(design.Uniform(i, 0) * static_cast<double>(kCases)) != strata[i];
+  EXPECT_EQ(different, 0u) << drawn_again << " numbers were to be drawn again";
 }
 
 // The point of the design: the mean of a sum over dimensions varies by 1/N² per dimension instead of 1/N.

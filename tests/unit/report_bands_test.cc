@@ -110,6 +110,27 @@ TEST(BandCounter, IsRightToAClassBeyondThat) {
   }
 }
 
+// Within a class values are evenly spread, here as in truth: a percentile is then right to a small part of a
+// class.
+TEST(BandCounter, FindsAPercentileWithinItsClass) {
+  constexpr int kFlights = 20000;
+  BandCounter counter({1}, kStep_s);
+  std::vector<SampledFlight> flights;
+  for (int k = 0; k < kFlights; ++k) {
+    flights.push_back(
+        {{100.0 + (k * 7919 % kFlights) / double{kFlights}}});  // each of them once, in no order
+    counter.Add(flights.back());
+  }
+  const Band exact = ComputeBands(flights, {1}, kStep_s).bands[0], counted = counter.Bands().bands[0];
+  // A class is 1/128 and holds 156 values: 2 of them.
+  const double tolerance = 2.0 / kFlights;
+  EXPECT_NEAR(counted.p01[0], exact.p01[0], tolerance);
+  EXPECT_NEAR(counted.p05[0], exact.p05[0], tolerance);
+  EXPECT_NEAR(counted.p50[0], exact.p50[0], tolerance);
+  EXPECT_NEAR(counted.p95[0], exact.p95[0], tolerance);
+  EXPECT_NEAR(counted.p99[0], exact.p99[0], tolerance);
+}
+
 TEST(BandCounter, DoesNotDependOnTheOrderBeyondTheFirst) {
   std::vector<std::uint64_t> order(1000);
   std::iota(order.begin(), order.end(), std::uint64_t{0});

@@ -132,6 +132,23 @@ TEST(BendingModes, KeepNameAndSignOverTheBurn) {
   }
 }
 
+// From full to empty at once a mode is recognised by halves only. What is told is the least resemblance on
+// the way, and not that of the last step.
+TEST(BendingModes, TellTheLeastResemblanceOnTheWay) {
+  Vehicle vehicle = Slv4();
+  vehicle.structure_beam->propellant_levels = 2;
+  const std::vector<BendingLevel> whole = BuildBendingModes(vehicle)[0].levels[0];
+  vehicle.structure_beam->propellant_levels = 3;
+  const std::vector<BendingLevel> halves = BuildBendingModes(vehicle)[0].levels[0];
+  bool was_least_before = false;
+  for (std::size_t mode = 0; mode < whole[0].modes.size(); ++mode) {
+    const double first = halves[1].modes[mode].mac, second = halves[2].modes[mode].mac;
+    EXPECT_EQ(whole[1].modes[mode].mac, std::fmin(first, second)) << mode;
+    was_least_before |= first < second;
+  }
+  EXPECT_TRUE(was_least_before) << "or the last step alone would do";
+}
+
 TEST(BendingModes, ShapesAreWhatTheEquationsMeanByThem) {
   const Vehicle vehicle = FlexibleSample();
   const std::vector<StackModes> stacks = BuildBendingModes(vehicle);

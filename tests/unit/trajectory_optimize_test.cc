@@ -9,6 +9,8 @@
 
 #include "core/campaign_yaml/load.h"
 #include "core/trajectory/optimize.h"
+#include "core/trajectory/refine.h"
+#include "core/trajectory/selection.h"
 
 namespace dispersa::trajectory_optimize_test {
 namespace {
@@ -96,6 +98,62 @@ TEST(OptimizeTrajectory, SaysWhichConstraintStoppedIt) {
   const OptimizationResult result = OptimizeTrajectory(input.vehicle, input.problem, OptionsFor(input, 2));
   EXPECT_FALSE(result.reached);
   EXPECT_THAT(result.statement, HasSubstr(" Constraint: axial_load_max_g = 8."));
+}
+
+// Objective (8) of the search's best: each error in its unit times the weight of that unit.
+TEST(OptimizeTrajectory, SearchesForTheLeastWeightedSumOfAllErrors) {
+  OptimizationInput input = ShortSearch("slv4_500km.yaml");
+  TrajectoryProblem& problem = input.problem;
+  problem.target_inclination_rad = 80.0 * kRadPerDeg;
+  problem.target_argument_of_perigee_rad = 1.0;
+  problem.weight_altitude_1_m = 2e-3;
+  problem.weight_velocity_s_m = 0.3;
+  problem.weight_angle_1_rad = 50.0;
+  problem.weight_inclination_1_rad = 70.0;
+  problem.weight_argument_1_rad = 11.0;
+  const TrajectoryOptions options = OptionsFor(input, 2);
+  const GeneticAlgorithmResult found = OptimizeTrajectory(input.vehicle, problem, options).genetic;
+  AscentModel model = BuildAscentModel(input.vehicle, options.tick_s);
+  model.reaction_control_propellant_kg = problem.reaction_control_propellant_kg;
+  const FlightProgram program = ProgramOf(found.variables, VariablesOf(input.vehicle, problem));
+  const AscentResult ascent = FlyAscent(model, program, AscentOptionsOf(problem, options.search_steps));
+  ASSERT_TRUE(ascent.completed);
+  const OrbitErrors errors = ErrorsOf(problem, ascent.orbit);
+  const double terms[] = {2e-3 * std::fabs(errors.altitude_m), 0.3 * std::fabs(errors.velocity_m_s),
+                          50.0 * std::fabs(errors.flight_path_angle_rad),
+                          70.0 * std::fabs(errors.inclination_rad),
+                          11.0 * std::fabs(errors.argument_of_perigee_rad)};
+  double sum = 0.0;
+  for (const double term : terms) {
+    EXPECT_GT(term, 1e-3) << "a term that is 0 would show nothing";
+    sum += term;
+  }
+  EXPECT_NEAR(found.evaluation.objective, sum, 1e-9 * sum);
+  EXPECT_EQ(found.evaluation.tie_breaker, ascent.q_alpha_max_pa_rad);
+}
+
+// The third stage burns out at more than 8 g, whatever the program: none of those that reach the target is
+// one to take.
+TEST(SelectProgram, LeavesTheProgramWhereNoneHoldsItsConstraints) {
+  OptimizationInput input = LoadOptimization(DISPERSA_CAMPAIGNS "/slv4_500km.yaml");
+  TrajectoryOptions options = OptionsFor(input, 2);
+  options.selection_population = 4;
+  options.selection_generations = 1;
+  AscentModel model = BuildAscentModel(input.vehicle, options.tick_s);
+  model.reaction_control_propellant_kg = input.problem.reaction_control_propellant_kg;
+  FlightProgram start = LoadReference(DISPERSA_CAMPAIGNS "/references/slv4_500km.yaml").program;
+  start.coast_s += 5.0;
+  for (const double limit_g : {5.0, 12.0}) {
+    input.problem.axial_load_limit_g = limit_g;
+    FlightProgram program = start;
+    const Selection selection = SelectProgram(model, input.problem, options, &program);
+    EXPECT_GT(selection.ascents, 0);
+    const bool is_left = program.alpha_max_rad == start.alpha_max_rad && program.t1_s == start.t1_s &&
+                         program.t3_s == start.t3_s && program.t2_s == start.t2_s &&
+                         program.coast_s == start.coast_s &&
+                         program.launch_azimuth_rad == start.launch_azimuth_rad;
+    EXPECT_EQ(is_left, limit_g == 5.0) << limit_g << " g";
+  }
 }
 
 // The shipped search, all of it.
