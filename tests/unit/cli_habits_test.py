@@ -107,6 +107,7 @@ class Values(unittest.TestCase):
                      "--peer", "here", "--slots", "0x2", program="dispersa-worker")
         priorities = "allowed: a whole number from -1000 to 1000"
         self.refused(f"--priority: '-1001' is out of range, {priorities}", "launch", SMOKE, "--priority", "-1001")
+        self.refused(f"--priority: '1001' is out of range, {priorities}", "launch", SMOKE, "--priority", "1001")
         self.assertNotIn("--priority", dispersa("launch", SMOKE, "--priority", "-1", "--peer", "no such host:1").stderr)
         self.refused("--domain: '0x1' is not a whole number, allowed: a whole number from 0 to 99", "list",
                      env={**os.environ, "DISPERSA_DOMAIN": "0x1"})

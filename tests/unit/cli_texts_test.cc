@@ -11,6 +11,8 @@
 #include "services/cli/progress.h"
 #include "services/cli/seed_study.h"
 #include "services/cli/vehicle_text.h"
+#include "services/log/log.h"
+#include "services/program/failure.h"
 #include "tests/unit/sample_vehicle.h"
 
 namespace dispersa::cli_texts_test {
@@ -128,6 +130,23 @@ TEST(CampaignStatusText, SaysHowFarACampaignIs) {
   EXPECT_EQ(
       CampaignStatusText(campaign),
       "0123456789ab  ended             40/100       trial  2 quarantined  exit code 1  no space left\n");
+}
+
+// The object says the code that the process ends with.
+TEST(EndFor, AFailurePrintsItsCodeAndText) {
+  LogForPeople(LogColor::kNever);  // to stderr, as every program does
+  for (const ExitCode code : {kExitInternalError, kExitIncomplete, kExitInterrupted}) {
+    testing::internal::CaptureStdout();
+    EXPECT_EQ(EndFor(Failure{code, "no coordinator"}, true), code);
+    const auto json = nlohmann::json::parse(testing::internal::GetCapturedStdout());
+    EXPECT_EQ(json["schema"], "dispersa/error/1");
+    EXPECT_EQ(json["code"], static_cast<int>(code));
+    ASSERT_EQ(json["errors"].size(), 1u);
+    EXPECT_EQ(json["errors"][0]["message"], "no coordinator");
+    testing::internal::CaptureStdout();
+    EXPECT_EQ(EndFor(Failure{code, "no coordinator"}, false), code);
+    EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+  }
 }
 
 /// Two searches: errors of both signs, so that the worst is told from the largest.

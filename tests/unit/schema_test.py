@@ -186,6 +186,57 @@ class SchemaTest(unittest.TestCase):
         gravel = self.validators["vehicle"].schema["properties"]["hold_down_s"]
         self.assertEqual(0, gravel["default"])
 
+    def test_defaults_of_flags_and_words_and_limits_that_are_open(self):
+        vehicle, campaign, autopilot = (self.validators[kind].schema for kind in ("vehicle", "campaign", "autopilot"))
+        self.assertIs(True, vehicle["properties"]["jet_damping"]["default"])
+        self.assertIs(False, vehicle["properties"]["limits"]["properties"]["terminate"]["default"])
+        verdicts = campaign["properties"]["verdicts"]["properties"]
+        self.assertEqual("each", verdicts["joint"]["default"])
+        self.assertNotIn("default", campaign["properties"]["sampling"]["properties"]["seed"])
+        self.assertEqual({"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1, "description": "a number above 0 and below 1"},
+                         campaign["properties"]["requirements"]["items"]["properties"]["probability"])
+        limit = vehicle["properties"]["stages"]["items"]["properties"]["gimbal"]["properties"]["rate_limit_deg_s"]
+        self.assertEqual("°/s, a number above 0", limit["description"])
+        self.assertEqual(6, autopilot["definitions"]["pitch"]["properties"]["gains"]["maxItems"])
+
+    def test_what_keys_say_of_each_other(self):
+        def refuses(name, change):
+            document = load(CAMPAIGNS / name)
+            self.assertEqual([], self.refusals(document))
+            change(document)
+            return bool(self.refusals(document))
+
+        def second_unit(vehicle):
+            vehicle["stages"][0]["liftoff_mass_kg"] = 1000 * vehicle["stages"][0]["liftoff_mass_ton"]
+
+        def many_stages(vehicle):
+            vehicle["stages"] = [vehicle["stages"][0]] * 7
+
+        def restarts(vehicle):  # what burns again has no masses of its own
+            vehicle["stages"][1]["restarts"] = True
+
+        def bound_of_a_normal(campaign):
+            campaign["dispersions"]["drag_coefficient"] = {"distribution": "normal", "three_sigma_percent": 6, "bound_percent": 5}
+
+        def bound_of_a_uniform(campaign):
+            campaign["dispersions"]["drag_coefficient"] = {"distribution": "uniform", "bound_percent": 5}
+
+        def low_end_alone(campaign):
+            campaign["dispersions"]["drag_coefficient"] = {"distribution": "triangular", "low_percent": -5, "mode_percent": 0}
+
+        def integral_missing(autopilot):
+            del autopilot["pitch"]["integral"]
+
+        vehicle = "vehicles/slv4.yaml"
+        self.assertTrue(refuses(vehicle, second_unit))
+        self.assertTrue(refuses(vehicle, many_stages))
+        self.assertTrue(refuses(vehicle, lambda v: v["stages"].clear()))
+        self.assertTrue(refuses(vehicle, restarts))
+        self.assertTrue(refuses("table3.yaml", bound_of_a_normal))
+        self.assertFalse(refuses("table3.yaml", bound_of_a_uniform))
+        self.assertTrue(refuses("table3.yaml", low_end_alone))
+        self.assertTrue(refuses("autopilots/pid.yaml", integral_missing))
+
     def test_changes_are_judged_as_by_the_reader(self):
         # The changed files stand among the ones that they name.
         tree = self.folder / "campaigns"
