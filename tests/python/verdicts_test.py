@@ -24,6 +24,15 @@ class Validations(unittest.TestCase):
         self.assertEqual((False, dispersa.ExitCode.BAD_INPUT), (found.valid, found.exit_code))
 
 
+class Campaigns(unittest.TestCase):
+    def test_are_the_same_by_what_they_say_and_not_by_name(self):
+        one, again, other = dispersa.load(SMOKE), dispersa.load(SMOKE), dispersa.load(SMOKE, seed=2)
+        self.assertEqual(one.name, other.name)
+        self.assertEqual((one, hash(one)), (again, hash(again)))
+        self.assertNotEqual(one, other)
+        self.assertEqual(2, len({one, again, other}))
+
+
 class Runs(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
