@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <fstream>
 #include <string>
 
 #include "core/flight/flight_inputs.h"
@@ -26,6 +28,21 @@ std::string CasesCsvLine(const CaseResult& result) {
 
 CasesCsv::CasesCsv(const std::filesystem::path& file, std::size_t stages) : file_(file) {
   file_.Write(CasesCsvHeader(stages));
+}
+
+std::uint64_t CountCases(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::uint64_t lines = 0;
+  bool is_quoted = false;  // a reason may have line breaks
+  std::array<char, 1 << 16> part;
+  while (stream.read(part.data(), part.size()), stream.gcount() > 0) {
+    for (std::streamsize i = 0; i < stream.gcount(); ++i) {
+      const char c = part[static_cast<std::size_t>(i)];
+      if (c == '"') is_quoted = !is_quoted;
+      if (c == '\n' && !is_quoted) ++lines;
+    }
+  }
+  return lines == 0 ? 0 : lines - 1;  // without the header
 }
 
 void WriteCasesCsv(const ResultFolder& folder, const std::filesystem::path& file) {

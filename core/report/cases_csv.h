@@ -1,6 +1,7 @@
 // cases.csv: one line a case, sorted by case index, the same bytes however the cases were flown.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -21,12 +22,20 @@ class CasesCsv {
   CasesCsv(const std::filesystem::path& file, std::size_t stages);
 
   /// In ascending order of case index.
-  void Write(const CaseResult& result) { file_.Write(CasesCsvLine(result)); }
+  void Write(const CaseResult& result) {
+    file_.Write(CasesCsvLine(result));
+    ++rows_;
+  }
+  std::uint64_t rows() const { return rows_; }
   void Commit() { file_.Commit(); }
 
  private:
   OutputFile file_;
+  std::uint64_t rows_ = 0;
 };
+
+/// Cases of a file that was written before; 0 if there is none.
+std::uint64_t CountCases(const std::filesystem::path& file);
 
 /// All that is stored.
 void WriteCasesCsv(const ResultFolder& folder, const std::filesystem::path& file);

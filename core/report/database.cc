@@ -79,6 +79,25 @@ void Database::Execute(const std::string& sql) {
   if (code != SQLITE_OK) Fail(code);
 }
 
+void Database::CopyTo(const std::filesystem::path& file) const {
+  const std::filesystem::path temporary = file.string() + ".tmp";
+  std::error_code error;
+  std::filesystem::remove(temporary, error);  // of a copy that was killed
+  {
+    const Database copy(temporary, Mode::kCreate);
+    sqlite3_backup* backup = sqlite3_backup_init(copy.handle_, "main", handle_, "main");
+    if (backup == nullptr) copy.Fail(sqlite3_errcode(copy.handle_));
+    constexpr int kAllPages = -1;
+    sqlite3_backup_step(backup, kAllPages);
+    if (const int code = sqlite3_backup_finish(backup); code != SQLITE_OK) copy.Fail(code);
+  }  // closed: its own write-ahead log is in it
+  std::filesystem::rename(temporary, file, error);
+  if (error) {
+    throw ResultError(ResultError::Kind::kFile,
+                      fmt::format("{}: cannot be made: {}", file.string(), error.message()));
+  }
+}
+
 Statement Database::Prepare(const std::string& sql) { return Statement(*this, sql); }
 
 void Database::Fail(int code) const {

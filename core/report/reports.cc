@@ -10,8 +10,23 @@
 #include "core/report/histories.h"
 #include "core/report/output_file.h"
 #include "core/report/report_page.h"
+#include "core/report/result_error.h"
 
 namespace dispersa {
+
+namespace {
+
+/// What was flown and reported once is not written over by less: rows that are missing now may be the folder's damage.
+void RefuseFewer(const std::filesystem::path& file, std::uint64_t cases) {
+  const std::uint64_t there = CountCases(file);
+  if (cases >= there) return;
+  throw ResultError(ResultError::Kind::kFewer,
+                    fmt::format("{}: it has {} cases and results.sqlite has {}: the reports stay as they are; remove "
+                                "cases.csv to have reports of {}",
+                                file.string(), there, cases, cases));
+}
+
+}  // namespace
 
 CampaignSummary WriteReports(const ResultFolder& folder, const Campaign& campaign,
                              const ReportOptions& options) {
@@ -26,9 +41,11 @@ CampaignSummary WriteReports(const ResultFolder& folder, const Campaign& campaig
                     folder.directory().string(), law->name),
         "--no-histories; with them dispersa.report(DIR, law=...) in Python");
   }
-  CasesCsv csv(folder.directory() / "cases.csv", folder.stages());
+  const std::filesystem::path cases_csv = folder.directory() / "cases.csv";
+  CasesCsv csv(cases_csv, folder.stages());
   const CaseColumns cases =
       ReadColumns(folder, DispersedInputs(campaign), [&csv](const CaseResult& result) { csv.Write(result); });
+  RefuseFewer(cases_csv, csv.rows());
   csv.Commit();
   CampaignSummary summary = BuildSummary(folder, campaign, cases);
   FlightHistories histories;

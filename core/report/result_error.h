@@ -12,6 +12,7 @@ class ResultError : public std::runtime_error {
  public:
   enum class Kind {
     kDiskFull,  ///< no space left, or over quota: the run is incomplete and can be resumed
+    kFewer,     ///< fewer results than there should be: nothing was written in the place of more
     kConflict,  ///< a case returned twice with different digests: an internal error, never ignored
     kFile,      ///< any other failure of the disk or the database
   };
@@ -19,6 +20,8 @@ class ResultError : public std::runtime_error {
   ResultError(Kind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}
 
   Kind kind() const { return kind_; }
+  /// The results are incomplete, and no program is at fault: exit code 5. Else it is 1.
+  bool IsIncomplete() const { return kind_ == Kind::kDiskFull || kind_ == Kind::kFewer; }
 
  private:
   Kind kind_;

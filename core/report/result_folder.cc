@@ -384,6 +384,14 @@ void ResultFolder::Quarantine(const QuarantinedCase& quarantined) {
   insert.Step();
 }
 
+std::uint64_t ResultFolder::CaseCount() const {
+  Statement select = database_->Prepare("SELECT COUNT(*) FROM cases");
+  select.Step();
+  return static_cast<std::uint64_t>(select.Integer(0));
+}
+
+void ResultFolder::CopyDatabase(const fs::path& file) const { database_->CopyTo(file); }
+
 std::vector<std::uint64_t> ResultFolder::PresentCases() const {
   std::vector<std::uint64_t> present;
   Statement select = database_->Prepare("SELECT case_index FROM cases ORDER BY case_index");

@@ -78,6 +78,10 @@ class ResultFolder : public ResultStore {
   /// Remembers a case as given up (again: the later reason holds).
   void Quarantine(const QuarantinedCase& quarantined) override;
 
+  /// Cases that have a result.
+  std::uint64_t CaseCount() const;
+  /// The database as it is now, in the place of `file`: one that is whole, whoever reads or writes here meanwhile.
+  void CopyDatabase(const std::filesystem::path& file) const;
   /// Indices that have a result, ascending.
   std::vector<std::uint64_t> PresentCases() const;
   /// The same with the fingerprint that was stored with each.

@@ -1,10 +1,13 @@
 #include "services/client/remote_campaign.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <cstdint>
 #include <thread>
 
 #include "core/report/output_file.h"
+#include "core/report/result_folder.h"
 #include "services/client/writable.h"
 
 namespace dispersa {
@@ -39,6 +42,26 @@ void FetchFile(Session& session, const std::string& id, const std::string& path,
     offset += part.data.size();
   }
   file.Commit();
+}
+
+/// What there is to fetch, once the coordinator has it together.
+Json AskForFiles(Session& session, const std::string& id) {
+  for (;;) {
+    Json answer = Json::parse(session.Ask("files", {{"id", id}}).text);
+    if (!answer.contains("state")) return answer;
+    std::this_thread::sleep_for(kAskAgain);
+  }
+}
+
+/// Nobody takes a folder that lacks results for the campaign.
+void RequireAllCases(const fs::path& directory, const Json& answer) {
+  const auto promised = answer.value("done", std::uint64_t{0});
+  const bool has_database = fs::exists(directory / "results.sqlite");
+  const std::uint64_t arrived = has_database ? ResultFolder::Open(directory).CaseCount() : 0;
+  if (arrived >= promised) return;
+  throw Failure{kExitIncomplete, fmt::format("campaign {} has {} cases and {} of them arrived: nothing was written; "
+                                             "fetch it again",
+                                             answer.at("id").get<std::string>().substr(0, 8), promised, arrived)};
 }
 
 /// Whether it names a file below the folder that it is relative to, without a detour.
@@ -89,7 +112,7 @@ FetchedCampaign FetchCampaign(Session& session, const std::string& id, const std
   }
   RequireWritableFolder("--out", out);
   const fs::path incomplete = out.string() + ".dispersa-fetch";
-  const Json answer = Json::parse(session.Ask("files", {{"id", id}}).text);
+  const Json answer = AskForFiles(session, id);
   fs::remove_all(incomplete);  // of a fetch that was killed
   fs::create_directories(incomplete);
   for (const Json& file : answer.at("files")) {
@@ -99,6 +122,12 @@ FetchedCampaign FetchCampaign(Session& session, const std::string& id, const std
       throw Failure{kExitInternalError, "the coordinator names a file outside of the result folder"};
     }
     FetchFile(session, answer.at("id"), path.generic_string(), file.at("size"), incomplete / path);
+  }
+  try {
+    RequireAllCases(incomplete, answer);
+  } catch (...) {
+    fs::remove_all(incomplete);
+    throw;
   }
   fs::rename(incomplete, out);
   return {answer.at("id"), out};

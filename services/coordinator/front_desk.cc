@@ -28,6 +28,7 @@ constexpr double kUploadPatience_s = 60.0;
 /// In an answer, so that it fits into a sample.
 constexpr std::size_t kMaxListed = 500;
 constexpr std::size_t kFilePart = 256 << 10;
+constexpr char kDatabase[] = "results.sqlite";
 
 /// Files of a result folder that a client may have, by path within it.
 std::vector<fs::path> FilesIn(const fs::path& directory) {
@@ -96,11 +97,17 @@ void RefuseAnotherEngine(const std::string& asked, const CatalogueEntry& entry) 
 
 }  // namespace
 
+FrontDesk::FrontDesk(Service& service, const Workforce& workforce) : service_(service), workforce_(workforce) {
+  for (const auto& [id, entry] : service.catalogue().entries())
+    RemoveDatabaseCopy(service.catalogue().ResultsOf(id));
+}
+
 Reply FrontDesk::Answer(const Request& request) {
   Reply reply;
   reply.client = request.client;
   reply.number = request.number;
   ForgetUploads();
+  copies_.ForgetUnused(workforce_.now_s());
   try {
     if (request.method == "health") {
       reply.text = "{}";
@@ -134,8 +141,11 @@ Reply FrontDesk::Answer(const Request& request) {
     reply.code = kExitBadInput;
     reply.text = "the coordinator does not understand the arguments of '" + Printable(request.method) + "'";
   } catch (const ResultError& error) {
-    reply.code = error.kind() == ResultError::Kind::kDiskFull ? kExitIncomplete : kExitInternalError;
+    reply.code = error.IsIncomplete() ? kExitIncomplete : kExitInternalError;
     reply.text = error.what();
+  } catch (const std::exception& error) {
+    reply.code = kExitInternalError;
+    reply.text = std::string("the coordinator cannot do that: ") + error.what();
   }
   return reply;
 }
@@ -175,6 +185,7 @@ std::string FrontDesk::Launch(const std::string& arguments) {
   if (service_.catalogue().entries().contains(id)) {
     uploads_.erase(id);
     RefuseAnotherEngine(flight_id, service_.catalogue().entries().at(id));
+    copies_.Forget(service_.catalogue().ResultsOf(id));
     service_.Relaunch(id, priority);
     return answer(CampaignStateName(service_.catalogue().entries().at(id).state));
   }
@@ -272,7 +283,8 @@ std::string FrontDesk::Tally(const std::string& arguments) const {
   return answer.dump();
 }
 
-std::string FrontDesk::Files(const std::string& arguments) const {
+// "copying" until the database can be handed out as a whole.
+std::string FrontDesk::Files(const std::string& arguments) {
   const CatalogueEntry& entry = Named(Json::parse(arguments).at("id"));
   if (!service_.IsAtRest(entry.id)) {
     throw Refused(kExitIncomplete,
@@ -280,16 +292,17 @@ std::string FrontDesk::Files(const std::string& arguments) const {
                               entry.id.substr(0, 8), CampaignStateName(entry.state)));
   }
   const fs::path directory = service_.catalogue().ResultsOf(entry.id);
-  // What a coordinator that was killed left beside the database belongs into it.
-  if (fs::exists(directory / "results.sqlite-wal")) ResultFolder::Open(directory);
+  const auto database = copies_.Whole(directory, entry.done, workforce_.now_s());
+  if (!database) return Json{{"id", entry.id}, {"state", "copying"}}.dump();
   Json files = Json::array();
   for (const fs::path& file : FilesIn(directory)) {
-    files.push_back({{"path", file.generic_string()}, {"size", fs::file_size(directory / file)}});
+    const fs::path source = file == kDatabase ? *database : directory / file;
+    files.push_back({{"path", file.generic_string()}, {"size", fs::file_size(source)}});
   }
-  return Json{{"id", entry.id}, {"code", entry.code}, {"files", std::move(files)}}.dump();
+  return Json{{"id", entry.id}, {"code", entry.code}, {"done", entry.done}, {"files", std::move(files)}}.dump();
 }
 
-std::string FrontDesk::Read(const std::string& arguments, std::string* data) const {
+std::string FrontDesk::Read(const std::string& arguments, std::string* data) {
   const Json json = Json::parse(arguments);
   const CatalogueEntry& entry = Named(json.at("id"));
   const fs::path directory = service_.catalogue().ResultsOf(entry.id);
@@ -300,7 +313,8 @@ std::string FrontDesk::Read(const std::string& arguments, std::string* data) con
     throw Refused(kExitBadInput,
                   "campaign " + entry.id.substr(0, 8) + " has no file " + Printable(path.string()));
   }
-  std::ifstream stream(directory / path, std::ios::binary);
+  const fs::path source = path == kDatabase ? copies_.Known(directory, workforce_.now_s()) : directory / path;
+  std::ifstream stream(source, std::ios::binary);
   data->resize(kFilePart);
   stream.seekg(static_cast<std::streamoff>(offset));
   stream.read(data->data(), static_cast<std::streamsize>(data->size()));

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "services/coordinator/database_copies.h"
 #include "services/coordinator/service.h"
 
 namespace dispersa {
@@ -15,7 +16,7 @@ namespace dispersa {
 /// second time than the first.
 class FrontDesk {
  public:
-  FrontDesk(Service& service, const Workforce& workforce) : service_(service), workforce_(workforce) {}
+  FrontDesk(Service& service, const Workforce& workforce);
 
   Reply Answer(const Request& request);
 
@@ -35,14 +36,15 @@ class FrontDesk {
   std::vector<std::string> Listed() const;
   std::string Status(const std::string& arguments) const;
   std::string Tally(const std::string& arguments) const;
-  std::string Files(const std::string& arguments) const;
-  std::string Read(const std::string& arguments, std::string* data) const;
+  std::string Files(const std::string& arguments);
+  std::string Read(const std::string& arguments, std::string* data);
   const CatalogueEntry& Named(const std::string& id) const;
   void ForgetUploads();
 
   Service& service_;
   const Workforce& workforce_;
   std::map<std::string, Upload> uploads_;  ///< by id
+  DatabaseCopies copies_;
 };
 
 }  // namespace dispersa

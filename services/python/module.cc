@@ -63,7 +63,7 @@ void Translate(std::exception_ptr problem) {
   } catch (const InputError& error) {
     Raise("BadInput", ProblemsOf(error.problems()));
   } catch (const ResultError& error) {
-    Raise(error.kind() == ResultError::Kind::kDiskFull ? "Incomplete" : "InternalError", Words(error.what()));
+    Raise(error.IsIncomplete() ? "Incomplete" : "InternalError", Words(error.what()));
   } catch (const PluginError& error) {
     Raise("BadInput", py::str(std::string("the control law ") + error.what()));
   } catch (const ContainedEnd& end) {

@@ -9,6 +9,7 @@
 #include <map>
 #include <vector>
 
+#include "core/report/database.h"
 #include "made_up_service.h"
 
 namespace dispersa::remote_campaign_test {
@@ -176,6 +177,35 @@ TEST_F(Fetching, AFileThatBecomesShorterIsAnErrorAndLeavesNoFolder) {
   EXPECT_FALSE(fs::exists(Target()));
 }
 
+TEST_F(Fetching, FewerCasesThanTheCampaignHasAreRefusedAndLeaveNoFolder) {
+  const std::string id(64, 'a');
+  const ResultFolder made = ResultFolder::Create(folder_ / "made", LoadCampaign(DISPERSA_CAMPAIGNS "/smoke.yaml"));
+  for (const bool has_database : {false, true}) {
+    MadeUpCoordinator coordinator;
+    Json files = Json::array();
+    if (has_database) {
+      const std::string database = TextOfFile(made.directory() / "results.sqlite");
+      files.push_back({{"path", "results.sqlite"}, {"size", database.size()}});
+      coordinator.Answers("read", Json::object(), database);
+    }
+    coordinator.Answers("files", {{"id", id}, {"done", 3}, {"files", files}});
+    Session session = coordinator.Connect();
+    EXPECT_EQ(FailureOf([&] { FetchCampaign(session, id, Target()); }),
+              "5: campaign aaaaaaaa has 3 cases and 0 of them arrived: nothing was written; fetch it again");
+    EXPECT_FALSE(fs::exists(Target()));
+    EXPECT_TRUE(fs::is_empty(folder_ / "in"));
+  }
+}
+
+TEST_F(Fetching, WaitsWhileTheCoordinatorCopies) {
+  MadeUpCoordinator coordinator;
+  coordinator.Answers("files", {{"id", "i"}, {"state", "copying"}});
+  coordinator.Answers("files", {{"id", "i"}, {"done", 0}, {"files", Json::array()}});
+  Session session = coordinator.Connect();
+  EXPECT_EQ(FailureOf([&] { FetchCampaign(session, "i", Target()); }), "none");
+  EXPECT_TRUE(fs::is_directory(Target()));
+}
+
 TEST_F(Fetching, OnlyIntoANewOrAnEmptyFolder) {
   fs::create_directories(Target());
   std::ofstream(Target() / "mine") << "x";
@@ -232,6 +262,76 @@ TEST_F(RemoteCampaign, IsLaunchedFollowedAndFetched) {
   for (const char* file : {"campaign.yaml", "results.sqlite", "histories/large.csv"}) {
     EXPECT_TRUE(TextOfFile(fetched.directory / file) == TextOfFile(results / file)) << file;
   }
+}
+
+// As long as a reader has it open, SQLite leaves the last transactions beside the database.
+TEST_F(RemoteCampaign, HasAllItsCasesAlsoWhileSomebodyReadsThem) {
+  const Campaign campaign = Smoke(5);
+  Launch(campaign);
+  ASSERT_TRUE(Reaches(campaign.id, CampaignState::kFlying));
+  const fs::path results = service_->catalogue().ResultsOf(campaign.id);
+  const ResultFolder reader = ResultFolder::Open(results);
+  workforce_.Join("w");
+  for (const std::uint64_t i : {0, 1, 3}) workforce_.Return("w", campaign.flight_id, MadeUpWorkforce::ResultOf(i));
+  session_.Ask("cancel", {{"id", campaign.id}});
+  ASSERT_GT(fs::file_size(results / "results.sqlite-wal"), 0u);
+  const FetchedCampaign first = FetchCampaign(session_, campaign.id, (folder_ / "first").string());
+  EXPECT_THAT(ResultFolder::Open(first.directory).PresentCases(), ElementsAre(0, 1, 3));
+  EXPECT_EQ(ResultFolder::Open(first.directory).Load(3).metrics, MadeUpWorkforce::ResultOf(3).metrics);
+
+  // What was copied for the first is not handed out when there is more.
+  service_->Relaunch(campaign.id, 0);
+  ASSERT_TRUE(Reaches(campaign.id, CampaignState::kFlying));
+  workforce_.Return("w", campaign.flight_id, MadeUpWorkforce::ResultOf(2));
+  session_.Ask("cancel", {{"id", campaign.id}});
+  const FetchedCampaign second = FetchCampaign(session_, campaign.id, (folder_ / "second").string());
+  EXPECT_THAT(ResultFolder::Open(second.directory).PresentCases(), ElementsAre(0, 1, 2, 3));
+
+  const fs::path copy = results.parent_path() / "fetched.sqlite";
+  EXPECT_TRUE(fs::exists(copy));
+  workforce_.time_s += 61.0;
+  session_.Ask("health", Json::object());
+  EXPECT_FALSE(fs::exists(copy)) << "nobody has read it for a minute";
+}
+
+TEST_F(RemoteCampaign, AFolderThatNobodyReadsAnyMoreIsNotFetchedFromItsCopy) {
+  const Campaign campaign = Smoke(5);
+  Launch(campaign);
+  ASSERT_TRUE(Reaches(campaign.id, CampaignState::kFlying));
+  workforce_.Join("w");
+  {
+    const ResultFolder reader = ResultFolder::Open(service_->catalogue().ResultsOf(campaign.id));
+    workforce_.Return("w", campaign.flight_id, MadeUpWorkforce::ResultOf(0));
+    session_.Ask("cancel", {{"id", campaign.id}});
+    FetchCampaign(session_, campaign.id, (folder_ / "first").string());
+  }
+  LaunchCampaign(session_, campaign, 0);
+  ASSERT_TRUE(Reaches(campaign.id, CampaignState::kFlying));
+  workforce_.Return("w", campaign.flight_id, MadeUpWorkforce::ResultOf(1));
+  session_.Ask("cancel", {{"id", campaign.id}});
+  const FetchedCampaign second = FetchCampaign(session_, campaign.id, (folder_ / "second").string());
+  EXPECT_THAT(ResultFolder::Open(second.directory).PresentCases(), ElementsAre(0, 1));
+}
+
+// Rows that somebody removed by hand are missed before they are handed out.
+TEST_F(RemoteCampaign, ThatLacksCasesOfItsStateIsNotHandedOut) {
+  const Campaign campaign = Smoke(4);
+  Launch(campaign);
+  ASSERT_TRUE(Reaches(campaign.id, CampaignState::kFlying));
+  workforce_.Join("w");
+  for (const std::uint64_t i : {0, 1}) workforce_.Return("w", campaign.flight_id, MadeUpWorkforce::ResultOf(i));
+  session_.Ask("cancel", {{"id", campaign.id}});
+  const fs::path database = service_->catalogue().ResultsOf(campaign.id) / "results.sqlite";
+  Database(database, Database::Mode::kExisting).Execute("DELETE FROM cases WHERE case_index = 1");
+  const std::string target = (folder_ / "fetched").string();
+  EXPECT_EQ(FailureOf([&] { FetchCampaign(session_, campaign.id, target); }),
+            "5: campaign " + campaign.id.substr(0, 8) +
+                " has 2 cases and 1 of them arrived: nothing was written; fetch it again");
+  const ResultFolder reader = ResultFolder::Open(database.parent_path());
+  Database writer(database, Database::Mode::kExisting);
+  writer.Execute("DELETE FROM cases");
+  EXPECT_EQ(FailureOf([&] { FetchCampaign(session_, campaign.id, target); }),
+            "5: " + database.string() + ": it has 0 of the 2 cases that the campaign's state promises");
 }
 
 }  // namespace

@@ -77,6 +77,19 @@ TEST(CasesCsv, DoesNotDependOnTheOrderOfArrival) {
   EXPECT_EQ(csv, expected);
 }
 
+TEST(CasesCsv, CountsTheCasesOfAFileHoweverTheyAreQuoted) {
+  TemporaryFolder temporary;
+  EXPECT_EQ(CountCases(temporary / "none"), 0u);
+  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(3));
+  WriteCasesCsv(folder, temporary / "cases.csv");
+  EXPECT_EQ(CountCases(temporary / "cases.csv"), 0u) << "a header alone";
+  CaseResult quoted = MakeCase(1);
+  quoted.reason = "two\nlines, \"so\nto say\"";
+  folder.Append({{MakeCase(0), quoted, MakeCase(2)}});
+  WriteCasesCsv(folder, temporary / "cases.csv");
+  EXPECT_EQ(CountCases(temporary / "cases.csv"), 3u);
+}
+
 TEST(CasesCsv, ShowsNegativeZeroAsZeroAndUndefinedAsEmpty) {
   TemporaryFolder temporary;
   ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(1));

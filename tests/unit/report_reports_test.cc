@@ -104,6 +104,31 @@ TEST(Reports, CanBeWrittenAgain) {
   EXPECT_TRUE(Files(temporary / "out") == first);
 }
 
+// A folder whose rows got lost: the table that was made of all of them is the last that there is.
+TEST(Reports, LeaveATableOfMoreCasesAsItIs) {
+  TemporaryFolder temporary;
+  const auto out = temporary / "out";
+  const ReportOptions options = {.history_cases = 0, .threads = 1, .progress = {}};
+  ResultFolder folder = ResultFolder::Create(out, TheCampaign());
+  folder.Append({TheResults().data(), 3});
+  WriteReports(folder, TheCampaign(), options);
+  const std::map<std::string, std::string> reports = Files(out);
+  Database(out / "results.sqlite", Database::Mode::kExisting).Execute("DELETE FROM cases WHERE case_index > 0");
+  try {
+    WriteReports(folder, TheCampaign(), options);
+    FAIL() << "three cases were replaced by one";
+  } catch (const ResultError& error) {
+    EXPECT_TRUE(error.IsIncomplete());
+    EXPECT_EQ(error.what(), (out / "cases.csv").string() +
+                                ": it has 3 cases and results.sqlite has 1: the reports stay as they are; remove "
+                                "cases.csv to have reports of 1");
+  }
+  EXPECT_TRUE(Files(out) == reports);
+  std::filesystem::remove(out / "cases.csv");
+  WriteReports(folder, TheCampaign(), options);
+  EXPECT_NE(Files(out), reports);
+}
+
 TEST(Reports, RefuseAResultThatDoesNotComeOutAgain) {
   TemporaryFolder temporary;
   ResultFolder folder = ResultFolder::Create(temporary / "out", TheCampaign());

@@ -1,0 +1,103 @@
+#include "services/coordinator/database_copies.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "core/report/result_folder.h"
+
+namespace dispersa {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kCopyPatience_s = 60.0;
+constexpr std::chrono::milliseconds kCopyWait(20);
+
+fs::path DatabaseOf(const fs::path& results) { return results / "results.sqlite"; }
+fs::path LogOf(const fs::path& results) { return results / "results.sqlite-wal"; }
+fs::path CopyOf(const fs::path& results) { return results.parent_path() / "fetched.sqlite"; }
+
+bool HasLog(const fs::path& results) {
+  std::error_code error;
+  const auto size = fs::file_size(LogOf(results), error);
+  return !error && size > 0;
+}
+
+/// Another text when anything was written.
+std::string StateOf(const fs::path& results) {
+  std::string state;
+  for (const fs::path& file : {DatabaseOf(results), LogOf(results)}) {
+    std::error_code error;
+    state += fmt::format("{} {} ", fs::file_size(file, error),
+                         fs::last_write_time(file, error).time_since_epoch().count());
+  }
+  return state;
+}
+
+void MakeCopy(const fs::path& results, std::uint64_t promised) {
+  // Who closes the database last merges the log: so ends what a coordinator that was killed left.
+  ResultFolder::Open(results);
+  if (!HasLog(results)) return;
+  const ResultFolder folder = ResultFolder::Open(results);
+  folder.CopyDatabase(CopyOf(results));
+  if (const std::uint64_t cases = folder.CaseCount(); cases < promised) {
+    throw ResultError(ResultError::Kind::kFewer,
+                      fmt::format("{}: it has {} of the {} cases that the campaign's state promises",
+                                  DatabaseOf(results).string(), cases, promised));
+  }
+}
+
+}  // namespace
+
+std::optional<fs::path> DatabaseCopies::Whole(const fs::path& results, std::uint64_t promised, double now_s) {
+  const auto known = copies_.find(results);
+  if (known == copies_.end() && !HasLog(results)) return DatabaseOf(results);
+  if (known == copies_.end() || (known->second.is_made && HasLog(results) && known->second.of != StateOf(results))) {
+    Forget(results);
+    Copy& copy = copies_[results];
+    copy.of = StateOf(results);
+    copy.making = std::async(std::launch::async, MakeCopy, results, promised);
+  }
+  Copy& copy = copies_.at(results);
+  copy.used_s = now_s;
+  if (!copy.is_made) {
+    if (copy.making.wait_for(kCopyWait) != std::future_status::ready) return std::nullopt;
+    try {
+      copy.making.get();
+    } catch (...) {
+      Forget(results);
+      throw;
+    }
+    copy.is_made = true;
+  }
+  return Known(results, now_s);
+}
+
+fs::path DatabaseCopies::Known(const fs::path& results, double now_s) {
+  const auto known = copies_.find(results);
+  if (known == copies_.end() || !known->second.is_made) return DatabaseOf(results);
+  known->second.used_s = now_s;
+  std::error_code error;
+  return fs::exists(CopyOf(results), error) ? CopyOf(results) : DatabaseOf(results);
+}
+
+void DatabaseCopies::Forget(const fs::path& results) {
+  if (copies_.erase(results) > 0) RemoveDatabaseCopy(results);  // a copy that is being made is waited for
+}
+
+void DatabaseCopies::ForgetUnused(double now_s) {
+  std::erase_if(copies_, [&](const auto& each) {
+    const bool is_unused = each.second.is_made && now_s - each.second.used_s > kCopyPatience_s;
+    if (is_unused) RemoveDatabaseCopy(each.first);
+    return is_unused;
+  });
+}
+
+void RemoveDatabaseCopy(const fs::path& results) {
+  std::error_code error;
+  fs::remove(CopyOf(results), error);
+  fs::remove(CopyOf(results).string() + ".tmp", error);
+}
+
+}  // namespace dispersa

@@ -1,0 +1,41 @@
+// Databases of result folders for clients that fetch them, whole also while somebody reads them on this machine.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <future>
+#include <map>
+#include <optional>
+#include <string>
+
+namespace dispersa {
+
+/// As long as anybody has a database open, its last transactions stand in a write-ahead log beside it, and the file
+/// alone lacks them. Then a copy by SQLite's own means is handed out. One thread; copies are made on another one.
+class DatabaseCopies {
+ public:
+  /// The file to hand out as results.sqlite of `results`: itself, or a copy beside the folder. None: it is being
+  /// copied. Throws ResultError when that fails, and when the copy has fewer than `promised` cases.
+  std::optional<std::filesystem::path> Whole(const std::filesystem::path& results, std::uint64_t promised,
+                                             double now_s);
+  /// The same of a folder that Whole was asked about before: nothing is copied.
+  std::filesystem::path Known(const std::filesystem::path& results, double now_s);
+  /// The campaign goes on: its copy is old.
+  void Forget(const std::filesystem::path& results);
+  /// Removes the copies that nobody has asked for lately.
+  void ForgetUnused(double now_s);
+
+ private:
+  struct Copy {
+    std::string of;  ///< state of the database and its log that was copied
+    std::future<void> making;
+    bool is_made = false;
+    double used_s = 0.0;
+  };
+  std::map<std::filesystem::path, Copy> copies_;  ///< by result folder
+};
+
+/// What a coordinator that was killed has left of a copy.
+void RemoveDatabaseCopy(const std::filesystem::path& results);
+
+}  // namespace dispersa
