@@ -19,6 +19,7 @@ constexpr double kFlushPeriod_s = 0.5;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr std::uint64_t kFlownTwice = 2;   // first cases of a campaign with a plug-in, by two workers
 constexpr std::size_t kFlushCount = 4000;  // 4 MB; at 20,000 results/s five transactions a second
+constexpr double kFullPeriod_s = 5.0;      // a full disk is tried again so often
 
 /// With what the folder holds already, so that the target is where an interrupted run left it.
 std::optional<StoppingRule> RuleOf(const Campaign& campaign, const ResultStore& store) {
@@ -93,9 +94,30 @@ bool CampaignBook::Settle(const Claim& claim, const Digest& truth) {
   return true;
 }
 
+template <typename Action>
+bool CampaignBook::Try(Action action) {
+  try {
+    action();
+    return true;
+  } catch (const ResultError& error) {
+    if (!is_patient_) throw;
+    if (error.kind() == ResultError::Kind::kDiskFull) {
+      if (pause_.empty()) LogError("campaign {} is paused: {}", campaign_.name, error.what());
+      pause_ = error.what();
+    } else {
+      breakdown_ = error.what();
+    }
+    return false;
+  }
+}
+
 void CampaignBook::Disown(const std::string& worker) {
-  Flush();
   if (audit_) audit_->Drop(worker);
+  disowned_.push_back(worker);
+  TryFlush();
+}
+
+void CampaignBook::RemoveResultsOf(const std::string& worker) {
   const std::vector<std::uint64_t> cases = store_->Disown(worker);
   if (cases.empty()) return;
   LogWarning("campaign {}: {} results of worker {} are removed; their cases are flown again", campaign_.name,
@@ -107,8 +129,11 @@ void CampaignBook::Disown(const std::string& worker) {
 
 // Two results, of which one at least is wrong: both are flown again.
 void CampaignBook::Dispute(Claim claim) {
-  Flush();
-  const auto other = store_->WorkerOf(claim.case_index);
+  std::optional<std::string> other;
+  Try([&] {
+    Flush();
+    other = store_->WorkerOf(claim.case_index);
+  });
   if (!other) return;  // nobody to expel: it stays a conflict
   audit_->Add({*other, claim.case_index, ledger_.FingerprintOf(claim.case_index), false});
   claim.is_dispute = true;
@@ -154,12 +179,14 @@ void CampaignBook::CompareWithExpected(const CaseResult& result, const std::stri
 void CampaignBook::GiveUp(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,
                           const std::string& reason, double now_s) {
   if (!ledger_.GiveUp(worker, case_index, attempt, reason, now_s)) return;
-  Flush();
-  Refuse(case_index, FlownBy(case_index), By(worker), "the flight ended well once, and again " + reason);
+  Try([&] {
+    Flush();
+    Refuse(case_index, FlownBy(case_index), By(worker), "the flight ended well once, and again " + reason);
+  });
 }
 
 bool CampaignBook::Complete() {
-  if (!ledger_.Complete() || (audit_ && !audit_->IsSettled())) return false;
+  if (!ledger_.Complete() || !disowned_.empty() || (audit_ && !audit_->IsSettled())) return false;
   std::vector<std::uint64_t> given_up;
   for (const BlamedCase& blamed : ledger_.Quarantined()) given_up.push_back(blamed.case_index);
   if (!rule_ || !rule_->Advance(given_up)) return true;
@@ -195,8 +222,10 @@ Acceptance CampaignBook::Accept(const std::string& worker, const std::string& ho
       if (audit_) {
         Dispute(claim);
       } else if (campaign_.autopilot.plugin) {
-        Flush();
-        RefuseForDifference(store_->Load(result.case_index), FlownBy(result.case_index), result, By(worker));
+        Try([&] {
+          Flush();
+          RefuseForDifference(store_->Load(result.case_index), FlownBy(result.case_index), result, By(worker));
+        });
         if (refusal_) break;
       }
       LogError("case {}: worker {} on {} returned other bits than were returned before: {}",
@@ -215,9 +244,16 @@ Acceptance CampaignBook::Accept(const std::string& worker, const std::string& ho
 }
 
 bool CampaignBook::FlushIfDue(double now_s) {
-  if (results_.size() < kFlushCount && now_s - flushed_s_ < kFlushPeriod_s) return false;
+  const double period_s = pause_.empty() ? kFlushPeriod_s : kFullPeriod_s;
+  if ((results_.size() < kFlushCount || !pause_.empty()) && now_s - flushed_s_ < period_s) return false;
   flushed_s_ = now_s;
-  Flush();
+  return TryFlush();
+}
+
+bool CampaignBook::TryFlush() {
+  if (!breakdown_.empty() || !Try([this] { Flush(); })) return false;
+  if (!pause_.empty()) LogInfo("campaign {} goes on: there is space on the disk again", campaign_.name);
+  pause_.clear();
   return true;
 }
 
@@ -230,6 +266,10 @@ void CampaignBook::Flush() {
   if (!audits_.empty()) {
     store_->AppendAudits(audits_);
     audits_.clear();
+  }
+  while (!disowned_.empty()) {
+    RemoveResultsOf(disowned_.back());
+    disowned_.pop_back();
   }
   if (ledger_.Progress().quarantined != quarantined_) {
     for (const BlamedCase& blamed : ledger_.Quarantined()) {

@@ -29,7 +29,7 @@ ExitCode CampaignExitCode(CampaignVerdict verdict, std::uint64_t conflicts);
 inline constexpr char kInProcess[] = "in process";
 
 /// Results are stored in batches; nothing that was accepted is lost by more than one batch. Not thread-safe.
-/// Times are seconds from any origin. Storing throws ResultError.
+/// Times are seconds from any origin. Storing throws ResultError, unless the book is told to be patient.
 class CampaignBook {
  public:
   CampaignBook(const Campaign& campaign, std::unique_ptr<ResultStore> store,
@@ -49,6 +49,16 @@ class CampaignBook {
   /// Why its results cannot be believed, in words for the user: its control law is not deterministic. Nothing
   /// of it needs to be flown any more.
   const std::optional<std::string>& refusal() const { return refusal_; }
+
+  /// From now on an error of the disk is no exception. A full disk pauses the book: results are kept in memory, and
+  /// are stored when there is space. Any other error breaks it.
+  void BePatient() { is_patient_ = true; }
+  /// Why nothing can be stored now; empty: it can. Nothing should be assigned meanwhile.
+  const std::string& pause() const { return pause_; }
+  /// Why nothing can be stored any more; empty: it can.
+  const std::string& breakdown() const { return breakdown_; }
+  /// Results that were accepted and are not stored yet.
+  std::uint64_t unstored() const { return results_.size(); }
 
   /// What the first cases of a campaign with a plug-in gave before it: every result of them must be the same,
   /// what the store holds too.
@@ -85,8 +95,13 @@ class CampaignBook {
   /// Stores what has gathered if it is time to. True: all that was accepted so far is stored.
   bool FlushIfDue(double now_s);
   void Flush();
+  /// False: not everything is stored, see pause() and breakdown().
+  bool TryFlush();
 
  private:
+  template <typename Action>
+  bool Try(Action action);
+  void RemoveResultsOf(const std::string& worker);
   void Dispute(Claim claim);
   std::string FlownBy(std::uint64_t case_index) const;
   void Refuse(std::uint64_t case_index, const std::string& once, const std::string& again,
@@ -107,6 +122,7 @@ class CampaignBook {
   std::vector<CaseResult> results_;
   std::vector<ExecutionRecord> records_;
   std::vector<Claim> audits_;  ///< confirmed
+  std::vector<std::string> disowned_;  ///< workers whose results are to be removed
   struct StartTime {
     double now_s;
     std::string utc;
@@ -115,6 +131,8 @@ class CampaignBook {
   std::size_t quarantined_ = 0;                                        ///< stored as such
   std::uint64_t flown_now_ = 0;
   double flushed_s_ = 0.0;
+  bool is_patient_ = false;
+  std::string pause_, breakdown_;
 };
 
 }  // namespace dispersa

@@ -51,7 +51,11 @@ void TryToTakeOver(const fs::path& from, const Campaign& campaign, ResultFolder&
 std::unique_ptr<CampaignBook> OpenBook(const CampaignOpening& opening) {
   const Campaign campaign = ParseCampaign(opening.text, opening.name);
   const bool is_new = !HasResults(opening.results);
-  if (is_new) fs::remove_all(opening.results);  // of a start that was killed: nothing is in it
+  if (is_new) {
+    // Of a start that was killed: nothing is in it.
+    std::error_code error;
+    fs::remove_all(opening.results, error);
+  }
   ResultFolder folder = is_new ? ResultFolder::Create(opening.results, campaign)
                                : ResultFolder::Resume(opening.results, campaign);
   for (const std::uint64_t damaged : folder.damaged()) {
@@ -67,6 +71,7 @@ std::unique_ptr<CampaignBook> OpenBook(const CampaignOpening& opening) {
   LedgerOptions options;
   options.attempt_base = opening.number * kAttempts;
   auto book = std::make_unique<CampaignBook>(campaign, std::move(folder), options);
+  book->BePatient();
   book->KeepTally();
   book->KeepAudit(opening.audit);
   return book;

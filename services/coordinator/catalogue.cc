@@ -109,7 +109,13 @@ std::vector<std::string> Catalogue::InOrder() const {
 
 CatalogueEntry& Catalogue::Add(CatalogueEntry entry, const std::string& text) {
   entry.order = next_order_++;
-  fs::create_directories(directory_ / entry.id);
+  std::error_code error;
+  fs::create_directories(directory_ / entry.id, error);
+  if (error) {
+    const bool is_full = error == std::errc::no_space_on_device;
+    throw ResultError(is_full ? ResultError::Kind::kDiskFull : ResultError::Kind::kFile,
+                      (directory_ / entry.id).string() + ": cannot be made: " + error.message());
+  }
   WriteFile(directory_ / entry.id / "campaign.yaml", text);
   Write(entry);
   const std::string id = entry.id;

@@ -403,6 +403,7 @@ bool Dispatcher::AssignTo(const std::string& id, Worker& worker, double now_s) {
     });
   }
   for (OpenCampaign* campaign : by_right) {
+    if (!campaign->book->pause().empty() || !campaign->book->breakdown().empty()) continue;
     Ledger& ledger = campaign->book->ledger();
     if (auto assignment = ledger.GiveTo(id, batches - ledger.Batches(id), now_s)) {
       Say(worker, campaign->book->campaign().flight_id, assignment->attempt, std::move(assignment->cases),

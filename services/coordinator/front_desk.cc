@@ -46,8 +46,13 @@ std::vector<fs::path> FilesIn(const fs::path& directory) {
   return files;
 }
 
-CatalogueEntry Parse(const std::string& text) {
+CatalogueEntry Parse(const std::string& text, std::uint64_t max_cases) {
   const Campaign campaign = ParseCampaign(text, "campaign");
+  if (campaign.sampling.cases > max_cases) {
+    throw Refused(kExitBadInput,
+                  fmt::format("campaign {} has {} cases, allowed: at most {} (dispersa-coordinator --max-cases)",
+                              campaign.id.substr(0, 8), campaign.sampling.cases, max_cases));
+  }
   if (campaign.autopilot.plugin)
     CheckPluginIsDeterministic(CampaignFlights(campaign), campaign.sampling.cases);
   CatalogueEntry entry;
@@ -193,7 +198,7 @@ std::string FrontDesk::Launch(const std::string& arguments) {
   if (found == uploads_.end() || found->second.text.size() != found->second.size) return answer("unknown");
   Upload& upload = found->second;
   upload.used_s = workforce_.now_s();
-  if (!upload.parsed.valid()) upload.parsed = std::async(std::launch::async, Parse, upload.text);
+  if (!upload.parsed.valid()) upload.parsed = std::async(std::launch::async, Parse, upload.text, service_.max_cases());
   if (upload.parsed.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready)
     return answer("checked");
   Upload complete = std::move(upload);

@@ -26,7 +26,7 @@ Ledger::Ledger(std::string engine_version, std::uint64_t cases, const LedgerOpti
 void Ledger::MarkDone(std::uint64_t case_index, const Digest& fingerprint) {
   assert(case_index < cases_.size() && next_attempt_ == options_.attempt_base + 1);
   if (!waiting_.Remove(case_index)) return;
-  cases_[case_index] = {State::kDone, fingerprint};
+  cases_.SetDone(case_index, fingerprint);
   ++progress_.done;
 }
 
@@ -39,13 +39,13 @@ void Ledger::Extend(std::uint64_t cases) {
   assert(cases >= cases_.size());
   if (cases == cases_.size()) return;
   waiting_.AddRange(cases_.size(), cases);
-  cases_.resize(cases);
+  cases_.Extend(cases);
   progress_.total = cases;
 }
 
 void Ledger::Reopen(const std::vector<std::uint64_t>& cases) {
   for (const std::uint64_t case_index : cases) {
-    if (case_index >= cases_.size() || cases_[case_index].state != State::kDone) continue;
+    if (case_index >= cases_.size() || cases_.StateOf(case_index) != CaseState::kDone) continue;
     --progress_.done;
     if (const auto twice = twice_.find(case_index); twice != twice_.end()) twice->second = {};
     Return(case_index);
@@ -112,17 +112,17 @@ bool Ledger::GiveUp(const std::string& worker, std::uint64_t case_index, std::ui
   if (held == entry->second.held.end() || held->second.attempt != attempt) return false;
   held->second.started_s.reset();  // how long it took says nothing of the others
   Settle(worker, case_index, attempt, now_s);
-  Case& given_up = cases_[case_index];
+  const CaseState state = cases_.StateOf(case_index);
   if (const auto twice = twice_.find(case_index);
-      twice != twice_.end() && given_up.state == State::kDone && twice->second.first != worker) {
+      twice != twice_.end() && state == CaseState::kDone && twice->second.first != worker) {
     return !std::exchange(twice->second.is_settled, true);
   }
-  if (given_up.state == State::kDone || given_up.state == State::kQuarantined) return false;
-  if (given_up.state == State::kWaiting) waiting_.Remove(case_index);
-  if (given_up.state == State::kSuspect) suspects_.Remove(case_index);
+  if (state == CaseState::kDone || state == CaseState::kQuarantined) return false;
+  if (state == CaseState::kWaiting) waiting_.Remove(case_index);
+  if (state == CaseState::kSuspect) suspects_.Remove(case_index);
   blames_[case_index].push_back(reason);
   given_up_.insert(case_index);
-  given_up.state = State::kQuarantined;
+  cases_.Set(case_index, CaseState::kQuarantined);
   ++progress_.quarantined;
   return false;
 }
@@ -131,23 +131,23 @@ Acceptance Ledger::Finished(const std::string& worker, std::uint64_t case_index,
                             const Digest& fingerprint, double now_s) {
   Settle(worker, case_index, attempt, now_s);
   if (case_index >= cases_.size()) return Acceptance::kUnknown;
-  Case& flown = cases_[case_index];
+  const CaseState state = cases_.StateOf(case_index);
   const auto twice = twice_.find(case_index);
-  if (flown.state == State::kDone) {
+  if (state == CaseState::kDone) {
     if (twice != twice_.end() && twice->second.first != worker) twice->second.is_settled = true;
-    if (flown.fingerprint != fingerprint) {
+    if (cases_.FingerprintOf(case_index) != fingerprint) {
       ++progress_.conflicts;
       return Acceptance::kConflict;
     }
     ++progress_.duplicates;
     return Acceptance::kDuplicate;
   }
-  if (flown.state == State::kWaiting) waiting_.Remove(case_index);
-  if (flown.state == State::kSuspect) suspects_.Remove(case_index);
-  if (flown.state == State::kQuarantined) --progress_.quarantined;
+  if (state == CaseState::kWaiting) waiting_.Remove(case_index);
+  if (state == CaseState::kSuspect) suspects_.Remove(case_index);
+  if (state == CaseState::kQuarantined) --progress_.quarantined;
   blames_.erase(case_index);
   given_up_.erase(case_index);
-  flown = {State::kDone, fingerprint};
+  cases_.SetDone(case_index, fingerprint);
   if (twice != twice_.end()) twice->second.first = worker;
   ++progress_.done;
   return Acceptance::kAccepted;
@@ -162,7 +162,7 @@ void Ledger::Lost(const std::string& worker, WorkerEnd end, const std::string& r
   workers_.erase(entry);
   for (const auto& [case_index, how] : held) {
     Drop(case_index, blames && how.started_s);
-    if (cases_[case_index].state != State::kAssigned) continue;  // another worker's result came
+    if (cases_.StateOf(case_index) != CaseState::kAssigned) continue;  // another worker's result came
     if (blames && how.started_s) {
       Blame(case_index, reason);
     } else {
@@ -189,7 +189,7 @@ std::vector<std::string> Ledger::Expire(double now_s) {
     worker.stuck = true;
     for (const auto& [case_index, how] : held) {
       Drop(case_index, how.started_s && now_s - *how.started_s > lease_s);
-      if (cases_[case_index].state != State::kAssigned) continue;
+      if (cases_.StateOf(case_index) != CaseState::kAssigned) continue;
       if (how.started_s && now_s - *how.started_s > lease_s) {
         Blame(case_index, "no result within its lease");
       } else {
@@ -245,7 +245,7 @@ void Ledger::Withdraw(const std::string& worker, const std::vector<std::uint64_t
     if (std::find(begun.begin(), begun.end(), here->first) != begun.end()) continue;
     const std::uint64_t case_index = here->first;
     Release(entry->second, here);
-    if (cases_[case_index].state == State::kAssigned) Return(case_index);
+    if (cases_.StateOf(case_index) == CaseState::kAssigned) Return(case_index);
   }
 }
 
@@ -282,7 +282,7 @@ bool Ledger::Complete() const {
 }
 
 bool Ledger::IsWantedAgain(std::uint64_t case_index, const Twice& twice) const {
-  return !twice.is_settled && cases_[case_index].state == State::kDone;
+  return !twice.is_settled && cases_.StateOf(case_index) == CaseState::kDone;
 }
 
 bool Ledger::MayBeWantedAgain() const {
@@ -305,7 +305,7 @@ void Ledger::Drop(std::uint64_t case_index, bool blames) {
   const auto twice = twice_.find(case_index);
   if (twice == twice_.end()) return;
   twice->second.is_flown = false;
-  if (blames && cases_[case_index].state == State::kDone &&
+  if (blames && cases_.StateOf(case_index) == CaseState::kDone &&
       ++twice->second.blames >= options_.blames_to_quarantine)
     twice->second.is_settled = true;
 }
@@ -320,7 +320,7 @@ LedgerProgress Ledger::Progress() const {
 std::vector<BlamedCase> Ledger::Quarantined() const {
   std::vector<BlamedCase> quarantined;
   for (const auto& [case_index, reasons] : blames_) {
-    if (cases_[case_index].state == State::kQuarantined)
+    if (cases_.StateOf(case_index) == CaseState::kQuarantined)
       quarantined.push_back({case_index, reasons, given_up_.contains(case_index)});
   }
   return quarantined;
@@ -344,10 +344,10 @@ Assignment Ledger::Give(const std::string& id, Worker& worker, std::vector<std::
   if (worker.held.empty()) worker.last_report_s = now_s;  // an idle worker has nothing to report
   const std::uint64_t attempt = next_attempt_++;
   for (const std::uint64_t case_index : cases) {
-    if (cases_[case_index].state == State::kDone) {
+    if (cases_.StateOf(case_index) == CaseState::kDone) {
       twice_.at(case_index).is_flown = true;
     } else {
-      cases_[case_index].state = State::kAssigned;
+      cases_.Set(case_index, CaseState::kAssigned);
     }
     worker.held[case_index] = Held{attempt, std::nullopt};
   }
@@ -365,7 +365,7 @@ void Ledger::Release(Worker& worker, std::map<std::uint64_t, Held>::iterator hel
 
 void Ledger::Return(std::uint64_t case_index) {
   const bool suspect = blames_.contains(case_index);
-  cases_[case_index].state = suspect ? State::kSuspect : State::kWaiting;
+  cases_.Set(case_index, suspect ? CaseState::kSuspect : CaseState::kWaiting);
   (suspect ? suspects_ : waiting_).Add(case_index);
 }
 
@@ -376,7 +376,7 @@ void Ledger::Blame(std::uint64_t case_index, const std::string& reason) {
     Return(case_index);
     return;
   }
-  cases_[case_index].state = State::kQuarantined;
+  cases_.Set(case_index, CaseState::kQuarantined);
   ++progress_.quarantined;
 }
 

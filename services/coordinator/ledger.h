@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/flight/digest.h"
+#include "services/coordinator/case_table.h"
 #include "services/coordinator/index_set.h"
 
 namespace dispersa {
@@ -128,7 +129,7 @@ class Ledger {
   /// It flies a suspect and may hold nothing else.
   bool IsAlone(const std::string& worker) const;
   /// Of the result that was accepted.
-  Digest FingerprintOf(std::uint64_t case_index) const { return cases_.at(case_index).fingerprint; }
+  Digest FingerprintOf(std::uint64_t case_index) const { return cases_.FingerprintOf(case_index); }
 
   bool Complete() const;
   LedgerProgress Progress() const;
@@ -137,11 +138,6 @@ class Ledger {
   std::size_t WorkerCount() const { return workers_.size(); }
 
  private:
-  enum class State : std::uint8_t { kWaiting, kSuspect, kAssigned, kDone, kQuarantined };
-  struct Case {
-    State state = State::kWaiting;
-    Digest fingerprint;
-  };
   /// Of a case that two workers shall fly.
   struct Twice {
     std::string first;        ///< who returned its result; empty: nobody, or nobody knows
@@ -179,7 +175,7 @@ class Ledger {
 
   std::string engine_version_;
   LedgerOptions options_;
-  std::vector<Case> cases_;
+  CaseTable cases_;
   IndexSet waiting_;
   IndexSet suspects_;
   std::map<std::uint64_t, std::vector<std::string>> blames_;  ///< case index -> reasons

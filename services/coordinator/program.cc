@@ -35,16 +35,20 @@ int RunCoordinator(int argc, char** argv) {
       "dispersa-coordinator");
   bool json = false;
   BeginCommandLine(app, json, "with --version, and of an error: one JSON object");
-  std::string data;
+  ClientOptions clients;
+  std::string& data = clients.data;
   bool health = false;
   double audit = 0.0;
-  std::optional<std::uint16_t> metrics_port;
   app.add_option("campaign", request.campaign.name, "campaign file")->type_name(kFileType);
   app.add_option("--data", data, "folder of the campaigns that were launched, made if it is not there")
       ->type_name(kFolderType);
-  app.add_option("--metrics", metrics_port,
+  app.add_option("--metrics", clients.metrics_port,
                  "with --data: port of 127.0.0.1 for metrics in Prometheus' text format")
       ->transform(WholeNumber(1, 65535));
+  app.add_option("--max-cases", clients.max_cases,
+                 "with --data: cases that a campaign may have, launches of more are refused; each takes memory "
+                 "here\n(default: 5000000)")
+      ->transform(WholeNumber(1, kMostCases));
   app.add_flag("--health", health,
                "ask the coordinator of the domain on this machine: exit code 0 if it answers");
   app.add_option(
@@ -94,7 +98,7 @@ int RunCoordinator(int argc, char** argv) {
     std::vector<std::string> again(argv, argv + argc);
     if (data.empty() && !request.resume) again.emplace_back("--resume");
     const ServeOptions options{network, audit, std::move(again)};
-    if (!data.empty()) return ServeClients(options, data, metrics_port);
+    if (!data.empty()) return ServeClients(options, clients);
     return EndOutput(ServeCampaign(options, request, patience_s));
   } catch (const InputError& error) {
     return EndFor(error, json);
@@ -103,8 +107,7 @@ int RunCoordinator(int argc, char** argv) {
   } catch (const NetworkError& error) {
     return EndFor(Failure{kExitBadInput, error.what()}, json);
   } catch (const ResultError& error) {
-    const bool is_full = error.kind() == ResultError::Kind::kDiskFull;
-    return EndFor(Failure{is_full ? kExitIncomplete : kExitInternalError, error.what()}, json);
+    return EndFor(Failure{error.IsIncomplete() ? kExitIncomplete : kExitInternalError, error.what()}, json);
   } catch (const std::exception& error) {
     return EndFor(Failure{kExitInternalError, error.what()}, json);
   }

@@ -108,11 +108,11 @@ ExitCode ServeCampaign(const ServeOptions& options, const CampaignRequest& reque
 }
 
 // Workers stay when it ends: another coordinator on the same data takes them over.
-int ServeClients(const ServeOptions& options, const std::string& data,
-                 std::optional<std::uint16_t> metrics_port) {
+int ServeClients(const ServeOptions& options, const ClientOptions& clients) {
   Coordinator coordinator(options.network, options.audit);
   ServiceOptions service_options;
-  service_options.data = data;
+  service_options.data = clients.data;
+  service_options.max_cases = clients.max_cases;
   service_options.report_threads = UsableCores();
   Service service(service_options, coordinator);
   FrontDesk front_desk(service, coordinator);
@@ -120,7 +120,7 @@ int ServeClients(const ServeOptions& options, const std::string& data,
   LogInfo("domain {}, workers and clients may come to port {}", options.network.domain,
           CoordinatorPort(options.network.domain));
   std::optional<MetricsPort> metrics;
-  if (metrics_port) metrics.emplace(*metrics_port);
+  if (clients.metrics_port) metrics.emplace(*clients.metrics_port);
   Every metrics_period(kMetrics_s);
   Attendance attendance(options.network.domain, std::nullopt);
   std::optional<Watchdog> watchdog(std::in_place, options.again);

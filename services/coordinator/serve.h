@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "services/coordinator/open_campaign.h"
+#include "services/coordinator/service.h"
 #include "services/transport/network.h"
 
 namespace dispersa {
@@ -23,10 +24,14 @@ struct ServeOptions {
 ExitCode ServeCampaign(const ServeOptions& options, const CampaignRequest& request,
                        std::optional<double> patience_s);
 
-/// The campaigns that clients launch, kept in the folder `data`, until a signal to stop. Metrics on this port
-/// of 127.0.0.1.
-int ServeClients(const ServeOptions& options, const std::string& data,
-                 std::optional<std::uint16_t> metrics_port);
+struct ClientOptions {
+  std::string data;  ///< folder
+  std::optional<std::uint16_t> metrics_port = {};  ///< of 127.0.0.1
+  std::uint64_t max_cases = kDefaultMaxCases;
+};
+
+/// The campaigns that clients launch, until a signal to stop.
+int ServeClients(const ServeOptions& options, const ClientOptions& clients);
 
 /// Whether the coordinator of this domain answers on `host`.
 int AskHealth(const NetworkOptions& network, const std::string& host);

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <new>
 #include <set>
 
+#include "core/campaign_yaml/load.h"
 #include "core/report/reports.h"
 #include "services/coordinator/campaign_opening.h"
 #include "services/log/log.h"
@@ -19,7 +21,11 @@ constexpr std::size_t kRateOver = 10;  // measurements
 constexpr std::size_t kMaxProblem = 1000;
 constexpr std::size_t kRemembered = 16;  // tallies of campaigns that fly no more
 
+constexpr double kDelay_s = 10.0;  // until a full disk is tried again
+
 struct Stopped {};
+
+std::string Waiting(const std::string& problem) { return problem + "; it goes on when there is space"; }
 
 template <typename T>
 bool IsReady(const std::future<T>& future) {
@@ -42,6 +48,7 @@ Service::~Service() {
 }
 
 void Service::Step() {
+  CloseBroken();
   CloseRefused();
   CloseComplete();
   FinishReport();
@@ -52,7 +59,20 @@ void Service::Step() {
 }
 
 void Service::Flush() {
-  for (auto& [id, flying] : flying_) flying.book->Flush();
+  for (auto& [id, flying] : flying_) flying.book->TryFlush();
+  SaveAgain();
+}
+
+// Nothing of it can be stored any more: its folder is gone, not writable, or damaged.
+void Service::CloseBroken() {
+  std::vector<std::string> broken;
+  for (const auto& [id, flying] : flying_) {
+    if (!flying.book->breakdown().empty()) broken.push_back(id);
+  }
+  for (const std::string& id : broken) {
+    const Book book = TakeBack(id);
+    End(catalogue_.At(id), CampaignState::kFailed, kExitInternalError, book->breakdown());
+  }
 }
 
 // Its results stay where they are, without a report.
@@ -70,46 +90,63 @@ void Service::CloseRefused() {
 void Service::CloseComplete() {
   std::vector<std::string> complete;
   for (auto& [id, flying] : flying_) {
-    if (flying.book->Complete()) complete.push_back(id);
+    if (flying.book->Complete() && flying.book->TryFlush()) complete.push_back(id);
   }
   for (const std::string& id : complete) {
     if (const CampaignBook& book = *flying_.at(id).book; book.IsAudited()) {
       LogInfo("campaign {} ({}): {} results were flown again and agree", book.campaign().name,
               id.substr(0, 8), book.confirmed());
     }
-    to_report_.emplace_back(id, TakeBack(id));
+    // Its files are closed until its report is written: hundreds may wait for that.
+    const Book book = TakeBack(id);
+    to_report_.push_back(id);
     CatalogueEntry& entry = catalogue_.At(id);
-    entry.cases = to_report_.back().second->ledger().Progress().total;
+    entry.cases = book->ledger().Progress().total;
     entry.state = CampaignState::kReporting;
-    catalogue_.Write(entry);
+    Save(entry);
   }
 }
 
 void Service::StartReport() {
-  if (reporting_ || to_report_.empty()) return;
-  auto [id, book] = std::move(to_report_.front());
-  to_report_.pop_front();
-  reporting_.emplace();
-  reporting_->id = id;
-  reporting_->verdict = std::async(std::launch::async, [this, book = std::shared_ptr(std::move(book))] {
-    ReportOptions options;
-    options.threads = options_.report_threads;
-    options.progress = [this](const std::string&, std::uint64_t, std::uint64_t) {
-      if (stop_report_) throw Stopped();  // the next coordinator writes it
-    };
-    return WriteReports(book->folder(), book->campaign(), options).verdict;
-  });
+  if (reporting_) return;
+  const auto next = std::find_if(to_report_.begin(), to_report_.end(),
+                                 [this](const std::string& id) { return !IsDelayed(id); });
+  if (next == to_report_.end()) return;
+  const std::string id = *next;
+  to_report_.erase(next);
+  CatalogueEntry& entry = catalogue_.At(id);
+  try {
+    reporting_.emplace();
+    reporting_->id = id;
+    reporting_->verdict = std::async(
+        std::launch::async,
+        [this, text = catalogue_.TextOf(id), name = entry.name, results = catalogue_.ResultsOf(id)] {
+          ReportOptions options;
+          options.threads = options_.report_threads;
+          options.progress = [this](const std::string&, std::uint64_t, std::uint64_t) {
+            if (stop_report_) throw Stopped();  // the next coordinator writes it
+          };
+          ResultFolder folder = ResultFolder::Open(results);
+          folder.Lock();
+          return WriteReports(folder, ParseCampaign(text, name), options).verdict;
+        });
+  } catch (...) {
+    reporting_.reset();
+    Fail(entry, std::current_exception());
+  }
 }
 
 void Service::FinishReport() {
   if (!reporting_ || !IsReady(reporting_->verdict)) return;
   CatalogueEntry& entry = catalogue_.At(reporting_->id);
-  try {
-    End(entry, CampaignState::kDone, CampaignExitCode(reporting_->verdict.get(), entry.conflicts));
-  } catch (const std::exception& error) {
-    End(entry, CampaignState::kFailed, kExitInternalError, error.what());
-  }
+  Reporting reported = *std::move(reporting_);
   reporting_.reset();
+  try {
+    const CampaignVerdict verdict = reported.verdict.get();
+    End(entry, CampaignState::kDone, CampaignExitCode(verdict, entry.conflicts));
+  } catch (...) {
+    Fail(entry, std::current_exception());
+  }
 }
 
 // Of campaigns of the same flights one after the other: the later takes over what the earlier has flown. What
@@ -128,7 +165,7 @@ const CatalogueEntry* Service::NextToOpen() const {
     return is_flown(a) == is_flown(b) ? ComesBefore(a, b) : is_flown(b);
   };
   for (const auto& [id, entry] : catalogue_.entries()) {
-    if (entry.state != CampaignState::kWaiting || busy.contains(entry.flight_id)) continue;
+    if (entry.state != CampaignState::kWaiting || busy.contains(entry.flight_id) || IsDelayed(id)) continue;
     if (next == nullptr || comes_before(entry, *next)) next = &entry;
   }
   return next;
@@ -141,10 +178,10 @@ bool Service::MakeRoomFor(const CatalogueEntry& entry) {
     return ComesBefore(catalogue_.At(a.first), catalogue_.At(b.first));
   });
   CatalogueEntry& lowest = catalogue_.At(last->first);
-  if (lowest.priority >= entry.priority) return false;
+  if (lowest.priority >= entry.priority || !last->second.book->TryFlush()) return false;
   TakeBack(lowest.id);
   lowest.state = CampaignState::kWaiting;
-  catalogue_.Write(lowest);
+  Save(lowest);
   LogInfo("campaign {} ({}) waits for one of a higher priority", lowest.name, lowest.id.substr(0, 8));
   return true;
 }
@@ -153,18 +190,28 @@ void Service::StartOpening() {
   if (opening_) return;
   const CatalogueEntry* entry = NextToOpen();
   if (entry == nullptr || !MakeRoomFor(*entry)) return;
-  CampaignOpening opening{catalogue_.TextOf(entry->id),
-                          entry->name,
-                          catalogue_.ResultsOf(entry->id),
+  const std::string id = entry->id;
+  try {
+    BeginToOpen(*entry);
+  } catch (...) {
+    opening_.reset();
+    Fail(catalogue_.At(id), std::current_exception());
+  }
+}
+
+void Service::BeginToOpen(const CatalogueEntry& entry) {
+  CampaignOpening opening{catalogue_.TextOf(entry.id),
+                          entry.name,
+                          catalogue_.ResultsOf(entry.id),
                           {},
                           ++opened_,
                           workforce_.audit()};
   for (const auto& [id, other] : catalogue_.entries()) {
-    if (id != entry->id && other.flight_id == entry->flight_id)
+    if (id != entry.id && other.flight_id == entry.flight_id)
       opening.same_flights.push_back(catalogue_.ResultsOf(id));
   }
   opening_.emplace();
-  opening_->id = entry->id;
+  opening_->id = entry.id;
   opening_->book =
       std::async(std::launch::async, [opening = std::move(opening)] { return OpenBook(opening); });
 }
@@ -177,30 +224,81 @@ void Service::FinishOpening() {
   try {
     Book book = opened.book.get();
     if (entry.state != CampaignState::kWaiting) return;  // cancelled meanwhile
-    entry.flight_id = book->campaign().flight_id;        // another one if the engine is another one by now
+    delayed_.erase(opened.id);
+    entry.flight_id = book->campaign().flight_id;  // another one if the engine is another one by now
     workforce_.Open(*book, entry.priority);
     LogInfo("campaign {} ({}) is open: {} of {} cases are there", entry.name, opened.id.substr(0, 8),
             book->ledger().Progress().done, book->ledger().Progress().total);
     flying_[opened.id].book = std::move(book);
     entry.state = CampaignState::kFlying;
-    catalogue_.Write(entry);
-  } catch (const ResultError& error) {
-    if (error.kind() == ResultError::Kind::kDiskFull) throw;
-    End(entry, CampaignState::kFailed, kExitInternalError, error.what());
-  } catch (const InputError& error) {
-    End(entry, CampaignState::kFailed, kExitBadInput, error.what());
+    Save(entry);
+  } catch (...) {
+    if (entry.state == CampaignState::kWaiting) Fail(entry, std::current_exception());
   }
+}
+
+// Whatever it is: of this campaign alone. A full disk is waited for.
+void Service::Fail(CatalogueEntry& entry, std::exception_ptr error) {
+  try {
+    std::rethrow_exception(error);
+  } catch (const ResultError& problem) {
+    if (problem.kind() == ResultError::Kind::kDiskFull) {
+      Delay(entry, problem.what());
+    } else {
+      End(entry, CampaignState::kFailed, problem.IsIncomplete() ? kExitIncomplete : kExitInternalError,
+          problem.what());
+    }
+  } catch (const InputError& problem) {
+    End(entry, CampaignState::kFailed, kExitBadInput, problem.what());
+  } catch (const std::bad_alloc&) {
+    End(entry, CampaignState::kFailed, kExitInternalError,
+        fmt::format("the coordinator has not enough memory for its {} cases", entry.cases));
+  } catch (const std::exception& problem) {
+    End(entry, CampaignState::kFailed, kExitInternalError, problem.what());
+  }
+}
+
+void Service::Delay(const CatalogueEntry& entry, const std::string& problem) {
+  if (!delayed_.contains(entry.id)) {
+    LogError("campaign {} ({}) waits until there is space: {}", entry.name, entry.id.substr(0, 8), problem);
+  }
+  delayed_[entry.id] = {workforce_.now_s() + kDelay_s, problem};
+  if (entry.state == CampaignState::kReporting) to_report_.push_back(entry.id);
+}
+
+bool Service::IsDelayed(const std::string& id) const {
+  const auto delayed = delayed_.find(id);
+  return delayed != delayed_.end() && workforce_.now_s() < delayed->second.until_s;
+}
+
+void Service::Save(const CatalogueEntry& entry) {
+  try {
+    catalogue_.Write(entry);
+    unsaved_.erase(entry.id);
+  } catch (const ResultError& error) {
+    if (unsaved_.insert(entry.id).second) {
+      LogError("campaign {} ({}): its state cannot be stored, it is tried again: {}", entry.name,
+               entry.id.substr(0, 8), error.what());
+    }
+  }
+}
+
+void Service::SaveAgain() {
+  const std::set<std::string> unsaved = unsaved_;
+  for (const std::string& id : unsaved) Save(catalogue_.At(id));
 }
 
 void Service::Measure() {
   const double now_s = workforce_.now_s();
   if (now_s - measured_s_ < kMeasure_s) return;
   measured_s_ = now_s;
+  SaveAgain();
   for (auto& [id, flying] : flying_) {
     CatalogueEntry& entry = catalogue_.At(id);
     flying.past.emplace_back(now_s, flying.book->ledger().Progress().done);
     if (flying.past.size() > kRateOver) flying.past.pop_front();
     NoteConflicts(entry, flying);
+    NoteRemoved(entry, flying);
     Publish(entry);
   }
 }
@@ -211,21 +309,29 @@ void Service::NoteConflicts(CatalogueEntry& entry, Flying& flying) {
   if (seen == flying.conflicts_noted) return;
   entry.conflicts += seen - flying.conflicts_noted;
   flying.conflicts_noted = seen;
-  catalogue_.Write(entry);
+  Save(entry);
 }
 
-// From the workers. Its entry holds what the ledger knew.
+// An expelled worker's results: whoever cancels the campaign after a restart must not be promised them.
+void Service::NoteRemoved(CatalogueEntry& entry, const Flying& flying) {
+  const std::uint64_t done = flying.book->ledger().Progress().done;
+  if (done >= entry.done) return;
+  entry.done = done;
+  Save(entry);
+}
+
+// From the workers. Its entry holds what the ledger knew and the disk has.
 Service::Book Service::TakeBack(const std::string& id) {
   const auto found = flying_.find(id);
   CatalogueEntry& entry = catalogue_.At(id);
-  found->second.book->Flush();
+  found->second.book->TryFlush();
   NoteConflicts(entry, found->second);
   workforce_.Close(entry.flight_id);
   Book book = std::move(found->second.book);
   std::erase_if(flew_, [&](const auto& each) { return each.first == id; });
   flew_.emplace_back(id, book->tally());
   if (flew_.size() > kRemembered) flew_.pop_front();
-  entry.done = book->ledger().Progress().done;
+  entry.done = book->ledger().Progress().done - book->unstored();
   entry.quarantined = book->ledger().Progress().quarantined;
   flying_.erase(found);
   return book;
@@ -235,7 +341,8 @@ void Service::End(CatalogueEntry& entry, CampaignState state, int code, const st
   entry.state = state;
   entry.code = code;
   entry.problem = problem.substr(0, kMaxProblem);
-  catalogue_.Write(entry);
+  delayed_.erase(entry.id);
+  Save(entry);
   Publish(entry);
   if (problem.empty()) {
     LogInfo("campaign {} ({}) is {}, code {}", entry.name, entry.id.substr(0, 8), CampaignStateName(state),
@@ -260,6 +367,7 @@ CampaignView Service::View(const std::string& id) const {
   if (const RunningTally* tally = TallyOf(id); tally != nullptr && !HasEnded(entry.state))
     view.standings = tally->Standings();
   const auto flying = flying_.find(id);
+  if (const auto delayed = delayed_.find(id); delayed != delayed_.end()) view.problem = Waiting(delayed->second.problem);
   if (flying == flying_.end()) {
     view.progress.total = entry.cases;
     view.progress.done = entry.done;
@@ -270,6 +378,7 @@ CampaignView Service::View(const std::string& id) const {
   }
   if (const auto refusal = workforce_.RefusalByAll(entry.flight_id))
     view.problem = "no worker here can fly it: " + *refusal;
+  if (const std::string& pause = flying->second.book->pause(); !pause.empty()) view.problem = Waiting(pause);
   view.progress = flying->second.book->ledger().Progress();
   const auto& past = flying->second.past;
   if (past.size() < 2) return view;
@@ -299,7 +408,7 @@ bool Service::HasWork() const {
 }
 
 void Service::Relaunch(const std::string& id, int priority) {
-  CatalogueEntry& entry = catalogue_.At(id);
+  CatalogueEntry entry = catalogue_.At(id);
   entry.priority = priority;
   if (entry.state == CampaignState::kCancelled || entry.state == CampaignState::kFailed ||
       (entry.state == CampaignState::kDone && entry.quarantined > 0)) {
@@ -308,6 +417,7 @@ void Service::Relaunch(const std::string& id, int priority) {
     entry.problem.clear();
   }
   catalogue_.Write(entry);
+  catalogue_.At(id) = entry;
   if (const auto flying = flying_.find(id); flying != flying_.end())
     workforce_.Open(*flying->second.book, priority);
 }
@@ -320,12 +430,16 @@ void Service::Launch(CatalogueEntry entry, const std::string& text) {
 void Service::Cancel(const std::string& id) {
   CatalogueEntry& entry = catalogue_.At(id);
   if (entry.state == CampaignState::kCancelled) return;
-  if (HasEnded(entry.state) || entry.state == CampaignState::kReporting) {
+  if (entry.state == CampaignState::kDone || entry.state == CampaignState::kReporting) {
     throw Refused(kExitBadInput, fmt::format("campaign {} is {} and cannot be cancelled", id.substr(0, 8),
                                              CampaignStateName(entry.state)));
   }
+  CatalogueEntry cancelled = entry;
+  cancelled.state = CampaignState::kCancelled;
+  cancelled.code = kExitIncomplete;
+  catalogue_.Write(cancelled);
   if (flying_.contains(id)) TakeBack(id);
-  End(entry, CampaignState::kCancelled, kExitIncomplete);
+  End(entry, CampaignState::kCancelled, kExitIncomplete, entry.problem);
 }
 
 }  // namespace dispersa

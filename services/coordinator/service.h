@@ -4,11 +4,13 @@
 #include <atomic>
 #include <cstdint>
 #include <deque>
+#include <exception>
 #include <filesystem>
 #include <future>
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -19,10 +21,14 @@
 
 namespace dispersa {
 
+/// A ledger takes 17 bytes a case, a report 140: with eight such campaigns open and a report 1.5 GB.
+inline constexpr std::uint64_t kDefaultMaxCases = 5000000;
+
 struct ServiceOptions {
   std::filesystem::path data;
   int report_threads = 1;
   std::size_t open_at_once = 8;  ///< campaigns that fly side by side; the others wait
+  std::uint64_t max_cases = kDefaultMaxCases;  ///< of a campaign: its ledger and its report take memory for each
 };
 
 /// Asked for something that cannot be; `code` is the exit code of the client.
@@ -38,23 +44,25 @@ struct CampaignView {
   double rate_per_s = 0.0;
   std::optional<double> eta_s;
   std::vector<RequirementStanding> standings;  ///< until it has ended
-  std::string problem;                         ///< of one that failed, or that no worker here can fly
+  std::string problem;  ///< of one that failed, that no worker here can fly, or that waits for the disk
 };
 
 /// Everything that a client was told survives a restart: a campaign is on the disk before its id is answered.
 /// One thread talks; another one opens campaigns and a third writes reports, since both may take minutes.
+/// What goes wrong with one campaign ends that one; a full disk delays it.
 class Service {
  public:
   /// Throws InputError if the data directory cannot be used.
   Service(const ServiceOptions& options, Workforce& workforce);
   ~Service();
 
-  /// Between two steps of the workforce. Throws ResultError when the disk is full.
+  /// Between two steps of the workforce.
   void Step();
-  /// Stores what has gathered.
+  /// Stores what has gathered, as far as the disk takes it.
   void Flush();
 
   const Catalogue& catalogue() const { return catalogue_; }
+  std::uint64_t max_cases() const { return options_.max_cases; }
   CampaignView View(const std::string& id) const;
   /// What its results so far come to; also of one that flew lately. nullptr: not known.
   const RunningTally* TallyOf(const std::string& id) const;
@@ -64,6 +72,8 @@ class Service {
   bool HasWork() const;
   /// Whether workers are needed now.
   bool HasWorkToFly() const { return !flying_.empty(); }
+
+  // What clients want is on the disk before they are told so: these throw ResultError, and have changed nothing then.
 
   /// Puts a campaign that is known into the queue again if it was cancelled, failed or gave cases up, and
   /// changes its priority.
@@ -89,17 +99,26 @@ class Service {
     std::future<CampaignVerdict> verdict;
   };
 
+  void CloseBroken();
   void CloseRefused();
   void CloseComplete();
   void FinishReport();
   void StartReport();
   void FinishOpening();
   void StartOpening();
+  void BeginToOpen(const CatalogueEntry& entry);
   const CatalogueEntry* NextToOpen() const;
   bool MakeRoomFor(const CatalogueEntry& entry);
   void Measure();
   void NoteConflicts(CatalogueEntry& entry, Flying& flying);
+  void NoteRemoved(CatalogueEntry& entry, const Flying& flying);
   Book TakeBack(const std::string& id);
+  /// In time, when the disk does not take it now.
+  void Save(const CatalogueEntry& entry);
+  void SaveAgain();
+  void Delay(const CatalogueEntry& entry, const std::string& problem);
+  bool IsDelayed(const std::string& id) const;
+  void Fail(CatalogueEntry& entry, std::exception_ptr error);
   void End(CatalogueEntry& entry, CampaignState state, int code, const std::string& problem = "");
   void Publish(const CatalogueEntry& entry);
 
@@ -109,9 +128,15 @@ class Service {
   std::map<std::string, Flying> flying_;  ///< by id
   std::deque<std::pair<std::string, RunningTally>> flew_;  ///< by id: what the last ones came to
   std::optional<Opening> opening_;
-  std::deque<std::pair<std::string, Book>> to_report_;
+  std::deque<std::string> to_report_;  ///< ids; their folders are closed meanwhile
   std::optional<Reporting> reporting_;
   std::atomic<bool> stop_report_ = false;
+  struct Delayed {
+    double until_s;
+    std::string problem;
+  };
+  std::map<std::string, Delayed> delayed_;  ///< by id: the disk was full
+  std::set<std::string> unsaved_;           ///< ids whose state is not on the disk
   std::uint64_t opened_ = 0;
   double measured_s_ = -1.0;
 };

@@ -71,6 +71,81 @@ class BookTest : public testing::Test {
   std::optional<CampaignBook> book_;
 };
 
+/// On a disk that is full, or broken, as long as somebody says so.
+struct FullStore : MemoryStore {
+  void Store(std::span<const CaseResult> results, std::span<const ExecutionRecord> records) override {
+    Try();
+    MemoryStore::Store(results, records);
+  }
+  std::vector<std::uint64_t> Disown(const std::string& worker) override {
+    Try();
+    return MemoryStore::Disown(worker);
+  }
+  void Try() const {
+    if (problem) throw ResultError(*problem, "the disk is what it is");
+  }
+  std::optional<ResultError::Kind> problem;
+};
+
+class FullDiskTest : public BookTest {
+ protected:
+  FullDiskTest() {
+    campaign_.sampling.cases = 4;
+    auto store = std::make_unique<FullStore>();
+    store_ = store.get();
+    book_.emplace(campaign_, std::move(store));
+    book_->BePatient();
+    store_->problem = ResultError::Kind::kDiskFull;
+  }
+  FullStore* store_;
+};
+
+TEST_F(FullDiskTest, KeepsWhatItHasAndStoresItWhenThereIsSpace) {
+  Return("w", 0, 3);
+  EXPECT_FALSE(book_->FlushIfDue(10.0));
+  EXPECT_EQ(book_->pause(), "the disk is what it is");
+  EXPECT_EQ(book_->breakdown(), "");
+  EXPECT_EQ(book_->unstored(), 3u);
+  store_->problem.reset();
+  EXPECT_FALSE(book_->FlushIfDue(14.9)) << "it is tried again after 5 s";
+  EXPECT_TRUE(book_->FlushIfDue(15.0));
+  EXPECT_EQ(book_->pause(), "");
+  EXPECT_EQ(book_->unstored(), 0u);
+  EXPECT_EQ(store_->rows.size(), 3u);
+}
+
+TEST_F(FullDiskTest, AnExpelledWorkersResultsAreRemovedWhenItCanBe) {
+  store_->problem.reset();
+  Return("liar", 0, 1);
+  Return("w", 1, 4);
+  EXPECT_TRUE(book_->FlushIfDue(10.0));
+  store_->problem = ResultError::Kind::kDiskFull;
+  book_->Disown("liar");
+  EXPECT_FALSE(book_->Complete()) << "all cases have results, one of them a liar's";
+  store_->problem.reset();
+  EXPECT_TRUE(book_->FlushIfDue(15.0));
+  EXPECT_EQ(book_->ledger().Progress().done, 3u);
+  EXPECT_FALSE(store_->rows.contains(0));
+}
+
+TEST_F(FullDiskTest, AnyOtherErrorBreaksTheBookForEver) {
+  store_->problem = ResultError::Kind::kFile;
+  Return("w", 0, 3);
+  EXPECT_FALSE(book_->FlushIfDue(10.0));
+  EXPECT_EQ(book_->breakdown(), "the disk is what it is");
+  EXPECT_EQ(book_->pause(), "");
+  store_->problem.reset();
+  EXPECT_FALSE(book_->FlushIfDue(99.0));
+}
+
+TEST_F(FullDiskTest, ABookThatIsNotPatientThrows) {
+  auto store = std::make_unique<FullStore>();
+  store->problem = ResultError::Kind::kDiskFull;
+  book_.emplace(campaign_, std::move(store));
+  Return("w", 0, 3);
+  EXPECT_THROW(book_->FlushIfDue(10.0), ResultError);
+}
+
 TEST_F(BookTest, AnUndecidedLookGoesOnToTheNext) {
   OpenSequential();
   EXPECT_EQ(Target(), 10u);

@@ -3,13 +3,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <vector>
 
+#include "core/report/database.h"
 #include "core/report/result_folder.h"
 #include "made_up_service.h"
 #include "services/coordinator/campaign_opening.h"
 #include "services/transport/exit_code.h"
+#include "small_disk.h"
 
 namespace dispersa::campaign_service_test {
 namespace {
@@ -184,7 +188,7 @@ TEST_F(CampaignServiceTest, ADoneCampaignGoesOnIfItHasQuarantinedCases) {
   }
 }
 
-TEST_F(CampaignServiceTest, ACampaignInItsReportOrAtItsEndIsNotCancelled) {
+TEST_F(CampaignServiceTest, ACampaignInItsReportIsNotCancelledAndAFailedOneIs) {
   StartService();
   const Campaign campaign = Smoke(1);
   const std::string id = Launch(campaign);
@@ -194,7 +198,12 @@ TEST_F(CampaignServiceTest, ACampaignInItsReportOrAtItsEndIsNotCancelled) {
   ASSERT_TRUE(Reaches(id, CampaignState::kReporting));
   EXPECT_EQ(RefusalOfCancel(id), "2: campaign " + id.substr(0, 8) + " is reporting and cannot be cancelled");
   ASSERT_TRUE(Reaches(id, CampaignState::kFailed)) << "a result that its flight does not give";
-  EXPECT_EQ(RefusalOfCancel(id), "2: campaign " + id.substr(0, 8) + " is failed and cannot be cancelled");
+  const std::string problem = service_->View(id).problem;
+  EXPECT_NE(problem, "");
+  EXPECT_EQ(RefusalOfCancel(id), "none");
+  EXPECT_EQ(StateOf(id), CampaignState::kCancelled);
+  EXPECT_EQ(service_->catalogue().entries().at(id).code, kExitIncomplete);
+  EXPECT_EQ(service_->View(id).problem, problem) << "why it failed is still known";
 }
 
 TEST_F(CampaignServiceTest, TimeLeftIsWhatIsMissingByTheRateOfTheLastSeconds) {
@@ -232,6 +241,157 @@ TEST_F(CampaignServiceTest, ACampaignThatNoWorkerCanFlySaysWhy) {
   workforce_.dispatcher.On("w", CampaignRefusal{"w", MadeUpWorkforce::kEpoch, campaign.flight_id, "no law"},
                            workforce_.time_s);
   EXPECT_EQ(service_->View(id).problem, "no worker here can fly it: no law");
+}
+
+// What goes wrong with one campaign is that one's matter: the others fly on.
+class ServiceTroubleTest : public CampaignServiceTest {
+ protected:
+  ServiceTroubleTest() { StartService(30); }
+
+  bool AnotherFlies() { return Reaches(Launch(Smoke(2, 99)), CampaignState::kFlying); }
+  std::filesystem::path FolderOf(const std::string& id) const { return folder_ / "data" / id; }
+  std::string StoredState(const std::string& id) const {
+    const auto state = nlohmann::ordered_json::parse(TextOfFile(FolderOf(id) / "state.json"));
+    return state.at("state").get<std::string>() + ": " + state.at("problem").get<std::string>();
+  }
+  std::string Failure(const std::string& id) const {
+    const CatalogueEntry& entry = service_->catalogue().entries().at(id);
+    return std::string(CampaignStateName(entry.state)) + " " + std::to_string(entry.code) + ": " +
+           service_->View(id).problem;
+  }
+};
+
+TEST_F(ServiceTroubleTest, ACampaignOfFourBillionCasesIsOpenedAndCancelled) {
+  const std::string id = Launch(Smoke(4294967295));
+  ASSERT_TRUE(Reaches(id, CampaignState::kFlying));
+  EXPECT_EQ(service_->View(id).progress.waiting, 4294967295u);
+  EXPECT_EQ(RefusalOfCancel(id), "none");
+  EXPECT_TRUE(AnotherFlies());
+}
+
+TEST_F(ServiceTroubleTest, ATextThatCannotBeReadFailsItsCampaignAlone) {
+  const std::string id = Launch(Smoke(2));
+  std::filesystem::remove(FolderOf(id) / "campaign.yaml");
+  ASSERT_TRUE(Reaches(id, CampaignState::kFailed));
+  const std::string text = (FolderOf(id) / "campaign.yaml").string();
+  EXPECT_EQ(Failure(id), "failed 1: " + text + ": cannot be read");
+  EXPECT_EQ(StoredState(id), "failed: " + text + ": cannot be read");
+  EXPECT_TRUE(AnotherFlies());
+  EXPECT_EQ(RefusalOfCancel(id), "none");
+  StartService();
+  EXPECT_EQ(StateOf(id), CampaignState::kCancelled) << "also after a restart";
+}
+
+TEST_F(ServiceTroubleTest, AFolderThatCannotBeOpenedFailsItsCampaignAlone) {
+  const std::string id = Launch(Smoke(2));
+  std::filesystem::create_directories(FolderOf(id) / "results");
+  std::ofstream(FolderOf(id) / "results" / "results.sqlite") << "no database";
+  ASSERT_TRUE(Reaches(id, CampaignState::kFailed));
+  EXPECT_EQ(Failure(id), "failed 2: " + (FolderOf(id) / "results").string() +
+                             ": not a result folder: its results.sqlite is no SQLite database");
+  EXPECT_TRUE(AnotherFlies());
+}
+
+TEST_F(ServiceTroubleTest, ADatabaseThatBreaksFailsItsCampaignAlone) {
+  const Campaign campaign = Smoke(4);
+  const std::string id = Launch(campaign);
+  ASSERT_TRUE(Reaches(id, CampaignState::kFlying));
+  workforce_.Join("w");
+  Return(campaign, 1);
+  workforce_.time_s += 1.0;
+  workforce_.Tick();  // stored
+  const std::filesystem::path database = FolderOf(id) / "results" / "results.sqlite";
+  Database(database, Database::Mode::kExisting).Execute("DROP TABLE execution");
+  Return(campaign, 2);
+  workforce_.time_s += 1.0;
+  workforce_.Tick();
+  service_->Step();
+  EXPECT_EQ(Failure(id), "failed 1: " + database.string() + ": no such table: execution");
+  EXPECT_EQ(service_->View(id).progress.done, 1u) << "what is stored";
+  EXPECT_TRUE(AnotherFlies());
+}
+
+TEST_F(ServiceTroubleTest, AStateThatCannotBeStoredIsStoredLater) {
+  const Campaign campaign = Smoke(1);
+  const std::string id = Launch(campaign);
+  ASSERT_TRUE(Reaches(id, CampaignState::kFlying));
+  const std::filesystem::path obstacle = FolderOf(id) / "state.json.tmp";
+  std::filesystem::create_directories(obstacle / "in its way");
+  workforce_.Join("w");
+  Return(campaign, 0);
+  ASSERT_TRUE(Reaches(id, CampaignState::kFailed)) << "a result that its flight does not give";
+  EXPECT_EQ(StoredState(id), "flying: ");
+  std::filesystem::remove_all(obstacle);
+  workforce_.time_s += 2.0;
+  service_->Step();
+  EXPECT_EQ(StoredState(id), "failed: " + service_->View(id).problem);
+}
+
+// Three descriptors each, of 1024: some hundred campaigns would end the service.
+TEST_F(ServiceTroubleTest, CampaignsThatWaitForTheirReportHaveNoFilesOpen) {
+  constexpr std::uint64_t kCampaigns = 6;
+  workforce_.Join("w");
+  std::vector<Campaign> campaigns;
+  for (std::uint64_t i = 0; i < kCampaigns; ++i) campaigns.push_back(Smoke(1, 100 + i));
+  for (const Campaign& campaign : campaigns) ASSERT_TRUE(Reaches(Launch(campaign), CampaignState::kFlying));
+  for (const Campaign& campaign : campaigns) Return(campaign, 0);
+  service_->Step();
+  for (const Campaign& campaign : campaigns) ASSERT_EQ(StateOf(campaign.id), CampaignState::kReporting);
+  std::set<std::string> open;
+  for (const auto& descriptor : std::filesystem::directory_iterator("/proc/self/fd")) {
+    std::error_code error;
+    const std::string file = std::filesystem::read_symlink(descriptor, error).string();
+    const std::size_t results = file.find("/results");
+    if (file.starts_with(folder_.path().string()) && results != std::string::npos) open.insert(file.substr(0, results));
+  }
+  EXPECT_LE(open.size(), 1u) << "that whose report is written";
+}
+
+// The same steps on a disk that becomes full while a campaign flies, while one is opened and while one is launched.
+TEST_F(ServiceTroubleTest, AFullDiskPausesCampaignsAndTheyGoOnByThemselves) {
+  service_.reset();
+  const Campaign flying = Smoke(200, 1), opening = Smoke(2, 2), launching = Smoke(2, 3);
+  const auto steps = [&]() -> std::string {
+    StartService();
+    std::string said;
+    const auto note = [&](const std::string& what) { said += what + "\n"; };
+    Launch(flying);
+    if (!Reaches(flying.id, CampaignState::kFlying)) return "does not fly";
+    Launch(opening);
+    workforce_.Join("w");
+    FillDisk(folder_ / "filler");
+    for (std::uint64_t i = 0; i < 150; ++i) Return(flying, i);
+    workforce_.time_s += 1.0;
+    workforce_.Tick();
+    if (!Until([&] { return !service_->View(opening.id).problem.empty(); })) return "the opening is not delayed";
+    note(Failure(flying.id));
+    note(Failure(opening.id));
+    note(std::to_string(MadeUpWorkforce::CasesIn(workforce_.Tick())) + " assigned");
+    try {
+      Launch(launching);
+      note("launched");
+    } catch (const ResultError& error) {
+      note(error.what());
+    }
+    std::filesystem::remove(folder_ / "filler");
+    workforce_.time_s += 11.0;
+    workforce_.Join("w");
+    note(std::to_string(MadeUpWorkforce::CasesIn(workforce_.Tick()) > 0) + " assigned again");
+    note(Failure(flying.id));
+    if (!Reaches(opening.id, CampaignState::kFlying)) return "the opening is not tried again";
+    note(Failure(opening.id));
+    if (!Reaches(Launch(launching), CampaignState::kFlying)) return "does not fly when launched again";
+    note(std::to_string(ResultFolder::Open(service_->catalogue().ResultsOf(flying.id)).CaseCount()) + " stored");
+    return said;
+  };
+  const std::string data = (folder_ / "data").string(),
+                    later = ": no space left on the disk; it goes on when there is space\n";
+  EXPECT_EQ(OnASmallDisk(folder_.path(), "3m", steps),
+            "flying 0: " + data + "/" + flying.id + "/results/results.sqlite" + later +  //
+                "waiting 0: " + data + "/" + opening.id + "/results/campaign.yaml" + later +
+                "0 assigned\n" +  //
+                data + "/" + launching.id + "/campaign.yaml: no space left on the disk\n" +
+                "1 assigned again\nflying 0: \nflying 0: \n150 stored\n");
 }
 
 // A campaign takes over results of the same flights.

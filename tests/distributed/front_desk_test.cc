@@ -102,6 +102,50 @@ TEST_F(FrontDeskTest, ATextHasAtMost64MiB) {
             "2: the campaign's text is larger than 64 MiB");
 }
 
+TEST_F(FrontDeskTest, ACampaignHasAtMostSoManyCases) {
+  StartService(8, 100);
+  const Campaign fits = Smoke(100), large = Smoke(101);
+  for (const Campaign* campaign : {&large, &fits})
+    Upload(campaign->id, campaign->canonical_yaml.size(), 0, campaign->canonical_yaml);
+  const Reply refused = LaunchUploaded(large);
+  EXPECT_EQ(refused.code, kExitBadInput);
+  EXPECT_EQ(refused.text, "campaign " + large.id.substr(0, 8) +
+                              " has 101 cases, allowed: at most 100 (dispersa-coordinator --max-cases)");
+  EXPECT_EQ(LaunchUploaded(fits).code, kExitDone);
+  EXPECT_EQ(service_->catalogue().entries().size(), 1u);
+}
+
+// A campaign's folder cannot be made: the client is told, and the next one is launched.
+TEST_F(FrontDeskTest, AFolderThatCannotBeMadeIsARefusal) {
+  const Campaign first = Smoke(2), second = Smoke(3);
+  const fs::path folder = folder_ / "data" / first.id;
+  std::ofstream(folder) << "in its way";
+  for (const Campaign* campaign : {&first, &second})
+    Upload(campaign->id, campaign->canonical_yaml.size(), 0, campaign->canonical_yaml);
+  const Reply refused = LaunchUploaded(first);
+  EXPECT_EQ(refused.code, kExitInternalError);
+  EXPECT_EQ(refused.text, folder.string() + ": cannot be made: Not a directory");
+  EXPECT_EQ(LaunchUploaded(second).code, kExitDone);
+  EXPECT_FALSE(service_->catalogue().entries().contains(first.id));
+}
+
+// What a client was told is on the disk.
+TEST_F(FrontDeskTest, AStateThatCannotBeStoredChangesNothingForAClient) {
+  const std::string id = Launch(Smoke(2));
+  ASSERT_TRUE(Reaches(id, CampaignState::kFlying));
+  const fs::path obstacle = folder_ / "data" / id / "state.json.tmp";
+  fs::create_directories(obstacle / "in its way");
+  const std::string refused =
+      "1: " + (folder_ / "data" / id / "state.json").string() + ": cannot be written: Is a directory";
+  EXPECT_EQ(Refusal("cancel", {{"id", id}}), refused);
+  EXPECT_EQ(Refusal("launch", {{"id", id}, {"flight_id", Smoke(2).flight_id}, {"priority", 7}}), refused);
+  EXPECT_EQ(StateOf(id), CampaignState::kFlying);
+  EXPECT_EQ(service_->catalogue().entries().at(id).priority, 0);
+  fs::remove_all(obstacle);
+  EXPECT_EQ(AskFor("cancel", {{"id", id}}).at("id"), id);
+  EXPECT_EQ(StateOf(id), CampaignState::kCancelled);
+}
+
 TEST_F(FrontDeskTest, ATextOfAnotherSizeBeginsAnew) {
   EXPECT_EQ(Upload("a", 10, 0, "12345"), 5u);
   EXPECT_EQ(Upload("a", 12, 5, "67890"), 0u) << "half of another text";

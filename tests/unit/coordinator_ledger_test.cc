@@ -30,6 +30,23 @@ TEST(Ledger, RefusesAnotherEngineVersionWithAReason) {
   EXPECT_THAT(ledger.Assign(0.0), IsEmpty());
 }
 
+// 24 bytes for each of them would be 100 GB.
+TEST(Ledger, HoldsAsManyCasesAsACampaignMayHave) {
+  constexpr std::uint64_t kCases = 4294967295;
+  Ledger ledger("1", kCases, {.side_by_side = 1});
+  ledger.MarkDone(kCases - 1, ResultOf(kCases - 1));
+  ledger.Join("w", kHello, 0.0);
+  const auto given = ledger.Assign(0.0);
+  ASSERT_THAT(given, SizeIs(2));
+  EXPECT_EQ(ledger.Finished("w", 0, given[0].attempt, ResultOf(0), 1.0), Acceptance::kAccepted);
+  EXPECT_EQ(ledger.Finished("w", kCases - 1, 0, ResultOf(7), 1.0), Acceptance::kConflict);
+  EXPECT_EQ(ledger.Finished("w", kCases - 2, 0, ResultOf(kCases - 2), 1.0), Acceptance::kAccepted);
+  EXPECT_EQ(ledger.Finished("w", kCases, 0, ResultOf(kCases), 1.0), Acceptance::kUnknown);
+  EXPECT_EQ(ledger.Progress().done, 3u);
+  EXPECT_EQ(ledger.Progress().waiting, kCases - 4) << "one is assigned";
+  EXPECT_EQ(ledger.FingerprintOf(kCases - 2), ResultOf(kCases - 2));
+}
+
 TEST(Ledger, GivesAsManyAssignmentsAsAWorkerGrantsCredits) {
   Ledger ledger("1", 10, {.side_by_side = 1});
   EXPECT_EQ(ledger.Join("w", kHello, 0.0), std::nullopt);
