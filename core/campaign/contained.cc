@@ -26,6 +26,7 @@ namespace {
 
 bool contained = false;
 std::string refusal;
+std::set<std::string> not_refused;
 
 // Kinds of frames in the pipe: a byte, the size as 8 bytes, the bytes.
 constexpr char kSaid = 's', kProblem = 'p', kThrew = 't', kDone = 'd';
@@ -289,8 +290,11 @@ void RunContained(const std::function<void(const Say& say)>& work, const Say& he
 
 bool IsContained() { return contained; }
 
-void RefusePlugins(const std::string& why) { refusal = why; }
-const std::string& PluginRefusal() { return refusal; }
+void RefusePlugins(const std::string& why, std::set<std::string> but) {
+  refusal = why;
+  not_refused = std::move(but);
+}
+std::string PluginRefusal(const std::string& sha256) { return not_refused.contains(sha256) ? "" : refusal; }
 
 PluginDescription DescribeContained(const PluginConfig& config) {
   std::vector<std::string> texts;

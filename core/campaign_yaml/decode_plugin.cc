@@ -83,8 +83,8 @@ PluginConfig DecodePlugin(const InputNode& node, const std::string& path, Python
   plugin.library = DecodeLibrary(library, map.PathOf("library"), problems, plugin.sha256);
   if (plugin.library == nullptr) return plugin;
   PluginDescription description;
-  if (!PluginRefusal().empty()) {
-    AddProblem(problems, library, map.PathOf("library"), "the control law " + PluginRefusal());
+  if (const std::string refusal = PluginRefusal(plugin.sha256); !refusal.empty()) {
+    AddProblem(problems, library, map.PathOf("library"), "the control law " + refusal);
     return plugin;
   }
   try {

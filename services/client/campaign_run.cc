@@ -26,6 +26,7 @@
 #include "services/coordinator/utc.h"
 #include "services/log/log.h"
 #include "services/transport/private_domain.h"
+#include "services/transport/run_pass.h"
 
 namespace dispersa {
 namespace {
@@ -67,11 +68,16 @@ class CampaignRun {
     }
     const PrivateDomain domain;
     execution_.domain = domain.domain();
-    Coordinator coordinator({domain.domain(), kLoopback}, book_);
+    // Every user of this machine can join the domain: only who has the secret is listened to, on both sides.
+    RunPass pass{DrawSecret(), {}};
+    if (const auto& law = book_.campaign().autopilot.plugin; law && !law->in_python) pass.plugins.insert(law->sha256);
+    NetworkOptions network{domain.domain(), kLoopback};
+    network.secret = pass.secret;
+    Coordinator coordinator(network, book_);
     LocalWorkers workers(program,
                          {"--domain", std::to_string(domain.domain()), "--address", kLoopback, "--peer",
                           fmt::format("{}:{}", kLoopback, CoordinatorPort(domain.domain()))},
-                         count);
+                         count, ToText(pass));
     std::optional<std::string> problem;
     double joined_s = Now();
     while (!book_.refusal() && !book_.Complete() && !problem) {

@@ -1,5 +1,6 @@
 #include "services/client/local_workers.h"
 
+#include <fcntl.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -22,11 +23,23 @@ namespace {
 constexpr int kExecFailed = 127;
 constexpr double kLongestDelay_s = 2.0;
 
+// The end to read from of a pipe that holds this text: what fits into its buffer needs nobody to read it.
+int PipeWith(const std::string& text) {
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) throw NetworkError(std::string("no pipe can be made: ") + std::strerror(errno));
+  const bool is_whole = write(ends[1], text.data(), text.size()) == static_cast<ssize_t>(text.size());
+  close(ends[1]);
+  if (is_whole) return ends[0];
+  close(ends[0]);
+  throw NetworkError("no pipe can be filled");
+}
+
 // Between fork and exec of a process with threads: only what is safe in a signal handler.
-[[noreturn]] void BecomeWorker(const char* program, char* const* arguments, pid_t parent) {
+[[noreturn]] void BecomeWorker(const char* program, char* const* arguments, pid_t parent, int pass) {
   // The kernel kills the worker when its parent ends; if that happened already, nobody would.
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(kExecFailed);
+  if (pass >= 0) fcntl(pass, F_SETFD, 0);  // this one stays open
   execv(program, arguments);
   _exit(kExecFailed);
 }
@@ -46,9 +59,11 @@ WorkerEnd ClassifyExit(int status, std::string* how) {
   return code == 0 ? WorkerEnd::kLeft : WorkerEnd::kCrashed;
 }
 
-LocalWorkers::LocalWorkers(std::filesystem::path program, std::vector<std::string> arguments, int count)
+LocalWorkers::LocalWorkers(std::filesystem::path program, std::vector<std::string> arguments, int count,
+                           std::string pass)
     : program_(std::move(program)),
       arguments_(std::move(arguments)),
+      pass_(std::move(pass)),
       slots_(static_cast<std::size_t>(count)) {}
 
 LocalWorkers::~LocalWorkers() {
@@ -101,6 +116,8 @@ void LocalWorkers::Start(std::size_t slot) {
   std::vector<std::string> words = {program_.string()};
   words.insert(words.end(), arguments_.begin(), arguments_.end());
   words.insert(words.end(), {"--uuid", worker.uuid});
+  const int pass = pass_.empty() ? -1 : PipeWith(pass_);
+  if (pass >= 0) words.insert(words.end(), {"--run-pass", std::to_string(pass)});
   std::vector<char*> pointers;
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
@@ -108,8 +125,10 @@ void LocalWorkers::Start(std::size_t slot) {
   const pid_t parent = getpid();
   worker.started_utc = UtcNow();
   worker.pid = fork();
-  if (worker.pid == 0) BecomeWorker(pointers.front(), pointers.data(), parent);
-  if (worker.pid < 0) throw NetworkError(std::string("no process can be started: ") + std::strerror(errno));
+  if (worker.pid == 0) BecomeWorker(pointers.front(), pointers.data(), parent, pass);
+  const int error = errno;
+  if (pass >= 0) close(pass);
+  if (worker.pid < 0) throw NetworkError(std::string("no process can be started: ") + std::strerror(error));
   slots_[slot] = history_.size();
   history_.push_back(std::move(worker));
 }

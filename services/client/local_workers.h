@@ -28,8 +28,9 @@ WorkerEnd ClassifyExit(int status, std::string* how);
 /// Every worker dies with the thread that started it, even if that is killed. Not thread-safe.
 class LocalWorkers {
  public:
-  /// Each worker is `program arguments... --uuid <its own>`. Starts nothing yet.
-  LocalWorkers(std::filesystem::path program, std::vector<std::string> arguments, int count);
+  /// Each worker is `program arguments... --uuid <its own>`; what it shall know and nobody else comes to it through a
+  /// pipe (`--run-pass DESCRIPTOR`), if that is not empty. Starts nothing yet.
+  LocalWorkers(std::filesystem::path program, std::vector<std::string> arguments, int count, std::string pass = "");
   /// Kills what is left.
   ~LocalWorkers();
   LocalWorkers(const LocalWorkers&) = delete;
@@ -61,6 +62,7 @@ class LocalWorkers {
 
   std::filesystem::path program_;
   std::vector<std::string> arguments_;
+  std::string pass_;
   std::vector<std::optional<std::size_t>> slots_;  ///< position in history_ of the one that lives
   std::vector<WorkerProcess> history_;
   std::uint64_t progress_ = 0;

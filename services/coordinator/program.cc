@@ -94,7 +94,7 @@ int RunCoordinator(int argc, char** argv) {
       return AskHealth(Admit(network, admission, {Role::kCoordinator, Role::kClient}, host), host);
     }
     network = Admit(network, admission, {Role::kCoordinator});
-    AdmitPlugins(network, admission.allow_plugins);
+    AdmitPlugins(admission.allow_plugins);
     std::vector<std::string> again(argv, argv + argc);
     if (data.empty() && !request.resume) again.emplace_back("--resume");
     const ServeOptions options{network, audit, std::move(again)};

@@ -25,10 +25,11 @@ NetworkOptions Admit(NetworkOptions network, const Admission& admission, std::in
                      const std::string& peer = "");
 
 inline constexpr char kAllowPluginsHelp[] =
-    "take campaigns whose control law is a shared object, which runs here; without it on the loopback interface alone";
+    "take campaigns whose control law is a shared object: whoever may launch runs code here; without it they are "
+    "refused";
 
-/// Without `allowed`, control laws that are shared objects are refused beyond the loopback interface.
-void AdmitPlugins(const NetworkOptions& network, bool allowed);
+/// Without `allowed`, control laws that are shared objects are refused.
+void AdmitPlugins(bool allowed);
 
 /// A name on the network: `uuid`, after the name of our keys if we have any.
 std::string NameOnNetwork(const NetworkOptions& network, const std::string& uuid);

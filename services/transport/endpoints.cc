@@ -1,6 +1,7 @@
 #include "services/transport/endpoints.h"
 #include "services/log/log.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 
@@ -54,6 +55,32 @@ dds::DataReaderQos MakeReaderQos(const std::string& address, std::uint16_t port)
 void LogIncompatibleQos(const std::string& topic, dds::QosPolicyId_t policy) {
   LogError("{}: a peer's quality of service does not match (policy {}): another version of dispersa?", topic,
            static_cast<int>(policy));
+}
+
+Seal::Writer NameOfWriter(const rtps::GUID_t& writer) {
+  Seal::Writer name;
+  const auto* prefix = writer.guidPrefix.value;
+  const auto* entity = writer.entityId.value;
+  std::copy_n(entity, 4, std::copy_n(prefix, 12, name.begin()));
+  return name;
+}
+
+bool PutSeal(const Seal& seal, const std::string& topic, const Seal::Origin& origin,
+             rtps::SerializedPayload_t& payload) {
+  const std::uint32_t filled = (payload.length + 3) / 4 * 4;
+  if (filled + Seal::kSize > payload.max_size) return false;
+  std::fill(payload.data + payload.length, payload.data + filled, std::uint8_t{0});
+  seal.Put(topic, origin, payload.data, filled);
+  payload.length = filled + static_cast<std::uint32_t>(Seal::kSize);
+  return true;
+}
+
+bool HeardSeals::IsNew(const rtps::InstanceHandle_t& writer, const Seal::Origin& origin) {
+  if (origin.writer != NameOfWriter(rtps::iHandle2GUID(writer))) return false;
+  std::uint64_t& last = last_[origin.writer];
+  if (origin.number <= last) return false;
+  last = origin.number;
+  return true;
 }
 
 std::string ParticipantOf(const rtps::InstanceHandle_t& endpoint) {

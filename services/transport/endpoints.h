@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <exception>
 #include <functional>
+#include <map>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -19,6 +21,7 @@
 #include "services/transport/convert.h"
 #include "services/transport/mutex.h"
 #include "services/transport/participant.h"
+#include "services/transport/seal.h"
 #include "services/transport/validity.h"
 #include "services/transport/wire_shape.h"
 
@@ -41,13 +44,54 @@ void LogIncompatibleQos(const std::string& topic, eprosima::fastdds::dds::QosPol
 /// The participant that an endpoint belongs to: the same for all topics of one sender.
 std::string ParticipantOf(const eprosima::fastrtps::rtps::InstanceHandle_t& endpoint);
 
+/// A seal, and what fills the content up to a multiple of 4 bytes before it: the middleware would do so behind it.
+inline constexpr std::uint32_t kRoomForSeal = Seal::kSize + 3;
+/// False: there is no room.
+bool PutSeal(const Seal& seal, const std::string& topic, const Seal::Origin& origin,
+             eprosima::fastrtps::rtps::SerializedPayload_t& payload);
+/// As a seal names a writer.
+Seal::Writer NameOfWriter(const eprosima::fastrtps::rtps::GUID_t& writer);
+
+/// The numbers of seals grow: what has been heard once is not believed again.
+class HeardSeals {
+ public:
+  /// Whether the sample of this writer was sealed by it, and comes for the first time.
+  bool IsNew(const eprosima::fastrtps::rtps::InstanceHandle_t& writer, const Seal::Origin& origin);
+
+ private:
+  std::map<Seal::Writer, std::uint64_t> last_;  ///< of writers that have the secret
+};
+
 /// A decoder that cannot be made to throw or to allocate more than a sample is large. A sample that it
 /// refuses is handed over empty with `refused` set, so that the reader can say who sent it.
+///
+/// With a seal (of a secret that both sides have), a sample is sealed behind its content, and one whose seal does not fit
+/// is refused before anything of it is read.
 template <typename PubSubType>
 class GuardedType : public PubSubType {
  public:
+  explicit GuardedType(std::shared_ptr<const Seal> seal = nullptr, std::string topic = "")
+      : seal_(std::move(seal)), topic_(std::move(topic)) {}
+
+  bool serialize(void* data, eprosima::fastrtps::rtps::SerializedPayload_t* payload) override {
+    if (!PubSubType::serialize(data, payload)) return false;
+    return seal_ == nullptr || PutSeal(*seal_, topic_, writing, *payload);
+  }
+  std::function<std::uint32_t()> getSerializedSizeProvider(void* data) override {
+    auto size = PubSubType::getSerializedSizeProvider(data);
+    if (seal_ == nullptr) return size;
+    return [size = std::move(size)] { return size() + kRoomForSeal; };
+  }
   bool deserialize(eprosima::fastrtps::rtps::SerializedPayload_t* payload, void* data) override {
     using Message = typename PubSubType::type;
+    const std::uint32_t whole = payload->length;
+    is_foreign = seal_ != nullptr && !seal_->Fits(topic_, payload->data, payload->length, &read);
+    if (is_foreign) {
+      refused = true;
+      *static_cast<Message*>(data) = Message();
+      return true;
+    }
+    if (seal_ != nullptr) payload->length -= static_cast<std::uint32_t>(Seal::kSize);
     try {
       refused = !HasShape(WireShape<PubSubType>::value, payload->data, payload->length) ||
                 !PubSubType::deserialize(payload, data);
@@ -55,10 +99,19 @@ class GuardedType : public PubSubType {
       refused = true;
     }
     if (refused) *static_cast<Message*>(data) = Message();
+    payload->length = whole;
     return true;
   }
   /// Of the last sample that this thread decoded.
   static inline thread_local bool refused = false;
+  /// Because it has no seal that fits.
+  static inline thread_local bool is_foreign = false;
+  /// Of the last sample that this thread read, and of the one that it writes.
+  static inline thread_local Seal::Origin read, writing;
+
+ private:
+  std::shared_ptr<const Seal> seal_;
+  std::string topic_;
 };
 
 /// The worker or client who sends a message, or to whom it goes.
@@ -96,6 +149,8 @@ class Writer : private eprosima::fastdds::dds::DataWriterListener {
       Close();
       Open();
     }
+    using Type = GuardedType<PubSubType>;
+    Type::writing = {NameOfWriter(writer_->guid()), number_ = NextSealNumber(number_)};
     writer_->write(&message);
   }
   int matched() const {
@@ -134,6 +189,7 @@ class Writer : private eprosima::fastdds::dds::DataWriterListener {
   mutable Mutex mutex_;
   eprosima::fastdds::dds::DataWriter* writer_ DISPERSA_GUARDED_BY(mutex_) = nullptr;
   std::uint64_t written_ DISPERSA_GUARDED_BY(mutex_) = 0;
+  std::uint64_t number_ DISPERSA_GUARDED_BY(mutex_) = 0;  ///< of the last seal
 };
 
 /// Hands over, on a thread of the middleware, what is well-formed and makes sense (validity.h); what is not
@@ -169,10 +225,17 @@ class Reader : private eprosima::fastdds::dds::DataReaderListener {
   void on_data_available(eprosima::fastdds::dds::DataReader* reader) override {
     Message message;
     eprosima::fastdds::dds::SampleInfo info;
+    // Of two threads of the middleware one after the other: numbers of seals grow.
+    const Lock lock(mutex_);
     while (reader->take_next_sample(&message, &info) == ReturnCode_t::RETCODE_OK) {
       if (!info.valid_data) continue;
+      using Type = GuardedType<PubSubType>;
       const std::string sender = ParticipantOf(info.publication_handle);
-      if (GuardedType<PubSubType>::refused) {
+      if (participant_.IsSealed() && (Type::is_foreign || !heard_.IsNew(info.publication_handle, Type::read))) {
+        Complain(topic_, sender, "it does not show the secret of this run");
+        continue;
+      }
+      if (Type::refused) {
         Complain(topic_, sender, "it cannot be decoded");
         continue;
       }
@@ -206,6 +269,8 @@ class Reader : private eprosima::fastdds::dds::DataReaderListener {
   Participant& participant_;
   eprosima::fastdds::dds::Subscriber* subscriber_;
   eprosima::fastdds::dds::DataReader* reader_ = nullptr;
+  Mutex mutex_;
+  HeardSeals heard_ DISPERSA_GUARDED_BY(mutex_);
 };
 
 }  // namespace dispersa

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "services/transport/key_folder.h"
+#include "services/transport/seal.h"
 
 namespace dispersa {
 
@@ -24,6 +25,8 @@ struct NetworkOptions {
   std::string address;  ///< IPv4 address of the only interface to use; empty: all
   /// Who we are; then only those are spoken to whom the same authority issued keys, and all is encrypted.
   std::optional<KeyFolder> keys = {};
+  /// Then only those are listened to who have it too (seal.h).
+  std::optional<Secret> secret = {};
 };
 
 /// The fixed port at which the coordinator of a domain is discovered: 7400 + 250 * domain + 5, one that no

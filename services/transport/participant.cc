@@ -123,7 +123,9 @@ dds::DomainParticipantQos MakeQos(const ParticipantOptions& options) {
 }  // namespace
 
 Participant::Participant(const ParticipantOptions& options)
-    : has_keys_(options.network.keys.has_value()), neighbours_(has_keys_) {
+    : has_keys_(options.network.keys.has_value()),
+      seal_(options.network.secret ? std::make_shared<const Seal>(*options.network.secret) : nullptr),
+      neighbours_(has_keys_) {
   const int domain = options.network.domain;
   if (domain < 0 || domain > 99) {
     throw NetworkError("domain " + std::to_string(domain) + ": must be from 0 to 99");

@@ -36,7 +36,7 @@ class Participant {
   template <typename PubSubType>
   eprosima::fastdds::dds::Topic* TopicOf(const std::string& name) {
     if (auto* topic = FindTopic(name)) return topic;
-    return MakeTopic(name, eprosima::fastdds::dds::TypeSupport(new PubSubType()));
+    return MakeTopic(name, eprosima::fastdds::dds::TypeSupport(new PubSubType(seal_, name)));
   }
   /// In a partition; an empty one is none.
   eprosima::fastdds::dds::Publisher* MakePublisher(const std::string& partition);
@@ -45,6 +45,9 @@ class Participant {
   /// Whether this writer of another participant is sure to speak for, or to, the worker or client of that
   /// name. Without keys nothing is sure, and all may.
   bool MaySpeakFor(const eprosima::fastrtps::rtps::InstanceHandle_t& writer, const std::string& name) const;
+
+  /// Whether what is said here must be sealed.
+  bool IsSealed() const { return seal_ != nullptr; }
 
   /// Now and then: see Neighbours.
   void LogSilent() { neighbours_.LogSilent(); }
@@ -56,6 +59,7 @@ class Participant {
   eprosima::fastdds::dds::Topic* MakeTopic(const std::string& name, eprosima::fastdds::dds::TypeSupport type);
 
   bool has_keys_;
+  std::shared_ptr<const Seal> seal_;  ///< null: without secret
   Neighbours neighbours_;
   eprosima::fastdds::dds::DomainParticipant* participant_ = nullptr;
 };

@@ -19,8 +19,11 @@ struct WorkerLink::Impl {
       : participant({network, "dispersa-worker", std::nullopt, {peer}}),
         publisher(participant.MakePublisher(PartitionOf(worker))),
         subscriber(participant.MakeSubscriber({PartitionOf(worker)})) {
-    const auto push = [this](auto&& message, const std::string& sender) {
-      if (!events.Push(std::move(message))) Complain("message", sender, "too many wait already");
+    // Also what the coordinator has said to another worker, and somebody says again here.
+    const auto push = [this, worker](auto&& message, const std::string& sender) {
+      if (message.worker != worker) {
+        Complain("message", sender, "it is for another worker");
+      } else if (!events.Push(std::move(message))) Complain("message", sender, "too many wait already");
     };
     orders.emplace(participant, subscriber, kOrdersTopic, push);
     texts.emplace(participant, subscriber, kTextTopic, push);

@@ -4,9 +4,12 @@
 #include <csignal>
 #include <cstdlib>
 #include <exception>
+#include <optional>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
+#include "core/campaign/contained.h"
 #include "core/flight/lane_engine.h"
 #include "services/log/log.h"
 #include "services/program/command_line.h"
@@ -16,6 +19,7 @@
 #include "services/program/standard_output.h"
 #include "services/transport/admission.h"
 #include "services/transport/exit_code.h"
+#include "services/transport/run_pass.h"
 #include "services/worker/worker.h"
 
 namespace dispersa {
@@ -51,6 +55,9 @@ int RunWorker(int argc, char** argv) {
                  "give up (exit code 5) after so many seconds without a coordinator; default: never")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--uuid", options.uuid, "name of this incarnation, drawn if not given");
+  std::optional<int> run_pass;
+  app.add_option("--run-pass", run_pass, "descriptor from which `dispersa run` tells its worker who it is")
+      ->group("");  // for it alone
   if (const auto code = ParseCommandLine(app, argc, argv)) return *code;
   try {
     ChosenEngine();
@@ -69,7 +76,13 @@ int RunWorker(int argc, char** argv) {
   try {
     options.peer = ParsePeer(peer, options.network.domain);
     options.network = Admit(options.network, admission, {Role::kWorker}, options.peer.host);
-    AdmitPlugins(options.network, admission.allow_plugins);
+    if (run_pass) {
+      RunPass pass = TakeRunPass(*run_pass);
+      options.network.secret = pass.secret;
+      RefusePlugins("is not the shared object that the campaign of this run names", std::move(pass.plugins));
+    } else {
+      AdmitPlugins(admission.allow_plugins);
+    }
     options.uuid = NameOnNetwork(options.network, options.uuid.empty() ? MakeUuid() : options.uuid);
     Worker worker(options);
     std::thread([&] {

@@ -325,19 +325,18 @@ TEST_F(KeyFolderTest, WithoutKeysOnlyThisMachineIsSpokenTo) {
   }
 }
 
-TEST_F(KeyFolderTest, BeyondThisMachinePlugInsNeedLeave) {
-  const auto refusal = [](const NetworkOptions& network, bool allowed) {
+TEST(Admission, PlugInsNeedLeave) {
+  const std::string digest(64, 'a'), other(64, 'b');
+  const auto refusal = [&](bool allowed) {
     RefusePlugins("");
-    AdmitPlugins(network, allowed);
-    return PluginRefusal();
+    AdmitPlugins(allowed);
+    return PluginRefusal(digest);
   };
-  const std::string refused = "is a shared object, which is run here only where --allow-plugins says so";
-  NetworkOptions with_keys{0, ""};
-  with_keys.keys = OpenKeyFolder(Worker(), {Role::kWorker});
-  EXPECT_EQ(refusal({0, "127.0.0.1"}, false), "");
-  EXPECT_EQ(refusal({0, ""}, false), refused);
-  EXPECT_EQ(refusal(with_keys, false), refused) << "keys say who somebody is, not what may run here";
-  EXPECT_EQ(refusal(with_keys, true), "");
+  EXPECT_EQ(refusal(false), "is a shared object, which is run here only where --allow-plugins says so");
+  EXPECT_EQ(refusal(true), "");
+  RefusePlugins("is another one", {digest});
+  EXPECT_EQ(PluginRefusal(digest), "");
+  EXPECT_EQ(PluginRefusal(other), "is another one");
   RefusePlugins("");
 }
 

@@ -22,6 +22,7 @@ REFUSAL = (r"the control law pd_test is not deterministic: of case \d+, flown (b
 
 class LawsTest(ServiceCase):
     DOMAIN = "37"
+    DAEMON = ["--allow-plugins"]
 
     @classmethod
     def setUpClass(cls):
@@ -105,7 +106,7 @@ class LawsTest(ServiceCase):
 
     def test_a_campaigns_own_coordinator_compares_with_its_own_flights(self):
         _, campaign = self.campaign(DIFFERS_BY_WORKER)
-        coordinator = self.start("dispersa-coordinator", campaign, "--cases", 20000, "--out", self.data / "out")
+        coordinator = self.start("dispersa-coordinator", campaign, "--cases", 20000, "--out", self.data / "out", *self.DAEMON)
         self.start_worker()  # alone
         self.assertEqual(coordinator.wait(timeout=PATIENCE_S), 2, self.log.read_text())
         self.assertRegex(self.log.read_text(), REFUSAL)
@@ -118,17 +119,30 @@ class LawsTest(ServiceCase):
         self.assertRegex(run.stderr, REFUSAL)
         self.assertNotIn("result:", run.stdout)
 
-    def test_beyond_the_loopback_interface_it_has_to_be_allowed(self):
+    def test_without_leave_it_is_refused_on_the_loopback_interface_too(self):
         _, campaign = self.campaign(0)
-        # Refused before anything is sent.
-        refused = subprocess.run([BINARIES / "dispersa-coordinator", campaign, "--insecure", "--out", self.data / "out",
-                                  "--json"],
-                                 capture_output=True, text=True, timeout=PATIENCE_S)
-        self.assertEqual(refused.returncode, 2, refused.stderr)
-        self.assertIn("plugin.library: the control law is a shared object, which is run here only where --allow-plugins "
-                      "says so", refused.stderr)
-        error = json.loads(refused.stdout)
-        self.assertEqual((error["code"], error["errors"][0]["path"]), (2, "autopilot.plugin.library"))
+        words = "plugin.library: the control law is a shared object, which is run here only where --allow-plugins says so"
+        for network in ["--insecure"], self.NETWORK:
+            # Refused before anything is sent.
+            refused = subprocess.run([BINARIES / "dispersa-coordinator", campaign, *network, "--out", self.data / "out",
+                                      "--json"],
+                                     capture_output=True, text=True, timeout=PATIENCE_S)
+            self.assertEqual(refused.returncode, 2, refused.stderr)
+            self.assertIn(words, refused.stderr)
+            error = json.loads(refused.stdout)
+            self.assertEqual((error["code"], error["errors"][0]["path"]), (2, "autopilot.plugin.library"))
+        self.start_coordinator()
+        self.start("dispersa-worker", "--peer", "127.0.0.1")
+        identity = self.dispersa("launch", campaign).strip()
+        wait_for(lambda: self.status(identity)["problem"], "why it does not go on")
+        self.assertIn("no worker here can fly it: ", self.status(identity)["problem"])
+        self.assertIn(words, self.status(identity)["problem"])
+
+    def test_workers_of_a_run_take_what_its_campaign_names(self):
+        run = Run(self.root / "named", "--workers", 2, "--cases", CASES, "--autopilot", self.autopilot(0)).finish()
+        reference, _ = self.campaign(0)
+        self.assertEqual(run.code, reference.code, run.stderr)
+        self.assertEqual((run.out / "cases.csv").read_bytes(), (reference.out / "cases.csv").read_bytes())
 
 
 if __name__ == "__main__":

@@ -16,6 +16,7 @@ class ServiceCase(unittest.TestCase):
     DOMAIN: str  # of the class that tests; no other's
     CASES = 0    # of the reference, a run without workers whose bytes are expected; 0: there is none
     REFERENCE_PROGRAM = "dispersa"
+    DAEMON: list = []  # what its daemons are told besides
 
     @classmethod
     def setUpClass(cls):
@@ -45,10 +46,10 @@ class ServiceCase(unittest.TestCase):
         return self.processes[-1]
 
     def start_coordinator(self):
-        return self.start("dispersa-coordinator", "--data", self.data)
+        return self.start("dispersa-coordinator", "--data", self.data, *self.DAEMON)
 
     def start_worker(self, *arguments):
-        return self.start("dispersa-worker", "--peer", "127.0.0.1", *arguments)
+        return self.start("dispersa-worker", "--peer", "127.0.0.1", *self.DAEMON, *arguments)
 
     def dispersa(self, *arguments, code=0):
         """Runs a client command; its standard output."""

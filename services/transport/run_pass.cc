@@ -1,0 +1,59 @@
+#include "services/transport/run_pass.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <charconv>
+#include <sstream>
+
+#include "services/transport/network.h"
+
+namespace dispersa {
+namespace {
+
+constexpr char kPassHead[] = "dispersa-run/1";
+constexpr std::size_t kMaxPass = 64 << 10;
+
+[[noreturn]] void RefusePass() { throw NetworkError("--run-pass: what came is not from `dispersa run`"); }
+
+bool IsDigest(const std::string& text) {
+  return text.size() == 64 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
+}
+
+}  // namespace
+
+std::string ToText(const RunPass& pass) {
+  std::string text = std::string(kPassHead) + "\n";
+  for (const std::uint8_t byte : pass.secret) text += fmt::format("{:02x}", byte);
+  text += "\n";
+  for (const std::string& plugin : pass.plugins) text += plugin + "\n";
+  return text;
+}
+
+RunPass ParseRunPass(const std::string& text) {
+  std::istringstream lines(text);
+  std::string head, secret, plugin;
+  RunPass pass;
+  if (!std::getline(lines, head) || head != kPassHead || !std::getline(lines, secret) || !IsDigest(secret)) RefusePass();
+  for (std::size_t i = 0; i < pass.secret.size(); ++i)
+    std::from_chars(secret.data() + 2 * i, secret.data() + 2 * i + 2, pass.secret[i], 16);
+  while (std::getline(lines, plugin)) {
+    if (!IsDigest(plugin)) RefusePass();
+    pass.plugins.insert(plugin);
+  }
+  return pass;
+}
+
+RunPass TakeRunPass(int descriptor) {
+  std::string text;
+  char part[4096];
+  ssize_t size = 0;
+  while (text.size() < kMaxPass && ((size = read(descriptor, part, sizeof part)) > 0 || (size < 0 && errno == EINTR))) {
+    if (size > 0) text.append(part, static_cast<std::size_t>(size));
+  }
+  close(descriptor);
+  return ParseRunPass(text);
+}
+
+}  // namespace dispersa

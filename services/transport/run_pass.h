@@ -1,0 +1,22 @@
+// What `dispersa run` gives its workers on their way, through a pipe: nobody else can read that.
+#pragma once
+
+#include <set>
+#include <string>
+
+#include "services/transport/seal.h"
+
+namespace dispersa {
+
+struct RunPass {
+  Secret secret{};                ///< of this run: who does not have it is not listened to
+  std::set<std::string> plugins;  ///< SHA-256 of the shared objects that the run's campaign names
+};
+
+std::string ToText(const RunPass& pass);
+/// The same of a text; throws NetworkError when it is none.
+RunPass ParseRunPass(const std::string& text);
+/// All that comes through a pipe, which is closed then. Throws NetworkError.
+RunPass TakeRunPass(int descriptor);
+
+}  // namespace dispersa

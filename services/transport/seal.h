@@ -1,0 +1,52 @@
+// What shows that a message comes from a process that has the same secret: the children of `dispersa run` and their
+// parent, who speak where every user of the machine can.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+namespace dispersa {
+
+using Secret = std::array<std::uint8_t, 32>;
+
+/// From the kernel's generator.
+Secret DrawSecret();
+
+/// A sample ends with its seal: who wrote it, its number, and a code over both, its topic and its content, which nobody
+/// can make without the secret (HMAC with SHA-256, its first 128 bits). So a sample counts once (the reader wants
+/// growing numbers), on its topic, and from its writer. It hides nothing, and does not keep anybody from disturbing.
+/// Thread-safe.
+class Seal {
+ public:
+  /// Of a writer, as the middleware names it.
+  using Writer = std::array<std::uint8_t, 16>;
+  struct Origin {
+    Writer writer{};
+    std::uint64_t number = 0;
+
+    bool operator==(const Origin&) const = default;
+  };
+  static constexpr std::size_t kSize = sizeof(Writer) + sizeof(std::uint64_t) + 16;
+
+  explicit Seal(const Secret& secret);
+  ~Seal();
+  Seal(const Seal&) = delete;
+  Seal& operator=(const Seal&) = delete;
+
+  /// Writes the seal of a content behind it, kSize bytes.
+  void Put(const std::string& topic, const Origin& origin, std::uint8_t* data, std::size_t size) const;
+  /// Whether `data` ends with the seal of what stands before it, and whose it is.
+  bool Fits(const std::string& topic, const std::uint8_t* data, std::size_t size, Origin* origin) const;
+
+ private:
+  struct Code;
+  std::unique_ptr<Code> code_;
+};
+
+/// Larger than any before in any process of this machine, for writers whose names may come again.
+std::uint64_t NextSealNumber(std::uint64_t last);
+
+}  // namespace dispersa
