@@ -35,7 +35,7 @@ Reply Session::Ask(const std::string& method, const Json& arguments, const std::
   // Whoever has keys hears nobody without: it cannot tell us so.
   throw Failure{
       kExitIncomplete,
-      Silence() + (has_keys_ ? "" : "; a coordinator with keys answers only clients with keys (--keys)")};
+      Silence() + (has_keys_ ? "" : "; a coordinator with keys answers only clients with keys (--keys), one without only its own user's")};
 }
 
 std::string Session::Silence(std::chrono::seconds silent) const {

@@ -4,6 +4,7 @@
 
 #include "core/campaign/contained.h"
 #include "services/log/log.h"
+#include "services/transport/user_secret.h"
 
 namespace dispersa {
 namespace {
@@ -28,7 +29,11 @@ NetworkOptions Admit(NetworkOptions network, const Admission& admission, std::in
   // A coordinator that is not on this machine's interface alone announces itself with its other addresses: whoever
   // may use those keeps all interfaces, also with a peer on this machine.
   if (network.address.empty() && IsLoopback(peer) && !admission.insecure) network.address = kLoopback;
-  if (IsLoopback(network.address) && (peer.empty() || IsLoopback(peer))) return network;
+  if (IsLoopback(network.address) && (peer.empty() || IsLoopback(peer))) {
+    // Every user of this machine can join the domain.
+    if (!admission.insecure) network.secret = OpenUserSecret(UserSecretFile());
+    return network;
+  }
   if (!admission.insecure) {
     throw NetworkError(
         "beyond this machine nobody is spoken to without keys, allowed: --keys DIR with a folder that "

@@ -11,15 +11,16 @@ namespace dispersa {
 /// What a command line says of it.
 struct Admission {
   std::string keys;       ///< folder; empty: none
-  bool insecure = false;  ///< none, and beyond this machine all the same
+  bool insecure = false;  ///< none: beyond this machine all the same, on it with all users
   bool allow_plugins = false;
 };
 
 inline constexpr char kKeysHelp[] = "folder that `dispersa keys issue` made: who we are";
-inline constexpr char kInsecureHelp[] = "beyond this machine without keys: on networks that you trust";
+inline constexpr char kInsecureHelp[] =
+    "without keys beyond this machine, and on it with programs of all users: on networks that you trust";
 
 /// `network` as it may be used by one of `roles`: with the keys; without, with the loopback interface alone if that is
-/// where `peer` is, no address was given, and nobody said --insecure. Throws NetworkError with what to do when neither keys nor the
+/// where `peer` is, no address was given, and nobody said --insecure; there with the secret of this user (user_secret.h). Throws NetworkError with what to do when neither keys nor the
 /// loopback interface nor --insecure is there. A coordinator has no peer.
 NetworkOptions Admit(NetworkOptions network, const Admission& admission, std::initializer_list<Role> roles,
                      const std::string& peer = "");

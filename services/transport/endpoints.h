@@ -232,7 +232,7 @@ class Reader : private eprosima::fastdds::dds::DataReaderListener {
       using Type = GuardedType<PubSubType>;
       const std::string sender = ParticipantOf(info.publication_handle);
       if (participant_.IsSealed() && (Type::is_foreign || !heard_.IsNew(info.publication_handle, Type::read))) {
-        Complain(topic_, sender, "it does not show the secret of this run");
+        Complain(topic_, sender, "it does not show the secret that is wanted here");
         continue;
       }
       if (Type::refused) {

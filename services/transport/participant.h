@@ -14,6 +14,7 @@
 
 #include "services/transport/neighbours.h"
 #include "services/transport/network.h"
+#include "services/transport/topics.h"
 
 namespace dispersa {
 
@@ -36,7 +37,7 @@ class Participant {
   template <typename PubSubType>
   eprosima::fastdds::dds::Topic* TopicOf(const std::string& name) {
     if (auto* topic = FindTopic(name)) return topic;
-    return MakeTopic(name, eprosima::fastdds::dds::TypeSupport(new PubSubType(seal_, name)));
+    return MakeTopic(name, eprosima::fastdds::dds::TypeSupport(new PubSubType(IsForObservers(name) ? nullptr : seal_, name)));
   }
   /// In a partition; an empty one is none.
   eprosima::fastdds::dds::Publisher* MakePublisher(const std::string& partition);

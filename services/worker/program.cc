@@ -75,7 +75,8 @@ int RunWorker(int argc, char** argv) {
   int code = kExitInternalError;
   try {
     options.peer = ParsePeer(peer, options.network.domain);
-    options.network = Admit(options.network, admission, {Role::kWorker}, options.peer.host);
+    // A worker of `dispersa run` has the secret of its run.
+    if (!run_pass) options.network = Admit(options.network, admission, {Role::kWorker}, options.peer.host);
     if (run_pass) {
       RunPass pass = TakeRunPass(*run_pass);
       options.network.secret = pass.secret;

@@ -12,6 +12,7 @@
 
 #include "core/campaign/contained.h"
 #include "core/campaign/input_error.h"
+#include "home_folder.h"
 #include "services/transport/admission.h"
 #include "services/transport/authority.h"
 #include "services/transport/openssl.h"
@@ -301,6 +302,7 @@ TEST(Permissions, AreOfTheirOwnerInTheirTimeAndNobodyElses) {
 }
 
 TEST_F(KeyFolderTest, WithoutKeysOnlyThisMachineIsSpokenTo) {
+  const HomeFolder home;
   const auto admit = [](const std::string& address, const std::string& peer, bool insecure = false) {
     return Admit({0, address}, {"", insecure}, {Role::kWorker}, peer).address;
   };

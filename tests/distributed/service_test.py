@@ -203,7 +203,7 @@ class ServiceTest(ServiceCase):
     def test_without_a_coordinator_a_client_says_so(self):
         done = subprocess.run([BINARIES / "dispersa", "list", *self.NETWORK], capture_output=True, text=True, timeout=PATIENCE_S)
         self.assertEqual(done.returncode, 5)
-        self.assertEqual(done.stderr, "no coordinator has answered at 127.0.0.1:16405 for 15 s; a coordinator with keys answers only clients with keys (--keys)\n")
+        self.assertEqual(done.stderr, "no coordinator has answered at 127.0.0.1:16405 for 15 s; a coordinator with keys answers only clients with keys (--keys), one without only its own user's\n")
 
 
 if __name__ == "__main__":

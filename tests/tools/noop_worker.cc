@@ -10,6 +10,7 @@
 #include "core/flight/flight_inputs.h"
 #include "core/flight/metrics.h"
 #include "services/log/log.h"
+#include "services/transport/admission.h"
 #include "services/transport/worker_link.h"
 #include "services/worker/flight_desk.h"
 
@@ -78,7 +79,8 @@ int main(int argc, char** argv) {
   app.add_option("--slots", slots);
   CLI11_PARSE(app, argc, argv);
   try {
-    Work(network, ParsePeer(peer, network.domain), slots);
+    const Peer coordinator = ParsePeer(peer, network.domain);
+    Work(Admit(network, {}, {Role::kWorker}, coordinator.host), coordinator, slots);
   } catch (const NetworkError& error) {
     LogError("{}", error.what());
     return 2;
