@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include <fastdds/dds/domain/DomainParticipant.hpp>
@@ -37,7 +38,12 @@ class Participant {
   template <typename PubSubType>
   eprosima::fastdds::dds::Topic* TopicOf(const std::string& name) {
     if (auto* topic = FindTopic(name)) return topic;
-    return MakeTopic(name, eprosima::fastdds::dds::TypeSupport(new PubSubType(IsForObservers(name) ? nullptr : seal_, name)));
+    using eprosima::fastdds::dds::TypeSupport;
+    if constexpr (std::is_constructible_v<PubSubType, std::shared_ptr<const Seal>, std::string>) {
+      return MakeTopic(name, TypeSupport(new PubSubType(IsForObservers(name) ? nullptr : seal_, name)));
+    } else {
+      return MakeTopic(name, TypeSupport(new PubSubType()));
+    }
   }
   /// In a partition; an empty one is none.
   eprosima::fastdds::dds::Publisher* MakePublisher(const std::string& partition);
