@@ -57,8 +57,8 @@ bool IsContained();
 /// What a plug-in says of itself, asked in a child. Throws PluginError, ContainedEnd.
 PluginDescription DescribeContained(const PluginConfig& config);
 
-/// Whether this process loads campaigns with plug-ins: until RefusePlugins, which says why not, and the SHA-256 of those
-/// that it loads all the same. To be called before any thread starts.
+/// Whether this process loads campaigns with plug-ins: until RefusePlugins, which says why not, and the
+/// SHA-256 of those that it loads all the same. To be called before any thread starts.
 void RefusePlugins(const std::string& why, std::set<std::string> but = {});
 /// Why this one is not loaded; empty: it is.
 std::string PluginRefusal(const std::string& sha256);

@@ -16,14 +16,16 @@ namespace dispersa {
 
 namespace {
 
-/// What was flown and reported once is not written over by less: rows that are missing now may be the folder's damage.
+/// What was flown and reported once is not written over by less: rows that are missing now may be the
+/// folder's damage.
 void RefuseFewer(const std::filesystem::path& file, std::uint64_t cases) {
   const std::uint64_t there = CountCases(file);
   if (cases >= there) return;
-  throw ResultError(ResultError::Kind::kFewer,
-                    fmt::format("{}: it has {} cases and results.sqlite has {}: the reports stay as they are; remove "
-                                "cases.csv to have reports of {}",
-                                file.string(), there, cases, cases));
+  throw ResultError(
+      ResultError::Kind::kFewer,
+      fmt::format("{}: it has {} cases and results.sqlite has {}: the reports stay as they are; remove "
+                  "cases.csv to have reports of {}",
+                  file.string(), there, cases, cases));
 }
 
 }  // namespace

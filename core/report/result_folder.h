@@ -80,7 +80,8 @@ class ResultFolder : public ResultStore {
 
   /// Cases that have a result.
   std::uint64_t CaseCount() const;
-  /// The database as it is now, in the place of `file`: one that is whole, whoever reads or writes here meanwhile.
+  /// The database as it is now, in the place of `file`: one that is whole, whoever reads or writes here
+  /// meanwhile.
   void CopyDatabase(const std::filesystem::path& file) const;
   /// Indices that have a result, ascending.
   std::vector<std::uint64_t> PresentCases() const;

@@ -59,7 +59,8 @@ ExitCode Execute(const Invocation& invocation) {
     return EndFor(InputError(std::string("the control law ") + end.what()), global.json, kExitIncomplete);
   } catch (const ResultError& error) {
     const bool is_incomplete = error.IsIncomplete() || IsOutputLost();
-    return EndFor(InputError(error.what()), global.json, is_incomplete ? kExitIncomplete : kExitInternalError);
+    return EndFor(InputError(error.what()), global.json,
+                  is_incomplete ? kExitIncomplete : kExitInternalError);
   } catch (const std::system_error& error) {
     if (IsOutputLost()) return EndLostOutput(error.code().value());
     return EndFor(Failure{kExitInternalError, std::string("internal error: ") + error.what()}, global.json);

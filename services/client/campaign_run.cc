@@ -70,7 +70,8 @@ class CampaignRun {
     execution_.domain = domain.domain();
     // Every user of this machine can join the domain: only who has the secret is listened to, on both sides.
     RunPass pass{DrawSecret(), {}};
-    if (const auto& law = book_.campaign().autopilot.plugin; law && !law->in_python) pass.plugins.insert(law->sha256);
+    if (const auto& law = book_.campaign().autopilot.plugin; law && !law->in_python)
+      pass.plugins.insert(law->sha256);
     NetworkOptions network{domain.domain(), kLoopback};
     network.secret = pass.secret;
     Coordinator coordinator(network, book_);

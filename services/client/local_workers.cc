@@ -26,7 +26,8 @@ constexpr double kLongestDelay_s = 2.0;
 // The end to read from of a pipe that holds this text: what fits into its buffer needs nobody to read it.
 int PipeWith(const std::string& text) {
   int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) throw NetworkError(std::string("no pipe can be made: ") + std::strerror(errno));
+  if (pipe2(ends, O_CLOEXEC) != 0)
+    throw NetworkError(std::string("no pipe can be made: ") + std::strerror(errno));
   const bool is_whole = write(ends[1], text.data(), text.size()) == static_cast<ssize_t>(text.size());
   close(ends[1]);
   if (is_whole) return ends[0];

@@ -28,9 +28,10 @@ WorkerEnd ClassifyExit(int status, std::string* how);
 /// Every worker dies with the thread that started it, even if that is killed. Not thread-safe.
 class LocalWorkers {
  public:
-  /// Each worker is `program arguments... --uuid <its own>`; what it shall know and nobody else comes to it through a
-  /// pipe (`--run-pass DESCRIPTOR`), if that is not empty. Starts nothing yet.
-  LocalWorkers(std::filesystem::path program, std::vector<std::string> arguments, int count, std::string pass = "");
+  /// Each worker is `program arguments... --uuid <its own>`; what it shall know and nobody else comes to it
+  /// through a pipe (`--run-pass DESCRIPTOR`), if that is not empty. Starts nothing yet.
+  LocalWorkers(std::filesystem::path program, std::vector<std::string> arguments, int count,
+               std::string pass = "");
   /// Kills what is left.
   ~LocalWorkers();
   LocalWorkers(const LocalWorkers&) = delete;

@@ -59,9 +59,10 @@ void RequireAllCases(const fs::path& directory, const Json& answer) {
   const bool has_database = fs::exists(directory / "results.sqlite");
   const std::uint64_t arrived = has_database ? ResultFolder::Open(directory).CaseCount() : 0;
   if (arrived >= promised) return;
-  throw Failure{kExitIncomplete, fmt::format("campaign {} has {} cases and {} of them arrived: nothing was written; "
-                                             "fetch it again",
-                                             answer.at("id").get<std::string>().substr(0, 8), promised, arrived)};
+  throw Failure{kExitIncomplete,
+                fmt::format("campaign {} has {} cases and {} of them arrived: nothing was written; "
+                            "fetch it again",
+                            answer.at("id").get<std::string>().substr(0, 8), promised, arrived)};
 }
 
 /// Whether it names a file below the folder that it is relative to, without a detour.

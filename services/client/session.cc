@@ -33,9 +33,10 @@ std::optional<Reply> Session::Try(const std::string& method, const Json& argumen
 Reply Session::Ask(const std::string& method, const Json& arguments, const std::string& data) {
   if (auto reply = Try(method, arguments, data)) return *std::move(reply);
   // Whoever has keys hears nobody without: it cannot tell us so.
-  throw Failure{
-      kExitIncomplete,
-      Silence() + (has_keys_ ? "" : "; a coordinator with keys answers only clients with keys (--keys), one without only its own user's")};
+  throw Failure{kExitIncomplete,
+                Silence() + (has_keys_ ? ""
+                                       : "; a coordinator with keys answers only clients with keys (--keys), "
+                                         "one without only its own user's")};
 }
 
 std::string Session::Silence(std::chrono::seconds silent) const {

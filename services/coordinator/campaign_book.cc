@@ -224,7 +224,8 @@ Acceptance CampaignBook::Accept(const std::string& worker, const std::string& ho
       } else if (campaign_.autopilot.plugin) {
         Try([&] {
           Flush();
-          RefuseForDifference(store_->Load(result.case_index), FlownBy(result.case_index), result, By(worker));
+          RefuseForDifference(store_->Load(result.case_index), FlownBy(result.case_index), result,
+                              By(worker));
         });
         if (refusal_) break;
       }

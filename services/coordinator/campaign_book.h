@@ -50,8 +50,8 @@ class CampaignBook {
   /// of it needs to be flown any more.
   const std::optional<std::string>& refusal() const { return refusal_; }
 
-  /// From now on an error of the disk is no exception. A full disk pauses the book: results are kept in memory, and
-  /// are stored when there is space. Any other error breaks it.
+  /// From now on an error of the disk is no exception. A full disk pauses the book: results are kept in
+  /// memory, and are stored when there is space. Any other error breaks it.
   void BePatient() { is_patient_ = true; }
   /// Why nothing can be stored now; empty: it can. Nothing should be assigned meanwhile.
   const std::string& pause() const { return pause_; }

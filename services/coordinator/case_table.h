@@ -13,8 +13,8 @@ namespace dispersa {
 
 enum class CaseState : std::uint8_t { kWaiting, kSuspect, kAssigned, kDone, kQuarantined };
 
-/// Cases 0 .. size() - 1, each of which waits at first. A block of neighbours takes memory once one of them does not:
-/// 17 bytes a case.
+/// Cases 0 .. size() - 1, each of which waits at first. A block of neighbours takes memory once one of them
+/// does not: 17 bytes a case.
 class CaseTable {
  public:
   explicit CaseTable(std::uint64_t size) { Extend(size); }

@@ -53,7 +53,8 @@ void MakeCopy(const fs::path& results, std::uint64_t promised) {
 std::optional<fs::path> DatabaseCopies::Whole(const fs::path& results, std::uint64_t promised, double now_s) {
   const auto known = copies_.find(results);
   if (known == copies_.end() && !HasLog(results)) return DatabaseOf(results);
-  if (known == copies_.end() || (known->second.is_made && HasLog(results) && known->second.of != StateOf(results))) {
+  if (known == copies_.end() ||
+      (known->second.is_made && HasLog(results) && known->second.of != StateOf(results))) {
     Forget(results);
     Copy& copy = copies_[results];
     copy.of = StateOf(results);

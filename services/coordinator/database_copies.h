@@ -1,4 +1,5 @@
-// Databases of result folders for clients that fetch them, whole also while somebody reads them on this machine.
+// Databases of result folders for clients that fetch them, whole also while somebody reads them on this
+// machine.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +11,13 @@
 
 namespace dispersa {
 
-/// As long as anybody has a database open, its last transactions stand in a write-ahead log beside it, and the file
-/// alone lacks them. Then a copy by SQLite's own means is handed out. One thread; copies are made on another one.
+/// As long as anybody has a database open, its last transactions stand in a write-ahead log beside it, and
+/// the file alone lacks them. Then a copy by SQLite's own means is handed out. One thread; copies are made on
+/// another one.
 class DatabaseCopies {
  public:
-  /// The file to hand out as results.sqlite of `results`: itself, or a copy beside the folder. None: it is being
-  /// copied. Throws ResultError when that fails, and when the copy has fewer than `promised` cases.
+  /// The file to hand out as results.sqlite of `results`: itself, or a copy beside the folder. None: it is
+  /// being copied. Throws ResultError when that fails, and when the copy has fewer than `promised` cases.
   std::optional<std::filesystem::path> Whole(const std::filesystem::path& results, std::uint64_t promised,
                                              double now_s);
   /// The same of a folder that Whole was asked about before: nothing is copied.

@@ -49,9 +49,10 @@ std::vector<fs::path> FilesIn(const fs::path& directory) {
 CatalogueEntry Parse(const std::string& text, std::uint64_t max_cases) {
   const Campaign campaign = ParseCampaign(text, "campaign");
   if (campaign.sampling.cases > max_cases) {
-    throw Refused(kExitBadInput,
-                  fmt::format("campaign {} has {} cases, allowed: at most {} (dispersa-coordinator --max-cases)",
-                              campaign.id.substr(0, 8), campaign.sampling.cases, max_cases));
+    throw Refused(
+        kExitBadInput,
+        fmt::format("campaign {} has {} cases, allowed: at most {} (dispersa-coordinator --max-cases)",
+                    campaign.id.substr(0, 8), campaign.sampling.cases, max_cases));
   }
   if (campaign.autopilot.plugin)
     CheckPluginIsDeterministic(CampaignFlights(campaign), campaign.sampling.cases);
@@ -102,7 +103,8 @@ void RefuseAnotherEngine(const std::string& asked, const CatalogueEntry& entry) 
 
 }  // namespace
 
-FrontDesk::FrontDesk(Service& service, const Workforce& workforce) : service_(service), workforce_(workforce) {
+FrontDesk::FrontDesk(Service& service, const Workforce& workforce)
+    : service_(service), workforce_(workforce) {
   for (const auto& [id, entry] : service.catalogue().entries())
     RemoveDatabaseCopy(service.catalogue().ResultsOf(id));
 }
@@ -198,7 +200,8 @@ std::string FrontDesk::Launch(const std::string& arguments) {
   if (found == uploads_.end() || found->second.text.size() != found->second.size) return answer("unknown");
   Upload& upload = found->second;
   upload.used_s = workforce_.now_s();
-  if (!upload.parsed.valid()) upload.parsed = std::async(std::launch::async, Parse, upload.text, service_.max_cases());
+  if (!upload.parsed.valid())
+    upload.parsed = std::async(std::launch::async, Parse, upload.text, service_.max_cases());
   if (upload.parsed.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready)
     return answer("checked");
   Upload complete = std::move(upload);
@@ -304,7 +307,8 @@ std::string FrontDesk::Files(const std::string& arguments) {
     const fs::path source = file == kDatabase ? *database : directory / file;
     files.push_back({{"path", file.generic_string()}, {"size", fs::file_size(source)}});
   }
-  return Json{{"id", entry.id}, {"code", entry.code}, {"done", entry.done}, {"files", std::move(files)}}.dump();
+  return Json{{"id", entry.id}, {"code", entry.code}, {"done", entry.done}, {"files", std::move(files)}}
+      .dump();
 }
 
 std::string FrontDesk::Read(const std::string& arguments, std::string* data) {

@@ -45,9 +45,10 @@ int RunCoordinator(int argc, char** argv) {
   app.add_option("--metrics", clients.metrics_port,
                  "with --data: port of 127.0.0.1 for metrics in Prometheus' text format")
       ->transform(WholeNumber(1, 65535));
-  app.add_option("--max-cases", clients.max_cases,
-                 "with --data: cases that a campaign may have, launches of more are refused; each takes memory "
-                 "here\n(default: 5000000)")
+  app.add_option(
+         "--max-cases", clients.max_cases,
+         "with --data: cases that a campaign may have, launches of more are refused; each takes memory "
+         "here\n(default: 5000000)")
       ->transform(WholeNumber(1, kMostCases));
   app.add_flag("--health", health,
                "ask the coordinator of the domain on this machine: exit code 0 if it answers");

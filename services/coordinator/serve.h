@@ -25,7 +25,7 @@ ExitCode ServeCampaign(const ServeOptions& options, const CampaignRequest& reque
                        std::optional<double> patience_s);
 
 struct ClientOptions {
-  std::string data;  ///< folder
+  std::string data;                                ///< folder
   std::optional<std::uint16_t> metrics_port = {};  ///< of 127.0.0.1
   std::uint64_t max_cases = kDefaultMaxCases;
 };

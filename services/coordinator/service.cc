@@ -200,12 +200,9 @@ void Service::StartOpening() {
 }
 
 void Service::BeginToOpen(const CatalogueEntry& entry) {
-  CampaignOpening opening{catalogue_.TextOf(entry.id),
-                          entry.name,
-                          catalogue_.ResultsOf(entry.id),
-                          {},
-                          ++opened_,
-                          workforce_.audit()};
+  CampaignOpening opening{
+      catalogue_.TextOf(entry.id), entry.name, catalogue_.ResultsOf(entry.id), {}, ++opened_,
+      workforce_.audit()};
   for (const auto& [id, other] : catalogue_.entries()) {
     if (id != entry.id && other.flight_id == entry.flight_id)
       opening.same_flights.push_back(catalogue_.ResultsOf(id));
@@ -367,7 +364,8 @@ CampaignView Service::View(const std::string& id) const {
   if (const RunningTally* tally = TallyOf(id); tally != nullptr && !HasEnded(entry.state))
     view.standings = tally->Standings();
   const auto flying = flying_.find(id);
-  if (const auto delayed = delayed_.find(id); delayed != delayed_.end()) view.problem = Waiting(delayed->second.problem);
+  if (const auto delayed = delayed_.find(id); delayed != delayed_.end())
+    view.problem = Waiting(delayed->second.problem);
   if (flying == flying_.end()) {
     view.progress.total = entry.cases;
     view.progress.done = entry.done;

@@ -28,7 +28,8 @@ struct ServiceOptions {
   std::filesystem::path data;
   int report_threads = 1;
   std::size_t open_at_once = 8;  ///< campaigns that fly side by side; the others wait
-  std::uint64_t max_cases = kDefaultMaxCases;  ///< of a campaign: its ledger and its report take memory for each
+  std::uint64_t max_cases =
+      kDefaultMaxCases;  ///< of a campaign: its ledger and its report take memory for each
 };
 
 /// Asked for something that cannot be; `code` is the exit code of the client.
@@ -73,7 +74,8 @@ class Service {
   /// Whether workers are needed now.
   bool HasWorkToFly() const { return !flying_.empty(); }
 
-  // What clients want is on the disk before they are told so: these throw ResultError, and have changed nothing then.
+  // What clients want is on the disk before they are told so: these throw ResultError, and have changed
+  // nothing then.
 
   /// Puts a campaign that is known into the queue again if it was cancelled, failed or gave cases up, and
   /// changes its priority.

@@ -19,14 +19,16 @@ inline constexpr char kKeysHelp[] = "folder that `dispersa keys issue` made: who
 inline constexpr char kInsecureHelp[] =
     "without keys beyond this machine, and on it with programs of all users: on networks that you trust";
 
-/// `network` as it may be used by one of `roles`: with the keys; without, with the loopback interface alone if that is
-/// where `peer` is, no address was given, and nobody said --insecure; there with the secret of this user (user_secret.h). Throws NetworkError with what to do when neither keys nor the
-/// loopback interface nor --insecure is there. A coordinator has no peer.
+/// `network` as it may be used by one of `roles`: with the keys; without, with the loopback interface alone
+/// if that is where `peer` is, no address was given, and nobody said --insecure; there with the secret of
+/// this user (user_secret.h). Throws NetworkError with what to do when neither keys nor the loopback
+/// interface nor --insecure is there. A coordinator has no peer.
 NetworkOptions Admit(NetworkOptions network, const Admission& admission, std::initializer_list<Role> roles,
                      const std::string& peer = "");
 
 inline constexpr char kAllowPluginsHelp[] =
-    "take campaigns whose control law is a shared object: whoever may launch runs code here; without it they are "
+    "take campaigns whose control law is a shared object: whoever may launch runs code here; without it they "
+    "are "
     "refused";
 
 /// Without `allowed`, control laws that are shared objects are refused.

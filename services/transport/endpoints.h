@@ -44,7 +44,8 @@ void LogIncompatibleQos(const std::string& topic, eprosima::fastdds::dds::QosPol
 /// The participant that an endpoint belongs to: the same for all topics of one sender.
 std::string ParticipantOf(const eprosima::fastrtps::rtps::InstanceHandle_t& endpoint);
 
-/// A seal, and what fills the content up to a multiple of 4 bytes before it: the middleware would do so behind it.
+/// A seal, and what fills the content up to a multiple of 4 bytes before it: the middleware would do so
+/// behind it.
 inline constexpr std::uint32_t kRoomForSeal = Seal::kSize + 3;
 /// False: there is no room.
 bool PutSeal(const Seal& seal, const std::string& topic, const Seal::Origin& origin,
@@ -65,8 +66,8 @@ class HeardSeals {
 /// A decoder that cannot be made to throw or to allocate more than a sample is large. A sample that it
 /// refuses is handed over empty with `refused` set, so that the reader can say who sent it.
 ///
-/// With a seal (of a secret that both sides have), a sample is sealed behind its content, and one whose seal does not fit
-/// is refused before anything of it is read.
+/// With a seal (of a secret that both sides have), a sample is sealed behind its content, and one whose seal
+/// does not fit is refused before anything of it is read.
 template <typename PubSubType>
 class GuardedType : public PubSubType {
  public:
@@ -231,7 +232,8 @@ class Reader : private eprosima::fastdds::dds::DataReaderListener {
       if (!info.valid_data) continue;
       using Type = GuardedType<PubSubType>;
       const std::string sender = ParticipantOf(info.publication_handle);
-      if (participant_.IsSealed() && (Type::is_foreign || !heard_.IsNew(info.publication_handle, Type::read))) {
+      if (participant_.IsSealed() &&
+          (Type::is_foreign || !heard_.IsNew(info.publication_handle, Type::read))) {
         Complain(topic_, sender, "it does not show the secret that is wanted here");
         continue;
       }

@@ -35,7 +35,8 @@ RunPass ParseRunPass(const std::string& text) {
   std::istringstream lines(text);
   std::string head, secret, plugin;
   RunPass pass;
-  if (!std::getline(lines, head) || head != kPassHead || !std::getline(lines, secret) || !IsDigest(secret)) RefusePass();
+  if (!std::getline(lines, head) || head != kPassHead || !std::getline(lines, secret) || !IsDigest(secret))
+    RefusePass();
   for (std::size_t i = 0; i < pass.secret.size(); ++i)
     std::from_chars(secret.data() + 2 * i, secret.data() + 2 * i + 2, pass.secret[i], 16);
   while (std::getline(lines, plugin)) {
@@ -49,7 +50,8 @@ RunPass TakeRunPass(int descriptor) {
   std::string text;
   char part[4096];
   ssize_t size = 0;
-  while (text.size() < kMaxPass && ((size = read(descriptor, part, sizeof part)) > 0 || (size < 0 && errno == EINTR))) {
+  while (text.size() < kMaxPass &&
+         ((size = read(descriptor, part, sizeof part)) > 0 || (size < 0 && errno == EINTR))) {
     if (size > 0) text.append(part, static_cast<std::size_t>(size));
   }
   close(descriptor);

@@ -38,7 +38,8 @@ struct Seal::Code {
   }
 
   /// Of a content that ends with its origin.
-  std::array<std::uint8_t, kCode> Of(const std::string& topic, const std::uint8_t* data, std::size_t size) const {
+  std::array<std::uint8_t, kCode> Of(const std::string& topic, const std::uint8_t* data,
+                                     std::size_t size) const {
     const Mac mac(EVP_MAC_CTX_dup(begin.get()));
     std::array<std::uint8_t, 32> whole{};
     std::size_t written = 0;

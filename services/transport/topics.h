@@ -18,8 +18,11 @@ inline const std::string kResultTopic = "dispersa/ResultV1";
 inline const std::string kRequestTopic = "dispersa/RequestV1";
 inline const std::string kReplyTopic = "dispersa/ReplyV1";
 
-/// Of what anybody may hear, and nobody who acts listens to: it is not sealed, so that programs of others read it.
-inline bool IsForObservers(const std::string& topic) { return topic == kProgressTopic || topic == kResultTopic; }
+/// Of what anybody may hear, and nobody who acts listens to: it is not sealed, so that programs of others
+/// read it.
+inline bool IsForObservers(const std::string& topic) {
+  return topic == kProgressTopic || topic == kResultTopic;
+}
 
 /// Of what is meant for one worker or client only.
 inline std::string PartitionOf(const std::string& who) { return "w" + who; }

@@ -51,9 +51,10 @@ void MakeSecret(const fs::path& file) {
   std::string draft = file.string() + ".XXXXXX";
   const int descriptor = mkostemp(draft.data(), O_CLOEXEC);  // with permissions 600
   const Secret secret = DrawSecret();
-  const bool is_written = descriptor >= 0 &&
-                          write(descriptor, secret.data(), secret.size()) == static_cast<ssize_t>(secret.size()) &&
-                          fsync(descriptor) == 0 && (link(draft.c_str(), file.c_str()) == 0 || errno == EEXIST);
+  const bool is_written =
+      descriptor >= 0 &&
+      write(descriptor, secret.data(), secret.size()) == static_cast<ssize_t>(secret.size()) &&
+      fsync(descriptor) == 0 && (link(draft.c_str(), file.c_str()) == 0 || errno == EEXIST);
   const int error = errno;
   if (descriptor >= 0) {
     close(descriptor);
@@ -71,8 +72,9 @@ fs::path UserSecretFile() {
     home = user != nullptr ? user->pw_dir : nullptr;
   }
   if (home == nullptr || *home != '/') {
-    throw NetworkError(std::string("this user has no home folder for the secret of its programs, allowed: HOME, --keys, ") +
-                       "or --insecure");
+    throw NetworkError(
+        std::string("this user has no home folder for the secret of its programs, allowed: HOME, --keys, ") +
+        "or --insecure");
   }
   return fs::path(home) / ".dispersa" / "secret";
 }

@@ -23,7 +23,8 @@ struct WorkerLink::Impl {
     const auto push = [this, worker](auto&& message, const std::string& sender) {
       if (message.worker != worker) {
         Complain("message", sender, "it is for another worker");
-      } else if (!events.Push(std::move(message))) Complain("message", sender, "too many wait already");
+      } else if (!events.Push(std::move(message)))
+        Complain("message", sender, "too many wait already");
     };
     orders.emplace(participant, subscriber, kOrdersTopic, push);
     texts.emplace(participant, subscriber, kTextTopic, push);

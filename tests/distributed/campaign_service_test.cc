@@ -342,12 +342,14 @@ TEST_F(ServiceTroubleTest, CampaignsThatWaitForTheirReportHaveNoFilesOpen) {
     std::error_code error;
     const std::string file = std::filesystem::read_symlink(descriptor, error).string();
     const std::size_t results = file.find("/results");
-    if (file.starts_with(folder_.path().string()) && results != std::string::npos) open.insert(file.substr(0, results));
+    if (file.starts_with(folder_.path().string()) && results != std::string::npos)
+      open.insert(file.substr(0, results));
   }
   EXPECT_LE(open.size(), 1u) << "that whose report is written";
 }
 
-// The same steps on a disk that becomes full while a campaign flies, while one is opened and while one is launched.
+// The same steps on a disk that becomes full while a campaign flies, while one is opened and while one is
+// launched.
 TEST_F(ServiceTroubleTest, AFullDiskPausesCampaignsAndTheyGoOnByThemselves) {
   service_.reset();
   const Campaign flying = Smoke(200, 1), opening = Smoke(2, 2), launching = Smoke(2, 3);
@@ -363,7 +365,8 @@ TEST_F(ServiceTroubleTest, AFullDiskPausesCampaignsAndTheyGoOnByThemselves) {
     for (std::uint64_t i = 0; i < 150; ++i) Return(flying, i);
     workforce_.time_s += 1.0;
     workforce_.Tick();
-    if (!Until([&] { return !service_->View(opening.id).problem.empty(); })) return "the opening is not delayed";
+    if (!Until([&] { return !service_->View(opening.id).problem.empty(); }))
+      return "the opening is not delayed";
     note(Failure(flying.id));
     note(Failure(opening.id));
     note(std::to_string(MadeUpWorkforce::CasesIn(workforce_.Tick())) + " assigned");
@@ -381,7 +384,8 @@ TEST_F(ServiceTroubleTest, AFullDiskPausesCampaignsAndTheyGoOnByThemselves) {
     if (!Reaches(opening.id, CampaignState::kFlying)) return "the opening is not tried again";
     note(Failure(opening.id));
     if (!Reaches(Launch(launching), CampaignState::kFlying)) return "does not fly when launched again";
-    note(std::to_string(ResultFolder::Open(service_->catalogue().ResultsOf(flying.id)).CaseCount()) + " stored");
+    note(std::to_string(ResultFolder::Open(service_->catalogue().ResultsOf(flying.id)).CaseCount()) +
+         " stored");
     return said;
   };
   const std::string data = (folder_ / "data").string(),

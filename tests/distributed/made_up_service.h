@@ -26,7 +26,8 @@ class ServiceTest : public testing::Test {
 
   void StartService(std::size_t open_at_once = 8, std::uint64_t max_cases = kDefaultMaxCases) {
     service_.reset();
-    service_ = std::make_unique<Service>(ServiceOptions{folder_ / "data", 1, open_at_once, max_cases}, workforce_);
+    service_ =
+        std::make_unique<Service>(ServiceOptions{folder_ / "data", 1, open_at_once, max_cases}, workforce_);
     desk_ = std::make_unique<FrontDesk>(*service_, workforce_);
   }
 

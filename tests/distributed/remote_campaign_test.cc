@@ -84,7 +84,9 @@ TEST(Session, SilenceSaysWhereAndWhetherKeysMayBeMissing) {
   Session without = coordinator.Connect(), with = coordinator.Connect(true);
   const std::string silence = "5: no coordinator has answered at host:7405 for 15 s";
   EXPECT_EQ(FailureOf([&] { without.Ask("list", {}); }),
-            silence + "; a coordinator with keys answers only clients with keys (--keys), one without only its own user's");
+            silence +
+                "; a coordinator with keys answers only clients with keys (--keys), one without only its own "
+                "user's");
   EXPECT_EQ(FailureOf([&] { with.Ask("list", {}); }), silence);
   EXPECT_FALSE(with.Try("list", {}));
 }
@@ -179,7 +181,8 @@ TEST_F(Fetching, AFileThatBecomesShorterIsAnErrorAndLeavesNoFolder) {
 
 TEST_F(Fetching, FewerCasesThanTheCampaignHasAreRefusedAndLeaveNoFolder) {
   const std::string id(64, 'a');
-  const ResultFolder made = ResultFolder::Create(folder_ / "made", LoadCampaign(DISPERSA_CAMPAIGNS "/smoke.yaml"));
+  const ResultFolder made =
+      ResultFolder::Create(folder_ / "made", LoadCampaign(DISPERSA_CAMPAIGNS "/smoke.yaml"));
   for (const bool has_database : {false, true}) {
     MadeUpCoordinator coordinator;
     Json files = Json::array();
@@ -272,7 +275,8 @@ TEST_F(RemoteCampaign, HasAllItsCasesAlsoWhileSomebodyReadsThem) {
   const fs::path results = service_->catalogue().ResultsOf(campaign.id);
   const ResultFolder reader = ResultFolder::Open(results);
   workforce_.Join("w");
-  for (const std::uint64_t i : {0, 1, 3}) workforce_.Return("w", campaign.flight_id, MadeUpWorkforce::ResultOf(i));
+  for (const std::uint64_t i : {0, 1, 3})
+    workforce_.Return("w", campaign.flight_id, MadeUpWorkforce::ResultOf(i));
   session_.Ask("cancel", {{"id", campaign.id}});
   ASSERT_GT(fs::file_size(results / "results.sqlite-wal"), 0u);
   const FetchedCampaign first = FetchCampaign(session_, campaign.id, (folder_ / "first").string());
@@ -319,7 +323,8 @@ TEST_F(RemoteCampaign, ThatLacksCasesOfItsStateIsNotHandedOut) {
   Launch(campaign);
   ASSERT_TRUE(Reaches(campaign.id, CampaignState::kFlying));
   workforce_.Join("w");
-  for (const std::uint64_t i : {0, 1}) workforce_.Return("w", campaign.flight_id, MadeUpWorkforce::ResultOf(i));
+  for (const std::uint64_t i : {0, 1})
+    workforce_.Return("w", campaign.flight_id, MadeUpWorkforce::ResultOf(i));
   session_.Ask("cancel", {{"id", campaign.id}});
   const fs::path database = service_->catalogue().ResultsOf(campaign.id) / "results.sqlite";
   Database(database, Database::Mode::kExisting).Execute("DELETE FROM cases WHERE case_index = 1");

@@ -40,8 +40,8 @@ using std::chrono::seconds;
 using Clock = std::chrono::steady_clock;
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr seconds kPatience(30);    // ample for what takes a second on an idle machine
-constexpr seconds kLongEnough(2);   // for what would come within tenths of a second
+constexpr seconds kPatience(30);   // ample for what takes a second on an idle machine
+constexpr seconds kLongEnough(2);  // for what would come within tenths of a second
 
 const Seal::Origin kOrigin{{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16}, 17};
 
@@ -176,7 +176,8 @@ class Echo {
     dds::TypeSupport support(new RawType(type));
     support.register_type(participant.get());
     dds::Topic* there = participant.get()->create_topic(topic, type, dds::TOPIC_QOS_DEFAULT);
-    reader_ = participant.MakeSubscriber({PartitionOf(worker)})->create_datareader(there, MakeReaderQos("", 0));
+    reader_ =
+        participant.MakeSubscriber({PartitionOf(worker)})->create_datareader(there, MakeReaderQos("", 0));
     writer_ = participant.MakePublisher(PartitionOf(worker))->create_datawriter(there, MakeWriterQos(kDepth));
   }
   /// How many it has heard.
@@ -215,7 +216,8 @@ class SecretTest : public testing::Test {
   }
   Peer CoordinatorPeer() const { return {"127.0.0.1", CoordinatorPort(domain_.domain())}; }
   /// Whether a status reaches the one, and orders reach the other, within this time.
-  static std::pair<bool, bool> HearEachOther(CoordinatorLink& coordinator, WorkerLink& worker, seconds patience) {
+  static std::pair<bool, bool> HearEachOther(CoordinatorLink& coordinator, WorkerLink& worker,
+                                             seconds patience) {
     bool up = false, down = false;
     for (const auto deadline = Clock::now() + patience; Clock::now() < deadline && !(up && down);) {
       worker.Send(StatusOf("w"));
@@ -346,12 +348,14 @@ TEST_F(SecretTest, AWorkerIsGivenItWhereNobodyElseSeesIt) {
   const std::string number = After("--run-pass", TextOfProcess(pid, "cmdline"));
   ASSERT_NE(number, "");
   std::error_code error;
-  const std::string target = fs::read_symlink("/proc/" + std::to_string(pid) + "/fd/" + number, error).string();
+  const std::string target =
+      fs::read_symlink("/proc/" + std::to_string(pid) + "/fd/" + number, error).string();
   EXPECT_FALSE(target.starts_with("pipe:")) << "it is read and closed";
 }
 
 TEST(RunPass, AWorkerWithoutItDoesNotStart) {
-  LocalWorkers workers(DISPERSA_BINARIES "/dispersa-worker", {"--peer", "127.0.0.1", "--domain", "39"}, 1, "nonsense");
+  LocalWorkers workers(DISPERSA_BINARIES "/dispersa-worker", {"--peer", "127.0.0.1", "--domain", "39"}, 1,
+                       "nonsense");
   workers.Poll(0.0, 0);
   std::vector<WorkerProcess> ended;
   for (const auto deadline = Clock::now() + kPatience; Clock::now() < deadline && ended.empty();) {
@@ -371,8 +375,8 @@ class RunProcess {
     const int log = open((folder / "log").c_str(), O_WRONLY | O_CREAT, 0600);
     dup2(log, 1);
     dup2(log, 2);
-    execl(DISPERSA_BINARIES "/dispersa", "dispersa", "run", DISPERSA_CAMPAIGNS "/smoke.yaml", "--workers", "1", "--cases",
-          "500", "--no-histories", "--out", out_.c_str(), nullptr);
+    execl(DISPERSA_BINARIES "/dispersa", "dispersa", "run", DISPERSA_CAMPAIGNS "/smoke.yaml", "--workers",
+          "1", "--cases", "500", "--no-histories", "--out", out_.c_str(), nullptr);
     _exit(127);
   }
   ~RunProcess() {
@@ -399,8 +403,8 @@ class RunProcess {
   pid_t pid_ = -1;
 };
 
-// Another user reads the command line, joins the domain, and tells the worker that a new coordinator is there, which
-// sends it home: one who can do that can also send it a campaign.
+// Another user reads the command line, joins the domain, and tells the worker that a new coordinator is
+// there, which sends it home: one who can do that can also send it a campaign.
 TEST(StrangerBesideARun, HasNoWordInIt) {
   TemporaryFolder folder;
   RunProcess run(folder.path());

@@ -51,7 +51,8 @@ TEST_F(UserSecretTest, IsDrawnOnceAndForThisUserAlone) {
   struct stat what {};
   ASSERT_EQ(stat(file().c_str(), &what), 0);
   EXPECT_EQ(what.st_mode & 0777, 0600u);
-  EXPECT_EQ(std::distance(fs::directory_iterator(file().parent_path()), fs::directory_iterator()), 1) << "no draft";
+  EXPECT_EQ(std::distance(fs::directory_iterator(file().parent_path()), fs::directory_iterator()), 1)
+      << "no draft";
   fs::remove(file());
   EXPECT_NE(OpenUserSecret(file()), first);
 }
@@ -105,7 +106,9 @@ TEST_F(UserSecretTest, IsWantedOnTheLoopbackInterfaceAloneAndNotWithInsecure) {
   EXPECT_EQ(Admit({0, ""}, {}, {Role::kClient}, "localhost").secret, loopback.secret) << "a client of it";
   EXPECT_FALSE(Admit({0, "127.0.0.1"}, {"", true}, {Role::kCoordinator}).secret);
   chmod(file().c_str(), 0644);
-  EXPECT_EQ(ErrorOf([] { Admit({0, "127.0.0.1"}, {}, {Role::kCoordinator}); }),
+  EXPECT_EQ(ErrorOf([] {
+              Admit({0, "127.0.0.1"}, {}, {Role::kCoordinator});
+            }),
             Expected("others may use it (permissions 644)"));
 }
 

@@ -113,15 +113,17 @@ TEST(Reports, LeaveATableOfMoreCasesAsItIs) {
   folder.Append({TheResults().data(), 3});
   WriteReports(folder, TheCampaign(), options);
   const std::map<std::string, std::string> reports = Files(out);
-  Database(out / "results.sqlite", Database::Mode::kExisting).Execute("DELETE FROM cases WHERE case_index > 0");
+  Database(out / "results.sqlite", Database::Mode::kExisting)
+      .Execute("DELETE FROM cases WHERE case_index > 0");
   try {
     WriteReports(folder, TheCampaign(), options);
     FAIL() << "three cases were replaced by one";
   } catch (const ResultError& error) {
     EXPECT_TRUE(error.IsIncomplete());
-    EXPECT_EQ(error.what(), (out / "cases.csv").string() +
-                                ": it has 3 cases and results.sqlite has 1: the reports stay as they are; remove "
-                                "cases.csv to have reports of 1");
+    EXPECT_EQ(error.what(),
+              (out / "cases.csv").string() +
+                  ": it has 3 cases and results.sqlite has 1: the reports stay as they are; remove "
+                  "cases.csv to have reports of 1");
   }
   EXPECT_TRUE(Files(out) == reports);
   std::filesystem::remove(out / "cases.csv");
