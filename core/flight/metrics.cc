@@ -194,7 +194,8 @@ constexpr Row kOfArrival[] = {
        return m.AtInjection((m.sums.orbit.inclination_rad - m.definition.target.inclination_rad) * kDegPerRad);
      }},
     {"guidance_converged", "", "Guidance converged",
-     "1 when the last plan in which altitude still counted reaches the target; of closed-loop guidance",
+     "1 when the last plan reaches the target, and the last in which altitude still counted did; of closed-loop "
+     "guidance",
      kSmaller, [](const Measured& m) { return m.Guided(m.sums.guidance.arrives ? 1.0 : 0.0); }},
     {"guidance_ignition_shift", "_s", "Last ignition, moved by guidance", "against the reference", kAnyway,
      [](const Measured& m) { return m.Guided(m.sums.guidance.ignition_shift_s); }},

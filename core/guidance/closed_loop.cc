@@ -6,8 +6,6 @@ namespace dispersa {
 
 namespace {
 
-// The motor's first seconds, whose start and separation the autopilot is busy with.
-constexpr double kTakeOver_s = 3.0;
 // In the coast nothing changes but by navigation: a plan now and then is enough, and more often towards its
 // end.
 constexpr double kCoastPeriod_s = 20.0;
@@ -32,6 +30,7 @@ ClosedLoopGuidance::ClosedLoopGuidance(const GuidanceMission& mission)
     : mission_(mission),
       prior_(BuildPrior(mission)),
       plan_(prior_.nominal),
+      at_ignition_(prior_.nominal),
       below_(mission.below),
       last_(mission.last) {}
 
@@ -50,6 +49,7 @@ bool ClosedLoopGuidance::See(const GuidanceSight& sight) {
   if (sight.phase != phase_) {
     phase_ = sight.phase;
     has_previous_ = false;
+    if (sight.phase == GuidancePhase::kLastBurns) at_ignition_ = plan_;
     thrust_offset_rad_I_ = Vector3::Zero();
   }
   next_call_s_ = sight.state.time_s + mission_.config.period_s;
@@ -103,6 +103,7 @@ void ClosedLoopGuidance::SeeBelowBurn(const GuidanceSight& sight) {
   known.below = below_.Stage(0.0);
   known.last = mission_.last;
   known.thrust_offset_rad_I = thrust_offset_rad_I_;
+  known.commanded = command_.direction();
   const double left_s = sight.burn_ignition_s + known.below.burn.duration_s - time_s;
   if (left_s < kHold_s) return;
   CorrectorTask task = Task({kBelowPitch, kBelowYaw, kIgnition, kPitchMiddle, kPitchHalf, kYawMiddle, kWaste},
@@ -123,7 +124,7 @@ bool ClosedLoopGuidance::SeeCoast(const GuidanceSight& sight) {
   if (left_s <= kLastPlan_s) {
     const bool settled = sight.attitude_error_rad <= mission_.config.settled_angle_rad &&
                          sight.rate_error_rad_s <= mission_.config.settled_rate_rad_s;
-    const Direction wanted = plan_.LastBurnAt(0.0, mission_.last.burn.duration_s, prior_.yaw_half_rad);
+    const Direction wanted = LastBurnAttitude(plan_, prior_).At(0.0);
     const Direction at = command_.direction();
     const bool there = Square(wanted.pitch_rad - at.pitch_rad) + Square(wanted.yaw_rad - at.yaw_rad) <=
                        Square(mission_.config.settled_angle_rad);
@@ -137,8 +138,11 @@ bool ClosedLoopGuidance::SeeCoast(const GuidanceSight& sight) {
   Knowledge known;
   known.phase = sight.phase;
   known.last = last_.Stage(sight.expelled_kg);
-  CorrectorTask task = Task({kIgnition, kPitchMiddle, kPitchHalf, kYawMiddle, kWaste}, prior_.nominal,
-                            outcome_.acted ? kIterations + 1 : kFirstIterations);
+  // Near ignition the plan stays near itself: the attitude that the burn begins with takes its time.
+  const bool is_near = outcome_.acted && left_s <= kCoastPeriod_s + kNearIgnition_s;
+  CorrectorTask task =
+      Task({kIgnition, kPitchMiddle, kPitchHalf, kYawMiddle, kWaste}, is_near ? plan_ : prior_.nominal,
+           outcome_.acted ? kIterations + 1 : kFirstIterations);
   if (task.low[kIgnition] < earliest_s) task.low[kIgnition] = earliest_s;
   if (task.high[kIgnition] < earliest_s) task.high[kIgnition] = earliest_s;
   ignition_s = Clamp(ignition_s, task.low[kIgnition], task.high[kIgnition]);
@@ -164,20 +168,21 @@ void ClosedLoopGuidance::SeeLastBurn(const GuidanceSight& sight) {
   known.burn_ignition_s = sight.burn_ignition_s;
   known.last = last_.Stage(sight.expelled_kg);
   known.thrust_offset_rad_I = thrust_offset_rad_I_;
+  known.commanded = command_.direction();
   const double left_s = sight.burn_ignition_s + known.last.burn.duration_s - time_s;
   if (left_s < kHold_s) return;
   const bool all = left_s > kOnlyVelocity_s;
-  CorrectorTask task = all ? Task({kPitchMiddle, kPitchHalf, kYawMiddle, kWaste}, plan_, kIterations)
+  CorrectorTask task = all ? Task({kPitchMiddle, kPitchHalf, kYawMiddle, kWaste}, at_ignition_, kIterations)
                            : Task({kPitchMiddle, kYawMiddle}, plan_, kIterations);
   task.meets_altitude = task.meets_plane = all;
   const Correction found = Correct(mission_, prior_, known, sight.state, plan_, task);
   plan_ = found.plan;
-  if (all) outcome_.arrives = found.arrives;
+  if (all) met_all_ = found.arrives;
+  outcome_.arrives = met_all_ && found.arrives;
 }
 
 void ClosedLoopGuidance::Command(double time_s) {
   const GuidanceConfig& config = mission_.config;
-  const double nominal_s = mission_.last.burn.duration_s;
   Direction wanted, rate;
   switch (phase_) {
     case GuidancePhase::kBelowBurns:
@@ -190,10 +195,11 @@ void ClosedLoopGuidance::Command(double time_s) {
     case GuidancePhase::kLastBurns:
       break;
   }
-  wanted = plan_.LastBurnAt(time_s - plan_.ignition_s(), nominal_s, prior_.yaw_half_rad);
+  const LastBurnAttitude burn(plan_, prior_);
+  wanted = burn.At(time_s - plan_.ignition_s());
   if (time_s < plan_.ignition_s())
     return command_.Follow(time_s, wanted, {}, config.coast_rate_rad_s, config.coast_acceleration_rad_s2);
-  rate = plan_.LastBurnRate(nominal_s, prior_.yaw_half_rad);
+  rate = burn.RateAt(time_s - plan_.ignition_s());
   command_.Follow(time_s, wanted, rate, config.turn_rate_rad_s, config.turn_acceleration_rad_s2);
 }
 

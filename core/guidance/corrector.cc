@@ -1,9 +1,8 @@
 #include "core/guidance/corrector.h"
 
-#include <Eigen/Cholesky>
-
 #include <cmath>
 
+#include "core/guidance/bounded_step.h"
 #include "core/math/constants.h"
 #include "core/math/functions.h"
 
@@ -11,64 +10,50 @@ namespace dispersa {
 
 namespace {
 
-constexpr int kMisses = 4;
-using Misses = Eigen::Matrix<double, kMisses, 1>;
-using Unknowns = Eigen::Matrix<double, kPlanUnknowns, 1>;
-using Jacobian = Eigen::Matrix<double, kMisses, kPlanUnknowns>;
-
-// Altitude, speed, flight path angle, inclination: a hundredth of what a mission would notice.
-constexpr double kTolerance[kMisses] = {1.0, 1e-2, 1e-6, 1e-5};
+// Energy, path, path, plane, m/s. A degree of plane, 130 m/s, then asks for less than 0.1 degree of a thrust
+// that lacks 10 m/s of energy.
+constexpr double kTolerance[kMisses] = {1e-2, 3e-2, 3e-2, 1.0};
 // Differences for derivatives: small against the curvature, large against the rounding of a prediction.
 constexpr double kDifference = 1e-3;  // of a scale
-// A solution within a twentieth of the tolerances needs no further step.
-constexpr double kSolved = 0.05;
+// A step that moves no miss by more, in tolerances, needs no further one.
+constexpr double kStill = 0.005;
+// Beyond this a step's straight lines say little.
+constexpr double kLongestStep = 1.5;  // scales
+// The share of the predicted decrease that a step must bring, and what follows one that does not: damping,
+// first of what the misses leave open, where 1 halves a step, in the end of all.
+constexpr double kEnoughDecrease = 1e-3;
+constexpr double kFirstDamping = 1.0, kMoreDamping = 30.0;
+constexpr int kTrials = 8, kBends = 3;
 
 Arrival Less(const Arrival& a, const Arrival& b) {
   return {a.altitude_m - b.altitude_m, a.velocity_m_s - b.velocity_m_s,
           a.flight_path_angle_rad - b.flight_path_angle_rad, a.inclination_rad - b.inclination_rad};
 }
 
-Misses Scaled(const Arrival& miss, const CorrectorTask& task) {
+Misses Scaled(const GuidanceMission& mission, const Injection& reached, const CorrectorTask& task) {
+  const OrbitMiss miss = OrbitMissOf(mission, reached);
   Misses m;
-  m << (task.meets_altitude ? miss.altitude_m / kTolerance[0] : 0.0), miss.velocity_m_s / kTolerance[1],
-      miss.flight_path_angle_rad / kTolerance[2],
-      (task.meets_plane ? miss.inclination_rad / kTolerance[3] : 0.0);
+  m << miss.energy_m_s / kTolerance[0], miss.radial_m_s / kTolerance[1],
+      (task.meets_altitude ? miss.shape_m_s / kTolerance[2] : 0.0),
+      (task.meets_plane ? miss.plane_m_s / kTolerance[3] : 0.0);
   return m;
 }
 
-// The step in units of scales, within the bounds.
-Unknowns StepOf(const Jacobian& jacobian, const Misses& miss, const Unknowns& departure, const Unknowns& low,
-                const Unknowns& high, std::array<bool, kPlanUnknowns> free) {
-  Unknowns step = Unknowns::Zero();
-  for (;;) {
-    Jacobian j = jacobian;
-    Unknowns y = departure;
-    Misses rest = miss;
-    for (int i = 0; i < kPlanUnknowns; ++i) {
-      if (free[static_cast<std::size_t>(i)]) continue;
-      rest += jacobian.col(i) * step(i);
-      j.col(i).setZero();
-      y(i) = 0.0;
-    }
-    const Eigen::Matrix<double, kMisses, kMisses> normal =
-        j * j.transpose() + Eigen::Matrix<double, kMisses, kMisses>::Identity();
-    const Misses multipliers = normal.llt().solve(rest - j * y);
-    const Unknowns found = -y - j.transpose() * multipliers;
-    int worst = -1;
-    double beyond = 0.0;
-    for (int i = 0; i < kPlanUnknowns; ++i) {
-      if (!free[static_cast<std::size_t>(i)]) continue;
-      step(i) = found(i);
-      const double over = step(i) > high(i) ? step(i) - high(i) : low(i) > step(i) ? low(i) - step(i) : 0.0;
-      if (over > beyond) {
-        beyond = over;
-        worst = i;
-      }
-    }
-    if (worst < 0) return step;
-    step(worst) = Clamp(step(worst), low(worst), high(worst));
-    free[static_cast<std::size_t>(worst)] = false;
-  }
+// Thrust at an angle to the velocity loses 1 - cos of its energy: the second derivative that a miss of energy
+// has in the angles, in units of scales. Only what would be missing of the energy if no more were wasted
+// holds a step back.
+Unknowns CurvatureOf(const GuidanceMission& mission, const Knowledge& known, const PlanPrior& prior,
+                     const StepModel& model, double spent) {
+  Unknowns curvature = Unknowns::Zero();
+  const double missing = -(model.miss(0) - spent * model.jacobian(0, kWaste));
+  if (!(missing > 0.0)) return curvature;
+  const double last = missing * IdealVelocity(mission.last) / kTolerance[0];
+  curvature(kPitchMiddle) = curvature(kYawMiddle) = last;
+  curvature(kPitchHalf) = last / 3.0;
+  if (known.phase == GuidancePhase::kBelowBurns)
+    curvature(kBelowPitch) = curvature(kBelowYaw) = missing * IdealVelocity(mission.below) / kTolerance[0];
+  for (int i = 0; i < kPlanUnknowns; ++i) curvature(i) *= Square(prior.scale[static_cast<std::size_t>(i)]);
+  return curvature;
 }
 
 }  // namespace
@@ -83,47 +68,86 @@ Correction Correct(const GuidanceMission& mission, const PlanPrior& prior, const
                    const NavigatedState& from, const Plan& start, const CorrectorTask& task) {
   Correction best;
   best.plan = start;
-  const auto predict = [&](const Plan& plan) { return Predict(mission, prior, known, from, plan); };
-  Injection reached = predict(best.plan);
-  best.miss = Less(reached.at, mission.target);
-  best.burnout_s = reached.time_s;
-  Misses miss = Scaled(best.miss, task);
+  const auto predict = [&](const Plan& plan) {
+    ++best.predictions;
+    return Predict(mission, prior, known, from, plan);
+  };
+  const auto keep = [&](const Plan& plan, const Injection& reached, const Misses& miss) {
+    best.plan = plan;
+    best.miss = Less(reached.at, mission.target);
+    best.burnout_s = reached.time_s;
+    best.prioritised_miss = miss.norm();
+  };
+  const Injection at_start = predict(start);
+  StepModel model;
+  model.free = task.free;
+  model.miss = Scaled(mission, at_start, task);
+  keep(start, at_start, model.miss);
+  best.start_prioritised_miss = best.prioritised_miss;
+  double damping = 0.0;
   for (int iteration = 0; iteration < task.iterations; ++iteration) {
-    Jacobian jacobian = Jacobian::Zero();
-    Unknowns departure = Unknowns::Zero(), low = Unknowns::Zero(), high = Unknowns::Zero();
     for (int i = 0; i < kPlanUnknowns; ++i) {
       const auto k = static_cast<std::size_t>(i);
       if (!task.free[k]) continue;
       const double scale = prior.scale[k], value = best.plan.value[k];
-      departure(i) = (value - task.prior.value[k]) / scale;
-      low(i) = (task.low[k] - value) / scale;
-      high(i) = (task.high[k] - value) / scale;
+      model.departure(i) = (value - task.prior.value[k]) / scale;
+      model.low(i) = Clamp((task.low[k] - value) / scale, -kLongestStep, 0.0);
+      model.high(i) = Clamp((task.high[k] - value) / scale, 0.0, kLongestStep);
       Plan moved = best.plan;
-      const double difference = high(i) > kDifference ? kDifference : -kDifference;
+      const double difference = model.high(i) > kDifference ? kDifference : -kDifference;
       moved.value[k] += difference * scale;
-      jacobian.col(i) = (Scaled(Less(predict(moved).at, mission.target), task) - miss) / difference;
+      model.jacobian.col(i) = (Scaled(mission, predict(moved), task) - model.miss) / difference;
     }
-    const Unknowns step = StepOf(jacobian, miss, departure, low, high, task.free);
-    Plan next = best.plan;
-    for (int i = 0; i < kPlanUnknowns; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      if (task.free[k])
-        next.value[k] = Clamp(next.value[k] + step(i) * prior.scale[k], task.low[k], task.high[k]);
-    }
-    reached = predict(next);
-    const Arrival next_miss = Less(reached.at, mission.target);
+    const Unknowns curvature = CurvatureOf(
+        mission, known, prior, model,
+        task.free[kWaste] ? (best.plan.value[kWaste] - task.low[kWaste]) / prior.scale[kWaste] : 0.0);
+    const double sum = model.At(Unknowns::Zero());
+    const double highest = std::fmax(best.prioritised_miss, kSolvedMiss);
     best.iterations = iteration + 1;
-    // A prediction that is no number ends the search where it was.
-    const Misses next_scaled = Scaled(next_miss, task);
-    if (!(next_scaled.squaredNorm() < 1e300)) break;
-    const bool is_still = (next_scaled - miss).lpNorm<Eigen::Infinity>() < kSolved;
-    best.plan = next;
-    best.miss = next_miss;
-    best.burnout_s = reached.time_s;
-    miss = next_scaled;
-    if (is_still && step.lpNorm<Eigen::Infinity>() < 1e-3) break;
+    bool taken = false, is_still = false, is_found = false;
+    for (int trial = 0; trial < kTrials && !taken && !is_still; ++trial) {
+      const Unknowns weight = Unknowns::Constant(1.0 + damping) + curvature;
+      const bool is_damped = damping > 0.0;
+      // Misses bend: what a step leaves of them is met by the same Jacobian before the step is given up.
+      StepModel bent = model;
+      double before = 1e300;
+      for (int turn = 0; turn < kBends && !taken && !is_still; ++turn) {
+        const Unknowns step = BoundedStep(bent, weight);
+        Plan next = best.plan;
+        for (int i = 0; i < kPlanUnknowns; ++i) {
+          const auto k = static_cast<std::size_t>(i);
+          if (task.free[k])
+            next.value[k] = Clamp(next.value[k] + step(i) * prior.scale[k], task.low[k], task.high[k]);
+        }
+        const Injection reached = predict(next);
+        const Misses miss = Scaled(mission, reached, task);
+        const double next_sum = miss.squaredNorm() + (model.departure + step).squaredNorm();
+        is_still = (miss - model.miss).lpNorm<Eigen::Infinity>() < kStill &&
+                   step.lpNorm<Eigen::Infinity>() < kDifference;
+        // A prediction that is no number is no decrease.
+        taken = miss.norm() <= highest &&
+                (sum - next_sum >= kEnoughDecrease * std::fmax(sum - model.At(step), 0.0) ||
+                 miss.norm() <= kSolvedMiss);
+        if (taken) {
+          keep(next, reached, miss);
+          model.miss = miss;
+          is_found = is_still && !is_damped;
+        }
+        if (!(miss.norm() < before)) break;
+        before = miss.norm();
+        bent.miss = miss - model.jacobian * step;
+      }
+      if (taken)
+        damping = damping > kFirstDamping ? damping / kMoreDamping : 0.0;
+      else
+        damping = std::fmax(kMoreDamping * damping, kFirstDamping);
+    }
+    if (!taken || is_found) break;
   }
-  best.arrives = Arrives(best.miss, task.meets_altitude, task.meets_plane);
+  // An altitude that is not met any more is made up for by the speed.
+  Arrival judged = best.miss;
+  if (!task.meets_altitude) judged.velocity_m_s = model.miss(0) * kTolerance[0];
+  best.arrives = Arrives(judged, task.meets_altitude, task.meets_plane);
   return best;
 }
 

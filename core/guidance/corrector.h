@@ -1,20 +1,26 @@
-// Finds the plan whose predicted injection is the target's.
+// Finds the plan whose predicted injection is the target's or, where no plan arrives, the best orbit there is.
 //
 // Of all plans that arrive it is the one that departs least from the prior, by the sum of squares of the
-// departures over their scales: Gauss-Newton on
+// departures over their scales: Levenberg-Marquardt steps on
 //
 //   sum ((x - x0) / scale)² + sum (miss / tolerance)²
 //
-// with tolerances so tight that the first sum chooses among what the second leaves open. With J' the Jacobian
-// of miss / tolerance by x / scale and y = (x - x0) / scale, a step is
+// with tolerances so tight that the first sum chooses among what the second leaves open. The misses are those of
+// orbit_miss.h. Path has three times the tolerance of energy, the plane a hundred times: the plane gets what
+// energy and path leave.
 //
-//   dx / scale = -y - J'ᵀ (J' J'ᵀ + 1)⁻¹ (miss / tolerance - J' y),
+// With J' the Jacobian of miss / tolerance by x / scale and y = (x - x0) / scale, a step is
 //
-// four equations whatever the number of unknowns, solvable whatever the rank of J'. An unknown that a step
-// would take beyond its bounds is held there, and the rest is solved for anew.
+//   dx / scale = -W⁻¹ y - W⁻¹ J'ᵀ (J' W⁻¹ J'ᵀ + 1)⁻¹ (miss / tolerance - J' W⁻¹ y),
+//
+// within the bounds (bounded_step.h): four equations whatever the number of unknowns, solvable whatever the
+// rank of J'. W is 1, and more in two cases:
+// - Energy is missing that no smaller turn gives back. Energy is greatest along the velocity, where J' says
+//   nothing of the angles: without W a step would be as long as one likes.
+// - A step did not make the sum smaller. Such a step is not taken.
 #pragma once
 
-#include "core/guidance/predictor.h"
+#include "core/guidance/orbit_miss.h"
 
 namespace dispersa {
 
@@ -30,10 +36,17 @@ struct CorrectorTask {
 struct Correction {
   Plan plan;
   Arrival miss;  ///< of the plan, predicted less target
+  /// Of the plan, the square root of the misses' sum; never more than the start's, or than kSolvedMiss.
+  double prioritised_miss = 0.0, start_prioritised_miss = 0.0;
   double burnout_s = 0.0;
   bool arrives = false;  ///< within Arrives()
   int iterations = 0;
+  int predictions = 0;
 };
+
+/// A prioritised miss that is none: a millimetre a second of energy and path, a tenth of a metre a second of
+/// plane.
+inline constexpr double kSolvedMiss = 0.1;
 
 /// Misses that a plan may have and still arrive: 50 m, 0.5 m/s, 0.01 degree, and 0.02 degree of inclination.
 /// Where altitude and plane are not met any more they do not count.

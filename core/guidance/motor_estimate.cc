@@ -1,5 +1,7 @@
 #include "core/guidance/motor_estimate.h"
 
+#include <cmath>
+
 #include "core/math/functions.h"
 
 namespace dispersa {
@@ -13,12 +15,20 @@ constexpr double kLongEnough_s = 3.0;
 constexpr double kClear_s = 0.2;
 constexpr double kFarthest = 0.15;
 
+// Never at full thrust for long, or lighter at once: no line.
+bool HasLine(const GuidedStage& stage) { return !stage.burn.curve && !stage.loses_mass; }
+
 }  // namespace
+
+double StandsAfter(const GuidedStage& nominal, double first_s, double period_s) {
+  if (!HasLine(nominal)) return 0.0;
+  return std::fmax(first_s, nominal.burn.rise_s + kClear_s) +
+         std::fmax(kLongEnough_s, (kEnough - 1.0) * period_s);
+}
 
 void MotorEstimate::Add(double since_ignition_s, double specific_force_m_s2) {
   const MotorBurn& burn = nominal_.burn;
-  // Never at full thrust for long, or lighter at once: no line.
-  if (burn.curve || nominal_.loses_mass) return;
+  if (!HasLine(nominal_)) return;
   const double full_until_s = (1.0 - kFarthest) * burn.duration_s - burn.tail_s;
   if (since_ignition_s < burn.rise_s + kClear_s || since_ignition_s > full_until_s ||
       !(specific_force_m_s2 > 0.0))

@@ -26,4 +26,8 @@ class MotorEstimate {
   double first_s_ = 0.0, last_s_ = 0.0;
 };
 
+/// The time since ignition at which an estimate stands of readings from a time on, one a period; 0 of a motor
+/// that is not estimated.
+double StandsAfter(const GuidedStage& nominal, double first_s, double period_s);
+
 }  // namespace dispersa

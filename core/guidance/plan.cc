@@ -1,25 +1,117 @@
 #include "core/guidance/plan.h"
 
+#include <algorithm>
+
+#include "core/guidance/motor_estimate.h"
 #include "core/math/functions.h"
 
 namespace dispersa {
 
-double Plan::TurnHalf() const { return Sqrt(6.0 * value[kWaste]); }
+namespace {
 
-Direction Plan::LastBurnAt(double since_ignition_s, double nominal_duration_s, double yaw_half_rad) const {
-  const double since = since_ignition_s > 0.0 ? since_ignition_s : 0.0;
-  const double s = 2.0 * since / nominal_duration_s - 1.0;
-  return {value[kPitchMiddle] + s * value[kPitchHalf], value[kYawMiddle] + s * (yaw_half_rad - TurnHalf())};
+// A turn is as late as it can be at this part of the command's greatest rate, with corners at that of its
+// acceleration: what is left makes up for what the command loses.
+constexpr double kOfTurnRate = 0.7;
+
+// 0 before, the time since after, by a parabola within `round_s` of it; and its slope.
+double Ramp(double since_s, double round_s) {
+  if (since_s >= round_s) return since_s;
+  return since_s > -round_s ? Square(since_s + round_s) / (4.0 * round_s) : 0.0;
+}
+double RampRate(double since_s, double round_s) {
+  if (since_s >= round_s) return 1.0;
+  return since_s > -round_s ? (since_s + round_s) / (2.0 * round_s) : 0.0;
 }
 
-Direction Plan::LastBurnRate(double nominal_duration_s, double yaw_half_rad) const {
-  const double slope = 2.0 / nominal_duration_s;
-  return {slope * value[kPitchHalf], slope * (yaw_half_rad - TurnHalf())};
+TurnCourse CourseOf(const GuidanceMission& mission) {
+  const MotorBurn& burn = mission.last.burn;
+  TurnCourse course;
+  course.end_s = burn.duration_s;
+  // Half of the burn is left to turn in.
+  if (mission.config.steers_last_burn)
+    course.from_s =
+        std::min(StandsAfter(mission.last, kTakeOver_s, mission.config.period_s), 0.5 * burn.duration_s);
+  course.back_s = course.from_s + (course.end_s - course.from_s) / 3.0;
+  course.round_s = std::min(mission.config.turn_rate_rad_s / mission.config.turn_acceleration_rad_s2,
+                            0.25 * (course.back_s - course.from_s));
+  course.steepest_rad_s = kOfTurnRate * mission.config.turn_rate_rad_s;
+  constexpr int kPieces = 400;
+  double sum = 0.0, late = 0.0, early = 0.0, late_late = 0.0, late_early = 0.0, early_early = 0.0;
+  for (int i = 0; i < kPieces; ++i) {
+    const double time_s = (i + 0.5) / kPieces * burn.duration_s;
+    const double weight = burn.Fraction(time_s) /
+                          (mission.last.ignition_mass_kg - burn.propellant_mass_kg + burn.Propellant(time_s));
+    const double at_late = course.Late(time_s), at_early = course.Early(time_s);
+    sum += weight;
+    late += weight * at_late;
+    early += weight * at_early;
+    late_late += weight * at_late * at_late;
+    late_early += weight * at_late * at_early;
+    early_early += weight * at_early * at_early;
+  }
+  course.late_mean = late / sum;
+  course.early_mean = early / sum;
+  course.late_variance = late_late / sum - Square(course.late_mean);
+  course.covariance = late_early / sum - course.late_mean * course.early_mean;
+  course.early_variance = early_early / sum - Square(course.early_mean);
+  return course;
+}
+
+}  // namespace
+
+double TurnCourse::Late(double since_ignition_s) const {
+  return (Ramp(since_ignition_s - from_s, round_s) - 2.0 * Ramp(since_ignition_s - back_s, round_s)) /
+         (back_s - from_s);
+}
+
+double TurnCourse::LateRate(double since_ignition_s) const {
+  return (RampRate(since_ignition_s - from_s, round_s) - 2.0 * RampRate(since_ignition_s - back_s, round_s)) /
+         (back_s - from_s);
+}
+
+double TurnCourse::Early(double since_ignition_s) const {
+  return 1.0 - 2.0 * Ramp(since_ignition_s - from_s, round_s) / (end_s - from_s);
+}
+
+double TurnCourse::EarlyRate(double since_ignition_s) const {
+  return -2.0 * RampRate(since_ignition_s - from_s, round_s) / (end_s - from_s);
+}
+
+LastBurnAttitude::LastBurnAttitude(const Plan& plan, const PlanPrior& prior) : plan_(plan), prior_(prior) {
+  const TurnCourse& course = prior.turn;
+  const double waste = plan.value[kWaste], way_s = course.end_s - course.from_s;
+  // The late course has slopes of 3 turns over the way, the early one of 2.
+  const double all_late_rad = Sqrt(2.0 * waste / course.late_variance);
+  if (all_late_rad > 0.0) early_ = Clamp(3.0 - course.steepest_rad_s * way_s / all_late_rad, 0.0, 1.0);
+  // Nothing to wait for.
+  if (!(course.from_s > 0.0)) early_ = 1.0;
+  const double late = 1.0 - early_;
+  turn_rad_ = Sqrt(2.0 * waste /
+                   (late * late * course.late_variance + 2.0 * late * early_ * course.covariance +
+                    early_ * early_ * course.early_variance));
+  mean_ = late * course.late_mean + early_ * course.early_mean;
+}
+
+Direction LastBurnAttitude::At(double since_ignition_s) const {
+  const double since = since_ignition_s > 0.0 ? since_ignition_s : 0.0;
+  const double s = 2.0 * since / prior_.last_duration_s - 1.0;
+  const double turned = (1.0 - early_) * prior_.turn.Late(since) + early_ * prior_.turn.Early(since) - mean_;
+  return {plan_.value[kPitchMiddle] + s * plan_.value[kPitchHalf],
+          plan_.value[kYawMiddle] + s * prior_.yaw_half_rad + turn_rad_ * turned};
+}
+
+Direction LastBurnAttitude::RateAt(double since_ignition_s) const {
+  const TurnCourse& course = prior_.turn;
+  const double slope = 2.0 / prior_.last_duration_s;
+  const double turning =
+      (1.0 - early_) * course.LateRate(since_ignition_s) + early_ * course.EarlyRate(since_ignition_s);
+  return {slope * plan_.value[kPitchHalf], slope * prior_.yaw_half_rad + turn_rad_ * turning};
 }
 
 PlanPrior BuildPrior(const GuidanceMission& mission) {
   PlanPrior prior;
-  const double burnout_s = mission.last_ignition_s + mission.last.burn.duration_s;
+  prior.last_duration_s = mission.last.burn.duration_s;
+  const double burnout_s = mission.last_ignition_s + prior.last_duration_s;
   const Direction from = mission.program.At(mission.last_ignition_s), to = mission.program.At(burnout_s);
   auto& value = prior.nominal.value;
   value[kIgnition] = mission.last_ignition_s;
@@ -28,6 +120,7 @@ PlanPrior BuildPrior(const GuidanceMission& mission) {
   value[kYawMiddle] = 0.5 * (from.yaw_rad + to.yaw_rad);
   value[kWaste] = mission.velocity_reserve_m_s / IdealVelocity(mission.last);
   prior.yaw_half_rad = 0.5 * (to.yaw_rad - from.yaw_rad);
+  prior.turn = CourseOf(mission);
 
   constexpr double kDeg = kRadPerDeg;
   prior.scale = {2.0 * kDeg, 1.0 * kDeg, 20.0, 5.0 * kDeg, 5.0 * kDeg, 3.0 * kDeg, 0.03};
@@ -38,9 +131,9 @@ PlanPrior BuildPrior(const GuidanceMission& mission) {
     prior.low[k] = value[k] - reach[k];
     prior.high[k] = value[k] + reach[k];
   }
-  // From no turn, of which nothing is left to give, to one of 45 degrees either way.
+  // From no turn, of which nothing is left to give, to an early one of 45 degrees either way.
   prior.low[kWaste] = 0.0;
-  prior.high[kWaste] = Square(45.0 * kDeg) / 6.0;
+  prior.high[kWaste] = 0.5 * Square(45.0 * kDeg) * prior.turn.early_variance;
   return prior;
 }
 

@@ -17,28 +17,60 @@ enum PlanUnknown {
   kWaste,  ///< part of the last burn's ideal velocity that turning in yaw takes away
   kPlanUnknowns
 };
-/// The last burn's thrust points to pitch and yaw linear in time. A turn in yaw from +a to -a leaves sin(a)/a
-/// of the ideal velocity along its middle; 1 - sin(a)/a = a²/6 - ... is what kWaste stands for, with a = √(6
-/// kWaste).
 struct Plan {
   std::array<double, kPlanUnknowns> value{};
 
   double ignition_s() const { return value[kIgnition]; }
-  /// a, rad.
-  double TurnHalf() const;
-  /// Of the last burn; before it as at its beginning. `yaw_half` is the reference's own turn.
-  Direction LastBurnAt(double since_ignition_s, double nominal_duration_s, double yaw_half_rad) const;
-  /// Its slope, rad/s.
-  Direction LastBurnRate(double nominal_duration_s, double yaw_half_rad) const;
+};
+
+/// How the last burn turns in yaw to spend what it has too much, in units of the largest turn a, over the
+/// time since ignition: a mixture of two courses. Late: 0 until the motor's estimate stands at `from_s`, to 1
+/// at `back_s`, and as steadily through to -1 at the nominal burnout. Early: 1 until `from_s`, and steadily
+/// to -1. Corners are rounded over `round_s` to either side, for the command to follow.
+struct TurnCourse {
+  double from_s = 0.0, back_s = 0.0, end_s = 0.0, round_s = 0.0;
+  double steepest_rad_s = 0.0;  ///< what the command can follow
+  /// Over the nominal burn, weighed by its acceleration.
+  double late_mean = 0.0, early_mean = 0.0, late_variance = 0.0, covariance = 0.0, early_variance = 0.0;
+
+  double Late(double since_ignition_s) const;
+  double LateRate(double since_ignition_s) const;
+  double Early(double since_ignition_s) const;
+  double EarlyRate(double since_ignition_s) const;
 };
 
 /// What the guidance would do if everything were nominal, and how far it may depart from it.
 struct PlanPrior {
   Plan nominal;
-  double yaw_half_rad = 0.0;                  ///< of the reference's last burn
+  double last_duration_s = 0.0;  ///< nominal, of the last burn
+  double yaw_half_rad = 0.0;     ///< of the reference's last burn
+  TurnCourse turn;
   std::array<double, kPlanUnknowns> scale{};  ///< a departure that costs 1
   std::array<double, kPlanUnknowns> low{}, high{};
 };
 PlanPrior BuildPrior(const GuidanceMission& mission);
+
+/// Where the last burn's thrust points by a plan: pitch and yaw linear in time, and the turn in yaw besides,
+/// about its mean. It takes a²/2 of the course's variance away from the ideal velocity, for which kWaste
+/// stands. As late as the command can follow.
+class LastBurnAttitude {
+ public:
+  LastBurnAttitude(const Plan& plan, const PlanPrior& prior);
+
+  /// Before ignition as at it.
+  Direction At(double since_ignition_s) const;
+  /// Its slope, rad/s.
+  Direction RateAt(double since_ignition_s) const;
+  double turn_rad() const { return turn_rad_; }
+
+ private:
+  const Plan& plan_;
+  const PlanPrior& prior_;
+  double early_ = 0.0;  ///< share of the early course
+  double turn_rad_ = 0.0, mean_ = 0.0;
+};
+
+/// A motor's first seconds, whose start and separation the autopilot is busy with: nothing is planned.
+inline constexpr double kTakeOver_s = 3.0;
 
 }  // namespace dispersa

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <vector>
 
+#include "core/math/constants.h"
 #include "core/math/functions.h"
 
 namespace dispersa {
@@ -38,15 +40,19 @@ void Advance(const Earth& earth, double to_s, double longest_s, const ThrustAt& 
   state.time_s = to_s;
 }
 
-// Through the rest of a burn. Steps end where the thrust has kinks; on either side of one the burn is smooth,
-// so the fraction is taken just inside the piece.
+// Through the rest of a burn. Steps end where the thrust has kinks, and its direction, `bends` since
+// ignition; on either side of one the burn is smooth, so the fraction is taken just inside the piece.
 template <class DirectionAt>
 void Burn(const GuidanceMission& mission, const GuidedStage& stage, double ignition_s, double longest_s,
-          const Vector3& offset_rad_I, const DirectionAt& direction_at, NavigatedState& state) {
+          const Vector3& offset_rad_I, std::initializer_list<double> bends, const DirectionAt& direction_at,
+          NavigatedState& state) {
   const MotorBurn& burn = stage.burn;
   const double empty_kg = stage.ignition_mass_kg - burn.propellant_mass_kg;
   std::vector<double> ends = burn.Kinks(0.0);
+  for (const double bend : bends)
+    if (bend < burn.duration_s) ends.push_back(bend);
   ends.push_back(burn.duration_s);
+  std::sort(ends.begin(), ends.end());
   for (const double end : ends) {
     const double begin = state.time_s - ignition_s;
     if (!(end > begin)) continue;
@@ -61,6 +67,57 @@ void Burn(const GuidanceMission& mission, const GuidedStage& stage, double ignit
     };
     Advance(mission.earth, ignition_s + end, longest_s, thrust, state);
   }
+}
+
+// How far an angle's command is behind the plan, from its error now on: it closes in at what the greatest
+// rate has left, and brakes. About what AttitudeCommand does, without its first half second.
+class Lag {
+ public:
+  Lag() = default;
+  // `rate_rad_s` of the plan.
+  Lag(double error_rad, double rate_rad_s, const GuidanceConfig& config) : error_rad_(error_rad) {
+    const double left_rad_s = config.turn_rate_rad_s + (error_rad > 0.0 ? rate_rad_s : -rate_rad_s);
+    closing_rad_s_ = std::max(left_rad_s, kLeast * config.turn_rate_rad_s);
+    brake_s_ = std::max(2.0 * closing_rad_s_ / config.turn_acceleration_rad_s2, kShortest_s);
+    const double brake_rad = 0.5 * closing_rad_s_ * brake_s_, way_rad = std::fabs(error_rad);
+    if (way_rad > brake_rad) until_s_ = (way_rad - brake_rad) / closing_rad_s_;
+    at_brake_rad_ = std::min(way_rad, brake_rad);
+    if (error_rad < 0.0) at_brake_rad_ = -at_brake_rad_;
+  }
+  double At(double since_s) const {
+    if (since_s < until_s_) return error_rad_ + (at_brake_rad_ - error_rad_) * (since_s / until_s_);
+    const double left = 1.0 - (since_s - until_s_) / brake_s_;
+    return left > 0.0 ? at_brake_rad_ * left * left : 0.0;
+  }
+  double brakes_s() const { return until_s_; }
+
+ private:
+  static constexpr double kLeast = 0.1, kShortest_s = 2.0;
+  double error_rad_ = 0.0, closing_rad_s_ = 0.0, until_s_ = 0.0, at_brake_rad_ = 0.0, brake_s_ = 1.0;
+};
+
+// Of both angles. Within a thousandth of a degree it is none.
+struct Lags {
+  Lag pitch, yaw;
+  bool any = false;
+
+  Direction Of(const Direction& plan, double since_s) const {
+    if (!any) return plan;
+    return {plan.pitch_rad + pitch.At(since_s), plan.yaw_rad + yaw.At(since_s)};
+  }
+};
+Lags LagsOf(const GuidanceConfig& config, const Knowledge& known, const Direction& plan,
+            const Direction& rate) {
+  Lags lags;
+  if (!known.commanded) return lags;
+  const double pitch = known.commanded->pitch_rad - plan.pitch_rad,
+               yaw = known.commanded->yaw_rad - plan.yaw_rad;
+  lags.any = std::max(std::fabs(pitch), std::fabs(yaw)) > 1e-3 * kRadPerDeg;
+  if (lags.any) {
+    lags.pitch = Lag(pitch, rate.pitch_rad, config);
+    lags.yaw = Lag(yaw, rate.yaw_rad, config);
+  }
+  return lags;
 }
 
 }  // namespace
@@ -79,13 +136,16 @@ Injection Predict(const GuidanceMission& mission, const PlanPrior& prior, const 
                   const NavigatedState& from, const Plan& plan, const PredictorSteps& steps) {
   NavigatedState state = from;
   if (known.phase == GuidancePhase::kBelowBurns) {
-    const auto direction = [&](double time_s) {
+    const auto planned = [&](double time_s) {
       Direction along = mission.program.At(time_s);
       along.pitch_rad += plan.value[kBelowPitch];
       along.yaw_rad += plan.value[kBelowYaw];
       return along;
     };
-    Burn(mission, known.below, known.burn_ignition_s, steps.burn_s, known.thrust_offset_rad_I, direction,
+    const Lags lags =
+        LagsOf(mission.config, known, planned(from.time_s), mission.program.RateAt(from.time_s));
+    const auto direction = [&](double time_s) { return lags.Of(planned(time_s), time_s - from.time_s); };
+    Burn(mission, known.below, known.burn_ignition_s, steps.burn_s, known.thrust_offset_rad_I, {}, direction,
          state);
   }
   const bool lit = known.phase == GuidancePhase::kLastBurns;
@@ -93,13 +153,25 @@ Injection Predict(const GuidanceMission& mission, const PlanPrior& prior, const 
   if (!lit)
     Advance(
         mission.earth, ignition_s, steps.coast_s, [](double) { return Vector3(0.0, 0.0, 0.0); }, state);
-  const double nominal_s = mission.last.burn.duration_s;
+  const LastBurnAttitude burn(plan, prior);
+  Lags lags;
+  double brakes_s = 0.0;
+  if (lit) {
+    const double since_s = from.time_s - ignition_s;
+    lags = LagsOf(mission.config, known, burn.At(since_s), burn.RateAt(since_s));
+    brakes_s = since_s + lags.yaw.brakes_s();
+  }
   const auto direction = [&](double time_s) {
-    return plan.LastBurnAt(time_s - ignition_s, nominal_s, prior.yaw_half_rad);
+    return lags.Of(burn.At(time_s - ignition_s), time_s - from.time_s);
   };
+  const TurnCourse& turn = prior.turn;
   const Vector3 offset = lit ? known.thrust_offset_rad_I : Vector3(0.0, 0.0, 0.0);
-  Burn(mission, known.last, ignition_s, steps.burn_s, offset, direction, state);
-  return {ArrivalOf(mission.earth, state.time_s, state.p_EoC_I, state.v_IC_I), state.time_s};
+  Burn(mission, known.last, ignition_s, steps.burn_s, offset,
+       {turn.from_s - turn.round_s, turn.from_s + turn.round_s, turn.back_s - turn.round_s,
+        turn.back_s + turn.round_s, brakes_s},
+       direction, state);
+  return {ArrivalOf(mission.earth, state.time_s, state.p_EoC_I, state.v_IC_I), state.time_s,
+          state.p_EoC_I.norm()};
 }
 
 }  // namespace dispersa

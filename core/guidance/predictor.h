@@ -2,6 +2,8 @@
 // through the rest of a burn, the coast and the last burn.
 #pragma once
 
+#include <optional>
+
 #include "core/guidance/plan.h"
 
 namespace dispersa {
@@ -23,11 +25,14 @@ struct Knowledge {
   GuidedStage last;  ///< nominal until it burns, then as estimated; less what reaction control expelled
   /// Small rotation from where thrust shall point to where it does, as measured.
   Vector3 thrust_offset_rad_I = Vector3::Zero();
+  /// Where the motor that burns is commanded to point now: it takes its time to get to where a plan wants it.
+  std::optional<Direction> commanded;
 };
 
 struct Injection {
   Arrival at;
   double time_s = 0.0;
+  double radius_m = 0.0;  ///< from the Earth's centre
 };
 
 /// Classical Runge-Kutta steps, at most so long; they end at a thrust's kinks.

@@ -257,7 +257,7 @@ TEST(ClosedLoopGuidance, DoesNotIgniteWhileItsCommandIsOnItsWay) {
   PointFlight flight(mission, CoastState());
   flight.See(GuidancePhase::kCoast, 0.0);  // the command starts at the program's attitude
   flight.state.time_s = flight.guidance.ignition_s() - 2.0;
-  const Direction wanted = flight.guidance.plan().LastBurnAt(0.0, mission.last.burn.duration_s, 0.0);
+  const Direction wanted = LastBurnAttitude(flight.guidance.plan(), BuildPrior(mission)).At(0.0);
   ASSERT_GT(std::fabs(flight.guidance.command().direction().pitch_rad - wanted.pitch_rad) +
                 std::fabs(flight.guidance.command().direction().yaw_rad - wanted.yaw_rad),
             2.0 * mission.config.settled_angle_rad);
@@ -330,15 +330,15 @@ TEST(ClosedLoopGuidance, MeetsSpeedAndAngleInTheLastSecondsWhateverAltitudeAndPl
   }
 }
 
-// What the last seconds leave of speed does not take back what was said before them.
-TEST(ClosedLoopGuidance, KeepsWhatItSaidOfItsTarget) {
+// It says that it arrives only while its last plan does: what the last seconds lose takes it back.
+TEST(ClosedLoopGuidance, TakesBackThatItArrivesWhenTheLastSecondsMiss) {
   const GuidanceMission mission = ReachableMission();
   PointFlight flight(mission, CoastState());
   flight.UntilLastBurnHasLeft(5.0);
   ASSERT_TRUE(flight.guidance.outcome().arrives);
   flight.state.v_IC_I *= 1.0 - 20.0 / flight.state.v_IC_I.norm();  // 20 m/s that nothing can give back
   flight.See(GuidancePhase::kLastBurns, flight.last_ignition_s);
-  EXPECT_TRUE(flight.guidance.outcome().arrives);
+  EXPECT_FALSE(flight.guidance.outcome().arrives);
   // The same loss while altitude counts is said.
   PointFlight earlier(mission, CoastState());
   earlier.Coast();

@@ -3,8 +3,10 @@
 
 #include <cmath>
 
+#include "core/guidance/bounded_step.h"
 #include "core/guidance/corrector.h"
 #include "core/guidance/motor_estimate.h"
+#include "core/math/constants.h"
 #include "core/random/draws.h"
 #include "tests/guidance_mission.h"
 
@@ -111,6 +113,167 @@ TEST(Corrector, KeepsItsBounds) {
   const Correction found = Correct(mission, prior, known, CoastState(), start, task);
   EXPECT_GE(found.plan.value[kIgnition], task.low[kIgnition]);
   EXPECT_TRUE(found.arrives);
+}
+
+// Whatever the start, the target and the number of steps: the prioritised miss of a plan is never more than
+// that of the plan that it comes from. 300 m/s are out of reach, 60 m/s are the reserve.
+TEST(Corrector, NeverTakesAWorsePlan) {
+  int improved = 0;
+  for (std::uint64_t draw = 0; draw < 300; ++draw) {
+    GuidanceMission mission = ReachableMission();
+    const PlanPrior prior = BuildPrior(mission);
+    Stream random(11, draw, "starts");
+    mission.target.velocity_m_s += 100.0 * random.Normal();
+    mission.target.inclination_rad += 2.0 * kRadPerDeg * random.Normal();
+    Plan start = prior.nominal;
+    for (std::size_t i = kIgnition; i < kPlanUnknowns; ++i)
+      start.value[i] = std::fmin(
+          std::fmax(start.value[i] + 1.5 * prior.scale[i] * random.Normal(), prior.low[i]), prior.high[i]);
+    Knowledge known;
+    known.last = mission.last;
+    const NavigatedState from = Disturbed(draw, 3.0);
+    double last = HUGE_VAL;
+    for (int call = 0; call < 6; ++call) {
+      const Correction found = Correct(mission, prior, known, from, start, CoastTask(prior, 2));
+      if (call > 0) {
+        EXPECT_DOUBLE_EQ(found.start_prioritised_miss, last) << draw;
+      }
+      EXPECT_LE(found.prioritised_miss, std::fmax(found.start_prioritised_miss, kSolvedMiss)) << draw;
+      improved += found.prioritised_miss < 0.9 * found.start_prioritised_miss ? 1 : 0;
+      last = found.prioritised_miss;
+      start = found.plan;
+    }
+  }
+  EXPECT_GT(improved, 300) << "at least once each";
+}
+
+// 5 to 120 m/s more than there is. Energy first: as much as no other plan near by has, to 0.2 m/s of orbital
+// energy; and a round orbit.
+TEST(Corrector, MakesTheBestOfTooLittleEnergy) {
+  for (const double beyond_m_s : {5.0, 20.0, 60.0, 120.0}) {
+    GuidanceMission mission = ReachableMission();
+    mission.target.velocity_m_s += 60.0 + beyond_m_s;
+    const PlanPrior prior = BuildPrior(mission);
+    Knowledge known;
+    known.last = mission.last;
+    const auto reached = [&](const Plan& plan) {
+      return OrbitMissOf(mission, Predict(mission, prior, known, CoastState(), plan));
+    };
+    const Plan found = FromCoast(mission, CoastState(), 20).plan;
+    const OrbitMiss miss = reached(found);
+    EXPECT_EQ(found.value[kWaste], 0.0);
+    EXPECT_LT(miss.energy_m_s, -0.5 * beyond_m_s);
+    // Any of a thousand plans about it has a greater sum of squares, weighed as the corrector does.
+    const auto sum = [](const OrbitMiss& m) {
+      return m.energy_m_s * m.energy_m_s + (m.radial_m_s * m.radial_m_s + m.shape_m_s * m.shape_m_s) / 9.0 +
+             1e-4 * m.plane_m_s * m.plane_m_s;
+    };
+    Stream random(13, static_cast<std::uint64_t>(beyond_m_s), "neighbours");
+    for (int i = 0; i < 1000; ++i) {
+      Plan other = found;
+      const double size = i % 2 == 0 ? 0.02 : 0.3;
+      for (const PlanUnknown k : {kIgnition, kPitchMiddle, kPitchHalf, kYawMiddle}) {
+        const double value = other.value[k] + size * prior.scale[k] * random.Normal();
+        other.value[k] = std::fmin(std::fmax(value, prior.low[k]), prior.high[k]);
+      }
+      EXPECT_GT(sum(reached(other)), (1.0 - 2e-3) * sum(miss)) << beyond_m_s;
+    }
+  }
+}
+
+// Energy before plane: 3 degrees of inclination beside a lack of 30 m/s cost less than a metre a second of
+// energy.
+TEST(Corrector, LeavesThePlaneWhereEnergyIsMissing) {
+  GuidanceMission mission = ReachableMission();
+  mission.target.velocity_m_s += 90.0;
+  const PlanPrior prior = BuildPrior(mission);
+  Knowledge known;
+  known.last = mission.last;
+  double energies[2];
+  for (int tilted = 0; tilted < 2; ++tilted) {
+    mission.target.inclination_rad += tilted * 3.0 * kRadPerDeg;
+    const Correction found = FromCoast(mission, CoastState(), 20);
+    energies[tilted] =
+        OrbitMissOf(mission, Predict(mission, prior, known, CoastState(), found.plan)).energy_m_s;
+    EXPECT_FALSE(found.arrives);
+  }
+  EXPECT_LT(energies[0], -10.0);
+  EXPECT_NEAR(energies[1], energies[0], 1.0);
+}
+
+TEST(OrbitMiss, IsNoneOnTheTargetAndCountsEnergyThenShape) {
+  const GuidanceMission mission = ReachableMission();
+  const Arrival& target = mission.target;
+  const double radius_m = 6378137.0 + target.altitude_m;
+  const OrbitMiss none = OrbitMissOf(mission, {target, 0.0, radius_m});
+  EXPECT_EQ(none.energy_m_s, 0.0);
+  EXPECT_NEAR(none.radial_m_s, 0.0, 1e-9);
+  EXPECT_NEAR(none.shape_m_s, 0.0, 1e-9);
+  EXPECT_EQ(none.plane_m_s, 0.0);
+  Arrival faster = target;
+  faster.velocity_m_s += 0.1;
+  EXPECT_NEAR(OrbitMissOf(mission, {faster, 0.0, radius_m}).energy_m_s, 0.1, 1e-5);
+  // A kilometre of height is 1.1 m/s of energy: v / r.
+  Arrival higher = target;
+  higher.altitude_m += 1000.0;
+  EXPECT_NEAR(OrbitMissOf(mission, {higher, 0.0, radius_m + 1000.0}).energy_m_s,
+              mission.earth.mu_m3_s2 / (radius_m * radius_m) * 1000.0 / target.velocity_m_s, 1e-3);
+}
+
+// A circle 20 km lower than a circular target has the shape wanted, and an ellipse of the target's perigee
+// that lacks 10 m/s of an elliptic one's.
+TEST(OrbitMiss, WantsTheBestShapeOfTheEnergyThereIs) {
+  GuidanceMission mission = ReachableMission();
+  const double mu = mission.earth.mu_m3_s2, radius_m = 6878137.0, lower_m = radius_m - 20e3;
+  mission.target = {radius_m - 6378137.0, std::sqrt(mu / radius_m), 0.0, 1.0};
+  const OrbitMiss circle =
+      OrbitMissOf(mission, {{lower_m - 6378137.0, std::sqrt(mu / lower_m), 0.0, 1.0}, 0.0, lower_m});
+  EXPECT_LT(circle.energy_m_s, -10.0);
+  EXPECT_NEAR(circle.shape_m_s, 0.0, 1e-6);
+  EXPECT_NEAR(circle.radial_m_s, 0.0, 1e-6);
+  // A kilometre a second faster: an eccentricity of 0.28, at perigee.
+  mission.target.velocity_m_s += 1000.0;
+  Arrival slower = mission.target;
+  slower.velocity_m_s -= 10.0;
+  const OrbitMiss ellipse = OrbitMissOf(mission, {slower, 0.0, radius_m});
+  EXPECT_NEAR(ellipse.energy_m_s, -10.0, 0.1);
+  EXPECT_NEAR(ellipse.shape_m_s, 0.0, 0.1) << "of -20 if the shape of the target were wanted";
+}
+
+TEST(BoundedStep, IsTheLeastWithinItsBounds) {
+  for (std::uint64_t draw = 0; draw < 200; ++draw) {
+    Stream random(17, draw, "models");
+    StepModel model;
+    Unknowns weight = Unknowns::Ones();
+    for (int i = 0; i < kPlanUnknowns; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      model.free[k] = i != static_cast<int>(draw % 9);
+      for (int m = 0; m < kMisses; ++m) model.jacobian(m, i) = 30.0 * random.Normal();
+      model.departure(i) = random.Normal();
+      model.low(i) = -0.5 * std::fabs(random.Normal());
+      model.high(i) = 0.5 * std::fabs(random.Normal());
+      weight(i) = 1.0 + std::fabs(random.Normal());
+    }
+    for (int m = 0; m < kMisses; ++m) model.miss(m) = 100.0 * random.Normal();
+    const auto value = [&](const Unknowns& s) {
+      return model.At(s) + s.cwiseProduct(weight - Unknowns::Ones()).dot(s);
+    };
+    const Unknowns found = BoundedStep(model, weight);
+    for (int i = 0; i < kPlanUnknowns; ++i) {
+      EXPECT_GE(found(i), model.low(i));
+      EXPECT_LE(found(i), model.high(i));
+      if (!model.free[static_cast<std::size_t>(i)]) {
+        EXPECT_EQ(found(i), 0.0);
+        continue;
+      }
+      // Convex: where no single unknown does better, nothing does.
+      for (const double by : {-1e-3, 1e-3}) {
+        Unknowns other = found;
+        other(i) = std::fmin(std::fmax(other(i) + by, model.low(i)), model.high(i));
+        EXPECT_GE(value(other), value(found) - 1e-9 * value(Unknowns::Zero())) << draw << ", " << i;
+      }
+    }
+  }
 }
 
 TEST(MotorEstimate, FindsThrustAndFlowOfAMotorByItsAcceleration) {

@@ -1,0 +1,14 @@
+// Closed-loop guidance at the edge of its reach: never notably worse than flying open loop.
+#include "tests/guidance_reach.h"
+
+namespace dispersa::guidance_reach_test {
+namespace {
+
+TEST(GuidanceReach, IsNoWorseThanOpenLoopWhateverAMotorLacks) {
+  const std::vector<ReachCase> cases = FlyReach({-5.0, -4.0, -3.0, -2.0, -1.0, 1.0, 2.0, 3.0, 4.0, 5.0});
+  PrintReach(cases);
+  ExpectReach(cases);
+}
+
+}  // namespace
+}  // namespace dispersa::guidance_reach_test
