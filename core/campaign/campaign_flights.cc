@@ -8,7 +8,7 @@
 
 #include "core/campaign/contained.h"
 #include "core/campaign/contained_flights.h"
-#include "core/campaign/input_error.h"
+#include "core/input/input_error.h"
 #include "core/control/law_here.h"
 #include "core/flight/flight.h"
 #include "core/flight/lane_engine.h"

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "core/campaign/contained.h"
-#include "core/campaign/input_error.h"
+#include "core/input/input_error.h"
 #include "core/control/law_here.h"
 #include "core/flight/flight_model.h"
 #include "core/flight/history.h"

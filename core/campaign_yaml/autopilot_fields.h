@@ -12,8 +12,8 @@
 //   f.Matrix(key, value), f.OptionalPair(key, value)  [[a, b], [b, c]]; [a, b] or nothing
 #pragma once
 
-#include "core/campaign_yaml/units.h"
-#include "core/campaign_yaml/yaml_reader.h"
+#include "core/input/units.h"
+#include "core/input/map_reader.h"
 #include "core/control/autopilot_config.h"
 
 namespace dispersa {

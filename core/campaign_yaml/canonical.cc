@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "core/campaign_yaml/number_text.h"
+#include "core/input/number_text.h"
 
 namespace dispersa {
 namespace {

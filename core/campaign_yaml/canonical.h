@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "core/campaign_yaml/input_node.h"
+#include "core/input/input_node.h"
 
 namespace dispersa {
 

@@ -1,8 +1,8 @@
 #include "core/campaign_yaml/autopilot_fields.h"
 #include "core/campaign_yaml/decode.h"
 #include "core/campaign_yaml/inline_files.h"
-#include "core/campaign_yaml/struct_problems.h"
-#include "core/campaign_yaml/yaml_reader.h"
+#include "core/input/struct_problems.h"
+#include "core/input/map_reader.h"
 
 namespace dispersa {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/campaign/campaign.h"
-#include "core/campaign/input_error.h"
-#include "core/campaign_yaml/input_node.h"
+#include "core/input/input_error.h"
+#include "core/input/input_node.h"
 
 namespace dispersa {
 

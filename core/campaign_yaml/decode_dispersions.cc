@@ -7,8 +7,8 @@
 
 #include "core/campaign_yaml/decode.h"
 #include "core/campaign_yaml/decode_distribution.h"
-#include "core/campaign_yaml/number_text.h"
-#include "core/campaign_yaml/yaml_reader.h"
+#include "core/input/number_text.h"
+#include "core/input/map_reader.h"
 #include "core/control/autopilot.h"
 #include "core/environment/turbulence.h"
 #include "core/flight/dispersed_vehicle.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/campaign/campaign.h"
-#include "core/campaign_yaml/yaml_reader.h"
+#include "core/input/map_reader.h"
 
 namespace dispersa {
 

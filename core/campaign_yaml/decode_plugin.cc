@@ -3,7 +3,7 @@
 #include "core/campaign_yaml/decode.h"
 #include "core/campaign_yaml/load.h"
 #include "core/campaign_yaml/text_problems.h"
-#include "core/campaign_yaml/yaml_reader.h"
+#include "core/input/map_reader.h"
 #include "core/control/law_here.h"
 
 namespace dispersa {

@@ -3,7 +3,7 @@
 #include "core/campaign_yaml/decode.h"
 #include "core/campaign_yaml/inline_files.h"
 
-#include "core/campaign_yaml/yaml_reader.h"
+#include "core/input/map_reader.h"
 #include "core/environment/earth.h"
 
 namespace dispersa {

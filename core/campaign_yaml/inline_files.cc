@@ -6,12 +6,12 @@
 
 #include "core/campaign_yaml/base64.h"
 #include "core/campaign_yaml/load.h"
-#include "core/campaign_yaml/number_text.h"
+#include "core/input/number_text.h"
 #include "core/campaign_yaml/parse_csv.h"
 #include "core/campaign_yaml/parse_rasp.h"
 #include "core/campaign_yaml/parse_yaml.h"
 #include "core/campaign_yaml/standard_input.h"
-#include "core/campaign_yaml/yaml_reader.h"
+#include "core/input/map_reader.h"
 
 namespace dispersa {
 namespace {

@@ -11,7 +11,7 @@
 #include "core/campaign_yaml/inline_files.h"
 #include "core/campaign_yaml/parse_yaml.h"
 #include "core/campaign_yaml/standard_input.h"
-#include "core/campaign_yaml/yaml_reader.h"
+#include "core/input/map_reader.h"
 
 namespace dispersa {
 namespace {

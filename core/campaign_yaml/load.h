@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/campaign/campaign.h"
-#include "core/campaign/input_error.h"
+#include "core/input/input_error.h"
 #include "core/flight/scenario.h"
 
 namespace dispersa {

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "core/campaign_yaml/text_problems.h"
-#include "core/campaign_yaml/yaml_reader.h"
+#include "core/input/map_reader.h"
 
 namespace dispersa {
 namespace {

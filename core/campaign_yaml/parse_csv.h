@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/campaign/input_error.h"
-#include "core/campaign_yaml/input_node.h"
+#include "core/input/input_error.h"
+#include "core/input/input_node.h"
 
 namespace dispersa {
 

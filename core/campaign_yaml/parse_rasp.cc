@@ -5,7 +5,7 @@
 #include <optional>
 #include <string_view>
 
-#include "core/campaign_yaml/number_text.h"
+#include "core/input/number_text.h"
 
 namespace dispersa {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/campaign/input_error.h"
+#include "core/input/input_error.h"
 
 namespace dispersa {
 

@@ -2,7 +2,7 @@
 #include "core/campaign_yaml/canonical.h"
 #include "core/campaign_yaml/inline_files.h"
 #include "core/campaign_yaml/load.h"
-#include "core/campaign_yaml/number_text.h"
+#include "core/input/number_text.h"
 #include "core/math/constants.h"
 
 namespace dispersa {

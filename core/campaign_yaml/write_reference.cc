@@ -1,7 +1,7 @@
 #include "core/campaign_yaml/attitude_columns.h"
 #include "core/campaign_yaml/inline_files.h"
 #include "core/campaign_yaml/load.h"
-#include "core/campaign_yaml/number_text.h"
+#include "core/input/number_text.h"
 #include "core/trajectory/optimize.h"
 
 namespace dispersa {

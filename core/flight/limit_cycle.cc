@@ -19,7 +19,7 @@ constexpr int kSegments = 12;
 // hold so much of their energy: without it segments may agree on a tone that is not there (an alias of a
 // faster one).
 constexpr double kSimilar = 0.4;
-constexpr double kShare = 0.25;
+constexpr double kShareOfPower = 0.25;
 constexpr int kHarmonics = 4;
 constexpr int kAngles = 64;
 
@@ -226,7 +226,7 @@ void LimitCycleMeter::Evaluate(const Octave& octave, int channel) {
   turn_all(Angle(sum_of(kHalf, kSegments) * Conjugate(sum_of(0, kHalf))) / (kHalf * kSegment));
   const double whole = Norm2(sum_of(0, kSegments));
   if (whole < kCoherence * kSegments * energies) return;
-  if (whole < 0.5 * kShare * kSegments * kSegment * square_sum) return;
+  if (whole < 0.5 * kShareOfPower * kSegments * kSegment * square_sum) return;
   if (Norm2(sum_of(kSegments - kThird, kSegments)) < Square(kLasting) * Norm2(sum_of(0, kThird))) return;
   worst_ = std::max(worst_, PeakToPeak(samples, kWindow, omega));
 }

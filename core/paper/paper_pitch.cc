@@ -14,7 +14,7 @@
 namespace dispersa {
 namespace {
 
-constexpr char kTime[] = "time since lift-off, s";
+constexpr char kTimeAxis[] = "time since lift-off, s";
 constexpr double kStep_s = 0.1;
 
 std::vector<double> NominalColumn(const PaperStudy& study, const char* name) {
@@ -71,7 +71,7 @@ struct BandChart {
 
 std::string Draw(const PaperStudy& study, const StudyFlights& flights, const BandChart& view,
                  const std::string& caption) {
-  SvgChart chart({.label = kTime, .low = 0.0, .high = view.to_s}, {.label = view.label},
+  SvgChart chart({.label = kTimeAxis, .low = 0.0, .high = view.to_s}, {.label = view.label},
                  view.wide ? 1060 : 520, 280);
   MarkStages(study, &chart);
   const FlightBands bands = BandsOf(flights, view.column);
@@ -199,7 +199,7 @@ std::string PaperRobustnessSection(const PaperStudy& study) {
 
   const auto curves = [&](const char* name, PaperColumn column, const char* label,
                           const std::string& caption) {
-    SvgChart chart({.label = kTime, .low = 0.0, .high = kick_end_s}, {.label = label}, 520, 280);
+    SvgChart chart({.label = kTimeAxis, .low = 0.0, .high = kick_end_s}, {.label = label}, 520, 280);
     const std::vector<SampledFlight>& flights = study.at(name).flights.histories;
     for (std::size_t i = 0; i < flights.size(); ++i)
       chart.Line(Times(flights[i][column].size()), flights[i][column], "line-0 thin",
@@ -217,7 +217,7 @@ std::string PaperRobustnessSection(const PaperStudy& study) {
   for (const char* name : {"aero20_monte_carlo_quiet", "aero20_monte_carlo", "aero20"}) {
     const StudyFlights& flights = study.at(name).flights;
     const FlightBands bands = BandsOf(flights, kPitchError);
-    SvgChart chart({.label = kTime}, {.label = "pitch error, °"}, 520, 280);
+    SvgChart chart({.label = kTimeAxis}, {.label = "pitch error, °"}, 520, 280);
     MarkStages(study, &chart);
     if (!bands.bands.empty()) {
       chart.Band(bands.time_s, bands.bands[0].min, bands.bands[0].max, "band-outer", "min–max");

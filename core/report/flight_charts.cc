@@ -15,7 +15,7 @@
 namespace dispersa {
 namespace {
 
-constexpr char kTime[] = "time since lift-off, s";
+constexpr char kTimeAxis[] = "time since lift-off, s";
 /// Below this dynamic pressure, Pa, incidence has no effect to speak of.
 constexpr double kThinAir_pa = 1000.0;
 
@@ -87,7 +87,7 @@ std::string BandFigure(const BandView& view, const FlightHistories& histories, c
   const auto band = std::find_if(bands.bands.begin(), bands.bands.end(),
                                  [&](const Band& candidate) { return candidate.column == view.column; });
   assert(band != bands.bands.end());
-  SvgChart chart({.label = kTime, .low = view.from_s, .high = view.to_s}, {.label = view.label}, view.width,
+  SvgChart chart({.label = kTimeAxis, .low = view.from_s, .high = view.to_s}, {.label = view.label}, view.width,
                  280);
   burns.AddTo(&chart);
   const std::vector<double> nominal =
@@ -137,34 +137,34 @@ std::string NominalFigures(const History& nominal) {
     figures += Figure(chart.Svg(caption), HtmlText(caption));
   };
 
-  SvgChart pitch({.label = kTime}, {.label = "pitch from the launch horizon, °"});
+  SvgChart pitch({.label = kTimeAxis}, {.label = "pitch from the launch horizon, °"});
   pitch.Line(time_s, Column(nominal, "pitch_launch_deg"), "line-0", "flown");
   pitch.Line(time_s, Column(nominal, "pitch_program_deg"), "program", "program");
   add(pitch, "Pitch program and pitch in the launch-inertial frame.");
 
-  SvgChart error({.label = kTime}, {.label = "pitch error, °"});
+  SvgChart error({.label = kTimeAxis}, {.label = "pitch error, °"});
   error.Line(time_s, Column(nominal, "pitch_error_deg"), "line-0", "");
   add(error, "Pitch error: true minus reference attitude about body y, the coast included.");
 
-  SvgChart altitude({.label = kTime}, {.label = "altitude, km"});
+  SvgChart altitude({.label = kTimeAxis}, {.label = "altitude, km"});
   altitude.Line(time_s, Column(nominal, "altitude_m", 1e-3), "line-0", "");
   add(altitude, "Geodetic altitude.");
 
-  SvgChart velocity({.label = kTime}, {.label = "inertial velocity, m/s"});
+  SvgChart velocity({.label = kTimeAxis}, {.label = "inertial velocity, m/s"});
   velocity.Line(time_s, Column(nominal, "inertial_velocity_m_s"), "line-0", "");
   add(velocity, "Inertial speed; it begins with the Earth's rotation.");
 
-  SvgChart angle({.label = kTime}, {.label = "flight path angle, °"});
+  SvgChart angle({.label = kTimeAxis}, {.label = "flight path angle, °"});
   angle.Line(time_s, Column(nominal, "flight_path_angle_deg"), "line-0", "");
   add(angle, "Inertial flight path angle.");
 
-  SvgChart deflection({.label = kTime}, {.label = "deflection, °"});
+  SvgChart deflection({.label = kTimeAxis}, {.label = "deflection, °"});
   deflection.Line(time_s, Column(nominal, "deflection_pitch_deg"), "line-0", "pitch");
   deflection.Line(time_s, Column(nominal, "deflection_yaw_deg"), "line-1", "yaw");
   deflection.Line(time_s, Column(nominal, "deflection_roll_deg"), "line-2", "roll");
   add(deflection, "Gimbal deflection of each channel.");
 
-  SvgChart pressure({.label = kTime, .low = 0.0, .high = air_end_s}, {.label = "dynamic pressure, kPa"});
+  SvgChart pressure({.label = kTimeAxis, .low = 0.0, .high = air_end_s}, {.label = "dynamic pressure, kPa"});
   pressure.Line(time_s, Scaled(qbar_pa, 1e-3), "line-0", "");
   add(pressure, "Dynamic pressure.");
 
@@ -172,7 +172,7 @@ std::string NominalFigures(const History& nominal) {
   for (std::size_t i = 0; i < alpha_deg.size(); ++i) {
     if (qbar_pa[i] < kThinAir_pa) alpha_deg[i] = std::nan("");
   }
-  SvgChart incidence({.label = kTime, .low = 0.0, .high = air_end_s}, {.label = "angle of attack, °"});
+  SvgChart incidence({.label = kTimeAxis, .low = 0.0, .high = air_end_s}, {.label = "angle of attack, °"});
   incidence.Line(time_s, alpha_deg, "line-0", "");
   add(incidence, "Angle of attack against the air, where the dynamic pressure is at least 1 kPa.");
   return figures + "</div>\n";
@@ -250,7 +250,7 @@ std::string WorstFigures(const FlightHistories& histories, const CampaignSummary
     if (shown.empty()) continue;
     const auto band = std::find_if(bands.bands.begin(), bands.bands.end(),
                                    [&](const Band& candidate) { return candidate.column == view.column; });
-    ChartAxis time{.label = kTime};
+    ChartAxis time{.label = kTimeAxis};
     if (view.in_air) time.low = 2.0, time.high = air_end_s;
     SvgChart chart(time, {.label = view.label}, 1060, 280);
     burns.AddTo(&chart);

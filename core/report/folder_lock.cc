@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <utility>
 
-#include "core/campaign/input_error.h"
+#include "core/input/input_error.h"
 
 namespace dispersa {
 

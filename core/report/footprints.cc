@@ -6,7 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "core/campaign/input_error.h"
+#include "core/input/input_error.h"
 #include "core/environment/earth.h"
 #include "core/flight/engine_version.h"
 #include "core/math/constants.h"

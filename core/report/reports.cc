@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "core/campaign/input_error.h"
+#include "core/input/input_error.h"
 #include "core/control/law_here.h"
 #include "core/flight/engine_version.h"
 #include "core/report/case_columns.h"

@@ -14,7 +14,7 @@
 
 #include "core/campaign/campaign.h"
 #include "core/campaign/case_result.h"
-#include "core/campaign/input_error.h"
+#include "core/input/input_error.h"
 #include "core/report/folder_lock.h"
 #include "core/report/result_error.h"
 #include "core/report/result_store.h"

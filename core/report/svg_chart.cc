@@ -29,7 +29,7 @@ std::string Coordinate(double value) {
   return text == "-0" ? "0" : text;
 }
 
-struct Range {
+struct AxisRange {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
 
@@ -44,7 +44,7 @@ struct Range {
 };
 
 /// Whether a limit is shown: one that lies farther from the data than these are wide would press them together.
-bool Near(double limit, const ChartAxis& axis, const Range& data) {
+bool Near(double limit, const ChartAxis& axis, const AxisRange& data) {
   if (axis.low && axis.high) return limit >= *axis.low && limit <= *axis.high;
   const double span = data.high - data.low;
   if (!(span > 0.0)) return true;
@@ -173,11 +173,11 @@ std::string SvgChart::Svg(const std::string& description) const {
   for (const Series& series : series_) legends.push_back(series.legend);
   std::vector<bool> drawn(series_.size(), true);
 
-  Range x_range;
+  AxisRange x_range;
   for (const Series& series : series_) {
     if (series.kind != Series::Kind::kVerticalLimit) x_range.Add(series.x, x_.logarithmic);
   }
-  const Range x_data = x_range;
+  const AxisRange x_data = x_range;
   for (std::size_t i = 0; i < series_.size(); ++i) {
     if (series_[i].kind != Series::Kind::kVerticalLimit) continue;
     const double limit = series_[i].x[0];
@@ -188,7 +188,7 @@ std::string SvgChart::Svg(const std::string& description) const {
   }
   const ChartScale xs(x_, x_range.low, x_range.high, kLeft, right, std::max(3, width_ / 90));
 
-  Range y_range;
+  AxisRange y_range;
   for (const Series& series : series_) {
     if (series.kind == Series::Kind::kVerticalLimit || series.kind == Series::Kind::kHorizontalLimit) continue;
     if (series.kind == Series::Kind::kBars) {
@@ -202,7 +202,7 @@ std::string SvgChart::Svg(const std::string& description) const {
       if (!series.high.empty()) y_range.Add(series.high[i], y_.logarithmic);
     }
   }
-  const Range y_data = y_range;
+  const AxisRange y_data = y_range;
   for (std::size_t i = 0; i < series_.size(); ++i) {
     if (series_[i].kind != Series::Kind::kHorizontalLimit) continue;
     const double limit = series_[i].low[0];

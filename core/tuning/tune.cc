@@ -10,7 +10,7 @@
 #include <random>
 
 #include "core/campaign/campaign_flights.h"
-#include "core/campaign/input_error.h"
+#include "core/input/input_error.h"
 #include "core/control/loop_table.h"
 #include "core/flight/flight.h"
 #include "core/flight/flight_model.h"

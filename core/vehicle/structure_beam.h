@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "core/input/fields.h"
+
 namespace dispersa {
 
 /// Lateral planes of bending, by the body axis along which the beam moves.
@@ -28,7 +30,7 @@ struct BeamSection {
   std::string name;
   double top_station_m = 0.0;
   double bottom_station_m = 0.0;
-  Taper bending_stiffness_n_m2;  ///< E I in plane y
+  Taper bending_stiffness_n_m2;  ///< in plane y
   Taper shear_stiffness_n;  ///< kappa G A in plane y; 0: does not shear (also without Timoshenko's theory)
   Taper outer_diameter_m;
   Taper thickness_m;
@@ -43,14 +45,16 @@ struct BeamSection {
   double ShearStiffness(BeamPlane plane, double station_m) const;
 };
 
+void Describe(Fields& fields, BeamSection& section, bool timoshenko);
+
 /// A body that does not bend, fixed to the beam at one station: a payload on its adapter, nozzles on a dome.
 struct LumpedMass {
   std::string name;
-  double station_m = 0.0;  ///< where it is fixed
-  std::string element;     ///< the stage's element of `structure` that it is; empty: the values below
+  double station_m = 0.0;
+  std::string element;  ///< empty: the values below
   double mass_kg = 0.0;
   double cg_station_m = 0.0;
-  double inertia_kg_m2 = 0.0;  ///< across the axis, about its own centre of gravity
+  double inertia_kg_m2 = 0.0;
 };
 
 /// What a stage brings to the beam; it flies as long as the stage is attached. Where sections of several
@@ -66,6 +70,11 @@ struct BeamSensor {
   std::string name;
   double station_m = 0.0;
 };
+
+inline void Describe(Fields& fields, BeamSensor& sensor) {
+  fields.Text("name", sensor.name, "as `dispersa modes` lists it");
+  fields.Quantity("station", kLength, kNonNegative, sensor.station_m, "where it is");
+}
 
 /// A mode of a finite-element model, at one propellant level of one stack.
 struct TabledMode {
@@ -84,18 +93,20 @@ struct TabledMode {
 inline constexpr int kMostFlownModes = 5;
 
 struct StructureBeam {
-  bool timoshenko = false;  ///< the beam shears; else Euler's and Bernoulli's, which does not
-  bool rotary_inertia =
-      true;       ///< of the cross-sections; without it the beam turns more easily than the vehicle
-  int modes = 3;  ///< in each plane
-  int propellant_levels = 11;  ///< evenly from full to empty
-  int elements = 60;           ///< at least so many along a stack
-  int flown_modes = 3;         ///< in each plane; 0: the vehicle flies as a rigid one
-  double damping_ratio = 0.01;  ///< of every mode in flight
+  bool timoshenko = false;
+  bool rotary_inertia = true;
+  int modes = 3;
+  int propellant_levels = 11;
+  int elements = 60;
+  int flown_modes = 3;
+  double damping_ratio = 0.01;
   std::vector<BeamSensor> sensors;
   std::vector<BeamStage> stages;  ///< as those of the vehicle; none with a table
   std::vector<TabledMode> table;  ///< by stage, falling propellant, plane and mode; none with stages
 };
+
+/// Of a vehicle of so many stages; 0 if that is unknown.
+void Describe(Fields& fields, StructureBeam& beam, std::size_t stages);
 
 struct Vehicle;
 struct VehicleProblem;

@@ -6,8 +6,10 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
+#include "core/input/fields.h"
 #include "core/math/aligned_rows.h"
 
 namespace dispersa {
@@ -29,6 +31,8 @@ struct ThrustCurve {
   double Flown() const;     ///< the sum of flow_kg_s, kg
   double FullFlowTime() const;  ///< in which the greatest flow would use up what flows in all, s
 };
+
+void Describe(Fields& fields, ThrustCurve& curve);
 
 /// Flows given sum up to the propellant within this.
 inline constexpr double kFlowSumTolerance = 0.01;

@@ -19,12 +19,6 @@ class Checker {
   void Require(bool ok, const std::string& path, const std::string& message, const std::string& allowed) {
     if (!ok) problems_.push_back({path, message, allowed});
   }
-  void Positive(double value, const std::string& path) {
-    Require(value > 0.0, path, "is not positive", "a number above 0");
-  }
-  void NotNegative(double value, const std::string& path) {
-    Require(value >= 0.0, path, "is negative", "0 or more");
-  }
   std::vector<VehicleProblem> Take() { return std::move(problems_); }
 
  private:
@@ -35,11 +29,8 @@ void CheckTube(const std::string& path, double top, double bottom, double outer,
                double stack_bottom, Checker& check, const std::string& part = "stage") {
   check.Require(bottom > top, path + ".bottom_station_m", "is not aft of top_station_m",
                 "a station larger than top_station_m");
-  check.Positive(outer, path + ".outer_diameter_m");
-  check.NotNegative(inner, path + ".inner_diameter_m");
   check.Require(inner < outer, path + ".inner_diameter_m", "is not smaller than outer_diameter_m",
                 "less than outer_diameter_m");
-  check.NotNegative(top, path + ".top_station_m");
   check.Require(bottom <= stack_bottom, path + ".bottom_station_m",
                 "lies aft of the " + part + "'s bottom_station_m", "at most bottom_station_m of the " + part);
 }
@@ -60,14 +51,9 @@ void CheckCommands(const Motor& motor, const std::string& path, Checker& check) 
     check.Require(i == 0 ? throttle.time_s[0] == 0.0 : throttle.time_s[i] > throttle.time_s[i - 1],
                   table + ".time_s" + index, i == 0 ? "is not the ignition" : "is not later than the time before it",
                   i == 0 ? "0 as the first time" : "times that increase");
-    check.Require(throttle.level[i] >= 0.0 && throttle.level[i] <= 1.0, table + ".level_percent" + index,
-                  "is out of range", "0 to full thrust");
   }
   check.Require(throttle.empty() || *std::max_element(throttle.level.begin(), throttle.level.end()) > 0.0, table,
                 "gives no thrust", "a level above 0 somewhere");
-  if (motor.cut_off == CutOff::kAtTime) check.Positive(motor.cut_off_s, path + ".cut_off.after_s");
-  if (motor.cut_off == CutOff::kAtVelocity)
-    check.Positive(motor.cut_off_velocity_m_s, path + ".cut_off.velocity_m_s");
 }
 
 // Engine and tanks of a liquid stage.
@@ -82,10 +68,6 @@ void CheckLiquid(const Stage& stage, const std::string& path, Checker& check) {
   for (std::size_t k = 0; k < stage.tanks.size(); ++k) {
     const Tank& tank = stage.tanks[k];
     const std::string at = path + ".tanks[" + std::to_string(k) + "]";
-    check.Positive(tank.propellant_mass_kg, at + ".propellant_mass_kg");
-    check.Positive(tank.density_kg_m3, at + ".density_kg_m3");
-    check.Positive(tank.diameter_m, at + ".diameter_m");
-    check.NotNegative(tank.top_station_m, at + ".top_station_m");
     check.Require(tank.bottom_station_m > tank.top_station_m, at + ".bottom_station_m", "is not aft of top_station_m",
                   "a station larger than top_station_m");
     check.Require(tank.bottom_station_m <= stage.bottom_station_m, at + ".bottom_station_m",
@@ -122,8 +104,6 @@ void CheckThrustCurve(const Stage& stage, const std::string& path, Checker& chec
   for (std::size_t i = 1; i < curve.time_s.size(); ++i)
     check.Require(curve.time_s[i] > curve.time_s[i - 1], at("time_s", i),
                   "is not later than the time before it", "times that increase");
-  for (std::size_t i = 0; i < curve.thrust_n.size(); ++i)
-    check.NotNegative(curve.thrust_n[i], at("thrust_n", i));
   check.Require(curve.Greatest() > 0.0, path + ".thrust_curve", "has no thrust",
                 "a thrust above 0 somewhere");
   check.Require(motor.ignition_rise_s == 0.0 && motor.tail_off_s == 0.0, path + ".thrust_curve",
@@ -134,8 +114,6 @@ void CheckThrustCurve(const Stage& stage, const std::string& path, Checker& chec
                     std::to_string(curve.time_s.size()) + " times",
                 "as many of both");
   if (curve.flow_kg_s.size() != curve.time_s.size()) return;
-  for (std::size_t i = 0; i < curve.flow_kg_s.size(); ++i)
-    check.NotNegative(curve.flow_kg_s[i], at("mass_flow_kg_s", i));
   const double flown_kg = curve.Flown();
   check.Require(std::fabs(flown_kg - stage.propellant_mass_kg) <= kFlowSumTolerance * stage.propellant_mass_kg,
                 path + ".thrust_curve.table.mass_flow_kg_s",
@@ -149,8 +127,6 @@ void CheckIgnition(const Stage& stage, bool first, const std::string& path, Chec
       first == (stage.ignition == IgnitionTrigger::kLiftOff), path + ".ignition.trigger",
       first ? "the first stage does not ignite at lift-off" : "only the first stage ignites at lift-off",
       first ? "lift_off" : "burnout_detection or timer");
-  check.NotNegative(stage.ignition_delay_s, path + ".ignition.delay_s");
-  check.NotNegative(stage.separation_delay_s, path + ".separation_delay_s");
 }
 
 void CheckStage(const Vehicle& vehicle, std::size_t i, Checker& check) {
@@ -161,18 +137,7 @@ void CheckStage(const Vehicle& vehicle, std::size_t i, Checker& check) {
     CheckCommands(stage.motor, path, check);
     return;
   }
-  check.Positive(stage.liftoff_mass_kg, path + ".liftoff_mass_kg");
-  check.Positive(stage.propellant_mass_kg, path + ".propellant_mass_kg");
-  check.Positive(stage.diameter_m, path + ".diameter_m");
-  if (!stage.motor.thrust_curve.empty()) {
-    CheckThrustCurve(stage, path + ".motor", check);
-  } else {
-    check.Positive(stage.motor.thrust_n, path + ".motor.thrust_n");
-    check.Positive(stage.motor.burning_time_s, path + ".motor.burning_time_s");
-  }
-  check.NotNegative(stage.motor.ignition_rise_s, path + ".motor.ignition_rise_s");
-  check.NotNegative(stage.motor.tail_off_s, path + ".motor.tail_off_s");
-  check.NotNegative(stage.motor.nozzle_exit_area_m2, path + ".motor.nozzle_exit_area_m2");
+  if (!stage.motor.thrust_curve.empty()) CheckThrustCurve(stage, path + ".motor", check);
   check.Require(!stage.motor.thrust_curve.empty() ||
                     0.5 * (stage.motor.ignition_rise_s + stage.motor.tail_off_s) < stage.motor.burning_time_s,
                 path + ".motor.tail_off_s", "leaves no time at full thrust",
@@ -206,7 +171,6 @@ void CheckStage(const Vehicle& vehicle, std::size_t i, Checker& check) {
   for (std::size_t k = 0; k < stage.structure.size(); ++k) {
     const MassElement& e = stage.structure[k];
     const std::string element = path + ".structure[" + std::to_string(k) + "]";
-    check.Positive(e.fraction, element + ".fraction");
     CheckTube(element, e.top_station_m, e.bottom_station_m, e.outer_diameter_m, e.inner_diameter_m,
               stage.bottom_station_m, check);
     fractions += e.fraction;
@@ -214,7 +178,6 @@ void CheckStage(const Vehicle& vehicle, std::size_t i, Checker& check) {
   for (std::size_t k = 0; k < stage.jettisoned.size(); ++k) {
     const Jettison& jettison = stage.jettisoned[k];
     const std::string element = path + ".jettisoned[" + std::to_string(k) + "]";
-    check.Positive(jettison.mass_kg, element + ".mass_kg");
     CheckTube(element, jettison.top_station_m, jettison.bottom_station_m, jettison.outer_diameter_m,
               jettison.inner_diameter_m, stage.bottom_station_m, check);
   }
@@ -223,15 +186,8 @@ void CheckStage(const Vehicle& vehicle, std::size_t i, Checker& check) {
                 "has fractions that sum to " + std::to_string(fractions), "fractions that sum to 1");
 
   const Gimbal& gimbal = stage.gimbal;
-  check.Positive(gimbal.limit_rad, path + ".gimbal.limit_deg");
-  check.Positive(gimbal.rate_limit_rad_s, path + ".gimbal.rate_limit_deg_s");
-  check.Positive(gimbal.bandwidth_rad_s, path + ".gimbal.bandwidth_rad_s");
-  check.Positive(gimbal.damping_ratio, path + ".gimbal.damping_ratio");
-  if (gimbal.nozzles.empty()) check.Positive(gimbal.radius_m, path + ".gimbal.radius_m");
   for (const VehicleProblem& problem : NozzleProblems(gimbal, path + ".gimbal"))
     check.Require(false, problem.path, problem.message, problem.allowed);
-  check.Require(gimbal.delay_ticks >= 0 && gimbal.delay_ticks <= 50, path + ".gimbal.delay_ticks",
-                "is out of range", "0 to 50");
   const auto below_limit = [&](double angle_rad, const char* key) {
     check.Require(angle_rad == 0.0 || (angle_rad > 0.0 && angle_rad < gimbal.limit_rad),
                   path + ".gimbal." + key, "leaves the nozzle no travel", "0 to below the gimbal's limit");
@@ -267,25 +223,16 @@ void CheckTables(const Vehicle& vehicle, Checker& check) {
     check.Require(t.incidence_rad.size() >= 2 && IsStrictlyIncreasing(t.incidence_rad),
                   path + ".incidence_deg", "is not strictly increasing",
                   "at least two strictly increasing numbers");
-    check.Positive(t.reference_area_m2, path + ".reference_area_m2");
-    check.Positive(t.reference_length_m, path + ".reference_length_m");
   }
 }
 
 void CheckBoosters(const Vehicle& vehicle, Checker& check) {
   const Boosters& b = vehicle.boosters;
   if (b.count == 0) return;
-  check.Require(b.count >= 2 && b.count <= kMaxBoosters, "boosters.count", "is out of range",
-                "2 to " + std::to_string(kMaxBoosters));
-  check.Positive(b.dry_mass_kg, "boosters.dry_mass_kg");
-  check.Positive(b.propellant_mass_kg, "boosters.propellant_mass_kg");
-  check.Positive(b.diameter_m, "boosters.diameter_m");
-  check.NotNegative(b.separation_delay_s, "boosters.separation_delay_s");
   const Stage& core = vehicle.stages[0];
   check.Require(2.0 * b.radius_m >= core.diameter_m, "boosters.radius_m",
                 "puts their axes inside the stage that they stand beside",
                 "at least half its diameter_m, " + std::to_string(0.5 * core.diameter_m));
-  check.NotNegative(b.top_station_m, "boosters.top_station_m");
   check.Require(b.bottom_station_m > b.top_station_m, "boosters.bottom_station_m", "is not aft of top_station_m",
                 "a station larger than top_station_m");
   CheckTube("boosters.grain", b.grain.top_station_m, b.grain.bottom_station_m, b.grain.outer_diameter_m,
@@ -381,13 +328,6 @@ std::vector<VehicleProblem> Problems(const Vehicle& vehicle) {
   CheckJettisons(vehicle, check);
   CheckBoosters(vehicle, check);
   const ReactionControl& rcs = vehicle.reaction_control;
-  if (count > 1) {
-    check.Positive(rcs.thrust_n, "reaction_control.thrust_n");
-    check.Positive(rcs.pitch_yaw_arm_m, "reaction_control.pitch_yaw_arm_m");
-    check.Positive(rcs.roll_arm_m, "reaction_control.roll_arm_m");
-    check.Positive(rcs.specific_impulse_s, "reaction_control.specific_impulse_s");
-    check.Positive(rcs.minimum_on_time_s, "reaction_control.minimum_on_time_s");
-  }
   std::vector<VehicleProblem> problems = check.Take();
   for (std::size_t i = 0; problems.empty() && i < count; ++i)
     if (!(rcs.thrust_n > 0.0) && !BuildNozzleLayout(vehicle.stages[i].gimbal).rolls)

@@ -9,11 +9,14 @@
 #include <string>
 #include <vector>
 
+#include "core/input/fields.h"
 #include "core/math/linear.h"
 #include "core/math/table.h"
-#include "core/vehicle/nozzle_layout.h"
+#include "core/vehicle/bodies.h"
+#include "core/vehicle/gimbal.h"
+#include "core/vehicle/motor.h"
+#include "core/vehicle/sensors.h"
 #include "core/vehicle/structure_beam.h"
-#include "core/vehicle/thrust_curve.h"
 
 namespace dispersa {
 
@@ -22,126 +25,6 @@ inline constexpr int kMaxStages = 6;
 /// Inputs and metrics have one column a stage: of vehicles with up to so many stages this many, of others
 /// kMaxStages.
 inline constexpr int kUsualStages = 4;
-
-/// A homogeneous hollow or solid cylinder on the axis: the building block of mass properties.
-struct MassElement {
-  std::string name;
-  double fraction = 0.0;  ///< of the stage's dry mass
-  double top_station_m = 0.0;
-  double bottom_station_m = 0.0;
-  double outer_diameter_m = 0.0;
-  double inner_diameter_m = 0.0;
-};
-
-/// Solid propellant: a tube that burns from its bore outwards, so its length and station stay.
-struct Grain {
-  double top_station_m = 0.0;
-  double bottom_station_m = 0.0;
-  double outer_diameter_m = 0.0;
-  double inner_diameter_m = 0.0;  ///< of the bore at ignition
-};
-
-/// Liquid propellant in an upright cylinder with flat ends, round the axis. It drains at the bottom: the liquid stands
-/// there, and its surface falls.
-struct Tank {
-  std::string name;
-  double top_station_m = 0.0;
-  double bottom_station_m = 0.0;
-  double diameter_m = 0.0;  ///< inside
-  double propellant_mass_kg = 0.0;  ///< at ignition, with what stays as residual
-  double density_kg_m3 = 0.0;
-
-  double Volume() const;  ///< m³, of the tank
-};
-
-/// What the engine of a liquid stage does by command: thrust as a part of its full one over the time since ignition,
-/// linear between the times, and when it ends. Thrust and flow are in proportion whatever the level.
-struct Throttle {
-  std::vector<double> time_s;  ///< from 0, each larger than the one before; empty: full thrust throughout
-  std::vector<double> level;   ///< 0 to 1; the last one holds. A last one of 0 ends the burn
-
-  bool empty() const { return time_s.empty(); }
-};
-enum class CutOff {
-  kAtDepletion,  ///< when all but the residual has flown
-  kAtTime,       ///< `cut_off_s` after ignition, or by depletion if that comes first
-  kAtVelocity,   ///< at the inertial speed `cut_off_velocity_m_s`, or by depletion if that comes first
-};
-
-/// Constant thrust between two linear ramps whose impulse is part of the whole, or a thrust curve: propellant
-/// flow is proportional to thrust, unless the curve gives it, and the propellant is used up exactly at burnout.
-struct Motor {
-  double thrust_n = 0.0;  ///< all four nozzles together (the paper's 4P), in vacuum; of a curve the greatest
-  double burning_time_s = 0.0;      ///< propellant_mass / burning_time is the flow at full thrust
-  double ignition_rise_s = 0.0;     ///< linear rise to full thrust
-  double tail_off_s = 0.0;          ///< linear decay at the end
-  double nozzle_exit_area_m2 = 0.0; ///< of all nozzles; P = P_vac - p A_e; 0 switches the term off
-  double published_mass_flow_kg_s = 0.0;  ///< as printed in the source, 0 if none; only compared
-  ThrustCurve thrust_curve = {};          ///< empty: none. Sets thrust_n and burning_time_s; without ramps
-  // Of a liquid stage; without ramps and curve. thrust_n is at full thrust, burning_time_s what all propellant would
-  // last at that.
-  Throttle throttle = {};
-  CutOff cut_off = CutOff::kAtDepletion;
-  double cut_off_s = 0.0;
-  double cut_off_velocity_m_s = 0.0;
-  double residual_mass_kg = 0.0;  ///< of the propellant: never flows
-};
-/// Gives a motor a curve, and the greatest thrust and the time that its propellant would last at the greatest flow.
-void SetThrustCurve(ThrustCurve curve, Motor& motor);
-
-/// One nozzle of a list (core/vehicle/nozzle_layout.h).
-struct Nozzle {
-  std::string name;
-  double y_m = 0.0, z_m = 0.0;  ///< of its pivot, off the axis: right, down
-  double thrust_share = 1.0;    ///< of the stage's thrust
-  /// Directions towards which positive angles of its hinges turn the thrust, from body y towards body z;
-  /// none: the nozzle is fixed, two: at right angles.
-  std::vector<double> towards_rad = {};
-  double limit_rad = 0.0;  ///< of its whole deflection, as commanded; 0: the gimbal's
-};
-
-/// Without a list four nozzles at 90°, each hinged in one plane: two for pitch (right, left), two for yaw
-/// (bottom, top); all four differentially for roll.
-struct Gimbal {
-  double pivot_station_m = 0.0;
-  double radius_m = 0.0;             ///< of the cross's nozzle centres from the axis (the paper's z_r)
-  std::vector<Nozzle> nozzles = {};  ///< in place of the cross
-  double limit_rad = 0.0;            ///< of each drive
-  double rate_limit_rad_s = 0.0;
-  double bandwidth_rad_s = 0.0;   ///< natural frequency of the second-order actuator
-  double damping_ratio = 0.7;
-  int delay_ticks = 1;            ///< whole autopilot ticks between command and actuator
-  double nozzle_mass_kg = 0.0;    ///< what turns, of one nozzle; 0: turning it takes no momentum
-  double nozzle_cg_m = 0.0;       ///< its centre of gravity, aft of the pivot
-  double nozzle_inertia_kg_m2 = 0.0;  ///< about the hinge
-  // What a real drive has besides; 0: not this one.
-  double dead_zone_rad = 0.0;  ///< distance from the command that does not move the servo yet
-  double friction_rad =
-      0.0;  ///< Coulomb's: the distance from the command at which a drive at rest breaks loose
-  double resolution_rad = 0.0;  ///< step in which the command reaches the servo
-};
-
-/// What makes the flight computer let go of a mass.
-enum class JettisonTrigger {
-  kAtTime,      ///< s since lift-off
-  kAtAltitude,  ///< m, geodetic
-  kAtHeatFlux,  ///< W/m², free-molecular: has fallen to this; Jettison says where it counts
-};
-
-/// A mass on the axis that leaves while a stage is attached: fairing, skirt, escape tower. A tube, let go of
-/// at rest against the body: no impulse, no flow about it; what is left keeps its aerodynamics.
-struct Jettison {
-  std::string name;
-  double mass_kg = 0.0;  ///< part of the stage's lift-off mass, beside its dry mass
-  double top_station_m = 0.0;
-  double bottom_station_m = 0.0;
-  double outer_diameter_m = 0.0;
-  double inner_diameter_m = 0.0;
-  JettisonTrigger trigger = JettisonTrigger::kAtTime;
-  double threshold = 0.0;
-};
-/// Of a vehicle, at most.
-inline constexpr int kMaxJettisons = 8;
 
 enum class IgnitionTrigger {
   kLiftOff,           ///< the first stage
@@ -174,14 +57,77 @@ struct Stage {
   double PropellantBottom() const;
 };
 
+inline void DescribeIgnition(Fields& fields, Stage& stage) {
+  fields.Map("ignition", "what ignites it", [&](Fields& ignition) {
+    ignition.Choice<IgnitionTrigger>("trigger",
+                                     {{"lift_off", IgnitionTrigger::kLiftOff},
+                                      {"burnout_detection", IgnitionTrigger::kBurnoutDetection},
+                                      {"timer", IgnitionTrigger::kTimer}},
+                                     stage.ignition,
+                                     "lift-off; separation of the stage below; or the flight program's time: the vehicle "
+                                     "coasts before it under its reaction control");
+    ignition.Quantity("delay", kTime, kNonNegative, stage.ignition_delay_s, "after separation of the stage below", 0.0);
+  });
+}
+
+inline void Describe(Fields& fields, Stage& stage) {
+  fields.Flag("restarts", stage.restarts, false,
+              "it is the stage before, a liquid one, whose engine burns again: the same body, its propellant what is left. "
+              "What the stage jettisons may leave in any of its burns");
+  fields.Text("name", stage.name, "what it is");
+  fields.Either({{Is("restarts", {"true"}), [&] { DescribeCommands(fields, stage.motor); }},
+                 {Else(), [&] {
+                    fields.Quantity("liftoff_mass", kMass, kPositive, stage.liftoff_mass_kg,
+                                    "of this stage and everything above it (Table 1)");
+                    fields.Quantity("propellant_mass", kMass, kPositive, stage.propellant_mass_kg, "at ignition");
+                    fields.Quantity("diameter", kLength, kPositive, stage.diameter_m, "of its body");
+                    fields.Quantity("bottom_station", kLength, kPositive, stage.bottom_station_m,
+                                    "where the stack ends while this stage is its lowest");
+                    fields.Map("motor", "motor or engine", [&](Fields& motor) { Describe(motor, stage.motor); });
+                    fields.Either({{Has("motor.liquid"),
+                                    [&] {
+                                      fields.Misplaced("grain", {}, "the motor is liquid", "tanks in place of the grain");
+                                      fields.List("tanks", 1, SIZE_MAX, stage.tanks,
+                                                  "of a liquid engine: upright cylinders round the axis, which may be "
+                                                  "inside one another's length");
+                                    }},
+                                   {Else(), [&] {
+                                      fields.Misplaced("tanks", {}, "the motor is not liquid",
+                                                       "a grain in place of the tanks, or motor: {liquid: {...}}");
+                                      fields.Map("grain", "of a solid motor",
+                                                 [&](Fields& grain) { Describe(grain, stage.grain); });
+                                    }}});
+                    fields.List("structure", 1, SIZE_MAX, stage.structure, "its dry mass; the fractions sum up to 1");
+                    fields.List("jettisoned", 0, kMaxJettisons, stage.jettisoned,
+                                "masses on the axis that leave while the stage is attached: fairing, tower, skirt");
+                    fields.Map("gimbal", "what turns the thrust", [&](Fields& gimbal) { Describe(gimbal, stage.gimbal); });
+                  }}});
+  DescribeIgnition(fields, stage);
+  fields.Quantity("separation_delay", kTime, kNonNegative, stage.separation_delay_s,
+                  "after burnout is detected; the last stage does not separate", 0.0);
+}
+
 /// Cold-gas couples about each axis, on the stack of the last stage: torque without net force.
 struct ReactionControl {
-  double thrust_n = 0.0;              ///< of one thruster; two fire at a time
-  double pitch_yaw_arm_m = 0.0;       ///< half the distance between the two thrusters of a couple
+  double thrust_n = 0.0;
+  double pitch_yaw_arm_m = 0.0;
   double roll_arm_m = 0.0;
   double specific_impulse_s = 0.0;
-  double minimum_on_time_s = 0.0;     ///< minimum impulse bit / thrust
+  double minimum_on_time_s = 0.0;
 };
+
+inline void Describe(Fields& fields, ReactionControl& control) {
+  fields.Quantity("thrust", kForce, kPositive, control.thrust_n, "of one thruster; two fire at a time");
+  fields.Quantity("pitch_yaw_arm", kLength, kPositive, control.pitch_yaw_arm_m,
+                  "half the distance between the two thrusters of a couple");
+  fields.Quantity("roll_arm", kLength, kPositive, control.roll_arm_m, "the same of a couple of roll");
+  fields.Quantity("specific_impulse", kTime, kPositive, control.specific_impulse_s, "of the thrusters");
+  fields.Quantity("minimum_on_time", kTime, kPositive, control.minimum_on_time_s,
+                  "least impulse of a thruster over its thrust");
+}
+
+/// Boosters at most.
+inline constexpr int kMaxBoosters = 8;
 
 /// Solid motors beside the first stage, all alike, at equal angles round it and ignited with it. Their nozzles are
 /// fixed, along the axis. They leave together after they have burnt out, at rest against the body, ahead of the
@@ -202,9 +148,28 @@ struct Boosters {
   /// Of all of them, with their propellant.
   double LiftOffMass() const { return count * (dry_mass_kg + propellant_mass_kg); }
 };
-/// Boosters at most.
-inline constexpr int kMaxBoosters = 8;
 
+inline void Describe(Fields& fields, Boosters& boosters) {
+  fields.Integer("count", 2, kMaxBoosters, boosters.count, "how many, all alike");
+  fields.Quantity("dry_mass", kMass, kPositive, boosters.dry_mass_kg, "of one, a thin tube from top to bottom station");
+  fields.Quantity("propellant_mass", kMass, kPositive, boosters.propellant_mass_kg, "of one");
+  fields.Quantity("radius", kLength, kPositive, boosters.radius_m, "of their axes from the vehicle's");
+  fields.Quantity("diameter", kLength, kPositive, boosters.diameter_m, "of one");
+  fields.Quantity("top_station", kLength, kNonNegative, boosters.top_station_m, "upper end");
+  fields.Quantity("bottom_station", kLength, kPositive, boosters.bottom_station_m, "lower end");
+  fields.Quantity("nozzle_station", kLength, kPositive, boosters.nozzle_station_m, "where the thrust acts");
+  fields.Map("motor", "of one; solid", [&](Fields& motor) {
+    motor.Either({{Has("liquid"),
+                   [&] {
+                     motor.Misplaced("liquid", {}, "boosters are solid", "thrust_* with burning_time_*, or thrust_curve");
+                     DescribeExit(motor, boosters.motor);
+                   }},
+                  {Else(), [&] { DescribeSolid(motor, boosters.motor); }}});
+  });
+  fields.Map("grain", "of one, about its own axis", [&](Fields& grain) { Describe(grain, boosters.grain); });
+  fields.Quantity("separation_delay", kTime, kNonNegative, boosters.separation_delay_s,
+                  "after burnout is detected, before the stage's own", 0.0);
+}
 enum class ProfileShape { kTangentOgive, kCone, kCylinder, kFrustum };
 
 /// A piece of the outer mould line; the pieces follow one another from the nose tip aft.
@@ -213,6 +178,18 @@ struct ProfileSection {
   double length_m = 0.0;
   double aft_diameter_m = 0.0;  ///< the fore diameter is the section's before; 0 at the nose tip
 };
+
+inline void Describe(Fields& fields, ProfileSection& section) {
+  fields.Choice<ProfileShape>("shape",
+                              {{"tangent_ogive", ProfileShape::kTangentOgive},
+                               {"cone", ProfileShape::kCone},
+                               {"cylinder", ProfileShape::kCylinder},
+                               {"frustum", ProfileShape::kFrustum}},
+                              section.shape, "of the piece");
+  fields.Quantity("length", kLength, kPositive, section.length_m, "along the axis");
+  fields.Quantity("aft_diameter", kLength, kPositive, section.aft_diameter_m,
+                  "the fore diameter is the piece's before, 0 at the nose tip");
+}
 
 /// Aerodynamic coefficients of one stack (the stages still attached) over Mach number and total
 /// incidence, in body axes: F = -q S (CA x + CN n), n the direction of the cross-flow.
@@ -229,6 +206,8 @@ struct AeroTable {
   std::vector<double> clp_per_rad;      ///< shape (mach): roll damping on p d / (2 V)
 };
 
+void Describe(Fields& fields, AeroTable& table);
+
 /// Limits of the structure; 0 = none given. core/flight/structural_limits.h says which load each one limits.
 struct StructuralLimits {
   double q_max_pa = 0.0;
@@ -239,29 +218,28 @@ struct StructuralLimits {
   bool terminate = false;  ///< end the flight as `structural_limit`, else only flag it
 };
 
+inline void Describe(Fields& fields, StructuralLimits& limits) {
+  fields.Quantity("q_max", kPressure, kPositive, limits.q_max_pa, "dynamic pressure", 0.0);
+  fields.Quantity("q_alpha", kPressureAngle, kPositive, limits.q_alpha_pa_rad, "dynamic pressure times incidence", 0.0);
+  fields.Quantity("axial_load", kAcceleration, kPositive, limits.axial_load_g, "specific force along the axis", 0.0);
+  fields.Quantity("lateral_load", kAcceleration, kPositive, limits.lateral_load_g, "and across it", 0.0);
+  fields.Quantity("bending_moment", kMoment, kPositive, limits.bending_moment_n_m, "at any station", 0.0);
+  fields.Flag("terminate", limits.terminate, false,
+              "a flight that exceeds one ends as structural_limit, else it is only flagged");
+}
+
 struct LaunchSite {
   double latitude_rad = 0.0;   ///< geodetic
   double longitude_rad = 0.0;
   double altitude_m = 0.0;     ///< geodetic, of the vehicle's CG at rest
 };
 
-/// A rate gyro of three axes: second order over the true rate of its place, sampled and rounded.
-struct RateGyro {
-  std::string name;
-  double station_m = 0.0;
-  double bandwidth_rad_s = 0.0;  ///< natural frequency; 0: follows at once
-  double damping_ratio = 0.7;
-  double quantum_rad_s = 0.0;  ///< of its output; 0: none
-  int sample_ticks = 1;        ///< ticks of the autopilot between samples
-};
-/// Rate gyros a vehicle has at most.
-inline constexpr int kRateGyros = 3;
-
-/// What measures attitude and rates. Without rate gyros the inertial unit gives the rates.
-struct Sensors {
-  double inertial_unit_station_m = 0.0;  ///< whose attitude is measured
-  std::vector<RateGyro> rate_gyros;
-};
+inline void Describe(Fields& fields, LaunchSite& site) {
+  fields.Quantity("latitude", kAngle, Between(-kQuarterTurn, kQuarterTurn), site.latitude_rad, "geodetic");
+  fields.Quantity("longitude", kAngle, Between(-kHalfTurn, kHalfTurn), site.longitude_rad, "east");
+  fields.Quantity("altitude", kLength, Between(-500.0, 9000.0), site.altitude_m,
+                  "geodetic, of the vehicle's centre of gravity at rest");
+}
 
 struct Vehicle {
   std::string name;
@@ -280,6 +258,8 @@ struct Vehicle {
   Sensors sensors;
   std::optional<StructureBeam> structure_beam;  ///< none: the vehicle is rigid
 };
+
+void Describe(Fields& fields, Vehicle& vehicle);
 
 /// The last burn of the stage whose burn this is: itself unless the next one restarts it.
 int LastBurn(const Vehicle& vehicle, int stage);

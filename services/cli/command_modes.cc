@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/campaign/input_error.h"
+#include "core/input/input_error.h"
 #include "core/campaign_yaml/load.h"
 #include "core/math/constants.h"
 #include "core/report/modes_page.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/campaign/input_error.h"
+#include "core/input/input_error.h"
 #include "core/paper/paper_page.h"
 #include "core/paper/paper_study.h"
 #include "services/cli/command.h"

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "core/campaign/input_error.h"
+#include "core/input/input_error.h"
 #include "core/report/output_file.h"
 #include "services/cli/campaign_output.h"
 #include "services/cli/command.h"

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "core/campaign/input_error.h"
-#include "core/campaign_yaml/yaml_reader.h"
+#include "core/input/input_error.h"
+#include "core/input/map_reader.h"
 #include "core/report/output_file.h"
 #include "services/cli/command.h"
 #include "services/client/writable.h"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/campaign/campaign_flights.h"
-#include "core/campaign/input_error.h"
+#include "core/input/input_error.h"
 #include "core/flight/flight.h"
 #include "core/optimization/parallel_for.h"
 #include "core/report/limit_text.h"

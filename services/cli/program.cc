@@ -6,7 +6,7 @@
 #include <system_error>
 
 #include "core/campaign/contained.h"
-#include "core/campaign/input_error.h"
+#include "core/input/input_error.h"
 #include "core/flight/lane_engine.h"
 #include "core/report/result_error.h"
 #include "services/cli/command.h"

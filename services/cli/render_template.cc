@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/campaign/input_error.h"
+#include "core/input/input_error.h"
 #include "services/cli/render_template_script.h"
 
 extern char** environ;

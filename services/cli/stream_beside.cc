@@ -1,6 +1,6 @@
 #include "services/cli/stream_beside.h"
 
-#include "core/campaign/input_error.h"
+#include "core/input/input_error.h"
 
 namespace dispersa {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-#include "core/campaign/input_error.h"
+#include "core/input/input_error.h"
 #include "core/campaign_yaml/parse_yaml.h"
 
 namespace dispersa {

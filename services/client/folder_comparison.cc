@@ -5,7 +5,7 @@
 #include <system_error>
 #include <utility>
 
-#include "core/campaign/input_error.h"
+#include "core/input/input_error.h"
 #include "core/flight/flight_inputs.h"
 #include "core/report/output_file.h"
 #include "services/client/campaign_differences.h"

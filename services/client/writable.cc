@@ -5,7 +5,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "core/campaign/input_error.h"
+#include "core/input/input_error.h"
 #include "core/report/output_file.h"
 #include "core/report/result_error.h"
 

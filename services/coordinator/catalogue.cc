@@ -8,7 +8,7 @@
 #include <tuple>
 #include <utility>
 
-#include "core/campaign/input_error.h"
+#include "core/input/input_error.h"
 #include "core/report/output_file.h"
 #include "core/report/result_error.h"
 #include "services/coordinator/dump_any_text.h"

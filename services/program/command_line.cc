@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "core/campaign/input_error.h"
-#include "core/campaign_yaml/yaml_reader.h"
+#include "core/input/input_error.h"
+#include "core/input/map_reader.h"
 #include "services/log/log.h"
 #include "services/program/completion_words.h"
 #include "services/program/error_json.h"

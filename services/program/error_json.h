@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "core/campaign/input_error.h"
+#include "core/input/input_error.h"
 #include "services/transport/exit_code.h"
 
 namespace dispersa {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "core/campaign/input_error.h"
+#include "core/input/input_error.h"
 #include "services/transport/exit_code.h"
 
 namespace dispersa {

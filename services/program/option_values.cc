@@ -6,7 +6,7 @@
 #include <limits>
 #include <sstream>
 
-#include "core/campaign_yaml/yaml_reader.h"
+#include "core/input/map_reader.h"
 #include "services/program/completion_words.h"
 
 namespace dispersa {

@@ -13,7 +13,7 @@
 #include "core/campaign/campaign_flights.h"
 #include "core/campaign_yaml/inline_files.h"
 #include "core/campaign_yaml/load.h"
-#include "core/campaign_yaml/number_text.h"
+#include "core/input/number_text.h"
 #include "core/flight/flight_inputs.h"
 #include "core/flight/history.h"
 #include "core/flight/metrics.h"

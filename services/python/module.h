@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/campaign/input_error.h"
+#include "core/input/input_error.h"
 #include "core/campaign_yaml/load.h"
 
 namespace dispersa {

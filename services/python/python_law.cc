@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "core/campaign/input_error.h"
+#include "core/input/input_error.h"
 #include "core/campaign_yaml/canonical.h"
 #include "core/campaign_yaml/parse_yaml.h"
 #include "core/control/autopilot.h"

@@ -12,7 +12,7 @@
 #include "core/campaign_yaml/decode.h"
 #include "core/campaign_yaml/decode_campaign.h"
 #include "core/campaign_yaml/inline_files.h"
-#include "core/campaign_yaml/number_text.h"
+#include "core/input/number_text.h"
 
 namespace dispersa {
 namespace {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/campaign_yaml/file_kind.h"
-#include "core/campaign_yaml/input_observer.h"
+#include "core/input/input_observer.h"
 
 namespace dispersa {
 

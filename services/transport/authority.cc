@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "core/campaign/input_error.h"
+#include "core/input/input_error.h"
 #include "services/transport/key_folder.h"
 #include "services/transport/network.h"
 #include "services/transport/openssl.h"

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "core/campaign/input_error.h"
+#include "core/input/input_error.h"
 #include "core/flight/metrics.h"
 #include "services/coordinator/running_tally.h"
 

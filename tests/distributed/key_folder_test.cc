@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/campaign/contained.h"
-#include "core/campaign/input_error.h"
+#include "core/input/input_error.h"
 #include "home_folder.h"
 #include "services/transport/admission.h"
 #include "services/transport/authority.h"

@@ -114,10 +114,10 @@ constexpr BadInput kBadInputs[] = {
      "flexible.yaml:15:10: nozzles: the list has 1, the vehicle 2 stages, allowed: one entry a stage, or "
      "none\n"},
     {"NoStiffness", "outer_diameter_m: 1, thickness_mm: 4, modulus_gpa: 200", "z_to_y_stiffness: 1",
-     "flexible.yaml:10:11: structure_beam.stages[0].sections[0]: no stiffness is given, allowed: "
-     "bending_stiffness_n_m2, or a tube: outer_diameter_m, thickness_m and modulus_gpa\n"},
+     "flexible.yaml:10:11: structure_beam.stages[0].sections[0]: missing key "
+     "'bending_stiffness_n_m2' or 'outer_diameter_m', allowed: bending_stiffness_n_m2, or a tube: outer_diameter_m, thickness_m and modulus_gpa\n"},
     {"TwoStiffnesses", "modulus_gpa: 200", "modulus_gpa: 200, bending_stiffness_n_m2: 1e8",
-     "flexible.yaml:10:11: structure_beam.stages[0].sections[0]: both a bending stiffness and a tube "
+     "flexible.yaml:10:144: structure_beam.stages[0].sections[0].bending_stiffness_n_m2: both a bending stiffness and a tube "
      "are given, allowed: bending_stiffness_n_m2, or a tube: outer_diameter_m, thickness_m and "
      "modulus_gpa\n"},
     {"HalfATube", "thickness_mm: 4, ", "",
@@ -221,16 +221,16 @@ constexpr BadInput kBadModes[] = {
     {"UnknownPlane", "2,500,z,1,44,220,0,1,-1", "2,500,x,1,44,220,0,1,-1",
      "modes.csv:10:7: plane[8]: 'x' is not a choice, allowed: one of y, z\n"},
     {"HalfAMode", "1,0,y,1,15,300,0,-0.5,0.2", "1,0,y,1.5,15,300,0,-0.5,0.2",
-     "modes.csv:5:7: '1.5' is not a whole number, allowed: a whole number\n"},
+     "modes.csv:5:7: mode[3]: '1.5' is not a whole number, allowed: a whole number\n"},
     {"NoSuchStage", "2,500,z,1,44,220,0,1,-1", "3,500,z,1,44,220,0,1,-1",
      "modes.csv:10:1: stage[8]: 3 is out of range, allowed: a number from 1 to 2\n"},
     {"StationsFall", "1,0,y,1,15,300,5,0.3,0", "1,0,y,1,15,300,11,0.3,0",
-     "modes.csv:7:16: the stations of a mode do not increase, allowed: rows of increasing station_m\n"},
+     "modes.csv:7:16: station_m[5]: the stations of a mode do not increase, allowed: rows of increasing station_m\n"},
     {"OtherStations", "1,0,y,1,15,300,5,0.3,0", "1,0,y,1,15,300,6,0.3,0",
-     "modes.csv:5:16: the mode has other stations than the first of its stage and plane, allowed: the "
+     "modes.csv:5:16: station_m[3]: the mode has other stations than the first of its stage and plane, allowed: the "
      "same stations for all modes of a stage and plane\n"},
     {"TwoFrequencies", "1,0,y,1,15,300,5,0.3,0", "1,0,y,1,16,300,5,0.3,0",
-     "modes.csv:6:9: frequency or generalized mass change within a mode, allowed: the same in all "
+     "modes.csv:6:9: frequency_hz[4]: frequency or generalized mass change within a mode, allowed: the same in all "
      "rows of a mode\n"},
     {"StageWithoutModes",
      "2,500,y,1,40,200,0,1,-1\n2,500,y,1,40,200,4,1,1\n2,500,z,1,44,220,0,1,-1\n2,500,z,1,44,220,4,0.9,1\n",
@@ -242,7 +242,7 @@ constexpr BadInput kBadModes[] = {
      "modes.csv:1:1: structure_beam.modes_table: has modes of stage 2 at 501.000000 kg, allowed: at "
      "most the stage's propellant, 500.000000 kg\n"},
     {"OnlyPlaneZ", "2,500,y,1,40,200,0,1,-1\n2,500,y,1,40,200,4,1,1\n", "",
-     "modes.csv:8:7: the stage has modes in plane z and none in plane y, allowed: plane y, which "
+     "modes.csv:8:7: plane[6]: the stage has modes in plane z and none in plane y, allowed: plane y, which "
      "stands for both, or both planes\n"},
 };
 

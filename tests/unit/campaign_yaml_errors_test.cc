@@ -43,15 +43,14 @@ constexpr BadInput kBadInputs[] = {
      "    jettisoned:\n      - {name: skirt, mass_kg: 10, top_station_m: 1, bottom_station_m: 2, "
      "outer_diameter_m: 1, at: {}}\n    gimbal:",
      "vehicle.yaml",
-     "vehicle.yaml:17:100: stages[0].jettisoned[0].at: missing key 'time_s' or 'altitude_km' or "
+     "vehicle.yaml:17:100: stages[0].jettisoned[0].at: missing key 'time_s' or 'altitude_m' or "
      "'heat_flux_w_m2', allowed: one of them\n"},
     {"JettisonWithTwo", "vehicle.yaml", "    gimbal:",
      "    jettisoned:\n      - {name: skirt, mass_kg: 10, top_station_m: 1, bottom_station_m: 2, "
      "outer_diameter_m: 1, at: {time_s: 5, altitude_km: 50}}\n    gimbal:",
      "vehicle.yaml",
-     "vehicle.yaml:17:100: stages[0].jettisoned[0].at: says more than once when, allowed: time_s, "
-     "altitude_km or "
-     "heat_flux_w_m2\n"},
+     "vehicle.yaml:17:125: stages[0].jettisoned[0].at.altitude_km: 'time_s' and 'altitude_km' are both given, allowed: "
+     "one of time_s, altitude_m, heat_flux_w_m2\n"},
     {"JettisonOutsideTheStage", "vehicle.yaml", "    gimbal:",
      "    jettisoned:\n      - {name: skirt, mass_kg: 10, top_station_m: 1, bottom_station_m: 200, "
      "outer_diameter_m: 1, at: {time_s: 5}}\n    gimbal:",
@@ -425,8 +424,8 @@ TEST(CampaignYamlErrors, AllProblemsOfAllFilesAreReportedInOrder) {
       "campaign.yaml:6:51: sampling.seed: '-1' is not a whole number, allowed: a whole number from 0 to "
       "18446744073709551615\n"
       "vehicle.yaml:4:14: hold_down_s: -1 is out of range, allowed: a number not below 0\n"
-      "vehicle.yaml:14:32: stages[0].structure[0].fraction: 7.5 is out of range, allowed: a number from 0 to "
-      "1\n"
+      "vehicle.yaml:14:32: stages[0].structure[0].fraction: 7.5 is out of range, allowed: a number above 0 "
+      "and not above 1\n"
       "autopilot.yaml:3:9: tick_s: 'soon' is not a number, allowed: a number from 1e-04 to 0.1\n");
 }
 

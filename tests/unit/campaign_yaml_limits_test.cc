@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/campaign/input_error.h"
+#include "core/input/input_error.h"
 #include "core/campaign_yaml/load.h"
 #include "core/campaign_yaml/parse_yaml.h"
 #include "tests/fuzz.h"

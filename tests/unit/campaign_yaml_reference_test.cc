@@ -6,7 +6,7 @@
 #include <random>
 
 #include "core/campaign_yaml/load.h"
-#include "core/campaign_yaml/number_text.h"
+#include "core/input/number_text.h"
 #include "core/math/constants.h"
 #include "tests/unit/input_files.h"
 

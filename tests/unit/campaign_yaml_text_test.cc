@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/campaign/input_error.h"
+#include "core/input/input_error.h"
 #include "core/campaign_yaml/base64.h"
 #include "core/campaign_yaml/parse_csv.h"
 #include "core/campaign_yaml/parse_rasp.h"

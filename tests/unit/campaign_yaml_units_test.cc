@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "core/campaign_yaml/number_text.h"
+#include "core/input/number_text.h"
 #include "core/campaign_yaml/parse_yaml.h"
-#include "core/campaign_yaml/units.h"
-#include "core/campaign_yaml/yaml_reader.h"
+#include "core/input/units.h"
+#include "core/input/map_reader.h"
 
 namespace dispersa::campaign_yaml_units_test {
 namespace {

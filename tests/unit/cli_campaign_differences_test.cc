@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/campaign/input_error.h"
+#include "core/input/input_error.h"
 
 namespace dispersa::cli_campaign_differences_test {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "core/campaign/campaign_flights.h"
-#include "core/campaign/input_error.h"
+#include "core/input/input_error.h"
 #include "core/campaign_yaml/load.h"
 #include "core/flight/flight_model.h"
 #include "core/flight/margins.h"

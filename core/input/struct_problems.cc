@@ -1,10 +1,10 @@
-#include "core/campaign_yaml/struct_problems.h"
+#include "core/input/struct_problems.h"
 
 #include <algorithm>
 #include <cctype>
 
-#include "core/campaign_yaml/number_text.h"
-#include "core/campaign_yaml/units.h"
+#include "core/input/number_text.h"
+#include "core/input/units.h"
 
 namespace dispersa {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/campaign_yaml/input_node.h"
+#include "core/input/input_node.h"
 
 #include <utility>
 

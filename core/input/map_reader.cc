@@ -1,10 +1,10 @@
-#include "core/campaign_yaml/yaml_reader.h"
+#include "core/input/map_reader.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "core/campaign_yaml/number_text.h"
+#include "core/input/number_text.h"
 
 namespace dispersa {
 namespace {
@@ -433,6 +433,8 @@ void MapReader::ReportMissing(std::vector<std::string> keys, const std::string& 
 }
 
 void MapReader::Finish() {
+  if (is_finished_) return;
+  is_finished_ = true;
   const std::vector<std::string> known(known_.begin(), known_.end());
   std::set<std::string> explained;  // missing keys that an unknown key evidently stands for
   for (const InputMember& member : node_.members) {

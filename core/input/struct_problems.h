@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/campaign_yaml/input_node.h"
-#include "core/campaign_yaml/yaml_reader.h"
+#include "core/input/input_node.h"
+#include "core/input/map_reader.h"
 
 namespace dispersa {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/campaign_yaml/input_node.h"
+#include "core/input/input_node.h"
 
 namespace dispersa {
 

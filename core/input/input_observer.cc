@@ -1,4 +1,4 @@
-#include "core/campaign_yaml/input_observer.h"
+#include "core/input/input_observer.h"
 
 #include <cassert>
 

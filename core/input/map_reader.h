@@ -6,37 +6,19 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "core/campaign/input_error.h"
-#include "core/campaign_yaml/input_node.h"
-#include "core/campaign_yaml/input_observer.h"
-#include "core/campaign_yaml/units.h"
+#include "core/input/input_error.h"
+#include "core/input/input_node.h"
+#include "core/input/input_observer.h"
+#include "core/input/range.h"
+#include "core/input/units.h"
 
 namespace dispersa {
-
-/// Finite numbers between two limits, each inside or outside of the range.
-struct Range {
-  double low = -std::numeric_limits<double>::infinity();
-  double high = std::numeric_limits<double>::infinity();
-  bool low_open = false;
-  bool high_open = false;
-
-  bool Contains(double value) const;
-  /// "a number above 0", with the limits divided by `scale`.
-  std::string Text(double scale = 1.0) const;
-};
-
-inline constexpr Range kAnyNumber{};
-inline constexpr Range kPositive{0.0, std::numeric_limits<double>::infinity(), true, false};
-inline constexpr Range kNonNegative{0.0, std::numeric_limits<double>::infinity(), false, false};
-constexpr Range Between(double low, double high) { return {low, high, false, false}; }
-constexpr Range Inside(double low, double high) { return {low, high, true, true}; }
 
 void AddProblem(std::vector<InputProblem>& problems, const InputNode& at, std::string path,
                 std::string message, std::string allowed = "");
@@ -126,6 +108,9 @@ class MapReader {
   /// None of the keys, any of which would do, is there. Not reported if an unknown key evidently means one.
   void ReportMissing(std::vector<std::string> keys, const std::string& allowed);
 
+  /// Says what is unknown or missing. Nothing is read afterwards; the destructor does it too.
+  void Finish();
+
   /// A key that is legal and read by someone else.
   void Allow(const std::string& key) { Optional(key); }
   /// A key of which something was said already.
@@ -147,7 +132,6 @@ class MapReader {
   // The member of a quantity and its unit, or null.
   const InputNode* FindQuantity(const std::string& stem, Dimension dimension, std::string* key,
                                 double* scale);
-  void Finish();
 
   const InputNode& node_;
   InputObserver* const listener_;  // null: nobody, or nothing to be said of a node that is absent
@@ -156,6 +140,7 @@ class MapReader {
   std::set<std::string> known_;
   std::vector<std::pair<std::string, std::vector<std::string>>> quantities_;  // stem, keys
   std::vector<Missing> missing_;
+  bool is_finished_ = false;
 };
 
 /// The scalar as text; a number or a truth value must be quoted to be one.

@@ -1,4 +1,4 @@
-#include "core/campaign_yaml/number_text.h"
+#include "core/input/number_text.h"
 
 #include <array>
 #include <charconv>

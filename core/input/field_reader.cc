@@ -1,0 +1,198 @@
+#include "core/input/field_reader.h"
+
+#include <algorithm>
+
+#include "core/input/struct_problems.h"
+
+namespace dispersa {
+namespace {
+
+class FieldReader : public Fields {
+ public:
+  FieldReader(const InputNode& node, std::string path, std::vector<InputProblem>& problems)
+      : map_(node, std::move(path), problems) {}
+
+  void Schema(const char*) override { map_.Allow("schema"); }  // it decided who reads this
+  void Text(const char* key, std::string& value, const char*, std::optional<std::string> absent) override {
+    value = absent ? map_.Text(key, *absent) : map_.Text(key);
+  }
+  void Flag(const char* key, bool& value, bool absent, const char*) override { value = map_.Flag(key, absent); }
+  void Integer(const char* key, std::int64_t low, std::int64_t high, int& value, const char*,
+               std::optional<int> absent) override {
+    std::optional<std::uint64_t> default_value;
+    if (absent) default_value = static_cast<std::uint64_t>(*absent);
+    value = static_cast<int>(map_.Integer(key, static_cast<std::uint64_t>(low),
+                                          static_cast<std::uint64_t>(high), default_value));
+  }
+  void Number(const char* key, const Range& range, double& value, const char*,
+              std::optional<double> absent) override {
+    value = map_.Number(key, range, absent);
+  }
+  void Quantity(const char* stem, Dimension dimension, const Range& range, double& value, const char*,
+                std::optional<double> absent) override {
+    value = map_.Quantity(stem, dimension, range, absent);
+  }
+  void Numbers(const char* key, const Range& range, std::size_t low_count, std::size_t high_count,
+               std::vector<double>& values, const char*) override {
+    values = map_.Numbers(key, range, low_count, high_count);
+  }
+  void Quantities(const char* stem, Dimension dimension, const Range& range, std::size_t low_count,
+                  std::size_t high_count, std::vector<double>& values, const char*) override {
+    values = map_.Quantities(stem, dimension, range, low_count, high_count);
+  }
+
+  void OptionalQuantities(const char* stem, Dimension dimension, const Range& range, std::size_t low_count,
+                          std::size_t high_count, std::vector<double>& values, const char*) override {
+    if (map_.Has(stem, dimension))
+      values = map_.Quantities(stem, dimension, range, low_count, high_count);
+    else
+      map_.OptionalQuantity(stem, dimension, range);
+  }
+  void Ends(const char* stem, Dimension dimension, const Range& range, double& first, double& second,
+            bool needed, const char*) override {
+    if (!needed && !map_.Has(stem, dimension)) {
+      map_.OptionalQuantity(stem, dimension, range);
+      return;
+    }
+    const auto ends = map_.Ends(stem, dimension, range);
+    first = ends[0];
+    second = ends[1];
+  }
+  void OneOf(const std::vector<OneQuantity>& quantities, std::size_t& which, double& value) override {
+    std::vector<std::string> first_units;
+    std::string given;
+    for (std::size_t i = 0; i < quantities.size(); ++i) {
+      const OneQuantity& one = quantities[i];
+      first_units.push_back(one.stem + ("_" + std::string(one.dimension.front().suffix)));
+      std::string key;
+      const auto found = map_.OptionalQuantity(one.stem, one.dimension, one.range, &key);
+      if (!found) continue;
+      if (!given.empty()) {
+        Refuse(key, "'" + given + "' and '" + key + "' are both given", "one of " + OneOfTexts(quantities));
+        continue;
+      }
+      given = key;
+      which = i;
+      value = *found;
+    }
+    if (given.empty()) map_.ReportMissing(first_units, "one of them");
+  }
+  void Words(const char* key, const std::vector<std::string>& words, std::vector<std::size_t>& values,
+             const char*) override {
+    map_.Each(key, 1, SIZE_MAX, [&](const InputNode& item, const std::string& path) {
+      SayExpects(path, {.kind = Expectation::Kind::kWords, .words = words});
+      const auto found = std::find(words.begin(), words.end(), item.text);
+      if (found == words.end())
+        AddProblem(map_.problems(), item, path, item.Describe() + " is not a choice", "one of " + JoinWords(words));
+      values.push_back(found == words.end() ? 0 : static_cast<std::size_t>(found - words.begin()));
+    });
+  }
+
+  void Map(const char* key, const char*, const Part& part) override {
+    ReadFields(map_.Required(key, "a map"), PathOfValue(key), map_.problems(), part);
+  }
+  void OptionalMap(const char* key, bool& is_there, const char*, const Part& part) override {
+    const InputNode* value = map_.Optional(key);
+    is_there = value != nullptr;
+    if (is_there) ReadFields(*value, PathOfValue(key), map_.problems(), part);
+  }
+  void Table(const char* key, const char* allowed, const char*, const Part& part) override {
+    ReadFields(map_.Required(key, allowed), PathOfValue(key), map_.problems(), part);
+  }
+
+  void Either(const std::vector<Alternative>& alternatives) override {
+    for (const Alternative& alternative : alternatives)
+      if (Holds(alternative.condition)) return alternative.describe();
+  }
+  void Missing(const std::vector<std::string>& keys, const char* allowed) override { map_.ReportMissing(keys, allowed); }
+  void Misplaced(const char* stem, Dimension dimension, const char* message, const char* allowed) override {
+    std::string key = stem;
+    if (!dimension.empty())
+      map_.OptionalQuantity(stem, dimension, kAnyNumber, &key);
+    else if (map_.Optional(stem) == nullptr)
+      key.clear();
+    if (key.empty()) return;
+    std::string text = message;
+    if (const std::size_t at = text.find("{}"); at != std::string::npos) text.replace(at, 2, key);
+    Refuse(key, text, allowed);
+  }
+
+  void Check(const std::function<void()>& relation) override { relations_.push_back(relation); }
+  void Refuse(const std::string& key, const std::string& message, const std::string& allowed) override {
+    std::string path;
+    const InputNode& at = FindField(map_.node(), key, &path);
+    AddProblem(map_.problems(), at, path.empty() ? map_.path() : map_.PathOf(path), message, allowed);
+  }
+  std::string Quote(const std::string& key) const override {
+    std::string path;
+    return FindField(map_.node(), key, &path).Describe();
+  }
+
+  void Finish() { map_.Finish(); }
+  const std::vector<std::function<void()>>& relations() const { return relations_; }
+
+ protected:
+  void Word(const char* key, const Choices& choices, const char*, std::optional<std::size_t> absent) override {
+    std::vector<std::pair<std::string, std::size_t>> words;
+    for (std::size_t i = 0; i < choices.words.size(); ++i) words.emplace_back(choices.words[i], i);
+    choices.set(map_.Choice<std::size_t>(key, words, absent));
+  }
+  void Maps(const char* key, std::size_t low_count, std::size_t high_count, const Items& items,
+            const char*) override {
+    std::size_t count = 0;
+    map_.Each(key, low_count, high_count, [&](const InputNode& item, const std::string& path) {
+      items.resize(count + 1);
+      ReadFields(item, path, map_.problems(), [&](Fields& fields) { items.describe(fields, count); });
+      ++count;
+    });
+  }
+
+ private:
+  // A value that was read from a file of its own has paths of its own.
+  std::string PathOfValue(const char* key) const {
+    const InputNode* value = map_.node().Find(key);
+    return value == nullptr || value->file == map_.node().file ? map_.PathOf(key) : "";
+  }
+  bool Holds(const Condition& condition) const {
+    if (condition.key.empty()) return true;
+    if (!condition.dimension.empty()) return map_.Has(condition.key, condition.dimension);
+    const std::size_t dot = condition.key.find('.');
+    const InputNode* value = map_.Peek(condition.key.substr(0, dot));
+    if (value != nullptr && dot != std::string::npos) value = value->Find(condition.key.substr(dot + 1));
+    if (value == nullptr || (value->kind == InputNode::Kind::kList && value->items.empty())) return false;
+    return condition.words.empty() ||
+           std::find(condition.words.begin(), condition.words.end(), value->text) != condition.words.end();
+  }
+  static std::string OneOfTexts(const std::vector<OneQuantity>& quantities) {
+    std::vector<std::string> keys;
+    for (const OneQuantity& one : quantities)
+      keys.push_back(one.stem + ("_" + std::string(one.dimension.front().suffix)));
+    return JoinWords(keys);
+  }
+
+  MapReader map_;
+  std::vector<std::function<void()>> relations_;
+};
+
+}  // namespace
+
+void ReadFields(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems,
+                const Fields::Part& describe) {
+  const std::size_t before = problems.size();
+  FieldReader reader(node, path, problems);
+  describe(reader);
+  reader.Finish();
+  if (node.file == nullptr || problems.size() > before) return;  // absent or refused
+  for (const auto& relation : reader.relations()) relation();
+}
+
+bool CheckIncreasing(Fields& fields, const std::string& stem, const std::vector<double>& values) {
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    if (values[i] > values[i - 1]) continue;
+    fields.Refuse(stem + "[" + std::to_string(i) + "]", "is not above the one before", "values strictly increasing");
+    return false;
+  }
+  return true;
+}
+
+}  // namespace dispersa

@@ -1,0 +1,177 @@
+// What the maps of the input files hold, declared once beside the structs that receive it.
+//
+// `Describe(fields, value)` of a struct names its keys, one call each. Whoever visits them decides what a call does:
+// FieldReader fills the struct from a file, FieldWriter writes it, FieldChecker holds it against the ranges, and FormMaker
+// collects what schemas and documentation say of the keys. So a description calls everything that a map may hold,
+// whatever the struct holds now. What depends on other keys it says by When() and Either(), and what holds between
+// several fields it says in Check(), which only a reader calls.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "core/input/range.h"
+#include "core/input/units.h"
+
+namespace dispersa {
+
+/// Whether a map has a key, or at a key one of some words. An empty list counts as none.
+struct Condition {
+  std::string key;                 ///< of the map, or of a map in it: "motor.liquid"
+  Dimension dimension = {};        ///< not empty: the key ends in any unit of it
+  std::vector<std::string> words;  ///< empty: whatever its value
+};
+inline Condition Has(std::string key) { return {std::move(key), {}, {}}; }
+inline Condition Has(std::string stem, Dimension dimension) { return {std::move(stem), dimension, {}}; }
+inline Condition Is(std::string key, std::vector<std::string> words) {
+  return {std::move(key), {}, std::move(words)};
+}
+
+/// All maps for which no alternative before holds.
+inline Condition Else() { return {}; }
+
+class Fields {
+ public:
+  using Part = std::function<void(Fields&)>;
+  /// A list's items: how many there are now, how to have another number of them, and what item k holds.
+  struct Items {
+    std::size_t count;
+    std::function<void(std::size_t)> resize;
+    std::function<void(Fields&, std::size_t)> describe;
+  };
+  struct Choices {
+    std::vector<std::string> words;
+    std::function<std::size_t()> get;
+    std::function<void(std::size_t)> set;
+  };
+  struct Alternative {
+    Condition condition;
+    std::function<void()> describe;
+  };
+  struct OneQuantity {
+    const char* stem;
+    Dimension dimension;
+    Range range;
+    const char* meaning;
+  };
+
+  Fields() = default;
+  virtual ~Fields() = default;
+  Fields(const Fields&) = delete;
+  Fields& operator=(const Fields&) = delete;
+
+  // A key each. `meaning` is what documentation says of it, one line. With `absent` the key need not be there, and its
+  // value is then that. Numbers are inside in SI and radians, limits and `absent` too.
+
+  /// Of a whole file: the kind of file that it is.
+  virtual void Schema(const char* name) = 0;
+  virtual void Text(const char* key, std::string& value, const char* meaning,
+                    std::optional<std::string> absent = {}) = 0;
+  virtual void Flag(const char* key, bool& value, bool absent, const char* meaning) = 0;
+  virtual void Integer(const char* key, std::int64_t low, std::int64_t high, int& value, const char* meaning,
+                       std::optional<int> absent = {}) = 0;
+  /// A number without unit.
+  virtual void Number(const char* key, const Range& range, double& value, const char* meaning,
+                      std::optional<double> absent = {}) = 0;
+  /// The key is `stem`, an underscore and one of the dimension's units.
+  virtual void Quantity(const char* stem, Dimension dimension, const Range& range, double& value,
+                        const char* meaning, std::optional<double> absent = {}) = 0;
+  /// A list of so many of them; if `low_count` is 0 the key need not be there.
+  virtual void Numbers(const char* key, const Range& range, std::size_t low_count, std::size_t high_count,
+                       std::vector<double>& values, const char* meaning) = 0;
+  virtual void Quantities(const char* stem, Dimension dimension, const Range& range, std::size_t low_count,
+                          std::size_t high_count, std::vector<double>& values, const char* meaning) = 0;
+  /// The same, of which the key need not be there.
+  virtual void OptionalQuantities(const char* stem, Dimension dimension, const Range& range, std::size_t low_count,
+                                  std::size_t high_count, std::vector<double>& values, const char* meaning) = 0;
+  /// A number for both ends of something, or a list of two.
+  virtual void Ends(const char* stem, Dimension dimension, const Range& range, double& first, double& second,
+                    bool needed, const char* meaning) = 0;
+  /// Exactly one of several quantities; `which` is its place among them.
+  virtual void OneOf(const std::vector<OneQuantity>& quantities, std::size_t& which, double& value) = 0;
+  /// A list of words, each one of `words`; `values` are their places.
+  virtual void Words(const char* key, const std::vector<std::string>& words, std::vector<std::size_t>& values,
+                     const char* meaning) = 0;
+  /// One of a list of words.
+  template <class Enum>
+  void Choice(const char* key, const std::vector<std::pair<std::string, Enum>>& choices, Enum& value,
+              const char* meaning, std::optional<Enum> absent = {}) {
+    const auto index_of = [&](Enum wanted) {
+      std::size_t index = 0;
+      while (index + 1 < choices.size() && choices[index].second != wanted) ++index;
+      return index;
+    };
+    Choices all{{}, [&] { return index_of(value); }, [&](std::size_t i) { value = choices[i].second; }};
+    for (const auto& choice : choices) all.words.push_back(choice.first);
+    Word(key, all, meaning, absent ? std::optional(index_of(*absent)) : std::nullopt);
+  }
+
+  /// A map that must be there.
+  virtual void Map(const char* key, const char* meaning, const Part& part) = 0;
+  /// A map that need not be there. `is_there` is what the struct says, and receives what the file says.
+  virtual void OptionalMap(const char* key, bool& is_there, const char* meaning, const Part& part) = 0;
+  /// The columns of a table: a map of lists, or the CSV file of which it was made; `allowed` says which.
+  virtual void Table(const char* key, const char* allowed, const char* meaning, const Part& part) = 0;
+  /// A list of maps; if `low_count` is 0 the key need not be there. describe(fields, item) of each, or
+  /// describe(fields, item, number of items).
+  template <class T, class F>
+  void List(const char* key, std::size_t low_count, std::size_t high_count, std::vector<T>& items,
+            const char* meaning, F describe) {
+    Maps(key, low_count, high_count,
+         {items.size(), [&](std::size_t count) { items.resize(count); },
+          [&](Fields& fields, std::size_t i) {
+            if constexpr (std::is_invocable_v<F, Fields&, T&, std::size_t>)
+              describe(fields, items[i], items.size());
+            else
+              describe(fields, items[i]);
+          }},
+         meaning);
+  }
+  template <class T>
+  void List(const char* key, std::size_t low_count, std::size_t high_count, std::vector<T>& items,
+            const char* meaning) {
+    List(key, low_count, high_count, items, meaning, [](Fields& fields, T& item) { Describe(fields, item); });
+  }
+
+  /// Keys of the first alternative whose condition holds. Conditions are about keys that are named before, or that
+  /// alternatives have.
+  virtual void Either(const std::vector<Alternative>& alternatives) = 0;
+  /// Keys of maps for which the condition holds.
+  void When(const Condition& condition, const std::function<void()>& describe) {
+    Either({{condition, describe}});
+  }
+  /// Keys of maps for which it does not.
+  void Unless(const Condition& condition, const std::function<void()>& describe) {
+    Either({{condition, [] {}}, {Else(), describe}});
+  }
+  /// In an alternative: one of these keys, which others have, is missing.
+  virtual void Missing(const std::vector<std::string>& /*keys*/, const char* /*allowed*/) {}
+  /// In an alternative: a key of another one, which this map must not have. In `message` {} stands for the key.
+  virtual void Misplaced(const char* /*stem*/, Dimension /*dimension*/, const char* /*message*/,
+                         const char* /*allowed*/) {}
+
+  // What only a reader does: the others have no file.
+
+  /// `relation` is called when the whole map was read without a problem, and says by Refuse() what does not fit together.
+  virtual void Check(const std::function<void()>& /*relation*/) {}
+  /// Refuses the value of a key, such as "time[3]" or "at.delay"; a quantity's unit need not be named.
+  virtual void Refuse(const std::string& /*key*/, const std::string& /*message*/, const std::string& /*allowed*/) {}
+  /// The value of a key as the file writes it, to be quoted in a message.
+  virtual std::string Quote(const std::string& /*key*/) const { return {}; }
+
+ protected:
+  virtual void Word(const char* key, const Choices& choices, const char* meaning,
+                    std::optional<std::size_t> absent) = 0;
+  virtual void Maps(const char* key, std::size_t low_count, std::size_t high_count, const Items& items,
+                    const char* meaning) = 0;
+};
+
+/// In a Check(): refuses the first of a list's values that is not above the one before; true if there is none.
+bool CheckIncreasing(Fields& fields, const std::string& stem, const std::vector<double>& values);
+
+}  // namespace dispersa

@@ -1,0 +1,109 @@
+// Bodies of revolution on the axis: what a vehicle's mass is made of.
+//
+// Stations are distances aft of the nose tip of the full vehicle.
+#pragma once
+
+#include <string>
+
+#include "core/input/fields.h"
+
+namespace dispersa {
+
+/// A homogeneous hollow or solid cylinder on the axis: the building block of mass properties.
+struct MassElement {
+  std::string name;
+  double fraction = 0.0;  ///< of the stage's dry mass
+  double top_station_m = 0.0;
+  double bottom_station_m = 0.0;
+  double outer_diameter_m = 0.0;
+  double inner_diameter_m = 0.0;
+};
+
+inline void Describe(Fields& fields, MassElement& element) {
+  fields.Text("name", element.name, "what it is");
+  fields.Number("fraction", UpTo(1.0), element.fraction, "part of the stage's dry mass");
+  fields.Quantity("top_station", kLength, kNonNegative, element.top_station_m, "upper end");
+  fields.Quantity("bottom_station", kLength, kPositive, element.bottom_station_m, "lower end");
+  fields.Quantity("outer_diameter", kLength, kPositive, element.outer_diameter_m, "outside");
+  fields.Quantity("inner_diameter", kLength, kNonNegative, element.inner_diameter_m, "inside", 0.0);
+}
+
+/// Solid propellant: a tube that burns from its bore outwards, so its length and station stay.
+struct Grain {
+  double top_station_m = 0.0;
+  double bottom_station_m = 0.0;
+  double outer_diameter_m = 0.0;
+  double inner_diameter_m = 0.0;
+};
+
+inline void Describe(Fields& fields, Grain& grain) {
+  fields.Quantity("top_station", kLength, kNonNegative, grain.top_station_m, "upper end");
+  fields.Quantity("bottom_station", kLength, kPositive, grain.bottom_station_m, "lower end");
+  fields.Quantity("outer_diameter", kLength, kPositive, grain.outer_diameter_m, "outside");
+  fields.Quantity("inner_diameter", kLength, kNonNegative, grain.inner_diameter_m, "of the bore at ignition");
+}
+
+/// Liquid propellant in an upright cylinder with flat ends, round the axis. It drains at the bottom: the liquid stands
+/// there, and its surface falls.
+struct Tank {
+  std::string name;
+  double top_station_m = 0.0;
+  double bottom_station_m = 0.0;
+  double diameter_m = 0.0;
+  double propellant_mass_kg = 0.0;
+  double density_kg_m3 = 0.0;
+
+  double Volume() const;  ///< m³, of the tank
+};
+
+inline void Describe(Fields& fields, Tank& tank) {
+  fields.Text("name", tank.name, "what it holds");
+  fields.Quantity("propellant_mass", kMass, kPositive, tank.propellant_mass_kg,
+                  "at ignition, with what stays as residual");
+  fields.Quantity("density", kDensity, kPositive, tank.density_kg_m3, "of the liquid");
+  fields.Quantity("top_station", kLength, kNonNegative, tank.top_station_m, "upper end");
+  fields.Quantity("bottom_station", kLength, kPositive, tank.bottom_station_m, "lower end, where the liquid stands");
+  fields.Quantity("diameter", kLength, kPositive, tank.diameter_m, "inside");
+}
+
+/// What makes the flight computer let go of a mass.
+enum class JettisonTrigger {
+  kAtTime,      ///< s since lift-off
+  kAtAltitude,  ///< m, geodetic
+  kAtHeatFlux,  ///< W/m², free-molecular: has fallen to this; Jettison says where it counts
+};
+
+/// A mass on the axis that leaves while a stage is attached: fairing, skirt, escape tower. A tube, let go of
+/// at rest against the body: no impulse, no flow about it; what is left keeps its aerodynamics.
+struct Jettison {
+  std::string name;
+  double mass_kg = 0.0;
+  double top_station_m = 0.0;
+  double bottom_station_m = 0.0;
+  double outer_diameter_m = 0.0;
+  double inner_diameter_m = 0.0;
+  JettisonTrigger trigger = JettisonTrigger::kAtTime;
+  double threshold = 0.0;  ///< of the trigger, in its unit
+};
+/// Of a vehicle, at most.
+inline constexpr int kMaxJettisons = 8;
+
+inline void Describe(Fields& fields, Jettison& jettison) {
+  fields.Text("name", jettison.name, "what it is");
+  fields.Quantity("mass", kMass, kPositive, jettison.mass_kg, "part of the stage's lift-off mass, beside its dry mass");
+  fields.Quantity("top_station", kLength, kNonNegative, jettison.top_station_m, "upper end");
+  fields.Quantity("bottom_station", kLength, kPositive, jettison.bottom_station_m, "lower end");
+  fields.Quantity("outer_diameter", kLength, kPositive, jettison.outer_diameter_m, "outside");
+  fields.Quantity("inner_diameter", kLength, kNonNegative, jettison.inner_diameter_m, "inside", 0.0);
+  fields.Map("at", "when it leaves", [&](Fields& at) {
+    std::size_t trigger = static_cast<std::size_t>(jettison.trigger);
+    at.OneOf({{"time", kTime, kPositive, "since lift-off"},
+              {"altitude", kLength, kPositive, "geodetic"},
+              {"heat_flux", kHeatFlux, kPositive,
+               "above 80 km, as half density times the cube of the speed over the rotating Earth falls to it"}},
+             trigger, jettison.threshold);
+    jettison.trigger = static_cast<JettisonTrigger>(trigger);
+  });
+}
+
+}  // namespace dispersa

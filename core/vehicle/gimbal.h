@@ -1,0 +1,85 @@
+// What turns the thrust of a stage, as its file describes it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/input/fields.h"
+#include "core/vehicle/nozzle_layout.h"
+
+namespace dispersa {
+
+/// One nozzle of a list (core/vehicle/nozzle_layout.h).
+struct Nozzle {
+  std::string name;
+  double y_m = 0.0, z_m = 0.0;
+  double thrust_share = 1.0;
+  /// None: the nozzle is fixed, two: at right angles.
+  std::vector<double> towards_rad = {};
+  double limit_rad = 0.0;
+};
+
+/// One of `count` nozzles.
+inline void Describe(Fields& fields, Nozzle& nozzle, std::size_t count) {
+  fields.Text("name", nozzle.name, "by which dispersions name it");
+  fields.Quantity("y", kLength, kAnyNumber, nozzle.y_m, "of its pivot, off the axis to the right", 0.0);
+  fields.Quantity("z", kLength, kAnyNumber, nozzle.z_m, "of its pivot, off the axis downwards", 0.0);
+  fields.Number("thrust_share", UpTo(1.0), nozzle.thrust_share, "of the stage's thrust; all alike unless given",
+                1.0 / static_cast<double>(count));
+  fields.Quantities("turns_towards", kAngle, Between(-2.0 * kPi, 2.0 * kPi), 0, 2, nozzle.towards_rad,
+                    "directions towards which positive angles of its hinges turn the thrust, from body y towards body z; "
+                    "without, it is fixed");
+  fields.Quantity("limit", kAngle, Inside(0.0, kQuarterTurn), nozzle.limit_rad,
+                  "of its whole deflection; the gimbal's unless given", 0.0);
+}
+
+/// Without a list four nozzles at 90°, each hinged in one plane: two for pitch (right, left), two for yaw
+/// (bottom, top); all four differentially for roll.
+struct Gimbal {
+  double pivot_station_m = 0.0;
+  double radius_m = 0.0;             ///< the paper's z_r
+  std::vector<Nozzle> nozzles = {};  ///< in place of the cross
+  double limit_rad = 0.0;
+  double rate_limit_rad_s = 0.0;
+  double bandwidth_rad_s = 0.0;
+  double damping_ratio = 0.7;
+  int delay_ticks = 1;
+  double nozzle_mass_kg = 0.0;        ///< 0: turning a nozzle takes no momentum
+  double nozzle_cg_m = 0.0;
+  double nozzle_inertia_kg_m2 = 0.0;
+  // What a real drive has besides; 0: not this one.
+  double dead_zone_rad = 0.0;
+  double friction_rad = 0.0;  ///< Coulomb's
+  double resolution_rad = 0.0;
+};
+
+inline void Describe(Fields& fields, Gimbal& gimbal) {
+  fields.Quantity("pivot_station", kLength, kPositive, gimbal.pivot_station_m, "of the hinges");
+  fields.List("nozzles", 0, kNozzles, gimbal.nozzles, "in place of four in a cross",
+              [&](Fields& item, Nozzle& nozzle, std::size_t count) { Describe(item, nozzle, count); });
+  fields.Unless(Has("nozzles"), [&] {
+    fields.Quantity("radius", kLength, kPositive, gimbal.radius_m,
+                    "of the nozzles' centres from the axis, of four in a cross");
+  });
+  fields.Quantity("limit", kAngle, Inside(0.0, kQuarterTurn), gimbal.limit_rad, "of each drive");
+  fields.Quantity("rate_limit", kAngularRate, kPositive, gimbal.rate_limit_rad_s, "of each drive");
+  fields.Quantity("bandwidth", kFrequency, kPositive, gimbal.bandwidth_rad_s,
+                  "natural frequency of the second-order actuator");
+  fields.Number("damping_ratio", kPositive, gimbal.damping_ratio, "of the actuator");
+  fields.Integer("delay_ticks", 0, 50, gimbal.delay_ticks, "ticks of the autopilot between command and actuator");
+  fields.Quantity("dead_zone", kAngle, kNonNegative, gimbal.dead_zone_rad,
+                  "distance from the command that the servo does not feel", 0.0);
+  fields.Quantity("friction", kAngle, kNonNegative, gimbal.friction_rad,
+                  "distance from the command at which a drive at rest breaks loose", 0.0);
+  fields.Quantity("resolution", kAngle, kNonNegative, gimbal.resolution_rad,
+                  "step in which the command reaches the servo", 0.0);
+}
+
+/// What turns of one nozzle; an entry for each stage in a list of its own.
+inline void DescribeTurningNozzle(Fields& fields, Gimbal& gimbal) {
+  fields.Quantity("mass", kMass, kPositive, gimbal.nozzle_mass_kg, "what turns, of one nozzle");
+  fields.Quantity("cg_aft_of_pivot", kLength, kAnyNumber, gimbal.nozzle_cg_m, "its centre of gravity");
+  fields.Quantity("inertia_about_hinge", kInertia, kPositive, gimbal.nozzle_inertia_kg_m2, "its moment of inertia");
+}
+
+}  // namespace dispersa

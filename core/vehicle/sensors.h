@@ -1,0 +1,46 @@
+// What measures a vehicle's attitude and rates, as its file describes it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/input/fields.h"
+
+namespace dispersa {
+
+/// A rate gyro of three axes: second order over the true rate of its place, sampled and rounded.
+struct RateGyro {
+  std::string name;
+  double station_m = 0.0;
+  double bandwidth_rad_s = 0.0;  ///< 0: follows at once
+  double damping_ratio = 0.7;
+  double quantum_rad_s = 0.0;  ///< 0: none
+  int sample_ticks = 1;
+};
+/// Rate gyros a vehicle has at most.
+inline constexpr int kRateGyros = 3;
+
+inline void Describe(Fields& fields, RateGyro& gyro) {
+  fields.Text("name", gyro.name, "by which the autopilot names it");
+  fields.Quantity("station", kLength, kNonNegative, gyro.station_m, "where it is");
+  fields.Quantity("bandwidth", kFrequency, kPositive, gyro.bandwidth_rad_s,
+                  "natural frequency; without, it follows at once", 0.0);
+  fields.Number("damping_ratio", kPositive, gyro.damping_ratio, "beside a bandwidth", 0.7);
+  fields.Quantity("quantum", kAngularRate, kPositive, gyro.quantum_rad_s, "step of its output; none unless given", 0.0);
+  fields.Integer("sample_ticks", 1, 100, gyro.sample_ticks, "ticks of the autopilot between samples", 1);
+}
+
+/// What measures attitude and rates. Without rate gyros the inertial unit gives the rates.
+struct Sensors {
+  double inertial_unit_station_m = 0.0;
+  std::vector<RateGyro> rate_gyros;
+};
+
+inline void Describe(Fields& fields, Sensors& sensors) {
+  fields.Map("inertial_unit", "whose attitude is measured", [&](Fields& unit) {
+    unit.Quantity("station", kLength, kNonNegative, sensors.inertial_unit_station_m, "where it is");
+  });
+  fields.List("rate_gyros", 0, kRateGyros, sensors.rate_gyros, "whose rates are measured in place of the unit's");
+}
+
+}  // namespace dispersa
