@@ -94,7 +94,7 @@ const char* WorseName(Worse worse) {
   }
 }
 
-py::tuple Describe(const std::string& name) {
+py::tuple MetricTuple(const std::string& name) {
   const MetricInfo info = DescribeMetric(name);
   return py::make_tuple(info.title, info.unit, info.definition, WorseName(info.worse));
 }
@@ -121,7 +121,7 @@ PYBIND11_MODULE(_core, module) {
   module.def("input_names", &InputNames);
   module.def("metric_names", &VehicleMetricNames);
   module.def("history_columns", &HistoryColumns);
-  module.def("describe", &Describe);
+  module.def("describe", &MetricTuple);
   module.def("split_unit", [](const std::string& name) {
     const NameAndUnit split = SplitUnit(name);
     return py::make_tuple(split.stem, split.unit);

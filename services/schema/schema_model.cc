@@ -453,7 +453,7 @@ class Explorer : public InputObserver {
     for (int i = 0; i < 3; ++i) {
       RunWith(path, settings);
       // Some maps are read only beside others.
-      for (int more = 0; run_.empty() && more < 30; ++more) RunWith(path, settings, 0.4);
+      for (int more = 0; run_.empty() && more < 300; ++more) RunWith(path, settings, 0.4);
       bool reached = false;
       for (const auto& [at, view] : run_) {
         reached = true;
