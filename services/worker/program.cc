@@ -75,13 +75,12 @@ int RunWorker(int argc, char** argv) {
   int code = kExitInternalError;
   try {
     options.peer = ParsePeer(peer, options.network.domain);
-    // A worker of `dispersa run` has the secret of its run.
-    if (!run_pass) options.network = Admit(options.network, admission, {Role::kWorker}, options.peer.host);
-    if (run_pass) {
+    if (run_pass) {  // a worker of `dispersa run` has the secret of its run
       RunPass pass = TakeRunPass(*run_pass);
       options.network.secret = pass.secret;
       RefusePlugins("is not the shared object that the campaign of this run names", std::move(pass.plugins));
     } else {
+      options.network = Admit(options.network, admission, {Role::kWorker}, options.peer.host);
       AdmitPlugins(admission.allow_plugins);
     }
     options.uuid = NameOnNetwork(options.network, options.uuid.empty() ? MakeUuid() : options.uuid);

@@ -13,7 +13,7 @@
 #include "made_up_service.h"
 #include "services/coordinator/campaign_opening.h"
 #include "services/transport/exit_code.h"
-#include "small_disk.h"
+#include "tests/small_disk.h"
 
 namespace dispersa::campaign_service_test {
 namespace {

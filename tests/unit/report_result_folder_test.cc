@@ -2,10 +2,7 @@
 #include "core/report/result_folder.h"
 
 #include <fcntl.h>
-#include <sched.h>
-#include <sys/mount.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <gmock/gmock.h>
@@ -19,6 +16,7 @@
 #include "core/report/database.h"
 #include "core/report/fingerprint.h"
 #include "core/report/output_file.h"
+#include "tests/small_disk.h"
 #include "tests/unit/report_test_support.h"
 
 namespace dispersa::report_result_folder_test {
@@ -393,45 +391,20 @@ TEST(OutputFile, ReplacesAsAWholeOrNotAtAll) {
   EXPECT_FALSE(std::filesystem::exists(temporary / "file.tmp"));
 }
 
-// What a child process says that sees `folder` as a disk of 64 KiB: the message of the file that does not fit. A disk
-// of its own needs a mount namespace, and that a process with one thread.
-std::string MessageOnASmallDisk(const std::filesystem::path& folder) {
-  int ends[2];
-  EXPECT_EQ(pipe(ends), 0);
-  const pid_t child = fork();
-  if (child == 0) {
-    std::string said = "no disk of its own";
-    const std::string owner = "0 " + std::to_string(geteuid()) + " 1";
-    const bool is_root = geteuid() == 0;
-    if (unshare(is_root ? CLONE_NEWNS : CLONE_NEWUSER | CLONE_NEWNS) == 0 &&
-        (is_root || (std::ofstream("/proc/self/uid_map") << owner).flush()) &&
-        mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
-        mount("small", folder.c_str(), "tmpfs", 0, "size=64k") == 0) {
-      WriteFile(folder / "file", "old");
-      try {
-        WriteFile(folder / "file", std::string(1 << 20, 'x'));
-        said = "written";
-      } catch (const ResultError& error) {
-        said = error.kind() == ResultError::Kind::kDiskFull ? error.what() : "not the full disk";
-      }
-      if (ReadText(folder / "file") != "old") said += ", and the old file is gone";
-    }
-    const bool whole = write(ends[1], said.data(), said.size()) == static_cast<ssize_t>(said.size());
-    _exit(whole ? 0 : 1);
-  }
-  close(ends[1]);
-  char said[1000] = "";
-  EXPECT_GT(read(ends[0], said, sizeof said - 1), 0);
-  close(ends[0]);
-  int status = 0;
-  waitpid(child, &status, 0);
-  return said;
-}
-
 TEST(OutputFile, ReportsAFullDisk) {
   TemporaryFolder temporary;
   const std::filesystem::path folder = (temporary / "file").parent_path();
-  EXPECT_EQ(MessageOnASmallDisk(folder), (folder / "file").string() + ": no space left on the disk");
+  const std::string message = OnASmallDisk(folder, "64k", [&folder]() -> std::string {
+    WriteFile(folder / "file", "old");
+    std::string said = "written";
+    try {
+      WriteFile(folder / "file", std::string(1 << 20, 'x'));
+    } catch (const ResultError& error) {
+      said = error.kind() == ResultError::Kind::kDiskFull ? error.what() : "not the full disk";
+    }
+    return ReadText(folder / "file") == "old" ? said : said + ", and the old file is gone";
+  });
+  EXPECT_EQ(message, (folder / "file").string() + ": no space left on the disk");
 }
 
 TEST(OutputFile, KeepsLinksAndPermissions) {
