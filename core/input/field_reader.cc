@@ -59,23 +59,24 @@ class FieldReader : public Fields {
     second = ends[1];
   }
   void OneOf(const std::vector<OneQuantity>& quantities, std::size_t& which, double& value) override {
-    std::vector<std::string> first_units;
+    std::vector<std::string> keys;  // in the first unit each
+    for (const OneQuantity& one : quantities)
+      keys.push_back(one.stem + ("_" + std::string(one.dimension.front().suffix)));
     std::string given;
     for (std::size_t i = 0; i < quantities.size(); ++i) {
       const OneQuantity& one = quantities[i];
-      first_units.push_back(one.stem + ("_" + std::string(one.dimension.front().suffix)));
       std::string key;
       const auto found = map_.OptionalQuantity(one.stem, one.dimension, one.range, &key);
       if (!found) continue;
       if (!given.empty()) {
-        Refuse(key, "'" + given + "' and '" + key + "' are both given", "one of " + OneOfTexts(quantities));
+        Refuse(key, "'" + given + "' and '" + key + "' are both given", "one of " + JoinWords(keys));
         continue;
       }
       given = key;
       which = i;
       value = *found;
     }
-    if (given.empty()) map_.ReportMissing(first_units, "one of them");
+    if (given.empty()) map_.ReportMissing(keys, "one of them");
   }
   void Words(const char* key, const std::vector<std::string>& words, std::vector<std::size_t>& values,
              const char*) override {
@@ -162,12 +163,6 @@ class FieldReader : public Fields {
     if (value == nullptr || (value->kind == InputNode::Kind::kList && value->items.empty())) return false;
     return condition.words.empty() ||
            std::find(condition.words.begin(), condition.words.end(), value->text) != condition.words.end();
-  }
-  static std::string OneOfTexts(const std::vector<OneQuantity>& quantities) {
-    std::vector<std::string> keys;
-    for (const OneQuantity& one : quantities)
-      keys.push_back(one.stem + ("_" + std::string(one.dimension.front().suffix)));
-    return JoinWords(keys);
   }
 
   MapReader map_;

@@ -1,10 +1,8 @@
 // What the maps of the input files hold, declared once beside the structs that receive it.
 //
-// `Describe(fields, value)` of a struct names its keys, one call each. Whoever visits them decides what a call does:
-// FieldReader fills the struct from a file, FieldWriter writes it, FieldChecker holds it against the ranges, and FormMaker
-// collects what schemas and documentation say of the keys. So a description calls everything that a map may hold,
-// whatever the struct holds now. What depends on other keys it says by When() and Either(), and what holds between
-// several fields it says in Check(), which only a reader calls.
+// `Describe(fields, value)` of a struct names its keys, one call each; ReadFields (field_reader.h) fills the struct from a
+// file by them. A description calls everything that a map may hold. What depends on other keys it says by When() and
+// Either(), and what holds between several fields in Check(): so whoever else visits it, to list the keys, sees every branch.
 #pragma once
 
 #include <cstdint>
@@ -38,15 +36,13 @@ inline Condition Else() { return {}; }
 class Fields {
  public:
   using Part = std::function<void(Fields&)>;
-  /// A list's items: how many there are now, how to have another number of them, and what item k holds.
+  /// A list's items: how to have a number of them, and what item k holds.
   struct Items {
-    std::size_t count;
     std::function<void(std::size_t)> resize;
     std::function<void(Fields&, std::size_t)> describe;
   };
   struct Choices {
     std::vector<std::string> words;
-    std::function<std::size_t()> get;
     std::function<void(std::size_t)> set;
   };
   struct Alternative {
@@ -106,14 +102,14 @@ class Fields {
       while (index + 1 < choices.size() && choices[index].second != wanted) ++index;
       return index;
     };
-    Choices all{{}, [&] { return index_of(value); }, [&](std::size_t i) { value = choices[i].second; }};
+    Choices all{{}, [&](std::size_t i) { value = choices[i].second; }};
     for (const auto& choice : choices) all.words.push_back(choice.first);
     Word(key, all, meaning, absent ? std::optional(index_of(*absent)) : std::nullopt);
   }
 
   /// A map that must be there.
   virtual void Map(const char* key, const char* meaning, const Part& part) = 0;
-  /// A map that need not be there. `is_there` is what the struct says, and receives what the file says.
+  /// A map that need not be there; `is_there` receives whether it is.
   virtual void OptionalMap(const char* key, bool& is_there, const char* meaning, const Part& part) = 0;
   /// The columns of a table: a map of lists, or the CSV file of which it was made; `allowed` says which.
   virtual void Table(const char* key, const char* allowed, const char* meaning, const Part& part) = 0;
@@ -123,7 +119,7 @@ class Fields {
   void List(const char* key, std::size_t low_count, std::size_t high_count, std::vector<T>& items,
             const char* meaning, F describe) {
     Maps(key, low_count, high_count,
-         {items.size(), [&](std::size_t count) { items.resize(count); },
+         {[&](std::size_t count) { items.resize(count); },
           [&](Fields& fields, std::size_t i) {
             if constexpr (std::is_invocable_v<F, Fields&, T&, std::size_t>)
               describe(fields, items[i], items.size());

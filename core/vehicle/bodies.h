@@ -3,11 +3,21 @@
 // Stations are distances aft of the nose tip of the full vehicle.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "core/input/fields.h"
 
 namespace dispersa {
+
+/// The keys of a body that is a tube, hollow or solid; `bore` says what its inner diameter means.
+template <class Tube>
+void DescribeTube(Fields& fields, Tube& tube, const char* bore, std::optional<double> absent_bore_m = {}) {
+  fields.Quantity("top_station", kLength, kNonNegative, tube.top_station_m, "upper end");
+  fields.Quantity("bottom_station", kLength, kPositive, tube.bottom_station_m, "lower end");
+  fields.Quantity("outer_diameter", kLength, kPositive, tube.outer_diameter_m, "outside");
+  fields.Quantity("inner_diameter", kLength, kNonNegative, tube.inner_diameter_m, bore, absent_bore_m);
+}
 
 /// A homogeneous hollow or solid cylinder on the axis: the building block of mass properties.
 struct MassElement {
@@ -22,10 +32,7 @@ struct MassElement {
 inline void Describe(Fields& fields, MassElement& element) {
   fields.Text("name", element.name, "what it is");
   fields.Number("fraction", UpTo(1.0), element.fraction, "part of the stage's dry mass");
-  fields.Quantity("top_station", kLength, kNonNegative, element.top_station_m, "upper end");
-  fields.Quantity("bottom_station", kLength, kPositive, element.bottom_station_m, "lower end");
-  fields.Quantity("outer_diameter", kLength, kPositive, element.outer_diameter_m, "outside");
-  fields.Quantity("inner_diameter", kLength, kNonNegative, element.inner_diameter_m, "inside", 0.0);
+  DescribeTube(fields, element, "inside", 0.0);
 }
 
 /// Solid propellant: a tube that burns from its bore outwards, so its length and station stay.
@@ -37,10 +44,7 @@ struct Grain {
 };
 
 inline void Describe(Fields& fields, Grain& grain) {
-  fields.Quantity("top_station", kLength, kNonNegative, grain.top_station_m, "upper end");
-  fields.Quantity("bottom_station", kLength, kPositive, grain.bottom_station_m, "lower end");
-  fields.Quantity("outer_diameter", kLength, kPositive, grain.outer_diameter_m, "outside");
-  fields.Quantity("inner_diameter", kLength, kNonNegative, grain.inner_diameter_m, "of the bore at ignition");
+  DescribeTube(fields, grain, "of the bore at ignition");
 }
 
 /// Liquid propellant in an upright cylinder with flat ends, round the axis. It drains at the bottom: the liquid stands
@@ -91,10 +95,7 @@ inline constexpr int kMaxJettisons = 8;
 inline void Describe(Fields& fields, Jettison& jettison) {
   fields.Text("name", jettison.name, "what it is");
   fields.Quantity("mass", kMass, kPositive, jettison.mass_kg, "part of the stage's lift-off mass, beside its dry mass");
-  fields.Quantity("top_station", kLength, kNonNegative, jettison.top_station_m, "upper end");
-  fields.Quantity("bottom_station", kLength, kPositive, jettison.bottom_station_m, "lower end");
-  fields.Quantity("outer_diameter", kLength, kPositive, jettison.outer_diameter_m, "outside");
-  fields.Quantity("inner_diameter", kLength, kNonNegative, jettison.inner_diameter_m, "inside", 0.0);
+  DescribeTube(fields, jettison, "inside", 0.0);
   fields.Map("at", "when it leaves", [&](Fields& at) {
     std::size_t trigger = static_cast<std::size_t>(jettison.trigger);
     at.OneOf({{"time", kTime, kPositive, "since lift-off"},
