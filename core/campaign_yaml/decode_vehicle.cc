@@ -98,7 +98,7 @@ Vehicle DecodeVehicle(const InputNode& node, const std::string& path, std::vecto
   if (!CheckSchema(node, kVehicleSchema, !path.empty(), path, problems)) return vehicle;
   ReadFields(node, path, problems, [&](Fields& fields) {
     fields.Schema(kVehicleSchema);
-    // Which InlineVehicleFiles has put in its place.
+    fields.Base("based_on", "a vehicle file, whose keys stand where this one has none");
     SayKnows(path, {"based_on"});
     SayExpects(path.empty() ? "based_on" : path + ".based_on", {.kind = Expectation::Kind::kFile});
     Describe(fields, vehicle);

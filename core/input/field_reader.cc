@@ -13,6 +13,7 @@ class FieldReader : public Fields {
       : map_(node, std::move(path), problems) {}
 
   void Schema(const char*) override { map_.Allow("schema"); }  // it decided who reads this
+  void Base(const char*, const char*) override {}  // its keys stand here already
   void Text(const char* key, std::string& value, const char*, std::optional<std::string> absent) override {
     value = absent ? map_.Text(key, *absent) : map_.Text(key);
   }
@@ -99,6 +100,9 @@ class FieldReader : public Fields {
   }
   void Table(const char* key, const char* allowed, const char*, const Part& part) override {
     ReadFields(map_.Required(key, allowed), PathOfValue(key), map_.problems(), part);
+  }
+  void OptionalTable(const char* key, bool& is_there, const char* meaning, const Part& part) override {
+    OptionalMap(key, is_there, meaning, part);
   }
 
   void Either(const std::vector<Alternative>& alternatives) override {

@@ -66,6 +66,8 @@ class Fields {
 
   /// Of a whole file: the kind of file that it is.
   virtual void Schema(const char* name) = 0;
+  /// Of a whole file: the key of another one of its kind, whose keys stand where this one has none.
+  virtual void Base(const char* key, const char* meaning) = 0;
   virtual void Text(const char* key, std::string& value, const char* meaning,
                     std::optional<std::string> absent = {}) = 0;
   virtual void Flag(const char* key, bool& value, bool absent, const char* meaning) = 0;
@@ -113,6 +115,7 @@ class Fields {
   virtual void OptionalMap(const char* key, bool& is_there, const char* meaning, const Part& part) = 0;
   /// The columns of a table: a map of lists, or the CSV file of which it was made; `allowed` says which.
   virtual void Table(const char* key, const char* allowed, const char* meaning, const Part& part) = 0;
+  virtual void OptionalTable(const char* key, bool& is_there, const char* meaning, const Part& part) = 0;
   /// A list of maps; if `low_count` is 0 the key need not be there. describe(fields, item) of each, or
   /// describe(fields, item, number of items).
   template <class T, class F>

@@ -63,7 +63,7 @@ void SetThrustCurve(ThrustCurve curve, Motor& motor);
 /// What an engine does by command in one of its burns.
 inline void DescribeCommands(Fields& fields, Motor& motor) {
   bool is_throttled = !motor.throttle.empty(), is_cut_off = motor.cut_off != CutOff::kAtDepletion;
-  fields.OptionalMap("throttle", is_throttled, "thrust over the time since ignition, or a CSV file of it",
+  fields.OptionalTable("throttle", is_throttled, "thrust over the time since ignition, or a CSV file of it",
                      [&](Fields& throttle) { Describe(throttle, motor.throttle); });
   fields.OptionalMap("cut_off", is_cut_off, "what ends the burn, unless the propellant is used up before", [&](Fields& cut) {
     cut.Choice<CutOff>("at",
