@@ -18,13 +18,6 @@ class FieldReader : public Fields {
     value = absent ? map_.Text(key, *absent) : map_.Text(key);
   }
   void Flag(const char* key, bool& value, bool absent, const char*) override { value = map_.Flag(key, absent); }
-  void Integer(const char* key, std::int64_t low, std::int64_t high, int& value, const char*,
-               std::optional<int> absent) override {
-    std::optional<std::uint64_t> default_value;
-    if (absent) default_value = static_cast<std::uint64_t>(*absent);
-    value = static_cast<int>(map_.Integer(key, static_cast<std::uint64_t>(low),
-                                          static_cast<std::uint64_t>(high), default_value));
-  }
   void Number(const char* key, const Range& range, double& value, const char*,
               std::optional<double> absent) override {
     value = map_.Number(key, range, absent);
@@ -137,6 +130,10 @@ class FieldReader : public Fields {
   const std::vector<std::function<void()>>& relations() const { return relations_; }
 
  protected:
+  void Whole(const char* key, std::uint64_t low, std::uint64_t high, std::uint64_t& value, const char*,
+             std::optional<std::uint64_t> absent) override {
+    value = map_.Integer(key, low, high, absent);
+  }
   void Word(const char* key, const Choices& choices, const char*, std::optional<std::size_t> absent) override {
     std::vector<std::pair<std::string, std::size_t>> words;
     for (std::size_t i = 0; i < choices.words.size(); ++i) words.emplace_back(choices.words[i], i);

@@ -71,8 +71,14 @@ class Fields {
   virtual void Text(const char* key, std::string& value, const char* meaning,
                     std::optional<std::string> absent = {}) = 0;
   virtual void Flag(const char* key, bool& value, bool absent, const char* meaning) = 0;
-  virtual void Integer(const char* key, std::int64_t low, std::int64_t high, int& value, const char* meaning,
-                       std::optional<int> absent = {}) = 0;
+  /// Whole numbers, of any type, not below 0.
+  template <class T>
+  void Integer(const char* key, std::uint64_t low, std::uint64_t high, T& value, const char* meaning,
+               std::type_identity_t<std::optional<T>> absent = {}) {
+    auto whole = static_cast<std::uint64_t>(value);
+    Whole(key, low, high, whole, meaning, absent ? std::optional(static_cast<std::uint64_t>(*absent)) : std::nullopt);
+    value = static_cast<T>(whole);
+  }
   /// A number without unit.
   virtual void Number(const char* key, const Range& range, double& value, const char* meaning,
                       std::optional<double> absent = {}) = 0;
@@ -164,6 +170,8 @@ class Fields {
   virtual std::string Quote(const std::string& /*key*/) const { return {}; }
 
  protected:
+  virtual void Whole(const char* key, std::uint64_t low, std::uint64_t high, std::uint64_t& value,
+                     const char* meaning, std::optional<std::uint64_t> absent) = 0;
   virtual void Word(const char* key, const Choices& choices, const char* meaning,
                     std::optional<std::size_t> absent) = 0;
   virtual void Maps(const char* key, std::size_t low_count, std::size_t high_count, const Items& items,
