@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/input/number_text.h"
 #include "core/input/struct_problems.h"
 
 namespace dispersa {
@@ -26,6 +27,14 @@ class FieldReader : public Fields {
                 std::optional<double> absent) override {
     value = map_.Quantity(stem, dimension, range, absent);
   }
+  void OptionalNumber(const char* key, const Range& range, std::optional<double>& value, const char*) override {
+    const double number = map_.Number(key, range, 0.0);
+    if (map_.node().Find(key) != nullptr) value = number;
+  }
+  void OptionalQuantity(const char* stem, Dimension dimension, const Range& range, std::optional<double>& value,
+                        const char*) override {
+    value = map_.OptionalQuantity(stem, dimension, range);
+  }
   void Numbers(const char* key, const Range& range, std::size_t low_count, std::size_t high_count,
                std::vector<double>& values, const char*) override {
     values = map_.Numbers(key, range, low_count, high_count);
@@ -41,6 +50,13 @@ class FieldReader : public Fields {
       values = map_.Quantities(stem, dimension, range, low_count, high_count);
     else
       map_.OptionalQuantity(stem, dimension, range);
+  }
+  void Rows(const char* key, std::size_t low_count, std::size_t high_count, std::vector<std::vector<double>>& rows,
+            const char*) override {
+    map_.Each(key, low_count, high_count, [&](const InputNode& row, const std::string& path) {
+      std::vector<double>& numbers = rows.emplace_back();
+      for (const InputNode& number : row.items) numbers.push_back(ReadNumber(number, path, map_.problems()));
+    });
   }
   void Ends(const char* stem, Dimension dimension, const Range& range, double& first, double& second,
             bool needed, const char*) override {
@@ -72,6 +88,20 @@ class FieldReader : public Fields {
     }
     if (given.empty()) map_.ReportMissing(keys, "one of them");
   }
+  void Texts(const char* key, std::size_t low_count, std::size_t high_count, std::vector<std::string>& values,
+             const char*) override {
+    map_.Each(key, low_count, high_count, [&](const InputNode& item, const std::string& path) {
+      values.push_back(ReadText(item, path, map_.problems()));
+    });
+  }
+  void Name(const char* key, const std::vector<std::string>& names, const char* what, std::string& value,
+            const char*) override {
+    const InputNode& node = map_.Required(key, std::string("the name of ") + what);
+    value = ReadText(node, map_.PathOf(key), map_.problems());
+    if (node.kind == InputNode::Kind::kScalar && std::find(names.begin(), names.end(), node.text) == names.end())
+      AddProblem(map_.problems(), node, map_.PathOf(key),
+                 node.Describe() + " is not " + what + DidYouMean(node.text, names), "one of " + JoinWords(names));
+  }
   void Words(const char* key, const std::vector<std::string>& words, std::vector<std::size_t>& values,
              const char*) override {
     map_.Each(key, 1, SIZE_MAX, [&](const InputNode& item, const std::string& path) {
@@ -98,6 +128,16 @@ class FieldReader : public Fields {
     OptionalMap(key, is_there, meaning, part);
   }
 
+  void Columns(const char* key, const char*, const ReadNode& read) override {
+    const InputNode* value = map_.Optional(key);
+    if (value != nullptr && value->file != nullptr) read(*value, PathOfValue(key));
+  }
+  void Document(const char* key, const char*, bool needed, const char* allowed, const char*,
+                const ReadNode& read) override {
+    const InputNode* value = needed ? &map_.Required(key, allowed) : map_.Optional(key);
+    if (value != nullptr && value->file != nullptr) read(*value, PathOfValue(key));
+  }
+
   void Either(const std::vector<Alternative>& alternatives) override {
     for (const Alternative& alternative : alternatives)
       if (Holds(alternative.condition)) return alternative.describe();
@@ -117,9 +157,19 @@ class FieldReader : public Fields {
 
   void Check(const std::function<void()>& relation) override { relations_.push_back(relation); }
   void Refuse(const std::string& key, const std::string& message, const std::string& allowed) override {
+    if (map_.node().kind != InputNode::Kind::kMap) return;  // refused as a whole
     std::string path;
     const InputNode& at = FindField(map_.node(), key, &path);
     AddProblem(map_.problems(), at, path.empty() ? map_.path() : map_.PathOf(path), message, allowed);
+  }
+  void Hint(const char* key, const Range& mistaken, const char* what, double (*meant)(double)) override {
+    std::vector<InputProblem>& problems = map_.problems();
+    const InputNode* node = map_.node().Find(key);
+    if (node == nullptr || problems.empty() || problems.back().path != map_.PathOf(key)) return;
+    const std::optional<double> value = ParseNumber(node->text);
+    if (value && mistaken.Contains(*value))
+      problems.back().message +=
+          std::string(", it is ") + what + " (did you mean " + FormatNumber(meant(*value)) + "?)";
   }
   std::string Quote(const std::string& key) const override {
     std::string path;

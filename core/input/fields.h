@@ -18,6 +18,8 @@
 
 namespace dispersa {
 
+struct InputNode;
+
 /// Whether a map has a key, or at a key one of some words. An empty list counts as none.
 struct Condition {
   std::string key;                 ///< of the map, or of a map in it: "motor.liquid"
@@ -36,6 +38,8 @@ inline Condition Else() { return {}; }
 class Fields {
  public:
   using Part = std::function<void(Fields&)>;
+  /// Reads a value by hand; `path` is its own in its file.
+  using ReadNode = std::function<void(const InputNode& value, const std::string& path)>;
   /// A list's items: how to have a number of them, and what item k holds.
   struct Items {
     std::function<void(std::size_t)> resize;
@@ -85,6 +89,11 @@ class Fields {
   /// The key is `stem`, an underscore and one of the dimension's units.
   virtual void Quantity(const char* stem, Dimension dimension, const Range& range, double& value,
                         const char* meaning, std::optional<double> absent = {}) = 0;
+  /// One of which nothing is said where the key is absent.
+  virtual void OptionalNumber(const char* key, const Range& range, std::optional<double>& value,
+                              const char* meaning) = 0;
+  virtual void OptionalQuantity(const char* stem, Dimension dimension, const Range& range,
+                                std::optional<double>& value, const char* meaning) = 0;
   /// A list of so many of them; if `low_count` is 0 the key need not be there.
   virtual void Numbers(const char* key, const Range& range, std::size_t low_count, std::size_t high_count,
                        std::vector<double>& values, const char* meaning) = 0;
@@ -93,11 +102,19 @@ class Fields {
   /// The same, of which the key need not be there.
   virtual void OptionalQuantities(const char* stem, Dimension dimension, const Range& range, std::size_t low_count,
                                   std::size_t high_count, std::vector<double>& values, const char* meaning) = 0;
+  /// A list of lists of numbers.
+  virtual void Rows(const char* key, std::size_t low_count, std::size_t high_count,
+                    std::vector<std::vector<double>>& rows, const char* meaning) = 0;
   /// A number for both ends of something, or a list of two.
   virtual void Ends(const char* stem, Dimension dimension, const Range& range, double& first, double& second,
                     bool needed, const char* meaning) = 0;
   /// Exactly one of several quantities; `which` is its place among them.
   virtual void OneOf(const std::vector<OneQuantity>& quantities, std::size_t& which, double& value) = 0;
+  virtual void Texts(const char* key, std::size_t low_count, std::size_t high_count,
+                     std::vector<std::string>& values, const char* meaning) = 0;
+  /// The name of one of many things; `what` says of which: "a metric".
+  virtual void Name(const char* key, const std::vector<std::string>& names, const char* what, std::string& value,
+                    const char* meaning) = 0;
   /// A list of words, each one of `words`; `values` are their places.
   virtual void Words(const char* key, const std::vector<std::string>& words, std::vector<std::size_t>& values,
                      const char* meaning) = 0;
@@ -122,6 +139,11 @@ class Fields {
   /// The columns of a table: a map of lists, or the CSV file of which it was made; `allowed` says which.
   virtual void Table(const char* key, const char* allowed, const char* meaning, const Part& part) = 0;
   virtual void OptionalTable(const char* key, bool& is_there, const char* meaning, const Part& part) = 0;
+  /// Columns of numbers under any names, or the CSV file of them; the key need not be there.
+  virtual void Columns(const char* key, const char* meaning, const ReadNode& read) = 0;
+  /// What a file of a kind holds, in place or by the file's name. If it is not `needed` the key need not be there.
+  virtual void Document(const char* key, const char* schema, bool needed, const char* allowed, const char* meaning,
+                        const ReadNode& read) = 0;
   /// A list of maps; if `low_count` is 0 the key need not be there. describe(fields, item) of each, or
   /// describe(fields, item, number of items).
   template <class T, class F>
@@ -154,6 +176,8 @@ class Fields {
   void Unless(const Condition& condition, const std::function<void()>& describe) {
     Either({{condition, [] {}}, {Else(), describe}});
   }
+  /// Exactly one of these keys, which are named before, is there; a reader refuses others in words of its own.
+  virtual void ExactlyOne(const std::vector<std::string>& /*keys*/) {}
   /// In an alternative: one of these keys, which others have, is missing.
   virtual void Missing(const std::vector<std::string>& /*keys*/, const char* /*allowed*/) {}
   /// In an alternative: a key of another one, which this map must not have. In `message` {} stands for the key.
@@ -166,6 +190,9 @@ class Fields {
   virtual void Check(const std::function<void()>& /*relation*/) {}
   /// Refuses the value of a key, such as "time[3]" or "at.delay"; a quantity's unit need not be named.
   virtual void Refuse(const std::string& /*key*/, const std::string& /*message*/, const std::string& /*allowed*/) {}
+  /// After a number: one that was refused and lies in `mistaken` is its counterpart, "in percent"; meant() gives it.
+  virtual void Hint(const char* /*key*/, const Range& /*mistaken*/, const char* /*what*/,
+                    double (* /*meant*/)(double)) {}
   /// The value of a key as the file writes it, to be quoted in a message.
   virtual std::string Quote(const std::string& /*key*/) const { return {}; }
 
