@@ -189,8 +189,9 @@ class FieldReader : public Fields {
     for (std::size_t i = 0; i < choices.words.size(); ++i) words.emplace_back(choices.words[i], i);
     choices.set(map_.Choice<std::size_t>(key, words, absent));
   }
-  void Maps(const char* key, std::size_t low_count, std::size_t high_count, const Items& items,
+  void Maps(const char* key, bool needed, std::size_t low_count, std::size_t high_count, const Items& items,
             const char*) override {
+    if (!needed && map_.Optional(key) == nullptr) return;
     std::size_t count = 0;
     map_.Each(key, low_count, high_count, [&](const InputNode& item, const std::string& path) {
       items.resize(count + 1);

@@ -149,20 +149,18 @@ class Fields {
   template <class T, class F>
   void List(const char* key, std::size_t low_count, std::size_t high_count, std::vector<T>& items,
             const char* meaning, F describe) {
-    Maps(key, low_count, high_count,
-         {[&](std::size_t count) { items.resize(count); },
-          [&](Fields& fields, std::size_t i) {
-            if constexpr (std::is_invocable_v<F, Fields&, T&, std::size_t>)
-              describe(fields, items[i], items.size());
-            else
-              describe(fields, items[i]);
-          }},
-         meaning);
+    Maps(key, low_count > 0, low_count, high_count, ItemsOf(items, describe), meaning);
   }
   template <class T>
   void List(const char* key, std::size_t low_count, std::size_t high_count, std::vector<T>& items,
             const char* meaning) {
     List(key, low_count, high_count, items, meaning, [](Fields& fields, T& item) { Describe(fields, item); });
+  }
+  /// The key need not be there; a list that is there has so many.
+  template <class T, class F>
+  void OptionalList(const char* key, std::size_t low_count, std::size_t high_count, std::vector<T>& items,
+                    const char* meaning, F describe) {
+    Maps(key, false, low_count, high_count, ItemsOf(items, describe), meaning);
   }
 
   /// Keys of the first alternative whose condition holds. Conditions are about keys that are named before, or that
@@ -201,8 +199,20 @@ class Fields {
                      const char* meaning, std::optional<std::uint64_t> absent) = 0;
   virtual void Word(const char* key, const Choices& choices, const char* meaning,
                     std::optional<std::size_t> absent) = 0;
-  virtual void Maps(const char* key, std::size_t low_count, std::size_t high_count, const Items& items,
+  virtual void Maps(const char* key, bool needed, std::size_t low_count, std::size_t high_count, const Items& items,
                     const char* meaning) = 0;
+
+ private:
+  template <class T, class F>
+  static Items ItemsOf(std::vector<T>& items, F& describe) {
+    return {[&items](std::size_t count) { items.resize(count); },
+            [&items, &describe](Fields& fields, std::size_t i) {
+              if constexpr (std::is_invocable_v<F, Fields&, T&, std::size_t>)
+                describe(fields, items[i], items.size());
+              else
+                describe(fields, items[i]);
+            }};
+  }
 };
 
 /// In a Check(): refuses the first of a list's values that is not above the one before; true if there is none.
