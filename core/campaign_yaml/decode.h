@@ -9,6 +9,7 @@
 
 #include "core/campaign/campaign.h"
 #include "core/input/input_error.h"
+#include "core/input/fields.h"
 #include "core/input/input_node.h"
 #include "core/flight/scenario.h"
 
@@ -17,6 +18,7 @@ namespace dispersa {
 /// `warnings`, if given, receives what is possible but unusual (core/vehicle/plausibility.h).
 Vehicle DecodeVehicle(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems,
                       std::vector<InputProblem>* warnings = nullptr);
+void DescribeVehicleFile(Fields& fields, Vehicle& vehicle);
 /// A control law written in Python is named in a file, not contained: to fly it, it must be here
 /// (OfferedLaw).
 enum class PythonLaws { kMustBeHere, kMayBeAbsent };

@@ -90,19 +90,21 @@ void CheckPlausibility(const Vehicle& vehicle, const InputNode& node, const std:
 
 }  // namespace
 
+void DescribeVehicleFile(Fields& fields, Vehicle& vehicle) {
+  fields.Schema(kVehicleSchema);
+  fields.Base("based_on", "a vehicle file, whose keys stand where this one has none");
+  Describe(fields, vehicle);
+}
+
 Vehicle DecodeVehicle(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems,
                       std::vector<InputProblem>* warnings) {
   const std::size_t before = problems.size();
   Vehicle vehicle;
   if (node.file == nullptr) return vehicle;  // already reported
   if (!CheckSchema(node, kVehicleSchema, !path.empty(), path, problems)) return vehicle;
-  ReadFields(node, path, problems, [&](Fields& fields) {
-    fields.Schema(kVehicleSchema);
-    fields.Base("based_on", "a vehicle file, whose keys stand where this one has none");
-    SayKnows(path, {"based_on"});
-    SayExpects(path.empty() ? "based_on" : path + ".based_on", {.kind = Expectation::Kind::kFile});
-    Describe(fields, vehicle);
-  });
+  ReadFields(node, path, problems, [&](Fields& fields) { DescribeVehicleFile(fields, vehicle); });
+  SayKnows(path, {"based_on"});
+  SayExpects(path.empty() ? "based_on" : path + ".based_on", {.kind = Expectation::Kind::kFile});
   if (problems.size() == before) Complete(vehicle);
   if (HasUnreadTable(node)) return vehicle;
   if (problems.size() == before) AddStructProblems(Problems(vehicle), node, path, problems);

@@ -1,4 +1,4 @@
-// learn-schemas FILE: writes the source of SchemaText (schema_text.h), with what it has learned from the
+// learn-schemas FILE: writes the source of LearnedSchemaText (learned_text.h), with what it has learned from the
 // readers.
 #include <cstdio>
 #include <exception>
@@ -12,8 +12,8 @@ namespace {
 
 void WriteSource(const char* file) {
   std::ofstream out(file);
-  out << "// Written by learn-schemas.\n#include <cstddef>\n\n#include \"services/schema/schema_text.h\"\n\n"
-         "namespace dispersa {\n\nconst std::string& SchemaText(FileKind kind) {\n"
+  out << "// Written by learn-schemas.\n#include <cstddef>\n\n#include \"services/schema/learned_text.h\"\n\n"
+         "namespace dispersa {\n\nconst std::string& LearnedSchemaText(FileKind kind) {\n"
          "  static const std::string texts[] = {\n";
   for (const FileKind kind : kFileKinds)
     out << "      R\"schema(" << SchemaJson(kind).dump(1) << "\n)schema\",\n";

@@ -1,4 +1,4 @@
-// The JSON Schemas of the input files, as they were learned when dispersa was built.
+// JSON Schemas of the input files, for editors: completion, hints, and most errors while one types.
 #pragma once
 
 #include <string>
@@ -7,7 +7,8 @@
 
 namespace dispersa {
 
-/// The JSON Schema of a kind of file, a line an entry.
-const std::string& SchemaText(FileKind kind);
+/// The schema of a kind of file, in the draft that editors take (07). It refuses nothing that the reader takes; what two
+/// maps say together and how numbers are ordered only the reader knows (`dispersa validate`).
+std::string SchemaText(FileKind kind);
 
 }  // namespace dispersa

@@ -181,7 +181,8 @@ class SchemaTest(unittest.TestCase):
 
     def test_units_and_defaults_are_hinted(self):
         site = self.validators["vehicle"].schema["properties"]["site"]["properties"]
-        self.assertEqual({"type": "number", "minimum": -90, "maximum": 90, "description": "°, a number from -90 to 90"},
+        self.assertEqual({"type": "number", "minimum": -90, "maximum": 90,
+                          "description": "°, a number from -90 to 90: geodetic"},
                          site["latitude_deg"])
         gravel = self.validators["vehicle"].schema["properties"]["hold_down_s"]
         self.assertEqual(0, gravel["default"])
@@ -196,7 +197,7 @@ class SchemaTest(unittest.TestCase):
         self.assertEqual({"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1, "description": "a number above 0 and below 1"},
                          campaign["properties"]["requirements"]["items"]["properties"]["probability"])
         limit = vehicle["properties"]["stages"]["items"]["properties"]["gimbal"]["properties"]["rate_limit_deg_s"]
-        self.assertEqual("°/s, a number above 0", limit["description"])
+        self.assertEqual("°/s, a number above 0: of each drive", limit["description"])
         self.assertEqual(6, autopilot["definitions"]["pitch"]["properties"]["gains"]["maxItems"])
 
     def test_what_keys_say_of_each_other(self):

@@ -1,0 +1,19 @@
+#include "core/campaign_yaml/describe_file.h"
+
+#include "core/campaign_yaml/decode.h"
+
+namespace dispersa {
+
+void DescribeFile(FileKind kind, Fields& fields) {
+  switch (kind) {
+    case FileKind::kVehicle: {
+      Vehicle vehicle;
+      DescribeVehicleFile(fields, vehicle);
+      break;
+    }
+    default:
+      break;
+  }
+}
+
+}  // namespace dispersa
