@@ -13,8 +13,9 @@
 #include "core/environment/wind.h"
 #include "core/environment/wind_statistics.h"
 #include "core/flight/flight_inputs.h"
-#include "core/statistics/verdict_plan.h"
 #include "core/guidance/guidance_config.h"
+#include "core/input/fields.h"
+#include "core/statistics/verdict_plan.h"
 #include "core/trajectory/reference.h"
 #include "core/vehicle/vehicle.h"
 
@@ -85,6 +86,13 @@ struct Sampling {
   std::uint64_t replicates = 1;
 };
 
+/// A group of normal dispersions that are drawn together.
+struct Correlation {
+  std::vector<std::string> names;
+  std::vector<std::vector<double>> matrix;  ///< of correlations, or of covariances in the units of the columns
+  bool is_covariance = false;
+};
+
 struct Campaign {
   std::string name;
   Vehicle vehicle;
@@ -103,5 +111,19 @@ struct Campaign {
   std::string flight_id;       ///< SHA-256 of what decides a case
   std::string requirements_id;  ///< SHA-256 of the requirements and how they are judged
 };
+
+// The keys of a campaign's maps. What several of them say together is checked where it is described.
+
+/// Without a list's table, whose columns come after the dispersions.
+void Describe(Fields& fields, Sampling& sampling);
+/// `plan` is what the verdicts say of all requirements.
+void Describe(Fields& fields, Verdicts& verdicts, VerdictPlan& plan, Sampling& sampling);
+/// requirement.plan is that of the verdicts until this one says its own; `metrics` are the names of those that it may be
+/// about.
+void Describe(Fields& fields, Requirement& requirement, const std::vector<std::string>& metrics);
+/// And gives each of its dispersions its `mix`.
+void Describe(Fields& fields, Correlation& correlation, std::vector<Dispersion>& dispersions);
+/// A design needs dispersions that it can set; `fields` are the campaign's.
+void CheckDesign(Fields& fields, const Sampling& sampling, const std::vector<Dispersion>& dispersions);
 
 }  // namespace dispersa

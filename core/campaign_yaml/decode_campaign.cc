@@ -1,72 +1,23 @@
 #include "core/campaign_yaml/decode_campaign.h"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 
-#include "core/campaign_yaml/canonical.h"
+#include "core/campaign_yaml/campaign_ids.h"
 #include "core/campaign_yaml/decode.h"
 #include "core/campaign_yaml/inline_files.h"
-#include "core/campaign_yaml/load.h"
-#include "core/input/number_text.h"
-#include "core/input/struct_problems.h"
-#include "core/input/map_reader.h"
-#include "core/flight/engine_version.h"
 #include "core/flight/metrics.h"
 #include "core/flight/sensor_model.h"
 #include "core/flight/step_limits.h"
 #include "core/flight/structural_limits.h"
-#include "core/math/functions.h"
+#include "core/input/field_reader.h"
+#include "core/input/number_text.h"
+#include "core/input/struct_problems.h"
 
 namespace dispersa {
 namespace {
 
 using ProblemList = std::vector<InputProblem>;
-
-// A stream's index is 32 bits wide.
-constexpr std::uint64_t kMaxCases = 4294967295;
-constexpr std::uint64_t kMaxReplicates = 10000;
-// A workstation has so much for each process that flies.
-constexpr double kMaxDesignBytes = 4e9;
-// More looks than these are better served by an anytime plan.
-constexpr std::uint64_t kMaxLooks = 100;
-
-// A tree that was read from a file of its own has paths of its own.
-std::string PathOfPart(const InputNode& part, const InputNode& root, const std::string& key) {
-  return part.file == root.file ? key : "";
-}
-
-Sampling DecodeSampling(const InputNode& node, const std::string& path, ProblemList& problems) {
-  MapReader map(node, path, problems);
-  Sampling sampling;
-  sampling.method =
-      map.Choice<SamplingMethod>("method", {{"monte_carlo", SamplingMethod::kMonteCarlo},
-                                            {"latin_hypercube", SamplingMethod::kLatinHypercube},
-                                            {"sobol", SamplingMethod::kSobol},
-                                            {"corners", SamplingMethod::kCorners},
-                                            {"one_at_a_time", SamplingMethod::kOneAtATime},
-                                            {"grid", SamplingMethod::kGrid},
-                                            {"list", SamplingMethod::kList}});
-  sampling.cases = map.Integer("cases", 1, kMaxCases);
-  sampling.seed = map.Integer("seed", 0, UINT64_MAX);
-  sampling.replicates = map.Integer("replicates", 1, kMaxReplicates, 1);
-  const bool designed =
-      sampling.method == SamplingMethod::kLatinHypercube || sampling.method == SamplingMethod::kSobol;
-  if (sampling.replicates > 1 && !designed) {
-    AddProblem(problems, *node.Find("replicates"), map.PathOf("replicates"),
-               "only a Latin hypercube or Sobol design has replicates", "method: latin_hypercube or sobol");
-  } else if (sampling.replicates > 1 && sampling.cases % sampling.replicates != 0) {
-    AddProblem(problems, *node.Find("replicates"), map.PathOf("replicates"),
-               std::to_string(sampling.cases) + " cases are not divisible into " +
-                   std::to_string(sampling.replicates) + " designs of one size",
-               "a divisor of the number of cases");
-  }
-  if (map.Optional("table") != nullptr && sampling.method != SamplingMethod::kList) {
-    AddProblem(problems, *node.Find("table"), map.PathOf("table"), "only a list is read from a table",
-               "method: list");
-  }
-  return sampling;
-}
 
 // The columns of a list's table, each an input by its name in cases.csv without the prefix.
 void DecodeListTable(const InputNode& table, const std::string& path, Campaign& campaign,
@@ -97,291 +48,6 @@ void DecodeListTable(const InputNode& table, const std::string& path, Campaign& 
   }
 }
 
-// The rows of L with L L^T = the correlations; empty unless they are positive definite.
-std::vector<std::vector<double>> Cholesky(const std::vector<std::vector<double>>& matrix) {
-  std::vector<std::vector<double>> factor(matrix.size());
-  for (std::size_t i = 0; i < matrix.size(); ++i) {
-    for (std::size_t j = 0; j <= i; ++j) {
-      double rest = matrix[i][j];
-      for (std::size_t k = 0; k < j; ++k) rest -= factor[i][k] * factor[j][k];
-      if (i == j && !(rest > 1e-12)) return {};
-      factor[i].push_back(i == j ? Sqrt(rest) : rest / factor[j][j]);
-    }
-  }
-  return factor;
-}
-
-// One group of normal dispersions that are drawn together.
-void DecodeCorrelation(const InputNode& node, const std::string& path, Campaign& campaign,
-                       ProblemList& problems) {
-  const std::size_t before = problems.size();
-  std::vector<std::size_t> members;
-  std::vector<std::vector<double>> matrix;
-  const InputNode* rows = nullptr;
-  {
-    MapReader map(node, path, problems);
-    map.Each("of", 2, SIZE_MAX, [&](const InputNode& item, const std::string& item_path) {
-      const std::string name = ReadText(item, item_path, problems);
-      std::vector<std::string> names;
-      for (const Dispersion& dispersion : campaign.dispersions) names.push_back(dispersion.name);
-      const auto found = std::find(names.begin(), names.end(), name);
-      if (found == names.end()) {
-        AddProblem(problems, item, item_path, "'" + name + "' is not a dispersion" + DidYouMean(name, names),
-                   names.empty() ? "a campaign with dispersions" : "one of " + JoinWords(names));
-        return;
-      }
-      const auto position = static_cast<std::size_t>(found - names.begin());
-      const Dispersion& dispersion = campaign.dispersions[position];
-      if (dispersion.distribution.kind != Distribution::kNormal) {
-        AddProblem(problems, item, item_path, "'" + name + "' is not normal", "distribution: normal");
-      } else if (!dispersion.mix.empty() ||
-                 std::find(members.begin(), members.end(), position) != members.end()) {
-        AddProblem(problems, item, item_path, "'" + name + "' is correlated twice", "once, in one group");
-      }
-      members.push_back(position);
-    });
-    const bool covariance = map.Peek("covariance") != nullptr;
-    const std::string key = covariance ? "covariance" : "matrix";
-    rows = node.Find(key);
-    map.Each(key, 2, SIZE_MAX, [&](const InputNode& item, const std::string& item_path) {
-      std::vector<double> row;
-      SayExpects(item_path, {.kind = Expectation::Kind::kList, .low_count = 2});
-      SayExpects(item_path + "[]", {.kind = Expectation::Kind::kNumber});
-      for (const InputNode& cell : item.items) row.push_back(ReadNumber(cell, item_path, problems));
-      matrix.push_back(std::move(row));
-    });
-    if (problems.size() > before || rows == nullptr) return;
-    const std::size_t size = members.size();
-    const bool square =
-        matrix.size() == size &&
-        std::all_of(matrix.begin(), matrix.end(), [size](const auto& row) { return row.size() == size; });
-    if (!square) {
-      AddProblem(problems, *rows, map.PathOf(key),
-                 "the matrix does not fit its " + std::to_string(size) + " names",
-                 std::to_string(size) + " rows of " + std::to_string(size) + " numbers");
-      return;
-    }
-    if (covariance) {
-      // In the squares of the internal units; the standard deviations are the dispersions' own.
-      std::vector<double> sigma;
-      for (std::size_t i = 0; i < size; ++i) sigma.push_back(Sqrt(std::max(matrix[i][i], 0.0)));
-      for (std::size_t i = 0; i < size; ++i) {
-        const Dispersion& dispersion = campaign.dispersions[members[i]];
-        const double unit = InputColumns()[static_cast<std::size_t>(dispersion.inputs.front())].unit;
-        const double stated = dispersion.distribution.sigma / unit;
-        if (!(std::fabs(sigma[i] - stated) <= 1e-6 * stated)) {
-          AddProblem(problems, *rows, map.PathOf(key),
-                     "the variance of '" + dispersion.name + "' is not that of its distribution",
-                     "the square of sigma in the unit of the column " +
-                         InputColumns()[static_cast<std::size_t>(dispersion.inputs.front())].name);
-          return;
-        }
-      }
-      for (std::size_t i = 0; i < size; ++i) {
-        for (std::size_t j = 0; j < size; ++j) matrix[i][j] /= sigma[i] * sigma[j];
-      }
-      for (std::size_t i = 0; i < size; ++i) matrix[i][i] = 1.0;
-    }
-    for (std::size_t i = 0; i < size; ++i) {
-      for (std::size_t j = 0; j < size; ++j) {
-        if (matrix[i][j] == (i == j ? 1.0 : matrix[j][i])) continue;
-        AddProblem(problems, *rows, map.PathOf(key),
-                   i == j ? "the diagonal is not 1" : "the matrix is not symmetric",
-                   i == j ? "correlations, or covariance: in place of matrix:"
-                          : "equal numbers across the diagonal");
-        return;
-      }
-    }
-    const std::vector<std::vector<double>> factor = Cholesky(matrix);
-    if (factor.empty()) {
-      AddProblem(problems, *rows, map.PathOf(key), "the matrix is not positive definite",
-                 "correlations that can hold together");
-      return;
-    }
-    for (std::size_t i = 0; i < size; ++i) {
-      auto& mix = campaign.dispersions[members[i]].mix;
-      for (std::size_t j = 0; j <= i; ++j) mix.emplace_back(members[j], factor[i][j]);
-    }
-  }
-}
-
-// looks, spending and anytime of a requirement, or of all in `verdicts`.
-VerdictPlan ReadPlan(MapReader& map, const VerdictPlan& absent) {
-  VerdictPlan plan = absent;
-  const InputNode* looks = map.Optional("looks");
-  const InputNode* anytime = map.Optional("anytime");
-  const InputNode* spending = map.Optional("spending");
-  if (looks != nullptr && anytime != nullptr) {
-    AddProblem(map.problems(), *anytime, map.PathOf("anytime"), "'looks' and 'anytime' are both given",
-               "either looks: K or anytime: true");
-  }
-  if (anytime != nullptr) plan.kind = map.Flag("anytime", false) ? PlanKind::kAnytime : PlanKind::kFixed;
-  if (looks != nullptr) {
-    plan.looks = static_cast<std::int64_t>(map.Integer("looks", 1, kMaxLooks));
-    plan.kind = plan.looks > 1 ? PlanKind::kGroupSequential : PlanKind::kFixed;
-  }
-  if (plan.kind != PlanKind::kGroupSequential) plan.looks = 1;
-  if (spending != nullptr) {
-    plan.spending = map.Choice<Spending>(
-        "spending", {{"obrien_fleming", Spending::kOBrienFleming}, {"pocock", Spending::kPocock}});
-    if (plan.kind != PlanKind::kGroupSequential) {
-      AddProblem(map.problems(), *spending, map.PathOf("spending"), "one look has nothing to share",
-                 "looks: 2 or more");
-    }
-  }
-  return plan;
-}
-
-Verdicts DecodeVerdicts(const InputNode& node, const std::string& path, VerdictPlan& plan, Sampling& sampling,
-                        ProblemList& problems) {
-  MapReader map(node, path, problems);
-  Verdicts verdicts;
-  plan = ReadPlan(map, {});
-  verdicts.holm = map.Choice<bool>("joint", {{"each", false}, {"holm", true}}, false);
-  verdicts.stop_when_decided =
-      map.Choice<bool>("stop", {{"when_all_flown", false}, {"when_decided", true}}, false);
-  const InputNode* max_cases = map.Optional("max_cases");
-  if (max_cases == nullptr) return verdicts;
-  const std::uint64_t most = map.Integer("max_cases", 1, kMaxCases);
-  if (!verdicts.stop_when_decided) {
-    AddProblem(problems, *max_cases, map.PathOf("max_cases"), "every case is flown", "stop: when_decided");
-  }
-  sampling.cases = most;
-  return verdicts;
-}
-
-// A design needs dispersions that it can set.
-void CheckDesign(const Campaign& campaign, const InputNode& sampling, ProblemList& problems) {
-  const auto count = [&](Distribution kind) {
-    return std::count_if(campaign.dispersions.begin(), campaign.dispersions.end(),
-                         [&](const Dispersion& dispersion) { return dispersion.distribution.kind == kind; });
-  };
-  const InputNode* method = sampling.Find("method");
-  const auto add = [&](const std::string& message, const std::string& allowed) {
-    AddProblem(problems, *method, "sampling.method", message, allowed);
-  };
-  constexpr int kMaxCornerFactors = 20;
-  switch (campaign.sampling.method) {
-    case SamplingMethod::kCorners:
-      if (count(Distribution::kTwoPoint) > kMaxCornerFactors) {
-        add("the design has 2^" + std::to_string(count(Distribution::kTwoPoint)) + " corners",
-            "at most " + std::to_string(kMaxCornerFactors) + " dispersions with distribution: two_point");
-        break;
-      }
-      [[fallthrough]];
-    case SamplingMethod::kOneAtATime:
-      if (count(Distribution::kTwoPoint) == 0) {
-        add("the design has nothing to vary", "one dispersion or more with distribution: two_point");
-      }
-      break;
-    case SamplingMethod::kLatinHypercube: {
-      // Each process that flies holds the whole design.
-      const double bytes = 4.0 * static_cast<double>(campaign.sampling.cases) *
-                           static_cast<double>(campaign.dispersions.size());
-      if (bytes > kMaxDesignBytes) {
-        const auto most = static_cast<std::uint64_t>(kMaxDesignBytes / 4.0 /
-                                                     static_cast<double>(campaign.dispersions.size()));
-        AddProblem(problems, *sampling.Find("cases"), "sampling.cases",
-                   "a Latin hypercube of " + std::to_string(campaign.sampling.cases) + " cases and " +
-                       std::to_string(campaign.dispersions.size()) + " dispersions takes " +
-                       std::to_string(static_cast<std::uint64_t>(bytes / 1e9)) +
-                       " GB of memory in each process",
-                   "up to " + std::to_string(most) +
-                       " cases (4 GB), or method: monte_carlo or sobol, which take none");
-      }
-      break;
-    }
-    case SamplingMethod::kGrid:
-    case SamplingMethod::kList: {
-      if (count(Distribution::kValues) == 0) {
-        add("the design has nothing to vary", "one dispersion or more with distribution: values");
-        break;
-      }
-      if (campaign.sampling.method == SamplingMethod::kGrid) break;
-      std::size_t length = 0;
-      for (const Dispersion& dispersion : campaign.dispersions) {
-        if (dispersion.distribution.kind != Distribution::kValues) continue;
-        if (length == 0) length = dispersion.distribution.values.size();
-        if (length == dispersion.distribution.values.size()) continue;
-        add("the lists of values have different lengths", "one value a run in every list");
-        break;
-      }
-      break;
-    }
-    case SamplingMethod::kMonteCarlo:
-    case SamplingMethod::kSobol:
-      break;
-  }
-}
-
-// To the digits that people write: 1 - 0.95 is 0.05.
-double ShortShare(double value) { return std::round(value * 1e9) / 1e9; }
-
-// A number that was written as its counterpart: a share in percent, a risk as the confidence that it leaves.
-void HintAt(MapReader& map, const std::string& key, const Range& mistaken, const char* what,
-            double (*meant)(double), std::size_t problems_before) {
-  ProblemList& problems = map.problems();
-  const InputNode* node = map.node().Find(key);
-  if (node == nullptr || node->kind != InputNode::Kind::kScalar || problems.size() == problems_before) return;
-  const std::optional<double> value = ParseNumber(node->text);
-  if (value && mistaken.Contains(*value))
-    problems.back().message +=
-        std::string(", it is ") + what + " (did you mean " + FormatNumber(meant(*value)) + "?)";
-}
-
-Requirement DecodeRequirement(const InputNode& node, const std::string& path, const VerdictPlan& plan,
-                              std::size_t stages, ProblemList& problems) {
-  MapReader map(node, path, problems);
-  Requirement requirement;
-  const InputNode& metric = map.Required("metric", "the name of a metric");
-  requirement.metric = ReadText(metric, map.PathOf("metric"), problems);
-  const auto last = MetricNames().begin() + static_cast<std::ptrdiff_t>(MetricCount(stages));
-  const std::vector<std::string> names(MetricNames().begin(), last);
-  if (Listener() != nullptr)
-    SayExpects(map.PathOf("metric"), {.kind = Expectation::Kind::kWords, .words = MetricNames()});
-  if (metric.kind == InputNode::Kind::kScalar &&
-      std::find(names.begin(), names.end(), metric.text) == names.end()) {
-    AddProblem(problems, metric, map.PathOf("metric"),
-               metric.Describe() + " is not a metric" + DidYouMean(metric.text, names),
-               "one of " + JoinWords(names));
-  }
-  if (map.Optional("below") != nullptr) requirement.below = map.Number("below", kAnyNumber);
-  if (map.Optional("above") != nullptr) requirement.above = map.Number("above", kAnyNumber);
-  if (map.Optional("within") != nullptr) {
-    const std::vector<double> ends = map.Numbers("within", kAnyNumber, 2, 2);
-    if (ends.size() == 2) {
-      requirement.within = {ends[0], ends[1]};
-      if (!(ends[0] < ends[1])) {
-        AddProblem(problems, *node.Find("within"), map.PathOf("within"),
-                   "the first limit is not below the second", "[low, high]");
-      }
-    }
-  }
-  const int limits =
-      (node.Find("below") != nullptr) + (node.Find("above") != nullptr) + (node.Find("within") != nullptr);
-  if (limits == 0) map.NoteMissing({"below", "above", "within"});
-  if (limits != 1 && node.kind == InputNode::Kind::kMap) {
-    const bool pair = limits == 2 && node.Find("within") == nullptr;
-    AddProblem(problems, node, path,
-               limits == 0 ? "the limit is missing"
-               : pair      ? "'below' and 'above' are both given"
-                           : "more than one limit is given",
-               "either below: x, above: x or within: [low, high]");
-  }
-  std::size_t before = problems.size();
-  requirement.probability = map.Number("probability", Inside(0.0, 1.0));
-  HintAt(
-      map, "probability", Inside(1.0, 100.0), "in percent", [](double x) { return ShortShare(x / 100.0); },
-      before);
-  before = problems.size();
-  requirement.consumer_risk = map.Number("consumer_risk", Inside(0.0, 0.5));
-  HintAt(
-      map, "consumer_risk", Inside(0.5, 1.0), "a confidence", [](double x) { return ShortShare(1.0 - x); },
-      before);
-  requirement.plan = ReadPlan(map, plan);
-  return requirement;
-}
-
 // Limits of a structure that nobody judges are none. A campaign that means something else by them states its
 // own requirement on the metric.
 void RequireLimitsKept(const VerdictPlan& plan, std::vector<Requirement>& requirements) {
@@ -402,44 +68,6 @@ void RequireLimitsKept(const VerdictPlan& plan, std::vector<Requirement>& requir
 bool Restarts(const Vehicle& vehicle) {
   return std::any_of(vehicle.stages.begin(), vehicle.stages.end(),
                      [](const Stage& stage) { return stage.restarts; });
-}
-
-GuidanceConfig DecodeGuidance(const InputNode& node, const Vehicle& vehicle, ProblemList& problems) {
-  MapReader map(node, "guidance", problems);
-  GuidanceConfig guidance;
-  guidance.closed_loop = map.Choice<bool>("mode", {{"open_loop", false}, {"closed_loop", true}});
-  guidance.steers_last_burn =
-      map.Choice<bool>("last_burn", {{"steered", true}, {"as_planned", false}}, guidance.steers_last_burn);
-  guidance.period_s = map.Quantity("period", kTime, Between(0.1, 10.0), guidance.period_s);
-  // Attitude loops of a launcher follow some degrees a second; more would be a loss of control.
-  const Range rate = {0.0, 20.0 * kRadPerDeg, true, false};
-  guidance.turn_rate_rad_s = map.Quantity("turn_rate", kAngularRate, rate, guidance.turn_rate_rad_s);
-  guidance.turn_acceleration_rad_s2 =
-      map.Quantity("turn_acceleration", kAngularAcceleration, rate, guidance.turn_acceleration_rad_s2);
-  guidance.coast_rate_rad_s = map.Quantity("coast_rate", kAngularRate, rate, guidance.coast_rate_rad_s);
-  guidance.coast_acceleration_rad_s2 =
-      map.Quantity("coast_acceleration", kAngularAcceleration, rate, guidance.coast_acceleration_rad_s2);
-  guidance.settled_angle_rad = map.Quantity("settled", kAngle, rate, guidance.settled_angle_rad);
-  guidance.settled_rate_rad_s = map.Quantity("settled_rate", kAngularRate, rate, guidance.settled_rate_rad_s);
-  if (guidance.closed_loop && !vehicle.stages.empty() &&
-      (vehicle.stages.size() < 2 || vehicle.stages.back().ignition != IgnitionTrigger::kTimer)) {
-    const InputNode* mode = node.Find("mode");
-    AddProblem(problems, mode != nullptr ? *mode : node, map.PathOf("mode"),
-               "the vehicle '" + vehicle.name + "' has no last stage whose ignition guidance could move",
-               "open_loop, or a vehicle whose last of two stages or more has ignition: {trigger: timer}");
-  } else if (guidance.closed_loop && (CutsOffAtVelocity(vehicle) || Restarts(vehicle))) {
-    const InputNode* mode = node.Find("mode");
-    AddProblem(problems, mode != nullptr ? *mode : node, map.PathOf("mode"),
-               "guidance knows burns that end by themselves, and an engine of '" + vehicle.name +
-                   "' is cut off at a velocity or burns again",
-               "open_loop, or engines that end by time or depletion");
-  } else if (guidance.closed_loop && vehicle.boosters.count > 0 && vehicle.stages.size() < 3) {
-    const InputNode* mode = node.Find("mode");
-    AddProblem(problems, mode != nullptr ? *mode : node, map.PathOf("mode"),
-               "guidance would steer the stage of '" + vehicle.name + "' that has boosters, whose thrust it does not know",
-               "open_loop, or a vehicle of three stages or more");
-  }
-  return guidance;
 }
 
 // Only stages that there are, above the first, are steered.
@@ -472,187 +100,233 @@ void CheckTimers(const Vehicle& vehicle, const InputNode& node, const std::strin
 }
 
 // The name becomes part of a folder's name.
-void CheckName(const std::string& name, const InputNode& root, ProblemList& problems) {
+void CheckName(Fields& fields, const std::string& name) {
   const auto is_allowed = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
            c == '-' || c == '.';
   };
-  if (name.empty() ||
-      (std::all_of(name.begin(), name.end(), is_allowed) && name[0] != '.' && name.size() <= 64))
-    return;
-  AddProblem(problems, *root.Find("name"), "name", "'" + name + "' cannot name a folder",
-             "up to 64 letters, digits, '_', '-' and '.', the first not '.'");
+  if (name.empty() || (std::all_of(name.begin(), name.end(), is_allowed) && name[0] != '.' && name.size() <= 64)) return;
+  fields.Refuse("name", "'" + name + "' cannot name a folder",
+                "up to 64 letters, digits, '_', '-' and '.', the first not '.'");
 }
+
+// What guidance of this vehicle cannot do; `fields` are those of the guidance.
+void CheckGuidance(Fields& fields, const GuidanceConfig& guidance, const Vehicle& vehicle) {
+  if (!guidance.closed_loop || vehicle.stages.empty()) return;
+  const std::string name = "'" + vehicle.name + "'";
+  if (vehicle.stages.size() < 2 || vehicle.stages.back().ignition != IgnitionTrigger::kTimer)
+    fields.Refuse("mode", "the vehicle " + name + " has no last stage whose ignition guidance could move",
+                  "open_loop, or a vehicle whose last of two stages or more has ignition: {trigger: timer}");
+  else if (CutsOffAtVelocity(vehicle) || Restarts(vehicle))
+    fields.Refuse("mode",
+                  "guidance knows burns that end by themselves, and an engine of " + name +
+                      " is cut off at a velocity or burns again",
+                  "open_loop, or engines that end by time or depletion");
+  else if (vehicle.boosters.count > 0 && vehicle.stages.size() < 3)
+    fields.Refuse("mode",
+                  "guidance would steer the stage of " + name + " that has boosters, whose thrust it does not know",
+                  "open_loop, or a vehicle of three stages or more");
+}
+
+// A value of the campaign that may be a file of its own.
+struct Part {
+  const InputNode* node = nullptr;
+  std::string path;
+};
+
+// The campaign's keys, in the order in which each needs those before. Without a tree (a schema is made) nothing is read.
+class CampaignDescription {
+ public:
+  CampaignDescription(const InputNode* root, CampaignUse use, DecodedCampaign& decoded, ProblemList& problems,
+                      ProblemList* warnings)
+      : root_(root),
+        use_(use),
+        decoded_(decoded),
+        campaign_(decoded.campaign),
+        problems_(problems),
+        warnings_(warnings) {}
+
+  void Describe(Fields& fields) {
+    fields.Schema(kCampaignSchema);
+    fields.Text("name", campaign_.name, "of the campaign, and of its folder");
+    CheckName(fields, campaign_.name);
+    std::string description;
+    fields.Text("description", description, "what it is for", "");
+    fields.Document("vehicle", kVehicleSchema, true, "a vehicle file", "what flies",
+                    [this](const InputNode& node, const std::string& path) {
+                      vehicle_ = {&node, path};
+                      campaign_.vehicle = DecodeVehicle(node, path, problems_, warnings_);
+                    });
+    DescribeTrajectory(fields);
+    fields.Either({{Has("optimize"), [&] { DescribeFlights(fields, false); }},
+                   {Else(), [&] { DescribeFlights(fields, use_ != CampaignUse::kOptimize); }}});
+    DescribeDispersions(fields);
+    DescribeJudgement(fields);
+  }
+
+  // What is legal but looks wrong.
+  void Warn() {
+    if (warnings_ == nullptr || !problems_.empty()) return;
+    const double on_time_s = campaign_.vehicle.reaction_control.minimum_on_time_s;
+    if (flies() && on_time_s > 0.0 && campaign_.autopilot.tick_s > on_time_s * (1.0 + 1e-9))
+      WarnOf(vehicle_, "reaction_control.minimum_on_time_s",
+             "thrusters fire for whole ticks of " + FormatRounded(campaign_.autopilot.tick_s) +
+                 " s, which is longer than they have to",
+             "at least a tick of the autopilot");
+    if (reference_.node == nullptr) return;
+    if (!campaign_.reference.target_missed.empty())
+      WarnOf(reference_, "target_missed", "the reference misses its own target: " + campaign_.reference.target_missed,
+             "a reference that reaches it");
+    if (campaign_.reference.vehicle_sha256 != VehicleSha256(*vehicle_.node))
+      WarnOf(reference_, "", "the reference was found for another vehicle; flights will miss its orbit",
+             "a reference that `dispersa optimize` wrote for this vehicle");
+  }
+
+ private:
+  bool flies() const { return use_ != CampaignUse::kOptimize && !decoded_.optimize; }
+
+  void WarnOf(const Part& part, const std::string& key, const std::string& message, const std::string& allowed) {
+    std::string path;
+    const InputNode& at = FindField(*part.node, key, &path);
+    AddProblem(*warnings_, at, part.path.empty() || path.empty() ? part.path + path : part.path + "." + path, message,
+               allowed);
+  }
+
+  void DescribeTrajectory(Fields& fields) {
+    fields.Document("reference", kReferenceSchema, false, "a reference file", "the trajectory that is flown",
+                    [this](const InputNode& node, const std::string& path) {
+                      reference_ = {&node, path};
+                      campaign_.reference = DecodeReference(node, path, problems_);
+                    });
+    fields.Columns("optimize", "the trajectory to be found, in place of reference",
+                   [this](const InputNode& node, const std::string& path) {
+                     optimize_ = {&node, path};
+                     decoded_.optimize = DecodeTrajectoryProblem(node, path, problems_);
+                   });
+    fields.ExactlyOne({"reference", "optimize"});
+    // Also one whose file could not be read.
+    const auto has = [this](const char* key) { return root_ != nullptr && root_->Find(key) != nullptr; };
+    const bool has_reference = has("reference"), has_problem = has("optimize");
+    if (has_reference == has_problem)
+      fields.Refuse("",
+                    has_reference ? "'reference' and 'optimize' are both given"
+                                  : "there is neither 'reference' nor 'optimize'",
+                    "one of the two");
+    else if (has_problem && (use_ == CampaignUse::kFly || use_ == CampaignUse::kRead))
+      fields.Refuse("optimize", "the campaign has no trajectory to fly yet",
+                    "run `dispersa optimize " + (root_->file ? *root_->file : std::string("CAMPAIGN")) +
+                        " -o REFERENCE.yaml`, then write `reference: REFERENCE.yaml` in place of `optimize:`");
+    CheckTrajectory();
+  }
+
+  // That it is one of this vehicle's.
+  void CheckTrajectory() {
+    const Vehicle& vehicle = campaign_.vehicle;
+    if (problems_.empty() && optimize_.node != nullptr)
+      CheckTimers(
+          vehicle, *optimize_.node, optimize_.path + ".bounds", "coast_s: [low, high]",
+          [&](std::size_t stage) { return decoded_.optimize->earlier_coast_s[stage].high > 0.0; }, problems_);
+    else if (problems_.empty() && reference_.node != nullptr)
+      CheckTimers(
+          vehicle, *reference_.node, reference_.path, "ignition_s",
+          [&](std::size_t stage) { return campaign_.reference.earlier_ignition_s[stage] > 0.0; }, problems_);
+    if (problems_.empty() && optimize_.node != nullptr)
+      CheckSteering(vehicle, decoded_.optimize->steering, *optimize_.node, optimize_.path + ".bounds", problems_);
+    else if (problems_.empty() && reference_.node != nullptr)
+      CheckSteering(vehicle, campaign_.reference.program.steering, *reference_.node, reference_.path, problems_);
+  }
+
+  // A trajectory that is yet to be found needs nothing that flies it.
+  void DescribeFlights(Fields& fields, bool needed) {
+    fields.Document("autopilot", kAutopilotSchema, needed, "an autopilot file", "what flies the trajectory",
+                    [this](const InputNode& node, const std::string& path) { ReadAutopilotOf(node, path); });
+    bool is_guided = false;
+    fields.OptionalMap("guidance", is_guided, "how a flight is guided; without, it flies the reference as it is",
+                       [&](Fields& guidance) {
+                         dispersa::Describe(guidance, campaign_.guidance);
+                         CheckGuidance(guidance, campaign_.guidance, campaign_.vehicle);
+                       });
+    const auto sampling = [&](Fields& map) {
+      dispersa::Describe(map, campaign_.sampling);
+      map.Either({{Is("method", {"list"}),
+                   [&] {
+                     map.Columns("table", "the cases of a list, a column of cases.csv an input; or a CSV file",
+                                 [this](const InputNode& node, const std::string& path) { list_ = {&node, path}; });
+                   }},
+                  {Else(), [&] { map.Misplaced("table", {}, "only a list is read from a table", "method: list"); }}});
+    };
+    has_sampling_ = needed;
+    if (needed)
+      fields.Map("sampling", "which cases are flown", sampling);
+    else
+      fields.OptionalMap("sampling", has_sampling_, "which cases are flown", sampling);
+  }
+  void ReadAutopilotOf(const InputNode& node, const std::string& path) {
+    campaign_.autopilot =
+        DecodeAutopilot(node, path, static_cast<int>(campaign_.vehicle.stages.size()), problems_,
+                        use_ == CampaignUse::kRead ? PythonLaws::kMayBeAbsent : PythonLaws::kMustBeHere);
+    if (problems_.empty()) AddStructProblems(GyroProblems(campaign_.vehicle, campaign_.autopilot), node, path, problems_);
+    if (problems_.empty())
+      AddStructProblems(StepProblems(campaign_.vehicle, campaign_.autopilot.tick_s), *vehicle_.node, vehicle_.path,
+                        problems_);
+  }
+
+  void DescribeDispersions(Fields& fields) {
+    const std::size_t before = problems_.size();
+    fields.Columns("dispersions", "what differs from case to case",
+                   [this](const InputNode& node, const std::string& path) {
+                     DecodeDispersions(node, path, campaign_, problems_);
+                   });
+    if (list_.node != nullptr) DecodeListTable(*list_.node, list_.path, campaign_, problems_);
+    std::vector<Correlation> correlations;
+    fields.List("correlations", 0, SIZE_MAX, correlations, "groups of normal dispersions that are drawn together",
+                [&](Fields& map, Correlation& group) { dispersa::Describe(map, group, campaign_.dispersions); });
+    if (problems_.size() == before && has_sampling_) CheckDesign(fields, campaign_.sampling, campaign_.dispersions);
+  }
+
+  void DescribeJudgement(Fields& fields) {
+    VerdictPlan plan;
+    bool has_verdicts = false;
+    fields.OptionalMap("verdicts", has_verdicts, "how the requirements are judged together", [&](Fields& verdicts) {
+      dispersa::Describe(verdicts, campaign_.verdicts, plan, campaign_.sampling);
+    });
+    const std::size_t stages = campaign_.vehicle.stages.size();
+    std::vector<std::string> metrics = MetricNames();
+    if (root_ != nullptr) metrics.resize(MetricCount(stages));
+    fields.OptionalList("requirements", 1, SIZE_MAX, campaign_.requirements, "what is required of the flights",
+                        [&](Fields& map, Requirement& requirement) {
+                          requirement.plan = plan;
+                          dispersa::Describe(map, requirement, metrics);
+                        });
+    if (HasLimits(campaign_.vehicle.limits)) RequireLimitsKept(plan, campaign_.requirements);
+  }
+
+  const InputNode* const root_;  // null: there is none
+  const CampaignUse use_;
+  DecodedCampaign& decoded_;
+  Campaign& campaign_;
+  ProblemList& problems_;
+  ProblemList* const warnings_;
+  Part vehicle_, reference_, optimize_, list_;
+  bool has_sampling_ = false;
+};
 
 }  // namespace
 
 DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vector<InputProblem>& problems,
                                std::vector<InputProblem>* warnings) {
   DecodedCampaign decoded;
-  Campaign& campaign = decoded.campaign;
   if (!CheckSchema(root, kCampaignSchema, false, "", problems)) return decoded;
-  MapReader map(root, "", problems);
-  map.Allow("schema");
-  campaign.name = map.Text("name");
-  CheckName(campaign.name, root, problems);
-  map.Text("description", "");
-
-  const InputNode& vehicle = map.Required("vehicle", "a vehicle file");
-  campaign.vehicle = DecodeVehicle(vehicle, PathOfPart(vehicle, root, "vehicle"), problems, warnings);
-  const int stages = static_cast<int>(campaign.vehicle.stages.size());
-
-  const InputNode* reference = map.Optional("reference");
-  const InputNode* optimize = map.Optional("optimize");
-  if (reference == nullptr && optimize == nullptr) map.NoteMissing({"reference", "optimize"});
-  if (root.kind == InputNode::Kind::kMap && (reference == nullptr) == (optimize == nullptr)) {
-    AddProblem(problems, root, "",
-               reference == nullptr ? "there is neither 'reference' nor 'optimize'"
-                                    : "'reference' and 'optimize' are both given",
-               "one of the two");
-  } else if (optimize != nullptr && (use == CampaignUse::kFly || use == CampaignUse::kRead)) {
-    AddProblem(problems, *optimize, "optimize", "the campaign has no trajectory to fly yet",
-               "run `dispersa optimize " + (root.file ? *root.file : std::string("CAMPAIGN")) +
-                   " -o REFERENCE.yaml`, then write `reference: REFERENCE.yaml` in place of `optimize:`");
-  }
-  if (reference != nullptr) {
-    campaign.reference = DecodeReference(*reference, PathOfPart(*reference, root, "reference"), problems);
-  }
-  if (optimize != nullptr) decoded.optimize = DecodeTrajectoryProblem(*optimize, "optimize", problems);
-
-  if (problems.empty() && optimize != nullptr)
-    CheckTimers(
-        campaign.vehicle, *optimize, "optimize.bounds", "coast_s: [low, high]",
-        [&](std::size_t stage) { return decoded.optimize->earlier_coast_s[stage].high > 0.0; }, problems);
-  else if (problems.empty() && reference != nullptr)
-    CheckTimers(
-        campaign.vehicle, *reference, PathOfPart(*reference, root, "reference"), "ignition_s",
-        [&](std::size_t stage) { return campaign.reference.earlier_ignition_s[stage] > 0.0; }, problems);
-
-  if (problems.empty() && optimize != nullptr)
-    CheckSteering(campaign.vehicle, decoded.optimize->steering, *optimize, "optimize.bounds", problems);
-  else if (problems.empty() && reference != nullptr)
-    CheckSteering(campaign.vehicle, campaign.reference.program.steering, *reference,
-                  PathOfPart(*reference, root, "reference"), problems);
-
-  const bool flies = use != CampaignUse::kOptimize && optimize == nullptr;
-  if (const InputNode* autopilot =
-          flies ? &map.Required("autopilot", "an autopilot file") : map.Optional("autopilot")) {
-    campaign.autopilot =
-        DecodeAutopilot(*autopilot, PathOfPart(*autopilot, root, "autopilot"), stages, problems,
-                        use == CampaignUse::kRead ? PythonLaws::kMayBeAbsent : PythonLaws::kMustBeHere);
-    if (problems.empty())
-      AddStructProblems(GyroProblems(campaign.vehicle, campaign.autopilot), *autopilot,
-                        PathOfPart(*autopilot, root, "autopilot"), problems);
-    if (problems.empty())
-      AddStructProblems(StepProblems(campaign.vehicle, campaign.autopilot.tick_s), vehicle,
-                        PathOfPart(vehicle, root, "vehicle"), problems);
-  }
-  if (const InputNode* guidance = map.Optional("guidance"))
-    campaign.guidance = DecodeGuidance(*guidance, campaign.vehicle, problems);
-  const InputNode* sampling = flies ? &map.Required("sampling", "a map") : map.Optional("sampling");
-  if (sampling != nullptr) campaign.sampling = DecodeSampling(*sampling, "sampling", problems);
-  const std::size_t before = problems.size();
-  if (const InputNode* dispersions = map.Optional("dispersions")) {
-    DecodeDispersions(*dispersions, "dispersions", campaign, problems);
-  }
-  if (const InputNode* table = sampling == nullptr ? nullptr : sampling->Find("table")) {
-    DecodeListTable(*table, table->file == root.file ? "sampling.table" : "", campaign, problems);
-  }
-  map.Each("correlations", 0, SIZE_MAX, [&](const InputNode& item, const std::string& path) {
-    DecodeCorrelation(item, path, campaign, problems);
-  });
-  if (problems.size() == before && sampling != nullptr && sampling->Find("method") != nullptr) {
-    CheckDesign(campaign, *sampling, problems);
-  }
-  VerdictPlan plan;
-  if (const InputNode* verdicts = map.Optional("verdicts")) {
-    campaign.verdicts = DecodeVerdicts(*verdicts, "verdicts", plan, campaign.sampling, problems);
-    if (campaign.verdicts.stop_when_decided && campaign.sampling.method != SamplingMethod::kMonteCarlo) {
-      AddProblem(problems, *verdicts->Find("stop"), "verdicts.stop", "a design study decides nothing",
-                 "method: monte_carlo");
-    }
-  }
-  if (map.Optional("requirements") != nullptr)
-    map.Each("requirements", 1, SIZE_MAX, [&](const InputNode& item, const std::string& path) {
-      campaign.requirements.push_back(
-          DecodeRequirement(item, path, plan, campaign.vehicle.stages.size(), problems));
-    });
-
-  if (HasLimits(campaign.vehicle.limits)) RequireLimitsKept(plan, campaign.requirements);
-
-  const double on_time_s = campaign.vehicle.reaction_control.minimum_on_time_s;
-  if (warnings != nullptr && problems.empty() && flies && on_time_s > 0.0 &&
-      campaign.autopilot.tick_s > on_time_s * (1.0 + 1e-9)) {
-    std::string path;
-    const InputNode& at = FindField(vehicle, "reaction_control.minimum_on_time_s", &path);
-    const std::string part = PathOfPart(vehicle, root, "vehicle");
-    AddProblem(*warnings, at, part.empty() ? path : part + "." + path,
-               "thrusters fire for whole ticks of " + FormatRounded(campaign.autopilot.tick_s) +
-                   " s, which is longer than they have to",
-               "at least a tick of the autopilot");
-  }
-  if (warnings != nullptr && problems.empty() && !campaign.reference.target_missed.empty()) {
-    AddProblem(
-        *warnings, *reference->Find("target_missed"),
-        PathOfPart(*reference, root, "reference").empty() ? "target_missed" : "reference.target_missed",
-        "the reference misses its own target: " + campaign.reference.target_missed,
-        "a reference that reaches it");
-  }
-  if (warnings != nullptr && problems.empty() && reference != nullptr &&
-      campaign.reference.vehicle_sha256 != VehicleSha256(vehicle)) {
-    AddProblem(*warnings, *reference, PathOfPart(*reference, root, "reference"),
-               "the reference was found for another vehicle; flights will miss its orbit",
-               "a reference that `dispersa optimize` wrote for this vehicle");
-  }
+  CampaignDescription description(&root, use, decoded, problems, warnings);
+  ReadFields(root, "", problems, [&](Fields& fields) { description.Describe(fields); });
+  description.Warn();
   return decoded;
 }
 
-std::string VehicleSha256(const InputNode& vehicle) {
-  InputNode rigid = vehicle;
-  std::erase_if(rigid.members, [](const InputMember& member) {
-    return member.key == "structure_beam" || member.key == "sensors" || member.key == "nozzles" ||
-           member.key == "limits";
-  });
-  // Nor does a point mass know what its actuators lack, or what its structure bears.
-  if (InputNode* stages = rigid.Find("stages"))
-    for (InputNode& stage : stages->items)
-      if (InputNode* gimbal = stage.Find("gimbal"))
-        std::erase_if(gimbal->members, [](const InputMember& member) {
-          return member.key.starts_with("dead_zone_") || member.key.starts_with("friction_") ||
-                 member.key.starts_with("resolution_");
-        });
-  return Sha256Hex(CanonicalText(rigid));
-}
-
-std::string RequirementsId(const InputNode& campaign) {
-  InputNode judged = MapAt(campaign);
-  for (const char* key : {"requirements", "verdicts"}) {
-    if (const InputNode* value = campaign.Find(key)) SetMember(judged, key, *value);
-  }
-  return Sha256Hex(CanonicalText(judged));
-}
-
-std::string FlightId(const InputNode& campaign, SamplingMethod method) {
-  InputNode deciding = MapAt(campaign);
-  for (const char* key : {"vehicle", "reference", "autopilot", "guidance", "dispersions", "correlations"}) {
-    if (const InputNode* value = campaign.Find(key)) SetMember(deciding, key, *value);
-  }
-  InputNode sampling = MapAt(campaign);
-  SetMember(sampling, "method", *campaign.Find("sampling")->Find("method"));
-  SetMember(sampling, "seed", *campaign.Find("sampling")->Find("seed"));
-  for (const char* key : {"replicates", "table"}) {
-    if (const InputNode* value = campaign.Find("sampling")->Find(key)) SetMember(sampling, key, *value);
-  }
-  // The strata of a Latin hypercube and the bounds of replicates depend on the number of cases; every other
-  // case stands for itself.
-  if (method == SamplingMethod::kLatinHypercube || campaign.Find("sampling")->Find("replicates") != nullptr) {
-    SetMember(sampling, "cases", *campaign.Find("sampling")->Find("cases"));
-  }
-  SetMember(deciding, "sampling", std::move(sampling));
-  InputNode engine = ScalarAt(campaign, EngineVersion());
-  engine.quoted = true;
-  SetMember(deciding, "engine", std::move(engine));
-  return Sha256Hex(CanonicalText(deciding));
+void DescribeCampaignFile(Fields& fields) {
+  DecodedCampaign decoded;
+  ProblemList problems;
+  CampaignDescription(nullptr, CampaignUse::kCheck, decoded, problems, nullptr).Describe(fields);
 }
 
 }  // namespace dispersa

@@ -28,12 +28,7 @@ enum class CampaignUse {
 DecodedCampaign DecodeCampaign(const InputNode& root, CampaignUse use, std::vector<InputProblem>& problems,
                                std::vector<InputProblem>* warnings);
 
-/// SHA-256 of the canonical vehicle of a campaign's or a vehicle file's tree, without its beam and its
-/// limits: the trajectory of a vehicle that bends or may break is the rigid one's.
-std::string VehicleSha256(const InputNode& vehicle);
-/// SHA-256 of the requirements and of how they are judged.
-std::string RequirementsId(const InputNode& campaign);
-/// SHA-256 of what decides a case.
-std::string FlightId(const InputNode& campaign, SamplingMethod method);
+/// The keys of a campaign's file, for those that have none.
+void DescribeCampaignFile(Fields& fields);
 
 }  // namespace dispersa

@@ -1,6 +1,7 @@
 #include "core/campaign_yaml/describe_file.h"
 
 #include "core/campaign_yaml/decode.h"
+#include "core/campaign_yaml/decode_campaign.h"
 
 namespace dispersa {
 
@@ -11,6 +12,9 @@ void DescribeFile(FileKind kind, Fields& fields) {
       DescribeVehicleFile(fields, vehicle);
       break;
     }
+    case FileKind::kCampaign:
+      DescribeCampaignFile(fields);
+      break;
     default:
       break;
   }

@@ -5,6 +5,7 @@
 #include <functional>
 #include <tuple>
 
+#include "core/campaign_yaml/campaign_ids.h"
 #include "core/campaign_yaml/canonical.h"
 #include "core/campaign_yaml/decode.h"
 #include "core/campaign_yaml/decode_campaign.h"

@@ -1,0 +1,57 @@
+#include "core/campaign_yaml/campaign_ids.h"
+
+#include "core/campaign_yaml/canonical.h"
+#include "core/campaign_yaml/load.h"
+#include "core/flight/engine_version.h"
+
+namespace dispersa {
+
+std::string VehicleSha256(const InputNode& vehicle) {
+  InputNode rigid = vehicle;
+  std::erase_if(rigid.members, [](const InputMember& member) {
+    return member.key == "structure_beam" || member.key == "sensors" || member.key == "nozzles" ||
+           member.key == "limits";
+  });
+  // Nor does a point mass know what its actuators lack, or what its structure bears.
+  if (InputNode* stages = rigid.Find("stages"))
+    for (InputNode& stage : stages->items)
+      if (InputNode* gimbal = stage.Find("gimbal"))
+        std::erase_if(gimbal->members, [](const InputMember& member) {
+          return member.key.starts_with("dead_zone_") || member.key.starts_with("friction_") ||
+                 member.key.starts_with("resolution_");
+        });
+  return Sha256Hex(CanonicalText(rigid));
+}
+
+std::string RequirementsId(const InputNode& campaign) {
+  InputNode judged = MapAt(campaign);
+  for (const char* key : {"requirements", "verdicts"}) {
+    if (const InputNode* value = campaign.Find(key)) SetMember(judged, key, *value);
+  }
+  return Sha256Hex(CanonicalText(judged));
+}
+
+std::string FlightId(const InputNode& campaign, SamplingMethod method) {
+  InputNode deciding = MapAt(campaign);
+  for (const char* key : {"vehicle", "reference", "autopilot", "guidance", "dispersions", "correlations"}) {
+    if (const InputNode* value = campaign.Find(key)) SetMember(deciding, key, *value);
+  }
+  InputNode sampling = MapAt(campaign);
+  SetMember(sampling, "method", *campaign.Find("sampling")->Find("method"));
+  SetMember(sampling, "seed", *campaign.Find("sampling")->Find("seed"));
+  for (const char* key : {"replicates", "table"}) {
+    if (const InputNode* value = campaign.Find("sampling")->Find(key)) SetMember(sampling, key, *value);
+  }
+  // The strata of a Latin hypercube and the bounds of replicates depend on the number of cases; every other
+  // case stands for itself.
+  if (method == SamplingMethod::kLatinHypercube || campaign.Find("sampling")->Find("replicates") != nullptr) {
+    SetMember(sampling, "cases", *campaign.Find("sampling")->Find("cases"));
+  }
+  SetMember(deciding, "sampling", std::move(sampling));
+  InputNode engine = ScalarAt(campaign, EngineVersion());
+  engine.quoted = true;
+  SetMember(deciding, "engine", std::move(engine));
+  return Sha256Hex(CanonicalText(deciding));
+}
+
+}  // namespace dispersa
