@@ -98,6 +98,7 @@ class FieldReader : public Fields {
             const char*) override {
     const InputNode& node = map_.Required(key, std::string("the name of ") + what);
     value = ReadText(node, map_.PathOf(key), map_.problems());
+    if (Listener() != nullptr) SayExpects(map_.PathOf(key), {.kind = Expectation::Kind::kWords, .words = names});
     if (node.kind == InputNode::Kind::kScalar && std::find(names.begin(), names.end(), node.text) == names.end())
       AddProblem(map_.problems(), node, map_.PathOf(key),
                  node.Describe() + " is not " + what + DidYouMean(node.text, names), "one of " + JoinWords(names));
@@ -141,6 +142,10 @@ class FieldReader : public Fields {
   void Either(const std::vector<Alternative>& alternatives) override {
     for (const Alternative& alternative : alternatives)
       if (Holds(alternative.condition)) return alternative.describe();
+  }
+  void ExactlyOne(const std::vector<std::string>& keys) override {
+    if (std::none_of(keys.begin(), keys.end(), [&](const std::string& key) { return map_.node().Find(key) != nullptr; }))
+      map_.NoteMissing(keys);
   }
   void Missing(const std::vector<std::string>& keys, const char* allowed) override { map_.ReportMissing(keys, allowed); }
   void Misplaced(const char* stem, Dimension dimension, const char* message, const char* allowed) override {
