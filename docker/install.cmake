@@ -10,7 +10,7 @@ install(DIRECTORY campaigns DESTINATION "${data}" USE_SOURCE_PERMISSIONS
   PATTERN reference.csv EXCLUDE  # what optimize leaves
   PATTERN reference.html EXCLUDE)
 install(DIRECTORY services/deploy DESTINATION "${data}" USE_SOURCE_PERMISSIONS)
-install(FILES core/report/summary.schema.json DESTINATION "${data}/schemas")
+install(FILES core/analysis/summary.schema.json DESTINATION "${data}/schemas")
 
 # Each README.md in its folder, so that their links lead somewhere.
 file(GLOB_RECURSE documents RELATIVE "${PROJECT_SOURCE_DIR}" CONFIGURE_DEPENDS

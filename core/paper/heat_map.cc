@@ -6,7 +6,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "core/report/text.h"
+#include "core/results/text.h"
 
 namespace dispersa {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "core/paper/paper_sections.h"
-#include "core/report/sampling_text.h"
-#include "core/report/text.h"
+#include "core/results/sampling_text.h"
+#include "core/results/text.h"
 #include "core/statistics/percentiles.h"
 #include "core/statistics/summary.h"
 

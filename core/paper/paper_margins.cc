@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "core/paper/paper_sections.h"
-#include "core/report/html_parts.h"
-#include "core/report/text.h"
+#include "core/pages/html_parts.h"
+#include "core/results/text.h"
 
 namespace dispersa {
 namespace {

@@ -5,12 +5,12 @@
 #include "core/flight/engine_version.h"
 #include "core/paper/heat_map.h"
 #include "core/paper/paper_sections.h"
-#include "core/report/histories.h"
-#include "core/report/html_parts.h"
-#include "core/report/output_file.h"
-#include "core/report/result_error.h"
-#include "core/report/text.h"
-#include "core/report/trajectory_figures.h"
+#include "core/pages/histories.h"
+#include "core/pages/html_parts.h"
+#include "core/results/output_file.h"
+#include "core/results/result_error.h"
+#include "core/results/text.h"
+#include "core/pages/trajectory_figures.h"
 
 namespace dispersa {
 namespace {

@@ -6,10 +6,10 @@
 #include <optional>
 
 #include "core/paper/paper_sections.h"
-#include "core/report/html_parts.h"
-#include "core/report/requirement_summary.h"
-#include "core/report/svg_chart.h"
-#include "core/report/text.h"
+#include "core/pages/html_parts.h"
+#include "core/analysis/requirement_summary.h"
+#include "core/pages/svg_chart.h"
+#include "core/results/text.h"
 
 namespace dispersa {
 namespace {

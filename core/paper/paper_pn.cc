@@ -7,9 +7,9 @@
 #include "core/control/lyapunov.h"
 #include "core/paper/heat_map.h"
 #include "core/paper/paper_sections.h"
-#include "core/report/html_parts.h"
-#include "core/report/svg_chart.h"
-#include "core/report/text.h"
+#include "core/pages/html_parts.h"
+#include "core/pages/svg_chart.h"
+#include "core/results/text.h"
 #include "core/statistics/summary.h"
 
 namespace dispersa {

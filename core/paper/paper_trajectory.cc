@@ -8,10 +8,10 @@
 #include "core/math/constants.h"
 #include "core/paper/paper_sections.h"
 #include "core/paper/paper_table2.h"
-#include "core/report/dispersion_summary.h"
-#include "core/report/html_parts.h"
-#include "core/report/text.h"
-#include "core/report/trajectory_figures.h"
+#include "core/analysis/dispersion_summary.h"
+#include "core/pages/html_parts.h"
+#include "core/results/text.h"
+#include "core/pages/trajectory_figures.h"
 
 namespace dispersa {
 namespace {

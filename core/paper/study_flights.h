@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/campaign/campaign.h"
-#include "core/report/case_columns.h"
-#include "core/report/flight_bands.h"
+#include "core/results/case_columns.h"
+#include "core/analysis/flight_bands.h"
 
 namespace dispersa {
 

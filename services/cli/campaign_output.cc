@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "core/report/text.h"
+#include "core/results/text.h"
 #include "services/program/option_values.h"
 
 namespace dispersa {

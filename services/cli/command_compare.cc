@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/report/comparison.h"
+#include "core/analysis/comparison.h"
 #include "services/cli/command.h"
 #include "services/client/folder_comparison.h"
 #include "services/client/writable.h"

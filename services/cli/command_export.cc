@@ -7,11 +7,12 @@
 #include <vector>
 
 #include "core/math/constants.h"
-#include "core/report/cases_csv.h"
-#include "core/report/export.h"
-#include "core/report/footprints.h"
-#include "core/report/output_file.h"
-#include "core/report/text.h"
+#include "core/results/cases_csv.h"
+#include "core/analysis/junit.h"
+#include "core/results/export.h"
+#include "core/analysis/footprints.h"
+#include "core/results/output_file.h"
+#include "core/results/text.h"
 #include "services/cli/command.h"
 #include "services/cli/progress.h"
 #include "services/cli/stream_beside.h"

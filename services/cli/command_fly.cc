@@ -8,9 +8,9 @@
 
 #include "core/campaign/campaign_flights.h"
 #include "core/campaign_yaml/load.h"
-#include "core/report/histories.h"
-#include "core/report/output_file.h"
-#include "core/report/text.h"
+#include "core/pages/histories.h"
+#include "core/results/output_file.h"
+#include "core/results/text.h"
 #include "services/cli/command.h"
 #include "services/client/flight_json.h"
 #include "services/cli/fly_scenario.h"

@@ -11,7 +11,7 @@
 
 #include "core/input/input_error.h"
 #include "core/input/map_reader.h"
-#include "core/report/output_file.h"
+#include "core/results/output_file.h"
 #include "services/cli/command.h"
 #include "services/cli/starter_files.h"
 #include "services/schema/schema_text.h"

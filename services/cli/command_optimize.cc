@@ -10,7 +10,7 @@
 
 #include "core/campaign_yaml/load.h"
 #include "core/math/constants.h"
-#include "core/report/trajectory_page.h"
+#include "core/pages/trajectory_page.h"
 #include "services/cli/command.h"
 #include "services/cli/seed_study.h"
 #include "services/cli/terminal_observer.h"

@@ -10,7 +10,7 @@
 
 #include "core/campaign/case_design.h"
 #include "core/campaign_yaml/load.h"
-#include "core/report/text.h"
+#include "core/results/text.h"
 #include "services/cli/command.h"
 #include "services/cli/plan_text.h"
 #include "services/cli/warn.h"

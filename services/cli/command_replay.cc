@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "core/report/histories.h"
-#include "core/report/output_file.h"
+#include "core/pages/histories.h"
+#include "core/results/output_file.h"
 #include "services/cli/command.h"
 #include "services/cli/stream_beside.h"
 #include "services/client/case_replay.h"

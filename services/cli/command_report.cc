@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/input/input_error.h"
-#include "core/report/output_file.h"
+#include "core/results/output_file.h"
 #include "services/cli/campaign_output.h"
 #include "services/cli/command.h"
 #include "services/cli/render_template.h"

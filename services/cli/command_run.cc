@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "core/report/shell_word.h"
+#include "core/results/text.h"
 #include "services/cli/campaign_output.h"
 #include "services/cli/command.h"
 #include "services/cli/terminal_observer.h"

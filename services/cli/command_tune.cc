@@ -7,7 +7,7 @@
 #include <string>
 
 #include "core/campaign_yaml/load.h"
-#include "core/report/output_file.h"
+#include "core/results/output_file.h"
 #include "core/tuning/regulator.h"
 #include "core/tuning/tune.h"
 #include "services/cli/command.h"

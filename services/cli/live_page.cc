@@ -7,11 +7,11 @@
 #include <array>
 #include <vector>
 
-#include "core/report/html_parts.h"
-#include "core/report/metric_catalogue.h"
-#include "core/report/requirement_summary.h"
-#include "core/report/svg_chart.h"
-#include "core/report/text.h"
+#include "core/pages/html_parts.h"
+#include "core/results/metric_catalogue.h"
+#include "core/analysis/requirement_summary.h"
+#include "core/pages/svg_chart.h"
+#include "core/results/text.h"
 #include "services/cli/campaign_text.h"
 #include "services/cli/progress.h"
 #include "services/transport/exit_code.h"

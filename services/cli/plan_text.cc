@@ -7,8 +7,8 @@
 
 #include "core/campaign/case_design.h"
 #include "core/flight/flight_inputs.h"
-#include "core/report/dispersion_summary.h"
-#include "core/report/metric_catalogue.h"
+#include "core/analysis/dispersion_summary.h"
+#include "core/results/metric_catalogue.h"
 
 namespace dispersa {
 namespace {

@@ -8,7 +8,7 @@
 #include "core/campaign/contained.h"
 #include "core/input/input_error.h"
 #include "core/flight/lane_engine.h"
-#include "core/report/result_error.h"
+#include "core/results/result_error.h"
 #include "services/cli/command.h"
 #include "services/log/log.h"
 #include "services/program/command_line.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/flight/structural_limits.h"
-#include "core/report/text.h"
+#include "core/results/text.h"
 #include "core/vehicle/propulsion.h"
 #include "core/vehicle/vehicle_figures.h"
 

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "core/report/reports.h"
+#include "core/pages/reports.h"
 #include "services/client/observer.h"
 
 namespace dispersa {

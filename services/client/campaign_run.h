@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "core/report/campaign_summary.h"
+#include "core/analysis/campaign_summary.h"
 #include "services/client/campaign_reports.h"
 #include "services/client/observer.h"
 #include "services/coordinator/open_campaign.h"

@@ -7,7 +7,7 @@
 
 #include "core/campaign/case_result.h"
 #include "core/flight/history.h"
-#include "core/report/result_differences.h"
+#include "core/results/result_differences.h"
 #include "services/client/stored_campaign.h"
 
 namespace dispersa {

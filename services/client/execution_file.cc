@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/flight/engine_version.h"
-#include "core/report/output_file.h"
+#include "core/results/output_file.h"
 
 namespace dispersa {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "core/input/input_error.h"
 #include "core/flight/flight_inputs.h"
-#include "core/report/output_file.h"
+#include "core/results/output_file.h"
 #include "services/client/campaign_differences.h"
 #include "services/client/stored_campaign.h"
 

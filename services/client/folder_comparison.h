@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/report/case_columns.h"
-#include "core/report/comparison.h"
+#include "core/results/case_columns.h"
+#include "core/analysis/comparison.h"
 
 namespace dispersa {
 

@@ -5,9 +5,9 @@
 #include "core/campaign/campaign_flights.h"
 #include "core/flight/metrics.h"
 #include "core/math/constants.h"
-#include "core/report/output_file.h"
-#include "core/report/trajectory_figures.h"
-#include "core/report/trajectory_page.h"
+#include "core/results/output_file.h"
+#include "core/pages/trajectory_figures.h"
+#include "core/pages/trajectory_page.h"
 #include "services/client/flight_json.h"
 #include "services/client/writable.h"
 

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <thread>
 
-#include "core/report/output_file.h"
-#include "core/report/result_folder.h"
+#include "core/results/output_file.h"
+#include "core/results/result_folder.h"
 #include "services/client/writable.h"
 
 namespace dispersa {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/campaign/campaign.h"
-#include "core/report/result_folder.h"
+#include "core/results/result_folder.h"
 
 namespace dispersa {
 

@@ -6,8 +6,8 @@
 #include <cstring>
 
 #include "core/input/input_error.h"
-#include "core/report/output_file.h"
-#include "core/report/result_error.h"
+#include "core/results/output_file.h"
+#include "core/results/result_error.h"
 
 namespace dispersa {
 

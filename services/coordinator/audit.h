@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/report/result_store.h"
+#include "core/results/result_store.h"
 
 namespace dispersa {
 

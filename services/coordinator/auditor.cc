@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "core/report/fingerprint.h"
+#include "core/results/fingerprint.h"
 #include "services/log/log.h"
 
 namespace dispersa {

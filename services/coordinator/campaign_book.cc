@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "core/flight/engine_version.h"
-#include "core/report/fingerprint.h"
-#include "core/report/result_differences.h"
+#include "core/results/fingerprint.h"
+#include "core/results/result_differences.h"
 #include "services/coordinator/utc.h"
 #include "services/log/log.h"
 

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "core/campaign/campaign.h"
-#include "core/report/campaign_summary.h"
-#include "core/report/result_folder.h"
-#include "core/report/result_store.h"
-#include "core/report/stopping_rule.h"
+#include "core/analysis/campaign_summary.h"
+#include "core/results/result_folder.h"
+#include "core/results/result_store.h"
+#include "core/analysis/stopping_rule.h"
 #include "services/coordinator/audit.h"
 #include "services/coordinator/ledger.h"
 #include "services/coordinator/running_tally.h"

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "core/input/input_error.h"
-#include "core/report/output_file.h"
-#include "core/report/result_error.h"
+#include "core/results/output_file.h"
+#include "core/results/result_error.h"
 #include "services/coordinator/dump_any_text.h"
 #include "services/log/log.h"
 

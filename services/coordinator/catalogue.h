@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/report/folder_lock.h"
+#include "core/results/folder_lock.h"
 
 namespace dispersa {
 

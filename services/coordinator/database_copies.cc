@@ -4,7 +4,7 @@
 
 #include <chrono>
 
-#include "core/report/result_folder.h"
+#include "core/results/result_folder.h"
 
 namespace dispersa {
 namespace {

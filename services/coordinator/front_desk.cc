@@ -11,8 +11,8 @@
 
 #include "core/campaign/contained_flights.h"
 #include "core/campaign_yaml/load.h"
-#include "core/report/json_number.h"
-#include "core/report/requirement_summary.h"
+#include "core/results/json_number.h"
+#include "core/analysis/requirement_summary.h"
 #include "services/coordinator/dump_any_text.h"
 #include "services/transport/exit_code.h"
 #include "services/transport/validity.h"

@@ -8,7 +8,7 @@
 #include "core/campaign/case_result.h"
 #include "core/campaign/contained.h"
 #include "core/campaign_yaml/load.h"
-#include "core/report/result_folder.h"
+#include "core/results/result_folder.h"
 
 namespace dispersa {
 

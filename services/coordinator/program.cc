@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/campaign_yaml/standard_input.h"
-#include "core/report/result_error.h"
+#include "core/results/result_error.h"
 #include "services/coordinator/serve.h"
 #include "services/coordinator/stop_signal.h"
 #include "services/log/log.h"

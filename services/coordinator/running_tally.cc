@@ -3,10 +3,10 @@
 #include <cmath>
 
 #include "core/flight/metrics.h"
-#include "core/report/campaign_summary.h"
-#include "core/report/loss_fails.h"
-#include "core/report/requirement_summary.h"
-#include "core/report/sampling_text.h"
+#include "core/analysis/campaign_summary.h"
+#include "core/analysis/loss_fails.h"
+#include "core/analysis/requirement_summary.h"
+#include "core/results/sampling_text.h"
 #include "core/statistics/intervals.h"
 
 namespace dispersa {

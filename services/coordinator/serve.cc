@@ -5,7 +5,7 @@
 #include <chrono>
 #include <utility>
 
-#include "core/report/reports.h"
+#include "core/pages/reports.h"
 #include "services/coordinator/attendance.h"
 #include "services/coordinator/coordinator.h"
 #include "services/coordinator/front_desk.h"

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "core/campaign_yaml/load.h"
-#include "core/report/reports.h"
+#include "core/pages/reports.h"
 #include "services/coordinator/campaign_opening.h"
 #include "services/log/log.h"
 #include "services/transport/exit_code.h"

@@ -8,8 +8,8 @@
 #include <set>
 #include <vector>
 
-#include "core/report/database.h"
-#include "core/report/result_folder.h"
+#include "core/results/database.h"
+#include "core/results/result_folder.h"
 #include "made_up_service.h"
 #include "services/coordinator/campaign_opening.h"
 #include "services/transport/exit_code.h"

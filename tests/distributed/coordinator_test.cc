@@ -17,7 +17,7 @@
 
 #include "core/flight/engine_version.h"
 #include "core/flight/flight_inputs.h"
-#include "core/report/fingerprint.h"
+#include "core/results/fingerprint.h"
 #include "services/transport/complaints.h"
 #include "services/transport/private_domain.h"
 #include "services/transport/worker_link.h"

@@ -12,7 +12,7 @@
 
 #include "core/flight/engine_version.h"
 #include "core/flight/flight_inputs.h"
-#include "core/report/fingerprint.h"
+#include "core/results/fingerprint.h"
 #include "memory_store.h"
 #include "services/log/log.h"
 

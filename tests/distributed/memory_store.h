@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/report/fingerprint.h"
-#include "core/report/result_store.h"
+#include "core/results/fingerprint.h"
+#include "core/results/result_store.h"
 
 namespace dispersa {
 

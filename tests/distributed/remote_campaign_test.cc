@@ -9,7 +9,7 @@
 #include <map>
 #include <vector>
 
-#include "core/report/database.h"
+#include "core/results/database.h"
 #include "made_up_service.h"
 
 namespace dispersa::remote_campaign_test {

@@ -16,7 +16,7 @@
 
 #include "core/flight/engine_version.h"
 #include "core/flight/flight_inputs.h"
-#include "core/report/fingerprint.h"
+#include "core/results/fingerprint.h"
 #include "services/coordinator/dispatcher.h"
 #include "services/log/log.h"
 #include "services/worker/flight_desk.h"

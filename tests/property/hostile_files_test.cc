@@ -17,8 +17,8 @@
 #include "core/campaign_yaml/load.h"
 #include "core/flight/flight_inputs.h"
 #include "core/flight/metrics.h"
-#include "core/report/fingerprint.h"
-#include "core/report/result_folder.h"
+#include "core/results/fingerprint.h"
+#include "core/results/result_folder.h"
 #include "tests/fuzz.h"
 
 namespace dispersa::hostile_files_test {

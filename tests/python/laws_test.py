@@ -237,7 +237,7 @@ class Campaigns(unittest.TestCase):
         name, sha256 = self.results.campaign.python_law
         self.assertRegex(self.text("campaign.yaml"), f"  plugin:\n    python:\n      name: pd\n      sha256: \"?{sha256}\"?\n")
         summary = json.loads(self.text("summary.json"))
-        jsonschema.validate(summary, json.loads((CAMPAIGNS.parent / "core/report/summary.schema.json").read_text()))
+        jsonschema.validate(summary, json.loads((CAMPAIGNS.parent / "core/analysis/summary.schema.json").read_text()))
         self.assertEqual(summary["campaign"]["python_law"], {"name": name, "sha256": sha256})
         self.assertEqual({case["replay"] for case in summary["worst_cases"]}, {None})
         report = self.text("report.html")

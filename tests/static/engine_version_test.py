@@ -47,7 +47,7 @@ class EngineVersionTest(unittest.TestCase):
 
     def test_ignores_what_only_reads_results(self):
         before = self.version()
-        for name in ("core/report/page.cc", "core/statistics/mean.cc", "services/cli/main.cc", "core/math/README.md"):
+        for name in ("core/pages/page.cc", "core/statistics/mean.cc", "services/cli/main.cc", "core/math/README.md"):
             self.write(name, "x\n")
         self.assertEqual(self.version(), before)
 

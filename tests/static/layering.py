@@ -13,7 +13,8 @@ OWNED = [
     (r"(sundials|arkode|cvodes?|idas?|kinsol|nvector|sunmatrix|sunlinsol|sunnonlinsol)/", {"dynamics"}),
     (r"sleef\.h", {"math"}),
     (r"Random123/", {"random"}),
-    (r"hdf5", {"report"}),
+    (r"hdf5", {"results"}),
+    (r"sqlite3\.h", {"results"}),
     (r"CLI/", {"program", "cli", "coordinator", "worker"}),
     (r"(pybind11/|Python\.h)", {"python"}),
 ]

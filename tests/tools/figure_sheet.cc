@@ -4,8 +4,8 @@
 
 #include <utility>
 
-#include "core/report/html_parts.h"
-#include "core/report/text.h"
+#include "core/pages/html_parts.h"
+#include "core/results/text.h"
 
 namespace dispersa {
 namespace {

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/report/svg_chart.h"
+#include "core/pages/svg_chart.h"
 
 namespace dispersa {
 

@@ -12,7 +12,7 @@
 #include "core/campaign/campaign_flights.h"
 #include "core/campaign_yaml/load.h"
 #include "core/random/draws.h"
-#include "core/report/result_folder.h"
+#include "core/results/result_folder.h"
 
 namespace dispersa {
 namespace {

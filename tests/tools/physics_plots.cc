@@ -10,9 +10,10 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/report/html_parts.h"
-#include "core/report/output_file.h"
-#include "core/report/text.h"
+#include "core/pages/embedded.h"
+#include "core/pages/html_parts.h"
+#include "core/results/output_file.h"
+#include "core/results/text.h"
 #include "tests/tools/sheets.h"
 
 namespace dispersa {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "core/campaign_yaml/load.h"
-#include "core/report/vehicle_drawing.h"
+#include "core/pages/vehicle_drawing.h"
 #include "core/vehicle/mass.h"
 #include "core/vehicle/propulsion.h"
 #include "tests/unit/bad_input.h"

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/report/case_columns.h"
-#include "core/report/comparison.h"
-#include "tests/unit/report_test_support.h"
+#include "core/results/case_columns.h"
+#include "core/analysis/comparison.h"
+#include "tests/unit/made_up_results.h"
 
 namespace dispersa::comparison_sample {
 

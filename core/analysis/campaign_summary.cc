@@ -1,0 +1,331 @@
+#include "core/analysis/campaign_summary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "core/campaign/case_design.h"
+#include "core/flight/step_limits.h"
+#include "core/flight/structural_limits.h"
+#include "core/results/metric_catalogue.h"
+#include "core/results/sampling_text.h"
+#include "core/analysis/stopping_rule.h"
+#include "core/results/text.h"
+
+namespace dispersa {
+namespace {
+
+constexpr std::size_t kWorstCases = 5;
+/// Of them lost flights: all of those have their own list, and they shall not hide what limits the others.
+constexpr std::size_t kLostAmongWorst = 1;
+
+/// Shown in full in any report, after the metrics of the requirements.
+const char* const kUsualMetrics[] = {"pitch_error_peak_deg", "pitch_error_rms_deg", "deflection_peak_deg",
+                                     "q_alpha_max_pa_rad"};
+
+WorstCases FindWorst(const std::string& metric, Worse worse, const CaseColumns& cases) {
+  const std::vector<double> values = MeasuredValues(cases, metric);
+  const auto is_worse = [&](std::size_t a, std::size_t b) {
+    const double badness_a = std::isfinite(values[a]) ? Badness(worse, values[a]) : HUGE_VAL;
+    const double badness_b = std::isfinite(values[b]) ? Badness(worse, values[b]) : HUGE_VAL;
+    return badness_a != badness_b ? badness_a > badness_b : a < b;
+  };
+  // The worst of some rows, in order.
+  const auto add = [&](std::vector<std::size_t> rows, std::size_t count, WorstCases* result) {
+    const auto end = rows.begin() + static_cast<std::ptrdiff_t>(std::min(count, rows.size()));
+    std::partial_sort(rows.begin(), end, rows.end(), is_worse);
+    for (auto row = rows.begin(); row != end; ++row) {
+      WorstCase one{.case_index = cases.index[*row], .value = std::nullopt, .outcome = cases.outcome[*row]};
+      if (std::isfinite(values[*row])) one.value = values[*row];
+      result->cases.push_back(one);
+    }
+  };
+  std::vector<std::size_t> lost, others;
+  for (std::size_t i = 0; i < cases.rows(); ++i) {
+    const bool is_lost = cases.outcome[i] != Outcome::kCompleted || !std::isfinite(values[i]);
+    (is_lost ? lost : others).push_back(i);
+  }
+  WorstCases result{.metric = metric, .cases = {}};
+  add(std::move(lost), kLostAmongWorst, &result);
+  add(std::move(others), kWorstCases - result.cases.size(), &result);
+  return result;
+}
+
+CampaignVerdict Overall(const CampaignSummary& summary) {
+  if (summary.flown < summary.cases) return CampaignVerdict::kIncomplete;
+  const auto any = [&](const auto& condition) {
+    return std::any_of(summary.requirements.begin(), summary.requirements.end(), condition);
+  };
+  const auto is = [](const char* verdict) {
+    return [verdict](const RequirementSummary& requirement) { return requirement.verdict == verdict; };
+  };
+  // What the campaign did not ask itself counts from its first failure on.
+  const auto counts = [](const RequirementSummary& requirement) {
+    return !requirement.by_default || requirement.failures > 0;
+  };
+  if (any(counts) && !IsIndependent(summary.sampling)) {
+    if (summary.cases < summary.design_points) return CampaignVerdict::kIncomplete;
+    return any([](const RequirementSummary& requirement) { return requirement.failures > 0; })
+               ? CampaignVerdict::kStudyViolated
+               : CampaignVerdict::kStudy;
+  }
+  if (any(is("fail"))) return CampaignVerdict::kFail;
+  return any([&](const RequirementSummary& requirement) {
+    return counts(requirement) && requirement.verdict == "inconclusive";
+  })
+             ? CampaignVerdict::kInconclusive
+             : CampaignVerdict::kPass;
+}
+
+void HoldAgainstLimits(const StructuralLimits& limits, const CaseColumns& cases, CampaignSummary* summary) {
+  for (const StructuralLimit& one : AllStructuralLimits()) {
+    if (!(limits.*one.limit > 0.0)) continue;
+    CampaignSummary::Limit held{.metric = one.metric, .limit = limits.*one.limit};
+    const std::vector<double> loads = cases.metrics.at(MetricColumn(one.metric));
+    for (std::size_t i = 0; i < cases.rows(); ++i) {
+      held.exceeded += loads[i] > held.limit;
+      if (!(loads[i] > held.largest.value_or(-HUGE_VAL))) continue;
+      held.largest = loads[i];
+      held.largest_case = cases.index[i];
+    }
+    summary->limits.push_back(std::move(held));
+  }
+  if (summary->limits.empty()) return;
+  const std::vector<double> any = cases.metrics.at(MetricColumn("structural_limit_exceeded"));
+  summary->beyond_limits = static_cast<std::uint64_t>(
+      std::count_if(any.begin(), any.end(), [](double exceeded) { return exceeded > 0.0; }));
+}
+
+/// Flights with a part that a step hardly resolves, and those that were refused for one.
+std::uint64_t NearStepLimit(const CaseColumns& cases) {
+  const std::vector<double> fractions = cases.metrics.at(MetricColumn("step_limit_fraction"));
+  return static_cast<std::uint64_t>(std::count_if(fractions.begin(), fractions.end(),
+                                                  [](double fraction) { return fraction > kNearStepLimit; }));
+}
+
+/// Cases that the campaign flies: where it stops, if it stops by itself.
+std::uint64_t CasesToFly(const Campaign& campaign, const JudgingContext& context,
+                         const std::vector<QuarantinedCase>& quarantined, const CaseColumns& cases) {
+  StoppingRule rule(campaign, context.planned, context.past_looks);
+  rule.Add(cases);
+  std::vector<std::uint64_t> given_up;
+  for (const QuarantinedCase& one : quarantined) given_up.push_back(one.case_index);
+  while (rule.Advance(given_up)) {
+  }
+  return rule.target();
+}
+
+std::vector<std::string> Lines(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+}  // namespace
+
+const char* CampaignVerdictName(CampaignVerdict verdict) {
+  switch (verdict) {
+    case CampaignVerdict::kPass:
+      return "pass";
+    case CampaignVerdict::kInconclusive:
+      return "inconclusive";
+    case CampaignVerdict::kStudy:
+    case CampaignVerdict::kStudyViolated:
+      return "study";
+    case CampaignVerdict::kFail:
+      return "fail";
+    case CampaignVerdict::kIncomplete:
+      return "incomplete";
+  }
+  return "";
+}
+
+std::vector<std::string> Warnings(const CampaignSummary& summary) {
+  std::vector<std::string> warnings;
+  if (summary.python_law)
+    warnings.push_back(
+        fmt::format("Flown with a Python law, {}: nobody without it can fly these cases again.",
+                    summary.python_law->name));
+  const bool independent = IsIndependent(summary.sampling);
+  if (summary.flown < summary.cases) {
+    warnings.push_back(
+        fmt::format("Incomplete: {} of {} cases have a result.", summary.flown, summary.cases));
+    for (const RequirementSummary& requirement : summary.requirements) {
+      if (requirement.verdict != "fail") continue;
+      warnings.push_back(
+          fmt::format("Not met whatever the missing cases bring: {}.", RequirementWords(requirement)));
+    }
+  }
+  if (summary.cases < summary.design_points) {
+    warnings.push_back(fmt::format("Incomplete design: {} of its {} points are in the campaign.",
+                                   summary.cases, summary.design_points));
+  }
+  if (!independent && !summary.requirements.empty()) {
+    warnings.push_back(
+        "Design study: the points are chosen, so that no requirement is passed or failed by it.");
+  }
+  bool post_hoc = false;
+  for (const RequirementSummary& requirement : summary.requirements) {
+    if (requirement.post_hoc) {
+      post_hoc = true;
+      warnings.push_back(fmt::format("Post hoc: {} is not what was required before the first case was flown.",
+                                     RequirementWords(requirement)));
+    }
+    if (requirement.naive_risk) {
+      warnings.push_back(fmt::format(
+          "Beyond the plan: {} was planned for {} cases, {} are in the campaign; its looks read one "
+          "by one carry a risk of {}, not {}.",
+          requirement.metric, requirement.planned, summary.cases, PercentText(*requirement.naive_risk),
+          PercentText(requirement.consumer_risk)));
+    }
+    if (requirement.contradicted)
+      warnings.push_back(fmt::format("Contradiction: {} was decided both ways.", requirement.metric));
+  }
+  if (!post_hoc && summary.requirements_id != summary.registered_requirements_id) {
+    warnings.push_back(
+        "Post hoc: requirements were left out, or the way they are judged was changed, after the first case "
+        "was flown.");
+  }
+  if (summary.beyond_limits > 0) {
+    std::string loads;
+    for (const CampaignSummary::Limit& one : summary.limits) {
+      if (one.exceeded == 0) continue;
+      const MetricInfo info = DescribeMetric(one.metric);
+      const std::string unit = info.unit.empty() ? "" : " " + info.unit;
+      loads += fmt::format("{}{} above {}{} in {}, up to {}{} in case {}", loads.empty() ? "" : "; ",
+                           one.metric, ReadableText(one.limit), unit, one.exceeded,
+                           ReadableText(*one.largest), unit, one.largest_case);
+    }
+    warnings.push_back(fmt::format("Structural limits of the vehicle were exceeded in {} of {} flights: {}.",
+                                   summary.beyond_limits, summary.flown, loads));
+  }
+  if (summary.near_step_limit > 0) {
+    warnings.push_back(
+        fmt::format("Near the limit of the integration's step: in {} of {} flights the fastest actuator or "
+                    "bending mode has more than {:.0f} % of the frequency that a step resolves "
+                    "(step_limit_fraction); shorter ticks of the autopilot resolve more.",
+                    summary.near_step_limit, summary.flown, 100.0 * kNearStepLimit));
+  }
+  const std::uint64_t completed = summary.outcomes[static_cast<std::size_t>(Outcome::kCompleted)];
+  if (completed < summary.flown) {
+    const bool by_default = std::any_of(summary.requirements.begin(), summary.requirements.end(),
+                                        [](const RequirementSummary& r) { return r.by_default; });
+    warnings.push_back(fmt::format(
+        "{} of {} flights were lost: statistics and percentiles cover the {} that were "
+        "completed, and every lost flight fails every requirement of the campaign{}.",
+        summary.flown - completed, summary.flown, completed,
+        by_default ? "; of the vehicle's own limits a loss says nothing: they are held against what "
+                     "the flight bore until then"
+                   : ""));
+  }
+  return warnings;
+}
+
+std::string JointRiskSentence(const CampaignSummary& summary) {
+  if (summary.requirements.empty() || !IsIndependent(summary.sampling)) return "";
+  std::string sentence =
+      fmt::format("A design that misses any requirement passes them all with a probability of at most {}.",
+                  PercentText(summary.overall_risk));
+  if (summary.requirements.size() > 1) {
+    sentence +=
+        fmt::format(" That any one of the {} verdicts to pass, taken by itself, is wrong: at most {}{}.",
+                    summary.requirements.size(), PercentText(summary.any_risk),
+                    summary.holm ? " (Holm)" : " (the sum of their risks; joint: holm keeps it down)");
+  }
+  return sentence;
+}
+
+void RecordLooks(const ResultFolder& folder, const Campaign& campaign, const CampaignSummary& summary) {
+  if (summary.verdict == CampaignVerdict::kIncomplete || !IsIndependent(summary.sampling)) return;
+  for (std::size_t i = 0; i < summary.requirements.size(); ++i) {
+    const RequirementSummary& requirement = summary.requirements[i];
+    folder.RecordLook({campaign.requirements_id, RequirementLine(campaign.requirements[i]),
+                       static_cast<std::int64_t>(summary.cases), requirement.failures, requirement.verdict});
+  }
+}
+
+std::vector<std::string> KeyMetrics(const Campaign& campaign) {
+  std::vector<std::string> metrics;
+  const auto add = [&](const std::string& name) {
+    const bool exists = std::find(MetricNames().begin(), MetricNames().end(), name) != MetricNames().end();
+    if (exists && std::find(metrics.begin(), metrics.end(), name) == metrics.end()) metrics.push_back(name);
+  };
+  for (const Requirement& requirement : campaign.requirements)
+    if (!requirement.by_default) add(requirement.metric);
+  for (const char* name : kUsualMetrics) add(name);
+  return metrics;
+}
+
+CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaign) {
+  return BuildSummary(folder, campaign, ReadColumns(folder, DispersedInputs(campaign)));
+}
+
+CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaign, const CaseColumns& cases) {
+  CampaignSummary summary;
+  summary.name = campaign.name;
+  summary.id = campaign.id;
+  summary.flight_id = campaign.flight_id;
+  summary.seed = campaign.sampling.seed;
+  summary.max_cases = campaign.sampling.cases;
+  summary.quarantined = folder.QuarantinedCases();
+  JudgingContext context;
+  context.method = campaign.sampling.method;
+  context.replicates = campaign.sampling.replicates;
+  context.design_points = DesignSize(campaign);
+  context.planned = std::stoll(folder.Provenance("planned_cases"));
+  context.past_looks = folder.PastLooks();
+  context.registered = Lines(folder.Provenance("requirements"));
+  if (context.registered.empty()) context.registered = {"no requirement"};
+  context.holm = campaign.verdicts.holm;
+  context.cases = CasesToFly(campaign, context, summary.quarantined, cases);
+  summary.cases = context.cases;
+  summary.replicates = context.replicates;
+  summary.design_points = context.design_points;
+  summary.planned_cases = context.planned;
+  summary.holm = context.holm;
+  summary.requirements_id = campaign.requirements_id;
+  summary.registered_requirements_id = folder.Provenance("requirements_id");
+  summary.flown = cases.rows();
+  summary.sampling = campaign.sampling.method;
+  summary.engine = folder.Provenance("engine");
+  summary.vehicle = campaign.vehicle.name;
+  summary.reference = campaign.reference.name;
+  summary.reference_orbit = campaign.reference.orbit;
+  summary.autopilot = campaign.autopilot.name;
+  if (const auto& plugin = campaign.autopilot.plugin; plugin && plugin->in_python)
+    summary.python_law = {plugin->name, plugin->sha256};
+  for (const Outcome outcome : cases.outcome) ++summary.outcomes[static_cast<std::size_t>(outcome)];
+  summary.lost_flights = cases.lost_flights;
+  for (std::size_t i = 0; i < cases.metrics.size(); ++i) {
+    const std::vector<double> sorted = SortedFinite(CompletedValues(cases, MetricNames()[i]));
+    summary.metrics.push_back({MetricNames()[i], SummarizeSorted(sorted, cases.rows() - sorted.size()),
+                               Skewness(sorted), Percentiles(sorted)});
+  }
+  HoldAgainstLimits(campaign.vehicle.limits, cases, &summary);
+  summary.near_step_limit = NearStepLimit(cases);
+  summary.requirements = JudgeAll(campaign.requirements, context, cases);
+  for (const Requirement& requirement : campaign.requirements) {
+    summary.overall_risk = std::max(summary.overall_risk, requirement.consumer_risk);
+    summary.any_risk += requirement.consumer_risk;
+  }
+  if (summary.holm) summary.any_risk = summary.overall_risk;
+  summary.any_risk = std::min(summary.any_risk, 1.0);
+  for (const std::string& metric : KeyMetrics(campaign)) {
+    Worse worse = DescribeMetric(metric).worse;
+    for (const Requirement& requirement : campaign.requirements) {
+      if (requirement.metric == metric) worse = requirement.above ? Worse::kSmaller : Worse::kLarger;
+    }
+    summary.worst_cases.push_back(FindWorst(metric, worse, cases));
+  }
+  summary.injection = SummarizeInjection(cases);
+  summary.dispersions = SummarizeDispersions(campaign, cases);
+  summary.drivers = FindDrivers(campaign, KeyMetrics(campaign), cases);
+  summary.failure_drivers = FindFailureDrivers(campaign, cases);
+  summary.verdict = Overall(summary);
+  return summary;
+}
+
+}  // namespace dispersa

@@ -1,0 +1,136 @@
+// Every number that a report shows.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/campaign/campaign.h"
+#include "core/campaign/case_result.h"
+#include "core/results/case_columns.h"
+#include "core/analysis/dispersion_summary.h"
+#include "core/analysis/drivers.h"
+#include "core/analysis/injection_summary.h"
+#include "core/results/lost_flight.h"
+#include "core/analysis/requirement_summary.h"
+#include "core/results/result_folder.h"
+#include "core/statistics/percentiles.h"
+#include "core/statistics/summary.h"
+
+namespace dispersa {
+
+/// What a campaign comes to. A study's points are chosen: it neither passes nor fails, but a point that
+/// violates a requirement is a fact.
+enum class CampaignVerdict { kPass, kInconclusive, kStudy, kStudyViolated, kFail, kIncomplete };
+/// "pass", "inconclusive", "study", "study", "fail", "incomplete".
+const char* CampaignVerdictName(CampaignVerdict verdict);
+
+struct MetricSummary {
+  std::string name;  ///< without the prefix
+  Summary statistics;                   ///< of the flights that were completed
+  double skewness = kUndefined;
+  std::vector<Percentile> percentiles;  ///< with what the sample says of them
+};
+
+struct WorstCase {
+  std::uint64_t case_index = 0;
+  std::optional<double> value;  ///< none: undefined
+  Outcome outcome = Outcome::kCompleted;
+};
+
+struct WorstCases {
+  std::string metric;
+  std::vector<WorstCase> cases;  ///< one lost flight, if any, then the worst of the others
+};
+
+struct CampaignSummary {
+  std::string name;
+  std::string id;
+  std::string flight_id;
+  std::uint64_t seed = 0;
+  std::uint64_t cases = 0;      ///< asked for; of a campaign that stops when decided, up to where it stopped
+  std::uint64_t max_cases = 0;  ///< up to which it would have gone on
+  std::uint64_t flown = 0;
+  std::uint64_t replicates = 1;
+  std::uint64_t design_points = 1;  ///< of a corner, one-at-a-time, grid or list design
+  SamplingMethod sampling = SamplingMethod::kMonteCarlo;
+  std::string engine;
+  std::string vehicle;
+  std::string reference;
+  Orbit reference_orbit;  ///< that the optimiser reached with it
+  std::string autopilot;
+  /// A control law in Python: nobody without it can fly these cases again, so nobody is told how to.
+  struct PythonLaw {
+    std::string name;
+    std::string sha256;
+  };
+  std::optional<PythonLaw> python_law;
+  CampaignVerdict verdict = CampaignVerdict::kIncomplete;
+  std::array<std::uint64_t, kOutcomeCount> outcomes{};
+  std::vector<LostFlight> lost_flights;  ///< the first kListedLostFlights
+  std::vector<MetricSummary> metrics;    ///< of the vehicle, in the order of MetricNames()
+  std::vector<RequirementSummary> requirements;
+  /// One that the vehicle gives, against the largest load of every flown case, completed or not.
+  struct Limit {
+    std::string metric;  ///< of the load
+    double limit = 0.0;  ///< in the metric's unit
+    std::uint64_t exceeded = 0;
+    std::optional<double> largest = {};  ///< and the case that it is of; none: no case defines it
+    std::uint64_t largest_case = 0;
+  };
+  std::vector<Limit> limits;
+  std::uint64_t beyond_limits = 0;  ///< flights that exceeded any
+  std::uint64_t near_step_limit = 0;  ///< flights whose fastest part comes near what a step resolves
+  bool holm = false;                ///< the requirements' verdicts hold together
+  /// How likely it is at most that a campaign that misses any requirement passes them all, and that any of
+  /// the requirements' own verdicts to pass is wrong.
+  double overall_risk = 0.0;
+  double any_risk = 0.0;
+  std::string requirements_id;             ///< hash of the requirements now,
+  std::string registered_requirements_id;  ///< and before the first case was flown
+  std::int64_t planned_cases = 0;          ///< likewise
+  std::vector<QuarantinedCase> quarantined;
+  std::vector<WorstCases> worst_cases;
+  std::vector<DispersionSummary> dispersions;
+  std::optional<InjectionSummary> injection;     ///< none where fewer than two flights got there
+  std::vector<MetricDrivers> drivers;            ///< of KeyMetrics()
+  std::vector<FailureDrivers> failure_drivers;   ///< of the requirements
+  /// Flights that the envelope was made of, when they were flown: percentiles from the first cases, minimum and
+  /// maximum besides from those that are extreme in any metric.
+  struct Envelope {
+    std::size_t flights = 0;
+    std::size_t extreme_flights = 0;
+  };
+  std::optional<Envelope> envelope;
+  std::optional<CaseResult> nominal;  ///< flown without dispersions, when it was flown
+};
+
+/// What a reader must not miss before any number: cases that are missing, limits that were changed after the
+/// first case, looks beyond the plan, studies, lost flights. Sentences, of which the first screen shows each.
+std::vector<std::string> Warnings(const CampaignSummary& summary);
+
+/// The sentence for each requirement's verdict taken together.
+std::string JointRiskSentence(const CampaignSummary& summary);
+
+/// Keeps in the folder that these verdicts were read, if the campaign is complete and gives any.
+void RecordLooks(const ResultFolder& folder, const Campaign& campaign, const CampaignSummary& summary);
+
+/// From what is stored, without flying anything (so without `nominal`).
+CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaign);
+/// The same from columns that hold at least the inputs of DispersedInputs(campaign).
+CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaign, const CaseColumns& cases);
+
+/// Metrics of the requirements first, then those that any report shows in full.
+std::vector<std::string> KeyMetrics(const Campaign& campaign);
+
+/// What re-flies a case, for a shell in the result folder: no report holds the folder's path.
+std::string ReplayCommand(std::uint64_t case_index);
+/// The same up to the index.
+std::string ReplayCommand();
+
+/// The contents of summary.json: schema "dispersa/summary/1", two spaces of indent, a final newline.
+std::string SummaryJson(const CampaignSummary& summary);
+
+}  // namespace dispersa

@@ -1,0 +1,473 @@
+#include "core/analysis/comparison.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "core/flight/flight_inputs.h"
+#include "core/results/requirement_text.h"
+#include "core/analysis/requirement_summary.h"
+#include "core/results/sampling_text.h"
+#include "core/results/text.h"
+#include "core/statistics/paired.h"
+#include "core/statistics/two_samples.h"
+
+namespace dispersa {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Pairs that are named of each metric, in either direction.
+constexpr std::size_t kNamedPairs = 5;
+
+/// Rows of the case indices that both have, in their order.
+struct SharedRows {
+  std::vector<std::size_t> a, b;
+};
+
+SharedRows FindShared(const CaseColumns& a, const CaseColumns& b) {
+  SharedRows shared;
+  for (std::size_t row = 0, other = 0; row < a.rows(); ++row) {
+    while (other < b.rows() && b.index[other] < a.index[row]) ++other;
+    if (other == b.rows() || b.index[other] != a.index[row]) continue;
+    shared.a.push_back(row);
+    shared.b.push_back(other);
+  }
+  return shared;
+}
+
+std::string Cases(std::size_t count) { return fmt::format("{} case{}", count, count == 1 ? "" : "s"); }
+
+Pairing FindPairing(const CaseColumns& a, const CaseColumns& b, const SharedRows& shared) {
+  Pairing pairing;
+  pairing.shared = shared.a.size();
+  pairing.only_a = a.rows() - pairing.shared;
+  pairing.only_b = b.rows() - pairing.shared;
+  std::size_t varying = 0;
+  for (std::size_t input = 0; input < std::min(a.inputs.size(), b.inputs.size()); ++input) {
+    if (a.inputs[input].empty() || b.inputs[input].empty()) continue;
+    const std::vector<double> of_a = a.inputs[input];
+    const std::vector<double> of_b = b.inputs[input];
+    std::size_t differs = 0;
+    bool varies = false;
+    for (std::size_t i = 0; i < pairing.shared; ++i) {
+      differs += of_a[shared.a[i]] != of_b[shared.b[i]];
+      varies = varies || of_a[shared.a[i]] != of_a[shared.a[0]] || of_b[shared.b[i]] != of_b[shared.b[0]];
+    }
+    if (differs > 0) pairing.changed.push_back({InputColumns()[input].name, differs});
+    if (!varies) continue;
+    ++varying;
+    if (differs == 0) pairing.same.push_back(InputColumns()[input].name);
+  }
+  // An input that never varies is equal without any draw: it is no evidence.
+  pairing.paired = pairing.shared > 0 && (!pairing.same.empty() || (varying == 0 && pairing.changed.empty()));
+  if (!pairing.paired) {
+    pairing.sentence =
+        pairing.shared == 0
+            ? "Unpaired: no case index has a result in both campaigns."
+            : "Unpaired: no input that varies has the same value in the same case of both campaigns. "
+              "The flights are compared as two independent samples.";
+    return pairing;
+  }
+  pairing.sentence =
+      pairing.changed.empty()
+          ? fmt::format("Paired: every input has the same value in both campaigns in all of {} shared.",
+                        Cases(pairing.shared))
+          : fmt::format(
+                "Paired: {} of the {} inputs that vary have the same value in both campaigns in all of {} "
+                "shared; the others were changed and are listed.",
+                pairing.same.size(), varying, Cases(pairing.shared));
+  if (pairing.only_a + pairing.only_b > 0) {
+    pairing.sentence += fmt::format(" {} of A and {} of B have no partner and are left out.",
+                                    Cases(pairing.only_a), Cases(pairing.only_b));
+  }
+  return pairing;
+}
+
+/// The values that are compared of one campaign: NaN is left out, an infinity is a lost flight.
+struct MetricValues {
+  std::vector<double> values;
+  std::size_t lost = 0;
+};
+
+MetricValues ValuesOf(const CaseColumns& cases, const std::vector<std::size_t>& rows,
+                      const std::string& metric, Worse worse) {
+  const std::vector<double> all = MeasuredValues(cases, metric);
+  MetricValues result;
+  for (const std::size_t row : rows) {
+    const bool lost = cases.outcome[row] != Outcome::kCompleted;
+    result.lost += lost;
+    double value = all[row];
+    if (worse == Worse::kFartherFromZero) value = std::fabs(value);
+    if (lost)
+      value = worse == Worse::kNeither ? kUndefined : worse == Worse::kSmaller ? -kInfinity : kInfinity;
+    result.values.push_back(value);
+  }
+  return result;
+}
+
+double NoInfinity(double value) { return std::isfinite(value) ? value : kUndefined; }
+
+struct NamedProbability {
+  const char* name;
+  double probability;
+};
+
+std::vector<NamedProbability> TailsOf(Worse worse) {
+  switch (worse) {
+    case Worse::kLarger:
+    case Worse::kFartherFromZero:
+      return {{"p95", 0.95}, {"p99", 0.99}, {"p99_73", 0.9973}};
+    case Worse::kSmaller:
+      return {{"p05", 0.05}, {"p01", 0.01}, {"p00_27", 0.0027}};
+    case Worse::kNeither:
+      return {{"p05", 0.05}, {"p95", 0.95}, {"p01", 0.01}, {"p99", 0.99}};
+  }
+  return {};
+}
+
+/// The median of pairs, and which pairs gain and lose most. `sign` turns a metric of which more is better
+/// round.
+void ComparePairs(const std::vector<double>& a, const std::vector<double>& b,
+                  const std::vector<std::uint64_t>& index, double sign, MetricComparison& result) {
+  std::vector<double> turned_a, turned_b;
+  for (std::size_t i = 0; i < a.size();
+       ++i) {  // a lost flight is undefined to ComparePaired, and infinitely bad
+    turned_a.push_back(std::isfinite(a[i]) ? sign * a[i] : kUndefined);
+    turned_b.push_back(std::isfinite(b[i]) ? sign * b[i] : kUndefined);
+  }
+  const PairedDifference d = ComparePaired(turned_a, turned_b, kComparisonConfidence);
+  result.difference = NoInfinity(sign * d.median_difference);
+  result.interval = sign > 0.0 ? d.difference_interval
+                               : Interval{-d.difference_interval.upper, -d.difference_interval.lower};
+  if (sign > 0.0) {
+    result.ratio = NoInfinity(d.median_ratio);
+    result.ratio_interval = d.ratio_interval;
+  }
+  result.a_better = d.worse;
+  result.b_better = d.better;
+  result.equal = d.equal;
+  result.p = d.sign_test_p;
+
+  std::vector<std::size_t> order(a.size());
+  std::vector<double> change(a.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    order[i] = i;
+    const bool has_a = std::isfinite(a[i]), has_b = std::isfinite(b[i]);
+    change[i] = has_a && has_b ? sign * (b[i] - a[i]) : has_a ? kInfinity : has_b ? -kInfinity : 0.0;
+  }
+  const auto name = [&](std::vector<MetricComparison::Pair>& named, double direction) {
+    std::vector<std::size_t> worst(std::min(kNamedPairs, order.size()));
+    std::partial_sort_copy(order.begin(), order.end(), worst.begin(), worst.end(),
+                           [&](std::size_t i, std::size_t j) {
+                             const double of_i = direction * change[i], of_j = direction * change[j];
+                             return of_i != of_j ? of_i > of_j : i < j;
+                           });
+    for (const std::size_t i : worst) {
+      if (direction * change[i] > 0.0) named.push_back({index[i], NoInfinity(a[i]), NoInfinity(b[i])});
+    }
+  };
+  name(result.losses, 1.0);
+  name(result.gains, -1.0);
+}
+
+std::string FindingOf(const MetricComparison& metric) {
+  if (!(metric.p_holm <= 1.0 - kComparisonConfidence)) return "not shown";
+  if (metric.info.worse == Worse::kNeither) return "differs";
+  const double sign = metric.info.worse == Worse::kSmaller ? -1.0 : 1.0;
+  if (metric.a_better != metric.b_better) return metric.b_better > metric.a_better ? "better" : "worse";
+  return sign * (metric.median_b - metric.median_a) < 0.0 ? "better" : "worse";
+}
+
+MetricComparison CompareMetric(const std::string& metric, const CaseColumns& a, const CaseColumns& b,
+                               const SharedRows& rows, bool paired, bool independent) {
+  MetricComparison result;
+  result.metric = metric;
+  result.info = DescribeMetric(metric);
+  const Worse worse = result.info.worse;
+  MetricValues of_a = ValuesOf(a, rows.a, metric, worse);
+  MetricValues of_b = ValuesOf(b, rows.b, metric, worse);
+  result.lost_a = of_a.lost;
+  result.lost_b = of_b.lost;
+  std::vector<std::uint64_t> index;
+  if (paired) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < of_a.values.size(); ++i) {
+      if (std::isnan(of_a.values[i]) || std::isnan(of_b.values[i])) continue;
+      of_a.values[kept] = of_a.values[i];
+      of_b.values[kept++] = of_b.values[i];
+      index.push_back(a.index[rows.a[i]]);
+    }
+    result.undefined = of_a.values.size() - kept;
+    of_a.values.resize(kept);
+    of_b.values.resize(kept);
+  } else {
+    for (MetricValues* side : {&of_a, &of_b})
+      result.undefined += std::erase_if(side->values, [](double value) { return std::isnan(value); });
+  }
+  result.n_a = of_a.values.size();
+  result.n_b = of_b.values.size();
+  if (result.n_a == 0 || result.n_b == 0) return result;
+
+  const QuantileDifference median =
+      CompareQuantiles(of_a.values, of_b.values, 0.5, kComparisonConfidence, paired);
+  result.median_a = median.a;
+  result.median_b = median.b;
+  if (paired) {
+    ComparePairs(of_a.values, of_b.values, index, worse == Worse::kSmaller ? -1.0 : 1.0, result);
+  } else {
+    result.difference = median.difference;
+    result.interval = median.interval;
+    result.p = LocationP(of_a.values, of_b.values);
+  }
+  for (const auto& [name, probability] : TailsOf(worse)) {
+    const QuantileDifference tail =
+        CompareQuantiles(of_a.values, of_b.values, probability, kComparisonConfidence, paired);
+    PercentileComparison percentile{name,          probability, tail.a,    tail.b, tail.difference,
+                                    tail.interval, kUndefined,  kUndefined};
+    // Where neither sample reaches the percentile there is nothing to test.
+    if (std::isfinite(tail.a) || std::isfinite(tail.b)) percentile.p = tail.p;
+    result.tails.push_back(std::move(percentile));
+  }
+  if (!independent) {
+    result.interval = result.ratio_interval = {kUndefined, kUndefined};
+    result.p = kUndefined;
+    for (PercentileComparison& tail : result.tails) {
+      tail.interval = {kUndefined, kUndefined};
+      tail.p = kUndefined;
+    }
+  }
+  return result;
+}
+
+/// One family of tests for the medians, and one for each percentile.
+void AdjustMetrics(std::vector<MetricComparison>& metrics) {
+  std::vector<double> p;
+  for (const MetricComparison& metric : metrics) p.push_back(metric.p);
+  const std::vector<double> adjusted = HolmAdjusted(p);
+  for (std::size_t i = 0; i < metrics.size(); ++i) {
+    metrics[i].p_holm = adjusted[i];
+    metrics[i].finding = FindingOf(metrics[i]);
+  }
+  for (const char* name : {"p95", "p99", "p99_73", "p05", "p01", "p00_27"}) {
+    std::vector<PercentileComparison*> family;
+    std::vector<double> tail_p;
+    for (MetricComparison& metric : metrics) {
+      for (PercentileComparison& tail : metric.tails) {
+        if (tail.name != name) continue;
+        family.push_back(&tail);
+        tail_p.push_back(tail.p);
+      }
+    }
+    const std::vector<double> tail_adjusted = HolmAdjusted(tail_p);
+    for (std::size_t i = 0; i < family.size(); ++i) family[i]->p_holm = tail_adjusted[i];
+  }
+}
+
+/// Whether each row fails a limit: lost, undefined or outside.
+std::vector<bool> Failing(const Limits& limits, const std::vector<double>& completed,
+                          const std::vector<std::size_t>& rows) {
+  std::vector<bool> fails;
+  for (const std::size_t row : rows) fails.push_back(!limits.Meets(completed[row]));
+  return fails;
+}
+
+class CaseChanges {
+ public:
+  CaseChanges(const CaseColumns& a, const CaseColumns& b, const SharedRows& rows)
+      : a_(a), b_(b), rows_(rows) {}
+
+  /// `failing` in a and in b, a pair each; values are those of the rows.
+  void Add(const std::string& requirement, const std::vector<bool>& fails_a, const std::vector<bool>& fails_b,
+           const std::vector<double>& values_a, const std::vector<double>& values_b) {
+    for (std::size_t i = 0; i < fails_a.size(); ++i) {
+      if (fails_a[i] == fails_b[i]) continue;
+      ChangedCase& changed = (fails_b[i] ? harmed_ : rescued_)[i];
+      changed.reasons.push_back({requirement, values_a.empty() ? kUndefined : values_a[rows_.a[i]],
+                                 values_b.empty() ? kUndefined : values_b[rows_.b[i]]});
+    }
+  }
+  std::vector<ChangedCase> Harmed() const { return List(harmed_); }
+  std::vector<ChangedCase> Rescued() const { return List(rescued_); }
+
+ private:
+  std::vector<ChangedCase> List(const std::map<std::size_t, ChangedCase>& changes) const {
+    std::vector<ChangedCase> list;
+    for (const auto& [i, changed] : changes) {
+      list.push_back(changed);
+      list.back().case_index = a_.index[rows_.a[i]];
+      list.back().outcome_a = a_.outcome[rows_.a[i]];
+      list.back().outcome_b = b_.outcome[rows_.b[i]];
+    }
+    return list;
+  }
+
+  const CaseColumns& a_;
+  const CaseColumns& b_;
+  const SharedRows& rows_;
+  std::map<std::size_t, ChangedCase> harmed_, rescued_;  ///< by pair
+};
+
+void CompareRequirements(const ComparedCampaign& a, const ComparedCampaign& b, const SharedRows& rows,
+                         Comparison& comparison) {
+  const bool paired = comparison.pairing.paired;
+  std::vector<Requirement> requirements = a.campaign.requirements;
+  requirements.insert(requirements.end(), b.campaign.requirements.begin(), b.campaign.requirements.end());
+  CaseChanges changes(a.cases, b.cases, rows);
+  if (paired) {
+    const auto lost = [](const CaseColumns& cases, const std::vector<std::size_t>& of) {
+      std::vector<bool> is_lost;
+      for (const std::size_t row : of) is_lost.push_back(cases.outcome[row] != Outcome::kCompleted);
+      return is_lost;
+    };
+    changes.Add("flight completed", lost(a.cases, rows.a), lost(b.cases, rows.b), {}, {});
+  }
+  for (std::size_t i = 0; i < requirements.size(); ++i) {
+    const std::string words = LimitText(requirements[i]);
+    const bool of_a = i < a.campaign.requirements.size();
+    const auto known = std::find_if(comparison.requirements.begin(), comparison.requirements.end(),
+                                    [&](const RequirementComparison& each) { return each.words == words; });
+    if (known != comparison.requirements.end()) {
+      (of_a ? known->in_a : known->in_b) = true;
+      continue;
+    }
+    RequirementComparison result;
+    result.metric = requirements[i].metric;
+    result.words = words;
+    (of_a ? result.in_a : result.in_b) = true;
+    const Limits limits = LimitsOf(requirements[i]);
+    const std::vector<double> values_a = CompletedValues(a.cases, result.metric);
+    const std::vector<double> values_b = CompletedValues(b.cases, result.metric);
+    const std::vector<bool> fails_a = Failing(limits, values_a, rows.a);
+    const std::vector<bool> fails_b = Failing(limits, values_b, rows.b);
+    result.n_a = fails_a.size();
+    result.n_b = fails_b.size();
+    result.failures_a = static_cast<std::size_t>(std::count(fails_a.begin(), fails_a.end(), true));
+    result.failures_b = static_cast<std::size_t>(std::count(fails_b.begin(), fails_b.end(), true));
+    double correlation = 0.0;
+    if (paired) {
+      for (std::size_t pair = 0; pair < fails_a.size(); ++pair) {
+        ++(fails_a[pair] ? (fails_b[pair] ? result.both_fail : result.only_a_fails)
+                         : (fails_b[pair] ? result.only_b_fails : result.both_meet));
+      }
+      changes.Add(words, fails_a, fails_b, values_a, values_b);
+      const auto real = [](std::size_t count) { return static_cast<double>(count); };
+      const double margins = real(result.failures_a) * real(result.n_a - result.failures_a) *
+                             real(result.failures_b) * real(result.n_b - result.failures_b);
+      if (margins > 0.0) {
+        correlation = (real(result.both_fail) * real(result.both_meet) -
+                       real(result.only_a_fails) * real(result.only_b_fails)) /
+                      std::sqrt(margins);
+      }
+    }
+    if (result.n_a > 0 && result.n_b > 0) {
+      const auto count = [](std::size_t n) { return static_cast<std::int64_t>(n); };
+      const double rate_a = static_cast<double>(result.failures_a) / static_cast<double>(result.n_a);
+      const double rate_b = static_cast<double>(result.failures_b) / static_cast<double>(result.n_b);
+      result.difference = rate_b - rate_a;
+      if (comparison.independent) {
+        result.interval = DifferenceLimits(
+            rate_a, ClopperPearson(count(result.failures_a), count(result.n_a), kComparisonConfidence),
+            rate_b, ClopperPearson(count(result.failures_b), count(result.n_b), kComparisonConfidence),
+            correlation);
+        result.p = paired ? McNemarP(count(result.only_a_fails), count(result.only_b_fails))
+                          : FisherP(count(result.failures_a), count(result.n_a), count(result.failures_b),
+                                    count(result.n_b));
+      }
+    }
+    comparison.requirements.push_back(std::move(result));
+  }
+  std::vector<double> p;
+  for (const RequirementComparison& requirement : comparison.requirements) p.push_back(requirement.p);
+  const std::vector<double> adjusted = HolmAdjusted(p);
+  for (std::size_t i = 0; i < adjusted.size(); ++i) comparison.requirements[i].p_holm = adjusted[i];
+  comparison.harmed = changes.Harmed();
+  comparison.rescued = changes.Rescued();
+}
+
+Comparison::Side SideOf(const ComparedCampaign& compared) {
+  const Campaign& campaign = compared.campaign;
+  return {compared.folder,
+          campaign.name,
+          campaign.id,
+          campaign.flight_id,
+          compared.engine,
+          campaign.vehicle.name,
+          campaign.reference.name,
+          campaign.autopilot.name,
+          SamplingMethodName(campaign.sampling.method),
+          campaign.sampling.seed,
+          campaign.sampling.cases,
+          compared.cases.rows(),
+          compared.cases.rows() - LostCount(compared.cases),
+          !(campaign.autopilot.plugin && campaign.autopilot.plugin->in_python)};
+}
+
+std::string SentenceOf(const Comparison& comparison) {
+  std::string sentence;
+  if (comparison.independent) {
+    std::size_t better = 0, worse = 0, differs = 0;
+    for (const MetricComparison& metric : comparison.metrics) {
+      better += metric.finding == "better";
+      worse += metric.finding == "worse";
+      differs += metric.finding == "differs";
+    }
+    sentence = fmt::format(
+        "Of {} metrics B is better in {} and worse in {}, and differs in {} that are neither good nor bad; "
+        "in the others no difference is "
+        "shown.",
+        comparison.metrics.size(), better, worse, differs);
+  } else {
+    sentence =
+        "The points of at least one campaign are chosen, not drawn: differences are shown without limits.";
+  }
+  if (comparison.pairing.paired) {
+    sentence += fmt::format(" {} harmed by the change from A to B, {} rescued.",
+                            Cases(comparison.harmed.size()), comparison.rescued.size());
+  }
+  return sentence;
+}
+
+}  // namespace
+
+Comparison Compare(const ComparedCampaign& a, const ComparedCampaign& b,
+                   const std::vector<std::string>& metrics, std::vector<CampaignChange> changes) {
+  Comparison comparison;
+  comparison.a = SideOf(a);
+  comparison.b = SideOf(b);
+  comparison.changes = std::move(changes);
+  comparison.independent =
+      IsIndependent(a.campaign.sampling.method) && IsIndependent(b.campaign.sampling.method);
+  SharedRows rows = FindShared(a.cases, b.cases);
+  comparison.pairing = FindPairing(a.cases, b.cases, rows);
+  if (!comparison.pairing.paired) {
+    rows = {};
+    for (std::size_t row = 0; row < a.cases.rows(); ++row) rows.a.push_back(row);
+    for (std::size_t row = 0; row < b.cases.rows(); ++row) rows.b.push_back(row);
+  }
+  for (const std::string& metric : metrics.empty() ? MetricNames() : metrics) {
+    MetricComparison result =
+        CompareMetric(metric, a.cases, b.cases, rows, comparison.pairing.paired, comparison.independent);
+    // A metric that the vehicle or the law does not have is in neither.
+    const bool defined =
+        std::isfinite(result.median_a) || std::isfinite(result.median_b) || result.lost_a + result.lost_b > 0;
+    if (!metrics.empty() || (result.n_a > 0 && result.n_b > 0 && defined))
+      comparison.metrics.push_back(std::move(result));
+  }
+  AdjustMetrics(comparison.metrics);
+  CompareRequirements(a, b, rows, comparison);
+  comparison.sentence = SentenceOf(comparison);
+  return comparison;
+}
+
+std::string ReplayCommand(const std::string& folder, std::uint64_t case_index) {
+  return fmt::format("dispersa replay {} --case {}", ShellWord(folder), case_index);
+}
+
+std::string ReplayCommand(const Comparison::Side& side, std::uint64_t case_index) {
+  return side.has_its_law ? ReplayCommand(side.folder, case_index) : "";
+}
+
+}  // namespace dispersa

@@ -1,0 +1,152 @@
+// Two campaigns compared: what `dispersa compare` prints, writes as compare.json and shows as compare.html.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/campaign/campaign.h"
+#include "core/results/case_columns.h"
+#include "core/results/metric_catalogue.h"
+#include "core/statistics/intervals.h"
+#include "core/statistics/summary.h"
+
+namespace dispersa {
+
+/// One of the two, as it was flown.
+struct ComparedCampaign {
+  std::string folder;  ///< as the user named it: where the replay commands find it
+  std::string engine;
+  const Campaign& campaign;
+  const CaseColumns& cases;  ///< with all inputs
+};
+
+/// A value of campaign.yaml that is not the same in both.
+struct CampaignChange {
+  std::string path;  ///< "dispersions.wind.max_speed_m_s"
+  std::string a, b;  ///< "–" where there is none
+};
+
+/// Whether case i of one campaign met the draws of case i of the other.
+struct Pairing {
+  bool paired = false;
+  std::size_t shared = 0;  ///< case indices that both have a result of; the pairs, when paired
+  std::size_t only_a = 0;
+  std::size_t only_b = 0;
+  std::vector<std::string>
+      same;  ///< inputs that vary from case to case and are equal, bit for bit, in every shared case
+  struct ChangedInput {
+    std::string input;
+    std::size_t cases = 0;  ///< shared ones in which it differs
+  };
+  std::vector<ChangedInput> changed;
+  std::string sentence;
+};
+
+/// b against a in one percentile.
+struct PercentileComparison {
+  std::string name;  ///< "p99"
+  double probability = 0.0;
+  double a = kUndefined, b = kUndefined;
+  double difference = kUndefined;
+  Interval interval{kUndefined, kUndefined};
+  double p = kUndefined;
+  double p_holm = kUndefined;  ///< over the metrics, for this percentile
+};
+
+/// One metric. Flights that were not completed count as worse than any value; of a metric that is neither
+/// good nor bad they are left out. Of a metric that is worse farther from zero its magnitude is compared.
+struct MetricComparison {
+  std::string metric;
+  MetricInfo info;
+  std::size_t n_a = 0, n_b = 0;  ///< flights compared: with a value, or lost
+  std::size_t lost_a = 0, lost_b = 0;
+  std::size_t undefined = 0;  ///< completed flights, or pairs, in which it is not defined
+  /// Paired: the median of b - a with limits by order statistics of the differences, and the sign test.
+  /// Unpaired: the difference of the medians with limits by DifferenceLimits(), and the rank sum.
+  double median_a = kUndefined, median_b = kUndefined;
+  double difference = kUndefined;
+  Interval interval{kUndefined, kUndefined};
+  double ratio = kUndefined;  ///< paired, all values positive: median of b / a
+  Interval ratio_interval{kUndefined, kUndefined};
+  std::size_t b_better = 0, a_better = 0,
+              equal = 0;  ///< pairs; of a metric neither good nor bad: b smaller, larger
+  double p = kUndefined;
+  double p_holm = kUndefined;  ///< over the metrics
+  std::vector<PercentileComparison> tails;
+  std::string finding;  ///< "better", "worse" (of b), "differs", "not shown"
+  struct Pair {
+    std::uint64_t case_index = 0;
+    double a = kUndefined, b = kUndefined;  ///< NaN: lost
+  };
+  std::vector<Pair> gains, losses;  ///< the pairs in which b gains, and loses, most
+};
+
+/// One limit, applied to the flights of both whichever campaign states it.
+struct RequirementComparison {
+  std::string metric;
+  std::string words;  ///< "pitch_error_peak_deg below 0.5"
+  bool in_a = false, in_b = false;
+  std::size_t n_a = 0, n_b = 0;
+  std::size_t failures_a = 0, failures_b = 0;
+  /// Pairs: McNemar's table.
+  std::size_t both_meet = 0, only_a_fails = 0, only_b_fails = 0, both_fail = 0;
+  double difference = kUndefined;  ///< of the failure rates, b - a
+  Interval interval{kUndefined, kUndefined};
+  double p = kUndefined;       ///< paired: McNemar's, exact; unpaired: Fisher's
+  double p_holm = kUndefined;  ///< over the requirements
+};
+
+/// A pair in which a requirement, or the flight, is lost by one campaign and met by the other.
+struct ChangedCase {
+  std::uint64_t case_index = 0;
+  Outcome outcome_a = Outcome::kCompleted, outcome_b = Outcome::kCompleted;
+  struct Reason {
+    std::string requirement;  ///< RequirementComparison::words, or "flight completed"
+    double a = kUndefined, b = kUndefined;
+  };
+  std::vector<Reason> reasons;
+};
+
+struct Comparison {
+  struct Side {
+    std::string folder, name, id, flight_id, engine, vehicle, reference, autopilot, sampling;
+    std::uint64_t seed = 0, cases = 0;
+    std::size_t flown = 0, completed = 0;
+    bool has_its_law = true;  ///< false: flown with a law in Python, which no folder holds
+  };
+  Side a, b;
+  std::vector<CampaignChange> changes;
+  Pairing pairing;
+  bool independent =
+      true;  ///< both are random samples; else differences are shown without limits or p-values
+  std::vector<MetricComparison> metrics;
+  std::vector<RequirementComparison> requirements;
+  std::vector<ChangedCase> harmed;  ///< by a change from a to b, ascending; none when unpaired
+  std::vector<ChangedCase> rescued;
+  std::string sentence;  ///< what it comes to
+};
+
+inline constexpr double kComparisonConfidence = 0.95;
+
+/// `metrics`: names without prefix; empty: every metric that a flight of both defines. Only the changed and
+/// the best matched inputs are listed, never more than the flights show.
+Comparison Compare(const ComparedCampaign& a, const ComparedCampaign& b,
+                   const std::vector<std::string>& metrics, std::vector<CampaignChange> changes);
+
+/// "dispersa replay FOLDER --case N", for the shell and the folder in which the comparison was started.
+std::string ReplayCommand(const std::string& folder, std::uint64_t case_index);
+/// Empty where the folder does not hold the law.
+std::string ReplayCommand(const Comparison::Side& side, std::uint64_t case_index);
+
+/// The contents of compare.json: schema "dispersa/compare/1".
+std::string ComparisonJson(const Comparison& comparison);
+
+/// The contents of compare.html: one file, readable offline and on paper.
+std::string ComparisonPage(const Comparison& comparison, const CaseColumns& a, const CaseColumns& b);
+
+}  // namespace dispersa

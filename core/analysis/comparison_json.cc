@@ -1,0 +1,174 @@
+#include <nlohmann/json.hpp>
+
+#include "core/analysis/comparison.h"
+#include "core/results/json_number.h"
+
+namespace dispersa {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json IntervalJson(const Interval& interval) { return {Number(interval.lower), Number(interval.upper)}; }
+
+const char* WorseName(Worse worse) {
+  switch (worse) {
+    case Worse::kLarger:
+      return "larger";
+    case Worse::kSmaller:
+      return "smaller";
+    case Worse::kFartherFromZero:
+      return "farther_from_zero";
+    case Worse::kNeither:
+      return "neither";
+  }
+  return "";
+}
+
+Json SideJson(const Comparison::Side& side) {
+  return {{"directory", side.folder},    {"name", side.name},           {"id", side.id},
+          {"flight_id", side.flight_id}, {"engine", side.engine},       {"vehicle", side.vehicle},
+          {"reference", side.reference}, {"autopilot", side.autopilot}, {"sampling", side.sampling},
+          {"seed", side.seed},           {"cases", side.cases},         {"flown", side.flown},
+          {"completed", side.completed}};
+}
+
+Json PairingJson(const Pairing& pairing) {
+  Json changed = Json::array();
+  for (const Pairing::ChangedInput& input : pairing.changed)
+    changed.push_back({{"input", input.input}, {"cases", input.cases}});
+  return {{"paired", pairing.paired},       {"pairs", pairing.paired ? pairing.shared : 0},
+          {"shared_cases", pairing.shared}, {"only_a", pairing.only_a},
+          {"only_b", pairing.only_b},       {"same_inputs", pairing.same},
+          {"changed_inputs", changed},      {"sentence", pairing.sentence}};
+}
+
+Json ReplayJson(const Comparison::Side& side, std::uint64_t case_index) {
+  const std::string command = ReplayCommand(side, case_index);
+  return command.empty() ? Json(nullptr) : Json(command);
+}
+
+Json PairsJson(const std::vector<MetricComparison::Pair>& pairs, const Comparison& comparison) {
+  Json list = Json::array();
+  for (const MetricComparison::Pair& pair : pairs) {
+    list.push_back({{"case_index", pair.case_index},
+                    {"a", Number(pair.a)},
+                    {"b", Number(pair.b)},
+                    {"replay_a", ReplayJson(comparison.a, pair.case_index)},
+                    {"replay_b", ReplayJson(comparison.b, pair.case_index)}});
+  }
+  return list;
+}
+
+Json MetricJson(const MetricComparison& metric, const Comparison& comparison) {
+  const bool paired = comparison.pairing.paired;
+  Json json = {{"metric", metric.metric},
+               {"unit", metric.info.unit},
+               {"worse", WorseName(metric.info.worse)},
+               {"pairing", paired ? "paired" : "unpaired"},
+               {"n_a", metric.n_a},
+               {"n_b", metric.n_b},
+               {"lost_a", metric.lost_a},
+               {"lost_b", metric.lost_b},
+               {"undefined", metric.undefined}};
+  json["median"] = {{"a", Number(metric.median_a)},
+                    {"b", Number(metric.median_b)},
+                    {"statistic", paired ? "median_of_differences" : "difference_of_medians"},
+                    {"difference", Number(metric.difference)},
+                    {"interval", IntervalJson(metric.interval)},
+                    {"method", paired ? "order_statistics_of_differences" : "mover_of_order_statistics"},
+                    {"test", paired ? "sign_test" : "rank_sum"},
+                    {"p", Number(metric.p)},
+                    {"p_holm", Number(metric.p_holm)}};
+  json["tails"] = Json::array();
+  for (const PercentileComparison& tail : metric.tails) {
+    json["tails"].push_back(
+        {{"percentile", tail.name},
+         {"probability", tail.probability},
+         {"a", Number(tail.a)},
+         {"b", Number(tail.b)},
+         {"difference", Number(tail.difference)},
+         {"interval", IntervalJson(tail.interval)},
+         {"method", "mover_of_order_statistics"},
+         {"test", paired ? "mcnemar_at_pooled_percentile" : "fisher_at_pooled_percentile"},
+         {"p", Number(tail.p)},
+         {"p_holm", Number(tail.p_holm)}});
+  }
+  json["ratio"] = {{"median", Number(metric.ratio)}, {"interval", IntervalJson(metric.ratio_interval)}};
+  const char* fewer = metric.info.worse == Worse::kNeither ? "b_smaller" : "b_better";
+  const char* more = metric.info.worse == Worse::kNeither ? "b_larger" : "a_better";
+  json["pairs"] = !paired ? Json(nullptr)
+                          : Json{{fewer, metric.b_better}, {more, metric.a_better}, {"equal", metric.equal}};
+  json["finding"] = metric.finding;
+  json["largest_gains"] = PairsJson(metric.gains, comparison);
+  json["largest_losses"] = PairsJson(metric.losses, comparison);
+  return json;
+}
+
+Json RequirementJson(const RequirementComparison& requirement, bool paired) {
+  Json json = {{"metric", requirement.metric},
+               {"requirement", requirement.words},
+               {"in_a", requirement.in_a},
+               {"in_b", requirement.in_b},
+               {"n_a", requirement.n_a},
+               {"n_b", requirement.n_b},
+               {"failures_a", requirement.failures_a},
+               {"failures_b", requirement.failures_b}};
+  json["mcnemar"] = !paired ? Json(nullptr)
+                            : Json{{"both_meet", requirement.both_meet},
+                                   {"only_a_fails", requirement.only_a_fails},
+                                   {"only_b_fails", requirement.only_b_fails},
+                                   {"both_fail", requirement.both_fail}};
+  json["difference"] = Number(requirement.difference);
+  json["interval"] = IntervalJson(requirement.interval);
+  json["method"] = "mover_of_clopper_pearson";
+  json["test"] = paired ? "mcnemar_exact" : "fisher_exact";
+  json["p"] = Number(requirement.p);
+  json["p_holm"] = Number(requirement.p_holm);
+  return json;
+}
+
+Json CasesJson(const std::vector<ChangedCase>& cases, const Comparison& comparison) {
+  Json list = Json::array();
+  for (const ChangedCase& one : cases) {
+    Json reasons = Json::array();
+    for (const ChangedCase::Reason& reason : one.reasons)
+      reasons.push_back(
+          {{"requirement", reason.requirement}, {"a", Number(reason.a)}, {"b", Number(reason.b)}});
+    list.push_back({{"case_index", one.case_index},
+                    {"outcome_a", OutcomeName(one.outcome_a)},
+                    {"outcome_b", OutcomeName(one.outcome_b)},
+                    {"requirements", std::move(reasons)},
+                    {"replay_a", ReplayJson(comparison.a, one.case_index)},
+                    {"replay_b", ReplayJson(comparison.b, one.case_index)}});
+  }
+  return list;
+}
+
+}  // namespace
+
+std::string ComparisonJson(const Comparison& comparison) {
+  Json json;
+  json["schema"] = "dispersa/compare/1";
+  json["a"] = SideJson(comparison.a);
+  json["b"] = SideJson(comparison.b);
+  json["sentence"] = comparison.sentence;
+  json["confidence"] = kComparisonConfidence;
+  json["independent"] = comparison.independent;
+  json["pairing"] = PairingJson(comparison.pairing);
+  json["changes"] = Json::array();
+  for (const CampaignChange& change : comparison.changes) {
+    const auto text = [](const std::string& value) { return value.empty() ? Json(nullptr) : Json(value); };
+    json["changes"].push_back({{"path", change.path}, {"a", text(change.a)}, {"b", text(change.b)}});
+  }
+  json["metrics"] = Json::array();
+  for (const MetricComparison& metric : comparison.metrics)
+    json["metrics"].push_back(MetricJson(metric, comparison));
+  json["requirements"] = Json::array();
+  for (const RequirementComparison& requirement : comparison.requirements)
+    json["requirements"].push_back(RequirementJson(requirement, comparison.pairing.paired));
+  json["harmed"] = CasesJson(comparison.harmed, comparison);
+  json["rescued"] = CasesJson(comparison.rescued, comparison);
+  return json.dump(2) + "\n";
+}
+
+}  // namespace dispersa

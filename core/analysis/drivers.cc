@@ -1,0 +1,265 @@
+#include "core/analysis/drivers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/flight/flight_inputs.h"
+#include "core/math/constants.h"
+#include "core/analysis/dispersion_summary.h"
+#include "core/analysis/requirement_summary.h"
+#include "core/statistics/sensitivity.h"
+#include "core/statistics/summary.h"
+
+namespace dispersa {
+namespace {
+
+constexpr std::size_t kLeastFlights = 30;
+constexpr std::size_t kShown = 12;
+constexpr double kFalseDiscoveryRate = 0.10;
+
+/// Of so many flights indices have a standard error below a hundredth; more would only take time and memory.
+constexpr std::size_t kCauseFlights = 50000;
+
+/// A function of the inputs that may act on its own.
+struct Feature {
+  std::string input;
+  std::string name;
+  Ranked values;
+  std::vector<std::string> same_as = {};
+};
+
+/// Equal ranks or mirrored ones.
+bool RankAlike(const Ranked& a, const Ranked& b) {
+  const double mirror = static_cast<double>(a.size()) + 1.0;
+  bool equal = true, mirrored = true;
+  for (std::size_t i = 0; i < a.size() && (equal || mirrored); ++i) {
+    equal = equal && a.ranks()[i] == b.ranks()[i];
+    mirrored = mirrored && a.ranks()[i] + b.ranks()[i] == mirror;
+  }
+  return equal || mirrored;
+}
+
+bool IsAngle(const std::string& column) {
+  return column.find("_clock") != std::string::npos || column.find("_azimuth_deg") != std::string::npos;
+}
+
+/// The column of the magnitude that an angle gives a direction to, if there is one.
+std::optional<int> MagnitudeOf(const std::string& angle) {
+  if (angle.starts_with("wind_azimuth")) return FindInput("wind_max_speed_m_s");
+  if (angle.starts_with("gust_azimuth")) return FindInput("gust_speed_m_s");
+  const std::size_t clock = angle.find("_clock");
+  if (clock == std::string::npos) return std::nullopt;
+  std::string magnitude = angle;
+  magnitude.erase(clock, std::string("_clock").size());
+  int column = FindInput(magnitude);
+  if (column < 0) column = FindInput(magnitude.substr(0, magnitude.rfind("_deg")) + "_m");
+  if (column < 0) return std::nullopt;
+  return column;
+}
+
+std::vector<double> Pick(const std::vector<double>& column, const std::vector<std::size_t>& rows) {
+  std::vector<double> values;
+  values.reserve(rows.size());
+  for (const std::size_t row : rows) values.push_back(column[row]);
+  return values;
+}
+
+bool Varies(const std::vector<double>& values) {
+  return std::any_of(values.begin(), values.end(), [&](double value) { return value != values.front(); });
+}
+
+/// Everything that the dispersed inputs may act through, over some of the flights. The first feature of an
+/// input is its value itself.
+std::vector<Feature> Features(const Campaign& campaign, const CaseColumns& cases,
+                              const std::vector<std::size_t>& rows) {
+  static const std::vector<double> nominal = InputValues(FlightInputs{}, kMaxStages);
+  std::vector<Feature> features;
+  const std::vector<int> inputs = DispersedInputs(campaign);
+  for (const int input : inputs) {
+    const std::string& name = InputColumns()[static_cast<std::size_t>(input)].name;
+    const std::vector<double> x = Pick(cases.inputs[static_cast<std::size_t>(input)], rows);
+    if (!Varies(x)) continue;
+    Ranked ranked(x);
+    const auto same = std::find_if(features.begin(), features.end(), [&](const Feature& other) {
+      return other.name == "x" && RankAlike(other.values, ranked);
+    });
+    if (same != features.end()) {
+      same->same_as.push_back(name);
+      continue;
+    }
+    features.push_back({name, "x", std::move(ranked)});
+    const std::size_t itself = features.size() - 1;
+    if (IsAngle(name)) {
+      std::vector<double> sine, cosine;
+      for (const double angle : x) {
+        sine.push_back(std::sin(angle * kRadPerDeg));
+        cosine.push_back(std::cos(angle * kRadPerDeg));
+      }
+      const std::optional<int> magnitude = MagnitudeOf(name);
+      if (magnitude && std::find(inputs.begin(), inputs.end(), *magnitude) != inputs.end()) {
+        const std::vector<double> m = Pick(cases.inputs[static_cast<std::size_t>(*magnitude)], rows);
+        if (Varies(m)) {
+          const std::string both =
+              InputColumns()[static_cast<std::size_t>(*magnitude)].name + " along " + name;
+          std::vector<double> along = cosine, across = sine;
+          for (std::size_t i = 0; i < m.size(); ++i) {
+            along[i] *= m[i];
+            across[i] *= m[i];
+          }
+          features.push_back({both, "m cos x", along});
+          features.push_back({both, "m sin x", across});
+        }
+      }
+      features.push_back({name, "sin x", sine});
+      features.push_back({name, "cos x", cosine});
+      continue;
+    }
+    // x squared has the ranks of |x|.
+    std::vector<double> size;
+    for (const double value : x) size.push_back(std::fabs(value - nominal[static_cast<std::size_t>(input)]));
+    Ranked sized(size);
+    if (!RankAlike(features[itself].values, sized)) features.push_back({name, "|x|", std::move(sized)});
+  }
+  return features;
+}
+
+/// The features of the rows that were asked for last: most metrics are defined for the same flights.
+class FeaturesOfRows {
+ public:
+  FeaturesOfRows(const Campaign& campaign, const CaseColumns& cases) : campaign_(campaign), cases_(cases) {}
+
+  const std::vector<Feature>& Of(const std::vector<std::size_t>& rows) {
+    if (rows != rows_) features_.clear();
+    if (rows != rows_) features_ = Features(campaign_, cases_, rows);
+    rows_ = rows;
+    return features_;
+  }
+
+ private:
+  const Campaign& campaign_;
+  const CaseColumns& cases_;
+  std::vector<std::size_t> rows_;
+  std::vector<Feature> features_;
+};
+
+MetricDrivers DriversOf(const std::string& metric, const CaseColumns& cases, FeaturesOfRows& known) {
+  MetricDrivers result{metric, {}};
+  const std::vector<double> values = CompletedValues(cases, metric);
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < values.size() && rows.size() < kCauseFlights; ++i) {
+    if (std::isfinite(values[i])) rows.push_back(i);
+  }
+  if (rows.size() < kLeastFlights) return result;
+  const std::vector<double> y = Pick(values, rows);
+  if (!Varies(y)) return result;
+  const Ranked ranked_y(y);
+  const std::vector<Feature>& features = known.Of(rows);
+
+  // One driver an input: the index is that of the raw input, which no feature of it exceeds; the feature says
+  // how.
+  struct Candidate {
+    std::size_t indexed = 0;  ///< the feature whose index counts
+    std::size_t named = 0;    ///< the feature that correlates most
+    double correlation = -1.0;
+    double index = 0.0;
+  };
+  std::vector<Candidate> candidates;
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    const bool pair = features[i].name.starts_with("m ");
+    const double correlation = std::fabs(RankCorrelation(features[i].values, ranked_y));
+    const auto same = std::find_if(candidates.begin(), candidates.end(), [&](const Candidate& other) {
+      return !pair && features[other.indexed].input == features[i].input &&
+             !features[other.indexed].name.starts_with("m ");
+    });
+    if (same == candidates.end()) {
+      candidates.push_back({i, i, correlation, FirstOrderShare(features[i].values, y)});
+    } else if (correlation > same->correlation) {
+      same->named = i;
+      same->correlation = correlation;
+    }
+  }
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.index > b.index; });
+  std::vector<const Ranked*> named;
+  for (const Candidate& candidate : candidates) {
+    if (!features[candidate.indexed].name.starts_with("m "))
+      named.push_back(&features[candidate.named].values);
+  }
+  const std::vector<double> partial = PartialRankCorrelations(named, ranked_y);
+  std::size_t regressed = 0;
+  for (const Candidate& candidate : candidates) {
+    const bool pair = features[candidate.indexed].name.starts_with("m ");
+    const double correlation = pair ? kUndefined : partial[regressed++];
+    if (result.drivers.size() == kShown || candidate.index <= 0.0) continue;
+    const SensitivityIndex index = FirstOrderIndex(features[candidate.indexed].values, y);
+    result.drivers.push_back({features[candidate.indexed].input, features[candidate.indexed].same_as,
+                              features[candidate.named].name, index.index,
+                              index.low, index.high, correlation});
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<MetricDrivers> FindDrivers(const Campaign& campaign, const std::vector<std::string>& metrics,
+                                       const CaseColumns& cases) {
+  std::vector<MetricDrivers> drivers;
+  FeaturesOfRows features(campaign, cases);
+  for (const std::string& metric : metrics) drivers.push_back(DriversOf(metric, cases, features));
+  return drivers;
+}
+
+std::vector<FailureDrivers> FindFailureDrivers(const Campaign& campaign, const CaseColumns& cases) {
+  constexpr std::size_t kEnoughFailures = 10;
+  std::vector<FailureDrivers> all;
+  FeaturesOfRows known(campaign, cases);
+  for (const Requirement& requirement : campaign.requirements) {
+    FailureDrivers result{requirement.metric, false, 0, {}};
+    const Limits limits = LimitsOf(requirement);
+    const std::vector<double> values = CompletedValues(cases, requirement.metric);
+    // The first flights, and of those beyond them the failing: what they are held against stays a fair sample.
+    std::vector<std::size_t> rows;
+    std::vector<bool> marked;
+    for (std::size_t i = 0; i < values.size() && rows.size() < 2 * kCauseFlights; ++i) {
+      const bool failed = !limits.Meets(values[i]);
+      if (i >= kCauseFlights && !failed) continue;
+      rows.push_back(i);
+      marked.push_back(failed);
+    }
+    result.flights = static_cast<std::size_t>(std::count(marked.begin(), marked.end(), true));
+    if (requirement.by_default && result.flights < kEnoughFailures) continue;  // 0 or 1: none is nearest
+    if (result.flights < kEnoughFailures && rows.size() >= kLeastFlights) {
+      std::vector<double> margins;
+      for (const std::size_t row : rows)
+        margins.push_back(std::isfinite(values[row]) ? limits.Margin(values[row]) : -HUGE_VAL);
+      std::vector<double> sorted = margins;
+      std::sort(sorted.begin(), sorted.end());
+      const double nearest = sorted[rows.size() / 10];
+      for (std::size_t i = 0; i < rows.size(); ++i) marked[i] = margins[i] <= nearest;
+      result.nearest = true;
+      result.flights = static_cast<std::size_t>(std::count(marked.begin(), marked.end(), true));
+    }
+    static const std::vector<Feature> kNone;
+    const std::vector<Feature>& features = rows.size() < kLeastFlights ? kNone : known.Of(rows);
+    std::vector<double> p;
+    for (const Feature& feature : features) p.push_back(RankSumP(feature.values, marked));
+    const std::vector<double> rates = FalseDiscoveryRates(p);
+    for (std::size_t i = 0; i < features.size(); ++i) {
+      if (rates[i] > kFalseDiscoveryRate) continue;
+      double inside = 0.0, outside = 0.0;
+      const std::vector<double>& ranks = features[i].values.ranks();
+      for (std::size_t k = 0; k < rows.size(); ++k) (marked[k] ? inside : outside) += ranks[k];
+      const auto in = static_cast<double>(result.flights);
+      const bool larger = inside / in > outside / (static_cast<double>(rows.size()) - in);
+      result.drivers.push_back({features[i].input, features[i].name, larger, p[i], rates[i]});
+    }
+    std::stable_sort(result.drivers.begin(), result.drivers.end(),
+                     [](const FailureDriver& a, const FailureDriver& b) { return a.p < b.p; });
+    if (result.drivers.size() > kShown) result.drivers.resize(kShown);
+    all.push_back(std::move(result));
+  }
+  return all;
+}
+
+}  // namespace dispersa

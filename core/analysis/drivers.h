@@ -1,0 +1,54 @@
+// What drives a metric, and what sets failing flights apart, from the inputs as the flights applied them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/campaign/campaign.h"
+#include "core/results/case_columns.h"
+
+namespace dispersa {
+
+/// One input, or a magnitude along a direction, of one metric over the completed flights.
+struct Driver {
+  std::string input;    ///< column without prefix; "magnitude * cos angle" columns joined by " along "
+  /// Inputs that rank the flights alike or in reverse (one dispersion may feed two): nothing can tell them apart.
+  std::vector<std::string> same_as = {};
+  std::string feature;  ///< through which it acts most: "x", "|x|" (about the nominal), "sin x", "cos x"
+  double index = 0.0;   ///< first-order Sobol index, with its interval of 95 %
+  double low = 0.0;
+  double high = 0.0;
+  double partial = 0.0;  ///< partial rank correlation of the feature; undefined of a pair
+};
+
+struct MetricDrivers {
+  std::string metric;
+  std::vector<Driver> drivers;  ///< by falling index, at most a dozen
+};
+
+/// Of each metric, from the first 50,000 flights that define it; empty for one that fewer than 30 completed flights define, or that does not vary.
+std::vector<MetricDrivers> FindDrivers(const Campaign& campaign, const std::vector<std::string>& metrics,
+                                       const CaseColumns& cases);
+
+struct FailureDriver {
+  std::string input;
+  std::string feature;
+  bool larger = true;  ///< among the failing flights than among the others
+  double p = 1.0;
+  double false_discovery_rate = 1.0;  ///< of this and all that rank before it (Benjamini and Hochberg)
+};
+
+/// What the failing flights of a requirement have in common, against the others of the first 50,000. Where fewer than ten fail, the tenth of the
+/// flights nearest to failing, the failing among them.
+struct FailureDrivers {
+  std::string metric;
+  bool nearest = false;  ///< not only those that failed
+  std::size_t flights = 0;
+  std::vector<FailureDriver> drivers;  ///< up to a false discovery rate of 10 %, by rising p
+};
+
+/// In the order of the campaign's requirements; without drivers where there are fewer than 30 flights.
+std::vector<FailureDrivers> FindFailureDrivers(const Campaign& campaign, const CaseColumns& cases);
+
+}  // namespace dispersa

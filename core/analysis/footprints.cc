@@ -1,0 +1,222 @@
+#include "core/analysis/footprints.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "core/input/input_error.h"
+#include "core/environment/earth.h"
+#include "core/flight/engine_version.h"
+#include "core/math/constants.h"
+#include "core/analysis/campaign_summary.h"
+#include "core/results/result_error.h"
+#include "core/results/text.h"
+
+namespace dispersa {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kOutlinePoints = 72;
+
+/// A centimetre on the ground.
+double Rounded(double degrees) { return std::round(degrees * 1e7) / 1e7 + 0.0; }
+
+double LatitudeDeg(const Geodetic& place) { return Rounded(place.latitude_rad * kDegPerRad); }
+/// Within half a turn of `near_rad`, so that lines do not run around the Earth.
+double LongitudeDeg(const Geodetic& place, double near_rad) {
+  return Rounded((near_rad + std::remainder(place.longitude_rad - near_rad, kTwoPi)) * kDegPerRad);
+}
+
+void Shape(Footprint& footprint) {
+  if (footprint.points.empty()) return;
+  const Earth earth = Wgs84();
+  Vector3 sum = Vector3::Zero();
+  for (const ImpactPoint& point : footprint.points) {
+    Geodetic ground = point.impact->place;
+    ground.altitude_m = 0.0;
+    sum += FromGeodetic(earth, ground);
+  }
+  footprint.mean = ToGeodetic(earth, sum / static_cast<double>(footprint.points.size()));
+  footprint.mean.altitude_m = 0.0;
+  const Vector3 origin = FromGeodetic(earth, footprint.mean);
+  const Matrix3 R_EN = NedAxes(footprint.mean.latitude_rad, footprint.mean.longitude_rad);
+  std::vector<std::vector<double>> plane;
+  for (const ImpactPoint& point : footprint.points) {
+    const Vector3 away = FromGeodetic(earth, point.impact->place) - origin;
+    plane.push_back({away.dot(R_EN.col(1)), away.dot(R_EN.col(0))});
+  }
+  footprint.scatter = PointScatterOf(plane);
+  footprint.containment =
+      ContainmentOf(plane, footprint.scatter, {kFootprintContainment.begin(), kFootprintContainment.end()});
+  for (const Containment& containment : footprint.containment) {
+    footprint.ellipses.push_back(EllipseOf(footprint.scatter.covariance, containment.scale));
+    std::vector<Geodetic>& outline = footprint.outlines.emplace_back();
+    for (const auto& [east_m, north_m] :
+         OutlineOf(footprint.ellipses.back(), {footprint.scatter.mean[0], footprint.scatter.mean[1]},
+                   kOutlinePoints)) {
+      Geodetic place = ToGeodetic(earth, origin + east_m * R_EN.col(1) + north_m * R_EN.col(0));
+      place.altitude_m = 0.0;
+      outline.push_back(place);
+    }
+  }
+}
+
+std::string ContainmentTitle(const Footprint& footprint, const Containment& containment) {
+  return fmt::format("{}: {} ellipse, holds {} of {}", FootprintTitle(footprint),
+                     PercentText(containment.stated), containment.inside, footprint.points.size());
+}
+
+/// Clockwise from north.
+double AzimuthDeg(const ScatterEllipse& ellipse) {
+  const double azimuth_deg = 90.0 - ellipse.angle_rad * kDegPerRad;
+  return azimuth_deg >= 180.0 ? azimuth_deg - 180.0 : azimuth_deg;
+}
+
+}  // namespace
+
+std::vector<Footprint> GatherFootprints(const std::vector<ImpactPoint>& points) {
+  std::map<std::pair<bool, int>, Footprint> gathered;
+  for (const ImpactPoint& point : points) {
+    Footprint& footprint = gathered[{point.lost, point.stage}];
+    footprint.stage = point.stage;
+    footprint.lost = point.lost;
+    if (point.impact) {
+      footprint.points.push_back(point);
+    } else {
+      ++footprint.aloft;
+    }
+  }
+  std::vector<Footprint> footprints;
+  for (auto& [key, footprint] : gathered) {
+    Shape(footprint);
+    footprints.push_back(std::move(footprint));
+  }
+  return footprints;
+}
+
+std::vector<Footprint> FootprintsOf(const ResultFolder& folder, const Campaign& campaign, int threads,
+                                    const std::function<void(std::size_t, std::size_t)>& progress) {
+  if (folder.Provenance("engine") != EngineVersion()) {
+    throw InputError(fmt::format("{}: flown by engine {}, this one is {}: its flights cannot be flown again",
+                                 folder.directory().string(), folder.Provenance("engine"), EngineVersion()),
+                     "the engine that flew it");
+  }
+  const std::vector<std::uint64_t> cases = folder.PresentCases();
+  std::size_t flown = 0;
+  const auto points = FlyToImpact(CampaignFlights(campaign), cases, threads, [&](const CaseResult& result) {
+    const Digest stored = folder.Load(result.case_index).digest;
+    if (stored != result.digest) {
+      throw ResultError(
+          ResultError::Kind::kConflict,
+          fmt::format("case {} does not reproduce its stored result: digest {} is stored, {} was flown now",
+                      result.case_index, stored.Hex(), result.digest.Hex()));
+    }
+    if (progress) progress(++flown, cases.size());
+  });
+  return GatherFootprints(points);
+}
+
+std::string FootprintTitle(const Footprint& footprint) {
+  return footprint.lost ? fmt::format("stack from stage {}, lost", footprint.stage)
+                        : fmt::format("stage {}, spent", footprint.stage);
+}
+
+std::string GeoJson(const Campaign& campaign, const std::vector<Footprint>& footprints) {
+  Json features = Json::array();
+  for (const Footprint& footprint : footprints) {
+    const double near_rad = footprint.mean.longitude_rad;
+    const char* body = footprint.lost ? "lost_flight" : "spent_stage";
+    for (std::size_t i = 0; i < footprint.containment.size(); ++i) {
+      const Containment& containment = footprint.containment[i];
+      const ScatterEllipse& ellipse = footprint.ellipses[i];
+      Json ring = Json::array();
+      for (const Geodetic& place : footprint.outlines[i])
+        ring.push_back({LongitudeDeg(place, near_rad), LatitudeDeg(place)});
+      features.push_back({{"type", "Feature"},
+                          {"properties",
+                           {{"kind", "footprint"},
+                            {"body", body},
+                            {"stage", footprint.stage},
+                            {"name", ContainmentTitle(footprint, containment)},
+                            {"stated_containment", containment.stated},
+                            {"empirical_containment", containment.empirical},
+                            {"empirical_limits", {containment.limits.lower, containment.limits.upper}},
+                            {"inside", containment.inside},
+                            {"points", footprint.points.size()},
+                            {"aloft", footprint.aloft},
+                            {"semi_major_km", ellipse.semi_major * 1e-3},
+                            {"semi_minor_km", ellipse.semi_minor * 1e-3},
+                            {"azimuth_deg", AzimuthDeg(ellipse)},
+                            {"mean", {LongitudeDeg(footprint.mean, near_rad), LatitudeDeg(footprint.mean)}}}},
+                          {"geometry", {{"type", "Polygon"}, {"coordinates", Json::array({ring})}}}});
+    }
+    for (const ImpactPoint& point : footprint.points) {
+      features.push_back(
+          {{"type", "Feature"},
+           {"properties",
+            {{"kind", "impact"},
+             {"body", body},
+             {"stage", footprint.stage},
+             {"case_index", point.case_index},
+             {"from_time_s", point.from_time_s},
+             {"from_altitude_km", point.from_altitude_m * 1e-3},
+             {"time_s", point.impact->time_s},
+             {"speed_m_s", point.impact->speed_m_s},
+             {"peak_altitude_km", point.impact->peak_altitude_m * 1e-3},
+             {"replay", ReplayCommand(point.case_index)}}},
+           {"geometry",
+            {{"type", "Point"},
+             {"coordinates",
+              {LongitudeDeg(point.impact->place, near_rad), LatitudeDeg(point.impact->place)}}}}});
+    }
+  }
+  const Json json = {{"type", "FeatureCollection"},
+                     {"name", campaign.name},
+                     {"campaign_id", campaign.id},
+                     {"flight_id", campaign.flight_id},
+                     {"features", std::move(features)}};
+  return json.dump(1) + "\n";
+}
+
+std::string Kml(const Campaign& campaign, const std::vector<Footprint>& footprints) {
+  std::string kml = fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<kml "
+      "xmlns=\"http://www.opengis.net/kml/2.2\">\n<Document>\n"
+      "<name>{}: impact points</name>\n<description>campaign {}</description>\n"
+      "<Style id=\"spent\"><IconStyle><color>ffa85f1f</color><scale>0.4</scale></IconStyle></Style>\n"
+      "<Style id=\"lost\"><IconStyle><color>ff2d27c0</color><scale>0.6</scale></IconStyle></Style>\n"
+      "<Style "
+      "id=\"ellipse\"><LineStyle><color>ff1b62c8</color><width>2</width></LineStyle><PolyStyle><fill>0</fill>"
+      "</PolyStyle></Style>\n",
+      HtmlText(campaign.name), campaign.id);
+  for (const Footprint& footprint : footprints) {
+    const double near_rad = footprint.mean.longitude_rad;
+    kml += fmt::format("<Folder><name>{}</name>\n", FootprintTitle(footprint));
+    for (std::size_t i = 0; i < footprint.containment.size(); ++i) {
+      kml += fmt::format(
+          "<Placemark><name>{}</name><styleUrl>#ellipse</styleUrl><Polygon><outerBoundaryIs><LinearRing>"
+          "<coordinates>",
+          ContainmentTitle(footprint, footprint.containment[i]));
+      for (const Geodetic& place : footprint.outlines[i])
+        kml += fmt::format("{:.7f},{:.7f} ", LongitudeDeg(place, near_rad), LatitudeDeg(place));
+      kml += "</coordinates></LinearRing></outerBoundaryIs></Polygon></Placemark>\n";
+    }
+    for (const ImpactPoint& point : footprint.points) {
+      kml += fmt::format(
+          "<Placemark><name>case {}</name><description>{}; from {:.1f} km at {:.2f} s, down at {:.1f} s with "
+          "{:.0f} "
+          "m/s</description><styleUrl>#{}</styleUrl><Point><coordinates>{:.7f},{:.7f}</coordinates></Point></"
+          "Placemark>\n",
+          point.case_index, ReplayCommand(point.case_index), point.from_altitude_m * 1e-3, point.from_time_s,
+          point.impact->time_s, point.impact->speed_m_s, footprint.lost ? "lost" : "spent",
+          LongitudeDeg(point.impact->place, near_rad), LatitudeDeg(point.impact->place));
+    }
+    kml += "</Folder>\n";
+  }
+  return kml + "</Document>\n</kml>\n";
+}
+
+}  // namespace dispersa

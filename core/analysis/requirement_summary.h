@@ -1,0 +1,94 @@
+// The verdict on one requirement of a campaign, in numbers and in words.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/campaign/campaign.h"
+#include "core/results/case_columns.h"
+#include "core/results/requirement_text.h"
+#include "core/statistics/limits.h"
+#include "core/statistics/planned_verdict.h"
+
+namespace dispersa {
+
+struct RequirementSummary {
+  std::string metric;       ///< without the prefix
+  bool by_default = false;  ///< because the vehicle gives limits
+  bool below = true;   ///< else above; of `within` the high limit
+  double limit = 0.0;
+  std::optional<double> low_limit;  ///< of `within`
+  double probability = 0.0;
+  double consumer_risk = 0.0;
+  VerdictPlan plan;
+  std::int64_t planned = 0;       ///< cases that were planned before the first was flown
+  std::int64_t n = 0;             ///< cases flown
+  std::int64_t failures = 0;      ///< beyond the limit, undefined, or a lost flight whatever it measured
+  std::int64_t lost_flights = 0;  ///< of the failures: any outcome but completed
+  std::string verdict;            ///< "pass", "fail", "inconclusive"; "study" of chosen points
+  /// One-sided confidence bounds of the probability of success; none in a design study without replicates.
+  std::optional<double> success_lower;
+  std::optional<double> success_upper;
+  /// When inconclusive: the least number of cases that could pass with as many failures.
+  std::optional<std::int64_t> cases_needed;
+  std::vector<Look> looks;  ///< at the counts, ascending; none in a design study
+  std::optional<std::int64_t> accepts;  ///< so many failures or fewer pass at the last look; none: no number does
+  std::optional<std::int64_t> rejects;  ///< so many or more fail
+  bool contradicted = false;
+  bool beyond_plan = false;
+  std::optional<double> naive_risk;  ///< see PlannedVerdict
+  bool post_hoc = false;             ///< not as it stood before the first case was flown
+  /// The metric's value that a share `probability` of the flights keeps to, with confidence 1 -
+  /// consumer_risk: the order statistic that decides the requirement (one value, below which or above which
+  /// they stay). None where the cases are too few, or so many flights were lost.
+  std::optional<double> bound;
+  std::optional<double> margin;  ///< from it to the limit, positive inside, in the metric's unit
+  /// Probability that a new campaign of so many cases with one look passes at the failure rate seen here.
+  struct PassChance {
+    std::int64_t cases = 0;
+    double probability = 0.0;
+  };
+  std::vector<PassChance> pass_chances;
+  /// What the first n cases with a result say of the success probability, for n in about equal ratios up to all of
+  /// them. Each bound is one-sided and holds at its n taken alone (Clopper and Pearson); none of a design study.
+  struct Convergence {
+    std::int64_t n = 0;
+    std::int64_t failures = 0;
+    double success_lower = 0.0;
+    double success_upper = 1.0;
+  };
+  std::vector<Convergence> convergence;
+  std::string sentence;
+};
+
+/// "below 0.5 °", "between -1 and 1 km".
+std::string LimitWords(const RequirementSummary& requirement, const std::string& unit);
+/// "pitch_error_peak_deg below 0.5 for 99.73 % of flights at 10 % risk".
+std::string RequirementWords(const RequirementSummary& requirement);
+
+/// What a verdict rests on besides the cases.
+struct JudgingContext {
+  SamplingMethod method = SamplingMethod::kMonteCarlo;
+  std::uint64_t cases = 0;  ///< of the campaign; those that are not among the rows are missing
+  std::uint64_t replicates = 1;
+  std::uint64_t design_points = 1;       ///< of a corner, one-at-a-time, grid or list design
+  std::int64_t planned = 0;              ///< cases that were planned before the first was flown
+  std::vector<std::int64_t> past_looks;  ///< numbers of cases at which verdicts were read before
+  std::vector<std::string> registered;   ///< RequirementLine() before the first case; none: as they are
+  bool holm = false;
+};
+
+/// The verdicts on all requirements. Only independent cases give one (Decide()). The points of a design study
+/// are chosen: its verdict is "study", and what is said is how many of the points meet the limit; independent
+/// replicates of a Latin hypercube or Sobol design give bounds of the probability (ReplicateBounds()).
+std::vector<RequirementSummary> JudgeAll(const std::vector<Requirement>& requirements,
+                                         const JudgingContext& context, const CaseColumns& cases);
+
+/// One requirement over these rows, whatever cases they are, as a campaign with so many cases as planned, of which
+/// `missing` more have no result.
+RequirementSummary Judge(const Requirement& requirement, SamplingMethod method, const CaseColumns& cases,
+                         std::int64_t missing);
+
+}  // namespace dispersa

@@ -1,0 +1,279 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/flight/flight_inputs.h"
+#include "core/math/constants.h"
+#include "core/analysis/campaign_summary.h"
+#include "core/results/json_number.h"
+#include "core/results/metric_catalogue.h"
+#include "core/results/sampling_text.h"
+
+namespace dispersa {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <typename T>
+Json OrNull(const std::optional<T>& value) {
+  if (!value) return nullptr;
+  if constexpr (std::is_same_v<T, double>) {
+    return Number(*value);
+  } else {
+    return *value;
+  }
+}
+
+Json StatisticsJson(const Summary& statistics) {
+  return {{"n", statistics.n},
+          {"undefined", statistics.undefined},
+          {"mean", Number(statistics.mean)},
+          {"std", Number(statistics.std)},
+          {"min", Number(statistics.min)},
+          {"p00_135", Number(statistics.p00_135)},
+          {"p01", Number(statistics.p01)},
+          {"p05", Number(statistics.p05)},
+          {"p50", Number(statistics.p50)},
+          {"p95", Number(statistics.p95)},
+          {"p99", Number(statistics.p99)},
+          {"p99_73", Number(statistics.p99_73)},
+          {"p99_865", Number(statistics.p99_865)},
+          {"max", Number(statistics.max)}};
+}
+
+const char* PlanName(PlanKind kind) {
+  switch (kind) {
+    case PlanKind::kFixed:
+      return "fixed";
+    case PlanKind::kGroupSequential:
+      return "group_sequential";
+    case PlanKind::kAnytime:
+      return "anytime";
+  }
+  return "";
+}
+
+const char* LookVerdict(Verdict verdict) {
+  return verdict == Verdict::kPass ? "pass" : verdict == Verdict::kFail ? "fail" : "inconclusive";
+}
+
+Json RequirementJson(const RequirementSummary& requirement) {
+  Json json = {{"metric", requirement.metric}};
+  json["by_default"] = requirement.by_default;
+  json["side"] = requirement.low_limit ? "within" : requirement.below ? "below" : "above";
+  json["limit"] = Number(requirement.limit);
+  json["low_limit"] = OrNull(requirement.low_limit);
+  json["probability"] = requirement.probability;
+  json["consumer_risk"] = requirement.consumer_risk;
+  json["plan"] = {{"kind", PlanName(requirement.plan.kind)},
+                  {"looks", requirement.plan.looks},
+                  {"spending", requirement.plan.kind != PlanKind::kGroupSequential ? Json(nullptr)
+                               : requirement.plan.spending == Spending::kPocock    ? Json("pocock")
+                                                                                : Json("obrien_fleming")},
+                  {"cases", requirement.planned}};
+  json["n"] = requirement.n;
+  json["failures"] = requirement.failures;
+  json["lost_flights"] = requirement.lost_flights;
+  json["success_lower"] = OrNull(requirement.success_lower);
+  json["success_upper"] = OrNull(requirement.success_upper);
+  json["bound"] = OrNull(requirement.bound);
+  json["margin"] = OrNull(requirement.margin);
+  json["verdict"] = requirement.verdict;
+  json["accepts"] = OrNull(requirement.accepts);
+  json["rejects"] = OrNull(requirement.rejects);
+  json["looks"] = Json::array();
+  for (const Look& look : requirement.looks) {
+    json["looks"].push_back({{"n", look.n},
+                             {"failures", look.failures},
+                             {"verdict", LookVerdict(look.verdict)},
+                             {"planned", look.planned}});
+  }
+  json["beyond_plan"] = requirement.beyond_plan;
+  json["risk_if_each_look_were_the_only_one"] = OrNull(requirement.naive_risk);
+  json["contradicted"] = requirement.contradicted;
+  json["post_hoc"] = requirement.post_hoc;
+  json["cases_needed"] = OrNull(requirement.cases_needed);
+  json["pass_probability"] = Json::array();
+  for (const auto& chance : requirement.pass_chances)
+    json["pass_probability"].push_back({{"cases", chance.cases}, {"probability", chance.probability}});
+  json["convergence"] = Json::array();
+  for (const auto& at : requirement.convergence) {
+    json["convergence"].push_back({{"n", at.n},
+                                   {"failures", at.failures},
+                                   {"success_lower", Number(at.success_lower)},
+                                   {"success_upper", Number(at.success_upper)}});
+  }
+  json["sentence"] = requirement.sentence;
+  return json;
+}
+
+Json InjectionJson(const InjectionSummary& injection) {
+  Json covariance = Json::array();
+  for (const auto& row : injection.scatter.covariance) {
+    Json& list = covariance.emplace_back(Json::array());
+    for (const double value : row) list.push_back(Number(value));
+  }
+  Json mean = Json::array();
+  for (const double value : injection.scatter.mean) mean.push_back(Number(value));
+  Json containment = Json::array();
+  for (const Containment& one : injection.containment) {
+    containment.push_back({{"stated", one.stated},
+                           {"inside", one.inside},
+                           {"empirical", one.empirical},
+                           {"lower", one.limits.lower},
+                           {"upper", one.limits.upper}});
+  }
+  return {{"coordinates", kInjectionMetrics},
+          {"n", injection.scatter.n},
+          {"mean", mean},
+          {"covariance", covariance},
+          {"containment", containment}};
+}
+
+Json NominalJson(const CaseResult& nominal) {
+  Json metrics = Json::object();
+  for (std::size_t i = 0; i < nominal.metrics.size(); ++i)
+    metrics[MetricNames()[i]] = Number(nominal.metrics[i]);
+  return {{"outcome", OutcomeName(nominal.outcome)},
+          {"end_time_s", Number(nominal.end_time_s)},
+          {"metrics", metrics},
+          {"digest", nominal.digest.Hex()}};
+}
+
+}  // namespace
+
+std::string SummaryJson(const CampaignSummary& summary) {
+  Json json;
+  json["schema"] = "dispersa/summary/1";
+  json["campaign"] = {{"name", summary.name},           {"id", summary.id},
+                      {"flight_id", summary.flight_id}, {"seed", summary.seed},
+                      {"cases", summary.cases},         {"max_cases", summary.max_cases},
+                      {"planned_cases", summary.planned_cases},
+                      {"sampling", SamplingMethodName(summary.sampling)},
+                      {"design", IsIndependent(summary.sampling) ? "monte_carlo" : "study"},
+                      {"design_points", IsEnumerated(summary.sampling) ? Json(summary.design_points) : Json(nullptr)},
+                      {"replicates", summary.replicates},
+                      {"vehicle", summary.vehicle},     {"reference", summary.reference},
+                      {"autopilot", summary.autopilot}};
+  if (summary.python_law)
+    json["campaign"]["python_law"] = {{"name", summary.python_law->name},
+                                      {"sha256", summary.python_law->sha256}};
+  json["engine"] = summary.engine;
+  json["reference_orbit"] = {
+      {"altitude_km", Number(summary.reference_orbit.altitude_m * 1e-3)},
+      {"velocity_m_s", Number(summary.reference_orbit.velocity_m_s)},
+      {"flight_path_angle_deg", Number(summary.reference_orbit.flight_path_angle_rad * kDegPerRad)},
+      {"inclination_deg", Number(summary.reference_orbit.inclination_rad * kDegPerRad)}};
+  json["verdict"] = CampaignVerdictName(summary.verdict);
+  json["design_study"] = !IsIndependent(summary.sampling);
+  json["warnings"] = Warnings(summary);
+  json["flown"] = summary.flown;
+  json["outcomes"] = Json::object();
+  for (int i = 0; i < kOutcomeCount; ++i) {
+    json["outcomes"][OutcomeName(static_cast<Outcome>(i))] = summary.outcomes[static_cast<std::size_t>(i)];
+  }
+  json["lost_flights"] = Json::array();
+  for (const LostFlight& lost : summary.lost_flights) {
+    json["lost_flights"].push_back({{"case_index", lost.case_index},
+                                    {"outcome", OutcomeName(lost.outcome)},
+                                    {"end_time_s", Number(lost.end_time_s)},
+                                    {"end_stage", lost.end_stage},
+                                    {"reason", lost.reason}});
+  }
+  json["limits"] = {{"exceeded", summary.beyond_limits}, {"loads", Json::array()}};
+  for (const CampaignSummary::Limit& one : summary.limits) {
+    json["limits"]["loads"].push_back(
+        {{"metric", one.metric},
+         {"limit", one.limit},
+         {"exceeded", one.exceeded},
+         {"largest", OrNull(one.largest)},
+         {"largest_case", one.largest ? Json(one.largest_case) : Json(nullptr)}});
+  }
+  json["near_step_limit"] = summary.near_step_limit;
+  json["requirements"] = Json::array();
+  for (const RequirementSummary& requirement : summary.requirements) {
+    json["requirements"].push_back(RequirementJson(requirement));
+  }
+  json["joint"] = {{"method", summary.holm ? "holm" : "each"},
+                   {"overall_risk", summary.overall_risk},
+                   {"any_risk", summary.any_risk},
+                   {"requirements_id", summary.requirements_id},
+                   {"registered_requirements_id", summary.registered_requirements_id},
+                   {"sentence", JointRiskSentence(summary)}};
+  json["metrics"] = Json::object();
+  for (const MetricSummary& metric : summary.metrics) {
+    Json& of = json["metrics"][metric.name] = StatisticsJson(metric.statistics);
+    of["skewness"] = Number(metric.skewness);
+    of["percentile_confidence"] = kPercentileConfidence;
+    for (const Percentile& percentile : metric.percentiles) {
+      of["percentiles"][percentile.name] = {{"estimate", Number(percentile.estimate)},
+                                            {"lower", Number(percentile.limits.lower)},
+                                            {"upper", Number(percentile.limits.upper)}};
+    }
+  }
+  json["injection"] = summary.injection ? InjectionJson(*summary.injection) : Json(nullptr);
+  json["drivers"] = Json::object();
+  for (const MetricDrivers& metric : summary.drivers) {
+    Json& list = json["drivers"][metric.metric] = Json::array();
+    for (const Driver& driver : metric.drivers) {
+      list.push_back({{"input", driver.input},
+                      {"same_as", driver.same_as},
+                      {"feature", driver.feature},
+                      {"index", Number(driver.index)},
+                      {"low", Number(driver.low)},
+                      {"high", Number(driver.high)},
+                      {"partial_rank_correlation", Number(driver.partial)}});
+    }
+  }
+  json["failure_drivers"] = Json::array();
+  for (const FailureDrivers& requirement : summary.failure_drivers) {
+    Json list = Json::array();
+    for (const FailureDriver& driver : requirement.drivers) {
+      list.push_back({{"input", driver.input},
+                      {"feature", driver.feature},
+                      {"larger", driver.larger},
+                      {"p", Number(driver.p)},
+                      {"false_discovery_rate", Number(driver.false_discovery_rate)}});
+    }
+    json["failure_drivers"].push_back({{"metric", requirement.metric},
+                                       {"basis", requirement.nearest ? "nearest" : "failed"},
+                                       {"flights", requirement.flights},
+                                       {"inputs", std::move(list)}});
+  }
+  json["quarantined"] = Json::array();
+  for (const QuarantinedCase& quarantined : summary.quarantined) {
+    json["quarantined"].push_back({{"case_index", quarantined.case_index}, {"reason", quarantined.reason}});
+  }
+  json["worst_cases"] = Json::array();
+  for (const WorstCases& worst : summary.worst_cases) {
+    for (const WorstCase& one : worst.cases) {
+      json["worst_cases"].push_back(
+          {{"metric", worst.metric},
+           {"case_index", one.case_index},
+           {"value", OrNull(one.value)},
+           {"outcome", OutcomeName(one.outcome)},
+           {"replay", summary.python_law ? Json(nullptr) : Json(ReplayCommand(one.case_index))}});
+    }
+  }
+  json["dispersions"] = Json::array();
+  for (const DispersionSummary& dispersion : summary.dispersions) {
+    json["dispersions"].push_back({{"dispersion", dispersion.dispersion},
+                                   {"input", dispersion.input},
+                                   {"declared", dispersion.declared},
+                                   {"expected_mean", OrNull(dispersion.expected_mean)},
+                                   {"expected_std", OrNull(dispersion.expected_std)},
+                                   {"consistent", OrNull(dispersion.consistent)},
+                                   {"drawn", StatisticsJson(dispersion.drawn)}});
+  }
+  json["envelope"] = summary.envelope ? Json{{"flights", summary.envelope->flights},
+                                             {"extreme_flights", summary.envelope->extreme_flights}}
+                                      : Json(nullptr);
+  json["nominal"] = summary.nominal ? NominalJson(*summary.nominal) : Json(nullptr);
+  return json.dump(2) + "\n";
+}
+
+std::string ReplayCommand() { return "dispersa replay . --case "; }
+
+std::string ReplayCommand(std::uint64_t case_index) { return ReplayCommand() + std::to_string(case_index); }
+
+}  // namespace dispersa

@@ -1,0 +1,71 @@
+// The causes of a report: what drives each key metric, and what failing flights have in common.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/pages/html_parts.h"
+#include "core/results/metric_catalogue.h"
+#include "core/pages/report_sections.h"
+#include "core/results/text.h"
+
+namespace dispersa {
+namespace {
+
+std::string Share(double index) { return fmt::format("{:.1f} %", 100.0 * index); }
+
+/// A row of the tornado: names and numbers, and below them a bar as wide as the screen gives, with its interval.
+std::string Bar(const Driver& driver) {
+  std::string names = "<code>" + HtmlText(driver.input) + "</code>";
+  for (const std::string& same : driver.same_as) names += " = <code>" + HtmlText(same) + "</code>";
+  return fmt::format(
+      "<li><span class=\"cause\">{} <span class=\"soft\">by {}{}</span></span><span class=\"n\"><b>{}</b> "
+      "<span class=\"soft\">{} to {}</span></span><svg viewBox=\"0 0 1000 10\" preserveAspectRatio=\"none\" "
+      "aria-hidden=\"true\"><rect class=\"track\" width=\"1000\" height=\"10\"/><rect class=\"bar\" width=\"{:.1f}\" "
+      "height=\"10\"/><path class=\"whisker\" d=\"M{:.1f} 5H{:.1f}\"/></svg></li>\n",
+      names, HtmlText(driver.feature),
+      std::isfinite(driver.partial) ? ", partial " + FixedText(driver.partial, 2) : std::string(), Share(driver.index),
+      Share(driver.low), Share(driver.high), 1000.0 * driver.index, 1000.0 * driver.low, 1000.0 * driver.high);
+}
+
+
+}  // namespace
+
+std::string CausesSection(const CampaignSummary& summary) {
+  std::string html =
+      "<h2 id=\"causes\">Causes</h2>\n<p>First-order Sobol indices from the flown cases: the share of a "
+      "metric’s "
+      "variance over the completed flights that each input explains by itself, signed, symmetric or "
+      "circular, with "
+      "its interval of 95 %. The feature is the function of the input that ranks the flights best; “along” "
+      "is a "
+      "magnitude in a direction. The partial rank correlation holds the other inputs. Inputs that rank the flights alike (“=”) cannot be told apart. What the shares leave "
+      "is "
+      "interaction and noise.</p>\n";
+  bool any = false;
+  for (const MetricDrivers& metric : summary.drivers) {
+    if (metric.drivers.empty()) continue;
+    any = true;
+    html += "<h3>" + HtmlText(DescribeMetric(metric.metric).title) + "</h3>\n";
+    html += "<ol class=\"tornado\">\n";
+    for (const Driver& driver : metric.drivers) html += Bar(driver);
+    html += "</ol>\n";
+  }
+  if (!any) html += "<p>Fewer than 30 completed flights, or nothing that varies: no cause can be told.</p>\n";
+  for (const FailureDrivers& requirement : summary.failure_drivers) {
+    if (requirement.drivers.empty()) continue;
+    html += fmt::format("<h3>{} of {}: {} {}</h3>\n", requirement.nearest ? "Nearest to failing" : "Failing",
+                        HtmlText(DescribeMetric(requirement.metric).title), requirement.flights,
+                        requirement.flights == 1 ? "flight" : "flights");
+    HtmlTable table(
+        {{"Input"}, {"Feature"}, {"Among them"}, {"p", true}, {"False discoveries up to here", true}});
+    for (const FailureDriver& driver : requirement.drivers) {
+      table.Row({"<code>" + HtmlText(driver.input) + "</code>", HtmlText(driver.feature),
+                 driver.larger ? "larger" : "smaller", ReadableText(driver.p),
+                 Share(driver.false_discovery_rate)});
+    }
+    html += table.Html("causes");
+  }
+  return html;
+}
+
+}  // namespace dispersa

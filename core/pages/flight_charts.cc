@@ -1,0 +1,273 @@
+#include "core/pages/flight_charts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "core/pages/html_parts.h"
+#include "core/pages/svg_chart.h"
+#include "core/results/text.h"
+
+namespace dispersa {
+namespace {
+
+constexpr char kTimeAxis[] = "time since lift-off, s";
+/// Below this dynamic pressure, Pa, incidence has no effect to speak of.
+constexpr double kThinAir_pa = 1000.0;
+
+std::vector<double> Column(const History& history, const char* name, double factor = 1.0) {
+  const int column = FindHistoryColumn(name);
+  assert(column >= 0);
+  std::vector<double> values(history.rows());
+  for (std::size_t row = 0; row < values.size(); ++row) values[row] = history.at(row, column) * factor;
+  return values;
+}
+
+/// When stages burn, read from a flight's history.
+struct Burns {
+  struct Burn {
+    int stage;
+    double from_s;
+    double to_s;
+  };
+  std::vector<Burn> burns;
+
+  explicit Burns(const History& history) {
+    const std::vector<double> time_s = Column(history, "time_s");
+    const std::vector<double> stage = Column(history, "stage");
+    const std::vector<double> thrust_n = Column(history, "thrust_n");
+    for (std::size_t row = 0; row < time_s.size(); ++row) {
+      if (thrust_n[row] <= 0.0) continue;
+      const int now = static_cast<int>(stage[row]);
+      if (burns.empty() || burns.back().stage != now) burns.push_back({now, time_s[row], time_s[row]});
+      burns.back().to_s = time_s[row];
+    }
+  }
+
+  /// Ignitions, and gaps of more than 10 s as coast.
+  void AddTo(SvgChart* chart) const {
+    for (std::size_t i = 0; i < burns.size(); ++i) {
+      if (i > 0 && burns[i].from_s - burns[i - 1].to_s > 10.0)
+        chart->Shade(burns[i - 1].to_s, burns[i].from_s, "coast");
+      chart->Mark(burns[i].from_s, fmt::format("S{}", burns[i].stage));
+    }
+  }
+};
+
+struct BandView {
+  const char* column;
+  const char* label;
+  double factor = 1.0;            ///< from the column's unit to the label's
+  bool deviation = false;         ///< from the nominal, beside which the spread would not be seen
+  std::optional<double> from_s = {}, to_s = {};
+  bool nominal = true;
+  bool limits = false;  ///< draw those of the requirements on the peak
+  int width = 520;
+};
+
+std::vector<double> Scaled(std::vector<double> values, double factor) {
+  for (double& value : values) value *= factor;
+  return values;
+}
+
+/// The nominal flight at the steps of the bands; undefined after its end.
+std::vector<double> AtSteps(const History& nominal, const char* column, const FlightBands& bands) {
+  std::vector<double> values = SampleFlight(nominal, {FindHistoryColumn(column)}, bands.step_s)[0];
+  values.resize(bands.time_s.size(), std::nan(""));
+  return values;
+}
+
+std::string BandFigure(const BandView& view, const FlightHistories& histories, const CampaignSummary& summary,
+                       const Burns& burns, const std::string& caption) {
+  const FlightBands& bands = histories.bands;
+  const auto band = std::find_if(bands.bands.begin(), bands.bands.end(),
+                                 [&](const Band& candidate) { return candidate.column == view.column; });
+  assert(band != bands.bands.end());
+  SvgChart chart({.label = kTimeAxis, .low = view.from_s, .high = view.to_s}, {.label = view.label}, view.width,
+                 280);
+  burns.AddTo(&chart);
+  const std::vector<double> nominal =
+      view.deviation ? AtSteps(histories.nominal_history, view.column, bands) : std::vector<double>();
+  const auto shown = [&](std::vector<double> values) {
+    for (std::size_t i = 0; i < nominal.size(); ++i) values[i] -= nominal[i];
+    return Scaled(std::move(values), view.factor);
+  };
+  chart.Band(bands.time_s, shown(band->min), shown(band->max), "band-outer", "min–max");
+  chart.Band(bands.time_s, shown(band->p05), shown(band->p95), "band-inner", "5–95 %");
+  chart.Line(bands.time_s, shown(band->p50), "line-0", "median");
+  if (view.nominal && !view.deviation) {
+    chart.Line(Column(histories.nominal_history, "time_s"),
+               Column(histories.nominal_history, view.column, view.factor), "line-1", "nominal");
+  }
+  if (view.limits) {
+    for (const RequirementSummary& requirement : summary.requirements) {
+      if (requirement.metric != "pitch_error_peak_deg") continue;
+      chart.HorizontalLimit(requirement.limit, "limit of the peak");
+      chart.HorizontalLimit(-requirement.limit, "");
+    }
+  }
+  std::string figure = Figure(chart.Svg(caption), HtmlText(caption));
+  if (view.width > 600) figure.replace(0, 7, "<figure class=\"wide\"");
+  return figure;
+}
+
+/// The last time at which the air is thick enough, and a little more.
+double AtmosphereEnd(const std::vector<double>& time_s, const std::vector<double>& qbar_pa) {
+  double end_s = 0.0;
+  for (std::size_t i = 0; i < time_s.size(); ++i) {
+    if (qbar_pa[i] >= kThinAir_pa) end_s = time_s[i];
+  }
+  return 10.0 * std::ceil(0.1 * (end_s + 5.0));
+}
+
+}  // namespace
+
+std::string NominalFigures(const History& nominal) {
+  const Burns burns(nominal);
+  const std::vector<double> time_s = Column(nominal, "time_s");
+  const std::vector<double> qbar_pa = Column(nominal, "qbar_pa");
+  const double air_end_s = AtmosphereEnd(time_s, qbar_pa);
+  std::string figures = "<div class=\"figures\">\n";
+  const auto add = [&](SvgChart chart, const std::string& caption) {
+    burns.AddTo(&chart);
+    figures += Figure(chart.Svg(caption), HtmlText(caption));
+  };
+
+  SvgChart pitch({.label = kTimeAxis}, {.label = "pitch from the launch horizon, °"});
+  pitch.Line(time_s, Column(nominal, "pitch_launch_deg"), "line-0", "flown");
+  pitch.Line(time_s, Column(nominal, "pitch_program_deg"), "program", "program");
+  add(pitch, "Pitch program and pitch in the launch-inertial frame.");
+
+  SvgChart error({.label = kTimeAxis}, {.label = "pitch error, °"});
+  error.Line(time_s, Column(nominal, "pitch_error_deg"), "line-0", "");
+  add(error, "Pitch error: true minus reference attitude about body y, the coast included.");
+
+  SvgChart altitude({.label = kTimeAxis}, {.label = "altitude, km"});
+  altitude.Line(time_s, Column(nominal, "altitude_m", 1e-3), "line-0", "");
+  add(altitude, "Geodetic altitude.");
+
+  SvgChart velocity({.label = kTimeAxis}, {.label = "inertial velocity, m/s"});
+  velocity.Line(time_s, Column(nominal, "inertial_velocity_m_s"), "line-0", "");
+  add(velocity, "Inertial speed; it begins with the Earth's rotation.");
+
+  SvgChart angle({.label = kTimeAxis}, {.label = "flight path angle, °"});
+  angle.Line(time_s, Column(nominal, "flight_path_angle_deg"), "line-0", "");
+  add(angle, "Inertial flight path angle.");
+
+  SvgChart deflection({.label = kTimeAxis}, {.label = "deflection, °"});
+  deflection.Line(time_s, Column(nominal, "deflection_pitch_deg"), "line-0", "pitch");
+  deflection.Line(time_s, Column(nominal, "deflection_yaw_deg"), "line-1", "yaw");
+  deflection.Line(time_s, Column(nominal, "deflection_roll_deg"), "line-2", "roll");
+  add(deflection, "Gimbal deflection of each channel.");
+
+  SvgChart pressure({.label = kTimeAxis, .low = 0.0, .high = air_end_s}, {.label = "dynamic pressure, kPa"});
+  pressure.Line(time_s, Scaled(qbar_pa, 1e-3), "line-0", "");
+  add(pressure, "Dynamic pressure.");
+
+  std::vector<double> alpha_deg = Column(nominal, "alpha_deg");
+  for (std::size_t i = 0; i < alpha_deg.size(); ++i) {
+    if (qbar_pa[i] < kThinAir_pa) alpha_deg[i] = std::nan("");
+  }
+  SvgChart incidence({.label = kTimeAxis, .low = 0.0, .high = air_end_s}, {.label = "angle of attack, °"});
+  incidence.Line(time_s, alpha_deg, "line-0", "");
+  add(incidence, "Angle of attack against the air, where the dynamic pressure is at least 1 kPa.");
+  return figures + "</div>\n";
+}
+
+std::string EnvelopeFigures(const FlightHistories& histories, const CampaignSummary& summary,
+                            double kick_end_s) {
+  const Burns burns(histories.nominal_history);
+  const std::vector<double> time_s = Column(histories.nominal_history, "time_s");
+  const double air_end_s = AtmosphereEnd(time_s, Column(histories.nominal_history, "qbar_pa"));
+  const double pitch_over_end_s = 5.0 * std::ceil(0.2 * (kick_end_s + 5.0));
+  std::string figures = "<div class=\"figures\">\n";
+  const auto add = [&](const BandView& view, const std::string& caption) {
+    figures += BandFigure(view, histories, summary, burns, caption);
+  };
+  add({.column = "pitch_error_deg", .label = "pitch error, °", .limits = true, .width = 1060},
+      "Pitch error over the whole flight. The requirement binds powered flight; in the coast the reaction "
+      "control's "
+      "dead band shows.");
+  add({.column = "pitch_error_deg", .label = "pitch error, °", .from_s = 0.0, .to_s = pitch_over_end_s},
+      "Pitch error during lift-off and the initial pitch-over.");
+  if (!burns.burns.empty() && burns.burns.size() > 1) {
+    const Burns::Burn& last = burns.burns.back();
+    add({.column = "pitch_error_deg",
+         .label = "pitch error, °",
+         .from_s = 10.0 * std::floor(0.1 * (last.from_s - 5.0)),
+         .to_s = 10.0 * std::ceil(0.1 * last.to_s)},
+        fmt::format("Pitch error while stage {} burns.", last.stage));
+  }
+  add({.column = "altitude_m", .label = "altitude minus that of the nominal, km", .factor = 1e-3, .deviation = true},
+      "How far the flights lie above the nominal one at the same time.");
+  add({.column = "deflection_pitch_deg", .label = "pitch deflection, °"}, "Deflection of the pitch channel.");
+  add({.column = "yaw_error_deg", .label = "yaw error, °", .nominal = false}, "Yaw error.");
+  add({.column = "roll_error_deg", .label = "roll error, °", .nominal = false}, "Roll error.");
+  add({.column = "qbar_pa",
+       .label = "dynamic pressure, kPa",
+       .factor = 1e-3,
+       .from_s = 0.0,
+       .to_s = air_end_s},
+      "Dynamic pressure.");
+  add({.column = "alpha_deg", .label = "angle of attack, °", .from_s = 2.0, .to_s = air_end_s},
+      "Angle of attack against the air, wind included, from 2 s on (at rest it has no meaning).");
+  return figures + "</div>\n";
+}
+
+std::string WorstFigures(const FlightHistories& histories, const CampaignSummary& summary) {
+  struct View {
+    const char* metrics;  ///< beginning of their names
+    const char* column;
+    const char* label;
+    bool in_air;
+  };
+  static constexpr View kViews[] = {{"pitch_error", "pitch_error_deg", "pitch error, °", false},
+                                    {"yaw_error", "yaw_error_deg", "yaw error, °", false},
+                                    {"roll_error", "roll_error_deg", "roll error, °", false},
+                                    {"deflection", "deflection_pitch_deg", "pitch deflection, °", false},
+                                    {"q_alpha", "alpha_deg", "angle of attack, °", true}};
+  constexpr std::size_t kLines = 4;
+  const Burns burns(histories.nominal_history);
+  const FlightBands& bands = histories.bands;
+  const double air_end_s = AtmosphereEnd(Column(histories.nominal_history, "time_s"),
+                                         Column(histories.nominal_history, "qbar_pa"));
+  std::string figures;
+  for (const View& view : kViews) {
+    std::vector<std::uint64_t> shown;
+    for (const WorstCases& worst : summary.worst_cases) {
+      if (!worst.metric.starts_with(view.metrics)) continue;
+      for (const WorstCase& one : worst.cases) {
+        const bool written =
+            std::binary_search(histories.written_cases.begin(), histories.written_cases.end(), one.case_index);
+        if (written && shown.size() < kLines && std::find(shown.begin(), shown.end(), one.case_index) == shown.end())
+          shown.push_back(one.case_index);
+      }
+    }
+    if (shown.empty()) continue;
+    const auto band = std::find_if(bands.bands.begin(), bands.bands.end(),
+                                   [&](const Band& candidate) { return candidate.column == view.column; });
+    ChartAxis time{.label = kTimeAxis};
+    if (view.in_air) time.low = 2.0, time.high = air_end_s;
+    SvgChart chart(time, {.label = view.label}, 1060, 280);
+    burns.AddTo(&chart);
+    chart.Band(bands.time_s, band->min, band->max, "band-outer", "min–max");
+    chart.Band(bands.time_s, band->p05, band->p95, "band-inner", "5–95 %");
+    for (std::size_t i = 0; i < shown.size(); ++i) {
+      const auto at = std::lower_bound(histories.written_cases.begin(), histories.written_cases.end(), shown[i]) -
+                      histories.written_cases.begin();
+      const auto& values = histories.written_flights[static_cast<std::size_t>(at)]
+                                                    [static_cast<std::size_t>(band - bands.bands.begin())];
+      std::vector<double> time_s(bands.time_s.begin(), bands.time_s.begin() + std::ssize(values));
+      chart.CaseLine(time_s, values, fmt::format("line-{}", i), shown[i]);
+    }
+    const std::string caption = fmt::format("Worst cases over the envelope: {}.", view.label);
+    figures += "<figure class=\"wide\"" + Figure(chart.Svg(caption), HtmlText(caption)).substr(7);
+  }
+  return figures.empty() ? "" : "<div class=\"figures\">\n" + figures + "</div>\n";
+}
+
+}  // namespace dispersa

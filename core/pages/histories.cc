@@ -1,0 +1,182 @@
+#include "core/pages/histories.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "core/analysis/band_counter.h"
+#include "core/results/output_file.h"
+#include "core/results/text.h"
+
+namespace dispersa {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kHistoryStep_s = 0.1;
+/// Short against the transients of an ignition (about a second), and a multiple of the other step.
+constexpr double kBandStep_s = 0.2;
+/// Worst cases of each key metric that get a history.
+constexpr std::size_t kWorstWritten = 2;
+
+/// Quantities whose spread over the cases is shown.
+const char* const kBandColumns[] = {"altitude_m",
+                                    "pitch_launch_deg",
+                                    "pitch_program_deg",
+                                    "pitch_error_deg",
+                                    "yaw_error_deg",
+                                    "roll_error_deg",
+                                    "deflection_pitch_deg",
+                                    "deflection_yaw_deg",
+                                    "deflection_roll_deg",
+                                    "alpha_deg",
+                                    "beta_deg",
+                                    "qbar_pa"};
+
+std::vector<int> BandColumns() {
+  std::vector<int> columns;
+  for (const char* name : kBandColumns) {
+    const int column = FindHistoryColumn(name);
+    assert(column >= 0);
+    columns.push_back(column);
+  }
+  return columns;
+}
+
+void CheckReproduced(const ResultFolder& folder, std::uint64_t case_index, const Digest& flown) {
+  const Digest stored = folder.Load(case_index).digest;
+  if (stored == flown) return;
+  throw ResultError(
+      ResultError::Kind::kConflict,
+      fmt::format("case {} does not reproduce its stored result: digest {} is stored, {} was flown now",
+                  case_index, stored.Hex(), flown.Hex()));
+}
+
+/// Other worst cases may have had their histories there before.
+void EmptyDirectory(const fs::path& directory) {
+  std::error_code error;
+  fs::remove_all(directory, error);
+  if (!error) fs::create_directories(directory, error);
+  if (error) {
+    throw ResultError(
+        error == std::errc::no_space_on_device ? ResultError::Kind::kDiskFull : ResultError::Kind::kFile,
+        fmt::format("{}: cannot be made anew: {}", directory.string(), error.message()));
+  }
+}
+
+std::vector<std::uint64_t> WorstToWrite(const CampaignSummary& summary) {
+  std::set<std::uint64_t> indices;
+  for (const WorstCases& worst : summary.worst_cases) {
+    for (std::size_t i = 0; i < std::min(kWorstWritten, worst.cases.size()); ++i)
+      indices.insert(worst.cases[i].case_index);
+  }
+  return {indices.begin(), indices.end()};
+}
+
+}  // namespace
+
+std::string HistoryCsv(const History& history) {
+  const std::vector<std::string>& columns = HistoryColumns();
+  std::string csv;
+  for (std::size_t i = 0; i < columns.size(); ++i) csv += (i == 0 ? "" : ",") + columns[i];
+  csv += "\n";
+  for (std::size_t row = 0; row < history.rows(); ++row) {
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      if (i > 0) csv += ",";
+      csv += ShortestText(history.at(row, static_cast<int>(i)));
+    }
+    csv += "\n";
+  }
+  return csv;
+}
+
+std::vector<std::size_t> ExtremeRows(const CaseColumns& cases) {
+  std::set<std::size_t> rows;
+  for (const CaseColumn& column : cases.metrics) {
+    const std::vector<double> values = column;
+    std::size_t least = values.size(), largest = values.size();
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (!std::isfinite(values[i])) continue;
+      if (least == values.size() || values[i] < values[least]) least = i;
+      if (largest == values.size() || values[i] > values[largest]) largest = i;
+    }
+    if (least < values.size()) rows.insert({least, largest});
+  }
+  return {rows.begin(), rows.end()};
+}
+
+void RemoveHistories(const ResultFolder& folder) {
+  std::error_code ignored;  // what cannot be removed is out of date, and the report does not name it
+  fs::remove_all(folder.directory() / "histories", ignored);
+}
+
+FlightHistories WriteHistories(const ResultFolder& folder, const Campaign& campaign,
+                               const CampaignSummary& summary, const CaseColumns& cases,
+                               const ReportOptions& options) {
+  const auto progress = [&](const char* what, std::size_t done, std::size_t total) {
+    if (options.progress) options.progress(what, done, total);
+  };
+  const fs::path directory = folder.directory() / "histories";
+  EmptyDirectory(directory);
+  const CampaignFlights flights(campaign);
+  FlightHistories histories;
+
+  progress("nominal flight", 0, 1);
+  histories.nominal_history.step_s = kHistoryStep_s;
+  histories.nominal = flights.FlyNominal(&histories.nominal_history);
+  WriteFile(directory / "nominal.csv", HistoryCsv(histories.nominal_history));
+
+  // Only cases that have a result are flown: a quarantined one may take this process with it. The first cases are a
+  // fair sample, of which percentiles can be told; no case's peak lies outside minimum and maximum.
+  histories.written_cases = WorstToWrite(summary);
+  const std::size_t sampled = static_cast<std::size_t>(
+      std::lower_bound(cases.index.begin(), cases.index.end(), options.history_cases) - cases.index.begin());
+  std::vector<std::uint64_t> indices(cases.index.begin(), cases.index.begin() + static_cast<std::ptrdiff_t>(sampled));
+  std::set<std::uint64_t> beyond(histories.written_cases.begin(), histories.written_cases.end());
+  for (const std::size_t row : ExtremeRows(cases)) beyond.insert(cases.index[row]);
+  for (const std::uint64_t index : beyond) {
+    if (!std::binary_search(cases.index.begin(), cases.index.begin() + static_cast<std::ptrdiff_t>(sampled), index))
+      indices.push_back(index);
+  }
+  const std::vector<int> columns = BandColumns();
+  BandCounter counter(columns, kBandStep_s);
+  const std::vector<std::uint64_t>& written = histories.written_cases;
+  histories.written_flights.resize(written.size());
+  std::size_t flown = 0;
+  const auto fly = [&](std::size_t from, std::size_t to) {
+    std::vector<CaseOrder> orders;
+    for (std::size_t i = from; i < to; ++i) {
+      const bool in_full = std::binary_search(written.begin(), written.end(), indices[i]);
+      orders.push_back({indices[i], in_full ? kHistoryStep_s : kBandStep_s});
+    }
+    flights.FlyCases(orders, options.threads, [&](std::size_t i, const CaseResult& result, const History& history) {
+      const std::size_t at = from + i;
+      CheckReproduced(folder, indices[at], result.digest);
+      SampledFlight samples = SampleFlight(history, columns, kBandStep_s);
+      const auto found = std::lower_bound(written.begin(), written.end(), indices[at]);
+      if (found != written.end() && *found == indices[at]) {
+        WriteFile(directory / fmt::format("case_{}.csv", indices[at]), HistoryCsv(history));
+        histories.written_flights[static_cast<std::size_t>(found - written.begin())] = samples;
+      }
+      if (at < sampled) {
+        counter.Add(std::move(samples));
+      } else {
+        counter.AddExtreme(samples);
+      }
+      progress("time histories", ++flown, indices.size());
+    });
+  };
+  // Those that the counter keeps go first, whoever of them lands first.
+  const std::size_t kept = std::min(sampled, BandCounter::kKept);
+  fly(0, kept);
+  fly(kept, indices.size());
+  histories.bands = counter.Bands();
+  WriteFile(directory / "bands.csv", BandsCsv(histories.bands));
+  return histories;
+}
+
+}  // namespace dispersa

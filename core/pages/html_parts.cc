@@ -1,0 +1,78 @@
+#include "core/pages/html_parts.h"
+
+#include <fmt/format.h>
+
+#include "core/pages/embedded.h"
+#include "core/results/text.h"
+
+namespace dispersa {
+namespace {
+
+/// A string of CSS: what could end it, or the style sheet around it, as an escape.
+std::string CssString(std::string_view text) {
+  std::string css = "\"";
+  for (const char c : text) {
+    const bool plain = c != '"' && c != '\\' && c != '<' && static_cast<unsigned char>(c) >= 0x20;
+    css += plain ? std::string(1, c) : fmt::format("\\{:06x}", static_cast<unsigned char>(c));
+  }
+  return css + "\"";
+}
+
+}  // namespace
+
+std::string Tile(const std::string& value, const std::string& label) {
+  return fmt::format("<div class=\"tile\"><b>{}</b><span>{}</span></div>", value, label);
+}
+
+std::string Code(const std::string& text) { return "<code>" + HtmlText(text) + "</code>"; }
+
+std::string WithUnit(double value, const std::string& unit) {
+  return ReadableText(value) + (unit.empty() ? "" : " " + unit);
+}
+
+void HtmlTable::Row(const std::vector<std::string>& cells, std::string_view row_class) {
+  rows_ += row_class.empty() ? std::string("<tr>") : fmt::format("<tr class=\"{}\">", row_class);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    rows_ += fmt::format("<td{}>{}</td>", columns_[i].number ? " class=\"n\"" : "", cells[i]);
+  }
+  rows_ += "</tr>\n";
+}
+
+void HtmlTable::Wide(const std::string& cell, std::string_view row_class) {
+  rows_ +=
+      fmt::format("<tr class=\"{}\"><td colspan=\"{}\">{}</td></tr>\n", row_class, columns_.size(), cell);
+}
+
+std::string HtmlTable::Html(std::string_view table_class) const {
+  std::string head;
+  for (const Column& column : columns_) {
+    head += fmt::format("<th{}>{}</th>", column.number ? " class=\"n\"" : "", column.title);
+  }
+  return fmt::format(
+      "<div class=\"scroll\"><table{}><thead><tr>{}</tr></thead>\n<tbody>\n{}</tbody></table></div>\n",
+      table_class.empty() ? "" : fmt::format(" class=\"{}\"", table_class), head, rows_);
+}
+
+std::string Figure(const std::string& svg, const std::string& caption_html) {
+  return fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", svg, caption_html);
+}
+
+std::string VerdictBadge(std::string_view verdict) {
+  const std::string_view sign = verdict == "pass"           ? "✓"
+                                : verdict == "fail"         ? "✗"
+                                : verdict == "inconclusive" ? "?"
+                                : verdict == "study"        ? "◇"
+                                                            : "…";
+  return fmt::format("<span class=\"badge {}\">{} {}</span>", verdict, sign, verdict);
+}
+
+std::string PageHead(const std::string& title, const std::string& footer, const std::string& more_style) {
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+      "content=\"width=device-width, initial-scale=1\">\n<title>{} – dispersa</title>\n<style>{}{}\n"
+      "@page {{ @bottom-left {{ content: {}; }} @bottom-right {{ content: counter(page) \" / \" counter(pages); }} }}"
+      "\n</style>\n</head>\n<body>\n",
+      HtmlText(title), StyleSheet(), more_style, CssString(footer));
+}
+
+}  // namespace dispersa

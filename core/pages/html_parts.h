@@ -1,0 +1,46 @@
+// Pieces of a page: tables, figures, and the style sheet.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace dispersa {
+
+/// A table whose columns are text (left) or numbers (right). Cells are HTML already.
+class HtmlTable {
+ public:
+  struct Column {
+    std::string title;
+    bool number = false;
+  };
+
+  explicit HtmlTable(std::vector<Column> columns) : columns_(std::move(columns)) {}
+
+  void Row(const std::vector<std::string>& cells, std::string_view row_class = "");
+  /// One cell over the whole width.
+  void Wide(const std::string& cell, std::string_view row_class);
+  /// As wide as the page, or only as its contents.
+  std::string Html(std::string_view table_class = "") const;
+
+ private:
+  std::vector<Column> columns_;
+  std::string rows_;
+};
+
+/// A chart with what to see in it.
+std::string Figure(const std::string& svg, const std::string& caption_html);
+
+/// "pass", "fail", "inconclusive", "incomplete" as a coloured label that is also readable without colour.
+std::string VerdictBadge(std::string_view verdict);
+
+/// A number of the head of a page above what it counts.
+std::string Tile(const std::string& value, const std::string& label);
+std::string Code(const std::string& text);
+/// "12.5 deg"; without a unit the number alone.
+std::string WithUnit(double value, const std::string& unit);
+
+/// Everything of a page before its contents. In print `footer` stands below each page, beside its number.
+std::string PageHead(const std::string& title, const std::string& footer, const std::string& more_style = "");
+
+}  // namespace dispersa

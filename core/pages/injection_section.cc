@@ -1,0 +1,44 @@
+#include <fmt/format.h>
+
+#include "core/pages/html_parts.h"
+#include "core/pages/report_sections.h"
+#include "core/results/metric_catalogue.h"
+#include "core/results/text.h"
+
+namespace dispersa {
+
+std::string InjectionSection(const InjectionSummary& injection) {
+  const PointScatter& scatter = injection.scatter;
+  std::string html = fmt::format(
+      "<h3>Covariance of the injection</h3>\n<p>Of {} completed flights, in altitude, velocity and flight "
+      "path angle together; "
+      "<code>summary.json</code> has the covariance itself. An ellipsoid holds the stated share if the "
+      "scatter is "
+      "normal; what it really holds of these flights says whether it is.</p>\n",
+      scatter.n);
+  HtmlTable spread(
+      {{""}, {"Mean", true}, {"Std", true}, {"Correlation with altitude", true}, {"with velocity", true}});
+  for (std::size_t i = 0; i < kInjectionMetrics.size(); ++i) {
+    const MetricInfo info = DescribeMetric(kInjectionMetrics[i]);
+    std::vector<std::string> row = {HtmlText(info.title + ", " + info.unit), ReadableText(scatter.mean[i]),
+                                    ReadableText(std::sqrt(scatter.covariance[i][i]))};
+    for (std::size_t j = 0; j < 2; ++j) {
+      const double variances = scatter.covariance[i][i] * scatter.covariance[j][j];
+      row.push_back(
+          j >= i || !(variances > 0.0) ? "" : FixedText(scatter.covariance[i][j] / std::sqrt(variances), 3));
+    }
+    spread.Row(row);
+  }
+  html += spread.Html("narrow");
+  if (injection.containment.empty()) return html + "<p>Too few flights, or no spread, for ellipsoids.</p>\n";
+  HtmlTable contained(
+      {{"Stated", true}, {"Flights inside", true}, {"Share", true}, {"its 95 % limits", true}});
+  for (const Containment& one : injection.containment) {
+    contained.Row({PercentText(one.stated), fmt::format("{} of {}", one.inside, scatter.n),
+                   PercentText(one.empirical),
+                   PercentText(one.limits.lower) + " … " + PercentText(one.limits.upper)});
+  }
+  return html + contained.Html("narrow");
+}
+
+}  // namespace dispersa

@@ -1,0 +1,98 @@
+#include "core/pages/report_page.h"
+
+#include <fmt/format.h>
+
+#include "core/pages/case_data.h"
+#include "core/pages/distribution_charts.h"
+#include "core/pages/flight_charts.h"
+#include "core/pages/html_parts.h"
+#include "core/pages/embedded.h"
+#include "core/pages/report_sections.h"
+#include "core/results/text.h"
+
+namespace dispersa {
+namespace {
+
+constexpr char kNavigation[] =
+    "<nav><a href=\"#requirements\">Requirements</a><a href=\"#outcomes\">Outcomes</a><a "
+    "href=\"#envelope\">Envelope</a>"
+    "<a href=\"#distributions\">Distributions</a><a href=\"#causes\">Causes</a><a href=\"#worst\">Worst cases</a><a "
+    "href=\"#nominal\">Nominal flight</a>"
+    "<a href=\"#statistics\">Statistics</a><a href=\"#dispersions\">Dispersions</a><a href=\"#limits\">Not "
+    "modelled</a>"
+    "<a href=\"#provenance\">Provenance</a></nav>\n";
+
+}  // namespace
+
+std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary, const CaseColumns& cases,
+                       const FlightHistories& histories) {
+  std::string page =
+      PageHead(summary.name, fmt::format("Dispersion campaign {} · {}", summary.name, summary.id.substr(0, 16)));
+  page += HeaderSection(summary);
+  page += kNavigation;
+  page += RequirementsSection(summary);
+  page += OutcomesSection(summary);
+
+  page += "<h2 id=\"envelope\">Envelope of the dispersed flights</h2>\n";
+  const bool flown_again = histories.nominal_history.rows() > 0;
+  if (summary.flown == 0) {
+    page += "<p>No case has a result.</p>\n";
+  } else if (!flown_again || histories.bands.flights == 0) {
+    page += summary.python_law ? "<p>This report was made without time histories.</p>\n"
+                               : "<p>This report was made without time histories: <code>dispersa report "
+                                 ".</code> adds them.</p>\n";
+  } else {
+    const FlightBands& bands = histories.bands;
+    const std::string sample = bands.flights == summary.flown
+                                   ? fmt::format("all {} flown cases", summary.flown)
+                                   : fmt::format("the first {} of {} flown cases", bands.flights, summary.flown);
+    const std::string extremes =
+        bands.extreme_flights == 0
+            ? std::string(" Minimum and maximum are over the same flights.")
+            : fmt::format(" Minimum and maximum are over these and {} more, which are the least or the largest of all "
+                          "in some metric: no case’s peak of a stage lies outside, but at other times a case that was "
+                          "not flown again may.",
+                          bands.extreme_flights);
+    page += fmt::format(
+        "<p>Pointwise percentiles over {}, flown again and sampled every {} s; a lost flight counts until it "
+        "is "
+        "lost.{} S1 to S{} mark ignitions. Peaks between the samples are in the metrics, not here. Numbers: "
+        "<code>histories/bands.csv</code>.</p>\n",
+        sample, ReadableText(bands.step_s), extremes, campaign.vehicle.stages.size());
+    page += EnvelopeFigures(histories, summary, campaign.reference.program.t2_s);
+  }
+
+  page += "<h2 id=\"distributions\">Distribution of key metrics</h2>\n<div class=\"figures\">\n";
+  for (const WorstCases& worst : summary.worst_cases)
+    page += DistributionFigures(worst.metric, summary, cases);
+  page += "</div>\n";
+  if (summary.flown > 0) {
+    page += "<h3>Spread of the orbit</h3>\n<p>";
+    page +=
+        campaign.guidance.closed_loop
+            ? "Guidance is closed loop: it steers the last stages by a navigated state to the orbit."
+            : "Guidance is open loop: the autopilot follows the pitch program, and nothing corrects what "
+              "dispersed thrust, flow and drag do to speed and altitude. No requirement should rest on it.";
+    page += "</p>\n<div class=\"figures\">\n" + InjectionFigures(summary, cases) + "</div>\n";
+    if (summary.injection) page += InjectionSection(*summary.injection);
+  }
+
+  page += CausesSection(summary);
+  page += WorstCasesSection(summary, histories);
+  if (flown_again && histories.bands.flights > 0) page += WorstFigures(histories, summary);
+  page +=
+      "<h2 id=\"nominal\">Nominal flight</h2>\n<p>The flight without dispersions, through the same closed "
+      "loop. It is not "
+      "one of the cases. Numbers: <code>histories/nominal.csv</code>.</p>\n";
+  page += flown_again ? NominalFigures(histories.nominal_history)
+                      : "<p>This report was made without time histories.</p>\n";
+  page += StatisticsSection(summary);
+  page += DispersionsSection(summary);
+  page += NotModelledSection(campaign);
+  page += ProvenanceSection(campaign, summary);
+  page += "<script type=\"application/json\" id=\"cases\">" + CaseData(summary, cases) + "</script>\n<script>";
+  page += ReportScript();
+  return page + "</script>\n</body>\n</html>\n";
+}
+
+}  // namespace dispersa

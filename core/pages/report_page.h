@@ -1,0 +1,18 @@
+// report.html: one file for a review board, readable offline and on paper.
+#pragma once
+
+#include <string>
+
+#include "core/campaign/campaign.h"
+#include "core/analysis/campaign_summary.h"
+#include "core/results/case_columns.h"
+#include "core/pages/histories.h"
+
+namespace dispersa {
+
+/// The whole page. Its numbers are those of summary.json, rounded for reading; it holds no date, time of
+/// computation, path or name of a machine.
+std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary, const CaseColumns& cases,
+                       const FlightHistories& histories);
+
+}  // namespace dispersa

@@ -1,0 +1,450 @@
+#include "core/pages/report_sections.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/math/constants.h"
+#include "core/pages/html_parts.h"
+#include "core/results/metric_catalogue.h"
+#include "core/results/sampling_text.h"
+#include "core/results/text.h"
+
+namespace dispersa {
+namespace {
+
+/// For the middle of a sentence.
+std::string Lower(std::string title) {
+  if (!title.empty() && title[0] >= 'A' && title[0] <= 'Z')
+    title[0] = static_cast<char>(title[0] - 'A' + 'a');
+  return HtmlText(title);
+}
+
+std::string ReplayCell(const CampaignSummary& summary, std::uint64_t case_index) {
+  if (summary.python_law) return fmt::format("<span data-case=\"{}\">–</span>", case_index);
+  return fmt::format("<code class=\"copy\" data-case=\"{}\">{}</code>", case_index, ReplayCommand(case_index));
+}
+
+std::string OutcomeWords(Outcome outcome) {
+  std::string words = OutcomeName(outcome);
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return words;
+}
+
+std::ptrdiff_t Violated(const CampaignSummary& summary) {
+  return std::count_if(summary.requirements.begin(), summary.requirements.end(),
+                       [](const RequirementSummary& requirement) { return requirement.failures > 0; });
+}
+
+std::string PassSentence(const CampaignSummary& summary) {
+  const auto met =
+      std::count_if(summary.requirements.begin(), summary.requirements.end(),
+                    [](const RequirementSummary& requirement) { return requirement.verdict == "pass"; });
+  const bool open = static_cast<std::size_t>(met) < summary.requirements.size();
+  // All that may be open in a pass: the limits that nobody asked for, kept by too few flights to say more.
+  return (met == 0   ? "The campaign states no requirements"
+          : met == 1 ? "The one requirement is met"
+                     : fmt::format("All {} requirements are met", met)) +
+         std::string(open ? ", and no flight exceeded a limit of the vehicle." : ".");
+}
+
+/// What the requirements come to together, in one sentence.
+std::string VerdictSentence(const CampaignSummary& summary) {
+  const auto count = [&](const char* verdict) {
+    return std::count_if(
+        summary.requirements.begin(), summary.requirements.end(),
+        [&](const RequirementSummary& requirement) { return requirement.verdict == verdict; });
+  };
+  const std::size_t all = summary.requirements.size();
+  switch (summary.verdict) {
+    case CampaignVerdict::kStudy:
+      return fmt::format("A design study of {} points: each requirement is met at every one.", summary.cases);
+    case CampaignVerdict::kStudyViolated:
+      return fmt::format("A design study of {} points: {} of {} requirements {} violated at some.", summary.cases,
+                         Violated(summary), all, Violated(summary) == 1 ? "is" : "are");
+    case CampaignVerdict::kIncomplete:
+      if (summary.flown == summary.cases)
+        return fmt::format("{} of the design's {} points were flown.", summary.flown, summary.design_points);
+      return fmt::format("{} of {} cases have a result{}.", summary.flown, summary.cases,
+                         summary.quarantined.empty()
+                             ? "; the campaign can be resumed"
+                             : fmt::format("; {} are quarantined", summary.quarantined.size()));
+    case CampaignVerdict::kFail:
+      return fmt::format("{} of {} requirements {} not met.", count("fail"), all,
+                         count("fail") == 1 ? "is" : "are");
+    case CampaignVerdict::kInconclusive:
+      return fmt::format("{} of {} requirements cannot be decided with {} cases; none has failed.",
+                         count("inconclusive"), all, summary.flown);
+    case CampaignVerdict::kPass:
+      return PassSentence(summary);
+  }
+  return "";
+}
+
+const Summary* FindMetric(const CampaignSummary& summary, const std::string& name) {
+  for (const MetricSummary& metric : summary.metrics) {
+    if (metric.name == name) return &metric.statistics;
+  }
+  return nullptr;
+}
+
+/// Metrics under one heading of the statistics table, by the beginning of their names.
+struct MetricGroup {
+  const char* title;
+  std::vector<std::string> prefixes;
+};
+
+const std::vector<MetricGroup>& MetricGroups() {
+  static const std::vector<MetricGroup> groups = {
+      {"Attitude", {"pitch_error", "yaw_error", "roll_error", "handover"}},
+      {"Deflection", {"deflection"}},
+      {"Loads", {"q_", "alpha", "axial", "lateral", "structural"}},
+      {"Injection", {"injection", "apogee", "perigee", "inclination"}},
+      {"Others", {""}},
+  };
+  return groups;
+}
+
+std::size_t GroupOf(const std::string& name) {
+  const std::vector<MetricGroup>& groups = MetricGroups();
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    for (const std::string& prefix : groups[i].prefixes) {
+      if (name.starts_with(prefix)) return i;
+    }
+  }
+  return groups.size() - 1;
+}
+
+/// An estimate with its limits below it, or the bound that is all the sample gives.
+std::string PercentileCell(const MetricSummary& metric, const std::string& name) {
+  for (const Percentile& percentile : metric.percentiles) {
+    if (percentile.name != name) continue;
+    const Interval& limits = percentile.limits;
+    const bool above = std::isfinite(limits.lower);
+    const bool below = std::isfinite(limits.upper);
+    if (!std::isfinite(percentile.estimate)) return above ? "≥ " + ReadableText(limits.lower) : "–";
+    return ReadableText(percentile.estimate) + "<span class=\"definition\">" +
+           (above && below ? ReadableText(limits.lower) + " … " + ReadableText(limits.upper)
+            : above        ? "≥ " + ReadableText(limits.lower)
+            : below        ? "≤ " + ReadableText(limits.upper)
+                           : "no limits") +
+           "</span>";
+  }
+  return "–";
+}
+
+std::string LimitsTable(const CampaignSummary& summary) {
+  if (summary.limits.empty()) return "";
+  HtmlTable table(
+      {{"Load"}, {"Limit", true}, {"Largest", true}, {"of case", true}, {"Flights beyond", true}});
+  for (const CampaignSummary::Limit& one : summary.limits) {
+    const MetricInfo info = DescribeMetric(one.metric);
+    table.Row({HtmlText(info.title), WithUnit(one.limit, info.unit),
+               one.largest ? WithUnit(*one.largest, info.unit) : "–",
+               one.largest ? std::to_string(one.largest_case) : "–",
+               one.exceeded == 0 ? "0" : fmt::format("<span class=\"badge fail\">{}</span>", one.exceeded)});
+  }
+  return "<h3>Limits of the vehicle</h3>\n" + table.Html("narrow");
+}
+
+double NominalValue(const CampaignSummary& summary, std::size_t metric) {
+  return summary.nominal ? summary.nominal->metrics[metric] : std::nan("");
+}
+
+}  // namespace
+
+std::string HeaderSection(const CampaignSummary& summary) {
+  const std::uint64_t completed = summary.outcomes[static_cast<std::size_t>(Outcome::kCompleted)];
+  std::string html = fmt::format(
+      "<header>\n<h1>Dispersion campaign {}</h1>\n<p class=\"soft\">{} · reference {} · autopilot {} · {}, "
+      "{} cases, seed "
+      "{}</p>\n",
+      HtmlText(summary.name), HtmlText(summary.vehicle), HtmlText(summary.reference),
+      HtmlText(summary.autopilot), SamplingMethodTitle(summary.sampling), summary.cases, summary.seed);
+  const bool certain_fail =
+      summary.verdict == CampaignVerdict::kIncomplete &&
+      std::any_of(summary.requirements.begin(), summary.requirements.end(),
+                  [](const RequirementSummary& requirement) { return requirement.verdict == "fail"; });
+  const char* beyond =
+      summary.beyond_limits == 0 ? "" : "<span class=\"badge fail\">structural limit exceeded</span>";
+  html += fmt::format("<div class=\"headline{}\">{}{}{}<p>{}</p></div>\n",
+                      summary.beyond_limits == 0 ? "" : " exceeded",
+                      VerdictBadge(CampaignVerdictName(summary.verdict)), beyond,
+                      certain_fail ? VerdictBadge("fail")
+                      : IsIndependent(summary.sampling) || summary.verdict == CampaignVerdict::kStudy ||
+                              summary.verdict == CampaignVerdict::kStudyViolated
+                          ? ""
+                          : "<span class=\"badge design\">design study</span>",
+                      VerdictSentence(summary));
+  const std::vector<std::string> warnings = Warnings(summary);
+  if (!warnings.empty()) {
+    html += "<ul class=\"warnings\">";
+    for (const std::string& warning : warnings) html += "<li>" + HtmlText(warning) + "</li>";
+    html += "</ul>\n";
+  }
+  html += "<div class=\"tiles\">";
+  html += Tile(fmt::format("{} / {}", summary.flown, summary.cases), "cases flown");
+  html += Tile(summary.flown == 0
+                   ? "–"
+                   : PercentText(static_cast<double>(completed) / static_cast<double>(summary.flown)),
+               "of them completed");
+  for (const char* name : {"pitch_error_rms_deg", "pitch_error_peak_deg", "deflection_peak_deg"}) {
+    const Summary* metric = FindMetric(summary, name);
+    if (metric == nullptr) continue;
+    const MetricInfo info = DescribeMetric(name);
+    html += Tile(WithUnit(metric->p50, info.unit), "median " + Lower(info.title));
+  }
+  return html + "</div>\n</header>\n";
+}
+
+std::string OutcomesSection(const CampaignSummary& summary) {
+  std::string html = "<h2 id=\"outcomes\">Outcomes</h2>\n";
+  HtmlTable table({{"Outcome"}, {"Cases", true}, {"Share of those flown", true}});
+  for (int i = 0; i < kOutcomeCount; ++i) {
+    const std::uint64_t count = summary.outcomes[static_cast<std::size_t>(i)];
+    const double share =
+        summary.flown == 0 ? std::nan("") : static_cast<double>(count) / static_cast<double>(summary.flown);
+    table.Row({OutcomeWords(static_cast<Outcome>(i)), std::to_string(count), PercentText(share)});
+  }
+  if (!summary.limits.empty()) {
+    const double share =
+        summary.flown == 0 ? std::nan("")
+                           : static_cast<double>(summary.beyond_limits) / static_cast<double>(summary.flown);
+    table.Row({"a limit of the structure exceeded, however it ended",
+               summary.beyond_limits == 0
+                   ? "0"
+                   : fmt::format("<span class=\"badge fail\">{}</span>", summary.beyond_limits),
+               PercentText(share)});
+  }
+  if (summary.near_step_limit > 0)
+    table.Row(
+        {"near the limit of the integration's step, however it ended",
+         std::to_string(summary.near_step_limit),
+         PercentText(static_cast<double>(summary.near_step_limit) / static_cast<double>(summary.flown))});
+  html += table.Html("narrow");
+  html += LimitsTable(summary);
+  if (!summary.lost_flights.empty()) {
+    const std::uint64_t lost =
+        summary.flown - summary.outcomes[static_cast<std::size_t>(Outcome::kCompleted)];
+    html += fmt::format("<h3>Lost flights: {}</h3>\n", lost);
+    HtmlTable lost_table(
+        {{"Case", true}, {"Outcome"}, {"Time, s", true}, {"Stage", true}, {"Reason"}, {"To fly it again"}});
+    for (const LostFlight& flight : summary.lost_flights) {
+      lost_table.Row({std::to_string(flight.case_index), OutcomeWords(flight.outcome),
+                      ReadableText(flight.end_time_s), std::to_string(flight.end_stage),
+                      HtmlText(flight.reason), ReplayCell(summary, flight.case_index)});
+    }
+    // A long list is folded away on screen and printed in full.
+    const std::string which = lost > summary.lost_flights.size()
+                                  ? fmt::format("the first {}; <code>cases.csv</code> has all of them",
+                                                summary.lost_flights.size())
+                                  : "all of them";
+    html += lost > 20 ? "<details><summary>" + which + "</summary>\n" + lost_table.Html() + "</details>\n"
+                      : lost_table.Html();
+  }
+  if (!summary.quarantined.empty()) {
+    html +=
+        "<h3>Quarantined cases</h3>\n<p>Given up because they killed or hung their workers. They have no "
+        "result: "
+        "verdicts count them as failed for a pass and as met for a failure.</p>\n";
+    HtmlTable quarantine({{"Case", true}, {"Reason"}});
+    for (const QuarantinedCase& one : summary.quarantined) {
+      quarantine.Row({std::to_string(one.case_index), HtmlText(one.reason)});
+    }
+    html += quarantine.Html();
+  }
+  return html;
+}
+
+std::string WorstCasesSection(const CampaignSummary& summary, const FlightHistories& histories) {
+  std::string html =
+      "<h2 id=\"worst\">Worst cases</h2>\n<p>A lost flight first, if there is one; all are listed under "
+      "Outcomes.";
+  html +=
+      summary.python_law
+          ? "</p>\n"
+          : " The commands run in the result folder and check that the case comes out the same to the last "
+            "bit; <code>--history FILE</code> adds its time history.</p>\n";
+  HtmlTable table(
+      {{"Metric"}, {"Case", true}, {"Value", true}, {"Outcome"}, {"To fly it again"}, {"Time history"}});
+  for (const WorstCases& worst : summary.worst_cases) {
+    const MetricInfo info = DescribeMetric(worst.metric);
+    for (std::size_t i = 0; i < worst.cases.size(); ++i) {
+      const WorstCase& one = worst.cases[i];
+      const bool written =
+          std::binary_search(histories.written_cases.begin(), histories.written_cases.end(), one.case_index);
+      table.Row({i == 0 ? HtmlText(info.title) : "", std::to_string(one.case_index),
+                 one.value ? WithUnit(*one.value, info.unit) : "–", OutcomeWords(one.outcome),
+                 ReplayCell(summary, one.case_index),
+                 written ? Code(fmt::format("histories/case_{}.csv", one.case_index)) : ""});
+    }
+  }
+  return html + table.Html();
+}
+
+std::string StatisticsSection(const CampaignSummary& summary) {
+  std::string html =
+      "<h2 id=\"statistics\">Statistics of every metric</h2>\n<p>Over the completed flights that define "
+      "the metric; n says how many, and lost flights are listed under Outcomes. Under each percentile its limits of "
+      "95 %, of any distribution; one that so few flights cannot reach is shown as a bound. Attitude and "
+      "deflection "
+      "metrics cover powered flight, ignition to burnout of each stage with its transients; the coast has "
+      "its own.</p>\n";
+  HtmlTable table({{"Nominal", true},
+                   {"n", true},
+                   {"Mean", true},
+                   {"Std", true},
+                   {"Skewness", true},
+                   {"Min", true},
+                   {"p50", true},
+                   {"p95", true},
+                   {"p99", true},
+                   {"p99.73", true},
+                   {"Max", true}});
+  for (std::size_t group = 0; group < MetricGroups().size(); ++group) {
+    bool titled = false;
+    for (std::size_t i = 0; i < summary.metrics.size(); ++i) {
+      const MetricSummary& metric = summary.metrics[i];
+      if (GroupOf(metric.name) != group) continue;
+      if (!titled) table.Wide(MetricGroups()[group].title, "group");
+      titled = true;
+      const MetricInfo info = DescribeMetric(metric.name);
+      const bool part =
+          metric.name.find("_stage") != std::string::npos || metric.name.find("_coast") != std::string::npos;
+      const std::string definition =
+          part || info.definition.empty()
+              ? ""
+              : " <span class=\"soft\">" + HtmlText(info.definition) + "</span>";
+      const Summary& s = metric.statistics;
+      // Above its numbers: beside twelve of them no name finds room.
+      table.Wide("<div><b>" + HtmlText(info.title) + (info.unit.empty() ? "" : ", " + HtmlText(info.unit)) + "</b>" +
+                     definition + "</div>",
+                 "name");
+      table.Row({ReadableText(NominalValue(summary, i)), std::to_string(s.n), ReadableText(s.mean),
+                 ReadableText(s.std), ReadableText(metric.skewness), ReadableText(s.min),
+                 PercentileCell(metric, "p50"), PercentileCell(metric, "p95"), PercentileCell(metric, "p99"),
+                 PercentileCell(metric, "p99_73"), ReadableText(s.max)},
+                "numbers");
+    }
+  }
+  return html + table.Html("statistics");
+}
+
+std::string DispersionsSection(const CampaignSummary& summary) {
+  std::string html = "<h2 id=\"dispersions\">Dispersions, declared and drawn</h2>\n";
+  if (summary.dispersions.empty())
+    return html + "<p>The campaign disperses nothing: every case is the nominal flight.</p>\n";
+  html +=
+      "<p>What was drawn is read back from the inputs as each flight applied them. “Agrees” means that mean "
+      "and "
+      "standard deviation lie within five standard errors of the declared ones.</p>\n";
+  HtmlTable table({{"Input"},
+                   {"Declared"},
+                   {"Expected mean", true},
+                   {"drawn", true},
+                   {"Expected std", true},
+                   {"drawn", true},
+                   {"Min", true},
+                   {"Max", true},
+                   {"Check"}});
+  for (const DispersionSummary& one : summary.dispersions) {
+    const auto text = [](const std::optional<double>& value) { return value ? ReadableText(*value) : "–"; };
+    table.Row({Code(one.input), HtmlText(one.declared), text(one.expected_mean), ReadableText(one.drawn.mean),
+               text(one.expected_std), ReadableText(one.drawn.std), ReadableText(one.drawn.min),
+               ReadableText(one.drawn.max),
+               !one.consistent   ? "–"
+               : *one.consistent ? "agrees"
+                                 : "<span class=\"badge fail\">differs</span>"});
+  }
+  return html + table.Html();
+}
+
+std::string NotModelledSection(const Campaign& campaign) {
+  const std::optional<StructureBeam>& beam = campaign.vehicle.structure_beam;
+  const bool has_turbulence =
+      std::any_of(campaign.dispersions.begin(), campaign.dispersions.end(),
+                  [](const Dispersion& d) { return d.name.starts_with("turbulence"); });
+  std::string html = "<h2 id=\"limits\">What is not modelled</h2>\n<ul>\n";
+  html +=
+      beam && beam->flown_modes > 0
+          ? R"html(<li>The vehicle bends by the modes of its file; they are only as good as that stiffness and damping. There is
+no slosh, no torsion, no local mode, and the body's acceleration does not move the nozzles.</li>
+)html"
+          : R"html(<li>The vehicle is rigid: no bending modes, no slosh. Gain and phase margins against
+flexible modes cannot be read from this report.</li>
+)html";
+  html +=
+      campaign.guidance.closed_loop
+          ? R"html(<li>Guidance knows each motor's shape of thrust exactly, and is told its state with the constant errors that
+the campaign declares: no navigation filter, no error that grows.</li>
+)html"
+          : R"html(<li>Guidance is open loop: the pitch program is flown over time, and nothing steers out errors of speed or
+altitude. Thrust, mass flow and drag therefore spread the orbit by tens of kilometres whatever the autopilot
+does; injection metrics are reported for that spread and are no measure of the autopilot.</li>
+)html";
+  if (CutsOffAtVelocity(campaign.vehicle))
+    html +=
+        R"html(<li>Engines are cut off at the true inertial velocity: that speeds at injection hardly differ is the
+cut-off's doing, and no measure of guidance or autopilot.</li>
+)html";
+  html +=
+      R"html(<li>The attitude is measured without other errors than the gyro bias and noise that a campaign declares: no
+filter, no alignment error.</li>
+<li>Separation is instantaneous: no contact forces and no re-contact analysis; what disturbs it is the
+declared tip-off rate.</li>
+<li>Motors burn with constant thrust between two ramps, along a thrust curve, or as their throttle commands, shared out
+among the nozzles, without thrust oscillation. The reaction control gives ideal couples.</li>
+<li>Aerodynamic coefficients come from one table or build-up for each stack, without plume interaction or
+hysteresis; their uncertainty is what the campaign disperses.</li>
+)html";
+  html +=
+      has_turbulence
+          ? R"html(<li>Turbulence is a frozen field over altitude, the same all over the vehicle. The)html"
+          : R"html(<li>Wind stands still during a flight: a profile and a discrete gust, no continuous turbulence. The)html";
+  return html +
+         R"html( atmosphere is the US Standard Atmosphere 1976 with the density factor that the campaign declares.</li>
+</ul>
+)html";
+}
+
+std::string ProvenanceSection(const Campaign& campaign, const CampaignSummary& summary) {
+  std::string html = "<h2 id=\"provenance\">Provenance</h2>\n";
+  HtmlTable table({{""}, {""}});
+  table.Row({"Campaign id", Code(summary.id)});
+  table.Row({"Flight id", Code(summary.flight_id) +
+                              "<span class=\"definition\">of what decides a case: vehicle, reference, "
+                              "autopilot, tables, dispersions, sampling and seed, engine</span>"});
+  table.Row({"Engine", Code(summary.engine)});
+  table.Row({"Sampling", fmt::format("{}, {} cases, seed {}", SamplingMethodTitle(summary.sampling),
+                                     summary.cases, summary.seed)});
+  table.Row(
+      {"Vehicle", fmt::format("{}, {} stages", HtmlText(summary.vehicle), campaign.vehicle.stages.size())});
+  const Orbit& orbit = summary.reference_orbit;
+  table.Row(
+      {"Reference",
+       fmt::format("{}: {} km, {} m/s, {}° flight path angle, {}° inclination; found by engine {}",
+                   HtmlText(summary.reference), ReadableText(orbit.altitude_m * 1e-3),
+                   ReadableText(orbit.velocity_m_s), ReadableText(orbit.flight_path_angle_rad * kDegPerRad),
+                   ReadableText(orbit.inclination_rad * kDegPerRad), HtmlText(campaign.reference.engine))});
+  table.Row({"Autopilot", fmt::format("{}, tick {} s", HtmlText(summary.autopilot),
+                                      ReadableText(campaign.autopilot.tick_s))});
+  if (summary.python_law)
+    table.Row({"Control law", fmt::format("written in Python: {}, SHA-256 {} of what it does",
+                                          Code(summary.python_law->name), Code(summary.python_law->sha256))});
+  else if (const auto& plugin = campaign.autopilot.plugin)
+    table.Row({"Control law", fmt::format("shared object {} {}, SHA-256 {}", HtmlText(plugin->name),
+                                          HtmlText(plugin->version), Code(plugin->sha256))});
+  html += table.Html();
+  if (summary.python_law)
+    return html +
+           "<p>This folder does not hold the law, so it does not hold all that it takes to fly the campaign "
+           "again.</p>\n";
+  return html +
+         "<p>To fly the campaign again, in this folder; <code>campaign.yaml</code> holds everything that it "
+         "needs, and "
+         "<code>cases.csv</code> comes out the same byte for byte:</p>\n"
+         "<code class=\"command\">dispersa run campaign.yaml</code>\n";
+}
+
+}  // namespace dispersa

@@ -1,0 +1,67 @@
+#include "core/pages/reports.h"
+
+#include <fmt/format.h>
+
+#include "core/input/input_error.h"
+#include "core/control/law_here.h"
+#include "core/flight/engine_version.h"
+#include "core/results/case_columns.h"
+#include "core/results/cases_csv.h"
+#include "core/pages/histories.h"
+#include "core/results/output_file.h"
+#include "core/pages/report_page.h"
+#include "core/results/result_error.h"
+
+namespace dispersa {
+
+namespace {
+
+/// What was flown and reported once is not written over by less: rows that are missing now may be the
+/// folder's damage.
+void RefuseFewer(const std::filesystem::path& file, std::uint64_t cases) {
+  const std::uint64_t there = CountCases(file);
+  if (cases >= there) return;
+  throw ResultError(
+      ResultError::Kind::kFewer,
+      fmt::format("{}: it has {} cases and results.sqlite has {}: the reports stay as they are; remove "
+                  "cases.csv to have reports of {}",
+                  file.string(), there, cases, cases));
+}
+
+}  // namespace
+
+CampaignSummary WriteReports(const ResultFolder& folder, const Campaign& campaign,
+                             const ReportOptions& options) {
+  if (options.histories && folder.Provenance("engine") != EngineVersion()) {
+    throw InputError(fmt::format("{}: flown by engine {}, this one is {}: its flights cannot be flown again",
+                                 folder.directory().string(), folder.Provenance("engine"), EngineVersion()),
+                     "the engine that flew it, or --no-histories");
+  }
+  if (const auto& law = campaign.autopilot.plugin; options.histories && law && IsAbsent(*law)) {
+    throw InputError(
+        fmt::format("{}: flown with a Python law, '{}', which is not here: its cases cannot be flown again",
+                    folder.directory().string(), law->name),
+        "--no-histories; with them dispersa.report(DIR, law=...) in Python");
+  }
+  const std::filesystem::path cases_csv = folder.directory() / "cases.csv";
+  CasesCsv csv(cases_csv, folder.stages());
+  const CaseColumns cases =
+      ReadColumns(folder, DispersedInputs(campaign), [&csv](const CaseResult& result) { csv.Write(result); });
+  RefuseFewer(cases_csv, csv.rows());
+  csv.Commit();
+  CampaignSummary summary = BuildSummary(folder, campaign, cases);
+  FlightHistories histories;
+  if (options.histories) {
+    histories = WriteHistories(folder, campaign, summary, cases, options);
+    summary.nominal = histories.nominal;
+    summary.envelope = {histories.bands.flights, histories.bands.extreme_flights};
+  } else {
+    RemoveHistories(folder);
+  }
+  WriteFile(folder.directory() / "summary.json", SummaryJson(summary));
+  RecordLooks(folder, campaign, summary);
+  WriteFile(folder.directory() / "report.html", ReportPage(campaign, summary, cases, histories));
+  return summary;
+}
+
+}  // namespace dispersa

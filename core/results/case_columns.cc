@@ -1,0 +1,59 @@
+#include "core/results/case_columns.h"
+
+#include <algorithm>
+#include <memory>
+
+#include "core/flight/flight_inputs.h"
+#include "core/flight/metrics.h"
+#include "core/statistics/summary.h"
+
+namespace dispersa {
+
+CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& wanted_inputs,
+                        const std::function<void(const CaseResult&)>& observe) {
+  CaseColumns cases;
+  const std::size_t metrics = MetricCount(folder.stages());
+  const auto file = std::make_shared<ColumnFile>(folder.directory(), metrics + wanted_inputs.size());
+  std::vector<double> row(metrics + wanted_inputs.size());
+  folder.ForEach([&](const CaseResult& result) {
+    if (observe) observe(result);
+    cases.index.push_back(result.case_index);
+    cases.outcome.push_back(result.outcome);
+    if (result.outcome != Outcome::kCompleted && cases.lost_flights.size() < kListedLostFlights) {
+      cases.lost_flights.push_back(
+          {result.case_index, result.outcome, result.end_time_s, result.end_stage, result.reason});
+    }
+    std::copy(result.metrics.begin(), result.metrics.end(), row.begin());
+    for (std::size_t i = 0; i < wanted_inputs.size(); ++i)
+      row[metrics + i] = result.inputs[static_cast<std::size_t>(wanted_inputs[i])];
+    file->Append(row);
+  });
+  for (std::size_t i = 0; i < metrics; ++i) cases.metrics.emplace_back(file, i);
+  cases.inputs.resize(InputCount(folder.stages()));
+  for (std::size_t i = 0; i < wanted_inputs.size(); ++i)
+    cases.inputs[static_cast<std::size_t>(wanted_inputs[i])] = CaseColumn(file, metrics + i);
+  return cases;
+}
+
+std::vector<double> MeasuredValues(const CaseColumns& cases, const std::string& metric) {
+  const std::size_t column = MetricColumn(metric);
+  if (column >= cases.metrics.size())
+    return std::vector<double>(cases.rows(), kUndefined);  // of a stage too far
+  return cases.metrics[column];
+}
+
+std::vector<double> CompletedValues(const CaseColumns& cases, const std::string& metric) {
+  std::vector<double> values = MeasuredValues(cases, metric);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (cases.outcome[i] != Outcome::kCompleted) values[i] = kUndefined;
+  }
+  return values;
+}
+
+std::size_t LostCount(const CaseColumns& cases) {
+  return static_cast<std::size_t>(
+      std::count_if(cases.outcome.begin(), cases.outcome.end(),
+                    [](Outcome outcome) { return outcome != Outcome::kCompleted; }));
+}
+
+}  // namespace dispersa

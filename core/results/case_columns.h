@@ -1,0 +1,44 @@
+// The stored results by column: what statistics and charts are made of.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/flight/metrics.h"
+#include "core/results/case_column.h"
+#include "core/results/lost_flight.h"
+#include "core/results/result_folder.h"
+
+namespace dispersa {
+
+/// Everything in ascending order of case index; NaN = undefined.
+struct CaseColumns {
+  std::vector<std::uint64_t> index;
+  std::vector<Outcome> outcome;
+  std::vector<CaseColumn> inputs;   ///< one an input of the vehicle; empty are those that were not asked for
+  std::vector<CaseColumn> metrics;  ///< one a metric of the vehicle
+  std::vector<LostFlight> lost_flights;  ///< the first kListedLostFlights
+
+  std::size_t rows() const { return index.size(); }
+};
+
+/// A page that lists more of them is read by nobody; cases.csv has them all.
+inline constexpr std::size_t kListedLostFlights = 10000;
+
+/// Reads all metrics, and those inputs that `wanted_inputs` (positions in InputColumns()) names, in one pass;
+/// `observe`, if given, sees each result in it. A million cases take 50 MB beside the columns in use.
+CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& wanted_inputs,
+                        const std::function<void(const CaseResult&)>& observe = {});
+
+/// A metric's values, NaN where the vehicle does not have it.
+std::vector<double> MeasuredValues(const CaseColumns& cases, const std::string& metric);
+/// The same, NaN for every flight that was not completed whatever it measured until then.
+std::vector<double> CompletedValues(const CaseColumns& cases, const std::string& metric);
+
+/// Flights that were not completed.
+std::size_t LostCount(const CaseColumns& cases);
+
+}  // namespace dispersa

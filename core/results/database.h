@@ -1,0 +1,86 @@
+// SQLite with errors as ResultError. Only core/results includes it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace dispersa {
+
+class Statement;
+
+/// One connection, used by one thread at a time. Durable against a killed process, and against a power cut up
+/// to the last transactions (WAL, synchronous NORMAL); waits up to 10 s for another process's lock.
+class Database {
+ public:
+  enum class Mode { kCreate, kExisting };
+
+  Database(const std::filesystem::path& file, Mode mode);
+  ~Database();
+  Database(const Database&) = delete;
+  Database& operator=(const Database&) = delete;
+
+  void Execute(const std::string& sql);
+  Statement Prepare(const std::string& sql);
+  /// All that is committed, in the write-ahead log too, as a database of its own in the place of `file`.
+  /// Others may read and write meanwhile.
+  void CopyTo(const std::filesystem::path& file) const;
+  /// Throws the error that the connection reports for a result code.
+  [[noreturn]] void Fail(int code) const;
+
+ private:
+  friend class Statement;
+
+  std::filesystem::path file_;
+  sqlite3* handle_ = nullptr;
+};
+
+/// Rolled back unless committed.
+class Transaction {
+ public:
+  explicit Transaction(Database& database);
+  ~Transaction();
+  Transaction(const Transaction&) = delete;
+  Transaction& operator=(const Transaction&) = delete;
+  void Commit();
+
+ private:
+  Database& database_;
+  bool open_ = true;
+};
+
+/// A prepared statement. Parameters count from 1, columns from 0, as in SQLite.
+class Statement {
+ public:
+  Statement(const Database& database, const std::string& sql);
+  ~Statement();
+  Statement(const Statement&) = delete;
+  Statement& operator=(const Statement&) = delete;
+
+  /// Not finite becomes NULL, -0 becomes 0.
+  void BindReal(int parameter, double value);
+  void BindInteger(int parameter, std::int64_t value);
+  void BindText(int parameter, std::string_view value);
+
+  /// True while there is a row.
+  bool Step();
+  /// Ready for the next parameters.
+  void Reset();
+
+  /// NULL is NaN.
+  double Real(int column) const;
+  std::int64_t Integer(int column) const;
+  std::string Text(int column) const;
+
+ private:
+  void Check(int code) const;
+
+  const Database& database_;
+  sqlite3_stmt* handle_ = nullptr;
+};
+
+}  // namespace dispersa

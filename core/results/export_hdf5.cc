@@ -1,0 +1,160 @@
+#include <fmt/format.h>
+#include <hdf5.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/flight/flight_inputs.h"
+#include "core/results/case_columns.h"
+#include "core/results/export.h"
+#include "core/results/metric_catalogue.h"
+#include "core/results/result_error.h"
+
+namespace dispersa {
+namespace {
+
+/// What the library hands out, closed at the end of its scope.
+class Handle {
+ public:
+  using Close = herr_t (*)(hid_t);
+  Handle(hid_t id, Close close, const std::string& what) : id_(id), close_(close) {
+    if (id_ < 0) throw ResultError(ResultError::Kind::kFile, what + ": HDF5 cannot write it");
+  }
+  ~Handle() {
+    if (id_ >= 0) close_(id_);
+  }
+  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  operator hid_t() const { return id_; }
+
+ private:
+  hid_t id_;
+  Close close_;
+};
+
+void Check(herr_t result, const std::string& what) {
+  if (result < 0) throw ResultError(ResultError::Kind::kFile, what + ": HDF5 cannot write it");
+}
+
+/// Text of one length, padded with zeros: what every reader knows. Octave knows no UTF-8 in datasets.
+Handle TextType(std::size_t length, H5T_cset_t characters) {
+  Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "text");
+  Check(H5Tset_size(type, std::max<std::size_t>(1, length)), "text");
+  Check(H5Tset_strpad(type, H5T_STR_NULLPAD), "text");
+  Check(H5Tset_cset(type, characters), "text");
+  return type;
+}
+
+class Hdf5File {
+ public:
+  explicit Hdf5File(const std::filesystem::path& file)
+      : name_(file.string()),
+        file_(H5Fcreate(name_.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, H5P_DEFAULT), H5Fclose, name_),
+        creation_(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, name_),
+        group_creation_(H5Pcreate(H5P_GROUP_CREATE), H5Pclose, name_) {
+    // No times: the same results give the same bytes.
+    Check(H5Pset_obj_track_times(creation_, false), name_);
+    Check(H5Pset_obj_track_times(group_creation_, false), name_);
+  }
+
+  void Group(const char* path) {
+    Handle(H5Gcreate2(file_, path, H5P_DEFAULT, group_creation_, H5P_DEFAULT), H5Gclose, path);
+  }
+  void Attribute(const std::string& path, const char* name, const std::string& text) {
+    const Handle type = TextType(text.size(), H5T_CSET_UTF8);
+    const Handle space(H5Screate(H5S_SCALAR), H5Sclose, path);
+    const Handle object(H5Oopen(file_, path.c_str(), H5P_DEFAULT), H5Oclose, path);
+    const Handle attribute(H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, path);
+    std::string padded = text.empty() ? std::string(1, '\0') : text;
+    Check(H5Awrite(attribute, type, padded.data()), path);
+  }
+  void Write(const std::string& path, hid_t stored, hid_t given, std::size_t rows, const void* values) {
+    const hsize_t size = rows;
+    const Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose, path);
+    const Handle data(H5Dcreate2(file_, path.c_str(), stored, space, H5P_DEFAULT, creation_, H5P_DEFAULT),
+                      H5Dclose, path);
+    if (rows > 0) Check(H5Dwrite(data, given, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), path);
+  }
+  void Numbers(const std::string& path, const std::vector<double>& values) {
+    Write(path, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, values.size(), values.data());
+  }
+  void Integers(const std::string& path, const std::vector<std::uint64_t>& values) {
+    Write(path, H5T_STD_U64LE, H5T_NATIVE_UINT64, values.size(), values.data());
+  }
+  void Texts(const std::string& path, const std::vector<std::string>& texts) {
+    std::size_t length = 1;
+    for (const std::string& text : texts) length = std::max(length, text.size());
+    std::string padded(length * texts.size(), '\0');
+    for (std::size_t i = 0; i < texts.size(); ++i) texts[i].copy(padded.data() + i * length, length);
+    const Handle type = TextType(length, H5T_CSET_ASCII);
+    Write(path, type, type, texts.size(), padded.data());
+  }
+
+ private:
+  std::string name_;
+  Handle file_;
+  Handle creation_;
+  Handle group_creation_;
+};
+
+}  // namespace
+
+void ExportHdf5(const ResultFolder& folder, const std::filesystem::path& file) {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // what goes wrong is thrown, not printed
+  std::vector<int> inputs;
+  for (std::size_t i = 0; i < InputCount(folder.stages()); ++i) inputs.push_back(static_cast<int>(i));
+  std::vector<double> end_time_s;
+  std::vector<std::uint64_t> end_stage;
+  std::vector<std::string> outcome, reason, digest;
+  const CaseColumns cases = ReadColumns(folder, inputs, [&](const CaseResult& result) {
+    outcome.push_back(OutcomeName(result.outcome));
+    end_time_s.push_back(result.end_time_s);
+    end_stage.push_back(static_cast<std::uint64_t>(result.end_stage));
+    reason.push_back(result.reason);
+    digest.push_back(result.digest.Hex());
+  });
+
+  const std::filesystem::path temporary = file.string() + ".tmp";
+  std::error_code ignored;
+  std::filesystem::remove(temporary, ignored);
+  try {
+    {
+      Hdf5File output(temporary);
+      output.Attribute("/", "schema", "dispersa/hdf5/1");
+      for (const char* key : {"name", "campaign_id", "flight_id", "engine", "seed", "cases", "sampling"})
+        output.Attribute("/", key, folder.Provenance(key));
+      output.Group("/cases");
+      output.Integers("/cases/case_index", cases.index);
+      output.Texts("/cases/outcome", outcome);
+      output.Numbers("/cases/end_time_s", end_time_s);
+      output.Integers("/cases/end_stage", end_stage);
+      output.Texts("/cases/reason", reason);
+      output.Texts("/cases/digest", digest);
+      const auto column = [&](const std::string& path, const std::string& name, const CaseColumn& values) {
+        output.Numbers(path, values.Values());
+        output.Attribute(path, "unit", SplitUnit(name).unit);
+      };
+      output.Group("/inputs");
+      for (std::size_t i = 0; i < cases.inputs.size(); ++i)
+        column("/inputs/" + InputColumns()[i].name, InputColumns()[i].name, cases.inputs[i]);
+      output.Group("/metrics");
+      for (std::size_t i = 0; i < cases.metrics.size(); ++i)
+        column("/metrics/" + MetricNames()[i], MetricNames()[i], cases.metrics[i]);
+    }
+    std::filesystem::rename(temporary, file);
+  } catch (const std::filesystem::filesystem_error& error) {
+    std::filesystem::remove(temporary, ignored);
+    throw ResultError(ResultError::Kind::kFile,
+                      fmt::format("{}: cannot be written: {}", file.string(), error.code().message()));
+  } catch (...) {
+    std::filesystem::remove(temporary, ignored);
+    throw;
+  }
+}
+
+}  // namespace dispersa

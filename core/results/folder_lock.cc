@@ -1,0 +1,35 @@
+#include "core/results/folder_lock.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <utility>
+
+#include "core/input/input_error.h"
+
+namespace dispersa {
+
+FolderLock::FolderLock(const std::filesystem::path& directory)
+    : directory_(open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+  if (directory_ >= 0 && flock(directory_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    close(directory_);
+    throw InputError(fmt::format("{}: another dispersa process is writing this folder", directory.string()),
+                     "another folder, or to wait for that process to end");
+  }
+}
+
+FolderLock::~FolderLock() {
+  if (directory_ >= 0) close(directory_);
+}
+
+FolderLock::FolderLock(FolderLock&& other) noexcept : directory_(std::exchange(other.directory_, -1)) {}
+
+FolderLock& FolderLock::operator=(FolderLock&& other) noexcept {
+  std::swap(directory_, other.directory_);
+  return *this;
+}
+
+}  // namespace dispersa

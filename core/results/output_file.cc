@@ -1,0 +1,103 @@
+#include "core/results/output_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "core/results/result_error.h"
+
+namespace dispersa {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// Where a name leads to; a link may lead to what does not exist yet.
+fs::path Behind(const fs::path& name) {
+  std::error_code error;
+  if (!fs::is_symlink(name, error)) return name;
+  const fs::path there = fs::canonical(name, error);
+  return error ? name.parent_path() / fs::read_symlink(name) : there;
+}
+
+}  // namespace
+
+OutputFile::OutputFile(fs::path target) : target_(std::move(target)) {
+  if (target_ == "-") {
+    stream_ = stdout;
+    return;
+  }
+  struct stat there {};
+  if (stat(target_.c_str(), &there) != 0) {
+    OpenTemporary(0);
+    return;
+  }
+  if (S_ISDIR(there.st_mode)) Fail(EISDIR);
+  if (access(target_.c_str(), W_OK) != 0) Fail(errno);
+  if (S_ISREG(there.st_mode)) OpenTemporary(there.st_mode & 0777);
+}
+
+// `mode`: of the file whose place it takes; 0: there is none.
+void OutputFile::OpenTemporary(mode_t mode) {
+  target_ = Behind(target_);
+  temporary_ = target_.string() + ".tmp";
+  // What lies there is of a process that was killed, or was put there: a link would lead the writing elsewhere.
+  if (unlink(temporary_.c_str()) != 0 && errno != ENOENT) Fail(errno);
+  // Never wider than what it takes the place of, not even before it holds anything.
+  const int file =
+      open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode != 0 ? mode : 0666);
+  if (file < 0) Fail(errno);
+  stream_ = fdopen(file, "wb");
+  if (mode != 0 && fchmod(file, mode) != 0) Fail(errno);
+}
+
+// Not before there is something to write: a pipe waits for its reader.
+void OutputFile::OpenDirect() {
+  const int file = open(target_.c_str(), O_WRONLY | O_CLOEXEC);
+  if (file < 0) Fail(errno);
+  stream_ = fdopen(file, "wb");
+}
+
+OutputFile::~OutputFile() {
+  if (stream_ == stdout) return;
+  if (stream_ != nullptr) std::fclose(stream_);
+  std::error_code ignored;
+  if (!temporary_.empty()) fs::remove(temporary_, ignored);  // no more there after a commit
+}
+
+void OutputFile::Write(std::string_view bytes) {
+  if (stream_ == nullptr) OpenDirect();
+  if (std::fwrite(bytes.data(), 1, bytes.size(), stream_) != bytes.size()) Fail(errno);
+}
+
+void OutputFile::Commit() {
+  if (stream_ == nullptr) OpenDirect();
+  if (std::fflush(stream_) != 0) Fail(errno);
+  if (stream_ == stdout) return;
+  if (!temporary_.empty() && fsync(fileno(stream_)) != 0) Fail(errno);
+  std::FILE* stream = std::exchange(stream_, nullptr);
+  if (std::fclose(stream) != 0) Fail(errno);
+  if (!temporary_.empty() && std::rename(temporary_.c_str(), target_.c_str()) != 0) Fail(errno);
+}
+
+void OutputFile::Fail(int error) const {
+  const std::string name = stream_ == stdout ? "standard output" : target_.string();
+  if (error == ENOSPC || error == EDQUOT) {
+    throw ResultError(ResultError::Kind::kDiskFull, name + ": no space left on the disk");
+  }
+  throw ResultError(ResultError::Kind::kFile,
+                    fmt::format("{}: cannot be written: {}", name, std::strerror(error)));
+}
+
+void WriteFile(const std::filesystem::path& target, std::string_view bytes) {
+  OutputFile file(target);
+  file.Write(bytes);
+  file.Commit();
+}
+
+}  // namespace dispersa

@@ -1,0 +1,482 @@
+#include "core/results/result_folder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "core/flight/engine_version.h"
+#include "core/flight/flight_inputs.h"
+#include "core/flight/metrics.h"
+#include "core/results/database.h"
+#include "core/results/fingerprint.h"
+#include "core/results/output_file.h"
+#include "core/results/requirement_text.h"
+#include "core/results/sampling_text.h"
+
+namespace dispersa {
+namespace {
+
+namespace fs = std::filesystem;
+using Kind = ResultError::Kind;
+
+constexpr char kDatabaseName[] = "results.sqlite";
+constexpr char kCampaignName[] = "campaign.yaml";
+constexpr char kSchema[] = "dispersa/results/1";
+
+/// Columns of `cases` before the inputs; the digests of the flight and of the row follow the metrics.
+constexpr int kFirstInput = 5;
+
+std::string CaseColumnList(std::size_t stages, const char* type) {
+  std::string columns;
+  for (std::size_t i = 0; i < InputCount(stages); ++i)
+    columns += fmt::format(", input_{}{}", InputColumns()[i].name, type);
+  for (std::size_t i = 0; i < MetricCount(stages); ++i)
+    columns += fmt::format(", metric_{}{}", MetricNames()[i], type);
+  return columns;
+}
+
+std::string SelectCases(std::size_t stages) {
+  return "SELECT case_index, outcome, end_time_s, end_stage, reason" + CaseColumnList(stages, "") +
+         ", digest, row_digest FROM cases";
+}
+
+/// Vehicles of few stages have fewer columns.
+std::size_t StagesOf(Database& database) {
+  Statement rare = database.Prepare(
+      fmt::format("SELECT name FROM pragma_table_info('cases') WHERE name LIKE '%_stage{}%'", kMaxStages));
+  return rare.Step() ? kMaxStages : kUsualStages;
+}
+
+/// Younger than other tables: a folder may lack it.
+void CreateAudits(Database& database) {
+  database.Execute(
+      "CREATE TABLE IF NOT EXISTS audits (case_index INTEGER NOT NULL, worker TEXT NOT NULL, "
+      "PRIMARY KEY (case_index, worker))");
+}
+
+void CreateTables(Database& database, std::size_t stages) {
+  database.Execute(
+      "CREATE TABLE cases (case_index INTEGER PRIMARY KEY, outcome TEXT NOT NULL, end_time_s REAL, "
+      "end_stage INTEGER NOT NULL, reason TEXT NOT NULL" +
+      CaseColumnList(stages, " REAL") + ", digest TEXT NOT NULL, row_digest TEXT NOT NULL)");
+  database.Execute("CREATE TABLE quarantined (case_index INTEGER PRIMARY KEY, reason TEXT NOT NULL)");
+  database.Execute("CREATE TABLE provenance (key TEXT PRIMARY KEY, value TEXT NOT NULL)");
+  database.Execute(
+      "CREATE TABLE execution (case_index INTEGER NOT NULL, worker TEXT NOT NULL, host TEXT NOT NULL, "
+      "started_utc TEXT NOT NULL, seconds REAL)");
+  CreateAudits(database);
+  database.Execute(
+      "CREATE TABLE looks (requirements_id TEXT NOT NULL, requirement TEXT NOT NULL, n INTEGER NOT NULL, "
+      "failures INTEGER NOT NULL, verdict TEXT NOT NULL, PRIMARY KEY (requirements_id, requirement, n))");
+}
+
+/// `register_plan`: no case has been flown, so that the requirements and the number of cases are the plan.
+void WriteProvenance(Database& database, const Campaign& campaign, bool register_plan) {
+  Statement insert = database.Prepare("INSERT OR REPLACE INTO provenance VALUES (?, ?)");
+  const auto put = [&insert](const char* key, const std::string& value) {
+    insert.BindText(1, key);
+    insert.BindText(2, value);
+    insert.Step();
+    insert.Reset();
+  };
+  put("schema", kSchema);
+  put("campaign_id", campaign.id);
+  put("flight_id", campaign.flight_id);
+  put("engine", EngineVersion());
+  put("name", campaign.name);
+  put("seed", std::to_string(campaign.sampling.seed));
+  put("cases", std::to_string(campaign.sampling.cases));
+  put("sampling", SamplingMethodName(campaign.sampling.method));
+  if (!register_plan) return;
+  std::string lines;
+  for (const Requirement& requirement : campaign.requirements) lines += RequirementLine(requirement) + "\n";
+  put("planned_cases", std::to_string(campaign.sampling.cases));
+  put("requirements_id", campaign.requirements_id);
+  put("requirements", lines);
+}
+
+/// By the first bytes of the file format; so a wrong file is told from a damaged one.
+bool IsDatabase(const fs::path& file) {
+  constexpr char kMagic[] = "SQLite format 3";
+  char begin[sizeof kMagic] = {};
+  std::ifstream(file, std::ios::binary).read(begin, sizeof begin);
+  return std::equal(std::begin(kMagic), std::end(kMagic), std::begin(begin));
+}
+
+std::optional<Digest> ParseDigest(const std::string& hex) {
+  Digest digest;
+  if (hex.size() != 32) return std::nullopt;
+  const char* text = hex.data();
+  const auto high = std::from_chars(text, text + 16, digest.high, 16);
+  const auto low = std::from_chars(text + 16, text + 32, digest.low, 16);
+  if (high.ptr != text + 16 || low.ptr != text + 32) return std::nullopt;
+  return digest;
+}
+
+/// None if the row is damaged.
+std::optional<CaseResult> ReadRow(const Statement& row, std::size_t stages) {
+  CaseResult result;
+  result.case_index = static_cast<std::uint64_t>(row.Integer(0));
+  result.end_time_s = row.Real(2);
+  result.end_stage = static_cast<int>(row.Integer(3));
+  result.reason = row.Text(4);
+  int column = kFirstInput;
+  for (std::size_t i = 0; i < InputCount(stages); ++i) result.inputs.push_back(row.Real(column++));
+  for (std::size_t i = 0; i < MetricCount(stages); ++i) result.metrics.push_back(row.Real(column++));
+  const std::optional<Digest> digest = ParseDigest(row.Text(column));
+  if (!ParseOutcome(row.Text(1), &result.outcome) || !digest) return std::nullopt;
+  result.digest = *digest;
+  // Whatever a disk, a copy or an editor changed: no number of it reaches a table or a verdict.
+  if (Fingerprint(result).Hex() != row.Text(column + 1)) return std::nullopt;
+  return result;
+}
+
+CaseResult ReadCase(const Statement& row, std::size_t stages, const fs::path& directory) {
+  if (auto result = ReadRow(row, stages)) return *std::move(result);
+  throw ResultError(Kind::kFile,
+                    fmt::format("{}: the row of case {} is damaged; --resume flies it again",
+                                (directory / kDatabaseName).string(), row.Integer(0)));
+}
+
+/// The error for a folder that cannot be made or written, from the system's reason.
+[[noreturn]] void FailSystem(const fs::path& path, const std::error_code& error) {
+  if (error == std::errc::no_space_on_device) {
+    throw ResultError(Kind::kDiskFull, fmt::format("{}: no space left on the disk", path.string()));
+  }
+  throw InputError(fmt::format("{}: cannot be made: {}", path.string(), error.message()),
+                   "a folder that can be written");
+}
+
+}  // namespace
+
+ResultFolder::ResultFolder(fs::path directory, std::unique_ptr<Database> database)
+    : directory_(std::move(directory)), stages_(StagesOf(*database)), database_(std::move(database)) {}
+
+ResultFolder::ResultFolder(ResultFolder&&) noexcept = default;
+ResultFolder& ResultFolder::operator=(ResultFolder&&) noexcept = default;
+ResultFolder::~ResultFolder() = default;
+
+ResultFolder ResultFolder::Create(const fs::path& directory, const Campaign& campaign,
+                                  std::optional<FolderLock> lock) {
+  std::error_code error;
+  fs::create_directories(directory, error);
+  if (error) FailSystem(directory, error);
+  if (!lock) lock.emplace(directory);
+  const bool empty = fs::is_empty(directory, error);
+  if (error) FailSystem(directory, error);
+  if (!empty) {
+    throw InputError(fmt::format("{}: the folder is not empty", directory.string()),
+                     "a new or an empty folder, or --resume to go on with a campaign of the same flight id");
+  }
+  try {
+    WriteFile(directory / kCampaignName, campaign.canonical_yaml);
+  } catch (const ResultError& unwritable) {
+    // The first file in the folder: that it cannot be written is the user's choice of folder.
+    if (unwritable.kind() == Kind::kFile) throw InputError(unwritable.what(), "a folder that can be written");
+    throw;
+  }
+  // Whoever finds the database finds it whole: a start that is killed leaves none.
+  const fs::path database = directory / kDatabaseName;
+  const fs::path temporary = database.string() + ".tmp";
+  {
+    Database fresh(temporary, Database::Mode::kCreate);
+    Transaction transaction(fresh);
+    CreateTables(fresh, campaign.vehicle.stages.size());
+    WriteProvenance(fresh, campaign, true);
+    transaction.Commit();
+  }
+  fs::rename(temporary, database, error);
+  if (error) FailSystem(database, error);
+  ResultFolder folder(directory, std::make_unique<Database>(database, Database::Mode::kExisting));
+  folder.lock_ = std::move(lock);
+  return folder;
+}
+
+ResultFolder ResultFolder::Open(const fs::path& directory) {
+  std::error_code error;
+  if (!fs::is_regular_file(directory / kDatabaseName, error)) {
+    throw InputError(fmt::format("{}: not a result folder: it has no {}", directory.string(), kDatabaseName));
+  }
+  if (!IsDatabase(directory / kDatabaseName)) {
+    throw InputError(fmt::format("{}: not a result folder: its {} is no SQLite database", directory.string(),
+                                 kDatabaseName));
+  }
+  ResultFolder folder(directory,
+                      std::make_unique<Database>(directory / kDatabaseName, Database::Mode::kExisting));
+  std::string schema;
+  try {
+    schema = folder.Provenance("schema");
+    folder.database_->Prepare(SelectCases(folder.stages_));
+  } catch (const ResultError& unreadable) {
+    if (schema != kSchema) {
+      throw InputError(fmt::format("{}: not a result folder: {}", directory.string(), unreadable.what()));
+    }
+    throw InputError(
+        fmt::format("{}: flown by engine {}, whose inputs and metrics are not those of this one, {}",
+                    directory.string(), folder.Provenance("engine"), EngineVersion()));
+  }
+  return folder;
+}
+
+ResultFolder ResultFolder::Resume(const fs::path& directory, const Campaign& campaign,
+                                  std::optional<FolderLock> lock) {
+  ResultFolder folder = Open(directory);
+  folder.lock_ = std::move(lock);
+  folder.Lock();
+  const std::string flight_id = folder.Provenance("flight_id");
+  if (flight_id != campaign.flight_id) {
+    throw InputError(fmt::format("{}: holds results of flight id {}, the campaign's is {}",
+                                 directory.string(), flight_id, campaign.flight_id));
+  }
+  const std::string engine = folder.Provenance("engine");
+  if (engine != EngineVersion()) {
+    throw InputError(fmt::format("{}: holds results of engine {}, this one is {}", directory.string(), engine,
+                                 EngineVersion()));
+  }
+  const std::vector<std::uint64_t> present = folder.PresentCases();
+  if (!present.empty() && present.back() >= campaign.sampling.cases) {
+    throw InputError(fmt::format("{}: already holds case {}, the campaign has only {} cases",
+                                 directory.string(), present.back(), campaign.sampling.cases));
+  }
+  WriteFile(directory / kCampaignName, campaign.canonical_yaml);
+  Transaction transaction(*folder.database_);
+  WriteProvenance(*folder.database_, campaign, present.empty());
+  CreateAudits(*folder.database_);
+  folder.RemoveDamaged();
+  transaction.Commit();
+  return folder;
+}
+
+void ResultFolder::Lock() {
+  if (!lock_) lock_.emplace(directory_);
+}
+
+void ResultFolder::RemoveDamaged() {
+  {
+    Statement select = database_->Prepare(SelectCases(stages_));
+    while (select.Step()) {
+      if (!ReadRow(select, stages_)) damaged_.push_back(static_cast<std::uint64_t>(select.Integer(0)));
+    }
+  }
+  Remove(damaged_);
+}
+
+void ResultFolder::Remove(const std::vector<std::uint64_t>& cases) {
+  for (const char* table : {"cases", "execution"}) {
+    Statement remove = database_->Prepare(fmt::format("DELETE FROM {} WHERE case_index = ?", table));
+    for (const std::uint64_t case_index : cases) {
+      remove.Reset();
+      remove.BindInteger(1, static_cast<std::int64_t>(case_index));
+      remove.Step();
+    }
+  }
+}
+
+std::string ResultFolder::Provenance(const std::string& key) const {
+  Statement select = database_->Prepare("SELECT value FROM provenance WHERE key = ?");
+  select.BindText(1, key);
+  if (!select.Step()) {
+    throw ResultError(Kind::kFile,
+                      fmt::format("{}: no {} in the provenance", (directory_ / kDatabaseName).string(), key));
+  }
+  return select.Text(0);
+}
+
+void ResultFolder::RecordLook(const LookRecord& look) const {
+  Statement insert = database_->Prepare("INSERT OR REPLACE INTO looks VALUES (?, ?, ?, ?, ?)");
+  insert.BindText(1, look.requirements_id);
+  insert.BindText(2, look.requirement);
+  insert.BindInteger(3, look.n);
+  insert.BindInteger(4, look.failures);
+  insert.BindText(5, look.verdict);
+  insert.Step();
+}
+
+std::vector<std::int64_t> ResultFolder::PastLooks() const {
+  std::vector<std::int64_t> looks;
+  Statement select = database_->Prepare("SELECT DISTINCT n FROM looks ORDER BY n");
+  while (select.Step()) looks.push_back(select.Integer(0));
+  return looks;
+}
+
+std::size_t ResultFolder::Append(std::span<const CaseResult> results) {
+  Transaction transaction(*database_);
+  const std::size_t added = Insert(results);
+  transaction.Commit();
+  return added;
+}
+
+void ResultFolder::Store(std::span<const CaseResult> results, std::span<const ExecutionRecord> records) {
+  Transaction transaction(*database_);
+  Insert(results);
+  Insert(records);
+  transaction.Commit();
+}
+
+std::size_t ResultFolder::Insert(std::span<const CaseResult> results) {
+  std::string parameters = "?, ?, ?, ?, ?, ?, ?";
+  for (std::size_t i = 0; i < InputCount(stages_) + MetricCount(stages_); ++i) parameters += ", ?";
+  Statement stored = database_->Prepare("SELECT digest FROM cases WHERE case_index = ?");
+  Statement insert = database_->Prepare("INSERT INTO cases VALUES (" + parameters + ")");
+  Statement lift = database_->Prepare("DELETE FROM quarantined WHERE case_index = ?");
+  std::size_t added = 0;
+  for (const CaseResult& result : results) {
+    const auto index = static_cast<std::int64_t>(result.case_index);
+    const std::string digest = result.digest.Hex();
+    stored.Reset();
+    stored.BindInteger(1, index);
+    if (stored.Step()) {
+      if (stored.Text(0) == digest) continue;
+      throw ResultError(Kind::kConflict,
+                        fmt::format("case {} was flown twice with different digests: {} is stored, "
+                                    "{} arrived",
+                                    index, stored.Text(0), digest));
+    }
+    if (result.inputs.size() != InputCount(stages_) || result.metrics.size() != MetricCount(stages_)) {
+      throw ResultError(Kind::kConflict,
+                        fmt::format("case {} has {} inputs and {} metrics, its vehicle has {} and {}", index,
+                                    result.inputs.size(), result.metrics.size(), InputCount(stages_),
+                                    MetricCount(stages_)));
+    }
+    insert.Reset();
+    int parameter = 0;
+    insert.BindInteger(++parameter, index);
+    insert.BindText(++parameter, OutcomeName(result.outcome));
+    insert.BindReal(++parameter, result.end_time_s);
+    insert.BindInteger(++parameter, result.end_stage);
+    insert.BindText(++parameter, result.reason);
+    for (const double value : result.inputs) insert.BindReal(++parameter, value);
+    for (const double value : result.metrics) insert.BindReal(++parameter, value);
+    insert.BindText(++parameter, digest);
+    insert.BindText(++parameter, Fingerprint(result).Hex());
+    insert.Step();
+    lift.Reset();
+    lift.BindInteger(1, index);
+    lift.Step();
+    ++added;
+  }
+  return added;
+}
+
+void ResultFolder::Insert(std::span<const ExecutionRecord> records) {
+  Statement insert = database_->Prepare("INSERT INTO execution VALUES (?, ?, ?, ?, ?)");
+  for (const ExecutionRecord& record : records) {
+    insert.Reset();
+    insert.BindInteger(1, static_cast<std::int64_t>(record.case_index));
+    insert.BindText(2, record.worker);
+    insert.BindText(3, record.host);
+    insert.BindText(4, record.started_utc);
+    insert.BindReal(5, record.seconds);
+    insert.Step();
+  }
+}
+
+void ResultFolder::Quarantine(const QuarantinedCase& quarantined) {
+  Statement insert = database_->Prepare("INSERT OR REPLACE INTO quarantined VALUES (?, ?)");
+  insert.BindInteger(1, static_cast<std::int64_t>(quarantined.case_index));
+  insert.BindText(2, quarantined.reason);
+  insert.Step();
+}
+
+std::uint64_t ResultFolder::CaseCount() const {
+  Statement select = database_->Prepare("SELECT COUNT(*) FROM cases");
+  select.Step();
+  return static_cast<std::uint64_t>(select.Integer(0));
+}
+
+void ResultFolder::CopyDatabase(const fs::path& file) const { database_->CopyTo(file); }
+
+std::vector<std::uint64_t> ResultFolder::PresentCases() const {
+  std::vector<std::uint64_t> present;
+  Statement select = database_->Prepare("SELECT case_index FROM cases ORDER BY case_index");
+  while (select.Step()) present.push_back(static_cast<std::uint64_t>(select.Integer(0)));
+  return present;
+}
+
+std::vector<std::pair<std::uint64_t, Digest>> ResultFolder::Fingerprints() const {
+  std::vector<std::pair<std::uint64_t, Digest>> present;
+  Statement select = database_->Prepare("SELECT case_index, row_digest FROM cases ORDER BY case_index");
+  while (select.Step()) {
+    present.emplace_back(static_cast<std::uint64_t>(select.Integer(0)),
+                         ParseDigest(select.Text(1)).value_or(Digest{}));
+  }
+  return present;
+}
+
+std::optional<std::string> ResultFolder::WorkerOf(std::uint64_t case_index) const {
+  Statement select =
+      database_->Prepare("SELECT worker FROM execution WHERE case_index = ? ORDER BY rowid DESC");
+  select.BindInteger(1, static_cast<std::int64_t>(case_index));
+  return select.Step() ? std::optional(select.Text(0)) : std::nullopt;
+}
+
+void ResultFolder::AppendAudits(std::span<const Claim> claims) {
+  Transaction transaction(*database_);
+  Statement insert = database_->Prepare("INSERT OR IGNORE INTO audits VALUES (?, ?)");
+  for (const Claim& claim : claims) {
+    insert.Reset();
+    insert.BindInteger(1, static_cast<std::int64_t>(claim.case_index));
+    insert.BindText(2, claim.worker);
+    insert.Step();
+  }
+  transaction.Commit();
+}
+
+void ResultFolder::ForEachUnaudited(const std::function<void(const Claim&)>& callback) const {
+  Statement select = database_->Prepare(
+      "SELECT e.worker, c.case_index, c.row_digest FROM execution e JOIN cases c USING (case_index) "
+      "LEFT JOIN audits a USING (case_index, worker) WHERE a.worker IS NULL");
+  while (select.Step()) {
+    callback({select.Text(0), static_cast<std::uint64_t>(select.Integer(1)),
+              ParseDigest(select.Text(2)).value_or(Digest{}), false});
+  }
+}
+
+std::vector<std::uint64_t> ResultFolder::Disown(const std::string& worker) {
+  Transaction transaction(*database_);
+  std::vector<std::uint64_t> cases;
+  {
+    Statement select = database_->Prepare("SELECT case_index FROM execution WHERE worker = ?");
+    select.BindText(1, worker);
+    while (select.Step()) cases.push_back(static_cast<std::uint64_t>(select.Integer(0)));
+  }
+  Remove(cases);
+  transaction.Commit();
+  return cases;
+}
+
+std::vector<QuarantinedCase> ResultFolder::QuarantinedCases() const {
+  std::vector<QuarantinedCase> quarantined;
+  Statement select = database_->Prepare("SELECT case_index, reason FROM quarantined ORDER BY case_index");
+  while (select.Step())
+    quarantined.push_back({static_cast<std::uint64_t>(select.Integer(0)), select.Text(1)});
+  return quarantined;
+}
+
+bool ResultFolder::Contains(std::uint64_t case_index) const {
+  Statement select = database_->Prepare("SELECT 1 FROM cases WHERE case_index = ?");
+  select.BindInteger(1, static_cast<std::int64_t>(case_index));
+  return select.Step();
+}
+
+CaseResult ResultFolder::Load(std::uint64_t case_index) const {
+  Statement select = database_->Prepare(SelectCases(stages_) + " WHERE case_index = ?");
+  select.BindInteger(1, static_cast<std::int64_t>(case_index));
+  if (!select.Step()) {
+    throw InputError(fmt::format("{}: has no result of case {}", directory_.string(), case_index));
+  }
+  return ReadCase(select, stages_, directory_);
+}
+
+void ResultFolder::ForEach(const std::function<void(const CaseResult&)>& callback) const {
+  Statement select = database_->Prepare(SelectCases(stages_) + " ORDER BY case_index");
+  while (select.Step()) callback(ReadCase(select, stages_, directory_));
+}
+
+}  // namespace dispersa

@@ -1,0 +1,119 @@
+// The folder that a campaign leaves: its results in SQLite, and the campaign as flown beside them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/campaign/campaign.h"
+#include "core/campaign/case_result.h"
+#include "core/input/input_error.h"
+#include "core/results/folder_lock.h"
+#include "core/results/result_error.h"
+#include "core/results/result_store.h"
+
+namespace dispersa {
+
+class Database;
+
+/// A verdict that was read.
+struct LookRecord {
+  std::string requirements_id;  ///< Campaign's, at the time
+  std::string requirement;      ///< RequirementLine()
+  std::int64_t n = 0;
+  std::int64_t failures = 0;
+  std::string verdict;
+};
+
+/// Not thread-safe: one thread at a time. Other processes may read `results.sqlite` meanwhile (WAL).
+/// Every method throws ResultError when the disk or the database fails; InputError, where it says so, when
+/// the user named the wrong folder or case.
+class ResultFolder : public ResultStore {
+ public:
+  /// Makes the folder (parents too) with campaign.yaml and an empty results.sqlite.
+  /// InputError if it exists and is not empty, cannot be written, or another process writes it. It is locked
+  /// as long as the object lives; `lock` is the lock of a caller that has it already.
+  static ResultFolder Create(const std::filesystem::path& directory, const Campaign& campaign,
+                             std::optional<FolderLock> lock = {});
+  /// Opens a folder to go on with, possibly with more cases, other requirements or another name.
+  /// InputError if it holds another flight id or engine, or more cases than the campaign has. Rows that are
+  /// damaged are removed, so that their cases are flown again. Locked as by Create.
+  static ResultFolder Resume(const std::filesystem::path& directory, const Campaign& campaign,
+                             std::optional<FolderLock> lock = {});
+  /// Opens a folder as it is, without a lock: to read it. InputError if it is none, or its columns are not this program's.
+  static ResultFolder Open(const std::filesystem::path& directory);
+
+  ResultFolder(ResultFolder&&) noexcept;
+  ResultFolder& operator=(ResultFolder&&) noexcept;
+  ~ResultFolder() override;
+
+  const std::filesystem::path& directory() const { return directory_; }
+  /// Of the vehicle, as far as its results' columns depend on it: kUsualStages or kMaxStages.
+  std::size_t stages() const { return stages_; }
+  /// Value of "campaign_id", "flight_id", "engine", "name", "seed", "cases", "sampling"; and as they were before
+  /// the first case was flown: "planned_cases", "requirements_id" and "requirements" (RequirementLine() each).
+  std::string Provenance(const std::string& key) const;
+
+  /// Remembers, once each, that verdicts were read from the first n cases. A record of what people saw, not of
+  /// what was flown: so a folder that is only reported on may get one too.
+  void RecordLook(const LookRecord& look) const;
+  /// Numbers of cases at which any verdict was read, ascending.
+  std::vector<std::int64_t> PastLooks() const;
+
+  /// Stores results in one transaction: all or, on an error, none. A case that is already there with the same
+  /// digest is left alone; with another digest: kConflict. Lifts the quarantine of what it stores. Values
+  /// that are not finite become NULL, -0 becomes 0. Returns how many were new.
+  std::size_t Append(std::span<const CaseResult> results);
+  /// From now on no other process may write here. InputError if one does.
+  void Lock();
+  /// Results as Append does, and one record of each, in one transaction.
+  void Store(std::span<const CaseResult> results, std::span<const ExecutionRecord> records) override;
+  /// Remembers a case as given up (again: the later reason holds).
+  void Quarantine(const QuarantinedCase& quarantined) override;
+
+  /// Cases that have a result.
+  std::uint64_t CaseCount() const;
+  /// The database as it is now, in the place of `file`: one that is whole, whoever reads or writes here
+  /// meanwhile.
+  void CopyDatabase(const std::filesystem::path& file) const;
+  /// Indices that have a result, ascending.
+  std::vector<std::uint64_t> PresentCases() const;
+  /// The same with the fingerprint that was stored with each.
+  std::vector<std::pair<std::uint64_t, Digest>> Fingerprints() const override;
+  std::optional<std::string> WorkerOf(std::uint64_t case_index) const override;
+  void AppendAudits(std::span<const Claim> claims) override;
+  void ForEachUnaudited(const std::function<void(const Claim&)>& callback) const override;
+  std::vector<std::uint64_t> Disown(const std::string& worker) override;
+  /// Rows that Resume found damaged and removed.
+  const std::vector<std::uint64_t>& damaged() const { return damaged_; }
+  /// Ascending by index.
+  std::vector<QuarantinedCase> QuarantinedCases() const;
+  bool Contains(std::uint64_t case_index) const;
+  /// The stored result, NULL as NaN. InputError if there is none; ResultError if its row does not fit its
+  /// fingerprint.
+  CaseResult Load(std::uint64_t case_index) const override;
+  /// Calls back with each result in ascending order of index; holds one at a time.
+  void ForEach(const std::function<void(const CaseResult&)>& callback) const;
+
+ private:
+  ResultFolder(std::filesystem::path directory, std::unique_ptr<Database> database);
+  std::size_t Insert(std::span<const CaseResult> results);
+  void Insert(std::span<const ExecutionRecord> records);
+  void RemoveDamaged();
+  void Remove(const std::vector<std::uint64_t>& cases);
+
+  std::filesystem::path directory_;
+  std::size_t stages_;
+  std::optional<FolderLock> lock_;
+  std::unique_ptr<Database> database_;
+  std::vector<std::uint64_t> damaged_;
+};
+
+}  // namespace dispersa

@@ -1,0 +1,170 @@
+// Pairing of cases, and what is said of two campaigns.
+#include "core/analysis/comparison.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tests/unit/comparison_sample.h"
+
+namespace dispersa::analysis_comparison_test {
+namespace {
+
+using comparison_sample::Columns;
+using comparison_sample::CompareColumns;
+using report_test::MakeCampaign;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::StartsWith;
+
+constexpr char kMetric[] = "pitch_error_rms_deg";
+
+TEST(ReportComparison, PairsCasesOfEqualIndex) {
+  const Comparison comparison =
+      CompareColumns(Columns({0, 1, 2, 3}, {0.1, 0.2, 0.3, 0.4}, {1, 1, 1, 1}),
+                     Columns({0, 2, 3, 5}, {0.1, 0.3, 0.4, 0.6}, {2, 4, 9, 1}));
+  EXPECT_TRUE(comparison.pairing.paired);
+  EXPECT_EQ(comparison.pairing.shared, 3);
+  EXPECT_EQ(comparison.pairing.only_a, 1);
+  EXPECT_EQ(comparison.pairing.only_b, 1);
+  ASSERT_EQ(comparison.metrics.size(), 1);  // no flight defines another one
+  EXPECT_EQ(comparison.metrics[0].difference, 3.0);  // of 1, 3 and 8
+  EXPECT_EQ(comparison.metrics[0].ratio, 4.0);
+  EXPECT_EQ(comparison.metrics[0].a_better, 3);
+  EXPECT_EQ(comparison.pairing.sentence,
+            "Paired: every input has the same value in both campaigns in all of 3 cases shared. 1 case of A and 1 case of B have no partner "
+            "and are left out.");
+}
+
+TEST(ReportComparison, OtherDrawsAreUnpaired) {
+  const Comparison comparison = CompareColumns(Columns({0, 1, 2}, {0.1, 0.2, 0.3}, {1, 2, 3}),
+                                               Columns({0, 1, 2}, {0.4, 0.5, 0.6}, {2, 4, 6}));
+  EXPECT_FALSE(comparison.pairing.paired);
+  EXPECT_THAT(comparison.pairing.sentence, StartsWith("Unpaired: no input that varies has the same value"));
+  EXPECT_EQ(comparison.metrics[0].difference, 2.0);  // of the medians
+  EXPECT_EQ(comparison.metrics[0].n_a, 3);
+  EXPECT_THAT(comparison.harmed, IsEmpty());
+  const auto json = nlohmann::json::parse(ComparisonJson(comparison));
+  EXPECT_EQ(json["metrics"][0]["pairing"], "unpaired");
+  EXPECT_TRUE(json["metrics"][0]["pairs"].is_null());
+}
+
+TEST(ReportComparison, AChangedInputIsListedAndTheOthersStillPair) {
+  CaseColumns a = Columns({0, 1, 2}, {0.1, 0.2, 0.3}, {1, 2, 3});
+  CaseColumns b = Columns({0, 1, 2}, {0.1, 0.2, 0.3}, {1, 2, 3});
+  a.inputs[1] = std::vector<double>{1, 2, 3};
+  b.inputs[1] = std::vector<double>{1, 4, 6};
+  const Pairing pairing = CompareColumns(a, b).pairing;
+  EXPECT_TRUE(pairing.paired);
+  ASSERT_EQ(pairing.changed.size(), 1);
+  EXPECT_EQ(pairing.changed[0].input, InputColumns()[1].name);
+  EXPECT_EQ(pairing.changed[0].cases, 2);
+  EXPECT_THAT(pairing.same, ElementsAre(InputColumns()[0].name));
+  // A constant is equal without any draw.
+  a.inputs[0] = b.inputs[0] = std::vector<double>{5, 5, 5};
+  EXPECT_FALSE(CompareColumns(a, b).pairing.paired);
+}
+
+TEST(ReportComparison, LostFlightsAreWorseThanAnyAndTheLargestChangesComeFirst) {
+  CaseColumns a = Columns({0, 1, 2, 3, 4}, {1, 2, 3, 4, 5}, {1.0, 1.0, 1.0, 1.0, 1.0});
+  CaseColumns b = Columns({0, 1, 2, 3, 4}, {1, 2, 3, 4, 5}, {0.9, 1.1, 0.5, 0.7, 0.1});
+  a.outcome[3] = Outcome::kLostControl;  // infinitely bad: b gains most there
+  b.outcome[4] = Outcome::kLostControl;  // what it measured before it was lost counts for nothing
+  const Comparison comparison = CompareColumns(a, b);
+  const MetricComparison& metric = comparison.metrics[0];
+  std::vector<std::uint64_t> gains, losses;
+  for (const auto& pair : metric.gains) gains.push_back(pair.case_index);
+  for (const auto& pair : metric.losses) losses.push_back(pair.case_index);
+  EXPECT_THAT(gains, ElementsAre(3, 2, 0));
+  EXPECT_THAT(losses, ElementsAre(4, 1));
+  EXPECT_EQ(metric.lost_a, 1);
+  EXPECT_EQ(metric.lost_b, 1);
+  ASSERT_EQ(comparison.harmed.size(), 1);
+  EXPECT_EQ(comparison.harmed[0].case_index, 4);
+  EXPECT_EQ(comparison.harmed[0].reasons[0].requirement, "flight completed");
+  ASSERT_EQ(comparison.rescued.size(), 1);
+  EXPECT_EQ(comparison.rescued[0].case_index, 3);
+}
+
+TEST(ReportComparison, TheBadSideIsThatOfTheMetric) {
+  // Of the perigee less is worse; b loses a flight, which is as if its perigee were below all.
+  CaseColumns a = Columns({0, 1, 2}, {1, 2, 3}, {480, 490, 500}, "perigee_km");
+  CaseColumns b = Columns({0, 1, 2}, {1, 2, 3}, {485, 495, 505}, "perigee_km");
+  EXPECT_EQ(CompareColumns(a, b).metrics[0].b_better, 3);
+  EXPECT_EQ(CompareColumns(a, b).metrics[0].difference, 5.0);
+  EXPECT_EQ(CompareColumns(a, b).metrics[0].tails[0].name, "p05");
+  b.outcome[2] = Outcome::kImpact;
+  EXPECT_EQ(CompareColumns(a, b).metrics[0].a_better, 1);
+  EXPECT_EQ(CompareColumns(a, b).metrics[0].losses[0].case_index, 2);
+  // Of an error's sign nothing is said.
+  const Comparison errors = CompareColumns(Columns({0, 1}, {1, 2}, {-3, 1}, "injection_altitude_error_km"),
+                                           Columns({0, 1}, {1, 2}, {2, 0}, "injection_altitude_error_km"));
+  EXPECT_EQ(errors.metrics[0].b_better, 2);
+  // Of the altitude neither is good, and a lost flight has none.
+  const Comparison neither = CompareColumns(Columns({0, 1}, {1, 2}, {500, 501}, "injection_altitude_km"),
+                                            Columns({0, 1}, {1, 2}, {502, 503}, "injection_altitude_km"));
+  EXPECT_EQ(neither.metrics[0].difference, 2.0);
+  EXPECT_NE(neither.metrics[0].finding, "worse");
+}
+
+TEST(ReportComparison, RequirementsAreCountedPairByPair) {
+  // Limit 1: fails in a: cases 0, 1, 2; in b: cases 2, 3 and the lost 4.
+  CaseColumns a = Columns({0, 1, 2, 3, 4, 5}, {1, 2, 3, 4, 5, 6}, {2, 2, 2, 0, 0, 0});
+  CaseColumns b = Columns({0, 1, 2, 3, 4, 5}, {1, 2, 3, 4, 5, 6}, {0, 0, 3, 4, 0, 0});
+  b.outcome[4] = Outcome::kTimeout;
+  Requirement requirement;
+  requirement.metric = kMetric;
+  requirement.below = 1.0;
+  requirement.probability = 0.9;
+  requirement.consumer_risk = 0.1;
+  const Comparison comparison = CompareColumns(a, b, {requirement});
+  ASSERT_EQ(comparison.requirements.size(), 1);
+  const RequirementComparison& counted = comparison.requirements[0];
+  EXPECT_EQ(counted.words, "pitch_error_rms_deg below 1");
+  EXPECT_TRUE(counted.in_a);
+  EXPECT_FALSE(counted.in_b);
+  EXPECT_EQ(counted.both_fail, 1);
+  EXPECT_EQ(counted.only_a_fails, 2);
+  EXPECT_EQ(counted.only_b_fails, 2);
+  EXPECT_EQ(counted.both_meet, 1);
+  EXPECT_EQ(counted.p, 1.0);
+  const auto json = nlohmann::json::parse(ComparisonJson(comparison));
+  EXPECT_EQ(json["schema"], "dispersa/compare/1");
+  EXPECT_EQ(json["requirements"][0]["mcnemar"]["only_b_fails"], 2);
+  std::vector<int> harmed, rescued;
+  for (const auto& one : json["harmed"]) harmed.push_back(one["case_index"]);
+  for (const auto& one : json["rescued"]) rescued.push_back(one["case_index"]);
+  EXPECT_THAT(harmed, ElementsAre(3, 4));
+  EXPECT_THAT(rescued, ElementsAre(0, 1));
+  EXPECT_EQ(json["harmed"][1]["requirements"].size(), 2);  // the flight, and what it required
+  EXPECT_EQ(json["harmed"][0]["replay_b"], "dispersa replay B --case 3");
+  const std::string page = ComparisonPage(comparison, a, b);
+  EXPECT_THAT(page, AllOf(HasSubstr("dispersa replay A --case 4"), HasSubstr("timeout"), Not(HasSubstr("nan")),
+                          Not(HasSubstr("src="))));
+}
+
+TEST(ReportComparison, ChosenPointsHaveNoLimits) {
+  const CaseColumns cases = Columns({0, 1, 2}, {0.1, 0.2, 0.3}, {1, 2, 3});
+  const CaseColumns others = Columns({0, 1, 2}, {0.1, 0.2, 0.3}, {2, 4, 6});
+  Campaign campaign = MakeCampaign(3);
+  campaign.sampling.method = SamplingMethod::kCorners;
+  const Comparison comparison = Compare({"A", "", campaign, cases}, {"B", "", campaign, others}, {kMetric}, {});
+  EXPECT_FALSE(comparison.independent);
+  EXPECT_EQ(comparison.metrics[0].difference, 2.0);
+  EXPECT_TRUE(std::isnan(comparison.metrics[0].p));
+  EXPECT_TRUE(std::isnan(comparison.metrics[0].interval.lower));
+  EXPECT_EQ(comparison.metrics[0].finding, "not shown");
+}
+
+TEST(ReportComparison, ReplayCommandsSurviveAShell) {
+  EXPECT_EQ(ReplayCommand("results/a-1", 3), "dispersa replay results/a-1 --case 3");
+  EXPECT_EQ(ReplayCommand("my results/it's", 3), "dispersa replay 'my results/it'\\''s' --case 3");
+}
+
+}  // namespace
+}  // namespace dispersa::analysis_comparison_test

@@ -1,0 +1,624 @@
+// The numbers of summary.json against numbers worked out by hand.
+#include "core/analysis/campaign_summary.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/flight/engine_version.h"
+#include "core/analysis/stopping_rule.h"
+#include "tests/unit/made_up_results.h"
+
+namespace dispersa::analysis_summary_test {
+namespace {
+
+using report_test::kNaN;
+using report_test::kPeak;
+using report_test::MakeCampaign;
+using report_test::MakeCase;
+using report_test::PeakBelow;
+using report_test::TemporaryFolder;
+using testing::ElementsAre;
+
+/// n completed cases whose peak is 0.1, but for the first `failures`, whose peak is 0.9.
+CaseColumns Columns(std::size_t n, std::size_t failures) {
+  CaseColumns cases;
+  cases.inputs.resize(InputCount(kUsualStages));
+  cases.metrics.resize(MetricCount(kUsualStages));
+  for (std::size_t i = 0; i < n; ++i) {
+    cases.index.push_back(i);
+    cases.outcome.push_back(Outcome::kCompleted);
+    cases.metrics[MetricColumn(kPeak)].push_back(i < failures ? 0.9 : 0.1);
+  }
+  return cases;
+}
+
+TEST(Judge, NeedsTheCasesOfTheExactBinomial) {
+  // 99.73 % at 10 % consumer risk: 852 cases without a failure, 1440 with one (0.9973^852 = 0.0999).
+  const Requirement requirement = PeakBelow(0.5, 0.9973, 0.10);
+  const RequirementSummary enough = Judge(requirement, SamplingMethod::kMonteCarlo, Columns(852, 0), 0);
+  EXPECT_EQ(enough.verdict, "pass");
+  EXPECT_FALSE(enough.cases_needed.has_value());
+  EXPECT_NEAR(*enough.success_lower, std::pow(0.10, 1.0 / 852), 1e-12);  // Clopper-Pearson without a failure
+  EXPECT_EQ(enough.sentence,
+            "Met: 0 failures in 852 cases show a probability of at least 99.73 % with 90 % confidence; 99.73 "
+            "% is required.");
+
+  const RequirementSummary one_less = Judge(requirement, SamplingMethod::kMonteCarlo, Columns(851, 0), 0);
+  EXPECT_EQ(one_less.verdict, "inconclusive");
+  EXPECT_EQ(one_less.cases_needed, 852);
+
+  const RequirementSummary one_failure = Judge(requirement, SamplingMethod::kMonteCarlo, Columns(852, 1), 0);
+  EXPECT_EQ(one_failure.verdict, "inconclusive");
+  EXPECT_EQ(one_failure.failures, 1);
+  EXPECT_EQ(one_failure.cases_needed, 1440);
+
+  // Ten failures in 200 cases: a design with 99.73 % would show so many with a probability below 1e-9.
+  const RequirementSummary failed = Judge(requirement, SamplingMethod::kMonteCarlo, Columns(200, 10), 0);
+  EXPECT_EQ(failed.verdict, "fail");
+}
+
+TEST(Judge, SaysWhyNothingIsDecided) {
+  // 200 cases without a failure: 0.1^(1/200) = 0.98855.
+  const RequirementSummary open =
+      Judge(PeakBelow(0.5, 0.9973, 0.10), SamplingMethod::kMonteCarlo, Columns(200, 0), 0);
+  EXPECT_EQ(open.sentence,
+            "Not decided: 0 failures in 200 cases show a probability of 98.855 % to 100 %, either bound with 90 % "
+            "confidence; 99.73 % is required. At the failure rate seen here a new campaign of 852 cases passes "
+            "with a probability of 100 %.");
+  // 8 failures in 2000 cases are more than 0.27 %: no number of cases is likely to pass.
+  EXPECT_THAT(Judge(PeakBelow(0.5, 0.9973, 0.10), SamplingMethod::kMonteCarlo, Columns(2000, 8), 0).sentence,
+              testing::EndsWith("At the failure rate seen here a larger campaign is not likely to pass either."));
+}
+
+TEST(Judge, BoundsTheMetricByTheOrderStatisticThatDecides) {
+  // 2000 cases allow 2 failures: the third largest value is the bound.
+  CaseColumns cases = Columns(2000, 0);
+  for (std::size_t i = 0; i < 2000; ++i) cases.metrics[MetricColumn(kPeak)][i] = 0.1 + 1e-4 * static_cast<double>(i);
+  const Requirement requirement = PeakBelow(0.5, 0.9973, 0.10);
+  const RequirementSummary summary = Judge(requirement, SamplingMethod::kMonteCarlo, cases, 0);
+  EXPECT_DOUBLE_EQ(*summary.bound, 0.1 + 1e-4 * 1997);
+  EXPECT_DOUBLE_EQ(*summary.margin, 0.5 - (0.1 + 1e-4 * 1997));
+  EXPECT_EQ(summary.verdict, "pass");
+  // The requirement passes exactly when the bound keeps to the limit.
+  EXPECT_EQ(Judge(PeakBelow(*summary.bound, 0.9973, 0.10), SamplingMethod::kMonteCarlo, cases, 0).verdict,
+            "inconclusive");
+  // Two lost flights are worse than any value; a third leaves no bound.
+  cases.outcome[0] = cases.outcome[1] = Outcome::kLostControl;
+  EXPECT_DOUBLE_EQ(*Judge(requirement, SamplingMethod::kMonteCarlo, cases, 0).bound, 0.1 + 1e-4 * 1999);
+  cases.outcome[2] = Outcome::kImpact;
+  EXPECT_FALSE(Judge(requirement, SamplingMethod::kMonteCarlo, cases, 0).bound.has_value());
+  EXPECT_FALSE(Judge(requirement, SamplingMethod::kMonteCarlo, Columns(851, 0), 0).bound.has_value());
+  // From below, and from both sides.
+  const Requirement above = {
+      .metric = kPeak, .below = std::nullopt, .above = 0.0, .probability = 0.9973, .consumer_risk = 0.1};
+  CaseColumns ascending = Columns(852, 0);
+  for (std::size_t i = 0; i < 852; ++i) ascending.metrics[MetricColumn(kPeak)][i] = 1.0 + static_cast<double>(i);
+  EXPECT_EQ(Judge(above, SamplingMethod::kMonteCarlo, ascending, 0).bound, 1.0);
+  Requirement within = PeakBelow(0.5, 0.9973, 0.10);
+  within.below.reset();
+  within.within = {{-10.0, 900.0}};
+  const RequirementSummary inside = Judge(within, SamplingMethod::kMonteCarlo, ascending, 0);
+  EXPECT_EQ(inside.bound, 1.0);  // 11 from -10, nearer than 852 to 900
+  EXPECT_EQ(inside.margin, 11.0);
+  EXPECT_EQ(inside.failures, 0);
+  EXPECT_EQ(LimitWords(inside, "km"), "between -10 and 900 km");
+}
+
+// 2000 cases allow 2 failures. Each case without a result may be one, so that the bound moves towards the worst value.
+TEST(Judge, AMissingCaseIsWorseThanTheBound) {
+  const Requirement requirement = PeakBelow(0.5, 0.9973, 0.10);
+  const std::vector<double> bounds = {1997.0, 1998.0, 1999.0};
+  for (std::size_t missing = 0; missing < 4; ++missing) {
+    CaseColumns cases = Columns(2000 - missing, 0);
+    for (std::size_t i = 0; i < cases.rows(); ++i)
+      cases.metrics[MetricColumn(kPeak)][i] = 1e-4 * static_cast<double>(i + missing);
+    const RequirementSummary summary =
+        Judge(requirement, SamplingMethod::kMonteCarlo, cases, static_cast<std::int64_t>(missing));
+    ASSERT_EQ(summary.bound.has_value(), missing < 3) << missing;
+    if (missing == 3) continue;  // as many as a third failure: no value is a bound
+    EXPECT_DOUBLE_EQ(*summary.bound, 1e-4 * bounds[missing]);
+    EXPECT_DOUBLE_EQ(*summary.margin, 0.5 - 1e-4 * bounds[missing]);
+  }
+}
+
+TEST(Judge, CountsALostFlightWhateverItMeasured) {
+  CaseColumns cases = Columns(100, 0);
+  cases.outcome[3] = Outcome::kLostControl;
+  cases.outcome[4] = Outcome::kImpact;
+  cases.metrics[MetricColumn(kPeak)][7] = kNaN;
+  const RequirementSummary summary = Judge(PeakBelow(0.5, 0.9, 0.10), SamplingMethod::kMonteCarlo, cases, 0);
+  EXPECT_EQ(summary.n, 100);
+  EXPECT_EQ(summary.failures, 3);
+  EXPECT_EQ(summary.lost_flights, 2);
+}
+
+TEST(Judge, SaysWhatAPlanDecidedWithoutWiderBounds) {
+  Requirement requirement = PeakBelow(0.5, 0.9973, 0.10);
+  requirement.plan = {PlanKind::kGroupSequential, 5, Spending::kOBrienFleming};
+  const RequirementSummary met = Judge(requirement, SamplingMethod::kMonteCarlo, Columns(5000, 8), 0);
+  // The first 8 cases failed: too few to fail early, few enough to pass at the end.
+  EXPECT_EQ(met.sentence, "Met by its plan (5 looks up to 5000 cases): 8 failures in 5000 cases at a risk of 10 %; "
+                          "99.73 % is required.");
+  EXPECT_EQ(met.looks[0].verdict, Verdict::kInconclusive);
+  CaseColumns late = Columns(5000, 0);
+  for (std::size_t i = 4000; i < 4008; ++i) late.metrics[MetricColumn(kPeak)][i] = 0.9;
+  const RequirementSummary early = Judge(requirement, SamplingMethod::kMonteCarlo, late, 0);
+  EXPECT_EQ(early.verdict, "pass");
+  EXPECT_EQ(early.accepts, 8);
+  EXPECT_EQ(early.looks[1].verdict, Verdict::kPass);
+  EXPECT_EQ(early.sentence,
+            "Met by its plan (5 looks up to 5000 cases): 8 failures in 5000 cases at a risk of 10 %; 99.73 % is "
+            "required. Decided by the look at 2000 cases, with 0 failures.");
+}
+
+TEST(Judge, TakesRowsOfWhateverNumbers) {
+  CaseColumns some = Columns(852, 0);
+  for (std::size_t i = 0; i < 852; ++i) some.index[i] = 7 * i + 3;
+  EXPECT_EQ(Judge(PeakBelow(0.5, 0.9973, 0.10), SamplingMethod::kMonteCarlo, some, 0).verdict, "pass");
+}
+
+TEST(Judge, TheLimitItselfFails) {
+  EXPECT_EQ(Judge(PeakBelow(0.1, 0.9, 0.1), SamplingMethod::kMonteCarlo, Columns(10, 0), 0).failures, 10);
+}
+
+TEST(Judge, LooksAboveToo) {
+  const Requirement above = {
+      .metric = kPeak, .below = std::nullopt, .above = 0.5, .probability = 0.5, .consumer_risk = 0.1};
+  const RequirementSummary summary = Judge(above, SamplingMethod::kMonteCarlo, Columns(10, 4), 0);
+  EXPECT_FALSE(summary.below);
+  EXPECT_EQ(summary.failures, 6);  // those at 0.1
+}
+
+TEST(Judge, MissingCasesCountAgainstEitherVerdict) {
+  // 852 successes pass, but not beside 100 cases of which nothing is known.
+  EXPECT_EQ(Judge(PeakBelow(0.5, 0.9973, 0.10), SamplingMethod::kMonteCarlo, Columns(852, 0), 100).verdict,
+            "inconclusive");
+  // 3 failures of 20 fail 99 %, but not if 2000 more might all have been successes.
+  EXPECT_EQ(Judge(PeakBelow(0.5, 0.99, 0.10), SamplingMethod::kMonteCarlo, Columns(20, 3), 0).verdict,
+            "fail");
+  EXPECT_EQ(Judge(PeakBelow(0.5, 0.99, 0.10), SamplingMethod::kMonteCarlo, Columns(20, 3), 2000).verdict,
+            "inconclusive");
+}
+
+TEST(Judge, GivesAChosenDesignNoVerdict) {
+  for (const std::size_t violated : {0, 1, 500}) {
+    for (const SamplingMethod method : {SamplingMethod::kCorners, SamplingMethod::kOneAtATime,
+                                        SamplingMethod::kGrid, SamplingMethod::kList, SamplingMethod::kSobol,
+                                        SamplingMethod::kLatinHypercube}) {
+      const RequirementSummary study = Judge(PeakBelow(0.5, 0.95, 0.10), method, Columns(1000, violated), 0);
+      EXPECT_EQ(study.verdict, "study");
+      EXPECT_FALSE(study.success_lower.has_value());
+      EXPECT_FALSE(study.cases_needed.has_value());
+      EXPECT_FALSE(study.bound.has_value());
+      EXPECT_TRUE(study.looks.empty());
+    }
+  }
+  EXPECT_EQ(Judge(PeakBelow(0.5, 0.95, 0.10), SamplingMethod::kCorners, Columns(16, 1), 0).sentence,
+            "Design study: 15 of 16 points meet the limit. The points are chosen, not drawn independently: this "
+            "says nothing about the probability in flight.");
+}
+
+TEST(Judge, ReplicatesOfADesignGiveBounds) {
+  JudgingContext context;
+  context.method = SamplingMethod::kLatinHypercube;
+  context.cases = 1000;
+  context.planned = 1000;
+  context.replicates = 10;
+  const RequirementSummary study = JudgeAll({PeakBelow(0.5, 0.95, 0.10)}, context, Columns(1000, 20))[0];
+  EXPECT_EQ(study.verdict, "study");
+  // Shares 0.2 and nine times 0: mean 0.02, standard error 0.02, t of 9 degrees at 10 % 1.3830.
+  EXPECT_NEAR(*study.success_lower, 1.0 - (0.02 + 1.38303 * 0.02), 1e-6);
+  EXPECT_NEAR(*study.success_upper, 1.0, 1e-6);
+}
+
+/// Five cases, peaks 1 2 3 4 of the completed ones; case 2 is lost.
+class FiveCases : public testing::Test {
+ protected:
+  FiveCases() : campaign_(MakeCampaign(5)), folder_(ResultFolder::Create(temporary_ / "out", campaign_)) {
+    const double peaks[] = {2.0, 4.0, 0.5, 1.0, 3.0};
+    std::vector<CaseResult> results;
+    for (std::uint64_t k = 0; k < 5; ++k) {
+      CaseResult result = MakeCase(k);
+      result.metrics[MetricColumn(kPeak)] = peaks[k];
+      if (k == 2) {
+        result.outcome = Outcome::kLostControl;
+        result.reason = "gone";
+        result.end_time_s = 60.0;
+        result.end_stage = 2;
+        result.metrics[MetricColumn("apogee_km")] = kNaN;
+      }
+      results.push_back(result);
+    }
+    folder_.Append(results);
+  }
+
+  TemporaryFolder temporary_;
+  Campaign campaign_;
+  ResultFolder folder_;
+};
+
+TEST_F(FiveCases, StatisticsAreThoseWorkedOutByHand) {
+  const CampaignSummary summary = BuildSummary(folder_, campaign_);
+  EXPECT_EQ(summary.flown, 5u);
+  EXPECT_EQ(summary.outcomes[static_cast<std::size_t>(Outcome::kCompleted)], 4u);
+  EXPECT_EQ(summary.outcomes[static_cast<std::size_t>(Outcome::kLostControl)], 1u);
+  const Summary& peak = summary.metrics[MetricColumn(kPeak)].statistics;
+  EXPECT_EQ(peak.n, 4u);  // the lost flight is not among them
+  EXPECT_EQ(peak.undefined, 1u);
+  EXPECT_DOUBLE_EQ(peak.mean, 2.5);
+  // Deviations -1.5 -0.5 0.5 1.5: squares 2.25 0.25 0.25 2.25, sum 5.
+  EXPECT_NEAR(peak.std, std::sqrt(5.0 / 3.0), 1e-15);
+  EXPECT_EQ(peak.p50, 2.5);
+  EXPECT_EQ(peak.max, 4.0);
+  EXPECT_THAT(
+      Warnings(summary),
+      ElementsAre("1 of 5 flights were lost: statistics and percentiles cover the 4 "
+                  "that were completed, and every lost flight fails every requirement of the campaign."));
+}
+
+TEST_F(FiveCases, WorstCasesBeginWithALostOne) {
+  const CampaignSummary summary = BuildSummary(folder_, campaign_);
+  ASSERT_FALSE(summary.worst_cases.empty());
+  EXPECT_EQ(summary.worst_cases[0].metric, kPeak);
+  std::vector<std::uint64_t> order;
+  for (const WorstCase& worst : summary.worst_cases[0].cases) order.push_back(worst.case_index);
+  EXPECT_THAT(order, ElementsAre(2, 1, 4, 0, 3));
+  EXPECT_EQ(summary.worst_cases[0].cases[1].value, 4.0);
+  ASSERT_EQ(summary.lost_flights.size(), 1u);
+  EXPECT_EQ(summary.lost_flights[0].end_stage, 2);
+}
+
+TEST_F(FiveCases, RanksByTheSideOfTheRequirement) {
+  campaign_.requirements = {
+      {.metric = kPeak, .below = std::nullopt, .above = 0.1, .probability = 0.5, .consumer_risk = 0.1}};
+  const CampaignSummary summary = BuildSummary(folder_, campaign_);
+  std::vector<std::uint64_t> order;
+  for (const WorstCase& worst : summary.worst_cases[0].cases) order.push_back(worst.case_index);
+  EXPECT_THAT(order, ElementsAre(2, 3, 0, 4, 1));
+}
+
+TEST_F(FiveCases, TheVerdict) {
+  EXPECT_EQ(BuildSummary(folder_, campaign_).verdict, CampaignVerdict::kPass);  // nothing is required
+  campaign_.requirements = {PeakBelow(10.0, 0.5, 0.40)};  // 1 failure of 5: P(X <= 1 | 0.5) = 6/32 < 0.4
+  EXPECT_EQ(BuildSummary(folder_, campaign_).verdict, CampaignVerdict::kPass);
+  campaign_.requirements.push_back(PeakBelow(10.0, 0.99, 0.10));  // P(X >= 1 | 0.99) = 0.049 <= 0.1
+  campaign_.requirements.push_back(PeakBelow(10.0, 0.9, 0.10));
+  CampaignSummary summary = BuildSummary(folder_, campaign_);
+  EXPECT_EQ(summary.requirements[1].verdict, "fail");
+  EXPECT_EQ(summary.requirements[2].verdict, "inconclusive");
+  EXPECT_EQ(summary.verdict, CampaignVerdict::kFail);
+  campaign_.requirements.erase(campaign_.requirements.begin() + 1);
+  EXPECT_EQ(BuildSummary(folder_, campaign_).verdict, CampaignVerdict::kInconclusive);
+  campaign_.sampling.cases = 6;
+  EXPECT_EQ(BuildSummary(folder_, campaign_).verdict, CampaignVerdict::kIncomplete);
+
+  // A failure that no missing case can undo is said beside the incompleteness.
+  campaign_.requirements = {PeakBelow(0.1, 0.99, 0.10)};
+  summary = BuildSummary(folder_, campaign_);
+  EXPECT_EQ(summary.verdict, CampaignVerdict::kIncomplete);
+  EXPECT_EQ(summary.requirements[0].verdict, "fail");
+  EXPECT_EQ(Warnings(summary)[1],
+            "Not met whatever the missing cases bring: pitch_error_peak_deg below 0.1 for "
+            "99 % of flights at 10 % risk.");
+}
+
+TEST_F(FiveCases, JsonHoldsTheContract) {
+  campaign_.sampling.cases = 6;
+  campaign_.requirements = {PeakBelow(4.5, 0.9, 0.10)};
+  folder_.Quarantine({5, "killed 3 workers"});
+  const std::string text = SummaryJson(BuildSummary(folder_, campaign_));
+  const nlohmann::json json = nlohmann::json::parse(text);
+  EXPECT_EQ(json["schema"], "dispersa/summary/1");
+  EXPECT_EQ(json["campaign"]["name"], "made_up");
+  EXPECT_EQ(json["campaign"]["id"], std::string(64, '1'));
+  EXPECT_EQ(json["campaign"]["flight_id"], std::string(64, '2'));
+  EXPECT_EQ(json["campaign"]["seed"], 7);
+  EXPECT_EQ(json["campaign"]["cases"], 6);
+  EXPECT_EQ(json["engine"], EngineVersion());
+  EXPECT_EQ(json["verdict"], "incomplete");
+  EXPECT_EQ(json["outcomes"],
+            nlohmann::json::parse(R"({"completed": 4, "lost_control": 1, "structural_limit": 0, "impact": 0,
+                                                        "numerical_failure": 0, "timeout": 0})"));
+  EXPECT_EQ(json["metrics"].size(), MetricCount(kUsualStages));
+  EXPECT_EQ(json["metrics"][kPeak]["n"], 4);
+  EXPECT_EQ(json["metrics"][kPeak]["p50"], 2.5);
+  EXPECT_EQ(json["metrics"][kPeak]["min"], 1.0);
+  EXPECT_EQ(json["campaign"]["design"], "monte_carlo");
+  EXPECT_EQ(json["joint"]["method"], "each");
+  const nlohmann::json& requirement = json["requirements"][0];
+  EXPECT_EQ(requirement["metric"], kPeak);
+  EXPECT_EQ(requirement["limit"], 4.5);
+  EXPECT_EQ(requirement["probability"], 0.9);
+  EXPECT_EQ(requirement["consumer_risk"], 0.1);
+  EXPECT_EQ(requirement["n"], 5);
+  EXPECT_EQ(requirement["failures"], 1);
+  EXPECT_EQ(requirement["verdict"], "inconclusive");
+  EXPECT_TRUE(requirement["cases_needed"].is_number_integer());
+  EXPECT_EQ(requirement["plan"]["kind"], "fixed");
+  EXPECT_EQ(requirement["plan"]["cases"], 5);
+  EXPECT_EQ(requirement["post_hoc"], true);  // the folder was made without requirements
+  EXPECT_EQ(json["quarantined"],
+            nlohmann::json::parse(R"([{"case_index": 5, "reason": "killed 3 workers"}])"));
+  EXPECT_EQ(json["worst_cases"][0]["case_index"], 2);
+  EXPECT_EQ(json["worst_cases"][0]["replay"], "dispersa replay . --case 2");
+  EXPECT_EQ(json["nominal"], nullptr);
+  EXPECT_EQ(text.back(), '\n');
+}
+
+/// A campaign of made-up cases, of which `failing` have a large peak, reported on as `run` does.
+class Misuse : public testing::Test {
+ protected:
+  Misuse() { campaign_.requirements_id = "original"; }
+
+  void Fly(std::uint64_t cases, std::uint64_t failing) {
+    campaign_.sampling.cases = cases;
+    const std::filesystem::path folder = temporary_ / "out";
+    ResultFolder opened = std::filesystem::exists(folder) ? ResultFolder::Resume(folder, campaign_)
+                                                          : ResultFolder::Create(folder, campaign_);
+    std::vector<CaseResult> results;
+    for (std::uint64_t k = flown_; k < cases; ++k) {
+      results.push_back(MakeCase(k));
+      results.back().metrics[MetricColumn(kPeak)] = k < failing ? 0.9 : 0.1;
+    }
+    flown_ = cases;
+    opened.Append(results);
+    summary_ = BuildSummary(opened, campaign_);
+    RecordLooks(opened, campaign_, summary_);
+  }
+
+  TemporaryFolder temporary_;
+  Campaign campaign_ = MakeCampaign(0);
+  CampaignSummary summary_;
+  std::uint64_t flown_ = 0;
+};
+
+TEST_F(Misuse, ExtendingUntilItPassesDoesNotPassAndShows) {
+  campaign_.requirements = {PeakBelow(0.5, 0.97, 0.10)};  // 76 cases without a failure, 129 with one
+  Fly(76, 1);
+  EXPECT_EQ(summary_.requirements[0].verdict, "inconclusive");
+  EXPECT_EQ(summary_.requirements[0].cases_needed, 129);
+  EXPECT_TRUE(Warnings(summary_).empty());
+  Fly(129, 1);
+  const RequirementSummary& requirement = summary_.requirements[0];
+  EXPECT_EQ(requirement.verdict, "inconclusive");
+  EXPECT_TRUE(requirement.beyond_plan);
+  EXPECT_EQ(requirement.planned, 76);
+  EXPECT_THAT(requirement.looks, ElementsAre(Look{76, 1, true, Verdict::kInconclusive},
+                                             Look{129, 1, false, Verdict::kInconclusive}));
+  ASSERT_EQ(Warnings(summary_).size(), 1u);
+  EXPECT_THAT(Warnings(summary_)[0],
+              testing::StartsWith("Beyond the plan: pitch_error_peak_deg was planned for 76 cases, 129 are in the "
+                                  "campaign; its looks read one by one carry a risk of 14."));
+  // Reading it again is no further look.
+  const std::string before = SummaryJson(summary_);
+  Fly(129, 1);
+  EXPECT_EQ(SummaryJson(summary_), before);
+}
+
+TEST_F(Misuse, ALimitThatWasChangedAfterTheFirstCaseShows) {
+  campaign_.requirements = {PeakBelow(0.05, 0.9, 0.10)};
+  Fly(40, 0);
+  EXPECT_FALSE(summary_.requirements[0].post_hoc);
+  EXPECT_EQ(summary_.requirements[0].verdict, "fail");
+  campaign_.requirements = {PeakBelow(0.5, 0.9, 0.10)};
+  campaign_.requirements_id = "changed";
+  Fly(40, 0);
+  EXPECT_EQ(summary_.requirements[0].verdict, "pass");
+  EXPECT_TRUE(summary_.requirements[0].post_hoc);
+  EXPECT_THAT(Warnings(summary_),
+              ElementsAre("Post hoc: pitch_error_peak_deg below 0.5 for 90 % of flights at 10 % risk is not what was "
+                          "required before the first case was flown."));
+  campaign_.requirements.clear();
+  Fly(40, 0);
+  EXPECT_EQ(Warnings(summary_).size(), 1u);  // dropped, which shows too
+}
+
+TEST_F(Misuse, HalfADesignIsIncomplete) {
+  campaign_.requirements = {PeakBelow(0.5, 0.9, 0.10)};
+  campaign_.sampling.method = SamplingMethod::kCorners;
+  for (const char* input : {"drag_factor", "lift_factor", "cg_factor", "cp_factor", "density_factor"}) {
+    Dispersion corner;
+    corner.name = input;
+    corner.distribution.kind = Distribution::kTwoPoint;
+    corner.inputs = {FindInput(input)};
+    campaign_.dispersions.push_back(corner);
+  }
+  Fly(16, 0);
+  EXPECT_EQ(summary_.verdict, CampaignVerdict::kIncomplete);
+  EXPECT_EQ(Warnings(summary_)[0], "Incomplete design: 16 of its 32 points are in the campaign.");
+  Fly(32, 0);
+  EXPECT_EQ(summary_.verdict, CampaignVerdict::kStudy);
+  EXPECT_EQ(summary_.requirements[0].verdict, "study");
+}
+
+TEST_F(Misuse, APointOfADesignThatViolatesARequirementIsSaid) {
+  campaign_.requirements = {PeakBelow(0.5, 0.9, 0.10)};
+  campaign_.sampling.method = SamplingMethod::kLatinHypercube;
+  Fly(100, 1);
+  EXPECT_EQ(summary_.verdict, CampaignVerdict::kStudyViolated);
+  EXPECT_STREQ(CampaignVerdictName(summary_.verdict), "study");
+}
+
+TEST_F(Misuse, StopsWhereItIsDecidedInWhateverOrderTheCasesCame) {
+  campaign_.requirements = {PeakBelow(0.5, 0.97, 0.10)};
+  campaign_.requirements[0].plan = {PlanKind::kGroupSequential, 4, Spending::kPocock};
+  campaign_.verdicts.stop_when_decided = true;
+  campaign_.sampling.cases = 400;
+  StoppingRule ascending(campaign_, 400, {});
+  StoppingRule descending(campaign_, 400, {});
+  EXPECT_EQ(ascending.target(), 100u);
+  for (std::uint64_t k = 0; k < 100; ++k) {
+    EXPECT_FALSE(ascending.Settled({}));
+    EXPECT_FALSE(ascending.Advance({}));
+    for (const bool up : {true, false}) {
+      const std::uint64_t index = up ? k : 99 - k;
+      CaseResult result = MakeCase(index);
+      result.metrics[MetricColumn(kPeak)] = index == 7 ? 0.9 : 0.1;
+      (up ? ascending : descending).Add(result);
+    }
+  }
+  EXPECT_TRUE(ascending.Advance({}));  // one failure of 100 decides nothing
+  EXPECT_TRUE(descending.Advance({}));
+  EXPECT_EQ(ascending.target(), 200u);
+  for (std::uint64_t k = 100; k < 199; ++k) {
+    CaseResult result = MakeCase(k);
+    result.metrics[MetricColumn(kPeak)] = 0.1;
+    ascending.Add(result);
+  }
+  EXPECT_FALSE(ascending.Settled({}));
+  EXPECT_TRUE(ascending.Settled({199}));  // given up
+  CaseResult last = MakeCase(199);
+  last.metrics[MetricColumn(kPeak)] = 0.1;
+  ascending.Add(last);
+  const auto looks = Boundaries(campaign_.requirements[0].plan, 0.97, 0.10, 400);
+  EXPECT_EQ(ascending.Advance({}), looks[1].accept < 1);  // one failure of 200 is enough or not
+}
+
+TEST(SummaryJson, WritesUndefinedAsNull) {
+  TemporaryFolder temporary;
+  const Campaign campaign = MakeCampaign(2);
+  const ResultFolder folder = ResultFolder::Create(temporary / "out", campaign);
+  const nlohmann::json json = nlohmann::json::parse(SummaryJson(BuildSummary(folder, campaign)));
+  EXPECT_EQ(json["metrics"][kPeak]["mean"], nullptr);
+  EXPECT_EQ(json["metrics"][kPeak]["n"], 0);
+  EXPECT_EQ(json["verdict"], "incomplete");
+}
+
+TEST(SummaryJson, DoesNotDependOnTheOrderOfArrival) {
+  TemporaryFolder temporary;
+  const Campaign campaign = MakeCampaign(30);
+  ResultFolder ascending = ResultFolder::Create(temporary / "ascending", campaign);
+  ResultFolder descending = ResultFolder::Create(temporary / "descending", campaign);
+  for (std::uint64_t k = 0; k < 30; ++k) {
+    ascending.Append({{MakeCase(k)}});
+    descending.Append({{MakeCase(29 - k)}});
+  }
+  EXPECT_EQ(SummaryJson(BuildSummary(ascending, campaign)), SummaryJson(BuildSummary(descending, campaign)));
+}
+
+// A vehicle with limits, and a campaign whose one requirement every case meets.
+struct LimitedCampaign {
+  explicit LimitedCampaign(std::uint64_t cases) : campaign(MakeCampaign(cases)) {
+    campaign.vehicle.limits.q_max_pa = 100e3;
+    campaign.vehicle.limits.axial_load_g = 9.0;
+    campaign.requirements = {PeakBelow(1e3, 0.5, 0.10),
+                             {.metric = "structural_limit_exceeded",
+                              .below = 1.0,
+                              .above = std::nullopt,
+                              .probability = 0.9973,
+                              .consumer_risk = 0.10,
+                              .by_default = true}};
+    for (std::uint64_t k = 0; k < cases; ++k) {
+      results.push_back(MakeCase(k));
+      Set(k, "q_max_pa", 80e3 + static_cast<double>(k));
+      Set(k, "axial_load_max_g", 8.0);
+      Set(k, "structural_limit_exceeded", 0.0);
+    }
+  }
+  void Set(std::uint64_t case_index, const char* metric, double value) {
+    results[case_index].metrics[MetricColumn(metric)] = value;
+  }
+  CampaignSummary Summary() const {
+    const TemporaryFolder temporary;
+    ResultFolder folder = ResultFolder::Create(temporary / "out", campaign);
+    folder.Append(results);
+    return BuildSummary(folder, campaign);
+  }
+
+  Campaign campaign;
+  std::vector<CaseResult> results;
+};
+
+TEST(StructuralLimits, ThatAreKeptByTooFewFlightsHoldNothingUp) {
+  const LimitedCampaign kept(20);
+  const CampaignSummary summary = kept.Summary();
+  EXPECT_EQ(summary.requirements[1].verdict, "inconclusive");
+  EXPECT_TRUE(summary.requirements[1].by_default);
+  EXPECT_EQ(summary.verdict, CampaignVerdict::kPass);
+  EXPECT_EQ(summary.beyond_limits, 0u);
+  ASSERT_EQ(summary.limits.size(), 2u);
+  EXPECT_EQ(summary.limits[0].metric, "q_max_pa");
+  EXPECT_EQ(summary.limits[0].limit, 100e3);
+  EXPECT_EQ(*summary.limits[0].largest, 80e3 + 19.0);
+  EXPECT_EQ(summary.limits[0].largest_case, 19u);
+  EXPECT_THAT(Warnings(summary), testing::IsEmpty());
+  // Stated by the campaign itself, the same requirement needs its cases.
+  LimitedCampaign stated(20);
+  stated.campaign.requirements[1].by_default = false;
+  EXPECT_EQ(stated.Summary().verdict, CampaignVerdict::kInconclusive);
+}
+
+TEST(StructuralLimits, CountFromTheFirstFlightBeyondThem) {
+  LimitedCampaign one(100);
+  one.Set(7, "axial_load_max_g", 9.5);
+  one.Set(7, "structural_limit_exceeded", 1.0);
+  const CampaignSummary summary = one.Summary();
+  EXPECT_EQ(summary.requirements[1].failures, 1);
+  EXPECT_EQ(summary.verdict, CampaignVerdict::kInconclusive) << "1 of 100 is no proof of 0.27 % either way";
+  EXPECT_EQ(summary.beyond_limits, 1u);
+  EXPECT_EQ(summary.limits[0].exceeded, 0u);
+  EXPECT_EQ(summary.limits[1].exceeded, 1u);
+  EXPECT_THAT(
+      Warnings(summary),
+      ElementsAre(
+          "Structural limits of the vehicle were exceeded in 1 of 100 flights: axial_load_max_g above 9 g "
+          "in 1, up to 9.5 g in case 7."));
+  const auto json = nlohmann::json::parse(SummaryJson(summary));
+  EXPECT_EQ(json["limits"]["exceeded"], 1);
+  EXPECT_EQ(json["limits"]["loads"][1]["largest_case"], 7);
+  EXPECT_EQ(json["requirements"][1]["by_default"], true);
+}
+
+TEST(StructuralLimits, ExceededByEveryFlightFailTheCampaign) {
+  LimitedCampaign all(100);
+  for (std::uint64_t k = 0; k < 100; ++k) {
+    all.Set(k, "q_max_pa", 110e3);
+    all.Set(k, "structural_limit_exceeded", 1.0);
+  }
+  EXPECT_EQ(all.Summary().verdict, CampaignVerdict::kFail);
+  // Also of a campaign that states nothing, and at any point of a design study.
+  all.campaign.requirements.erase(all.campaign.requirements.begin());
+  EXPECT_EQ(all.Summary().verdict, CampaignVerdict::kFail);
+  all.campaign.sampling.method = SamplingMethod::kSobol;
+  EXPECT_EQ(all.Summary().verdict, CampaignVerdict::kStudyViolated);
+}
+
+TEST(StructuralLimits, AreHeldAgainstWhatALostFlightBore) {
+  LimitedCampaign lost(20);
+  lost.results[3].outcome = Outcome::kLostControl;
+  lost.results[4].outcome = Outcome::kLostControl;
+  lost.Set(4, "structural_limit_exceeded", 1.0);
+  const CampaignSummary summary = lost.Summary();
+  EXPECT_EQ(summary.requirements[0].failures, 2);
+  EXPECT_EQ(summary.requirements[0].lost_flights, 2);
+  EXPECT_EQ(summary.requirements[1].failures, 1);
+  EXPECT_EQ(summary.requirements[1].lost_flights, 0);
+}
+
+TEST(StructuralLimits, OfAStudyThatAsksNothingLeaveItAsItWas) {
+  LimitedCampaign study(10);
+  study.campaign.requirements.erase(study.campaign.requirements.begin());
+  study.campaign.sampling.method = SamplingMethod::kSobol;
+  EXPECT_EQ(study.Summary().verdict, CampaignVerdict::kPass);
+}
+
+TEST(StructuralLimits, DoNotKeepACampaignFromStopping) {
+  LimitedCampaign kept(2000);
+  kept.campaign.verdicts.stop_when_decided = true;
+  kept.campaign.requirements[0].plan = {.kind = PlanKind::kGroupSequential, .looks = 10};
+  const auto target_after = [&](std::uint64_t cases) {
+    StoppingRule rule(kept.campaign, 2000, {});
+    for (std::uint64_t k = 0; k < cases; ++k) rule.Add(kept.results[k]);
+    while (rule.Advance({})) {
+    }
+    return rule.target();
+  };
+  EXPECT_EQ(target_after(200), 200u) << "half of the flights below a limit that none comes near";
+  kept.Set(5, "structural_limit_exceeded", 1.0);
+  EXPECT_GT(target_after(200), 200u);
+}
+
+}  // namespace
+}  // namespace dispersa::analysis_summary_test

@@ -1,0 +1,96 @@
+// Made-up results for the tests of results, analysis and pages: no flight is flown.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <unistd.h>
+
+#include "core/campaign/campaign.h"
+#include "core/campaign/case_result.h"
+#include "core/flight/flight_inputs.h"
+#include "core/flight/history.h"
+#include "core/flight/metrics.h"
+
+namespace dispersa::report_test {
+
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// A folder of one test, removed with it.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    static std::atomic<int> count = 0;
+    path_ = std::filesystem::temp_directory_path() /
+            ("dispersa_report_" + std::to_string(getpid()) + "_" + std::to_string(count++));
+    std::filesystem::create_directories(path_);
+  }
+  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  /// Of something that does not exist yet.
+  std::filesystem::path operator/(const char* name) const { return path_ / name; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+inline std::string ReadText(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+inline Campaign MakeCampaign(std::uint64_t cases) {
+  Campaign campaign;
+  campaign.name = "made_up";
+  campaign.sampling = {SamplingMethod::kMonteCarlo, cases, 7};
+  campaign.vehicle.name = "vehicle";
+  campaign.reference.name = "reference";
+  campaign.autopilot.name = "autopilot";
+  campaign.canonical_yaml = "name: made_up\n";
+  campaign.id = std::string(64, '1');
+  campaign.flight_id = std::string(64, '2');
+  return campaign;
+}
+
+/// Every number differs from every other, and between cases.
+inline CaseResult MakeCase(std::uint64_t index) {
+  CaseResult result;
+  result.case_index = index;
+  result.outcome = Outcome::kCompleted;
+  result.end_time_s = 569.25;
+  result.end_stage = 4;
+  const auto k = static_cast<double>(index);
+  for (std::size_t i = 0; i < InputCount(kUsualStages); ++i)
+    result.inputs.push_back(0.1 * static_cast<double>(i) + k / 7.0);
+  for (std::size_t i = 0; i < MetricCount(kUsualStages); ++i) {
+    result.metrics.push_back(1.0 + static_cast<double>(i) + k / 3.0);
+  }
+  result.metrics[MetricColumn("step_limit_fraction")] = 0.5;  // nobody is to be warned
+  result.digest = {index + 1, 0xabcdef};
+  return result;
+}
+
+inline constexpr char kPeak[] = "pitch_error_peak_deg";
+
+inline Requirement PeakBelow(double limit, double probability, double consumer_risk) {
+  return {.metric = kPeak,
+          .below = limit,
+          .above = std::nullopt,
+          .probability = probability,
+          .consumer_risk = consumer_risk};
+}
+
+}  // namespace dispersa::report_test

@@ -1,0 +1,259 @@
+// report.html: every number that it shows is summary.json's, and it needs nothing but itself.
+#include "core/pages/report_page.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <regex>
+
+#include "core/results/metric_catalogue.h"
+#include "core/results/text.h"
+#include "tests/unit/made_up_results.h"
+
+namespace dispersa::pages_report_test {
+namespace {
+
+using report_test::kNaN;
+using report_test::MakeCampaign;
+using report_test::MakeCase;
+using report_test::TemporaryFolder;
+using testing::ContainsRegex;
+using testing::HasSubstr;
+using testing::Not;
+
+/// A flight of four stages with a coast before the last; every column is a wave.
+History MakeHistory() {
+  History history;
+  for (int k = 0; k <= 500; ++k) {
+    const double time_s = k;
+    const int stage = k < 60 ? 1 : k < 110 ? 2 : k < 150 ? 3 : 4;
+    const bool coast = k >= 145 && k < 450;
+    std::vector<double> row;
+    for (std::size_t i = 0; i < HistoryColumns().size(); ++i)
+      row.push_back(std::sin(0.02 * time_s + static_cast<double>(i)));
+    row[0] = time_s;
+    row[static_cast<std::size_t>(FindHistoryColumn("stage"))] = stage;
+    row[static_cast<std::size_t>(FindHistoryColumn("thrust_n"))] = coast ? 0.0 : 1000.0;
+    row[static_cast<std::size_t>(FindHistoryColumn("qbar_pa"))] =
+        60000.0 * std::exp(-0.002 * (time_s - 40) * (time_s - 40));
+    history.values.insert(history.values.end(), row.begin(), row.end());
+  }
+  return history;
+}
+
+class ReportPageTest : public testing::Test {
+ protected:
+  void Build(std::uint64_t cases, std::uint64_t flown) {
+    campaign_ = MakeCampaign(cases);
+    campaign_.name = "made <up> & \"quoted\"";
+    campaign_.requirements = {{.metric = "pitch_error_peak_deg",
+                               .below = 12.5,
+                               .above = std::nullopt,
+                               .probability = 0.9,
+                               .consumer_risk = 0.1}};
+    Dispersion thrust;
+    thrust.name = "thrust/stage1";
+    thrust.distribution = {
+        .kind = Distribution::kNormal, .nominal = 1.0, .sigma = 0.01, .low = 0, .high = 0, .values = {}};
+    thrust.inputs = {FindInput("thrust_factor_stage1")};
+    campaign_.dispersions = {thrust};
+    ResultFolder folder = ResultFolder::Create(temporary_ / "out", campaign_);
+    std::vector<CaseResult> results;
+    for (std::uint64_t k = 0; k < flown; ++k) {
+      results.push_back(MakeCase(k));
+      if (k != 3) continue;
+      results.back().outcome = Outcome::kLostControl;
+      results.back().reason = "rate > 60";
+      results.back().metrics[MetricColumn("apogee_km")] = kNaN;
+    }
+    folder.Append(results);
+    if (flown < cases) folder.Quarantine({flown, "killed <three> workers"});
+    cases_ = ReadColumns(folder, DispersedInputs(campaign_));
+    summary_ = BuildSummary(folder, campaign_, cases_);
+    summary_.nominal = MakeCase(1000);
+    histories_.nominal = *summary_.nominal;
+    histories_.nominal_history = MakeHistory();
+    std::vector<int> columns;
+    for (int i = 0; i < static_cast<int>(HistoryColumns().size()); ++i) columns.push_back(i);
+    std::vector<SampledFlight> flights;
+    if (flown > 0) flights.push_back(SampleFlight(histories_.nominal_history, columns, 1.0));
+    histories_.bands = ComputeBands(flights, columns, 1.0);
+    histories_.written_cases = {3};
+    histories_.written_flights = {SampleFlight(histories_.nominal_history, columns, 1.0)};
+    page_ = ReportPage(campaign_, summary_, cases_, histories_);
+  }
+
+  TemporaryFolder temporary_;
+  Campaign campaign_;
+  CampaignSummary summary_;
+  CaseColumns cases_;
+  FlightHistories histories_;
+  std::string page_;
+};
+
+TEST_F(ReportPageTest, ShowsTheNumbersOfTheSummary) {
+  Build(40, 40);
+  for (const MetricSummary& metric : summary_.metrics) {
+    const Summary& s = metric.statistics;
+    // The row in one piece, so that a number of another metric cannot stand in.
+    std::string row = ReadableText(summary_.nominal->metrics[MetricColumn(metric.name)]);
+    const auto add = [&](const std::string& text) { row += "</td><td class=\"n\">" + text; };
+    add(std::to_string(s.n));
+    for (const double value : {s.mean, s.std, metric.skewness, s.min, s.p50}) add(ReadableText(value));
+    row += "<span class=\"definition\">" + ReadableText(metric.percentiles[3].limits.lower) + " … " +
+           ReadableText(metric.percentiles[3].limits.upper) + "</span>";
+    EXPECT_THAT(page_, HasSubstr(row)) << metric.name;
+    // 39 completed flights do not reach so far: only a bound is shown.
+    EXPECT_EQ(metric.percentiles[6].name, "p99_73");
+    EXPECT_THAT(page_, HasSubstr("≥ " + ReadableText(metric.percentiles[6].limits.lower)));
+  }
+  const RequirementSummary& requirement = summary_.requirements[0];
+  for (const std::string& text :
+       {PercentText(*requirement.success_lower), PercentText(*requirement.success_upper),
+        std::string("below 12.5 °"), HtmlText(requirement.sentence),
+        std::string("<dt>failures</dt><dd>" + std::to_string(requirement.failures) + "</dd>"),
+        std::string("<dt>observed</dt><dd>"), HtmlText(JointRiskSentence(summary_))}) {
+    EXPECT_THAT(page_, HasSubstr(text));
+  }
+  for (const WorstCases& worst : summary_.worst_cases) {
+    for (const WorstCase& one : worst.cases) EXPECT_THAT(page_, HasSubstr(ReplayCommand(one.case_index)));
+  }
+  EXPECT_THAT(page_, HasSubstr(ReadableText(summary_.dispersions[0].drawn.mean)));
+  EXPECT_THAT(page_, HasSubstr(summary_.id));
+  EXPECT_THAT(page_, HasSubstr(summary_.flight_id));
+  EXPECT_THAT(page_, HasSubstr(summary_.engine));
+}
+
+TEST_F(ReportPageTest, NumbersItsPrintedPagesAndNamesTheCampaignOnEach) {
+  Build(40, 40);
+  // A name cannot leave the string that it stands in.
+  EXPECT_THAT(page_, HasSubstr("@bottom-left { content: \"Dispersion campaign made \\00003cup> & \\000022quoted\\000022 · " +
+                               std::string(16, '1') + "\"; }"));
+  EXPECT_THAT(page_, HasSubstr("counter(page) \" / \" counter(pages)"));
+}
+
+TEST_F(ReportPageTest, NamesMetricAndValueOfEachRequirement) {
+  Build(40, 40);
+  const RequirementSummary& requirement = summary_.requirements[0];
+  ASSERT_TRUE(requirement.bound);
+  EXPECT_THAT(page_, HasSubstr("<code>pitch_error_peak_deg</code> <span class=\"value\">bound " +
+                               ReadableText(*requirement.bound) + " °, margin " +
+                               ReadableText(*requirement.margin) + " °</span>"));
+}
+
+TEST_F(ReportPageTest, SaysWhichFlightsTheEnvelopeHolds) {
+  Build(40, 40);
+  EXPECT_THAT(page_, HasSubstr("Pointwise percentiles over the first 1 of 40 flown cases"));
+  EXPECT_THAT(page_, HasSubstr("Minimum and maximum are over the same flights."));
+  histories_.bands.flights = 40;
+  histories_.bands.extreme_flights = 7;
+  const std::string page = ReportPage(campaign_, summary_, cases_, histories_);
+  EXPECT_THAT(page, HasSubstr("Pointwise percentiles over all 40 flown cases"));
+  EXPECT_THAT(page, HasSubstr("Minimum and maximum are over these and 7 more"));
+}
+
+TEST_F(ReportPageTest, DrawsTheWorstCasesOverTheEnvelope) {
+  Build(40, 40);  // of the worst cases only the lost one, 3, has a history
+  EXPECT_THAT(page_, HasSubstr("Worst cases over the envelope: pitch error, °."));
+  EXPECT_THAT(page_, HasSubstr(">case 3</text>"));
+}
+
+TEST_F(ReportPageTest, NeedsNothingButItself) {
+  Build(40, 40);
+  EXPECT_THAT(page_, Not(HasSubstr("://")));
+  EXPECT_THAT(page_, Not(HasSubstr(" src=")));
+  for (const char* reach : {"fetch(", "XMLHttpRequest", "import(", "import ", "eval(", "document.write", "WebSocket"})
+    EXPECT_THAT(page_, Not(HasSubstr(reach)));
+  EXPECT_THAT(page_, Not(HasSubstr("<link")));
+  EXPECT_THAT(page_, Not(HasSubstr("url(")));
+  EXPECT_THAT(page_, Not(HasSubstr("@import")));
+  const std::regex link("href=\"[^#]");
+  EXPECT_FALSE(std::regex_search(page_, link));
+}
+
+TEST_F(ReportPageTest, ShowsNoUndefinedNumberAndNoPath) {
+  Build(40, 40);
+  const std::regex nan("[^a-z](nan|inf)[^a-z]");
+  EXPECT_FALSE(std::regex_search(page_, nan));
+  EXPECT_THAT(page_, Not(HasSubstr((temporary_ / "out").string())));
+}
+
+TEST_F(ReportPageTest, ClosesEveryElementThatItOpens) {
+  Build(40, 40);
+  for (const std::string tag :
+       {"table", "tr", "td", "div", "figure", "svg", "text", "p", "h2", "ul", "code", "html"}) {
+    const std::regex open("<" + tag + "[ >]");
+    const std::regex close("</" + tag + ">");
+    const auto count = [&](const std::regex& expression) {
+      return std::distance(std::sregex_iterator(page_.begin(), page_.end(), expression),
+                           std::sregex_iterator());
+    };
+    EXPECT_EQ(count(open), count(close)) << tag;
+  }
+}
+
+TEST_F(ReportPageTest, EscapesWhatUsersWrote) {
+  Build(40, 39);
+  EXPECT_THAT(page_, HasSubstr("made &lt;up&gt; &amp; &quot;quoted&quot;"));
+  EXPECT_THAT(page_, HasSubstr("killed &lt;three&gt; workers"));
+  EXPECT_THAT(page_, HasSubstr("rate &gt; 60"));
+  EXPECT_THAT(page_, Not(HasSubstr("<up>")));
+}
+
+TEST_F(ReportPageTest, SaysWhatIsMissing) {
+  Build(40, 39);
+  EXPECT_THAT(page_, HasSubstr("39 of 40 cases have a result; 1 are quarantined."));
+  EXPECT_THAT(page_, HasSubstr("<span class=\"badge incomplete\">… incomplete</span>"));
+  for (const std::string& warning : Warnings(summary_)) EXPECT_THAT(page_, HasSubstr("<li>" + HtmlText(warning)));
+}
+
+TEST_F(ReportPageTest, StandsWithoutTimeHistories) {
+  Build(40, 40);
+  summary_.nominal.reset();
+  const std::string page = ReportPage(campaign_, summary_, cases_, {});
+  EXPECT_THAT(page, HasSubstr("This report was made without time histories"));
+  EXPECT_THAT(page, HasSubstr(HtmlText(summary_.requirements[0].sentence)));
+}
+
+TEST_F(ReportPageTest, StandsWithoutAnyCase) {
+  Build(40, 0);
+  EXPECT_THAT(page_, HasSubstr("No case has a result."));
+  EXPECT_THAT(page_, HasSubstr("no completed flight defines it"));
+}
+
+TEST_F(ReportPageTest, LabelsADesignStudy) {
+  Build(40, 40);
+  EXPECT_THAT(page_, Not(HasSubstr("design study")));
+  summary_.sampling = SamplingMethod::kCorners;
+  summary_.verdict = CampaignVerdict::kStudy;
+  summary_.requirements[0].verdict = "study";
+  EXPECT_THAT(ReportPage(campaign_, summary_, cases_, histories_),
+              HasSubstr("<span class=\"badge study\">◇ study</span>"));
+}
+
+TEST_F(ReportPageTest, AFlightBeyondALimitIsInTheHeadAndAmongTheOutcomes) {
+  Build(40, 40);
+  EXPECT_THAT(page_, Not(HasSubstr("structural limit exceeded</span>")));
+  EXPECT_THAT(page_, Not(HasSubstr("Limits of the vehicle")));
+  summary_.limits = {{"q_max_pa", 100e3, 0, 97e3, 4}, {"axial_load_max_g", 9.0, 3, 9.5, 17}};
+  summary_.beyond_limits = 3;
+  summary_.requirements[0].by_default = true;
+  const std::string page = ReportPage(campaign_, summary_, cases_, histories_);
+  const std::size_t head = page.find("<div class=\"headline exceeded\">");
+  EXPECT_LT(page.find("<span class=\"badge fail\">structural limit exceeded</span>", head),
+            page.find("<nav>"));
+  EXPECT_THAT(page, HasSubstr("<li>Structural limits of the vehicle were exceeded in 3 of 40 flights: "));
+  EXPECT_THAT(page,
+              HasSubstr("<td>a limit of the structure exceeded, however it ended</td><td class=\"n\"><span "
+                        "class=\"badge fail\">3</span></td><td class=\"n\">7.5 %</td>"));
+  EXPECT_THAT(page,
+              HasSubstr("<td>Axial load, maximum</td><td class=\"n\">9 g</td><td class=\"n\">9.5 g</td><td "
+                        "class=\"n\">17</td><td class=\"n\"><span class=\"badge fail\">3</span></td>"));
+  EXPECT_THAT(
+      page,
+      HasSubstr("<td>Dynamic pressure, maximum</td><td class=\"n\">100000 Pa</td><td class=\"n\">97000 Pa"));
+  EXPECT_THAT(page, HasSubstr("required because the vehicle gives limits"));
+}
+
+}  // namespace
+}  // namespace dispersa::pages_report_test

@@ -1,0 +1,186 @@
+// The whole of a report, from flights of the engine: the same bytes whoever flew them, in whatever order.
+#include "core/pages/reports.h"
+
+#include <gmock/gmock.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "core/campaign/campaign_flights.h"
+#include "core/campaign_yaml/load.h"
+#include "core/flight/engine_version.h"
+#include "core/results/database.h"
+#include "tests/unit/made_up_results.h"
+
+namespace dispersa::pages_reports_test {
+namespace {
+
+using report_test::ReadText;
+using report_test::TemporaryFolder;
+using testing::HasSubstr;
+
+constexpr std::uint64_t kCases = 4;
+
+/// The shipped vehicle, reference and autopilot under some of Table 3's dispersions.
+const Campaign& TheCampaign() {
+  static const Campaign campaign = [] {
+    TemporaryFolder temporary;
+    const std::string shipped = DISPERSA_CAMPAIGNS;
+    std::ofstream(temporary / "campaign.yaml")
+        << "schema: dispersa/campaign/1\nname: report_test\n"
+        << "vehicle: " << shipped << "/vehicles/slv4.yaml\n"
+        << "reference: " << shipped << "/references/slv4_500km.yaml\n"
+        << "autopilot: " << shipped << "/autopilots/adaptive_fuzzy.yaml\n"
+        << "sampling: {method: monte_carlo, cases: " << kCases << ", seed: 5}\n"
+        << "dispersions:\n"
+        << "  drag_coefficient: {distribution: normal, three_sigma_percent: 6.7}\n"
+        << "  wind: {max_speed_m_s: 60.96, azimuth: uniform}\n"
+        << "requirements:\n"
+        << "  - {metric: pitch_error_rms_deg, below: 0.2, probability: 0.5, consumer_risk: 0.1}\n";
+    return LoadCampaign((temporary / "campaign.yaml").string());
+  }();
+  return campaign;
+}
+
+const std::vector<CaseResult>& TheResults() {
+  static const std::vector<CaseResult> results = [] {
+    const CampaignFlights flights(TheCampaign());
+    std::vector<CaseResult> flown;
+    for (std::uint64_t k = 0; k < kCases; ++k) flown.push_back(flights.FlyCase(k));
+    return flown;
+  }();
+  return results;
+}
+
+/// Every file of a folder but the database, by its path in the folder.
+std::map<std::string, std::string> Files(const std::filesystem::path& folder) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    const std::string name = std::filesystem::relative(entry.path(), folder).string();
+    if (entry.is_regular_file() && !name.starts_with("results.sqlite")) files[name] = ReadText(entry.path());
+  }
+  return files;
+}
+
+TEST(Reports, AreTheSameBytesForAnyOrderAndNumberOfThreads) {
+  TemporaryFolder temporary;
+  ResultFolder one = ResultFolder::Create(temporary / "one", TheCampaign());
+  one.Append(TheResults());
+  const CampaignSummary summary =
+      WriteReports(one, TheCampaign(), {.history_cases = 3, .threads = 1, .progress = {}});
+
+  ResultFolder other = ResultFolder::Create(temporary / "other", TheCampaign());
+  std::vector<CaseResult> reversed(TheResults().rbegin(), TheResults().rend());
+  for (const CaseResult& result : reversed) other.Append({{result}});
+  other.Store({},
+              {{{.case_index = 0, .worker = "w", .host = "somewhere", .started_utc = "", .seconds = 1.0}}});
+  WriteReports(other, TheCampaign(), {.history_cases = 3, .threads = 3, .progress = {}});
+
+  const std::map<std::string, std::string> files = Files(temporary / "one");
+  const std::map<std::string, std::string> others = Files(temporary / "other");
+  ASSERT_EQ(files.size(), others.size());
+  for (const auto& [name, bytes] : files) EXPECT_TRUE(others.at(name) == bytes) << name;
+  for (const char* name : {"campaign.yaml", "cases.csv", "summary.json", "report.html",
+                           "histories/nominal.csv", "histories/bands.csv"}) {
+    EXPECT_EQ(files.count(name), 1u) << name;
+  }
+  const std::uint64_t worst = summary.worst_cases.at(0).cases.at(0).case_index;
+  EXPECT_EQ(files.count("histories/case_" + std::to_string(worst) + ".csv"), 1u);
+  EXPECT_EQ(nlohmann::json::parse(files.at("summary.json"))["nominal"]["outcome"], "completed");
+  EXPECT_EQ(summary.flown, kCases);
+  EXPECT_EQ(summary.verdict, CampaignVerdict::kPass);
+}
+
+TEST(Reports, CanBeWrittenAgain) {
+  TemporaryFolder temporary;
+  ResultFolder folder = ResultFolder::Create(temporary / "out", TheCampaign());
+  folder.Append({TheResults().data(), 1});
+  EXPECT_EQ(WriteReports(folder, TheCampaign(), {.history_cases = 0, .threads = 1, .progress = {}}).verdict,
+            CampaignVerdict::kIncomplete);
+  const std::map<std::string, std::string> first = Files(temporary / "out");
+  std::ofstream(temporary / "out" / "histories" / "case_99.csv") << "of an earlier worst case";
+  WriteReports(ResultFolder::Open(temporary / "out"), TheCampaign(),
+               {.history_cases = 0, .threads = 1, .progress = {}});
+  EXPECT_TRUE(Files(temporary / "out") == first);
+}
+
+// A folder whose rows got lost: the table that was made of all of them is the last that there is.
+TEST(Reports, LeaveATableOfMoreCasesAsItIs) {
+  TemporaryFolder temporary;
+  const auto out = temporary / "out";
+  const ReportOptions options = {.history_cases = 0, .threads = 1, .progress = {}};
+  ResultFolder folder = ResultFolder::Create(out, TheCampaign());
+  folder.Append({TheResults().data(), 3});
+  WriteReports(folder, TheCampaign(), options);
+  const std::map<std::string, std::string> reports = Files(out);
+  Database(out / "results.sqlite", Database::Mode::kExisting)
+      .Execute("DELETE FROM cases WHERE case_index > 0");
+  try {
+    WriteReports(folder, TheCampaign(), options);
+    FAIL() << "three cases were replaced by one";
+  } catch (const ResultError& error) {
+    EXPECT_TRUE(error.IsIncomplete());
+    EXPECT_EQ(error.what(),
+              (out / "cases.csv").string() +
+                  ": it has 3 cases and results.sqlite has 1: the reports stay as they are; remove "
+                  "cases.csv to have reports of 1");
+  }
+  EXPECT_TRUE(Files(out) == reports);
+  std::filesystem::remove(out / "cases.csv");
+  WriteReports(folder, TheCampaign(), options);
+  EXPECT_NE(Files(out), reports);
+}
+
+TEST(Reports, RefuseAResultThatDoesNotComeOutAgain) {
+  TemporaryFolder temporary;
+  ResultFolder folder = ResultFolder::Create(temporary / "out", TheCampaign());
+  CaseResult forged = TheResults()[0];
+  forged.digest = {1, 2};
+  folder.Append({{forged}});
+  try {
+    WriteReports(folder, TheCampaign(), {.history_cases = 1, .threads = 1, .progress = {}});
+    FAIL() << "written";
+  } catch (const ResultError& error) {
+    EXPECT_EQ(error.kind(), ResultError::Kind::kConflict);
+    EXPECT_EQ(
+        error.what(),
+        "case 0 does not reproduce its stored result: digest 00000000000000010000000000000002 is stored, " +
+            TheResults()[0].digest.Hex() + " was flown now");
+  }
+}
+
+TEST(Reports, NeedTheEngineThatFlew) {
+  TemporaryFolder temporary;
+  ResultFolder folder = ResultFolder::Create(temporary / "out", TheCampaign());
+  Database(temporary / "out" / "results.sqlite", Database::Mode::kExisting)
+      .Execute("UPDATE provenance SET value = '0.0.0+older' WHERE key = 'engine'");
+  try {
+    WriteReports(folder, TheCampaign());
+    FAIL() << "written";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.what(), (temporary / "out").string() + ": flown by engine 0.0.0+older, this one is " +
+                                EngineVersion() +
+                                ": its flights cannot be flown again, allowed: the engine that flew it, or --no-histories");
+  }
+}
+
+TEST(Reports, TellTheirProgressAndStopWhenAsked) {
+  TemporaryFolder temporary;
+  ResultFolder folder = ResultFolder::Create(temporary / "out", TheCampaign());
+  folder.Append(TheResults());
+  struct Stop {};
+  std::uint64_t last = 0;
+  const auto progress = [&](const std::string& what, std::uint64_t done, std::uint64_t total) {
+    if (what != "time histories") return;
+    EXPECT_EQ(total, kCases);
+    last = done;
+    if (done == 2) throw Stop();
+  };
+  EXPECT_THROW(
+      WriteReports(folder, TheCampaign(), {.history_cases = kCases, .threads = 1, .progress = progress}),
+      Stop);
+  EXPECT_EQ(last, 2u);
+}
+
+}  // namespace
+}  // namespace dispersa::pages_reports_test

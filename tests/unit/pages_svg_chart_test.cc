@@ -1,0 +1,119 @@
+#include "core/pages/svg_chart.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "core/pages/chart_scale.h"
+#include "tests/unit/made_up_results.h"
+
+namespace dispersa::pages_svg_chart_test {
+namespace {
+
+using report_test::kNaN;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+std::vector<std::string> Labels(const ChartScale& scale) {
+  std::vector<std::string> labels;
+  for (const Tick& tick : scale.ticks()) labels.push_back(tick.label);
+  return labels;
+}
+
+std::size_t Count(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+TEST(ChartScale, WidensToRoundNumbers) {
+  const ChartScale scale({.label = "x"}, 0.03, 0.97, 0.0, 100.0, 5);
+  EXPECT_THAT(Labels(scale), ElementsAre("0.0", "0.2", "0.4", "0.6", "0.8", "1.0"));
+  EXPECT_DOUBLE_EQ(scale.At(0.5), 50.0);
+  EXPECT_DOUBLE_EQ(scale.At(-7.0), 0.0);  // drawn at the edge
+}
+
+TEST(ChartScale, KeepsTheEndsThatItIsGiven) {
+  const ChartScale scale({.label = "x", .low = 0.0, .high = 33.0}, -5.0, 500.0, 0.0, 330.0, 3);
+  EXPECT_THAT(Labels(scale), ElementsAre("0", "10", "20", "30"));
+  EXPECT_DOUBLE_EQ(scale.At(33.0), 330.0);
+}
+
+TEST(ChartScale, CountsDecades) {
+  const ChartScale scale({.label = "p", .low = 0.0005, .high = 1.0, .logarithmic = true, .percent = true},
+                         0.0, 0.0, 0.0, 1.0, 5);
+  EXPECT_THAT(Labels(scale), ElementsAre("0.1 %", "1 %", "10 %", "100 %"));
+  EXPECT_NEAR(scale.At(std::sqrt(0.0005)), 0.5, 1e-12);  // half-way in decades
+}
+
+TEST(ChartScale, SkipsDecadesWhoseLabelsWouldRunTogether) {
+  const ChartScale scale({.label = "p", .low = 1e-9, .high = 1e6, .logarithmic = true}, 0.0, 0.0, 0.0, 1.0, 4);
+  EXPECT_THAT(Labels(scale), ElementsAre("1e-08", "0.0001", "1", "10000"));
+}
+
+TEST(ChartScale, LivesWithConstantAndMissingData) {
+  EXPECT_NEAR(ChartScale({.label = "x"}, 5.0, 5.0, 0.0, 100.0, 4).At(5.0), 50.0,
+              1e-9);  // rounding of the ends
+  EXPECT_EQ(ChartScale({.label = "x"}, INFINITY, -INFINITY, 0.0, 100.0, 4).low(), 0.0);
+}
+
+TEST(SvgChart, InterruptsALineWhereItIsUndefined) {
+  SvgChart chart({.label = "x"}, {.label = "y"});
+  chart.Line({0.0, 1.0, 2.0, 3.0, 4.0}, {0.0, 1.0, kNaN, 1.0, 0.0}, "line-0", "");
+  const std::string svg = chart.Svg("a gap");
+  EXPECT_EQ(Count(svg, "class=\"line-0\""), 2u);
+  EXPECT_THAT(svg, Not(HasSubstr("nan")));
+}
+
+TEST(SvgChart, ThinsWithoutLosingPeaks) {
+  std::vector<double> x;
+  std::vector<double> y;
+  for (int i = 0; i <= 100000; ++i) {
+    x.push_back(i);
+    y.push_back(i == 50001 ? 1.0 : 0.0);
+  }
+  SvgChart with({.label = "x"}, {.label = "y", .low = 0.0, .high = 1.0}, 520, 260);
+  with.Line(x, y, "line-0", "");
+  const std::string svg = with.Svg("a spike");
+  EXPECT_LT(svg.size(), 60000u);  // at most four points a pixel column, not one hundred thousand
+  // Without a legend or marks the plot begins 24 units from the top: there the spike's tip lies.
+  EXPECT_EQ(Count(svg.substr(svg.find("class=\"line-0\"")), " 24L"), 1u);
+}
+
+TEST(SvgChart, SaysWhatItShows) {
+  SvgChart chart({.label = "time, s"}, {.label = "error, °"});
+  chart.Line({0.0, 1.0}, {0.0, 1.0}, "line-0", "flown");
+  chart.HorizontalLimit(0.5, "limit");
+  chart.Mark(0.5, "S2");
+  const std::string svg = chart.Svg("error < limit");
+  for (const char* text :
+       {">time, s<", ">error, °<", ">flown<", ">limit<", ">S2<", "aria-label=\"error &lt; limit\""}) {
+    EXPECT_THAT(svg, HasSubstr(text));
+  }
+}
+
+TEST(SvgChart, NamesALimitThatLiesTooFarToBeDrawnBesideTheData) {
+  SvgChart chart({.label = "x"}, {.label = "y"});
+  chart.Line({1.0, 1.5, 2.0}, {0.0, 1.0, 0.5}, "line-0", "");
+  chart.VerticalLimit(2.9, "near");    // less than the data's width away
+  chart.VerticalLimit(10.0, "high");
+  chart.VerticalLimit(-9.0, "low");
+  chart.HorizontalLimit(5.0, "tall");
+  const std::string svg = chart.Svg("limits");
+  EXPECT_THAT(svg, HasSubstr(">near<"));
+  EXPECT_THAT(svg, HasSubstr(">high (far to the right)<"));
+  EXPECT_THAT(svg, HasSubstr(">low (far to the left)<"));
+  EXPECT_THAT(svg, HasSubstr(">tall (far above)<"));
+  EXPECT_THAT(svg, Not(HasSubstr(">10<")));   // the axis ends before it
+  EXPECT_EQ(Count(svg, "class=\"limit\""), 5u);  // four in the legend, one drawn
+}
+
+TEST(SvgChart, DrawsWithoutData) {
+  SvgChart chart({.label = "x"}, {.label = "y"});
+  chart.Line({}, {}, "line-0", "nothing");
+  EXPECT_THAT(chart.Svg("empty"), HasSubstr("</svg>"));
+}
+
+}  // namespace
+}  // namespace dispersa::pages_svg_chart_test

@@ -1,0 +1,108 @@
+// cases.csv is the same bytes in whatever order and however often results arrive.
+#include "core/results/cases_csv.h"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+
+#include "core/results/text.h"
+#include "tests/unit/made_up_results.h"
+
+namespace dispersa::results_cases_csv_test {
+namespace {
+
+using report_test::kNaN;
+using report_test::MakeCampaign;
+using report_test::MakeCase;
+using report_test::ReadText;
+using report_test::TemporaryFolder;
+using testing::EndsWith;
+using testing::StartsWith;
+
+TEST(CasesCsv, WritesDoublesThatReadBackToTheSameBits) {
+  EXPECT_EQ(ShortestText(0.1 + 0.2), "0.30000000000000004");
+  EXPECT_EQ(ShortestText(0.3), "0.3");
+  EXPECT_EQ(ShortestText(500.0), "500");
+  EXPECT_EQ(ShortestText(-1.5e-300), "-1.5e-300");
+  EXPECT_EQ(ShortestText(-0.0), "0");
+  EXPECT_EQ(ShortestText(kNaN), "");
+  EXPECT_EQ(ShortestText(-std::numeric_limits<double>::infinity()), "");
+}
+
+TEST(CasesCsv, QuotesFieldsThatNeedIt) {
+  EXPECT_EQ(CsvField("plain text"), "plain text");
+  EXPECT_EQ(CsvField("one, two"), "\"one, two\"");
+  EXPECT_EQ(CsvField("say \"no\""), "\"say \"\"no\"\"\"");
+  EXPECT_EQ(CsvField("two\nlines"), "\"two\nlines\"");
+}
+
+TEST(CasesCsv, NamesEveryColumn) {
+  const std::string header = CasesCsvHeader(kUsualStages);
+  EXPECT_THAT(header, StartsWith("case_index,outcome,end_time_s,end_stage,reason,input_" +
+                                 InputColumns()[0].name + ","));
+  EXPECT_THAT(header, EndsWith(",metric_" + MetricNames()[MetricCount(kUsualStages) - 1] + ",digest\n"));
+  EXPECT_EQ(static_cast<std::size_t>(std::count(header.begin(), header.end(), ',')),
+            5 + InputCount(kUsualStages) + MetricCount(kUsualStages));
+}
+
+TEST(CasesCsv, WritesOneLineACase) {
+  CaseResult result = MakeCase(12);
+  std::fill(result.inputs.begin(), result.inputs.end(), 0.25);
+  std::fill(result.metrics.begin(), result.metrics.end(), kNaN);
+  result.outcome = Outcome::kLostControl;
+  result.end_time_s = 77.31;
+  result.end_stage = 2;
+  result.reason = "error above 15 deg, for 0.5 s";
+  std::string expected = "12,lost_control,77.31,2,\"error above 15 deg, for 0.5 s\"";
+  for (std::size_t i = 0; i < result.inputs.size(); ++i) expected += ",0.25";
+  for (std::size_t i = 0; i < result.metrics.size(); ++i) expected += ",";
+  EXPECT_EQ(CasesCsvLine(result), expected + ",000000000000000d0000000000abcdef\n");
+}
+
+TEST(CasesCsv, DoesNotDependOnTheOrderOfArrival) {
+  TemporaryFolder temporary;
+  ResultFolder ascending = ResultFolder::Create(temporary / "ascending", MakeCampaign(50));
+  for (std::uint64_t k = 0; k < 50; ++k) ascending.Append({{MakeCase(k)}});
+  ResultFolder shuffled = ResultFolder::Create(temporary / "shuffled", MakeCampaign(50));
+  std::vector<CaseResult> batch;
+  for (std::uint64_t k = 0; k < 50; ++k) batch.push_back(MakeCase((k * 37 + 11) % 50));  // 37 is prime to 50
+  shuffled.Append(batch);
+  shuffled.Append(batch);
+  WriteCasesCsv(ascending, temporary / "ascending" / "cases.csv");
+  WriteCasesCsv(shuffled, temporary / "shuffled" / "cases.csv");
+  const std::string csv = ReadText(temporary / "ascending" / "cases.csv");
+  EXPECT_EQ(csv, ReadText(temporary / "shuffled" / "cases.csv"));
+  std::string expected = CasesCsvHeader(kUsualStages);
+  for (std::uint64_t k = 0; k < 50; ++k) expected += CasesCsvLine(MakeCase(k));
+  EXPECT_EQ(csv, expected);
+}
+
+TEST(CasesCsv, CountsTheCasesOfAFileHoweverTheyAreQuoted) {
+  TemporaryFolder temporary;
+  EXPECT_EQ(CountCases(temporary / "none"), 0u);
+  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(3));
+  WriteCasesCsv(folder, temporary / "cases.csv");
+  EXPECT_EQ(CountCases(temporary / "cases.csv"), 0u) << "a header alone";
+  CaseResult quoted = MakeCase(1);
+  quoted.reason = "two\nlines, \"so\nto say\"";
+  folder.Append({{MakeCase(0), quoted, MakeCase(2)}});
+  WriteCasesCsv(folder, temporary / "cases.csv");
+  EXPECT_EQ(CountCases(temporary / "cases.csv"), 3u);
+}
+
+TEST(CasesCsv, ShowsNegativeZeroAsZeroAndUndefinedAsEmpty) {
+  TemporaryFolder temporary;
+  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(1));
+  CaseResult result = MakeCase(0);
+  result.metrics[0] = -0.0;
+  result.metrics[1] = kNaN;
+  folder.Append({{result}});
+  WriteCasesCsv(folder, temporary / "out" / "cases.csv");
+  CaseResult normalised = result;
+  normalised.metrics[0] = 0.0;
+  EXPECT_EQ(ReadText(temporary / "out" / "cases.csv"),
+            CasesCsvHeader(kUsualStages) + CasesCsvLine(normalised));
+}
+
+}  // namespace
+}  // namespace dispersa::results_cases_csv_test

@@ -1,0 +1,446 @@
+// The result folder keeps every result once, exactly, whatever arrives in whatever order.
+#include "core/results/result_folder.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include "core/flight/engine_version.h"
+#include "core/results/database.h"
+#include "core/results/fingerprint.h"
+#include "core/results/output_file.h"
+#include "tests/small_disk.h"
+#include "tests/unit/made_up_results.h"
+
+namespace dispersa::results_result_folder_test {
+namespace {
+
+using report_test::kNaN;
+using report_test::MakeCampaign;
+using report_test::MakeCase;
+using report_test::ReadText;
+using report_test::TemporaryFolder;
+using testing::ElementsAre;
+using testing::Pair;
+
+template <typename Error, typename Action>
+std::string MessageOf(Action action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "nothing was thrown";
+}
+
+std::string Query(const std::filesystem::path& folder, const std::string& sql) {
+  Database database(folder / "results.sqlite", Database::Mode::kExisting);
+  Statement statement = database.Prepare(sql);
+  return statement.Step() ? statement.Text(0) : "no row";
+}
+
+TEST(ResultFolder, HoldsTheCampaignAndWhereItComesFrom) {
+  TemporaryFolder temporary;
+  const ResultFolder folder = ResultFolder::Create(temporary / "a" / "b", MakeCampaign(3));
+  EXPECT_EQ(ReadText(temporary / "a" / "b" / "campaign.yaml"), "name: made_up\n");
+  EXPECT_EQ(folder.Provenance("campaign_id"), std::string(64, '1'));
+  EXPECT_EQ(folder.Provenance("flight_id"), std::string(64, '2'));
+  EXPECT_EQ(folder.Provenance("engine"), EngineVersion());
+  EXPECT_EQ(folder.Provenance("seed"), "7");
+  EXPECT_EQ(folder.Provenance("sampling"), "monte_carlo");
+}
+
+TEST(ResultFolder, ReturnsAResultToTheLastBit) {
+  TemporaryFolder temporary;
+  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(3));
+  CaseResult stored = MakeCase(2);
+  stored.outcome = Outcome::kLostControl;
+  stored.reason = "it's \"gone\", or so";
+  stored.metrics[0] = 0.1 + 0.2;
+  stored.metrics[1] = std::numeric_limits<double>::denorm_min();
+  EXPECT_EQ(folder.Append({{stored}}), 1u);
+  const CaseResult loaded = ResultFolder::Open(temporary / "out").Load(2);
+  EXPECT_EQ(loaded.case_index, 2u);
+  EXPECT_EQ(loaded.outcome, Outcome::kLostControl);
+  EXPECT_EQ(loaded.end_time_s, 569.25);
+  EXPECT_EQ(loaded.end_stage, 4);
+  EXPECT_EQ(loaded.reason, stored.reason);
+  EXPECT_EQ(loaded.inputs, stored.inputs);
+  EXPECT_EQ(loaded.metrics, stored.metrics);
+  EXPECT_EQ(loaded.digest, stored.digest);
+}
+
+TEST(ResultFolder, StoresUndefinedAsNullAndNoNegativeZero) {
+  TemporaryFolder temporary;
+  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(1));
+  CaseResult result = MakeCase(0);
+  result.metrics[0] = kNaN;
+  result.metrics[1] = std::numeric_limits<double>::infinity();
+  result.metrics[2] = -0.0;
+  result.inputs[0] = -0.0;
+  folder.Append({{result}});
+  const CaseResult loaded = folder.Load(0);
+  EXPECT_TRUE(std::isnan(loaded.metrics[0]));
+  EXPECT_TRUE(std::isnan(loaded.metrics[1]));
+  EXPECT_EQ(loaded.metrics[2], 0.0);
+  EXPECT_FALSE(std::signbit(loaded.metrics[2]));
+  EXPECT_FALSE(std::signbit(loaded.inputs[0]));
+  EXPECT_EQ(Query(temporary / "out", "SELECT typeof(metric_" + MetricNames()[0] + ") FROM cases"), "null");
+  EXPECT_EQ(Query(temporary / "out", "SELECT typeof(metric_" + MetricNames()[1] + ") FROM cases"), "null");
+  EXPECT_EQ(Query(temporary / "out", "SELECT typeof(metric_" + MetricNames()[2] + ") FROM cases"), "real");
+}
+
+TEST(ResultFolder, AcceptsARepeatedResultOnce) {
+  TemporaryFolder temporary;
+  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(3));
+  EXPECT_EQ(folder.Append({{MakeCase(1), MakeCase(0)}}), 2u);
+  EXPECT_EQ(folder.Append({{MakeCase(1), MakeCase(2), MakeCase(2)}}), 1u);
+  EXPECT_THAT(folder.PresentCases(), ElementsAre(0, 1, 2));
+}
+
+TEST(ResultFolder, RefusesADifferentResultOfACaseWithItsWholeBatch) {
+  TemporaryFolder temporary;
+  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(3));
+  folder.Append({{MakeCase(1)}});
+  CaseResult other = MakeCase(1);
+  other.digest.low = 5;
+  try {
+    folder.Append({{MakeCase(0), other}});
+    FAIL() << "accepted";
+  } catch (const ResultError& error) {
+    EXPECT_EQ(error.kind(), ResultError::Kind::kConflict);
+    EXPECT_STREQ(error.what(),
+                 "case 1 was flown twice with different digests: 00000000000000020000000000abcdef is stored, "
+                 "00000000000000020000000000000005 arrived");
+  }
+  EXPECT_THAT(folder.PresentCases(), ElementsAre(1));
+  EXPECT_EQ(folder.Load(1).digest.low, 0xabcdefu);
+}
+
+TEST(ResultFolder, ListsInOrderWhatIsThere) {
+  TemporaryFolder temporary;
+  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(100));
+  folder.Append({{MakeCase(41), MakeCase(3)}});
+  folder.Append({{MakeCase(17)}});
+  EXPECT_THAT(folder.PresentCases(), ElementsAre(3, 17, 41));
+  std::vector<std::uint64_t> visited;
+  folder.ForEach([&](const CaseResult& result) { visited.push_back(result.case_index); });
+  EXPECT_THAT(visited, ElementsAre(3, 17, 41));
+  EXPECT_TRUE(folder.Contains(17));
+  EXPECT_FALSE(folder.Contains(18));
+  EXPECT_EQ(MessageOf<InputError>([&] { folder.Load(18); }),
+            (temporary / "out").string() + ": has no result of case 18");
+}
+
+TEST(ResultFolder, KeepsQuarantineUntilThereIsAResult) {
+  TemporaryFolder temporary;
+  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(10));
+  folder.Quarantine({5, "killed 3 workers"});
+  folder.Quarantine({4, "hung 1 worker"});
+  folder.Quarantine({4, "hung 3 workers"});
+  ASSERT_EQ(folder.QuarantinedCases().size(), 2u);
+  EXPECT_EQ(folder.QuarantinedCases()[0].reason, "hung 3 workers");
+  folder.Append({{MakeCase(4)}});
+  ASSERT_EQ(folder.QuarantinedCases().size(), 1u);
+  EXPECT_EQ(folder.QuarantinedCases()[0].case_index, 5u);
+}
+
+TEST(ResultFolder, KeepsTelemetryApart) {
+  TemporaryFolder temporary;
+  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(10));
+  folder.Store({}, {{{.case_index = 3,
+                      .worker = "w1",
+                      .host = "h",
+                      .started_utc = "2026-01-01T00:00:00Z",
+                      .seconds = 0.25}}});
+  EXPECT_EQ(Query(temporary / "out",
+                  "SELECT case_index || worker || host || started_utc || seconds FROM execution"),
+            "3w1h2026-01-01T00:00:00Z0.25");
+  EXPECT_TRUE(folder.PresentCases().empty());
+}
+
+TEST(ResultFolder, KnowsWhoReturnedWhatAndForgetsAllOfOneWorker) {
+  TemporaryFolder temporary;
+  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(10));
+  folder.Store({{MakeCase(1), MakeCase(2), MakeCase(3)}},
+               {{{1, "liar", "h", "", kNaN}, {2, "honest", "h", "", kNaN}, {3, "liar", "h", "", kNaN}}});
+  EXPECT_EQ(folder.WorkerOf(2), "honest");
+  EXPECT_EQ(folder.WorkerOf(4), std::nullopt);
+
+  folder.AppendAudits({{{"honest", 2, {}, false}, {"liar", 3, {}, false}}});
+  const auto unaudited = [&] {
+    std::vector<std::string> found;
+    folder.ForEachUnaudited([&](const Claim& claim) {
+      EXPECT_EQ(claim.fingerprint, Fingerprint(MakeCase(claim.case_index)));
+      found.push_back(claim.worker + std::to_string(claim.case_index));
+    });
+    return found;
+  };
+  EXPECT_THAT(unaudited(), ElementsAre("liar1"));
+
+  EXPECT_THAT(folder.Disown("liar"), testing::UnorderedElementsAre(1u, 3u));
+  EXPECT_THAT(folder.PresentCases(), ElementsAre(2u));
+  EXPECT_EQ(folder.WorkerOf(1), std::nullopt);
+  EXPECT_TRUE(folder.Disown("liar").empty());
+  // That the liar's result of a case was right says nothing of the next one's.
+  folder.Store({{MakeCase(3)}}, {{{3, "next", "h", "", kNaN}}});
+  EXPECT_THAT(unaudited(), ElementsAre("next3"));
+}
+
+TEST(ResultFolder, RefusesAFolderThatIsNotEmpty) {
+  TemporaryFolder temporary;
+  std::filesystem::create_directories(temporary / "out" / "something");
+  EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Create(temporary / "out", MakeCampaign(1)); }),
+            (temporary / "out").string() +
+                ": the folder is not empty, allowed: a new or an empty folder, or --resume "
+                "to go on with a campaign of the same flight id");
+}
+
+TEST(ResultFolder, RefusesAFolderThatCannotBeMade) {
+  TemporaryFolder temporary;
+  std::ofstream(temporary / "file") << "not a folder";
+  EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Create(temporary / "file" / "out", MakeCampaign(1)); }),
+            (temporary / "file" / "out").string() +
+                ": cannot be made: Not a directory, allowed: a folder that can be written");
+}
+
+TEST(ResultFolder, RefusesToOpenWhatIsNone) {
+  TemporaryFolder temporary;
+  std::filesystem::create_directories(temporary / "empty");
+  EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Open(temporary / "empty"); }),
+            (temporary / "empty").string() + ": not a result folder: it has no results.sqlite");
+  std::filesystem::create_directories(temporary / "garbage");
+  std::ofstream(temporary / "garbage" / "results.sqlite") << std::string(4096, 'x');
+  EXPECT_EQ(
+      MessageOf<InputError>([&] { ResultFolder::Open(temporary / "garbage"); }),
+      (temporary / "garbage").string() + ": not a result folder: its results.sqlite is no SQLite database");
+  std::filesystem::create_directories(temporary / "other");
+  Database((temporary / "other") / "results.sqlite", Database::Mode::kCreate).Execute("CREATE TABLE t (x)");
+  EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Open(temporary / "other"); }),
+            (temporary / "other").string() + ": not a result folder: " +
+                (temporary / "other" / "results.sqlite").string() + ": no such table: provenance");
+}
+
+TEST(ResultFolder, ResumesAndExtendsTheSameFlights) {
+  TemporaryFolder temporary;
+  { ResultFolder::Create(temporary / "out", MakeCampaign(2)).Append({{MakeCase(0), MakeCase(1)}}); }
+  Campaign longer = MakeCampaign(5);
+  longer.id = std::string(64, '3');
+  longer.canonical_yaml = "name: made_up\ncases: 5\n";
+  const ResultFolder folder = ResultFolder::Resume(temporary / "out", longer);
+  EXPECT_THAT(folder.PresentCases(), ElementsAre(0, 1));
+  EXPECT_EQ(folder.Provenance("campaign_id"), std::string(64, '3'));
+  EXPECT_EQ(folder.Provenance("cases"), "5");
+  EXPECT_EQ(ReadText(temporary / "out" / "campaign.yaml"), longer.canonical_yaml);
+}
+
+TEST(ResultFolder, RefusesToMixFlights) {
+  TemporaryFolder temporary;
+  { ResultFolder::Create(temporary / "out", MakeCampaign(2)).Append({{MakeCase(1)}}); }
+  const std::string folder = (temporary / "out").string();
+
+  Campaign other = MakeCampaign(2);
+  other.flight_id = std::string(64, '9');
+  EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Resume(folder, other); }),
+            folder + ": holds results of flight id " + std::string(64, '2') + ", the campaign's is " +
+                std::string(64, '9'));
+  EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Resume(folder, MakeCampaign(1)); }),
+            folder + ": already holds case 1, the campaign has only 1 cases");
+  Database(folder + "/results.sqlite", Database::Mode::kExisting)
+      .Execute("UPDATE provenance SET value = '0.0.0+older' WHERE key = 'engine'");
+  EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Resume(folder, MakeCampaign(2)); }),
+            folder + ": holds results of engine 0.0.0+older, this one is " + EngineVersion());
+}
+
+TEST(ResultFolder, RefusesColumnsOfAnotherEngine) {
+  TemporaryFolder temporary;
+  { ResultFolder::Create(temporary / "out", MakeCampaign(2)); }
+  Database((temporary / "out") / "results.sqlite", Database::Mode::kExisting)
+      .Execute("ALTER TABLE cases DROP COLUMN metric_" + MetricNames()[0]);
+  EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Open(temporary / "out"); }),
+            (temporary / "out").string() + ": flown by engine " + EngineVersion() +
+                ", whose inputs and metrics are not those of this one, " + EngineVersion());
+}
+
+TEST(ResultFolder, IsWrittenByOneProcessAtATime) {
+  TemporaryFolder temporary;
+  const std::string busy = (temporary / "out").string() +
+                           ": another dispersa process is writing this folder, allowed: another folder, or to "
+                           "wait for that process to end";
+  {
+    const ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(2));
+    EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Resume(temporary / "out", MakeCampaign(2)); }), busy);
+    ResultFolder reader = ResultFolder::Open(temporary / "out");
+    EXPECT_EQ(MessageOf<InputError>([&] { reader.Lock(); }), busy);
+  }
+  const ResultFolder folder = ResultFolder::Resume(temporary / "out", MakeCampaign(2));
+  EXPECT_EQ(MessageOf<InputError>([&] { FolderLock again(temporary / "out"); }), busy);
+}
+
+TEST(ResultFolder, TellsADamagedRowAndRemovesItToBeFlownAgain) {
+  const std::string metric = "metric_" + MetricNames()[0];
+  for (const std::string& damage :
+       {metric + " = " + metric + " + 1e-9", std::string("outcome = 'impact'"), std::string("reason = 'x'"),
+        std::string("end_stage = end_stage + 1"), std::string("end_time_s = NULL"),
+        std::string("digest = '0' || substr(digest, 2, 30) || 'e'"), std::string("row_digest = ''")}) {
+    TemporaryFolder temporary;
+    {
+      ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(3));
+      folder.Append({{MakeCase(0), MakeCase(1), MakeCase(2)}});
+    }
+    Database((temporary / "out") / "results.sqlite", Database::Mode::kExisting)
+        .Execute("UPDATE cases SET " + damage + " WHERE case_index = 1");
+    {
+      const ResultFolder folder = ResultFolder::Open(temporary / "out");
+      const std::string error = (temporary / "out").string() +
+                                "/results.sqlite: the row of case 1 is damaged; --resume flies it again";
+      EXPECT_EQ(MessageOf<ResultError>([&] { folder.Load(1); }), error) << damage;
+      EXPECT_EQ(MessageOf<ResultError>([&] { folder.ForEach([](const CaseResult&) {}); }), error) << damage;
+    }
+    const ResultFolder folder = ResultFolder::Resume(temporary / "out", MakeCampaign(3));
+    EXPECT_THAT(folder.damaged(), ElementsAre(1)) << damage;
+    EXPECT_THAT(folder.PresentCases(), ElementsAre(0, 2)) << damage;
+  }
+}
+
+TEST(ResultFolder, KeepsTheFingerprintOfEachRow) {
+  TemporaryFolder temporary;
+  ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(3));
+  folder.Append({{MakeCase(2), MakeCase(1)}});
+  EXPECT_THAT(folder.Fingerprints(),
+              ElementsAre(Pair(1, Fingerprint(MakeCase(1))), Pair(2, Fingerprint(MakeCase(2)))));
+}
+
+// Somebody else's, or an archive's.
+TEST(ResultFolder, IsReadByWhoMayNotWriteIt) {
+  TemporaryFolder temporary;
+  const std::filesystem::path out = temporary / "100%# out?";
+  ResultFolder::Create(out, MakeCampaign(3)).Append({{MakeCase(1)}});
+  using std::filesystem::perms;
+  std::filesystem::permissions(out.parent_path(), perms(0755));
+  for (const auto& file : std::filesystem::directory_iterator(out))
+    std::filesystem::permissions(file, perms(0444));
+  std::filesystem::permissions(out, perms(0555));
+  const pid_t child = fork();
+  if (child == 0) {
+    const bool is_another = geteuid() != 0 || setuid(65534) == 0;
+    try {
+      _exit(is_another && access(out.c_str(), W_OK) != 0 &&
+                    Fingerprint(ResultFolder::Open(out).Load(1)) == Fingerprint(MakeCase(1))
+                ? 0
+                : 1);
+    } catch (const std::exception&) {
+      _exit(2);
+    }
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  std::filesystem::permissions(out, perms(0755));
+  EXPECT_EQ(status, 0);
+}
+
+TEST(OutputFile, DoesNotFollowALinkInItsPlace) {
+  TemporaryFolder temporary;
+  std::ofstream(temporary / "precious") << "kept";
+  std::filesystem::create_symlink(temporary / "precious", temporary / "cases.csv.tmp");
+  WriteFile(temporary / "cases.csv", "new");
+  EXPECT_EQ(ReadText(temporary / "precious"), "kept");
+  EXPECT_EQ(ReadText(temporary / "cases.csv"), "new");
+  EXPECT_FALSE(std::filesystem::exists(temporary / "cases.csv.tmp"));
+}
+
+TEST(Database, TellsAFullDiskFromOtherErrors) {
+  TemporaryFolder temporary;
+  Database database(temporary / "small.sqlite", Database::Mode::kCreate);
+  database.Execute("CREATE TABLE t (x TEXT)");
+  database.Execute("PRAGMA max_page_count = 4");  // SQLite's own full disk
+  try {
+    for (int i = 0; i < 100; ++i) database.Execute("INSERT INTO t VALUES ('" + std::string(1000, 'x') + "')");
+    FAIL() << "never full";
+  } catch (const ResultError& error) {
+    EXPECT_EQ(error.kind(), ResultError::Kind::kDiskFull);
+    EXPECT_EQ(error.what(), (temporary / "small.sqlite").string() + ": no space left on the disk");
+  }
+  try {
+    database.Execute("SELECT y FROM t");
+    FAIL() << "no such column";
+  } catch (const ResultError& error) {
+    EXPECT_EQ(error.kind(), ResultError::Kind::kFile);
+    EXPECT_EQ(error.what(), (temporary / "small.sqlite").string() + ": no such column: y");
+  }
+}
+
+TEST(OutputFile, ReplacesAsAWholeOrNotAtAll) {
+  TemporaryFolder temporary;
+  WriteFile(temporary / "file", "old");
+  {
+    OutputFile abandoned(temporary / "file");
+    abandoned.Write("new");
+  }
+  EXPECT_EQ(ReadText(temporary / "file"), "old");
+  EXPECT_FALSE(std::filesystem::exists(temporary / "file.tmp"));
+  WriteFile(temporary / "file", "new");
+  EXPECT_EQ(ReadText(temporary / "file"), "new");
+  EXPECT_FALSE(std::filesystem::exists(temporary / "file.tmp"));
+}
+
+TEST(OutputFile, ReportsAFullDisk) {
+  TemporaryFolder temporary;
+  const std::filesystem::path folder = (temporary / "file").parent_path();
+  const std::string message = OnASmallDisk(folder, "64k", [&folder]() -> std::string {
+    WriteFile(folder / "file", "old");
+    std::string said = "written";
+    try {
+      WriteFile(folder / "file", std::string(1 << 20, 'x'));
+    } catch (const ResultError& error) {
+      said = error.kind() == ResultError::Kind::kDiskFull ? error.what() : "not the full disk";
+    }
+    return ReadText(folder / "file") == "old" ? said : said + ", and the old file is gone";
+  });
+  EXPECT_EQ(message, (folder / "file").string() + ": no space left on the disk");
+}
+
+TEST(OutputFile, KeepsLinksAndPermissions) {
+  TemporaryFolder temporary;
+  std::ofstream(temporary / "file") << "old";
+  std::filesystem::permissions(temporary / "file", std::filesystem::perms(0600));
+  std::filesystem::create_symlink("file", temporary / "link");
+  std::filesystem::create_symlink("not yet", temporary / "dangling");
+  WriteFile(temporary / "link", "new");
+  WriteFile(temporary / "dangling", "made");
+  EXPECT_TRUE(std::filesystem::is_symlink(temporary / "link"));
+  EXPECT_EQ(ReadText(temporary / "file"), "new");
+  EXPECT_EQ(std::filesystem::status(temporary / "file").permissions(), std::filesystem::perms(0600));
+  EXPECT_TRUE(std::filesystem::is_symlink(temporary / "dangling"));
+  EXPECT_EQ(ReadText(temporary / "not yet"), "made");
+}
+
+TEST(OutputFile, WritesToAPipeThatIsThere) {
+  TemporaryFolder temporary;
+  const std::filesystem::path pipe = temporary / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+  WriteFile(pipe, "told");
+  char told[8] = "";
+  EXPECT_EQ(read(reader, told, sizeof told), 4);
+  close(reader);
+  EXPECT_EQ(std::string(told), "told");
+  EXPECT_TRUE(std::filesystem::is_fifo(pipe));
+}
+
+TEST(OutputFile, SaysWhyAFileCannotBeWritten) {
+  TemporaryFolder temporary;
+  EXPECT_EQ(MessageOf<ResultError>([&] { WriteFile(temporary / "no" / "file", "x"); }),
+            (temporary / "no" / "file").string() + ": cannot be written: No such file or directory");
+}
+
+}  // namespace
+}  // namespace dispersa::results_result_folder_test
