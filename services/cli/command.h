@@ -19,7 +19,7 @@
 #include <functional>
 
 #include "services/program/completion_words.h"
-#include "services/transport/exit_code.h"
+#include "services/program/exit_code.h"
 
 namespace dispersa {
 

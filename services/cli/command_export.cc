@@ -18,7 +18,7 @@
 #include "services/cli/stream_beside.h"
 #include "services/client/stored_campaign.h"
 #include "services/client/writable.h"
-#include "services/coordinator/threads.h"
+#include "services/program/threads.h"
 
 namespace dispersa {
 namespace {

@@ -16,7 +16,7 @@
 #include "services/cli/terminal_observer.h"
 #include "services/cli/warn.h"
 #include "services/client/reference_search.h"
-#include "services/coordinator/threads.h"
+#include "services/program/threads.h"
 #include "services/log/log.h"
 #include "services/program/option_values.h"
 

@@ -12,8 +12,8 @@
 #include "services/cli/terminal_observer.h"
 #include "services/client/stored_campaign.h"
 #include "services/client/writable.h"
-#include "services/coordinator/campaign_book.h"
-#include "services/coordinator/threads.h"
+#include "services/ledger/campaign_book.h"
+#include "services/program/threads.h"
 
 namespace dispersa {
 namespace {

@@ -25,7 +25,7 @@
 #include "services/cli/warn.h"
 #include "services/client/flight_json.h"
 #include "services/client/writable.h"
-#include "services/coordinator/threads.h"
+#include "services/program/threads.h"
 #include "services/program/option_values.h"
 
 namespace dispersa {

@@ -16,7 +16,7 @@
 #include "services/cli/warn.h"
 #include "services/client/flight_json.h"
 #include "services/client/writable.h"
-#include "services/coordinator/threads.h"
+#include "services/program/threads.h"
 #include "services/log/log.h"
 #include "services/program/option_values.h"
 

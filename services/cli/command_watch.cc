@@ -12,7 +12,7 @@
 #include "services/cli/live_page.h"
 #include "services/cli/progress.h"
 #include "services/cli/session_options.h"
-#include "services/coordinator/stop_signal.h"
+#include "services/program/stop_signal.h"
 #include "services/log/log.h"
 #include "services/program/option_values.h"
 

@@ -14,7 +14,7 @@
 #include "core/results/text.h"
 #include "services/cli/campaign_text.h"
 #include "services/cli/progress.h"
-#include "services/transport/exit_code.h"
+#include "services/program/exit_code.h"
 
 namespace dispersa {
 namespace {

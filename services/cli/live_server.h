@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "services/transport/mutex.h"
+#include "services/program/mutex.h"
 
 namespace httplib {
 class Server;

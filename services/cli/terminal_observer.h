@@ -6,7 +6,7 @@
 
 #include "services/cli/progress.h"
 #include "services/client/observer.h"
-#include "services/coordinator/stop_signal.h"
+#include "services/program/stop_signal.h"
 
 namespace dispersa {
 

@@ -8,8 +8,8 @@
 #include "core/analysis/campaign_summary.h"
 #include "services/client/campaign_reports.h"
 #include "services/client/observer.h"
-#include "services/coordinator/open_campaign.h"
-#include "services/transport/exit_code.h"
+#include "services/ledger/open_campaign.h"
+#include "services/program/exit_code.h"
 
 namespace dispersa {
 

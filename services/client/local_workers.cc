@@ -14,7 +14,7 @@
 #include <thread>
 #include <utility>
 
-#include "services/coordinator/utc.h"
+#include "services/program/utc.h"
 #include "services/transport/network.h"
 
 namespace dispersa {

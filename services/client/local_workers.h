@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "services/coordinator/ledger.h"
+#include "services/ledger/ledger.h"
 
 namespace dispersa {
 

@@ -5,7 +5,7 @@
 
 #include "core/campaign/campaign_flights.h"
 #include "services/client/flight_json.h"
-#include "services/coordinator/threads.h"
+#include "services/program/threads.h"
 
 namespace dispersa {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "services/coordinator/auditor.h"
+#include "services/ledger/auditor.h"
 #include "services/coordinator/dispatcher.h"
 #include "services/coordinator/workforce.h"
 #include "services/transport/coordinator_link.h"

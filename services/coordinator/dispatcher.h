@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "services/coordinator/campaign_book.h"
+#include "services/ledger/campaign_book.h"
 #include "services/transport/messages.h"
 
 namespace dispersa {

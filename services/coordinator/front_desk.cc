@@ -14,7 +14,7 @@
 #include "core/results/json_number.h"
 #include "core/analysis/requirement_summary.h"
 #include "services/coordinator/dump_any_text.h"
-#include "services/transport/exit_code.h"
+#include "services/program/exit_code.h"
 #include "services/transport/validity.h"
 
 namespace dispersa {

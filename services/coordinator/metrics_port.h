@@ -5,7 +5,7 @@
 #include <string>
 #include <thread>
 
-#include "services/transport/mutex.h"
+#include "services/program/mutex.h"
 
 namespace dispersa {
 

@@ -10,7 +10,7 @@
 #include "core/campaign_yaml/standard_input.h"
 #include "core/results/result_error.h"
 #include "services/coordinator/serve.h"
-#include "services/coordinator/stop_signal.h"
+#include "services/program/stop_signal.h"
 #include "services/log/log.h"
 #include "services/program/command_line.h"
 #include "services/program/completion_words.h"
@@ -18,7 +18,7 @@
 #include "services/program/option_values.h"
 #include "services/program/standard_output.h"
 #include "services/transport/admission.h"
-#include "services/transport/exit_code.h"
+#include "services/program/exit_code.h"
 
 namespace dispersa {
 int RunCoordinator(int argc, char** argv) {

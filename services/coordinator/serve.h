@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "services/coordinator/open_campaign.h"
+#include "services/ledger/open_campaign.h"
 #include "services/coordinator/service.h"
 #include "services/transport/network.h"
 

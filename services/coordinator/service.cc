@@ -9,9 +9,9 @@
 
 #include "core/campaign_yaml/load.h"
 #include "core/pages/reports.h"
-#include "services/coordinator/campaign_opening.h"
+#include "services/ledger/campaign_opening.h"
 #include "services/log/log.h"
-#include "services/transport/exit_code.h"
+#include "services/program/exit_code.h"
 
 namespace dispersa {
 namespace {

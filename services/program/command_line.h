@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <optional>
 
-#include "services/transport/exit_code.h"
+#include "services/program/exit_code.h"
 
 namespace dispersa {
 

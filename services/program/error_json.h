@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/input/input_error.h"
-#include "services/transport/exit_code.h"
+#include "services/program/exit_code.h"
 
 namespace dispersa {
 

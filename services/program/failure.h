@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/input/input_error.h"
-#include "services/transport/exit_code.h"
+#include "services/program/exit_code.h"
 
 namespace dispersa {
 

@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-#include "services/transport/exit_code.h"
+#include "services/program/exit_code.h"
 
 namespace dispersa {
 

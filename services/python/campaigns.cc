@@ -17,7 +17,7 @@
 #include "core/flight/flight_inputs.h"
 #include "core/flight/history.h"
 #include "core/flight/metrics.h"
-#include "services/coordinator/threads.h"
+#include "services/program/threads.h"
 #include "services/python/arrays.h"
 #include "services/python/growing_rows.h"
 #include "services/python/module.h"

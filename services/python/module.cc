@@ -20,7 +20,7 @@
 #include "services/client/observer.h"
 #include "services/client/session.h"
 #include "services/log/log.h"
-#include "services/transport/exit_code.h"
+#include "services/program/exit_code.h"
 
 namespace py = pybind11;
 

@@ -5,7 +5,7 @@
 #include <map>
 
 #include "services/log/log.h"
-#include "services/transport/mutex.h"
+#include "services/program/mutex.h"
 #include "services/transport/validity.h"
 
 namespace dispersa {

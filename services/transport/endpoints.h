@@ -19,7 +19,7 @@
 
 #include "services/transport/complaints.h"
 #include "services/transport/convert.h"
-#include "services/transport/mutex.h"
+#include "services/program/mutex.h"
 #include "services/transport/participant.h"
 #include "services/transport/seal.h"
 #include "services/transport/validity.h"

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "services/transport/mutex.h"
+#include "services/program/mutex.h"
 
 namespace dispersa {
 

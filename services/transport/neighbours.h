@@ -8,7 +8,7 @@
 
 #include <fastdds/dds/domain/DomainParticipantListener.hpp>
 
-#include "services/transport/mutex.h"
+#include "services/program/mutex.h"
 
 namespace dispersa {
 

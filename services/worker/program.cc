@@ -18,7 +18,7 @@
 #include "services/program/option_values.h"
 #include "services/program/standard_output.h"
 #include "services/transport/admission.h"
-#include "services/transport/exit_code.h"
+#include "services/program/exit_code.h"
 #include "services/transport/run_pass.h"
 #include "services/worker/worker.h"
 

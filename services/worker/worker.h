@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "services/transport/mutex.h"
+#include "services/program/mutex.h"
 #include "services/transport/worker_link.h"
 #include "services/worker/flight_desk.h"
 

@@ -15,7 +15,7 @@
 
 #include "core/flight/engine_version.h"
 #include "core/flight/flight_inputs.h"
-#include "services/coordinator/ledger.h"
+#include "services/ledger/ledger.h"
 #include "services/transport/admission.h"
 #include "services/transport/authority.h"
 #include "services/transport/coordinator_link.h"

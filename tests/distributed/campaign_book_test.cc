@@ -1,5 +1,5 @@
 // A campaign's book over a real result folder: when it stops, what it counts, what it stores.
-#include "services/coordinator/campaign_book.h"
+#include "services/ledger/campaign_book.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -11,8 +11,8 @@
 #include "core/results/database.h"
 #include "core/results/result_folder.h"
 #include "made_up_service.h"
-#include "services/coordinator/campaign_opening.h"
-#include "services/transport/exit_code.h"
+#include "services/ledger/campaign_opening.h"
+#include "services/program/exit_code.h"
 #include "tests/small_disk.h"
 
 namespace dispersa::campaign_service_test {

@@ -10,7 +10,7 @@
 
 #include "core/input/input_error.h"
 #include "core/flight/metrics.h"
-#include "services/coordinator/running_tally.h"
+#include "services/ledger/running_tally.h"
 
 namespace dispersa::catalogue_test {
 namespace {

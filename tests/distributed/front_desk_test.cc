@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "made_up_service.h"
-#include "services/transport/exit_code.h"
+#include "services/program/exit_code.h"
 
 namespace dispersa::front_desk_test {
 namespace {

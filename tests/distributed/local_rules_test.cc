@@ -9,7 +9,7 @@
 #include "services/client/execution_file.h"
 #include "services/client/local_workers.h"
 #include "services/coordinator/attendance.h"
-#include "services/transport/exit_code.h"
+#include "services/program/exit_code.h"
 #include "temporary_folder.h"
 
 namespace dispersa::local_rules_test {

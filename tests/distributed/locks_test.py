@@ -15,7 +15,7 @@ import unittest
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
 BUILD, CLANG = pathlib.Path(sys.argv[1]), sys.argv[2]
-MUTEX = "services/transport/mutex.h"
+MUTEX = "services/program/mutex.h"
 INCLUDE = re.compile(r'^#include "([^"]+)"', re.M)
 
 

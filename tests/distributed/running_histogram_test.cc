@@ -1,5 +1,5 @@
 // Histograms of results that still come: order does not matter, memory is bounded.
-#include "services/coordinator/running_histogram.h"
+#include "services/ledger/running_histogram.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // The ledger with made-up time, and a world of dying, hanging, lying and repeating workers around it.
-#include "services/coordinator/ledger.h"
+#include "services/ledger/ledger.h"
 
 #include <algorithm>
 #include <deque>

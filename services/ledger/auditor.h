@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/campaign/campaign_flights.h"
-#include "services/coordinator/audit.h"
-#include "services/transport/mutex.h"
+#include "services/ledger/audit.h"
+#include "services/program/mutex.h"
 
 namespace dispersa {
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/flight/digest.h"
-#include "services/coordinator/case_table.h"
-#include "services/coordinator/index_set.h"
+#include "services/ledger/case_table.h"
+#include "services/ledger/index_set.h"
 
 namespace dispersa {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "services/coordinator/campaign_book.h"
+#include "services/ledger/campaign_book.h"
 
 namespace dispersa {
 

@@ -1,4 +1,4 @@
-#include "services/coordinator/running_histogram.h"
+#include "services/ledger/running_histogram.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "services/coordinator/campaign_book.h"
+#include "services/ledger/campaign_book.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include "core/flight/engine_version.h"
 #include "core/results/fingerprint.h"
 #include "core/results/result_differences.h"
-#include "services/coordinator/utc.h"
+#include "services/program/utc.h"
 #include "services/log/log.h"
 
 namespace dispersa {

@@ -1,4 +1,4 @@
-#include "services/coordinator/audit.h"
+#include "services/ledger/audit.h"
 
 #include <utility>
 

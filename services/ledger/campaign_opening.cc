@@ -1,4 +1,4 @@
-#include "services/coordinator/campaign_opening.h"
+#include "services/ledger/campaign_opening.h"
 
 #include <utility>
 

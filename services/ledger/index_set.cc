@@ -1,4 +1,4 @@
-#include "services/coordinator/index_set.h"
+#include "services/ledger/index_set.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,4 +1,4 @@
-#include "services/transport/exit_code.h"
+#include "services/program/exit_code.h"
 
 #include <algorithm>
 #include <iterator>

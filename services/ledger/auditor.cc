@@ -1,4 +1,4 @@
-#include "services/coordinator/auditor.h"
+#include "services/ledger/auditor.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include "services/coordinator/stop_signal.h"
+#include "services/program/stop_signal.h"
 
 #include <csignal>
 #include <initializer_list>

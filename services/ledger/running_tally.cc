@@ -1,4 +1,4 @@
-#include "services/coordinator/running_tally.h"
+#include "services/ledger/running_tally.h"
 
 #include <cmath>
 

@@ -14,10 +14,10 @@
 #include "core/results/result_folder.h"
 #include "core/results/result_store.h"
 #include "core/analysis/stopping_rule.h"
-#include "services/coordinator/audit.h"
-#include "services/coordinator/ledger.h"
-#include "services/coordinator/running_tally.h"
-#include "services/transport/exit_code.h"
+#include "services/ledger/audit.h"
+#include "services/ledger/ledger.h"
+#include "services/ledger/running_tally.h"
+#include "services/program/exit_code.h"
 
 namespace dispersa {
 

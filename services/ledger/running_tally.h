@@ -7,7 +7,7 @@
 
 #include "core/campaign/campaign.h"
 #include "core/campaign/case_result.h"
-#include "services/coordinator/running_histogram.h"
+#include "services/ledger/running_histogram.h"
 
 namespace dispersa {
 

@@ -1,4 +1,4 @@
-#include "services/coordinator/ledger.h"
+#include "services/ledger/ledger.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,4 +1,4 @@
-#include "services/coordinator/open_campaign.h"
+#include "services/ledger/open_campaign.h"
 
 #include <algorithm>
 #include <chrono>

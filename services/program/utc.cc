@@ -1,4 +1,4 @@
-#include "services/coordinator/utc.h"
+#include "services/program/utc.h"
 
 #include <fmt/chrono.h>
 
