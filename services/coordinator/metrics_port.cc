@@ -1,14 +1,11 @@
 #include "services/coordinator/metrics_port.h"
 
-#include <arpa/inet.h>
-#include <netinet/in.h>
-#include <poll.h>
+#include <httplib.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <cstring>
+#include <thread>
 #include <utility>
 
 #include "services/transport/network.h"
@@ -16,73 +13,54 @@
 namespace dispersa {
 namespace {
 
-constexpr int kPeriod_ms = 200;    // in which a stop is noticed
-constexpr int kPatience_ms = 500;  // with a caller: the next one waits
+constexpr char kHost[] = "127.0.0.1";
+// Scrapers come one at a time; one that stops reading must not keep the next one out.
+constexpr std::size_t kThreads = 2;
+constexpr int kPatience_s = 1;
+constexpr std::size_t kMaxBody = 1024;
 
 }  // namespace
 
-MetricsPort::MetricsPort(std::uint16_t port) {
-  sockaddr_in where{};
-  where.sin_family = AF_INET;
-  where.sin_port = htons(port);
-  where.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socket_ = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-  const int reuse = 1;
-  if (socket_ < 0 || setsockopt(socket_, SOL_SOCKET, SO_REUSEADDR, &reuse, sizeof reuse) != 0 ||
-      bind(socket_, reinterpret_cast<const sockaddr*>(&where), sizeof where) != 0 ||
-      listen(socket_, 16) != 0) {
-    const std::string reason = std::strerror(errno);
-    if (socket_ >= 0) close(socket_);
-    throw NetworkError("metrics: port " + std::to_string(port) + " of 127.0.0.1: " + reason);
-  }
-  thread_ = std::jthread([this](const std::stop_token& stop) { Serve(stop); });
+struct MetricsPort::Serving {
+  httplib::Server server;
+  std::thread thread;
+};
+
+MetricsPort::MetricsPort(std::uint16_t port) : serving_(std::make_unique<Serving>()) {
+  httplib::Server& server = serving_->server;
+  server.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
+  // By default httplib shares its port with whoever asks for it.
+  server.set_socket_options([](int socket) {
+    const int yes = 1;
+    setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  });
+  server.set_keep_alive_max_count(1);
+  server.set_keep_alive_timeout(kPatience_s);  // for the first request too
+  server.set_read_timeout(kPatience_s);
+  server.set_write_timeout(kPatience_s);
+  server.set_payload_max_length(kMaxBody);
+  const auto answer = [this](const httplib::Request&, httplib::Response& response) {
+    const Lock lock(mutex_);
+    response.set_content(text_, "text/plain; version=0.0.4; charset=utf-8");
+  };
+  server.Get("/", answer);
+  server.Get("/metrics", answer);
+  errno = 0;
+  if (!server.bind_to_port(kHost, port))
+    throw NetworkError("metrics: port " + std::to_string(port) + " of 127.0.0.1: " +
+                       std::strerror(errno == 0 ? EADDRINUSE : errno));
+  serving_->thread = std::thread([&server] { server.listen_after_bind(); });
+  while (!server.is_running()) std::this_thread::yield();  // else stop() would stop nothing
 }
 
 MetricsPort::~MetricsPort() {
-  thread_.request_stop();
-  thread_.join();
-  close(socket_);
+  serving_->server.stop();
+  serving_->thread.join();
 }
 
 void MetricsPort::Set(std::string text) {
   const Lock lock(mutex_);
   text_ = std::move(text);
-}
-
-void MetricsPort::Serve(const std::stop_token& stop) {
-  while (!stop.stop_requested()) {
-    pollfd waiting{socket_, POLLIN, 0};
-    if (poll(&waiting, 1, kPeriod_ms) <= 0) continue;
-    const int connection = accept4(socket_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
-    if (connection < 0) continue;
-    Answer(connection);
-    close(connection);
-  }
-}
-
-void MetricsPort::Answer(int connection) {
-  // One read takes the request of any scraper; what it holds does not matter, but unread it would reset the
-  // connection.
-  pollfd ready{connection, POLLIN, 0};
-  std::array<char, 4096> request{};
-  if (poll(&ready, 1, kPatience_ms) <= 0 || recv(connection, request.data(), request.size(), 0) <= 0) return;
-  std::string text;
-  {
-    const Lock lock(mutex_);
-    text = text_;
-  }
-  const std::string answer =
-      "HTTP/1.1 200 OK\r\nContent-Type: text/plain; version=0.0.4; charset=utf-8\r\nConnection: "
-      "close\r\nContent-Length: " +
-      std::to_string(text.size()) + "\r\n\r\n" + text;
-  for (std::size_t sent = 0; sent < answer.size();) {
-    ready.events = POLLOUT;
-    if (poll(&ready, 1, kPatience_ms) <= 0) return;
-    const ssize_t now = send(connection, answer.data() + sent, answer.size() - sent, MSG_NOSIGNAL);
-    if (now <= 0) return;
-    sent += static_cast<std::size_t>(now);
-  }
-  shutdown(connection, SHUT_WR);
 }
 
 }  // namespace dispersa

@@ -2,15 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
-#include <thread>
 
 #include "services/program/mutex.h"
 
 namespace dispersa {
 
-/// Answers every HTTP request on 127.0.0.1 with the text that was set last. What a caller sends is not looked
-/// at: there is one answer. Throws std::runtime_error if the port is not free.
+/// Answers GET of / and /metrics on 127.0.0.1 with the text that was set last. Throws NetworkError if the port is not free.
 class MetricsPort {
  public:
   explicit MetricsPort(std::uint16_t port);
@@ -22,13 +21,11 @@ class MetricsPort {
   void Set(std::string text);
 
  private:
-  void Serve(const std::stop_token& stop);
-  void Answer(int connection);
+  struct Serving;
 
-  int socket_ = -1;
   Mutex mutex_;
   std::string text_ DISPERSA_GUARDED_BY(mutex_);
-  std::jthread thread_;
+  std::unique_ptr<Serving> serving_;
 };
 
 }  // namespace dispersa

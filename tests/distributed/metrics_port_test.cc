@@ -1,0 +1,101 @@
+// The port of the metrics: what a scraper gets, and what others get.
+#include "services/coordinator/metrics_port.h"
+
+#include <arpa/inet.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <string>
+
+#include "services/transport/network.h"
+
+namespace dispersa::metrics_port_test {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+int Connected(std::uint16_t port) {
+  const int connection = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  const timeval patience{5, 0};
+  setsockopt(connection, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+  sockaddr_in where{};
+  where.sin_family = AF_INET;
+  where.sin_port = htons(port);
+  where.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  EXPECT_EQ(connect(connection, reinterpret_cast<const sockaddr*>(&where), sizeof where), 0);
+  return connection;
+}
+
+// All that is answered to a request, until the connection ends.
+std::string Ask(std::uint16_t port, const std::string& request) {
+  const int connection = Connected(port);
+  EXPECT_EQ(send(connection, request.data(), request.size(), MSG_NOSIGNAL), static_cast<ssize_t>(request.size()));
+  std::string answer;
+  char part[4096];
+  for (ssize_t count; (count = recv(connection, part, sizeof part, 0)) > 0;) answer.append(part, static_cast<std::size_t>(count));
+  close(connection);
+  return answer;
+}
+
+std::string Get(std::uint16_t port, const std::string& path) {
+  return Ask(port, "GET " + path + " HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n");
+}
+
+// A port that nobody has.
+std::uint16_t FreePort() {
+  const int probe = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in where{};
+  where.sin_family = AF_INET;
+  where.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof where;
+  EXPECT_EQ(bind(probe, reinterpret_cast<const sockaddr*>(&where), size), 0);
+  EXPECT_EQ(getsockname(probe, reinterpret_cast<sockaddr*>(&where), &size), 0);
+  close(probe);
+  return ntohs(where.sin_port);
+}
+
+TEST(MetricsPort, AnswersWithTheLatestText) {
+  const std::uint16_t number = FreePort();
+  MetricsPort port(number);
+  port.Set("dispersa_workers 1\n");
+  port.Set("dispersa_workers 2\n");
+  for (const char* path : {"/metrics", "/"}) {
+    const std::string answer = Get(number, path);
+    EXPECT_THAT(answer, StartsWith("HTTP/1.1 200"));
+    EXPECT_THAT(answer, HasSubstr("Content-Type: text/plain; version=0.0.4; charset=utf-8\r\n"));
+    EXPECT_THAT(answer, testing::EndsWith("\r\n\r\ndispersa_workers 2\n"));
+  }
+}
+
+TEST(MetricsPort, AnswersNothingElse) {
+  const std::uint16_t number = FreePort();
+  MetricsPort port(number);
+  port.Set("dispersa_workers 1\n");
+  EXPECT_THAT(Get(number, "/else"), StartsWith("HTTP/1.1 404"));
+  EXPECT_THAT(Ask(number, "POST /metrics HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 0\r\n\r\n"),
+              StartsWith("HTTP/1.1 404"));
+  EXPECT_THAT(Ask(number, "nonsense\r\n\r\n"), testing::Not(HasSubstr("dispersa_workers")));
+}
+
+TEST(MetricsPort, ACallerThatSaysNothingKeepsNobodyOut) {
+  const std::uint16_t number = FreePort();
+  MetricsPort port(number);
+  port.Set("dispersa_workers 1\n");
+  const int silent[] = {Connected(number), Connected(number), Connected(number)};
+  EXPECT_THAT(Get(number, "/metrics"), StartsWith("HTTP/1.1 200"));
+  for (const int connection : silent) close(connection);
+}
+
+TEST(MetricsPort, APortThatIsTakenIsSaid) {
+  const std::uint16_t number = FreePort();
+  const MetricsPort port(number);
+  EXPECT_THAT([&] { const MetricsPort second(number); },
+              testing::ThrowsMessage<NetworkError>("metrics: port " + std::to_string(number) +
+                                                   " of 127.0.0.1: Address already in use"));
+}
+
+}  // namespace
+}  // namespace dispersa::metrics_port_test
