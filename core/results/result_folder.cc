@@ -298,6 +298,8 @@ void ResultFolder::RecordLook(const LookRecord& look) const {
   insert.Step();
 }
 
+std::int64_t ResultFolder::PlannedCases() const { return std::stoll(Provenance("planned_cases")); }
+
 std::vector<std::int64_t> ResultFolder::PastLooks() const {
   std::vector<std::int64_t> looks;
   Statement select = database_->Prepare("SELECT DISTINCT n FROM looks ORDER BY n");

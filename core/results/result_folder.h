@@ -65,7 +65,8 @@ class ResultFolder : public ResultStore {
   /// what was flown: so a folder that is only reported on may get one too.
   void RecordLook(const LookRecord& look) const;
   /// Numbers of cases at which any verdict was read, ascending.
-  std::vector<std::int64_t> PastLooks() const;
+  std::vector<std::int64_t> PastLooks() const override;
+  std::int64_t PlannedCases() const override;
 
   /// Stores results in one transaction: all or, on an error, none. A case that is already there with the same
   /// digest is left alone; with another digest: kConflict. Lifts the quarantine of what it stores. Values
@@ -100,7 +101,7 @@ class ResultFolder : public ResultStore {
   /// fingerprint.
   CaseResult Load(std::uint64_t case_index) const override;
   /// Calls back with each result in ascending order of index; holds one at a time.
-  void ForEach(const std::function<void(const CaseResult&)>& callback) const;
+  void ForEach(const std::function<void(const CaseResult&)>& callback) const override;
 
  private:
   ResultFolder(std::filesystem::path directory, std::unique_ptr<Database> database);

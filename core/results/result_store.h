@@ -47,6 +47,12 @@ class ResultStore {
   virtual std::vector<std::pair<std::uint64_t, Digest>> Fingerprints() const = 0;
   /// The stored result of a case that has one.
   virtual CaseResult Load(std::uint64_t case_index) const = 0;
+  /// Every stored result, ascending by index.
+  virtual void ForEach(const std::function<void(const CaseResult&)>& callback) const = 0;
+  /// How many cases were planned before the first was flown.
+  virtual std::int64_t PlannedCases() const = 0;
+  /// Numbers of cases at which verdicts were read, ascending.
+  virtual std::vector<std::int64_t> PastLooks() const = 0;
   /// Who returned the result of a case.
   virtual std::optional<std::string> WorkerOf(std::uint64_t case_index) const = 0;
   /// These results were flown again and are right.

@@ -23,10 +23,9 @@ constexpr double kFullPeriod_s = 5.0;      // a full disk is tried again so ofte
 
 /// With what the folder holds already, so that the target is where an interrupted run left it.
 std::optional<StoppingRule> RuleOf(const Campaign& campaign, const ResultStore& store) {
-  const auto* folder = dynamic_cast<const ResultFolder*>(&store);
-  if (!campaign.verdicts.stop_when_decided || folder == nullptr) return std::nullopt;
-  StoppingRule rule(campaign, std::stoll(folder->Provenance("planned_cases")), folder->PastLooks());
-  folder->ForEach([&](const CaseResult& result) { rule.Add(result); });
+  if (!campaign.verdicts.stop_when_decided) return std::nullopt;
+  StoppingRule rule(campaign, store.PlannedCases(), store.PastLooks());
+  store.ForEach([&](const CaseResult& result) { rule.Add(result); });
   while (rule.Advance({})) {
   }
   return rule;
@@ -56,7 +55,9 @@ ExitCode CampaignExitCode(CampaignVerdict verdict, std::uint64_t conflicts) {
 }
 
 CampaignBook::CampaignBook(const Campaign& campaign, ResultFolder folder, const LedgerOptions& options)
-    : CampaignBook(campaign, std::make_unique<ResultFolder>(std::move(folder)), options) {}
+    : CampaignBook(campaign, std::make_unique<ResultFolder>(std::move(folder)), options) {
+  folder_ = static_cast<const ResultFolder*>(store_.get());
+}
 
 CampaignBook::CampaignBook(const Campaign& campaign, std::unique_ptr<ResultStore> store,
                            const LedgerOptions& options)
@@ -75,8 +76,7 @@ CampaignBook::CampaignBook(const Campaign& campaign, std::unique_ptr<ResultStore
 
 void CampaignBook::KeepTally() {
   tally_.emplace(campaign_);
-  if (const auto* stored = dynamic_cast<const ResultFolder*>(store_.get()))
-    stored->ForEach([&](const CaseResult& result) { tally_->Add(result); });
+  store_->ForEach([&](const CaseResult& result) { tally_->Add(result); });
 }
 
 void CampaignBook::KeepAudit(const AuditOptions& options) {
@@ -189,9 +189,13 @@ bool CampaignBook::Complete() {
   if (!ledger_.Complete() || !disowned_.empty() || (audit_ && !audit_->IsSettled())) return false;
   std::vector<std::uint64_t> given_up;
   for (const BlamedCase& blamed : ledger_.Quarantined()) given_up.push_back(blamed.case_index);
-  if (!rule_ || !rule_->Advance(given_up)) return true;
-  ledger_.Extend(rule_->target());
-  return false;
+  // A rule that was made anew, after a worker's results were removed, begins below what was asked for before.
+  while (rule_ && rule_->Advance(given_up)) {
+    if (rule_->target() <= ledger_.Progress().total) continue;
+    ledger_.Extend(rule_->target());
+    return false;
+  }
+  return true;
 }
 
 void CampaignBook::Start(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,

@@ -38,7 +38,7 @@ class CampaignBook {
 
   const Campaign& campaign() const { return campaign_; }
   /// Of a book that was made with one.
-  const ResultFolder& folder() const { return dynamic_cast<const ResultFolder&>(*store_); }
+  const ResultFolder& folder() const { return *folder_; }
   Ledger& ledger() { return ledger_; }
   const Ledger& ledger() const { return ledger_; }
   /// Whether nothing is left to fly. Extends the ledger to the campaign's next look when all cases up to this
@@ -112,6 +112,7 @@ class CampaignBook {
 
   Campaign campaign_;
   std::unique_ptr<ResultStore> store_;
+  const ResultFolder* folder_ = nullptr;  ///< the store, if it is one
   std::optional<StoppingRule> rule_;  ///< of a campaign that stops when it is decided
   std::optional<RunningTally> tally_;
   std::optional<Audit> audit_;

@@ -34,6 +34,11 @@ class MemoryStore : public ResultStore {
     return all;
   }
   CaseResult Load(std::uint64_t case_index) const override { return rows.at(case_index); }
+  void ForEach(const std::function<void(const CaseResult&)>& callback) const override {
+    for (const auto& [case_index, result] : rows) callback(result);
+  }
+  std::int64_t PlannedCases() const override { return planned_cases; }
+  std::vector<std::int64_t> PastLooks() const override { return {}; }
   std::optional<std::string> WorkerOf(std::uint64_t case_index) const override {
     const auto found = worker_of.find(case_index);
     return found == worker_of.end() ? std::nullopt : std::optional(found->second);
@@ -58,6 +63,7 @@ class MemoryStore : public ResultStore {
   std::map<std::uint64_t, std::string> given_up;
   std::set<std::uint64_t> audited;
   std::size_t stored = 0;
+  std::int64_t planned_cases = 0;
 };
 
 }  // namespace dispersa

@@ -14,8 +14,10 @@
 #include <variant>
 #include <vector>
 
+#include "core/analysis/stopping_rule.h"
 #include "core/flight/engine_version.h"
 #include "core/flight/flight_inputs.h"
+#include "core/flight/metrics.h"
 #include "core/results/fingerprint.h"
 #include "services/coordinator/dispatcher.h"
 #include "services/log/log.h"
@@ -29,7 +31,8 @@ constexpr std::size_t kTextPart = 5;  // bytes: a text takes several
 
 /// What survives a coordinator: a disk.
 struct Disk {
-  std::map<std::uint64_t, Digest> rows;
+  std::map<std::uint64_t, CaseResult> rows;
+  std::int64_t planned_cases = 0;
   std::map<std::uint64_t, std::string> worker_of;
   std::set<std::pair<std::uint64_t, std::string>> audited;
   std::set<std::uint64_t> quarantined;
@@ -40,8 +43,8 @@ class DiskStore : public ResultStore {
   explicit DiskStore(Disk& disk) : disk_(disk) {}
   void Store(std::span<const CaseResult> results, std::span<const ExecutionRecord> records) override {
     for (const CaseResult& result : results) {
-      const auto [row, added] = disk_.rows.emplace(result.case_index, Fingerprint(result));
-      EXPECT_EQ(row->second, Fingerprint(result)) << "another result over the stored one";
+      const auto [row, added] = disk_.rows.emplace(result.case_index, result);
+      EXPECT_EQ(Fingerprint(row->second), Fingerprint(result)) << "another result over the stored one";
     }
     for (const ExecutionRecord& record : records) disk_.worker_of[record.case_index] = record.worker;
   }
@@ -49,9 +52,16 @@ class DiskStore : public ResultStore {
     disk_.quarantined.insert(quarantined.case_index);
   }
   std::vector<std::pair<std::uint64_t, Digest>> Fingerprints() const override {
-    return {disk_.rows.begin(), disk_.rows.end()};
+    std::vector<std::pair<std::uint64_t, Digest>> all;
+    for (const auto& [case_index, result] : disk_.rows) all.emplace_back(case_index, Fingerprint(result));
+    return all;
   }
-  CaseResult Load(std::uint64_t) const override { return {}; }
+  CaseResult Load(std::uint64_t case_index) const override { return disk_.rows.at(case_index); }
+  void ForEach(const std::function<void(const CaseResult&)>& callback) const override {
+    for (const auto& [case_index, result] : disk_.rows) callback(result);
+  }
+  std::int64_t PlannedCases() const override { return disk_.planned_cases; }
+  std::vector<std::int64_t> PastLooks() const override { return {}; }
   std::optional<std::string> WorkerOf(std::uint64_t case_index) const override {
     return disk_.worker_of.at(case_index);
   }
@@ -59,9 +69,10 @@ class DiskStore : public ResultStore {
     for (const Claim& claim : claims) disk_.audited.emplace(claim.case_index, claim.worker);
   }
   void ForEachUnaudited(const std::function<void(const Claim&)>& callback) const override {
-    for (const auto& [case_index, fingerprint] : disk_.rows) {
+    for (const auto& [case_index, result] : disk_.rows) {
       const std::string& worker = disk_.worker_of.at(case_index);
-      if (!disk_.audited.contains({case_index, worker})) callback({worker, case_index, fingerprint, false});
+      if (!disk_.audited.contains({case_index, worker}))
+        callback({worker, case_index, Fingerprint(result), false});
     }
   }
   std::vector<std::uint64_t> Disown(const std::string& worker) override {
@@ -83,7 +94,9 @@ CaseResult ResultOf(std::uint64_t case_index) {
   result.case_index = case_index;
   result.inputs.resize(InputCount(kUsualStages));
   result.digest = {case_index, 7};
-  result.metrics = {static_cast<double>(case_index) / 3.0};
+  result.outcome = Outcome::kCompleted;
+  result.metrics.assign(MetricCount(kUsualStages), 0.0);
+  result.metrics[0] = static_cast<double>(case_index) / 3.0;
   return result;
 }
 
@@ -97,6 +110,30 @@ Campaign CampaignNumber(int number, std::uint64_t cases) {
   return campaign;
 }
 
+/// One that stops at the look at which it is decided: cases 0 and 1 break its requirement, the others keep it.
+Campaign CampaignThatStops(int number) {
+  Campaign campaign = CampaignNumber(number, 24);
+  Requirement requirement;
+  requirement.metric = MetricNames()[0];
+  requirement.above = 0.5;
+  requirement.probability = 0.5;
+  requirement.consumer_risk = 0.3;
+  requirement.plan = {PlanKind::kGroupSequential, 6, Spending::kPocock};
+  campaign.requirements = {requirement};
+  campaign.verdicts.stop_when_decided = true;
+  return campaign;
+}
+
+/// Where it stops without a network.
+std::uint64_t CasesUntilDecided(const Campaign& campaign) {
+  StoppingRule rule(campaign, static_cast<std::int64_t>(campaign.sampling.cases), {});
+  std::uint64_t flown = 0;
+  do {
+    for (; flown < rule.target(); ++flown) rule.Add(ResultOf(flown));
+  } while (rule.Advance({}));
+  return flown;
+}
+
 struct Weather {
   double loss, repetition, worst_delay_s, worker_death, coordinator_death, freeze;
   double lies;  ///< of the results of a worker that lies; then all results are audited
@@ -106,7 +143,11 @@ class World {
  public:
   World(std::uint64_t seed, const Weather& weather)
       : chance_(seed), weather_(weather), campaigns_(1 + Draw(2)), disks_(campaigns_) {
-    for (int c = 0; c < campaigns_; ++c) cases_.push_back(1 + Draw(8));
+    for (int c = 0; c < campaigns_; ++c) {
+      stops_.push_back(Draw(3) == 0);
+      cases_.push_back(stops_[c] ? CasesUntilDecided(CampaignThatStops(c)) : 1 + Draw(8));
+      disks_[c].planned_cases = static_cast<std::int64_t>(CampaignOf(c).sampling.cases);
+    }
     StartCoordinator();
     for (int w = 0; w < 1 + Draw(3); ++w) StartWorker(w);
   }
@@ -128,9 +169,14 @@ class World {
 
   void Check() const {
     for (int c = 0; c < campaigns_; ++c) {
-      ASSERT_EQ(disks_[c].rows.size() + quarantined_at_end_[c], cases_[c]);
-      for (const auto& [case_index, fingerprint] : disks_[c].rows) {
-        ASSERT_EQ(fingerprint, Fingerprint(ResultOf(case_index)));
+      const std::uint64_t settled = disks_[c].rows.size() + quarantined_at_end_[c];
+      // Lies that were found out, and cases that were given up, may have put a decision off, and never brought it about.
+      if (stops_[c] && (weather_.lies > 0.0 || quarantined_at_end_[c] > 0))
+        ASSERT_GE(settled, cases_[c]);
+      else
+        ASSERT_EQ(settled, cases_[c]);
+      for (const auto& [case_index, result] : disks_[c].rows) {
+        ASSERT_EQ(Fingerprint(result), Fingerprint(ResultOf(case_index)));
       }
     }
     ASSERT_EQ(conflicts_, 0u);
@@ -139,7 +185,9 @@ class World {
   std::string Tell() const {
     std::string text;
     for (int c = 0; c < campaigns_; ++c) {
-      text += std::to_string(disks_[c].rows.size()) + "/" + std::to_string(cases_[c]) + " stored; ";
+      text += std::to_string(disks_[c].rows.size()) + "/" + std::to_string(cases_[c]) + " stored, " +
+              std::to_string(books_[c]->ledger().Progress().total) + " wanted, " +
+              std::to_string(books_[c]->ledger().Progress().done) + " done; ";
     }
     for (const auto& [slot, worker] : workers_) {
       const WorkerStatus status = worker.desk->Status(WorkerState::kReady);
@@ -175,6 +223,7 @@ class World {
     Claim claim;
   };
 
+  Campaign CampaignOf(int c) const { return stops_[c] ? CampaignThatStops(c) : CampaignNumber(c, cases_[c]); }
   int Draw(int n) { return static_cast<int>(chance_() % static_cast<unsigned>(n)); }
   bool Happens(double probability) {
     return probability > 0.0 && std::uniform_real_distribution<>(0.0, 1.0)(chance_) < probability;
@@ -188,7 +237,7 @@ class World {
     dispatcher_ = std::make_unique<Dispatcher>(epoch_, EngineVersion(), DispatcherOptions{.audit = audit});
     for (int c = 0; c < campaigns_; ++c) {
       books_.push_back(std::make_unique<CampaignBook>(
-          CampaignNumber(c, cases_[c]), std::make_unique<DiskStore>(disks_[c]),
+          CampaignOf(c), std::make_unique<DiskStore>(disks_[c]),
           LedgerOptions{.lease_s = 20.0, .attempt_base = static_cast<std::uint64_t>(c) << 32}));
       dispatcher_->Open(*books_.back(), c % 2);
     }
@@ -338,6 +387,7 @@ class World {
   std::mt19937_64 chance_;
   Weather weather_;
   int campaigns_;
+  std::vector<bool> stops_;  ///< when it is decided
   std::vector<std::uint64_t> cases_;
   std::vector<Disk> disks_;
   double now_s_ = 0.0, clock_s_ = 0.0;
