@@ -33,9 +33,7 @@ PluginConfig DecodePlugin(const InputNode& node, const std::string& path, Python
 Scenario DecodeScenario(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems);
 Reference DecodeReference(const InputNode& node, const std::string& path,
                           std::vector<InputProblem>& problems);
-/// A reference's `problem`, a campaign's `optimize`.
-TrajectoryProblem DecodeTrajectoryProblem(const InputNode& node, const std::string& path,
-                                          std::vector<InputProblem>& problems);
+void DescribeReferenceFile(Fields& fields, Reference& reference);
 /// A campaign's `dispersions`: fills dispersions, wind_statistics and wind_table. The campaign has its
 /// vehicle, or one without stages if that is unknown (then nothing is checked against it).
 void DecodeDispersions(const InputNode& node, const std::string& path, Campaign& campaign,

@@ -198,11 +198,14 @@ class CampaignDescription {
                       reference_ = {&node, path};
                       campaign_.reference = DecodeReference(node, path, problems_);
                     });
-    fields.Columns("optimize", "the trajectory to be found, in place of reference",
-                   [this](const InputNode& node, const std::string& path) {
-                     optimize_ = {&node, path};
-                     decoded_.optimize = DecodeTrajectoryProblem(node, path, problems_);
-                   });
+    TrajectoryProblem problem;
+    bool is_sought = false;
+    fields.OptionalMap("optimize", is_sought, "the trajectory to be found, in place of reference",
+                       [&](Fields& optimize) { dispersa::Describe(optimize, problem); });
+    if (is_sought && root_ != nullptr) {
+      optimize_ = {root_->Find("optimize"), "optimize"};
+      decoded_.optimize = problem;
+    }
     fields.ExactlyOne({"reference", "optimize"});
     // Also one whose file could not be read.
     const auto has = [this](const char* key) { return root_ != nullptr && root_->Find(key) != nullptr; };

@@ -15,6 +15,11 @@ void DescribeFile(FileKind kind, Fields& fields) {
     case FileKind::kCampaign:
       DescribeCampaignFile(fields);
       break;
+    case FileKind::kReference: {
+      Reference reference;
+      DescribeReferenceFile(fields, reference);
+      break;
+    }
     default:
       break;
   }

@@ -1,4 +1,4 @@
-#include "core/campaign_yaml/attitude_columns.h"
+#include "core/trajectory/attitude_columns.h"
 #include "core/campaign_yaml/inline_files.h"
 #include "core/campaign_yaml/load.h"
 #include "core/input/number_text.h"

@@ -58,6 +58,29 @@ class FieldReader : public Fields {
       for (const InputNode& number : row.items) numbers.push_back(ReadNumber(number, path, map_.problems()));
     });
   }
+  void ColumnsAndRows(const std::vector<std::string>& columns, std::size_t low_count,
+                      std::vector<std::vector<double>>& rows, const char*) override {
+    const std::size_t count = columns.size();
+    std::size_t column = 0;
+    map_.Each("columns", count, count, [&](const InputNode& item, const std::string& path) {
+      SayExpects(path, {.kind = Expectation::Kind::kWords, .words = columns});
+      const std::string& expected = columns[column++];
+      if (item.text != expected)
+        AddProblem(map_.problems(), item, path, item.Describe() + " is not the column", expected);
+    });
+    map_.Each("rows", low_count, SIZE_MAX, [&](const InputNode& row, const std::string& path) {
+      SayExpects(path, {.kind = Expectation::Kind::kList, .low_count = count, .high_count = count});
+      SayExpects(path + "[]", {.kind = Expectation::Kind::kNumber});
+      std::vector<double>& numbers = rows.emplace_back();
+      if (row.kind != InputNode::Kind::kList || row.items.size() != count) {
+        AddProblem(map_.problems(), row, path, row.Describe() + " is not a row",
+                   "a list of " + std::to_string(count) + " numbers: " + JoinWords(columns));
+        return;
+      }
+      for (std::size_t c = 0; c < count; ++c)
+        numbers.push_back(ReadNumber(row.items[c], path + "[" + std::to_string(c) + "]", map_.problems()));
+    });
+  }
   void Ends(const char* stem, Dimension dimension, const Range& range, double& first, double& second,
             bool needed, const char*) override {
     if (!needed && !map_.Has(stem, dimension)) {
@@ -213,10 +236,15 @@ class FieldReader : public Fields {
   }
   bool Holds(const Condition& condition) const {
     if (condition.key.empty()) return true;
-    if (!condition.dimension.empty()) return map_.Has(condition.key, condition.dimension);
     const std::size_t dot = condition.key.find('.');
+    if (!condition.dimension.empty() && dot == std::string::npos) return map_.Has(condition.key, condition.dimension);
     const InputNode* value = map_.Peek(condition.key.substr(0, dot));
-    if (value != nullptr && dot != std::string::npos) value = value->Find(condition.key.substr(dot + 1));
+    if (value != nullptr && dot != std::string::npos) {
+      const std::string key = condition.key.substr(dot + 1);
+      for (const Unit& unit : condition.dimension)
+        if (value->Find(key + "_" + std::string(unit.suffix)) != nullptr) return true;
+      value = value->Find(key);
+    }
     if (value == nullptr || (value->kind == InputNode::Kind::kList && value->items.empty())) return false;
     return condition.words.empty() ||
            std::find(condition.words.begin(), condition.words.end(), value->text) != condition.words.end();

@@ -105,6 +105,9 @@ class Fields {
   /// A list of lists of numbers.
   virtual void Rows(const char* key, std::size_t low_count, std::size_t high_count,
                     std::vector<std::vector<double>>& rows, const char* meaning) = 0;
+  /// The keys `columns`, a list of just these names, and `rows`, a list of lists of a number for each.
+  virtual void ColumnsAndRows(const std::vector<std::string>& columns, std::size_t low_count,
+                              std::vector<std::vector<double>>& rows, const char* meaning) = 0;
   /// A number for both ends of something, or a list of two.
   virtual void Ends(const char* stem, Dimension dimension, const Range& range, double& first, double& second,
                     bool needed, const char* meaning) = 0;

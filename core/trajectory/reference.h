@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/flight/attitude_program.h"
+#include "core/input/fields.h"
 #include "core/vehicle/vehicle.h"
 
 namespace dispersa {
@@ -125,5 +126,10 @@ struct Reference {
   std::int64_t evaluations = 0;
   AttitudeProgram attitude;
 };
+
+/// The keys of a reference's `problem`, a campaign's `optimize`.
+void Describe(Fields& fields, TrajectoryProblem& problem);
+/// The keys of a reference's file but for its schema.
+void Describe(Fields& fields, Reference& reference);
 
 }  // namespace dispersa

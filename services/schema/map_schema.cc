@@ -216,6 +216,12 @@ void MapSchema::Rows(const char* key, std::size_t low_count, std::size_t high_co
   Json row = {{"type", "array"}, {"items", {{"type", "number"}}}};
   Add(key, Described(ListOf(std::move(row), low_count, high_count), meaning), low_count > 0);
 }
+void MapSchema::ColumnsAndRows(const std::vector<std::string>& columns, std::size_t low_count,
+                               std::vector<std::vector<double>>&, const char* meaning) {
+  const std::size_t count = columns.size();
+  Add("columns", Described(ListOf({{"enum", columns}}, count, count), "these names, in this order"), true);
+  Add("rows", Described(ListOf(ListOf({{"type", "number"}}, count, count), low_count, SIZE_MAX), meaning), true);
+}
 void MapSchema::Ends(const char* stem, Dimension dimension, const Range& range, double&, double&, bool needed,
                      const char* meaning) {
   AddUnits(stem, dimension, needed, [&](const Unit& unit) {

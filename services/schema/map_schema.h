@@ -46,6 +46,8 @@ class MapSchema : public Fields {
                           std::size_t high_count, std::vector<double>& values, const char* meaning) override;
   void Rows(const char* key, std::size_t low_count, std::size_t high_count, std::vector<std::vector<double>>& rows,
             const char* meaning) override;
+  void ColumnsAndRows(const std::vector<std::string>& columns, std::size_t low_count,
+                      std::vector<std::vector<double>>& rows, const char* meaning) override;
   void Ends(const char* stem, Dimension dimension, const Range& range, double& first, double& second, bool needed,
             const char* meaning) override;
   void OneOf(const std::vector<OneQuantity>& quantities, std::size_t& which, double& value) override;

@@ -161,7 +161,7 @@ constexpr BadInput kBadInputs[] = {
      "ignites on a timer, allowed: no coast of that stage\n"},
     {"AzimuthOfMoreThanATurn", "reference.yaml", "launch_azimuth_deg: [90, 170]",
      "launch_azimuth_deg: [10, 375]", "reference.yaml",
-     "reference.yaml:6:5: problem.bounds.launch_azimuth_deg: is more than a turn, allowed: [low, high], low "
+     "reference.yaml:11:25: problem.bounds.launch_azimuth_deg: is more than a turn, allowed: [low, high], low "
      "from 0 to "
      "below 360; [350, 10] goes through north\n"},
     {"MissingKey", "vehicle.yaml", "radius_m: 0.3, limit_deg: 6, rate_limit_deg_s: 30, bandwidth_rad_s: 40",
@@ -375,7 +375,7 @@ constexpr BadInput kBadInputs[] = {
     {"ProgramOutOfOrder", "reference.yaml", "t3_s: 7.5", "t3_s: 19", "reference.yaml",
      "reference.yaml:23:3: flight_program: the times are out of order, allowed: t1 < t3 < t2\n"},
     {"BoundsOutOfOrder", "reference.yaml", "t3_s: [6, 9]", "t3_s: [9, 6]", "reference.yaml",
-     "reference.yaml:6:5: problem.bounds.t3_s: the lower bound is above the upper one, "
+     "reference.yaml:8:11: problem.bounds.t3_s: the lower bound is above the upper one, "
      "allowed: [low, high]\n"},
     {"GainsForOneStage", "autopilot.yaml",
      "  gains: [{kp_1_s2: 9, kd_1_s: 4}, {kp_1_s2: 16, kd_1_s: 6}]\n  rules",

@@ -1,0 +1,267 @@
+#include <cmath>
+
+#include "core/environment/earth.h"
+#include "core/trajectory/attitude_columns.h"
+#include "core/trajectory/reference.h"
+
+namespace dispersa {
+namespace {
+
+constexpr Range kAzimuth = Between(0.0, kTwoPi);
+constexpr Range kIncidence = {0.0, kPi / 2.0, false, true};
+constexpr Range kSteered = Between(-kPi / 4.0, kPi / 4.0);
+
+std::string StageKey(std::size_t stage, const char* what) { return "stage" + std::to_string(stage + 1) + "_" + what; }
+
+// The two limits of a decision variable, which are one list in the file.
+using Describing = void (*)(Fields&, const char*, Dimension, const Range&, std::vector<double>&, const char*);
+void DescribeLimits(Fields& fields, const char* stem, Dimension dimension, const Range& range,
+                    std::vector<double>& limits, const char* meaning) {
+  fields.Quantities(stem, dimension, range, 2, 2, limits, meaning);
+}
+void DescribeOptionalLimits(Fields& fields, const char* stem, Dimension dimension, const Range& range,
+                            std::vector<double>& limits, const char* meaning) {
+  fields.OptionalQuantities(stem, dimension, range, 2, 2, limits, meaning);
+}
+
+void DescribeBounds(Fields& fields, const std::string& stem, Dimension dimension, const Range& range, Bounds& bounds,
+                    const char* meaning, Describing describe = DescribeLimits) {
+  std::vector<double> limits;
+  describe(fields, stem.c_str(), dimension, range, limits, meaning);
+  if (limits.size() != 2) return;
+  bounds = {limits[0], limits[1]};
+  if (limits[0] > limits[1])
+    fields.Refuse(stem, "the lower bound is above the upper one", "[low, high]");
+}
+
+// Bounds that fall go through north, [350, 10] as [350, 370] does.
+void DescribeAzimuthBounds(Fields& fields, Bounds& bounds) {
+  std::vector<double> limits;
+  fields.Quantities("launch_azimuth", kAngle, Between(0.0, 2.0 * kTwoPi), 2, 2, limits,
+                    "[low, high], clockwise from north; [350, 10] goes through north");
+  if (limits.size() != 2) return;
+  bounds = {limits[0], limits[0] <= limits[1] ? limits[1] : limits[1] + kTwoPi};
+  if (limits[0] >= kTwoPi || bounds.high - bounds.low > kTwoPi)
+    fields.Refuse("launch_azimuth", "is more than a turn",
+                  "[low, high], low from 0 to below 360; [350, 10] goes through north");
+}
+
+// The speed at the perigee of an ellipse about a point mass; altitudes over the equator's radius.
+double PerigeeSpeed(double perigee_m, double apogee_m) {
+  const Earth earth = Wgs84();
+  const double perigee_radius_m = earth.equatorial_radius_m + perigee_m;
+  const double axis_m = earth.equatorial_radius_m + 0.5 * (perigee_m + apogee_m);
+  return std::sqrt(earth.mu_m3_s2 * (2.0 / perigee_radius_m - 1.0 / axis_m));
+}
+
+void DescribeEllipse(Fields& fields, TrajectoryProblem& problem) {
+  double& apogee_m = problem.target_apogee_m.emplace();
+  fields.Quantity("perigee_altitude", kLength, kPositive, problem.target_altitude_m,
+                  "of an ellipse that is entered at its perigee, over the equator's radius");
+  fields.Quantity("apogee_altitude", kLength, kPositive, apogee_m, "of that ellipse");
+  if (problem.target_altitude_m > apogee_m)
+    fields.Refuse("", "the perigee is above the apogee", "perigee_altitude up to apogee_altitude");
+  else
+    problem.target_velocity_m_s = PerigeeSpeed(problem.target_altitude_m, apogee_m);
+}
+
+void DescribeInjection(Fields& fields, TrajectoryProblem& problem) {
+  fields.Quantity("altitude", kLength, kPositive, problem.target_altitude_m, "geodetic, at injection");
+  const auto velocity = [&] {
+    fields.Quantity("velocity", kSpeed, kPositive, problem.target_velocity_m_s,
+                    "inertial; a target with an inclination may leave it open");
+  };
+  fields.Either({{Has("velocity", kSpeed), velocity},
+                 {Has("inclination", kAngle), [&] { problem.velocity_is_free = true; }},
+                 {Else(), velocity}});
+  fields.Quantity("flight_path_angle", kAngle, Inside(-kPi / 2.0, kPi / 2.0), problem.target_flight_path_angle_rad,
+                  "inertial");
+}
+
+void DescribeTarget(Fields& fields, TrajectoryProblem& problem) {
+  fields.OptionalQuantity("inclination", kAngle, Between(0.0, kPi), problem.target_inclination_rad, "of the orbit");
+  fields.OptionalQuantity("node", kAngle, Between(0.0, kTwoPi), problem.target_node_rad,
+                          "right ascension; the time of day of the lift-off meets it");
+  fields.OptionalQuantity("argument_of_perigee", kAngle, Between(0.0, kTwoPi), problem.target_argument_of_perigee_rad,
+                          "of an ellipse, with an inclination");
+  const auto ellipse = [&] { DescribeEllipse(fields, problem); };
+  fields.Either({{Has("perigee_altitude", kLength), ellipse},
+                 {Has("apogee_altitude", kLength), ellipse},
+                 {Else(), [&] { DescribeInjection(fields, problem); }}});
+  if (problem.target_argument_of_perigee_rad && !(problem.target_inclination_rad && problem.target_apogee_m))
+    fields.Refuse("", "an argument of perigee counts along an ellipse from its node",
+                  "argument_of_perigee_deg beside perigee_altitude_km, apogee_altitude_km and inclination_deg");
+}
+
+void DescribeDecisionBounds(Fields& fields, TrajectoryProblem& problem) {
+  DescribeBounds(fields, "alpha_max", kAngle, kIncidence, problem.alpha_max_rad,
+                 "[low, high] of the largest incidence, nose down; equal limits freeze it");
+  DescribeBounds(fields, "t1", kTime, kNonNegative, problem.t1_s, "[low, high] of the end of the vertical ascent");
+  DescribeBounds(fields, "t3", kTime, kNonNegative, problem.t3_s, "[low, high] of the time of the largest incidence");
+  DescribeBounds(fields, "t2", kTime, kNonNegative, problem.t2_s, "[low, high] of the begin of the gravity turn");
+  DescribeBounds(fields, "coast", kTime, kNonNegative, problem.coast_s,
+                 "[low, high] of the coast before the last stage ignites");
+  DescribeAzimuthBounds(fields, problem.launch_azimuth_rad);
+  for (std::size_t stage = 1; stage < kMaxStages; ++stage) {
+    DescribeBounds(fields, StageKey(stage, "coast"), kTime, kNonNegative, problem.earlier_coast_s[stage],
+                   "[low, high] of the coast before this stage, which a timer ignites", DescribeOptionalLimits);
+    const std::string begin = StageKey(stage, "incidence_begin"), end = StageKey(stage, "incidence_end");
+    const auto steering = [&] {
+      DescribeBounds(fields, begin, kAngle, kSteered, problem.steering[stage].begin_rad,
+                     "[low, high] of this stage's incidence in the plane of ascent at ignition");
+      DescribeBounds(fields, end, kAngle, kSteered, problem.steering[stage].end_rad,
+                     "[low, high] of it where the propellant would be used up");
+    };
+    fields.Either({{Has(begin, kAngle), steering}, {Has(end, kAngle), steering}});
+  }
+}
+
+// Of the objective, equation (8); a target that names more has more of them.
+void DescribeWeights(Fields& fields, TrajectoryProblem& problem, bool of_inclination, bool of_argument) {
+  fields.Map("weights", "of the target's misses in the objective, equation (8)", [&](Fields& weights) {
+    weights.Quantity("altitude", kPerLength, kNonNegative, problem.weight_altitude_1_m, "G1");
+    weights.Quantity("velocity", kPerSpeed, kNonNegative, problem.weight_velocity_s_m, "G2");
+    weights.Quantity("flight_path_angle", kPerAngle, kNonNegative, problem.weight_angle_1_rad, "G3");
+    if (of_inclination)
+      weights.Quantity("inclination", kPerAngle, kNonNegative, problem.weight_inclination_1_rad,
+                       "of a target with an inclination");
+    if (of_argument)
+      weights.Quantity("argument_of_perigee", kPerAngle, kNonNegative, problem.weight_argument_1_rad,
+                       "of a target with an argument of perigee");
+  });
+}
+
+void DescribeConstraints(Fields& fields, TrajectoryProblem& problem) {
+  fields.Quantity("axial_load", kAcceleration, kPositive, problem.axial_load_limit_g, "largest");
+  fields.Quantity("lateral_load", kAcceleration, kPositive, problem.lateral_load_limit_g, "largest");
+  fields.Quantity("alpha", kAngle, {0.0, kPi / 2.0, true, true}, problem.alpha_limit_rad, "largest incidence");
+  fields.Quantity("turn_rate", kAngularRate, kPositive, problem.turn_rate_limit_rad_s,
+                  "of the body axis in the pitch-over; without, it is reported only", 0.0);
+  fields.Number("transonic_mach_low", kPositive, problem.transonic_mach_low, "zero incidence from here");
+  fields.Number("transonic_mach_high", kPositive, problem.transonic_mach_high, "to here");
+  fields.Quantity("q_max", kPressure, kPositive, problem.q_max_limit_pa, "largest; without, it is reported only", 0.0);
+  fields.Quantity("q_alpha", kPressureAngle, kPositive, problem.q_alpha_limit_pa_rad,
+                  "largest; without, it is reported only", 0.0);
+}
+
+void DescribeProgram(Fields& fields, Reference& reference) {
+  FlightProgram& program = reference.program;
+  fields.Quantity("alpha_max", kAngle, kIncidence, program.alpha_max_rad, "largest incidence, nose down");
+  fields.Quantity("t1", kTime, kNonNegative, program.t1_s, "end of the vertical ascent");
+  fields.Quantity("t3", kTime, kNonNegative, program.t3_s, "of the largest incidence");
+  fields.Quantity("t2", kTime, kNonNegative, program.t2_s, "begin of the gravity turn");
+  fields.Quantity("coast", kTime, kNonNegative, program.coast_s, "before the last stage ignites");
+  fields.Quantity("launch_azimuth", kAngle, kAzimuth, program.launch_azimuth_rad, "clockwise from north");
+  fields.Quantity("last_ignition", kTime, kNonNegative, reference.last_ignition_s,
+                  "timer since lift-off of the last stage; 0 of a single one");
+  for (std::size_t stage = 1; stage < kMaxStages; ++stage) {
+    const std::string begin = StageKey(stage, "incidence_begin"), end = StageKey(stage, "incidence_end");
+    const auto steering = [&] {
+      fields.Quantity(begin.c_str(), kAngle, kSteered, program.steering[stage].begin_rad,
+                      "this stage's incidence in the plane of ascent at ignition");
+      fields.Quantity(end.c_str(), kAngle, kSteered, program.steering[stage].end_rad,
+                      "and where the propellant would be used up");
+    };
+    fields.Either({{Has(begin, kAngle), steering}, {Has(end, kAngle), steering}});
+    const std::string coast = StageKey(stage, "coast"), ignition = StageKey(stage, "ignition");
+    const auto timer = [&] {
+      fields.Quantity(coast.c_str(), kTime, kNonNegative, program.earlier_coast_s[stage],
+                      "before this stage, which a timer ignites");
+      fields.Quantity(ignition.c_str(), kTime, kPositive, reference.earlier_ignition_s[stage],
+                      "that timer since lift-off");
+    };
+    fields.Either({{Has(coast, kTime), timer}, {Has(ignition, kTime), timer}});
+  }
+  fields.Check([&fields, &program] {
+    if (!(program.t1_s < program.t3_s && program.t3_s < program.t2_s))
+      fields.Refuse("", "the times are out of order", "t1 < t3 < t2");
+  });
+}
+
+void DescribeOrbit(Fields& fields, Orbit& orbit) {
+  fields.Quantity("altitude", kLength, kAnyNumber, orbit.altitude_m, "geodetic, at injection");
+  fields.Quantity("velocity", kSpeed, kNonNegative, orbit.velocity_m_s, "inertial");
+  fields.Quantity("flight_path_angle", kAngle, kAnyNumber, orbit.flight_path_angle_rad, "inertial");
+  fields.Quantity("inclination", kAngle, Between(0.0, kPi), orbit.inclination_rad, "of the orbit");
+  fields.Quantity("node_longitude", kAngle, Between(0.0, kTwoPi), orbit.node_longitude_rad,
+                  "where the plane crosses the equator northwards, east of Greenwich as it stood at lift-off", 0.0);
+  fields.Quantity("argument_of_latitude", kAngle, Between(0.0, kTwoPi), orbit.argument_of_latitude_rad,
+                  "from the node along the orbit", 0.0);
+}
+
+// They follow from orbit and target; the file repeats them for its reader.
+void DescribeErrors(Fields& fields) {
+  double repeated = 0.0;
+  std::optional<double> if_wanted;
+  fields.Quantity("altitude", kLength, kAnyNumber, repeated, "orbit less target");
+  fields.Quantity("velocity", kSpeed, kAnyNumber, repeated, "orbit less target");
+  fields.Quantity("flight_path_angle", kAngle, kAnyNumber, repeated, "orbit less target");
+  fields.OptionalQuantity("inclination", kAngle, kAnyNumber, if_wanted, "orbit less target");
+  fields.OptionalQuantity("argument_of_perigee", kAngle, kAnyNumber, if_wanted, "orbit less target");
+}
+
+void DescribeConstraint(Fields& fields, ConstraintMargin& constraint) {
+  fields.Text("name", constraint.name, "what is limited, unit in the name");
+  fields.Number("value", kAnyNumber, constraint.value, "that the trajectory has");
+  fields.Number("limit", kAnyNumber, constraint.limit, "of the problem");
+  fields.Number("margin", kAnyNumber, constraint.margin, "limit less value");
+  fields.Flag("enforced", constraint.enforced, true, "or reported only");
+}
+
+void DescribeProvenance(Fields& fields, Reference& reference) {
+  fields.Text("engine", reference.engine, "version that found it");
+  fields.Text("vehicle_sha256", reference.vehicle_sha256, "of the canonical vehicle that it was found for");
+  fields.Integer("evaluations", 0, INT64_MAX, reference.evaluations, "trajectories that were flown to find it");
+}
+
+void DescribeAttitude(Fields& fields, AttitudeProgram& attitude) {
+  std::vector<std::vector<double>> rows;
+  fields.ColumnsAndRows(AttitudeColumnNames(), 2, rows, "attitude in the launch-inertial frame");
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i].empty()) continue;  // refused
+    AttitudeKnot knot;
+    for (std::size_t c = 0; c < rows[i].size(); ++c)
+      knot.*kAttitudeColumns[c].field = rows[i][c] * kAttitudeColumns[c].scale;
+    if (!attitude.knots.empty() && knot.time_s <= attitude.knots.back().time_s)
+      fields.Refuse("rows[" + std::to_string(i) + "][0]", "the time is not after the row before",
+                    "strictly increasing times");
+    attitude.knots.push_back(knot);
+  }
+}
+
+}  // namespace
+
+void Describe(Fields& fields, TrajectoryProblem& problem) {
+  fields.Map("target", "the orbit", [&](Fields& target) { DescribeTarget(target, problem); });
+  fields.Map("bounds", "of the decision variables",
+             [&](Fields& bounds) { DescribeDecisionBounds(bounds, problem); });
+  fields.Either({{Has("target.argument_of_perigee", kAngle), [&] { DescribeWeights(fields, problem, true, true); }},
+                 {Has("target.inclination", kAngle), [&] { DescribeWeights(fields, problem, true, false); }},
+                 {Else(), [&] { DescribeWeights(fields, problem, false, false); }}});
+  fields.Map("limits", "constraints", [&](Fields& limits) { DescribeConstraints(limits, problem); });
+  fields.Quantity("velocity_reserve", kSpeed, Between(0.0, 1000.0), problem.velocity_reserve_m_s,
+                  "the trajectory shall be so much faster, for guidance to spend", 0.0);
+  fields.Quantity("reaction_control_propellant", kMass, kNonNegative, problem.reaction_control_propellant_kg,
+                  "that a flight will have expelled before the last stage burns", 0.0);
+  fields.Integer("population", 4, 65535, problem.population, "of the genetic algorithm");
+  fields.Integer("generations", 1, 65535, problem.generations, "of the genetic algorithm");
+  fields.Integer("seed", 0, UINT64_MAX, problem.seed, "of its draws");
+}
+
+void Describe(Fields& fields, Reference& reference) {
+  fields.Text("name", reference.name, "of the reference");
+  fields.Text("target_missed", reference.target_missed, "how far the search got when it missed its target", "");
+  fields.Map("problem", "that was solved", [&](Fields& problem) { Describe(problem, reference.problem); });
+  fields.Map("flight_program", "what was found; times since lift-off",
+             [&](Fields& program) { DescribeProgram(program, reference); });
+  fields.Map("orbit", "that is reached, by the optimiser's own simulation",
+             [&](Fields& orbit) { DescribeOrbit(orbit, reference.orbit); });
+  fields.Map("errors", "of that orbit", DescribeErrors);
+  fields.List("constraints", 0, SIZE_MAX, reference.constraints, "how they are kept", DescribeConstraint);
+  fields.Map("provenance", "who found it, for what",
+             [&](Fields& provenance) { DescribeProvenance(provenance, reference); });
+  fields.Map("attitude", "over the flight", [&](Fields& attitude) { DescribeAttitude(attitude, reference.attitude); });
+  reference.attitude.launch_azimuth_rad = reference.program.launch_azimuth_rad;
+}
+
+}  // namespace dispersa
