@@ -34,9 +34,5 @@ Scenario DecodeScenario(const InputNode& node, const std::string& path, std::vec
 Reference DecodeReference(const InputNode& node, const std::string& path,
                           std::vector<InputProblem>& problems);
 void DescribeReferenceFile(Fields& fields, Reference& reference);
-/// A campaign's `dispersions`: fills dispersions, wind_statistics and wind_table. The campaign has its
-/// vehicle, or one without stages if that is unknown (then nothing is checked against it).
-void DecodeDispersions(const InputNode& node, const std::string& path, Campaign& campaign,
-                       std::vector<InputProblem>& problems);
 
 }  // namespace dispersa

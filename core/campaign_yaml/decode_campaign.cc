@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "core/campaign/dispersion_fields.h"
 #include "core/campaign_yaml/campaign_ids.h"
 #include "core/campaign_yaml/decode.h"
 #include "core/campaign_yaml/inline_files.h"
@@ -276,10 +277,9 @@ class CampaignDescription {
 
   void DescribeDispersions(Fields& fields) {
     const std::size_t before = problems_.size();
-    fields.Columns("dispersions", "what differs from case to case",
-                   [this](const InputNode& node, const std::string& path) {
-                     DecodeDispersions(node, path, campaign_, problems_);
-                   });
+    bool has_dispersions = false;
+    fields.OptionalMap("dispersions", has_dispersions, "what differs from case to case",
+                       [&](Fields& map) { dispersa::DescribeDispersions(map, before == 0, campaign_); });
     if (list_.node != nullptr) DecodeListTable(*list_.node, list_.path, campaign_, problems_);
     std::vector<Correlation> correlations;
     fields.List("correlations", 0, SIZE_MAX, correlations, "groups of normal dispersions that are drawn together",

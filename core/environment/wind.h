@@ -9,6 +9,8 @@
 
 namespace dispersa {
 
+class Fields;
+
 /// Velocity of the air over the ground, m/s.
 struct WindNorthEast {
   double north_m_s = 0.0;
@@ -37,6 +39,8 @@ struct WindTable {
   std::vector<double> north_m_s = {};
   std::vector<double> east_m_s = {};
 };
+/// The columns; `allowed` says how long they are.
+void Describe(Fields& fields, WindTable& table, const char* allowed);
 inline constexpr double kWindFade_m = 10000.0;
 
 /// Discrete gust, speed/2 (1 - cos(2 pi x / length)) at x from 0 to length above its start: the

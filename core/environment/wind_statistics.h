@@ -21,6 +21,10 @@ struct WindStatistics {
   double correlation_length_m = 0.0;
 };
 
+/// What stands beside the columns, and the columns: at most so many levels.
+void Describe(Fields& fields, WindStatistics& statistics);
+void DescribeLevels(Fields& fields, WindStatistics& statistics, std::size_t most);
+
 /// How many standard normals DrawWind takes: two a level.
 inline std::size_t NormalsFor(const WindStatistics& statistics) { return 2 * statistics.altitude_m.size(); }
 

@@ -1,6 +1,7 @@
 #include "core/input/field_reader.h"
 
 #include <algorithm>
+#include <set>
 
 #include "core/input/number_text.h"
 #include "core/input/struct_problems.h"
@@ -50,6 +51,34 @@ class FieldReader : public Fields {
       values = map_.Quantities(stem, dimension, range, low_count, high_count);
     else
       map_.OptionalQuantity(stem, dimension, range);
+  }
+  void Several(const char* key, int low, int high, const char* noun, const char* which, std::vector<int>& values,
+               const char*) override {
+    const InputNode* node = map_.Optional(key);
+    if (node == nullptr) return;
+    const std::string allowed =
+        low > high    ? "no " + std::string(noun)
+        : low == high ? std::to_string(low)
+                      : "one of " + std::to_string(low) + " to " + std::to_string(high) + ", or a list of them";
+    const auto read = [&](const InputNode& item, const std::string& path) {
+      if (Listener() != nullptr)
+        SayExpects(path, {.kind = Expectation::Kind::kInteger, .low = std::to_string(low), .high = std::to_string(high)});
+      const bool plain = item.kind == InputNode::Kind::kScalar && !item.quoted;
+      const auto number = plain ? ParseInteger(item.text) : std::nullopt;
+      if (!number || *number < static_cast<std::uint64_t>(low) || *number > static_cast<std::uint64_t>(high)) {
+        AddProblem(map_.problems(), item, path, item.Describe() + " is no " + noun + " " + which, allowed);
+      } else if (std::find(values.begin(), values.end(), static_cast<int>(*number)) != values.end()) {
+        AddProblem(map_.problems(), item, path, noun + (" " + item.text) + " is given twice",
+                   "each " + std::string(noun) + " once");
+      } else {
+        values.push_back(static_cast<int>(*number));
+      }
+    };
+    if (node->kind != InputNode::Kind::kList) return read(*node, map_.PathOf(key));
+    if (node->items.empty()) AddProblem(map_.problems(), *node, map_.PathOf(key), "the list is empty", allowed);
+    for (std::size_t i = 0; i < node->items.size(); ++i)
+      read(node->items[i], map_.PathOf(key) + "[" + std::to_string(i) + "]");
+    std::sort(values.begin(), values.end());
   }
   void Rows(const char* key, std::size_t low_count, std::size_t high_count, std::vector<std::vector<double>>& rows,
             const char*) override {
@@ -121,6 +150,7 @@ class FieldReader : public Fields {
             const char*) override {
     const InputNode& node = map_.Required(key, std::string("the name of ") + what);
     value = ReadText(node, map_.PathOf(key), map_.problems());
+    if (names.empty()) return;
     if (Listener() != nullptr) SayExpects(map_.PathOf(key), {.kind = Expectation::Kind::kWords, .words = names});
     if (node.kind == InputNode::Kind::kScalar && std::find(names.begin(), names.end(), node.text) == names.end())
       AddProblem(map_.problems(), node, map_.PathOf(key),
@@ -145,6 +175,24 @@ class FieldReader : public Fields {
     is_there = value != nullptr;
     if (is_there) ReadFields(*value, PathOfValue(key), map_.problems(), part);
   }
+  void WordOrMap(const char* key, const char* word, const char* what, const char* allowed, bool& is_word, const char*,
+                 const Part& part) override {
+    const InputNode& value = map_.Required(key, allowed);
+    if (Listener() != nullptr) SayExpects(map_.PathOf(key), {.kind = Expectation::Kind::kWords, .words = {word}});
+    is_word = value.kind == InputNode::Kind::kScalar;
+    if (!is_word)
+      ReadFields(value, PathOfValue(key), map_.problems(), part);
+    else if (value.text != word)
+      AddProblem(map_.problems(), value, map_.PathOf(key), value.Describe() + " is not " + what, allowed);
+  }
+  void MapOrMaps(const char* key, const char* allowed, const char*, const Part& part) override {
+    const InputNode* value = map_.Optional(key);
+    if (value == nullptr) return;
+    if (value->kind != InputNode::Kind::kList) return ReadFields(*value, PathOfValue(key), map_.problems(), part);
+    if (value->items.empty()) AddProblem(map_.problems(), *value, map_.PathOf(key), "the list is empty", allowed);
+    for (std::size_t i = 0; i < value->items.size(); ++i)
+      ReadFields(value->items[i], map_.PathOf(key) + "[" + std::to_string(i) + "]", map_.problems(), part);
+  }
   void Table(const char* key, const char* allowed, const char*, const Part& part) override {
     ReadFields(map_.Required(key, allowed), PathOfValue(key), map_.problems(), part);
   }
@@ -163,6 +211,10 @@ class FieldReader : public Fields {
   }
 
   void Either(const std::vector<Alternative>& alternatives) override {
+    if (IsUndecided(alternatives)) {
+      for (const Alternative& alternative : alternatives) map_.Spare(alternative.describe);
+      return;
+    }
     for (const Alternative& alternative : alternatives)
       if (Holds(alternative.condition)) return alternative.describe();
   }
@@ -178,9 +230,19 @@ class FieldReader : public Fields {
     else if (map_.Optional(stem) == nullptr)
       key.clear();
     if (key.empty()) return;
-    std::string text = message;
-    if (const std::size_t at = text.find("{}"); at != std::string::npos) text.replace(at, 2, key);
-    Refuse(key, text, allowed);
+    Refuse(key, About(message, key), allowed);
+  }
+
+  void Unclear(const std::vector<std::string>& unclear, const char* message, const std::string& allowed,
+               const std::function<void()>& describe) override {
+    bool is_clear = true;
+    for (const InputMember& member : map_.node().members) {
+      if (std::find(unclear.begin(), unclear.end(), member.key) == unclear.end()) continue;
+      is_clear = false;
+      map_.Ignore(member.key);
+      AddProblem(map_.problems(), KeyOf(member), map_.PathOf(member.key), About(message, member.key), allowed);
+    }
+    is_clear ? describe() : map_.Spare(describe);
   }
 
   void Check(const std::function<void()>& relation) override { relations_.push_back(relation); }
@@ -215,7 +277,9 @@ class FieldReader : public Fields {
   void Word(const char* key, const Choices& choices, const char*, std::optional<std::size_t> absent) override {
     std::vector<std::pair<std::string, std::size_t>> words;
     for (std::size_t i = 0; i < choices.words.size(); ++i) words.emplace_back(choices.words[i], i);
+    const std::size_t before = map_.problems().size();
     choices.set(map_.Choice<std::size_t>(key, words, absent));
+    if (map_.problems().size() > before || (!absent && map_.node().Find(key) == nullptr)) undecided_.insert(key);
   }
   void Maps(const char* key, bool needed, std::size_t low_count, std::size_t high_count, const Items& items,
             const char*) override {
@@ -234,6 +298,18 @@ class FieldReader : public Fields {
     const InputNode* value = map_.node().Find(key);
     return value == nullptr || value->file == map_.node().file ? map_.PathOf(key) : "";
   }
+  // {} stands for the key.
+  static std::string About(std::string message, const std::string& key) {
+    if (const std::size_t at = message.find("{}"); at != std::string::npos) message.replace(at, 2, key);
+    return message;
+  }
+  // The word that decides was refused, or there is no map.
+  bool IsUndecided(const std::vector<Alternative>& alternatives) const {
+    return map_.node().kind != InputNode::Kind::kMap ||
+           std::any_of(alternatives.begin(), alternatives.end(), [&](const Alternative& alternative) {
+             return undecided_.contains(alternative.condition.key);
+           });
+  }
   bool Holds(const Condition& condition) const {
     if (condition.key.empty()) return true;
     const std::size_t dot = condition.key.find('.');
@@ -246,11 +322,13 @@ class FieldReader : public Fields {
       value = value->Find(key);
     }
     if (value == nullptr || (value->kind == InputNode::Kind::kList && value->items.empty())) return false;
+    if (condition.is_map) return value->kind == InputNode::Kind::kMap;
     return condition.words.empty() ||
            std::find(condition.words.begin(), condition.words.end(), value->text) != condition.words.end();
   }
 
   MapReader map_;
+  std::set<std::string> undecided_;  // keys whose words were refused
   std::vector<std::function<void()>> relations_;
 };
 

@@ -25,12 +25,14 @@ struct Condition {
   std::string key;                 ///< of the map, or of a map in it: "motor.liquid"
   Dimension dimension = {};        ///< not empty: the key ends in any unit of it
   std::vector<std::string> words;  ///< empty: whatever its value
+  bool is_map = false;             ///< its value is a map
 };
 inline Condition Has(std::string key) { return {std::move(key), {}, {}}; }
 inline Condition Has(std::string stem, Dimension dimension) { return {std::move(stem), dimension, {}}; }
 inline Condition Is(std::string key, std::vector<std::string> words) {
   return {std::move(key), {}, std::move(words)};
 }
+inline Condition HasMap(std::string key) { return {std::move(key), {}, {}, true}; }
 
 /// All maps for which no alternative before holds.
 inline Condition Else() { return {}; }
@@ -102,6 +104,15 @@ class Fields {
   /// The same, of which the key need not be there.
   virtual void OptionalQuantities(const char* stem, Dimension dimension, const Range& range, std::size_t low_count,
                                   std::size_t high_count, std::vector<double>& values, const char* meaning) = 0;
+  /// A list that may be a CSV file's only column, of the key's name.
+  virtual void Column(const char* stem, Dimension dimension, const Range& range, std::size_t low_count,
+                      std::vector<double>& values, const char* meaning) {
+    Quantities(stem, dimension, range, low_count, SIZE_MAX, values, meaning);
+  }
+  /// A whole number, or a list of several, each once; the key need not be there. `noun` and `which` say of what, in the
+  /// words of a message: "stage", "that this disperses".
+  virtual void Several(const char* key, int low, int high, const char* noun, const char* which, std::vector<int>& values,
+                       const char* meaning) = 0;
   /// A list of lists of numbers.
   virtual void Rows(const char* key, std::size_t low_count, std::size_t high_count,
                     std::vector<std::vector<double>>& rows, const char* meaning) = 0;
@@ -115,7 +126,7 @@ class Fields {
   virtual void OneOf(const std::vector<OneQuantity>& quantities, std::size_t& which, double& value) = 0;
   virtual void Texts(const char* key, std::size_t low_count, std::size_t high_count,
                      std::vector<std::string>& values, const char* meaning) = 0;
-  /// The name of one of many things; `what` says of which: "a metric".
+  /// The name of one of many things; `what` says of which: "a metric". Without `names` another file has them.
   virtual void Name(const char* key, const std::vector<std::string>& names, const char* what, std::string& value,
                     const char* meaning) = 0;
   /// A list of words, each one of `words`; `values` are their places.
@@ -139,6 +150,11 @@ class Fields {
   virtual void Map(const char* key, const char* meaning, const Part& part) = 0;
   /// A map that need not be there; `is_there` receives whether it is.
   virtual void OptionalMap(const char* key, bool& is_there, const char* meaning, const Part& part) = 0;
+  /// A word, or a map. What is neither is refused as not `what`: "a direction".
+  virtual void WordOrMap(const char* key, const char* word, const char* what, const char* allowed, bool& is_word,
+                         const char* meaning, const Part& part) = 0;
+  /// A map, or a list of such maps; the key need not be there. `allowed` says what an empty list should be.
+  virtual void MapOrMaps(const char* key, const char* allowed, const char* meaning, const Part& part) = 0;
   /// The columns of a table: a map of lists, or the CSV file of which it was made; `allowed` says which.
   virtual void Table(const char* key, const char* allowed, const char* meaning, const Part& part) = 0;
   virtual void OptionalTable(const char* key, bool& is_there, const char* meaning, const Part& part) = 0;
@@ -179,11 +195,20 @@ class Fields {
   }
   /// Exactly one of these keys, which are named before, is there; a reader refuses others in words of its own.
   virtual void ExactlyOne(const std::vector<std::string>& /*keys*/) {}
+  /// One or more of these keys, which are named before or after, are there; likewise.
+  virtual void OneOrMore(const std::vector<std::string>& /*keys*/) {}
   /// In an alternative: one of these keys, which others have, is missing.
   virtual void Missing(const std::vector<std::string>& /*keys*/, const char* /*allowed*/) {}
   /// In an alternative: a key of another one, which this map must not have. In `message` {} stands for the key.
   virtual void Misplaced(const char* /*stem*/, Dimension /*dimension*/, const char* /*message*/,
                          const char* /*allowed*/) {}
+
+  /// Keys of maps that have none of `unclear`: people write these, but they say too little. In `message` {} stands for
+  /// the key.
+  virtual void Unclear(const std::vector<std::string>& /*unclear*/, const char* /*message*/,
+                       const std::string& /*allowed*/, const std::function<void()>& describe) {
+    describe();
+  }
 
   // What only a reader does: the others have no file.
 

@@ -87,6 +87,13 @@ Expectation ExpectNumber(const Range& range, double scale, std::optional<double>
   return number;
 }
 
+// A number in a unit; the range is in internal units.
+double ReadNumberIn(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems,
+                    const Range& range, const Unit& unit) {
+  const double number = ReadNumber(node, path, problems, range.Less(unit.offset), unit.scale);
+  return unit.offset == 0.0 ? number : number + unit.offset;
+}
+
 }  // namespace
 
 bool Range::Contains(double value) const {
@@ -115,6 +122,13 @@ void AddProblem(std::vector<InputProblem>& problems, const InputNode& at, std::s
                 std::string message, std::string allowed) {
   problems.push_back(
       {at.file ? *at.file : "", at.line, at.column, std::move(path), std::move(message), std::move(allowed)});
+}
+
+InputNode KeyOf(const InputMember& member) {
+  InputNode at = MapAt(member.value);
+  at.line = member.line;
+  at.column = member.column;
+  return at;
 }
 
 double ReadNumber(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems,
@@ -176,11 +190,11 @@ std::string DidYouMean(const std::string& word, const std::vector<std::string>& 
 }
 
 MapReader::MapReader(const InputNode& node, std::string path, std::vector<InputProblem>& problems)
-    : node_(node),
+    : node_(&node),
       listener_(IsAbsent(node) ? nullptr : Listener()),
       path_(std::move(path)),
       problems_(problems) {
-  if (listener_ != nullptr) listener_->Reads(path_, node_);
+  if (listener_ != nullptr) listener_->Reads(path_, node);
   if (!IsAbsent(node) && node.kind != InputNode::Kind::kMap) {
     AddProblem(problems_, node, path_, node.Describe() + " is not a map", "a map of keys and values");
   }
@@ -191,12 +205,12 @@ MapReader::~MapReader() { Finish(); }
 const InputNode* MapReader::Optional(const std::string& key) {
   known_.insert(key);
   if (listener_ != nullptr) listener_->Knows(path_, {key});
-  return node_.Find(key);
+  return node_->Find(key);
 }
 
 const InputNode* MapReader::Peek(const std::string& key) const {
   if (listener_ != nullptr) listener_->Heeds(path_, {key});
-  return node_.Find(key);
+  return node_->Find(key);
 }
 
 const InputNode& MapReader::Required(const std::string& key, const std::string& allowed) {
@@ -268,7 +282,7 @@ void MapReader::NoteQuantity(const std::string& stem, Dimension dimension, const
   if (listener_ == nullptr) return;
   for (const Unit& unit : dimension) {
     const std::string path = PathOf(stem + "_" + std::string(unit.suffix));
-    Expectation number = ExpectNumber(range, unit.scale, absent);
+    Expectation number = ExpectNumber(range.Less(unit.offset), unit.scale, absent);
     number.unit = unit.suffix;
     if (list) listener_->Expects(path, *list);
     listener_->Expects(list ? path + "[]" : path, number);
@@ -276,13 +290,13 @@ void MapReader::NoteQuantity(const std::string& stem, Dimension dimension, const
 }
 
 const InputNode* MapReader::FindQuantity(const std::string& stem, Dimension dimension, std::string* key,
-                                         double* scale) {
+                                         Unit* unit) {
   const InputNode* found = nullptr;
   std::vector<std::string> keys;
-  for (const Unit& unit : dimension) {
-    keys.push_back(stem + "_" + std::string(unit.suffix));
+  for (const Unit& candidate : dimension) {
+    keys.push_back(stem + "_" + std::string(candidate.suffix));
     known_.insert(keys.back());
-    const InputNode* value = node_.Find(keys.back());
+    const InputNode* value = node_->Find(keys.back());
     if (value == nullptr) continue;
     if (found != nullptr) {
       AddProblem(problems_, *value, PathOf(keys.back()), "'" + *key + "' is given too", "one of the two");
@@ -290,7 +304,7 @@ const InputNode* MapReader::FindQuantity(const std::string& stem, Dimension dime
     }
     found = value;
     *key = keys.back();
-    *scale = unit.scale;
+    *unit = candidate;
   }
   if (listener_ != nullptr) listener_->Knows(path_, keys);
   quantities_.emplace_back(stem, std::move(keys));
@@ -301,10 +315,10 @@ double MapReader::Quantity(const std::string& stem, Dimension dimension, const R
                            std::optional<double> absent) {
   NoteQuantity(stem, dimension, range, absent);
   std::string key;
-  double scale = 1.0;
-  const InputNode* value = FindQuantity(stem, dimension, &key, &scale);
-  if (value != nullptr) return ReadNumber(*value, PathOf(key), problems_, range, scale);
-  if (!absent) ReportMissing(quantities_.back().second, range.Text(dimension.front().scale));
+  Unit unit = {};
+  const InputNode* value = FindQuantity(stem, dimension, &key, &unit);
+  if (value != nullptr) return ReadNumberIn(*value, PathOf(key), problems_, range, unit);
+  if (!absent) ReportMissing(quantities_.back().second, range.Less(dimension.front().offset).Text(dimension.front().scale));
   return absent.value_or(0.0);
 }
 
@@ -312,26 +326,26 @@ std::optional<double> MapReader::OptionalQuantity(const std::string& stem, Dimen
                                                   const Range& range, std::string* key) {
   NoteQuantity(stem, dimension, range, {});
   std::string found;
-  double scale = 1.0;
-  const InputNode* value = FindQuantity(stem, dimension, &found, &scale);
+  Unit unit = {};
+  const InputNode* value = FindQuantity(stem, dimension, &found, &unit);
   if (key != nullptr) *key = found;
   if (value == nullptr) return std::nullopt;
-  return ReadNumber(*value, PathOf(found), problems_, range, scale);
+  return ReadNumberIn(*value, PathOf(found), problems_, range, unit);
 }
 
 std::vector<double> MapReader::Quantities(const std::string& stem, Dimension dimension, const Range& range,
                                           std::size_t low_count, std::size_t high_count, std::string* key) {
   NoteQuantity(stem, dimension, range, {}, ExpectList(low_count, high_count));
   std::string found;
-  double scale = 1.0;
+  Unit unit = {};
   std::vector<double> values;
-  if (FindQuantity(stem, dimension, &found, &scale) == nullptr) {
+  if (FindQuantity(stem, dimension, &found, &unit) == nullptr) {
     if (low_count > 0) ReportMissing(quantities_.back().second, CountText(low_count, high_count));
     return values;
   }
   if (key != nullptr) *key = found;
   Each(found, low_count, high_count, [&](const InputNode& item, const std::string& path) {
-    values.push_back(ReadNumber(item, path, problems_, range, scale));
+    values.push_back(ReadNumberIn(item, path, problems_, range, unit));
   });
   return values;
 }
@@ -350,20 +364,20 @@ std::array<double, 2> MapReader::Ends(const std::string& stem, Dimension dimensi
   NoteQuantity(stem, dimension, range, {});
   NoteQuantity(stem, dimension, range, {}, ExpectList(2, 2));
   std::string key;
-  double scale = 1.0;
-  const InputNode* value = FindQuantity(stem, dimension, &key, &scale);
+  Unit unit = {};
+  const InputNode* value = FindQuantity(stem, dimension, &key, &unit);
   if (value == nullptr) {
-    ReportMissing(quantities_.back().second, range.Text(dimension.front().scale));
+    ReportMissing(quantities_.back().second, range.Less(dimension.front().offset).Text(dimension.front().scale));
     return {};
   }
   if (value->kind != InputNode::Kind::kList) {
-    const double number = ReadNumber(*value, PathOf(key), problems_, range, scale);
+    const double number = ReadNumberIn(*value, PathOf(key), problems_, range, unit);
     return {number, number};
   }
   std::array<double, 2> ends{};
   std::size_t i = 0;
   Each(key, 2, 2, [&](const InputNode& item, const std::string& path) {
-    ends[i++] = ReadNumber(item, path, problems_, range, scale);
+    ends[i++] = ReadNumberIn(item, path, problems_, range, unit);
   });
   return ends;
 }
@@ -375,7 +389,7 @@ bool MapReader::Has(const std::string& stem, Dimension dimension) const {
     listener_->Heeds(path_, keys);
   }
   return std::any_of(dimension.begin(), dimension.end(), [&](const Unit& unit) {
-    return node_.Find(stem + "_" + std::string(unit.suffix)) != nullptr;
+    return node_->Find(stem + "_" + std::string(unit.suffix)) != nullptr;
   });
 }
 
@@ -383,9 +397,18 @@ void MapReader::IgnoreQuantity(const std::string& stem, Dimension dimension) {
   for (const Unit& unit : dimension) Ignore(stem + "_" + std::string(unit.suffix));
 }
 
+void MapReader::Spare(const std::function<void()>& read) {
+  static const InputNode absent;
+  const InputNode* const node = std::exchange(node_, &absent);
+  InputObserver* const listener = std::exchange(listener_, nullptr);
+  read();
+  node_ = node;
+  listener_ = listener;
+}
+
 const InputNode* MapReader::List(const std::string& key, std::size_t low_count, std::size_t high_count) {
   if (listener_ != nullptr) listener_->Expects(PathOf(key), ExpectList(low_count, high_count));
-  const InputNode* list = known_.contains(key) ? node_.Find(key) : Optional(key);
+  const InputNode* list = known_.contains(key) ? node_->Find(key) : Optional(key);
   const std::string allowed = CountText(low_count, high_count);
   if (list == nullptr) {
     if (low_count > 0) ReportMissing({key}, allowed);
@@ -424,12 +447,12 @@ std::optional<std::size_t> MapReader::WordIndex(const std::string& key, const st
 }
 
 void MapReader::NoteMissing(const std::vector<std::string>& keys) const {
-  if (listener_ != nullptr && node_.kind == InputNode::Kind::kMap) listener_->Misses(path_, keys);
+  if (listener_ != nullptr && node_->kind == InputNode::Kind::kMap) listener_->Misses(path_, keys);
 }
 
 void MapReader::ReportMissing(std::vector<std::string> keys, const std::string& allowed) {
   NoteMissing(keys);
-  if (node_.kind == InputNode::Kind::kMap) missing_.push_back({std::move(keys), allowed});
+  if (node_->kind == InputNode::Kind::kMap) missing_.push_back({std::move(keys), allowed});
 }
 
 void MapReader::Finish() {
@@ -437,11 +460,9 @@ void MapReader::Finish() {
   is_finished_ = true;
   const std::vector<std::string> known(known_.begin(), known_.end());
   std::set<std::string> explained;  // missing keys that an unknown key evidently stands for
-  for (const InputMember& member : node_.members) {
+  for (const InputMember& member : node_->members) {
     if (known_.contains(member.key)) continue;
-    InputNode at = MapAt(member.value);
-    at.line = member.line;
-    at.column = member.column;
+    const InputNode at = KeyOf(member);
     const std::string path = PathOf(member.key);
 
     std::string meant;
@@ -472,7 +493,7 @@ void MapReader::Finish() {
     const bool is_explained = std::any_of(missing.keys.begin(), missing.keys.end(),
                                           [&](const std::string& key) { return explained.contains(key); });
     if (is_explained) continue;
-    AddProblem(problems_, node_, path_, "missing key " + Quote(missing.keys, " or "), missing.allowed);
+    AddProblem(problems_, *node_, path_, "missing key " + Quote(missing.keys, " or "), missing.allowed);
   }
 }
 

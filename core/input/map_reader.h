@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <set>
 #include <string>
@@ -22,6 +23,9 @@ namespace dispersa {
 
 void AddProblem(std::vector<InputProblem>& problems, const InputNode& at, std::string path,
                 std::string message, std::string allowed = "");
+
+/// The place of a member's key.
+InputNode KeyOf(const InputMember& member);
 
 /// A scalar that is a finite number in the range (which is in internal units), times `scale`.
 double ReadNumber(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems,
@@ -41,7 +45,7 @@ class MapReader {
   MapReader(const MapReader&) = delete;
   MapReader& operator=(const MapReader&) = delete;
 
-  const InputNode& node() const { return node_; }
+  const InputNode& node() const { return *node_; }
   const std::string& path() const { return path_; }
   std::string PathOf(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
   std::vector<InputProblem>& problems() const { return problems_; }
@@ -116,6 +120,8 @@ class MapReader {
   /// A key of which something was said already.
   void Ignore(const std::string& key) { known_.insert(key); }
   void IgnoreQuantity(const std::string& stem, Dimension dimension);
+  /// Nothing is said of the keys that `read` asks for: what decides whether they belong here was refused.
+  void Spare(const std::function<void()>& read);
 
  private:
   struct Missing {
@@ -130,11 +136,10 @@ class MapReader {
   void NoteQuantity(const std::string& stem, Dimension dimension, const Range& range,
                     std::optional<double> absent, std::optional<Expectation> list = {}) const;
   // The member of a quantity and its unit, or null.
-  const InputNode* FindQuantity(const std::string& stem, Dimension dimension, std::string* key,
-                                double* scale);
+  const InputNode* FindQuantity(const std::string& stem, Dimension dimension, std::string* key, Unit* unit);
 
-  const InputNode& node_;
-  InputObserver* const listener_;  // null: nobody, or nothing to be said of a node that is absent
+  const InputNode* node_;
+  InputObserver* listener_;  // null: nobody, or nothing to be said of a node that is absent
   std::string path_;
   std::vector<InputProblem>& problems_;
   std::set<std::string> known_;

@@ -14,6 +14,7 @@ struct Range {
   bool high_open = false;
 
   bool Contains(double value) const;
+  Range Less(double offset) const { return {low - offset, high - offset, low_open, high_open}; }
   /// "a number above 0", with the limits divided by `scale`.
   std::string Text(double scale = 1.0) const;
 };

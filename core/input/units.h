@@ -10,7 +10,8 @@ namespace dispersa {
 
 struct Unit {
   std::string_view suffix;  ///< "altitude" in "km" is the key "altitude_km"
-  double scale;             ///< value inside = value in the file * scale
+  double scale;             ///< value inside = value in the file * scale + offset
+  double offset = 0.0;
 };
 
 using Dimension = std::span<const Unit>;
@@ -41,6 +42,7 @@ inline constexpr Unit kPerLength[] = {{"per_km", 1e-3}, {"per_m", 1.0}};
 inline constexpr Unit kPerSpeed[] = {{"per_m_s", 1.0}};
 inline constexpr Unit kDensity[] = {{"kg_m3", 1.0}};
 inline constexpr Unit kShare[] = {{"percent", 1e-2}};
+inline constexpr Unit kFactor[] = {{"percent", 1e-2, 1.0}, {"factor", 1.0}};  ///< in percent: by how much it is not 1
 inline constexpr Unit kTemperatureDifference[] = {{"k", 1.0}};
 inline constexpr Unit kPerTemperature[] = {{"percent_per_k", 1e-2}};
 inline constexpr Unit kPerAngle[] = {{"per_deg", kDegPerRad}, {"per_rad", 1.0}};

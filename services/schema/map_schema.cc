@@ -31,7 +31,7 @@ constexpr Unit kNoUnit = {"", 1.0};
 // An empty list counts as none.
 constexpr std::size_t kLeastOfAList = 1;
 
-Json InUnit(double value, const Unit& unit) { return Json::parse(FormatScaled(value, unit.scale)); }
+Json InUnit(double value, const Unit& unit) { return Json::parse(FormatScaled(value - unit.offset, unit.scale)); }
 
 Json NumberIn(const Range& range, const Unit& unit) {
   Json number = {{"type", "number"}};
@@ -42,7 +42,7 @@ Json NumberIn(const Range& range, const Unit& unit) {
 
 // "km, a number above 0: meaning"
 std::string Description(const Range& range, const Unit& unit, const std::string& meaning) {
-  const std::string number = range.Text(unit.scale);
+  const std::string number = range.Less(unit.offset).Text(unit.scale);
   return (unit.suffix.empty() ? number : UnitText(unit.suffix) + ", " + number) + ": " + meaning;
 }
 
@@ -187,7 +187,7 @@ void MapSchema::OneOf(const std::vector<OneQuantity>& quantities, std::size_t&, 
 }
 void MapSchema::Name(const char* key, const std::vector<std::string>& names, const char*, std::string&,
                      const char* meaning) {
-  Add(key, {{"enum", names}, {"description", meaning}}, true);
+  Add(key, names.empty() ? ATextThat(meaning) : Json{{"enum", names}, {"description", meaning}}, true);
 }
 void MapSchema::Word(const char* key, const Choices& choices, const char* meaning, std::optional<std::size_t> absent) {
   Json word = {{"enum", choices.words}, {"description", meaning}};
@@ -210,6 +210,21 @@ void MapSchema::OptionalQuantities(const char* stem, Dimension dimension, const 
                                    std::size_t high_count, std::vector<double>&, const char* meaning) {
   AddUnits(stem, dimension, false,
            [&](const Unit& unit) { return DescribedNumbers(range, unit, low_count, high_count, meaning); });
+}
+void MapSchema::Column(const char* stem, Dimension dimension, const Range& range, std::size_t low_count,
+                       std::vector<double>&, const char* meaning) {
+  AddUnits(stem, dimension, true, [&](const Unit& unit) {
+    return Json{{"anyOf", Json::array({Json{{"type", "string"}, {"minLength", 1}},
+                                       ListOf(NumberIn(range, unit), low_count, SIZE_MAX)})},
+                {"description", Description(range, unit, meaning) + "; or a CSV file with this column"}};
+  });
+}
+void MapSchema::Several(const char* key, int low, int high, const char*, const char*, std::vector<int>&,
+                        const char* meaning) {
+  const Json one = {{"type", "integer"}, {"minimum", low}, {"maximum", high}};
+  Json several = ListOf(one, 1, SIZE_MAX);
+  several["uniqueItems"] = true;
+  Add(key, {{"anyOf", Json::array({one, std::move(several)})}, {"description", meaning}}, false);
 }
 void MapSchema::Rows(const char* key, std::size_t low_count, std::size_t high_count, std::vector<std::vector<double>>&,
                      const char* meaning) {
@@ -254,6 +269,14 @@ void MapSchema::Maps(const char* key, bool needed, std::size_t low_count, std::s
   items.resize(0);  // how many there are decides nothing
   Add(key, Described(ListOf(std::move(item), low_count, high_count), meaning), needed);
 }
+void MapSchema::WordOrMap(const char* key, const char* word, const char*, const char*, bool&, const char* meaning,
+                          const Part& part) {
+  Add(key, {{"anyOf", Json::array({Json{{"const", word}}, MapOf(part)})}, {"description", meaning}}, true);
+}
+void MapSchema::MapOrMaps(const char* key, const char*, const char* meaning, const Part& part) {
+  const Json one = MapOf(part);
+  Add(key, {{"anyOf", Json::array({one, ListOf(one, 1, SIZE_MAX)})}, {"description", meaning}}, false);
+}
 void MapSchema::AddTable(const char* key, const char* meaning, bool needed, const Part& part) {
   Add(key, {{"anyOf", Json::array({Json{{"type", "string"}, {"minLength", 1}}, MapOf(part)})}, {"description", meaning}},
       needed);
@@ -295,6 +318,8 @@ MapSchema::Json MapSchema::Holds(const Condition& condition) const {
       for (const std::string& word : condition.words)
         words.push_back(word == "true" || word == "false" ? Json(word == "true") : Json(word));
       holds["properties"][key] = {{"enum", std::move(words)}};
+    } else if (condition.is_map) {
+      holds["properties"][key] = {{"type", "object"}};
     } else if (path.size() == 1 && lists_.contains(key)) {
       holds["properties"][key] = {{"minItems", kLeastOfAList}};
     }
@@ -361,10 +386,11 @@ void MapSchema::ExactlyOne(const std::vector<std::string>& keys) {
   for (const std::string& key : keys) one.push_back(Required(key));
   keys_.rules.push_back(Combined("oneOf", std::move(one)));
 }
-void MapSchema::Missing(const std::vector<std::string>& keys, const char*) {
+void MapSchema::OneOrMore(const std::vector<std::string>& keys) {
   std::vector<Json> any;
   for (const std::string& key : keys) any.push_back(Required(key));
   keys_.rules.push_back(Combined("anyOf", std::move(any)));
 }
+void MapSchema::Missing(const std::vector<std::string>& keys, const char*) { OneOrMore(keys); }
 
 }  // namespace dispersa

@@ -44,6 +44,10 @@ class MapSchema : public Fields {
                   std::size_t high_count, std::vector<double>& values, const char* meaning) override;
   void OptionalQuantities(const char* stem, Dimension dimension, const Range& range, std::size_t low_count,
                           std::size_t high_count, std::vector<double>& values, const char* meaning) override;
+  void Column(const char* stem, Dimension dimension, const Range& range, std::size_t low_count,
+              std::vector<double>& values, const char* meaning) override;
+  void Several(const char* key, int low, int high, const char* noun, const char* which, std::vector<int>& values,
+               const char* meaning) override;
   void Rows(const char* key, std::size_t low_count, std::size_t high_count, std::vector<std::vector<double>>& rows,
             const char* meaning) override;
   void ColumnsAndRows(const std::vector<std::string>& columns, std::size_t low_count,
@@ -59,6 +63,9 @@ class MapSchema : public Fields {
              const char* meaning) override;
   void Map(const char* key, const char* meaning, const Part& part) override;
   void OptionalMap(const char* key, bool& is_there, const char* meaning, const Part& part) override;
+  void WordOrMap(const char* key, const char* word, const char* what, const char* allowed, bool& is_word,
+                 const char* meaning, const Part& part) override;
+  void MapOrMaps(const char* key, const char* allowed, const char* meaning, const Part& part) override;
   void Table(const char* key, const char* allowed, const char* meaning, const Part& part) override;
   void OptionalTable(const char* key, bool& is_there, const char* meaning, const Part& part) override;
   void Columns(const char* key, const char* meaning, const ReadNode& read) override;
@@ -66,6 +73,7 @@ class MapSchema : public Fields {
                 const ReadNode& read) override;
   void Either(const std::vector<Alternative>& alternatives) override;
   void ExactlyOne(const std::vector<std::string>& keys) override;
+  void OneOrMore(const std::vector<std::string>& keys) override;
   void Missing(const std::vector<std::string>& keys, const char* allowed) override;
 
  protected:

@@ -224,14 +224,12 @@ constexpr BadInput kBadInputs[] = {
      "three_sigma_percent: 6.7", "campaign.yaml",
      "campaign.yaml:10:21: dispersions.drag_coefficient: missing key 'distribution', allowed: "
      "one of normal, uniform, two_point, values, constant, truncated_normal, triangular, lognormal, "
-     "rayleigh, "
      "empirical\n"},
     {"UnknownDistribution", "campaign.yaml", "distribution: normal, three_sigma_percent: 6.7",
      "distribution: gaussian, three_sigma_percent: 6.7", "campaign.yaml",
      "campaign.yaml:10:36: dispersions.drag_coefficient.distribution: 'gaussian' is not a "
      "choice, allowed: one of normal, uniform, two_point, values, constant, truncated_normal, triangular, "
-     "lognormal, "
-     "rayleigh, empirical\n"},
+     "lognormal, empirical\n"},
     {"ParameterOfAnotherDistribution", "campaign.yaml", "distribution: normal, three_sigma_percent: 6.7",
      "distribution: uniform, three_sigma_percent: 6.7", "campaign.yaml",
      "campaign.yaml:10:21: dispersions.drag_coefficient: missing key 'bound_percent', "
@@ -245,8 +243,16 @@ constexpr BadInput kBadInputs[] = {
      "mean 'three_sigma_percent'?), allowed: three_sigma_percent\n"},
     {"TwoSigmas", "campaign.yaml", "three_sigma_percent: 6.7", "three_sigma_percent: 6.7, sigma_percent: 2",
      "campaign.yaml",
-     "campaign.yaml:10:21: dispersions.drag_coefficient: the distribution is given twice, "
-     "allowed: one number above 0, 3 sigma or 1 sigma\n"},
+     "campaign.yaml:10:85: dispersions.drag_coefficient.sigma_percent: 'three_sigma_percent' and 'sigma_percent' are "
+     "both given, allowed: one of three_sigma_percent, sigma_percent\n"},
+    {"TwoRanges", "campaign.yaml", "distribution: normal, three_sigma_percent: 6.7",
+     "distribution: uniform, bound_percent: 5, low_percent: -5, high_percent: 5", "campaign.yaml",
+     "campaign.yaml:10:60: dispersions.drag_coefficient.bound_percent: the distribution is given twice, allowed: "
+     "bound_percent, or both low_percent or low_factor and high_percent or high_factor\n"},
+    {"MedianOfNothing", "campaign.yaml", "distribution: normal, three_sigma_percent: 6.7",
+     "distribution: lognormal, median_percent: -100, sigma_log: 0.1", "campaign.yaml",
+     "campaign.yaml:10:63: dispersions.drag_coefficient.median_percent: -100 is out of range, allowed: a number above "
+     "-100\n"},
     {"FactorCanBeNegative", "campaign.yaml", "three_sigma_percent: 6.7", "three_sigma_percent: 67",
      "campaign.yaml",
      "campaign.yaml:10:21: dispersions.drag_coefficient: a draw at 6 sigma is -0.34 (factor), "
@@ -264,7 +270,7 @@ constexpr BadInput kBadInputs[] = {
      "vehicle, nozzle\n"},
     {"FlowOfANozzle", "campaign.yaml", "conserve: total_impulse, per: stage",
      "conserve: total_impulse, per: nozzle", "campaign.yaml",
-     "campaign.yaml:11:11: dispersions.thrust.conserve: the flow is the whole motor's, not a nozzle's, "
+     "campaign.yaml:11:68: dispersions.thrust.conserve: the flow is the whole motor's, not a nozzle's, "
      "allowed: "
      "conserve: propellant with per: nozzle\n"},
     {"BareAzimuth", "campaign.yaml", "azimuth: uniform", "azimuth: 270", "campaign.yaml",
@@ -343,8 +349,8 @@ constexpr BadInput kBadInputs[] = {
      "weight a value\n"},
     {"FactorAsMagnitude", "campaign.yaml", "distribution: normal, three_sigma_percent: 6.7",
      "distribution: rayleigh, sigma_percent: 2", "campaign.yaml",
-     "campaign.yaml:10:21: dispersions.drag_coefficient: a factor is no magnitude, allowed: rayleigh for an "
-     "angle, a length, a speed or a rate\n"},
+     "campaign.yaml:10:36: dispersions.drag_coefficient.distribution: 'rayleigh' is not a choice, allowed: one of "
+     "normal, uniform, two_point, values, constant, truncated_normal, triangular, lognormal, empirical\n"},
     {"EmptyList", "campaign.yaml",
      "requirements:\n  - {metric: pitch_error_peak_deg, below: 0.5, probability: 0.9973, "
      "consumer_risk: 0.10}",

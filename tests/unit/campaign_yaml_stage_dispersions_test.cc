@@ -170,7 +170,7 @@ TEST(StageDispersions, WhatIsWrongIsSaidInFull) {
             "and below 1.125\n");
   EXPECT_EQ(
       Problems("payload_mass: {distribution: uniform, bound_kg: 20, element: payload}"),
-      "campaign.yaml:8:64: dispersions.payload_mass.element: 'payload' is no element of the last stage's "
+      "campaign.yaml:8:64: dispersions.payload_mass.element: 'payload' is not an element of the last stage's "
       "structure, allowed: one of case\n");
   EXPECT_EQ(Problems("payload_mass: {distribution: uniform, bound_kg: 501, element: case}"),
             "campaign.yaml:8:17: dispersions.payload_mass: a draw can be -501 (kg), allowed: a number above "

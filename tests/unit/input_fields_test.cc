@@ -121,7 +121,7 @@ TEST(FieldReader, SaysEverythingThatIsWrongAtOnce) {
             "t:4:28: legs[0].length_m: 11 is out of range, allowed: a number above 0 and not above 10\n"
             "t:5:1: drawr: unknown key 'drawr' (did you mean 'drawer'?), allowed: delivery_ms, delivery_s, distance_km, "
             "distance_m, distance_mm, distance_um, drawer, edge_km, edge_m, edge_mm, edge_um, folds, heights_km, heights_m, "
-            "heights_mm, heights_um, legs, marks, price, seats, weights_kg, weights_ton, width_km, width_m, width_mm, "
+            "heights_mm, heights_um, legs, marks, oil_days, price, seats, weights_kg, weights_ton, width_km, width_m, width_mm, "
             "width_um, wood\n"
             "t:1:1: missing key 'delivery_s' or 'distance_m', allowed: one of them\n");
 }

@@ -1,11 +1,10 @@
 // One scalar's distribution in a campaign's `dispersions`.
 #pragma once
 
-#include <string>
-#include <vector>
+#include <span>
 
 #include "core/campaign/campaign.h"
-#include "core/input/map_reader.h"
+#include "core/input/fields.h"
 
 namespace dispersa {
 
@@ -14,6 +13,7 @@ namespace dispersa {
 struct DispersedScalar {
   Dimension dimension;  ///< empty: a factor
   Range range;          ///< of every value that can be drawn; of a normal draw out to 6 sigma
+  std::span<const Distribution> kinds = {};  ///< that it may have; empty: all, but a factor is no magnitude
   bool IsFactor() const { return dimension.empty(); }
   double Nominal() const { return IsFactor() ? 1.0 : 0.0; }
 };
@@ -21,13 +21,16 @@ struct DispersedScalar {
 /// Factors that multiply a physical quantity, which must stay positive.
 inline constexpr DispersedScalar kPositiveFactor{{}, kPositive};
 
-/// Reads `distribution` and its parameters; the caller's map may hold further keys. A bare "percent: 20" is a
-/// problem: what "±" means is always explicit.
-ScalarDistribution ReadDistribution(MapReader& map, const DispersedScalar& scalar);
+/// `distribution` and its parameters; the map may hold further keys. A bare "percent: 20" is refused: what
+/// "±" means is always explicit.
+void DescribeDistribution(Fields& fields, const DispersedScalar& scalar, ScalarDistribution& distribution);
 
 /// A direction in the full circle: "uniform", {fixed_deg: x} or a distribution.
-ScalarDistribution ReadDirection(const InputNode& node, const std::string& path,
-                                 std::vector<InputProblem>& problems);
+void DescribeDirection(Fields& fields, const char* key, ScalarDistribution& direction, const char* meaning);
+
+/// "stem_unit: x" or "stem: {distribution: ...}"; false if neither is there, which `needed` refuses.
+bool DescribeFixedOrDrawn(Fields& fields, const char* stem, const DispersedScalar& scalar, bool needed,
+                          ScalarDistribution& distribution, const char* meaning);
 
 /// The same value in every case.
 ScalarDistribution Constant(double value);

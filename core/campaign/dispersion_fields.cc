@@ -1,0 +1,429 @@
+#include "core/campaign/dispersion_fields.h"
+
+#include <algorithm>
+#include <cassert>
+#include <functional>
+#include <numeric>
+#include <set>
+
+#include "core/campaign/dispersion_table.h"
+#include "core/environment/turbulence.h"
+#include "core/flight/dispersed_vehicle.h"
+#include "core/math/functions.h"
+#include "core/vehicle/mass.h"
+
+namespace dispersa {
+namespace {
+
+std::string StageName(int stage) { return "stage" + std::to_string(stage); }
+
+class DispersionFields {
+ public:
+  DispersionFields(bool is_sound, Campaign& campaign)
+      : vehicle_(campaign.vehicle),
+        is_sound_(is_sound && !vehicle_.stages.empty()),
+        stages_(vehicle_.stages.empty() ? kMaxStages : static_cast<int>(vehicle_.stages.size())),
+        campaign_(campaign) {}
+
+  void Describe(Fields& fields, const DispersionRow& row, const std::string& name) {
+    switch (row.draws) {
+      case Draws::kOnce:
+      case Draws::kEachAxis:
+      case Draws::kEachMode:
+        return Plain(fields, row, name);
+      case Draws::kEachStage:
+      case Draws::kStages:
+      case Draws::kVehicleOrStages:
+      case Draws::kOffAxis:
+      case Draws::kThrust:
+      case Draws::kPropellantTemperature:
+        return OfStages(fields, row, name);
+      case Draws::kFixed:
+      case Draws::kFixedOrAbsent: {
+        ScalarDistribution distribution;
+        if (DescribeFixedOrDrawn(fields, row.key, row.scalar, row.draws == Draws::kFixed, distribution,
+                                 row.meaning))
+          Add(name, distribution, row.columns);
+        return;
+      }
+      case Draws::kDirection: {
+        ScalarDistribution direction;
+        DescribeDirection(fields, row.key, direction, row.meaning);
+        return Add(name, direction, row.columns);
+      }
+      case Draws::kParts:
+      case Draws::kPayloadMass:
+      case Draws::kWind:
+      case Draws::kGust:
+      case Draws::kWindProfile:
+      case Draws::kTurbulence:
+      case Draws::kStuckNozzle:
+        break;
+    }
+    bool is_there = false;
+    fields.OptionalMap(row.key, is_there, row.meaning, [&](Fields& map) {
+      if (row.draws == Draws::kPayloadMass) PayloadMass(map, row);
+      if (row.draws == Draws::kWind) WindSpeed(map, row);
+      if (row.draws == Draws::kWindProfile) WindProfile(map, row);
+      if (row.draws == Draws::kTurbulence) Turbulence(map, row);
+      if (row.draws == Draws::kStuckNozzle) StuckNozzle(map, row);
+      const int before = maps_;
+      for (const DispersionRow& part : row.parts) Describe(map, part, name + "/" + part.key);
+      if (row.draws == Draws::kParts) OneOrMoreParts(map, row, maps_ > before);
+    });
+  }
+
+ private:
+  void Add(const std::string& name, const ScalarDistribution& distribution,
+           const std::vector<std::string>& columns, bool absolute = false) {
+    std::vector<int> inputs;
+    for (const std::string& column : columns) {
+      inputs.push_back(FindInput(column));
+      assert(inputs.back() >= 0);
+    }
+    campaign_.dispersions.push_back({name, distribution, std::move(inputs), absolute});
+  }
+  static ScalarDistribution ReadScalar(Fields& fields, const DispersedScalar& scalar) {
+    ScalarDistribution distribution;
+    DescribeDistribution(fields, scalar, distribution);
+    return distribution;
+  }
+
+  static void OneOrMoreParts(Fields& map, const DispersionRow& row, bool are_there) {
+    std::vector<std::string> keys;
+    std::string words;
+    for (const DispersionRow& part : row.parts) {
+      keys.emplace_back(part.key);
+      words += (words.empty() ? "" : ", ") + keys.back();
+    }
+    map.OneOrMore(keys);
+    if (are_there) return;
+    map.Check([&map, words, are_axes = keys.front() == "roll"] {
+      map.Refuse("", are_axes ? "no axis is given" : "no product is given", "one or more of " + words);
+    });
+  }
+
+  // One map, whose draws no stage decides.
+  void Plain(Fields& fields, const DispersionRow& row, const std::string& name) {
+    bool is_there = false;
+    fields.OptionalMap(row.key, is_there, row.meaning, [&](Fields& map) {
+      ++maps_;
+      const ScalarDistribution distribution = ReadScalar(map, row.scalar);
+      const std::vector<std::string> all = ExpandColumn(row.columns.front());
+      if (row.draws == Draws::kOnce) return Add(name, distribution, row.columns);
+      bool each = true;
+      if (row.draws == Draws::kEachMode)
+        map.Choice<bool>("per", {{"mode", true}, {"vehicle", false}}, each, "a draw a mode, or one for all");
+      if (!each) return Add(name, distribution, all);
+      for (std::size_t i = 0; i < all.size(); ++i) {
+        constexpr const char* kLaunchAxes[] = {"downrange", "right", "down"};
+        Add(name + "/" + (row.draws == Draws::kEachMode ? "mode" + std::to_string(i + 1) : kLaunchAxes[i]),
+            distribution, {all[i]});
+      }
+    });
+    if (!is_there && row.absent) Add(name, Constant(*row.absent), row.columns);
+  }
+
+  // ---- stages ----
+
+  enum class Per { kStage, kVehicle, kNozzle };
+  struct Selection {
+    std::vector<int> stages;
+    bool all = true;  // `stage` is not given
+    Per per = Per::kStage;
+  };
+
+  // A map, or a list of them of which each is about stages of its own.
+  void OfStages(Fields& fields, const DispersionRow& row, const std::string& name) {
+    const int first = row.first_stage, last = stages_ - row.last_stages_without;
+    if (first > last && row.draws == Draws::kStages)
+      return fields.Misplaced(row.key, {}, "the vehicle has one stage", "a vehicle of two or more");
+    std::set<int> taken;
+    fields.MapOrMaps(row.key, "a map, or a list of maps with stage", row.meaning, [&](Fields& map) {
+      ++maps_;
+      Selection of;
+      map.Several("stage", first, last, "stage", "that this disperses", of.stages,
+                  "these stages alone; without, all");
+      of.all = of.stages.empty();
+      for (int stage = first; of.all && stage <= last; ++stage) of.stages.push_back(stage);
+      for (const int stage : of.stages) {
+        if (taken.insert(stage).second) continue;
+        map.Refuse(of.all ? "" : "stage", "stage " + std::to_string(stage) + " is given twice",
+                   "each stage in one of the list");
+        break;
+      }
+      const ScalarDistribution distribution = ReadScalar(map, Limited(row, of.stages));
+      if (row.draws == Draws::kOffAxis) return OffAxis(map, row, name, of, distribution);
+      if (row.draws == Draws::kThrust) return Thrust(map, row, name, of, distribution);
+      if (row.draws == Draws::kPropellantTemperature)
+        return PropellantTemperature(map, row, name, of, distribution);
+      if (row.draws == Draws::kStages) of.per = PerWhat(map, row);
+      if (row.draws == Draws::kVehicleOrStages) {
+        of.per = PerVehicle(map);
+        if (of.all && of.per == Per::kVehicle) return Add(name, distribution, {row.columns.front()});
+        return AddStages(name, of, distribution, {row.columns.back()});
+      }
+      AddStages(name, of, distribution, row.columns);
+    });
+  }
+
+  DispersedScalar Limited(const DispersionRow& row, const std::vector<int>& stages) const {
+    DispersedScalar scalar = row.scalar;
+    if (!is_sound_ || row.limits == nullptr) return scalar;
+    for (const int stage : stages) {
+      const Range range = row.limits(vehicle_, stage);
+      scalar.range = {std::max(scalar.range.low, range.low), std::min(scalar.range.high, range.high),
+                      range.low_open, range.high_open};
+    }
+    return scalar;
+  }
+
+  static Per PerWhat(Fields& map, const DispersionRow& row) {
+    std::vector<std::pair<std::string, Per>> choices = {{"stage", Per::kStage}, {"vehicle", Per::kVehicle}};
+    if (!row.nozzle_columns.empty()) choices.emplace_back("nozzle", Per::kNozzle);
+    Per per = Per::kStage;
+    map.Choice<Per>("per", choices, per, "what has a draw of its own");
+    return per;
+  }
+  static Per PerVehicle(Fields& map) {
+    Per per = Per::kVehicle;
+    const auto choice = [&](Per absent) {
+      map.Choice<Per>("per", {{"stage", Per::kStage}, {"vehicle", Per::kVehicle}}, per,
+                      "what has a draw of its own", absent);
+    };
+    map.Either({{Has("stage"), [&] { choice(Per::kStage); }}, {Else(), [&] { choice(Per::kVehicle); }}});
+    return per;
+  }
+
+  static std::vector<std::string> FillColumns(const std::vector<std::string>& patterns,
+                                              const std::string& what, const std::string& name) {
+    std::vector<std::string> columns;
+    for (const std::string& pattern : patterns) columns.push_back(FillColumn(pattern, what, name));
+    return columns;
+  }
+
+  // One draw a stage, or one for all of them, as `per` says. A draw for some of the stages has their numbers
+  // in its name: of two of a list each is a draw of its own.
+  void AddStages(const std::string& name, const Selection& of, const ScalarDistribution& distribution,
+                 const std::vector<std::string>& patterns, bool absolute = false) {
+    std::vector<std::string> all;
+    std::string numbers;
+    for (const int stage : of.stages) {
+      const std::vector<std::string> columns = FillColumns(patterns, "stage", StageName(stage));
+      all.insert(all.end(), columns.begin(), columns.end());
+      numbers += "_" + std::to_string(stage);
+      if (of.per == Per::kStage) Add(name + "/" + StageName(stage), distribution, columns, absolute);
+    }
+    if (of.per == Per::kVehicle && !all.empty())
+      Add(of.all ? name : name + "/stages" + numbers, distribution, all, absolute);
+  }
+  // One draw a nozzle.
+  void AddNozzles(const std::string& name, const Selection& of, const ScalarDistribution& distribution,
+                  const std::string& pattern, bool absolute = false) {
+    for (const int stage : of.stages) {
+      std::vector<std::string> names = NozzleNames(stage);
+      if (names.empty()) names.assign(std::begin(kNozzleNames), std::end(kNozzleNames));
+      for (std::size_t i = 0; i < names.size(); ++i)
+        Add(name + "/" + StageName(stage) + "_" + names[i], distribution,
+            {FillColumn(FillColumn(pattern, "stage", StageName(stage)), "nozzle", kNozzleNames[i])},
+            absolute);
+    }
+  }
+  // Of the cross, or of the stage's list; none of a vehicle that is unknown.
+  std::vector<std::string> NozzleNames(int stage) const {
+    const std::vector<Stage>& stages = vehicle_.stages;
+    if (stage < 1 || static_cast<std::size_t>(stage) > stages.size()) return {};
+    std::vector<std::string> names;
+    for (const Nozzle& nozzle : stages[static_cast<std::size_t>(stage) - 1].gimbal.nozzles)
+      names.push_back(nozzle.name);
+    if (names.empty()) names.assign(std::begin(kNozzleNames), std::end(kNozzleNames));
+    return names;
+  }
+
+  // A magnitude and the direction of it around the axis, or its two components.
+  void OffAxis(Fields& map, const DispersionRow& row, const std::string& name, Selection of,
+               const ScalarDistribution& distribution) {
+    bool by_axis = false;
+    map.Choice<bool>("draw", {{"magnitude", false}, {"per_axis", true}}, by_axis,
+                     "the distance from the axis, or its components towards body y and z", false);
+    ScalarDistribution direction;
+    map.Either(
+        {{Is("draw", {"per_axis"}),
+          [&] {
+            map.Misplaced("clock_angle", {}, "components have no direction besides",
+                          "draw: magnitude with clock_angle");
+          }},
+         {Else(), [&] { DescribeDirection(map, "clock_angle", direction, "from body y towards body z"); }}});
+    of.per = PerWhat(map, row);
+    const auto add = [&](const std::string& part, std::size_t column, const ScalarDistribution& drawn,
+                         bool absolute) {
+      if (of.per == Per::kNozzle)
+        AddNozzles(name + part, of, drawn, row.nozzle_columns[column], absolute);
+      else
+        AddStages(name + part, of, drawn, {row.columns[column]}, absolute);
+    };
+    add(by_axis ? "/y" : "", by_axis ? 2 : 0, distribution, !by_axis);
+    add(by_axis ? "/z" : "/clock", by_axis ? 3 : 1, by_axis ? distribution : direction, false);
+  }
+
+  void Thrust(Fields& map, const DispersionRow& row, const std::string& name, Selection of,
+              const ScalarDistribution& distribution) {
+    bool flow_follows = true;
+    map.Choice<bool>("conserve", {{"total_impulse", true}, {"propellant", false}}, flow_follows,
+                     "the flow changes with the thrust and the burn shortens, or flow and burning time stay");
+    of.per = PerWhat(map, row);
+    if (of.per == Per::kNozzle && flow_follows)
+      map.Refuse("conserve", "the flow is the whole motor's, not a nozzle's",
+                 "conserve: propellant with per: nozzle");
+    if (of.per == Per::kNozzle) return AddNozzles(name, of, distribution, row.nozzle_columns.front());
+    std::vector<std::string> columns = row.columns;
+    if (!flow_follows) columns.pop_back();
+    AddStages(name, of, distribution, columns);
+  }
+
+  // A grain burns the faster the warmer it is: at constant burning surface pressure, thrust and flow grow as
+  // exp(pi_K dT), and the total impulse stays (Sutton and Biblarz, Rocket Propulsion Elements, 7th ed.,
+  // sect. 11.1).
+  void PropellantTemperature(Fields& map, const DispersionRow& row, const std::string& name, Selection of,
+                             ScalarDistribution rate) {
+    double sensitivity_1_k = 0.0;
+    map.Quantity("sensitivity", kPerTemperature, UpTo(0.02), sensitivity_1_k,
+                 "growth of the burn rate, pi_K");
+    of.per = PerWhat(map, row);
+    for (const int stage : of.stages)
+      if (is_sound_ && vehicle_.stages[static_cast<std::size_t>(stage) - 1].is_liquid())
+        map.Refuse("", "stage " + std::to_string(stage) + " is liquid", "stage: those with solid motors");
+    const auto rate_at = [&](double warmer_k) { return Exp(sensitivity_1_k * warmer_k); };
+    if (rate.kind == Distribution::kNormal) {  // of the temperature, hence lognormal of the rate
+      rate.kind = Distribution::kLogNormal;
+      rate.sigma *= sensitivity_1_k;
+    } else {
+      rate.low = rate_at(rate.low);
+      rate.high = rate_at(rate.high);
+      for (double& value : rate.values) value = rate_at(value);
+    }
+    rate.nominal = rate_at(rate.nominal);
+    AddStages(name, of, rate, row.columns);
+  }
+
+  // ---- maps with keys of their own ----
+
+  // Of one element of the last stage, which cannot weigh less than nothing.
+  void PayloadMass(Fields& map, const DispersionRow& row) {
+    std::vector<std::string> names;
+    if (is_sound_)
+      for (const MassElement& element : vehicle_.stages.back().structure) names.push_back(element.name);
+    std::string element;
+    map.Name("element", names, "an element of the last stage's structure", element,
+             "of the last stage's structure");
+    const auto position =
+        static_cast<std::size_t>(std::find(names.begin(), names.end(), element) - names.begin());
+    DispersedScalar scalar = row.scalar;
+    if (position < names.size())
+      scalar.range = {-vehicle_.stages.back().structure[position].fraction * DryMass(vehicle_, stages_ - 1),
+                      std::numeric_limits<double>::infinity(), true, false};
+    Add(row.key, ReadScalar(map, scalar), {row.columns[0]});
+    Add(row.key + std::string("/element"), Constant(static_cast<double>(position + 1)), {row.columns[1]});
+  }
+
+  void WindSpeed(Fields& map, const DispersionRow& row) {
+    double most_m_s = 0.0;
+    bool is_uniform = false;
+    map.Quantity("max_speed", kSpeed, Between(0.0, 200.0), most_m_s, "of the jet stream");
+    map.Choice<bool>("speed", {{"fixed", false}, {"uniform", true}}, is_uniform,
+                     "the largest, or from 0 to it", false);
+    Add("wind/speed", is_uniform ? Uniform(0.0, most_m_s) : Constant(most_m_s), row.columns);
+  }
+
+  // A severity names a curve of MIL-F-8785C, figure 7, and a wind near the ground (its figure 10); or both
+  // are given.
+  void Turbulence(Fields& map, const DispersionRow& row) {
+    constexpr double kKnot_m_s = 1852.0 / 3600.0;
+    struct Severity {
+      double exceedance, wind_m_s;
+    };
+    constexpr Severity kLevels[] = {
+        {1e-2, 15.0 * kKnot_m_s}, {1e-3, 30.0 * kKnot_m_s}, {1e-5, 45.0 * kKnot_m_s}};
+    Severity severity{kLargestExceedance, 0.0};
+    const auto named = [&] {
+      std::size_t level = 0;
+      map.Choice<std::size_t>("severity", {{"light", 0}, {"moderate", 1}, {"severe", 2}}, level,
+                              "a probability of exceedance aloft, and a wind near the ground");
+      severity = kLevels[level];
+    };
+    map.Either({{Has("severity"), named},
+                {Has("exceedance"),
+                 [&] {
+                   map.Number("exceedance", Between(kLeastExceedance, kLargestExceedance),
+                              severity.exceedance, "probability that picks the intensity");
+                   map.Quantity("wind_20ft", kSpeed, Between(0.0, 50.0), severity.wind_m_s,
+                                "mean, near the ground");
+                 }},
+                {Else(), named}});
+    Add("turbulence/exceedance", Constant(severity.exceedance), {row.columns[0]});
+    Add("turbulence/wind_20ft", Constant(severity.wind_m_s), {row.columns[1]});
+  }
+
+  // The tables are kept from the start: their checks come when the whole map is read.
+  void WindProfile(Fields& map, const DispersionRow& row) {
+    bool has_table = false, has_statistics = false;
+    map.OptionalTable(
+        "table", has_table, "a CSV file of a profile that every flight meets", [&](Fields& columns) {
+          dispersa::Describe(columns, campaign_.wind_table.emplace(), "one value an altitude in each column");
+        });
+    map.When(Has("statistics"), [&] {
+      WindStatistics& statistics = campaign_.wind_statistics.emplace();
+      dispersa::Describe(map, statistics);
+      map.OptionalTable("statistics", has_statistics, "a CSV file of means and standard deviations",
+                        [&](Fields& columns) { DescribeLevels(columns, statistics, kWindLevels); });
+      ScalarDistribution standard_normal;
+      standard_normal.kind = Distribution::kNormal;
+      standard_normal.sigma = 1.0;
+      const std::vector<std::string> north = ExpandColumn(row.columns[0]),
+                                     east = ExpandColumn(row.columns[1]);
+      for (std::size_t i = 0; i < std::min(statistics.altitude_m.size(), north.size()); ++i) {
+        Add("wind_profile/north" + std::to_string(i + 1), standard_normal, {north[i]});
+        Add("wind_profile/east" + std::to_string(i + 1), standard_normal, {east[i]});
+      }
+    });
+    map.ExactlyOne({"table", "statistics"});
+    if (has_table == has_statistics)
+      map.Refuse("", has_table ? "'table' and 'statistics' are both given" : "no profile is given",
+                 "either table: FILE.csv or statistics: FILE.csv");
+  }
+
+  void StuckNozzle(Fields& map, const DispersionRow& row) {
+    int stage = 1;
+    map.Integer("stage", 1, static_cast<std::uint64_t>(stages_), stage, "of the nozzle");
+    std::vector<std::string> names = NozzleNames(stage);
+    const std::size_t count = names.size();
+    if (count > 0) names.emplace_back("any");
+    std::string name;
+    map.Name("nozzle", names, "a nozzle of the stage", name, "its name in the stage, or any");
+    const auto found = std::find(names.begin(), names.end(), name);
+    ScalarDistribution nozzle = Constant(static_cast<double>(found - names.begin()) + 1.0);
+    if (name == "any") {
+      nozzle = Constant(0.0);
+      nozzle.kind = Distribution::kValues;
+      nozzle.values.resize(count);
+      std::iota(nozzle.values.begin(), nozzle.values.end(), 1.0);
+    }
+    Add("stuck_nozzle/nozzle", nozzle, {row.columns[0]});
+    Add("stuck_nozzle/stage", Constant(static_cast<double>(stage)), {row.columns[1]});
+  }
+
+  const Vehicle& vehicle_;  ///< without stages if it is unknown
+  const bool is_sound_;     ///< else nothing is checked against it
+  const int stages_;
+  Campaign& campaign_;
+  int maps_ = 0;  ///< so many dispersions of a distribution were there
+};
+
+}  // namespace
+
+void DescribeDispersions(Fields& fields, bool is_sound, Campaign& campaign) {
+  DispersionFields dispersions(is_sound, campaign);
+  for (const DispersionRow& row : DispersionRows()) dispersions.Describe(fields, row, row.key);
+}
+
+}  // namespace dispersa

@@ -1,0 +1,13 @@
+// A campaign's `dispersions`, as the rows of the table say.
+#pragma once
+
+#include "core/campaign/campaign.h"
+#include "core/input/fields.h"
+
+namespace dispersa {
+
+/// Fills dispersions, wind_statistics and wind_table. The campaign has its vehicle, or one without stages if
+/// that is unknown; nothing is checked against one that is not `is_sound`.
+void DescribeDispersions(Fields& fields, bool is_sound, Campaign& campaign);
+
+}  // namespace dispersa

@@ -1,0 +1,313 @@
+#include "core/campaign/dispersion_table.h"
+
+#include <algorithm>
+
+#include "core/flight/dispersed_vehicle.h"
+#include "core/vehicle/mass.h"
+
+namespace dispersa {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr Distribution kOfTemperature[] = {Distribution::kNormal, Distribution::kTwoPoint,
+                                           Distribution::kValues, Distribution::kConstant};
+
+constexpr DispersedScalar Any(Dimension dimension) { return {dimension, kAnyNumber}; }
+
+// ---- limits ----
+
+const Stage& StageAt(const Vehicle& vehicle, int stage) {
+  return vehicle.stages[static_cast<std::size_t>(stage) - 1];
+}
+
+// At most what the grain's case holds.
+Range LimitsOfPropellant(const Vehicle& vehicle, int stage) {
+  return Inside(0.0, LargestPropellantFactor(StageAt(vehicle, stage)));
+}
+
+// Half the least moment of inertia of the stack without what it burns and what may leave it, about either
+// axis: with three such products the tensor is still one of a body.
+Range LimitsOfProduct(const Vehicle& vehicle, int stage) {
+  StackMass left = Without(BuildStackMasses(vehicle)[static_cast<std::size_t>(stage) - 1], stage - 1,
+                           BuildJettisonedMasses(vehicle), ~0u);
+  if (stage == 1 && vehicle.boosters.count > 0)
+    left = Without(left, 0, {BuildBoosterMass(vehicle.boosters)}, 1u);
+  const MassProperties empty = left.At(0.0);
+  const double most = 0.5 * std::min(empty.axial_inertia_kg_m2, empty.transverse_inertia_kg_m2);
+  return Between(-most, most);
+}
+
+// Nothing happens before what triggers it.
+Range LimitsOfIgnition(const Vehicle& vehicle, int stage) {
+  const Stage& s = StageAt(vehicle, stage);
+  return {s.ignition == IgnitionTrigger::kBurnoutDetection ? -s.ignition_delay_s : -kInfinity, kInfinity,
+          false, false};
+}
+Range LimitsOfSeparation(const Vehicle& vehicle, int stage) {
+  return {-StageAt(vehicle, stage).separation_delay_s, kInfinity, false, false};
+}
+
+// ---- rows ----
+
+// `unit` ends the names of the columns; a nozzle's own begin with `nozzle`, if it has.
+DispersionRow OffAxis(const char* key, Dimension dimension, const std::string& stem, const std::string& unit,
+                      const std::string& nozzle, const char* meaning) {
+  const auto columns = [&unit](const std::string& name, const std::string& of) {
+    return std::vector<std::string>{name + of + unit, name + "_clock" + of + "_deg", name + "_y" + of + unit,
+                                    name + "_z" + of + unit};
+  };
+  DispersionRow row = {key, meaning, Draws::kOffAxis, Any(dimension), columns(stem, "_{stage}")};
+  if (!nozzle.empty()) row.nozzle_columns = columns(nozzle, "_{stage}_{nozzle}");
+  return row;
+}
+
+// The column of the whole vehicle, and those of its stages' stacks.
+DispersionRow VehicleOrStages(const char* key, const std::string& column, const char* meaning) {
+  return {key, meaning, Draws::kVehicleOrStages, kPositiveFactor, {column, column + "_{stage}"}};
+}
+
+// A row an axis; {body} stands for its name in the column.
+DispersionRow BodyAxes(const char* key, Draws draws, Dimension dimension, const std::string& column,
+                       const char* meaning) {
+  DispersionRow row = {key, meaning, Draws::kParts};
+  for (const char* axis : {"roll", "pitch", "yaw"})
+    row.parts.push_back({axis, "about this axis", draws, Any(dimension), {FillColumn(column, "body", axis)}});
+  return row;
+}
+
+std::vector<DispersionRow> MakeRows() {
+  const auto once = [](const char* key, const DispersedScalar& scalar, const char* column,
+                       const char* meaning) {
+    return DispersionRow{key, meaning, Draws::kOnce, scalar, {column}};
+  };
+  const auto stages = [](const char* key, std::vector<std::string> columns, const char* meaning) {
+    return DispersionRow{key, meaning, Draws::kStages, kPositiveFactor, std::move(columns)};
+  };
+  std::vector<DispersionRow> rows;
+  const auto add = [&rows](DispersionRow row) -> DispersionRow& { return rows.emplace_back(std::move(row)); };
+
+  add(OffAxis("thrust_misalignment", kAngle, "thrust_misalignment", "_deg", "nozzle_misalignment",
+              "angle of the thrust off the axis"));
+  add(OffAxis("thrust_offset", kLength, "thrust_offset", "_m", "nozzle_offset",
+              "lateral distance of the thrust line"));
+  add(OffAxis("center_of_gravity_offset", kLength, "cg_offset", "_m", "",
+              "lateral distance of the centre of gravity of the stack without the propellant that it burns"));
+  add({"thrust",
+       "factor of the thrust",
+       Draws::kThrust,
+       kPositiveFactor,
+       {"thrust_factor_{stage}", "mass_flow_factor_{stage}"},
+       {"nozzle_thrust_factor_{stage}_{nozzle}"}});
+  add(stages("burn_rate", {"thrust_factor_{stage}", "mass_flow_factor_{stage}"},
+             "factor of thrust and flow together"));
+  add({"propellant_temperature",
+       "of a solid propellant above its nominal temperature: a burn rate",
+       Draws::kPropellantTemperature,
+       {kTemperatureDifference, Between(-200.0, 200.0), kOfTemperature},
+       {"thrust_factor_{stage}", "mass_flow_factor_{stage}"}});
+  add(stages("specific_impulse", {"specific_impulse_factor_{stage}"},
+             "factor of the thrust at the same flow"));
+  add(stages("dry_mass", {"dry_mass_factor_{stage}"},
+             "factor of every element of a stage's structure; of the last stage with its payload"));
+  add(stages("propellant_load", {"propellant_factor_{stage}"}, "factor of the propellant at ignition"))
+      .limits = LimitsOfPropellant;
+  add({"payload_mass",
+       "by which one element of the last stage's structure is heavier",
+       Draws::kPayloadMass,
+       Any(kMass),
+       {"payload_mass_kg", "payload_element"}});
+  DispersionRow& products =
+      add({"product_of_inertia", "about the centre of gravity, of the stack, constant over the burn",
+           Draws::kParts});
+  for (const char* plane : {"xy", "xz", "yz"}) {
+    DispersionRow& part = products.parts.emplace_back(
+        DispersionRow{plane,
+                      "in this plane of the body axes",
+                      Draws::kStages,
+                      Any(kInertia),
+                      {"product_of_inertia_" + std::string(plane) + "_{stage}_kg_m2"}});
+    part.limits = LimitsOfProduct;
+  }
+  DispersionRow& ignition = add({"ignition_delay",
+                                 "time by which a stage ignites late; the first one's is before lift-off",
+                                 Draws::kStages,
+                                 Any(kTime),
+                                 {"ignition_delay_{stage}_s"}});
+  ignition.first_stage = 2;
+  ignition.limits = LimitsOfIgnition;
+  DispersionRow& separation = add({"separation_delay",
+                                   "time by which a stage separates late; the last one stays",
+                                   Draws::kStages,
+                                   Any(kTime),
+                                   {"separation_delay_{stage}_s"}});
+  separation.last_stages_without = 1;
+  separation.limits = LimitsOfSeparation;
+  add(once("launch_azimuth_error", Any(kAngle), "launch_azimuth_error_deg",
+           "clockwise off the launch azimuth, of vehicle and inertial unit, unnoticed"));
+  add(BodyAxes("initial_attitude_error", Draws::kOnce, kAngle, "initial_{body}_error_deg",
+               "of the body off the program at lift-off, which the inertial unit sees"));
+  add({"wind",
+       "jet stream",
+       Draws::kWind,
+       Any(kSpeed),
+       {"wind_max_speed_m_s"},
+       {},
+       {{"azimuth", "where it comes from", Draws::kDirection, Any(kAngle), {"wind_azimuth_deg"}},
+        {"altitude",
+         "of the maximum",
+         Draws::kFixedOrAbsent,
+         {kLength, Between(0.0, 100e3)},
+         {"wind_altitude_m"}},
+        {"width",
+         "full width at half the maximum",
+         Draws::kFixedOrAbsent,
+         {kLength, Between(100.0, 100e3)},
+         {"wind_width_m"}}}});
+  add({"gust",
+       "1 - cosine gust",
+       Draws::kGust,
+       Any(kSpeed),
+       {},
+       {},
+       {{"speed", "the largest", Draws::kFixed, {kSpeed, Between(-100.0, 100.0)}, {"gust_speed_m_s"}},
+        {"altitude", "where it starts", Draws::kFixed, {kLength, Between(0.0, 100e3)}, {"gust_altitude_m"}},
+        {"length", "in altitude", Draws::kFixed, {kLength, Between(1.0, 10e3)}, {"gust_length_m"}},
+        {"azimuth", "where it comes from", Draws::kDirection, Any(kAngle), {"gust_azimuth_deg"}}}});
+  add({"wind_profile",
+       "a profile in every flight, the nominal too, or statistics from which one is drawn",
+       Draws::kWindProfile,
+       Any(kSpeed),
+       {"wind_profile_north_{level}", "wind_profile_east_{level}"}});
+  add({"turbulence",
+       "Dryden's, of MIL-F-8785C",
+       Draws::kTurbulence,
+       kPositiveFactor,
+       {"turbulence_exceedance", "turbulence_wind_20ft_m_s"},
+       {},
+       {{"scale",
+         "factor of all intensities",
+         Draws::kOnce,
+         kPositiveFactor,
+         {"turbulence_scale"},
+         {},
+         {},
+         1.0}}});
+  add(VehicleOrStages("drag_coefficient", "drag_factor", "factor of the axial force"));
+  add(VehicleOrStages("lift_coefficient", "lift_factor", "factor of the normal force"));
+  add(VehicleOrStages("center_of_gravity", "cg_factor",
+                      "factor of its distance from the nose of the current stack"));
+  add(VehicleOrStages("center_of_pressure", "cp_factor",
+                      "factor of its distance from the nose of the current stack"));
+  add(once("density", kPositiveFactor, "density_factor", "factor of the air's density"));
+  add(VehicleOrStages("inertia", "inertia_factor", "factor of the moments of inertia"));
+  add(VehicleOrStages("actuator_bandwidth", "actuator_bandwidth_factor", "factor of the drives' bandwidth"));
+  add({"bending_frequency",
+       "factor of the modes' frequencies",
+       Draws::kEachMode,
+       kPositiveFactor,
+       {"bending_frequency_factor_{mode}"}});
+  add(once("bending_damping", kPositiveFactor, "bending_damping_factor",
+           "factor of the modes' damping ratio"));
+  add(once("bending_slope", {{}, kNonNegative}, "bending_slope_factor",
+           "factor of the slopes that sensors feel"));
+  DispersionRow& tip_off =
+      add(BodyAxes("tip_off_rate", Draws::kEachStage, kAngularRate, "tip_off_{body}_{stage}_deg_s",
+                   "given to the upper stack at each separation"));
+  for (DispersionRow& part : tip_off.parts) part.last_stages_without = 1;
+  add(BodyAxes("gyro_bias", Draws::kOnce, kAngularRate, "gyro_bias_{body}_deg_s", "of the rate gyros"));
+  add(once("gyro_noise", {kAngularRate, kNonNegative}, "gyro_noise_deg_s", "standard deviation of a sample"));
+  add({"navigation_position_error",
+       "constant error of what closed-loop guidance is told",
+       Draws::kEachAxis,
+       Any(kLength),
+       {"navigation_position_error_{axis}_m"}});
+  add({"navigation_velocity_error",
+       "constant error of what closed-loop guidance is told",
+       Draws::kEachAxis,
+       Any(kSpeed),
+       {"navigation_velocity_error_{axis}_m_s"}});
+  add(once("accelerometer_scale", kPositiveFactor, "accelerometer_scale_factor",
+           "factor of the specific force that guidance is told"));
+  add({"stuck_nozzle",
+       "a nozzle that does not follow its commands",
+       Draws::kStuckNozzle,
+       Any(kAngle),
+       {"stuck_nozzle", "stuck_nozzle_stage"},
+       {},
+       {{"angle",
+         "at which it stays",
+         Draws::kFixed,
+         {kAngle, Inside(-kQuarterTurn, kQuarterTurn)},
+         {"stuck_nozzle_deg"}}}});
+  // A deliberately bad P_n is a study, so any factor is legal.
+  add(once("pn_error", {{}, kAnyNumber}, "pn_error_factor",
+           "factor of the first component of P_n: a study, no limits"));
+  add(once("pn_rate", {{}, kAnyNumber}, "pn_rate_factor",
+           "factor of the second component of P_n: a study, no limits"));
+  add(once("loop_gain", kPositiveFactor, "loop_gain_factor", "factor of the commands"));
+  add(once("loop_delay", {kTime, kNonNegative}, "loop_delay_s", "time by which the commands come late"));
+  return rows;
+}
+
+// ---- columns ----
+
+std::vector<std::string> Numbered(const std::string& stem, int count) {
+  std::vector<std::string> names;
+  for (int i = 1; i <= count; ++i) names.push_back(stem + std::to_string(i));
+  return names;
+}
+
+// The keys of all columns, by their positions.
+std::vector<std::string> MakeKeys() {
+  std::vector<std::string> keys(InputColumns().size());
+  const auto fill = [&](const auto& self, const DispersionRow& row, const std::string& key) -> void {
+    for (const auto* columns : {&row.columns, &row.nozzle_columns})
+      for (const std::string& pattern : *columns)
+        for (const std::string& name : ExpandColumn(pattern)) {
+          std::string& of = keys.at(static_cast<std::size_t>(FindInput(name)));
+          if (of.empty()) of = key;
+        }
+    for (const DispersionRow& part : row.parts) self(self, part, key + "." + part.key);
+  };
+  for (const DispersionRow& row : DispersionRows()) fill(fill, row, row.key);
+  return keys;
+}
+
+}  // namespace
+
+const std::vector<DispersionRow>& DispersionRows() {
+  static const std::vector<DispersionRow> rows = MakeRows();
+  return rows;
+}
+
+std::string FillColumn(std::string pattern, const std::string& what, const std::string& name) {
+  const std::string mark = "{" + what + "}";
+  if (const std::size_t at = pattern.find(mark); at != std::string::npos)
+    pattern.replace(at, mark.size(), name);
+  return pattern;
+}
+
+std::vector<std::string> ExpandColumn(const std::string& pattern) {
+  static const std::pair<std::string, std::vector<std::string>> kNames[] = {
+      {"stage", Numbered("stage", kMaxStages)},
+      {"nozzle", {std::begin(kNozzleNames), std::end(kNozzleNames)}},
+      {"mode", Numbered("mode", kModes)},
+      {"level", Numbered("", kWindLevels)},
+      {"axis", {"downrange", "right", "down"}}};
+  std::vector<std::string> columns = {pattern};
+  for (const auto& [what, names] : kNames) {
+    if (pattern.find("{" + what + "}") == std::string::npos) continue;
+    std::vector<std::string> filled;
+    for (const std::string& column : columns)
+      for (const std::string& name : names) filled.push_back(FillColumn(column, what, name));
+    columns = std::move(filled);
+  }
+  return columns;
+}
+
+std::string InputKey(int column) {
+  static const std::vector<std::string> keys = MakeKeys();
+  return keys.at(static_cast<std::size_t>(column));
+}
+
+}  // namespace dispersa

@@ -1,0 +1,65 @@
+// What a campaign may disperse: a row a key of its `dispersions`.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/campaign/distribution_fields.h"
+
+namespace dispersa {
+
+/// Which draws a dispersion makes of its distribution, and what its map holds besides.
+enum class Draws {
+  kOnce,             ///< one value for all columns
+  kEachAxis,         ///< a value for each axis of the launch-inertial frame
+  kEachMode,         ///< `per: mode`, or `vehicle`: one value for all
+  kEachStage,        ///< of the stages that `stage` names, else of all
+  kStages,           ///< likewise; `per: stage`, or `vehicle`: one value for all of them
+  kVehicleOrStages,  ///< likewise, but the whole vehicle's column unless `per` or `stage` says otherwise
+  kOffAxis,          ///< likewise as kStages, by magnitude and `clock_angle` or by components
+  kFixed,            ///< one value, drawn or not: "stem_unit: x" or "stem: {distribution: ...}"
+  kFixedOrAbsent,    ///< likewise, or none
+  kDirection,        ///< "uniform", {fixed_deg: x} or a distribution
+  kParts,            ///< a map of dispersions, one or more
+  // With keys of their own (dispersion_fields.cc).
+  kThrust,
+  kPropellantTemperature,
+  kPayloadMass,
+  kWind,
+  kGust,
+  kWindProfile,
+  kTurbulence,
+  kStuckNozzle,
+};
+
+struct DispersionRow {
+  const char* key;
+  const char* meaning;  ///< one line
+  Draws draws;
+  DispersedScalar scalar = kPositiveFactor;
+  /// Columns (FlightInputs) that take the values; {stage}, {nozzle}, {mode}, {level} and {axis} stand for the
+  /// name of each. kOffAxis: magnitude, direction, and the components towards body y and z.
+  std::vector<std::string> columns = {};
+  std::vector<std::string> nozzle_columns = {};  ///< `per: nozzle` draws these instead; empty: there is none
+  std::vector<DispersionRow> parts = {};         ///< maps in its map
+  std::optional<double> absent = {};             ///< the value in every case if the key is not there
+  int first_stage = 1;
+  int last_stages_without = 0;  ///< so many stages at the end cannot be dispersed
+  /// Of a stage of a vehicle: what its draws are limited to besides.
+  Range (*limits)(const Vehicle& vehicle, int stage) = nullptr;
+};
+
+/// In the order of the draws.
+const std::vector<DispersionRow>& DispersionRows();
+
+/// The names of all columns of a pattern.
+std::vector<std::string> ExpandColumn(const std::string& pattern);
+/// A pattern with a name in place of {what}.
+std::string FillColumn(std::string pattern, const std::string& what, const std::string& name);
+
+/// What the file calls a column of the flight's inputs: "drag_coefficient", "wind.azimuth"; empty if it
+/// cannot be dispersed. Of several keys that draw it, the first of the table.
+std::string InputKey(int column);
+
+}  // namespace dispersa

@@ -1,0 +1,52 @@
+#include <initializer_list>
+
+#include "core/environment/wind_statistics.h"
+#include "core/input/fields.h"
+
+namespace dispersa {
+namespace {
+
+// In a Check(): columns of one length, over altitudes that grow.
+void CheckColumns(Fields& fields, const std::vector<double>& altitude_m,
+                  std::initializer_list<const std::vector<double>*> columns, const char* allowed) {
+  for (const auto* column : columns)
+    if (column->size() != altitude_m.size())
+      return fields.Refuse("", "the columns have different lengths", allowed);
+  CheckIncreasing(fields, "altitude_m", altitude_m);
+}
+
+}  // namespace
+
+void Describe(Fields& fields, WindTable& table, const char* allowed) {
+  fields.Numbers("altitude_m", kAnyNumber, 2, SIZE_MAX, table.altitude_m, "geodetic, increasing");
+  fields.Numbers("north_m_s", kAnyNumber, 2, SIZE_MAX, table.north_m_s, "towards north, at each altitude");
+  fields.Numbers("east_m_s", kAnyNumber, 2, SIZE_MAX, table.east_m_s, "towards east");
+  fields.Check([&fields, &table, allowed] {
+    CheckColumns(fields, table.altitude_m, {&table.north_m_s, &table.east_m_s}, allowed);
+  });
+}
+
+void Describe(Fields& fields, WindStatistics& statistics) {
+  fields.Number("correlation_ne", Inside(-1.0, 1.0), statistics.correlation_ne,
+                "of the north and the east component at one altitude");
+  fields.Quantity("correlation_length", kLength, kPositive, statistics.correlation_length_m,
+                  "distance in altitude over which a component's correlation with itself falls to 1/e");
+}
+
+void DescribeLevels(Fields& fields, WindStatistics& statistics, std::size_t most) {
+  fields.Numbers("altitude_m", kAnyNumber, 2, most, statistics.altitude_m, "geodetic, increasing");
+  fields.Numbers("mean_north_m_s", kAnyNumber, 2, SIZE_MAX, statistics.mean_north_m_s, "at each altitude");
+  fields.Numbers("mean_east_m_s", kAnyNumber, 2, SIZE_MAX, statistics.mean_east_m_s, "at each altitude");
+  fields.Numbers("sigma_north_m_s", kNonNegative, 2, SIZE_MAX, statistics.sigma_north_m_s,
+                 "standard deviation");
+  fields.Numbers("sigma_east_m_s", kNonNegative, 2, SIZE_MAX, statistics.sigma_east_m_s,
+                 "standard deviation");
+  fields.Check([&fields, &statistics] {
+    CheckColumns(fields, statistics.altitude_m,
+                 {&statistics.mean_north_m_s, &statistics.mean_east_m_s, &statistics.sigma_north_m_s,
+                  &statistics.sigma_east_m_s},
+                 "one value an altitude in each column");
+  });
+}
+
+}  // namespace dispersa
