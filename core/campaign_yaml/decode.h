@@ -31,6 +31,7 @@ AutopilotConfig DecodeAutopilot(const InputNode& node, const std::string& path, 
 PluginConfig DecodePlugin(const InputNode& node, const std::string& path, PythonLaws laws,
                           std::vector<InputProblem>& problems);
 Scenario DecodeScenario(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems);
+void DescribeScenarioFile(Fields& fields, Scenario& scenario);
 Reference DecodeReference(const InputNode& node, const std::string& path,
                           std::vector<InputProblem>& problems);
 void DescribeReferenceFile(Fields& fields, Reference& reference);

@@ -20,6 +20,11 @@ void DescribeFile(FileKind kind, Fields& fields) {
       DescribeReferenceFile(fields, reference);
       break;
     }
+    case FileKind::kScenario: {
+      Scenario scenario;
+      DescribeScenarioFile(fields, scenario);
+      break;
+    }
     default:
       break;
   }

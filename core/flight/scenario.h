@@ -12,6 +12,8 @@
 
 namespace dispersa {
 
+class Fields;
+
 /// Mass properties over the propellant that is left, linear between rows. One row: a body that does not
 /// change.
 struct ScenarioMass {
@@ -57,6 +59,9 @@ struct Scenario {
   double output_step_s = 0.0;
   double integration_step_s = 0.0;  ///< upper limit: steps divide the time between outputs and events
 };
+
+/// The keys of its file.
+void Describe(Fields& fields, Scenario& scenario);
 
 /// What contradicts itself, each with the path of the value.
 struct ScenarioProblem {

@@ -185,6 +185,14 @@ class FieldReader : public Fields {
     else if (value.text != word)
       AddProblem(map_.problems(), value, map_.PathOf(key), value.Describe() + " is not " + what, allowed);
   }
+  void NumberOrTable(const char* key, std::optional<double>& number, const char*, const Part& part) override {
+    const InputNode* value = map_.Optional(key);
+    if (value == nullptr || value->file == nullptr) return;
+    if (value->kind == InputNode::Kind::kMap)
+      ReadFields(*value, PathOfValue(key), map_.problems(), part);
+    else
+      number = ReadNumber(*value, map_.PathOf(key), map_.problems());
+  }
   void MapOrMaps(const char* key, const char* allowed, const char*, const Part& part) override {
     const InputNode* value = map_.Optional(key);
     if (value == nullptr) return;

@@ -153,6 +153,8 @@ class Fields {
   /// A word, or a map. What is neither is refused as not `what`: "a direction".
   virtual void WordOrMap(const char* key, const char* word, const char* what, const char* allowed, bool& is_word,
                          const char* meaning, const Part& part) = 0;
+  /// A number, or a table; the key need not be there.
+  virtual void NumberOrTable(const char* key, std::optional<double>& number, const char* meaning, const Part& part) = 0;
   /// A map, or a list of such maps; the key need not be there. `allowed` says what an empty list should be.
   virtual void MapOrMaps(const char* key, const char* allowed, const char* meaning, const Part& part) = 0;
   /// The columns of a table: a map of lists, or the CSV file of which it was made; `allowed` says which.

@@ -273,6 +273,12 @@ void MapSchema::WordOrMap(const char* key, const char* word, const char*, const 
                           const Part& part) {
   Add(key, {{"anyOf", Json::array({Json{{"const", word}}, MapOf(part)})}, {"description", meaning}}, true);
 }
+void MapSchema::NumberOrTable(const char* key, std::optional<double>&, const char* meaning, const Part& part) {
+  Add(key,
+      {{"anyOf", Json::array({Json{{"type", "number"}}, Json{{"type", "string"}, {"minLength", 1}}, MapOf(part)})},
+       {"description", meaning}},
+      false);
+}
 void MapSchema::MapOrMaps(const char* key, const char*, const char* meaning, const Part& part) {
   const Json one = MapOf(part);
   Add(key, {{"anyOf", Json::array({one, ListOf(one, 1, SIZE_MAX)})}, {"description", meaning}}, false);

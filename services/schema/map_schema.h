@@ -65,6 +65,7 @@ class MapSchema : public Fields {
   void OptionalMap(const char* key, bool& is_there, const char* meaning, const Part& part) override;
   void WordOrMap(const char* key, const char* word, const char* what, const char* allowed, bool& is_word,
                  const char* meaning, const Part& part) override;
+  void NumberOrTable(const char* key, std::optional<double>& number, const char* meaning, const Part& part) override;
   void MapOrMaps(const char* key, const char* allowed, const char* meaning, const Part& part) override;
   void Table(const char* key, const char* allowed, const char* meaning, const Part& part) override;
   void OptionalTable(const char* key, bool& is_there, const char* meaning, const Part& part) override;
