@@ -194,7 +194,8 @@ class SchemaTest(unittest.TestCase):
         verdicts = campaign["properties"]["verdicts"]["properties"]
         self.assertEqual("each", verdicts["joint"]["default"])
         self.assertNotIn("default", campaign["properties"]["sampling"]["properties"]["seed"])
-        self.assertEqual({"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1, "description": "a number above 0 and below 1"},
+        self.assertEqual({"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1,
+                          "description": "a number above 0 and below 1: share of flights that must keep the limit"},
                          campaign["properties"]["requirements"]["items"]["properties"]["probability"])
         limit = vehicle["properties"]["stages"]["items"]["properties"]["gimbal"]["properties"]["rate_limit_deg_s"]
         self.assertEqual("°/s, a number above 0: of each drive", limit["description"])
