@@ -23,6 +23,7 @@ void DescribeVehicleFile(Fields& fields, Vehicle& vehicle);
 /// (OfferedLaw).
 enum class PythonLaws { kMustBeHere, kMayBeAbsent };
 
+void DescribeAutopilotFile(Fields& fields, AutopilotConfig& autopilot, const Fields::ReadNode& plugin);
 /// `stages`: of the vehicle that it flies, 0 if that is unknown (then nothing is checked against it).
 AutopilotConfig DecodeAutopilot(const InputNode& node, const std::string& path, int stages,
                                 std::vector<InputProblem>& problems,

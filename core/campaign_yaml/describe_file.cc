@@ -25,6 +25,11 @@ void DescribeFile(FileKind kind, Fields& fields) {
       DescribeScenarioFile(fields, scenario);
       break;
     }
+    case FileKind::kAutopilot: {
+      AutopilotConfig autopilot;
+      DescribeAutopilotFile(fields, autopilot, nullptr);
+      break;
+    }
     default:
       break;
   }

@@ -1,7 +1,7 @@
-#include "core/campaign_yaml/autopilot_fields.h"
 #include "core/campaign_yaml/canonical.h"
 #include "core/campaign_yaml/inline_files.h"
 #include "core/campaign_yaml/load.h"
+#include "core/control/autopilot_fields.h"
 #include "core/input/number_text.h"
 #include "core/math/constants.h"
 
@@ -17,36 +17,36 @@ class FieldWriter {
   std::vector<std::string> texts;
   bool has_lists = false;
 
-  void Quantity(const char* stem, Dimension dimension, const Range&, double value) {
+  void Quantity(const char* stem, Dimension dimension, const Range&, double value, const char*) {
     const Unit& unit = dimension.front();
     Add(std::string(stem) + "_" + std::string(unit.suffix),
         unit.scale == 1.0 ? FormatNumber(value) : FormatScaled(value, unit.scale));
   }
-  void Guard(const char* stem, Dimension dimension, const Range& range, double value) {
-    if (value != 0.0) Quantity(stem, dimension, range, value);
+  void Guard(const char* stem, Dimension dimension, const Range& range, double value, const char* meaning) {
+    if (value != 0.0) Quantity(stem, dimension, range, value, meaning);
   }
-  void Number(const char* key, const Range&, double value) { Add(key, FormatNumber(value)); }
-  void NumberGuard(const char* key, const Range& range, double value) {
-    if (value != 0.0) Number(key, range, value);
+  void Number(const char* key, const Range&, double value, const char*) { Add(key, FormatNumber(value)); }
+  void NumberGuard(const char* key, const Range& range, double value, const char* meaning) {
+    if (value != 0.0) Number(key, range, value, meaning);
   }
-  void Flag(const char* key, bool value) {
+  void Flag(const char* key, bool value, const char*) {
     if (value) Add(key, "true");
   }
-  void EachStage(const char* key, const Range&, const std::vector<double>& values) {
+  void EachStage(const char* key, const Range&, const std::vector<double>& values, const char*) {
     std::string list;
     for (const double value : values) list += (list.empty() ? "[" : ", ") + FormatNumber(value);
     Add(key, list + "]");
     has_lists = true;
   }
-  void Stage(const char* key, int stage) {
+  void Stage(const char* key, int stage, const char*) {
     if (stage != 0) Add(key, std::to_string(stage));
   }
-  void Sections(const char* key, const std::vector<FilterSection>& sections);
-  void OfOtherLaws(const char*) {}
-  void Matrix(const char* key, const Matrix2& value) {
+  void Sections(const char* key, const std::vector<FilterSection>& sections, const char*);
+  void OfOtherLaws(const char*, const char*) {}
+  void Matrix(const char* key, const Matrix2& value, const char*) {
     Add(key, "[" + Row(value(0, 0), value(0, 1)) + ", " + Row(value(1, 0), value(1, 1)) + "]");
   }
-  void OptionalPair(const char* key, const std::optional<Vector2>& value) {
+  void OptionalPair(const char* key, const std::optional<Vector2>& value, const char*) {
     if (value) Add(key, Row(value->x(), value->y()));
   }
 
@@ -60,7 +60,7 @@ std::string OnOneLine(const std::vector<std::string>& texts) {
   return line + "}";
 }
 
-void FieldWriter::Sections(const char* key, const std::vector<FilterSection>& sections) {
+void FieldWriter::Sections(const char* key, const std::vector<FilterSection>& sections, const char*) {
   std::string list;
   for (const FilterSection& section : sections) {
     FieldWriter fields;
@@ -94,8 +94,8 @@ std::string AxisText(const char* name, const AxisConfig& axis) {
     VisitFeedForward(fields, *axis.feed_forward);
     text += "  feed_forward: " + OnOneLine(fields.texts) + "\n";
   }
-  EachBlock(axis, [&](const char* key, bool needed, auto visit) {
-    if (!needed) return;
+  EachBlock(axis, [&](const char* key, bool LawInfo::*needs, auto visit, const char*) {
+    if (!(InfoOf(axis.law).*needs)) return;
     FieldWriter fields;
     visit(fields);
     text += "  " + std::string(key) + ":";

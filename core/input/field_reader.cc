@@ -80,6 +80,25 @@ class FieldReader : public Fields {
       read(node->items[i], map_.PathOf(key) + "[" + std::to_string(i) + "]");
     std::sort(values.begin(), values.end());
   }
+  void OptionalNumbers(const char* key, const Range& range, std::size_t low_count, std::size_t high_count,
+                       std::vector<double>& values, const char*) override {
+    if (map_.Optional(key) != nullptr) values = map_.Numbers(key, range, low_count, high_count);
+  }
+  void TwoByTwo(const char* key, std::array<std::array<double, 2>, 2>& rows, const char* allowed,
+                const char*) override {
+    std::size_t count = 0;
+    map_.Each(key, 2, 2, [&](const InputNode& row, const std::string& path) {
+      SayExpects(path, {.kind = Expectation::Kind::kList, .low_count = 2, .high_count = 2});
+      std::array<double, 2>& numbers = rows[std::min<std::size_t>(count++, 1)];
+      if (row.kind != InputNode::Kind::kList || row.items.size() != 2) {
+        AddProblem(map_.problems(), row, path, row.Describe() + " is not a row of two numbers", allowed);
+        return;
+      }
+      for (std::size_t i = 0; i < 2; ++i)
+        numbers[i] = ReadNumber(row.items[i], path + "[" + std::to_string(i) + "]", map_.problems());
+    });
+  }
+  void AnyNumbers(const char* key, const char*) override { map_.Allow(key); }
   void Rows(const char* key, std::size_t low_count, std::size_t high_count, std::vector<std::vector<double>>& rows,
             const char*) override {
     map_.Each(key, low_count, high_count, [&](const InputNode& row, const std::string& path) {
@@ -208,6 +227,9 @@ class FieldReader : public Fields {
     OptionalMap(key, is_there, meaning, part);
   }
 
+  void MapByHand(const char* key, const char*, const Part&, const ReadNode& read) override {
+    if (const InputNode* value = map_.Optional(key)) read(*value, map_.PathOf(key));
+  }
   void Columns(const char* key, const char*, const ReadNode& read) override {
     const InputNode* value = map_.Optional(key);
     if (value != nullptr && value->file != nullptr) read(*value, PathOfValue(key));
@@ -292,6 +314,7 @@ class FieldReader : public Fields {
   void Maps(const char* key, bool needed, std::size_t low_count, std::size_t high_count, const Items& items,
             const char*) override {
     if (!needed && map_.Optional(key) == nullptr) return;
+    items.resize(0);
     std::size_t count = 0;
     map_.Each(key, low_count, high_count, [&](const InputNode& item, const std::string& path) {
       items.resize(count + 1);
@@ -329,7 +352,8 @@ class FieldReader : public Fields {
         if (value->Find(key + "_" + std::string(unit.suffix)) != nullptr) return true;
       value = value->Find(key);
     }
-    if (value == nullptr || (value->kind == InputNode::Kind::kList && value->items.empty())) return false;
+    if (value == nullptr) return false;
+    if (value->kind == InputNode::Kind::kList && value->items.empty()) return condition.empty_counts;
     if (condition.is_map) return value->kind == InputNode::Kind::kMap;
     return condition.words.empty() ||
            std::find(condition.words.begin(), condition.words.end(), value->text) != condition.words.end();

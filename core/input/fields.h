@@ -5,6 +5,7 @@
 // Either(), and what holds between several fields in Check(): so whoever else visits it, to list the keys, sees every branch.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -26,9 +27,12 @@ struct Condition {
   Dimension dimension = {};        ///< not empty: the key ends in any unit of it
   std::vector<std::string> words;  ///< empty: whatever its value
   bool is_map = false;             ///< its value is a map
+  bool empty_counts = false;       ///< an empty list is one, too
 };
 inline Condition Has(std::string key) { return {std::move(key), {}, {}}; }
 inline Condition Has(std::string stem, Dimension dimension) { return {std::move(stem), dimension, {}}; }
+/// The same, an empty list too.
+inline Condition HasList(std::string key) { return {std::move(key), {}, {}, false, true}; }
 inline Condition Is(std::string key, std::vector<std::string> words) {
   return {std::move(key), {}, std::move(words)};
 }
@@ -113,6 +117,14 @@ class Fields {
   /// words of a message: "stage", "that this disperses".
   virtual void Several(const char* key, int low, int high, const char* noun, const char* which, std::vector<int>& values,
                        const char* meaning) = 0;
+  /// A list of so many numbers, of which the key need not be there.
+  virtual void OptionalNumbers(const char* key, const Range& range, std::size_t low_count, std::size_t high_count,
+                               std::vector<double>& values, const char* meaning) = 0;
+  /// A list of two rows of two numbers; `allowed` shows one.
+  virtual void TwoByTwo(const char* key, std::array<std::array<double, 2>, 2>& rows, const char* allowed,
+                        const char* meaning) = 0;
+  /// Numbers under any names; the key need not be there. Whoever reads the map by hand knows the names.
+  virtual void AnyNumbers(const char* key, const char* meaning) = 0;
   /// A list of lists of numbers.
   virtual void Rows(const char* key, std::size_t low_count, std::size_t high_count,
                     std::vector<std::vector<double>>& rows, const char* meaning) = 0;
@@ -160,6 +172,8 @@ class Fields {
   /// The columns of a table: a map of lists, or the CSV file of which it was made; `allowed` says which.
   virtual void Table(const char* key, const char* allowed, const char* meaning, const Part& part) = 0;
   virtual void OptionalTable(const char* key, bool& is_there, const char* meaning, const Part& part) = 0;
+  /// A map that need not be there, and is read by hand; `part` names its keys to those who have no file.
+  virtual void MapByHand(const char* key, const char* meaning, const Part& part, const ReadNode& read) = 0;
   /// Columns of numbers under any names, or the CSV file of them; the key need not be there.
   virtual void Columns(const char* key, const char* meaning, const ReadNode& read) = 0;
   /// What a file of a kind holds, in place or by the file's name. If it is not `needed` the key need not be there.

@@ -11,6 +11,7 @@
 
 #include "core/input/fields.h"
 #include "core/math/linear.h"
+#include "core/math/stages.h"
 #include "core/math/table.h"
 #include "core/vehicle/bodies.h"
 #include "core/vehicle/gimbal.h"
@@ -20,8 +21,6 @@
 
 namespace dispersa {
 
-/// The largest number of stages.
-inline constexpr int kMaxStages = 6;
 /// Inputs and metrics have one column a stage: of vehicles with up to so many stages this many, of others
 /// kMaxStages.
 inline constexpr int kUsualStages = 4;

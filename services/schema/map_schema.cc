@@ -226,6 +226,16 @@ void MapSchema::Several(const char* key, int low, int high, const char*, const c
   several["uniqueItems"] = true;
   Add(key, {{"anyOf", Json::array({one, std::move(several)})}, {"description", meaning}}, false);
 }
+void MapSchema::OptionalNumbers(const char* key, const Range& range, std::size_t low_count, std::size_t high_count,
+                                std::vector<double>&, const char* meaning) {
+  Add(key, DescribedNumbers(range, kNoUnit, low_count, high_count, meaning), false);
+}
+void MapSchema::TwoByTwo(const char* key, std::array<std::array<double, 2>, 2>&, const char*, const char* meaning) {
+  Add(key, Described(ListOf(ListOf({{"type", "number"}}, 2, 2), 2, 2), meaning), true);
+}
+void MapSchema::AnyNumbers(const char* key, const char* meaning) {
+  Add(key, {{"type", "object"}, {"additionalProperties", {{"type", "number"}}}, {"description", meaning}}, false);
+}
 void MapSchema::Rows(const char* key, std::size_t low_count, std::size_t high_count, std::vector<std::vector<double>>&,
                      const char* meaning) {
   Json row = {{"type", "array"}, {"items", {{"type", "number"}}}};
@@ -293,6 +303,9 @@ void MapSchema::Table(const char* key, const char*, const char* meaning, const P
 void MapSchema::OptionalTable(const char* key, bool&, const char* meaning, const Part& part) {
   AddTable(key, meaning, false, part);
 }
+void MapSchema::MapByHand(const char* key, const char* meaning, const Part& part, const ReadNode&) {
+  Add(key, Described(MapOf(part), meaning), false);
+}
 void MapSchema::Columns(const char* key, const char* meaning, const ReadNode&) {
   const Json column = {{"type", "array"}, {"items", {{"type", "number"}}}};
   const Json columns = {{"type", "object"}, {"additionalProperties", column}};
@@ -326,7 +339,7 @@ MapSchema::Json MapSchema::Holds(const Condition& condition) const {
       holds["properties"][key] = {{"enum", std::move(words)}};
     } else if (condition.is_map) {
       holds["properties"][key] = {{"type", "object"}};
-    } else if (path.size() == 1 && lists_.contains(key)) {
+    } else if (path.size() == 1 && lists_.contains(key) && !condition.empty_counts) {
       holds["properties"][key] = {{"minItems", kLeastOfAList}};
     }
     any.push_back(std::move(holds));

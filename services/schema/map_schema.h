@@ -48,6 +48,11 @@ class MapSchema : public Fields {
               std::vector<double>& values, const char* meaning) override;
   void Several(const char* key, int low, int high, const char* noun, const char* which, std::vector<int>& values,
                const char* meaning) override;
+  void OptionalNumbers(const char* key, const Range& range, std::size_t low_count, std::size_t high_count,
+                       std::vector<double>& values, const char* meaning) override;
+  void TwoByTwo(const char* key, std::array<std::array<double, 2>, 2>& rows, const char* allowed,
+                const char* meaning) override;
+  void AnyNumbers(const char* key, const char* meaning) override;
   void Rows(const char* key, std::size_t low_count, std::size_t high_count, std::vector<std::vector<double>>& rows,
             const char* meaning) override;
   void ColumnsAndRows(const std::vector<std::string>& columns, std::size_t low_count,
@@ -69,6 +74,7 @@ class MapSchema : public Fields {
   void MapOrMaps(const char* key, const char* allowed, const char* meaning, const Part& part) override;
   void Table(const char* key, const char* allowed, const char* meaning, const Part& part) override;
   void OptionalTable(const char* key, bool& is_there, const char* meaning, const Part& part) override;
+  void MapByHand(const char* key, const char* meaning, const Part& part, const ReadNode& read) override;
   void Columns(const char* key, const char* meaning, const ReadNode& read) override;
   void Document(const char* key, const char* schema, bool needed, const char* allowed, const char* meaning,
                 const ReadNode& read) override;

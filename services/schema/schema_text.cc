@@ -63,7 +63,6 @@ class Documents {
 }  // namespace
 
 std::string SchemaText(FileKind kind) {
-  if (kind == FileKind::kAutopilot) return LearnedSchemaText(kind);
   Documents documents;
   Json file = documents.File(kind);
   Json schema = {{"$schema", "http://json-schema.org/draft-07/schema#"},

@@ -6,7 +6,7 @@
 #include <map>
 #include <thread>
 
-#include "core/campaign_yaml/autopilot_fields.h"
+#include "core/control/autopilot_fields.h"
 #include "core/campaign_yaml/load.h"
 #include "core/control/law_here.h"
 
@@ -170,22 +170,22 @@ TEST(ReadAutopilot, SaysWhereAScheduleIsWrong) {
 // Reads the names that it visits.
 struct FieldNames {
   std::vector<std::string> names;
-  void Quantity(const char* stem, Dimension dimension, const Range&, double) {
+  void Quantity(const char* stem, Dimension dimension, const Range&, double, const char*) {
     names.push_back(dimension.size() > 1 ? std::string(stem) + "_*"
                                          : std::string(stem) + "_" + std::string(dimension[0].suffix));
   }
-  void Guard(const char* stem, Dimension dimension, const Range& range, double value) {
-    Quantity(stem, dimension, range, value);
+  void Guard(const char* stem, Dimension dimension, const Range& range, double value, const char* meaning) {
+    Quantity(stem, dimension, range, value, meaning);
   }
-  void Number(const char* key, const Range&, double) { names.push_back(key); }
-  void NumberGuard(const char* key, const Range&, double) { names.push_back(key); }
-  void Flag(const char* key, bool) { names.push_back(key); }
-  void EachStage(const char* key, const Range&, const std::vector<double>&) { names.push_back(key); }
-  void Stage(const char* key, int) { names.push_back(key); }
-  void Sections(const char* key, const std::vector<FilterSection>&) { names.push_back(key); }
-  void OfOtherLaws(const char*) {}
-  void Matrix(const char* key, const Matrix2&) { names.push_back(key); }
-  void OptionalPair(const char* key, const std::optional<Vector2>&) { names.push_back(key); }
+  void Number(const char* key, const Range&, double, const char*) { names.push_back(key); }
+  void NumberGuard(const char* key, const Range&, double, const char*) { names.push_back(key); }
+  void Flag(const char* key, bool, const char*) { names.push_back(key); }
+  void EachStage(const char* key, const Range&, const std::vector<double>&, const char*) { names.push_back(key); }
+  void Stage(const char* key, int, const char*) { names.push_back(key); }
+  void Sections(const char* key, const std::vector<FilterSection>&, const char*) { names.push_back(key); }
+  void OfOtherLaws(const char*, const char*) {}
+  void Matrix(const char* key, const Matrix2&, const char*) { names.push_back(key); }
+  void OptionalPair(const char* key, const std::optional<Vector2>&, const char*) { names.push_back(key); }
 };
 
 TEST(ReadAutopilot, NamesALawInPythonButDoesNotHoldIt) {
@@ -241,7 +241,7 @@ TEST(AutopilotKeys, AreDocumentedAllAndByTheirBlocks) {
   const FeedForward feed_forward;
   expect("feed_forward", [&](auto& fields) { VisitFeedForward(fields, feed_forward); });
   const AxisConfig axis;
-  EachBlock(axis, [&](const std::string& block, bool, auto visit) { expect(block, visit); });
+  EachBlock(axis, [&](const std::string& block, bool LawInfo::*, auto visit, const char*) { expect(block, visit); });
 }
 
 }  // namespace

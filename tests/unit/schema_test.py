@@ -199,7 +199,7 @@ class SchemaTest(unittest.TestCase):
                          campaign["properties"]["requirements"]["items"]["properties"]["probability"])
         limit = vehicle["properties"]["stages"]["items"]["properties"]["gimbal"]["properties"]["rate_limit_deg_s"]
         self.assertEqual("°/s, a number above 0: of each drive", limit["description"])
-        self.assertEqual(6, autopilot["definitions"]["pitch"]["properties"]["gains"]["maxItems"])
+        self.assertEqual(6, autopilot["$defs"]["pitch"]["properties"]["gains"]["maxItems"])
 
     def test_what_keys_say_of_each_other(self):
         def refuses(name, change):
