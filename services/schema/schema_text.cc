@@ -3,7 +3,6 @@
 #include <nlohmann/json.hpp>
 
 #include "core/campaign_yaml/describe_file.h"
-#include "services/schema/learned_text.h"
 #include "services/schema/map_schema.h"
 #include "services/schema/shared_parts.h"
 
