@@ -24,7 +24,6 @@ using ProblemList = std::vector<InputProblem>;
 void DecodeListTable(const InputNode& table, const std::string& path, Campaign& campaign,
                      ProblemList& problems) {
   if (table.file == nullptr) return;  // already reported
-  SayExpects(path, {.kind = Expectation::Kind::kColumns});
   std::vector<std::string> names;
   const std::size_t count = InputCount(campaign.vehicle.stages.size());
   for (std::size_t i = 0; i < count; ++i) names.push_back(InputColumns()[i].name);

@@ -78,7 +78,6 @@ PluginConfig DecodePlugin(const InputNode& node, const std::string& path, Python
   MapReader map(node, path, problems);
   const InputNode& library = map.Required("library", "the file name of a shared object");
   const InputNode* const parameters = map.Optional("parameters");
-  SayExpects(map.PathOf("parameters"), {.kind = Expectation::Kind::kNumbers});  // the library says which
   if (library.kind == InputNode::Kind::kNull) return plugin;
   plugin.library = DecodeLibrary(library, map.PathOf("library"), problems, plugin.sha256);
   if (plugin.library == nullptr) return plugin;

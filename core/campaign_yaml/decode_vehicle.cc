@@ -103,8 +103,6 @@ Vehicle DecodeVehicle(const InputNode& node, const std::string& path, std::vecto
   if (node.file == nullptr) return vehicle;  // already reported
   if (!CheckSchema(node, kVehicleSchema, !path.empty(), path, problems)) return vehicle;
   ReadFields(node, path, problems, [&](Fields& fields) { DescribeVehicleFile(fields, vehicle); });
-  SayKnows(path, {"based_on"});
-  SayExpects(path.empty() ? "based_on" : path + ".based_on", {.kind = Expectation::Kind::kFile});
   if (problems.size() == before) Complete(vehicle);
   if (HasUnreadTable(node)) return vehicle;
   if (problems.size() == before) AddStructProblems(Problems(vehicle), node, path, problems);

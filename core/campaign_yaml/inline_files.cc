@@ -24,7 +24,6 @@ using Parse = std::function<InputNode(const std::string& text, const std::string
 // Replaces a scalar, a file's name, by what the file holds; leaves it if that is impossible.
 void Replace(InputNode* value, const std::string& path, FileNames names, const Parse& parse,
              std::vector<InputProblem>& problems) {
-  SayExpects(path, {.kind = Expectation::Kind::kFile});
   if (value == nullptr || value->kind != InputNode::Kind::kScalar) return;
   if (names == FileNames::kRefused) {
     AddProblem(problems, *value, path, "the file '" + value->text + "' is named in a text without files",
@@ -237,7 +236,6 @@ void InlineScenarioFiles(InputNode& scenario, FileNames names, std::vector<Input
 
 bool CheckSchema(const InputNode& node, const std::string& schema, bool inside, const std::string& path,
                  std::vector<InputProblem>& problems) {
-  SayExpects(path, {.kind = Expectation::Kind::kDocument, .words = {schema}});
   if (node.kind != InputNode::Kind::kMap) return true;  // its reader says so
   const InputNode* value = node.Find("schema");
   if (value == nullptr && inside) return true;

@@ -61,8 +61,6 @@ class FieldReader : public Fields {
         : low == high ? std::to_string(low)
                       : "one of " + std::to_string(low) + " to " + std::to_string(high) + ", or a list of them";
     const auto read = [&](const InputNode& item, const std::string& path) {
-      if (Listener() != nullptr)
-        SayExpects(path, {.kind = Expectation::Kind::kInteger, .low = std::to_string(low), .high = std::to_string(high)});
       const bool plain = item.kind == InputNode::Kind::kScalar && !item.quoted;
       const auto number = plain ? ParseInteger(item.text) : std::nullopt;
       if (!number || *number < static_cast<std::uint64_t>(low) || *number > static_cast<std::uint64_t>(high)) {
@@ -88,7 +86,6 @@ class FieldReader : public Fields {
                 const char*) override {
     std::size_t count = 0;
     map_.Each(key, 2, 2, [&](const InputNode& row, const std::string& path) {
-      SayExpects(path, {.kind = Expectation::Kind::kList, .low_count = 2, .high_count = 2});
       std::array<double, 2>& numbers = rows[std::min<std::size_t>(count++, 1)];
       if (row.kind != InputNode::Kind::kList || row.items.size() != 2) {
         AddProblem(map_.problems(), row, path, row.Describe() + " is not a row of two numbers", allowed);
@@ -111,14 +108,11 @@ class FieldReader : public Fields {
     const std::size_t count = columns.size();
     std::size_t column = 0;
     map_.Each("columns", count, count, [&](const InputNode& item, const std::string& path) {
-      SayExpects(path, {.kind = Expectation::Kind::kWords, .words = columns});
       const std::string& expected = columns[column++];
       if (item.text != expected)
         AddProblem(map_.problems(), item, path, item.Describe() + " is not the column", expected);
     });
     map_.Each("rows", low_count, SIZE_MAX, [&](const InputNode& row, const std::string& path) {
-      SayExpects(path, {.kind = Expectation::Kind::kList, .low_count = count, .high_count = count});
-      SayExpects(path + "[]", {.kind = Expectation::Kind::kNumber});
       std::vector<double>& numbers = rows.emplace_back();
       if (row.kind != InputNode::Kind::kList || row.items.size() != count) {
         AddProblem(map_.problems(), row, path, row.Describe() + " is not a row",
@@ -170,7 +164,6 @@ class FieldReader : public Fields {
     const InputNode& node = map_.Required(key, std::string("the name of ") + what);
     value = ReadText(node, map_.PathOf(key), map_.problems());
     if (names.empty()) return;
-    if (Listener() != nullptr) SayExpects(map_.PathOf(key), {.kind = Expectation::Kind::kWords, .words = names});
     if (node.kind == InputNode::Kind::kScalar && std::find(names.begin(), names.end(), node.text) == names.end())
       AddProblem(map_.problems(), node, map_.PathOf(key),
                  node.Describe() + " is not " + what + DidYouMean(node.text, names), "one of " + JoinWords(names));
@@ -178,7 +171,6 @@ class FieldReader : public Fields {
   void Words(const char* key, const std::vector<std::string>& words, std::vector<std::size_t>& values,
              const char*) override {
     map_.Each(key, 1, SIZE_MAX, [&](const InputNode& item, const std::string& path) {
-      SayExpects(path, {.kind = Expectation::Kind::kWords, .words = words});
       const auto found = std::find(words.begin(), words.end(), item.text);
       if (found == words.end())
         AddProblem(map_.problems(), item, path, item.Describe() + " is not a choice", "one of " + JoinWords(words));
@@ -197,7 +189,6 @@ class FieldReader : public Fields {
   void WordOrMap(const char* key, const char* word, const char* what, const char* allowed, bool& is_word, const char*,
                  const Part& part) override {
     const InputNode& value = map_.Required(key, allowed);
-    if (Listener() != nullptr) SayExpects(map_.PathOf(key), {.kind = Expectation::Kind::kWords, .words = {word}});
     is_word = value.kind == InputNode::Kind::kScalar;
     if (!is_word)
       ReadFields(value, PathOfValue(key), map_.problems(), part);
@@ -247,10 +238,6 @@ class FieldReader : public Fields {
     }
     for (const Alternative& alternative : alternatives)
       if (Holds(alternative.condition)) return alternative.describe();
-  }
-  void ExactlyOne(const std::vector<std::string>& keys) override {
-    if (std::none_of(keys.begin(), keys.end(), [&](const std::string& key) { return map_.node().Find(key) != nullptr; }))
-      map_.NoteMissing(keys);
   }
   void Missing(const std::vector<std::string>& keys, const char* allowed) override { map_.ReportMissing(keys, allowed); }
   void Misplaced(const char* stem, Dimension dimension, const char* message, const char* allowed) override {

@@ -72,21 +72,6 @@ std::string CountText(std::size_t low, std::size_t high) {
   return "a list of " + std::to_string(low) + " to " + std::to_string(high);
 }
 
-Expectation Expect(Expectation::Kind kind) { return {.kind = kind}; }
-
-Expectation ExpectList(std::size_t low_count, std::size_t high_count) {
-  return {.kind = Expectation::Kind::kList, .low_count = low_count, .high_count = high_count};
-}
-
-Expectation ExpectNumber(const Range& range, double scale, std::optional<double> absent) {
-  Expectation number = {
-      .kind = Expectation::Kind::kNumber, .low_open = range.low_open, .high_open = range.high_open};
-  if (std::isfinite(range.low)) number.low = FormatScaled(range.low, scale);
-  if (std::isfinite(range.high)) number.high = FormatScaled(range.high, scale);
-  if (absent) number.absent = FormatScaled(*absent, scale);
-  return number;
-}
-
 // A number in a unit; the range is in internal units.
 double ReadNumberIn(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems,
                     const Range& range, const Unit& unit) {
@@ -134,7 +119,6 @@ InputNode KeyOf(const InputMember& member) {
 double ReadNumber(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems,
                   const Range& range, double scale) {
   if (IsAbsent(node)) return 0.0;
-  if (Listener() != nullptr) SayExpects(path, ExpectNumber(range, scale, {}));
   std::optional<double> value;
   if (node.kind == InputNode::Kind::kScalar && !node.quoted) value = ParseNumber(node.text);
   if (!value) {
@@ -166,7 +150,6 @@ bool CheckIncreasing(const InputNode& table, const std::string& path, const std:
 
 std::string ReadText(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems) {
   if (IsAbsent(node)) return "";
-  if (Listener() != nullptr) SayExpects(path, Expect(Expectation::Kind::kText));
   if (node.kind != InputNode::Kind::kScalar) {
     AddProblem(problems, node, path, node.Describe() + " is not text", "text");
   } else if (!node.quoted && (ParseNumber(node.text) || IsTruthValue(node.text))) {
@@ -191,10 +174,8 @@ std::string DidYouMean(const std::string& word, const std::vector<std::string>& 
 
 MapReader::MapReader(const InputNode& node, std::string path, std::vector<InputProblem>& problems)
     : node_(&node),
-      listener_(IsAbsent(node) ? nullptr : Listener()),
       path_(std::move(path)),
       problems_(problems) {
-  if (listener_ != nullptr) listener_->Reads(path_, node);
   if (!IsAbsent(node) && node.kind != InputNode::Kind::kMap) {
     AddProblem(problems_, node, path_, node.Describe() + " is not a map", "a map of keys and values");
   }
@@ -204,12 +185,10 @@ MapReader::~MapReader() { Finish(); }
 
 const InputNode* MapReader::Optional(const std::string& key) {
   known_.insert(key);
-  if (listener_ != nullptr) listener_->Knows(path_, {key});
   return node_->Find(key);
 }
 
 const InputNode* MapReader::Peek(const std::string& key) const {
-  if (listener_ != nullptr) listener_->Heeds(path_, {key});
   return node_->Find(key);
 }
 
@@ -221,19 +200,15 @@ const InputNode& MapReader::Required(const std::string& key, const std::string& 
 }
 
 std::string MapReader::Text(const std::string& key) {
-  if (listener_ != nullptr) listener_->Expects(PathOf(key), Expect(Expectation::Kind::kText));
   return ReadText(Required(key, "text"), PathOf(key), problems_);
 }
 
 std::string MapReader::Text(const std::string& key, const std::string& absent) {
-  if (listener_ != nullptr) listener_->Expects(PathOf(key), Expect(Expectation::Kind::kText));
   const InputNode* value = Optional(key);
   return value == nullptr ? absent : ReadText(*value, PathOf(key), problems_);
 }
 
 bool MapReader::Flag(const std::string& key, bool absent) {
-  if (listener_ != nullptr)
-    listener_->Expects(PathOf(key), {.kind = Expectation::Kind::kFlag, .absent = absent ? "true" : "false"});
   const InputNode* value = Optional(key);
   if (value == nullptr) return absent;
   if (value->kind == InputNode::Kind::kScalar && !value->quoted && IsTruthValue(value->text)) {
@@ -245,12 +220,6 @@ bool MapReader::Flag(const std::string& key, bool absent) {
 
 std::uint64_t MapReader::Integer(const std::string& key, std::uint64_t low, std::uint64_t high,
                                  std::optional<std::uint64_t> absent) {
-  if (listener_ != nullptr) {
-    Expectation whole = {
-        .kind = Expectation::Kind::kInteger, .low = std::to_string(low), .high = std::to_string(high)};
-    if (absent) whole.absent = std::to_string(*absent);
-    listener_->Expects(PathOf(key), whole);
-  }
   std::string allowed = "a whole number from " + std::to_string(low) + " to " + std::to_string(high);
   const InputNode* value = Optional(key);
   if (value == nullptr) {
@@ -270,23 +239,10 @@ std::uint64_t MapReader::Integer(const std::string& key, std::uint64_t low, std:
 }
 
 double MapReader::Number(const std::string& key, const Range& range, std::optional<double> absent) {
-  if (listener_ != nullptr) listener_->Expects(PathOf(key), ExpectNumber(range, 1.0, absent));
   const InputNode* value = Optional(key);
   if (value != nullptr) return ReadNumber(*value, PathOf(key), problems_, range);
   if (!absent) ReportMissing({key}, range.Text());
   return absent.value_or(0.0);
-}
-
-void MapReader::NoteQuantity(const std::string& stem, Dimension dimension, const Range& range,
-                             std::optional<double> absent, std::optional<Expectation> list) const {
-  if (listener_ == nullptr) return;
-  for (const Unit& unit : dimension) {
-    const std::string path = PathOf(stem + "_" + std::string(unit.suffix));
-    Expectation number = ExpectNumber(range.Less(unit.offset), unit.scale, absent);
-    number.unit = unit.suffix;
-    if (list) listener_->Expects(path, *list);
-    listener_->Expects(list ? path + "[]" : path, number);
-  }
 }
 
 const InputNode* MapReader::FindQuantity(const std::string& stem, Dimension dimension, std::string* key,
@@ -306,14 +262,12 @@ const InputNode* MapReader::FindQuantity(const std::string& stem, Dimension dime
     *key = keys.back();
     *unit = candidate;
   }
-  if (listener_ != nullptr) listener_->Knows(path_, keys);
   quantities_.emplace_back(stem, std::move(keys));
   return found;
 }
 
 double MapReader::Quantity(const std::string& stem, Dimension dimension, const Range& range,
                            std::optional<double> absent) {
-  NoteQuantity(stem, dimension, range, absent);
   std::string key;
   Unit unit = {};
   const InputNode* value = FindQuantity(stem, dimension, &key, &unit);
@@ -324,7 +278,6 @@ double MapReader::Quantity(const std::string& stem, Dimension dimension, const R
 
 std::optional<double> MapReader::OptionalQuantity(const std::string& stem, Dimension dimension,
                                                   const Range& range, std::string* key) {
-  NoteQuantity(stem, dimension, range, {});
   std::string found;
   Unit unit = {};
   const InputNode* value = FindQuantity(stem, dimension, &found, &unit);
@@ -335,7 +288,6 @@ std::optional<double> MapReader::OptionalQuantity(const std::string& stem, Dimen
 
 std::vector<double> MapReader::Quantities(const std::string& stem, Dimension dimension, const Range& range,
                                           std::size_t low_count, std::size_t high_count, std::string* key) {
-  NoteQuantity(stem, dimension, range, {}, ExpectList(low_count, high_count));
   std::string found;
   Unit unit = {};
   std::vector<double> values;
@@ -352,7 +304,6 @@ std::vector<double> MapReader::Quantities(const std::string& stem, Dimension dim
 
 std::vector<double> MapReader::Numbers(const std::string& key, const Range& range, std::size_t low_count,
                                        std::size_t high_count) {
-  if (listener_ != nullptr) listener_->Expects(PathOf(key) + "[]", ExpectNumber(range, 1.0, {}));
   std::vector<double> values;
   Each(key, low_count, high_count, [&](const InputNode& item, const std::string& path) {
     values.push_back(ReadNumber(item, path, problems_, range));
@@ -361,8 +312,6 @@ std::vector<double> MapReader::Numbers(const std::string& key, const Range& rang
 }
 
 std::array<double, 2> MapReader::Ends(const std::string& stem, Dimension dimension, const Range& range) {
-  NoteQuantity(stem, dimension, range, {});
-  NoteQuantity(stem, dimension, range, {}, ExpectList(2, 2));
   std::string key;
   Unit unit = {};
   const InputNode* value = FindQuantity(stem, dimension, &key, &unit);
@@ -383,11 +332,6 @@ std::array<double, 2> MapReader::Ends(const std::string& stem, Dimension dimensi
 }
 
 bool MapReader::Has(const std::string& stem, Dimension dimension) const {
-  if (listener_ != nullptr) {
-    std::vector<std::string> keys;
-    for (const Unit& unit : dimension) keys.push_back(stem + "_" + std::string(unit.suffix));
-    listener_->Heeds(path_, keys);
-  }
   return std::any_of(dimension.begin(), dimension.end(), [&](const Unit& unit) {
     return node_->Find(stem + "_" + std::string(unit.suffix)) != nullptr;
   });
@@ -400,14 +344,11 @@ void MapReader::IgnoreQuantity(const std::string& stem, Dimension dimension) {
 void MapReader::Spare(const std::function<void()>& read) {
   static const InputNode absent;
   const InputNode* const node = std::exchange(node_, &absent);
-  InputObserver* const listener = std::exchange(listener_, nullptr);
   read();
   node_ = node;
-  listener_ = listener;
 }
 
 const InputNode* MapReader::List(const std::string& key, std::size_t low_count, std::size_t high_count) {
-  if (listener_ != nullptr) listener_->Expects(PathOf(key), ExpectList(low_count, high_count));
   const InputNode* list = known_.contains(key) ? node_->Find(key) : Optional(key);
   const std::string allowed = CountText(low_count, high_count);
   if (list == nullptr) {
@@ -428,9 +369,7 @@ const InputNode* MapReader::List(const std::string& key, std::size_t low_count, 
 }
 
 std::optional<std::size_t> MapReader::WordIndex(const std::string& key, const std::vector<std::string>& words,
-                                                const std::optional<std::string>& absent, bool required) {
-  if (listener_ != nullptr)
-    listener_->Expects(PathOf(key), {.kind = Expectation::Kind::kWords, .words = words, .absent = absent});
+                                                bool required) {
   const std::string allowed = "one of " + JoinWords(words);
   const InputNode* value = Optional(key);
   if (value == nullptr) {
@@ -446,12 +385,7 @@ std::optional<std::size_t> MapReader::WordIndex(const std::string& key, const st
   return std::nullopt;
 }
 
-void MapReader::NoteMissing(const std::vector<std::string>& keys) const {
-  if (listener_ != nullptr && node_->kind == InputNode::Kind::kMap) listener_->Misses(path_, keys);
-}
-
 void MapReader::ReportMissing(std::vector<std::string> keys, const std::string& allowed) {
-  NoteMissing(keys);
   if (node_->kind == InputNode::Kind::kMap) missing_.push_back({std::move(keys), allowed});
 }
 

@@ -15,7 +15,6 @@
 
 #include "core/input/input_error.h"
 #include "core/input/input_node.h"
-#include "core/input/input_observer.h"
 #include "core/input/range.h"
 #include "core/input/units.h"
 
@@ -88,10 +87,7 @@ class MapReader {
               std::optional<Enum> absent = {}) {
     std::vector<std::string> words;
     for (const auto& choice : choices) words.push_back(choice.first);
-    std::optional<std::string> absent_word;
-    for (const auto& choice : choices)
-      if (absent && choice.second == *absent) absent_word = choice.first;
-    const std::optional<std::size_t> index = WordIndex(key, words, absent_word, !absent.has_value());
+    const std::optional<std::size_t> index = WordIndex(key, words, !absent.has_value());
     if (!index) return absent.value_or(choices.front().second);
     return choices[*index].second;
   }
@@ -107,8 +103,6 @@ class MapReader {
     }
   }
 
-  /// None of the keys, any of which would do, is there, and its own words say so: only listeners are told.
-  void NoteMissing(const std::vector<std::string>& keys) const;
   /// None of the keys, any of which would do, is there. Not reported if an unknown key evidently means one.
   void ReportMissing(std::vector<std::string> keys, const std::string& allowed);
 
@@ -130,16 +124,11 @@ class MapReader {
   };
 
   const InputNode* List(const std::string& key, std::size_t low_count, std::size_t high_count);
-  std::optional<std::size_t> WordIndex(const std::string& key, const std::vector<std::string>& words,
-                                       const std::optional<std::string>& absent, bool required);
-  // Tells listeners of a quantity in each of its units, of which each or each item is a number of the range.
-  void NoteQuantity(const std::string& stem, Dimension dimension, const Range& range,
-                    std::optional<double> absent, std::optional<Expectation> list = {}) const;
+  std::optional<std::size_t> WordIndex(const std::string& key, const std::vector<std::string>& words, bool required);
   // The member of a quantity and its unit, or null.
   const InputNode* FindQuantity(const std::string& stem, Dimension dimension, std::string* key, Unit* unit);
 
   const InputNode* node_;
-  InputObserver* listener_;  // null: nobody, or nothing to be said of a node that is absent
   std::string path_;
   std::vector<InputProblem>& problems_;
   std::set<std::string> known_;

@@ -40,10 +40,12 @@ Json NumberIn(const Range& range, const Unit& unit) {
   return number;
 }
 
-// "km, a number above 0: meaning"
+// "km, above 0: meaning"
 std::string Description(const Range& range, const Unit& unit, const std::string& meaning) {
-  const std::string number = range.Less(unit.offset).Text(unit.scale);
-  return (unit.suffix.empty() ? number : UnitText(unit.suffix) + ", " + number) + ": " + meaning;
+  const std::string number = range.Less(unit.offset).Text(unit.scale).substr(std::string("a number").size());
+  std::string text = unit.suffix.empty() ? "" : UnitText(unit.suffix);
+  if (!number.empty()) text += text.empty() ? number.substr(1) : "," + number;
+  return text.empty() ? meaning : text + ": " + meaning;
 }
 
 Json DescribedNumber(const Range& range, const Unit& unit, const char* meaning, std::optional<double> absent) {
@@ -118,21 +120,40 @@ void MapSchema::Add(const char* key, Json value, bool needed) {
 
 void MapSchema::AddUnits(const char* stem, Dimension dimension, bool needed,
                          const std::function<Json(const Unit& unit)>& value) {
-  if (dimension.size() == 1) {
-    Add((stem + ("_" + std::string(dimension.front().suffix))).c_str(), value(dimension.front()), needed);
-    return;
-  }
+  std::string units;
+  for (const Unit& unit : dimension) units += (units.empty() ? "" : "|") + std::string(unit.suffix);
   std::vector<Json> any;
   for (const Unit& unit : dimension) {
     const std::string key = stem + ("_" + std::string(unit.suffix));
-    Add(key.c_str(), value(unit), false);
+    Add(key.c_str(), value(unit), needed && dimension.size() == 1);
+    quantities_[key] = {stem, units};
     any.push_back(Required(key));
   }
+  if (dimension.size() == 1) return;
   if (!needed) {
     Json none = {{"not", Combined("anyOf", any)}};
     any.push_back(std::move(none));
   }
   keys_.rules.push_back(Combined("oneOf", std::move(any)));
+}
+
+// No key of these; quantities by their stems and units, which is a tenth as long as all their keys.
+MapSchema::Json MapSchema::None(const std::vector<std::string>& keys) const {
+  std::map<std::string, std::set<std::string>> stems;  // by units
+  std::string names;
+  for (const std::string& key : keys) {
+    const auto quantity = quantities_.find(key);
+    if (quantity == quantities_.end())
+      names += (names.empty() ? "" : "|") + key;
+    else
+      stems[quantity->second.units].insert(quantity->second.stem);
+  }
+  for (const auto& [units, of] : stems) {
+    std::string group;
+    for (const std::string& stem : of) group += (group.empty() ? "(" : "|") + stem;
+    names += (names.empty() ? "" : "|") + group + ")_(" + units + ")";
+  }
+  return {{"not", {{"pattern", "^(" + names + ")$"}}}};
 }
 
 // ---- Single values ----
@@ -373,13 +394,15 @@ void MapSchema::Either(const std::vector<Alternative>& alternatives) {
   // What holds of a map for which this alternative is the one.
   const auto rules = [&](const Keys& branch) {
     Json schema = Json::object();
+    std::vector<std::string> foreign;
     for (const auto& [key, value] : all.items()) {
       if (!branch.values.contains(key)) {
-        if (!keys_.values.contains(key)) schema["properties"][key] = false;
+        if (!keys_.values.contains(key)) foreign.push_back(key);
       } else if (value != branch.values[key]) {
         schema["properties"][key] = branch.values[key];
       }
     }
+    if (!foreign.empty()) schema["propertyNames"] = None(foreign);
     branch.AddTo(schema);
     return schema;
   };

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
@@ -105,12 +106,19 @@ class MapSchema : public Fields {
   // Of each unit that the key may end in; `value` makes the schema of a key from its scale and unit.
   void AddUnits(const char* stem, Dimension dimension, bool needed,
                 const std::function<Json(const Unit& unit)>& value);
+  Json None(const std::vector<std::string>& keys) const;
   void AddTable(const char* key, const char* meaning, bool needed, const Part& part);
   Json MapOf(const Part& part) const;
   Json Holds(const Condition& condition) const;
 
+  struct QuantityKey {
+    std::string stem;
+    std::string units;  ///< "m|km"
+  };
+
   DocumentSchema document_;
   Keys keys_;
+  std::map<std::string, QuantityKey> quantities_;
   std::set<std::string> lists_;  ///< keys of lists, which count as absent if they are empty
   std::string base_;             ///< the key of another file whose keys stand where this one has none, or empty
 };

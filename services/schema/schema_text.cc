@@ -12,11 +12,12 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kColumns = 110;
+constexpr std::size_t kDeepest = 4;  // what lies deeper stands on one line: indenting it is a fifth of the file
 
 // Indented, but what fits stands on one line.
 void Print(const Json& json, std::size_t indent, std::string& out) {
   const std::string line = json.dump();
-  if (!json.is_structured() || json.empty() || indent + line.size() <= kColumns) {
+  if (!json.is_structured() || json.empty() || indent >= kDeepest || indent + line.size() <= kColumns) {
     out += line;
     return;
   }

@@ -11,7 +11,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // A reference and its name take about so much.
-constexpr std::size_t kLeastShared = 120;
+constexpr std::size_t kLeastShared = 80;
 
 bool IsKeyword(const std::string& key) {
   static const std::set<std::string> kKeywords = {"properties", "items", "additionalProperties", "anyOf", "oneOf",
@@ -26,7 +26,8 @@ bool IsSchema(const Json& json) {
     return found != json.end() && found->type() == type;
   };
   return json.is_object() && (has("type", Json::value_t::string) || has("anyOf", Json::value_t::array) ||
-                              has("if", Json::value_t::object) || has("enum", Json::value_t::array));
+                              has("if", Json::value_t::object) || has("enum", Json::value_t::array) ||
+                              has("oneOf", Json::value_t::array));
 }
 
 // What it says whoever holds it.

@@ -1,4 +1,4 @@
-"""JSON Schemas of the input files against the reader that they are learned from.
+"""JSON Schemas of the input files against the reader.
 
 Every file that ships is valid, and of thousands of small changes of valid files (a key left out, misspelled, of another
 type, out of range, another word) a schema refuses none that the reader takes, and all that the reader refuses for a
@@ -182,7 +182,7 @@ class SchemaTest(unittest.TestCase):
     def test_units_and_defaults_are_hinted(self):
         site = self.validators["vehicle"].schema["properties"]["site"]["properties"]
         self.assertEqual({"type": "number", "minimum": -90, "maximum": 90,
-                          "description": "°, a number from -90 to 90: geodetic"},
+                          "description": "°, from -90 to 90: geodetic"},
                          site["latitude_deg"])
         gravel = self.validators["vehicle"].schema["properties"]["hold_down_s"]
         self.assertEqual(0, gravel["default"])
@@ -195,10 +195,10 @@ class SchemaTest(unittest.TestCase):
         self.assertEqual("each", verdicts["joint"]["default"])
         self.assertNotIn("default", campaign["properties"]["sampling"]["properties"]["seed"])
         self.assertEqual({"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1,
-                          "description": "a number above 0 and below 1: share of flights that must keep the limit"},
+                          "description": "above 0 and below 1: share of flights that must keep the limit"},
                          campaign["properties"]["requirements"]["items"]["properties"]["probability"])
         limit = vehicle["properties"]["stages"]["items"]["properties"]["gimbal"]["properties"]["rate_limit_deg_s"]
-        self.assertEqual("°/s, a number above 0: of each drive", limit["description"])
+        self.assertEqual("°/s, above 0: of each drive", limit["description"])
         self.assertEqual(6, autopilot["$defs"]["pitch"]["properties"]["gains"]["maxItems"])
 
     def test_what_keys_say_of_each_other(self):
