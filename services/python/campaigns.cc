@@ -123,15 +123,15 @@ py::object ReadTree(const std::string& path, bool inlined) {
   return ValueOf(root);
 }
 
-/// The inputs of cases first to first + count - 1; shape (count, inputs), in the units of the columns.
-py::array Plan(const LoadedCampaign& campaign, std::uint64_t first, std::uint64_t count) {
+/// The inputs of the first `count` cases; shape (count, inputs), in the units of the columns.
+py::array Plan(const LoadedCampaign& campaign, std::uint64_t count) {
   std::vector<double> rows;
   {
     const py::gil_scoped_release free;
     const CaseDesign design(campaign.campaign());
     rows.reserve(count * InputCount(campaign.stages()));
     for (std::uint64_t i = 0; i < count; ++i) {
-      const std::vector<double> inputs = InputValues(design.Draw(first + i), campaign.stages());
+      const std::vector<double> inputs = InputValues(design.Draw(i), campaign.stages());
       rows.insert(rows.end(), inputs.begin(), inputs.end());
     }
   }

@@ -106,11 +106,15 @@ class Copy:
 
     def outcome(self, program, test, script):
         """"passes", "dies", or why neither can be said."""
-        if problem := self.problem_of_build(program):
+        if problem := self.problem_of_build(*program.split()):
             return problem
         if script and test:
-            code, _ = quiet(sys.executable, "-B", self.source / "tests" / script, test, limit_s=TEST_LIMIT_S,
+            # The package's module is one interpreter's.
+            python = cached(self.build, "DISPERSA_PYTHON") or sys.executable
+            code, _ = quiet(python, "-B", self.source / "tests" / script, test, limit_s=TEST_LIMIT_S,
                             env={**os.environ, "DISPERSA_BINARIES": str(self.build / "bin"),
+                                 "PYTHONPATH": str(self.build / "python"),
+                                 "DISPERSA_PYTHON_SOURCES": str(self.source / "services/python"),
                                  "DISPERSA_CAMPAIGNS": str(self.source / "campaigns"),
                                  "DISPERSA_SOURCE": str(self.source), "DISPERSA_BUILD": str(self.build)})
             return "passes" if code == 0 else "dies"

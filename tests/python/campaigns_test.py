@@ -36,6 +36,11 @@ class Loading(unittest.TestCase):
                     campaign = dispersa.load(file, cases=4)
                 self.assertEqual((campaign.id, campaign.flight_id), (plan["id"], plan["flight_id"]), name)
 
+    def test_a_scenarios_tables_stand_in_the_place_of_their_names(self):
+        file = CAMPAIGNS.parent / "tests/data/yaml/scenario.yaml"
+        self.assertEqual(dispersa.read(file)["wind"]["table"], "scenario_wind.csv")
+        self.assertEqual(dispersa.read(file, inlined=True)["wind"]["table"]["altitude_m"], [0, 10000])
+
     def test_overrides(self):
         campaign = dispersa.load(SMOKE, cases=3, seed=2**63 + 1)
         plan = printed("plan", SMOKE, "--cases", 3, "--seed", 2**63 + 1)

@@ -43,6 +43,10 @@ class One(unittest.TestCase):
     def test_the_nominal_flight_is_the_programs_to_the_bit(self):
         self.check([], dispersa.fly(SMOKE))
 
+    def test_each_integrator_is_the_programs_to_the_bit(self):
+        for name in ("erk4", "cvode"):
+            self.check(["--case", 2, "--integrator", name], self.campaign.fly(2, integrator=name))
+
     def test_replaced_inputs(self):
         drawn = self.campaign.fly(3, history=False)
         self.assertIsNone(drawn.history)

@@ -48,6 +48,11 @@ class Laws(unittest.TestCase):
         self.assertEqual(flown.digest, built_in.digest)
         self.assertEqual(flown.metrics["apogee_km"], built_in.metrics["apogee_km"])
 
+    def test_a_law_stands_in_the_place_of_an_axis_with_a_schedule(self):
+        campaign = dispersa.load(CAMPAIGNS / "table3_flexible.yaml")
+        flight = campaign.fly(law=lambda tick: 0.0, history=False)
+        self.assertEqual(flight.outcome, "lost_control")
+
     def test_cases_side_by_side_each_with_a_memory_of_its_own(self):
         def counting(tick):
             tick.memory["ticks"] = tick.memory.get("ticks", 0) + 1

@@ -1,5 +1,6 @@
 """Runs and result folders from Python: the bytes, numbers and verdicts of the program, and its exit codes as exceptions."""
 import csv
+import fcntl
 import json
 import math
 import os
@@ -134,6 +135,14 @@ class Runs(unittest.TestCase):
         dispersa.report(copy.directory)
         for name in FILES:
             self.assertEqual((copy.directory / name).read_bytes(), (self.theirs / name).read_bytes(), name)
+
+    def test_no_report_of_a_folder_that_another_process_writes(self):
+        copy = dispersa.run(SMOKE, self.folder / "written", workers=0, histories=False)
+        writer = os.open(copy.directory, os.O_RDONLY)
+        self.addCleanup(os.close, writer)
+        fcntl.flock(writer, fcntl.LOCK_EX)
+        with self.assertRaisesRegex(dispersa.BadInput, "another dispersa process is writing this folder"):
+            dispersa.report(copy.directory, histories=False)
 
     def test_compare(self):
         pd = self.folder / "pd"

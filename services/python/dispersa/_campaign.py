@@ -169,7 +169,7 @@ class Campaign:
         unit of its name. `cases`: how many from the first; default: all. Raises BadInput for more than the campaign
         has: a design of more cases is another one, which `load(..., cases=...)` makes."""
         count = self.cases if cases is None else whole("cases", cases, 0, self.cases)
-        return structured(_core.plan(self._core, 0, count), self.input_names)
+        return structured(_core.plan(self._core, count), self.input_names)
 
     def fly(self, case=None, *, inputs=None, history=True, step_s=0.1, integrator="simpson", law=None, axes=("pitch",)):
         """One flight in this process: case `case`, or without one the nominal flight.
