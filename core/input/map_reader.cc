@@ -136,18 +136,6 @@ double ReadNumber(const InputNode& node, const std::string& path, std::vector<In
   return *value * scale;
 }
 
-bool CheckIncreasing(const InputNode& table, const std::string& path, const std::string& key,
-                     const std::vector<double>& values, std::vector<InputProblem>& problems) {
-  for (std::size_t i = 1; i < values.size(); ++i) {
-    if (values[i] > values[i - 1]) continue;
-    const std::string item = key + "[" + std::to_string(i) + "]";
-    AddProblem(problems, table.Find(key)->items[i], path.empty() ? item : path + "." + item,
-               "is not above the one before", "values strictly increasing");
-    return false;
-  }
-  return true;
-}
-
 std::string ReadText(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems) {
   if (IsAbsent(node)) return "";
   if (node.kind != InputNode::Kind::kScalar) {
@@ -335,10 +323,6 @@ bool MapReader::Has(const std::string& stem, Dimension dimension) const {
   return std::any_of(dimension.begin(), dimension.end(), [&](const Unit& unit) {
     return node_->Find(stem + "_" + std::string(unit.suffix)) != nullptr;
   });
-}
-
-void MapReader::IgnoreQuantity(const std::string& stem, Dimension dimension) {
-  for (const Unit& unit : dimension) Ignore(stem + "_" + std::string(unit.suffix));
 }
 
 void MapReader::Spare(const std::function<void()>& read) {

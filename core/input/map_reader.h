@@ -30,11 +30,6 @@ InputNode KeyOf(const InputMember& member);
 double ReadNumber(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems,
                   const Range& range = kAnyNumber, double scale = 1.0);
 
-/// Records the first value of a table's column that is not above the one before, at its own line; true if
-/// there is none. `values` are the column's, read without a problem.
-bool CheckIncreasing(const InputNode& table, const std::string& path, const std::string& key,
-                     const std::vector<double>& values, std::vector<InputProblem>& problems);
-
 /// The keys of one map. Keys that nothing asked for are reported when the reader goes out of scope.
 class MapReader {
  public:
@@ -113,7 +108,6 @@ class MapReader {
   void Allow(const std::string& key) { Optional(key); }
   /// A key of which something was said already.
   void Ignore(const std::string& key) { known_.insert(key); }
-  void IgnoreQuantity(const std::string& stem, Dimension dimension);
   /// Nothing is said of the keys that `read` asks for: what decides whether they belong here was refused.
   void Spare(const std::function<void()>& read);
 
