@@ -29,23 +29,18 @@ inline double SpeedGained(const Vehicle& vehicle, double thrust_factor, double f
 
   const FlightWeather calm;
   auto step = std::make_unique<lanes::StepState<double>>();
-  *step = {};
-  step->Configure(plant.environment.earth, step_s);
-  step->StartFlight(0);
-  lanes::SetLane(step->plant.weather, 0, calm);
-  lanes::SetLane(step->plant, 0, plant, 0);
-  lanes::SetLane(step->drives, 0, plant.stacks[0].gimbal, -1);
-  step->SetTickTransition(0);
-  step->phase.burning = true;
+  step->Configure(plant, step_s);
   double y[kLauncherSize] = {};
   RigidBodyState state;
   state.p_EoC_I = Vector3(6371000.0 + 2000e3, 0.0, 0.0);  // above the atmosphere
   WriteState(state, y);
-  step->WriteLane(0, y);
+  step->StartFlight(0, calm, y);
+  step->SetStack(0, plant, 0);
+  step->Ignite(0, 0.0, false);
   double from_s = 0.0;
   for (const double to_s : stops_s) {
     if (!(to_s > from_s)) continue;
-    step->MarkMoved(0);
+    step->PassKink(0);
     step->EvaluateStart(from_s);
     EXPECT_TRUE(step->Step(true, true, from_s, to_s));
     from_s = to_s;

@@ -152,7 +152,6 @@ Batch<T>::Batch(const FlightModel& model, FlightQueue& queue)
       cuts_off_at_velocity_(CutsOffAtVelocity(definition_.vehicle)),
       has_plugin_(model.autopilot().plugin != nullptr) {
   // Lanes that never fly compute along with the others, on numbers that do no harm.
-  __builtin_memset(static_cast<void*>(&step_), 0, sizeof step_);
   __builtin_memset(static_cast<void*>(&delay_line_), 0, sizeof delay_line_);
   __builtin_memset(static_cast<void*>(&loop_), 0, sizeof loop_);
   __builtin_memset(static_cast<void*>(&allocation_), 0, sizeof allocation_);
@@ -163,17 +162,13 @@ Batch<T>::Batch(const FlightModel& model, FlightQueue& queue)
   __builtin_memset(static_cast<void*>(&unit_), 0, sizeof unit_);
   __builtin_memset(static_cast<void*>(&gyros_), 0, sizeof gyros_);
   const LauncherPlant& nominal = model.nominal_plant();
-  step_.Configure(nominal.environment.earth, tick_s_);
+  step_.Configure(nominal, tick_s_);
   for (int lane = 0; lane < kLanes; ++lane) {
     SetLane(live_, lane, false);
     SetLane(coasting_, lane, false);
     SetLane(loop_, lane, model.autopilot(), 0, 1.0, 1.0, 1.0);
     SetLane(drifts_, lane, false);
     SetLane(gyros_fresh_, lane, false);
-    SetLane(step_.plant, lane, nominal, 0);
-    SetLane(step_.bending, lane, nominal, 0);
-    SetLane(step_.drives, lane, nominal.stacks.data()->gimbal, -1, 0.5 * tick_s_);
-    step_.SetTickTransition(lane);
   }
   time_s_ = tick_ = next_tick_ = lost_ticks_ = T(0.0);
   stop_s_ = next_digest_tick_ = next_row_tick_ = T(kFarFuture);
@@ -183,8 +178,6 @@ Batch<T>::Batch(const FlightModel& model, FlightQueue& queue)
   for (T& weight : gyro_weight_) weight = T(0.0);
   unit_weight_ = unit_.truth.w = unit_.measured.w = T(1.0);
   gust_bottom_m_ = gust_top_m_ = T(0.0);
-  step_.motion.p.x = T(nominal.environment.earth.equatorial_radius_m);
-  step_.motion.q.w = T(1.0);
 }
 
 template <class T>
@@ -255,10 +248,8 @@ void Batch<T>::Start(int lane, FlightRecord* record) {
     any_judged_ |= each.record->is_judged();
     if (each.record->options.steps_per_tick > most_steps_) most_steps_ = each.record->options.steps_per_tick;
   }
-  step_.StartFlight(lane);
-  SetLane(step_.plant.weather, lane, record->weather);
-  step_.WriteLane(lane, record->lift_off);
-  unit_.Start(lane, step_.motion.q, record->believed_attitude);
+  step_.StartFlight(lane, record->weather, record->lift_off);
+  unit_.Start(lane, step_.motion().q, record->believed_attitude);
   SetStack(lane, 0);
   if (record->refusal != nullptr) {
     End(lane, Outcome::kNumericalFailure, record->refusal);
@@ -277,13 +268,9 @@ void Batch<T>::SetStack(int lane, int stack) {
   slot.stack = stack;
   slot.stuck_nozzle = -1;
   slot.switch_s = kFarFuture;
-  SetLane(step_.plant, lane, slot.record->plant, stack);
+  step_.SetStack(lane, slot.record->plant, stack);
   SetMass(lane);
-  SetLane(step_.bending, lane, slot.record->plant, stack);
-  SetLane(step_.drives, lane, slot.record->plant.stacks.data()[stack].gimbal, -1, 0.5 * tick_s_);
-  if (step_.plant.nozzles_listed) SetLane(allocation_, lane, slot.record->plant.stacks.data()[stack].layout);
-  step_.SetTickTransition(lane);
-  step_.MarkMoved(lane);
+  if (step_.plant().nozzles_listed) SetLane(allocation_, lane, slot.record->plant.stacks.data()[stack].layout);
 }
 
 /// Of what the lane's stack still carries.
@@ -293,7 +280,7 @@ void Batch<T>::SetMass(int lane) {
   if (slot.jettisoned == 0) return;
   StackMass mass;
   slot.record->MassWithout(slot.stack, slot.jettisoned, mass);
-  SetLane(step_.plant.stack, lane, mass);
+  step_.SetMass(lane, mass);
 }
 
 template <class T>
@@ -309,23 +296,18 @@ void Batch<T>::End(int lane, Outcome outcome, const char* reason) {
   FlightRecord* record = slot.record;
   StateValues y;
   step_.ReadLane(lane, y);
-  if (Bits(step_.phase.burning) >> lane & 1u) metrics_.EndStage(lane, slot.stack, record->sums);
+  if (Bits(step_.phase().burning) >> lane & 1u) metrics_.EndStage(lane, slot.stack, record->sums);
   metrics_.Read(lane, record->sums);
-  record->sums.expelled_kg = Lane(step_.phase.expelled_kg, lane);
+  record->sums.expelled_kg = Lane(step_.phase().expelled_kg, lane);
   record->sums.rules_fired = static_cast<std::uint32_t>(ToBits(Lane(axes_[kPitch].fired, lane)));
   record->End(outcome, reason, Lane(time_s_, lane), slot.stack, y);
   slot.record = nullptr;
   slot.switch_s = kFarFuture;
-  // The record's; an empty lane is computed on.
-  step_.plant.weather.profile[lane] = nullptr;
-  step_.plant.burn.curve[lane] = step_.plant.beside.burn.curve[lane] = nullptr;
-  step_.bending.table[lane] = nullptr;
+  step_.EndFlight(lane);
   --flying_;
   patience_ = 0;
   SetLane(live_, lane, false);
   SetLane(coasting_, lane, false);
-  SetLane(step_.phase.burning, lane, false);
-  SetLane(step_.phase.boosting, lane, false);
   Lane(stop_s_, lane) = Lane(next_digest_tick_, lane) = Lane(next_row_tick_, lane) = kFarFuture;
   queue_.Done(record);
 }
@@ -335,16 +317,16 @@ LauncherPhase Batch<T>::PhaseOf(int lane) const {
   LauncherPhase phase;
   phase.stack = slot_[lane].stack;
   phase.jettisoned = slot_[lane].jettisoned;
-  phase.boosting = Bits(step_.phase.boosting) >> lane & 1u;
-  phase.burning = Bits(step_.phase.burning) >> lane & 1u;
-  phase.burnt = Bits(step_.phase.burnt) >> lane & 1u;
-  phase.ignition_s = Lane(step_.phase.ignition_s, lane);
-  phase.expelled_mass_kg = Lane(step_.phase.expelled_kg, lane);
+  phase.boosting = Bits(step_.phase().boosting) >> lane & 1u;
+  phase.burning = Bits(step_.phase().burning) >> lane & 1u;
+  phase.burnt = Bits(step_.phase().burnt) >> lane & 1u;
+  phase.ignition_s = Lane(step_.phase().ignition_s, lane);
+  phase.expelled_mass_kg = Lane(step_.phase().expelled_kg, lane);
   double* torque = reinterpret_cast<double*>(&phase.control_torque_n_m);
-  torque[0] = Lane(step_.phase.control_torque_n_m.x, lane);
-  torque[1] = Lane(step_.phase.control_torque_n_m.y, lane);
-  torque[2] = Lane(step_.phase.control_torque_n_m.z, lane);
-  for (int i = 0; i < kDrives; ++i) phase.command_rad.data()[i] = Lane(step_.command_rad[i], lane);
+  torque[0] = Lane(step_.phase().control_torque_n_m.x, lane);
+  torque[1] = Lane(step_.phase().control_torque_n_m.y, lane);
+  torque[2] = Lane(step_.phase().control_torque_n_m.z, lane);
+  for (int i = 0; i < kDrives; ++i) phase.command_rad.data()[i] = Lane(step_.command_rad()[i], lane);
   phase.stuck_nozzle = slot_[lane].stuck_nozzle;
   return phase;
 }

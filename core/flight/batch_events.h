@@ -57,10 +57,7 @@ void Batch<T>::AdvanceThroughEvents(T target) {
       }
       if (slot.switch_s <= Lane(time_s_, lane)) {
         slot.switch_s = kFarFuture;
-        for (int i = 0; i < kDrives; ++i) Lane(step_.command_rad[i], lane) = Lane(next_command_rad_[i], lane);
-        M commanded = NoLane<T>();
-        SetLane(commanded, lane, true);
-        step_.MarkCommanded(commanded);
+        step_.CommandLane(lane, next_command_rad_);
       } else if (due >> lane & 1u) {
         Happen(lane);
       } else if (Lane(time_s_, lane) >= Lane(target, lane)) {
@@ -105,7 +102,6 @@ void Batch<T>::Judge(M moving, T from, T to, StateValues* states, M& failed) {
     SetLane(failed, lane, !holds);
     Lane(time_s_, lane) = holds ? Lane(to, lane) : Lane(from, lane);
     step_.WriteLane(lane, states[lane]);
-    step_.MarkMoved(lane);
   }
 }
 
@@ -116,7 +112,7 @@ void Batch<T>::Happen(int lane) {
   FlightRecord& record = *slot.record;
   switch (event.kind) {
     case EventKind::kIgnition:
-      Lane(step_.phase.ignition_s, lane) = event.time_s;
+      step_.Ignite(lane, event.time_s, event.stage == 0);
       Ignite(lane, event.stage);
       break;
     case EventKind::kBurnout:
@@ -128,23 +124,21 @@ void Batch<T>::Happen(int lane) {
       record.Separate(event.stage, slot.jettisoned, y);
       step_.WriteLane(lane, y);
       SetStack(lane, event.stage + 1);
-      SetLane(step_.phase.burnt, lane, false);
       SetLane(coasting_, lane,
               event.stage + 2 == static_cast<int>(record.plant.stacks.size()) ||
                   definition_.vehicle.stages.data()[event.stage + 1].ignition == IgnitionTrigger::kTimer);
-      for (T& command : step_.command_rad) Lane(command, lane) = 0.0;
       break;
     }
     case EventKind::kBoosterBurnout:
       metrics_.AddLoadsOfLane(lane, step_.InstantOf(lane, time_s_));  // they peak here, between ticks
-      SetLane(step_.phase.boosting, lane, false);
+      step_.BurnOutBoosters(lane);
       break;
     case EventKind::kBoosterSeparation: {
       StateValues y;
       step_.ReadLane(lane, y);
       const double time_s = Lane(time_s_, lane);
       // Straight from the burn: what was evaluated last is at an earlier time.
-      const double propellant_kg = record.plant.stacks.data()->burn.Propellant(time_s - Lane(step_.phase.ignition_s, lane));
+      const double propellant_kg = record.plant.stacks.data()->burn.Propellant(time_s - Lane(step_.phase().ignition_s, lane));
       record.LetGoOfBoosters(slot.jettisoned, time_s, propellant_kg, y);
       slot.jettisoned |= kBoostersGone;
       step_.WriteLane(lane, y);
@@ -152,10 +146,9 @@ void Batch<T>::Happen(int lane) {
       break;
     }
     case EventKind::kKink:
-      step_.MarkMoved(lane);
+      step_.PassKink(lane);
       return;
   }
-  step_.MarkMoved(lane);
   StateValues y;
   step_.ReadLane(lane, y);
   record.AddToDigest(Lane(time_s_, lane), y);
@@ -170,11 +163,7 @@ void Batch<T>::Ignite(int lane, int stage) {
   FlightRecord& record = *slot.record;
   const FlightInputs& in = record.inputs;
   const AutopilotModel& autopilot = model_.autopilot();
-  SetLane(step_.phase.burning, lane, true);
-  SetLane(step_.phase.boosting, lane, stage == 0 && step_.plant.has_boosters);
   SetLane(coasting_, lane, false);
-  SetLane(step_.phase.control_torque_n_m, lane, Zero<double>());
-  for (T& command : step_.command_rad) Lane(command, lane) = 0.0;
   for (auto& entry : delay_line_)
     for (T& command : entry) Lane(command, lane) = 0.0;
 
@@ -224,16 +213,15 @@ void Batch<T>::Ignite(int lane, int stage) {
   same_delay_ = true;
   common_delay_ = slot.whole_delay;
   for (int i = 0; i < kLanes; ++i)
-    if (Bits(step_.phase.burning) >> i & 1u)
+    if (Bits(step_.phase().burning) >> i & 1u)
       same_delay_ &= slot_[i].part_delay_s == 0.0 && slot_[i].whole_delay == common_delay_;
 
   slot.stuck_nozzle = -1;
   const int stuck = static_cast<int>(in.stuck_nozzle + 0.5);
   if (static_cast<int>(in.stuck_nozzle_stage + 0.5) == stage + 1 && stuck > 0) {
     slot.stuck_nozzle = stuck - 1;
-    Lane(step_.drive_state.angle_rad[slot.stuck_nozzle], lane) = in.stuck_nozzle_rad;
+    step_.StickNozzle(lane, gimbal, slot.stuck_nozzle, in.stuck_nozzle_rad);
   }
-  SetLane(step_.drives, lane, gimbal, slot.stuck_nozzle, 0.5 * tick_s_);
   if (stage > 0 && stage + 1 == static_cast<int>(record.plant.stacks.size())) {
     StateValues y;
     step_.ReadLane(lane, y);
@@ -254,10 +242,8 @@ void Batch<T>::BurnOut(int lane, int stage) {
   record.limit_cycle.Interrupt();
   for (T& weight : gyro_weight_) Lane(weight, lane) = 0.0;
   Lane(unit_weight_, lane) = 1.0;
-  SetLane(step_.phase.burning, lane, false);
-  SetLane(step_.phase.burnt, lane, true);
+  step_.BurnOut(lane);
   // Where thrusters held the roll.
-  SetLane(step_.phase.control_torque_n_m, lane, Zero<double>());
   Lane(thrusters_[kRoll].direction, lane) = Lane(thrusters_[kRoll].cycles_on, lane) = 0.0;
   if (stage + 1 == static_cast<int>(record.plant.stacks.size())) record.Inject(now.altitude_m, y);
 }

@@ -27,7 +27,7 @@ void Batch<T>::Pass() {
   if (definition_.guidance.closed_loop) Guide();
   metrics_.AddLoads(live_ & !coasting_, step_.now());
   metrics_.AddMoment(live_ & !coasting_, step_.LargestMomentNow());
-  Meter(live_ & step_.phase.burning);
+  Meter(live_ & step_.phase().burning);
   WatchAndDigest();
   CheckEnds();
   if (flying_ > 0) Advance();
@@ -48,7 +48,6 @@ void Batch<T>::LetGo() {
     slot.jettisoned |= due;
     step_.WriteLane(lane, y);
     SetMass(lane);
-    step_.MarkMoved(lane);
     slot.record->AddToDigest(Lane(time_s_, lane), y);
     if (slot.record->watched) slot.record->WatchEvent(ViewOf(lane));
   }
@@ -59,13 +58,13 @@ void Batch<T>::LetGo() {
 /// tick to come at which the speed, growing as it does now, is reached.
 template <class T>
 void Batch<T>::CutOff() {
-  const unsigned burning = Bits(live_ & step_.phase.burning);
+  const unsigned burning = Bits(live_ & step_.phase().burning);
   for (int lane = 0; lane < kLanes; ++lane) {
     if (!(burning >> lane & 1u)) continue;
     Slot& slot = slot_[lane];
     const double wanted_m_s = slot.record->CutOffVelocity(slot.stack);
     if (!(wanted_m_s > 0.0)) continue;
-    const Vector<double> v = LaneOf(step_.motion.v, lane);
+    const Vector<double> v = LaneOf(step_.motion().v, lane);
     const double speed_m_s = Sqrt(Dot(v, v));
     const double rate_m_s2 = Dot(v, LaneOf(step_.acceleration_m_s2(), lane)) / speed_m_s;
     const double lacking_m_s = wanted_m_s - speed_m_s;
@@ -73,13 +72,13 @@ void Batch<T>::CutOff() {
     const double at_s = Lane(time_s_, lane) + (lacking_m_s > 0.0 ? lacking_m_s / rate_m_s2 : 0.0);
     FlightRecord& record = *slot.record;
     // By then it has burnt out.
-    if (at_s >= Lane(step_.phase.ignition_s, lane) + record.plant.stacks.data()[slot.stack].burn.duration_s)
+    if (at_s >= Lane(step_.phase().ignition_s, lane) + record.plant.stacks.data()[slot.stack].burn.duration_s)
       continue;
     const auto happened = slot.next_event - record.events.data();
     record.CutOff(slot.stack, at_s);
     slot.next_event = record.events.data() + happened;
     slot.last_event = record.events.data() + record.events.size();
-    SetLane(step_.plant.burn, lane, record.plant.stacks.data()[slot.stack].burn);
+    step_.ShortenBurn(lane, record.plant.stacks.data()[slot.stack].burn);
     SetStop(lane);
   }
 }
@@ -96,25 +95,25 @@ void Batch<T>::Measure() {
   }
   T c[ReferenceRows::kRowSize];
   LoadRow(row, 2, c);
-  const Turn<T> q_BR = Compose(Inverse(step_.motion.q), {c[0], c[1], c[2], c[3]});
+  const Turn<T> q_BR = Compose(Inverse(step_.motion().q), {c[0], c[1], c[2], c[3]});
   angle_rad_ = RotationVector(q_BR);
-  rate_rad_s_ = Rotate(q_BR, {c[4], c[5], c[6]}) - step_.motion.w;
+  rate_rad_s_ = Rotate(q_BR, {c[4], c[5], c[6]}) - step_.motion().w;
   measured_angle_rad_ = angle_rad_;
   measured_rate_rad_s_ = rate_rad_s_;
-  if (has_plugin_) measured_body_rate_rad_s_ = step_.motion.w;
-  if (any_drift_ || step_.bending.modes > 0 || model_.sensors().uses_gyros) MeasureBySensors(c);
+  if (has_plugin_) measured_body_rate_rad_s_ = step_.motion().w;
+  if (any_drift_ || step_.bending().modes > 0 || model_.sensors().uses_gyros) MeasureBySensors(c);
 }
 
 /// The same through sensors that are not perfect, or sit on a body that bends.
 template <class T>
 void Batch<T>::MeasureBySensors(const T* reference) {
-  const bool everywhere = step_.bending.modes > 0 || model_.sensors().uses_gyros;
-  Turn<T> seen = step_.motion.q;
-  Vector<T> rate = step_.motion.w;
-  if (step_.bending.modes > 0) {
+  const bool everywhere = step_.bending().modes > 0 || model_.sensors().uses_gyros;
+  Turn<T> seen = step_.motion().q;
+  Vector<T> rate = step_.motion().w;
+  if (step_.bending().modes > 0) {
     step_.UpdateShapes(time_s_);
-    seen = TurnedBy(seen, UnitTurn(step_.bending, step_.bending_state));
-    rate = rate + TurnRate(step_.bending, step_.bending_state, -1);
+    seen = TurnedBy(seen, UnitTurn(step_.bending(), step_.bending_state()));
+    rate = rate + TurnRate(step_.bending(), step_.bending_state(), -1);
   }
   if (model_.sensors().uses_gyros) rate = GyroRates(rate);
   if (any_drift_) {
@@ -135,13 +134,13 @@ void Batch<T>::MeasureBySensors(const T* reference) {
 /// The blend of gyros and inertial unit; while nothing burns the weights are the inertial unit's alone.
 template <class T>
 Vector<T> Batch<T>::GyroRates(Vector<T> unit_rad_s) {
-  const M burning = live_ & step_.phase.burning;
+  const M burning = live_ & step_.phase().burning;
   Vector<T> blend = unit_weight_ * unit_rad_s;
   const int gyros = static_cast<int>(model_.sensors().gyros.size());
   for (int g = 0; g < gyros; ++g) {
     const GyroModel& gyro = model_.sensors().gyros.data()[g];
-    Vector<T> rate = step_.motion.w;
-    if (step_.bending.modes > 0) rate = rate + TurnRate(step_.bending, step_.bending_state, g);
+    Vector<T> rate = step_.motion().w;
+    if (step_.bending().modes > 0) rate = rate + TurnRate(step_.bending(), step_.bending_state(), g);
     M sampled = NoLane<T>();
     for (int lane = 0; lane < kLanes; ++lane)
       SetLane(sampled, lane, static_cast<long>(Lane(tick_, lane)) % gyro.sample_ticks == 0);
@@ -156,7 +155,7 @@ Vector<T> Batch<T>::GyroRates(Vector<T> unit_rad_s) {
 template <class T>
 void Batch<T>::DriftOn() {
   unit_.drift_rad_s = gyro_bias_rad_s_;
-  const unsigned acting = Bits(live_ & (step_.phase.burning | coasting_));
+  const unsigned acting = Bits(live_ & (step_.phase().burning | coasting_));
   for (int lane = 0; lane < kLanes; ++lane) {
     if (!(acting >> lane & 1u) || !slot_[lane].record->noisy) continue;
     double noise[kAxes];
@@ -169,9 +168,9 @@ void Batch<T>::DriftOn() {
 
 template <class T>
 void Batch<T>::FlyGimbals() {
-  const M powered = live_ & step_.phase.burning;
+  const M powered = live_ & step_.phase().burning;
   if (!Any(powered)) return;
-  const bool listed = step_.plant.nozzles_listed;
+  const bool listed = step_.plant().nozzles_listed;
   AxisMemory<T> of_roll;
   if (listed) of_roll = axes_[kRoll];
   if (All(powered))
@@ -191,7 +190,7 @@ template <bool kAll>
 void Batch<T>::FlyGimbalsOf(M powered) {
   T program[FeedForwardRows::kRowSize], foreign[kAxes];
   const T* const fed = FedForward(program);
-  StepGimbals<kAll>(model_.autopilot(), loop_, powered, time_s_ - step_.phase.ignition_s, measured_angle_rad_,
+  StepGimbals<kAll>(model_.autopilot(), loop_, powered, time_s_ - step_.phase().ignition_s, measured_angle_rad_,
                     measured_rate_rad_s_, fed, has_plugin_ ? PluginCommands(powered, fed, foreign) : nullptr,
                     axes_, gimbals_);
 }
@@ -200,7 +199,7 @@ void Batch<T>::FlyGimbalsOf(M powered) {
 template <class T>
 const T* Batch<T>::PluginCommands(M powered, const T* program, T* command) {
   T of_roll, of_pitch;
-  Effectiveness(loop_, time_s_ - step_.phase.ignition_s, of_roll, of_pitch);
+  Effectiveness(loop_, time_s_ - step_.phase().ignition_s, of_roll, of_pitch);
   const T* angle = &measured_angle_rad_.x;
   const T* rate = &measured_rate_rad_s_.x;
   const T* body = &measured_body_rate_rad_s_.x;
@@ -209,7 +208,7 @@ const T* Batch<T>::PluginCommands(M powered, const T* program, T* command) {
     double wanted[kAxes] = {};
     if (Bits(powered) >> lane & 1u) {
       input.time_s = Lane(time_s_, lane);
-      input.since_ignition_s = Lane(time_s_ - step_.phase.ignition_s, lane);
+      input.since_ignition_s = Lane(time_s_ - step_.phase().ignition_s, lane);
       input.stage = static_cast<std::uint32_t>(slot_[lane].stack);
       for (int axis = 0; axis < kAxes; ++axis) {
         input.angle_error_rad[axis] = Lane(angle[axis], lane);
@@ -249,7 +248,7 @@ void Batch<T>::PassCommands(M powered) {
   const T roll = gimbals_.deflection_rad[kRoll], pitch = gimbals_.deflection_rad[kPitch];
   const T yaw = gimbals_.deflection_rad[kYaw];
   T* entry = delay_line_[line_at_];
-  const bool listed = step_.plant.nozzles_listed;
+  const bool listed = step_.plant().nozzles_listed;
   if (listed) {
     Allocate(allocation_, roll, pitch, yaw, entry);
   } else {
@@ -259,11 +258,7 @@ void Batch<T>::PassCommands(M powered) {
     entry[3] = yaw - roll;
   }
   if (same_delay_) {
-    const T* leaving = delay_line_[(line_at_ - common_delay_) & (kDelayLine - 1)];
-    for (int i = 0; i < kNozzles; ++i)
-      step_.command_rad[i] = Select(powered, leaving[i], step_.command_rad[i]);
-    for (int i = kNozzles; listed && i < kDrives; ++i)
-      step_.command_rad[i] = Select(powered, leaving[i], step_.command_rad[i]);
+    step_.Command(powered, delay_line_[(line_at_ - common_delay_) & (kDelayLine - 1)]);
   } else {
     const unsigned acting = Bits(powered);
     for (int lane = 0; lane < kLanes; ++lane) {
@@ -272,16 +267,14 @@ void Batch<T>::PassCommands(M powered) {
       const bool within = slot.part_delay_s > 0.0;
       const T* next = delay_line_[(line_at_ - slot.whole_delay) & (kDelayLine - 1)];
       const T* now = delay_line_[(line_at_ - slot.whole_delay - (within ? 1 : 0)) & (kDelayLine - 1)];
-      for (int i = 0; i < (listed ? kDrives : kNozzles); ++i) {
-        Lane(step_.command_rad[i], lane) = Lane(now[i], lane);
+      step_.CommandLane(lane, now);
+      for (int i = 0; i < (listed ? kDrives : kNozzles); ++i)
         Lane(next_command_rad_[i], lane) = Lane(next[i], lane);
-      }
       if (!within) continue;
       slot.switch_s = Lane(time_s_, lane) + slot.part_delay_s;
       SetStop(lane);
     }
   }
-  step_.MarkCommanded(powered);
   line_at_ = (line_at_ + 1) & (kDelayLine - 1);
 }
 
@@ -301,14 +294,8 @@ void Batch<T>::RollByThrusters(M rolling) {
   const double couple_n = 2.0 * rcs.thrust_n;
   const double flow_kg = couple_n / (rcs.specific_impulse_s * kStandardGravity) * tick_s_;  // a tick
   const T direction = thrusters_[kRoll].direction;
-  T& torque = step_.phase.control_torque_n_m.x;
-  const T anew = T(couple_n * rcs.roll_arm_m) * direction;
-  const M changes = rolling & ((anew < torque) | (anew > torque));
-  torque = Select(rolling, anew, torque);
-  const M fires = rolling & (Abs(direction) > T(0.0));
-  step_.phase.expelled_kg =
-      Select(fires, Fma(T(flow_kg), Abs(direction), step_.phase.expelled_kg), step_.phase.expelled_kg);
-  step_.MarkStale(changes | fires);
+  step_.SetControlTorque(rolling, kRoll, T(couple_n * rcs.roll_arm_m) * direction);
+  step_.Expel(rolling & (Abs(direction) > T(0.0)), T(flow_kg), Abs(direction));
 }
 
 /// The coast: decisions fall on the thrusters' cycles, and on the first tick after an event.
@@ -334,23 +321,17 @@ void Batch<T>::FlyThrusters() {
   const double flow_kg = couple_n / (rcs.specific_impulse_s * kStandardGravity) * tick_s_;  // a tick
   const T* angle = &measured_angle_rad_.x;
   const T* rate = &measured_rate_rad_s_.x;
-  T* torque = &step_.phase.control_torque_n_m.x;
-  M changes = NoLane<T>();
   T firing(0.0);
   for (int axis = 0; axis < kAxes; ++axis) {
     StepThrusters(logic, autopilot.thruster_minimum_cycles, coasting_, angle[axis], rate[axis],
                   thrusters_[axis]);
     const T direction = thrusters_[axis].direction;
-    const T anew = T(couple_n * (axis == kRoll ? rcs.roll_arm_m : rcs.pitch_yaw_arm_m)) * direction;
-    changes = changes | (coasting_ & ((anew < torque[axis]) | (anew > torque[axis])));
-    torque[axis] = Select(coasting_, anew, torque[axis]);
+    step_.SetControlTorque(coasting_, axis,
+                           T(couple_n * (axis == kRoll ? rcs.roll_arm_m : rcs.pitch_yaw_arm_m)) * direction);
     firing = firing + Abs(direction);
   }
-  const M fires = coasting_ & (firing > T(0.0));
   // A firing counts for as long as it lasts: until the next decision.
-  const T expelled = Fma(T(flow_kg) * (next_tick_ - tick_), firing, step_.phase.expelled_kg);
-  step_.phase.expelled_kg = Select(fires, expelled, step_.phase.expelled_kg);
-  step_.MarkStale(changes | fires);
+  step_.Expel(coasting_ & (firing > T(0.0)), T(flow_kg) * (next_tick_ - tick_), firing);
 }
 
 /// Closed-loop guidance sees the lanes whose time has come: each by itself, as ordinary code.
@@ -394,22 +375,22 @@ void Batch<T>::Meter(M powered) {
   const LyapunovSample<T> law{pitch.v, Select(pitch.v_rate_sign < T(0.0), T(1.0), T(0.0)),
                               loop_.axes[kPitch].p11, pitch.departure_norm2};
   metrics_.AddPowered(powered, T(tick_s_), time_s_, {-angle_rad_.x, pitch_error, -angle_rad_.z}, law);
-  const bool listed = step_.plant.nozzles_listed;
+  const bool listed = step_.plant().nozzles_listed;
   if (listed)
-    metrics_.AddDeflections(powered, time_s_, step_.drive_state, step_.second_drives, step_.command_rad,
+    metrics_.AddDeflections(powered, time_s_, step_.drive_state(), step_.second_drives(), step_.command_rad(),
                             allocation_);
   else
-    metrics_.AddDeflections(powered, time_s_, step_.drive_state, step_.command_rad, loop_.limit_rad);
+    metrics_.AddDeflections(powered, time_s_, step_.drive_state(), step_.command_rad(), loop_.limit_rad);
 
   const M is_transient =
-      InTransient(time_s_, time_s_ - step_.phase.ignition_s, step_.now().altitude_m, definition_.kick_start_s,
+      InTransient(time_s_, time_s_ - step_.phase().ignition_s, step_.now().altitude_m, definition_.kick_start_s,
                   definition_.kick_end_s, gust_bottom_m_, gust_top_m_);
   const unsigned metered = Bits(powered), interrupted = Bits(is_transient);
-  const T* n = step_.drive_state.angle_rad;
+  const T* n = step_.drive_state().angle_rad;
   T roll = T(0.25) * ((n[0] - n[1]) + (n[2] - n[3]));
   T pitch_angle = T(0.5) * (n[0] + n[1]), yaw = T(0.5) * (n[2] + n[3]);
   if (listed) {
-    const T* second = step_.second_drives.angle_rad;
+    const T* second = step_.second_drives().angle_rad;
     roll = FeltAbout(allocation_, kRoll, n, second);
     pitch_angle = FeltAbout(allocation_, kPitch, n, second);
     yaw = FeltAbout(allocation_, kYaw, n, second);
@@ -459,7 +440,7 @@ template <class T>
 void Batch<T>::CheckEnds() {
   const T lost_angle2(kLostAngle_rad * kLostAngle_rad);
   const T angle2 = Dot(angle_rad_, angle_rad_);
-  const T rate2 = Dot(step_.motion.w, step_.motion.w);
+  const T rate2 = Dot(step_.motion().w, step_.motion().w);
   const T lowest(definition_.vehicle.site.altitude_m - kImpactDepth_m);
   const M is_lost = angle2 > lost_angle2;
   const M is_fast = rate2 > T(kLostRate_rad_s * kLostRate_rad_s);

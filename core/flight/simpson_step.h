@@ -35,89 +35,150 @@ inline namespace DISPERSA_ISA {
 inline constexpr int kDelayLine = 128;
 inline constexpr int kModalValues = kPlanes * kModes;
 
+/// What is written through a setter is marked by it, so that the next evaluation sees it.
 template <class T>
 class StepState {
  public:
   // ---- what moves ----
-  Motion<T> motion;
-  DriveState<T> drive_state;
-  DriveState<T> second_drives;  ///< of second hinges; nothing touches them unless nozzles are listed
-  BendingState<T> bending_state;
+  const Motion<T>& motion() const { return motion_; }
+  const DriveState<T>& drive_state() const { return drive_state_; }
+  /// Of second hinges.
+  const DriveState<T>& second_drives() const { return second_drives_; }
+  const BendingState<T>& bending_state() const { return bending_state_; }
   // ---- what it moves under ----
-  Plant<T> plant;
-  Phase<T> phase;
-  Drives<T> drives;
-  Bending<T> bending;
-  T command_rad[kDrives];  ///< at the actuators
+  const Plant<T>& plant() const { return plant_; }
+  const Phase<T>& phase() const { return phase_; }
+  const Bending<T>& bending() const { return bending_; }
+  const T* command_rad() const { return command_rad_; }  ///< at the actuators, kDrives
 
-  void Configure(const Earth& earth, double tick_s) {
-    earth_ = earth;
+  /// No lane flies: each computes along on numbers that do no harm.
+  void Configure(const LauncherPlant& nominal, double tick_s) {
+    __builtin_memset(static_cast<void*>(this), 0, sizeof *this);
+    earth_ = nominal.environment.earth;
     air_ = &StandardAir();
     tick_s_ = tick_s;
     start_ = &points_[0];
     middle_ = &points_[1];
     end_ = &points_[2];
+    for (int lane = 0; lane < kWidth<T>; ++lane) SetStack(lane, nominal, 0);
+    motion_.p.x = T(earth_.equatorial_radius_m);
+    motion_.q.w = T(1.0);
   }
 
-  /// A lane before lift-off: nothing burns, nothing is commanded.
-  void StartFlight(int lane) {
-    SetLane(phase.burning, lane, false);
-    SetLane(phase.burnt, lane, false);
-    SetLane(phase.boosting, lane, false);
-    Lane(phase.ignition_s, lane) = Lane(phase.expelled_kg, lane) = 0.0;
-    SetLane(phase.control_torque_n_m, lane, Zero<double>());
-    for (T& command : command_rad) Lane(command, lane) = 0.0;
+  // ---- a lane's flight ----
+  /// At y before lift-off, where nothing burns. `weather` must outlive the flight.
+  void StartFlight(int lane, const FlightWeather& weather, const double* y) {
+    SetLane(phase_.burning, lane, false);
+    SetLane(phase_.boosting, lane, false);
+    Lane(phase_.ignition_s, lane) = Lane(phase_.expelled_kg, lane) = 0.0;
+    SetLane(phase_.control_torque_n_m, lane, Zero<double>());
+    SetLane(plant_.weather, lane, weather);
+    WriteLane(lane, y);
   }
+  /// A stack that has not burnt and is not commanded. `plant` must outlive the flight.
+  void SetStack(int lane, const LauncherPlant& plant, int stack) {
+    SetLane(plant_, lane, plant, stack);
+    SetLane(bending_, lane, plant, stack);
+    SetDrives(lane, plant.stacks.data()[stack].gimbal, -1);
+    SetLane(phase_.burnt, lane, false);
+    ClearCommands(lane);
+    MarkMoved(lane);
+  }
+  void SetMass(int lane, const StackMass& mass) {
+    SetLane(plant_.stack, lane, mass);
+    MarkMoved(lane);
+  }
+  void Ignite(int lane, double time_s, bool lights_boosters) {
+    Lane(phase_.ignition_s, lane) = time_s;
+    SetLane(phase_.burning, lane, true);
+    SetLane(phase_.boosting, lane, lights_boosters && plant_.has_boosters);
+    SetLane(phase_.control_torque_n_m, lane, Zero<double>());
+    ClearCommands(lane);
+    MarkMoved(lane);
+  }
+  void StickNozzle(int lane, const Gimbal& gimbal, int nozzle, double angle_rad) {
+    Lane(drive_state_.angle_rad[nozzle], lane) = angle_rad;
+    SetDrives(lane, gimbal, nozzle);
+    MarkMoved(lane);
+  }
+  /// The same burn until an end in the future: what holds now goes on to hold.
+  void ShortenBurn(int lane, const MotorBurn& burn) { SetLane(plant_.burn, lane, burn); }
+  /// The thrust bends here, or its slope jumps.
+  void PassKink(int lane) { MarkMoved(lane); }
+  void BurnOut(int lane) {
+    SetLane(phase_.burning, lane, false);
+    SetLane(phase_.burnt, lane, true);
+    SetLane(phase_.control_torque_n_m, lane, Zero<double>());
+    MarkMoved(lane);
+  }
+  void BurnOutBoosters(int lane) {
+    SetLane(phase_.boosting, lane, false);
+    MarkMoved(lane);
+  }
+  /// Lets go of what belongs to the flight. The lane computes on, for nobody.
+  void EndFlight(int lane) {
+    plant_.weather.profile[lane] = nullptr;
+    plant_.burn.curve[lane] = plant_.beside.burn.curve[lane] = nullptr;
+    bending_.table[lane] = nullptr;
+    SetLane(phase_.burning, lane, false);
+    SetLane(phase_.boosting, lane, false);
+  }
+
   void ReadLane(int lane, double* y) const {
-    const T* values = reinterpret_cast<const T*>(&motion);
+    const T* values = reinterpret_cast<const T*>(&motion_);
     for (int i = 0; i < kRigidBodySize; ++i) y[i] = Lane(values[i], lane);
     for (int i = 0; i < kNozzles; ++i) {
-      y[kNozzleAngle + i] = Lane(drive_state.angle_rad[i], lane);
-      y[kNozzleRate + i] = Lane(drive_state.rate_rad_s[i], lane);
+      y[kNozzleAngle + i] = Lane(drive_state_.angle_rad[i], lane);
+      y[kNozzleRate + i] = Lane(drive_state_.rate_rad_s[i], lane);
     }
-    const T* modal = reinterpret_cast<const T*>(&bending_state);
+    const T* modal = reinterpret_cast<const T*>(&bending_state_);
     for (int i = kModalState; i < kBentLauncherSize; ++i) y[i] = Lane(modal[i - kModalState], lane);
     for (int i = 0; i < kNozzles; ++i) {
-      y[kSecondAngle + i] = Lane(second_drives.angle_rad[i], lane);
-      y[kSecondRate + i] = Lane(second_drives.rate_rad_s[i], lane);
+      y[kSecondAngle + i] = Lane(second_drives_.angle_rad[i], lane);
+      y[kSecondRate + i] = Lane(second_drives_.rate_rad_s[i], lane);
     }
   }
   void WriteLane(int lane, const double* y) {
-    T* values = reinterpret_cast<T*>(&motion);
+    T* values = reinterpret_cast<T*>(&motion_);
     for (int i = 0; i < kRigidBodySize; ++i) Lane(values[i], lane) = y[i];
     for (int i = 0; i < kNozzles; ++i) {
-      Lane(drive_state.angle_rad[i], lane) = y[kNozzleAngle + i];
-      Lane(drive_state.rate_rad_s[i], lane) = y[kNozzleRate + i];
+      Lane(drive_state_.angle_rad[i], lane) = y[kNozzleAngle + i];
+      Lane(drive_state_.rate_rad_s[i], lane) = y[kNozzleRate + i];
     }
-    T* modal = reinterpret_cast<T*>(&bending_state);
+    T* modal = reinterpret_cast<T*>(&bending_state_);
     for (int i = kModalState; i < kBentLauncherSize; ++i) Lane(modal[i - kModalState], lane) = y[i];
     for (int i = 0; i < kNozzles; ++i) {
-      Lane(second_drives.angle_rad[i], lane) = y[kSecondAngle + i];
-      Lane(second_drives.rate_rad_s[i], lane) = y[kSecondRate + i];
+      Lane(second_drives_.angle_rad[i], lane) = y[kSecondAngle + i];
+      Lane(second_drives_.rate_rad_s[i], lane) = y[kSecondRate + i];
     }
+    MarkMoved(lane);
   }
-  /// After a lane's drives have changed.
-  void SetTickTransition(int lane) { SetTransition(tick_over_half_, lane, 0.5 * tick_s_); }
 
-  /// The lane's state or plant has jumped: nothing of the last step's end holds.
-  void MarkMoved(int lane) {
-    SetLane(moved_, lane, true);
-    SetLane(stale_, lane, true);
-    SetLane(jumped_, lane, true);
-    any_stale_ = any_moved_ = true;
+  // ---- commands ----
+  /// `angle_rad`: of kNozzles, and of kDrives where nozzles are listed.
+  void Command(MaskOf<T> lanes, const T* angle_rad) {
+    for (int i = 0; i < kNozzles; ++i) command_rad_[i] = Select(lanes, angle_rad[i], command_rad_[i]);
+    for (int i = kNozzles; plant_.nozzles_listed && i < kDrives; ++i)
+      command_rad_[i] = Select(lanes, angle_rad[i], command_rad_[i]);
+    MarkCommanded(lanes);
   }
-  /// The lanes' mass or torque has changed in place.
-  void MarkStale(MaskOf<T> lanes) {
-    if (!Any(lanes)) return;
-    stale_ = stale_ | lanes;
-    jumped_ = jumped_ | lanes;
-    any_stale_ = true;
+  void CommandLane(int lane, const T* angle_rad) {
+    for (int i = 0; i < (plant_.nozzles_listed ? kDrives : kNozzles); ++i)
+      Lane(command_rad_[i], lane) = Lane(angle_rad[i], lane);
+    MaskOf<T> commanded = NoLane<T>();
+    SetLane(commanded, lane, true);
+    MarkCommanded(commanded);
   }
-  /// The lanes' commands have changed, which counts at once where nozzles have mass.
-  void MarkCommanded(MaskOf<T> lanes) {
-    if (!plant.nozzles_have_mass) return;
-    stale_ = stale_ | lanes;
-    any_stale_ = true;
+  /// The reaction control's, about a body axis.
+  void SetControlTorque(MaskOf<T> lanes, int axis, T torque_n_m) {
+    T& torque = phase_.control_torque_n_m[axis];
+    MarkStale(lanes & ((torque_n_m < torque) | (torque_n_m > torque)));
+    torque = Select(lanes, torque_n_m, torque);
+  }
+  /// So many times so much leaves through thrusters.
+  void Expel(MaskOf<T> lanes, T kg_each, T times) {
+    phase_.expelled_kg = Select(lanes, Fma(kg_each, times, phase_.expelled_kg), phase_.expelled_kg);
+    MarkStale(lanes);
   }
 
   /// Where the lanes stand: valid after EvaluateStart.
@@ -129,29 +190,29 @@ class StepState {
   /// The largest bending moment of the lanes' bodies now.
   LargestMoment<T> LargestMomentNow() const {
     const Point& now = *start_;
-    const Vector<T>&w = motion.w, &dw = now.rates.dw;
+    const Vector<T>&w = motion_.w, &dw = now.rates.dw;
     const T per_kg = now.masses.inverse_mass_1_kg;
     const BodyMotion<T> moved{now.masses.propellant_kg,          now.masses.cg_station_m,
                               per_kg * now.instant.force_n.y,    per_kg * now.instant.force_n.z,
                               Fma(-w.x, w.z, dw.y),              Fma(w.x, w.y, dw.z)};
-    if (bending.modes == 0) return LargestOf(plant.sections, now.instant.normal, moved);
-    return LargestOf(plant.sections, now.instant.normal, moved,
-                     MomentsByBending(bending, bending_state, now.modal, plant.sections, now.instant.normal));
+    if (bending_.modes == 0) return LargestOf(plant_.sections, now.instant.normal, moved);
+    return LargestOf(plant_.sections, now.instant.normal, moved,
+                     MomentsByBending(bending_, bending_state_, now.modal, plant_.sections, now.instant.normal));
   }
 
   /// Of one lane at its time, evaluated anew.
   Instant<double> InstantOf(int lane, T time_s) const {
     Point p;
-    SetAir(motion.p, p.around);
+    SetAir(motion_.p, p.around);
     SetMasses(time_s, p.masses);
-    SetNozzles(drive_state, command_rad, p.nozzles);
-    if (plant.nozzles_listed) {
-      SetNozzles(second_drives, command_rad + kNozzles, p.second);
-      bending.modes > 0 ? SetRates<true, true>(motion, bending_state, p, p.rates, &p.instant)
-                        : SetRates<false, true>(motion, bending_state, p, p.rates, &p.instant);
+    SetNozzles(drive_state_, command_rad_, p.nozzles);
+    if (plant_.nozzles_listed) {
+      SetNozzles(second_drives_, command_rad_ + kNozzles, p.second);
+      bending_.modes > 0 ? SetRates<true, true>(motion_, bending_state_, p, p.rates, &p.instant)
+                         : SetRates<false, true>(motion_, bending_state_, p, p.rates, &p.instant);
     } else {
-      bending.modes > 0 ? SetRates<true, false>(motion, bending_state, p, p.rates, &p.instant)
-                        : SetRates<false, false>(motion, bending_state, p, p.rates, &p.instant);
+      bending_.modes > 0 ? SetRates<true, false>(motion_, bending_state_, p, p.rates, &p.instant)
+                         : SetRates<false, false>(motion_, bending_state_, p, p.rates, &p.instant);
     }
     return LaneOf(p.instant, lane);
   }
@@ -166,20 +227,20 @@ class StepState {
 
   /// Evaluates the lanes at which the last step's end does not hold any more.
   void EvaluateStart(T time_s) {
-    if (plant.nozzles_listed)
-      bending.modes > 0 ? EvaluateStartOf<true, true>(time_s) : EvaluateStartOf<false, true>(time_s);
+    if (plant_.nozzles_listed)
+      bending_.modes > 0 ? EvaluateStartOf<true, true>(time_s) : EvaluateStartOf<false, true>(time_s);
     else
-      bending.modes > 0 ? EvaluateStartOf<true, false>(time_s) : EvaluateStartOf<false, false>(time_s);
+      bending_.modes > 0 ? EvaluateStartOf<true, false>(time_s) : EvaluateStartOf<false, false>(time_s);
   }
 
   /// Moves lanes from their times to others; `all`: the rest does not fly. Returns those that hold a finite
   /// state; the others stay as they were.
   MaskOf<T> Step(MaskOf<T> moving, bool all, T from_s, T to_s) {
-    if (plant.nozzles_listed)
-      return bending.modes > 0 ? StepOf<true, true>(moving, all, from_s, to_s)
-                               : StepOf<false, true>(moving, all, from_s, to_s);
-    return bending.modes > 0 ? StepOf<true, false>(moving, all, from_s, to_s)
-                             : StepOf<false, false>(moving, all, from_s, to_s);
+    if (plant_.nozzles_listed)
+      return bending_.modes > 0 ? StepOf<true, true>(moving, all, from_s, to_s)
+                                : StepOf<false, true>(moving, all, from_s, to_s);
+    return bending_.modes > 0 ? StepOf<true, false>(moving, all, from_s, to_s)
+                              : StepOf<false, false>(moving, all, from_s, to_s);
   }
 
  private:
@@ -203,22 +264,22 @@ class StepState {
     if (!any_stale_) return;
     Point p;
     if (any_moved_) {
-      SetAir(motion.p, p.around);
+      SetAir(motion_.p, p.around);
       Blend<T>(moved_, p.around, start_->around);
       any_moved_ = false;
     }
     SetMasses(time_s, p.masses);
     Blend<T>(stale_, p.masses, start_->masses);
-    SetNozzles(drive_state, command_rad, p.nozzles);
+    SetNozzles(drive_state_, command_rad_, p.nozzles);
     Blend<T>(stale_, p.nozzles, start_->nozzles);
     if constexpr (kListed) {
-      SetNozzles(second_drives, command_rad + kNozzles, p.second);
+      SetNozzles(second_drives_, command_rad_ + kNozzles, p.second);
       Blend<T>(stale_, p.second, start_->second);
     }
-    Blend<T>(stale_, CgVelocityAt(start_->masses, motion.q), start_->cg_velocity);
+    Blend<T>(stale_, CgVelocityAt(start_->masses, motion_.q), start_->cg_velocity);
     const ModalForce<T> modal = start_->modal;
     if constexpr (kBends) SetShapes(start_->masses);
-    SetRates<kBends, kListed>(motion, bending_state, *start_, p.rates, &p.instant);
+    SetRates<kBends, kListed>(motion_, bending_state_, *start_, p.rates, &p.instant);
     Blend<T>(stale_, p.rates, start_->rates);
     Blend<T>(stale_, p.instant, start_->instant);
     const Rates<T> none{Zero<T>(), Zero<T>()};
@@ -236,33 +297,33 @@ class StepState {
   // share: inlined into all of them, in each kind of vehicle, they are three quarters of what the compiler
   // has to do, and no faster.
   DISPERSA_OUT_OF_LINE void SetAir(const Vector<T>& position_m, Surroundings<T>& around) const {
-    around = SurroundingsAt(earth_, *air_, plant.weather, position_m);
+    around = SurroundingsAt(earth_, *air_, plant_.weather, position_m);
   }
   DISPERSA_OUT_OF_LINE void SetMasses(T time_s, TimedMasses<T>& masses) const {
-    masses = MassesAt(plant, phase, time_s);
+    masses = MassesAt(plant_, phase_, time_s);
   }
   DISPERSA_OUT_OF_LINE void SetNozzles(const DriveState<T>& s, const T* commands_rad,
                                        Nozzles<T>& nozzles) const {
     nozzles = NozzlesAt(s.angle_rad);
-    if (plant.nozzles_have_mass) SetAccelerations(drives, commands_rad, s, nozzles);
+    if (plant_.nozzles_have_mass) SetAccelerations(drives_, commands_rad, s, nozzles);
   }
   DISPERSA_OUT_OF_LINE void SetShapes(const TimedMasses<T>& masses) {
-    ShapesAt(bending, masses.propellant_kg);
+    ShapesAt(bending_, masses.propellant_kg);
   }
   template <bool kBends, bool kListed>
   DISPERSA_OUT_OF_LINE void SetRates(const Motion<T>& s, const BendingState<T>& bent_by, Point& at,
                                      Rates<T>& rates, Instant<T>* instant) const {
-    rates = RatesOf(earth_.rotation_rate_rad_s, plant, phase, Any(phase.burning), at.around, at.masses,
+    rates = RatesOf(earth_.rotation_rate_rad_s, plant_, phase_, Any(phase_.burning), at.around, at.masses,
                     TurnedAs<kListed>(at), s, BodyAs<kBends>(bent_by, at.modal), instant);
   }
   DISPERSA_OUT_OF_LINE void SetDriven(const DriveState<T>& from, const T* commands_rad,
                                       const Transition<T>& over, T step_s, DriveState<T>& to) const {
-    to = Propagate(drives, commands_rad, over, step_s, from);
+    to = Propagate(drives_, commands_rad, over, step_s, from);
   }
   DISPERSA_OUT_OF_LINE void SetSwung(const Swing<T>& over, const ModalForce<T>& from,
                                      const ModalForce<T>& rise, const ModalForce<T>& curve,
                                      BendingState<T>& bent) const {
-    bent = Swung(bending, over, bending_state, from, rise, curve);
+    bent = Swung(bending_, over, bending_state_, from, rise, curve);
   }
 
   template <bool kListed>
@@ -275,17 +336,17 @@ class StepState {
   template <bool kBends>
   DISPERSA_INLINE auto BodyAs(const BendingState<T>& bent_by, ModalForce<T>& modal) const {
     if constexpr (kBends)
-      return BentBody<T>{&bending, &bent_by, &modal};
+      return BentBody<T>{&bending_, &bent_by, &modal};
     else
       return StraightBody{};
   }
   // How C moves through the body where the lanes are turned by q, in I.
   DISPERSA_INLINE Vector<T> CgVelocityAt(const TimedMasses<T>& masses, const Turn<T>& q) const {
-    return plant.flow_coriolis ? CgVelocityOf(masses, q) : Zero<T>();
+    return plant_.flow_coriolis ? CgVelocityOf(masses, q) : Zero<T>();
   }
   void SetTransition(Transition<T>& over, int lane, double time_s) const {
     const Transition<double> one =
-        TransitionOver(Lane(drives.bandwidth2_1_s2, lane), Lane(drives.twice_damping_1_s, lane), time_s);
+        TransitionOver(Lane(drives_.bandwidth2_1_s2, lane), Lane(drives_.twice_damping_1_s, lane), time_s);
     Lane(over.aa, lane) = one.aa;
     Lane(over.ar, lane) = one.ar;
     Lane(over.ra, lane) = one.ra;
@@ -297,6 +358,43 @@ class StepState {
     return one;
   }
 
+  // The lane's state or plant has jumped: nothing of the last step's end holds.
+  void MarkMoved(int lane) {
+    SetLane(moved_, lane, true);
+    SetLane(stale_, lane, true);
+    SetLane(jumped_, lane, true);
+    any_stale_ = any_moved_ = true;
+  }
+  // The lanes' mass or torque has changed in place.
+  void MarkStale(MaskOf<T> lanes) {
+    if (!Any(lanes)) return;
+    stale_ = stale_ | lanes;
+    jumped_ = jumped_ | lanes;
+    any_stale_ = true;
+  }
+  // The lanes' commands have changed, which counts at once where nozzles have mass.
+  void MarkCommanded(MaskOf<T> lanes) {
+    if (!plant_.nozzles_have_mass) return;
+    stale_ = stale_ | lanes;
+    any_stale_ = true;
+  }
+  void ClearCommands(int lane) {
+    for (T& command : command_rad_) Lane(command, lane) = 0.0;
+  }
+  void SetDrives(int lane, const Gimbal& gimbal, int stuck_nozzle) {
+    SetLane(drives_, lane, gimbal, stuck_nozzle, 0.5 * tick_s_);
+    SetTransition(tick_over_half_, lane, 0.5 * tick_s_);
+  }
+
+  Motion<T> motion_;
+  DriveState<T> drive_state_;
+  DriveState<T> second_drives_;  ///< nothing touches them unless nozzles are listed
+  BendingState<T> bending_state_;
+  Plant<T> plant_;
+  Phase<T> phase_;
+  Drives<T> drives_;
+  Bending<T> bending_;
+  T command_rad_[kDrives];  ///< at the actuators
   Earth earth_;
   const AirTable* air_;
   double tick_s_;
@@ -323,23 +421,23 @@ MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
   Point& c = *end_;
 
   // In the coast angles, rates and commands are zero, and stay so.
-  DriveState<T> drives_half = drive_state, drives_end = drive_state, second_end;
-  if constexpr (kListed) second_end = second_drives;
-  const auto driven = phase.burning | phase.burnt;
+  DriveState<T> drives_half = drive_state_, drives_end = drive_state_, second_end;
+  if constexpr (kListed) second_end = second_drives_;
+  const auto driven = phase_.burning | phase_.burnt;
   if (Any(driven)) {
     const auto odd = moving & driven & (Abs(h - T(tick_s_)) > T(kSameStep_s));
     Transition<T> over = tick_over_half_;
     if (Any(odd))
       for (int lane = 0; lane < kWidth<T>; ++lane)
         if (Bits(odd) >> lane & 1u) SetTransition(over, lane, 0.5 * Lane(h, lane));
-    SetDriven(drive_state, command_rad, over, half, drives_half);
-    SetDriven(drives_half, command_rad, over, half, drives_end);
-    SetNozzles(drives_half, command_rad, b.nozzles);
-    SetNozzles(drives_end, command_rad, c.nozzles);
+    SetDriven(drive_state_, command_rad_, over, half, drives_half);
+    SetDriven(drives_half, command_rad_, over, half, drives_end);
+    SetNozzles(drives_half, command_rad_, b.nozzles);
+    SetNozzles(drives_end, command_rad_, c.nozzles);
     if constexpr (kListed) {
-      const T* const commands = command_rad + kNozzles;
+      const T* const commands = command_rad_ + kNozzles;
       DriveState<T> second_half;
-      SetDriven(second_drives, commands, over, half, second_half);
+      SetDriven(second_drives_, commands, over, half, second_half);
       SetDriven(second_half, commands, over, half, second_end);
       SetNozzles(second_half, commands, b.second);
       SetNozzles(second_end, commands, c.second);
@@ -351,30 +449,30 @@ MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
   SetMasses(from_s + half, b.masses);
   if constexpr (kBends) {
     SetShapes(b.masses);
-    over_half = SwingOver(bending, half);
-    over_step = Twice(bending, over_half);
+    over_half = SwingOver(bending_, half);
+    over_step = Twice(bending_, over_half);
     SetSwung(over_half, a.modal, a.modal_slopes, no_curvature, bent_middle);
   }
 
   Motion<T> middle;
-  middle.p = Along(Along(motion.p, half, motion.v), h2_8, a.rates.dv);
-  middle.v = Along(Along(motion.v, half, a.rates.dv), h2_8, a.slopes.dv);
-  middle.q = TurnedBy(motion.q, Along(half * motion.w, h2_8, a.rates.dw));
-  middle.w = Along(Along(motion.w, half, a.rates.dw), h2_8, a.slopes.dw);
+  middle.p = Along(Along(motion_.p, half, motion_.v), h2_8, a.rates.dv);
+  middle.v = Along(Along(motion_.v, half, a.rates.dv), h2_8, a.slopes.dv);
+  middle.q = TurnedBy(motion_.q, Along(half * motion_.w, h2_8, a.rates.dw));
+  middle.w = Along(Along(motion_.w, half, a.rates.dw), h2_8, a.slopes.dw);
   b.cg_velocity = CgVelocityAt(b.masses, middle.q);
-  if (plant.flow_coriolis) middle.p = Along(middle.p, T(0.5) * half, a.cg_velocity + b.cg_velocity);
+  if (plant_.flow_coriolis) middle.p = Along(middle.p, T(0.5) * half, a.cg_velocity + b.cg_velocity);
   SetAir(middle.p, b.around);
-  SetRates<kBends, kListed>(middle, kBends ? bent_middle : bending_state, b, b.rates, nullptr);
+  SetRates<kBends, kListed>(middle, kBends ? bent_middle : bending_state_, b, b.rates, nullptr);
 
   Motion<T> end;
-  end.p = Along(Along(motion.p, h, motion.v), h2_6, Along(a.rates.dv, two, b.rates.dv));
-  const Vector<T> turn = Along(h * motion.w, h2_6, Along(a.rates.dw, two, b.rates.dw));
-  end.q = TurnedBy(motion.q, Along(turn, h2 * h * T(1.0 / 12.0), Cross(middle.w, b.rates.dw)));
-  end.v = Along(motion.v, h, b.rates.dv);
-  end.w = Along(motion.w, h, b.rates.dw);
+  end.p = Along(Along(motion_.p, h, motion_.v), h2_6, Along(a.rates.dv, two, b.rates.dv));
+  const Vector<T> turn = Along(h * motion_.w, h2_6, Along(a.rates.dw, two, b.rates.dw));
+  end.q = TurnedBy(motion_.q, Along(turn, h2 * h * T(1.0 / 12.0), Cross(middle.w, b.rates.dw)));
+  end.v = Along(motion_.v, h, b.rates.dv);
+  end.w = Along(motion_.w, h, b.rates.dw);
   SetMasses(to_s, c.masses);
   c.cg_velocity = CgVelocityAt(c.masses, end.q);
-  if (plant.flow_coriolis)
+  if (plant_.flow_coriolis)
     end.p = Along(end.p, sixth, Along(a.cg_velocity + c.cg_velocity, four, b.cg_velocity));
   SetAir(end.p, c.around);
   const T per_s = T(1.0) / h;
@@ -385,9 +483,9 @@ MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
     SetSwung(over_step, a.modal, rising, no_curvature, bent_end);
     SetShapes(c.masses);
   }
-  SetRates<kBends, kListed>(end, kBends ? bent_end : bending_state, c, c.rates, &c.instant);
-  end.v = Along(motion.v, sixth, Along(a.rates.dv + c.rates.dv, four, b.rates.dv));
-  end.w = Along(motion.w, sixth, Along(a.rates.dw + c.rates.dw, four, b.rates.dw));
+  SetRates<kBends, kListed>(end, kBends ? bent_end : bending_state_, c, c.rates, &c.instant);
+  end.v = Along(motion_.v, sixth, Along(a.rates.dv + c.rates.dv, four, b.rates.dv));
+  end.w = Along(motion_.w, sixth, Along(a.rates.dw + c.rates.dw, four, b.rates.dw));
   c.slopes.dv = per_s * Along(Along(a.rates.dv, three, c.rates.dv), -four, b.rates.dv);
   c.slopes.dw = per_s * Along(Along(a.rates.dw, three, c.rates.dw), -four, b.rates.dw);
 
@@ -415,18 +513,18 @@ MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
     for (int i = 0; i < kModalValues; ++i) none = Fma((&bent_end.q_m[0][0])[i], T(0.0), none);
   const auto accepted = moving & (none <= T(0.0));
   if (all && !Any(moving & !accepted)) {
-    motion = end;
-    drive_state = drives_end;
-    if constexpr (kListed) second_drives = second_end;
-    if constexpr (kBends) bending_state = bent_end;
+    motion_ = end;
+    drive_state_ = drives_end;
+    if constexpr (kListed) second_drives_ = second_end;
+    if constexpr (kBends) bending_state_ = bent_end;
     Point* const last = start_;
     start_ = end_;
     end_ = last;
   } else {
-    Blend<T>(accepted, end, motion);
-    Blend<T>(accepted, drives_end, drive_state);
-    if constexpr (kListed) Blend<T>(accepted, second_end, second_drives);
-    if constexpr (kBends) Blend<T>(accepted, bent_end, bending_state);
+    Blend<T>(accepted, end, motion_);
+    Blend<T>(accepted, drives_end, drive_state_);
+    if constexpr (kListed) Blend<T>(accepted, second_end, second_drives_);
+    if constexpr (kBends) Blend<T>(accepted, bent_end, bending_state_);
     Blend<T>(accepted, c, *start_);
   }
   return accepted;

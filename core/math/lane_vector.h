@@ -11,6 +11,8 @@ template <class T>
 struct Vector {
   T x, y, z;
 
+  DISPERSA_INLINE T& operator[](int axis) { return axis == 0 ? x : axis == 1 ? y : z; }
+  DISPERSA_INLINE const T& operator[](int axis) const { return axis == 0 ? x : axis == 1 ? y : z; }
   friend DISPERSA_INLINE Vector operator+(Vector a, Vector b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
   friend DISPERSA_INLINE Vector operator-(Vector a, Vector b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
   friend DISPERSA_INLINE Vector operator*(T k, Vector a) { return {k * a.x, k * a.y, k * a.z}; }

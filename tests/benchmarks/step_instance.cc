@@ -13,17 +13,11 @@ using Value = LaneValue<DISPERSA_LANES>;
 // Every value and lane set before the first step.
 lanes::StepState<Value>* NewStep(const StepSetting& setting) {
   lanes::StepState<Value>* step = new lanes::StepState<Value>;
-  __builtin_memset(static_cast<void*>(step), 0, sizeof *step);
-  step->Configure(setting.plant->environment.earth, setting.tick_s);
+  step->Configure(*setting.plant, setting.tick_s);
   for (int lane = 0; lane < DISPERSA_LANES; ++lane) {
-    step->StartFlight(lane);
-    lanes::SetLane(step->plant.weather, lane, *setting.weather);
-    lanes::SetLane(step->plant, lane, *setting.plant, 0);
-    lanes::SetLane(step->drives, lane, setting.plant->stacks.data()[0].gimbal, -1);
-    step->SetTickTransition(lane);
-    lanes::SetLane(step->phase.burning, lane, setting.burning);
-    step->WriteLane(lane, setting.y);
-    step->MarkMoved(lane);
+    step->StartFlight(lane, *setting.weather, setting.y);
+    step->SetStack(lane, *setting.plant, 0);
+    if (setting.burning) step->Ignite(lane, 0.0, false);
   }
   return step;
 }
@@ -36,10 +30,7 @@ void DISPERSA_INSTANCE(Step, DISPERSA_LANES)(const StepSetting& setting, long ti
   const auto all = !lanes::NoLane<Value>();
   for (long i = 0; i < ticks; ++i) {
     const long since = i % ticks_a_second;
-    for (int lane = 0; since == 0 && lane < DISPERSA_LANES; ++lane) {
-      step->WriteLane(lane, setting.y);
-      step->MarkMoved(lane);
-    }
+    for (int lane = 0; since == 0 && lane < DISPERSA_LANES; ++lane) step->WriteLane(lane, setting.y);
     const double from_s = setting.from_s + static_cast<double>(since) * setting.tick_s;
     step->Step(all, true, Value(from_s), Value(from_s + setting.tick_s));
   }
@@ -53,11 +44,11 @@ void DISPERSA_INSTANCE(Evaluate, DISPERSA_LANES)(const StepSetting& setting, lon
   lanes::Rates<Value> rates;
   for (long i = 0; i < evaluations; ++i) {
     const lanes::Surroundings<Value> around =
-        lanes::SurroundingsAt(earth, StandardAir(), at->plant.weather, at->motion.p);
-    const lanes::TimedMasses<Value> masses = lanes::MassesAt(at->plant, at->phase, Value(setting.from_s));
-    const lanes::Nozzles<Value> nozzles = lanes::NozzlesAt(at->drive_state.angle_rad);
-    rates = lanes::RatesOf<Value>(earth.rotation_rate_rad_s, at->plant, at->phase, setting.burning, around,
-                                  masses, nozzles, at->motion, lanes::StraightBody{}, nullptr);
+        lanes::SurroundingsAt(earth, StandardAir(), at->plant().weather, at->motion().p);
+    const lanes::TimedMasses<Value> masses = lanes::MassesAt(at->plant(), at->phase(), Value(setting.from_s));
+    const lanes::Nozzles<Value> nozzles = lanes::NozzlesAt(at->drive_state().angle_rad);
+    rates = lanes::RatesOf<Value>(earth.rotation_rate_rad_s, at->plant(), at->phase(), setting.burning, around,
+                                  masses, nozzles, at->motion(), lanes::StraightBody{}, nullptr);
     // The compiler may neither keep what the next evaluation reads nor leave out what this one found.
     asm volatile("" : : "r"(at), "r"(&rates) : "memory");
   }

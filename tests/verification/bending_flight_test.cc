@@ -124,18 +124,11 @@ TEST(BendingFlight, ASteadyForceBendsTheBodyAsItBendsTheBeam) {
 std::unique_ptr<lanes::StepState<double>> StepOf(const InSpace& flight, double tick_s) {
   static const FlightWeather calm;
   auto step = std::make_unique<lanes::StepState<double>>();
-  *step = {};
-  step->Configure(flight.plant.environment.earth, tick_s);
-  step->StartFlight(0);
-  lanes::SetLane(step->plant.weather, 0, calm);
-  lanes::SetLane(step->plant, 0, flight.plant, 0);
-  lanes::SetLane(step->bending, 0, flight.plant, 0);
-  lanes::SetLane(step->drives, 0, flight.plant.stacks[0].gimbal, -1);
-  step->SetTickTransition(0);
-  step->phase.burning = flight.phase.burning;
-  for (int i = 0; i < kNozzles; ++i) step->command_rad[i] = flight.phase.command_rad[static_cast<std::size_t>(i)];
-  step->WriteLane(0, flight.y.data());
-  step->MarkMoved(0);
+  step->Configure(flight.plant, tick_s);
+  step->StartFlight(0, calm, flight.y.data());
+  step->SetStack(0, flight.plant, 0);
+  if (flight.phase.burning) step->Ignite(0, flight.phase.ignition_s, false);
+  step->CommandLane(0, flight.phase.command_rad.data());
   return step;
 }
 

@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "core/dynamics/aero_grid.h"
 #include "core/dynamics/integrator.h"
@@ -54,26 +57,26 @@ class Stretch {
     EXPECT_TRUE(cvode.Advance(kFrom_s, kTo_s, 1, y));
     return ReadState(y);
   }
-  RigidBodyState InSteps(int steps) {
-    const FlightWeather calm;
+  std::unique_ptr<lanes::StepState<double>> Before(double tick_s) const {
+    static const FlightWeather calm;
     auto step = std::make_unique<lanes::StepState<double>>();
-    *step = {};
-    step->Configure(plant_.environment.earth, (kTo_s - kFrom_s) / steps);
-    step->StartFlight(0);
-    lanes::SetLane(step->plant.weather, 0, calm);
-    lanes::SetLane(step->plant, 0, plant_, 0);
-    lanes::SetLane(step->drives, 0, plant_.stacks[0].gimbal, -1);
-    step->SetTickTransition(0);
-    step->phase.burning = true;
-    for (int i = 0; i < kNozzles; ++i) step->command_rad[i] = phase_.command_rad[static_cast<std::size_t>(i)];
-    step->WriteLane(0, y_);
-    step->MarkMoved(0);
+    step->Configure(plant_, tick_s);
+    step->StartFlight(0, calm, y_);
+    step->SetStack(0, plant_, 0);
+    step->Ignite(0, 0.0, false);
+    step->CommandLane(0, phase_.command_rad.data());
+    return step;
+  }
+  RigidBodyState InSteps(int steps) {
+    const auto step = Before((kTo_s - kFrom_s) / steps);
     const auto time = [&](int k) { return kFrom_s + (kTo_s - kFrom_s) * k / steps; };
     for (int k = 0; k < steps; ++k) EXPECT_TRUE(step->Step(true, true, time(k), time(k + 1)));
     double y[kLauncherSize];
     step->ReadLane(0, y);
     return ReadState(y);
   }
+  LauncherPlant& plant() { return plant_; }
+  const double* y() const { return y_; }
 
  private:
   static void Rhs(double t, const double* y, double* dydt, void* context) {
@@ -108,22 +111,60 @@ TEST(SimpsonStep, HasItsOrder) {
   }
 }
 
+// Whatever is written between two steps: the next one goes on from it, as if nothing had been evaluated before.
+TEST(SimpsonStep, SeesWhatWasWritten) {
+  using Step = lanes::StepState<double>;
+  constexpr double kTick_s = 0.01;
+  Stretch stretch;
+  Gimbal& gimbal = stretch.plant().stacks[0].gimbal;
+  gimbal.nozzle_mass_kg = 200.0;
+  gimbal.nozzle_cg_m = 0.3;
+  gimbal.nozzle_inertia_kg_m2 = 40.0;
+  StackMass lighter = stretch.plant().stacks[0].mass;
+  lighter.fixed_mass_kg -= 50.0;
+  double moved[kLauncherSize] = {};
+  std::copy_n(stretch.y(), kRigidLauncherSize, moved);
+  moved[3] += 1.0;
+  const double command_rad[kDrives] = {0.01, -0.01, 0.01, 0.01};
+  const std::pair<const char*, std::function<void(Step&)>> writers[] = {
+      {"WriteLane", [&](Step& step) { step.WriteLane(0, moved); }},
+      {"SetStack", [&](Step& step) { step.SetStack(0, stretch.plant(), 1); }},
+      {"SetMass", [&](Step& step) { step.SetMass(0, lighter); }},
+      {"Ignite", [](Step& step) { step.Ignite(0, 5.0, false); }},
+      {"BurnOut", [](Step& step) { step.BurnOut(0); }},
+      {"StickNozzle", [&](Step& step) { step.StickNozzle(0, gimbal, 1, 0.03); }},
+      {"Command", [&](Step& step) { step.Command(true, command_rad); }},
+      {"CommandLane", [&](Step& step) { step.CommandLane(0, command_rad); }},
+      {"SetControlTorque", [](Step& step) { step.SetControlTorque(true, kPitch, 300.0); }},
+      {"Expel", [](Step& step) { step.Expel(true, 5.0, 2.0); }},
+  };
+  const auto after = [&](const std::function<void(Step&)>& write, bool evaluated) {
+    const auto step = stretch.Before(kTick_s);
+    if (evaluated) step->EvaluateStart(kFrom_s);
+    write(*step);
+    EXPECT_TRUE(step->Step(true, true, kFrom_s, kFrom_s + kTick_s));
+    std::vector<double> y(kLauncherSize);
+    step->ReadLane(0, y.data());
+    return y;
+  };
+  const std::vector<double> unwritten = after([](Step&) {}, true);
+  for (const auto& [name, write] : writers) {
+    const std::vector<double> y = after(write, true);
+    EXPECT_EQ(y, after(write, false)) << name;
+    EXPECT_NE(y, unwritten) << name << " writes something";
+  }
+}
+
 TEST(SimpsonStep, AStateThatIsNotFiniteIsNotTaken) {
   auto step = std::make_unique<lanes::StepState<lanes::Pack<4>>>();
-  __builtin_memset(static_cast<void*>(step.get()), 0, sizeof *step);
   const LauncherPlant plant = BuildNominalPlant(LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml"));
-  step->Configure(plant.environment.earth, 0.01);
+  step->Configure(plant, 0.01);
   const FlightWeather calm;
   double y[kLauncherSize] = {6.4e6, 0, 0, 0, 100, 0, 1};
   for (int lane = 0; lane < 4; ++lane) {
-    step->StartFlight(lane);
-    lanes::SetLane(step->plant.weather, lane, calm);
-    lanes::SetLane(step->plant, lane, plant, 0);
-    lanes::SetLane(step->drives, lane, plant.stacks[0].gimbal, -1);
-    step->SetTickTransition(lane);
     y[10] = lane == 2 ? std::numeric_limits<double>::quiet_NaN() : 0.1;
-    step->WriteLane(lane, y);
-    step->MarkMoved(lane);
+    step->StartFlight(lane, calm, y);
+    step->SetStack(lane, plant, 0);
   }
   auto moving = lanes::NoLane<lanes::Pack<4>>();
   for (int lane = 0; lane < 4; ++lane) lanes::SetLane(moving, lane, true);
