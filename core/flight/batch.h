@@ -38,8 +38,7 @@ class Batch {
   /// What of a lane is no value of T.
   struct Slot {
     FlightRecord* record = nullptr;  ///< null: the lane does not fly
-    const FlightEvent* next_event = nullptr;
-    const FlightEvent* last_event = nullptr;  ///< one past
+    std::size_t next_event = 0;  ///< of its record's
     int stack = 0;
     unsigned jettisoned = 0;  ///< LauncherPhase's
     int stuck_nozzle = -1;
@@ -54,6 +53,12 @@ class Batch {
   void SetStack(int lane, int stack);
   void SetMass(int lane);
   void SetStop(int lane);
+  /// Null: the lane's last event has happened.
+  const FlightEvent* NextEvent(int lane) const {
+    const Slot& slot = slot_[lane];
+    const auto& events = slot.record->events;
+    return slot.next_event < events.size() ? events.data() + slot.next_event : nullptr;
+  }
   /// Whether guidance gives the lane a reference of its own.
   bool IsSteered(int lane) const {
     return definition_.guidance.closed_loop && slot_[lane].record != nullptr &&
@@ -215,8 +220,6 @@ void Batch<T>::Start(int lane, FlightRecord* record) {
   Slot& slot = slot_[lane];
   slot = Slot{};
   slot.record = record;
-  slot.next_event = record->events.data();
-  slot.last_event = slot.next_event + record->events.size();
   ++flying_;
   SetLane(live_, lane, true);
   SetLane(coasting_, lane, false);
@@ -256,8 +259,7 @@ void Batch<T>::Start(int lane, FlightRecord* record) {
     return;
   }
   // What happened before lift-off happens at lift-off.
-  while (slot.record != nullptr && slot.next_event < slot.last_event &&
-         slot.next_event->time_s <= kSameInstant_s)
+  while (slot.record != nullptr && NextEvent(lane) != nullptr && NextEvent(lane)->time_s <= kSameInstant_s)
     Happen(lane);
   if (slot.record != nullptr) SetStop(lane);
 }
@@ -270,7 +272,8 @@ void Batch<T>::SetStack(int lane, int stack) {
   slot.switch_s = kFarFuture;
   step_.SetStack(lane, slot.record->plant, stack);
   SetMass(lane);
-  if (step_.plant().nozzles_listed) SetLane(allocation_, lane, slot.record->plant.stacks.data()[stack].layout);
+  if (step_.plant().nozzles_listed)
+    SetLane(allocation_, lane, slot.record->plant.stacks.data()[stack].layout);
 }
 
 /// Of what the lane's stack still carries.
@@ -285,9 +288,8 @@ void Batch<T>::SetMass(int lane) {
 
 template <class T>
 void Batch<T>::SetStop(int lane) {
-  const Slot& slot = slot_[lane];
-  const double event_s = slot.next_event < slot.last_event ? slot.next_event->time_s : kFarFuture;
-  Lane(stop_s_, lane) = Min(event_s, slot.switch_s);
+  const FlightEvent* next = NextEvent(lane);
+  Lane(stop_s_, lane) = Min(next != nullptr ? next->time_s : kFarFuture, slot_[lane].switch_s);
 }
 
 template <class T>

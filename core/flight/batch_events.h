@@ -29,8 +29,8 @@ void Batch<T>::AdvanceThroughEvents(T target) {
       Slot& slot = slot_[lane];
       const double now = Lane(time_s_, lane), end = Lane(target, lane);
       double goal = end;
-      if (slot.next_event < slot.last_event) {
-        const double event_s = slot.next_event->time_s;
+      if (const FlightEvent* next = NextEvent(lane)) {
+        const double event_s = next->time_s;
         if (event_s < end - kSameInstant_s && event_s > now + kSameInstant_s) {
           goal = event_s;
           due |= 1u << lane;
@@ -108,7 +108,8 @@ void Batch<T>::Judge(M moving, T from, T to, StateValues* states, M& failed) {
 template <class T>
 void Batch<T>::Happen(int lane) {
   Slot& slot = slot_[lane];
-  const FlightEvent& event = *slot.next_event++;
+  const FlightEvent event = *NextEvent(lane);
+  ++slot.next_event;
   FlightRecord& record = *slot.record;
   switch (event.kind) {
     case EventKind::kIgnition:
@@ -138,7 +139,8 @@ void Batch<T>::Happen(int lane) {
       step_.ReadLane(lane, y);
       const double time_s = Lane(time_s_, lane);
       // Straight from the burn: what was evaluated last is at an earlier time.
-      const double propellant_kg = record.plant.stacks.data()->burn.Propellant(time_s - Lane(step_.phase().ignition_s, lane));
+      const double since_ignition_s = time_s - Lane(step_.phase().ignition_s, lane);
+      const double propellant_kg = record.plant.stacks.data()->burn.Propellant(since_ignition_s);
       record.LetGoOfBoosters(slot.jettisoned, time_s, propellant_kg, y);
       slot.jettisoned |= kBoostersGone;
       step_.WriteLane(lane, y);
@@ -154,7 +156,7 @@ void Batch<T>::Happen(int lane) {
   record.AddToDigest(Lane(time_s_, lane), y);
   if (record.watched) record.WatchEvent(ViewOf(lane));
   // The last event is the last stage's burnout.
-  if (slot.next_event == slot.last_event) End(lane, Outcome::kCompleted, "");
+  if (NextEvent(lane) == nullptr) End(lane, Outcome::kCompleted, "");
 }
 
 template <class T>

@@ -74,10 +74,7 @@ void Batch<T>::CutOff() {
     // By then it has burnt out.
     if (at_s >= Lane(step_.phase().ignition_s, lane) + record.plant.stacks.data()[slot.stack].burn.duration_s)
       continue;
-    const auto happened = slot.next_event - record.events.data();
     record.CutOff(slot.stack, at_s);
-    slot.next_event = record.events.data() + happened;
-    slot.last_event = record.events.data() + record.events.size();
     step_.ShortenBurn(lane, record.plant.stacks.data()[slot.stack].burn);
     SetStop(lane);
   }
@@ -190,9 +187,9 @@ template <bool kAll>
 void Batch<T>::FlyGimbalsOf(M powered) {
   T program[FeedForwardRows::kRowSize], foreign[kAxes];
   const T* const fed = FedForward(program);
-  StepGimbals<kAll>(model_.autopilot(), loop_, powered, time_s_ - step_.phase().ignition_s, measured_angle_rad_,
-                    measured_rate_rad_s_, fed, has_plugin_ ? PluginCommands(powered, fed, foreign) : nullptr,
-                    axes_, gimbals_);
+  StepGimbals<kAll>(model_.autopilot(), loop_, powered, time_s_ - step_.phase().ignition_s,
+                    measured_angle_rad_, measured_rate_rad_s_, fed,
+                    has_plugin_ ? PluginCommands(powered, fed, foreign) : nullptr, axes_, gimbals_);
 }
 
 /// What a law that is not ours commands: each lane by itself, as ordinary code.
@@ -294,7 +291,9 @@ void Batch<T>::RollByThrusters(M rolling) {
   const double couple_n = 2.0 * rcs.thrust_n;
   const double flow_kg = couple_n / (rcs.specific_impulse_s * kStandardGravity) * tick_s_;  // a tick
   const T direction = thrusters_[kRoll].direction;
-  step_.SetControlTorque(rolling, kRoll, T(couple_n * rcs.roll_arm_m) * direction);
+  Vector<T> torque_n_m = step_.phase().control_torque_n_m;
+  torque_n_m.x = T(couple_n * rcs.roll_arm_m) * direction;
+  step_.SetControlTorque(rolling, torque_n_m);
   step_.Expel(rolling & (Abs(direction) > T(0.0)), T(flow_kg), Abs(direction));
 }
 
@@ -310,7 +309,8 @@ void Batch<T>::FlyThrusters() {
     const long tick = static_cast<long>(Lane(tick_, lane));
     const long cycle_end = (tick / logic.cycle_ticks + 1) * logic.cycle_ticks;
     // The first tick at or after the next event: rounded up.
-    const double event_ticks = (slot_[lane].next_event->time_s - kSameInstant_s) / tick_s_;
+    const FlightEvent& event = slot_[lane].record->events.data()[slot_[lane].next_event];
+    const double event_ticks = (event.time_s - kSameInstant_s) / tick_s_;
     long event_tick = static_cast<long>(event_ticks);
     if (static_cast<double>(event_tick) < event_ticks) ++event_tick;
     long next = cycle_end < event_tick ? cycle_end : event_tick;
@@ -321,15 +321,16 @@ void Batch<T>::FlyThrusters() {
   const double flow_kg = couple_n / (rcs.specific_impulse_s * kStandardGravity) * tick_s_;  // a tick
   const T* angle = &measured_angle_rad_.x;
   const T* rate = &measured_rate_rad_s_.x;
+  Vector<T> torque_n_m;
   T firing(0.0);
   for (int axis = 0; axis < kAxes; ++axis) {
     StepThrusters(logic, autopilot.thruster_minimum_cycles, coasting_, angle[axis], rate[axis],
                   thrusters_[axis]);
     const T direction = thrusters_[axis].direction;
-    step_.SetControlTorque(coasting_, axis,
-                           T(couple_n * (axis == kRoll ? rcs.roll_arm_m : rcs.pitch_yaw_arm_m)) * direction);
+    torque_n_m[axis] = T(couple_n * (axis == kRoll ? rcs.roll_arm_m : rcs.pitch_yaw_arm_m)) * direction;
     firing = firing + Abs(direction);
   }
+  step_.SetControlTorque(coasting_, torque_n_m);
   // A firing counts for as long as it lasts: until the next decision.
   step_.Expel(coasting_ & (firing > T(0.0)), T(flow_kg) * (next_tick_ - tick_), firing);
 }
@@ -383,8 +384,8 @@ void Batch<T>::Meter(M powered) {
     metrics_.AddDeflections(powered, time_s_, step_.drive_state(), step_.command_rad(), loop_.limit_rad);
 
   const M is_transient =
-      InTransient(time_s_, time_s_ - step_.phase().ignition_s, step_.now().altitude_m, definition_.kick_start_s,
-                  definition_.kick_end_s, gust_bottom_m_, gust_top_m_);
+      InTransient(time_s_, time_s_ - step_.phase().ignition_s, step_.now().altitude_m,
+                  definition_.kick_start_s, definition_.kick_end_s, gust_bottom_m_, gust_top_m_);
   const unsigned metered = Bits(powered), interrupted = Bits(is_transient);
   const T* n = step_.drive_state().angle_rad;
   T roll = T(0.25) * ((n[0] - n[1]) + (n[2] - n[3]));

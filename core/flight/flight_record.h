@@ -67,7 +67,7 @@ class FlightRecord {
   const FlightOptions options;
   LauncherPlant plant;  ///< an engine that is cut off at a velocity changes its burns
   const FlightWeather weather;
-  std::vector<FlightEvent> events;  ///< their number and order stay, but for CutOff
+  std::vector<FlightEvent> events;  ///< those that have happened stay in their places
   StateValues lift_off;
   const char* refusal = nullptr;  ///< why its inputs cannot be flown; null: they can
   double believed_attitude[4];    ///< q_IB (w, x, y, z) that the inertial unit is aligned to at lift-off

@@ -169,11 +169,13 @@ class StepState {
     SetLane(commanded, lane, true);
     MarkCommanded(commanded);
   }
-  /// The reaction control's, about a body axis.
-  void SetControlTorque(MaskOf<T> lanes, int axis, T torque_n_m) {
-    T& torque = phase_.control_torque_n_m[axis];
-    MarkStale(lanes & ((torque_n_m < torque) | (torque_n_m > torque)));
-    torque = Select(lanes, torque_n_m, torque);
+  /// The reaction control's, body axes.
+  void SetControlTorque(MaskOf<T> lanes, Vector<T> torque_n_m) {
+    Vector<T>& now = phase_.control_torque_n_m;
+    const auto differs = [](T a, T b) { return (a < b) | (a > b); };
+    MarkStale(lanes & (differs(torque_n_m.x, now.x) | differs(torque_n_m.y, now.y) |
+                       differs(torque_n_m.z, now.z)));
+    now = Select(lanes, torque_n_m, now);
   }
   /// So many times so much leaves through thrusters.
   void Expel(MaskOf<T> lanes, T kg_each, T times) {
@@ -196,8 +198,9 @@ class StepState {
                               per_kg * now.instant.force_n.y,    per_kg * now.instant.force_n.z,
                               Fma(-w.x, w.z, dw.y),              Fma(w.x, w.y, dw.z)};
     if (bending_.modes == 0) return LargestOf(plant_.sections, now.instant.normal, moved);
-    return LargestOf(plant_.sections, now.instant.normal, moved,
-                     MomentsByBending(bending_, bending_state_, now.modal, plant_.sections, now.instant.normal));
+    return LargestOf(
+        plant_.sections, now.instant.normal, moved,
+        MomentsByBending(bending_, bending_state_, now.modal, plant_.sections, now.instant.normal));
   }
 
   /// Of one lane at its time, evaluated anew.

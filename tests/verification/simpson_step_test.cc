@@ -111,7 +111,7 @@ TEST(SimpsonStep, HasItsOrder) {
   }
 }
 
-// Whatever is written between two steps: the next one goes on from it, as if nothing had been evaluated before.
+// The next step goes on from what was written, as if nothing had been evaluated before.
 TEST(SimpsonStep, SeesWhatWasWritten) {
   using Step = lanes::StepState<double>;
   constexpr double kTick_s = 0.01;
@@ -135,7 +135,7 @@ TEST(SimpsonStep, SeesWhatWasWritten) {
       {"StickNozzle", [&](Step& step) { step.StickNozzle(0, gimbal, 1, 0.03); }},
       {"Command", [&](Step& step) { step.Command(true, command_rad); }},
       {"CommandLane", [&](Step& step) { step.CommandLane(0, command_rad); }},
-      {"SetControlTorque", [](Step& step) { step.SetControlTorque(true, kPitch, 300.0); }},
+      {"SetControlTorque", [](Step& step) { step.SetControlTorque(true, {0.0, 300.0, 0.0}); }},
       {"Expel", [](Step& step) { step.Expel(true, 5.0, 2.0); }},
   };
   const auto after = [&](const std::function<void(Step&)>& write, bool evaluated) {
