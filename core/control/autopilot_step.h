@@ -84,8 +84,8 @@ DISPERSA_INLINE void StepGimbals(const AutopilotModel& model, GimbalLoop<T>& loo
   const T gain_over_both = loop.gain / (of_pitch * of_roll);
   const T per_pitch = gain_over_both * of_roll, per_roll = gain_over_both * of_pitch;
 
-  const T* angle = &angle_rad.x;
-  const T* rate = &rate_rad_s.x;
+  const T angle[kAxes] = {angle_rad.x, angle_rad.y, angle_rad.z};
+  const T rate[kAxes] = {rate_rad_s.x, rate_rad_s.y, rate_rad_s.z};
   for (int axis = 0; axis < kAxes; ++axis) {
     StepAxis<kAll>(model.laws.data()[axis].config, model.config.tick_s, loop.axes[axis], acting, angle[axis],
                    rate[axis], foreign_rad_s2 + (foreign_rad_s2 != nullptr ? axis : 0), axis == kPitch,

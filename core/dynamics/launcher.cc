@@ -49,8 +49,10 @@ struct OneLane {
     lanes::SetLane(bending, 0, from, now.stack);
     if (bending.modes == 0) return;
     lanes::ShapesAt(bending, masses.propellant_kg);
-    std::copy_n(y + kModalState, kPlanes * kModes, &bending_state.q_m[0][0]);
-    std::copy_n(y + kModalRate, kPlanes * kModes, &bending_state.rate_m_s[0][0]);
+    for (int plane = 0; plane < kPlanes; ++plane) {
+      std::copy_n(y + kModalState + plane * kModes, kModes, bending_state.q_m[plane]);
+      std::copy_n(y + kModalRate + plane * kModes, kModes, bending_state.rate_m_s[plane]);
+    }
   }
 
   static lanes::Plant<double> InPhase(const LauncherPlant& from, lanes::Plant<double> stack,

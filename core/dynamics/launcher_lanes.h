@@ -75,22 +75,20 @@ DISPERSA_INLINE void SetLane(Plant<T>& p, int lane, const LauncherPlant& plant, 
   p.nozzles_have_mass = plant.nozzles_have_mass();
   p.jet_damping = plant.jet_damping;
   p.flow_coriolis = plant.flow_coriolis;
-  const double* tilt = reinterpret_cast<const double*>(&s.thrust_tilt);  // column by column
-  for (int i = 0; i < 3; ++i) {
-    Lane(p.thrust_tilt.row[i].x, lane) = tilt[i];
-    Lane(p.thrust_tilt.row[i].y, lane) = tilt[3 + i];
-    Lane(p.thrust_tilt.row[i].z, lane) = tilt[6 + i];
-  }
+  const double* tilt = s.thrust_tilt.data();  // column by column
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column)
+      Lane(p.thrust_tilt.row[row][column], lane) = tilt[3 * column + row];
   Lane(p.thrust_offset_y_m, lane) = s.thrust_offset_y_m;
   Lane(p.thrust_offset_z_m, lane) = s.thrust_offset_z_m;
   bool departs = false;
   for (int i = 0; i < kNozzles; ++i) {
     const NozzleDeparture& nozzle = s.nozzles.data()[i];
-    const double* turn = reinterpret_cast<const double*>(&nozzle.tilt);  // column by column
+    const double* turn = nozzle.tilt.data();  // column by column
     for (int row = 0; row < 3; ++row)
       for (int column = 0; column < 3; ++column) {
         const double extra = nozzle.thrust_factor * turn[3 * column + row] - (row == column ? 1.0 : 0.0);
-        Lane((&p.nozzles[i].extra.row[row].x)[column], lane) = extra;
+        Lane(p.nozzles[i].extra.row[row][column], lane) = extra;
         departs |= extra != 0.0;
       }
     Lane(p.nozzles[i].offset_y_m, lane) = nozzle.offset_y_m;

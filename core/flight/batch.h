@@ -324,10 +324,8 @@ LauncherPhase Batch<T>::PhaseOf(int lane) const {
   phase.burnt = Bits(step_.phase().burnt) >> lane & 1u;
   phase.ignition_s = Lane(step_.phase().ignition_s, lane);
   phase.expelled_mass_kg = Lane(step_.phase().expelled_kg, lane);
-  double* torque = reinterpret_cast<double*>(&phase.control_torque_n_m);
-  torque[0] = Lane(step_.phase().control_torque_n_m.x, lane);
-  torque[1] = Lane(step_.phase().control_torque_n_m.y, lane);
-  torque[2] = Lane(step_.phase().control_torque_n_m.z, lane);
+  for (int axis = 0; axis < 3; ++axis)
+    phase.control_torque_n_m.data()[axis] = Lane(step_.phase().control_torque_n_m[axis], lane);
   for (int i = 0; i < kDrives; ++i) phase.command_rad.data()[i] = Lane(step_.command_rad()[i], lane);
   phase.stuck_nozzle = slot_[lane].stuck_nozzle;
   return phase;
@@ -340,11 +338,9 @@ LaneView Batch<T>::ViewOf(int lane) const {
   step_.ReadLane(lane, view.y);
   view.phase = PhaseOf(lane);
   view.coasting = Bits(coasting_) >> lane & 1u;
-  const T* angle = &angle_rad_.x;
-  const T* rate = &rate_rad_s_.x;
   for (int axis = 0; axis < kAxes; ++axis) {
-    view.error_angle_rad[axis] = Lane(angle[axis], lane);
-    view.error_rate_rad_s[axis] = Lane(rate[axis], lane);
+    view.error_angle_rad[axis] = Lane(angle_rad_[axis], lane);
+    view.error_rate_rad_s[axis] = Lane(rate_rad_s_[axis], lane);
     view.thrusters[axis] = static_cast<int>(Lane(thrusters_[axis].direction, lane));
     // Without thrust the lane's autopilot does not act; what stands there is its neighbours' doing.
     if (!view.phase.burning) continue;

@@ -197,9 +197,6 @@ template <class T>
 const T* Batch<T>::PluginCommands(M powered, const T* program, T* command) {
   T of_roll, of_pitch;
   Effectiveness(loop_, time_s_ - step_.phase().ignition_s, of_roll, of_pitch);
-  const T* angle = &measured_angle_rad_.x;
-  const T* rate = &measured_rate_rad_s_.x;
-  const T* body = &measured_body_rate_rad_s_.x;
   for (int lane = 0; lane < kLanes; ++lane) {
     dispersa_law_input input{};
     double wanted[kAxes] = {};
@@ -208,9 +205,9 @@ const T* Batch<T>::PluginCommands(M powered, const T* program, T* command) {
       input.since_ignition_s = Lane(time_s_ - step_.phase().ignition_s, lane);
       input.stage = static_cast<std::uint32_t>(slot_[lane].stack);
       for (int axis = 0; axis < kAxes; ++axis) {
-        input.angle_error_rad[axis] = Lane(angle[axis], lane);
-        input.rate_error_rad_s[axis] = Lane(rate[axis], lane);
-        input.rate_rad_s[axis] = Lane(body[axis], lane);
+        input.angle_error_rad[axis] = Lane(measured_angle_rad_[axis], lane);
+        input.rate_error_rad_s[axis] = Lane(measured_rate_rad_s_[axis], lane);
+        input.rate_rad_s[axis] = Lane(measured_body_rate_rad_s_[axis], lane);
         input.effectiveness_1_s2[axis] = Lane(axis == kRoll ? of_roll : of_pitch, lane);
         if (program != nullptr) input.program_rad_s2[axis] = Lane(program[axis], lane);
         input.saturation[axis] = Lane(axes_[axis].saturation, lane);
@@ -319,13 +316,11 @@ void Batch<T>::FlyThrusters() {
   }
   const double couple_n = 2.0 * rcs.thrust_n;
   const double flow_kg = couple_n / (rcs.specific_impulse_s * kStandardGravity) * tick_s_;  // a tick
-  const T* angle = &measured_angle_rad_.x;
-  const T* rate = &measured_rate_rad_s_.x;
   Vector<T> torque_n_m;
   T firing(0.0);
   for (int axis = 0; axis < kAxes; ++axis) {
-    StepThrusters(logic, autopilot.thruster_minimum_cycles, coasting_, angle[axis], rate[axis],
-                  thrusters_[axis]);
+    StepThrusters(logic, autopilot.thruster_minimum_cycles, coasting_, measured_angle_rad_[axis],
+                  measured_rate_rad_s_[axis], thrusters_[axis]);
     const T direction = thrusters_[axis].direction;
     torque_n_m[axis] = T(couple_n * (axis == kRoll ? rcs.roll_arm_m : rcs.pitch_yaw_arm_m)) * direction;
     firing = firing + Abs(direction);

@@ -1,6 +1,7 @@
 #include "core/flight/flight_inputs.h"
 
 #include <cassert>
+#include <cstring>
 
 #include "core/math/constants.h"
 
@@ -52,7 +53,8 @@ class ColumnList {
 
  private:
   std::size_t OffsetOf(const double* value) const {
-    return static_cast<std::size_t>(value - reinterpret_cast<const double*>(&nominal_));
+    const char* const first = reinterpret_cast<const char*>(&nominal_);
+    return static_cast<std::size_t>(reinterpret_cast<const char*>(value) - first);
   }
 
   std::vector<InputColumn>& ColumnsWith(std::size_t stage) { return stage < kUsualStages ? columns_ : rare_; }
@@ -181,15 +183,17 @@ int FindInput(const std::string& name) {
 }
 
 double& InputValue(FlightInputs& inputs, int column) {
-  return reinterpret_cast<double*>(&inputs)[InputColumns()[static_cast<std::size_t>(column)].offset];
+  const std::size_t offset = InputColumns()[static_cast<std::size_t>(column)].offset;
+  return *reinterpret_cast<double*>(reinterpret_cast<char*>(&inputs) + offset);
 }
 
 std::vector<double> InputValues(const FlightInputs& inputs, std::size_t stages) {
-  const double* first = reinterpret_cast<const double*>(&inputs);
   std::vector<double> values(InputCount(stages));
   for (std::size_t i = 0; i < values.size(); ++i) {
     const InputColumn& column = InputColumns()[i];
-    values[i] = first[column.offset] / column.unit + 0.0;  // + 0.0: results hold no -0
+    double value;
+    std::memcpy(&value, reinterpret_cast<const char*>(&inputs) + column.offset, sizeof value);
+    values[i] = value / column.unit + 0.0;  // + 0.0: results hold no -0
   }
   return values;
 }

@@ -127,7 +127,7 @@ struct FlightInputs {
 struct InputColumn {
   std::string name;
   double unit = 1.0;       ///< internal value = value in the unit of the name * unit
-  std::size_t offset = 0;  ///< in doubles from the start of FlightInputs
+  std::size_t offset = 0;  ///< in bytes from the start of FlightInputs
 };
 
 /// All columns in their fixed order, names without the prefix `input_`.

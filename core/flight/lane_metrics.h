@@ -74,8 +74,7 @@ struct LaneMetrics {
 
   /// Before a lane's first tick.
   DISPERSA_INLINE void StartFlight(int lane) {
-    T* all = reinterpret_cast<T*>(this);
-    for (unsigned i = 0; i < sizeof(LaneMetrics) / sizeof(T); ++i) Lane(all[i], lane) = 0.0;
+    for (unsigned i = 0; i < kValues<T, LaneMetrics>; ++i) SetLaneAt<T>(*this, i, lane, 0.0);
     for (ErrorStatistics<T>* e : {&pitch, &coast, &yaw, &roll, &deflection}) SetLane(*e, lane, ErrorSums{});
   }
   /// At a lane's burnout, and when it ends.

@@ -54,20 +54,18 @@ template <class T>
 DISPERSA_INLINE void StepGyro(const GyroModel& gyro, MaskOf<T> acting, MaskOf<T> fresh, MaskOf<T> sampled,
                               Vector<T> rate_rad_s, GyroMemory<T>& memory) {
   const DigitalSection& f = gyro.section;
-  const T* u = &rate_rad_s.x;
-  T* first = &memory.first.x;
-  T* second = &memory.second.x;
-  T* output = &memory.output_rad_s.x;
   for (int axis = 0; axis < 3; ++axis) {
-    const T at_rest2 = T(f.b2 - f.a2) * u[axis];
-    const T s2 = Select(fresh, at_rest2, second[axis]);
-    const T s1 = Select(fresh, Fma(T(f.b1 - f.a1), u[axis], at_rest2), first[axis]);
-    const T y = Fma(T(f.b0), u[axis], s1);
-    first[axis] = Select(acting, Fma(T(f.b1), u[axis], Fma(T(-f.a1), y, s2)), s1);
-    second[axis] = Select(acting, Fma(T(f.b2), u[axis], T(-f.a2) * y), s2);
+    const T u = rate_rad_s[axis];
+    T &first = memory.first[axis], &second = memory.second[axis], &output = memory.output_rad_s[axis];
+    const T at_rest2 = T(f.b2 - f.a2) * u;
+    const T s2 = Select(fresh, at_rest2, second);
+    const T s1 = Select(fresh, Fma(T(f.b1 - f.a1), u, at_rest2), first);
+    const T y = Fma(T(f.b0), u, s1);
+    first = Select(acting, Fma(T(f.b1), u, Fma(T(-f.a1), y, s2)), s1);
+    second = Select(acting, Fma(T(f.b2), u, T(-f.a2) * y), s2);
     const T quantum(gyro.quantum_rad_s);
     const T shown = gyro.quantum_rad_s > 0.0 ? Nearest(y / quantum) * quantum : y;
-    output[axis] = Select((acting & sampled) | fresh, shown, output[axis]);
+    output = Select((acting & sampled) | fresh, shown, output);
   }
 }
 

@@ -33,7 +33,6 @@ inline namespace DISPERSA_ISA {
 
 /// Commands of so many ticks are remembered for delays.
 inline constexpr int kDelayLine = 128;
-inline constexpr int kModalValues = kPlanes * kModes;
 
 /// What is written through a setter is marked by it, so that the next evaluation sees it.
 template <class T>
@@ -125,28 +124,26 @@ class StepState {
   }
 
   void ReadLane(int lane, double* y) const {
-    const T* values = reinterpret_cast<const T*>(&motion_);
-    for (int i = 0; i < kRigidBodySize; ++i) y[i] = Lane(values[i], lane);
+    for (unsigned i = 0; i < kValues<T, Motion<T>>; ++i) y[i] = LaneAt<T>(motion_, i, lane);
     for (int i = 0; i < kNozzles; ++i) {
       y[kNozzleAngle + i] = Lane(drive_state_.angle_rad[i], lane);
       y[kNozzleRate + i] = Lane(drive_state_.rate_rad_s[i], lane);
     }
-    const T* modal = reinterpret_cast<const T*>(&bending_state_);
-    for (int i = kModalState; i < kBentLauncherSize; ++i) y[i] = Lane(modal[i - kModalState], lane);
+    for (unsigned i = 0; i < kValues<T, BendingState<T>>; ++i)
+      y[kModalState + i] = LaneAt<T>(bending_state_, i, lane);
     for (int i = 0; i < kNozzles; ++i) {
       y[kSecondAngle + i] = Lane(second_drives_.angle_rad[i], lane);
       y[kSecondRate + i] = Lane(second_drives_.rate_rad_s[i], lane);
     }
   }
   void WriteLane(int lane, const double* y) {
-    T* values = reinterpret_cast<T*>(&motion_);
-    for (int i = 0; i < kRigidBodySize; ++i) Lane(values[i], lane) = y[i];
+    for (unsigned i = 0; i < kValues<T, Motion<T>>; ++i) SetLaneAt<T>(motion_, i, lane, y[i]);
     for (int i = 0; i < kNozzles; ++i) {
       Lane(drive_state_.angle_rad[i], lane) = y[kNozzleAngle + i];
       Lane(drive_state_.rate_rad_s[i], lane) = y[kNozzleRate + i];
     }
-    T* modal = reinterpret_cast<T*>(&bending_state_);
-    for (int i = kModalState; i < kBentLauncherSize; ++i) Lane(modal[i - kModalState], lane) = y[i];
+    for (unsigned i = 0; i < kValues<T, BendingState<T>>; ++i)
+      SetLaneAt<T>(bending_state_, i, lane, y[kModalState + i]);
     for (int i = 0; i < kNozzles; ++i) {
       Lane(second_drives_.angle_rad[i], lane) = y[kSecondAngle + i];
       Lane(second_drives_.rate_rad_s[i], lane) = y[kSecondRate + i];
@@ -398,6 +395,9 @@ class StepState {
   Drives<T> drives_;
   Bending<T> bending_;
   T command_rad_[kDrives];  ///< at the actuators
+  static_assert(kValues<T, Motion<T>> == kRigidBodySize);
+  static_assert(kModalState + kValues<T, BendingState<T>> == kBentLauncherSize);
+
   Earth earth_;
   const AirTable* air_;
   double tick_s_;
@@ -481,8 +481,10 @@ MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
   const T per_s = T(1.0) / h;
   if constexpr (kBends) {
     ModalForce<T> rising;
-    for (int i = 0; i < kModalValues; ++i)
-      (&rising.drive_m_s2[0][0])[i] = two * per_s * ((&b.modal.drive_m_s2[0][0])[i] - (&a.modal.drive_m_s2[0][0])[i]);
+    for (int plane = 0; plane < kPlanes; ++plane)
+      for (int mode = 0; mode < kModes; ++mode)
+        rising.drive_m_s2[plane][mode] =
+            two * per_s * (b.modal.drive_m_s2[plane][mode] - a.modal.drive_m_s2[plane][mode]);
     SetSwung(over_step, a.modal, rising, no_curvature, bent_end);
     SetShapes(c.masses);
   }
@@ -495,25 +497,28 @@ MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
   if constexpr (kBends) {
     // The parabola a + rise t + curve t² through the three.
     ModalForce<T> rise, curve;
-    for (int i = 0; i < kModalValues; ++i) {
-      const T from = (&a.modal.drive_m_s2[0][0])[i], at = (&b.modal.drive_m_s2[0][0])[i];
-      const T to = (&c.modal.drive_m_s2[0][0])[i];
-      (&rise.drive_m_s2[0][0])[i] = per_s * (four * at - three * from - to);
-      (&curve.drive_m_s2[0][0])[i] = two * per_s * per_s * ((from + to) - two * at);
-      (&c.modal_slopes.drive_m_s2[0][0])[i] = per_s * (from + three * to - four * at);
-    }
+    for (int plane = 0; plane < kPlanes; ++plane)
+      for (int mode = 0; mode < kModes; ++mode) {
+        const T from = a.modal.drive_m_s2[plane][mode], at = b.modal.drive_m_s2[plane][mode];
+        const T to = c.modal.drive_m_s2[plane][mode];
+        rise.drive_m_s2[plane][mode] = per_s * (four * at - three * from - to);
+        curve.drive_m_s2[plane][mode] = two * per_s * per_s * ((from + to) - two * at);
+        c.modal_slopes.drive_m_s2[plane][mode] = per_s * (from + three * to - four * at);
+      }
     SetSwung(over_step, a.modal, rise, curve, bent_end);
   }
 
   // 0 or not a number.
   T none(0.0);
-  const T* values = reinterpret_cast<const T*>(&end);
-  for (int i = 0; i < kRigidBodySize; ++i) none = Fma(values[i], T(0.0), none);
+  const auto take = [&none](const auto&... values) { ((none = Fma(values, T(0.0), none)), ...); };
+  take(end.p.x, end.p.y, end.p.z, end.v.x, end.v.y, end.v.z);
+  take(end.q.w, end.q.x, end.q.y, end.q.z, end.w.x, end.w.y, end.w.z);
   for (const T& rate : drives_end.rate_rad_s) none = Fma(rate, T(0.0), none);
   if constexpr (kListed)
     for (const T& rate : second_end.rate_rad_s) none = Fma(rate, T(0.0), none);
   if constexpr (kBends)
-    for (int i = 0; i < kModalValues; ++i) none = Fma((&bent_end.q_m[0][0])[i], T(0.0), none);
+    for (const auto& of_plane : bent_end.q_m)
+      for (const T& q_m : of_plane) none = Fma(q_m, T(0.0), none);
   const auto accepted = moving & (none <= T(0.0));
   if (all && !Any(moving & !accepted)) {
     motion_ = end;

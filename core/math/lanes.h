@@ -354,34 +354,51 @@ DISPERSA_INLINE T Horner(T x, double c0, Rest... rest) {
   return Fma(x, Horner(x, rest...), T(c0));
 }
 
-/// Replaces what a mask selects of a struct that consists of values alone, as one array.
+// Structs that consist of values alone are read and written value by value through their bytes: a pointer to
+// a member may not be used as one to an array of all of them.
+
+template <class T, class S>
+inline constexpr unsigned kValues = sizeof(S) / sizeof(T);
+/// Value i of a struct, and one lane of it.
+template <class T, class S>
+DISPERSA_INLINE T ValueAt(const S& s, unsigned i) {
+  T value;
+  const char* const from = reinterpret_cast<const char*>(&s) + i * sizeof value;
+  __builtin_memcpy(static_cast<void*>(&value), from, sizeof value);
+  return value;
+}
+template <class T, class S>
+DISPERSA_INLINE void SetValueAt(S& s, unsigned i, T value) {
+  char* const to = reinterpret_cast<char*>(&s) + i * sizeof value;
+  __builtin_memcpy(to, static_cast<const void*>(&value), sizeof value);
+}
+template <class T, class S>
+DISPERSA_INLINE double LaneAt(const S& s, unsigned i, int lane) {
+  return ValueAt<double>(s, i * static_cast<unsigned>(kWidth<T>) + static_cast<unsigned>(lane));
+}
+template <class T, class S>
+DISPERSA_INLINE void SetLaneAt(S& s, unsigned i, int lane, double value) {
+  SetValueAt(s, i * static_cast<unsigned>(kWidth<T>) + static_cast<unsigned>(lane), value);
+}
+
+/// Replaces what a mask selects of a struct.
 template <class T, class S>
 DISPERSA_INLINE void Blend(MaskOf<T> mask, const S& from, S& to) {
   static_assert(sizeof(S) % sizeof(T) == 0);
-  const T* source = reinterpret_cast<const T*>(&from);
-  T* target = reinterpret_cast<T*>(&to);
-  for (unsigned i = 0; i < sizeof(S) / sizeof(T); ++i) target[i] = Select(mask, source[i], target[i]);
+  for (unsigned i = 0; i < kValues<T, S>; ++i)
+    SetValueAt(to, i, Select(mask, ValueAt<T>(from, i), ValueAt<T>(to, i)));
 }
 
-/// Structs of values are moved lane by lane as arrays: `S` of T, `V` of 64-bit values in the same order.
+/// A lane of a struct: `S` of T, `V` of 64-bit values in the same order.
 template <class T, class S, class V>
 DISPERSA_INLINE void SetLaneValues(S& to, int lane, const V& from) {
-  static_assert(sizeof(S) / sizeof(T) == sizeof(V) / sizeof(double));
-  T* values = reinterpret_cast<T*>(&to);
-  for (unsigned i = 0; i < sizeof(V) / sizeof(double); ++i) {
-    double value;
-    __builtin_memcpy(&value, reinterpret_cast<const char*>(&from) + i * sizeof value, sizeof value);
-    Lane(values[i], lane) = value;
-  }
+  static_assert(kValues<T, S> == kValues<double, V>);
+  for (unsigned i = 0; i < kValues<T, S>; ++i) SetLaneAt<T>(to, i, lane, ValueAt<double>(from, i));
 }
 template <class T, class S, class V>
 DISPERSA_INLINE void ReadLaneValues(const S& from, int lane, V& to) {
-  static_assert(sizeof(S) / sizeof(T) == sizeof(V) / sizeof(double));
-  const T* values = reinterpret_cast<const T*>(&from);
-  for (unsigned i = 0; i < sizeof(V) / sizeof(double); ++i) {
-    const double value = Lane(values[i], lane);
-    __builtin_memcpy(reinterpret_cast<char*>(&to) + i * sizeof value, &value, sizeof value);
-  }
+  static_assert(kValues<T, S> == kValues<double, V>);
+  for (unsigned i = 0; i < kValues<T, S>; ++i) SetValueAt(to, i, LaneAt<T>(from, i, lane));
 }
 
 /// Truncated towards zero, lane by lane; values must be within int.
