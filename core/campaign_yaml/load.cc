@@ -223,6 +223,4 @@ FileCheck CheckFile(const InputSource& source) {
   return check;
 }
 
-std::vector<InputProblem> ValidateFile(const std::string& path) { return CheckFile(path).errors; }
-
 }  // namespace dispersa

@@ -91,8 +91,6 @@ struct FileCheck {
   std::optional<Vehicle> vehicle;  ///< of a valid vehicle or campaign
 };
 FileCheck CheckFile(const InputSource& source);
-/// Its errors.
-std::vector<InputProblem> ValidateFile(const std::string& path);
 
 /// 64 lower-case hexadecimal digits.
 std::string Sha256Hex(std::string_view bytes);

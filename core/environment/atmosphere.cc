@@ -238,8 +238,4 @@ std::vector<double> AtmosphereKinks() {
   return kinks;
 }
 
-double DynamicViscosity(double temperature_k) {
-  return 1.458e-6 * temperature_k * Sqrt(temperature_k) / (temperature_k + 110.4);
-}
-
 }  // namespace dispersa

@@ -35,8 +35,4 @@ AirState StandardAtmosphere1976(double geometric_altitude_m);
 /// not smooth: between two of them they are.
 std::vector<double> AtmosphereKinks();
 
-/// Sutherland's dynamic viscosity, Pa s, with the standard's constants (equation 51): 1.458e-6 and
-/// 110.4 K. The standard applies it up to 86 km; it holds for about 100 K to 1900 K.
-double DynamicViscosity(double temperature_k);
-
 }  // namespace dispersa

@@ -27,12 +27,6 @@ Vector3 Gravitation(const Earth& earth, const Vector3& p_EoP) {
   return {equatorial_factor * p_EoP.x(), equatorial_factor * p_EoP.y(), polar_factor * p_EoP.z()};
 }
 
-double GravitationalPotential(const Earth& earth, const Vector3& p_EoP) {
-  const double r2 = p_EoP.squaredNorm();
-  const double oblate = 0.5 * earth.j2 * Square(earth.equatorial_radius_m) / r2;
-  return earth.mu_m3_s2 / Sqrt(r2) * (1.0 - oblate * (3.0 * Square(p_EoP.z()) / r2 - 1.0));
-}
-
 Geodetic ToGeodetic(const Earth& earth, const Vector3& p_EoP_E) {
   const double a = earth.equatorial_radius_m;
   const double aspect = 1.0 - earth.flattening;  // b / a
@@ -75,18 +69,6 @@ Vector3 FromGeodetic(const Earth& earth, const Geodetic& place) {
           (normal_radius * (1.0 - e2) + place.altitude_m) * latitude.sin};
 }
 
-Geocentric ToGeocentric(const Vector3& p_EoP_E) {
-  const double rho2 = Square(p_EoP_E.x()) + Square(p_EoP_E.y());
-  return {Atan2(p_EoP_E.z(), Sqrt(rho2)), Atan2(p_EoP_E.y(), p_EoP_E.x()), Sqrt(rho2 + Square(p_EoP_E.z()))};
-}
-
-Vector3 FromGeocentric(const Geocentric& place) {
-  const SinCos latitude = SineCosine(place.latitude_rad);
-  const SinCos longitude = SineCosine(place.longitude_rad);
-  const double rho = place.radius_m * latitude.cos;
-  return {rho * longitude.cos, rho * longitude.sin, place.radius_m * latitude.sin};
-}
-
 Matrix3 NedAxes(double latitude_rad, double longitude_rad) {
   const SinCos latitude = SineCosine(latitude_rad);
   const SinCos longitude = SineCosine(longitude_rad);
@@ -97,23 +79,9 @@ Matrix3 NedAxes(double latitude_rad, double longitude_rad) {
   return R_EN;
 }
 
-Matrix3 EarthOrientation(const Earth& earth, double time_s) {
-  const SinCos turn = SineCosine(earth.rotation_rate_rad_s * time_s);
-  Matrix3 R_IE;
-  R_IE << turn.cos, -turn.sin, 0.0,  //
-      turn.sin, turn.cos, 0.0,       //
-      0.0, 0.0, 1.0;
-  return R_IE;
-}
-
 Vector3 InertialToEarth(const Earth& earth, double time_s, const Vector3& v_I) {
   const SinCos turn = SineCosine(earth.rotation_rate_rad_s * time_s);
   return {turn.cos * v_I.x() + turn.sin * v_I.y(), turn.cos * v_I.y() - turn.sin * v_I.x(), v_I.z()};
-}
-
-Vector3 EarthToInertial(const Earth& earth, double time_s, const Vector3& v_E) {
-  const SinCos turn = SineCosine(earth.rotation_rate_rad_s * time_s);
-  return {turn.cos * v_E.x() - turn.sin * v_E.y(), turn.sin * v_E.x() + turn.cos * v_E.y(), v_E.z()};
 }
 
 }  // namespace dispersa

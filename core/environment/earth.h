@@ -24,8 +24,6 @@ Earth SphericalEarth(double radius_m, bool rotating);
 /// Gravitation (m/s²; no centrifugal term) at a position other than the centre: central term and J2.
 /// In the axes of the position, E or I, which share z.
 Vector3 Gravitation(const Earth& earth, const Vector3& p_EoP);
-/// Gravitational potential (m²/s², positive, zero at infinity), of which Gravitation is the gradient.
-double GravitationalPotential(const Earth& earth, const Vector3& p_EoP);
 
 /// Latitude along the normal of the ellipsoid; altitude above the ellipsoid along it.
 struct Geodetic {
@@ -39,25 +37,11 @@ Geodetic ToGeodetic(const Earth& earth, const Vector3& p_EoP_E);
 /// p_EoP_E, m.
 Vector3 FromGeodetic(const Earth& earth, const Geodetic& place);
 
-/// Latitude of the radius vector, and its length.
-struct Geocentric {
-  double latitude_rad;
-  double longitude_rad;  ///< (-pi, pi]
-  double radius_m;
-};
-Geocentric ToGeocentric(const Vector3& p_EoP_E);
-/// p_EoP_E, m.
-Vector3 FromGeocentric(const Geocentric& place);
-
 /// R_EN, shape (3, 3): columns north, east, down in E. With geodetic latitude, down is the normal of the
 /// ellipsoid.
 Matrix3 NedAxes(double latitude_rad, double longitude_rad);
 
-/// R_IE, shape (3, 3): components in I from components in E, at a time since I and E coincided.
-Matrix3 EarthOrientation(const Earth& earth, double time_s);
 /// Components in E of a vector given in I. It changes axes only: a velocity stays relative to I.
 Vector3 InertialToEarth(const Earth& earth, double time_s, const Vector3& v_I);
-/// Components in I of a vector given in E. It changes axes only.
-Vector3 EarthToInertial(const Earth& earth, double time_s, const Vector3& v_E);
 
 }  // namespace dispersa

@@ -10,16 +10,12 @@ SinCos SineCosine(double x_rad) {
   const auto both = Sleef_finz_sincosd1_u10purecfma(x_rad);
   return {both.x, both.y};
 }
-double Tan(double x_rad) { return Sleef_finz_tand1_u10purecfma(x_rad); }
 double Asin(double x) { return Sleef_finz_asind1_u10purecfma(x); }
-double Acos(double x) { return Sleef_finz_acosd1_u10purecfma(x); }
 double Atan(double x) { return Sleef_finz_atand1_u10purecfma(x); }
 double Atan2(double y, double x) { return Sleef_finz_atan2d1_u10purecfma(y, x); }
 double Exp(double x) { return Sleef_finz_expd1_u10purecfma(x); }
 double Log(double x) { return Sleef_finz_logd1_u10purecfma(x); }
 double Log10(double x) { return Sleef_finz_log10d1_u10purecfma(x); }
 double Pow(double x, double y) { return Sleef_finz_powd1_u10purecfma(x, y); }
-double Cbrt(double x) { return Sleef_finz_cbrtd1_u10purecfma(x); }
-double Tanh(double x) { return Sleef_finz_tanhd1_u10purecfma(x); }
 
 }  // namespace dispersa

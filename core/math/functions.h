@@ -19,17 +19,13 @@ struct SinCos {
 double Sin(double x_rad);
 double Cos(double x_rad);
 SinCos SineCosine(double x_rad);
-double Tan(double x_rad);
 double Asin(double x);
-double Acos(double x);
 double Atan(double x);
 double Atan2(double y, double x);
 double Exp(double x);
 double Log(double x);
 double Log10(double x);
 double Pow(double x, double y);
-double Cbrt(double x);
-double Tanh(double x);
 
 inline double Sqrt(double x) { return std::sqrt(x); }
 inline double Square(double x) { return x * x; }

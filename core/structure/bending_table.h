@@ -1,5 +1,5 @@
 // Bending of one stack as a flight needs it: a row a mode over the propellant, at the places where forces
-// act and sensors sit. Plain data, for launcher_bending.h; the modes themselves are bending_modes.h's.
+// act and sensors sit. Plain data, for dynamics/bending.h; the modes themselves are bending_modes.h's.
 #pragma once
 
 #include <array>

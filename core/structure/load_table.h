@@ -1,5 +1,5 @@
 // What a stack's cross-sections have to carry: where the normal force acts along the body, and what the mass ahead
-// of a station resists. Plain data, for body_loads.h.
+// of a station resists. Plain data, for dynamics/body_sections.h.
 #pragma once
 
 #include <array>

@@ -22,7 +22,7 @@ inline void PrintTo(const BadInput& bad, std::ostream* out) { *out << bad.name; 
 inline std::string TextsAbout(const char* validated, const BadInput& bad) {
   const InputFiles files;
   files.Edit(bad.edited, bad.from, bad.to);
-  return files.Texts(ValidateFile(files.Path(validated)));
+  return files.Texts(CheckFile(files.Path(validated)).errors);
 }
 
 }  // namespace dispersa

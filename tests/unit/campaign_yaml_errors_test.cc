@@ -27,7 +27,7 @@ class BadInputTest : public testing::TestWithParam<BadInput> {};
 TEST_P(BadInputTest, IsReportedInFull) {
   const InputFiles files;
   files.Edit(GetParam().edited, GetParam().from, GetParam().to);
-  EXPECT_EQ(files.Texts(ValidateFile(files.Path(GetParam().validated))), GetParam().texts);
+  EXPECT_EQ(files.Texts(CheckFile(files.Path(GetParam().validated)).errors), GetParam().texts);
 }
 
 constexpr BadInput kBadInputs[] = {
@@ -412,7 +412,7 @@ INSTANTIATE_TEST_SUITE_P(CampaignYamlErrors, BadInputTest, testing::ValuesIn(kBa
 TEST(CampaignYamlErrors, ValidFilesHaveNone) {
   const InputFiles files;
   for (const char* file : {"campaign.yaml", "vehicle.yaml", "autopilot.yaml", "reference.yaml"}) {
-    EXPECT_EQ(files.Texts(ValidateFile(files.Path(file))), "") << file;
+    EXPECT_EQ(files.Texts(CheckFile(files.Path(file)).errors), "") << file;
   }
 }
 
@@ -424,7 +424,7 @@ TEST(CampaignYamlErrors, AllProblemsOfAllFilesAreReportedInOrder) {
   files.Edit("campaign.yaml", "reference.yaml", "nowhere.yaml");
   files.Edit("campaign.yaml", "seed: 20260101", "seed: -1");
   EXPECT_EQ(
-      files.Texts(ValidateFile(files.Path("campaign.yaml"))),
+      files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
       "campaign.yaml:4:12: reference: cannot read 'nowhere.yaml': No such file or directory, allowed: a "
       "readable file, named relative to this one\n"
       "campaign.yaml:6:51: sampling.seed: '-1' is not a whole number, allowed: a whole number from 0 to "
@@ -437,17 +437,17 @@ TEST(CampaignYamlErrors, AllProblemsOfAllFilesAreReportedInOrder) {
 
 TEST(CampaignYamlErrors, UnreadableFileOnTheCommandLine) {
   const InputFiles files;
-  EXPECT_EQ(files.Texts(ValidateFile(files.Path("nothing.yaml"))),
+  EXPECT_EQ(files.Texts(CheckFile(files.Path("nothing.yaml")).errors),
             "nothing.yaml:1:1: cannot be read: No such file or directory, allowed: a readable file\n");
 }
 
 TEST(CampaignYamlErrors, EmptyFileAndFileWithoutMap) {
   const InputFiles files;
   files.Write("empty.yaml", "# nothing\n");
-  EXPECT_EQ(files.Texts(ValidateFile(files.Path("empty.yaml"))),
+  EXPECT_EQ(files.Texts(CheckFile(files.Path("empty.yaml")).errors),
             "empty.yaml:1:1: the file is empty, allowed: a map with a 'schema' key\n");
   files.Write("word.yaml", "hello\n");
-  EXPECT_EQ(files.Texts(ValidateFile(files.Path("word.yaml"))),
+  EXPECT_EQ(files.Texts(CheckFile(files.Path("word.yaml")).errors),
             "word.yaml:1:1: missing key 'schema', allowed: one of dispersa/campaign/1, dispersa/vehicle/1, "
             "dispersa/autopilot/1, dispersa/reference/1, "
             "dispersa/scenario/1\n");
@@ -457,7 +457,7 @@ TEST(CampaignYamlErrors, UnknownMetricNamesTheNearest) {
   const InputFiles files;
   files.Edit("campaign.yaml", "pitch_error_peak_deg", "pitch_error_peek_deg");
   EXPECT_THAT(
-      files.Texts(ValidateFile(files.Path("campaign.yaml"))),
+      files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
       HasSubstr(
           "campaign.yaml:13:14: requirements[0].metric: 'pitch_error_peek_deg' is not a metric (did you "
           "mean 'pitch_error_peak_deg'?), allowed: one of pitch_error_rms_deg, "));
@@ -467,7 +467,7 @@ TEST(CampaignYamlErrors, UnknownDispersionNamesTheNearest) {
   const InputFiles files;
   files.Edit("campaign.yaml", "  drag_coefficient:", "  drag_coeficient:");
   EXPECT_THAT(
-      files.Texts(ValidateFile(files.Path("campaign.yaml"))),
+      files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
       HasSubstr(
           "campaign.yaml:10:3: dispersions.drag_coeficient: unknown key 'drag_coeficient' (did you mean "
           "'drag_coefficient'?), allowed: accelerometer_scale, actuator_bandwidth, "));
@@ -479,14 +479,14 @@ TEST(CampaignYamlErrors, BadCellsOfATableAreFoundByLineAndColumn) {
       "campaign.yaml", "requirements:",
       "  wind_profile: {statistics: wind_statistics.csv, correlation_ne: 0.1, correlation_length_km: 3}\n"
       "requirements:");
-  ASSERT_EQ(files.Texts(ValidateFile(files.Path("campaign.yaml"))), "");
+  ASSERT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors), "");
   files.Edit("wind_statistics.csv", "10000,5,25,9,12", "10000, 5,much,-9,12");
   EXPECT_EQ(
-      files.Texts(ValidateFile(files.Path("campaign.yaml"))),
+      files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
       "wind_statistics.csv:4:10: mean_east_m_s[1]: 'much' is not a number, allowed: a number\n"
       "wind_statistics.csv:4:15: sigma_north_m_s[1]: -9 is out of range, allowed: a number not below 0\n");
   files.Edit("wind_statistics.csv", "10000, 5,much,-9,12", "10000,5,25,9");
-  EXPECT_EQ(files.Texts(ValidateFile(files.Path("campaign.yaml"))),
+  EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
             "wind_statistics.csv:4:1: the row has 4 cells, allowed: 5, as the header\n");
 }
 
@@ -495,7 +495,7 @@ TEST(CampaignYamlErrors, TableWithOtherColumns) {
   files.Edit("campaign.yaml", "requirements:", "  wind_profile: {table: wind.csv}\nrequirements:");
   files.Write("wind.csv", "altitude_m,north_m_s,eest_m_s\n0,0,0\n1000,0,5\n");
   EXPECT_EQ(
-      files.Texts(ValidateFile(files.Path("campaign.yaml"))),
+      files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
       "wind.csv:1:1: missing column 'east_m_s', allowed: the columns altitude_m, north_m_s, east_m_s\n"
       "wind.csv:1:22: unknown column 'eest_m_s' (did you mean 'east_m_s'?), allowed: the columns altitude_m, "
       "north_m_s, east_m_s\n");
@@ -507,7 +507,7 @@ TEST(CampaignYamlErrors, CampaignToOptimizeCannotBeFlownYet) {
   const std::size_t begin = reference.find("  target:");
   const std::string problem = reference.substr(begin, reference.find("flight_program:") - begin);
   files.Edit("campaign.yaml", "reference: reference.yaml\n", "optimize:\n" + problem);
-  EXPECT_EQ(files.Texts(ValidateFile(files.Path("campaign.yaml"))), "");
+  EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors), "");
   EXPECT_EQ(LoadOptimization(files.Path("campaign.yaml"), 7).problem.seed, 7u);
   try {
     LoadCampaign(files.Path("campaign.yaml"));
@@ -543,9 +543,9 @@ TEST(CampaignYamlErrors, TextWithoutFilesNamesNone) {
 TEST(GuidanceOfAVehicle, NeedsALastStageOnATimer) {
   const InputFiles files;
   files.Edit("campaign.yaml", "name: trial", "name: trial\nguidance: {mode: closed_loop}");
-  EXPECT_EQ(files.Texts(ValidateFile(files.Path("campaign.yaml"))), "");
+  EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors), "");
   files.Edit("vehicle.yaml", "ignition: {trigger: timer}", "ignition: {trigger: burnout_detection}");
-  EXPECT_EQ(files.Texts(ValidateFile(files.Path("campaign.yaml"))),
+  EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
             "campaign.yaml:3:18: guidance.mode: the vehicle 'two-stage' has no last stage whose ignition guidance "
             "could move, allowed: open_loop, or a vehicle whose last of two stages or more has ignition: "
             "{trigger: timer}\n");

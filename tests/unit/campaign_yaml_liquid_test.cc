@@ -41,7 +41,7 @@ TEST(LiquidFile, IsReadAndIsUsual) {
   EXPECT_EQ(stage.tanks[1].top_station_m, 7.0);
   EXPECT_EQ(stage.tanks[1].bottom_station_m, 7.95);
   EXPECT_EQ(stage.tanks[1].diameter_m, 0.9);
-  EXPECT_EQ(files.Texts(ValidateFile(files.Path("vehicle.yaml"))), "");
+  EXPECT_EQ(files.Texts(CheckFile(files.Path("vehicle.yaml")).errors), "");
 }
 
 TEST(LiquidFile, ThrottlesAndIsCutOff) {
@@ -76,7 +76,7 @@ class BadLiquidTest : public testing::TestWithParam<BadLiquid> {};
 TEST_P(BadLiquidTest, IsReportedInFull) {
   const InputFiles files;
   MakeLiquid(files, GetParam().motor, GetParam().tanks);
-  EXPECT_EQ(files.Texts(ValidateFile(files.Path("vehicle.yaml"))), GetParam().said);
+  EXPECT_EQ(files.Texts(CheckFile(files.Path("vehicle.yaml")).errors), GetParam().said);
 }
 
 std::string With(const std::string& key) {

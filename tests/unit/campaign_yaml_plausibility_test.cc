@@ -175,21 +175,21 @@ TEST(CampaignYamlPlausibility, UnsortedWindNamesTheLineOfTheCulprit) {
               "# a sounding\naltitude_m,north_m_s,east_m_s\n0,1,2\n2000,3,4\n1500,5,6\n9000,7,8\n");
   files.Edit("campaign.yaml", "  wind:", "  wind_profile: {table: wind.csv}\n  wind:");
   EXPECT_EQ(
-      files.Texts(ValidateFile(files.Path("campaign.yaml"))),
+      files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
       "wind.csv:5:1: altitude_m[2]: is not above the one before, allowed: values strictly increasing\n");
 }
 
 TEST(CampaignYamlPlausibility, KilometresAnHourAreASpeed) {
   const InputFiles files;
   files.Edit("campaign.yaml", "max_speed_m_s: ", "max_speed_km_h: ");
-  EXPECT_TRUE(ValidateFile(files.Path("campaign.yaml")).empty());
+  EXPECT_TRUE(CheckFile(files.Path("campaign.yaml")).errors.empty());
 }
 
 // Inside of a line a tab is legal YAML.
 TEST(CampaignYamlPlausibility, HarmlessTabsStay) {
   const InputFiles files;
   files.Edit("campaign.yaml", "name: trial", "name:\ttrial");
-  EXPECT_TRUE(ValidateFile(files.Path("campaign.yaml")).empty());
+  EXPECT_TRUE(CheckFile(files.Path("campaign.yaml")).errors.empty());
 }
 
 }  // namespace

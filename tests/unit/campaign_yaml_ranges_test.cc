@@ -22,7 +22,7 @@ class VehicleRanges : public testing::TestWithParam<OutOfRange> {};
 TEST_P(VehicleRanges, AreSaidBeyondThem) {
   const InputFiles files;
   files.Edit("vehicle.yaml", GetParam().from, GetParam().to);
-  const std::string texts = files.Texts(ValidateFile(files.Path("vehicle.yaml")));
+  const std::string texts = files.Texts(CheckFile(files.Path("vehicle.yaml")).errors);
   EXPECT_EQ(texts.substr(texts.find(": ") + 2), GetParam().said + std::string("\n"));
 }
 
@@ -81,7 +81,7 @@ TEST(VehicleRanges, EndsBelongToThem) {
   files.Edit("vehicle.yaml", "delay_ticks: 1", "delay_ticks: 50");
   files.Edit("vehicle.yaml", "hold_down_s: 0.5", "hold_down_s: 0");
   files.Edit("vehicle.yaml", "separation_delay_s: 0.5", "separation_delay_s: 0");
-  EXPECT_EQ(files.Texts(ValidateFile(files.Path("vehicle.yaml"))), "");
+  EXPECT_EQ(files.Texts(CheckFile(files.Path("vehicle.yaml")).errors), "");
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ class Vega {
   Vega() { files_.Write("vehicle.yaml", ReadWholeFile(std::string(kGallery) + "vehicle.yaml")); }
   void Edit(const std::string& from, const std::string& to) const { files_.Edit("vehicle.yaml", from, to); }
   Vehicle Load() const { return LoadVehicle(files_.Path("vehicle.yaml")); }
-  std::string Problems() const { return files_.Texts(ValidateFile(files_.Path("vehicle.yaml"))); }
+  std::string Problems() const { return files_.Texts(CheckFile(files_.Path("vehicle.yaml")).errors); }
 
  private:
   InputFiles files_;
@@ -98,7 +98,7 @@ TEST(RestartFile, OfAnEngineThatIsEmptyIsRefused) {
 TEST(RestartFile, NeedsALiquidStageBefore) {
   const InputFiles files;
   files.Edit("vehicle.yaml", "stages:\n", "stages:\n  - {name: none, restarts: true}\n");
-  const std::string said = files.Texts(ValidateFile(files.Path("vehicle.yaml")));
+  const std::string said = files.Texts(CheckFile(files.Path("vehicle.yaml")).errors);
   EXPECT_NE(
       said.find(
           "stages[0].restarts: there is no stage before, allowed: restarts: true after a stage with motor: "

@@ -10,7 +10,7 @@ namespace {
 
 TEST(CampaignYamlScenario, IsReadCompletely) {
   const InputFiles files;
-  EXPECT_EQ(files.Texts(ValidateFile(files.Path("scenario.yaml"))), "");
+  EXPECT_EQ(files.Texts(CheckFile(files.Path("scenario.yaml")).errors), "");
   EXPECT_TRUE(IsScenarioFile(files.Path("scenario.yaml")));
   EXPECT_FALSE(IsScenarioFile(files.Path("campaign.yaml")));
   EXPECT_FALSE(IsScenarioFile(files.Path("none.yaml")));
@@ -179,11 +179,11 @@ TEST(CampaignYamlScenario, BodyWithoutInertia) {
       "scenario.yaml",
       head + "body: {mass_properties: {mass_kg: 2, ixx_kg_m2: 0, iyy_kg_m2: 1, izz_kg_m2: 1}}\n" + tail);
   EXPECT_EQ(
-      files.Texts(ValidateFile(files.Path("scenario.yaml"))),
+      files.Texts(CheckFile(files.Path("scenario.yaml")).errors),
       "scenario.yaml:23:49: body.mass_properties.ixx_kg_m2: the inertia tensor is not positive definite, "
       "allowed: positive moments, and products small enough that every principal moment is positive\n");
   files.Write("scenario.yaml", head + tail);
-  EXPECT_EQ(files.Texts(ValidateFile(files.Path("scenario.yaml"))),
+  EXPECT_EQ(files.Texts(CheckFile(files.Path("scenario.yaml")).errors),
             "scenario.yaml:1:1: nothing is there to fly, allowed: either a body or a list of stages\n");
 }
 

@@ -44,7 +44,7 @@ std::vector<std::string> Fed(const std::string& line) {
 std::string Problems(const std::string& line) {
   const InputFiles files;
   SetDispersion(files, line);
-  return files.Texts(ValidateFile(files.Path("campaign.yaml")));
+  return files.Texts(CheckFile(files.Path("campaign.yaml")).errors);
 }
 
 TEST(StageDispersions, NameTheirStages) {

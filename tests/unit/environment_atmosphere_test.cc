@@ -25,7 +25,6 @@ TEST(StandardAtmosphere, SeaLevel) {
   EXPECT_DOUBLE_EQ(air.pressure_pa, 101325.0);
   EXPECT_NEAR(air.density_kg_m3, 1.2250, 5e-5);
   EXPECT_NEAR(air.speed_of_sound_m_s, 340.294, 5e-4);
-  EXPECT_NEAR(DynamicViscosity(air.temperature_k), 1.7894e-5, 5e-10);
 }
 
 // Geopotential layer boundaries as geometric altitudes, the nodes of M/M0 from 80 km to 86 km, the limits

@@ -15,6 +15,7 @@
 #include "core/flight/fly_scenario.h"
 #include "core/math/constants.h"
 #include "tests/fourth_order.h"
+#include "tests/gravitational_potential.h"
 
 namespace dispersa::closed_forms_test {
 namespace {
