@@ -1,4 +1,4 @@
-#include "core/campaign/contained.h"
+#include "core/containment/contained.h"
 #include "core/campaign_yaml/base64.h"
 #include "core/campaign_yaml/decode.h"
 #include "core/campaign_yaml/load.h"

@@ -1,6 +1,6 @@
 // A control law from a shared object (control_law.h): its file, its functions, and the memory of a flight.
 //
-// Nothing here protects this process from what the object does: core/campaign/contained.h does.
+// Nothing here protects this process from what the object does: core/containment/contained.h does.
 #pragma once
 
 #include <array>

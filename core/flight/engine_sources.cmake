@@ -3,7 +3,7 @@
 function(engine_sources root out)
   set(patterns "")
   foreach(module IN ITEMS math input random environment vehicle structure control dynamics guidance flight optimization trajectory
-          campaign campaign_yaml)
+          campaign campaign_yaml containment cases)
     list(APPEND patterns "${root}/core/${module}/*.h" "${root}/core/${module}/*.cc")
   endforeach()
   file(GLOB_RECURSE sources LIST_DIRECTORIES false RELATIVE "${root}" ${ARGN} ${patterns})

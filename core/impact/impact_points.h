@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/campaign/campaign_flights.h"
+#include "core/cases/campaign_flights.h"
 #include "core/campaign/case_result.h"
 #include "core/impact/fall.h"
 

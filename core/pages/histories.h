@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/campaign/campaign_flights.h"
+#include "core/cases/campaign_flights.h"
 #include "core/flight/history.h"
 #include "core/analysis/campaign_summary.h"
 #include "core/analysis/flight_bands.h"

@@ -4,7 +4,7 @@
 #include <cassert>
 #include <set>
 
-#include "core/campaign/campaign_flights.h"
+#include "core/cases/campaign_flights.h"
 #include "core/campaign/case_design.h"
 #include "core/control/lyapunov.h"
 

@@ -12,7 +12,7 @@
 #include "core/campaign/case_result.h"
 #include "core/control/autopilot_config.h"
 #include "core/flight/history.h"
-#include "core/flight/margins.h"
+#include "core/margins/flight_margins.h"
 #include "core/paper/study_flights.h"
 #include "core/trajectory/optimize.h"
 

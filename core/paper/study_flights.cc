@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/campaign/campaign_flights.h"
+#include "core/cases/campaign_flights.h"
 
 namespace dispersa {
 

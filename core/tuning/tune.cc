@@ -9,13 +9,13 @@
 #include <memory>
 #include <random>
 
-#include "core/campaign/campaign_flights.h"
+#include "core/cases/campaign_flights.h"
 #include "core/input/input_error.h"
-#include "core/control/loop_table.h"
+#include "core/margins/loop_table.h"
 #include "core/flight/flight.h"
 #include "core/flight/flight_model.h"
-#include "core/flight/linear_axis.h"
-#include "core/flight/margins.h"
+#include "core/margins/linear_axis.h"
+#include "core/margins/flight_margins.h"
 #include "core/flight/metrics.h"
 #include "core/math/constants.h"
 #include "core/tuning/regulator.h"

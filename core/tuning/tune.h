@@ -30,7 +30,7 @@
 #include <vector>
 
 #include "core/campaign/campaign.h"
-#include "core/flight/margins.h"
+#include "core/margins/flight_margins.h"
 #include "core/optimization/genetic_algorithm.h"
 #include "core/tuning/stage_design.h"
 

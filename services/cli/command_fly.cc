@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "core/campaign/campaign_flights.h"
+#include "core/cases/campaign_flights.h"
 #include "core/campaign_yaml/load.h"
 #include "core/pages/histories.h"
 #include "core/results/output_file.h"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/campaign/campaign_flights.h"
+#include "core/cases/campaign_flights.h"
 #include "core/input/input_error.h"
 #include "core/flight/flight.h"
 #include "core/optimization/parallel_for.h"

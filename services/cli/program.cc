@@ -5,7 +5,7 @@
 #include <string>
 #include <system_error>
 
-#include "core/campaign/contained.h"
+#include "core/containment/contained.h"
 #include "core/input/input_error.h"
 #include "core/flight/lane_engine.h"
 #include "core/results/result_error.h"

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/campaign/campaign_flights.h"
+#include "core/cases/campaign_flights.h"
 #include "core/flight/engine_version.h"
 #include "services/client/execution_file.h"
 #include "services/client/local_workers.h"

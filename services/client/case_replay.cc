@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "core/campaign/campaign_flights.h"
+#include "core/cases/campaign_flights.h"
 #include "core/flight/engine_version.h"
 #include "services/log/log.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/campaign/campaign_flights.h"
+#include "core/cases/campaign_flights.h"
 #include "services/client/flight_json.h"
 #include "services/program/threads.h"
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/campaign/campaign.h"
-#include "core/campaign/dispersed_margins.h"
-#include "core/flight/margins.h"
+#include "core/margins/dispersed_margins.h"
+#include "core/margins/flight_margins.h"
 
 namespace dispersa {
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "core/campaign/campaign_flights.h"
+#include "core/cases/campaign_flights.h"
 #include "core/flight/metrics.h"
 #include "core/math/constants.h"
 #include "core/results/output_file.h"

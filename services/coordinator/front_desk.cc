@@ -9,7 +9,7 @@
 #include <fstream>
 #include <vector>
 
-#include "core/campaign/contained_flights.h"
+#include "core/cases/plugin_check.h"
 #include "core/campaign_yaml/load.h"
 #include "core/results/json_number.h"
 #include "core/analysis/requirement_summary.h"

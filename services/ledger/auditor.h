@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/campaign/campaign_flights.h"
+#include "core/cases/campaign_flights.h"
 #include "services/ledger/audit.h"
 #include "services/program/mutex.h"
 

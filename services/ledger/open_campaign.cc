@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/campaign/contained_flights.h"
+#include "core/cases/plugin_check.h"
 #include "services/log/log.h"
 
 namespace dispersa {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/campaign/case_result.h"
-#include "core/campaign/contained.h"
+#include "core/containment/contained.h"
 #include "core/campaign_yaml/load.h"
 #include "core/results/result_folder.h"
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/campaign/campaign_flights.h"
+#include "core/cases/campaign_flights.h"
 #include "core/campaign_yaml/inline_files.h"
 #include "core/campaign_yaml/load.h"
 #include "core/input/number_text.h"

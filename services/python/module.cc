@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "core/campaign/contained.h"
+#include "core/containment/contained.h"
 #include "core/flight/engine_version.h"
 #include "core/flight/flight_inputs.h"
 #include "core/flight/history.h"

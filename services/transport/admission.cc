@@ -2,7 +2,7 @@
 
 #include <arpa/inet.h>
 
-#include "core/campaign/contained.h"
+#include "core/containment/contained.h"
 #include "services/log/log.h"
 #include "services/transport/user_secret.h"
 

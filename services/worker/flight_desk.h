@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "core/campaign/campaign_flights.h"
+#include "core/cases/campaign_flights.h"
 #include "services/transport/messages.h"
 
 namespace dispersa {

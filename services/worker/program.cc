@@ -9,7 +9,7 @@
 #include <thread>
 #include <utility>
 
-#include "core/campaign/contained.h"
+#include "core/containment/contained.h"
 #include "core/flight/lane_engine.h"
 #include "services/log/log.h"
 #include "services/program/command_line.h"

@@ -8,7 +8,7 @@
 #include <thread>
 #include <utility>
 
-#include "core/campaign/contained_flights.h"
+#include "core/cases/plugin_check.h"
 #include "core/campaign_yaml/load.h"
 #include "core/flight/engine_version.h"
 #include "services/log/log.h"

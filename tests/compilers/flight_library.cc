@@ -1,4 +1,4 @@
-#include "core/campaign/campaign_flights.h"
+#include "core/cases/campaign_flights.h"
 #include "tests/compilers/fly_cases.h"
 
 #include <utility>

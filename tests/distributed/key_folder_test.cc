@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "core/campaign/contained.h"
+#include "core/containment/contained.h"
 #include "core/input/input_error.h"
 #include "home_folder.h"
 #include "services/transport/admission.h"

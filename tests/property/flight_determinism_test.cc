@@ -4,7 +4,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/campaign/campaign_flights.h"
+#include "core/cases/campaign_flights.h"
 #include "tests/slv4_flight.h"
 
 namespace dispersa::flight_determinism_test {

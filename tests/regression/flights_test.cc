@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/campaign/campaign_flights.h"
+#include "core/cases/campaign_flights.h"
 #include "core/campaign_yaml/load.h"
 #include "core/input/number_text.h"
 #include "core/flight/flight_inputs.h"

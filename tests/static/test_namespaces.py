@@ -1,13 +1,13 @@
 """Checks that each test source keeps its names to itself.
 
 Eight test sources are compiled as one (tests/CMakeLists.txt), where helpers and tests of the same name would clash. So
-`flight_margins_test.cc` puts all that it declares into a namespace of its own:
+`margins_flight_test.cc` puts all that it declares into a namespace of its own:
 
-    namespace dispersa::flight_margins_test {
+    namespace dispersa::margins_flight_test {
     namespace {
     ...
     }  // namespace
-    }  // namespace dispersa::flight_margins_test
+    }  // namespace dispersa::margins_flight_test
 
 and takes back each macro that it defines. A name in a nameless namespace inside still is warned about when unused.
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/campaign/campaign_flights.h"
+#include "core/cases/campaign_flights.h"
 #include "core/campaign_yaml/load.h"
 #include "core/random/draws.h"
 #include "core/results/result_folder.h"

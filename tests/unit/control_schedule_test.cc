@@ -5,7 +5,7 @@
 #include <complex>
 
 #include "core/control/autopilot_step.h"
-#include "core/flight/linear_axis.h"
+#include "core/margins/linear_axis.h"
 #include "core/math/constants.h"
 #include "tests/unit/sample_vehicle.h"
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/flight/flight.h"
-#include "core/flight/margins.h"
+#include "core/margins/flight_margins.h"
 #include "core/flight/metrics.h"
 #include "core/flight/tick_sample.h"
 #include "core/math/constants.h"

@@ -6,7 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "core/campaign/campaign_flights.h"
+#include "core/cases/campaign_flights.h"
 #include "core/campaign_yaml/load.h"
 #include "core/flight/engine_version.h"
 #include "core/results/database.h"

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "core/campaign/campaign_flights.h"
+#include "core/cases/campaign_flights.h"
 #include "core/campaign_yaml/load.h"
 
 namespace dispersa::paper_study_flights_test {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/campaign/campaign_flights.h"
+#include "core/cases/campaign_flights.h"
 #include "core/campaign_yaml/load.h"
 #include "core/flight/flight.h"
 #include "core/search/smallest_failure.h"

@@ -6,11 +6,11 @@
 
 #include <cmath>
 
-#include "core/campaign/campaign_flights.h"
+#include "core/cases/campaign_flights.h"
 #include "core/input/input_error.h"
 #include "core/campaign_yaml/load.h"
 #include "core/flight/flight_model.h"
-#include "core/flight/margins.h"
+#include "core/margins/flight_margins.h"
 #include "core/tuning/regulator.h"
 #include "core/tuning/stage_design.h"
 #include "tests/unit/sample_vehicle.h"

@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "core/flight/margins.h"
+#include "core/margins/flight_margins.h"
 #include "tests/slv4_flight.h"
 
 namespace dispersa::autopilot_gates_test {

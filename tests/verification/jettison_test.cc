@@ -7,7 +7,7 @@
 
 #include "core/dynamics/jettison.h"
 #include "core/flight/flight.h"
-#include "core/flight/linear_axis.h"
+#include "core/margins/linear_axis.h"
 #include "core/math/constants.h"
 #include "core/trajectory/ascent.h"
 #include "tests/slv4_flight.h"

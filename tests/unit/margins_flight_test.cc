@@ -1,5 +1,5 @@
 // Linearised and measured margins of a flight, and the inputs that spoil its loop.
-#include "core/flight/margins.h"
+#include "core/margins/flight_margins.h"
 
 #include <gtest/gtest.h>
 
@@ -7,11 +7,11 @@
 #include <cmath>
 
 #include "core/flight/flight.h"
-#include "core/flight/linear_axis.h"
+#include "core/margins/linear_axis.h"
 #include "core/math/constants.h"
 #include "tests/unit/sample_vehicle.h"
 
-namespace dispersa::flight_margins_test {
+namespace dispersa::margins_flight_test {
 namespace {
 
 // The second stage takes over at once: nothing holds this vehicle's attitude in a coast through the air.
@@ -381,4 +381,4 @@ TEST(PassesGates, AsksForEveryMargin) {
 }
 
 }  // namespace
-}  // namespace dispersa::flight_margins_test
+}  // namespace dispersa::margins_flight_test

@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "core/control/loop_margins.h"
+#include "core/margins/loop_margins.h"
 #include "core/flight/flight.h"
 #include "core/flight/flight_model.h"
-#include "core/flight/linear_axis.h"
+#include "core/margins/linear_axis.h"
 #include "core/flight/tick_sample.h"
 
 namespace dispersa {

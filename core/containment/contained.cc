@@ -1,4 +1,4 @@
-#include "core/campaign/contained.h"
+#include "core/containment/contained.h"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -24,7 +24,6 @@
 namespace dispersa {
 namespace {
 
-bool contained = false;
 std::string refusal;
 std::set<std::string> not_refused;
 
@@ -78,7 +77,6 @@ void Limit(int resource, rlim_t value) {
 
 [[noreturn]] void BeChild(int out, pid_t parent, volatile PluginMark* mark, const ContainmentLimits& limits,
                           const std::function<void(const Say& say)>& work) {
-  contained = true;
   MarkPluginCallsIn(mark);
   setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -287,8 +285,6 @@ void RunContained(const std::function<void(const Say& say)>& work, const Say& he
     }
   }
 }
-
-bool IsContained() { return contained; }
 
 void RefusePlugins(const std::string& why, std::set<std::string> but) {
   refusal = why;

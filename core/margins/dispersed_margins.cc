@@ -1,4 +1,4 @@
-#include "core/campaign/dispersed_margins.h"
+#include "core/margins/dispersed_margins.h"
 
 #include <algorithm>
 #include <cmath>

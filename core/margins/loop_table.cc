@@ -1,4 +1,4 @@
-#include "core/control/loop_table.h"
+#include "core/margins/loop_table.h"
 
 #include <algorithm>
 #include <cmath>

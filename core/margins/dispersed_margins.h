@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/campaign/campaign_flights.h"
-#include "core/flight/margins.h"
+#include "core/cases/campaign_flights.h"
+#include "core/margins/flight_margins.h"
 
 namespace dispersa {
 

@@ -1,4 +1,4 @@
-#include "core/control/loop_margins.h"
+#include "core/margins/loop_margins.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // Margins from tabulated responses against the exact ones.
-#include "core/control/loop_table.h"
+#include "core/margins/loop_table.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "core/math/constants.h"
 
-namespace dispersa::control_loop_table_test {
+namespace dispersa::margins_loop_table_test {
 namespace {
 
 constexpr double kTick_s = 0.01;
@@ -80,4 +80,4 @@ TEST(LoopTable, TellsAnUnstableLoop) {
 }
 
 }  // namespace
-}  // namespace dispersa::control_loop_table_test
+}  // namespace dispersa::margins_loop_table_test

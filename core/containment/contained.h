@@ -51,8 +51,6 @@ class NoChild : public std::runtime_error {
 /// what `hear` throws.
 void RunContained(const std::function<void(const Say& say)>& work, const Say& hear,
                   const Unwanted& unwanted = nullptr, const ContainmentLimits& limits = {});
-/// Whether this is such a child.
-bool IsContained();
 
 /// What a plug-in says of itself, asked in a child. Throws PluginError, ContainedEnd.
 PluginDescription DescribeContained(const PluginConfig& config);

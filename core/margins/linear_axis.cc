@@ -1,4 +1,4 @@
-#include "core/flight/linear_axis.h"
+#include "core/margins/linear_axis.h"
 
 #include <algorithm>
 

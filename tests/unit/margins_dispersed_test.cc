@@ -1,5 +1,5 @@
 // The least margins of a campaign's cases against those of each case by itself.
-#include "core/campaign/dispersed_margins.h"
+#include "core/margins/dispersed_margins.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include "core/campaign_yaml/load.h"
 #include "core/math/constants.h"
 
-namespace dispersa::campaign_dispersed_margins_test {
+namespace dispersa::margins_dispersed_test {
 namespace {
 
 // A column of four cases.
@@ -104,4 +104,4 @@ TEST(CampaignMargins, NameTheCasesThatMissAGateAndCountThoseThatEndEarly) {
 }
 
 }  // namespace
-}  // namespace dispersa::campaign_dispersed_margins_test
+}  // namespace dispersa::margins_dispersed_test

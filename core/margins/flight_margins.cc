@@ -1,11 +1,11 @@
-#include "core/flight/margins.h"
+#include "core/margins/flight_margins.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 
 #include "core/flight/flight.h"
-#include "core/flight/linear_axis.h"
+#include "core/margins/linear_axis.h"
 #include "core/math/constants.h"
 #include "core/math/functions.h"
 

@@ -5,7 +5,7 @@
 #include <complex>
 #include <vector>
 
-#include "core/control/loop_margins.h"
+#include "core/margins/loop_margins.h"
 
 namespace dispersa {
 

@@ -1,5 +1,5 @@
 // Margins of sampled loops whose critical gain is known in closed form, and of the autopilot's own code.
-#include "core/control/loop_margins.h"
+#include "core/margins/loop_margins.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "core/math/matrices.h"
 #include "tests/unit/sample_vehicle.h"
 
-namespace dispersa::control_loop_margins_test {
+namespace dispersa::margins_loop_test {
 namespace {
 
 constexpr double kTick_s = 0.01;
@@ -332,4 +332,4 @@ TEST(SampledLoop, PredictsWhereTheAdaptiveFuzzyLawItselfIsLost) { ExpectLostWher
 TEST(SampledLoop, PredictsWhereTheCompositeAdaptiveLawItselfIsLost) { ExpectLostWherePredicted(1.0); }
 
 }  // namespace
-}  // namespace dispersa::control_loop_margins_test
+}  // namespace dispersa::margins_loop_test

@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "core/flight/flight.h"
-#include "core/flight/linear_axis.h"
-#include "core/flight/margins.h"
+#include "core/margins/linear_axis.h"
+#include "core/margins/flight_margins.h"
 #include "core/math/constants.h"
 #include "tests/unit/flexible_sample.h"
 
-namespace dispersa::flight_margin_rules_test {
+namespace dispersa::margins_rules_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -292,4 +292,4 @@ TEST(MeasureMargins, AreNoneWhereAnErrorLeavesTheRulesRange) {
 }
 
 }  // namespace
-}  // namespace dispersa::flight_margin_rules_test
+}  // namespace dispersa::margins_rules_test

@@ -1,5 +1,5 @@
 // What a campaign's flights are made of, and that a queue of cases is flown as each case by itself.
-#include "core/campaign/campaign_flights.h"
+#include "core/cases/campaign_flights.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include "core/campaign_yaml/load.h"
 #include "core/flight/flight_model.h"
 
-namespace dispersa::campaign_flights_test {
+namespace dispersa::cases_campaign_flights_test {
 namespace {
 
 class FirstCases : public CaseQueue {
@@ -56,4 +56,4 @@ TEST(CampaignFlights, AimForTheTargetAndForWhatTheReferenceHasWhereItIsOpen) {
 }
 
 }  // namespace
-}  // namespace dispersa::campaign_flights_test
+}  // namespace dispersa::cases_campaign_flights_test

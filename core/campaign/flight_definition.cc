@@ -1,0 +1,88 @@
+#include "core/campaign/flight_definition.h"
+
+#include <algorithm>
+#include <memory>
+
+#include "core/math/functions.h"
+#include "core/trajectory/ascent.h"
+
+namespace dispersa {
+namespace {
+
+AscentResult FlyReference(const Campaign& campaign) {
+  AscentOptions options;
+  options.record = true;
+  return FlyAscent(BuildAscentModel(campaign.vehicle, campaign.autopilot.tick_s), campaign.reference.program,
+                   options);
+}
+
+bool Jettisons(const Vehicle& vehicle) {
+  return std::any_of(vehicle.stages.begin(), vehicle.stages.end(),
+                     [](const Stage& stage) { return !stage.jettisoned.empty(); });
+}
+
+// The reference's own way up, the same for every autopilot: over the ground, until it leaves the air that
+// matters or climbs no more.
+ClimbPath ClimbOf(const Campaign& campaign) {
+  const AscentResult ascent = FlyReference(campaign);
+  ClimbPath path;
+  path.azimuth_rad = campaign.reference.program.launch_azimuth_rad;
+  const double ground_m = campaign.vehicle.site.altitude_m;
+  path.altitude_m = {ground_m};
+  path.sine_angle = {1.0};
+  for (const AscentSample& s : ascent.samples) {
+    // The first metres have no direction yet.
+    if (s.altitude_m < ground_m + 1.0) continue;
+    if (s.altitude_m <= path.altitude_m.back()) break;
+    path.altitude_m.push_back(s.altitude_m);
+    path.sine_angle.push_back(Sin(s.relative_path_angle_rad));
+  }
+  if (path.altitude_m.size() < 2) {  // it never left the ground
+    path.altitude_m.push_back(ground_m + 1.0);
+    path.sine_angle.push_back(1.0);
+  }
+  return path;
+}
+
+bool MeetsTurbulence(const Campaign& campaign) {
+  const int exceedance = FindInput("turbulence_exceedance");
+  return std::any_of(campaign.dispersions.begin(), campaign.dispersions.end(), [&](const Dispersion& d) {
+    return std::find(d.inputs.begin(), d.inputs.end(), exceedance) != d.inputs.end();
+  });
+}
+
+}  // namespace
+
+FlightDefinition DefinitionOf(const Campaign& campaign) {
+  FlightDefinition definition;
+  definition.vehicle = campaign.vehicle;
+  definition.autopilot = campaign.autopilot;
+  definition.program = campaign.reference.attitude;
+  definition.last_ignition_s = campaign.reference.last_ignition_s;
+  definition.kick_start_s = campaign.reference.program.t1_s;
+  definition.kick_end_s = campaign.reference.program.t2_s;
+  const TrajectoryProblem& problem = campaign.reference.problem;
+  definition.earlier_ignition_s = campaign.reference.earlier_ignition_s;
+  // What the target leaves open, or counts from elsewhere, is the reference's.
+  const Orbit& reached = campaign.reference.orbit;
+  definition.target = {problem.target_apogee_m ? reached.altitude_m : problem.target_altitude_m,
+                       problem.velocity_is_free ? reached.velocity_m_s - problem.velocity_reserve_m_s
+                                                : problem.target_velocity_m_s,
+                       problem.target_flight_path_angle_rad,
+                       problem.target_inclination_rad.value_or(reached.inclination_rad)};
+  definition.guidance = campaign.guidance;
+  definition.velocity_reserve_m_s = problem.velocity_reserve_m_s;
+  definition.wind_table = campaign.wind_table;
+  definition.wind_statistics = campaign.wind_statistics;
+  definition.noise_seed = campaign.sampling.seed;
+  if (Jettisons(campaign.vehicle) || CutsOffAtVelocity(campaign.vehicle)) {
+    const AscentResult ascent = FlyReference(campaign);
+    definition.jettison_s = ascent.jettison_s;
+    definition.cut_off_s = ascent.cut_off_s;
+  }
+  if (MeetsTurbulence(campaign))
+    definition.turbulence_path = std::make_shared<const TurbulencePath>(ClimbOf(campaign));
+  return definition;
+}
+
+}  // namespace dispersa

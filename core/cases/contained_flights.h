@@ -1,0 +1,16 @@
+// Flights whose control law is a plug-in: flown in child processes, so that nothing that the plug-in does
+// ends this one.
+#pragma once
+
+#include "core/cases/flights_here.h"
+
+namespace dispersa {
+
+/// FlightsHere::Fly in a child. Throws PluginError, ContainedEnd.
+CaseResult FlyContained(const FlightsHere& flights, const FlightInputs& inputs, std::uint64_t case_index,
+                        History* history, Scheme scheme);
+/// FlightsHere::FlyCases in children that fly some cases each. What such a child did not fly before it
+/// ended is flown again, each case in a child of its own; one that ends it again is given up.
+void FlyContained(const FlightsHere& flights, CaseQueue& queue);
+
+}  // namespace dispersa

@@ -1,0 +1,73 @@
+#include "core/cases/flights_here.h"
+
+#include <map>
+#include <utility>
+
+#include "core/campaign/flight_definition.h"
+#include "core/control/law_here.h"
+#include "core/flight/flight.h"
+#include "core/flight/lane_engine.h"
+#include "core/input/input_error.h"
+
+namespace dispersa {
+namespace {
+
+// What was flown with a law in Python can be read by everybody, and flown by who has the law.
+const Campaign& WithItsLaw(const Campaign& campaign) {
+  const auto& plugin = campaign.autopilot.plugin;
+  if (plugin && IsAbsent(*plugin)) {
+    throw InputError(
+        "flown with a Python law, '" + plugin->name + "', which is not here: its cases cannot be flown again",
+        "in Python, with that law as law=...");
+  }
+  return campaign;
+}
+
+// The cases of a queue as flights of the engine.
+class FlyingCases : public FlightQueue {
+ public:
+  FlyingCases(const FlightsHere& flights, CaseQueue& cases) : flights_(flights), cases_(cases) {}
+
+  FlightRecord* Next(bool idle) override {
+    const std::optional<std::uint64_t> case_index = cases_.Next(idle);
+    if (!case_index) return nullptr;
+    FlightOrder order{flights_.Draw(*case_index), {}};
+    order.options.case_index = *case_index;
+    auto record = std::make_unique<FlightRecord>(flights_.model(), order);
+    FlightRecord* const flying = record.get();
+    flying_[flying] = std::move(record);
+    return flying;
+  }
+  void Done(FlightRecord* record) override {
+    const auto ended = flying_.extract(record);
+    cases_.Done(ResultOf(flights_.model(), record->options.case_index, record->inputs, record->Result()));
+  }
+
+ private:
+  const FlightsHere& flights_;
+  CaseQueue& cases_;
+  std::map<FlightRecord*, std::unique_ptr<FlightRecord>> flying_;
+};
+
+}  // namespace
+
+FlightsHere::FlightsHere(const Campaign& campaign)
+    : design_(WithItsLaw(campaign)), model_(std::make_unique<FlightModel>(DefinitionOf(campaign))) {}
+
+FlightsHere::~FlightsHere() = default;
+
+CaseResult FlightsHere::Fly(const FlightInputs& inputs, std::uint64_t case_index, History* history,
+                            Scheme scheme) const {
+  FlightOptions options;
+  options.scheme = scheme;
+  options.case_index = case_index;
+  options.history = history;
+  return ResultOf(*model_, case_index, inputs, dispersa::Fly(*model_, inputs, options));
+}
+
+void FlightsHere::FlyCases(CaseQueue& queue) const {
+  FlyingCases flying(*this, queue);
+  ChosenEngine().fly(*model_, flying);
+}
+
+}  // namespace dispersa
