@@ -221,21 +221,22 @@ class DispersionFields {
   void AddNozzles(const std::string& name, const Selection& of, const ScalarDistribution& distribution,
                   const std::string& pattern, bool absolute = false) {
     for (const int stage : of.stages) {
-      std::vector<std::string> names = NozzleNames(stage);
-      if (names.empty()) names.assign(std::begin(kNozzleNames), std::end(kNozzleNames));
+      const std::vector<std::string> names = NozzleNames(stage);
       for (std::size_t i = 0; i < names.size(); ++i)
         Add(name + "/" + StageName(stage) + "_" + names[i], distribution,
             {FillColumn(FillColumn(pattern, "stage", StageName(stage)), "nozzle", kNozzleNames[i])},
             absolute);
     }
   }
-  // Of the cross, or of the stage's list; none of a vehicle that is unknown.
+  bool KnowsStage(int stage) const {
+    return stage >= 1 && static_cast<std::size_t>(stage) <= vehicle_.stages.size();
+  }
+  // Of the stage's list, else of the cross.
   std::vector<std::string> NozzleNames(int stage) const {
-    const std::vector<Stage>& stages = vehicle_.stages;
-    if (stage < 1 || static_cast<std::size_t>(stage) > stages.size()) return {};
     std::vector<std::string> names;
-    for (const Nozzle& nozzle : stages[static_cast<std::size_t>(stage) - 1].gimbal.nozzles)
-      names.push_back(nozzle.name);
+    if (KnowsStage(stage))
+      for (const Nozzle& nozzle : vehicle_.stages[static_cast<std::size_t>(stage) - 1].gimbal.nozzles)
+        names.push_back(nozzle.name);
     if (names.empty()) names.assign(std::begin(kNozzleNames), std::end(kNozzleNames));
     return names;
   }
@@ -395,7 +396,8 @@ class DispersionFields {
   void StuckNozzle(Fields& map, const DispersionRow& row) {
     int stage = 1;
     map.Integer("stage", 1, static_cast<std::uint64_t>(stages_), stage, "of the nozzle");
-    std::vector<std::string> names = NozzleNames(stage);
+    // Any name may be one of a vehicle that is unknown.
+    std::vector<std::string> names = KnowsStage(stage) ? NozzleNames(stage) : std::vector<std::string>{};
     const std::size_t count = names.size();
     if (count > 0) names.emplace_back("any");
     std::string name;
