@@ -24,7 +24,7 @@
 #include "services/client/writable.h"
 #include "services/ledger/campaign_book.h"
 #include "services/program/threads.h"
-#include "services/python/module.h"
+#include "services/python/parts.h"
 #include "services/python/python_law.h"
 #include "services/python/python_observer.h"
 #include "services/python/result_columns.h"

@@ -1,0 +1,19 @@
+// Errors as Python's exceptions, in Python's words.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <exception>
+#include <vector>
+
+#include "core/input/input_error.h"
+
+namespace dispersa {
+
+/// A list of (file, line, column, path, message, allowed).
+pybind11::list ProblemsOf(const std::vector<InputProblem>& problems);
+
+/// What ends a command with an exit code is an exception of dispersa.errors.
+void Translate(std::exception_ptr problem);
+
+}  // namespace dispersa
