@@ -15,7 +15,7 @@
 // time, bandwidth is the largest that suffices about it, and where none does the design of that time is
 // refined by itself. With `dispersed`, as many draws of the campaign are plants to be held: their margins
 // must be above the gates of dispersed flights, those of the nominal plant above theirs, each plus the
-// smaller reserve kHeld...; they come from tables (loop_table.h), with exact ones at the end. A PID may be
+// smaller reserve kHeld...; they come from tables (core/margins/loop_table.h), with exact ones at the end. A PID may be
 // searched as a linear-quadratic regulator instead (regulator.h): weights take the place of damping and
 // learning. Margins come first: a design that misses one is not flown. What augments PD acts in every stage;
 // it is searched last, over whole flights, with the measured margins at their gates instead of the computed
@@ -38,7 +38,7 @@ namespace dispersa {
 
 inline constexpr double kObjectiveTolerance_deg = 1e-4;
 inline constexpr double kLimitCycleLimit_deg = 0.2;
-/// What a computed margin must have above the gates of margins.h. Measured gain margins, with all axes at work
+/// What a computed margin must have above the gates of flight_margins.h. Measured gain margins, with all axes at work
 /// on a disturbed flight, were found up to 0.6 dB below the computed ones.
 inline constexpr double kGainReserve_db = 0.8;
 inline constexpr double kPhaseReserve_deg = 2.0;

@@ -1,0 +1,26 @@
+// What a tuning asks of the vehicle, whatever design its autopilot has.
+#pragma once
+
+#include <vector>
+
+#include "core/campaign/campaign.h"
+#include "core/flight/flight_model.h"
+
+namespace dispersa {
+
+struct TunedPlant {
+  const Campaign& campaign;
+  const FlightModel& untuned;  ///< of the campaign, all stages untuned
+
+  int StageCount() const { return static_cast<int>(campaign.vehicle.stages.size()); }
+  double ActuatorOf(int stage) const {
+    return campaign.vehicle.stages[static_cast<std::size_t>(stage)].gimbal.bandwidth_rad_s;
+  }
+  AutopilotModel ModelOf(const AutopilotConfig& autopilot) const;
+  std::vector<double> TimesOf(int stage) const;
+  /// The first mode of a stage at a time of its schedule, without one in the middle of its burn; 0 where it
+  /// does not bend.
+  double FirstMode(int stage, double at_s = 0.0) const;
+};
+
+}  // namespace dispersa

@@ -1,0 +1,19 @@
+// What a tuning may spend, and whether its options suit the campaign and the autopilot.
+#pragma once
+
+#include "core/tuning/tune.h"
+
+namespace dispersa {
+
+/// Of a generation, so many designs go on as they are.
+inline constexpr int kElites = 2;
+
+/// Stages, and the augmentation.
+int SearchesOf(const Campaign& campaign, const AutopilotConfig& autopilot);
+int PopulationOf(const TuningOptions& options);
+/// Generations of a search after the initial one.
+int GenerationsOf(const TuningOptions& options, int searches);
+/// Throws InputError, as Tune does.
+void CheckTuning(const Campaign& campaign, const AutopilotConfig& autopilot, const TuningOptions& options);
+
+}  // namespace dispersa
