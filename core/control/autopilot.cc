@@ -58,7 +58,7 @@ GimbalCommand StepGimbals(const AutopilotModel& model, int stage, double since_i
   using namespace lanes;
   GimbalLoop<double> loop;
   SetLane(loop, 0, model, stage, pn_factor.x(), pn_factor.y(), gain);
-  AxisMemory<double> memory[kAxes];
+  AxisStateLanes<double> memory[kAxes];
   for (int axis = 0; axis < kAxes; ++axis) SetLane(memory[axis], 0, state.axes[axis]);
   const Vector<double> angle{error.angle_rad.x(), error.angle_rad.y(), error.angle_rad.z()};
   const Vector<double> rate{error.rate_rad_s.x(), error.rate_rad_s.y(), error.rate_rad_s.z()};

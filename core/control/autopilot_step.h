@@ -12,7 +12,7 @@ inline namespace DISPERSA_ISA {
 /// What the loop knows of each lane's stage.
 template <class T>
 struct GimbalLoop {
-  AxisStage<T> axes[kAxes];
+  StageLawLanes<T> axes[kAxes];
   T gain;  ///< of every command
   T pn_error_factor, pn_rate_factor;
   int stage[kWidth<T>];
@@ -76,7 +76,7 @@ DISPERSA_INLINE void Effectiveness(const GimbalLoop<T>& loop, T since_ignition_s
 template <bool kAll, class T>
 DISPERSA_INLINE void StepGimbals(const AutopilotModel& model, GimbalLoop<T>& loop, MaskOf<T> acting,
                                  T since_ignition_s, Vector<T> angle_rad, Vector<T> rate_rad_s,
-                                 const T* program_rad_s2, const T* foreign_rad_s2, AxisMemory<T>* memory,
+                                 const T* program_rad_s2, const T* foreign_rad_s2, AxisStateLanes<T>* memory,
                                  GimbalOutput<T>& out) {
   if (model.is_scheduled) FollowSchedule(model, since_ignition_s, loop);
   T of_roll, of_pitch;
@@ -102,7 +102,7 @@ DISPERSA_INLINE void StepGimbals(const AutopilotModel& model, GimbalLoop<T>& loo
 
 /// Memory of one axis of the reaction control.
 template <class T>
-struct ThrusterMemory {
+struct ThrusterStateLanes {
   T direction;  ///< -1, 0, 1: the couple that fires
   T cycles_on;  ///< since it opened
 };
@@ -110,7 +110,7 @@ struct ThrusterMemory {
 /// One cycle of the lanes that act: StepThrusters of reaction_control.h.
 template <class T>
 DISPERSA_INLINE void StepThrusters(const ReactionControlLogic& logic, int minimum_cycles, MaskOf<T> acting,
-                                   T error_rad, T rate_rad_s, ThrusterMemory<T>& memory) {
+                                   T error_rad, T rate_rad_s, ThrusterStateLanes<T>& memory) {
   const T s = Fma(T(logic.rate_gain_s), rate_rad_s, error_rad);
   const auto is_open = Abs(memory.direction) > T(0.5);
   const T cycles = memory.cycles_on + Select(is_open, T(1.0), T(0.0));

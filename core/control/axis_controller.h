@@ -17,7 +17,7 @@
 
 namespace dispersa {
 
-/// The law of one axis in one stage: doubles only, those of AxisStage (law.h).
+/// The law of one axis in one stage: doubles only, those of StageLawLanes (law.h).
 struct StageLaw {
   double kp_1_s2 = 0.0;
   double kd_1_s = 0.0;
@@ -50,7 +50,7 @@ AxisLaw BuildAxisLaw(const AxisConfig& config, double tick_s);
 /// The law in a stage at a time since its ignition.
 StageLaw LawAt(const AxisLaw& law, int stage, double since_ignition_s);
 
-/// All memory of one axis, made afresh for each flight: values of 64 bits, those of AxisMemory (law.h).
+/// All memory of one axis, made afresh for each flight: values of 64 bits, those of AxisStateLanes (law.h).
 struct AxisState {
   double departure_rad_s2[kFuzzyRules] = {};  ///< of the consequents from their start
   std::uint64_t rules_fired = 0;              ///< bit i: rule i has fired

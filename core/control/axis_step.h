@@ -27,7 +27,7 @@ DISPERSA_INLINE StageLaw LawAtTime(const AxisLaw& law, int stage, double since_i
 
 template <class T>
 DISPERSA_INLINE AxisTelemetry TelemetryOf(const AxisConfig& config, const AxisOutput<T>& o,
-                                          const AxisMemory<T>& m, int lane) {
+                                          const AxisStateLanes<T>& m, int lane) {
   AxisTelemetry t;
   const double bound = config.adaptation.projection_bound_rad_s2;
   for (int i = 0; i < kFuzzyRules; ++i)
@@ -61,9 +61,9 @@ DISPERSA_INLINE T Filter(int count, const T (*sections)[5], MaskOf<T> acting, T 
 /// One tick of the lanes that act; the others' memory stays as it is. `foreign_rad_s2`: the command of a law
 /// that is not ours, else null. `is_reported`: what the law has learnt is read afterwards.
 template <bool kAll, class T>
-DISPERSA_INLINE void StepAxis(const AxisConfig& config, double tick_s, const AxisStage<T>& stage,
+DISPERSA_INLINE void StepAxis(const AxisConfig& config, double tick_s, const StageLawLanes<T>& stage,
                               MaskOf<T> acting, T error, T rate, const T* foreign_rad_s2, bool is_reported,
-                              AxisMemory<T>& memory, AxisOutput<T>& out) {
+                              AxisStateLanes<T>& memory, AxisOutput<T>& out) {
   out.command_rad_s2 = out.departure_norm2 = out.frozen = T(0.0);
   out.v =
       T(0.5) * Fma(stage.p11 * error, error, Fma(T(2.0) * stage.p12 * error, rate, stage.p22 * rate * rate));

@@ -15,7 +15,7 @@ inline namespace DISPERSA_ISA {
 
 /// StageLaw of each lane's stage. P_n carries the flight's factors.
 template <class T>
-struct AxisStage {
+struct StageLawLanes {
   T kp_1_s2, kd_1_s;
   T p11, p12, p22;
   T pn_error, pn_rate;
@@ -24,7 +24,7 @@ struct AxisStage {
   T filters[kFilterSections][5];  ///< DigitalSection's coefficients
 };
 template <class T>
-DISPERSA_INLINE void SetLane(AxisStage<T>& s, int lane, const StageLaw& law, double pn_error_factor,
+DISPERSA_INLINE void SetLane(StageLawLanes<T>& s, int lane, const StageLaw& law, double pn_error_factor,
                              double pn_rate_factor) {
   SetLaneValues<T>(s, lane, law);
   Lane(s.pn_error, lane) *= pn_error_factor;
@@ -33,7 +33,7 @@ DISPERSA_INLINE void SetLane(AxisStage<T>& s, int lane, const StageLaw& law, dou
 
 /// All memory of one axis: plain values, AxisState lane by lane.
 template <class T>
-struct AxisMemory {
+struct AxisStateLanes {
   T departure_rad_s2[kFuzzyRules];  ///< of the consequents from their start
   T fired;                          ///< as bits: rule i has fired
   T previous_v;
@@ -44,11 +44,11 @@ struct AxisMemory {
   T filters[kFilterSections][2];
 };
 template <class T>
-DISPERSA_INLINE void SetLane(AxisMemory<T>& m, int lane, const AxisState& s) {
+DISPERSA_INLINE void SetLane(AxisStateLanes<T>& m, int lane, const AxisState& s) {
   SetLaneValues<T>(m, lane, s);
 }
 template <class T>
-DISPERSA_INLINE void ReadLane(const AxisMemory<T>& m, int lane, AxisState& s) {
+DISPERSA_INLINE void ReadLane(const AxisStateLanes<T>& m, int lane, AxisState& s) {
   ReadLaneValues<T>(m, lane, s);
 }
 
@@ -57,7 +57,7 @@ template <class T>
 struct LawInput {
   const AxisConfig& config;
   double tick_s;
-  const AxisStage<T>& stage;
+  const StageLawLanes<T>& stage;
   MaskOf<T> acting;
   T error_rad, rate_rad_s;  ///< e and its rate
   const T* foreign_rad_s2;  ///< what a plug-in commands of the axis, if the law is one

@@ -21,7 +21,7 @@ inline namespace DISPERSA_ISA {
 
 /// Of each lane's stack.
 template <class T>
-struct Drives {
+struct GimbalLanes {
   T limit_rad, rate_limit_rad_s;
   T bandwidth2_1_s2;    ///< w²
   T twice_damping_1_s;  ///< 2 zeta w
@@ -83,7 +83,7 @@ DISPERSA_INLINE Transition<double> TransitionOver(double bandwidth2, double twic
 /// The command that a servo follows: the nearest step of its resolution (the even one of two), within the
 /// limit.
 template <class T>
-DISPERSA_INLINE T Followed(const Drives<T>& d, T command_rad) {
+DISPERSA_INLINE T Followed(const GimbalLanes<T>& d, T command_rad) {
   if (d.is_coarse) {
     const T stepped = Nearest(command_rad / d.resolution_rad) * d.resolution_rad;
     command_rad = Select(d.resolution_rad > T(0.0), stepped, command_rad);
@@ -93,7 +93,7 @@ DISPERSA_INLINE T Followed(const Drives<T>& d, T command_rad) {
 
 /// What the servo pulls with, rad/s².
 template <class T>
-DISPERSA_INLINE T Pull(const Drives<T>& d, T command_rad, T angle_rad) {
+DISPERSA_INLINE T Pull(const GimbalLanes<T>& d, T command_rad, T angle_rad) {
   const T distance = command_rad - angle_rad;
   if (!d.is_rough) return d.bandwidth2_1_s2 * distance;
   return d.bandwidth2_1_s2 * (distance - Clamp(distance, -d.dead_zone_rad, d.dead_zone_rad));
@@ -102,7 +102,7 @@ DISPERSA_INLINE T Pull(const Drives<T>& d, T command_rad, T angle_rad) {
 /// The sense in which a drive slides: that of its rate; at rest that of a pull above its friction, else 0:
 /// held.
 template <class T>
-DISPERSA_INLINE T SlidesIn(const Drives<T>& d, T command_rad, T angle_rad, T rate_rad_s) {
+DISPERSA_INLINE T SlidesIn(const GimbalLanes<T>& d, T command_rad, T angle_rad, T rate_rad_s) {
   const T one(1.0), none(0.0);
   const T pull = Pull(d, command_rad, angle_rad);
   const T loose = Select(Abs(pull) > d.friction_1_s2, pull, none);
@@ -113,8 +113,8 @@ DISPERSA_INLINE T SlidesIn(const Drives<T>& d, T command_rad, T angle_rad, T rat
 /// Derivative of one drive: d(angle)/dt = rate within the limit, at which it cannot accelerate further
 /// outwards. `slides`: SlidesIn, which friction opposes; it does not change between two rests.
 template <class T>
-DISPERSA_INLINE void DriveRates(const Drives<T>& d, int i, T command_rad, T angle_rad, T rate_rad_s, T slides,
-                                T& dangle, T& drate) {
+DISPERSA_INLINE void DriveRates(const GimbalLanes<T>& d, int i, T command_rad, T angle_rad, T rate_rad_s,
+                                T slides, T& dangle, T& drate) {
   T acceleration = Fma(d.bandwidth2_1_s2, command_rad - angle_rad, -(d.twice_damping_1_s * rate_rad_s));
   if (d.is_rough) {
     const auto rough = (d.dead_zone_rad > T(0.0)) | (d.friction_1_s2 > T(0.0));
@@ -131,14 +131,14 @@ DISPERSA_INLINE void DriveRates(const Drives<T>& d, int i, T command_rad, T angl
 }
 /// Of a drive without friction.
 template <class T>
-DISPERSA_INLINE void DriveRates(const Drives<T>& d, int i, T command_rad, T angle_rad, T rate_rad_s,
+DISPERSA_INLINE void DriveRates(const GimbalLanes<T>& d, int i, T command_rad, T angle_rad, T rate_rad_s,
                                 T& dangle, T& drate) {
   DriveRates(d, i, command_rad, angle_rad, rate_rad_s, T(0.0), dangle, drate);
 }
 
 /// One step of the classical Runge-Kutta method, of a drive that slides one way.
 template <class T>
-DISPERSA_INLINE void StepDrive(const Drives<T>& d, int i, T command_rad, T slides, T h_s, T& angle_rad,
+DISPERSA_INLINE void StepDrive(const GimbalLanes<T>& d, int i, T command_rad, T slides, T h_s, T& angle_rad,
                                T& rate_rad_s) {
   const T half = T(0.5) * h_s, sixth = h_s * T(1.0 / 6.0);
   const T angle = angle_rad, rate = rate_rad_s;
@@ -160,7 +160,7 @@ inline constexpr int kLimitedSteps = 4;
 
 /// Replaces the lanes whose drives have a dead zone or friction by their numerical propagation.
 template <class T>
-void PropagateRough(const Drives<T>& d, const T* command_rad, T time_s, const DriveState<T>& from,
+void PropagateRough(const GimbalLanes<T>& d, const T* command_rad, T time_s, const DriveState<T>& from,
                     DriveState<T>& to) {
   const T none(0.0), half(0.5), h = time_s * d.rough_part;
   const auto rough = (d.dead_zone_rad > none) | (d.friction_1_s2 > none);
@@ -193,7 +193,7 @@ void PropagateRough(const Drives<T>& d, const T* command_rad, T time_s, const Dr
 
 /// Accelerations of the deflections, into the nozzles that the equations of motion see.
 template <class T>
-DISPERSA_INLINE void SetAccelerations(const Drives<T>& d, const T* command_rad, const DriveState<T>& s,
+DISPERSA_INLINE void SetAccelerations(const GimbalLanes<T>& d, const T* command_rad, const DriveState<T>& s,
                                       Nozzles<T>& nozzles) {
   for (int i = 0; i < kNozzles; ++i) {
     T rate;
@@ -208,8 +208,8 @@ DISPERSA_INLINE void SetAccelerations(const Drives<T>& d, const T* command_rad, 
 /// distance² does not grow, so that a rate within the limit by that never leaves it. Commands are limited in
 /// angle here; the mechanical stop is at the same angle and takes the rate.
 template <class T>
-DISPERSA_INLINE DriveState<T> Propagate(const Drives<T>& d, const T* command_rad, const Transition<T>& over,
-                                        T time_s, const DriveState<T>& from) {
+DISPERSA_INLINE DriveState<T> Propagate(const GimbalLanes<T>& d, const T* command_rad,
+                                        const Transition<T>& over, T time_s, const DriveState<T>& from) {
   DriveState<T> to;
   T fastest(0.0), farthest(0.0), energy(0.0);
   T command[kNozzles];

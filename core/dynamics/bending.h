@@ -32,7 +32,7 @@ struct ModeNow {
 
 /// The bending of each lane's stack.
 template <class T>
-struct Bending {
+struct BendingTableLanes {
   int modes = 0;   ///< of any stack: the same in all lanes, as
   int planes = 1;  ///< 1: plane z is plane y in every stack
   const BendingTable* table[kWidth<T>] = {};
@@ -55,7 +55,7 @@ struct ModalForce {
 
 /// Sets what the lane's propellant decides.
 template <class T>
-DISPERSA_INLINE void ShapesAt(Bending<T>& b, T propellant_kg) {
+DISPERSA_INLINE void ShapesAt(BendingTableLanes<T>& b, T propellant_kg) {
   alignas(128) static constexpr double kNone[BendingTable::kRowSize] = {};
   int level[kWidth<T>];
   T within;
@@ -117,7 +117,7 @@ struct Bent {
   T about_y_rad, about_z_rad;
 };
 template <class T>
-DISPERSA_INLINE Bent<T> BentAtPivot(const Bending<T>& b, const BendingState<T>& s) {
+DISPERSA_INLINE Bent<T> BentAtPivot(const BendingTableLanes<T>& b, const BendingState<T>& s) {
   Bent<T> o{T(0.0), T(0.0), T(0.0), T(0.0)};
   for (int mode = 0; mode < b.modes; ++mode) {
     const ModeNow<T>&y = b.At(0, mode), &z = b.At(1, mode);
@@ -130,7 +130,7 @@ DISPERSA_INLINE Bent<T> BentAtPivot(const Bending<T>& b, const BendingState<T>& 
 }
 /// How far the inertial unit is turned against the mean axes, rad about x, y, z.
 template <class T>
-DISPERSA_INLINE Vector<T> UnitTurn(const Bending<T>& b, const BendingState<T>& s) {
+DISPERSA_INLINE Vector<T> UnitTurn(const BendingTableLanes<T>& b, const BendingState<T>& s) {
   Vector<T> turn = Zero<T>();
   for (int mode = 0; mode < b.modes; ++mode) {
     turn.y = Fma(b.At(1, mode).unit_slope_1_m, s.q_m[1][mode], turn.y);
@@ -140,7 +140,7 @@ DISPERSA_INLINE Vector<T> UnitTurn(const Bending<T>& b, const BendingState<T>& s
 }
 /// How fast the inertial unit turns against the mean axes, rad/s; or, of `gyro` from 0, that gyro.
 template <class T>
-DISPERSA_INLINE Vector<T> TurnRate(const Bending<T>& b, const BendingState<T>& s, int gyro) {
+DISPERSA_INLINE Vector<T> TurnRate(const BendingTableLanes<T>& b, const BendingState<T>& s, int gyro) {
   Vector<T> rate = Zero<T>();
   for (int mode = 0; mode < b.modes; ++mode) {
     const ModeNow<T>&y = b.At(0, mode), &z = b.At(1, mode);
@@ -152,7 +152,7 @@ DISPERSA_INLINE Vector<T> TurnRate(const Bending<T>& b, const BendingState<T>& s
 
 /// Adds a force and a couple at the pivots to the modes' generalised forces.
 template <class T>
-DISPERSA_INLINE void DriveAtPivot(const Bending<T>& b, Vector<T> force_n, Vector<T> couple_n_m,
+DISPERSA_INLINE void DriveAtPivot(const BendingTableLanes<T>& b, Vector<T> force_n, Vector<T> couple_n_m,
                                   ModalForce<T>& o) {
   for (int mode = 0; mode < b.modes; ++mode) {
     const ModeNow<T>&y = b.At(0, mode), &z = b.At(1, mode);
@@ -167,8 +167,8 @@ DISPERSA_INLINE void DriveAtPivot(const Bending<T>& b, Vector<T> force_n, Vector
 /// slope q + deflection q' / V in its plane, and takes its share of the normal force by the slope of the coefficient
 /// at the body's incidence.
 template <class T>
-DISPERSA_INLINE StripForces<T> ForcesByBending(const Bending<T>& b, const BendingState<T>& s,
-                                               const Sections<T>& body, const NormalForce<T>& air) {
+DISPERSA_INLINE StripForces<T> ForcesByBending(const BendingTableLanes<T>& b, const BendingState<T>& s,
+                                               const LoadTableLanes<T>& body, const NormalForce<T>& air) {
   const T inverse_airspeed = T(1.0) / Max(air.airspeed_m_s, T(1e-30));
   StripForces<T> o;
   for (int strip = 0; strip < kStrips; ++strip) {
@@ -189,8 +189,9 @@ DISPERSA_INLINE StripForces<T> ForcesByBending(const Bending<T>& b, const Bendin
 
 /// What the flow does besides to a body that bends. Adds to the body's force and moment about C and to the modes.
 template <class T>
-DISPERSA_INLINE void BendFlow(const Bending<T>& b, const BendingState<T>& s, const Sections<T>& body,
-                              T cg_station_m, FlowForce<T>& flow, ModalForce<T>& o) {
+DISPERSA_INLINE void BendFlow(const BendingTableLanes<T>& b, const BendingState<T>& s,
+                              const LoadTableLanes<T>& body, T cg_station_m, FlowForce<T>& flow,
+                              ModalForce<T>& o) {
   const NormalForce<T>& air = flow.normal;
   const StripForces<T> by_bending = ForcesByBending(b, s, body, flow.normal);
   for (int strip = 0; strip < kStrips; ++strip) {
@@ -211,8 +212,8 @@ DISPERSA_INLINE void BendFlow(const Bending<T>& b, const BendingState<T>& s, con
 
 /// What bending does to the sections' moments: `drive` is Q / m.
 template <class T>
-DISPERSA_INLINE SectionMoments<T> MomentsByBending(const Bending<T>& b, const BendingState<T>& s,
-                                                   const ModalForce<T>& drive, const Sections<T>& body,
+DISPERSA_INLINE SectionMoments<T> MomentsByBending(const BendingTableLanes<T>& b, const BendingState<T>& s,
+                                                   const ModalForce<T>& drive, const LoadTableLanes<T>& body,
                                                    const NormalForce<T>& air) {
   SectionMoments<T> o;
   const StripForces<T> forces = ForcesByBending(b, s, body, air);
@@ -241,7 +242,8 @@ DISPERSA_INLINE SectionMoments<T> MomentsByBending(const Bending<T>& b, const Be
 
 /// Ends the sum of generalised forces: compression by the force along the axis, over the masses.
 template <class T>
-DISPERSA_INLINE void FinishDrive(const Bending<T>& b, const BendingState<T>& s, T axial_n, ModalForce<T>& o) {
+DISPERSA_INLINE void FinishDrive(const BendingTableLanes<T>& b, const BendingState<T>& s, T axial_n,
+                                 ModalForce<T>& o) {
   for (int plane = 0; plane < kPlanes; ++plane)
     for (int mode = 0; mode < b.modes; ++mode) {
       const ModeNow<T>& m = b.At(plane, mode);
@@ -260,7 +262,7 @@ struct Swing {
   T aa[kPlanes][kModes], ar[kPlanes][kModes], ra[kPlanes][kModes], rr[kPlanes][kModes];
 };
 template <class T>
-DISPERSA_INLINE Swing<T> SwingOver(const Bending<T>& b, T time_s) {
+DISPERSA_INLINE Swing<T> SwingOver(const BendingTableLanes<T>& b, T time_s) {
   Swing<T> o;
   o.time_s = time_s;
   for (int plane = 0; plane < b.planes; ++plane)
@@ -279,7 +281,7 @@ DISPERSA_INLINE Swing<T> SwingOver(const Bending<T>& b, T time_s) {
 }
 /// Twice the time.
 template <class T>
-DISPERSA_INLINE Swing<T> Twice(const Bending<T>& b, const Swing<T>& s) {
+DISPERSA_INLINE Swing<T> Twice(const BendingTableLanes<T>& b, const Swing<T>& s) {
   Swing<T> o = s;
   o.time_s = s.time_s + s.time_s;
   for (int plane = 0; plane < b.planes; ++plane)
@@ -296,9 +298,9 @@ DISPERSA_INLINE Swing<T> Twice(const Bending<T>& b, const Swing<T>& s) {
 /// Where the modes are after the time of `swing` under drives d0 + d1 t + d2 t², exactly: a particular motion
 /// a + b t + c t² and the free one of what is left.
 template <class T>
-DISPERSA_INLINE BendingState<T> Swung(const Bending<T>& b, const Swing<T>& swing, const BendingState<T>& from,
-                                      const ModalForce<T>& d0, const ModalForce<T>& d1,
-                                      const ModalForce<T>& d2) {
+DISPERSA_INLINE BendingState<T> Swung(const BendingTableLanes<T>& b, const Swing<T>& swing,
+                                      const BendingState<T>& from, const ModalForce<T>& d0,
+                                      const ModalForce<T>& d1, const ModalForce<T>& d2) {
   BendingState<T> to = from;
   const T t = swing.time_s, two(2.0);
   for (int plane = 0; plane < kPlanes; ++plane)

@@ -10,7 +10,7 @@ inline namespace DISPERSA_ISA {
 
 /// The body of each lane: its grid, sizes, and the factors on its coefficients.
 template <class T>
-struct AeroBody {
+struct BodyAerodynamicsLanes {
   const AeroGrid* grid[kWidth<T>];
   T mach_top, mach_scale, incidence_top, incidence_scale;  ///< AeroGrid::Axis
   bool has_wind_axes;                                      ///< any lane's grid has coefficients in wind axes
@@ -41,7 +41,8 @@ DISPERSA_INLINE T BilinearAt(const T* c, T mach, T incidence) {
 
 /// Factors applied; arguments outside the grid are held at its end.
 template <class T>
-DISPERSA_INLINE Coefficients<T> CoefficientsAt(const AeroBody<T>& body, T mach, T incidence_rad) {
+DISPERSA_INLINE Coefficients<T> CoefficientsAt(const BodyAerodynamicsLanes<T>& body, T mach,
+                                               T incidence_rad) {
   const T m = Clamp(mach, T(0.0), body.mach_top), i = Clamp(incidence_rad, T(0.0), body.incidence_top);
   int at_mach[kWidth<T>], at_incidence[kWidth<T>], offset[kWidth<T>];
   Truncate(m * body.mach_scale, at_mach);
@@ -112,8 +113,8 @@ struct FlowForce {
 /// v: velocity through the air (m/s), w: angular velocity (rad/s) that the damping derivatives see, both in
 /// body axes. At rest there is neither force nor moment.
 template <class T>
-DISPERSA_INLINE FlowForce<T> ForceOfFlow(const AeroBody<T>& body, Vector<T> v, Vector<T> w, T density_kg_m3,
-                                         T inverse_sound_s_m, T cg_station_m) {
+DISPERSA_INLINE FlowForce<T> ForceOfFlow(const BodyAerodynamicsLanes<T>& body, Vector<T> v, Vector<T> w,
+                                         T density_kg_m3, T inverse_sound_s_m, T cg_station_m) {
   FlowForce<T> o;
   const T across2 = Fma(v.y, v.y, v.z * v.z);
   const T across = Sqrt(across2);

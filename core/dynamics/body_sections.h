@@ -11,7 +11,7 @@ inline namespace DISPERSA_ISA {
 
 /// LoadTable of each lane's stack.
 template <class T>
-struct Sections {
+struct LoadTableLanes {
   T strip_station_m[kStrips], slender[kStrips], shift_1_m[kStrips], slender_station_m;
   T station_m[kLoadStations], first_kg_m[kLoadStations][3], second_kg_m2[kLoadStations][3];
   T slender_arm_m[kLoadStations], shift_arm[kLoadStations];  ///< lever of the shares ahead of each station
@@ -23,7 +23,7 @@ struct Sections {
 };
 /// `table` null: nothing is known of this lane's sections.
 template <class T>
-DISPERSA_INLINE void SetLane(Sections<T>& s, int lane, const LoadTable* table) {
+DISPERSA_INLINE void SetLane(LoadTableLanes<T>& s, int lane, const LoadTable* table) {
   static constexpr LoadTable kNone{};
   const LoadTable& from = table ? *table : kNone;
   for (int i = 0; i < kStrips; ++i) {
@@ -75,8 +75,8 @@ struct LargestMoment {
 /// `further`. Left out: the flow's damping moment, forces of the flow of propellant, the axial force on the
 /// bent axis.
 template <class T, class... Further>
-DISPERSA_INLINE LargestMoment<T> LargestOf(const Sections<T>& body, const NormalForce<T>& air, const BodyMotion<T>& m,
-                                           const Further&... further) {
+DISPERSA_INLINE LargestMoment<T> LargestOf(const LoadTableLanes<T>& body, const NormalForce<T>& air,
+                                           const BodyMotion<T>& m, const Further&... further) {
   T largest2(0.0), station(0.0);
   const T aft = air.xcp_station_m - body.slender_station_m;
   const T y_n = air.normal_n * air.across_y, z_n = air.normal_n * air.across_z;

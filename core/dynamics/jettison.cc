@@ -37,9 +37,9 @@ MassProperties MassesOn(const LauncherPlant& plant, int stack, unsigned jettison
                         double since_ignition_s) {
   const StackMass mass = MassOf(plant, stack, jettisoned);
   if (stack > 0 || !plant.boosters || (jettisoned & kBoostersGone) != 0) return mass.At(propellant_kg);
-  lanes::Stack<double> own;
+  lanes::StackMassLanes<double> own;
   lanes::SetLane(own, 0, mass);
-  lanes::Masses<double> m = lanes::MassesAt(own, propellant_kg);
+  lanes::MassPropertiesLanes<double> m = lanes::MassesAt(own, propellant_kg);
   lanes::BesideStage<double> beside;
   lanes::SetLane(beside, 0, plant.boosters->burn, plant.boosters->grains);
   lanes::AddBeside(beside, plant.boosters->burn.Propellant(since_ignition_s), 0.0, 0.0, m);

@@ -25,18 +25,20 @@ struct LauncherModel::Prepared {
 
   LauncherPlant plant;
   FlightWeather weather;
-  std::vector<lanes::Plant<double>> stacks;
+  std::vector<lanes::LauncherPlantLanes<double>> stacks;
 };
 
 namespace {
 
 // An instant of one lane.
 struct OneLane {
-  OneLane(const LauncherPlant& from, const lanes::Plant<double>& stack, const LauncherPhase& now,
+  OneLane(const LauncherPlant& from, const lanes::LauncherPlantLanes<double>& stack, const LauncherPhase& now,
           double time_s, const double* y)
       : earth(from.environment.earth),
         plant(InPhase(from, stack, now)),
-        phase{now.burning, now.burnt, now.boosting, now.ignition_s, now.expelled_mass_kg, ToLanes(now.control_torque_n_m)},
+        phase{now.burning,          now.burnt,
+              now.boosting,         now.ignition_s,
+              now.expelled_mass_kg, ToLanes(now.control_torque_n_m)},
         motion{{y[0], y[1], y[2]}, {y[3], y[4], y[5]}, {y[6], y[7], y[8], y[9]}, {y[10], y[11], y[12]}},
         around(lanes::SurroundingsAt(earth, StandardAir(), plant.weather, motion.p)),
         masses(lanes::MassesAt(plant, phase, time_s)),
@@ -55,8 +57,9 @@ struct OneLane {
     }
   }
 
-  static lanes::Plant<double> InPhase(const LauncherPlant& from, lanes::Plant<double> stack,
-                                      const LauncherPhase& now) {
+  static lanes::LauncherPlantLanes<double> InPhase(const LauncherPlant& from,
+                                                   lanes::LauncherPlantLanes<double> stack,
+                                                   const LauncherPhase& now) {
     if (now.jettisoned != 0) lanes::SetLane(stack.stack, 0, MassOf(from, now.stack, now.jettisoned));
     return stack;
   }
@@ -74,14 +77,14 @@ struct OneLane {
   }
 
   const Earth& earth;
-  lanes::Plant<double> plant;
-  lanes::Phase<double> phase;
-  lanes::Motion<double> motion;
+  lanes::LauncherPlantLanes<double> plant;
+  lanes::LauncherPhaseLanes<double> phase;
+  lanes::RigidBodyStateLanes<double> motion;
   lanes::Surroundings<double> around;
   lanes::TimedMasses<double> masses;
   lanes::Nozzles<double> nozzles, second;
-  lanes::Drives<double> drives{};
-  lanes::Bending<double> bending{};
+  lanes::GimbalLanes<double> drives{};
+  lanes::BendingTableLanes<double> bending{};
   lanes::BendingState<double> bending_state{};
   mutable lanes::ModalForce<double> modal{};  ///< of the last evaluation
 
@@ -113,7 +116,7 @@ const LauncherPlant& LauncherModel::plant() const { return prepared_->plant; }
 
 LauncherInstant LauncherModel::Evaluate(const LauncherPhase& phase, double time_s, const double* y) const {
   const OneLane one(prepared_->plant, prepared_->stacks[static_cast<std::size_t>(phase.stack)], phase, time_s, y);
-  const lanes::Motion<double>& s = one.motion;
+  const lanes::RigidBodyStateLanes<double>& s = one.motion;
   const lanes::TimedMasses<double>& masses = one.masses;
   const lanes::LoadsOf<double> loads = one.Loads();
   LauncherInstant now;
@@ -149,7 +152,7 @@ LauncherInstant LauncherModel::Evaluate(const LauncherPhase& phase, double time_
 void LauncherModel::Derivative(const LauncherPhase& phase, double time_s, const double* y, double* dydt) const {
   const std::size_t stack = static_cast<std::size_t>(phase.stack);
   const OneLane one(prepared_->plant, prepared_->stacks[stack], phase, time_s, y);
-  const lanes::Motion<double>& s = one.motion;
+  const lanes::RigidBodyStateLanes<double>& s = one.motion;
   const lanes::Rates<double> rates = one.Rates();
   const Quaternion dq = dispersa::Derivative({s.q.w, s.q.x, s.q.y, s.q.z}, ToEigen(s.w));
   Vector3 dp = ToEigen(s.v);

@@ -22,19 +22,19 @@ struct ListedNozzle {
 
 /// What one nozzle's share of the thrust has besides that of a nominal one (NozzleDeparture).
 template <class T>
-struct Departure {
+struct NozzleDepartureLanes {
   Matrix<T> extra;  ///< its factor times its tilt, less 1
   T offset_y_m, offset_z_m;
 };
 
 /// Each lane's current stack, its flight's factors applied (LauncherPlant, LauncherStack).
 template <class T>
-struct Plant {
-  Weather<T> weather;
-  Stack<T> stack;
-  Burn<T> burn;
-  AeroBody<T> aero;
-  Sections<T> sections;
+struct LauncherPlantLanes {
+  FlightWeatherLanes<T> weather;
+  StackMassLanes<T> stack;
+  MotorBurnLanes<T> burn;
+  BodyAerodynamicsLanes<T> aero;
+  LoadTableLanes<T> sections;
   T cg_factor, inertia_factor;
   T pivot_station_m, nozzle_radius_m;
   T nozzle_moment_kg_m;    ///< mass of a nozzle times the distance of its centre of gravity aft of the pivot
@@ -45,7 +45,7 @@ struct Plant {
   T thrust_offset_y_m, thrust_offset_z_m;
   bool any_departs;  ///< some lane's nozzles are not all the same
   MaskOf<T> departs;
-  Departure<T> nozzles[kNozzles];
+  NozzleDepartureLanes<T> nozzles[kNozzles];
   bool nozzles_listed;  ///< of any stage: the same in all lanes. The cross is one of the lists then
   ListedNozzle<T> listed[kNozzles];
   T lateral_moment_y_kg_m, lateral_moment_z_kg_m;
@@ -59,7 +59,7 @@ struct Plant {
 
 /// What stays constant between two events of each lane (LauncherPhase).
 template <class T>
-struct Phase {
+struct LauncherPhaseLanes {
   MaskOf<T> burning, burnt, boosting;
   T ignition_s;
   T expelled_kg;
@@ -68,7 +68,7 @@ struct Phase {
 
 /// Position and velocity of the centre of gravity C, attitude, angular velocity (RigidBodyState).
 template <class T>
-struct Motion {
+struct RigidBodyStateLanes {
   Vector<T> p, v;
   Turn<T> q;
   Vector<T> w;
@@ -87,13 +87,14 @@ struct TimedMasses {
   T beside_thrust_fraction, beside_flow_kg_s;  ///< of boosters; count where the vehicle has any
 };
 template <class T>
-DISPERSA_INLINE TimedMasses<T> MassesAt(const Plant<T>& plant, const Phase<T>& phase, T time_s) {
+DISPERSA_INLINE TimedMasses<T> MassesAt(const LauncherPlantLanes<T>& plant,
+                                        const LauncherPhaseLanes<T>& phase, T time_s) {
   // BurnAt holds the time within the burn, so that the ends of a step, which rounding may put outside, count.
   const BurnState<T> burn = BurnAt(plant.burn, time_s - phase.ignition_s);
   const T unlit = Select(phase.burnt, plant.burn.left_kg, plant.burn.propellant_kg);
   TimedMasses<T> o;
   o.propellant_kg = Select(phase.burning, burn.propellant_kg, unlit);
-  Masses<T> m = MassesAt(plant.stack, o.propellant_kg);
+  MassPropertiesLanes<T> m = MassesAt(plant.stack, o.propellant_kg);
   o.thrust_fraction = Select(phase.burning, burn.fraction, T(0.0));
   o.flow_fraction = Select(phase.burning, burn.flow_fraction, T(0.0));
   T flow_kg_s = plant.burn.full_flow_kg_s * o.flow_fraction;
@@ -179,13 +180,13 @@ struct Thrust {
 };
 /// Adds what the nozzles have besides a nominal one's quarter: force, and couple about the pivots' centre.
 template <class T>
-DISPERSA_INLINE void AddDepartures(const Plant<T>& plant, const Nozzles<T>& nozzles, T quarter_n,
+DISPERSA_INLINE void AddDepartures(const LauncherPlantLanes<T>& plant, const Nozzles<T>& nozzles, T quarter_n,
                                    Thrust<T>& o) {
   const T none(0.0), r = plant.nozzle_radius_m;
   const Vector<T> place[kNozzles] = {{none, r, none}, {none, -r, none}, {none, none, r}, {none, none, -r}};
   Vector<T> force = Zero<T>(), couple = Zero<T>();
   for (int i = 0; i < kNozzles; ++i) {
-    const Departure<T>& nozzle = plant.nozzles[i];
+    const NozzleDepartureLanes<T>& nozzle = plant.nozzles[i];
     const bool pitches = i < 2;
     const Vector<T> nominal = quarter_n * Vector<T>{nozzles.cosine[i], pitches ? none : -nozzles.sine[i],
                                                     pitches ? nozzles.sine[i] : none};
@@ -202,7 +203,7 @@ DISPERSA_INLINE void AddDepartures(const Plant<T>& plant, const Nozzles<T>& nozz
 /// the force towards +z, bottom (+z) and top (-z) towards -y. P = P_vac - p A_e; a nozzle that the ambient
 /// pressure would turn inwards gives nothing.
 template <class T>
-DISPERSA_INLINE Thrust<T> ThrustOf(const Plant<T>& plant, const TimedMasses<T>& masses,
+DISPERSA_INLINE Thrust<T> ThrustOf(const LauncherPlantLanes<T>& plant, const TimedMasses<T>& masses,
                                    const Nozzles<T>& nozzles, T pressure_pa) {
   Thrust<T> o;
   // Not Max, which would turn a thrust that is no number into none.
@@ -231,7 +232,7 @@ DISPERSA_INLINE Thrust<T> ThrustOf(const Plant<T>& plant, const TimedMasses<T>& 
 /// The same of a list of nozzles (core/vehicle/nozzle_layout.h), whatever each has besides its nominal share
 /// included.
 template <class T>
-DISPERSA_INLINE Thrust<T> ThrustOf(const Plant<T>& plant, const TimedMasses<T>& masses,
+DISPERSA_INLINE Thrust<T> ThrustOf(const LauncherPlantLanes<T>& plant, const TimedMasses<T>& masses,
                                    const ListedNozzles<T>& nozzles, T pressure_pa) {
   Thrust<T> o;
   const T none(0.0);
@@ -242,7 +243,7 @@ DISPERSA_INLINE Thrust<T> ThrustOf(const Plant<T>& plant, const TimedMasses<T>& 
   o.force_n = o.couple_n_m = Zero<T>();
   for (int i = 0; i < kNozzles; ++i) {
     const ListedNozzle<T>& nozzle = plant.listed[i];
-    const Departure<T>& departs = plant.nozzles[i];
+    const NozzleDepartureLanes<T>& departs = plant.nozzles[i];
     const T across = nozzles.first.sine[i] * nozzles.second.cosine[i], second = nozzles.second.sine[i];
     const Vector<T> turned{nozzles.first.cosine[i] * nozzles.second.cosine[i],
                            Fma(across, nozzle.first_y, second * nozzle.second_y),
@@ -268,7 +269,7 @@ struct NozzleReaction {
   Vector<T> force_n, couple_n_m;  ///< at the pivots
 };
 template <class T>
-DISPERSA_INLINE NozzleReaction<T> ReactionOf(const Plant<T>& plant, const Nozzles<T>& nozzles) {
+DISPERSA_INLINE NozzleReaction<T> ReactionOf(const LauncherPlantLanes<T>& plant, const Nozzles<T>& nozzles) {
   const T* a = nozzles.acceleration_rad_s2;
   const T pitch = a[0] + a[1], yaw = a[2] + a[3];
   const T roll = (a[0] - a[1]) + (a[2] - a[3]);
@@ -278,7 +279,8 @@ DISPERSA_INLINE NozzleReaction<T> ReactionOf(const Plant<T>& plant, const Nozzle
 }
 
 template <class T>
-DISPERSA_INLINE NozzleReaction<T> ReactionOf(const Plant<T>& plant, const ListedNozzles<T>& nozzles) {
+DISPERSA_INLINE NozzleReaction<T> ReactionOf(const LauncherPlantLanes<T>& plant,
+                                             const ListedNozzles<T>& nozzles) {
   const T none(0.0);
   NozzleReaction<T> o{Zero<T>(), Zero<T>()};
   for (int i = 0; i < kNozzles; ++i) {
@@ -299,7 +301,7 @@ DISPERSA_INLINE NozzleReaction<T> ReactionOf(const Plant<T>& plant, const Listed
 template <class T>
 struct BentBody {
   static constexpr bool kBends = true;
-  const Bending<T>* bending;
+  const BendingTableLanes<T>* bending;
   const BendingState<T>* state;
   ModalForce<T>* modal;  ///< receives Q / m
 };
@@ -321,8 +323,8 @@ struct LoadsOf {
 };
 /// The thrust where the body bends: it acts at the displaced pivots along the turned axis, and drives the modes.
 template <class T>
-DISPERSA_INLINE void BendThrust(const Plant<T>& plant, const Phase<T>& phase, const TimedMasses<T>& masses,
-                                const BentBody<T>& bent, Thrust<T>& thrust) {
+DISPERSA_INLINE void BendThrust(const LauncherPlantLanes<T>& plant, const LauncherPhaseLanes<T>& phase,
+                                const TimedMasses<T>& masses, const BentBody<T>& bent, Thrust<T>& thrust) {
   const Bent<T> at = BentAtPivot(*bent.bending, *bent.state);
   const Vector<T> turn{T(0.0), at.about_y_rad, at.about_z_rad};
   const Vector<T> turned_n = Cross(turn, thrust.force_n);
@@ -340,10 +342,10 @@ DISPERSA_INLINE void BendThrust(const Plant<T>& plant, const Phase<T>& phase, co
 /// Boosters push along the axis, from where they are; a lateral offset of C turns that into a moment. Returns where
 /// the flow of stage and boosters leaves, in the mean.
 template <class T>
-DISPERSA_INLINE T AddBoosters(const Plant<T>& plant, const Phase<T>& phase, const TimedMasses<T>& masses,
-                              T pressure_pa, Thrust<T>& thrust, LoadsOf<T>& o) {
+DISPERSA_INLINE T AddBoosters(const LauncherPlantLanes<T>& plant, const LauncherPhaseLanes<T>& phase,
+                              const TimedMasses<T>& masses, T pressure_pa, Thrust<T>& thrust, LoadsOf<T>& o) {
   const T none(0.0);
-  const Burn<T>& burn = plant.beside.burn;
+  const MotorBurnLanes<T>& burn = plant.beside.burn;
   const T net_n =
       Fma(burn.vacuum_thrust_n, masses.beside_thrust_fraction, -(pressure_pa * burn.exit_area_m2));
   const T push_n = Select((masses.beside_thrust_fraction > none) & (net_n > none), net_n, none);
@@ -362,10 +364,10 @@ DISPERSA_INLINE T AddBoosters(const Plant<T>& plant, const Phase<T>& phase, cons
 /// way from the grain's middle or the liquids' surfaces to the pivots, aft by s, a turning body pushes it aside: Coriolis's force
 /// 2 m_dot s w x e_x on the body. `nozzles`: the cross's, or ListedNozzles.
 template <class T, class Turned, class Body>
-DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, const Plant<T>& plant, const Phase<T>& phase,
-                                   bool any_burns, const Surroundings<T>& around,
-                                   const TimedMasses<T>& masses, const Turned& nozzles, const Motion<T>& s,
-                                   const Body& body) {
+DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, const LauncherPlantLanes<T>& plant,
+                                   const LauncherPhaseLanes<T>& phase, bool any_burns,
+                                   const Surroundings<T>& around, const TimedMasses<T>& masses,
+                                   const Turned& nozzles, const RigidBodyStateLanes<T>& s, const Body& body) {
   LoadsOf<T> o;
   o.R_IB = RotationMatrix(s.q);
   const T omega(earth_rate_rad_s), none(0.0);
@@ -429,8 +431,9 @@ DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, const Plant<T>& plan
 /// dw/dt of I dw/dt = `moment` - w x I w with products of inertia: I's inverse by cofactors. `moment`:
 /// without what w x I w gives.
 template <class T>
-DISPERSA_INLINE Vector<T> TurnedUnderProducts(const Plant<T>& plant, const TimedMasses<T>& masses,
-                                              const Vector<T>& moment, const Vector<T>& w) {
+DISPERSA_INLINE Vector<T> TurnedUnderProducts(const LauncherPlantLanes<T>& plant,
+                                              const TimedMasses<T>& masses, const Vector<T>& moment,
+                                              const Vector<T>& w) {
   const T a = masses.axial_kg_m2, t = masses.transverse_kg_m2;
   const T xy = plant.product_xy_kg_m2, xz = plant.product_xz_kg_m2, yz = plant.product_yz_kg_m2;
   const Vector<T> spin{a * w.x - (xy * w.y + xz * w.z), t * w.y - (xy * w.x + yz * w.z),
@@ -450,9 +453,10 @@ DISPERSA_INLINE Vector<T> TurnedUnderProducts(const Plant<T>& plant, const Timed
 /// leaves; a burn that begins or ends moves v by nothing. The motion of an offset C across the body (mm/s) is
 /// left out.
 template <class T, class Turned, class Body>
-DISPERSA_INLINE Rates<T> RatesOf(double earth_rate_rad_s, const Plant<T>& plant, const Phase<T>& phase,
-                                 bool any_burns, const Surroundings<T>& around, const TimedMasses<T>& masses,
-                                 const Turned& nozzles, const Motion<T>& s, const Body& body,
+DISPERSA_INLINE Rates<T> RatesOf(double earth_rate_rad_s, const LauncherPlantLanes<T>& plant,
+                                 const LauncherPhaseLanes<T>& phase, bool any_burns,
+                                 const Surroundings<T>& around, const TimedMasses<T>& masses,
+                                 const Turned& nozzles, const RigidBodyStateLanes<T>& s, const Body& body,
                                  Instant<T>* instant) {
   const LoadsOf<T> loads =
       LoadsAt(earth_rate_rad_s, plant, phase, any_burns, around, masses, nozzles, s, body);

@@ -9,7 +9,7 @@ inline namespace DISPERSA_ISA {
 
 /// `from` must outlive the flight.
 template <class T>
-DISPERSA_INLINE void SetLane(Weather<T>& w, int lane, const FlightWeather& from) {
+DISPERSA_INLINE void SetLane(FlightWeatherLanes<T>& w, int lane, const FlightWeather& from) {
   Lane(w.density_factor, lane) = from.density_factor;
   Lane(w.jet_speed_m_s, lane) = from.jet_speed_m_s;
   Lane(w.jet_altitude_m, lane) = from.jet_altitude_m;
@@ -30,7 +30,8 @@ DISPERSA_INLINE void SetLane(Weather<T>& w, int lane, const FlightWeather& from)
 }
 
 template <class T>
-DISPERSA_INLINE void SetLane(AeroBody<T>& b, int lane, const BodyAerodynamics& body, const AeroGrid& grid) {
+DISPERSA_INLINE void SetLane(BodyAerodynamicsLanes<T>& b, int lane, const BodyAerodynamics& body,
+                             const AeroGrid& grid) {
   b.grid[lane] = &grid;
   Lane(b.mach_top, lane) = grid.mach.top;
   Lane(b.mach_scale, lane) = grid.mach.scale;
@@ -53,7 +54,7 @@ DISPERSA_INLINE void SetLane(AeroBody<T>& b, int lane, const BodyAerodynamics& b
 
 /// The plant of a lane on its stack, nothing jettisoned; its weather is set by itself, once a flight.
 template <class T>
-DISPERSA_INLINE void SetLane(Plant<T>& p, int lane, const LauncherPlant& plant, int stack) {
+DISPERSA_INLINE void SetLane(LauncherPlantLanes<T>& p, int lane, const LauncherPlant& plant, int stack) {
   const LauncherStack& s = plant.stacks.data()[stack];
   SetLane(p.stack, lane, s.mass);
   SetLane(p.burn, lane, s.burn);
@@ -121,7 +122,7 @@ DISPERSA_INLINE void SetLane(Plant<T>& p, int lane, const LauncherPlant& plant, 
 
 /// The bending of a lane on its stack; what its propellant decides is set by ShapesAt.
 template <class T>
-DISPERSA_INLINE void SetLane(Bending<T>& b, int lane, const LauncherPlant& plant, int stack) {
+DISPERSA_INLINE void SetLane(BendingTableLanes<T>& b, int lane, const LauncherPlant& plant, int stack) {
   const BendingTable* table = plant.stacks.data()[stack].bending.get();
   b.table[lane] = table != nullptr && table->modes > 0 ? table : nullptr;
   table = b.table[lane];
@@ -136,7 +137,7 @@ DISPERSA_INLINE void SetLane(Bending<T>& b, int lane, const LauncherPlant& plant
 /// Of the first hinges as of the second. `stuck`: index of a nozzle that does not move, or -1. `longest_s`: of what
 /// Propagate will be asked for.
 template <class T>
-DISPERSA_INLINE void SetLane(Drives<T>& d, int lane, const Gimbal& gimbal, int stuck,
+DISPERSA_INLINE void SetLane(GimbalLanes<T>& d, int lane, const Gimbal& gimbal, int stuck,
                              double longest_s = 0.0) {
   const double w = gimbal.bandwidth_rad_s;
   Lane(d.limit_rad, lane) = gimbal.limit_rad;

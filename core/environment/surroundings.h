@@ -58,12 +58,12 @@ DISPERSA_INLINE Vector<T> GravitationAt(const Earth& earth, Vector<T> p, const P
 }
 
 template <class T>
-struct Air {
+struct AirStateLanes {
   T pressure_pa, energy_j_kg;  ///< energy: pressure / density
 };
 /// The standard's air: within kAirTableTolerance of StandardAtmosphere1976.
 template <class T>
-DISPERSA_INLINE Air<T> AirAt(const AirTable& table, T altitude_m) {
+DISPERSA_INLINE AirStateLanes<T> AirAt(const AirTable& table, T altitude_m) {
   const T z = Clamp(altitude_m, T(kAtmosphereBottom_m), T(kAtmosphereTop_m));
   const double* edges = table.edges.data();
   const double* rows = table.rows.data();
@@ -79,7 +79,7 @@ DISPERSA_INLINE Air<T> AirAt(const AirTable& table, T altitude_m) {
   T c[16];
   LoadRow(row, 4, c);
   const T u = (z - c[0]) * c[1];
-  Air<T> air;
+  AirStateLanes<T> air;
   air.pressure_pa = Fma(u, Fma(u, Fma(u, Fma(u, Fma(u, Fma(u, c[8], c[7]), c[6]), c[5]), c[4]), c[3]), c[2]);
   air.energy_j_kg = Fma(u, Fma(u, Fma(u, Fma(u, Fma(u, c[14], c[13]), c[12]), c[11]), c[10]), c[9]);
   air.pressure_pa = Select(altitude_m > T(kAtmosphereTop_m), T(0.0), air.pressure_pa);
@@ -88,7 +88,7 @@ DISPERSA_INLINE Air<T> AirAt(const AirTable& table, T altitude_m) {
 
 /// Wind and density of one flight each.
 template <class T>
-struct Weather {
+struct FlightWeatherLanes {
   T density_factor;
   T jet_speed_m_s;  ///< JetStream; 0: none
   T jet_altitude_m, jet_inverse_width;
@@ -141,14 +141,14 @@ struct Surroundings {
 /// At p_EoP_I; see ComputeAirData for what the frames mean.
 template <class T>
 DISPERSA_INLINE Surroundings<T> SurroundingsAt(const Earth& earth, const AirTable& standard,
-                                               const Weather<T>& weather, Vector<T> p) {
+                                               const FlightWeatherLanes<T>& weather, Vector<T> p) {
   alignas(32) static constexpr double kCalm[WeatherProfile::kRowSize] = {0.0, 0.0, 0.0, 0.0,
                                                                          1.0, 0.0, 0.0, 0.0};
   const Place<T> at = PlaceAt(earth, p);
   Surroundings<T> o;
   o.altitude_m = at.altitude_m;
   o.gravitation_m_s2 = GravitationAt(earth, p, at);
-  const Air<T> air = AirAt(standard, at.altitude_m);
+  const AirStateLanes<T> air = AirAt(standard, at.altitude_m);
   const T inverse_energy = T(1.0) / air.energy_j_kg;
   T factor = weather.density_factor;
   T north(0.0), east(0.0), up(0.0);

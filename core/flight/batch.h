@@ -134,10 +134,10 @@ class Batch {
   int most_steps_ = 1;
 
   GimbalLoop<T> loop_;
-  Allocation<T> allocation_;  ///< of listed nozzles
-  AxisMemory<T> axes_[kAxes];
+  NozzleLayoutLanes<T> allocation_;  ///< of listed nozzles
+  AxisStateLanes<T> axes_[kAxes];
   GimbalOutput<T> gimbals_;
-  ThrusterMemory<T> thrusters_[kAxes];
+  ThrusterStateLanes<T> thrusters_[kAxes];
   LaneMetrics<T> metrics_;
   T gust_bottom_m_, gust_top_m_;
 };
@@ -227,8 +227,8 @@ void Batch<T>::Start(int lane, FlightRecord* record) {
   Lane(next_digest_tick_, lane) = Lane(lost_ticks_, lane) = 0.0;
   Lane(next_row_tick_, lane) = record->watched ? 0.0 : kFarFuture;
   const AxisState fresh;
-  for (AxisMemory<T>& axis : axes_) SetLane(axis, lane, fresh);
-  for (ThrusterMemory<T>& thruster : thrusters_)
+  for (AxisStateLanes<T>& axis : axes_) SetLane(axis, lane, fresh);
+  for (ThrusterStateLanes<T>& thruster : thrusters_)
     Lane(thruster.direction, lane) = Lane(thruster.cycles_on, lane) = 0.0;
   metrics_.StartFlight(lane);
   const FlightInputs& in = record->inputs;

@@ -168,7 +168,7 @@ void Batch<T>::FlyGimbals() {
   const M powered = live_ & step_.phase().burning;
   if (!Any(powered)) return;
   const bool listed = step_.plant().nozzles_listed;
-  AxisMemory<T> of_roll;
+  AxisStateLanes<T> of_roll;
   if (listed) of_roll = axes_[kRoll];
   if (All(powered))
     FlyGimbalsOf<true>(powered);

@@ -105,7 +105,7 @@ class FlightRecord::JudgedMotion {
   // From rest to rest of the drives, each found by bisection: in between friction is constant and all is
   // smooth.
   bool SlideTo(const Gimbal& gimbal, double from_s, double to_s, int steps, double* y) {
-    lanes::Drives<double> drives{};
+    lanes::GimbalLanes<double> drives{};
     lanes::SetLane(drives, 0, gimbal, phase_.stuck_nozzle);
     State start;
     std::copy(y, y + kLauncherSize, start.begin());

@@ -32,7 +32,7 @@ DISPERSA_INLINE MaskOf<T> InTransient(T time_s, T since_ignition_s, T altitude_m
 }
 
 template <class T>
-struct ErrorStatistics {
+struct ErrorSumsLanes {
   T squares, peak, peak_time_s, count;
 
   DISPERSA_INLINE void Add(MaskOf<T> lanes, T value, T time_s) {
@@ -45,14 +45,14 @@ struct ErrorStatistics {
   }
 };
 template <class T>
-DISPERSA_INLINE void SetLane(ErrorStatistics<T>& s, int lane, const ErrorSums& e) {
+DISPERSA_INLINE void SetLane(ErrorSumsLanes<T>& s, int lane, const ErrorSums& e) {
   Lane(s.squares, lane) = e.squares;
   Lane(s.peak, lane) = e.peak;
   Lane(s.peak_time_s, lane) = e.peak_time_s;
   Lane(s.count, lane) = e.count;
 }
 template <class T>
-DISPERSA_INLINE ErrorSums LaneOf(const ErrorStatistics<T>& s, int lane) {
+DISPERSA_INLINE ErrorSums LaneOf(const ErrorSumsLanes<T>& s, int lane) {
   return {Lane(s.squares, lane), Lane(s.peak, lane), Lane(s.peak_time_s, lane), Lane(s.count, lane)};
 }
 
@@ -65,7 +65,7 @@ struct LyapunovSample {
 
 template <class T>
 struct LaneMetrics {
-  ErrorStatistics<T> pitch, coast, yaw, roll, deflection;  ///< pitch: of the current stage
+  ErrorSumsLanes<T> pitch, coast, yaw, roll, deflection;  ///< pitch: of the current stage
   T itae_rad_s2, deflection_rate_peak_rad_s, saturated_ticks, travel_rad;
   T has_previous, previous_rad[kDrives];
   T q_max_pa, q_alpha_max_pa_rad, alpha_max_rad, axial_load_max_g, lateral_load_max_g;
@@ -75,7 +75,7 @@ struct LaneMetrics {
   /// Before a lane's first tick.
   DISPERSA_INLINE void StartFlight(int lane) {
     for (unsigned i = 0; i < kValues<T, LaneMetrics>; ++i) SetLaneAt<T>(*this, i, lane, 0.0);
-    for (ErrorStatistics<T>* e : {&pitch, &coast, &yaw, &roll, &deflection}) SetLane(*e, lane, ErrorSums{});
+    for (ErrorSumsLanes<T>* e : {&pitch, &coast, &yaw, &roll, &deflection}) SetLane(*e, lane, ErrorSums{});
   }
   /// At a lane's burnout, and when it ends.
   DISPERSA_INLINE void EndStage(int lane, int stage, FlightSums& sums) {
@@ -116,7 +116,7 @@ struct LaneMetrics {
   /// Of listed nozzles: each drive that the lane's stage has counts.
   DISPERSA_INLINE void AddDeflections(MaskOf<T> lanes, T time_s, const DriveState<T>& first,
                                       const DriveState<T>& second, const T* command_rad,
-                                      const Allocation<T>& list) {
+                                      const NozzleLayoutLanes<T>& list) {
     T travel(0.0), fastest(0.0);
     for (int i = 0; i < kDrives; ++i) {
       const DriveState<T>& drives = i < kNozzles ? first : second;

@@ -10,7 +10,7 @@ inline namespace DISPERSA_ISA {
 
 /// Of each lane's stage.
 template <class T>
-struct Allocation {
+struct NozzleLayoutLanes {
   T drive[kDrives][kSteeredAxes];
   T felt[kSteeredAxes][kDrives];
   T limit_rad[kNozzles];
@@ -19,7 +19,7 @@ struct Allocation {
   T rolls_by_thrusters;  ///< 1 of a stage whose nozzles cannot
 };
 template <class T>
-DISPERSA_INLINE void SetLane(Allocation<T>& a, int lane, const NozzleLayout& layout) {
+DISPERSA_INLINE void SetLane(NozzleLayoutLanes<T>& a, int lane, const NozzleLayout& layout) {
   double drives = 0.0;
   for (int i = 0; i < kDrives; ++i) {
     for (int axis = 0; axis < kSteeredAxes; ++axis) {
@@ -37,7 +37,8 @@ DISPERSA_INLINE void SetLane(Allocation<T>& a, int lane, const NozzleLayout& lay
 /// Commands of the drives. A nozzle that would turn by more than its limit keeps the direction: a cone of two
 /// hinges.
 template <class T>
-DISPERSA_INLINE void Allocate(const Allocation<T>& a, T roll_rad, T pitch_rad, T yaw_rad, T* command_rad) {
+DISPERSA_INLINE void Allocate(const NozzleLayoutLanes<T>& a, T roll_rad, T pitch_rad, T yaw_rad,
+                              T* command_rad) {
   const auto commanded = [&](int drive) __attribute__((always_inline)) {
     return Fma(a.drive[drive][0], roll_rad, Fma(a.drive[drive][1], pitch_rad, a.drive[drive][2] * yaw_rad));
   };
@@ -53,7 +54,8 @@ DISPERSA_INLINE void Allocate(const Allocation<T>& a, T roll_rad, T pitch_rad, T
 
 /// The command about an axis that deflections stand for.
 template <class T>
-DISPERSA_INLINE T FeltAbout(const Allocation<T>& a, int axis, const T* first_rad, const T* second_rad) {
+DISPERSA_INLINE T FeltAbout(const NozzleLayoutLanes<T>& a, int axis, const T* first_rad,
+                            const T* second_rad) {
   T felt(0.0);
   for (int i = 0; i < kNozzles; ++i)
     felt = Fma(a.felt[axis][i], first_rad[i], Fma(a.felt[axis][i + kNozzles], second_rad[i], felt));
@@ -62,7 +64,7 @@ DISPERSA_INLINE T FeltAbout(const Allocation<T>& a, int axis, const T* first_rad
 
 /// Where some nozzle is commanded to its limit.
 template <class T>
-DISPERSA_INLINE MaskOf<T> IsSaturated(const Allocation<T>& a, const T* command_rad) {
+DISPERSA_INLINE MaskOf<T> IsSaturated(const NozzleLayoutLanes<T>& a, const T* command_rad) {
   // Scaling to the limit leaves a rounding.
   constexpr double kAtLimit = 1.0 - 1e-9;
   T reached(0.0);

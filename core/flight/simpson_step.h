@@ -39,15 +39,15 @@ template <class T>
 class StepState {
  public:
   // ---- what moves ----
-  const Motion<T>& motion() const { return motion_; }
+  const RigidBodyStateLanes<T>& motion() const { return motion_; }
   const DriveState<T>& drive_state() const { return drive_state_; }
   /// Of second hinges.
   const DriveState<T>& second_drives() const { return second_drives_; }
   const BendingState<T>& bending_state() const { return bending_state_; }
   // ---- what it moves under ----
-  const Plant<T>& plant() const { return plant_; }
-  const Phase<T>& phase() const { return phase_; }
-  const Bending<T>& bending() const { return bending_; }
+  const LauncherPlantLanes<T>& plant() const { return plant_; }
+  const LauncherPhaseLanes<T>& phase() const { return phase_; }
+  const BendingTableLanes<T>& bending() const { return bending_; }
   const T* command_rad() const { return command_rad_; }  ///< at the actuators, kDrives
 
   /// No lane flies: each computes along on numbers that do no harm.
@@ -124,7 +124,7 @@ class StepState {
   }
 
   void ReadLane(int lane, double* y) const {
-    for (unsigned i = 0; i < kValues<T, Motion<T>>; ++i) y[i] = LaneAt<T>(motion_, i, lane);
+    for (unsigned i = 0; i < kValues<T, RigidBodyStateLanes<T>>; ++i) y[i] = LaneAt<T>(motion_, i, lane);
     for (int i = 0; i < kNozzles; ++i) {
       y[kNozzleAngle + i] = Lane(drive_state_.angle_rad[i], lane);
       y[kNozzleRate + i] = Lane(drive_state_.rate_rad_s[i], lane);
@@ -137,7 +137,7 @@ class StepState {
     }
   }
   void WriteLane(int lane, const double* y) {
-    for (unsigned i = 0; i < kValues<T, Motion<T>>; ++i) SetLaneAt<T>(motion_, i, lane, y[i]);
+    for (unsigned i = 0; i < kValues<T, RigidBodyStateLanes<T>>; ++i) SetLaneAt<T>(motion_, i, lane, y[i]);
     for (int i = 0; i < kNozzles; ++i) {
       Lane(drive_state_.angle_rad[i], lane) = y[kNozzleAngle + i];
       Lane(drive_state_.rate_rad_s[i], lane) = y[kNozzleRate + i];
@@ -311,8 +311,8 @@ class StepState {
     ShapesAt(bending_, masses.propellant_kg);
   }
   template <bool kBends, bool kListed>
-  DISPERSA_OUT_OF_LINE void SetRates(const Motion<T>& s, const BendingState<T>& bent_by, Point& at,
-                                     Rates<T>& rates, Instant<T>* instant) const {
+  DISPERSA_OUT_OF_LINE void SetRates(const RigidBodyStateLanes<T>& s, const BendingState<T>& bent_by,
+                                     Point& at, Rates<T>& rates, Instant<T>* instant) const {
     rates = RatesOf(earth_.rotation_rate_rad_s, plant_, phase_, Any(phase_.burning), at.around, at.masses,
                     TurnedAs<kListed>(at), s, BodyAs<kBends>(bent_by, at.modal), instant);
   }
@@ -386,16 +386,16 @@ class StepState {
     SetTransition(tick_over_half_, lane, 0.5 * tick_s_);
   }
 
-  Motion<T> motion_;
+  RigidBodyStateLanes<T> motion_;
   DriveState<T> drive_state_;
   DriveState<T> second_drives_;  ///< nothing touches them unless nozzles are listed
   BendingState<T> bending_state_;
-  Plant<T> plant_;
-  Phase<T> phase_;
-  Drives<T> drives_;
-  Bending<T> bending_;
+  LauncherPlantLanes<T> plant_;
+  LauncherPhaseLanes<T> phase_;
+  GimbalLanes<T> drives_;
+  BendingTableLanes<T> bending_;
   T command_rad_[kDrives];  ///< at the actuators
-  static_assert(kValues<T, Motion<T>> == kRigidBodySize);
+  static_assert(kValues<T, RigidBodyStateLanes<T>> == kRigidBodySize);
   static_assert(kModalState + kValues<T, BendingState<T>> == kBentLauncherSize);
 
   Earth earth_;
@@ -457,7 +457,7 @@ MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
     SetSwung(over_half, a.modal, a.modal_slopes, no_curvature, bent_middle);
   }
 
-  Motion<T> middle;
+  RigidBodyStateLanes<T> middle;
   middle.p = Along(Along(motion_.p, half, motion_.v), h2_8, a.rates.dv);
   middle.v = Along(Along(motion_.v, half, a.rates.dv), h2_8, a.slopes.dv);
   middle.q = TurnedBy(motion_.q, Along(half * motion_.w, h2_8, a.rates.dw));
@@ -467,7 +467,7 @@ MaskOf<T> StepState<T>::StepOf(MaskOf<T> moving, bool all, T from_s, T to_s) {
   SetAir(middle.p, b.around);
   SetRates<kBends, kListed>(middle, kBends ? bent_middle : bending_state_, b, b.rates, nullptr);
 
-  Motion<T> end;
+  RigidBodyStateLanes<T> end;
   end.p = Along(Along(motion_.p, h, motion_.v), h2_6, Along(a.rates.dv, two, b.rates.dv));
   const Vector<T> turn = Along(h * motion_.w, h2_6, Along(a.rates.dw, two, b.rates.dw));
   end.q = TurnedBy(motion_.q, Along(turn, h2 * h * T(1.0 / 12.0), Cross(middle.w, b.rates.dw)));

@@ -585,7 +585,7 @@ void Fleet<T>::Conclude(int lane, bool completed) {
 }  // namespace
 
 double ProgrammedIncidence(const FlightProgram& program, double time_s) {
-  lanes::Program<double> prepared;
+  lanes::FlightProgramLanes<double> prepared;
   SetLane(prepared, 0, program);
   return lanes::IncidenceAt(prepared, time_s);
 }

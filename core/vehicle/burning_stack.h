@@ -12,7 +12,7 @@ inline namespace DISPERSA_ISA {
 
 /// StackMass, prepared.
 template <class T>
-struct Stack {
+struct StackMassLanes {
   T fixed_mass_kg, first_moment_kg_m, second_moment_kg_m2, fixed_axial_kg_m2;
   T grain_station_m;
   T outer2_m2;        ///< the grain's outer radius squared
@@ -23,7 +23,7 @@ struct Stack {
   T first_per_kg_m, first_per_kg2_m, second_per_kg_m2, second_per_kg2_m2, second_per_kg3_m2;
 };
 template <class T>
-DISPERSA_INLINE void SetLane(Stack<T>& s, int lane, const StackMass& mass) {
+DISPERSA_INLINE void SetLane(StackMassLanes<T>& s, int lane, const StackMass& mass) {
   Lane(s.fixed_mass_kg, lane) = mass.fixed_mass_kg;
   Lane(s.first_moment_kg_m, lane) = mass.fixed_first_moment_kg_m;
   Lane(s.second_moment_kg_m2, lane) = mass.fixed_second_moment_kg_m2;
@@ -45,13 +45,13 @@ DISPERSA_INLINE void SetLane(Stack<T>& s, int lane, const StackMass& mass) {
 
 /// MassProperties of StackMass::At.
 template <class T>
-struct Masses {
+struct MassPropertiesLanes {
   T mass_kg, cg_station_m, axial_kg_m2, transverse_kg_m2, axial_per_kg_m2, transverse_per_kg_m2;
   T source_station_m;  ///< where mass goes: the grain's middle, or the surfaces of the liquids, by their shares
 };
 template <class T>
-DISPERSA_INLINE Masses<T> MassesAt(const Stack<T>& s, T propellant_kg) {
-  Masses<T> m;
+DISPERSA_INLINE MassPropertiesLanes<T> MassesAt(const StackMassLanes<T>& s, T propellant_kg) {
+  MassPropertiesLanes<T> m;
   m.mass_kg = s.fixed_mass_kg + propellant_kg;
   const T cg = Fma(propellant_kg, s.grain_station_m, s.first_moment_kg_m) / m.mass_kg;
   const T inner2 = Fma(-propellant_kg, s.inner_per_kg_m2, s.outer2_m2);
@@ -89,7 +89,7 @@ DISPERSA_INLINE Masses<T> MassesAt(const Stack<T>& s, T propellant_kg) {
 
 /// MotorBurn, prepared. Times run from ignition; a ramp without duration has slope 0 and base 1.
 template <class T>
-struct Burn {
+struct MotorBurnLanes {
   T vacuum_thrust_n, full_flow_kg_s, propellant_kg, duration_s, exit_area_m2;
   T rise_s, rise_slope_1_s, rise_base, tail_s, tail_slope_1_s, tail_base;
   T left_kg;  ///< that stays when the burn has ended
@@ -100,7 +100,7 @@ struct Burn {
 /// What a lane without a curve looks up.
 alignas(32) inline constexpr double kNoPiece[BurnCurve::kRowSize] = {};
 template <class T>
-DISPERSA_INLINE void SetLane(Burn<T>& b, int lane, const MotorBurn& burn) {
+DISPERSA_INLINE void SetLane(MotorBurnLanes<T>& b, int lane, const MotorBurn& burn) {
   Lane(b.vacuum_thrust_n, lane) = burn.vacuum_thrust_n;
   Lane(b.full_flow_kg_s, lane) = burn.full_flow_kg_s;
   Lane(b.propellant_kg, lane) = burn.propellant_mass_kg;
@@ -138,7 +138,7 @@ struct BurnState {
   T fraction, flow_fraction, propellant_kg;
 };
 template <class T>
-DISPERSA_INLINE BurnState<T> BurnAt(const Burn<T>& b, T since_ignition_s) {
+DISPERSA_INLINE BurnState<T> BurnAt(const MotorBurnLanes<T>& b, T since_ignition_s) {
   const T since = Clamp(since_ignition_s, T(0.0), b.duration_s);
   const T left = b.duration_s - since;
   // Burnt at full flow from the end of the rise, plus the rise's triangle.
@@ -173,7 +173,7 @@ DISPERSA_INLINE BurnState<T> BurnAt(const Burn<T>& b, T since_ignition_s) {
 /// What burns beside the first stage (Boosters), all together.
 template <class T>
 struct BesideStage {
-  Burn<T> burn;
+  MotorBurnLanes<T> burn;
   T station_m, outer2_m2, inner_per_kg_m2, length2_m2, radius2_m2;
 };
 template <class T>
@@ -190,7 +190,8 @@ DISPERSA_INLINE void SetLane(BesideStage<T>& b, int lane, const MotorBurn& burn,
 /// Adds `beside_kg` of the boosters' propellant, of which `beside_kg_s` flows beside the stage's own `flow_kg_s`. Rates by
 /// mass and the place that mass comes from become those of both flows together.
 template <class T>
-DISPERSA_INLINE void AddBeside(const BesideStage<T>& b, T beside_kg, T beside_kg_s, T flow_kg_s, Masses<T>& m) {
+DISPERSA_INLINE void AddBeside(const BesideStage<T>& b, T beside_kg, T beside_kg_s, T flow_kg_s,
+                               MassPropertiesLanes<T>& m) {
   const T inner2 = Fma(-beside_kg, b.inner_per_kg_m2, b.outer2_m2);
   const T own_axial = T(0.5) * beside_kg * (b.outer2_m2 + inner2);
   const T apart = beside_kg * b.radius2_m2;

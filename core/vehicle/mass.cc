@@ -61,9 +61,9 @@ DrainingMass Draining(const Stage& stage) {
 }  // namespace
 
 MassProperties StackMass::At(double propellant_kg) const {
-  lanes::Stack<double> stack;
+  lanes::StackMassLanes<double> stack;
   lanes::SetLane(stack, 0, *this);
-  const lanes::Masses<double> m = lanes::MassesAt(stack, propellant_kg);
+  const lanes::MassPropertiesLanes<double> m = lanes::MassesAt(stack, propellant_kg);
   return {m.mass_kg,     m.cg_station_m,    m.axial_kg_m2,
           m.transverse_kg_m2, m.axial_per_kg_m2, m.transverse_per_kg_m2};
 }

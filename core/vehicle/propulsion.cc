@@ -10,7 +10,7 @@ namespace dispersa {
 namespace {
 
 lanes::BurnState<double> At(const MotorBurn& motor, double since_ignition_s) {
-  lanes::Burn<double> burn;
+  lanes::MotorBurnLanes<double> burn;
   lanes::SetLane(burn, 0, motor);
   return lanes::BurnAt(burn, since_ignition_s);
 }

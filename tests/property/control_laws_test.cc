@@ -69,9 +69,9 @@ std::vector<Tick> AnyTicks(Random& random) {
 
 // One tick of one lane, by the law itself.
 double StepAlone(const AxisLaw& law, int stage, const Tick& tick, AxisState& state) {
-  lanes::AxisStage<double> of_stage;
+  lanes::StageLawLanes<double> of_stage;
   lanes::SetLane(of_stage, 0, law.stages[static_cast<std::size_t>(stage)], 1.0, 1.0);
-  lanes::AxisMemory<double> memory;
+  lanes::AxisStateLanes<double> memory;
   lanes::SetLane(memory, 0, state);
   memory.saturation = tick.saturation;
   const lanes::LawInput<double> input{
@@ -186,8 +186,8 @@ TEST_P(ControlLaws, TakeAForeignCommandOnlyFromAPlugin) {
 template <class T>
 void FlyBesideOthers(const AxisLaw& law, Random& random) {
   constexpr int kLanes = lanes::kWidth<T>;
-  lanes::AxisStage<T> stage;
-  lanes::AxisMemory<T> memory;
+  lanes::StageLawLanes<T> stage;
+  lanes::AxisStateLanes<T> memory;
   AxisState alone[kLanes];
   std::vector<Tick> ticks[kLanes];
   for (int lane = 0; lane < kLanes; ++lane) {

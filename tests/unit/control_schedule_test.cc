@@ -125,7 +125,7 @@ void ExpectLanesAsAlone() {
   const AutopilotModel model = Model(Scheduled(), SampleAxis(ControlLaw::kPd));
   constexpr int kLanes = lanes::kWidth<T>;
   lanes::GimbalLoop<T> loop;
-  lanes::AxisMemory<T> memory[kAxes];
+  lanes::AxisStateLanes<T> memory[kAxes];
   AutopilotState alone[kLanes];
   for (int lane = 0; lane < kLanes; ++lane) {
     const int stage = lane == 2 ? 1 : 0;

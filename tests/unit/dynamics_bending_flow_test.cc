@@ -9,12 +9,12 @@
 namespace dispersa::dynamics_bending_flow_test {
 namespace {
 
-using lanes::Bending;
+using lanes::BendingTableLanes;
 using lanes::BendingState;
 using lanes::FlowForce;
 using lanes::ModalForce;
 using lanes::NormalForce;
-using lanes::Sections;
+using lanes::LoadTableLanes;
 
 constexpr double kCg_m = 11.0, kXcp_m = 8.0, kSpeed_m_s = 400.0, kSlope_n = 6e5;
 
@@ -36,9 +36,9 @@ FlowForce<double> LinearAir(Incidence at) {
   return flow;
 }
 
-Sections<double> BodySections() {
+LoadTableLanes<double> BodySections() {
   static const LoadTable loads = MadeUpLoads();
-  Sections<double> body{};
+  LoadTableLanes<double> body{};
   lanes::SetLane(body, 0, &loads);
   return body;
 }
@@ -54,7 +54,7 @@ constexpr double kSmall_n = 1e-8;  // rounding of forces of 1e5 N on arms of 20 
 // A body that moves aside meets the flow at its speed over the airspeed; one that is turned, at its turn.
 TEST(BendingFlow, OfARigidMotionIsTheFlowOfTheMovedBody) {
   const BendingTable table = MadeUpTable(RigidMotions());
-  const Bending<double> bending = BendingOf(table, 0.0);
+  const BendingTableLanes<double> bending = BendingOf(table, 0.0);
   BendingState<double> s{};
   s.rate_m_s[0][0] = 3.0;           // towards +y
   s.rate_m_s[1][0] = -2.0;          // towards -z
@@ -84,8 +84,8 @@ TEST(BendingFlow, OfARigidMotionIsTheFlowOfTheMovedBody) {
 // A turning body's strips meet the flow at the speed of their places.
 TEST(BendingFlow, OfATurningBodyIsThatOfEachPlacesSpeed) {
   const BendingTable table = MadeUpTable(RigidMotions());
-  const Bending<double> bending = BendingOf(table, 0.0);
-  const Sections<double> body = BodySections();
+  const BendingTableLanes<double> bending = BendingOf(table, 0.0);
+  const LoadTableLanes<double> body = BodySections();
   for (int plane = 0; plane < kPlanes; ++plane) {
     BendingState<double> s{};
     s.rate_m_s[plane][1] = 0.3;
@@ -106,8 +106,8 @@ TEST(BendingFlow, OfATurningBodyIsThatOfEachPlacesSpeed) {
 // A bent body's forces do work on each mode by their places.
 TEST(BendingFlow, DrivesEachModeByTheWorkOfItsStrips) {
   const BendingTable table = MadeUpTable(TwoPlanes());
-  const Bending<double> bending = BendingOf(table, 0.0);
-  const Sections<double> body = BodySections();
+  const BendingTableLanes<double> bending = BendingOf(table, 0.0);
+  const LoadTableLanes<double> body = BodySections();
   const Incidence straight{-0.03, 0.04};
   BendingState<double> s{};
   for (int plane = 0; plane < kPlanes; ++plane)
@@ -144,7 +144,7 @@ TEST(BendingFlow, DrivesEachModeByTheWorkOfItsStrips) {
 
 TEST(BendingFlow, InVacuumIsNothingHoweverTheBodyRings) {
   const BendingTable table = MadeUpTable(TwoPlanes());
-  const Bending<double> bending = BendingOf(table, 0.0);
+  const BendingTableLanes<double> bending = BendingOf(table, 0.0);
   BendingState<double> s{};
   s.q_m[0][0] = s.q_m[1][1] = 0.1;
   s.rate_m_s[0][1] = s.rate_m_s[1][0] = 5.0;
@@ -165,8 +165,8 @@ TEST(BendingFlow, InVacuumIsNothingHoweverTheBodyRings) {
 TEST(BendingSections, CarryTheMassesAheadLessTheirAir) {
   const BendingTable table = MadeUpTable(TwoPlanes());
   constexpr double kDamping = 0.04;
-  const Bending<double> bending = BendingOf(table, 0.0, kDamping);
-  const Sections<double> body = BodySections();
+  const BendingTableLanes<double> bending = BendingOf(table, 0.0, kDamping);
+  const LoadTableLanes<double> body = BodySections();
   BendingState<double> s{};
   ModalForce<double> driven{};
   for (int plane = 0; plane < kPlanes; ++plane)
@@ -215,9 +215,9 @@ struct Everything {
   BendingState<double> later;
   lanes::SectionMoments<double> sections;
 };
-Everything Of(const Bending<double>& b, const BendingState<double>& s, Incidence at,
+Everything Of(const BendingTableLanes<double>& b, const BendingState<double>& s, Incidence at,
               lanes::Vector<double> force, lanes::Vector<double> couple) {
-  const Sections<double> body = BodySections();
+  const LoadTableLanes<double> body = BodySections();
   Everything o{};
   o.pivot = lanes::BentAtPivot(b, s);
   o.unit = lanes::UnitTurn(b, s);
@@ -236,7 +236,7 @@ Everything Of(const Bending<double>& b, const BendingState<double>& s, Incidence
 // same.
 TEST(BendingPlanes, AreOneAnotherTurnedByAQuarterAboutX) {
   const BendingTable table = MadeUpTable({TwoPlanes()[0]});
-  const Bending<double> b = BendingOf(table, 0.0, 0.01);
+  const BendingTableLanes<double> b = BendingOf(table, 0.0, 0.01);
   BendingState<double> s{}, turned{};
   for (int mode = 0; mode < 2; ++mode) {
     s.q_m[0][mode] = 0.02 - 0.03 * mode;

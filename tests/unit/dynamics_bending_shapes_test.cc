@@ -67,7 +67,7 @@ void ExpectColumns(const lanes::ModeNow<double>& now, const std::function<double
 TEST(BendingShapes, AreLinearBetweenLevelsAndHeldBeyond) {
   const BendingTable table = NumberTable(2);
   for (const Between& at : kPlaces) {
-    const lanes::Bending<double> bending = BendingOf(table, at.propellant_kg, 0.02);
+    const lanes::BendingTableLanes<double> bending = BendingOf(table, at.propellant_kg, 0.02);
     for (int plane = 0; plane < kPlanes; ++plane)
       for (int mode = 0; mode < 2; ++mode) {
         SCOPED_TRACE(testing::Message() << at.propellant_kg << " kg, plane " << plane << ", mode " << mode);
@@ -96,7 +96,7 @@ TEST(BendingShapes, OfOneColumnAreThoseOfAFlight) {
 
 TEST(BendingShapes, OfOneLevelAreTheSameAtAnyPropellant) {
   const BendingTable table = MadeUpTable(TwoPlanes());
-  const lanes::Bending<double> some = BendingOf(table, 0.0), more = BendingOf(table, 77.0);
+  const lanes::BendingTableLanes<double> some = BendingOf(table, 0.0), more = BendingOf(table, 77.0);
   for (int plane = 0; plane < kPlanes; ++plane)
     for (int mode = 0; mode < 2; ++mode) {
       EXPECT_EQ(some.At(plane, mode).pivot_deflection,
@@ -110,7 +110,7 @@ TEST(BendingShapes, OfOneLevelAreTheSameAtAnyPropellant) {
 
 TEST(BendingShapes, OfAnAxisymmetricBodyServeBothPlanes) {
   const BendingTable table = NumberTable(1);
-  lanes::Bending<double> bending = BendingOf(table, 80.0);
+  lanes::BendingTableLanes<double> bending = BendingOf(table, 80.0);
   EXPECT_EQ(&bending.At(1, 1), &bending.At(0, 1));
   // Beside a stack whose planes differ, its second plane is looked up too.
   bending.planes = 2;
@@ -123,7 +123,7 @@ TEST(BendingShapes, OfAnAxisymmetricBodyServeBothPlanes) {
 
 TEST(BendingShapes, FollowTheFlightsFactors) {
   const BendingTable table = NumberTable(2);
-  lanes::Bending<double> bending = BendingOf(table, 80.0);
+  lanes::BendingTableLanes<double> bending = BendingOf(table, 80.0);
   bending.frequency_factor[0] = 1.1;
   bending.frequency_factor[1] = 0.8;
   bending.slope_factor = 1.5;
@@ -145,7 +145,7 @@ TEST(BendingShapes, FollowTheFlightsFactors) {
 TEST(BendingShapes, OfAModeThatDoesNotFlyAreNone) {
   const BendingTable table = NumberTable(1, 1);
   for (const BendingTable* of_stack : {&table, static_cast<const BendingTable*>(nullptr)}) {
-    lanes::Bending<double> bending = BendingOf(table, 80.0, 0.01);
+    lanes::BendingTableLanes<double> bending = BendingOf(table, 80.0, 0.01);
     bending.modes = 3;  // another stack has so many
     bending.planes = 2;
     bending.table[0] = of_stack;
@@ -165,7 +165,7 @@ TEST(BendingShapes, OfALaneAreThoseOfItsStackAlone) {
   const BendingTable two_planes = NumberTable(2), one_plane = NumberTable(1), one_mode = NumberTable(2, 1);
   const BendingTable* tables[4] = {&one_plane, nullptr, &two_planes, &one_mode};
   const double propellant_kg[4] = {97.0, 50.0, 33.0, -1.0};
-  lanes::Bending<Four> together{};
+  lanes::BendingTableLanes<Four> together{};
   together.modes = together.planes = 2;
   Four propellant(0.0);
   for (int lane = 0; lane < 4; ++lane) {
@@ -177,7 +177,7 @@ TEST(BendingShapes, OfALaneAreThoseOfItsStackAlone) {
   }
   lanes::ShapesAt(together, propellant);
   for (int lane = 0; lane < 4; ++lane) {
-    lanes::Bending<double> alone{};
+    lanes::BendingTableLanes<double> alone{};
     alone.modes = alone.planes = 2;
     alone.table[0] = tables[lane];
     for (double& factor : alone.frequency_factor) factor = 1.0 + 0.1 * lane;

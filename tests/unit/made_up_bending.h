@@ -81,9 +81,9 @@ inline BendingTable MadeUpTable(const std::vector<std::vector<MadeUpMode>>& plan
 }
 
 /// One lane that bends as a table says.
-inline lanes::Bending<double> BendingOf(const BendingTable& table, double propellant_kg,
-                                        double damping_ratio = 0.0) {
-  lanes::Bending<double> bending{};
+inline lanes::BendingTableLanes<double> BendingOf(const BendingTable& table, double propellant_kg,
+                                                  double damping_ratio = 0.0) {
+  lanes::BendingTableLanes<double> bending{};
   bending.modes = table.modes;
   bending.planes = table.planes;
   bending.table[0] = &table;

@@ -20,7 +20,7 @@ TEST(AirTable, IsWithinItsToleranceOfTheStandardEverywhere) {
   double pressure = 0.0, density = 0.0, sound = 0.0;
   for (double z = -5000.0; z <= 1.0e6; z += 7.3) {
     const AirState air = StandardAtmosphere1976(z);
-    const lanes::Air<double> looked_up = lanes::AirAt(StandardAir(), z);
+    const lanes::AirStateLanes<double> looked_up = lanes::AirAt(StandardAir(), z);
     pressure = std::max(pressure, std::fabs(looked_up.pressure_pa / air.pressure_pa - 1.0));
     density =
         std::max(density, std::fabs(looked_up.pressure_pa / looked_up.energy_j_kg / air.density_kg_m3 - 1.0));
@@ -49,7 +49,7 @@ TEST(Surroundings, AreThoseOfTheDefinitions) {
   environment.density = {1.05, {{0.0, 10000.0, 40000.0}, {0.9, 1.1, 1.0}}};
   const FlightWeather prepared =
       PrepareWeather(environment.wind, environment.density, environment.turbulence.get());
-  lanes::Weather<double> weather;
+  lanes::FlightWeatherLanes<double> weather;
   lanes::SetLane(weather, 0, prepared);
   Stream draws(3, 0, "places");
   for (int k = 0; k < 20000; ++k) {
@@ -93,7 +93,7 @@ TEST(AeroGrid, IsTheTablesThemselves) {
   Stream draws(4, 0, "flow");
   for (const BodyAerodynamics& body : bodies) {
     const AeroGrid grid = BuildAeroGrid(body);
-    lanes::AeroBody<double> one;
+    lanes::BodyAerodynamicsLanes<double> one;
     lanes::SetLane(one, 0, body, grid);
     for (int k = 0; k < 5000; ++k) {
       const double mach = 12.0 * draws.Uniform() * draws.Uniform(),
@@ -122,7 +122,7 @@ TEST(AeroGrid, TheSlopeOfTheNormalForceIsItsDerivative) {
   BodyAerodynamics body = BuildNominalPlant(LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml")).stacks[0].aerodynamics;
   body.cn.factor = 1.3;
   const AeroGrid grid = BuildAeroGrid(body);
-  lanes::AeroBody<double> one;
+  lanes::BodyAerodynamicsLanes<double> one;
   lanes::SetLane(one, 0, body, grid);
   Stream draws(8, 0, "flow");
   int within = 0;
@@ -143,7 +143,7 @@ TEST(AeroGrid, TheSlopeOfTheNormalForceIsItsDerivative) {
 // One drive from rest under a command, by SUNDIALS on its derivative, and by the engine in steps of half a
 // tick.
 struct OneDrive {
-  lanes::Drives<double> drives{};
+  lanes::GimbalLanes<double> drives{};
   double command_rad;
 
   explicit OneDrive(double command, double rate_limit, double damping_ratio) : command_rad(command) {

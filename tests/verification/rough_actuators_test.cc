@@ -38,7 +38,7 @@ class Drive {
   double rate_rad_s() const { return state_.rate_rad_s[0]; }
 
  private:
-  lanes::Drives<double> drives_{};
+  lanes::GimbalLanes<double> drives_{};
   lanes::DriveState<double> state_{};
 };
 
@@ -121,7 +121,7 @@ TEST(RoughActuators, OneLaneMovesAsManyDo) {
   coarse.resolution_rad = 0.002;
   const Gimbal gimbals[4] = {rough, Smooth(25.0, 0.7), coarse, rough};
   using Four = lanes::Pack<4>;
-  lanes::Drives<Four> drives{};
+  lanes::GimbalLanes<Four> drives{};
   lanes::DriveState<Four> state{};
   lanes::Transition<Four> over{};
   for (int i = 0; i < kNozzles; ++i) state.angle_rad[i] = state.rate_rad_s[i] = Four(0.0);

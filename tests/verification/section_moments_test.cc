@@ -49,8 +49,8 @@ std::vector<Tube> Tubes(const Vehicle& vehicle, double propellant_kg) {
 }
 
 // One section alone, so that it is the largest.
-lanes::Sections<double> Only(const LoadTable& table, int station) {
-  lanes::Sections<double> s{};
+lanes::LoadTableLanes<double> Only(const LoadTable& table, int station) {
+  lanes::LoadTableLanes<double> s{};
   lanes::SetLane(s, 0, &table);
   for (int i = 0; i < kLoadStations; ++i) {
     if (i == station) continue;
@@ -96,7 +96,7 @@ void ExpectBalance(const Vehicle& vehicle, const std::vector<double>& parts) {
         behind -= kg * ((acceleration + turn * (mass.cg_station_m - middle)) * (s - middle) + turn * second);
         behind -= kg * turn * tube.gyration2_m2;
       }
-      const lanes::Sections<double> body = Only(table, station);
+      const lanes::LoadTableLanes<double> body = Only(table, station);
       const lanes::NormalForce<double> along_y{normal_n, 0.0, xcp_m, 1.0, 0.0, 500.0},
           along_z{normal_n, 0.0, xcp_m, 0.0, 1.0, 500.0};
       const double y = lanes::LargestOf(body, along_y,
