@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/analysis/loss_fails.h"
 #include "core/results/metric_catalogue.h"
 #include "core/results/sampling_text.h"
 #include "core/results/text.h"

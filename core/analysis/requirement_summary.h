@@ -14,6 +14,10 @@
 
 namespace dispersa {
 
+/// Whether a lost flight fails a requirement whatever it measured. Of the vehicle's own limits a loss says
+/// nothing: they are held against what the flight bore until then.
+inline bool LossFails(const Requirement& requirement) { return !requirement.by_default; }
+
 struct RequirementSummary {
   std::string metric;       ///< without the prefix
   bool by_default = false;  ///< because the vehicle gives limits

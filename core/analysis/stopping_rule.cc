@@ -4,7 +4,6 @@
 #include <cmath>
 #include <set>
 
-#include "core/analysis/loss_fails.h"
 #include "core/analysis/requirement_summary.h"
 #include "core/results/sampling_text.h"
 

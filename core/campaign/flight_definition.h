@@ -1,5 +1,5 @@
-// What a campaign's flights have in common, as the engine wants it: the campaign's vehicle, law and air, and what its
-// reference flies.
+// What a campaign's flights have in common, as the engine wants it: the campaign's vehicle, law and air, and
+// what its reference flies.
 #pragma once
 
 #include "core/campaign/campaign.h"

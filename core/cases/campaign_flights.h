@@ -17,9 +17,9 @@ struct CaseOrder {
 /// What becomes of it: its position in the list, its result, and its history (empty where none was wanted).
 using CaseObserver = std::function<void(std::size_t order, CaseResult result, const History& history)>;
 
-/// Flies the cases of a campaign in this process, and those of a campaign whose control law is a plug-in in child
-/// processes (contained_flights.h). Flying is const and thread-safe. It throws PluginError where the plug-in
-/// cannot be used, and ContainedEnd where it ends the process of a flight that is not of a queue.
+/// Flies the cases of a campaign in this process, and those of a campaign whose control law is a plug-in in
+/// child processes (contained_flights.h). Flying is const and thread-safe. It throws PluginError where the
+/// plug-in cannot be used, and ContainedEnd where it ends the process of a flight that is not of a queue.
 class CampaignFlights {
  public:
   explicit CampaignFlights(const Campaign& campaign);

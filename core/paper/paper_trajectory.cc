@@ -7,7 +7,6 @@
 
 #include "core/math/constants.h"
 #include "core/paper/paper_sections.h"
-#include "core/paper/paper_table2.h"
 #include "core/analysis/dispersion_summary.h"
 #include "core/pages/html_parts.h"
 #include "core/results/text.h"
@@ -15,6 +14,11 @@
 
 namespace dispersa {
 namespace {
+
+// The optimal results that the paper prints in its Table 2.
+constexpr double kPaperHeight_km = 500.406;
+constexpr double kPaperVelocity_m_s = 7612.585;
+constexpr double kPaperAngle_deg = 0.0000055;
 
 std::string Signed(double value) { return fmt::format("{:+.3g}", value); }
 

@@ -21,7 +21,8 @@ HeldPlants::HeldPlants(const TunedPlant& plant, const std::vector<MarginInstant>
     : plant_(plant) {
   held_.resize(static_cast<std::size_t>(plant_.StageCount()));
   for (const MarginInstant& instant : instants)
-    Hold(plant_.untuned.nominal_plant(), "nominal plant", instant.sample, {1.0, 1.0 - kFrequencyBand, 1.0 + kFrequencyBand},
+    Hold(plant_.untuned.nominal_plant(), "nominal plant", instant.sample,
+         {1.0, 1.0 - kFrequencyBand, 1.0 + kFrequencyBand},
          {kGainMarginGate_db + kHeldGainReserve_db, kPhaseMarginGate_deg + kHeldPhaseReserve_deg,
           kDelayMarginGate_s + kHeldDelayReserve_s});
   for (int i = 0; i < draws; ++i) {
@@ -37,7 +38,7 @@ HeldPlants::HeldPlants(const TunedPlant& plant, const std::vector<MarginInstant>
 }
 
 void HeldPlants::Hold(LauncherPlant plant, const std::string& name, const TickSample& sample,
-          const std::vector<double>& frequency_factors, const LoopGates& gates) {
+                      const std::vector<double>& frequency_factors, const LoopGates& gates) {
   const std::size_t stage = static_cast<std::size_t>(sample.stack);
   SensorModel all = plant_.untuned.sensors();
   all.stages[stage].unit = 1.0;
@@ -50,10 +51,11 @@ void HeldPlants::Hold(LauncherPlant plant, const std::string& name, const TickSa
         frequency_factors.size() > 1 ? std::vector{kPitch, kYaw, kRoll} : std::vector{kPitch, kYaw};
     for (const Axis axis : axes) {
       if (axis == kRoll && !plant.stacks[stage].layout.rolls) continue;  // thrusters hold it
-      held_[stage].push_back({factor == 1.0 ? name : fmt::format("{}, modes at {:.0f} %", name, 100.0 * factor),
-                              sample.since_ignition_s, axis, gates,
-                              LoopTable(LineariseAxis(plant, sample, axis, all), plant_.campaign.autopilot.tick_s,
-                                        plant.stacks[stage].gimbal.delay_ticks)});
+      held_[stage].push_back(
+          {factor == 1.0 ? name : fmt::format("{}, modes at {:.0f} %", name, 100.0 * factor),
+           sample.since_ignition_s, axis, gates,
+           LoopTable(LineariseAxis(plant, sample, axis, all), plant_.campaign.autopilot.tick_s,
+                     plant.stacks[stage].gimbal.delay_ticks)});
     }
   }
 }
@@ -67,7 +69,7 @@ std::vector<double> HeldPlants::SharesOf(const AutopilotConfig& autopilot, int s
 }
 
 double HeldPlants::SurplusOf(const AutopilotConfig& autopilot, int stage, std::size_t* last, double enough,
-                 std::optional<std::size_t> about) const {
+                             std::optional<std::size_t> about) const {
   const AutopilotModel model = plant_.ModelOf(autopilot);
   const std::vector<double> shares = SharesOf(autopilot, stage);
   const std::vector<double> times = plant_.TimesOf(stage);
@@ -121,7 +123,8 @@ std::string HeldPlants::Missed(int stage) const {
                              {kHardly, kHardly, worst->gates.delay_s}};
   std::string gate = "gain and phase margin of bending";
   for (std::size_t kind = 0; kind < 3; ++kind)
-    if (worst->table.Surplus(law, shares, alone[kind]) == least) gate = fmt::format("{} margin", kGateNames[kind]);
+    if (worst->table.Surplus(law, shares, alone[kind]) == least)
+      gate = fmt::format("{} margin", kGateNames[kind]);
   return fmt::format("{}: {}, {}, {} {:.1f} s after ignition",
                      least <= kUnstableSurplus
                          ? std::string("the loop is unstable")

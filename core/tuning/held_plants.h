@@ -1,5 +1,5 @@
-// The plants that every design must hold where a tuning has dispersed ones: the nominal plant and those of some draws
-// of the campaign, at the instants of their own flights, to the gates of dispersed flights.
+// The plants that every design must hold where a tuning has dispersed ones: the nominal plant and those of
+// some draws of the campaign, at the instants of their own flights, to the gates of dispersed flights.
 #pragma once
 
 #include <optional>
@@ -16,8 +16,8 @@ namespace dispersa {
 class HeldPlants {
  public:
   /// Of so many draws; `instants` are the nominal plant's, and `rigid` flies the draws' own.
-  HeldPlants(const TunedPlant& plant, const std::vector<MarginInstant>& instants, const CampaignFlights& rigid,
-             int draws);
+  HeldPlants(const TunedPlant& plant, const std::vector<MarginInstant>& instants,
+             const CampaignFlights& rigid, int draws);
 
   /// The least surplus of all held plants of a stage, or of those nearer to one of its times than to others.
   /// Once it is below `enough` the rest does not matter; `last`, which was least before, is looked at first.

@@ -59,7 +59,8 @@ bool NominalMargins::Suffice(const AutopilotConfig& autopilot, int stage, std::s
 
 std::string NominalMargins::Missed(std::size_t kind, bool adapting, int stage) const {
   constexpr const char* kUnits[] = {"dB", "deg", "ms"};
-  constexpr double kNeeded[] = {kGainMarginGate_db + kGainReserve_db, kPhaseMarginGate_deg + kPhaseReserve_deg,
+  constexpr double kNeeded[] = {kGainMarginGate_db + kGainReserve_db,
+                                kPhaseMarginGate_deg + kPhaseReserve_deg,
                                 1e3 * (kDelayMarginGate_s + kDelayReserve_s)};
   const AutopilotModel model = plant_.ModelOf(plant_.campaign.autopilot);
   const SensorModel sensors = BuildSensors(plant_.campaign.vehicle, plant_.campaign.autopilot);
@@ -76,8 +77,9 @@ std::string NominalMargins::Missed(std::size_t kind, bool adapting, int stage) c
       if (!(value < least)) continue;
       least = value;
       const double thrust = burn.Fraction(std::min(instant.sample.since_ignition_s, burn.duration_s));
-      where = fmt::format("{} at {:.2f} s{}, {:.0f} % of full thrust", kAxisNames[axis], instant.sample.time_s,
-                          instant.place.empty() ? "" : " (" + instant.place + ")", 100.0 * thrust);
+      where =
+          fmt::format("{} at {:.2f} s{}, {:.0f} % of full thrust", kAxisNames[axis], instant.sample.time_s,
+                      instant.place.empty() ? "" : " (" + instant.place + ")", 100.0 * thrust);
     }
   }
   return fmt::format("{} margin {:.1f} {}, {:.1f} are needed: {}, {}", kGateNames[kind], least, kUnits[kind],

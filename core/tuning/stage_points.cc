@@ -10,40 +10,40 @@ namespace dispersa {
 
 BoundedProblem StagePoints::ProblemOf(int stage) const {
   const bool learns = Learns(plant_.campaign.autopilot);
-    BoundedProblem problem;
-    struct Variable {
-      Bounds bounds;
-      double start;
-      double held_start = start;  ///< of the second point that a search under held plants begins with
-    };
-    std::vector<Variable> variables = {{kBandwidthOfLargest, kBandwidthOfLargest.high}};
-    if (options_.regulator) {
-      variables.push_back({kIntegralWeightPower, kStartIntegralWeightPower});
-      variables.push_back({kRateWeightPower, kStartRateWeightPower});
-    } else {
-      variables.push_back({kDamping, kStartDamping, kHeldDampingStart});
-      if (learns && options_.dispersed > 0)
-        variables.push_back({kHeldLearning, kHeldLearningStart});
-      else if (learns)
-        variables.push_back({kLearning, kStartLearning});
-    }
-    if (plant_.FirstMode(stage) > 0.0) {
-      variables.push_back({kLowPassPower, kStartLowPassPower, kHeldLowPassPowerStart});
-      variables.push_back({kLowPassDamping, kStartLowPassDamping, kHeldLowPassDampingStart});
-      variables.push_back({kNotchPower, kStartNotchPower, kHeldNotchPowerStart});
-      variables.push_back({kNotchZerosDamping, kStartNotchZerosDamping, kHeldNotchZerosDampingStart});
-      variables.push_back({kNotchPolesDamping, kStartNotchPolesDamping, kHeldNotchPolesDampingStart});
-      if (!BlendedGyros(plant_.campaign.autopilot, stage).empty())
-        variables.push_back({kGyroWeight, kStartGyroWeight, kHeldGyroWeightStart});
-    }
-    problem.known_points = {{}};
-    if (options_.dispersed > 0) problem.known_points.push_back({});
-    for (const Variable& variable : variables) {
-      problem.lower.push_back(variable.bounds.low);
-      problem.upper.push_back(variable.bounds.high);
-      problem.known_points[0].push_back(variable.start);
-      if (options_.dispersed > 0) problem.known_points[1].push_back(variable.held_start);
-    }
+  BoundedProblem problem;
+  struct Variable {
+    Bounds bounds;
+    double start;
+    double held_start = start;  ///< of the second point that a search under held plants begins with
+  };
+  std::vector<Variable> variables = {{kBandwidthOfLargest, kBandwidthOfLargest.high}};
+  if (options_.regulator) {
+    variables.push_back({kIntegralWeightPower, kStartIntegralWeightPower});
+    variables.push_back({kRateWeightPower, kStartRateWeightPower});
+  } else {
+    variables.push_back({kDamping, kStartDamping, kHeldDampingStart});
+    if (learns && options_.dispersed > 0)
+      variables.push_back({kHeldLearning, kHeldLearningStart});
+    else if (learns)
+      variables.push_back({kLearning, kStartLearning});
+  }
+  if (plant_.FirstMode(stage) > 0.0) {
+    variables.push_back({kLowPassPower, kStartLowPassPower, kHeldLowPassPowerStart});
+    variables.push_back({kLowPassDamping, kStartLowPassDamping, kHeldLowPassDampingStart});
+    variables.push_back({kNotchPower, kStartNotchPower, kHeldNotchPowerStart});
+    variables.push_back({kNotchZerosDamping, kStartNotchZerosDamping, kHeldNotchZerosDampingStart});
+    variables.push_back({kNotchPolesDamping, kStartNotchPolesDamping, kHeldNotchPolesDampingStart});
+    if (!BlendedGyros(plant_.campaign.autopilot, stage).empty())
+      variables.push_back({kGyroWeight, kStartGyroWeight, kHeldGyroWeightStart});
+  }
+  problem.known_points = {{}};
+  if (options_.dispersed > 0) problem.known_points.push_back({});
+  for (const Variable& variable : variables) {
+    problem.lower.push_back(variable.bounds.low);
+    problem.upper.push_back(variable.bounds.high);
+    problem.known_points[0].push_back(variable.start);
+    if (options_.dispersed > 0) problem.known_points[1].push_back(variable.held_start);
+  }
   return problem;
 }
 
@@ -61,8 +61,7 @@ StageDesign StagePoints::ShapeOf(const std::vector<double>& point, int stage, do
     design.learning = Learns(plant_.campaign.autopilot) ? point[next++] : 0.0;
   }
   if (plant_.FirstMode(stage) > 0.0)
-    design.filters =
-        FiltersAt({point.begin() + static_cast<std::ptrdiff_t>(next), point.end()}, stage, at_s);
+    design.filters = FiltersAt({point.begin() + static_cast<std::ptrdiff_t>(next), point.end()}, stage, at_s);
   return design;
 }
 

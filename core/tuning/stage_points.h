@@ -1,4 +1,5 @@
-// The points of a stage's search: its variables, their bounds and where it starts, and the design that a point means.
+// The points of a stage's search: its variables, their bounds and where it starts, and the design that a
+// point means.
 #pragma once
 
 #include <vector>

@@ -5,7 +5,8 @@
 namespace dispersa {
 
 AutopilotModel TunedPlant::ModelOf(const AutopilotConfig& autopilot) const {
-  return BuildAutopilot(autopilot, untuned.autopilot().stages, campaign.vehicle.reaction_control.minimum_on_time_s);
+  return BuildAutopilot(autopilot, untuned.autopilot().stages,
+                        campaign.vehicle.reaction_control.minimum_on_time_s);
 }
 
 std::vector<double> TunedPlant::TimesOf(int stage) const { return ScheduledTimes(campaign.autopilot, stage); }

@@ -4,7 +4,6 @@
 
 #include "core/flight/metrics.h"
 #include "core/analysis/campaign_summary.h"
-#include "core/analysis/loss_fails.h"
 #include "core/analysis/requirement_summary.h"
 #include "core/results/sampling_text.h"
 #include "core/statistics/intervals.h"

@@ -37,10 +37,14 @@ void Raise(const char* name, const py::object& argument) {
 
 const char* ErrorName(ExitCode code) {
   switch (code) {
-    case kExitBadInput: return "BadInput";
-    case kExitIncomplete: return "Incomplete";
-    case kExitReplayMismatch: return "ReplayMismatch";
-    default: return "InternalError";
+    case kExitBadInput:
+      return "BadInput";
+    case kExitIncomplete:
+      return "Incomplete";
+    case kExitReplayMismatch:
+      return "ReplayMismatch";
+    default:
+      return "InternalError";
   }
 }
 
