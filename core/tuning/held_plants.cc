@@ -6,7 +6,7 @@
 
 #include "core/margins/linear_axis.h"
 #include "core/tuning/nominal_margins.h"
-#include "core/tuning/tune.h"
+#include "core/tuning/tuning_options.h"
 
 namespace dispersa {
 namespace {

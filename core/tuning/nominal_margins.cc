@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/tuning/tune.h"
+#include "core/tuning/tuning_options.h"
 
 namespace dispersa {
 namespace {

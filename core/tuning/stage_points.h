@@ -6,8 +6,8 @@
 
 #include "core/optimization/genetic_algorithm.h"
 #include "core/tuning/stage_design.h"
-#include "core/tuning/tune.h"
 #include "core/tuning/tuned_plant.h"
+#include "core/tuning/tuning_options.h"
 
 namespace dispersa {
 

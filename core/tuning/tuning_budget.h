@@ -1,7 +1,8 @@
 // What a tuning may spend, and whether its options suit the campaign and the autopilot.
 #pragma once
 
-#include "core/tuning/tune.h"
+#include "core/campaign/campaign.h"
+#include "core/tuning/tuning_options.h"
 
 namespace dispersa {
 
