@@ -24,7 +24,4 @@ struct DensityFactor {
 /// does not. (Hydrostatic balance is given up, as in any density factor at held temperature.)
 AirState Scaled(const AirState& air, double density_factor);
 
-/// What is wrong with a factor, one sentence each that also says what is allowed; empty when usable.
-std::vector<std::string> Problems(const DensityFactor& factor);
-
 }  // namespace dispersa

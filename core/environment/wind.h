@@ -64,12 +64,4 @@ struct Wind {
 
 WindNorthEast Evaluate(const Wind& wind, double altitude_m);
 
-/// What is wrong with a part, one sentence each that also says what is allowed; empty when usable.
-std::vector<std::string> Problems(const JetStream& jet);
-std::vector<std::string> Problems(const WindTable& table);
-std::vector<std::string> Problems(const Gust& gust);
-std::vector<std::string> Problems(const SteadyWind& steady);
-/// Problems of every part, each prefixed as in "jets[0]: ".
-std::vector<std::string> Problems(const Wind& wind);
-
 }  // namespace dispersa

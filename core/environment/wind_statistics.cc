@@ -1,6 +1,5 @@
 #include "core/environment/wind_statistics.h"
 
-#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -30,32 +29,6 @@ WindTable DrawWind(const WindStatistics& statistics, const std::vector<double>& 
     table.east_m_s[k] = statistics.mean_east_m_s[k] + statistics.sigma_east_m_s[k] * east;
   }
   return table;
-}
-
-std::vector<std::string> Problems(const WindStatistics& statistics) {
-  const auto finite = [](double value) { return std::isfinite(value); };
-  const auto deviation = [](double value) { return std::isfinite(value) && value >= 0.0; };
-  const auto all = [](const std::vector<double>& values, auto condition) {
-    return std::all_of(values.begin(), values.end(), condition);
-  };
-  const std::size_t levels = statistics.altitude_m.size();
-
-  std::vector<std::string> problems;
-  if (levels < 2) problems.emplace_back("wind statistics need at least two altitudes");
-  if (!IsStrictlyIncreasing(statistics.altitude_m))
-    problems.emplace_back("the altitudes of wind statistics must be finite and strictly increasing");
-  if (statistics.mean_north_m_s.size() != levels || statistics.mean_east_m_s.size() != levels ||
-      statistics.sigma_north_m_s.size() != levels || statistics.sigma_east_m_s.size() != levels)
-    problems.emplace_back("wind statistics need a mean and a deviation north and east for each altitude");
-  if (!all(statistics.mean_north_m_s, finite) || !all(statistics.mean_east_m_s, finite))
-    problems.emplace_back("the means of wind statistics must be finite");
-  if (!all(statistics.sigma_north_m_s, deviation) || !all(statistics.sigma_east_m_s, deviation))
-    problems.emplace_back("the deviations of wind statistics must be finite and not negative");
-  if (!(statistics.correlation_ne >= -1.0 && statistics.correlation_ne <= 1.0))
-    problems.emplace_back("the correlation of north and east must be from -1 to 1");
-  if (!(std::isfinite(statistics.correlation_length_m) && statistics.correlation_length_m > 0.0))
-    problems.emplace_back("the correlation length of wind statistics must be finite and positive");
-  return problems;
 }
 
 }  // namespace dispersa

@@ -33,10 +33,7 @@ inline std::size_t NormalsFor(const WindStatistics& statistics) { return 2 * sta
 /// lowest, where e_north = normals[2k] and e_east = r normals[2k] + sqrt(1 - r²) normals[2k+1], r the
 /// correlation of the components. So every level has exactly the given means, deviations and correlation,
 /// and two levels dh apart the correlation exp(-dh / length).
-/// standard_normals has NormalsFor(statistics) values; statistics has no Problems.
+/// standard_normals has NormalsFor(statistics) values.
 WindTable DrawWind(const WindStatistics& statistics, const std::vector<double>& standard_normals);
-
-/// What is wrong, one sentence each that also says what is allowed; empty when usable.
-std::vector<std::string> Problems(const WindStatistics& statistics);
 
 }  // namespace dispersa

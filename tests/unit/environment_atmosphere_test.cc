@@ -3,16 +3,12 @@
 #include <cmath>
 #include <vector>
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "core/environment/density_factor.h"
 
 namespace dispersa::environment_atmosphere_test {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::IsEmpty;
 
 void ExpectRelative(double actual, double expected, double tolerance, double at) {
   EXPECT_NEAR(actual, expected, tolerance * std::fabs(expected)) << "at " << at;
@@ -108,21 +104,6 @@ TEST(DensityFactor, IsScaleTimesProfile) {
   EXPECT_DOUBLE_EQ(factor(5000.0), 2.5);
   EXPECT_DOUBLE_EQ(factor(-1.0), 2.0);
   EXPECT_DOUBLE_EQ(factor(50000.0), 3.0);
-}
-
-TEST(DensityFactor, Problems) {
-  EXPECT_THAT(Problems(DensityFactor{}), IsEmpty());
-  EXPECT_THAT(Problems(DensityFactor{1.0, {{0.0, 1.0}, {1.0, 0.0}}}), IsEmpty());
-  EXPECT_THAT(Problems(DensityFactor{-0.1}),
-              ElementsAre("the density factor must be finite and not negative"));
-  EXPECT_THAT(Problems(DensityFactor{1.0, {{1.0}, {1.0}}}),
-              ElementsAre("a density profile needs at least two altitudes"));
-  EXPECT_THAT(Problems(DensityFactor{1.0, {{0.0, 1.0}, {1.0}}}),
-              ElementsAre("a density profile needs one factor for each altitude"));
-  EXPECT_THAT(Problems(DensityFactor{1.0, {{1.0, 1.0}, {1.0, 1.0}}}),
-              ElementsAre("the altitudes of a density profile must be finite and strictly increasing"));
-  EXPECT_THAT(Problems(DensityFactor{1.0, {{0.0, 1.0}, {1.0, NAN}}}),
-              ElementsAre("the factors of a density profile must be finite and not negative"));
 }
 
 }  // namespace

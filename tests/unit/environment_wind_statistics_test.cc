@@ -3,14 +3,10 @@
 #include <cmath>
 #include <random>
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace dispersa::environment_wind_statistics_test {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::IsEmpty;
 
 WindStatistics Example() {
   return {.altitude_m = {0.0, 1000.0, 4000.0},
@@ -29,7 +25,6 @@ TEST(DrawWind, ZeroNormalsGiveTheMean) {
   EXPECT_EQ(table.altitude_m, statistics.altitude_m);
   EXPECT_EQ(table.north_m_s, statistics.mean_north_m_s);
   EXPECT_EQ(table.east_m_s, statistics.mean_east_m_s);
-  EXPECT_THAT(Problems(table), IsEmpty());
 }
 
 // A unit normal in the lowest north component, by hand: it reaches east by the correlation and decays
@@ -75,30 +70,6 @@ TEST(DrawWind, HasTheGivenMoments) {
   EXPECT_NEAR(east2, 1.0, 0.036);
   EXPECT_NEAR(cross, 0.6, 0.036);
   EXPECT_NEAR(levels, std::exp(-1.5), 0.036);
-}
-
-TEST(WindStatistics, Problems) {
-  EXPECT_THAT(Problems(Example()), IsEmpty());
-  EXPECT_THAT(Problems(WindStatistics{.correlation_length_m = 1.0}),
-              ElementsAre("wind statistics need at least two altitudes"));
-
-  WindStatistics wrong = Example();
-  wrong.altitude_m[1] = 0.0;
-  wrong.mean_north_m_s[0] = NAN;
-  wrong.sigma_east_m_s[2] = -1.0;
-  wrong.correlation_ne = 1.5;
-  wrong.correlation_length_m = 0.0;
-  EXPECT_THAT(Problems(wrong),
-              ElementsAre("the altitudes of wind statistics must be finite and strictly increasing",
-                          "the means of wind statistics must be finite",
-                          "the deviations of wind statistics must be finite and not negative",
-                          "the correlation of north and east must be from -1 to 1",
-                          "the correlation length of wind statistics must be finite and positive"));
-
-  wrong = Example();
-  wrong.sigma_north_m_s.pop_back();
-  EXPECT_THAT(Problems(wrong),
-              ElementsAre("wind statistics need a mean and a deviation north and east for each altitude"));
 }
 
 }  // namespace

@@ -1,9 +1,7 @@
 #include "core/environment/wind.h"
 
 #include <cmath>
-#include <limits>
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "core/math/constants.h"
@@ -11,10 +9,6 @@
 namespace dispersa::environment_wind_test {
 namespace {
 
-using ::testing::ElementsAre;
-using ::testing::IsEmpty;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Rounding of a product of a speed below 100 m/s with a sine.
 constexpr double kRounding = 1e-13;
 
@@ -83,48 +77,6 @@ TEST(Wind, SumsItsParts) {
                   .gusts = {{8.0, 11000.0, 2000.0, kPi / 2}},
                   .steady = {0.5, 0.25}};
   ExpectWind(Evaluate(wind, 12000.0), 10.0 + 2.0 + 0.5, 60.0 - 1.0 - 8.0 + 0.25);
-  EXPECT_THAT(Problems(wind), IsEmpty());
-}
-
-TEST(JetStream, Problems) {
-  EXPECT_THAT(Problems(JetStream{60.96, 12000.0, 12000.0, 0.0}), IsEmpty());
-  EXPECT_THAT(Problems(JetStream{-1.0, NAN, 0.0, kInfinity}),
-              ElementsAre("the maximum speed of a jet stream must be finite and not negative",
-                          "the altitude of a jet stream must be finite",
-                          "the width of a jet stream must be finite and positive",
-                          "the azimuth of a jet stream must be finite"));
-}
-
-TEST(WindTable, Problems) {
-  EXPECT_THAT(Problems(WindTable{{0.0, 1.0}, {0.0, 1.0}, {0.0, 1.0}}), IsEmpty());
-  EXPECT_THAT(Problems(WindTable{{0.0}, {0.0}, {0.0}}),
-              ElementsAre("a wind table needs at least two altitudes"));
-  EXPECT_THAT(Problems(WindTable{{0.0, 2.0, 1.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}}),
-              ElementsAre("the altitudes of a wind table must be finite and strictly increasing"));
-  EXPECT_THAT(Problems(WindTable{{0.0, 1.0}, {0.0}, {0.0, 1.0}}),
-              ElementsAre("a wind table needs one north and one east value for each altitude"));
-  EXPECT_THAT(Problems(WindTable{{0.0, 1.0}, {0.0, NAN}, {0.0, 1.0}}),
-              ElementsAre("the values of a wind table must be finite"));
-}
-
-TEST(Gust, Problems) {
-  EXPECT_THAT(Problems(Gust{9.0, 5000.0, 240.0, 0.0}), IsEmpty());
-  EXPECT_THAT(Problems(Gust{-9.0, kInfinity, -240.0, NAN}),
-              ElementsAre("the speed of a gust must be finite and not negative",
-                          "the start altitude of a gust must be finite",
-                          "the length of a gust must be finite and positive",
-                          "the azimuth of a gust must be finite"));
-}
-
-TEST(Wind, ProblemsSayWhichPart) {
-  const Wind wind{.jets = {{1.0, 0.0, 1.0, 0.0}, {1.0, 0.0, -1.0, 0.0}},
-                  .tables = {{{0.0}, {0.0}, {0.0}}},
-                  .gusts = {{1.0, 0.0, 0.0, 0.0}},
-                  .steady = {NAN, 0.0}};
-  EXPECT_THAT(Problems(wind), ElementsAre("jets[1]: the width of a jet stream must be finite and positive",
-                                          "tables[0]: a wind table needs at least two altitudes",
-                                          "gusts[0]: the length of a gust must be finite and positive",
-                                          "steady: the components of a steady wind must be finite"));
 }
 
 }  // namespace
