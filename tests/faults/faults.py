@@ -25,11 +25,15 @@ def all_faults():
 
 
 def with_fault(fault):
-    """The file's text with the fault in it; an error where `from` does not stand there exactly once."""
-    parts = (ROOT / fault["file"]).read_text().split(fault["from"])
-    if len(parts) != 2:
-        raise ValueError(f"{fault['fault']}: its text stands {len(parts) - 1} times in {fault['file']}")
-    return fault["to"].join(parts)
+    """The file's text with the fault in it; an error where `from` does not stand there exactly once. Where the lines of
+    `from` break does not matter: the formatter decides that."""
+    pattern = r"\s+".join(map(re.escape, fault["from"].split())).replace(r"\(", r"\(\s*")
+    before, after = re.match(r"\s*", fault["from"]).group(), re.search(r"\s*$", fault["from"]).group()
+    text = (ROOT / fault["file"]).read_text()
+    found = list(re.finditer(f"{re.escape(before)}{pattern}{re.escape(after)}", text))
+    if len(found) != 1:
+        raise ValueError(f"{fault['fault']}: its text stands {len(found)} times in {fault['file']}")
+    return text[:found[0].start()] + fault["to"] + text[found[0].end():]
 
 
 def problems_of(fault):
