@@ -6,12 +6,12 @@
 #include <cmath>
 #include <sstream>
 
+#include "core/analysis/stopping_rule.h"
 #include "core/campaign/case_design.h"
 #include "core/flight/step_limits.h"
 #include "core/flight/structural_limits.h"
 #include "core/results/metric_catalogue.h"
 #include "core/results/sampling_text.h"
-#include "core/analysis/stopping_rule.h"
 #include "core/results/text.h"
 
 namespace dispersa {

@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "core/campaign/campaign.h"
-#include "core/campaign/case_result.h"
-#include "core/results/case_columns.h"
 #include "core/analysis/dispersion_summary.h"
 #include "core/analysis/drivers.h"
 #include "core/analysis/injection_summary.h"
-#include "core/results/lost_flight.h"
 #include "core/analysis/requirement_summary.h"
+#include "core/campaign/campaign.h"
+#include "core/campaign/case_result.h"
+#include "core/results/case_columns.h"
+#include "core/results/lost_flight.h"
 #include "core/results/result_folder.h"
 #include "core/statistics/percentiles.h"
 #include "core/statistics/summary.h"
@@ -28,8 +28,8 @@ enum class CampaignVerdict { kPass, kInconclusive, kStudy, kStudyViolated, kFail
 const char* CampaignVerdictName(CampaignVerdict verdict);
 
 struct MetricSummary {
-  std::string name;  ///< without the prefix
-  Summary statistics;                   ///< of the flights that were completed
+  std::string name;    ///< without the prefix
+  Summary statistics;  ///< of the flights that were completed
   double skewness = kUndefined;
   std::vector<Percentile> percentiles;  ///< with what the sample says of them
 };
@@ -81,9 +81,9 @@ struct CampaignSummary {
     std::uint64_t largest_case = 0;
   };
   std::vector<Limit> limits;
-  std::uint64_t beyond_limits = 0;  ///< flights that exceeded any
+  std::uint64_t beyond_limits = 0;    ///< flights that exceeded any
   std::uint64_t near_step_limit = 0;  ///< flights whose fastest part comes near what a step resolves
-  bool holm = false;                ///< the requirements' verdicts hold together
+  bool holm = false;                  ///< the requirements' verdicts hold together
   /// How likely it is at most that a campaign that misses any requirement passes them all, and that any of
   /// the requirements' own verdicts to pass is wrong.
   double overall_risk = 0.0;
@@ -94,11 +94,11 @@ struct CampaignSummary {
   std::vector<QuarantinedCase> quarantined;
   std::vector<WorstCases> worst_cases;
   std::vector<DispersionSummary> dispersions;
-  std::optional<InjectionSummary> injection;     ///< none where fewer than two flights got there
-  std::vector<MetricDrivers> drivers;            ///< of KeyMetrics()
-  std::vector<FailureDrivers> failure_drivers;   ///< of the requirements
-  /// Flights that the envelope was made of, when they were flown: percentiles from the first cases, minimum and
-  /// maximum besides from those that are extreme in any metric.
+  std::optional<InjectionSummary> injection;    ///< none where fewer than two flights got there
+  std::vector<MetricDrivers> drivers;           ///< of KeyMetrics()
+  std::vector<FailureDrivers> failure_drivers;  ///< of the requirements
+  /// Flights that the envelope was made of, when they were flown: percentiles from the first cases, minimum
+  /// and maximum besides from those that are extreme in any metric.
   struct Envelope {
     std::size_t flights = 0;
     std::size_t extreme_flights = 0;

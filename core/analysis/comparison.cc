@@ -7,9 +7,9 @@
 #include <limits>
 #include <map>
 
+#include "core/analysis/requirement_summary.h"
 #include "core/flight/flight_inputs.h"
 #include "core/results/requirement_text.h"
-#include "core/analysis/requirement_summary.h"
 #include "core/results/sampling_text.h"
 #include "core/results/text.h"
 #include "core/statistics/paired.h"

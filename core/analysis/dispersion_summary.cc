@@ -43,7 +43,9 @@ Moments OfWeighted(const Dispersion& dispersion) {
   double total = 0.0;
   for (const double weight : d.weights) total += weight;
   Moments moments{0.0, 0.0, 1.0};
-  const auto value = [&](std::size_t i) { return dispersion.absolute ? std::fabs(d.values[i]) : d.values[i]; };
+  const auto value = [&](std::size_t i) {
+    return dispersion.absolute ? std::fabs(d.values[i]) : d.values[i];
+  };
   for (std::size_t i = 0; i < d.values.size(); ++i) moments.mean += d.weights[i] / total * value(i);
   double second = 0.0, fourth = 0.0;
   for (std::size_t i = 0; i < d.values.size(); ++i) {
@@ -162,8 +164,8 @@ std::string Words(const Dispersion& dispersion, double unit, const std::string& 
       words = fmt::format("Rayleigh, σ {}{}", text(d.sigma), suffix);
       break;
     case Distribution::kTriangular:
-      words = fmt::format("triangular, {} to {}{}, mode {}{}", text(d.low), text(d.high), suffix, text(d.nominal),
-                          suffix);
+      words = fmt::format("triangular, {} to {}{}, mode {}{}", text(d.low), text(d.high), suffix,
+                          text(d.nominal), suffix);
       break;
     case Distribution::kEmpirical:
       words = fmt::format("as a sample of {}, {} to {}{}", d.values.size(), text(d.values.front()),

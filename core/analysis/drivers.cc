@@ -4,10 +4,10 @@
 #include <cmath>
 #include <optional>
 
-#include "core/flight/flight_inputs.h"
-#include "core/math/constants.h"
 #include "core/analysis/dispersion_summary.h"
 #include "core/analysis/requirement_summary.h"
+#include "core/flight/flight_inputs.h"
+#include "core/math/constants.h"
 #include "core/statistics/sensitivity.h"
 #include "core/statistics/summary.h"
 
@@ -194,8 +194,8 @@ MetricDrivers DriversOf(const std::string& metric, const CaseColumns& cases, Fea
     if (result.drivers.size() == kShown || candidate.index <= 0.0) continue;
     const SensitivityIndex index = FirstOrderIndex(features[candidate.indexed].values, y);
     result.drivers.push_back({features[candidate.indexed].input, features[candidate.indexed].same_as,
-                              features[candidate.named].name, index.index,
-                              index.low, index.high, correlation});
+                              features[candidate.named].name, index.index, index.low, index.high,
+                              correlation});
   }
   return result;
 }
@@ -218,7 +218,8 @@ std::vector<FailureDrivers> FindFailureDrivers(const Campaign& campaign, const C
     FailureDrivers result{requirement.metric, false, 0, {}};
     const Limits limits = LimitsOf(requirement);
     const std::vector<double> values = CompletedValues(cases, requirement.metric);
-    // The first flights, and of those beyond them the failing: what they are held against stays a fair sample.
+    // The first flights, and of those beyond them the failing: what they are held against stays a fair
+    // sample.
     std::vector<std::size_t> rows;
     std::vector<bool> marked;
     for (std::size_t i = 0; i < values.size() && rows.size() < 2 * kCauseFlights; ++i) {

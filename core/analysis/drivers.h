@@ -12,8 +12,9 @@ namespace dispersa {
 
 /// One input, or a magnitude along a direction, of one metric over the completed flights.
 struct Driver {
-  std::string input;    ///< column without prefix; "magnitude * cos angle" columns joined by " along "
-  /// Inputs that rank the flights alike or in reverse (one dispersion may feed two): nothing can tell them apart.
+  std::string input;  ///< column without prefix; "magnitude * cos angle" columns joined by " along "
+  /// Inputs that rank the flights alike or in reverse (one dispersion may feed two): nothing can tell them
+  /// apart.
   std::vector<std::string> same_as = {};
   std::string feature;  ///< through which it acts most: "x", "|x|" (about the nominal), "sin x", "cos x"
   double index = 0.0;   ///< first-order Sobol index, with its interval of 95 %
@@ -27,7 +28,8 @@ struct MetricDrivers {
   std::vector<Driver> drivers;  ///< by falling index, at most a dozen
 };
 
-/// Of each metric, from the first 50,000 flights that define it; empty for one that fewer than 30 completed flights define, or that does not vary.
+/// Of each metric, from the first 50,000 flights that define it; empty for one that fewer than 30 completed
+/// flights define, or that does not vary.
 std::vector<MetricDrivers> FindDrivers(const Campaign& campaign, const std::vector<std::string>& metrics,
                                        const CaseColumns& cases);
 
@@ -39,8 +41,8 @@ struct FailureDriver {
   double false_discovery_rate = 1.0;  ///< of this and all that rank before it (Benjamini and Hochberg)
 };
 
-/// What the failing flights of a requirement have in common, against the others of the first 50,000. Where fewer than ten fail, the tenth of the
-/// flights nearest to failing, the failing among them.
+/// What the failing flights of a requirement have in common, against the others of the first 50,000. Where
+/// fewer than ten fail, the tenth of the flights nearest to failing, the failing among them.
 struct FailureDrivers {
   std::string metric;
   bool nearest = false;  ///< not only those that failed

@@ -17,9 +17,10 @@ struct Band {
 
 struct FlightBands {
   double step_s = 0.0;
-  std::size_t flights = 0;          ///< that the bands are made of
-  std::size_t extreme_flights = 0;  ///< others, chosen for being extreme, that only minimum and maximum contain
-  std::vector<double> time_s;       ///< multiples of the step, to the end of the longest flight
+  std::size_t flights = 0;  ///< that the bands are made of
+  std::size_t extreme_flights =
+      0;                       ///< others, chosen for being extreme, that only minimum and maximum contain
+  std::vector<double> time_s;  ///< multiples of the step, to the end of the longest flight
   std::vector<std::size_t> flying;  ///< flights that last so long
   std::vector<Band> bands;
 };

@@ -6,11 +6,11 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "core/input/input_error.h"
+#include "core/analysis/campaign_summary.h"
 #include "core/environment/earth.h"
 #include "core/flight/engine_version.h"
+#include "core/input/input_error.h"
 #include "core/math/constants.h"
-#include "core/analysis/campaign_summary.h"
 #include "core/results/result_error.h"
 #include "core/results/text.h"
 

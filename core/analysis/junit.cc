@@ -24,7 +24,8 @@ Finding FindingOf(const RequirementSummary& requirement) {
 }
 
 std::string TestCase(const std::string& suite, const std::string& name, const Finding& finding) {
-  std::string xml = fmt::format("    <testcase classname=\"{}\" name=\"{}\"", HtmlText(suite), HtmlText(name));
+  std::string xml =
+      fmt::format("    <testcase classname=\"{}\" name=\"{}\"", HtmlText(suite), HtmlText(name));
   if (finding.element.empty()) return xml + "/>\n";
   return xml + fmt::format(">\n      <{} message=\"{}\"/>\n    </testcase>\n", finding.element,
                            HtmlText(finding.text));

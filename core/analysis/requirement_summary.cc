@@ -94,7 +94,8 @@ void SetConvergence(const CaseTally& tally, const CaseColumns& cases, Requiremen
   const double confidence = 1.0 - summary.consumer_risk;
   for (std::int64_t n = std::min<std::int64_t>(10, all); n > 0;) {
     const auto last = static_cast<std::int64_t>(cases.index[static_cast<std::size_t>(n - 1)]);
-    const auto failures = std::upper_bound(tally.failed.begin(), tally.failed.end(), last) - tally.failed.begin();
+    const auto failures =
+        std::upper_bound(tally.failed.begin(), tally.failed.end(), last) - tally.failed.begin();
     summary.convergence.push_back({n, failures, ClopperPearsonLower(n - failures, n, confidence),
                                    ClopperPearsonUpper(n - failures, n, confidence)});
     if (n == all) break;
@@ -139,14 +140,14 @@ std::string IndependentSentence(const RequirementSummary& summary, std::int64_t 
     sentence = fmt::format("Met: {} show a probability of at least {} with {} confidence; {} is required.",
                            seen, PercentText(*summary.success_lower), confidence, required);
   } else if (summary.verdict == "pass") {
-    sentence = fmt::format("Met by its plan ({}): {} at a risk of {}; {} is required.", PlanSentence(summary), seen,
-                           PercentText(summary.consumer_risk), required);
+    sentence = fmt::format("Met by its plan ({}): {} at a risk of {}; {} is required.", PlanSentence(summary),
+                           seen, PercentText(summary.consumer_risk), required);
   } else if (summary.verdict == "fail" && *summary.success_upper <= summary.probability) {
     sentence = fmt::format("Not met: {} show a probability of at most {} with {} confidence; {} is required.",
                            seen, PercentText(*summary.success_upper), confidence, required);
   } else if (summary.verdict == "fail") {
-    sentence = fmt::format("Not met by its plan ({}): {} at a risk of {}; {} is required.", PlanSentence(summary),
-                           seen, PercentText(summary.consumer_risk), required);
+    sentence = fmt::format("Not met by its plan ({}): {} at a risk of {}; {} is required.",
+                           PlanSentence(summary), seen, PercentText(summary.consumer_risk), required);
   } else if (summary.contradicted) {
     sentence = fmt::format(
         "Not decided: one look met the requirement and another one did not, with {} in all; {} is required.",

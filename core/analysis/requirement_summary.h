@@ -21,7 +21,7 @@ inline bool LossFails(const Requirement& requirement) { return !requirement.by_d
 struct RequirementSummary {
   std::string metric;       ///< without the prefix
   bool by_default = false;  ///< because the vehicle gives limits
-  bool below = true;   ///< else above; of `within` the high limit
+  bool below = true;        ///< else above; of `within` the high limit
   double limit = 0.0;
   std::optional<double> low_limit;  ///< of `within`
   double probability = 0.0;
@@ -38,7 +38,8 @@ struct RequirementSummary {
   /// When inconclusive: the least number of cases that could pass with as many failures.
   std::optional<std::int64_t> cases_needed;
   std::vector<Look> looks;  ///< at the counts, ascending; none in a design study
-  std::optional<std::int64_t> accepts;  ///< so many failures or fewer pass at the last look; none: no number does
+  std::optional<std::int64_t>
+      accepts;  ///< so many failures or fewer pass at the last look; none: no number does
   std::optional<std::int64_t> rejects;  ///< so many or more fail
   bool contradicted = false;
   bool beyond_plan = false;
@@ -55,8 +56,9 @@ struct RequirementSummary {
     double probability = 0.0;
   };
   std::vector<PassChance> pass_chances;
-  /// What the first n cases with a result say of the success probability, for n in about equal ratios up to all of
-  /// them. Each bound is one-sided and holds at its n taken alone (Clopper and Pearson); none of a design study.
+  /// What the first n cases with a result say of the success probability, for n in about equal ratios up to
+  /// all of them. Each bound is one-sided and holds at its n taken alone (Clopper and Pearson); none of a
+  /// design study.
   struct Convergence {
     std::int64_t n = 0;
     std::int64_t failures = 0;
@@ -90,8 +92,8 @@ struct JudgingContext {
 std::vector<RequirementSummary> JudgeAll(const std::vector<Requirement>& requirements,
                                          const JudgingContext& context, const CaseColumns& cases);
 
-/// One requirement over these rows, whatever cases they are, as a campaign with so many cases as planned, of which
-/// `missing` more have no result.
+/// One requirement over these rows, whatever cases they are, as a campaign with so many cases as planned, of
+/// which `missing` more have no result.
 RequirementSummary Judge(const Requirement& requirement, SamplingMethod method, const CaseColumns& cases,
                          std::int64_t missing);
 

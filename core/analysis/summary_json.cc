@@ -2,9 +2,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/analysis/campaign_summary.h"
 #include "core/flight/flight_inputs.h"
 #include "core/math/constants.h"
-#include "core/analysis/campaign_summary.h"
 #include "core/results/json_number.h"
 #include "core/results/metric_catalogue.h"
 #include "core/results/sampling_text.h"
@@ -69,7 +69,7 @@ Json RequirementJson(const RequirementSummary& requirement) {
                   {"looks", requirement.plan.looks},
                   {"spending", requirement.plan.kind != PlanKind::kGroupSequential ? Json(nullptr)
                                : requirement.plan.spending == Spending::kPocock    ? Json("pocock")
-                                                                                : Json("obrien_fleming")},
+                                                                                   : Json("obrien_fleming")},
                   {"cases", requirement.planned}};
   json["n"] = requirement.n;
   json["failures"] = requirement.failures;
@@ -145,16 +145,21 @@ Json NominalJson(const CaseResult& nominal) {
 std::string SummaryJson(const CampaignSummary& summary) {
   Json json;
   json["schema"] = "dispersa/summary/1";
-  json["campaign"] = {{"name", summary.name},           {"id", summary.id},
-                      {"flight_id", summary.flight_id}, {"seed", summary.seed},
-                      {"cases", summary.cases},         {"max_cases", summary.max_cases},
-                      {"planned_cases", summary.planned_cases},
-                      {"sampling", SamplingMethodName(summary.sampling)},
-                      {"design", IsIndependent(summary.sampling) ? "monte_carlo" : "study"},
-                      {"design_points", IsEnumerated(summary.sampling) ? Json(summary.design_points) : Json(nullptr)},
-                      {"replicates", summary.replicates},
-                      {"vehicle", summary.vehicle},     {"reference", summary.reference},
-                      {"autopilot", summary.autopilot}};
+  json["campaign"] = {
+      {"name", summary.name},
+      {"id", summary.id},
+      {"flight_id", summary.flight_id},
+      {"seed", summary.seed},
+      {"cases", summary.cases},
+      {"max_cases", summary.max_cases},
+      {"planned_cases", summary.planned_cases},
+      {"sampling", SamplingMethodName(summary.sampling)},
+      {"design", IsIndependent(summary.sampling) ? "monte_carlo" : "study"},
+      {"design_points", IsEnumerated(summary.sampling) ? Json(summary.design_points) : Json(nullptr)},
+      {"replicates", summary.replicates},
+      {"vehicle", summary.vehicle},
+      {"reference", summary.reference},
+      {"autopilot", summary.autopilot}};
   if (summary.python_law)
     json["campaign"]["python_law"] = {{"name", summary.python_law->name},
                                       {"sha256", summary.python_law->sha256}};

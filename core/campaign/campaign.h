@@ -25,16 +25,16 @@ enum class SamplingMethod { kMonteCarlo, kLatinHypercube, kSobol, kCorners, kOne
 
 /// What "±" means, always explicit.
 enum class Distribution {
-  kConstant,  ///< the same value in every case
-  kNormal,    ///< nominal + sigma * standard normal, not truncated
+  kConstant,         ///< the same value in every case
+  kNormal,           ///< nominal + sigma * standard normal, not truncated
   kTruncatedNormal,  ///< the same between low and high: never clamped, which would pile cases at the ends
-  kLogNormal,  ///< nominal (the median) * exp(sigma * standard normal)
-  kRayleigh,   ///< magnitude of two normal components of standard deviation sigma: sigma is its mode
-  kUniform,    ///< between low and high
-  kTriangular, ///< between low and high, most likely at nominal
-  kTwoPoint,   ///< low or high: a factor of a corner or one-at-a-time design, else a fair coin
-  kValues,     ///< one of a list: an axis of a grid or list design, else drawn by weight
-  kEmpirical,  ///< like the values of a sample: linear between its order statistics
+  kLogNormal,        ///< nominal (the median) * exp(sigma * standard normal)
+  kRayleigh,         ///< magnitude of two normal components of standard deviation sigma: sigma is its mode
+  kUniform,          ///< between low and high
+  kTriangular,       ///< between low and high, most likely at nominal
+  kTwoPoint,         ///< low or high: a factor of a corner or one-at-a-time design, else a fair coin
+  kValues,           ///< one of a list: an axis of a grid or list design, else drawn by weight
+  kEmpirical,        ///< like the values of a sample: linear between its order statistics
 };
 
 /// Of one scalar, in the internal unit of its input (SI, radians, or a factor).
@@ -50,18 +50,18 @@ struct ScalarDistribution {
 
 /// One draw of a case: `name` keys its random stream and stays when other draws come or go.
 struct Dispersion {
-  std::string name;            ///< e.g. "thrust/stage1", "wind/azimuth"
+  std::string name;  ///< e.g. "thrust/stage1", "wind/azimuth"
   ScalarDistribution distribution;
-  std::vector<int> inputs;     ///< columns (FindInput) that take the value; draws of one factor multiply
-  bool absolute = false;       ///< take the magnitude of the draw: lateral deviations with a clock angle
-  /// Of a correlated normal: its standard normal is the sum of weight * that of the dispersion at a position in
-  /// Campaign::dispersions, a row of the Cholesky factor of the correlations. Empty: its own alone.
+  std::vector<int> inputs;  ///< columns (FindInput) that take the value; draws of one factor multiply
+  bool absolute = false;    ///< take the magnitude of the draw: lateral deviations with a clock angle
+  /// Of a correlated normal: its standard normal is the sum of weight * that of the dispersion at a position
+  /// in Campaign::dispersions, a row of the Cholesky factor of the correlations. Empty: its own alone.
   std::vector<std::pair<std::size_t, double>> mix = {};
 };
 
 struct Requirement {
-  std::string metric;             ///< without the prefix
-  std::optional<double> below;    ///< exactly one of below, above and within
+  std::string metric;           ///< without the prefix
+  std::optional<double> below;  ///< exactly one of below, above and within
   std::optional<double> above;
   double probability = 0.0;
   double consumer_risk = 0.0;
@@ -74,8 +74,10 @@ struct Requirement {
 
 /// How the requirements are judged together, and whether their verdicts end the campaign.
 struct Verdicts {
-  bool holm = false;  ///< all verdicts together keep the largest consumer risk (S. Holm, 1979), else each its own
-  bool stop_when_decided = false;  ///< at a look at which every requirement is decided; else all cases are flown
+  bool holm =
+      false;  ///< all verdicts together keep the largest consumer risk (S. Holm, 1979), else each its own
+  bool stop_when_decided =
+      false;  ///< at a look at which every requirement is decided; else all cases are flown
 };
 
 struct Sampling {
@@ -89,7 +91,8 @@ struct Sampling {
 /// A group of normal dispersions that are drawn together.
 struct Correlation {
   std::vector<std::string> names;
-  std::vector<std::vector<double>> matrix;  ///< of correlations, or of covariances in the units of the columns
+  std::vector<std::vector<double>>
+      matrix;  ///< of correlations, or of covariances in the units of the columns
   bool is_covariance = false;
 };
 
@@ -106,9 +109,9 @@ struct Campaign {
   std::vector<Requirement> requirements;
   Verdicts verdicts;
 
-  std::string canonical_yaml;  ///< everything inlined; what campaign.yaml holds
-  std::string id;              ///< SHA-256 of canonical_yaml, hexadecimal
-  std::string flight_id;       ///< SHA-256 of what decides a case
+  std::string canonical_yaml;   ///< everything inlined; what campaign.yaml holds
+  std::string id;               ///< SHA-256 of canonical_yaml, hexadecimal
+  std::string flight_id;        ///< SHA-256 of what decides a case
   std::string requirements_id;  ///< SHA-256 of the requirements and how they are judged
 };
 
@@ -118,8 +121,8 @@ struct Campaign {
 void Describe(Fields& fields, Sampling& sampling);
 /// `plan` is what the verdicts say of all requirements.
 void Describe(Fields& fields, Verdicts& verdicts, VerdictPlan& plan, Sampling& sampling);
-/// requirement.plan is that of the verdicts until this one says its own; `metrics` are the names of those that it may be
-/// about.
+/// requirement.plan is that of the verdicts until this one says its own; `metrics` are the names of those
+/// that it may be about.
 void Describe(Fields& fields, Requirement& requirement, const std::vector<std::string>& metrics);
 /// And gives each of its dispersions its `mix`.
 void Describe(Fields& fields, Correlation& correlation, std::vector<Dispersion>& dispersions);

@@ -23,7 +23,8 @@ void DescribePlan(Fields& fields, VerdictPlan& plan) {
                   [&] {
                     fields.Misplaced("anytime", {}, "'looks' and 'anytime' are both given",
                                      "either looks: K or anytime: true");
-                    fields.Integer("looks", 1, kMaxLooks, plan.looks, "at the counts, evenly spaced; the last at all cases");
+                    fields.Integer("looks", 1, kMaxLooks, plan.looks,
+                                   "at the counts, evenly spaced; the last at all cases");
                     plan.kind = plan.looks > 1 ? PlanKind::kGroupSequential : PlanKind::kFixed;
                   }},
                  {Has("anytime"), [&] {
@@ -34,8 +35,8 @@ void DescribePlan(Fields& fields, VerdictPlan& plan) {
   if (plan.kind != PlanKind::kGroupSequential) plan.looks = 1;
   fields.When(Has("spending"), [&] {
     fields.Choice<Spending>("spending",
-                            {{"obrien_fleming", Spending::kOBrienFleming}, {"pocock", Spending::kPocock}}, plan.spending,
-                            "how several looks share the risk: little early, or evenly");
+                            {{"obrien_fleming", Spending::kOBrienFleming}, {"pocock", Spending::kPocock}},
+                            plan.spending, "how several looks share the risk: little early, or evenly");
     if (plan.kind != PlanKind::kGroupSequential)
       fields.Refuse("spending", "one look has nothing to share", "looks: 2 or more");
   });
@@ -83,10 +84,10 @@ std::vector<std::size_t> CorrelatedDispersions(Fields& fields, const std::vector
   return members;
 }
 
-// Covariances in the squares of the columns' units to correlations: the standard deviations are the dispersions' own.
-// False if they are not.
-bool Normalise(Fields& fields, const std::vector<std::size_t>& members, const std::vector<Dispersion>& dispersions,
-               std::vector<std::vector<double>>& matrix) {
+// Covariances in the squares of the columns' units to correlations: the standard deviations are the
+// dispersions' own. False if they are not.
+bool Normalise(Fields& fields, const std::vector<std::size_t>& members,
+               const std::vector<Dispersion>& dispersions, std::vector<std::vector<double>>& matrix) {
   std::vector<double> sigma;
   for (std::size_t i = 0; i < matrix.size(); ++i) sigma.push_back(Sqrt(std::max(matrix[i][i], 0.0)));
   for (std::size_t i = 0; i < members.size(); ++i) {
@@ -158,9 +159,10 @@ void Describe(Fields& fields, Sampling& sampling) {
                                 sampling.method, "how cases are drawn");
   fields.Integer("cases", 1, kMaxCases, sampling.cases, "so many flights, at most");
   fields.Integer("seed", 0, UINT64_MAX, sampling.seed, "of all draws");
-  fields.Integer("replicates", 1, kMaxReplicates, sampling.replicates,
-                 "of a Latin hypercube or Sobol design: so many of cases / replicates points, each randomised by itself",
-                 1);
+  fields.Integer(
+      "replicates", 1, kMaxReplicates, sampling.replicates,
+      "of a Latin hypercube or Sobol design: so many of cases / replicates points, each randomised by itself",
+      1);
   if (sampling.replicates <= 1) return;
   if (sampling.method != SamplingMethod::kLatinHypercube && sampling.method != SamplingMethod::kSobol)
     fields.Refuse("replicates", "only a Latin hypercube or Sobol design has replicates",
@@ -175,13 +177,15 @@ void Describe(Fields& fields, Sampling& sampling) {
 void Describe(Fields& fields, Verdicts& verdicts, VerdictPlan& plan, Sampling& sampling) {
   DescribePlan(fields, plan);
   fields.Choice<bool>("joint", {{"each", false}, {"holm", true}}, verdicts.holm,
-                      "each verdict keeps its own consumer risk, or all together the largest (S. Holm, 1979)", false);
+                      "each verdict keeps its own consumer risk, or all together the largest (S. Holm, 1979)",
+                      false);
   fields.Choice<bool>("stop", {{"when_all_flown", false}, {"when_decided", true}}, verdicts.stop_when_decided,
                       "at a look at which every requirement is decided, or after all cases", false);
   if (verdicts.stop_when_decided && sampling.method != SamplingMethod::kMonteCarlo)
     fields.Refuse("stop", "a design study decides nothing", "method: monte_carlo");
   fields.When(Has("max_cases"), [&] {
-    fields.Integer("max_cases", 1, kMaxCases, sampling.cases, "of a campaign that stops when decided, in place of cases");
+    fields.Integer("max_cases", 1, kMaxCases, sampling.cases,
+                   "of a campaign that stops when decided, in place of cases");
     if (!verdicts.stop_when_decided) fields.Refuse("max_cases", "every case is flown", "stop: when_decided");
   });
 }
@@ -198,7 +202,8 @@ void Describe(Fields& fields, Requirement& requirement, const std::vector<std::s
     fields.Numbers("within", kAnyNumber, 2, 2, ends, "the two limits that it must stay between");
     if (ends.size() != 2) return;
     requirement.within = {ends[0], ends[1]};
-    if (!(ends[0] < ends[1])) fields.Refuse("within", "the first limit is not below the second", "[low, high]");
+    if (!(ends[0] < ends[1]))
+      fields.Refuse("within", "the first limit is not below the second", "[low, high]");
   });
   fields.ExactlyOne({"below", "above", "within"});
   const int limits = requirement.below.has_value() + requirement.above.has_value() + has_band;
@@ -208,11 +213,14 @@ void Describe(Fields& fields, Requirement& requirement, const std::vector<std::s
                   : limits == 2 && !has_band ? "'below' and 'above' are both given"
                                              : "more than one limit is given",
                   kOneLimit);
-  fields.Number("probability", Inside(0.0, 1.0), requirement.probability, "share of flights that must keep the limit");
-  fields.Hint("probability", Inside(1.0, 100.0), "in percent", [](double x) { return ShortShare(x / 100.0); });
+  fields.Number("probability", Inside(0.0, 1.0), requirement.probability,
+                "share of flights that must keep the limit");
+  fields.Hint("probability", Inside(1.0, 100.0), "in percent",
+              [](double x) { return ShortShare(x / 100.0); });
   fields.Number("consumer_risk", Inside(0.0, 0.5), requirement.consumer_risk,
                 "largest chance to pass a vehicle whose share is smaller");
-  fields.Hint("consumer_risk", Inside(0.5, 1.0), "a confidence", [](double x) { return ShortShare(1.0 - x); });
+  fields.Hint("consumer_risk", Inside(0.5, 1.0), "a confidence",
+              [](double x) { return ShortShare(1.0 - x); });
   DescribePlan(fields, requirement.plan);
 }
 
@@ -241,8 +249,9 @@ void CheckDesign(Fields& fields, const Sampling& sampling, const std::vector<Dis
   switch (sampling.method) {
     case SamplingMethod::kCorners:
       if (corners > kMaxCornerFactors)
-        return refuse("the design has 2^" + std::to_string(corners) + " corners",
-                      "at most " + std::to_string(kMaxCornerFactors) + " dispersions with distribution: two_point");
+        return refuse(
+            "the design has 2^" + std::to_string(corners) + " corners",
+            "at most " + std::to_string(kMaxCornerFactors) + " dispersions with distribution: two_point");
       [[fallthrough]];
     case SamplingMethod::kOneAtATime:
       if (corners == 0)
@@ -256,7 +265,8 @@ void CheckDesign(Fields& fields, const Sampling& sampling, const std::vector<Dis
       fields.Refuse("sampling.cases",
                     "a Latin hypercube of " + std::to_string(sampling.cases) + " cases and " +
                         std::to_string(dispersions.size()) + " dispersions takes " +
-                        std::to_string(static_cast<std::uint64_t>(bytes / 1e9)) + " GB of memory in each process",
+                        std::to_string(static_cast<std::uint64_t>(bytes / 1e9)) +
+                        " GB of memory in each process",
                     "up to " + std::to_string(static_cast<std::uint64_t>(kMaxDesignBytes / row)) +
                         " cases (4 GB), or method: monte_carlo or sobol, which take none");
       break;

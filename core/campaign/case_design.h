@@ -19,8 +19,9 @@ std::uint64_t DesignSize(const Campaign& campaign);
 /// Draws cases. Every dispersion has a random stream of its own, keyed by (seed, case, name), so that one
 /// more changes no other. Latin hypercube and Sobol designs, which place all cases together, take the place
 /// of the streams' uniform numbers; a column of theirs belongs to its dispersion's name too. Replicates are
-/// designs one after the other, each with permutations, shifts and draws of its own. In the designs of DesignSize the factors move by plan (two_point:
-/// corners and one at a time; values: grid and list), and every other dispersion stays random.
+/// designs one after the other, each with permutations, shifts and draws of its own. In the designs of
+/// DesignSize the factors move by plan (two_point: corners and one at a time; values: grid and list), and
+/// every other dispersion stays random.
 class CaseDesign {
  public:
   explicit CaseDesign(const Campaign& campaign);

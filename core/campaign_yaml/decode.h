@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "core/campaign/campaign.h"
-#include "core/input/input_error.h"
-#include "core/input/fields.h"
-#include "core/input/input_node.h"
 #include "core/flight/scenario.h"
+#include "core/input/fields.h"
+#include "core/input/input_error.h"
+#include "core/input/input_node.h"
 
 namespace dispersa {
 

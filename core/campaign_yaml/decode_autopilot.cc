@@ -20,7 +20,8 @@ AutopilotConfig DecodeAutopilot(const InputNode& node, const std::string& path, 
   const auto read_plugin = [&](const InputNode& plugin, const std::string& plugin_path) {
     autopilot.plugin = DecodePlugin(plugin, plugin_path, laws, problems);
   };
-  ReadFields(node, path, problems, [&](Fields& fields) { DescribeAutopilotFile(fields, autopilot, read_plugin); });
+  ReadFields(node, path, problems,
+             [&](Fields& fields) { DescribeAutopilotFile(fields, autopilot, read_plugin); });
   if (stages == 0) stages = static_cast<int>(autopilot.pitch.gains.size());
   if (problems.size() == before) AddStructProblems(Problems(autopilot, stages), node, path, problems);
   return autopilot;

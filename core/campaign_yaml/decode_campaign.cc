@@ -105,7 +105,9 @@ void CheckName(Fields& fields, const std::string& name) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
            c == '-' || c == '.';
   };
-  if (name.empty() || (std::all_of(name.begin(), name.end(), is_allowed) && name[0] != '.' && name.size() <= 64)) return;
+  if (name.empty() ||
+      (std::all_of(name.begin(), name.end(), is_allowed) && name[0] != '.' && name.size() <= 64))
+    return;
   fields.Refuse("name", "'" + name + "' cannot name a folder",
                 "up to 64 letters, digits, '_', '-' and '.', the first not '.'");
 }
@@ -123,9 +125,10 @@ void CheckGuidance(Fields& fields, const GuidanceConfig& guidance, const Vehicle
                       " is cut off at a velocity or burns again",
                   "open_loop, or engines that end by time or depletion");
   else if (vehicle.boosters.count > 0 && vehicle.stages.size() < 3)
-    fields.Refuse("mode",
-                  "guidance would steer the stage of " + name + " that has boosters, whose thrust it does not know",
-                  "open_loop, or a vehicle of three stages or more");
+    fields.Refuse(
+        "mode",
+        "guidance would steer the stage of " + name + " that has boosters, whose thrust it does not know",
+        "open_loop, or a vehicle of three stages or more");
 }
 
 // A value of the campaign that may be a file of its own.
@@ -134,7 +137,8 @@ struct Part {
   std::string path;
 };
 
-// The campaign's keys, in the order in which each needs those before. Without a tree (a schema is made) nothing is read.
+// The campaign's keys, in the order in which each needs those before. Without a tree (a schema is made)
+// nothing is read.
 class CampaignDescription {
  public:
   CampaignDescription(const InputNode* root, CampaignUse use, DecodedCampaign& decoded, ProblemList& problems,
@@ -175,7 +179,8 @@ class CampaignDescription {
              "at least a tick of the autopilot");
     if (reference_.node == nullptr) return;
     if (!campaign_.reference.target_missed.empty())
-      WarnOf(reference_, "target_missed", "the reference misses its own target: " + campaign_.reference.target_missed,
+      WarnOf(reference_, "target_missed",
+             "the reference misses its own target: " + campaign_.reference.target_missed,
              "a reference that reaches it");
     if (campaign_.reference.vehicle_sha256 != VehicleSha256(*vehicle_.node))
       WarnOf(reference_, "", "the reference was found for another vehicle; flights will miss its orbit",
@@ -185,11 +190,12 @@ class CampaignDescription {
  private:
   bool flies() const { return use_ != CampaignUse::kOptimize && !decoded_.optimize; }
 
-  void WarnOf(const Part& part, const std::string& key, const std::string& message, const std::string& allowed) {
+  void WarnOf(const Part& part, const std::string& key, const std::string& message,
+              const std::string& allowed) {
     std::string path;
     const InputNode& at = FindField(*part.node, key, &path);
-    AddProblem(*warnings_, at, part.path.empty() || path.empty() ? part.path + path : part.path + "." + path, message,
-               allowed);
+    AddProblem(*warnings_, at, part.path.empty() || path.empty() ? part.path + path : part.path + "." + path,
+               message, allowed);
   }
 
   void DescribeTrajectory(Fields& fields) {
@@ -216,9 +222,10 @@ class CampaignDescription {
                                   : "there is neither 'reference' nor 'optimize'",
                     "one of the two");
     else if (has_problem && (use_ == CampaignUse::kFly || use_ == CampaignUse::kRead))
-      fields.Refuse("optimize", "the campaign has no trajectory to fly yet",
-                    "run `dispersa optimize " + (root_->file ? *root_->file : std::string("CAMPAIGN")) +
-                        " -o REFERENCE.yaml`, then write `reference: REFERENCE.yaml` in place of `optimize:`");
+      fields.Refuse(
+          "optimize", "the campaign has no trajectory to fly yet",
+          "run `dispersa optimize " + (root_->file ? *root_->file : std::string("CAMPAIGN")) +
+              " -o REFERENCE.yaml`, then write `reference: REFERENCE.yaml` in place of `optimize:`");
     CheckTrajectory();
   }
 
@@ -234,9 +241,11 @@ class CampaignDescription {
           vehicle, *reference_.node, reference_.path, "ignition_s",
           [&](std::size_t stage) { return campaign_.reference.earlier_ignition_s[stage] > 0.0; }, problems_);
     if (problems_.empty() && optimize_.node != nullptr)
-      CheckSteering(vehicle, decoded_.optimize->steering, *optimize_.node, optimize_.path + ".bounds", problems_);
+      CheckSteering(vehicle, decoded_.optimize->steering, *optimize_.node, optimize_.path + ".bounds",
+                    problems_);
     else if (problems_.empty() && reference_.node != nullptr)
-      CheckSteering(vehicle, campaign_.reference.program.steering, *reference_.node, reference_.path, problems_);
+      CheckSteering(vehicle, campaign_.reference.program.steering, *reference_.node, reference_.path,
+                    problems_);
   }
 
   // A trajectory that is yet to be found needs nothing that flies it.
@@ -244,7 +253,8 @@ class CampaignDescription {
     fields.Document("autopilot", kAutopilotSchema, needed, "an autopilot file", "what flies the trajectory",
                     [this](const InputNode& node, const std::string& path) { ReadAutopilotOf(node, path); });
     bool is_guided = false;
-    fields.OptionalMap("guidance", is_guided, "how a flight is guided; without, it flies the reference as it is",
+    fields.OptionalMap("guidance", is_guided,
+                       "how a flight is guided; without, it flies the reference as it is",
                        [&](Fields& guidance) {
                          dispersa::Describe(guidance, campaign_.guidance);
                          CheckGuidance(guidance, campaign_.guidance, campaign_.vehicle);
@@ -253,10 +263,14 @@ class CampaignDescription {
       dispersa::Describe(map, campaign_.sampling);
       map.Either({{Is("method", {"list"}),
                    [&] {
-                     map.Columns("table", "the cases of a list, a column of cases.csv an input; or a CSV file",
-                                 [this](const InputNode& node, const std::string& path) { list_ = {&node, path}; });
+                     map.Columns("table",
+                                 "the cases of a list, a column of cases.csv an input; or a CSV file",
+                                 [this](const InputNode& node, const std::string& path) {
+                                   list_ = {&node, path};
+                                 });
                    }},
-                  {Else(), [&] { map.Misplaced("table", {}, "only a list is read from a table", "method: list"); }}});
+                  {Else(),
+                   [&] { map.Misplaced("table", {}, "only a list is read from a table", "method: list"); }}});
     };
     has_sampling_ = needed;
     if (needed)
@@ -268,10 +282,11 @@ class CampaignDescription {
     campaign_.autopilot =
         DecodeAutopilot(node, path, static_cast<int>(campaign_.vehicle.stages.size()), problems_,
                         use_ == CampaignUse::kRead ? PythonLaws::kMayBeAbsent : PythonLaws::kMustBeHere);
-    if (problems_.empty()) AddStructProblems(GyroProblems(campaign_.vehicle, campaign_.autopilot), node, path, problems_);
     if (problems_.empty())
-      AddStructProblems(StepProblems(campaign_.vehicle, campaign_.autopilot.tick_s), *vehicle_.node, vehicle_.path,
-                        problems_);
+      AddStructProblems(GyroProblems(campaign_.vehicle, campaign_.autopilot), node, path, problems_);
+    if (problems_.empty())
+      AddStructProblems(StepProblems(campaign_.vehicle, campaign_.autopilot.tick_s), *vehicle_.node,
+                        vehicle_.path, problems_);
   }
 
   void DescribeDispersions(Fields& fields) {
@@ -281,22 +296,25 @@ class CampaignDescription {
                        [&](Fields& map) { dispersa::DescribeDispersions(map, before == 0, campaign_); });
     if (list_.node != nullptr) DecodeListTable(*list_.node, list_.path, campaign_, problems_);
     std::vector<Correlation> correlations;
-    fields.List("correlations", 0, SIZE_MAX, correlations, "groups of normal dispersions that are drawn together",
-                [&](Fields& map, Correlation& group) { dispersa::Describe(map, group, campaign_.dispersions); });
-    if (problems_.size() == before && has_sampling_) CheckDesign(fields, campaign_.sampling, campaign_.dispersions);
+    fields.List(
+        "correlations", 0, SIZE_MAX, correlations, "groups of normal dispersions that are drawn together",
+        [&](Fields& map, Correlation& group) { dispersa::Describe(map, group, campaign_.dispersions); });
+    if (problems_.size() == before && has_sampling_)
+      CheckDesign(fields, campaign_.sampling, campaign_.dispersions);
   }
 
   void DescribeJudgement(Fields& fields) {
     VerdictPlan plan;
     bool has_verdicts = false;
-    fields.OptionalMap("verdicts", has_verdicts, "how the requirements are judged together", [&](Fields& verdicts) {
-      dispersa::Describe(verdicts, campaign_.verdicts, plan, campaign_.sampling);
-    });
+    fields.OptionalMap("verdicts", has_verdicts, "how the requirements are judged together",
+                       [&](Fields& verdicts) {
+                         dispersa::Describe(verdicts, campaign_.verdicts, plan, campaign_.sampling);
+                       });
     const std::size_t stages = campaign_.vehicle.stages.size();
     std::vector<std::string> metrics = MetricNames();
     if (root_ != nullptr) metrics.resize(MetricCount(stages));
-    fields.OptionalList("requirements", 1, SIZE_MAX, campaign_.requirements, "what is required of the flights",
-                        [&](Fields& map, Requirement& requirement) {
+    fields.OptionalList("requirements", 1, SIZE_MAX, campaign_.requirements,
+                        "what is required of the flights", [&](Fields& map, Requirement& requirement) {
                           requirement.plan = plan;
                           dispersa::Describe(map, requirement, metrics);
                         });

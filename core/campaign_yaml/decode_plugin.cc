@@ -1,10 +1,10 @@
-#include "core/containment/contained.h"
 #include "core/campaign_yaml/base64.h"
 #include "core/campaign_yaml/decode.h"
 #include "core/campaign_yaml/load.h"
 #include "core/campaign_yaml/text_problems.h"
-#include "core/input/map_reader.h"
+#include "core/containment/contained.h"
 #include "core/control/law_here.h"
+#include "core/input/map_reader.h"
 
 namespace dispersa {
 namespace {
@@ -17,7 +17,8 @@ std::shared_ptr<const std::string> DecodeLibrary(const InputNode& node, const st
   sha256 = map.Text("sha256");
   const std::string text = map.Text("base64");
   // What is missing is said at the end.
-  if (problems.size() != before || node.Find("sha256") == nullptr || node.Find("base64") == nullptr) return nullptr;
+  if (problems.size() != before || node.Find("sha256") == nullptr || node.Find("base64") == nullptr)
+    return nullptr;
   std::optional<std::string> bytes = FromBase64(text);
   if (!bytes) {
     AddProblem(problems, *node.Find("base64"), map.PathOf("base64"), "is not base64 (RFC 4648)");

@@ -9,7 +9,8 @@ void DescribeReferenceFile(Fields& fields, Reference& reference) {
   Describe(fields, reference);
 }
 
-Reference DecodeReference(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems) {
+Reference DecodeReference(const InputNode& node, const std::string& path,
+                          std::vector<InputProblem>& problems) {
   Reference reference;
   if (!CheckSchema(node, kReferenceSchema, !path.empty(), path, problems)) return reference;
   ReadFields(node, path, problems, [&](Fields& fields) { DescribeReferenceFile(fields, reference); });

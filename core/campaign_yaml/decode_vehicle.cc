@@ -1,17 +1,17 @@
 #include "core/campaign_yaml/decode.h"
 #include "core/campaign_yaml/inline_files.h"
-#include "core/input/struct_problems.h"
 #include "core/input/field_reader.h"
+#include "core/input/struct_problems.h"
 #include "core/vehicle/plausibility.h"
 #include "core/vehicle/propulsion.h"
 
 namespace dispersa {
 namespace {
 
-
 using ProblemList = std::vector<InputProblem>;
 
-// What a motor's description leaves open: its curve decides thrust and time, an engine's specific impulse the time.
+// What a motor's description leaves open: its curve decides thrust and time, an engine's specific impulse the
+// time.
 void CompleteMotor(double propellant_kg, Motor& motor) {
   if (!motor.thrust_curve.empty()) SetThrustCurve(std::move(motor.thrust_curve), motor);
   if (motor.specific_impulse_s > 0.0)
@@ -34,7 +34,8 @@ Stage BurnAgain(const Stage& commands, Stage& before) {
   stage.separation_delay_s = commands.separation_delay_s;
   // What the burn before leaves; of a cut-off by velocity a flight tells, and until then all stands for it.
   const Motor& first = before.motor;
-  if (first.cut_off == CutOff::kAtVelocity || !(first.thrust_n > 0.0 && first.burning_time_s > 0.0)) return stage;
+  if (first.cut_off == CutOff::kAtVelocity || !(first.thrust_n > 0.0 && first.burning_time_s > 0.0))
+    return stage;
   const double left = BuildBurn(before, 1.0, 1.0).left_kg / before.propellant_mass_kg;
   stage.liftoff_mass_kg -= (1.0 - left) * before.propellant_mass_kg;
   stage.propellant_mass_kg *= left;
@@ -58,8 +59,8 @@ void Complete(Vehicle& vehicle) {
     vehicle.stages[i].liftoff_mass_kg -= vehicle.boosters.LiftOffMass();
 }
 
-// A motor's table is in a file that could not be read, which has been said: what stands in its place is not the
-// vehicle's.
+// A motor's table is in a file that could not be read, which has been said: what stands in its place is not
+// the vehicle's.
 bool HasUnreadTable(const InputNode& vehicle) {
   const auto is_unread = [](const InputNode* map, const char* key) {
     const InputNode* table = map == nullptr ? nullptr : map->Find(key);
@@ -71,7 +72,8 @@ bool HasUnreadTable(const InputNode& vehicle) {
   for (const InputNode& stage : stages->items) {
     const InputNode* motor = stage.Find("motor");
     if (motor == nullptr) continue;
-    if (is_unread(motor->Find("thrust_curve"), "table") || is_unread(motor->Find("liquid"), "throttle")) return true;
+    if (is_unread(motor->Find("thrust_curve"), "table") || is_unread(motor->Find("liquid"), "throttle"))
+      return true;
   }
   return false;
 }

@@ -6,12 +6,12 @@
 
 #include "core/campaign_yaml/base64.h"
 #include "core/campaign_yaml/load.h"
-#include "core/input/number_text.h"
 #include "core/campaign_yaml/parse_csv.h"
 #include "core/campaign_yaml/parse_rasp.h"
 #include "core/campaign_yaml/parse_yaml.h"
 #include "core/campaign_yaml/standard_input.h"
 #include "core/input/map_reader.h"
+#include "core/input/number_text.h"
 
 namespace dispersa {
 namespace {
@@ -172,7 +172,8 @@ void InlineVehicleFiles(InputNode& vehicle, FileNames names, std::vector<InputPr
   InputNode* boosters = vehicle.Find("boosters");
   InputNode* boosting = boosters == nullptr ? nullptr : boosters->Find("motor");
   if (InputNode* curve = boosting == nullptr ? nullptr : boosting->Find("thrust_curve"))
-    Replace(curve->Find("table"), "boosters.motor.thrust_curve.table", names, ThrustCurveParser(problems), problems);
+    Replace(curve->Find("table"), "boosters.motor.thrust_curve.table", names, ThrustCurveParser(problems),
+            problems);
   InputNode* aerodynamics = vehicle.Find("aerodynamics");
   InputNode* tables = aerodynamics == nullptr ? nullptr : aerodynamics->Find("tables");
   if (tables == nullptr) return;

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "core/campaign/campaign.h"
-#include "core/input/input_error.h"
 #include "core/flight/scenario.h"
+#include "core/input/input_error.h"
 
 namespace dispersa {
 
@@ -55,7 +55,7 @@ struct OptimizationInput {
   Vehicle vehicle;
   std::string vehicle_sha256;  ///< of the canonical vehicle
   TrajectoryProblem problem;
-  double tick_s = 0.01;        ///< of the campaign's autopilot, if it has one: burnout is detected on ticks
+  double tick_s = 0.01;  ///< of the campaign's autopilot, if it has one: burnout is detected on ticks
   std::optional<AutopilotConfig> autopilot;  ///< the campaign's, if it has one: to fly what was found
 };
 /// `seed` replaces the problem's.

@@ -92,8 +92,8 @@ InputNode ParseCsv(const std::string& text, const std::string& file, const std::
       for (const std::string& column : optional)
         if (std::any_of(cells.begin(), cells.end(), [&](const Cell& cell) { return cell.text == column; }))
           columns.push_back(column);
-      places = MatchHeader(cells, columns, wanted.empty() ? "the columns " + JoinWords(columns) : allowed, file,
-                           line_number, problems);
+      places = MatchHeader(cells, columns, wanted.empty() ? "the columns " + JoinWords(columns) : allowed,
+                           file, line_number, problems);
       if (places->empty()) return {};
       place.line = line_number;
       for (std::size_t c = 0; c < columns.size(); ++c) {
@@ -116,9 +116,8 @@ InputNode ParseCsv(const std::string& text, const std::string& file, const std::
     }
   }
   if (!places)
-    problems.push_back(
-        {file, 1, 1, "", "the table is empty",
-         columns.empty() ? "a line with the names of its columns" : allowed});
+    problems.push_back({file, 1, 1, "", "the table is empty",
+                        columns.empty() ? "a line with the names of its columns" : allowed});
   if (problems.size() > before) return {};
   return table;
 }

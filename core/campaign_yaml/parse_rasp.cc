@@ -83,8 +83,7 @@ class RaspReader {
   std::optional<double> Number(const Word& word, const std::string& what, bool may_be_zero) {
     const std::optional<double> number = ParseNumber(word.text);
     if (number && std::isfinite(*number) && (*number > 0.0 || (may_be_zero && *number == 0.0))) return number;
-    Report(word, what + " is '" + word.text + "'",
-           may_be_zero ? "a number not below 0" : "a number above 0");
+    Report(word, what + " is '" + word.text + "'", may_be_zero ? "a number not below 0" : "a number above 0");
     return {};
   }
 

@@ -1,7 +1,7 @@
-#include "core/trajectory/attitude_columns.h"
 #include "core/campaign_yaml/inline_files.h"
 #include "core/campaign_yaml/load.h"
 #include "core/input/number_text.h"
+#include "core/trajectory/attitude_columns.h"
 #include "core/trajectory/optimize.h"
 
 namespace dispersa {
@@ -9,7 +9,9 @@ namespace {
 
 std::string Km(double metres) { return FormatScaled(metres, 1e3); }
 
-std::string DegBounds(const Bounds& bounds) { return "[" + FormatDegrees(bounds.low) + ", " + FormatDegrees(bounds.high) + "]"; }
+std::string DegBounds(const Bounds& bounds) {
+  return "[" + FormatDegrees(bounds.low) + ", " + FormatDegrees(bounds.high) + "]";
+}
 std::string Limits(const Bounds& bounds) {
   return "[" + FormatNumber(bounds.low) + ", " + FormatNumber(bounds.high) + "]";
 }
@@ -31,7 +33,8 @@ std::string TargetText(const TrajectoryProblem& problem) {
     if (!problem.velocity_is_free) text += ", velocity_m_s: " + FormatNumber(problem.target_velocity_m_s);
     text += ", flight_path_angle_deg: " + FormatDegrees(problem.target_flight_path_angle_rad);
   }
-  if (problem.target_inclination_rad) text += ", inclination_deg: " + FormatDegrees(*problem.target_inclination_rad);
+  if (problem.target_inclination_rad)
+    text += ", inclination_deg: " + FormatDegrees(*problem.target_inclination_rad);
   if (problem.target_node_rad) text += ", node_deg: " + FormatDegrees(*problem.target_node_rad);
   if (problem.target_argument_of_perigee_rad)
     text += ", argument_of_perigee_deg: " + FormatDegrees(*problem.target_argument_of_perigee_rad);
@@ -120,8 +123,8 @@ std::string WriteReference(const Reference& reference) {
               StageKey(stage, "ignition") + FormatNumber(reference.earlier_ignition_s[stage]) + "\n";
   for (std::size_t stage = 1; stage < program.steering.size(); ++stage)
     if (!program.steering[stage].empty())
-      text += "  " + IncidenceKey(stage, "begin") + FormatDegrees(program.steering[stage].begin_rad) + "\n  " +
-              IncidenceKey(stage, "end") + FormatDegrees(program.steering[stage].end_rad) + "\n";
+      text += "  " + IncidenceKey(stage, "begin") + FormatDegrees(program.steering[stage].begin_rad) +
+              "\n  " + IncidenceKey(stage, "end") + FormatDegrees(program.steering[stage].end_rad) + "\n";
   text += "orbit: {altitude_km: " + Km(orbit.altitude_m) +
           ", velocity_m_s: " + FormatNumber(orbit.velocity_m_s) +
           ", flight_path_angle_deg: " + FormatDegrees(orbit.flight_path_angle_rad) +

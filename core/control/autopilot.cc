@@ -47,7 +47,7 @@ void StartStage(const AutopilotModel& model, int stage, AutopilotState& state) {
     const AxisConfig& config = model.laws[axis].config;
     lanes::WithLaw(config.law, [&](auto law) { decltype(law)::StartStage(config, stage, state.axes[axis]); });
     state.axes[axis].saturation = state.axes[axis].model_started = 0.0;
-    for (double (&memory)[2] : state.axes[axis].filters) memory[0] = memory[1] = 0.0;
+    for (double(&memory)[2] : state.axes[axis].filters) memory[0] = memory[1] = 0.0;
     state.thrusters[axis] = ThrusterState{};
   }
 }

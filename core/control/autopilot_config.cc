@@ -11,14 +11,16 @@ namespace dispersa {
 
 namespace {
 
-using AddProblem = std::function<void(const std::string& path, const std::string& message, const std::string& allowed)>;
+using AddProblem =
+    std::function<void(const std::string& path, const std::string& message, const std::string& allowed)>;
 
 void CheckGains(const AxisGains& gains, const std::string& path, const AddProblem& add) {
   if (!(gains.kp_1_s2 > 0.0)) add(path + ".kp_1_s2", "is not positive", "a number above 0");
   if (!(gains.kd_1_s > 0.0)) add(path + ".kd_1_s", "is not positive", "a number above 0");
 }
 
-void CheckSection(const FilterSection& section, const std::string& path, double tick_s, const AddProblem& add) {
+void CheckSection(const FilterSection& section, const std::string& path, double tick_s,
+                  const AddProblem& add) {
   if (!(section.poles_rad_s > 0.0) || !(section.poles_rad_s * tick_s < kPi))
     add(path + ".poles_rad_s", "is not below half of the sampling frequency",
         "a frequency above 0 and below pi / tick_s");
@@ -38,7 +40,8 @@ void CheckSchedule(const AxisConfig& axis, int stages, double tick_s, const AddP
     if (entry.stage < before->stage)
       add(path + ".stage", "comes after a later stage", "entries by stage and then by time");
     else if (!(entry.at_s > (entry.stage == before->stage ? before->at_s : 0.0)))
-      add(path + ".at_s", "is not after " + std::string(entry.stage == before->stage ? "the entry before" : "ignition"),
+      add(path + ".at_s",
+          "is not after " + std::string(entry.stage == before->stage ? "the entry before" : "ignition"),
           "times since ignition that rise, the first above 0, where the stage's own gains hold");
     CheckGains(entry.gains, path, add);
     const std::size_t filters = FiltersOfStage(axis, entry.stage).size();
@@ -55,7 +58,8 @@ void CheckAxis(const AxisConfig& axis, const std::string& name, int stages, doub
                std::vector<AutopilotProblem>& problems) {
   const std::size_t before = problems.size();
   const LawInfo& law = InfoOf(axis.law);
-  const AddProblem add = [&](const std::string& path, const std::string& message, const std::string& allowed) {
+  const AddProblem add = [&](const std::string& path, const std::string& message,
+                             const std::string& allowed) {
     problems.push_back({name + "." + path, message, allowed});
   };
   const auto is_one_a_stage = [&](const std::string& path, std::size_t entries) {
@@ -108,7 +112,8 @@ void CheckAxis(const AxisConfig& axis, const std::string& name, int stages, doub
       return;
     }
     std::vector<std::pair<int, AxisGains>> all;
-    for (std::size_t i = 0; i < axis.gains.size(); ++i) all.emplace_back(static_cast<int>(i) + 1, axis.gains[i]);
+    for (std::size_t i = 0; i < axis.gains.size(); ++i)
+      all.emplace_back(static_cast<int>(i) + 1, axis.gains[i]);
     for (const ScheduleEntry& entry : axis.schedule) all.emplace_back(entry.stage, entry.gains);
     for (const auto& [stage, gains] : all) {
       const Vector2 solved = SolveLyapunov(gains, a.q).col(1);

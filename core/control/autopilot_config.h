@@ -85,9 +85,9 @@ struct Adaptation {
   /// the prediction follows the error dynamics and is drawn to what is measured at predictor_1_s.
   double composite = 0.0;
   double predictor_1_s = 0.0;
-  bool freeze_when_saturated = false;    ///< no adaptation into a deflection limit
-  bool reset_at_ignition = false;        ///< consequents start anew with each stage
-  double supervisory_bound = 0.0;        ///< supervisory term acts while V exceeds it
+  bool freeze_when_saturated = false;  ///< no adaptation into a deflection limit
+  bool reset_at_ignition = false;      ///< consequents start anew with each stage
+  double supervisory_bound = 0.0;      ///< supervisory term acts while V exceeds it
 };
 
 struct FuzzyRules {
@@ -151,7 +151,7 @@ struct AxisConfig {
   Adaptation adaptation;
   IntegralAction integral;
   AdaptiveAugmentation augmentation;
-  std::vector<FilterSection> filters;  ///< in series, on the law's output
+  std::vector<FilterSection> filters;   ///< in series, on the law's output
   std::vector<ScheduleEntry> schedule;  ///< by stage and time
   std::optional<FeedForward> feed_forward;
 };
@@ -180,7 +180,7 @@ struct AutopilotConfig {
   AxisConfig yaw;
   AxisConfig roll;
   ReactionControlLogic reaction_control;
-  std::vector<GyroShare> rate_gyros;  ///< empty: the inertial unit gives the rates
+  std::vector<GyroShare> rate_gyros;   ///< empty: the inertial unit gives the rates
   std::optional<PluginConfig> plugin;  ///< of the axes whose law it is
 };
 /// Bits (1 << Axis) of the axes whose law is a plug-in's.

@@ -12,7 +12,8 @@ class AxisFields {
  public:
   explicit AxisFields(Fields& fields) : fields_(fields) {}
 
-  void Quantity(const char* stem, Dimension dimension, const Range& range, double& value, const char* meaning) {
+  void Quantity(const char* stem, Dimension dimension, const Range& range, double& value,
+                const char* meaning) {
     fields_.Quantity(stem, dimension, range, value, meaning);
   }
   void Guard(const char* stem, Dimension dimension, const Range& range, double& value, const char* meaning) {
@@ -70,7 +71,8 @@ void DescribeEntry(Fields& fields, AxisConfig& axis, ScheduleEntry& entry) {
   fields.When(HasList("filters"), [&] { has_filters = true; });
   AxisFields visitor(fields);
   VisitScheduleEntry(visitor, InfoOf(axis.law), entry);
-  if (!has_filters) entry.filters = FiltersBefore(axis, static_cast<std::size_t>(&entry - axis.schedule.data()));
+  if (!has_filters)
+    entry.filters = FiltersBefore(axis, static_cast<std::size_t>(&entry - axis.schedule.data()));
 }
 
 // The blocks that a law reads must be there; others may be (the same file with another law is a comparison).
@@ -117,8 +119,10 @@ void Describe(Fields& fields, AxisConfig& axis) {
 
 void Describe(Fields& fields, ReactionControlLogic& logic) {
   fields.Quantity("deadband", kAngle, kPositive, logic.deadband_rad, "no firing within");
-  fields.Quantity("rate_gain", kTime, kNonNegative, logic.rate_gain_s, "of the switching line e + rate_gain de/dt");
-  fields.Integer("cycle_ticks", 1, 100, logic.cycle_ticks, "between decisions: thrusters open for whole cycles");
+  fields.Quantity("rate_gain", kTime, kNonNegative, logic.rate_gain_s,
+                  "of the switching line e + rate_gain de/dt");
+  fields.Integer("cycle_ticks", 1, 100, logic.cycle_ticks,
+                 "between decisions: thrusters open for whole cycles");
   fields.Number("hysteresis", {0.0, 1.0, false, true}, logic.hysteresis,
                 "fraction of the deadband by which a firing overshoots into it");
 }
@@ -135,14 +139,15 @@ void DescribePlugin(Fields& fields) {
   const auto digest = [&text](Fields& map, const char* of) { map.Text("sha256", text, of); };
   fields.Either({{Has("python"),
                   [&] {
-                    fields.Map("python", "a law in Python, of a campaign that was flown under it", [&](Fields& law) {
-                      law.Text("name", text, "of the law");
-                      digest(law, "of its source");
-                    });
+                    fields.Map("python", "a law in Python, of a campaign that was flown under it",
+                               [&](Fields& law) {
+                                 law.Text("name", text, "of the law");
+                                 digest(law, "of its source");
+                               });
                   }},
                  {Else(), [&] {
-                    fields.Table("library", "the file name of a shared object", "a shared object, or its bytes",
-                                 [&](Fields& library) {
+                    fields.Table("library", "the file name of a shared object",
+                                 "a shared object, or its bytes", [&](Fields& library) {
                                    digest(library, "of the bytes");
                                    library.Text("base64", text, "the bytes");
                                  });

@@ -1,7 +1,8 @@
-// The keys of an autopilot's file, declared once: Describe() reads them and makes their schema, WriteAutopilot() writes them.
+// The keys of an autopilot's file, declared once: Describe() reads them and makes their schema,
+// WriteAutopilot() writes them.
 //
-// The blocks of an axis are written in a form of their own, so they are declared to any visitor `f` that has a function
-// for each kind of key (AxisFields here, the writer there); `A` is const where it only reads:
+// The blocks of an axis are written in a form of their own, so they are declared to any visitor `f` that has
+// a function for each kind of key (AxisFields here, the writer there); `A` is const where it only reads:
 //   f.Quantity(stem, dimension, range, value)         a number with a unit
 //   f.Number(key, range, value)                       a number without one
 //   f.Guard, f.NumberGuard                            the same; 0, which is off, where absent
@@ -31,14 +32,16 @@ void VisitGains(F& f, A& gains) {
 template <class F, class A>
 void VisitRules(F& f, A& rules) {
   f.Quantity("error_range", kAngle, kPositive, rules.error_range_rad, "outer set centres of the error, +-");
-  f.Quantity("rate_range", kAngularRate, kPositive, rules.rate_range_rad_s, "outer set centres of its rate, +-");
+  f.Quantity("rate_range", kAngularRate, kPositive, rules.rate_range_rad_s,
+             "outer set centres of its rate, +-");
 }
 
 template <class F, class A>
 void VisitAdaptation(F& f, A& adaptation) {
   f.EachStage("gamma", kNonNegative, adaptation.gamma, "adaptation gain, one a stage");
   f.Matrix("q", adaptation.q, "Q of the Lyapunov equation, symmetric positive definite");
-  f.OptionalPair("p_n", adaptation.p_n, "last column of P; it follows from gains and Q, and must agree with them");
+  f.OptionalPair("p_n", adaptation.p_n,
+                 "last column of P; it follows from gains and Q, and must agree with them");
   f.Flag("allow_unproven", adaptation.allow_unproven, "a P_n that does not follow from gains and Q is flown");
   f.Guard("projection_bound", kAngularAcceleration, kNonNegative, adaptation.projection_bound_rad_s2,
           "each consequent stays within this distance of its start; 0: anywhere");
@@ -46,7 +49,8 @@ void VisitAdaptation(F& f, A& adaptation) {
           "sigma modification: pulls the consequents to their start");
   f.Guard("spread", kPerTime, kNonNegative, adaptation.spread_1_s,
           "pulls departures from the start to their mean over the rules");
-  f.Guard("dead_zone", kAngle, kNonNegative, adaptation.dead_zone_rad, "no adaptation while |e' P_n| / p12 is below");
+  f.Guard("dead_zone", kAngle, kNonNegative, adaptation.dead_zone_rad,
+          "no adaptation while |e' P_n| / p12 is below");
   f.Flag("normalized", adaptation.normalized, "the regressor of (32) over its squared norm");
   f.NumberGuard("composite", kNonNegative, adaptation.composite,
                 "so many p22 of the prediction's error drive (32) besides");
@@ -61,7 +65,8 @@ void VisitAdaptation(F& f, A& adaptation) {
 template <class F, class A>
 void VisitIntegral(F& f, A& integral) {
   f.EachStage("ki_1_s3", kNonNegative, integral.ki_1_s3, "gain of the integral, one a stage");
-  f.Guard("bound", kAngularAcceleration, kNonNegative, integral.bound_rad_s2, "of the integral's share; 0: none");
+  f.Guard("bound", kAngularAcceleration, kNonNegative, integral.bound_rad_s2,
+          "of the integral's share; 0: none");
   f.Flag("reset_at_ignition", integral.reset_at_ignition, "it starts anew with each stage");
 }
 
@@ -81,7 +86,8 @@ void VisitAugmentation(F& f, A& augmentation) {
 
 template <class F, class A>
 void VisitFeedForward(F& f, A& feed_forward) {
-  f.Quantity("lead", kTime, kLead, feed_forward.lead_s, "by what the program is read ahead: delay and actuators");
+  f.Quantity("lead", kTime, kLead, feed_forward.lead_s,
+             "by what the program is read ahead: delay and actuators");
 }
 
 template <class F, class A>
@@ -113,11 +119,16 @@ void VisitScheduleEntry(F& f, const LawInfo& law, A& entry) {
 /// on(key, LawInfo's word on whether a law needs it, visit, meaning) for each block; `visit` takes a visitor.
 template <class A, class On>
 void EachBlock(A& axis, On on) {
-  on("rules", &LawInfo::rules, [&](auto& f) { VisitRules(f, axis.rules); }, "fuzzy sets");
-  on("adaptation", &LawInfo::adaptation, [&](auto& f) { VisitAdaptation(f, axis.adaptation); }, "equation (32)");
-  on("integral", &LawInfo::integral, [&](auto& f) { VisitIntegral(f, axis.integral); }, "of a PID law");
-  on("augmentation", &LawInfo::augmentation, [&](auto& f) { VisitAugmentation(f, axis.augmentation); },
-     "adaptive augmenting control");
+  on(
+      "rules", &LawInfo::rules, [&](auto& f) { VisitRules(f, axis.rules); }, "fuzzy sets");
+  on(
+      "adaptation", &LawInfo::adaptation, [&](auto& f) { VisitAdaptation(f, axis.adaptation); },
+      "equation (32)");
+  on(
+      "integral", &LawInfo::integral, [&](auto& f) { VisitIntegral(f, axis.integral); }, "of a PID law");
+  on(
+      "augmentation", &LawInfo::augmentation, [&](auto& f) { VisitAugmentation(f, axis.augmentation); },
+      "adaptive augmenting control");
 }
 
 /// The keys of an autopilot's file but for its schema. A plug-in is read by `plugin`.

@@ -32,17 +32,18 @@ StageLaw RateBetween(const LawPiece& a, const LawPiece& b) {
 }
 
 // Those of a stage (0-based), whose law at ignition is known.
-std::vector<LawPiece> PiecesOf(const AxisConfig& config, int stage, const StageLaw& at_ignition, double tick_s) {
+std::vector<LawPiece> PiecesOf(const AxisConfig& config, int stage, const StageLaw& at_ignition,
+                               double tick_s) {
   StageLaw nothing{};
   for (DigitalSection& section : nothing.filters) section.b0 = 0.0;
   std::vector<LawPiece> pieces = {{0.0, at_ignition, nothing}};
   const std::vector<std::size_t> filters = FiltersOfStage(config, stage + 1);
   for (const ScheduleEntry& entry : config.schedule) {
     if (entry.stage != stage + 1) continue;
-    LawPiece piece{entry.at_s,
-                   LawOf(config, entry.gains, at_ignition.gamma,
-                         InfoOf(config.law).integral ? entry.ki_1_s3 : 0.0),
-                   nothing};
+    LawPiece piece{
+        entry.at_s,
+        LawOf(config, entry.gains, at_ignition.gamma, InfoOf(config.law).integral ? entry.ki_1_s3 : 0.0),
+        nothing};
     for (std::size_t k = 0; k < filters.size(); ++k)
       piece.at.filters[filters[k]] = Discretise(entry.filters[k], tick_s);
     pieces.back().rate = RateBetween(pieces.back(), piece);
@@ -88,7 +89,8 @@ double StepAxis(const AxisLaw& law, int stage, double error_rad, double rate_rad
   lanes::AxisStateLanes<double> memory;
   lanes::SetLane(memory, 0, state);
   lanes::AxisOutput<double> out;
-  lanes::StepAxis<true>(law.config, tick_s, of_stage, true, error_rad, rate_rad_s, static_cast<const double*>(nullptr), true, memory, out);
+  lanes::StepAxis<true>(law.config, tick_s, of_stage, true, error_rad, rate_rad_s,
+                        static_cast<const double*>(nullptr), true, memory, out);
   lanes::ReadLane(memory, 0, state);
   telemetry = lanes::TelemetryOf(law.config, out, memory, 0);
   return out.command_rad_s2;

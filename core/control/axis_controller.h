@@ -41,10 +41,10 @@ struct AxisLaw {
   std::vector<StageLaw> stages;               ///< at ignition
   std::vector<std::vector<LawPiece>> pieces;  ///< of each stage, where it is scheduled; else none
 };
-/// A scheduled stage has every number of StageLaw, those of digital sections included, as straight lines between
-/// the times of its entries: sections stay stable, since coefficients of stable ones fill a triangle, and of unit
-/// gain at rest, which is linear in them; and no command jumps. P and P_n are those of the entries' gains, and
-/// between them of neither.
+/// A scheduled stage has every number of StageLaw, those of digital sections included, as straight lines
+/// between the times of its entries: sections stay stable, since coefficients of stable ones fill a triangle,
+/// and of unit gain at rest, which is linear in them; and no command jumps. P and P_n are those of the
+/// entries' gains, and between them of neither.
 AxisLaw BuildAxisLaw(const AxisConfig& config, double tick_s);
 
 /// The law in a stage at a time since its ignition.
@@ -81,7 +81,8 @@ struct AxisTelemetry {
 /// Starts a stage's rules, integral and augmentation: at lift-off, and at ignitions if so configured.
 void ResetAxis(AxisState& state);
 
-/// One tick at a time since ignition. `pn_error_factor` and `pn_rate_factor` scale P_n (the study of Fig. 5); 1 in flight.
+/// One tick at a time since ignition. `pn_error_factor` and `pn_rate_factor` scale P_n (the study of Fig. 5);
+/// 1 in flight.
 double StepAxis(const AxisLaw& law, int stage, double error_rad, double rate_rad_s, double pn_error_factor,
                 double pn_rate_factor, double tick_s, AxisState& state, AxisTelemetry& telemetry,
                 double since_ignition_s = 0.0);

@@ -41,8 +41,8 @@ class PluginLaw {
 
   const PluginConfig& config() const { return config_; }
   /// Loads the object at the first call, which runs code of it: only in a process whose calls are marked
-  /// (MarkPluginCallsIn), so that somebody watches. Throws PluginError. Not for several threads at once before it has
-  /// returned once.
+  /// (MarkPluginCallsIn), so that somebody watches. Throws PluginError. Not for several threads at once
+  /// before it has returned once.
   void Open() const;
   /// Opens it.
   PluginDescription Describe() const;

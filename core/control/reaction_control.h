@@ -7,13 +7,13 @@ namespace dispersa {
 
 /// Memory of one axis of the logic.
 struct ThrusterState {
-  int direction = 0;       ///< -1, 0, 1: the couple that fires
-  int cycles_on = 0;       ///< since it opened
+  int direction = 0;  ///< -1, 0, 1: the couple that fires
+  int cycles_on = 0;  ///< since it opened
 };
 
 /// Decides for one cycle: a couple opens when |e + k de/dt| leaves the deadband, and closes, not before its
 /// minimum on-time, when the switching value has come back across the hysteresis. Returns the direction.
-int StepThrusters(const ReactionControlLogic& logic, double error_rad, double rate_rad_s,
-                  int minimum_cycles, ThrusterState& state);
+int StepThrusters(const ReactionControlLogic& logic, double error_rad, double rate_rad_s, int minimum_cycles,
+                  ThrusterState& state);
 
 }  // namespace dispersa

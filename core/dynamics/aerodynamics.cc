@@ -10,13 +10,14 @@ double TotalIncidence(const Vector3& v) {
   return across == 0.0 && v.x() == 0.0 ? 0.0 : Atan2(across, v.x());
 }
 
-ForceAndMoment AerodynamicForce(const BodyAerodynamics& body, const AeroGrid& grid, const Vector3& v, const Vector3& w,
-                                double density_kg_m3, double speed_of_sound_m_s, double cg_station_m) {
+ForceAndMoment AerodynamicForce(const BodyAerodynamics& body, const AeroGrid& grid, const Vector3& v,
+                                const Vector3& w, double density_kg_m3, double speed_of_sound_m_s,
+                                double cg_station_m) {
   lanes::BodyAerodynamicsLanes<double> one;
   lanes::SetLane(one, 0, body, grid);
   const double inverse_sound = speed_of_sound_m_s > 0.0 ? 1.0 / speed_of_sound_m_s : 0.0;
-  const auto flow = lanes::ForceOfFlow<double>(one, {v.x(), v.y(), v.z()}, {w.x(), w.y(), w.z()}, density_kg_m3,
-                                               inverse_sound, cg_station_m);
+  const auto flow = lanes::ForceOfFlow<double>(one, {v.x(), v.y(), v.z()}, {w.x(), w.y(), w.z()},
+                                               density_kg_m3, inverse_sound, cg_station_m);
   return {Vector3(flow.force_n.x, flow.force_n.y, flow.force_n.z),
           Vector3(flow.moment_n_m.x, flow.moment_n_m.y, flow.moment_n_m.z)};
 }

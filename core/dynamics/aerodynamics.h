@@ -29,10 +29,10 @@ struct BodyAerodynamics {
   double length_m = 0.0;  ///< c: of cm and cmq
   double span_m = 0.0;    ///< b: of clp and cnr
   Coefficient ca, cn, cd, cl, cm;
-  Coefficient xcp_station_m;      ///< with cn
+  Coefficient xcp_station_m;                ///< with cn
   double moment_reference_station_m = 0.0;  ///< with cm, cd, cl
-  Coefficient clp, cmq, cnr;      ///< over Mach, one incidence
-  double minimum_airspeed_m_s = 0.0;  ///< floor of V in the damping terms
+  Coefficient clp, cmq, cnr;                ///< over Mach, one incidence
+  double minimum_airspeed_m_s = 0.0;        ///< floor of V in the damping terms
 };
 
 struct ForceAndMoment {

@@ -20,8 +20,8 @@ AirData ComputeAirData(const Environment& environment, const Vector3& p, const V
     data.v_AP_I -= R_IN * Vector3(gusts.north_m_s, gusts.east_m_s, -gusts.up_m_s);
   }
   data.airspeed_m_s = data.v_AP_I.norm();
-  const AirState air = Scaled(StandardAtmosphere1976(data.place.altitude_m),
-                              environment.density(data.place.altitude_m));
+  const AirState air =
+      Scaled(StandardAtmosphere1976(data.place.altitude_m), environment.density(data.place.altitude_m));
   data.density_kg_m3 = air.density_kg_m3;
   data.pressure_pa = air.pressure_pa;
   data.speed_of_sound_m_s = air.speed_of_sound_m_s;

@@ -21,8 +21,8 @@ struct Environment {
 };
 
 struct AirData {
-  Geodetic place;          ///< the longitude is measured from the x axis of the frame of p: right ascension
-  Vector3 v_AP_I;          ///< velocity relative to the air, m/s
+  Geodetic place;  ///< the longitude is measured from the x axis of the frame of p: right ascension
+  Vector3 v_AP_I;  ///< velocity relative to the air, m/s
   double airspeed_m_s = 0.0;
   double density_kg_m3 = 0.0;
   double pressure_pa = 0.0;

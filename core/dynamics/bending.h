@@ -2,12 +2,13 @@
 // in the mean axes of the body, to first order in the deflections.
 //
 // A mode of plane z moves station s by deflection(s) q along body z and turns the cross-section by
-// slope(s) q about y; one of plane y moves it along y and turns it by -slope(s) q about z. In mean axes (R. D.
-// Milne, "Dynamics of the Deformable Aeroplane", ARC R&M 3345, 1964) momentum and angular momentum are those of
-// the rigid body, so bending enters its equations through the forces alone, and each mode follows
+// slope(s) q about y; one of plane y moves it along y and turns it by -slope(s) q about z. In mean axes (R.
+// D. Milne, "Dynamics of the Deformable Aeroplane", ARC R&M 3345, 1964) momentum and angular momentum are
+// those of the rigid body, so bending enters its equations through the forces alone, and each mode follows
 //   q'' + 2 zeta omega q' + omega² q = Q / m,  Q = sum of force deflection + moment slope
-// over all forces but gravitation. Left out: Coriolis and centrifugal terms of the turning body (below 1e-4 of
-// omega² at a roll rate of 10 deg/s), couples of the reaction control, and the change of shapes within a step.
+// over all forces but gravitation. Left out: Coriolis and centrifugal terms of the turning body (below 1e-4
+// of omega² at a roll rate of 10 deg/s), couples of the reaction control, and the change of shapes within a
+// step.
 #pragma once
 
 #include "core/dynamics/body_sections.h"
@@ -20,7 +21,7 @@ inline namespace DISPERSA_ISA {
 /// One mode at a lane's propellant, its flight's factors applied. A mode that does not fly has no shape.
 template <class T>
 struct ModeNow {
-  T stiffness_1_s2, damping_1_s;      ///< omega², 2 zeta omega
+  T stiffness_1_s2, damping_1_s;        ///< omega², 2 zeta omega
   T decay_1_s, damped_frequency_rad_s;  ///< of the free motion
   T inverse_mass_1_kg;
   T pivot_deflection, pivot_slope_1_m;
@@ -39,7 +40,9 @@ struct BendingTableLanes {
   T frequency_factor[kModes], damping_ratio, slope_factor;
   ModeNow<T> now[kPlanes][kModes];
 
-  DISPERSA_INLINE const ModeNow<T>& At(int plane, int mode) const { return now[planes == 1 ? 0 : plane][mode]; }
+  DISPERSA_INLINE const ModeNow<T>& At(int plane, int mode) const {
+    return now[planes == 1 ? 0 : plane][mode];
+  }
 };
 
 /// Modal coordinates (m) and their rates: plane y, plane z.
@@ -164,8 +167,8 @@ DISPERSA_INLINE void DriveAtPivot(const BendingTableLanes<T>& b, Vector<T> force
 }
 
 /// The flow's forces by bending: each strip meets it at the incidence of its own, the body's plus
-/// slope q + deflection q' / V in its plane, and takes its share of the normal force by the slope of the coefficient
-/// at the body's incidence.
+/// slope q + deflection q' / V in its plane, and takes its share of the normal force by the slope of the
+/// coefficient at the body's incidence.
 template <class T>
 DISPERSA_INLINE StripForces<T> ForcesByBending(const BendingTableLanes<T>& b, const BendingState<T>& s,
                                                const LoadTableLanes<T>& body, const NormalForce<T>& air) {
@@ -187,7 +190,8 @@ DISPERSA_INLINE StripForces<T> ForcesByBending(const BendingTableLanes<T>& b, co
   return o;
 }
 
-/// What the flow does besides to a body that bends. Adds to the body's force and moment about C and to the modes.
+/// What the flow does besides to a body that bends. Adds to the body's force and moment about C and to the
+/// modes.
 template <class T>
 DISPERSA_INLINE void BendFlow(const BendingTableLanes<T>& b, const BendingState<T>& s,
                               const LoadTableLanes<T>& body, T cg_station_m, FlowForce<T>& flow,
@@ -229,8 +233,8 @@ DISPERSA_INLINE SectionMoments<T> MomentsByBending(const BendingTableLanes<T>& b
     T acceleration[kPlanes];
     for (int plane = 0; plane < kPlanes; ++plane) {
       const ModeNow<T>& m = b.At(plane, mode);
-      acceleration[plane] = drive.drive_m_s2[plane][mode] -
-                            Fma(m.damping_1_s, s.rate_m_s[plane][mode], m.stiffness_1_s2 * s.q_m[plane][mode]);
+      acceleration[plane] = drive.drive_m_s2[plane][mode] - Fma(m.damping_1_s, s.rate_m_s[plane][mode],
+                                                                m.stiffness_1_s2 * s.q_m[plane][mode]);
     }
     for (int i = 0; i < kLoadStations; ++i) {
       o.y_n_m[i] = Fma(acceleration[0], b.At(0, mode).section_moment_kg_m[i], o.y_n_m[i]);

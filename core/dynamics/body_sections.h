@@ -1,5 +1,5 @@
-// Cross-sections of W launch vehicles side by side (core/math/lanes.h): where the flow presses along the body, and
-// the bending moment that each section carries.
+// Cross-sections of W launch vehicles side by side (core/math/lanes.h): where the flow presses along the
+// body, and the bending moment that each section carries.
 #pragma once
 
 #include "core/dynamics/body_flow.h"
@@ -57,8 +57,8 @@ template <class T>
 struct SectionMoments {
   T y_n_m[kLoadStations], z_n_m[kLoadStations];
 };
-/// How the body moves: its acceleration at C but for gravitation, and by how much that grows with each metre ahead of
-/// C, `turn_z` along y and `turn_y` along -z.
+/// How the body moves: its acceleration at C but for gravitation, and by how much that grows with each metre
+/// ahead of C, `turn_z` along y and `turn_y` along -z.
 template <class T>
 struct BodyMotion {
   T propellant_kg, cg_station_m;
@@ -84,7 +84,8 @@ DISPERSA_INLINE LargestMoment<T> LargestOf(const LoadTableLanes<T>& body, const 
     const T* f = body.first_kg_m[i];
     const T* s = body.second_kg_m2[i];
     const T first = Fma(m.propellant_kg, Fma(m.propellant_kg, f[2], f[1]), f[0]);
-    const T turned = Fma(m.cg_station_m, first, -Fma(m.propellant_kg, Fma(m.propellant_kg, s[2], s[1]), s[0]));
+    const T turned =
+        Fma(m.cg_station_m, first, -Fma(m.propellant_kg, Fma(m.propellant_kg, s[2], s[1]), s[0]));
     const T arm = Fma(aft, body.shift_arm[i], body.slender_arm_m[i]);
     T y = Fma(m.lateral_y_m_s2, first, Fma(m.turn_z_1_s2, turned, y_n * arm));
     T z = Fma(m.lateral_z_m_s2, first, Fma(-m.turn_y_1_s2, turned, z_n * arm));

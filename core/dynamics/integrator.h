@@ -10,8 +10,8 @@ namespace dispersa {
 using RightHandSide = void (*)(double time_s, const double* y, double* dydt, void* context);
 
 enum class Scheme {
-  kSimpson,       ///< the engine's own step (core/flight/simpson_step.h): what flights use; not an Integrator
-  kRungeKutta4,   ///< ERKStep with the classical fourth-order table and fixed steps: scenarios, and a judge
+  kSimpson,      ///< the engine's own step (core/flight/simpson_step.h): what flights use; not an Integrator
+  kRungeKutta4,  ///< ERKStep with the classical fourth-order table and fixed steps: scenarios, and a judge
   /// CVODE Adams: the independent check. It solves for the change of the state since the restart, so that the
   /// relative tolerance of 1e-12 is one of metres moved within a tick, not of the distance from the Earth's
   /// centre, which would let errors of 1e-5 m and 1e-8 m/s in at every restart.
@@ -25,8 +25,7 @@ bool ParseScheme(const std::string& name, Scheme* scheme);
 class Integrator {
  public:
   /// scheme: ERKStep's or CVODE's. absolute_tolerance, shape (size): only CVODE reads it.
-  Integrator(Scheme scheme, int size, RightHandSide rhs, void* context,
-             const double* absolute_tolerance);
+  Integrator(Scheme scheme, int size, RightHandSide rhs, void* context, const double* absolute_tolerance);
   ~Integrator();
   Integrator(const Integrator&) = delete;
   Integrator& operator=(const Integrator&) = delete;

@@ -5,8 +5,8 @@
 
 namespace dispersa {
 
-/// The stack as it is without what has been jettisoned (bits of LauncherPhase::jettisoned, the boosters' among
-/// them), and without propellant of boosters.
+/// The stack as it is without what has been jettisoned (bits of LauncherPhase::jettisoned, the boosters'
+/// among them), and without propellant of boosters.
 StackMass MassOf(const LauncherPlant& plant, int stack, unsigned jettisoned);
 
 /// Those with the propellant on board: `since_ignition_s` of the first stage says how much the boosters have.

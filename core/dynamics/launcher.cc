@@ -15,7 +15,8 @@ struct LauncherModel::Prepared {
         weather(PrepareWeather(plant.environment.wind, plant.environment.density,
                                plant.environment.turbulence.get())) {
     for (LauncherStack& stack : plant.stacks)
-      if (!stack.aero_grid) stack.aero_grid = std::make_shared<const AeroGrid>(BuildAeroGrid(stack.aerodynamics));
+      if (!stack.aero_grid)
+        stack.aero_grid = std::make_shared<const AeroGrid>(BuildAeroGrid(stack.aerodynamics));
     stacks.resize(plant.stacks.size());
     for (std::size_t i = 0; i < stacks.size(); ++i) {
       lanes::SetLane(stacks[i], 0, plant, static_cast<int>(i));
@@ -115,7 +116,8 @@ LauncherModel::~LauncherModel() = default;
 const LauncherPlant& LauncherModel::plant() const { return prepared_->plant; }
 
 LauncherInstant LauncherModel::Evaluate(const LauncherPhase& phase, double time_s, const double* y) const {
-  const OneLane one(prepared_->plant, prepared_->stacks[static_cast<std::size_t>(phase.stack)], phase, time_s, y);
+  const OneLane one(prepared_->plant, prepared_->stacks[static_cast<std::size_t>(phase.stack)], phase, time_s,
+                    y);
   const lanes::RigidBodyStateLanes<double>& s = one.motion;
   const lanes::TimedMasses<double>& masses = one.masses;
   const lanes::LoadsOf<double> loads = one.Loads();
@@ -149,7 +151,8 @@ LauncherInstant LauncherModel::Evaluate(const LauncherPhase& phase, double time_
   return now;
 }
 
-void LauncherModel::Derivative(const LauncherPhase& phase, double time_s, const double* y, double* dydt) const {
+void LauncherModel::Derivative(const LauncherPhase& phase, double time_s, const double* y,
+                               double* dydt) const {
   const std::size_t stack = static_cast<std::size_t>(phase.stack);
   const OneLane one(prepared_->plant, prepared_->stacks[stack], phase, time_s, y);
   const lanes::RigidBodyStateLanes<double>& s = one.motion;

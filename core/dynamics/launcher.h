@@ -51,7 +51,8 @@ struct NozzleDeparture {
 struct LauncherStack {
   StackMass mass;
   BodyAerodynamics aerodynamics;
-  std::shared_ptr<const AeroGrid> aero_grid;  ///< of the aerodynamics without factors; made where it is missing
+  std::shared_ptr<const AeroGrid>
+      aero_grid;  ///< of the aerodynamics without factors; made where it is missing
   MotorBurn burn;
   Gimbal gimbal;
   NozzleLayout layout;
@@ -121,13 +122,13 @@ struct LauncherPhase {
   int stack = 0;
   unsigned jettisoned = 0;  ///< bit i: of the plant's jettisons
   bool burning = false;
-  bool burnt = false;            ///< the stack's propellant is used up
-  bool boosting = false;         ///< the boosters burn too
-  double ignition_s = 0.0;       ///< of the stack's motor, when burning
-  double expelled_mass_kg = 0.0; ///< by the reaction control so far
+  bool burnt = false;                            ///< the stack's propellant is used up
+  bool boosting = false;                         ///< the boosters burn too
+  double ignition_s = 0.0;                       ///< of the stack's motor, when burning
+  double expelled_mass_kg = 0.0;                 ///< by the reaction control so far
   Vector3 control_torque_n_m = Vector3::Zero();  ///< of the reaction control
   std::array<double, kDrives> command_rad{};     ///< to the actuators
-  int stuck_nozzle = -1;         ///< index of a nozzle that does not move, or -1
+  int stuck_nozzle = -1;                         ///< index of a nozzle that does not move, or -1
   std::array<double, kDrives> slides{};  ///< sense in which friction's drives slide, 0: held (actuators.h)
 };
 
@@ -148,7 +149,8 @@ RigidBodyState AfterSeparation(const LauncherPlant& plant, int below, unsigned j
                                const RigidBodyState& state, std::optional<double> left_kg = {});
 
 /// The equations of motion of one flight, prepared once for many instants: one lane of launcher_body.h and
-/// actuators.h, whose step flights take. For the judges among the integrators, histories, linearisation and tests.
+/// actuators.h, whose step flights take. For the judges among the integrators, histories, linearisation and
+/// tests.
 class LauncherModel {
  public:
   explicit LauncherModel(const LauncherPlant& plant);

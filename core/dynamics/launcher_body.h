@@ -83,7 +83,7 @@ struct TimedMasses {
   T cg_speed_m_s;    ///< of C forward through the body: the flow takes propellant away at
   T source_station_m;
   T axial_per_kg_m2, transverse_per_kg_m2;
-  T thrust_fraction, flow_fraction;  ///< of full thrust and flow; 0 when not burning
+  T thrust_fraction, flow_fraction;            ///< of full thrust and flow; 0 when not burning
   T beside_thrust_fraction, beside_flow_kg_s;  ///< of boosters; count where the vehicle has any
 };
 template <class T>
@@ -103,8 +103,8 @@ DISPERSA_INLINE TimedMasses<T> MassesAt(const LauncherPlantLanes<T>& plant,
     o.beside_thrust_fraction = Select(phase.boosting, beside.fraction, T(0.0));
     o.beside_flow_kg_s =
         Select(phase.boosting, plant.beside.burn.full_flow_kg_s * beside.flow_fraction, T(0.0));
-    AddBeside(plant.beside, Select(phase.boosting, beside.propellant_kg, T(0.0)), o.beside_flow_kg_s, flow_kg_s,
-              m);
+    AddBeside(plant.beside, Select(phase.boosting, beside.propellant_kg, T(0.0)), o.beside_flow_kg_s,
+              flow_kg_s, m);
     flow_kg_s = flow_kg_s + o.beside_flow_kg_s;
   }
   o.mass_kg = m.mass_kg - phase.expelled_kg;
@@ -116,8 +116,7 @@ DISPERSA_INLINE TimedMasses<T> MassesAt(const LauncherPlantLanes<T>& plant,
   o.transverse_kg_m2 = m.transverse_kg_m2 * plant.inertia_factor;
   o.axial_per_kg_m2 = m.axial_per_kg_m2 * plant.inertia_factor;
   o.transverse_per_kg_m2 = m.transverse_per_kg_m2 * plant.inertia_factor;
-  o.cg_speed_m_s =
-      flow_kg_s * o.inverse_mass_1_kg * plant.cg_factor * (m.source_station_m - m.cg_station_m);
+  o.cg_speed_m_s = flow_kg_s * o.inverse_mass_1_kg * plant.cg_factor * (m.source_station_m - m.cg_station_m);
   o.source_station_m = m.source_station_m;
   return o;
 }
@@ -263,7 +262,8 @@ DISPERSA_INLINE Thrust<T> ThrustOf(const LauncherPlantLanes<T>& plant, const Tim
 /// What turning nozzles do to the body besides turning the thrust, "tail wags dog": a nozzle whose deflection
 /// grows pushes its pivot the way that it turns the force, and turns the body with its inertia about the
 /// hinge, against its own turning. (A. L. Greensite, "Analysis and Design of Space Vehicle Flight Control
-/// Systems", NASA CR-820 to CR-835, 1967-69.) The body's own acceleration does not move a nozzle: actuators are stiff.
+/// Systems", NASA CR-820 to CR-835, 1967-69.) The body's own acceleration does not move a nozzle: actuators
+/// are stiff.
 template <class T>
 struct NozzleReaction {
   Vector<T> force_n, couple_n_m;  ///< at the pivots
@@ -321,7 +321,8 @@ struct LoadsOf {
   T thrust_n, flow_kg_s;
   T jet_axial, jet_transverse;  ///< jet damping, per rad/s
 };
-/// The thrust where the body bends: it acts at the displaced pivots along the turned axis, and drives the modes.
+/// The thrust where the body bends: it acts at the displaced pivots along the turned axis, and drives the
+/// modes.
 template <class T>
 DISPERSA_INLINE void BendThrust(const LauncherPlantLanes<T>& plant, const LauncherPhaseLanes<T>& phase,
                                 const TimedMasses<T>& masses, const BentBody<T>& bent, Thrust<T>& thrust) {
@@ -339,8 +340,8 @@ DISPERSA_INLINE void BendThrust(const LauncherPlantLanes<T>& plant, const Launch
   Blend<T>(phase.burning, driven, *bent.modal);
 }
 
-/// Boosters push along the axis, from where they are; a lateral offset of C turns that into a moment. Returns where
-/// the flow of stage and boosters leaves, in the mean.
+/// Boosters push along the axis, from where they are; a lateral offset of C turns that into a moment. Returns
+/// where the flow of stage and boosters leaves, in the mean.
 template <class T>
 DISPERSA_INLINE T AddBoosters(const LauncherPlantLanes<T>& plant, const LauncherPhaseLanes<T>& phase,
                               const TimedMasses<T>& masses, T pressure_pa, Thrust<T>& thrust, LoadsOf<T>& o) {
@@ -354,15 +355,15 @@ DISPERSA_INLINE T AddBoosters(const LauncherPlantLanes<T>& plant, const Launcher
   thrust.moment_n_m.y = thrust.moment_n_m.y - masses.cg_z_m * push_n;
   thrust.moment_n_m.z = thrust.moment_n_m.z + masses.cg_y_m * push_n;
   o.flow_kg_s = o.flow_kg_s + masses.beside_flow_kg_s;
-  const T share =
-      Select(o.flow_kg_s > none, masses.beside_flow_kg_s / Select(o.flow_kg_s > none, o.flow_kg_s, T(1.0)), none);
+  const T share = Select(o.flow_kg_s > none,
+                         masses.beside_flow_kg_s / Select(o.flow_kg_s > none, o.flow_kg_s, T(1.0)), none);
   return plant.pivot_station_m + share * (plant.beside_nozzle_m - plant.pivot_station_m);
 }
 
-/// `any_burns`: some lane does. `body`: bent or straight. With jet damping the flow leaves with the velocity of
-/// the nozzle about the CG: -m_dot r x (w x r), r on the axis, and for roll the nozzle circle's radius. On its
-/// way from the grain's middle or the liquids' surfaces to the pivots, aft by s, a turning body pushes it aside: Coriolis's force
-/// 2 m_dot s w x e_x on the body. `nozzles`: the cross's, or ListedNozzles.
+/// `any_burns`: some lane does. `body`: bent or straight. With jet damping the flow leaves with the velocity
+/// of the nozzle about the CG: -m_dot r x (w x r), r on the axis, and for roll the nozzle circle's radius. On
+/// its way from the grain's middle or the liquids' surfaces to the pivots, aft by s, a turning body pushes it
+/// aside: Coriolis's force 2 m_dot s w x e_x on the body. `nozzles`: the cross's, or ListedNozzles.
 template <class T, class Turned, class Body>
 DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, const LauncherPlantLanes<T>& plant,
                                    const LauncherPhaseLanes<T>& phase, bool any_burns,
@@ -385,7 +386,8 @@ DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, const LauncherPlantL
   o.force_n = o.flow.force_n;
   // The flow acts about the axis, from which C may be off.
   const Vector<T>& f = o.flow.force_n;
-  const Vector<T> off_axis{Fma(masses.cg_z_m, f.y, -(masses.cg_y_m * f.z)), -(masses.cg_z_m * f.x), masses.cg_y_m * f.x};
+  const Vector<T> off_axis{Fma(masses.cg_z_m, f.y, -(masses.cg_y_m * f.z)), -(masses.cg_z_m * f.x),
+                           masses.cg_y_m * f.x};
   o.moment_n_m = o.flow.moment_n_m + off_axis + phase.control_torque_n_m;
   o.thrust_n = o.flow_kg_s = o.jet_axial = o.jet_transverse = none;
   if (!any_burns) {
@@ -419,7 +421,8 @@ DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, const LauncherPlantL
     if (plant.has_boosters) {
       // Of the stage's own flow so far; each booster's nozzle is off the axis by its radius.
       const T beside = plant.beside_nozzle_m - masses.cg_station_m, r = plant.beside_radius_m;
-      o.jet_axial = o.jet_axial + masses.beside_flow_kg_s * (r * r - plant.nozzle_radius_m * plant.nozzle_radius_m);
+      o.jet_axial =
+          o.jet_axial + masses.beside_flow_kg_s * (r * r - plant.nozzle_radius_m * plant.nozzle_radius_m);
       o.jet_transverse =
           o.jet_transverse + masses.beside_flow_kg_s * (Fma(beside, beside, T(0.5) * r * r) - lever * lever);
     }

@@ -3,7 +3,9 @@
 namespace dispersa {
 
 RigidBodyState ReadState(const double* y) {
-  return {Vector3(y[0], y[1], y[2]), Vector3(y[3], y[4], y[5]), {y[6], y[7], y[8], y[9]},
+  return {Vector3(y[0], y[1], y[2]),
+          Vector3(y[3], y[4], y[5]),
+          {y[6], y[7], y[8], y[9]},
           Vector3(y[10], y[11], y[12])};
 }
 
@@ -25,16 +27,13 @@ RigidBodyState AtPoint(RigidBodyState s, const Vector3& r_CP_B) {
   return s;
 }
 
-void RigidBodyDerivative(const Earth& earth, const RigidBodyState& s, const BodyLoads& loads,
-                         double* dydt) {
+void RigidBodyDerivative(const Earth& earth, const RigidBodyState& s, const BodyLoads& loads, double* dydt) {
   RigidBodyState rate;
   rate.p_EoC_I = s.v_IC_I;
-  rate.v_IC_I =
-      Gravitation(earth, s.p_EoC_I) + RotationMatrix(s.q_IB) * (loads.force_n / loads.mass_kg);
+  rate.v_IC_I = Gravitation(earth, s.p_EoC_I) + RotationMatrix(s.q_IB) * (loads.force_n / loads.mass_kg);
   rate.q_IB = Derivative(s.q_IB, s.w_IB_B);
   const Vector3 h = loads.inertia_kg_m2 * s.w_IB_B;
-  const Vector3 torque =
-      loads.moment_n_m - s.w_IB_B.cross(h) - loads.inertia_rate_kg_m2_s * s.w_IB_B;
+  const Vector3 torque = loads.moment_n_m - s.w_IB_B.cross(h) - loads.inertia_rate_kg_m2_s * s.w_IB_B;
   rate.w_IB_B = loads.inertia_kg_m2.inverse() * torque;
   WriteState(rate, dydt);
 }

@@ -24,7 +24,7 @@ RigidBodyState AtPoint(RigidBodyState state, const Vector3& r_CP_B);
 
 /// What acts on the body at one instant, in body axes about C.
 struct BodyLoads {
-  Vector3 force_n = Vector3::Zero();       ///< all but gravitation
+  Vector3 force_n = Vector3::Zero();  ///< all but gravitation
   Vector3 moment_n_m = Vector3::Zero();
   double mass_kg = 0.0;
   Matrix3 inertia_kg_m2 = Matrix3::Zero();
@@ -35,7 +35,8 @@ struct BodyLoads {
 ///   I dw/dt = M - w x I w - (dI/dt) w,
 /// I and dI/dt about the moving C. With the jet damping -m_dot r x (w x r), r from C to the nozzle, in M, I w
 /// is the angular momentum of what stays on board. Left to launcher_body.h: the force of the flow through a
-/// turning body and the motion of C through the body. q is used as it is: its norm drifts by the integrator's error and is restored between steps.
+/// turning body and the motion of C through the body. q is used as it is: its norm drifts by the integrator's
+/// error and is restored between steps.
 void RigidBodyDerivative(const Earth& earth, const RigidBodyState& state, const BodyLoads& loads,
                          double* dydt);
 

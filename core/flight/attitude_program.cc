@@ -51,8 +51,7 @@ ReferenceAttitude AttitudeProgram::At(double time_s) const {
   const Quaternion yaw_then_roll = FromPitchYawRoll({0.0, yaw.value, roll.value});
   const Quaternion only_roll = FromPitchYawRoll({0.0, 0.0, roll.value});
   reference.w_LR_R = Rotate(Inverse(yaw_then_roll), Vector3(0.0, pitch.rate, 0.0)) +
-                     Rotate(Inverse(only_roll), Vector3(0.0, 0.0, yaw.rate)) +
-                     Vector3(roll.rate, 0.0, 0.0);
+                     Rotate(Inverse(only_roll), Vector3(0.0, 0.0, yaw.rate)) + Vector3(roll.rate, 0.0, 0.0);
   return reference;
 }
 

@@ -5,8 +5,8 @@
 // own events at their exact times. Lanes know nothing of each other: they may be at different stages and at
 // different times since lift-off, and one that ends is filled with the next flight of the queue.
 //
-// Here lanes come and go; batch_pass.h is what they do at a tick, batch_events.h how they move on to the next.
-// What happens once a flight, once an event or only to a flight that is watched is the record's
+// Here lanes come and go; batch_pass.h is what they do at a tick, batch_events.h how they move on to the
+// next. What happens once a flight, once an event or only to a flight that is watched is the record's
 // (flight_record.h). Compiled once for each instruction set and width (fly_lanes.cc).
 #pragma once
 
@@ -38,7 +38,7 @@ class Batch {
   /// What of a lane is no value of T.
   struct Slot {
     FlightRecord* record = nullptr;  ///< null: the lane does not fly
-    std::size_t next_event = 0;  ///< of its record's
+    std::size_t next_event = 0;      ///< of its record's
     int stack = 0;
     unsigned jettisoned = 0;  ///< LauncherPhase's
     int stuck_nozzle = -1;
@@ -120,7 +120,7 @@ class Batch {
   bool same_delay_ = true;  ///< all lanes that burn have one of whole ticks:
   int common_delay_ = 0;
 
-  Vector<T> angle_rad_, rate_rad_s_;  ///< error, reference less true
+  Vector<T> angle_rad_, rate_rad_s_;                    ///< error, reference less true
   Vector<T> measured_angle_rad_, measured_rate_rad_s_;  ///< as the sensors see it, and
   Vector<T> measured_body_rate_rad_s_;                  ///< the rate of the body itself
   Vector<T> gyro_bias_rad_s_;

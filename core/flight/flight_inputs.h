@@ -32,7 +32,8 @@ constexpr PerNozzle AllNozzles(double value) {
 /// Largest number of altitude levels of a drawn wind profile: every kilometre up to 30 km.
 inline constexpr int kWindLevels = 30;
 
-/// Doubles only, each named by a column in flight_inputs.cc; SI and radians; the defaults are the nominal flight. Factors multiply the nominal value.
+/// Doubles only, each named by a column in flight_inputs.cc; SI and radians; the defaults are the nominal
+/// flight. Factors multiply the nominal value.
 struct FlightInputs {
   PerStage thrust_misalignment_rad{};        ///< tilt of the thrust against the body axis
   PerStage thrust_misalignment_clock_rad{};  ///< direction of the tilt: from body y towards body z
@@ -43,52 +44,53 @@ struct FlightInputs {
   PerNozzle nozzle_offset_m{};
   PerNozzle nozzle_offset_clock_rad{};
   PerNozzle nozzle_thrust_factor = AllNozzles(1.0);  ///< of its share of the thrust, at the same flow
-  PerStage cg_offset_m{};                    ///< of the CG off the axis, of the stack without what it burns
-  PerStage cg_offset_clock_rad{};            ///< direction of the offset, likewise
+  PerStage cg_offset_m{};          ///< of the CG off the axis, of the stack without what it burns
+  PerStage cg_offset_clock_rad{};  ///< direction of the offset, likewise
   PerStage thrust_factor = AllStages(1.0);
-  PerStage mass_flow_factor = AllStages(1.0);        ///< flow at full thrust; the burn shortens with it
-  PerStage specific_impulse_factor = AllStages(1.0); ///< thrust at the same flow
-  double wind_max_speed_m_s = 0.0;           ///< of the jet stream
-  double wind_azimuth_rad = 0.0;             ///< where it comes from, clockwise from north
-  double wind_altitude_m = 12000.0;          ///< of the maximum
-  double wind_width_m = 12000.0;             ///< full width at half the maximum
-  double gust_speed_m_s = 0.0;               ///< 1 - cosine gust
-  double gust_altitude_m = 0.0;              ///< where it starts
+  PerStage mass_flow_factor = AllStages(1.0);         ///< flow at full thrust; the burn shortens with it
+  PerStage specific_impulse_factor = AllStages(1.0);  ///< thrust at the same flow
+  double wind_max_speed_m_s = 0.0;                    ///< of the jet stream
+  double wind_azimuth_rad = 0.0;                      ///< where it comes from, clockwise from north
+  double wind_altitude_m = 12000.0;                   ///< of the maximum
+  double wind_width_m = 12000.0;                      ///< full width at half the maximum
+  double gust_speed_m_s = 0.0;                        ///< 1 - cosine gust
+  double gust_altitude_m = 0.0;                       ///< where it starts
   double gust_length_m = 0.0;
   double gust_azimuth_rad = 0.0;
   std::array<double, kWindLevels> wind_profile_north{};  ///< standard normal draws of a wind climatology
   std::array<double, kWindLevels> wind_profile_east{};
-  double turbulence_exceedance = 0.0;        ///< probability that picks the intensity; 0: none
-  double turbulence_wind_20ft_m_s = 0.0;     ///< mean wind near the ground, which makes the turbulence there
-  double turbulence_scale = 1.0;             ///< of all intensities
-  double drag_factor = 1.0;                  ///< of the axial force
-  double lift_factor = 1.0;                  ///< of the normal force
-  double cg_factor = 1.0;                    ///< of the CG's distance from the nose of the current stack
-  double cp_factor = 1.0;                    ///< of the CP's
+  double turbulence_exceedance = 0.0;     ///< probability that picks the intensity; 0: none
+  double turbulence_wind_20ft_m_s = 0.0;  ///< mean wind near the ground, which makes the turbulence there
+  double turbulence_scale = 1.0;          ///< of all intensities
+  double drag_factor = 1.0;               ///< of the axial force
+  double lift_factor = 1.0;               ///< of the normal force
+  double cg_factor = 1.0;                 ///< of the CG's distance from the nose of the current stack
+  double cp_factor = 1.0;                 ///< of the CP's
   double density_factor = 1.0;
   double inertia_factor = 1.0;
   double actuator_bandwidth_factor = 1.0;
-  std::array<double, kModes> bending_frequency_factor = {1.0, 1.0, 1.0, 1.0, 1.0};  ///< of each mode, both planes
-  double bending_damping_factor = 1.0;       ///< of the modes' damping ratio
-  double bending_slope_factor = 1.0;         ///< of the slopes that sensors feel
-  PerStage tip_off_pitch_rad_s{};            ///< rate added to the upper stack as stage i separates
+  std::array<double, kModes> bending_frequency_factor = {1.0, 1.0, 1.0, 1.0,
+                                                         1.0};  ///< of each mode, both planes
+  double bending_damping_factor = 1.0;                          ///< of the modes' damping ratio
+  double bending_slope_factor = 1.0;                            ///< of the slopes that sensors feel
+  PerStage tip_off_pitch_rad_s{};  ///< rate added to the upper stack as stage i separates
   PerStage tip_off_yaw_rad_s{};
   PerStage tip_off_roll_rad_s{};
   double gyro_bias_roll_rad_s = 0.0;
   double gyro_bias_pitch_rad_s = 0.0;
   double gyro_bias_yaw_rad_s = 0.0;
-  double gyro_noise_rad_s = 0.0;             ///< standard deviation of each sample
-  double stuck_nozzle = 0.0;                 ///< 0 none, 1..4 right, left, bottom, top
-  double stuck_nozzle_stage = 0.0;           ///< 1-based
-  double stuck_nozzle_rad = 0.0;             ///< angle at which it stays
-  double pn_error_factor = 1.0;              ///< of the first component of P_n, the paper's Fig. 5
-  double pn_rate_factor = 1.0;               ///< of the second
-  double loop_gain_factor = 1.0;             ///< of every commanded deflection: measures the gain margin
-  double loop_delay_s = 0.0;                 ///< further delay of the commands: measures the delay margin
-  double loop_stage = 0.0;                   ///< the stage (1-based) whose loop they change, 0 all
+  double gyro_noise_rad_s = 0.0;    ///< standard deviation of each sample
+  double stuck_nozzle = 0.0;        ///< 0 none, 1..4 right, left, bottom, top
+  double stuck_nozzle_stage = 0.0;  ///< 1-based
+  double stuck_nozzle_rad = 0.0;    ///< angle at which it stays
+  double pn_error_factor = 1.0;     ///< of the first component of P_n, the paper's Fig. 5
+  double pn_rate_factor = 1.0;      ///< of the second
+  double loop_gain_factor = 1.0;    ///< of every commanded deflection: measures the gain margin
+  double loop_delay_s = 0.0;        ///< further delay of the commands: measures the delay margin
+  double loop_stage = 0.0;          ///< the stage (1-based) whose loop they change, 0 all
   std::array<double, 3> navigation_position_error_m{};    ///< navigated less true, constant, along L's axes
   std::array<double, 3> navigation_velocity_error_m_s{};  ///< likewise
-  double accelerometer_scale_factor = 1.0;   ///< of the sensed specific force
+  double accelerometer_scale_factor = 1.0;                ///< of the sensed specific force
   // Later inputs go to the end: a Sobol design's dimensions are the columns' positions.
   PerStage dry_mass_factor = AllStages(1.0);    ///< of a stage's dry mass (dispersed_vehicle.h)
   PerStage propellant_factor = AllStages(1.0);  ///< of the propellant at ignition

@@ -15,7 +15,8 @@ namespace dispersa {
 
 namespace {
 
-std::shared_ptr<const BoosterSet> BuildBoosterSet(const Boosters& boosters, double thrust_factor, double flow_factor) {
+std::shared_ptr<const BoosterSet> BuildBoosterSet(const Boosters& boosters, double thrust_factor,
+                                                  double flow_factor) {
   return std::make_shared<const BoosterSet>(BoosterSet{
       BuildBoosterBurn(boosters, thrust_factor, flow_factor), BuildBoosterGrains(boosters),
       BuildBoosterMass(boosters), boosters.nozzle_station_m, boosters.radius_m, boosters.separation_delay_s});
@@ -146,8 +147,8 @@ ReferenceRows TabulateReference(const AttitudeProgram& program, const LaunchFram
   for (long tick = 0; tick <= last; ++tick) {
     const ReferenceAttitude at = program.At(static_cast<double>(tick) * tick_s);
     const Quaternion q_IR = frame.q_IL * at.q_LR;
-    table.rows.insert(table.rows.end(), {q_IR.w, q_IR.x, q_IR.y, q_IR.z, at.w_LR_R.x(), at.w_LR_R.y(),
-                                         at.w_LR_R.z(), 0.0});
+    table.rows.insert(table.rows.end(),
+                      {q_IR.w, q_IR.x, q_IR.y, q_IR.z, at.w_LR_R.x(), at.w_LR_R.y(), at.w_LR_R.z(), 0.0});
   }
   return table;
 }
@@ -213,8 +214,7 @@ GuidanceMission BuildMission(const FlightDefinition& definition, const LauncherP
 }  // namespace
 
 FlightModel::FlightModel(FlightDefinition definition)
-    : definition_(std::move(definition)),
-      nominal_(BuildNominalPlant(definition_.vehicle)) {
+    : definition_(std::move(definition)), nominal_(BuildNominalPlant(definition_.vehicle)) {
   frame_ = BuildLaunchFrame(nominal_.environment.earth, definition_.vehicle.site,
                             definition_.program.launch_azimuth_rad);
   AddBending(definition_.vehicle, definition_.autopilot.tick_s, nominal_);
@@ -304,13 +304,10 @@ LauncherPlant FlightModel::PlantFor(const FlightInputs& in, std::optional<std::u
 
   Wind& wind = plant.environment.wind;
   if (in.wind_max_speed_m_s != 0.0)
-    wind.jets.push_back(
-        {in.wind_max_speed_m_s, in.wind_altitude_m, in.wind_width_m, in.wind_azimuth_rad});
+    wind.jets.push_back({in.wind_max_speed_m_s, in.wind_altitude_m, in.wind_width_m, in.wind_azimuth_rad});
   if (in.gust_speed_m_s != 0.0)
-    wind.gusts.push_back(
-        {in.gust_speed_m_s, in.gust_altitude_m, in.gust_length_m, in.gust_azimuth_rad});
-  if (definition_.wind_statistics)
-    wind.tables.push_back(DrawnProfile(*definition_.wind_statistics, in));
+    wind.gusts.push_back({in.gust_speed_m_s, in.gust_altitude_m, in.gust_length_m, in.gust_azimuth_rad});
+  if (definition_.wind_statistics) wind.tables.push_back(DrawnProfile(*definition_.wind_statistics, in));
 
   if (case_index && definition_.turbulence_path && in.turbulence_exceedance > 0.0)
     plant.environment.turbulence = std::make_shared<const TurbulenceField>(

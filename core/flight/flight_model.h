@@ -26,7 +26,7 @@ struct InjectionTarget {
   double altitude_m = 0.0;
   double velocity_m_s = 0.0;
   double flight_path_angle_rad = 0.0;
-  double inclination_rad = 0.0;       ///< of the reference's orbit
+  double inclination_rad = 0.0;  ///< of the reference's orbit
 };
 
 /// What decides a flight besides its inputs.
@@ -36,7 +36,7 @@ struct FlightDefinition {
   AttitudeProgram program;
   double last_ignition_s = 0.0;
   std::array<double, kMaxStages> earlier_ignition_s{};  ///< timers of stages before the last
-  double kick_start_s = 0.0;   ///< t1 and t2 of the flight program: the pitch-over
+  double kick_start_s = 0.0;                            ///< t1 and t2 of the flight program: the pitch-over
   double kick_end_s = 0.0;
   InjectionTarget target;
   std::optional<WindTable> wind_table;
@@ -57,8 +57,8 @@ struct FlightDefinition {
 /// Ends a stage's burn by command. What it leaves is the next one's if that restarts it.
 void CutOffStage(const Vehicle& vehicle, int stage, double since_ignition_s, LauncherPlant& plant);
 
-/// The reference attitude at the autopilot's ticks, for flights that are flown side by side. A row has 8 doubles: q_IR
-/// (w, x, y, z), w_LR_R (x, y, z), unused. The last row holds for all later ticks.
+/// The reference attitude at the autopilot's ticks, for flights that are flown side by side. A row has 8
+/// doubles: q_IR (w, x, y, z), w_LR_R (x, y, z), unused. The last row holds for all later ticks.
 struct ReferenceRows {
   static constexpr int kRowSize = 8;
 
@@ -111,8 +111,8 @@ LauncherPlant BuildNominalPlant(const Vehicle& vehicle);
 /// Gives every stack the masses that a vehicle of the same stages has, with what its sections carry and, if
 /// it bends, as many of its modes as before.
 void SetMasses(const Vehicle& vehicle, LauncherPlant& plant);
-/// Gives a vehicle with a beam that flies its bending: modes that stay below half the sampling frequency all the
-/// burn.
+/// Gives a vehicle with a beam that flies its bending: modes that stay below half the sampling frequency all
+/// the burn.
 void AddBending(const Vehicle& vehicle, double tick_s, LauncherPlant& plant);
 /// Angular acceleration per radian of deflection, over the time since ignition, of a nominal stack that
 /// ignites at `ignition_s`. `jettison_s`: as FlightDefinition's.

@@ -71,9 +71,9 @@ class FlightRecord {
   StateValues lift_off;
   const char* refusal = nullptr;  ///< why its inputs cannot be flown; null: they can
   double believed_attitude[4];    ///< q_IB (w, x, y, z) that the inertial unit is aligned to at lift-off
-  bool watched;        ///< has a history or an observer
-  long history_ticks;  ///< between rows; 0: no history
-  bool noisy;          ///< its gyros are
+  bool watched;                   ///< has a history or an observer
+  long history_ticks;             ///< between rows; 0: no history
+  bool noisy;                     ///< its gyros are
 
   // ---- while it flies ----
   GuidedFlight* guided = nullptr;  ///< null: the reference's attitude is flown

@@ -109,8 +109,9 @@ ScenarioSample Evaluate(const Motion& motion, double time_s, const double* y) {
   Vector3 damped_rates = now.state.w_IB_B;
   if (!stage.inertial_damping_rates)
     damped_rates -= R_BI * Vector3(0.0, 0.0, environment.earth.rotation_rate_rad_s);
-  now.aerodynamic = AerodynamicForce(stage.aerodynamics, motion.grids[motion.phase.stage], now.v_AB_B, damped_rates,
-                                     now.air.density_kg_m3, now.air.speed_of_sound_m_s, cg_station_m);
+  now.aerodynamic =
+      AerodynamicForce(stage.aerodynamics, motion.grids[motion.phase.stage], now.v_AB_B, damped_rates,
+                       now.air.density_kg_m3, now.air.speed_of_sound_m_s, cg_station_m);
   now.loads.force_n = now.aerodynamic.force_n;
   now.loads.moment_n_m = now.aerodynamic.moment_n_m;
   if (motion.phase.burning) AddThrust(*stage.motor, now.air.pressure_pa, now.state.w_IB_B, cg_station_m, now);

@@ -16,12 +16,10 @@ constexpr double kEmpty = std::numeric_limits<double>::quiet_NaN();
 
 const std::vector<std::string>& KinematicColumnNames() {
   static const std::vector<std::string> names = {
-      "time_s",
-      "eci_x_m", "eci_y_m", "eci_z_m", "eci_vx_m_s", "eci_vy_m_s", "eci_vz_m_s",
-      "ned_v_n_m_s", "ned_v_e_m_s", "ned_v_d_m_s",
-      "altitude_m", "latitude_deg", "longitude_deg",
-      "yaw_deg", "pitch_deg", "roll_deg", "p_deg_s", "q_deg_s", "r_deg_s",
-      "mach", "qbar_pa", "alpha_deg", "beta_deg", "mass_kg"};
+      "time_s",        "eci_x_m",     "eci_y_m",     "eci_z_m",     "eci_vx_m_s", "eci_vy_m_s",
+      "eci_vz_m_s",    "ned_v_n_m_s", "ned_v_e_m_s", "ned_v_d_m_s", "altitude_m", "latitude_deg",
+      "longitude_deg", "yaw_deg",     "pitch_deg",   "roll_deg",    "p_deg_s",    "q_deg_s",
+      "r_deg_s",       "mach",        "qbar_pa",     "alpha_deg",   "beta_deg",   "mass_kg"};
   return names;
 }
 
@@ -79,13 +77,30 @@ void AppendKinematics(const Earth& earth, double time_s, const RigidBodyState& s
   const double speed = v_AB_B.norm();
   const double alpha = speed > 0.0 ? Atan2(v_AB_B.z(), v_AB_B.x()) : 0.0;
   const double beta = speed > 0.0 ? Asin(Clamp(v_AB_B.y() / speed, -1.0, 1.0)) : 0.0;
-  row.insert(row.end(),
-             {time_s, s.p_EoC_I.x(), s.p_EoC_I.y(), s.p_EoC_I.z(), s.v_IC_I.x(), s.v_IC_I.y(), s.v_IC_I.z(),
-              v_EC_N.x(), v_EC_N.y(), v_EC_N.z(), place.altitude_m, place.latitude_rad * kDegPerRad,
-              place.longitude_rad * kDegPerRad, attitude.yaw * kDegPerRad, attitude.pitch * kDegPerRad,
-              attitude.roll * kDegPerRad, s.w_IB_B.x() * kDegPerRad, s.w_IB_B.y() * kDegPerRad,
-              s.w_IB_B.z() * kDegPerRad, air.mach, air.qbar_pa, alpha * kDegPerRad, beta * kDegPerRad,
-              mass_kg});
+  row.insert(row.end(), {time_s,
+                         s.p_EoC_I.x(),
+                         s.p_EoC_I.y(),
+                         s.p_EoC_I.z(),
+                         s.v_IC_I.x(),
+                         s.v_IC_I.y(),
+                         s.v_IC_I.z(),
+                         v_EC_N.x(),
+                         v_EC_N.y(),
+                         v_EC_N.z(),
+                         place.altitude_m,
+                         place.latitude_rad * kDegPerRad,
+                         place.longitude_rad * kDegPerRad,
+                         attitude.yaw * kDegPerRad,
+                         attitude.pitch * kDegPerRad,
+                         attitude.roll * kDegPerRad,
+                         s.w_IB_B.x() * kDegPerRad,
+                         s.w_IB_B.y() * kDegPerRad,
+                         s.w_IB_B.z() * kDegPerRad,
+                         air.mach,
+                         air.qbar_pa,
+                         alpha * kDegPerRad,
+                         beta * kDegPerRad,
+                         mass_kg});
 }
 
 void AppendLauncher(const FlightModel& model, const TickSample& s, std::vector<double>& row) {
@@ -96,9 +111,7 @@ void AppendLauncher(const FlightModel& model, const TickSample& s, std::vector<d
   const Vector3 specific = now.loads.force_n / (now.loads.mass_kg * kStandardGravity);
   const AxisTelemetry& t = s.gimbal.telemetry[kPitch];
   const auto powered = [&](double value) { return s.burning ? value : kEmpty; };
-  const auto told = [&](std::size_t i) {
-    return s.law_telemetry ? powered((*s.law_telemetry)[i]) : kEmpty;
-  };
+  const auto told = [&](std::size_t i) { return s.law_telemetry ? powered((*s.law_telemetry)[i]) : kEmpty; };
   const auto& n = s.nozzle_rad;
   const LauncherStack& stack = model.nominal_plant().stacks[static_cast<std::size_t>(s.stack)];
   const NozzleLayout* const list = stack.gimbal.nozzles.empty() ? nullptr : &stack.layout;

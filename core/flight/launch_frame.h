@@ -8,9 +8,9 @@
 namespace dispersa {
 
 struct LaunchFrame {
-  Vector3 p_EoL_I = Vector3::Zero();  ///< the launch site at lift-off
-  Vector3 v_IL_I = Vector3::Zero();   ///< its velocity, which the Earth carries
-  Matrix3 R_IL = Matrix3::Identity(); ///< columns: downrange, right, down
+  Vector3 p_EoL_I = Vector3::Zero();   ///< the launch site at lift-off
+  Vector3 v_IL_I = Vector3::Zero();    ///< its velocity, which the Earth carries
+  Matrix3 R_IL = Matrix3::Identity();  ///< columns: downrange, right, down
   Quaternion q_IL;
 };
 

@@ -127,7 +127,8 @@ constexpr Row kOfFlight[] = {
      [](const Measured& m) { return m.AtHandover(m.sums.handover_angle_rad * kDegPerRad); }},
     {"handover_rate_error", "_deg_s", "Rate error at the last ignition", "magnitude, likewise", kLarger,
      [](const Measured& m) { return m.AtHandover(m.sums.handover_rate_rad_s * kDegPerRad); }},
-    {"rcs_propellant", "_kg", "Reaction control propellant", "used in coasts, and in roll under thrust where nozzles cannot", kLarger,
+    {"rcs_propellant", "_kg", "Reaction control propellant",
+     "used in coasts, and in roll under thrust where nozzles cannot", kLarger,
      [](const Measured& m) { return m.sums.expelled_kg; }},
 
     {"injection_altitude", "_km", "Injection altitude", "geodetic, at the end of the last burn", kAnyway,
@@ -191,10 +192,12 @@ constexpr Row kOfArrival[] = {
     {"inclination_error", "_deg", "Inclination error", "at injection, against the reference's orbit",
      kFarther,
      [](const Measured& m) {
-       return m.AtInjection((m.sums.orbit.inclination_rad - m.definition.target.inclination_rad) * kDegPerRad);
+       return m.AtInjection((m.sums.orbit.inclination_rad - m.definition.target.inclination_rad) *
+                            kDegPerRad);
      }},
     {"guidance_converged", "", "Guidance converged",
-     "1 when the last plan reaches the target, and the last in which altitude still counted did; of closed-loop "
+     "1 when the last plan reaches the target, and the last in which altitude still counted did; of "
+     "closed-loop "
      "guidance",
      kSmaller, [](const Measured& m) { return m.Guided(m.sums.guidance.arrives ? 1.0 : 0.0); }},
     {"guidance_ignition_shift", "_s", "Last ignition, moved by guidance", "against the reference", kAnyway,

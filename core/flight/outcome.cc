@@ -3,8 +3,8 @@
 namespace dispersa {
 
 namespace {
-constexpr const char* kOutcomeNames[kOutcomeCount] = {
-    "completed", "lost_control", "structural_limit", "impact", "numerical_failure", "timeout"};
+constexpr const char* kOutcomeNames[kOutcomeCount] = {"completed", "lost_control",      "structural_limit",
+                                                      "impact",    "numerical_failure", "timeout"};
 }
 
 const char* OutcomeName(Outcome outcome) { return kOutcomeNames[static_cast<int>(outcome)]; }

@@ -11,7 +11,7 @@ enum class Outcome {
   kStructuralLimit,  ///< only if the vehicle's limits say so
   kImpact,
   kNumericalFailure,
-  kTimeout,          ///< of simulated time
+  kTimeout,  ///< of simulated time
 };
 inline constexpr int kOutcomeCount = 6;
 

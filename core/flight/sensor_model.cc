@@ -79,7 +79,8 @@ std::vector<AutopilotProblem> GyroProblems(const Vehicle& vehicle, const Autopil
     const RateGyro* gyro = FindGyro(vehicle, share.gyro, nullptr);
     if (gyro == nullptr) {
       std::string names;
-      for (const RateGyro& each : vehicle.sensors.rate_gyros) names += (names.empty() ? "" : ", ") + each.name;
+      for (const RateGyro& each : vehicle.sensors.rate_gyros)
+        names += (names.empty() ? "" : ", ") + each.name;
       problems.push_back({path + ".gyro", "'" + share.gyro + "' is no rate gyro of the vehicle",
                           names.empty() ? "none: the vehicle has none" : "one of " + names});
       continue;
@@ -91,17 +92,18 @@ std::vector<AutopilotProblem> GyroProblems(const Vehicle& vehicle, const Autopil
       problems.push_back({path + ".gyro",
                           "'" + share.gyro + "' is not on board any more while stage " +
                               std::to_string(stage + 1) + " burns",
-                          "a gyro ahead of station " + std::to_string(vehicle.stages[stage].bottom_station_m) +
+                          "a gyro ahead of station " +
+                              std::to_string(vehicle.stages[stage].bottom_station_m) +
                               " m, or 'stage' below " + std::to_string(stage + 1)});
       break;
     }
   }
   for (std::size_t stage = 0; stage < sum.size() && problems.empty(); ++stage) {
     if (sum[stage] == 0.0 || std::fabs(sum[stage] - 1.0) < kSameWeight) continue;
-    problems.push_back({"rate_gyros",
-                        "the weights of stage " + std::to_string(stage + 1) + " sum to " +
-                            std::to_string(sum[stage]),
-                        "weights that sum to 1 in each stage, or none: then the inertial unit gives the rates"});
+    problems.push_back(
+        {"rate_gyros",
+         "the weights of stage " + std::to_string(stage + 1) + " sum to " + std::to_string(sum[stage]),
+         "weights that sum to 1 in each stage, or none: then the inertial unit gives the rates"});
   }
   return problems;
 }

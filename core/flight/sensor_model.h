@@ -30,7 +30,8 @@ struct SensorModel {
 /// Precondition: no GyroProblems.
 SensorModel BuildSensors(const Vehicle& vehicle, const AutopilotConfig& autopilot);
 
-/// What the autopilot asks of gyros that the vehicle does not have there; paths as of Problems(AutopilotConfig).
+/// What the autopilot asks of gyros that the vehicle does not have there; paths as of
+/// Problems(AutopilotConfig).
 std::vector<AutopilotProblem> GyroProblems(const Vehicle& vehicle, const AutopilotConfig& autopilot);
 
 /// Second order under an input that is straight between ticks, exactly: ramp invariance.

@@ -22,15 +22,16 @@ inline constexpr double kSameInstant_s = 1e-9;
 
 /// Times since lift-off. Burnout is exact; it is detected on the next tick, and the stage separates
 /// `separation_delay_s` later. A stage on burnout detection ignites `ignition_delay_s` after that; a stage
-/// on the timer at last_ignition_s, one before the last at earlier_ignition_s, or at separation of the stage below
-/// if that is later. `in` has the delays of a flight, which add; none takes an event before what triggers it.
+/// on the timer at last_ignition_s, one before the last at earlier_ignition_s, or at separation of the stage
+/// below if that is later. `in` has the delays of a flight, which add; none takes an event before what
+/// triggers it.
 std::vector<StageTimes> BuildTimeline(const Vehicle& vehicle, const std::vector<MotorBurn>& burns,
                                       double tick_s, double last_ignition_s,
                                       const std::array<double, kMaxStages>& earlier_ignition_s = {},
                                       const FlightInputs& in = {});
 
-/// Of boosters that ignite with the first stage: exact burnout, and separation by the flight computer's ticks. They
-/// leave no later than the stage burns out.
+/// Of boosters that ignite with the first stage: exact burnout, and separation by the flight computer's
+/// ticks. They leave no later than the stage burns out.
 struct BoosterTimes {
   double burnout_s = 0.0;
   double separation_s = 0.0;

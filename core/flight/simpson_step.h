@@ -9,11 +9,13 @@
 //   end         p + h v + h²/6 (a0 + 2 a1), q turned by h w + h²/6 (alpha0 + 2 alpha1) + h³/12 w1 x alpha1:
 //               final before the last evaluation, of which only the velocities are a guess: v + h a1, w + h
 //               alpha1; there a2, alpha2
-//   CG          moves through the body at u, known where masses and attitude are: p takes the integral of u by the
+//   CG          moves through the body at u, known where masses and attitude are: p takes the integral of u
+//   by the
 //               trapezium to the middle and by Simpson's rule to the end
-//   bending     each mode swings exactly (bending.h) under its drive as it is at the start, rising as in the last
-//               step, for the middle; under the line through start and middle for the last evaluation; in the end
-//               under the parabola through all three. Frequencies are those of the step's middle
+//   bending     each mode swings exactly (bending.h) under its drive as it is at the start, rising as in the
+//   last
+//               step, for the middle; under the line through start and middle for the last evaluation; in the
+//               end under the parabola through all three. Frequencies are those of the step's middle
 //   velocities  v + h/6 (a0 + 4 a1 + a2), w + h/6 (alpha0 + 4 alpha1 + alpha2)
 //
 // with a0' the slope at its end of the parabola through the last step's three accelerations, 0 after an
@@ -170,8 +172,8 @@ class StepState {
   void SetControlTorque(MaskOf<T> lanes, Vector<T> torque_n_m) {
     Vector<T>& now = phase_.control_torque_n_m;
     const auto differs = [](T a, T b) { return (a < b) | (a > b); };
-    MarkStale(lanes & (differs(torque_n_m.x, now.x) | differs(torque_n_m.y, now.y) |
-                       differs(torque_n_m.z, now.z)));
+    MarkStale(lanes &
+              (differs(torque_n_m.x, now.x) | differs(torque_n_m.y, now.y) | differs(torque_n_m.z, now.z)));
     now = Select(lanes, torque_n_m, now);
   }
   /// So many times so much leaves through thrusters.
@@ -191,9 +193,9 @@ class StepState {
     const Point& now = *start_;
     const Vector<T>&w = motion_.w, &dw = now.rates.dw;
     const T per_kg = now.masses.inverse_mass_1_kg;
-    const BodyMotion<T> moved{now.masses.propellant_kg,          now.masses.cg_station_m,
-                              per_kg * now.instant.force_n.y,    per_kg * now.instant.force_n.z,
-                              Fma(-w.x, w.z, dw.y),              Fma(w.x, w.y, dw.z)};
+    const BodyMotion<T> moved{now.masses.propellant_kg,       now.masses.cg_station_m,
+                              per_kg * now.instant.force_n.y, per_kg * now.instant.force_n.z,
+                              Fma(-w.x, w.z, dw.y),           Fma(w.x, w.y, dw.z)};
     if (bending_.modes == 0) return LargestOf(plant_.sections, now.instant.normal, moved);
     return LargestOf(
         plant_.sections, now.instant.normal, moved,
@@ -253,8 +255,8 @@ class StepState {
     Surroundings<T> around;
     TimedMasses<T> masses;
     Nozzles<T> nozzles, second;  ///< second: about their second hinges
-    Vector<T> cg_velocity;  ///< of C through the body, in I
-    Rates<T> rates, slopes;  ///< slopes: of the rates, at the end of a step
+    Vector<T> cg_velocity;       ///< of C through the body, in I
+    Rates<T> rates, slopes;      ///< slopes: of the rates, at the end of a step
     ModalForce<T> modal, modal_slopes;
     Instant<T> instant;
   };

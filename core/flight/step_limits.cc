@@ -43,8 +43,8 @@ void EachMode(const LauncherPlant& plant, std::size_t stack, F f) {
   }
 }
 
-// Sylvester's criterion for the tensor of a stack that has burnt out and let go of all it may, where the moments are
-// least.
+// Sylvester's criterion for the tensor of a stack that has burnt out and let go of all it may, where the
+// moments are least.
 bool IsInertia(const LauncherPlant& plant, std::size_t index) {
   const LauncherStack& stack = plant.stacks[index];
   const unsigned gone = ((1u << plant.jettisons.size()) - 1u) | (plant.boosters ? kBoostersGone : 0u);
@@ -85,8 +85,8 @@ std::string RefusalOf(const Vehicle& vehicle, const FlightInputs& in, const Laun
     if (!(in.dry_mass_factor[i] > 0.0)) return "the dry mass of " + stage + " is not above 0";
     if (!(in.propellant_factor[i] > 0.0)) return "the propellant of " + stage + " is not above 0";
     if (in.propellant_factor[i] > LargestPropellantFactor(vehicle.stages[i]))
-      return (vehicle.stages[i].is_liquid() ? "a tank of " : "the grain of ") + stage + " does not hold " + Text(in.propellant_factor[i]) +
-             " times its propellant";
+      return (vehicle.stages[i].is_liquid() ? "a tank of " : "the grain of ") + stage + " does not hold " +
+             Text(in.propellant_factor[i]) + " times its propellant";
     if (!IsInertia(plant, i)) return "the products of inertia of " + stage + " are no body's";
   }
   if (in.payload_mass_kg != 0.0) {

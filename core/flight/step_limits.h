@@ -23,8 +23,9 @@ inline constexpr double kActuatorLimit_rad = 10.0;
 inline constexpr double kHeavyActuatorLimit_rad = 1.25;
 /// From this share of a limit on a case is flagged.
 inline constexpr double kNearStepLimit = 0.8;
-/// Bending modes: flagged beyond half the sampling frequency, below which nominal ones fly (AddBending). What the
-/// autopilot then sees of one is its alias, as of a real one; what the body feels of it is still its own motion.
+/// Bending modes: flagged beyond half the sampling frequency, below which nominal ones fly (AddBending). What
+/// the autopilot then sees of one is its alias, as of a real one; what the body feels of it is still its own
+/// motion.
 inline constexpr double kModeLimit_rad = kPi / kNearStepLimit;
 
 /// The part of a vehicle that comes nearest to its limit.

@@ -13,23 +13,23 @@ namespace dispersa {
 
 struct TickSample {
   double time_s = 0.0;
-  int stack = 0;                   ///< 0-based
+  int stack = 0;  ///< 0-based
   bool burning = false;
-  bool coasting = false;           ///< before an ignition by a timer; the last stack before its own
-  double since_ignition_s = 0.0;   ///< of the burning stage
+  bool coasting = false;          ///< before an ignition by a timer; the last stack before its own
+  double since_ignition_s = 0.0;  ///< of the burning stage
   RigidBodyState state;
   std::array<double, kDrives> nozzle_rad{};  ///< about first hinges, then about second ones
   std::array<double, kDrives> nozzle_rate_rad_s{};
   std::array<double, 2 * kPlanes * kModes> bending{};  ///< modal coordinates (m), then their rates
   std::array<double, kDrives> command_rad{};           ///< at the actuators
   double limit_rad = 0.0;
-  AttitudeError error;             ///< true, not measured
+  AttitudeError error;  ///< true, not measured
   ReferenceAttitude reference;
-  GimbalCommand gimbal;            ///< of this tick
+  GimbalCommand gimbal;                     ///< of this tick
   std::array<AxisState, kAxes> memories{};  ///< of the burning stage's laws, after this tick
   std::optional<std::array<double, kLawTelemetry>> law_telemetry =
-      {};                                   ///< of a plug-in's law, after this tick
-  int stuck_nozzle = -1;                    ///< index, or none
+      {};                 ///< of a plug-in's law, after this tick
+  int stuck_nozzle = -1;  ///< index, or none
   std::array<int, kAxes> thrusters{};
   double expelled_mass_kg = 0.0;
   unsigned jettisoned = 0;  ///< as in LauncherPhase, as is

@@ -69,7 +69,8 @@ Unknowns BoundedStep(const StepModel& model, const Unknowns& weight) {
       }
     }
     for (int i = 0; i < kPlanUnknowns; ++i)
-      if (moves[Index(i)]) step(i) = Clamp(step(i) + part * (least(i) - step(i)), model.low(i), model.high(i));
+      if (moves[Index(i)])
+        step(i) = Clamp(step(i) + part * (least(i) - step(i)), model.low(i), model.high(i));
     if (first >= 0) {
       step(first) = least(first) > step(first) ? model.high(first) : model.low(first);
       moves[Index(first)] = false;

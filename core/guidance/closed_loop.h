@@ -49,7 +49,7 @@ class ClosedLoopGuidance {
   const PlanPrior prior_;
   Plan plan_;
   bool met_all_ = false;  ///< the last plan that had to meet altitude and plane too did so
-  Plan at_ignition_;  ///< what the last burn's plans depart from as little as they can
+  Plan at_ignition_;      ///< what the last burn's plans depart from as little as they can
   AttitudeCommand command_;
   bool steers_ = false;
   GuidancePhase phase_ = GuidancePhase::kBelowBurns;

@@ -1,13 +1,14 @@
-// Finds the plan whose predicted injection is the target's or, where no plan arrives, the best orbit there is.
+// Finds the plan whose predicted injection is the target's or, where no plan arrives, the best orbit there
+// is.
 //
 // Of all plans that arrive it is the one that departs least from the prior, by the sum of squares of the
 // departures over their scales: Levenberg-Marquardt steps on
 //
 //   sum ((x - x0) / scale)² + sum (miss / tolerance)²
 //
-// with tolerances so tight that the first sum chooses among what the second leaves open. The misses are those of
-// orbit_miss.h. Path has three times the tolerance of energy, the plane a hundred times: the plane gets what
-// energy and path leave.
+// with tolerances so tight that the first sum chooses among what the second leaves open. The misses are those
+// of orbit_miss.h. Path has three times the tolerance of energy, the plane a hundred times: the plane gets
+// what energy and path leave.
 //
 // With J' the Jacobian of miss / tolerance by x / scale and y = (x - x0) / scale, a step is
 //

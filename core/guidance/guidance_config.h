@@ -27,16 +27,18 @@ inline void Describe(Fields& fields, GuidanceConfig& guidance) {
   fields.Choice<bool>("last_burn", {{"steered", true}, {"as_planned", false}}, guidance.steers_last_burn,
                       "solved anew while it burns, or flown as it was planned at its ignition",
                       guidance.steers_last_burn);
-  fields.Quantity("period", kTime, Between(0.1, 10.0), guidance.period_s, "between two solutions while a motor burns",
-                  guidance.period_s);
+  fields.Quantity("period", kTime, Between(0.1, 10.0), guidance.period_s,
+                  "between two solutions while a motor burns", guidance.period_s);
   // Attitude loops of a launcher follow some degrees a second; more would be a loss of control.
   constexpr Range kRate = UpTo(20.0 * kRadPerDeg);
   fields.Quantity("turn_rate", kAngularRate, kRate, guidance.turn_rate_rad_s,
-                  "of the commanded attitude under thrust, which the gimbals follow", guidance.turn_rate_rad_s);
+                  "of the commanded attitude under thrust, which the gimbals follow",
+                  guidance.turn_rate_rad_s);
   fields.Quantity("turn_acceleration", kAngularAcceleration, kRate, guidance.turn_acceleration_rad_s2,
                   "of that attitude", guidance.turn_acceleration_rad_s2);
   fields.Quantity("coast_rate", kAngularRate, kRate, guidance.coast_rate_rad_s,
-                  "of the commanded attitude in the coast, which reaction control follows", guidance.coast_rate_rad_s);
+                  "of the commanded attitude in the coast, which reaction control follows",
+                  guidance.coast_rate_rad_s);
   fields.Quantity("coast_acceleration", kAngularAcceleration, kRate, guidance.coast_acceleration_rad_s2,
                   "of that attitude", guidance.coast_acceleration_rad_s2);
   fields.Quantity("settled", kAngle, kRate, guidance.settled_angle_rad,

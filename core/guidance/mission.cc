@@ -46,7 +46,8 @@ Direction DirectionTable::RateAt(double time_s) const {
 
 double IdealVelocity(const GuidedStage& stage) {
   return stage.burn.ExhaustVelocity() *
-         Log(stage.ignition_mass_kg / (stage.ignition_mass_kg - stage.burn.propellant_mass_kg + stage.burn.left_kg));
+         Log(stage.ignition_mass_kg /
+             (stage.ignition_mass_kg - stage.burn.propellant_mass_kg + stage.burn.left_kg));
 }
 
 }  // namespace dispersa

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/cases/campaign_flights.h"
 #include "core/campaign/case_result.h"
+#include "core/cases/campaign_flights.h"
 #include "core/impact/fall.h"
 
 namespace dispersa {

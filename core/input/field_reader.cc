@@ -15,11 +15,13 @@ class FieldReader : public Fields {
       : map_(node, std::move(path), problems) {}
 
   void Schema(const char*) override { map_.Allow("schema"); }  // it decided who reads this
-  void Base(const char*, const char*) override {}  // its keys stand here already
+  void Base(const char*, const char*) override {}              // its keys stand here already
   void Text(const char* key, std::string& value, const char*, std::optional<std::string> absent) override {
     value = absent ? map_.Text(key, *absent) : map_.Text(key);
   }
-  void Flag(const char* key, bool& value, bool absent, const char*) override { value = map_.Flag(key, absent); }
+  void Flag(const char* key, bool& value, bool absent, const char*) override {
+    value = map_.Flag(key, absent);
+  }
   void Number(const char* key, const Range& range, double& value, const char*,
               std::optional<double> absent) override {
     value = map_.Number(key, range, absent);
@@ -28,12 +30,13 @@ class FieldReader : public Fields {
                 std::optional<double> absent) override {
     value = map_.Quantity(stem, dimension, range, absent);
   }
-  void OptionalNumber(const char* key, const Range& range, std::optional<double>& value, const char*) override {
+  void OptionalNumber(const char* key, const Range& range, std::optional<double>& value,
+                      const char*) override {
     const double number = map_.Number(key, range, 0.0);
     if (map_.node().Find(key) != nullptr) value = number;
   }
-  void OptionalQuantity(const char* stem, Dimension dimension, const Range& range, std::optional<double>& value,
-                        const char*) override {
+  void OptionalQuantity(const char* stem, Dimension dimension, const Range& range,
+                        std::optional<double>& value, const char*) override {
     value = map_.OptionalQuantity(stem, dimension, range);
   }
   void Numbers(const char* key, const Range& range, std::size_t low_count, std::size_t high_count,
@@ -52,18 +55,19 @@ class FieldReader : public Fields {
     else
       map_.OptionalQuantity(stem, dimension, range);
   }
-  void Several(const char* key, int low, int high, const char* noun, const char* which, std::vector<int>& values,
-               const char*) override {
+  void Several(const char* key, int low, int high, const char* noun, const char* which,
+               std::vector<int>& values, const char*) override {
     const InputNode* node = map_.Optional(key);
     if (node == nullptr) return;
-    const std::string allowed =
-        low > high    ? "no " + std::string(noun)
-        : low == high ? std::to_string(low)
-                      : "one of " + std::to_string(low) + " to " + std::to_string(high) + ", or a list of them";
+    const std::string allowed = low > high    ? "no " + std::string(noun)
+                                : low == high ? std::to_string(low)
+                                              : "one of " + std::to_string(low) + " to " +
+                                                    std::to_string(high) + ", or a list of them";
     const auto read = [&](const InputNode& item, const std::string& path) {
       const bool plain = item.kind == InputNode::Kind::kScalar && !item.quoted;
       const auto number = plain ? ParseInteger(item.text) : std::nullopt;
-      if (!number || *number < static_cast<std::uint64_t>(low) || *number > static_cast<std::uint64_t>(high)) {
+      if (!number || *number < static_cast<std::uint64_t>(low) ||
+          *number > static_cast<std::uint64_t>(high)) {
         AddProblem(map_.problems(), item, path, item.Describe() + " is no " + noun + " " + which, allowed);
       } else if (std::find(values.begin(), values.end(), static_cast<int>(*number)) != values.end()) {
         AddProblem(map_.problems(), item, path, noun + (" " + item.text) + " is given twice",
@@ -73,7 +77,8 @@ class FieldReader : public Fields {
       }
     };
     if (node->kind != InputNode::Kind::kList) return read(*node, map_.PathOf(key));
-    if (node->items.empty()) AddProblem(map_.problems(), *node, map_.PathOf(key), "the list is empty", allowed);
+    if (node->items.empty())
+      AddProblem(map_.problems(), *node, map_.PathOf(key), "the list is empty", allowed);
     for (std::size_t i = 0; i < node->items.size(); ++i)
       read(node->items[i], map_.PathOf(key) + "[" + std::to_string(i) + "]");
     std::sort(values.begin(), values.end());
@@ -96,8 +101,8 @@ class FieldReader : public Fields {
     });
   }
   void AnyNumbers(const char* key, const char*) override { map_.Allow(key); }
-  void Rows(const char* key, std::size_t low_count, std::size_t high_count, std::vector<std::vector<double>>& rows,
-            const char*) override {
+  void Rows(const char* key, std::size_t low_count, std::size_t high_count,
+            std::vector<std::vector<double>>& rows, const char*) override {
     map_.Each(key, low_count, high_count, [&](const InputNode& row, const std::string& path) {
       std::vector<double>& numbers = rows.emplace_back();
       for (const InputNode& number : row.items) numbers.push_back(ReadNumber(number, path, map_.problems()));
@@ -164,16 +169,19 @@ class FieldReader : public Fields {
     const InputNode& node = map_.Required(key, std::string("the name of ") + what);
     value = ReadText(node, map_.PathOf(key), map_.problems());
     if (names.empty()) return;
-    if (node.kind == InputNode::Kind::kScalar && std::find(names.begin(), names.end(), node.text) == names.end())
+    if (node.kind == InputNode::Kind::kScalar &&
+        std::find(names.begin(), names.end(), node.text) == names.end())
       AddProblem(map_.problems(), node, map_.PathOf(key),
-                 node.Describe() + " is not " + what + DidYouMean(node.text, names), "one of " + JoinWords(names));
+                 node.Describe() + " is not " + what + DidYouMean(node.text, names),
+                 "one of " + JoinWords(names));
   }
   void Words(const char* key, const std::vector<std::string>& words, std::vector<std::size_t>& values,
              const char*) override {
     map_.Each(key, 1, SIZE_MAX, [&](const InputNode& item, const std::string& path) {
       const auto found = std::find(words.begin(), words.end(), item.text);
       if (found == words.end())
-        AddProblem(map_.problems(), item, path, item.Describe() + " is not a choice", "one of " + JoinWords(words));
+        AddProblem(map_.problems(), item, path, item.Describe() + " is not a choice",
+                   "one of " + JoinWords(words));
       values.push_back(found == words.end() ? 0 : static_cast<std::size_t>(found - words.begin()));
     });
   }
@@ -186,8 +194,8 @@ class FieldReader : public Fields {
     is_there = value != nullptr;
     if (is_there) ReadFields(*value, PathOfValue(key), map_.problems(), part);
   }
-  void WordOrMap(const char* key, const char* word, const char* what, const char* allowed, bool& is_word, const char*,
-                 const Part& part) override {
+  void WordOrMap(const char* key, const char* word, const char* what, const char* allowed, bool& is_word,
+                 const char*, const Part& part) override {
     const InputNode& value = map_.Required(key, allowed);
     is_word = value.kind == InputNode::Kind::kScalar;
     if (!is_word)
@@ -206,8 +214,10 @@ class FieldReader : public Fields {
   void MapOrMaps(const char* key, const char* allowed, const char*, const Part& part) override {
     const InputNode* value = map_.Optional(key);
     if (value == nullptr) return;
-    if (value->kind != InputNode::Kind::kList) return ReadFields(*value, PathOfValue(key), map_.problems(), part);
-    if (value->items.empty()) AddProblem(map_.problems(), *value, map_.PathOf(key), "the list is empty", allowed);
+    if (value->kind != InputNode::Kind::kList)
+      return ReadFields(*value, PathOfValue(key), map_.problems(), part);
+    if (value->items.empty())
+      AddProblem(map_.problems(), *value, map_.PathOf(key), "the list is empty", allowed);
     for (std::size_t i = 0; i < value->items.size(); ++i)
       ReadFields(value->items[i], map_.PathOf(key) + "[" + std::to_string(i) + "]", map_.problems(), part);
   }
@@ -239,7 +249,9 @@ class FieldReader : public Fields {
     for (const Alternative& alternative : alternatives)
       if (Holds(alternative.condition)) return alternative.describe();
   }
-  void Missing(const std::vector<std::string>& keys, const char* allowed) override { map_.ReportMissing(keys, allowed); }
+  void Missing(const std::vector<std::string>& keys, const char* allowed) override {
+    map_.ReportMissing(keys, allowed);
+  }
   void Misplaced(const char* stem, Dimension dimension, const char* message, const char* allowed) override {
     std::string key = stem;
     if (!dimension.empty())
@@ -257,7 +269,8 @@ class FieldReader : public Fields {
       if (std::find(unclear.begin(), unclear.end(), member.key) == unclear.end()) continue;
       is_clear = false;
       map_.Ignore(member.key);
-      AddProblem(map_.problems(), KeyOf(member), map_.PathOf(member.key), About(message, member.key), allowed);
+      AddProblem(map_.problems(), KeyOf(member), map_.PathOf(member.key), About(message, member.key),
+                 allowed);
     }
     is_clear ? describe() : map_.Spare(describe);
   }
@@ -291,12 +304,14 @@ class FieldReader : public Fields {
              std::optional<std::uint64_t> absent) override {
     value = map_.Integer(key, low, high, absent);
   }
-  void Word(const char* key, const Choices& choices, const char*, std::optional<std::size_t> absent) override {
+  void Word(const char* key, const Choices& choices, const char*,
+            std::optional<std::size_t> absent) override {
     std::vector<std::pair<std::string, std::size_t>> words;
     for (std::size_t i = 0; i < choices.words.size(); ++i) words.emplace_back(choices.words[i], i);
     const std::size_t before = map_.problems().size();
     choices.set(map_.Choice<std::size_t>(key, words, absent));
-    if (map_.problems().size() > before || (!absent && map_.node().Find(key) == nullptr)) undecided_.insert(key);
+    if (map_.problems().size() > before || (!absent && map_.node().Find(key) == nullptr))
+      undecided_.insert(key);
   }
   void Maps(const char* key, bool needed, std::size_t low_count, std::size_t high_count, const Items& items,
             const char*) override {
@@ -331,7 +346,8 @@ class FieldReader : public Fields {
   bool Holds(const Condition& condition) const {
     if (condition.key.empty()) return true;
     const std::size_t dot = condition.key.find('.');
-    if (!condition.dimension.empty() && dot == std::string::npos) return map_.Has(condition.key, condition.dimension);
+    if (!condition.dimension.empty() && dot == std::string::npos)
+      return map_.Has(condition.key, condition.dimension);
     const InputNode* value = map_.Peek(condition.key.substr(0, dot));
     if (value != nullptr && dot != std::string::npos) {
       const std::string key = condition.key.substr(dot + 1);
@@ -366,7 +382,8 @@ void ReadFields(const InputNode& node, const std::string& path, std::vector<Inpu
 bool CheckIncreasing(Fields& fields, const std::string& stem, const std::vector<double>& values) {
   for (std::size_t i = 1; i < values.size(); ++i) {
     if (values[i] > values[i - 1]) continue;
-    fields.Refuse(stem + "[" + std::to_string(i) + "]", "is not above the one before", "values strictly increasing");
+    fields.Refuse(stem + "[" + std::to_string(i) + "]", "is not above the one before",
+                  "values strictly increasing");
     return false;
   }
   return true;

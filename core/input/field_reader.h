@@ -10,8 +10,8 @@
 
 namespace dispersa {
 
-/// Reads the map at `node`. Every problem is recorded with its place, and reading goes on; what was read counts only if
-/// there is none. `path` is the node's own in its file.
+/// Reads the map at `node`. Every problem is recorded with its place, and reading goes on; what was read
+/// counts only if there is none. `path` is the node's own in its file.
 void ReadFields(const InputNode& node, const std::string& path, std::vector<InputProblem>& problems,
                 const Fields::Part& describe);
 

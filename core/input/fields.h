@@ -1,8 +1,9 @@
 // What the maps of the input files hold, declared once beside the structs that receive it.
 //
-// `Describe(fields, value)` of a struct names its keys, one call each; ReadFields (field_reader.h) fills the struct from a
-// file by them. A description calls everything that a map may hold. What depends on other keys it says by When() and
-// Either(), and what holds between several fields in Check(): so whoever else visits it, to list the keys, sees every branch.
+// `Describe(fields, value)` of a struct names its keys, one call each; ReadFields (field_reader.h) fills the
+// struct from a file by them. A description calls everything that a map may hold. What depends on other keys
+// it says by When() and Either(), and what holds between several fields in Check(): so whoever else visits
+// it, to list the keys, sees every branch.
 #pragma once
 
 #include <array>
@@ -71,8 +72,8 @@ class Fields {
   Fields(const Fields&) = delete;
   Fields& operator=(const Fields&) = delete;
 
-  // A key each. `meaning` is what documentation says of it, one line. With `absent` the key need not be there, and its
-  // value is then that. Numbers are inside in SI and radians, limits and `absent` too.
+  // A key each. `meaning` is what documentation says of it, one line. With `absent` the key need not be
+  // there, and its value is then that. Numbers are inside in SI and radians, limits and `absent` too.
 
   /// Of a whole file: the kind of file that it is.
   virtual void Schema(const char* name) = 0;
@@ -86,7 +87,8 @@ class Fields {
   void Integer(const char* key, std::uint64_t low, std::uint64_t high, T& value, const char* meaning,
                std::type_identity_t<std::optional<T>> absent = {}) {
     auto whole = static_cast<std::uint64_t>(value);
-    Whole(key, low, high, whole, meaning, absent ? std::optional(static_cast<std::uint64_t>(*absent)) : std::nullopt);
+    Whole(key, low, high, whole, meaning,
+          absent ? std::optional(static_cast<std::uint64_t>(*absent)) : std::nullopt);
     value = static_cast<T>(whole);
   }
   /// A number without unit.
@@ -106,20 +108,21 @@ class Fields {
   virtual void Quantities(const char* stem, Dimension dimension, const Range& range, std::size_t low_count,
                           std::size_t high_count, std::vector<double>& values, const char* meaning) = 0;
   /// The same, of which the key need not be there.
-  virtual void OptionalQuantities(const char* stem, Dimension dimension, const Range& range, std::size_t low_count,
-                                  std::size_t high_count, std::vector<double>& values, const char* meaning) = 0;
+  virtual void OptionalQuantities(const char* stem, Dimension dimension, const Range& range,
+                                  std::size_t low_count, std::size_t high_count, std::vector<double>& values,
+                                  const char* meaning) = 0;
   /// A list that may be a CSV file's only column, of the key's name.
   virtual void Column(const char* stem, Dimension dimension, const Range& range, std::size_t low_count,
                       std::vector<double>& values, const char* meaning) {
     Quantities(stem, dimension, range, low_count, SIZE_MAX, values, meaning);
   }
-  /// A whole number, or a list of several, each once; the key need not be there. `noun` and `which` say of what, in the
-  /// words of a message: "stage", "that this disperses".
-  virtual void Several(const char* key, int low, int high, const char* noun, const char* which, std::vector<int>& values,
-                       const char* meaning) = 0;
+  /// A whole number, or a list of several, each once; the key need not be there. `noun` and `which` say of
+  /// what, in the words of a message: "stage", "that this disperses".
+  virtual void Several(const char* key, int low, int high, const char* noun, const char* which,
+                       std::vector<int>& values, const char* meaning) = 0;
   /// A list of so many numbers, of which the key need not be there.
-  virtual void OptionalNumbers(const char* key, const Range& range, std::size_t low_count, std::size_t high_count,
-                               std::vector<double>& values, const char* meaning) = 0;
+  virtual void OptionalNumbers(const char* key, const Range& range, std::size_t low_count,
+                               std::size_t high_count, std::vector<double>& values, const char* meaning) = 0;
   /// A list of two rows of two numbers; `allowed` shows one.
   virtual void TwoByTwo(const char* key, std::array<std::array<double, 2>, 2>& rows, const char* allowed,
                         const char* meaning) = 0;
@@ -139,8 +142,8 @@ class Fields {
   virtual void Texts(const char* key, std::size_t low_count, std::size_t high_count,
                      std::vector<std::string>& values, const char* meaning) = 0;
   /// The name of one of many things; `what` says of which: "a metric". Without `names` another file has them.
-  virtual void Name(const char* key, const std::vector<std::string>& names, const char* what, std::string& value,
-                    const char* meaning) = 0;
+  virtual void Name(const char* key, const std::vector<std::string>& names, const char* what,
+                    std::string& value, const char* meaning) = 0;
   /// A list of words, each one of `words`; `values` are their places.
   virtual void Words(const char* key, const std::vector<std::string>& words, std::vector<std::size_t>& values,
                      const char* meaning) = 0;
@@ -163,10 +166,11 @@ class Fields {
   /// A map that need not be there; `is_there` receives whether it is.
   virtual void OptionalMap(const char* key, bool& is_there, const char* meaning, const Part& part) = 0;
   /// A word, or a map. What is neither is refused as not `what`: "a direction".
-  virtual void WordOrMap(const char* key, const char* word, const char* what, const char* allowed, bool& is_word,
-                         const char* meaning, const Part& part) = 0;
+  virtual void WordOrMap(const char* key, const char* word, const char* what, const char* allowed,
+                         bool& is_word, const char* meaning, const Part& part) = 0;
   /// A number, or a table; the key need not be there.
-  virtual void NumberOrTable(const char* key, std::optional<double>& number, const char* meaning, const Part& part) = 0;
+  virtual void NumberOrTable(const char* key, std::optional<double>& number, const char* meaning,
+                             const Part& part) = 0;
   /// A map, or a list of such maps; the key need not be there. `allowed` says what an empty list should be.
   virtual void MapOrMaps(const char* key, const char* allowed, const char* meaning, const Part& part) = 0;
   /// The columns of a table: a map of lists, or the CSV file of which it was made; `allowed` says which.
@@ -176,9 +180,10 @@ class Fields {
   virtual void MapByHand(const char* key, const char* meaning, const Part& part, const ReadNode& read) = 0;
   /// Columns of numbers under any names, or the CSV file of them; the key need not be there.
   virtual void Columns(const char* key, const char* meaning, const ReadNode& read) = 0;
-  /// What a file of a kind holds, in place or by the file's name. If it is not `needed` the key need not be there.
-  virtual void Document(const char* key, const char* schema, bool needed, const char* allowed, const char* meaning,
-                        const ReadNode& read) = 0;
+  /// What a file of a kind holds, in place or by the file's name. If it is not `needed` the key need not be
+  /// there.
+  virtual void Document(const char* key, const char* schema, bool needed, const char* allowed,
+                        const char* meaning, const ReadNode& read) = 0;
   /// A list of maps; if `low_count` is 0 the key need not be there. describe(fields, item) of each, or
   /// describe(fields, item, number of items).
   template <class T, class F>
@@ -198,8 +203,8 @@ class Fields {
     Maps(key, false, low_count, high_count, ItemsOf(items, describe), meaning);
   }
 
-  /// Keys of the first alternative whose condition holds. Conditions are about keys that are named before, or that
-  /// alternatives have.
+  /// Keys of the first alternative whose condition holds. Conditions are about keys that are named before, or
+  /// that alternatives have.
   virtual void Either(const std::vector<Alternative>& alternatives) = 0;
   /// Keys of maps for which the condition holds.
   void When(const Condition& condition, const std::function<void()>& describe) {
@@ -209,18 +214,20 @@ class Fields {
   void Unless(const Condition& condition, const std::function<void()>& describe) {
     Either({{condition, [] {}}, {Else(), describe}});
   }
-  /// Exactly one of these keys, which are named before, is there; a reader refuses others in words of its own.
+  /// Exactly one of these keys, which are named before, is there; a reader refuses others in words of its
+  /// own.
   virtual void ExactlyOne(const std::vector<std::string>& /*keys*/) {}
   /// One or more of these keys, which are named before or after, are there; likewise.
   virtual void OneOrMore(const std::vector<std::string>& /*keys*/) {}
   /// In an alternative: one of these keys, which others have, is missing.
   virtual void Missing(const std::vector<std::string>& /*keys*/, const char* /*allowed*/) {}
-  /// In an alternative: a key of another one, which this map must not have. In `message` {} stands for the key.
+  /// In an alternative: a key of another one, which this map must not have. In `message` {} stands for the
+  /// key.
   virtual void Misplaced(const char* /*stem*/, Dimension /*dimension*/, const char* /*message*/,
                          const char* /*allowed*/) {}
 
-  /// Keys of maps that have none of `unclear`: people write these, but they say too little. In `message` {} stands for
-  /// the key.
+  /// Keys of maps that have none of `unclear`: people write these, but they say too little. In `message` {}
+  /// stands for the key.
   virtual void Unclear(const std::vector<std::string>& /*unclear*/, const char* /*message*/,
                        const std::string& /*allowed*/, const std::function<void()>& describe) {
     describe();
@@ -228,11 +235,14 @@ class Fields {
 
   // What only a reader does: the others have no file.
 
-  /// `relation` is called when the whole map was read without a problem, and says by Refuse() what does not fit together.
+  /// `relation` is called when the whole map was read without a problem, and says by Refuse() what does not
+  /// fit together.
   virtual void Check(const std::function<void()>& /*relation*/) {}
   /// Refuses the value of a key, such as "time[3]" or "at.delay"; a quantity's unit need not be named.
-  virtual void Refuse(const std::string& /*key*/, const std::string& /*message*/, const std::string& /*allowed*/) {}
-  /// After a number: one that was refused and lies in `mistaken` is its counterpart, "in percent"; meant() gives it.
+  virtual void Refuse(const std::string& /*key*/, const std::string& /*message*/,
+                      const std::string& /*allowed*/) {}
+  /// After a number: one that was refused and lies in `mistaken` is its counterpart, "in percent"; meant()
+  /// gives it.
   virtual void Hint(const char* /*key*/, const Range& /*mistaken*/, const char* /*what*/,
                     double (* /*meant*/)(double)) {}
   /// The value of a key as the file writes it, to be quoted in a message.
@@ -243,8 +253,8 @@ class Fields {
                      const char* meaning, std::optional<std::uint64_t> absent) = 0;
   virtual void Word(const char* key, const Choices& choices, const char* meaning,
                     std::optional<std::size_t> absent) = 0;
-  virtual void Maps(const char* key, bool needed, std::size_t low_count, std::size_t high_count, const Items& items,
-                    const char* meaning) = 0;
+  virtual void Maps(const char* key, bool needed, std::size_t low_count, std::size_t high_count,
+                    const Items& items, const char* meaning) = 0;
 
  private:
   template <class T, class F>
@@ -259,7 +269,8 @@ class Fields {
   }
 };
 
-/// In a Check(): refuses the first of a list's values that is not above the one before; true if there is none.
+/// In a Check(): refuses the first of a list's values that is not above the one before; true if there is
+/// none.
 bool CheckIncreasing(Fields& fields, const std::string& stem, const std::vector<double>& values);
 
 }  // namespace dispersa

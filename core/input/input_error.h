@@ -16,8 +16,8 @@ struct InputProblem {
   int column = 0;
   std::string
       path;  ///< of the value in its file, e.g. "stages[1].motor.thrust_kn"; empty: the file as a whole
-  std::string message;  ///< what is wrong
-  std::string allowed;  ///< what is allowed, or usual; may be empty
+  std::string message;   ///< what is wrong
+  std::string allowed;   ///< what is allowed, or usual; may be empty
   bool unusual = false;  ///< a warning: it is legal, and `allowed` is what is usual
 
   /// "file:line:col: path: message, allowed: ..." (or "usual: ...") without the parts that are empty.

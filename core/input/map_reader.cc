@@ -161,9 +161,7 @@ std::string DidYouMean(const std::string& word, const std::vector<std::string>& 
 }
 
 MapReader::MapReader(const InputNode& node, std::string path, std::vector<InputProblem>& problems)
-    : node_(&node),
-      path_(std::move(path)),
-      problems_(problems) {
+    : node_(&node), path_(std::move(path)), problems_(problems) {
   if (!IsAbsent(node) && node.kind != InputNode::Kind::kMap) {
     AddProblem(problems_, node, path_, node.Describe() + " is not a map", "a map of keys and values");
   }
@@ -176,9 +174,7 @@ const InputNode* MapReader::Optional(const std::string& key) {
   return node_->Find(key);
 }
 
-const InputNode* MapReader::Peek(const std::string& key) const {
-  return node_->Find(key);
-}
+const InputNode* MapReader::Peek(const std::string& key) const { return node_->Find(key); }
 
 const InputNode& MapReader::Required(const std::string& key, const std::string& allowed) {
   static const InputNode absent;
@@ -260,7 +256,9 @@ double MapReader::Quantity(const std::string& stem, Dimension dimension, const R
   Unit unit = {};
   const InputNode* value = FindQuantity(stem, dimension, &key, &unit);
   if (value != nullptr) return ReadNumberIn(*value, PathOf(key), problems_, range, unit);
-  if (!absent) ReportMissing(quantities_.back().second, range.Less(dimension.front().offset).Text(dimension.front().scale));
+  if (!absent)
+    ReportMissing(quantities_.back().second,
+                  range.Less(dimension.front().offset).Text(dimension.front().scale));
   return absent.value_or(0.0);
 }
 
@@ -304,7 +302,8 @@ std::array<double, 2> MapReader::Ends(const std::string& stem, Dimension dimensi
   Unit unit = {};
   const InputNode* value = FindQuantity(stem, dimension, &key, &unit);
   if (value == nullptr) {
-    ReportMissing(quantities_.back().second, range.Less(dimension.front().offset).Text(dimension.front().scale));
+    ReportMissing(quantities_.back().second,
+                  range.Less(dimension.front().offset).Text(dimension.front().scale));
     return {};
   }
   if (value->kind != InputNode::Kind::kList) {

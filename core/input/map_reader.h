@@ -118,7 +118,8 @@ class MapReader {
   };
 
   const InputNode* List(const std::string& key, std::size_t low_count, std::size_t high_count);
-  std::optional<std::size_t> WordIndex(const std::string& key, const std::vector<std::string>& words, bool required);
+  std::optional<std::size_t> WordIndex(const std::string& key, const std::vector<std::string>& words,
+                                       bool required);
   // The member of a quantity and its unit, or null.
   const InputNode* FindQuantity(const std::string& stem, Dimension dimension, std::string* key, Unit* unit);
 

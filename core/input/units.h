@@ -42,23 +42,34 @@ inline constexpr Unit kPerLength[] = {{"per_km", 1e-3}, {"per_m", 1.0}};
 inline constexpr Unit kPerSpeed[] = {{"per_m_s", 1.0}};
 inline constexpr Unit kDensity[] = {{"kg_m3", 1.0}};
 inline constexpr Unit kShare[] = {{"percent", 1e-2}};
-inline constexpr Unit kFactor[] = {{"percent", 1e-2, 1.0}, {"factor", 1.0}};  ///< in percent: by how much it is not 1
+inline constexpr Unit kFactor[] = {{"percent", 1e-2, 1.0},
+                                   {"factor", 1.0}};  ///< in percent: by how much it is not 1
 inline constexpr Unit kTemperatureDifference[] = {{"k", 1.0}};
 inline constexpr Unit kPerTemperature[] = {{"percent_per_k", 1e-2}};
 inline constexpr Unit kPerAngle[] = {{"per_deg", kDegPerRad}, {"per_rad", 1.0}};
 
 /// What may stand behind the last underscores of a key and is a unit, ours or not: to tell a wrong unit from
 /// a wrong name.
-inline constexpr std::string_view kUnitLike[] = {
-    "m",       "km",     "mm",    "um",     "cm",     "ft",      "in",    "mi",      "nmi",     "m2",
-    "ft2",     "s",      "ms",    "min",    "h",      "kg",      "ton",   "t",       "g",       "lb",
-    "lbm",     "slug",   "kg_s",  "lb_s",   "n",      "kn",      "mn",    "lbf",     "pa",      "kpa",
-    "bar",     "psf",    "psi",   "pa_rad", "pa_deg", "kpa_rad", "m_s",   "km_s",    "km_h",    "ft_s",
-    "kt",      "kts",    "mph",   "deg",    "rad",    "arcmin",  "deg_s", "rad_s",   "hz",      "rpm",
-    "deg_s2",  "rad_s2", "1_s",   "1_s2",   "1_s3",   "per_km",  "per_m", "per_m_s", "per_deg", "per_rad",
-    "percent", "factor", "kg_m2", "kg_m",   "gpa",    "mpa",     "n_m2",  "kn_m2",   "mn_m2",   "1_m",
-    "n_m",     "kn_m",   "w_m2",  "kw_m2",  "k",       "percent_per_k",
-    "kg_m3"};
+inline constexpr std::string_view kUnitLike[] = {"m",       "km",      "mm",      "um",
+                                                 "cm",      "ft",      "in",      "mi",
+                                                 "nmi",     "m2",      "ft2",     "s",
+                                                 "ms",      "min",     "h",       "kg",
+                                                 "ton",     "t",       "g",       "lb",
+                                                 "lbm",     "slug",    "kg_s",    "lb_s",
+                                                 "n",       "kn",      "mn",      "lbf",
+                                                 "pa",      "kpa",     "bar",     "psf",
+                                                 "psi",     "pa_rad",  "pa_deg",  "kpa_rad",
+                                                 "m_s",     "km_s",    "km_h",    "ft_s",
+                                                 "kt",      "kts",     "mph",     "deg",
+                                                 "rad",     "arcmin",  "deg_s",   "rad_s",
+                                                 "hz",      "rpm",     "deg_s2",  "rad_s2",
+                                                 "1_s",     "1_s2",    "1_s3",    "per_km",
+                                                 "per_m",   "per_m_s", "per_deg", "per_rad",
+                                                 "percent", "factor",  "kg_m2",   "kg_m",
+                                                 "gpa",     "mpa",     "n_m2",    "kn_m2",
+                                                 "mn_m2",   "1_m",     "n_m",     "kn_m",
+                                                 "w_m2",    "kw_m2",   "k",       "percent_per_k",
+                                                 "kg_m3"};
 
 /// How people write a unit else, and what it is called here.
 struct UnitSpelling {

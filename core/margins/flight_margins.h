@@ -11,11 +11,11 @@
 #include <string>
 #include <vector>
 
-#include "core/margins/loop_margins.h"
 #include "core/flight/flight.h"
 #include "core/flight/flight_model.h"
-#include "core/margins/linear_axis.h"
 #include "core/flight/tick_sample.h"
+#include "core/margins/linear_axis.h"
+#include "core/margins/loop_margins.h"
 
 namespace dispersa {
 

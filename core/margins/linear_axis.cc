@@ -74,7 +74,8 @@ AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Ax
     Eigen::VectorXd found(2 + modes);
     found[0] = rates.w_IB_B[axis];
     found[1 + modes] = rates.v_IC_I.dot(across_I);
-    for (int k = 0; k < modes; ++k) found[1 + k] = dydt[static_cast<std::size_t>(kModalRate + first_mode + k)];
+    for (int k = 0; k < modes; ++k)
+      found[1 + k] = dydt[static_cast<std::size_t>(kModalRate + first_mode + k)];
     return found;
   };
 
@@ -85,7 +86,8 @@ AxisPlant LineariseAxis(const LauncherPlant& plant, const TickSample& sample, Ax
   linear.a = Eigen::MatrixXd::Zero(size, size);
   linear.b = Eigen::VectorXd::Zero(size);
   const auto put = [&](int departed, double step) {
-    const Eigen::VectorXd slope = (accelerations(departed, step) - accelerations(departed, -step)) / (2.0 * step);
+    const Eigen::VectorXd slope =
+        (accelerations(departed, step) - accelerations(departed, -step)) / (2.0 * step);
     for (int k = 0; k <= modes + (drifts ? 1 : 0); ++k) {
       const int row = k == 0 ? 1 : 3 + modes + k;  // the drift's follows the modes'
       (departed < 0 ? linear.b[row] : linear.a(row, departed)) = slope[k];
@@ -148,8 +150,8 @@ LinearLaw LineariseLaw(const AutopilotModel& autopilot, int stage, double since_
   LinearLaw linear;
   linear.kp_1_s2 = of_stage.kp_1_s2;
   linear.kd_1_s = of_stage.kd_1_s;
-  linear.effectiveness_1_s2 = (axis == kRoll ? control.roll_effectiveness_1_s2
-                                             : control.pitch_effectiveness_1_s2)(since_ignition_s);
+  linear.effectiveness_1_s2 =
+      (axis == kRoll ? control.roll_effectiveness_1_s2 : control.pitch_effectiveness_1_s2)(since_ignition_s);
   linear.filters.assign(of_stage.filters, of_stage.filters + law.config.filters.size());
   const LawInfo& info = InfoOf(law.config.law);
   // The integral of a PID law acts whether or not anything adapts.

@@ -2,10 +2,10 @@
 #pragma once
 
 #include "core/control/autopilot.h"
-#include "core/margins/loop_margins.h"
 #include "core/dynamics/launcher.h"
 #include "core/flight/sensor_model.h"
 #include "core/flight/tick_sample.h"
+#include "core/margins/loop_margins.h"
 
 namespace dispersa {
 

@@ -132,7 +132,8 @@ SampledLoop::Sensed SampledLoop::BentSensed(std::complex<double> s, double angle
 SampledLoop::Measured SampledLoop::Bent(std::complex<double> s, double angle_rad) const {
   const Sensed sensed = BentSensed(s, angle_rad);
   Measured measured{sensed.angle, 0.0};
-  for (std::size_t i = 0; i < sensed.rates.size(); ++i) measured.rate += plant_.rates[i].weight * sensed.rates[i];
+  for (std::size_t i = 0; i < sensed.rates.size(); ++i)
+    measured.rate += plant_.rates[i].weight * sensed.rates[i];
   return measured;
 }
 
@@ -189,8 +190,8 @@ std::complex<double> SampledLoop::Response(double frequency_rad_s) const {
 
 double SampledLoop::SpectralRadius(double gain_factor) const {
   // States: plant, commands on their way (latest first), mean of the consequents, departure of the central
-  // one from it (without spread the two are one), two a section of the filters, the prediction of the rate, and
-  // of each gyro two of its section and its outputs of the last ticks.
+  // one from it (without spread the two are one), two a section of the filters, the prediction of the rate,
+  // and of each gyro two of its section and its outputs of the last ticks.
   const int plant_states = static_cast<int>(ad_.rows());
   const int first_command = plant_states;
   const int first_rule = first_command + delay_ticks_;

@@ -1,5 +1,5 @@
-// Stability margins of one sampled attitude loop: body, bending modes, actuator, gyros and delays are exact in
-// discrete time. Slosh is not modelled.
+// Stability margins of one sampled attitude loop: body, bending modes, actuator, gyros and delays are exact
+// in discrete time. Slosh is not modelled.
 #pragma once
 
 #include <Eigen/Core>
@@ -62,14 +62,14 @@ struct LinearLaw {
 };
 
 struct LoopMargins {
-  bool stable = false;        ///< of the closed loop; the margins of an unstable one are 0
-  double gain_up_db = 0.0;    ///< the gain may grow by this; +infinity where nothing limits it
-  double gain_down_db = 0.0;  ///< the gain may fall by this; likewise
-  double phase_deg = 0.0;     ///< least at any crossover of 0 dB, either way
-  double delay_s = 0.0;       ///< further delay that destabilises
+  bool stable = false;           ///< of the closed loop; the margins of an unstable one are 0
+  double gain_up_db = 0.0;       ///< the gain may grow by this; +infinity where nothing limits it
+  double gain_down_db = 0.0;     ///< the gain may fall by this; likewise
+  double phase_deg = 0.0;        ///< least at any crossover of 0 dB, either way
+  double delay_s = 0.0;          ///< further delay that destabilises
   double crossover_rad_s = 0.0;  ///< highest crossover of 0 dB
-  // Where the body bends, above 0.7 of its lowest mode; phase and crossover above are then those below it, delay
-  // that of every crossover. The peak is that of the open loop, known of an unstable one too.
+  // Where the body bends, above 0.7 of its lowest mode; phase and crossover above are then those below it,
+  // delay that of every crossover. The peak is that of the open loop, known of an unstable one too.
   double bending_peak_db = -std::numeric_limits<double>::infinity();
   /// Least angle of the response from -1 wherever it is not attenuated by 6 dB, and by 3 dB; 180 where it is
   /// everywhere.
@@ -94,7 +94,8 @@ class SampledLoop {
 
   /// Where Margins() looks, rising: 2 % apart, and closer about the modes.
   std::vector<double> Frequencies() const;
-  /// Attitude and the rate that each sensor shows, before its weight, per command that is on its way for the delay.
+  /// Attitude and the rate that each sensor shows, before its weight, per command that is on its way for the
+  /// delay.
   struct Sensed {
     std::complex<double> angle;
     std::vector<std::complex<double>> rates;

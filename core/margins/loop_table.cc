@@ -42,7 +42,8 @@ LoopTable::LoopTable(const AxisPlant& plant, double tick_s, int delay_ticks)
   }
 }
 
-double LoopTable::Surplus(const LinearLaw& law, const std::vector<double>& weights, const LoopGates& gates) const {
+double LoopTable::Surplus(const LinearLaw& law, const std::vector<double>& weights,
+                          const LoopGates& gates) const {
   // Of one integrator, at z = 1.
   const bool integrates = law.adapts() && law.leakage_1_s == 0.0;
   double least = HUGE_VAL;

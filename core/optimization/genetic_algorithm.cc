@@ -53,9 +53,10 @@ void Validate(const BoundedProblem& problem) {
     for (std::size_t i = 0; inside && i < point.size(); ++i)
       inside = point[i] >= problem.lower[i] && point[i] <= problem.upper[i];
     if (!inside) {
-      throw std::invalid_argument(fmt::format(
-          "BoundedProblem.known_points[{}] is outside; allowed is a point of {} variables within lower and upper",
-          p, problem.lower.size()));
+      throw std::invalid_argument(
+          fmt::format("BoundedProblem.known_points[{}] is outside; allowed is a point of {} variables within "
+                      "lower and upper",
+                      p, problem.lower.size()));
     }
   }
   if (!problem.evaluate)
@@ -175,7 +176,8 @@ class Run {
     if (problem_.evaluate_together) {
       const std::size_t together = problem_.together;
       ParallelFor((individuals.size() + together - 1) / together, threads, [&](std::size_t i) {
-        EvaluateTogether(individuals.subspan(i * together, std::min(together, individuals.size() - i * together)));
+        EvaluateTogether(
+            individuals.subspan(i * together, std::min(together, individuals.size() - i * together)));
       });
     } else {
       ParallelFor(individuals.size(), threads, [&](std::size_t i) {
@@ -191,8 +193,9 @@ class Run {
     for (const Individual& individual : individuals) points.push_back(individual.variables);
     std::vector<Evaluation> evaluations = problem_.evaluate_together(points);
     if (evaluations.size() != points.size()) {
-      throw std::invalid_argument(fmt::format("BoundedProblem.evaluate_together returned {} values; allowed is {}",
-                                              evaluations.size(), points.size()));
+      throw std::invalid_argument(
+          fmt::format("BoundedProblem.evaluate_together returned {} values; allowed is {}",
+                      evaluations.size(), points.size()));
     }
     for (std::size_t i = 0; i < points.size(); ++i) individuals[i].evaluation = std::move(evaluations[i]);
   }

@@ -173,8 +173,9 @@ class Search {
     }
     const std::vector<std::vector<double>> all = problem_.residuals_together(points);
     if (all.size() != points.size()) {
-      throw std::invalid_argument(fmt::format("LeastSquaresProblem.residuals_together returned {} values; allowed is {}",
-                                              all.size(), points.size()));
+      throw std::invalid_argument(
+          fmt::format("LeastSquaresProblem.residuals_together returned {} values; allowed is {}", all.size(),
+                      points.size()));
     }
     evaluations_ += static_cast<int>(points.size());
     for (std::size_t i = 1; i < all.size(); ++i) tried_beside_.push_back(Scaled(all[i]));
@@ -300,7 +301,8 @@ class Search {
   const LeastSquaresProblem& problem_;
   std::vector<double> x_;
   VectorXd residuals_;
-  std::vector<VectorXd> beside_, tried_beside_;  // residuals for the Jacobian at x_ and at the last point tried
+  std::vector<VectorXd> beside_,
+      tried_beside_;  // residuals for the Jacobian at x_ and at the last point tried
   MatrixXd jacobian_;
   std::vector<bool> held_;
   double damping_ = 0.0;  // 0: not chosen yet

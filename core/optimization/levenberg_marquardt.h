@@ -39,10 +39,11 @@ struct LeastSquaresProblem {
   std::vector<double> residual_scales;
   /// Residuals, shape (m), of unknowns, shape (n). Residuals that are not finite reject a step.
   std::function<std::vector<double>(const std::vector<double>&)> residuals;
-  /// Optional: `residuals` of each of several points, for a problem that finds them faster side by side. Then each
-  /// point that is tried comes with those of its Jacobian, in the hope that it is taken. The result is the same
-  /// but for the number of evaluations.
-  std::function<std::vector<std::vector<double>>(std::span<const std::vector<double>>)> residuals_together = nullptr;
+  /// Optional: `residuals` of each of several points, for a problem that finds them faster side by side. Then
+  /// each point that is tried comes with those of its Jacobian, in the hope that it is taken. The result is
+  /// the same but for the number of evaluations.
+  std::function<std::vector<std::vector<double>>(std::span<const std::vector<double>>)> residuals_together =
+      nullptr;
 };
 
 struct LevenbergMarquardtOptions {

@@ -12,8 +12,8 @@ namespace dispersa {
 /// A page stays small enough to be sent by mail.
 inline constexpr std::size_t kAnsweringCases = 5000;
 
-/// JSON for an element of the page: the metrics that charts show by case, the cases, and their values to six digits.
-/// Of more than kAnsweringCases those with the least and the largest values of each metric.
+/// JSON for an element of the page: the metrics that charts show by case, the cases, and their values to six
+/// digits. Of more than kAnsweringCases those with the least and the largest values of each metric.
 std::string CaseData(const CampaignSummary& summary, const CaseColumns& cases);
 
 }  // namespace dispersa

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "core/pages/html_parts.h"
-#include "core/results/metric_catalogue.h"
 #include "core/pages/report_sections.h"
+#include "core/results/metric_catalogue.h"
 #include "core/results/text.h"
 
 namespace dispersa {
@@ -13,20 +13,22 @@ namespace {
 
 std::string Share(double index) { return fmt::format("{:.1f} %", 100.0 * index); }
 
-/// A row of the tornado: names and numbers, and below them a bar as wide as the screen gives, with its interval.
+/// A row of the tornado: names and numbers, and below them a bar as wide as the screen gives, with its
+/// interval.
 std::string Bar(const Driver& driver) {
   std::string names = "<code>" + HtmlText(driver.input) + "</code>";
   for (const std::string& same : driver.same_as) names += " = <code>" + HtmlText(same) + "</code>";
   return fmt::format(
       "<li><span class=\"cause\">{} <span class=\"soft\">by {}{}</span></span><span class=\"n\"><b>{}</b> "
       "<span class=\"soft\">{} to {}</span></span><svg viewBox=\"0 0 1000 10\" preserveAspectRatio=\"none\" "
-      "aria-hidden=\"true\"><rect class=\"track\" width=\"1000\" height=\"10\"/><rect class=\"bar\" width=\"{:.1f}\" "
+      "aria-hidden=\"true\"><rect class=\"track\" width=\"1000\" height=\"10\"/><rect class=\"bar\" "
+      "width=\"{:.1f}\" "
       "height=\"10\"/><path class=\"whisker\" d=\"M{:.1f} 5H{:.1f}\"/></svg></li>\n",
       names, HtmlText(driver.feature),
-      std::isfinite(driver.partial) ? ", partial " + FixedText(driver.partial, 2) : std::string(), Share(driver.index),
-      Share(driver.low), Share(driver.high), 1000.0 * driver.index, 1000.0 * driver.low, 1000.0 * driver.high);
+      std::isfinite(driver.partial) ? ", partial " + FixedText(driver.partial, 2) : std::string(),
+      Share(driver.index), Share(driver.low), Share(driver.high), 1000.0 * driver.index, 1000.0 * driver.low,
+      1000.0 * driver.high);
 }
-
 
 }  // namespace
 
@@ -38,7 +40,8 @@ std::string CausesSection(const CampaignSummary& summary) {
       "circular, with "
       "its interval of 95 %. The feature is the function of the input that ranks the flights best; “along” "
       "is a "
-      "magnitude in a direction. The partial rank correlation holds the other inputs. Inputs that rank the flights alike (“=”) cannot be told apart. What the shares leave "
+      "magnitude in a direction. The partial rank correlation holds the other inputs. Inputs that rank the "
+      "flights alike (“=”) cannot be told apart. What the shares leave "
       "is "
       "interaction and noise.</p>\n";
   bool any = false;

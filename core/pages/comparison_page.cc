@@ -438,9 +438,9 @@ std::string ComparisonPage(const Comparison& comparison, const CaseColumns& a, c
       ".metrics td:first-child {{ min-width: 11em; }} .metrics td.n .definition {{ white-space: normal; }}\n"
       "</style>\n</head>\n<body>\n",
       HtmlText(comparison.b.name), HtmlText(comparison.a.name), StyleSheet());
-  page += Header(comparison) + kComparisonNavigation + ComparedSection(comparison) + RequirementsSection(comparison) +
-          CasesSection(comparison) + MetricsSection(comparison) + FiguresSection(comparison, a, b) +
-          ChangesSection(comparison) + MethodsSection(comparison);
+  page += Header(comparison) + kComparisonNavigation + ComparedSection(comparison) +
+          RequirementsSection(comparison) + CasesSection(comparison) + MetricsSection(comparison) +
+          FiguresSection(comparison, a, b) + ChangesSection(comparison) + MethodsSection(comparison);
   return page + "</body>\n</html>\n";
 }
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/pages/html_parts.h"
-#include "core/results/metric_catalogue.h"
 #include "core/pages/svg_chart.h"
+#include "core/results/metric_catalogue.h"
 #include "core/results/text.h"
 #include "core/statistics/intervals.h"
 #include "core/statistics/point_scatter.h"
@@ -21,8 +21,8 @@ struct Histogram {
   std::vector<double> counts;
 };
 
-/// Width of D. Freedman and P. Diaconis (Z. Wahrscheinlichkeitstheorie 57 (1981) 453), but at least as many bins
-/// as H. A. Sturges (J. Am. Stat. Assoc. 21 (1926) 65) gives, and at most 50.
+/// Width of D. Freedman and P. Diaconis (Z. Wahrscheinlichkeitstheorie 57 (1981) 453), but at least as many
+/// bins as H. A. Sturges (J. Am. Stat. Assoc. 21 (1926) 65) gives, and at most 50.
 Histogram MakeHistogram(const std::vector<double>& sorted) {
   const double low = sorted.front();
   const double range = sorted.back() - low;
@@ -44,14 +44,16 @@ Histogram MakeHistogram(const std::vector<double>& sorted) {
   return histogram;
 }
 
-/// Confidence of 95 % about the share beyond a value, for each value taken alone; good cases from the best on.
+/// Confidence of 95 % about the share beyond a value, for each value taken alone; good cases from the best
+/// on.
 void AddConfidence(const std::vector<double>& good, std::size_t all, double lowest_share, SvgChart* chart) {
   constexpr double kConfidence = 0.95;
   constexpr double kSteps = 150.0;  // a logarithmic axis wants them evenly in decades
   const auto n = static_cast<std::int64_t>(all);
   std::vector<double> x, low, high;
   const auto ratio = std::pow(static_cast<double>(all), 1.0 / kSteps);
-  for (std::int64_t beyond = n - 1;; beyond = std::min(beyond - 1, static_cast<std::int64_t>(static_cast<double>(beyond) / ratio))) {
+  for (std::int64_t beyond = n - 1;;
+       beyond = std::min(beyond - 1, static_cast<std::int64_t>(static_cast<double>(beyond) / ratio))) {
     const auto worst = n - 1 - beyond;  // the rank of the value that so many cases lie beyond
     if (beyond < 0 || worst >= std::ssize(good)) break;
     const Interval share = ClopperPearson(beyond, n, kConfidence);
@@ -73,13 +75,13 @@ std::string AxisLabel(const std::string& metric) {
 }
 
 /// The nominal flight's dot over those of the cases.
-void AddCases(const std::string& x, const std::string& y, const CampaignSummary& summary, const CaseColumns& cases,
-              SvgChart* chart) {
+void AddCases(const std::string& x, const std::string& y, const CampaignSummary& summary,
+              const CaseColumns& cases, SvgChart* chart) {
   chart->ShowsCases(x, y);
   chart->Points(CompletedValues(cases, x), CompletedValues(cases, y), "dots", "cases");
   if (!summary.nominal) return;
-  chart->Points({summary.nominal->metrics[Position(x)]}, {summary.nominal->metrics[Position(y)]}, "dot-nominal",
-                "nominal");
+  chart->Points({summary.nominal->metrics[Position(x)]}, {summary.nominal->metrics[Position(y)]},
+                "dot-nominal", "nominal");
 }
 
 constexpr std::size_t kFewestForEllipses = 10;
@@ -117,8 +119,10 @@ std::string InjectionFigures(const CampaignSummary& summary, const CaseColumns& 
   }
   SvgChart orbits({.label = AxisLabel("perigee_km")}, {.label = AxisLabel("apogee_km")}, 520, 300);
   AddCases("perigee_km", "apogee_km", summary, cases, &orbits);
-  const std::string orbit_caption = "The orbits that follow from it; far from a normal law, so no ellipse is drawn.";
-  return Figure(injection.Svg(caption), HtmlText(caption)) + Figure(orbits.Svg(orbit_caption), HtmlText(orbit_caption));
+  const std::string orbit_caption =
+      "The orbits that follow from it; far from a normal law, so no ellipse is drawn.";
+  return Figure(injection.Svg(caption), HtmlText(caption)) +
+         Figure(orbits.Svg(orbit_caption), HtmlText(orbit_caption));
 }
 
 std::string DistributionFigures(const std::string& metric, const CampaignSummary& summary,
@@ -176,14 +180,16 @@ std::string DistributionFigures(const std::string& metric, const CampaignSummary
   const std::size_t missing = cases.rows() - good.size();
   const std::string without =
       missing > 0 ? fmt::format(" {} of {} cases are lost or do not define it.", missing, cases.rows()) : "";
-  return Figure(bars.Svg("Histogram of " + info.title), title + ": histogram of the completed flights." + without) +
-         Figure(
-             tail.Svg("Exceedance of " + info.title),
-             title + ": share of the cases " + (above ? "at most" : "beyond") +
-                 " each value, with its exact confidence of 95 % at each value taken alone (Clopper and Pearson)." +
-                 (requirements.empty() ? ""
-                                       : " The curve should fall below the allowed share before the limit; the bound "
-                                         "is the value that decides."));
+  return Figure(bars.Svg("Histogram of " + info.title),
+                title + ": histogram of the completed flights." + without) +
+         Figure(tail.Svg("Exceedance of " + info.title),
+                title + ": share of the cases " + (above ? "at most" : "beyond") +
+                    " each value, with its exact confidence of 95 % at each value taken alone (Clopper and "
+                    "Pearson)." +
+                    (requirements.empty()
+                         ? ""
+                         : " The curve should fall below the allowed share before the limit; the bound "
+                           "is the value that decides."));
 }
 
 }  // namespace dispersa

@@ -61,8 +61,8 @@ struct Burns {
 struct BandView {
   const char* column;
   const char* label;
-  double factor = 1.0;            ///< from the column's unit to the label's
-  bool deviation = false;         ///< from the nominal, beside which the spread would not be seen
+  double factor = 1.0;     ///< from the column's unit to the label's
+  bool deviation = false;  ///< from the nominal, beside which the spread would not be seen
   std::optional<double> from_s = {}, to_s = {};
   bool nominal = true;
   bool limits = false;  ///< draw those of the requirements on the peak
@@ -87,8 +87,8 @@ std::string BandFigure(const BandView& view, const FlightHistories& histories, c
   const auto band = std::find_if(bands.bands.begin(), bands.bands.end(),
                                  [&](const Band& candidate) { return candidate.column == view.column; });
   assert(band != bands.bands.end());
-  SvgChart chart({.label = kTimeAxis, .low = view.from_s, .high = view.to_s}, {.label = view.label}, view.width,
-                 280);
+  SvgChart chart({.label = kTimeAxis, .low = view.from_s, .high = view.to_s}, {.label = view.label},
+                 view.width, 280);
   burns.AddTo(&chart);
   const std::vector<double> nominal =
       view.deviation ? AtSteps(histories.nominal_history, view.column, bands) : std::vector<double>();
@@ -202,7 +202,10 @@ std::string EnvelopeFigures(const FlightHistories& histories, const CampaignSumm
          .to_s = 10.0 * std::ceil(0.1 * last.to_s)},
         fmt::format("Pitch error while stage {} burns.", last.stage));
   }
-  add({.column = "altitude_m", .label = "altitude minus that of the nominal, km", .factor = 1e-3, .deviation = true},
+  add({.column = "altitude_m",
+       .label = "altitude minus that of the nominal, km",
+       .factor = 1e-3,
+       .deviation = true},
       "How far the flights lie above the nominal one at the same time.");
   add({.column = "deflection_pitch_deg", .label = "pitch deflection, °"}, "Deflection of the pitch channel.");
   add({.column = "yaw_error_deg", .label = "yaw error, °", .nominal = false}, "Yaw error.");
@@ -241,9 +244,10 @@ std::string WorstFigures(const FlightHistories& histories, const CampaignSummary
     for (const WorstCases& worst : summary.worst_cases) {
       if (!worst.metric.starts_with(view.metrics)) continue;
       for (const WorstCase& one : worst.cases) {
-        const bool written =
-            std::binary_search(histories.written_cases.begin(), histories.written_cases.end(), one.case_index);
-        if (written && shown.size() < kLines && std::find(shown.begin(), shown.end(), one.case_index) == shown.end())
+        const bool written = std::binary_search(histories.written_cases.begin(),
+                                                histories.written_cases.end(), one.case_index);
+        if (written && shown.size() < kLines &&
+            std::find(shown.begin(), shown.end(), one.case_index) == shown.end())
           shown.push_back(one.case_index);
       }
     }
@@ -257,8 +261,9 @@ std::string WorstFigures(const FlightHistories& histories, const CampaignSummary
     chart.Band(bands.time_s, band->min, band->max, "band-outer", "min–max");
     chart.Band(bands.time_s, band->p05, band->p95, "band-inner", "5–95 %");
     for (std::size_t i = 0; i < shown.size(); ++i) {
-      const auto at = std::lower_bound(histories.written_cases.begin(), histories.written_cases.end(), shown[i]) -
-                      histories.written_cases.begin();
+      const auto at =
+          std::lower_bound(histories.written_cases.begin(), histories.written_cases.end(), shown[i]) -
+          histories.written_cases.begin();
       const auto& values = histories.written_flights[static_cast<std::size_t>(at)]
                                                     [static_cast<std::size_t>(band - bands.bands.begin())];
       std::vector<double> time_s(bands.time_s.begin(), bands.time_s.begin() + std::ssize(values));

@@ -130,16 +130,18 @@ FlightHistories WriteHistories(const ResultFolder& folder, const Campaign& campa
   histories.nominal = flights.FlyNominal(&histories.nominal_history);
   WriteFile(directory / "nominal.csv", HistoryCsv(histories.nominal_history));
 
-  // Only cases that have a result are flown: a quarantined one may take this process with it. The first cases are a
-  // fair sample, of which percentiles can be told; no case's peak lies outside minimum and maximum.
+  // Only cases that have a result are flown: a quarantined one may take this process with it. The first cases
+  // are a fair sample, of which percentiles can be told; no case's peak lies outside minimum and maximum.
   histories.written_cases = WorstToWrite(summary);
   const std::size_t sampled = static_cast<std::size_t>(
       std::lower_bound(cases.index.begin(), cases.index.end(), options.history_cases) - cases.index.begin());
-  std::vector<std::uint64_t> indices(cases.index.begin(), cases.index.begin() + static_cast<std::ptrdiff_t>(sampled));
+  std::vector<std::uint64_t> indices(cases.index.begin(),
+                                     cases.index.begin() + static_cast<std::ptrdiff_t>(sampled));
   std::set<std::uint64_t> beyond(histories.written_cases.begin(), histories.written_cases.end());
   for (const std::size_t row : ExtremeRows(cases)) beyond.insert(cases.index[row]);
   for (const std::uint64_t index : beyond) {
-    if (!std::binary_search(cases.index.begin(), cases.index.begin() + static_cast<std::ptrdiff_t>(sampled), index))
+    if (!std::binary_search(cases.index.begin(), cases.index.begin() + static_cast<std::ptrdiff_t>(sampled),
+                            index))
       indices.push_back(index);
   }
   const std::vector<int> columns = BandColumns();
@@ -153,22 +155,23 @@ FlightHistories WriteHistories(const ResultFolder& folder, const Campaign& campa
       const bool in_full = std::binary_search(written.begin(), written.end(), indices[i]);
       orders.push_back({indices[i], in_full ? kHistoryStep_s : kBandStep_s});
     }
-    flights.FlyCases(orders, options.threads, [&](std::size_t i, const CaseResult& result, const History& history) {
-      const std::size_t at = from + i;
-      CheckReproduced(folder, indices[at], result.digest);
-      SampledFlight samples = SampleFlight(history, columns, kBandStep_s);
-      const auto found = std::lower_bound(written.begin(), written.end(), indices[at]);
-      if (found != written.end() && *found == indices[at]) {
-        WriteFile(directory / fmt::format("case_{}.csv", indices[at]), HistoryCsv(history));
-        histories.written_flights[static_cast<std::size_t>(found - written.begin())] = samples;
-      }
-      if (at < sampled) {
-        counter.Add(std::move(samples));
-      } else {
-        counter.AddExtreme(samples);
-      }
-      progress("time histories", ++flown, indices.size());
-    });
+    flights.FlyCases(
+        orders, options.threads, [&](std::size_t i, const CaseResult& result, const History& history) {
+          const std::size_t at = from + i;
+          CheckReproduced(folder, indices[at], result.digest);
+          SampledFlight samples = SampleFlight(history, columns, kBandStep_s);
+          const auto found = std::lower_bound(written.begin(), written.end(), indices[at]);
+          if (found != written.end() && *found == indices[at]) {
+            WriteFile(directory / fmt::format("case_{}.csv", indices[at]), HistoryCsv(history));
+            histories.written_flights[static_cast<std::size_t>(found - written.begin())] = samples;
+          }
+          if (at < sampled) {
+            counter.Add(std::move(samples));
+          } else {
+            counter.AddExtreme(samples);
+          }
+          progress("time histories", ++flown, indices.size());
+        });
   };
   // Those that the counter keeps go first, whoever of them lands first.
   const std::size_t kept = std::min(sampled, BandCounter::kKept);

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "core/cases/campaign_flights.h"
-#include "core/flight/history.h"
 #include "core/analysis/campaign_summary.h"
 #include "core/analysis/flight_bands.h"
+#include "core/cases/campaign_flights.h"
+#include "core/flight/history.h"
 #include "core/pages/reports.h"
 
 namespace dispersa {
@@ -18,7 +18,7 @@ struct FlightHistories {
   CaseResult nominal;
   History nominal_history;
   FlightBands bands;
-  std::vector<std::uint64_t> written_cases;   ///< with a file histories/case_<index>.csv, ascending
+  std::vector<std::uint64_t> written_cases;    ///< with a file histories/case_<index>.csv, ascending
   std::vector<SampledFlight> written_flights;  ///< the same at the steps of the bands: one column a band
 };
 

@@ -70,7 +70,8 @@ std::string PageHead(const std::string& title, const std::string& footer, const 
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
       "content=\"width=device-width, initial-scale=1\">\n<title>{} – dispersa</title>\n<style>{}{}\n"
-      "@page {{ @bottom-left {{ content: {}; }} @bottom-right {{ content: counter(page) \" / \" counter(pages); }} }}"
+      "@page {{ @bottom-left {{ content: {}; }} @bottom-right {{ content: counter(page) \" / \" "
+      "counter(pages); }} }}"
       "\n</style>\n</head>\n<body>\n",
       HtmlText(title), StyleSheet(), more_style, CssString(footer));
 }

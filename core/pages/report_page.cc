@@ -4,9 +4,9 @@
 
 #include "core/pages/case_data.h"
 #include "core/pages/distribution_charts.h"
+#include "core/pages/embedded.h"
 #include "core/pages/flight_charts.h"
 #include "core/pages/html_parts.h"
-#include "core/pages/embedded.h"
 #include "core/pages/report_sections.h"
 #include "core/results/text.h"
 
@@ -16,7 +16,8 @@ namespace {
 constexpr char kNavigation[] =
     "<nav><a href=\"#requirements\">Requirements</a><a href=\"#outcomes\">Outcomes</a><a "
     "href=\"#envelope\">Envelope</a>"
-    "<a href=\"#distributions\">Distributions</a><a href=\"#causes\">Causes</a><a href=\"#worst\">Worst cases</a><a "
+    "<a href=\"#distributions\">Distributions</a><a href=\"#causes\">Causes</a><a href=\"#worst\">Worst "
+    "cases</a><a "
     "href=\"#nominal\">Nominal flight</a>"
     "<a href=\"#statistics\">Statistics</a><a href=\"#dispersions\">Dispersions</a><a href=\"#limits\">Not "
     "modelled</a>"
@@ -26,8 +27,8 @@ constexpr char kNavigation[] =
 
 std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary, const CaseColumns& cases,
                        const FlightHistories& histories) {
-  std::string page =
-      PageHead(summary.name, fmt::format("Dispersion campaign {} · {}", summary.name, summary.id.substr(0, 16)));
+  std::string page = PageHead(
+      summary.name, fmt::format("Dispersion campaign {} · {}", summary.name, summary.id.substr(0, 16)));
   page += HeaderSection(summary);
   page += kNavigation;
   page += RequirementsSection(summary);
@@ -43,16 +44,19 @@ std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary,
                                  ".</code> adds them.</p>\n";
   } else {
     const FlightBands& bands = histories.bands;
-    const std::string sample = bands.flights == summary.flown
-                                   ? fmt::format("all {} flown cases", summary.flown)
-                                   : fmt::format("the first {} of {} flown cases", bands.flights, summary.flown);
-    const std::string extremes =
-        bands.extreme_flights == 0
-            ? std::string(" Minimum and maximum are over the same flights.")
-            : fmt::format(" Minimum and maximum are over these and {} more, which are the least or the largest of all "
-                          "in some metric: no case’s peak of a stage lies outside, but at other times a case that was "
-                          "not flown again may.",
-                          bands.extreme_flights);
+    const std::string sample =
+        bands.flights == summary.flown
+            ? fmt::format("all {} flown cases", summary.flown)
+            : fmt::format("the first {} of {} flown cases", bands.flights, summary.flown);
+    const std::string extremes = bands.extreme_flights == 0
+                                     ? std::string(" Minimum and maximum are over the same flights.")
+                                     : fmt::format(
+                                           " Minimum and maximum are over these and {} more, which are the "
+                                           "least or the largest of all "
+                                           "in some metric: no case’s peak of a stage lies outside, but at "
+                                           "other times a case that was "
+                                           "not flown again may.",
+                                           bands.extreme_flights);
     page += fmt::format(
         "<p>Pointwise percentiles over {}, flown again and sampled every {} s; a lost flight counts until it "
         "is "
@@ -90,7 +94,8 @@ std::string ReportPage(const Campaign& campaign, const CampaignSummary& summary,
   page += DispersionsSection(summary);
   page += NotModelledSection(campaign);
   page += ProvenanceSection(campaign, summary);
-  page += "<script type=\"application/json\" id=\"cases\">" + CaseData(summary, cases) + "</script>\n<script>";
+  page +=
+      "<script type=\"application/json\" id=\"cases\">" + CaseData(summary, cases) + "</script>\n<script>";
   page += ReportScript();
   return page + "</script>\n</body>\n</html>\n";
 }

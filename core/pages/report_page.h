@@ -3,10 +3,10 @@
 
 #include <string>
 
-#include "core/campaign/campaign.h"
 #include "core/analysis/campaign_summary.h"
-#include "core/results/case_columns.h"
+#include "core/campaign/campaign.h"
 #include "core/pages/histories.h"
+#include "core/results/case_columns.h"
 
 namespace dispersa {
 

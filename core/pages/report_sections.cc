@@ -23,7 +23,8 @@ std::string Lower(std::string title) {
 
 std::string ReplayCell(const CampaignSummary& summary, std::uint64_t case_index) {
   if (summary.python_law) return fmt::format("<span data-case=\"{}\">–</span>", case_index);
-  return fmt::format("<code class=\"copy\" data-case=\"{}\">{}</code>", case_index, ReplayCommand(case_index));
+  return fmt::format("<code class=\"copy\" data-case=\"{}\">{}</code>", case_index,
+                     ReplayCommand(case_index));
 }
 
 std::string OutcomeWords(Outcome outcome) {
@@ -61,8 +62,8 @@ std::string VerdictSentence(const CampaignSummary& summary) {
     case CampaignVerdict::kStudy:
       return fmt::format("A design study of {} points: each requirement is met at every one.", summary.cases);
     case CampaignVerdict::kStudyViolated:
-      return fmt::format("A design study of {} points: {} of {} requirements {} violated at some.", summary.cases,
-                         Violated(summary), all, Violated(summary) == 1 ? "is" : "are");
+      return fmt::format("A design study of {} points: {} of {} requirements {} violated at some.",
+                         summary.cases, Violated(summary), all, Violated(summary) == 1 ? "is" : "are");
     case CampaignVerdict::kIncomplete:
       if (summary.flown == summary.cases)
         return fmt::format("{} of the design's {} points were flown.", summary.flown, summary.design_points);
@@ -236,10 +237,10 @@ std::string OutcomesSection(const CampaignSummary& summary) {
                       HtmlText(flight.reason), ReplayCell(summary, flight.case_index)});
     }
     // A long list is folded away on screen and printed in full.
-    const std::string which = lost > summary.lost_flights.size()
-                                  ? fmt::format("the first {}; <code>cases.csv</code> has all of them",
-                                                summary.lost_flights.size())
-                                  : "all of them";
+    const std::string which =
+        lost > summary.lost_flights.size()
+            ? fmt::format("the first {}; <code>cases.csv</code> has all of them", summary.lost_flights.size())
+            : "all of them";
     html += lost > 20 ? "<details><summary>" + which + "</summary>\n" + lost_table.Html() + "</details>\n"
                       : lost_table.Html();
   }
@@ -286,7 +287,8 @@ std::string WorstCasesSection(const CampaignSummary& summary, const FlightHistor
 std::string StatisticsSection(const CampaignSummary& summary) {
   std::string html =
       "<h2 id=\"statistics\">Statistics of every metric</h2>\n<p>Over the completed flights that define "
-      "the metric; n says how many, and lost flights are listed under Outcomes. Under each percentile its limits of "
+      "the metric; n says how many, and lost flights are listed under Outcomes. Under each percentile its "
+      "limits of "
       "95 %, of any distribution; one that so few flights cannot reach is shown as a bound. Attitude and "
       "deflection "
       "metrics cover powered flight, ignition to burnout of each stage with its transients; the coast has "
@@ -312,14 +314,13 @@ std::string StatisticsSection(const CampaignSummary& summary) {
       const MetricInfo info = DescribeMetric(metric.name);
       const bool part =
           metric.name.find("_stage") != std::string::npos || metric.name.find("_coast") != std::string::npos;
-      const std::string definition =
-          part || info.definition.empty()
-              ? ""
-              : " <span class=\"soft\">" + HtmlText(info.definition) + "</span>";
+      const std::string definition = part || info.definition.empty()
+                                         ? ""
+                                         : " <span class=\"soft\">" + HtmlText(info.definition) + "</span>";
       const Summary& s = metric.statistics;
       // Above its numbers: beside twelve of them no name finds room.
-      table.Wide("<div><b>" + HtmlText(info.title) + (info.unit.empty() ? "" : ", " + HtmlText(info.unit)) + "</b>" +
-                     definition + "</div>",
+      table.Wide("<div><b>" + HtmlText(info.title) + (info.unit.empty() ? "" : ", " + HtmlText(info.unit)) +
+                     "</b>" + definition + "</div>",
                  "name");
       table.Row({ReadableText(NominalValue(summary, i)), std::to_string(s.n), ReadableText(s.mean),
                  ReadableText(s.std), ReadableText(metric.skewness), ReadableText(s.min),

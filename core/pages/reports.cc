@@ -2,14 +2,14 @@
 
 #include <fmt/format.h>
 
-#include "core/input/input_error.h"
 #include "core/control/law_here.h"
 #include "core/flight/engine_version.h"
+#include "core/input/input_error.h"
+#include "core/pages/histories.h"
+#include "core/pages/report_page.h"
 #include "core/results/case_columns.h"
 #include "core/results/cases_csv.h"
-#include "core/pages/histories.h"
 #include "core/results/output_file.h"
-#include "core/pages/report_page.h"
 #include "core/results/result_error.h"
 
 namespace dispersa {

@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "core/pages/html_parts.h"
-#include "core/results/metric_catalogue.h"
 #include "core/pages/report_sections.h"
-#include "core/results/sampling_text.h"
 #include "core/pages/svg_chart.h"
+#include "core/results/metric_catalogue.h"
+#include "core/results/sampling_text.h"
 #include "core/results/text.h"
 
 namespace dispersa {
@@ -39,7 +39,8 @@ std::string PlanWords(const RequirementSummary& requirement) {
 std::string BoundWords(const RequirementSummary& requirement, const std::string& unit) {
   if (!requirement.bound)
     return requirement.beyond_plan ? "no bound beyond the plan" : "no bound: too few cases or too many lost";
-  return fmt::format("bound {}, margin {}", WithUnit(*requirement.bound, unit), WithUnit(*requirement.margin, unit));
+  return fmt::format("bound {}, margin {}", WithUnit(*requirement.bound, unit),
+                     WithUnit(*requirement.margin, unit));
 }
 
 /// The worst of the completed flights, which is no bound of anything but says where the sample ends.
@@ -94,16 +95,21 @@ std::string ConvergenceFigure(const RequirementSummary& requirement) {
     lowest = std::min(lowest, upper.back());
   }
   SvgChart chart({.label = "first cases", .low = n.front(), .high = n.back(), .logarithmic = true},
-                 {.label = "probability of a failure", .low = 0.3 * lowest, .high = 1.0, .logarithmic = true, .percent = true},
+                 {.label = "probability of a failure",
+                  .low = 0.3 * lowest,
+                  .high = 1.0,
+                  .logarithmic = true,
+                  .percent = true},
                  520, 250);
   for (double& share : lower) share = std::max(share, 0.3 * lowest);
   chart.Band(n, lower, upper, "band-outer", "between its bounds");
   chart.Line(n, observed, "line-0", "observed");
-  chart.HorizontalLimit(1.0 - requirement.probability, fmt::format("{} allowed", PercentText(1.0 - requirement.probability)));
-  for (const Look& look : requirement.looks)
-    chart.Mark(static_cast<double>(look.n), LookName(look.verdict));
+  chart.HorizontalLimit(1.0 - requirement.probability,
+                        fmt::format("{} allowed", PercentText(1.0 - requirement.probability)));
+  for (const Look& look : requirement.looks) chart.Mark(static_cast<double>(look.n), LookName(look.verdict));
   const std::string caption = fmt::format(
-      "{}: {} in {} cases at the end. Each bound holds with {} confidence at its number of cases taken alone; the "
+      "{}: {} in {} cases at the end. Each bound holds with {} confidence at its number of cases taken "
+      "alone; the "
       "verdict is read where the plan looks (dotted).",
       info.title, requirement.failures, requirement.n, PercentText(1.0 - requirement.consumer_risk));
   return Figure(chart.Svg(caption), HtmlText(caption));
@@ -137,11 +143,10 @@ std::string Card(const RequirementSummary& requirement, const CampaignSummary& s
                                         : "none: design study");
   if (!study) {
     html += Fact("plan", PlanWords(requirement));
-    html += Fact("failures that decide", fmt::format("pass {}, fail {}",
-                                                     requirement.accepts ? fmt::format("≤ {}", *requirement.accepts)
-                                                                         : "none",
-                                                     requirement.rejects ? fmt::format("≥ {}", *requirement.rejects)
-                                                                         : "none"));
+    html += Fact("failures that decide",
+                 fmt::format("pass {}, fail {}",
+                             requirement.accepts ? fmt::format("≤ {}", *requirement.accepts) : "none",
+                             requirement.rejects ? fmt::format("≥ {}", *requirement.rejects) : "none"));
   }
   return html + "</dl>\n" + LooksTable(requirement) + ChanceFigure(requirement) + "</section>\n";
 }

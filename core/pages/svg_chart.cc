@@ -19,7 +19,7 @@ constexpr double kRight = 18.0;
 constexpr double kBottom = 42.0;
 constexpr double kTitleRow = 20.0;  ///< the y axis's label
 constexpr double kLegendRow = 17.0;
-constexpr double kMarkRow = 13.0;   ///< labels of events
+constexpr double kMarkRow = 13.0;  ///< labels of events
 constexpr std::size_t kManyPoints = 5000;
 constexpr double kCharacter = 6.9;  ///< mean width of a letter of the legend
 
@@ -43,7 +43,8 @@ struct AxisRange {
   }
 };
 
-/// Whether a limit is shown: one that lies farther from the data than these are wide would press them together.
+/// Whether a limit is shown: one that lies farther from the data than these are wide would press them
+/// together.
 bool Near(double limit, const ChartAxis& axis, const AxisRange& data) {
   if (axis.low && axis.high) return limit >= *axis.low && limit <= *axis.high;
   const double span = data.high - data.low;
@@ -190,7 +191,8 @@ std::string SvgChart::Svg(const std::string& description) const {
 
   AxisRange y_range;
   for (const Series& series : series_) {
-    if (series.kind == Series::Kind::kVerticalLimit || series.kind == Series::Kind::kHorizontalLimit) continue;
+    if (series.kind == Series::Kind::kVerticalLimit || series.kind == Series::Kind::kHorizontalLimit)
+      continue;
     if (series.kind == Series::Kind::kBars) {
       y_range.Add(0.0, y_.logarithmic);
       y_range.Add(series.low, y_.logarithmic);
@@ -236,8 +238,9 @@ std::string SvgChart::Svg(const std::string& description) const {
 
   // What the page's script needs to tell values from positions.
   const auto axis = [](const ChartAxis& described, const ChartScale& scale, double from, double to) {
-    return fmt::format("{} {} {} {} {}{}", ShortestText(scale.low()), ShortestText(scale.high()), Coordinate(from),
-                       Coordinate(to), described.logarithmic ? "log" : "linear", described.percent ? " percent" : "");
+    return fmt::format("{} {} {} {} {}{}", ShortestText(scale.low()), ShortestText(scale.high()),
+                       Coordinate(from), Coordinate(to), described.logarithmic ? "log" : "linear",
+                       described.percent ? " percent" : "");
   };
   std::string svg = fmt::format(
       "<svg class=\"chart\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\" data-x=\"{}\" data-y=\"{}\"",
@@ -252,13 +255,15 @@ std::string SvgChart::Svg(const std::string& description) const {
     const double from = xs.At(std::max(span.from, xs.low()));
     const double to = xs.At(std::min(span.to, xs.high()));
     if (span.to > span.from) {
-      spans += fmt::format("<rect class=\"shade\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>", Coordinate(from),
-                           Coordinate(top), Coordinate(to - from), Coordinate(bottom - top));
+      spans +=
+          fmt::format("<rect class=\"shade\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>",
+                      Coordinate(from), Coordinate(top), Coordinate(to - from), Coordinate(bottom - top));
       labels += Text(0.5 * (from + to), top - 3.0, "mark-label", "middle", span.label);
     } else {
       spans += Segment(from, top, from, bottom, "mark");
       const bool inside = from + kCharacter * static_cast<double>(span.label.size()) < width_;
-      labels += Text(from + (inside ? 1.0 : -1.0), top - 3.0, "mark-label", inside ? "start" : "end", span.label);
+      labels +=
+          Text(from + (inside ? 1.0 : -1.0), top - 3.0, "mark-label", inside ? "start" : "end", span.label);
     }
   }
   svg += labels + "<g class=\"ticks\">";
@@ -272,11 +277,12 @@ std::string SvgChart::Svg(const std::string& description) const {
     svg += Segment(x, bottom, x, bottom + 4.0, "axis");
     svg += Text(x, bottom + 17.0, "tick", "middle", tick.label);
   }
-  // A view of its own, so that a zoom changes nothing but what it shows; a little larger than the axes, so that nothing
-  // on them is cut.
+  // A view of its own, so that a zoom changes nothing but what it shows; a little larger than the axes, so
+  // that nothing on them is cut.
   constexpr double kRim = 3.0;
-  const std::string frame = fmt::format("{} {} {} {}", Coordinate(kLeft - kRim), Coordinate(top - kRim),
-                                        Coordinate(right - kLeft + 2.0 * kRim), Coordinate(bottom - top + 2.0 * kRim));
+  const std::string frame =
+      fmt::format("{} {} {} {}", Coordinate(kLeft - kRim), Coordinate(top - kRim),
+                  Coordinate(right - kLeft + 2.0 * kRim), Coordinate(bottom - top + 2.0 * kRim));
   svg += fmt::format(
       "</g><svg class=\"plot\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" viewBox=\"{}\" "
       "preserveAspectRatio=\"none\">{}",
@@ -290,7 +296,8 @@ std::string SvgChart::Svg(const std::string& description) const {
       case Series::Kind::kLine:
         for (const auto& run : Runs(series.x, series.low, xs, ys, y_.logarithmic)) {
           svg += fmt::format("<path class=\"{}\"{} d=\"{}\"/>", series.style,
-                             series.case_index ? fmt::format(" data-case=\"{}\"", *series.case_index) : "", Path(run));
+                             series.case_index ? fmt::format(" data-case=\"{}\"", *series.case_index) : "",
+                             Path(run));
         }
         break;
       case Series::Kind::kPoints: {
@@ -303,7 +310,8 @@ std::string SvgChart::Svg(const std::string& description) const {
           const double x = xs.At(series.x[i]);
           const double y = ys.At(series.low[i]);
           // Of many dots one a pixel is seen.
-          if (series.x.size() > kManyPoints && !taken.insert({std::lround(x), std::lround(y)}).second) continue;
+          if (series.x.size() > kManyPoints && !taken.insert({std::lround(x), std::lround(y)}).second)
+            continue;
           dots += "M" + Coordinate(x) + " " + Coordinate(y) + "h0";
         }
         svg += fmt::format("<path class=\"{}\" d=\"{}\"/>", series.style, dots);

@@ -25,7 +25,8 @@ class SvgChart {
   void Line(std::vector<double> x, std::vector<double> y, const std::string& style,
             const std::string& legend);
   /// The same of one case, which the page's script may mark.
-  void CaseLine(std::vector<double> x, std::vector<double> y, const std::string& style, std::uint64_t case_index);
+  void CaseLine(std::vector<double> x, std::vector<double> y, const std::string& style,
+                std::uint64_t case_index);
   /// Says that positions along x, and along y if that is not empty, are a metric of the cases.
   void ShowsCases(const std::string& x_metric, const std::string& y_metric = "");
   /// Dots.
@@ -36,8 +37,8 @@ class SvgChart {
             const std::string& style, const std::string& legend);
   /// counts[i] between edges[i] and edges[i + 1], from zero up.
   void Bars(std::vector<double> edges, std::vector<double> counts, const std::string& legend);
-  /// Dashed lines that belong to a requirement. The axes grow to show them, unless they lie so far from the data
-  /// that these could not be told apart: then the legend says where they are.
+  /// Dashed lines that belong to a requirement. The axes grow to show them, unless they lie so far from the
+  /// data that these could not be told apart: then the legend says where they are.
   void VerticalLimit(double x, const std::string& legend, const std::string& style = "limit");
   void HorizontalLimit(double y, const std::string& legend);
   /// A labelled event, and a labelled span of time.

@@ -7,8 +7,8 @@
 #include "core/math/constants.h"
 #include "core/pages/html_parts.h"
 #include "core/pages/svg_chart.h"
-#include "core/results/text.h"
 #include "core/pages/trajectory_figures.h"
+#include "core/results/text.h"
 
 namespace dispersa {
 namespace {
@@ -53,7 +53,8 @@ std::string VariableTable(const Reference& reference) {
   HtmlTable table({{"Variable"}, {"value", true}, {"from", true}, {"to", true}, {""}});
   const auto row = [&](const char* name, double value, const Bounds& bounds, double unit) {
     const std::string bound = BoundReached(value, bounds);
-    table.Row({name, FixedText(value / unit, 6), ReadableText(bounds.low / unit), ReadableText(bounds.high / unit),
+    table.Row({name, FixedText(value / unit, 6), ReadableText(bounds.low / unit),
+               ReadableText(bounds.high / unit),
                bound.empty() ? "" : "<span class=\"badge design\">" + bound + "</span>"});
   };
   row("α<sub>max</sub>, °", program.alpha_max_rad, problem.alpha_max_rad, kRadPerDeg);
@@ -105,9 +106,9 @@ std::string SearchFigures(const OptimizationResult& result) {
   SvgChart fraction({.label = "generation"}, {.label = "feasible", .low = 0.0, .high = 1.0, .percent = true});
   fraction.Line(generation, feasible, "line-0", "");
   std::string figures = DrawSearch(objective,
-                             "Search over all variables of the flight program. Misses within the tie "
-                             "tolerance of the best are equal, so the "
-                             "best may rise while the peak of q·α falls.") +
+                                   "Search over all variables of the flight program. Misses within the tie "
+                                   "tolerance of the best are equal, so the "
+                                   "best may rise while the peak of q·α falls.") +
                         DrawSearch(fraction, "Individuals that break no constraint.");
   if (result.selection.log.empty()) return figures;
   std::vector<double> step, load;
@@ -117,9 +118,10 @@ std::string SearchFigures(const OptimizationResult& result) {
   }
   SvgChart selection({.label = "generation"}, {.label = "peak of q·α, Pa rad"});
   selection.Line(step, load, "line-0", "best");
-  return figures + DrawSearch(selection,
-                        "Selection over t1, t3 and t2 among programs that reach the target: the least peak of "
-                        "q·α.");
+  return figures +
+         DrawSearch(selection,
+                    "Selection over t1, t3 and t2 among programs that reach the target: the least peak of "
+                    "q·α.");
 }
 
 // "0.01 a metre of altitude": what a miss counts, as the file says it.
@@ -197,8 +199,8 @@ std::string LimitsThatDoNotBind(const Reference& reference) {
   std::string text;
   for (const ConstraintMargin& c : reference.constraints) {
     if (!c.enforced || !(c.limit > 0.0) || c.value > 0.1 * c.limit) continue;
-    text += fmt::format("{}{} does not bind: its value is {:.2g} % of the limit", text.empty() ? "" : "; ", c.name,
-                        100.0 * c.value / c.limit);
+    text += fmt::format("{}{} does not bind: its value is {:.2g} % of the limit", text.empty() ? "" : "; ",
+                        c.name, 100.0 * c.value / c.limit);
   }
   return text;
 }
@@ -206,8 +208,8 @@ std::string LimitsThatDoNotBind(const Reference& reference) {
 std::string TrajectoryPage(const OptimizationResult& result, const std::optional<OrbitErrors>& flown) {
   const Reference& reference = result.reference;
   const TrajectoryProblem& problem = reference.problem;
-  const std::string title = fmt::format("{}: trajectory to {} km", reference.name,
-                                        ReadableText(problem.target_altitude_m * 1e-3));
+  const std::string title =
+      fmt::format("{}: trajectory to {} km", reference.name, ReadableText(problem.target_altitude_m * 1e-3));
   std::string page = PageHead(title, fmt::format("{} · engine {}", title, reference.engine)) + "<h1>" +
                      HtmlText(title) + "</h1>\n";
   page += fmt::format(
@@ -227,8 +229,10 @@ std::string TrajectoryPage(const OptimizationResult& result, const std::optional
                           "under the campaign’s autopilot, reaction control included."
                         : "");
   page += "<h2>Flight program</h2>\n" + VariableTable(reference);
-  page += "<p class=\"soft\">A variable at a bound was held back by it: what lies beyond was not searched, and may be "
-          "better.</p>\n";
+  page +=
+      "<p class=\"soft\">A variable at a bound was held back by it: what lies beyond was not searched, and "
+      "may be "
+      "better.</p>\n";
   page += "<h2>Constraints</h2>\n" + ConstraintTable(reference);
   if (const std::string text = LimitsThatDoNotBind(reference); !text.empty())
     page += "<p>" + HtmlText(text) + ".</p>\n";

@@ -120,8 +120,8 @@ class Drawing {
     const bool is_last = above == vehicle_.stages.size();
     const double top_m = is_last ? 0.0 : vehicle_.stages[above].bottom_station_m;
     for (const Tank& tank : stage.tanks) {
-      const double height_m =
-          (tank.bottom_station_m - tank.top_station_m) * tank.propellant_mass_kg / (tank.density_kg_m3 * tank.Volume());
+      const double height_m = (tank.bottom_station_m - tank.top_station_m) * tank.propellant_mass_kg /
+                              (tank.density_kg_m3 * tank.Volume());
       Tube("bore", tank.top_station_m, tank.bottom_station_m, tank.diameter_m);
       Tube("grain", tank.bottom_station_m - height_m, tank.bottom_station_m, tank.diameter_m);
     }

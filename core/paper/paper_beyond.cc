@@ -6,13 +6,13 @@
 #include <cmath>
 #include <map>
 
+#include "core/analysis/comparison.h"
+#include "core/analysis/requirement_summary.h"
 #include "core/control/lyapunov.h"
 #include "core/math/constants.h"
-#include "core/paper/paper_sections.h"
-#include "core/analysis/comparison.h"
 #include "core/pages/html_parts.h"
-#include "core/analysis/requirement_summary.h"
 #include "core/pages/svg_chart.h"
+#include "core/paper/paper_sections.h"
 #include "core/results/text.h"
 
 namespace dispersa {
@@ -51,8 +51,9 @@ std::string ComparisonTable(const Comparison& comparison) {
                IntervalText(metric.ratio_interval), fmt::format("{}", metric.a_better),
                fmt::format("{}", metric.b_better), ReadableText(metric.p)});
   }
-  return table.Html() + fmt::format("<p class=\"soft\">Differences are {} less {}, ratios {} over {}; {} pairs.</p>\n",
-                                    b, a, b, a, comparison.pairing.shared);
+  return table.Html() +
+         fmt::format("<p class=\"soft\">Differences are {} less {}, ratios {} over {}; {} pairs.</p>\n", b, a,
+                     b, a, comparison.pairing.shared);
 }
 
 /// Where the second law beats the first most, by the first metric.
@@ -65,8 +66,8 @@ std::string LargestGains(const Comparison& comparison) {
                         std::isnan(pair.a) ? "lost" : ReadableText(pair.a));
   }
   return fmt::format("<p class=\"soft\">{} is better than {} in {} in {} cases{}.</p>\n",
-                     HtmlText(comparison.b.autopilot), HtmlText(comparison.a.autopilot), HtmlText(metric.info.title),
-                     metric.b_better, list);
+                     HtmlText(comparison.b.autopilot), HtmlText(comparison.a.autopilot),
+                     HtmlText(metric.info.title), metric.b_better, list);
 }
 
 /// How often V falls, by how large it is.
@@ -184,8 +185,8 @@ std::string PaperComparisonSection(const PaperStudy& study) {
     const Comparison comparison = Compare({"", "", adaptive.campaign, adaptive.flights.cases},
                                           {"", "", baseline.campaign, baseline.flights.cases}, kCompared, {});
     html += "<h3>" + HtmlText(baseline.campaign.autopilot.name) + " against " +
-            HtmlText(adaptive.campaign.autopilot.name) + "</h3>\n" +
-            ComparisonTable(comparison) + LargestGains(comparison);
+            HtmlText(adaptive.campaign.autopilot.name) + "</h3>\n" + ComparisonTable(comparison) +
+            LargestGains(comparison);
     const MetricComparison& rms = comparison.metrics[0];
     found += fmt::format(
         "{}{}: RMS {:.2f} times as large as the adaptive law’s{}, better in {} of {} cases.",
@@ -197,12 +198,18 @@ std::string PaperComparisonSection(const PaperStudy& study) {
   }
   html += PaperFindings(
       "Better results are achieved with adaptive fuzzy control. No other controller is flown.", found,
-      "Median ratios with 95 % intervals. All are tuned by <code>dispersa tune</code> with one budget, on cases "
-      "that no campaign of this page flies. The frozen rules’ consequents lie on a plane over triangular sets: "
-      "within their ranges they are proportional-derivative control, and only the tuning tells the two apart. "
-      "What the adaptive rules gain over both is integral action: their grades sum to 1, so the consequents’ mean "
-      "departs by γ/25 ∫ e<sup>T</sup>P<sub>n</sub> dt, a PID’s integral of the error and a little more of its "
-      "proportional gain. The row of <code>pid</code> is therefore the one to judge adaptation by: a ratio below 1 "
+      "Median ratios with 95 % intervals. All are tuned by <code>dispersa tune</code> with one budget, on "
+      "cases "
+      "that no campaign of this page flies. The frozen rules’ consequents lie on a plane over triangular "
+      "sets: "
+      "within their ranges they are proportional-derivative control, and only the tuning tells the two "
+      "apart. "
+      "What the adaptive rules gain over both is integral action: their grades sum to 1, so the consequents’ "
+      "mean "
+      "departs by γ/25 ∫ e<sup>T</sup>P<sub>n</sub> dt, a PID’s integral of the error and a little more of "
+      "its "
+      "proportional gain. The row of <code>pid</code> is therefore the one to judge adaptation by: a ratio "
+      "below 1 "
       "there means that a plain integral tracks better than the paper’s law.");
   return html;
 }

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/paper/paper_sections.h"
 #include "core/pages/html_parts.h"
+#include "core/paper/paper_sections.h"
 #include "core/results/text.h"
 
 namespace dispersa {

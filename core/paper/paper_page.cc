@@ -3,14 +3,14 @@
 #include <fmt/format.h>
 
 #include "core/flight/engine_version.h"
-#include "core/paper/heat_map.h"
-#include "core/paper/paper_sections.h"
 #include "core/pages/histories.h"
 #include "core/pages/html_parts.h"
+#include "core/pages/trajectory_figures.h"
+#include "core/paper/heat_map.h"
+#include "core/paper/paper_sections.h"
 #include "core/results/output_file.h"
 #include "core/results/result_error.h"
 #include "core/results/text.h"
-#include "core/pages/trajectory_figures.h"
 
 namespace dispersa {
 namespace {
@@ -129,8 +129,9 @@ std::string HistoriesData(const StudyFlights& flights, PaperColumn column) {
 }  // namespace
 
 std::string PaperPage(const PaperStudy& study) {
-  std::string page = PageHead("The paper reproduced", "The paper reproduced · engine " + std::string(EngineVersion()),
-                              std::string(HeatMapStyle()) + kStyle);
+  std::string page =
+      PageHead("The paper reproduced", "The paper reproduced · engine " + std::string(EngineVersion()),
+               std::string(HeatMapStyle()) + kStyle);
   page += Header(study);
   page += kNavigation;
   page += PaperVehicleSection(study);

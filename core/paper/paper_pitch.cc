@@ -5,10 +5,10 @@
 #include <cmath>
 #include <optional>
 
-#include "core/paper/paper_sections.h"
-#include "core/pages/html_parts.h"
 #include "core/analysis/requirement_summary.h"
+#include "core/pages/html_parts.h"
 #include "core/pages/svg_chart.h"
+#include "core/paper/paper_sections.h"
 #include "core/results/text.h"
 
 namespace dispersa {

@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "core/control/lyapunov.h"
-#include "core/paper/heat_map.h"
-#include "core/paper/paper_sections.h"
 #include "core/pages/html_parts.h"
 #include "core/pages/svg_chart.h"
+#include "core/paper/heat_map.h"
+#include "core/paper/paper_sections.h"
 #include "core/results/text.h"
 #include "core/statistics/summary.h"
 
@@ -77,7 +77,8 @@ std::string Curves(const PaperStudy& study, double end_s, double range_deg, cons
     for (double& value : values) {
       if (std::fabs(value) > range_deg) value = kUndefined;
     }
-    chart.Line(Times(values.size(), 0.1), values, fmt::format("line-{}", count - 1 - i), CurveName(curves.flights.cases, i));
+    chart.Line(Times(values.size(), 0.1), values, fmt::format("line-{}", count - 1 - i),
+               CurveName(curves.flights.cases, i));
   }
   return Figure(chart.Svg(caption), HtmlText(caption));
 }
@@ -94,7 +95,8 @@ std::string WholeCurves(const PaperStudy& study, double end_s, const std::string
     std::vector<double> time_s, largest;
     for (std::size_t k = 0; k < error.size() && static_cast<double>(k) < kSecond * end_s; k += kSecond) {
       double size = 0.0;
-      for (std::size_t j = k; j < std::min(k + kSecond, error.size()); ++j) size = std::max(size, std::fabs(error[j]));
+      for (std::size_t j = k; j < std::min(k + kSecond, error.size()); ++j)
+        size = std::max(size, std::fabs(error[j]));
       time_s.push_back(0.1 * static_cast<double>(k) + 0.5);
       largest.push_back(size);
     }

@@ -4,8 +4,8 @@
 #include <cassert>
 #include <set>
 
-#include "core/cases/campaign_flights.h"
 #include "core/campaign/case_design.h"
+#include "core/cases/campaign_flights.h"
 #include "core/control/lyapunov.h"
 
 namespace dispersa {
@@ -84,7 +84,8 @@ std::vector<LeastMargins> PnMargins(const PaperFlights& sweep) {
       stage.pn_rate *= rates[row];
     }
     for (const MarginInstant& instant : instants)
-      all[row].Take(MarginsAt(model.nominal_plant(), model.sensors(), autopilot, instant.sample, kPitch, true));
+      all[row].Take(
+          MarginsAt(model.nominal_plant(), model.sensors(), autopilot, instant.sample, kPitch, true));
   }
   return all;
 }

@@ -81,7 +81,7 @@ struct PaperStudy {
   PaperInjection injection;
   std::vector<LeastMargins> pn_margins;  ///< of each case of "pn_sweep": pitch, adapting, computed
   std::vector<CompletionMargins> completion_margins;  ///< as shipped first
-  std::vector<ComputedMargins> computed_margins;  ///< of the nominal's autopilot
+  std::vector<ComputedMargins> computed_margins;      ///< of the nominal's autopilot
   std::vector<MeasuredMargins> measured_margins;
 
   const PaperFlights& at(const std::string& name) const { return campaigns.at(name); }

@@ -13,11 +13,13 @@ StudyFlights FlyStudy(const Campaign& campaign, const StudyOptions& options) {
   StudyFlights study;
   study.histories.resize(std::min(count, options.histories));
   std::vector<CaseOrder> orders;
-  for (std::uint64_t i = 0; i < count; ++i) orders.push_back({i, i < study.histories.size() ? options.step_s : 0.0});
+  for (std::uint64_t i = 0; i < count; ++i)
+    orders.push_back({i, i < study.histories.size() ? options.step_s : 0.0});
   std::uint64_t flown = 0;
   flights.FlyCases(orders, options.threads, [&](std::size_t i, CaseResult result, const History& history) {
     results[i] = std::move(result);
-    if (i < study.histories.size()) study.histories[i] = SampleFlight(history, options.columns, options.step_s);
+    if (i < study.histories.size())
+      study.histories[i] = SampleFlight(history, options.columns, options.step_s);
     ++flown;
     if (options.progress) options.progress(flown);
   });

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "core/analysis/flight_bands.h"
 #include "core/campaign/campaign.h"
 #include "core/results/case_columns.h"
-#include "core/analysis/flight_bands.h"
 
 namespace dispersa {
 

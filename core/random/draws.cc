@@ -22,9 +22,7 @@ std::uint64_t HashName(std::string_view name) {
   return hash;
 }
 
-double OpenUnitInterval(std::uint64_t bits) {
-  return (static_cast<double>(bits >> 12) + 0.5) * 0x1p-52;
-}
+double OpenUnitInterval(std::uint64_t bits) { return (static_cast<double>(bits >> 12) + 0.5) * 0x1p-52; }
 
 Stream::Stream(std::uint64_t seed, std::uint64_t index, std::string_view name)
     : seed_(seed), index_(LowWord(index)), name_hash_(HashName(name)) {

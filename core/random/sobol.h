@@ -15,9 +15,10 @@ namespace dispersa {
 ///
 /// The shift makes each point uniform, so means are unbiased, and keeps the sequence's stratification: every
 /// block of 2^k cases has one in each of 2^k equal strata of a dimension. Nothing is skipped: case 0 is the
-/// (shifted) origin (A. B. Owen, "On dropping the first Sobol' point", 2020). A coordinate depends on the case's
-/// index, on its own dimension of the sequence and on its name: not on the number of cases, nor on the other
-/// dimensions. The cases are not independent: limits that assume independent draws do not hold for them.
+/// (shifted) origin (A. B. Owen, "On dropping the first Sobol' point", 2020). A coordinate depends on the
+/// case's index, on its own dimension of the sequence and on its name: not on the number of cases, nor on the
+/// other dimensions. The cases are not independent: limits that assume independent draws do not hold for
+/// them.
 class Sobol {
  public:
   static constexpr std::size_t kMaxDimensions = 3667;  ///< of the tables

@@ -20,7 +20,8 @@ constexpr std::size_t kBlockRows = 8192;
 
 [[noreturn]] void Fail(const std::filesystem::path& directory, int error) {
   if (error == ENOSPC || error == EDQUOT)
-    throw ResultError(ResultError::Kind::kDiskFull, fmt::format("{}: no space left on the disk", directory.string()));
+    throw ResultError(ResultError::Kind::kDiskFull,
+                      fmt::format("{}: no space left on the disk", directory.string()));
   throw ResultError(ResultError::Kind::kFile, fmt::format("{}: columns of results cannot be kept there: {}",
                                                           directory.string(), std::strerror(error)));
 }

@@ -1,4 +1,5 @@
-// One quantity over all cases. Few cases lie in memory; of many, the disk holds the columns and memory the one in use.
+// One quantity over all cases. Few cases lie in memory; of many, the disk holds the columns and memory the
+// one in use.
 #pragma once
 
 #include <cstddef>
@@ -9,9 +10,9 @@
 
 namespace dispersa {
 
-/// Rows go in, columns come out. Beyond a few thousand rows they lie in a file without a name, which ends with the
-/// object: in `directory`, or where that cannot be written in the system's folder for temporary files. Throws
-/// ResultError (kDiskFull, else kFile).
+/// Rows go in, columns come out. Beyond a few thousand rows they lie in a file without a name, which ends
+/// with the object: in `directory`, or where that cannot be written in the system's folder for temporary
+/// files. Throws ResultError (kDiskFull, else kFile).
 class ColumnFile {
  public:
   ColumnFile(std::filesystem::path directory, std::size_t columns);
@@ -40,7 +41,8 @@ class CaseColumn {
   CaseColumn() = default;
   /// In memory.
   CaseColumn(std::vector<double> values) : values_(std::move(values)) {}
-  CaseColumn(std::shared_ptr<const ColumnFile> file, std::size_t number) : file_(std::move(file)), number_(number) {}
+  CaseColumn(std::shared_ptr<const ColumnFile> file, std::size_t number)
+      : file_(std::move(file)), number_(number) {}
 
   std::size_t size() const { return file_ ? file_->rows() : values_.size(); }
   bool empty() const { return size() == 0; }

@@ -15,8 +15,8 @@ struct MetricInfo {
   bool known = false;  ///< a metric of flights
 };
 
-/// Of a metric's name without prefix. The unit is read from the end of the name, so that a name that is no metric has
-/// one too.
+/// Of a metric's name without prefix. The unit is read from the end of the name, so that a name that is no
+/// metric has one too.
 MetricInfo DescribeMetric(const std::string& name);
 
 /// Unit of a column from the end of its name, and the name without it: "wind_max_speed_m_s" gives "m/s" and
@@ -27,7 +27,8 @@ struct NameAndUnit {
 };
 NameAndUnit SplitUnit(const std::string& name);
 
-/// The value by which cases are ranked: the larger, the worse. What is neither good nor bad is ranked by its size.
+/// The value by which cases are ranked: the larger, the worse. What is neither good nor bad is ranked by its
+/// size.
 double Badness(Worse worse, double value);
 
 }  // namespace dispersa

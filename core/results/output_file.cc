@@ -46,7 +46,8 @@ OutputFile::OutputFile(fs::path target) : target_(std::move(target)) {
 void OutputFile::OpenTemporary(mode_t mode) {
   target_ = Behind(target_);
   temporary_ = target_.string() + ".tmp";
-  // What lies there is of a process that was killed, or was put there: a link would lead the writing elsewhere.
+  // What lies there is of a process that was killed, or was put there: a link would lead the writing
+  // elsewhere.
   if (unlink(temporary_.c_str()) != 0 && errno != ENOENT) Fail(errno);
   // Never wider than what it takes the place of, not even before it holds anything.
   const int file =

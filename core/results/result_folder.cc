@@ -139,9 +139,8 @@ std::optional<CaseResult> ReadRow(const Statement& row, std::size_t stages) {
 
 CaseResult ReadCase(const Statement& row, std::size_t stages, const fs::path& directory) {
   if (auto result = ReadRow(row, stages)) return *std::move(result);
-  throw ResultError(Kind::kFile,
-                    fmt::format("{}: the row of case {} is damaged; --resume flies it again",
-                                (directory / kDatabaseName).string(), row.Integer(0)));
+  throw ResultError(Kind::kFile, fmt::format("{}: the row of case {} is damaged; --resume flies it again",
+                                             (directory / kDatabaseName).string(), row.Integer(0)));
 }
 
 /// The error for a folder that cannot be made or written, from the system's reason.

@@ -47,7 +47,8 @@ class ResultFolder : public ResultStore {
   /// damaged are removed, so that their cases are flown again. Locked as by Create.
   static ResultFolder Resume(const std::filesystem::path& directory, const Campaign& campaign,
                              std::optional<FolderLock> lock = {});
-  /// Opens a folder as it is, without a lock: to read it. InputError if it is none, or its columns are not this program's.
+  /// Opens a folder as it is, without a lock: to read it. InputError if it is none, or its columns are not
+  /// this program's.
   static ResultFolder Open(const std::filesystem::path& directory);
 
   ResultFolder(ResultFolder&&) noexcept;
@@ -57,12 +58,13 @@ class ResultFolder : public ResultStore {
   const std::filesystem::path& directory() const { return directory_; }
   /// Of the vehicle, as far as its results' columns depend on it: kUsualStages or kMaxStages.
   std::size_t stages() const { return stages_; }
-  /// Value of "campaign_id", "flight_id", "engine", "name", "seed", "cases", "sampling"; and as they were before
-  /// the first case was flown: "planned_cases", "requirements_id" and "requirements" (RequirementLine() each).
+  /// Value of "campaign_id", "flight_id", "engine", "name", "seed", "cases", "sampling"; and as they were
+  /// before the first case was flown: "planned_cases", "requirements_id" and "requirements"
+  /// (RequirementLine() each).
   std::string Provenance(const std::string& key) const;
 
-  /// Remembers, once each, that verdicts were read from the first n cases. A record of what people saw, not of
-  /// what was flown: so a folder that is only reported on may get one too.
+  /// Remembers, once each, that verdicts were read from the first n cases. A record of what people saw, not
+  /// of what was flown: so a folder that is only reported on may get one too.
   void RecordLook(const LookRecord& look) const;
   /// Numbers of cases at which any verdict was read, ascending.
   std::vector<std::int64_t> PastLooks() const override;

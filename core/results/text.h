@@ -18,7 +18,8 @@ std::string PercentText(double probability);
 std::string CsvField(std::string_view text);
 /// Text inside an HTML element or a double-quoted attribute.
 std::string HtmlText(std::string_view text);
-/// One word of a POSIX shell, in commands that a reader copies: as it is, or in single quotes where it must be.
+/// One word of a POSIX shell, in commands that a reader copies: as it is, or in single quotes where it must
+/// be.
 std::string ShellWord(const std::string& text);
 
 }  // namespace dispersa

@@ -39,8 +39,7 @@ struct SensitivityIndex {
 /// (2012) 188; the correction is that of the analysis of variance, Kelley's epsilon squared). It sees any
 /// dependence on x alone, signed, symmetric or circular. Equal x stay in one class. 0 without variance of x
 /// or of y. Values are finite, as many of each. The samples' bits depend on `seed` alone.
-SensitivityIndex FirstOrderIndex(const Ranked& x, const std::vector<double>& y,
-                                 std::uint64_t seed = 1);
+SensitivityIndex FirstOrderIndex(const Ranked& x, const std::vector<double>& y, std::uint64_t seed = 1);
 
 /// The index alone, unlimited below: what chance explains may come out negative.
 double FirstOrderShare(const Ranked& x, const std::vector<double>& y);

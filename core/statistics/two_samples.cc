@@ -14,7 +14,6 @@
 namespace dispersa {
 namespace {
 
-
 double LogChoose(std::int64_t n, std::int64_t k) {
   const auto log_factorial = [](std::int64_t m) { return boost::math::lgamma(static_cast<double>(m) + 1.0); };
   return log_factorial(n) - log_factorial(k) - log_factorial(n - k);

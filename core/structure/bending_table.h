@@ -16,9 +16,10 @@ inline constexpr int kModes = kMostFlownModes;
 inline constexpr int kPlanes = 2;
 
 struct BendingTable {
-  /// Frequency (rad/s), 1 / generalised mass; at the pivot: deflection, slope; slopes at the inertial unit and at
-  /// each rate gyro; shortening with each mode; from kStripsAt deflection, then slope of each strip; from kMomentAt
-  /// the bending moment of the mode's inertia at each load station, for a unit acceleration of it.
+  /// Frequency (rad/s), 1 / generalised mass; at the pivot: deflection, slope; slopes at the inertial unit
+  /// and at each rate gyro; shortening with each mode; from kStripsAt deflection, then slope of each strip;
+  /// from kMomentAt the bending moment of the mode's inertia at each load station, for a unit acceleration of
+  /// it.
   enum Column : int {
     kFrequency = 0,
     kInverseMass = 1,
@@ -32,11 +33,10 @@ struct BendingTable {
     kRowSize = 40
   };
   static_assert(kGyroSlope + kRateGyros == kShortening && kShortening + kModes <= kStripsAt &&
-                kStripsAt + 2 * kStrips == kMomentAt &&
-                kMomentAt + kLoadStations <= kRowSize);
+                kStripsAt + 2 * kStrips == kMomentAt && kMomentAt + kLoadStations <= kRowSize);
 
-  int modes = 0;  ///< that fly, in each plane
-  int planes = 1;  ///< 1: plane z is plane y
+  int modes = 0;                      ///< that fly, in each plane
+  int planes = 1;                     ///< 1: plane z is plane y
   std::vector<double> propellant_kg;  ///< of the levels, falling
   AlignedRows rows;                   ///< by plane, level, mode; linear between levels, held beyond
 

@@ -12,8 +12,8 @@ namespace dispersa {
 
 namespace {
 
-// Slender-body shares follow the growth of the cross-section, shifts the planform about its centroid, so that all
-// shares together are 1 and their centroid is where the centre of pressure is.
+// Slender-body shares follow the growth of the cross-section, shifts the planform about its centroid, so that
+// all shares together are 1 and their centroid is where the centre of pressure is.
 void ShareOut(const Vehicle& vehicle, const Stage& stage, LoadTable& table) {
   const std::vector<MouldSection> body = CutMouldLine(vehicle.profile, stage.bottom_station_m);
   const auto radius = [&](double station_m) {
@@ -56,7 +56,8 @@ LoadTable BuildLoadTable(const Vehicle& vehicle, int stage) {
   LoadTable table;
   ShareOut(vehicle, lowest, table);
   const double full = lowest.propellant_mass_kg;
-  const BeamMasses masses[3] = {BuildBeamMasses(vehicle, stage, 0.0), BuildBeamMasses(vehicle, stage, 0.5 * full),
+  const BeamMasses masses[3] = {BuildBeamMasses(vehicle, stage, 0.0),
+                                BuildBeamMasses(vehicle, stage, 0.5 * full),
                                 BuildBeamMasses(vehicle, stage, full)};
   for (std::size_t i = 0; i < kLoadStations; ++i) {
     const double station = lowest.bottom_station_m / kStrips * static_cast<double>(i + 1);

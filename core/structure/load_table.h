@@ -1,5 +1,5 @@
-// What a stack's cross-sections have to carry: where the normal force acts along the body, and what the mass ahead
-// of a station resists. Plain data, for dynamics/body_sections.h.
+// What a stack's cross-sections have to carry: where the normal force acts along the body, and what the mass
+// ahead of a station resists. Plain data, for dynamics/body_sections.h.
 #pragma once
 
 #include <array>
@@ -14,15 +14,16 @@ inline constexpr int kStrips = 8;
 inline constexpr int kLoadStations = kStrips - 1;
 
 struct LoadTable {
-  /// `slender` share of the normal force by slender-body theory, at the middle of each strip, plus for each metre
-  /// that the centre of pressure is aft of slender_station_m `shift`.
+  /// `slender` share of the normal force by slender-body theory, at the middle of each strip, plus for each
+  /// metre that the centre of pressure is aft of slender_station_m `shift`.
   std::array<double, kStrips> strip_station_m{}, slender{}, shift_1_m{};
   double slender_station_m = 0.0;
 
-  /// Stations s, and of the mass ahead of each, with m(x) its mass per length, g(x) the radius of gyration of its
-  /// cross-section and p the propellant: the integral of m (s - x) = first[0] + first[1] p + first[2] p², and that of
-  /// m (s - x) x - m g² = second[0] + second[1] p + second[2] p². Of a grain that is exact, with first[2] = 0; of
-  /// liquids whose surface passes the station it is the parabola through full, half full and empty.
+  /// Stations s, and of the mass ahead of each, with m(x) its mass per length, g(x) the radius of gyration of
+  /// its cross-section and p the propellant: the integral of m (s - x) = first[0] + first[1] p + first[2] p²,
+  /// and that of m (s - x) x - m g² = second[0] + second[1] p + second[2] p². Of a grain that is exact, with
+  /// first[2] = 0; of liquids whose surface passes the station it is the parabola through full, half full and
+  /// empty.
   std::array<double, kLoadStations> station_m{};
   std::array<std::array<double, 3>, kLoadStations> first_kg_m{};
   std::array<std::array<double, 3>, kLoadStations> second_kg_m2{};

@@ -486,7 +486,8 @@ void Fleet<T>::Steer(int lane, int stage) {
   flight.steer_rad = steering.begin_rad;
   // To depletion of what the burn before left, whenever it is cut off. Nothing left is no burn.
   const double whole_s = flight.burns[i].duration_s;
-  flight.steer_rad_s = steering.empty() || whole_s == 0.0 ? 0.0 : (steering.end_rad - steering.begin_rad) / whole_s;
+  flight.steer_rad_s =
+      steering.empty() || whole_s == 0.0 ? 0.0 : (steering.end_rad - steering.begin_rad) / whole_s;
 }
 
 template <class T>

@@ -25,7 +25,7 @@ struct AscentModel {
   Vehicle vehicle;
   LauncherPlant plant;
   FlightWeather weather;  ///< of the plant's environment
-  double tick_s = 0.01;  ///< burnout is detected on the autopilot's ticks
+  double tick_s = 0.01;   ///< burnout is detected on the autopilot's ticks
   /// What the reaction control of the coast expels. A point mass has no attitude to hold; it is taken off at
   /// once as the last stage begins, since nothing but that stage's thrust and thin air tells one mass from
   /// another.
@@ -45,8 +45,8 @@ inline AscentSteps HalvedSteps(const AscentSteps& steps) {
 
 struct AscentOptions {
   AscentSteps steps;
-  bool record = false;         ///< keep samples and the attitude program, one a step
-  double mach_low = 0.8;       ///< of the transonic range
+  bool record = false;    ///< keep samples and the attitude program, one a step
+  double mach_low = 0.8;  ///< of the transonic range
   double mach_high = 1.2;
 };
 
@@ -58,8 +58,8 @@ struct AscentSample {
   double relative_velocity_m_s = 0.0;  ///< to the rotating Earth
   double flight_path_angle_rad = 0.0;  ///< inertial
   double relative_path_angle_rad = 0.0;
-  double alpha_rad = 0.0;              ///< programmed
-  double pitch_rad = 0.0;              ///< in the launch-inertial frame: the paper's phi
+  double alpha_rad = 0.0;  ///< programmed
+  double pitch_rad = 0.0;  ///< in the launch-inertial frame: the paper's phi
   double yaw_rad = 0.0;
   double roll_rad = 0.0;
   double mach = 0.0;
@@ -71,15 +71,15 @@ struct AscentSample {
 };
 
 struct AscentResult {
-  bool completed = false;     ///< false: it came back to the ground
+  bool completed = false;  ///< false: it came back to the ground
   double end_time_s = 0.0;
-  Orbit orbit;                ///< at injection
+  Orbit orbit;  ///< at injection
   Vector3 p_EoC_I = Vector3::Zero();
   Vector3 v_IC_I = Vector3::Zero();
   double last_ignition_s = 0.0;
   /// How long engines that are cut off at a velocity burnt, by stage; infinite: to depletion.
   std::array<double, kMaxStages> cut_off_s = AllStages(HUGE_VAL);
-  std::vector<double> jettison_s;  ///< of each of the plant's jettisons; infinite: never
+  std::vector<double> jettison_s;                       ///< of each of the plant's jettisons; infinite: never
   std::array<double, kMaxStages> earlier_ignition_s{};  ///< of stages before the last that a timer ignites
   double q_max_pa = 0.0;
   double q_alpha_max_pa_rad = 0.0;
@@ -101,8 +101,8 @@ AscentResult FlyAscent(const AscentModel& model, const FlightProgram& program, c
 /// Lanes that are flown side by side unless the caller says otherwise: a register of AVX2.
 inline constexpr int kAscentWidth = 4;
 
-/// FlyAscent of each program, `width` at a time: 1, 4 or 8, which changes no bit. Throws std::invalid_argument
-/// for another width.
+/// FlyAscent of each program, `width` at a time: 1, 4 or 8, which changes no bit. Throws
+/// std::invalid_argument for another width.
 std::vector<AscentResult> FlyAscents(const AscentModel& model, std::span<const FlightProgram> programs,
                                      const AscentOptions& options, int width = kAscentWidth);
 

@@ -8,7 +8,16 @@
 namespace dispersa {
 
 struct AscentEvent {
-  enum Kind { kIgnition, kBurnout, kSeparation, kBoosterBurnout, kBoosterSeparation, kTurnBegin, kTurnEnd, kKink };
+  enum Kind {
+    kIgnition,
+    kBurnout,
+    kSeparation,
+    kBoosterBurnout,
+    kBoosterSeparation,
+    kTurnBegin,
+    kTurnEnd,
+    kKink
+  };
 
   double time_s;  ///< since lift-off, exact; an ignition may be earlier
   Kind kind;      ///< kKink: thrust or program bend there, and no step may go across
@@ -18,7 +27,7 @@ struct AscentEvent {
 /// In the order of time.
 struct AscentEvents {
   std::vector<AscentEvent> events;
-  double last_ignition_s = 0.0;  ///< the last stage's timer; 0 of a single stage
+  double last_ignition_s = 0.0;                         ///< the last stage's timer; 0 of a single stage
   std::array<double, kMaxStages> earlier_ignition_s{};  ///< the others'
 };
 AscentEvents EventsOf(const AscentModel& model, const std::vector<MotorBurn>& burns,

@@ -32,8 +32,8 @@ struct TrajectoryOptions {
   double tick_s = 0.01;
   /// Threads that fly individuals; 1 to 1024. The result does not depend on it.
   int threads = 1;
-  /// Of the search. On the shipped vehicle within 0.02 km, 0.04 m/s and 0.0004 deg of the converged injection:
-  /// less than `tie_tolerance` tells apart.
+  /// Of the search. On the shipped vehicle within 0.02 km, 0.04 m/s and 0.0004 deg of the converged
+  /// injection: less than `tie_tolerance` tells apart.
   AscentSteps search_steps = {0.5, 2.0, 20.0};
   /// Of the refinement and the reference. Halving them moves the shipped reference's injection by less than
   /// 0.1 m, 0.1 mm/s and 1e-7 deg.
@@ -42,18 +42,18 @@ struct TrajectoryOptions {
   /// negative. With the shipped weights 1 is a kilometre, 10 m/s or a degree: misses that the refinement
   /// removes without moving the program visibly.
   double tie_tolerance = 1.0;
-  /// Probability that a variable of a child is mutated; 0 to 1. Measured on the shipped problem over 6 seeds and
-  /// 60 x 60 evaluations: the worst objective is 10 with one half, 34 with one variable a child.
+  /// Probability that a variable of a child is mutated; 0 to 1. Measured on the shipped problem over 6 seeds
+  /// and 60 x 60 evaluations: the worst objective is 10 with one half, 34 with one variable a child.
   double mutation_probability = 0.5;
-  /// Fraction of each limit that the search keeps in reserve, since the refinement moves the program a little;
-  /// 0 to 1. Removing a miss of `tie_tolerance` changes alpha_max by less than 0.5 %.
+  /// Fraction of each limit that the search keeps in reserve, since the refinement moves the program a
+  /// little; 0 to 1. Removing a miss of `tie_tolerance` changes alpha_max by less than 0.5 %.
   double limit_reserve = 0.01;
   /// Shortest time from t1 to t3 and from t3 to t2; positive. How fast the program may turn is the limit's
   /// business; this keeps the times apart.
   double shortest_ramp_s = 1.0;
-  /// Individuals and generations of the search among programs that reach the target (selection.h), in the ranges
-  /// of GeneticAlgorithmOptions. On the shipped problem twice as many lower the peak of q·alpha by less
-  /// than 1 %.
+  /// Individuals and generations of the search among programs that reach the target (selection.h), in the
+  /// ranges of GeneticAlgorithmOptions. On the shipped problem twice as many lower the peak of q·alpha by
+  /// less than 1 %.
   int selection_population = 24;
   int selection_generations = 20;
   /// A target is reached when the refinement ends within these and every constraint holds; positive.

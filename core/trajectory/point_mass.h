@@ -46,11 +46,11 @@ struct Leg {
   BesideStage<T> beside;
   MaskOf<T> burning, burnt, boosting;
   T ignition_s;
-  T expelled_kg;            ///< by the reaction control
-  MaskOf<T> turning;        ///< t1 is past
-  Vector<T> right_I;        ///< y axis of the launch frame
-  Vector<T> turn_offset_I;  ///< body axis less direction of flight as the turn began
-  bool any_steers;          ///< some lane's program has Steering:
+  T expelled_kg;                           ///< by the reaction control
+  MaskOf<T> turning;                       ///< t1 is past
+  Vector<T> right_I;                       ///< y axis of the launch frame
+  Vector<T> turn_offset_I;                 ///< body axis less direction of flight as the turn began
+  bool any_steers;                         ///< some lane's program has Steering:
   T steer_rad, steer_rad_s, steer_from_s;  ///< at ignition, its growth, ignition
   T fade_rad, fade_from_s;                 ///< what the burn before ended with, and when
 };
@@ -145,8 +145,8 @@ DISPERSA_OUT_OF_LINE AscentInstant<T> InstantAt(const Ground& ground, const Leg<
     const MotorBurnLanes<T>& beside = leg.beside.burn;
     const BurnState<T> boost = BurnAt(beside, time_s - leg.ignition_s);
     AddBeside(leg.beside, Select(leg.boosting, boost.propellant_kg, T(0.0)), T(0.0), T(0.0), masses);
-    const T push = Max(Fma(beside.vacuum_thrust_n, boost.fraction, -(around.pressure_pa * beside.exit_area_m2)),
-                       T(0.0));
+    const T push =
+        Max(Fma(beside.vacuum_thrust_n, boost.fraction, -(around.pressure_pa * beside.exit_area_m2)), T(0.0));
     beside_thrust_n = Select(leg.boosting, push, T(0.0));
   }
   masses.mass_kg = masses.mass_kg - leg.expelled_kg;

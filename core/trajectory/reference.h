@@ -29,7 +29,7 @@ inline constexpr double kSteeringFade_s = 60.0;
 /// Section II of the paper: vertical to t1, turning with incidence to t2, then zero incidence; maximum
 /// incidence at t3. Times since lift-off.
 struct FlightProgram {
-  double alpha_max_rad = 0.0;       ///< magnitude of the (nose-down) maximum incidence
+  double alpha_max_rad = 0.0;  ///< magnitude of the (nose-down) maximum incidence
   double t1_s = 0.0;
   double t3_s = 0.0;
   double t2_s = 0.0;
@@ -54,11 +54,11 @@ struct Orbit {
 };
 
 struct ConstraintMargin {
-  std::string name;   ///< unit in the name
+  std::string name;  ///< unit in the name
   double value = 0.0;
   double limit = 0.0;
-  double margin = 0.0;  ///< limit - value, >= 0 when satisfied
-  bool enforced = true; ///< false: reported only
+  double margin = 0.0;   ///< limit - value, >= 0 when satisfied
+  bool enforced = true;  ///< false: reported only
 };
 
 struct Bounds {
@@ -87,19 +87,19 @@ struct TrajectoryProblem {
   Bounds alpha_max_rad, t1_s, t3_s, t2_s, coast_s, launch_azimuth_rad;
   std::array<Bounds, kMaxStages> earlier_coast_s{};
   std::array<SteeringBounds, kMaxStages> steering{};
-  double weight_altitude_1_m = 0.0;   ///< G1 of (8)
-  double weight_velocity_s_m = 0.0;   ///< G2
-  double weight_angle_1_rad = 0.0;    ///< G3
+  double weight_altitude_1_m = 0.0;  ///< G1 of (8)
+  double weight_velocity_s_m = 0.0;  ///< G2
+  double weight_angle_1_rad = 0.0;   ///< G3
   double weight_inclination_1_rad = 0.0;
   double weight_argument_1_rad = 0.0;
   double axial_load_limit_g = 12.0;
   double lateral_load_limit_g = 1.5;
   double alpha_limit_rad = 0.0;
-  double turn_rate_limit_rad_s = 0.0; ///< of the body axis in the pitch-over; 0: reported only
-  double transonic_mach_low = 0.8;    ///< alpha = 0 from here
-  double transonic_mach_high = 1.2;   ///< to here
-  double q_max_limit_pa = 0.0;        ///< 0: reported only
-  double q_alpha_limit_pa_rad = 0.0;  ///< 0: reported only
+  double turn_rate_limit_rad_s = 0.0;  ///< of the body axis in the pitch-over; 0: reported only
+  double transonic_mach_low = 0.8;     ///< alpha = 0 from here
+  double transonic_mach_high = 1.2;    ///< to here
+  double q_max_limit_pa = 0.0;         ///< 0: reported only
+  double q_alpha_limit_pa_rad = 0.0;   ///< 0: reported only
   double reaction_control_propellant_kg =
       0.0;  ///< that a flight will have expelled before the last stage burns
   int population = 0;
@@ -117,12 +117,12 @@ struct Reference {
   std::string target_missed;  ///< how far the search got when it missed its target; empty: it did not
   TrajectoryProblem problem;
   FlightProgram program;
-  double last_ignition_s = 0.0;  ///< timer since lift-off of the last stage
+  double last_ignition_s = 0.0;                         ///< timer since lift-off of the last stage
   std::array<double, kMaxStages> earlier_ignition_s{};  ///< and of the others that have one
-  Orbit orbit;                   ///< reached, by the optimiser's own simulation
+  Orbit orbit;                                          ///< reached, by the optimiser's own simulation
   std::vector<ConstraintMargin> constraints;
-  std::string engine;            ///< version that found it
-  std::string vehicle_sha256;    ///< of the canonical vehicle it was found for
+  std::string engine;          ///< version that found it
+  std::string vehicle_sha256;  ///< of the canonical vehicle it was found for
   std::int64_t evaluations = 0;
   AttitudeProgram attitude;
 };

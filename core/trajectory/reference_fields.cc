@@ -11,7 +11,9 @@ constexpr Range kAzimuth = Between(0.0, kTwoPi);
 constexpr Range kIncidence = {0.0, kPi / 2.0, false, true};
 constexpr Range kSteered = Between(-kPi / 4.0, kPi / 4.0);
 
-std::string StageKey(std::size_t stage, const char* what) { return "stage" + std::to_string(stage + 1) + "_" + what; }
+std::string StageKey(std::size_t stage, const char* what) {
+  return "stage" + std::to_string(stage + 1) + "_" + what;
+}
 
 // The two limits of a decision variable, which are one list in the file.
 using Describing = void (*)(Fields&, const char*, Dimension, const Range&, std::vector<double>&, const char*);
@@ -24,14 +26,13 @@ void DescribeOptionalLimits(Fields& fields, const char* stem, Dimension dimensio
   fields.OptionalQuantities(stem, dimension, range, 2, 2, limits, meaning);
 }
 
-void DescribeBounds(Fields& fields, const std::string& stem, Dimension dimension, const Range& range, Bounds& bounds,
-                    const char* meaning, Describing describe = DescribeLimits) {
+void DescribeBounds(Fields& fields, const std::string& stem, Dimension dimension, const Range& range,
+                    Bounds& bounds, const char* meaning, Describing describe = DescribeLimits) {
   std::vector<double> limits;
   describe(fields, stem.c_str(), dimension, range, limits, meaning);
   if (limits.size() != 2) return;
   bounds = {limits[0], limits[1]};
-  if (limits[0] > limits[1])
-    fields.Refuse(stem, "the lower bound is above the upper one", "[low, high]");
+  if (limits[0] > limits[1]) fields.Refuse(stem, "the lower bound is above the upper one", "[low, high]");
 }
 
 // Bounds that fall go through north, [350, 10] as [350, 370] does.
@@ -74,37 +75,43 @@ void DescribeInjection(Fields& fields, TrajectoryProblem& problem) {
   fields.Either({{Has("velocity", kSpeed), velocity},
                  {Has("inclination", kAngle), [&] { problem.velocity_is_free = true; }},
                  {Else(), velocity}});
-  fields.Quantity("flight_path_angle", kAngle, Inside(-kPi / 2.0, kPi / 2.0), problem.target_flight_path_angle_rad,
-                  "inertial");
+  fields.Quantity("flight_path_angle", kAngle, Inside(-kPi / 2.0, kPi / 2.0),
+                  problem.target_flight_path_angle_rad, "inertial");
 }
 
 void DescribeTarget(Fields& fields, TrajectoryProblem& problem) {
-  fields.OptionalQuantity("inclination", kAngle, Between(0.0, kPi), problem.target_inclination_rad, "of the orbit");
+  fields.OptionalQuantity("inclination", kAngle, Between(0.0, kPi), problem.target_inclination_rad,
+                          "of the orbit");
   fields.OptionalQuantity("node", kAngle, Between(0.0, kTwoPi), problem.target_node_rad,
                           "right ascension; the time of day of the lift-off meets it");
-  fields.OptionalQuantity("argument_of_perigee", kAngle, Between(0.0, kTwoPi), problem.target_argument_of_perigee_rad,
-                          "of an ellipse, with an inclination");
+  fields.OptionalQuantity("argument_of_perigee", kAngle, Between(0.0, kTwoPi),
+                          problem.target_argument_of_perigee_rad, "of an ellipse, with an inclination");
   const auto ellipse = [&] { DescribeEllipse(fields, problem); };
   fields.Either({{Has("perigee_altitude", kLength), ellipse},
                  {Has("apogee_altitude", kLength), ellipse},
                  {Else(), [&] { DescribeInjection(fields, problem); }}});
   if (problem.target_argument_of_perigee_rad && !(problem.target_inclination_rad && problem.target_apogee_m))
-    fields.Refuse("", "an argument of perigee counts along an ellipse from its node",
-                  "argument_of_perigee_deg beside perigee_altitude_km, apogee_altitude_km and inclination_deg");
+    fields.Refuse(
+        "", "an argument of perigee counts along an ellipse from its node",
+        "argument_of_perigee_deg beside perigee_altitude_km, apogee_altitude_km and inclination_deg");
 }
 
 void DescribeDecisionBounds(Fields& fields, TrajectoryProblem& problem) {
   DescribeBounds(fields, "alpha_max", kAngle, kIncidence, problem.alpha_max_rad,
                  "[low, high] of the largest incidence, nose down; equal limits freeze it");
-  DescribeBounds(fields, "t1", kTime, kNonNegative, problem.t1_s, "[low, high] of the end of the vertical ascent");
-  DescribeBounds(fields, "t3", kTime, kNonNegative, problem.t3_s, "[low, high] of the time of the largest incidence");
-  DescribeBounds(fields, "t2", kTime, kNonNegative, problem.t2_s, "[low, high] of the begin of the gravity turn");
+  DescribeBounds(fields, "t1", kTime, kNonNegative, problem.t1_s,
+                 "[low, high] of the end of the vertical ascent");
+  DescribeBounds(fields, "t3", kTime, kNonNegative, problem.t3_s,
+                 "[low, high] of the time of the largest incidence");
+  DescribeBounds(fields, "t2", kTime, kNonNegative, problem.t2_s,
+                 "[low, high] of the begin of the gravity turn");
   DescribeBounds(fields, "coast", kTime, kNonNegative, problem.coast_s,
                  "[low, high] of the coast before the last stage ignites");
   DescribeAzimuthBounds(fields, problem.launch_azimuth_rad);
   for (std::size_t stage = 1; stage < kMaxStages; ++stage) {
     DescribeBounds(fields, StageKey(stage, "coast"), kTime, kNonNegative, problem.earlier_coast_s[stage],
-                   "[low, high] of the coast before this stage, which a timer ignites", DescribeOptionalLimits);
+                   "[low, high] of the coast before this stage, which a timer ignites",
+                   DescribeOptionalLimits);
     const std::string begin = StageKey(stage, "incidence_begin"), end = StageKey(stage, "incidence_end");
     const auto steering = [&] {
       DescribeBounds(fields, begin, kAngle, kSteered, problem.steering[stage].begin_rad,
@@ -134,12 +141,14 @@ void DescribeWeights(Fields& fields, TrajectoryProblem& problem, bool of_inclina
 void DescribeConstraints(Fields& fields, TrajectoryProblem& problem) {
   fields.Quantity("axial_load", kAcceleration, kPositive, problem.axial_load_limit_g, "largest");
   fields.Quantity("lateral_load", kAcceleration, kPositive, problem.lateral_load_limit_g, "largest");
-  fields.Quantity("alpha", kAngle, {0.0, kPi / 2.0, true, true}, problem.alpha_limit_rad, "largest incidence");
+  fields.Quantity("alpha", kAngle, {0.0, kPi / 2.0, true, true}, problem.alpha_limit_rad,
+                  "largest incidence");
   fields.Quantity("turn_rate", kAngularRate, kPositive, problem.turn_rate_limit_rad_s,
                   "of the body axis in the pitch-over; without, it is reported only", 0.0);
   fields.Number("transonic_mach_low", kPositive, problem.transonic_mach_low, "zero incidence from here");
   fields.Number("transonic_mach_high", kPositive, problem.transonic_mach_high, "to here");
-  fields.Quantity("q_max", kPressure, kPositive, problem.q_max_limit_pa, "largest; without, it is reported only", 0.0);
+  fields.Quantity("q_max", kPressure, kPositive, problem.q_max_limit_pa,
+                  "largest; without, it is reported only", 0.0);
   fields.Quantity("q_alpha", kPressureAngle, kPositive, problem.q_alpha_limit_pa_rad,
                   "largest; without, it is reported only", 0.0);
 }
@@ -184,7 +193,8 @@ void DescribeOrbit(Fields& fields, Orbit& orbit) {
   fields.Quantity("flight_path_angle", kAngle, kAnyNumber, orbit.flight_path_angle_rad, "inertial");
   fields.Quantity("inclination", kAngle, Between(0.0, kPi), orbit.inclination_rad, "of the orbit");
   fields.Quantity("node_longitude", kAngle, Between(0.0, kTwoPi), orbit.node_longitude_rad,
-                  "where the plane crosses the equator northwards, east of Greenwich as it stood at lift-off", 0.0);
+                  "where the plane crosses the equator northwards, east of Greenwich as it stood at lift-off",
+                  0.0);
   fields.Quantity("argument_of_latitude", kAngle, Between(0.0, kTwoPi), orbit.argument_of_latitude_rad,
                   "from the node along the orbit", 0.0);
 }
@@ -211,7 +221,8 @@ void DescribeConstraint(Fields& fields, ConstraintMargin& constraint) {
 void DescribeProvenance(Fields& fields, Reference& reference) {
   fields.Text("engine", reference.engine, "version that found it");
   fields.Text("vehicle_sha256", reference.vehicle_sha256, "of the canonical vehicle that it was found for");
-  fields.Integer("evaluations", 0, INT64_MAX, reference.evaluations, "trajectories that were flown to find it");
+  fields.Integer("evaluations", 0, INT64_MAX, reference.evaluations,
+                 "trajectories that were flown to find it");
 }
 
 void DescribeAttitude(Fields& fields, AttitudeProgram& attitude) {
@@ -235,9 +246,10 @@ void Describe(Fields& fields, TrajectoryProblem& problem) {
   fields.Map("target", "the orbit", [&](Fields& target) { DescribeTarget(target, problem); });
   fields.Map("bounds", "of the decision variables",
              [&](Fields& bounds) { DescribeDecisionBounds(bounds, problem); });
-  fields.Either({{Has("target.argument_of_perigee", kAngle), [&] { DescribeWeights(fields, problem, true, true); }},
-                 {Has("target.inclination", kAngle), [&] { DescribeWeights(fields, problem, true, false); }},
-                 {Else(), [&] { DescribeWeights(fields, problem, false, false); }}});
+  fields.Either(
+      {{Has("target.argument_of_perigee", kAngle), [&] { DescribeWeights(fields, problem, true, true); }},
+       {Has("target.inclination", kAngle), [&] { DescribeWeights(fields, problem, true, false); }},
+       {Else(), [&] { DescribeWeights(fields, problem, false, false); }}});
   fields.Map("limits", "constraints", [&](Fields& limits) { DescribeConstraints(limits, problem); });
   fields.Quantity("velocity_reserve", kSpeed, Between(0.0, 1000.0), problem.velocity_reserve_m_s,
                   "the trajectory shall be so much faster, for guidance to spend", 0.0);
@@ -250,7 +262,8 @@ void Describe(Fields& fields, TrajectoryProblem& problem) {
 
 void Describe(Fields& fields, Reference& reference) {
   fields.Text("name", reference.name, "of the reference");
-  fields.Text("target_missed", reference.target_missed, "how far the search got when it missed its target", "");
+  fields.Text("target_missed", reference.target_missed, "how far the search got when it missed its target",
+              "");
   fields.Map("problem", "that was solved", [&](Fields& problem) { Describe(problem, reference.problem); });
   fields.Map("flight_program", "what was found; times since lift-off",
              [&](Fields& program) { DescribeProgram(program, reference); });
@@ -260,7 +273,8 @@ void Describe(Fields& fields, Reference& reference) {
   fields.List("constraints", 0, SIZE_MAX, reference.constraints, "how they are kept", DescribeConstraint);
   fields.Map("provenance", "who found it, for what",
              [&](Fields& provenance) { DescribeProvenance(provenance, reference); });
-  fields.Map("attitude", "over the flight", [&](Fields& attitude) { DescribeAttitude(attitude, reference.attitude); });
+  fields.Map("attitude", "over the flight",
+             [&](Fields& attitude) { DescribeAttitude(attitude, reference.attitude); });
   reference.attitude.launch_azimuth_rad = reference.program.launch_azimuth_rad;
 }
 

@@ -1,5 +1,5 @@
-// The refinement: flight programs to the orbit's last metre, in (alpha_max, coast, launch azimuth) with t1, t3
-// and t2 frozen. In these three the injection is well posed (two or three Newton steps); all six together
+// The refinement: flight programs to the orbit's last metre, in (alpha_max, coast, launch azimuth) with t1,
+// t3 and t2 frozen. In these three the injection is well posed (two or three Newton steps); all six together
 // leave a manifold of programs with the same orbit.
 #pragma once
 

@@ -43,8 +43,7 @@ SpeedAtTarget SpeedToward(const AscentModel& model, const TrajectoryProblem& pro
   const double mu = model.plant.environment.earth.mu_m3_s2;
   const double radius_m = ascent.p_EoC_I.norm();
   const double target_radius_m = radius_m - ascent.orbit.altitude_m + problem.target_altitude_m;
-  const double squared =
-      ascent.v_IC_I.squaredNorm() + 2.0 * mu * (1.0 / target_radius_m - 1.0 / radius_m);
+  const double squared = ascent.v_IC_I.squaredNorm() + 2.0 * mu * (1.0 / target_radius_m - 1.0 / radius_m);
   speed.on_target = refined.status == LeastSquaresStatus::kConverged;
   speed.velocity_m_s = std::sqrt(std::fmax(squared, 0.0));
   speed.held = refined.held_at_bound;
@@ -74,12 +73,14 @@ std::string CauseText(const AscentModel& model, const TrajectoryProblem& problem
   const double asked = AimedVelocity(problem);
   if (fast.velocity_m_s < asked)
     text += fmt::format(
-        " Energy: {} the vehicle has at most {:.1f} m/s (launch azimuth {:.6g} deg), {:.1f} m/s less than the "
+        " Energy: {} the vehicle has at most {:.1f} m/s (launch azimuth {:.6g} deg), {:.1f} m/s less than "
+        "the "
         "target asks.",
         Where(fast), fast.velocity_m_s, Deg(fast.program.launch_azimuth_rad), asked - fast.velocity_m_s);
   if (slow.velocity_m_s > asked)
     text += fmt::format(
-        " Energy: {} the vehicle has at least {:.1f} m/s (launch azimuth {:.6g} deg), {:.1f} m/s more than the "
+        " Energy: {} the vehicle has at least {:.1f} m/s (launch azimuth {:.6g} deg), {:.1f} m/s more than "
+        "the "
         "target asks; the bounds of the launch azimuth do not let it spend the surplus.",
         Where(slow), slow.velocity_m_s, Deg(slow.program.launch_azimuth_rad), slow.velocity_m_s - asked);
   return text;
@@ -92,8 +93,9 @@ std::string DescribeShortfall(const AscentModel& model, const TrajectoryProblem&
   const FlightProgram& program = result.reference.program;
   const AscentResult ascent = FlyAscent(model, program, AscentOptionsOf(problem, options.steps));
   if (!ascent.completed)
-    return fmt::format("The target is out of reach: every program falls back to the ground; the best flies {:.1f} s.",
-                       ascent.end_time_s);
+    return fmt::format(
+        "The target is out of reach: every program falls back to the ground; the best flies {:.1f} s.",
+        ascent.end_time_s);
   const OrbitErrors& e = result.errors;
   std::string text = fmt::format(
       "The target is out of reach: the best program ends {:+.3f} km, {:+.3f} m/s and {:+.4f} deg from it.",

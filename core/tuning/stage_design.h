@@ -7,8 +7,8 @@
 
 namespace dispersa {
 
-/// What is behind the law in pitch and yaw of a stage that bends: a low pass of second order and a notch; and how
-/// two gyros share the rates.
+/// What is behind the law in pitch and yaw of a stage that bends: a low pass of second order and a notch; and
+/// how two gyros share the rates.
 struct StageFilters {
   double low_pass_rad_s = 0.0;  ///< 0: no filters
   double low_pass_damping = 0.7;
@@ -38,8 +38,8 @@ struct AugmentationDesign {
 /// Whether an axis adapts by fuzzy rules or integrates: only then there is something to learn.
 bool Learns(const AutopilotConfig& autopilot);
 
-/// Gives one stage (0-based) of all axes the gains of a design, adaptive fuzzy axes its gamma, PID axes its ki;
-/// rounded to `kDesignDigits`, so that a file that prints them holds exactly what was flown.
+/// Gives one stage (0-based) of all axes the gains of a design, adaptive fuzzy axes its gamma, PID axes its
+/// ki; rounded to `kDesignDigits`, so that a file that prints them holds exactly what was flown.
 void ApplyDesign(const StageDesign& design, int stage, AutopilotConfig& autopilot);
 inline constexpr int kDesignDigits = 3;
 
@@ -50,8 +50,8 @@ std::vector<double> ScheduledTimes(const AutopilotConfig& autopilot, int stage);
 /// filters of a time those of its design; the blend of gyros is the first one's.
 void ApplyDesign(const std::vector<StageDesign>& designs, int stage, AutopilotConfig& autopilot);
 
-/// The places in the autopilot's rate_gyros of a stage's (0-based) two gyros that are named for it alone; empty where
-/// there are not two.
+/// The places in the autopilot's rate_gyros of a stage's (0-based) two gyros that are named for it alone;
+/// empty where there are not two.
 std::vector<std::size_t> BlendedGyros(const AutopilotConfig& autopilot, int stage);
 
 /// Whether an axis is PD with augmentation.

@@ -12,8 +12,8 @@
 #include "core/cases/campaign_flights.h"
 #include "core/flight/flight.h"
 #include "core/flight/flight_model.h"
-#include "core/margins/flight_margins.h"
 #include "core/flight/metrics.h"
+#include "core/margins/flight_margins.h"
 #include "core/math/constants.h"
 #include "core/tuning/held_plants.h"
 #include "core/tuning/nominal_margins.h"
@@ -80,9 +80,10 @@ class Tuner {
       std::vector<StageDesign> at_times;
       for (const double at_s : Plant().TimesOf(stage)) {
         if (Plant().FirstMode(stage) > 0.0)
-          cautious.filters = Points().FiltersAt({kStartLowPassPower, kStartLowPassDamping, kStartNotchPower,
-                                        kStartNotchZerosDamping, kStartNotchPolesDamping, kStartGyroWeight},
-                                       stage, at_s);
+          cautious.filters =
+              Points().FiltersAt({kStartLowPassPower, kStartLowPassDamping, kStartNotchPower,
+                                  kStartNotchZerosDamping, kStartNotchPolesDamping, kStartGyroWeight},
+                                 stage, at_s);
         at_times.push_back(cautious);
       }
       ApplyDesign(at_times, stage, campaign_.autopilot);
@@ -95,7 +96,8 @@ class Tuner {
     const CampaignFlights held(rigid);
     std::vector<MarginInstant> instants = MarginInstants(held.model());
     skipped_ = SkippedInstants(held.model());
-    if (options.dispersed > 0) held_.emplace(Plant(), instants, CampaignFlights(Stiff(rigid)), options.dispersed);
+    if (options.dispersed > 0)
+      held_.emplace(Plant(), instants, CampaignFlights(Stiff(rigid)), options.dispersed);
     margins_.emplace(Plant(), std::move(instants));
   }
 
@@ -126,7 +128,9 @@ class Tuner {
  private:
   TunedPlant Plant() const { return {campaign_, start_->model()}; }
   StagePoints Points() const { return {Plant(), options_}; }
-  FlightModel ModelWith(const AutopilotConfig& autopilot) const { return start_->model().WithAutopilot(autopilot); }
+  FlightModel ModelWith(const AutopilotConfig& autopilot) const {
+    return start_->model().WithAutopilot(autopilot);
+  }
 
   std::vector<FlightResult> FlyCases(const FlightModel& model) {
     std::vector<FlightOrder> orders(campaign_.sampling.cases);
@@ -149,7 +153,8 @@ class Tuner {
 
   // The constraints of FlyCandidate.
   std::string MissedInFlight(std::size_t kind, double violation) const {
-    if (kind == 0) return fmt::format("{:.0f} of {} flights are lost", violation * options_.cases, options_.cases);
+    if (kind == 0)
+      return fmt::format("{:.0f} of {} flights are lost", violation * options_.cases, options_.cases);
     return fmt::format("a deflection swings by {:.2f} deg, {:.2f} are allowed",
                        (1.0 + violation) * kLimitCycleLimit_deg, kLimitCycleLimit_deg);
   }
@@ -162,7 +167,8 @@ class Tuner {
     }
     for (int stage = 0; stage < Plant().StageCount(); ++stage)
       ApplyDesign(
-          StageDesign{kStiffBandwidthOfActuator * Plant().ActuatorOf(stage), kStartDamping, kStartLearning, {}},
+          StageDesign{
+              kStiffBandwidthOfActuator * Plant().ActuatorOf(stage), kStartDamping, kStartLearning, {}},
           stage, rigid.autopilot);
     return rigid;
   }
@@ -188,14 +194,16 @@ class Tuner {
     double most = -HUGE_VAL;
     std::size_t last = 0;
     for (double w = kHeldBandwidthOfActuator.high * Plant().ActuatorOf(stage);
-         w > kHeldBandwidthOfActuator.low * Plant().ActuatorOf(stage) && most < 0.0; w *= kHeldBandwidthStep) {
+         w > kHeldBandwidthOfActuator.low * Plant().ActuatorOf(stage) && most < 0.0;
+         w *= kHeldBandwidthStep) {
       for (const double factor : kDampingFactors) {
         if (times.size() == 1 && factor != 1.0) break;
         design.bandwidth_rad_s = w;
         design.damping = factor * damping;
         ApplyDesign(std::vector<StageDesign>(times.size(), design), stage, autopilot);
         // Of what is hopeless the degree does not matter.
-        const double surplus = held_->SurplusOf(autopilot, stage, &last, std::clamp(most, kHopeless, 0.0), time);
+        const double surplus =
+            held_->SurplusOf(autopilot, stage, &last, std::clamp(most, kHopeless, 0.0), time);
         if (surplus <= most) continue;
         most = surplus;
         best = design;
@@ -292,7 +300,8 @@ class Tuner {
   }
 
   // `part`: as in TuningRecord.
-  GeneticAlgorithmResult Minimize(const BoundedProblem& problem, int part, const TuningObserver& observer) const {
+  GeneticAlgorithmResult Minimize(const BoundedProblem& problem, int part,
+                                  const TuningObserver& observer) const {
     GeneticAlgorithmOptions search;
     search.population = PopulationOf(options_);
     search.elites = kElites;
@@ -323,7 +332,8 @@ class Tuner {
       ApplyDesign(AugmentationOf(point), autopilot);
       const FlightModel candidate = ModelWith(autopilot);
       Evaluation evaluation;
-      for (const MeasuredMargins& m : MeasureMargins(candidate)) AddViolations(m, evaluation.constraint_violations);
+      for (const MeasuredMargins& m : MeasureMargins(candidate))
+        AddViolations(m, evaluation.constraint_violations);
       if (AllZero(evaluation.constraint_violations)) FlyCandidate(candidate, "_deg", evaluation);
       return evaluation;
     };
@@ -347,10 +357,11 @@ class Tuner {
     const std::vector<MeasuredMargins> measured = MeasureMargins(ModelWith(campaign_.autopilot));
     if (kind >= measured.size()) return MissedInFlight(kind - measured.size(), *most);
     const MeasuredMargins& m = measured[kind];
-    return fmt::format("measured margins of stage {}: gain {:.1f} dB up, {:.1f} dB down, delay {:.0f} ms; {:.1f} dB and "
-                       "{:.0f} ms are needed",
-                       m.stage + 1, m.gain_up_db, m.gain_down_db, 1e3 * m.delay_s, kGainMarginGate_db,
-                       1e3 * kDelayMarginGate_s);
+    return fmt::format(
+        "measured margins of stage {}: gain {:.1f} dB up, {:.1f} dB down, delay {:.0f} ms; {:.1f} dB and "
+        "{:.0f} ms are needed",
+        m.stage + 1, m.gain_up_db, m.gain_down_db, 1e3 * m.delay_s, kGainMarginGate_db,
+        1e3 * kDelayMarginGate_s);
   }
 
   StageTuning TuneStage(int stage, const TuningObserver& observer, std::uint64_t& evaluations) {

@@ -15,12 +15,12 @@
 // time, bandwidth is the largest that suffices about it, and where none does the design of that time is
 // refined by itself. With `dispersed`, as many draws of the campaign are plants to be held: their margins
 // must be above the gates of dispersed flights, those of the nominal plant above theirs, each plus the
-// smaller reserve kHeld...; they come from tables (core/margins/loop_table.h), with exact ones at the end. A PID may be
-// searched as a linear-quadratic regulator instead (regulator.h): weights take the place of damping and
-// learning. Margins come first: a design that misses one is not flown. What augments PD acts in every stage;
-// it is searched last, over whole flights, with the measured margins at their gates instead of the computed
-// ones, which know it at rest only. The budget is shared by the stages and the augmentation. The search does
-// not depend on the gains that the autopilot had before, nor on the number of threads.
+// smaller reserve kHeld...; they come from tables (core/margins/loop_table.h), with exact ones at the end. A
+// PID may be searched as a linear-quadratic regulator instead (regulator.h): weights take the place of
+// damping and learning. Margins come first: a design that misses one is not flown. What augments PD acts in
+// every stage; it is searched last, over whole flights, with the measured margins at their gates instead of
+// the computed ones, which know it at rest only. The budget is shared by the stages and the augmentation. The
+// search does not depend on the gains that the autopilot had before, nor on the number of threads.
 #pragma once
 
 #include <cstdint>
@@ -49,7 +49,7 @@ struct StageTuning {
   double mean_rms_deg = 0.0;  ///< of the stage, pitch
   double peak_deg = 0.0;      ///< largest of the stage over the cases, pitch
   LeastMargins frozen;        ///< of the stage
-  LeastMargins adapting;  ///< as frozen where nothing adapts
+  LeastMargins adapting;      ///< as frozen where nothing adapts
   /// The least of (margin - gate with reserve) / gate over the dispersed plants and the nominal one, where
   /// they are held.
   std::optional<double> surplus;

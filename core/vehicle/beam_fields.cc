@@ -13,7 +13,8 @@ constexpr Range kStiffnesses = UpTo(1e15), kModuli = UpTo(1e13), kDiameters = Up
 
 // A stiffness is given, or a round tube's.
 void DescribeStiffness(Fields& fields, BeamSection& section, bool timoshenko) {
-  constexpr const char* kAllowed = "bending_stiffness_n_m2, or a tube: outer_diameter_m, thickness_m and modulus_gpa";
+  constexpr const char* kAllowed =
+      "bending_stiffness_n_m2, or a tube: outer_diameter_m, thickness_m and modulus_gpa";
   Taper& bending = section.bending_stiffness_n_m2;
   Taper& shear = section.shear_stiffness_n;
   Taper& diameter = section.outer_diameter_m;
@@ -21,13 +22,15 @@ void DescribeStiffness(Fields& fields, BeamSection& section, bool timoshenko) {
   fields.Either(
       {{Has("outer_diameter", kLength),
         [&] {
-          fields.Misplaced("bending_stiffness", kBendingStiffness, "both a bending stiffness and a tube are given",
-                           kAllowed);
-          fields.Ends("outer_diameter", kLength, kDiameters, diameter.top, diameter.bottom, true, "of a round tube");
+          fields.Misplaced("bending_stiffness", kBendingStiffness,
+                           "both a bending stiffness and a tube are given", kAllowed);
+          fields.Ends("outer_diameter", kLength, kDiameters, diameter.top, diameter.bottom, true,
+                      "of a round tube");
           fields.Ends("thickness", kLength, kDiameters, wall.top, wall.bottom, true,
                       "of its wall; half the diameter is a solid rod");
           fields.Quantity("modulus", kModulus, kModuli, section.modulus_pa, "of elasticity, of the tube");
-          fields.Number("poisson_ratio", Between(0.0, 0.5), section.poisson_ratio, "of the tube, for its shear", 0.3);
+          fields.Number("poisson_ratio", Between(0.0, 0.5), section.poisson_ratio,
+                        "of the tube, for its shear", 0.3);
         }},
        {Has("bending_stiffness", kBendingStiffness),
         [&] {
@@ -36,15 +39,18 @@ void DescribeStiffness(Fields& fields, BeamSection& section, bool timoshenko) {
           fields.Ends("shear_stiffness", kForce, kStiffnesses, shear.top, shear.bottom, timoshenko,
                       "kappa G A in plane y, which Timoshenko's theory needs; without, it does not shear");
         }},
-       {Else(), [&] { fields.Missing({"bending_stiffness_n_m2", "outer_diameter_m"}, kAllowed); }}});
+       {Else(), [&] {
+          fields.Missing({"bending_stiffness_n_m2", "outer_diameter_m"}, kAllowed);
+        }}});
 }
 
 void Describe(Fields& fields, LumpedMass& lump) {
   fields.Quantity("station", kLength, kNonNegative, lump.station_m, "where it is fixed to the beam");
   fields.Either({{Has("element"),
                   [&] {
-                    fields.Text("element", lump.element,
-                                "of the stage's structure: fixed there in place of being spread along the beam");
+                    fields.Text(
+                        "element", lump.element,
+                        "of the stage's structure: fixed there in place of being spread along the beam");
                     lump.name = lump.element;
                   }},
                  {Else(), [&] {
@@ -59,7 +65,8 @@ void Describe(Fields& fields, LumpedMass& lump) {
 
 void Describe(Fields& fields, BeamStage& stage, bool timoshenko) {
   fields.List("sections", 1, 50, stage.sections,
-              "those of a stack follow one another without a gap and carry all its mass; where they overlap, stiffnesses add",
+              "those of a stack follow one another without a gap and carry all its mass; where they overlap, "
+              "stiffnesses add",
               [&](Fields& section, BeamSection& value) { Describe(section, value, timoshenko); });
   const auto with_mass = static_cast<std::size_t>(
       std::count_if(stage.sections.begin(), stage.sections.end(),
@@ -67,7 +74,8 @@ void Describe(Fields& fields, BeamStage& stage, bool timoshenko) {
   stage.own_masses = with_mass > 0 && with_mass == stage.sections.size();
   if (with_mass > 0 && !stage.own_masses)
     fields.Refuse("sections", "some sections have a mass per length and some have none",
-                  "mass_per_length_kg_m in every section of the stage, or in none: then the stage's structure says what it "
+                  "mass_per_length_kg_m in every section of the stage, or in none: then the stage's "
+                  "structure says what it "
                   "weighs");
   fields.List("lumped_masses", 0, 50, stage.lumped_masses, "bodies that do not bend",
               [](Fields& body, LumpedMass& lump) { Describe(body, lump); });
@@ -96,11 +104,13 @@ void Describe(Fields& fields, ModeRows& rows, std::size_t stages) {
   fields.Quantities("generalized_mass", kMass, kPositive, 1, SIZE_MAX, rows.mass_kg, "of the mode");
   fields.Quantities("station", kLength, kNonNegative, 1, SIZE_MAX, rows.station_m, "increasing");
   fields.Numbers("deflection", kAnyNumber, 1, SIZE_MAX, rows.deflection, "there");
-  fields.Numbers("slope_1_m", kAnyNumber, 1, SIZE_MAX, rows.slope_1_m, "there, by the station, which grows aft");
+  fields.Numbers("slope_1_m", kAnyNumber, 1, SIZE_MAX, rows.slope_1_m,
+                 "there, by the station, which grows aft");
   fields.Words("plane", {"y", "z"}, rows.plane, "y alone stands for both");
 }
 
-using ModeKey = std::tuple<int, double, BeamPlane, int>;  // in the order of a table: propellant negative, so falling
+using ModeKey =
+    std::tuple<int, double, BeamPlane, int>;  // in the order of a table: propellant negative, so falling
 
 ModeKey KeyOf(const TabledMode& m) { return {m.stage, -m.propellant_kg, m.plane, m.mode}; }
 
@@ -155,7 +165,8 @@ class ModeTable {
                    {}};
       if (modes_.empty() || KeyOf(modes_.back()) != KeyOf(m)) {
         if (!seen.insert(KeyOf(m)).second)
-          return Refuse("mode", row, "the mode was given before, further up", "all rows of a mode one after the other");
+          return Refuse("mode", row, "the mode was given before, further up",
+                        "all rows of a mode one after the other");
         modes_.push_back(std::move(m));
         first_row_.push_back(row);
       } else if (modes_.back().frequency_rad_s != m.frequency_rad_s ||
@@ -165,7 +176,8 @@ class ModeTable {
       }
       TabledMode& current = modes_.back();
       if (!current.station_m.empty() && !(rows_.station_m[row] > current.station_m.back()))
-        return Refuse("station", row, "the stations of a mode do not increase", "rows of increasing station_m");
+        return Refuse("station", row, "the stations of a mode do not increase",
+                      "rows of increasing station_m");
       current.station_m.push_back(rows_.station_m[row]);
       current.deflection.push_back(rows_.deflection[row]);
       current.slope_1_m.push_back(rows_.slope_1_m[row]);
@@ -184,14 +196,17 @@ class ModeTable {
     return true;
   }
 
-  static bool SameBeam(const TabledMode& a, const TabledMode& b) { return a.stage == b.stage && a.plane == b.plane; }
+  static bool SameBeam(const TabledMode& a, const TabledMode& b) {
+    return a.stage == b.stage && a.plane == b.plane;
+  }
 
   bool FitTogether() {
     for (std::size_t i = 0; i < modes_.size(); ++i) {
       const auto same_beam = [&](const TabledMode& m) { return SameBeam(m, modes_[i]); };
       const TabledMode& first = *std::find_if(modes_.begin(), modes_.end(), same_beam);
       if (first.station_m != modes_[i].station_m)
-        return Refuse("station", first_row_[i], "the mode has other stations than the first of its stage and plane",
+        return Refuse("station", first_row_[i],
+                      "the mode has other stations than the first of its stage and plane",
                       "the same stations for all modes of a stage and plane");
       const auto count = [&](double propellant) {
         return std::count_if(modes_.begin(), modes_.end(), [&](const TabledMode& m) {
@@ -237,11 +252,13 @@ void Describe(Fields& fields, BeamSection& section, bool timoshenko) {
 }
 
 void Describe(Fields& fields, StructureBeam& beam, std::size_t stages) {
-  fields.List("sensors", 0, 100, beam.sensors, "places whose deflection and slope are shown, beside the nozzle pivot");
+  fields.List("sensors", 0, 100, beam.sensors,
+              "places whose deflection and slope are shown, beside the nozzle pivot");
   fields.Flag("rotary_inertia", beam.rotary_inertia, true,
               "of the cross-sections; without, the beam turns more easily than the vehicle");
   fields.Integer("flown_modes", 0, kMostFlownModes, beam.flown_modes,
-                 "that flights have in each plane; 0 flies the rigid vehicle. Only modes below half the autopilot's sampling "
+                 "that flights have in each plane; 0 flies the rigid vehicle. Only modes below half the "
+                 "autopilot's sampling "
                  "frequency fly, and none above the first that is not",
                  3);
   fields.Number("damping_ratio", Between(0.0, 0.5), beam.damping_ratio, "of every mode in flight", 0.01);
@@ -249,8 +266,10 @@ void Describe(Fields& fields, StructureBeam& beam, std::size_t stages) {
   fields.Either(
       {{Has("modes_table"),
         [&] {
-          fields.Table("modes_table", "a CSV file", "a CSV file of the modes of a finite-element model, in place of what "
-                       "follows", [&](Fields& columns) {
+          fields.Table("modes_table", "a CSV file",
+                       "a CSV file of the modes of a finite-element model, in place of what "
+                       "follows",
+                       [&](Fields& columns) {
                          Describe(columns, rows, stages);
                          columns.Check([&] { beam.table = ModeTable(columns, rows).Modes(); });
                        });
@@ -259,9 +278,11 @@ void Describe(Fields& fields, StructureBeam& beam, std::size_t stages) {
           fields.Choice<bool>("theory", {{"euler_bernoulli", false}, {"timoshenko", true}}, beam.timoshenko,
                               "a beam that does not shear, or one that does", false);
           fields.Integer("modes", 1, 10, beam.modes, "in each plane", 3);
-          fields.Integer("propellant_levels", 2, 101, beam.propellant_levels, "evenly from full to empty", 11);
+          fields.Integer("propellant_levels", 2, 101, beam.propellant_levels, "evenly from full to empty",
+                         11);
           fields.Integer("elements", 20, 400, beam.elements, "at least so many along a stack", 60);
-          fields.List("stages", std::max<std::size_t>(stages, 1), stages > 0 ? stages : kMaxStages, beam.stages,
+          fields.List("stages", std::max<std::size_t>(stages, 1), stages > 0 ? stages : kMaxStages,
+                      beam.stages,
                       "one entry for each of the vehicle's; its sections fly while the stage is attached",
                       [&](Fields& stage, BeamStage& value) { Describe(stage, value, beam.timoshenko); });
         }}});

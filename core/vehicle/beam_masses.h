@@ -39,8 +39,8 @@ struct BeamMasses {
 ///
 /// Structure elements and grains are the tubes of the mass model, spread evenly over their length, or fixed
 /// at one station if the beam lumps them. So mass, centre of gravity and transverse inertia are
-/// StackMass::At's but for rounding, whatever the level; so is that of a vehicle without a beam. A stage that gives its own masses has them scaled
-/// (ScaleOwnMasses).
+/// StackMass::At's but for rounding, whatever the level; so is that of a vehicle without a beam. A stage that
+/// gives its own masses has them scaled (ScaleOwnMasses).
 BeamMasses BuildBeamMasses(const Vehicle& vehicle, int stage, double propellant_kg);
 
 /// Whether the beam has the element of its stage's structure among its lumped masses.

@@ -43,12 +43,10 @@ struct Grain {
   double inner_diameter_m = 0.0;
 };
 
-inline void Describe(Fields& fields, Grain& grain) {
-  DescribeTube(fields, grain, "of the bore at ignition");
-}
+inline void Describe(Fields& fields, Grain& grain) { DescribeTube(fields, grain, "of the bore at ignition"); }
 
-/// Liquid propellant in an upright cylinder with flat ends, round the axis. It drains at the bottom: the liquid stands
-/// there, and its surface falls.
+/// Liquid propellant in an upright cylinder with flat ends, round the axis. It drains at the bottom: the
+/// liquid stands there, and its surface falls.
 struct Tank {
   std::string name;
   double top_station_m = 0.0;
@@ -66,7 +64,8 @@ inline void Describe(Fields& fields, Tank& tank) {
                   "at ignition, with what stays as residual");
   fields.Quantity("density", kDensity, kPositive, tank.density_kg_m3, "of the liquid");
   fields.Quantity("top_station", kLength, kNonNegative, tank.top_station_m, "upper end");
-  fields.Quantity("bottom_station", kLength, kPositive, tank.bottom_station_m, "lower end, where the liquid stands");
+  fields.Quantity("bottom_station", kLength, kPositive, tank.bottom_station_m,
+                  "lower end, where the liquid stands");
   fields.Quantity("diameter", kLength, kPositive, tank.diameter_m, "inside");
 }
 
@@ -94,15 +93,17 @@ inline constexpr int kMaxJettisons = 8;
 
 inline void Describe(Fields& fields, Jettison& jettison) {
   fields.Text("name", jettison.name, "what it is");
-  fields.Quantity("mass", kMass, kPositive, jettison.mass_kg, "part of the stage's lift-off mass, beside its dry mass");
+  fields.Quantity("mass", kMass, kPositive, jettison.mass_kg,
+                  "part of the stage's lift-off mass, beside its dry mass");
   DescribeTube(fields, jettison, "inside", 0.0);
   fields.Map("at", "when it leaves", [&](Fields& at) {
     std::size_t trigger = static_cast<std::size_t>(jettison.trigger);
-    at.OneOf({{"time", kTime, kPositive, "since lift-off"},
-              {"altitude", kLength, kPositive, "geodetic"},
-              {"heat_flux", kHeatFlux, kPositive,
-               "above 80 km, as half density times the cube of the speed over the rotating Earth falls to it"}},
-             trigger, jettison.threshold);
+    at.OneOf(
+        {{"time", kTime, kPositive, "since lift-off"},
+         {"altitude", kLength, kPositive, "geodetic"},
+         {"heat_flux", kHeatFlux, kPositive,
+          "above 80 km, as half density times the cube of the speed over the rotating Earth falls to it"}},
+        trigger, jettison.threshold);
     jettison.trigger = static_cast<JettisonTrigger>(trigger);
   });
 }

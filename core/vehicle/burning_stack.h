@@ -47,7 +47,8 @@ DISPERSA_INLINE void SetLane(StackMassLanes<T>& s, int lane, const StackMass& ma
 template <class T>
 struct MassPropertiesLanes {
   T mass_kg, cg_station_m, axial_kg_m2, transverse_kg_m2, axial_per_kg_m2, transverse_per_kg_m2;
-  T source_station_m;  ///< where mass goes: the grain's middle, or the surfaces of the liquids, by their shares
+  T source_station_m;  ///< where mass goes: the grain's middle, or the surfaces of the liquids, by their
+                       ///< shares
 };
 template <class T>
 DISPERSA_INLINE MassPropertiesLanes<T> MassesAt(const StackMassLanes<T>& s, T propellant_kg) {
@@ -92,7 +93,7 @@ template <class T>
 struct MotorBurnLanes {
   T vacuum_thrust_n, full_flow_kg_s, propellant_kg, duration_s, exit_area_m2;
   T rise_s, rise_slope_1_s, rise_base, tail_s, tail_slope_1_s, tail_base;
-  T left_kg;  ///< that stays when the burn has ended
+  T left_kg;                      ///< that stays when the burn has ended
   T curve_rate, curve_flow_kg_s;  ///< of the curve's own time; 0 where there is none
   const BurnCurve* curve[kWidth<T>];
   bool has_curves;  ///< of any lane
@@ -177,7 +178,8 @@ struct BesideStage {
   T station_m, outer2_m2, inner_per_kg_m2, length2_m2, radius2_m2;
 };
 template <class T>
-DISPERSA_INLINE void SetLane(BesideStage<T>& b, int lane, const MotorBurn& burn, const BoosterGrains& grains) {
+DISPERSA_INLINE void SetLane(BesideStage<T>& b, int lane, const MotorBurn& burn,
+                             const BoosterGrains& grains) {
   SetLane(b.burn, lane, burn);
   Lane(b.station_m, lane) = grains.station_m;
   Lane(b.outer2_m2, lane) = grains.outer_radius_m * grains.outer_radius_m;
@@ -187,8 +189,8 @@ DISPERSA_INLINE void SetLane(BesideStage<T>& b, int lane, const MotorBurn& burn,
   Lane(b.radius2_m2, lane) = grains.radius_m * grains.radius_m;
 }
 
-/// Adds `beside_kg` of the boosters' propellant, of which `beside_kg_s` flows beside the stage's own `flow_kg_s`. Rates by
-/// mass and the place that mass comes from become those of both flows together.
+/// Adds `beside_kg` of the boosters' propellant, of which `beside_kg_s` flows beside the stage's own
+/// `flow_kg_s`. Rates by mass and the place that mass comes from become those of both flows together.
 template <class T>
 DISPERSA_INLINE void AddBeside(const BesideStage<T>& b, T beside_kg, T beside_kg_s, T flow_kg_s,
                                MassPropertiesLanes<T>& m) {
@@ -200,17 +202,16 @@ DISPERSA_INLINE void AddBeside(const BesideStage<T>& b, T beside_kg, T beside_kg
   m.cg_station_m = Fma(beside_kg, b.station_m, old_kg * old_cg) / m.mass_kg;
   m.axial_kg_m2 = m.axial_kg_m2 + own_axial + apart;
   // Huygens and Steiner, from both centres to the common one.
-  m.transverse_kg_m2 = m.transverse_kg_m2 + old_kg * Square(m.cg_station_m - old_cg) +
-                       Fma(T(0.5), own_axial + apart,
-                           beside_kg * (b.length2_m2 + Square(b.station_m - m.cg_station_m)));
+  m.transverse_kg_m2 =
+      m.transverse_kg_m2 + old_kg * Square(m.cg_station_m - old_cg) +
+      Fma(T(0.5), own_axial + apart, beside_kg * (b.length2_m2 + Square(b.station_m - m.cg_station_m)));
   const T total_kg_s = beside_kg_s + flow_kg_s;
   const T none(0.0), one(1.0);
   const T share = Select(total_kg_s > none, beside_kg_s / Select(total_kg_s > none, total_kg_s, one), none);
   // The stage's own rate was about its own centre.
   const T moved = Square(m.source_station_m - m.cg_station_m) - Square(m.source_station_m - old_cg);
   const T beside_axial = inner2 + b.radius2_m2;
-  const T beside_transverse =
-      Fma(T(0.5), beside_axial, b.length2_m2) + Square(b.station_m - m.cg_station_m);
+  const T beside_transverse = Fma(T(0.5), beside_axial, b.length2_m2) + Square(b.station_m - m.cg_station_m);
   m.axial_per_kg_m2 = m.axial_per_kg_m2 + share * (beside_axial - m.axial_per_kg_m2);
   const T own_transverse = m.transverse_per_kg_m2 + moved;
   m.transverse_per_kg_m2 = own_transverse + share * (beside_transverse - own_transverse);

@@ -24,11 +24,12 @@ inline void Describe(Fields& fields, Nozzle& nozzle, std::size_t count) {
   fields.Text("name", nozzle.name, "by which dispersions name it");
   fields.Quantity("y", kLength, kAnyNumber, nozzle.y_m, "of its pivot, off the axis to the right", 0.0);
   fields.Quantity("z", kLength, kAnyNumber, nozzle.z_m, "of its pivot, off the axis downwards", 0.0);
-  fields.Number("thrust_share", UpTo(1.0), nozzle.thrust_share, "of the stage's thrust; all alike unless given",
-                1.0 / static_cast<double>(count));
-  fields.Quantities("turns_towards", kAngle, Between(-2.0 * kPi, 2.0 * kPi), 0, 2, nozzle.towards_rad,
-                    "directions towards which positive angles of its hinges turn the thrust, from body y towards body z; "
-                    "without, it is fixed");
+  fields.Number("thrust_share", UpTo(1.0), nozzle.thrust_share,
+                "of the stage's thrust; all alike unless given", 1.0 / static_cast<double>(count));
+  fields.Quantities(
+      "turns_towards", kAngle, Between(-2.0 * kPi, 2.0 * kPi), 0, 2, nozzle.towards_rad,
+      "directions towards which positive angles of its hinges turn the thrust, from body y towards body z; "
+      "without, it is fixed");
   fields.Quantity("limit", kAngle, Inside(0.0, kQuarterTurn), nozzle.limit_rad,
                   "of its whole deflection; the gimbal's unless given", 0.0);
 }
@@ -44,7 +45,7 @@ struct Gimbal {
   double bandwidth_rad_s = 0.0;
   double damping_ratio = 0.7;
   int delay_ticks = 1;
-  double nozzle_mass_kg = 0.0;        ///< 0: turning a nozzle takes no momentum
+  double nozzle_mass_kg = 0.0;  ///< 0: turning a nozzle takes no momentum
   double nozzle_cg_m = 0.0;
   double nozzle_inertia_kg_m2 = 0.0;
   // What a real drive has besides; 0: not this one.
@@ -66,7 +67,8 @@ inline void Describe(Fields& fields, Gimbal& gimbal) {
   fields.Quantity("bandwidth", kFrequency, kPositive, gimbal.bandwidth_rad_s,
                   "natural frequency of the second-order actuator");
   fields.Number("damping_ratio", kPositive, gimbal.damping_ratio, "of the actuator");
-  fields.Integer("delay_ticks", 0, 50, gimbal.delay_ticks, "ticks of the autopilot between command and actuator");
+  fields.Integer("delay_ticks", 0, 50, gimbal.delay_ticks,
+                 "ticks of the autopilot between command and actuator");
   fields.Quantity("dead_zone", kAngle, kNonNegative, gimbal.dead_zone_rad,
                   "distance from the command that the servo does not feel", 0.0);
   fields.Quantity("friction", kAngle, kNonNegative, gimbal.friction_rad,
@@ -79,7 +81,8 @@ inline void Describe(Fields& fields, Gimbal& gimbal) {
 inline void DescribeTurningNozzle(Fields& fields, Gimbal& gimbal) {
   fields.Quantity("mass", kMass, kPositive, gimbal.nozzle_mass_kg, "what turns, of one nozzle");
   fields.Quantity("cg_aft_of_pivot", kLength, kAnyNumber, gimbal.nozzle_cg_m, "its centre of gravity");
-  fields.Quantity("inertia_about_hinge", kInertia, kPositive, gimbal.nozzle_inertia_kg_m2, "its moment of inertia");
+  fields.Quantity("inertia_about_hinge", kInertia, kPositive, gimbal.nozzle_inertia_kg_m2,
+                  "its moment of inertia");
 }
 
 }  // namespace dispersa

@@ -22,8 +22,7 @@ void Add(const Tube& tube, StackMass& stack) {
   const double station = 0.5 * (tube.top_m + tube.bottom_m);
   stack.fixed_mass_kg += tube.mass_kg;
   stack.fixed_first_moment_kg_m += tube.mass_kg * station;
-  stack.fixed_second_moment_kg_m2 +=
-      tube.mass_kg * (0.25 * radii + Square(length) / 12.0 + Square(station));
+  stack.fixed_second_moment_kg_m2 += tube.mass_kg * (0.25 * radii + Square(length) / 12.0 + Square(station));
   stack.fixed_axial_inertia_kg_m2 += 0.5 * tube.mass_kg * radii;
 }
 
@@ -64,7 +63,7 @@ MassProperties StackMass::At(double propellant_kg) const {
   lanes::StackMassLanes<double> stack;
   lanes::SetLane(stack, 0, *this);
   const lanes::MassPropertiesLanes<double> m = lanes::MassesAt(stack, propellant_kg);
-  return {m.mass_kg,     m.cg_station_m,    m.axial_kg_m2,
+  return {m.mass_kg,          m.cg_station_m,    m.axial_kg_m2,
           m.transverse_kg_m2, m.axial_per_kg_m2, m.transverse_per_kg_m2};
 }
 
@@ -95,7 +94,8 @@ BoosterGrains BuildBoosterGrains(const Boosters& boosters) {
   const Grain& g = boosters.grain;
   const double area_m2 = 0.25 * (Square(g.outer_diameter_m) - Square(g.inner_diameter_m));
   return {0.5 * (g.top_station_m + g.bottom_station_m), g.bottom_station_m - g.top_station_m,
-          0.5 * g.outer_diameter_m, boosters.radius_m, boosters.count * boosters.propellant_mass_kg / area_m2};
+          0.5 * g.outer_diameter_m, boosters.radius_m,
+          boosters.count * boosters.propellant_mass_kg / area_m2};
 }
 
 double PropellantDensity(const Stage& stage) {

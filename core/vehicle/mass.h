@@ -17,35 +17,37 @@ struct MassProperties {
   double transverse_inertia_per_kg = 0.0;  ///< likewise, about the moving CG
 };
 
-/// Liquids that drain, all in the same proportion (a constant mixture): polynomials of the mass m that is left.
+/// Liquids that drain, all in the same proportion (a constant mixture): polynomials of the mass m that is
+/// left.
 ///
-/// In a cylinder of radius r, its bottom at station b, mass m_k = s_k m of density rho stands h = m_k / (rho pi r²)
-/// high. Its first moment about station 0 is m_k (b - h/2), its second m_k (b² - b h + h²/3 + r²/4): in pitch and
-/// yaw the liquid counts as if frozen, which is the most that it can resist; in roll as none at all, since a smooth
-/// wall does not turn an inviscid liquid. (H. N. Abramson (ed.), "The Dynamic Behavior of Liquids in Moving
-/// Containers", NASA SP-106, 1966, chapters 2 and 6: liquid that is free resists pitching less, by up to a half in
-/// a squat tank.) Sloshing is not in it.
+/// In a cylinder of radius r, its bottom at station b, mass m_k = s_k m of density rho stands h = m_k / (rho
+/// pi r²) high. Its first moment about station 0 is m_k (b - h/2), its second m_k (b² - b h + h²/3 + r²/4):
+/// in pitch and yaw the liquid counts as if frozen, which is the most that it can resist; in roll as none at
+/// all, since a smooth wall does not turn an inviscid liquid. (H. N. Abramson (ed.), "The Dynamic Behavior of
+/// Liquids in Moving Containers", NASA SP-106, 1966, chapters 2 and 6: liquid that is free resists pitching
+/// less, by up to a half in a squat tank.) Sloshing is not in it.
 struct DrainingMass {
   double first_per_kg_m = 0.0, first_per_kg2_m = 0.0;  ///< first moment m (a + b m)
   /// Second moment m (a + b m + c m²).
   double second_per_kg_m2 = 0.0, second_per_kg2_m2 = 0.0, second_per_kg3_m2 = 0.0;
 };
 
-/// Everything of a stack but the burning propellant, summed once, and the grain that burns, or the tanks that drain.
+/// Everything of a stack but the burning propellant, summed once, and the grain that burns, or the tanks that
+/// drain.
 ///
 /// The grain burns from its bore outwards at constant length: with rho the propellant's density,
 /// r_i² = r_o² - m / (pi rho L); its inertias are those of a tube. Parallel axes by Huygens and Steiner.
 struct StackMass {
   double fixed_mass_kg = 0.0;
-  double fixed_first_moment_kg_m = 0.0;      ///< about station 0
-  double fixed_second_moment_kg_m2 = 0.0;    ///< transverse, about station 0, own inertias included
+  double fixed_first_moment_kg_m = 0.0;    ///< about station 0
+  double fixed_second_moment_kg_m2 = 0.0;  ///< transverse, about station 0, own inertias included
   double fixed_axial_inertia_kg_m2 = 0.0;
   double grain_station_m = 0.0;
   double grain_length_m = 0.0;
   double grain_outer_radius_m = 0.0;
   double grain_density_kg_m3 = 0.0;
-  double propellant_mass_kg = 0.0;           ///< at ignition
-  bool drains = false;                       ///< tanks in place of the grain
+  double propellant_mass_kg = 0.0;  ///< at ignition
+  bool drains = false;              ///< tanks in place of the grain
   DrainingMass tanks;
 
   MassProperties At(double propellant_kg) const;
@@ -69,13 +71,14 @@ StackMass Without(StackMass stack, int lowest_stage, const std::vector<Jettisone
 
 /// Everything of a vehicle's boosters together, empty, as the first stack's sums count it.
 JettisonedMass BuildBoosterMass(const Boosters& boosters);
-/// The propellant of all boosters together: the sums grow with its mass. Each grain burns from its bore outwards.
+/// The propellant of all boosters together: the sums grow with its mass. Each grain burns from its bore
+/// outwards.
 struct BoosterGrains {
   double station_m = 0.0;  ///< of the middles
   double length_m = 0.0;
   double outer_radius_m = 0.0;
-  double radius_m = 0.0;              ///< of their axes from the vehicle's
-  double kilograms_per_area_m2 = 0.0; ///< of all: by which the sections' area, over pi, shrinks
+  double radius_m = 0.0;               ///< of their axes from the vehicle's
+  double kilograms_per_area_m2 = 0.0;  ///< of all: by which the sections' area, over pi, shrinks
 };
 BoosterGrains BuildBoosterGrains(const Boosters& boosters);
 

@@ -9,8 +9,9 @@
 
 namespace dispersa {
 
-/// What the engine of a liquid stage does by command: thrust as a part of its full one over the time since ignition,
-/// linear between the times, and when it ends. Thrust and flow are in proportion whatever the level.
+/// What the engine of a liquid stage does by command: thrust as a part of its full one over the time since
+/// ignition, linear between the times, and when it ends. Thrust and flow are in proportion whatever the
+/// level.
 struct Throttle {
   std::vector<double> time_s;
   std::vector<double> level;
@@ -39,7 +40,8 @@ inline void Describe(Fields& fields, Throttle& throttle) {
 }
 
 /// Constant thrust between two linear ramps whose impulse is part of the whole, or a thrust curve: propellant
-/// flow is proportional to thrust, unless the curve gives it, and the propellant is used up exactly at burnout.
+/// flow is proportional to thrust, unless the curve gives it, and the propellant is used up exactly at
+/// burnout.
 struct Motor {
   double thrust_n = 0.0;        ///< all nozzles together (the paper's 4P), in vacuum; of a curve the greatest
   double burning_time_s = 0.0;  ///< propellant_mass / burning_time is the flow at full thrust
@@ -48,8 +50,8 @@ struct Motor {
   double nozzle_exit_area_m2 = 0.0;
   double published_mass_flow_kg_s = 0.0;
   ThrustCurve thrust_curve = {};  ///< empty: none. Sets thrust_n and burning_time_s; without ramps
-  // Of a liquid stage; without ramps and curve. thrust_n is at full thrust, burning_time_s what all propellant would
-  // last at that.
+  // Of a liquid stage; without ramps and curve. thrust_n is at full thrust, burning_time_s what all
+  // propellant would last at that.
   Throttle throttle = {};
   CutOff cut_off = CutOff::kAtDepletion;
   double cut_off_s = 0.0;
@@ -57,31 +59,35 @@ struct Motor {
   double specific_impulse_s = 0.0;
   double residual_mass_kg = 0.0;
 };
-/// Gives a motor a curve, and the greatest thrust and the time that its propellant would last at the greatest flow.
+/// Gives a motor a curve, and the greatest thrust and the time that its propellant would last at the greatest
+/// flow.
 void SetThrustCurve(ThrustCurve curve, Motor& motor);
 
 /// What an engine does by command in one of its burns.
 inline void DescribeCommands(Fields& fields, Motor& motor) {
   bool is_throttled = !motor.throttle.empty(), is_cut_off = motor.cut_off != CutOff::kAtDepletion;
   fields.OptionalTable("throttle", is_throttled, "thrust over the time since ignition, or a CSV file of it",
-                     [&](Fields& throttle) { Describe(throttle, motor.throttle); });
-  fields.OptionalMap("cut_off", is_cut_off, "what ends the burn, unless the propellant is used up before", [&](Fields& cut) {
-    cut.Choice<CutOff>("at",
-                       {{"depletion", CutOff::kAtDepletion},
-                        {"time", CutOff::kAtTime},
-                        {"inertial_velocity", CutOff::kAtVelocity}},
-                       motor.cut_off, "what is waited for");
-    cut.When(Is("at", {"time"}), [&] { cut.Quantity("after", kTime, kPositive, motor.cut_off_s, "since ignition"); });
-    cut.When(Is("at", {"inertial_velocity"}), [&] {
-      cut.Quantity("velocity", kSpeed, kPositive, motor.cut_off_velocity_m_s, "inertial speed");
-    });
-  });
+                       [&](Fields& throttle) { Describe(throttle, motor.throttle); });
+  fields.OptionalMap(
+      "cut_off", is_cut_off, "what ends the burn, unless the propellant is used up before", [&](Fields& cut) {
+        cut.Choice<CutOff>("at",
+                           {{"depletion", CutOff::kAtDepletion},
+                            {"time", CutOff::kAtTime},
+                            {"inertial_velocity", CutOff::kAtVelocity}},
+                           motor.cut_off, "what is waited for");
+        cut.When(Is("at", {"time"}),
+                 [&] { cut.Quantity("after", kTime, kPositive, motor.cut_off_s, "since ignition"); });
+        cut.When(Is("at", {"inertial_velocity"}), [&] {
+          cut.Quantity("velocity", kSpeed, kPositive, motor.cut_off_velocity_m_s, "inertial speed");
+        });
+      });
 }
 
 inline void DescribeLiquid(Fields& fields, Motor& motor) {
   fields.Quantity("thrust", kForce, kPositive, motor.thrust_n, "at full thrust, of all nozzles, in vacuum");
   fields.Quantity("specific_impulse", kTime, kPositive, motor.specific_impulse_s, "in vacuum");
-  fields.Quantity("residual_mass", kMass, kNonNegative, motor.residual_mass_kg, "of the propellant: never flows", 0.0);
+  fields.Quantity("residual_mass", kMass, kNonNegative, motor.residual_mass_kg,
+                  "of the propellant: never flows", 0.0);
   DescribeCommands(fields, motor);
 }
 
@@ -89,14 +95,17 @@ inline void DescribeThrustCurve(Fields& fields, Motor& motor) {
   bool in_vacuum = true;
   fields.Choice<bool>("reference", {{"vacuum", true}, {"sea_level", false}}, in_vacuum,
                       "where it was measured; at sea level p A_e of the nozzles' exits is added");
-  fields.Table("table", "a CSV file (time_s, thrust_n, optional mass_flow_kg_s), an .eng file, or the columns",
-               "a CSV file, an .eng file, or the columns", [&](Fields& table) { Describe(table, motor.thrust_curve); });
+  fields.Table("table",
+               "a CSV file (time_s, thrust_n, optional mass_flow_kg_s), an .eng file, or the columns",
+               "a CSV file, an .eng file, or the columns",
+               [&](Fields& table) { Describe(table, motor.thrust_curve); });
   fields.Check([&fields, &motor, in_vacuum] {
     if (in_vacuum) return;
     if (motor.nozzle_exit_area_m2 == 0.0)
-      fields.Refuse("reference",
-                    "the thrust in vacuum is that at sea level and p A_e, but the motor has no nozzle_exit_area_m2",
-                    "nozzle_exit_area_m2 above 0, or reference: vacuum");
+      fields.Refuse(
+          "reference",
+          "the thrust in vacuum is that at sea level and p A_e, but the motor has no nozzle_exit_area_m2",
+          "nozzle_exit_area_m2 above 0, or reference: vacuum");
     motor.thrust_curve = InVacuum(motor.thrust_curve, motor.nozzle_exit_area_m2);
   });
 }
@@ -131,20 +140,23 @@ inline void DescribeSolid(Fields& fields, Motor& motor) {
                                     "in which the propellant would be used up at full thrust");
                     fields.Quantity("ignition_rise", kTime, kNonNegative, motor.ignition_rise_s,
                                     "linear rise to full thrust", 0.0);
-                    fields.Quantity("tail_off", kTime, kNonNegative, motor.tail_off_s, "linear decay at the end", 0.0);
+                    fields.Quantity("tail_off", kTime, kNonNegative, motor.tail_off_s,
+                                    "linear decay at the end", 0.0);
                   }}});
 }
 
 inline void Describe(Fields& fields, Motor& motor) {
-  fields.Either({{Has("liquid"),
-                  [&] {
-                    constexpr const char* kEither = "either liquid, or what a solid motor has";
-                    RefuseRamps(fields, "'{}' and 'liquid' are both given, and the engine has them inside", kEither);
-                    fields.Misplaced("thrust_curve", {}, "'thrust_curve' and 'liquid' are both given", kEither);
-                    DescribeExit(fields, motor);
-                    fields.Map("liquid", "an engine with tanks", [&](Fields& liquid) { DescribeLiquid(liquid, motor); });
-                  }},
-                 {Else(), [&] { DescribeSolid(fields, motor); }}});
+  fields.Either(
+      {{Has("liquid"),
+        [&] {
+          constexpr const char* kEither = "either liquid, or what a solid motor has";
+          RefuseRamps(fields, "'{}' and 'liquid' are both given, and the engine has them inside", kEither);
+          fields.Misplaced("thrust_curve", {}, "'thrust_curve' and 'liquid' are both given", kEither);
+          DescribeExit(fields, motor);
+          fields.Map("liquid", "an engine with tanks",
+                     [&](Fields& liquid) { DescribeLiquid(liquid, motor); });
+        }},
+       {Else(), [&] { DescribeSolid(fields, motor); }}});
 }
 
 }  // namespace dispersa

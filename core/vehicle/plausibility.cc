@@ -8,8 +8,8 @@
 #include "core/math/constants.h"
 #include "core/math/functions.h"
 #include "core/vehicle/mass.h"
-#include "core/vehicle/propulsion.h"
 #include "core/vehicle/mould_line.h"
+#include "core/vehicle/propulsion.h"
 #include "core/vehicle/vehicle_figures.h"
 
 namespace dispersa {
@@ -35,7 +35,9 @@ struct Subject {
   const Tank& tank() const { return stage().tanks[part]; }
   const Stage& stage() const { return vehicle.stages[index]; }
   const StageFigures& figure() const { return figures[index]; }
-  std::size_t last_burn() const { return static_cast<std::size_t>(LastBurn(vehicle, static_cast<int>(index))); }
+  std::size_t last_burn() const {
+    return static_cast<std::size_t>(LastBurn(vehicle, static_cast<int>(index)));
+  }
   bool is_last() const { return last_burn() + 1 == vehicle.stages.size(); }
   double length_m() const { return vehicle.stages[0].bottom_station_m; }
 };
@@ -220,7 +222,9 @@ constexpr Check kTankChecks[] = {
      kAnything,
      {0.5, 0.99},
      "a few per cent of a tank are left to the gas that presses the liquid out",
-     [](const Subject& s) { return s.tank().propellant_mass_kg / (s.tank().density_kg_m3 * s.tank().Volume()); }},
+     [](const Subject& s) {
+       return s.tank().propellant_mass_kg / (s.tank().density_kg_m3 * s.tank().Volume());
+     }},
     {"diameter_m",
      "is, as part of the stage's diameter_m,",
      "",
@@ -378,7 +382,8 @@ std::vector<PlausibilityFinding> Plausibility(const Vehicle& vehicle) {
     const std::string index = "[" + std::to_string(i) + "].";
     Apply(kStageChecks, {vehicle, figures, i}, "stages" + index, findings);
     for (std::size_t k = 0; k < vehicle.stages[i].tanks.size(); ++k)
-      Apply(kTankChecks, {vehicle, figures, i, k}, "stages" + index + "tanks[" + std::to_string(k) + "].", findings);
+      Apply(kTankChecks, {vehicle, figures, i, k}, "stages" + index + "tanks[" + std::to_string(k) + "].",
+            findings);
     if (vehicle.stages[i].gimbal.nozzle_mass_kg > 0.0)
       Apply(kNozzleChecks, {vehicle, figures, i}, "nozzles" + index, findings);
   }

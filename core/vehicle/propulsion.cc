@@ -21,7 +21,9 @@ double MotorBurn::Fraction(double since_ignition_s) const {
   return since_ignition_s < 0.0 || since_ignition_s > duration_s ? 0.0 : At(*this, since_ignition_s).fraction;
 }
 
-double MotorBurn::Propellant(double since_ignition_s) const { return At(*this, since_ignition_s).propellant_kg; }
+double MotorBurn::Propellant(double since_ignition_s) const {
+  return At(*this, since_ignition_s).propellant_kg;
+}
 
 double MotorBurn::ExhaustVelocity() const {
   const double at_full_thrust_m_s = vacuum_thrust_n / full_flow_kg_s;

@@ -14,14 +14,14 @@ inline constexpr double kLeastThrustFraction = 0.2;
 
 /// A motor as one flight burns it: nominal data times the flight's factors.
 struct MotorBurn {
-  double vacuum_thrust_n = 0.0;    ///< at full thrust
-  double full_flow_kg_s = 0.0;     ///< at full thrust
+  double vacuum_thrust_n = 0.0;  ///< at full thrust
+  double full_flow_kg_s = 0.0;   ///< at full thrust
   double propellant_mass_kg = 0.0;
   double rise_s = 0.0;
   double tail_s = 0.0;
   double exit_area_m2 = 0.0;
-  double duration_s = 0.0;         ///< ignition to burnout
-  double left_kg = 0.0;            ///< of the propellant, then
+  double duration_s = 0.0;  ///< ignition to burnout
+  double left_kg = 0.0;     ///< of the propellant, then
   /// In place of the ramps, at the flight's rate: its time runs so many times as fast as the file's.
   std::shared_ptr<const BurnCurve> curve;
   double curve_rate = 1.0;
@@ -38,8 +38,8 @@ struct MotorBurn {
 };
 
 /// The burn with thrust and flow multiplied; propellant is conserved. Ramps keep their durations; a thrust
-/// curve is drawn together in time by the flow's factor. `curve`: that of the stage, prepared, or null. A throttle
-/// keeps its times, being commanded, and depletion comes when it comes.
+/// curve is drawn together in time by the flow's factor. `curve`: that of the stage, prepared, or null. A
+/// throttle keeps its times, being commanded, and depletion comes when it comes.
 MotorBurn BuildBurn(const Stage& stage, double thrust_factor, double flow_factor,
                     std::shared_ptr<const BurnCurve> curve);
 /// The same, preparing the curve if the stage has one.

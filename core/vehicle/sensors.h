@@ -26,7 +26,8 @@ inline void Describe(Fields& fields, RateGyro& gyro) {
   fields.Quantity("bandwidth", kFrequency, kPositive, gyro.bandwidth_rad_s,
                   "natural frequency; without, it follows at once", 0.0);
   fields.Number("damping_ratio", kPositive, gyro.damping_ratio, "beside a bandwidth", 0.7);
-  fields.Quantity("quantum", kAngularRate, kPositive, gyro.quantum_rad_s, "step of its output; none unless given", 0.0);
+  fields.Quantity("quantum", kAngularRate, kPositive, gyro.quantum_rad_s,
+                  "step of its output; none unless given", 0.0);
   fields.Integer("sample_ticks", 1, 100, gyro.sample_ticks, "ticks of the autopilot between samples", 1);
 }
 
@@ -40,7 +41,8 @@ inline void Describe(Fields& fields, Sensors& sensors) {
   fields.Map("inertial_unit", "whose attitude is measured", [&](Fields& unit) {
     unit.Quantity("station", kLength, kNonNegative, sensors.inertial_unit_station_m, "where it is");
   });
-  fields.List("rate_gyros", 0, kRateGyros, sensors.rate_gyros, "whose rates are measured in place of the unit's");
+  fields.List("rate_gyros", 0, kRateGyros, sensors.rate_gyros,
+              "whose rates are measured in place of the unit's");
 }
 
 }  // namespace dispersa

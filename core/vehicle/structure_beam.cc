@@ -125,7 +125,8 @@ class BeamChecker {
     const Stage& stage = vehicle_.stages[i];
     if (!inside(stage.PropellantTop(), stage.PropellantBottom()))
       Add(path + ".sections",
-          "the stage's " + std::string(stage.is_liquid() ? "tanks lie" : "grain lies") + " outside of " + beam,
+          "the stage's " + std::string(stage.is_liquid() ? "tanks lie" : "grain lies") + " outside of " +
+              beam,
           stage.is_liquid() ? "sections along all tanks" : "sections along the whole grain");
     for (std::size_t k = 0; k < beam_.stages[i].lumped_masses.size(); ++k) {
       const LumpedMass& lump = beam_.stages[i].lumped_masses[k];

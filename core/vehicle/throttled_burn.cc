@@ -19,10 +19,11 @@ std::vector<Piece> PiecesOf(const Throttle& throttle) {
   std::vector<Piece> pieces;
   for (std::size_t i = 0; i + 1 < throttle.time_s.size(); ++i) {
     const double length_s = throttle.time_s[i + 1] - throttle.time_s[i];
-    pieces.push_back({throttle.time_s[i], throttle.level[i], (throttle.level[i + 1] - throttle.level[i]) / length_s,
-                      throttle.time_s[i + 1]});
+    pieces.push_back({throttle.time_s[i], throttle.level[i],
+                      (throttle.level[i + 1] - throttle.level[i]) / length_s, throttle.time_s[i + 1]});
   }
-  if (throttle.level.back() > 0.0) pieces.push_back({throttle.time_s.back(), throttle.level.back(), 0.0, kNever_s});
+  if (throttle.level.back() > 0.0)
+    pieces.push_back({throttle.time_s.back(), throttle.level.back(), 0.0, kNever_s});
   return pieces;
 }
 
@@ -64,8 +65,8 @@ ThrottledBurn Throttled(const Motor& engine, double propellant_kg, double full_f
     const double whole_kg = propellant_kg > 0.0 ? propellant_kg : 1.0;  // of a restart with nothing left
     const double left = ended ? burn.left_kg / whole_kg : 1.0 - burnt_s * full_flow_kg_s / whole_kg;
     burn.curve.begin_s.push_back(piece.begin_s);
-    burn.curve.rows.insert(burn.curve.rows.end(), {ended ? end_s : piece.begin_s, level, piece.slope_1_s, left, level,
-                                                   piece.slope_1_s, 0.0, 0.0});
+    burn.curve.rows.insert(burn.curve.rows.end(), {ended ? end_s : piece.begin_s, level, piece.slope_1_s,
+                                                   left, level, piece.slope_1_s, 0.0, 0.0});
     burnt_s = burnt_then_s;
   }
   return burn;

@@ -36,26 +36,32 @@ ThrustCurve InVacuum(ThrustCurve at_sea_level, double exit_area_m2) {
 }
 
 void Describe(Fields& fields, ThrustCurve& curve) {
-  fields.Quantities("time", kTime, kNonNegative, 2, kThrustCurveCorners, curve.time_s, "since ignition, from 0; linear between");
+  fields.Quantities("time", kTime, kNonNegative, 2, kThrustCurveCorners, curve.time_s,
+                    "since ignition, from 0; linear between");
   fields.Quantities("thrust", kForce, kNonNegative, 2, kThrustCurveCorners, curve.thrust_n, "as measured");
-  fields.OptionalQuantities("mass_flow", kMassFlow, kNonNegative, 2, kThrustCurveCorners, curve.flow_kg_s,
-                            "sums up to the propellant within 1 %; without, the flow is proportional to the thrust");
+  fields.OptionalQuantities(
+      "mass_flow", kMassFlow, kNonNegative, 2, kThrustCurveCorners, curve.flow_kg_s,
+      "sums up to the propellant within 1 %; without, the flow is proportional to the thrust");
   fields.Check([&] {
     const auto refuse_count = [&](std::size_t count, const std::string& what, const std::string& allowed) {
-      fields.Refuse("",
-                    "there are " + std::to_string(curve.time_s.size()) + " times and " + std::to_string(count) + what,
-                    allowed);
+      fields.Refuse(
+          "",
+          "there are " + std::to_string(curve.time_s.size()) + " times and " + std::to_string(count) + what,
+          allowed);
       curve = {};
     };
     if (curve.thrust_n.size() != curve.time_s.size())
       return refuse_count(curve.thrust_n.size(), " thrusts", "one thrust for each time");
     if (!curve.flow_kg_s.empty() && curve.flow_kg_s.size() != curve.time_s.size())
-      return refuse_count(curve.flow_kg_s.size(), " mass flows", "one mass flow for each time, or none at all");
+      return refuse_count(curve.flow_kg_s.size(), " mass flows",
+                          "one mass flow for each time, or none at all");
     if (curve.time_s[0] != 0.0)
-      fields.Refuse("time[0]", fields.Quote("time[0]") + " is not the time of ignition", "0 as the first time");
+      fields.Refuse("time[0]", fields.Quote("time[0]") + " is not the time of ignition",
+                    "0 as the first time");
     for (std::size_t i = 1; i < curve.time_s.size(); ++i) {
       if (curve.time_s[i] > curve.time_s[i - 1]) continue;
-      const std::string at = "time[" + std::to_string(i) + "]", before = "time[" + std::to_string(i - 1) + "]";
+      const std::string at = "time[" + std::to_string(i) + "]",
+                        before = "time[" + std::to_string(i - 1) + "]";
       fields.Refuse(at, fields.Quote(at) + " is not later than " + fields.Quote(before) + " before it",
                     "times that increase");
     }

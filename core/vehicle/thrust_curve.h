@@ -1,8 +1,8 @@
 // A motor's thrust over the time since ignition, as tests give it, and the same prepared for burns.
 //
-// Thrust is linear between the corners, and so is the mass flow: as given, or, where none is, proportional to the
-// vacuum thrust (a constant exhaust velocity). What has been burnt is then a parabola on each piece, in closed form;
-// the propellant is used up where the curve ends.
+// Thrust is linear between the corners, and so is the mass flow: as given, or, where none is, proportional to
+// the vacuum thrust (a constant exhaust velocity). What has been burnt is then a parabola on each piece, in
+// closed form; the propellant is used up where the curve ends.
 #pragma once
 
 #include <cstddef>
@@ -22,13 +22,14 @@ inline constexpr std::size_t kThrustCurveCorners = 1000;
 struct ThrustCurve {
   std::vector<double> time_s;    ///< since ignition, from 0, each larger than the one before
   std::vector<double> thrust_n;  ///< in vacuum; 0 or more
-  /// 0 or more; empty: proportional to the thrust. Its sum is the propellant to a percent, and is made it exactly.
+  /// 0 or more; empty: proportional to the thrust. Its sum is the propellant to a percent, and is made it
+  /// exactly.
   std::vector<double> flow_kg_s = {};
 
   bool empty() const { return time_s.empty(); }
   double Greatest() const;
-  double Impulse() const;   ///< N s
-  double Flown() const;     ///< the sum of flow_kg_s, kg
+  double Impulse() const;       ///< N s
+  double Flown() const;         ///< the sum of flow_kg_s, kg
   double FullFlowTime() const;  ///< in which the greatest flow would use up what flows in all, s
 };
 
@@ -43,9 +44,9 @@ ThrustCurve InVacuum(ThrustCurve at_sea_level, double exit_area_m2);
 
 /// A curve by level, thrust over its greatest thrust, prepared to be looked up.
 struct BurnCurve {
-  /// Of each piece: a time on it, s, the level of thrust there, its slope, 1/s, the part of the propellant that
-  /// is left there, the level of the flow (over its greatest) and its slope, 1/s, and two for nothing. That time is
-  /// the piece's beginning, but of the last piece its end, so that nothing is left there.
+  /// Of each piece: a time on it, s, the level of thrust there, its slope, 1/s, the part of the propellant
+  /// that is left there, the level of the flow (over its greatest) and its slope, 1/s, and two for nothing.
+  /// That time is the piece's beginning, but of the last piece its end, so that nothing is left there.
   static constexpr int kRowSize = 8;
   AlignedRows rows;
   std::vector<double> begin_s;  ///< of each piece

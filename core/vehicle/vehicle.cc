@@ -49,11 +49,12 @@ void CheckCommands(const Motor& motor, const std::string& path, Checker& check) 
   for (std::size_t i = 0; i < throttle.time_s.size(); ++i) {
     const std::string index = "[" + std::to_string(i) + "]";
     check.Require(i == 0 ? throttle.time_s[0] == 0.0 : throttle.time_s[i] > throttle.time_s[i - 1],
-                  table + ".time_s" + index, i == 0 ? "is not the ignition" : "is not later than the time before it",
+                  table + ".time_s" + index,
+                  i == 0 ? "is not the ignition" : "is not later than the time before it",
                   i == 0 ? "0 as the first time" : "times that increase");
   }
-  check.Require(throttle.empty() || *std::max_element(throttle.level.begin(), throttle.level.end()) > 0.0, table,
-                "gives no thrust", "a level above 0 somewhere");
+  check.Require(throttle.empty() || *std::max_element(throttle.level.begin(), throttle.level.end()) > 0.0,
+                table, "gives no thrust", "a level above 0 somewhere");
 }
 
 // Engine and tanks of a liquid stage.
@@ -63,27 +64,31 @@ void CheckLiquid(const Stage& stage, const std::string& path, Checker& check) {
                 path + ".motor", "has ramps or a thrust curve beside tanks", "a throttle, of a liquid stage");
   CheckCommands(motor, path + ".motor.liquid", check);
   check.Require(motor.residual_mass_kg >= 0.0 && motor.residual_mass_kg < stage.propellant_mass_kg,
-                path + ".motor.liquid.residual_mass_kg", "leaves nothing to burn", "0 to below propellant_mass_kg");
+                path + ".motor.liquid.residual_mass_kg", "leaves nothing to burn",
+                "0 to below propellant_mass_kg");
   double sum_kg = 0.0;
   for (std::size_t k = 0; k < stage.tanks.size(); ++k) {
     const Tank& tank = stage.tanks[k];
     const std::string at = path + ".tanks[" + std::to_string(k) + "]";
-    check.Require(tank.bottom_station_m > tank.top_station_m, at + ".bottom_station_m", "is not aft of top_station_m",
-                  "a station larger than top_station_m");
+    check.Require(tank.bottom_station_m > tank.top_station_m, at + ".bottom_station_m",
+                  "is not aft of top_station_m", "a station larger than top_station_m");
     check.Require(tank.bottom_station_m <= stage.bottom_station_m, at + ".bottom_station_m",
                   "lies aft of the stage's bottom_station_m", "at most bottom_station_m of the stage");
     sum_kg += tank.propellant_mass_kg;
-    if (!(tank.diameter_m > 0.0 && tank.density_kg_m3 > 0.0 && tank.bottom_station_m > tank.top_station_m)) continue;
+    if (!(tank.diameter_m > 0.0 && tank.density_kg_m3 > 0.0 && tank.bottom_station_m > tank.top_station_m))
+      continue;
     const double volume_m3 = tank.propellant_mass_kg / tank.density_kg_m3;
-    check.Require(volume_m3 <= tank.Volume(), at + ".propellant_mass_kg",
-                  "takes " + std::to_string(volume_m3) + " m3, the tank has " + std::to_string(tank.Volume()),
-                  "at most what the tank holds, " + std::to_string(tank.Volume() * tank.density_kg_m3) + " kg");
+    check.Require(
+        volume_m3 <= tank.Volume(), at + ".propellant_mass_kg",
+        "takes " + std::to_string(volume_m3) + " m3, the tank has " + std::to_string(tank.Volume()),
+        "at most what the tank holds, " + std::to_string(tank.Volume() * tank.density_kg_m3) + " kg");
   }
   // Masses are written with a few digits.
-  check.Require(std::fabs(sum_kg - stage.propellant_mass_kg) <= 1e-6 * stage.propellant_mass_kg,
-                path + ".propellant_mass_kg",
-                "is " + std::to_string(stage.propellant_mass_kg) + ", the tanks hold " + std::to_string(sum_kg),
-                "the sum of the tanks' propellant_mass_kg");
+  check.Require(
+      std::fabs(sum_kg - stage.propellant_mass_kg) <= 1e-6 * stage.propellant_mass_kg,
+      path + ".propellant_mass_kg",
+      "is " + std::to_string(stage.propellant_mass_kg) + ", the tanks hold " + std::to_string(sum_kg),
+      "the sum of the tanks' propellant_mass_kg");
 }
 
 // The same of a file's curve, whose reader sets thrust and burning time by it, and of one set in code.
@@ -115,11 +120,12 @@ void CheckThrustCurve(const Stage& stage, const std::string& path, Checker& chec
                 "as many of both");
   if (curve.flow_kg_s.size() != curve.time_s.size()) return;
   const double flown_kg = curve.Flown();
-  check.Require(std::fabs(flown_kg - stage.propellant_mass_kg) <= kFlowSumTolerance * stage.propellant_mass_kg,
-                path + ".thrust_curve.table.mass_flow_kg_s",
-                "flows " + std::to_string(flown_kg) + " kg in all, but propellant_mass_kg is " +
-                    std::to_string(stage.propellant_mass_kg),
-                "flows that sum up to the propellant within 1 %");
+  check.Require(
+      std::fabs(flown_kg - stage.propellant_mass_kg) <= kFlowSumTolerance * stage.propellant_mass_kg,
+      path + ".thrust_curve.table.mass_flow_kg_s",
+      "flows " + std::to_string(flown_kg) + " kg in all, but propellant_mass_kg is " +
+          std::to_string(stage.propellant_mass_kg),
+      "flows that sum up to the propellant within 1 %");
 }
 
 void CheckIgnition(const Stage& stage, bool first, const std::string& path, Checker& check) {
@@ -202,10 +208,10 @@ void CheckStage(const Vehicle& vehicle, std::size_t i, Checker& check) {
     double aftmost = 0.0;
     for (int part = 0; part <= kParts; ++part)
       aftmost = std::max(aftmost, stack.At(stack.propellant_mass_kg * part / kParts).cg_station_m);
-    check.Require(aftmost < gimbal.pivot_station_m, path + ".gimbal.pivot_station_m",
-                  "is not aft of the centre of gravity, which reaches station " + std::to_string(aftmost) +
-                      " m",
-                  "a station aft of the centre of gravity");
+    check.Require(
+        aftmost < gimbal.pivot_station_m, path + ".gimbal.pivot_station_m",
+        "is not aft of the centre of gravity, which reaches station " + std::to_string(aftmost) + " m",
+        "a station aft of the centre of gravity");
   }
   CheckIgnition(stage, i == 0, path, check);
 }
@@ -233,8 +239,8 @@ void CheckBoosters(const Vehicle& vehicle, Checker& check) {
   check.Require(2.0 * b.radius_m >= core.diameter_m, "boosters.radius_m",
                 "puts their axes inside the stage that they stand beside",
                 "at least half its diameter_m, " + std::to_string(0.5 * core.diameter_m));
-  check.Require(b.bottom_station_m > b.top_station_m, "boosters.bottom_station_m", "is not aft of top_station_m",
-                "a station larger than top_station_m");
+  check.Require(b.bottom_station_m > b.top_station_m, "boosters.bottom_station_m",
+                "is not aft of top_station_m", "a station larger than top_station_m");
   CheckTube("boosters.grain", b.grain.top_station_m, b.grain.bottom_station_m, b.grain.outer_diameter_m,
             b.grain.inner_diameter_m, b.bottom_station_m, check, "booster");
   check.Require(0.5 * (b.motor.ignition_rise_s + b.motor.tail_off_s) < b.motor.burning_time_s,
@@ -242,13 +248,15 @@ void CheckBoosters(const Vehicle& vehicle, Checker& check) {
                 "ramps that are together shorter than twice burning_time_s");
   check.Require(b.grain.outer_diameter_m <= b.diameter_m, "boosters.grain.outer_diameter_m",
                 "is larger than the booster", "at most diameter_m");
-  check.Require(!vehicle.structure_beam, "boosters", "change the modes of a vehicle that bends, which is not modelled",
+  check.Require(!vehicle.structure_beam, "boosters",
+                "change the modes of a vehicle that bends, which is not modelled",
                 "none beside structure_beam");
   Stage one;
   one.propellant_mass_kg = b.propellant_mass_kg;
   one.motor = b.motor;
   if (!b.motor.thrust_curve.empty()) CheckThrustCurve(one, "boosters.motor", check);
-  if (!(b.propellant_mass_kg > 0.0 && b.motor.burning_time_s > 0.0 && core.motor.burning_time_s > 0.0)) return;
+  if (!(b.propellant_mass_kg > 0.0 && b.motor.burning_time_s > 0.0 && core.motor.burning_time_s > 0.0))
+    return;
   const double beside_s = BuildBoosterBurn(b, 1.0, 1.0).duration_s + b.separation_delay_s;
   const double core_s = BuildBurn(core, 1.0, 1.0).duration_s;
   check.Require(beside_s < core_s, "boosters.motor",
@@ -305,7 +313,8 @@ std::vector<VehicleProblem> Problems(const Vehicle& vehicle) {
   Checker check;
   const std::size_t count = vehicle.stages.size();
   check.Require(count >= 1 && count <= static_cast<std::size_t>(kMaxStages), "stages",
-                "has " + std::to_string(count) + " entries", "1 to " + std::to_string(kMaxStages) + " stages");
+                "has " + std::to_string(count) + " entries",
+                "1 to " + std::to_string(kMaxStages) + " stages");
   if (count < 1 || count > static_cast<std::size_t>(kMaxStages)) return check.Take();
   for (std::size_t i = 0; i < count; ++i) CheckStage(vehicle, i, check);
   for (std::size_t i = 0; i + 1 < count; ++i)
@@ -338,9 +347,7 @@ std::vector<VehicleProblem> Problems(const Vehicle& vehicle) {
   return problems;
 }
 
-double Tank::Volume() const {
-  return 0.25 * kPi * Square(diameter_m) * (bottom_station_m - top_station_m);
-}
+double Tank::Volume() const { return 0.25 * kPi * Square(diameter_m) * (bottom_station_m - top_station_m); }
 
 double Stage::PropellantTop() const {
   if (!is_liquid()) return grain.top_station_m;

@@ -33,13 +33,13 @@ enum class IgnitionTrigger {
 
 struct Stage {
   std::string name;
-  double liftoff_mass_kg = 0.0;     ///< this stage and everything above it (Table 1)
+  double liftoff_mass_kg = 0.0;  ///< this stage and everything above it (Table 1)
   double propellant_mass_kg = 0.0;
   double diameter_m = 0.0;
-  double bottom_station_m = 0.0;    ///< where the stack ends while this stage is its lowest
+  double bottom_station_m = 0.0;  ///< where the stack ends while this stage is its lowest
   Motor motor;
-  Grain grain;               ///< of a solid motor
-  std::vector<Tank> tanks;   ///< of a liquid stage, else empty; their propellant is the stage's
+  Grain grain;                         ///< of a solid motor
+  std::vector<Tank> tanks;             ///< of a liquid stage, else empty; their propellant is the stage's
   std::vector<MassElement> structure;  ///< the dry mass; the fractions sum to 1
   std::vector<Jettison> jettisoned;
   Gimbal gimbal;
@@ -58,49 +58,55 @@ struct Stage {
 
 inline void DescribeIgnition(Fields& fields, Stage& stage) {
   fields.Map("ignition", "what ignites it", [&](Fields& ignition) {
-    ignition.Choice<IgnitionTrigger>("trigger",
-                                     {{"lift_off", IgnitionTrigger::kLiftOff},
-                                      {"burnout_detection", IgnitionTrigger::kBurnoutDetection},
-                                      {"timer", IgnitionTrigger::kTimer}},
-                                     stage.ignition,
-                                     "lift-off; separation of the stage below; or the flight program's time: the vehicle "
-                                     "coasts before it under its reaction control");
-    ignition.Quantity("delay", kTime, kNonNegative, stage.ignition_delay_s, "after separation of the stage below", 0.0);
+    ignition.Choice<IgnitionTrigger>(
+        "trigger",
+        {{"lift_off", IgnitionTrigger::kLiftOff},
+         {"burnout_detection", IgnitionTrigger::kBurnoutDetection},
+         {"timer", IgnitionTrigger::kTimer}},
+        stage.ignition,
+        "lift-off; separation of the stage below; or the flight program's time: the vehicle "
+        "coasts before it under its reaction control");
+    ignition.Quantity("delay", kTime, kNonNegative, stage.ignition_delay_s,
+                      "after separation of the stage below", 0.0);
   });
 }
 
 inline void Describe(Fields& fields, Stage& stage) {
   fields.Flag("restarts", stage.restarts, false,
-              "it is the stage before, a liquid one, whose engine burns again: the same body, its propellant what is left. "
+              "it is the stage before, a liquid one, whose engine burns again: the same body, its propellant "
+              "what is left. "
               "What the stage jettisons may leave in any of its burns");
   fields.Text("name", stage.name, "what it is");
-  fields.Either({{Is("restarts", {"true"}), [&] { DescribeCommands(fields, stage.motor); }},
-                 {Else(), [&] {
-                    fields.Quantity("liftoff_mass", kMass, kPositive, stage.liftoff_mass_kg,
-                                    "of this stage and everything above it (Table 1)");
-                    fields.Quantity("propellant_mass", kMass, kPositive, stage.propellant_mass_kg, "at ignition");
-                    fields.Quantity("diameter", kLength, kPositive, stage.diameter_m, "of its body");
-                    fields.Quantity("bottom_station", kLength, kPositive, stage.bottom_station_m,
-                                    "where the stack ends while this stage is its lowest");
-                    fields.Map("motor", "motor or engine", [&](Fields& motor) { Describe(motor, stage.motor); });
-                    fields.Either({{Has("motor.liquid"),
-                                    [&] {
-                                      fields.Misplaced("grain", {}, "the motor is liquid", "tanks in place of the grain");
-                                      fields.List("tanks", 1, SIZE_MAX, stage.tanks,
-                                                  "of a liquid engine: upright cylinders round the axis, which may be "
-                                                  "inside one another's length");
-                                    }},
-                                   {Else(), [&] {
-                                      fields.Misplaced("tanks", {}, "the motor is not liquid",
-                                                       "a grain in place of the tanks, or motor: {liquid: {...}}");
-                                      fields.Map("grain", "of a solid motor",
-                                                 [&](Fields& grain) { Describe(grain, stage.grain); });
-                                    }}});
-                    fields.List("structure", 1, SIZE_MAX, stage.structure, "its dry mass; the fractions sum up to 1");
-                    fields.List("jettisoned", 0, kMaxJettisons, stage.jettisoned,
-                                "masses on the axis that leave while the stage is attached: fairing, tower, skirt");
-                    fields.Map("gimbal", "what turns the thrust", [&](Fields& gimbal) { Describe(gimbal, stage.gimbal); });
-                  }}});
+  fields.Either(
+      {{Is("restarts", {"true"}), [&] { DescribeCommands(fields, stage.motor); }},
+       {Else(), [&] {
+          fields.Quantity("liftoff_mass", kMass, kPositive, stage.liftoff_mass_kg,
+                          "of this stage and everything above it (Table 1)");
+          fields.Quantity("propellant_mass", kMass, kPositive, stage.propellant_mass_kg, "at ignition");
+          fields.Quantity("diameter", kLength, kPositive, stage.diameter_m, "of its body");
+          fields.Quantity("bottom_station", kLength, kPositive, stage.bottom_station_m,
+                          "where the stack ends while this stage is its lowest");
+          fields.Map("motor", "motor or engine", [&](Fields& motor) { Describe(motor, stage.motor); });
+          fields.Either({{Has("motor.liquid"),
+                          [&] {
+                            fields.Misplaced("grain", {}, "the motor is liquid",
+                                             "tanks in place of the grain");
+                            fields.List("tanks", 1, SIZE_MAX, stage.tanks,
+                                        "of a liquid engine: upright cylinders round the axis, which may be "
+                                        "inside one another's length");
+                          }},
+                         {Else(), [&] {
+                            fields.Misplaced("tanks", {}, "the motor is not liquid",
+                                             "a grain in place of the tanks, or motor: {liquid: {...}}");
+                            fields.Map("grain", "of a solid motor",
+                                       [&](Fields& grain) { Describe(grain, stage.grain); });
+                          }}});
+          fields.List("structure", 1, SIZE_MAX, stage.structure, "its dry mass; the fractions sum up to 1");
+          fields.List("jettisoned", 0, kMaxJettisons, stage.jettisoned,
+                      "masses on the axis that leave while the stage is attached: fairing, tower, skirt");
+          fields.Map("gimbal", "what turns the thrust",
+                     [&](Fields& gimbal) { Describe(gimbal, stage.gimbal); });
+        }}});
   DescribeIgnition(fields, stage);
   fields.Quantity("separation_delay", kTime, kNonNegative, stage.separation_delay_s,
                   "after burnout is detected; the last stage does not separate", 0.0);
@@ -128,9 +134,9 @@ inline void Describe(Fields& fields, ReactionControl& control) {
 /// Boosters at most.
 inline constexpr int kMaxBoosters = 8;
 
-/// Solid motors beside the first stage, all alike, at equal angles round it and ignited with it. Their nozzles are
-/// fixed, along the axis. They leave together after they have burnt out, at rest against the body, ahead of the
-/// stage's burnout; the aerodynamics of the first stack are theirs too, and stay.
+/// Solid motors beside the first stage, all alike, at equal angles round it and ignited with it. Their
+/// nozzles are fixed, along the axis. They leave together after they have burnt out, at rest against the
+/// body, ahead of the stage's burnout; the aerodynamics of the first stack are theirs too, and stay.
 struct Boosters {
   int count = 0;                    ///< 0: none; else 2 to 8
   double dry_mass_kg = 0.0;         ///< of one, a thin tube from top to bottom station
@@ -150,7 +156,8 @@ struct Boosters {
 
 inline void Describe(Fields& fields, Boosters& boosters) {
   fields.Integer("count", 2, kMaxBoosters, boosters.count, "how many, all alike");
-  fields.Quantity("dry_mass", kMass, kPositive, boosters.dry_mass_kg, "of one, a thin tube from top to bottom station");
+  fields.Quantity("dry_mass", kMass, kPositive, boosters.dry_mass_kg,
+                  "of one, a thin tube from top to bottom station");
   fields.Quantity("propellant_mass", kMass, kPositive, boosters.propellant_mass_kg, "of one");
   fields.Quantity("radius", kLength, kPositive, boosters.radius_m, "of their axes from the vehicle's");
   fields.Quantity("diameter", kLength, kPositive, boosters.diameter_m, "of one");
@@ -160,7 +167,8 @@ inline void Describe(Fields& fields, Boosters& boosters) {
   fields.Map("motor", "of one; solid", [&](Fields& motor) {
     motor.Either({{Has("liquid"),
                    [&] {
-                     motor.Misplaced("liquid", {}, "boosters are solid", "thrust_* with burning_time_*, or thrust_curve");
+                     motor.Misplaced("liquid", {}, "boosters are solid",
+                                     "thrust_* with burning_time_*, or thrust_curve");
                      DescribeExit(motor, boosters.motor);
                    }},
                   {Else(), [&] { DescribeSolid(motor, boosters.motor); }}});
@@ -195,14 +203,14 @@ inline void Describe(Fields& fields, ProfileSection& section) {
 /// Outside the grid the end value holds.
 struct AeroTable {
   double reference_area_m2 = 0.0;
-  double reference_length_m = 0.0;      ///< the diameter
+  double reference_length_m = 0.0;  ///< the diameter
   std::vector<double> mach;
-  std::vector<double> incidence_rad;    ///< >= 0
-  std::vector<double> ca;               ///< shape (mach, incidence), row by row; power on
+  std::vector<double> incidence_rad;  ///< >= 0
+  std::vector<double> ca;             ///< shape (mach, incidence), row by row; power on
   std::vector<double> cn;
-  std::vector<double> xcp_station_m;    ///< where the normal force acts
-  std::vector<double> cmq_per_rad;      ///< shape (mach): pitch and yaw damping, on q d / (2 V), about the CG
-  std::vector<double> clp_per_rad;      ///< shape (mach): roll damping on p d / (2 V)
+  std::vector<double> xcp_station_m;  ///< where the normal force acts
+  std::vector<double> cmq_per_rad;    ///< shape (mach): pitch and yaw damping, on q d / (2 V), about the CG
+  std::vector<double> clp_per_rad;    ///< shape (mach): roll damping on p d / (2 V)
 };
 
 void Describe(Fields& fields, AeroTable& table);
@@ -219,8 +227,10 @@ struct StructuralLimits {
 
 inline void Describe(Fields& fields, StructuralLimits& limits) {
   fields.Quantity("q_max", kPressure, kPositive, limits.q_max_pa, "dynamic pressure", 0.0);
-  fields.Quantity("q_alpha", kPressureAngle, kPositive, limits.q_alpha_pa_rad, "dynamic pressure times incidence", 0.0);
-  fields.Quantity("axial_load", kAcceleration, kPositive, limits.axial_load_g, "specific force along the axis", 0.0);
+  fields.Quantity("q_alpha", kPressureAngle, kPositive, limits.q_alpha_pa_rad,
+                  "dynamic pressure times incidence", 0.0);
+  fields.Quantity("axial_load", kAcceleration, kPositive, limits.axial_load_g,
+                  "specific force along the axis", 0.0);
   fields.Quantity("lateral_load", kAcceleration, kPositive, limits.lateral_load_g, "and across it", 0.0);
   fields.Quantity("bending_moment", kMoment, kPositive, limits.bending_moment_n_m, "at any station", 0.0);
   fields.Flag("terminate", limits.terminate, false,
@@ -228,9 +238,9 @@ inline void Describe(Fields& fields, StructuralLimits& limits) {
 }
 
 struct LaunchSite {
-  double latitude_rad = 0.0;   ///< geodetic
+  double latitude_rad = 0.0;  ///< geodetic
   double longitude_rad = 0.0;
-  double altitude_m = 0.0;     ///< geodetic, of the vehicle's CG at rest
+  double altitude_m = 0.0;  ///< geodetic, of the vehicle's CG at rest
 };
 
 inline void Describe(Fields& fields, LaunchSite& site) {

@@ -11,14 +11,17 @@ struct AeroRows {
 };
 
 void Describe(Fields& fields, AeroRows& rows) {
-  fields.Numbers("mach", kNonNegative, 4, SIZE_MAX, rows.mach, "increasing, the same for all incidences of a block");
+  fields.Numbers("mach", kNonNegative, 4, SIZE_MAX, rows.mach,
+                 "increasing, the same for all incidences of a block");
   fields.Quantities("incidence", kAngle, Between(0.0, kHalfTurn), 4, SIZE_MAX, rows.incidence_rad,
                     "increasing, the same for each mach number");
   fields.Numbers("ca", kAnyNumber, 4, SIZE_MAX, rows.ca, "axial force, power on");
   fields.Numbers("cn", kAnyNumber, 4, SIZE_MAX, rows.cn, "normal force");
-  fields.Quantities("xcp_station", kLength, kAnyNumber, 4, SIZE_MAX, rows.xcp_station_m, "where the normal force acts");
-  fields.Numbers("cmq_per_rad", kAnyNumber, 4, SIZE_MAX, rows.cmq_per_rad,
-                 "pitch and yaw damping about the centre of gravity, on q d / (2 V); one value a mach number");
+  fields.Quantities("xcp_station", kLength, kAnyNumber, 4, SIZE_MAX, rows.xcp_station_m,
+                    "where the normal force acts");
+  fields.Numbers(
+      "cmq_per_rad", kAnyNumber, 4, SIZE_MAX, rows.cmq_per_rad,
+      "pitch and yaw damping about the centre of gravity, on q d / (2 V); one value a mach number");
   fields.Numbers("clp_per_rad", kAnyNumber, 4, SIZE_MAX, rows.clp_per_rad,
                  "roll damping, on p d / (2 V); one value a mach number");
 }
@@ -32,23 +35,25 @@ void FillGrid(Fields& fields, const AeroRows& rows, AeroTable& table) {
     fields.Refuse("", "the columns have different lengths", "one value a row in each column");
     return;
   }
-  const std::size_t incidences = static_cast<std::size_t>(
-      std::find_if(rows.mach.begin(), rows.mach.end(), [&](double value) { return value != rows.mach.front(); }) -
-      rows.mach.begin());
+  const std::size_t incidences =
+      static_cast<std::size_t>(std::find_if(rows.mach.begin(), rows.mach.end(),
+                                            [&](double value) { return value != rows.mach.front(); }) -
+                               rows.mach.begin());
   table.incidence_rad.assign(rows.incidence_rad.begin(),
                              rows.incidence_rad.begin() + static_cast<std::ptrdiff_t>(incidences));
   for (std::size_t row = 0; row < count; ++row) {
     const std::string index = "[" + std::to_string(row) + "]";
     const std::size_t column = row % incidences;
     const bool starts_mach = column == 0;
-    const bool mach_fits =
-        starts_mach ? (row == 0 || rows.mach[row] > rows.mach[row - 1]) : rows.mach[row] == rows.mach[row - 1];
+    const bool mach_fits = starts_mach ? (row == 0 || rows.mach[row] > rows.mach[row - 1])
+                                       : rows.mach[row] == rows.mach[row - 1];
     const bool incidence_fits = rows.incidence_rad[row] == table.incidence_rad[column] &&
                                 (starts_mach || rows.incidence_rad[row] > rows.incidence_rad[row - 1]);
     const bool last_is_partial = row + 1 == count && column + 1 != incidences;
     if (!mach_fits || !incidence_fits || last_is_partial || incidences < 2 || incidences == count) {
       fields.Refuse("mach" + index, "the row does not continue the grid",
-                    "a full grid: rows of increasing mach, each mach with the same increasing incidences, two or more of "
+                    "a full grid: rows of increasing mach, each mach with the same increasing incidences, "
+                    "two or more of "
                     "both");
       return;
     }
@@ -90,8 +95,8 @@ void DescribeTurningNozzles(Fields& fields, std::vector<Stage>& stages) {
   if (turning.empty()) return;
   if (turning.size() != stages.size()) {
     fields.Refuse("nozzles",
-                  "the list has " + std::to_string(turning.size()) + ", the vehicle " + std::to_string(stages.size()) +
-                      " stages",
+                  "the list has " + std::to_string(turning.size()) + ", the vehicle " +
+                      std::to_string(stages.size()) + " stages",
                   "one entry a stage, or none");
     return;
   }
@@ -106,7 +111,8 @@ void DescribeTurningNozzles(Fields& fields, std::vector<Stage>& stages) {
 
 void Describe(Fields& fields, AeroTable& table) {
   fields.Quantity("reference_area", kArea, kPositive, table.reference_area_m2, "of the coefficients");
-  fields.Quantity("reference_length", kLength, kPositive, table.reference_length_m, "of the dampings: the diameter");
+  fields.Quantity("reference_length", kLength, kPositive, table.reference_length_m,
+                  "of the dampings: the diameter");
   AeroRows rows;
   fields.Table("table", "a CSV file", "a CSV file, a full grid mach by mach", [&](Fields& columns) {
     Describe(columns, rows);
@@ -120,7 +126,8 @@ void Describe(Fields& fields, Vehicle& vehicle) {
   fields.Quantity("hold_down", kTime, kNonNegative, vehicle.hold_down_s,
                   "stage 1 burns so long before release; lift-off is time 0", 0.0);
   fields.Flag("made_up", vehicle.made_up, false,
-              "what is impossible of it, as a textbook's frozen coefficients may be, is warned about and not refused");
+              "what is impossible of it, as a textbook's frozen coefficients may be, is warned about and not "
+              "refused");
   fields.Flag("jet_damping", vehicle.jet_damping, true, "moment of the flow through a turning vehicle");
   fields.Flag("flow_coriolis", vehicle.flow_coriolis, true,
               "force of that flow, and the motion of the centre of gravity through the body");
@@ -129,27 +136,33 @@ void Describe(Fields& fields, Vehicle& vehicle) {
   fields.List("stages", 1, kMaxStages, vehicle.stages, "in the order of flight");
   CheckRestarts(fields, vehicle.stages);
   bool has_boosters = vehicle.boosters.count > 0;
-  fields.OptionalMap("boosters", has_boosters,
-                     "solid motors beside the first stage, ignited with it and part of its lift-off mass; the built-up "
-                     "aerodynamics know the core alone",
-                     [&](Fields& boosters) { Describe(boosters, vehicle.boosters); });
+  fields.OptionalMap(
+      "boosters", has_boosters,
+      "solid motors beside the first stage, ignited with it and part of its lift-off mass; the built-up "
+      "aerodynamics know the core alone",
+      [&](Fields& boosters) { Describe(boosters, vehicle.boosters); });
   fields.List("profile", 1, SIZE_MAX, vehicle.profile, "outer mould line, from the nose aft");
   bool has_tables = !vehicle.aerodynamics.empty();
-  fields.OptionalMap("aerodynamics", has_tables, "in place of what is built up from the profile", [&](Fields& aerodynamics) {
-    aerodynamics.List("tables", 1, kMaxStages, vehicle.aerodynamics, "one a stack");
-  });
+  fields.OptionalMap("aerodynamics", has_tables, "in place of what is built up from the profile",
+                     [&](Fields& aerodynamics) {
+                       aerodynamics.List("tables", 1, kMaxStages, vehicle.aerodynamics, "one a stack");
+                     });
   // A single stage has no coast.
   bool has_thrusters = vehicle.reaction_control.thrust_n > 0.0;
-  fields.OptionalMap("reaction_control", has_thrusters,
-                     "cold-gas thrusters of the last stage; a single stage whose nozzles command roll may lack them",
-                     [&](Fields& control) { Describe(control, vehicle.reaction_control); });
-  if (!has_thrusters && vehicle.stages.size() > 1) fields.Refuse("", "missing key 'reaction_control'", "a map");
+  fields.OptionalMap(
+      "reaction_control", has_thrusters,
+      "cold-gas thrusters of the last stage; a single stage whose nozzles command roll may lack them",
+      [&](Fields& control) { Describe(control, vehicle.reaction_control); });
+  if (!has_thrusters && vehicle.stages.size() > 1)
+    fields.Refuse("", "missing key 'reaction_control'", "a map");
   bool has_limits = true;
-  fields.OptionalMap("limits", has_limits, "of the structure; a vehicle that gives any is required to keep them",
+  fields.OptionalMap("limits", has_limits,
+                     "of the structure; a vehicle that gives any is required to keep them",
                      [&](Fields& limits) { Describe(limits, vehicle.limits); });
   DescribeTurningNozzles(fields, vehicle.stages);
   bool has_sensors = true;
-  fields.OptionalMap("sensors", has_sensors, "what measures attitude and rates; a vehicle that bends must have them",
+  fields.OptionalMap("sensors", has_sensors,
+                     "what measures attitude and rates; a vehicle that bends must have them",
                      [&](Fields& sensors) { Describe(sensors, vehicle.sensors); });
   bool bends = vehicle.structure_beam.has_value();
   fields.OptionalMap("structure_beam", bends, "how it bends. Without, it is rigid", [&](Fields& beam) {

@@ -33,11 +33,13 @@ double GreatestLoad_m_s2(const MotorBurn& burn, double empty_kg) {
   std::vector<double> corners = burn.Kinks(0.0);
   corners.insert(corners.end(), {0.0, burn.duration_s});
   for (const double at_s : corners)
-    greatest = std::max(greatest, burn.vacuum_thrust_n * burn.Fraction(at_s) / (empty_kg + burn.Propellant(at_s)));
+    greatest =
+        std::max(greatest, burn.vacuum_thrust_n * burn.Fraction(at_s) / (empty_kg + burn.Propellant(at_s)));
   return greatest;
 }
 
-// Of the first stage: at first both flows with their thrusts, means over the boosters' burn, then the stage's alone.
+// Of the first stage: at first both flows with their thrusts, means over the boosters' burn, then the stage's
+// alone.
 double BoostedDeltaV(const Vehicle& vehicle, const MotorBurn& core, const MotorBurn& boost) {
   const double boost_s = boost.duration_s;
   const double core_kg = core.propellant_mass_kg - core.Propellant(boost_s);
@@ -69,7 +71,8 @@ std::vector<StageFigures> FiguresOf(const Vehicle& vehicle) {
     one.burning_time_s = burn.curve ? burn.duration_s : stage.motor.burning_time_s;
     one.flow_kg_s = burnt_kg / one.burning_time_s;
     one.specific_impulse_s = burn.ExhaustVelocity() / kStandardGravity;
-    one.ideal_delta_v_m_s = burn.ExhaustVelocity() * Log(stage.liftoff_mass_kg / (stage.liftoff_mass_kg - burnt_kg));
+    one.ideal_delta_v_m_s =
+        burn.ExhaustVelocity() * Log(stage.liftoff_mass_kg / (stage.liftoff_mass_kg - burnt_kg));
     // It has counted what a cut-off by velocity leaves it as burnt.
     if (stage.restarts && vehicle.stages[i - 1].motor.cut_off == CutOff::kAtVelocity)
       one.ideal_delta_v_m_s = 0.0;

@@ -13,15 +13,16 @@ struct StageFigures {
   double own_mass_kg = 0.0;  ///< without what is above; the last one's with the payload
   double dry_mass_kg = 0.0;
   double structural_fraction = 0.0;  ///< dry mass / own mass
-  double burning_time_s = 0.0;       ///< of a thrust curve or a liquid stage to its end, else propellant over flow
-  double flow_kg_s = 0.0;            ///< at full thrust; of a thrust curve or a liquid stage its mean
-  double specific_impulse_s = 0.0;   ///< in vacuum: impulse over the weight of the propellant
-  double ideal_delta_v_m_s = 0.0;    ///< K. E. Tsiolkovsky's, in vacuum, without losses
+  double burning_time_s = 0.0;  ///< of a thrust curve or a liquid stage to its end, else propellant over flow
+  double flow_kg_s = 0.0;       ///< at full thrust; of a thrust curve or a liquid stage its mean
+  double specific_impulse_s = 0.0;  ///< in vacuum: impulse over the weight of the propellant
+  double ideal_delta_v_m_s = 0.0;   ///< K. E. Tsiolkovsky's, in vacuum, without losses
   /// Full thrust over weight: where stage 1 is released (less the pressure of the site's air on the nozzles,
-  /// after what the hold-down burns), else at ignition in vacuum. Of a thrust curve or throttle not the full thrust,
-  /// but the greatest of the first second, in which motors reach theirs.
+  /// after what the hold-down burns), else at ignition in vacuum. Of a thrust curve or throttle not the full
+  /// thrust, but the greatest of the first second, in which motors reach theirs.
   double thrust_to_weight = 0.0;
-  double burnout_load_g = 0.0;  ///< full thrust over the weight of what is left; of a thrust curve the greatest
+  double burnout_load_g =
+      0.0;  ///< full thrust over the weight of what is left; of a thrust curve the greatest
 };
 
 /// Of a vehicle without Problems().

@@ -42,9 +42,10 @@ void PrintSummary(const CampaignSummary& summary, const std::filesystem::path& d
   fmt::print("\n");
   for (const std::string& warning : Warnings(summary)) fmt::print("warning: {}\n", warning);
   for (const RequirementSummary& requirement : summary.requirements) {
-    fmt::print("{}: {}{}: {}\n", requirement.verdict, RequirementWords(requirement),
-               requirement.bound ? fmt::format(", bound {}", ReadableText(*requirement.bound)) : std::string(),
-               requirement.sentence);
+    fmt::print(
+        "{}: {}{}: {}\n", requirement.verdict, RequirementWords(requirement),
+        requirement.bound ? fmt::format(", bound {}", ReadableText(*requirement.bound)) : std::string(),
+        requirement.sentence);
   }
   fmt::print("report: {}\nresult: {}\n", (directory / "report.html").string(), directory.string());
 }

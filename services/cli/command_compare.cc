@@ -38,17 +38,17 @@ void PrintText(const Comparison& comparison) {
     fmt::print("{}: {} ({}), {} of {} flights completed\n", letter, side->name, side->autopilot,
                side->completed, side->flown);
   fmt::print("{}\n{}\n\n", comparison.pairing.sentence, comparison.sentence);
-  fmt::print("{:<37} {:>10} {:>10} {:>11} {:>26} {:>11} {:>11}  {}\n", "metric", "median A", "median B", "B - A",
-             "95 % interval", "p99 B - A", "p, Holm", "B is");
+  fmt::print("{:<37} {:>10} {:>10} {:>11} {:>26} {:>11} {:>11}  {}\n", "metric", "median A", "median B",
+             "B - A", "95 % interval", "p99 B - A", "p, Holm", "B is");
   for (const MetricComparison& metric : comparison.metrics) {
     const auto tail =
         std::find_if(metric.tails.begin(), metric.tails.end(), [&](const PercentileComparison& each) {
           return each.name == (metric.info.worse == Worse::kSmaller ? "p01" : "p99");
         });
-    fmt::print("{:<37} {:>10} {:>10} {:>11} {:>26} {:>11} {:>11}  {}\n", metric.metric, NumberText(metric.median_a),
-               NumberText(metric.median_b), NumberText(metric.difference), IntervalText(metric.interval),
-               tail == metric.tails.end() ? "–" : NumberText(tail->difference), NumberText(metric.p_holm),
-               metric.finding);
+    fmt::print("{:<37} {:>10} {:>10} {:>11} {:>26} {:>11} {:>11}  {}\n", metric.metric,
+               NumberText(metric.median_a), NumberText(metric.median_b), NumberText(metric.difference),
+               IntervalText(metric.interval), tail == metric.tails.end() ? "–" : NumberText(tail->difference),
+               NumberText(metric.p_holm), metric.finding);
   }
   for (const RequirementComparison& requirement : comparison.requirements) {
     fmt::print("\n{}: fails in {} of {} in A, {} of {} in B; {} {}\n", requirement.words,

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "core/analysis/footprints.h"
+#include "core/analysis/junit.h"
 #include "core/math/constants.h"
 #include "core/results/cases_csv.h"
-#include "core/analysis/junit.h"
 #include "core/results/export.h"
-#include "core/analysis/footprints.h"
 #include "core/results/output_file.h"
 #include "core/results/text.h"
 #include "services/cli/command.h"

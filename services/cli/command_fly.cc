@@ -6,16 +6,16 @@
 #include <optional>
 #include <string>
 
-#include "core/cases/campaign_flights.h"
 #include "core/campaign_yaml/load.h"
+#include "core/cases/campaign_flights.h"
 #include "core/pages/histories.h"
 #include "core/results/output_file.h"
 #include "core/results/text.h"
 #include "services/cli/command.h"
-#include "services/client/flight_json.h"
 #include "services/cli/fly_scenario.h"
 #include "services/cli/stream_beside.h"
 #include "services/cli/warn.h"
+#include "services/client/flight_json.h"
 #include "services/client/writable.h"
 
 namespace dispersa {
@@ -92,7 +92,8 @@ ExitCode FlyOne(const FlyOptions& options, const GlobalOptions& global) {
 
 void AddFlyCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<FlyOptions>();
-  CLI::App* command = app.add_subcommand("fly", "fly the nominal flight, one case, or a scenario, in this process");
+  CLI::App* command =
+      app.add_subcommand("fly", "fly the nominal flight, one case, or a scenario, in this process");
   command->add_option("campaign", options->campaign, "campaign or scenario file")
       ->required()
       ->type_name(kYamlType);

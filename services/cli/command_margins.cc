@@ -30,8 +30,9 @@ void PrintLoop(const std::string& place, const char* kind, const ComputedMargins
   const bool passed = &m == (at.learnt ? &*at.learnt : nullptr) ? LearntPasses(at) : PassesGates(m);
   const std::string bending =
       std::isfinite(m.bending_peak_db)
-          ? fmt::format("{:>8.1f} {:>8}", m.bending_peak_db,
-                        m.bending_phase_6db_deg < 180.0 ? fmt::format("{:.1f}", m.bending_phase_6db_deg) : "-")
+          ? fmt::format(
+                "{:>8.1f} {:>8}", m.bending_peak_db,
+                m.bending_phase_6db_deg < 180.0 ? fmt::format("{:.1f}", m.bending_phase_6db_deg) : "-")
           : "";
   fmt::print("{:<24} {:>8.2f} {:<5}  {:<8} {:>8} {:>8} {:>8.1f} {:>8} {} {}\n", place, at.time_s,
              kAxisNames[at.axis], kind, Number(m.gain_up_db, "{:.1f}"),
@@ -113,7 +114,8 @@ void PrintText(const MarginsResult& result) {
     // Between the named instants only what fails.
     const bool named = !m.place.empty();
     if (named || !PassesGates(m.frozen)) PrintLoop(named ? m.place : "(between)", "frozen", m, m.frozen);
-    if (named || !PassesGates(m.adapting)) PrintLoop(named ? m.place : "(between)", "adapting", m, m.adapting);
+    if (named || !PassesGates(m.adapting))
+      PrintLoop(named ? m.place : "(between)", "adapting", m, m.adapting);
     if (m.learnt && (named || !LearntPasses(m)))
       PrintLoop(named ? m.place : "(between)", "learnt", m, *m.learnt);
   }

@@ -9,16 +9,16 @@
 #include <string>
 #include <vector>
 
-#include "core/input/input_error.h"
 #include "core/campaign_yaml/load.h"
+#include "core/input/input_error.h"
 #include "core/math/constants.h"
 #include "core/pages/modes_page.h"
 #include "core/results/output_file.h"
 #include "core/structure/bending_modes.h"
 #include "core/vehicle/mass.h"
 #include "services/cli/command.h"
-#include "services/client/flight_json.h"
 #include "services/cli/warn.h"
+#include "services/client/flight_json.h"
 #include "services/client/writable.h"
 
 namespace dispersa {

@@ -16,9 +16,9 @@
 #include "services/cli/terminal_observer.h"
 #include "services/cli/warn.h"
 #include "services/client/reference_search.h"
-#include "services/program/threads.h"
 #include "services/log/log.h"
 #include "services/program/option_values.h"
+#include "services/program/threads.h"
 
 namespace dispersa {
 namespace {
@@ -139,7 +139,8 @@ void AddOptimizeCommand(CLI::App& app, Invocation& invocation) {
       ->transform(WholeNumber(1, 1024));
   command->footer(
       "Example: dispersa optimize campaigns/nominal.yaml -o slv4_500km.yaml --seed 2\n"
-      "The shipped reference: dispersa optimize campaigns/slv4_500km.yaml -o campaigns/references/slv4_500km.yaml");
+      "The shipped reference: dispersa optimize campaigns/slv4_500km.yaml -o "
+      "campaigns/references/slv4_500km.yaml");
   command->callback([options, &invocation] {
     invocation.command = [options](const GlobalOptions& global) { return Optimize(*options, global); };
   });

@@ -13,8 +13,8 @@
 #include "services/cli/progress.h"
 #include "services/cli/warn.h"
 #include "services/client/writable.h"
-#include "services/program/threads.h"
 #include "services/program/option_values.h"
+#include "services/program/threads.h"
 
 namespace dispersa {
 namespace {

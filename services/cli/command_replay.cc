@@ -57,7 +57,8 @@ void AddReplayCommand(CLI::App& app, Invocation& invocation) {
   CLI::App* command = app.add_subcommand("replay", "fly a stored case again and compare it to the last bit");
   command->add_option("directory", options->directory, "result folder")->required()->type_name(kFolderType);
   command->add_option("--case", options->case_index, "case index, from 0")->required();
-  command->add_option("--history", options->history, "file for the time history, CSV; -: standard output")->type_name(kFileType);
+  command->add_option("--history", options->history, "file for the time history, CSV; -: standard output")
+      ->type_name(kFileType);
   command->footer("Example: dispersa replay results/table3-1a2b3c4d --case 17 --history case17.csv");
   command->callback([options, &invocation] {
     invocation.command = [options](const GlobalOptions& global) { return Replay(*options, global); };

@@ -11,10 +11,10 @@
 #include "services/cli/command.h"
 #include "services/cli/terminal_observer.h"
 #include "services/client/campaign_run.h"
-#include "services/program/stop_signal.h"
 #include "services/log/log.h"
 #include "services/program/error_json.h"
 #include "services/program/option_values.h"
+#include "services/program/stop_signal.h"
 
 namespace dispersa {
 namespace {

@@ -9,14 +9,14 @@
 #include <string>
 #include <vector>
 
+#include "core/analysis/requirement_summary.h"
 #include "core/cases/campaign_flights.h"
-#include "core/input/input_error.h"
 #include "core/flight/flight.h"
+#include "core/input/input_error.h"
 #include "core/optimization/parallel_for.h"
-#include "core/results/requirement_text.h"
 #include "core/results/metric_catalogue.h"
 #include "core/results/output_file.h"
-#include "core/analysis/requirement_summary.h"
+#include "core/results/requirement_text.h"
 #include "core/results/text.h"
 #include "core/search/smallest_failure.h"
 #include "services/cli/command.h"
@@ -25,8 +25,8 @@
 #include "services/cli/warn.h"
 #include "services/client/flight_json.h"
 #include "services/client/writable.h"
-#include "services/program/threads.h"
 #include "services/program/option_values.h"
+#include "services/program/threads.h"
 
 namespace dispersa {
 namespace {

@@ -16,9 +16,9 @@
 #include "services/cli/warn.h"
 #include "services/client/flight_json.h"
 #include "services/client/writable.h"
-#include "services/program/threads.h"
 #include "services/log/log.h"
 #include "services/program/option_values.h"
+#include "services/program/threads.h"
 
 namespace dispersa {
 namespace {
@@ -54,7 +54,8 @@ std::string LawText(ControlLaw law) {
     line += " " + word;
   }
   return text + line +
-         "\n# Gains are those of the error dynamics s² + kd s + kp, one entry a stage; roll has those of pitch.\n";
+         "\n# Gains are those of the error dynamics s² + kd s + kp, one entry a stage; roll has those of "
+         "pitch.\n";
 }
 
 // The weights behind a regulator's gains.
@@ -109,8 +110,8 @@ std::string Header(const TuneOptions& options, const TuningResult& result) {
                         MarginsText(result.stages[i].adapting));
   }
   if (!result.skipped.empty())
-    text += fmt::format("# None at {} instants with less than {:g} % of full thrust.\n", result.skipped.size(),
-                        100.0 * kLeastThrustFraction);
+    text += fmt::format("# None at {} instants with less than {:g} % of full thrust.\n",
+                        result.skipped.size(), 100.0 * kLeastThrustFraction);
   if (result.feasible && options.tuning.dispersed > 0)
     text += fmt::format(
         "# The plants of {} draws meet the gates of dispersed flights, {:.0f} dB and {:.0f} deg, too.\n",

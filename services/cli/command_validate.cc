@@ -9,8 +9,8 @@
 
 #include "core/campaign_yaml/load.h"
 #include "core/campaign_yaml/standard_input.h"
-#include "core/results/output_file.h"
 #include "core/pages/vehicle_drawing.h"
+#include "core/results/output_file.h"
 #include "services/cli/command.h"
 #include "services/cli/stream_beside.h"
 #include "services/cli/vehicle_text.h"

@@ -12,9 +12,9 @@
 #include "services/cli/live_page.h"
 #include "services/cli/progress.h"
 #include "services/cli/session_options.h"
-#include "services/program/stop_signal.h"
 #include "services/log/log.h"
 #include "services/program/option_values.h"
+#include "services/program/stop_signal.h"
 
 namespace dispersa {
 namespace {

@@ -7,10 +7,10 @@
 #include <array>
 #include <vector>
 
-#include "core/pages/html_parts.h"
-#include "core/results/metric_catalogue.h"
 #include "core/analysis/requirement_summary.h"
+#include "core/pages/html_parts.h"
 #include "core/pages/svg_chart.h"
+#include "core/results/metric_catalogue.h"
 #include "core/results/text.h"
 #include "services/cli/campaign_text.h"
 #include "services/cli/progress.h"

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/analysis/dispersion_summary.h"
 #include "core/campaign/case_design.h"
 #include "core/flight/flight_inputs.h"
-#include "core/analysis/dispersion_summary.h"
 #include "core/results/metric_catalogue.h"
 
 namespace dispersa {

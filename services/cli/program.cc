@@ -6,8 +6,8 @@
 #include <system_error>
 
 #include "core/containment/contained.h"
-#include "core/input/input_error.h"
 #include "core/flight/lane_engine.h"
+#include "core/input/input_error.h"
 #include "core/results/result_error.h"
 #include "services/cli/command.h"
 #include "services/log/log.h"

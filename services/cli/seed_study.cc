@@ -32,12 +32,14 @@ std::vector<Column> Columns(const std::vector<SeedRow>& rows) {
        [](const SeedRow& r) { return r.read_back.velocity_m_s * 1e3; }, true},
       {"dg, udeg", "flight_path_angle_error_udeg", 9, 4,
        [](const SeedRow& r) { return Deg(r.read_back.flight_path_angle_rad) * 1e6; }, true},
-      {"half dH", "halved_altitude_error_m", 9, 4, [](const SeedRow& r) { return r.halved.altitude_m; }, true},
+      {"half dH", "halved_altitude_error_m", 9, 4, [](const SeedRow& r) { return r.halved.altitude_m; },
+       true},
       {"half dV", "halved_velocity_error_mm_s", 9, 4,
        [](const SeedRow& r) { return r.halved.velocity_m_s * 1e3; }, true},
       {"half dg", "halved_flight_path_angle_error_udeg", 9, 4,
        [](const SeedRow& r) { return Deg(r.halved.flight_path_angle_rad) * 1e6; }, true},
-      {"alpha,deg", "alpha_max_deg", 10, 4, [](const SeedRow& r) { return Deg(r.program.alpha_max_rad); }, false},
+      {"alpha,deg", "alpha_max_deg", 10, 4, [](const SeedRow& r) { return Deg(r.program.alpha_max_rad); },
+       false},
       {"t1, s", "t1_s", 8, 3, [](const SeedRow& r) { return r.program.t1_s; }, false},
       {"t3, s", "t3_s", 8, 3, [](const SeedRow& r) { return r.program.t3_s; }, false},
       {"t2, s", "t2_s", 8, 3, [](const SeedRow& r) { return r.program.t2_s; }, false},
@@ -45,7 +47,8 @@ std::vector<Column> Columns(const std::vector<SeedRow>& rows) {
       {"azimuth,deg", "launch_azimuth_deg", 12, 4,
        [](const SeedRow& r) { return Deg(r.program.launch_azimuth_rad); }, false},
       {"q*alpha", "q_alpha_max_pa_rad", 9, 1, [](const SeedRow& r) { return r.q_alpha_max_pa_rad; }, false}};
-  const bool flown = std::all_of(rows.begin(), rows.end(), [](const SeedRow& r) { return r.flown.has_value(); });
+  const bool flown =
+      std::all_of(rows.begin(), rows.end(), [](const SeedRow& r) { return r.flown.has_value(); });
   if (flown) {
     columns.push_back({"6D dH,km", "flown_altitude_error_km", 9, 4,
                        [](const SeedRow& r) { return r.flown->altitude_m * 1e-3; }, true});
@@ -54,8 +57,8 @@ std::vector<Column> Columns(const std::vector<SeedRow>& rows) {
     columns.push_back({"6D dg,deg", "flown_flight_path_angle_error_deg", 10, 5,
                        [](const SeedRow& r) { return Deg(r.flown->flight_path_angle_rad); }, true});
   }
-  columns.push_back({"ascents", "ascents", 8, 0, [](const SeedRow& r) { return static_cast<double>(r.ascents); },
-                     false});
+  columns.push_back(
+      {"ascents", "ascents", 8, 0, [](const SeedRow& r) { return static_cast<double>(r.ascents); }, false});
   columns.push_back({"time, s", "wall_s", 8, 1, [](const SeedRow& r) { return r.wall_s; }, false});
   return columns;
 }
@@ -93,7 +96,8 @@ std::vector<SeedRow> RunSeedStudy(const OptimizationInput& input, int seeds, con
     result.reference.vehicle_sha256 = input.vehicle_sha256;
     const Reference read = ReadReference(WriteReference(result.reference), input.name);
     const auto errors = [&](const AscentSteps& steps) {
-      return ErrorsOf(read.problem, FlyAscent(model, read.program, AscentOptionsOf(read.problem, steps)).orbit);
+      return ErrorsOf(read.problem,
+                      FlyAscent(model, read.program, AscentOptionsOf(read.problem, steps)).orbit);
     };
     row.read_back = errors(options.steps);
     row.reached = result.reached && IsWithin(row.read_back, options.tolerance);
@@ -120,19 +124,21 @@ std::string SeedStudyText(const std::vector<SeedRow>& rows) {
       text += fmt::format("{:>{}.{}f}", column.value(row), column.width + 1, column.decimals);
     text += "\n";
   }
-  const auto summary = [&](const char* title, bool errors, const std::function<double(const Spread&)>& value) {
+  const auto summary = [&](const char* title, bool errors,
+                           const std::function<double(const Spread&)>& value) {
     text += fmt::format("{:<15}", title);
     for (const Column& column : columns) {
-      text += column.is_error == errors
-                  ? fmt::format("{:>{}.{}f}", value(SpreadOf(rows, column)), column.width + 1, column.decimals)
-                  : std::string(static_cast<std::size_t>(column.width) + 1, ' ');
+      text += column.is_error == errors ? fmt::format("{:>{}.{}f}", value(SpreadOf(rows, column)),
+                                                      column.width + 1, column.decimals)
+                                        : std::string(static_cast<std::size_t>(column.width) + 1, ' ');
     }
     text += "\n";
   };
   summary("worst", true, [](const Spread& range) { return range.Magnitude(); });
   summary("least", false, [](const Spread& range) { return range.low; });
   summary("largest", false, [](const Spread& range) { return range.high; });
-  const auto reached = std::count_if(rows.begin(), rows.end(), [](const SeedRow& row) { return row.reached; });
+  const auto reached =
+      std::count_if(rows.begin(), rows.end(), [](const SeedRow& row) { return row.reached; });
   return text + fmt::format("reached from {} of {} seeds\n", reached, rows.size());
 }
 

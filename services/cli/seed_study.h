@@ -16,9 +16,9 @@ namespace dispersa {
 
 struct SeedRow {
   std::uint64_t seed = 0;
-  bool reached = false;   ///< as written and read back too
-  OrbitErrors read_back;  ///< of the program as written to text, read again and flown again
-  OrbitErrors halved;     ///< the same with half the steps
+  bool reached = false;              ///< as written and read back too
+  OrbitErrors read_back;             ///< of the program as written to text, read again and flown again
+  OrbitErrors halved;                ///< the same with half the steps
   std::optional<OrbitErrors> flown;  ///< closed loop, if the campaign has an autopilot
   FlightProgram program;
   double q_alpha_max_pa_rad = 0.0;

@@ -14,7 +14,8 @@ class TerminalObserver : public Observer {
  public:
   explicit TerminalObserver(bool quiet) : quiet_(quiet) {}
 
-  void Show(const std::string& phase, std::uint64_t done, std::uint64_t total, const std::string& note = "") override {
+  void Show(const std::string& phase, std::uint64_t done, std::uint64_t total,
+            const std::string& note = "") override {
     if (!progress_ || phase != phase_) {
       progress_.reset();
       progress_.emplace(phase, quiet_);

@@ -24,7 +24,8 @@ std::string BoosterText(const Vehicle& vehicle) {
   return fmt::format(
       "{} boosters beside {}, each of {} kg with {} kg of propellant, {} kN and {} s{}\n", b.count,
       vehicle.stages[0].name, ReadableText(b.dry_mass_kg + b.propellant_mass_kg),
-      ReadableText(b.propellant_mass_kg), ReadableText(1e-3 * b.motor.thrust_n), ReadableText(burn.duration_s),
+      ReadableText(b.propellant_mass_kg), ReadableText(1e-3 * b.motor.thrust_n),
+      ReadableText(burn.duration_s),
       vehicle.aerodynamics.empty() ? "; the aerodynamics are built up from the core's profile alone" : "");
 }
 
@@ -55,8 +56,8 @@ std::string VehicleText(const Vehicle& vehicle) {
     text += fmt::format(
         "{:<12}{:>12.0f}{:>12.0f}{:>10.0f}{:>10.3f}{:>10.1f}{:>9.1f}{:>9.1f}{:>11.0f}{:>10.2f}{:>9.2f}\n",
         stage.name.substr(0, 11), stage.liftoff_mass_kg, stage.propellant_mass_kg, one.dry_mass_kg,
-        one.structural_fraction, stage.motor.thrust_n * 1e-3, one.burning_time_s,
-        one.specific_impulse_s, one.ideal_delta_v_m_s, one.thrust_to_weight, one.burnout_load_g);
+        one.structural_fraction, stage.motor.thrust_n * 1e-3, one.burning_time_s, one.specific_impulse_s,
+        one.ideal_delta_v_m_s, one.thrust_to_weight, one.burnout_load_g);
   }
   text += fmt::format("{:<12}{:>84.0f}\n", "together", TotalDeltaV(figures));
   text +=

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <set>
 
-#include "core/input/input_error.h"
 #include "core/campaign_yaml/parse_yaml.h"
+#include "core/input/input_error.h"
 
 namespace dispersa {
 namespace {

@@ -20,11 +20,11 @@
 #include "core/flight/engine_version.h"
 #include "services/client/execution_file.h"
 #include "services/client/local_workers.h"
-#include "services/ledger/campaign_book.h"
 #include "services/coordinator/coordinator.h"
+#include "services/ledger/campaign_book.h"
+#include "services/log/log.h"
 #include "services/program/threads.h"
 #include "services/program/utc.h"
-#include "services/log/log.h"
 #include "services/transport/private_domain.h"
 #include "services/transport/run_pass.h"
 
@@ -139,7 +139,8 @@ class CampaignRun {
       try {
         if (waiting_.empty()) {
           for (const Assignment& assignment : run_.book_.ledger().Assign(run_.Now()))
-            for (const std::uint64_t case_index : assignment.cases) waiting_.emplace_back(case_index, assignment.attempt);
+            for (const std::uint64_t case_index : assignment.cases)
+              waiting_.emplace_back(case_index, assignment.attempt);
         }
         if (waiting_.empty()) return std::nullopt;
         const auto [case_index, attempt] = waiting_.front();
@@ -170,8 +171,8 @@ class CampaignRun {
       run_.book_.GiveUp(kInProcess, case_index, attempts_.extract(case_index).mapped(), reason, run_.Now());
       if (const auto given_up = run_.book_.ledger().Progress().quarantined;
           given_up >= kHopelessCases && run_.book_.flown_now() == 0)
-        hopeless_ = fmt::format("the first {} cases ended every process that flew them, the last one: {}", given_up,
-                                reason);
+        hopeless_ = fmt::format("the first {} cases ended every process that flew them, the last one: {}",
+                                given_up, reason);
       changed_.notify_all();
     }
     const std::optional<std::string>& hopeless() const { return hopeless_; }
@@ -298,8 +299,7 @@ RunResult FlyAndReport(const RunOptions& options, OpenedCampaign opened, Executi
   for (const BlamedCase& blamed : book.ledger().Quarantined()) {
     LogWarning("case {} is quarantined: {}", blamed.case_index, fmt::join(blamed.reasons, "; "));
   }
-  CampaignSummary summary =
-      MakeReports(book.folder(), book.campaign(), workers, options.reflown, observer);
+  CampaignSummary summary = MakeReports(book.folder(), book.campaign(), workers, options.reflown, observer);
   execution.ended_utc = UtcNow();
   execution.Write();
   code = WorseOf(code, CampaignExitCode(summary.verdict, book.ledger().Progress().conflicts));

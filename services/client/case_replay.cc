@@ -27,10 +27,9 @@ nlohmann::ordered_json ReplayJson(const CaseReplay& replay) {
     list.push_back(
         {{"name", difference.name}, {"stored", difference.first}, {"replayed", difference.second}});
   }
-  return {
-      {"schema", "dispersa/replay/1"},   {"case_index", replay.stored.case_index},
-      {"match", replay.differences.empty()},    {"stored_digest", replay.stored.digest.Hex()},
-      {"digest", replay.replayed.digest.Hex()}, {"differences", std::move(list)}};
+  return {{"schema", "dispersa/replay/1"},          {"case_index", replay.stored.case_index},
+          {"match", replay.differences.empty()},    {"stored_digest", replay.stored.digest.Hex()},
+          {"digest", replay.replayed.digest.Hex()}, {"differences", std::move(list)}};
 }
 
 }  // namespace dispersa

@@ -5,8 +5,8 @@
 #include <system_error>
 #include <utility>
 
-#include "core/input/input_error.h"
 #include "core/flight/flight_inputs.h"
+#include "core/input/input_error.h"
 #include "core/results/output_file.h"
 #include "services/client/campaign_differences.h"
 #include "services/client/stored_campaign.h"

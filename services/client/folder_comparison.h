@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/results/case_columns.h"
 #include "core/analysis/comparison.h"
+#include "core/results/case_columns.h"
 
 namespace dispersa {
 
@@ -15,9 +15,10 @@ struct FolderComparison {
   CaseColumns a, b;  ///< with all inputs
 };
 
-/// `metrics`: names without prefix; empty: every metric that a flight of both defines. InputError for a folder
-/// that is none or has no case, and for a name that is no metric.
-FolderComparison CompareFolders(const std::string& a, const std::string& b, const std::vector<std::string>& metrics);
+/// `metrics`: names without prefix; empty: every metric that a flight of both defines. InputError for a
+/// folder that is none or has no case, and for a name that is no metric.
+FolderComparison CompareFolders(const std::string& a, const std::string& b,
+                                const std::vector<std::string>& metrics);
 
 /// compare.json and compare.html, in a folder that is made if it is missing.
 void WriteComparison(const FolderComparison& compared, const std::filesystem::path& folder);

@@ -111,8 +111,7 @@ MarginsResult MarginsOf(const Campaign& campaign, const MarginsOptions& options)
                   std::all_of(result.measured.begin(), result.measured.end(),
                               [](const MeasuredMargins& m) { return PassesGates(m); });
   if (options.cases) {
-    result.dispersed =
-        ComputeCampaignMargins(flights, *options.cases, UsableCores(), result.of.path);
+    result.dispersed = ComputeCampaignMargins(flights, *options.cases, UsableCores(), result.of.path);
     result.passed = result.passed && result.dispersed->Passed();
   }
   return result;

@@ -25,8 +25,8 @@ struct MarginsResult {
   std::vector<SkippedInstant> skipped;
   std::vector<MeasuredMargins> measured;
   std::optional<CampaignMargins> dispersed;
-  MarginModel of;  ///< what was linearised
-  bool bends = false;  ///< the vehicle has bending modes
+  MarginModel of;       ///< what was linearised
+  bool bends = false;   ///< the vehicle has bending modes
   bool passed = false;  ///< every gate is met
 };
 

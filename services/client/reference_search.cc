@@ -5,9 +5,9 @@
 #include "core/cases/campaign_flights.h"
 #include "core/flight/metrics.h"
 #include "core/math/constants.h"
-#include "core/results/output_file.h"
 #include "core/pages/trajectory_figures.h"
 #include "core/pages/trajectory_page.h"
+#include "core/results/output_file.h"
 #include "services/client/flight_json.h"
 #include "services/client/writable.h"
 

@@ -31,10 +31,11 @@ auto SearchOrInputError(const Function& function) {
 std::optional<OrbitErrors> FlyReference(const OptimizationInput& input, const Reference& reference);
 
 struct FoundReference {
-  OptimizationResult result;  ///< named after the campaign, and the vehicle that it is for
+  OptimizationResult result;         ///< named after the campaign, and the vehicle that it is for
   std::optional<OrbitErrors> flown;  ///< FlyReference, if the target is reached
 };
-/// A search that misses its target has still found something, which says so itself. Throws InputError, Interrupted.
+/// A search that misses its target has still found something, which says so itself. Throws InputError,
+/// Interrupted.
 FoundReference FindReference(const OptimizationInput& input, int threads, Observer& observer);
 
 /// Whether the reference, and the files beside it, can be written. As RequireWritableFile.

@@ -74,8 +74,7 @@ bool IsFileBelow(const fs::path& path) {
 }  // namespace
 
 std::string LaunchCampaign(Session& session, const Campaign& campaign, int priority) {
-  const Json launch = {
-      {"id", campaign.id}, {"flight_id", campaign.flight_id}, {"priority", priority}};
+  const Json launch = {{"id", campaign.id}, {"flight_id", campaign.flight_id}, {"priority", priority}};
   for (;;) {
     const std::string state = Json::parse(session.Ask("launch", launch).text).at("state");
     if (state == "unknown") {

@@ -7,10 +7,10 @@
 #include <optional>
 #include <string>
 
+#include "services/program/exit_code.h"
 #include "services/program/failure.h"
 #include "services/transport/admission.h"
 #include "services/transport/client_link.h"
-#include "services/program/exit_code.h"
 
 namespace dispersa {
 

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "services/ledger/auditor.h"
 #include "services/coordinator/dispatcher.h"
 #include "services/coordinator/workforce.h"
+#include "services/ledger/auditor.h"
 #include "services/transport/coordinator_link.h"
 
 namespace dispersa {

@@ -9,10 +9,10 @@
 #include <fstream>
 #include <vector>
 
-#include "core/cases/plugin_check.h"
-#include "core/campaign_yaml/load.h"
-#include "core/results/json_number.h"
 #include "core/analysis/requirement_summary.h"
+#include "core/campaign_yaml/load.h"
+#include "core/cases/plugin_check.h"
+#include "core/results/json_number.h"
 #include "services/coordinator/dump_any_text.h"
 #include "services/program/exit_code.h"
 #include "services/transport/validity.h"

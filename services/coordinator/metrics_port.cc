@@ -47,8 +47,8 @@ MetricsPort::MetricsPort(std::uint16_t port) : serving_(std::make_unique<Serving
   server.Get("/metrics", answer);
   errno = 0;
   if (!server.bind_to_port(kHost, port))
-    throw NetworkError("metrics: port " + std::to_string(port) + " of 127.0.0.1: " +
-                       std::strerror(errno == 0 ? EADDRINUSE : errno));
+    throw NetworkError("metrics: port " + std::to_string(port) +
+                       " of 127.0.0.1: " + std::strerror(errno == 0 ? EADDRINUSE : errno));
   serving_->thread = std::thread([&server] { server.listen_after_bind(); });
   while (!server.is_running()) std::this_thread::yield();  // else stop() would stop nothing
 }

@@ -9,7 +9,8 @@
 
 namespace dispersa {
 
-/// Answers GET of / and /metrics on 127.0.0.1 with the text that was set last. Throws NetworkError if the port is not free.
+/// Answers GET of / and /metrics on 127.0.0.1 with the text that was set last. Throws NetworkError if the
+/// port is not free.
 class MetricsPort {
  public:
   explicit MetricsPort(std::uint16_t port);

@@ -10,15 +10,15 @@
 #include "core/campaign_yaml/standard_input.h"
 #include "core/results/result_error.h"
 #include "services/coordinator/serve.h"
-#include "services/program/stop_signal.h"
 #include "services/log/log.h"
 #include "services/program/command_line.h"
 #include "services/program/completion_words.h"
+#include "services/program/exit_code.h"
 #include "services/program/failure.h"
 #include "services/program/option_values.h"
 #include "services/program/standard_output.h"
+#include "services/program/stop_signal.h"
 #include "services/transport/admission.h"
-#include "services/program/exit_code.h"
 
 namespace dispersa {
 int RunCoordinator(int argc, char** argv) {

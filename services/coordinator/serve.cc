@@ -12,13 +12,13 @@
 #include "services/coordinator/metrics_port.h"
 #include "services/coordinator/metrics_text.h"
 #include "services/coordinator/service.h"
-#include "services/program/stop_signal.h"
-#include "services/program/threads.h"
 #include "services/coordinator/watchdog.h"
 #include "services/log/log.h"
-#include "services/program/failure.h"
-#include "services/transport/client_link.h"
 #include "services/program/exit_code.h"
+#include "services/program/failure.h"
+#include "services/program/stop_signal.h"
+#include "services/program/threads.h"
+#include "services/transport/client_link.h"
 
 namespace dispersa {
 namespace {

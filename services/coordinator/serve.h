@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "services/ledger/open_campaign.h"
 #include "services/coordinator/service.h"
+#include "services/ledger/open_campaign.h"
 #include "services/transport/network.h"
 
 namespace dispersa {

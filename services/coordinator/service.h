@@ -127,7 +127,7 @@ class Service {
   ServiceOptions options_;
   Workforce& workforce_;
   Catalogue catalogue_;
-  std::map<std::string, Flying> flying_;  ///< by id
+  std::map<std::string, Flying> flying_;                   ///< by id
   std::deque<std::pair<std::string, RunningTally>> flew_;  ///< by id: what the last ones came to
   std::optional<Opening> opening_;
   std::deque<std::string> to_report_;  ///< ids; their folders are closed meanwhile

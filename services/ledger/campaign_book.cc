@@ -9,8 +9,8 @@
 #include "core/flight/engine_version.h"
 #include "core/results/fingerprint.h"
 #include "core/results/result_differences.h"
-#include "services/program/utc.h"
 #include "services/log/log.h"
+#include "services/program/utc.h"
 
 namespace dispersa {
 namespace {

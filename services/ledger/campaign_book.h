@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "core/campaign/campaign.h"
 #include "core/analysis/campaign_summary.h"
+#include "core/analysis/stopping_rule.h"
+#include "core/campaign/campaign.h"
 #include "core/results/result_folder.h"
 #include "core/results/result_store.h"
-#include "core/analysis/stopping_rule.h"
 #include "services/ledger/audit.h"
 #include "services/ledger/ledger.h"
 #include "services/ledger/running_tally.h"
@@ -113,7 +113,7 @@ class CampaignBook {
   Campaign campaign_;
   std::unique_ptr<ResultStore> store_;
   const ResultFolder* folder_ = nullptr;  ///< the store, if it is one
-  std::optional<StoppingRule> rule_;  ///< of a campaign that stops when it is decided
+  std::optional<StoppingRule> rule_;      ///< of a campaign that stops when it is decided
   std::optional<RunningTally> tally_;
   std::optional<Audit> audit_;
   std::uint64_t confirmed_ = 0;
@@ -122,7 +122,7 @@ class CampaignBook {
   Ledger ledger_;
   std::vector<CaseResult> results_;
   std::vector<ExecutionRecord> records_;
-  std::vector<Claim> audits_;  ///< confirmed
+  std::vector<Claim> audits_;          ///< confirmed
   std::vector<std::string> disowned_;  ///< workers whose results are to be removed
   struct StartTime {
     double now_s;

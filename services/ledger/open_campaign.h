@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/campaign/case_result.h"
-#include "core/containment/contained.h"
 #include "core/campaign_yaml/load.h"
+#include "core/containment/contained.h"
 #include "core/results/result_folder.h"
 
 namespace dispersa {

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "core/flight/metrics.h"
 #include "core/analysis/campaign_summary.h"
 #include "core/analysis/requirement_summary.h"
+#include "core/flight/metrics.h"
 #include "core/results/sampling_text.h"
 #include "core/statistics/intervals.h"
 

@@ -10,13 +10,13 @@
 #include <utility>
 #include <vector>
 
-#include "core/cases/campaign_flights.h"
 #include "core/campaign_yaml/inline_files.h"
 #include "core/campaign_yaml/load.h"
-#include "core/input/number_text.h"
+#include "core/cases/campaign_flights.h"
 #include "core/flight/flight_inputs.h"
 #include "core/flight/history.h"
 #include "core/flight/metrics.h"
+#include "core/input/number_text.h"
 #include "services/program/threads.h"
 #include "services/python/arrays.h"
 #include "services/python/errors.h"
@@ -96,7 +96,8 @@ py::object ScalarValue(const InputNode& node) {
 
 py::object ValueOf(const InputNode& node) {
   switch (node.kind) {
-    case InputNode::Kind::kScalar: return ScalarValue(node);
+    case InputNode::Kind::kScalar:
+      return ScalarValue(node);
     case InputNode::Kind::kList: {
       py::list list;
       for (const InputNode& item : node.items) list.append(ValueOf(item));
@@ -107,7 +108,8 @@ py::object ValueOf(const InputNode& node) {
       for (const InputMember& member : node.members) map[py::str(member.key)] = ValueOf(member.value);
       return map;
     }
-    default: return py::none();
+    default:
+      return py::none();
   }
 }
 
@@ -155,7 +157,8 @@ FlightInputs InputsOf(const LoadedCampaign& campaign, const CampaignFlights& fli
   for (const auto& [name, value] : replaced) {
     const int column = FindInput(name);
     if (column < 0 || static_cast<std::size_t>(column) >= InputCount(campaign.stages()))
-      throw InputError("inputs: '" + name + "' is not an input of this vehicle", "a name of Campaign.input_names");
+      throw InputError("inputs: '" + name + "' is not an input of this vehicle",
+                       "a name of Campaign.input_names");
     InputValue(inputs, column) = value * InputColumns()[static_cast<std::size_t>(column)].unit;
   }
   return inputs;
@@ -223,8 +226,8 @@ py::dict FlyOne(const LoadedCampaign& campaign, std::optional<std::uint64_t> cas
   return flight;
 }
 
-/// The histories of many flights in one buffer, in the order of their list. Flights end in nearly that order: the few
-/// that end before an earlier one wait for it.
+/// The histories of many flights in one buffer, in the order of their list. Flights end in nearly that order:
+/// the few that end before an earlier one wait for it.
 class Gathering {
  public:
   Gathering(std::vector<int> columns, std::size_t flights) : columns_(std::move(columns)) {
@@ -262,8 +265,8 @@ class Gathering {
   std::map<std::size_t, History> waiting_;
 };
 
-/// Many cases, side by side. `columns`: positions in history_columns() that are kept of each history of step `step_s`;
-/// 0: no histories.
+/// Many cases, side by side. `columns`: positions in history_columns() that are kept of each history of step
+/// `step_s`; 0: no histories.
 py::dict FlyMany(const LoadedCampaign& campaign, const std::vector<std::uint64_t>& cases, double step_s,
                  const std::vector<int>& columns, int threads, const py::object& progress,
                  const py::object& law, unsigned axes) {
@@ -319,7 +322,8 @@ void AddCampaigns(py::module_& module) {
       .def_property_readonly("seed", [](const LoadedCampaign& c) { return c.campaign().sampling.seed; })
       .def_property_readonly("stages", &LoadedCampaign::stages)
       .def_property_readonly("python_law", &PythonLawOf)
-      .def_property_readonly("law_axes", [](const LoadedCampaign& c) { return PluginAxes(c.campaign().autopilot); })
+      .def_property_readonly("law_axes",
+                             [](const LoadedCampaign& c) { return PluginAxes(c.campaign().autopilot); })
       .def_property_readonly("autopilot", [](const LoadedCampaign& c) { return c.campaign().autopilot.name; })
       .def_property_readonly("vehicle", [](const LoadedCampaign& c) { return c.campaign().vehicle.name; })
       .def_property_readonly("dispersed",

@@ -13,8 +13,10 @@ namespace dispersa {
 /// Doubles, appended. Only pages that were written take memory. Throws std::bad_alloc.
 class GrowingRows {
  public:
-  GrowingRows() : capacity_(kLeastBytes), data_(Mapped(mmap(nullptr, capacity_, PROT_READ | PROT_WRITE,
-                                                            MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0))) {}
+  GrowingRows()
+      : capacity_(kLeastBytes),
+        data_(Mapped(mmap(nullptr, capacity_, PROT_READ | PROT_WRITE,
+                          MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0))) {}
   GrowingRows(GrowingRows&& other) noexcept
       : capacity_(other.capacity_), data_(std::exchange(other.data_, nullptr)), size_(other.size_) {}
   GrowingRows& operator=(GrowingRows&&) = delete;

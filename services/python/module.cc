@@ -31,10 +31,14 @@ std::vector<std::string> VehicleMetricNames(std::size_t stages) {
 
 const char* WorseName(Worse worse) {
   switch (worse) {
-    case Worse::kLarger: return "larger";
-    case Worse::kSmaller: return "smaller";
-    case Worse::kFartherFromZero: return "farther_from_zero";
-    default: return "neither";
+    case Worse::kLarger:
+      return "larger";
+    case Worse::kSmaller:
+      return "smaller";
+    case Worse::kFartherFromZero:
+      return "farther_from_zero";
+    default:
+      return "neither";
   }
 }
 

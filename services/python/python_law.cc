@@ -10,10 +10,10 @@
 #include <string>
 #include <utility>
 
-#include "core/input/input_error.h"
 #include "core/campaign_yaml/canonical.h"
 #include "core/campaign_yaml/parse_yaml.h"
 #include "core/control/autopilot.h"
+#include "core/input/input_error.h"
 #include "services/python/arrays.h"
 
 namespace py = pybind11;

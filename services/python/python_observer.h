@@ -20,7 +20,8 @@ class PythonObserver : public Observer {
   /// `progress(phase, done, total, note)`, or None.
   explicit PythonObserver(pybind11::object progress) : progress_(std::move(progress)) {}
 
-  void Show(const std::string& phase, std::uint64_t done, std::uint64_t total, const std::string& note = "") override {
+  void Show(const std::string& phase, std::uint64_t done, std::uint64_t total,
+            const std::string& note = "") override {
     if (progress_.is_none() || stopped_) return;
     const auto now = std::chrono::steady_clock::now();
     if (phase == phase_ && done < total && now - shown_ < kShowPeriod) return;

@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "core/analysis/comparison.h"
 #include "core/campaign_yaml/load.h"
 #include "core/flight/flight_inputs.h"
 #include "core/flight/metrics.h"
-#include "core/analysis/comparison.h"
 #include "core/results/result_folder.h"
 #include "services/client/campaign_reports.h"
 #include "services/client/campaign_run.h"
@@ -81,8 +81,8 @@ py::tuple Run(const std::string& name, const std::string& text, const std::strin
 
 /// A campaign flown by a coordinator and fetched into a folder; its exit code.
 int RunRemotely(const std::string& name, const std::string& text, const std::string& out, int domain,
-                const std::string& peer, const std::string& address, const std::string& keys, bool insecure, int priority,
-                const py::object& progress) {
+                const std::string& peer, const std::string& address, const std::string& keys, bool insecure,
+                int priority, const py::object& progress) {
   PythonObserver observer(progress);
   return observer.Watch([&] {
     RequireWritableFolder("out", out);
@@ -137,8 +137,8 @@ py::dict Results(const std::string& directory) {
 }
 
 /// compare.json.
-std::string CompareResults(const std::string& a, const std::string& b, const std::vector<std::string>& metrics,
-                           const std::string& out) {
+std::string CompareResults(const std::string& a, const std::string& b,
+                           const std::vector<std::string>& metrics, const std::string& out) {
   const py::gil_scoped_release free;
   RequireWritableFolder("out", out);
   const FolderComparison compared = CompareFolders(a, b, metrics);
@@ -155,8 +155,9 @@ std::string Margins(const std::string& name, const std::string& text, std::optio
 }
 
 /// (what `dispersa optimize --json` prints, the reference as YAML, how far it got if it misses its target).
-py::tuple Optimize(const std::string& name, const std::optional<std::string>& text, std::optional<std::uint64_t> seed,
-                   int threads, const std::string& out, const py::object& progress) {
+py::tuple Optimize(const std::string& name, const std::optional<std::string>& text,
+                   std::optional<std::uint64_t> seed, int threads, const std::string& out,
+                   const py::object& progress) {
   PythonObserver observer(progress);
   std::string json, reference, statement;
   observer.Watch([&] {

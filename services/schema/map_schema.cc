@@ -13,14 +13,26 @@ using Json = MapSchema::Json;
 // How people write what a key's end says.
 std::string UnitText(std::string_view unit) {
   static const std::map<std::string_view, std::string> kTexts = {
-      {"um", "µm"},         {"m2", "m²"},         {"kg_s", "kg/s"},       {"kg_m2", "kg m²"},   {"kg_m", "kg/m"},
-      {"gpa", "GPa"},       {"mpa", "MPa"},       {"pa", "Pa"},           {"kpa", "kPa"},       {"n", "N"},
-      {"kn", "kN"},         {"n_m2", "N m²"},     {"kn_m2", "kN m²"},     {"mn_m2", "MN m²"},   {"n_m", "N m"},
-      {"kn_m", "kN m"},     {"pa_rad", "Pa rad"}, {"kpa_rad", "kPa rad"}, {"pa_deg", "Pa °"},   {"w_m2", "W/m²"},
-      {"kw_m2", "kW/m²"},   {"m_s", "m/s"},       {"km_s", "km/s"},       {"km_h", "km/h"},     {"deg", "°"},
-      {"deg_s", "°/s"},     {"rad_s", "rad/s"},   {"hz", "Hz"},           {"deg_s2", "°/s²"},   {"rad_s2", "rad/s²"},
-      {"1_s", "1/s"},       {"1_s2", "1/s²"},     {"per_km", "1/km"},     {"per_m", "1/m"},     {"per_m_s", "s/m"},
-      {"kg_m3", "kg/m³"},   {"percent", "%"},     {"k", "K"},             {"per_deg", "1/°"},   {"per_rad", "1/rad"},
+      {"um", "µm"},           {"m2", "m²"},
+      {"kg_s", "kg/s"},       {"kg_m2", "kg m²"},
+      {"kg_m", "kg/m"},       {"gpa", "GPa"},
+      {"mpa", "MPa"},         {"pa", "Pa"},
+      {"kpa", "kPa"},         {"n", "N"},
+      {"kn", "kN"},           {"n_m2", "N m²"},
+      {"kn_m2", "kN m²"},     {"mn_m2", "MN m²"},
+      {"n_m", "N m"},         {"kn_m", "kN m"},
+      {"pa_rad", "Pa rad"},   {"kpa_rad", "kPa rad"},
+      {"pa_deg", "Pa °"},     {"w_m2", "W/m²"},
+      {"kw_m2", "kW/m²"},     {"m_s", "m/s"},
+      {"km_s", "km/s"},       {"km_h", "km/h"},
+      {"deg", "°"},           {"deg_s", "°/s"},
+      {"rad_s", "rad/s"},     {"hz", "Hz"},
+      {"deg_s2", "°/s²"},     {"rad_s2", "rad/s²"},
+      {"1_s", "1/s"},         {"1_s2", "1/s²"},
+      {"per_km", "1/km"},     {"per_m", "1/m"},
+      {"per_m_s", "s/m"},     {"kg_m3", "kg/m³"},
+      {"percent", "%"},       {"k", "K"},
+      {"per_deg", "1/°"},     {"per_rad", "1/rad"},
       {"ton", "t (1000 kg)"}, {"percent_per_k", "%/K"}};
   const auto found = kTexts.find(unit);
   return found == kTexts.end() ? std::string(unit) : found->second;
@@ -31,12 +43,16 @@ constexpr Unit kNoUnit = {"", 1.0};
 // An empty list counts as none.
 constexpr std::size_t kLeastOfAList = 1;
 
-Json InUnit(double value, const Unit& unit) { return Json::parse(FormatScaled(value - unit.offset, unit.scale)); }
+Json InUnit(double value, const Unit& unit) {
+  return Json::parse(FormatScaled(value - unit.offset, unit.scale));
+}
 
 Json NumberIn(const Range& range, const Unit& unit) {
   Json number = {{"type", "number"}};
-  if (std::isfinite(range.low)) number[range.low_open ? "exclusiveMinimum" : "minimum"] = InUnit(range.low, unit);
-  if (std::isfinite(range.high)) number[range.high_open ? "exclusiveMaximum" : "maximum"] = InUnit(range.high, unit);
+  if (std::isfinite(range.low))
+    number[range.low_open ? "exclusiveMinimum" : "minimum"] = InUnit(range.low, unit);
+  if (std::isfinite(range.high))
+    number[range.high_open ? "exclusiveMaximum" : "maximum"] = InUnit(range.high, unit);
   return number;
 }
 
@@ -48,7 +64,8 @@ std::string Description(const Range& range, const Unit& unit, const std::string&
   return text.empty() ? meaning : text + ": " + meaning;
 }
 
-Json DescribedNumber(const Range& range, const Unit& unit, const char* meaning, std::optional<double> absent) {
+Json DescribedNumber(const Range& range, const Unit& unit, const char* meaning,
+                     std::optional<double> absent) {
   Json number = NumberIn(range, unit);
   number["description"] = Description(range, unit, meaning);
   if (absent) number["default"] = InUnit(*absent, unit);
@@ -74,7 +91,9 @@ Json Described(Json value, const char* meaning) {
   return value;
 }
 
-Json ATextThat(const char* meaning) { return {{"type", "string"}, {"minLength", 1}, {"description", meaning}}; }
+Json ATextThat(const char* meaning) {
+  return {{"type", "string"}, {"minLength", 1}, {"description", meaning}};
+}
 
 Json Required(const std::string& key) { return {{"required", Json::array({key})}}; }
 
@@ -173,27 +192,31 @@ void MapSchema::Text(const char* key, std::string&, const char* meaning, std::op
 void MapSchema::Flag(const char* key, bool&, bool absent, const char* meaning) {
   Add(key, {{"type", "boolean"}, {"description", meaning}, {"default", absent}}, false);
 }
-void MapSchema::Whole(const char* key, std::uint64_t low, std::uint64_t high, std::uint64_t&, const char* meaning,
-                      std::optional<std::uint64_t> absent) {
+void MapSchema::Whole(const char* key, std::uint64_t low, std::uint64_t high, std::uint64_t&,
+                      const char* meaning, std::optional<std::uint64_t> absent) {
   Json number = {{"type", "integer"}, {"minimum", low}, {"maximum", high}};
-  number["description"] = "a whole number from " + std::to_string(low) + " to " + std::to_string(high) + ": " + meaning;
+  number["description"] =
+      "a whole number from " + std::to_string(low) + " to " + std::to_string(high) + ": " + meaning;
   if (absent) number["default"] = *absent;
   Add(key, std::move(number), !absent);
 }
-void MapSchema::Number(const char* key, const Range& range, double&, const char* meaning, std::optional<double> absent) {
+void MapSchema::Number(const char* key, const Range& range, double&, const char* meaning,
+                       std::optional<double> absent) {
   Add(key, DescribedNumber(range, kNoUnit, meaning, absent), !absent);
 }
-void MapSchema::Quantity(const char* stem, Dimension dimension, const Range& range, double&, const char* meaning,
-                         std::optional<double> absent) {
+void MapSchema::Quantity(const char* stem, Dimension dimension, const Range& range, double&,
+                         const char* meaning, std::optional<double> absent) {
   AddUnits(stem, dimension, !absent,
            [&](const Unit& unit) { return DescribedNumber(range, unit, meaning, absent); });
 }
-void MapSchema::OptionalNumber(const char* key, const Range& range, std::optional<double>&, const char* meaning) {
+void MapSchema::OptionalNumber(const char* key, const Range& range, std::optional<double>&,
+                               const char* meaning) {
   Add(key, DescribedNumber(range, kNoUnit, meaning, {}), false);
 }
-void MapSchema::OptionalQuantity(const char* stem, Dimension dimension, const Range& range, std::optional<double>&,
-                                 const char* meaning) {
-  AddUnits(stem, dimension, false, [&](const Unit& unit) { return DescribedNumber(range, unit, meaning, {}); });
+void MapSchema::OptionalQuantity(const char* stem, Dimension dimension, const Range& range,
+                                 std::optional<double>&, const char* meaning) {
+  AddUnits(stem, dimension, false,
+           [&](const Unit& unit) { return DescribedNumber(range, unit, meaning, {}); });
 }
 void MapSchema::OneOf(const std::vector<OneQuantity>& quantities, std::size_t&, double&) {
   std::vector<Json> one;
@@ -210,7 +233,8 @@ void MapSchema::Name(const char* key, const std::vector<std::string>& names, con
                      const char* meaning) {
   Add(key, names.empty() ? ATextThat(meaning) : Json{{"enum", names}, {"description", meaning}}, true);
 }
-void MapSchema::Word(const char* key, const Choices& choices, const char* meaning, std::optional<std::size_t> absent) {
+void MapSchema::Word(const char* key, const Choices& choices, const char* meaning,
+                     std::optional<std::size_t> absent) {
   Json word = {{"enum", choices.words}, {"description", meaning}};
   if (absent) word["default"] = choices.words[*absent];
   Add(key, std::move(word), !absent);
@@ -227,8 +251,9 @@ void MapSchema::Quantities(const char* stem, Dimension dimension, const Range& r
   AddUnits(stem, dimension, low_count > 0,
            [&](const Unit& unit) { return DescribedNumbers(range, unit, low_count, high_count, meaning); });
 }
-void MapSchema::OptionalQuantities(const char* stem, Dimension dimension, const Range& range, std::size_t low_count,
-                                   std::size_t high_count, std::vector<double>&, const char* meaning) {
+void MapSchema::OptionalQuantities(const char* stem, Dimension dimension, const Range& range,
+                                   std::size_t low_count, std::size_t high_count, std::vector<double>&,
+                                   const char* meaning) {
   AddUnits(stem, dimension, false,
            [&](const Unit& unit) { return DescribedNumbers(range, unit, low_count, high_count, meaning); });
 }
@@ -247,18 +272,20 @@ void MapSchema::Several(const char* key, int low, int high, const char*, const c
   several["uniqueItems"] = true;
   Add(key, {{"anyOf", Json::array({one, std::move(several)})}, {"description", meaning}}, false);
 }
-void MapSchema::OptionalNumbers(const char* key, const Range& range, std::size_t low_count, std::size_t high_count,
-                                std::vector<double>&, const char* meaning) {
+void MapSchema::OptionalNumbers(const char* key, const Range& range, std::size_t low_count,
+                                std::size_t high_count, std::vector<double>&, const char* meaning) {
   Add(key, DescribedNumbers(range, kNoUnit, low_count, high_count, meaning), false);
 }
-void MapSchema::TwoByTwo(const char* key, std::array<std::array<double, 2>, 2>&, const char*, const char* meaning) {
+void MapSchema::TwoByTwo(const char* key, std::array<std::array<double, 2>, 2>&, const char*,
+                         const char* meaning) {
   Add(key, Described(ListOf(ListOf({{"type", "number"}}, 2, 2), 2, 2), meaning), true);
 }
 void MapSchema::AnyNumbers(const char* key, const char* meaning) {
-  Add(key, {{"type", "object"}, {"additionalProperties", {{"type", "number"}}}, {"description", meaning}}, false);
+  Add(key, {{"type", "object"}, {"additionalProperties", {{"type", "number"}}}, {"description", meaning}},
+      false);
 }
-void MapSchema::Rows(const char* key, std::size_t low_count, std::size_t high_count, std::vector<std::vector<double>>&,
-                     const char* meaning) {
+void MapSchema::Rows(const char* key, std::size_t low_count, std::size_t high_count,
+                     std::vector<std::vector<double>>&, const char* meaning) {
   Json row = {{"type", "array"}, {"items", {{"type", "number"}}}};
   Add(key, Described(ListOf(std::move(row), low_count, high_count), meaning), low_count > 0);
 }
@@ -266,7 +293,8 @@ void MapSchema::ColumnsAndRows(const std::vector<std::string>& columns, std::siz
                                std::vector<std::vector<double>>&, const char* meaning) {
   const std::size_t count = columns.size();
   Add("columns", Described(ListOf({{"enum", columns}}, count, count), "these names, in this order"), true);
-  Add("rows", Described(ListOf(ListOf({{"type", "number"}}, count, count), low_count, SIZE_MAX), meaning), true);
+  Add("rows", Described(ListOf(ListOf({{"type", "number"}}, count, count), low_count, SIZE_MAX), meaning),
+      true);
 }
 void MapSchema::Ends(const char* stem, Dimension dimension, const Range& range, double&, double&, bool needed,
                      const char* meaning) {
@@ -276,8 +304,8 @@ void MapSchema::Ends(const char* stem, Dimension dimension, const Range& range, 
                 {"description", Description(range, unit, meaning) + "; a list of two: at either end"}};
   });
 }
-void MapSchema::Texts(const char* key, std::size_t low_count, std::size_t high_count, std::vector<std::string>&,
-                      const char* meaning) {
+void MapSchema::Texts(const char* key, std::size_t low_count, std::size_t high_count,
+                      std::vector<std::string>&, const char* meaning) {
   Add(key, Described(ListOf({{"type", "string"}}, low_count, high_count), meaning), low_count > 0);
 }
 void MapSchema::Words(const char* key, const std::vector<std::string>& words, std::vector<std::size_t>&,
@@ -293,20 +321,22 @@ void MapSchema::Map(const char* key, const char* meaning, const Part& part) {
 void MapSchema::OptionalMap(const char* key, bool&, const char* meaning, const Part& part) {
   Add(key, Described(MapOf(part), meaning), false);
 }
-void MapSchema::Maps(const char* key, bool needed, std::size_t low_count, std::size_t high_count, const Items& items,
-                     const char* meaning) {
+void MapSchema::Maps(const char* key, bool needed, std::size_t low_count, std::size_t high_count,
+                     const Items& items, const char* meaning) {
   items.resize(1);
   Json item = MapOf([&](Fields& fields) { items.describe(fields, 0); });
   items.resize(0);  // how many there are decides nothing
   Add(key, Described(ListOf(std::move(item), low_count, high_count), meaning), needed);
 }
-void MapSchema::WordOrMap(const char* key, const char* word, const char*, const char*, bool&, const char* meaning,
-                          const Part& part) {
+void MapSchema::WordOrMap(const char* key, const char* word, const char*, const char*, bool&,
+                          const char* meaning, const Part& part) {
   Add(key, {{"anyOf", Json::array({Json{{"const", word}}, MapOf(part)})}, {"description", meaning}}, true);
 }
-void MapSchema::NumberOrTable(const char* key, std::optional<double>&, const char* meaning, const Part& part) {
+void MapSchema::NumberOrTable(const char* key, std::optional<double>&, const char* meaning,
+                              const Part& part) {
   Add(key,
-      {{"anyOf", Json::array({Json{{"type", "number"}}, Json{{"type", "string"}, {"minLength", 1}}, MapOf(part)})},
+      {{"anyOf",
+        Json::array({Json{{"type", "number"}}, Json{{"type", "string"}, {"minLength", 1}}, MapOf(part)})},
        {"description", meaning}},
       false);
 }
@@ -315,7 +345,9 @@ void MapSchema::MapOrMaps(const char* key, const char*, const char* meaning, con
   Add(key, {{"anyOf", Json::array({one, ListOf(one, 1, SIZE_MAX)})}, {"description", meaning}}, false);
 }
 void MapSchema::AddTable(const char* key, const char* meaning, bool needed, const Part& part) {
-  Add(key, {{"anyOf", Json::array({Json{{"type", "string"}, {"minLength", 1}}, MapOf(part)})}, {"description", meaning}},
+  Add(key,
+      {{"anyOf", Json::array({Json{{"type", "string"}, {"minLength", 1}}, MapOf(part)})},
+       {"description", meaning}},
       needed);
 }
 void MapSchema::Table(const char* key, const char*, const char* meaning, const Part& part) {
@@ -330,7 +362,9 @@ void MapSchema::MapByHand(const char* key, const char* meaning, const Part& part
 void MapSchema::Columns(const char* key, const char* meaning, const ReadNode&) {
   const Json column = {{"type", "array"}, {"items", {{"type", "number"}}}};
   const Json columns = {{"type", "object"}, {"additionalProperties", column}};
-  Add(key, {{"anyOf", Json::array({Json{{"type", "string"}, {"minLength", 1}}, columns})}, {"description", meaning}},
+  Add(key,
+      {{"anyOf", Json::array({Json{{"type", "string"}, {"minLength", 1}}, columns})},
+       {"description", meaning}},
       false);
 }
 void MapSchema::Document(const char* key, const char* schema, bool needed, const char*, const char* meaning,

@@ -1,8 +1,8 @@
 // The JSON Schema of one map of the input files, made from the description of its keys.
 //
-// Every branch of a description is visited, so the schema knows keys of all of them, and which go together. It takes all
-// that the reader takes. What it cannot know is left to the reader: relations between values (Fields::Check), and
-// branches that a description takes by what it has read.
+// Every branch of a description is visited, so the schema knows keys of all of them, and which go together.
+// It takes all that the reader takes. What it cannot know is left to the reader: relations between values
+// (Fields::Check), and branches that a description takes by what it has read.
 #pragma once
 
 #include <functional>
@@ -30,15 +30,17 @@ class MapSchema : public Fields {
 
   void Schema(const char* name) override;
   void Base(const char* key, const char* meaning) override;
-  void Text(const char* key, std::string& value, const char* meaning, std::optional<std::string> absent) override;
+  void Text(const char* key, std::string& value, const char* meaning,
+            std::optional<std::string> absent) override;
   void Flag(const char* key, bool& value, bool absent, const char* meaning) override;
   void Number(const char* key, const Range& range, double& value, const char* meaning,
               std::optional<double> absent) override;
   void Quantity(const char* stem, Dimension dimension, const Range& range, double& value, const char* meaning,
                 std::optional<double> absent) override;
-  void OptionalNumber(const char* key, const Range& range, std::optional<double>& value, const char* meaning) override;
-  void OptionalQuantity(const char* stem, Dimension dimension, const Range& range, std::optional<double>& value,
-                        const char* meaning) override;
+  void OptionalNumber(const char* key, const Range& range, std::optional<double>& value,
+                      const char* meaning) override;
+  void OptionalQuantity(const char* stem, Dimension dimension, const Range& range,
+                        std::optional<double>& value, const char* meaning) override;
   void Numbers(const char* key, const Range& range, std::size_t low_count, std::size_t high_count,
                std::vector<double>& values, const char* meaning) override;
   void Quantities(const char* stem, Dimension dimension, const Range& range, std::size_t low_count,
@@ -47,19 +49,19 @@ class MapSchema : public Fields {
                           std::size_t high_count, std::vector<double>& values, const char* meaning) override;
   void Column(const char* stem, Dimension dimension, const Range& range, std::size_t low_count,
               std::vector<double>& values, const char* meaning) override;
-  void Several(const char* key, int low, int high, const char* noun, const char* which, std::vector<int>& values,
-               const char* meaning) override;
+  void Several(const char* key, int low, int high, const char* noun, const char* which,
+               std::vector<int>& values, const char* meaning) override;
   void OptionalNumbers(const char* key, const Range& range, std::size_t low_count, std::size_t high_count,
                        std::vector<double>& values, const char* meaning) override;
   void TwoByTwo(const char* key, std::array<std::array<double, 2>, 2>& rows, const char* allowed,
                 const char* meaning) override;
   void AnyNumbers(const char* key, const char* meaning) override;
-  void Rows(const char* key, std::size_t low_count, std::size_t high_count, std::vector<std::vector<double>>& rows,
-            const char* meaning) override;
+  void Rows(const char* key, std::size_t low_count, std::size_t high_count,
+            std::vector<std::vector<double>>& rows, const char* meaning) override;
   void ColumnsAndRows(const std::vector<std::string>& columns, std::size_t low_count,
                       std::vector<std::vector<double>>& rows, const char* meaning) override;
-  void Ends(const char* stem, Dimension dimension, const Range& range, double& first, double& second, bool needed,
-            const char* meaning) override;
+  void Ends(const char* stem, Dimension dimension, const Range& range, double& first, double& second,
+            bool needed, const char* meaning) override;
   void OneOf(const std::vector<OneQuantity>& quantities, std::size_t& which, double& value) override;
   void Texts(const char* key, std::size_t low_count, std::size_t high_count, std::vector<std::string>& values,
              const char* meaning) override;
@@ -71,7 +73,8 @@ class MapSchema : public Fields {
   void OptionalMap(const char* key, bool& is_there, const char* meaning, const Part& part) override;
   void WordOrMap(const char* key, const char* word, const char* what, const char* allowed, bool& is_word,
                  const char* meaning, const Part& part) override;
-  void NumberOrTable(const char* key, std::optional<double>& number, const char* meaning, const Part& part) override;
+  void NumberOrTable(const char* key, std::optional<double>& number, const char* meaning,
+                     const Part& part) override;
   void MapOrMaps(const char* key, const char* allowed, const char* meaning, const Part& part) override;
   void Table(const char* key, const char* allowed, const char* meaning, const Part& part) override;
   void OptionalTable(const char* key, bool& is_there, const char* meaning, const Part& part) override;
@@ -85,9 +88,10 @@ class MapSchema : public Fields {
   void Missing(const std::vector<std::string>& keys, const char* allowed) override;
 
  protected:
-  void Whole(const char* key, std::uint64_t low, std::uint64_t high, std::uint64_t& value, const char* meaning,
-             std::optional<std::uint64_t> absent) override;
-  void Word(const char* key, const Choices& choices, const char* meaning, std::optional<std::size_t> absent) override;
+  void Whole(const char* key, std::uint64_t low, std::uint64_t high, std::uint64_t& value,
+             const char* meaning, std::optional<std::uint64_t> absent) override;
+  void Word(const char* key, const Choices& choices, const char* meaning,
+            std::optional<std::size_t> absent) override;
   void Maps(const char* key, bool needed, std::size_t low_count, std::size_t high_count, const Items& items,
             const char* meaning) override;
 
@@ -96,7 +100,7 @@ class MapSchema : public Fields {
   struct Keys {
     Json values = Json::object();  ///< the schema of each
     Json required = Json::array();
-    Json rules = Json::array();    ///< which keys go together
+    Json rules = Json::array();  ///< which keys go together
 
     /// What holds of a map with these keys.
     void AddTo(Json& schema) const;
@@ -120,7 +124,7 @@ class MapSchema : public Fields {
   Keys keys_;
   std::map<std::string, QuantityKey> quantities_;
   std::set<std::string> lists_;  ///< keys of lists, which count as absent if they are empty
-  std::string base_;             ///< the key of another file whose keys stand where this one has none, or empty
+  std::string base_;  ///< the key of another file whose keys stand where this one has none, or empty
 };
 
 }  // namespace dispersa

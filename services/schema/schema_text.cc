@@ -12,7 +12,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kColumns = 110;
-constexpr std::size_t kDeepest = 4;  // what lies deeper stands on one line: indenting it is a fifth of the file
+constexpr std::size_t kDeepest =
+    4;  // what lies deeper stands on one line: indenting it is a fifth of the file
 
 // Indented, but what fits stands on one line.
 void Print(const Json& json, std::size_t indent, std::string& out) {

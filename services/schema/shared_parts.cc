@@ -14,8 +14,8 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kLeastShared = 80;
 
 bool IsKeyword(const std::string& key) {
-  static const std::set<std::string> kKeywords = {"properties", "items", "additionalProperties", "anyOf", "oneOf",
-                                                  "allOf",      "if",    "then",                 "else"};
+  static const std::set<std::string> kKeywords = {
+      "properties", "items", "additionalProperties", "anyOf", "oneOf", "allOf", "if", "then", "else"};
   return kKeywords.contains(key);
 }
 

@@ -26,8 +26,8 @@ NetworkOptions Admit(NetworkOptions network, const Admission& admission, std::in
     network.keys = OpenKeyFolder(admission.keys, roles);
     return network;
   }
-  // A coordinator that is not on this machine's interface alone announces itself with its other addresses: whoever
-  // may use those keeps all interfaces, also with a peer on this machine.
+  // A coordinator that is not on this machine's interface alone announces itself with its other addresses:
+  // whoever may use those keeps all interfaces, also with a peer on this machine.
   if (network.address.empty() && IsLoopback(peer) && !admission.insecure) network.address = kLoopback;
   if (IsLoopback(network.address) && (peer.empty() || IsLoopback(peer))) {
     // Every user of this machine can join the domain.

@@ -17,9 +17,9 @@
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <fastdds/dds/subscriber/qos/DataReaderQos.hpp>
 
+#include "services/program/mutex.h"
 #include "services/transport/complaints.h"
 #include "services/transport/convert.h"
-#include "services/program/mutex.h"
 #include "services/transport/participant.h"
 #include "services/transport/seal.h"
 #include "services/transport/validity.h"

@@ -46,10 +46,11 @@ auto Parse(const fs::path& file, Read read) {
 
 void CheckDates(const fs::path& file, X509* certificate, const char* remedy) {
   const std::time_t now = std::time(nullptr);
-  if (now > EndOf(certificate)) RefuseKeys(file, "expired on " + DateText(EndOf(certificate)) + ": " + remedy);
+  if (now > EndOf(certificate))
+    RefuseKeys(file, "expired on " + DateText(EndOf(certificate)) + ": " + remedy);
   if (now < BeginOf(certificate)) {
-    RefuseKeys(file,
-           "is valid from " + DateText(BeginOf(certificate)) + " on: the clock of this machine may be wrong");
+    RefuseKeys(file, "is valid from " + DateText(BeginOf(certificate)) +
+                         " on: the clock of this machine may be wrong");
   }
 }
 
@@ -72,7 +73,7 @@ KeyFolder OpenKeyFolder(const fs::path& directory, std::initializer_list<Role> r
   if (!fs::is_directory(directory)) RefuseKeys(directory, std::string("no folder: ") + kHowTo);
   if (fs::exists(directory / "authority")) {
     RefuseKeys(directory, "the folder of the authority, which signs and does not speak: give one of " +
-                          (directory / "issued").string());
+                              (directory / "issued").string());
   }
   const auto certificate_in = [&](const char* name) { return Parse(directory / name, ReadCertificate); };
   const Certificate identity_ca = certificate_in(kIdentityAuthorityFile);
@@ -92,13 +93,14 @@ KeyFolder OpenKeyFolder(const fs::path& directory, std::initializer_list<Role> r
   document_in(kGovernanceFile);
   const std::string permissions = document_in(kPermissionsFile);
   if (!Contains(permissions, "<subject_name>" + SubjectText(identity.get()) + "</subject_name>")) {
-    RefuseKeys(directory / kPermissionsFile, std::string("not the permissions of the owner of ") + kIdentityFile);
+    RefuseKeys(directory / kPermissionsFile,
+               std::string("not the permissions of the owner of ") + kIdentityFile);
   }
   const Subject subject = SubjectOf(identity.get());
   const auto role = ParseRole(subject.unit);
   if (!role || std::find(roles.begin(), roles.end(), *role) == roles.end()) {
     RefuseKeys(directory, "keys of the " + subject.unit + " '" + subject.name + "'; here those of a " +
-                          JoinRoles(roles) + " are needed");
+                              JoinRoles(roles) + " are needed");
   }
   CheckDates(directory / kIdentityAuthorityFile, identity_ca.get(), "make a new authority");
   CheckDates(directory / kPermissionsAuthorityFile, permissions_ca.get(), "make a new authority");

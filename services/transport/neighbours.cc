@@ -46,7 +46,8 @@ void Neighbours::on_participant_discovery(dds::DomainParticipant*, rtps::Partici
   const bool it_has_keys = !found.info.identity_token_.class_id().empty();
   if (we_have_keys_ && it_has_keys) {
     if (handshakes_.size() < kMostHandshakes) {
-      handshakes_[found.info.m_guid] = {std::chrono::steady_clock::now() + kHandshakePatience, WhoIs(found.info)};
+      handshakes_[found.info.m_guid] = {std::chrono::steady_clock::now() + kHandshakePatience,
+                                        WhoIs(found.info)};
     }
   } else if (we_have_keys_ != it_has_keys) {
     Complain("participant", WhoIs(found.info),

@@ -14,11 +14,11 @@
 #include "services/log/log.h"
 #include "services/program/command_line.h"
 #include "services/program/completion_words.h"
+#include "services/program/exit_code.h"
 #include "services/program/failure.h"
 #include "services/program/option_values.h"
 #include "services/program/standard_output.h"
 #include "services/transport/admission.h"
-#include "services/program/exit_code.h"
 #include "services/transport/run_pass.h"
 #include "services/worker/worker.h"
 

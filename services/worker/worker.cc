@@ -8,8 +8,8 @@
 #include <thread>
 #include <utility>
 
-#include "core/cases/plugin_check.h"
 #include "core/campaign_yaml/load.h"
+#include "core/cases/plugin_check.h"
 #include "core/flight/engine_version.h"
 #include "services/log/log.h"
 

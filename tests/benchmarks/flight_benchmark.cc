@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "core/cases/campaign_flights.h"
 #include "core/campaign_yaml/load.h"
+#include "core/cases/campaign_flights.h"
 #include "core/flight/flight.h"
 #include "core/flight/flight_model.h"
 #include "core/flight/flight_queue.h"
@@ -49,7 +49,8 @@ class Cases : public FlightQueue {
   std::uint64_t left_;
 };
 
-// The same side by side, in every engine that this processor can run: instruction set / lanes. Items are flights.
+// The same side by side, in every engine that this processor can run: instruction set / lanes. Items are
+// flights.
 void SideBySide(benchmark::State& state, const LaneEngine& engine) {
   const CampaignFlights flights(Table3());
   constexpr std::uint64_t kCases = 32;
@@ -61,8 +62,9 @@ void SideBySide(benchmark::State& state, const LaneEngine& engine) {
 }
 const bool kRegistered = [] {
   for (const LaneEngine& engine : UsableEngines()) {
-    benchmark::RegisterBenchmark(("Flights/" + std::string(engine.isa) + "/" + std::to_string(engine.lanes)).c_str(),
-                                 SideBySide, engine)
+    benchmark::RegisterBenchmark(
+        ("Flights/" + std::string(engine.isa) + "/" + std::to_string(engine.lanes)).c_str(), SideBySide,
+        engine)
         ->Unit(benchmark::kMillisecond);
   }
   return true;

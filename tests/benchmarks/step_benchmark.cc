@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <string>
 
-#include "core/cases/campaign_flights.h"
 #include "core/campaign_yaml/load.h"
+#include "core/cases/campaign_flights.h"
 #include "core/flight/flight.h"
 #include "core/flight/flight_model.h"
 #include "core/flight/lane_engine.h"

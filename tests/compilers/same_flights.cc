@@ -1,5 +1,5 @@
-// same_flights CAMPAIGNS LIBRARY...: flies a few cases of the campaigns that ship with the core of this build and
-// with each flight library, and compares every bit. Exit code 0: all the same; 1: not.
+// same_flights CAMPAIGNS LIBRARY...: flies a few cases of the campaigns that ship with the core of this build
+// and with each flight library, and compares every bit. Exit code 0: all the same; 1: not.
 #include <dlfcn.h>
 #include <fmt/format.h>
 
@@ -79,7 +79,8 @@ int Compare(const std::string& folder, const std::vector<const char*>& libraries
   for (std::size_t i = 0; i < labels.size(); ++i) fmt::print("{}: {}\n", labels[i], expected[i].digest.Hex());
   // Were all flights alike, so would be those of a wrong library.
   for (std::size_t i = 1; i < labels.size(); ++i)
-    if (Difference(expected[0], expected[i]).empty()) report(labels[i] + " is no other flight than the first");
+    if (Difference(expected[0], expected[i]).empty())
+      report(labels[i] + " is no other flight than the first");
   for (const char* library : libraries) {
     const FlyCasesFunction fly = Open(library);
     if (!fly) return 1;

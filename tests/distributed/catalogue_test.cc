@@ -8,8 +8,8 @@
 #include <cmath>
 #include <fstream>
 
-#include "core/input/input_error.h"
 #include "core/flight/metrics.h"
+#include "core/input/input_error.h"
 #include "services/ledger/running_tally.h"
 
 namespace dispersa::catalogue_test {

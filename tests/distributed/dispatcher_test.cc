@@ -508,9 +508,12 @@ TEST_F(DispatcherTest, ADrainingWorkerKeepsWhatItFliesAndGetsNoMore) {
 }
 
 TEST_F(DispatcherTest, CampaignsOfAHigherPriorityFirstAndEqualOnesShare) {
-  CampaignBook low(MadeUp(std::string(64, '1'), 50), std::make_unique<MemoryStore>(), {.attempt_base = 1000, .side_by_side = 1});
-  CampaignBook one(MadeUp(std::string(64, '2'), 50), std::make_unique<MemoryStore>(), {.attempt_base = 2000, .side_by_side = 1});
-  CampaignBook two(MadeUp(std::string(64, '3'), 50), std::make_unique<MemoryStore>(), {.attempt_base = 3000, .side_by_side = 1});
+  CampaignBook low(MadeUp(std::string(64, '1'), 50), std::make_unique<MemoryStore>(),
+                   {.attempt_base = 1000, .side_by_side = 1});
+  CampaignBook one(MadeUp(std::string(64, '2'), 50), std::make_unique<MemoryStore>(),
+                   {.attempt_base = 2000, .side_by_side = 1});
+  CampaignBook two(MadeUp(std::string(64, '3'), 50), std::make_unique<MemoryStore>(),
+                   {.attempt_base = 3000, .side_by_side = 1});
   dispatcher_.Open(low, 0);
   dispatcher_.Open(one, 5);
   dispatcher_.Open(two, 5);

@@ -32,10 +32,12 @@ int Connected(std::uint16_t port) {
 // All that is answered to a request, until the connection ends.
 std::string Ask(std::uint16_t port, const std::string& request) {
   const int connection = Connected(port);
-  EXPECT_EQ(send(connection, request.data(), request.size(), MSG_NOSIGNAL), static_cast<ssize_t>(request.size()));
+  EXPECT_EQ(send(connection, request.data(), request.size(), MSG_NOSIGNAL),
+            static_cast<ssize_t>(request.size()));
   std::string answer;
   char part[4096];
-  for (ssize_t count; (count = recv(connection, part, sizeof part, 0)) > 0;) answer.append(part, static_cast<std::size_t>(count));
+  for (ssize_t count; (count = recv(connection, part, sizeof part, 0)) > 0;)
+    answer.append(part, static_cast<std::size_t>(count));
   close(connection);
   return answer;
 }

@@ -11,9 +11,9 @@
 #include "core/flight/flight_inputs.h"
 #include "core/flight/metrics.h"
 #include "services/client/local_workers.h"
+#include "services/coordinator/watchdog.h"
 #include "services/ledger/campaign_book.h"
 #include "services/ledger/open_campaign.h"
-#include "services/coordinator/watchdog.h"
 
 namespace dispersa::rules_test {
 namespace {

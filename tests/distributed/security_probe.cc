@@ -84,8 +84,9 @@ void Publish(Participant& participant, const Options& options, Outcome& outcome,
 
 template <typename PubSubType>
 void Subscribe(Participant& participant, const Options& options, Outcome& outcome) {
-  auto* reader = participant.MakeSubscriber({options.partition})
-                     ->create_datareader(participant.TopicOf<PubSubType>(options.topic), MakeReaderQos("", 0));
+  auto* reader =
+      participant.MakeSubscriber({options.partition})
+          ->create_datareader(participant.TopicOf<PubSubType>(options.topic), MakeReaderQos("", 0));
   if (reader == nullptr) throw NetworkError("cannot create a reader");
   outcome.created = true;
   do {

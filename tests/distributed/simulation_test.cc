@@ -110,7 +110,8 @@ Campaign CampaignNumber(int number, std::uint64_t cases) {
   return campaign;
 }
 
-/// One that stops at the look at which it is decided: cases 0 and 1 break its requirement, the others keep it.
+/// One that stops at the look at which it is decided: cases 0 and 1 break its requirement, the others keep
+/// it.
 Campaign CampaignThatStops(int number) {
   Campaign campaign = CampaignNumber(number, 24);
   Requirement requirement;
@@ -170,7 +171,8 @@ class World {
   void Check() const {
     for (int c = 0; c < campaigns_; ++c) {
       const std::uint64_t settled = disks_[c].rows.size() + quarantined_at_end_[c];
-      // Lies that were found out, and cases that were given up, may have put a decision off, and never brought it about.
+      // Lies that were found out, and cases that were given up, may have put a decision off, and never
+      // brought it about.
       if (stops_[c] && (weather_.lies > 0.0 || quarantined_at_end_[c] > 0))
         ASSERT_GE(settled, cases_[c]);
       else

@@ -1,4 +1,5 @@
-/* Proportional-derivative control that misbehaves as it is compiled: -D DISPERSA_MISBEHAVES=<one of the numbers below>. */
+/* Proportional-derivative control that misbehaves as it is compiled: -D DISPERSA_MISBEHAVES=<one of the
+ * numbers below>. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,32 +9,32 @@
 
 #include "dispersa/control_law.h"
 
-#define CRASHES 1          /* in step, of one flight in four */
-#define HANGS 2            /* in step, of one flight in four */
-#define ALLOCATES 3        /* without bound, in step, of one flight in four */
-#define ENDS 4             /* the process, in step, of one flight in four */
+#define CRASHES 1   /* in step, of one flight in four */
+#define HANGS 2     /* in step, of one flight in four */
+#define ALLOCATES 3 /* without bound, in step, of one flight in four */
+#define ENDS 4      /* the process, in step, of one flight in four */
 #define READS_THE_CLOCK 5
-#define KEEPS_A_GLOBAL 6   /* across flights */
-#define FAILS 7            /* says so, of one flight in four */
-#define COMMANDS_NAN 8     /* of one flight in four, in pitch */
-#define ROUNDS_UP 9        /* leaves the processor in another rounding mode */
+#define KEEPS_A_GLOBAL 6 /* across flights */
+#define FAILS 7          /* says so, of one flight in four */
+#define COMMANDS_NAN 8   /* of one flight in four, in pitch */
+#define ROUNDS_UP 9      /* leaves the processor in another rounding mode */
 #define OTHER_ABI 10
 #define CRASHES_AT_ONCE 11 /* in describe */
 #define CRASHES_ALWAYS 12
-#define PRINTS 13          /* on the standard output */
-#define DEFLECTS 14        /* commands deflections */
-#define SLEEPS 15          /* in step, of one flight in four */
-#define FORKS 16           /* and the child of the child goes on, the pipe in its hands */
-#define CLOSES_FILES 17    /* all of them, in step, and hangs */
-#define HANGS_AT_THE_END 18 /* where objects are unloaded */
-#define COUNTS_FLIGHTS 19   /* a byte each in the file that FLIGHTS_FILE names */
-#define DIFFERS_BY_WORKER 20 /* by the process that flies it: its parent's number */
-#define COMMANDS_INFINITY 21 /* of one flight in four, in yaw */
-#define DEFLECTS_FAR 22      /* of one flight in four, in roll: finite, but no finite acceleration */
-#define COMMANDS_MUCH 23     /* of one flight in four, in pitch: finite, but no filter could take it */
-#define TELLS_NAN 24         /* as telemetry */
-#define WRITES_BEFORE 25     /* its memory, some way */
-#define WRITES_BEHIND 26     /* its memory, a byte */
+#define PRINTS 13             /* on the standard output */
+#define DEFLECTS 14           /* commands deflections */
+#define SLEEPS 15             /* in step, of one flight in four */
+#define FORKS 16              /* and the child of the child goes on, the pipe in its hands */
+#define CLOSES_FILES 17       /* all of them, in step, and hangs */
+#define HANGS_AT_THE_END 18   /* where objects are unloaded */
+#define COUNTS_FLIGHTS 19     /* a byte each in the file that FLIGHTS_FILE names */
+#define DIFFERS_BY_WORKER 20  /* by the process that flies it: its parent's number */
+#define COMMANDS_INFINITY 21  /* of one flight in four, in yaw */
+#define DEFLECTS_FAR 22       /* of one flight in four, in roll: finite, but no finite acceleration */
+#define COMMANDS_MUCH 23      /* of one flight in four, in pitch: finite, but no filter could take it */
+#define TELLS_NAN 24          /* as telemetry */
+#define WRITES_BEFORE 25      /* its memory, some way */
+#define WRITES_BEHIND 26      /* its memory, a byte */
 #define CRASHES_IN_WORKERS 27 /* when it is created there */
 #define IS_SLOW 28            /* a minute a flight */
 
@@ -51,8 +52,8 @@ static int global_count;
 static char* volatile nowhere; /* the compiler must not know */
 
 const dispersa_law_description* dispersa_law_describe(void) {
-  static dispersa_law_description description = {DISPERSA_LAW_ABI, sizeof(struct memory),
-                                                 DISPERSA_LAW_ANGULAR_ACCELERATION, 0, "pd_test", "1", 0};
+  static dispersa_law_description description = {
+      DISPERSA_LAW_ABI, sizeof(struct memory), DISPERSA_LAW_ANGULAR_ACCELERATION, 0, "pd_test", "1", 0};
   if (DISPERSA_MISBEHAVES == OTHER_ABI) description.abi = 77;
   if (DISPERSA_MISBEHAVES == DEFLECTS || DISPERSA_MISBEHAVES == DEFLECTS_FAR)
     description.command = DISPERSA_LAW_DEFLECTION;

@@ -52,7 +52,8 @@ void ExpectSame(const FlightResult& a, const FlightResult& b, std::size_t k) {
   ASSERT_EQ(a.metrics.size(), b.metrics.size());
   for (std::size_t i = 0; i < a.metrics.size(); ++i)
     // Not a number equals itself here.
-    EXPECT_TRUE(a.metrics[i] == b.metrics[i] || (a.metrics[i] != a.metrics[i] && b.metrics[i] != b.metrics[i]))
+    EXPECT_TRUE(a.metrics[i] == b.metrics[i] ||
+                (a.metrics[i] != a.metrics[i] && b.metrics[i] != b.metrics[i]))
         << "case " << k << ", " << MetricNames()[i];
 }
 

@@ -65,7 +65,7 @@ FlightDefinition Definition(const std::string& law, bool with_winds, bool guided
   }
   if (autopilot == "pd_aac") {
     Boosters& b = definition.vehicle.boosters;
-    b = {4,    150.0, 900.0, 0.97, 0.62, 21.0, 26.5, 26.4, {}, {22.0, 24.05, 0.6, 0.2}, 0.5};
+    b = {4, 150.0, 900.0, 0.97, 0.62, 21.0, 26.5, 26.4, {}, {22.0, 24.05, 0.6, 0.2}, 0.5};
     b.motor.thrust_n = 80e3;
     b.motor.burning_time_s = 30.0;
     definition.vehicle.stages[0].liftoff_mass_kg += 4.0 * 1050.0;
@@ -148,15 +148,17 @@ FlightInputs DrawnInputs(std::uint64_t flight) {
     some(in.wind_profile_north[level], draws.Normal());
     some(in.wind_profile_east[level], draws.Normal());
   }
-  for (double* factor : {&in.drag_factor, &in.lift_factor, &in.cg_factor, &in.cp_factor, &in.density_factor,
-                         &in.inertia_factor, &in.actuator_bandwidth_factor, &in.bending_damping_factor,
-                         &in.bending_slope_factor, &in.bending_frequency_factor[0], &in.bending_frequency_factor[1]})
+  for (double* factor :
+       {&in.drag_factor, &in.lift_factor, &in.cg_factor, &in.cp_factor, &in.density_factor,
+        &in.inertia_factor, &in.actuator_bandwidth_factor, &in.bending_damping_factor,
+        &in.bending_slope_factor, &in.bending_frequency_factor[0], &in.bending_frequency_factor[1]})
     some(*factor, 1.0 + 0.03 * draws.Normal());
   some(in.gyro_bias_roll_rad_s, 1e-6 * draws.Normal());
   some(in.gyro_bias_pitch_rad_s, 1e-6 * draws.Normal());
   some(in.gyro_bias_yaw_rad_s, 1e-6 * draws.Normal());
   some(in.gyro_noise_rad_s, 0.005 * kRadPerDeg);
-  // Only guided flights feel these, so they are no draws of the stream that the inputs after them follow from.
+  // Only guided flights feel these, so they are no draws of the stream that the inputs after them follow
+  // from.
   Stream navigation(5, flight, "navigation");
   for (double& error_m : in.navigation_position_error_m) error_m = 30.0 * navigation.Normal();
   for (double& error_m_s : in.navigation_velocity_error_m_s) error_m_s = 0.3 * navigation.Normal();
@@ -176,9 +178,9 @@ FlightInputs DrawnInputs(std::uint64_t flight) {
     seldom(in.separation_delay_s[stage], 0.1 * later.Uniform());
     seldom(in.thrust_misalignment_y_rad[stage], 0.1 * kRadPerDeg * later.Normal());
     seldom(in.cg_offset_z_m[stage], 0.002 * later.Normal());
-    for (double* factor : {&in.stack_drag_factor[stage], &in.stack_lift_factor[stage], &in.stack_cg_factor[stage],
-                           &in.stack_cp_factor[stage], &in.stack_inertia_factor[stage],
-                           &in.stack_actuator_bandwidth_factor[stage]})
+    for (double* factor : {&in.stack_drag_factor[stage], &in.stack_lift_factor[stage],
+                           &in.stack_cg_factor[stage], &in.stack_cp_factor[stage],
+                           &in.stack_inertia_factor[stage], &in.stack_actuator_bandwidth_factor[stage]})
       seldom(*factor, 1.0 + 0.02 * later.Normal());
   }
   // In some flights so fast that a rate limit may act within a tick.
@@ -333,7 +335,8 @@ TEST_P(FlightLanes, AreTheFlightsAlone) {
   ExpectTheFlightsAlone(FlightModel(Definition(law, law != "pd", guided)), 12);
 }
 
-// Two planes, gyros that round, guidance, wind and turbulence at once. Fewer flights: their modes take longest.
+// Two planes, gyros that round, guidance, wind and turbulence at once. Fewer flights: their modes take
+// longest.
 TEST(FlexibleGuidedLanes, AreTheFlightsAlone) {
   FlightDefinition definition = Definition("flexible", true, true);
   const FlightDefinition flexible = FlexibleGuidedDefinition();

@@ -1,5 +1,6 @@
 // Damaged files: whatever stands in a YAML file or a stored database, the answer is what the file says or an
-// error that names what is wrong, and never a wrong number. tests/fuzz.h: how many of each kind, and their seed.
+// error that names what is wrong, and never a wrong number. tests/fuzz.h: how many of each kind, and their
+// seed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -165,8 +166,7 @@ TEST_F(HostileFiles, CampaignsAreReadOrRefused) {
     if (fs::exists(fs::path(DISPERSA_CAMPAIGNS) / folder))
       fs::create_symlink(fs::path(DISPERSA_CAMPAIGNS) / folder, root_ / folder);
   }
-  Fuzz(DISPERSA_CAMPAIGNS "/table3.yaml", Inputs() / 50,
-       [](const std::string& path) { LoadCampaign(path); });
+  Fuzz(DISPERSA_CAMPAIGNS "/table3.yaml", Inputs() / 50, [](const std::string& path) { LoadCampaign(path); });
   const std::string canonical = LoadCampaign(DISPERSA_CAMPAIGNS "/smoke.yaml").canonical_yaml;
   for (std::uint64_t i = 0; i < Inputs() / 100; ++i) {
     const std::string damaged = DamagedText(canonical);
@@ -209,7 +209,8 @@ TEST_F(HostileFiles, NoWrongNumberComesOutOfADamagedDatabase) {
   for (std::uint64_t i = 0; i < Inputs() / 2; ++i) {
     std::string bytes = good;
     for (std::size_t changes = 1 + Below(4); changes > 0; --changes) {
-      const std::size_t at = Below(Below(3) == 0 ? std::min<std::size_t>(bytes.size(), 200) : bytes.size());  // the header more often
+      const std::size_t at = Below(Below(3) == 0 ? std::min<std::size_t>(bytes.size(), 200)
+                                                 : bytes.size());  // the header more often
       switch (Below(4)) {
         case 0:
           bytes[at] = static_cast<char>(chance_());

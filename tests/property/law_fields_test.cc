@@ -1,5 +1,5 @@
-// Every field of an autopilot counts: changed alone it changes the autopilot's text and the campaign's flight id, and the
-// text gives it back.
+// Every field of an autopilot counts: changed alone it changes the autopilot's text and the campaign's flight
+// id, and the text gives it back.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -81,7 +81,8 @@ std::vector<Change> ChangesOf(const LawInfo& law) {
       number(of + "poles", [f](AxisConfig& a) -> double& { return f(a).poles_rad_s; });
       number(of + "poles damping", [f](AxisConfig& a) -> double& { return f(a).poles_damping; });
     };
-    section("filter " + std::to_string(i) + " ", [i](AxisConfig& a) -> FilterSection& { return a.filters[i]; });
+    section("filter " + std::to_string(i) + " ",
+            [i](AxisConfig& a) -> FilterSection& { return a.filters[i]; });
     section("scheduled filter " + std::to_string(i) + " ",
             [i](AxisConfig& a) -> FilterSection& { return a.schedule[0].filters[i]; });
   }
@@ -176,8 +177,9 @@ TEST_P(LawFields, ChangeTextAndFlightIdEachByItself) {
   const AutopilotConfig base = FullAutopilot(GetParam().law);
   Add("the autopilot as it is", base);
   using Axis = AxisConfig AutopilotConfig::*;
-  const std::pair<const char*, Axis> axes[] = {
-      {"pitch ", &AutopilotConfig::pitch}, {"yaw ", &AutopilotConfig::yaw}, {"roll ", &AutopilotConfig::roll}};
+  const std::pair<const char*, Axis> axes[] = {{"pitch ", &AutopilotConfig::pitch},
+                                               {"yaw ", &AutopilotConfig::yaw},
+                                               {"roll ", &AutopilotConfig::roll}};
   for (const Change& change : ChangesOf(GetParam())) {
     for (const auto& [name, axis] : axes) {
       AutopilotConfig changed = base;
@@ -221,7 +223,8 @@ INSTANTIATE_TEST_SUITE_P(Laws, LawFields, testing::ValuesIn(OwnLaws()),
 TEST(RateGyroFields, ChangeTextAndFlightId) {
   const InputFiles files;
   files.Edit("flexible.yaml", "sensors: {inertial_unit: {station_m: 2}}",
-             "sensors: {inertial_unit: {station_m: 2}, rate_gyros: [{name: a, station_m: 1}, {name: b, station_m: 1.5}]}");
+             "sensors: {inertial_unit: {station_m: 2}, rate_gyros: [{name: a, station_m: 1}, {name: b, "
+             "station_m: 1.5}]}");
   files.Edit("campaign.yaml", "vehicle: vehicle.yaml", "vehicle: flexible.yaml");
   AutopilotConfig base = LoadAutopilot(files.Path("autopilot.yaml"));
   base.rate_gyros = {{"a", 0.25, 0}, {"b", 0.75, 0}};

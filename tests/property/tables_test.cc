@@ -32,7 +32,8 @@ std::vector<double> RandomValues(Stream& random, std::size_t count) {
 std::vector<double> Arguments(Stream& random, const std::vector<double>& grid) {
   std::vector<double> all = {-kInfinity, kInfinity, grid.front() - 1.0, grid.back() + 1.0};
   for (const double x : grid)
-    for (const double at : {x, std::nextafter(x, -kInfinity), std::nextafter(x, kInfinity)}) all.push_back(at);
+    for (const double at : {x, std::nextafter(x, -kInfinity), std::nextafter(x, kInfinity)})
+      all.push_back(at);
   for (int i = 0; i < 20; ++i)
     all.push_back(grid.front() + (grid.back() - grid.front()) * (1.2 * random.Uniform() - 0.1));
   return all;
@@ -80,8 +81,10 @@ TEST(Tables, OfOneArgumentAreStraightBetweenPointsAndHeldOutside) {
     Table1D table;
     table.x = RandomGrid(random);
     table.y = RandomValues(random, table.x.size());
-    for (std::size_t i = 0; i < table.x.size(); ++i) EXPECT_EQ(table(table.x[i]), table.y[i]) << "exact at its points";
-    // Values of 10, of which a few roundings count, and a difference of arguments of 1e2 over intervals of 1e-3.
+    for (std::size_t i = 0; i < table.x.size(); ++i)
+      EXPECT_EQ(table(table.x[i]), table.y[i]) << "exact at its points";
+    // Values of 10, of which a few roundings count, and a difference of arguments of 1e2 over intervals of
+    // 1e-3.
     for (const double at : Arguments(random, table.x))
       EXPECT_NEAR(table(at), LineAt(table.x, table.y, at), 1e-9) << at;
   }

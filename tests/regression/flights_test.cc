@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/cases/campaign_flights.h"
 #include "core/campaign_yaml/load.h"
-#include "core/input/number_text.h"
+#include "core/cases/campaign_flights.h"
 #include "core/flight/flight_inputs.h"
 #include "core/flight/metrics.h"
+#include "core/input/number_text.h"
 #include "tests/regression/golden.h"
 
 namespace dispersa::flights_test {
@@ -41,10 +41,14 @@ const Kind kKinds[] = {
     {"guided", SHIPPED "orbit.yaml", {0, 1}, true},
     {"guided_full", SHIPPED "orbit_full.yaml"},
     {"solid_and_restart", SHIPPED "gallery/vega/campaign.yaml", {0, 1}, true},  // listed nozzles, a fairing
-    {"liquid", SHIPPED "gallery/electron/campaign.yaml", {0, 1}, true},         // throttled; listed, a fairing
+    {"liquid", SHIPPED "gallery/electron/campaign.yaml", {0, 1}, true},  // throttled; listed, a fairing
     {"jettison", SHIPPED "gallery/scout/campaign.yaml", {0, 1}, true},
     {"law_adaptive_fuzzy", SHIPPED "controllers.yaml"},
-    {"law_composite_fuzzy", SHIPPED "controllers.yaml", {0, 1}, false, SHIPPED "autopilots/composite_fuzzy.yaml"},
+    {"law_composite_fuzzy",
+     SHIPPED "controllers.yaml",
+     {0, 1},
+     false,
+     SHIPPED "autopilots/composite_fuzzy.yaml"},
     {"law_frozen_fuzzy", SHIPPED "controllers_frozen_fuzzy.yaml"},
     {"law_lqr", SHIPPED "controllers_lqr.yaml"},
     {"law_pd", SHIPPED "controllers_pd.yaml"},

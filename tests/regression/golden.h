@@ -1,8 +1,8 @@
-// Goldens: today's numbers as text, against unintended change. They say nothing about truth; tests/verification
-// does.
+// Goldens: today's numbers as text, against unintended change. They say nothing about truth;
+// tests/verification does.
 //
-// The text holds an entry a line: a name, a space and a value. Lines in brackets begin a section, lines with # are
-// comments.
+// The text holds an entry a line: a name, a space and a value. Lines in brackets begin a section, lines with
+// # are comments.
 #pragma once
 
 #include <cstdlib>
@@ -46,14 +46,17 @@ inline GoldenEntries ReadGolden(const std::string& text) {
   return entries;
 }
 
-/// Whether `actual` equals the text of `golden`, a file that is under version control. A difference is named by the
-/// file, the section and the entry. A missing golden is a failure. With DISPERSA_REWRITE_GOLDENS=1 in the environment
-/// the file is written instead and the result is a failure too, so that no run with it ever passes for a test.
-inline testing::AssertionResult MatchesGolden(const std::string& actual, const std::filesystem::path& golden) {
+/// Whether `actual` equals the text of `golden`, a file that is under version control. A difference is named
+/// by the file, the section and the entry. A missing golden is a failure. With DISPERSA_REWRITE_GOLDENS=1 in
+/// the environment the file is written instead and the result is a failure too, so that no run with it ever
+/// passes for a test.
+inline testing::AssertionResult MatchesGolden(const std::string& actual,
+                                              const std::filesystem::path& golden) {
   const char* rewrite = std::getenv("DISPERSA_REWRITE_GOLDENS");
   if (rewrite != nullptr && std::string(rewrite) == "1") {
     std::ofstream(golden, std::ios::binary) << actual;
-    return testing::AssertionFailure() << "rewrote " << golden << "; look at the difference before it is committed";
+    return testing::AssertionFailure()
+           << "rewrote " << golden << "; look at the difference before it is committed";
   }
   std::ifstream file(golden, std::ios::binary);
   if (!file) {
@@ -69,10 +72,12 @@ inline testing::AssertionResult MatchesGolden(const std::string& actual, const s
   for (const std::string& name : found.names)
     if (!expected.values.contains(name)) different.push_back(name);
   const std::string title = "golden " + golden.stem().string();
-  if (different.empty()) return testing::AssertionFailure() << title << ": equal entries, but other lines or another order";
+  if (different.empty())
+    return testing::AssertionFailure() << title << ": equal entries, but other lines or another order";
   const std::string& first = different.front();
-  return testing::AssertionFailure() << title << " " << first << ": expected " << expected.Of(first) << ", found "
-                                     << found.Of(first) << "; " << different.size() - 1 << " more differ";
+  return testing::AssertionFailure() << title << " " << first << ": expected " << expected.Of(first)
+                                     << ", found " << found.Of(first) << "; " << different.size() - 1
+                                     << " more differ";
 }
 
 }  // namespace dispersa

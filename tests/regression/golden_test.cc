@@ -23,8 +23,8 @@ class Golden : public testing::Test {
   std::string Difference(const std::string& actual) const { return MatchesGolden(actual, path_).message(); }
 
   std::optional<std::string> rewrite_;  ///< what the environment says to the other tests of this program
-  std::filesystem::path path_ =
-      std::filesystem::path(testing::TempDir()) / testing::UnitTest::GetInstance()->current_test_info()->name();
+  std::filesystem::path path_ = std::filesystem::path(testing::TempDir()) /
+                                testing::UnitTest::GetInstance()->current_test_info()->name();
 };
 
 TEST_F(Golden, EqualTextMatches) {
@@ -32,14 +32,13 @@ TEST_F(Golden, EqualTextMatches) {
   EXPECT_TRUE(MatchesGolden("a 1\nb 2\n", path_));
 }
 
-TEST_F(Golden, MissingFails) {
-  EXPECT_EQ(Difference("a 1\n"), "no golden \"" + path_.string() + "\"");
-}
+TEST_F(Golden, MissingFails) { EXPECT_EQ(Difference("a 1\n"), "no golden \"" + path_.string() + "\""); }
 
 TEST_F(Golden, DifferenceNamesItsEntry) {
   Write("# text\n[case 0]\na 1\nb 2\n[case 1]\na 3\nb a whole sentence\n");
   EXPECT_EQ(Difference("# text\n[case 0]\na 1\nb 2\n[case 1]\na 3\nb another sentence\n"),
-            "golden DifferenceNamesItsEntry case 1 b: expected a whole sentence, found another sentence; 0 more differ");
+            "golden DifferenceNamesItsEntry case 1 b: expected a whole sentence, found another sentence; 0 "
+            "more differ");
   EXPECT_EQ(Difference("# text\n[case 0]\na 7\nb 2\n[case 1]\na 4\nb 5\n"),
             "golden DifferenceNamesItsEntry case 0 a: expected 1, found 7; 2 more differ");
 }
@@ -54,7 +53,8 @@ TEST_F(Golden, DifferenceNamesWhatIsMissingOrNew) {
 
 TEST_F(Golden, AnotherOrderOrCommentFailsToo) {
   Write("a 1\nb 2\n");
-  const char kText[] = "golden AnotherOrderOrCommentFailsToo: equal entries, but other lines or another order";
+  const char kText[] =
+      "golden AnotherOrderOrCommentFailsToo: equal entries, but other lines or another order";
   EXPECT_EQ(Difference("b 2\na 1\n"), kText);
   EXPECT_EQ(Difference("# new\na 1\nb 2\n"), kText);
   EXPECT_EQ(Difference("a 1\nb 2\nb 2\n"), kText);

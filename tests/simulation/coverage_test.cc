@@ -1,5 +1,5 @@
-// Every verdict, interval and bound, 20,000 times on made-up campaigns: how often it errs against how often it
-// says it may. Prints the table of core/statistics/README.md, and holds that to it.
+// Every verdict, interval and bound, 20,000 times on made-up campaigns: how often it errs against how often
+// it says it may. Prints the table of core/statistics/README.md, and holds that to it.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
+#include <gtest/gtest.h>
 #include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/normal.hpp>
-#include <gtest/gtest.h>
 
 #include "core/random/draws.h"
 #include "core/random/latin_hypercube.h"
@@ -63,8 +63,8 @@ double Share(const std::function<bool(int)>& happens) {
   return count / double{kRepetitions};
 }
 
-/// A rate of the table in core/statistics/README.md, which must hold the line as it comes out here. Standard errors are
-/// those of the repetitions; that any of fifty true lines is four of them off has less than 0.4 %.
+/// A rate of the table in core/statistics/README.md, which must hold the line as it comes out here. Standard
+/// errors are those of the repetitions; that any of fifty true lines is four of them off has less than 0.4 %.
 class Row {
  public:
   Row(std::string what, double rate) : what_(std::move(what)), rate_(rate) {}
@@ -81,7 +81,8 @@ class Row {
     EXPECT_LE(rate_, stated + 4.0 * std::sqrt(stated * (1.0 - stated) / kRepetitions)) << what_;
     EXPECT_GT(rate_, 0.0) << what_ << ": a simulation in which nothing ever errs shows nothing";
   }
-  /// An approximate method: its rate is `measured`, the number of an earlier simulation of as many repetitions.
+  /// An approximate method: its rate is `measured`, the number of an earlier simulation of as many
+  /// repetitions.
   void IsAbout(double measured, double stated) {
     Print("approximate", stated);
     EXPECT_NEAR(rate_, measured, 4.0 * std::sqrt(2.0 * measured * (1.0 - measured) / kRepetitions)) << what_;
@@ -109,7 +110,8 @@ class Row {
       std::ifstream file(DISPERSA_TEST_DATA "/../../core/statistics/README.md");
       return std::string(std::istreambuf_iterator<char>(file), {});
     }();
-    EXPECT_TRUE(readme.find(line) != std::string::npos) << "core/statistics/README.md says otherwise than\n" << line;
+    EXPECT_TRUE(readme.find(line) != std::string::npos) << "core/statistics/README.md says otherwise than\n"
+                                                        << line;
   }
 
   std::string what_;
@@ -126,8 +128,8 @@ double Upto(std::int64_t n, std::int64_t k, double failing = 1.0 - kProbability)
   return k < 0 ? 0.0 : k >= n ? 1.0 : cdf(Counts(static_cast<double>(n), failing), static_cast<double>(k));
 }
 
-/// Probability of ever meeting a condition on (look, failures), whatever the other boundary says: by enumeration of
-/// the failures at each look.
+/// Probability of ever meeting a condition on (look, failures), whatever the other boundary says: by
+/// enumeration of the failures at each look.
 double Ever(const std::vector<LookBoundary>& looks,
             const std::function<bool(const LookBoundary&, std::int64_t)>& condition) {
   std::vector<double> open = {1.0};  // by failures so far, of those that have not met it
@@ -279,7 +281,8 @@ TEST(Coverage, OfSeveralRequirements) {
   };
   Row("three requirements, Holm: any false PASS", Share([&](int k) { return any_pass(k, true); }))
       .IsExactly(1.0 - std::pow(1.0 - of_one(kRisk / kRequirements), kRequirements), kRisk);
-  Row("three requirements, each at its risk: any false PASS", Share([&](int k) { return any_pass(k, false); }))
+  Row("three requirements, each at its risk: any false PASS",
+      Share([&](int k) { return any_pass(k, false); }))
       .IsExactly(1.0 - std::pow(1.0 - of_one(kRisk), kRequirements), kRequirements * kRisk);
 }
 
@@ -346,13 +349,15 @@ TEST(Coverage, OfPercentiles) {
   for (const double probability : {0.05, 0.5, 0.95, 0.99}) {
     const double truth = -std::log1p(-probability);
     char name[80];
-    std::snprintf(name, sizeof name, "limits of the %g %% of 200 values: the truth outside", 100.0 * probability);
+    std::snprintf(name, sizeof name, "limits of the %g %% of 200 values: the truth outside",
+                  100.0 * probability);
     const RankInterval ranks = QuantileRanks(200, probability, kPercentileConfidence);
     // Values up to the truth are Binomial(200, probability); a rank beyond the sample gives no limit.
     const double below = ranks.lower >= 1 ? Upto(200, ranks.lower - 1, probability) : 0.0;
     const double above = ranks.upper <= 200 ? 1.0 - Upto(200, ranks.upper - 1, probability) : 0.0;
     Row(name, Share([&](int k) {
-          const Interval limits = QuantileInterval(SortedExponential(k, 200), probability, kPercentileConfidence);
+          const Interval limits =
+              QuantileInterval(SortedExponential(k, 200), probability, kPercentileConfidence);
           return truth < limits.lower || truth > limits.upper;
         }))
         .IsExactly(below + above, 1.0 - kPercentileConfidence);
@@ -398,14 +403,13 @@ std::int64_t Failures(const auto& design, std::uint64_t points, double limit) {
 }
 
 TEST(Coverage, OfReplicates) {
-  // By Student's t alone, upper bounds would be too low where failures are rare: 19.8 % of them for the 20 hypercubes
-  // of 20 points.
+  // By Student's t alone, upper bounds would be too low where failures are rare: 19.8 % of them for the 20
+  // hypercubes of 20 points.
   const struct {
     bool sobol;
     std::uint64_t replicates, points;
     double failing;
-  } cases[] = {
-      {false, 10, 50, 0.1}, {false, 20, 50, 0.03}, {false, 20, 20, 0.01}, {true, 16, 64, 0.03}};
+  } cases[] = {{false, 10, 50, 0.1}, {false, 20, 50, 0.03}, {false, 20, 20, 0.01}, {true, 16, 64, 0.03}};
   for (const auto& [sobol, replicates, points, failing] : cases) {
     const double limit = 2.0 - std::sqrt(2.0 * failing);
     const auto bounds = [&](int repetition) {
@@ -442,7 +446,8 @@ TEST(Coverage, OfComparisonsAndIndices) {
       .IsExactly(Upto(101, QuantileRanks(101, 0.5, 0.95).lower - 1, 0.5) +
                      (1.0 - Upto(101, QuantileRanks(101, 0.5, 0.95).upper - 1, 0.5)),
                  0.05);
-  // Skewed samples whose tails are the same, paired with a correlation of 0.81 (of the logarithms) and independent.
+  // Skewed samples whose tails are the same, paired with a correlation of 0.81 (of the logarithms) and
+  // independent.
   for (const auto& [n, probability] : {std::pair{200, 0.95}, std::pair{500, 0.99}}) {
     for (const bool paired : {true, false}) {
       int missed = 0, rejected = 0;

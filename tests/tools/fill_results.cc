@@ -1,5 +1,6 @@
-// A result folder of as many cases as wanted, to measure what reads it: inputs as the campaign draws them, metrics
-// made up from those of a few flights. Its reports are made with --no-histories: the flights were not flown.
+// A result folder of as many cases as wanted, to measure what reads it: inputs as the campaign draws them,
+// metrics made up from those of a few flights. Its reports are made with --no-histories: the flights were not
+// flown.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -9,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "core/cases/campaign_flights.h"
 #include "core/campaign_yaml/load.h"
+#include "core/cases/campaign_flights.h"
 #include "core/random/draws.h"
 #include "core/results/result_folder.h"
 

@@ -33,7 +33,7 @@ std::string WorkPrecisionTable(const std::vector<WorkPoint>& points) {
     };
     table += fmt::format(
         "| {} | {:g} | {} | {:.0f} | {} | {} | {} | {:.5f} | {:.4f} |\n", p.flight, 1e3 * p.tick_s,
-        exact     ? "CVODE"
+        exact          ? "CVODE"
         : IsShipped(p) ? "**Simpson, 1 step (shipped)**"
                        : fmt::format("{}, {} step{}", scheme, p.steps, p.steps > 1 ? "s" : ""),
         1e3 * p.cpu_s, difference(p.altitude_difference_m), difference(p.velocity_difference_m_s),

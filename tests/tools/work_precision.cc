@@ -110,7 +110,8 @@ std::vector<WorkPoint> MeasureWorkPrecision(const std::string& campaigns) {
       add(exact, Scheme::kCvode, 0);
       for (const int steps : {1, 2, 4})
         add(FlyOnce(model, inputs, Scheme::kSimpson, steps), Scheme::kSimpson, steps);
-      if (tick_s == kShippedTick_s) add(FlyOnce(model, inputs, Scheme::kRungeKutta4, 1), Scheme::kRungeKutta4, 1);
+      if (tick_s == kShippedTick_s)
+        add(FlyOnce(model, inputs, Scheme::kRungeKutta4, 1), Scheme::kRungeKutta4, 1);
     }
   }
   return points;
@@ -122,9 +123,9 @@ std::string WorkPrecisionCsv(const std::vector<WorkPoint>& points) {
       "pitch_error_difference_deg,pitch_error_rms_deg,pitch_error_peak_deg\n";
   for (const WorkPoint& p : points)
     csv += fmt::format("{},{},{},{},{:.4f},{:.3e},{:.3e},{:.3e},{:.6f},{:.6f}\n", p.flight, p.tick_s,
-                       SchemeName(p.scheme), p.steps, p.cpu_s,
-                       p.altitude_difference_m, p.velocity_difference_m_s, p.pitch_error_difference_deg,
-                       p.pitch_error_rms_deg, p.pitch_error_peak_deg);
+                       SchemeName(p.scheme), p.steps, p.cpu_s, p.altitude_difference_m,
+                       p.velocity_difference_m_s, p.pitch_error_difference_deg, p.pitch_error_rms_deg,
+                       p.pitch_error_peak_deg);
   return csv;
 }
 
@@ -132,7 +133,8 @@ FigureSheet WorkPrecisionSheet(const std::vector<WorkPoint>& points) {
   FigureSheet sheet{
       .title = "Work and precision of a whole closed-loop flight, every dispersion of Table 3 at once",
       .panels = {}};
-  const ChartAxis cpu{.label = "CPU time of a flight alone, ms", .low = 10.0, .high = 1e4, .logarithmic = true};
+  const ChartAxis cpu{
+      .label = "CPU time of a flight alone, ms", .low = 10.0, .high = 1e4, .logarithmic = true};
   const auto work = [&](const std::string& label, double WorkPoint::*difference, const std::string& caption) {
     SvgChart chart = PanelChart(cpu, WholeDecades(label, points, difference));
     std::vector<double> shipped_x, shipped_y, cvode_x, cvode_y;
@@ -165,7 +167,8 @@ FigureSheet WorkPrecisionSheet(const std::vector<WorkPoint>& points) {
     sheet.panels.push_back({chart, caption});
   };
   work("largest difference in pitch error, °", &WorkPoint::pitch_error_difference_deg,
-       "The engine's step, 1, 2 and 4 steps a tick against CVODE on the same tick; CVODE's own points are placed at "
+       "The engine's step, 1, 2 and 4 steps a tick against CVODE on the same tick; CVODE's own points are "
+       "placed at "
        "its difference to 4 steps a tick, the floor of the comparison.");
   work("difference in injection altitude, m", &WorkPoint::altitude_difference_m,
        "The same for the injection altitude.");

@@ -29,9 +29,9 @@ inline bool IsShipped(const WorkPoint& p) {
   return p.tick_s == kShippedTick_s && p.scheme == Scheme::kSimpson && p.steps == kShippedSteps;
 }
 
-/// The shipped scheme with 1, 2 and 4 steps a tick for ticks of 2.5 to 20 ms, under the shipped autopilot; on its tick the
-/// classical Runge-Kutta method besides.
-/// `campaigns` is the folder of the shipped campaigns. Takes minutes.
+/// The shipped scheme with 1, 2 and 4 steps a tick for ticks of 2.5 to 20 ms, under the shipped autopilot; on
+/// its tick the classical Runge-Kutta method besides. `campaigns` is the folder of the shipped campaigns.
+/// Takes minutes.
 std::vector<WorkPoint> MeasureWorkPrecision(const std::string& campaigns);
 
 std::string WorkPrecisionCsv(const std::vector<WorkPoint>& points);

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/random/draws.h"
 #include "core/analysis/band_counter.h"
+#include "core/random/draws.h"
 #include "tests/unit/made_up_results.h"
 
 namespace dispersa::analysis_bands_test {
@@ -94,7 +94,8 @@ TEST(BandCounter, IsRightToAClassBeyondThat) {
   const FlightBands counted = counter.Bands();
   EXPECT_EQ(counted.flights, 5000u);
   EXPECT_EQ(counted.flying, exact.flying);
-  const FlightBands first = ComputeBands({flights.begin(), flights.begin() + BandCounter::kKept}, {1}, kStep_s);
+  const FlightBands first =
+      ComputeBands({flights.begin(), flights.begin() + BandCounter::kKept}, {1}, kStep_s);
   for (std::size_t step = 0; step < 2; ++step) {
     const Band& a = counted.bands[0];
     const Band& b = exact.bands[0];
@@ -102,8 +103,9 @@ TEST(BandCounter, IsRightToAClassBeyondThat) {
     EXPECT_EQ(a.min[step], b.min[step]);
     EXPECT_EQ(a.max[step], b.max[step]);
     for (const auto& [counted_value, exact_value] :
-         {std::pair{a.p01[step], b.p01[step]}, std::pair{a.p05[step], b.p05[step]}, std::pair{a.p50[step], b.p50[step]},
-          std::pair{a.p95[step], b.p95[step]}, std::pair{a.p99[step], b.p99[step]}}) {
+         {std::pair{a.p01[step], b.p01[step]}, std::pair{a.p05[step], b.p05[step]},
+          std::pair{a.p50[step], b.p50[step]}, std::pair{a.p95[step], b.p95[step]},
+          std::pair{a.p99[step], b.p99[step]}}) {
       EXPECT_NEAR(counted_value, exact_value, one_class) << step;
       EXPECT_NE(counted_value, exact_value) << "were they kept after all?";
     }

@@ -1,4 +1,5 @@
-// Every number of a comparison lies inside its interval, whichever way its metric is good and whichever way it moved.
+// Every number of a comparison lies inside its interval, whichever way its metric is good and whichever way
+// it moved.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,8 +20,8 @@ using comparison_sample::CompareColumns;
 
 constexpr std::size_t kCases = 80;
 
-/// Every metric of 80 flights: about 11, and `moved` times as much as 0.7 to 1.3 more. Those that are worse farther from
-/// zero take both signs. Flights of different `draws` have other inputs, and so are no pairs.
+/// Every metric of 80 flights: about 11, and `moved` times as much as 0.7 to 1.3 more. Those that are worse
+/// farther from zero take both signs. Flights of different `draws` have other inputs, and so are no pairs.
 CaseColumns Flights(double moved, const std::string& draws) {
   std::vector<std::uint64_t> index;
   std::vector<double> input;
@@ -69,7 +70,8 @@ TEST_P(ComparisonOfEveryMetric, HoldsItsEstimates) {
     EXPECT_LT(metric.interval.lower, metric.interval.upper) << metric.metric;
     ExpectHolds(metric.interval, metric.difference, metric.metric);
     EXPECT_GT(metric.difference * GetParam().moved, 0.0) << metric.metric;  // in the metric's own direction
-    if (std::isfinite(metric.ratio)) ExpectHolds(metric.ratio_interval, metric.ratio, metric.metric + ", ratio");
+    if (std::isfinite(metric.ratio))
+      ExpectHolds(metric.ratio_interval, metric.ratio, metric.metric + ", ratio");
     std::size_t reached = 0;
     for (const PercentileComparison& tail : metric.tails) {
       if (!std::isfinite(tail.difference)) continue;
@@ -77,11 +79,12 @@ TEST_P(ComparisonOfEveryMetric, HoldsItsEstimates) {
       ExpectHolds(tail.interval, tail.difference, metric.metric + ", " + tail.name);
     }
     EXPECT_GT(reached, 0u) << metric.metric;
-    // Each value moved by more than its spread, so that 80 flights show it, and the bad side is that of the metric.
+    // Each value moved by more than its spread, so that 80 flights show it, and the bad side is that of the
+    // metric.
     const bool rose = GetParam().moved > 0.0;
-    EXPECT_EQ(metric.finding, metric.info.worse == Worse::kNeither                ? "differs"
+    EXPECT_EQ(metric.finding, metric.info.worse == Worse::kNeither             ? "differs"
                               : (metric.info.worse == Worse::kSmaller) == rose ? "better"
-                                                                                  : "worse")
+                                                                               : "worse")
         << metric.metric;
   }
 }
@@ -112,7 +115,8 @@ INSTANTIATE_TEST_SUITE_P(Each, ComparisonOfEveryMetric,
                                          Sides{"UnpairedUp", "b", 3.0}, Sides{"UnpairedDown", "b", -3.0}),
                          [](const auto& sides) { return std::string(sides.param.name); });
 
-// Holm: the least of m p-values counts m times. Each percentile is a family over the metrics, as the medians are.
+// Holm: the least of m p-values counts m times. Each percentile is a family over the metrics, as the medians
+// are.
 TEST_P(ComparisonOfEveryMetric, AdjustsEachPercentileOverTheMetrics) {
   const CaseColumns a = Flights(0.0, "a"), b = Flights(0.01 * GetParam().moved, GetParam().draws_of_b);
   const Comparison comparison = CompareAll(a, b);
@@ -132,7 +136,8 @@ TEST_P(ComparisonOfEveryMetric, AdjustsEachPercentileOverTheMetrics) {
 
 // Where neither sample reaches a percentile there is nothing to test.
 TEST_P(ComparisonOfEveryMetric, DoesNotTestWhatNoSampleReaches) {
-  const Comparison comparison = CompareAll(Flights(0.0, "a"), Flights(GetParam().moved, GetParam().draws_of_b));
+  const Comparison comparison =
+      CompareAll(Flights(0.0, "a"), Flights(GetParam().moved, GetParam().draws_of_b));
   std::size_t unreached = 0;
   for (const MetricComparison& metric : comparison.metrics) {
     for (const PercentileComparison& tail : metric.tails) {
@@ -155,8 +160,8 @@ Requirement Below(double limit) {
   return requirement;
 }
 
-// Five flights fail only in A, five only in B, ten in neither: the failures exclude each other, with a correlation of
-// (0 * 10 - 5 * 5) / (5 * 15) = -1/3. The limits are sides of triangles with that angle.
+// Five flights fail only in A, five only in B, ten in neither: the failures exclude each other, with a
+// correlation of (0 * 10 - 5 * 5) / (5 * 15) = -1/3. The limits are sides of triangles with that angle.
 TEST(ComparedRequirements, FailuresThatExcludeEachOtherWidenTheLimits) {
   std::vector<std::uint64_t> index;
   std::vector<double> input, a, b;
@@ -178,10 +183,10 @@ TEST(ComparedRequirements, FailuresThatExcludeEachOtherWidenTheLimits) {
 
 // Tea tasting: 3 of 4 fail in A, 1 of 4 in B; Fisher's tables as likely or less are 34 of 70.
 TEST(ComparedRequirements, OfUnpairedCampaignsAreFishersTable) {
-  const RequirementComparison compared = CompareColumns(Columns({0, 1, 2, 3}, {0.1, 0.2, 0.3, 0.4}, {2, 2, 2, 0}),
-                                                        Columns({0, 1, 2, 3}, {0.5, 0.6, 0.7, 0.8}, {0, 0, 0, 2}),
-                                                        {Below(1.0)})
-                                             .requirements.at(0);
+  const RequirementComparison compared =
+      CompareColumns(Columns({0, 1, 2, 3}, {0.1, 0.2, 0.3, 0.4}, {2, 2, 2, 0}),
+                     Columns({0, 1, 2, 3}, {0.5, 0.6, 0.7, 0.8}, {0, 0, 0, 2}), {Below(1.0)})
+          .requirements.at(0);
   EXPECT_EQ(compared.difference, 0.25 - 0.75);
   EXPECT_NEAR(compared.p, 34.0 / 70.0, 1e-12);
   ExpectHolds(compared.interval, compared.difference, "failure rates");

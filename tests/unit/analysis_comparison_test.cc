@@ -25,19 +25,19 @@ using testing::StartsWith;
 constexpr char kMetric[] = "pitch_error_rms_deg";
 
 TEST(ReportComparison, PairsCasesOfEqualIndex) {
-  const Comparison comparison =
-      CompareColumns(Columns({0, 1, 2, 3}, {0.1, 0.2, 0.3, 0.4}, {1, 1, 1, 1}),
-                     Columns({0, 2, 3, 5}, {0.1, 0.3, 0.4, 0.6}, {2, 4, 9, 1}));
+  const Comparison comparison = CompareColumns(Columns({0, 1, 2, 3}, {0.1, 0.2, 0.3, 0.4}, {1, 1, 1, 1}),
+                                               Columns({0, 2, 3, 5}, {0.1, 0.3, 0.4, 0.6}, {2, 4, 9, 1}));
   EXPECT_TRUE(comparison.pairing.paired);
   EXPECT_EQ(comparison.pairing.shared, 3);
   EXPECT_EQ(comparison.pairing.only_a, 1);
   EXPECT_EQ(comparison.pairing.only_b, 1);
-  ASSERT_EQ(comparison.metrics.size(), 1);  // no flight defines another one
+  ASSERT_EQ(comparison.metrics.size(), 1);           // no flight defines another one
   EXPECT_EQ(comparison.metrics[0].difference, 3.0);  // of 1, 3 and 8
   EXPECT_EQ(comparison.metrics[0].ratio, 4.0);
   EXPECT_EQ(comparison.metrics[0].a_better, 3);
   EXPECT_EQ(comparison.pairing.sentence,
-            "Paired: every input has the same value in both campaigns in all of 3 cases shared. 1 case of A and 1 case of B have no partner "
+            "Paired: every input has the same value in both campaigns in all of 3 cases shared. 1 case of A "
+            "and 1 case of B have no partner "
             "and are left out.");
 }
 
@@ -144,8 +144,8 @@ TEST(ReportComparison, RequirementsAreCountedPairByPair) {
   EXPECT_EQ(json["harmed"][1]["requirements"].size(), 2);  // the flight, and what it required
   EXPECT_EQ(json["harmed"][0]["replay_b"], "dispersa replay B --case 3");
   const std::string page = ComparisonPage(comparison, a, b);
-  EXPECT_THAT(page, AllOf(HasSubstr("dispersa replay A --case 4"), HasSubstr("timeout"), Not(HasSubstr("nan")),
-                          Not(HasSubstr("src="))));
+  EXPECT_THAT(page, AllOf(HasSubstr("dispersa replay A --case 4"), HasSubstr("timeout"),
+                          Not(HasSubstr("nan")), Not(HasSubstr("src="))));
 }
 
 TEST(ReportComparison, ChosenPointsHaveNoLimits) {
@@ -153,7 +153,8 @@ TEST(ReportComparison, ChosenPointsHaveNoLimits) {
   const CaseColumns others = Columns({0, 1, 2}, {0.1, 0.2, 0.3}, {2, 4, 6});
   Campaign campaign = MakeCampaign(3);
   campaign.sampling.method = SamplingMethod::kCorners;
-  const Comparison comparison = Compare({"A", "", campaign, cases}, {"B", "", campaign, others}, {kMetric}, {});
+  const Comparison comparison =
+      Compare({"A", "", campaign, cases}, {"B", "", campaign, others}, {kMetric}, {});
   EXPECT_FALSE(comparison.independent);
   EXPECT_EQ(comparison.metrics[0].difference, 2.0);
   EXPECT_TRUE(std::isnan(comparison.metrics[0].p));

@@ -17,8 +17,9 @@ constexpr char kPeak[] = "pitch_error_peak_deg";
 class Planted : public testing::Test {
  protected:
   Planted() {
-    for (const char* name : {"gyro_bias_pitch_deg_s", "wind_azimuth_deg", "drag_factor", "thrust_misalignment_stage1_deg",
-                             "thrust_misalignment_clock_stage1_deg", "cg_factor"}) {
+    for (const char* name :
+         {"gyro_bias_pitch_deg_s", "wind_azimuth_deg", "drag_factor", "thrust_misalignment_stage1_deg",
+          "thrust_misalignment_clock_stage1_deg", "cg_factor"}) {
       Dispersion dispersion;
       dispersion.name = name;
       dispersion.inputs = {FindInput(name)};
@@ -78,7 +79,8 @@ TEST_F(Planted, ACircularInputIsSeenThroughItsCosine) {
 // The size of a factor is its distance from 1.
 TEST_F(Planted, ASizeIsTakenAboutTheNominalValue) {
   const std::vector<double> drag = cases_.inputs[static_cast<std::size_t>(FindInput("drag_factor"))];
-  const auto drivers = DriversWhen([&](std::size_t k) { return std::fabs(drag[k] - 1.0) + 0.001 * noise_[k]; });
+  const auto drivers =
+      DriversWhen([&](std::size_t k) { return std::fabs(drag[k] - 1.0) + 0.001 * noise_[k]; });
   EXPECT_EQ(drivers[0].input, "drag_factor");
   EXPECT_EQ(drivers[0].feature, "|x|");
 }
@@ -97,16 +99,16 @@ TEST_F(Planted, AGustIsPairedWithItsOwnSpeed) {
   }
   const std::vector<double> azimuth = cases_.inputs[static_cast<std::size_t>(FindInput("gust_azimuth_deg"))],
                             speed = cases_.inputs[static_cast<std::size_t>(FindInput("gust_speed_m_s"))];
-  const auto drivers =
-      DriversWhen([&](std::size_t k) { return speed[k] * std::cos(azimuth[k] * kRadPerDeg) + 0.1 * noise_[k]; });
+  const auto drivers = DriversWhen(
+      [&](std::size_t k) { return speed[k] * std::cos(azimuth[k] * kRadPerDeg) + 0.1 * noise_[k]; });
   EXPECT_EQ(drivers[0].input, "gust_speed_m_s along gust_azimuth_deg");
   EXPECT_EQ(drivers[0].feature, "m cos x");
   EXPECT_GT(drivers[0].index, 0.9);
 }
 
 TEST_F(Planted, AMagnitudeInADirectionIsSeenAsAPair) {
-  const auto drivers =
-      DriversWhen([&](std::size_t k) { return tilt_[k] * std::sin(clock_[k] * kRadPerDeg) + 0.1 * noise_[k]; });
+  const auto drivers = DriversWhen(
+      [&](std::size_t k) { return tilt_[k] * std::sin(clock_[k] * kRadPerDeg) + 0.1 * noise_[k]; });
   EXPECT_EQ(drivers[0].input, "thrust_misalignment_stage1_deg along thrust_misalignment_clock_stage1_deg");
   EXPECT_EQ(drivers[0].feature, "m sin x");
   EXPECT_GT(drivers[0].index, 0.9);

@@ -1,5 +1,5 @@
-// Impact points of known covariance, turned to every azimuth: their ellipses, as GeoJSON and KML state them. Places come
-// from the radii of curvature of the ellipsoid, which the product does not use.
+// Impact points of known covariance, turned to every azimuth: their ellipses, as GeoJSON and KML state them.
+// Places come from the radii of curvature of the ellipsoid, which the product does not use.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "core/math/constants.h"
 #include "core/analysis/footprints.h"
+#include "core/math/constants.h"
 #include "tests/unit/made_up_results.h"
 
 namespace dispersa::analysis_footprint_axes_test {
@@ -75,7 +75,8 @@ TEST_P(FootprintAzimuths, AreClockwiseFromNorthWithAxesInKilometres) {
     ++ellipses;
     const double stated = properties["stated_containment"];
     const double scale = std::sqrt(-2.0 * std::log(1.0 - stated) * 2.0 / 3.0);
-    // Positions are rounded to a centimetre, and the plane bends away by a 10^7th: one in 10^4 is enough for both.
+    // Positions are rounded to a centimetre, and the plane bends away by a 10^7th: one in 10^4 is enough for
+    // both.
     EXPECT_NEAR(properties["semi_major_km"], 0.9 * scale, 1e-4 * scale);
     EXPECT_NEAR(properties["semi_minor_km"], 0.3 * scale, 1e-4 * scale);
     const double found_deg = properties["azimuth_deg"];
@@ -149,9 +150,11 @@ TEST(Footprints, StateWhatEachBodyDid) {
 
 TEST(Footprints, KmlMarksLostBodiesAsLost) {
   const std::string kml = Kml(report_test::MakeCampaign(9), GatherFootprints(LostAndSpent()));
-  EXPECT_THAT(kml, testing::HasSubstr("<name>case 7</name><description>dispersa replay . --case 7; from 12.3 km at 31.50 "
-                                      "s, down at 154.2 s with 88 m/s</description><styleUrl>#lost</styleUrl>"));
-  EXPECT_THAT(kml, testing::HasSubstr("#spent</styleUrl><Point><coordinates>68.7549354,34.3774677</coordinates>"));
+  EXPECT_THAT(kml, testing::HasSubstr(
+                       "<name>case 7</name><description>dispersa replay . --case 7; from 12.3 km at 31.50 "
+                       "s, down at 154.2 s with 88 m/s</description><styleUrl>#lost</styleUrl>"));
+  EXPECT_THAT(kml,
+              testing::HasSubstr("#spent</styleUrl><Point><coordinates>68.7549354,34.3774677</coordinates>"));
 }
 
 }  // namespace

@@ -26,7 +26,8 @@ std::vector<ImpactPoint> Scattered(double longitude_deg, int count) {
     point.case_index = static_cast<std::uint64_t>(i);
     point.stage = 2;
     point.impact = Impact{};
-    point.impact->place = ToGeodetic(earth, FromGeodetic(earth, mean) + east_m * axes.col(1) + north_m * axes.col(0));
+    point.impact->place =
+        ToGeodetic(earth, FromGeodetic(earth, mean) + east_m * axes.col(1) + north_m * axes.col(0));
     point.impact->place.altitude_m = 0.0;
     points.push_back(point);
   }
@@ -54,7 +55,8 @@ TEST(Footprints, FindTheSpreadOfTheirPoints) {
 }
 
 TEST(Footprints, GeoJsonAcrossTheDateLine) {
-  const auto json = nlohmann::json::parse(GeoJson(report_test::MakeCampaign(40), GatherFootprints(Scattered(179.95, 40))));
+  const auto json =
+      nlohmann::json::parse(GeoJson(report_test::MakeCampaign(40), GatherFootprints(Scattered(179.95, 40))));
   EXPECT_EQ(json["type"], "FeatureCollection");
   ASSERT_EQ(json["features"].size(), 43u);  // three ellipses and forty points
   double west = 360.0, east = -360.0;

@@ -22,7 +22,8 @@ bool HasType(const Json& value, const std::string& type) {
 }
 
 /// The violations of the keywords that the schema uses, one line each with their place.
-void Check(const Json& value, const Json& schema, const std::string& path, std::vector<std::string>& problems) {
+void Check(const Json& value, const Json& schema, const std::string& path,
+           std::vector<std::string>& problems) {
   for (const auto& [keyword, rule] : schema.items()) {
     if (keyword == "const" && value != rule) problems.push_back(path + ": not " + rule.dump());
     if (keyword == "enum" && std::find(rule.begin(), rule.end(), value) == rule.end())
@@ -87,7 +88,8 @@ Json SummaryOf(std::uint64_t cases, std::uint64_t flown) {
 TEST(SummarySchema, HoldsForCompleteIncompleteAndEmptyCampaigns) {
   for (const auto& [cases, flown] : {std::pair{60, 60}, {60, 59}, {5, 0}}) {
     std::vector<std::string> problems;
-    Check(SummaryOf(static_cast<std::uint64_t>(cases), static_cast<std::uint64_t>(flown)), Schema(), "$", problems);
+    Check(SummaryOf(static_cast<std::uint64_t>(cases), static_cast<std::uint64_t>(flown)), Schema(), "$",
+          problems);
     EXPECT_THAT(problems, testing::IsEmpty());
   }
 }

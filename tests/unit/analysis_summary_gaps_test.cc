@@ -44,10 +44,12 @@ TEST(SummaryWithGaps, NamesCasesByIndexAndNotByRow) {
   EXPECT_EQ(summary.verdict, CampaignVerdict::kIncomplete);
   ASSERT_EQ(summary.limits.size(), 1u);
   EXPECT_EQ(summary.limits[0].largest_case, 5u);
-  EXPECT_THAT(Warnings(summary),
-              ElementsAre("Incomplete: 3 of 12 cases have a result.",
-                          "Structural limits of the vehicle were exceeded in 1 of 3 flights: q_max_pa above 100 Pa in 1, up "
-                          "to 120 Pa in case 5."));
+  EXPECT_THAT(
+      Warnings(summary),
+      ElementsAre(
+          "Incomplete: 3 of 12 cases have a result.",
+          "Structural limits of the vehicle were exceeded in 1 of 3 flights: q_max_pa above 100 Pa in 1, up "
+          "to 120 Pa in case 5."));
   ASSERT_EQ(summary.worst_cases[0].metric, kPeak);
   ASSERT_EQ(summary.worst_cases[0].cases.size(), 3u);
   EXPECT_EQ(summary.worst_cases[0].cases[0].case_index, 2u);
@@ -78,8 +80,10 @@ TEST(JointRisk, IsTheSumOfTheRisksAndOfHolmTheLargest) {
   EXPECT_EQ(summary.overall_risk, 0.2);
   EXPECT_DOUBLE_EQ(summary.any_risk, 0.35);
   EXPECT_EQ(JointRiskSentence(summary),
-            "A design that misses any requirement passes them all with a probability of at most 20 %. That any one of the 3 "
-            "verdicts to pass, taken by itself, is wrong: at most 35 % (the sum of their risks; joint: holm keeps it down).");
+            "A design that misses any requirement passes them all with a probability of at most 20 %. That "
+            "any one of the 3 "
+            "verdicts to pass, taken by itself, is wrong: at most 35 % (the sum of their risks; joint: holm "
+            "keeps it down).");
   campaign.verdicts.holm = true;
   summary = SummaryOf(campaign, results);
   EXPECT_EQ(summary.any_risk, 0.2);

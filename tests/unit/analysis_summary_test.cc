@@ -6,8 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/flight/engine_version.h"
 #include "core/analysis/stopping_rule.h"
+#include "core/flight/engine_version.h"
 #include "tests/unit/made_up_results.h"
 
 namespace dispersa::analysis_summary_test {
@@ -63,19 +63,22 @@ TEST(Judge, SaysWhyNothingIsDecided) {
   // 200 cases without a failure: 0.1^(1/200) = 0.98855.
   const RequirementSummary open =
       Judge(PeakBelow(0.5, 0.9973, 0.10), SamplingMethod::kMonteCarlo, Columns(200, 0), 0);
-  EXPECT_EQ(open.sentence,
-            "Not decided: 0 failures in 200 cases show a probability of 98.855 % to 100 %, either bound with 90 % "
-            "confidence; 99.73 % is required. At the failure rate seen here a new campaign of 852 cases passes "
-            "with a probability of 100 %.");
+  EXPECT_EQ(
+      open.sentence,
+      "Not decided: 0 failures in 200 cases show a probability of 98.855 % to 100 %, either bound with 90 % "
+      "confidence; 99.73 % is required. At the failure rate seen here a new campaign of 852 cases passes "
+      "with a probability of 100 %.");
   // 8 failures in 2000 cases are more than 0.27 %: no number of cases is likely to pass.
-  EXPECT_THAT(Judge(PeakBelow(0.5, 0.9973, 0.10), SamplingMethod::kMonteCarlo, Columns(2000, 8), 0).sentence,
-              testing::EndsWith("At the failure rate seen here a larger campaign is not likely to pass either."));
+  EXPECT_THAT(
+      Judge(PeakBelow(0.5, 0.9973, 0.10), SamplingMethod::kMonteCarlo, Columns(2000, 8), 0).sentence,
+      testing::EndsWith("At the failure rate seen here a larger campaign is not likely to pass either."));
 }
 
 TEST(Judge, BoundsTheMetricByTheOrderStatisticThatDecides) {
   // 2000 cases allow 2 failures: the third largest value is the bound.
   CaseColumns cases = Columns(2000, 0);
-  for (std::size_t i = 0; i < 2000; ++i) cases.metrics[MetricColumn(kPeak)][i] = 0.1 + 1e-4 * static_cast<double>(i);
+  for (std::size_t i = 0; i < 2000; ++i)
+    cases.metrics[MetricColumn(kPeak)][i] = 0.1 + 1e-4 * static_cast<double>(i);
   const Requirement requirement = PeakBelow(0.5, 0.9973, 0.10);
   const RequirementSummary summary = Judge(requirement, SamplingMethod::kMonteCarlo, cases, 0);
   EXPECT_DOUBLE_EQ(*summary.bound, 0.1 + 1e-4 * 1997);
@@ -94,7 +97,8 @@ TEST(Judge, BoundsTheMetricByTheOrderStatisticThatDecides) {
   const Requirement above = {
       .metric = kPeak, .below = std::nullopt, .above = 0.0, .probability = 0.9973, .consumer_risk = 0.1};
   CaseColumns ascending = Columns(852, 0);
-  for (std::size_t i = 0; i < 852; ++i) ascending.metrics[MetricColumn(kPeak)][i] = 1.0 + static_cast<double>(i);
+  for (std::size_t i = 0; i < 852; ++i)
+    ascending.metrics[MetricColumn(kPeak)][i] = 1.0 + static_cast<double>(i);
   EXPECT_EQ(Judge(above, SamplingMethod::kMonteCarlo, ascending, 0).bound, 1.0);
   Requirement within = PeakBelow(0.5, 0.9973, 0.10);
   within.below.reset();
@@ -106,7 +110,8 @@ TEST(Judge, BoundsTheMetricByTheOrderStatisticThatDecides) {
   EXPECT_EQ(LimitWords(inside, "km"), "between -10 and 900 km");
 }
 
-// 2000 cases allow 2 failures. Each case without a result may be one, so that the bound moves towards the worst value.
+// 2000 cases allow 2 failures. Each case without a result may be one, so that the bound moves towards the
+// worst value.
 TEST(Judge, AMissingCaseIsWorseThanTheBound) {
   const Requirement requirement = PeakBelow(0.5, 0.9973, 0.10);
   const std::vector<double> bounds = {1997.0, 1998.0, 1999.0};
@@ -139,8 +144,9 @@ TEST(Judge, SaysWhatAPlanDecidedWithoutWiderBounds) {
   requirement.plan = {PlanKind::kGroupSequential, 5, Spending::kOBrienFleming};
   const RequirementSummary met = Judge(requirement, SamplingMethod::kMonteCarlo, Columns(5000, 8), 0);
   // The first 8 cases failed: too few to fail early, few enough to pass at the end.
-  EXPECT_EQ(met.sentence, "Met by its plan (5 looks up to 5000 cases): 8 failures in 5000 cases at a risk of 10 %; "
-                          "99.73 % is required.");
+  EXPECT_EQ(met.sentence,
+            "Met by its plan (5 looks up to 5000 cases): 8 failures in 5000 cases at a risk of 10 %; "
+            "99.73 % is required.");
   EXPECT_EQ(met.looks[0].verdict, Verdict::kInconclusive);
   CaseColumns late = Columns(5000, 0);
   for (std::size_t i = 4000; i < 4008; ++i) late.metrics[MetricColumn(kPeak)][i] = 0.9;
@@ -148,9 +154,10 @@ TEST(Judge, SaysWhatAPlanDecidedWithoutWiderBounds) {
   EXPECT_EQ(early.verdict, "pass");
   EXPECT_EQ(early.accepts, 8);
   EXPECT_EQ(early.looks[1].verdict, Verdict::kPass);
-  EXPECT_EQ(early.sentence,
-            "Met by its plan (5 looks up to 5000 cases): 8 failures in 5000 cases at a risk of 10 %; 99.73 % is "
-            "required. Decided by the look at 2000 cases, with 0 failures.");
+  EXPECT_EQ(
+      early.sentence,
+      "Met by its plan (5 looks up to 5000 cases): 8 failures in 5000 cases at a risk of 10 %; 99.73 % is "
+      "required. Decided by the look at 2000 cases, with 0 failures.");
 }
 
 TEST(Judge, TakesRowsOfWhateverNumbers) {
@@ -184,9 +191,9 @@ TEST(Judge, MissingCasesCountAgainstEitherVerdict) {
 
 TEST(Judge, GivesAChosenDesignNoVerdict) {
   for (const std::size_t violated : {0, 1, 500}) {
-    for (const SamplingMethod method : {SamplingMethod::kCorners, SamplingMethod::kOneAtATime,
-                                        SamplingMethod::kGrid, SamplingMethod::kList, SamplingMethod::kSobol,
-                                        SamplingMethod::kLatinHypercube}) {
+    for (const SamplingMethod method :
+         {SamplingMethod::kCorners, SamplingMethod::kOneAtATime, SamplingMethod::kGrid, SamplingMethod::kList,
+          SamplingMethod::kSobol, SamplingMethod::kLatinHypercube}) {
       const RequirementSummary study = Judge(PeakBelow(0.5, 0.95, 0.10), method, Columns(1000, violated), 0);
       EXPECT_EQ(study.verdict, "study");
       EXPECT_FALSE(study.success_lower.has_value());
@@ -195,9 +202,10 @@ TEST(Judge, GivesAChosenDesignNoVerdict) {
       EXPECT_TRUE(study.looks.empty());
     }
   }
-  EXPECT_EQ(Judge(PeakBelow(0.5, 0.95, 0.10), SamplingMethod::kCorners, Columns(16, 1), 0).sentence,
-            "Design study: 15 of 16 points meet the limit. The points are chosen, not drawn independently: this "
-            "says nothing about the probability in flight.");
+  EXPECT_EQ(
+      Judge(PeakBelow(0.5, 0.95, 0.10), SamplingMethod::kCorners, Columns(16, 1), 0).sentence,
+      "Design study: 15 of 16 points meet the limit. The points are chosen, not drawn independently: this "
+      "says nothing about the probability in flight.");
 }
 
 TEST(Judge, ReplicatesOfADesignGiveBounds) {
@@ -388,9 +396,10 @@ TEST_F(Misuse, ExtendingUntilItPassesDoesNotPassAndShows) {
   EXPECT_THAT(requirement.looks, ElementsAre(Look{76, 1, true, Verdict::kInconclusive},
                                              Look{129, 1, false, Verdict::kInconclusive}));
   ASSERT_EQ(Warnings(summary_).size(), 1u);
-  EXPECT_THAT(Warnings(summary_)[0],
-              testing::StartsWith("Beyond the plan: pitch_error_peak_deg was planned for 76 cases, 129 are in the "
-                                  "campaign; its looks read one by one carry a risk of 14."));
+  EXPECT_THAT(
+      Warnings(summary_)[0],
+      testing::StartsWith("Beyond the plan: pitch_error_peak_deg was planned for 76 cases, 129 are in the "
+                          "campaign; its looks read one by one carry a risk of 14."));
   // Reading it again is no further look.
   const std::string before = SummaryJson(summary_);
   Fly(129, 1);
@@ -407,9 +416,10 @@ TEST_F(Misuse, ALimitThatWasChangedAfterTheFirstCaseShows) {
   Fly(40, 0);
   EXPECT_EQ(summary_.requirements[0].verdict, "pass");
   EXPECT_TRUE(summary_.requirements[0].post_hoc);
-  EXPECT_THAT(Warnings(summary_),
-              ElementsAre("Post hoc: pitch_error_peak_deg below 0.5 for 90 % of flights at 10 % risk is not what was "
-                          "required before the first case was flown."));
+  EXPECT_THAT(
+      Warnings(summary_),
+      ElementsAre("Post hoc: pitch_error_peak_deg below 0.5 for 90 % of flights at 10 % risk is not what was "
+                  "required before the first case was flown."));
   campaign_.requirements.clear();
   Fly(40, 0);
   EXPECT_EQ(Warnings(summary_).size(), 1u);  // dropped, which shows too

@@ -38,8 +38,9 @@ Campaign With(SamplingMethod method, std::vector<Dispersion> dispersions, std::u
 }
 
 TEST(CaseDesign, WithoutDispersionsEveryCaseIsNominal) {
-  for (const SamplingMethod method : {SamplingMethod::kMonteCarlo, SamplingMethod::kLatinHypercube,
-                                      SamplingMethod::kSobol, SamplingMethod::kCorners, SamplingMethod::kList})
+  for (const SamplingMethod method :
+       {SamplingMethod::kMonteCarlo, SamplingMethod::kLatinHypercube, SamplingMethod::kSobol,
+        SamplingMethod::kCorners, SamplingMethod::kList})
     EXPECT_EQ(InputValues(CaseDesign(With(method, {})).Draw(7)), InputValues(FlightInputs{}));
 }
 
@@ -76,10 +77,10 @@ TEST(CaseDesign, DrawingIsPure) {
 TEST(CaseDesign, FactorsMultiplyOthersAreSet) {
   Dispersion all = Of("thrust/all", Values({1.1}), "thrust_factor_stage1");
   all.inputs.push_back(FindInput("thrust_factor_stage2"));
-  const CaseDesign design(With(SamplingMethod::kMonteCarlo,
-                               {all, Of("thrust/stage1", Values({0.5}), "thrust_factor_stage1"),
-                                Of("wind", Values({30.0}), "wind_max_speed_m_s"),
-                                Of("wind again", Values({20.0}), "wind_max_speed_m_s")}));
+  const CaseDesign design(
+      With(SamplingMethod::kMonteCarlo, {all, Of("thrust/stage1", Values({0.5}), "thrust_factor_stage1"),
+                                         Of("wind", Values({30.0}), "wind_max_speed_m_s"),
+                                         Of("wind again", Values({20.0}), "wind_max_speed_m_s")}));
   const FlightInputs in = design.Draw(0);
   EXPECT_DOUBLE_EQ(in.thrust_factor[0], 1.1 * 0.5);
   EXPECT_DOUBLE_EQ(in.thrust_factor[1], 1.1);
@@ -102,10 +103,9 @@ TEST(CaseDesign, AbsoluteTakesTheMagnitude) {
 }
 
 TEST(CaseDesign, UniformTwoPointAndValuesKeepToTheirRange) {
-  const CaseDesign design(With(SamplingMethod::kMonteCarlo,
-                               {Of("a", Uniform(0.8, 1.2), "drag_factor"),
-                                Of("b", TwoPoint(1.0, 0.9, 1.1), "cg_factor"),
-                                Of("c", Values({0.5, 1.0, 2.0}), "cp_factor")}));
+  const CaseDesign design(With(SamplingMethod::kMonteCarlo, {Of("a", Uniform(0.8, 1.2), "drag_factor"),
+                                                             Of("b", TwoPoint(1.0, 0.9, 1.1), "cg_factor"),
+                                                             Of("c", Values({0.5, 1.0, 2.0}), "cp_factor")}));
   double low = 2.0, high = 0.0;
   std::set<double> two, three;
   for (std::uint64_t k = 0; k < 200; ++k) {
@@ -144,8 +144,8 @@ TEST(CaseDesign, WhatIsNoFactorStaysRandomAndRepeatsWithOtherDraws) {
 
 TEST(CaseDesign, OneAtATimeMovesOneFactorAndHoldsTheOthersAtNominal) {
   const Campaign campaign =
-      With(SamplingMethod::kOneAtATime, {Of("a", TwoPoint(1.0, 0.8, 1.2), "drag_factor"),
-                                         Of("b", TwoPoint(1.0, 0.9, 1.1), "cg_factor")});
+      With(SamplingMethod::kOneAtATime,
+           {Of("a", TwoPoint(1.0, 0.8, 1.2), "drag_factor"), Of("b", TwoPoint(1.0, 0.9, 1.1), "cg_factor")});
   EXPECT_EQ(DesignSize(campaign), 4u);
   const CaseDesign design(campaign);
   const std::vector<std::pair<double, double>> expected = {{0.8, 1.0}, {1.2, 1.0}, {1.0, 0.9}, {1.0, 1.1}};
@@ -158,7 +158,8 @@ TEST(CaseDesign, GridVariesTheFirstAxisSlowest) {
                                                          Of("b", Values({10.0, 20.0, 30.0}), "cg_factor")});
   EXPECT_EQ(DesignSize(campaign), 6u);
   const CaseDesign design(campaign);
-  const std::vector<std::pair<double, double>> expected = {{1, 10}, {1, 20}, {1, 30}, {2, 10}, {2, 20}, {2, 30}};
+  const std::vector<std::pair<double, double>> expected = {{1, 10}, {1, 20}, {1, 30},
+                                                           {2, 10}, {2, 20}, {2, 30}};
   for (std::uint64_t k = 0; k < 6; ++k)
     EXPECT_EQ(std::make_pair(design.Draw(k).drag_factor, design.Draw(k).cg_factor), expected[k]) << k;
 }
@@ -176,10 +177,10 @@ TEST(CaseDesign, ListTakesRowsTogether) {
 
 // Of n cases, one falls into each of n equal cells of every parameter.
 void ExpectStratified(SamplingMethod method, std::size_t cases) {
-  const CaseDesign design(With(method,
-                               {Of("a", Uniform(0.0, 1.0), "wind_max_speed_m_s"),
-                                Of("b", Uniform(0.0, 1.0), "wind_altitude_m")},
-                               cases));
+  const CaseDesign design(
+      With(method,
+           {Of("a", Uniform(0.0, 1.0), "wind_max_speed_m_s"), Of("b", Uniform(0.0, 1.0), "wind_altitude_m")},
+           cases));
   std::set<std::size_t> cells_a, cells_b;
   for (std::uint64_t k = 0; k < cases; ++k) {
     const FlightInputs in = design.Draw(k);
@@ -202,8 +203,8 @@ TEST(CaseDesign, SeedAndMethodChangeTheDraws) {
   EXPECT_NE(CaseDesign(campaign).Draw(3).wind_altitude_m, one);
 }
 
-/// The share of draws at most x against the distribution function, over 4000 cases: within 4 standard errors of
-/// at most sqrt(0.25 / 4000) = 0.0079.
+/// The share of draws at most x against the distribution function, over 4000 cases: within 4 standard errors
+/// of at most sqrt(0.25 / 4000) = 0.0079.
 void ExpectLaw(const ScalarDistribution& distribution, const std::vector<std::pair<double, double>>& law) {
   const CaseDesign design(With(SamplingMethod::kMonteCarlo, {Of("w", distribution, "wind_altitude_m")}));
   for (const auto& [x, probability] : law) {
@@ -216,8 +217,16 @@ void ExpectLaw(const ScalarDistribution& distribution, const std::vector<std::pa
 TEST(CaseDesign, DrawsFollowTheirLaws) {
   const auto phi = [](double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); };
   const double from = phi(-1.0), to = phi(0.5);
-  ExpectLaw({.kind = Distribution::kTruncatedNormal, .nominal = 3.0, .sigma = 2.0, .low = 1.0, .high = 4.0, .values = {}},
-            {{0.999, 0.0}, {2.0, (phi(-0.5) - from) / (to - from)}, {3.5, (phi(0.25) - from) / (to - from)}, {4.0, 1.0}});
+  ExpectLaw({.kind = Distribution::kTruncatedNormal,
+             .nominal = 3.0,
+             .sigma = 2.0,
+             .low = 1.0,
+             .high = 4.0,
+             .values = {}},
+            {{0.999, 0.0},
+             {2.0, (phi(-0.5) - from) / (to - from)},
+             {3.5, (phi(0.25) - from) / (to - from)},
+             {4.0, 1.0}});
   ExpectLaw({.kind = Distribution::kTriangular, .nominal = 1.0, .low = 0.0, .high = 4.0, .values = {}},
             {{0.5, 0.0625}, {1.0, 0.25}, {2.0, 1.0 - 4.0 / 12.0}});
   ExpectLaw({.kind = Distribution::kLogNormal, .nominal = 2.0, .sigma = 0.5, .values = {}},
@@ -226,7 +235,8 @@ TEST(CaseDesign, DrawsFollowTheirLaws) {
             {{3.0, 1.0 - std::exp(-0.5)}, {6.0, 1.0 - std::exp(-2.0)}});
   ExpectLaw({.kind = Distribution::kValues, .values = {1.0, 2.0, 3.0}, .weights = {1.0, 5.0, 2.0}},
             {{1.0, 0.125}, {2.0, 0.75}, {3.0, 1.0}});
-  ExpectLaw({.kind = Distribution::kEmpirical, .values = {0.0, 1.0, 11.0}}, {{0.5, 0.25}, {1.0, 0.5}, {6.0, 0.75}});
+  ExpectLaw({.kind = Distribution::kEmpirical, .values = {0.0, 1.0, 11.0}},
+            {{0.5, 0.25}, {1.0, 0.5}, {6.0, 0.75}});
 }
 
 TEST(CaseDesign, CorrelatedNormalsAreAndOthersStay) {
@@ -243,7 +253,8 @@ TEST(CaseDesign, CorrelatedNormalsAreAndOthersStay) {
     ab += in.wind_altitude_m * in.wind_width_m / kCases;
     bb += in.wind_width_m * in.wind_width_m / kCases;
   }
-  // Standard errors: of the covariance 2 sqrt((1 + 0.36) / 4000) = 0.037, of the variance 4 sqrt(2 / 4000) = 0.09.
+  // Standard errors: of the covariance 2 sqrt((1 + 0.36) / 4000) = 0.037, of the variance 4 sqrt(2 / 4000) =
+  // 0.09.
   EXPECT_NEAR(ab, 1.2, 0.15);
   EXPECT_NEAR(bb, 4.0, 0.36);
 }

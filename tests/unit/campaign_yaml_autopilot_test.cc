@@ -6,8 +6,8 @@
 #include <map>
 #include <thread>
 
-#include "core/control/autopilot_fields.h"
 #include "core/campaign_yaml/load.h"
+#include "core/control/autopilot_fields.h"
 #include "core/control/law_here.h"
 
 namespace dispersa::campaign_yaml_autopilot_test {
@@ -180,7 +180,9 @@ struct FieldNames {
   void Number(const char* key, const Range&, double, const char*) { names.push_back(key); }
   void NumberGuard(const char* key, const Range&, double, const char*) { names.push_back(key); }
   void Flag(const char* key, bool, const char*) { names.push_back(key); }
-  void EachStage(const char* key, const Range&, const std::vector<double>&, const char*) { names.push_back(key); }
+  void EachStage(const char* key, const Range&, const std::vector<double>&, const char*) {
+    names.push_back(key);
+  }
   void Stage(const char* key, int, const char*) { names.push_back(key); }
   void Sections(const char* key, const std::vector<FilterSection>&, const char*) { names.push_back(key); }
   void OfOtherLaws(const char*, const char*) {}
@@ -241,7 +243,9 @@ TEST(AutopilotKeys, AreDocumentedAllAndByTheirBlocks) {
   const FeedForward feed_forward;
   expect("feed_forward", [&](auto& fields) { VisitFeedForward(fields, feed_forward); });
   const AxisConfig axis;
-  EachBlock(axis, [&](const std::string& block, bool LawInfo::*, auto visit, const char*) { expect(block, visit); });
+  EachBlock(axis, [&](const std::string& block, bool LawInfo::*, auto visit, const char*) {
+    expect(block, visit);
+  });
 }
 
 }  // namespace

@@ -115,9 +115,11 @@ constexpr BadInput kBadInputs[] = {
      "none\n"},
     {"NoStiffness", "outer_diameter_m: 1, thickness_mm: 4, modulus_gpa: 200", "z_to_y_stiffness: 1",
      "flexible.yaml:10:11: structure_beam.stages[0].sections[0]: missing key "
-     "'bending_stiffness_n_m2' or 'outer_diameter_m', allowed: bending_stiffness_n_m2, or a tube: outer_diameter_m, thickness_m and modulus_gpa\n"},
+     "'bending_stiffness_n_m2' or 'outer_diameter_m', allowed: bending_stiffness_n_m2, or a tube: "
+     "outer_diameter_m, thickness_m and modulus_gpa\n"},
     {"TwoStiffnesses", "modulus_gpa: 200", "modulus_gpa: 200, bending_stiffness_n_m2: 1e8",
-     "flexible.yaml:10:144: structure_beam.stages[0].sections[0].bending_stiffness_n_m2: both a bending stiffness and a tube "
+     "flexible.yaml:10:144: structure_beam.stages[0].sections[0].bending_stiffness_n_m2: both a bending "
+     "stiffness and a tube "
      "are given, allowed: bending_stiffness_n_m2, or a tube: outer_diameter_m, thickness_m and "
      "modulus_gpa\n"},
     {"HalfATube", "thickness_mm: 4, ", "",
@@ -225,12 +227,15 @@ constexpr BadInput kBadModes[] = {
     {"NoSuchStage", "2,500,z,1,44,220,0,1,-1", "3,500,z,1,44,220,0,1,-1",
      "modes.csv:10:1: stage[8]: 3 is out of range, allowed: a number from 1 to 2\n"},
     {"StationsFall", "1,0,y,1,15,300,5,0.3,0", "1,0,y,1,15,300,11,0.3,0",
-     "modes.csv:7:16: station_m[5]: the stations of a mode do not increase, allowed: rows of increasing station_m\n"},
+     "modes.csv:7:16: station_m[5]: the stations of a mode do not increase, allowed: rows of increasing "
+     "station_m\n"},
     {"OtherStations", "1,0,y,1,15,300,5,0.3,0", "1,0,y,1,15,300,6,0.3,0",
-     "modes.csv:5:16: station_m[3]: the mode has other stations than the first of its stage and plane, allowed: the "
+     "modes.csv:5:16: station_m[3]: the mode has other stations than the first of its stage and plane, "
+     "allowed: the "
      "same stations for all modes of a stage and plane\n"},
     {"TwoFrequencies", "1,0,y,1,15,300,5,0.3,0", "1,0,y,1,16,300,5,0.3,0",
-     "modes.csv:6:9: frequency_hz[4]: frequency or generalized mass change within a mode, allowed: the same in all "
+     "modes.csv:6:9: frequency_hz[4]: frequency or generalized mass change within a mode, allowed: the same "
+     "in all "
      "rows of a mode\n"},
     {"StageWithoutModes",
      "2,500,y,1,40,200,0,1,-1\n2,500,y,1,40,200,4,1,1\n2,500,z,1,44,220,0,1,-1\n2,500,z,1,44,220,4,0.9,1\n",

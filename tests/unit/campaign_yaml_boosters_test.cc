@@ -12,8 +12,10 @@ namespace {
 
 constexpr char kAfter[] = "\nreaction_control:";
 constexpr char kBoosters[] =
-    "\nboosters: {count: 2, dry_mass_kg: 20, propellant_mass_kg: 60, radius_m: 0.7, diameter_m: 0.3, top_station_m: 7, "
-    "bottom_station_m: 9.8, nozzle_station_m: 9.7, separation_delay_s: 0.5, motor: {thrust_kn: 5, burning_time_s: 30}, "
+    "\nboosters: {count: 2, dry_mass_kg: 20, propellant_mass_kg: 60, radius_m: 0.7, diameter_m: 0.3, "
+    "top_station_m: 7, "
+    "bottom_station_m: 9.8, nozzle_station_m: 9.7, separation_delay_s: 0.5, motor: {thrust_kn: 5, "
+    "burning_time_s: 30}, "
     "grain: {top_station_m: 8, bottom_station_m: 8.9, outer_diameter_m: 0.28, inner_diameter_m: 0.1}}"
     "\nreaction_control:";
 
@@ -35,16 +37,19 @@ TEST(BoostersFile, AreGoneWhenTheFirstStageBurnsAgain) {
   files.Write("electron.yaml", ReadWholeFile(DISPERSA_CAMPAIGNS "/gallery/electron/vehicle.yaml"));
   constexpr double kBoosters_kg = 2.0 * (100.0 + 800.0), kElectron_kg = 12744.0, kBurn_s = 100.0;
   files.Edit("electron.yaml", "liftoff_mass_kg: 12744 ", "liftoff_mass_kg: 14544 ");
-  files.Edit("electron.yaml",
-             "        throttle: {time_s: [0, 28, 36, 85, 95, 156], level_percent: [100, 100, 70, 70, 86, 70]}\n",
-             "        cut_off: {at: time, after_s: 100}\n");
+  files.Edit(
+      "electron.yaml",
+      "        throttle: {time_s: [0, 28, 36, 85, 95, 156], level_percent: [100, 100, 70, 70, 86, 70]}\n",
+      "        cut_off: {at: time, after_s: 100}\n");
   files.Edit("electron.yaml", "  - name: stage2\n",
-             "  - {restarts: true, name: again, ignition: {trigger: burnout_detection, delay_s: 5}}\n  - name: stage2\n");
-  files.Edit("electron.yaml", "\nreaction_control:",
-             "\nboosters: {count: 2, dry_mass_kg: 100, propellant_mass_kg: 800, radius_m: 0.9, diameter_m: 0.6, "
-             "top_station_m: 11, bottom_station_m: 16, nozzle_station_m: 15.9, motor: {thrust_kn: 60, "
-             "burning_time_s: 35}, grain: {top_station_m: 12, bottom_station_m: 14.5, outer_diameter_m: 0.58, "
-             "inner_diameter_m: 0.1}}\nreaction_control:");
+             "  - {restarts: true, name: again, ignition: {trigger: burnout_detection, delay_s: 5}}\n  - "
+             "name: stage2\n");
+  files.Edit(
+      "electron.yaml", "\nreaction_control:",
+      "\nboosters: {count: 2, dry_mass_kg: 100, propellant_mass_kg: 800, radius_m: 0.9, diameter_m: 0.6, "
+      "top_station_m: 11, bottom_station_m: 16, nozzle_station_m: 15.9, motor: {thrust_kn: 60, "
+      "burning_time_s: 35}, grain: {top_station_m: 12, bottom_station_m: 14.5, outer_diameter_m: 0.58, "
+      "inner_diameter_m: 0.1}}\nreaction_control:");
   const Vehicle vehicle = LoadVehicle(files.Path("electron.yaml"));
   ASSERT_EQ(vehicle.stages.size(), 3u);
   const double full_kg = 9250.0, burnt_kg = 224e3 / (311.0 * kStandardGravity) * kBurn_s;

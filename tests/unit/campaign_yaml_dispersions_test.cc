@@ -57,16 +57,18 @@ TEST(CampaignYamlDispersions, MisalignmentHasAMagnitudeAndAClockAngleAStage) {
 // 0.2 %/K and 15 K: the rate's logarithm has 3 %.
 TEST(CampaignYamlDispersions, PropellantTemperatureIsABurnRate) {
   const auto list = Decode(
-      "propellant_temperature: {distribution: normal, three_sigma_k: 45, mean_k: -5, sensitivity_percent_per_k: 0.2, "
+      "propellant_temperature: {distribution: normal, three_sigma_k: 45, mean_k: -5, "
+      "sensitivity_percent_per_k: 0.2, "
       "per: vehicle}");
   EXPECT_THAT(Names(list), ElementsAre("propellant_temperature"));
-  EXPECT_THAT(Inputs(list[0]), ElementsAre("thrust_factor_stage1", "mass_flow_factor_stage1", "thrust_factor_stage2",
-                                           "mass_flow_factor_stage2"));
+  EXPECT_THAT(Inputs(list[0]), ElementsAre("thrust_factor_stage1", "mass_flow_factor_stage1",
+                                           "thrust_factor_stage2", "mass_flow_factor_stage2"));
   EXPECT_EQ(list[0].distribution.kind, Distribution::kLogNormal);
   EXPECT_DOUBLE_EQ(list[0].distribution.sigma, 0.03);
   EXPECT_DOUBLE_EQ(list[0].distribution.nominal, std::exp(-0.01));
   const auto corners = Decode(
-      "propellant_temperature: {distribution: two_point, plus_minus_k: 30, sensitivity_percent_per_k: 0.2, per: stage}");
+      "propellant_temperature: {distribution: two_point, plus_minus_k: 30, sensitivity_percent_per_k: 0.2, "
+      "per: stage}");
   ASSERT_EQ(corners.size(), 2u);
   EXPECT_DOUBLE_EQ(corners[1].distribution.low, std::exp(-0.06));
   EXPECT_DOUBLE_EQ(corners[1].distribution.high, std::exp(0.06));
@@ -204,15 +206,13 @@ TEST(CampaignYamlDispersions, RatesSensorsActuatorsAndLoop) {
               ElementsAre("gyro_bias_roll_deg_s"));
   EXPECT_THAT(Decode("gyro_noise: {distribution: constant, value_deg_s: 0.1}")[0].distribution.values,
               ElementsAre(0.1 * kRadPerDeg));
-  const auto position =
-      Decode("navigation_position_error: {distribution: normal, three_sigma_m: 30}");
+  const auto position = Decode("navigation_position_error: {distribution: normal, three_sigma_m: 30}");
   EXPECT_THAT(Names(position),
               ElementsAre("navigation_position_error/downrange", "navigation_position_error/right",
                           "navigation_position_error/down"));
   EXPECT_THAT(Inputs(position[2]), ElementsAre("navigation_position_error_down_m"));
   EXPECT_EQ(position[0].distribution.sigma, 10.0);
-  const auto velocity =
-      Decode("navigation_velocity_error: {distribution: normal, sigma_m_s: 0.1}");
+  const auto velocity = Decode("navigation_velocity_error: {distribution: normal, sigma_m_s: 0.1}");
   EXPECT_THAT(Inputs(velocity[1]), ElementsAre("navigation_velocity_error_right_m_s"));
   EXPECT_THAT(Inputs(Decode("accelerometer_scale: {distribution: normal, sigma_percent: 0.1}")[0]),
               ElementsAre("accelerometer_scale_factor"));
@@ -303,10 +303,11 @@ TEST(CampaignYamlDispersions, CorrelationsAreRowsOfTheCholeskyFactor) {
 
 TEST(CampaignYaml, RequirementsNameTheirPlan) {
   const InputFiles files;
-  files.Edit("campaign.yaml", "requirements:",
-             "verdicts: {looks: 4, spending: pocock, joint: holm, stop: when_decided, max_cases: 900}\n"
-             "requirements:\n"
-             "  - {metric: apogee_km, within: [480, 520], probability: 0.9, consumer_risk: 0.1, anytime: true}");
+  files.Edit(
+      "campaign.yaml", "requirements:",
+      "verdicts: {looks: 4, spending: pocock, joint: holm, stop: when_decided, max_cases: 900}\n"
+      "requirements:\n"
+      "  - {metric: apogee_km, within: [480, 520], probability: 0.9, consumer_risk: 0.1, anytime: true}");
   const Campaign campaign = LoadCampaign(files.Path("campaign.yaml"));
   EXPECT_TRUE(campaign.verdicts.holm);
   EXPECT_TRUE(campaign.verdicts.stop_when_decided);

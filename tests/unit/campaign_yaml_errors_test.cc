@@ -49,7 +49,8 @@ constexpr BadInput kBadInputs[] = {
      "    jettisoned:\n      - {name: skirt, mass_kg: 10, top_station_m: 1, bottom_station_m: 2, "
      "outer_diameter_m: 1, at: {time_s: 5, altitude_km: 50}}\n    gimbal:",
      "vehicle.yaml",
-     "vehicle.yaml:17:125: stages[0].jettisoned[0].at.altitude_km: 'time_s' and 'altitude_km' are both given, allowed: "
+     "vehicle.yaml:17:125: stages[0].jettisoned[0].at.altitude_km: 'time_s' and 'altitude_km' are both "
+     "given, allowed: "
      "one of time_s, altitude_m, heat_flux_w_m2\n"},
     {"JettisonOutsideTheStage", "vehicle.yaml", "    gimbal:",
      "    jettisoned:\n      - {name: skirt, mass_kg: 10, top_station_m: 1, bottom_station_m: 200, "
@@ -161,7 +162,8 @@ constexpr BadInput kBadInputs[] = {
      "ignites on a timer, allowed: no coast of that stage\n"},
     {"AzimuthOfMoreThanATurn", "reference.yaml", "launch_azimuth_deg: [90, 170]",
      "launch_azimuth_deg: [10, 375]", "reference.yaml",
-     "reference.yaml:11:25: problem.bounds.launch_azimuth_deg: is more than a turn, allowed: [low, high], low "
+     "reference.yaml:11:25: problem.bounds.launch_azimuth_deg: is more than a turn, allowed: [low, high], "
+     "low "
      "from 0 to "
      "below 360; [350, 10] goes through north\n"},
     {"MissingKey", "vehicle.yaml", "radius_m: 0.3, limit_deg: 6, rate_limit_deg_s: 30, bandwidth_rad_s: 40",
@@ -243,15 +245,18 @@ constexpr BadInput kBadInputs[] = {
      "mean 'three_sigma_percent'?), allowed: three_sigma_percent\n"},
     {"TwoSigmas", "campaign.yaml", "three_sigma_percent: 6.7", "three_sigma_percent: 6.7, sigma_percent: 2",
      "campaign.yaml",
-     "campaign.yaml:10:85: dispersions.drag_coefficient.sigma_percent: 'three_sigma_percent' and 'sigma_percent' are "
+     "campaign.yaml:10:85: dispersions.drag_coefficient.sigma_percent: 'three_sigma_percent' and "
+     "'sigma_percent' are "
      "both given, allowed: one of three_sigma_percent, sigma_percent\n"},
     {"TwoRanges", "campaign.yaml", "distribution: normal, three_sigma_percent: 6.7",
      "distribution: uniform, bound_percent: 5, low_percent: -5, high_percent: 5", "campaign.yaml",
-     "campaign.yaml:10:60: dispersions.drag_coefficient.bound_percent: the distribution is given twice, allowed: "
+     "campaign.yaml:10:60: dispersions.drag_coefficient.bound_percent: the distribution is given twice, "
+     "allowed: "
      "bound_percent, or both low_percent or low_factor and high_percent or high_factor\n"},
     {"MedianOfNothing", "campaign.yaml", "distribution: normal, three_sigma_percent: 6.7",
      "distribution: lognormal, median_percent: -100, sigma_log: 0.1", "campaign.yaml",
-     "campaign.yaml:10:63: dispersions.drag_coefficient.median_percent: -100 is out of range, allowed: a number above "
+     "campaign.yaml:10:63: dispersions.drag_coefficient.median_percent: -100 is out of range, allowed: a "
+     "number above "
      "-100\n"},
     {"FactorCanBeNegative", "campaign.yaml", "three_sigma_percent: 6.7", "three_sigma_percent: 67",
      "campaign.yaml",
@@ -349,7 +354,8 @@ constexpr BadInput kBadInputs[] = {
      "weight a value\n"},
     {"FactorAsMagnitude", "campaign.yaml", "distribution: normal, three_sigma_percent: 6.7",
      "distribution: rayleigh, sigma_percent: 2", "campaign.yaml",
-     "campaign.yaml:10:36: dispersions.drag_coefficient.distribution: 'rayleigh' is not a choice, allowed: one of "
+     "campaign.yaml:10:36: dispersions.drag_coefficient.distribution: 'rayleigh' is not a choice, allowed: "
+     "one of "
      "normal, uniform, two_point, values, constant, truncated_normal, triangular, lognormal, empirical\n"},
     {"EmptyList", "campaign.yaml",
      "requirements:\n  - {metric: pitch_error_peak_deg, below: 0.5, probability: 0.9973, "
@@ -545,10 +551,11 @@ TEST(GuidanceOfAVehicle, NeedsALastStageOnATimer) {
   files.Edit("campaign.yaml", "name: trial", "name: trial\nguidance: {mode: closed_loop}");
   EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors), "");
   files.Edit("vehicle.yaml", "ignition: {trigger: timer}", "ignition: {trigger: burnout_detection}");
-  EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
-            "campaign.yaml:3:18: guidance.mode: the vehicle 'two-stage' has no last stage whose ignition guidance "
-            "could move, allowed: open_loop, or a vehicle whose last of two stages or more has ignition: "
-            "{trigger: timer}\n");
+  EXPECT_EQ(
+      files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
+      "campaign.yaml:3:18: guidance.mode: the vehicle 'two-stage' has no last stage whose ignition guidance "
+      "could move, allowed: open_loop, or a vehicle whose last of two stages or more has ignition: "
+      "{trigger: timer}\n");
 }
 
 }  // namespace

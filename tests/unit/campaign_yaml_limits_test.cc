@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "core/input/input_error.h"
 #include "core/campaign_yaml/load.h"
 #include "core/campaign_yaml/parse_yaml.h"
+#include "core/input/input_error.h"
 #include "tests/fuzz.h"
 
 namespace dispersa::campaign_yaml_limits_test {

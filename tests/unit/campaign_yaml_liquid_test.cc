@@ -8,17 +8,21 @@ namespace dispersa::campaign_yaml_liquid_test {
 namespace {
 
 constexpr char kMotor[] =
-    "motor: {thrust_kn: 60, burning_time_s: 60, ignition_rise_s: 0.2, tail_off_s: 0.4, published_mass_flow_kg_s: "
+    "motor: {thrust_kn: 60, burning_time_s: 60, ignition_rise_s: 0.2, tail_off_s: 0.4, "
+    "published_mass_flow_kg_s: "
     "25}";
-constexpr char kGrain[] = "grain: {top_station_m: 5, bottom_station_m: 9, outer_diameter_m: 0.9, inner_diameter_m: 0.3}";
+constexpr char kGrain[] =
+    "grain: {top_station_m: 5, bottom_station_m: 9, outer_diameter_m: 0.9, inner_diameter_m: 0.3}";
 // 26.4 kg/s.
 constexpr char kLiquid[] = "motor: {liquid: {thrust_kn: 75, specific_impulse_s: 290, residual_mass_kg: 15}}";
 constexpr char kTanks[] =
-    "tanks: [{name: oxygen, propellant_mass_kg: 1050, density_kg_m3: 1141, top_station_m: 5, bottom_station_m: 6.6, "
+    "tanks: [{name: oxygen, propellant_mass_kg: 1050, density_kg_m3: 1141, top_station_m: 5, "
+    "bottom_station_m: 6.6, "
     "diameter_m: 0.9}, {name: kerosene, propellant_mass_kg: 450, density_kg_m3: 810, top_station_m: 7, "
     "bottom_station_m: 7.95, diameter_m: 0.9}]";
 
-void MakeLiquid(const InputFiles& files, const std::string& motor = kLiquid, const std::string& tanks = kTanks) {
+void MakeLiquid(const InputFiles& files, const std::string& motor = kLiquid,
+                const std::string& tanks = kTanks) {
   files.Edit("vehicle.yaml", kMotor, motor);
   files.Edit("vehicle.yaml", kGrain, tanks);
 }
@@ -47,7 +51,8 @@ TEST(LiquidFile, IsReadAndIsUsual) {
 TEST(LiquidFile, ThrottlesAndIsCutOff) {
   const InputFiles files;
   MakeLiquid(files,
-             "motor: {liquid: {thrust_kn: 75, specific_impulse_s: 290, throttle: {time_s: [0, 40, 41], level_percent: "
+             "motor: {liquid: {thrust_kn: 75, specific_impulse_s: 290, throttle: {time_s: [0, 40, 41], "
+             "level_percent: "
              "[100, 100, 65]}, cut_off: {at: time, after_s: 50}}}");
   const Motor motor = StageOf(files).motor;
   EXPECT_EQ(motor.throttle.time_s, (std::vector<double>{0.0, 40.0, 41.0}));
@@ -163,18 +168,24 @@ TEST(LiquidFile, UnusualLiquidsAreWarnedAbout) {
              Tanks("density_kg_m3: 810", "density_kg_m3: 2810"));
   std::vector<InputProblem> warnings;
   LoadVehicle(files.Path("vehicle.yaml"), &warnings);
-  EXPECT_EQ(files.Texts(warnings),
-            "vehicle.yaml:11:57: stages[0].motor.liquid.specific_impulse_s: is 520 s, usual: 200 to 470 s (in vacuum 220 "
-            "to 240 s of hydrazine alone, 280 to 330 s of storable pairs, 300 to 360 s of oxygen with kerosene, to 465 s "
-            "with hydrogen; combustion never gave more than 550 s, reactors 900 s)\n"
-            "vehicle.yaml:11:80: stages[0].motor.liquid.residual_mass_kg: is, as part of the propellant, 0.1, usual: up "
-            "to 0.05 (0.5 to 3 % of a liquid stage's propellant stays in tanks and lines)\n"
-            "vehicle.yaml:12:191: stages[0].tanks[1].density_kg_m3: is 2810 kg/m3, usual: 60 to 1700 kg/m3 (liquid "
-            "hydrogen 71, kerosene 810, oxygen 1141, nitrogen tetroxide 1443 kg/m3)\n"
-            "vehicle.yaml:12:171: stages[0].tanks[1].propellant_mass_kg: fills of the tank 0.265, usual: 0.5 to 0.99 (a "
-            "few per cent of a tank are left to the gas that presses the liquid out)\n"
-            "vehicle.yaml:25:12: stages[1].grain: implies a propellant density of 589.5 kg/m3, usual: 1500 to 1950 kg/m3 "
-            "(solid propellants: Sutton and Biblarz, table 12-1)\n");
+  EXPECT_EQ(
+      files.Texts(warnings),
+      "vehicle.yaml:11:57: stages[0].motor.liquid.specific_impulse_s: is 520 s, usual: 200 to 470 s (in "
+      "vacuum 220 "
+      "to 240 s of hydrazine alone, 280 to 330 s of storable pairs, 300 to 360 s of oxygen with kerosene, to "
+      "465 s "
+      "with hydrogen; combustion never gave more than 550 s, reactors 900 s)\n"
+      "vehicle.yaml:11:80: stages[0].motor.liquid.residual_mass_kg: is, as part of the propellant, 0.1, "
+      "usual: up "
+      "to 0.05 (0.5 to 3 % of a liquid stage's propellant stays in tanks and lines)\n"
+      "vehicle.yaml:12:191: stages[0].tanks[1].density_kg_m3: is 2810 kg/m3, usual: 60 to 1700 kg/m3 (liquid "
+      "hydrogen 71, kerosene 810, oxygen 1141, nitrogen tetroxide 1443 kg/m3)\n"
+      "vehicle.yaml:12:171: stages[0].tanks[1].propellant_mass_kg: fills of the tank 0.265, usual: 0.5 to "
+      "0.99 (a "
+      "few per cent of a tank are left to the gas that presses the liquid out)\n"
+      "vehicle.yaml:25:12: stages[1].grain: implies a propellant density of 589.5 kg/m3, usual: 1500 to 1950 "
+      "kg/m3 "
+      "(solid propellants: Sutton and Biblarz, table 12-1)\n");
 }
 
 // Above the last stage's tanks stand payload and fairing, which are no part of what the tanks are measured

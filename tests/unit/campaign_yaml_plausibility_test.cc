@@ -76,9 +76,11 @@ TEST(CampaignYamlPlausibility, WhatCannotBeIsAWarningOfAMadeUpVehicle) {
   EXPECT_TRUE(check.errors.empty());
   ASSERT_TRUE(check.vehicle);
   EXPECT_TRUE(check.vehicle->made_up);
-  EXPECT_THAT(files.Texts(check.warnings),
-              HasSubstr("vehicle.yaml:9:25: stages[0].propellant_mass_kg: implies with thrust and burning time a specific "
-                        "impulse of 24473 s, usual: 180 to 470 s (200 to 410 s of solid and liquid rockets"));
+  EXPECT_THAT(
+      files.Texts(check.warnings),
+      HasSubstr(
+          "vehicle.yaml:9:25: stages[0].propellant_mass_kg: implies with thrust and burning time a specific "
+          "impulse of 24473 s, usual: 180 to 470 s (200 to 410 s of solid and liquid rockets"));
 }
 
 TEST(CampaignYamlPlausibility, LimitsAreRequiredUnlessTheCampaignSaysHow) {

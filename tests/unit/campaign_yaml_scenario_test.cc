@@ -119,10 +119,12 @@ constexpr BadInput kBadScenarios[] = {
      "scenario.yaml:38:31: stages[0].motor.nozzle_station_m: is not aft of the centre of gravity, which "
      "reaches station 5.000000 m, allowed: a station aft of the centre of gravity\n"},
     {"TwoFlows", "scenario.yaml", "flow_kg_s: 8", "flow_kg_s: 8, burning_time_s: 30",
-     "scenario.yaml:50:79: stages[1].motor.burning_time_s: 'flow_kg_s' and 'burning_time_s' are both given, allowed: one of "
+     "scenario.yaml:50:79: stages[1].motor.burning_time_s: 'flow_kg_s' and 'burning_time_s' are both given, "
+     "allowed: one of "
      "flow_kg_s, burning_time_s\n"},
     {"NoFlow", "scenario.yaml", "flow_kg_s: 8, ", "",
-     "scenario.yaml:50:12: stages[1].motor: missing key 'flow_kg_s' or 'burning_time_s', allowed: one of them\n"},
+     "scenario.yaml:50:12: stages[1].motor: missing key 'flow_kg_s' or 'burning_time_s', allowed: one of "
+     "them\n"},
     {"IgnitionBeforeSeparation", "scenario.yaml", "ignition_time_s: 25", "ignition_time_s: 21",
      "scenario.yaml:50:30: stages[1].motor.ignition_time_s: is before the stage flies on its own, allowed: "
      "not below 22.000000\n"},
@@ -134,7 +136,8 @@ constexpr BadInput kBadScenarios[] = {
      "scenario.yaml:33:36: stages[0].aerodynamics.xcp_station_m.mach[2]: is not above the one before, "
      "allowed: values strictly increasing\n"},
     {"GridHasHole", "scenario_cn.csv", "3,10,0.5", "3,20,0.5",
-     "scenario_cn.csv:5:6: cn[3]: the row does not continue the grid, allowed: a full grid: rows of increasing "
+     "scenario_cn.csv:5:6: cn[3]: the row does not continue the grid, allowed: a full grid: rows of "
+     "increasing "
      "mach, each mach with the same increasing incidences\n"},
     {"WindNotMonotone", "scenario_wind.csv", "10000,3,20", "0,3,20",
      "scenario_wind.csv:3:1: altitude_m[1]: is not above the one before, allowed: values strictly "

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "core/input/input_error.h"
 #include "core/campaign_yaml/base64.h"
 #include "core/campaign_yaml/parse_csv.h"
 #include "core/campaign_yaml/parse_rasp.h"
 #include "core/campaign_yaml/text_problems.h"
+#include "core/input/input_error.h"
 
 namespace dispersa::campaign_yaml_text_test {
 namespace {

@@ -139,8 +139,9 @@ INSTANTIATE_TEST_SUITE_P(
                  "vehicle.yaml:11:27: stages[0].motor.thrust_curve: missing key 'reference', allowed: one of "
                  "vacuum, "
                  "sea_level\n"},
-        BadCurve{"TimesThatTurnBack", kCsvMotor, "curve.csv", "time_s,thrust_n\n0,100\n5,90\n4,80\n6,0\n",
-                 "curve.csv:4:1: time_s[2]: '4' is not later than '5' before it, allowed: times that increase\n"},
+        BadCurve{
+            "TimesThatTurnBack", kCsvMotor, "curve.csv", "time_s,thrust_n\n0,100\n5,90\n4,80\n6,0\n",
+            "curve.csv:4:1: time_s[2]: '4' is not later than '5' before it, allowed: times that increase\n"},
         BadCurve{"StartsLate", kCsvMotor, "curve.csv", "time_s,thrust_n\n1,100\n5,90\n",
                  "curve.csv:2:1: time_s[0]: '1' is not the time of ignition, allowed: 0 as the first time\n"},
         BadCurve{"PushesBackwards", kCsvMotor, "curve.csv", "time_s,thrust_n\n0,100\n5,-90\n",
@@ -158,15 +159,19 @@ INSTANTIATE_TEST_SUITE_P(
                  "{thrust_curve: {reference: vacuum, table: {time_s: [0, 20, 30], thrust_kn: [80, 60, 50], "
                  "mass_flow_kg_s: [50, 50]}}}",
                  "", "",
-                 "vehicle.yaml:11:54: stages[0].motor.thrust_curve.table: there are 3 times and 2 mass flows, allowed: "
+                 "vehicle.yaml:11:54: stages[0].motor.thrust_curve.table: there are 3 times and 2 mass "
+                 "flows, allowed: "
                  "one mass flow for each time, or none at all\n"},
-        BadCurve{"NoFlow", kCsvMotor, "curve.csv", "time_s,thrust_n,mass_flow_kg_s\n0,9,0\n5,9,0\n",
-                 "curve.csv:1:17: mass_flow_kg_s: the mass flow is 0 at all times, allowed: a mass flow above 0 "
-                 "somewhere\n"},
-        BadCurve{"FlowOfAnotherPropellant", kCsvMotor, "curve.csv",
-                 "time_s,thrust_n,mass_flow_kg_s\n0,60000,25\n66,60000,25\n",
-                 "curve.csv:1:17: stages[0].motor.thrust_curve.table.mass_flow_kg_s: flows 1650.000000 kg in all, but "
-                 "propellant_mass_kg is 1500.000000, allowed: flows that sum up to the propellant within 1 %\n"},
+        BadCurve{
+            "NoFlow", kCsvMotor, "curve.csv", "time_s,thrust_n,mass_flow_kg_s\n0,9,0\n5,9,0\n",
+            "curve.csv:1:17: mass_flow_kg_s: the mass flow is 0 at all times, allowed: a mass flow above 0 "
+            "somewhere\n"},
+        BadCurve{
+            "FlowOfAnotherPropellant", kCsvMotor, "curve.csv",
+            "time_s,thrust_n,mass_flow_kg_s\n0,60000,25\n66,60000,25\n",
+            "curve.csv:1:17: stages[0].motor.thrust_curve.table.mass_flow_kg_s: flows 1650.000000 kg in all, "
+            "but "
+            "propellant_mass_kg is 1500.000000, allowed: flows that sum up to the propellant within 1 %\n"},
         BadCurve{"FlowMisspelt", kCsvMotor, "curve.csv", "time_s,thrust_n,mass_flow_kgs\n0,9,1\n5,9,1\n",
                  "curve.csv:1:17: unknown column 'mass_flow_kgs', allowed: the columns time_s, thrust_n, and "
                  "mass_flow_kg_s if there is one\n"},

@@ -1,4 +1,5 @@
-// Any quantity in any of its units is read as the same value, written so that it reads back, and limited in that unit.
+// Any quantity in any of its units is read as the same value, written so that it reads back, and limited in
+// that unit.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "core/input/number_text.h"
 #include "core/campaign_yaml/parse_yaml.h"
-#include "core/input/units.h"
 #include "core/input/map_reader.h"
+#include "core/input/number_text.h"
+#include "core/input/units.h"
 
 namespace dispersa::campaign_yaml_units_test {
 namespace {
@@ -19,17 +20,56 @@ namespace {
 using std::numbers::pi;
 
 /// What one of each unit is in SI and radians, by the definitions of the units.
-const std::map<std::string_view, double> kInSi = {
-    {"m", 1.0},          {"km", 1000.0},       {"mm", 0.001},          {"um", 0.000001},      {"m2", 1.0},
-    {"s", 1.0},          {"ms", 0.001},        {"kg", 1.0},            {"ton", 1000.0},       {"kg_s", 1.0},
-    {"kg_m2", 1.0},      {"kg_m", 1.0},        {"gpa", 1e9},           {"mpa", 1e6},          {"pa", 1.0},
-    {"kpa", 1e3},        {"n_m2", 1.0},        {"kn_m2", 1e3},         {"mn_m2", 1e6},        {"n", 1.0},
-    {"kn", 1e3},         {"n_m", 1.0},         {"kn_m", 1e3},          {"pa_rad", 1.0},       {"kpa_rad", 1e3},
-    {"pa_deg", pi / 180}, {"w_m2", 1.0},       {"kw_m2", 1e3},         {"m_s", 1.0},          {"km_s", 1e3},
-    {"km_h", 1000.0 / 3600.0}, {"g", 1.0},     {"deg", pi / 180},      {"rad", 1.0},          {"deg_s", pi / 180},
-    {"rad_s", 1.0},      {"hz", 2 * pi},       {"deg_s2", pi / 180},   {"rad_s2", 1.0},       {"1_s", 1.0},
-    {"1_s2", 1.0},       {"per_km", 0.001},    {"per_m", 1.0},         {"per_m_s", 1.0},      {"kg_m3", 1.0},
-    {"percent", 0.01},   {"k", 1.0},           {"percent_per_k", 0.01}, {"per_deg", 180 / pi}, {"per_rad", 1.0}};
+const std::map<std::string_view, double> kInSi = {{"m", 1.0},
+                                                  {"km", 1000.0},
+                                                  {"mm", 0.001},
+                                                  {"um", 0.000001},
+                                                  {"m2", 1.0},
+                                                  {"s", 1.0},
+                                                  {"ms", 0.001},
+                                                  {"kg", 1.0},
+                                                  {"ton", 1000.0},
+                                                  {"kg_s", 1.0},
+                                                  {"kg_m2", 1.0},
+                                                  {"kg_m", 1.0},
+                                                  {"gpa", 1e9},
+                                                  {"mpa", 1e6},
+                                                  {"pa", 1.0},
+                                                  {"kpa", 1e3},
+                                                  {"n_m2", 1.0},
+                                                  {"kn_m2", 1e3},
+                                                  {"mn_m2", 1e6},
+                                                  {"n", 1.0},
+                                                  {"kn", 1e3},
+                                                  {"n_m", 1.0},
+                                                  {"kn_m", 1e3},
+                                                  {"pa_rad", 1.0},
+                                                  {"kpa_rad", 1e3},
+                                                  {"pa_deg", pi / 180},
+                                                  {"w_m2", 1.0},
+                                                  {"kw_m2", 1e3},
+                                                  {"m_s", 1.0},
+                                                  {"km_s", 1e3},
+                                                  {"km_h", 1000.0 / 3600.0},
+                                                  {"g", 1.0},
+                                                  {"deg", pi / 180},
+                                                  {"rad", 1.0},
+                                                  {"deg_s", pi / 180},
+                                                  {"rad_s", 1.0},
+                                                  {"hz", 2 * pi},
+                                                  {"deg_s2", pi / 180},
+                                                  {"rad_s2", 1.0},
+                                                  {"1_s", 1.0},
+                                                  {"1_s2", 1.0},
+                                                  {"per_km", 0.001},
+                                                  {"per_m", 1.0},
+                                                  {"per_m_s", 1.0},
+                                                  {"kg_m3", 1.0},
+                                                  {"percent", 0.01},
+                                                  {"k", 1.0},
+                                                  {"percent_per_k", 0.01},
+                                                  {"per_deg", 180 / pi},
+                                                  {"per_rad", 1.0}};
 
 const std::vector<std::pair<const char*, Dimension>> kDimensions = {
     {"length", kLength},
@@ -91,7 +131,8 @@ TEST_P(Units, AreReadAsWhatTheyAre) {
   for (const Unit& unit : dimension_) {
     ASSERT_TRUE(kInSi.contains(unit.suffix)) << unit.suffix;
     for (const double value : kValues) {
-      EXPECT_DOUBLE_EQ(Read(Key(unit), FormatNumber(value), dimension_, &problems_), value * kInSi.at(unit.suffix))
+      EXPECT_DOUBLE_EQ(Read(Key(unit), FormatNumber(value), dimension_, &problems_),
+                       value * kInSi.at(unit.suffix))
           << unit.suffix;
       EXPECT_EQ(problems_, "");
     }
@@ -120,8 +161,9 @@ TEST_P(Units, StateTheirLimits) {
     const std::string number = FormatNumber(6.0 / scale);
     EXPECT_EQ(Read(Key(unit), number, dimension_, &problems_, range), 0.0);
     EXPECT_EQ(problems_, "file:1:" + std::to_string(Key(unit).size() + 3) + ": " + Key(unit) + ": " + number +
-                             " is out of range, allowed: a number not below " + FormatScaled(-2.0, unit.scale) +
-                             " and below " + FormatScaled(5.0, unit.scale) + "\n");
+                             " is out of range, allowed: a number not below " +
+                             FormatScaled(-2.0, unit.scale) + " and below " + FormatScaled(5.0, unit.scale) +
+                             "\n");
     EXPECT_DOUBLE_EQ(Read(Key(unit), FormatNumber(4.0 / scale), dimension_, &problems_, range), 4.0);
     EXPECT_EQ(problems_, "");
   }
@@ -132,11 +174,13 @@ TEST_P(Units, AreGivenOnceAndAreOfTheirDimension) {
   for (const Unit& unit : dimension_) keys += (keys.empty() ? "" : ", ") + Key(unit);
   if (dimension_.size() > 1) {
     std::vector<InputProblem> found;
-    const InputNode node = ParseYaml(Key(dimension_[1]) + ": 1\n" + Key(dimension_[0]) + ": 1\n", "file", found);
+    const InputNode node =
+        ParseYaml(Key(dimension_[1]) + ": 1\n" + Key(dimension_[0]) + ": 1\n", "file", found);
     MapReader(node, "", found).Quantity("thing", dimension_, kAnyNumber);
     ASSERT_EQ(found.size(), 1u);
-    EXPECT_EQ(found[0].Text(), "file:1:" + std::to_string(Key(dimension_[1]).size() + 3) + ": " + Key(dimension_[1]) +
-                                   ": '" + Key(dimension_[0]) + "' is given too, allowed: one of the two");
+    EXPECT_EQ(found[0].Text(), "file:1:" + std::to_string(Key(dimension_[1]).size() + 3) + ": " +
+                                   Key(dimension_[1]) + ": '" + Key(dimension_[0]) +
+                                   "' is given too, allowed: one of the two");
   }
   // A unit of something else is told from a wrong name.
   for (const auto& [suffix, si] : kInSi) {
@@ -152,14 +196,16 @@ TEST_P(Units, AreGivenOnceAndAreOfTheirDimension) {
                              ", allowed: " + keys + "\n");
   }
   Read("thing", "1", dimension_, &problems_);
-  EXPECT_EQ(problems_, "file:1:1: thing: missing unit (did you mean '" + Key(dimension_[0]) + "'?), allowed: " + keys + "\n");
+  EXPECT_EQ(problems_, "file:1:1: thing: missing unit (did you mean '" + Key(dimension_[0]) +
+                           "'?), allowed: " + keys + "\n");
 }
 
-INSTANTIATE_TEST_SUITE_P(Each, Units, testing::Range(std::size_t{0}, kDimensions.size()), [](const auto& number) {
-  std::string name = kDimensions[number.param].first;
-  std::replace(name.begin(), name.end(), ' ', '_');
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Each, Units, testing::Range(std::size_t{0}, kDimensions.size()),
+                         [](const auto& number) {
+                           std::string name = kDimensions[number.param].first;
+                           std::replace(name.begin(), name.end(), ' ', '_');
+                           return name;
+                         });
 
 // Another spelling is guessed wherever its unit is allowed.
 TEST(UnitSpellings, AreUnderstoodWhereTheyAreMeant) {
@@ -167,12 +213,14 @@ TEST(UnitSpellings, AreUnderstoodWhereTheyAreMeant) {
     ASSERT_TRUE(kInSi.contains(spelling.meant)) << spelling.written;
     for (const auto& [name, dimension] : kDimensions) {
       const auto has = [&, units = dimension](std::string_view suffix) {
-        return std::any_of(units.begin(), units.end(), [&](const Unit& unit) { return unit.suffix == suffix; });
+        return std::any_of(units.begin(), units.end(),
+                           [&](const Unit& unit) { return unit.suffix == suffix; });
       };
       if (!has(spelling.meant) || has(spelling.written)) continue;
       std::string problems;
       Read("thing_" + std::string(spelling.written), "1", dimension, &problems);
-      EXPECT_NE(problems.find("(did you mean 'thing_" + std::string(spelling.meant) + "'?)"), std::string::npos)
+      EXPECT_NE(problems.find("(did you mean 'thing_" + std::string(spelling.meant) + "'?)"),
+                std::string::npos)
           << name << ": " << problems;
     }
   }
@@ -180,7 +228,8 @@ TEST(UnitSpellings, AreUnderstoodWhereTheyAreMeant) {
 
 TEST(UnitsOfLists, CountForEveryItem) {
   std::vector<InputProblem> found;
-  const InputNode node = ParseYaml("times_ms: [0, 250, 1e3]\nwidth_mm: 40\nlength_km: [2, 3]\n", "file", found);
+  const InputNode node =
+      ParseYaml("times_ms: [0, 250, 1e3]\nwidth_mm: 40\nlength_km: [2, 3]\n", "file", found);
   MapReader map(node, "", found);
   std::string key;
   EXPECT_EQ(map.Quantities("times", kTime, kAnyNumber, 1, 9, &key), (std::vector<double>{0.0, 0.25, 1.0}));

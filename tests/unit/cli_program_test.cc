@@ -520,7 +520,8 @@ TEST(CliProgram, TuneWritesAnAutopilotThatSaysWhereItComesFrom) {
   // The smallest budget that there is.
   const std::string budget = " --seed 9 --cases 1 --evaluations 64";
   const Output tuned =
-      Dispersa("--quiet tune " + kSmoke + " --autopilot " DISPERSA_CAMPAIGNS "/autopilots/pd.yaml --out " + file + budget);
+      Dispersa("--quiet tune " + kSmoke + " --autopilot " DISPERSA_CAMPAIGNS "/autopilots/pd.yaml --out " +
+               file + budget);
   ASSERT_EQ(tuned.code, 0) << tuned.error;
   EXPECT_THAT(tuned.text, HasSubstr("generation  feasible  best rms deg"));
   EXPECT_THAT(tuned.text, HasSubstr("\nautopilot: " + file + "\n"));
@@ -540,8 +541,10 @@ TEST(CliProgram, MarginsAndTuneNameWhatTheySkip) {
   EXPECT_THAT(margins.text, HasSubstr("stage 4 burnout"));
   const InputFiles folder;
   const std::string file = folder.Path("tuned.yaml");
-  const Output tuned = Dispersa("--quiet tune " + campaign + " --autopilot " DISPERSA_CAMPAIGNS
-                                "/autopilots/pd.yaml --seed 9 --cases 1 --evaluations 64 --out " + file);
+  const Output tuned = Dispersa("--quiet tune " + campaign +
+                                " --autopilot " DISPERSA_CAMPAIGNS
+                                "/autopilots/pd.yaml --seed 9 --cases 1 --evaluations 64 --out " +
+                                file);
   EXPECT_EQ(tuned.code, 0) << tuned.error << tuned.text;
   EXPECT_THAT(tuned.text, HasSubstr("No margins were asked for with less than 20 % of full thrust:\n"));
   EXPECT_THAT(ReadWholeFile(file), HasSubstr(" instants with less than 20 % of full thrust.\n"));
@@ -564,8 +567,10 @@ TEST(CliProgram, TuneNamesTheGateThatItMisses) {
   point_to(campaign, "../../../campaigns", DISPERSA_CAMPAIGNS);
   folder.Write("campaign.yaml", campaign);
   const std::string file = folder.Path("tuned.yaml");
-  const Output tuned = Dispersa("--quiet --json tune " + folder.Path("campaign.yaml") + " --autopilot " DISPERSA_CAMPAIGNS
-                                "/autopilots/pd.yaml --seed 9 --cases 1 --evaluations 64 --out " + file);
+  const Output tuned = Dispersa("--quiet --json tune " + folder.Path("campaign.yaml") +
+                                " --autopilot " DISPERSA_CAMPAIGNS
+                                "/autopilots/pd.yaml --seed 9 --cases 1 --evaluations 64 --out " +
+                                file);
   EXPECT_EQ(tuned.code, 3) << tuned.error;
   const auto json = nlohmann::json::parse(tuned.text);
   const std::string missed = json["stages"][0]["missed"];
@@ -579,7 +584,8 @@ TEST(CliProgram, TuneRefusesTheSeedOfTheVerdict) {
   const Output output = Dispersa("tune " + kSmoke + " --out " + file + " --seed 20260101");
   EXPECT_EQ(output.code, 2);
   EXPECT_EQ(output.error,
-            "seed: the tuning would see the cases of campaign 'smoke', allowed: any but the campaign's own, 20260101\n");
+            "seed: the tuning would see the cases of campaign 'smoke', allowed: any but the campaign's own, "
+            "20260101\n");
   EXPECT_EQ(ReadWholeFile(file), "");
 }
 

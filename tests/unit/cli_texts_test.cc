@@ -29,22 +29,26 @@ std::vector<std::string> Lines(const std::string& text) {
   return lines;
 }
 
-// 13 t with 4 t in 40 s at 200 kN: Isp 200e3 * 40 / (4000 * 9.80665) = 203.9 s, dv 2000 ln(13 / 9) = 735 m/s, 10 t of its
-// own of which 6 are dry, 200e3 / (13 t g) = 1.57 g at release and 200e3 / (9 t g) = 2.27 g at the end. Above it 3 t with
-// 1 t in 20 s at 50 kN: 102.0 s, 1000 ln(3 / 2) = 405 m/s, 1.70 g and 2.55 g.
+// 13 t with 4 t in 40 s at 200 kN: Isp 200e3 * 40 / (4000 * 9.80665) = 203.9 s, dv 2000 ln(13 / 9) = 735 m/s,
+// 10 t of its own of which 6 are dry, 200e3 / (13 t g) = 1.57 g at release and 200e3 / (9 t g) = 2.27 g at
+// the end. Above it 3 t with 1 t in 20 s at 50 kN: 102.0 s, 1000 ln(3 / 2) = 405 m/s, 1.70 g and 2.55 g.
 TEST(VehicleText, IsTheRocketEquationInATable) {
   Vehicle vehicle = SampleVehicle();
   const std::vector<std::string> lines = Lines(VehicleText(vehicle));
   ASSERT_EQ(lines.size(), 10u);
   EXPECT_EQ(lines[1], "sample: 13000 kg, 20 m");
-  EXPECT_EQ(lines[2], "stage        at ignition  propellant       dry   dry/own    thrust     burn      Isp   ideal dv "
-                      "      T/W  burnout");
-  EXPECT_EQ(lines[3], "                      kg          kg        kg                  kN        s        s        m/s "
-                      " ignition        g");
-  EXPECT_EQ(lines[4], "first              13000        4000      6000     0.600     200.0     40.0    203.9        735 "
-                      "     1.57     2.27");
-  EXPECT_EQ(lines[5], "second              3000        1000      2000     0.667      50.0     20.0    102.0        405 "
-                      "     1.70     2.55");
+  EXPECT_EQ(lines[2],
+            "stage        at ignition  propellant       dry   dry/own    thrust     burn      Isp   ideal dv "
+            "      T/W  burnout");
+  EXPECT_EQ(lines[3],
+            "                      kg          kg        kg                  kN        s        s        m/s "
+            " ignition        g");
+  EXPECT_EQ(lines[4],
+            "first              13000        4000      6000     0.600     200.0     40.0    203.9        735 "
+            "     1.57     2.27");
+  EXPECT_EQ(lines[5],
+            "second              3000        1000      2000     0.667      50.0     20.0    102.0        405 "
+            "     1.70     2.55");
   EXPECT_EQ(lines[6], "together" + std::string(84, ' ') + "1141");
   EXPECT_EQ(lines[8], "limits: none: no load is judged");
 }
@@ -63,14 +67,16 @@ TEST(VehicleText, NamesBoostersJettisonsAndLimits) {
       {.name = "ring", .mass_kg = 5.0, .trigger = JettisonTrigger::kAtTime, .threshold = 70.5}};
   const std::string text = VehicleText(vehicle);
   EXPECT_NE(text.find("\n3 boosters beside first, each of 950 kg with 800 kg of propellant, 80 kN and 25 s\n"
-                      "jettisoned from second: fairing, 60 kg, at a heat flux of 1135 W/m2; it counts into every mass above\n"
+                      "jettisoned from second: fairing, 60 kg, at a heat flux of 1135 W/m2; it counts into "
+                      "every mass above\n"
                       "jettisoned from second: skirt, 20 kg, at 90000 m; it counts into every mass above\n"
                       "jettisoned from second: ring, 5 kg, at 70.5 s; it counts into every mass above\n"
                       "limits: q_max_pa 90000, lateral_load_max_g 1.5\n"),
             std::string::npos)
       << text;
   vehicle.aerodynamics.clear();
-  EXPECT_NE(VehicleText(vehicle).find("80 kN and 25 s; the aerodynamics are built up from the core's profile alone\n"),
+  EXPECT_NE(VehicleText(vehicle).find(
+                "80 kN and 25 s; the aerodynamics are built up from the core's profile alone\n"),
             std::string::npos);
 }
 
@@ -105,9 +111,17 @@ TEST(DurationText, RoundsToTheSecondAndCarries) {
 }
 
 nlohmann::ordered_json SampleCampaign() {
-  return {{"id", "0123456789abcdef"}, {"state", "flying"}, {"done", 40},       {"total", 100},
-          {"name", "trial"},          {"rate_per_s", 0.0},  {"eta_s", nullptr}, {"quarantined", 0},
-          {"code", nullptr},          {"problem", nullptr}, {"requirements", nlohmann::ordered_json::array()}};
+  return {{"id", "0123456789abcdef"},
+          {"state", "flying"},
+          {"done", 40},
+          {"total", 100},
+          {"name", "trial"},
+          {"rate_per_s", 0.0},
+          {"eta_s", nullptr},
+          {"quarantined", 0},
+          {"code", nullptr},
+          {"problem", nullptr},
+          {"requirements", nlohmann::ordered_json::array()}};
 }
 
 TEST(CampaignStatusText, SaysHowFarACampaignIs) {
@@ -125,7 +139,8 @@ TEST(CampaignStatusText, SaysHowFarACampaignIs) {
   campaign["state"] = "ended";
   campaign["code"] = 1;
   campaign["problem"] = "no space left";
-  EXPECT_EQ(CampaignStatusText(campaign), "0123456789ab  ended             40/100       trial  exit code 1  no space left\n");
+  EXPECT_EQ(CampaignStatusText(campaign),
+            "0123456789ab  ended             40/100       trial  exit code 1  no space left\n");
   campaign["quarantined"] = 2;
   EXPECT_EQ(
       CampaignStatusText(campaign),
@@ -156,7 +171,8 @@ std::vector<SeedRow> SampleRows() {
   one.reached = true;
   one.read_back = {.altitude_m = 0.5, .velocity_m_s = -0.002, .flight_path_angle_rad = 3e-6 * kRadPerDeg};
   one.halved = {.altitude_m = 0.25, .velocity_m_s = 0.001, .flight_path_angle_rad = -2e-6 * kRadPerDeg};
-  one.flown = OrbitErrors{.altitude_m = 1500.0, .velocity_m_s = -2.5, .flight_path_angle_rad = 0.05 * kRadPerDeg};
+  one.flown =
+      OrbitErrors{.altitude_m = 1500.0, .velocity_m_s = -2.5, .flight_path_angle_rad = 0.05 * kRadPerDeg};
   one.program.alpha_max_rad = 4.0 * kRadPerDeg;
   one.program.t1_s = 3.5;
   one.program.t2_s = 160.0;
@@ -178,16 +194,20 @@ TEST(SeedStudy, SaysTheWorstErrorAndTheRangeOfWhatWasFound) {
   const std::vector<std::string> lines = Lines(SeedStudyText(SampleRows()));
   ASSERT_EQ(lines.size(), 8u);
   const auto row = [](const std::string& head, const std::string& dh, const std::string& coast) {
-    return head + dh + "   -2.0000    3.0000    0.2500    1.0000   -2.0000     4.0000    3.500   40.000  160.000 " + coast +
-           "      95.0000    3000.5    1.5000    -2.5000    0.05000     1234     12.5";
+    return head + dh +
+           "   -2.0000    3.0000    0.2500    1.0000   -2.0000     4.0000    3.500   40.000  160.000 " +
+           coast + "      95.0000    3000.5    1.5000    -2.5000    0.05000     1234     12.5";
   };
   EXPECT_EQ(lines[1], row("     7      yes", "    0.5000", "  250.2500"));
   EXPECT_EQ(lines[2], row("     8       NO", "   -2.0000", "  240.0000"));
-  EXPECT_EQ(lines[3].substr(0, 75), "worst              2.0000    2.0000    3.0000    0.2500    1.0000    2.0000");
+  EXPECT_EQ(lines[3].substr(0, 75),
+            "worst              2.0000    2.0000    3.0000    0.2500    1.0000    2.0000");
   EXPECT_EQ(lines[3].substr(147), "    1.5000     2.5000    0.05000                  ");
   const std::string blank(60, ' ');
-  EXPECT_EQ(lines[4].substr(0, 124), "least          " + blank + "     4.0000    3.500   40.000  160.000   240.0000");
-  EXPECT_EQ(lines[5].substr(0, 124), "largest        " + blank + "     4.0000    3.500   40.000  160.000   250.2500");
+  EXPECT_EQ(lines[4].substr(0, 124),
+            "least          " + blank + "     4.0000    3.500   40.000  160.000   240.0000");
+  EXPECT_EQ(lines[5].substr(0, 124),
+            "largest        " + blank + "     4.0000    3.500   40.000  160.000   250.2500");
   EXPECT_EQ(lines[6], "reached from 1 of 2 seeds");
 }
 

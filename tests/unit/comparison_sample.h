@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/results/case_columns.h"
 #include "core/analysis/comparison.h"
+#include "core/results/case_columns.h"
 #include "tests/unit/made_up_results.h"
 
 namespace dispersa::comparison_sample {

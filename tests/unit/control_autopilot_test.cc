@@ -131,14 +131,17 @@ TEST(StartStage, StartsAnewWhenConfiguredAndClearsSaturationAndThrusters) {
 TEST(StartStage, AugmentationStartsEveryStageAnew) {
   AutopilotConfig config = SampleAutopilot();
   config.yaw.law = ControlLaw::kPdAac;
-  config.yaw.augmentation = {.adaptive_gain_1_s = 1e5, .leakage_1_s = 0.1, .spectral_gain_1_s = 1.0,
-                             .high_pass_rad_s = 20.0, .low_pass_rad_s = 2.0, .minimum_total_gain = 0.5,
+  config.yaw.augmentation = {.adaptive_gain_1_s = 1e5,
+                             .leakage_1_s = 0.1,
+                             .spectral_gain_1_s = 1.0,
+                             .high_pass_rad_s = 20.0,
+                             .low_pass_rad_s = 2.0,
+                             .minimum_total_gain = 0.5,
                              .maximum_total_gain = 2.0};
   const AutopilotModel model = Model(config);
   AutopilotState state;
   StartStage(model, 0, state);
-  for (int i = 0; i < 50; ++i)
-    StepGimbals(model, 0, 0.01 * i, ErrorOf(0.0, 0.0, 0.05), kNoStudy, 1.0, state);
+  for (int i = 0; i < 50; ++i) StepGimbals(model, 0, 0.01 * i, ErrorOf(0.0, 0.0, 0.05), kNoStudy, 1.0, state);
   ASSERT_GT(state.axes[kYaw].total_gain, 1.1);
   ASSERT_EQ(state.axes[kYaw].model_started, 1.0);
   StartStage(model, 1, state);
@@ -254,7 +257,9 @@ TEST(AutopilotProblems, TickGainsAndRanges) {
 TEST(AutopilotProblems, OneEntryAStage) {
   EXPECT_EQ(Texts(With([](auto& c) { c.roll.gains.pop_back(); })),
             (List{"roll.gains: has 1 entries | one entry for each of the vehicle's 2 stages"}));
-  EXPECT_EQ(Texts(With([](auto& c) { c.pitch.adaptation.gamma = {1.0, 2.0, 3.0}; })),
+  EXPECT_EQ(Texts(With([](auto& c) {
+              c.pitch.adaptation.gamma = {1.0, 2.0, 3.0};
+            })),
             (List{"pitch.adaptation.gamma: has 3 entries | one entry for each of the vehicle's 2 stages"}));
 }
 

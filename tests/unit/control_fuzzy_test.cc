@@ -69,8 +69,8 @@ TEST(Rules, AreNumberedByErrorSetThenRateSet) {
   config.rules = kRules;
   AxisState state;
   AxisTelemetry telemetry;
-  StepAxis(BuildAxisLaw(config, 0.01), 0, kRules.error_range_rad, -0.5 * kRules.rate_range_rad_s, 1.0, 1.0, 0.01, state,
-           telemetry);
+  StepAxis(BuildAxisLaw(config, 0.01), 0, kRules.error_range_rad, -0.5 * kRules.rate_range_rad_s, 1.0, 1.0,
+           0.01, state, telemetry);
   EXPECT_EQ(state.rules_fired, 1u << (4 * kFuzzySets + 1));
 }
 

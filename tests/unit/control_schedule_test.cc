@@ -26,7 +26,8 @@ AxisConfig Scheduled(ControlLaw law = ControlLaw::kPid) {
   FilterSection low_pass = kOwn[0], notch = kOwn[1];
   low_pass.poles_rad_s = 90.0;
   notch.zeros_rad_s = notch.poles_rad_s = 26.0;
-  axis.schedule = {{1, 10.0, {20.0, 8.0}, 4.0, {low_pass, notch}}, {1, 20.0, {10.0, 5.0}, 0.0, {low_pass, kOwn[1]}}};
+  axis.schedule = {{1, 10.0, {20.0, 8.0}, 4.0, {low_pass, notch}},
+                   {1, 20.0, {10.0, 5.0}, 0.0, {low_pass, kOwn[1]}}};
   return axis;
 }
 
@@ -64,8 +65,9 @@ TEST(LawAt, IsTheStagesOwnAtIgnitionStraightBetweenAndHeldAfter) {
 TEST(LawAt, KeepsSectionsStableAndOfUnitGainAtRest) {
   AxisConfig axis = Scheduled();
   // As far apart as sections go.
-  axis.schedule[0].filters = {{.poles_rad_s = 310.0, .poles_damping = 3.0},
-                              {.zeros_rad_s = 3.0, .zeros_damping = 0.01, .poles_rad_s = 250.0, .poles_damping = 0.05}};
+  axis.schedule[0].filters = {
+      {.poles_rad_s = 310.0, .poles_damping = 3.0},
+      {.zeros_rad_s = 3.0, .zeros_damping = 0.01, .poles_rad_s = 250.0, .poles_damping = 0.05}};
   const AxisLaw law = BuildAxisLaw(axis, kTick_s);
   for (double t = 0.0; t <= 20.0; t += 0.1) {
     const StageLaw now = LawAt(law, 0, t);
@@ -87,8 +89,8 @@ TEST(StepAxis, FollowsTheScheduleAsIfEveryTickHadALawOfItsOwn) {
     frozen.config.filters = law.config.filters;
     frozen.stages[0] = LawAt(law, 0, t);
     const AttitudeError error = Error(tick, 0.0);
-    const double u = StepAxis(law, 0, error.angle_rad.y(), error.rate_rad_s.y(), 1.0, 1.0, kTick_s, state,
-                              telemetry, t);
+    const double u =
+        StepAxis(law, 0, error.angle_rad.y(), error.rate_rad_s.y(), 1.0, 1.0, kTick_s, state, telemetry, t);
     ASSERT_EQ(u, StepAxis(frozen, 0, error.angle_rad.y(), error.rate_rad_s.y(), 1.0, 1.0, kTick_s,
                           expected_state, telemetry, t))
         << tick;
@@ -146,8 +148,8 @@ void ExpectLanesAsAlone() {
     lanes::StepGimbals<true>(model, loop, since > T(-1.0), since, angle, rate, static_cast<const T*>(nullptr),
                              static_cast<const T*>(nullptr), memory, out);
     for (int lane = 0; lane < kLanes; ++lane) {
-      const GimbalCommand c = StepGimbals(model, lane == 2 ? 1 : 0, lanes::Lane(since, lane), Error(tick, lane),
-                                          Vector2::Ones(), 1.0, alone[lane]);
+      const GimbalCommand c = StepGimbals(model, lane == 2 ? 1 : 0, lanes::Lane(since, lane),
+                                          Error(tick, lane), Vector2::Ones(), 1.0, alone[lane]);
       ASSERT_EQ(lanes::Lane(out.deflection_rad[kPitch], lane), c.pitch_rad) << tick << " lane " << lane;
       ASSERT_EQ(lanes::Lane(out.deflection_rad[kYaw], lane), c.yaw_rad) << tick << " lane " << lane;
     }
@@ -181,13 +183,15 @@ TEST(Problems, NameAScheduleThatCannotBeFollowed) {
   };
   using Texts = std::vector<std::string>;
   const AxisGains gains = {1.0, 2.0};
-  const std::string rising = ": times since ignition that rise, the first above 0, where the stage's own gains hold";
+  const std::string rising =
+      ": times since ignition that rise, the first above 0, where the stage's own gains hold";
   EXPECT_EQ(texts_of({{1, 10.0, gains, 0.0, {}}, {2, 5.0, gains, 0.0, {}}}), Texts{});
   EXPECT_EQ(texts_of({{3, 10.0, gains, 0.0, {}}}),
             Texts{"yaw.schedule[0].stage: is not a stage of the vehicle: 1 to 2"});
   EXPECT_EQ(texts_of({{0, 10.0, gains, 0.0, {}}}),
             Texts{"yaw.schedule[0].stage: is not a stage of the vehicle: 1 to 2"});
-  EXPECT_EQ(texts_of({{1, 0.0, gains, 0.0, {}}}), Texts{"yaw.schedule[0].at_s: is not after ignition" + rising});
+  EXPECT_EQ(texts_of({{1, 0.0, gains, 0.0, {}}}),
+            Texts{"yaw.schedule[0].at_s: is not after ignition" + rising});
   EXPECT_EQ(texts_of({{1, 10.0, gains, 0.0, {}}, {1, 10.0, gains, 0.0, {}}}),
             Texts{"yaw.schedule[1].at_s: is not after the entry before" + rising});
   EXPECT_EQ(texts_of({{2, 10.0, gains, 0.0, {}}, {1, 20.0, gains, 0.0, {}}}),

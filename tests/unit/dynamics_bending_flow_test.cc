@@ -9,12 +9,12 @@
 namespace dispersa::dynamics_bending_flow_test {
 namespace {
 
-using lanes::BendingTableLanes;
 using lanes::BendingState;
+using lanes::BendingTableLanes;
 using lanes::FlowForce;
+using lanes::LoadTableLanes;
 using lanes::ModalForce;
 using lanes::NormalForce;
-using lanes::LoadTableLanes;
 
 constexpr double kCg_m = 11.0, kXcp_m = 8.0, kSpeed_m_s = 400.0, kSlope_n = 6e5;
 

@@ -8,8 +8,8 @@
 namespace dispersa::dynamics_bending_motion_test {
 namespace {
 
-using lanes::BendingTableLanes;
 using lanes::BendingState;
+using lanes::BendingTableLanes;
 using lanes::ModalForce;
 
 using Number = double (MadeUpMode::*)(double) const;

@@ -90,7 +90,8 @@ TEST(Cvode, ItsRelativeToleranceIsOfTheMotionNotOfTheDistance) {
 
 TEST(Integrator, EveryAdvanceStartsAfresh) {
   for (const Scheme scheme : {Scheme::kRungeKutta4, Scheme::kCvode}) {
-    Integrator used(scheme, 2, &Actuator, nullptr, kAbsolute), fresh(scheme, 2, &Actuator, nullptr, kAbsolute);
+    Integrator used(scheme, 2, &Actuator, nullptr, kAbsolute),
+        fresh(scheme, 2, &Actuator, nullptr, kAbsolute);
     State elsewhere = {5.0, -3.0};
     used.Advance(7.0, 7.5, 10, elsewhere.data());
     State a = {0.002, 0.1}, b = a;

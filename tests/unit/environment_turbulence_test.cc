@@ -206,7 +206,8 @@ TEST(Turbulence, TheFieldIsWhatTheFlightsEquationsSee) {
 TEST(Turbulence, EachStreamBlowsInItsOwnDirection) {
   constexpr double kSine = 0.8, kCosine = 0.6, kAzimuth = 0.3;
   const TurbulencePath path({{0.0, 50e3}, {kSine, kSine}, kAzimuth});
-  const Vector3 down_range(std::cos(kAzimuth), std::sin(kAzimuth), 0.0), up(0.0, 0.0, 1.0);  // north, east, up
+  const Vector3 down_range(std::cos(kAzimuth), std::sin(kAzimuth), 0.0),
+      up(0.0, 0.0, 1.0);  // north, east, up
   const Vector3 directions[3] = {kCosine * down_range + kSine * up,
                                  Vector3(-std::sin(kAzimuth), std::cos(kAzimuth), 0.0),
                                  kCosine * up - kSine * down_range};
@@ -226,7 +227,8 @@ TEST(Turbulence, EachStreamBlowsInItsOwnDirection) {
   }
 }
 
-// The figure's altitudes are over the sea, the low model's heights over the ground: both meet over any ground.
+// The figure's altitudes are over the sea, the low model's heights over the ground: both meet over any
+// ground.
 TEST(Turbulence, ItsModelsMeetOverAHighGround) {
   for (const double ground_m : {0.0, 1800.0, 4000.0}) {
     const double meet_m = ground_m + 2000.0 * kFoot_m;

@@ -130,7 +130,8 @@ TEST(InputColumns, NameTheFieldsOfFlightInputs) {
   expect("loop_stage", in.loop_stage, 1.0);
   const char* const axes[] = {"downrange", "right", "down"};
   for (std::size_t i = 0; i < 3; ++i) {
-    expect(std::string("navigation_position_error_") + axes[i] + "_m", in.navigation_position_error_m[i], 1.0);
+    expect(std::string("navigation_position_error_") + axes[i] + "_m", in.navigation_position_error_m[i],
+           1.0);
     expect(std::string("navigation_velocity_error_") + axes[i] + "_m_s", in.navigation_velocity_error_m_s[i],
            1.0);
   }

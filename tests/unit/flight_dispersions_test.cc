@@ -103,8 +103,8 @@ TEST(Dispersions, ACentreOfGravityOffTheAxisGivesThrustAndDragALever) {
   for (const double clock : {0.0, 0.5 * kPi, 2.5}) {
     inputs.cg_offset_clock_rad[0] = clock;
     const LauncherInstant in_space = InstantOf(inputs, kSpace_m);
-    const double aside =
-        0.01 * nominal.stacks[0].mass.fixed_mass_kg / in_space.loads.mass_kg;  // the inertia's own is left out
+    const double aside = 0.01 * nominal.stacks[0].mass.fixed_mass_kg /
+                         in_space.loads.mass_kg;  // the inertia's own is left out
     EXPECT_LT(aside, 0.009);
     // The thrust passes the CG on the other side.
     EXPECT_NEAR(in_space.loads.moment_n_m.y(), -200e3 * aside * std::sin(clock), 1e-9) << clock;

@@ -98,8 +98,8 @@ TEST(GuidedFlight, FindsOutAboutTheLastMotorOnlyWhileItBurns) {
   EXPECT_NEAR(MissOf(planned).velocity_m_s, 0.005 * 2345.0, 2.0);
 }
 
-// 4 % less impulse in every motor: no reserve is that large. It flies to the end, spends nothing, says so, and makes
-// more of it than open loop does.
+// 4 % less impulse in every motor: no reserve is that large. It flies to the end, spends nothing, says so,
+// and makes more of it than open loop does.
 TEST(GuidedFlight, SaysThatItsTargetIsOutOfReach) {
   FlightInputs inputs;
   for (double& factor : inputs.specific_impulse_factor) factor = 0.96;

@@ -19,7 +19,8 @@ struct Gyro {
   lanes::GyroMemory<double> memory = {};
 
   double Step(double rate_rad_s, bool fresh = false, bool sampled = true, bool acting = true) {
-    lanes::StepGyro<double>(model, acting, fresh, sampled, {rate_rad_s, 2.0 * rate_rad_s, -rate_rad_s}, memory);
+    lanes::StepGyro<double>(model, acting, fresh, sampled, {rate_rad_s, 2.0 * rate_rad_s, -rate_rad_s},
+                            memory);
     return memory.output_rad_s.x;
   }
 };
@@ -40,7 +41,8 @@ TEST(StepGyro, StartsAtRestInItsRate) {
   }
 }
 
-// y'' + 2 zeta w y' + w² (y - u) = 0 from rest in u0, u = u0 + r t: y = u0 + r (t - 2 zeta / w) plus what rings.
+// y'' + 2 zeta w y' + w² (y - u) = 0 from rest in u0, u = u0 + r t: y = u0 + r (t - 2 zeta / w) plus what
+// rings.
 TEST(StepGyro, FollowsARampFromItsStart) {
   const double w = 40.0, zeta = 0.7, u0 = -0.2, r = 0.05;
   Gyro gyro = Filtered(w, zeta);
@@ -56,9 +58,9 @@ TEST(StepGyro, FollowsARampFromItsStart) {
 TEST(StepGyro, RoundsToTheNearestStep) {
   Gyro gyro;
   gyro.model.quantum_rad_s = 0.01;
-  const double shown[][2] = {{0.016, 0.02},   {0.014, 0.01},   {0.004, 0.0},  {0.0, 0.0},
-                             {-0.004, 0.0},   {-0.006, -0.01}, {-0.014, -0.01}, {-0.016, -0.02},
-                             {123.4567, 123.46}};
+  const double shown[][2] = {{0.016, 0.02},   {0.014, 0.01},   {0.004, 0.0},
+                             {0.0, 0.0},      {-0.004, 0.0},   {-0.006, -0.01},
+                             {-0.014, -0.01}, {-0.016, -0.02}, {123.4567, 123.46}};
   for (const auto& [rate, output] : shown) EXPECT_NEAR(gyro.Step(rate), output, 1e-12) << rate;
   // Over a whole number of steps nearest values err by nothing in the mean; cut-off ones by half a step.
   double sum = 0.0;
@@ -155,21 +157,22 @@ FlightDefinition WithGyros(std::vector<RateGyro> gyros, std::vector<GyroShare> s
   return definition;
 }
 
-// A rigid body turns everywhere alike, so gyros without lag and steps measure what the inertial unit measures: the same
-// flight to the bit, in the coasts too, whichever stages they serve and however they share.
+// A rigid body turns everywhere alike, so gyros without lag and steps measure what the inertial unit
+// measures: the same flight to the bit, in the coasts too, whichever stages they serve and however they
+// share.
 TEST(FlightGyros, PerfectOnesFlyAsTheInertialUnitDoes) {
   const FlightResult by_unit = Fly(FlightModel(Slv4Definition(DISPERSA_CAMPAIGNS, "pd")), Table3Inputs());
   ASSERT_EQ(by_unit.outcome, Outcome::kCompleted);
   const std::vector<RateGyro> gyros = {{"a", 1.0, 0.0, 0.7, 0.0, 1}, {"b", 2.0, 0.0, 0.7, 0.0, 1}};
-  const std::vector<std::vector<GyroShare>> all = {{{"a", 1.0, 0}},
-                                                   {{"a", 1.0, 3}},
-                                                   {{"b", 0.25, 1}, {"a", 0.75, 1}, {"b", 1.0, 3}}};
+  const std::vector<std::vector<GyroShare>> all = {
+      {{"a", 1.0, 0}}, {{"a", 1.0, 3}}, {{"b", 0.25, 1}, {"a", 0.75, 1}, {"b", 1.0, 3}}};
   for (const std::vector<GyroShare>& shares : all)
-    EXPECT_EQ(Fly(FlightModel(WithGyros(gyros, shares)), Table3Inputs()).digest, by_unit.digest) << shares.size();
+    EXPECT_EQ(Fly(FlightModel(WithGyros(gyros, shares)), Table3Inputs()).digest, by_unit.digest)
+        << shares.size();
 }
 
-// What a gyro with steps coarser than any rate shows is zero, so its weight takes as much of the rate away. The PD law's
-// command tells which rate it was given.
+// What a gyro with steps coarser than any rate shows is zero, so its weight takes as much of the rate away.
+// The PD law's command tells which rate it was given.
 TEST(FlightGyros, WeightsAreThoseOfTheStageThatBurns) {
   const double kCoarse_rad_s = 1e3;
   const FlightDefinition definition =

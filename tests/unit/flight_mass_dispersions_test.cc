@@ -248,7 +248,8 @@ TEST(StackFactors, ActOnTheirStackAlone) {
   EXPECT_NEAR((left.p_EoC_I - state.p_EoC_I).norm(), from - to, 1e-8);
 }
 
-// Where the nose is, whatever its centre of gravity does: at rest a point of the body stays when masses leave.
+// Where the nose is, whatever its centre of gravity does: at rest a point of the body stays when masses
+// leave.
 Vector3 NoseOf(const LauncherPlant& plant, int stack, double propellant_kg, const RigidBodyState& state) {
   LauncherPhase phase;
   phase.stack = stack;
@@ -256,7 +257,8 @@ Vector3 NoseOf(const LauncherPlant& plant, int stack, double propellant_kg, cons
   left.stacks[static_cast<std::size_t>(stack)].burn.propellant_mass_kg = propellant_kg;
   std::array<double, kLauncherSize> y{};
   WriteState(state, y.data());
-  return AtPoint(state, Vector3(LauncherModel(left).Evaluate(phase, 0.0, y.data()).cg_station_m, 0.0, 0.0)).p_EoC_I;
+  return AtPoint(state, Vector3(LauncherModel(left).Evaluate(phase, 0.0, y.data()).cg_station_m, 0.0, 0.0))
+      .p_EoC_I;
 }
 
 TEST(CentreOfGravity, AtSeparationLeavesTheNoseWhereItIs) {
@@ -270,12 +272,14 @@ TEST(CentreOfGravity, AtSeparationLeavesTheNoseWhereItIs) {
   for (const double left_kg : {0.0, 900.0}) {
     const RigidBodyState above = AfterSeparation(plant, 0, 0u, state, left_kg);
     EXPECT_GT((above.p_EoC_I - state.p_EoC_I).norm(), 1.0);
-    EXPECT_NEAR((NoseOf(plant, 1, 1000.0, above) - NoseOf(plant, 0, left_kg, state)).norm(), 0.0, 2e-9) << left_kg;
+    EXPECT_NEAR((NoseOf(plant, 1, 1000.0, above) - NoseOf(plant, 0, left_kg, state)).norm(), 0.0, 2e-9)
+        << left_kg;
   }
   // What the burn says that it leaves counts where nobody says otherwise.
   LauncherPlant leaving = plant;
   leaving.stacks[0].burn.left_kg = 900.0;
-  EXPECT_EQ(AfterSeparation(leaving, 0, 0u, state).p_EoC_I, AfterSeparation(plant, 0, 0u, state, 900.0).p_EoC_I);
+  EXPECT_EQ(AfterSeparation(leaving, 0, 0u, state).p_EoC_I,
+            AfterSeparation(plant, 0, 0u, state, 900.0).p_EoC_I);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// What dispersed masses and delays change of a vehicle and its timeline, stage by stage: nothing of any other.
+// What dispersed masses and delays change of a vehicle and its timeline, stage by stage: nothing of any
+// other.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -34,12 +35,14 @@ TEST(Timeline, ASeparationDelayIsThatOfItsStage) {
       const double burn_late_s = i > late && i < 3 ? 0.25 : 0.0;
       EXPECT_NEAR(times[i].ignition_s, nominal[i].ignition_s + burn_late_s, 1.01 * kTick_s) << late << i;
       const double separation_late_s = i >= late && i < 3 ? 0.25 : 0.0;
-      EXPECT_NEAR(times[i].separation_s, nominal[i].separation_s + separation_late_s, 1.01 * kTick_s) << late << i;
+      EXPECT_NEAR(times[i].separation_s, nominal[i].separation_s + separation_late_s, 1.01 * kTick_s)
+          << late << i;
     }
   }
 }
 
-// The flight computer sees a burnout at its next tick and counts from there; boosters leave before the stage does.
+// The flight computer sees a burnout at its next tick and counts from there; boosters leave before the stage
+// does.
 TEST(BoosterTimes, AreDetectedOnATickAndEndWithTheStage) {
   Boosters boosters;
   boosters.separation_delay_s = 0.5;
@@ -57,7 +60,8 @@ TEST(BoosterTimes, AreDetectedOnATickAndEndWithTheStage) {
   }
 }
 
-// A heavier charge burns longer at the same thrust: total impulse over propellant, the exhaust velocity, stays.
+// A heavier charge burns longer at the same thrust: total impulse over propellant, the exhaust velocity,
+// stays.
 TEST(DispersedVehicle, AThrustCurveIsStretchedWithItsPropellant) {
   Vehicle vehicle = Slv4();
   ThrustCurve& curve = vehicle.stages[1].motor.thrust_curve;
@@ -66,7 +70,8 @@ TEST(DispersedVehicle, AThrustCurveIsStretchedWithItsPropellant) {
   FlightInputs in;
   in.propellant_factor[1] = 1.004;
   const Vehicle heavier = WithDispersedMasses(vehicle, in);
-  const MotorBurn before = BuildBurn(vehicle.stages[1], 1.0, 1.0), after = BuildBurn(heavier.stages[1], 1.0, 1.0);
+  const MotorBurn before = BuildBurn(vehicle.stages[1], 1.0, 1.0),
+                  after = BuildBurn(heavier.stages[1], 1.0, 1.0);
   EXPECT_NEAR(after.propellant_mass_kg, 1.004 * before.propellant_mass_kg, 1e-9);
   EXPECT_NEAR(after.duration_s, 1.004 * before.duration_s, 1e-9);
   EXPECT_NEAR(after.ExhaustVelocity(), before.ExhaustVelocity(), 1e-9 * before.ExhaustVelocity());

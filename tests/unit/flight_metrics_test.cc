@@ -67,8 +67,8 @@ class MetricsRecorder {
     const double bottom_m = inputs_.gust_altitude_m;
     const double top_m = inputs_.gust_speed_m_s != 0.0 ? bottom_m + inputs_.gust_length_m : bottom_m;
     const FlightDefinition& d = model_.definition();
-    if (lanes::InTransient(s.time_s, s.since_ignition_s, s.instant.air.place.altitude_m, d.kick_start_s, d.kick_end_s,
-                           bottom_m, top_m))
+    if (lanes::InTransient(s.time_s, s.since_ignition_s, s.instant.air.place.altitude_m, d.kick_start_s,
+                           d.kick_end_s, bottom_m, top_m))
       Interrupt();
     else
       Add(0.25 * (s.nozzle_rad[0] - s.nozzle_rad[1] + s.nozzle_rad[2] - s.nozzle_rad[3]),
@@ -233,8 +233,7 @@ TEST(MetricsRecorder, EveryMetricOfAMadeUpFlight) {
     SetErrors(s, 50.0, i == 2000 ? 3.0 : -0.1, 60.0);
     flight.recorder.AddTick(s);
   }
-  flight.recorder.AddHandover(
-      {kDeg * Vector3(0.03, 0.04, 0.0), kDeg * Vector3(0.0, 0.0, 0.2)});
+  flight.recorder.AddHandover({kDeg * Vector3(0.03, 0.04, 0.0), kDeg * Vector3(0.0, 0.0, 0.2)});
   for (int i = 0; i < 1000; ++i) {
     Tick s = Powered(60.0 + i * kTick_s, 1, 60.0);
     SetErrors(s, 0.0, 0.5, 0.0);
@@ -245,13 +244,13 @@ TEST(MetricsRecorder, EveryMetricOfAMadeUpFlight) {
   const Earth earth = Wgs84();
   const double perigee = earth.equatorial_radius_m + 400e3, apogee = earth.equatorial_radius_m + 900e3;
   const double nu = 1.1;
-  flight.recorder.AddInjection(
-      earth, OrbitState(earth.mu_m3_s2, perigee, apogee, 62.0 * kDeg, nu), 512e3);
+  flight.recorder.AddInjection(earth, OrbitState(earth.mu_m3_s2, perigee, apogee, 62.0 * kDeg, nu), 512e3);
   flight.recorder.SetExpelledMass(1.25);
 
   const double e = (apogee - perigee) / (apogee + perigee);
   const double gamma = std::atan2(e * std::sin(nu), 1.0 + e * std::cos(nu)) / kDeg;
-  const double speed = std::sqrt(earth.mu_m3_s2 / (perigee * (1.0 + e)) * (1.0 + e * e + 2.0 * e * std::cos(nu)));
+  const double speed =
+      std::sqrt(earth.mu_m3_s2 / (perigee * (1.0 + e)) * (1.0 + e * e + 2.0 * e * std::cos(nu)));
   const double radius = perigee * (1.0 + e) / (1.0 + e * std::cos(nu));
   // Sum of t over the ticks of a span: n first + step n (n - 1) / 2.
   const auto times = [](double first, int n) { return n * first + kTick_s * n * (n - 1) / 2.0; };
@@ -350,13 +349,27 @@ TEST(MetricsRecorder, EveryMetricOfAMadeUpFlight) {
 
 TEST(MetricsRecorder, WhatAFlightDoesNotReachIsUndefined) {
   const Recording flight;
-  for (const char* name :
-       {"pitch_error_rms_deg", "pitch_error_peak_deg", "pitch_error_peak_time_s", "pitch_error_rms_coast_deg",
-        "yaw_error_rms_deg", "roll_error_peak_deg", "deflection_peak_deg", "deflection_saturated_fraction",
-        "deflection_ripple_deg", "deflection_limit_cycle_deg", "handover_attitude_error_deg",
-        "handover_rate_error_deg_s", "injection_altitude_km", "apogee_km", "inclination_deg",
-        "injection_velocity_error_m_s", "lyapunov_outside_fraction", "lyapunov_decreasing_fraction",
-         "semi_major_axis_error_km", "inclination_error_deg", "guidance_converged"})
+  for (const char* name : {"pitch_error_rms_deg",
+                           "pitch_error_peak_deg",
+                           "pitch_error_peak_time_s",
+                           "pitch_error_rms_coast_deg",
+                           "yaw_error_rms_deg",
+                           "roll_error_peak_deg",
+                           "deflection_peak_deg",
+                           "deflection_saturated_fraction",
+                           "deflection_ripple_deg",
+                           "deflection_limit_cycle_deg",
+                           "handover_attitude_error_deg",
+                           "handover_rate_error_deg_s",
+                           "injection_altitude_km",
+                           "apogee_km",
+                           "inclination_deg",
+                           "injection_velocity_error_m_s",
+                           "lyapunov_outside_fraction",
+                           "lyapunov_decreasing_fraction",
+                           "semi_major_axis_error_km",
+                           "inclination_error_deg",
+                           "guidance_converged"})
     EXPECT_TRUE(std::isnan(flight[name])) << name;
   for (const char* name : {"pitch_error_itae_deg_s2", "q_max_pa", "axial_load_max_g", "rcs_propellant_kg",
                            "structural_limit_exceeded", "rules_fired"})

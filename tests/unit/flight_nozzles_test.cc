@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "core/flight/flight.h"
-#include "core/margins/flight_margins.h"
 #include "core/flight/metrics.h"
 #include "core/flight/tick_sample.h"
+#include "core/margins/flight_margins.h"
 #include "core/math/constants.h"
 #include "tests/unit/sample_vehicle.h"
 

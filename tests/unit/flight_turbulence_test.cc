@@ -1,4 +1,5 @@
-// Turbulence as a flight uses it: which field a case meets, and that its three components know nothing of each other.
+// Turbulence as a flight uses it: which field a case meets, and that its three components know nothing of
+// each other.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -31,18 +32,20 @@ TurbulenceField FieldOf(const FlightModel& model, const FlightInputs& inputs, st
   return *model.PlantFor(inputs, case_index).environment.turbulence;
 }
 
-// At a node: along the path, across it (to the right of its plane), and normal to both; over their deviations.
+// At a node: along the path, across it (to the right of its plane), and normal to both; over their
+// deviations.
 std::array<double, 3> Components(const TurbulenceField& field, std::size_t node) {
   const double c = std::cos(kAzimuth_rad), s = std::sin(kAzimuth_rad);
   const double downrange = c * field.north_m_s[node] + s * field.east_m_s[node];
   const double across = c * field.east_m_s[node] - s * field.north_m_s[node], up = field.up_m_s[node];
   const TurbulenceScales scales = TurbulenceAt({1e-3, 15.0, 1.0}, 0.0, field.altitude_m[node]);
-  return {(kCosine * downrange + kSine * up) / scales.sigma_vertical_m_s, across / scales.sigma_horizontal_m_s,
+  return {(kCosine * downrange + kSine * up) / scales.sigma_vertical_m_s,
+          across / scales.sigma_horizontal_m_s,
           (kCosine * up - kSine * downrange) / scales.sigma_horizontal_m_s};
 }
 
-// Products of independent standard normals have the deviation 1, their mean over 2000 cases 0.022, and the mean square
-// 0.032: 5 of each are asked.
+// Products of independent standard normals have the deviation 1, their mean over 2000 cases 0.022, and the
+// mean square 0.032: 5 of each are asked.
 TEST(FlightTurbulence, ComponentsAreIndependentWithinACaseAndOfDeviationOne) {
   const FlightModel model = RoughModel();
   const FlightInputs inputs = Rough();

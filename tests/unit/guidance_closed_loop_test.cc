@@ -1,5 +1,5 @@
-// Decisions of closed-loop guidance, one at a time: when it steers, what it measures of the thrust, when the last stage
-// ignites, and whether it says that it arrives.
+// Decisions of closed-loop guidance, one at a time: when it steers, what it measures of the thrust, when the
+// last stage ignites, and whether it says that it arrives.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -30,8 +30,8 @@ TEST(Arrives, WithinItsLimitsInTheirUnits) {
   EXPECT_FALSE(Arrives({0.0, std::nan(""), 0.0, 0.0}, true, true));
 }
 
-// A point mass under gravitation and the thrust of the mission's motors, flown by the guidance alone. Thrust points to
-// what is commanded, turned by a constant small rotation in I.
+// A point mass under gravitation and the thrust of the mission's motors, flown by the guidance alone. Thrust
+// points to what is commanded, turned by a constant small rotation in I.
 class PointFlight {
  public:
   PointFlight(const GuidanceMission& mission, const NavigatedState& from)
@@ -129,8 +129,9 @@ TEST(ClosedLoopGuidance, ArrivesAndSaysSo) {
   EXPECT_TRUE(flight.guidance.outcome().arrives);
 }
 
-// 1.5 degrees aside: uncorrected, 2.3 km/s of the last burn miss by 60 m/s across and end 0.1 degree off the flight path
-// angle or the plane. What is measured is the rotation from where thrust was to point to where it did.
+// 1.5 degrees aside: uncorrected, 2.3 km/s of the last burn miss by 60 m/s across and end 0.1 degree off the
+// flight path angle or the plane. What is measured is the rotation from where thrust was to point to where it
+// did.
 TEST(ClosedLoopGuidance, MakesUpForThrustThatPointsAside) {
   const GuidanceMission mission = ReachableMission();
   for (const Vector3& aside_L : {Vector3(0.0, 1.5 * kDeg, 0.0), Vector3(0.0, 0.0, -1.5 * kDeg)}) {
@@ -147,8 +148,8 @@ TEST(ClosedLoopGuidance, MakesUpForThrustThatPointsAside) {
   }
 }
 
-// The misalignment of the stage below says nothing of the last stage's motor: at its first call the last burn is planned as
-// if none had been seen. It is measured in the burn's last 1.5 s, in which nothing is planned.
+// The misalignment of the stage below says nothing of the last stage's motor: at its first call the last burn
+// is planned as if none had been seen. It is measured in the burn's last 1.5 s, in which nothing is planned.
 TEST(ClosedLoopGuidance, ForgetsTheStageBelowsThrustOffset) {
   GuidanceMission mission = ReachableMission();
   mission.config.period_s = 0.1;
@@ -290,8 +291,8 @@ TEST(ClosedLoopGuidance, SaysInTheCoastThatItsTargetIsOutOfReach) {
   EXPECT_NEAR(flight.guidance.outcome().excess_m_s, 0.0, 1e-9);
 }
 
-// In the last ten seconds speed and angle alone are still steered for, by the two middles; what altitude and plane would
-// ask is left, and so is what was said about them.
+// In the last ten seconds speed and angle alone are still steered for, by the two middles; what altitude and
+// plane would ask is left, and so is what was said about them.
 TEST(ClosedLoopGuidance, LetsAltitudeAndPlaneGoInTheLastSeconds) {
   const GuidanceMission mission = ReachableMission();
   PointFlight flight(mission, CoastState());
@@ -323,8 +324,8 @@ double EnergyMiss(const PointFlight& flight, const GuidanceMission& mission) {
          at.velocity_m_s;
 }
 
-// Two unknowns are left, and energy and path take both: nothing of them is given for altitude or plane, however far
-// these are off. 5 km more of altitude are worth 6 m/s of energy.
+// Two unknowns are left, and energy and path take both: nothing of them is given for altitude or plane,
+// however far these are off. 5 km more of altitude are worth 6 m/s of energy.
 TEST(ClosedLoopGuidance, MeetsEnergyAndPathInTheLastSecondsWhateverAltitudeAndPlaneAre) {
   const GuidanceMission mission = ReachableMission();
   for (const double across_m_s : {0.0, 100.0}) {
@@ -371,13 +372,15 @@ TEST(ClosedLoopGuidance, BelievesAReadingOfTheThrustsDirectionByThreeTenths) {
     PointFlight flight(mission, CoastState());
     flight.Coast();
     const double ignition_s = flight.guidance.ignition_s();
-    flight.Burn(GuidancePhase::kLastBurns, ignition_s, ignition_s + 3.04);  // the first call, which has none before it
+    flight.Burn(GuidancePhase::kLastBurns, ignition_s,
+                ignition_s + 3.04);  // the first call, which has none before it
     flight.misalignment_rad_I = aside * (mission.R_IL * Vector3(0.0, 1.5 * kDeg, 0.0));
     flight.Burn(GuidancePhase::kLastBurns, ignition_s, ignition_s + 4.06);
     plans[aside] = flight.guidance.plan();
   }
   // Of 1.5 degrees 0.45; the metre a second that was missed in that second asks for another 0.03.
-  EXPECT_NEAR(std::fabs(plans[1].value[kPitchMiddle] - plans[0].value[kPitchMiddle]), 0.45 * kDeg, 0.15 * kDeg);
+  EXPECT_NEAR(std::fabs(plans[1].value[kPitchMiddle] - plans[0].value[kPitchMiddle]), 0.45 * kDeg,
+              0.15 * kDeg);
 }
 
 }  // namespace

@@ -21,8 +21,9 @@ std::vector<ImpactPoint> Points(const CampaignFlights& flights, std::uint64_t in
   return FlyToImpact(flights, {index}, 1, [](const CaseResult&) {});
 }
 
-// The last tick before each separation shows the stage still attached: letting it fall from there, at its own centre of
-// gravity, leads to the same place. `full` disperses winds, density, centres of gravity and tip-off rates.
+// The last tick before each separation shows the stage still attached: letting it fall from there, at its own
+// centre of gravity, leads to the same place. `full` disperses winds, density, centres of gravity and tip-off
+// rates.
 TEST(ImpactPoints, ASpentStageFallsFromWhereTheFlightLeftIt) {
   const Campaign campaign = LoadCampaign(DISPERSA_CAMPAIGNS "/full.yaml");
   const CampaignFlights flights(campaign);
@@ -31,7 +32,9 @@ TEST(ImpactPoints, ASpentStageFallsFromWhereTheFlightLeftIt) {
     std::vector<TickSample> last(4);
     FlightOptions options;
     options.case_index = index;
-    options.observe = [&](const TickSample& sample) { last[static_cast<std::size_t>(sample.stack)] = sample; };
+    options.observe = [&](const TickSample& sample) {
+      last[static_cast<std::size_t>(sample.stack)] = sample;
+    };
     const FlightInputs inputs = flights.Draw(index);
     ASSERT_EQ(dispersa::Fly(flights.model(), inputs, options).outcome, Outcome::kCompleted);
     const std::vector<ImpactPoint> points = Points(flights, index);
@@ -55,17 +58,17 @@ TEST(ImpactPoints, ASpentStageFallsFromWhereTheFlightLeftIt) {
       stack.v_IC_I += left_s * acceleration;
       const RigidBodyState spent =
           AtPoint(stack, Vector3(last[stage].instant.cg_station_m - dry_station_m, 0.0, 0.0));
-      const double length_m = vehicle.stages[stage].bottom_station_m - vehicle.stages[stage + 1].bottom_station_m;
-      const auto expected =
-          Fall(plant.environment,
-               {DryMass(vehicle, static_cast<int>(stage)),
-                TumblingCylinderDragArea(length_m, vehicle.stages[stage].diameter_m)},
-               {point.from_time_s, spent.p_EoC_I, spent.v_IC_I});
+      const double length_m =
+          vehicle.stages[stage].bottom_station_m - vehicle.stages[stage + 1].bottom_station_m;
+      const auto expected = Fall(plant.environment,
+                                 {DryMass(vehicle, static_cast<int>(stage)),
+                                  TumblingCylinderDragArea(length_m, vehicle.stages[stage].diameter_m)},
+                                 {point.from_time_s, spent.p_EoC_I, spent.v_IC_I});
       ASSERT_TRUE(expected);
       EXPECT_GT(point.from_time_s, last[stage].time_s - 1e-9);
       EXPECT_LT(point.from_time_s, last[stage].time_s + 0.03);
-      // The drawn factor of the centre of gravity shifts the stack above by decimetres: times the turning rate, over
-      // minutes of fall, metres.
+      // The drawn factor of the centre of gravity shifts the stack above by decimetres: times the turning
+      // rate, over minutes of fall, metres.
       EXPECT_LT(Distance(point.impact->place, expected->place), 5.0) << index << " " << stage;
     }
   }
@@ -74,7 +77,8 @@ TEST(ImpactPoints, ASpentStageFallsFromWhereTheFlightLeftIt) {
 TEST(ImpactPoints, ALostFlightFallsFromItsEnd) {
   Campaign campaign = LoadCampaign(DISPERSA_CAMPAIGNS "/smoke.yaml");
   for (Dispersion& dispersion : campaign.dispersions) {  // a stage 2 that nothing can hold
-    if (dispersion.name.find("misalignment") == std::string::npos || dispersion.name.find("stage2") == std::string::npos ||
+    if (dispersion.name.find("misalignment") == std::string::npos ||
+        dispersion.name.find("stage2") == std::string::npos ||
         dispersion.name.find("clock") != std::string::npos)
       continue;
     dispersion.distribution = {};
@@ -102,10 +106,10 @@ TEST(ImpactPoints, ALostFlightFallsFromItsEnd) {
   options.observe = [&](const TickSample& sample) { last = sample; };
   const FlightResult again = dispersa::Fly(flights.model(), flights.Draw(2), options);
   const Stage& second = campaign.vehicle.stages[1];
-  const auto expected = Fall(flights.model().PlantFor(flights.Draw(2)).environment,
-                             {last.instant.loads.mass_kg,
-                              TumblingCylinderDragArea(second.bottom_station_m, second.diameter_m)},
-                             {again.end_time_s, again.end_state.p_EoC_I, again.end_state.v_IC_I});
+  const auto expected =
+      Fall(flights.model().PlantFor(flights.Draw(2)).environment,
+           {last.instant.loads.mass_kg, TumblingCylinderDragArea(second.bottom_station_m, second.diameter_m)},
+           {again.end_time_s, again.end_state.p_EoC_I, again.end_state.v_IC_I});
   ASSERT_TRUE(expected);
   // Within a tick it burns a ten-thousandth of its mass.
   EXPECT_LT(Distance(points[1].impact->place, expected->place), 20.0);

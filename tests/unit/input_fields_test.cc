@@ -36,7 +36,8 @@ struct Table {
 };
 
 void Describe(Fields& fields, Table& table) {
-  fields.Choice<Wood>("wood", {{"oak", Wood::kOak}, {"pine", Wood::kPine}}, table.wood, "of the top", Wood::kPine);
+  fields.Choice<Wood>("wood", {{"oak", Wood::kOak}, {"pine", Wood::kPine}}, table.wood, "of the top",
+                      Wood::kPine);
   fields.Flag("folds", table.folds, true, "in the middle");
   fields.Integer("seats", 1, 12, table.seats, "at the table", 4);
   fields.Number("price", kNonNegative, table.price, "without tax", 7.5);
@@ -49,10 +50,12 @@ void Describe(Fields& fields, Table& table) {
   fields.OptionalMap("drawer", table.has_drawer, "below", [&](Fields& drawer) {
     drawer.Quantity("depth", kLength, kPositive, table.drawer_m, "inside");
   });
-  fields.When(Is("wood", {"oak"}), [&] { fields.Number("oil_days", kPositive, table.oil_days, "between oilings", 3.0); });
+  fields.When(Is("wood", {"oak"}),
+              [&] { fields.Number("oil_days", kPositive, table.oil_days, "between oilings", 3.0); });
   fields.Unless(Has("drawer"), [&] {
-    fields.OneOf({{"delivery", kTime, kPositive, "after the order"}, {"distance", kLength, kPositive, "to the shop"}},
-                 table.trigger, table.when);
+    fields.OneOf(
+        {{"delivery", kTime, kPositive, "after the order"}, {"distance", kLength, kPositive, "to the shop"}},
+        table.trigger, table.when);
   });
   fields.Check([&fields, &table] {
     if (table.legs.size() == 2) fields.Refuse("legs[1].length", "stands on two legs", "none, one or three");
@@ -77,7 +80,8 @@ Read ReadTable(const std::string& yaml) {
 TEST(FieldReader, FillsAllThatIsGiven) {
   const Read read = ReadTable(
       "wood: oak\nfolds: false\nseats: 6\nprice: 2\nwidth_mm: 900\nedge_mm: [30, 20]\nheights_m: [0.1, 0.2]\n"
-      "weights_kg: [1, 2]\nmarks: [3]\nlegs: [{name: one, length_km: 0.001}]\ndrawer: {depth_m: 0.3}\noil_days: 9\n");
+      "weights_kg: [1, 2]\nmarks: [3]\nlegs: [{name: one, length_km: 0.001}]\ndrawer: {depth_m: "
+      "0.3}\noil_days: 9\n");
   EXPECT_EQ(read.texts, "");
   const Table& t = read.table;
   EXPECT_EQ(t.wood, Wood::kOak);
@@ -119,9 +123,12 @@ TEST(FieldReader, SaysEverythingThatIsWrongAtOnce) {
             "t:3:10: width_m: 0 is out of range, allowed: a number above 0\n"
             "t:4:15: legs[0].name: '1' is not text, allowed: text; in quotes if it looks like a number\n"
             "t:4:28: legs[0].length_m: 11 is out of range, allowed: a number above 0 and not above 10\n"
-            "t:5:1: drawr: unknown key 'drawr' (did you mean 'drawer'?), allowed: delivery_ms, delivery_s, distance_km, "
-            "distance_m, distance_mm, distance_um, drawer, edge_km, edge_m, edge_mm, edge_um, folds, heights_km, heights_m, "
-            "heights_mm, heights_um, legs, marks, oil_days, price, seats, weights_kg, weights_ton, width_km, width_m, width_mm, "
+            "t:5:1: drawr: unknown key 'drawr' (did you mean 'drawer'?), allowed: delivery_ms, delivery_s, "
+            "distance_km, "
+            "distance_m, distance_mm, distance_um, drawer, edge_km, edge_m, edge_mm, edge_um, folds, "
+            "heights_km, heights_m, "
+            "heights_mm, heights_um, legs, marks, oil_days, price, seats, weights_kg, weights_ton, width_km, "
+            "width_m, width_mm, "
             "width_um, wood\n"
             "t:1:1: missing key 'delivery_s' or 'distance_m', allowed: one of them\n");
 }
@@ -134,12 +141,14 @@ TEST(FieldReader, AConditionDecidesWhatElseIsKnown) {
   EXPECT_NE(ReadTable("drawer: {depth_m: 1}\ndelivery_s: 1\n").texts.find("unknown key 'delivery_s'"),
             std::string::npos);
   EXPECT_EQ(ReadTable("delivery_s: 1\ndistance_m: 1\n").texts,
-            "t:2:13: distance_m: 'delivery_s' and 'distance_m' are both given, allowed: one of delivery_s, distance_m\n");
+            "t:2:13: distance_m: 'delivery_s' and 'distance_m' are both given, allowed: one of delivery_s, "
+            "distance_m\n");
 }
 
 TEST(FieldReader, ChecksARelationOfWhatIsSoundAtItsPlace) {
   const std::string two = "distance_m: 1\nlegs: [{name: a, length_m: 1}, {name: b, length_mm: 5}]\n";
-  EXPECT_EQ(ReadTable(two).texts, "t:2:53: legs[1].length_mm: stands on two legs, allowed: none, one or three\n");
+  EXPECT_EQ(ReadTable(two).texts,
+            "t:2:53: legs[1].length_mm: stands on two legs, allowed: none, one or three\n");
   EXPECT_EQ(ReadTable(two + "seats: 0\n").texts,
             "t:3:8: seats: 0 is out of range, allowed: a whole number from 1 to 12\n");
   EXPECT_EQ(ReadTable("distance_m: 1\nheights_mm: [4, 4]\n").texts,

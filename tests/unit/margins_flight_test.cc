@@ -140,12 +140,13 @@ TEST(ComputeMargins, NamesEveryPhaseOnAllAxes) {
   const std::vector<ComputedMargins> all = ComputeMargins(model, 10.0);
   for (const char* place : {"lift-off", "stage 1 ignition + 1 s", "max q", "stage 1 burnout",
                             "stage 2 ignition + 1 s", "stage 2 burnout"}) {
-    EXPECT_EQ(std::count_if(all.begin(), all.end(), [&](const ComputedMargins& m) { return m.place == place; }),
-              3)
+    EXPECT_EQ(
+        std::count_if(all.begin(), all.end(), [&](const ComputedMargins& m) { return m.place == place; }), 3)
         << place;
   }
   // Between: at 10, 20, 30 s of a burn of 40 s (the fourth is its burnout or the tick before) and 10 s of 20.
-  EXPECT_GE(std::count_if(all.begin(), all.end(), [](const ComputedMargins& m) { return m.place.empty(); }), 12);
+  EXPECT_GE(std::count_if(all.begin(), all.end(), [](const ComputedMargins& m) { return m.place.empty(); }),
+            12);
   EXPECT_TRUE(std::is_sorted(all.begin(), all.end(), [](const ComputedMargins& a, const ComputedMargins& b) {
     return a.time_s < b.time_s;
   }));
@@ -196,10 +197,11 @@ TEST(ComputeMargins, OfAVehicleThatIsNotTheNominal) {
   const FlightModel model(HotStaged());
   FlightInputs light;
   light.inertia_factor = 0.8;
-  const std::vector<ComputedMargins> nominal = ComputeMargins(model, 10.0), other = ComputeMargins(model, 10.0, light);
+  const std::vector<ComputedMargins> nominal = ComputeMargins(model, 10.0),
+                                     other = ComputeMargins(model, 10.0, light);
   ASSERT_EQ(other.size(), nominal.size());
-  // The loop's gain is over the inertia: 1.94 dB less room. The autopilot does not know, and the air's stiffness, which
-  // grows too, counts little at the frequencies of the margin.
+  // The loop's gain is over the inertia: 1.94 dB less room. The autopilot does not know, and the air's
+  // stiffness, which grows too, counts little at the frequencies of the margin.
   for (std::size_t i = 0; i < other.size(); ++i)
     EXPECT_NEAR(nominal[i].frozen.gain_up_db - other[i].frozen.gain_up_db, 20.0 * std::log10(1.0 / 0.8), 0.3)
         << nominal[i].time_s << " s, axis " << nominal[i].axis;
@@ -322,7 +324,8 @@ TEST(MeasureMargins, AgreeWithTheComputedOnesOfAScheduledPid) {
   FlightDefinition held = definition;
   held.autopilot.pitch.schedule.clear();
   held.autopilot.yaw.schedule.clear();
-  EXPECT_GT(MeasureMargins(FlightModel(held))[0].gain_up_db, MeasureMargins(FlightModel(definition))[0].gain_up_db + 1.0);
+  EXPECT_GT(MeasureMargins(FlightModel(held))[0].gain_up_db,
+            MeasureMargins(FlightModel(definition))[0].gain_up_db + 1.0);
 }
 
 TEST(LoopInputs, ChangeTheLoopOfTheirStageAlone) {

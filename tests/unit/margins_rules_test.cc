@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/flight/flight.h"
-#include "core/margins/linear_axis.h"
 #include "core/margins/flight_margins.h"
+#include "core/margins/linear_axis.h"
 #include "core/math/constants.h"
 #include "tests/unit/flexible_sample.h"
 

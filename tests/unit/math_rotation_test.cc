@@ -1,4 +1,5 @@
-// Quaternions, matrices, rotation vectors and Euler angles: each of them from the others, and at their singular places.
+// Quaternions, matrices, rotation vectors and Euler angles: each of them from the others, and at their
+// singular places.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -84,7 +85,8 @@ TEST(Rotation, TheDerivativeIsThatOfATurningBody) {
   EXPECT_NEAR(rate.z, (after.z - before.z) / (2.0 * h), 1e-10);
 }
 
-// With the middle angle anywhere, the ends among it: there the outer two angles are one turn, all of it the last.
+// With the middle angle anywhere, the ends among it: there the outer two angles are one turn, all of it the
+// last.
 constexpr double kMiddle[] = {-0.5 * kPi, -1.2, -0.3, 0.0, 0.7, 1.5, 0.5 * kPi};
 
 using Angles = std::array<double, 3>;

@@ -87,7 +87,8 @@ TEST(BoundedProblem, EachPartIsNamed) {
             prefix + "lower[1] is -inf; allowed is a finite number");
   EXPECT_EQ(ProblemError([](BoundedProblem& p) { p.upper[0] = -0.5; }),
             prefix + "upper[0] is -0.5; allowed is a finite number of at least lower[0] = 0");
-  EXPECT_EQ(ProblemError([](BoundedProblem& p) { p.together = 0; }), prefix + "together is 0; allowed is at least 1");
+  EXPECT_EQ(ProblemError([](BoundedProblem& p) { p.together = 0; }),
+            prefix + "together is 0; allowed is at least 1");
   EXPECT_EQ(ProblemError([](BoundedProblem& p) { p.evaluate = nullptr; }),
             prefix + "evaluate is empty; allowed is a function");
 }

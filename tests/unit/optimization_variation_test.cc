@@ -130,7 +130,8 @@ TEST(Mutated, NearABoundIsTheMirrorImageOfNearTheOther) {
     farthest = std::fmax(farthest, high);
     on_bound += low == 0.0 || high == 0.0;
   }
-  // The change has a deviation below 0.9, its mean over the draws below 0.015: 4 of the difference of two are asked.
+  // The change has a deviation below 0.9, its mean over the draws below 0.015: 4 of the difference of two are
+  // asked.
   EXPECT_NEAR(high_mean, low_mean, 0.085);
   EXPECT_GT(farthest, 2.0) << "most of the range can be crossed";
   EXPECT_EQ(on_bound, 0) << "nothing piles up on a bound";

@@ -127,8 +127,10 @@ TEST_F(ReportPageTest, ShowsTheNumbersOfTheSummary) {
 TEST_F(ReportPageTest, NumbersItsPrintedPagesAndNamesTheCampaignOnEach) {
   Build(40, 40);
   // A name cannot leave the string that it stands in.
-  EXPECT_THAT(page_, HasSubstr("@bottom-left { content: \"Dispersion campaign made \\00003cup> & \\000022quoted\\000022 · " +
-                               std::string(16, '1') + "\"; }"));
+  EXPECT_THAT(
+      page_,
+      HasSubstr("@bottom-left { content: \"Dispersion campaign made \\00003cup> & \\000022quoted\\000022 · " +
+                std::string(16, '1') + "\"; }"));
   EXPECT_THAT(page_, HasSubstr("counter(page) \" / \" counter(pages)"));
 }
 
@@ -162,7 +164,8 @@ TEST_F(ReportPageTest, NeedsNothingButItself) {
   Build(40, 40);
   EXPECT_THAT(page_, Not(HasSubstr("://")));
   EXPECT_THAT(page_, Not(HasSubstr(" src=")));
-  for (const char* reach : {"fetch(", "XMLHttpRequest", "import(", "import ", "eval(", "document.write", "WebSocket"})
+  for (const char* reach :
+       {"fetch(", "XMLHttpRequest", "import(", "import ", "eval(", "document.write", "WebSocket"})
     EXPECT_THAT(page_, Not(HasSubstr(reach)));
   EXPECT_THAT(page_, Not(HasSubstr("<link")));
   EXPECT_THAT(page_, Not(HasSubstr("url(")));
@@ -204,7 +207,8 @@ TEST_F(ReportPageTest, SaysWhatIsMissing) {
   Build(40, 39);
   EXPECT_THAT(page_, HasSubstr("39 of 40 cases have a result; 1 are quarantined."));
   EXPECT_THAT(page_, HasSubstr("<span class=\"badge incomplete\">… incomplete</span>"));
-  for (const std::string& warning : Warnings(summary_)) EXPECT_THAT(page_, HasSubstr("<li>" + HtmlText(warning)));
+  for (const std::string& warning : Warnings(summary_))
+    EXPECT_THAT(page_, HasSubstr("<li>" + HtmlText(warning)));
 }
 
 TEST_F(ReportPageTest, StandsWithoutTimeHistories) {

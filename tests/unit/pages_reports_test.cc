@@ -6,8 +6,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "core/cases/campaign_flights.h"
 #include "core/campaign_yaml/load.h"
+#include "core/cases/campaign_flights.h"
 #include "core/flight/engine_version.h"
 #include "core/results/database.h"
 #include "tests/unit/made_up_results.h"
@@ -158,9 +158,9 @@ TEST(Reports, NeedTheEngineThatFlew) {
     WriteReports(folder, TheCampaign());
     FAIL() << "written";
   } catch (const InputError& error) {
-    EXPECT_EQ(error.what(), (temporary / "out").string() + ": flown by engine 0.0.0+older, this one is " +
-                                EngineVersion() +
-                                ": its flights cannot be flown again, allowed: the engine that flew it, or --no-histories");
+    EXPECT_EQ(error.what(),
+              (temporary / "out").string() + ": flown by engine 0.0.0+older, this one is " + EngineVersion() +
+                  ": its flights cannot be flown again, allowed: the engine that flew it, or --no-histories");
   }
 }
 

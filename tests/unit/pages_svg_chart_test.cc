@@ -48,7 +48,8 @@ TEST(ChartScale, CountsDecades) {
 }
 
 TEST(ChartScale, SkipsDecadesWhoseLabelsWouldRunTogether) {
-  const ChartScale scale({.label = "p", .low = 1e-9, .high = 1e6, .logarithmic = true}, 0.0, 0.0, 0.0, 1.0, 4);
+  const ChartScale scale({.label = "p", .low = 1e-9, .high = 1e6, .logarithmic = true}, 0.0, 0.0, 0.0, 1.0,
+                         4);
   EXPECT_THAT(Labels(scale), ElementsAre("1e-08", "0.0001", "1", "10000"));
 }
 
@@ -96,7 +97,7 @@ TEST(SvgChart, SaysWhatItShows) {
 TEST(SvgChart, NamesALimitThatLiesTooFarToBeDrawnBesideTheData) {
   SvgChart chart({.label = "x"}, {.label = "y"});
   chart.Line({1.0, 1.5, 2.0}, {0.0, 1.0, 0.5}, "line-0", "");
-  chart.VerticalLimit(2.9, "near");    // less than the data's width away
+  chart.VerticalLimit(2.9, "near");  // less than the data's width away
   chart.VerticalLimit(10.0, "high");
   chart.VerticalLimit(-9.0, "low");
   chart.HorizontalLimit(5.0, "tall");
@@ -105,7 +106,7 @@ TEST(SvgChart, NamesALimitThatLiesTooFarToBeDrawnBesideTheData) {
   EXPECT_THAT(svg, HasSubstr(">high (far to the right)<"));
   EXPECT_THAT(svg, HasSubstr(">low (far to the left)<"));
   EXPECT_THAT(svg, HasSubstr(">tall (far above)<"));
-  EXPECT_THAT(svg, Not(HasSubstr(">10<")));   // the axis ends before it
+  EXPECT_THAT(svg, Not(HasSubstr(">10<")));      // the axis ends before it
   EXPECT_EQ(Count(svg, "class=\"limit\""), 5u);  // four in the legend, one drawn
 }
 

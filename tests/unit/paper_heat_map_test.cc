@@ -70,7 +70,8 @@ TEST(PaperHeatMap, GrowsUpwardsAndNamesTheRowOfEachCell) {
   map.framed_x = 10;
   map.framed_y = 4;
   const std::string svg = HeatMapSvg(map, "");
-  for (const auto& [row, left, right] : {std::tuple{"2", "11.0", "12.0"}, {"4", "21.0", "22.0"}, {"8", "31.0", "32.0"}}) {
+  for (const auto& [row, left, right] :
+       {std::tuple{"2", "11.0", "12.0"}, {"4", "21.0", "22.0"}, {"8", "31.0", "32.0"}}) {
     EXPECT_EQ(HeightOf(svg, left), HeightOf(svg, row));
     EXPECT_EQ(HeightOf(svg, right), HeightOf(svg, row));
   }

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "core/cases/campaign_flights.h"
 #include "core/campaign_yaml/load.h"
+#include "core/cases/campaign_flights.h"
 
 namespace dispersa::paper_study_flights_test {
 namespace {

@@ -53,7 +53,8 @@ TEST(LatinHypercube, EachDimensionHasAPermutationOfItsOwn) {
   const LatinHypercube design(1, 100, {"thrust", "wind"});
   int same_stratum = 0;
   for (std::uint64_t i = 0; i < 100; ++i)
-    same_stratum += static_cast<int>(100.0 * design.Uniform(i, 0)) == static_cast<int>(100.0 * design.Uniform(i, 1));
+    same_stratum +=
+        static_cast<int>(100.0 * design.Uniform(i, 0)) == static_cast<int>(100.0 * design.Uniform(i, 1));
   EXPECT_LT(same_stratum, 7) << "1 is expected of independent permutations";
 }
 

@@ -77,7 +77,8 @@ TEST(ReportCaseColumns, OfManyLostFlightsTheFirstAreListed) {
   }
   folder.Append(results);
   std::uint64_t seen = 0;
-  const CaseColumns cases = ReadColumns(folder, {3}, [&seen](const CaseResult& result) { seen += result.case_index; });
+  const CaseColumns cases =
+      ReadColumns(folder, {3}, [&seen](const CaseResult& result) { seen += result.case_index; });
   EXPECT_EQ(cases.lost_flights.size(), kListedLostFlights);
   EXPECT_EQ(LostCount(cases), kLost);
   EXPECT_EQ(seen, kLost * (kLost - 1) / 2);

@@ -272,9 +272,10 @@ TEST(ResultFolder, RefusesColumnsOfAnotherEngine) {
 
 TEST(ResultFolder, IsWrittenByOneProcessAtATime) {
   TemporaryFolder temporary;
-  const std::string busy = (temporary / "out").string() +
-                           ": another dispersa process is writing this folder, allowed: another folder, or to "
-                           "wait for that process to end";
+  const std::string busy =
+      (temporary / "out").string() +
+      ": another dispersa process is writing this folder, allowed: another folder, or to "
+      "wait for that process to end";
   {
     const ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(2));
     EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Resume(temporary / "out", MakeCampaign(2)); }), busy);

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "core/cases/campaign_flights.h"
 #include "core/campaign_yaml/load.h"
+#include "core/cases/campaign_flights.h"
 #include "core/flight/flight.h"
 #include "core/search/smallest_failure.h"
 
@@ -34,8 +34,9 @@ TEST(SmallestFailure, FindsAPlantedCauseInFlight) {
     for (const FlightInputs& inputs : space.Inputs(points)) orders.push_back({inputs, {}});
     std::vector<double> margins;
     for (const FlightResult& flown : FlyAll(flights.model(), orders))
-      margins.push_back(flown.outcome == Outcome::kCompleted ? kLimit_deg - flown.metrics[MetricColumn(kMetric)]
-                                                             : std::nan(""));
+      margins.push_back(flown.outcome == Outcome::kCompleted
+                            ? kLimit_deg - flown.metrics[MetricColumn(kMetric)]
+                            : std::nan(""));
     return margins;
   };
   FailureSearchOptions options;
@@ -47,7 +48,8 @@ TEST(SmallestFailure, FindsAPlantedCauseInFlight) {
   EXPECT_FALSE(margins_at({found.point})[0] > 0.0);
   const double share = found.point[cause] * found.point[cause] / (found.distance * found.distance);
   EXPECT_GT(share, 0.9);
-  // The cause alone, in the direction that was found, fails not much farther out, and half of it does not fail.
+  // The cause alone, in the direction that was found, fails not much farther out, and half of it does not
+  // fail.
   std::vector<double> alone(found.point.size(), 0.0);
   for (std::size_t i = 0; i < alone.size(); ++i)
     if (space.coordinates()[i].kind == CoordinateKind::kDirection) alone[i] = found.point[i];

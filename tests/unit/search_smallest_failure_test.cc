@@ -65,13 +65,13 @@ TEST(SmallestFailure, KeepsOnlyWhatTheFailureNeeds) {
   const FailureSearchResult found = FindSmallestFailure(Normals(30), cliff.At(), {});
   ASSERT_TRUE(found.found);
   EXPECT_NEAR(found.distance, 2.5, 0.02);
-  for (std::size_t i = 0; i < 30; ++i)
-    EXPECT_TRUE(i == 3 || found.point[i] == 0.0) << i;
+  for (std::size_t i = 0; i < 30; ++i) EXPECT_TRUE(i == 3 || found.point[i] == 0.0) << i;
 }
 
 TEST(SmallestFailure, DirectionsAddNoDistance) {
   // The magnitude x0 fails above 2 / cos of the angle between the direction and 1 rad.
-  std::vector<Coordinate> coordinates = {{"magnitude", CoordinateKind::kNormal}, {"clock", CoordinateKind::kDirection}};
+  std::vector<Coordinate> coordinates = {{"magnitude", CoordinateKind::kNormal},
+                                         {"clock", CoordinateKind::kDirection}};
   Counted turned{[](const Point& x) {
     const double angle = 2.0 * kPi * 0.5 * std::erfc(-x[1] / std::sqrt(2.0));
     return 2.0 - std::fabs(x[0]) * std::cos(angle - 1.0);

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include <boost/math/quadrature/tanh_sinh.hpp>
 #include <gtest/gtest.h>
+#include <boost/math/quadrature/tanh_sinh.hpp>
 
 namespace dispersa::statistics_anytime_test {
 namespace {
@@ -19,8 +19,8 @@ TEST(Anytime, EvidenceIsTheMixtureOfLikelihoodRatios) {
     const double limit = 1.0 - probability;
     for (const auto& [n, failures] : {std::pair{10, 0}, {200, 3}, {900, 1}}) {
       const double passing = integrator.integrate(
-          [&](double p) { return Ratio(p, limit, n, failures) / (2.0 * std::sqrt(limit) * std::sqrt(p)); }, 0.0,
-          limit);
+          [&](double p) { return Ratio(p, limit, n, failures) / (2.0 * std::sqrt(limit) * std::sqrt(p)); },
+          0.0, limit);
       EXPECT_NEAR(PassEvidence(probability, n, failures), std::log(passing), 1e-8);
       if (failures == 0) continue;
       const double failing = integrator.integrate(

@@ -49,7 +49,8 @@ TEST(Estimates, OfAProbabilityLieInsideItsLimits) {
         EXPECT_NEAR(mirrored.lower, 1.0 - limits.upper, kRounding) << what;
         // Without an event, and with nothing else, the limit is in closed form: (1 - p)^n = the tail.
         if (events == 0) {
-          EXPECT_NEAR(limits.upper, 1.0 - std::pow(0.5 - 0.5 * confidence, 1.0 / static_cast<double>(n)), kRounding);
+          EXPECT_NEAR(limits.upper, 1.0 - std::pow(0.5 - 0.5 * confidence, 1.0 / static_cast<double>(n)),
+                      kRounding);
         }
       }
       for (const double risk : {0.01, 0.1, 0.3}) {
@@ -71,7 +72,8 @@ TEST(Estimates, OfReplicatesLieInsideTheirBounds) {
     std::vector<std::int64_t> counts;
     double events = 0.0;
     for (std::size_t k = 0; k < 2 + seed % 9; ++k) {
-      counts.push_back(static_cast<std::int64_t>(21.0 * stream.Uniform() * static_cast<double>(seed % 4) / 3.0));
+      counts.push_back(
+          static_cast<std::int64_t>(21.0 * stream.Uniform() * static_cast<double>(seed % 4) / 3.0));
       events += static_cast<double>(counts.back());
     }
     ExpectHolds(ReplicateBounds(counts, 20, 0.1), events / (20.0 * static_cast<double>(counts.size())),
@@ -120,7 +122,8 @@ TEST(Estimates, OfAnIndexLieInsideItsInterval) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const std::vector<double> x = Sample(300, "x", seed), noise = Sample(300, "noise", seed + 1);
     std::vector<double> y;
-    for (std::size_t k = 0; k < x.size(); ++k) y.push_back(static_cast<double>(seed) / 10.0 * x[k] + noise[k]);
+    for (std::size_t k = 0; k < x.size(); ++k)
+      y.push_back(static_cast<double>(seed) / 10.0 * x[k] + noise[k]);
     const SensitivityIndex index = FirstOrderIndex(x, y);
     EXPECT_LE(index.low, index.index) << seed;
     EXPECT_GE(index.high, index.index) << seed;

@@ -61,8 +61,8 @@ TEST(GroupSequential, OneLookIsTheExactBinomial) {
   }
 }
 
-// A pass at 852 cases without a failure, else at 1440 with one: what "cases needed" leads to when it is followed
-// after each look. Stated 10 %.
+// A pass at 852 cases without a failure, else at 1440 with one: what "cases needed" leads to when it is
+// followed after each look. Stated 10 %.
 TEST(GroupSequential, FollowingCasesNeededHasTheRiskThatItHas) {
   std::vector<LookBoundary> looks;
   for (std::int64_t failures = 0; failures < 40; ++failures) {
@@ -71,7 +71,8 @@ TEST(GroupSequential, FollowingCasesNeededHasTheRiskThatItHas) {
     const double risk = PassRisk(0.9973, looks);
     // P(0 of 852) + P(1 or more of 852, and at most 1 of 1440), which is one of 852 and none of 588.
     const double none = std::pow(0.9973, 852);
-    const double one_more = failures == 0 ? 0.0 : 852 * 0.0027 * std::pow(0.9973, 851) * std::pow(0.9973, 588);
+    const double one_more =
+        failures == 0 ? 0.0 : 852 * 0.0027 * std::pow(0.9973, 851) * std::pow(0.9973, 588);
     if (failures <= 1) {
       EXPECT_NEAR(risk, none + one_more, 1e-12);
     }
@@ -84,7 +85,8 @@ TEST(GroupSequential, PlannedLooksSpendNoMoreThanTheirRisk) {
     for (const double risk : {0.01, 0.1, 0.4}) {
       for (const Spending spending : {Spending::kOBrienFleming, Spending::kPocock}) {
         for (const std::int64_t count : {2, 5, 20}) {
-          const auto looks = Boundaries({PlanKind::kGroupSequential, count, spending}, probability, risk, 3000);
+          const auto looks =
+              Boundaries({PlanKind::kGroupSequential, count, spending}, probability, risk, 3000);
           ASSERT_EQ(std::ssize(looks), count);
           EXPECT_LE(PassRisk(probability, looks), risk + 1e-12);
           EXPECT_LE(FailRisk(probability, looks), risk + 1e-12);
@@ -109,8 +111,8 @@ TEST(GroupSequential, PlannedLooksSpendNoMoreThanTheirRisk) {
   }
 }
 
-// O'Brien and Fleming's spending by its formula at half the cases, risk 10 %: 2 - 2 Phi(1.644854 / sqrt 0.5) =
-// 0.02001, to which the first of two looks keeps.
+// O'Brien and Fleming's spending by its formula at half the cases, risk 10 %: 2 - 2 Phi(1.644854 / sqrt 0.5)
+// = 0.02001, to which the first of two looks keeps.
 TEST(GroupSequential, OBrienFlemingSpendsLittleEarly) {
   const auto looks = Boundaries({PlanKind::kGroupSequential, 2, Spending::kOBrienFleming}, 0.9, 0.10, 1000);
   EXPECT_LE(ConsumerRisk(0.9, 500, looks[0].accept), 0.02001);

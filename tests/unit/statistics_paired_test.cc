@@ -73,7 +73,8 @@ TEST(ComparePaired, RatiosNeedPositiveValues) {
 
 TEST(ComparePaired, RatiosOfLostFlightsAndOfOnePair) {
   // Both lost: neither is worse, in the difference and in the ratio.
-  const PairedDifference both = ComparePaired({kUndefined, kUndefined, 1.0}, {kUndefined, kUndefined, 4.0}, 0.9);
+  const PairedDifference both =
+      ComparePaired({kUndefined, kUndefined, 1.0}, {kUndefined, kUndefined, 4.0}, 0.9);
   EXPECT_EQ(both.median_difference, 0.0);
   EXPECT_EQ(both.median_ratio, 1.0);
   // One pair bounds nothing: a ratio is above 0 all the same.

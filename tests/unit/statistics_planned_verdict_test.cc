@@ -85,7 +85,8 @@ TEST(OneLookPlan, MissingCasesAreBounded) {
   EXPECT_EQ(OneLook(2500, 9, 500).verdict, Verdict::kInconclusive);
 }
 
-// Three cases without a result of ten: at worst they failed, at best they met. P(X >= 7 of 10) = 10 % bounds the one.
+// Three cases without a result of ten: at worst they failed, at best they met. P(X >= 7 of 10) = 10 % bounds
+// the one.
 TEST(OneLookPlan, BoundsTakeAMissingCaseForTheWorseOfBoth) {
   const PlannedVerdict open = OneLook(10, 0, 3);
   EXPECT_EQ(open.success_upper, 1.0);
@@ -166,12 +167,13 @@ TEST(AnytimePlan, MayBeReadAtEveryCase) {
   EXPECT_EQ(Decide(planned, 1, Failing(1)).verdict, Verdict::kFail);
 }
 
-// What it may decide at any time it is asked at each number of three significant digits: 1104 cases without a failure are
-// enough, 1110 is the first such number.
+// What it may decide at any time it is asked at each number of three significant digits: 1104 cases without a
+// failure are enough, 1110 is the first such number.
 TEST(AnytimePlan, IsAskedAtNumbersOfThreeDigits) {
   ASSERT_EQ(AnytimeCasesNeeded(0.9973, 0.10, 0), 1104);
   const PlannedVerdict verdict = Decide({0.9973, 0.10, kAnytime, 0}, 3000, Failing(0));
-  EXPECT_THAT(verdict.looks, ElementsAre(Look{1110, 0, true, Verdict::kPass}, Look{3000, 0, true, Verdict::kPass}));
+  EXPECT_THAT(verdict.looks,
+              ElementsAre(Look{1110, 0, true, Verdict::kPass}, Look{3000, 0, true, Verdict::kPass}));
 }
 
 TEST(Together, HolmKeepsTheRiskOfAll) {

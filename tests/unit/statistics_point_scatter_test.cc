@@ -68,8 +68,9 @@ TEST(PointScatter, NoneWithoutSpread) {
   EXPECT_TRUE(ContainmentOf(few, PointScatterOf(few), {0.95}).empty());
 }
 
-// Of points in any direction: turned back by its angle, the ellipse's axes are the points' covariance, and every point of
-// its outline is as far away in units of that covariance. The outline runs counterclockwise, as GeoJSON asks of a ring.
+// Of points in any direction: turned back by its angle, the ellipse's axes are the points' covariance, and
+// every point of its outline is as far away in units of that covariance. The outline runs counterclockwise,
+// as GeoJSON asks of a ring.
 TEST(PointScatter, EllipsesHaveTheCovarianceOfTheirPoints) {
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
     Stream stream(seed, 0, "made up");
@@ -77,7 +78,8 @@ TEST(PointScatter, EllipsesHaveTheCovarianceOfTheirPoints) {
     const double tilt = stream.Uniform() * 6.28, stretch = 0.1 + 5.0 * stream.Uniform();
     for (int i = 0; i < 20; ++i) {
       const double x = stretch * stream.Normal(), y = stream.Normal();
-      points.push_back({7.0 + std::cos(tilt) * x - std::sin(tilt) * y, -3.0 + std::sin(tilt) * x + std::cos(tilt) * y});
+      points.push_back(
+          {7.0 + std::cos(tilt) * x - std::sin(tilt) * y, -3.0 + std::sin(tilt) * x + std::cos(tilt) * y});
     }
     const PointScatter scatter = PointScatterOf(points);
     const auto& C = scatter.covariance;
@@ -96,7 +98,8 @@ TEST(PointScatter, EllipsesHaveTheCovarianceOfTheirPoints) {
     double twice_area = 0.0;
     for (std::size_t i = 0; i + 1 < outline.size(); ++i) {
       const double x = outline[i][0] - scatter.mean[0], y = outline[i][1] - scatter.mean[1];
-      EXPECT_NEAR((C[1][1] * x * x - 2.0 * C[0][1] * x * y + C[0][0] * y * y) / determinant, kScale, 1e-9) << seed;
+      EXPECT_NEAR((C[1][1] * x * x - 2.0 * C[0][1] * x * y + C[0][0] * y * y) / determinant, kScale, 1e-9)
+          << seed;
       twice_area += outline[i][0] * outline[i + 1][1] - outline[i + 1][0] * outline[i][1];
     }
     // 36 corners leave 0.5 % of an ellipse's area out.

@@ -1,4 +1,5 @@
-// Sensitivity on functions whose indices are known in closed form, and on dependences that correlation misses.
+// Sensitivity on functions whose indices are known in closed form, and on dependences that correlation
+// misses.
 #include "core/statistics/sensitivity.h"
 
 #include <cmath>
@@ -32,11 +33,13 @@ TEST(FirstOrderIndex, OfTheIshigamiFunction) {
   const auto x = Uniform(3, n, -pi, pi);
   std::vector<double> y(n);
   for (std::size_t k = 0; k < n; ++k) {
-    y[k] = std::sin(x[0][k]) + 7.0 * std::pow(std::sin(x[1][k]), 2) + 0.1 * std::pow(x[2][k], 4) * std::sin(x[0][k]);
+    y[k] = std::sin(x[0][k]) + 7.0 * std::pow(std::sin(x[1][k]), 2) +
+           0.1 * std::pow(x[2][k], 4) * std::sin(x[0][k]);
   }
   const double a = 7.0, b = 0.1;
   const double variance = a * a / 8.0 + b * std::pow(pi, 4) / 5.0 + b * b * std::pow(pi, 8) / 18.0 + 0.5;
-  const double exact[] = {0.5 * std::pow(1.0 + b * std::pow(pi, 4) / 5.0, 2) / variance, a * a / 8.0 / variance, 0.0};
+  const double exact[] = {0.5 * std::pow(1.0 + b * std::pow(pi, 4) / 5.0, 2) / variance,
+                          a * a / 8.0 / variance, 0.0};
   for (std::size_t i = 0; i < 3; ++i) {
     const SensitivityIndex index = FirstOrderIndex(x[i], y);
     // Noise of 8000 cases, and what the classes smooth away: together two per cent of the variance.
@@ -83,8 +86,8 @@ TEST(FirstOrderIndex, TheIntervalHoldsWhatItSays) {
   EXPECT_LE(covered, 199);
 }
 
-// The mean of y within k classes of n cases varies by chance alone: by (k - 1) / (n - 1) of the variance, 9 % of 100 cases
-// in 10 classes. The degrees of freedom take it off.
+// The mean of y within k classes of n cases varies by chance alone: by (k - 1) / (n - 1) of the variance, 9 %
+// of 100 cases in 10 classes. The degrees of freedom take it off.
 TEST(FirstOrderIndex, OfAnIdleInputIsZeroOnAverage) {
   constexpr int kRepetitions = 400;
   double shares = 0.0, indices = 0.0;
@@ -135,7 +138,8 @@ TEST(FirstOrderIndex, GroupsOfManyCasesGiveTheSameInterval) {
 
 TEST(Ranks, ShareTheMeanOfTies) {
   EXPECT_THAT(Ranked(std::vector{3.0, 1.0, 3.0, 2.0}).ranks(), ElementsAre(3.5, 1.0, 3.5, 2.0));
-  EXPECT_DOUBLE_EQ(RankCorrelation(std::vector<double>{1, 2, 3, 4}, std::vector<double>{10, 100, 1000, 10000}), 1.0);
+  EXPECT_DOUBLE_EQ(
+      RankCorrelation(std::vector<double>{1, 2, 3, 4}, std::vector<double>{10, 100, 1000, 10000}), 1.0);
   EXPECT_DOUBLE_EQ(RankCorrelation(std::vector<double>{1, 2, 3, 4}, std::vector<double>{1, 1, 1, 1}), 0.0);
 }
 

@@ -43,7 +43,7 @@ TEST(TwoSamples, HolmStepsDownAndLeavesOutWhatIsNoTest) {
 TEST(TwoSamples, LimitsJoinAsSidesOfATriangle) {
   // Independent: 3-4-5. Fully correlated: the difference of the reaches.
   const Interval independent = DifferenceLimits(10.0, {7.0, 14.0}, 20.0, {17.0, 23.0}, 0.0);
-  EXPECT_DOUBLE_EQ(independent.lower, 10.0 - 5.0);            // of b below 3, of a above 4
+  EXPECT_DOUBLE_EQ(independent.lower, 10.0 - 5.0);              // of b below 3, of a above 4
   EXPECT_DOUBLE_EQ(independent.upper, 10.0 + std::sqrt(18.0));  // of b above 3, of a below 3
   EXPECT_DOUBLE_EQ(DifferenceLimits(10.0, {7.0, 14.0}, 20.0, {17.0, 23.0}, 1.0).lower, 9.0);
   EXPECT_EQ(DifferenceLimits(10.0, {7.0, kInfinity}, 20.0, {17.0, 23.0}, 0.0).lower, -kInfinity);
@@ -54,7 +54,8 @@ TEST(TwoSamples, ASampleThatDoesNotReachAPercentileGivesNone) {
   for (int i = 0; i < 100; ++i) b[i] = (a[i] = i) + 0.5;
   const QuantileDifference median = CompareQuantiles(a, b, 0.5, 0.95, true);
   EXPECT_DOUBLE_EQ(median.difference, 0.5);
-  // Each pair lies on the same side of its quantile: fully correlated, and nothing is left of either interval.
+  // Each pair lies on the same side of its quantile: fully correlated, and nothing is left of either
+  // interval.
   EXPECT_NEAR(median.interval.lower, 0.5, 1e-12);
   EXPECT_NEAR(median.interval.upper, 0.5, 1e-12);
   EXPECT_FALSE(std::isfinite(CompareQuantiles(a, b, 0.9973, 0.95, true).difference));
@@ -68,7 +69,8 @@ TEST(TwoSamples, ASampleThatDoesNotReachAPercentileGivesNone) {
 
 // A percentile has an estimate from the number of values on that leaves one of them beyond it.
 TEST(TwoSamples, APercentileIsReachedByOneValueBeyondIt) {
-  for (const auto& [probability, needed] : {std::pair{0.99, 100}, {0.95, 20}, {0.01, 100}, {0.05, 20}, {0.5, 2}}) {
+  for (const auto& [probability, needed] :
+       {std::pair{0.99, 100}, {0.95, 20}, {0.01, 100}, {0.05, 20}, {0.5, 2}}) {
     std::vector<double> values;
     for (int i = 0; i < needed; ++i) values.push_back(i);
     EXPECT_TRUE(std::isfinite(CompareQuantiles(values, values, probability, 0.95, false).a)) << probability;
@@ -98,8 +100,8 @@ TEST(TwoSamples, SwappingTurnsSigns) {
   EXPECT_LT(paired.upper - paired.lower, 0.8 * (unpaired.upper - unpaired.lower));
 }
 
-// 95 % of skewed samples, paired and not: the limits miss the truth no more often than stated, and the test of two equal
-// tails errs no more often. `tests/run --long -R Coverage` does it 20,000 times.
+// 95 % of skewed samples, paired and not: the limits miss the truth no more often than stated, and the test
+// of two equal tails errs no more often. `tests/run --long -R Coverage` does it 20,000 times.
 TEST(TwoSamples, TailLimitsCoverTheTruth) {
   constexpr int kReplicates = 1000;
   for (const bool paired : {true, false}) {

@@ -31,7 +31,8 @@ BeamMassProperties BeamWeight(const Vehicle& vehicle, int stage, double propella
   beam.masses = BuildBeamMasses(vehicle, stage, propellant_kg);
   // One mesh for all levels, as BuildBendingModes has it.
   const double full_kg = vehicle.stages[static_cast<std::size_t>(stage)].propellant_mass_kg;
-  const std::vector<double> stations = MeshStations(beam.sections, BuildBeamMasses(vehicle, stage, full_kg), 30);
+  const std::vector<double> stations =
+      MeshStations(beam.sections, BuildBeamMasses(vehicle, stage, full_kg), 30);
   return MassPropertiesOf(MassMatrix(beam, stations, BuildElements(beam, BeamPlane::kY, stations)), stations);
 }
 

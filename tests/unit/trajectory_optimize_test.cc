@@ -1,5 +1,6 @@
 // The optimiser as its users see it: the target met to the metre, the same bytes for any number of threads, a
-// plain statement when a target is out of reach. `dispersa optimize campaigns/slv4_500km.yaml --seeds 20` does the first for 20 seeds.
+// plain statement when a target is out of reach. `dispersa optimize campaigns/slv4_500km.yaml --seeds 20`
+// does the first for 20 seeds.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -47,7 +48,8 @@ const OrbitErrors kMetre = {1.0, 1e-3, 1e-6 * kRadPerDeg};
 OrbitErrors FlyAgain(const OptimizationInput& input, const Reference& reference) {
   const TrajectoryOptions options = OptionsFor(input, 1);
   const AscentModel model = BuildAscentModel(input.vehicle, options.tick_s);
-  return ErrorsOf(reference.problem, BuildReference(model, reference.problem, reference.program, options).orbit);
+  return ErrorsOf(reference.problem,
+                  BuildReference(model, reference.problem, reference.program, options).orbit);
 }
 
 TEST(OptimizeTrajectory, MeetsTheTargetToTheMetreAndStillDoesAfterTheFileIsReadBack) {

@@ -1,5 +1,5 @@
-// The refinement finds the one program of its unknowns that meets the target, from wherever the search ended, in a
-// few steps; and the attitude program that comes of it has a knot at every kink.
+// The refinement finds the one program of its unknowns that meets the target, from wherever the search ended,
+// in a few steps; and the attitude program that comes of it has a knot at every kink.
 #include "core/trajectory/refine.h"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,8 @@ TEST(RefineProgram, FindsTheSameProgramFromAroundInAFewSteps) {
     EXPECT_EQ(refined.status, LeastSquaresStatus::kConverged);
     EXPECT_TRUE(refined.held_at_bound.empty());
     EXPECT_TRUE(IsWithin(ErrorsOf(shipped.input.problem, ascent.orbit), shipped.options.tolerance));
-    // A metre of altitude, a millimetre a second and a microdegree: what the tolerances leave of each unknown.
+    // A metre of altitude, a millimetre a second and a microdegree: what the tolerances leave of each
+    // unknown.
     EXPECT_NEAR(program.alpha_max_rad, shipped.program.alpha_max_rad, 1e-6);
     EXPECT_NEAR(program.coast_s, shipped.program.coast_s, 1e-3);
     EXPECT_NEAR(program.launch_azimuth_rad, shipped.program.launch_azimuth_rad, 1e-6);
@@ -77,11 +78,12 @@ TEST(AscentRecord, HasAKnotWhereTheProgramsSlopeChanges) {
   AscentOptions options;
   options.record = true;
   const AscentResult ascent = FlyAscent(shipped.model, shipped.program, options);
-  for (const double kink_s : {shipped.program.t1_s, shipped.program.t3_s, shipped.program.t2_s, ascent.last_ignition_s}) {
+  for (const double kink_s :
+       {shipped.program.t1_s, shipped.program.t3_s, shipped.program.t2_s, ascent.last_ignition_s}) {
     const auto& knots = ascent.attitude.knots;
-    EXPECT_TRUE(std::any_of(knots.begin(), knots.end(),
-                            [&](const AttitudeKnot& knot) { return std::fabs(knot.time_s - kink_s) < 1e-9; }))
-        << kink_s;
+    EXPECT_TRUE(std::any_of(knots.begin(), knots.end(), [&](const AttitudeKnot& knot) {
+      return std::fabs(knot.time_s - kink_s) < 1e-9;
+    })) << kink_s;
   }
 }
 

@@ -34,7 +34,8 @@ TEST(AscentSamples, SpeedsAnglesAndLoadsAreThoseOfTheirState) {
     }
     // The last motor above the air: thrust over weight at the standard gravity.
     if (s.stage < 4 || s.axial_load_g < 1.0) continue;
-    EXPECT_NEAR(s.axial_load_g, last.motor.thrust_n / (s.mass_kg * 9.80665), 1e-5 * s.axial_load_g) << s.time_s;
+    EXPECT_NEAR(s.axial_load_g, last.motor.thrust_n / (s.mass_kg * 9.80665), 1e-5 * s.axial_load_g)
+        << s.time_s;
     ++in_last_burn;
   }
   EXPECT_GT(in_last_burn, 10);

@@ -1,4 +1,5 @@
-// The procedure that tunes every law: what it holds, what it refuses, and that nothing but its arguments decides.
+// The procedure that tunes every law: what it holds, what it refuses, and that nothing but its arguments
+// decides.
 #include "core/tuning/tune.h"
 
 #include <gmock/gmock.h>
@@ -6,10 +7,10 @@
 
 #include <cmath>
 
-#include "core/cases/campaign_flights.h"
-#include "core/input/input_error.h"
 #include "core/campaign_yaml/load.h"
+#include "core/cases/campaign_flights.h"
 #include "core/flight/flight_model.h"
+#include "core/input/input_error.h"
 #include "core/margins/flight_margins.h"
 #include "core/tuning/regulator.h"
 #include "core/tuning/stage_design.h"
@@ -37,7 +38,8 @@ Campaign SampleCampaign() {
   misalignment.distribution.kind = Distribution::kNormal;
   misalignment.distribution.sigma = 0.1 * kRadPerDeg;
   misalignment.absolute = true;
-  misalignment.inputs = {FindInput("thrust_misalignment_stage1_deg"), FindInput("thrust_misalignment_stage2_deg")};
+  misalignment.inputs = {FindInput("thrust_misalignment_stage1_deg"),
+                         FindInput("thrust_misalignment_stage2_deg")};
   campaign.dispersions = {misalignment};
   return campaign;
 }
@@ -51,7 +53,8 @@ AutopilotConfig AllPd() {
   return autopilot;
 }
 
-std::string ErrorOf(const Campaign& campaign, const AutopilotConfig& autopilot, const TuningOptions& options) {
+std::string ErrorOf(const Campaign& campaign, const AutopilotConfig& autopilot,
+                    const TuningOptions& options) {
   try {
     Tune(campaign, autopilot, options);
   } catch (const InputError& error) {
@@ -261,14 +264,17 @@ TEST(Tune, SearchesWhatAugmentsPdLastWithinTheSameBudget) {
   TuningOptions options = Small();
   options.evaluations = 48;  // 14 for each of three searches: 8 and one generation of 6
   int last = 0;
-  const TuningResult result = Tune(campaign, augmented, options, [&](const TuningRecord& r) { last = r.stage; });
+  const TuningResult result =
+      Tune(campaign, augmented, options, [&](const TuningRecord& r) { last = r.stage; });
   ASSERT_TRUE(result.feasible);
   ASSERT_TRUE(result.augmentation.has_value());
   EXPECT_EQ(last, 2);
   EXPECT_EQ(result.evaluations, 42u);
   const AdaptiveAugmentation& found = result.autopilot.pitch.augmentation;
-  EXPECT_EQ(found.adaptive_gain_1_s, RoundToDigits(result.augmentation->design.adaptive_gain_1_s, kDesignDigits));
-  EXPECT_EQ(found.maximum_total_gain, RoundToDigits(result.augmentation->design.maximum_total_gain, kDesignDigits));
+  EXPECT_EQ(found.adaptive_gain_1_s,
+            RoundToDigits(result.augmentation->design.adaptive_gain_1_s, kDesignDigits));
+  EXPECT_EQ(found.maximum_total_gain,
+            RoundToDigits(result.augmentation->design.maximum_total_gain, kDesignDigits));
   EXPECT_EQ(found.leakage_1_s, 0.1) << "not searched";
   Campaign tuned = campaign;
   tuned.autopilot = result.autopilot;
@@ -323,7 +329,8 @@ TEST(Tune, NamesTheGateThatItMissesByMost) {
                                     "(gains held|adapting), (roll|pitch|yaw) at [0-9.]+ s( \\(.*\\))?, "
                                     "[0-9]+ % of full thrust"));
   const auto misses = [](const LeastMargins& m) {
-    return m.gain_db < kGainMarginGate_db + kGainReserve_db || m.phase_deg < kPhaseMarginGate_deg + kPhaseReserve_deg ||
+    return m.gain_db < kGainMarginGate_db + kGainReserve_db ||
+           m.phase_deg < kPhaseMarginGate_deg + kPhaseReserve_deg ||
            m.delay_s < kDelayMarginGate_s + kDelayReserve_s;
   };
   EXPECT_TRUE(misses(result.stages[0].frozen) || misses(result.stages[0].adapting));
@@ -332,10 +339,11 @@ TEST(Tune, NamesTheGateThatItMissesByMost) {
   options.evaluations = 2 * 2 * kHeldPopulation;
   result = Tune(campaign, campaign.autopilot, options);
   ASSERT_FALSE(result.feasible);
-  EXPECT_THAT(result.stages[0].missed,
-              testing::MatchesRegex("(the loop is unstable|(gain|phase|delay) margin [0-9]+ % below its gate with "
-                                    "reserve): (nominal plant|plant of draw [01])(, modes at (85|115) %)?, (gains "
-                                    "held|adapting), (roll|pitch|yaw) [0-9.]+ s after ignition"));
+  EXPECT_THAT(
+      result.stages[0].missed,
+      testing::MatchesRegex("(the loop is unstable|(gain|phase|delay) margin [0-9]+ % below its gate with "
+                            "reserve): (nominal plant|plant of draw [01])(, modes at (85|115) %)?, (gains "
+                            "held|adapting), (roll|pitch|yaw) [0-9.]+ s after ignition"));
 }
 
 TEST(Tune, NamesFlightsThatAreLost) {
@@ -362,8 +370,9 @@ TEST(Tune, RefusesTheCampaignsSeedAndWhatIsOutOfRange) {
   const Campaign campaign = SampleCampaign();
   TuningOptions options = Small();
   options.seed = 77;
-  EXPECT_EQ(ErrorOf(campaign, campaign.autopilot, options),
-            "seed: the tuning would see the cases of campaign 'sample', allowed: any but the campaign's own, 77");
+  EXPECT_EQ(
+      ErrorOf(campaign, campaign.autopilot, options),
+      "seed: the tuning would see the cases of campaign 'sample', allowed: any but the campaign's own, 77");
   options = Small();
   options.cases = 0;
   options.evaluations = 31;

@@ -379,7 +379,8 @@ TEST(Drag, FrictionOfABodyIsThatOfAPlateTimesHoernersFormFactor) {
   vehicle.stages[0].motor.nozzle_exit_area_m2 = kPi / 4.0;
   const AeroTable table = BuildAerodynamics(vehicle)[0];
   const double wetted_m2 = Integrate(CutMouldLine(vehicle.profile, 4.0)).wetted_area_m2;
-  const double plate = SkinFrictionCoefficient(0.0, 4.0, vehicle.surface_roughness_m) * wetted_m2 / (kPi / 4.0);
+  const double plate =
+      SkinFrictionCoefficient(0.0, 4.0, vehicle.surface_roughness_m) * wetted_m2 / (kPi / 4.0);
   EXPECT_NEAR(At(table, table.ca, 0.0, 0.0) / plate, 1.296875, 1e-9);
 }
 

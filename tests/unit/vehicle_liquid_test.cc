@@ -1,5 +1,5 @@
-// Liquid stages: masses of tanks that drain against slices of the liquid, burns by throttle, cut-off and depletion
-// against closed forms, and what is wrong with them.
+// Liquid stages: masses of tanks that drain against slices of the liquid, burns by throttle, cut-off and
+// depletion against closed forms, and what is wrong with them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -60,7 +60,8 @@ TEST(DrainingTanks, HaveTheMomentsOfTheirLiquidsAtEveryLevel) {
     EXPECT_NEAR(m.cg_station_m, cg_m, 1e-9);
     EXPECT_NEAR(m.transverse_inertia_kg_m2,
                 stack.fixed_second_moment_kg_m2 + liquid.second_kg_m2 - mass_kg * cg_m * cg_m, 1e-5);
-    EXPECT_EQ(m.axial_inertia_kg_m2, stack.fixed_axial_inertia_kg_m2) << "a smooth wall does not turn the liquid";
+    EXPECT_EQ(m.axial_inertia_kg_m2, stack.fixed_axial_inertia_kg_m2)
+        << "a smooth wall does not turn the liquid";
     EXPECT_EQ(m.axial_inertia_per_kg, 0.0);
   }
 }
@@ -87,7 +88,9 @@ TEST(DrainingTanks, DerivativesAreThoseOfTheMoments) {
   const StackMass stack = BuildStackMasses(LiquidVehicle())[0];
   for (const double kg : {3800.0, 1500.0, 200.0}) {
     const double h = 1.0;
-    const auto slope = [&](double MassProperties::*of) { return (stack.At(kg + h).*of - stack.At(kg - h).*of) / (2.0 * h); };
+    const auto slope = [&](double MassProperties::*of) {
+      return (stack.At(kg + h).*of - stack.At(kg - h).*of) / (2.0 * h);
+    };
     const MassProperties m = stack.At(kg);
     EXPECT_NEAR(m.transverse_inertia_per_kg, slope(&MassProperties::transverse_inertia_kg_m2), 1e-5);
     lanes::StackMassLanes<double> lane;
@@ -105,14 +108,16 @@ TEST(DrainingTanks, AreFullInAStageThatWaitsAndTheSameAlongTheBeam) {
   const StackMass whole = BuildStackMasses(vehicle)[0], upper = BuildStackMasses(vehicle)[1];
   const StackMass solid = BuildStackMasses(SampleVehicle())[0];
   const double grain_m = 7.5, grain_kg = 1000.0;
-  EXPECT_NEAR(whole.fixed_first_moment_kg_m, solid.fixed_first_moment_kg_m - grain_kg * grain_m + liquid.first_kg_m, 1e-6);
+  EXPECT_NEAR(whole.fixed_first_moment_kg_m,
+              solid.fixed_first_moment_kg_m - grain_kg * grain_m + liquid.first_kg_m, 1e-6);
   EXPECT_NEAR(whole.fixed_mass_kg, solid.fixed_mass_kg, 1e-9);
   EXPECT_NEAR(upper.At(1000.0).mass_kg * upper.At(1000.0).cg_station_m - upper.fixed_first_moment_kg_m,
               liquid.first_kg_m, 1e-6);
   for (const double kg : {1000.0, 321.0}) {
     double mass_kg = 0.0, first_kg_m = 0.0;
     for (const SpreadMass& m : BuildBeamMasses(vehicle, 1, kg).spread) {
-      const double length_m = m.bottom_station_m - m.top_station_m, middle_m = 0.5 * (m.top_station_m + m.bottom_station_m);
+      const double length_m = m.bottom_station_m - m.top_station_m,
+                   middle_m = 0.5 * (m.top_station_m + m.bottom_station_m);
       mass_kg += length_m * m.MassPerLength(middle_m);
       first_kg_m += length_m * m.MassPerLength(middle_m) * middle_m;
     }
@@ -127,7 +132,8 @@ MotorBurn BurnWith(const std::function<void(Motor&)>& change, double thrust = 1.
   return BuildBurn(stage, thrust, flow);
 }
 
-// What is left falls by the integral of the flow; levels are linear between the steps, so the midpoint rule is exact.
+// What is left falls by the integral of the flow; levels are linear between the steps, so the midpoint rule
+// is exact.
 void ExpectFlowToFit(const MotorBurn& burn) {
   const int steps = 2000;
   const double step_s = burn.duration_s / steps;
@@ -182,8 +188,9 @@ TEST(LiquidBurn, FollowsItsThrottleAndHoldsTheLastLevel) {
 // Depletion within the last ramp: 100 kg and 20 s of full flow leave 1860; l = 1 - t/40 from then on burns
 // 100 (t - t²/80) = 1860.
 TEST(LiquidBurn, RunsDryWithinARamp) {
-  const MotorBurn burn =
-      BurnWith([](Motor& m) { m.throttle = {{0.0, 2.0, 22.0, 62.0}, {0.0, 1.0, 1.0, 0.0}}; });
+  const MotorBurn burn = BurnWith([](Motor& m) {
+    m.throttle = {{0.0, 2.0, 22.0, 62.0}, {0.0, 1.0, 1.0, 0.0}};
+  });
   EXPECT_NEAR(burn.duration_s, 22.0 + 40.0 * (1.0 - std::sqrt(1.0 - 2.0 * 18.6 / 40.0)), 1e-9);
   EXPECT_EQ(burn.left_kg, 40.0);
   EXPECT_EQ(burn.Propellant(burn.duration_s), 40.0);
@@ -228,8 +235,8 @@ TEST(VehicleFigures, OfALiquidStageLeaveTheResidualAside) {
   EXPECT_NEAR(FiguresOf(vehicle)[0].burnout_load_g, 200e3 / (11000.0 * 9.80665), 1e-9);
 }
 
-// The mass ahead of sections by their parabola over the propellant, at a level between those that it goes through, of
-// what the whole liquid would make.
+// The mass ahead of sections by their parabola over the propellant, at a level between those that it goes
+// through, of what the whole liquid would make.
 TEST(LoadTable, FollowsDrainingTanksWithinAFewPerCent) {
   const Vehicle vehicle = LiquidVehicle();
   const LoadTable table = [&] {
@@ -248,12 +255,14 @@ TEST(LoadTable, FollowsDrainingTanksWithinAFewPerCent) {
           const double end = std::min(m.bottom_station_m, s);
           if (end <= m.top_station_m) continue;
           const double length_m = end - m.top_station_m;
-          sum += length_m * m.MassPerLength(0.5 * (m.top_station_m + end)) * (s - 0.5 * (m.top_station_m + end));
+          sum +=
+              length_m * m.MassPerLength(0.5 * (m.top_station_m + end)) * (s - 0.5 * (m.top_station_m + end));
         }
         (of_kg == kg ? first_kg_m : full_kg_m) = sum;
       }
       const auto& f = table.first_kg_m[i];
-      EXPECT_NEAR(f[0] + kg * (f[1] + kg * f[2]), first_kg_m, 0.03 * full_kg_m) << "station " << s << ", part " << part;
+      EXPECT_NEAR(f[0] + kg * (f[1] + kg * f[2]), first_kg_m, 0.03 * full_kg_m)
+          << "station " << s << ", part " << part;
     }
   }
 }
@@ -262,28 +271,40 @@ std::vector<std::string> TextsOf(const std::function<void(Stage&)>& change) {
   Vehicle vehicle = LiquidVehicle();
   change(vehicle.stages[0]);
   std::vector<std::string> texts;
-  for (const VehicleProblem& p : Problems(vehicle)) texts.push_back(p.path + " " + p.message + " | " + p.allowed);
+  for (const VehicleProblem& p : Problems(vehicle))
+    texts.push_back(p.path + " " + p.message + " | " + p.allowed);
   return texts;
 }
 
 TEST(LiquidProblems, AreNamed) {
   using Texts = std::vector<std::string>;
   EXPECT_EQ(TextsOf([](Stage&) {}), Texts{});
-  EXPECT_EQ(TextsOf([](Stage& s) { s.motor.throttle = {{0.0, 1.0, 1.0}, {1.0, 1.0, 0.5}}; }),
-            Texts{"stages[0].motor.liquid.throttle.time_s[2] is not later than the time before it | times that increase"});
-  EXPECT_EQ(TextsOf([](Stage& s) { s.motor.throttle = {{0.5, 1.0}, {1.0, 1.0}}; }),
+  EXPECT_EQ(TextsOf([](Stage& s) {
+              s.motor.throttle = {{0.0, 1.0, 1.0}, {1.0, 1.0, 0.5}};
+            }),
+            Texts{"stages[0].motor.liquid.throttle.time_s[2] is not later than the time before it | times "
+                  "that increase"});
+  EXPECT_EQ(TextsOf([](Stage& s) {
+              s.motor.throttle = {{0.5, 1.0}, {1.0, 1.0}};
+            }),
             Texts{"stages[0].motor.liquid.throttle.time_s[0] is not the ignition | 0 as the first time"});
-  EXPECT_EQ(TextsOf([](Stage& s) { s.motor.throttle = {{0.0, 1.0}, {0.0, 0.0}}; }),
+  EXPECT_EQ(TextsOf([](Stage& s) {
+              s.motor.throttle = {{0.0, 1.0}, {0.0, 0.0}};
+            }),
             Texts{"stages[0].motor.liquid.throttle gives no thrust | a level above 0 somewhere"});
-  EXPECT_EQ(TextsOf([](Stage& s) { s.motor.residual_mass_kg = 4000.0; }),
-            Texts{"stages[0].motor.liquid.residual_mass_kg leaves nothing to burn | 0 to below propellant_mass_kg"});
-  EXPECT_EQ(TextsOf([](Stage& s) { s.tanks[1].propellant_mass_kg -= 100.0; }),
-            Texts{"stages[0].propellant_mass_kg is 4000.000000, the tanks hold 3900.000000 | the sum of the tanks' "
-                  "propellant_mass_kg"});
+  EXPECT_EQ(
+      TextsOf([](Stage& s) { s.motor.residual_mass_kg = 4000.0; }),
+      Texts{
+          "stages[0].motor.liquid.residual_mass_kg leaves nothing to burn | 0 to below propellant_mass_kg"});
+  EXPECT_EQ(
+      TextsOf([](Stage& s) { s.tanks[1].propellant_mass_kg -= 100.0; }),
+      Texts{"stages[0].propellant_mass_kg is 4000.000000, the tanks hold 3900.000000 | the sum of the tanks' "
+            "propellant_mass_kg"});
   EXPECT_EQ(TextsOf([](Stage& s) { s.tanks[0].density_kg_m3 *= 0.5; }).at(0).substr(0, 49),
             "stages[0].tanks[0].propellant_mass_kg takes 6.717");
-  EXPECT_EQ(TextsOf([](Stage& s) { s.motor.ignition_rise_s = 0.1; }),
-            Texts{"stages[0].motor has ramps or a thrust curve beside tanks | a throttle, of a liquid stage"});
+  EXPECT_EQ(
+      TextsOf([](Stage& s) { s.motor.ignition_rise_s = 0.1; }),
+      Texts{"stages[0].motor has ramps or a thrust curve beside tanks | a throttle, of a liquid stage"});
 }
 
 }  // namespace

@@ -48,8 +48,10 @@ TEST(StackMass, FullStackByHuygensAndSteinerElementByElement) {
     double mass, top, bottom, outer, inner;
   };
   // 6000 kg dry: 4500 + 1500; grain 4000; upper stage 2000 + grain 1000.
-  const std::vector<Piece> pieces = {{4500.0, 11.0, 19.0, 0.6, 0.55}, {1500.0, 19.0, 20.0, 0.4, 0.0},
-                                     {4000.0, 12.0, 18.0, 0.6, 0.2},  {2000.0, 1.0, 10.5, 0.5, 0.45},
+  const std::vector<Piece> pieces = {{4500.0, 11.0, 19.0, 0.6, 0.55},
+                                     {1500.0, 19.0, 20.0, 0.4, 0.0},
+                                     {4000.0, 12.0, 18.0, 0.6, 0.2},
+                                     {2000.0, 1.0, 10.5, 0.5, 0.45},
                                      {1000.0, 6.0, 9.0, 0.45, 0.15}};
   double mass = 0.0, moment = 0.0;
   for (const Piece& p : pieces) {

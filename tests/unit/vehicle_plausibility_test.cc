@@ -64,9 +64,10 @@ TEST(VehicleFigures, OfAThrustCurveAreThoseOfItsTimes) {
   EXPECT_NEAR(figures[0].specific_impulse_s, impulse_n_s / 9200.0 / 9.80665, 1e-9);
   const double released_n = 180e3 - 10e3 * 0.3 / 1.8;  // falls from 0.2 s on
   EXPECT_NEAR(figures[0].thrust_to_weight, released_n / ((3800.0 + burn.Propellant(0.5)) * 9.80665), 1e-9);
-  EXPECT_NEAR(figures[0].burnout_load_g,
-              std::max(240e3 / (3800.0 + burn.Propellant(60.0)), 120e3 / (3800.0 + burn.Propellant(100.0))) / 9.80665,
-              1e-9);
+  EXPECT_NEAR(
+      figures[0].burnout_load_g,
+      std::max(240e3 / (3800.0 + burn.Propellant(60.0)), 120e3 / (3800.0 + burn.Propellant(100.0))) / 9.80665,
+      1e-9);
 }
 
 TEST(VehiclePlausibility, NamesTheCurveInPlaceOfTheThrust) {
@@ -74,7 +75,9 @@ TEST(VehiclePlausibility, NamesTheCurveInPlaceOfTheThrust) {
   SetThrustCurve({{0.0, 50.0, 100.0}, {100e3, 300e3, 0.0}}, vehicle.stages[0].motor);
   const std::vector<std::string> texts = Texts(vehicle);
   ASSERT_EQ(texts.size(), 1u);
-  EXPECT_EQ(texts[0].rfind("impossible stages[0].motor.thrust_curve implies a thrust to weight at lift-off of 0.8", 0), 0u)
+  EXPECT_EQ(texts[0].rfind(
+                "impossible stages[0].motor.thrust_curve implies a thrust to weight at lift-off of 0.8", 0),
+            0u)
       << texts[0];
 }
 
@@ -94,12 +97,14 @@ TEST(VehiclePlausibility, WhatCannotBeIsUnusualOfAMadeUpVehicle) {
   vehicle.reaction_control.specific_impulse_s = 7000.0;
   vehicle.made_up = true;
   EXPECT_EQ(Texts(vehicle),
-            std::vector<std::string>{"unusual reaction_control.specific_impulse_s is 7000 s | 30 to 340 s (cold gas 40 to "
-                                     "75 s, hydrazine 220 to 240 s, two propellants to 330 s)"});
+            std::vector<std::string>{
+                "unusual reaction_control.specific_impulse_s is 7000 s | 30 to 340 s (cold gas 40 to "
+                "75 s, hydrazine 220 to 240 s, two propellants to 330 s)"});
   vehicle.made_up = false;
   EXPECT_EQ(Texts(vehicle),
-            std::vector<std::string>{"impossible reaction_control.specific_impulse_s is 7000 s, which cannot be | up to "
-                                     "1000 s (cold gas 40 to 75 s, hydrazine 220 to 240 s, two propellants to 330 s)"});
+            std::vector<std::string>{
+                "impossible reaction_control.specific_impulse_s is 7000 s, which cannot be | up to "
+                "1000 s (cold gas 40 to 75 s, hydrazine 220 to 240 s, two propellants to 330 s)"});
 }
 
 struct Slip {
@@ -168,7 +173,8 @@ INSTANTIATE_TEST_SUITE_P(
                v.stages[1].motor.thrust_n *= 4.0;
                v.stages[1].motor.burning_time_s /= 4.0;
              },
-             {"unusual stages[1].motor.thrust_n implies towards burnout a load of 50.99 g | 0.05 to 20 g (user's "
+             {"unusual stages[1].motor.thrust_n implies towards burnout a load of 50.99 g | 0.05 to 20 g "
+              "(user's "
               "manuals of "
               "solid launchers state up to 13 g)"}},
         Slip{"HeavyStage",

@@ -1,5 +1,5 @@
-// The gates that every shipped autopilot must pass, computed and measured: gain 6 dB both ways, phase 30°, delay
-// 20 ms (flight/margins.h). What `dispersa margins` shows, held for each law.
+// The gates that every shipped autopilot must pass, computed and measured: gain 6 dB both ways, phase 30°,
+// delay 20 ms (flight/margins.h). What `dispersa margins` shows, held for each law.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -30,8 +30,8 @@ TEST_P(ShippedAutopilot, HasTheMeasuredMarginsInEveryStage) {
   const std::vector<MeasuredMargins> measured = MeasureMargins(model_);
   ASSERT_EQ(measured.size(), 4u);
   for (const MeasuredMargins& m : measured)
-    EXPECT_TRUE(PassesGates(m)) << "stage " << m.stage + 1 << ": " << m.gain_up_db << " dB up, " << m.gain_down_db
-                                << " dB down, " << m.delay_s << " s";
+    EXPECT_TRUE(PassesGates(m)) << "stage " << m.stage + 1 << ": " << m.gain_up_db << " dB up, "
+                                << m.gain_down_db << " dB down, " << m.delay_s << " s";
 }
 
 // The paper's law as it stands in (32), without spread, with the integral action of the shipped one: about

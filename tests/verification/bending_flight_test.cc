@@ -1,5 +1,5 @@
-// Bending in flight against solutions that share nothing with it: statics of the finite elements, free ringing,
-// CVODE, the rigid limit, the nozzle's reaction by hand.
+// Bending in flight against solutions that share nothing with it: statics of the finite elements, free
+// ringing, CVODE, the rigid limit, the nozzle's reaction by hand.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -12,9 +12,9 @@
 #include "core/dynamics/aero_grid.h"
 #include "core/dynamics/integrator.h"
 #include "core/flight/flight_model.h"
-#include "core/margins/linear_axis.h"
-#include "core/margins/flight_margins.h"
 #include "core/flight/simpson_step.h"
+#include "core/margins/flight_margins.h"
+#include "core/margins/linear_axis.h"
 #include "core/structure/beam_elements.h"
 #include "tests/slv4_flight.h"
 
@@ -55,8 +55,8 @@ struct InSpace {
   std::array<double, kLauncherSize> y{};
 };
 
-// What a lateral force at the pivot bends the beam of finite elements by: its slope at a station against that of
-// the motion as a rigid body.
+// What a lateral force at the pivot bends the beam of finite elements by: its slope at a station against that
+// of the motion as a rigid body.
 double ElasticSlope(const Vehicle& vehicle, double propellant_kg, double force_n, double at_station_m) {
   Beam beam;
   beam.timoshenko = vehicle.structure_beam->timoshenko;
@@ -141,7 +141,8 @@ TEST(BendingFlight, FreeModesRingAndLeaveTheBodyAlone) {
     InSpace rigid = flight;
     for (int plane = 0; plane < kPlanes; ++plane)
       for (int mode = 0; mode < 3; ++mode)
-        flight.y[static_cast<std::size_t>(kModalState + plane * kModes + mode)] = 0.01 * (1 + plane) / (1 + mode);
+        flight.y[static_cast<std::size_t>(kModalState + plane * kModes + mode)] =
+            0.01 * (1 + plane) / (1 + mode);
     const auto step = StepOf(flight, kTick_s), without = StepOf(rigid, kTick_s);
     const int ticks = 500;
     for (int i = 0; i < ticks; ++i) {
@@ -163,7 +164,8 @@ TEST(BendingFlight, FreeModesRingAndLeaveTheBodyAlone) {
         EXPECT_NEAR(y[kModalState + at], e * (std::cos(d * t) + s / d * std::sin(d * t)), 1e-11);
         EXPECT_NEAR(y[kModalRate + at], -e * w * w / d * std::sin(d * t), 1e-9);
         if (damping_ratio > 0.0) continue;
-        const double energy = y[kModalRate + at] * y[kModalRate + at] + w * w * y[kModalState + at] * y[kModalState + at];
+        const double energy =
+            y[kModalRate + at] * y[kModalRate + at] + w * w * y[kModalState + at] * y[kModalState + at];
         EXPECT_NEAR(energy, w * w * q0 * q0, 1e-11 * w * w * q0 * q0);
       }
   }
@@ -213,7 +215,8 @@ TEST(BendingFlight, TheStepConvergesToCvode) {
   tolerances.fill(1e-14);
   Integrator cvode(Scheme::kCvode, kBentLauncherSize, &Judge::Rhs, &judge, tolerances.data());
   // Its tolerance is of the change within a call.
-  for (int i = 0; i < 100; ++i) ASSERT_TRUE(cvode.Advance(20.0 + 0.01 * i, 20.0 + 0.01 * (i + 1), 1, exact.data()));
+  for (int i = 0; i < 100; ++i)
+    ASSERT_TRUE(cvode.Advance(20.0 + 0.01 * i, 20.0 + 0.01 * (i + 1), 1, exact.data()));
 
   double last[3] = {};
   for (const int steps : {50, 100, 200, 400}) {
@@ -224,8 +227,10 @@ TEST(BendingFlight, TheStepConvergesToCvode) {
     step->ReadLane(0, y);
     const RigidBodyState at = ReadState(y), truth = ReadState(exact.data());
     double error[3] = {(at.w_IB_B - truth.w_IB_B).norm(), 0.0, 0.0};
-    for (int i = kModalState; i < kModalRate; ++i) error[1] = std::max(error[1], std::fabs(y[i] - exact[static_cast<std::size_t>(i)]));
-    for (int i = kModalRate; i < kLauncherSize; ++i) error[2] = std::max(error[2], std::fabs(y[i] - exact[static_cast<std::size_t>(i)]));
+    for (int i = kModalState; i < kModalRate; ++i)
+      error[1] = std::max(error[1], std::fabs(y[i] - exact[static_cast<std::size_t>(i)]));
+    for (int i = kModalRate; i < kLauncherSize; ++i)
+      error[2] = std::max(error[2], std::fabs(y[i] - exact[static_cast<std::size_t>(i)]));
     for (int i = 0; i < 3; ++i) {
       if (last[i] > 0.0) {
         EXPECT_LT(error[i], 0.1 * last[i]) << i << ", " << steps << " steps";

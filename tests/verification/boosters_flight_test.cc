@@ -1,5 +1,5 @@
-// Boosters beside the first stage: mass properties by hand, angular momentum and the rocket equation in space, and a
-// flight of three and of six degrees of freedom.
+// Boosters beside the first stage: mass properties by hand, angular momentum and the rocket equation in
+// space, and a flight of three and of six degrees of freedom.
 #include <gtest/gtest.h>
 
 #include <boost/math/quadrature/gauss_kronrod.hpp>
@@ -202,11 +202,12 @@ TEST(Boosters, LoadTheVehicleMostWhereItPushesMostForItsMass) {
     const double left_kg = core.liftoff_mass_kg - b.count * b.propellant_mass_kg -
                            core.propellant_mass_kg * b.motor.burning_time_s / core.motor.burning_time_s;
     const double at_boosters_end = (core.motor.thrust_n + b.count * boost_n) / left_kg;
-    const double empty_kg = core.liftoff_mass_kg - core.propellant_mass_kg -
-                            b.count * (b.propellant_mass_kg + b.dry_mass_kg);
+    const double empty_kg =
+        core.liftoff_mass_kg - core.propellant_mass_kg - b.count * (b.propellant_mass_kg + b.dry_mass_kg);
     const double at_its_own = core.motor.thrust_n / empty_kg;
     EXPECT_EQ(at_boosters_end > at_its_own, boost_n > 100e3);
-    EXPECT_NEAR(FiguresOf(vehicle)[0].burnout_load_g, std::max(at_boosters_end, at_its_own) / kStandardGravity, 1e-9);
+    EXPECT_NEAR(FiguresOf(vehicle)[0].burnout_load_g,
+                std::max(at_boosters_end, at_its_own) / kStandardGravity, 1e-9);
   }
 }
 

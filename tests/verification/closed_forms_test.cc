@@ -46,8 +46,8 @@ State Fly(Scenario scenario, double duration_s, double steps) {
 // The error, a length not below 0, at `steps` steps and at twice as many.
 void ExpectFourthOrder(const Scenario& scenario, double duration_s, double steps, double rounding,
                        const std::function<double(const State&)>& error) {
-  dispersa::ExpectFourthOrder(error(Fly(scenario, duration_s, steps)), error(Fly(scenario, duration_s, 2.0 * steps)),
-                              rounding);
+  dispersa::ExpectFourthOrder(error(Fly(scenario, duration_s, steps)),
+                              error(Fly(scenario, duration_s, 2.0 * steps)), rounding);
 }
 
 double Distance(const Quaternion& a, const Quaternion& b) { return RotationVector(Inverse(a) * b).norm(); }

@@ -1,4 +1,5 @@
-// The fall of a spent stage: against Kepler's ellipse without air, against a terminal velocity with it, and by halved steps.
+// The fall of a spent stage: against Kepler's ellipse without air, against a terminal velocity with it, and
+// by halved steps.
 #include "core/impact/fall.h"
 
 #include <array>
@@ -32,7 +33,8 @@ FallState SecondStage() {
   const Earth earth = Wgs84();
   const Geodetic site{0.4, 1.1, 85e3};
   const Matrix3 axes = NedAxes(site.latitude_rad, site.longitude_rad);
-  return {125.0, FromGeodetic(earth, site), 2600.0 * axes.col(0) + 500.0 * axes.col(1) - 1500.0 * axes.col(2)};
+  return {125.0, FromGeodetic(earth, site),
+          2600.0 * axes.col(0) + 500.0 * axes.col(1) - 1500.0 * axes.col(2)};
 }
 
 // The angle and the time from a point on an ellipse to where it meets the sphere, from Kepler's equation.
@@ -51,7 +53,8 @@ TEST(Fall, WithoutAirIsKeplersEllipse) {
       return (anomaly - e * std::sin(anomaly)) * std::sqrt(a * a * a / kMu);
     };
     const auto true_anomaly = [&](double anomaly) {
-      return 2.0 * std::atan2(std::sqrt(1.0 + e) * std::sin(0.5 * anomaly), std::sqrt(1.0 - e) * std::cos(0.5 * anomaly));
+      return 2.0 * std::atan2(std::sqrt(1.0 + e) * std::sin(0.5 * anomaly),
+                              std::sqrt(1.0 - e) * std::cos(0.5 * anomaly));
     };
     // Rising it is before apogee (eccentric anomaly below pi), and the ground is met after it.
     const double start = gamma >= 0.0 ? eccentric(r) : 2.0 * kPi - eccentric(r);
@@ -60,10 +63,12 @@ TEST(Fall, WithoutAirIsKeplersEllipse) {
     if (range_rad < 0.0) range_rad += 2.0 * kPi;
     const double fall_s = mean_anomaly_s(end) - mean_anomaly_s(start);
 
-    const FallState from{10.0, {r, 0.0, 0.0}, {speed_m_s * std::sin(gamma), speed_m_s * std::cos(gamma), 0.0}};
+    const FallState from{
+        10.0, {r, 0.0, 0.0}, {speed_m_s * std::sin(gamma), speed_m_s * std::cos(gamma), 0.0}};
     const auto impact = Fall(Airless(earth), {1000.0, 1.0}, from);
     ASSERT_TRUE(impact);
-    // Centimetres of a range of up to thousands of kilometres: the method's own error at steps of 0.2 s and 1 s.
+    // Centimetres of a range of up to thousands of kilometres: the method's own error at steps of 0.2 s and 1
+    // s.
     EXPECT_NEAR(impact->place.longitude_rad * kRadius_m, range_rad * kRadius_m, 0.02) << speed_m_s;
     EXPECT_NEAR(impact->time_s - 10.0, fall_s, 1e-5) << speed_m_s;
     EXPECT_NEAR(impact->place.altitude_m, 0.0, 1e-5);
@@ -84,8 +89,8 @@ TEST(Fall, TheEarthTurnsBelow) {
   EXPECT_NEAR(still->place.longitude_rad - turning->place.longitude_rad, turned, 1e-12);
 }
 
-// A body dropped from 3 km comes down at the speed at which drag bears its weight, to the percent by which the air
-// gets denser while it falls; in a steady wind it is carried along.
+// A body dropped from 3 km comes down at the speed at which drag bears its weight, to the percent by which
+// the air gets denser while it falls; in a steady wind it is carried along.
 TEST(Fall, DragBearsTheWeight) {
   Environment environment;
   environment.earth = SphericalEarth(kRadius_m, false);
@@ -117,7 +122,8 @@ TEST(Fall, ABodyInOrbitStaysUpAndOneOnTheGroundWhereItIs) {
   const Earth earth = Wgs84();
   const Geodetic high{0.0, 0.0, 500e3};
   EXPECT_FALSE(Fall(Environment{}, {370.0, 1.0}, {0.0, FromGeodetic(earth, high), {0.0, 0.0, 7612.6}}));
-  const auto down = Fall(Environment{}, kStage, {60.0, FromGeodetic(earth, {0.3, 0.2, -1.0}), {0.0, 0.0, 0.0}});
+  const auto down =
+      Fall(Environment{}, kStage, {60.0, FromGeodetic(earth, {0.3, 0.2, -1.0}), {0.0, 0.0, 0.0}});
   ASSERT_TRUE(down);
   EXPECT_EQ(down->time_s, 60.0);
   EXPECT_NEAR(down->place.latitude_rad, 0.3, 1e-12);

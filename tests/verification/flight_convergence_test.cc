@@ -1,7 +1,8 @@
-// Integration of a whole closed-loop flight: the engine's steps and those of the classical Runge-Kutta method agree with
-// an independent high-accuracy run (CVODE, relative tolerance 1e-12, scaled absolute tolerances, restarted at every tick
-// and event), the latter with its order. The engine's are there from the first: halving them changes nothing that CVODE's
-// own tolerance does not; simpson_step_test.cc shows their order where it can be seen.
+// Integration of a whole closed-loop flight: the engine's steps and those of the classical Runge-Kutta method
+// agree with an independent high-accuracy run (CVODE, relative tolerance 1e-12, scaled absolute tolerances,
+// restarted at every tick and event), the latter with its order. The engine's are there from the first:
+// halving them changes nothing that CVODE's own tolerance does not; simpson_step_test.cc shows their order
+// where it can be seen.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -35,15 +36,16 @@ constexpr double kLastPoweredBeforeCoast_s = 170.0;  // burnout of stage 3 is af
 struct Differences {
   double altitude_m;
   double velocity_m_s;
-  double pitch_error_deg;    // the largest over the flight
-  double before_firing_deg;  // the largest until the first thruster firing that the two do not share, or until_s
-  double firing_s;           // when that is; infinite if they share all
-  double expelled_kg;        // by all firings
+  double pitch_error_deg;  // the largest over the flight
+  double
+      before_firing_deg;  // the largest until the first thruster firing that the two do not share, or until_s
+  double firing_s;        // when that is; infinite if they share all
+  double expelled_kg;     // by all firings
 };
 
-// The phase-plane logic of the reaction control decides every 50 ms. Where a flight grazes a switching line, a
-// difference of 1e-6 deg is a firing one cycle earlier or later: then the two are both flights of the closed
-// loop, apart by what a firing is worth, however exact the integration.
+// The phase-plane logic of the reaction control decides every 50 ms. Where a flight grazes a switching line,
+// a difference of 1e-6 deg is a firing one cycle earlier or later: then the two are both flights of the
+// closed loop, apart by what a firing is worth, however exact the integration.
 Differences Between(const Flown& a, const Flown& b, double until_s) {
   Differences d{};
   d.altitude_m = 1e3 * std::fabs(MetricOf(a.result, "injection_altitude_km") -
@@ -54,7 +56,8 @@ Differences Between(const Flown& a, const Flown& b, double until_s) {
       std::fabs(MetricOf(a.result, "rcs_propellant_kg") - MetricOf(b.result, "rcs_propellant_kg"));
   EXPECT_EQ(a.history.rows(), b.history.rows());
   const auto apart = [&](std::size_t row, const char* column) {
-    return std::fabs(a.history.at(row, FindHistoryColumn(column)) - b.history.at(row, FindHistoryColumn(column)));
+    return std::fabs(a.history.at(row, FindHistoryColumn(column)) -
+                     b.history.at(row, FindHistoryColumn(column)));
   };
   d.firing_s = std::numeric_limits<double>::infinity();
   for (std::size_t row = 0; row < std::min(a.history.rows(), b.history.rows()); ++row) {
@@ -74,11 +77,12 @@ struct Limits {
   double pitch_error_deg;
 };
 
-// Measured where all firings are shared: 8e-6 m, 8e-9 m/s and 2e-7 deg nominally, 4e-5 m, 5e-8 m/s and 3e-6 deg
-// with all of Table 3. The limits are twenty times the worse, far below anything that a dispersion does.
+// Measured where all firings are shared: 8e-6 m, 8e-9 m/s and 2e-7 deg nominally, 4e-5 m, 5e-8 m/s and 3e-6
+// deg with all of Table 3. The limits are twenty times the worse, far below anything that a dispersion does.
 constexpr Limits kSameFirings = {1e-3, 1.5e-6, 1e-4};
-// A firing cycle more or less is 0.1 N s of a pair of thrusters: 1e-4 m/s of 910 kg, hence 0.04 m at the end of the
-// coast; its propellant of 1.5e-4 kg is 6e-4 m/s of the last burn; both attitudes stay in the dead band of 0.05 deg.
+// A firing cycle more or less is 0.1 N s of a pair of thrusters: 1e-4 m/s of 910 kg, hence 0.04 m at the end
+// of the coast; its propellant of 1.5e-4 kg is 6e-4 m/s of the last burn; both attitudes stay in the dead
+// band of 0.05 deg.
 constexpr Limits kOtherFirings = {0.1, 1e-3, 0.05};
 constexpr double kFiring_kg = 1.5e-4;
 

@@ -20,11 +20,11 @@
 
 #include <Eigen/Dense>
 
-#include "core/cases/campaign_flights.h"
 #include "core/campaign_yaml/load.h"
-#include "core/margins/loop_margins.h"
-#include "core/margins/linear_axis.h"
+#include "core/cases/campaign_flights.h"
 #include "core/margins/flight_margins.h"
+#include "core/margins/linear_axis.h"
+#include "core/margins/loop_margins.h"
 #include "core/math/constants.h"
 
 namespace dispersa::greensite_margins_test {

@@ -148,8 +148,8 @@ TEST(Jettison, HappensOnATickWhateverTheSteps) {
   }
 }
 
-// Margins are those of what is left: its loop's gain is the effectiveness that the autopilot counts on, before and
-// after.
+// Margins are those of what is left: its loop's gain is the effectiveness that the autopilot counts on,
+// before and after.
 TEST(Jettison, MarginsAreOfWhatIsLeft) {
   FlightDefinition definition = Slv4Definition(DISPERSA_CAMPAIGNS, "pd");
   definition.vehicle = WithFairing(JettisonTrigger::kAtTime, 100.0);
@@ -159,9 +159,9 @@ TEST(Jettison, MarginsAreOfWhatIsLeft) {
   FlightOptions options;
   options.observe = [&](const TickSample& s) {
     if (!s.burning || s.stack != 1 || std::fabs(std::fabs(s.time_s - 100.0) - 4.0) > 1e-6) return;
-    found_1_s2.push_back(
-        LineariseAxis(model.nominal_plant(), s, kPitch, model.sensors()).a(1, 2));
-    known_1_s2.push_back(LineariseLaw(model.autopilot(), 1, s.since_ignition_s, kPitch, false).effectiveness_1_s2);
+    found_1_s2.push_back(LineariseAxis(model.nominal_plant(), s, kPitch, model.sensors()).a(1, 2));
+    known_1_s2.push_back(
+        LineariseLaw(model.autopilot(), 1, s.since_ignition_s, kPitch, false).effectiveness_1_s2);
   };
   Fly(model, {}, options);
   ASSERT_EQ(found_1_s2.size(), 2u);

@@ -119,7 +119,8 @@ TEST(AeroGrid, IsTheTablesThemselves) {
 
 // A strip of a bent body takes the normal force by this slope.
 TEST(AeroGrid, TheSlopeOfTheNormalForceIsItsDerivative) {
-  BodyAerodynamics body = BuildNominalPlant(LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml")).stacks[0].aerodynamics;
+  BodyAerodynamics body =
+      BuildNominalPlant(LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml")).stacks[0].aerodynamics;
   body.cn.factor = 1.3;
   const AeroGrid grid = BuildAeroGrid(body);
   lanes::BodyAerodynamicsLanes<double> one;

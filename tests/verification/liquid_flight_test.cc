@@ -1,5 +1,5 @@
-// Flights of liquid stages: what a throttled burn in space gains is the rocket equation's, whatever the throttle, and
-// whole flights differ from those of solid motors as physics says.
+// Flights of liquid stages: what a throttled burn in space gains is the rocket equation's, whatever the
+// throttle, and whole flights differ from those of solid motors as physics says.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -48,8 +48,8 @@ TEST(LiquidFlight, GainsTheRocketEquationsSpeedWhateverTheThrottle) {
   }
 }
 
-// Everything about the stage but where its mass is and goes is as before: the trajectory is nearly that of the solid
-// stage; a residual costs what the rocket equation says of the mass that stays.
+// Everything about the stage but where its mass is and goes is as before: the trajectory is nearly that of
+// the solid stage; a residual costs what the rocket equation says of the mass that stays.
 TEST(LiquidFlight, CarriesItsResidualAsDeadMass) {
   FlightDefinition definition = Slv4Definition(DISPERSA_CAMPAIGNS);
   const FlightResult solid = Fly(FlightModel(definition), {}, {});
@@ -86,7 +86,8 @@ TEST(LiquidFlight, ThrottlesItsLoads) {
     FlightOptions options;
     options.history = &history;
     Fly(FlightModel(definition), {}, options);
-    const int stage = FindHistoryColumn("stage"), thrust = FindHistoryColumn("thrust_n"), mass = FindHistoryColumn("mass_kg");
+    const int stage = FindHistoryColumn("stage"), thrust = FindHistoryColumn("thrust_n"),
+              mass = FindHistoryColumn("mass_kg");
     double most = 0.0;
     for (std::size_t row = 0; row < history.rows(); ++row)
       if (history.at(row, stage) == 1.0)
@@ -101,8 +102,10 @@ TEST(LiquidFlight, ThrottlesItsLoads) {
   const double empty_kg = first.liftoff_mass_kg - first.propellant_mass_kg;
   EXPECT_NEAR(full_g, first.motor.thrust_n / empty_kg / kStandardGravity, 0.02);
   const double at_turn_kg = empty_kg + burn.Propellant(0.5 * burn_s);
-  EXPECT_NEAR(throttled_g,
-              std::max(first.motor.thrust_n / at_turn_kg, 0.5 * first.motor.thrust_n / empty_kg) / kStandardGravity, 0.02);
+  EXPECT_NEAR(
+      throttled_g,
+      std::max(first.motor.thrust_n / at_turn_kg, 0.5 * first.motor.thrust_n / empty_kg) / kStandardGravity,
+      0.02);
 
   const AscentModel ascent = BuildAscentModel(definition.vehicle, definition.autopilot.tick_s);
   EXPECT_EQ(ascent.plant.stacks[0].burn.duration_s, burn.duration_s);

@@ -56,8 +56,8 @@ Matrix3 AboutZ(double a) {
 
 // A state in the paper's variables.
 struct PaperState {
-  double range_angle = 0.0;     // eta, in the launch plane
-  double cross_m = 0.0;         // out of the launch plane
+  double range_angle = 0.0;  // eta, in the launch plane
+  double cross_m = 0.0;      // out of the launch plane
   double altitude_m = 0.0;
   double V = 0.0, theta = 0.0, sigma = 0.0, nu = 0.0, alpha = 0.0, beta = 0.0;
   Vector3 w = Vector3::Zero();  // inertial angular velocity in the paper's body axes
@@ -156,8 +156,8 @@ PaperRates Engine(const Setting& setting, const PaperState& s) {
 // What enters the equations as given numbers: mass, inertia, stations, thrust, coefficients.
 struct Given {
   double m, P, x_z, x_R, x_d, z_r, Jx, Jt;
-  double D, L, C;        // before nu
-  Vector3 damping;       // moments that (12) to (14) leave out, in the paper's body axes
+  double D, L, C;   // before nu
+  Vector3 damping;  // moments that (12) to (14) leave out, in the paper's body axes
 };
 
 Given GivenAt(const Setting& setting, const PaperState& s) {
@@ -174,8 +174,8 @@ Given GivenAt(const Setting& setting, const PaperState& s) {
   g.Jt = mass.transverse_inertia_kg_m2;
 
   const auto y = EngineState(setting, s);
-  const AirData air = ComputeAirData(setting.plant.environment, ReadState(y.data()).p_EoC_I,
-                                     ReadState(y.data()).v_IC_I);
+  const AirData air =
+      ComputeAirData(setting.plant.environment, ReadState(y.data()).p_EoC_I, ReadState(y.data()).v_IC_I);
   const BodyAerodynamics& body = stack.aerodynamics;
   const double qs = 0.5 * air.density_kg_m3 * s.V * s.V * body.area_m2;
   // Velocity in body axes: (cos a cos b, -sin a, cos a sin b).
@@ -264,8 +264,8 @@ PaperRates Exact(const Setting& setting, const PaperState& s) {
 PaperRates Printed(const Setting& setting, const PaperState& s) {
   const Given g = GivenAt(setting, s);
   const double local = s.theta + s.range_angle;
-  const double weight = g.m * setting.plant.environment.earth.mu_m3_s2 /
-                        std::pow(kRadius_m + s.altitude_m, 2);
+  const double weight =
+      g.m * setting.plant.environment.earth.mu_m3_s2 / std::pow(kRadius_m + s.altitude_m, 2);
   const Matrix3 R_LV = VelocityAxes(s);
   const Vector3 fictitious = R_LV.transpose() * (Coriolis(setting, s) + Transport(setting, s));
   PaperRates out;
@@ -280,12 +280,12 @@ PaperRates Printed(const Setting& setting, const PaperState& s) {
                   (-g.m * s.V);
   const Vector3& w = s.w;
   out.w_dot.x() = -g.P * s.delta_gamma * g.z_r / g.Jx;
-  out.w_dot.y() = (-g.C * (g.x_d - g.x_z) - 2.0 * g.P * (g.x_R - g.x_z) * s.delta_psi +
-                   (g.Jt - g.Jx) * w.x() * w.z()) /
-                  g.Jt;
-  out.w_dot.z() = (-g.L * (g.x_d - g.x_z) - 2.0 * g.P * (g.x_R - g.x_z) * s.delta_phi +
-                   (g.Jx - g.Jt) * w.y() * w.x()) /
-                  g.Jt;
+  out.w_dot.y() =
+      (-g.C * (g.x_d - g.x_z) - 2.0 * g.P * (g.x_R - g.x_z) * s.delta_psi + (g.Jt - g.Jx) * w.x() * w.z()) /
+      g.Jt;
+  out.w_dot.z() =
+      (-g.L * (g.x_d - g.x_z) - 2.0 * g.P * (g.x_R - g.x_z) * s.delta_phi + (g.Jx - g.Jt) * w.y() * w.x()) /
+      g.Jt;
   return out;
 }
 
@@ -506,8 +506,8 @@ class PlanarFlight {
     const Vehicle& vehicle = model_.vehicle;
     const Stage& stage = vehicle.stages[stage_];
     const double flow = stage.propellant_mass_kg / stage.motor.burning_time_s;
-    const double m = stage.liftoff_mass_kg - (burnt_ ? stage.propellant_mass_kg
-                                                     : thrust_ * flow * (t - ignition_s_));
+    const double m =
+        stage.liftoff_mass_kg - (burnt_ ? stage.propellant_mass_kg : thrust_ * flow * (t - ignition_s_));
     const double four_p = thrust_ * stage.motor.thrust_n;
     const double alpha = Alpha(t);
     const double r = kRadius_m + h;
@@ -523,8 +523,7 @@ class PlanarFlight {
     // Rising vertically the path angle stays 90°, and (2) is 0 / 0 at rest.
     const bool vertical = t < program_.t1_s;
     return {(four_p * cos(alpha) - D) / m - g * sin(path),
-            vertical ? 0.0
-                     : (four_p * sin(alpha) + L) / (m * V) - g * cos(path) / V + V / r * cos(path),
+            vertical ? 0.0 : (four_p * sin(alpha) + L) / (m * V) - g * cos(path) / V + V / r * cos(path),
             V * sin(path), vertical ? 0.0 : kRadius_m / r * V * cos(path)};
   }
 

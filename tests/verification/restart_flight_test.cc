@@ -27,7 +27,8 @@ FlightProgram Program() {
   return program;
 }
 
-// SLV-4 with a liquid last stage of the same masses, which burns twice; `end_first` says how the first burn ends.
+// SLV-4 with a liquid last stage of the same masses, which burns twice; `end_first` says how the first burn
+// ends.
 template <class F>
 Vehicle Restarting(F end_first) {
   Vehicle vehicle = LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml");
@@ -57,7 +58,8 @@ Vehicle CutAtVelocity(double first_m_s) {
   });
 }
 
-AscentResult Ascend(const Vehicle& vehicle, const FlightProgram& program = Program(), double step_factor = 1.0) {
+AscentResult Ascend(const Vehicle& vehicle, const FlightProgram& program = Program(),
+                    double step_factor = 1.0) {
   AscentOptions options;
   options.record = true;
   options.steps = {step_factor * options.steps.air_s, step_factor * options.steps.burn_s,
@@ -73,7 +75,8 @@ FlightDefinition Following(const Vehicle& vehicle, const AscentResult& ascent) {
   definition.last_ignition_s = ascent.last_ignition_s;
   definition.earlier_ignition_s = ascent.earlier_ignition_s;
   definition.cut_off_s = ascent.cut_off_s;
-  for (AxisConfig* axis : {&definition.autopilot.roll, &definition.autopilot.pitch, &definition.autopilot.yaw}) {
+  for (AxisConfig* axis :
+       {&definition.autopilot.roll, &definition.autopilot.pitch, &definition.autopilot.yaw}) {
     if (axis->gains.size() == 4) axis->gains.push_back(axis->gains.back());
     if (axis->adaptation.gamma.size() == 4) axis->adaptation.gamma.push_back(axis->adaptation.gamma.back());
     if (axis->integral.ki_1_s3.size() == 4) axis->integral.ki_1_s3.push_back(axis->integral.ki_1_s3.back());
@@ -83,9 +86,11 @@ FlightDefinition Following(const Vehicle& vehicle, const AscentResult& ascent) {
 
 struct Burns {
   FlightResult result;
-  double begin_s[kMaxStages], end_s[kMaxStages], begin_kg[kMaxStages], end_kg[kMaxStages], end_m_s[kMaxStages];
+  double begin_s[kMaxStages], end_s[kMaxStages], begin_kg[kMaxStages], end_kg[kMaxStages],
+      end_m_s[kMaxStages];
 };
-Burns FlyBurns(const FlightDefinition& definition, const FlightInputs& inputs, Scheme scheme = Scheme::kSimpson) {
+Burns FlyBurns(const FlightDefinition& definition, const FlightInputs& inputs,
+               Scheme scheme = Scheme::kSimpson) {
   Burns burns{};
   History history;
   history.step_s = 1e6;  // events alone
@@ -130,8 +135,8 @@ TEST(Restart, BurnsWhatTheFirstBurnLeft) {
     EXPECT_LT(burns.end_kg[kFirstBurn] - burns.begin_kg[kSecondBurn], expelled_kg + 1e-9);
     EXPECT_GE(burns.end_kg[kFirstBurn] - burns.begin_kg[kSecondBurn], 0.0);
     // Empty at the end, whatever the first burn took.
-    EXPECT_NEAR(burns.end_kg[kSecondBurn],
-                engine.liftoff_mass_kg - engine.propellant_mass_kg - expelled_kg, 1e-6);
+    EXPECT_NEAR(burns.end_kg[kSecondBurn], engine.liftoff_mass_kg - engine.propellant_mass_kg - expelled_kg,
+                1e-6);
     EXPECT_NEAR(burns.end_s[kSecondBurn] - burns.begin_s[kSecondBurn],
                 (1.0 - 0.5 * flow) * engine.motor.burning_time_s, 1e-6);
   }
@@ -232,8 +237,8 @@ TEST(CutOffAtVelocity, OutOfReachIsDepletion) {
   EXPECT_EQ(ascent.cut_off_s[kFirstBurn], HUGE_VAL);
   const Burns burns = FlyBurns(Following(vehicle, ascent), {});
   EXPECT_EQ(burns.result.outcome, Outcome::kCompleted) << burns.result.reason;
-  EXPECT_NEAR(burns.end_s[kFirstBurn] - burns.begin_s[kFirstBurn], vehicle.stages[kFirstBurn].motor.burning_time_s,
-              1e-9);
+  EXPECT_NEAR(burns.end_s[kFirstBurn] - burns.begin_s[kFirstBurn],
+              vehicle.stages[kFirstBurn].motor.burning_time_s, 1e-9);
 }
 
 // Nose up by so much more than the gravity turn, from ignition to depletion; it climbs the higher for it.
@@ -261,7 +266,8 @@ TEST(Steering, IsTheIncidenceOfTheBurn) {
     // Of the body's axis over the way through the air, in the plane of the ascent.
     const Vector3 relative = s.v_IC_I - Vector3(0.0, 0.0, Wgs84().rotation_rate_rad_s).cross(s.p_EoC_I);
     const LaunchFrame frame = BuildLaunchFrame(Wgs84(), vehicle.site, program.launch_azimuth_rad);
-    const Vector3 axis = frame.R_IL * RotationMatrix(FromPitchYawRoll({s.pitch_rad, s.yaw_rad, s.roll_rad})).col(0);
+    const Vector3 axis =
+        frame.R_IL * RotationMatrix(FromPitchYawRoll({s.pitch_rad, s.yaw_rad, s.roll_rad})).col(0);
     EXPECT_NEAR(std::acos(axis.dot(relative.normalized())), s.alpha_rad, 1e-6);
     EXPECT_GT(axis.dot(s.p_EoC_I.normalized()), relative.normalized().dot(s.p_EoC_I.normalized()));
     ++seen;
@@ -298,8 +304,10 @@ TEST(Steering, OfARestartIsOverWhatTheBurnBeforeLeft) {
     ASSERT_TRUE(std::isfinite(s.alpha_rad)) << s.time_s;
     const double since_s = s.time_s - steered.last_ignition_s;
     if (s.stage != 5 || since_s <= 0.0) continue;
-    const double x = std::min(since_s / kSteeringRise_s, 1.0), risen = x * x * x * (10.0 - 15.0 * x + 6.0 * x * x);
-    EXPECT_NEAR(s.alpha_rad, risen * (begin_rad + since_s / whole_s * (end_rad - begin_rad)), 1e-6) << since_s;
+    const double x = std::min(since_s / kSteeringRise_s, 1.0),
+                 risen = x * x * x * (10.0 - 15.0 * x + 6.0 * x * x);
+    EXPECT_NEAR(s.alpha_rad, risen * (begin_rad + since_s / whole_s * (end_rad - begin_rad)), 1e-6)
+        << since_s;
     ++seen;
   }
   EXPECT_GT(seen, 10);

@@ -61,7 +61,8 @@ lanes::LoadTableLanes<double> Only(const LoadTable& table, int station) {
   return s;
 }
 
-// A side force at the pivot and the flow from the side, in each plane, with these parts of the propellant left.
+// A side force at the pivot and the flow from the side, in each plane, with these parts of the propellant
+// left.
 void ExpectBalance(const Vehicle& vehicle, const std::vector<double>& parts) {
   const LauncherPlant plant = BuildNominalPlant(vehicle);
   const LoadTable& table = *plant.stacks[0].loads;
@@ -151,7 +152,8 @@ void ExpectRinging(const Vehicle& vehicle, std::size_t at_level) {
         return ShapeOf(stacks[0], BeamPlane::kY, level.modes[mode], at).slope_1_m;
       };
       held.push_back(stiffness * (slope(s + kStep_m) - slope(s - kStep_m)) / (2.0 * kStep_m));
-      loaded.push_back(omega2 * table.Row(0, static_cast<int>(at_level), static_cast<int>(mode))[BendingTable::kMomentAt + i]);
+      loaded.push_back(omega2 * table.Row(0, static_cast<int>(at_level),
+                                          static_cast<int>(mode))[BendingTable::kMomentAt + i]);
       most = std::max(most, std::fabs(held.back()));
     }
     for (std::size_t i = 0; i < held.size(); ++i) {

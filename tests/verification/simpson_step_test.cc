@@ -135,7 +135,10 @@ TEST(SimpsonStep, SeesWhatWasWritten) {
       {"StickNozzle", [&](Step& step) { step.StickNozzle(0, gimbal, 1, 0.03); }},
       {"Command", [&](Step& step) { step.Command(true, command_rad); }},
       {"CommandLane", [&](Step& step) { step.CommandLane(0, command_rad); }},
-      {"SetControlTorque", [](Step& step) { step.SetControlTorque(true, {0.0, 300.0, 0.0}); }},
+      {"SetControlTorque",
+       [](Step& step) {
+         step.SetControlTorque(true, {0.0, 300.0, 0.0});
+       }},
       {"Expel", [](Step& step) { step.Expel(true, 5.0, 2.0); }},
   };
   const auto after = [&](const std::function<void(Step&)>& write, bool evaluated) {

@@ -185,7 +185,8 @@ class ThreeVsSixDof : public testing::Test {
     bool turning = false;
     Vector3 offset = Vector3::Zero();  // body axis less direction of flight at t1; it fades until t3
     const auto law = [&](double t, const Vector3& p, const Vector3& v) {
-      if (!turning) return axes(Eigen::AngleAxisd(omega * t, Vector3::UnitZ()) * Vector3(-frame_.R_IL.col(2)));
+      if (!turning)
+        return axes(Eigen::AngleAxisd(omega * t, Vector3::UnitZ()) * Vector3(-frame_.R_IL.col(2)));
       const Vector3 flight = along(p, v);
       const Vector3 turned =
           Eigen::AngleAxisd(ProgrammedIncidence(program, t), Vector3(axes(flight).col(1))) * flight;
@@ -193,10 +194,11 @@ class ThreeVsSixDof : public testing::Test {
       return axes(turned + (1.0 - s * s * s * (10.0 - 15.0 * s + 6.0 * s * s)) * offset);
     };
     return FlySix([&](double t, const Vector3& p, const Vector3& v) { return QuaternionOf(law(t, p, v)); },
-               [&](const SixDof& flight) {
-                 offset = law(flight.time_s(), flight.p(), flight.v()).col(0) - along(flight.p(), flight.v());
-                 turning = true;
-               });
+                  [&](const SixDof& flight) {
+                    offset =
+                        law(flight.time_s(), flight.p(), flight.v()).col(0) - along(flight.p(), flight.v());
+                    turning = true;
+                  });
   }
 
   Reference reference_ = LoadReference(DISPERSA_CAMPAIGNS "/references/slv4_500km.yaml");
@@ -272,8 +274,8 @@ TEST_F(ThreeVsSixDof, TheClosedLoopArrives) {
   EXPECT_NEAR(lighter.orbit.velocity_m_s - reference_.orbit.velocity_m_s, lighter_m_s, 0.005);
   EXPECT_NEAR(MetricOf(flight, "injection_velocity_m_s"), lighter.orbit.velocity_m_s, 0.05);
   EXPECT_NEAR(1e3 * MetricOf(flight, "injection_altitude_km"), lighter.orbit.altitude_m, 50.0);
-  EXPECT_NEAR(MetricOf(flight, "injection_flight_path_angle_deg"), lighter.orbit.flight_path_angle_rad * kDegPerRad,
-              0.002);
+  EXPECT_NEAR(MetricOf(flight, "injection_flight_path_angle_deg"),
+              lighter.orbit.flight_path_angle_rad * kDegPerRad, 0.002);
 
   // The flow inside pushes the turning vehicle sideways, in the kick by 4e-4 of the thrust, and moves its
   // centre of gravity: variable_mass_test.

@@ -103,8 +103,9 @@ TEST(ThrustCurveFlight, GainsTheRocketEquationsSpeed) {
   }
 }
 
-// A flow with a shape of its own: no rocket equation holds, the speed is the integral of P/m. Between corners P is
-// linear and m a parabola; ten-point Gauss-Legendre sums over a hundredth of each piece are exact to rounding.
+// A flow with a shape of its own: no rocket equation holds, the speed is the integral of P/m. Between corners
+// P is linear and m a parabola; ten-point Gauss-Legendre sums over a hundredth of each piece are exact to
+// rounding.
 TEST(ThrustCurveFlight, GainsTheIntegralOfThrustOverMassWithItsOwnFlow) {
   Vehicle vehicle = CurvedDefinition().vehicle;
   Stage& stage = vehicle.stages[0];
@@ -116,15 +117,17 @@ TEST(ThrustCurveFlight, GainsTheIntegralOfThrustOverMassWithItsOwnFlow) {
   SetThrustCurve(curve, stage.motor);
   const double empty_kg = BuildStackMasses(vehicle)[0].At(0.0).mass_kg;
   for (const double rate : {1.0, 1.03}) {
-    constexpr double kPoint[] = {0.1488743389816312, 0.4333953941292472, 0.6794095682990244, 0.8650633666889845,
-                                 0.9739065285171717};
-    constexpr double kWeight[] = {0.2955242247147529, 0.2692667193099963, 0.2190863625159820, 0.1494513491505806,
-                                  0.0666713443086881};
+    constexpr double kPoint[] = {0.1488743389816312, 0.4333953941292472, 0.6794095682990244,
+                                 0.8650633666889845, 0.9739065285171717};
+    constexpr double kWeight[] = {0.2955242247147529, 0.2692667193099963, 0.2190863625159820,
+                                  0.1494513491505806, 0.0666713443086881};
     double exact_m_s = 0.0, left_kg = stage.propellant_mass_kg;
     for (std::size_t i = 0; i + 1 < curve.time_s.size(); ++i) {
       const double length_s = (curve.time_s[i + 1] - curve.time_s[i]) / rate;
-      const double flow = rate * curve.flow_kg_s[i], flow_rise = (rate * curve.flow_kg_s[i + 1] - flow) / length_s;
-      const double thrust = rate * curve.thrust_n[i], rise = (rate * curve.thrust_n[i + 1] - thrust) / length_s;
+      const double flow = rate * curve.flow_kg_s[i],
+                   flow_rise = (rate * curve.flow_kg_s[i + 1] - flow) / length_s;
+      const double thrust = rate * curve.thrust_n[i],
+                   rise = (rate * curve.thrust_n[i + 1] - thrust) / length_s;
       for (int part = 0; part < 100; ++part) {
         for (int k = 0; k < 10; ++k) {
           const double x = k % 2 == 0 ? kPoint[k / 2] : -kPoint[k / 2];

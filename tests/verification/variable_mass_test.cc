@@ -16,9 +16,9 @@
 #include "core/dynamics/launcher.h"
 #include "core/flight/fly_scenario.h"
 #include "core/math/constants.h"
+#include "tests/fourth_order.h"
 #include "tests/liquid_stage.h"
 #include "tests/slv4_flight.h"
-#include "tests/fourth_order.h"
 
 namespace dispersa::variable_mass_test {
 namespace {
@@ -200,8 +200,8 @@ TEST_F(TurningLauncher, KeepsItsAngularMomentumButForTheFlowsOfDrainingTanks) {
 }
 
 // Momentum and centre of mass of everything, the flow inside and what has left included. On board: the body's
-// momentum and that of the flow, m_dot times its way aft from where it leaves the grain to where it leaves the
-// vehicle. What leaves has the velocity of the nozzle and, relative to it, that which makes the thrust.
+// momentum and that of the flow, m_dot times its way aft from where it leaves the grain to where it leaves
+// the vehicle. What leaves has the velocity of the nozzle and, relative to it, that which makes the thrust.
 class FlowThroughATurningLauncher : public TurningLauncher {
  protected:
   static constexpr int kMomentum = kRigidLauncherSize, kPlace = kMomentum + 3, kSize = kPlace + 3;
@@ -230,7 +230,8 @@ class FlowThroughATurningLauncher : public TurningLauncher {
     Integrator integrator(Scheme::kRungeKutta4, kSize, &Rhs, this, nullptr);
     EXPECT_TRUE(integrator.Advance(0.0, stack().burn.duration_s, 4000, y.data()));
     const OnBoard last = At(stack().burn.duration_s, y.data());
-    const Vector3 momentum(y[kMomentum], y[kMomentum + 1], y[kMomentum + 2]), place(y[kPlace], y[kPlace + 1], y[kPlace + 2]);
+    const Vector3 momentum(y[kMomentum], y[kMomentum + 1], y[kMomentum + 2]),
+        place(y[kPlace], y[kPlace + 1], y[kPlace + 2]);
     return {(last.momentum + momentum - first.momentum).norm() / momentum.norm(),
             (last.first_moment + place - first.first_moment).norm() / place.norm()};
   }
