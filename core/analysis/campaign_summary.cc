@@ -110,9 +110,9 @@ std::uint64_t CasesToFly(const Campaign& campaign, const JudgingContext& context
                          const std::vector<QuarantinedCase>& quarantined, const CaseColumns& cases) {
   StoppingRule rule(campaign, context.planned, context.past_looks);
   rule.Add(cases);
-  std::vector<std::uint64_t> given_up;
-  for (const QuarantinedCase& one : quarantined) given_up.push_back(one.case_index);
-  while (rule.Advance(given_up)) {
+  std::vector<std::uint64_t> quarantined_indices;
+  for (const QuarantinedCase& one : quarantined) quarantined_indices.push_back(one.case_index);
+  while (rule.Advance(quarantined_indices)) {
   }
   return rule.target();
 }

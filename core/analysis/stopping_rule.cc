@@ -69,28 +69,28 @@ void StoppingRule::Add(std::uint64_t case_index, bool completed, const std::vect
   }
 }
 
-bool StoppingRule::Settled(const std::vector<std::uint64_t>& given_up) const {
-  std::set<std::uint64_t> settled(given_up.begin(), given_up.end());
+bool StoppingRule::Settled(const std::vector<std::uint64_t>& quarantined) const {
+  std::set<std::uint64_t> settled(quarantined.begin(), quarantined.end());
   settled.insert(present_.begin(), present_.end());
   return std::distance(settled.begin(), settled.lower_bound(target_)) == static_cast<std::ptrdiff_t>(target_);
 }
 
-bool StoppingRule::Advance(const std::vector<std::uint64_t>& given_up) {
-  if (!stops_ || target_ == looks_.back() || !Settled(given_up)) return false;
+bool StoppingRule::Advance(const std::vector<std::uint64_t>& quarantined) {
+  if (!stops_ || target_ == looks_.back() || !Settled(quarantined)) return false;
   // A folder that was flown further before, without this rule, keeps what it has.
   const bool all_seen = present_.empty() || *std::max_element(present_.begin(), present_.end()) < target_;
-  if (all_seen && Decided(given_up)) return false;
+  if (all_seen && Decided(quarantined)) return false;
   target_ = *std::upper_bound(looks_.begin(), looks_.end(), target_);
   return true;
 }
 
-bool StoppingRule::Decided(const std::vector<std::uint64_t>& given_up) const {
+bool StoppingRule::Decided(const std::vector<std::uint64_t>& quarantined) const {
   std::vector<PlannedRequirement> planned;
   std::vector<CaseTally> tallies;
   for (std::size_t i = 0; i < requirements_.size(); ++i) {
     const Requirement& requirement = requirements_[i];
     planned.push_back({requirement.probability, requirement.consumer_risk, requirement.plan, planned_});
-    CaseTally tally{failed_[i], {given_up.begin(), given_up.end()}};
+    CaseTally tally{failed_[i], {quarantined.begin(), quarantined.end()}};
     std::sort(tally.failed.begin(), tally.failed.end());
     std::sort(tally.missing.begin(), tally.missing.end());
     tallies.push_back(std::move(tally));

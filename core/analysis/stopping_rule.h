@@ -26,15 +26,15 @@ class StoppingRule {
 
   /// Cases 0 ... target - 1 are to be flown.
   std::uint64_t target() const { return target_; }
-  /// Whether every case below the target has a result or is among the `given_up`.
-  bool Settled(const std::vector<std::uint64_t>& given_up) const;
+  /// Whether every case below the target has a result or is among the `quarantined`.
+  bool Settled(const std::vector<std::uint64_t>& quarantined) const;
   /// When settled: sets the target to the next look unless the requirements are decided or no look is left.
   /// True if it moved.
-  bool Advance(const std::vector<std::uint64_t>& given_up);
+  bool Advance(const std::vector<std::uint64_t>& quarantined);
 
  private:
   void Add(std::uint64_t case_index, bool completed, const std::vector<double>& requirement_values);
-  bool Decided(const std::vector<std::uint64_t>& given_up) const;
+  bool Decided(const std::vector<std::uint64_t>& quarantined) const;
 
   std::vector<Requirement> requirements_;
   std::vector<std::size_t> columns_;  ///< of the requirements' metrics

@@ -33,7 +33,7 @@ class ListedCases : public CaseQueue {
     Pack(result, out);
     say_(out.Take());
   }
-  void GivenUp(std::uint64_t, const std::string&) override {}
+  void Quarantined(std::uint64_t, const std::string&) override {}
 
  private:
   std::vector<std::uint64_t> cases_;
@@ -121,7 +121,7 @@ void FlyContained(const FlightsHere& flights, CaseQueue& queue) {
       std::erase(cases, case_index);
       std::vector<std::uint64_t> alone = {case_index};
       if (const auto again = FlyInChild(flights, alone, queue); again && !alone.empty())
-        queue.GivenUp(case_index, "the control law " + again->how);
+        queue.Quarantined(case_index, "the control law " + again->how);
     }
   }
 }

@@ -25,7 +25,7 @@ class CaseQueue {
   virtual std::optional<std::uint64_t> Next(bool idle) = 0;
   virtual void Done(CaseResult result) = 0;
   /// A case that ended every process that flew it, alone too: it has no result.
-  virtual void GivenUp(std::uint64_t case_index, const std::string& reason) = 0;
+  virtual void Quarantined(std::uint64_t case_index, const std::string& reason) = 0;
 };
 
 /// Holds what all flights of a campaign share (tables, schedules, design); flying is const and thread-safe.

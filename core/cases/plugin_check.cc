@@ -35,17 +35,17 @@ FlightOrder OrderOf(const CampaignFlights& flights, std::optional<std::uint64_t>
 
 // A law of this process is flown in it.
 void RunWatched(const CampaignFlights& flights, const std::function<void(const Say& say)>& work,
-                const Say& hear, const Unwanted& unwanted) {
+                const Say& hear, const StopCheck& should_stop) {
   if (FunctionsHere(flights.model().autopilot().plugin->config()) != nullptr)
     work(hear);
   else
-    RunContained(work, hear, unwanted);
+    RunContained(work, hear, should_stop);
 }
 
 // None is the nominal flight.
 std::vector<Flown> FlySideBySide(const CampaignFlights& flights,
                                  const std::vector<std::optional<std::uint64_t>>& cases,
-                                 const Unwanted& unwanted) {
+                                 const StopCheck& should_stop) {
   std::vector<Flown> all;
   RunWatched(
       flights,
@@ -68,7 +68,7 @@ std::vector<Flown> FlySideBySide(const CampaignFlights& flights,
         all.push_back({std::move(result), in.Numbers()});
         if (!in.is_whole()) throw Garbled();
       },
-      unwanted);
+      should_stop);
   return all;
 }
 
@@ -88,9 +88,9 @@ std::string Difference(const std::vector<double>& first, const std::vector<doubl
 // Of flights that ended well before.
 std::vector<Flown> FlyAgain(const CampaignFlights& flights,
                             const std::vector<std::optional<std::uint64_t>>& cases,
-                            const Unwanted& unwanted) {
+                            const StopCheck& should_stop) {
   try {
-    return FlySideBySide(flights, cases, unwanted);
+    return FlySideBySide(flights, cases, should_stop);
   } catch (const ContainedEnd& end) {
     throw PluginError("is not deterministic: the same flight ended well once, and again it " +
                       std::string(end.what()));
@@ -99,24 +99,24 @@ std::vector<Flown> FlyAgain(const CampaignFlights& flights,
 
 // Each once alone and once beside the others. Returns the cases' results.
 std::vector<CaseResult> CompareFlights(const CampaignFlights& flights, std::uint64_t cases,
-                                       const Unwanted& unwanted) {
+                                       const StopCheck& should_stop) {
   std::vector<std::optional<std::uint64_t>> checked = {std::nullopt};
   std::vector<Flown> alone, together;
   try {
-    alone = FlySideBySide(flights, checked, unwanted);
+    alone = FlySideBySide(flights, checked, should_stop);
   } catch (const ContainedEnd& end) {
     throw PluginError(std::string("cannot fly the nominal flight: it ") + end.what());
   }
   for (std::uint64_t i = 0; i < std::min<std::uint64_t>(cases, 2); ++i) checked.emplace_back(i);
   try {
-    together = FlySideBySide(flights, checked, unwanted);
+    together = FlySideBySide(flights, checked, should_stop);
   } catch (const ContainedEnd&) {
     checked.resize(1);  // such a case is left to whoever flies the campaign
-    together = FlyAgain(flights, checked, unwanted);
+    together = FlyAgain(flights, checked, should_stop);
   }
   for (std::size_t i = 0; i < checked.size(); ++i) {
     if (i > 0) {
-      std::vector<Flown> again = FlyAgain(flights, {checked[i]}, unwanted);
+      std::vector<Flown> again = FlyAgain(flights, {checked[i]}, should_stop);
       std::move(again.begin(), again.end(), std::back_inserter(alone));
     }
     if (alone.size() != i + 1 || together.size() != checked.size())
@@ -136,11 +136,11 @@ std::vector<CaseResult> CompareFlights(const CampaignFlights& flights, std::uint
 }  // namespace
 
 std::vector<CaseResult> CheckPluginIsDeterministic(const CampaignFlights& flights, std::uint64_t cases,
-                                                   const Unwanted& unwanted) {
+                                                   const StopCheck& should_stop) {
   const PluginLaw* const plugin = flights.model().autopilot().plugin.get();
   if (plugin == nullptr) return {};
   try {
-    return CompareFlights(flights, cases, unwanted);
+    return CompareFlights(flights, cases, should_stop);
   } catch (const PluginError& error) {
     throw InputError("the control law " + plugin->config().name + " " + error.what());
   }

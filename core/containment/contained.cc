@@ -237,14 +237,14 @@ class Child {
 
 }  // namespace
 
-void RunContained(const std::function<void(const Say& say)>& work, const Say& hear, const Unwanted& unwanted,
-                  const ContainmentLimits& limits) {
+void RunContained(const std::function<void(const Say& say)>& work, const Say& hear,
+                  const StopCheck& should_stop, const ContainmentLimits& limits) {
   Child child(work, limits);
   CallWatch watch(child.pid(), child.mark(), limits);
   std::string bytes;
   bool is_open = true;  // a process that the child started may hold the pipe open, and the child may close it
   for (;;) {
-    if (unwanted && unwanted()) throw NotWanted();
+    if (should_stop && should_stop()) throw Interrupted();
     const std::optional<int> ended = child.Ended();
     // Of one that has ended, all that is left; else what comes now.
     for (int patience_ms = ended ? 0 : 100; is_open; patience_ms = 0) {

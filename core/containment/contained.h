@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/containment/interrupted.h"
 #include "core/control/plugin.h"
 
 namespace dispersa {
@@ -24,11 +25,6 @@ class ContainedEnd : public std::runtime_error {
  private:
   PluginMark at_;
 };
-
-/// Who no longer wants what a child does: asked while it runs.
-using Unwanted = std::function<bool()>;
-/// Thrown when somebody did not.
-struct NotWanted {};
 
 struct ContainmentLimits {
   double call_cpu_s = 2.0;   ///< a call of more computing time counts as one that does not return,
@@ -47,10 +43,10 @@ class NoChild : public std::runtime_error {
 
 /// Runs `work` in a child. What it says is heard here, in order, until it is done or the child has ended;
 /// processes that the child started are ended with it. Throws PluginError with the text of one that `work`
-/// throws; ContainedEnd when it throws something else, or the child ends otherwise; NoChild; NotWanted; and
+/// throws; ContainedEnd when it throws something else, or the child ends otherwise; NoChild; Interrupted; and
 /// what `hear` throws.
 void RunContained(const std::function<void(const Say& say)>& work, const Say& hear,
-                  const Unwanted& unwanted = nullptr, const ContainmentLimits& limits = {});
+                  const StopCheck& should_stop = nullptr, const ContainmentLimits& limits = {});
 
 /// What a plug-in says of itself, asked in a child. Throws PluginError, ContainedEnd.
 PluginDescription DescribeContained(const PluginConfig& config);

@@ -24,8 +24,8 @@ std::string CampaignStatusText(const Json& campaign) {
                   done, total, campaign.at("name").get<std::string>());
   if (const double rate = campaign.at("rate_per_s"); rate > 0.0) text += fmt::format("  {:.1f}/s", rate);
   if (!campaign.at("eta_s").is_null()) text += "  " + DurationText(campaign.at("eta_s")) + " left";
-  if (const auto given_up = campaign.at("quarantined").get<std::uint64_t>(); given_up > 0) {
-    text += fmt::format("  {} quarantined", given_up);
+  if (const auto quarantined = campaign.at("quarantined").get<std::uint64_t>(); quarantined > 0) {
+    text += fmt::format("  {} quarantined", quarantined);
   }
   if (!campaign.at("code").is_null()) text += fmt::format("  exit code {}", campaign.at("code").get<int>());
   if (!campaign.at("problem").is_null()) text += "  " + campaign.at("problem").get<std::string>();

@@ -20,7 +20,7 @@ namespace dispersa {
 namespace {
 
 struct RunCommand {
-  CampaignRequest request;
+  RunRequest request;
   RunOptions run;
 };
 
@@ -35,13 +35,13 @@ std::string ResumeCommand(const RunCommand& options, const std::filesystem::path
   return command + " --out " + ShellWord(directory.string()) + " --resume";
 }
 
-ExitCode Fly(const RunCommand& options, OpenedCampaign opened, const GlobalOptions& global) {
-  const std::filesystem::path directory = opened.folder.directory();
+ExitCode Fly(const RunCommand& options, PreparedRun prepared, const GlobalOptions& global) {
+  const std::filesystem::path directory = prepared.folder.directory();
   RunOptions run = options.run;
   run.worker_program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "dispersa-worker";
   TerminalObserver observer(global.quiet);
   try {
-    const RunResult result = RunCampaign(std::move(opened), run, observer);
+    const RunResult result = RunCampaign(std::move(prepared), run, observer);
     PrintSummary(result.summary, directory, global.json);
     return result.code;
   } catch (const Interrupted&) {
@@ -62,8 +62,8 @@ ExitCode Fly(const RunCommand& options, OpenedCampaign opened, const GlobalOptio
 ExitCode Run(const RunCommand& options, const GlobalOptions& global) {
   CatchStopSignals();
   try {
-    return Fly(options, OpenCampaign(options.request, StopRequested), global);
-  } catch (const NotWanted&) {
+    return Fly(options, PrepareRun(options.request, StopRequested), global);
+  } catch (const Interrupted&) {
     Tell("interrupted before the first case\n");
     if (global.json) PrintErrorJson(kExitInterrupted, "interrupted");
     return kExitInterrupted;
@@ -76,7 +76,7 @@ void AddRunCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<RunCommand>();
   CLI::App* command =
       app.add_subcommand("run", "fly a campaign on local workers and write its result folder");
-  CampaignRequest& request = options->request;
+  RunRequest& request = options->request;
   command->add_option("campaign", request.campaign.name, "campaign file")->required()->type_name(kYamlType);
   command
       ->add_option("--workers", options->run.workers,

@@ -118,7 +118,7 @@ std::string StateWords(const Json& campaign, bool has_workers) {
 std::string ProgressHtml(const Json& campaign, const Json& workers) {
   const auto done = campaign.at("done").get<std::uint64_t>(),
              total = campaign.at("total").get<std::uint64_t>(),
-             given_up = campaign.at("quarantined").get<std::uint64_t>();
+             quarantined = campaign.at("quarantined").get<std::uint64_t>();
   const bool ended = !campaign.at("code").is_null();
   const double rate = campaign.at("rate_per_s");
   std::uint64_t slots = 0;
@@ -127,7 +127,7 @@ std::string ProgressHtml(const Json& campaign, const Json& workers) {
       "<div class=\"headline\"><span class=\"badge state\">{}</span><p>{}</p></div>\n"
       "<progress max=\"{}\" value=\"{}\">{}</progress>\n<div class=\"tiles\">",
       HtmlText(campaign.at("state").get<std::string>()), HtmlText(StateWords(campaign, !workers.empty())),
-      std::max<std::uint64_t>(total, 1), done + given_up,
+      std::max<std::uint64_t>(total, 1), done + quarantined,
       PercentText(static_cast<double>(done) / static_cast<double>(std::max<std::uint64_t>(total, 1))));
   html += Tile(fmt::format("{}", done), fmt::format("of {} cases flown", total));
   if (!ended) {
@@ -137,7 +137,7 @@ std::string ProgressHtml(const Json& campaign, const Json& workers) {
         fmt::format("{}", workers.size()),
         fmt::format("worker{} with {} slot{}", workers.size() == 1 ? "" : "s", slots, slots == 1 ? "" : "s"));
   }
-  if (given_up > 0) html += Tile(fmt::format("{}", given_up), "cases quarantined");
+  if (quarantined > 0) html += Tile(fmt::format("{}", quarantined), "cases quarantined");
   html += "</div>\n";
   if (!ended) return html;
   return html +

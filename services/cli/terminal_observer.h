@@ -25,7 +25,7 @@ class TerminalObserver : public Observer {
   }
   void EndPhase() override { progress_.reset(); }
   /// Never in a command that does not catch the stop signals: it ends by them.
-  bool Stop() override { return StopRequested(); }
+  bool ShouldStop() override { return StopRequested(); }
 
  private:
   bool quiet_;

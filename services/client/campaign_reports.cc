@@ -12,7 +12,7 @@ CampaignSummary MakeReports(const ResultFolder& folder, const Campaign& campaign
   options.histories = !reflown.none;
   options.history_cases = reflown.envelope;
   options.progress = [&](const std::string& what, std::uint64_t done, std::uint64_t total) {
-    if (observer.Stop()) throw Interrupted();
+    if (observer.ShouldStop()) throw Interrupted();
     observer.Show(what, done, total);
   };
   CampaignSummary summary = WriteReports(folder, campaign, options);

@@ -32,10 +32,10 @@ namespace dispersa {
 namespace {
 
 constexpr char kLoopback[] = "127.0.0.1";
-// Replacements of workers that end again and again while no case gets done or given up.
+// Replaced workers in a row without a case flown or quarantined.
 constexpr int kFruitlessEndsAllowed = 10;
-// So many cases given up and not one flown: it is not the cases.
-constexpr std::uint64_t kHopelessCases = 20;
+// So many quarantined cases and none flown: the cases are not the cause.
+constexpr std::uint64_t kMaxQuarantinedWithoutResult = 20;
 constexpr double kJoinPatience_s = 60.0;
 constexpr double kLeavePatience_s = 0.3;
 
@@ -43,7 +43,8 @@ double SecondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Flies what is missing. Returns why it gave up, if it did. Throws Interrupted.
+/// Flies the missing cases. The Fly functions return why they ended early, if they did; they throw
+/// Interrupted.
 class CampaignRun {
  public:
   CampaignRun(CampaignBook& book, ExecutionFile& execution, Observer& observer)
@@ -57,9 +58,9 @@ class CampaignRun {
       for (int i = 1; i < threads; ++i) others.emplace_back([&] { queue.FlyOn(flights); });
       queue.FlyOn(flights);
     }
-    queue.RethrowProblem();
-    if (observer_.Stop()) throw Interrupted();
-    return queue.hopeless();
+    queue.RethrowError();
+    if (observer_.ShouldStop()) throw Interrupted();
+    return queue.end_reason();
   }
 
   std::optional<std::string> FlyWithWorkers(const std::filesystem::path& program, int count) {
@@ -79,10 +80,10 @@ class CampaignRun {
                          {"--domain", std::to_string(domain.domain()), "--address", kLoopback, "--peer",
                           fmt::format("{}:{}", kLoopback, CoordinatorPort(domain.domain()))},
                          count, ToText(pass));
-    std::optional<std::string> problem;
+    std::optional<std::string> reason;
     double joined_s = Now();
-    while (!book_.refusal() && !book_.Complete() && !problem) {
-      if (observer_.Stop()) {
+    while (!book_.refusal() && !book_.Complete() && !reason) {
+      if (observer_.ShouldStop()) {
         workers.End(0.0);
         Note(workers);
         throw Interrupted();
@@ -95,13 +96,13 @@ class CampaignRun {
       }
       ShowProgress(fmt::format("{} worker{}", workers.alive(), workers.alive() == 1 ? "" : "s"));
       if (coordinator.joined() > 0) joined_s = Now();
-      problem = Problem(coordinator, workers, Now() - joined_s);
+      reason = ReasonToEnd(coordinator, workers, Now() - joined_s);
     }
     book_.Flush();
     coordinator.Dismiss();
-    workers.End(problem ? 0.0 : kLeavePatience_s);
+    workers.End(reason ? 0.0 : kLeavePatience_s);
     Note(workers);
-    return problem;
+    return reason;
   }
 
  private:
@@ -120,14 +121,14 @@ class CampaignRun {
           flights.FlyCases(*this);
         } catch (...) {
           const std::lock_guard lock(mutex_);
-          if (!problem_) problem_ = std::current_exception();
+          if (!error_) error_ = std::current_exception();
         }
         std::unique_lock lock(mutex_);
-        if (run_.observer_.Stop() || problem_ || hopeless_) return;
+        if (run_.observer_.ShouldStop() || error_ || end_reason_) return;
         try {
           if (run_.book_.refusal() || run_.book_.Complete()) return;  // else the plan may have asked for more
         } catch (...) {
-          problem_ = std::current_exception();
+          error_ = std::current_exception();
           return;
         }
         changed_.wait_for(lock, std::chrono::milliseconds(50));
@@ -135,7 +136,7 @@ class CampaignRun {
     }
     std::optional<std::uint64_t> Next(bool) override {
       const std::lock_guard lock(mutex_);
-      if (run_.observer_.Stop() || problem_ || hopeless_ || run_.book_.refusal()) return std::nullopt;
+      if (run_.observer_.ShouldStop() || error_ || end_reason_ || run_.book_.refusal()) return std::nullopt;
       try {
         if (waiting_.empty()) {
           for (const Assignment& assignment : run_.book_.ledger().Assign(run_.Now()))
@@ -149,35 +150,36 @@ class CampaignRun {
         run_.book_.Start(kInProcess, case_index, attempt, run_.Now());
         return case_index;
       } catch (...) {
-        problem_ = std::current_exception();
+        error_ = std::current_exception();
         return std::nullopt;
       }
     }
     void Done(CaseResult result) override {
       const std::lock_guard lock(mutex_);
-      if (problem_) return;
+      if (error_) return;
       try {
         run_.book_.Accept(kInProcess, "", attempts_.extract(result.case_index).mapped(), result, run_.Now());
         run_.book_.FlushIfDue(run_.Now());
         run_.ShowProgress(kInProcess);
       } catch (...) {
-        problem_ = std::current_exception();
+        error_ = std::current_exception();
       }
       changed_.notify_all();
     }
-    void GivenUp(std::uint64_t case_index, const std::string& reason) override {
+    void Quarantined(std::uint64_t case_index, const std::string& reason) override {
       const std::lock_guard lock(mutex_);
-      if (problem_) return;
-      run_.book_.GiveUp(kInProcess, case_index, attempts_.extract(case_index).mapped(), reason, run_.Now());
-      if (const auto given_up = run_.book_.ledger().Progress().quarantined;
-          given_up >= kHopelessCases && run_.book_.flown_now() == 0)
-        hopeless_ = fmt::format("the first {} cases ended every process that flew them, the last one: {}",
-                                given_up, reason);
+      if (error_) return;
+      run_.book_.Quarantine(kInProcess, case_index, attempts_.extract(case_index).mapped(), reason,
+                            run_.Now());
+      if (const auto quarantined = run_.book_.ledger().Progress().quarantined;
+          quarantined >= kMaxQuarantinedWithoutResult && run_.book_.flown_now() == 0)
+        end_reason_ = fmt::format("the first {} cases ended every process that flew them, the last one: {}",
+                                  quarantined, reason);
       changed_.notify_all();
     }
-    const std::optional<std::string>& hopeless() const { return hopeless_; }
-    void RethrowProblem() const {
-      if (problem_) std::rethrow_exception(problem_);
+    const std::optional<std::string>& end_reason() const { return end_reason_; }
+    void RethrowError() const {
+      if (error_) std::rethrow_exception(error_);
     }
 
    private:
@@ -188,8 +190,8 @@ class CampaignRun {
     std::condition_variable changed_;
     std::deque<std::pair<std::uint64_t, std::uint64_t>> waiting_;  ///< case and attempt
     std::map<std::uint64_t, std::uint64_t> attempts_;              ///< of the cases in flight
-    std::optional<std::string> hopeless_;
-    std::exception_ptr problem_;
+    std::optional<std::string> end_reason_;
+    std::exception_ptr error_;
   };
 
   double Now() const { return SecondsSince(start_); }
@@ -206,8 +208,8 @@ class CampaignRun {
     if (!changes.ended.empty() || !changes.started.empty()) Note(workers);
   }
 
-  std::optional<std::string> Problem(const Coordinator& coordinator, const LocalWorkers& workers,
-                                     double nobody_joined_s) const {
+  std::optional<std::string> ReasonToEnd(const Coordinator& coordinator, const LocalWorkers& workers,
+                                         double nobody_joined_s) const {
     if (coordinator.joined() == 0 && coordinator.refusal()) {
       return "no worker may fly this campaign: " + *coordinator.refusal();
     }
@@ -219,10 +221,10 @@ class CampaignRun {
       return fmt::format("{} workers ended in a row without a result, the last one with {}",
                          workers.fruitless_ends(), LastEnd(workers));
     }
-    if (const auto given_up = book_.ledger().Progress().quarantined;
-        given_up >= kHopelessCases && book_.flown_now() == 0) {
+    if (const auto quarantined = book_.ledger().Progress().quarantined;
+        quarantined >= kMaxQuarantinedWithoutResult && book_.flown_now() == 0) {
       return fmt::format("the first {} cases ended every worker that flew them, the last one with {}",
-                         given_up, LastEnd(workers));
+                         quarantined, LastEnd(workers));
     }
     if (nobody_joined_s > kJoinPatience_s) {
       return fmt::format("no worker has joined for {:.0f} s", kJoinPatience_s);
@@ -256,11 +258,11 @@ class CampaignRun {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-RunResult FlyAndReport(const RunOptions& options, OpenedCampaign opened, ExecutionFile& execution,
+RunResult FlyAndReport(const RunOptions& options, PreparedRun prepared, ExecutionFile& execution,
                        Observer& observer) {
   const int workers = options.workers >= 0 ? options.workers : UsableCores();
-  CampaignBook book(opened.campaign, std::move(opened.folder));
-  book.Expect(std::move(opened.flown));
+  CampaignBook book(prepared.campaign, std::move(prepared.folder));
+  book.Expect(std::move(prepared.flown));
   execution.workers_wanted = workers;
   execution.cases_before = book.ledger().Progress().done;
   execution.Write();
@@ -296,7 +298,7 @@ RunResult FlyAndReport(const RunOptions& options, OpenedCampaign opened, Executi
     LogError("{}", *execution.problem);
     code = WorseOf(code, kExitIncomplete);
   }
-  for (const BlamedCase& blamed : book.ledger().Quarantined()) {
+  for (const CaseBlames& blamed : book.ledger().Quarantined()) {
     LogWarning("case {} is quarantined: {}", blamed.case_index, fmt::join(blamed.reasons, "; "));
   }
   CampaignSummary summary = MakeReports(book.folder(), book.campaign(), workers, options.reflown, observer);
@@ -308,12 +310,12 @@ RunResult FlyAndReport(const RunOptions& options, OpenedCampaign opened, Executi
 
 }  // namespace
 
-RunResult RunCampaign(OpenedCampaign opened, const RunOptions& options, Observer& observer) {
+RunResult RunCampaign(PreparedRun prepared, const RunOptions& options, Observer& observer) {
   ExecutionFile execution;
-  execution.directory = opened.folder.directory();
+  execution.directory = prepared.folder.directory();
   execution.started_utc = UtcNow();
   try {
-    return FlyAndReport(options, std::move(opened), execution, observer);
+    return FlyAndReport(options, std::move(prepared), execution, observer);
   } catch (const Interrupted&) {
     execution.ended_utc = UtcNow();
     execution.problem = "interrupted";

@@ -1,4 +1,4 @@
-// A campaign flown on this machine, from its opened folder to its reports: what `dispersa run` does.
+// Flies a campaign on this machine, from the prepared run to its reports: the work of `dispersa run`.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +8,7 @@
 #include "core/analysis/campaign_summary.h"
 #include "services/client/campaign_reports.h"
 #include "services/client/observer.h"
-#include "services/ledger/open_campaign.h"
+#include "services/ledger/prepare_run.h"
 #include "services/program/exit_code.h"
 
 namespace dispersa {
@@ -22,13 +22,13 @@ struct RunOptions {
 
 struct RunResult {
   CampaignSummary summary;
-  ExitCode code = kExitDone;           ///< of the verdict, or of what stands in its way
-  std::optional<std::string> problem;  ///< why cases are missing, if they are for want of workers
+  ExitCode code = kExitDone;           ///< of the verdict, or of what prevents one
+  std::optional<std::string> problem;  ///< why cases are missing, if workers failed
 };
 
-/// Flies what is missing, writes the reports and execution.json. What goes wrong with single cases and
-/// workers is logged. Throws InputError when the campaign's control law turns out not to be deterministic,
-/// Interrupted when the observer wants it to stop, and ResultError; what was flown is kept.
-RunResult RunCampaign(OpenedCampaign opened, const RunOptions& options, Observer& observer);
+/// Flies the missing cases and writes the reports and execution.json. Failures of single cases and workers
+/// are logged. Throws InputError when the control law is not deterministic, Interrupted when the observer
+/// stops it, and ResultError. The results flown so far are kept.
+RunResult RunCampaign(PreparedRun prepared, const RunOptions& options, Observer& observer);
 
 }  // namespace dispersa

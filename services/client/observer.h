@@ -1,26 +1,25 @@
-// Who watches a long call, and may stop it.
+// Receives the progress of a long call, and can stop it.
 #pragma once
 
 #include <cstdint>
 #include <string>
 
+#include "core/containment/interrupted.h"
+
 namespace dispersa {
 
-/// Thrown by a call whose observer wanted it to stop.
-struct Interrupted {};
-
-/// Called by any of the threads that fly, one at a time but for Stop.
+/// Any flying thread may call it. Calls never overlap, except those of ShouldStop.
 class Observer {
  public:
   virtual ~Observer() = default;
-  /// How far a phase ("table3", "time histories") is. Cheap calls, many a second: showing each is up to the
-  /// observer.
+  /// The progress of a phase ("table3", "time histories"). Called many times a second; the observer decides
+  /// how many of the calls it shows.
   virtual void Show(const std::string& phase, std::uint64_t done, std::uint64_t total,
                     const std::string& note = "") = 0;
-  /// The phase has ended: what is said now is not about it.
+  /// The phase has ended: later messages are not about it.
   virtual void EndPhase() {}
-  /// Asked many times a second.
-  virtual bool Stop() = 0;
+  /// Asked many times a second. True: the call throws Interrupted.
+  virtual bool ShouldStop() = 0;
 };
 
 }  // namespace dispersa

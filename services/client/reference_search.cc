@@ -21,7 +21,7 @@ fs::path Beside(fs::path file, const char* extension) { return file.replace_exte
 OptimizationResult Search(const OptimizationInput& input, int threads, Observer& observer) {
   const auto generations = static_cast<std::uint64_t>(input.problem.generations);
   const auto observe = [&](const GenerationRecord& record) {
-    if (observer.Stop()) throw Interrupted();
+    if (observer.ShouldStop()) throw Interrupted();
     observer.Show("optimize", static_cast<std::uint64_t>(record.generation), generations,
                   record.best_objective ? fmt::format("best {:.4g}", *record.best_objective)
                                         : std::string("no feasible trajectory yet"));

@@ -89,7 +89,7 @@ std::string LaunchCampaign(Session& session, const Campaign& campaign, int prior
 
 ExitCode FollowCampaign(Session& session, const std::string& id, Observer& observer) {
   for (;;) {
-    if (observer.Stop()) throw Interrupted();
+    if (observer.ShouldStop()) throw Interrupted();
     const auto reply = session.Try("list", {{"id", id}}, "", kPatience);
     if (reply) {
       const Json answer = Json::parse(reply->text);

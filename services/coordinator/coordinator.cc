@@ -34,7 +34,7 @@ Coordinator::Coordinator(const NetworkOptions& network, double audit_share)
 
 Coordinator::Coordinator(const NetworkOptions& network, CampaignBook& book, double audit_share)
     : Coordinator(network, audit_share) {
-  dispatcher_.Open(book);
+  dispatcher_.BeginCampaign(book);
 }
 
 void Coordinator::Step(std::chrono::milliseconds timeout) {

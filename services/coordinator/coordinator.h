@@ -25,8 +25,8 @@ class Coordinator : public Workforce {
   /// Serves one campaign.
   Coordinator(const NetworkOptions& network, CampaignBook& book, double audit_share = 0.0);
 
-  void Open(CampaignBook& book, int priority) override { dispatcher_.Open(book, priority); }
-  void Close(const std::string& flight_id) override { dispatcher_.Close(flight_id); }
+  void BeginCampaign(CampaignBook& book, int priority) override { dispatcher_.BeginCampaign(book, priority); }
+  void EndCampaign(const std::string& flight_id) override { dispatcher_.EndCampaign(flight_id); }
 
   /// One round: waits for messages, at most `timeout`, and does what follows from them and from the time.
   /// Throws ResultError.
@@ -47,7 +47,7 @@ class Coordinator : public Workforce {
   void Publish(CampaignProgress progress) override;
 
   std::size_t joined() const { return dispatcher_.joined(); }
-  bool Hears() const { return dispatcher_.Hears(now_s_); }
+  bool ReceivesReports() const { return dispatcher_.ReceivesReports(now_s_); }
   std::vector<Dispatcher::WorkerView> Workers() const override { return dispatcher_.Workers(); }
   std::optional<std::string> RefusalByAll(const std::string& flight_id) const override {
     return dispatcher_.RefusalByAll(flight_id);

@@ -23,15 +23,15 @@ constexpr std::uint32_t kCreditsPerSlot = 32;  // more than a slot with the wide
 Dispatcher::Dispatcher(std::uint64_t epoch, std::string engine_version, const DispatcherOptions& options)
     : epoch_(epoch), engine_version_(std::move(engine_version)), options_(options) {}
 
-void Dispatcher::Open(CampaignBook& book, int priority) {
-  OpenCampaign& campaign = campaigns_[book.campaign().flight_id];
+void Dispatcher::BeginCampaign(CampaignBook& book, int priority) {
+  FlyingCampaign& campaign = campaigns_[book.campaign().flight_id];
   campaign.book = &book;
   campaign.priority = priority;
   book.KeepAudit(options_.audit);
   for (const auto& [id, worker] : workers_) book.ledger().Join(id, worker.hello, worker.heard_s);
 }
 
-void Dispatcher::Close(const std::string& flight_id) {
+void Dispatcher::EndCampaign(const std::string& flight_id) {
   const auto found = campaigns_.find(flight_id);
   if (found == campaigns_.end()) return;
   Acknowledge(found->second);
@@ -84,8 +84,8 @@ bool Dispatcher::Join(const std::string& sender, const WorkerStatus& status, dou
     known->second.sender = sender;
     known->second.orders.worker = status.worker;
     known->second.orders.coordinator_epoch = epoch_;
-    known->second.spoken_s = now_s - options_.pulse_s;
-    known->second.message_s = now_s;
+    known->second.last_orders_s = now_s - options_.pulse_s;
+    known->second.last_report_s = now_s;
     if (!supervised_.contains(status.worker)) {
       LogInfo("worker {} joined: process {} on {}, {} slots", status.worker, status.pid,
               Printable(status.host), status.slots);
@@ -96,12 +96,13 @@ bool Dispatcher::Join(const std::string& sender, const WorkerStatus& status, dou
   worker.state = status.state;
   worker.flown = status.flown;
   worker.heard_s = now_s;
-  const std::int64_t untold = static_cast<std::int64_t>(status.flown) - worker.results;
-  if (!worker.untold || untold < *worker.untold || status.held.empty()) worker.untold = untold;
-  worker.tells_within_s = untold > *worker.untold ? options_.wordless_s
-                          : status.held.empty() || !status.started.empty()
-                              ? std::numeric_limits<double>::infinity()
-                              : options_.speechless_s;
+  const std::int64_t unreported = static_cast<std::int64_t>(status.flown) - worker.results;
+  if (!worker.unreported || unreported < *worker.unreported || status.held.empty())
+    worker.unreported = unreported;
+  worker.report_due_s = unreported > *worker.unreported ? options_.report_silence_s
+                        : status.held.empty() || !status.started.empty()
+                            ? std::numeric_limits<double>::infinity()
+                            : options_.load_silence_s;
   // Whatever it says that it can hold: the others shall find cases too.
   worker.hello = {status.engine_version, status.slots,
                   std::min(status.credits, kCreditsPerSlot * status.slots)};
@@ -176,7 +177,7 @@ void Dispatcher::Compare(Worker& worker, const WorkerStatus& status, double now_
     if (owed.empty()) {
       worker.sent.erase(here);
     } else if (now_s - here->second.at_s >= options_.repeat_s) {
-      Say(worker, here->second.flight_id, here->first, std::move(owed), now_s);
+      GiveOrder(worker, here->second.flight_id, here->first, std::move(owed), now_s);
     }
   }
   worker.orders.revoked.clear();
@@ -199,7 +200,7 @@ std::vector<const FlownCase*> Dispatcher::On(const std::string& sender, const Re
     Disagree(sender, "it reports for worker " + report.worker + " of another participant");
     return {};
   }
-  known->second.heard_s = known->second.message_s = now_s;
+  known->second.heard_s = known->second.last_report_s = now_s;
   known->second.results += static_cast<std::int64_t>(report.flown.size());
   const auto campaign = campaigns_.find(report.flight_id);
   if (campaign == campaigns_.end()) {
@@ -211,13 +212,13 @@ std::vector<const FlownCase*> Dispatcher::On(const std::string& sender, const Re
   CampaignBook& book = *campaign->second.book;
   std::vector<const FlownCase*> accepted;
   for (const FlownCase& flown : report.flown) {
-    if (flown.given_up && !book.campaign().autopilot.plugin) {
+    if (flown.is_quarantined && !book.campaign().autopilot.plugin) {
       Disagree(sender, "it gives up a case that no control law of the campaign's own could spoil");
       continue;
     }
-    if (flown.given_up) {
-      book.GiveUp(report.worker, flown.result.case_index, follows ? flown.attempt : 0,
-                  Printable(flown.result.reason, 1000), now_s);
+    if (flown.is_quarantined) {
+      book.Quarantine(report.worker, flown.result.case_index, follows ? flown.attempt : 0,
+                      Printable(flown.result.reason, 1000), now_s);
       continue;
     }
     if (flown.result.inputs.size() != InputCount(book.campaign().vehicle.stages.size())) {
@@ -246,7 +247,7 @@ void Dispatcher::On(const std::string& sender, const CampaignRefusal& refusal, d
     Disagree(sender, "it refuses a campaign for worker " + refusal.worker + " of another participant");
     return;
   }
-  known->second.heard_s = known->second.message_s = now_s;
+  known->second.heard_s = known->second.last_report_s = now_s;
   const std::string reason = Printable(refusal.reason, 1000);
   if (!campaign->second.refused_by.emplace(refusal.worker, reason).second) return;
   LogError("worker {} refuses the campaign {}: {}", refusal.worker, campaign->second.book->campaign().name,
@@ -269,7 +270,7 @@ std::optional<TextPart> Dispatcher::On(const TextRequest& request, std::size_t l
   const auto campaign = campaigns_.find(request.flight_id);
   const auto known = workers_.find(request.worker);
   if (campaign == campaigns_.end() || known == workers_.end()) return std::nullopt;
-  known->second.message_s = now_s;
+  known->second.last_report_s = now_s;
   const Campaign& what = campaign->second.book->campaign();
   if (request.offset > what.canonical_yaml.size()) return std::nullopt;
   return TextPart{request.worker,
@@ -281,9 +282,9 @@ std::optional<TextPart> Dispatcher::On(const TextRequest& request, std::size_t l
                   what.canonical_yaml.substr(request.offset, limit)};
 }
 
-bool Dispatcher::Hears(double now_s) const {
+bool Dispatcher::ReceivesReports(double now_s) const {
   return std::any_of(workers_.begin(), workers_.end(), [now_s](const auto& each) {
-    return now_s - each.second.message_s <= each.second.tells_within_s;
+    return now_s - each.second.last_report_s <= each.second.report_due_s;
   });
 }
 
@@ -327,8 +328,8 @@ std::vector<Orders> Dispatcher::Tick(double now_s) {
     orders.leave = dismissed_;
     const bool something =
         !orders.assignments.empty() || !orders.revoked.empty() || !orders.acknowledged.empty();
-    if (!something && now_s - worker.spoken_s < options_.pulse_s) continue;
-    worker.spoken_s = now_s;
+    if (!something && now_s - worker.last_orders_s < options_.pulse_s) continue;
+    worker.last_orders_s = now_s;
     Orders message = orders;
     orders.assignments.clear();
     orders.revoked.clear();
@@ -344,7 +345,7 @@ std::vector<Orders> Dispatcher::Tick(double now_s) {
 
 void Dispatcher::Dismiss() {
   dismissed_ = true;
-  for (auto& [id, worker] : workers_) worker.spoken_s = -options_.pulse_s;
+  for (auto& [id, worker] : workers_) worker.last_orders_s = -options_.pulse_s;
 }
 
 void Dispatcher::LoseSilent(double now_s) {
@@ -386,7 +387,7 @@ void Dispatcher::Assign(double now_s) {
 
 bool Dispatcher::AssignTo(const std::string& id, Worker& worker, double now_s) {
   std::uint64_t batches = 0;
-  std::vector<OpenCampaign*> by_right;
+  std::vector<FlyingCampaign*> by_right;
   for (auto& [flight_id, campaign] : campaigns_) {
     if (campaign.book->ledger().IsAlone(id)) return false;
     batches += campaign.book->ledger().Batches(id);
@@ -395,32 +396,32 @@ bool Dispatcher::AssignTo(const std::string& id, Worker& worker, double now_s) {
   if (batches >= worker.hello.credits) return false;
   if (by_right.size() > 1) {
     // First by priority; of equal ones, that which has the least in flight.
-    std::map<const OpenCampaign*, std::uint64_t> assigned;
-    for (const OpenCampaign* campaign : by_right)
+    std::map<const FlyingCampaign*, std::uint64_t> assigned;
+    for (const FlyingCampaign* campaign : by_right)
       assigned[campaign] = campaign->book->ledger().Progress().assigned;
-    std::stable_sort(by_right.begin(), by_right.end(), [&](const OpenCampaign* a, const OpenCampaign* b) {
+    std::stable_sort(by_right.begin(), by_right.end(), [&](const FlyingCampaign* a, const FlyingCampaign* b) {
       return a->priority != b->priority ? a->priority > b->priority : assigned[a] < assigned[b];
     });
   }
-  for (OpenCampaign* campaign : by_right) {
+  for (FlyingCampaign* campaign : by_right) {
     if (!campaign->book->pause().empty() || !campaign->book->breakdown().empty()) continue;
     Ledger& ledger = campaign->book->ledger();
     if (auto assignment = ledger.GiveTo(id, batches - ledger.Batches(id), now_s)) {
-      Say(worker, campaign->book->campaign().flight_id, assignment->attempt, std::move(assignment->cases),
-          now_s);
+      GiveOrder(worker, campaign->book->campaign().flight_id, assignment->attempt,
+                std::move(assignment->cases), now_s);
       return true;
     }
   }
   return false;
 }
 
-void Dispatcher::Say(Worker& worker, const std::string& flight_id, std::uint64_t attempt,
-                     std::vector<std::uint64_t> cases, double now_s) {
+void Dispatcher::GiveOrder(Worker& worker, const std::string& flight_id, std::uint64_t attempt,
+                           std::vector<std::uint64_t> cases, double now_s) {
   worker.sent[attempt] = {flight_id, now_s};
   worker.orders.assignments.push_back({flight_id, attempt, std::move(cases)});
 }
 
-void Dispatcher::Acknowledge(OpenCampaign& campaign) {
+void Dispatcher::Acknowledge(FlyingCampaign& campaign) {
   for (const auto& [id, report] : std::exchange(campaign.unstored, {})) {
     if (const auto worker = workers_.find(id); worker != workers_.end()) {
       worker->second.orders.acknowledged.push_back(report);

@@ -18,12 +18,12 @@
 namespace dispersa {
 
 struct DispatcherOptions {
-  double silence_s = 3.0;        ///< a worker that says nothing for so long is lost
-  double repeat_s = 2.0;         ///< an assignment that a worker does not know is said again after so long
-  double pulse_s = 1.0;          ///< every worker hears something at least so often
-  double last_messages_s = 0.2;  ///< what a process that ended has sent may still arrive for so long
-  double wordless_s = 5.0;       ///< results are reported, and repeated, more often than that
-  double speechless_s = 60.0;    ///< a text is loaded within that
+  double silence_s = 3.0;         ///< a worker that says nothing for so long is lost
+  double repeat_s = 2.0;          ///< an assignment that a worker does not know is said again after so long
+  double pulse_s = 1.0;           ///< every worker hears something at least so often
+  double last_messages_s = 0.2;   ///< what a process that ended has sent may still arrive for so long
+  double report_silence_s = 5.0;  ///< results are reported, and repeated, more often than that
+  double load_silence_s = 60.0;   ///< a text is loaded within that
   std::size_t max_workers = 2000;
   AuditOptions audit;
 };
@@ -38,8 +38,8 @@ class Dispatcher {
 
   /// Flies the cases of this book until Close, those of a higher priority first, of equal ones a fair share
   /// each. The book's attempts must differ from those of the others (LedgerOptions::attempt_base).
-  void Open(CampaignBook& book, int priority = 0);
-  void Close(const std::string& flight_id);
+  void BeginCampaign(CampaignBook& book, int priority = 0);
+  void EndCampaign(const std::string& flight_id);
 
   /// `sender` names the participant that a message came from; a worker cannot choose it.
   void On(const std::string& sender, const WorkerStatus& status, double now_s);
@@ -75,9 +75,10 @@ class Dispatcher {
 
   std::size_t joined() const { return workers_.size(); }
   /// Whether more than statuses gets here. False without workers, and when all of them have had something to
-  /// tell for longer than it takes: one that flew (`wordless_s`), or one that holds cases and flies none
-  /// (`speechless_s`).
-  bool Hears(double now_s) const;
+  /// tell for longer than it takes: one that flew (`report_silence_s`), or one that holds cases and flies
+  /// none
+  /// (`load_silence_s`).
+  bool ReceivesReports(double now_s) const;
   struct WorkerView {
     std::string worker;
     std::string host;
@@ -99,7 +100,7 @@ class Dispatcher {
   std::uint64_t expelled() const { return expelled_; }
 
  private:
-  struct OpenCampaign {
+  struct FlyingCampaign {
     CampaignBook* book = nullptr;
     int priority = 0;
     std::map<std::string, std::string> refused_by;  ///< workers that cannot fly it, and why
@@ -118,11 +119,11 @@ class Dispatcher {
     WorkerState state = WorkerState::kReady;
     std::uint64_t flown = 0;
     double heard_s = 0.0;
-    double message_s = 0.0;              ///< when the last one came that was no status
-    double tells_within_s = 0.0;         ///< the next one is due so long after it, by the last status
-    std::int64_t results = 0;            ///< that came
-    std::optional<std::int64_t> untold;  ///< what it has flown less that: the least, when all had come
-    double spoken_s = 0.0;
+    double last_report_s = 0.0;              ///< when the last one came that was no status
+    double report_due_s = 0.0;               ///< the next one is due so long after it, by the last status
+    std::int64_t results = 0;                ///< that came
+    std::optional<std::int64_t> unreported;  ///< what it has flown less that: the least, when all had come
+    double last_orders_s = 0.0;
     std::map<std::uint64_t, Sent> sent;  ///< by attempt
     Orders orders;                       ///< what is to be said
 
@@ -134,10 +135,10 @@ class Dispatcher {
   void Expel(const std::string& worker, const std::string& reason);
   void TellRefusal(const std::string& worker, const std::string& reason);
   void Compare(Worker& worker, const WorkerStatus& status, double now_s);
-  void Say(Worker& worker, const std::string& flight_id, std::uint64_t attempt,
-           std::vector<std::uint64_t> cases, double now_s);
+  void GiveOrder(Worker& worker, const std::string& flight_id, std::uint64_t attempt,
+                 std::vector<std::uint64_t> cases, double now_s);
   /// Acknowledges what is stored of a campaign.
-  void Acknowledge(OpenCampaign& campaign);
+  void Acknowledge(FlyingCampaign& campaign);
   void Lose(const std::string& worker, WorkerEnd end, const std::string& reason);
   void LoseSilent(double now_s);
   void Expire(double now_s);
@@ -155,7 +156,7 @@ class Dispatcher {
   std::uint64_t epoch_;
   std::string engine_version_;
   DispatcherOptions options_;
-  std::map<std::string, OpenCampaign> campaigns_;  ///< by flight id
+  std::map<std::string, FlyingCampaign> campaigns_;  ///< by flight id
   std::map<std::string, Worker> workers_;
   std::set<std::string> supervised_;
   std::map<std::string, std::string> refused_;  ///< worker -> why; told again whenever it speaks

@@ -25,7 +25,7 @@ int RunCoordinator(int argc, char** argv) {
   HoldStandardStreams();
   LogForDaemon("dispersa-coordinator");
   NetworkOptions network;
-  CampaignRequest request;
+  RunRequest request;
   std::optional<double> patience_s;
   Admission admission;
   CLI::App app(
@@ -42,7 +42,7 @@ int RunCoordinator(int argc, char** argv) {
   app.add_option("campaign", request.campaign.name, "campaign file")->type_name(kFileType);
   app.add_option("--data", data, "folder of the campaigns that were launched, made if it is not there")
       ->type_name(kFolderType);
-  app.add_option("--metrics", clients.metrics_port,
+  app.add_option("--metrics", clients.prometheus_port,
                  "with --data: port of 127.0.0.1 for metrics in Prometheus' text format")
       ->transform(WholeNumber(1, 65535));
   app.add_option(

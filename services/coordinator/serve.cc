@@ -9,8 +9,8 @@
 #include "services/coordinator/attendance.h"
 #include "services/coordinator/coordinator.h"
 #include "services/coordinator/front_desk.h"
-#include "services/coordinator/metrics_port.h"
-#include "services/coordinator/metrics_text.h"
+#include "services/coordinator/prometheus_port.h"
+#include "services/coordinator/prometheus_text.h"
 #include "services/coordinator/service.h"
 #include "services/coordinator/watchdog.h"
 #include "services/log/log.h"
@@ -25,10 +25,8 @@ namespace {
 
 constexpr std::chrono::milliseconds kRound(50);
 constexpr double kProgress_s = 5.0;
-constexpr double kMetrics_s = 1.0;
+constexpr double kPrometheus_s = 1.0;
 constexpr std::chrono::seconds kHealthPatience(8);
-
-struct StoppedServing {};
 
 /// True now and then.
 class Every {
@@ -45,21 +43,21 @@ class Every {
   double due_s_ = 0.0;
 };
 
-OpenedCampaign OpenUnlessStopped(const CampaignRequest& request) {
+PreparedRun PrepareUnlessStopped(const RunRequest& request) {
   try {
-    return OpenCampaign(request, StopRequested);
-  } catch (const NotWanted&) {
+    return PrepareRun(request, StopRequested);
+  } catch (const Interrupted&) {
     throw Failure{kExitInterrupted, "stopped before the first case"};
   }
 }
 
 }  // namespace
 
-ExitCode ServeCampaign(const ServeOptions& options, const CampaignRequest& request,
+ExitCode ServeCampaign(const ServeOptions& options, const RunRequest& request,
                        std::optional<double> patience_s) {
-  OpenedCampaign opened = OpenUnlessStopped(request);
-  CampaignBook book(opened.campaign, std::move(opened.folder));
-  book.Expect(std::move(opened.flown));
+  PreparedRun prepared = PrepareUnlessStopped(request);
+  CampaignBook book(prepared.campaign, std::move(prepared.folder));
+  book.Expect(std::move(prepared.flown));
   Coordinator coordinator(options.network, book, options.audit);
   LogInfo("campaign {}, flight id {}, results in {}; domain {}, workers may come to port {}",
           book.campaign().name, book.campaign().flight_id, book.folder().directory().string(),
@@ -69,12 +67,13 @@ ExitCode ServeCampaign(const ServeOptions& options, const CampaignRequest& reque
   std::optional<Watchdog> watchdog(std::in_place, options.again);
   while (!book.refusal() && !book.Complete() && !StopRequested()) {
     coordinator.Step(kRound);
-    watchdog->Note(coordinator.Hears(), true);
+    watchdog->Note(coordinator.ReceivesReports(), true);
     if (!attendance.Check(coordinator.joined() > 0, coordinator.now_s())) {
       book.Flush();
       throw Failure{
           kExitIncomplete,
-          fmt::format("no worker for {:.0f} s: given up; the same with --resume goes on", *patience_s)};
+          fmt::format("no worker for {:.0f} s: the run ends; repeat the command with --resume to go on",
+                      *patience_s)};
     }
     if (progress_period.IsDue(coordinator.now_s())) {
       const LedgerProgress progress = book.ledger().Progress();
@@ -83,8 +82,8 @@ ExitCode ServeCampaign(const ServeOptions& options, const CampaignRequest& reque
     }
   }
   watchdog.reset();
-  // First what would be lost. Workers are sent home by a campaign that is complete on the disk and by nothing
-  // else: a coordinator that stops, or is killed here, finds them again when it is back.
+  // Flush first: unstored results would be lost. Only a campaign that is complete on the disk dismisses its
+  // workers. A coordinator that stops or is killed here finds them again after its restart.
   book.Flush();
   if (book.refusal()) {
     coordinator.Dismiss();
@@ -94,16 +93,16 @@ ExitCode ServeCampaign(const ServeOptions& options, const CampaignRequest& reque
   ReportOptions report;
   report.threads = UsableCores();
   report.progress = [](const std::string&, std::uint64_t, std::uint64_t) {
-    if (StopRequested()) throw StoppedServing();
+    if (StopRequested()) throw Interrupted();
   };
   try {
-    if (StopRequested()) throw StoppedServing();
+    if (StopRequested()) throw Interrupted();
     coordinator.Dismiss();
     const CampaignSummary summary = WriteReports(book.folder(), book.campaign(), report);
     fmt::print("result: {}\n", book.folder().directory().string());
     return CampaignExitCode(summary.verdict, book.ledger().Progress().conflicts);
-  } catch (const StoppedServing&) {
-    throw Failure{kExitInterrupted, "stopped; the same with --resume goes on"};
+  } catch (const Interrupted&) {
+    throw Failure{kExitInterrupted, "stopped; repeat the command with --resume to go on"};
   }
 }
 
@@ -119,17 +118,18 @@ int ServeClients(const ServeOptions& options, const ClientOptions& clients) {
   coordinator.Serve([&](const Request& request) { return front_desk.Answer(request); });
   LogInfo("domain {}, workers and clients may come to port {}", options.network.domain,
           CoordinatorPort(options.network.domain));
-  std::optional<MetricsPort> metrics;
-  if (clients.metrics_port) metrics.emplace(*clients.metrics_port);
-  Every metrics_period(kMetrics_s);
+  std::optional<PrometheusPort> prometheus;
+  if (clients.prometheus_port) prometheus.emplace(*clients.prometheus_port);
+  Every prometheus_period(kPrometheus_s);
   Attendance attendance(options.network.domain, std::nullopt);
   std::optional<Watchdog> watchdog(std::in_place, options.again);
   while (!StopRequested()) {
     coordinator.Step(kRound);
     service.Step();
-    watchdog->Note(coordinator.Hears(), service.HasWorkToFly());
+    watchdog->Note(coordinator.ReceivesReports(), service.HasWorkToFly());
     attendance.Check(coordinator.joined() > 0 || !service.HasWork(), coordinator.now_s());
-    if (metrics && metrics_period.IsDue(coordinator.now_s())) metrics->Set(MetricsText(service, coordinator));
+    if (prometheus && prometheus_period.IsDue(coordinator.now_s()))
+      prometheus->Set(PrometheusText(service, coordinator));
   }
   watchdog.reset();
   service.Flush();

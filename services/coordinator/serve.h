@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "services/coordinator/service.h"
-#include "services/ledger/open_campaign.h"
+#include "services/ledger/prepare_run.h"
 #include "services/transport/network.h"
 
 namespace dispersa {
@@ -21,12 +21,12 @@ struct ServeOptions {
 };
 
 /// One campaign: serves it, writes its reports, ends. Gives up after `patience_s` without a worker.
-ExitCode ServeCampaign(const ServeOptions& options, const CampaignRequest& request,
+ExitCode ServeCampaign(const ServeOptions& options, const RunRequest& request,
                        std::optional<double> patience_s);
 
 struct ClientOptions {
-  std::string data;                                ///< folder
-  std::optional<std::uint16_t> metrics_port = {};  ///< of 127.0.0.1
+  std::string data;                                   ///< folder
+  std::optional<std::uint16_t> prometheus_port = {};  ///< of 127.0.0.1
   std::uint64_t max_cases = kDefaultMaxCases;
 };
 

@@ -9,7 +9,7 @@
 
 #include "core/campaign_yaml/load.h"
 #include "core/pages/reports.h"
-#include "services/ledger/campaign_opening.h"
+#include "services/ledger/open_book.h"
 #include "services/log/log.h"
 #include "services/program/exit_code.h"
 
@@ -44,7 +44,7 @@ Service::Service(const ServiceOptions& options, Workforce& workforce)
 Service::~Service() {
   stop_report_ = true;
   if (reporting_) reporting_->verdict.wait();
-  for (auto& [id, flying] : flying_) workforce_.Close(catalogue_.At(id).flight_id);
+  for (auto& [id, flying] : flying_) workforce_.EndCampaign(catalogue_.At(id).flight_id);
 }
 
 void Service::Step() {
@@ -173,7 +173,7 @@ const CatalogueEntry* Service::NextToOpen() const {
 
 // One that flies goes back into the queue if this one has a higher priority.
 bool Service::MakeRoomFor(const CatalogueEntry& entry) {
-  if (flying_.size() < options_.open_at_once) return true;
+  if (flying_.size() < options_.flying_at_once) return true;
   const auto last = std::max_element(flying_.begin(), flying_.end(), [this](const auto& a, const auto& b) {
     return ComesBefore(catalogue_.At(a.first), catalogue_.At(b.first));
   });
@@ -200,9 +200,8 @@ void Service::StartOpening() {
 }
 
 void Service::BeginToOpen(const CatalogueEntry& entry) {
-  CampaignOpening opening{
-      catalogue_.TextOf(entry.id), entry.name, catalogue_.ResultsOf(entry.id), {}, ++opened_,
-      workforce_.audit()};
+  BookRequest opening{catalogue_.TextOf(entry.id), entry.name, catalogue_.ResultsOf(entry.id), {}, ++opened_,
+                      workforce_.audit()};
   for (const auto& [id, other] : catalogue_.entries()) {
     if (id != entry.id && other.flight_id == entry.flight_id)
       opening.same_flights.push_back(catalogue_.ResultsOf(id));
@@ -223,7 +222,7 @@ void Service::FinishOpening() {
     if (entry.state != CampaignState::kWaiting) return;  // cancelled meanwhile
     delayed_.erase(opened.id);
     entry.flight_id = book->campaign().flight_id;  // another one if the engine is another one by now
-    workforce_.Open(*book, entry.priority);
+    workforce_.BeginCampaign(*book, entry.priority);
     LogInfo("campaign {} ({}) is open: {} of {} cases are there", entry.name, opened.id.substr(0, 8),
             book->ledger().Progress().done, book->ledger().Progress().total);
     flying_[opened.id].book = std::move(book);
@@ -323,7 +322,7 @@ Service::Book Service::TakeBack(const std::string& id) {
   CatalogueEntry& entry = catalogue_.At(id);
   found->second.book->TryFlush();
   NoteConflicts(entry, found->second);
-  workforce_.Close(entry.flight_id);
+  workforce_.EndCampaign(entry.flight_id);
   Book book = std::move(found->second.book);
   std::erase_if(flew_, [&](const auto& each) { return each.first == id; });
   flew_.emplace_back(id, book->tally());
@@ -417,7 +416,7 @@ void Service::Relaunch(const std::string& id, int priority) {
   catalogue_.Write(entry);
   catalogue_.At(id) = entry;
   if (const auto flying = flying_.find(id); flying != flying_.end())
-    workforce_.Open(*flying->second.book, priority);
+    workforce_.BeginCampaign(*flying->second.book, priority);
 }
 
 void Service::Launch(CatalogueEntry entry, const std::string& text) {

@@ -27,7 +27,7 @@ inline constexpr std::uint64_t kDefaultMaxCases = 5000000;
 struct ServiceOptions {
   std::filesystem::path data;
   int report_threads = 1;
-  std::size_t open_at_once = 8;  ///< campaigns that fly side by side; the others wait
+  std::size_t flying_at_once = 8;  ///< campaigns that fly side by side; the others wait
   std::uint64_t max_cases =
       kDefaultMaxCases;  ///< of a campaign: its ledger and its report take memory for each
 };

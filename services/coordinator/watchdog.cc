@@ -26,14 +26,14 @@ void StartAgain(std::vector<std::string>& arguments) {
 
 }  // namespace
 
-bool DeafnessRule::Check(double now_s, bool hears, bool has_work, long rounds) {
+bool RestartRule::Check(double now_s, bool receives, bool has_work, long rounds) {
   if (rounds != rounds_) {
     rounds_ = rounds;
     round_s_ = now_s;
   }
-  has_heard_ = has_heard_ || hears;
-  if (hears || !has_work) heard_s_ = now_s;
-  return now_s - round_s_ > kHang_s || (has_heard_ && now_s - heard_s_ > kDeaf_s);
+  has_received_ = has_received_ || receives;
+  if (receives || !has_work) received_s_ = now_s;
+  return now_s - round_s_ > kHang_s || (has_received_ && now_s - received_s_ > kNoReports_s);
 }
 
 Watchdog::Watchdog(std::vector<std::string> arguments)
@@ -42,11 +42,11 @@ Watchdog::Watchdog(std::vector<std::string> arguments)
 // The time is what the thread has slept, not the clock's: a program that was stopped, or a machine that
 // slept, has missed nothing.
 void Watchdog::Watch(const std::stop_token& stop) {
-  DeafnessRule rule;
+  RestartRule rule;
   for (double awake_s = 0.0; !stop.stop_requested();
        awake_s += std::chrono::duration<double>(kPeriod).count()) {
     std::this_thread::sleep_for(kPeriod);
-    if (!rule.Check(awake_s, hears_, has_work_, rounds_)) continue;
+    if (!rule.Check(awake_s, receives_, has_work_, rounds_)) continue;
     LogWarning("nobody is heard any more: the coordinator starts again");
     StartAgain(arguments_);
     return;

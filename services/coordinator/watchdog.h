@@ -10,18 +10,18 @@
 namespace dispersa {
 
 /// When to start again. A pure state machine; times in seconds that this program was awake.
-class DeafnessRule {
+class RestartRule {
  public:
-  /// Having heard somebody before, a coordinator with work that hears nobody for so long is deaf; a thread
+  /// Having heard somebody before, a coordinator with work that receives nobody for so long is deaf; a thread
   /// that makes no round for so long hangs.
-  static constexpr double kDeaf_s = 10.0, kHang_s = 20.0;
+  static constexpr double kNoReports_s = 10.0, kHang_s = 20.0;
 
   /// What is seen now. True: start again.
-  bool Check(double now_s, bool hears, bool has_work, long rounds);
+  bool Check(double now_s, bool receives, bool has_work, long rounds);
 
  private:
-  bool has_heard_ = false;
-  double heard_s_ = 0.0, round_s_ = 0.0;
+  bool has_received_ = false;
+  double received_s_ = 0.0, round_s_ = 0.0;
   long rounds_ = -1;
 };
 
@@ -34,8 +34,8 @@ class Watchdog {
   explicit Watchdog(std::vector<std::string> arguments);
 
   /// Of each round: whether somebody is heard, and whether anybody needs to be.
-  void Note(bool hears, bool has_work) {
-    hears_ = hears;
+  void Note(bool receives, bool has_work) {
+    receives_ = receives;
     has_work_ = has_work;
     ++rounds_;
   }
@@ -44,7 +44,7 @@ class Watchdog {
   void Watch(const std::stop_token& stop);
 
   std::vector<std::string> arguments_;
-  std::atomic<bool> hears_ = false, has_work_ = false;
+  std::atomic<bool> receives_ = false, has_work_ = false;
   std::atomic<long> rounds_ = 0;
   std::jthread thread_;
 };

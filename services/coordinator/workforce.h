@@ -17,8 +17,8 @@ class Workforce {
   virtual ~Workforce() = default;
 
   /// A book must stay until it is closed.
-  virtual void Open(CampaignBook& book, int priority) = 0;
-  virtual void Close(const std::string& flight_id) = 0;
+  virtual void BeginCampaign(CampaignBook& book, int priority) = 0;
+  virtual void EndCampaign(const std::string& flight_id) = 0;
   /// To all observers.
   virtual void Publish(CampaignProgress progress) = 0;
 

@@ -7,7 +7,7 @@
 namespace dispersa {
 
 void Audit::Consider(const Claim& claim) {
-  const bool is_first = met_.insert(claim.worker).second;
+  const bool is_first = known_workers_.insert(claim.worker).second;
   if (is_first || Stream(options_.salt, claim.case_index, "audit").Uniform() < options_.share) Add(claim);
 }
 

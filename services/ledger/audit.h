@@ -35,7 +35,7 @@ class Audit {
 
  private:
   AuditOptions options_;
-  std::set<std::string> met_;  ///< workers
+  std::set<std::string> known_workers_;  ///< workers
   std::vector<Claim> waiting_;
   std::size_t flying_ = 0;
 };

@@ -38,7 +38,7 @@ class Auditor::Queue : public CaseQueue {
   }
 
   // What cannot be flown here tells nothing of who could.
-  void GivenUp(std::uint64_t case_index, const std::string& reason) override {
+  void Quarantined(std::uint64_t case_index, const std::string& reason) override {
     const auto claim = std::find_if(flying_.begin(), flying_.end(),
                                     [&](const Claim& each) { return each.case_index == case_index; });
     LogWarning("case {} is not audited: {}", case_index, reason);

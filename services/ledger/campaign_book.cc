@@ -71,7 +71,7 @@ CampaignBook::CampaignBook(const Campaign& campaign, std::unique_ptr<ResultStore
   }
   if (!campaign_.autopilot.plugin) return;
   for (std::uint64_t i = 0; i < std::min(cases, kFlownTwice); ++i)
-    ledger_.WantTwice(i, store_->WorkerOf(i).value_or(""));
+    ledger_.RequireSecondFlight(i, store_->WorkerOf(i).value_or(""));
 }
 
 void CampaignBook::KeepTally() {
@@ -100,7 +100,7 @@ bool CampaignBook::Try(Action action) {
     action();
     return true;
   } catch (const ResultError& error) {
-    if (!is_patient_) throw;
+    if (!pauses_on_disk_errors_) throw;
     if (error.kind() == ResultError::Kind::kDiskFull) {
       if (pause_.empty()) LogError("campaign {} is paused: {}", campaign_.name, error.what());
       pause_ = error.what();
@@ -176,9 +176,9 @@ void CampaignBook::CompareWithExpected(const CaseResult& result, const std::stri
       RefuseForDifference(expected, "here before the campaign", result, By(worker));
 }
 
-void CampaignBook::GiveUp(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,
-                          const std::string& reason, double now_s) {
-  if (!ledger_.GiveUp(worker, case_index, attempt, reason, now_s)) return;
+void CampaignBook::Quarantine(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,
+                              const std::string& reason, double now_s) {
+  if (!ledger_.Quarantine(worker, case_index, attempt, reason, now_s)) return;
   Try([&] {
     Flush();
     Refuse(case_index, FlownBy(case_index), By(worker), "the flight ended well once, and again " + reason);
@@ -187,10 +187,10 @@ void CampaignBook::GiveUp(const std::string& worker, std::uint64_t case_index, s
 
 bool CampaignBook::Complete() {
   if (!ledger_.Complete() || !disowned_.empty() || (audit_ && !audit_->IsSettled())) return false;
-  std::vector<std::uint64_t> given_up;
-  for (const BlamedCase& blamed : ledger_.Quarantined()) given_up.push_back(blamed.case_index);
+  std::vector<std::uint64_t> quarantined_indices;
+  for (const CaseBlames& blamed : ledger_.Quarantined()) quarantined_indices.push_back(blamed.case_index);
   // A rule that was made anew, after a worker's results were removed, begins below what was asked for before.
-  while (rule_ && rule_->Advance(given_up)) {
+  while (rule_ && rule_->Advance(quarantined_indices)) {
     if (rule_->target() <= ledger_.Progress().total) continue;
     ledger_.Extend(rule_->target());
     return false;
@@ -277,7 +277,7 @@ void CampaignBook::Flush() {
     disowned_.pop_back();
   }
   if (ledger_.Progress().quarantined != quarantined_) {
-    for (const BlamedCase& blamed : ledger_.Quarantined()) {
+    for (const CaseBlames& blamed : ledger_.Quarantined()) {
       // The reasons of each attempt name processes and signals; what is stored must not differ between runs.
       store_->Quarantine({blamed.case_index, blamed.is_certain
                                                  ? blamed.reasons.back()

@@ -52,7 +52,7 @@ class CampaignBook {
 
   /// From now on an error of the disk is no exception. A full disk pauses the book: results are kept in
   /// memory, and are stored when there is space. Any other error breaks it.
-  void BePatient() { is_patient_ = true; }
+  void PauseOnDiskErrors() { pauses_on_disk_errors_ = true; }
   /// Why nothing can be stored now; empty: it can. Nothing should be assigned meanwhile.
   const std::string& pause() const { return pause_; }
   /// Why nothing can be stored any more; empty: it can.
@@ -89,9 +89,9 @@ class CampaignBook {
   /// control law is a plug-in.
   Acceptance Accept(const std::string& worker, const std::string& host, std::uint64_t attempt,
                     const CaseResult& result, double now_s);
-  /// Ledger::GiveUp. A case that another worker could fly refuses the campaign, if two were to fly it.
-  void GiveUp(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,
-              const std::string& reason, double now_s);
+  /// Ledger::Quarantine. A case that another worker could fly refuses the campaign, if two were to fly it.
+  void Quarantine(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,
+                  const std::string& reason, double now_s);
   /// Stores what has gathered if it is time to. True: all that was accepted so far is stored.
   bool FlushIfDue(double now_s);
   void Flush();
@@ -132,7 +132,7 @@ class CampaignBook {
   std::size_t quarantined_ = 0;                                        ///< stored as such
   std::uint64_t flown_now_ = 0;
   double flushed_s_ = 0.0;
-  bool is_patient_ = false;
+  bool pauses_on_disk_errors_ = false;
   std::string pause_, breakdown_;
 };
 

@@ -30,9 +30,9 @@ void Ledger::MarkDone(std::uint64_t case_index, const Digest& fingerprint) {
   ++progress_.done;
 }
 
-void Ledger::WantTwice(std::uint64_t case_index, const std::string& flown_by) {
+void Ledger::RequireSecondFlight(std::uint64_t case_index, const std::string& flown_by) {
   assert(case_index < cases_.size());
-  twice_[case_index].first = flown_by;
+  second_flights_[case_index].first = flown_by;
 }
 
 void Ledger::Extend(std::uint64_t cases) {
@@ -47,7 +47,8 @@ void Ledger::Reopen(const std::vector<std::uint64_t>& cases) {
   for (const std::uint64_t case_index : cases) {
     if (case_index >= cases_.size() || cases_.StateOf(case_index) != CaseState::kDone) continue;
     --progress_.done;
-    if (const auto twice = twice_.find(case_index); twice != twice_.end()) twice->second = {};
+    if (const auto flight = second_flights_.find(case_index); flight != second_flights_.end())
+      flight->second = {};
     Return(case_index);
   }
 }
@@ -103,8 +104,8 @@ void Ledger::Settle(const std::string& worker, std::uint64_t case_index, std::ui
   }
 }
 
-bool Ledger::GiveUp(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,
-                    const std::string& reason, double now_s) {
+bool Ledger::Quarantine(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,
+                        const std::string& reason, double now_s) {
   const auto entry = workers_.find(worker);
   if (case_index >= cases_.size() || entry == workers_.end()) return false;
   const auto held = entry->second.held.find(case_index);
@@ -113,15 +114,15 @@ bool Ledger::GiveUp(const std::string& worker, std::uint64_t case_index, std::ui
   held->second.started_s.reset();  // how long it took says nothing of the others
   Settle(worker, case_index, attempt, now_s);
   const CaseState state = cases_.StateOf(case_index);
-  if (const auto twice = twice_.find(case_index);
-      twice != twice_.end() && state == CaseState::kDone && twice->second.first != worker) {
-    return !std::exchange(twice->second.is_settled, true);
+  if (const auto flight = second_flights_.find(case_index);
+      flight != second_flights_.end() && state == CaseState::kDone && flight->second.first != worker) {
+    return !std::exchange(flight->second.is_settled, true);
   }
   if (state == CaseState::kDone || state == CaseState::kQuarantined) return false;
   if (state == CaseState::kWaiting) waiting_.Remove(case_index);
   if (state == CaseState::kSuspect) suspects_.Remove(case_index);
   blames_[case_index].push_back(reason);
-  given_up_.insert(case_index);
+  quarantined_at_once_.insert(case_index);
   cases_.Set(case_index, CaseState::kQuarantined);
   ++progress_.quarantined;
   return false;
@@ -132,9 +133,9 @@ Acceptance Ledger::Finished(const std::string& worker, std::uint64_t case_index,
   Settle(worker, case_index, attempt, now_s);
   if (case_index >= cases_.size()) return Acceptance::kUnknown;
   const CaseState state = cases_.StateOf(case_index);
-  const auto twice = twice_.find(case_index);
+  const auto flight = second_flights_.find(case_index);
   if (state == CaseState::kDone) {
-    if (twice != twice_.end() && twice->second.first != worker) twice->second.is_settled = true;
+    if (flight != second_flights_.end() && flight->second.first != worker) flight->second.is_settled = true;
     if (cases_.FingerprintOf(case_index) != fingerprint) {
       ++progress_.conflicts;
       return Acceptance::kConflict;
@@ -146,9 +147,9 @@ Acceptance Ledger::Finished(const std::string& worker, std::uint64_t case_index,
   if (state == CaseState::kSuspect) suspects_.Remove(case_index);
   if (state == CaseState::kQuarantined) --progress_.quarantined;
   blames_.erase(case_index);
-  given_up_.erase(case_index);
+  quarantined_at_once_.erase(case_index);
   cases_.SetDone(case_index, fingerprint);
-  if (twice != twice_.end()) twice->second.first = worker;
+  if (flight != second_flights_.end()) flight->second.first = worker;
   ++progress_.done;
   return Acceptance::kAccepted;
 }
@@ -203,10 +204,10 @@ std::vector<std::string> Ledger::Expire(double now_s) {
 std::vector<Assignment> Ledger::Assign(double now_s) {
   std::vector<Assignment> assignments;
   // One assignment a worker in turn, so that few cases spread over all workers.
-  for (bool given = true; given && (!waiting_.Empty() || MayBeWantedAgain());) {
+  for (bool given = true; given && (!waiting_.Empty() || MayNeedSecondFlight());) {
     given = false;
     for (auto& [id, worker] : workers_) {
-      if (waiting_.Empty() && !MayBeWantedAgain()) break;
+      if (waiting_.Empty() && !MayNeedSecondFlight()) break;
       if (auto assignment = GiveTo(id, 0, now_s)) {
         assignments.push_back(*std::move(assignment));
         given = true;
@@ -228,7 +229,7 @@ std::optional<Assignment> Ledger::GiveTo(const std::string& worker, std::uint64_
   if (to.stuck || to.leaving || to.alone || to.batches.size() + elsewhere >= to.hello.credits)
     return std::nullopt;
   // First what may show that nothing more needs to be flown.
-  if (std::vector<std::uint64_t> again = WantedAgainOf(worker, to); !again.empty())
+  if (std::vector<std::uint64_t> again = SecondFlightsFor(worker, to); !again.empty())
     return Give(worker, to, std::move(again), now_s);
   if (!waiting_.Empty()) return Give(worker, to, waiting_.TakeRun(BatchSize()), now_s);
   if (suspects_.Empty() || !to.held.empty() || elsewhere > 0) return std::nullopt;
@@ -271,8 +272,8 @@ bool Ledger::IsAlone(const std::string& worker) const {
 
 bool Ledger::Complete() const {
   if (progress_.done + progress_.quarantined != progress_.total) return false;
-  return std::none_of(twice_.begin(), twice_.end(), [this](const auto& each) {
-    if (!IsWantedAgain(each.first, each.second)) return false;
+  return std::none_of(second_flights_.begin(), second_flights_.end(), [this](const auto& each) {
+    if (!NeedsSecondFlight(each.first, each.second)) return false;
     return std::any_of(workers_.begin(), workers_.end(), [&](const auto& other) {
       const auto& [id, worker] = other;
       return id != each.second.first &&
@@ -281,20 +282,20 @@ bool Ledger::Complete() const {
   });
 }
 
-bool Ledger::IsWantedAgain(std::uint64_t case_index, const Twice& twice) const {
-  return !twice.is_settled && cases_.StateOf(case_index) == CaseState::kDone;
+bool Ledger::NeedsSecondFlight(std::uint64_t case_index, const SecondFlight& flight) const {
+  return !flight.is_settled && cases_.StateOf(case_index) == CaseState::kDone;
 }
 
-bool Ledger::MayBeWantedAgain() const {
-  return std::any_of(twice_.begin(), twice_.end(), [this](const auto& each) {
-    return IsWantedAgain(each.first, each.second) && !each.second.is_flown;
+bool Ledger::MayNeedSecondFlight() const {
+  return std::any_of(second_flights_.begin(), second_flights_.end(), [this](const auto& each) {
+    return NeedsSecondFlight(each.first, each.second) && !each.second.is_flown;
   });
 }
 
-std::vector<std::uint64_t> Ledger::WantedAgainOf(const std::string& id, const Worker& worker) const {
+std::vector<std::uint64_t> Ledger::SecondFlightsFor(const std::string& id, const Worker& worker) const {
   std::vector<std::uint64_t> wanted;
-  for (const auto& [case_index, twice] : twice_) {
-    if (IsWantedAgain(case_index, twice) && !twice.is_flown && twice.first != id &&
+  for (const auto& [case_index, flight] : second_flights_) {
+    if (NeedsSecondFlight(case_index, flight) && !flight.is_flown && flight.first != id &&
         !worker.held.contains(case_index))
       wanted.push_back(case_index);
   }
@@ -302,12 +303,12 @@ std::vector<std::uint64_t> Ledger::WantedAgainOf(const std::string& id, const Wo
 }
 
 void Ledger::Drop(std::uint64_t case_index, bool blames) {
-  const auto twice = twice_.find(case_index);
-  if (twice == twice_.end()) return;
-  twice->second.is_flown = false;
+  const auto flight = second_flights_.find(case_index);
+  if (flight == second_flights_.end()) return;
+  flight->second.is_flown = false;
   if (blames && cases_.StateOf(case_index) == CaseState::kDone &&
-      ++twice->second.blames >= options_.blames_to_quarantine)
-    twice->second.is_settled = true;
+      ++flight->second.blames >= options_.blames_to_quarantine)
+    flight->second.is_settled = true;
 }
 
 LedgerProgress Ledger::Progress() const {
@@ -317,11 +318,11 @@ LedgerProgress Ledger::Progress() const {
   return progress;
 }
 
-std::vector<BlamedCase> Ledger::Quarantined() const {
-  std::vector<BlamedCase> quarantined;
+std::vector<CaseBlames> Ledger::Quarantined() const {
+  std::vector<CaseBlames> quarantined;
   for (const auto& [case_index, reasons] : blames_) {
     if (cases_.StateOf(case_index) == CaseState::kQuarantined)
-      quarantined.push_back({case_index, reasons, given_up_.contains(case_index)});
+      quarantined.push_back({case_index, reasons, quarantined_at_once_.contains(case_index)});
   }
   return quarantined;
 }
@@ -345,7 +346,7 @@ Assignment Ledger::Give(const std::string& id, Worker& worker, std::vector<std::
   const std::uint64_t attempt = next_attempt_++;
   for (const std::uint64_t case_index : cases) {
     if (cases_.StateOf(case_index) == CaseState::kDone) {
-      twice_.at(case_index).is_flown = true;
+      second_flights_.at(case_index).is_flown = true;
     } else {
       cases_.Set(case_index, CaseState::kAssigned);
     }

@@ -54,12 +54,12 @@ enum class Acceptance {
   kUnknown,    ///< no case of this campaign
 };
 
-struct BlamedCase {
+struct CaseBlames {
   std::uint64_t case_index = 0;
   std::vector<std::string> reasons;  ///< one of each blame
   bool is_certain = false;  ///< its worker has seen alone what it does, and gave it up: the last reason
 
-  bool operator==(const BlamedCase&) const = default;
+  bool operator==(const CaseBlames&) const = default;
 };
 
 struct LedgerProgress {
@@ -86,7 +86,7 @@ class Ledger {
   /// Two workers shall fly this case, if two attend: the one that did not fly it first does so as soon as it
   /// has a result. Nothing is complete before, as long as somebody is there who could. `flown_by`: of a case
   /// that is done already; empty if nobody knows.
-  void WantTwice(std::uint64_t case_index, const std::string& flown_by = "");
+  void RequireSecondFlight(std::uint64_t case_index, const std::string& flown_by = "");
 
   /// Adds cases at the end: there are so many in all from now on.
   void Extend(std::uint64_t cases);
@@ -106,8 +106,8 @@ class Ledger {
                       const Digest& fingerprint, double now_s);
   /// The worker survived what the case does to every process that flies it: it is quarantined at once, unless
   /// it has a result. True: another worker has flown it, and this one was to do the same.
-  bool GiveUp(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,
-              const std::string& reason, double now_s);
+  bool Quarantine(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,
+                  const std::string& reason, double now_s);
   /// The worker is gone: its cases return to the queue. `reason` is kept with each blame.
   void Lost(const std::string& worker, WorkerEnd end, const std::string& reason);
 
@@ -134,12 +134,12 @@ class Ledger {
   bool Complete() const;
   LedgerProgress Progress() const;
   /// By case index.
-  std::vector<BlamedCase> Quarantined() const;
+  std::vector<CaseBlames> Quarantined() const;
   std::size_t WorkerCount() const { return workers_.size(); }
 
  private:
   /// Of a case that two workers shall fly.
-  struct Twice {
+  struct SecondFlight {
     std::string first;        ///< who returned its result; empty: nobody, or nobody knows
     bool is_flown = false;    ///< now, for the second time
     bool is_settled = false;  ///< another worker has flown it, or cannot
@@ -159,9 +159,9 @@ class Ledger {
     bool leaving = false;
   };
 
-  bool IsWantedAgain(std::uint64_t case_index, const Twice& twice) const;
-  bool MayBeWantedAgain() const;
-  std::vector<std::uint64_t> WantedAgainOf(const std::string& id, const Worker& worker) const;
+  bool NeedsSecondFlight(std::uint64_t case_index, const SecondFlight& flight) const;
+  bool MayNeedSecondFlight() const;
+  std::vector<std::uint64_t> SecondFlightsFor(const std::string& id, const Worker& worker) const;
   // A worker holds it no longer, without a result.
   void Drop(std::uint64_t case_index, bool blames);
   double Lease() const;
@@ -179,8 +179,8 @@ class Ledger {
   IndexSet waiting_;
   IndexSet suspects_;
   std::map<std::uint64_t, std::vector<std::string>> blames_;  ///< case index -> reasons
-  std::set<std::uint64_t> given_up_;
-  std::map<std::uint64_t, Twice> twice_;  ///< by case index
+  std::set<std::uint64_t> quarantined_at_once_;
+  std::map<std::uint64_t, SecondFlight> second_flights_;  ///< by case index
   std::map<std::string, Worker> workers_;
   std::uint64_t next_attempt_ = 1;
   std::uint64_t slots_ = 0;

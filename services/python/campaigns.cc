@@ -283,7 +283,7 @@ py::dict FlyMany(const LoadedCampaign& campaign, const std::vector<std::uint64_t
                               results[order] = std::move(result);
                               if (step_s > 0.0) histories.Add(order, history);
                               observer.Show(campaign.campaign().name, ++done, cases.size());
-                              if (observer.Stop()) throw Interrupted();
+                              if (observer.ShouldStop()) throw Interrupted();
                             });
   });
   ResultColumns table(InputCount(campaign.stages()), MetricCount(campaign.stages()));

@@ -34,7 +34,7 @@ class PythonObserver : public Observer {
       StopWith(std::current_exception());
     }
   }
-  bool Stop() override {
+  bool ShouldStop() override {
     // Python handles signals in its main thread only; where this is another one, the question is harmless.
     if (stopped_ || std::this_thread::get_id() != caller_) return stopped_;
     const auto now = std::chrono::steady_clock::now();

@@ -53,14 +53,6 @@ class CallsLaw {
   std::optional<PythonLaw> law_;
 };
 
-OpenedCampaign OpenUnlessStopped(const CampaignRequest& request, Observer& observer) {
-  try {
-    return OpenCampaign(request, [&observer] { return observer.Stop(); });
-  } catch (const NotWanted&) {
-    throw Interrupted();
-  }
-}
-
 /// A campaign flown on this machine: (folder, exit code, why cases are missing or None). `envelope`: as
 /// ReflownFlights; None flies nothing again.
 py::tuple Run(const std::string& name, const std::string& text, const std::string& out, bool resume,
@@ -71,9 +63,10 @@ py::tuple Run(const std::string& name, const std::string& text, const std::strin
   const CallsLaw calls_law(law, law_sha256, observer);
   std::filesystem::path folder;
   const RunResult result = observer.Watch([&] {
-    OpenedCampaign opened = OpenUnlessStopped({InputSource(name, text), {}, out, resume}, observer);
-    folder = opened.folder.directory();
-    return RunCampaign(std::move(opened),
+    PreparedRun prepared =
+        PrepareRun({InputSource(name, text), {}, out, resume}, [&observer] { return observer.ShouldStop(); });
+    folder = prepared.folder.directory();
+    return RunCampaign(std::move(prepared),
                        {workers, calls_law.Threads(threads), worker_program, Reflown(envelope)}, observer);
   });
   return py::make_tuple(folder.string(), static_cast<int>(result.code), result.problem);

@@ -4,7 +4,7 @@ namespace dispersa {
 namespace {
 
 /// In place of an outcome.
-constexpr char kGivenUp[] = "given_up";
+constexpr char kQuarantinedOutcome[] = "given_up";
 
 std::vector<std::uint8_t> Octets(const std::string& bytes) { return {bytes.begin(), bytes.end()}; }
 std::string Bytes(const std::vector<std::uint8_t>& octets) { return {octets.begin(), octets.end()}; }
@@ -14,7 +14,7 @@ idl::FlownCaseV2 ToIdl(const FlownCase& flown) {
   idl::FlownCaseV2 message;
   message.case_index(result.case_index);
   message.attempt(flown.attempt);
-  message.outcome(flown.given_up ? kGivenUp : OutcomeName(result.outcome));
+  message.outcome(flown.is_quarantined ? kQuarantinedOutcome : OutcomeName(result.outcome));
   message.end_time_s(result.end_time_s);
   message.end_stage(result.end_stage);
   message.reason(result.reason);
@@ -26,11 +26,11 @@ idl::FlownCaseV2 ToIdl(const FlownCase& flown) {
 }
 
 bool FromIdl(const idl::FlownCaseV2& message, FlownCase* flown) {
-  flown->given_up = message.outcome() == kGivenUp;
+  flown->is_quarantined = message.outcome() == kQuarantinedOutcome;
   CaseResult& result = flown->result;
   result.case_index = message.case_index();
   flown->attempt = message.attempt();
-  if (!flown->given_up && !ParseOutcome(message.outcome(), &result.outcome)) return false;
+  if (!flown->is_quarantined && !ParseOutcome(message.outcome(), &result.outcome)) return false;
   result.end_time_s = message.end_time_s();
   result.end_stage = message.end_stage();
   result.reason = message.reason();

@@ -242,14 +242,14 @@ class Reader : private eprosima::fastdds::dds::DataReaderListener {
         continue;
       }
       auto plain = FromIdl(message);
-      std::string problem = plain ? Problem(*plain) : "an unknown state or outcome";
-      if (problem.empty() && !participant_.MaySpeakFor(info.publication_handle, NameIn(*plain))) {
-        problem = "it names a worker or client that its keys are not for";
+      std::string invalid = plain ? WhyInvalid(*plain) : "an unknown state or outcome";
+      if (invalid.empty() && !participant_.MaySpeakFor(info.publication_handle, NameIn(*plain))) {
+        invalid = "it names a worker or client that its keys are not for";
       }
-      if (problem.empty()) {
+      if (invalid.empty()) {
         on_message_(*std::move(plain), sender);
       } else {
-        Complain(topic_, sender, problem);
+        Complain(topic_, sender, invalid);
       }
     }
   }

@@ -56,7 +56,7 @@ struct Orders {
 struct FlownCase {
   std::uint64_t attempt = 0;
   CaseResult result;
-  bool given_up = false;  ///< it has no result but its number and why: it ends every process that flies it
+  bool is_quarantined = false;  ///< no result: the case ended every process that flew it; the reason says how
 };
 
 struct Report {

@@ -41,7 +41,7 @@ const char kBadFlight[] = "the flight id is not 64 hexadecimal digits";
 
 }  // namespace
 
-std::string Problem(const WorkerStatus& status) {
+std::string WhyInvalid(const WorkerStatus& status) {
   return FirstOf(
       {{!IsName(status.worker, 64), kBadWorker},
        {status.host.size() > kMaxName || status.engine_version.size() > kMaxName, "a text is too long"},
@@ -50,7 +50,7 @@ std::string Problem(const WorkerStatus& status) {
        {status.held.size() > kMaxList || status.started.size() > kMaxList, "too long a list"}});
 }
 
-std::string Problem(const Orders& orders) {
+std::string WhyInvalid(const Orders& orders) {
   const bool flights = std::all_of(orders.assignments.begin(), orders.assignments.end(),
                                    [](const FlyOrder& order) { return IsFlightId(order.flight_id); });
   return FirstOf({{!IsName(orders.worker, 64), kBadWorker},
@@ -59,13 +59,13 @@ std::string Problem(const Orders& orders) {
                   {orders.refusal.size() > kMaxReason, "a text is too long"}});
 }
 
-std::string Problem(const Report& report) {
+std::string WhyInvalid(const Report& report) {
   const auto has_sizes = [](const FlownCase& flown) {
     const auto are_of = [&](std::size_t stages) {
       return flown.result.inputs.size() == InputCount(stages) &&
              flown.result.metrics.size() == MetricCount(stages);
     };
-    if (flown.given_up)
+    if (flown.is_quarantined)
       return flown.result.inputs.empty() && flown.result.metrics.empty() && !flown.result.reason.empty();
     return are_of(kUsualStages) || are_of(kMaxStages);
   };
@@ -83,11 +83,11 @@ std::string Problem(const Report& report) {
                    "a result has an impossible stage or reason"}});
 }
 
-std::string Problem(const TextRequest& request) {
+std::string WhyInvalid(const TextRequest& request) {
   return FirstOf({{!IsName(request.worker, 64), kBadWorker}, {!IsFlightId(request.flight_id), kBadFlight}});
 }
 
-std::string Problem(const TextPart& part) {
+std::string WhyInvalid(const TextPart& part) {
   return FirstOf(
       {{!IsName(part.worker, 64), kBadWorker},
        {!IsFlightId(part.flight_id), kBadFlight},
@@ -96,24 +96,24 @@ std::string Problem(const TextPart& part) {
        {part.offset > part.size || part.bytes.size() > part.size - part.offset, "a part beyond the text"}});
 }
 
-std::string Problem(const CampaignRefusal& refusal) {
+std::string WhyInvalid(const CampaignRefusal& refusal) {
   return FirstOf(
       {{!IsName(refusal.worker, 64), kBadWorker},
        {!IsFlightId(refusal.flight_id), kBadFlight},
        {refusal.reason.empty() || refusal.reason.size() > kMaxReason, "no reason, or too long a one"}});
 }
 
-std::string Problem(const CampaignProgress& progress) {
+std::string WhyInvalid(const CampaignProgress& progress) {
   return FirstOf({{!IsFlightId(progress.flight_id), kBadFlight}});
 }
 
-std::string Problem(const Request& request) {
+std::string WhyInvalid(const Request& request) {
   return FirstOf({{!IsName(request.client, 64), "the client's name is no identifier"},
                   {!IsName(request.method, 64), "the method is no identifier"},
                   {request.arguments.size() > kMaxReason, "too long arguments"}});
 }
 
-std::string Problem(const Reply& reply) {
+std::string WhyInvalid(const Reply& reply) {
   return FirstOf({{!IsName(reply.client, 64), "the client's name is no identifier"}});
 }
 

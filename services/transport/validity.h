@@ -9,15 +9,15 @@
 namespace dispersa {
 
 /// What is wrong with a message; empty: nothing.
-std::string Problem(const WorkerStatus& status);
-std::string Problem(const Orders& orders);
-std::string Problem(const Report& report);
-std::string Problem(const TextRequest& request);
-std::string Problem(const TextPart& part);
-std::string Problem(const CampaignRefusal& refusal);
-std::string Problem(const CampaignProgress& progress);
-std::string Problem(const Request& request);
-std::string Problem(const Reply& reply);
+std::string WhyInvalid(const WorkerStatus& status);
+std::string WhyInvalid(const Orders& orders);
+std::string WhyInvalid(const Report& report);
+std::string WhyInvalid(const TextRequest& request);
+std::string WhyInvalid(const TextPart& part);
+std::string WhyInvalid(const CampaignRefusal& refusal);
+std::string WhyInvalid(const CampaignProgress& progress);
+std::string WhyInvalid(const Request& request);
+std::string WhyInvalid(const Reply& reply);
 
 /// Of a campaign.
 inline constexpr std::uint64_t kMaxTextBytes = std::uint64_t{64} << 20;

@@ -208,7 +208,7 @@ void FlightDesk::Done(const Job& job, CaseResult result, double now_s) {
   Give(job, {job.attempt, std::move(result)}, now_s);
 }
 
-void FlightDesk::GivenUp(const Job& job, const std::string& reason, double now_s) {
+void FlightDesk::Quarantined(const Job& job, const std::string& reason, double now_s) {
   FlownCase flown{job.attempt, {}, true};
   flown.result.case_index = job.case_index;
   flown.result.reason = reason;

@@ -66,7 +66,7 @@ class FlightDesk {
   std::optional<Job> Next(double now_s);
   void Done(const Job& job, CaseResult result, double now_s);
   /// It ended every process that flew it.
-  void GivenUp(const Job& job, const std::string& reason, double now_s);
+  void Quarantined(const Job& job, const std::string& reason, double now_s);
   /// Reports that are ready. Results wait for the start of the next case, unless there is none.
   std::vector<Report> TakeReports(double now_s);
 

@@ -141,8 +141,8 @@ class Worker::SlotQueue : public CaseQueue {
     const Job job = Take(result.case_index);
     worker_.Done(job, std::move(result));
   }
-  void GivenUp(std::uint64_t case_index, const std::string& reason) override {
-    worker_.GivenUp(Take(case_index), reason);
+  void Quarantined(std::uint64_t case_index, const std::string& reason) override {
+    worker_.Quarantined(Take(case_index), reason);
   }
 
  private:
@@ -187,9 +187,9 @@ void Worker::Done(const Job& job, CaseResult result) {
   desk_.Done(job, std::move(result), Now());
 }
 
-void Worker::GivenUp(const Job& job, const std::string& reason) {
+void Worker::Quarantined(const Job& job, const std::string& reason) {
   const Lock lock(mutex_);
-  desk_.GivenUp(job, reason, Now());
+  desk_.Quarantined(job, reason, Now());
 }
 
 void Worker::Send(const FlightDesk::Due& due) {

@@ -45,7 +45,7 @@ class Worker {
   // back what became of it. The coordinator knows of a case before Next returns it.
   std::optional<Job> Next(bool wait);
   void Done(const Job& job, CaseResult result);
-  void GivenUp(const Job& job, const std::string& reason);
+  void Quarantined(const Job& job, const std::string& reason);
   class SlotQueue;
   void FlyForEver();
 

@@ -57,11 +57,11 @@ class BookTest : public testing::Test {
     for (std::uint64_t i = first; i < end; ++i) book_->Accept(worker, "host", 0, ResultOf(i, peak), 1.0);
   }
   /// It ends every process, as its worker has seen alone.
-  void GiveUp(std::uint64_t case_index) {
+  void Quarantine(std::uint64_t case_index) {
     book_->ledger().Join("w", {EngineVersion(), 1, 100}, 0.0);
     for (const Assignment& assignment : book_->ledger().Assign(0.0)) {
       for (const std::uint64_t i : assignment.cases)
-        if (i == case_index) book_->GiveUp("w", i, assignment.attempt, "signal 11", 0.5);
+        if (i == case_index) book_->Quarantine("w", i, assignment.attempt, "signal 11", 0.5);
     }
   }
   std::uint64_t Target() const { return book_->ledger().Progress().total; }
@@ -94,7 +94,7 @@ class FullDiskTest : public BookTest {
     auto store = std::make_unique<FullStore>();
     store_ = store.get();
     book_.emplace(campaign_, std::move(store));
-    book_->BePatient();
+    book_->PauseOnDiskErrors();
     store_->problem = ResultError::Kind::kDiskFull;
   }
   FullStore* store_;
@@ -159,7 +159,7 @@ TEST_F(BookTest, AnUndecidedLookGoesOnToTheNext) {
 
 TEST_F(BookTest, AQuarantinedCaseDoesNotEndTheCampaignAtItsFirstLook) {
   OpenSequential();
-  GiveUp(4);
+  Quarantine(4);
   Return("w", 0, 4);
   Return("w", 5, 10);
   EXPECT_EQ(book_->ledger().Progress().quarantined, 1u);
@@ -232,9 +232,9 @@ TEST_F(StoringTest, ADurationIsFromACasesStartToItsResult) {
   EXPECT_TRUE(std::isnan(store_->seconds.at(1)));
 }
 
-TEST_F(StoringTest, WhyACaseWasGivenUpIsStored) {
+TEST_F(StoringTest, WhyACaseWasQuarantinedIsStored) {
   Open(3);
-  GiveUp(0);
+  Quarantine(0);
   book_->ledger().Join("crashes", {EngineVersion(), 1, 9}, 0.0);
   book_->ledger().Lost("w", WorkerEnd::kLeft, "it left");
   for (const Assignment& assignment : book_->ledger().Assign(0.0))
@@ -242,7 +242,7 @@ TEST_F(StoringTest, WhyACaseWasGivenUpIsStored) {
       if (i == 2) book_->Start("crashes", i, assignment.attempt, 1.0);
   book_->ledger().Lost("crashes", WorkerEnd::kCrashed, "signal 11 of process 42");
   book_->Flush();
-  EXPECT_THAT(store_->given_up,
+  EXPECT_THAT(store_->quarantined,
               ElementsAre(Pair(0, "signal 11"), Pair(2, "every attempt to fly it ended or hung its worker")));
 }
 

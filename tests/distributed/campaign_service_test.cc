@@ -11,7 +11,7 @@
 #include "core/results/database.h"
 #include "core/results/result_folder.h"
 #include "made_up_service.h"
-#include "services/ledger/campaign_opening.h"
+#include "services/ledger/open_book.h"
 #include "services/program/exit_code.h"
 #include "tests/small_disk.h"
 

@@ -46,7 +46,7 @@ class DispatcherTest : public testing::Test {
     auto store = std::make_unique<MemoryStore>();
     store_ = store.get();
     book_ = std::make_unique<CampaignBook>(MadeUp(kFlight, cases), std::move(store), options);
-    dispatcher_.Open(*book_);
+    dispatcher_.BeginCampaign(*book_);
   }
   WorkerStatus Status(const std::string& worker = "w") {
     return {worker, "host", 1, EngineVersion(), 1, 2, WorkerState::kReady, 0, kEpoch, {}, {}};
@@ -116,7 +116,7 @@ TEST_F(DispatcherTest, RevokesWhatItDidNotGiveOrHasTakenBack) {
 
 TEST_F(DispatcherTest, KnowsThatNothingButStatusesGetsHere) {
   Open(100);
-  EXPECT_FALSE(dispatcher_.Hears(0.0)) << "nobody";
+  EXPECT_FALSE(dispatcher_.ReceivesReports(0.0)) << "nobody";
   dispatcher_.On("s", Status(), 0.0);
   const std::uint64_t attempt = Tick(0.0).assignments.at(0).attempt;
   WorkerStatus flies = Status();
@@ -128,7 +128,7 @@ TEST_F(DispatcherTest, KnowsThatNothingButStatusesGetsHere) {
   // One long flight has nothing to tell.
   for (; now_s < 100.0; now_s += 0.5) {
     dispatcher_.On("s", flies, now_s);
-    EXPECT_TRUE(dispatcher_.Hears(now_s));
+    EXPECT_TRUE(dispatcher_.ReceivesReports(now_s));
   }
   // It has flown and nothing is heard of it; whoever else is there and has nothing to tell is heard.
   flies.flown = 2;
@@ -137,13 +137,13 @@ TEST_F(DispatcherTest, KnowsThatNothingButStatusesGetsHere) {
   for (; now_s < deaf_s + 10.0; now_s += 0.5) {
     flies.flown += 1;
     dispatcher_.On("s", flies, now_s);
-    EXPECT_EQ(dispatcher_.Hears(now_s), now_s <= deaf_s + 5.0) << now_s;
+    EXPECT_EQ(dispatcher_.ReceivesReports(now_s), now_s <= deaf_s + 5.0) << now_s;
   }
   dispatcher_.On("t", Status("v"), now_s);
-  EXPECT_TRUE(dispatcher_.Hears(now_s));
+  EXPECT_TRUE(dispatcher_.ReceivesReports(now_s));
   dispatcher_.Gone("t");
   Fly(attempt, 3, now_s, 3);
-  EXPECT_TRUE(dispatcher_.Hears(now_s)) << "it is heard again";
+  EXPECT_TRUE(dispatcher_.ReceivesReports(now_s)) << "it is heard again";
 }
 
 TEST_F(DispatcherTest, KnowsThatNoTextIsAskedFor) {
@@ -153,10 +153,10 @@ TEST_F(DispatcherTest, KnowsThatNoTextIsAskedFor) {
   waits.held = {Tick(0.0).assignments.at(0).attempt};
   for (double now_s = 0.5; now_s < 70.0; now_s += 0.5) {
     dispatcher_.On("s", waits, now_s);
-    EXPECT_EQ(dispatcher_.Hears(now_s), now_s <= 60.0) << now_s;
+    EXPECT_EQ(dispatcher_.ReceivesReports(now_s), now_s <= 60.0) << now_s;
   }
   EXPECT_TRUE(dispatcher_.On(TextRequest{"w", kFlight, 0}, 4, 70.0));
-  EXPECT_TRUE(dispatcher_.Hears(70.0));
+  EXPECT_TRUE(dispatcher_.ReceivesReports(70.0));
 }
 
 TEST_F(DispatcherTest, SaysSomethingEverySecond) {
@@ -188,7 +188,7 @@ TEST_F(DispatcherTest, AcknowledgesResultsOfAClosedCampaignSoThatTheyAreDropped)
   Open(2);
   dispatcher_.On("s", Status(), 0.0);
   Tick(0.0);
-  dispatcher_.Close(kFlight);
+  dispatcher_.EndCampaign(kFlight);
   Fly(1, 0, 0.1, 41);
   EXPECT_THAT(Tick(0.2).acknowledged, ElementsAre(41));
 }
@@ -332,7 +332,7 @@ TEST_F(DispatcherTest, AssignmentsOfAClosedCampaignAreNotRepeated) {
   dispatcher_.On("s", Status(), 0.0);
   ASSERT_THAT(Tick(0.0).assignments, testing::SizeIs(1));
   dispatcher_.On("s", Status(), 2.0);  // it got lost: to be said again
-  dispatcher_.Close(kFlight);
+  dispatcher_.EndCampaign(kFlight);
   EXPECT_THAT(Tick(2.0).assignments, IsEmpty());
 }
 
@@ -435,7 +435,7 @@ TEST_F(DispatcherTest, ASuspectFliesBesideNoCaseOfAnotherCampaign) {
   ASSERT_THAT(Tick(5.0).assignments, testing::SizeIs(1)) << "the suspect";
   CampaignBook other(MadeUp(std::string(64, '1'), 5), std::make_unique<MemoryStore>(),
                      {.attempt_base = 1000});
-  dispatcher_.Open(other, 9);
+  dispatcher_.BeginCampaign(other, 9);
   for (const double now_s : {5.1, 6.1}) {
     dispatcher_.On("s", Status(), now_s);
     EXPECT_THAT(Tick(now_s).assignments, IsEmpty()) << now_s;
@@ -450,9 +450,9 @@ TEST_F(DispatcherTest, ANewPriorityCountsFromNowOn) {
   CampaignBook one(MadeUp(std::string(64, '1'), 50), std::make_unique<MemoryStore>(), {.attempt_base = 1000});
   CampaignBook other(MadeUp(std::string(64, '2'), 50), std::make_unique<MemoryStore>(),
                      {.attempt_base = 2000});
-  dispatcher_.Open(one, 3);
-  dispatcher_.Open(other, 2);
-  dispatcher_.Open(other, 4);
+  dispatcher_.BeginCampaign(one, 3);
+  dispatcher_.BeginCampaign(other, 2);
+  dispatcher_.BeginCampaign(other, 4);
   dispatcher_.On("s", Status(), 0.0);
   Tick(0.0);
   EXPECT_EQ(one.ledger().Progress().assigned, 0u);
@@ -514,9 +514,9 @@ TEST_F(DispatcherTest, CampaignsOfAHigherPriorityFirstAndEqualOnesShare) {
                    {.attempt_base = 2000, .side_by_side = 1});
   CampaignBook two(MadeUp(std::string(64, '3'), 50), std::make_unique<MemoryStore>(),
                    {.attempt_base = 3000, .side_by_side = 1});
-  dispatcher_.Open(low, 0);
-  dispatcher_.Open(one, 5);
-  dispatcher_.Open(two, 5);
+  dispatcher_.BeginCampaign(low, 0);
+  dispatcher_.BeginCampaign(one, 5);
+  dispatcher_.BeginCampaign(two, 5);
   WorkerStatus status = Status();
   status.credits = 20;
   dispatcher_.On("s", status, 0.0);
@@ -544,7 +544,7 @@ class AuditTest : public DispatcherTest {
     auto store = std::make_unique<MemoryStore>();
     store_ = store.get();
     book_ = std::make_unique<CampaignBook>(MadeUp(kFlight, cases), std::move(store));
-    audited_->Open(*book_);
+    audited_->BeginCampaign(*book_);
     for (const char* worker : {"liar", "honest"}) audited_->On(worker, Status(worker), 0.0);
   }
   /// Of a worker that nobody gave the case to: a result is welcome from whomever.
@@ -665,9 +665,9 @@ class PluginTest : public DispatcherTest {
     campaign.autopilot.plugin.emplace().name = "law";
     auto store = std::make_unique<MemoryStore>(stored);
     store_ = store.get();
-    dispatcher_.Close(kFlight);
+    dispatcher_.EndCampaign(kFlight);
     book_ = std::make_unique<CampaignBook>(campaign, std::move(store));
-    dispatcher_.Open(*book_);
+    dispatcher_.BeginCampaign(*book_);
   }
   void Come(const std::string& worker) { dispatcher_.On(worker, Status(worker), 0.0); }
   void Return(const std::string& worker, CaseResult result) {
@@ -709,17 +709,17 @@ TEST_F(PluginTest, AnotherResultRefusesTheCampaignAndNamesTheFirstColumnThatDiff
                 MetricNames()[1] + " is '0.25' once and '0.5' again");
 }
 
-TEST_F(PluginTest, ASecondFlightThatIsGivenUpRefusesTheCampaign) {
+TEST_F(PluginTest, ASecondFlightThatIsQuarantinedRefusesTheCampaign) {
   Open(1);
   for (const char* worker : {"a", "b"}) Come(worker);
   Return("a", ResultOf(0));
   dispatcher_.On("b", Status("b"), 0.0);
   const Orders orders = Tick(0.0, "b");
   ASSERT_EQ(orders.assignments.size(), 1u);
-  CaseResult given_up;
-  given_up.reason = "the control law ended by signal 11 (SIGSEGV)";
-  FlownCase flown{orders.assignments[0].attempt, given_up};
-  flown.given_up = true;
+  CaseResult quarantined;
+  quarantined.reason = "the control law ended by signal 11 (SIGSEGV)";
+  FlownCase flown{orders.assignments[0].attempt, quarantined};
+  flown.is_quarantined = true;
   dispatcher_.On("b", Report{"b", kEpoch, 1, kFlight, {flown}, {}}, 0.0);
   EXPECT_EQ(book_->refusal(),
             "the control law law is not deterministic: of case 0, flown by worker a and again by b, the "
@@ -798,12 +798,12 @@ TEST_F(PluginTest, AContradictionOfAnyCaseRefusesTheCampaign) {
                                  "'' once and 'lost' again"));
 }
 
-TEST_F(PluginTest, OnlyACaseThatAPluginCouldSpoilIsGivenUp) {
+TEST_F(PluginTest, OnlyACaseThatAPluginCouldSpoilIsQuarantined) {
   for (const bool with_plugin : {true, false}) {
     if (with_plugin) {
       Open(1);
     } else {
-      dispatcher_.Close(kFlight);
+      dispatcher_.EndCampaign(kFlight);
       DispatcherTest::Open(1);
     }
     Come("a");
@@ -811,14 +811,14 @@ TEST_F(PluginTest, OnlyACaseThatAPluginCouldSpoilIsGivenUp) {
     ASSERT_EQ(orders.assignments.size(), 1u);
     FlownCase flown{orders.assignments[0].attempt, {}};
     flown.result.reason = "it ended the process";
-    flown.given_up = true;
+    flown.is_quarantined = true;
     dispatcher_.On("a", Report{"a", kEpoch, 1, kFlight, {flown}, {}}, 0.5);
     EXPECT_EQ(Progress().quarantined, with_plugin ? 1u : 0u);
     EXPECT_EQ(dispatcher_.refused_messages(), with_plugin ? 0u : 1u);
   }
 }
 
-TEST_F(PluginTest, ACaseThatIsGivenUpForAnEarlierCoordinatorIsNot) {
+TEST_F(PluginTest, ACaseThatIsQuarantinedForAnEarlierCoordinatorIsNot) {
   Open(1);
   Come("a");
   const std::uint64_t attempt = Tick(0.0, "a").assignments.at(0).attempt;

@@ -85,7 +85,7 @@ void Fuzz(const typename PubSubType::type& sample) {
       }
     }
     if (!Decode<PubSubType>(bytes, &message)) continue;
-    if (const auto plain = FromIdl(message)) (void)Problem(*plain);  // what it answers: validity_test.cc
+    if (const auto plain = FromIdl(message)) (void)WhyInvalid(*plain);  // what it answers: validity_test.cc
   }
 }
 

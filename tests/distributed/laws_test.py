@@ -75,9 +75,9 @@ class LawsTest(ServiceCase):
         identity = self.dispersa("launch", campaign).strip()
         self.dispersa("watch", identity, code=5)
         self.assert_same_folder(identity, reference)
-        given_up = json.loads((reference.out / "summary.json").read_text())["quarantined"]
-        self.assertGreater(len(given_up), 0)
-        for case in given_up:
+        quarantined = json.loads((reference.out / "summary.json").read_text())["quarantined"]
+        self.assertGreater(len(quarantined), 0)
+        for case in quarantined:
             self.assertRegex(case["reason"], r"^the control law ended by signal 11 \(SIGSEGV\)")
         self.assertIsNone(worker.poll())
         self.assertEqual([w["flown"] for w in json.loads(self.dispersa("status", "--json"))["workers"]], [CASES])

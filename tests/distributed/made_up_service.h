@@ -24,10 +24,10 @@ class ServiceTest : public testing::Test {
     return LoadCampaign(DISPERSA_CAMPAIGNS "/smoke.yaml", {.cases = cases, .seed = seed});
   }
 
-  void StartService(std::size_t open_at_once = 8, std::uint64_t max_cases = kDefaultMaxCases) {
+  void StartService(std::size_t flying_at_once = 8, std::uint64_t max_cases = kDefaultMaxCases) {
     service_.reset();
     service_ =
-        std::make_unique<Service>(ServiceOptions{folder_ / "data", 1, open_at_once, max_cases}, workforce_);
+        std::make_unique<Service>(ServiceOptions{folder_ / "data", 1, flying_at_once, max_cases}, workforce_);
     desk_ = std::make_unique<FrontDesk>(*service_, workforce_);
   }
 

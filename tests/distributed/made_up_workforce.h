@@ -15,8 +15,8 @@ namespace dispersa {
 
 class MadeUpWorkforce : public Workforce {
  public:
-  void Open(CampaignBook& book, int priority) override { dispatcher.Open(book, priority); }
-  void Close(const std::string& flight_id) override { dispatcher.Close(flight_id); }
+  void BeginCampaign(CampaignBook& book, int priority) override { dispatcher.BeginCampaign(book, priority); }
+  void EndCampaign(const std::string& flight_id) override { dispatcher.EndCampaign(flight_id); }
   void Publish(CampaignProgress progress) override { published.push_back(std::move(progress)); }
   std::vector<Dispatcher::WorkerView> Workers() const override { return dispatcher.Workers(); }
   std::optional<std::string> RefusalByAll(const std::string& flight_id) const override {

@@ -25,8 +25,8 @@ class MemoryStore : public ResultStore {
       seconds[record.case_index] = record.seconds;
     }
   }
-  void Quarantine(const QuarantinedCase& quarantined) override {
-    given_up[quarantined.case_index] = quarantined.reason;
+  void Quarantine(const QuarantinedCase& one) override {
+    quarantined[one.case_index] = one.reason;
   }
   std::vector<std::pair<std::uint64_t, Digest>> Fingerprints() const override {
     std::vector<std::pair<std::uint64_t, Digest>> all;
@@ -60,7 +60,7 @@ class MemoryStore : public ResultStore {
   std::map<std::uint64_t, CaseResult> rows;
   std::map<std::uint64_t, std::string> worker_of;
   std::map<std::uint64_t, double> seconds;  ///< that each took
-  std::map<std::uint64_t, std::string> given_up;
+  std::map<std::uint64_t, std::string> quarantined;
   std::set<std::uint64_t> audited;
   std::size_t stored = 0;
   std::int64_t planned_cases = 0;

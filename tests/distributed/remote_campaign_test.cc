@@ -38,7 +38,7 @@ class Watcher : public Observer {
     shown.push_back(phase + " " + std::to_string(done) + "/" + std::to_string(total) + " " + note);
   }
   void EndPhase() override { shown.push_back("end"); }
-  bool Stop() override { return stops; }
+  bool ShouldStop() override { return stops; }
   std::vector<std::string> shown;
   bool stops = false;
 };

@@ -13,7 +13,7 @@
 #include "services/client/local_workers.h"
 #include "services/coordinator/watchdog.h"
 #include "services/ledger/campaign_book.h"
-#include "services/ledger/open_campaign.h"
+#include "services/ledger/prepare_run.h"
 
 namespace dispersa::rules_test {
 namespace {
@@ -77,31 +77,31 @@ TEST(Rules, AWorkerThatIsEndedFromOutsideBlamesNothing) {
 TEST(Rules, ResumingWithFewerCasesDropsNoRow) {
   std::string pattern = (std::filesystem::temp_directory_path() / "dispersa-rules-XXXXXX").string();
   const std::filesystem::path root = mkdtemp(pattern.data());
-  CampaignRequest request;
+  RunRequest request;
   request.campaign = DISPERSA_CAMPAIGNS "/smoke.yaml";
   request.out = (root / "out").string();
   request.overrides.cases = 10;
   {
-    OpenedCampaign opened = OpenCampaign(request);
+    PreparedRun prepared = PrepareRun(request);
     CaseResult result;
     result.case_index = 7;
     result.inputs.assign(InputCount(kUsualStages), 0.5);
     result.metrics.assign(MetricCount(kUsualStages), 0.5);
-    opened.folder.Append({{result}});
+    prepared.folder.Append({{result}});
   }
   request.resume = true;
   request.overrides.cases = 3;
   {
-    const OpenedCampaign opened = OpenCampaign(request);
-    EXPECT_EQ(opened.campaign.sampling.cases, 8u) << "extended to what is there";
-    EXPECT_EQ(opened.folder.PresentCases(), std::vector<std::uint64_t>{7});
-    EXPECT_THROW(OpenCampaign(request), InputError) << "two at once";
+    const PreparedRun prepared = PrepareRun(request);
+    EXPECT_EQ(prepared.campaign.sampling.cases, 8u) << "extended to what is there";
+    EXPECT_EQ(prepared.folder.PresentCases(), std::vector<std::uint64_t>{7});
+    EXPECT_THROW(PrepareRun(request), InputError) << "two at once";
   }
   std::filesystem::remove_all(root);
 }
 
-TEST(DeafnessRule, WhoHeardSomebodyAndHasWorkDoesNotHearNobodyForLong) {
-  DeafnessRule rule;
+TEST(RestartRule, WhoHeardSomebodyAndHasWorkDoesNotHearNobodyForLong) {
+  RestartRule rule;
   long rounds = 0;
   for (double t = 0.0; t < 100.0; t += 1.0)
     EXPECT_FALSE(rule.Check(t, false, true, ++rounds)) << "nobody came yet";
@@ -112,8 +112,8 @@ TEST(DeafnessRule, WhoHeardSomebodyAndHasWorkDoesNotHearNobodyForLong) {
   EXPECT_TRUE(rule.Check(210.0, false, true, ++rounds));
 }
 
-TEST(DeafnessRule, AThreadThatMakesNoRoundHangs) {
-  DeafnessRule rule;
+TEST(RestartRule, AThreadThatMakesNoRoundHangs) {
+  RestartRule rule;
   EXPECT_FALSE(rule.Check(0.0, true, true, 1));
   EXPECT_FALSE(rule.Check(20.0, true, true, 1));
   EXPECT_FALSE(rule.Check(20.5, true, true, 2)) << "it was slow";

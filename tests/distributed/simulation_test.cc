@@ -241,7 +241,7 @@ class World {
       books_.push_back(std::make_unique<CampaignBook>(
           CampaignOf(c), std::make_unique<DiskStore>(disks_[c]),
           LedgerOptions{.lease_s = 20.0, .attempt_base = static_cast<std::uint64_t>(c) << 32}));
-      dispatcher_->Open(*books_.back(), c % 2);
+      dispatcher_->BeginCampaign(*books_.back(), c % 2);
     }
     coordinator_frozen_until_s_ = now_s_ + (epoch_ > 1 ? 0.1 * Draw(60) : 0.0);
   }

@@ -21,7 +21,7 @@ const char kTooLong[] = "a text is too long";
 template <typename Message, typename Change>
 std::string After(Message message, Change change) {
   change(message);
-  return Problem(message);
+  return WhyInvalid(message);
 }
 
 WorkerStatus Status() {
@@ -51,9 +51,9 @@ TEST(Validity, ANameIsAnIdentifierOf64Letters) {
     EXPECT_EQ(After(TextPart{"w", kFlight, "n", "e", 9, 2, "bytes"}, set), kBadWorker) << name;
     EXPECT_EQ(After(CampaignRefusal{"w", 1, kFlight, "why"}, set), kBadWorker) << name;
     const char no_client[] = "the client's name is no identifier";
-    EXPECT_EQ(Problem(Request{name, 1, "list", "{}", ""}), no_client) << name;
-    EXPECT_EQ(Problem(Reply{name, 1, 0, "{}", ""}), no_client) << name;
-    EXPECT_EQ(Problem(Request{"c", 1, name, "{}", ""}), "the method is no identifier") << name;
+    EXPECT_EQ(WhyInvalid(Request{name, 1, "list", "{}", ""}), no_client) << name;
+    EXPECT_EQ(WhyInvalid(Reply{name, 1, 0, "{}", ""}), no_client) << name;
+    EXPECT_EQ(WhyInvalid(Request{"c", 1, name, "{}", ""}), "the method is no identifier") << name;
   }
   EXPECT_EQ(After(Status(), [](auto& status) { status.worker = std::string(64, 'a'); }), "");
 }
@@ -89,7 +89,7 @@ TEST(Validity, AStatusOfBoundedSize) {
 }
 
 TEST(Validity, OrdersOfACoordinatorThatHasAnEpoch) {
-  EXPECT_EQ(Problem(SomeOrders()), "");
+  EXPECT_EQ(WhyInvalid(SomeOrders()), "");
   EXPECT_EQ(After(SomeOrders(), [](auto& orders) { orders.coordinator_epoch = 0; }), "the epoch is 0");
   EXPECT_EQ(After(SomeOrders(), [](auto& orders) { orders.refusal.assign(4096, 'x'); }), "");
   EXPECT_EQ(After(SomeOrders(), [](auto& orders) { orders.refusal.assign(4097, 'x'); }), kTooLong);
@@ -111,8 +111,8 @@ TEST(Validity, AResultHasTheInputsAndMetricsOfThisEngine) {
     EXPECT_EQ(of(inputs, wrong_metrics), wrong);
 }
 
-TEST(Validity, ACaseThatIsGivenUpHasAReasonAndNothingElse) {
-  const auto given_up = [](auto change) {
+TEST(Validity, AQuarantinedCaseHasAReasonAndNothingElse) {
+  const auto quarantined = [](auto change) {
     return After(SomeReport(), [&](Report& report) {
       report.flown[0] = {2, {}, true};
       report.flown[0].result.reason = "it ended the process";
@@ -120,10 +120,10 @@ TEST(Validity, ACaseThatIsGivenUpHasAReasonAndNothingElse) {
     });
   };
   const char wrong[] = "a result has not the inputs and metrics of this engine";
-  EXPECT_EQ(given_up([](CaseResult&) {}), "");
-  EXPECT_EQ(given_up([](CaseResult& result) { result.reason.clear(); }), wrong);
-  EXPECT_EQ(given_up([](CaseResult& result) { result.inputs = {1.0}; }), wrong);
-  EXPECT_EQ(given_up([](CaseResult& result) { result.metrics = {1.0}; }), wrong);
+  EXPECT_EQ(quarantined([](CaseResult&) {}), "");
+  EXPECT_EQ(quarantined([](CaseResult& result) { result.reason.clear(); }), wrong);
+  EXPECT_EQ(quarantined([](CaseResult& result) { result.inputs = {1.0}; }), wrong);
+  EXPECT_EQ(quarantined([](CaseResult& result) { result.metrics = {1.0}; }), wrong);
 }
 
 TEST(Validity, AResultEndsInAStageThatAVehicleCanHave) {
@@ -145,7 +145,7 @@ TEST(Validity, AReportHasAtMost4096Cases) {
 
 TEST(Validity, APartOfATextLiesWithinTheText) {
   const auto part = [](std::uint64_t size, std::uint64_t offset, std::size_t bytes) {
-    return Problem(TextPart{"w", kFlight, "name", "engine", size, offset, std::string(bytes, 'x')});
+    return WhyInvalid(TextPart{"w", kFlight, "name", "engine", size, offset, std::string(bytes, 'x')});
   };
   const char beyond[] = "a part beyond the text";
   EXPECT_EQ(part(9, 0, 9), "");
@@ -155,22 +155,22 @@ TEST(Validity, APartOfATextLiesWithinTheText) {
   EXPECT_EQ(part(9, std::numeric_limits<std::uint64_t>::max(), 2), beyond) << "their sum is 1";
   EXPECT_EQ(part(std::uint64_t{64} << 20, 0, 9), "");
   EXPECT_EQ(part((std::uint64_t{64} << 20) + 1, 0, 9), "the campaign's text is larger than 64 MiB");
-  EXPECT_EQ(Problem(TextPart{"w", kFlight, std::string(257, 'n'), "e", 9, 0, ""}), kTooLong);
-  EXPECT_EQ(Problem(TextPart{"w", kFlight, "n", std::string(257, 'e'), 9, 0, ""}), kTooLong);
+  EXPECT_EQ(WhyInvalid(TextPart{"w", kFlight, std::string(257, 'n'), "e", 9, 0, ""}), kTooLong);
+  EXPECT_EQ(WhyInvalid(TextPart{"w", kFlight, "n", std::string(257, 'e'), 9, 0, ""}), kTooLong);
 }
 
 TEST(Validity, ARefusalSaysWhyInAFewWords) {
   const auto refusal = [](std::size_t letters) {
-    return Problem(CampaignRefusal{"w", 1, kFlight, std::string(letters, 'x')});
+    return WhyInvalid(CampaignRefusal{"w", 1, kFlight, std::string(letters, 'x')});
   };
   EXPECT_EQ(refusal(4096), "");
   for (const std::size_t letters : {0, 4097}) EXPECT_EQ(refusal(letters), "no reason, or too long a one");
 }
 
 TEST(Validity, ARequestHasFewArgumentsAndAnyData) {
-  EXPECT_EQ(Problem(Request{"c", 1, "upload", std::string(4096, ' '), std::string(300000, 'd')}), "");
-  EXPECT_EQ(Problem(Request{"c", 1, "upload", std::string(4097, ' '), ""}), "too long arguments");
-  EXPECT_EQ(Problem(Reply{"c", 1, 0, std::string(300000, 't'), std::string(300000, 'd')}), "");
+  EXPECT_EQ(WhyInvalid(Request{"c", 1, "upload", std::string(4096, ' '), std::string(300000, 'd')}), "");
+  EXPECT_EQ(WhyInvalid(Request{"c", 1, "upload", std::string(4097, ' '), ""}), "too long arguments");
+  EXPECT_EQ(WhyInvalid(Reply{"c", 1, 0, std::string(300000, 't'), std::string(300000, 'd')}), "");
 }
 
 // Each field with a value of its own: there and back again.
@@ -210,7 +210,7 @@ TEST(Conversion, KeepsWhatObserversAndClientsAreTold) {
   EXPECT_EQ(request->data, bytes);
 }
 
-TEST(Conversion, ACaseThatIsGivenUpArrivesAsSuch) {
+TEST(Conversion, AQuarantinedCaseArrivesAsSuch) {
   FlownCase flown{3, {}, true};
   flown.result.case_index = 8;
   flown.result.reason = "why";
@@ -218,7 +218,7 @@ TEST(Conversion, ACaseThatIsGivenUpArrivesAsSuch) {
   EXPECT_EQ(ToIdl(sent).flown()[0].outcome(), "given_up");
   const auto report = FromIdl(ToIdl(sent));
   ASSERT_TRUE(report);
-  EXPECT_TRUE(report->flown[0].given_up);
+  EXPECT_TRUE(report->flown[0].is_quarantined);
   EXPECT_EQ(report->flown[0].attempt, 3u);
   EXPECT_EQ(report->flown[0].result.case_index, 8u);
   EXPECT_EQ(report->flown[0].result.reason, "why");

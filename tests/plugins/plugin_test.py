@@ -173,11 +173,11 @@ class PluginTest(unittest.TestCase):
         """The run of a law that spoils one flight in four; the others have the built-in law's bytes."""
         out, ended = self.campaign_run(f"{behaviour}{options.get('workers', 0)}", self.law(behaviour), **options)
         self.assertEqual(ended.returncode, 5, ended.stderr)
-        given_up = json.loads((out / "summary.json").read_text())["quarantined"]
-        self.assertGreater(len(given_up), 0)
-        for case in given_up:
+        quarantined = json.loads((out / "summary.json").read_text())["quarantined"]
+        self.assertGreater(len(quarantined), 0)
+        for case in quarantined:
             self.assertRegex(case["reason"], "^the control law " + reason + r".* at 3\.0\d\d s, in stage 1$")
-        cases = {case["case"] if "case" in case else case["case_index"] for case in given_up}
+        cases = {case["case"] if "case" in case else case["case_index"] for case in quarantined}
         ours = (out / "cases.csv").read_text().splitlines()
         theirs = self.pd.decode().splitlines()
         self.assertEqual(ours, [row for row in theirs if not row.split(",")[0].isdigit()
@@ -204,11 +204,11 @@ class PluginTest(unittest.TestCase):
         for behaviour in ("SLEEPS", "CLOSES_FILES"):
             out, ended = self.campaign_run(behaviour, self.law(behaviour), cases=4, workers=2)
             self.assertEqual(ended.returncode, 5, ended.stderr)
-            given_up = json.loads((out / "summary.json").read_text())["quarantined"]
-            self.assertGreater(len(given_up), 0)
-            for case in given_up:
+            quarantined = json.loads((out / "summary.json").read_text())["quarantined"]
+            self.assertGreater(len(quarantined), 0)
+            for case in quarantined:
                 self.assertIn(words, case["reason"])
-            self.assertEqual(len((out / "cases.csv").read_text().splitlines()), 5 - len(given_up))
+            self.assertEqual(len((out / "cases.csv").read_text().splitlines()), 5 - len(quarantined))
 
     def test_what_a_law_throws_is_cut_and_on_one_line(self):
         source = self.folder / "throws.cc"

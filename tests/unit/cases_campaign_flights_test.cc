@@ -18,7 +18,7 @@ class FirstCases : public CaseQueue {
     return next_ < count_ ? std::optional(next_++) : std::nullopt;
   }
   void Done(CaseResult result) override { flown.emplace(result.case_index, std::move(result)); }
-  void GivenUp(std::uint64_t, const std::string&) override { ADD_FAILURE(); }
+  void Quarantined(std::uint64_t, const std::string&) override { ADD_FAILURE(); }
 
   std::map<std::uint64_t, CaseResult> flown;
 

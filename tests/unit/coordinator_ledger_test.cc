@@ -151,7 +151,7 @@ TEST(Ledger, ADeathReturnsTheCasesAndBlamesByItsCause) {
     ledger.Lost("w", row.end, "reason");
     EXPECT_EQ(ledger.Progress().waiting, row.blames ? 2u : 3u);
     if (row.blames) {
-      EXPECT_THAT(ledger.Quarantined(), ElementsAre(BlamedCase{0, {"reason"}}));
+      EXPECT_THAT(ledger.Quarantined(), ElementsAre(CaseBlames{0, {"reason"}}));
     } else {
       EXPECT_THAT(ledger.Quarantined(), IsEmpty());
     }
@@ -187,7 +187,7 @@ TEST(Ledger, ABlamedCaseFliesAloneAfterTheOthersAndTheThirdBlameQuarantinesIt) {
   ledger.Started("d", 0, 8, 4.0);
   ledger.Lost("d", WorkerEnd::kSilent, "silent");
   EXPECT_TRUE(ledger.Complete());
-  EXPECT_THAT(ledger.Quarantined(), ElementsAre(BlamedCase{0, {"signal 11", "signal 6", "silent"}}));
+  EXPECT_THAT(ledger.Quarantined(), ElementsAre(CaseBlames{0, {"signal 11", "signal 6", "silent"}}));
   // Better late than never.
   EXPECT_EQ(ledger.Finished("d", 0, 8, ResultOf(0), 9.0), Acceptance::kAccepted);
   EXPECT_THAT(ledger.Quarantined(), IsEmpty());
@@ -227,7 +227,7 @@ TEST(Ledger, AStuckWorkerLosesItsCasesAndOnlyTheOneThatHangsIsBlamed) {
   ledger.Started("a", 0, 1, 5.0);
   EXPECT_THAT(ledger.Expire(15.0), IsEmpty());
   EXPECT_THAT(ledger.Expire(15.1), ElementsAre("a"));
-  EXPECT_THAT(ledger.Quarantined(), ElementsAre(BlamedCase{0, {"no result within its lease"}}));
+  EXPECT_THAT(ledger.Quarantined(), ElementsAre(CaseBlames{0, {"no result within its lease"}}));
   EXPECT_EQ(ledger.Progress().waiting, 2u);
   EXPECT_THAT(ledger.Assign(15.1), IsEmpty());  // it must report something first
   EXPECT_THAT(ledger.Expire(99.0), IsEmpty());
@@ -338,14 +338,14 @@ TEST(Ledger, ASuspectIsGivenToOneWhoHoldsNothingOfOtherCampaigns) {
   EXPECT_TRUE(ledger.IsAlone("w"));
 }
 
-TEST(Ledger, ACaseThatIsGivenUpSaysNothingOfHowLongOthersTake) {
+TEST(Ledger, AQuarantinedCaseSaysNothingOfHowLongOthersTake) {
   Ledger ledger("1", 2, {.lease_s = 10.0, .side_by_side = 1});
   ledger.Join("a", kHello, 0.0);
   ledger.Assign(0.0);
   ledger.Started("a", 0, 1, 0.0);
-  EXPECT_FALSE(ledger.GiveUp("a", 0, 99, "of another attempt", 5.0));
+  EXPECT_FALSE(ledger.Quarantine("a", 0, 99, "of another attempt", 5.0));
   EXPECT_EQ(ledger.Progress().quarantined, 0u) << "somebody else may fly it";
-  EXPECT_FALSE(ledger.GiveUp("a", 0, 1, "it hung", 9.0));
+  EXPECT_FALSE(ledger.Quarantine("a", 0, 1, "it hung", 9.0));
   EXPECT_EQ(ledger.Progress().quarantined, 1u);
   ledger.Started("a", 1, 2, 9.0);
   EXPECT_THAT(ledger.Expire(19.1), ElementsAre("a"));
@@ -382,10 +382,10 @@ TEST(Ledger, SlotsAreThoseOfWorkersThatAreHere) {
 }
 
 // Cases that two workers shall fly.
-class Twice : public testing::Test {
+class SecondFlights : public testing::Test {
  protected:
-  Twice() {
-    for (std::uint64_t i = 0; i < 2; ++i) ledger_.WantTwice(i);
+  SecondFlights() {
+    for (std::uint64_t i = 0; i < 2; ++i) ledger_.RequireSecondFlight(i);
   }
   void Come(const std::string& worker) { ledger_.Join(worker, {"1", 1, 1}, now_s_); }
   Acceptance Fly(const Assignment& given, std::uint64_t case_index, Digest result) {
@@ -402,13 +402,13 @@ class Twice : public testing::Test {
   double now_s_ = 0.0;
 };
 
-TEST_F(Twice, OneWorkerAloneBringsItToItsEnd) {
+TEST_F(SecondFlights, OneWorkerAloneBringsItToItsEnd) {
   FlyAllAlone();
   EXPECT_TRUE(ledger_.Complete());
   EXPECT_EQ(ledger_.Progress().duplicates, 0u);
 }
 
-TEST_F(Twice, AnotherWorkerFliesThemBeforeAllElse) {
+TEST_F(SecondFlights, AnotherWorkerFliesThemBeforeAllElse) {
   Come("a");
   const Assignment first = ledger_.Assign(0.0)[0];
   EXPECT_EQ(first, (Assignment{"a", 1, {0}}));
@@ -422,7 +422,7 @@ TEST_F(Twice, AnotherWorkerFliesThemBeforeAllElse) {
   EXPECT_THAT(ledger_.Assign(0.0), ElementsAre(Assignment{"b", 5, {3}})) << "once again is enough";
 }
 
-TEST_F(Twice, IsNotCompleteWhileAnotherWorkerCouldFlyThem) {
+TEST_F(SecondFlights, IsNotCompleteWhileAnotherWorkerCouldFlyThem) {
   FlyAllAlone();
   Come("b");
   EXPECT_FALSE(ledger_.Complete());
@@ -437,7 +437,7 @@ TEST_F(Twice, IsNotCompleteWhileAnotherWorkerCouldFlyThem) {
   EXPECT_EQ(ledger_.Progress().done, 4u);
 }
 
-TEST_F(Twice, AWorkerThatLeavesOwesNothing) {
+TEST_F(SecondFlights, AWorkerThatLeavesOwesNothing) {
   FlyAllAlone();
   Come("b");
   ledger_.Assign(0.0);
@@ -449,7 +449,7 @@ TEST_F(Twice, AWorkerThatLeavesOwesNothing) {
   EXPECT_THAT(ledger_.Assign(0.0), ElementsAre(Assignment{"c", 6, {0, 1}}));
 }
 
-TEST_F(Twice, ThoseThatEndOrHangTheirWorkersAreNotAskedForForEver) {
+TEST_F(SecondFlights, ThoseThatEndOrHangTheirWorkersAreNotAskedForForEver) {
   FlyAllAlone();
   Come("b");
   ledger_.Started("b", 0, ledger_.Assign(0.0)[0].attempt, 0.0);
@@ -464,7 +464,7 @@ TEST_F(Twice, ThoseThatEndOrHangTheirWorkersAreNotAskedForForEver) {
   EXPECT_THAT(ledger_.Quarantined(), IsEmpty());
 }
 
-TEST_F(Twice, TheSameWorkersResultSaidAgainIsNoSecondFlight) {
+TEST_F(SecondFlights, TheSameWorkersResultSaidAgainIsNoSecondFlight) {
   FlyAllAlone();
   Come("b");
   EXPECT_EQ(ledger_.Finished("a", 0, 1, ResultOf(0), 0.0), Acceptance::kDuplicate);
@@ -472,7 +472,7 @@ TEST_F(Twice, TheSameWorkersResultSaidAgainIsNoSecondFlight) {
   EXPECT_THAT(ledger_.Assign(0.0)[0].cases, ElementsAre(0, 1));
 }
 
-TEST_F(Twice, WhatIsNotBelievedAnyMoreIsWantedTwiceAnew) {
+TEST_F(SecondFlights, WhatIsNotBelievedAnyMoreIsWantedTwiceAnew) {
   FlyAllAlone();
   Come("b");
   const Assignment given = ledger_.Assign(0.0)[0];
@@ -487,20 +487,20 @@ TEST_F(Twice, WhatIsNotBelievedAnyMoreIsWantedTwiceAnew) {
   EXPECT_THAT(ledger_.Assign(0.0), ElementsAre(Assignment{"c", 7, {0}}));
 }
 
-TEST_F(Twice, OneThatSurvivesWhatAnotherDoesNotSaysSo) {
+TEST_F(SecondFlights, OneThatSurvivesWhatAnotherDoesNotSaysSo) {
   FlyAllAlone();
   Come("b");
   const Assignment given = ledger_.Assign(0.0)[0];
-  EXPECT_TRUE(ledger_.GiveUp("b", 0, given.attempt, "signal 11", 0.0));
-  EXPECT_FALSE(ledger_.GiveUp("b", 0, given.attempt, "signal 11", 0.0)) << "said again";
+  EXPECT_TRUE(ledger_.Quarantine("b", 0, given.attempt, "signal 11", 0.0));
+  EXPECT_FALSE(ledger_.Quarantine("b", 0, given.attempt, "signal 11", 0.0)) << "said again";
   EXPECT_EQ(ledger_.Progress().quarantined, 0u);
 }
 
-TEST_F(Twice, ResumesWithWhoFlewThem) {
+TEST_F(SecondFlights, ResumesWithWhoFlewThem) {
   Ledger resumed("1", 2);
   for (std::uint64_t i = 0; i < 2; ++i) resumed.MarkDone(i, ResultOf(i));
-  resumed.WantTwice(0, "a");
-  resumed.WantTwice(1);
+  resumed.RequireSecondFlight(0, "a");
+  resumed.RequireSecondFlight(1);
   EXPECT_TRUE(resumed.Complete());
   resumed.Join("a", kHello, 0.0);
   EXPECT_THAT(resumed.Assign(0.0), ElementsAre(Assignment{"a", 1, {1}})) << "nobody knows who flew case 1";
@@ -515,9 +515,12 @@ TEST_F(Twice, ResumesWithWhoFlewThem) {
 class RandomWorld {
  public:
   RandomWorld(std::uint64_t seed, std::uint64_t cases)
-      : random_(seed), cases_(cases), ledger_("1", cases, {.lease_s = 3.0}), twice_(seed % 2 == 1 ? 2 : 0) {
+      : random_(seed),
+        cases_(cases),
+        ledger_("1", cases, {.lease_s = 3.0}),
+        second_flights_(seed % 2 == 1 ? 2 : 0) {
     for (std::uint64_t k = 0; k < cases; ++k) {
-      if (k < twice_) ledger_.WantTwice(k);
+      if (k < second_flights_) ledger_.RequireSecondFlight(k);
       if (Chance(0.03)) (Chance(0.5) ? crashing_ : hanging_).insert(k);
     }
   }
@@ -534,7 +537,7 @@ class RandomWorld {
     std::set<std::uint64_t> poison = crashing_;
     poison.insert(hanging_.begin(), hanging_.end());
     std::set<std::uint64_t> quarantined;
-    for (const BlamedCase& q : ledger_.Quarantined()) {
+    for (const CaseBlames& q : ledger_.Quarantined()) {
       quarantined.insert(q.case_index);
       EXPECT_THAT(q.reasons, SizeIs(3));
     }
@@ -582,7 +585,7 @@ class RandomWorld {
       for (const std::uint64_t k : assignment.cases) {
         ASSERT_LT(k, cases_);
         if (accepted_.contains(k)) {
-          ASSERT_LT(k, twice_) << "flown again";
+          ASSERT_LT(k, second_flights_) << "flown again";
           ASSERT_NE(accepted_.at(k), assignment.worker) << "flown again by the same worker";
         }
         machines_[assignment.worker].queue.emplace_back(k, assignment.attempt);
@@ -654,7 +657,7 @@ class RandomWorld {
   Ledger ledger_;
   std::set<std::uint64_t> crashing_;
   std::set<std::uint64_t> hanging_;
-  std::uint64_t twice_;                            ///< so many of the first cases
+  std::uint64_t second_flights_;                   ///< so many of the first cases
   std::map<std::uint64_t, std::string> accepted_;  ///< by whom
   std::map<std::string, Machine> machines_;
   int next_ = 0;

@@ -1,5 +1,5 @@
 // A service in figures for a monitor: each figure is what its help says.
-#include "services/coordinator/metrics_text.h"
+#include "services/coordinator/prometheus_text.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -7,14 +7,14 @@
 #include "made_up_service.h"
 #include "services/transport/complaints.h"
 
-namespace dispersa::metrics_text_test {
+namespace dispersa::prometheus_text_test {
 namespace {
 
-class MetricsTextTest : public ServiceTest {
+class PrometheusTextTest : public ServiceTest {
  protected:
   /// The value behind a name, which must be there once.
   std::string Value(const std::string& name) {
-    const std::string text = "\n" + MetricsText(*service_, workforce_), wanted = "\n" + name + " ";
+    const std::string text = "\n" + PrometheusText(*service_, workforce_), wanted = "\n" + name + " ";
     const std::size_t at = text.find(wanted);
     if (at == std::string::npos || text.find(wanted, at + 1) != std::string::npos) return "not there once";
     const std::size_t begin = at + wanted.size();
@@ -22,13 +22,13 @@ class MetricsTextTest : public ServiceTest {
   }
 };
 
-TEST_F(MetricsTextTest, AnEmptyServiceIsAllZeros) {
+TEST_F(PrometheusTextTest, AnEmptyServiceIsAllZeros) {
   StartService();
   const auto metric = [](const char* name, const char* type, const char* help, std::uint64_t value) {
     return fmt::format("# HELP {0} {1}\n# TYPE {0} {2}\n{0} {3}\n", name, help, type, value);
   };
   EXPECT_EQ(
-      MetricsText(*service_, workforce_),
+      PrometheusText(*service_, workforce_),
       "# HELP dispersa_campaigns Campaigns by state.\n# TYPE dispersa_campaigns gauge\n" +
           metric("dispersa_cases_done", "gauge", "Cases with a result, of all campaigns.", 0) +
           metric("dispersa_cases_waiting", "gauge", "Cases that no worker has: the depth of the queue.", 0) +
@@ -43,7 +43,7 @@ TEST_F(MetricsTextTest, AnEmptyServiceIsAllZeros) {
                  Complaints()));
 }
 
-TEST_F(MetricsTextTest, ACaseIsCountedOnce) {
+TEST_F(PrometheusTextTest, ACaseIsCountedOnce) {
   StartService(1);
   const Campaign campaign = Smoke(100);
   const std::string flies = Launch(campaign, 1);
@@ -66,7 +66,7 @@ TEST_F(MetricsTextTest, ACaseIsCountedOnce) {
   EXPECT_EQ(Value("dispersa_campaigns{state=\"waiting\"}"), "1");
 }
 
-TEST_F(MetricsTextTest, AConflictStaysOverARestart) {
+TEST_F(PrometheusTextTest, AConflictStaysOverARestart) {
   StartService();
   const Campaign campaign = Smoke(5);
   const std::string id = Launch(campaign);
@@ -84,4 +84,4 @@ TEST_F(MetricsTextTest, AConflictStaysOverARestart) {
 }
 
 }  // namespace
-}  // namespace dispersa::metrics_text_test
+}  // namespace dispersa::prometheus_text_test

@@ -1,4 +1,4 @@
-#include "services/ledger/open_campaign.h"
+#include "services/ledger/prepare_run.h"
 
 #include <algorithm>
 #include <chrono>
@@ -43,7 +43,7 @@ bool IsStillborn(const fs::path& directory) {
 // After that it is said what takes so long.
 constexpr double kPatience_s = 2.0;
 
-std::vector<CaseResult> Check(const Campaign& campaign, const Unwanted& unwanted) {
+std::vector<CaseResult> Check(const Campaign& campaign, const StopCheck& should_stop) {
   if (!campaign.autopilot.plugin) return {};
   const auto start = std::chrono::steady_clock::now();
   bool is_said = false;
@@ -56,18 +56,18 @@ std::vector<CaseResult> Check(const Campaign& campaign, const Unwanted& unwanted
           campaign.autopilot.plugin->name);
       is_said = true;
     }
-    return unwanted && unwanted();
+    return should_stop && should_stop();
   };
   return CheckPluginIsDeterministic(CampaignFlights(campaign), campaign.sampling.cases, wait);
 }
 
 }  // namespace
 
-OpenedCampaign OpenCampaign(const CampaignRequest& request, const Unwanted& unwanted) {
+PreparedRun PrepareRun(const RunRequest& request, const StopCheck& should_stop) {
   std::vector<InputProblem> warnings;
   Campaign campaign = LoadCampaign(request.campaign, request.overrides, &warnings);
   for (const InputProblem& warning : warnings) LogWarning("{}", warning.Text());
-  std::vector<CaseResult> flown = Check(campaign, unwanted);
+  std::vector<CaseResult> flown = Check(campaign, should_stop);
   const fs::path directory =
       request.out.empty() ? DefaultFolder(campaign, request.resume) : fs::path(request.out);
 

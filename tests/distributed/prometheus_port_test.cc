@@ -1,5 +1,5 @@
 // The port of the metrics: what a scraper gets, and what others get.
-#include "services/coordinator/metrics_port.h"
+#include "services/coordinator/prometheus_port.h"
 
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
@@ -11,7 +11,7 @@
 
 #include "services/transport/network.h"
 
-namespace dispersa::metrics_port_test {
+namespace dispersa::prometheus_port_test {
 namespace {
 
 using testing::HasSubstr;
@@ -59,9 +59,9 @@ std::uint16_t FreePort() {
   return ntohs(where.sin_port);
 }
 
-TEST(MetricsPort, AnswersWithTheLatestText) {
+TEST(PrometheusPort, AnswersWithTheLatestText) {
   const std::uint16_t number = FreePort();
-  MetricsPort port(number);
+  PrometheusPort port(number);
   port.Set("dispersa_workers 1\n");
   port.Set("dispersa_workers 2\n");
   for (const char* path : {"/metrics", "/"}) {
@@ -72,9 +72,9 @@ TEST(MetricsPort, AnswersWithTheLatestText) {
   }
 }
 
-TEST(MetricsPort, AnswersNothingElse) {
+TEST(PrometheusPort, AnswersNothingElse) {
   const std::uint16_t number = FreePort();
-  MetricsPort port(number);
+  PrometheusPort port(number);
   port.Set("dispersa_workers 1\n");
   EXPECT_THAT(Get(number, "/else"), StartsWith("HTTP/1.1 404"));
   EXPECT_THAT(Ask(number, "POST /metrics HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 0\r\n\r\n"),
@@ -82,22 +82,22 @@ TEST(MetricsPort, AnswersNothingElse) {
   EXPECT_THAT(Ask(number, "nonsense\r\n\r\n"), testing::Not(HasSubstr("dispersa_workers")));
 }
 
-TEST(MetricsPort, ACallerThatSaysNothingKeepsNobodyOut) {
+TEST(PrometheusPort, ACallerThatSaysNothingKeepsNobodyOut) {
   const std::uint16_t number = FreePort();
-  MetricsPort port(number);
+  PrometheusPort port(number);
   port.Set("dispersa_workers 1\n");
   const int silent[] = {Connected(number), Connected(number), Connected(number)};
   EXPECT_THAT(Get(number, "/metrics"), StartsWith("HTTP/1.1 200"));
   for (const int connection : silent) close(connection);
 }
 
-TEST(MetricsPort, APortThatIsTakenIsSaid) {
+TEST(PrometheusPort, APortThatIsTakenIsSaid) {
   const std::uint16_t number = FreePort();
-  const MetricsPort port(number);
-  EXPECT_THAT([&] { const MetricsPort second(number); },
+  const PrometheusPort port(number);
+  EXPECT_THAT([&] { const PrometheusPort second(number); },
               testing::ThrowsMessage<NetworkError>("metrics: port " + std::to_string(number) +
                                                    " of 127.0.0.1: Address already in use"));
 }
 
 }  // namespace
-}  // namespace dispersa::metrics_port_test
+}  // namespace dispersa::prometheus_port_test

@@ -1,4 +1,4 @@
-#include "services/coordinator/metrics_text.h"
+#include "services/coordinator/prometheus_text.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 
 namespace dispersa {
 
-std::string MetricsText(const Service& service, const Workforce& workforce) {
+std::string PrometheusText(const Service& service, const Workforce& workforce) {
   std::map<std::string, int> states;
   LedgerProgress all;
   std::uint64_t conflicts = 0, slots = 0;

@@ -1,4 +1,4 @@
-#include "services/coordinator/metrics_port.h"
+#include "services/coordinator/prometheus_port.h"
 
 #include <httplib.h>
 #include <sys/socket.h>
@@ -21,12 +21,12 @@ constexpr std::size_t kMaxBody = 1024;
 
 }  // namespace
 
-struct MetricsPort::Serving {
+struct PrometheusPort::Serving {
   httplib::Server server;
   std::thread thread;
 };
 
-MetricsPort::MetricsPort(std::uint16_t port) : serving_(std::make_unique<Serving>()) {
+PrometheusPort::PrometheusPort(std::uint16_t port) : serving_(std::make_unique<Serving>()) {
   httplib::Server& server = serving_->server;
   server.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
   // By default httplib shares its port with whoever asks for it.
@@ -53,12 +53,12 @@ MetricsPort::MetricsPort(std::uint16_t port) : serving_(std::make_unique<Serving
   while (!server.is_running()) std::this_thread::yield();  // else stop() would stop nothing
 }
 
-MetricsPort::~MetricsPort() {
+PrometheusPort::~PrometheusPort() {
   serving_->server.stop();
   serving_->thread.join();
 }
 
-void MetricsPort::Set(std::string text) {
+void PrometheusPort::Set(std::string text) {
   const Lock lock(mutex_);
   text_ = std::move(text);
 }

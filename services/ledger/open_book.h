@@ -1,4 +1,5 @@
-// From a launched campaign to its book: text parsed, result folder opened, what others have flown taken over.
+// Makes the book of a launched campaign: parses its text, opens its result folder, and copies results that
+// other campaigns have of the same flights.
 #pragma once
 
 #include <cstdint>
@@ -11,17 +12,17 @@
 
 namespace dispersa {
 
-struct CampaignOpening {
+struct BookRequest {
   std::string text;  ///< canonical
   std::string name;  ///< for messages
   std::filesystem::path results;
-  /// Result folders of the same flight id, which nobody writes now.
+  /// Result folders of the same flight id that no process writes now.
   std::vector<std::filesystem::path> same_flights;
-  std::uint64_t number = 1;  ///< of this opening: attempts of different ones differ
+  std::uint64_t number = 1;  ///< of this book: books of one coordinator use different attempt numbers
   AuditOptions audit;
 };
 
 /// May take minutes when there are many results. Throws InputError, ResultError.
-std::unique_ptr<CampaignBook> OpenBook(const CampaignOpening& opening);
+std::unique_ptr<CampaignBook> OpenBook(const BookRequest& opening);
 
 }  // namespace dispersa

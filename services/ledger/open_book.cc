@@ -1,4 +1,4 @@
-#include "services/ledger/campaign_opening.h"
+#include "services/ledger/open_book.h"
 
 #include <utility>
 
@@ -48,7 +48,7 @@ void TryToTakeOver(const fs::path& from, const Campaign& campaign, ResultFolder&
 
 }  // namespace
 
-std::unique_ptr<CampaignBook> OpenBook(const CampaignOpening& opening) {
+std::unique_ptr<CampaignBook> OpenBook(const BookRequest& opening) {
   const Campaign campaign = ParseCampaign(opening.text, opening.name);
   const bool is_new = !HasResults(opening.results);
   if (is_new) {
@@ -71,7 +71,7 @@ std::unique_ptr<CampaignBook> OpenBook(const CampaignOpening& opening) {
   LedgerOptions options;
   options.attempt_base = opening.number * kAttempts;
   auto book = std::make_unique<CampaignBook>(campaign, std::move(folder), options);
-  book->BePatient();
+  book->PauseOnDiskErrors();
   book->KeepTally();
   book->KeepAudit(opening.audit);
   return book;

@@ -8,6 +8,6 @@
 namespace dispersa {
 
 /// In Prometheus' text format 0.0.4.
-std::string MetricsText(const Service& service, const Workforce& workforce);
+std::string PrometheusText(const Service& service, const Workforce& workforce);
 
 }  // namespace dispersa

@@ -11,12 +11,12 @@ namespace dispersa {
 
 /// Answers GET of / and /metrics on 127.0.0.1 with the text that was set last. Throws NetworkError if the
 /// port is not free.
-class MetricsPort {
+class PrometheusPort {
  public:
-  explicit MetricsPort(std::uint16_t port);
-  ~MetricsPort();
-  MetricsPort(const MetricsPort&) = delete;
-  MetricsPort& operator=(const MetricsPort&) = delete;
+  explicit PrometheusPort(std::uint16_t port);
+  ~PrometheusPort();
+  PrometheusPort(const PrometheusPort&) = delete;
+  PrometheusPort& operator=(const PrometheusPort&) = delete;
 
   /// In Prometheus' text format.
   void Set(std::string text);

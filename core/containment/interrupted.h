@@ -1,0 +1,13 @@
+// How a long call is stopped by whoever asked for it.
+#pragma once
+
+#include <functional>
+
+namespace dispersa {
+
+/// Asked while a long call runs: true stops it.
+using StopCheck = std::function<bool()>;
+/// Thrown by a call that was stopped.
+struct Interrupted {};
+
+}  // namespace dispersa

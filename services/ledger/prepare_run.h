@@ -1,0 +1,34 @@
+// Loads the campaign file of a run and opens its result folder.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/campaign/case_result.h"
+#include "core/campaign_yaml/load.h"
+#include "core/containment/contained.h"
+#include "core/results/result_folder.h"
+
+namespace dispersa {
+
+struct RunRequest {
+  InputSource campaign = "";
+  CampaignOverrides overrides;
+  std::string out;  ///< empty: results/<name>-<first 8 of id>, then -2, -3, ...
+  bool resume = false;
+};
+
+struct PreparedRun {
+  Campaign campaign;
+  ResultFolder folder;
+  std::vector<CaseResult> flown;  ///< flown beforehand to check that a plug-in is deterministic
+};
+
+/// Without `resume` the folder must be new or empty. With `resume` a folder of the same flight id is
+/// continued, and a new or empty folder is started. Without `out` the last of the default folders is used.
+/// Results are never deleted: a folder with more cases than requested keeps them, and the campaign is
+/// extended to them. Throws InputError and ResultError, and Interrupted while a plug-in is checked.
+PreparedRun PrepareRun(const RunRequest& request, const StopCheck& should_stop = nullptr);
+
+}  // namespace dispersa
