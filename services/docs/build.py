@@ -97,6 +97,9 @@ def linked(text, source, known):
         found = os.path.normpath(os.path.join(source.parent, path))
         if found in known or picture:
             return match.group(0)
+        page = os.path.basename(found)
+        if found == f"services/docs/pages/{page}" and page in known:
+            return f"[{words}]({os.path.relpath(page, source.parent)}{'#' + anchor if anchor else ''})"
         if found.endswith(".py") and found[:-3] + ".md" in known:
             return f"[{words}]({path[:-3]}.md)"
         if found == "README.md":

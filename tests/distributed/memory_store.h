@@ -25,9 +25,7 @@ class MemoryStore : public ResultStore {
       seconds[record.case_index] = record.seconds;
     }
   }
-  void Quarantine(const QuarantinedCase& one) override {
-    quarantined[one.case_index] = one.reason;
-  }
+  void Quarantine(const QuarantinedCase& one) override { quarantined[one.case_index] = one.reason; }
   std::vector<std::pair<std::uint64_t, Digest>> Fingerprints() const override {
     std::vector<std::pair<std::uint64_t, Digest>> all;
     for (const auto& [case_index, result] : rows) all.emplace_back(case_index, Fingerprint(result));
