@@ -21,10 +21,6 @@ constexpr std::size_t kWorstCases = 5;
 /// Of them lost flights: all of those have their own list, and they shall not hide what limits the others.
 constexpr std::size_t kLostAmongWorst = 1;
 
-/// Shown in full in any report, after the metrics of the requirements.
-const char* const kUsualMetrics[] = {"pitch_error_peak_deg", "pitch_error_rms_deg", "deflection_peak_deg",
-                                     "q_alpha_max_pa_rad"};
-
 WorstCases FindWorst(const std::string& metric, Worse worse, const CaseColumns& cases) {
   const std::vector<double> values = MeasuredValues(cases, metric);
   const auto is_worse = [&](std::size_t a, std::size_t b) {
@@ -250,12 +246,12 @@ void RecordLooks(const ResultFolder& folder, const Campaign& campaign, const Cam
 std::vector<std::string> KeyMetrics(const Campaign& campaign) {
   std::vector<std::string> metrics;
   const auto add = [&](const std::string& name) {
-    const bool exists = std::find(MetricNames().begin(), MetricNames().end(), name) != MetricNames().end();
-    if (exists && std::find(metrics.begin(), metrics.end(), name) == metrics.end()) metrics.push_back(name);
+    if (std::find(metrics.begin(), metrics.end(), name) == metrics.end()) metrics.push_back(name);
   };
   for (const Requirement& requirement : campaign.requirements)
     if (!requirement.by_default) add(requirement.metric);
-  for (const char* name : kUsualMetrics) add(name);
+  for (const Metric& metric : Metrics())
+    if (metric.is_usual) add(metric.name);
   return metrics;
 }
 
@@ -299,7 +295,7 @@ CampaignSummary BuildSummary(const ResultFolder& folder, const Campaign& campaig
     summary.python_law = {plugin->name, plugin->sha256};
   for (const Outcome outcome : cases.outcome) ++summary.outcomes[static_cast<std::size_t>(outcome)];
   summary.lost_flights = cases.lost_flights;
-  for (std::size_t i = 0; i < cases.metrics.size(); ++i) {
+  for (const std::size_t i : folder.metrics()) {
     const std::vector<double> sorted = SortedFinite(CompletedValues(cases, MetricNames()[i]));
     summary.metrics.push_back({MetricNames()[i], SummarizeSorted(sorted, cases.rows() - sorted.size()),
                                Skewness(sorted), Percentiles(sorted)});

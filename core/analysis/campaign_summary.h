@@ -70,7 +70,7 @@ struct CampaignSummary {
   CampaignVerdict verdict = CampaignVerdict::kIncomplete;
   std::array<std::uint64_t, kOutcomeCount> outcomes{};
   std::vector<LostFlight> lost_flights;  ///< the first kListedLostFlights
-  std::vector<MetricSummary> metrics;    ///< of the vehicle, in the order of MetricNames()
+  std::vector<MetricSummary> metrics;    ///< that the flights have, in the order of MetricNames()
   std::vector<RequirementSummary> requirements;
   /// One that the vehicle gives, against the largest load of every flown case, completed or not.
   struct Limit {

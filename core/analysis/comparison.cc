@@ -8,6 +8,8 @@
 #include <map>
 
 #include "core/analysis/requirement_summary.h"
+#include "core/campaign/case_result.h"
+#include "core/campaign/dispersion_table.h"
 #include "core/flight/flight_inputs.h"
 #include "core/results/requirement_text.h"
 #include "core/results/sampling_text.h"
@@ -56,7 +58,8 @@ Pairing FindPairing(const CaseColumns& a, const CaseColumns& b, const SharedRows
       differs += of_a[shared.a[i]] != of_b[shared.b[i]];
       varies = varies || of_a[shared.a[i]] != of_a[shared.a[0]] || of_b[shared.b[i]] != of_b[shared.b[0]];
     }
-    if (differs > 0) pairing.changed.push_back({InputColumns()[input].name, differs});
+    if (differs > 0)
+      pairing.changed.push_back({InputColumns()[input].name, InputKey(static_cast<int>(input)), differs});
     if (!varies) continue;
     ++varying;
     if (differs == 0) pairing.same.push_back(InputColumns()[input].name);
@@ -310,6 +313,13 @@ class CaseChanges {
   std::map<std::size_t, ChangedCase> harmed_, rescued_;  ///< by pair
 };
 
+/// Which flights fail it: none where the campaign's flights do not have the metric.
+std::vector<bool> FailsOf(const ComparedCampaign& compared, const Requirement& requirement,
+                          const std::vector<double>& values, const std::vector<std::size_t>& rows) {
+  if (!WhyNotMeasured(compared.campaign, requirement.metric).empty()) return {};
+  return Failing(LimitsOf(requirement), values, rows);
+}
+
 void CompareRequirements(const ComparedCampaign& a, const ComparedCampaign& b, const SharedRows& rows,
                          Comparison& comparison) {
   const bool paired = comparison.pairing.paired;
@@ -337,17 +347,16 @@ void CompareRequirements(const ComparedCampaign& a, const ComparedCampaign& b, c
     result.metric = requirements[i].metric;
     result.words = words;
     (of_a ? result.in_a : result.in_b) = true;
-    const Limits limits = LimitsOf(requirements[i]);
     const std::vector<double> values_a = CompletedValues(a.cases, result.metric);
     const std::vector<double> values_b = CompletedValues(b.cases, result.metric);
-    const std::vector<bool> fails_a = Failing(limits, values_a, rows.a);
-    const std::vector<bool> fails_b = Failing(limits, values_b, rows.b);
+    const std::vector<bool> fails_a = FailsOf(a, requirements[i], values_a, rows.a);
+    const std::vector<bool> fails_b = FailsOf(b, requirements[i], values_b, rows.b);
     result.n_a = fails_a.size();
     result.n_b = fails_b.size();
     result.failures_a = static_cast<std::size_t>(std::count(fails_a.begin(), fails_a.end(), true));
     result.failures_b = static_cast<std::size_t>(std::count(fails_b.begin(), fails_b.end(), true));
     double correlation = 0.0;
-    if (paired) {
+    if (paired && result.n_a == result.n_b) {
       for (std::size_t pair = 0; pair < fails_a.size(); ++pair) {
         ++(fails_a[pair] ? (fails_b[pair] ? result.both_fail : result.only_a_fails)
                          : (fails_b[pair] ? result.only_b_fails : result.both_meet));
@@ -448,9 +457,9 @@ Comparison Compare(const ComparedCampaign& a, const ComparedCampaign& b,
     for (std::size_t row = 0; row < b.cases.rows(); ++row) rows.b.push_back(row);
   }
   for (const std::string& metric : metrics.empty() ? MetricNames() : metrics) {
+    if (!WhyNotMeasured(a.campaign, metric).empty() || !WhyNotMeasured(b.campaign, metric).empty()) continue;
     MetricComparison result =
         CompareMetric(metric, a.cases, b.cases, rows, comparison.pairing.paired, comparison.independent);
-    // A metric that the vehicle or the law does not have is in neither.
     const bool defined =
         std::isfinite(result.median_a) || std::isfinite(result.median_b) || result.lost_a + result.lost_b > 0;
     if (!metrics.empty() || (result.n_a > 0 && result.n_b > 0 && defined))

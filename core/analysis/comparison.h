@@ -41,6 +41,7 @@ struct Pairing {
       same;  ///< inputs that vary from case to case and are equal, bit for bit, in every shared case
   struct ChangedInput {
     std::string input;
+    std::string key;        ///< what campaign files call it
     std::size_t cases = 0;  ///< shared ones in which it differs
   };
   std::vector<ChangedInput> changed;
@@ -86,7 +87,8 @@ struct MetricComparison {
   std::vector<Pair> gains, losses;  ///< the pairs in which b gains, and loses, most
 };
 
-/// One limit, applied to the flights of both whichever campaign states it.
+/// One limit, applied to the flights of both whichever campaign states it; n is 0 where the flights do not
+/// have the metric.
 struct RequirementComparison {
   std::string metric;
   std::string words;  ///< "pitch_error_peak_deg below 0.5"

@@ -35,7 +35,7 @@ Json SideJson(const Comparison::Side& side) {
 Json PairingJson(const Pairing& pairing) {
   Json changed = Json::array();
   for (const Pairing::ChangedInput& input : pairing.changed)
-    changed.push_back({{"input", input.input}, {"cases", input.cases}});
+    changed.push_back({{"input", input.input}, {"key", input.key}, {"cases", input.cases}});
   return {{"paired", pairing.paired},       {"pairs", pairing.paired ? pairing.shared : 0},
           {"shared_cases", pairing.shared}, {"only_a", pairing.only_a},
           {"only_b", pairing.only_b},       {"same_inputs", pairing.same},

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/campaign/dispersion_table.h"
 #include "core/flight/flight_inputs.h"
 #include "core/results/metric_catalogue.h"
 #include "core/results/sampling_text.h"
@@ -220,6 +221,7 @@ std::vector<DispersionSummary> SummarizeDispersions(const Campaign& campaign, co
       DispersionSummary summary;
       summary.dispersion = dispersion.name;
       summary.input = column.name;
+      summary.key = InputKey(campaign, input);
       summary.declared = Words(dispersion, column.unit, SplitUnit(column.name).unit);
       summary.drawn = Summarize(cases.inputs[static_cast<std::size_t>(input)]);
       std::optional<Moments> expected = Of(dispersion);

@@ -16,6 +16,7 @@ namespace dispersa {
 struct DispersionSummary {
   std::string dispersion;  ///< its name
   std::string input;       ///< column, without the prefix
+  std::string key;         ///< what the campaign file calls it
   std::string declared;    ///< "normal, mean 1, 3σ 0.02"
   /// Of the declared distribution; none when several dispersions feed the input, or the design decides.
   std::optional<double> expected_mean;

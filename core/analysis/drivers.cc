@@ -6,6 +6,7 @@
 
 #include "core/analysis/dispersion_summary.h"
 #include "core/analysis/requirement_summary.h"
+#include "core/campaign/dispersion_table.h"
 #include "core/flight/flight_inputs.h"
 #include "core/math/constants.h"
 #include "core/statistics/sensitivity.h"
@@ -24,6 +25,7 @@ constexpr std::size_t kCauseFlights = 50000;
 /// A function of the inputs that may act on its own.
 struct Feature {
   std::string input;
+  std::string key;
   std::string name;
   Ranked values;
   std::vector<std::string> same_as = {};
@@ -78,6 +80,7 @@ std::vector<Feature> Features(const Campaign& campaign, const CaseColumns& cases
   const std::vector<int> inputs = DispersedInputs(campaign);
   for (const int input : inputs) {
     const std::string& name = InputColumns()[static_cast<std::size_t>(input)].name;
+    const std::string key = InputKey(campaign, input);
     const std::vector<double> x = Pick(cases.inputs[static_cast<std::size_t>(input)], rows);
     if (!Varies(x)) continue;
     Ranked ranked(x);
@@ -88,7 +91,7 @@ std::vector<Feature> Features(const Campaign& campaign, const CaseColumns& cases
       same->same_as.push_back(name);
       continue;
     }
-    features.push_back({name, "x", std::move(ranked)});
+    features.push_back({name, key, "x", std::move(ranked)});
     const std::size_t itself = features.size() - 1;
     if (IsAngle(name)) {
       std::vector<double> sine, cosine;
@@ -102,24 +105,26 @@ std::vector<Feature> Features(const Campaign& campaign, const CaseColumns& cases
         if (Varies(m)) {
           const std::string both =
               InputColumns()[static_cast<std::size_t>(*magnitude)].name + " along " + name;
+          const std::string of = InputKey(campaign, *magnitude);
+          const std::string keys = of == key ? key : of + " along " + key;
           std::vector<double> along = cosine, across = sine;
           for (std::size_t i = 0; i < m.size(); ++i) {
             along[i] *= m[i];
             across[i] *= m[i];
           }
-          features.push_back({both, "m cos x", along});
-          features.push_back({both, "m sin x", across});
+          features.push_back({both, keys, "m cos x", along});
+          features.push_back({both, keys, "m sin x", across});
         }
       }
-      features.push_back({name, "sin x", sine});
-      features.push_back({name, "cos x", cosine});
+      features.push_back({name, key, "sin x", sine});
+      features.push_back({name, key, "cos x", cosine});
       continue;
     }
     // x squared has the ranks of |x|.
     std::vector<double> size;
     for (const double value : x) size.push_back(std::fabs(value - nominal[static_cast<std::size_t>(input)]));
     Ranked sized(size);
-    if (!RankAlike(features[itself].values, sized)) features.push_back({name, "|x|", std::move(sized)});
+    if (!RankAlike(features[itself].values, sized)) features.push_back({name, key, "|x|", std::move(sized)});
   }
   return features;
 }
@@ -193,9 +198,9 @@ MetricDrivers DriversOf(const std::string& metric, const CaseColumns& cases, Fea
     const double correlation = pair ? kUndefined : partial[regressed++];
     if (result.drivers.size() == kShown || candidate.index <= 0.0) continue;
     const SensitivityIndex index = FirstOrderIndex(features[candidate.indexed].values, y);
-    result.drivers.push_back({features[candidate.indexed].input, features[candidate.indexed].same_as,
-                              features[candidate.named].name, index.index, index.low, index.high,
-                              correlation});
+    result.drivers.push_back({features[candidate.indexed].input, features[candidate.indexed].key,
+                              features[candidate.indexed].same_as, features[candidate.named].name,
+                              index.index, index.low, index.high, correlation});
   }
   return result;
 }
@@ -253,7 +258,8 @@ std::vector<FailureDrivers> FindFailureDrivers(const Campaign& campaign, const C
       for (std::size_t k = 0; k < rows.size(); ++k) (marked[k] ? inside : outside) += ranks[k];
       const auto in = static_cast<double>(result.flights);
       const bool larger = inside / in > outside / (static_cast<double>(rows.size()) - in);
-      result.drivers.push_back({features[i].input, features[i].name, larger, p[i], rates[i]});
+      result.drivers.push_back(
+          {features[i].input, features[i].key, features[i].name, larger, p[i], rates[i]});
     }
     std::stable_sort(result.drivers.begin(), result.drivers.end(),
                      [](const FailureDriver& a, const FailureDriver& b) { return a.p < b.p; });

@@ -13,6 +13,7 @@ namespace dispersa {
 /// One input, or a magnitude along a direction, of one metric over the completed flights.
 struct Driver {
   std::string input;  ///< column without prefix; "magnitude * cos angle" columns joined by " along "
+  std::string key;    ///< what the campaign file calls it, likewise
   /// Inputs that rank the flights alike or in reverse (one dispersion may feed two): nothing can tell them
   /// apart.
   std::vector<std::string> same_as = {};
@@ -35,6 +36,7 @@ std::vector<MetricDrivers> FindDrivers(const Campaign& campaign, const std::vect
 
 struct FailureDriver {
   std::string input;
+  std::string key;
   std::string feature;
   bool larger = true;  ///< among the failing flights than among the others
   double p = 1.0;

@@ -130,10 +130,10 @@ Json InjectionJson(const InjectionSummary& injection) {
           {"containment", containment}};
 }
 
-Json NominalJson(const CaseResult& nominal) {
+Json NominalJson(const CaseResult& nominal, const std::vector<MetricSummary>& stored) {
   Json metrics = Json::object();
-  for (std::size_t i = 0; i < nominal.metrics.size(); ++i)
-    metrics[MetricNames()[i]] = Number(nominal.metrics[i]);
+  for (const MetricSummary& metric : stored)
+    metrics[metric.name] = Number(nominal.metrics[MetricColumn(metric.name)]);
   return {{"outcome", OutcomeName(nominal.outcome)},
           {"end_time_s", Number(nominal.end_time_s)},
           {"metrics", metrics},
@@ -207,7 +207,10 @@ std::string SummaryJson(const CampaignSummary& summary) {
                    {"sentence", JointRiskSentence(summary)}};
   json["metrics"] = Json::object();
   for (const MetricSummary& metric : summary.metrics) {
-    Json& of = json["metrics"][metric.name] = StatisticsJson(metric.statistics);
+    const MetricInfo info = DescribeMetric(metric.name);
+    Json& of =
+        json["metrics"][metric.name] = {{"group", info.group}, {"label", info.title}, {"unit", info.unit}};
+    of.update(StatisticsJson(metric.statistics));
     of["skewness"] = Number(metric.skewness);
     of["percentile_confidence"] = kPercentileConfidence;
     for (const Percentile& percentile : metric.percentiles) {
@@ -222,6 +225,7 @@ std::string SummaryJson(const CampaignSummary& summary) {
     Json& list = json["drivers"][metric.metric] = Json::array();
     for (const Driver& driver : metric.drivers) {
       list.push_back({{"input", driver.input},
+                      {"key", driver.key},
                       {"same_as", driver.same_as},
                       {"feature", driver.feature},
                       {"index", Number(driver.index)},
@@ -235,6 +239,7 @@ std::string SummaryJson(const CampaignSummary& summary) {
     Json list = Json::array();
     for (const FailureDriver& driver : requirement.drivers) {
       list.push_back({{"input", driver.input},
+                      {"key", driver.key},
                       {"feature", driver.feature},
                       {"larger", driver.larger},
                       {"p", Number(driver.p)},
@@ -260,10 +265,14 @@ std::string SummaryJson(const CampaignSummary& summary) {
            {"replay", summary.python_law ? Json(nullptr) : Json(ReplayCommand(one.case_index))}});
     }
   }
+  json["inputs"] = Json::object();
+  for (const DispersionSummary& dispersion : summary.dispersions)
+    json["inputs"][dispersion.input] = {{"key", dispersion.key}, {"unit", SplitUnit(dispersion.input).unit}};
   json["dispersions"] = Json::array();
   for (const DispersionSummary& dispersion : summary.dispersions) {
     json["dispersions"].push_back({{"dispersion", dispersion.dispersion},
                                    {"input", dispersion.input},
+                                   {"key", dispersion.key},
                                    {"declared", dispersion.declared},
                                    {"expected_mean", OrNull(dispersion.expected_mean)},
                                    {"expected_std", OrNull(dispersion.expected_std)},
@@ -273,7 +282,7 @@ std::string SummaryJson(const CampaignSummary& summary) {
   json["envelope"] = summary.envelope ? Json{{"flights", summary.envelope->flights},
                                              {"extreme_flights", summary.envelope->extreme_flights}}
                                       : Json(nullptr);
-  json["nominal"] = summary.nominal ? NominalJson(*summary.nominal) : Json(nullptr);
+  json["nominal"] = summary.nominal ? NominalJson(*summary.nominal, summary.metrics) : Json(nullptr);
   return json.dump(2) + "\n";
 }
 

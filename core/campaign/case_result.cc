@@ -6,6 +6,19 @@
 
 namespace dispersa {
 
+std::vector<std::size_t> MeasuredMetrics(const Campaign& campaign) {
+  return MetricsUnder(campaign.vehicle.stages.size(), campaign.autopilot.pitch.law);
+}
+
+std::string WhyNotMeasured(const Campaign& campaign, const std::string& metric) {
+  const std::size_t column = MetricColumn(metric);
+  if (column >= MetricCount(campaign.vehicle.stages.size())) return "is of a stage that the vehicle has not";
+  const ControlLaw law = campaign.autopilot.pitch.law;
+  if (HasMetric(Metrics()[column], law)) return "";
+  return "is of flights whose law of pitch is " + LawsWith(Metrics()[column]) + "; here it is " +
+         InfoOf(law).name;
+}
+
 CaseResult ResultOf(const FlightModel& model, std::uint64_t case_index, const FlightInputs& inputs,
                     FlightResult flight) {
   CaseResult result;

@@ -1,10 +1,12 @@
 // What a flown case returns: the same bits wherever, whenever and however often it is flown.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "core/campaign/campaign.h"
 #include "core/flight/digest.h"
 #include "core/flight/flight.h"
 #include "core/flight/metrics.h"
@@ -14,13 +16,20 @@ namespace dispersa {
 struct CaseResult {
   std::uint64_t case_index = 0;
   Outcome outcome = Outcome::kNumericalFailure;
-  double end_time_s = 0.0;      ///< since lift-off
-  int end_stage = 0;            ///< 1-based stage burning, or last burnt, at the end
-  std::string reason;           ///< one sentence; empty when completed
-  std::vector<double> inputs;   ///< as applied, in the order of InputNames()
-  std::vector<double> metrics;  ///< of the vehicle, in the order of MetricNames(); NaN = undefined
+  double end_time_s = 0.0;     ///< since lift-off
+  int end_stage = 0;           ///< 1-based stage burning, or last burnt, at the end
+  std::string reason;          ///< one sentence; empty when completed
+  std::vector<double> inputs;  ///< as applied, in the order of InputNames()
+  /// Of the vehicle, in the order of MetricNames(); NaN = undefined, or not of the campaign's law.
+  std::vector<double> metrics;
   Digest digest;
 };
+
+/// Positions in Metrics() of those that the campaign's flights have.
+std::vector<std::size_t> MeasuredMetrics(const Campaign& campaign);
+/// Why its flights have not a metric that there is: "is of flights whose law of pitch is ..."; empty if they
+/// have it.
+std::string WhyNotMeasured(const Campaign& campaign, const std::string& metric);
 
 /// What a flight of these inputs returned, as a case's result.
 CaseResult ResultOf(const FlightModel& model, std::uint64_t case_index, const FlightInputs& inputs,

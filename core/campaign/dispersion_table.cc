@@ -239,13 +239,14 @@ std::vector<DispersionRow> MakeRows() {
          Draws::kFixed,
          {kAngle, Inside(-kQuarterTurn, kQuarterTurn)},
          {"stuck_nozzle_deg"}}}});
-  // A deliberately bad P_n is a study, so any factor is legal.
-  add(once("pn_error", {{}, kAnyNumber}, "pn_error_factor",
-           "factor of the first component of P_n: a study, no limits"));
-  add(once("pn_rate", {{}, kAnyNumber}, "pn_rate_factor",
-           "factor of the second component of P_n: a study, no limits"));
-  add(once("loop_gain", kPositiveFactor, "loop_gain_factor", "factor of the commands"));
-  add(once("loop_delay", {kTime, kNonNegative}, "loop_delay_s", "time by which the commands come late"));
+  // Those that their inputs declare (core/flight/flight_inputs.h).
+  for (const DispersedInput& input : DeclaredDispersals()) {
+    const Draws draws = input.drawn_for == DrawnFor::kEachStage  ? Draws::kStages
+                        : input.drawn_for == DrawnFor::kEachMode ? Draws::kEachMode
+                                                                 : Draws::kOnce;
+    const Dispersal& by = input.dispersal;
+    add({by.key, by.meaning, draws, {by.dimension, by.range}, {input.column}});
+  }
   return rows;
 }
 
@@ -257,20 +258,23 @@ std::vector<std::string> Numbered(const std::string& stem, int count) {
   return names;
 }
 
-// The keys of all columns, by their positions.
-std::vector<std::string> MakeKeys() {
-  std::vector<std::string> keys(InputColumns().size());
+// The keys of all columns, by their positions, in the order of the table.
+std::vector<std::vector<std::string>> MakeKeys() {
+  std::vector<std::vector<std::string>> keys(InputColumns().size());
   const auto fill = [&](const auto& self, const DispersionRow& row, const std::string& key) -> void {
     for (const auto* columns : {&row.columns, &row.nozzle_columns})
       for (const std::string& pattern : *columns)
-        for (const std::string& name : ExpandColumn(pattern)) {
-          std::string& of = keys.at(static_cast<std::size_t>(FindInput(name)));
-          if (of.empty()) of = key;
-        }
+        for (const std::string& name : ExpandColumn(pattern))
+          keys.at(static_cast<std::size_t>(FindInput(name))).push_back(key);
     for (const DispersionRow& part : row.parts) self(self, part, key + "." + part.key);
   };
   for (const DispersionRow& row : DispersionRows()) fill(fill, row, row.key);
   return keys;
+}
+
+const std::vector<std::string>& KeysOf(int column) {
+  static const std::vector<std::vector<std::string>> keys = MakeKeys();
+  return keys.at(static_cast<std::size_t>(column));
 }
 
 }  // namespace
@@ -306,8 +310,21 @@ std::vector<std::string> ExpandColumn(const std::string& pattern) {
 }
 
 std::string InputKey(int column) {
-  static const std::vector<std::string> keys = MakeKeys();
-  return keys.at(static_cast<std::size_t>(column));
+  const std::vector<std::string>& keys = KeysOf(column);
+  return keys.empty() ? "" : keys.front();
+}
+
+std::string InputKey(const Campaign& campaign, int column) {
+  const std::vector<std::string>& keys = KeysOf(column);
+  for (const Dispersion& dispersion : campaign.dispersions) {
+    if (std::find(dispersion.inputs.begin(), dispersion.inputs.end(), column) == dispersion.inputs.end())
+      continue;
+    // "wind/azimuth" is drawn by wind.azimuth, "burn_rate/stage1" by burn_rate.
+    const std::string top = dispersion.name.substr(0, dispersion.name.find('/'));
+    for (const std::string& key : keys)
+      if (key.substr(0, key.find('.')) == top) return key;
+  }
+  return InputKey(column);
 }
 
 }  // namespace dispersa

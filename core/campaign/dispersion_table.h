@@ -61,5 +61,7 @@ std::string FillColumn(std::string pattern, const std::string& what, const std::
 /// What the file calls a column of the flight's inputs: "drag_coefficient", "wind.azimuth"; empty if it
 /// cannot be dispersed. Of several keys that draw it, the first of the table.
 std::string InputKey(int column);
+/// The same of a campaign: of several keys the one by which its file draws the column.
+std::string InputKey(const Campaign& campaign, int column);
 
 }  // namespace dispersa

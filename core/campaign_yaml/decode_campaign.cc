@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "core/campaign/case_result.h"
 #include "core/campaign/dispersion_fields.h"
 #include "core/campaign_yaml/campaign_ids.h"
 #include "core/campaign_yaml/decode.h"
@@ -282,6 +283,7 @@ class CampaignDescription {
     campaign_.autopilot =
         DecodeAutopilot(node, path, static_cast<int>(campaign_.vehicle.stages.size()), problems_,
                         use_ == CampaignUse::kRead ? PythonLaws::kMayBeAbsent : PythonLaws::kMustBeHere);
+    has_autopilot_ = problems_.empty();
     if (problems_.empty())
       AddStructProblems(GyroProblems(campaign_.vehicle, campaign_.autopilot), node, path, problems_);
     if (problems_.empty())
@@ -303,6 +305,13 @@ class CampaignDescription {
       CheckDesign(fields, campaign_.sampling, campaign_.dispersions);
   }
 
+  // Also where another autopilot flies than the file's.
+  void CheckMeasured(Fields& requirement, const std::string& metric) {
+    if (!has_autopilot_ || metric.empty()) return;
+    if (const std::string why = WhyNotMeasured(campaign_, metric); !why.empty())
+      requirement.Refuse("metric", "'" + metric + "' " + why, "a metric of this law, or a law that has it");
+  }
+
   void DescribeJudgement(Fields& fields) {
     VerdictPlan plan;
     bool has_verdicts = false;
@@ -317,6 +326,7 @@ class CampaignDescription {
                         "what is required of the flights", [&](Fields& map, Requirement& requirement) {
                           requirement.plan = plan;
                           dispersa::Describe(map, requirement, metrics);
+                          CheckMeasured(map, requirement.metric);
                         });
     if (HasLimits(campaign_.vehicle.limits)) RequireLimitsKept(plan, campaign_.requirements);
   }
@@ -329,6 +339,7 @@ class CampaignDescription {
   ProblemList* const warnings_;
   Part vehicle_, reference_, optimize_, list_;
   bool has_sampling_ = false;
+  bool has_autopilot_ = false;
 };
 
 }  // namespace

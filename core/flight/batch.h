@@ -13,7 +13,7 @@
 #include "core/control/autopilot_step.h"
 #include "core/dynamics/launcher_lanes.h"
 #include "core/flight/flight_queue.h"
-#include "core/flight/lane_metrics.h"
+#include "core/flight/flight_sums.h"
 #include "core/flight/lane_sensors.h"
 #include "core/flight/nozzle_allocation.h"
 #include "core/flight/sequence.h"

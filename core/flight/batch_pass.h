@@ -446,11 +446,11 @@ void Batch<T>::CheckEnds() {
   const StructuralLimits& limits = definition_.vehicle.limits;
   if (limits.terminate) {
     const auto above = [](T value, double limit) { return value > T(limit > 0.0 ? limit : kFarFuture); };
-    suspects = suspects | (live_ & (above(metrics_.q_max_pa, limits.q_max_pa) |
-                                    above(metrics_.q_alpha_max_pa_rad, limits.q_alpha_pa_rad) |
-                                    above(metrics_.axial_load_max_g, limits.axial_load_g) |
-                                    above(metrics_.lateral_load_max_g, limits.lateral_load_g) |
-                                    above(metrics_.bending_moment_max_n_m, limits.bending_moment_n_m)));
+    suspects = suspects | (live_ & (above(metrics_.sums.q_max_pa, limits.q_max_pa) |
+                                    above(metrics_.sums.q_alpha_max_pa_rad, limits.q_alpha_pa_rad) |
+                                    above(metrics_.sums.axial_load_max_g, limits.axial_load_g) |
+                                    above(metrics_.sums.lateral_load_max_g, limits.lateral_load_g) |
+                                    above(metrics_.sums.bending_moment_max_n_m, limits.bending_moment_n_m)));
   }
   if (has_plugin_) {
     for (int lane = 0; lane < kLanes; ++lane)

@@ -7,6 +7,9 @@
 #include <vector>
 
 #include "core/dynamics/launcher.h"
+#include "core/input/range.h"
+#include "core/input/units.h"
+#include "core/math/constants.h"
 #include "core/vehicle/vehicle.h"
 
 namespace dispersa {
@@ -32,7 +35,7 @@ constexpr PerNozzle AllNozzles(double value) {
 /// Largest number of altitude levels of a drawn wind profile: every kilometre up to 30 km.
 inline constexpr int kWindLevels = 30;
 
-/// Doubles only, each named by a column in flight_inputs.cc; SI and radians; the defaults are the nominal
+/// Doubles only, each declared by DeclareInputs() below; SI and radians; the defaults are the nominal
 /// flight. Factors multiply the nominal value.
 struct FlightInputs {
   PerStage thrust_misalignment_rad{};        ///< tilt of the thrust against the body axis
@@ -132,8 +135,147 @@ struct InputColumn {
   std::size_t offset = 0;  ///< in bytes from the start of FlightInputs
 };
 
+/// How a campaign disperses an input by a key of its own: one draw, or one a stage or a mode. What takes more
+/// than that (several inputs, further keys) is a row of core/campaign/dispersion_table.cc.
+struct Dispersal {
+  const char* key = nullptr;  ///< of `dispersions`; null: none
+  const char* meaning = "";   ///< one line
+  Dimension dimension = {};   ///< empty: a factor
+  Range range = kPositive;    ///< of every value that can be drawn
+};
+enum class DrawnFor { kFlight, kEachStage, kEachMode };
+struct DispersedInput {
+  Dispersal dispersal;
+  DrawnFor drawn_for;
+  std::string column;  ///< {stage} and {mode} stand for the name of each
+};
+
+/// Columns that have been declared: those of stages that few vehicles have behind all others.
+class InputDeclarations {
+ public:
+  void One(double FlightInputs::*field, const std::string& name, double unit = 1.0,
+           const Dispersal& dispersal = {});
+  void EachStage(PerStage FlightInputs::*field, const std::string& stem, const std::string& unit_suffix = "",
+                 double unit = 1.0, const Dispersal& dispersal = {});
+  void EachNozzle(PerNozzle FlightInputs::*field, const std::string& stem,
+                  const std::string& unit_suffix = "", double unit = 1.0);
+  void EachMode(std::array<double, kModes> FlightInputs::*field, const std::string& stem,
+                const Dispersal& dispersal = {});
+  void EachLevel(std::array<double, kWindLevels> FlightInputs::*field, const std::string& stem);
+  void EachLaunchAxis(std::array<double, 3> FlightInputs::*field, const std::string& stem,
+                      const std::string& unit_suffix);
+
+  std::size_t usual() const { return columns_.size(); }
+  std::vector<InputColumn> AllColumns() const;
+  const std::vector<DispersedInput>& dispersed() const { return dispersed_; }
+
+ private:
+  std::size_t OffsetOf(const double* value) const;
+  std::vector<InputColumn>& ColumnsWith(std::size_t stage);
+  void Disperse(const Dispersal& dispersal, DrawnFor drawn_for, const std::string& column);
+
+  const FlightInputs nominal_;
+  std::vector<InputColumn> columns_, rare_;
+  std::vector<DispersedInput> dispersed_;
+};
+
+/// The field, the column and the plain dispersal of every input, in the order of the columns.
+inline void DeclareInputs(InputDeclarations& inputs) {
+  using In = FlightInputs;
+  inputs.EachStage(&In::thrust_misalignment_rad, "thrust_misalignment", "_deg", kRadPerDeg);
+  inputs.EachStage(&In::thrust_misalignment_clock_rad, "thrust_misalignment_clock", "_deg", kRadPerDeg);
+  inputs.EachStage(&In::thrust_offset_m, "thrust_offset", "_m");
+  inputs.EachStage(&In::thrust_offset_clock_rad, "thrust_offset_clock", "_deg", kRadPerDeg);
+  inputs.EachNozzle(&In::nozzle_misalignment_rad, "nozzle_misalignment", "_deg", kRadPerDeg);
+  inputs.EachNozzle(&In::nozzle_misalignment_clock_rad, "nozzle_misalignment_clock", "_deg", kRadPerDeg);
+  inputs.EachNozzle(&In::nozzle_offset_m, "nozzle_offset", "_m");
+  inputs.EachNozzle(&In::nozzle_offset_clock_rad, "nozzle_offset_clock", "_deg", kRadPerDeg);
+  inputs.EachNozzle(&In::nozzle_thrust_factor, "nozzle_thrust_factor");
+  inputs.EachStage(&In::cg_offset_m, "cg_offset", "_m");
+  inputs.EachStage(&In::cg_offset_clock_rad, "cg_offset_clock", "_deg", kRadPerDeg);
+  inputs.EachStage(&In::thrust_factor, "thrust_factor");
+  inputs.EachStage(&In::mass_flow_factor, "mass_flow_factor");
+  inputs.EachStage(&In::specific_impulse_factor, "specific_impulse_factor");
+  inputs.One(&In::wind_max_speed_m_s, "wind_max_speed_m_s");
+  inputs.One(&In::wind_azimuth_rad, "wind_azimuth_deg", kRadPerDeg);
+  inputs.One(&In::wind_altitude_m, "wind_altitude_m");
+  inputs.One(&In::wind_width_m, "wind_width_m");
+  inputs.One(&In::gust_speed_m_s, "gust_speed_m_s");
+  inputs.One(&In::gust_altitude_m, "gust_altitude_m");
+  inputs.One(&In::gust_length_m, "gust_length_m");
+  inputs.One(&In::gust_azimuth_rad, "gust_azimuth_deg", kRadPerDeg);
+  inputs.EachLevel(&In::wind_profile_north, "wind_profile_north");
+  inputs.EachLevel(&In::wind_profile_east, "wind_profile_east");
+  inputs.One(&In::turbulence_exceedance, "turbulence_exceedance");
+  inputs.One(&In::turbulence_wind_20ft_m_s, "turbulence_wind_20ft_m_s");
+  inputs.One(&In::turbulence_scale, "turbulence_scale");
+  inputs.One(&In::drag_factor, "drag_factor");
+  inputs.One(&In::lift_factor, "lift_factor");
+  inputs.One(&In::cg_factor, "cg_factor");
+  inputs.One(&In::cp_factor, "cp_factor");
+  inputs.One(&In::density_factor, "density_factor");
+  inputs.One(&In::inertia_factor, "inertia_factor");
+  inputs.One(&In::actuator_bandwidth_factor, "actuator_bandwidth_factor");
+  inputs.EachMode(&In::bending_frequency_factor, "bending_frequency_factor");
+  inputs.One(&In::bending_damping_factor, "bending_damping_factor");
+  inputs.One(&In::bending_slope_factor, "bending_slope_factor");
+  inputs.EachStage(&In::tip_off_pitch_rad_s, "tip_off_pitch", "_deg_s", kRadPerDeg);
+  inputs.EachStage(&In::tip_off_yaw_rad_s, "tip_off_yaw", "_deg_s", kRadPerDeg);
+  inputs.EachStage(&In::tip_off_roll_rad_s, "tip_off_roll", "_deg_s", kRadPerDeg);
+  inputs.One(&In::gyro_bias_roll_rad_s, "gyro_bias_roll_deg_s", kRadPerDeg);
+  inputs.One(&In::gyro_bias_pitch_rad_s, "gyro_bias_pitch_deg_s", kRadPerDeg);
+  inputs.One(&In::gyro_bias_yaw_rad_s, "gyro_bias_yaw_deg_s", kRadPerDeg);
+  inputs.One(&In::gyro_noise_rad_s, "gyro_noise_deg_s", kRadPerDeg);
+  inputs.One(&In::stuck_nozzle, "stuck_nozzle");
+  inputs.One(&In::stuck_nozzle_stage, "stuck_nozzle_stage");
+  inputs.One(&In::stuck_nozzle_rad, "stuck_nozzle_deg", kRadPerDeg);
+  inputs.One(&In::pn_error_factor, "pn_error_factor", 1.0,
+             {"pn_error", "factor of the first component of P_n: a study, no limits", {}, kAnyNumber});
+  inputs.One(&In::pn_rate_factor, "pn_rate_factor", 1.0,
+             {"pn_rate", "factor of the second component of P_n: a study, no limits", {}, kAnyNumber});
+  inputs.One(&In::loop_gain_factor, "loop_gain_factor", 1.0,
+             {"loop_gain", "factor of the commands", {}, kPositive});
+  inputs.One(&In::loop_delay_s, "loop_delay_s", 1.0,
+             {"loop_delay", "time by which the commands come late", kTime, kNonNegative});
+  inputs.One(&In::loop_stage, "loop_stage");
+  inputs.EachLaunchAxis(&In::navigation_position_error_m, "navigation_position_error", "_m");
+  inputs.EachLaunchAxis(&In::navigation_velocity_error_m_s, "navigation_velocity_error", "_m_s");
+  inputs.One(&In::accelerometer_scale_factor, "accelerometer_scale_factor");
+  inputs.EachStage(&In::dry_mass_factor, "dry_mass_factor");
+  inputs.EachStage(&In::propellant_factor, "propellant_factor");
+  inputs.One(&In::payload_mass_kg, "payload_mass_kg");
+  inputs.One(&In::payload_element, "payload_element");
+  inputs.EachStage(&In::product_of_inertia_xy_kg_m2, "product_of_inertia_xy", "_kg_m2");
+  inputs.EachStage(&In::product_of_inertia_xz_kg_m2, "product_of_inertia_xz", "_kg_m2");
+  inputs.EachStage(&In::product_of_inertia_yz_kg_m2, "product_of_inertia_yz", "_kg_m2");
+  inputs.EachStage(&In::ignition_delay_s, "ignition_delay", "_s");
+  inputs.EachStage(&In::separation_delay_s, "separation_delay", "_s");
+  inputs.One(&In::launch_azimuth_error_rad, "launch_azimuth_error_deg", kRadPerDeg);
+  inputs.One(&In::initial_roll_error_rad, "initial_roll_error_deg", kRadPerDeg);
+  inputs.One(&In::initial_pitch_error_rad, "initial_pitch_error_deg", kRadPerDeg);
+  inputs.One(&In::initial_yaw_error_rad, "initial_yaw_error_deg", kRadPerDeg);
+  inputs.EachStage(&In::stack_drag_factor, "drag_factor");
+  inputs.EachStage(&In::stack_lift_factor, "lift_factor");
+  inputs.EachStage(&In::stack_cg_factor, "cg_factor");
+  inputs.EachStage(&In::stack_cp_factor, "cp_factor");
+  inputs.EachStage(&In::stack_inertia_factor, "inertia_factor");
+  inputs.EachStage(&In::stack_actuator_bandwidth_factor, "actuator_bandwidth_factor");
+  inputs.EachStage(&In::thrust_misalignment_y_rad, "thrust_misalignment_y", "_deg", kRadPerDeg);
+  inputs.EachStage(&In::thrust_misalignment_z_rad, "thrust_misalignment_z", "_deg", kRadPerDeg);
+  inputs.EachStage(&In::thrust_offset_y_m, "thrust_offset_y", "_m");
+  inputs.EachStage(&In::thrust_offset_z_m, "thrust_offset_z", "_m");
+  inputs.EachStage(&In::cg_offset_y_m, "cg_offset_y", "_m");
+  inputs.EachStage(&In::cg_offset_z_m, "cg_offset_z", "_m");
+  inputs.EachNozzle(&In::nozzle_misalignment_y_rad, "nozzle_misalignment_y", "_deg", kRadPerDeg);
+  inputs.EachNozzle(&In::nozzle_misalignment_z_rad, "nozzle_misalignment_z", "_deg", kRadPerDeg);
+  inputs.EachNozzle(&In::nozzle_offset_y_m, "nozzle_offset_y", "_m");
+  inputs.EachNozzle(&In::nozzle_offset_z_m, "nozzle_offset_z", "_m");
+}
+
 /// All columns in their fixed order, names without the prefix `input_`.
 const std::vector<InputColumn>& InputColumns();
+/// Those that a key of their own disperses, in the order of their columns.
+const std::vector<DispersedInput>& DeclaredDispersals();
 /// Position of a name in InputColumns(), or -1.
 int FindInput(const std::string& name);
 /// The input of a column, in internal units.

@@ -370,8 +370,9 @@ FlightResult FlightRecord::Result() {
   sums.ripple_rad = ripple.worst_rad();
   sums.limit_cycle_rad = limit_cycle.worst_rad();
   if (guided) sums.guidance = guided->outcome();
-  result_.metrics = MetricsOf(sums, model_.definition());
-  digester_.Add(result_.metrics.data(), DigestedMetrics());
+  MeasuredFlight measured = Measure(sums, model_.definition());
+  result_.metrics = std::move(measured.metrics);
+  digester_.Add(measured.digested.data(), measured.digested.size());
   result_.digest = digester_.Finish();
   return std::move(result_);
 }

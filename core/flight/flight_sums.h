@@ -1,11 +1,15 @@
-// What a flight has accumulated for its metrics, as plain numbers: filled by the engine lane by lane, read
-// once when the flight ends. Angles in rad.
+// What a flight accumulates for its metrics: each number is declared here and accumulated here, lane by lane
+// (core/math/lanes.h), and read once when the flight ends. Angles in rad. What the metrics are: metrics.cc.
 #pragma once
 
 #include <cstdint>
 
+#include "core/dynamics/actuators.h"
+#include "core/dynamics/launcher_body.h"
+#include "core/flight/nozzle_allocation.h"
 #include "core/flight/orbit.h"
 #include "core/guidance/outcome.h"
+#include "core/math/constants.h"
 #include "core/vehicle/vehicle.h"
 
 namespace dispersa {
@@ -18,20 +22,24 @@ struct ErrorSums {
   double count = 0.0;
 };
 
-struct FlightSums {
-  ErrorSums pitch[kMaxStages];  ///< powered flight, by stage
-  ErrorSums coast;              ///< pitch
-  ErrorSums yaw, roll;          ///< powered flight
-  ErrorSums deflection;         ///< each nozzle counts
-  double itae_rad_s2 = 0.0;
-  double deflection_rate_peak_rad_s = 0.0;
-  double saturated_ticks = 0.0;
-  double travel_rad = 0.0;
+/// What ticks add to or raise, from 0: of one flight (T = double), or of W flights side by side.
+template <class T>
+struct TickSums {
+  T itae_rad_s2, deflection_rate_peak_rad_s, saturated_ticks, travel_rad;
+  T q_max_pa, q_alpha_max_pa_rad, alpha_max_rad, axial_load_max_g, lateral_load_max_g;
+  T bending_moment_max_n_m, bending_moment_station_m;
+  T v_outside_ticks, v_falling_ticks, departure_norm2_peak;
+};
+
+struct FlightSums : TickSums<double> {
+  FlightSums() : TickSums<double>{} {}
+
+  ErrorSums pitch[kMaxStages];    ///< powered flight, by stage
+  ErrorSums coast;                ///< pitch
+  ErrorSums yaw, roll;            ///< powered flight
+  ErrorSums deflection;           ///< each nozzle counts
   double ripple_rad = -1.0;       ///< negative without a whole window
   double limit_cycle_rad = -1.0;  ///< likewise; 0: none
-  double q_max_pa = 0.0, q_alpha_max_pa_rad = 0.0, alpha_max_rad = 0.0;
-  double axial_load_max_g = 0.0, lateral_load_max_g = 0.0;
-  double bending_moment_max_n_m = 0.0, bending_moment_station_m = 0.0;
   bool handed_over = false;
   double handover_angle_rad = 0.0, handover_rate_rad_s = 0.0;
   double expelled_kg = 0.0;
@@ -39,12 +47,188 @@ struct FlightSums {
   double injection_altitude_m = 0.0;
   OrbitElements orbit;
   GuidanceOutcome guidance;  ///< of a flight that is guided
-  double v_outside_ticks = 0.0, v_falling_ticks = 0.0;
-  double adaptation_peak_rad_s2 = 0.0;
   std::uint32_t rules_fired = 0;
   double step_limit_fraction = 0.0;  ///< known before the flight (step_limits.h)
 };
 
 /// Of all stages together; a peak that several share is the first one's.
 ErrorSums Total(const ErrorSums (&stages)[kMaxStages]);
+
 }  // namespace dispersa
+
+namespace dispersa::lanes {
+inline namespace DISPERSA_ISA {
+
+/// Incidence means nothing where there is no air to feel it.
+inline constexpr double kIncidenceFloor_pa = 1000.0;
+/// The residual set of pitch, in which V may rise: V up to that of this error at rest.
+inline constexpr double kResidualError_rad = 0.05 * kRadPerDeg;
+
+/// Start-up transients of a stage are no limit cycle.
+inline constexpr double kSettled_s = 5.0;
+
+/// When deflections say nothing of a limit cycle: the first seconds of a stage, the kick (from and until
+/// given times since lift-off), and between the altitudes of a gust, of which there is none where top <=
+/// bottom.
+template <class T>
+DISPERSA_INLINE MaskOf<T> InTransient(T time_s, T since_ignition_s, T altitude_m, double kick_start_s,
+                                      double kick_end_s, T gust_bottom_m, T gust_top_m) {
+  const auto in_kick = (time_s >= T(kick_start_s)) & (time_s <= T(kick_end_s));
+  const auto in_gust =
+      (gust_top_m > gust_bottom_m) & (altitude_m >= gust_bottom_m) & (altitude_m <= gust_top_m);
+  return (since_ignition_s < T(kSettled_s)) | in_kick | in_gust;
+}
+
+template <class T>
+struct ErrorSumsLanes {
+  T squares, peak, peak_time_s, count;
+
+  DISPERSA_INLINE void Add(MaskOf<T> lanes, T value, T time_s) {
+    const T size = Abs(value);
+    squares = Select(lanes, Fma(value, value, squares), squares);
+    const auto is_higher = lanes & (size > peak);
+    peak = Select(is_higher, size, peak);
+    peak_time_s = Select(is_higher, time_s, peak_time_s);
+    count = count + Select(lanes, T(1.0), T(0.0));
+  }
+};
+template <class T>
+DISPERSA_INLINE void SetLane(ErrorSumsLanes<T>& s, int lane, const ErrorSums& e) {
+  Lane(s.squares, lane) = e.squares;
+  Lane(s.peak, lane) = e.peak;
+  Lane(s.peak_time_s, lane) = e.peak_time_s;
+  Lane(s.count, lane) = e.count;
+}
+template <class T>
+DISPERSA_INLINE ErrorSums LaneOf(const ErrorSumsLanes<T>& s, int lane) {
+  return {Lane(s.squares, lane), Lane(s.peak, lane), Lane(s.peak_time_s, lane), Lane(s.count, lane)};
+}
+
+/// What the law of the pitch axis shows at a tick.
+template <class T>
+struct LyapunovSample {
+  T v, v_falls, p11;  ///< v_falls: 1 where V is below the last tick's
+  T departure_norm2;  ///< of the consequents, squared
+};
+
+template <class T>
+struct LaneMetrics {
+  ErrorSumsLanes<T> pitch, coast, yaw, roll, deflection;  ///< pitch: of the current stage
+  TickSums<T> sums;
+  T has_previous, previous_rad[kDrives];
+
+  /// Before a lane's first tick.
+  DISPERSA_INLINE void StartFlight(int lane) {
+    for (unsigned i = 0; i < kValues<T, LaneMetrics>; ++i) SetLaneAt<T>(*this, i, lane, 0.0);
+    for (ErrorSumsLanes<T>* e : {&pitch, &coast, &yaw, &roll, &deflection}) SetLane(*e, lane, ErrorSums{});
+  }
+  /// At a lane's burnout, and when it ends.
+  DISPERSA_INLINE void EndStage(int lane, int stage, FlightSums& flight) {
+    flight.pitch[stage] = LaneOf(pitch, lane);
+    SetLane(pitch, lane, ErrorSums{});
+    Lane(has_previous, lane) = 0.0;
+  }
+
+  /// One tick of powered flight. Errors are true less reference, about x, y, z.
+  DISPERSA_INLINE void AddPowered(MaskOf<T> lanes, T tick_s, T time_s, Vector<T> error_rad,
+                                  const LyapunovSample<T>& law) {
+    pitch.Add(lanes, error_rad.y, time_s);
+    yaw.Add(lanes, error_rad.z, time_s);
+    roll.Add(lanes, error_rad.x, time_s);
+    sums.itae_rad_s2 =
+        Select(lanes, Fma(tick_s * time_s, Abs(error_rad.y), sums.itae_rad_s2), sums.itae_rad_s2);
+    const auto is_outside = lanes & (law.v > T(0.5 * kResidualError_rad * kResidualError_rad) * law.p11);
+    Add(is_outside, T(1.0), sums.v_outside_ticks);
+    Add(is_outside, law.v_falls, sums.v_falling_ticks);
+    Raise(lanes, law.departure_norm2, sums.departure_norm2_peak);
+  }
+
+  /// Of the cross, at the same tick: deflections of the actuators, commands as they reach them.
+  DISPERSA_INLINE void AddDeflections(MaskOf<T> lanes, T time_s, const DriveState<T>& drives,
+                                      const T* command_rad, T limit_rad) {
+    T travel(0.0), largest(0.0), fastest(0.0);
+    for (int i = 0; i < kNozzles; ++i) {
+      const T angle = drives.angle_rad[i];
+      deflection.Add(lanes, angle, time_s);
+      fastest = Max(fastest, Abs(drives.rate_rad_s[i]));
+      largest = Max(largest, Abs(command_rad[i]));
+      travel = travel + Abs(angle - previous_rad[i]);
+      previous_rad[i] = Select(lanes, angle, previous_rad[i]);
+    }
+    AddTravel(lanes, fastest, T(1.0 / kNozzles), travel, largest >= limit_rad);
+  }
+  /// Of listed nozzles: each drive that the lane's stage has counts.
+  DISPERSA_INLINE void AddDeflections(MaskOf<T> lanes, T time_s, const DriveState<T>& first,
+                                      const DriveState<T>& second, const T* command_rad,
+                                      const NozzleLayoutLanes<T>& list) {
+    T travel(0.0), fastest(0.0);
+    for (int i = 0; i < kDrives; ++i) {
+      const DriveState<T>& drives = i < kNozzles ? first : second;
+      const T angle = drives.angle_rad[i % kNozzles];
+      deflection.Add(lanes & (list.there[i] > T(0.0)), angle, time_s);
+      fastest = Max(fastest, Abs(drives.rate_rad_s[i % kNozzles]));
+      travel = travel + Abs(angle - previous_rad[i]);
+      previous_rad[i] = Select(lanes, angle, previous_rad[i]);
+    }
+    AddTravel(lanes, fastest, list.per_drive, travel, IsSaturated(list, command_rad));
+  }
+  DISPERSA_INLINE void AddTravel(MaskOf<T> lanes, T fastest_rad_s, T per_drive, T moved_rad,
+                                 MaskOf<T> saturated) {
+    Raise(lanes, fastest_rad_s, sums.deflection_rate_peak_rad_s);
+    Add(lanes & saturated, T(1.0), sums.saturated_ticks);
+    sums.travel_rad =
+        Select(lanes & (has_previous > T(0.0)), Fma(per_drive, moved_rad, sums.travel_rad), sums.travel_rad);
+    has_previous = Select(lanes, T(1.0), has_previous);
+  }
+
+  DISPERSA_INLINE void AddCoast(MaskOf<T> lanes, T time_s, T pitch_error_rad) {
+    coast.Add(lanes, pitch_error_rad, time_s);
+  }
+
+  /// Loads at a tick outside the coast.
+  DISPERSA_INLINE void AddLoads(MaskOf<T> lanes, const Instant<T>& now) {
+    Raise(lanes, now.qbar_pa, sums.q_max_pa);
+    const auto is_felt = lanes & (now.qbar_pa >= T(kIncidenceFloor_pa));
+    Raise(is_felt, now.incidence_rad, sums.alpha_max_rad);
+    Raise(is_felt, now.qbar_pa * now.incidence_rad, sums.q_alpha_max_pa_rad);
+    const T weight = T(1.0) / (now.mass_kg * T(kStandardGravity));
+    const T axial = Abs(now.force_n.x * weight);
+    const T lateral = Sqrt(Fma(now.force_n.y, now.force_n.y, now.force_n.z * now.force_n.z)) * weight;
+    Raise(lanes, axial, sums.axial_load_max_g);
+    Raise(lanes, lateral, sums.lateral_load_max_g);
+  }
+
+  DISPERSA_INLINE void AddMoment(MaskOf<T> lanes, const LargestMoment<T>& now) {
+    const auto is_larger = lanes & (now.moment_n_m > sums.bending_moment_max_n_m);
+    sums.bending_moment_max_n_m = Select(is_larger, now.moment_n_m, sums.bending_moment_max_n_m);
+    sums.bending_moment_station_m = Select(is_larger, now.station_m, sums.bending_moment_station_m);
+  }
+
+  /// What the lane has, but for what its record keeps itself (stages, handover, orbit, limit cycle).
+  DISPERSA_INLINE void Read(int lane, FlightSums& s) const {
+    s.coast = LaneOf(coast, lane);
+    s.yaw = LaneOf(yaw, lane);
+    s.roll = LaneOf(roll, lane);
+    s.deflection = LaneOf(deflection, lane);
+    ReadLaneValues<T>(sums, lane, static_cast<TickSums<double>&>(s));
+  }
+  /// Loads of one lane at a moment between ticks, its burnout.
+  DISPERSA_INLINE void AddLoadsOfLane(int lane, const Instant<double>& now) {
+    LaneMetrics<double> one{};
+    one.AddLoads(true, now);
+    // Of everything else `one` has 0, which raises nothing.
+    for (unsigned i = 0; i < kValues<T, TickSums<T>>; ++i) {
+      const double to = LaneAt<double>(one.sums, i, 0);
+      if (to > LaneAt<T>(sums, i, lane)) SetLaneAt<T>(sums, i, lane, to);
+    }
+  }
+
+ private:
+  DISPERSA_INLINE static void Raise(MaskOf<T> lanes, T value, T& to) {
+    to = Select(lanes, Max(to, value), to);
+  }
+  DISPERSA_INLINE static void Add(MaskOf<T> lanes, T value, T& to) { to = to + Select(lanes, value, T(0.0)); }
+};
+
+}  // namespace DISPERSA_ISA
+}  // namespace dispersa::lanes

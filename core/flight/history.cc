@@ -1,6 +1,7 @@
 #include "core/flight/history.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "core/flight/history_columns.h"
 
@@ -9,11 +10,25 @@ namespace dispersa {
 const std::vector<std::string>& HistoryColumns() {
   static const std::vector<std::string> columns = [] {
     std::vector<std::string> list = KinematicColumnNames();
-    const std::vector<std::string>& launcher = LauncherColumnNames();
-    list.insert(list.end(), launcher.begin(), launcher.end());
+    for (const LauncherColumn& column : LauncherColumns()) list.emplace_back(column.name);
     return list;
   }();
   return columns;
+}
+
+std::vector<int> HistoryColumnsUnder(const AutopilotConfig& autopilot) {
+  std::vector<int> positions(KinematicColumnNames().size());
+  std::iota(positions.begin(), positions.end(), 0);
+  int position = static_cast<int>(positions.size());
+  for (const LauncherColumn& column : LauncherColumns()) {
+    // Of an axis by itself only pitch is shown; a plug-in shows the same of all its axes.
+    const bool is_foreign = column.of_law == &LawInfo::foreign;
+    if (column.of_law == nullptr ||
+        (is_foreign ? PluginAxes(autopilot) != 0 : InfoOf(autopilot.pitch.law).*column.of_law))
+      positions.push_back(position);
+    ++position;
+  }
+  return positions;
 }
 
 int FindHistoryColumn(const std::string& name) {

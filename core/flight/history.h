@@ -7,8 +7,12 @@
 
 namespace dispersa {
 
+struct AutopilotConfig;
+
 /// Column names with units, in their fixed order; the first is time_s.
 const std::vector<std::string>& HistoryColumns();
+/// Positions of those that flights under an autopilot have: some are of one law alone.
+std::vector<int> HistoryColumnsUnder(const AutopilotConfig& autopilot);
 /// Position of a column, or -1.
 int FindHistoryColumn(const std::string& name);
 

@@ -37,149 +37,197 @@ struct Measured {
   }
 };
 
+// The end of a metric's name, and how people write the unit.
+struct MetricUnit {
+  const char* suffix;
+  const char* text;
+};
+constexpr MetricUnit kPure{"", ""}, kDegrees{"_deg", "°"}, kDegreesPerSecond{"_deg_s", "°/s"},
+    kDegreesPerSecond2{"_deg_s2", "°/s²"}, kDegreeSeconds2{"_deg_s2", "° s²"}, kSeconds{"_s", "s"},
+    kMetres{"_m", "m"}, kKilometres{"_km", "km"}, kMetresPerSecond{"_m_s", "m/s"}, kKilograms{"_kg", "kg"},
+    kPascals{"_pa", "Pa"}, kPascalRadians{"_pa_rad", "Pa rad"}, kStandardGravities{"_g", "g"},
+    kNewtonMetres{"_n_m", "N m"};
+
+// What most metrics are not, as Metric has it.
+struct Traits {
+  bool by_phase = false;  // of powered flight, of each stage's burn and of the coast
+  bool is_usual = false;
+  bool is_digested = true;
+  bool LawInfo::*of_law = nullptr;
+};
+constexpr Traits kByPhase{.by_phase = true}, kUsualByPhase{.by_phase = true, .is_usual = true},
+    kUsual{.is_usual = true}, kOfRules{.of_law = &LawInfo::rules},
+    kOfAdaptation{.of_law = &LawInfo::adaptation};
+// Follows from the flight's states, which are digested, or from its inputs.
+constexpr Traits kNotDigested{.is_digested = false};
+
 struct Row {
   const char* stem;
-  const char* unit;
+  MetricUnit unit;
+  const char* symbol;
+  MetricGroup group;
   const char* title;
   const char* definition;
   Worse worse;
   double (*value)(const Measured&);
+  Traits traits = {};
 };
 
 constexpr auto kLarger = Worse::kLarger, kSmaller = Worse::kSmaller, kAnyway = Worse::kNeither,
                kFarther = Worse::kFartherFromZero;
-
-// Of powered flight, of each stage's burn and of the coast.
-constexpr Row kByPhase[] = {
-    {"pitch_error_rms", "_deg", "Pitch error, RMS",
-     "root mean square over powered flight of the component about body y of the rotation from the reference "
-     "attitude to the true one",
-     kLarger, [](const Measured& m) { return Rms(m.pitch); }},
-    {"pitch_error_peak", "_deg", "Pitch error, peak",
-     "largest magnitude of the same error over powered flight", kLarger,
-     [](const Measured& m) { return Peak(m.pitch); }},
-    {"pitch_error_peak_time", "_s", "Time of the pitch error's peak", "since lift-off", kAnyway,
-     [](const Measured& m) { return m.pitch.count > 0.0 ? m.pitch.peak_time_s : kUndefined; }},
-};
-
-constexpr Row kOfFlight[] = {
-    {"pitch_error_itae", "_deg_s2", "Pitch error, ITAE",
-     "integral over powered flight of time times magnitude of the error", kLarger,
-     [](const Measured& m) { return m.sums.itae_rad_s2 * kDegPerRad; }},
-    {"yaw_error_rms", "_deg", "Yaw error, RMS", "about body z, over powered flight", kLarger,
-     [](const Measured& m) { return Rms(m.sums.yaw); }},
-    {"yaw_error_peak", "_deg", "Yaw error, peak", "largest magnitude about body z over powered flight",
-     kLarger, [](const Measured& m) { return Peak(m.sums.yaw); }},
-    {"roll_error_rms", "_deg", "Roll error, RMS", "about body x, over powered flight", kLarger,
-     [](const Measured& m) { return Rms(m.sums.roll); }},
-    {"roll_error_peak", "_deg", "Roll error, peak", "largest magnitude about body x over powered flight",
-     kLarger, [](const Measured& m) { return Peak(m.sums.roll); }},
-
-    {"deflection_peak", "_deg", "Deflection, peak", "largest magnitude of any nozzle's angle", kLarger,
-     [](const Measured& m) { return Peak(m.sums.deflection); }},
-    {"deflection_rms", "_deg", "Deflection, RMS", "root mean square over the nozzles and powered flight",
-     kLarger, [](const Measured& m) { return Rms(m.sums.deflection); }},
-    {"deflection_rate_peak", "_deg_s", "Deflection rate, peak", "largest magnitude of any nozzle's rate",
-     kLarger, [](const Measured& m) { return m.sums.deflection_rate_peak_rad_s * kDegPerRad; }},
-    {"deflection_saturated_fraction", "", "Deflection saturated",
-     "fraction of powered flight in which a nozzle is commanded to its limit", kLarger,
-     [](const Measured& m) { return Ratio(m.sums.saturated_ticks, m.pitch.count); }},
-    {"deflection_travel", "_deg", "Deflection travel",
-     "path of a nozzle added up, mean of the drives: wear of the actuators", kLarger,
-     [](const Measured& m) { return m.sums.travel_rad * kDegPerRad; }},
-    {"deflection_ripple", "_deg", "Deflection ripple",
-     "worst peak-to-peak deflection, detrended over sliding 1 s windows, from 5 s after each ignition, "
-     "outside the kick and gusts: of whatever origin",
-     kLarger, [](const Measured& m) { return Swing(m.sums.ripple_rad); }},
-    {"deflection_limit_cycle", "_deg", "Limit cycle of the deflection",
-     "largest peak-to-peak of a sustained periodic oscillation, 12 to 24 periods of 0.3125 to 10 Hz with one "
-     "phase, from 5 s after each ignition, outside the kick and gusts; 0: none",
-     kLarger, [](const Measured& m) { return Swing(m.sums.limit_cycle_rad); }},
-
-    {"q_max", "_pa", "Dynamic pressure, maximum", "", kLarger,
-     [](const Measured& m) { return m.sums.q_max_pa; }},
-    {"q_alpha_max", "_pa_rad", "Product of dynamic pressure and incidence, maximum", "", kLarger,
-     [](const Measured& m) { return m.sums.q_alpha_max_pa_rad; }},
-    {"alpha_max", "_deg", "Incidence as flown, maximum", "where the dynamic pressure is at least 1 kPa",
-     kLarger, [](const Measured& m) { return m.sums.alpha_max_rad * kDegPerRad; }},
-    {"axial_load_max", "_g", "Axial load, maximum", "specific force along the body axis", kLarger,
-     [](const Measured& m) { return m.sums.axial_load_max_g; }},
-    {"lateral_load_max", "_g", "Lateral load, maximum",
-     "specific force normal to the body axis at the centre of gravity", kLarger,
-     [](const Measured& m) { return m.sums.lateral_load_max_g; }},
-    {"bending_moment_max", "_n_m", "Bending moment, maximum",
-     "of the cross-sections at eighths of the stack's length: inertia and flow ahead of them, bending "
-     "included",
-     kLarger,
-     [](const Measured& m) {
-       return m.sums.bending_moment_max_n_m > 0.0 ? m.sums.bending_moment_max_n_m : kUndefined;
-     }},
-    {"bending_moment_station", "_m", "Station of the largest bending moment", "aft of the nose tip", kAnyway,
-     [](const Measured& m) {
-       return m.sums.bending_moment_max_n_m > 0.0 ? m.sums.bending_moment_station_m : kUndefined;
-     }},
-    {"structural_limit_exceeded", "", "Structural limit exceeded",
-     "1 when a limit of the vehicle file was exceeded", kLarger,
-     [](const Measured& m) { return ExceedsStructure(m.definition.vehicle.limits, m.sums) ? 1.0 : 0.0; }},
-
-    {"handover_attitude_error", "_deg", "Attitude error at the last ignition",
-     "magnitude of the rotation that the reaction control leaves to the gimbals", kLarger,
-     [](const Measured& m) { return m.AtHandover(m.sums.handover_angle_rad * kDegPerRad); }},
-    {"handover_rate_error", "_deg_s", "Rate error at the last ignition", "magnitude, likewise", kLarger,
-     [](const Measured& m) { return m.AtHandover(m.sums.handover_rate_rad_s * kDegPerRad); }},
-    {"rcs_propellant", "_kg", "Reaction control propellant",
-     "used in coasts, and in roll under thrust where nozzles cannot", kLarger,
-     [](const Measured& m) { return m.sums.expelled_kg; }},
-
-    {"injection_altitude", "_km", "Injection altitude", "geodetic, at the end of the last burn", kAnyway,
-     [](const Measured& m) { return m.AtInjection(m.sums.injection_altitude_m * 1e-3); }},
-    {"injection_velocity", "_m_s", "Injection velocity", "inertial, at the end of the last burn", kAnyway,
-     [](const Measured& m) { return m.AtInjection(m.sums.orbit.speed_m_s); }},
-    {"injection_flight_path_angle", "_deg", "Injection flight path angle",
-     "inertial, at the end of the last burn", kFarther,
-     [](const Measured& m) { return m.AtInjection(m.sums.orbit.flight_path_angle_rad * kDegPerRad); }},
-    {"apogee", "_km", "Apogee", "altitude over the equatorial radius of the osculating orbit at injection",
-     kAnyway, [](const Measured& m) { return m.AtInjection(m.sums.orbit.apogee_altitude_m * 1e-3); }},
-    {"perigee", "_km", "Perigee", "altitude over the equatorial radius of the osculating orbit at injection",
-     kSmaller, [](const Measured& m) { return m.AtInjection(m.sums.orbit.perigee_altitude_m * 1e-3); }},
-    {"inclination", "_deg", "Inclination", "of the osculating orbit at injection", kAnyway,
-     [](const Measured& m) { return m.AtInjection(m.sums.orbit.inclination_rad * kDegPerRad); }},
-    {"injection_altitude_error", "_km", "Injection altitude error", "against the target", kFarther,
-     [](const Measured& m) {
-       return m.AtInjection((m.sums.injection_altitude_m - m.definition.target.altitude_m) * 1e-3);
-     }},
-    {"injection_velocity_error", "_m_s", "Injection velocity error", "against the target", kFarther,
-     [](const Measured& m) {
-       return m.AtInjection(m.sums.orbit.speed_m_s - m.definition.target.velocity_m_s);
-     }},
-    {"injection_flight_path_angle_error", "_deg", "Injection flight path angle error", "against the target",
-     kFarther,
-     [](const Measured& m) {
-       return m.AtInjection((m.sums.orbit.flight_path_angle_rad - m.definition.target.flight_path_angle_rad) *
-                            kDegPerRad);
-     }},
-
-    {"lyapunov_outside_fraction", "", "Outside the residual set",
-     "fraction of powered flight with the pitch law's V above that of 0.05 deg of error", kLarger,
-     [](const Measured& m) { return Ratio(m.sums.v_outside_ticks, m.pitch.count); }},
-    {"lyapunov_decreasing_fraction", "", "Lyapunov function decreasing",
-     "fraction of the powered flight outside the residual set", kSmaller,
-     [](const Measured& m) { return Ratio(m.sums.v_falling_ticks, m.sums.v_outside_ticks); }},
-    {"adaptation_norm_peak", "_deg_s2", "Adaptation, largest norm",
-     "distance of the pitch rules' consequents from their start", kLarger,
-     [](const Measured& m) { return m.sums.adaptation_peak_rad_s2 * kDegPerRad; }},
-    {"rules_fired", "", "Rules fired", "pitch rules that were active at any time", kAnyway,
-     [](const Measured& m) { return static_cast<double>(std::popcount(m.sums.rules_fired)); }},
-};
+constexpr auto kAttitude = MetricGroup::kAttitude, kControlEffort = MetricGroup::kControlEffort,
+               kLoads = MetricGroup::kLoads, kInjection = MetricGroup::kInjection,
+               kGuidance = MetricGroup::kGuidance, kControlLaw = MetricGroup::kControlLaw,
+               kIntegration = MetricGroup::kIntegration;
 
 double SemiMajorAxis(const Earth& earth, double radius_m, double speed_m_s) {
   return 1.0 / (2.0 / radius_m - speed_m_s * speed_m_s / earth.mu_m3_s2);
 }
 
-// Of the flight too, outside its digest: they follow from its end, from what led there, or from its inputs.
-constexpr Row kOfArrival[] = {
-    {"semi_major_axis_error", "_km", "Semi-major axis error",
-     "at injection, against that of the target's speed at the target's altitude there", kFarther,
+// A row a metric. Columns stand in the order of the rows, but those by phase come first; a new row goes to
+// the end, and is not digested.
+constexpr Row kRows[] = {
+    {"pitch_error_rms", kDegrees, "rms e_θ", kAttitude, "Pitch error, RMS",
+     "root mean square over powered flight of the component about body y of the rotation vector from the "
+     "reference attitude to the true one",
+     kLarger, [](const Measured& m) { return Rms(m.pitch); }, kUsualByPhase},
+    {"pitch_error_peak", kDegrees, "max |e_θ|", kAttitude, "Pitch error, peak",
+     "largest magnitude of the same error over powered flight", kLarger,
+     [](const Measured& m) { return Peak(m.pitch); }, kUsualByPhase},
+    {"pitch_error_peak_time", kSeconds, "t(max |e_θ|)", kAttitude, "Time of the pitch error's peak",
+     "since lift-off; the first time, if there are several", kAnyway,
+     [](const Measured& m) { return m.pitch.count > 0.0 ? m.pitch.peak_time_s : kUndefined; }, kByPhase},
+    {"pitch_error_itae", kDegreeSeconds2, "∫ t |e_θ| dt", kAttitude, "Pitch error, ITAE",
+     "integral over powered flight of the time since lift-off times the magnitude of the error", kLarger,
+     [](const Measured& m) { return m.sums.itae_rad_s2 * kDegPerRad; }},
+    {"yaw_error_rms", kDegrees, "rms e_ψ", kAttitude, "Yaw error, RMS", "about body z, over powered flight",
+     kLarger, [](const Measured& m) { return Rms(m.sums.yaw); }},
+    {"yaw_error_peak", kDegrees, "max |e_ψ|", kAttitude, "Yaw error, peak",
+     "largest magnitude about body z over powered flight", kLarger,
+     [](const Measured& m) { return Peak(m.sums.yaw); }},
+    {"roll_error_rms", kDegrees, "rms e_φ", kAttitude, "Roll error, RMS", "about body x, over powered flight",
+     kLarger, [](const Measured& m) { return Rms(m.sums.roll); }},
+    {"roll_error_peak", kDegrees, "max |e_φ|", kAttitude, "Roll error, peak",
+     "largest magnitude about body x over powered flight", kLarger,
+     [](const Measured& m) { return Peak(m.sums.roll); }},
+
+    {"deflection_peak", kDegrees, "max |δ|", kControlEffort, "Deflection, peak",
+     "largest magnitude of any nozzle's angle over powered flight; of a listed nozzle, about each hinge",
+     kLarger, [](const Measured& m) { return Peak(m.sums.deflection); }, kUsual},
+    {"deflection_rms", kDegrees, "rms δ", kControlEffort, "Deflection, RMS",
+     "root mean square over the nozzles and powered flight", kLarger,
+     [](const Measured& m) { return Rms(m.sums.deflection); }},
+    {"deflection_rate_peak", kDegreesPerSecond, "max |dδ/dt|", kControlEffort, "Deflection rate, peak",
+     "largest magnitude of any nozzle's rate over powered flight", kLarger,
+     [](const Measured& m) { return m.sums.deflection_rate_peak_rad_s * kDegPerRad; }},
+    {"deflection_saturated_fraction", kPure, "t_sat/t", kControlEffort, "Deflection saturated",
+     "fraction of powered flight in which a nozzle is commanded to its limit or beyond", kLarger,
+     [](const Measured& m) { return Ratio(m.sums.saturated_ticks, m.pitch.count); }},
+    {"deflection_travel", kDegrees, "∫ |dδ|", kControlEffort, "Deflection travel",
+     "path of a nozzle within burns, mean of the drives: wear of the actuators", kLarger,
+     [](const Measured& m) { return m.sums.travel_rad * kDegPerRad; }},
+    {"deflection_ripple", kDegrees, "δ_pp", kControlEffort, "Deflection ripple",
+     "worst peak-to-peak of the pitch, yaw or roll deflection in windows of 1 s, ten begun a second, less "
+     "the "
+     "least-squares line; windows leave out the first 5 s after an ignition, the kick (t1 to t2) and the "
+     "gust's altitudes; of whatever origin, turbulence too",
+     kLarger, [](const Measured& m) { return Swing(m.sums.ripple_rad); }},
+    {"deflection_limit_cycle", kDegrees, "δ_lc", kControlEffort, "Limit cycle of the deflection",
+     "largest peak-to-peak of a sustained periodic oscillation of the pitch, yaw or roll deflection, 12 to "
+     "24 "
+     "periods of 0.3125 to 10 Hz with one phase, outside the same times; 0: none",
+     kLarger, [](const Measured& m) { return Swing(m.sums.limit_cycle_rad); }},
+
+    {"q_max", kPascals, "max q", kLoads, "Dynamic pressure, maximum", "outside the coast, burnouts included",
+     kLarger, [](const Measured& m) { return m.sums.q_max_pa; }},
+    {"q_alpha_max", kPascalRadians, "max qα", kLoads, "Product of dynamic pressure and incidence, maximum",
+     "where the dynamic pressure is at least 1 kPa", kLarger,
+     [](const Measured& m) { return m.sums.q_alpha_max_pa_rad; }, kUsual},
+    {"alpha_max", kDegrees, "max α", kLoads, "Incidence as flown, maximum",
+     "total incidence where the dynamic pressure is at least 1 kPa", kLarger,
+     [](const Measured& m) { return m.sums.alpha_max_rad * kDegPerRad; }},
+    {"axial_load_max", kStandardGravities, "max n_x", kLoads, "Axial load, maximum",
+     "specific force (all forces but gravitation) along the body axis, over 9.80665 m/s²; outside the coast, "
+     "burnouts included",
+     kLarger, [](const Measured& m) { return m.sums.axial_load_max_g; }},
+    {"lateral_load_max", kStandardGravities, "max n_yz", kLoads, "Lateral load, maximum",
+     "specific force normal to the body axis at the centre of gravity, likewise", kLarger,
+     [](const Measured& m) { return m.sums.lateral_load_max_g; }},
+    {"bending_moment_max", kNewtonMetres, "max M", kLoads, "Bending moment, maximum",
+     "of the cross-sections at eighths of the stack's length: inertia and flow ahead of them, bending "
+     "included; outside the coast",
+     kLarger,
+     [](const Measured& m) {
+       return m.sums.bending_moment_max_n_m > 0.0 ? m.sums.bending_moment_max_n_m : kUndefined;
+     }},
+    {"bending_moment_station", kMetres, "x(max M)", kLoads, "Station of the largest bending moment",
+     "aft of the nose tip", kAnyway,
+     [](const Measured& m) {
+       return m.sums.bending_moment_max_n_m > 0.0 ? m.sums.bending_moment_station_m : kUndefined;
+     }},
+    {"structural_limit_exceeded", kPure, "–", kLoads, "Structural limit exceeded",
+     "1 when a limit of the vehicle file was exceeded", kLarger,
+     [](const Measured& m) { return ExceedsStructure(m.definition.vehicle.limits, m.sums) ? 1.0 : 0.0; }},
+
+    {"handover_attitude_error", kDegrees, "|e|(t_ign)", kAttitude, "Attitude error at the last ignition",
+     "magnitude of the rotation that the reaction control leaves to the gimbals", kLarger,
+     [](const Measured& m) { return m.AtHandover(m.sums.handover_angle_rad * kDegPerRad); }},
+    {"handover_rate_error", kDegreesPerSecond, "|ω_e|(t_ign)", kAttitude, "Rate error at the last ignition",
+     "magnitude, likewise", kLarger,
+     [](const Measured& m) { return m.AtHandover(m.sums.handover_rate_rad_s * kDegPerRad); }},
+    {"rcs_propellant", kKilograms, "m_rcs", kControlEffort, "Reaction control propellant",
+     "expelled in coasts, and in roll under thrust where nozzles cannot", kLarger,
+     [](const Measured& m) { return m.sums.expelled_kg; }},
+
+    {"injection_altitude", kKilometres, "h", kInjection, "Injection altitude",
+     "geodetic, at the end of the last burn", kAnyway,
+     [](const Measured& m) { return m.AtInjection(m.sums.injection_altitude_m * 1e-3); }},
+    {"injection_velocity", kMetresPerSecond, "V", kInjection, "Injection velocity",
+     "inertial, at the end of the last burn", kAnyway,
+     [](const Measured& m) { return m.AtInjection(m.sums.orbit.speed_m_s); }},
+    {"injection_flight_path_angle", kDegrees, "γ", kInjection, "Injection flight path angle",
+     "inertial, above the plane normal to the radius, at the end of the last burn", kFarther,
+     [](const Measured& m) { return m.AtInjection(m.sums.orbit.flight_path_angle_rad * kDegPerRad); }},
+    {"apogee", kKilometres, "h_a", kInjection, "Apogee",
+     "altitude over the equatorial radius of the osculating two-body orbit at injection", kAnyway,
+     [](const Measured& m) { return m.AtInjection(m.sums.orbit.apogee_altitude_m * 1e-3); }},
+    {"perigee", kKilometres, "h_p", kInjection, "Perigee", "likewise", kSmaller,
+     [](const Measured& m) { return m.AtInjection(m.sums.orbit.perigee_altitude_m * 1e-3); }},
+    {"inclination", kDegrees, "i", kInjection, "Inclination", "of the osculating orbit at injection", kAnyway,
+     [](const Measured& m) { return m.AtInjection(m.sums.orbit.inclination_rad * kDegPerRad); }},
+    {"injection_altitude_error", kKilometres, "Δh", kInjection, "Injection altitude error", "less the target",
+     kFarther,
+     [](const Measured& m) {
+       return m.AtInjection((m.sums.injection_altitude_m - m.definition.target.altitude_m) * 1e-3);
+     }},
+    {"injection_velocity_error", kMetresPerSecond, "ΔV", kInjection, "Injection velocity error",
+     "less the target", kFarther,
+     [](const Measured& m) {
+       return m.AtInjection(m.sums.orbit.speed_m_s - m.definition.target.velocity_m_s);
+     }},
+    {"injection_flight_path_angle_error", kDegrees, "Δγ", kInjection, "Injection flight path angle error",
+     "less the target", kFarther,
+     [](const Measured& m) {
+       return m.AtInjection((m.sums.orbit.flight_path_angle_rad - m.definition.target.flight_path_angle_rad) *
+                            kDegPerRad);
+     }},
+
+    {"lyapunov_outside_fraction", kPure, "t(V > V_0)/t", kControlLaw, "Outside the residual set",
+     "fraction of powered flight with the pitch law's V = ½ eᵀPe above that of 0.05° of error at rest",
+     kLarger, [](const Measured& m) { return Ratio(m.sums.v_outside_ticks, m.pitch.count); }, kOfRules},
+    {"lyapunov_decreasing_fraction", kPure, "t(dV < 0)/t(V > V_0)", kControlLaw,
+     "Lyapunov function decreasing",
+     "fraction of the powered flight outside the residual set with V below that of the tick before", kSmaller,
+     [](const Measured& m) { return Ratio(m.sums.v_falling_ticks, m.sums.v_outside_ticks); }, kOfRules},
+    {"adaptation_norm_peak", kDegreesPerSecond2, "max ‖Δα̂‖", kControlLaw, "Adaptation, largest norm",
+     "distance of the pitch rules' consequents from their start", kLarger,
+     [](const Measured& m) { return Sqrt(m.sums.departure_norm2_peak) * kDegPerRad; }, kOfAdaptation},
+    {"rules_fired", kPure, "n_rules", kControlLaw, "Rules fired", "pitch rules that were active at any time",
+     kAnyway, [](const Measured& m) { return static_cast<double>(std::popcount(m.sums.rules_fired)); },
+     kOfRules},
+
+    {"semi_major_axis_error", kKilometres, "Δa", kInjection, "Semi-major axis error",
+     "osculating, at injection, less that of the target's speed at the target's altitude there", kFarther,
      [](const Measured& m) {
        const OrbitElements& orbit = m.sums.orbit;
        const Earth earth = Wgs84();
@@ -188,33 +236,35 @@ constexpr Row kOfArrival[] = {
        return m.AtInjection((SemiMajorAxis(earth, orbit.radius_m, orbit.speed_m_s) -
                              SemiMajorAxis(earth, target_radius_m, m.definition.target.velocity_m_s)) *
                             1e-3);
-     }},
-    {"inclination_error", "_deg", "Inclination error", "at injection, against the reference's orbit",
-     kFarther,
+     },
+     kNotDigested},
+    {"inclination_error", kDegrees, "Δi", kInjection, "Inclination error",
+     "at injection, less the target's, or the reference's where the target names none", kFarther,
      [](const Measured& m) {
        return m.AtInjection((m.sums.orbit.inclination_rad - m.definition.target.inclination_rad) *
                             kDegPerRad);
-     }},
-    {"guidance_converged", "", "Guidance converged",
+     },
+     kNotDigested},
+    {"guidance_converged", kPure, "–", kGuidance, "Guidance converged",
      "1 when the last plan reaches the target, and the last in which altitude still counted did; of "
-     "closed-loop "
-     "guidance",
-     kSmaller, [](const Measured& m) { return m.Guided(m.sums.guidance.arrives ? 1.0 : 0.0); }},
-    {"guidance_ignition_shift", "_s", "Last ignition, moved by guidance", "against the reference", kAnyway,
-     [](const Measured& m) { return m.Guided(m.sums.guidance.ignition_shift_s); }},
-    {"guidance_postponement", "_s", "Last ignition, postponed", "because the attitude had not settled",
-     kLarger, [](const Measured& m) { return m.Guided(m.sums.guidance.postponed_s); }},
-    {"guidance_excess_velocity", "_m_s", "Excess velocity",
+     "closed-loop guidance",
+     kSmaller, [](const Measured& m) { return m.Guided(m.sums.guidance.arrives ? 1.0 : 0.0); }, kNotDigested},
+    {"guidance_ignition_shift", kSeconds, "Δt_ign", kGuidance, "Last ignition, moved by guidance",
+     "less the reference's", kAnyway,
+     [](const Measured& m) { return m.Guided(m.sums.guidance.ignition_shift_s); }, kNotDigested},
+    {"guidance_postponement", kSeconds, "t_wait", kGuidance, "Last ignition, postponed",
+     "because the attitude had not settled", kLarger,
+     [](const Measured& m) { return m.Guided(m.sums.guidance.postponed_s); }, kNotDigested},
+    {"guidance_excess_velocity", kMetresPerSecond, "ΔV_x", kGuidance, "Excess velocity",
      "of the last burn, that its turn in yaw takes away, as planned at ignition", kAnyway,
-     [](const Measured& m) { return m.Guided(m.sums.guidance.excess_m_s); }},
-    {"step_limit_fraction", "", "Fastest part, of what a step resolves",
+     [](const Measured& m) { return m.Guided(m.sums.guidance.excess_m_s); }, kNotDigested},
+    {"step_limit_fraction", kPure, "f/f_step", kIntegration, "Fastest part, of what a step resolves",
      "frequency of the actuator or bending mode, as dispersed, that comes nearest to the limit of the "
-     "integration's "
-     "step, as a fraction of that limit",
-     kLarger, [](const Measured& m) { return m.sums.step_limit_fraction; }},
+     "integration's step, as a fraction of that limit",
+     kLarger, [](const Measured& m) { return m.sums.step_limit_fraction; }, kNotDigested},
 };
 
-// The phases of kByPhase: 0 all powered flight, then the stages, then the coast.
+// Phases: 0 all powered flight, then the stages, then the coast.
 constexpr int kPhases = 1 + kMaxStages + 1;
 
 ErrorSums PitchOf(int phase, const FlightSums& sums) {
@@ -230,33 +280,52 @@ std::string PhaseTitle(int phase) {
   return phase == 0 ? "" : ", stage " + std::to_string(phase);
 }
 
-// f(row, phase) for each metric in the order of the columns: of stages that few vehicles have behind all
-// others.
+// Of stages that few vehicles have.
+constexpr bool IsRare(int phase) { return phase > kUsualStages && phase <= kMaxStages; }
+
+// f(row, phase) for each metric in the order of the columns: of rare stages behind all others.
 template <class F>
 void ForEach(F f) {
-  const auto is_rare = [](int phase) { return phase > kUsualStages && phase <= kMaxStages; };
-  for (int phase = 0; phase < kPhases; ++phase)
-    if (!is_rare(phase))
-      for (const Row& row : kByPhase) f(row, phase);
-  for (const Row& row : kOfFlight) f(row, 0);
-  for (const Row& row : kOfArrival) f(row, 0);
-  for (int phase = 0; phase < kPhases; ++phase)
-    if (is_rare(phase))
-      for (const Row& row : kByPhase) f(row, phase);
+  const auto by_phase = [&](bool rare) {
+    for (int phase = 0; phase < kPhases; ++phase)
+      for (const Row& row : kRows)
+        if (row.traits.by_phase && IsRare(phase) == rare) f(row, phase);
+  };
+  by_phase(false);
+  for (const Row& row : kRows)
+    if (!row.traits.by_phase) f(row, 0);
+  by_phase(true);
 }
-constexpr std::size_t kRareMetrics = (kMaxStages - kUsualStages) * std::size(kByPhase);
+
+// Of all stages.
+std::vector<Metric> AllMetrics() {
+  std::vector<Metric> list;
+  ForEach([&](const Row& row, int phase) {
+    const std::string stem = phase == 0 ? row.stem : std::string(row.stem) + "_" + PhaseName(phase);
+    list.push_back({.name = stem + row.unit.suffix,
+                    .title = row.title + PhaseTitle(phase),
+                    .symbol = row.symbol,
+                    .unit = row.unit.text,
+                    .definition = row.definition,
+                    .group = row.group,
+                    .worse = row.worse,
+                    .is_usual = row.traits.is_usual && phase == 0,
+                    .is_digested = row.traits.is_digested && !IsRare(phase),
+                    .is_part = phase != 0,
+                    .of_law = row.traits.of_law});
+  });
+  return list;
+}
+
+constexpr std::size_t kRareMetrics =
+    (kMaxStages - kUsualStages) *
+    static_cast<std::size_t>(std::count_if(std::begin(kRows), std::end(kRows),
+                                           [](const Row& row) { return row.traits.by_phase; }));
 
 }  // namespace
 
 const std::vector<Metric>& Metrics() {
-  static const std::vector<Metric> metrics = [] {
-    std::vector<Metric> list;
-    ForEach([&](const Row& row, int phase) {
-      const std::string name = phase == 0 ? row.stem : std::string(row.stem) + "_" + PhaseName(phase);
-      list.push_back({name + row.unit, row.title + PhaseTitle(phase), row.definition, row.worse});
-    });
-    return list;
-  }();
+  static const std::vector<Metric> metrics = AllMetrics();
   return metrics;
 }
 
@@ -273,7 +342,23 @@ std::size_t MetricCount(std::size_t stages) {
   return MetricNames().size() - (stages <= kUsualStages ? kRareMetrics : 0);
 }
 
-std::size_t DigestedMetrics() { return MetricCount(kUsualStages) - std::size(kOfArrival); }
+bool HasMetric(const Metric& metric, ControlLaw pitch_law) {
+  return metric.of_law == nullptr || InfoOf(pitch_law).*metric.of_law;
+}
+
+std::vector<std::size_t> MetricsUnder(std::size_t stages, ControlLaw pitch_law) {
+  std::vector<std::size_t> positions;
+  for (std::size_t i = 0; i < MetricCount(stages); ++i)
+    if (HasMetric(Metrics()[i], pitch_law)) positions.push_back(i);
+  return positions;
+}
+
+std::string LawsWith(const Metric& metric) {
+  std::string names;
+  for (const LawInfo& law : kLaws)
+    if (HasMetric(metric, law.law)) names += (names.empty() ? "" : " or ") + std::string(law.name);
+  return names;
+}
 
 std::size_t MetricColumn(const std::string& name) {
   const std::vector<std::string>& names = MetricNames();
@@ -282,15 +367,21 @@ std::size_t MetricColumn(const std::string& name) {
   return static_cast<std::size_t>(found - names.begin());
 }
 
-std::vector<double> MetricsOf(const FlightSums& sums, const FlightDefinition& definition) {
-  std::vector<double> values;
-  values.reserve(MetricNames().size());
+MeasuredFlight Measure(const FlightSums& sums, const FlightDefinition& definition) {
+  const std::size_t count = MetricCount(definition.vehicle.stages.size());
+  const LawInfo& law = InfoOf(definition.autopilot.pitch.law);
+  MeasuredFlight measured;
+  measured.metrics.reserve(MetricNames().size());
+  measured.digested.reserve(MetricNames().size());
   ForEach([&](const Row& row, int phase) {
     const ErrorSums pitch = PitchOf(phase, sums);
-    values.push_back(row.value({sums, definition, pitch}));
+    const double value = row.value({sums, definition, pitch});
+    const bool has = row.traits.of_law == nullptr || law.*row.traits.of_law;
+    measured.metrics.push_back(has ? value : kUndefined);
+    if (row.traits.is_digested && !IsRare(phase)) measured.digested.push_back(value);
   });
-  values.resize(MetricCount(definition.vehicle.stages.size()));
-  return values;
+  measured.metrics.resize(count);
+  return measured;
 }
 
 }  // namespace dispersa

@@ -1,10 +1,12 @@
-// What is measured of a flight: one table of names, meanings and how each follows from what was accumulated.
+// What is measured of a flight. metrics.cc declares each metric once, in a row: everything that names,
+// groups, explains, stores or shows metrics follows from it.
 #pragma once
 
 #include <cstddef>
 #include <string>
 #include <vector>
 
+#include "core/control/autopilot_config.h"
 #include "core/flight/outcome.h"
 
 namespace dispersa {
@@ -20,27 +22,57 @@ enum class Worse {
   kNeither,  ///< it tells where or when, not how good
 };
 
+/// The heading of reports under which a metric stands.
+enum class MetricGroup {
+  kAttitude,
+  kControlEffort,
+  kLoads,
+  kInjection,
+  kGuidance,
+  kControlLaw,
+  kIntegration,
+};
+inline constexpr const char* kMetricGroupTitles[] = {"Attitude", "Control effort", "Loads",      "Injection",
+                                                     "Guidance", "Control law",    "Integration"};
+constexpr const char* TitleOf(MetricGroup group) { return kMetricGroupTitles[static_cast<int>(group)]; }
+
 /// A metric that a flight does not define (a stage that it never reached) is NaN inside and NULL, empty or
 /// null outside.
 struct Metric {
   std::string name;        ///< with phase and unit: "pitch_error_peak_stage2_deg"
   std::string title;       ///< "Pitch error, peak, stage 2"
+  std::string symbol;      ///< "max |e_θ|"
+  std::string unit;        ///< "°"; empty: a pure number
   std::string definition;  ///< completes the title; empty where that says all
+  MetricGroup group = MetricGroup::kAttitude;
   Worse worse = Worse::kLarger;
+  bool is_usual = false;     ///< shown in full in every report, whatever is required
+  bool is_digested = false;  ///< part of a flight's digest
+  bool is_part = false;  ///< of one stage or of the coast; the metric without them has the same definition
+  /// What a law must have for its flights to have the metric; null: flights under any law have it.
+  bool LawInfo::*of_law = nullptr;
 };
 
 /// In the order of their columns.
 const std::vector<Metric>& Metrics();
 const std::vector<std::string>& MetricNames();
-/// Metrics that a vehicle of so many stages has: the first so many of Metrics().
+/// Metrics that a vehicle of so many stages has: the first so many of Metrics(). Of those that its law does
+/// not have a flight's values are undefined.
 std::size_t MetricCount(std::size_t stages);
-/// The first so many of them are part of a flight's digest; the later ones follow from its states, which are
-/// too.
-std::size_t DigestedMetrics();
+/// Whether flights under a law of the pitch axis have it.
+bool HasMetric(const Metric& metric, ControlLaw pitch_law);
+/// Positions in Metrics() of those that flights of so many stages have under a law of the pitch axis.
+std::vector<std::size_t> MetricsUnder(std::size_t stages, ControlLaw pitch_law);
+/// "adaptive_fuzzy or frozen_fuzzy": the laws that have it.
+std::string LawsWith(const Metric& metric);
 /// The column of a metric that exists.
 std::size_t MetricColumn(const std::string& name);
 
-/// Those that the vehicle has, in the order of Metrics(), in the units of their names.
-std::vector<double> MetricsOf(const FlightSums& sums, const FlightDefinition& definition);
+/// What a flight came to.
+struct MeasuredFlight {
+  std::vector<double> metrics;   ///< of the vehicle, in the order of Metrics(), in the units of their names
+  std::vector<double> digested;  ///< what of it is part of the digest, whether its law has the metric or not
+};
+MeasuredFlight Measure(const FlightSums& sums, const FlightDefinition& definition);
 
 }  // namespace dispersa

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/flight/flight_sums.h"
+
 namespace dispersa {
 namespace {
 

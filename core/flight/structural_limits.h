@@ -5,10 +5,11 @@
 
 #include <span>
 
-#include "core/flight/flight_sums.h"
 #include "core/vehicle/vehicle.h"
 
 namespace dispersa {
+
+struct FlightSums;
 
 struct StructuralLimit {
   const char* metric;  ///< of the load, in the limit's unit

@@ -16,7 +16,7 @@ std::string Share(double index) { return fmt::format("{:.1f} %", 100.0 * index);
 /// A row of the tornado: names and numbers, and below them a bar as wide as the screen gives, with its
 /// interval.
 std::string Bar(const Driver& driver) {
-  std::string names = "<code>" + HtmlText(driver.input) + "</code>";
+  std::string names = InputNames(driver.key, driver.input);
   for (const std::string& same : driver.same_as) names += " = <code>" + HtmlText(same) + "</code>";
   return fmt::format(
       "<li><span class=\"cause\">{} <span class=\"soft\">by {}{}</span></span><span class=\"n\"><b>{}</b> "
@@ -62,7 +62,7 @@ std::string CausesSection(const CampaignSummary& summary) {
     HtmlTable table(
         {{"Input"}, {"Feature"}, {"Among them"}, {"p", true}, {"False discoveries up to here", true}});
     for (const FailureDriver& driver : requirement.drivers) {
-      table.Row({"<code>" + HtmlText(driver.input) + "</code>", HtmlText(driver.feature),
+      table.Row({InputNames(driver.key, driver.input), HtmlText(driver.feature),
                  driver.larger ? "larger" : "smaller", ReadableText(driver.p),
                  Share(driver.false_discovery_rate)});
     }

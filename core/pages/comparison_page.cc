@@ -114,7 +114,8 @@ std::string ComparedSection(const Comparison& c) {
   if (!c.pairing.changed.empty() && c.pairing.shared > 0) {
     HtmlTable changed({{"Input that was changed"}, {"Shared cases in which it differs", true}});
     for (const Pairing::ChangedInput& input : c.pairing.changed)
-      changed.Row({Code(input.input), fmt::format("{} of {}", input.cases, c.pairing.shared)});
+      changed.Row(
+          {InputNames(input.key, input.input), fmt::format("{} of {}", input.cases, c.pairing.shared)});
     html +=
         Folded(changed, c.pairing.changed.size(), fmt::format("{} inputs differ", c.pairing.changed.size()));
   }

@@ -21,15 +21,12 @@ struct Histogram {
   std::vector<double> counts;
 };
 
-/// Width of D. Freedman and P. Diaconis (Z. Wahrscheinlichkeitstheorie 57 (1981) 453), but at least as many
-/// bins as H. A. Sturges (J. Am. Stat. Assoc. 21 (1926) 65) gives, and at most 50.
+/// Of values that are not all the same. Width of D. Freedman and P. Diaconis (Z. Wahrscheinlichkeitstheorie
+/// 57 (1981) 453), but at least as many bins as H. A. Sturges (J. Am. Stat. Assoc. 21 (1926) 65) gives, and
+/// at most 50.
 Histogram MakeHistogram(const std::vector<double>& sorted) {
   const double low = sorted.front();
   const double range = sorted.back() - low;
-  if (range <= 0.0) {
-    const double half = low == 0.0 ? 0.5 : 0.05 * std::fabs(low);
-    return {{low - half, low + half}, {static_cast<double>(sorted.size())}};
-  }
   const double spread = Quantile(sorted, 0.75) - Quantile(sorted, 0.25);
   const double width = std::max(2.0 * spread / std::cbrt(static_cast<double>(sorted.size())), range / 50.0);
   const double least = std::ceil(std::log2(static_cast<double>(sorted.size()))) + 1.0;
@@ -125,6 +122,19 @@ std::string InjectionFigures(const CampaignSummary& summary, const CaseColumns& 
          Figure(orbits.Svg(orbit_caption), HtmlText(orbit_caption));
 }
 
+namespace {
+
+std::string SameValue(const std::string& title, const std::vector<double>& good, const std::string& unit,
+                      std::size_t flown, const std::vector<const RequirementSummary*>& requirements) {
+  std::string limits;
+  for (const RequirementSummary* requirement : requirements)
+    limits += fmt::format(" The limit is {}.", HtmlText(LimitWords(*requirement, unit)));
+  return fmt::format("<p>{}: {} in {} of {} flown cases.{}</p>\n", title,
+                     HtmlText(WithUnit(good.front(), unit)), good.size(), flown, limits);
+}
+
+}  // namespace
+
 std::string DistributionFigures(const std::string& metric, const CampaignSummary& summary,
                                 const CaseColumns& cases) {
   const MetricInfo info = DescribeMetric(metric);
@@ -136,6 +146,8 @@ std::string DistributionFigures(const std::string& metric, const CampaignSummary
   for (const RequirementSummary& requirement : summary.requirements) {
     if (requirement.metric == metric) requirements.push_back(&requirement);
   }
+  // One value has no width: whatever a bar showed would be made up.
+  if (good.front() == good.back()) return SameValue(title, good, info.unit, cases.rows(), requirements);
   const bool above = !requirements.empty() && !requirements.front()->below;
   const std::string axis = AxisLabel(metric);
 

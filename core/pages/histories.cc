@@ -79,15 +79,16 @@ std::vector<std::uint64_t> WorstToWrite(const CampaignSummary& summary) {
 
 }  // namespace
 
-std::string HistoryCsv(const History& history) {
-  const std::vector<std::string>& columns = HistoryColumns();
+std::string HistoryCsv(const History& history, const AutopilotConfig& autopilot) {
+  const std::vector<int> columns = HistoryColumnsUnder(autopilot);
   std::string csv;
-  for (std::size_t i = 0; i < columns.size(); ++i) csv += (i == 0 ? "" : ",") + columns[i];
+  for (const int column : columns)
+    csv += (csv.empty() ? "" : ",") + HistoryColumns()[static_cast<std::size_t>(column)];
   csv += "\n";
   for (std::size_t row = 0; row < history.rows(); ++row) {
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-      if (i > 0) csv += ",";
-      csv += ShortestText(history.at(row, static_cast<int>(i)));
+    for (const int column : columns) {
+      if (column != columns.front()) csv += ",";
+      csv += ShortestText(history.at(row, column));
     }
     csv += "\n";
   }
@@ -128,7 +129,7 @@ FlightHistories WriteHistories(const ResultFolder& folder, const Campaign& campa
   progress("nominal flight", 0, 1);
   histories.nominal_history.step_s = kHistoryStep_s;
   histories.nominal = flights.FlyNominal(&histories.nominal_history);
-  WriteFile(directory / "nominal.csv", HistoryCsv(histories.nominal_history));
+  WriteFile(directory / "nominal.csv", HistoryCsv(histories.nominal_history, campaign.autopilot));
 
   // Only cases that have a result are flown: a quarantined one may take this process with it. The first cases
   // are a fair sample, of which percentiles can be told; no case's peak lies outside minimum and maximum.
@@ -162,7 +163,8 @@ FlightHistories WriteHistories(const ResultFolder& folder, const Campaign& campa
           SampledFlight samples = SampleFlight(history, columns, kBandStep_s);
           const auto found = std::lower_bound(written.begin(), written.end(), indices[at]);
           if (found != written.end() && *found == indices[at]) {
-            WriteFile(directory / fmt::format("case_{}.csv", indices[at]), HistoryCsv(history));
+            WriteFile(directory / fmt::format("case_{}.csv", indices[at]),
+                      HistoryCsv(history, campaign.autopilot));
             histories.written_flights[static_cast<std::size_t>(found - written.begin())] = samples;
           }
           if (at < sampled) {

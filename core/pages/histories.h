@@ -22,8 +22,8 @@ struct FlightHistories {
   std::vector<SampledFlight> written_flights;  ///< the same at the steps of the bands: one column a band
 };
 
-/// One line a row; the header names the columns. NaN is an empty cell.
-std::string HistoryCsv(const History& history);
+/// One line a row; the header names the columns that flights under the autopilot have. NaN is an empty cell.
+std::string HistoryCsv(const History& history, const AutopilotConfig& autopilot);
 
 /// Rows of the cases with the least and with the largest value of any metric, ascending.
 std::vector<std::size_t> ExtremeRows(const CaseColumns& cases);

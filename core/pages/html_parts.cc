@@ -26,6 +26,11 @@ std::string Tile(const std::string& value, const std::string& label) {
 
 std::string Code(const std::string& text) { return "<code>" + HtmlText(text) + "</code>"; }
 
+std::string InputNames(const std::string& key, const std::string& column) {
+  if (key.empty() || key == column) return Code(column);
+  return Code(key) + " <span class=\"soft\">" + Code(column) + "</span>";
+}
+
 std::string WithUnit(double value, const std::string& unit) {
   return ReadableText(value) + (unit.empty() ? "" : " " + unit);
 }

@@ -37,6 +37,8 @@ std::string VerdictBadge(std::string_view verdict);
 /// A number of the head of a page above what it counts.
 std::string Tile(const std::string& value, const std::string& label);
 std::string Code(const std::string& text);
+/// An input as the campaign file calls it, with its column beside.
+std::string InputNames(const std::string& key, const std::string& column);
 /// "12.5 deg"; without a unit the number alone.
 std::string WithUnit(double value, const std::string& unit);
 

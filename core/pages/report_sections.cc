@@ -83,40 +83,6 @@ std::string VerdictSentence(const CampaignSummary& summary) {
   return "";
 }
 
-const Summary* FindMetric(const CampaignSummary& summary, const std::string& name) {
-  for (const MetricSummary& metric : summary.metrics) {
-    if (metric.name == name) return &metric.statistics;
-  }
-  return nullptr;
-}
-
-/// Metrics under one heading of the statistics table, by the beginning of their names.
-struct MetricGroup {
-  const char* title;
-  std::vector<std::string> prefixes;
-};
-
-const std::vector<MetricGroup>& MetricGroups() {
-  static const std::vector<MetricGroup> groups = {
-      {"Attitude", {"pitch_error", "yaw_error", "roll_error", "handover"}},
-      {"Deflection", {"deflection"}},
-      {"Loads", {"q_", "alpha", "axial", "lateral", "structural"}},
-      {"Injection", {"injection", "apogee", "perigee", "inclination"}},
-      {"Others", {""}},
-  };
-  return groups;
-}
-
-std::size_t GroupOf(const std::string& name) {
-  const std::vector<MetricGroup>& groups = MetricGroups();
-  for (std::size_t i = 0; i < groups.size(); ++i) {
-    for (const std::string& prefix : groups[i].prefixes) {
-      if (name.starts_with(prefix)) return i;
-    }
-  }
-  return groups.size() - 1;
-}
-
 /// An estimate with its limits below it, or the bound that is all the sample gives.
 std::string PercentileCell(const MetricSummary& metric, const std::string& name) {
   for (const Percentile& percentile : metric.percentiles) {
@@ -149,8 +115,8 @@ std::string LimitsTable(const CampaignSummary& summary) {
   return "<h3>Limits of the vehicle</h3>\n" + table.Html("narrow");
 }
 
-double NominalValue(const CampaignSummary& summary, std::size_t metric) {
-  return summary.nominal ? summary.nominal->metrics[metric] : std::nan("");
+double NominalValue(const CampaignSummary& summary, const std::string& metric) {
+  return summary.nominal ? summary.nominal->metrics[MetricColumn(metric)] : std::nan("");
 }
 
 }  // namespace
@@ -186,15 +152,18 @@ std::string HeaderSection(const CampaignSummary& summary) {
   }
   html += "<div class=\"tiles\">";
   html += Tile(fmt::format("{} / {}", summary.flown, summary.cases), "cases flown");
-  html += Tile(summary.flown == 0
-                   ? "–"
-                   : PercentText(static_cast<double>(completed) / static_cast<double>(summary.flown)),
-               "of them completed");
-  for (const char* name : {"pitch_error_rms_deg", "pitch_error_peak_deg", "deflection_peak_deg"}) {
-    const Summary* metric = FindMetric(summary, name);
-    if (metric == nullptr) continue;
-    const MetricInfo info = DescribeMetric(name);
-    html += Tile(WithUnit(metric->p50, info.unit), "median " + Lower(info.title));
+  const auto share = [&](std::uint64_t flights) {
+    return summary.flown == 0
+               ? "–"
+               : PercentText(static_cast<double>(flights) / static_cast<double>(summary.flown));
+  };
+  html += Tile(share(completed), "of them completed");
+  // Limits that end no flight do not show among the outcomes.
+  if (summary.beyond_limits > 0) html += Tile(share(summary.beyond_limits), "exceeded a structural limit");
+  for (const MetricSummary& metric : summary.metrics) {
+    const Metric& declared = Metrics()[MetricColumn(metric.name)];
+    if (declared.is_usual)
+      html += Tile(WithUnit(metric.statistics.p50, declared.unit), "median " + Lower(declared.title));
   }
   return html + "</div>\n</header>\n";
 }
@@ -206,7 +175,15 @@ std::string OutcomesSection(const CampaignSummary& summary) {
     const std::uint64_t count = summary.outcomes[static_cast<std::size_t>(i)];
     const double share =
         summary.flown == 0 ? std::nan("") : static_cast<double>(count) / static_cast<double>(summary.flown);
-    table.Row({OutcomeWords(static_cast<Outcome>(i)), std::to_string(count), PercentText(share)});
+    // A limit of the vehicle that ends no flight is exceeded without this outcome.
+    const bool beside = static_cast<Outcome>(i) == Outcome::kStructuralLimit && summary.beyond_limits > count;
+    table.Row(
+        {OutcomeWords(static_cast<Outcome>(i)) +
+             (beside ? fmt::format("<span class=\"definition\">ended by it; {} more exceeded a limit and "
+                                   "flew on</span>",
+                                   summary.beyond_limits - count)
+                     : ""),
+         std::to_string(count), PercentText(share)});
   }
   if (!summary.limits.empty()) {
     const double share =
@@ -304,17 +281,14 @@ std::string StatisticsSection(const CampaignSummary& summary) {
                    {"p99", true},
                    {"p99.73", true},
                    {"Max", true}});
-  for (std::size_t group = 0; group < MetricGroups().size(); ++group) {
+  for (const char* group : kMetricGroupTitles) {
     bool titled = false;
-    for (std::size_t i = 0; i < summary.metrics.size(); ++i) {
-      const MetricSummary& metric = summary.metrics[i];
-      if (GroupOf(metric.name) != group) continue;
-      if (!titled) table.Wide(MetricGroups()[group].title, "group");
-      titled = true;
+    for (const MetricSummary& metric : summary.metrics) {
       const MetricInfo info = DescribeMetric(metric.name);
-      const bool part =
-          metric.name.find("_stage") != std::string::npos || metric.name.find("_coast") != std::string::npos;
-      const std::string definition = part || info.definition.empty()
+      if (info.group != group) continue;
+      if (!titled) table.Wide(group, "group");
+      titled = true;
+      const std::string definition = info.is_part || info.definition.empty()
                                          ? ""
                                          : " <span class=\"soft\">" + HtmlText(info.definition) + "</span>";
       const Summary& s = metric.statistics;
@@ -322,7 +296,7 @@ std::string StatisticsSection(const CampaignSummary& summary) {
       table.Wide("<div><b>" + HtmlText(info.title) + (info.unit.empty() ? "" : ", " + HtmlText(info.unit)) +
                      "</b>" + definition + "</div>",
                  "name");
-      table.Row({ReadableText(NominalValue(summary, i)), std::to_string(s.n), ReadableText(s.mean),
+      table.Row({ReadableText(NominalValue(summary, metric.name)), std::to_string(s.n), ReadableText(s.mean),
                  ReadableText(s.std), ReadableText(metric.skewness), ReadableText(s.min),
                  PercentileCell(metric, "p50"), PercentileCell(metric, "p95"), PercentileCell(metric, "p99"),
                  PercentileCell(metric, "p99_73"), ReadableText(s.max)},
@@ -351,9 +325,9 @@ std::string DispersionsSection(const CampaignSummary& summary) {
                    {"Check"}});
   for (const DispersionSummary& one : summary.dispersions) {
     const auto text = [](const std::optional<double>& value) { return value ? ReadableText(*value) : "–"; };
-    table.Row({Code(one.input), HtmlText(one.declared), text(one.expected_mean), ReadableText(one.drawn.mean),
-               text(one.expected_std), ReadableText(one.drawn.std), ReadableText(one.drawn.min),
-               ReadableText(one.drawn.max),
+    table.Row({InputNames(one.key, one.input), HtmlText(one.declared), text(one.expected_mean),
+               ReadableText(one.drawn.mean), text(one.expected_std), ReadableText(one.drawn.std),
+               ReadableText(one.drawn.min), ReadableText(one.drawn.max),
                !one.consistent   ? "–"
                : *one.consistent ? "agrees"
                                  : "<span class=\"badge fail\">differs</span>"});

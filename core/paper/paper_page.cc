@@ -94,15 +94,16 @@ std::string CampaignSection(const PaperStudy& study) {
 }
 
 /// Cases with their inputs and metrics, as cases.csv has them.
-std::string CasesData(const CaseColumns& cases) {
+std::string CasesData(const Campaign& campaign, const CaseColumns& cases) {
   std::string csv = "case_index,outcome";
   for (std::size_t i = 0; i < cases.inputs.size(); ++i) csv += ",input_" + InputColumns()[i].name;
-  for (std::size_t i = 0; i < cases.metrics.size(); ++i) csv += ",metric_" + MetricNames()[i];
+  const std::vector<std::size_t> metrics = MeasuredMetrics(campaign);
+  for (const std::size_t i : metrics) csv += ",metric_" + MetricNames()[i];
   csv += "\n";
   for (std::size_t row = 0; row < cases.rows(); ++row) {
     csv += fmt::format("{},{}", cases.index[row], OutcomeName(cases.outcome[row]));
     for (const auto& column : cases.inputs) csv += "," + ShortestText(column[row]);
-    for (const auto& column : cases.metrics) csv += "," + ShortestText(column[row]);
+    for (const std::size_t i : metrics) csv += "," + ShortestText(cases.metrics[i][row]);
     csv += "\n";
   }
   return csv;
@@ -155,9 +156,9 @@ void WritePaper(const PaperStudy& study, const std::filesystem::path& directory)
   if (error)
     throw ResultError(ResultError::Kind::kFile, data.string() + ": cannot be made: " + error.message());
   WriteFile(data / "figs2_3_trajectory.csv", AscentCsv(study.optimization.history));
-  WriteFile(data / "figs6_9_nominal.csv", HistoryCsv(study.nominal_history));
+  WriteFile(data / "figs6_9_nominal.csv", HistoryCsv(study.nominal_history, study.nominal_autopilot));
   for (const auto& [name, flown] : study.campaigns) {
-    WriteFile(data / (name + "_cases.csv"), CasesData(flown.flights.cases));
+    WriteFile(data / (name + "_cases.csv"), CasesData(flown.campaign, flown.flights.cases));
     for (const auto& [column, title] :
          {std::pair{kPitchLaunch, "pitch"}, std::pair{kPitchError, "pitch_error"},
           std::pair{kDeflection, "deflection"}}) {

@@ -181,6 +181,7 @@ PaperStudy RunPaperStudy(const std::vector<Campaign>& campaigns, const PaperOpti
         progress("optimize", static_cast<std::uint64_t>(record.generation), generations);
       });
 
+  study.nominal_autopilot = nominal.autopilot;
   study.nominal_history.step_s = kHistoryStep_s;
   const CampaignFlights nominal_flights(nominal);
   study.nominal = nominal_flights.FlyNominal(&study.nominal_history);

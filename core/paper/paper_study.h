@@ -74,6 +74,7 @@ struct CompletionMargins {
 struct PaperStudy {
   std::uint64_t cases = 0;  ///< of the options
   OptimizationResult optimization;
+  AutopilotConfig nominal_autopilot;
   CaseResult nominal;
   History nominal_history;
   std::map<std::string, PaperFlights> campaigns;  ///< by name; all but the nominal

@@ -28,7 +28,8 @@ CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& want
       row[metrics + i] = result.inputs[static_cast<std::size_t>(wanted_inputs[i])];
     file->Append(row);
   });
-  for (std::size_t i = 0; i < metrics; ++i) cases.metrics.emplace_back(file, i);
+  cases.metrics.resize(metrics);
+  for (const std::size_t i : folder.metrics()) cases.metrics[i] = CaseColumn(file, i);
   cases.inputs.resize(InputCount(folder.stages()));
   for (std::size_t i = 0; i < wanted_inputs.size(); ++i)
     cases.inputs[static_cast<std::size_t>(wanted_inputs[i])] = CaseColumn(file, metrics + i);
@@ -37,8 +38,9 @@ CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& want
 
 std::vector<double> MeasuredValues(const CaseColumns& cases, const std::string& metric) {
   const std::size_t column = MetricColumn(metric);
-  if (column >= cases.metrics.size())
-    return std::vector<double>(cases.rows(), kUndefined);  // of a stage too far
+  // Of a stage too far, or of another law.
+  if (column >= cases.metrics.size() || cases.metrics[column].empty())
+    return std::vector<double>(cases.rows(), kUndefined);
   return cases.metrics[column];
 }
 

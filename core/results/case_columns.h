@@ -19,7 +19,7 @@ struct CaseColumns {
   std::vector<std::uint64_t> index;
   std::vector<Outcome> outcome;
   std::vector<CaseColumn> inputs;   ///< one an input of the vehicle; empty are those that were not asked for
-  std::vector<CaseColumn> metrics;  ///< one a metric of the vehicle
+  std::vector<CaseColumn> metrics;  ///< one a metric of the vehicle; empty are those that its law has not
   std::vector<LostFlight> lost_flights;  ///< the first kListedLostFlights
 
   std::size_t rows() const { return index.size(); }
@@ -33,7 +33,7 @@ inline constexpr std::size_t kListedLostFlights = 10000;
 CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& wanted_inputs,
                         const std::function<void(const CaseResult&)>& observe = {});
 
-/// A metric's values, NaN where the vehicle does not have it.
+/// A metric's values, NaN where the flights do not have it.
 std::vector<double> MeasuredValues(const CaseColumns& cases, const std::string& metric);
 /// The same, NaN for every flight that was not completed whatever it measured until then.
 std::vector<double> CompletedValues(const CaseColumns& cases, const std::string& metric);

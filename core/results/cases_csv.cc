@@ -11,23 +11,24 @@
 
 namespace dispersa {
 
-std::string CasesCsvHeader(std::size_t stages) {
+std::string CasesCsvHeader(std::size_t stages, const std::vector<std::size_t>& metrics) {
   std::string line = "case_index,outcome,end_time_s,end_stage,reason";
   for (std::size_t i = 0; i < InputCount(stages); ++i) line += ",input_" + InputColumns()[i].name;
-  for (std::size_t i = 0; i < MetricCount(stages); ++i) line += ",metric_" + MetricNames()[i];
+  for (const std::size_t i : metrics) line += ",metric_" + MetricNames()[i];
   return line + ",digest\n";
 }
 
-std::string CasesCsvLine(const CaseResult& result) {
+std::string CasesCsvLine(const CaseResult& result, const std::vector<std::size_t>& metrics) {
   std::string line = fmt::format("{},{},{},{},{}", result.case_index, OutcomeName(result.outcome),
                                  ShortestText(result.end_time_s), result.end_stage, CsvField(result.reason));
   for (const double value : result.inputs) line += "," + ShortestText(value);
-  for (const double value : result.metrics) line += "," + ShortestText(value);
+  for (const std::size_t i : metrics) line += "," + ShortestText(result.metrics[i]);
   return line + "," + result.digest.Hex() + "\n";
 }
 
-CasesCsv::CasesCsv(const std::filesystem::path& file, std::size_t stages) : file_(file) {
-  file_.Write(CasesCsvHeader(stages));
+CasesCsv::CasesCsv(const std::filesystem::path& file, const ResultFolder& folder)
+    : file_(file), metrics_(folder.metrics()) {
+  file_.Write(CasesCsvHeader(folder.stages(), metrics_));
 }
 
 std::uint64_t CountCases(const std::filesystem::path& file) {
@@ -46,7 +47,7 @@ std::uint64_t CountCases(const std::filesystem::path& file) {
 }
 
 void WriteCasesCsv(const ResultFolder& folder, const std::filesystem::path& file) {
-  CasesCsv csv(file, folder.stages());
+  CasesCsv csv(file, folder);
   folder.ForEach([&csv](const CaseResult& result) { csv.Write(result); });
   csv.Commit();
 }

@@ -1,9 +1,11 @@
 // cases.csv: one line a case, sorted by case index, the same bytes however the cases were flown.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "core/campaign/case_result.h"
 #include "core/results/output_file.h"
@@ -11,19 +13,20 @@
 
 namespace dispersa {
 
-/// Both with their line break, of a vehicle with so many stages. Doubles in the shortest text that reads back
-/// to the same bits.
-std::string CasesCsvHeader(std::size_t stages);
-std::string CasesCsvLine(const CaseResult& result);
+/// Both with their line break, of a vehicle with so many stages and the metrics at these positions of
+/// Metrics(). Doubles in the shortest text that reads back to the same bits.
+std::string CasesCsvHeader(std::size_t stages, const std::vector<std::size_t>& metrics);
+std::string CasesCsvLine(const CaseResult& result, const std::vector<std::size_t>& metrics);
 
 /// The file as it grows; it takes its place as a whole.
 class CasesCsv {
  public:
-  CasesCsv(const std::filesystem::path& file, std::size_t stages);
+  /// Of what the folder stores.
+  CasesCsv(const std::filesystem::path& file, const ResultFolder& folder);
 
   /// In ascending order of case index.
   void Write(const CaseResult& result) {
-    file_.Write(CasesCsvLine(result));
+    file_.Write(CasesCsvLine(result, metrics_));
     ++rows_;
   }
   std::uint64_t rows() const { return rows_; }
@@ -31,6 +34,7 @@ class CasesCsv {
 
  private:
   OutputFile file_;
+  std::vector<std::size_t> metrics_;
   std::uint64_t rows_ = 0;
 };
 

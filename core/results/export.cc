@@ -26,7 +26,7 @@ void ExportJsonLines(const ResultFolder& folder, const std::filesystem::path& fi
                  {"reason", result.reason}};
     for (std::size_t i = 0; i < result.inputs.size(); ++i)
       line["input_" + InputColumns()[i].name] = Number(result.inputs[i]);
-    for (std::size_t i = 0; i < result.metrics.size(); ++i)
+    for (const std::size_t i : folder.metrics())
       line["metric_" + MetricNames()[i]] = Number(result.metrics[i]);
     line["digest"] = result.digest.Hex();
     output.Write(line.dump() + "\n");

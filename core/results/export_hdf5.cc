@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/campaign/dispersion_table.h"
 #include "core/flight/flight_inputs.h"
 #include "core/results/case_columns.h"
 #include "core/results/export.h"
@@ -135,16 +136,23 @@ void ExportHdf5(const ResultFolder& folder, const std::filesystem::path& file) {
       output.Integers("/cases/end_stage", end_stage);
       output.Texts("/cases/reason", reason);
       output.Texts("/cases/digest", digest);
-      const auto column = [&](const std::string& path, const std::string& name, const CaseColumn& values) {
+      const auto column = [&](const std::string& path, const std::string& unit, const CaseColumn& values) {
         output.Numbers(path, values.Values());
-        output.Attribute(path, "unit", SplitUnit(name).unit);
+        output.Attribute(path, "unit", unit);
       };
       output.Group("/inputs");
-      for (std::size_t i = 0; i < cases.inputs.size(); ++i)
-        column("/inputs/" + InputColumns()[i].name, InputColumns()[i].name, cases.inputs[i]);
+      for (std::size_t i = 0; i < cases.inputs.size(); ++i) {
+        const std::string path = "/inputs/" + InputColumns()[i].name;
+        column(path, SplitUnit(InputColumns()[i].name).unit, cases.inputs[i]);
+        output.Attribute(path, "key", InputKey(static_cast<int>(i)));
+      }
       output.Group("/metrics");
-      for (std::size_t i = 0; i < cases.metrics.size(); ++i)
-        column("/metrics/" + MetricNames()[i], MetricNames()[i], cases.metrics[i]);
+      for (const std::size_t i : folder.metrics()) {
+        const std::string path = "/metrics/" + MetricNames()[i];
+        column(path, Metrics()[i].unit, cases.metrics[i]);
+        output.Attribute(path, "group", TitleOf(Metrics()[i].group));
+        output.Attribute(path, "label", Metrics()[i].title);
+      }
     }
     std::filesystem::rename(temporary, file);
   } catch (const std::filesystem::filesystem_error& error) {

@@ -1,7 +1,6 @@
 #include "core/results/metric_catalogue.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string_view>
 
@@ -14,56 +13,41 @@ struct UnitSuffix {
 };
 
 /// Longer suffixes before those that end them.
-constexpr std::array<UnitSuffix, 20> kUnits = {{
-    {"_itae_deg_s2", "° s²"},
-    {"_deg_s2", "°/s²"},
-    {"_pa_rad", "Pa rad"},
-    {"_deg_s", "°/s"},
-    {"_rad_s", "rad/s"},
-    {"_kg_m2", "kg m²"},
-    {"_kg_s", "kg/s"},
-    {"_km_s", "km/s"},
-    {"_m_s", "m/s"},
-    {"_deg", "°"},
-    {"_rad", "rad"},
-    {"_pa", "Pa"},
-    {"_km", "km"},
-    {"_kg", "kg"},
-    {"_ms", "ms"},
-    {"_db", "dB"},
-    {"_n", "N"},
-    {"_m", "m"},
-    {"_g", "g"},
-    {"_s", "s"},
-}};
+constexpr UnitSuffix kUnits[] = {
+    {"_deg_s2", "°/s²"}, {"_pa_rad", "Pa rad"}, {"_deg_s", "°/s"}, {"_rad_s", "rad/s"}, {"_kg_m2", "kg m²"},
+    {"_n_m", "N m"},     {"_kg_s", "kg/s"},     {"_km_s", "km/s"}, {"_m_s", "m/s"},     {"_deg", "°"},
+    {"_rad", "rad"},     {"_pa", "Pa"},         {"_km", "km"},     {"_kg", "kg"},       {"_ms", "ms"},
+    {"_db", "dB"},       {"_n", "N"},           {"_m", "m"},       {"_g", "g"},         {"_s", "s"},
+};
 
 }  // namespace
 
 NameAndUnit SplitUnit(const std::string& name) {
   for (const UnitSuffix& unit : kUnits) {
-    if (name.ends_with(unit.suffix)) {
-      // ITAE is an integral over time twice, so its suffix reads otherwise than an acceleration's.
-      const std::size_t kept = unit.suffix.starts_with("_itae") ? 5 : 0;
-      return {name.substr(0, name.size() - unit.suffix.size() + kept), std::string(unit.unit)};
-    }
+    if (name.ends_with(unit.suffix))
+      return {name.substr(0, name.size() - unit.suffix.size()), std::string(unit.unit)};
   }
   return {name, ""};
 }
 
 MetricInfo DescribeMetric(const std::string& name) {
   MetricInfo info;
-  const NameAndUnit split = SplitUnit(name);
-  info.unit = split.unit;
   const auto metric = std::find_if(Metrics().begin(), Metrics().end(),
                                    [&](const Metric& candidate) { return candidate.name == name; });
   if (metric != Metrics().end()) {
     info.title = metric->title;
+    info.symbol = metric->symbol;
+    info.unit = metric->unit;
+    info.group = TitleOf(metric->group);
     info.definition = metric->definition;
     info.worse = metric->worse;
+    info.is_part = metric->is_part;
     info.known = true;
     return info;
   }
+  const NameAndUnit split = SplitUnit(name);
   info.title = split.stem;
+  info.unit = split.unit;
   std::replace(info.title.begin(), info.title.end(), '_', ' ');
   if (!info.title.empty() && info.title[0] >= 'a')
     info.title[0] = static_cast<char>(info.title[0] - 'a' + 'A');

@@ -9,14 +9,16 @@ namespace dispersa {
 
 struct MetricInfo {
   std::string title;       ///< "Pitch error, peak, stage 2"
+  std::string symbol;      ///< "max |e_θ|"; empty for a name that is no metric
   std::string unit;        ///< "°", "km", "" for a pure number
+  std::string group;       ///< "Attitude"; empty for a name that is no metric
   std::string definition;  ///< one sentence; empty for a name that is no metric
   Worse worse = Worse::kLarger;
-  bool known = false;  ///< a metric of flights
+  bool is_part = false;  ///< of one stage or of the coast
+  bool known = false;    ///< a metric of flights
 };
 
-/// Of a metric's name without prefix. The unit is read from the end of the name, so that a name that is no
-/// metric has one too.
+/// Of a metric's name without prefix. A name that is no metric has the unit that it ends in.
 MetricInfo DescribeMetric(const std::string& name);
 
 /// Unit of a column from the end of its name, and the name without it: "wind_max_speed_m_s" gives "m/s" and

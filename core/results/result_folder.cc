@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 #include <optional>
+#include <set>
 #include <system_error>
 #include <utility>
 
@@ -18,6 +19,7 @@
 #include "core/results/output_file.h"
 #include "core/results/requirement_text.h"
 #include "core/results/sampling_text.h"
+#include "core/statistics/summary.h"
 
 namespace dispersa {
 namespace {
@@ -32,17 +34,16 @@ constexpr char kSchema[] = "dispersa/results/1";
 /// Columns of `cases` before the inputs; the digests of the flight and of the row follow the metrics.
 constexpr int kFirstInput = 5;
 
-std::string CaseColumnList(std::size_t stages, const char* type) {
+std::string CaseColumnList(std::size_t stages, const std::vector<std::size_t>& metrics, const char* type) {
   std::string columns;
   for (std::size_t i = 0; i < InputCount(stages); ++i)
     columns += fmt::format(", input_{}{}", InputColumns()[i].name, type);
-  for (std::size_t i = 0; i < MetricCount(stages); ++i)
-    columns += fmt::format(", metric_{}{}", MetricNames()[i], type);
+  for (const std::size_t i : metrics) columns += fmt::format(", metric_{}{}", MetricNames()[i], type);
   return columns;
 }
 
-std::string SelectCases(std::size_t stages) {
-  return "SELECT case_index, outcome, end_time_s, end_stage, reason" + CaseColumnList(stages, "") +
+std::string SelectCases(std::size_t stages, const std::vector<std::size_t>& metrics) {
+  return "SELECT case_index, outcome, end_time_s, end_stage, reason" + CaseColumnList(stages, metrics, "") +
          ", digest, row_digest FROM cases";
 }
 
@@ -53,6 +54,18 @@ std::size_t StagesOf(Database& database) {
   return rare.Step() ? kMaxStages : kUsualStages;
 }
 
+/// A law's own metrics are there if it was flown; of all others a folder must have a column.
+std::vector<std::size_t> MetricsOf(Database& database, std::size_t stages) {
+  std::set<std::string> columns;
+  Statement names = database.Prepare("SELECT name FROM pragma_table_info('cases')");
+  while (names.Step()) columns.insert(names.Text(0));
+  std::vector<std::size_t> metrics;
+  for (std::size_t i = 0; i < MetricCount(stages); ++i)
+    if (Metrics()[i].of_law == nullptr || columns.count("metric_" + MetricNames()[i]) > 0)
+      metrics.push_back(i);
+  return metrics;
+}
+
 /// Younger than other tables: a folder may lack it.
 void CreateAudits(Database& database) {
   database.Execute(
@@ -60,11 +73,12 @@ void CreateAudits(Database& database) {
       "PRIMARY KEY (case_index, worker))");
 }
 
-void CreateTables(Database& database, std::size_t stages) {
+void CreateTables(Database& database, const Campaign& campaign) {
   database.Execute(
       "CREATE TABLE cases (case_index INTEGER PRIMARY KEY, outcome TEXT NOT NULL, end_time_s REAL, "
       "end_stage INTEGER NOT NULL, reason TEXT NOT NULL" +
-      CaseColumnList(stages, " REAL") + ", digest TEXT NOT NULL, row_digest TEXT NOT NULL)");
+      CaseColumnList(campaign.vehicle.stages.size(), MeasuredMetrics(campaign), " REAL") +
+      ", digest TEXT NOT NULL, row_digest TEXT NOT NULL)");
   database.Execute("CREATE TABLE quarantined (case_index INTEGER PRIMARY KEY, reason TEXT NOT NULL)");
   database.Execute("CREATE TABLE provenance (key TEXT PRIMARY KEY, value TEXT NOT NULL)");
   database.Execute(
@@ -120,7 +134,8 @@ std::optional<Digest> ParseDigest(const std::string& hex) {
 }
 
 /// None if the row is damaged.
-std::optional<CaseResult> ReadRow(const Statement& row, std::size_t stages) {
+std::optional<CaseResult> ReadRow(const Statement& row, std::size_t stages,
+                                  const std::vector<std::size_t>& metrics) {
   CaseResult result;
   result.case_index = static_cast<std::uint64_t>(row.Integer(0));
   result.end_time_s = row.Real(2);
@@ -128,7 +143,8 @@ std::optional<CaseResult> ReadRow(const Statement& row, std::size_t stages) {
   result.reason = row.Text(4);
   int column = kFirstInput;
   for (std::size_t i = 0; i < InputCount(stages); ++i) result.inputs.push_back(row.Real(column++));
-  for (std::size_t i = 0; i < MetricCount(stages); ++i) result.metrics.push_back(row.Real(column++));
+  result.metrics.assign(MetricCount(stages), kUndefined);
+  for (const std::size_t i : metrics) result.metrics[i] = row.Real(column++);
   const std::optional<Digest> digest = ParseDigest(row.Text(column));
   if (!ParseOutcome(row.Text(1), &result.outcome) || !digest) return std::nullopt;
   result.digest = *digest;
@@ -137,10 +153,20 @@ std::optional<CaseResult> ReadRow(const Statement& row, std::size_t stages) {
   return result;
 }
 
-CaseResult ReadCase(const Statement& row, std::size_t stages, const fs::path& directory) {
-  if (auto result = ReadRow(row, stages)) return *std::move(result);
+CaseResult ReadCase(const Statement& row, std::size_t stages, const std::vector<std::size_t>& metrics,
+                    const fs::path& directory) {
+  if (auto result = ReadRow(row, stages, metrics)) return *std::move(result);
   throw ResultError(Kind::kFile, fmt::format("{}: the row of case {} is damaged; --resume flies it again",
                                              (directory / kDatabaseName).string(), row.Integer(0)));
+}
+
+/// What is stored of a result: of other metrics nothing.
+CaseResult WithMetrics(CaseResult result, const std::vector<std::size_t>& metrics) {
+  std::vector<double> kept(result.metrics.size(), kUndefined);
+  for (const std::size_t i : metrics)
+    if (i < kept.size()) kept[i] = result.metrics[i];
+  result.metrics = std::move(kept);
+  return result;
 }
 
 /// The error for a folder that cannot be made or written, from the system's reason.
@@ -155,7 +181,10 @@ CaseResult ReadCase(const Statement& row, std::size_t stages, const fs::path& di
 }  // namespace
 
 ResultFolder::ResultFolder(fs::path directory, std::unique_ptr<Database> database)
-    : directory_(std::move(directory)), stages_(StagesOf(*database)), database_(std::move(database)) {}
+    : directory_(std::move(directory)),
+      stages_(StagesOf(*database)),
+      metrics_(MetricsOf(*database, stages_)),
+      database_(std::move(database)) {}
 
 ResultFolder::ResultFolder(ResultFolder&&) noexcept = default;
 ResultFolder& ResultFolder::operator=(ResultFolder&&) noexcept = default;
@@ -186,7 +215,7 @@ ResultFolder ResultFolder::Create(const fs::path& directory, const Campaign& cam
   {
     Database fresh(temporary, Database::Mode::kCreate);
     Transaction transaction(fresh);
-    CreateTables(fresh, campaign.vehicle.stages.size());
+    CreateTables(fresh, campaign);
     WriteProvenance(fresh, campaign, true);
     transaction.Commit();
   }
@@ -211,7 +240,7 @@ ResultFolder ResultFolder::Open(const fs::path& directory) {
   std::string schema;
   try {
     schema = folder.Provenance("schema");
-    folder.database_->Prepare(SelectCases(folder.stages_));
+    folder.database_->Prepare(SelectCases(folder.stages_, folder.metrics_));
   } catch (const ResultError& unreadable) {
     if (schema != kSchema) {
       throw InputError(fmt::format("{}: not a result folder: {}", directory.string(), unreadable.what()));
@@ -258,9 +287,10 @@ void ResultFolder::Lock() {
 
 void ResultFolder::RemoveDamaged() {
   {
-    Statement select = database_->Prepare(SelectCases(stages_));
+    Statement select = database_->Prepare(SelectCases(stages_, metrics_));
     while (select.Step()) {
-      if (!ReadRow(select, stages_)) damaged_.push_back(static_cast<std::uint64_t>(select.Integer(0)));
+      if (!ReadRow(select, stages_, metrics_))
+        damaged_.push_back(static_cast<std::uint64_t>(select.Integer(0)));
     }
   }
   Remove(damaged_);
@@ -322,13 +352,14 @@ void ResultFolder::Store(std::span<const CaseResult> results, std::span<const Ex
 
 std::size_t ResultFolder::Insert(std::span<const CaseResult> results) {
   std::string parameters = "?, ?, ?, ?, ?, ?, ?";
-  for (std::size_t i = 0; i < InputCount(stages_) + MetricCount(stages_); ++i) parameters += ", ?";
+  for (std::size_t i = 0; i < InputCount(stages_) + metrics_.size(); ++i) parameters += ", ?";
   Statement stored = database_->Prepare("SELECT digest FROM cases WHERE case_index = ?");
   Statement insert = database_->Prepare("INSERT INTO cases VALUES (" + parameters + ")");
   Statement lift = database_->Prepare("DELETE FROM quarantined WHERE case_index = ?");
   std::size_t added = 0;
-  for (const CaseResult& result : results) {
-    const auto index = static_cast<std::int64_t>(result.case_index);
+  for (const CaseResult& flown : results) {
+    const auto index = static_cast<std::int64_t>(flown.case_index);
+    const CaseResult result = WithMetrics(flown, metrics_);
     const std::string digest = result.digest.Hex();
     stored.Reset();
     stored.BindInteger(1, index);
@@ -353,7 +384,7 @@ std::size_t ResultFolder::Insert(std::span<const CaseResult> results) {
     insert.BindInteger(++parameter, result.end_stage);
     insert.BindText(++parameter, result.reason);
     for (const double value : result.inputs) insert.BindReal(++parameter, value);
-    for (const double value : result.metrics) insert.BindReal(++parameter, value);
+    for (const std::size_t i : metrics_) insert.BindReal(++parameter, result.metrics[i]);
     insert.BindText(++parameter, digest);
     insert.BindText(++parameter, Fingerprint(result).Hex());
     insert.Step();
@@ -467,17 +498,17 @@ bool ResultFolder::Contains(std::uint64_t case_index) const {
 }
 
 CaseResult ResultFolder::Load(std::uint64_t case_index) const {
-  Statement select = database_->Prepare(SelectCases(stages_) + " WHERE case_index = ?");
+  Statement select = database_->Prepare(SelectCases(stages_, metrics_) + " WHERE case_index = ?");
   select.BindInteger(1, static_cast<std::int64_t>(case_index));
   if (!select.Step()) {
     throw InputError(fmt::format("{}: has no result of case {}", directory_.string(), case_index));
   }
-  return ReadCase(select, stages_, directory_);
+  return ReadCase(select, stages_, metrics_, directory_);
 }
 
 void ResultFolder::ForEach(const std::function<void(const CaseResult&)>& callback) const {
-  Statement select = database_->Prepare(SelectCases(stages_) + " ORDER BY case_index");
-  while (select.Step()) callback(ReadCase(select, stages_, directory_));
+  Statement select = database_->Prepare(SelectCases(stages_, metrics_) + " ORDER BY case_index");
+  while (select.Step()) callback(ReadCase(select, stages_, metrics_, directory_));
 }
 
 }  // namespace dispersa

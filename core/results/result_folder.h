@@ -58,6 +58,8 @@ class ResultFolder : public ResultStore {
   const std::filesystem::path& directory() const { return directory_; }
   /// Of the vehicle, as far as its results' columns depend on it: kUsualStages or kMaxStages.
   std::size_t stages() const { return stages_; }
+  /// Positions in Metrics() of those that are stored: of the vehicle, and of the law that was flown.
+  const std::vector<std::size_t>& metrics() const { return metrics_; }
   /// Value of "campaign_id", "flight_id", "engine", "name", "seed", "cases", "sampling"; and as they were
   /// before the first case was flown: "planned_cases", "requirements_id" and "requirements"
   /// (RequirementLine() each).
@@ -114,6 +116,7 @@ class ResultFolder : public ResultStore {
 
   std::filesystem::path directory_;
   std::size_t stages_;
+  std::vector<std::size_t> metrics_;
   std::optional<FolderLock> lock_;
   std::unique_ptr<Database> database_;
   std::vector<std::uint64_t> damaged_;

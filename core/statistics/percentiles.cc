@@ -1,7 +1,9 @@
 #include "core/statistics/percentiles.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "core/statistics/compensated_sum.h"
 #include "core/statistics/summary.h"
 
 namespace dispersa {
@@ -27,16 +29,19 @@ std::vector<Percentile> Percentiles(const std::vector<double>& sorted_values) {
 double Skewness(const std::vector<double>& sorted_values) {
   if (sorted_values.empty()) return kUndefined;
   const auto n = static_cast<double>(sorted_values.size());
-  double mean = 0.0;
-  for (const double value : sorted_values) mean += value / n;
-  double second = 0.0;
-  double third = 0.0;
-  for (const double value : sorted_values) {
-    const double deviation = value - mean;
-    second += deviation * deviation / n;
-    third += deviation * deviation * deviation / n;
-  }
-  return second > 0.0 ? third / std::pow(second, 1.5) : kUndefined;
+  const double mean = Mean(sorted_values);
+  // In units of the largest deviation: its cube neither overflows nor vanishes.
+  const double scale = std::max(mean - sorted_values.front(), sorted_values.back() - mean);
+  if (!(scale > 0.0)) return kUndefined;
+  const auto moment = [&](int power) {
+    return CompensatedSum(sorted_values,
+                          [&](double value) {
+                            const double deviation = (value - mean) / scale;
+                            return power == 2 ? deviation * deviation : deviation * deviation * deviation;
+                          }) /
+           n;
+  };
+  return moment(3) / std::pow(moment(2), 1.5);
 }
 
 }  // namespace dispersa

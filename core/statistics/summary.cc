@@ -5,26 +5,15 @@
 #include <cmath>
 #include <utility>
 
+#include "core/statistics/compensated_sum.h"
+
 namespace dispersa {
 namespace {
 
-/// Neumaier's compensated sum of term(value) in the given order.
-template <typename Term>
-double Sum(const std::vector<double>& values, Term term) {
-  double sum = 0.0;
-  double compensation = 0.0;
-  for (const double value : values) {
-    const double addend = term(value);
-    const double next = sum + addend;
-    compensation += std::fabs(sum) >= std::fabs(addend) ? (sum - next) + addend : (addend - next) + sum;
-    sum = next;
-  }
-  return sum + compensation;
-}
-
 double StandardDeviation(const std::vector<double>& values, double mean) {
   if (values.size() < 2) return kUndefined;
-  const double squares = Sum(values, [mean](double value) { return (value - mean) * (value - mean); });
+  const double squares =
+      CompensatedSum(values, [mean](double value) { return (value - mean) * (value - mean); });
   return std::sqrt(squares / static_cast<double>(values.size() - 1));
 }
 
@@ -46,6 +35,13 @@ double Quantile(const std::vector<double>& sorted_values, double probability) {
   return std::lerp(sorted_values[below], sorted_values[below + 1], position - static_cast<double>(below));
 }
 
+double Mean(const std::vector<double>& sorted) {
+  if (sorted.empty()) return kUndefined;
+  const double sum = CompensatedSum(sorted, [](double value) { return value; });
+  // Rounding must not carry it beyond the values: equal ones deviate by exactly 0.
+  return std::clamp(sum / static_cast<double>(sorted.size()), sorted.front(), sorted.back());
+}
+
 Summary Summarize(std::vector<double> values) {
   const std::size_t cases = values.size();
   const std::vector<double> sorted = SortedFinite(std::move(values));
@@ -54,8 +50,7 @@ Summary Summarize(std::vector<double> values) {
 
 Summary SummarizeSorted(const std::vector<double>& sorted, std::size_t undefined) {
   const std::size_t n = sorted.size();
-  const auto identity = [](double value) { return value; };
-  const double mean = n == 0 ? kUndefined : Sum(sorted, identity) / static_cast<double>(n);
+  const double mean = Mean(sorted);
   return {.n = n,
           .undefined = undefined,
           .mean = mean,

@@ -37,6 +37,9 @@ Summary Summarize(std::vector<double> values);
 /// The finite values in increasing order; -0 becomes 0.
 std::vector<double> SortedFinite(std::vector<double> values);
 
+/// Of values in increasing order; never beyond the least and the largest. kUndefined without values.
+double Mean(const std::vector<double>& sorted_values);
+
 /// Quantile of sorted values: linear between order statistics, the smallest at 0 and the largest at 1 (type 7
 /// of Hyndman and Fan, The American Statistician 50 (1996) 361-365, the default of R and NumPy). An estimate
 /// without a confidence: requirements use order_statistics.h. NaN without values.

@@ -29,26 +29,26 @@ struct FlyOptions {
   std::string integrator;  ///< empty: the one that campaigns and scenarios fly
 };
 
-void PrintJson(const CaseResult& result) {
+void PrintJson(const CaseResult& result, const std::vector<std::size_t>& metrics) {
   const nlohmann::ordered_json json = {{"schema", "dispersa/fly/1"},
                                        {"outcome", OutcomeName(result.outcome)},
                                        {"end_time_s", JsonNumber(result.end_time_s)},
                                        {"end_stage", result.end_stage},
                                        {"reason", result.reason},
                                        {"inputs", InputsJson(result.inputs)},
-                                       {"metrics", MetricsJson(result.metrics)},
+                                       {"metrics", MetricsJson(result.metrics, metrics)},
                                        {"digest", result.digest.Hex()}};
   fmt::print("{}\n", json.dump(2));
 }
 
-void PrintText(std::FILE* stream, const CaseResult& result) {
+void PrintText(std::FILE* stream, const CaseResult& result, const std::vector<std::size_t>& metrics) {
   fmt::print(stream, "outcome  {}\ndigest   {}\n", OutcomeText(result), result.digest.Hex());
   const std::vector<double> nominal = InputValues(FlightInputs{}, kMaxStages);
   for (std::size_t i = 0; i < result.inputs.size(); ++i) {
     if (result.inputs[i] == nominal[i]) continue;
     fmt::print(stream, "{:<44} {}\n", "input_" + InputColumns()[i].name, ShortestText(result.inputs[i]));
   }
-  for (std::size_t i = 0; i < result.metrics.size(); ++i) {
+  for (const std::size_t i : metrics) {
     const std::string value = ShortestText(result.metrics[i]);
     fmt::print(stream, "{:<44} {}\n", "metric_" + MetricNames()[i], value.empty() ? "-" : value);
   }
@@ -79,11 +79,11 @@ ExitCode FlyOne(const FlyOptions& options, const GlobalOptions& global) {
   History history;
   const CaseResult result = flights.Fly(inputs, options.case_index.value_or(0),
                                         options.history.empty() ? nullptr : &history, scheme);
-  if (!options.history.empty()) WriteFile(options.history, HistoryCsv(history));
+  if (!options.history.empty()) WriteFile(options.history, HistoryCsv(history, campaign.autopilot));
   if (global.json) {
-    PrintJson(result);
+    PrintJson(result, MeasuredMetrics(campaign));
   } else {
-    PrintText(stream, result);
+    PrintText(stream, result, MeasuredMetrics(campaign));
   }
   return kExitDone;
 }

@@ -41,7 +41,7 @@ ExitCode Replay(const ReplayOptions& options, const GlobalOptions& global) {
   History history;
   const CaseReplay replay =
       ReplayCase(stored, options.case_index, options.history.empty() ? nullptr : &history);
-  if (!options.history.empty()) WriteFile(options.history, HistoryCsv(history));
+  if (!options.history.empty()) WriteFile(options.history, HistoryCsv(history, stored.campaign.autopilot));
   if (global.json) {
     fmt::print("{}\n", ReplayJson(replay).dump(2));
   } else {

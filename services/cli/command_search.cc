@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/analysis/requirement_summary.h"
+#include "core/campaign/case_result.h"
 #include "core/cases/campaign_flights.h"
 #include "core/flight/flight.h"
 #include "core/input/input_error.h"
@@ -46,12 +47,14 @@ struct SearchCommand {
 
 /// A limit of the command line, or the campaign's own.
 Requirement WantedRequirement(const SearchCommand& command, const Campaign& campaign) {
-  const auto last =
-      MetricNames().begin() + static_cast<std::ptrdiff_t>(MetricCount(campaign.vehicle.stages.size()));
-  const std::vector<std::string> names(MetricNames().begin(), last);
-  if (!command.metric.empty() && std::find(names.begin(), names.end(), command.metric) == names.end())
-    throw InputError("--metric: '" + command.metric + "' is not a metric",
-                     "a name in cases.csv without its prefix 'metric_'");
+  if (!command.metric.empty()) {
+    const std::vector<std::string>& names = MetricNames();
+    const bool is_known = std::find(names.begin(), names.end(), command.metric) != names.end();
+    const std::string why = is_known ? WhyNotMeasured(campaign, command.metric) : "is not a metric";
+    if (!why.empty())
+      throw InputError("--metric: '" + command.metric + "' " + why,
+                       "a name in cases.csv without its prefix 'metric_'");
+  }
   if (command.below || command.above) {
     if (command.metric.empty()) throw InputError("--below and --above need --metric");
     Requirement requirement;

@@ -20,9 +20,10 @@ nlohmann::ordered_json InputsJson(const std::vector<double>& inputs) {
   return json;
 }
 
-nlohmann::ordered_json MetricsJson(const std::vector<double>& metrics) {
+nlohmann::ordered_json MetricsJson(const std::vector<double>& metrics,
+                                   const std::vector<std::size_t>& positions) {
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
-  for (std::size_t i = 0; i < metrics.size(); ++i) json[MetricNames()[i]] = JsonNumber(metrics[i]);
+  for (const std::size_t i : positions) json[MetricNames()[i]] = JsonNumber(metrics[i]);
   return json;
 }
 

@@ -10,9 +10,11 @@ namespace dispersa {
 /// NaN and infinity become null, -0 becomes 0.
 nlohmann::ordered_json JsonNumber(double value);
 
-/// Inputs and metrics by name: {"thrust_factor_stage1": 1.01, ...}; what is undefined is null.
+/// Inputs by name, and the metrics at some positions of Metrics(): {"thrust_factor_stage1": 1.01, ...}; what
+/// is undefined is null.
 nlohmann::ordered_json InputsJson(const std::vector<double>& inputs);
-nlohmann::ordered_json MetricsJson(const std::vector<double>& metrics);
+nlohmann::ordered_json MetricsJson(const std::vector<double>& metrics,
+                                   const std::vector<std::size_t>& positions);
 
 /// "completed", or the outcome with time, stage and reason.
 std::string OutcomeText(const CaseResult& result);

@@ -5,6 +5,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/campaign/case_result.h"
 #include "core/flight/flight_inputs.h"
 #include "core/input/input_error.h"
 #include "core/results/output_file.h"
@@ -29,6 +30,15 @@ void CheckMetrics(const std::vector<std::string>& metrics) {
   }
 }
 
+/// Both must have what is asked for.
+void CheckMeasured(const std::string& name, const Campaign& campaign,
+                   const std::vector<std::string>& metrics) {
+  for (const std::string& metric : metrics)
+    if (const std::string why = WhyNotMeasured(campaign, metric); !why.empty())
+      throw InputError("--metric: " + name + ": '" + metric + "' " + why,
+                       "a metric that both campaigns have");
+}
+
 std::vector<CampaignChange> ChangesOf(const Campaign& a, const Campaign& b) {
   std::vector<CampaignChange> changes;
   for (const ValueDifference& each : DifferencesOf(a.canonical_yaml, b.canonical_yaml))
@@ -43,6 +53,8 @@ FolderComparison CompareFolders(const std::string& name_a, const std::string& na
   CheckMetrics(metrics);
   const StoredCampaign a = OpenStored(name_a);
   const StoredCampaign b = OpenStored(name_b);
+  CheckMeasured(name_a, a.campaign, metrics);
+  CheckMeasured(name_b, b.campaign, metrics);
   FolderComparison compared = {{}, AllColumns(a.folder), AllColumns(b.folder)};
   for (const auto& [name, cases] : {std::pair{&name_a, &compared.a}, std::pair{&name_b, &compared.b}})
     if (cases->rows() == 0) throw InputError(*name + ": no case has a result");

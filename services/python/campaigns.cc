@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/campaign/dispersion_table.h"
 #include "core/campaign_yaml/inline_files.h"
 #include "core/campaign_yaml/load.h"
 #include "core/cases/campaign_flights.h"
@@ -164,12 +165,40 @@ FlightInputs InputsOf(const LoadedCampaign& campaign, const CampaignFlights& fli
   return inputs;
 }
 
-py::array HistoryArray(History history) {
-  const auto rows = static_cast<py::ssize_t>(history.rows());
-  return ArrayOf(std::move(history.values), {rows, static_cast<py::ssize_t>(HistoryColumns().size())});
+py::array HistoryArray(const History& history, const std::vector<int>& columns) {
+  std::vector<double> values;
+  values.reserve(history.rows() * columns.size());
+  for (std::size_t row = 0; row < history.rows(); ++row)
+    for (const int column : columns) values.push_back(history.at(row, column));
+  return ArrayOf(std::move(values),
+                 {static_cast<py::ssize_t>(history.rows()), static_cast<py::ssize_t>(columns.size())});
 }
 
-py::dict FlightValues(CaseResult result) {
+std::vector<std::string> HistoryNames(const std::vector<int>& columns) {
+  std::vector<std::string> names;
+  for (const int column : columns) names.push_back(HistoryColumns()[static_cast<std::size_t>(column)]);
+  return names;
+}
+
+/// Positions of the columns with these names, or of all that flights under the autopilot have.
+std::vector<int> ColumnsNamed(const std::optional<std::vector<std::string>>& names,
+                              const AutopilotConfig& autopilot) {
+  const std::vector<int> known = HistoryColumnsUnder(autopilot);
+  if (!names) return known;
+  std::vector<int> columns;
+  for (const std::string& name : *names) {
+    columns.push_back(FindHistoryColumn(name));
+    if (std::find(known.begin(), known.end(), columns.back()) != known.end()) continue;
+    std::string allowed;
+    for (const std::string& each : HistoryNames(known)) allowed += (allowed.empty() ? "" : ", ") + each;
+    throw InputError("columns: '" + name + "' is not a column of histories", allowed);
+  }
+  return columns;
+}
+
+py::dict FlightValues(CaseResult result, const std::vector<std::size_t>& metrics) {
+  std::vector<double> values;
+  for (const std::size_t i : metrics) values.push_back(result.metrics[i]);
   py::dict flight;
   flight["outcome"] = OutcomeName(result.outcome);
   flight["end_time_s"] = result.end_time_s;
@@ -177,7 +206,8 @@ py::dict FlightValues(CaseResult result) {
   flight["reason"] = result.reason;
   flight["digest"] = result.digest.Hex();
   flight["inputs"] = ArrayOf(std::move(result.inputs));
-  flight["metrics"] = ArrayOf(std::move(result.metrics));
+  flight["metrics"] = ArrayOf(std::move(values));
+  flight["metric_names"] = NamesOf(metrics);
   return flight;
 }
 
@@ -196,6 +226,12 @@ class FlownWith {
   const CampaignFlights& flights() const { return flights_ ? *flights_ : campaign_.flights(); }
   /// A law in Python runs under the interpreter's lock: more threads would wait for it.
   int Threads(int asked) const { return law_ ? 1 : ThreadsOrAll(asked); }
+  /// The autopilot that flies.
+  const AutopilotConfig& autopilot() const {
+    return flights_ ? flights_->model().definition().autopilot : campaign_.campaign().autopilot;
+  }
+  /// Positions of the metrics that the flights have.
+  std::vector<std::size_t> metrics() const { return MetricsUnder(campaign_.stages(), autopilot().pitch.law); }
   void FliesTheNominal() const {
     if (law_) law_->FliesTheNominal();
   }
@@ -221,8 +257,10 @@ py::dict FlyOne(const LoadedCampaign& campaign, std::optional<std::uint64_t> cas
     return flights.Fly(InputsOf(campaign, flights, case_index, replaced), case_index.value_or(0),
                        step_s > 0.0 ? &history : nullptr, scheme);
   });
-  py::dict flight = FlightValues(std::move(result));
-  flight["history"] = step_s > 0.0 ? py::object(HistoryArray(std::move(history))) : py::none();
+  py::dict flight = FlightValues(std::move(result), with.metrics());
+  const std::vector<int> columns = HistoryColumnsUnder(with.autopilot());
+  flight["history"] = step_s > 0.0 ? py::object(HistoryArray(history, columns)) : py::none();
+  flight["history_columns"] = HistoryNames(columns);
   return flight;
 }
 
@@ -265,14 +303,15 @@ class Gathering {
   std::map<std::size_t, History> waiting_;
 };
 
-/// Many cases, side by side. `columns`: positions in history_columns() that are kept of each history of step
-/// `step_s`; 0: no histories.
+/// Many cases, side by side. `columns`: names of those that are kept of each history of step `step_s`; None:
+/// all that the flights have. 0: no histories.
 py::dict FlyMany(const LoadedCampaign& campaign, const std::vector<std::uint64_t>& cases, double step_s,
-                 const std::vector<int>& columns, int threads, const py::object& progress,
-                 const py::object& law, unsigned axes) {
+                 const std::optional<std::vector<std::string>>& names, int threads,
+                 const py::object& progress, const py::object& law, unsigned axes) {
   PythonObserver observer(progress);
   const FlownWith with(campaign, law, axes, observer);
   std::vector<CaseResult> results(cases.size());
+  const std::vector<int> columns = ColumnsNamed(names, with.autopilot());
   Gathering histories(columns, cases.size());
   observer.Watch([&] {
     std::vector<CaseOrder> orders;
@@ -286,9 +325,10 @@ py::dict FlyMany(const LoadedCampaign& campaign, const std::vector<std::uint64_t
                               if (observer.ShouldStop()) throw Interrupted();
                             });
   });
-  ResultColumns table(InputCount(campaign.stages()), MetricCount(campaign.stages()));
+  ResultColumns table(InputCount(campaign.stages()), with.metrics());
   for (const CaseResult& result : results) table.Add(result);
   py::dict answer = table.Take();
+  answer["history_columns"] = HistoryNames(columns);
   if (step_s > 0.0) {
     auto [rows, offsets] = histories.Take();
     answer["histories"] = rows;
@@ -321,6 +361,8 @@ void AddCampaigns(py::module_& module) {
       .def_property_readonly("cases", [](const LoadedCampaign& c) { return c.campaign().sampling.cases; })
       .def_property_readonly("seed", [](const LoadedCampaign& c) { return c.campaign().sampling.seed; })
       .def_property_readonly("stages", &LoadedCampaign::stages)
+      .def_property_readonly("metric_names",
+                             [](const LoadedCampaign& c) { return NamesOf(MeasuredMetrics(c.campaign())); })
       .def_property_readonly("python_law", &PythonLawOf)
       .def_property_readonly("law_axes",
                              [](const LoadedCampaign& c) { return PluginAxes(c.campaign().autopilot); })
@@ -333,6 +375,13 @@ void AddCampaigns(py::module_& module) {
                                  for (const int input : dispersion.inputs)
                                    names.push_back(InputColumns()[static_cast<std::size_t>(input)].name);
                                return names;
+                             })
+      .def_property_readonly("input_keys",
+                             [](const LoadedCampaign& c) {
+                               std::vector<std::string> keys;
+                               for (std::size_t i = 0; i < InputCount(c.stages()); ++i)
+                                 keys.push_back(InputKey(c.campaign(), static_cast<int>(i)));
+                               return keys;
                              })
       .def_property_readonly("warnings", [](const LoadedCampaign& c) { return ProblemsOf(c.warnings()); });
 }

@@ -25,10 +25,6 @@ std::vector<std::string> InputNames(std::size_t stages) {
   return names;
 }
 
-std::vector<std::string> VehicleMetricNames(std::size_t stages) {
-  return {MetricNames().begin(), MetricNames().begin() + static_cast<std::ptrdiff_t>(MetricCount(stages))};
-}
-
 const char* WorseName(Worse worse) {
   switch (worse) {
     case Worse::kLarger:
@@ -60,8 +56,6 @@ PYBIND11_MODULE(_core, module) {
   py::register_exception_translator(Translate);
   module.def("engine_version", &EngineVersion);
   module.def("input_names", &InputNames);
-  module.def("metric_names", &VehicleMetricNames);
-  module.def("history_columns", &HistoryColumns);
   module.def("describe", &MetricTuple);
   module.def("split_unit", [](const std::string& name) {
     const NameAndUnit split = SplitUnit(name);

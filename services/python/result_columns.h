@@ -15,10 +15,19 @@
 
 namespace dispersa {
 
+/// Names of the metrics at these positions.
+inline std::vector<std::string> NamesOf(const std::vector<std::size_t>& metrics) {
+  std::vector<std::string> names;
+  for (const std::size_t i : metrics) names.push_back(MetricNames()[i]);
+  return names;
+}
+
 /// Gathered without the interpreter's lock, taken with it.
 class ResultColumns {
  public:
-  ResultColumns(std::size_t inputs, std::size_t metrics) : input_count_(inputs), metric_count_(metrics) {}
+  /// `metrics`: positions in Metrics() of those that are kept.
+  ResultColumns(std::size_t inputs, std::vector<std::size_t> metrics)
+      : input_count_(inputs), metric_columns_(std::move(metrics)) {}
 
   /// A result with as many inputs and metrics.
   void Add(const CaseResult& result) {
@@ -28,10 +37,10 @@ class ResultColumns {
     end_stage_.push_back(result.end_stage);
     reason_.push_back(result.reason);
     inputs_.insert(inputs_.end(), result.inputs.begin(), result.inputs.end());
-    metrics_.insert(metrics_.end(), result.metrics.begin(), result.metrics.end());
+    for (const std::size_t i : metric_columns_) metrics_.push_back(result.metrics[i]);
     digest_.push_back(result.digest.Hex());
   }
-  /// The columns of cases.csv; inputs and metrics of shape (results, names).
+  /// The columns of cases.csv, and `metric_names`; inputs and metrics of shape (results, names).
   pybind11::dict Take() {
     const auto rows = static_cast<pybind11::ssize_t>(index_.size());
     pybind11::dict columns;
@@ -41,13 +50,16 @@ class ResultColumns {
     columns["end_stage"] = ArrayOf(std::move(end_stage_));
     columns["reason"] = reason_;
     columns["inputs"] = ArrayOf(std::move(inputs_), {rows, static_cast<pybind11::ssize_t>(input_count_)});
-    columns["metrics"] = ArrayOf(std::move(metrics_), {rows, static_cast<pybind11::ssize_t>(metric_count_)});
+    columns["metrics"] =
+        ArrayOf(std::move(metrics_), {rows, static_cast<pybind11::ssize_t>(metric_columns_.size())});
+    columns["metric_names"] = NamesOf(metric_columns_);
     columns["digest"] = digest_;
     return columns;
   }
 
  private:
-  std::size_t input_count_, metric_count_;
+  std::size_t input_count_;
+  std::vector<std::size_t> metric_columns_;
   std::vector<std::uint64_t> index_;
   std::vector<std::string> outcome_, reason_, digest_;
   std::vector<double> end_time_s_, inputs_, metrics_;

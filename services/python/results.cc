@@ -114,8 +114,7 @@ py::dict Results(const std::string& directory) {
   {
     const py::gil_scoped_release free;
     const StoredCampaign stored = OpenStored(directory);
-    const std::size_t stages = stored.campaign.vehicle.stages.size();
-    columns.emplace(InputCount(stages), MetricCount(stages));
+    columns.emplace(InputCount(stored.folder.stages()), stored.folder.metrics());
     stored.folder.ForEach([&](const CaseResult& result) { columns->Add(result); });
     engine = stored.folder.Provenance("engine");
     const CampaignSummary built = BuildSummary(stored.folder, stored.campaign);

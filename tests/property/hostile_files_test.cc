@@ -185,6 +185,7 @@ TEST_F(HostileFiles, NoWrongNumberComesOutOfADamagedDatabase) {
   campaign.flight_id = std::string(64, '2');
   campaign.canonical_yaml = "name: made up\n";
   campaign.sampling.cases = 8;
+  campaign.autopilot.pitch.law = ControlLaw::kAdaptiveFuzzy;  // it has every metric
   std::map<std::uint64_t, Digest> stored;
   {
     ResultFolder folder = ResultFolder::Create(root_ / "out", campaign);

@@ -105,7 +105,7 @@ class Afternoon(unittest.TestCase):
         numpy.testing.assert_array_equal(flight.history.rows, theirs)
         self.assertAlmostEqual(numpy.nanmax(numpy.abs(flight.history["pitch_error_deg"])), peak[worst], delta=0.02)
         for name in ("pitch_launch", "injection_altitude"):
-            with self.assertRaisesRegex(dispersa.BadInput, f"worst: '{name}' is not a metric of this vehicle"):
+            with self.assertRaisesRegex(dispersa.BadInput, f"worst: '{name}' is not a metric of these flights"):
                 self.results.worst(name)
 
     def test_8_report(self):

@@ -167,5 +167,26 @@ TEST(ReportComparison, ReplayCommandsSurviveAShell) {
   EXPECT_EQ(ReplayCommand("my results/it's", 3), "dispersa replay 'my results/it'\\''s' --case 3");
 }
 
+// What one of the laws does not measure is neither better nor worse, and nobody fails it.
+TEST(ReportComparison, OfTwoLawsHasTheMetricsOfBoth) {
+  const std::vector<double> inputs = {1.0, 2.0, 3.0};
+  CaseColumns a = Columns({0, 1, 2}, inputs, {0.1, 0.2, 0.3});
+  a.metrics[MetricColumn("rules_fired")] = std::vector{7.0, 8.0, 9.0};
+  CaseColumns b = Columns({0, 1, 2}, inputs, {0.2, 0.3, 0.4});
+  a.outcome[1] = b.outcome[1] = Outcome::kLostControl;
+  Campaign of_a = report_test::MakeCampaign(3), of_b = of_a;
+  of_a.requirements = {
+      {.metric = "rules_fired", .below = 8.5, .above = {}, .probability = 0.9, .consumer_risk = 0.1}};
+  of_b.autopilot.pitch.law = ControlLaw::kPd;
+  const Comparison comparison = Compare({"A", "engine", of_a, a}, {"B", "engine", of_b, b}, {}, {});
+  for (const MetricComparison& metric : comparison.metrics) EXPECT_NE(metric.metric, "rules_fired");
+  ASSERT_EQ(comparison.requirements.size(), 1u);
+  EXPECT_EQ(comparison.requirements[0].n_a, 3u);
+  EXPECT_EQ(comparison.requirements[0].failures_a, 2u);
+  EXPECT_EQ(comparison.requirements[0].n_b, 0u);
+  EXPECT_TRUE(std::isnan(comparison.requirements[0].p));
+  EXPECT_TRUE(comparison.harmed.empty());
+}
+
 }  // namespace
 }  // namespace dispersa::analysis_comparison_test

@@ -50,10 +50,10 @@ TEST(SummaryWithGaps, NamesCasesByIndexAndNotByRow) {
           "Incomplete: 3 of 12 cases have a result.",
           "Structural limits of the vehicle were exceeded in 1 of 3 flights: q_max_pa above 100 Pa in 1, up "
           "to 120 Pa in case 5."));
-  ASSERT_EQ(summary.worst_cases[0].metric, kPeak);
-  ASSERT_EQ(summary.worst_cases[0].cases.size(), 3u);
-  EXPECT_EQ(summary.worst_cases[0].cases[0].case_index, 2u);
-  EXPECT_EQ(summary.worst_cases[0].cases[2].case_index, 9u);
+  ASSERT_EQ(summary.worst_cases[1].metric, kPeak);
+  ASSERT_EQ(summary.worst_cases[1].cases.size(), 3u);
+  EXPECT_EQ(summary.worst_cases[1].cases[0].case_index, 2u);
+  EXPECT_EQ(summary.worst_cases[1].cases[2].case_index, 9u);
 }
 
 // Lost flights have a list of their own: one of them stands for all, and four that were completed follow.

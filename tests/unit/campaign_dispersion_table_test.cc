@@ -35,6 +35,17 @@ TEST(DispersionTable, AColumnHasTheNameThatTheFileGivesIt) {
   EXPECT_EQ(KeyOfColumn("bending_frequency_factor_mode5"), "bending_frequency");
 }
 
+TEST(DispersionTable, OfSeveralKeysACampaignHasItsOwn) {
+  Campaign campaign;
+  const int thrust = FindInput("thrust_factor_stage1"), azimuth = FindInput("wind_azimuth_deg");
+  EXPECT_EQ(InputKey(campaign, thrust), "thrust") << "none draws it";
+  campaign.dispersions = {{.name = "burn_rate/stage1", .distribution = {}, .inputs = {thrust}},
+                          {.name = "wind/azimuth", .distribution = {}, .inputs = {azimuth}}};
+  EXPECT_EQ(InputKey(campaign, thrust), "burn_rate");
+  EXPECT_EQ(InputKey(campaign, azimuth), "wind.azimuth");
+  EXPECT_EQ(InputKey(campaign, FindInput("thrust_factor_stage2")), "thrust");
+}
+
 TEST(DispersionTable, APatternStandsForEveryName) {
   EXPECT_EQ(ExpandColumn("nozzle_thrust_factor_{stage}_{nozzle}").size(),
             static_cast<std::size_t>(kMaxStages) * kNozzles);

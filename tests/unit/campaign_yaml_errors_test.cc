@@ -558,5 +558,22 @@ TEST(GuidanceOfAVehicle, NeedsALastStageOnATimer) {
       "{trigger: timer}\n");
 }
 
+// A metric of one law is required of its flights alone.
+TEST(RequiredMetrics, AreOfTheLawThatFlies) {
+  const InputFiles files;
+  files.Edit("campaign.yaml", "metric: pitch_error_peak_deg", "metric: rules_fired");
+  EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors), "");
+  files.Edit("autopilot.yaml",
+             "pitch:\n  law: adaptive_fuzzy\n  gains: [{kp_1_s2: 9, kd_1_s: 4}, {kp_1_s2: 16, kd_1_s: 6}]\n"
+             "  rules: {error_range_deg: 5, rate_range_deg_s: 1.5}\n  adaptation:\n    gamma: [10, 20]\n"
+             "    q: [[10, 0], [0, 10]]\n    projection_bound_deg_s2: 40\n    leakage_1_s: 0.1\n"
+             "    dead_zone_deg: 0.01\n    freeze_when_saturated: true\n",
+             "pitch: {law: pd, gains: [{kp_1_s2: 9, kd_1_s: 4}, {kp_1_s2: 16, kd_1_s: 6}]}\n");
+  EXPECT_EQ(files.Texts(CheckFile(files.Path("campaign.yaml")).errors),
+            "campaign.yaml:13:14: requirements[0].metric: 'rules_fired' is of flights whose law of pitch is "
+            "adaptive_fuzzy or frozen_fuzzy; here it is pd, allowed: a metric of this law, or a law that has "
+            "it\n");
+}
+
 }  // namespace
 }  // namespace dispersa::campaign_yaml_errors_test

@@ -1,7 +1,7 @@
 // Every metric on made-up histories whose answers are known by hand.
 #include "core/control/lyapunov.h"
 #include "core/flight/flight_model.h"
-#include "core/flight/lane_metrics.h"
+#include "core/flight/flight_sums.h"
 #include "core/flight/limit_cycle.h"
 #include "core/flight/ripple.h"
 #include "core/flight/structural_limits.h"
@@ -98,7 +98,7 @@ class MetricsRecorder {
     ended.metrics_.Read(0, ended.sums_);
     ended.sums_.ripple_rad = ripple_.worst_rad();
     ended.sums_.limit_cycle_rad = cycle_.worst_rad();
-    return MetricsOf(ended.sums_, model_.definition());
+    return Measure(ended.sums_, model_.definition()).metrics;
   }
 
  private:

@@ -59,6 +59,7 @@ inline Campaign MakeCampaign(std::uint64_t cases) {
   campaign.vehicle.name = "vehicle";
   campaign.reference.name = "reference";
   campaign.autopilot.name = "autopilot";
+  campaign.autopilot.pitch.law = ControlLaw::kAdaptiveFuzzy;  // it has every metric
   campaign.canonical_yaml = "name: made_up\n";
   campaign.id = std::string(64, '1');
   campaign.flight_id = std::string(64, '2');

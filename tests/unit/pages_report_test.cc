@@ -257,6 +257,37 @@ TEST_F(ReportPageTest, AFlightBeyondALimitIsInTheHeadAndAmongTheOutcomes) {
       page,
       HasSubstr("<td>Dynamic pressure, maximum</td><td class=\"n\">100000 Pa</td><td class=\"n\">97000 Pa"));
   EXPECT_THAT(page, HasSubstr("required because the vehicle gives limits"));
+  // Beside "97.5 % of them completed" and "structural limit 0": what did not end the flights.
+  EXPECT_THAT(page, HasSubstr("<b>7.5 %</b><span>exceeded a structural limit</span>"));
+  EXPECT_THAT(page, HasSubstr("<td>structural limit<span class=\"definition\">ended by it; 3 more exceeded a "
+                              "limit and flew on</span></td><td class=\"n\">0</td>"));
+}
+
+TEST_F(ReportPageTest, GroupsMetricsAsTheyAreDeclaredAndNamesInputsAsTheFileDoes) {
+  Build(40, 40);
+  const auto in_group = [&](const char* title, const char* from, const char* to) {
+    const std::size_t at = page_.find(std::string("<b>") + title);
+    const auto group = [&](const char* name) {
+      return page_.find(std::string("class=\"group\"><td colspan=\"11\">") + name + "<");
+    };
+    EXPECT_LT(group(from), at) << title;
+    EXPECT_LT(at, to == nullptr ? std::string::npos : group(to)) << title;
+  };
+  in_group("Attitude error at the last ignition", "Attitude", "Control effort");
+  in_group("Bending moment, maximum, N m", "Loads", "Injection");
+  in_group("Semi-major axis error, km", "Injection", "Guidance");
+  in_group("Rules fired", "Control law", "Integration");
+  EXPECT_THAT(page_, HasSubstr("<code>thrust</code> <span class=\"soft\"><code>thrust_factor_stage1</code>"));
+}
+
+TEST_F(ReportPageTest, AMetricOfOneValueIsSaidAndNotDrawn) {
+  Build(40, 40);
+  campaign_.requirements[0].metric = "deflection_saturated_fraction";
+  cases_.metrics[MetricColumn("deflection_saturated_fraction")] = std::vector<double>(40, 0.0);
+  summary_.worst_cases = {{"deflection_saturated_fraction", {}}};
+  const std::string page = ReportPage(campaign_, summary_, cases_, histories_);
+  EXPECT_THAT(page, HasSubstr("<p>Deflection saturated: 0 in 39 of 40 flown cases.</p>"));
+  EXPECT_THAT(page, Not(HasSubstr("Histogram of Deflection saturated")));
 }
 
 }  // namespace

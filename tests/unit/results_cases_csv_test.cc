@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <limits>
 
 #include "core/results/text.h"
@@ -17,7 +18,13 @@ using report_test::MakeCase;
 using report_test::ReadText;
 using report_test::TemporaryFolder;
 using testing::EndsWith;
+using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
+
+// Of the law that has every metric.
+std::vector<std::size_t> AllMetrics() { return MetricsUnder(kUsualStages, ControlLaw::kAdaptiveFuzzy); }
+std::string Header() { return CasesCsvHeader(kUsualStages, AllMetrics()); }
 
 TEST(CasesCsv, WritesDoublesThatReadBackToTheSameBits) {
   EXPECT_EQ(ShortestText(0.1 + 0.2), "0.30000000000000004");
@@ -37,12 +44,33 @@ TEST(CasesCsv, QuotesFieldsThatNeedIt) {
 }
 
 TEST(CasesCsv, NamesEveryColumn) {
-  const std::string header = CasesCsvHeader(kUsualStages);
+  const std::string header = Header();
   EXPECT_THAT(header, StartsWith("case_index,outcome,end_time_s,end_stage,reason,input_" +
                                  InputColumns()[0].name + ","));
   EXPECT_THAT(header, EndsWith(",metric_" + MetricNames()[MetricCount(kUsualStages) - 1] + ",digest\n"));
   EXPECT_EQ(static_cast<std::size_t>(std::count(header.begin(), header.end(), ',')),
             5 + InputCount(kUsualStages) + MetricCount(kUsualStages));
+}
+
+TEST(CasesCsv, HasTheMetricsOfItsLawAlone) {
+  TemporaryFolder temporary;
+  Campaign campaign = MakeCampaign(1);
+  campaign.autopilot.pitch.law = ControlLaw::kPd;
+  ResultFolder folder = ResultFolder::Create(temporary / "out", campaign);
+  folder.Append({{MakeCase(0)}});
+  WriteCasesCsv(folder, temporary / "out" / "cases.csv");
+  const std::string csv = ReadText(temporary / "out" / "cases.csv");
+  EXPECT_THAT(csv, Not(HasSubstr("lyapunov")));
+  EXPECT_THAT(csv, Not(HasSubstr("rules_fired")));
+  EXPECT_THAT(csv, Not(HasSubstr("adaptation")));
+  EXPECT_THAT(csv, HasSubstr(",metric_semi_major_axis_error_km,"));
+  // What a folder stores it reads again: of other laws' metrics nothing.
+  const std::vector<double> stored = ResultFolder::Open(temporary / "out").Load(0).metrics;
+  for (std::size_t i = 0; i < stored.size(); ++i)
+    EXPECT_EQ(std::isnan(stored[i]), Metrics()[i].of_law != nullptr) << MetricNames()[i];
+
+  EXPECT_EQ(MetricsUnder(kUsualStages, ControlLaw::kPd).size() + 4, AllMetrics().size());
+  EXPECT_EQ(MetricsUnder(kUsualStages, ControlLaw::kFrozenFuzzy).size() + 1, AllMetrics().size());
 }
 
 TEST(CasesCsv, WritesOneLineACase) {
@@ -56,7 +84,7 @@ TEST(CasesCsv, WritesOneLineACase) {
   std::string expected = "12,lost_control,77.31,2,\"error above 15 deg, for 0.5 s\"";
   for (std::size_t i = 0; i < result.inputs.size(); ++i) expected += ",0.25";
   for (std::size_t i = 0; i < result.metrics.size(); ++i) expected += ",";
-  EXPECT_EQ(CasesCsvLine(result), expected + ",000000000000000d0000000000abcdef\n");
+  EXPECT_EQ(CasesCsvLine(result, AllMetrics()), expected + ",000000000000000d0000000000abcdef\n");
 }
 
 TEST(CasesCsv, DoesNotDependOnTheOrderOfArrival) {
@@ -72,8 +100,8 @@ TEST(CasesCsv, DoesNotDependOnTheOrderOfArrival) {
   WriteCasesCsv(shuffled, temporary / "shuffled" / "cases.csv");
   const std::string csv = ReadText(temporary / "ascending" / "cases.csv");
   EXPECT_EQ(csv, ReadText(temporary / "shuffled" / "cases.csv"));
-  std::string expected = CasesCsvHeader(kUsualStages);
-  for (std::uint64_t k = 0; k < 50; ++k) expected += CasesCsvLine(MakeCase(k));
+  std::string expected = Header();
+  for (std::uint64_t k = 0; k < 50; ++k) expected += CasesCsvLine(MakeCase(k), AllMetrics());
   EXPECT_EQ(csv, expected);
 }
 
@@ -100,8 +128,7 @@ TEST(CasesCsv, ShowsNegativeZeroAsZeroAndUndefinedAsEmpty) {
   WriteCasesCsv(folder, temporary / "out" / "cases.csv");
   CaseResult normalised = result;
   normalised.metrics[0] = 0.0;
-  EXPECT_EQ(ReadText(temporary / "out" / "cases.csv"),
-            CasesCsvHeader(kUsualStages) + CasesCsvLine(normalised));
+  EXPECT_EQ(ReadText(temporary / "out" / "cases.csv"), Header() + CasesCsvLine(normalised, AllMetrics()));
 }
 
 }  // namespace

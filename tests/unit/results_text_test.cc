@@ -38,7 +38,7 @@ TEST(HtmlText, EscapesWhatWouldBeMarkup) {
 TEST(MetricCatalogue, ReadsUnitsFromNames) {
   EXPECT_EQ(SplitUnit("wind_max_speed_m_s").unit, "m/s");
   EXPECT_EQ(SplitUnit("wind_max_speed_m_s").stem, "wind_max_speed");
-  EXPECT_EQ(SplitUnit("pitch_error_itae_deg_s2").unit, "° s²");
+  EXPECT_EQ(SplitUnit("bending_moment_max_n_m").unit, "N m") << "not metres";
   EXPECT_EQ(SplitUnit("adaptation_norm_peak_deg_s2").unit, "°/s²");
   EXPECT_EQ(SplitUnit("q_alpha_max_pa_rad").unit, "Pa rad");
   EXPECT_EQ(SplitUnit("thrust_factor_stage1").unit, "");

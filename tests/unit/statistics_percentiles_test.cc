@@ -57,6 +57,26 @@ TEST(Percentiles, LimitsOfAMedianAreThoseOfTheTable) {
   EXPECT_TRUE(std::isnan(Percentiles({})[3].estimate));
 }
 
+// Their mean, summed term by term, is off by rounding: every deviation is that error, and its skewness 1.
+TEST(Skewness, OfEqualValuesIsUndefined) {
+  for (const double value : {0.1, 0.7, 3.3, 1e-3 / 3.0, -7.7, 6.02e23, 1e-200})
+    for (const std::size_t count : {3, 24, 5000}) {
+      const std::vector<double> equal(count, value);
+      EXPECT_TRUE(std::isnan(Skewness(equal))) << value;
+      EXPECT_EQ(Summarize(equal).std, 0.0) << value;
+      EXPECT_EQ(Summarize(equal).mean, value);
+    }
+}
+
+// Far from 0 and of any size, where sums of powers would cancel, overflow or vanish.
+TEST(Skewness, DoesNotDependOnPlaceAndScale) {
+  const double by_hand = 2.0 / std::pow(2.0, 1.5);
+  EXPECT_NEAR(Skewness({1e9, 1e9, 1e9 + 3.0}), by_hand, 1e-12);
+  EXPECT_NEAR(Skewness({0.0, 0.0, 3e-160}), by_hand, 1e-12);
+  EXPECT_NEAR(Skewness({0.0, 0.0, 3e160}), by_hand, 1e-12);
+  EXPECT_NEAR(Skewness({-3e160, 0.0, 0.0}), -by_hand, 1e-12);
+}
+
 TEST(Skewness, OfSmallSamplesByHand) {
   EXPECT_TRUE(std::isnan(Skewness({})));
   EXPECT_TRUE(std::isnan(Skewness({2.0, 2.0})));

@@ -11,7 +11,7 @@ from ._law import identity
 from ._source import placed, source, without_place
 from ._tables import structured
 from .errors import BadInput, ExitCode, InputWarning, Problem
-from ._flight import Flight, Flights, History, column_positions
+from ._flight import Flight, Flights, History
 
 
 @dataclasses.dataclass(frozen=True)
@@ -155,9 +155,16 @@ class Campaign:
         return tuple(_core.input_names(self.stages))
 
     @functools.cached_property
+    def input_keys(self):
+        """What the campaign file calls each input: {"drag_factor": "drag_coefficient", ...}. Empty: it cannot be
+        dispersed."""
+        return dict(zip(self.input_names, self._core.input_keys))
+
+    @functools.cached_property
     def metric_names(self):
-        """Of the metrics of a flight, with units; cases.csv has them as metric_NAME."""
-        return tuple(_core.metric_names(self.stages))
+        """Of the metrics of a flight under the campaign's own control law, with units; cases.csv has them as
+        metric_NAME."""
+        return tuple(self._core.metric_names)
 
     @functools.cached_property
     def dispersed(self):
@@ -198,7 +205,7 @@ class Campaign:
         values = _core.fly(self._core, index, self._replaced(inputs), _step(step_s) if history else 0.0, integrator, _law(law),
                            _axis_bits(axes))
         rows = values.pop("history")
-        return Flight(self, index, values, None if rows is None else History(rows, _core.history_columns()))
+        return Flight(self, index, values, None if rows is None else History(rows, values["history_columns"]))
 
     def fly_many(self, cases=None, *, histories=True, columns=None, step_s=1.0, threads=0, progress=None, law=None,
                  axes=("pitch",)):
@@ -217,11 +224,11 @@ class Campaign:
             indices = list(range(whole("cases", cases, 0, self.cases)))
         else:
             indices = [self._index(case) for case in cases]
-        names, positions = column_positions(columns)
-        values = _core.fly_many(self._core, indices, _step(step_s) if histories else 0.0, positions,
+        values = _core.fly_many(self._core, indices, _step(step_s) if histories else 0.0,
+                                None if columns is None else list(columns),
                                 whole("threads", threads, 0, MOST_THREADS), progress,
                                 _law(law), _axis_bits(axes))
-        return Flights(self, values, names)
+        return Flights(self, values)
 
     def _index(self, case):
         """A case's index as an int. Raises BadInput for one that the campaign does not have."""
@@ -235,7 +242,9 @@ class Campaign:
         values = {} if inputs is None else dict(inputs)
         for name in values:
             if name not in self.input_names:
-                raise refuse(f"inputs: {name!r} is not an input of this vehicle", "a name of Campaign.input_names")
+                columns = [column for column, key in self.input_keys.items() if key == name]
+                of = f", but the campaign file's name of {', '.join(columns)}" if columns else ""
+                raise refuse(f"inputs: {name!r} is not an input of this vehicle{of}", "a name of Campaign.input_names")
         return {name: finite(f"inputs: {name}", value) for name, value in values.items()}
 
 

@@ -4,29 +4,16 @@ import operator
 
 import numpy
 
-from . import _core
 from ._tables import structured
 from .errors import BadInput
 
 FLIGHT_VALUES = ("outcome", "end_time_s", "end_stage", "reason", "digest", "inputs", "metrics")
 
 
-def column_positions(columns):
-    """Names and positions of history columns; None: all of them. Raises BadInput for a name that is none."""
-    known = _core.history_columns()
-    if columns is None:
-        return known, list(range(len(known)))
-    names = list(columns)
-    for name in names:
-        if name not in known:
-            raise BadInput([("", 0, 0, "", f"columns: '{name}' is not a column of histories", ", ".join(known))])
-    return names, [known.index(name) for name in names]
-
-
 class History:
     """The time history of one flight: rows at the output step and at every event.
 
-    `rows` is a float64 array of shape (rows, columns) over the memory that the flight wrote, not a copy;
+    `rows` is a float64 array of shape (rows, columns) with the columns that flights under the law have;
     `history["altitude_m"]` is a column of it, a view of shape (rows,). NaN: undefined.
     """
 
@@ -74,7 +61,7 @@ class Flight:
         self.reason = values["reason"]
         self.digest = values["digest"]
         self.inputs = dict(zip(campaign.input_names, values["inputs"].tolist()))
-        self.metrics = dict(zip(campaign.metric_names, values["metrics"].tolist()))
+        self.metrics = dict(zip(values["metric_names"], values["metrics"].tolist()))
         self.history = history
 
     def __repr__(self):
@@ -96,14 +83,14 @@ class Flights:
     offsets[i + 1]. Without histories both are None.
     """
 
-    def __init__(self, campaign, values, columns):
+    def __init__(self, campaign, values):
         self._campaign = campaign
         self._values = values
         self.cases = values["case_index"]
         self.outcome = values["outcome"]
         self.inputs = structured(values["inputs"], campaign.input_names)
-        self.metrics = structured(values["metrics"], campaign.metric_names)
-        self.columns = columns
+        self.metrics = structured(values["metrics"], values["metric_names"])
+        self.columns = values["history_columns"]
         self.histories = values.get("histories")
         self.offsets = values.get("offsets")
 
@@ -120,7 +107,8 @@ class Flights:
         if isinstance(i, slice):
             return [self[each] for each in range(len(self))[i]]
         i = self._position(i)
-        return Flight(self._campaign, int(self.cases[i]), {name: self._values[name][i] for name in FLIGHT_VALUES},
+        values = {name: self._values[name][i] for name in FLIGHT_VALUES}
+        return Flight(self._campaign, int(self.cases[i]), values | {"metric_names": self._values["metric_names"]},
                       self.history(i))
 
     def _position(self, i):

@@ -42,7 +42,7 @@ class Results:
         self.reason = values["reason"]
         self.digest = values["digest"]
         self.inputs = structured(values["inputs"], self.campaign.input_names)
-        self.metrics = structured(values["metrics"], self.campaign.metric_names)
+        self.metrics = structured(values["metrics"], values["metric_names"])
 
     def __repr__(self):
         return f"<dispersa.Results {self.directory}: {len(self)} cases, {self.verdict}>"
@@ -85,7 +85,7 @@ class Results:
         """Indices of the worst cases in a metric, a list of at most `count`, the worst first: as in the report, lost flights
         before all others, then by the value in its bad sense. Raises BadInput for a metric that there is not."""
         if metric not in self.metrics.dtype.names:
-            raise refuse(f"worst: '{metric}' is not a metric of this vehicle", "a name of Campaign.metric_names")
+            raise refuse(f"worst: '{metric}' is not a metric of these flights", "a name of Results.metrics.dtype.names")
         worse = _core.describe(metric)[3]
         if worse == "neither":
             raise refuse(f"worst: of '{metric}' neither sense is worse", "a metric that has a worse sense")
@@ -111,7 +111,8 @@ class Results:
 
     @functools.cached_property
     def cases(self):
-        """The columns of cases.csv: a pandas.DataFrame, or where pandas is not installed what table() returns."""
+        """The columns of cases.csv: a pandas.DataFrame, or where pandas is not installed what table() returns. Of the frame
+        attrs["input_keys"] is what the campaign file calls each input: {"input_drag_factor": "drag_coefficient", ...}."""
         try:
             import pandas
         except ImportError:
@@ -123,7 +124,9 @@ class Results:
             plain = columns.view(numpy.float64).reshape(len(self), len(names))
             parts.append(pandas.DataFrame(plain, columns=[prefix + name for name in names], copy=False))
         parts.append(pandas.DataFrame({"digest": self.digest}))
-        return pandas.concat(parts, axis=1)
+        frame = pandas.concat(parts, axis=1)
+        frame.attrs["input_keys"] = {"input_" + name: key for name, key in self.campaign.input_keys.items() if key}
+        return frame
 
     def bands(self):
         """histories/bands.csv: percentiles over time as a History with columns NAME_min, _p01, _p05, _p50, _p95, _p99
