@@ -72,7 +72,7 @@ InputNode ParseCsv(const std::string& text, const std::string& file, const std::
   InputNode table = MapAt(place);
   std::optional<std::vector<std::size_t>> places;
   int line_number = 0;
-  std::string_view rest = text;
+  std::string_view rest = WithoutByteOrderMark(text);
   while (!rest.empty()) {
     const std::size_t end = std::min(rest.find('\n'), rest.size());
     std::string_view line = rest.substr(0, end);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string_view>
 
+#include "core/campaign_yaml/text_problems.h"
 #include "core/input/number_text.h"
 
 namespace dispersa {
@@ -134,7 +135,7 @@ class RaspReader {
 
 InputNode ParseRasp(const std::string& text, const std::string& file, std::vector<InputProblem>& problems) {
   RaspReader reader(file, problems);
-  std::string_view rest = text;
+  std::string_view rest = WithoutByteOrderMark(text);
   int line_number = 0;
   while (!rest.empty()) {
     const std::size_t end = std::min(rest.find('\n'), rest.size());

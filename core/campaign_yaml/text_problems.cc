@@ -71,4 +71,11 @@ bool CheckIndentation(const std::string& text, const std::string& file, int last
   return true;
 }
 
+std::string_view WithoutByteOrderMark(const std::string& text) {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";
+  std::string_view rest = text;
+  if (rest.substr(0, kMark.size()) == kMark) rest.remove_prefix(kMark.size());
+  return rest;
+}
+
 }  // namespace dispersa

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/input/input_error.h"
@@ -15,5 +16,8 @@ bool CheckUtf8(const std::string& text, const std::string& file, std::vector<Inp
 /// harmless.
 bool CheckIndentation(const std::string& text, const std::string& file, int last_line,
                       std::vector<InputProblem>& problems);
+
+/// The text without the byte order mark that some programs, spreadsheets above all, write before UTF-8.
+std::string_view WithoutByteOrderMark(const std::string& text);
 
 }  // namespace dispersa

@@ -79,6 +79,32 @@ TEST(ParseCsv, TakesBlanksAndTabsFromCells) {
   EXPECT_EQ(Column(table, "b"), std::vector<std::string>{"2"});
 }
 
+// As spreadsheets write it. A mark anywhere else is a part of a cell.
+TEST(ParseCsv, SkipsAByteOrderMark) {
+  std::vector<InputProblem> problems;
+  const InputNode table = ParseCsv(
+      "\xEF\xBB\xBF"
+      "a,b\n1,2\n",
+      "f", {"a", "b"}, problems);
+  EXPECT_EQ(Texts(problems), "");
+  EXPECT_EQ(Column(table, "a"), std::vector<std::string>{"1"});
+  EXPECT_EQ(Column(table, "b"), std::vector<std::string>{"2"});
+  ParseCsv(
+      "a,\xEF\xBB\xBF"
+      "b\n1,2\n",
+      "f", {"a", "b"}, problems);
+  EXPECT_EQ(Texts(problems),
+            "f:1:1: missing column 'b', allowed: the columns a, b\n"
+            "f:1:3: unknown column '\xEF\xBB\xBF"
+            "b' (did you mean 'b'?), allowed: the columns a, b\n");
+}
+
+TEST(ParseRasp, SkipsAByteOrderMark) {
+  std::vector<InputProblem> problems;
+  ParseRasp("\xEF\xBB\xBFM 1200 9000 P 1500 1600 X\n1 100\n2 0\n", "f", problems);
+  EXPECT_EQ(Texts(problems), "");
+}
+
 TEST(ParseCsv, RefusesAColumnThatIsGivenTwice) {
   std::vector<InputProblem> problems;
   ParseCsv("a,b, a\n1,2,3\n", "f", {"a", "b"}, problems);
