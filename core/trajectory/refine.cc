@@ -22,7 +22,11 @@ constexpr double kWithinTolerance = 0.02;
 LeastSquaresResult Solve(const AscentModel& model, const TrajectoryProblem& problem,
                          const TrajectoryOptions& options, const std::vector<ProgramVariable>& freedoms,
                          bool with_speed, FlightProgram* program, AscentResult* ascent = nullptr) {
-  const bool speed = with_speed && !problem.velocity_is_free;
+  const AscentOptions ascent_options = AscentOptionsOf(problem, options.steps);
+  // The speed of an engine that is cut off at one is not for the program to find: as a condition that no
+  // unknown moves it would stall the rest.
+  const bool speed = with_speed && !problem.velocity_is_free &&
+                     !EndsByVelocity(model, FlyAscent(model, *program, ascent_options));
   const bool plane = with_speed && problem.target_inclination_rad.has_value();
   const bool turned = with_speed && problem.target_argument_of_perigee_rad.has_value();
   const std::size_t conditions = 2 + (speed ? 1 : 0) + (plane ? 1 : 0) + (turned ? 1 : 0);
@@ -59,7 +63,6 @@ LeastSquaresResult Solve(const AscentModel& model, const TrajectoryProblem& prob
     if (turned) values[next] = errors.argument_of_perigee_rad;
     return values;
   };
-  const AscentOptions ascent_options = AscentOptionsOf(problem, options.steps);
   const auto program_at = [&](const std::vector<double>& unknowns) {
     FlightProgram trial = *program;
     for (std::size_t i = 0; i < free.size(); ++i) free[i].Of(trial) = unknowns[i];
@@ -140,6 +143,12 @@ LeastSquaresResult RefineProgram(const AscentModel& model, const TrajectoryProbl
 LeastSquaresResult RefineAltitudeAndAngle(const AscentModel& model, const TrajectoryProblem& problem,
                                           const TrajectoryOptions& options, FlightProgram* program) {
   return Solve(model, problem, options, AltitudeAndAngleVariables(model.vehicle, problem), false, program);
+}
+
+bool EndsByVelocity(const AscentModel& model, const AscentResult& ascent) {
+  const std::size_t last = model.vehicle.stages.size() - 1;
+  return model.vehicle.stages[last].motor.cut_off == CutOff::kAtVelocity && ascent.completed &&
+         std::isfinite(ascent.cut_off_s[last]);
 }
 
 AscentOptions AscentOptionsOf(const TrajectoryProblem& problem, const AscentSteps& steps) {

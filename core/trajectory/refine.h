@@ -31,4 +31,7 @@ LeastSquaresResult RefineAltitudeAndAngle(const AscentModel& model, const Trajec
 /// Options of one ascent of a problem.
 AscentOptions AscentOptionsOf(const TrajectoryProblem& problem, const AscentSteps& steps);
 
+/// Whether the last engine was cut off at the speed that its file says.
+bool EndsByVelocity(const AscentModel& model, const AscentResult& ascent);
+
 }  // namespace dispersa

@@ -55,10 +55,31 @@ const char* Where(const SpeedAtTarget& speed) {
   return speed.on_target ? "at the target's altitude and angle" : "carried to the target's altitude";
 }
 
+// Of an engine that ends at a speed: that speed, and what holds altitude and angle away from the target.
+std::string CutOffText(const AscentModel& model, const TrajectoryProblem& problem,
+                       const TrajectoryOptions& options, FlightProgram program) {
+  std::string text;
+  const double ends_m_s = model.vehicle.stages.back().motor.cut_off_velocity_m_s;
+  const double asked_m_s = AimedVelocity(problem);
+  if (!problem.velocity_is_free && std::fabs(ends_m_s - asked_m_s) > options.tolerance.velocity_m_s)
+    text +=
+        fmt::format(" Cut-off: the last engine is cut off at {:.3f} m/s, {:.3f} m/s {} than the target asks.",
+                    ends_m_s, std::fabs(ends_m_s - asked_m_s), ends_m_s < asked_m_s ? "less" : "more");
+  const LeastSquaresResult refined = RefineAltitudeAndAngle(model, problem, options, &program);
+  if (refined.status == LeastSquaresStatus::kConverged) return text;
+  const std::vector<ProgramVariable> variables = AltitudeAndAngleVariables(model.vehicle, problem);
+  for (const std::size_t held : refined.held_at_bound)
+    text += " Bound: for altitude and angle" + HeldText(problem, program, variables[held]);
+  return text;
+}
+
 // What is wrong with altitude and angle, then with speed, each on its own: a compromise between the three,
 // which is where the refinement ends, lies at bounds that have nothing to do with the cause.
 std::string CauseText(const AscentModel& model, const TrajectoryProblem& problem,
                       const TrajectoryOptions& options, const FlightProgram& program) {
+  // Energy is not what is missing where the engine could burn on.
+  if (EndsByVelocity(model, FlyAscent(model, program, AscentOptionsOf(problem, options.steps))))
+    return CutOffText(model, problem, options, program);
   const Bounds& azimuth = problem.launch_azimuth_rad;
   SpeedAtTarget slow = SpeedToward(model, problem, options, program, azimuth.high);
   SpeedAtTarget fast = SpeedToward(model, problem, options, program, azimuth.low);
@@ -97,9 +118,12 @@ std::string DescribeShortfall(const AscentModel& model, const TrajectoryProblem&
         "The target is out of reach: every program falls back to the ground; the best flies {:.1f} s.",
         ascent.end_time_s);
   const OrbitErrors& e = result.errors;
-  std::string text = fmt::format(
-      "The target is out of reach: the best program ends {:+.3f} km, {:+.3f} m/s and {:+.4f} deg from it.",
-      e.altitude_m * 1e-3, e.velocity_m_s, Deg(e.flight_path_angle_rad));
+  // That near the target is no matter of reach.
+  constexpr OrbitErrors kNear = {100.0, 0.5, 0.01 * kRadPerDeg, 0.01 * kRadPerDeg, 0.1 * kRadPerDeg};
+  std::string text =
+      fmt::format("The target is {}: the best program ends {:+.3f} km, {:+.3f} m/s and {:+.4f} deg from it.",
+                  IsWithin(e, kNear) ? "narrowly missed" : "out of reach", e.altitude_m * 1e-3,
+                  e.velocity_m_s, Deg(e.flight_path_angle_rad));
   if (problem.target_inclination_rad)
     text += fmt::format(" Its inclination is off by {:+.4f} deg.", Deg(e.inclination_rad));
   if (problem.target_argument_of_perigee_rad)

@@ -44,6 +44,26 @@ TEST(RefineProgram, FindsTheSameProgramFromAroundInAFewSteps) {
   }
 }
 
+// The speed at which the last engine is cut off is a centimetre a second from the target's: altitude and
+// angle are met as near as ever.
+TEST(RefineProgram, LeavesTheSpeedToAnEngineThatIsCutOffAtOne) {
+  const AscentModel model =
+      BuildAscentModel(LoadVehicle(DISPERSA_CAMPAIGNS "/gallery/electron/vehicle.yaml"), 0.01);
+  const Reference shipped = LoadReference(DISPERSA_CAMPAIGNS "/gallery/electron/reference.yaml");
+  TrajectoryProblem problem = shipped.problem;
+  problem.target_velocity_m_s += 0.01;
+  FlightProgram program = shipped.program;
+  program.alpha_max_rad += 0.05 * kRadPerDeg;
+  AscentResult ascent;
+  const LeastSquaresResult refined = RefineProgram(model, problem, {}, &program, &ascent);
+  EXPECT_EQ(refined.status, LeastSquaresStatus::kConverged);
+  EXPECT_TRUE(EndsByVelocity(model, ascent));
+  const OrbitErrors errors = ErrorsOf(problem, ascent.orbit);
+  EXPECT_LT(std::fabs(errors.altitude_m), 1.0);
+  EXPECT_LT(std::fabs(errors.flight_path_angle_rad), 1e-6 * kRadPerDeg);
+  EXPECT_LT(std::fabs(errors.velocity_m_s), 0.1);
+}
+
 // One condition is tight and the others loose, in turn: a residual in another's scale would end too early.
 TEST(RefineProgram, MeetsEachConditionToItsOwnToleranceFromSeveralStarts) {
   const AscentModel model = BuildAscentModel(LoadVehicle(DISPERSA_CAMPAIGNS "/vehicles/slv4.yaml"), 0.01);

@@ -145,5 +145,31 @@ TEST(Shortfall, OfAProgramThatFallsBackIsHowLongItFlies) {
                         fallen.end_time_s));
 }
 
+// An engine that is cut off at a speed and has propellant left: neither energy nor azimuth is the cause.
+TEST(Shortfall, OfAnEngineThatIsCutOffIsItsSpeed) {
+  const AscentModel model =
+      BuildAscentModel(LoadVehicle(DISPERSA_CAMPAIGNS "/gallery/electron/vehicle.yaml"), 0.01);
+  Ended ended;
+  ended.result.reference = LoadReference(DISPERSA_CAMPAIGNS "/gallery/electron/reference.yaml");
+  ended.result.reference.constraints.clear();
+  ended.result.refined = ended.result.reference.program;
+  ended.problem = ended.result.reference.problem;
+  ended.problem.target_velocity_m_s = 7938.27;
+  const std::string text = DescribeShortfall(model, ended.problem, {}, ended.result);
+  EXPECT_THAT(text,
+              HasSubstr(" Cut-off: the last engine is cut off at 7898.270 m/s, 40.000 m/s less than the "
+                        "target asks."));
+  EXPECT_THAT(text, Not(HasSubstr("Energy")));
+}
+
+TEST(Shortfall, OfAFewMetresIsNarrow) {
+  Ended ended;
+  ended.result.refinement.status = LeastSquaresStatus::kConverged;
+  ended.result.errors = {0.0, 0.001, 0.0};
+  EXPECT_THAT(ended.Text(),
+              HasSubstr("The target is narrowly missed: the best program ends +0.000 km, +0.001 m/s "
+                        "and +0.0000 deg from it."));
+}
+
 }  // namespace
 }  // namespace dispersa::trajectory_shortfall_test
