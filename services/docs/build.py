@@ -22,13 +22,14 @@ LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\[\]]*\])*)\]\(([^)\s]+)\)")
 # Nothing here draws it: that would be a script from elsewhere.
 DIAGRAM = "\n*A diagram, as the text that Mermaid draws it from:*\n\n```text\n"
 EXIT_CODES = [
-    (0, "done; of a campaign: every requirement is met"),
-    (1, "internal error, or a machine that returned other bits"),
+    (0, "done; for a campaign: every requirement is met"),
+    (1, "internal error, or a machine returned other bits"),
     (2, "bad input: a file, an option, a command"),
-    (3, "a requirement failed"),
+    (3, "a requirement failed, or `optimize`, `tune` or `margins` missed a target"),
     (4, "more cases are needed to decide"),
-    (5, "incomplete: cases are quarantined, the disk is full, standard output takes nothing, nobody answers"),
-    (6, "`replay` found another result than the one that is stored"),
+    (5, "incomplete: quarantined cases, no workers, no answer from the coordinator, a full disk, a closed standard output, a "
+        "cancelled campaign"),
+    (6, "`replay` found a result that differs from the stored one"),
     (130, "interrupted"),
 ]
 
@@ -48,7 +49,7 @@ def subcommands(text):
 
 
 def commands_page(programs):
-    page = ["# Commands", "", "What the programs say of themselves.", ""]
+    page = ["# Commands", "", "The help text of every program and command.", ""]
     for name in ("dispersa", "dispersa-coordinator", "dispersa-worker"):
         text = help_of(programs / name)
         page += [f"## {name}", "", "```text", text, "```", ""]
@@ -62,10 +63,10 @@ def commands_page(programs):
 
 def exit_codes_page():
     rows = "\n".join(f"| {code} | {meaning} |" for code, meaning in EXIT_CODES)
-    return ("# Exit codes\n\nOf every command; of `run`, `watch` and `report` the code is the campaign's verdict, so that a "
-            f"script or a pipeline can act on it.\n\n| code | means |\n|---|---|\n{rows}\n\n"
-            "Where two would fit, the graver one is returned: an internal error before anything else, a failed requirement "
-            "before one that is not decided.\n")
+    return ("# Exit codes\n\nEvery command ends with one of these codes. The code of `run`, `watch` and `report` is the "
+            "campaign's verdict, so that a script or a pipeline can act on it.\n\n"
+            f"| code | meaning |\n|---|---|\n{rows}\n\n"
+            "If two codes fit, the command returns the first of 130, 2, 1, 5, 6, 3, 4, 0.\n")
 
 
 def schemas_page(programs, folder):
@@ -78,8 +79,8 @@ def schemas_page(programs, folder):
 def python_page(package, python):
     """Of the package in this folder; a build may have none."""
     if package is None or not (package / "dispersa" / "__init__.py").exists():
-        return ("# Reference of the Python package\n\nThe build of which these pages are had no Python package: it needs "
-                "pybind11-dev and python3-dev. `help(dispersa)` shows the same.\n")
+        return ("# Reference of the Python package\n\nThese pages come from a build without the Python package. To have the "
+                "reference here, install pybind11-dev and python3-dev, and build again. `help(dispersa)` shows the same.\n")
     done = subprocess.run([python, "-B", HERE / "python_reference.py"], capture_output=True, text=True, timeout=120,
                           env={**os.environ, "PYTHONPATH": str(package), "MPLBACKEND": "Agg"})
     if done.returncode != 0:
