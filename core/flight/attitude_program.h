@@ -1,9 +1,9 @@
-// The pitch program: reference attitude over time since lift-off.
+// The flight program's attitude: the reference attitude over time since lift-off.
 //
-// Frame L (launch-inertial): frozen at lift-off; origin at the launch site, x horizontal along the launch
-// azimuth, y horizontal to the right, z down along the geodetic vertical. The attitude of the body in L
-// is a 2-3-1 sequence, pitch about y, yaw about z, roll about x: pitch is 90° at lift-off and the
-// sequence stays regular through the whole flight, which Euler angles against the local horizon do not.
+// Frame L (launch-inertial) is frozen at lift-off. Its origin is the launch site: x is horizontal along the
+// launch azimuth, y is horizontal to the right, z points down along the geodetic vertical. The attitude of
+// the body in L is a 2-3-1 sequence: pitch about y, yaw about z, roll about x. Pitch is 90° at lift-off. The
+// sequence stays regular through the whole flight. Euler angles against the local horizon do not.
 #pragma once
 
 #include <vector>
@@ -30,7 +30,8 @@ struct ReferenceAttitude {
   Vector3 w_LR_R = Vector3::Zero();
 };
 
-/// Cubic Hermite interpolation between knots of strictly increasing time; held outside.
+/// Cubic Hermite interpolation between knots of strictly increasing time. Before the first knot and after the
+/// last one the value is held.
 struct AttitudeProgram {
   double launch_azimuth_rad = 0.0;
   std::vector<AttitudeKnot> knots;  ///< at least two

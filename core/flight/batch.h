@@ -1,13 +1,13 @@
-// The engine: W closed-loop flights side by side, each from lift-off to injection or to where it fails.
+// The engine: W closed-loop flights side by side, each from lift-off to injection or to its failure.
 //
-// In a pass each lane that flies stands at a tick of its own: the errors are measured, the autopilot or the
-// reaction control decides, metrics are taken, and the plant moves on to the lane's next tick, through its
-// own events at their exact times. Lanes know nothing of each other: they may be at different stages and at
-// different times since lift-off, and one that ends is filled with the next flight of the queue.
+// In a pass each flying lane stands at its own tick. The errors are measured, the autopilot or the reaction
+// control decides, metrics are taken, and the plant moves on to the lane's next tick. On the way it stops at
+// the lane's events at their exact times. Lanes do not depend on each other: they may be in different stages
+// and at different times since lift-off. A lane whose flight ends takes the next flight of the queue.
 //
-// Here lanes come and go; batch_pass.h is what they do at a tick, batch_events.h how they move on to the
-// next. What happens once a flight, once an event or only to a flight that is watched is the record's
-// (flight_record.h). Compiled once for each instruction set and width (fly_lanes.cc).
+// This file fills and empties lanes. batch_pass.h does the work of a tick, batch_events.h moves a lane on to
+// its next tick. The record (flight_record.h) does what happens once a flight or once an event, and what only
+// watched flights need. The engine is compiled once for each instruction set and width (fly_lanes.cc).
 #pragma once
 
 #include "core/control/autopilot_step.h"
@@ -35,7 +35,7 @@ class Batch {
   static constexpr int kLanes = kWidth<T>;
   using M = MaskOf<T>;
 
-  /// What of a lane is no value of T.
+  /// Per-lane bookkeeping that is not a SIMD value.
   struct Slot {
     FlightRecord* record = nullptr;  ///< null: the lane does not fly
     std::size_t next_event = 0;      ///< of its record's
@@ -258,7 +258,7 @@ void Batch<T>::Start(int lane, FlightRecord* record) {
     End(lane, Outcome::kNumericalFailure, record->refusal);
     return;
   }
-  // What happened before lift-off happens at lift-off.
+  // Events before lift-off happen at lift-off.
   while (slot.record != nullptr && NextEvent(lane) != nullptr && NextEvent(lane)->time_s <= kSameInstant_s)
     Happen(lane);
   if (slot.record != nullptr) SetStop(lane);
@@ -342,7 +342,7 @@ LaneView Batch<T>::ViewOf(int lane) const {
     view.error_angle_rad[axis] = Lane(angle_rad_[axis], lane);
     view.error_rate_rad_s[axis] = Lane(rate_rad_s_[axis], lane);
     view.thrusters[axis] = static_cast<int>(Lane(thrusters_[axis].direction, lane));
-    // Without thrust the lane's autopilot does not act; what stands there is its neighbours' doing.
+    // Without thrust the lane's autopilot does not act. The values in its place come from neighbouring lanes.
     if (!view.phase.burning) continue;
     view.gimbal_rad[axis] = Lane(gimbals_.deflection_rad[axis], lane);
     view.axes[axis] =

@@ -245,7 +245,7 @@ void Batch<T>::BurnOut(int lane, int stage) {
   for (T& weight : gyro_weight_) Lane(weight, lane) = 0.0;
   Lane(unit_weight_, lane) = 1.0;
   step_.BurnOut(lane);
-  // Where thrusters held the roll.
+  // Thrusters held the roll before: their state ends.
   Lane(thrusters_[kRoll].direction, lane) = Lane(thrusters_[kRoll].cycles_on, lane) = 0.0;
   if (stage + 1 == static_cast<int>(record.plant.stacks.size())) record.Inject(now.altitude_m, y);
 }

@@ -54,8 +54,8 @@ void Batch<T>::LetGo() {
   step_.EvaluateStart(time_s_);
 }
 
-/// Engines that are cut off at an inertial speed: the flight computer commands it for the instant within the
-/// tick to come at which the speed, growing as it does now, is reached.
+/// Engines that are cut off at an inertial speed. The flight computer extrapolates the speed over the next
+/// tick at its present growth. It commands the cut-off for the instant at which the speed is reached.
 template <class T>
 void Batch<T>::CutOff() {
   const unsigned burning = Bits(live_ & step_.phase().burning);
@@ -128,7 +128,7 @@ void Batch<T>::MeasureBySensors(const T* reference) {
   if (has_plugin_) measured_body_rate_rad_s_ = Select(imperfect, rate, measured_body_rate_rad_s_);
 }
 
-/// The blend of gyros and inertial unit; while nothing burns the weights are the inertial unit's alone.
+/// The blend of gyros and inertial unit. Without thrust only the inertial unit has weight.
 template <class T>
 Vector<T> Batch<T>::GyroRates(Vector<T> unit_rad_s) {
   const M burning = live_ & step_.phase().burning;
@@ -192,7 +192,7 @@ void Batch<T>::FlyGimbalsOf(M powered) {
                     has_plugin_ ? PluginCommands(powered, fed, foreign) : nullptr, axes_, gimbals_);
 }
 
-/// What a law that is not ours commands: each lane by itself, as ordinary code.
+/// The commands of a law from a shared object or from Python: each lane by itself, in ordinary code.
 template <class T>
 const T* Batch<T>::PluginCommands(M powered, const T* program, T* command) {
   T of_roll, of_pitch;
@@ -219,8 +219,9 @@ const T* Batch<T>::PluginCommands(M powered, const T* program, T* command) {
   return command;
 }
 
-// What the program asks of the lanes' axes at their ticks; null where nothing is fed forward. Body axes stand
-// for the reference's: what an error of a degree mixes of them is a part in fifty of what is small.
+// The feed-forward that the flight program asks of each lane's axes at its tick; null where nothing is fed
+// forward. The body axes stand for the reference's axes: an attitude error of one degree mixes a fiftieth
+// part of a small quantity.
 template <class T>
 const T* Batch<T>::FedForward(T* program) const {
   const FeedForwardRows& table = model_.feed_forward_rows();
@@ -461,7 +462,7 @@ void Batch<T>::CheckEnds() {
   if (!Any(suspects)) return;
   for (int lane = 0; lane < kLanes; ++lane) {
     if (!(Bits(suspects) >> lane & 1u)) continue;
-    // A sample stands for the ticks up to the next one; in the coast these are several.
+    // A sample stands for all ticks up to the next sample: in the coast these are several.
     const double lost_ticks = Bits(is_lost) >> lane & 1u
                                   ? Lane(lost_ticks_, lane) + Lane(next_tick_, lane) - Lane(tick_, lane)
                                   : 0.0;

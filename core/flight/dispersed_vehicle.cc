@@ -9,7 +9,7 @@
 namespace dispersa {
 namespace {
 
-// The element of a stage's structure has `added_kg` more; the others keep their masses.
+// Adds `added_kg` to one element of a stage's structure. The other elements keep their masses.
 void AddToElement(std::size_t element, double added_kg, double& dry_kg, Stage& stage) {
   for (std::size_t i = 0; i < stage.structure.size(); ++i) {
     const double own_kg = dry_kg * stage.structure[i].fraction + (i == element ? added_kg : 0.0);

@@ -1,17 +1,21 @@
-// The vehicle of one flight whose masses differ from the nominal ones.
+// The vehicle of one flight with dispersed masses.
 //
-// What changes with a mass, and what is held (definitions of ours, one key for one cause):
-//   dry mass of a stage   every element of its structure by the same factor, so its own centre of gravity and
-//                         radii of gyration stay; of the last stage the payload too. Boosters and what is
-//                         jettisoned stay as they are.
-//   propellant load       the grain's outer diameter, length and density stay: more propellant narrows the
-//                         bore, up to a grain without one; tanks are filled higher, up to full ones. Thrust,
-//                         flow at full thrust and specific impulse stay, so the burn lasts longer by what
-//                         there is more. (A heavier charge that burns in the same time is propellant_load and
-//                         burn_rate together: correlate the two.)
-//   payload mass          added to one element of the last stage's structure, whose place and shape it has.
-// Masses above a stage, centre of gravity, inertia, what sections carry and bending follow. Control laws,
-// their schedules and guidance keep the nominal values.
+// Definitions of this program, one key for one cause:
+//   dry mass of a stage   Every element of the stage's structure gets the same factor. Its centre of gravity
+//   and radii
+//                         of gyration stay. The payload belongs to the last stage. Boosters and jettisoned
+//                         bodies stay as they are.
+//   propellant load       The grain's outer diameter, length and density stay. More propellant narrows the
+//   bore, down to
+//                         a grain without a bore. Tanks are filled higher, up to full tanks. Thrust, flow at
+//                         full thrust and specific impulse stay, so the burn lasts longer in proportion. A
+//                         heavier charge that burns in the same time is propellant_load and burn_rate
+//                         together: correlate the two.
+//   payload mass          The difference is added to one element of the last stage's structure, at its place
+//   and with
+//                         its shape.
+// Masses above a stage, centre of gravity, inertia, section loads and bending follow. Control laws, their
+// schedules and guidance keep the nominal values.
 #pragma once
 
 #include "core/flight/flight_inputs.h"

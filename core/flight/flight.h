@@ -37,7 +37,7 @@ struct FlightResult {
   RigidBodyState end_state;
 };
 
-/// Flies; a pure function of its arguments. Everything that changes lives in it and ends with it.
+/// Flies one flight: a pure function of its arguments. It keeps no state.
 FlightResult Fly(const FlightModel& model, const FlightInputs& inputs, const FlightOptions& options = {});
 
 /// One flight of many.
@@ -45,8 +45,8 @@ struct FlightOrder {
   FlightInputs inputs;
   FlightOptions options = {};
 };
-/// Flies all, side by side in ChosenLanes(), on this thread; results in the order of the orders. Each result
-/// has the bits that Fly gives it.
+/// Flies all orders side by side in ChosenLanes() on this thread. The results are in the order of the orders.
+/// Each result has the bits that Fly gives.
 std::vector<FlightResult> FlyAll(const FlightModel& model, const std::vector<FlightOrder>& orders);
 
 /// State at lift-off: at rest on the site, attitude as the pitch program begins, with the flight's own

@@ -22,7 +22,7 @@ constexpr PerStage AllStages(double value) {
   return values;
 }
 
-/// Of each nozzle (right, left, bottom, top; of a list, in its order) of each stage.
+/// One value for each nozzle (right, left, bottom, top; those of a list in its order) of each stage.
 using PerNozzle = std::array<std::array<double, kNozzles>, kMaxStages>;
 
 constexpr PerNozzle AllNozzles(double value) {
@@ -35,8 +35,8 @@ constexpr PerNozzle AllNozzles(double value) {
 /// Largest number of altitude levels of a drawn wind profile: every kilometre up to 30 km.
 inline constexpr int kWindLevels = 30;
 
-/// Doubles only, each declared by DeclareInputs() below; SI and radians; the defaults are the nominal
-/// flight. Factors multiply the nominal value.
+/// Only doubles, each declared by DeclareInputs() below, in SI units and radians. The defaults are the
+/// nominal flight. Factors multiply the nominal value.
 struct FlightInputs {
   PerStage thrust_misalignment_rad{};        ///< tilt of the thrust against the body axis
   PerStage thrust_misalignment_clock_rad{};  ///< direction of the tilt: from body y towards body z
@@ -50,7 +50,7 @@ struct FlightInputs {
   PerStage cg_offset_m{};          ///< of the CG off the axis, of the stack without what it burns
   PerStage cg_offset_clock_rad{};  ///< direction of the offset, likewise
   PerStage thrust_factor = AllStages(1.0);
-  PerStage mass_flow_factor = AllStages(1.0);         ///< flow at full thrust; the burn shortens with it
+  PerStage mass_flow_factor = AllStages(1.0);         ///< flow at full thrust: more flow shortens the burn
   PerStage specific_impulse_factor = AllStages(1.0);  ///< thrust at the same flow
   double wind_max_speed_m_s = 0.0;                    ///< of the jet stream
   double wind_azimuth_rad = 0.0;                      ///< where it comes from, clockwise from north
@@ -62,7 +62,7 @@ struct FlightInputs {
   double gust_azimuth_rad = 0.0;
   std::array<double, kWindLevels> wind_profile_north{};  ///< standard normal draws of a wind climatology
   std::array<double, kWindLevels> wind_profile_east{};
-  double turbulence_exceedance = 0.0;     ///< probability that picks the intensity; 0: none
+  double turbulence_exceedance = 0.0;     ///< probability that picks the intensity (0: none)
   double turbulence_wind_20ft_m_s = 0.0;  ///< mean wind near the ground, which makes the turbulence there
   double turbulence_scale = 1.0;          ///< of all intensities
   double drag_factor = 1.0;               ///< of the axial force
@@ -102,10 +102,11 @@ struct FlightInputs {
   PerStage product_of_inertia_xy_kg_m2{};       ///< integral of x y dm about C, of the stack, all the burn
   PerStage product_of_inertia_xz_kg_m2{};
   PerStage product_of_inertia_yz_kg_m2{};
-  PerStage ignition_delay_s{};    ///< by which the stage ignites late; the first stage's does not count
+  PerStage ignition_delay_s{};    ///< delay of the stage's ignition, without effect for the first stage
   PerStage separation_delay_s{};  ///< by which the stage separates late
   double launch_azimuth_error_rad = 0.0;  ///< vehicle and inertial unit turned clockwise, unnoticed
-  double initial_roll_error_rad = 0.0;    ///< of the body at lift-off, about its axes; the unit sees it
+  double initial_roll_error_rad =
+      0.0;  ///< of the body at lift-off, about its axes, and measured by the inertial unit
   double initial_pitch_error_rad = 0.0;
   double initial_yaw_error_rad = 0.0;
   // Of one stack each, besides the factor of the whole vehicle.
@@ -135,10 +136,10 @@ struct InputColumn {
   std::size_t offset = 0;  ///< in bytes from the start of FlightInputs
 };
 
-/// How a campaign disperses an input by a key of its own: one draw, or one a stage or a mode. What takes more
-/// than that (several inputs, further keys) is a row of core/campaign/dispersion_table.cc.
+/// How a campaign disperses an input by its own key: one draw, or one for each stage or mode. A dispersion
+/// that takes several inputs or further keys is a row of core/campaign/dispersion_table.cc.
 struct Dispersal {
-  const char* key = nullptr;  ///< of `dispersions`; null: none
+  const char* key = nullptr;  ///< key in `dispersions` (null: none)
   const char* meaning = "";   ///< one line
   Dimension dimension = {};   ///< empty: a factor
   Range range = kPositive;    ///< of every value that can be drawn

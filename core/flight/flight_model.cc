@@ -22,7 +22,7 @@ std::shared_ptr<const BoosterSet> BuildBoosterSet(const Boosters& boosters, doub
       BuildBoosterMass(boosters), boosters.nozzle_station_m, boosters.radius_m, boosters.separation_delay_s});
 }
 
-// What a burn leaves is there for the next one of the same engine.
+// The propellant that a burn leaves is available to the next burn of the same engine.
 void PassOnPropellant(const Vehicle& vehicle, std::size_t from, LauncherPlant& plant) {
   for (std::size_t i = from + 1; i < plant.stacks.size() && vehicle.stages[i].restarts; ++i)
     SetPropellant(vehicle.stages[i].motor, plant.stacks[i - 1].burn.left_kg, plant.stacks[i].burn);
@@ -60,7 +60,7 @@ void SetMasses(const Vehicle& vehicle, LauncherPlant& plant) {
   for (std::size_t i = 0; i < masses.size(); ++i) {
     LauncherStack& stack = plant.stacks[i];
     stack.mass = masses[i];
-    // What boosters load sections of the core with is not modelled.
+    // The loads of boosters on the core's sections are not modelled.
     if (vehicle.stages[i].restarts)
       stack.loads = plant.stacks[i - 1].loads;
     else if (!vehicle.profile.empty() && (i > 0 || vehicle.boosters.count == 0))
@@ -105,8 +105,8 @@ StageControl BuildStageControl(const LauncherPlant& plant, int index, double ign
                                const std::vector<double>& jettison_s) {
   const LauncherStack& stack = plant.stacks[static_cast<std::size_t>(index)];
   // Under constant thrust the effectiveness changes slowly and smoothly: 33 points follow it to a part in a
-  // thousand. With a thrust curve it follows the curve to a thousandth of the burn; ramps it does not know.
-  // What leaves at once makes it jump, and is followed as closely.
+  // thousand. With a thrust curve it follows the curve to a thousandth of the burn; ignition and tail-off
+  // ramps are not in the table. At a jettison it jumps, and the table follows the jump as closely.
   const bool jumps = (index == 0 && plant.boosters) || !plant.jettisons.empty();
   const int points = stack.burn.curve || jumps ? 1025 : 33;
   // A restart of a reference that leaves it nothing: any time at all.

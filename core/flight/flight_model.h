@@ -1,4 +1,4 @@
-// What all flights of a campaign share, and the plant of one of them.
+// The model that all flights of a campaign share, and the plant of one flight.
 #pragma once
 
 #include <cmath>
@@ -21,7 +21,7 @@
 
 namespace dispersa {
 
-/// Where a flight shall arrive.
+/// The intended end of the flight.
 struct InjectionTarget {
   double altitude_m = 0.0;
   double velocity_m_s = 0.0;
@@ -29,7 +29,7 @@ struct InjectionTarget {
   double inclination_rad = 0.0;  ///< of the reference's orbit
 };
 
-/// What decides a flight besides its inputs.
+/// Everything that decides a flight besides its inputs.
 struct FlightDefinition {
   Vehicle vehicle;
   AutopilotConfig autopilot;
@@ -54,7 +54,8 @@ struct FlightDefinition {
   std::array<double, kMaxStages> cut_off_s = AllStages(HUGE_VAL);
 };
 
-/// Ends a stage's burn by command. What it leaves is the next one's if that restarts it.
+/// Ends a stage's burn by command. The remaining propellant belongs to the next stage if that stage restarts
+/// the same engine.
 void CutOffStage(const Vehicle& vehicle, int stage, double since_ignition_s, LauncherPlant& plant);
 
 /// The reference attitude at the autopilot's ticks, for flights that are flown side by side. A row has 8
@@ -66,9 +67,9 @@ struct ReferenceRows {
   double last_tick = 0.0;
 };
 
-/// What the program asks of each axis' angular acceleration, rad/s², where it is fed forward: the mean over
-/// the tick that begins an axis' lead later, about the reference's x, y, z, 4 doubles a row, the last unused.
-/// Of an axis without feed-forward 0. Empty where no axis feeds forward; the rows are those of ReferenceRows.
+/// Angular acceleration that the flight program asks of each axis with feed-forward, rad/s²: the mean over
+/// the tick that begins an axis' lead later. About the reference's x, y, z; 4 doubles a row, the last unused.
+/// An axis without feed-forward has 0. Empty if no axis feeds forward. The rows are those of ReferenceRows.
 struct FeedForwardRows {
   static constexpr int kRowSize = 4;
 
@@ -88,11 +89,11 @@ class FlightModel {
   const SensorModel& sensors() const { return sensors_; }
   const ReferenceRows& reference_rows() const { return reference_rows_; }
   const FeedForwardRows& feed_forward_rows() const { return feed_forward_rows_; }
-  /// What closed-loop guidance knows beforehand; none of an open loop.
+  /// The knowledge of closed-loop guidance before lift-off; empty for open-loop flights.
   const std::optional<GuidanceMission>& guidance_mission() const { return guidance_mission_; }
 
-  /// The nominal plant with a flight's factors, winds and misalignments applied; with a case, whose random
-  /// draws they are, its turbulence too.
+  /// The nominal plant with a flight's factors, winds and misalignments. With a case index the plant also has
+  /// the turbulence that this case draws.
   LauncherPlant PlantFor(const FlightInputs& inputs, std::optional<std::uint64_t> case_index = {}) const;
 
  private:
@@ -108,8 +109,8 @@ class FlightModel {
 
 /// The vehicle without dispersions: aerodynamics built up where the file gives no tables.
 LauncherPlant BuildNominalPlant(const Vehicle& vehicle);
-/// Gives every stack the masses that a vehicle of the same stages has, with what its sections carry and, if
-/// it bends, as many of its modes as before.
+/// Gives every stack the masses of a vehicle with the same stages. Section loads follow, and for a bending
+/// vehicle as many modes as before.
 void SetMasses(const Vehicle& vehicle, LauncherPlant& plant);
 /// Gives a vehicle with a beam that flies its bending: modes that stay below half the sampling frequency all
 /// the burn.

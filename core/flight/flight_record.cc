@@ -109,7 +109,7 @@ class FlightRecord::JudgedMotion {
     lanes::SetLane(drives, 0, gimbal, phase_.stuck_nozzle);
     State start;
     std::copy(y, y + kLauncherSize, start.begin());
-    // A drive turns round a few times a second; more rests than these within a tick are a fault of ours.
+    // A drive turns round a few times a second. More rests than these within a tick are a programming error.
     for (int rests = 0; rests < 64; ++rests) {
       for (int i = 0; i < kDrives; ++i) {
         const std::size_t drive = static_cast<std::size_t>(i);
@@ -223,7 +223,7 @@ bool FlightRecord::Guide(const LaneSight& sight) {
   const int last = events.back().stage;
   std::size_t first = events.size();
   while (events[first - 1].stage == last) --first;
-  // What the guidance commands, the motor does late.
+  // The motor ignites late by its dispersed delay after guidance's command.
   const double late_s = inputs.ignition_delay_s[static_cast<std::size_t>(last)];
   const double ignition_s =
       late_s != 0.0 ? std::max(guided->ignition_s() + late_s, sight.time_s) : guided->ignition_s();

@@ -1,8 +1,7 @@
-// One flight as the engine flies it: what was prepared before, what is kept beside the lanes, what it gives
-// back.
+// One flight as the engine flies it: prepared values, values kept beside the lanes, and results.
 //
-// The engine (batch.h) is compiled once for each instruction set and width; everything that happens once a
-// flight, once an event or only for flights that are watched stands here, once.
+// The engine (batch.h) is compiled once for each instruction set and width. Code that runs once a flight,
+// once an event or only for watched flights stands here, and is compiled once.
 #pragma once
 
 #include <memory>
@@ -22,7 +21,7 @@
 
 namespace dispersa {
 
-/// What happens to the plant at a time of its own. In the order in which they happen.
+/// Events of the plant at their own times, in the order in which they happen.
 enum class EventKind {
   kIgnition,
   kBurnout,
@@ -46,7 +45,7 @@ struct LaneView {
   StateValues y = {};
   LauncherPhase phase;
   bool coasting = false;
-  bool has_error = false;  ///< at ticks: the engine's error; at events it is computed anew
+  bool has_error = false;  ///< at ticks the engine's error, at events computed anew
   double error_angle_rad[kAxes] = {};
   double error_rate_rad_s[kAxes] = {};
   double gimbal_rad[kAxes] = {};  ///< commanded about roll, pitch, yaw
@@ -69,10 +68,10 @@ class FlightRecord {
   const FlightWeather weather;
   std::vector<FlightEvent> events;  ///< those that have happened stay in their places
   StateValues lift_off;
-  const char* refusal = nullptr;  ///< why its inputs cannot be flown; null: they can
+  const char* refusal = nullptr;  ///< reason why its inputs cannot be flown (null: they can)
   double believed_attitude[4];    ///< q_IB (w, x, y, z) that the inertial unit is aligned to at lift-off
   bool watched;                   ///< has a history or an observer
-  long history_ticks;             ///< between rows; 0: no history
+  long history_ticks;             ///< ticks between two rows (0: no history)
   bool noisy;                     ///< its gyros are
 
   // ---- while it flies ----
@@ -91,16 +90,16 @@ class FlightRecord {
   void Watch(const LaneView& view, bool row);
   /// An event: a row of the history.
   void WatchEvent(const LaneView& view);
-  /// What the reaction control hands over.
+  /// Notes the state at which the reaction control hands over to the autopilot.
   void HandOver(double time_s, const double* y);
   /// The injection of a flight that completes.
   void Inject(double altitude_m, const double* y);
-  /// Lets go of what is due; returns it as bits of LauncherPhase::jettisoned. The state follows the centre of
-  /// gravity.
+  /// Jettisons the bodies that are due and returns them as bits of LauncherPhase::jettisoned. The state moves
+  /// to the new centre of gravity.
   unsigned LetGo(int stack, unsigned jettisoned, double time_s, double altitude_m, double density_kg_m3,
                  double propellant_kg, double* y);
   void MassWithout(int stack, unsigned jettisoned, StackMass& mass) const;
-  /// The inertial speed, m/s, at which a stage's engine is cut off; 0: at none.
+  /// Inertial speed at which a stage's engine is cut off, m/s; 0 for an engine without such a cut-off.
   double CutOffVelocity(int stage) const;
   /// Its engine will be cut off at `time_s`, by command: events from there on are new.
   void CutOff(int stage, double time_s);
@@ -114,7 +113,7 @@ class FlightRecord {
   bool Judge(const LauncherPhase& phase, double from_s, double to_s, double* y);
   bool is_judged() const { return options.scheme != Scheme::kSimpson; }
 
-  /// Ends the flight; `reason` is a text of program life.
+  /// Ends the flight. `reason` must be a string literal: the pointer is kept.
   void End(Outcome outcome, const char* reason, double time_s, int stack, const double* y);
   FlightResult Result();
 

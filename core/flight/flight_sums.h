@@ -1,5 +1,6 @@
-// What a flight accumulates for its metrics: each number is declared here and accumulated here, lane by lane
-// (core/math/lanes.h), and read once when the flight ends. Angles in rad. What the metrics are: metrics.cc.
+// Accumulators of a flight's metrics. Each number is declared here, accumulated here lane by lane
+// (core/math/lanes.h), and read once when the flight ends. Angles are in radians. metrics.cc defines the
+// metrics.
 #pragma once
 
 #include <cstdint>
@@ -17,12 +18,12 @@ namespace dispersa {
 /// Of a signed angle over ticks.
 struct ErrorSums {
   double squares = 0.0;
-  double peak = -1.0;        ///< largest magnitude; negative without ticks
+  double peak = -1.0;        ///< largest magnitude, negative without ticks
   double peak_time_s = 0.0;  ///< when it was first reached
   double count = 0.0;
 };
 
-/// What ticks add to or raise, from 0: of one flight (T = double), or of W flights side by side.
+/// Sums and maxima over ticks, from 0: for one flight (T = double) or for W flights side by side.
 template <class T>
 struct TickSums {
   T itae_rad_s2, deflection_rate_peak_rad_s, saturated_ticks, travel_rad;
@@ -39,7 +40,7 @@ struct FlightSums : TickSums<double> {
   ErrorSums yaw, roll;            ///< powered flight
   ErrorSums deflection;           ///< each nozzle counts
   double ripple_rad = -1.0;       ///< negative without a whole window
-  double limit_cycle_rad = -1.0;  ///< likewise; 0: none
+  double limit_cycle_rad = -1.0;  ///< negative: not measured, 0: none found
   bool handed_over = false;
   double handover_angle_rad = 0.0, handover_rate_rad_s = 0.0;
   double expelled_kg = 0.0;
@@ -51,7 +52,7 @@ struct FlightSums : TickSums<double> {
   double step_limit_fraction = 0.0;  ///< known before the flight (step_limits.h)
 };
 
-/// Of all stages together; a peak that several share is the first one's.
+/// Sums of all stages together. If several stages share a peak, the first stage has it.
 ErrorSums Total(const ErrorSums (&stages)[kMaxStages]);
 
 }  // namespace dispersa
@@ -67,9 +68,8 @@ inline constexpr double kResidualError_rad = 0.05 * kRadPerDeg;
 /// Start-up transients of a stage are no limit cycle.
 inline constexpr double kSettled_s = 5.0;
 
-/// When deflections say nothing of a limit cycle: the first seconds of a stage, the kick (from and until
-/// given times since lift-off), and between the altitudes of a gust, of which there is none where top <=
-/// bottom.
+/// Times at which deflections do not tell about a limit cycle: the first seconds of a stage, the kick
+/// (between two times since lift-off), and the altitudes of a gust (no gust if top <= bottom).
 template <class T>
 DISPERSA_INLINE MaskOf<T> InTransient(T time_s, T since_ignition_s, T altitude_m, double kick_start_s,
                                       double kick_end_s, T gust_bottom_m, T gust_top_m) {
@@ -104,7 +104,7 @@ DISPERSA_INLINE ErrorSums LaneOf(const ErrorSumsLanes<T>& s, int lane) {
   return {Lane(s.squares, lane), Lane(s.peak, lane), Lane(s.peak_time_s, lane), Lane(s.count, lane)};
 }
 
-/// What the law of the pitch axis shows at a tick.
+/// Telemetry of the pitch axis' control law at a tick.
 template <class T>
 struct LyapunovSample {
   T v, v_falls, p11;  ///< v_falls: 1 where V is below the last tick's
@@ -204,7 +204,7 @@ struct LaneMetrics {
     sums.bending_moment_station_m = Select(is_larger, now.station_m, sums.bending_moment_station_m);
   }
 
-  /// What the lane has, but for what its record keeps itself (stages, handover, orbit, limit cycle).
+  /// Reads the lane's sums. The record keeps the rest: stages, handover, orbit, limit cycle.
   DISPERSA_INLINE void Read(int lane, FlightSums& s) const {
     s.coast = LaneOf(coast, lane);
     s.yaw = LaneOf(yaw, lane);

@@ -28,7 +28,7 @@ std::size_t FullRow(const ScenarioMass& mass) {
   return mass.propellant_kg.size() < 2 ? 0 : mass.propellant_kg.size() - 2;
 }
 
-// One stage from `begin_s`; the next one cuts it off.
+// One stage from `begin_s`. The next stage's separation ends it.
 void AppendPhases(const ScenarioStage& stage, std::size_t index, double begin_s, std::vector<Phase>& phases) {
   const std::vector<double>& propellant = stage.mass.propellant_kg;
   phases.push_back({begin_s, index, false, propellant.back(), FullRow(stage.mass)});
@@ -75,7 +75,7 @@ void SetMass(const ScenarioStage& stage, const Phase& phase, double time_s, Body
   const double above_kg = propellant - mass.propellant_kg[phase.row];
   const double fraction = above_kg / step_kg;
   const Matrix3 change = mass.inertia_kg_m2[phase.row + 1] - mass.inertia_kg_m2[phase.row];
-  // The table's masses may be rounded; the balance of thrust and flow needs mass and propellant to agree.
+  // The table's masses may be rounded. The balance of thrust and flow needs mass and propellant to agree.
   loads.mass_kg = mass.mass_kg.front() + propellant;
   loads.inertia_kg_m2 += fraction * change;
   cg_station_m += fraction * (mass.cg_station_m[phase.row + 1] - mass.cg_station_m[phase.row]);

@@ -31,9 +31,9 @@ struct ScenarioFlight {
   Digest digest;                        ///< of the samples' times and states
 };
 
-/// A scenario without Problems. Times at which something happens (ignition, burnout, separation, a row of
-/// the mass table) end an integration step, so no step crosses a kink in time. A separation moves the state
-/// to the CG of what flies on. The ground is not an obstacle.
+/// Flies a scenario for which Problems() is empty. An integration step ends at each event (ignition, burnout,
+/// separation, row of the mass table), so no step crosses a kink in time. A separation moves the state to the
+/// centre of gravity of the remaining stack. The ground does not stop the flight.
 ScenarioFlight FlyScenario(const Scenario& scenario, Scheme scheme = Scheme::kRungeKutta4);
 
 /// One value a name of KinematicColumnNames(), sample by sample.

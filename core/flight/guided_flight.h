@@ -1,8 +1,8 @@
-// A flight of the engine under closed-loop guidance: what stands between its lane and core/guidance/.
+// One flight under closed-loop guidance: the link between its lane and core/guidance/.
 //
-// The lane gives true values; navigation's errors and the accelerometers' are added here, so that the
-// guidance sees nothing else. It runs about once a second, as ordinary code of one flight, and gives the lane
-// its own rows of reference attitude in place of those that all flights share.
+// The lane gives true values. This class adds the errors of navigation and accelerometers, so guidance sees
+// measured values only. It runs about once a second as ordinary code of one flight. It gives the lane its own
+// rows of reference attitude, instead of those that all flights share.
 #pragma once
 
 #include <memory>
@@ -46,7 +46,7 @@ class GuidedFlight {
   /// The lane's row of ReferenceRows at a tick, and then of FeedForwardRows. Ticks do not fall.
   const double* RowAt(double tick);
   const double* feed_forward_row() const { return feed_forward_row_; }
-  /// Near the last tick; changes nothing.
+  /// For times near the last tick. Does not change the state.
   ReferenceAttitude ReferenceAt(double time_s) const;
 
   const GuidanceOutcome& outcome() const;

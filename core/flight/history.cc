@@ -21,7 +21,7 @@ std::vector<int> HistoryColumnsUnder(const AutopilotConfig& autopilot) {
   std::iota(positions.begin(), positions.end(), 0);
   int position = static_cast<int>(positions.size());
   for (const LauncherColumn& column : LauncherColumns()) {
-    // Of an axis by itself only pitch is shown; a plug-in shows the same of all its axes.
+    // For one-axis laws only pitch is shown. A plug-in shows the same columns of all axes.
     const bool is_foreign = column.of_law == &LawInfo::foreign;
     if (column.of_law == nullptr ||
         (is_foreign ? PluginAxes(autopilot) != 0 : InfoOf(autopilot.pitch.law).*column.of_law))

@@ -9,14 +9,14 @@ namespace dispersa {
 
 struct AutopilotConfig;
 
-/// Column names with units, in their fixed order; the first is time_s.
+/// Column names with units, in their fixed order, beginning with time_s.
 const std::vector<std::string>& HistoryColumns();
 /// Positions of those that flights under an autopilot have: some are of one law alone.
 std::vector<int> HistoryColumnsUnder(const AutopilotConfig& autopilot);
 /// Position of a column, or -1.
 int FindHistoryColumn(const std::string& name);
 
-/// Rows of HistoryColumns().size() doubles each, row by row; NaN = undefined (empty in CSV).
+/// Rows of HistoryColumns().size() doubles each, row by row. NaN is undefined (empty in CSV).
 struct History {
   double step_s = 0.1;         ///< output step
   std::vector<double> values;  ///< shape (rows, columns)

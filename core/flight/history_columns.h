@@ -15,7 +15,8 @@ namespace dispersa {
 const std::vector<std::string>& KinematicColumnNames();
 struct LauncherColumn {
   const char* name;
-  bool LawInfo::*of_law = nullptr;  ///< what an axis' law must have for its flights to have it; null: any law
+  bool LawInfo::*of_law =
+      nullptr;  ///< property that an axis' law needs for its flights to have the column (null: none)
 };
 const std::vector<LauncherColumn>& LauncherColumns();
 

@@ -6,8 +6,7 @@
 
 namespace dispersa {
 
-// The instances that this build has, as CMakeLists.txt lists them: ENGINE(isa, lanes) ...; defined by
-// fly_lanes.cc.
+// The engines of this build, as CMakeLists.txt lists them: ENGINE(isa, lanes). fly_lanes.cc defines them.
 #define ENGINE(isa, lanes) void Fly_##isa##_##lanes(const FlightModel& model, FlightQueue& queue);
 DISPERSA_ENGINES
 #undef ENGINE
@@ -15,7 +14,7 @@ DISPERSA_ENGINES
 namespace {
 
 bool HasV4() {
-  // What x86-64-v4 adds to v3.
+  // Instructions that x86-64-v4 has and v3 has not.
   return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
          __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
          __builtin_cpu_supports("avx512vl");
@@ -28,7 +27,7 @@ LaneEngine Choose() {
   const bool any_v4 = std::any_of(usable.begin(), usable.end(),
                                   [](const LaneEngine& engine) { return std::string(engine.isa) == "v4"; });
   const std::string level = isa ? isa : any_v4 ? "v4" : "v3";
-  // One register of the level; more are slower for want of registers. A build may lack that width.
+  // One register of the level: more lanes lack registers and are slower. A build may lack that width.
   const std::string width = lanes ? lanes : level == "v4" ? "8" : "4";
   const LaneEngine* widest = nullptr;
   for (const LaneEngine& engine : usable) {

@@ -18,14 +18,15 @@ struct LaneEngine {
 /// All that this processor can run. The bits of a flight are the same in each.
 std::vector<LaneEngine> UsableEngines();
 
-/// As many lanes as one register holds, 4 or 8, on the highest level that this processor has; or what
-/// DISPERSA_LANES (1, 4, 8) and DISPERSA_ISA (v3, v4) ask for. Decided at the first call. Throws
-/// std::invalid_argument when they ask for what there is not.
+/// The engine with as many lanes as one register holds, 4 or 8, at the highest level of this processor. The
+/// environment variables DISPERSA_LANES (1, 4, 8) and DISPERSA_ISA (v3, v4) choose another one. Decided at
+/// the first call. Throws std::invalid_argument if the engine asked for does not exist or the processor
+/// cannot run it.
 const LaneEngine& ChosenEngine();
 /// The instance of one lane on the same level.
 const LaneEngine& OneLaneEngine();
-/// The chosen instance; or, unless DISPERSA_LANES asks for it, the narrowest on its level that holds so many
-/// flights at once: a lane that stays empty costs as much as one that flies.
+/// The narrowest engine of the chosen level that holds so many flights at once: an empty lane costs as much
+/// as a flying one. If DISPERSA_LANES is set, the chosen engine.
 const LaneEngine& EngineFor(std::size_t flights);
 
 }  // namespace dispersa

@@ -1,10 +1,10 @@
-// What W flights' sensors make of the truth (core/math/lanes.h): inertial unit and rate gyros.
+// Sensors of W flights (core/math/lanes.h): inertial unit and rate gyros.
 //
-// The inertial unit integrates the rates of its own place strap-down: from measurement to measurement its
-// attitude turns by what the vehicle really turned there, between two halves of what the gyros' bias and
-// noise add; the errors turn with the vehicle. Rate gyros are second-order over the true rate of their
-// places, which rises in a straight line from tick to tick, then sampled and rounded. While nothing burns the
-// rates are the inertial unit's.
+// The inertial unit is strap-down: it integrates the rates at its own place. From one measurement to the next
+// its attitude turns by the vehicle's true rotation there, plus the gyros' bias and noise, half before and
+// half after. So its errors turn with the vehicle. Rate gyros are second-order systems. Their input is the
+// true rate at their places, which grows linearly from tick to tick. Their output is sampled and rounded.
+// Without thrust the rates are those of the inertial unit.
 #pragma once
 
 #include "core/dynamics/bending.h"
@@ -49,8 +49,8 @@ struct GyroMemory {
   Vector<T> output_rad_s;
 };
 
-/// One tick of the lanes that burn; `fresh`: those that have just begun, at rest in their rate; `sampled`:
-/// those at a tick of the gyro.
+/// One tick of the burning lanes. `fresh` lanes have just ignited: their gyros are at rest in the lane's
+/// rate. `sampled` lanes are at a tick of the gyro.
 template <class T>
 DISPERSA_INLINE void StepGyro(const GyroModel& gyro, MaskOf<T> acting, MaskOf<T> fresh, MaskOf<T> sampled,
                               Vector<T> rate_rad_s, GyroMemory<T>& memory) {

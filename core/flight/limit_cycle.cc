@@ -15,9 +15,8 @@ namespace {
 constexpr double kSampleTime_s = 0.01;
 constexpr int kShortest = 10, kLongest = 20;  // periods, samples
 constexpr int kSegments = 12;
-// A period is looked for where the samples resemble themselves at least so much, and its fundamental is to
-// hold so much of their energy: without it segments may agree on a tone that is not there (an alias of a
-// faster one).
+// A period counts if the samples resemble themselves at least this much, and if its fundamental holds at
+// least this share of their energy. Without the second test segments may agree on an alias of a faster tone.
 constexpr double kSimilar = 0.4;
 constexpr double kShareOfPower = 0.25;
 constexpr int kHarmonics = 4;
@@ -49,7 +48,7 @@ Phasor Demodulated(const double* values, int first, int count, double omega) {
   return sum;
 }
 
-// The shortest period, in samples, after which the values resemble themselves best; 0: they do not.
+// Shortest period, in samples, after which the values resemble themselves best; 0 if there is none.
 double PeriodOf(const double* values, int count, double energy) {
   double likeness[kLongest + 2];
   for (int lag = kShortest - 1; lag <= kLongest + 1; ++lag) {
@@ -67,7 +66,7 @@ double PeriodOf(const double* values, int count, double energy) {
   return 0.0;
 }
 
-// What a mean over `length` makes of an oscillation, both in the same unit of time.
+// Gain of a mean over `length` for an oscillation. Both arguments have the same unit of time.
 double GainOfMean(double omega, double length) {
   const double half = 0.5 * omega * length;
   return half > 1e-6 ? SineCosine(half).sin / half : 1.0;
@@ -145,8 +144,8 @@ void LimitCycleMeter::Add(double roll_rad, double pitch_rad, double yaw_rad) {
   if (++highest.at % kHop == 0) EndHop(0);
 }
 
-// A hop of an octave is whole: its energies, the windows that end with it, and the samples of the octave
-// below, of two each. All channels at once; they are never mixed.
+// Ends a hop of an octave: its energies, the windows that end with it, and the samples of the octave below,
+// each the mean of two. All channels are processed at once and never mixed.
 void LimitCycleMeter::EndHop(int octave) {
   using Channels = lanes::Pack<kWidth>;
   const auto load = [](const double* sample) { return Channels(_mm256_loadu_pd(sample)); };
@@ -176,8 +175,8 @@ void LimitCycleMeter::EndHop(int octave) {
 
 void LimitCycleMeter::Evaluate(const Octave& octave, int channel) {
   worst_ = std::max(worst_, 0.0);
-  // The second difference passes an octave's fundamental with a gain of 1 to 2, so its energy bounds the
-  // amplitude: a² / 2 a sample at most. An oscillation swings no farther than twice its fundamental does.
+  // The second difference passes an octave's fundamental with a gain of 1 to 2. So its energy bounds the
+  // amplitude a: at most a² / 2 a sample. An oscillation swings at most twice as far as its fundamental.
   double energy = 0.0;
   for (const auto& hop : octave.energy) energy += hop[channel];
   const double least = std::max(worst_, kFloor_rad);

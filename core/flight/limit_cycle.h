@@ -1,23 +1,23 @@
-// The limit cycle of a flight's deflections: an oscillation that goes on and on, told from whatever else
-// moves the nozzles.
+// The limit cycle of a flight's deflections: a lasting oscillation, told apart from all other motion of the
+// nozzles.
 //
-// A limit cycle repeats itself: the phase at which a frequency is found in one stretch of time says the phase
-// of every later one. The answer of a damped loop to gusts and turbulence forgets its phase within 1/(2 pi
-// zeta) periods, a transient decays. So a window of 12 to 24 periods is cut into 12 segments of one to two
-// periods, and of the segments' Fourier coefficients c at the frequency at which they agree best
+// A limit cycle repeats itself: its phase in one stretch of time gives its phase in every later one. A damped
+// loop's answer to gusts and turbulence forgets its phase within 1/(2 pi zeta) periods. A transient decays. A
+// window of 12 to 24 periods is cut into 12 segments of one to two periods. c is a segment's Fourier
+// coefficient at the frequency at which the segments agree best. Then
 //
 //   coherence = |sum of c|² / (12 sum of |c|²)
 //
-// is 1 for an oscillation of constant amplitude and frequency, and of independent Gaussian c beta-distributed
-// with P(coherence > x) = (1 - x)^11. The response of a mode with damping zeta has correlated c, by
-// a = exp(-2 pi zeta periods) from one to the next, as good as 12 (1 - a²) / (1 + a²) independent ones: at
-// one period a segment 11.4 at zeta 0.3, 6.7 at 0.1 and 3.6 at 0.05. The threshold of kCoherence therefore
-// leaves about 3e-9 a window at 0.3, 2e-5 at 0.1 and 7e-3 at 0.05, times the few frequencies that a window
-// resolves. tests/unit/flight_limit_cycle_test.cc counts what is raised falsely.
+// is 1 for an oscillation of constant amplitude and frequency. For independent Gaussian c it is
+// beta-distributed with P(coherence > x) = (1 - x)^11. The response of a mode with damping zeta has
+// correlated c: a = exp(-2 pi zeta periods) from one to the next. They count as 12 (1 - a²) / (1 + a²)
+// independent ones: at one period a segment 11.4 at zeta 0.3, 6.7 at 0.1 and 3.6 at 0.05. So the threshold
+// kCoherence is exceeded by chance in about 3e-9 of windows at 0.3, 2e-5 at 0.1 and 7e-3 at 0.05, times the
+// few frequencies that a window resolves. tests/unit/flight_limit_cycle_test.cc counts false alarms.
 //
-// A window is looked at in five octaves from 0.3125 to 10 Hz, each on samples of its own rate (10 to 20 a
-// period) that are means over what they stand for: 2.4 s long for 5 to 10 Hz, 38.4 s for 0.3125 to 0.625 Hz.
-// What is slower does not repeat itself often enough in a burn to be told from noise, and is not measured.
+// Windows cover five octaves from 0.3125 to 10 Hz. Each octave has its own sample rate (10 to 20 a period). A
+// sample is the mean over its interval. A window lasts 2.4 s for 5 to 10 Hz and 38.4 s for 0.3125 to 0.625
+// Hz. Slower oscillations do not repeat often enough in a burn to be told from noise, and are not measured.
 #pragma once
 
 namespace dispersa {
@@ -38,7 +38,7 @@ class LimitCycleMeter {
   void Interrupt();
   /// One tick's deflections (rad).
   void Add(double roll_rad, double pitch_rad, double yaw_rad);
-  /// 0: windows, and no limit cycle in any; negative without a whole window.
+  /// 0 if no window has a limit cycle; negative without a whole window.
   double worst_rad() const { return worst_; }
 
  private:
@@ -48,8 +48,8 @@ class LimitCycleMeter {
   static constexpr int kWindow = 240;  ///< samples
   static constexpr int kHops = 4;      ///< windows begun in the time of one
   static constexpr int kHop = kWindow / kHops;
-  /// Of the second difference that takes trends out: half the shortest period of an octave, so that it
-  /// doubles what has that period and lets the longest pass as it is.
+  /// Lag of the second difference that takes trends out: half the shortest period of an octave. It doubles
+  /// that period's amplitude and leaves the longest period as it is.
   static constexpr int kLag = 5;
 
   struct Octave {

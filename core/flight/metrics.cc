@@ -23,7 +23,7 @@ double Peak(const ErrorSums& e) { return e.count > 0.0 ? e.peak * kDegPerRad : k
 double Swing(double rad) { return rad >= 0.0 ? rad * kDegPerRad : kUndefined; }
 double Ratio(double part, double whole) { return whole > 0.0 ? part / whole : kUndefined; }
 
-// What a metric is computed from.
+// The results from which metrics are computed.
 struct Measured {
   const FlightSums& sums;
   const FlightDefinition& definition;
@@ -48,7 +48,7 @@ constexpr MetricUnit kPure{"", ""}, kDegrees{"_deg", "°"}, kDegreesPerSecond{"_
     kPascals{"_pa", "Pa"}, kPascalRadians{"_pa_rad", "Pa rad"}, kStandardGravities{"_g", "g"},
     kNewtonMetres{"_n_m", "N m"};
 
-// What most metrics are not, as Metric has it.
+// Properties that few metrics have, as in Metric.
 struct Traits {
   bool by_phase = false;  // of powered flight, of each stage's burn and of the coast
   bool is_usual = false;
@@ -84,8 +84,8 @@ double SemiMajorAxis(const Earth& earth, double radius_m, double speed_m_s) {
   return 1.0 / (2.0 / radius_m - speed_m_s * speed_m_s / earth.mu_m3_s2);
 }
 
-// A row a metric. Columns stand in the order of the rows, but those by phase come first; a new row goes to
-// the end, and is not digested.
+// One row a metric. Columns stand in the order of the rows; those of phases come first. A new row goes to the
+// end and is not in the digest.
 constexpr Row kRows[] = {
     {"pitch_error_rms", kDegrees, "rms e_θ", kAttitude, "Pitch error, RMS",
      "root mean square over powered flight of the component about body y of the rotation vector from the "

@@ -1,5 +1,5 @@
-// What is measured of a flight. metrics.cc declares each metric once, in a row: everything that names,
-// groups, explains, stores or shows metrics follows from it.
+// The metrics of a flight. metrics.cc declares each metric once, in one row. Names, groups, texts, storage
+// and pages follow from this row.
 #pragma once
 
 #include <cstddef>
@@ -42,14 +42,15 @@ struct Metric {
   std::string name;        ///< with phase and unit: "pitch_error_peak_stage2_deg"
   std::string title;       ///< "Pitch error, peak, stage 2"
   std::string symbol;      ///< "max |e_θ|"
-  std::string unit;        ///< "°"; empty: a pure number
-  std::string definition;  ///< completes the title; empty where that says all
+  std::string unit;        ///< "°" for instance (empty: a pure number)
+  std::string definition;  ///< completes the title (empty if the title says all)
   MetricGroup group = MetricGroup::kAttitude;
   Worse worse = Worse::kLarger;
   bool is_usual = false;     ///< shown in full in every report, whatever is required
   bool is_digested = false;  ///< part of a flight's digest
-  bool is_part = false;  ///< of one stage or of the coast; the metric without them has the same definition
-  /// What a law must have for its flights to have the metric; null: flights under any law have it.
+  bool is_part =
+      false;  ///< of one stage or of the coast: the metric without this suffix has the same definition
+  /// property that a law needs for its flights to have the metric (null: none)
   bool LawInfo::*of_law = nullptr;
 };
 
@@ -68,7 +69,7 @@ std::string LawsWith(const Metric& metric);
 /// The column of a metric that exists.
 std::size_t MetricColumn(const std::string& name);
 
-/// What a flight came to.
+/// The measured results of one flight.
 struct MeasuredFlight {
   std::vector<double> metrics;   ///< of the vehicle, in the order of Metrics(), in the units of their names
   std::vector<double> digested;  ///< what of it is part of the digest, whether its law has the metric or not

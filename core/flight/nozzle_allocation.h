@@ -1,5 +1,6 @@
-// From commands about roll, pitch and yaw to the drives of a list of nozzles, and back, of W flights side by
-// side (core/math/lanes.h). core/vehicle/nozzle_layout.h makes the numbers; the cross has code of its own.
+// From roll, pitch and yaw commands to the drives of a list of nozzles, and back, for W flights side by side
+// (core/math/lanes.h). core/vehicle/nozzle_layout.h computes the coefficients. The cross of four nozzles has
+// its own code.
 #pragma once
 
 #include "core/math/lanes.h"
@@ -62,7 +63,7 @@ DISPERSA_INLINE T FeltAbout(const NozzleLayoutLanes<T>& a, int axis, const T* fi
   return felt;
 }
 
-/// Where some nozzle is commanded to its limit.
+/// Lanes in which a nozzle is commanded to its limit.
 template <class T>
 DISPERSA_INLINE MaskOf<T> IsSaturated(const NozzleLayoutLanes<T>& a, const T* command_rad) {
   // Scaling to the limit leaves a rounding.

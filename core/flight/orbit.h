@@ -10,12 +10,12 @@ struct OrbitElements {
   double speed_m_s = 0.0;              ///< inertial
   double flight_path_angle_rad = 0.0;  ///< inertial, above the plane normal to the radius
   double inclination_rad = 0.0;
-  double apogee_altitude_m = 0.0;   ///< above the equatorial radius; infinite if unbound
+  double apogee_altitude_m = 0.0;   ///< above the equatorial radius, infinite if unbound
   double perigee_altitude_m = 0.0;  ///< negative when the orbit meets the Earth
   double radius_m = 0.0;            ///< of the place
-  double ascending_node_rad = 0.0;  ///< from I's x axis, 0 to 2 pi; 0 of an equatorial orbit
+  double ascending_node_rad = 0.0;  ///< from I's x axis, 0 to 2 pi (0 for an equatorial orbit)
   double argument_of_latitude_rad =
-      0.0;  ///< of the place, from the node, 0 to 2 pi; 0 of an equatorial orbit
+      0.0;  ///< of the place, from the node, 0 to 2 pi (0 for an equatorial orbit)
 };
 
 /// Osculating Keplerian elements about a point mass at the Earth's centre.

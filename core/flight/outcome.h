@@ -17,7 +17,7 @@ inline constexpr int kOutcomeCount = 6;
 
 /// "completed", "lost_control", ...
 const char* OutcomeName(Outcome outcome);
-/// Of a name; false if there is none such.
+/// The outcome of a name. Returns false if no outcome has this name.
 bool ParseOutcome(const std::string& name, Outcome* outcome);
 
 }  // namespace dispersa

@@ -46,8 +46,8 @@ void RippleMeter::Evaluate(int channel) {
     low = std::min(low, blocks[k].low);
     high = std::max(high, blocks[k].high);
   }
-  // Among samples within a range the line through them rises by at most one and a half of it, and taking it
-  // out raises the range by no more than that.
+  // Among samples within a range, the fitted line rises by at most one and a half ranges. Removing it raises
+  // the range by no more than that.
   if (2.5 * (high - low) <= worst_) return;
   const int n = blocks_ * block_size_;
   const double centre = 0.5 * (n - 1);

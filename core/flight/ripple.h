@@ -5,9 +5,9 @@
 
 namespace dispersa {
 
-/// Worst peak-to-peak of pitch, yaw and roll deflection in windows of one second with the straight line taken
-/// out. A window is ten blocks of a tenth of a second, rounded down to whole ticks, and starts with each
-/// block: neighbours overlap by nine tenths, so no oscillation hides between them.
+/// Worst peak-to-peak of pitch, yaw and roll deflection in windows of one second, after a straight line is
+/// removed. A window is ten blocks of a tenth of a second, rounded down to whole ticks. A window starts with
+/// each block: neighbours overlap by nine tenths, so no oscillation is missed between them.
 class RippleMeter {
  public:
   explicit RippleMeter(double tick_s);
@@ -21,7 +21,7 @@ class RippleMeter {
  private:
   static constexpr int kChannels = 3;
   static constexpr int kBlocks = 10;
-  /// Of one channel over one block; the moment counts samples from the block's first.
+  /// Sums of one channel over one block. The moment counts samples from the block's first.
   struct Block {
     double sum, moment, low, high;
   };

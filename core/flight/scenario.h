@@ -18,9 +18,10 @@ class Fields;
 /// change.
 struct ScenarioMass {
   std::vector<double> propellant_kg;   ///< from 0, strictly increasing
-  std::vector<double> mass_kg;         ///< of everything; grows as the propellant does
+  std::vector<double> mass_kg;         ///< of the whole vehicle, in proportion to the propellant
   std::vector<double> cg_station_m;    ///< on the body axis, aft of the stations' reference point
-  std::vector<Matrix3> inertia_kg_m2;  ///< about the CG, body axes; off the diagonal minus the products
+  std::vector<Matrix3> inertia_kg_m2;  ///< about the centre of gravity, in body axes, with products of
+                                       ///< inertia negated off the diagonal
 };
 
 /// Constant thrust along the body axis from ignition until the propellant is used up.
@@ -36,14 +37,14 @@ struct ScenarioMotor {
   bool inertia_rate = true;  ///< the term -(dI/dt) w of Euler's equations
 };
 
-/// What flies between two separations: the whole vehicle as it is then.
+/// The whole vehicle between two separations.
 struct ScenarioStage {
   std::string name;
   ScenarioMass mass;
   BodyAerodynamics aerodynamics;
   bool inertial_damping_rates = false;  ///< rate damping by inertial rates instead of Earth-relative ones
   std::optional<ScenarioMotor> motor;
-  std::optional<double> separation_time_s;  ///< absent: at burnout; the last stage has none
+  std::optional<double> separation_time_s;  ///< absent: at burnout (the last stage has none)
 };
 
 struct Scenario {
@@ -63,13 +64,14 @@ struct Scenario {
 /// The keys of its file.
 void Describe(Fields& fields, Scenario& scenario);
 
-/// What contradicts itself, each with the path of the value.
+/// A contradiction in a scenario, with the path of the value.
 struct ScenarioProblem {
   std::string path;
   std::string message;  ///< what is wrong
   std::string allowed;
 };
-/// Of one stage; paths from the stage ("mass_properties.ixx_kg_m2[1]", "motor.nozzle_station_m").
+/// Problems of one stage. Paths start at the stage ("mass_properties.ixx_kg_m2[1]",
+/// "motor.nozzle_station_m").
 std::vector<ScenarioProblem> Problems(const ScenarioStage& stage);
 /// Of the stages together and the steps ("stages[1].separation_time_s").
 std::vector<ScenarioProblem> Problems(const Scenario& scenario);

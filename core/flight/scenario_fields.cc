@@ -21,7 +21,7 @@ bool CheckLengths(Fields& fields, std::initializer_list<const std::vector<double
 
 Table2D ConstantTable(double value) { return {{0.0, 1.0}, {0.0, 1.0}, {value, value, value, value}}; }
 
-// A grid needs two points of each argument; one that does not vary gets a second one.
+// A grid needs two points of each argument. A constant argument gets a second point.
 void Widen(Table2D& table) {
   if (table.y.size() == 1) {
     std::vector<double> z;
@@ -36,7 +36,7 @@ void Widen(Table2D& table) {
   }
 }
 
-// Rows of one value a grid point, Mach by Mach, each with the same incidences; either argument may be absent.
+// One value a grid point, sorted by Mach, each Mach with the same incidences. Either argument may be absent.
 struct CoefficientRows {
   std::vector<double> mach, incidence_rad, values;
 };
@@ -153,7 +153,7 @@ void DescribeAerodynamics(Fields& fields, ScenarioStage& stage) {
   fields.Check([&body] { ShareGrid(body); });
 }
 
-// Products of inertia are integrals of xy dm; the tensor holds them with the other sign.
+// Products of inertia are integrals of xy dm. The tensor has them with the opposite sign.
 Matrix3 Tensor(double xx, double yy, double zz, double xy, double xz, double yz) {
   Matrix3 tensor;
   tensor << xx, -xy, -xz, -xy, yy, -yz, -xz, -yz, zz;

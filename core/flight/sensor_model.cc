@@ -24,7 +24,7 @@ const RateGyro* FindGyro(const Vehicle& vehicle, const std::string& name, std::s
 }  // namespace
 
 DigitalSection RampInvariant(double w, double zeta, double tick_s) {
-  // x' = A x + (0, w²) u, y = x0; u = u0 + r t is a third state, its rise a fourth.
+  // x' = A x + (0, w²) u, y = x0. The input u = u0 + r t is a third state, its slope a fourth.
   Eigen::MatrixXd m = Eigen::MatrixXd::Zero(4, 4);
   m(0, 1) = tick_s;
   m(1, 0) = -w * w * tick_s;

@@ -30,7 +30,7 @@ struct SensorModel {
 /// Precondition: no GyroProblems.
 SensorModel BuildSensors(const Vehicle& vehicle, const AutopilotConfig& autopilot);
 
-/// What the autopilot asks of gyros that the vehicle does not have there; paths as of
+/// Gyros that the autopilot needs and the vehicle does not have at that place. Paths are those of
 /// Problems(AutopilotConfig).
 std::vector<AutopilotProblem> GyroProblems(const Vehicle& vehicle, const AutopilotConfig& autopilot);
 

@@ -2,30 +2,28 @@
 //
 // Over a step of length h from a state with position p, velocity v, attitude q and angular velocity w:
 //
-//   actuators   depend on nothing else between two commands and are propagated first, exactly (actuators.h)
-//   a0, alpha0  accelerations at the start: those of the last step's end
+//   actuators   depend on nothing else between two commands. They are propagated first, exactly.
+//   a0, alpha0  accelerations at the start: those at the end of the last step.
 //   middle      p + h/2 v + h²/8 a0, v + h/2 a0 + h²/8 a0', q turned by h/2 w + h²/8 alpha0,
-//               w + h/2 alpha0 + h²/8 alpha0'; there a1, alpha1
-//   end         p + h v + h²/6 (a0 + 2 a1), q turned by h w + h²/6 (alpha0 + 2 alpha1) + h³/12 w1 x alpha1:
-//               final before the last evaluation, of which only the velocities are a guess: v + h a1, w + h
-//               alpha1; there a2, alpha2
-//   CG          moves through the body at u, known where masses and attitude are: p takes the integral of u
-//   by the
-//               trapezium to the middle and by Simpson's rule to the end
-//   bending     each mode swings exactly (bending.h) under its drive as it is at the start, rising as in the
-//   last
-//               step, for the middle; under the line through start and middle for the last evaluation; in the
-//               end under the parabola through all three. Frequencies are those of the step's middle
-//   velocities  v + h/6 (a0 + 4 a1 + a2), w + h/6 (alpha0 + 4 alpha1 + alpha2)
+//               w + h/2 alpha0 + h²/8 alpha0'. There a1, alpha1 are evaluated.
+//   end         p + h v + h²/6 (a0 + 2 a1), q turned by h w + h²/6 (alpha0 + 2 alpha1) + h³/12 w1 x alpha1.
+//               Both are final. The velocities v + h a1 and w + h alpha1 are a guess for the last
+//               evaluation, which gives a2, alpha2.
+//   CG          moves through the body at u, which follows from masses and attitude. p takes the integral
+//               of u: by the trapezium rule to the middle, by Simpson's rule to the end.
+//   bending     each mode swings exactly (bending.h) under its drive. For the middle the drive starts at its
+//               value and rises as in the last step. For the last evaluation it is the line through start
+//               and middle. In the end it is the parabola through all three. Frequencies: the middle's.
+//   velocities  v + h/6 (a0 + 4 a1 + a2), w + h/6 (alpha0 + 4 alpha1 + alpha2).
 //
-// with a0' the slope at its end of the parabola through the last step's three accelerations, 0 after an
-// event. Two evaluations a step, and the last serves the metrics of the tick on which the step ends.
+// a0' is the slope, at its end, of the parabola through the last step's three accelerations; 0 after an
+// event. A step has two evaluations. The last one also serves the metrics of the tick at which the step ends.
 //
-// Order. Simpson's rule, its double integral (exact to the third power of time) and the Magnus expansion with
-// the middle's w1 x alpha1 leave O(h⁵) a step. The guesses of v and w, in the middle and at the end, and the
-// middle's q err by O(h³), hence a1, a2 by that times their sensitivity to them, and the velocities by O(h⁴)
-// a step: order 3, with the small constant of accelerations that hardly depend on velocities. Where they do
-// not depend on them and the attitude turns steadily, order 4 remains. tests/verification/ holds it to both.
+// Order. Three parts leave O(h⁵) a step: Simpson's rule, its double integral (exact to the third power of
+// time), and the Magnus expansion with the middle's w1 x alpha1. The guesses of v and w and the middle's q
+// err by O(h³). So a1 and a2 err by that times their sensitivity, and the velocities by O(h⁴) a step:
+// order 3. The constant is small, since accelerations hardly depend on velocities. Where they do not depend
+// on them and the attitude turns steadily, the order is 4. tests/verification/ checks both.
 #pragma once
 
 #include "core/dynamics/launcher_lanes.h"
@@ -36,7 +34,7 @@ inline namespace DISPERSA_ISA {
 /// Commands of so many ticks are remembered for delays.
 inline constexpr int kDelayLine = 128;
 
-/// What is written through a setter is marked by it, so that the next evaluation sees it.
+/// Values written through a setter are marked: the next evaluation reads them again.
 template <class T>
 class StepState {
  public:
@@ -182,7 +180,7 @@ class StepState {
     MarkStale(lanes);
   }
 
-  /// Where the lanes stand: valid after EvaluateStart.
+  /// Environment of the lanes at their present times. Valid after EvaluateStart.
   const Instant<T>& now() const { return start_->instant; }
   const Vector<T>& acceleration_m_s2() const { return start_->rates.dv; }
   const T& density_kg_m3() const { return start_->around.density_kg_m3; }
@@ -235,8 +233,8 @@ class StepState {
       bending_.modes > 0 ? EvaluateStartOf<true, false>(time_s) : EvaluateStartOf<false, false>(time_s);
   }
 
-  /// Moves lanes from their times to others; `all`: the rest does not fly. Returns those that hold a finite
-  /// state; the others stay as they were.
+  /// Moves lanes from their times to other times. `all` says that the remaining lanes do not fly. Returns the
+  /// lanes whose state is finite. The others stay as they were.
   MaskOf<T> Step(MaskOf<T> moving, bool all, T from_s, T to_s) {
     if (plant_.nozzles_listed)
       return bending_.modes > 0 ? StepOf<true, true>(moving, all, from_s, to_s)
@@ -295,9 +293,9 @@ class StepState {
     any_stale_ = false;
   }
 
-  // The parts of an evaluation. Each is code of its own, which a step's two evaluations and the start's
-  // share: inlined into all of them, in each kind of vehicle, they are three quarters of what the compiler
-  // has to do, and no faster.
+  // The parts of an evaluation. Each is a function of its own, shared by a step's two evaluations and the
+  // start's. Inlined into each of them and each kind of vehicle, they would take three quarters of the
+  // compile time and run no faster.
   DISPERSA_OUT_OF_LINE void SetAir(const Vector<T>& position_m, Surroundings<T>& around) const {
     around = SurroundingsAt(earth_, *air_, plant_.weather, position_m);
   }

@@ -1,10 +1,10 @@
-// What the engine's step resolves, and what of a dispersed vehicle cannot be flown at all.
+// The frequencies that the engine's step resolves, and the dispersed vehicles that cannot be flown.
 //
-// A step is a tick of the autopilot. Actuators are propagated by themselves, exactly or in steps as short as
-// they need (core/dynamics/actuators.h), and so are bending modes (core/dynamics/bending.h), whatever their
-// frequency; but the body feels them at three instants of a tick. From some frequency on these do not show
-// what happens in between. The limits, as frequency times tick, are where flights still agree with CVODE,
-// which steps as short as it has to (tests/verification/step_limits_test.cc; figures in core/README.md).
+// A step is one tick of the autopilot. Actuators are propagated by themselves, exactly or in steps as short
+// as they need (core/dynamics/actuators.h). So are bending modes of any frequency (core/dynamics/bending.h).
+// But the body feels them at three instants of a tick: above some frequency these do not show the motion in
+// between. The limits are given as frequency times tick. Up to them flights agree with CVODE, which chooses
+// its own steps (tests/verification/step_limits_test.cc; figures in core/README.md).
 #pragma once
 
 #include <string>
@@ -23,14 +23,14 @@ inline constexpr double kActuatorLimit_rad = 10.0;
 inline constexpr double kHeavyActuatorLimit_rad = 1.25;
 /// From this share of a limit on a case is flagged.
 inline constexpr double kNearStepLimit = 0.8;
-/// Bending modes: flagged beyond half the sampling frequency, below which nominal ones fly (AddBending). What
-/// the autopilot then sees of one is its alias, as of a real one; what the body feels of it is still its own
+/// Bending modes are flagged above half the sampling frequency; nominal modes stay below it (AddBending).
+/// Above it the autopilot sees a mode's alias, as with a real one. The body still feels the mode's own
 /// motion.
 inline constexpr double kModeLimit_rad = kPi / kNearStepLimit;
 
 /// The part of a vehicle that comes nearest to its limit.
 struct StepUse {
-  double fraction = 0.0;  ///< of the limit; above 1: it is not resolved
+  double fraction = 0.0;  ///< of the limit (above 1: not resolved)
   std::string part;       ///< "the actuators of stage 2 (80 Hz)"
   double limit_hz = 0.0;
 };
@@ -38,7 +38,7 @@ StepUse GreatestStepUse(const LauncherPlant& plant, double tick_s);
 /// The highest natural frequency of a stack's actuators and bending modes, rad/s.
 double FastestPart(const LauncherPlant& plant, int stack);
 
-/// Why a flight with these inputs and their plant cannot be computed, as a sentence; empty if it can.
+/// Reason, as a sentence, why a flight with these inputs and their plant cannot be computed; empty if it can.
 std::string RefusalOf(const Vehicle& vehicle, const FlightInputs& inputs, const LauncherPlant& plant,
                       double tick_s);
 

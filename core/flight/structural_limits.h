@@ -1,6 +1,6 @@
-// Which load of a flight each limit of the vehicle's structure is held against: one row a limit. A new one
-// takes a member of StructuralLimits with its key, a load in FlightSums with its metric, a row in
-// structural_limits.cc, and, so that `terminate` sees it, its lanes in Batch::CheckEnds.
+// The load that each limit of the vehicle's structure is compared with: one row a limit. A new limit needs a
+// member of StructuralLimits with its key, a load in FlightSums with its metric, and a row in
+// structural_limits.cc. For `terminate` it also needs its lanes in Batch::CheckEnds.
 #pragma once
 
 #include <span>

@@ -1,4 +1,4 @@
-// What one tick or event shows of a flight: for histories and observers.
+// The state of a flight at one tick or event, for histories and observers.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ struct TickSample {
   double time_s = 0.0;
   int stack = 0;  ///< 0-based
   bool burning = false;
-  bool coasting = false;          ///< before an ignition by a timer; the last stack before its own
+  bool coasting = false;          ///< before an ignition by a timer (last stack: before its own)
   double since_ignition_s = 0.0;  ///< of the burning stage
   RigidBodyState state;
   std::array<double, kDrives> nozzle_rad{};  ///< about first hinges, then about second ones
