@@ -7,11 +7,14 @@
 namespace dispersa::lanes {
 inline namespace DISPERSA_ISA {
 
-/// Adaptive augmenting control, with k_T = k_0 + k_a the total gain, k_0 its floor, e_r the departure from
-/// the reference model and y_s the low-passed square of the high-passed command:
-///   dk_a/dt = (k_max - k_a) / k_max a e_r² - alpha k_a y_s - beta (k_T - 1).
-/// The reference model is the error dynamics the gains are chosen for, started at the stage's first error: in
-/// error coordinates the attitude command does not appear. Of PID, command and model have their integrals.
+/// Adaptive augmenting control with the total gain k_T = k_0 + k_a. k_0 is its floor, e_r the difference from
+/// the reference model, y_s the low-passed square of the high-passed command:
+///
+///   dk_a/dt = (k_max - k_a) / k_max a e_r² - alpha k_a y_s - beta (k_T - 1)
+///
+/// The reference model is the error dynamics for which the gains are chosen, started at the stage's first
+/// error. In error coordinates the attitude command does not appear. For PID, command and model have their
+/// integrals.
 struct AugmentedLaw {
   static void StartStage(const AxisConfig&, int, AxisState& memory) { ResetAxis(memory); }
 

@@ -20,9 +20,8 @@ enum Axis : int { kRoll = 0, kPitch = 1, kYaw = 2 };
 inline constexpr int kAxes = 3;
 inline constexpr const char* kAxisNames[kAxes] = {"roll", "pitch", "yaw"};
 
-/// What the autopilot knows of a stage beforehand, from nominal data: angular acceleration per radian of
-/// deflection over the time since ignition, and the limits of the nozzles. Both tables share their arguments,
-/// which are evenly spaced.
+/// The autopilot's knowledge of a stage from nominal data: angular acceleration per radian of deflection over
+/// the time since ignition, and the limits of the nozzles. Both tables share their evenly spaced arguments.
 struct StageControl {
   Table1D pitch_effectiveness_1_s2;  ///< of yaw too
   Table1D roll_effectiveness_1_s2;
@@ -59,8 +58,8 @@ struct AutopilotState {
   ThrusterState thrusters[kAxes];
 };
 
-/// Errors reference - true about body x, y, z: angle (rad) and rate (rad/s); and the angular acceleration
-/// that the program asks for, of the axes that feed it forward.
+/// Errors reference - true about body x, y, z: angle (rad) and rate (rad/s). For axes with feed-forward also
+/// the angular acceleration that the flight program asks for.
 struct AttitudeError {
   Vector3 angle_rad = Vector3::Zero();
   Vector3 rate_rad_s = Vector3::Zero();

@@ -12,7 +12,7 @@ namespace dispersa {
 
 enum class ControlLaw { kAdaptiveFuzzy, kFrozenFuzzy, kPd, kPid, kPdAac, kPidAac, kPlugin };
 
-/// What a law is called, what it is, and which blocks of its axis it needs.
+/// A law's name, its properties, and the blocks of its axis that it needs.
 struct LawInfo {
   ControlLaw law;
   const char* name;  ///< in files
@@ -63,8 +63,8 @@ inline constexpr LawInfo kLaws[] = {
 };
 constexpr const LawInfo& InfoOf(ControlLaw law) { return kLaws[static_cast<int>(law)]; }
 
-/// Desired error dynamics s² + kd s + kp of one axis while one stage burns; the law's output is an angular
-/// acceleration, which the stage's control effectiveness turns into a deflection.
+/// Desired error dynamics s² + kd s + kp of one axis while one stage burns. The law's output is an angular
+/// acceleration. The stage's control effectiveness turns it into a deflection.
 struct AxisGains {
   double kp_1_s2 = 0.0;
   double kd_1_s = 0.0;
@@ -74,15 +74,17 @@ struct AxisGains {
 struct Adaptation {
   std::vector<double> gamma;    ///< adaptation gain, one a stage
   Matrix2 q = Matrix2::Zero();  ///< Q of the Lyapunov equation, symmetric positive definite
-  std::optional<Vector2> p_n;   ///< last column of P; must agree with K and Q unless allow_unproven
+  std::optional<Vector2>
+      p_n;  ///< last column of P, which must agree with K and Q unless allow_unproven is set
   bool allow_unproven = false;
   double projection_bound_rad_s2 = 0.0;  ///< each consequent stays within this distance of its start
   double leakage_1_s = 0.0;              ///< sigma modification: pulls the consequents to their start
   double spread_1_s = 0.0;               ///< pulls departures from the start to their mean over the rules
   double dead_zone_rad = 0.0;            ///< no adaptation while |e' P_n| / p12 is below
   bool normalized = false;  ///< the regressor of (32) over its squared norm, which lies in [1/4, 1]
-  /// Composite adaptation: beside e' P_n the error of a prediction of de/dt drives (32), with this many p22;
-  /// the prediction follows the error dynamics and is drawn to what is measured at predictor_1_s.
+  /// Composite adaptation: (32) is driven by e' P_n plus the error of a prediction of de/dt, times
+  /// `composite` p22. The prediction follows the error dynamics and is drawn to the measured rate at
+  /// predictor_1_s.
   double composite = 0.0;
   double predictor_1_s = 0.0;
   bool freeze_when_saturated = false;  ///< no adaptation into a deflection limit
@@ -95,17 +97,18 @@ struct FuzzyRules {
   double rate_range_rad_s = 0.0;  ///< outer set centres of its rate, +-
 };
 
-/// The integral of a PID law: u = kp e + kd e' + w, w' = ki e, but 0 while the last deflection command was
-/// limited in the sense of e.
+/// The integral of a PID law: u = kp e + kd e' + w, w' = ki e. w' is 0 while the last deflection command was
+/// limited in the direction of e.
 struct IntegralAction {
   std::vector<double> ki_1_s3;     ///< one a stage
-  double bound_rad_s2 = 0.0;       ///< of |w|; 0: none
+  double bound_rad_s2 = 0.0;       ///< of |w| (0: none)
   bool reset_at_ignition = false;  ///< w starts anew with each stage
 };
 
 /// NASA's adaptive augmenting control (J. S. Orr and T. S. VanZwieten, "Robust, Practical Adaptive Control
-/// for Launch Vehicles", AIAA 2012-4549): a total gain between a floor and a ceiling, raised by the departure
-/// from a reference model, lowered by high-frequency activity of the command, drawn back to 1.
+/// for Launch Vehicles", AIAA 2012-4549). A total gain moves between a floor and a ceiling. The difference
+/// from a reference model raises it, high-frequency activity of the command lowers it, and a leak draws it
+/// back to 1.
 struct AdaptiveAugmentation {
   double adaptive_gain_1_s = 0.0;  ///< a, on the square of the departure in rad
   double leakage_1_s = 0.0;        ///< beta
@@ -122,20 +125,20 @@ struct FeedForward {
   double lead_s = 0.0;
 };
 
-/// A section of the filter behind a law, of unit gain at rest:
-/// H(s) = (s²/wz² + 2 dz s/wz + 1) / (s²/wp² + 2 dp s/wp + 1), without zeros a low pass.
+/// A section of the filter behind a law, with unit gain at rest: H(s) = (s²/wz² + 2 dz s/wz + 1) / (s²/wp² +
+/// 2 dp s/wp + 1). Without zeros it is a low pass.
 struct FilterSection {
-  double zeros_rad_s = 0.0;  ///< wz; 0: no zeros
+  double zeros_rad_s = 0.0;  ///< wz (0: no zeros)
   double zeros_damping = 0.0;
   double poles_rad_s = 0.0;
   double poles_damping = 0.0;
-  int stage = 0;  ///< 1-based stage in whose burn it acts; 0: in all
+  int stage = 0;  ///< 1-based stage in whose burn it acts (0: all stages)
 };
 /// Most sections of an axis.
 inline constexpr int kFilterSections = 6;
 
-/// What a law holds at a time within a stage's burn. The stage's own gains, integral and filters are those at
-/// ignition; between two times all are interpolated, and after the last they stay.
+/// A law's numbers at a time within a stage's burn. The stage's own gains, integral and filters hold at
+/// ignition. Between two times all are interpolated. After the last time they stay.
 struct ScheduleEntry {
   int stage = 0;      ///< 1-based
   double at_s = 0.0;  ///< since its ignition
@@ -170,7 +173,7 @@ struct ReactionControlLogic {
 struct GyroShare {
   std::string gyro;  ///< of the vehicle's sensors
   double weight = 1.0;
-  int stage = 0;  ///< 1-based stage in whose burn it counts; 0: in all
+  int stage = 0;  ///< 1-based stage in whose burn it counts (0: all stages)
 };
 
 struct AutopilotConfig {

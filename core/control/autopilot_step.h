@@ -9,7 +9,7 @@
 namespace dispersa::lanes {
 inline namespace DISPERSA_ISA {
 
-/// What the loop knows of each lane's stage.
+/// The loop's knowledge of each lane's stage.
 template <class T>
 struct GimbalLoop {
   StageLawLanes<T> axes[kAxes];
@@ -70,9 +70,9 @@ DISPERSA_INLINE void Effectiveness(const GimbalLoop<T>& loop, T since_ignition_s
   of_roll = Fma(since, c[3], c[2]);
 }
 
-/// One tick of the lanes that act. Errors reference less true, about x, y, z. `program_rad_s2`: what is fed
-/// forward to each axis, or null; `foreign_rad_s2`: what a plug-in commands of each, or null. Of what the
-/// laws have learnt, pitch alone is reported.
+/// One tick of the acting lanes. Errors are reference less true, about x, y, z. `program_rad_s2`:
+/// feed-forward of each axis, or null. `foreign_rad_s2`: a plug-in's command of each axis, or null. Of the
+/// learnt values only pitch's are reported.
 template <bool kAll, class T>
 DISPERSA_INLINE void StepGimbals(const AutopilotModel& model, GimbalLoop<T>& loop, MaskOf<T> acting,
                                  T since_ignition_s, Vector<T> angle_rad, Vector<T> rate_rad_s,

@@ -1,11 +1,10 @@
 // One axis of the autopilot: from the attitude error and its rate to an angular acceleration.
 //
-// Signs: e = reference - true about the body axis, u > 0 accelerates the body in the positive sense, so the
-// plant is e'' = -u + disturbance and b = 1 > 0 as (18) and (32) need; the paper's (14) has the opposite
-// sign, u = -delta.
+// Signs: e = reference - true about the body axis, and u > 0 accelerates the body in the positive direction.
+// So the plant is e'' = -u + disturbance, and b = 1 > 0 as (18) and (32) need. The paper's (14) has the
+// opposite sign, u = -delta.
 //
-// Everything here is plain data; the laws themselves are law.h and axis_step.h, written once for any number
-// of flights.
+// Everything here is plain data. law.h and axis_step.h hold the laws, written once for any number of flights.
 #pragma once
 
 #include <cstdint>
@@ -35,16 +34,16 @@ struct LawPiece {
   StageLaw rate;  ///< of each number, 1/s
 };
 
-/// The law of one axis prepared for flight; shared by all flights.
+/// The law of one axis, prepared for flight and shared by all flights.
 struct AxisLaw {
   AxisConfig config;
   std::vector<StageLaw> stages;               ///< at ignition
-  std::vector<std::vector<LawPiece>> pieces;  ///< of each stage, where it is scheduled; else none
+  std::vector<std::vector<LawPiece>> pieces;  ///< of each scheduled stage, empty for the others
 };
-/// A scheduled stage has every number of StageLaw, those of digital sections included, as straight lines
-/// between the times of its entries: sections stay stable, since coefficients of stable ones fill a triangle,
-/// and of unit gain at rest, which is linear in them; and no command jumps. P and P_n are those of the
-/// entries' gains, and between them of neither.
+/// In a scheduled stage every number of StageLaw, digital sections included, is a straight line between the
+/// times of its entries. Sections stay stable: the coefficients of stable ones fill a triangle. Their gain at
+/// rest stays 1: it is linear in them. No command jumps. P and P_n belong to the entries' gains; between
+/// entries they belong to neither.
 AxisLaw BuildAxisLaw(const AxisConfig& config, double tick_s);
 
 /// The law in a stage at a time since its ignition.
@@ -60,7 +59,7 @@ struct AxisState {
   double total_gain = 1.0;       ///< adaptive augmentation
   double model_started = 0.0;    ///< its reference model: 0 or 1
   double model_error_rad = 0.0;
-  double model_rate_rad_s = 0.0;  ///< its rate; of composite adaptation the predicted one
+  double model_rate_rad_s = 0.0;  ///< rate of the model, for composite adaptation the predicted one
   double model_integral_rad_s2 = 0.0;
   double high_pass = 0.0;  ///< its spectral damper
   double low_pass = 0.0;
@@ -81,8 +80,8 @@ struct AxisTelemetry {
 /// Starts a stage's rules, integral and augmentation: at lift-off, and at ignitions if so configured.
 void ResetAxis(AxisState& state);
 
-/// One tick at a time since ignition. `pn_error_factor` and `pn_rate_factor` scale P_n (the study of Fig. 5);
-/// 1 in flight.
+/// One tick, in order since ignition. `pn_error_factor` and `pn_rate_factor` scale P_n (the study of Fig. 5).
+/// Both are 1 in flight.
 double StepAxis(const AxisLaw& law, int stage, double error_rad, double rate_rad_s, double pn_error_factor,
                 double pn_rate_factor, double tick_s, AxisState& state, AxisTelemetry& telemetry,
                 double since_ignition_s = 0.0);

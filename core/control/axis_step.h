@@ -1,5 +1,5 @@
 // One axis of the autopilot of W flights side by side (core/math/lanes.h), one tick: from the attitude error
-// and its rate to an angular acceleration, by whatever law the axis has. Signs as in axis_controller.h.
+// and its rate to an angular acceleration, under any control law. Signs as in axis_controller.h.
 #pragma once
 
 #include "core/control/law_choice.h"
@@ -58,8 +58,8 @@ DISPERSA_INLINE T Filter(int count, const T (*sections)[5], MaskOf<T> acting, T 
   return x;
 }
 
-/// One tick of the lanes that act; the others' memory stays as it is. `foreign_rad_s2`: the command of a law
-/// that is not ours, else null. `is_reported`: what the law has learnt is read afterwards.
+/// One tick of the acting lanes. The other lanes keep their memory. `foreign_rad_s2`: the command of a
+/// plug-in or of Python, else null. `is_reported`: the learnt values are read afterwards.
 template <bool kAll, class T>
 DISPERSA_INLINE void StepAxis(const AxisConfig& config, double tick_s, const StageLawLanes<T>& stage,
                               MaskOf<T> acting, T error, T rate, const T* foreign_rad_s2, bool is_reported,

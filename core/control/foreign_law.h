@@ -6,8 +6,8 @@
 namespace dispersa::lanes {
 inline namespace DISPERSA_ISA {
 
-/// A plug-in commands all its axes in one call a tick (PluginFlight), which has its memory: this hands on to
-/// an axis what it commanded of it.
+/// A plug-in commands all its axes in one call a tick (PluginFlight), and keeps its own memory. This law
+/// passes its command on to one axis.
 struct ForeignLaw {
   static void StartStage(const AxisConfig&, int stage, AxisState& memory) {
     if (stage == 0) ResetAxis(memory);

@@ -1,9 +1,10 @@
-// Rule base of the paper: five triangular sets for the error, five for its rate, 25 rules with singleton
-// consequents, centre-of-gravity defuzzification with the product as the rules' AND: equations (20) to (22).
+// Rule base of the paper, equations (20) to (22): five triangular sets for the error, five for its rate, and
+// 25 rules with singleton consequents. Defuzzification is by centre of gravity, with the product as the
+// rules' AND.
 //
-// The sets are centred at -range, -range/2, 0, range/2, range; neighbours cross at one half and the outer
+// The sets are centred at -range, -range/2, 0, range/2, range. Neighbours cross at one half and the outer
 // sets are shoulders, so the grades of any value sum to 1. Rule i * 5 + j has the error's set i and the
-// rate's set j. The law itself is fuzzy_law.h.
+// rate's set j. The control law itself is fuzzy_law.h.
 #pragma once
 
 namespace dispersa {

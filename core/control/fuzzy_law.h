@@ -17,16 +17,16 @@ DISPERSA_INLINE void Grades(T position, T* grade) {
 
 /// The paper's law (20)-(32), adaptive or frozen, with the guards of Adaptation.
 ///
-/// The consequents are their start, which makes the rule surface the plane kp e + kd de/dt between the outer
-/// centres, plus a departure; so the output is the plane's and the departures' by the regressor.
+/// A consequent is its start plus a departure. The starts make the rule surface the plane kp e + kd de/dt
+/// between the outer centres. So the output is the plane's plus the regressor times the departures.
 ///
-/// A steady disturbance excites the central rule alone. Learnt there alone it bends the rule surface: the
-/// slope towards the neighbours, which is the loop's gain, changes and can turn negative. `spread` draws each
-/// departure to the mean of all, so that what lasts becomes a common offset, which leaves the slopes alone.
-/// As leakage does, it adds a negative semi-definite term to dV/dt, but none against a common offset.
+/// A steady disturbance excites the central rule alone. Learnt there alone it bends the rule surface. The
+/// slope towards the neighbours is the loop's gain: it changes and can turn negative. `spread` draws each
+/// departure to the mean of all. A lasting disturbance so becomes a common offset, which does not change the
+/// slopes. Like leakage, it adds a negative semi-definite term to dV/dt, but none against a common offset.
 struct FuzzyLaw {
   static void StartStage(const AxisConfig& config, int stage, AxisState& memory) {
-    // What was learnt is a departure from the start of the stage before; it is carried over.
+    // The departures learnt in the stage before are carried over.
     if (stage == 0 || config.adaptation.reset_at_ignition) ResetAxis(memory);
   }
 
@@ -58,7 +58,7 @@ struct FuzzyLaw {
         const T predicted = Select(memory.model_started > T(0.0), memory.model_rate_rad_s, rate);
         const T missed = rate - predicted;
         drive = Fma(T(guards.composite) * in.stage.pn_rate, missed, drive);
-        // What the rules have learnt is taken to cancel the disturbance: the error dynamics remain.
+        // The learnt departures are assumed to cancel the disturbance: the error dynamics remain.
         const T change = Fma(T(guards.predictor_1_s), missed, -u);
         memory.model_rate_rad_s =
             Kept<kAll>(in.acting, Fma(T(in.tick_s), change, predicted), memory.model_rate_rad_s);
@@ -66,7 +66,7 @@ struct FuzzyLaw {
       }
       auto is_frozen = Abs(drive) < T(guards.dead_zone_rad) * Abs(in.stage.pn_error);
       if (guards.freeze_when_saturated) is_frozen = is_frozen | (memory.saturation * drive > T(0.0));
-      // Where nothing adapts the coefficients leave every departure as it is.
+      // Where nothing adapts, the coefficients leave every departure as it is.
       const auto adapts = in.acting & (in.stage.gamma > T(0.0));
       T rated = T(in.tick_s) * in.stage.gamma * drive;
       if (guards.normalized) {
@@ -107,7 +107,7 @@ struct FuzzyLaw {
       // The command uses the consequents before the step.
       u = u + learnt;
     }
-    // Beyond the outer sets the rule surface is flat; the supervisory term restores the linear law there
+    // Beyond the outer sets the rule surface is flat. There the supervisory term restores the linear law
     // while V exceeds its bound.
     if (in.config.adaptation.supervisory_bound > 0.0) {
       const T error_beyond = error - Clamp(error, T(-rules.error_range_rad), T(rules.error_range_rad));

@@ -1,10 +1,10 @@
-// What a control law of one axis is given and returns: control_law.h, which plug-ins have, for one axis of W
-// flights side by side (core/math/lanes.h).
+// Input and output of one axis' control law: those of control_law.h, which plug-ins have, for W flights side
+// by side (core/math/lanes.h).
 //
-// A law is a struct without data whose functions are those of control_law.h:
-//   StartStage(config, stage, memory)  an ignition: what was learnt is kept, or the memory begins anew
-//   Step<kAll>(input, output, memory)  a tick of the lanes that act: their command; `kAll`: every lane acts
-// Everything that a law remembers is in the memory, and it changes no lane that does not act.
+// A law is a struct without data. It has the functions of control_law.h:
+//   StartStage(config, stage, memory)   an ignition: the memory is kept or begins anew
+//   Step<kAll>(input, output, memory)   a tick: the commands of the acting lanes; `kAll`: every lane acts
+// All its state is in the memory. It changes no lane that does not act.
 #pragma once
 
 #include "core/control/axis_controller.h"
@@ -64,7 +64,7 @@ struct LawInput {
   bool is_reported;         ///< what the law has learnt is read afterwards
 };
 
-/// What a law answers, zero at first, beside V, which is there before: AxisTelemetry lane by lane.
+/// A law's output: AxisTelemetry lane by lane. V is set beforehand, the rest begins at zero.
 template <class T>
 struct AxisOutput {
   T command_rad_s2;  ///< u
@@ -77,7 +77,7 @@ template <class T>
 DISPERSA_INLINE void SetLane(AxisOutput<T>& o, int lane, const AxisOutput<double>& from) {
   SetLaneValues<T>(o, lane, from);
 }
-/// The value that replaces another one in the lanes that act; `kAll`: every lane does.
+/// The new value in the acting lanes, the old one in the others. `kAll`: every lane acts.
 template <bool kAll, class T>
 DISPERSA_INLINE T Kept(MaskOf<T> acting, T anew, T old) {
   if constexpr (kAll) return anew;

@@ -11,8 +11,8 @@
 
 namespace dispersa {
 
-/// As long as it lives, its configuration stands for these functions as for those of a shared object, and
-/// flights under it are flown in this process. It must outlive them.
+/// While it lives, its configuration offers these functions like those of a shared object. Flights under it
+/// are flown in this process. The functions must outlive it.
 class LawHere {
  public:
   explicit LawHere(const PluginLaw::Functions& functions);
@@ -35,7 +35,7 @@ const PluginLaw::Functions* FunctionsHere(const PluginConfig& config);
 /// Whether it is a law in Python that this process does not have: its flights can be looked at, not flown.
 bool IsAbsent(const PluginConfig& config);
 
-/// What this thread is offered under a hash, or nothing.
+/// The configuration that this thread offers under a hash; empty if it offers none.
 std::optional<PluginConfig> OfferedLaw(const std::string& sha256);
 
 }  // namespace dispersa

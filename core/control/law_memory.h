@@ -7,8 +7,8 @@
 
 namespace dispersa {
 
-/// Zeros, aligned to 64 bytes, between two pages that end a process that touches them. What lies between the
-/// block and those pages (less than 64 bytes behind it, a page before it) is watched.
+/// Zeros, aligned to 64 bytes, between two guard pages: touching them ends the process. The space between the
+/// block and those pages is checked for writes: less than 64 bytes behind it, a page before it.
 class LawMemory {
  public:
   /// Throws std::bad_alloc.

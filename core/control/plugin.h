@@ -24,7 +24,7 @@ class PluginError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What a plug-in says of itself.
+/// A plug-in's description of itself.
 struct PluginDescription {
   std::string name;
   std::string version;
@@ -35,7 +35,7 @@ struct PluginDescription {
 class PluginLaw {
  public:
   explicit PluginLaw(const PluginConfig& config) : config_(config) {}
-  /// What was loaded stays: unloading it would run code of it where nobody watches.
+  /// A loaded library stays loaded: unloading would run its code where no guard watches it.
   PluginLaw(const PluginLaw&) = delete;
   PluginLaw& operator=(const PluginLaw&) = delete;
 
@@ -69,14 +69,14 @@ class PluginLaw {
   mutable const dispersa_law_description* description_ = nullptr;
 };
 
-/// Where a call into a plug-in is: for who watches from another process. Written before and after each.
+/// Position of a call into a plug-in, for a watching process. Written before and after each call.
 struct PluginMark {
   std::uint64_t case_index = 0;
   std::uint64_t calls = 0;  ///< odd while a call is under way
   double time_s = 0.0;      ///< since lift-off
-  std::int32_t stage = -1;  ///< from 0; -1: before the first
+  std::int32_t stage = -1;  ///< from 0, and -1 before the first
 };
-/// Where this process writes it; null at first: nowhere.
+/// Sets where this process writes its mark. At first it writes none (null).
 void MarkPluginCallsIn(volatile PluginMark* mark);
 
 /// The law of one flight.
@@ -88,13 +88,13 @@ class PluginFlight {
   PluginFlight(const PluginFlight&) = delete;
   PluginFlight& operator=(const PluginFlight&) = delete;
 
-  /// False, here and in Step, when the law fails; then it is not called any more. Both throw PluginError when
-  /// it has written beside the flight's memory.
+  /// Returns false if the law fails, as Step does: then it is not called any more. Both throw PluginError if
+  /// the law has written beside the flight's memory.
   bool StartStage(const dispersa_law_stage& stage, double time_s);
   /// Angular accelerations, rad/s², whatever the law commands.
   bool Step(const dispersa_law_input& input, double* command_rad_s2);
 
-  /// Why the flight ends; null while it goes on. A text of program life.
+  /// Why the flight ends, as a string literal; null while it goes on.
   const char* failure() const { return failure_; }
   const std::array<double, kLawTelemetry>& telemetry() const { return telemetry_; }
 

@@ -11,8 +11,8 @@ struct ThrusterState {
   int cycles_on = 0;  ///< since it opened
 };
 
-/// Decides for one cycle: a couple opens when |e + k de/dt| leaves the deadband, and closes, not before its
-/// minimum on-time, when the switching value has come back across the hysteresis. Returns the direction.
+/// Decides for one cycle. A couple opens when |e + k de/dt| leaves the deadband. It closes when the switching
+/// value has come back across the hysteresis, but not before its minimum on-time. Returns the direction.
 int StepThrusters(const ReactionControlLogic& logic, double error_rad, double rate_rad_s, int minimum_cycles,
                   ThrusterState& state);
 

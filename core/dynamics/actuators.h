@@ -1,16 +1,15 @@
 // The nozzles' actuators of W flights side by side (core/math/lanes.h): second order with a limited rate.
-// Between two commands they depend on nothing else, so they are propagated by themselves, exactly where no
+// Between two commands they depend on nothing else. So they are propagated by themselves, exactly where no
 // limit acts.
 //
-// A vehicle file may give them what real drives have besides: a resolution, in steps of which the command
-// reaches the servo; a dead zone, within which the servo does not feel its distance from the command; and
-// Coulomb friction, which holds a drive at rest until the servo pulls harder and opposes it by as much while
-// it slides:
+// A vehicle file may give them three properties of real drives. A resolution: the command reaches the servo
+// in steps. A dead zone: within it the servo does not feel its distance from the command. Coulomb friction:
+// it holds a drive at rest until the servo pulls harder, and opposes a sliding drive by as much:
 //
 //   angle'' = w² zone(command - angle) - 2 zeta w angle' - w² friction sign(angle')
 //
-// with zone(e) = e less the dead zone in the sense of 0, and friction in the unit of the angle. These drives
-// are integrated in small steps that end where a drive comes to rest.
+// zone(e) is e moved towards 0 by the dead zone. Friction has the unit of the angle. These drives are
+// integrated in small steps, which end where a drive comes to rest.
 #pragma once
 
 #include "core/dynamics/launcher_body.h"
@@ -29,16 +28,16 @@ struct GimbalLanes {
   T dead_zone_rad;
   T friction_1_s2;  ///< w² friction: the deceleration by it, rad/s²
   T resolution_rad;
-  bool is_rough, is_coarse;  ///< whether any lane has a dead zone or friction; a resolution
-  // What one propagation of a lane is divided into where it is numerical (StepsOver).
+  bool is_rough, is_coarse;  ///< whether any lane has a dead zone or friction, whether any has a resolution
+  // Number and share of the steps of one numerical propagation of a lane (StepsOver).
   T limited_steps, limited_part, rough_steps, rough_part;
   int most_limited_steps, most_rough_steps;  ///< of any lane
   T fast_limit2_rad2_s2;  ///< of a drive that may reach its rate limit between the ends: the limit squared
   bool is_fast;           ///< any lane has such drives
 };
 
-/// Steps of one propagation: at least so many, and none longer than half a radian of the drive's own motion,
-/// at which the classical Runge-Kutta method errs by 3e-4 of the motion in a step.
+/// Steps of one numerical propagation: at least `least`, and none longer than half a radian of the drive's
+/// own motion. At that length the classical Runge-Kutta method errs by 3e-4 of the motion in a step.
 inline constexpr double kLongestStep_rad = 0.5;
 inline int StepsOver(double bandwidth_rad_s, double time_s, int least) {
   const double steps = bandwidth_rad_s * time_s / kLongestStep_rad;
@@ -91,7 +90,7 @@ DISPERSA_INLINE T Followed(const GimbalLanes<T>& d, T command_rad) {
   return Clamp(command_rad, -d.limit_rad, d.limit_rad);
 }
 
-/// What the servo pulls with, rad/s².
+/// Acceleration that the servo asks for, rad/s².
 template <class T>
 DISPERSA_INLINE T Pull(const GimbalLanes<T>& d, T command_rad, T angle_rad) {
   const T distance = command_rad - angle_rad;
@@ -99,8 +98,8 @@ DISPERSA_INLINE T Pull(const GimbalLanes<T>& d, T command_rad, T angle_rad) {
   return d.bandwidth2_1_s2 * (distance - Clamp(distance, -d.dead_zone_rad, d.dead_zone_rad));
 }
 
-/// The sense in which a drive slides: that of its rate; at rest that of a pull above its friction, else 0:
-/// held.
+/// The direction in which a drive slides. A moving drive: that of its rate. A drive at rest: that of a pull
+/// above its friction, else 0 (held).
 template <class T>
 DISPERSA_INLINE T SlidesIn(const GimbalLanes<T>& d, T command_rad, T angle_rad, T rate_rad_s) {
   const T one(1.0), none(0.0);
@@ -110,8 +109,9 @@ DISPERSA_INLINE T SlidesIn(const GimbalLanes<T>& d, T command_rad, T angle_rad, 
   return Select(felt > none, one, Select(felt < none, -one, none));
 }
 
-/// Derivative of one drive: d(angle)/dt = rate within the limit, at which it cannot accelerate further
-/// outwards. `slides`: SlidesIn, which friction opposes; it does not change between two rests.
+/// Derivative of one drive: d(angle)/dt = rate within the limit. At the limit the drive cannot accelerate
+/// further outwards. `slides` is the direction that friction opposes (SlidesIn). It does not change between
+/// two rests.
 template <class T>
 DISPERSA_INLINE void DriveRates(const GimbalLanes<T>& d, int i, T command_rad, T angle_rad, T rate_rad_s,
                                 T slides, T& dangle, T& drate) {
@@ -152,8 +152,9 @@ DISPERSA_INLINE void StepDrive(const GimbalLanes<T>& d, int i, T command_rad, T 
       Clamp(Fma(sixth, (r1 + r4) + T(2.0) * (r2 + r3), rate), -d.rate_limit_rad_s, d.rate_limit_rad_s);
 }
 
-/// Steps that one propagation of a drive with a dead zone or friction takes at least: of 0.6 ms in half a
-/// tick of 10 ms. A step that meets the edge of the zone or a rest within it errs by the cube of its length.
+/// Least number of steps in one propagation of a drive with a dead zone or friction: 0.6 ms each in half a
+/// tick of 10 ms. A step that meets the edge of the zone, or a rest within it, errs by the cube of its
+/// length.
 inline constexpr int kRoughSteps = 8;
 /// Steps of the classical Runge-Kutta method that one propagation takes at least where a rate limit acts.
 inline constexpr int kLimitedSteps = 4;
@@ -203,10 +204,9 @@ DISPERSA_INLINE void SetAccelerations(const GimbalLanes<T>& d, const T* command_
   }
 }
 
-/// After a time that `over` belongs to. A lane in which any drive reaches its rate limit at either end is
-/// integrated numerically; so is one whose drives are fast enough to reach it in between: rate² + w²
-/// distance² does not grow, so that a rate within the limit by that never leaves it. Commands are limited in
-/// angle here; the mechanical stop is at the same angle and takes the rate.
+/// The drives after the time of `over`. A lane is integrated numerically if any drive is at its rate limit at
+/// either end, or could reach it in between. The bound for that is rate² + w² distance², which does not grow.
+/// The command's angle is limited here. The mechanical stop is at the same angle and takes the rate.
 template <class T>
 DISPERSA_INLINE DriveState<T> Propagate(const GimbalLanes<T>& d, const T* command_rad,
                                         const Transition<T>& over, T time_s, const DriveState<T>& from) {

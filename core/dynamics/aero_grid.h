@@ -9,9 +9,9 @@
 
 namespace dispersa {
 
-/// All tables of a BodyAerodynamics at factor 1 on the union of their breakpoints, where each is still the
-/// bilinear function that it was, to rounding. A cell's row holds, for each coefficient, c0 + c1 i + (c2 + c3
-/// i) m over Mach number m and incidence i (rad), and for damping c0 + c1 m.
+/// All tables of a BodyAerodynamics at factor 1 on the union of their breakpoints. Each is still the same
+/// bilinear function, to rounding. A cell's row holds, for each coefficient, c0 + c1 i + (c2 + c3 i) m over
+/// Mach number m and incidence i (rad). Damping is c0 + c1 m.
 struct AeroGrid {
   static constexpr int kRowSize = 16;
 
@@ -26,7 +26,8 @@ struct AeroGrid {
 
   Axis mach, incidence;
   AlignedRows body_axes;  ///< cell by cell, incidence fastest: ca (4), cn (4), xcp (4), cmq (2), clp (2)
-  AlignedRows wind_axes;  ///< likewise: cd (4), cl (4), cm (4), cnr less cmq (2), unused (2); or empty
+  AlignedRows wind_axes;  ///< in the same form: cd (4), cl (4), cm (4), cnr less cmq (2), unused (2); empty
+                          ///< without wind-axis tables
 };
 
 AeroGrid BuildAeroGrid(const BodyAerodynamics& body);

@@ -9,7 +9,7 @@
 
 namespace dispersa {
 
-/// A coefficient over Mach number and total incidence; no table means 0.
+/// A coefficient over Mach number and total incidence. Without a table it is 0.
 struct Coefficient {
   double factor = 1.0;
   Table2D table = {};
@@ -17,13 +17,15 @@ struct Coefficient {
   bool empty() const { return table.z.empty(); }
 };
 
-/// Coefficients of a body that is symmetric about its x axis, in body or in wind axes or both (they add):
-///   F = -q S (ca x + cn n) - q S cd v + q S cl l,
-/// x forward, v along the velocity through the air, n the direction of the cross-flow and l normal to v
-/// in the plane of incidence. Moments about the CG:
-///   the normal force acts at xcp; cm (at the moment reference) turns the nose up in the plane of
-///   incidence; clp, cmq, cnr damp p b / (2 V), q c / (2 V), r b / (2 V).
-/// Validity is the grid's; outside it the end value holds.
+/// Coefficients of a body that is symmetric about its x axis. They may be given in body axes, in wind axes,
+/// or in both, which add:
+///
+///   F = -q S (ca x + cn n) - q S cd v + q S cl l
+///
+/// x points forward, v along the velocity through the air, n along the cross-flow. l is normal to v in the
+/// plane of incidence. Moments are about the centre of gravity. The normal force acts at xcp. cm (at the
+/// moment reference) turns the nose up in the plane of incidence. clp, cmq and cnr damp p b / (2 V), q c / (2
+/// V) and r b / (2 V). The grid is the range of validity. Outside it the end value holds.
 struct BodyAerodynamics {
   double area_m2 = 0.0;
   double length_m = 0.0;  ///< c: of cm and cmq
@@ -42,9 +44,9 @@ struct ForceAndMoment {
 
 struct AeroGrid;
 
-/// v_AB_B: velocity through the air, m/s; w_AB_B: angular velocity relative to the air, rad/s; both in body
-/// axes; cg_station_m aft of the reference point of the stations; grid: BuildAeroGrid(body). One lane of
-/// body_flow.h. No force at rest.
+/// Force and moment in body axes. v_AB_B is the velocity through the air, m/s. w_AB_B is the angular velocity
+/// relative to the air, rad/s. cg_station_m counts aft from the reference point of the stations. `grid` is
+/// BuildAeroGrid(body). One lane of body_flow.h. At rest there is no force.
 ForceAndMoment AerodynamicForce(const BodyAerodynamics& body, const AeroGrid& grid, const Vector3& v_AB_B,
                                 const Vector3& w_AB_B, double density_kg_m3, double speed_of_sound_m_s,
                                 double cg_station_m);

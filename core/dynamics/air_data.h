@@ -1,4 +1,4 @@
-// What the air does to a moving point: flow properties and the velocity relative to the air.
+// Flow properties at a moving point, and its velocity relative to the air.
 #pragma once
 
 #include <memory>
@@ -12,12 +12,12 @@
 
 namespace dispersa {
 
-/// The surroundings of a flight. The air turns with the Earth; the wind adds to it.
+/// Earth and weather of a flight. The air turns with the Earth, and the wind is added.
 struct Environment {
   Earth earth = Wgs84();
   Wind wind;
   DensityFactor density;
-  std::shared_ptr<const TurbulenceField> turbulence = {};  ///< adds to the wind; null: none
+  std::shared_ptr<const TurbulenceField> turbulence = {};  ///< added to the wind (null: none)
 };
 
 struct AirData {

@@ -1,14 +1,16 @@
-// Bending of W launch vehicles side by side (core/math/lanes.h): modes of free-free beams (core/structure)
-// in the mean axes of the body, to first order in the deflections.
+// Bending of W launch vehicles side by side (core/math/lanes.h): modes of free-free beams (core/structure) in
+// the mean axes of the body, to first order in the deflections.
 //
-// A mode of plane z moves station s by deflection(s) q along body z and turns the cross-section by
-// slope(s) q about y; one of plane y moves it along y and turns it by -slope(s) q about z. In mean axes (R.
-// D. Milne, "Dynamics of the Deformable Aeroplane", ARC R&M 3345, 1964) momentum and angular momentum are
-// those of the rigid body, so bending enters its equations through the forces alone, and each mode follows
-//   q'' + 2 zeta omega q' + omega² q = Q / m,  Q = sum of force deflection + moment slope
-// over all forces but gravitation. Left out: Coriolis and centrifugal terms of the turning body (below 1e-4
-// of omega² at a roll rate of 10 deg/s), couples of the reaction control, and the change of shapes within a
-// step.
+// A mode of plane z moves station s by deflection(s) q along body z and turns the cross-section by slope(s) q
+// about y. A mode of plane y moves it along y and turns it by -slope(s) q about z. In mean axes momentum and
+// angular momentum are those of the rigid body (R. D. Milne, "Dynamics of the Deformable Aeroplane", ARC R&M
+// 3345, 1964). So bending enters the body's equations through the forces alone. Each mode follows
+//
+//   q'' + 2 zeta omega q' + omega² q = Q / m
+//
+// with Q the sum of force deflection + moment slope over all forces but gravitation. Not modelled: Coriolis
+// and centrifugal terms of the turning body (below 1e-4 of omega² at a roll rate of 10 deg/s), couples of the
+// reaction control, and the change of shapes within a step.
 #pragma once
 
 #include "core/dynamics/body_sections.h"
@@ -113,7 +115,7 @@ DISPERSA_INLINE void ShapesAt(BendingTableLanes<T>& b, T propellant_kg) {
   }
 }
 
-/// What a place of the bent body is displaced (m), turned (rad), and turns at (rad/s).
+/// Displacement (m), rotation (rad) and rotation rate (rad/s) of a place of the bent body.
 template <class T>
 struct Bent {
   T y_m, z_m;
@@ -141,7 +143,7 @@ DISPERSA_INLINE Vector<T> UnitTurn(const BendingTableLanes<T>& b, const BendingS
   }
   return turn;
 }
-/// How fast the inertial unit turns against the mean axes, rad/s; or, of `gyro` from 0, that gyro.
+/// Rotation rate of the inertial unit against the mean axes, rad/s. With `gyro` from 0 on: of that gyro.
 template <class T>
 DISPERSA_INLINE Vector<T> TurnRate(const BendingTableLanes<T>& b, const BendingState<T>& s, int gyro) {
   Vector<T> rate = Zero<T>();
@@ -214,7 +216,7 @@ DISPERSA_INLINE void BendFlow(const BendingTableLanes<T>& b, const BendingState<
   }
 }
 
-/// What bending does to the sections' moments: `drive` is Q / m.
+/// Adds bending's part to the sections' moments: `drive` is Q / m.
 template <class T>
 DISPERSA_INLINE SectionMoments<T> MomentsByBending(const BendingTableLanes<T>& b, const BendingState<T>& s,
                                                    const ModalForce<T>& drive, const LoadTableLanes<T>& body,
@@ -299,8 +301,8 @@ DISPERSA_INLINE Swing<T> Twice(const BendingTableLanes<T>& b, const Swing<T>& s)
   return o;
 }
 
-/// Where the modes are after the time of `swing` under drives d0 + d1 t + d2 t², exactly: a particular motion
-/// a + b t + c t² and the free one of what is left.
+/// The modes after the time of `swing` under drives d0 + d1 t + d2 t², exactly: a particular motion a + b t +
+/// c t² plus the free motion of the rest.
 template <class T>
 DISPERSA_INLINE BendingState<T> Swung(const BendingTableLanes<T>& b, const Swing<T>& swing,
                                       const BendingState<T>& from, const ModalForce<T>& d0,

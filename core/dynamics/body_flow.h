@@ -39,7 +39,7 @@ DISPERSA_INLINE T BilinearAt(const T* c, T mach, T incidence) {
   return Fma(mach, Fma(incidence, c[3], c[2]), Fma(incidence, c[1], c[0]));
 }
 
-/// Factors applied; arguments outside the grid are held at its end.
+/// Coefficients with their factors. Outside the grid the end value holds.
 template <class T>
 DISPERSA_INLINE Coefficients<T> CoefficientsAt(const BodyAerodynamicsLanes<T>& body, T mach,
                                                T incidence_rad) {
@@ -81,8 +81,8 @@ DISPERSA_INLINE Coefficients<T> CoefficientsAt(const BodyAerodynamicsLanes<T>& b
   return o;
 }
 
-/// Angle between the body axis and the flow, [0, pi] rad, from the cross-flow and the flow along the axis:
-/// below an eighth by the series of the arctangent (remainder 4e-18), else by SLEEF's.
+/// Angle between the body axis and the flow, [0, pi] rad, from the cross-flow and the flow along the axis.
+/// Below an eighth it uses the series of the arctangent (remainder 4e-18), else SLEEF's function.
 template <class T>
 DISPERSA_INLINE T IncidenceOf(T across, T along) {
   const auto is_small = across < T(0.125) * along;
@@ -94,7 +94,7 @@ DISPERSA_INLINE T IncidenceOf(T across, T along) {
   return angle;
 }
 
-/// What presses on the body from the side.
+/// Lateral force and its place on the body.
 template <class T>
 struct NormalForce {
   T normal_n, slope_n;  ///< the slope is by the incidence in rad
@@ -125,7 +125,7 @@ DISPERSA_INLINE FlowForce<T> ForceOfFlow(const BodyAerodynamicsLanes<T>& body, V
   o.incidence_rad = IncidenceOf(across, v.x);
   const Coefficients<T> c = CoefficientsAt(body, o.mach, o.incidence_rad);
   const T qs = o.qbar_pa * body.area_m2;
-  // Unit cross-flow; any direction will do at zero incidence, where the coefficients vanish.
+  // Unit cross-flow. At zero incidence any direction will do: the coefficients are 0.
   const T inverse_across = T(1.0) / Max(across, T(1e-30));
   const T ny = v.y * inverse_across, nz = v.z * inverse_across;
   const T normal = qs * c.cn;

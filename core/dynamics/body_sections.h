@@ -57,8 +57,8 @@ template <class T>
 struct SectionMoments {
   T y_n_m[kLoadStations], z_n_m[kLoadStations];
 };
-/// How the body moves: its acceleration at C but for gravitation, and by how much that grows with each metre
-/// ahead of C, `turn_z` along y and `turn_y` along -z.
+/// Motion of the body: acceleration at C without gravitation, and its growth for each metre ahead of C.
+/// `turn_z` grows along y, `turn_y` along -z.
 template <class T>
 struct BodyMotion {
   T propellant_kg, cg_station_m;

@@ -6,22 +6,22 @@
 
 namespace dispersa {
 
-/// dy/dt = f(t, y); `context` is the caller's.
+/// dy/dt = f(t, y). `context` belongs to the caller.
 using RightHandSide = void (*)(double time_s, const double* y, double* dydt, void* context);
 
 enum class Scheme {
-  kSimpson,      ///< the engine's own step (core/flight/simpson_step.h): what flights use; not an Integrator
+  kSimpson,      ///< the engine's own step (core/flight/simpson_step.h) for flights, not an Integrator
   kRungeKutta4,  ///< ERKStep with the classical fourth-order table and fixed steps: scenarios, and a judge
-  /// CVODE Adams: the independent check. It solves for the change of the state since the restart, so that the
-  /// relative tolerance of 1e-12 is one of metres moved within a tick, not of the distance from the Earth's
-  /// centre, which would let errors of 1e-5 m and 1e-8 m/s in at every restart.
+  /// CVODE Adams: the independent check. It solves for the change of the state since the restart. So the
+  /// relative tolerance of 1e-12 refers to the metres moved within a tick. Relative to the distance from the
+  /// Earth's centre it would admit errors of 1e-5 m and 1e-8 m/s at every restart.
   kCvode,
 };
 /// "simpson", "erk4", "cvode".
 bool ParseScheme(const std::string& name, Scheme* scheme);
 
-/// Advances a state of fixed size. Every Advance starts afresh: no derivative, step size or history
-/// survives an event, so a result depends on the arguments alone. Not thread-safe; make one a flight.
+/// Advances a state of fixed size. Every Advance starts anew: no derivative, step size or history survives an
+/// event. So a result depends on the arguments alone. Not thread-safe: make one for each flight.
 class Integrator {
  public:
   /// scheme: ERKStep's or CVODE's. absolute_tolerance, shape (size): only CVODE reads it.
@@ -30,8 +30,8 @@ class Integrator {
   Integrator(const Integrator&) = delete;
   Integrator& operator=(const Integrator&) = delete;
 
-  /// Replaces y(from) by y(to) in `steps` equal steps (at least 1; CVODE chooses its own).
-  /// Returns false when the solver fails or the state is not finite.
+  /// Replaces y(from) by y(to) in `steps` equal steps (at least 1; CVODE chooses its own). Returns false if
+  /// the solver fails or the state is not finite.
   bool Advance(double from_s, double to_s, int steps, double* y);
 
  private:

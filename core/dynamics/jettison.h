@@ -1,4 +1,4 @@
-// What is jettisoned from a vehicle in flight: when, and what that does to its state.
+// Bodies that are jettisoned in flight: when they are due, and the state afterwards.
 #pragma once
 
 #include "core/dynamics/launcher.h"
@@ -13,7 +13,7 @@ StackMass MassOf(const LauncherPlant& plant, int stack, unsigned jettisoned);
 MassProperties MassesOn(const LauncherPlant& plant, int stack, unsigned jettisoned, double propellant_kg,
                         double since_ignition_s);
 
-/// What jettisons depend on.
+/// Values on which jettisons depend.
 struct JettisonSight {
   double time_s = 0.0;  ///< since lift-off
   double altitude_m = 0.0;
@@ -24,15 +24,17 @@ struct JettisonSight {
 /// Below this altitude a heat flux is no free-molecular one: it is not looked at.
 inline constexpr double kFreeMolecularAltitude_m = 80e3;
 
-/// The free-molecular heating of a surface across the flow, rho v³ / 2, W/m²: what user's manuals limit after
-/// the fairing has gone (1135 W/m² of Ariane 5, Vega and others), with an accommodation coefficient of 1.
+/// Free-molecular heating of a surface normal to the flow, rho v³ / 2, W/m², with an accommodation
+/// coefficient of 1. User's manuals limit it after the fairing's jettison (1135 W/m² for Ariane 5, Vega and
+/// others).
 double HeatFlux(const JettisonSight& sight);
 
-/// Those that are due, as bits; those that went before, or that the stack does not carry any more, are not.
+/// The jettisons that are due, as bits. Earlier ones, and those that the stack no longer carries, are left
+/// out.
 unsigned DueJettisons(const LauncherPlant& plant, int stack, unsigned jettisoned, const JettisonSight& sight);
 
-/// `state` after more has been jettisoned: it follows the centre of gravity, which jumps. `propellant_kg`: of
-/// the stack's lowest stage; `since_ignition_s`: of the first stage, if that is it.
+/// `state` after further jettisons: it moves with the jump of the centre of gravity. `propellant_kg` is that
+/// of the stack's lowest stage. `since_ignition_s` is that of the first stage, if it is the lowest.
 RigidBodyState AfterJettison(const LauncherPlant& plant, int stack, unsigned before, unsigned after,
                              double propellant_kg, double since_ignition_s, const RigidBodyState& state);
 

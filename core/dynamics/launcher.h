@@ -15,7 +15,7 @@
 
 namespace dispersa {
 
-/// Of the cross; a list's nozzles stand in their order in the same places.
+/// Names of the cross's nozzles. The nozzles of a list take the same places in their order.
 inline constexpr const char* kNozzleNames[kNozzles] = {"right", "left", "bottom", "top"};
 /// State: rigid body, then the angle and the rate of each nozzle (right, left, bottom, top), about its first
 /// hinge.
@@ -30,7 +30,7 @@ inline constexpr int kBentLauncherSize = kModalRate + kPlanes * kModes;
 inline constexpr int kSecondAngle = kBentLauncherSize;
 inline constexpr int kSecondRate = kSecondAngle + kNozzles;
 inline constexpr int kLauncherSize = kSecondRate + kNozzles;
-/// Where the state has a drive (nozzle_layout.h).
+/// Place of a drive in the state (nozzle_layout.h).
 constexpr int AngleOf(int drive) {
   return drive < kNozzles ? kNozzleAngle + drive : kSecondAngle + drive - kNozzles;
 }
@@ -40,7 +40,7 @@ constexpr int RateOf(int drive) {
 
 struct AeroGrid;
 
-/// What sets one nozzle apart from the others.
+/// Differences of one nozzle from the nominal one.
 struct NozzleDeparture {
   Matrix3 tilt = Matrix3::Identity();  ///< turns its thrust
   double thrust_factor = 1.0;          ///< of its share
@@ -52,7 +52,7 @@ struct LauncherStack {
   StackMass mass;
   BodyAerodynamics aerodynamics;
   std::shared_ptr<const AeroGrid>
-      aero_grid;  ///< of the aerodynamics without factors; made where it is missing
+      aero_grid;  ///< grid of the aerodynamics without factors, made if it is missing
   MotorBurn burn;
   Gimbal gimbal;
   NozzleLayout layout;
@@ -66,8 +66,8 @@ struct LauncherStack {
   // Besides the plant's own.
   double cg_factor = 1.0;
   double inertia_factor = 1.0;
-  /// Integrals of x y, x z and y z over the mass about C in body axes, constant over the burn: what burns
-  /// lies about the axis. The inertia's off-diagonal elements are their negatives.
+  /// Integrals of x y, x z and y z over the mass about C in body axes. They are constant over the burn, since
+  /// propellant lies about the axis. The inertia's off-diagonal elements are their negatives.
   double product_xy_kg_m2 = 0.0, product_xz_kg_m2 = 0.0, product_yz_kg_m2 = 0.0;
   std::shared_ptr<const LoadTable> loads;
   std::shared_ptr<const BendingTable> bending;  ///< null: this stack is rigid
@@ -80,7 +80,7 @@ struct BendingFactors {
   double slope = 1.0;  ///< of the slopes that sensors feel
 };
 
-/// What burns beside the first stage: all boosters together.
+/// All boosters of the first stage together.
 struct BoosterSet {
   MotorBurn burn;
   BoosterGrains grains;
@@ -106,10 +106,11 @@ struct LauncherPlant {
   BendingFactors bending;
 
   // Of all stacks, so that what is computed does not depend on where a flight stands.
-  int bending_modes() const;   ///< in a plane; 0: the vehicle is rigid
+  int bending_modes() const;   ///< in one plane (0: the vehicle is rigid)
   int bending_planes() const;  ///< that differ
   bool nozzles_have_mass() const;
-  bool nozzles_are_listed() const;  ///< of any stage; then a cross counts as a list too
+  bool nozzles_are_listed()
+      const;  ///< Whether any stage has a list of nozzles. Then a cross is treated as a list too.
   /// Doubles of a state that count: a rigid vehicle's state ends with its nozzles.
   int state_size() const {
     if (nozzles_are_listed()) return kLauncherSize;
@@ -117,7 +118,7 @@ struct LauncherPlant {
   }
 };
 
-/// What stays constant between two events.
+/// Values that stay constant between two events.
 struct LauncherPhase {
   int stack = 0;
   unsigned jettisoned = 0;  ///< bit i: of the plant's jettisons
@@ -162,10 +163,10 @@ class LauncherModel {
 
   LauncherInstant Evaluate(const LauncherPhase& phase, double time_s, const double* y) const;
 
-  /// Right-hand side of the flight. Thrust: each nozzle carries a quarter, deflected in its hinge plane, or
-  /// its share of a list, deflected about its hinges; positive pitch, yaw and roll deflections give positive
-  /// moments about body y, z and x. Actuators are second order with a limited rate: d(angle)/dt = rate within
-  /// the limit; the command is limited in angle.
+  /// Right-hand side of the flight. Each nozzle of a cross carries a quarter of the thrust and deflects it in
+  /// its hinge plane. Each nozzle of a list carries its share and deflects it about its hinges. Positive
+  /// pitch, yaw and roll deflections give positive moments about body y, z and x. Actuators are second order
+  /// with a limited rate: d(angle)/dt = rate within the limit. The command's angle is limited.
   void Derivative(const LauncherPhase& phase, double time_s, const double* y, double* dydt) const;
 
  private:

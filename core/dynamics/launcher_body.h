@@ -1,6 +1,6 @@
-// Equations of motion of W launch vehicles side by side (core/math/lanes.h): the one source of
-// LauncherModel in launcher.h, split into what depends on time, on position and on the rest, so that an
-// integration step evaluates each part as often as it needs it.
+// Equations of motion of W launch vehicles side by side (core/math/lanes.h): the one source of LauncherModel
+// in launcher.h. They are split into parts that depend on time, on position, and on the rest. So an
+// integration step evaluates each part only as often as it must.
 #pragma once
 
 #include "core/dynamics/bending.h"
@@ -13,14 +13,14 @@
 namespace dispersa::lanes {
 inline namespace DISPERSA_ISA {
 
-/// Where a nozzle of a list is, and towards which directions across the body its hinges turn its thrust.
+/// Place of a nozzle of a list, and the directions across the body in which its hinges turn its thrust.
 template <class T>
 struct ListedNozzle {
   T share, y_m, z_m;
   T first_y, first_z, second_y, second_z;
 };
 
-/// What one nozzle's share of the thrust has besides that of a nominal one (NozzleDeparture).
+/// Differences of one nozzle's thrust from a nominal nozzle's (NozzleDeparture).
 template <class T>
 struct NozzleDepartureLanes {
   Matrix<T> extra;  ///< its factor times its tilt, less 1
@@ -57,7 +57,7 @@ struct LauncherPlantLanes {
   T product_xy_kg_m2, product_xz_kg_m2, product_yz_kg_m2;
 };
 
-/// What stays constant between two events of each lane (LauncherPhase).
+/// Values that stay constant between two events of each lane (LauncherPhase).
 template <class T>
 struct LauncherPhaseLanes {
   MaskOf<T> burning, burnt, boosting;
@@ -74,7 +74,7 @@ struct RigidBodyStateLanes {
   Vector<T> w;
 };
 
-/// What depends on time alone.
+/// Values that depend on time alone.
 template <class T>
 struct TimedMasses {
   T propellant_kg;
@@ -83,8 +83,8 @@ struct TimedMasses {
   T cg_speed_m_s;    ///< of C forward through the body: the flow takes propellant away at
   T source_station_m;
   T axial_per_kg_m2, transverse_per_kg_m2;
-  T thrust_fraction, flow_fraction;            ///< of full thrust and flow; 0 when not burning
-  T beside_thrust_fraction, beside_flow_kg_s;  ///< of boosters; count where the vehicle has any
+  T thrust_fraction, flow_fraction;            ///< of full thrust and flow, 0 when not burning
+  T beside_thrust_fraction, beside_flow_kg_s;  ///< of the boosters, if the vehicle has any
 };
 template <class T>
 DISPERSA_INLINE TimedMasses<T> MassesAt(const LauncherPlantLanes<T>& plant,
@@ -125,7 +125,7 @@ DISPERSA_INLINE TimedMasses<T> MassesAt(const LauncherPlantLanes<T>& plant,
 template <class T>
 struct Nozzles {
   T sine[kNozzles], cosine[kNozzles];
-  T acceleration_rad_s2[kNozzles];  ///< of the deflection; counts where nozzles have mass
+  T acceleration_rad_s2[kNozzles];  ///< of the deflection, if nozzles have mass
 };
 template <class T>
 DISPERSA_INLINE Nozzles<T> NozzlesAt(const T* angle_rad) {
@@ -150,7 +150,7 @@ struct ListedNozzles {
   const Nozzles<T>&first, &second;
 };
 
-/// What metrics and histories need of an instant.
+/// Values of one instant for metrics and histories.
 template <class T>
 struct Instant {
   T altitude_m, qbar_pa, mach, incidence_rad, mass_kg, thrust_n;
@@ -198,9 +198,9 @@ DISPERSA_INLINE void AddDepartures(const LauncherPlantLanes<T>& plant, const Noz
   o.couple_n_m = Select(plant.departs, o.couple_n_m + couple, o.couple_n_m);
 }
 
-/// Each nozzle carries a quarter of the thrust, deflected in its hinge plane. Right (+y) and left (-y) turn
-/// the force towards +z, bottom (+z) and top (-z) towards -y. P = P_vac - p A_e; a nozzle that the ambient
-/// pressure would turn inwards gives nothing.
+/// Each nozzle carries a quarter of the thrust and deflects it in its hinge plane. Right (+y) and left (-y)
+/// turn the force towards +z, bottom (+z) and top (-z) towards -y. P = P_vac - p A_e. Where the ambient
+/// pressure would make the thrust negative, it is 0.
 template <class T>
 DISPERSA_INLINE Thrust<T> ThrustOf(const LauncherPlantLanes<T>& plant, const TimedMasses<T>& masses,
                                    const Nozzles<T>& nozzles, T pressure_pa) {
@@ -259,11 +259,10 @@ DISPERSA_INLINE Thrust<T> ThrustOf(const LauncherPlantLanes<T>& plant, const Tim
   return o;
 }
 
-/// What turning nozzles do to the body besides turning the thrust, "tail wags dog": a nozzle whose deflection
-/// grows pushes its pivot the way that it turns the force, and turns the body with its inertia about the
-/// hinge, against its own turning. (A. L. Greensite, "Analysis and Design of Space Vehicle Flight Control
-/// Systems", NASA CR-820 to CR-835, 1967-69.) The body's own acceleration does not move a nozzle: actuators
-/// are stiff.
+/// "Tail wags dog": the forces of accelerating nozzles on the body. A nozzle whose deflection accelerates
+/// pushes its pivot in the direction in which it turns the thrust. Its inertia about the hinge turns the body
+/// against its own rotation. (A. L. Greensite, "Analysis and Design of Space Vehicle Flight Control Systems",
+/// NASA CR-820 to CR-835, 1967-69.) The body's own acceleration does not move a nozzle: actuators are stiff.
 template <class T>
 struct NozzleReaction {
   Vector<T> force_n, couple_n_m;  ///< at the pivots
@@ -296,8 +295,8 @@ DISPERSA_INLINE NozzleReaction<T> ReactionOf(const LauncherPlantLanes<T>& plant,
   return o;
 }
 
-/// A body that bends, at an instant; or one that does not, whose flight is code of its own: where bending may
-/// follow, the compiler keeps forces in memory for it.
+/// A bending body at an instant, or a rigid one. The rigid one has its own code: if bending could follow, the
+/// compiler would keep forces in memory for it.
 template <class T>
 struct BentBody {
   static constexpr bool kBends = true;
@@ -340,8 +339,8 @@ DISPERSA_INLINE void BendThrust(const LauncherPlantLanes<T>& plant, const Launch
   Blend<T>(phase.burning, driven, *bent.modal);
 }
 
-/// Boosters push along the axis, from where they are; a lateral offset of C turns that into a moment. Returns
-/// where the flow of stage and boosters leaves, in the mean.
+/// Boosters push along the axis at their places. A lateral offset of C turns that into a moment. Returns the
+/// mean place at which the flow of stage and boosters leaves.
 template <class T>
 DISPERSA_INLINE T AddBoosters(const LauncherPlantLanes<T>& plant, const LauncherPhaseLanes<T>& phase,
                               const TimedMasses<T>& masses, T pressure_pa, Thrust<T>& thrust, LoadsOf<T>& o) {
@@ -360,10 +359,11 @@ DISPERSA_INLINE T AddBoosters(const LauncherPlantLanes<T>& plant, const Launcher
   return plant.pivot_station_m + share * (plant.beside_nozzle_m - plant.pivot_station_m);
 }
 
-/// `any_burns`: some lane does. `body`: bent or straight. With jet damping the flow leaves with the velocity
-/// of the nozzle about the CG: -m_dot r x (w x r), r on the axis, and for roll the nozzle circle's radius. On
-/// its way from the grain's middle or the liquids' surfaces to the pivots, aft by s, a turning body pushes it
-/// aside: Coriolis's force 2 m_dot s w x e_x on the body. `nozzles`: the cross's, or ListedNozzles.
+/// Sum of all loads. `any_burns`: at least one lane has thrust. `body`: bent or straight. `nozzles`: the
+/// cross's, or ListedNozzles. With jet damping the flow leaves with the velocity of the nozzle about the CG:
+/// -m_dot r x (w x r), r on the axis; for roll r is the nozzle circle's radius. The flow runs aft by s, from
+/// the grain's middle or the liquids' surfaces to the pivots. A turning body pushes it aside: Coriolis's
+/// force 2 m_dot s w x e_x on the body.
 template <class T, class Turned, class Body>
 DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, const LauncherPlantLanes<T>& plant,
                                    const LauncherPhaseLanes<T>& phase, bool any_burns,
@@ -419,7 +419,7 @@ DISPERSA_INLINE LoadsOf<T> LoadsAt(double earth_rate_rad_s, const LauncherPlantL
     o.jet_axial = o.flow_kg_s * plant.nozzle_radius_m * plant.nozzle_radius_m;
     o.jet_transverse = o.flow_kg_s * lever * lever;
     if (plant.has_boosters) {
-      // Of the stage's own flow so far; each booster's nozzle is off the axis by its radius.
+      // So far of the stage's own flow. A booster's nozzle is off the axis by its radius.
       const T beside = plant.beside_nozzle_m - masses.cg_station_m, r = plant.beside_radius_m;
       o.jet_axial =
           o.jet_axial + masses.beside_flow_kg_s * (r * r - plant.nozzle_radius_m * plant.nozzle_radius_m);
@@ -450,11 +450,10 @@ DISPERSA_INLINE Vector<T> TurnedUnderProducts(const LauncherPlantLanes<T>& plant
 }
 
 /// dv/dt = gravitation + R_IB (F / m + u w x e_x) and I dw/dt = M - w x I w - (dI/dt) w, as rigid_body.h
-/// explains, of an axisymmetric body, or of one with products of inertia besides. v is the velocity of the
-/// body where C is, and u e_x that of C through the body: dp/dt = v + R_IB u e_x. So the momentum of what is
-/// on board, m v + m_dot times the way of the flow (aft), changes by gravitation, the outer forces and what
-/// leaves; a burn that begins or ends moves v by nothing. The motion of an offset C across the body (mm/s) is
-/// left out.
+/// explains: for an axisymmetric body, or one that also has products of inertia. v is the velocity of the
+/// body at C. u e_x is the velocity of C through the body: dp/dt = v + R_IB u e_x. The momentum on board is m
+/// v plus m_dot times the way of the flow (aft). Gravitation, outer forces and the leaving flow change it. A
+/// burn that begins or ends does not change v. The motion of an offset C across the body (mm/s) is left out.
 template <class T, class Turned, class Body>
 DISPERSA_INLINE Rates<T> RatesOf(double earth_rate_rad_s, const LauncherPlantLanes<T>& plant,
                                  const LauncherPhaseLanes<T>& phase, bool any_burns,
@@ -470,7 +469,7 @@ DISPERSA_INLINE Rates<T> RatesOf(double earth_rate_rad_s, const LauncherPlantLan
     specific_n_kg.z = Fma(-masses.cg_speed_m_s, s.w.y, specific_n_kg.z);
   }
   o.dv = around.gravitation_m_s2 + loads.R_IB * specific_n_kg;
-  // What the flow takes along, less what the body's inertia loses to it.
+  // Angular momentum that the flow takes along, less the body's loss of inertia.
   const T axial_loss = loads.jet_axial - loads.flow_kg_s * masses.axial_per_kg_m2;
   const T transverse_loss = loads.jet_transverse - loads.flow_kg_s * masses.transverse_per_kg_m2;
   const T inverse = T(1.0) / (masses.axial_kg_m2 * masses.transverse_kg_m2);

@@ -52,7 +52,7 @@ DISPERSA_INLINE void SetLane(BodyAerodynamicsLanes<T>& b, int lane, const BodyAe
   }
 }
 
-/// The plant of a lane on its stack, nothing jettisoned; its weather is set by itself, once a flight.
+/// The plant of a lane on its stack with nothing jettisoned. Its weather is set separately, once a flight.
 template <class T>
 DISPERSA_INLINE void SetLane(LauncherPlantLanes<T>& p, int lane, const LauncherPlant& plant, int stack) {
   const LauncherStack& s = plant.stacks.data()[stack];
@@ -120,7 +120,7 @@ DISPERSA_INLINE void SetLane(LauncherPlantLanes<T>& p, int lane, const LauncherP
   Lane(p.lateral_moment_z_kg_m, lane) = s.lateral_moment_z_kg_m;
 }
 
-/// The bending of a lane on its stack; what its propellant decides is set by ShapesAt.
+/// The bending of a lane on its stack. ShapesAt sets the values that depend on propellant.
 template <class T>
 DISPERSA_INLINE void SetLane(BendingTableLanes<T>& b, int lane, const LauncherPlant& plant, int stack) {
   const BendingTable* table = plant.stacks.data()[stack].bending.get();

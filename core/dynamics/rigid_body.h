@@ -22,7 +22,7 @@ void WriteState(const RigidBodyState& state, double* y);
 /// The state of the body's point P, at r_CP_B from C: the turning body moves there with v + w x r.
 RigidBodyState AtPoint(RigidBodyState state, const Vector3& r_CP_B);
 
-/// What acts on the body at one instant, in body axes about C.
+/// Forces and moments on the body at one instant, in body axes about C.
 struct BodyLoads {
   Vector3 force_n = Vector3::Zero();  ///< all but gravitation
   Vector3 moment_n_m = Vector3::Zero();
@@ -31,12 +31,11 @@ struct BodyLoads {
   Matrix3 inertia_rate_kg_m2_s = Matrix3::Zero();  ///< of a body that burns: dI/dt
 };
 
-/// dp/dt = v, dv/dt = gravitation + R_IB F / m, dq/dt by w, and
-///   I dw/dt = M - w x I w - (dI/dt) w,
-/// I and dI/dt about the moving C. With the jet damping -m_dot r x (w x r), r from C to the nozzle, in M, I w
-/// is the angular momentum of what stays on board. Left to launcher_body.h: the force of the flow through a
-/// turning body and the motion of C through the body. q is used as it is: its norm drifts by the integrator's
-/// error and is restored between steps.
+/// dp/dt = v, dv/dt = gravitation + R_IB F / m, dq/dt from w, and I dw/dt = M - w x I w - (dI/dt) w, with I
+/// and dI/dt about the moving C. M holds the jet damping -m_dot r x (w x r), r from C to the nozzle, so I w
+/// is the angular momentum of the mass on board. launcher_body.h adds the force of the flow through a turning
+/// body and the motion of C through the body. q is used as it is. Its norm drifts by the integrator's error
+/// and is restored between steps.
 void RigidBodyDerivative(const Earth& earth, const RigidBodyState& state, const BodyLoads& loads,
                          double* dydt);
 

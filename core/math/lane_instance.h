@@ -1,5 +1,5 @@
-// For sources that are compiled once for each instruction set (core/flight/CMakeLists.txt) and hold functions
-// for several numbers of lanes: the lanes' value, and the functions' names.
+// For sources that are compiled once for each instruction set and for several numbers of lanes
+// (core/flight/CMakeLists.txt): the lanes' value type and the functions' names.
 #pragma once
 
 #include "core/math/lanes.h"

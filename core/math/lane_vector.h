@@ -100,9 +100,9 @@ DISPERSA_INLINE Vector<T> Rotate(Turn<T> q, Vector<T> v) {
   return Along(v, q.w, t) + Cross(u, t);
 }
 
-/// q turned by the rotation vector phi (rad, in the axes of B) of less than 0.5 rad: the half angle's sine
-/// and cosine by their series, whose remainder stays below 1e-17, and the norm restored by one Newton step,
-/// since q has it but for rounding.
+/// q turned by the rotation vector phi (rad, axes of B), shorter than 0.5 rad. The half angle's sine and
+/// cosine come from their series, with a remainder below 1e-17. One Newton step restores the norm, which is
+/// off by rounding only.
 template <class T>
 DISPERSA_INLINE Turn<T> TurnedBy(Turn<T> q, Vector<T> phi) {
   const T n = Dot(phi, phi);
@@ -114,8 +114,8 @@ DISPERSA_INLINE Turn<T> TurnedBy(Turn<T> q, Vector<T> phi) {
   return {k * r.w, k * r.x, k * r.y, k * r.z};
 }
 
-/// Rotation vector (rad) of q, of length at most pi. Near zero, where attitude errors live, by the series of
-/// the arctangent; elsewhere by SLEEF's. Both are within a few units in the last place.
+/// Rotation vector (rad) of q, of length at most pi. Near zero it uses the series of the arctangent,
+/// elsewhere SLEEF's function. Both are within a few units in the last place.
 template <class T>
 DISPERSA_INLINE Vector<T> RotationVector(Turn<T> q) {
   const T sign = Select(q.w < T(0.0), T(-1.0), T(1.0));

@@ -1,15 +1,15 @@
-// The value that a flight's models compute with: one double, or a pack of W doubles whose lanes are W
-// flights.
+// The value type of a flight's models: one double, or a pack of W doubles whose lanes are W flights.
 //
-// A model is written once over a type T: `double` is one lane, Pack<4> and Pack<8> are as many flights side
-// by side. Every operation here is exact or correctly rounded for each lane (IEEE 754), or one of SLEEF's
+// A model is written once over a type T. `double` is one lane, Pack<4> and Pack<8> are as many flights side
+// by side. Every operation here is exact or correctly rounded for each lane (IEEE 754), or is one of SLEEF's
 // `finz` functions, which return the same bits in any width. So the bits of a lane depend neither on W nor on
-// the instruction set, as long as models keep one rule: a branch that depends on any lane must not show in
-// the others. Select, or guard what only saves time (`if (Any(mask))`) such that skipping it changes no lane.
+// the instruction set, as long as models keep one rule: a branch that depends on any lane must not change the
+// others. Use Select. Or guard code that only saves time (`if (Any(mask))`) such that skipping it changes no
+// lane.
 //
-// Everything that is compiled once for each instruction set lives in an inline namespace of its own, so that
-// the linker never mixes them; sources compiled so use no inline function from elsewhere that could stay a
-// function of its own (tests/static/lane_symbols.py holds them to it).
+// Code that is compiled once for each instruction set lives in an inline namespace of its own, so that the
+// linker never mixes instruction sets. Such sources use no inline function from elsewhere that the compiler
+// could emit as a function (tests/static/lane_symbols.py checks this).
 #pragma once
 
 #include <immintrin.h>
@@ -39,9 +39,9 @@ DISPERSA_INLINE bool Any(bool mask) { return mask; }
 DISPERSA_INLINE bool All(bool mask) { return mask; }
 DISPERSA_INLINE double Sqrt(double a) { return __builtin_sqrt(a); }
 DISPERSA_INLINE double Abs(double a) { return __builtin_fabs(a); }
-/// The smaller; b where they do not compare.
+/// The smaller value; b if either is NaN.
 DISPERSA_INLINE double Min(double a, double b) { return a < b ? a : b; }
-/// The larger; b where they do not compare.
+/// The larger value; b if either is NaN.
 DISPERSA_INLINE double Max(double a, double b) { return a > b ? a : b; }
 DISPERSA_INLINE double Cos(double x_rad) { return ::dispersa::Cos(x_rad); }
 DISPERSA_INLINE double Sin(double x_rad) { return ::dispersa::Sin(x_rad); }
@@ -273,7 +273,7 @@ struct Traits<Pack<W>> {
 /// Number of lanes of a value type.
 template <class T>
 inline constexpr int kWidth = Traits<T>::kWidth;
-/// What a comparison of two values gives.
+/// The type that a comparison of two values returns.
 template <class T>
 using MaskOf = typename Traits<T>::Mask;
 
@@ -329,7 +329,7 @@ DISPERSA_INLINE void Each(F f) {
   EachOf(f, std::make_integer_sequence<int, N>{});
 }
 
-/// The nearest integer, the even one of two; below 2^51 in size.
+/// The nearest integer; of two nearest the even one. For magnitudes below 2^51.
 template <class T>
 DISPERSA_INLINE T Nearest(T x) {
   const T to_integer(0x1.8p52);  // added, it leaves the integer; taken away, that alone is left
@@ -354,8 +354,8 @@ DISPERSA_INLINE T Horner(T x, double c0, Rest... rest) {
   return Fma(x, Horner(x, rest...), T(c0));
 }
 
-// Structs that consist of values alone are read and written value by value through their bytes: a pointer to
-// a member may not be used as one to an array of all of them.
+// Structs that consist of values alone are read and written value by value through their bytes. A pointer to
+// one member may not be used as a pointer to an array of all of them.
 
 template <class T, class S>
 inline constexpr unsigned kValues = sizeof(S) / sizeof(T);
@@ -401,7 +401,7 @@ DISPERSA_INLINE void ReadLaneValues(const S& from, int lane, V& to) {
   for (unsigned i = 0; i < kValues<T, S>; ++i) SetValueAt(to, i, LaneAt<T>(from, i, lane));
 }
 
-/// Truncated towards zero, lane by lane; values must be within int.
+/// Truncates towards zero, lane by lane. Values must fit int.
 DISPERSA_INLINE void Truncate(double x, int* out) { out[0] = static_cast<int>(x); }
 DISPERSA_INLINE void Truncate(Pack<4> x, int* out) {
   _mm_storeu_si128(reinterpret_cast<__m128i*>(out), _mm256_cvttpd_epi32(x.v));

@@ -1,5 +1,5 @@
-// What is asked of matrices of any size: decompositions of Eigen's, compiled once. In every source that uses
-// them their templates take the compiler longer than all the rest of it.
+// Operations on matrices of any size: Eigen's decompositions, compiled once. In each source that used them
+// their templates would take the compiler longer than all the rest.
 #pragma once
 
 #include <Eigen/Core>
@@ -26,11 +26,11 @@ Hessenberg HessenbergOf(const Eigen::MatrixXd& m);
 /// exp(m) by a Taylor series with scaling and squaring, to rounding.
 Eigen::MatrixXd MatrixExponential(const Eigen::MatrixXd& m);
 
-/// Of a square matrix; not finite where it is singular.
+/// Inverse of a square matrix. Its values are not finite if the matrix is singular.
 Eigen::MatrixXd InverseOf(const Eigen::MatrixXd& m);
 double DeterminantOf(const Eigen::MatrixXd& m);
 
-/// The x of least |m x - right|; by a QR decomposition with pivots of columns.
+/// The x with the least |m x - right|, by a QR decomposition with column pivoting.
 Eigen::VectorXd LeastSquaresOf(const Eigen::MatrixXd& m, const Eigen::VectorXd& right);
 /// Columns that are independent: pivots above the tolerance times the greatest.
 Eigen::Index RankOf(const Eigen::MatrixXd& m, double tolerance);

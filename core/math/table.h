@@ -1,5 +1,5 @@
-// Interpolation tables of fixed layout: rows of doubles, arguments strictly increasing.
-// Outside the arguments the end value holds; a caller for which that is wrong must check itself.
+// Interpolation tables of fixed layout: rows of doubles, arguments strictly increasing. Outside the arguments
+// the end value holds. A caller for which that is wrong must check itself.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ struct GridPosition {
   double fraction;
 };
 
-/// Finds x in a strictly increasing grid of at least two points; clamps outside.
+/// Finds x in a strictly increasing grid of at least two points. Outside it the position is clamped.
 GridPosition Locate(const std::vector<double>& grid, double x);
 
 /// True when every value is finite and larger than the one before.

@@ -1,8 +1,7 @@
 // Random numbers of the cases, from a counter-based generator.
 //
-// A draw is a pure function of (seed, case index, parameter name, draw number): it needs no earlier draw,
-// no other parameter and no other case, so neither the order of the cases nor the set of parameters can
-// change it.
+// A draw is a pure function of (seed, case index, input name, draw number). It needs no earlier draw, no
+// other input and no other case. So neither the order of the cases nor the set of inputs can change it.
 #pragma once
 
 #include <array>
@@ -26,8 +25,8 @@ class Stream {
 
   /// 64 uniform bits.
   std::uint64_t Bits();
-  /// Uniform in the open interval (0, 1): the centres of 2^52 equal cells, so that u and 1 - u are both
-  /// exact and equally likely, and the ends cannot occur. One draw.
+  /// Uniform in the open interval (0, 1): the centres of 2^52 equal cells. So u and 1 - u are both exact and
+  /// equally likely, and the ends cannot occur. Takes one draw.
   double Uniform();
   /// Standard normal: the inverse distribution function of Uniform(). One draw, within ±8.3.
   double Normal();

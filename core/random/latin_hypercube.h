@@ -8,12 +8,12 @@
 
 namespace dispersa {
 
-/// N cases over D dimensions such that each dimension has exactly one case in each of N equal strata of
-/// (0, 1) (McKay, Beckman and Conover, Technometrics 21 (1979) 239-245).
+/// N cases over D dimensions. Each dimension has exactly one case in each of N equal strata of (0, 1) (McKay,
+/// Beckman and Conover, Technometrics 21 (1979) 239-245).
 ///
-/// The permutation of a dimension depends on (seed, dimension name, N) alone, so a new dimension changes no
-/// other; but every case changes with N. The cases are not independent: limits that assume independent draws
-/// do not hold for them.
+/// The permutation of a dimension depends on (seed, dimension name, N) alone. A new dimension changes no
+/// other one, but every case changes with N. The cases are not independent: limits that assume independent
+/// draws do not hold for them.
 class LatinHypercube {
  public:
   /// `cases` is in [1, 2^32). Holds 4 N D bytes.

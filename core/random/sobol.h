@@ -9,16 +9,16 @@
 
 namespace dispersa {
 
-/// Sobol sequence in Gray-code order, with the direction numbers of S. Joe and F. Y. Kuo (SIAM J. Sci.
-/// Comput. 30 (2008) 2635-2654) as Boost.Random holds them, and with a digital shift: each dimension's
-/// digits are exclusive-or'ed with 52 random bits drawn from (seed, dimension name).
+/// Sobol sequence in Gray-code order with the direction numbers of S. Joe and F. Y. Kuo (SIAM J. Sci. Comput.
+/// 30 (2008) 2635-2654), as Boost.Random holds them, and with a digital shift. Each dimension's digits are
+/// exclusive-or'ed with 52 random bits drawn from (seed, dimension name).
 ///
-/// The shift makes each point uniform, so means are unbiased, and keeps the sequence's stratification: every
-/// block of 2^k cases has one in each of 2^k equal strata of a dimension. Nothing is skipped: case 0 is the
-/// (shifted) origin (A. B. Owen, "On dropping the first Sobol' point", 2020). A coordinate depends on the
-/// case's index, on its own dimension of the sequence and on its name: not on the number of cases, nor on the
-/// other dimensions. The cases are not independent: limits that assume independent draws do not hold for
-/// them.
+/// The shift makes each point uniform, so means are unbiased. It keeps the sequence's stratification: every
+/// block of 2^k cases has one case in each of 2^k equal strata of a dimension. Nothing is skipped: case 0 is
+/// the (shifted) origin (A. B. Owen, "On dropping the first Sobol' point", 2020). A coordinate depends on the
+/// case's index, on its dimension's place in the sequence, and on its name. It depends neither on the number
+/// of cases nor on other dimensions. The cases are not independent: limits that assume independent draws do
+/// not hold for them.
 class Sobol {
  public:
   static constexpr std::size_t kMaxDimensions = 3667;  ///< of the tables

@@ -7,35 +7,37 @@
 
 namespace dispersa {
 
-/// One table a stack: table k is for stages k to the last, that is, for the profile from the nose tip to
+/// One table a stack. Table k is for stages k to the last: the profile from the nose tip to
 /// vehicle.stages[k].bottom_station_m, on the cross-section and diameter of stage k.
 ///
-/// Sum of components, each a body of revolution's (a = incidence, a' = a up to 90 degrees and 180 - a
-/// beyond; Jorgensen, NASA TN D-6996):
-/// - CN = C_Na(M) / 2 sin 2a' cos(a'/2) + eta Cdc(M sin a) A_p / S sin^2 a. C_Na is slender-body theory,
-///   to which half of the excess of shock-expansion theory is added, from Mach 0.8 (nothing) to
-///   Mach 2 (all of the half); constant above Mach 8. Tail first it is slender-body theory's. The
-///   cross-flow term acts at the centroid of the planform.
+/// Sum of components of a body of revolution (a: incidence; a': a up to 90 degrees, 180 - a beyond;
+/// Jorgensen, NASA TN D-6996):
+/// - CN = C_Na(M) / 2 sin 2a' cos(a'/2) + eta Cdc(M sin a) A_p / S sin^2 a. C_Na is slender-body theory plus
+///   half of the excess of shock-expansion theory, from Mach 0.8 (nothing) to Mach 2 (all of the half). It is
+///   constant above Mach 8. Tail first it is slender-body theory's. The cross-flow term acts at the centroid
+///   of the planform.
 /// - CA = CA0(M) cos^2 a' nose first, -CA180(M) cos^2 a' tail first.
 /// - CA0: turbulent skin friction with roughness, pressure drag of nose, frustums and boat-tails, base drag
-///   (drag.h). Power on: the nozzles' exits take their share of the base away (Fleeman); half of the base
-///   if the vehicle gives no exit area.
-/// - Pitch damping: slender-body theory, about the middle of the stack's length, the same at every Mach.
-/// - Roll damping: of skin friction only, there are no fins.
+///   (drag.h). Power on: the nozzles' exits reduce the base by their area (Fleeman), or by half if the
+///   vehicle gives no exit area.
+/// - Pitch damping: slender-body theory, about the middle of the stack's length, the same at every Mach
+/// number.
+/// - Roll damping: of skin friction only, since there are no fins.
 ///
-/// Grid: Mach 0 to 20, incidence 0 to 180 degrees; outside, the end value holds (at Mach 20 all but skin
-/// friction has reached its hypersonic limit, and a launcher is above the sensible atmosphere).
-/// Validity: fineness above 5, widening mould lines (a boat-tail's negative lift is taken in full, as if
-/// its flow stayed attached), incidence up to 30 degrees; beyond, right in sign and size only. Continuum
-/// flow, air without reactions, no plume effect on the body.
+/// Grid: Mach 0 to 20, incidence 0 to 180 degrees. Outside, the end value holds: at Mach 20 all but skin
+/// friction has reached its hypersonic limit, and a launcher is above the sensible atmosphere.
 ///
-/// Accuracy: a reconstruction of a public three-stage launcher differs from Missile DATCOM's tables by -26
-/// to +22 % in CA, -7 to +34 % in CN up to 30 degrees, and 0 to 11 % of the length, aft, in the centre of
+/// Validity: fineness above 5, widening mould lines, incidence up to 30 degrees. Beyond 30 degrees sign and
+/// size are right, no more. A boat-tail's negative lift is taken in full, as if its flow stayed attached.
+/// Continuum flow, air without reactions, no plume effect on the body.
+///
+/// Accuracy: a reconstruction of a public three-stage launcher differs from Missile DATCOM's tables by -26 to
+/// +22 % in CA, by -7 to +34 % in CN up to 30 degrees, and by 0 to 11 % of the length, aft, in the centre of
 /// pressure (tests/verification/aero_public_tables_test.cc). Those tables were known when the half of the
-/// carry-over was chosen. Pitch damping is about four times theirs, which is what the force at the centre
-/// of pressure alone would give.
+/// carry-over was chosen. Pitch damping is about four times theirs. Theirs is what the force at the centre of
+/// pressure alone would give.
 ///
-/// Precondition: a profile that passes Problems(): it reaches every stage's bottom.
+/// Precondition: a profile that passes Problems(), so that it reaches every stage's bottom.
 std::vector<AeroTable> BuildAerodynamics(const Vehicle& vehicle);
 
 }  // namespace dispersa

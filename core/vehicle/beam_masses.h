@@ -1,4 +1,4 @@
-// What the beam of a stack weighs, where: the vehicle's mass model along the axis.
+// Mass distribution of a stack's beam: the vehicle's mass model along the axis.
 #pragma once
 
 #include <array>
@@ -34,21 +34,21 @@ struct BeamMasses {
   std::vector<FixedMass> fixed;
 };
 
-/// The masses of the stack of stages `stage` (from 0) and above, its lowest stage with so much propellant
-/// left.
+/// The masses of the stack of stages `stage` (from 0) and above, with `propellant_kg` left in its lowest
+/// stage.
 ///
-/// Structure elements and grains are the tubes of the mass model, spread evenly over their length, or fixed
-/// at one station if the beam lumps them. So mass, centre of gravity and transverse inertia are
-/// StackMass::At's but for rounding, whatever the level; so is that of a vehicle without a beam. A stage that
-/// gives its own masses has them scaled (ScaleOwnMasses).
+/// Structure elements and grains are the tubes of the mass model. They are spread evenly over their length,
+/// or fixed at one station if the beam lumps them. So mass, centre of gravity and transverse inertia are
+/// those of StackMass::At to rounding, at any level, with or without a beam. A stage that gives its own
+/// masses has them scaled (ScaleOwnMasses).
 BeamMasses BuildBeamMasses(const Vehicle& vehicle, int stage, double propellant_kg);
 
 /// Whether the beam has the element of its stage's structure among its lumped masses.
 bool IsLumped(const BeamStage& stage, const MassElement& element);
 
-/// How a stage's own mass per length becomes that of its mass model: it is multiplied by the quadratic
-/// polynomial in station that gives it, with the lumped masses, the dry stage's mass, first and second
-/// moment. The lumped masses stay.
+/// Scaling of a stage's own mass per length to its mass model. It is multiplied by the quadratic polynomial
+/// in station that makes mass, first and second moment, with the lumped masses, those of the dry stage. The
+/// lumped masses stay.
 struct OwnMassScale {
   std::array<double, 3> polynomial = {1.0, 0.0, 0.0};
   double least = 0.0;  ///< of the polynomial over the sections

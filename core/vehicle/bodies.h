@@ -10,7 +10,7 @@
 
 namespace dispersa {
 
-/// The keys of a body that is a tube, hollow or solid; `bore` says what its inner diameter means.
+/// The keys of a hollow or solid tube. `bore` explains its inner diameter.
 template <class Tube>
 void DescribeTube(Fields& fields, Tube& tube, const char* bore, std::optional<double> absent_bore_m = {}) {
   fields.Quantity("top_station", kLength, kNonNegative, tube.top_station_m, "upper end");
@@ -69,15 +69,16 @@ inline void Describe(Fields& fields, Tank& tank) {
   fields.Quantity("diameter", kLength, kPositive, tank.diameter_m, "inside");
 }
 
-/// What makes the flight computer let go of a mass.
+/// Condition at which the flight computer jettisons a mass.
 enum class JettisonTrigger {
   kAtTime,      ///< s since lift-off
   kAtAltitude,  ///< m, geodetic
-  kAtHeatFlux,  ///< W/m², free-molecular: has fallen to this; Jettison says where it counts
+  kAtHeatFlux,  ///< free-molecular heating has fallen to this many W/m² (see Jettison)
 };
 
-/// A mass on the axis that leaves while a stage is attached: fairing, skirt, escape tower. A tube, let go of
-/// at rest against the body: no impulse, no flow about it; what is left keeps its aerodynamics.
+/// A mass on the axis that leaves while a stage is attached: fairing, skirt, escape tower. It is a tube,
+/// released at rest against the body, without impulse and without flow about it. The rest keeps its
+/// aerodynamics.
 struct Jettison {
   std::string name;
   double mass_kg = 0.0;

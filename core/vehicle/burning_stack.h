@@ -88,17 +88,17 @@ DISPERSA_INLINE MassPropertiesLanes<T> MassesAt(const StackMassLanes<T>& s, T pr
   return m;
 }
 
-/// MotorBurn, prepared. Times run from ignition; a ramp without duration has slope 0 and base 1.
+/// MotorBurn, prepared. Times count from ignition. A ramp without duration has slope 0 and base 1.
 template <class T>
 struct MotorBurnLanes {
   T vacuum_thrust_n, full_flow_kg_s, propellant_kg, duration_s, exit_area_m2;
   T rise_s, rise_slope_1_s, rise_base, tail_s, tail_slope_1_s, tail_base;
   T left_kg;                      ///< that stays when the burn has ended
-  T curve_rate, curve_flow_kg_s;  ///< of the curve's own time; 0 where there is none
+  T curve_rate, curve_flow_kg_s;  ///< of the curve's own time (0: no curve)
   const BurnCurve* curve[kWidth<T>];
   bool has_curves;  ///< of any lane
 };
-/// What a lane without a curve looks up.
+/// Row for a lane without a curve.
 alignas(32) inline constexpr double kNoPiece[BurnCurve::kRowSize] = {};
 template <class T>
 DISPERSA_INLINE void SetLane(MotorBurnLanes<T>& b, int lane, const MotorBurn& burn) {
@@ -171,7 +171,7 @@ DISPERSA_INLINE BurnState<T> BurnAt(const MotorBurnLanes<T>& b, T since_ignition
   return state;
 }
 
-/// What burns beside the first stage (Boosters), all together.
+/// All boosters of the first stage together.
 template <class T>
 struct BesideStage {
   MotorBurnLanes<T> burn;

@@ -1,4 +1,4 @@
-// What turns the thrust of a stage, as its file describes it.
+// Thrust vector control of a stage as its file describes it.
 #pragma once
 
 #include <string>
@@ -34,8 +34,8 @@ inline void Describe(Fields& fields, Nozzle& nozzle, std::size_t count) {
                   "of its whole deflection; the gimbal's unless given", 0.0);
 }
 
-/// Without a list four nozzles at 90°, each hinged in one plane: two for pitch (right, left), two for yaw
-/// (bottom, top); all four differentially for roll.
+/// Without a list: four nozzles at 90°, each hinged in one plane. Two serve pitch (right, left), two yaw
+/// (bottom, top), all four together, differentially, roll.
 struct Gimbal {
   double pivot_station_m = 0.0;
   double radius_m = 0.0;             ///< the paper's z_r
@@ -48,7 +48,7 @@ struct Gimbal {
   double nozzle_mass_kg = 0.0;  ///< 0: turning a nozzle takes no momentum
   double nozzle_cg_m = 0.0;
   double nozzle_inertia_kg_m2 = 0.0;
-  // What a real drive has besides; 0: not this one.
+  // Further properties of a real drive (0: not this one).
   double dead_zone_rad = 0.0;
   double friction_rad = 0.0;  ///< Coulomb's
   double resolution_rad = 0.0;
@@ -77,7 +77,7 @@ inline void Describe(Fields& fields, Gimbal& gimbal) {
                   "step in which the command reaches the servo", 0.0);
 }
 
-/// What turns of one nozzle; an entry for each stage in a list of its own.
+/// The turning mass of one nozzle. In a list each stage has its own entry.
 inline void DescribeTurningNozzle(Fields& fields, Gimbal& gimbal) {
   fields.Quantity("mass", kMass, kPositive, gimbal.nozzle_mass_kg, "what turns, of one nozzle");
   fields.Quantity("cg_aft_of_pivot", kLength, kAnyNumber, gimbal.nozzle_cg_m, "its centre of gravity");

@@ -7,7 +7,8 @@
 
 namespace dispersa {
 
-/// Of an axisymmetric stack; inertias about its CG, along and across the axis.
+/// Mass properties of an axisymmetric stack. Inertias are about its centre of gravity, along and across the
+/// axis.
 struct MassProperties {
   double mass_kg = 0.0;
   double cg_station_m = 0.0;
@@ -17,26 +18,25 @@ struct MassProperties {
   double transverse_inertia_per_kg = 0.0;  ///< likewise, about the moving CG
 };
 
-/// Liquids that drain, all in the same proportion (a constant mixture): polynomials of the mass m that is
-/// left.
+/// Liquids that drain in a constant mixture: polynomials of the remaining mass m.
 ///
 /// In a cylinder of radius r, its bottom at station b, mass m_k = s_k m of density rho stands h = m_k / (rho
-/// pi r²) high. Its first moment about station 0 is m_k (b - h/2), its second m_k (b² - b h + h²/3 + r²/4):
-/// in pitch and yaw the liquid counts as if frozen, which is the most that it can resist; in roll as none at
-/// all, since a smooth wall does not turn an inviscid liquid. (H. N. Abramson (ed.), "The Dynamic Behavior of
-/// Liquids in Moving Containers", NASA SP-106, 1966, chapters 2 and 6: liquid that is free resists pitching
-/// less, by up to a half in a squat tank.) Sloshing is not in it.
+/// pi r²) high. Its first moment about station 0 is m_k (b - h/2), its second m_k (b² - b h + h²/3 + r²/4).
+/// In pitch and yaw the liquid counts as frozen, which is its greatest inertia. In roll it counts as none: a
+/// smooth wall does not turn an inviscid liquid. Free liquid resists pitching less, by up to a half in a
+/// squat tank (H. N. Abramson (ed.), "The Dynamic Behavior of Liquids in Moving Containers", NASA SP-106,
+/// 1966, chapters 2 and 6). Sloshing is not modelled.
 struct DrainingMass {
   double first_per_kg_m = 0.0, first_per_kg2_m = 0.0;  ///< first moment m (a + b m)
   /// Second moment m (a + b m + c m²).
   double second_per_kg_m2 = 0.0, second_per_kg2_m2 = 0.0, second_per_kg3_m2 = 0.0;
 };
 
-/// Everything of a stack but the burning propellant, summed once, and the grain that burns, or the tanks that
-/// drain.
+/// All masses of a stack but the burning propellant, summed once, and the burning grain or the draining
+/// tanks.
 ///
-/// The grain burns from its bore outwards at constant length: with rho the propellant's density,
-/// r_i² = r_o² - m / (pi rho L); its inertias are those of a tube. Parallel axes by Huygens and Steiner.
+/// The grain burns from its bore outwards at constant length. With the propellant's density rho: r_i² = r_o²
+/// - m / (pi rho L). Its inertias are those of a tube. Parallel axes by Huygens and Steiner.
 struct StackMass {
   double fixed_mass_kg = 0.0;
   double fixed_first_moment_kg_m = 0.0;    ///< about station 0
@@ -53,8 +53,8 @@ struct StackMass {
   MassProperties At(double propellant_kg) const;
 };
 
-/// What is jettisoned, as a stack's sums count it. Jettisons are numbered in the order of the stages, and as
-/// each stage lists its own.
+/// Jettisoned bodies as part of a stack's sums. They are numbered in the order of the stages and, within a
+/// stage, of its list.
 struct JettisonedMass {
   int stage = 0;  ///< that carries it, 0-based
   double mass_kg = 0.0;
@@ -82,12 +82,12 @@ struct BoosterGrains {
 };
 BoosterGrains BuildBoosterGrains(const Boosters& boosters);
 
-/// Dry mass of a stage, whichever burn of it is asked for: its lift-off mass less what is above, its
-/// propellant, what it jettisons and boosters.
+/// Dry mass of a stage, for any of its burns: its lift-off mass less the stages above, its propellant, its
+/// jettisoned bodies and boosters.
 double DryMass(const Vehicle& vehicle, int stage);
-/// Propellant density that the grain's volume implies, kg/m³; of a solid motor.
+/// Propellant density of a solid motor that follows from the grain's volume, kg/m³.
 double PropellantDensity(const Stage& stage);
-/// One entry a stack; stack i has stages i, i+1, ... attached, with everything that they carry at lift-off.
+/// One entry a stack. Stack i has stages i, i+1, ... attached, with everything that they carry at lift-off.
 std::vector<StackMass> BuildStackMasses(const Vehicle& vehicle);
 
 }  // namespace dispersa

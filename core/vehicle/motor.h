@@ -9,9 +9,8 @@
 
 namespace dispersa {
 
-/// What the engine of a liquid stage does by command: thrust as a part of its full one over the time since
-/// ignition, linear between the times, and when it ends. Thrust and flow are in proportion whatever the
-/// level.
+/// Commands of a liquid stage's engine: thrust as a part of full thrust over the time since ignition, linear
+/// between the times, and the time of cut-off. Thrust and flow are in proportion at any level.
 struct Throttle {
   std::vector<double> time_s;
   std::vector<double> level;
@@ -39,19 +38,19 @@ inline void Describe(Fields& fields, Throttle& throttle) {
   });
 }
 
-/// Constant thrust between two linear ramps whose impulse is part of the whole, or a thrust curve: propellant
-/// flow is proportional to thrust, unless the curve gives it, and the propellant is used up exactly at
-/// burnout.
+/// Constant thrust between two linear ramps whose impulse is part of the whole, or a thrust curve. Propellant
+/// flow is proportional to thrust unless the curve gives it. The propellant is used up exactly at burnout.
 struct Motor {
-  double thrust_n = 0.0;        ///< all nozzles together (the paper's 4P), in vacuum; of a curve the greatest
+  double thrust_n =
+      0.0;  ///< all nozzles together (the paper's 4P), in vacuum, for a curve its greatest value
   double burning_time_s = 0.0;  ///< propellant_mass / burning_time is the flow at full thrust
   double ignition_rise_s = 0.0;
   double tail_off_s = 0.0;
   double nozzle_exit_area_m2 = 0.0;
   double published_mass_flow_kg_s = 0.0;
-  ThrustCurve thrust_curve = {};  ///< empty: none. Sets thrust_n and burning_time_s; without ramps
-  // Of a liquid stage; without ramps and curve. thrust_n is at full thrust, burning_time_s what all
-  // propellant would last at that.
+  ThrustCurve thrust_curve = {};  ///< replaces ramps, thrust_n and burning_time_s (empty: no curve)
+  // Of a liquid stage, which has no ramps and no curve. thrust_n is full thrust. burning_time_s is the time
+  // in which full thrust uses all propellant.
   Throttle throttle = {};
   CutOff cut_off = CutOff::kAtDepletion;
   double cut_off_s = 0.0;
@@ -63,7 +62,7 @@ struct Motor {
 /// flow.
 void SetThrustCurve(ThrustCurve curve, Motor& motor);
 
-/// What an engine does by command in one of its burns.
+/// Commands of an engine in one of its burns.
 inline void DescribeCommands(Fields& fields, Motor& motor) {
   bool is_throttled = !motor.throttle.empty(), is_cut_off = motor.cut_off != CutOff::kAtDepletion;
   fields.OptionalTable("throttle", is_throttled, "thrust over the time since ignition, or a CSV file of it",
@@ -117,7 +116,7 @@ inline void DescribeExit(Fields& fields, Motor& motor) {
                   "as printed in the source; only compared", 0.0);
 }
 
-/// `message` says why a map may not have constant thrust and its ramps; {} stands for the key.
+/// `message` says why a map may not have constant thrust and its ramps. {} is replaced by the key.
 inline void RefuseRamps(Fields& fields, const char* message, const char* allowed) {
   fields.Misplaced("thrust", kForce, message, allowed);
   fields.Misplaced("burning_time", kTime, message, allowed);

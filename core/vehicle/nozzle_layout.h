@@ -1,18 +1,17 @@
-// How the nozzles of a stage stand and turn, and which of them a command about an axis turns by how much.
+// Places and hinges of a stage's nozzles, and the share of each nozzle in a command about an axis.
 //
-// A nozzle has up to two hinges, each with a drive of its own. A hinge is named by the direction across the
-// body, u, towards which a positive angle turns the nozzle's thrust; its axis, across the body too, is at
-// right angles to u. Two hinges of a nozzle are at right angles, the second carried by the first as in a
-// Cardan joint: deflections a and b turn the thrust to cos a cos b x + sin a cos b u1 + sin b u2, of unit
-// length.
+// A nozzle has up to two hinges, each with its own drive. A hinge is named by a direction u across the body:
+// a positive angle turns the nozzle's thrust towards u. The hinge's axis is across the body at right angles
+// to u. Two hinges of a nozzle are at right angles, and the first carries the second, as in a Cardan joint.
+// Deflections a and b turn the thrust to cos a cos b x + sin a cos b u1 + sin b u2, of unit length.
 //
-// To first order drive i of a nozzle at (y, z) that has the share q of the thrust T turns the body with
-// T q (y u_z - z u_y) about x, T L q u_z about y and -T L q u_y about z, L the pivots' distance aft of the
-// centre of gravity. Commands go to the drives by the weighted pseudo-inverse of that matrix G,
-// W^-1 G' (G W^-1 G')^-1, which minimises the sum of the squares of deflection over limit; its columns do not
-// depend on T and L, so one matrix serves a stage from ignition to burnout. They are scaled so that a command
-// of the gimbal's limit about one axis takes a nozzle to its own limit: of pitch and yaw the one that needs
-// more. (Penrose, Proc. Cambridge Phil. Soc. 51, 1955.)
+// To first order drive i of a nozzle at (y, z) with share q of the thrust T turns the body by T q (y u_z - z
+// u_y) about x, T L q u_z about y and -T L q u_y about z. L is the pivots' distance aft of the centre of
+// gravity. Commands go to the drives by the weighted pseudo-inverse of that matrix G, W^-1 G' (G W^-1 G')^-1
+// (Penrose, Proc. Cambridge Phil. Soc. 51, 1955). It minimises the sum of the squares of deflection over
+// limit. Its columns do not depend on T and L, so one matrix serves a stage from ignition to burnout. They
+// are scaled such that a command of the gimbal's limit about one axis takes a nozzle to its own limit. Pitch
+// and yaw have the scale of whichever needs more.
 //
 // Valid for deflections below 40 deg, where the flight's series of sine and cosine end.
 #pragma once
@@ -34,7 +33,7 @@ inline constexpr int kSteeredAxes = 3;  ///< roll, pitch, yaw
 /// have has zeros.
 struct NozzleLayout {
   int nozzles = 0;
-  bool rolls = false;           ///< commands of roll turn the vehicle; without, its reaction control has to
+  bool rolls = false;           ///< commands of roll turn the vehicle (else its reaction control must)
   double share[kNozzles] = {};  ///< of the thrust
   double y_m[kNozzles] = {}, z_m[kNozzles] = {};
   double limit_rad[kNozzles] = {};  ///< of the whole deflection that is commanded
@@ -43,13 +42,13 @@ struct NozzleLayout {
   double allocation[kDrives][kSteeredAxes] = {};  ///< rad of a drive for a radian commanded about an axis
   double felt[kSteeredAxes][kDrives] = {};        ///< and back: what deflections stand for
   double pitch_share = 0.0;                       ///< moment of a radian of pitch, or yaw, over T L
-  double roll_arm_m = 0.0;                        ///< moment of a radian of roll over T; 0 without
+  double roll_arm_m = 0.0;     ///< moment of a radian of roll over T (0: nozzles do not roll)
   double flow_radius_m = 0.0;  ///< of gyration of the flow about the axis, for the damping of roll
 };
 /// Of a gimbal without problems. One without a list of nozzles has four in a cross.
 NozzleLayout BuildNozzleLayout(const Gimbal& gimbal);
 
-/// What a list of nozzles cannot be; paths begin with `path`, that of the gimbal.
+/// Contradictions in a list of nozzles. Paths begin with `path`, that of the gimbal.
 std::vector<VehicleProblem> NozzleProblems(const Gimbal& gimbal, const std::string& path);
 
 }  // namespace dispersa

@@ -37,9 +37,9 @@ struct MotorBurn {
   std::vector<double> Kinks(double ignition_s) const;
 };
 
-/// The burn with thrust and flow multiplied; propellant is conserved. Ramps keep their durations; a thrust
-/// curve is drawn together in time by the flow's factor. `curve`: that of the stage, prepared, or null. A
-/// throttle keeps its times, being commanded, and depletion comes when it comes.
+/// The burn with multiplied thrust and flow. Propellant is conserved. Ramps keep their durations. The flow's
+/// factor shortens a thrust curve in time. `curve`: the stage's prepared curve, or null. A throttle keeps its
+/// commanded times, and the time of depletion changes.
 MotorBurn BuildBurn(const Stage& stage, double thrust_factor, double flow_factor,
                     std::shared_ptr<const BurnCurve> curve);
 /// The same, preparing the curve if the stage has one.

@@ -1,4 +1,4 @@
-// What measures a vehicle's attitude and rates, as its file describes it.
+// Sensors of attitude and rates as the vehicle's file describes them.
 #pragma once
 
 #include <string>
@@ -31,7 +31,7 @@ inline void Describe(Fields& fields, RateGyro& gyro) {
   fields.Integer("sample_ticks", 1, 100, gyro.sample_ticks, "ticks of the autopilot between samples", 1);
 }
 
-/// What measures attitude and rates. Without rate gyros the inertial unit gives the rates.
+/// Sensors of attitude and rates. Without rate gyros the inertial unit gives the rates.
 struct Sensors {
   double inertial_unit_station_m = 0.0;
   std::vector<RateGyro> rate_gyros;

@@ -1,8 +1,7 @@
-// The vehicle as an elastic beam on its axis, as its file describes it: plain data, SI.
+// The vehicle as an elastic beam on its axis, as its file describes it: plain data in SI units.
 //
-// Stations as in vehicle.h. What it weighs is the mass model of vehicle.h (structure and grains); only a
-// stage that gives its own mass per length is weighed by that, scaled to the same mass, centre of gravity and
-// inertia.
+// Stations as in vehicle.h. Its masses are those of the mass model of vehicle.h (structure and grains). A
+// stage that gives its own mass per length uses it, scaled to the same mass, centre of gravity and inertia.
 #pragma once
 
 #include <array>
@@ -31,10 +30,10 @@ struct BeamSection {
   double top_station_m = 0.0;
   double bottom_station_m = 0.0;
   Taper bending_stiffness_n_m2;  ///< in plane y
-  Taper shear_stiffness_n;  ///< kappa G A in plane y; 0: does not shear (also without Timoshenko's theory)
+  Taper shear_stiffness_n;       ///< kappa G A in plane y (0: no shear, as without Timoshenko's theory)
   Taper outer_diameter_m;
   Taper thickness_m;
-  double modulus_pa = 0.0;        ///< E of the tube; 0: the stiffness is given
+  double modulus_pa = 0.0;        ///< E of the tube (0: the stiffness is given)
   double poisson_ratio = 0.0;     ///< of the tube
   double z_to_y_stiffness = 1.0;  ///< plane z is so many times as stiff, in bending and shear
   Taper mass_per_length_kg_m;     ///< of a stage that gives its own masses
@@ -57,8 +56,8 @@ struct LumpedMass {
   double inertia_kg_m2 = 0.0;
 };
 
-/// What a stage brings to the beam; it flies as long as the stage is attached. Where sections of several
-/// stages overlap, their stiffnesses add.
+/// A stage's part of the beam. It flies as long as the stage is attached. Where sections of several stages
+/// overlap, their stiffnesses add.
 struct BeamStage {
   std::vector<BeamSection> sections;
   std::vector<LumpedMass> lumped_masses;
@@ -81,7 +80,7 @@ struct TabledMode {
   int stage = 0;  ///< the stack's lowest, from 0
   double propellant_kg = 0.0;
   BeamPlane plane = BeamPlane::kY;
-  int mode = 0;  ///< from 1; need not be the same mode from level to level
+  int mode = 0;  ///< from 1, not necessarily the same mode from level to level
   double frequency_rad_s = 0.0;
   double generalized_mass_kg = 0.0;
   std::vector<double> station_m;  ///< increasing
@@ -101,18 +100,18 @@ struct StructureBeam {
   int flown_modes = 3;
   double damping_ratio = 0.01;
   std::vector<BeamSensor> sensors;
-  std::vector<BeamStage> stages;  ///< as those of the vehicle; none with a table
-  std::vector<TabledMode> table;  ///< by stage, falling propellant, plane and mode; none with stages
+  std::vector<BeamStage> stages;  ///< in the order of the vehicle's stages, none with a table
+  std::vector<TabledMode> table;  ///< by stage, falling propellant, plane and mode (none with stages)
 };
 
-/// Of a vehicle of so many stages; 0 if that is unknown.
+/// The keys of the beam of a vehicle of `stages` stages (0: number unknown).
 void Describe(Fields& fields, StructureBeam& beam, std::size_t stages);
 
 struct Vehicle;
 struct VehicleProblem;
 
-/// What contradicts itself or the vehicle's mass model. Paths are `structure_beam.…`.
-/// Precondition: the vehicle has a beam, and no other problems.
+/// Contradictions in the beam, or with the vehicle's mass model. Paths are `structure_beam.…`. Precondition:
+/// the vehicle has a beam and no other problems.
 std::vector<VehicleProblem> BeamProblems(const Vehicle& vehicle);
 
 }  // namespace dispersa

@@ -1,8 +1,8 @@
 // A motor's thrust over the time since ignition, as tests give it, and the same prepared for burns.
 //
-// Thrust is linear between the corners, and so is the mass flow: as given, or, where none is, proportional to
-// the vacuum thrust (a constant exhaust velocity). What has been burnt is then a parabola on each piece, in
-// closed form; the propellant is used up where the curve ends.
+// Thrust is linear between the corners. So is the mass flow, as given, or proportional to the vacuum thrust
+// (a constant exhaust velocity). The burnt mass is then a parabola on each piece, in closed form. The
+// propellant is used up where the curve ends.
 #pragma once
 
 #include <cstddef>
@@ -22,8 +22,8 @@ inline constexpr std::size_t kThrustCurveCorners = 1000;
 struct ThrustCurve {
   std::vector<double> time_s;    ///< since ignition, from 0, each larger than the one before
   std::vector<double> thrust_n;  ///< in vacuum; 0 or more
-  /// 0 or more; empty: proportional to the thrust. Its sum is the propellant to a percent, and is made it
-  /// exactly.
+  /// 0 or more (empty: proportional to the thrust). Its integral must be the propellant within 1 %, and is
+  /// scaled to it exactly.
   std::vector<double> flow_kg_s = {};
 
   bool empty() const { return time_s.empty(); }
@@ -38,15 +38,15 @@ void Describe(Fields& fields, ThrustCurve& curve);
 /// Flows given sum up to the propellant within this.
 inline constexpr double kFlowSumTolerance = 0.01;
 
-/// A curve measured under the pressure of sea level, in vacuum: P + p A_e. Where the measured thrust is 0
-/// nothing flows, and it stays 0.
+/// The vacuum curve of one measured under the pressure of sea level: P + p A_e. Where the measured thrust is
+/// 0 nothing flows, and it stays 0.
 ThrustCurve InVacuum(ThrustCurve at_sea_level, double exit_area_m2);
 
 /// A curve by level, thrust over its greatest thrust, prepared to be looked up.
 struct BurnCurve {
-  /// Of each piece: a time on it, s, the level of thrust there, its slope, 1/s, the part of the propellant
-  /// that is left there, the level of the flow (over its greatest) and its slope, 1/s, and two for nothing.
-  /// That time is the piece's beginning, but of the last piece its end, so that nothing is left there.
+  /// A piece's row: a time on it (s), the level of thrust there and its slope (1/s), the part of the
+  /// propellant left there, the level of the flow over its greatest and its slope (1/s), two unused. The time
+  /// is the piece's beginning. For the last piece it is the end, so that exactly nothing is left there.
   static constexpr int kRowSize = 8;
   AlignedRows rows;
   std::vector<double> begin_s;  ///< of each piece

@@ -1,7 +1,7 @@
 // The launch vehicle as its file describes it: plain data, SI and radians.
 //
-// Stations are distances aft of the nose tip of the full vehicle, along the axis; they do not change when
-// a stage separates. Body axes: x forward, y right, z down at launch attitude zero roll.
+// Stations are distances aft of the nose tip of the full vehicle, along the axis. They do not change when a
+// stage separates. Body axes: x forward, y right, z down at launch attitude zero roll.
 #pragma once
 
 #include <array>
@@ -39,19 +39,19 @@ struct Stage {
   double bottom_station_m = 0.0;  ///< where the stack ends while this stage is its lowest
   Motor motor;
   Grain grain;                         ///< of a solid motor
-  std::vector<Tank> tanks;             ///< of a liquid stage, else empty; their propellant is the stage's
-  std::vector<MassElement> structure;  ///< the dry mass; the fractions sum to 1
+  std::vector<Tank> tanks;             ///< of a liquid stage, else empty (their propellant is the stage's)
+  std::vector<MassElement> structure;  ///< the dry mass, in fractions that sum to 1
   std::vector<Jettison> jettisoned;
   Gimbal gimbal;
   IgnitionTrigger ignition = IgnitionTrigger::kLiftOff;
   double ignition_delay_s = 0.0;    ///< after separation of the stage below (kBurnoutDetection)
-  double separation_delay_s = 0.0;  ///< after burnout detection; the last stage does not separate
+  double separation_delay_s = 0.0;  ///< after burnout detection, without effect for the last stage
   /// It is the stage before, whose engine burns again: the same body, with the propellant that was left.
   /// Nothing separates in between. Each burn counts as a stage of its own.
   bool restarts = false;
 
   bool is_liquid() const { return !tanks.empty(); }
-  /// Where its propellant is, of all tanks together.
+  /// Station of the propellant's top, for all tanks together.
   double PropellantTop() const;
   double PropellantBottom() const;
 };
@@ -134,11 +134,11 @@ inline void Describe(Fields& fields, ReactionControl& control) {
 /// Boosters at most.
 inline constexpr int kMaxBoosters = 8;
 
-/// Solid motors beside the first stage, all alike, at equal angles round it and ignited with it. Their
-/// nozzles are fixed, along the axis. They leave together after they have burnt out, at rest against the
-/// body, ahead of the stage's burnout; the aerodynamics of the first stack are theirs too, and stay.
+/// Equal solid motors beside the first stage, at equal angles round it, ignited with it. Their nozzles are
+/// fixed along the axis. They leave together after their burnout and before the stage's, at rest against the
+/// body. The aerodynamics of the first stack include them and stay after they have left.
 struct Boosters {
-  int count = 0;                    ///< 0: none; else 2 to 8
+  int count = 0;                    ///< 0 (none) or 2 to 8
   double dry_mass_kg = 0.0;         ///< of one, a thin tube from top to bottom station
   double propellant_mass_kg = 0.0;  ///< of one
   double radius_m = 0.0;            ///< of their axes from the vehicle's
@@ -179,11 +179,11 @@ inline void Describe(Fields& fields, Boosters& boosters) {
 }
 enum class ProfileShape { kTangentOgive, kCone, kCylinder, kFrustum };
 
-/// A piece of the outer mould line; the pieces follow one another from the nose tip aft.
+/// A piece of the outer mould line. The pieces follow one another from the nose tip aft.
 struct ProfileSection {
   ProfileShape shape = ProfileShape::kCylinder;
   double length_m = 0.0;
-  double aft_diameter_m = 0.0;  ///< the fore diameter is the section's before; 0 at the nose tip
+  double aft_diameter_m = 0.0;  ///< the fore diameter is that of the section before, or 0 at the nose tip
 };
 
 inline void Describe(Fields& fields, ProfileSection& section) {
@@ -198,15 +198,15 @@ inline void Describe(Fields& fields, ProfileSection& section) {
                   "the fore diameter is the piece's before, 0 at the nose tip");
 }
 
-/// Aerodynamic coefficients of one stack (the stages still attached) over Mach number and total
-/// incidence, in body axes: F = -q S (CA x + CN n), n the direction of the cross-flow.
-/// Outside the grid the end value holds.
+/// Aerodynamic coefficients of one stack (the stages still attached) over Mach number and total incidence, in
+/// body axes: F = -q S (CA x + CN n), n the direction of the cross-flow. Outside the grid the end value
+/// holds.
 struct AeroTable {
   double reference_area_m2 = 0.0;
   double reference_length_m = 0.0;  ///< the diameter
   std::vector<double> mach;
   std::vector<double> incidence_rad;  ///< >= 0
-  std::vector<double> ca;             ///< shape (mach, incidence), row by row; power on
+  std::vector<double> ca;             ///< shape (mach, incidence), row by row, power on
   std::vector<double> cn;
   std::vector<double> xcp_station_m;  ///< where the normal force acts
   std::vector<double> cmq_per_rad;    ///< shape (mach): pitch and yaw damping, on q d / (2 V), about the CG
@@ -215,7 +215,7 @@ struct AeroTable {
 
 void Describe(Fields& fields, AeroTable& table);
 
-/// Limits of the structure; 0 = none given. core/flight/structural_limits.h says which load each one limits.
+/// Limits of the structure (0: not given). core/flight/structural_limits.h names the load of each limit.
 struct StructuralLimits {
   double q_max_pa = 0.0;
   double q_alpha_pa_rad = 0.0;
@@ -254,14 +254,14 @@ struct Vehicle {
   std::string name;
   bool made_up = false;  ///< it need not be possible: a textbook's coefficients, a limiting case
   LaunchSite site;
-  double hold_down_s = 0.0;             ///< stage 1 burns this long before release; lift-off is time 0
+  double hold_down_s = 0.0;             ///< stage 1 burns this long before release (lift-off is time 0)
   bool jet_damping = true;              ///< moment of the flow from CG to nozzle on a turning vehicle
   bool flow_coriolis = true;            ///< force of that flow, and the motion of the CG through the body
   std::vector<Stage> stages;            ///< in the order of flight
   Boosters boosters;                    ///< of the first stage, part of its lift-off mass
   std::vector<ProfileSection> profile;  ///< outer mould line of the full vehicle
   double surface_roughness_m = 0.0;     ///< equivalent sand grain, for skin friction
-  std::vector<AeroTable> aerodynamics;  ///< one a stack; empty: built up from the profile
+  std::vector<AeroTable> aerodynamics;  ///< one a stack (empty: built up from the profile)
   ReactionControl reaction_control;
   StructuralLimits limits;
   Sensors sensors;
@@ -275,7 +275,7 @@ int LastBurn(const Vehicle& vehicle, int stage);
 /// Whether some engine is cut off at a velocity: when it will is known only in flight.
 bool CutsOffAtVelocity(const Vehicle& vehicle);
 
-/// What contradicts itself in a vehicle, each with the path of the value ("stages[1].propellant_mass_kg").
+/// A contradiction in a vehicle, with the path of the value ("stages[1].propellant_mass_kg").
 struct VehicleProblem {
   std::string path;
   std::string message;  ///< what is wrong
