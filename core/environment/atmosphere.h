@@ -20,16 +20,17 @@ inline constexpr double kAtmosphereTop_m = 1.0e6;
 
 /// The standard's air at a geometric altitude.
 ///
-/// - Below 86 km: its defining equations: seven layers of linear molecular-scale temperature in
-///   geopotential altitude (r0 = 6356.766 km), kinetic temperature by Table 8 (M/M0) from 80 km.
-/// - From 86 km: its closed forms of temperature (equations 25 to 31), and pressure and molecular weight
-///   interpolated between 42 nodes of its tables: ln p by the cubic that has the hydrostatic slope
-///   -g M / (R T) at each node, M by a monotone cubic. Density follows from the perfect-gas law. Pressure
-///   and density stay within 0.1 % of an integration of the standard's own equations.
-/// - All values are continuous. The speed of sound is sqrt(1.4 p / density); the standard prints none
-///   above 86 km, where it loses its meaning.
-/// - Below -5 km the air of -5 km. Above 1000 km pressure and density are zero, temperature (1000 K) and
-///   speed of sound those of 1000 km, so that a Mach number stays finite.
+/// - Below 86 km: its defining equations. Seven layers of linear molecular-scale temperature in geopotential
+///   altitude (r0 = 6356.766 km), and kinetic temperature by Table 8 (M/M0) from 80 km.
+/// - From 86 km: its closed forms of temperature (equations 25 to 31). Pressure and molecular weight are
+///   interpolated between 42 nodes of its tables: ln p by the cubic that has the hydrostatic slope -g M / (R
+///   T) at each node, M by a monotone cubic. Density follows from the perfect-gas law. Pressure and density
+///   stay within 0.1 % of an integration of the standard's own equations.
+/// - All values are continuous. The speed of sound is sqrt(1.4 p / density). The standard prints none above
+///   86 km, where it loses its meaning.
+/// - Below -5 km the air of -5 km. Above 1000 km pressure and density are zero. Temperature (1000 K) and
+/// speed of
+///   sound are those of 1000 km, so that a Mach number stays finite.
 AirState StandardAtmosphere1976(double geometric_altitude_m);
 /// Geometric altitudes from above kAtmosphereBottom_m to kAtmosphereTop_m, rising, at which its functions are
 /// not smooth: between two of them they are.

@@ -21,17 +21,17 @@ Earth Wgs84();
 /// A sphere with WGS-84's mu and no J2, rotating at WGS-84's rate or not at all.
 Earth SphericalEarth(double radius_m, bool rotating);
 
-/// Gravitation (m/s²; no centrifugal term) at a position other than the centre: central term and J2.
-/// In the axes of the position, E or I, which share z.
+/// Gravitation (m/s², without centrifugal term) at a position other than the centre: central term and J2. In
+/// the axes of the position, E or I, which share z.
 Vector3 Gravitation(const Earth& earth, const Vector3& p_EoP);
 
-/// Latitude along the normal of the ellipsoid; altitude above the ellipsoid along it.
+/// Latitude is that of the ellipsoid's normal. Altitude is measured along it above the ellipsoid.
 struct Geodetic {
   double latitude_rad;
   double longitude_rad;  ///< (-pi, pi]
   double altitude_m;
 };
-/// Bowring's iteration (Survey Review 28, 1985), twice. From -100 km up the error is the rounding of a
+/// Two steps of Bowring's iteration (Survey Review 28, 1985). From -100 km up the error is the rounding of a
 /// double: below 2000 km at most 5e-9 m in altitude and 5e-16 rad in latitude. On the axis longitude is 0.
 Geodetic ToGeodetic(const Earth& earth, const Vector3& p_EoP_E);
 /// p_EoP_E, m.

@@ -21,8 +21,8 @@ struct Place {
   T inverse_r, inverse_r2;  ///< of the distance from the centre
 };
 
-/// One step of Bowring's iteration (ToGeodetic takes two): it leaves 3e-13 rad of latitude near the Earth,
-/// and the altitude, which is stationary in it, has its rounding only.
+/// One step of Bowring's iteration (ToGeodetic takes two). It leaves 3e-13 rad of latitude near the Earth.
+/// The altitude is stationary in latitude, so only its rounding is left.
 template <class T>
 DISPERSA_INLINE Place<T> PlaceAt(const Earth& earth, Vector<T> p) {
   const double a = earth.equatorial_radius_m, aspect = 1.0 - earth.flattening, b = a * aspect;
@@ -90,10 +90,10 @@ DISPERSA_INLINE AirStateLanes<T> AirAt(const AirTable& table, T altitude_m) {
 template <class T>
 struct FlightWeatherLanes {
   T density_factor;
-  T jet_speed_m_s;  ///< JetStream; 0: none
+  T jet_speed_m_s;  ///< JetStream (0: none)
   T jet_altitude_m, jet_inverse_width;
   T jet_north, jet_east;  ///< unit vector of where it blows to
-  T gust_speed_m_s;       ///< Gust; 0: none
+  T gust_speed_m_s;       ///< Gust (0: none)
   T gust_start_m, gust_inverse_length;
   T gust_north, gust_east;
   const WeatherProfile* profile[kWidth<T>];  ///< null: calm
@@ -138,7 +138,7 @@ struct Surroundings {
   T inverse_sound_s_m;  ///< 1 / speed of sound
 };
 
-/// At p_EoP_I; see ComputeAirData for what the frames mean.
+/// At p_EoP_I. ComputeAirData explains the frames.
 template <class T>
 DISPERSA_INLINE Surroundings<T> SurroundingsAt(const Earth& earth, const AirTable& standard,
                                                const FlightWeatherLanes<T>& weather, Vector<T> p) {
@@ -187,7 +187,7 @@ DISPERSA_INLINE Surroundings<T> SurroundingsAt(const Earth& earth, const AirTabl
   o.wind_m_s = Zero<T>();
   const auto windy = (Abs(north) > T(0.0)) | (Abs(east) > T(0.0));
   if (Any(windy)) {
-    // Columns north and east of NedAxes; on the axis any direction will do.
+    // Columns north and east of NedAxes. On the axis any direction will do.
     const T inverse_rho = T(1.0) / Select(at.axis_distance_m > T(0.0), at.axis_distance_m, T(1.0));
     const T cos_longitude = p.x * inverse_rho, sin_longitude = p.y * inverse_rho;
     const T outward = -(north * at.sin_latitude);

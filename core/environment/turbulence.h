@@ -1,8 +1,8 @@
-// Atmospheric turbulence after Dryden: how strong and how long its gusts are over altitude, and a realisation
-// of it as a field that stands in the air, met by whoever flies through.
+// Atmospheric turbulence after Dryden: intensity and length of its gusts over altitude, and a realisation as
+// a field at rest in the air, through which the vehicle flies.
 //
 // Spectra, intensities and scales: MIL-F-8785C, 3.7.1.2 (Dryden form), 3.7.2.1 and figure 7 (medium to high
-// altitude), 3.7.3.4 and figures 10, 11 (low altitude). Feet and knots only inside turbulence.cc.
+// altitude), 3.7.3.4 and figures 10, 11 (low altitude). Feet and knots occur only inside turbulence.cc.
 #pragma once
 
 #include <functional>
@@ -25,25 +25,26 @@ struct TurbulenceScales {
   double length_horizontal_m, length_vertical_m;
 };
 
-/// Figure 7: standard deviation (m/s) at an altitude for a probability of exceedance, linear over altitude
-/// and over the logarithm of the probability; the end values hold outside.
+/// Figure 7: standard deviation (m/s) at an altitude for a probability of exceedance. It is linear over
+/// altitude and over the logarithm of the probability. Outside, the end values hold.
 double TurbulenceIntensity(double exceedance, double altitude_m);
 
-/// At an altitude over a ground: up to 1000 ft above it the low-altitude model (from 10 ft, below which its
-/// values there hold), from 2000 ft on figure 7 with 1750 ft for every length, in between both in turn,
-/// linear over height. Figure 7 ends at 80 000 ft: above, intensities fade to zero over kWindFade_m (wind.h).
+/// Scales at an altitude over a ground. Up to 1000 ft above it: the low-altitude model; below 10 ft its
+/// values of 10 ft hold. From 2000 ft on: figure 7 with 1750 ft for every length. Between: linear over
+/// height. Figure 7 ends at 80 000 ft. Above, intensities fade to zero over kWindFade_m (wind.h).
 TurbulenceScales TurbulenceAt(const TurbulenceStrength& strength, double ground_m, double altitude_m);
 
-/// The way up through the air along which a field is laid: points of increasing altitude with the sine of the
-/// path's angle over the horizon, in a vertical plane. It decides where along the path an altitude is.
+/// The way up through the air along which a field is laid, in a vertical plane: points of increasing
+/// altitude, each with the sine of the path's angle over the horizon. It gives the place of an altitude along
+/// the path.
 struct ClimbPath {
-  std::vector<double> altitude_m;  ///< strictly increasing, at least two; the first is the ground's
+  std::vector<double> altitude_m;  ///< strictly increasing, at least two, beginning with the ground's
   std::vector<double> sine_angle;
   double azimuth_rad = 0.0;  ///< of the plane, clockwise from north
 };
 
-/// What is common to the fields along a path: nodes a fiftieth of the vertical length apart (2 m at least),
-/// and how each follows from the one below.
+/// The part that all fields along a path share: nodes a fiftieth of the vertical length apart (at least 2 m),
+/// and the step from each node to the next.
 class TurbulencePath {
  public:
   explicit TurbulencePath(const ClimbPath& path);
@@ -53,7 +54,8 @@ class TurbulencePath {
     double sine, cosine;  ///< of the path's angle
     /// exp(-d / length) from the last node and what is added anew, of a component along the path
     double along_keeps, along_renews;
-    /// The same of a component across, of two states: [1 0; ratio 1] keeps, lower triangle of the new.
+    /// The same for a component across the path, with two states: [1 0; ratio 1] times the factor that is
+    /// kept, and the lower triangle of the new part.
     double across_keeps, across_ratio, renews_11, renews_21, renews_22;
   };
   const std::vector<Node>& nodes() const { return nodes_; }
@@ -66,8 +68,8 @@ class TurbulencePath {
   double azimuth_sine_, azimuth_cosine_;
 };
 
-/// Velocity of the air over altitude, linear between points; the first value holds below, above the last
-/// there is none.
+/// Velocity of the air over altitude, linear between points. Below, the first value holds. Above the last
+/// point there is none.
 struct TurbulenceField {
   std::vector<double> altitude_m, north_m_s, east_m_s, up_m_s;
 };
@@ -81,10 +83,10 @@ struct TurbulenceNormals {
   std::function<double()> along, across, normal;
 };
 /// One realisation. The component along the path has the longitudinal spectrum 2 L / pi / (1 + (L k)²), those
-/// across it the lateral one L / pi (1 + 3 (L k)²) / (1 + (L k)²)², k the wave number along the path (rad/m),
-/// times the square of the deviation. Each is a Markov sequence with exactly their correlations exp(-d/L) and
-/// (1 - d / 2L) exp(-d/L) between nodes d apart where L is constant. Where the path is vertical, along is
-/// vertical.
+/// across it the lateral one L / pi (1 + 3 (L k)²) / (1 + (L k)²)². k is the wave number along the path
+/// (rad/m), and the square of the deviation multiplies both. Each is a Markov sequence with exactly the
+/// correlations exp(-d/L) and (1 - d / 2L) exp(-d/L) between nodes d apart where L is constant. On a vertical
+/// path the component along it is vertical.
 TurbulenceField DrawTurbulence(const TurbulenceStrength& strength, const TurbulencePath& path,
                                const TurbulenceNormals& draw);
 

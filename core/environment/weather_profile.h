@@ -1,4 +1,4 @@
-// What a flight's tables of wind and density say over altitude, as one table of straight pieces.
+// A flight's tables of wind and density over altitude, as one table of straight pieces.
 #pragma once
 
 #include <vector>
@@ -10,10 +10,10 @@
 
 namespace dispersa {
 
-/// The sum of the steady wind and of all wind tables with their fading tops (Evaluate of the same parts, to
-/// rounding) and of a turbulent field, and the density factor. A row has 8 doubles: north (m/s), east (m/s),
-/// factor and up (m/s), each as constant and slope over altitude (m); row k holds between edges k - 1 and k,
-/// open at both ends.
+/// The steady wind plus all wind tables with their fading tops (Evaluate of the same parts, to rounding) plus
+/// a turbulent field, and the density factor. A row has 8 doubles: north (m/s), east (m/s), factor and up
+/// (m/s), each as constant and slope over altitude (m). Row k holds between edges k - 1 and k. The first and
+/// the last row are open.
 struct WeatherProfile {
   static constexpr int kRowSize = 8;
 
@@ -29,8 +29,8 @@ struct WeatherProfile {
 WeatherProfile BuildWeatherProfile(const Wind& wind, const DensityFactor& density,
                                    const TurbulenceField* turbulence = nullptr);
 
-/// One flight's wind and density as its equations take them: plain numbers and the profile. Directions are
-/// unit components of where the air moves to; a speed of 0 means there is none.
+/// One flight's wind and density in the form of its equations: plain numbers and the profile. Directions are
+/// unit components of the direction in which the air moves. A speed of 0 means none.
 struct FlightWeather {
   double density_factor = 1.0;
   double jet_speed_m_s = 0.0, jet_altitude_m = 0.0, jet_inverse_width = 1.0, jet_north = 0.0, jet_east = 0.0;

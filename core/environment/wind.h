@@ -1,6 +1,6 @@
-// Wind over altitude: jet stream, table, gusts and a steady part, summed.
+// Wind over altitude: the sum of jet stream, table, gusts and a steady part.
 //
-// A direction is where the wind comes from, clockwise from north; components are what the air moves with.
+// A direction is where the wind comes from, clockwise from north. Components are the velocity of the air.
 // Altitudes are geodetic.
 #pragma once
 
@@ -20,11 +20,11 @@ struct WindNorthEast {
 /// Components of a wind of a speed (m/s) that comes from an azimuth (rad, clockwise from north).
 WindNorthEast FromAzimuth(double speed_m_s, double azimuth_from_rad);
 
-/// Jet stream: speed max cos²(pi/2 (h - altitude) / width) within one width of its altitude, zero beyond.
-/// So width is both the full width at half maximum and the distance from the peak to calm: with
-/// width <= altitude the ground is calm. Peak value and altitude are exact and the slope is continuous.
-/// The 95 % winds of the worst month over Vandenberg and Cape Canaveral (Range Reference Atmosphere 2019)
-/// peak at 11 and 12 km and are 12 and 13 km wide at half maximum.
+/// Jet stream: speed max cos²(pi/2 (h - altitude) / width) within one width of its altitude, zero beyond. So
+/// width is the full width at half maximum, and also the distance from the peak to calm. With width <=
+/// altitude the ground is calm. Peak value and altitude are exact and the slope is continuous. The 95 % winds
+/// of the worst month over Vandenberg and Cape Canaveral (Range Reference Atmosphere 2019) peak at 11 and 12
+/// km and are 12 and 13 km wide at half maximum.
 struct JetStream {
   double max_speed_m_s;
   double altitude_m;
@@ -32,19 +32,19 @@ struct JetStream {
   double azimuth_from_rad;
 };
 
-/// Components over altitude, linear between points. The first value holds below; above the last one the
-/// wind fades linearly to zero over kWindFade_m, because measured profiles end where air still moves.
+/// Components over altitude, linear between points. Below, the first value holds. Above the last point the
+/// wind fades linearly to zero over kWindFade_m, since measured profiles end where air still moves.
 struct WindTable {
   std::vector<double> altitude_m = {};  ///< strictly increasing, at least two
   std::vector<double> north_m_s = {};
   std::vector<double> east_m_s = {};
 };
-/// The columns; `allowed` says how long they are.
+/// The columns. `allowed` gives their allowed lengths.
 void Describe(Fields& fields, WindTable& table, const char* allowed);
 inline constexpr double kWindFade_m = 10000.0;
 
-/// Discrete gust, speed/2 (1 - cos(2 pi x / length)) at x from 0 to length above its start: the
-/// build-up of MIL-F-8785C (3.7.3.2) over half the length and its mirror image.
+/// Discrete gust: speed/2 (1 - cos(2 pi x / length)) at x from 0 to length above its start. Half the length
+/// is the build-up of MIL-F-8785C (3.7.3.2), the other half its mirror image.
 struct Gust {
   double speed_m_s;
   double start_altitude_m;
@@ -54,7 +54,7 @@ struct Gust {
 
 using SteadyWind = WindNorthEast;
 
-/// Sum of its parts; an empty one is calm.
+/// Sum of its parts. Without parts it is calm.
 struct Wind {
   std::vector<JetStream> jets = {};
   std::vector<WindTable> tables = {};

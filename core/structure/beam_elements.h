@@ -1,12 +1,12 @@
 // Finite elements of a free beam: nodes, shape functions, stiffness and mass.
 //
-// A node has two degrees of freedom, deflection w and rotation of the cross-section theta; both are real
-// functions of the station s, and theta = dw/ds where nothing shears. Between nodes w is the cubic that the
-// two nodes give, theta the parabola that belongs to it: the exact static shape of a uniform element, of
-// Euler's and Bernoulli's theory (shear ratio 0: Hermite's cubics) and of Timoshenko's alike (Z. Friedman and
-// J. B. Kosmatka, Computers & Structures 47, 1993). They are conforming, so that frequencies come from above:
-// with the fourth power of the element's length without shear, with the second where it shears, since an
-// element's shear strain is constant.
+// A node has two degrees of freedom: deflection w and rotation of the cross-section theta. Both are real
+// functions of the station s, and theta = dw/ds without shear. Between two nodes w is the cubic that they
+// give, and theta the parabola that belongs to it. This is the exact static shape of a uniform element, in
+// the theory of Euler and Bernoulli (shear ratio 0: Hermite's cubics) and in Timoshenko's (Z. Friedman and J.
+// B. Kosmatka, Computers & Structures 47, 1993). The elements are conforming, so frequencies converge from
+// above: with the fourth power of the element's length without shear, with the second power with shear, since
+// an element's shear strain is constant.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,8 +18,7 @@
 
 namespace dispersa {
 
-/// What the two degrees of freedom at each end contribute at a place: w_top, theta_top, w_bottom,
-/// theta_bottom.
+/// Shares of the four end values at a place: w_top, theta_top, w_bottom, theta_bottom.
 struct BeamShape {
   std::array<double, 4> deflection;
   std::array<double, 4> rotation;
@@ -35,8 +34,8 @@ struct Beam {
   bool rotary_inertia = true;
 };
 
-/// Stations of the nodes: every end of a section and of a spread mass, every station of a fixed mass, and
-/// enough between for elements no longer than the beam's length over `elements`.
+/// Stations of the nodes: every end of a section and of a spread mass, and every station of a fixed mass.
+/// Further nodes between them keep elements no longer than the beam's length over `elements`.
 std::vector<double> MeshStations(const std::vector<BeamSection>& sections, const BeamMasses& masses,
                                  int elements);
 

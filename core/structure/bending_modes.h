@@ -1,13 +1,13 @@
 // Bending modes of a vehicle: of each stack, over its propellant.
 //
 // A mode q of frequency omega and generalised mass m has the lateral displacement deflection(s) q along body
-// y or z at station s, q in metres. Shapes are scaled to a largest deflection of 1; at lift-off of the stack
+// y or z at station s, q in metres. Shapes are scaled to a largest deflection of 1. At lift-off of the stack
 // the nose end points along +y or +z, and from level to level a mode keeps its sign. `slope` is the rotation
-// of the cross-section by the station (aft): a unit q turns the body by +slope about y in plane z, and by
+// of the cross-section over the station (aft): a unit q turns the body by +slope about y in plane z, and by
 // -slope about z in plane y.
 //
-// For a flight: q'' + 2 zeta omega q' + omega² q = (sum of force deflection + moment slope) / m at the actual
-// propellant, everything linear between levels; Along() tables what a place needs.
+// In flight q'' + 2 zeta omega q' + omega² q = (sum of force deflection + moment slope) / m at the actual
+// propellant, with all values linear between levels. Along() tables the values of one place.
 #pragma once
 
 #include <array>
@@ -26,7 +26,7 @@ struct BendingMode {
   std::vector<double> slope_1_m;
 };
 
-/// The modes of one plane at one propellant level; the index of a mode is the same at all levels.
+/// The modes of one plane at one propellant level. A mode has the same index at all levels.
 struct BendingLevel {
   double propellant_kg = 0.0;
   std::vector<BendingMode> modes;
@@ -37,10 +37,10 @@ struct StackModes {
   bool axisymmetric = true;                         ///< plane z is plane y
   std::array<std::vector<double>, 2> station_m;     ///< of the nodes, by plane
   std::array<std::vector<double>, 2> shear_ratio;   ///< of the elements between them
-  std::array<std::vector<BendingLevel>, 2> levels;  ///< by plane; propellant falls
+  std::array<std::vector<BendingLevel>, 2> levels;  ///< by plane, in order of falling propellant
 };
 
-/// At a station; beyond the ends of the beam the shape goes on straight.
+/// Shape at a station. Beyond the ends of the beam it goes on straight.
 struct StationShape {
   double deflection = 0.0;
   double slope_1_m = 0.0;
@@ -49,10 +49,10 @@ StationShape ShapeOf(const StackModes& stack, BeamPlane plane, const BendingMode
 
 /// The stack's modes, one StackModes a stage.
 ///
-/// Between the levels of the file further ones are looked at where a mode changes so much that its modal
-/// assurance criterion falls below 0.9, down to 1/32 of a step. Precondition: a vehicle with a beam and
-/// without Problems(). A table's shapes are scaled as above, its generalised masses with them, and its modes
-/// tracked likewise, with the vehicle's mass model as weight.
+/// Further levels are added between those of the file where a mode changes so much that its modal assurance
+/// criterion falls below 0.9, down to 1/32 of a step. Precondition: a vehicle with a beam and without
+/// Problems(). A table's shapes and generalised masses are scaled as above. Its modes are tracked likewise,
+/// with the vehicle's mass model as weight.
 std::vector<StackModes> BuildBendingModes(const Vehicle& vehicle);
 
 /// A mode of one plane at a place over the propellant, for a flight: falling propellant, as the levels.
@@ -61,7 +61,7 @@ struct ModeAlong {
 };
 ModeAlong Along(const StackModes& stack, BeamPlane plane, int mode, double station_m);
 
-/// Where shapes are of interest: the beam's sensors and the stack's nozzle pivot.
+/// Stations that pages show: the beam's sensors and the stack's nozzle pivot.
 std::vector<BeamSensor> ShownStations(const Vehicle& vehicle, int stage);
 
 }  // namespace dispersa

@@ -6,17 +6,17 @@
 
 namespace dispersa {
 
-/// What continues a mode.
+/// The continuation of a mode at the next level.
 struct ModeMatch {
   Eigen::Index index = 0;  ///< column of the later shapes
   double sign = 1.0;       ///< by which that column is multiplied to point the same way
   double mac = 0.0;        ///< modal assurance criterion, 0 to 1
 };
 
-/// For each column of `earlier` one of `later`, which has as many columns or more, no two the same: pairs by
-/// falling modal assurance criterion (a' M b)² / (a' M a  b' M b), R. J. Allemang and D. L. Brown's (1982)
-/// with the mass as its weight, so that orthogonal modes have 0 exactly. `mass` is that of either or, better,
-/// the mean of both.
+/// For each column of `earlier` one of `later`, which has at least as many columns. No two are the same.
+/// Pairs are taken by falling modal assurance criterion (a' M b)² / (a' M a  b' M b) of R. J. Allemang and D.
+/// L. Brown (1982), with the mass as weight, so that orthogonal modes have exactly 0. `mass` is that of
+/// either level or, better, the mean of both.
 std::vector<ModeMatch> MatchModes(const Eigen::MatrixXd& earlier, const Eigen::MatrixXd& later,
                                   const Eigen::MatrixXd& mass);
 

@@ -1,6 +1,6 @@
-// The production 3DOF: a point mass in three dimensions with the attitude imposed by the flight program, on
-// the same environment, aerodynamics, propulsion, mass and sequencing as the 6DOF flight. The paper's
-// planar equations (1) to (7) are its limit.
+// The production 3DOF: a point mass in three dimensions whose attitude follows the flight program.
+// Environment, aerodynamics, propulsion, mass and sequence are those of the 6DOF flight. The paper's planar
+// equations (1) to (7) are its limit.
 #pragma once
 
 #include <cmath>
@@ -16,19 +16,18 @@
 namespace dispersa {
 
 /// Programmed incidence, rad, negative (nose down): 0 to t1, a smooth fall to -alpha_max at t3, a smooth
-/// return to 0 at t2, 0 after. The ramps are quintics with no rate or acceleration at their ends
-/// (10 s³ - 15 s⁴ + 6 s⁵), so that the program asks no jump of the autopilot.
+/// return to 0 at t2, 0 after. The ramps are quintics without rate or acceleration at their ends (10 s³ - 15
+/// s⁴ + 6 s⁵), so the autopilot sees no jump.
 double ProgrammedIncidence(const FlightProgram& program, double time_s);
 
-/// What every ascent of a vehicle shares.
+/// The part that all ascents of a vehicle share.
 struct AscentModel {
   Vehicle vehicle;
   LauncherPlant plant;
   FlightWeather weather;  ///< of the plant's environment
   double tick_s = 0.01;   ///< burnout is detected on the autopilot's ticks
-  /// What the reaction control of the coast expels. A point mass has no attitude to hold; it is taken off at
-  /// once as the last stage begins, since nothing but that stage's thrust and thin air tells one mass from
-  /// another.
+  /// Propellant that the reaction control expels in the coast. A point mass has no attitude to hold. The mass
+  /// is taken off at once when the last stage begins: only that stage's thrust and thin air depend on it.
   double reaction_control_propellant_kg = 0.0;
 };
 
@@ -77,9 +76,9 @@ struct AscentResult {
   Vector3 p_EoC_I = Vector3::Zero();
   Vector3 v_IC_I = Vector3::Zero();
   double last_ignition_s = 0.0;
-  /// How long engines that are cut off at a velocity burnt, by stage; infinite: to depletion.
+  /// Burn times of engines that are cut off at a velocity, by stage; infinite for burns to depletion.
   std::array<double, kMaxStages> cut_off_s = AllStages(HUGE_VAL);
-  std::vector<double> jettison_s;                       ///< of each of the plant's jettisons; infinite: never
+  std::vector<double> jettison_s;  ///< of each of the plant's jettisons (infinite: never)
   std::array<double, kMaxStages> earlier_ignition_s{};  ///< of stages before the last that a timer ignites
   double q_max_pa = 0.0;
   double q_alpha_max_pa_rad = 0.0;
@@ -94,8 +93,8 @@ struct AscentResult {
 
 AscentModel BuildAscentModel(const Vehicle& vehicle, double tick_s);
 
-/// Flies the program. Event times are exact: they bound steps and are never rounded, and the program is
-/// evaluated on the side of a kink to which a step belongs.
+/// Flies the program. Event times are exact: they bound steps and are never rounded. At a kink the program is
+/// evaluated on the side to which the step belongs.
 AscentResult FlyAscent(const AscentModel& model, const FlightProgram& program, const AscentOptions& options);
 
 /// Lanes that are flown side by side unless the caller says otherwise: a register of AVX2.

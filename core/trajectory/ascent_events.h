@@ -1,4 +1,4 @@
-// What happens during an ascent, and when.
+// Events of an ascent and their times.
 #pragma once
 
 #include <vector>
@@ -19,7 +19,7 @@ struct AscentEvent {
     kKink
   };
 
-  double time_s;  ///< since lift-off, exact; an ignition may be earlier
+  double time_s;  ///< since lift-off, exact (an ignition may be earlier)
   Kind kind;      ///< kKink: thrust or program bend there, and no step may go across
   int stage;
 };
@@ -27,7 +27,7 @@ struct AscentEvent {
 /// In the order of time.
 struct AscentEvents {
   std::vector<AscentEvent> events;
-  double last_ignition_s = 0.0;                         ///< the last stage's timer; 0 of a single stage
+  double last_ignition_s = 0.0;                         ///< the last stage's timer, 0 for a single stage
   std::array<double, kMaxStages> earlier_ignition_s{};  ///< the others'
 };
 AscentEvents EventsOf(const AscentModel& model, const std::vector<MotorBurn>& burns,

@@ -18,7 +18,7 @@ struct AscentPoint {
 lanes::AscentInstant<double> InstantOf(const lanes::Ground& ground, const AscentPoint& point);
 lanes::Vector<double> ForwardOf(const lanes::Ground& ground, const AscentPoint& point);
 lanes::Vector<double> AxisRateOf(const lanes::Ground& ground, const AscentPoint& point);
-/// Body axes in I: x forward, y as near to the launch frame's y as it can be, so that there is no roll in L.
+/// Body axes in I: x forward, y as near to the launch frame's y as possible, so there is no roll in L.
 Matrix3 AttitudeOf(const LaunchFrame& frame, const lanes::Vector<double>& forward_I);
 
 /// Appends a sample, and a knot of the attitude program unless it has one at this time.

@@ -11,7 +11,7 @@
 namespace dispersa::lanes {
 inline namespace DISPERSA_ISA {
 
-/// What every lane has: the world, and the vertical of the site at lift-off, in I.
+/// Values that all lanes share: the Earth, and the site's vertical at lift-off in I.
 struct Ground {
   Earth earth;
   const AirTable* air;
@@ -34,7 +34,7 @@ DISPERSA_INLINE void SetLane(FlightProgramLanes<T>& p, int lane, const FlightPro
   Lane(p.inverse_rise_1_s, lane) = 1.0 / (program.t2_s - program.t3_s);
 }
 
-/// What stays as it is between two events of a lane.
+/// Values that stay constant between two events of a lane.
 template <class T>
 struct Leg {
   FlightProgramLanes<T> program;
@@ -89,9 +89,9 @@ DISPERSA_INLINE Vector<T> VelocityOverGround(const Ground& ground, Vector<T> p, 
   return {Fma(omega, p.y, v.x), Fma(-omega, p.x, v.y), v.z};
 }
 
-/// The body's x axis in I: along the velocity over the ground turned by the programmed incidence. While
-/// vertical it is the vertical of the site, which turns with the Earth; the small angle that the velocity
-/// makes with it as the turn begins fades by t3.
+/// The body's x axis in I: the velocity over the ground, turned by the programmed incidence. In the vertical
+/// flight it is the site's vertical, which turns with the Earth. The small angle between the two at the
+/// beginning of the turn fades by t3.
 template <class T>
 DISPERSA_INLINE Vector<T> ForwardAt(const Ground& ground, const Leg<T>& leg, T time_s, Vector<T> p,
                                     Vector<T> v) {
@@ -124,7 +124,7 @@ DISPERSA_INLINE Vector<T> ForwardAt(const Ground& ground, const Leg<T>& leg, T t
   return forward;
 }
 
-/// What limits and records need of an instant.
+/// Values of one instant for limits and records.
 template <class T>
 struct AscentInstant {
   Vector<T> acceleration_I;
@@ -158,7 +158,7 @@ DISPERSA_OUT_OF_LINE AscentInstant<T> InstantAt(const Ground& ground, const Leg<
   const T across = Sqrt(Dot(crossing, crossing));
   const FlowForce<T> air = ForceOfFlow(leg.aero, {ahead, T(0.0), across}, Zero<T>(), around.density_kg_m3,
                                        around.inverse_sound_s_m, masses.cg_station_m);
-  // P = P_vac - p A_e; a nozzle that the ambient pressure would turn inwards gives nothing.
+  // P = P_vac - p A_e. Where the ambient pressure would make the thrust negative, it is 0.
   const T thrust = Max(
       Fma(leg.burn.vacuum_thrust_n, burn.fraction, -(around.pressure_pa * leg.burn.exit_area_m2)), T(0.0));
   AscentInstant<T> o;

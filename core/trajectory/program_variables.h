@@ -1,5 +1,5 @@
-// The variables of a flight program that a search moves, and their bounds in a problem: one list for the
-// genetic algorithm, the refinement and what is said of them.
+// The variables of a flight program that a search moves, and their bounds in a trajectory problem. Genetic
+// algorithm, refinement and messages share this list.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// What the optimiser found and every flight follows: the problem, the flight program, the orbit reached,
-// and the full attitude in the launch-inertial frame over time.
+// The optimiser's result, which every flight follows: the trajectory problem, the flight program, the orbit
+// reached, and the full attitude in the launch-inertial frame over time.
 #pragma once
 
 #include <array>
@@ -14,9 +14,9 @@
 
 namespace dispersa {
 
-/// Of a stage above the first while it burns: incidence in the plane of ascent, nose up, from ignition on in
-/// proportion to time, over the zero incidence of a gravity turn. A long burn needs it: a gravity turn falls
-/// too low. It sets in within kSteeringRise_s and, once the burn has ended, fades within kSteeringFade_s.
+/// Incidence of a burning upper stage: in the plane of ascent, nose up, in proportion to the time since
+/// ignition, added to the zero incidence of a gravity turn. A long burn needs it: a gravity turn falls too
+/// low. It sets in within kSteeringRise_s and fades within kSteeringFade_s after the burn.
 struct Steering {
   double begin_rad = 0.0;  ///< at ignition
   double end_rad = 0.0;    ///< where the propellant would be used up
@@ -26,8 +26,8 @@ struct Steering {
 inline constexpr double kSteeringRise_s = 20.0;
 inline constexpr double kSteeringFade_s = 60.0;
 
-/// Section II of the paper: vertical to t1, turning with incidence to t2, then zero incidence; maximum
-/// incidence at t3. Times since lift-off.
+/// Section II of the paper: vertical to t1, turning with incidence to t2, then zero incidence. The maximum
+/// incidence is at t3. Times count from lift-off.
 struct FlightProgram {
   double alpha_max_rad = 0.0;  ///< magnitude of the (nose-down) maximum incidence
   double t1_s = 0.0;
@@ -40,9 +40,9 @@ struct FlightProgram {
   std::array<Steering, kMaxStages> steering{};  ///< by stage
 };
 
-/// Injection: geodetic altitude, inertial speed, inertial flight path angle, inclination, where the plane
-/// crosses the equator northwards (east of Greenwich as it stood at lift-off), distance from the Earth's
-/// centre, angle from the node along the orbit: at the perigee of an ellipse its argument.
+/// Injection: geodetic altitude, inertial speed, inertial flight path angle, inclination, ascending node
+/// (east of Greenwich at lift-off), distance from the Earth's centre, and angle from the node along the
+/// orbit. At the perigee of an ellipse that angle is its argument.
 struct Orbit {
   double altitude_m = 0.0;
   double velocity_m_s = 0.0;
@@ -75,13 +75,13 @@ struct SteeringBounds {
 
 /// Target, decision variables' bounds, objective (8) and constraints of section II.
 struct TrajectoryProblem {
-  double target_altitude_m = 0.0;  ///< geodetic; of an ellipse the perigee's, over the equator's radius
+  double target_altitude_m = 0.0;  ///< geodetic, for an ellipse that of the perigee over the equator's radius
   double target_velocity_m_s = 0.0;
   double target_flight_path_angle_rad = 0.0;
   std::optional<double> target_apogee_m;  ///< over the equator's radius: an ellipse, entered at its perigee
   bool velocity_is_free = false;          ///< the target does not name it
   std::optional<double> target_inclination_rad;
-  std::optional<double> target_node_rad;  ///< right ascension; the time of day of the lift-off meets it
+  std::optional<double> target_node_rad;  ///< right ascension, which the time of day of the lift-off provides
   std::optional<double> target_argument_of_perigee_rad;  ///< of an ellipse, with an inclination
   double velocity_reserve_m_s = 0.0;  ///< the trajectory shall be so much faster, for guidance to spend
   Bounds alpha_max_rad, t1_s, t3_s, t2_s, coast_s, launch_azimuth_rad;
@@ -95,7 +95,7 @@ struct TrajectoryProblem {
   double axial_load_limit_g = 12.0;
   double lateral_load_limit_g = 1.5;
   double alpha_limit_rad = 0.0;
-  double turn_rate_limit_rad_s = 0.0;  ///< of the body axis in the pitch-over; 0: reported only
+  double turn_rate_limit_rad_s = 0.0;  ///< of the body axis in the pitch-over (0: reported only)
   double transonic_mach_low = 0.8;     ///< alpha = 0 from here
   double transonic_mach_high = 1.2;    ///< to here
   double q_max_limit_pa = 0.0;         ///< 0: reported only
@@ -114,7 +114,7 @@ inline double AimedVelocity(const TrajectoryProblem& problem) {
 
 struct Reference {
   std::string name;
-  std::string target_missed;  ///< how far the search got when it missed its target; empty: it did not
+  std::string target_missed;  ///< how near the search came to a target that it missed (empty: target reached)
   TrajectoryProblem problem;
   FlightProgram program;
   double last_ignition_s = 0.0;                         ///< timer since lift-off of the last stage

@@ -8,10 +8,9 @@
 
 namespace dispersa {
 
-/// One sentence on how far the best program got, then one for each thing that stopped it: a constraint that
-/// it breaks, a variable at the end of its bounds without which altitude and angle cannot be had, the
-/// vehicle's energy (the range of speeds that it has at the target's altitude and angle over the bounds of
-/// the launch azimuth).
+/// One sentence on how near the best program came, then one for each cause: a constraint that it breaks, a
+/// variable at the end of its bounds that altitude and angle need, the vehicle's energy (its range of speeds
+/// at the target's altitude and angle over the bounds of the launch azimuth).
 std::string DescribeShortfall(const AscentModel& model, const TrajectoryProblem& problem,
                               const TrajectoryOptions& options, const OptimizationResult& result);
 

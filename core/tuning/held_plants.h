@@ -1,5 +1,6 @@
-// The plants that every design must hold where a tuning has dispersed ones: the nominal plant and those of
-// some draws of the campaign, at the instants of their own flights, to the gates of dispersed flights.
+// The plants that every design of a tuning must hold if it has dispersed ones: the nominal plant and those of
+// some draws of the campaign. Each is checked at the instants of its own flight, against the gates of
+// dispersed flights.
 #pragma once
 
 #include <optional>
@@ -15,12 +16,13 @@ namespace dispersa {
 
 class HeldPlants {
  public:
-  /// Of so many draws; `instants` are the nominal plant's, and `rigid` flies the draws' own.
+  /// `draws` plants. `instants` are the nominal plant's; `rigid` flies the draws' own.
   HeldPlants(const TunedPlant& plant, const std::vector<MarginInstant>& instants,
              const CampaignFlights& rigid, int draws);
 
-  /// The least surplus of all held plants of a stage, or of those nearer to one of its times than to others.
-  /// Once it is below `enough` the rest does not matter; `last`, which was least before, is looked at first.
+  /// The least surplus of all held plants in a stage, or in the part of it that is nearest to one of its
+  /// times. Below `enough` the search for a smaller one ends. `last` is the plant that was least before: it
+  /// is checked first.
   double SurplusOf(const AutopilotConfig& autopilot, int stage, std::size_t* last, double enough,
                    std::optional<std::size_t> about = {}) const;
   /// Of the campaign's autopilot: what is missed by most, and where.
@@ -38,7 +40,7 @@ class HeldPlants {
 
   void Hold(LauncherPlant plant, const std::string& name, const TickSample& sample,
             const std::vector<double>& frequency_factors, const LoopGates& gates);
-  /// What an autopilot makes of the rates of each sensor in a stage.
+  /// The share of each sensor's rates in an autopilot's rate of a stage.
   std::vector<double> SharesOf(const AutopilotConfig& autopilot, int stage) const;
 
   TunedPlant plant_;

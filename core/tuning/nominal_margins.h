@@ -21,10 +21,11 @@ class NominalMargins {
       : plant_(plant), instants_(std::move(instants)) {}
 
   LeastMargins LeastOf(const AutopilotConfig& autopilot, int stage, bool adapting) const;
-  /// Ends at the first set of margins that fails, and begins with the one that failed last: designs that are
-  /// tried one after another are alike, so that one far from admissible costs next to nothing.
+  /// Ends at the first set of margins that fails. Begins with the one that failed last: successive designs
+  /// are alike, so a design far from admissible costs next to nothing.
   bool Suffice(const AutopilotConfig& autopilot, int stage, std::size_t* failed_last) const;
-  /// Of the campaign's autopilot, where and by how much; `kind`: 0 gain, 1 phase, 2 delay.
+  /// The margin that the campaign's autopilot misses, where and by how much. `kind`: 0 gain, 1 phase, 2
+  /// delay.
   std::string Missed(std::size_t kind, bool adapting, int stage) const;
 
  private:

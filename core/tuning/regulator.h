@@ -1,9 +1,8 @@
 // The linear-quadratic regulator of an axis: state feedback with the integral as a state.
 //
-// Plant: what a law commands is divided by the stage's effectiveness, so that e'' = -u with e = reference -
-// true; air, actuator and delay are left to the margins. State x = (∫e, e, e'). The regulator u = ki ∫e + kp
-// e + kd e' minimises ∫ (q_integral (∫e)² + q_angle e² + q_rate e'² + u²) dt. Its feedback is that of a PID
-// law, which flies it.
+// Plant: the law's command is divided by the stage's effectiveness, so e'' = -u with e = reference - true.
+// Margins check the rest: air, actuator and delay. State x = (∫e, e, e'). The regulator u = ki ∫e + kp e + kd
+// e' minimises ∫ (q_integral (∫e)² + q_angle e² + q_rate e'² + u²) dt. A PID law flies this feedback.
 #pragma once
 
 namespace dispersa {
@@ -22,8 +21,8 @@ struct RegulatorGains {
 };
 
 /// Solves the algebraic Riccati equation A'P + PA - PBB'P + Q = 0 by Newton's iteration from stabilising
-/// gains: each step is the Lyapunov equation of the loop closed by the gains before, to rounding. Weights
-/// positive; meant for those near 1, that is, for time in units of the loop's own.
+/// gains. Each step solves the Lyapunov equation of the loop closed by the gains before, to rounding. Weights
+/// are positive. It is meant for weights near 1, that is, for time in units of the loop's own.
 RegulatorGains SolveRegulator(const RegulatorWeights& weights);
 
 /// The weights for which gains are optimal: ki², kp² - 2 ki kd, kd² - 2 kp. Some negative: for none.

@@ -15,7 +15,7 @@ class StagePoints {
  public:
   StagePoints(const TunedPlant& plant, const TuningOptions& options) : plant_(plant), options_(options) {}
 
-  /// Bounds and known points; nothing evaluates them yet.
+  /// Bounds and starting points, without results yet.
   BoundedProblem ProblemOf(int stage) const;
   /// All but the bandwidth at a point of the search.
   StageDesign ShapeOf(const std::vector<double>& point, int stage, double at_s) const;

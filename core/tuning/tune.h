@@ -1,26 +1,33 @@
-// One procedure that tunes any autopilot, whatever its law, with one budget: comparisons of laws are fair
-// only between tunings that had the same chances.
+// One procedure tunes any autopilot under any law with one budget. Comparisons of laws are fair only between
+// tunings with the same budget.
 //
-// Stage after stage, since a stage's gains act only while it burns, a genetic algorithm searches the stage's
-// design (stage_design.h): its damping, its learning if the law adapts, and its bandwidth as a fraction of
-// the largest one whose margins suffice, since the best designs lie on or near that limit.
-// - objective: mean RMS pitch error of the stage over cases of the campaign, drawn with the tuning's own
-// seed;
-//   tie-breaker within kObjectiveTolerance_deg: the largest peak;
-// - subject to: every computed margin of all axes, gains frozen and adapting, at every instant of
-//   MarginInstants at or above its gate plus a reserve; every case completed; every ripple of the deflection
+// A stage's gains act only while it burns, so stages are tuned one after another. A genetic algorithm
+// searches the stage's design (stage_design.h): damping, learning if the law adapts, and bandwidth. Bandwidth
+// is a fraction of the largest one whose margins suffice: the best designs are on or near that limit.
+// - Objective: mean RMS pitch error of the stage over cases of the campaign, drawn with the tuning's own
+// seed.
+//   Tie-breaker within kObjectiveTolerance_deg: the largest peak.
+// - Constraints: every computed margin of all axes is at or above its gate plus a reserve, with gains frozen
+// and
+//   adapting, at every instant of MarginInstants. Every case completes. Every ripple of the deflection is
 //   below kLimitCycleLimit_deg.
-// A stage whose schedule has times (autopilot_config.h; pitch's count, with any gains) has a design at each:
-// its damping, learning and blend are searched for all, filters follow the first mode's frequency at that
-// time, bandwidth is the largest that suffices about it, and where none does the design of that time is
-// refined by itself. With `dispersed`, as many draws of the campaign are plants to be held: their margins
-// must be above the gates of dispersed flights, those of the nominal plant above theirs, each plus the
-// smaller reserve kHeld...; they come from tables (core/margins/loop_table.h), with exact ones at the end. A
-// PID may be searched as a linear-quadratic regulator instead (regulator.h): weights take the place of
-// damping and learning. Margins come first: a design that misses one is not flown. What augments PD acts in
-// every stage; it is searched last, over whole flights, with the measured margins at their gates instead of
-// the computed ones, which know it at rest only. The budget is shared by the stages and the augmentation. The
-// search does not depend on the gains that the autopilot had before, nor on the number of threads.
+//
+// A stage whose schedule has times has a design at each (autopilot_config.h; pitch's times count). Damping,
+// learning and blend are searched for all of them. Filters follow the first mode's frequency at each time.
+// Bandwidth is the largest that suffices near the time. If none suffices, the design of that time is refined
+// by itself.
+//
+// With `dispersed`, as many draws of the campaign are plants to be held. Their margins must be above the
+// gates of dispersed flights, the nominal plant's above its own gates, each plus the smaller reserve
+// kHeld.... They come from tables (core/margins/loop_table.h), and from exact computation at the end.
+//
+// A PID may be searched as a linear-quadratic regulator instead (regulator.h): weights take the place of
+// damping and learning.
+//
+// Margins come first: a design that misses one is not flown. The augmentation of PD acts in every stage. It
+// is searched last, over whole flights, with measured margins at their gates. Computed margins know it at
+// rest only. Stages and augmentation share the budget. The search depends neither on the autopilot's earlier
+// gains nor on the number of threads.
 #pragma once
 
 #include <cstdint>
@@ -39,7 +46,7 @@ namespace dispersa {
 
 /// One line of the log.
 struct TuningRecord {
-  int stage = 0;  ///< 0-based; the number of stages: the augmentation
+  int stage = 0;  ///< 0-based, and the number of stages for the augmentation
   GenerationRecord generation;
 };
 
@@ -71,11 +78,11 @@ struct TuningResult {
   std::vector<SkippedInstant> skipped;  ///< of the nominal flight, at which no margins were asked for
   std::optional<AugmentationTuning> augmentation;  ///< where PD is augmented and every stage is feasible
   bool feasible = false;                           ///< all of them
-  /// Powered pitch error of the tuned autopilot over the tuning's cases; 0 if it is not feasible.
+  /// Powered pitch error of the tuned autopilot over the tuning's cases; 0 if none is feasible.
   double median_rms_deg = 0.0;
   double largest_peak_deg = 0.0;
   std::uint64_t evaluations = 0;  ///< designs tried
-  std::uint64_t flights = 0;      ///< of cases; those that measure margins are not counted
+  std::uint64_t flights = 0;      ///< of cases, without flights that measure margins
 };
 
 /// Lines that the log of tuning `autopilot` will have.
@@ -84,11 +91,11 @@ std::uint64_t TuningGenerations(const Campaign& campaign, const AutopilotConfig&
 
 using TuningObserver = std::function<void(const TuningRecord&)>;
 
-/// Tunes `autopilot` for the vehicle, reference and dispersions of a campaign, whose own autopilot is
-/// ignored; cases are drawn by Monte Carlo. `observer`, if given, is called on the calling thread after each
-/// generation. Throws InputError if the seed is the campaign's, an option is out of its range, the autopilot
-/// does not suit the vehicle or fixes a P_n, which follows from the gains, or a regulator's axis has no
-/// integral.
+/// Tunes `autopilot` for a campaign's vehicle, reference and dispersions. The campaign's own autopilot is
+/// ignored. Cases are drawn by Monte Carlo. `observer`, if given, is called on the calling thread after each
+/// generation. Throws InputError in these cases: the seed is the campaign's, an option is out of its range,
+/// the autopilot does not suit the vehicle, it fixes a P_n (which follows from the gains), or a regulator's
+/// axis has no integral.
 TuningResult Tune(const Campaign& campaign, const AutopilotConfig& autopilot, const TuningOptions& options,
                   const TuningObserver& observer = nullptr);
 

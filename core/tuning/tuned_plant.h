@@ -1,4 +1,4 @@
-// What a tuning asks of the vehicle, whatever design its autopilot has.
+// The vehicle's side of a tuning, which does not depend on the autopilot's design.
 #pragma once
 
 #include <vector>
@@ -18,8 +18,8 @@ struct TunedPlant {
   }
   AutopilotModel ModelOf(const AutopilotConfig& autopilot) const;
   std::vector<double> TimesOf(int stage) const;
-  /// The first mode of a stage at a time of its schedule, without one in the middle of its burn; 0 where it
-  /// does not bend.
+  /// Frequency of the first mode of a stage at a time of its schedule, without a time in the middle of its
+  /// burn; 0 for a stage that does not bend.
   double FirstMode(int stage, double at_s = 0.0) const;
 };
 

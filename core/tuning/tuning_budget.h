@@ -1,4 +1,4 @@
-// What a tuning may spend, and whether its options suit the campaign and the autopilot.
+// The budget of a tuning, and checks of its options against campaign and autopilot.
 #pragma once
 
 #include "core/campaign/campaign.h"

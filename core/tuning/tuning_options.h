@@ -1,4 +1,4 @@
-// What is searched, between which bounds, from where, and what a user may choose of a tuning.
+// Searched quantities with their bounds and starts, and the options of a tuning.
 #pragma once
 
 #include <cstdint>
@@ -10,34 +10,34 @@ namespace dispersa {
 
 inline constexpr double kObjectiveTolerance_deg = 1e-4;
 inline constexpr double kLimitCycleLimit_deg = 0.2;
-/// What a computed margin must have above the gates of flight_margins.h. Measured gain margins, with all axes
-/// at work on a disturbed flight, were found up to 0.6 dB below the computed ones.
+/// Reserve of a computed margin above the gates of flight_margins.h. Measured gain margins, with all axes at
+/// work on a disturbed flight, were found up to 0.6 dB below the computed ones.
 inline constexpr double kGainReserve_db = 0.8;
 inline constexpr double kPhaseReserve_deg = 2.0;
 inline constexpr double kDelayReserve_s = 0.002;
-/// Where dispersed plants are held themselves, a reserve need not stand for them: this is for the instants
-/// and cases between those that are looked at.
+/// Reserve if dispersed plants are held themselves. It covers only instants and cases between the checked
+/// ones.
 inline constexpr double kHeldGainReserve_db = 0.05;
 inline constexpr double kHeldPhaseReserve_deg = 0.2;
 inline constexpr double kHeldDelayReserve_s = 0.001;
 /// Small: a stage has two or three variables, and generations are what a budget of flights is best spent on.
 inline constexpr int kTuningPopulation = 8;
-/// Where dispersed plants are held: margins are tabulated, designs that miss them cost next to nothing, and
-/// the region of those that do not is small.
+/// Population if dispersed plants are held. Margins are then tabulated, designs that miss them cost next to
+/// nothing, and the region of admissible designs is small.
 inline constexpr int kHeldPopulation = 24;
 inline constexpr Bounds kHeldLearning = {0.0, 0.06};
 inline constexpr double kHeldLearningStart = 0.002;
 inline constexpr Bounds kHeldBandwidthOfActuator = {0.04, 0.22};
-/// Such a search begins with this as well: a first mode that keeps its phase instead of being attenuated, by
-/// a section that leads far above it, for as much bandwidth as there is.
+/// Such a search also begins with this point: a section that leads far above the first mode keeps the mode's
+/// phase instead of attenuating it, for as much bandwidth as possible.
 inline constexpr double kHeldDampingStart = 0.53;
 inline constexpr double kHeldLowPassPowerStart = 1.158, kHeldLowPassDampingStart = 0.363;
 inline constexpr double kHeldNotchPowerStart = 0.441, kHeldNotchZerosDampingStart = 0.265;
 inline constexpr double kHeldNotchPolesDampingStart = 0.1, kHeldGyroWeightStart = 0.853;
 /// At each of its times a scheduled stage may have these of its damping.
 inline constexpr double kDampingFactors[] = {1.0, 0.9, 1.11};
-/// What is searched. Bandwidths are fractions: of the largest admissible one, which is looked for between
-/// those of the actuator's.
+/// Searched quantities. Bandwidths are fractions of the largest admissible one, which is searched between
+/// these fractions of the actuator's.
 inline constexpr Bounds kBandwidthOfLargest = {0.6, 1.0};
 inline constexpr Bounds kBandwidthOfActuator = {0.04, 0.35};
 inline constexpr Bounds kDamping = {0.4, 1.6};
@@ -65,20 +65,21 @@ inline constexpr double kStartLearning = 0.05;
 inline constexpr double kStartLowPassPower = 0.85, kStartLowPassDamping = 0.5;
 inline constexpr double kStartNotchPower = 0.0, kStartNotchZerosDamping = 0.3, kStartNotchPolesDamping = 0.3;
 inline constexpr double kStartGyroWeight = 0.6;
-/// What makes about that damping and learning.
+/// Weights that give about that damping and learning.
 inline constexpr double kStartIntegralWeightPower = -2.5;
 inline constexpr double kStartRateWeightPower = 0.14;
 inline constexpr AugmentationDesign kStartAugmentation = {1e4, 100.0, 1.5};
 
 struct TuningOptions {
-  std::uint64_t seed = 1;  ///< of the cases and of the search; the campaign's own is refused
-  int cases = 4;           ///< flown for each design; 1 to 10,000
-  int evaluations = 160;   ///< designs tried in all searches; at least 2 kTuningPopulation in each
-  int threads = 1;         ///< 1 to 1024; the result does not depend on it
-  /// Draws whose plants must meet the gates of dispersed flights, at every instant and by every design; 0:
-  /// none. 0 to 1000
+  std::uint64_t seed = 1;  ///< of the cases and of the search (must not be the campaign's)
+  int cases = 4;           ///< cases flown for each design, 1 to 10,000
+  int evaluations = 160;   ///< designs tried in all searches, at least 2 kTuningPopulation in each
+  int threads = 1;         ///< 1 to 1024, without effect on the result
+  /// Draws whose plants must meet the gates of dispersed flights, at every instant and by every design. 0
+  /// (none) to 1000.
   int dispersed = 0;
-  bool regulator = false;  ///< search the weights of a linear-quadratic regulator; for laws with an integral
+  bool regulator =
+      false;  ///< search the weights of a linear-quadratic regulator (laws with an integral only)
 };
 
 }  // namespace dispersa

@@ -20,8 +20,7 @@ namespace dispersa {
 /// - CA0: turbulent skin friction with roughness, pressure drag of nose, frustums and boat-tails, base drag
 ///   (drag.h). Power on: the nozzles' exits reduce the base by their area (Fleeman), or by half if the
 ///   vehicle gives no exit area.
-/// - Pitch damping: slender-body theory, about the middle of the stack's length, the same at every Mach
-/// number.
+/// - Pitch damping: slender-body theory, about the middle of the stack, the same at every Mach number.
 /// - Roll damping: of skin friction only, since there are no fins.
 ///
 /// Grid: Mach 0 to 20, incidence 0 to 180 degrees. Outside, the end value holds: at Mach 20 all but skin
