@@ -23,7 +23,7 @@ namespace dispersa {
 
 enum class SamplingMethod { kMonteCarlo, kLatinHypercube, kSobol, kCorners, kOneAtATime, kGrid, kList };
 
-/// What "±" means, always explicit.
+/// The meaning of "±", which a file always states.
 enum class Distribution {
   kConstant,         ///< the same value in every case
   kNormal,           ///< nominal + sigma * standard normal, not truncated
@@ -40,11 +40,12 @@ enum class Distribution {
 /// Of one scalar, in the internal unit of its input (SI, radians, or a factor).
 struct ScalarDistribution {
   Distribution kind = Distribution::kConstant;
-  double nominal = 0.0;  ///< see Distribution; designs: the value while other parameters move
+  double nominal = 0.0;  ///< see Distribution; in designs the value while other inputs move
   double sigma = 0.0;
   double low = 0.0;
   double high = 0.0;
-  std::vector<double> values;        ///< kValues; kConstant: one value; kEmpirical: ascending
+  std::vector<double>
+      values;  ///< for kValues all values, for kConstant one, for kEmpirical in ascending order
   std::vector<double> weights = {};  ///< kValues: above 0, one a value, or none: equal
 };
 
@@ -52,10 +53,12 @@ struct ScalarDistribution {
 struct Dispersion {
   std::string name;  ///< e.g. "thrust/stage1", "wind/azimuth"
   ScalarDistribution distribution;
-  std::vector<int> inputs;  ///< columns (FindInput) that take the value; draws of one factor multiply
-  bool absolute = false;    ///< take the magnitude of the draw: lateral deviations with a clock angle
-  /// Of a correlated normal: its standard normal is the sum of weight * that of the dispersion at a position
-  /// in Campaign::dispersions, a row of the Cholesky factor of the correlations. Empty: its own alone.
+  std::vector<int>
+      inputs;             ///< columns (FindInput) that take the value (several draws of one factor multiply)
+  bool absolute = false;  ///< take the magnitude of the draw: lateral deviations with a clock angle
+  /// Of a correlated normal: its standard normal is the sum of weight times that of the dispersion at a
+  /// position in Campaign::dispersions. The weights are a row of the Cholesky factor of the correlations.
+  /// Empty: its own normal alone.
   std::vector<std::pair<std::size_t, double>> mix = {};
 };
 
@@ -77,12 +80,13 @@ struct Verdicts {
   bool holm =
       false;  ///< all verdicts together keep the largest consumer risk (S. Holm, 1979), else each its own
   bool stop_when_decided =
-      false;  ///< at a look at which every requirement is decided; else all cases are flown
+      false;  ///< end at the look at which every requirement is decided (else all cases are flown)
 };
 
 struct Sampling {
   SamplingMethod method = SamplingMethod::kMonteCarlo;
-  std::uint64_t cases = 0;  ///< at most; a design of m runs repeats after m cases with other random draws
+  std::uint64_t cases =
+      0;  ///< at most this many (a design of m runs repeats after m cases with other random draws)
   std::uint64_t seed = 0;
   /// Latin hypercube and Sobol: so many designs of cases / replicates points, each randomised by itself.
   std::uint64_t replicates = 1;
@@ -115,18 +119,18 @@ struct Campaign {
   std::string requirements_id;  ///< SHA-256 of the requirements and how they are judged
 };
 
-// The keys of a campaign's maps. What several of them say together is checked where it is described.
+// The keys of a campaign's maps. Relations between several keys are checked where the map is described.
 
 /// Without a list's table, whose columns come after the dispersions.
 void Describe(Fields& fields, Sampling& sampling);
 /// `plan` is what the verdicts say of all requirements.
 void Describe(Fields& fields, Verdicts& verdicts, VerdictPlan& plan, Sampling& sampling);
-/// requirement.plan is that of the verdicts until this one says its own; `metrics` are the names of those
-/// that it may be about.
+/// requirement.plan is the plan of `verdicts` unless the requirement has its own. `metrics` are the names of
+/// metrics that it may require.
 void Describe(Fields& fields, Requirement& requirement, const std::vector<std::string>& metrics);
 /// And gives each of its dispersions its `mix`.
 void Describe(Fields& fields, Correlation& correlation, std::vector<Dispersion>& dispersions);
-/// A design needs dispersions that it can set; `fields` are the campaign's.
+/// A design needs dispersions that it can set. `fields` are the campaign's.
 void CheckDesign(Fields& fields, const Sampling& sampling, const std::vector<Dispersion>& dispersions);
 
 }  // namespace dispersa

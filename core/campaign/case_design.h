@@ -13,15 +13,14 @@
 namespace dispersa {
 
 /// Number of runs of a corner, one-at-a-time, grid or list design before it repeats; 1 for random designs.
-/// Fewer cases leave the design incomplete.
+/// With fewer cases the design is incomplete.
 std::uint64_t DesignSize(const Campaign& campaign);
 
-/// Draws cases. Every dispersion has a random stream of its own, keyed by (seed, case, name), so that one
-/// more changes no other. Latin hypercube and Sobol designs, which place all cases together, take the place
-/// of the streams' uniform numbers; a column of theirs belongs to its dispersion's name too. Replicates are
-/// designs one after the other, each with permutations, shifts and draws of its own. In the designs of
-/// DesignSize the factors move by plan (two_point: corners and one at a time; values: grid and list), and
-/// every other dispersion stays random.
+/// Draws cases. Every dispersion has its own random stream, keyed by (seed, case, name), so one more changes
+/// no other. Latin hypercube and Sobol designs place all cases together and replace the streams' uniform
+/// numbers. Their columns also belong to the dispersion's name. Replicates are designs one after the other,
+/// each with its own permutations, shifts and draws. In the designs of DesignSize some factors move by plan
+/// (two_point: corners and one at a time; values: grid and list). Every other dispersion stays random.
 class CaseDesign {
  public:
   explicit CaseDesign(const Campaign& campaign);

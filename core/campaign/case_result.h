@@ -1,4 +1,4 @@
-// What a flown case returns: the same bits wherever, whenever and however often it is flown.
+// The result of a flown case: the same bits wherever, whenever and however often it is flown.
 #pragma once
 
 #include <cstddef>
@@ -18,20 +18,21 @@ struct CaseResult {
   Outcome outcome = Outcome::kNumericalFailure;
   double end_time_s = 0.0;     ///< since lift-off
   int end_stage = 0;           ///< 1-based stage burning, or last burnt, at the end
-  std::string reason;          ///< one sentence; empty when completed
+  std::string reason;          ///< one sentence (empty when completed)
   std::vector<double> inputs;  ///< as applied, in the order of InputNames()
-  /// Of the vehicle, in the order of MetricNames(); NaN = undefined, or not of the campaign's law.
+  /// The vehicle's metrics in the order of MetricNames(). NaN: undefined, or not measured under the
+  /// campaign's law.
   std::vector<double> metrics;
   Digest digest;
 };
 
 /// Positions in Metrics() of those that the campaign's flights have.
 std::vector<std::size_t> MeasuredMetrics(const Campaign& campaign);
-/// Why its flights have not a metric that there is: "is of flights whose law of pitch is ..."; empty if they
-/// have it.
+/// Why the campaign's flights lack an existing metric: "is of flights whose law of pitch is ..."; empty if
+/// they have it.
 std::string WhyNotMeasured(const Campaign& campaign, const std::string& metric);
 
-/// What a flight of these inputs returned, as a case's result.
+/// The result of a flight of these inputs, as a case's result.
 CaseResult ResultOf(const FlightModel& model, std::uint64_t case_index, const FlightInputs& inputs,
                     FlightResult flight);
 

@@ -7,7 +7,7 @@
 namespace dispersa {
 
 /// Fills dispersions, wind_statistics and wind_table. The campaign has its vehicle, or one without stages if
-/// that is unknown; nothing is checked against one that is not `is_sound`.
+/// it is unknown. Nothing is checked against a vehicle that is not `is_sound`.
 void DescribeDispersions(Fields& fields, bool is_sound, Campaign& campaign);
 
 }  // namespace dispersa

@@ -1,4 +1,4 @@
-// What a campaign may disperse: a row a key of its `dispersions`.
+// The dispersions that a campaign may have: one row for each key of its `dispersions`.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,7 @@ enum class Draws {
   kEachAxis,         ///< a value for each axis of the launch-inertial frame
   kEachMode,         ///< `per: mode`, or `vehicle`: one value for all
   kEachStage,        ///< of the stages that `stage` names, else of all
-  kStages,           ///< likewise; `per: stage`, or `vehicle`: one value for all of them
+  kStages,           ///< as above, with `per: stage`, or `vehicle` (one value for all stages)
   kVehicleOrStages,  ///< likewise, but the whole vehicle's column unless `per` or `stage` says otherwise
   kOffAxis,          ///< likewise as kStages, by magnitude and `clock_angle` or by components
   kFixed,            ///< one value, drawn or not: "stem_unit: x" or "stem: {distribution: ...}"
@@ -38,10 +38,10 @@ struct DispersionRow {
   const char* meaning;  ///< one line
   Draws draws;
   DispersedScalar scalar = kPositiveFactor;
-  /// Columns (FlightInputs) that take the values; {stage}, {nozzle}, {mode}, {level} and {axis} stand for the
+  /// Columns (FlightInputs) that take the values. {stage}, {nozzle}, {mode}, {level} and {axis} stand for the
   /// name of each. kOffAxis: magnitude, direction, and the components towards body y and z.
   std::vector<std::string> columns = {};
-  std::vector<std::string> nozzle_columns = {};  ///< `per: nozzle` draws these instead; empty: there is none
+  std::vector<std::string> nozzle_columns = {};  ///< columns for `per: nozzle` (empty: not allowed)
   std::vector<DispersionRow> parts = {};         ///< maps in its map
   std::optional<double> absent = {};             ///< the value in every case if the key is not there
   int first_stage = 1;
@@ -58,8 +58,8 @@ std::vector<std::string> ExpandColumn(const std::string& pattern);
 /// A pattern with a name in place of {what}.
 std::string FillColumn(std::string pattern, const std::string& what, const std::string& name);
 
-/// What the file calls a column of the flight's inputs: "drag_coefficient", "wind.azimuth"; empty if it
-/// cannot be dispersed. Of several keys that draw it, the first of the table.
+/// The file's key for a column of the flight's inputs: "drag_coefficient", "wind.azimuth". Empty if it cannot
+/// be dispersed. If several keys draw the column, the first of the table.
 std::string InputKey(int column);
 /// The same of a campaign: of several keys the one by which its file draws the column.
 std::string InputKey(const Campaign& campaign, int column);

@@ -8,12 +8,12 @@
 
 namespace dispersa {
 
-/// What is dispersed: a quantity around 0 in one of its units, or a factor around 1, whose deviations are
-/// percent and whose values are percent (a deviation) or factor.
+/// A dispersed quantity around 0 in one of its units, or a factor around 1. A factor's deviations are in
+/// percent. Its values are in percent (a deviation) or a factor.
 struct DispersedScalar {
   Dimension dimension;  ///< empty: a factor
-  Range range;          ///< of every value that can be drawn; of a normal draw out to 6 sigma
-  std::span<const Distribution> kinds = {};  ///< that it may have; empty: all, but a factor is no magnitude
+  Range range;          ///< of every value that can be drawn (a normal draw: out to 6 sigma)
+  std::span<const Distribution> kinds = {};  ///< that it may have (empty: all, but a factor is no magnitude)
   bool IsFactor() const { return dimension.empty(); }
   double Nominal() const { return IsFactor() ? 1.0 : 0.0; }
 };
@@ -21,14 +21,15 @@ struct DispersedScalar {
 /// Factors that multiply a physical quantity, which must stay positive.
 inline constexpr DispersedScalar kPositiveFactor{{}, kPositive};
 
-/// `distribution` and its parameters; the map may hold further keys. A bare "percent: 20" is refused: what
-/// "±" means is always explicit.
+/// `distribution` and its parameters. The map may hold further keys. A bare "percent: 20" is refused: the
+/// meaning of "±" is always stated.
 void DescribeDistribution(Fields& fields, const DispersedScalar& scalar, ScalarDistribution& distribution);
 
 /// A direction in the full circle: "uniform", {fixed_deg: x} or a distribution.
 void DescribeDirection(Fields& fields, const char* key, ScalarDistribution& direction, const char* meaning);
 
-/// "stem_unit: x" or "stem: {distribution: ...}"; false if neither is there, which `needed` refuses.
+/// "stem_unit: x" or "stem: {distribution: ...}". Returns false if neither is there; if it is `needed`, that
+/// is an error.
 bool DescribeFixedOrDrawn(Fields& fields, const char* stem, const DispersedScalar& scalar, bool needed,
                           ScalarDistribution& distribution, const char* meaning);
 

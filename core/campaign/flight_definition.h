@@ -1,5 +1,5 @@
-// What a campaign's flights have in common, as the engine wants it: the campaign's vehicle, law and air, and
-// what its reference flies.
+// The part that all flights of a campaign share, for the engine: the campaign's vehicle, law and air, and its
+// reference.
 #pragma once
 
 #include "core/campaign/campaign.h"

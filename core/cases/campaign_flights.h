@@ -14,7 +14,7 @@ struct CaseOrder {
   std::uint64_t case_index = 0;
   double history_step_s = 0.0;  ///< 0: no history
 };
-/// What becomes of it: its position in the list, its result, and its history (empty where none was wanted).
+/// A flown case: its position in the list, its result, and its history (empty if none was wanted).
 using CaseObserver = std::function<void(std::size_t order, CaseResult result, const History& history)>;
 
 /// Flies the cases of a campaign in this process, and those of a campaign whose control law is a plug-in in
@@ -28,7 +28,7 @@ class CampaignFlights {
   /// The inputs of a case, as its flight applies them.
   FlightInputs Draw(std::uint64_t case_index) const { return here_.Draw(case_index); }
   CaseResult FlyCase(std::uint64_t case_index, History* history = nullptr) const;
-  /// The flight without dispersions; its case_index is 0 and means nothing.
+  /// The flight without dispersions. Its case_index is 0 and has no meaning.
   CaseResult FlyNominal(History* history = nullptr) const;
   /// Any inputs, with any integrator: `case_index` keys the sensors' noise.
   CaseResult Fly(const FlightInputs& inputs, std::uint64_t case_index, History* history,

@@ -9,8 +9,8 @@ namespace dispersa {
 /// FlightsHere::Fly in a child. Throws PluginError, ContainedEnd.
 CaseResult FlyContained(const FlightsHere& flights, const FlightInputs& inputs, std::uint64_t case_index,
                         History* history, Scheme scheme);
-/// FlightsHere::FlyCases in children that fly some cases each. What such a child did not fly before it
-/// ended is flown again, each case in a child of its own; one that ends it again is given up.
+/// FlightsHere::FlyCases in child processes that fly some cases each. Cases that a child did not fly before
+/// it ended are flown again, each in a child of its own. A case that ends this child too is quarantined.
 void FlyContained(const FlightsHere& flights, CaseQueue& queue);
 
 }  // namespace dispersa

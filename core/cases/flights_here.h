@@ -16,19 +16,19 @@ namespace dispersa {
 
 class FlightModel;
 
-/// Where a thread takes its cases from and puts their results.
+/// Source of a thread's cases and destination of their results.
 class CaseQueue {
  public:
   virtual ~CaseQueue() = default;
 
-  /// The next case, or none now. `idle`: nothing else is in flight on this thread; none then ends FlyCases.
+  /// The next case, or none now. `idle`: nothing else is in flight on this thread, so none ends FlyCases.
   virtual std::optional<std::uint64_t> Next(bool idle) = 0;
   virtual void Done(CaseResult result) = 0;
   /// A case that ended every process that flew it, alone too: it has no result.
   virtual void Quarantined(std::uint64_t case_index, const std::string& reason) = 0;
 };
 
-/// Holds what all flights of a campaign share (tables, schedules, design); flying is const and thread-safe.
+/// Tables, schedules and design that all flights of a campaign share. Flying is const and thread-safe.
 class FlightsHere {
  public:
   explicit FlightsHere(const Campaign& campaign);

@@ -9,11 +9,11 @@
 
 namespace dispersa {
 
-/// Flies the nominal flight and the first two cases twice, side by side and each alone, in children of their
-/// own, and compares them tick by tick. Returns the results of those cases, with which every later one of
-/// them must agree; nothing for a campaign without plug-in. Throws InputError when they differ, with the
-/// first instant at which they do, and when the nominal flight ends its process; Interrupted. Cases that end
-/// theirs are left to whoever flies the campaign.
+/// Flies the nominal flight and the first two cases twice, side by side and each alone, in child processes,
+/// and compares them tick by tick. Returns the results of those cases: every later result of one of them must
+/// agree. Returns nothing for a campaign without plug-in. Throws InputError with the first instant at which
+/// they differ, InputError if the nominal flight ends its process, and Interrupted. A case that ends its
+/// process is left to the flights of the campaign.
 std::vector<CaseResult> CheckPluginIsDeterministic(const CampaignFlights& flights, std::uint64_t cases,
                                                    const StopCheck& should_stop = nullptr);
 

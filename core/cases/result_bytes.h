@@ -34,7 +34,7 @@ class Packer {
   std::string bytes_;
 };
 
-/// What a plug-in may have spoilt is read with care: beyond the end there are zeros.
+/// Reads bytes that a plug-in may have spoilt: beyond the end there are zeros.
 class Unpacker {
  public:
   explicit Unpacker(const std::string& bytes) : bytes_(bytes) {}
@@ -99,7 +99,7 @@ inline CaseResult UnpackResult(Unpacker& in) {
   return result;
 }
 
-/// What is thrown where the bytes are no result.
+/// Thrown if the bytes are no result.
 inline ContainedEnd Garbled() { return {"answered with what is no result", PluginMark{}}; }
 
 }  // namespace dispersa

@@ -1,9 +1,9 @@
 // A real-coded genetic algorithm for constrained problems over a box.
 //
 // Tournament selection, simulated binary crossover, polynomial mutation, elitism, Deb's feasibility rules and
-// a declared tie-breaker; the sources stand in the headers of the parts. Each pair of children draws from a
-// random stream of its own, keyed by (seed, generation, pair), and individuals are evaluated on their own:
-// the result is the same to the last bit for any number of threads.
+// a declared tie-breaker. The headers of the parts name the sources. Each pair of children draws from its own
+// random stream, keyed by (seed, generation, pair), and individuals are evaluated independently. So the
+// result has the same bits for any number of threads.
 #pragma once
 
 #include <cstdint>
@@ -49,11 +49,11 @@ class GeneticAlgorithm {
   /// Throws std::invalid_argument that names the field which is out of range and what is allowed.
   explicit GeneticAlgorithm(const GeneticAlgorithmOptions& options);
 
-  /// Called on the calling thread after each generation; may throw to abandon the run.
+  /// Called on the calling thread after each generation. It may throw to end the search.
   using Observer = std::function<void(const GenerationRecord&)>;
 
-  /// The best point found; infeasible only if no feasible one was met. Throws std::invalid_argument for a
-  /// problem without a box, and what `evaluate` throws.
+  /// The best point found. It is infeasible only if no feasible one was met. Throws std::invalid_argument for
+  /// a problem without a box, and whatever `evaluate` throws.
   GeneticAlgorithmResult Minimize(const BoundedProblem& problem, const Observer& observer = nullptr) const;
 
  private:

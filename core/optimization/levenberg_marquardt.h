@@ -17,7 +17,7 @@
 
 namespace dispersa {
 
-/// The side on which a column of the Jacobian is differenced; a bound in the way turns the side.
+/// The side on which a column of the Jacobian is differenced. At a bound the other side is taken.
 enum class Difference { kForward, kBackward, kCentral };
 
 struct Unknown {
@@ -25,9 +25,9 @@ struct Unknown {
   double upper = std::numeric_limits<double>::infinity();  ///< above `lower`
   /// A typical change, positive: unknowns are divided by it, so that steps in different units compare.
   double scale = 1.0;
-  /// Finite-difference step, positive, at most half of upper - lower, unit of the unknown. About 1e-8 of the
-  /// unknown's size for one-sided and 6e-6 for central differences of residuals that are exact to rounding;
-  /// larger where they are not.
+  /// Finite-difference step, positive, at most half of upper - lower, in the unit of the unknown. For
+  /// residuals that are exact to rounding: about 1e-8 of the unknown's size for one-sided differences and
+  /// 6e-6 for central ones. Larger for less exact residuals.
   double difference_step = 1e-6;
   Difference difference = Difference::kCentral;
 };
@@ -47,27 +47,27 @@ struct LeastSquaresProblem {
 };
 
 struct LevenbergMarquardtOptions {
-  /// Steps tried, accepted or not; 1 to 100,000.
+  /// Steps tried, accepted or not, 1 to 100,000.
   int max_iterations = 100;
-  /// Converged when every scaled residual is at most this; not negative.
+  /// Converged if every scaled residual is at most this. Not negative.
   double residual_tolerance = 1e-9;
-  /// Stop when the cosine of the angle between the residuals and each column of the Jacobian of a free
-  /// unknown is at most this (the `gtol` of MINPACK's LMDER); 0 to 1.
+  /// Stop if the cosine of the angle between the residuals and each column of the Jacobian of a free unknown
+  /// is at most this (the `gtol` of MINPACK's LMDER), 0 to 1.
   double gradient_tolerance = 1e-12;
-  /// Stop when no unknown would move by more than this many of its scales; not negative.
+  /// Stop if no unknown would move by more than this many of its scales. Not negative.
   double step_tolerance = 1e-13;
-  /// Initial damping as a fraction of the largest squared column norm of the scaled Jacobian; positive, at
+  /// Initial damping as a fraction of the largest squared column norm of the scaled Jacobian, positive, at
   /// most 1. 1e-6 suits a start near the solution, 1e-3 or more a remote one (Madsen et al., section 3.2).
   double initial_damping = 1e-6;
-  /// When the search stops, directions along which the residuals change by less than this fraction of the
-  /// strongest one make the Jacobian singular; 0 to 1. Central differences are good to about 1e-10.
+  /// At the end the Jacobian counts as singular if the residuals change along some direction by less than
+  /// this fraction of the strongest one, 0 to 1. Central differences are good to about 1e-10.
   double rank_tolerance = 1e-9;
 };
 
 enum class LeastSquaresStatus {
   kConverged,         ///< every scaled residual is within the tolerance
   kStalled,           ///< a local minimum of the sum of squares, or the noise of the residuals
-  kAtBound,           ///< no step within the bounds helps; a residual would fall beyond one
+  kAtBound,           ///< no step within the bounds helps, though one beyond a bound would
   kSingularJacobian,  ///< stalled where the residuals do not respond to some combination of the free unknowns
   kMaxIterations,     ///< still improving when the iterations ran out
   kNotFinite,         ///< residuals are not finite at the start or beside an accepted point

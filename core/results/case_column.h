@@ -1,5 +1,5 @@
-// One quantity over all cases. Few cases lie in memory; of many, the disk holds the columns and memory the
-// one in use.
+// One quantity over all cases. Few cases are kept in memory. For many cases the disk holds the columns and
+// memory holds the one in use.
 #pragma once
 
 #include <cstddef>
@@ -10,9 +10,9 @@
 
 namespace dispersa {
 
-/// Rows go in, columns come out. Beyond a few thousand rows they lie in a file without a name, which ends
-/// with the object: in `directory`, or where that cannot be written in the system's folder for temporary
-/// files. Throws ResultError (kDiskFull, else kFile).
+/// Takes rows and returns columns. Beyond a few thousand rows it uses an unnamed file that ends with the
+/// object, in `directory`, or in the system's folder for temporary files if that cannot be written. Throws
+/// ResultError (kDiskFull, else kFile).
 class ColumnFile {
  public:
   ColumnFile(std::filesystem::path directory, std::size_t columns);
@@ -46,7 +46,7 @@ class CaseColumn {
 
   std::size_t size() const { return file_ ? file_->rows() : values_.size(); }
   bool empty() const { return size() == 0; }
-  /// All values; of a column on disk they are read now.
+  /// All values. Those of a column on disk are read now.
   std::vector<double> Values() const { return file_ ? file_->Read(number_) : values_; }
   operator std::vector<double>() const { return Values(); }
 

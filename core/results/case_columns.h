@@ -14,22 +14,23 @@
 
 namespace dispersa {
 
-/// Everything in ascending order of case index; NaN = undefined.
+/// All values in ascending order of case index. NaN is undefined.
 struct CaseColumns {
   std::vector<std::uint64_t> index;
   std::vector<Outcome> outcome;
-  std::vector<CaseColumn> inputs;   ///< one an input of the vehicle; empty are those that were not asked for
-  std::vector<CaseColumn> metrics;  ///< one a metric of the vehicle; empty are those that its law has not
+  std::vector<CaseColumn> inputs;  ///< one for each input of the vehicle (not asked for: empty)
+  std::vector<CaseColumn>
+      metrics;  ///< one for each metric of the vehicle (not measured under its law: empty)
   std::vector<LostFlight> lost_flights;  ///< the first kListedLostFlights
 
   std::size_t rows() const { return index.size(); }
 };
 
-/// A page that lists more of them is read by nobody; cases.csv has them all.
+/// Nobody reads a page with a longer list; cases.csv has all of them.
 inline constexpr std::size_t kListedLostFlights = 10000;
 
-/// Reads all metrics, and those inputs that `wanted_inputs` (positions in InputColumns()) names, in one pass;
-/// `observe`, if given, sees each result in it. A million cases take 50 MB beside the columns in use.
+/// Reads all metrics and the inputs at the positions `wanted_inputs` in InputColumns(), in one pass.
+/// `observe`, if given, sees each result. A million cases take 50 MB beside the columns in use.
 CaseColumns ReadColumns(const ResultFolder& folder, const std::vector<int>& wanted_inputs,
                         const std::function<void(const CaseResult&)>& observe = {});
 

@@ -18,7 +18,7 @@ namespace dispersa {
 std::string CasesCsvHeader(std::size_t stages, const std::vector<std::size_t>& metrics);
 std::string CasesCsvLine(const CaseResult& result, const std::vector<std::size_t>& metrics);
 
-/// The file as it grows; it takes its place as a whole.
+/// The growing file. It replaces the old one as a whole.
 class CasesCsv {
  public:
   /// Of what the folder stores.
@@ -38,7 +38,7 @@ class CasesCsv {
   std::uint64_t rows_ = 0;
 };
 
-/// Cases of a file that was written before; 0 if there is none.
+/// Number of cases of an earlier file; 0 if there is none.
 std::uint64_t CountCases(const std::filesystem::path& file);
 
 /// All that is stored.

@@ -8,10 +8,11 @@
 
 namespace dispersa {
 
-/// One JSON object a case and line, keys as the columns of cases.csv; an empty cell is null.
+/// One line for each case: a JSON object with the columns of cases.csv as keys. An empty cell is null.
 void ExportJsonLines(const ResultFolder& folder, const std::filesystem::path& file);
 
-/// HDF5 with the groups of README.md, a dataset a column; the same results give the same bytes. ResultError.
+/// HDF5 with the groups of README.md and a dataset for each column. The same results give the same bytes.
+/// Throws ResultError.
 void ExportHdf5(const ResultFolder& folder, const std::filesystem::path& file);
 
 }  // namespace dispersa

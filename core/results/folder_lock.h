@@ -5,9 +5,8 @@
 
 namespace dispersa {
 
-/// Held from construction to destruction, and gone with the process however it ends: a lock of the kernel on
-/// the folder itself, which leaves no file. On file systems that know no locks (some network ones) it holds
-/// nothing.
+/// Held from construction to destruction, and released with the process however it ends: a kernel lock on the
+/// folder itself, which leaves no file. File systems without locks (some network ones) give no protection.
 class FolderLock {
  public:
   /// The folder must exist. InputError if another process (or another lock of this one) holds it.

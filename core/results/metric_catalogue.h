@@ -1,4 +1,4 @@
-// What a metric means, for people.
+// Names and meaning of metrics for people.
 #pragma once
 
 #include <string>
@@ -9,10 +9,10 @@ namespace dispersa {
 
 struct MetricInfo {
   std::string title;       ///< "Pitch error, peak, stage 2"
-  std::string symbol;      ///< "max |e_θ|"; empty for a name that is no metric
+  std::string symbol;      ///< "max |e_θ|" (empty for an unknown name)
   std::string unit;        ///< "°", "km", "" for a pure number
-  std::string group;       ///< "Attitude"; empty for a name that is no metric
-  std::string definition;  ///< one sentence; empty for a name that is no metric
+  std::string group;       ///< "Attitude" (empty for an unknown name)
+  std::string definition;  ///< one sentence (empty for an unknown name)
   Worse worse = Worse::kLarger;
   bool is_part = false;  ///< of one stage or of the coast
   bool known = false;    ///< a metric of flights
@@ -29,8 +29,8 @@ struct NameAndUnit {
 };
 NameAndUnit SplitUnit(const std::string& name);
 
-/// The value by which cases are ranked: the larger, the worse. What is neither good nor bad is ranked by its
-/// size.
+/// The value by which cases are ranked: larger is worse. A metric that is neither good nor bad is ranked by
+/// its magnitude.
 double Badness(Worse worse, double value);
 
 }  // namespace dispersa

@@ -10,9 +10,9 @@
 
 namespace dispersa {
 
-/// Writes beside the target and takes its place on Commit(), with its permissions; without it the target
-/// stays as it was. A link stays one: what it names is replaced. A pipe or a device is no file to take the
-/// place of: it is written to. The target "-" is standard output, written at once. Throws ResultError
+/// Writes a file beside the target. On Commit() it replaces the target and takes its permissions. Without
+/// Commit() the target stays as it was. A link stays a link: the file that it names is replaced. Pipes and
+/// devices are written to directly. The target "-" is standard output, written at once. Throws ResultError
 /// (kDiskFull, else kFile).
 class OutputFile {
  public:

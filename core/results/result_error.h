@@ -1,4 +1,4 @@
-// What can go wrong with a result folder by no fault of the user.
+// Errors of a result folder that are no fault of the user.
 #pragma once
 
 #include <stdexcept>

@@ -6,11 +6,11 @@
 
 namespace dispersa {
 
-/// The shortest decimal that reads back as the same double; empty when not finite; -0 as 0.
+/// The shortest decimal that reads back as the same double. Empty when not finite; -0 becomes 0.
 std::string ShortestText(double value);
 /// For people: five significant digits, without an exponent between 1e-4 and 1e9; "–" when not finite.
 std::string ReadableText(double value);
-/// So many decimals; never "-0.000".
+/// `decimals` decimals, never "-0.000".
 std::string FixedText(double value, int decimals);
 /// A probability in per cent, with five digits or as many more as show that it is not 1: 0.9973 is "99.73 %".
 std::string PercentText(double probability);
