@@ -11,9 +11,9 @@
 
 namespace dispersa {
 
-/// How many cases to fly. Without `stop: when_decided` all of them; with it the cases up to a look, and when
-/// each of those has a result or was given up, those up to the next look, until every requirement is decided.
-/// What is flown therefore depends on neither the order nor the number of workers.
+/// The number of cases to fly. Without `stop: when_decided` it is all of them. With it, it is the cases up to
+/// a look. When each of those has a result or is quarantined, it is those up to the next look, until every
+/// requirement is decided. So it depends on neither the order nor the number of workers.
 class StoppingRule {
  public:
   /// `planned` and `past_looks` as for JudgingContext.

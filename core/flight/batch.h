@@ -60,7 +60,7 @@ class Batch {
     return slot.next_event < events.size() ? events.data() + slot.next_event : nullptr;
   }
   /// Whether guidance gives the lane a reference of its own.
-  bool IsSteered(int lane) const {
+  bool IsGuided(int lane) const {
     return definition_.guidance.closed_loop && slot_[lane].record != nullptr &&
            slot_[lane].record->guided->steers();
   }

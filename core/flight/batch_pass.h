@@ -88,7 +88,7 @@ void Batch<T>::Measure() {
   for (int lane = 0; lane < kLanes; ++lane) {
     const double tick = Min(Lane(tick_, lane), reference.last_tick);
     row[lane] = reference.rows.data() + ReferenceRows::kRowSize * static_cast<long>(tick);
-    if (IsSteered(lane)) row[lane] = slot_[lane].record->guided->RowAt(Lane(tick_, lane));
+    if (IsGuided(lane)) row[lane] = slot_[lane].record->guided->RowAt(Lane(tick_, lane));
   }
   T c[ReferenceRows::kRowSize];
   LoadRow(row, 2, c);
@@ -230,7 +230,7 @@ const T* Batch<T>::FedForward(T* program) const {
   for (int lane = 0; lane < kLanes; ++lane) {
     const double tick = Min(Lane(tick_, lane), model_.reference_rows().last_tick);
     row[lane] = table.rows.data() + FeedForwardRows::kRowSize * static_cast<long>(tick);
-    if (IsSteered(lane)) row[lane] = slot_[lane].record->guided->feed_forward_row();
+    if (IsGuided(lane)) row[lane] = slot_[lane].record->guided->feed_forward_row();
   }
   LoadFour(row, program);
   return program;

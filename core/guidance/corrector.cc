@@ -108,7 +108,8 @@ Correction Correct(const GuidanceMission& mission, const PlanPrior& prior, const
     for (int trial = 0; trial < kTrials && !taken && !is_still; ++trial) {
       const Unknowns weight = Unknowns::Constant(1.0 + damping) + curvature;
       const bool is_damped = damping > 0.0;
-      // Misses bend: what a step leaves of them is met by the same Jacobian before the step is given up.
+      // Misses are curved: the same Jacobian corrects the rest that a step leaves, before the step is
+      // dropped.
       StepModel bent = model;
       double before = 1e300;
       for (int turn = 0; turn < kBends && !taken && !is_still; ++turn) {

@@ -38,15 +38,15 @@ bool Holds(const FlightResult& result) {
          !above("pitch_error_peak_deg", kLostError_deg) && !above("yaw_error_peak_deg", kLostError_deg);
 }
 
-// Bisects for the largest multiple of a step up to a ceiling that holds, if what is above one that fails
-// fails too.
+// Bisects for the largest multiple of a step, up to a ceiling, that holds. Everything above a failing
+// multiple must fail too.
 class Bisection {
  public:
   Bisection(double step, double ceiling, std::function<FlightOrder(double)> order)
       : step_(step), high_(std::lround(ceiling / step) + 1), order_(std::move(order)) {}
 
-  /// Without a margin even unspoilt: the answer is 0.
-  void GiveUp() { high_ = low_ + 1; }
+  /// The loop has no margin even without the change: the answer is 0.
+  void EndAtZero() { high_ = low_ + 1; }
   bool open() const { return high_ - low_ > 1; }
   FlightOrder Next() const { return order_(static_cast<double>(Middle()) * step_); }
   void Take(bool holds) { (holds ? low_ : high_) = Middle(); }
@@ -297,7 +297,7 @@ std::vector<MeasuredMargins> MeasureMargins(const FlightModel& model, const Flig
   }
   // Whatever its stage, the flight that nothing spoils is the same.
   if (!Holds(Fly(model, Spoilt(inputs, 0, 0.0, 0.0).inputs)))
-    for (Bisection& search : searches) search.GiveUp();
+    for (Bisection& search : searches) search.EndAtZero();
   for (;;) {
     std::vector<Bisection*> open;
     std::vector<FlightOrder> orders;

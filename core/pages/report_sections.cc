@@ -223,9 +223,8 @@ std::string OutcomesSection(const CampaignSummary& summary) {
   }
   if (!summary.quarantined.empty()) {
     html +=
-        "<h3>Quarantined cases</h3>\n<p>Given up because they killed or hung their workers. They have no "
-        "result: "
-        "verdicts count them as failed for a pass and as met for a failure.</p>\n";
+        "<h3>Quarantined cases</h3>\n<p>They killed or hung their workers and are not flown any more. They "
+        "have no result: verdicts count them as failed for a pass and as met for a failure.</p>\n";
     HtmlTable quarantine({{"Case", true}, {"Reason"}});
     for (const QuarantinedCase& one : summary.quarantined) {
       quarantine.Row({std::to_string(one.case_index), HtmlText(one.reason)});

@@ -80,7 +80,7 @@ class ResultFolder : public ResultStore {
   void Lock();
   /// Results as Append does, and one record of each, in one transaction.
   void Store(std::span<const CaseResult> results, std::span<const ExecutionRecord> records) override;
-  /// Remembers a case as given up (again: the later reason holds).
+  /// Remembers a case as quarantined. If it is already, the later reason holds.
   void Quarantine(const QuarantinedCase& quarantined) override;
 
   /// Cases that have a result.

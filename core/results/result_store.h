@@ -31,7 +31,7 @@ struct Claim {
   bool is_dispute = false;  ///< another worker's result of this case, with other bits, was accepted
 };
 
-/// A case that was given up because it killed or hung its workers; it has no result.
+/// A case that killed or hung its workers: it has no result and is not flown any more.
 struct QuarantinedCase {
   std::uint64_t case_index = 0;
   std::string reason;  ///< one sentence without names or times, so that reports do not differ between runs

@@ -55,7 +55,7 @@ void AddViolations(const MeasuredMargins& m, std::vector<double>& violations) {
 // Steps of the search for the largest bandwidth.
 constexpr double kBandwidthStep = 0.98;
 constexpr double kHeldBandwidthStep = 0.97;
-constexpr double kHopeless = -1.0;
+constexpr double kWorstSurplus = -1.0;
 // Of a design of one time: from this surplus on, so many steps, of 5 % at first.
 constexpr double kWorthRefining = -0.12;
 constexpr int kRefinements = 500;
@@ -201,9 +201,9 @@ class Tuner {
         design.bandwidth_rad_s = w;
         design.damping = factor * damping;
         ApplyDesign(std::vector<StageDesign>(times.size(), design), stage, autopilot);
-        // Of what is hopeless the degree does not matter.
+        // How far a design misses does not matter once it misses by this much.
         const double surplus =
-            held_->SurplusOf(autopilot, stage, &last, std::clamp(most, kHopeless, 0.0), time);
+            held_->SurplusOf(autopilot, stage, &last, std::clamp(most, kWorstSurplus, 0.0), time);
         if (surplus <= most) continue;
         most = surplus;
         best = design;

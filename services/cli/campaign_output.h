@@ -1,4 +1,4 @@
-// What `run` and `report` have in common: their options, and what is said of the reports.
+// Options of `run` and `report`, and their output about the reports.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,8 @@ namespace dispersa {
 /// --no-histories and --envelope.
 void AddReflownOptions(CLI::App& command, ReflownFlights& flights);
 
-/// The verdicts, where the report is, and as the last line "result: DIR"; or summary.json plus `directory`.
+/// Prints the verdicts, the report's place, and as the last line "result: DIR". With `json`: summary.json
+/// plus `directory`.
 void PrintSummary(const CampaignSummary& summary, const std::filesystem::path& directory, bool json);
 
 }  // namespace dispersa

@@ -1,4 +1,6 @@
-// How a command joins the program. Each command is one file, command_<name>.cc, with one function
+// How to add a command to the program.
+//
+// Each command is one file, command_<name>.cc, with one function
 //
 //   void AddRunCommand(CLI::App& app, Invocation& invocation) {
 //     auto options = std::make_shared<RunOptions>();
@@ -9,10 +11,10 @@
 //     });
 //   }
 //
-// which is declared below and called in main.cc; the function that flies returns an ExitCode. Results go to
-// stdout, everything else to stderr (the log writes there). Exceptions need no handling:
-// InputError ends with its text and 2, any other with its message and 1, and with --json as an object too.
-// The type names below say in help texts what a value is, and completion goes by them.
+// It is declared below and called in main.cc. The function that it stores returns an ExitCode. Results go to
+// stdout, everything else to stderr (the log writes there). Commands need not handle exceptions: InputError
+// ends the program with its text and 2, any other with its message and 1. With --json both are also printed
+// as an object. The type names below appear in help texts, and completion works by them.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -28,7 +30,7 @@ struct GlobalOptions {
   bool quiet = false;  ///< no progress, only warnings and errors on stderr
 };
 
-/// What the command line asked for; main.cc runs it after parsing.
+/// The parsed command, which main.cc runs.
 struct Invocation {
   GlobalOptions global;
   std::function<ExitCode(const GlobalOptions&)> command;
@@ -48,7 +50,7 @@ void AddExportCommand(CLI::App& app, Invocation& invocation);
 void AddCompareCommand(CLI::App& app, Invocation& invocation);
 void AddSearchCommand(CLI::App& app, Invocation& invocation);
 void AddPaperCommand(CLI::App& app, Invocation& invocation);
-// Those that speak to a coordinator; list, status and cancel together.
+// Commands that ask a coordinator. List, status and cancel are one function.
 void AddLaunchCommand(CLI::App& app, Invocation& invocation);
 void AddStatusCommands(CLI::App& app, Invocation& invocation);
 void AddWatchCommand(CLI::App& app, Invocation& invocation);

@@ -1,4 +1,4 @@
-// What `watch --web` shows of a campaign: the report's style and words, and nothing from outside.
+// The page of `watch --web` for a campaign, with the report's style and words. It loads nothing from outside.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -16,7 +16,7 @@ std::string ContentSecurityPolicy(const std::string& page);
 /// Of the answers of a coordinator to `status` and `tally`.
 LiveParts StatusParts(const nlohmann::ordered_json& status);
 LiveParts TallyParts(const nlohmann::ordered_json& tally);
-/// What is wrong with the coordinator; empty: nothing.
+/// A notice about trouble with the coordinator; empty if there is none.
 LiveParts NoticeParts(const std::string& notice);
 
 }  // namespace dispersa

@@ -15,12 +15,12 @@ class Server;
 
 namespace dispersa {
 
-/// HTML by the id of the element that it belongs into; of "title", text.
+/// HTML by the id of its element; for "title" a text.
 using LiveParts = std::map<std::string, std::string>;
 
-/// Serves one page to the browsers of this machine, and sends each what changes: on 127.0.0.1 only, and only
-/// under the names of this machine, so that no page from elsewhere reaches it by a name of its own. What it
-/// keeps is the page as it is now, for as many browsers as come; one that stops reading is left.
+/// Serves one page to the browsers of this machine and sends them its changes. It listens on 127.0.0.1 only,
+/// and answers only under the names of this machine. So no page from elsewhere reaches it by a name of its
+/// own. It keeps the present page for any number of browsers. A browser that stops reading is dropped.
 class LiveServer {
  public:
   /// `page` connects to "events" (LivePage()). Port 0: any that is free. Throws std::runtime_error.
@@ -30,7 +30,7 @@ class LiveServer {
   LiveServer& operator=(const LiveServer&) = delete;
 
   std::string Url() const;
-  /// What changes of the page.
+  /// Changes parts of the page.
   void Show(const LiveParts& parts);
   /// Nothing more comes: returns when every browser knows, or after 2 s.
   void End();
@@ -42,8 +42,8 @@ class LiveServer {
   };
   struct Serving;
 
-  /// What a browser lacks that has seen so much, or a sign of life. Waits for it; empty: nothing comes any
-  /// more.
+  /// The parts that a browser at state `seen` lacks, or a sign of life. Waits for them. Empty if nothing
+  /// follows.
   std::string NextEvent(std::uint64_t* seen, bool* told_end);
   void AddRoutes();
 

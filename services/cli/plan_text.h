@@ -1,4 +1,4 @@
-// What the cases of a campaign draw, as text for a terminal.
+// The draws of a campaign's cases as text for a terminal.
 #pragma once
 
 #include <cstddef>
@@ -8,10 +8,10 @@
 
 namespace dispersa {
 
-/// Two tables with a row for each dispersed input: what all cases drew of it under the law that was declared,
-/// and its value in the first cases. No line is longer than `width` (at least 80) but for laws that are.
-/// Without `all` the tables are cut after so many inputs as a screen holds and the cases that fit beside each
-/// other; an input whose draws do not agree with its law is never cut, and what is missing is said.
+/// Two tables with a row for each dispersed input: statistics of all draws beside the declared distribution,
+/// and the values of the first cases. No line is longer than `width` (at least 80), except for long
+/// distributions. Without `all` the tables show one screen of inputs, and as many cases as fit. An input
+/// whose draws do not agree with its distribution is never left out. A note names the number of missing rows.
 std::string PlanText(const Campaign& campaign, bool all, std::size_t width);
 
 }  // namespace dispersa

@@ -7,7 +7,7 @@
 
 namespace dispersa {
 
-/// A bar that is drawn again and again on a terminal; a line every few seconds elsewhere; nothing if quiet.
+/// Progress: on a terminal a bar that is drawn again, elsewhere a line every few seconds, nothing if quiet.
 class Progress {
  public:
   Progress(std::string what, bool quiet);
@@ -16,7 +16,7 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// Cheap; shows something only when it is time to. `note` goes to the end of the line.
+  /// Cheap to call: shows something only when it is due. `note` goes to the end of the line.
   void Show(std::uint64_t done, std::uint64_t total, const std::string& note = "");
 
  private:

@@ -1,4 +1,4 @@
-// What the commands that speak to a coordinator have in common on the command line.
+// Options of the commands that ask a coordinator.
 #pragma once
 
 #include <functional>

@@ -1,4 +1,4 @@
-// What `dispersa validate` says of a valid vehicle, on one screen, and as JSON.
+// Output of `dispersa validate` for a valid vehicle: one screen of text, or JSON.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -14,7 +14,7 @@ struct ReflownFlights {
   std::uint64_t envelope = ReportOptions().history_cases;
 };
 
-/// Writes all reports of a folder. Errors as WriteReports; throws Interrupted.
+/// Writes all reports of a folder. Throws as WriteReports, and Interrupted.
 CampaignSummary MakeReports(const ResultFolder& folder, const Campaign& campaign, int threads,
                             const ReflownFlights& reflown, Observer& observer);
 

@@ -14,8 +14,8 @@
 namespace dispersa {
 
 struct RunOptions {
-  int workers = -1;  ///< processes; -1: the usable cores; 0: none, threads of this process
-  int threads = 0;   ///< without workers; 0: the usable cores
+  int workers = -1;  ///< processes (-1: the usable cores, 0: none, but threads of this process)
+  int threads = 0;   ///< without workers (0: the usable cores)
   std::filesystem::path worker_program;  ///< dispersa-worker
   ReflownFlights reflown;
 };

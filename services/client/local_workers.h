@@ -28,8 +28,8 @@ WorkerEnd ClassifyExit(int status, std::string* how);
 /// Every worker dies with the thread that started it, even if that is killed. Not thread-safe.
 class LocalWorkers {
  public:
-  /// Each worker is `program arguments... --uuid <its own>`; what it shall know and nobody else comes to it
-  /// through a pipe (`--run-pass DESCRIPTOR`), if that is not empty. Starts nothing yet.
+  /// Each worker is `program arguments... --uuid <its own>`. A pass that is not empty reaches it through a
+  /// pipe that nobody else can read (`--run-pass DESCRIPTOR`). Starts nothing yet.
   LocalWorkers(std::filesystem::path program, std::vector<std::string> arguments, int count,
                std::string pass = "");
   /// Kills what is left.
@@ -48,7 +48,7 @@ class LocalWorkers {
   int fruitless_ends() const { return fruitless_ends_; }
 
   void Kill(const std::string& uuid);
-  /// Waits until they end by themselves, at most so long; then SIGKILL.
+  /// Waits at most `patience_s` for them to end by themselves, then sends SIGKILL.
   void End(double patience_s);
 
   int alive() const;

@@ -12,8 +12,8 @@ namespace dispersa {
 class Observer {
  public:
   virtual ~Observer() = default;
-  /// The progress of a phase ("table3", "time histories"). Called many times a second; the observer decides
-  /// how many of the calls it shows.
+  /// The progress of a phase ("table3", "time histories"). Called many times a second. The observer decides
+  /// how many calls it shows.
   virtual void Show(const std::string& phase, std::uint64_t done, std::uint64_t total,
                     const std::string& note = "") = 0;
   /// The phase has ended: later messages are not about it.

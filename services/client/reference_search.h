@@ -16,7 +16,7 @@ namespace dispersa {
 /// Of the search for this input. The result does not depend on the threads.
 TrajectoryOptions SearchOptions(const OptimizationInput& input, int threads);
 
-/// What the problem asks of the search may be out of its range: the user's fault.
+/// The user's trajectory problem may ask for options out of their ranges.
 template <typename Function>
 auto SearchOrInputError(const Function& function) {
   try {
@@ -40,10 +40,10 @@ FoundReference FindReference(const OptimizationInput& input, int threads, Observ
 
 /// Whether the reference, and the files beside it, can be written. As RequireWritableFile.
 void RequireWritableReference(const std::string& option, const std::filesystem::path& file);
-/// The reference; the time history beside it as .csv, figures and tables as .html.
+/// Writes the reference, its time history beside it as .csv, and figures and tables as .html.
 void WriteFoundReference(const FoundReference& found, const std::filesystem::path& file);
 
-/// Schema "dispersa/optimize/1"; `file` is where the reference stands.
+/// Schema "dispersa/optimize/1". `file` is the place of the reference.
 nlohmann::ordered_json FoundReferenceJson(const Vehicle& vehicle, const OptimizationResult& result,
                                           const std::string& file);
 

@@ -10,12 +10,12 @@
 
 namespace dispersa {
 
-/// Uploads what the coordinator does not have; launching again changes nothing but the priority. Returns the
+/// Uploads what the coordinator lacks. Launching again changes nothing but the priority. Returns the
 /// campaign's state ("queued", "flying", ...). Throws Failure.
 std::string LaunchCampaign(Session& session, const Campaign& campaign, int priority);
 
-/// Until the campaign has ended; its exit code. A coordinator that is away is waited for. Throws Failure,
-/// Interrupted: then the campaign goes on.
+/// Waits until the campaign has ended and returns its exit code. Waits for an absent coordinator. Throws
+/// Failure, and Interrupted: then the campaign goes on.
 ExitCode FollowCampaign(Session& session, const std::string& id, Observer& observer);
 
 struct FetchedCampaign {

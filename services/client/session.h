@@ -14,7 +14,7 @@
 
 namespace dispersa {
 
-/// Where the coordinator is.
+/// The coordinator's address and our keys.
 struct SessionOptions {
   int domain = 0;
   std::string peer = "127.0.0.1";
@@ -39,7 +39,7 @@ class Session {
   /// Asks for so long. None: nobody has answered.
   std::optional<Reply> Try(const std::string& method, const Json& arguments, const std::string& data = "",
                            std::chrono::milliseconds patience = kPatience);
-  /// The same; nobody is a Failure.
+  /// As above; without an answer it throws Failure.
   Reply Ask(const std::string& method, const Json& arguments, const std::string& data = "");
   /// "no coordinator has answered at HOST:PORT for 15 s"
   std::string Silence(std::chrono::seconds silent = kPatience) const;

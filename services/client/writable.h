@@ -6,8 +6,8 @@
 
 namespace dispersa {
 
-/// A file that can be made or replaced there; nothing stays there of the question. An empty path and "-"
-/// ask nothing. Throws InputError, which begins with the option's name.
+/// Checks that a file can be made or replaced at `path`, and leaves nothing behind. An empty path and "-" are
+/// not checked. Throws InputError, which begins with the option's name.
 void RequireWritableFile(const std::string& option, const std::filesystem::path& path);
 
 /// A folder that is there or can be made, to write files into.

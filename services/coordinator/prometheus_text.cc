@@ -34,7 +34,7 @@ std::string PrometheusText(const Service& service, const Workforce& workforce) {
   put("cases_done", "gauge", "Cases with a result, of all campaigns.", all.done);
   put("cases_waiting", "gauge", "Cases that no worker has: the depth of the queue.", all.waiting);
   put("cases_assigned", "gauge", "Cases that workers have.", all.assigned);
-  put("cases_quarantined", "gauge", "Cases that were given up.", all.quarantined);
+  put("cases_quarantined", "gauge", "Cases that are quarantined.", all.quarantined);
   put("conflicts", "gauge", "Results that contradicted others.", conflicts);
   put("workers", "gauge", "Workers that are joined.", workers.size());
   put("slots", "gauge", "Threads of theirs that fly.", slots);

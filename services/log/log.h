@@ -1,5 +1,5 @@
-// What the programs tell on stderr while they work. The library behind it stays in log.cc: its templates in
-// every source that tells something were a tenth of what the services take to compile.
+// Messages of the programs on stderr while they work. The library behind it stays in log.cc: with its
+// templates in every source that logs, the services took a tenth longer to compile.
 #pragma once
 
 #include <fmt/core.h>
@@ -17,11 +17,11 @@ enum class LogColor { kAuto, kAlways, kNever };
 void LogForPeople(LogColor color, std::string_view before = {});
 /// For a daemon's journal: with time and name.
 void LogForDaemon(const std::string& name);
-/// What is below is not told.
+/// Messages below `least` are dropped.
 void SetLogLevel(LogLevel least);
 
 void Log(LogLevel level, std::string_view text);
-/// As it is. What stderr does not take is lost, as a log's is: no reason for a program to end.
+/// Prints the text unchanged. Text that stderr does not take is lost, which is no reason to end a program.
 void TellText(std::string_view text);
 
 template <class... Values>

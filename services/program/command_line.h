@@ -11,9 +11,9 @@ namespace dispersa {
 /// Help, --version and --json (into `json`). Before anything else is added, so that commands look the same.
 void BeginCommandLine(CLI::App& app, bool& json, const char* json_help);
 
-/// Parses. The code with which the program ends at once, if it does: after help or a version, and with
-/// kExitBadInput after words that it does not understand, which goes to stderr, and with --json anywhere on
-/// the line to standard output as an object too.
+/// Parses the command line. Returns an exit code if the program ends at once: after help or a version, or
+/// kExitBadInput after words that it does not understand. That error goes to stderr, and with --json anywhere
+/// on the line also to standard output as an object.
 std::optional<ExitCode> ParseCommandLine(CLI::App& app, int argc, char** argv);
 
 /// True if --json is among the words, parsed or not.

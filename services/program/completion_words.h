@@ -1,6 +1,6 @@
-// What may stand at the end of an unfinished command line, by the definitions that parse the finished one.
+// Possible ends of an unfinished command line, by the definitions that parse the finished one.
 //
-// The scripts that bash, zsh and fish load (services/cli/completion) ask `PROGRAM completion words WORD...`.
+// The scripts for bash, zsh and fish (services/cli/completion) call `PROGRAM completion words WORD...`.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -9,15 +9,14 @@
 
 namespace dispersa {
 
-/// What an option's value or an argument is, in help texts; completion goes by it. Values that are listed are
-/// written "{one,another}".
+/// Types of values in help texts, by which completion works. Listed values are written "{one,another}".
 inline constexpr char kFileType[] = "FILE", kFolderType[] = "DIR";
-/// A campaign or another file of YAML, "FILE" in help texts; a metric without its prefix.
+/// A campaign or another YAML file ("FILE" in help texts); a metric without its prefix.
 inline constexpr char kYamlType[] = "YAML", kMetricType[] = "METRIC";
 
-/// `words` are those behind the program's name, the last one unfinished and possibly empty. One line a
-/// candidate: the word, a tab and what it is; or ":file" or ":folder", where the shell itself knows best;
-/// ":file", a tab and "yaml" where only such files are meant.
+/// `words` are those after the program's name. The last one is unfinished and may be empty. One line for each
+/// candidate: the word, a tab and its description. Where the shell itself knows best: ":file" or ":folder";
+/// for YAML files alone: ":file", a tab and "yaml".
 std::string CompletionWords(const CLI::App& app, const std::vector<std::string>& words);
 
 }  // namespace dispersa

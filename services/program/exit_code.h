@@ -1,4 +1,4 @@
-// What a process tells its caller, and a coordinator's reply its client.
+// Exit codes of a process, also in a coordinator's reply to its client.
 #pragma once
 
 namespace dispersa {

@@ -1,4 +1,4 @@
-// What ends a program, in words for its user.
+// The error that ends a program, in words for its user.
 #pragma once
 
 #include <string>

@@ -29,7 +29,7 @@ class DISPERSA_PROVED(scoped_lockable) Lock {
   Lock(const Lock&) = delete;
   Lock& operator=(const Lock&) = delete;
 
-  /// May return without a notification, as that of a condition variable; holds the mutex again then.
+  /// May return without a notification, as a condition variable may. It then holds the mutex again.
   void Wait(std::condition_variable& changed) { changed.wait(lock_); }
   /// False: the time has come.
   template <typename Time>

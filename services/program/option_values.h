@@ -1,4 +1,4 @@
-// What an option's value, or an argument, must be in every program.
+// Rules for the values of options and arguments in every program.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -15,12 +15,12 @@ inline constexpr std::uint64_t kMostCases = 4294967295;
 /// eight and -1 of what has no sign the largest number that there is.
 CLI::Validator WholeNumber(std::int64_t least, std::uint64_t most);
 
-/// Of an option whose type lists its values as "{one,another}"; of any other none.
+/// Values of an option whose type lists them as "{one,another}"; none for any other option.
 std::vector<std::string> ListedValues(const CLI::Option& option);
 
-/// Has every option and argument of a program and its commands refuse a value that is empty, that is not
-/// among those listed, or that is no WholeNumber, or no finite number, where one is wanted. Once all are
-/// added.
+/// Makes every option and argument of a program and its commands refuse a wrong value: an empty one, one that
+/// is not listed, or, where a number is needed, one that is no WholeNumber or no finite number. Call it after
+/// all are added.
 void CheckValues(CLI::App& app);
 
 }  // namespace dispersa

@@ -7,15 +7,14 @@
 
 namespace dispersa {
 
-/// Before anything is opened: whichever of the three standard streams is closed stays taken, else the next
-/// file that is opened would get its number, and what is printed. Printing to it is an error all the same.
+/// Call before any file is opened. A closed standard stream stays reserved. Otherwise the next opened file
+/// would get its number, and the printed text. Printing to it is still an error.
 void HoldStandardStreams();
 
-/// Prints all that a program has to say. What it ends with: kExitDone, or kExitIncomplete if that did not
-/// arrive.
+/// Prints a program's whole output. Returns kExitDone, or kExitIncomplete if it did not arrive.
 ExitCode PrintAndEnd(std::string_view text);
 
-/// What a program ends with that has printed all it has to: `code`, or worse if that did not arrive.
+/// Exit code of a program that has printed everything: `code`, or a worse one if the output did not arrive.
 ExitCode EndOutput(ExitCode code);
 /// Says that it did not arrive, and why by `error`, an errno or 0. Returns kExitIncomplete.
 ExitCode EndLostOutput(int error);

@@ -12,7 +12,7 @@ inline int UsableCores() {
   return sched_getaffinity(0, sizeof usable, &usable) == 0 ? CPU_COUNT(&usable) : 1;
 }
 
-/// As many as asked for; with 0 the usable cores.
+/// `asked` threads, or with 0 the usable cores.
 inline int ThreadsOrAll(int asked) { return asked > 0 ? asked : UsableCores(); }
 
 }  // namespace dispersa

@@ -1,4 +1,4 @@
-// What every program says of itself.
+// The version text of every program.
 #pragma once
 
 #include <string>

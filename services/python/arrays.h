@@ -11,8 +11,8 @@
 
 namespace dispersa {
 
-/// An array of this shape over memory that `owner` owns and that ends with the array's last view: the array's
-/// base is a capsule around the owner.
+/// An array of this shape over memory of `owner`. The array's base is a capsule that holds the owner, so the
+/// memory lives as long as the array's last view.
 template <typename T, typename Owner>
 pybind11::array_t<T> ArrayOver(T* data, std::vector<pybind11::ssize_t> shape, Owner owner) {
   auto kept = std::make_unique<Owner>(std::move(owner));

@@ -13,7 +13,7 @@ namespace dispersa {
 /// A list of (file, line, column, path, message, allowed).
 pybind11::list ProblemsOf(const std::vector<InputProblem>& problems);
 
-/// What ends a command with an exit code is an exception of dispersa.errors.
+/// Turns an error with which a command would end into the exception of dispersa.errors for its exit code.
 void Translate(std::exception_ptr problem);
 
 }  // namespace dispersa

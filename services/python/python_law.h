@@ -16,7 +16,7 @@
 
 namespace dispersa {
 
-/// What a law is told at a tick, and what it may keep: one object for each flight, whose values change.
+/// The input of a law at a tick and its memory: one object for each flight, whose values change.
 class LawTick {
  public:
   LawTick();
@@ -43,8 +43,8 @@ class LawTick {
 /// which take the lock at every tick.
 class PythonLaw {
  public:
-  /// `law(tick)` commands angular accelerations, rad/s²: three, of roll, pitch and yaw, or a number where it
-  /// commands one axis. What it raises ends what the observer watches.
+  /// `law(tick)` returns angular accelerations, rad/s²: three, for roll, pitch and yaw, or a number if it
+  /// commands one axis. An exception in it ends the flights that `observer` watches.
   PythonLaw(pybind11::object law, PythonObserver& observer);
   ~PythonLaw();
   PythonLaw(const PythonLaw&) = delete;
@@ -59,7 +59,7 @@ class PythonLaw {
 
  private:
   static const PluginLaw::Functions& Functions();
-  /// What a flight's memory holds.
+  /// Content of a flight's memory.
   struct Flight {
     PythonLaw* law;
     std::uint64_t case_index;
@@ -82,8 +82,8 @@ class PythonLaw {
   bool flies_the_nominal_ = false;
 };
 
-/// The canonical text of a campaign that is flown under a law in Python on these axes: it names the law in
-/// the place of theirs. Throws InputError.
+/// The canonical text of a campaign under a Python law on these axes. It names this law in place of the
+/// file's. Throws InputError.
 std::string WithPythonLaw(const Campaign& campaign, unsigned axes, const std::string& name,
                           const std::string& sha256);
 

@@ -35,7 +35,7 @@ class PythonObserver : public Observer {
     }
   }
   bool ShouldStop() override {
-    // Python handles signals in its main thread only; where this is another one, the question is harmless.
+    // Python handles signals in its main thread only. In another thread the call is harmless.
     if (stopped_ || std::this_thread::get_id() != caller_) return stopped_;
     const auto now = std::chrono::steady_clock::now();
     if (now - asked_ < kAskPeriod) return false;
@@ -45,13 +45,13 @@ class PythonObserver : public Observer {
     return stopped_;
   }
 
-  /// What is watched is to end, and this to be raised. With the interpreter's lock.
+  /// Ends the watched work, which then raises `problem`. Needs the interpreter's lock.
   void StopWith(std::exception_ptr problem) {
     if (!problem_) problem_ = std::move(problem);
     stopped_ = true;
   }
 
-  /// Calls without the interpreter's lock. What the caller's function or a signal raised is raised.
+  /// Calls `function` without the interpreter's lock. Raises what the caller's function or a signal raised.
   template <typename Function>
   auto Watch(const Function& function) {
     try {

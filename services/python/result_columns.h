@@ -40,7 +40,7 @@ class ResultColumns {
     for (const std::size_t i : metric_columns_) metrics_.push_back(result.metrics[i]);
     digest_.push_back(result.digest.Hex());
   }
-  /// The columns of cases.csv, and `metric_names`; inputs and metrics of shape (results, names).
+  /// The columns of cases.csv, and `metric_names`. Inputs and metrics have the shape (results, names).
   pybind11::dict Take() {
     const auto rows = static_cast<pybind11::ssize_t>(index_.size());
     pybind11::dict columns;

@@ -1,8 +1,8 @@
 // The JSON Schema of one map of the input files, made from the description of its keys.
 //
-// Every branch of a description is visited, so the schema knows keys of all of them, and which go together.
-// It takes all that the reader takes. What it cannot know is left to the reader: relations between values
-// (Fields::Check), and branches that a description takes by what it has read.
+// Every branch of a description is visited. So the schema knows the keys of all branches, and which keys go
+// together. It accepts everything that the reader accepts. Two things it cannot know, and leaves to the
+// reader: relations between values (Fields::Check), and branches that depend on values already read.
 #pragma once
 
 #include <functional>
@@ -102,12 +102,12 @@ class MapSchema : public Fields {
     Json required = Json::array();
     Json rules = Json::array();  ///< which keys go together
 
-    /// What holds of a map with these keys.
+    /// Adds the conditions on a map with these keys.
     void AddTo(Json& schema) const;
   };
 
   void Add(const char* key, Json value, bool needed);
-  // Of each unit that the key may end in; `value` makes the schema of a key from its scale and unit.
+  // Adds one key for each unit in which it may end. `value` makes a key's schema from its scale and unit.
   void AddUnits(const char* stem, Dimension dimension, bool needed,
                 const std::function<Json(const Unit& unit)>& value);
   Json None(const std::vector<std::string>& keys) const;

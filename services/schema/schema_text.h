@@ -7,8 +7,8 @@
 
 namespace dispersa {
 
-/// The schema of a kind of file, in the draft that editors take (07). It refuses nothing that the reader
-/// takes; what two maps say together and how numbers are ordered only the reader knows (`dispersa validate`).
+/// The schema of a kind of file in draft 07, which editors use. It refuses nothing that the reader accepts.
+/// Only the reader (`dispersa validate`) knows relations between two maps and the order of numbers.
 std::string SchemaText(FileKind kind);
 
 }  // namespace dispersa

@@ -5,8 +5,8 @@
 
 namespace dispersa {
 
-/// The same schema, its repeated parts in "$defs" and named by the first key that holds them. What "$defs"
-/// holds already keeps its name.
+/// The same schema with its repeated parts in "$defs", each named by the first key that holds it. Parts that
+/// are in "$defs" already keep their names.
 nlohmann::ordered_json WithSharedParts(nlohmann::ordered_json schema);
 
 }  // namespace dispersa

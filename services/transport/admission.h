@@ -1,4 +1,4 @@
-// Who may speak where: keys are wanted beyond this machine.
+// Rules on who may join the network. Beyond this machine keys are required.
 #pragma once
 
 #include <initializer_list>
@@ -8,9 +8,9 @@
 
 namespace dispersa {
 
-/// What a command line says of it.
+/// Options of a command line about keys.
 struct Admission {
-  std::string keys;       ///< folder; empty: none
+  std::string keys;       ///< folder (empty: none)
   bool insecure = false;  ///< none: beyond this machine all the same, on it with all users
   bool allow_plugins = false;
 };
@@ -19,10 +19,10 @@ inline constexpr char kKeysHelp[] = "folder that `dispersa keys issue` made: who
 inline constexpr char kInsecureHelp[] =
     "without keys beyond this machine, and on it with programs of all users: on networks that you trust";
 
-/// `network` as it may be used by one of `roles`: with the keys; without, with the loopback interface alone
-/// if that is where `peer` is, no address was given, and nobody said --insecure; there with the secret of
-/// this user (user_secret.h). Throws NetworkError with what to do when neither keys nor the loopback
-/// interface nor --insecure is there. A coordinator has no peer.
+/// `network` as one of `roles` may use it. With keys: encrypted by them. Without keys: over the loopback
+/// interface alone, with this user's secret (user_secret.h), if `peer` is there, no address was given, and
+/// --insecure is absent. Throws NetworkError with advice if keys, loopback and --insecure are all absent. A
+/// coordinator has no peer.
 NetworkOptions Admit(NetworkOptions network, const Admission& admission, std::initializer_list<Role> roles,
                      const std::string& peer = "");
 

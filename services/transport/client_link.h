@@ -17,7 +17,7 @@ class ClientLink {
   ClientLink(const NetworkOptions& network, const Peer& coordinator);
   ~ClientLink();
 
-  /// Asks until the answer comes, at most so long; none if it does not. A request may be served several
+  /// Asks until the answer comes, at most `patience`; empty if none comes. A request may be served several
   /// times.
   std::optional<Reply> Call(const std::string& method, const std::string& arguments, const std::string& data,
                             std::chrono::milliseconds patience);

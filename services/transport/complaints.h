@@ -1,4 +1,4 @@
-// What others send that is no use, said without letting them fill the log.
+// Warnings about useless data from others. Their rate is limited, so that nobody can fill the log.
 #pragma once
 
 #include <cstdint>
@@ -6,9 +6,9 @@
 
 namespace dispersa {
 
-/// Logs a warning about something of `kind` ("datagram", a topic) from `sender`, in words that are made
-/// printable. Of one kind at most one a second is logged; the others are counted and told with the next.
-/// Thread-safe.
+/// Logs a warning about something of `kind` ("datagram", a topic) from `sender`, with all text made
+/// printable. At most one warning a second is logged for each kind. The others are counted, and the next
+/// warning tells the count. Thread-safe.
 void Complain(const std::string& kind, const std::string& sender, const std::string& what);
 
 /// So many since the start of the process, of all kinds.

@@ -15,7 +15,7 @@ namespace dispersa {
 /// A participant closed its connection, or was not heard of for 5 s.
 struct SenderGone {};
 
-/// What came, and from which participant: an identifier that a sender cannot choose.
+/// A received message and its sender's participant, an identifier that the sender cannot choose.
 struct CoordinatorEvent {
   std::string sender;
   std::variant<WorkerStatus, Report, TextRequest, CampaignRefusal, Request, SenderGone> what;
@@ -29,7 +29,7 @@ class CoordinatorLink {
   explicit CoordinatorLink(const NetworkOptions& network);
   ~CoordinatorLink();
 
-  /// All events so far, in order; waits for the first one, at most `timeout`.
+  /// All events so far, in order. Waits at most `timeout` for the first one.
   std::vector<CoordinatorEvent> Wait(std::chrono::milliseconds timeout);
 
   /// To one worker, which need not be matched yet.

@@ -27,9 +27,9 @@
 
 namespace dispersa {
 
-/// Of samples that a writer keeps for a reader that has not acknowledged them, and a reader for us. What
-/// falls out is repeated by those who need it; so a reader that stops reading costs its writer so much and no
-/// more.
+/// Samples that a writer keeps for a reader that has not acknowledged them, and that a reader keeps for us.
+/// Older ones are dropped; whoever needs them repeats them. So a reader that stops reading has a limited
+/// cost.
 inline constexpr int kDepth = 512;
 /// Samples after which a writer is made anew, so that nobody ever has to skip more (sieve.h).
 inline constexpr std::uint64_t kRenewAfter = 1 << 20;
@@ -63,11 +63,11 @@ class HeardSeals {
   std::map<Seal::Writer, std::uint64_t> last_;  ///< of writers that have the secret
 };
 
-/// A decoder that cannot be made to throw or to allocate more than a sample is large. A sample that it
-/// refuses is handed over empty with `refused` set, so that the reader can say who sent it.
+/// A decoder that neither throws nor allocates more than a sample's size. A refused sample is handed over
+/// empty with `refused` set, so that the reader can name its sender.
 ///
-/// With a seal (of a secret that both sides have), a sample is sealed behind its content, and one whose seal
-/// does not fit is refused before anything of it is read.
+/// With a seal (made from a secret that both sides have) a sample ends with it. A sample whose seal does not
+/// fit is refused before its content is read.
 template <typename PubSubType>
 class GuardedType : public PubSubType {
  public:
@@ -143,7 +143,7 @@ class Writer : private eprosima::fastdds::dds::DataWriterListener {
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
 
-  /// What cannot be sent now is lost; whoever needs it repeats it.
+  /// A message that cannot be sent now is lost. Whoever needs it repeats it.
   void Write(Message message) {
     const Lock lock(mutex_);
     if (++written_ > kRenewAfter) {
@@ -193,8 +193,8 @@ class Writer : private eprosima::fastdds::dds::DataWriterListener {
   std::uint64_t number_ DISPERSA_GUARDED_BY(mutex_) = 0;  ///< of the last seal
 };
 
-/// Hands over, on a thread of the middleware, what is well-formed and makes sense (validity.h); what is not
-/// is refused with its sender.
+/// Hands over well-formed and valid samples (validity.h), on a thread of the middleware. The others are
+/// refused with their sender.
 template <typename PubSubType>
 class Reader : private eprosima::fastdds::dds::DataReaderListener {
  public:

@@ -14,7 +14,7 @@ namespace dispersa {
 template <typename Event>
 class EventQueue {
  public:
-  /// What comes when so many wait already is dropped: senders repeat what matters.
+  /// With so many events waiting, further ones are dropped: senders repeat important messages.
   static constexpr std::size_t kMaxWaiting = 20000;
 
   /// False: dropped.
@@ -28,7 +28,7 @@ class EventQueue {
     return true;
   }
 
-  /// All events so far, in order; waits for the first one, at most `timeout`.
+  /// All events so far, in order. Waits at most `timeout` for the first one.
   std::vector<Event> Wait(std::chrono::milliseconds timeout) {
     const auto deadline = std::chrono::steady_clock::now() + timeout;
     Lock lock(mutex_);

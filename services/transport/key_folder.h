@@ -28,7 +28,7 @@ inline constexpr char kPermissionsFile[] = "permissions.p7s";
 /// Throws NetworkError with what is wrong and what to do.
 KeyFolder OpenKeyFolder(const std::filesystem::path& directory, std::initializer_list<Role> roles);
 
-/// The text of a file; throws NetworkError.
+/// The text of a file. Throws NetworkError.
 std::string ReadKeyFile(const std::filesystem::path& file);
 
 }  // namespace dispersa

@@ -1,5 +1,5 @@
-// What travels between coordinator and workers, as plain data. idl/dispersion.idl says what each field means;
-// these are its types without the middleware.
+// Messages between coordinator and workers as plain data. idl/dispersion.idl explains each field. These are
+// its types without the middleware.
 #pragma once
 
 #include <cstdint>
@@ -56,7 +56,8 @@ struct Orders {
 struct FlownCase {
   std::uint64_t attempt = 0;
   CaseResult result;
-  bool is_quarantined = false;  ///< no result: the case ended every process that flew it; the reason says how
+  bool is_quarantined = false;  ///< the case ended every process that flew it and has no result (the reason
+                                ///< says how it ended them)
 };
 
 struct Report {

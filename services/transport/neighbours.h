@@ -1,4 +1,4 @@
-// Who else is on the network, as the middleware finds them. Internal to this folder.
+// Other participants on the network, as the middleware finds them. Internal to this folder.
 #pragma once
 
 #include <chrono>
@@ -20,8 +20,8 @@ class Neighbours : public eprosima::fastdds::dds::DomainParticipantListener {
 
   /// Whether the writer is in this partition and never was in another.
   bool IsIn(const eprosima::fastrtps::rtps::GUID_t& writer, const std::string& partition) const;
-  /// Now and then: logs those who have shown no valid keys for some seconds. Whoever finds the other's keys
-  /// bad falls silent, so one of the two sides sees nothing but silence.
+  /// Logs, from time to time, participants that have shown no valid keys for some seconds. A participant that
+  /// finds the other's keys bad falls silent, so the other side sees only silence.
   void LogSilent();
 
  private:

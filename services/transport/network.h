@@ -1,4 +1,4 @@
-// Where coordinator and workers find each other.
+// Network options: where coordinator and workers find each other.
 #pragma once
 
 #include <cstdint>
@@ -22,17 +22,17 @@ Peer ParsePeer(const std::string& text, int domain);
 
 struct NetworkOptions {
   int domain = 0;       ///< 0 .. 99
-  std::string address;  ///< IPv4 address of the only interface to use; empty: all
-  /// Who we are; then only those are spoken to whom the same authority issued keys, and all is encrypted.
+  std::string address;  ///< IPv4 address of the only interface to use (empty: all)
+  /// Our keys. With keys we speak only to holders of keys of the same authority, and everything is encrypted.
   std::optional<KeyFolder> keys = {};
   /// Then only those are listened to who have it too (seal.h).
   std::optional<Secret> secret = {};
 };
 
-/// The fixed port at which the coordinator of a domain is discovered: 7400 + 250 * domain + 5, one that no
-/// participant without a fixed port takes.
+/// The fixed port at which the coordinator of a domain is discovered: 7400 + 250 * domain + 5. No participant
+/// without a fixed port takes it.
 std::uint16_t CoordinatorPort(int domain);
-/// Where the coordinator hears of workers that they live: CoordinatorPort + 1.
+/// The port at which the coordinator receives workers' signs of life: CoordinatorPort + 1.
 std::uint16_t StatusPort(int domain);
 
 /// 128 random bits: one for each start of a worker.

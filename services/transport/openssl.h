@@ -24,10 +24,10 @@ using Bio = std::unique_ptr<BIO, OpenSslFree<BIO_free_all>>;
 using PrivateKey = std::unique_ptr<EVP_PKEY, OpenSslFree<EVP_PKEY_free>>;
 using Certificate = std::unique_ptr<X509, OpenSslFree<X509_free>>;
 
-/// What a certificate says of its owner.
+/// The owner of a certificate.
 struct Subject {
   std::string name;  ///< CN
-  std::string unit;  ///< OU; a role, or empty
+  std::string unit;  ///< OU: a role, or empty
 };
 
 struct CertificateContents {
@@ -56,10 +56,10 @@ Subject SubjectOf(X509* certificate);
 std::string SubjectText(X509* certificate);
 std::time_t EndOf(X509* certificate);
 std::time_t BeginOf(X509* certificate);
-/// Whether `authority` has signed it; its dates are not looked at.
+/// Whether `authority` has signed it. Its dates are not checked.
 bool IsSignedBy(X509* certificate, X509* authority);
-/// The text of a signed document; throws if it is not one, or not signed by `signer`, whose dates are not
-/// looked at.
+/// The text of a signed document. Throws if it is not one, or if `signer`, whose dates are not checked, has
+/// not signed it.
 std::string VerifiedDocument(const std::string& smime, X509* signer);
 
 }  // namespace dispersa

@@ -45,7 +45,7 @@ class Participant {
       return MakeTopic(name, TypeSupport(new PubSubType()));
     }
   }
-  /// In a partition; an empty one is none.
+  /// In a partition (an empty one: in none).
   eprosima::fastdds::dds::Publisher* MakePublisher(const std::string& partition);
   eprosima::fastdds::dds::Subscriber* MakeSubscriber(const std::vector<std::string>& partitions);
 

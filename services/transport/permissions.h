@@ -1,4 +1,4 @@
-// Who may say and hear what: the documents of DDS Security that the authority signs.
+// Rights to publish and subscribe: the documents of DDS Security that the authority signs.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ std::optional<Role> ParseRole(const std::string& text);
 /// such a name. Names of keys have no '_'.
 std::string OwnPrefix(const std::string& name);
 
-/// What is the same for all participants: how everything is protected.
+/// The protection of all traffic, the same for all participants.
 std::string GovernanceDocument();
 
 /// What one participant may publish and subscribe. `subject` is SubjectText of its certificate.

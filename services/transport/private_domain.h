@@ -3,8 +3,8 @@
 
 namespace dispersa {
 
-/// Reserves one of the domains 40 .. 99 for as long as it lives; a process that dies gives it back. Two runs
-/// in one network namespace never get the same; programs that know nothing of this may still use it.
+/// Reserves one of the domains 40 .. 99 while it lives. A process that dies releases it. Two runs in one
+/// network namespace never get the same domain. Programs without this reservation may still use it.
 class PrivateDomain {
  public:
   /// Throws NetworkError if all are taken.

@@ -1,4 +1,4 @@
-// What `dispersa run` gives its workers on their way, through a pipe: nobody else can read that.
+// The secret that `dispersa run` gives its workers through a pipe, which nobody else can read.
 #pragma once
 
 #include <set>
@@ -14,7 +14,7 @@ struct RunPass {
 };
 
 std::string ToText(const RunPass& pass);
-/// The same of a text; throws NetworkError when it is none.
+/// Reads it from a text. Throws NetworkError if it is none.
 RunPass ParseRunPass(const std::string& text);
 /// All that comes through a pipe, which is closed then. Throws NetworkError.
 RunPass TakeRunPass(int descriptor);

@@ -1,5 +1,5 @@
-// What shows that a message comes from a process that has the same secret: the children of `dispersa run` and
-// their parent, who speak where every user of the machine can.
+// Proof that a message comes from a process with the same secret: `dispersa run` and its children communicate
+// where every user of the machine can.
 #pragma once
 
 #include <array>
@@ -15,10 +15,10 @@ using Secret = std::array<std::uint8_t, 32>;
 /// From the kernel's generator.
 Secret DrawSecret();
 
-/// A sample ends with its seal: who wrote it, its number, and a code over both, its topic and its content,
-/// which nobody can make without the secret (HMAC with SHA-256, its first 128 bits). So a sample counts once
-/// (the reader wants growing numbers), on its topic, and from its writer. It hides nothing, and does not keep
-/// anybody from disturbing. Thread-safe.
+/// A sample ends with its seal: its writer, its number, and a code over both, its topic and its content (HMAC
+/// with SHA-256, the first 128 bits). Nobody can make the code without the secret. So a sample counts once
+/// (numbers must grow), on its topic, and from its writer. A seal hides nothing, and it does not prevent
+/// disturbance. Thread-safe.
 class Seal {
  public:
   /// Of a writer, as the middleware names it.

@@ -1,4 +1,4 @@
-// Fast DDS moves on to another port when one is occupied; a fixed port must be checked before.
+// A check that a fixed port is free: Fast DDS moves on to another port if one is occupied.
 #pragma once
 
 #include <cstdint>

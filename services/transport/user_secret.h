@@ -11,9 +11,9 @@ namespace dispersa {
 /// none.
 std::filesystem::path UserSecretFile();
 
-/// What the file holds; it is drawn and written if there is none, by one of several that start at once.
-/// Refused with a NetworkError: a file of another user, one that others may read or write, one that is no
-/// secret.
+/// The secret in the file. If there is none it is drawn and written, once, even if several processes start
+/// together. NetworkError refuses a file of another user, one that others may read or write, and one without
+/// a secret.
 Secret OpenUserSecret(const std::filesystem::path& file);
 
 }  // namespace dispersa

@@ -8,7 +8,7 @@
 
 namespace dispersa {
 
-/// What is wrong with a message; empty: nothing.
+/// The fault of a message; empty if it has none.
 std::string WhyInvalid(const WorkerStatus& status);
 std::string WhyInvalid(const Orders& orders);
 std::string WhyInvalid(const Report& report);

@@ -11,9 +11,9 @@ namespace dispersa {
 /// No sample that we exchange is larger: longer texts travel in parts.
 inline constexpr std::size_t kMaxSampleBytes = 1 << 20;
 
-/// True if `data` is a whole sample in plain little-endian CDR of the given shape: s string, Q 64 bits, I 32
-/// bits, B 8 bits, [...] a sequence of what stands between. The generated decoders trust the lengths that a
-/// sample declares: seven bytes can make them allocate 34 GB, or throw out of a thread of the middleware.
+/// True if `data` is a whole sample in plain little-endian CDR of the given shape. s: string, Q: 64 bits, I:
+/// 32 bits, B: 8 bits, [...]: a sequence of the enclosed. The generated decoders trust the lengths that a
+/// sample declares. Seven bytes can make them allocate 34 GB, or throw from a thread of the middleware.
 bool HasShape(const char* shape, const std::uint8_t* data, std::size_t size);
 
 /// The shape of each type of idl/dispersion.idl.

@@ -17,11 +17,11 @@ using WorkerEvent = std::variant<Orders, TextPart>;
 /// Sending is thread-safe. Nothing that is sent is sure to arrive. Throws NetworkError.
 class WorkerLink {
  public:
-  /// `worker` is the UUID under which it appears; `peer` is the coordinator, whose name is resolved now.
+  /// `worker` is the UUID under which it appears. `peer` is the coordinator; its name is resolved now.
   WorkerLink(const NetworkOptions& network, const Peer& peer, const std::string& worker);
   ~WorkerLink();
 
-  /// All events so far, in order; waits for the first one, at most `timeout`.
+  /// All events so far, in order. Waits at most `timeout` for the first one.
   std::vector<WorkerEvent> Wait(std::chrono::milliseconds timeout);
 
   void Send(const WorkerStatus& status);

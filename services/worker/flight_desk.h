@@ -1,5 +1,5 @@
-// What a worker holds, flies and owes. A pure state machine: it knows neither clocks, threads nor networks;
-// time is an argument, in seconds from any origin.
+// The cases that a worker holds, flies and must report. A pure state machine without clocks, threads and
+// networks. Time is an argument, in seconds from any origin.
 #pragma once
 
 #include <cstdint>
@@ -20,13 +20,14 @@ struct FlightDeskOptions {
   std::string worker;  ///< its UUID
   std::string engine_version;
   std::uint32_t slots = 1;
-  std::uint32_t lanes = 1;           ///< cases that a slot flies side by side
-  double status_s = 0.5;             ///< between two statuses
-  double repeat_s = 2.0;             ///< what was not answered is said again after so long
-  double deaf_s = 5.0;               ///< without a word of the coordinator: the connection is made anew
-  double longest_deaf_s = 30.0;      ///< when that does not help, ever later, up to this
-  double announce_s = 0.005;         ///< cases that take less together are announced together
-  std::size_t max_unstored = 16384;  ///< results that the coordinator has not stored; then flying waits
+  std::uint32_t lanes = 1;       ///< cases that a slot flies side by side
+  double status_s = 0.5;         ///< between two statuses
+  double repeat_s = 2.0;         ///< what was not answered is said again after so long
+  double deaf_s = 5.0;           ///< without a word of the coordinator: the connection is made anew
+  double longest_deaf_s = 30.0;  ///< when that does not help, ever later, up to this
+  double announce_s = 0.005;     ///< cases that take less together are announced together
+  std::size_t max_unstored =
+      16384;  ///< results that the coordinator has not stored, beyond which flying waits
 };
 
 /// A case to fly.
@@ -55,14 +56,14 @@ class FlightDesk {
   void On(const Orders& orders, double now_s);
   void On(const TextPart& part, double now_s);
 
-  /// A text that is complete and has not been taken; each once.
+  /// A complete text that has not been taken, each once.
   std::optional<CampaignText> TakeText();
-  /// What became of it: its flights, or why it cannot be flown here.
+  /// The outcome of reading it: its flights, or why it cannot be flown here.
   void Loaded(const std::string& flight_id, std::shared_ptr<const CampaignFlights> flights,
               const std::string& problem);
 
-  /// The next case to fly, if there is one. Whatever TakeReports gives then must be sent before it is flown,
-  /// so that the coordinator knows what to blame if this process ends in it.
+  /// The next case to fly, if there is one. The caller must then send the output of TakeReports before the
+  /// flight. So the coordinator knows which case to blame if the flight ends this process.
   std::optional<Job> Next(double now_s);
   void Done(const Job& job, CaseResult result, double now_s);
   /// It ended every process that flew it.
@@ -70,7 +71,7 @@ class FlightDesk {
   /// Reports that are ready. Results wait for the start of the next case, unless there is none.
   std::vector<Report> TakeReports(double now_s);
 
-  /// What is due: new or again.
+  /// Messages that are due, new or repeated.
   struct Due {
     std::optional<WorkerStatus> status;
     std::vector<Report> reports;

@@ -3,7 +3,7 @@
 
 namespace dispersa {
 
-/// The whole program; returns its exit code.
+/// The whole program. Returns its exit code.
 int RunWorker(int argc, char** argv);
 
 }  // namespace dispersa

@@ -234,8 +234,8 @@ std::optional<WorkerExit> Worker::Exit(double now_s) {
     if (desk_.IsFlying()) busy_since_drain_s_ = now_s;
   }
   if (options_.patience_s && now_s - heard_s_ > *options_.patience_s) {
-    problem_ = fmt::format("no coordinator has answered at {}:{} for {:.0f} s; given up", options_.peer.host,
-                           options_.peer.port, now_s - heard_s_);
+    problem_ = fmt::format("no coordinator has answered at {}:{} for {:.0f} s; the worker ends",
+                           options_.peer.host, options_.peer.port, now_s - heard_s_);
     return WorkerExit::kNoCoordinator;
   }
   if (options_.idle_exit_s && now_s - busy_s_ > *options_.idle_exit_s) return WorkerExit::kIdle;

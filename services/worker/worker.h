@@ -25,9 +25,9 @@ struct WorkerOptions {
 
 enum class WorkerExit { kTold, kRefused, kDrained, kIdle, kNoCoordinator };
 
-/// One incarnation of a worker. Cases are flown on threads of their own; the thread of Run only talks. A
-/// flight cannot be interrupted, so a worker that gives up leaves flying threads behind: the process has to
-/// end without destroying anything (std::_Exit).
+/// One incarnation of a worker. Cases fly on their own threads; the thread of Run only communicates. A flight
+/// cannot be interrupted. So a worker that ends early leaves flying threads behind, and the process must end
+/// without destroying anything (std::_Exit).
 class Worker {
  public:
   explicit Worker(const WorkerOptions& options);
@@ -35,14 +35,14 @@ class Worker {
   /// Until it is told to leave, refused, drained, idle or alone for too long. The connection is closed when
   /// it returns.
   WorkerExit Run();
-  /// Why it gave up or was refused; else empty.
+  /// Why it ended early or was refused; else empty.
   const std::string& problem() const { return problem_; }
-  /// Finish what is flown, begin nothing more, then leave. From any thread; not from a signal handler.
+  /// Finish the flights under way, begin no more, then leave. From any thread, but not from a signal handler.
   void Drain();
 
  private:
-  // What a thread that flies asks: the next case (waiting for one, or none if there is none now), and giving
-  // back what became of it. The coordinator knows of a case before Next returns it.
+  // For a flying thread: takes the next case (waits for one, or returns none if there is none now), and
+  // returns its result. The coordinator knows of a case before Next returns it.
   std::optional<Job> Next(bool wait);
   void Done(const Job& job, CaseResult result);
   void Quarantined(const Job& job, const std::string& reason);
@@ -60,7 +60,7 @@ class Worker {
   std::string problem_;
   std::chrono::steady_clock::time_point origin_ = std::chrono::steady_clock::now();
   double heard_s_ = 0.0, busy_s_ = 0.0, told_s_ = 0.0, draining_s_ = 0.0,
-         busy_since_drain_s_ = 0.0;  ///< when it last was so; thread of Run
+         busy_since_drain_s_ = 0.0;  ///< the last time it was busy, used by the thread of Run
 
   Mutex mutex_;
   std::condition_variable work_;

@@ -33,7 +33,7 @@ TEST_F(PrometheusTextTest, AnEmptyServiceIsAllZeros) {
           metric("dispersa_cases_done", "gauge", "Cases with a result, of all campaigns.", 0) +
           metric("dispersa_cases_waiting", "gauge", "Cases that no worker has: the depth of the queue.", 0) +
           metric("dispersa_cases_assigned", "gauge", "Cases that workers have.", 0) +
-          metric("dispersa_cases_quarantined", "gauge", "Cases that were given up.", 0) +
+          metric("dispersa_cases_quarantined", "gauge", "Cases that are quarantined.", 0) +
           metric("dispersa_conflicts", "gauge", "Results that contradicted others.", 0) +
           metric("dispersa_workers", "gauge", "Workers that are joined.", 0) +
           metric("dispersa_slots", "gauge", "Threads of theirs that fly.", 0) +

@@ -104,7 +104,7 @@ class ServiceTest(ServiceCase):
         lost = subprocess.run([BINARIES / "dispersa-worker", "--peer", "127.0.0.1", "--patience", "1", *self.NETWORK],
                               capture_output=True, text=True, timeout=PATIENCE_S)
         self.assertEqual(lost.returncode, 5)
-        self.assertIn("no coordinator has answered at 127.0.0.1:16405 for 1 s; given up", lost.stderr)
+        self.assertIn("no coordinator has answered at 127.0.0.1:16405 for 1 s; the worker ends", lost.stderr)
         self.start_coordinator()
         identity = self.dispersa("launch", self.tiny, "--cases", 300).strip()
         self.dispersa("watch", identity, code=self.tiny_reference.code)

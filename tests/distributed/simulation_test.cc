@@ -171,7 +171,7 @@ class World {
   void Check() const {
     for (int c = 0; c < campaigns_; ++c) {
       const std::uint64_t settled = disks_[c].rows.size() + quarantined_at_end_[c];
-      // Lies that were found out, and cases that were given up, may have put a decision off, and never
+      // Lies that were found out, and quarantined cases, may have put a decision off, and never
       // brought it about.
       if (stops_[c] && (weather_.lies > 0.0 || quarantined_at_end_[c] > 0))
         ASSERT_GE(settled, cases_[c]);

@@ -483,7 +483,7 @@ TEST_F(Misuse, StopsWhereItIsDecidedInWhateverOrderTheCasesCame) {
     ascending.Add(result);
   }
   EXPECT_FALSE(ascending.Settled({}));
-  EXPECT_TRUE(ascending.Settled({199}));  // given up
+  EXPECT_TRUE(ascending.Settled({199}));  // quarantined
   CaseResult last = MakeCase(199);
   last.metrics[MetricColumn(kPeak)] = 0.1;
   ascending.Add(last);
