@@ -6,7 +6,7 @@
     results = dispersa.run(campaign, "results/trial")
     results.verdict, results.cases["metric_pitch_error_peak_deg"].max()
 
-What is flown is what the program `dispersa` flies, to the last bit. Every name carries its unit.
+Flights have the same bits as those of the program `dispersa`. Every name carries its unit.
 """
 from . import _processor
 
@@ -26,8 +26,8 @@ __version__ = _engine_version()
 
 
 def plan(what, cases=None, **options):
-    """What a campaign's cases fly with, as `dispersa plan` says: `load(what, cases=cases, **options).plan()`, a structured
-    array of shape (cases,). Raises BadInput."""
+    """Draws the inputs of a campaign's cases, as `dispersa plan` does: `load(what, cases=cases, **options).plan()`, a
+    structured array of shape (cases,). Raises BadInput."""
     if isinstance(what, Campaign) and cases is None and not options:
         return what.plan()
     return load(what, cases=cases, **options).plan()
@@ -35,7 +35,7 @@ def plan(what, cases=None, **options):
 
 def fly(what, case=None, *, inputs=None, history=True, step_s=0.1, integrator="simpson", law=None, axes=("pitch",),
         **options):
-    """One flight: `load(what, **options).fly(case, ...)`, a Flight. Raises BadInput."""
+    """Flies one flight: `load(what, **options).fly(case, ...)`, a Flight. Raises BadInput."""
     campaign = what if isinstance(what, Campaign) and not options else load(what, **options)
     return campaign.fly(case, inputs=inputs, history=history, step_s=step_s, integrator=integrator, law=law,
                         axes=axes)

@@ -16,12 +16,12 @@ from ._flight import Flight, Flights, History
 
 @dataclasses.dataclass(frozen=True)
 class Validation:
-    """What is to be said of a file."""
+    """The result of `validate`: the problems of a file."""
 
     errors: list
     """Problems, in the order of the text; empty when the file is valid."""
     warnings: list
-    """Of a valid file: Problems that are legal."""
+    """Problems of a valid file that do not prevent flights, such as unusual values."""
     strict: bool = False
     """Warnings count as errors."""
 
@@ -40,10 +40,10 @@ class Validation:
 
 
 def validate(what, *, base=None, strict=False):
-    """Every error of a campaign, vehicle, reference, autopilot or scenario: a path, or a dict.
+    """Finds every error of a campaign, vehicle, reference, autopilot or scenario, given as a path or a dict.
 
-    `base`: the folder that names in a dict are relative to. `strict`: warnings are errors. Raises nothing for what is
-    wrong with the input; the result says it.
+    `base`: folder to which file names in a dict are relative. `strict`: warnings are errors. Raises nothing for a wrong
+    input; the result has the errors.
     """
     try:
         name, text = source(what, base)
@@ -54,10 +54,10 @@ def validate(what, *, base=None, strict=False):
 
 
 def load(what, *, cases=None, seed=None, autopilot=None, base=None):
-    """The campaign of a path or a dict, to be planned, flown and run.
+    """Loads a campaign from a path or a dict, to be planned, flown and run.
 
-    `cases`, `seed` and `autopilot` (a file) replace the campaign's own. `base`: the folder that names in a dict are
-    relative to. Raises BadInput with every problem; warns (InputWarning) of what looks wrong but is legal.
+    `cases`, `seed` and `autopilot` (a file) replace the campaign's own. `base`: folder to which file names in a dict are
+    relative. Raises BadInput with every problem. Warns (InputWarning) of values that are allowed but look wrong.
     """
     name, text = source(what, base)
     if autopilot is not None and not (autopilot := os.fspath(autopilot)):
@@ -100,12 +100,12 @@ class Campaign:
 
     @property
     def flight_id(self):
-        """SHA-256 of what decides a case."""
+        """SHA-256 of everything that decides a flight."""
         return self._core.flight_id
 
     @property
     def requirements_id(self):
-        """SHA-256 of the requirements and how they are judged."""
+        """SHA-256 of the requirements and their verdict plans."""
         return self._core.requirements_id
 
     @property
@@ -115,17 +115,17 @@ class Campaign:
 
     @property
     def cases(self):
-        """How many; indices count from 0."""
+        """The number of cases; indices count from 0."""
         return self._core.cases
 
     @property
     def seed(self):
-        """Of the draws."""
+        """The seed of the draws."""
         return self._core.seed
 
     @property
     def stages(self):
-        """Of the vehicle; inputs and metrics depend on it."""
+        """The number of the vehicle's stages; inputs and metrics depend on it."""
         return self._core.stages
 
     @property
@@ -140,29 +140,29 @@ class Campaign:
 
     @property
     def python_law(self):
-        """(name, SHA-256) of the control law in Python that the campaign was flown with, else None. It is in no file, so
-        such a campaign is flown only where the law is given as `law`."""
+        """(name, SHA-256) of the control law in Python that the campaign was flown with, else None. No file stores the law.
+        So such a campaign can be flown only with the same law as `law`."""
         return self._core.python_law
 
     @functools.cached_property
     def warnings(self):
-        """Problems that are legal."""
+        """Problems of the file that do not prevent flights."""
         return tuple(Problem(*p) for p in self._core.warnings)
 
     @functools.cached_property
     def input_names(self):
-        """Of the inputs of a case, with units; cases.csv has them as input_NAME."""
+        """Names of the inputs of a case, with units; cases.csv has them as input_NAME."""
         return tuple(_core.input_names(self.stages))
 
     @functools.cached_property
     def input_keys(self):
-        """What the campaign file calls each input: {"drag_factor": "drag_coefficient", ...}. Empty: it cannot be
-        dispersed."""
+        """The campaign file's name of each input: {"drag_factor": "drag_coefficient", ...}. An empty name: the input cannot
+        be dispersed."""
         return dict(zip(self.input_names, self._core.input_keys))
 
     @functools.cached_property
     def metric_names(self):
-        """Of the metrics of a flight under the campaign's own control law, with units; cases.csv has them as
+        """Names of the metrics of a flight under the campaign's own control law, with units; cases.csv has them as
         metric_NAME."""
         return tuple(self._core.metric_names)
 
@@ -172,32 +172,33 @@ class Campaign:
         return tuple(dict.fromkeys(self._core.dispersed))
 
     def plan(self, cases=None):
-        """What cases fly with, without flying: a structured array of shape (cases,), a float64 field an input, in the
-        unit of its name. `cases`: how many from the first; default: all. Raises BadInput for more than the campaign
-        has: a design of more cases is another one, which `load(..., cases=...)` makes."""
+        """Draws the inputs of the cases without flying. Returns a structured array of shape (cases,) with a float64 field
+        for each input, in the unit of its name. `cases`: number of cases, beginning with the first; default: all. Raises
+        BadInput for more cases than the campaign has. For a larger campaign use `load(..., cases=...)`."""
         count = self.cases if cases is None else whole("cases", cases, 0, self.cases)
         return structured(_core.plan(self._core, count), self.input_names)
 
     def fly(self, case=None, *, inputs=None, history=True, step_s=0.1, integrator="simpson", law=None, axes=("pitch",)):
-        """One flight in this process: case `case`, or without one the nominal flight.
+        """Flies one case in this process, or the nominal flight if `case` is None. Returns a Flight.
 
-        `inputs`: values by name that replace those drawn, in the units of the names. `history`: with the time history,
-        a row every `step_s` seconds (0.01 to 1e4, rounded to whole ticks of the autopilot) and at every event; coasts are
-        flown in strides of several ticks, and have a row where a stride ends on such a time. `integrator`: simpson (what
-        campaigns fly), erk4 or cvode.
+        `inputs`: values by name, in the units of the names; they replace the drawn ones. `history`: whether to keep the
+        time history. It has a row every `step_s` seconds (0.01 to 1e4, rounded to whole ticks of the autopilot) and at every
+        event. Coasts are flown in strides of several ticks, so they have a row only where a stride ends at such a time.
+        `integrator`: simpson (default of campaigns), erk4 or cvode.
 
-        `law(tick)`: a control law of your own, for prototypes, in the place of the autopilot's on `axes` (of roll, pitch
-        and yaw). It is called at every tick of powered flight and returns commanded angular accelerations, rad/s²: of
-        roll, pitch and yaw as a list, tuple or array of shape (3,), or one number where it commands one axis, of
-        Python's or NumPy's; anything else is a TypeError. `tick` has time_s, since_ignition_s, stage (from
-        1); as arrays of roll, pitch and yaw angle_error_rad and rate_error_rad_s (reference less true, as the sensors see
-        it), rate_rad_s, effectiveness_1_s2 (angular acceleration by deflection), program_rad_s2, saturation (-1, 0, 1), the
-        autopilot's gains kp_1_s2 and kd_1_s; limit_rad of the nozzles; `telemetry`, four numbers that go to the history;
-        and `memory`, a dict of this flight's own. What the law raises is raised, with a
-        note that names case and time.
+        `law(tick)`: a control law of your own, for prototypes. It replaces the autopilot's law on `axes` (of roll, pitch
+        and yaw). It is called at every tick of powered flight, and returns the commanded angular accelerations, rad/s²: a
+        list, tuple or array of shape (3,) for roll, pitch and yaw, or one number if it commands one axis. Anything else is a
+        TypeError.
 
-        Releases the interpreter's lock while it flies. Returns a Flight. Raises BadInput for a case, an input or an
-        integrator that there is not, and for a value that is no finite number.
+        `tick` has these numbers: `time_s`, `since_ignition_s`, `stage` (from 1), and `limit_rad` of the nozzles. It has these
+        arrays of roll, pitch and yaw: `angle_error_rad` and `rate_error_rad_s` (reference less true value, as the sensors
+        measure it), `rate_rad_s`, `effectiveness_1_s2` (angular acceleration by deflection), `program_rad_s2`, `saturation`
+        (-1, 0, 1), and the autopilot's gains `kp_1_s2` and `kd_1_s`. `telemetry` is four numbers for the history. `memory` is a
+        dict that belongs to this flight.
+
+        An exception of the law is raised here, with a note that names case and time. The call releases the interpreter's lock
+        while it flies. Raises BadInput for an unknown case, input or integrator, and for a value that is not finite.
         """
         index = None if case is None else self._index(case)
         if not isinstance(integrator, str):
@@ -209,14 +210,15 @@ class Campaign:
 
     def fly_many(self, cases=None, *, histories=True, columns=None, step_s=1.0, threads=0, progress=None, law=None,
                  axes=("pitch",)):
-        """Cases in this process, side by side on `threads` threads (0: the usable cores).
+        """Flies cases in this process, side by side on `threads` threads (0: the usable cores). Returns Flights.
 
-        `cases`: a number of cases from the first, or indices; default: all. `histories`: with the time histories of
-        all in one array, with only `columns` (names) of them, if given, and rows by `step_s` as of fly; each row of all
-        columns takes half a kilobyte. `progress(phase, done, total, note)` is called now and
-        then. `law`, `axes`: as of fly; calls for one flight alternate with calls for others, so a law keeps what it
-        remembers in `tick.memory`. Releases the interpreter's lock; Ctrl-C stops it. Returns Flights. Raises BadInput for
-        a case or a column that there is not, and what `progress` and the law raise.
+        `cases`: the number of cases, beginning with the first, or their indices; default: all. `histories`: whether to keep
+        the time histories, all in one array. `columns`: names of the columns to keep; default: all, half a kilobyte a row.
+        `step_s`: as in fly. `progress(phase, done, total, note)` is called now and then.
+
+        `law`, `axes`: as in fly. Calls for one flight alternate with calls for others, so a law keeps its state in
+        `tick.memory`. The call releases the interpreter's lock; Ctrl-C stops it. Raises BadInput for an unknown case or
+        column, and the exceptions of `progress` and of the law.
         """
         if cases is None:
             indices = list(range(self.cases))

@@ -13,7 +13,7 @@ FLIGHT_VALUES = ("outcome", "end_time_s", "end_stage", "reason", "digest", "inpu
 class History:
     """The time history of one flight: rows at the output step and at every event.
 
-    `rows` is a float64 array of shape (rows, columns) with the columns that flights under the law have;
+    `rows` is a float64 array of shape (rows, columns). It has the columns of flights under the flown control law.
     `history["altitude_m"]` is a column of it, a view of shape (rows,). NaN: undefined.
     """
 
@@ -70,17 +70,16 @@ class Flight:
 
     @property
     def completed(self):
-        """Whether it reached the end of the last burn: `outcome` is "completed"."""
+        """Whether the flight reached the end of the last burn: `outcome` is "completed"."""
         return self.outcome == "completed"
 
 
 class Flights:
     """Many flights, a sequence of Flight; a slice of it is a list.
 
-    `cases`: indices, shape (flights,). `outcome`: names. `inputs`, `metrics`: structured arrays of shape (flights,), a
-    float64 field a name. `histories`: the rows of all, one flight after the other, as one float64 array of shape (total
-    rows, columns) over the memory that the flights were gathered in, not a copy; flight i has rows offsets[i] to
-    offsets[i + 1]. Without histories both are None.
+    `cases`: indices, shape (flights,). `outcome`: names. `inputs`, `metrics`: structured arrays of shape (flights,) with a
+    float64 field for each name. `histories`: the rows of all flights, one flight after the other, as one float64 array of
+    shape (total rows, columns), not a copy. Flight i has rows offsets[i] to offsets[i + 1]. Without histories both are None.
     """
 
     def __init__(self, campaign, values):
@@ -127,8 +126,8 @@ class Flights:
         return History(self.histories[self.offsets[i]:self.offsets[i + 1]], self.columns)
 
     def sample(self, column, times_s):
-        """A column of every flight at these times, linear between rows; NaN after its end: shape (flights, times).
-        Raises BadInput without histories of `time_s` and the column."""
+        """A column of every flight at these times, linear between rows, NaN after the flight's end: shape (flights, times).
+        Raises BadInput if the histories lack `time_s` or the column."""
         times = numpy.asarray(times_s, dtype=float)
         if self.histories is None or not {"time_s", column} <= set(self.columns):
             raise BadInput(f"sample: the flights have no histories with time_s and {column}")

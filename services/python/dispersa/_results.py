@@ -22,10 +22,11 @@ class Results:
     """A result folder, as it is on the disk when it is opened.
 
     `directory`: a pathlib.Path. `exit_code`: the verdict as the program's exit code: 0 every requirement met, 3 one
-    failed, 4 more cases needed, 5 cases missing. `engine`: the version that flew it. In the order of `case_index`, arrays of
-    shape (cases,) or lists as long: `case_index`, `outcome`, `end_time_s` (since lift-off), `end_stage` (from 1), `reason`,
-    `digest`. `inputs`, `metrics`: structured arrays of shape (cases,), a float64 field a name, in the unit of the name; an
-    undefined metric is NaN.
+    failed, 4 more cases needed, 5 cases missing. `engine`: the engine version that flew the cases.
+
+    These are arrays of shape (cases,) or lists of that length, in the order of `case_index`: `case_index`, `outcome`,
+    `end_time_s` (since lift-off), `end_stage` (from 1), `reason`, `digest`. `inputs`, `metrics`: structured arrays of shape
+    (cases,) with a float64 field for each name, in the unit of the name. An undefined metric is NaN.
     """
 
     def __init__(self, directory):
@@ -57,8 +58,8 @@ class Results:
 
     @functools.cached_property
     def summary(self):
-        """summary.json as a dict: every number of the report. Of a run that ended before its report, the same of what is
-        stored. Raises InternalError for a file that is damaged."""
+        """summary.json as a dict: every number of the report. If the run ended before its report, the summary of the stored
+        cases. Raises InternalError for a damaged file."""
         if self._summary_text is None:
             return self._stored
         try:
@@ -68,12 +69,12 @@ class Results:
 
     @property
     def verdict(self):
-        """"pass", "fail", "inconclusive", "study" or "incomplete", of what is stored."""
+        """"pass", "fail", "inconclusive", "study" or "incomplete", for the stored cases."""
         return self._stored["verdict"]
 
     @property
     def requirements(self):
-        """A dict for each requirement, as in summary.json, of what is stored."""
+        """A dict for each requirement, as in summary.json, for the stored cases."""
         return self._stored["requirements"]
 
     @property
@@ -82,8 +83,8 @@ class Results:
         return self.directory / "report.html"
 
     def worst(self, metric, count=1):
-        """Indices of the worst cases in a metric, a list of at most `count`, the worst first: as in the report, lost flights
-        before all others, then by the value in its bad sense. Raises BadInput for a metric that there is not."""
+        """Indices of the worst cases in a metric, a list of at most `count`, the worst first. As in the report, lost flights
+        come before all others, which are ordered by the metric. Raises BadInput for an unknown metric."""
         if metric not in self.metrics.dtype.names:
             raise refuse(f"worst: '{metric}' is not a metric of these flights", "a name of Results.metrics.dtype.names")
         worse = _core.describe(metric)[3]
@@ -111,8 +112,8 @@ class Results:
 
     @functools.cached_property
     def cases(self):
-        """The columns of cases.csv: a pandas.DataFrame, or where pandas is not installed what table() returns. Of the frame
-        attrs["input_keys"] is what the campaign file calls each input: {"input_drag_factor": "drag_coefficient", ...}."""
+        """The columns of cases.csv: a pandas.DataFrame, or without pandas the array of table(). The frame's
+        attrs["input_keys"] has the campaign file's name of each input: {"input_drag_factor": "drag_coefficient", ...}."""
         try:
             import pandas
         except ImportError:
@@ -134,8 +135,8 @@ class Results:
         return self._csv("bands.csv")
 
     def history(self, case=None):
-        """A History that the report wrote: of a case that it shows, or without one of the nominal flight. Raises BadInput
-        for a case that it does not show."""
+        """A History that the report wrote: of a case that the report shows, or of the nominal flight if `case` is None. Raises
+        BadInput for a case that the report does not show."""
         return self._csv("nominal.csv" if case is None else f"case_{whole('case', case, 0, MOST_CASES)}.csv")
 
     def _csv(self, name):
@@ -155,8 +156,8 @@ class Results:
             return None
 
     def replay(self, case, *, law=None):
-        """Flies a stored case again; a dict with its digest. `law`: the control law in Python that it was flown with, if
-        it was. Raises ReplayMismatch unless it is the same to the last bit, BadInput without that law."""
+        """Flies a stored case again. Returns a dict with its digest. `law`: the control law in Python of the campaign, if it
+        has one. Raises ReplayMismatch if one bit differs, and BadInput without that law."""
         answer = json.loads(_core.replay(os.fspath(self.directory), whole("case", case, 0, MOST_CASES), law,
                                          _law_of(self.campaign, law)))
         if not answer["match"]:
@@ -174,12 +175,12 @@ def _campaign_in(directory):
 
 
 def results(directory):
-    """Opens a result folder. Raises BadInput if it is none."""
+    """Opens a result folder. Raises BadInput if `directory` is not one."""
     return Results(directory)
 
 
 def worker_program():
-    """The program dispersa-worker of this build or installation, else the one in PATH. None: there is none."""
+    """Path of the program dispersa-worker: of this build or installation, else the one in PATH, else None."""
     package = pathlib.Path(__file__).resolve().parent
     # build/release/python/dispersa, PREFIX/lib/python3/dist-packages/dispersa
     for prefix in (package.parents[1], *package.parents[2:4]):
@@ -194,26 +195,26 @@ def run(what, out="", *, cases=None, seed=None, autopilot=None, base=None, worke
         priority=0, law=None, axes=None):
     """Flies a campaign and writes its result folder, as `dispersa run` does. Returns its Results.
 
-    `what`: a Campaign, a path, or a dict. `out`: the folder, new or empty unless `resume`; default
-    results/NAME-ID. `workers`: processes (default: the usable cores); 0 flies on `threads` threads of this one.
-    `histories`, `envelope`: whether, and of how many cases, the report flies time histories again.
+    `what`: a Campaign, a path, or a dict. `out`: the folder, new or empty unless `resume`; default: results/NAME-ID.
+    `workers`: the number of worker processes (default: the usable cores); 0 flies on `threads` threads of this process.
+    `histories`: whether the report flies cases again for time histories. `envelope`: the number of these cases.
     `progress(phase, done, total, note)` is called now and then.
 
-    `peer` ("HOST[:PORT]"): the coordinator there flies it, in DDS domain `domain`, and the folder is fetched; `keys` is
-    the folder of the client's keys, `insecure` says that there are none, `priority` (-1000 to 1000) that of `dispersa
-    launch`. How it flies and reports is the coordinator's: `workers`, `threads`, `resume`, `histories` and `envelope` go
-    with runs on this machine alone, as what is said of a coordinator goes with `peer`.
+    `peer` ("HOST[:PORT]"): the coordinator there flies the campaign, in DDS domain `domain`, and the folder is fetched.
+    `keys`: the folder of the client's keys. `insecure`: work without keys. `priority`: -1000 to 1000, as in `dispersa launch`.
+    These arguments need `peer`. `workers`, `threads`, `resume`, `histories` and `envelope` are refused with `peer`, because the
+    coordinator decides them.
 
-    `law`, `axes` (default: pitch): a control law in Python, as of Campaign.fly, flown by this process alone: `workers=0`
-    must be said. Name and hash of what the law does (its bytecode, what it closes over and refers to) are part of the
-    campaign, hence of its ids; the law itself is in no file. So nobody without it flies these cases again, as the report
-    says, and `replay`, `report` and `resume` want it as `law` too. Nominal and first cases are flown twice, and `resume`
-    flies a stored case again: a law that differs is refused, and so is one that holds what cannot be seen (a generator, an
-    open file).
+    `law`, `axes` (default: pitch): a control law in Python, as in Campaign.fly. It needs `workers=0`. The campaign has the
+    law's name and a hash of everything that decides its commands (its bytecode, closure and references), so the ids depend on
+    them. No file stores the law. So these cases can be flown again only with the law, as the report says, and `replay`,
+    `report` and `resume` need it as `law` too. The nominal flight and the first cases are flown twice, and `resume` flies a
+    stored case again. A law that gives other bits is refused. So is a law that holds an object which the hash cannot cover (a
+    generator, an open file).
 
-    The verdict is a value: Results.exit_code. Raises BadInput; Incomplete, with `results`, when cases are missing;
-    InternalError, with `results`, when results contradict each other. Ctrl-C raises KeyboardInterrupt: what was flown is
-    kept, and `resume` goes on.
+    The verdict is a value: Results.exit_code. Raises BadInput; Incomplete, with `results`, if cases are missing;
+    InternalError, with `results`, if two results of a case differ. Ctrl-C raises KeyboardInterrupt; stored results stay, and
+    `resume` continues.
     """
     overrides = {"cases": cases, "seed": seed, "autopilot": autopilot}
     if isinstance(what, Campaign) and all(value is None for value in overrides.values()):
@@ -278,8 +279,8 @@ def _fly_a_stored_case_again(folder, law):
 
 
 def report(directory, *, histories=True, envelope=ENVELOPE, progress=None, law=None):
-    """Makes the reports of a result folder (a path or Results) again, as `dispersa report` does; its Results. Arguments as
-    of run; what was flown with a control law in Python needs that `law` for histories. Raises BadInput."""
+    """Writes the reports of a result folder (a path or Results) again, as `dispersa report` does. Returns its Results. The
+    arguments are those of run. A campaign with a control law in Python needs that `law` for histories. Raises BadInput."""
     if isinstance(directory, Results):
         directory = directory.directory
     sha256 = "" if law is None else _law_of(_campaign_in(directory), law)
@@ -297,7 +298,7 @@ def _law_of(campaign, law):
 
 
 def compare(a, b, *, metrics=(), out=""):
-    """Two result folders (paths or Results), paired by case where the draws match: compare.json as a dict.
+    """Compares two result folders (paths or Results), case by case if their draws are the same. Returns compare.json as a dict.
 
     `metrics`: names without prefix, instead of all. `out`: a folder for compare.html and compare.json. Raises BadInput.
     """
@@ -310,11 +311,11 @@ def compare(a, b, *, metrics=(), out=""):
 
 
 def margins(what, *, cases=None, autopilot=None, base=None, frequency_band_percent=15.0, drift=False):
-    """Gain, phase and delay margins of a campaign's autopilot, computed and measured in flight, as a dict: what
-    `dispersa margins --json` prints; `passed` is whether every gate is met.
+    """Gain, phase and delay margins of a campaign's autopilot, computed and measured in flight, as the dict that
+    `dispersa margins --json` prints. `passed` is whether every gate is met.
 
-    `cases`: also of so many dispersed cases. `frequency_band_percent`: how far bending frequencies may be off. `drift`:
-    linearise with the lateral velocity. Raises BadInput.
+    `cases`: number of dispersed cases whose margins are computed too. `frequency_band_percent`: error of the bending
+    frequencies. `drift`: linearise with the lateral velocity. Raises BadInput.
     """
     campaign = what if isinstance(what, Campaign) and autopilot is None else load(what, autopilot=autopilot, base=base)
     return json.loads(_core.margins(campaign.name, campaign.canonical_yaml, whole_if_given("cases", cases, 1, MOST_CASES),
@@ -322,15 +323,15 @@ def margins(what, *, cases=None, autopilot=None, base=None, frequency_band_perce
 
 
 class Optimization(dict):
-    """What `dispersa optimize --json` prints, as a dict. `yaml`: the reference file. `statement`: how far the search
-    got, if it misses its target; else empty."""
+    """The object that `dispersa optimize --json` prints, as a dict. `yaml`: the text of the reference file. `statement`: how
+    far the search missed its target, or empty."""
 
     yaml = ""
     statement = ""
 
     @property
     def reached(self):
-        """Whether the target is reached; one that misses it is a result all the same."""
+        """Whether the target is reached. A miss is a result too, not an exception."""
         return self["reached"]
 
     @property
@@ -340,7 +341,7 @@ class Optimization(dict):
 
 
 def optimize(what, out="", *, seed=None, threads=0, base=None, progress=None):
-    """The flight program that reaches a campaign's target orbit: an Optimization.
+    """Finds the flight program that reaches a campaign's target orbit. Returns an Optimization.
 
     `what`: a path, a dict or a Campaign, with an optimize block or a reference. `out`: a file for the reference; time
     history and figures go beside it. The result does not depend on `threads` (0: the usable cores). Raises BadInput.

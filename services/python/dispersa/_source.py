@@ -11,8 +11,8 @@ from .errors import BadInput
 
 
 class Tree(dict):
-    """What a file holds, to be read and edited: dicts, lists, numbers, texts. `folder`: what names in it are
-    relative to."""
+    """The content of a file, to be read and edited: dicts, lists, numbers, texts. `folder`: the folder to which file names
+    in it are relative."""
 
     folder = "."
 
@@ -21,7 +21,7 @@ class Tree(dict):
         return merged if merged is NotImplemented else _in_folder(merged, self.folder)
 
     def copy(self):
-        """Another with the same folder; what is in it is shared."""
+        """A shallow copy with the same folder."""
         return self | {}
 
 
@@ -32,11 +32,10 @@ def _in_folder(value, folder):
 
 
 def read(path, inlined=False):
-    """A file of any kind as a Tree of dicts, lists and scalars.
+    """Reads a file of any kind as a Tree of dicts, lists and scalars.
 
-    `inlined`: what a campaign or a vehicle refers to stands in the place of the names, so that an autopilot's gains or a
-    stage's masses can be edited too.
-    Raises BadInput for a file that is no YAML, or no map of keys.
+    `inlined`: the contents of the named files replace their names, so that an autopilot's gains or a stage's masses can be
+    edited too. Raises BadInput for a file that is not YAML, or not a map of keys.
     """
     value = _core.read_tree(os.fspath(path), inlined)
     if not isinstance(value, dict):
@@ -90,6 +89,6 @@ def placed(name, text):
 
 
 def write(tree, path):
-    """Writes a tree as a file of YAML that `dispersa` reads. Names in it stay as they are: relative to its folder. Raises
-    BadInput for what has no place in a file, OSError where it cannot be written."""
+    """Writes a tree as a YAML file for `dispersa`. File names in it are not changed; they are relative to the file's folder.
+    Raises BadInput for a value that a file cannot hold, and OSError if the file cannot be written."""
     pathlib.Path(path).write_text(text_of(tree), encoding="utf-8")

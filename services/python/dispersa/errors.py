@@ -18,10 +18,10 @@ class ExitCode(enum.IntEnum):
 
 @dataclasses.dataclass(frozen=True)
 class Problem:
-    """One thing to change in an input. Line and column count from 1; 0: it has no place in a text."""
+    """One error or warning of an input. Line and column count from 1; 0: the problem has no place in a text."""
 
     file: str
-    """As it was named; of a dict FOLDER/<dict>."""
+    """The file's name as it was given; for a dict FOLDER/<dict>."""
     line: int
     """From 1."""
     column: int
@@ -31,7 +31,7 @@ class Problem:
     message: str
     """What is wrong."""
     allowed: str
-    """What is allowed; of a warning what is usual; may be empty."""
+    """What is allowed; for a warning, what is usual. May be empty."""
 
     def __str__(self):
         place = f"{self.file}:{self.line}:{self.column}: " if self.line else f"{self.file}: " if self.file else ""
@@ -40,13 +40,13 @@ class Problem:
 
 
 class Error(Exception):
-    """Anything that the program would end with `code` for."""
+    """An error for which the program would end with exit code `code`."""
 
     code = ExitCode.INTERNAL_ERROR
 
 
 class BadInput(Error, ValueError):
-    """Bad usage or bad input (2); `problems` has every one that was found."""
+    """Bad usage or bad input (2); `problems` has every problem that was found."""
 
     code = ExitCode.BAD_INPUT
 
@@ -61,24 +61,24 @@ class BadInput(Error, ValueError):
 
 
 class Incomplete(Error):
-    """Cases are missing (5): no workers, disk full, quarantined, cancelled. `results`: what there is, or None."""
+    """Cases are missing (5): no workers, disk full, quarantined, cancelled. `results`: the stored Results, or None."""
 
     code = ExitCode.INCOMPLETE
     results = None
 
 
 class ReplayMismatch(Error):
-    """A case does not fly as it is stored (6); `differences`: dicts of name, stored, replayed."""
+    """A replayed case differs from the stored one (6); `differences`: dicts of name, stored, replayed."""
 
     code = ExitCode.REPLAY_MISMATCH
     differences = ()
 
 
 class InternalError(Error, RuntimeError):
-    """An error of the program or of the machine (1). `results`: what there is, or None."""
+    """An error of the program or of the machine (1). `results`: the stored Results, or None."""
 
     results = None
 
 
 class InputWarning(UserWarning):
-    """Something of an input looks wrong but is legal."""
+    """A value of an input is allowed, but looks wrong."""

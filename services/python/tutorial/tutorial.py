@@ -1,14 +1,15 @@
 # %% [markdown]
 # # Tutorial: dispersa from Python
 #
-# A campaign from the file to the verdict, in cells: each begins with `# %%`, which editors that know notebooks run one at
-# a time. Start it where `campaigns/` is. Everything here is what the program `dispersa` does, to the last bit.
+# With this tutorial you take a campaign from the file to the verdict. Each cell begins with `# %%`; an editor with notebook
+# support runs one cell at a time. Start it in the folder that has `campaigns/`. All results have the same bits as those of
+# the program `dispersa`.
 
 # %% [markdown]
 # ## A campaign
 #
-# `load` reads a campaign file and all that it refers to. Its `id` is the hash of everything that is in it, `flight_id` of
-# what decides a flight: whoever has the same `flight_id` flies the same flights.
+# `load` reads a campaign file and the files that it names. `id` is the hash of all their content. `flight_id` is the hash of
+# everything that decides a flight: campaigns with the same `flight_id` have the same flights.
 
 # %%
 import pathlib
@@ -26,7 +27,8 @@ campaign = dispersa.load(CAMPAIGNS / "table3.yaml", cases=120)
 print(campaign)
 
 # %% [markdown]
-# What its cases fly with is drawn without flying: one row a case, one field an input. Names carry the unit.
+# `plan` draws the inputs of the cases without flying: one row for each case, one field for each input. The names have the
+# unit.
 
 # %%
 plan = campaign.plan()
@@ -36,8 +38,8 @@ print("thrust of stage 1:", plan["thrust_factor_stage1"].mean(), "±", plan["thr
 # %% [markdown]
 # ## One flight
 #
-# Without a case it is the nominal flight. Inputs, metrics and the time history come with it; the history is the memory that
-# the flight wrote, and a column of it a view.
+# Without a case number `fly` flies the nominal flight. A flight has inputs, metrics and a time history. The history is the
+# memory that the flight wrote, and a column is a view of it.
 
 # %%
 nominal = campaign.fly()
@@ -50,7 +52,7 @@ axes = dispersa.plot.history([nominal, case], ["pitch_launch_deg", "pitch_error_
 axes[0].figure.savefig(OUT / "history.png")
 
 # %% [markdown]
-# Any input may be set. How much does the yaw error grow with a wind from the side?
+# You may set any input. For example: how much does the yaw error grow with a wind from the side?
 
 # %%
 for speed_m_s in (0.0, 30.0, 60.0):
@@ -60,9 +62,9 @@ for speed_m_s in (0.0, 30.0, 60.0):
 # %% [markdown]
 # ## A control law of your own
 #
-# For a prototype a function is enough: it is called at every tick of powered flight with what the autopilot measures, and
-# returns the angular acceleration that it wants, rad/s². What is to be remembered goes into `tick.memory`, which belongs to
-# the flight. A law that is to fly in campaigns becomes a shared object (`campaigns/control_laws`).
+# For a prototype a function is enough. It is called at every tick of powered flight with the measurements of the autopilot,
+# and returns the commanded angular acceleration, rad/s². It keeps its state in `tick.memory`, which belongs to the flight.
+# If others shall fly the law, make it a shared object (`campaigns/control_laws`).
 
 
 # %%
@@ -80,8 +82,8 @@ print(f"pitch error, peak: {prototype.metrics['pitch_error_peak_deg']:.3f} deg, 
       f"{case.metrics['pitch_error_peak_deg']:.3f} deg")
 
 # %% [markdown]
-# It flies a campaign too, when `workers=0` says that this process alone does. The result folder names the law and does not
-# hold it: its ids are those of no other law, and who wants to fly a case again needs the law.
+# The law can also fly a campaign, in this process only: `workers=0`. The result folder has the name of the law, but not the
+# law. Its ids differ from those of every other law. To fly a case again you need the law.
 
 # %%
 damped_results = dispersa.run(CAMPAIGNS / "smoke.yaml", OUT / "damped", workers=0, law=damped, histories=False)
@@ -95,7 +97,7 @@ print(damped_results.replay(3, law=damped)["match"])
 # %% [markdown]
 # ## Many flights
 #
-# `fly_many` flies cases side by side and keeps the columns that are asked for, all flights in one array.
+# `fly_many` flies cases side by side and keeps the requested columns of all flights in one array.
 
 # %%
 flights = campaign.fly_many(40, columns=["time_s", "altitude_m", "latitude_deg", "longitude_deg", "pitch_error_deg"])
@@ -108,14 +110,14 @@ axes.figure.savefig(OUT / "ground_track.png")
 # %% [markdown]
 # ## A run, and its verdict
 #
-# `run` writes a result folder like `dispersa run`: on worker processes; with `workers=0` in this process, and with
-# `peer="HOST"` on a coordinator. `progress` is told how far it is. The verdict is a value. What is wrong with an input is an exception, and so are missing
-# cases. That 120 flights without a failure do not show 99.73 % is no failure: the verdict is `inconclusive`, and the sentence
-# says how many cases it takes.
+# `run` writes a result folder like `dispersa run`: with worker processes, in this process (`workers=0`), or on a coordinator
+# (`peer="HOST"`). It calls `progress` now and then. The verdict is a value. A wrong input is an exception, and so are missing
+# cases. 120 flights without a failure do not show 99.73 %. So the verdict is `inconclusive`, and the sentence says how many
+# cases are needed.
 
 # %%
 def show(phase, done, total, note):
-    """Called some ten times a second; here the end of each phase is enough."""
+    """Called about ten times a second; prints the end of each phase only."""
     if done == total:
         print(f"{phase}: {done} of {total} {note}")
 
@@ -126,15 +128,15 @@ for requirement in results.requirements:
     print(requirement["metric"], requirement["verdict"], "-", requirement["sentence"])
 
 # %% [markdown]
-# `cases` is a pandas table with the columns of `cases.csv`, or a NumPy array where pandas is not installed; `metrics` and
-# `inputs` are NumPy arrays in any case.
+# `cases` is a pandas table with the columns of `cases.csv`, or a NumPy array if pandas is not installed. `metrics` and
+# `inputs` are always NumPy arrays.
 
 # %%
 peak = results.metrics["pitch_error_peak_deg"]
 print("median:", numpy.median(peak), "deg; largest:", peak.max(), "deg")
 
 # %% [markdown]
-# `worst` names the worst cases, lost flights first. Any case can be flown again; `replay` compares it with what is stored.
+# `worst` gives the worst cases, lost flights first. You can fly any case again; `replay` compares it with the stored result.
 
 # %%
 worst = results.worst("pitch_error_peak_deg")[0]
@@ -144,7 +146,8 @@ print("worst case:", worst, again.digest == results.digest[worst], results.repla
 # %% [markdown]
 # ## Plots
 #
-# In the style of the report: bands over time, exceedance with the requirement's limit, and what drives a metric.
+# `dispersa.plot` draws in the style of the report: bands over time, exceedance with the requirement's limit, and the inputs
+# that drive a metric.
 
 # %%
 dispersa.plot.bands(results, "pitch_error_deg").figure.savefig(OUT / "bands.png")
@@ -154,8 +157,8 @@ dispersa.plot.drivers(results, "pitch_error_peak_deg")[0].figure.savefig(OUT / "
 # %% [markdown]
 # ## A campaign of your own
 #
-# `read` gives the file as a dict, to be edited; `load`, `validate` and `run` take it in place of a file. The same content has
-# the same `id`, whoever wrote it.
+# `read` returns the file as a dict that you can edit. `load`, `validate` and `run` accept the dict in place of a file. Equal
+# content has the same `id`.
 
 # %%
 tree = dispersa.read(CAMPAIGNS / "table3.yaml")
@@ -166,8 +169,8 @@ stronger = dispersa.load(tree)
 print(stronger.id == campaign.id, stronger.plan()["wind_max_speed_m_s"][:2])
 
 # %% [markdown]
-# Vehicle, reference and autopilot are files of their own. With `inlined=True` their contents stand in the place of their names
-# and can be edited too.
+# Vehicle, reference and autopilot are files of their own. With `inlined=True` their contents replace their names, so you can
+# edit them too.
 
 # %%
 stiffer = dispersa.read(CAMPAIGNS / "table3.yaml", inlined=True)
@@ -176,7 +179,7 @@ for gains in stiffer["autopilot"]["pitch"]["gains"]:
 print(dispersa.load(stiffer, cases=campaign.cases).fly(worst, history=False).metrics["pitch_error_peak_deg"], "deg")
 
 # %% [markdown]
-# `validate` says everything that is wrong, as objects.
+# `validate` returns every error as an object.
 
 # %%
 tree["dispersions"]["wind"]["max_speed_m_s"] = -1.0
@@ -186,7 +189,7 @@ for problem in dispersa.validate(tree).errors:
 # %% [markdown]
 # ## A comparison
 #
-# Cases of the same seed meet the same draws of whatever was not changed, and are compared pair by pair.
+# With the same seed, all unchanged dispersions have the same draws. So the cases are compared pair by pair.
 
 # %%
 comparison = dispersa.compare(results, dispersa.run(stronger, OUT / "stronger", workers=0, histories=False), out=OUT)
