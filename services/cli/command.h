@@ -11,10 +11,10 @@
 //     });
 //   }
 //
-// It is declared below and called in main.cc. The function that it stores returns an ExitCode. Results go to
-// stdout, everything else to stderr (the log writes there). Commands need not handle exceptions: InputError
-// ends the program with its text and 2, any other with its message and 1. With --json both are also printed
-// as an object. The type names below appear in help texts, and completion works by them.
+// It is declared below and called in program.cc. The function that it stores returns an ExitCode. Results go
+// to stdout, everything else to stderr (the log writes there). Commands need not handle exceptions:
+// InputError ends the program with its text and 2, any other with its message and 1. With --json both are
+// also printed as an object. The type names below appear in help texts, and completion works by them.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -30,7 +30,7 @@ struct GlobalOptions {
   bool quiet = false;  ///< no progress, only warnings and errors on stderr
 };
 
-/// The parsed command, which main.cc runs.
+/// The parsed command, which program.cc runs.
 struct Invocation {
   GlobalOptions global;
   std::function<ExitCode(const GlobalOptions&)> command;

@@ -119,7 +119,7 @@ class Searcher {
   Progress progress_;
 };
 
-/// What of the squared distance a coordinate makes up.
+/// The share of a coordinate in the squared distance.
 double ShareOf(const FailureSearchResult& result, const DispersionSpace& space, std::size_t i) {
   if (space.coordinates()[i].kind != CoordinateKind::kNormal || result.distance == 0.0) return 0.0;
   return result.point[i] * result.point[i] / (result.distance * result.distance);

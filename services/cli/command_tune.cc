@@ -31,7 +31,7 @@ struct TuneOptions {
   int threads = 0;  ///< 0: the processor's
 };
 
-// What gives the same file again; the number of threads does not matter.
+// The command that gives the same file again; the number of threads does not matter.
 std::string CommandText(const TuneOptions& options) {
   std::string text = "dispersa tune " + options.campaign;
   if (!options.autopilot.empty()) text += " --autopilot " + options.autopilot;
@@ -41,7 +41,7 @@ std::string CommandText(const TuneOptions& options) {
                             options.tuning.seed, options.tuning.cases, options.tuning.evaluations);
 }
 
-// What the law is and what its numbers mean, as comment lines.
+// The law and the meaning of its numbers, as comment lines.
 std::string LawText(ControlLaw law) {
   constexpr std::size_t kColumns = 108;
   std::istringstream words(InfoOf(law).meaning);

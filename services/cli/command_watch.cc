@@ -72,7 +72,7 @@ class Watcher {
     std::string note = state_;
     if (!campaign.at("problem").is_null()) note += "; " + campaign.at("problem").get<std::string>();
     for (const Json& standing : campaign.at("requirements")) note += "; " + StandingText(standing);
-    // What stands still is said once.
+    // A state that does not change is printed once.
     if (state_ != before || state_ == "flying")
       progress_->Show(campaign.at("done"), campaign.at("total"), note);
   }

@@ -161,7 +161,7 @@ std::string WorkersHtml(const Json& workers) {
   return table.Html();
 }
 
-/// What the words of the report's requirements need.
+/// The fields from which the report's words for a requirement are made.
 RequirementSummary SummaryOf(const Json& requirement) {
   RequirementSummary summary;
   summary.metric = requirement.at("metric");

@@ -1,4 +1,4 @@
-// A page on this machine that fills while it is open.
+// A page on this machine that changes while it is open.
 #pragma once
 
 #include <condition_variable>

@@ -1,5 +1,5 @@
-// One optimisation after another with other seeds: does the search find the orbit whatever its luck, and the
-// same program?
+// Several optimisations with different seeds: whether each finds the orbit, and whether all find the same
+// program.
 #pragma once
 
 #include <cstdint>

@@ -14,7 +14,7 @@ namespace dispersa {
 void BindSession(CLI::App* command, Invocation& invocation,
                  std::function<ExitCode(Session&, const GlobalOptions&)> run);
 
-/// The option that names a campaign: its id or how that begins.
+/// The option that names a campaign by its id or the first characters of it.
 std::shared_ptr<std::string> AddIdOption(CLI::App* command, bool required = true);
 
 }  // namespace dispersa

@@ -1,4 +1,4 @@
-// Standard output is either a file's or a command's.
+// The stream for text beside an output file, which may be standard output.
 #pragma once
 
 #include <cstdio>
@@ -8,9 +8,8 @@
 
 namespace dispersa {
 
-/// The stream for what a command tells besides the file that an option names: stderr if that is "-", standard
-/// output. Throws InputError, which begins with the option's name, if standard output is to be the --json
-/// object too.
+/// The stream for the text of a command that also writes a file. It is stderr if the file is "-", standard
+/// output. Throws InputError, which begins with the option's name, if --json needs standard output too.
 std::FILE* StreamBeside(const std::string& option, const std::string& path, const GlobalOptions& global);
 
 }  // namespace dispersa

@@ -24,7 +24,7 @@ class TerminalObserver : public Observer {
     progress_->Show(done, total, note);
   }
   void EndPhase() override { progress_.reset(); }
-  /// Never in a command that does not catch the stop signals: it ends by them.
+  /// Never true in a command that does not catch the stop signals: such a command ends by the signal.
   bool ShouldStop() override { return StopRequested(); }
 
  private:

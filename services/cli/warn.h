@@ -1,4 +1,4 @@
-// Loading for a command: what looks wrong but is legal goes to the log, each once.
+// Loading for a command: warnings about allowed but unusual values go to the log, each once.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// execution.json: who ran a campaign, when, in which processes. What differs between runs and nothing else.
+// execution.json: who ran a campaign, when, in which processes. It has only facts that differ between runs.
 #pragma once
 
 #include <cstdint>

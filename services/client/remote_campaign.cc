@@ -44,7 +44,7 @@ void FetchFile(Session& session, const std::string& id, const std::string& path,
   file.Commit();
 }
 
-/// What there is to fetch, once the coordinator has it together.
+/// The files to fetch, once the coordinator has copied the database.
 Json AskForFiles(Session& session, const std::string& id) {
   for (;;) {
     Json answer = Json::parse(session.Ask("files", {{"id", id}}).text);
@@ -117,7 +117,7 @@ FetchedCampaign FetchCampaign(Session& session, const std::string& id, const std
   fs::create_directories(incomplete);
   for (const Json& file : answer.at("files")) {
     const fs::path path = file.at("path").get<std::string>();
-    // Whatever answers there: nothing is written outside of the folder.
+    // Nothing is written outside of the folder, also if a stranger answers.
     if (!IsFileBelow(path)) {
       throw Failure{kExitInternalError, "the coordinator names a file outside of the result folder"};
     }

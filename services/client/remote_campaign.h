@@ -1,4 +1,4 @@
-// A campaign that a coordinator flies: given to it, followed, brought home.
+// A campaign that a coordinator flies: launch, watch, fetch.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,7 @@
 namespace dispersa {
 
 /// Uploads what the coordinator lacks. Launching again changes nothing but the priority. Returns the
-/// campaign's state ("queued", "flying", ...). Throws Failure.
+/// campaign's state ("waiting", "flying", ...). Throws Failure.
 std::string LaunchCampaign(Session& session, const Campaign& campaign, int priority);
 
 /// Waits until the campaign has ended and returns its exit code. Waits for an absent coordinator. Throws

@@ -32,7 +32,7 @@ std::optional<Reply> Session::Try(const std::string& method, const Json& argumen
 
 Reply Session::Ask(const std::string& method, const Json& arguments, const std::string& data) {
   if (auto reply = Try(method, arguments, data)) return *std::move(reply);
-  // Whoever has keys hears nobody without: it cannot tell us so.
+  // A coordinator with keys does not receive our messages without keys, so it cannot refuse them.
   throw Failure{kExitIncomplete,
                 Silence() + (has_keys_ ? ""
                                        : "; a coordinator with keys answers only clients with keys (--keys), "

@@ -1,4 +1,4 @@
-// A connection to a coordinator: what everything that asks one something shares.
+// A connection to a coordinator, shared by all commands that ask one.
 #pragma once
 
 #include <chrono>

@@ -36,7 +36,7 @@ void RequireWritableFolder(const std::string& option, const fs::path& path) {
     throw InputError(option + ": " + path.string() + " cannot be written: " + place.string() + ": " + why,
                      "a folder that is there or can be made, and can be written");
   };
-  // What does not exist yet is made in the nearest folder above that does.
+  // A missing folder is made in the nearest existing folder above it.
   std::error_code error;
   fs::path place = fs::absolute(path).lexically_normal();
   while (!fs::exists(place, error) && place.has_relative_path()) place = place.parent_path();

@@ -1,4 +1,4 @@
-// Whether results can be written where they are wanted, asked before hours are spent on them.
+// Checks, before hours of computing, that the results can be written.
 #pragma once
 
 #include <filesystem>

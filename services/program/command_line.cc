@@ -55,7 +55,9 @@ InputProblem ProblemOf(const CLI::ParseError& error) {
   return {"", 0, 0, "", text.substr(0, at), text.substr(at + separator.size())};
 }
 
-// What CLI11 parses, from behind. To it "--seed=" has no value and takes the next word for it.
+// The words in the order in which CLI11 parses them, the last first. CLI11 takes the next word as the value
+// of
+// "--seed=".
 Words Spelled(const Words& words) {
   Words spelled;
   for (const std::string& word : words) {

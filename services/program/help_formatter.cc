@@ -9,7 +9,7 @@ HelpFormatter::HelpFormatter() {
   label(kYamlType, kFileType);
 }
 
-// What comes after a command's own options.
+// The text after a command's own options.
 std::string HelpFormatter::make_subcommands(const CLI::App* app, CLI::AppFormatMode mode) const {
   const CLI::App* root = app;
   while (root->get_parent() != nullptr) root = root->get_parent();

@@ -24,7 +24,7 @@ bool Parse(std::string_view digits, Number* number) {
   return std::from_chars(digits.data(), digits.data() + digits.size(), *number).ec == std::errc();
 }
 
-/// Makes `text` what CLI11 takes for decimal. What is wrong with it, or "".
+/// Makes `text` a number that CLI11 reads as decimal. Returns the problem with it, or "".
 std::string MakeWholeNumber(std::string& text, std::int64_t least, std::uint64_t most) {
   const bool negative = text.starts_with('-');
   const std::string problem = "'" + text + "' is ";

@@ -19,8 +19,7 @@ CLI::Validator WholeNumber(std::int64_t least, std::uint64_t most);
 std::vector<std::string> ListedValues(const CLI::Option& option);
 
 /// Makes every option and argument of a program and its commands refuse a wrong value: an empty one, one that
-/// is not listed, or, where a number is needed, one that is no WholeNumber or no finite number. Call it after
-/// all are added.
+/// is not listed, or one that is not the needed WholeNumber or finite number. Call it after all are added.
 void CheckValues(CLI::App& app);
 
 }  // namespace dispersa

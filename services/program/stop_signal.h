@@ -1,4 +1,4 @@
-// Ctrl-C and its relatives, as a question that loops ask.
+// Ctrl-C and other stop signals, as a flag that loops read.
 #pragma once
 
 namespace dispersa {

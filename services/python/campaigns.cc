@@ -114,7 +114,7 @@ py::object ValueOf(const InputNode& node) {
   }
 }
 
-/// What a file holds, as dicts, lists and scalars; `inlined`: with what it refers to in the place of names.
+/// The content of a file as dicts, lists and scalars. `inlined`: file contents replace their names.
 py::object ReadTree(const std::string& path, bool inlined) {
   std::vector<InputProblem> problems;
   InputNode root = ReadYamlFile(path, problems);

@@ -179,7 +179,7 @@ std::string Shown(const py::handle& value) {
   py::object text = py::repr(value);
   const bool is_long = py::len(text) > kMost;
   if (is_long) text = text[py::slice(0, kMost, 1)];
-  // What UTF-8 has no letters for is written out.
+  // Characters that UTF-8 cannot hold are written as escapes.
   const auto utf8 = text.attr("encode")("utf-8", "backslashreplace").cast<std::string>();
   return utf8 + (is_long ? " …" : "") + " (" + std::string(Py_TYPE(value.ptr())->tp_name) + ")";
 }
@@ -200,7 +200,7 @@ double Number(const py::handle& value) {
   return number;
 }
 
-// What a law returned as commands of all axes. Those that it does not command are ignored.
+// The value that a law returned, as commands of all axes. Those that it does not command are ignored.
 void TakeCommand(const py::object& returned, unsigned axes, double* command) {
   const bool commands_one = (axes & (axes - 1)) == 0;
   if (IsNumber(returned)) {

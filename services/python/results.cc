@@ -138,7 +138,7 @@ std::string CompareResults(const std::string& a, const std::string& b,
   return ComparisonJson(compared.comparison);
 }
 
-/// What `dispersa margins --json` prints.
+/// The object that `dispersa margins --json` prints.
 std::string Margins(const std::string& name, const std::string& text, std::optional<std::uint64_t> cases,
                     double frequency_band_percent, bool drift) {
   const py::gil_scoped_release free;
@@ -164,7 +164,7 @@ py::tuple Optimize(const std::string& name, const std::optional<std::string>& te
   return py::make_tuple(json, reference, statement);
 }
 
-/// What `dispersa replay --json` prints.
+/// The object that `dispersa replay --json` prints.
 std::string Replay(const std::string& directory, std::uint64_t case_index, const py::object& law,
                    const std::string& law_sha256) {
   PythonObserver observer{py::none()};

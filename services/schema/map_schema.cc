@@ -425,7 +425,7 @@ void MapSchema::Either(const std::vector<Alternative>& alternatives) {
     branches.push_back(std::move(keys_));
   }
   keys_ = std::move(known);
-  // What holds of a map for which this alternative is the one.
+  // The conditions of a map to which this alternative applies.
   const auto rules = [&](const Keys& branch) {
     Json schema = Json::object();
     std::vector<std::string> foreign;

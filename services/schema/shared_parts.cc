@@ -30,7 +30,7 @@ bool IsSchema(const Json& json) {
                               has("oneOf", Json::value_t::array));
 }
 
-// What it says whoever holds it.
+// Its text without the description, which depends on its place.
 std::string PartOf(const Json& json) {
   Json part = json;
   part.erase("description");
