@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/mman.h>
-#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -18,6 +17,7 @@
 #include <ctime>
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -28,7 +28,14 @@ std::string refusal;
 std::set<std::string> not_refused;
 
 // Kinds of frames in the pipe: a byte, the size as 8 bytes, the bytes.
-constexpr char kSaid = 's', kProblem = 'p', kThrew = 't', kDone = 'd';
+constexpr char kSaid = 's', kProblem = 'p', kThrew = 't', kDone = 'd', kAsked = 'a', kUnheld = 'u';
+constexpr std::string_view kKinds = "sptdau";
+
+// Where a child writes its frames.
+constexpr int kPipe = 3;
+
+// What the kernel gave this process; asked in a child.
+SandboxParts sandbox;
 
 // What a plug-in says may be anything: so much of it, in whole characters, on one line.
 std::string Clean(const std::string& text, std::size_t limit = 1000) {
@@ -75,12 +82,19 @@ void Limit(int resource, rlim_t value) {
   setrlimit(static_cast<__rlimit_resource>(resource), &limit);
 }
 
+// In a signal handler: nothing is allocated.
+void TellAskedCall(int call) {
+  const std::uint64_t size = sizeof call;
+  WriteAll(kPipe, &kAsked, 1);
+  WriteAll(kPipe, &size, sizeof size);
+  WriteAll(kPipe, &call, sizeof call);
+  _exit(1);
+}
+
 [[noreturn]] void BeChild(int out, pid_t parent, volatile PluginMark* mark, const ContainmentLimits& limits,
                           const std::function<void(const Say& say)>& work) {
   MarkPluginCallsIn(mark);
   setpgid(0, 0);
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(1);
   // An exit within a call destroys nothing of the parent's: handlers run in the reverse order of their
   // registration.
   on_exit([](int status, void*) { _exit(status); }, nullptr);
@@ -92,24 +106,29 @@ void Limit(int resource, rlim_t value) {
   sigemptyset(&none);
   pthread_sigmask(SIG_SETMASK, &none, nullptr);
   // No file of this process is the plug-in's, and what it prints is no result.
-  if (out != 3) {
-    dup2(out, 3);
-    out = 3;
-  }
-  fcntl(3, F_SETFD, FD_CLOEXEC);
-  close_range(4, ~0u, 0);
+  if (out != kPipe) dup2(out, kPipe);
+  fcntl(kPipe, F_SETFD, FD_CLOEXEC);
+  close_range(kPipe + 1, ~0u, 0);
+  const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
+  if (nothing >= 0) dup2(nothing, STDIN_FILENO), close(nothing);
   dup2(STDERR_FILENO, STDOUT_FILENO);
   Limit(RLIMIT_CORE, 0);
   Limit(RLIMIT_AS, VirtualBytes() + limits.memory_bytes);
+  sandbox = EnterSandbox(limits.sandbox, TellAskedCall);
+  if (!sandbox.seccomp) {
+    WriteFrame(kPipe, kUnheld, std::strerror(errno));
+    _exit(1);
+  }
+  if (getppid() != parent) _exit(1);
   try {
-    work([out](const std::string& message) { WriteFrame(out, kSaid, message); });
-    WriteFrame(out, kDone, "");
+    work([](const std::string& message) { WriteFrame(kPipe, kSaid, message); });
+    WriteFrame(kPipe, kDone, "");
   } catch (const PluginError& error) {
-    WriteFrame(out, kProblem, error.what());
+    WriteFrame(kPipe, kProblem, error.what());
   } catch (const std::exception& error) {
-    WriteFrame(out, kThrew, error.what());
+    WriteFrame(kPipe, kThrew, error.what());
   } catch (...) {
-    WriteFrame(out, kThrew, "no std::exception");
+    WriteFrame(kPipe, kThrew, "no std::exception");
   }
   _exit(0);  // nothing of the parent's is destroyed here
 }
@@ -125,6 +144,12 @@ std::string HowItEnded(int status, const ContainmentLimits& limits) {
   return is_of_memory
              ? text + ", in a process that may allocate " + std::to_string(limits.memory_bytes >> 20) + " MiB"
              : text;
+}
+
+std::string AskedCall(const std::string& message) {
+  int call = 0;
+  std::memcpy(&call, message.data(), std::min(sizeof call, message.size()));
+  return "was refused the system call '" + SystemCallName(call) + "'";
 }
 
 std::string Place(const PluginMark& at) {
@@ -195,8 +220,7 @@ class Child {
     close(ends[1]);
     errno = error;
     if (pid_ < 0) Refuse();
-    setpgid(pid_, pid_);  // whichever of the two comes first
-    group_ = pid_;
+    setpgid(pid_, pid_);  // whichever of the two comes first: signals of a terminal are the parent's
   }
   ~Child() { End(); }
   Child(const Child&) = delete;
@@ -221,7 +245,6 @@ class Child {
     throw NoChild("no process for a control law can be started: " + reason);
   }
   void End() {
-    if (group_ > 0) kill(-group_, SIGKILL);
     if (pid_ > 0) {
       kill(pid_, SIGKILL);
       while (waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) continue;
@@ -231,7 +254,7 @@ class Child {
   }
 
   volatile PluginMark* mark_ = nullptr;
-  pid_t pid_ = -1, group_ = -1;
+  pid_t pid_ = -1;
   int in_ = -1;
 };
 
@@ -242,7 +265,7 @@ void RunContained(const std::function<void(const Say& say)>& work, const Say& he
   Child child(work, limits);
   CallWatch watch(child.pid(), child.mark(), limits);
   std::string bytes;
-  bool is_open = true;  // a process that the child started may hold the pipe open, and the child may close it
+  bool is_open = true;  // the child may close it
   for (;;) {
     if (should_stop && should_stop()) throw Interrupted();
     const std::optional<int> ended = child.Ended();
@@ -261,13 +284,19 @@ void RunContained(const std::function<void(const Say& say)>& work, const Say& he
       std::uint64_t length = 0;
       if (bytes.size() - at < 1 + sizeof length) break;
       std::memcpy(&length, bytes.data() + at + 1, sizeof length);
-      if (bytes.size() - at - 1 - sizeof length < length) break;
       const char kind = bytes[at];
+      // A law can write into the pipe, too. No answer is larger than the child's memory.
+      if (length > limits.memory_bytes || kKinds.find(kind) == std::string_view::npos)
+        throw ContainedEnd("answered with what is no result" + Place(child.At()), child.At());
+      if (bytes.size() - at - 1 - sizeof length < length) break;
       const std::string message = bytes.substr(at + 1 + sizeof length, length);
       at += 1 + sizeof length + length;
       if (kind == kDone) return;
       if (kind == kProblem) throw PluginError(Clean(message));
       if (kind == kThrew) throw ContainedEnd("threw " + Clean(message) + Place(child.At()), child.At());
+      if (kind == kAsked) throw ContainedEnd(AskedCall(message) + Place(child.At()), child.At());
+      if (kind == kUnheld)
+        throw NoChild("the kernel gives no seccomp filter for a control law: " + Clean(message));
       if (kind == kSaid) hear(message);
     }
     bytes.erase(0, at);
@@ -284,6 +313,23 @@ void RunContained(const std::function<void(const Say& say)>& work, const Say& he
       throw ContainedEnd(text + Place(child.At()), child.At());
     }
   }
+}
+
+SandboxParts SandboxHere() {
+  SandboxParts holds{false, false, false};
+  try {
+    RunContained(
+        [](const Say& say) {
+          say({static_cast<char>(sandbox.seccomp), static_cast<char>(sandbox.landlock),
+               static_cast<char>(sandbox.namespaces)});
+        },
+        [&](const std::string& message) {
+          holds = {message.at(0) == 1, message.at(1) == 1, message.at(2) == 1};
+        });
+  } catch (const NoChild&) {
+    // None of them.
+  }
+  return holds;
 }
 
 void RefusePlugins(const std::string& why, std::set<std::string> but) {

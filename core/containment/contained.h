@@ -1,7 +1,8 @@
 // Runs what may crash, hang, end the process or never stop allocating, in a child process.
 //
 // The child is forked without a new program: it has all that this process has prepared, and no files of it
-// but its standard streams. It runs on one thread, and must take no lock that another thread may hold here.
+// but the streams for output. It runs on one thread, and must take no lock that another thread may hold here.
+// It is shut in (sandbox.h): it computes, and reaches no file, network or process.
 #pragma once
 
 #include <functional>
@@ -10,6 +11,7 @@
 #include <string>
 
 #include "core/containment/interrupted.h"
+#include "core/containment/sandbox.h"
 #include "core/control/plugin.h"
 
 namespace dispersa {
@@ -30,26 +32,30 @@ struct ContainmentLimits {
   double call_cpu_s = 2.0;   ///< a call of more computing time counts as one that does not return,
   double call_wait_s = 5.0;  ///< or of more time while this process was awake
   std::size_t memory_bytes = std::size_t{1} << 30;  ///< beyond what this process has
+  SandboxParts sandbox{};  ///< seccomp is needed, the others hold where the kernel gives them
 };
 
 using Say = std::function<void(const std::string& message)>;
 
-/// There is no memory, file or process for a child now: the system's matter, and no fault of what it would
-/// run.
+/// There is no memory, file, process or sandbox for a child now: the system's matter, and no fault of what it
+/// would run.
 class NoChild : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Runs `work` in a child. What it says is heard here, in order, until it is done or the child has ended;
-/// processes that the child started are ended with it. Throws PluginError with the text of one that `work`
-/// throws; ContainedEnd when it throws something else, or the child ends otherwise; NoChild; Interrupted; and
+/// Runs `work` in a child. What it says is heard here, in order, until it is done or the child has ended.
+/// Throws PluginError with the text of one that `work` throws; ContainedEnd when it throws something else, or
+/// the child ends otherwise; NoChild; Interrupted; and
 /// what `hear` throws.
 void RunContained(const std::function<void(const Say& say)>& work, const Say& hear,
                   const StopCheck& should_stop = nullptr, const ContainmentLimits& limits = {});
 
 /// What a plug-in says of itself, asked in a child. Throws PluginError, ContainedEnd.
 PluginDescription DescribeContained(const PluginConfig& config);
+
+/// Which parts of the sandbox hold for children of this process.
+SandboxParts SandboxHere();
 
 /// Whether this process loads campaigns with plug-ins: until RefusePlugins, which says why not, and the
 /// SHA-256 of those that it loads all the same. To be called before any thread starts.

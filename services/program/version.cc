@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/containment/contained.h"
 #include "core/flight/engine_version.h"
 #include "core/flight/lane_engine.h"
 
@@ -11,11 +12,15 @@ std::string VersionText(const std::string& program) { return program + " " + std
 
 std::string VersionJson() {
   const std::string engine(EngineVersion());
-  const nlohmann::ordered_json json = {{"schema", "dispersa/version/1"},
-                                       {"version", engine.substr(0, engine.find('+'))},
-                                       {"engine", engine},
-                                       {"isa", ChosenEngine().isa},
-                                       {"lanes", ChosenEngine().lanes}};
+  const SandboxParts sandbox = SandboxHere();
+  const nlohmann::ordered_json json = {
+      {"schema", "dispersa/version/1"},
+      {"version", engine.substr(0, engine.find('+'))},
+      {"engine", engine},
+      {"isa", ChosenEngine().isa},
+      {"lanes", ChosenEngine().lanes},
+      {"sandbox",
+       {{"seccomp", sandbox.seccomp}, {"landlock", sandbox.landlock}, {"namespaces", sandbox.namespaces}}}};
   return json.dump(2);
 }
 

@@ -1,9 +1,11 @@
 /* Proportional-derivative control that misbehaves as it is compiled: -D DISPERSA_MISBEHAVES=<one of the
  * numbers below>. */
+#include <fcntl.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -21,13 +23,13 @@
 #define OTHER_ABI 10
 #define CRASHES_AT_ONCE 11 /* in describe */
 #define CRASHES_ALWAYS 12
-#define PRINTS 13             /* on the standard output */
-#define DEFLECTS 14           /* commands deflections */
-#define SLEEPS 15             /* in step, of one flight in four */
-#define FORKS 16              /* and the child of the child goes on, the pipe in its hands */
+#define PRINTS 13   /* on the standard output */
+#define DEFLECTS 14 /* commands deflections */
+#define SLEEPS 15   /* in step, of one flight in four */
+#define FORKS 16
 #define CLOSES_FILES 17       /* all of them, in step, and hangs */
 #define HANGS_AT_THE_END 18   /* where objects are unloaded */
-#define COUNTS_FLIGHTS 19     /* a byte each in the file that FLIGHTS_FILE names */
+#define COUNTS_FLIGHTS 19     /* a line each on the standard error */
 #define DIFFERS_BY_WORKER 20  /* by the process that flies it: its parent's number */
 #define COMMANDS_INFINITY 21  /* of one flight in four, in yaw */
 #define DEFLECTS_FAR 22       /* of one flight in four, in roll: finite, but no finite acceleration */
@@ -37,6 +39,11 @@
 #define WRITES_BEHIND 26      /* its memory, a byte */
 #define CRASHES_IN_WORKERS 27 /* when it is created there */
 #define IS_SLOW 28            /* a minute a flight */
+#define CONNECTS 29           /* a socket, in step, of one flight in four */
+#define EXECUTES 30           /* a program, in step, of one flight in four */
+#define READS_A_FILE 31       /* of the user, that USERS_FILE names: it aborts if it can */
+#define WRITES_A_FILE 32      /* that USERS_FILE names */
+#define TALKS_WITHOUT_END 33  /* to whoever reads its results, in step, of one flight in four */
 
 #ifndef DISPERSA_MISBEHAVES
 #define DISPERSA_MISBEHAVES 0
@@ -70,15 +77,17 @@ int dispersa_law_create(const dispersa_law_setup* setup, void* memory) {
   (void)setup;
   (void)memory;
   if (DISPERSA_MISBEHAVES == CRASHES_IN_WORKERS) {
-    char name[32] = "";
-    FILE* file = fopen("/proc/self/comm", "r");
-    if (file == NULL || fgets(name, sizeof name, file) == NULL || fclose(file) != 0) return 1;
+    char name[16] = "";
+    if (prctl(PR_GET_NAME, name) != 0) return 1;
     if (strncmp(name, "dispersa-worker", 15) == 0) abort();
   }
   if (DISPERSA_MISBEHAVES == COUNTS_FLIGHTS) {
-    FILE* file = fopen(getenv("FLIGHTS_FILE"), "a");
-    if (file == NULL || fputc('.', file) == EOF || fclose(file) != 0) return 1;
+    static const char words[] = "a flight begins\n";
+    if (write(2, words, sizeof words - 1) < 0) return 1;
   }
+  if (DISPERSA_MISBEHAVES == READS_A_FILE && open(getenv("USERS_FILE"), O_RDONLY) >= 0) abort();
+  if (DISPERSA_MISBEHAVES == WRITES_A_FILE && open(getenv("USERS_FILE"), O_WRONLY | O_CREAT, 0600) >= 0)
+    abort();
   return 0;
 }
 
@@ -112,6 +121,16 @@ static int misbehave(dispersa_law_output* output) {
       for (int file = 0; file < 64; ++file) close(file);
       for (volatile int forever = 1; forever;) continue;
       return 0;
+    case CONNECTS:
+      return socket(AF_INET, SOCK_STREAM, 0);
+    case EXECUTES:
+      return execl("/bin/true", "true", NULL);
+    case TALKS_WITHOUT_END: {
+      char words[4096];
+      memset(words, 0xff, sizeof words);
+      for (;;)
+        if (write(3, words, sizeof words) < 0) return 1;
+    }
     case FAILS:
       return 3;
     case COMMANDS_NAN:
@@ -181,10 +200,7 @@ int dispersa_law_step(const dispersa_law_input* input, dispersa_law_output* outp
       break;
     }
     case FORKS:
-      if (input->time_s < 0.005 && fork() == 0) {
-        sleep(30);
-        _exit(0);
-      }
+      if (input->time_s < 0.005 && fork() == 0) _exit(0);
       break;
     case CRASHES_ALWAYS:
       if (input->time_s > 3.0) abort();

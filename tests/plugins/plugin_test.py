@@ -193,8 +193,31 @@ class PluginTest(unittest.TestCase):
         self.quarantined("ENDS", "ended the process with exit code 0")
         self.quarantined("ENDS", "ended the process with exit code 0", workers=2)
 
-    def test_processes_that_a_law_starts_end_with_it(self):
-        self.assertEqual(self.run_cases("forks", self.law("FORKS")).read_bytes(), self.pd)
+    def test_the_system_gives_a_law_no_socket_program_or_process(self):
+        for behaviour, call in (("CONNECTS", "socket"), ("EXECUTES", "execve")):
+            self.quarantined(behaviour, f"was refused the system call '{call}'")
+        out, ended = self.campaign_run("forks", self.law("FORKS"))
+        self.assertEqual(ended.returncode, 2, ended.stderr)
+        self.assertRegex(ended.stderr, r"the control law pd_test cannot fly the nominal flight: it was refused "
+                                       r"the system call 'clone' at 0\.0\d\d s, in stage 1\n$")
+        self.assertFalse((out / "results.sqlite").exists())
+
+    def test_a_law_reads_and_writes_no_file(self):
+        held = json.loads(self.dispersa("--version", "--json").stdout)["sandbox"]
+        self.assertTrue(held["seccomp"])
+        users = self.folder / "users.txt"
+        os.environ["USERS_FILE"] = str(users)
+        self.addCleanup(os.environ.pop, "USERS_FILE")
+        _, ended = self.campaign_run("writes", self.law("WRITES_A_FILE"))
+        self.assertEqual(ended.returncode, 2, ended.stderr)
+        self.assertIn("it was refused the system call 'openat'\n", ended.stderr)
+        self.assertFalse(users.exists())
+        users.write_text("a secret\n")
+        if held["landlock"]:
+            self.assertEqual(self.run_cases("reads", self.law("READS_A_FILE")).read_bytes(), self.pd)
+
+    def test_what_a_law_writes_into_its_pipe_is_bounded(self):
+        self.quarantined("TALKS_WITHOUT_END", "answered with what is no result")
 
     def test_the_end_of_an_object_is_nobodys(self):
         self.assertEqual(self.run_cases("at_the_end", self.law("HANGS_AT_THE_END")).read_bytes(), self.pd)
@@ -309,12 +332,9 @@ class PluginTest(unittest.TestCase):
                                        r"again by \w+, metric_\w+ is '\S+' once and '\S+' again")
 
     def test_the_check_flies_each_flight_twice(self):
-        counted = self.folder / "flights"
-        os.environ["FLIGHTS_FILE"] = str(counted)
-        self.addCleanup(os.environ.pop, "FLIGHTS_FILE")
-        self.run_cases("counts", self.law("COUNTS_FLIGHTS"))
+        _, ended = self.campaign_run("counts", self.law("COUNTS_FLIGHTS"))
         # The nominal flight and two cases, then the campaign.
-        self.assertEqual(counted.stat().st_size, 2 * 3 + CASES)
+        self.assertEqual(ended.stderr.count("a flight begins\n"), 2 * 3 + CASES)
 
     def test_one_that_always_crashes_is_refused_at_once(self):
         _, ended = self.campaign_run("always", self.law("CRASHES_ALWAYS"))

@@ -14,6 +14,7 @@ OWNED = [
     (r"sleef\.h", {"math"}),
     (r"Random123/", {"random"}),
     (r"hdf5", {"results"}),
+    (r"(seccomp\.h|linux/landlock\.h)", {"containment"}),
     (r"sqlite3\.h", {"results"}),
     (r"CLI/", {"program", "cli", "coordinator", "worker"}),
     (r"(pybind11/|Python\.h)", {"python"}),

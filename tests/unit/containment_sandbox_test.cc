@@ -1,0 +1,187 @@
+#include "core/containment/contained.h"
+
+#include <fcntl.h>
+#include <linux/io_uring.h>
+#include <sys/ioctl.h>
+#include <sys/ptrace.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace dispersa::containment_sandbox_test {
+namespace {
+
+ContainmentLimits With(const SandboxParts& parts) {
+  ContainmentLimits limits;
+  limits.sandbox = parts;
+  return limits;
+}
+const ContainmentLimits kFloor = With({.seccomp = true, .landlock = false, .namespaces = false});
+
+// What the child says, or how it ended.
+std::string Outcome(const std::function<std::string()>& work, const ContainmentLimits& limits) {
+  std::string heard;
+  try {
+    RunContained([&](const Say& say) { say(work()); }, [&](const std::string& said) { heard += said; },
+                 nullptr, limits);
+  } catch (const ContainedEnd& end) {
+    return end.what();
+  }
+  return heard;
+}
+
+// A call that a child makes, which says 1 if it came through.
+std::string OutcomeOf(const std::function<long()>& call, const ContainmentLimits& limits = kFloor) {
+  return Outcome([&] { return call() >= 0 ? std::string("it worked") : "refused: " + std::to_string(errno); },
+                 limits);
+}
+
+TEST(Sandbox, SeccompAloneRefusesWhatIsNoComputation) {
+  const pid_t parent = getpid();
+  const std::vector<std::pair<std::string, std::function<long()>>> calls = {
+      {"socket", [] { return socket(AF_INET, SOCK_STREAM, 0); }},
+      {"socketpair",
+       [] {
+         int ends[2];
+         return socketpair(AF_UNIX, SOCK_STREAM, 0, ends);
+       }},
+      {"clone", [] { return fork(); }},
+      {"vfork", [] { return syscall(SYS_vfork); }},
+      {"clone3", [] { return syscall(SYS_clone3, nullptr, 0); }},
+      {"execve", [] { return execl("/bin/true", "true", nullptr); }},
+      {"execveat", [] { return syscall(SYS_execveat, 0, "/bin/true", nullptr, nullptr, 0); }},
+      {"ptrace", [=] { return ptrace(PTRACE_ATTACH, parent, nullptr, nullptr); }},
+      {"process_vm_writev",
+       [=] { return syscall(SYS_process_vm_writev, parent, nullptr, 0, nullptr, 0, 0); }},
+      {"pidfd_open", [=] { return syscall(SYS_pidfd_open, parent, 0); }},
+      {"kill", [=] { return kill(parent, 0); }},
+      {"tgkill", [=] { return syscall(SYS_tgkill, parent, parent, 0); }},
+      {"openat", [] { return open("/tmp/dispersa-sandbox-test", O_WRONLY | O_CREAT, 0600); }},
+      {"openat", [] { return open("/dev/null", O_RDWR); }},
+      {"unlink", [] { return unlink("/tmp/dispersa-sandbox-test"); }},
+      {"ioctl", [] { return ioctl(2, TIOCSTI, "x"); }},
+      {"io_uring_setup",
+       [] {
+         io_uring_params parameters{};
+         return syscall(SYS_io_uring_setup, 1, &parameters);
+       }},
+      {"unshare", [] { return syscall(SYS_unshare, 0); }},
+      {"mount", [] { return syscall(SYS_mount, "a", "b", "c", 0, nullptr); }},
+      {"bpf", [] { return syscall(SYS_bpf, 0, nullptr, 0); }},
+      {"setpriority", [] { return setpriority(PRIO_PROCESS, 0, 0); }},
+      {"prlimit64",
+       [] {
+         const rlimit none{0, 0};
+         return setrlimit(RLIMIT_CORE, &none);
+       }},
+  };
+  for (const auto& [name, call] : calls)
+    EXPECT_EQ(OutcomeOf(call), "was refused the system call '" + name + "'");
+}
+
+TEST(Sandbox, WhoCatchesTheSignalHasGainedNothing) {
+  // The number of the call that was not made is no file.
+  EXPECT_EQ(Outcome(
+                [] {
+                  std::signal(SIGSYS, [](int) {});
+                  socket(AF_INET, SOCK_STREAM, 0);
+                  char name[64];
+                  return readlink("/proc/self/fd/4", name, sizeof name) >= 0 ? "a file" : "no file";
+                },
+                kFloor),
+            "no file");
+  EXPECT_EQ(Outcome(
+                [] {
+                  std::signal(SIGSYS, SIG_IGN);
+                  return std::to_string(socket(AF_INET, SOCK_STREAM, 0));
+                },
+                kFloor),
+            "ended by signal 31 (SIGSYS)");
+}
+
+TEST(Sandbox, WhatComputesGoesOn) {
+  EXPECT_EQ(Outcome(
+                [] {
+                  std::vector<double> numbers(10'000'000, 1.0);
+                  timespec now{}, moment{0, 1000};
+                  clock_gettime(CLOCK_MONOTONIC, &now);
+                  nanosleep(&moment, nullptr);
+                  rlimit limit{};
+                  getrlimit(RLIMIT_AS, &limit);
+                  return std::string(isatty(2) == 1 || numbers.back() == 1.0 ? "computed" : "");
+                },
+                {}),
+            "computed");
+  EXPECT_EQ(Outcome([]() -> std::string { std::abort(); }, {}),
+            "ended by signal 6 (SIGABRT), in a process that may allocate 1024 MiB");
+}
+
+TEST(Sandbox, LandlockKeepsTheUsersFilesAndGivesTheSystemsObjects) {
+  // A kernel without Landlock refuses nothing, and the sandbox says so.
+  const std::string outcome = SandboxHere().landlock ? "refused: 13" : "it worked";
+  const ContainmentLimits files = With({.seccomp = true, .landlock = true, .namespaces = false});
+  const std::string own = ::testing::TempDir() + "users_file";
+  std::ofstream(own) << "a secret\n";
+  const auto read = [](const std::string& path) { return [path] { return open(path.c_str(), O_RDONLY); }; };
+  EXPECT_EQ(OutcomeOf(read(own)), "it worked");  // of the file, without Landlock
+  EXPECT_EQ(OutcomeOf(read(own), files), outcome);
+  EXPECT_EQ(OutcomeOf(read("/etc/passwd"), files), outcome);
+  EXPECT_EQ(OutcomeOf(read("/proc/self/environ"), files), outcome);
+  EXPECT_EQ(OutcomeOf(read("/etc/ld.so.cache"), files), "it worked");
+  EXPECT_EQ(OutcomeOf(read("/lib/x86_64-linux-gnu/libm.so.6"), files), "it worked");
+}
+
+TEST(Sandbox, NamespacesAreOfItsOwn) {
+  for (const std::string kind : {"net", "user"}) {
+    const auto read = [&] {
+      char name[64] = "";
+      const std::string path = "/proc/self/ns/" + kind;
+      return readlink(path.c_str(), name, sizeof name - 1) > 0 ? std::string(name) : "?";
+    };
+    const std::string here = read();
+    EXPECT_EQ(Outcome(read, kFloor), here);
+    const std::string inside = Outcome(read, With({.seccomp = true, .landlock = false, .namespaces = true}));
+    EXPECT_EQ(inside != here, SandboxHere().namespaces) << inside;  // else the kernel gives none
+  }
+}
+
+TEST(Sandbox, TheChildsInputIsEmptyAndItsPipeIsNoPlaceForAnythingElse) {
+  EXPECT_EQ(Outcome(
+                [] {
+                  char byte;
+                  return std::to_string(read(0, &byte, 1));
+                },
+                {}),
+            "0");
+  EXPECT_EQ(OutcomeOf([] { return write(3, "s\xff\xff\xff\xff\xff\xff\xff\x7f", 9); }, {}),
+            "answered with what is no result");
+  EXPECT_EQ(OutcomeOf([] { return write(3, "?\0\0\0\0\0\0\0\0", 9); }, {}),
+            "answered with what is no result");
+}
+
+TEST(Sandbox, WithoutTheFloorNothingRuns) {
+  const ContainmentLimits none = With({.seccomp = false, .landlock = false, .namespaces = false});
+  std::string text;
+  try {
+    RunContained([](const Say& say) { say("ran"); }, [&](const std::string& said) { text = said; }, nullptr,
+                 none);
+  } catch (const NoChild& problem) {
+    text = problem.what();
+  }
+  EXPECT_EQ(text.substr(0, text.find(':')), "the kernel gives no seccomp filter for a control law");
+}
+
+}  // namespace
+}  // namespace dispersa::containment_sandbox_test
