@@ -63,7 +63,9 @@ Database::Database(const std::filesystem::path& file, Mode mode) : file_(file) {
     sqlite3_busy_timeout(handle_, 10000);
     if (sqlite3_db_readonly(handle_, "main") == 0) {
       Execute("PRAGMA journal_mode = WAL");
-      Execute("PRAGMA synchronous = NORMAL");
+      // On the disk before Commit returns, also for a machine that loses its power: what is acknowledged
+      // stays.
+      Execute("PRAGMA synchronous = FULL");
       Execute("PRAGMA wal_autocheckpoint = 4000");  // pages: 16 MB; each checkpoint waits for the disk
     }
   } catch (...) {

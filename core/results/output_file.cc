@@ -25,6 +25,16 @@ fs::path Behind(const fs::path& name) {
   return error ? name.parent_path() / fs::read_symlink(name) : there;
 }
 
+// So that the new name outlives a power failure. Some file systems cannot, and nothing is lost on them but
+// that.
+void SyncFolderOf(const fs::path& file) {
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  const int directory = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (directory < 0) return;
+  fsync(directory);
+  close(directory);
+}
+
 }  // namespace
 
 OutputFile::OutputFile(fs::path target) : target_(std::move(target)) {
@@ -83,7 +93,9 @@ void OutputFile::Commit() {
   if (!temporary_.empty() && fsync(fileno(stream_)) != 0) Fail(errno);
   std::FILE* stream = std::exchange(stream_, nullptr);
   if (std::fclose(stream) != 0) Fail(errno);
-  if (!temporary_.empty() && std::rename(temporary_.c_str(), target_.c_str()) != 0) Fail(errno);
+  if (temporary_.empty()) return;
+  if (std::rename(temporary_.c_str(), target_.c_str()) != 0) Fail(errno);
+  SyncFolderOf(target_);
 }
 
 void OutputFile::Fail(int error) const {

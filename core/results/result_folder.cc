@@ -448,6 +448,13 @@ std::optional<std::string> ResultFolder::WorkerOf(std::uint64_t case_index) cons
   return select.Step() ? std::optional(select.Text(0)) : std::nullopt;
 }
 
+void ResultFolder::ForEachFlier(
+    const std::function<void(const std::string&, const std::string&, std::uint64_t)>& callback) const {
+  Statement select = database_->Prepare("SELECT worker, host, case_index FROM execution");
+  while (select.Step())
+    callback(select.Text(0), select.Text(1), static_cast<std::uint64_t>(select.Integer(2)));
+}
+
 void ResultFolder::AppendAudits(std::span<const Claim> claims) {
   Transaction transaction(*database_);
   Statement insert = database_->Prepare("INSERT OR IGNORE INTO audits VALUES (?, ?)");
@@ -474,7 +481,10 @@ std::vector<std::uint64_t> ResultFolder::Disown(const std::string& worker) {
   Transaction transaction(*database_);
   std::vector<std::uint64_t> cases;
   {
-    Statement select = database_->Prepare("SELECT case_index FROM execution WHERE worker = ?");
+    // As IsMeantBy: the worker's own name, or that of its keys.
+    Statement select = database_->Prepare(
+        "SELECT DISTINCT case_index FROM execution WHERE worker = ?1 OR substr(worker, 1, length(?1) + 1) = "
+        "?1 || '_'");
     select.BindText(1, worker);
     while (select.Step()) cases.push_back(static_cast<std::uint64_t>(select.Integer(0)));
   }

@@ -93,6 +93,9 @@ class ResultFolder : public ResultStore {
   /// The same with the fingerprint that was stored with each.
   std::vector<std::pair<std::uint64_t, Digest>> Fingerprints() const override;
   std::optional<std::string> WorkerOf(std::uint64_t case_index) const override;
+  /// Who flew which case: calls back with worker, host and case, in no order.
+  void ForEachFlier(const std::function<void(const std::string& worker, const std::string& host,
+                                             std::uint64_t case_index)>& callback) const;
   void AppendAudits(std::span<const Claim> claims) override;
   void ForEachUnaudited(const std::function<void(const Claim&)>& callback) const override;
   std::vector<std::uint64_t> Disown(const std::string& worker) override;

@@ -23,6 +23,14 @@ struct ExecutionRecord {
   double seconds = 0.0;     ///< wall clock; NaN: nobody knows
 };
 
+/// Who flew a case that nobody knows the worker of: of a folder of an older release.
+inline constexpr char kUnknownWorker[] = "unknown";
+
+/// Whether a worker is meant by this name: its own, or that of its keys ("node1" means "node1_5f3a...").
+inline bool IsMeantBy(const std::string& name, const std::string& worker) {
+  return worker == name || worker.starts_with(name + "_");
+}
+
 /// A result as a worker returned it.
 struct Claim {
   std::string worker;
@@ -58,7 +66,7 @@ class ResultStore {
   /// These results were flown again and are right.
   virtual void AppendAudits(std::span<const Claim> claims) = 0;
   virtual void ForEachUnaudited(const std::function<void(const Claim&)>& callback) const = 0;
-  /// Removes all results of a worker; returns their cases.
+  /// Removes all results of the workers that `worker` means; returns their cases.
   virtual std::vector<std::uint64_t> Disown(const std::string& worker) = 0;
 };
 

@@ -19,7 +19,7 @@ void AddReflownOptions(CLI::App& command, ReflownFlights& flights) {
   command
       .add_option(
           "--envelope", flights.envelope,
-          "so many first cases, or all, are flown again for the percentiles over time; the extremes of every "
+          "number of first cases to fly again for the percentiles over time, or all; the extremes of every "
           "metric besides")
       ->transform(WholeNumber(1, UINT64_MAX))
       ->transform(CLI::Transformer(words).description("{all}"))

@@ -1,4 +1,4 @@
-// dispersa fetch: the result folder of a campaign that a coordinator has flown.
+// dispersa fetch, backup: the result folder of a campaign that a coordinator has flown, and all that it has.
 #include <fmt/format.h>
 
 #include <memory>
@@ -24,6 +24,17 @@ ExitCode Fetch(const std::string& id, const std::string& target, Session& sessio
   return kExitDone;
 }
 
+ExitCode Backup(const std::string& target, Session& session, const GlobalOptions& global) {
+  const std::uint64_t campaigns = BackUp(session, target);
+  if (global.json) {
+    const Json object = {{"schema", "dispersa/backup/1"}, {"directory", target}, {"campaigns", campaigns}};
+    fmt::print("{}\n", object.dump(2));
+  } else {
+    fmt::print("backup of {} campaigns: {}\n", campaigns, target);
+  }
+  return kExitDone;
+}
+
 }  // namespace
 
 void AddFetchCommand(CLI::App& app, Invocation& invocation) {
@@ -33,6 +44,16 @@ void AddFetchCommand(CLI::App& app, Invocation& invocation) {
   command->footer("Example: dispersa fetch 1a2b3c4d --out results/table3 --peer coordinator-host");
   BindSession(command, invocation, [id, out](Session& session, const GlobalOptions& global) {
     return Fetch(*id, *out, session, global);
+  });
+
+  CLI::App* backup = app.add_subcommand("backup", "copy all campaigns of a coordinator while it flies them");
+  const auto folder = std::make_shared<std::string>();
+  backup->add_option("folder", *folder, "folder, new or empty")->required()->type_name(kFolderType);
+  backup->footer(
+      "Example: dispersa backup /backup/monday --peer coordinator-host\n"
+      "`dispersa-coordinator --data /backup/monday` goes on from there.");
+  BindSession(backup, invocation, [folder](Session& session, const GlobalOptions& global) {
+    return Backup(*folder, session, global);
   });
 }
 

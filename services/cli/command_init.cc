@@ -91,7 +91,7 @@ ExitCode Init(const InitOptions& options, const GlobalOptions& global) {
 void AddInitCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<InitOptions>();
   CLI::App* command = app.add_subcommand("init", "write a folder with a commented campaign that flies");
-  command->add_option("directory", options->directory, "folder to make; one that is there must be empty")
+  command->add_option("directory", options->directory, "folder to make; an existing folder must be empty")
       ->required()
       ->type_name(kFolderType);
   command

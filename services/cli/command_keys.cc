@@ -44,7 +44,22 @@ ExitCode Issue(const KeysOptions& options, const GlobalOptions& global) {
   return TellMade("issued", folder.string(), global);
 }
 
-/// Returns the command and its options, to which more may be added.
+ExitCode Revoke(const KeysOptions& options, const GlobalOptions& global) {
+  const auto file = RevokeKeys(options.directory, *ParseRole(options.role), options.name);
+  return TellMade("revoked; copy this list into the folder of each coordinator's keys", file.string(),
+                  global);
+}
+
+void AddRoleAndName(CLI::App* command, const std::shared_ptr<KeysOptions>& options,
+                    const std::string& name_help) {
+  std::vector<std::string> roles;
+  for (const Role role : kRoles) roles.emplace_back(Name(role));
+  command->add_option("--role", options->role, "what it may do")->required()->check(CLI::IsMember(roles));
+  command->add_option("--name", options->name, name_help)->required();
+}
+
+/// Returns the command and its options, to which more may be added. `days`: 0 where nothing is made that is
+/// valid.
 std::pair<CLI::App*, std::shared_ptr<KeysOptions>> AddCommand(
     CLI::App* keys, Invocation& invocation, const std::string& name, const std::string& what, int days,
     ExitCode (*run)(const KeysOptions&, const GlobalOptions&)) {
@@ -54,8 +69,10 @@ std::pair<CLI::App*, std::shared_ptr<KeysOptions>> AddCommand(
   command->add_option("directory", options->directory, "folder of the authority")
       ->required()
       ->type_name(kFolderType);
-  command->add_option("--days", options->days, fmt::format("valid for so long; default {}", days))
-      ->transform(WholeNumber(1, kMostDays));
+  if (days > 0) {
+    command->add_option("--days", options->days, fmt::format("valid for so long; default {}", days))
+        ->transform(WholeNumber(1, kMostDays));
+  }
   command->callback([options, &invocation, run] {
     invocation.command = [options, run](const GlobalOptions& global) { return run(*options, global); };
   });
@@ -65,7 +82,7 @@ std::pair<CLI::App*, std::shared_ptr<KeysOptions>> AddCommand(
 }  // namespace
 
 void AddKeysCommand(CLI::App& app, Invocation& invocation) {
-  CLI::App* keys = app.add_subcommand("keys", "make the keys with which daemons and clients know each other");
+  CLI::App* keys = app.add_subcommand("keys", "make the keys of daemons and clients");
   keys->require_subcommand(1);
   keys->fallthrough();
   keys->footer(
@@ -73,16 +90,16 @@ void AddKeysCommand(CLI::App& app, Invocation& invocation) {
       "          dispersa keys issue authority --role coordinator --name main\n"
       "          dispersa keys issue authority --role worker --name node1\n"
       "          dispersa-worker --keys authority/issued/worker-node1 --peer coordinator-host\n"
+      "          dispersa keys revoke authority --role worker --name node1\n"
       "The folder `authority` stays where it was made; a machine gets only its own folder of what was "
       "issued.");
   AddCommand(keys, invocation, "init", "make an authority", kAuthorityDays, Init);
-  const auto [command, options] =
+  const auto [issue, issued] =
       AddCommand(keys, invocation, "issue", "make the keys of one participant", kIssuedDays, Issue);
-  std::vector<std::string> roles;
-  for (const Role role : kRoles) roles.emplace_back(Name(role));
-  command->add_option("--role", options->role, "what it may do")->required()->check(CLI::IsMember(roles));
-  command->add_option("--name", options->name, "its name: letters, digits, '-'; often that of its machine")
-      ->required();
+  AddRoleAndName(issue, issued, "its name: letters, digits, '-'; often that of its machine");
+  const auto [revoke, revoked] =
+      AddCommand(keys, invocation, "revoke", "have a worker's or client's keys believed no more", 0, Revoke);
+  AddRoleAndName(revoke, revoked, "its name");
 }
 
 }  // namespace dispersa

@@ -168,7 +168,8 @@ ExitCode Margins(const MarginsCommand& options, const GlobalOptions& global) {
 
 void AddMarginsCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<MarginsCommand>();
-  CLI::App* command = app.add_subcommand("margins", "gain, phase and delay margins of the autopilot");
+  CLI::App* command =
+      app.add_subcommand("margins", "compute and measure gain, phase and delay margins of the autopilot");
   command->add_option("campaign", options->campaign, "campaign file")->required()->type_name(kYamlType);
   command->add_option("--autopilot", options->autopilot, "autopilot file, instead of the campaign's")
       ->type_name(kYamlType);

@@ -163,7 +163,8 @@ ExitCode Modes(const ModesOptions& options, const GlobalOptions& global) {
 
 void AddModesCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<ModesOptions>();
-  CLI::App* command = app.add_subcommand("modes", "bending modes of a vehicle, by stack and propellant");
+  CLI::App* command =
+      app.add_subcommand("modes", "print the bending modes of a vehicle, by stack and propellant");
   command->add_option("vehicle", options->vehicle, "vehicle file with a structure_beam")
       ->required()
       ->type_name(kYamlType);

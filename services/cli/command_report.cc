@@ -67,7 +67,7 @@ void AddReportCommand(CLI::App& app, Invocation& invocation) {
       ->add_option("--template", options->template_file,
                    "Jinja template to fill from summary.json, instead of making the reports")
       ->type_name(kFileType);
-  command->add_option("--out", options->out, "file for what the template gives; default: standard output")
+  command->add_option("--out", options->out, "file for the filled template; default: standard output")
       ->type_name(kFileType);
   command->footer(
       "Examples: dispersa report results/table3-1a2b3c4d\n"

@@ -94,7 +94,7 @@ void AddRunCommand(CLI::App& app, Invocation& invocation) {
   command->add_option("--autopilot", request.overrides.autopilot, "autopilot file, instead of the campaign's")
       ->type_name(kYamlType);
   AddReflownOptions(*command, options->run.reflown);
-  command->add_flag("--resume", request.resume, "go on in a folder of the same flight id");
+  command->add_flag("--resume", request.resume, "continue in a folder of the same flight id");
   command->footer(
       "Example: dispersa run campaigns/table3.yaml --cases 200 --out results/trial\n"
       "         dispersa run campaigns/table3.yaml --cases 500 --out results/trial --resume");

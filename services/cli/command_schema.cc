@@ -89,7 +89,7 @@ void AddSchemaCommand(CLI::App& app, Invocation& invocation) {
   command->add_option("--all", options->all, "folder for the schemas of all kinds")->type_name(kFolderType);
   command->footer(
       "An editor with a YAML language server completes and checks a file whose first line is\n"
-      "`# yaml-language-server: $schema=campaign.json`. `dispersa validate` knows more.\n"
+      "`# yaml-language-server: $schema=campaign.json`. `dispersa validate` checks more.\n"
       "Example: dispersa schema campaign --out campaign.json\n"
       "         dispersa schema --all schemas");
   command->callback([options, &invocation] {

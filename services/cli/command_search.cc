@@ -212,26 +212,25 @@ ExitCode SearchFor(const SearchCommand& command, const GlobalOptions& global) {
 void AddSearchCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<SearchCommand>();
   CLI::App* command = app.add_subcommand(
-      "search", "the smallest dispersion that fails a requirement: a bounded local search that flies");
+      "search", "find the smallest dispersion that fails a requirement, by a bounded local search");
   command->add_option("campaign", options->campaign, "campaign file")->required()->type_name(kYamlType);
   command
       ->add_option("--metric", options->metric,
                    "metric whose requirement shall fail; default: the first one's")
       ->type_name(kMetricType);
-  auto* below =
-      command->add_option("--below", options->below, "limit in place of the campaign's: it fails above");
-  command->add_option("--above", options->above, "limit in place of the campaign's: it fails below")
+  auto* below = command->add_option("--below", options->below,
+                                    "limit instead of the campaign's; a flight above it fails");
+  command->add_option("--above", options->above, "limit instead of the campaign's; a flight below it fails")
       ->excludes(below);
-  command->add_option("--flights", options->options.max_flights, "at most so many flights, default 1000")
+  command->add_option("--flights", options->options.max_flights, "largest number of flights, default 1000")
       ->transform(WholeNumber(20, 1000000));
   command->add_option("--starts", options->options.starts, "points to search from, default 4")
       ->transform(WholeNumber(1, 100));
   command
       ->add_option("--reach", options->options.reach, "farthest distance in standard deviations, default 6")
       ->check(CLI::Range(0.1, 8.0));
-  command->add_option("--seed", options->options.seed,
-                      "of the points that are drawn to begin with, default 1");
-  command->add_option("--out", options->out, "file for what --json prints")->type_name(kFileType);
+  command->add_option("--seed", options->options.seed, "seed of the first points, default 1");
+  command->add_option("--out", options->out, "file for the JSON object of --json")->type_name(kFileType);
   command->footer(
       "Example: dispersa search campaigns/full.yaml --metric pitch_error_peak_deg --below 0.5 --flights "
       "2000");

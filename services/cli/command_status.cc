@@ -1,5 +1,8 @@
-// dispersa list, status, cancel: what a coordinator's campaigns do.
+// dispersa list, status, cancel, delete, repair: what a coordinator's campaigns do.
 #include <fmt/format.h>
+
+#include <memory>
+#include <string>
 
 #include "services/cli/campaign_text.h"
 #include "services/cli/session_options.h"
@@ -29,15 +32,22 @@ ExitCode Show(const char* method, const std::string& id, Session& session, const
   return kExitDone;
 }
 
-ExitCode Cancel(const std::string& id, Session& session, const GlobalOptions& global) {
-  const Json answer = Json::parse(session.Ask("cancel", {{"id", id}}).text);
+/// Asks for what is done to one campaign. `done`: what then was.
+ExitCode Do(const std::string& method, const Json& arguments, const char* done, Session& session,
+            const GlobalOptions& global) {
+  const Json answer = Json::parse(session.Ask(method, arguments).text);
   if (global.json) {
-    const Json object = {{"schema", "dispersa/cancel/1"}, {"id", answer.at("id")}};
+    const Json object = {{"schema", "dispersa/" + method + "/1"}, {"id", answer.at("id")}};
     fmt::print("{}\n", object.dump(2));
   } else {
-    fmt::print("cancelled: {}\n", answer.at("id").get<std::string>());
+    fmt::print("{}: {}\n", done, answer.at("id").get<std::string>());
   }
   return kExitDone;
+}
+
+/// What is asked again when an answer gets lost names the campaign for sure.
+std::string FullId(Session& session, const std::string& id) {
+  return Json::parse(session.Ask("list", {{"id", id}}).text).at("campaigns").at(0).at("id");
 }
 
 }  // namespace
@@ -53,10 +63,30 @@ void AddStatusCommands(CLI::App& app, Invocation& invocation) {
                 return Show("status", *id, session, global);
               });
 
-  CLI::App* cancel = app.add_subcommand("cancel", "end a campaign; what it has flown is kept");
+  CLI::App* cancel = app.add_subcommand("cancel", "end a campaign; its results are kept");
   BindSession(cancel, invocation, [id = AddIdOption(cancel)](Session& session, const GlobalOptions& global) {
-    return Cancel(*id, session, global);
+    return Do("cancel", {{"id", *id}}, "cancelled", session, global);
   });
+
+  CLI::App* remove = app.add_subcommand("delete", "delete a campaign that has ended, with its results");
+  remove->footer(
+      "Example: dispersa delete 5f3a --peer coordinator-host\n"
+      "One line of it stays in the coordinator's deleted.jsonl.");
+  BindSession(remove, invocation, [id = AddIdOption(remove)](Session& session, const GlobalOptions& global) {
+    return Do("delete", {{"id", FullId(session, *id)}}, "deleted", session, global);
+  });
+
+  CLI::App* repair =
+      app.add_subcommand("repair", "remove what a worker returned to a campaign and fly those cases again");
+  const auto worker = std::make_shared<std::string>();
+  repair->add_option("--worker", *worker, "its name, or that of its keys")->required();
+  repair->footer(
+      "Example: dispersa repair 5f3a --worker node1 --peer coordinator-host && dispersa watch 5f3a\n"
+      "results.sqlite names the worker of each case in its table `execution`.");
+  BindSession(repair, invocation,
+              [id = AddIdOption(repair), worker](Session& session, const GlobalOptions& global) {
+                return Do("repair", {{"id", *id}, {"worker", *worker}}, "flown again", session, global);
+              });
 }
 
 }  // namespace dispersa

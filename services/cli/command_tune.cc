@@ -281,7 +281,7 @@ ExitCode RunTuning(const TuneOptions& given, const GlobalOptions& global) {
 
 void AddTuneCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<TuneOptions>();
-  CLI::App* command = app.add_subcommand("tune", "find the gains of an autopilot, whatever its law");
+  CLI::App* command = app.add_subcommand("tune", "find the gains of an autopilot, for any control law");
   command->add_option("campaign", options->campaign, "campaign file: vehicle, reference and dispersions")
       ->required()
       ->type_name(kYamlType);

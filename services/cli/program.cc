@@ -83,9 +83,9 @@ int RunProgram(int argc, char** argv) {
   Invocation invocation;
   std::string color = "auto";
   CLI::App app("Monte Carlo dispersion campaigns of launch vehicles.", "dispersa");
-  BeginCommandLine(app, invocation.global.json, "print one JSON object instead of text, of an error too");
+  BeginCommandLine(app, invocation.global.json, "print one JSON object instead of text, also for an error");
   app.add_flag("--quiet", invocation.global.quiet, "no progress, only warnings and errors");
-  app.add_option("--color", color, "of what goes to stderr; auto: on a terminal unless NO_COLOR is set")
+  app.add_option("--color", color, "colours on stderr; auto: on a terminal unless NO_COLOR is set")
       ->check(CLI::IsMember({"auto", "always", "never"}));
   app.require_subcommand(1);
   app.fallthrough();

@@ -5,10 +5,13 @@
 #include <chrono>
 #include <cstdint>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "core/results/output_file.h"
 #include "core/results/result_folder.h"
 #include "services/client/writable.h"
+#include "services/transport/network.h"
 
 namespace dispersa {
 namespace {
@@ -30,12 +33,15 @@ void Upload(Session& session, const Campaign& campaign) {
   } while (received < text.size());
 }
 
-void FetchFile(Session& session, const std::string& id, const std::string& path, std::uint64_t size,
+/// `which`: the campaign's id and, of a backup, the snapshot's name.
+void FetchFile(Session& session, Json which, const std::string& path, std::uint64_t size,
                const fs::path& target) {
   fs::create_directories(target.parent_path());
   OutputFile file(target);
+  which["path"] = path;
   for (std::uint64_t offset = 0; offset < size;) {
-    const Reply part = session.Ask("read", {{"id", id}, {"path", path}, {"offset", offset}});
+    which["offset"] = offset;
+    const Reply part = session.Ask("read", which);
     if (part.data.empty())
       throw Failure{kExitInternalError, path + ": it became shorter while it was fetched"};
     file.Write(part.data);
@@ -45,9 +51,9 @@ void FetchFile(Session& session, const std::string& id, const std::string& path,
 }
 
 /// The files to fetch, once the coordinator has copied the database.
-Json AskForFiles(Session& session, const std::string& id) {
+Json AskForFiles(Session& session, const Json& which) {
   for (;;) {
-    Json answer = Json::parse(session.Ask("files", {{"id", id}}).text);
+    Json answer = Json::parse(session.Ask("files", which).text);
     if (!answer.contains("state")) return answer;
     std::this_thread::sleep_for(kAskAgain);
   }
@@ -104,25 +110,50 @@ ExitCode FollowCampaign(Session& session, const std::string& id, Observer& obser
   }
 }
 
-// Into a folder beside the one that is asked for, which appears as a whole.
-FetchedCampaign FetchCampaign(Session& session, const std::string& id, const std::string& target) {
+namespace {
+
+/// A new or an empty folder that can be written.
+fs::path EmptyFolder(const std::string& target, const std::string& option) {
   const fs::path out = fs::path(target).has_filename() ? fs::path(target) : fs::path(target).parent_path();
   if (fs::exists(out) && !(fs::is_directory(out) && fs::is_empty(out))) {
     throw Failure{kExitBadInput, out.string() + ": not an empty folder, allowed: a new or an empty folder"};
   }
-  RequireWritableFolder("--out", out);
-  const fs::path incomplete = out.string() + ".dispersa-fetch";
-  const Json answer = AskForFiles(session, id);
-  fs::remove_all(incomplete);  // of a fetch that was killed
-  fs::create_directories(incomplete);
+  RequireWritableFolder(option, out);
+  return out;
+}
+
+/// The files of an answer below `folder`.
+void FetchFiles(Session& session, const Json& which, const Json& answer, const fs::path& folder) {
   for (const Json& file : answer.at("files")) {
     const fs::path path = file.at("path").get<std::string>();
     // Nothing is written outside of the folder, also if a stranger answers.
     if (!IsFileBelow(path)) {
       throw Failure{kExitInternalError, "the coordinator names a file outside of the result folder"};
     }
-    FetchFile(session, answer.at("id"), path.generic_string(), file.at("size"), incomplete / path);
+    FetchFile(session, which, path.generic_string(), file.at("size"), folder / path);
   }
+}
+
+std::vector<std::string> AllIds(Session& session) {
+  std::vector<std::string> ids;
+  for (bool more = true; more;) {
+    const Json page = Json::parse(session.Ask("ids", {{"after", ids.empty() ? "" : ids.back()}}).text);
+    for (const Json& id : page.at("ids")) ids.push_back(id.get<std::string>());
+    more = page.at("more").get<bool>() && !page.at("ids").empty();
+  }
+  return ids;
+}
+
+}  // namespace
+
+// Into a folder beside the one that is asked for, which appears as a whole.
+FetchedCampaign FetchCampaign(Session& session, const std::string& id, const std::string& target) {
+  const fs::path out = EmptyFolder(target, "--out");
+  const fs::path incomplete = out.string() + ".dispersa-fetch";
+  const Json answer = AskForFiles(session, {{"id", id}});
+  fs::remove_all(incomplete);  // of a fetch that was killed
+  fs::create_directories(incomplete);
+  FetchFiles(session, {{"id", answer.at("id")}}, answer, incomplete);
   try {
     RequireAllCases(incomplete, answer);
   } catch (...) {
@@ -131,6 +162,26 @@ FetchedCampaign FetchCampaign(Session& session, const std::string& id, const std
   }
   fs::rename(incomplete, out);
   return {answer.at("id"), out};
+}
+
+std::uint64_t BackUp(Session& session, const std::string& target) {
+  const fs::path out = EmptyFolder(target, "the folder");
+  const fs::path incomplete = out.string() + ".dispersa-backup";
+  fs::remove_all(incomplete);  // of a backup that was killed
+  fs::create_directories(incomplete);
+  const std::string snapshot = MakeUuid();
+  const std::vector<std::string> ids = AllIds(session);
+  for (const std::string& id : ids) {
+    if (!IsFileBelow(id))
+      throw Failure{kExitInternalError, "the coordinator names a campaign that cannot be a folder"};
+    const Json which = {{"id", id}, {"snapshot", snapshot}};
+    const Json answer = AskForFiles(session, which);
+    FetchFile(session, which, "../campaign.yaml", answer.at("text_size"), incomplete / id / "campaign.yaml");
+    FetchFiles(session, which, answer, incomplete / id / "results");
+    WriteFile(incomplete / id / "state.json", answer.at("state_json").get<std::string>());
+  }
+  fs::rename(incomplete, out);
+  return ids.size();
 }
 
 }  // namespace dispersa

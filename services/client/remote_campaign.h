@@ -26,4 +26,8 @@ struct FetchedCampaign {
 /// ResultError.
 FetchedCampaign FetchCampaign(Session& session, const std::string& id, const std::string& target);
 
+/// The data directory of a coordinator as it is now, of campaigns that fly too, into `target`, new or empty:
+/// another coordinator goes on with it. Returns how many campaigns it has. Throws as FetchCampaign.
+std::uint64_t BackUp(Session& session, const std::string& target);
+
 }  // namespace dispersa

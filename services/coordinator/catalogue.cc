@@ -1,5 +1,7 @@
 #include "services/coordinator/catalogue.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <array>
 #include <fstream>
@@ -31,8 +33,14 @@ std::string ReadWhole(const fs::path& file) {
   return std::move(text).str();
 }
 
+constexpr char kDeleted[] = ".deleted-";
+
 CatalogueEntry ParseState(const std::string& text) {
   const Json json = Json::parse(text);
+  if (const int version = json.value("version", 1); version > kStateVersion) {
+    throw std::runtime_error("written by a newer dispersa: version " + std::to_string(version) +
+                             ", this one reads " + std::to_string(kStateVersion));
+  }
   CatalogueEntry entry;
   entry.id = json.at("id").get<std::string>();
   entry.flight_id = json.at("flight_id").get<std::string>();
@@ -45,6 +53,9 @@ CatalogueEntry ParseState(const std::string& text) {
   entry.conflicts = json.at("conflicts").get<std::uint64_t>();
   entry.code = json.at("code").get<int>();
   entry.problem = json.at("problem").get<std::string>();
+  entry.seed = json.value("seed", std::uint64_t{0});
+  entry.ended_unix_s = json.value("ended_unix_s", std::int64_t{0});
+  entry.distrusted = json.value("distrusted", std::vector<std::string>());
   const auto state = std::find(kStates.begin(), kStates.end(), json.at("state").get<std::string>());
   if (state == kStates.end()) throw std::runtime_error("an unknown state");
   entry.state = static_cast<CampaignState>(state - kStates.begin());
@@ -53,6 +64,11 @@ CatalogueEntry ParseState(const std::string& text) {
     entry.state = CampaignState::kWaiting;
   }
   return entry;
+}
+
+std::int64_t UnixTimeOf(const fs::path& file) {
+  struct stat what {};
+  return stat(file.c_str(), &what) == 0 ? what.st_mtime : 0;
 }
 
 }  // namespace
@@ -77,11 +93,17 @@ Catalogue::Catalogue(const fs::path& directory) : directory_(directory) {
   }
   lock_.emplace(directory);
   for (const fs::directory_entry& folder : fs::directory_iterator(directory)) {
+    if (folder.path().filename().string().starts_with(kDeleted)) {
+      fs::remove_all(folder.path(), error);  // of a coordinator that was killed
+      continue;
+    }
     // A launch that was killed before its state was written has left nothing that anybody was told of.
     if (!fs::is_regular_file(folder.path() / "state.json")) continue;
     try {
       CatalogueEntry entry = ParseState(ReadWhole(folder.path() / "state.json"));
       if (entry.id != folder.path().filename().string()) throw std::runtime_error("of another campaign");
+      if (HasEnded(entry.state) && entry.ended_unix_s == 0)
+        entry.ended_unix_s = UnixTimeOf(folder.path() / "state.json");
       next_order_ = std::max(next_order_, entry.order + 1);
       entries_[entry.id] = std::move(entry);
     } catch (const std::exception& damage) {
@@ -123,7 +145,8 @@ CatalogueEntry& Catalogue::Add(CatalogueEntry entry, const std::string& text) {
 }
 
 void Catalogue::Write(const CatalogueEntry& entry) const {
-  const Json json = {{"id", entry.id},
+  const Json json = {{"version", kStateVersion},
+                     {"id", entry.id},
                      {"flight_id", entry.flight_id},
                      {"name", entry.name},
                      {"priority", entry.priority},
@@ -134,8 +157,27 @@ void Catalogue::Write(const CatalogueEntry& entry) const {
                      {"conflicts", entry.conflicts},
                      {"state", CampaignStateName(entry.state)},
                      {"code", entry.code},
-                     {"problem", entry.problem}};
+                     {"problem", entry.problem},
+                     {"seed", entry.seed},
+                     {"ended_unix_s", entry.ended_unix_s},
+                     {"distrusted", entry.distrusted}};
   WriteFile(directory_ / entry.id / "state.json", DumpAnyText(json, 2) + "\n");
+}
+
+void Catalogue::Remove(const std::string& id) {
+  // At once for whoever looks, however long the removal takes.
+  const fs::path folder = directory_ / id, deleted = directory_ / (kDeleted + id);
+  std::error_code error;
+  fs::rename(folder, deleted, error);
+  if (error)
+    throw ResultError(ResultError::Kind::kFile, folder.string() + ": cannot be removed: " + error.message());
+  entries_.erase(id);
+  fs::remove_all(deleted, error);
+  if (error) LogError("{}: cannot be removed: {}", deleted.string(), error.message());
+}
+
+std::string Catalogue::StateTextOf(const std::string& id) const {
+  return ReadWhole(directory_ / id / "state.json");
 }
 
 std::string Catalogue::TextOf(const std::string& id) const {

@@ -33,10 +33,16 @@ struct CatalogueEntry {
   CampaignState state = CampaignState::kWaiting;
   int code = 0;         ///< exit code of a campaign that has ended
   std::string problem;  ///< of a failed one
+  std::uint64_t seed = 0;
+  std::int64_t ended_unix_s = 0;        ///< when it ended; 0: it has not
+  std::vector<std::string> distrusted;  ///< workers whose results are still to be removed (dispersa repair)
 };
 
 /// The order of the queue: by priority, then by age.
 bool ComesBefore(const CatalogueEntry& a, const CatalogueEntry& b);
+
+/// Of state.json. 2: with `seed`, `ended_unix_s` and `distrusted`; what lacks them is read, too.
+inline constexpr int kStateVersion = 2;
 
 /// DIR/<id>/campaign.yaml, state.json and results/. One process at a time, locked. Throws ResultError,
 /// InputError.
@@ -54,8 +60,11 @@ class Catalogue {
 
   CatalogueEntry& Add(CatalogueEntry entry, const std::string& text);
   void Write(const CatalogueEntry& entry) const;
+  /// Its folder with all results.
+  void Remove(const std::string& id);
 
   std::string TextOf(const std::string& id) const;
+  std::string StateTextOf(const std::string& id) const;
   std::filesystem::path ResultsOf(const std::string& id) const { return directory_ / id / "results"; }
 
  private:

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/flight/engine_version.h"
+#include "services/program/exit_code.h"
 
 namespace dispersa {
 namespace {
@@ -17,6 +18,7 @@ constexpr double kLongestRound_s = 0.5;
 constexpr double kClientPatience_s = 30.0;
 constexpr std::size_t kMaxClients = 256;
 constexpr std::size_t kTextPart = 256 << 10;
+constexpr double kRevocations_s = 5.0;  // a new list is looked for so often
 
 std::uint64_t Draw() {
   // Not the time: clocks are set back.
@@ -27,12 +29,16 @@ std::uint64_t Draw() {
 }  // namespace
 
 // The epoch is told to everybody; which results are audited, to nobody.
-Coordinator::Coordinator(const NetworkOptions& network, double audit_share)
-    : epoch_(Draw()), dispatcher_(epoch_, EngineVersion(), {.audit = {audit_share, Draw()}}), link_(network) {
-  if (audit_share > 0.0) auditor_.emplace();
+Coordinator::Coordinator(const NetworkOptions& network, std::optional<double> audit_share)
+    : epoch_(Draw()),
+      dispatcher_(epoch_, EngineVersion(),
+                  {.audit = {audit_share.value_or(kUsualAuditShare), Draw(), audit_share.has_value()}}),
+      link_(network) {
+  if (dispatcher_.audit().share > 0.0) auditor_.emplace();
+  if (network.keys) revocations_.emplace(*network.keys);
 }
 
-Coordinator::Coordinator(const NetworkOptions& network, CampaignBook& book, double audit_share)
+Coordinator::Coordinator(const NetworkOptions& network, CampaignBook& book, std::optional<double> audit_share)
     : Coordinator(network, audit_share) {
   dispatcher_.BeginCampaign(book);
 }
@@ -48,13 +54,29 @@ void Coordinator::Step(std::chrono::milliseconds timeout) {
     for (const Auditor::Verdict& verdict : auditor_->Take())
       dispatcher_.Audited(verdict.flight_id, verdict.claim, verdict.truth);
   }
+  LookForRevocations();
   Send(dispatcher_.Tick(now_s_));
   for (const std::string& forgotten : dispatcher_.TakeForgotten()) link_.Forget(forgotten);
   ForgetClients();
 }
 
+void Coordinator::LookForRevocations() {
+  if (!revocations_ || now_s_ - looked_s_ < kRevocations_s) return;
+  looked_s_ = now_s_;
+  if (!revocations_->Refresh()) return;
+  std::map<std::string, std::string> workers;
+  if (const auto names = revocations_->revoked().find(Role::kWorker); names != revocations_->revoked().end())
+    for (const std::string& name : names->second) workers[name] = "its keys are revoked";
+  dispatcher_.Expel(workers);
+}
+
 void Coordinator::Answer(const Request& request) {
   if (!answer_) return;
+  if (revocations_ && revocations_->Contains(Role::kClient, KeyNameOf(request.client))) {
+    link_.Send({request.client, request.number, kExitBadInput, "the keys of this client are revoked", ""});
+    clients_[request.client] = now_s_;
+    return;
+  }
   if (!clients_.contains(request.client) && clients_.size() >= kMaxClients) return;  // it asks again
   clients_[request.client] = now_s_;
   link_.Send(answer_(request));

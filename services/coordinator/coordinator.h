@@ -13,23 +13,25 @@
 #include "services/coordinator/workforce.h"
 #include "services/ledger/auditor.h"
 #include "services/transport/coordinator_link.h"
+#include "services/transport/revocations.h"
 
 namespace dispersa {
 
-/// The dispatcher with a clock and a network. One thread.
+/// The dispatcher with a clock and a network. Use it from one thread.
 class Coordinator : public Workforce {
  public:
   /// Throws NetworkError.
-  /// `audit_share`: so much of all results is flown again here, 0 to 1.
-  explicit Coordinator(const NetworkOptions& network, double audit_share = 0.0);
+  /// `audit_share`: so much of all results is flown again here, 0 to 1. Without a value kUsualAuditShare of
+  /// campaigns without a plug-in, whose results another machine may rightly contradict.
+  explicit Coordinator(const NetworkOptions& network, std::optional<double> audit_share = 0.0);
   /// Serves one campaign.
-  Coordinator(const NetworkOptions& network, CampaignBook& book, double audit_share = 0.0);
+  Coordinator(const NetworkOptions& network, CampaignBook& book, std::optional<double> audit_share = 0.0);
 
   void BeginCampaign(CampaignBook& book, int priority) override { dispatcher_.BeginCampaign(book, priority); }
   void EndCampaign(const std::string& flight_id) override { dispatcher_.EndCampaign(flight_id); }
 
-  /// One round: waits for messages, at most `timeout`, and does what follows from them and from the time.
-  /// Throws ResultError.
+  /// One round: waits at most `timeout` for messages, handles them, and sends what is due. Throws
+  /// ResultError.
   void Step(std::chrono::milliseconds timeout);
 
   /// See Dispatcher.
@@ -39,10 +41,10 @@ class Coordinator : public Workforce {
   }
   std::vector<std::string> TakeUnresponsive() { return dispatcher_.TakeUnresponsive(); }
 
-  /// Every worker is told to leave, and waited for until the message is there.
+  /// Tells every worker to leave, and waits until the message has arrived.
   void Dismiss();
 
-  /// What answers clients.
+  /// Sets the function that answers clients.
   void Serve(std::function<Reply(const Request&)> answer) { answer_ = std::move(answer); }
   void Publish(CampaignProgress progress) override;
 
@@ -55,7 +57,8 @@ class Coordinator : public Workforce {
   const std::optional<std::string>& refusal() const { return dispatcher_.refusal(); }
   const AuditOptions& audit() const override { return dispatcher_.audit(); }
   std::uint64_t audits() const override { return dispatcher_.audits(); }
-  std::uint64_t expelled() const override { return dispatcher_.expelled(); }
+  const std::map<std::string, std::string>& expelled() const override { return dispatcher_.expelled(); }
+  void Expel(const std::map<std::string, std::string>& names) override { dispatcher_.Expel(names); }
   /// Without the seconds for which this process or machine stood still.
   double now_s() const override { return now_s_; }
 
@@ -64,6 +67,7 @@ class Coordinator : public Workforce {
   void Handle(const CoordinatorEvent& event);
   void Answer(const Request& request);
   void ForgetClients();
+  void LookForRevocations();
   void Send(const std::vector<Orders>& messages);
 
   std::uint64_t epoch_;
@@ -72,6 +76,8 @@ class Coordinator : public Workforce {
   Dispatcher dispatcher_;
   std::optional<Auditor> auditor_;
   CoordinatorLink link_;
+  std::optional<Revocations> revocations_;
+  double looked_s_ = -1e9;  ///< for another list
   std::function<Reply(const Request&)> answer_;
   std::map<std::string, double> clients_;  ///< when they asked last
 };

@@ -60,6 +60,23 @@ std::optional<fs::path> DatabaseCopies::Whole(const fs::path& results, std::uint
     copy.of = StateOf(results);
     copy.making = std::async(std::launch::async, MakeCopy, results, promised);
   }
+  return Ready(results, now_s);
+}
+
+std::optional<fs::path> DatabaseCopies::Snapshot(const fs::path& results, const std::string& name,
+                                                 double now_s) {
+  const std::string of = "snapshot " + name;
+  if (const auto known = copies_.find(results); known == copies_.end() || known->second.of != of) {
+    Forget(results);
+    Copy& copy = copies_[results];
+    copy.of = of;
+    copy.making = std::async(std::launch::async,
+                             [results] { ResultFolder::Open(results).CopyDatabase(CopyOf(results)); });
+  }
+  return Ready(results, now_s);
+}
+
+std::optional<fs::path> DatabaseCopies::Ready(const fs::path& results, double now_s) {
   Copy& copy = copies_.at(results);
   copy.used_s = now_s;
   if (!copy.is_made) {

@@ -20,6 +20,9 @@ class DatabaseCopies {
   /// being copied. Throws ResultError when that fails, and when the copy has fewer than `promised` cases.
   std::optional<std::filesystem::path> Whole(const std::filesystem::path& results, std::uint64_t promised,
                                              double now_s);
+  /// A copy of a database that somebody may be writing, one for each `name`. None: it is being copied.
+  std::optional<std::filesystem::path> Snapshot(const std::filesystem::path& results, const std::string& name,
+                                                double now_s);
   /// The same of a folder that Whole was asked about before: nothing is copied.
   std::filesystem::path Known(const std::filesystem::path& results, double now_s);
   /// The campaign goes on: its copy is old.
@@ -28,6 +31,8 @@ class DatabaseCopies {
   void ForgetUnused(double now_s);
 
  private:
+  std::optional<std::filesystem::path> Ready(const std::filesystem::path& results, double now_s);
+
   struct Copy {
     std::string of;  ///< state of the database and its log that was copied
     std::future<void> making;

@@ -4,9 +4,10 @@
 #include <limits>
 #include <utility>
 
-#include "core/flight/flight_inputs.h"
+#include "core/results/fingerprint.h"
 #include "services/log/log.h"
 #include "services/transport/complaints.h"
+#include "services/transport/permissions.h"
 #include "services/transport/validity.h"
 
 namespace dispersa {
@@ -46,6 +47,12 @@ void Dispatcher::EndCampaign(const std::string& flight_id) {
 
 void Dispatcher::On(const std::string& sender, const WorkerStatus& status, double now_s) {
   if (ended_.contains(status.worker)) return;
+  const std::string keys = KeyNameOf(status.worker);
+  if (const auto expelled = expelled_.find(keys.empty() ? status.worker : keys);
+      expelled != expelled_.end()) {
+    TellRefusal(status.worker, expelled->second);
+    return;
+  }
   if (const auto refused = refused_.find(status.worker); refused != refused_.end()) {
     TellRefusal(status.worker, refused->second);
     return;
@@ -135,12 +142,25 @@ void Dispatcher::Audited(const std::string& flight_id, const Claim& claim, const
 }
 
 void Dispatcher::Expel(const std::string& worker, const std::string& reason) {
-  if (refused_.contains(worker)) return;
-  ++expelled_;
-  Refuse(worker, reason);
-  refused_[worker] = reason;  // however many are remembered
-  Lose(worker, WorkerEnd::kKilled, "expelled");
-  for (auto& [flight_id, campaign] : campaigns_) campaign.book->Disown(worker);
+  const std::string keys = KeyNameOf(worker);
+  Expel({{keys.empty() ? worker : keys, reason}});
+}
+
+void Dispatcher::Expel(const std::map<std::string, std::string>& names) {
+  for (const auto& [name, reason] : names) {
+    if (!expelled_.emplace(name, reason).second) continue;
+    LogError("{} may not fly here any more: {}", name, reason);
+    refusal_ = reason;
+    std::vector<std::string> workers;
+    for (const auto& [id, worker] : workers_) {
+      if (IsMeantBy(name, id)) workers.push_back(id);
+    }
+    for (const std::string& worker : workers) {
+      TellRefusal(worker, reason);
+      Lose(worker, WorkerEnd::kKilled, "expelled");
+    }
+    for (auto& [flight_id, campaign] : campaigns_) campaign.book->Disown(name);
+  }
 }
 
 void Dispatcher::TellRefusal(const std::string& worker, const std::string& reason) {
@@ -221,15 +241,16 @@ std::vector<const FlownCase*> Dispatcher::On(const std::string& sender, const Re
                       Printable(flown.result.reason, 1000), now_s);
       continue;
     }
-    if (flown.result.inputs.size() != InputCount(book.campaign().vehicle.stages.size())) {
-      Disagree(sender, "a result is of another vehicle");
+    if (!MayReturn(sender, report, flown, book)) {
+      if (!workers_.contains(report.worker)) return accepted;  // expelled
       continue;
     }
     const Acceptance acceptance =
         book.Accept(report.worker, known->second.host, follows ? flown.attempt : 0, flown.result, now_s);
-    if (acceptance == Acceptance::kAccepted) accepted.push_back(&flown);
-    if (acceptance == Acceptance::kUnknown)
-      Disagree(sender, "it flew a case that the campaign does not have");
+    if (acceptance == Acceptance::kAccepted) {
+      accepted.push_back(&flown);
+      known->second.is_known = true;
+    }
   }
   if (!report.flown.empty()) campaign->second.unstored.emplace_back(report.worker, report.number);
   if (!follows) return accepted;
@@ -237,6 +258,24 @@ std::vector<const FlownCase*> Dispatcher::On(const std::string& sender, const Re
     book.Start(report.worker, started.case_index, started.attempt, now_s);
   }
   return accepted;
+}
+
+bool Dispatcher::MayReturn(const std::string& sender, const Report& report, const FlownCase& flown,
+                           CampaignBook& book) {
+  const std::uint64_t case_index = flown.result.case_index;
+  if (!book.ledger().WasGiven(report.worker, case_index)) {
+    // A report whose acknowledgement got lost, or of cases that an earlier coordinator gave: they are flown
+    // again.
+    if (book.ledger().IsResult(case_index, Fingerprint(flown.result))) return true;
+    if (report.coordinator_epoch == epoch_)
+      Disagree(sender, "it returns case " + std::to_string(case_index) + ", which it was not given");
+    return false;
+  }
+  if (book.IsDrawnSo(flown.result)) return true;
+  Disagree(sender, "a result has other inputs than its case");
+  Expel(report.worker, "case " + std::to_string(case_index) + " of campaign " + book.campaign().name +
+                           ": its inputs are not those that the campaign draws");
+  return false;
 }
 
 void Dispatcher::On(const std::string& sender, const CampaignRefusal& refusal, double now_s) {
@@ -378,10 +417,14 @@ void Dispatcher::Expire(double now_s) {
 }
 
 void Dispatcher::Assign(double now_s) {
-  // One assignment a worker in turn, so that few cases spread over all workers.
+  // One assignment a worker in turn, so that few cases spread over all workers. First to those that have
+  // flown something: the last cases go to no stranger.
   for (bool given = true; given;) {
     given = false;
-    for (auto& [id, worker] : workers_) given = AssignTo(id, worker, now_s) || given;
+    for (const bool is_known : {true, false}) {
+      for (auto& [id, worker] : workers_)
+        if (worker.is_known == is_known) given = AssignTo(id, worker, now_s) || given;
+    }
   }
 }
 

@@ -1,6 +1,5 @@
-// What a coordinator says to its workers and what follows from what they say. A pure state machine over the
-// books of its campaigns: it knows neither clocks nor networks; time is an argument, in seconds from any
-// origin.
+// Handles the messages of workers and makes the orders for them. A pure state machine over the books of the
+// flying campaigns, without clocks and networks. Time is an argument: seconds from any origin.
 #pragma once
 
 #include <cstdint>
@@ -18,66 +17,65 @@
 namespace dispersa {
 
 struct DispatcherOptions {
-  double silence_s = 3.0;         ///< a worker that says nothing for so long is lost
-  double repeat_s = 2.0;          ///< an assignment that a worker does not know is said again after so long
-  double pulse_s = 1.0;           ///< every worker hears something at least so often
-  double last_messages_s = 0.2;   ///< what a process that ended has sent may still arrive for so long
-  double report_silence_s = 5.0;  ///< results are reported, and repeated, more often than that
-  double load_silence_s = 60.0;   ///< a text is loaded within that
+  double silence_s = 3.0;         ///< a worker without any message for longer is lost
+  double repeat_s = 2.0;          ///< period of repeating an assignment that the status lacks
+  double pulse_s = 1.0;           ///< period of empty orders to each worker
+  double last_messages_s = 0.2;   ///< messages of an ended process may still arrive for this time
+  double report_silence_s = 5.0;  ///< a worker with results reports more often than this
+  double load_silence_s = 60.0;   ///< a worker loads a text within this time
   std::size_t max_workers = 2000;
   AuditOptions audit;
 };
 
-/// Liveness (services/README.md): nothing depends on a message arriving. Assignments are repeated until the
-/// worker's status holds them, acknowledgements follow each repetition of a report, and a worker's presence
-/// is its status.
+/// Liveness (services/README.md): no single message has to arrive. An assignment is repeated until the
+/// worker's status holds it. Each repetition of a report is acknowledged. A worker is present while its
+/// status messages arrive.
 class Dispatcher {
  public:
   /// `epoch` differs for each start of a coordinator and is not 0.
   Dispatcher(std::uint64_t epoch, std::string engine_version, const DispatcherOptions& options = {});
 
-  /// Flies the cases of this book until Close, those of a higher priority first, of equal ones a fair share
-  /// each. The book's attempts must differ from those of the others (LedgerOptions::attempt_base).
+  /// Flies the cases of this book until EndCampaign. A higher priority goes first; equal ones share the
+  /// workers. Attempt numbers of different books must differ (LedgerOptions::attempt_base).
   void BeginCampaign(CampaignBook& book, int priority = 0);
   void EndCampaign(const std::string& flight_id);
 
-  /// `sender` names the participant that a message came from; a worker cannot choose it.
+  /// `sender` names the participant that sent the message; a worker cannot choose it.
   void On(const std::string& sender, const WorkerStatus& status, double now_s);
   /// Returns the results that were accepted: the first of their cases.
   std::vector<const FlownCase*> On(const std::string& sender, const Report& report, double now_s);
   void On(const std::string& sender, const CampaignRefusal& refusal, double now_s);
-  /// A part of a campaign's text, at most `limit` bytes; none if the campaign is not open.
+  /// A part of a campaign's text, at most `limit` bytes; nothing if the campaign does not fly.
   std::optional<TextPart> On(const TextRequest& request, std::size_t limit, double now_s);
-  /// The participant closed its connection: another one may speak for its workers.
+  /// The participant closed its connection: another participant may now speak for its workers.
   void Gone(const std::string& sender);
 
-  /// Results to be flown again here, of one campaign after the other.
+  /// Calls `fly` for each campaign with the results to be flown again.
   using OnClaims = std::function<void(const Campaign&, std::vector<Claim>)>;
   void TakeClaims(const OnClaims& fly);
-  /// What that gave. A worker that returned something else is expelled: it may not fly here any more, and
-  /// whatever it returned is flown again.
+  /// What that gave. A worker that returned something else is expelled: neither it nor another one with its
+  /// keys may fly here any more, and whatever they returned is flown again.
   void Audited(const std::string& flight_id, const Claim& claim, const Digest& truth);
 
-  /// Announces that the end of this worker will be told by WorkerEnded: a local process has an exit status,
-  /// which says more than silence.
+  /// WorkerEnded will report the end of this worker: a local process, whose exit status says more than
+  /// silence.
   void Supervise(const std::string& worker);
-  /// A supervised worker ended. Takes effect a moment later, when its last messages have arrived.
+  /// A supervised worker ended. Takes effect after `last_messages_s`, when its last messages have arrived.
   void WorkerEnded(const std::string& worker, WorkerEnd end, const std::string& reason, double now_s);
-  /// Supervised workers that hang or are silent: to be killed.
+  /// Supervised workers that hang or are silent. The caller kills them.
   std::vector<std::string> TakeUnresponsive();
-  /// Workers that need no more be talked to.
+  /// Workers to which nothing needs to be sent any more.
   std::vector<std::string> TakeForgotten();
 
-  /// What to send now. Stores what is due to be stored. Throws ResultError.
+  /// The orders to send now. Stores accepted results when due. Throws ResultError.
   std::vector<Orders> Tick(double now_s);
   /// From now on every worker is told to leave.
   void Dismiss();
 
   std::size_t joined() const { return workers_.size(); }
-  /// Whether more than statuses gets here. False without workers, and when all of them have had something to
-  /// tell for longer than it takes: one that flew (`report_silence_s`), or one that holds cases and flies
-  /// none
-  /// (`load_silence_s`).
+  /// False: status messages arrive but results do not, or there are no workers. Then every worker is overdue:
+  /// one that has flown cases after `report_silence_s`, one that holds cases and flies none after
+  /// `load_silence_s`.
   bool ReceivesReports(double now_s) const;
   struct WorkerView {
     std::string worker;
@@ -87,17 +85,18 @@ class Dispatcher {
     std::uint64_t flown;
   };
   std::vector<WorkerView> Workers() const;
-  /// Why no worker can fly this campaign, as one of them says: none while there is one that does not refuse
-  /// it, and without workers.
+  /// The reason of one worker, if every worker refuses this campaign. Nothing without workers.
   std::optional<std::string> RefusalByAll(const std::string& flight_id) const;
-  /// Why a worker was refused or refused a campaign, most recently.
+  /// The latest reason why a worker was refused, or refused a campaign.
   const std::optional<std::string>& refusal() const { return refusal_; }
-  /// Messages that contradicted what is known: of strangers, of other senders than before, of impossible
-  /// cases.
+  /// Rejected messages: from unknown senders, from another sender than before, about impossible cases.
   std::uint64_t refused_messages() const { return refused_messages_; }
   const AuditOptions& audit() const { return options_.audit; }
   std::uint64_t audits() const { return audits_; }
-  std::uint64_t expelled() const { return expelled_; }
+  /// Who may not fly here any more, and why: names of keys, and of workers without keys.
+  const std::map<std::string, std::string>& expelled() const { return expelled_; }
+  /// From now on, as far as it is not so already: as an earlier coordinator knew, or who issues keys says.
+  void Expel(const std::map<std::string, std::string>& names);
 
  private:
   struct FlyingCampaign {
@@ -122,6 +121,7 @@ class Dispatcher {
     double last_report_s = 0.0;              ///< when the last one came that was no status
     double report_due_s = 0.0;               ///< the next one is due so long after it, by the last status
     std::int64_t results = 0;                ///< that came
+    bool is_known = false;                   ///< one of them was accepted
     std::optional<std::int64_t> unreported;  ///< what it has flown less that: the least, when all had come
     double last_orders_s = 0.0;
     std::map<std::uint64_t, Sent> sent;  ///< by attempt
@@ -132,6 +132,8 @@ class Dispatcher {
 
   bool Join(const std::string& sender, const WorkerStatus& status, double now_s);
   void Refuse(const std::string& worker, const std::string& reason);
+  /// Whether a result that it returned is to be looked at any further.
+  bool MayReturn(const std::string& sender, const Report& report, const FlownCase& flown, CampaignBook& book);
   void Expel(const std::string& worker, const std::string& reason);
   void TellRefusal(const std::string& worker, const std::string& reason);
   void Compare(Worker& worker, const WorkerStatus& status, double now_s);
@@ -159,7 +161,8 @@ class Dispatcher {
   std::map<std::string, FlyingCampaign> campaigns_;  ///< by flight id
   std::map<std::string, Worker> workers_;
   std::set<std::string> supervised_;
-  std::map<std::string, std::string> refused_;  ///< worker -> why; told again whenever it speaks
+  std::map<std::string, std::string> refused_;   ///< worker -> why; told again whenever it speaks
+  std::map<std::string, std::string> expelled_;  ///< the name of its keys, or of a worker without keys -> why
   std::set<std::string> ended_;  ///< supervised workers that ended: what still arrives of them is old
   std::set<std::string> unresponsive_;
   std::vector<std::string> forgotten_;
@@ -168,7 +171,6 @@ class Dispatcher {
   std::optional<std::string> refusal_;
   std::uint64_t refused_messages_ = 0;
   std::uint64_t audits_ = 0;
-  std::uint64_t expelled_ = 0;
   double expired_s_ = 0.0;
   bool dismissed_ = false;
 };

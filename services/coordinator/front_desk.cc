@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <span>
 #include <vector>
 
 #include "core/analysis/requirement_summary.h"
@@ -15,6 +16,7 @@
 #include "core/results/json_number.h"
 #include "services/coordinator/dump_any_text.h"
 #include "services/program/exit_code.h"
+#include "services/transport/permissions.h"
 #include "services/transport/validity.h"
 
 namespace dispersa {
@@ -24,9 +26,14 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMaxUploads = 8;
+constexpr int kMaxUploadsOfOne = 4;
+constexpr int kMostPriority = 1000;
 constexpr double kUploadPatience_s = 60.0;
 /// In an answer, so that it fits into a sample.
 constexpr std::size_t kMaxListed = 500;
+constexpr std::size_t kMaxStandings = 1000;
+constexpr std::size_t kMaxAnswer = 512 << 10;  // bytes
+constexpr std::size_t kMaxIds = 1000;
 constexpr std::size_t kFilePart = 256 << 10;
 constexpr char kDatabase[] = "results.sqlite";
 
@@ -61,13 +68,16 @@ CatalogueEntry Parse(const std::string& text, std::uint64_t max_cases) {
   entry.flight_id = campaign.flight_id;
   entry.name = campaign.name;
   entry.cases = campaign.sampling.cases;
+  entry.seed = campaign.sampling.seed;
   return entry;
 }
 
-Json ToJson(const CampaignView& view) {
+/// With at most so many requirements.
+Json ToJson(const CampaignView& view, std::size_t most) {
   const CatalogueEntry& entry = *view.entry;
   Json standings = Json::array();
-  for (const RequirementStanding& standing : view.standings) {
+  for (const RequirementStanding& standing :
+       std::span(view.standings).first(std::min(most, view.standings.size()))) {
     standings.push_back({{"metric", standing.metric},
                          {"requirement", standing.requirement},
                          {"n", standing.n},
@@ -85,7 +95,8 @@ Json ToJson(const CampaignView& view) {
           {"priority", entry.priority},
           {"code", HasEnded(entry.state) ? Json(entry.code) : Json(nullptr)},
           {"problem", view.problem.empty() ? Json(nullptr) : Json(view.problem)},
-          {"requirements", std::move(standings)}};
+          {"requirements", std::move(standings)},
+          {"requirements_unlisted", view.standings.size() - std::min(most, view.standings.size())}};
 }
 
 /// Twice the cube root of their number (Rice's rule), so that few cases make no comb.
@@ -119,11 +130,17 @@ Reply FrontDesk::Answer(const Request& request) {
     if (request.method == "health") {
       reply.text = "{}";
     } else if (request.method == "upload") {
-      reply.text = TakePart(request.arguments, request.data);
+      reply.text = TakePart(request.client, request.arguments, request.data);
     } else if (request.method == "launch") {
       reply.text = Launch(request.arguments);
     } else if (request.method == "cancel") {
       reply.text = Cancel(request.arguments);
+    } else if (request.method == "repair") {
+      reply.text = Repair(request.arguments);
+    } else if (request.method == "delete") {
+      reply.text = Delete(request.arguments);
+    } else if (request.method == "ids") {
+      reply.text = Ids(request.arguments);
     } else if (request.method == "list") {
       reply.text = List(request.arguments);
     } else if (request.method == "status") {
@@ -163,7 +180,8 @@ void FrontDesk::ForgetUploads() {
   });
 }
 
-std::string FrontDesk::TakePart(const std::string& arguments, const std::string& data) {
+std::string FrontDesk::TakePart(const std::string& client, const std::string& arguments,
+                                const std::string& data) {
   const Json json = Json::parse(arguments);
   const std::string id = json.at("id");
   const std::uint64_t size = json.at("size"), offset = json.at("offset");
@@ -172,7 +190,15 @@ std::string FrontDesk::TakePart(const std::string& arguments, const std::string&
     throw Refused(kExitIncomplete,
                   "the coordinator takes " + std::to_string(kMaxUploads) + " texts at a time already");
   }
+  const std::string keys = KeyNameOf(client), owner = keys.empty() ? client : keys;
+  const auto taken = std::count_if(uploads_.begin(), uploads_.end(),
+                                   [&](const auto& each) { return each.second.owner == owner; });
+  if (!uploads_.contains(id) && taken >= kMaxUploadsOfOne) {
+    throw Refused(kExitIncomplete,
+                  "this client sends " + std::to_string(kMaxUploadsOfOne) + " texts at a time already");
+  }
   Upload& upload = uploads_[id];
+  upload.owner = owner;
   upload.used_s = workforce_.now_s();
   if (upload.size != size && !upload.parsed.valid()) {
     upload.text.clear();
@@ -188,6 +214,10 @@ std::string FrontDesk::Launch(const std::string& arguments) {
   const Json json = Json::parse(arguments);
   const std::string id = json.at("id"), flight_id = json.at("flight_id");
   const int priority = json.at("priority");
+  if (priority < -kMostPriority || priority > kMostPriority) {
+    throw Refused(kExitBadInput, fmt::format("priority {}, allowed: from {} to {}", priority, -kMostPriority,
+                                             kMostPriority));
+  }
   const auto answer = [&](const char* state) { return Json{{"id", id}, {"state", state}}.dump(); };
   if (service_.catalogue().entries().contains(id)) {
     uploads_.erase(id);
@@ -220,24 +250,60 @@ std::string FrontDesk::Cancel(const std::string& arguments) {
   return Json{{"id", id}}.dump();
 }
 
+std::string FrontDesk::Repair(const std::string& arguments) {
+  const Json json = Json::parse(arguments);
+  const std::string id = Named(json.at("id")).id, worker = json.at("worker");
+  if (worker.empty() || worker.size() > 64)
+    throw Refused(kExitBadInput, "a worker's name has 1 to 64 characters");
+  copies_.Forget(service_.catalogue().ResultsOf(id));
+  service_.Repair(id, worker);
+  return Json{{"id", id}}.dump();
+}
+
+std::string FrontDesk::Delete(const std::string& arguments) {
+  const std::string wanted = Json::parse(arguments).at("id");
+  if (service_.catalogue().Find(wanted) == nullptr && wanted.size() == 64 && deleted_.contains(wanted))
+    return Json{{"id", wanted}}.dump();
+  const std::string id = Named(wanted).id;
+  copies_.Forget(service_.catalogue().ResultsOf(id));
+  service_.Delete(id);
+  deleted_.insert(id);
+  return Json{{"id", id}}.dump();
+}
+
 std::string FrontDesk::List(const std::string& arguments) const {
   const std::string wanted = Json::parse(arguments).value("id", "");
-  std::vector<std::string> ids = wanted.empty() ? Listed() : std::vector{Named(wanted).id};
-  Json campaigns = Json::array();
-  for (const std::string& id : ids) campaigns.push_back(ToJson(service_.View(id)));
-  const std::size_t unlisted = wanted.empty() ? service_.catalogue().entries().size() - ids.size() : 0;
-  return DumpAnyText(
-      {{"schema", "dispersa/list/1"}, {"campaigns", std::move(campaigns)}, {"unlisted", unlisted}});
+  // Whatever some of them have as requirements and names, the answer fits: fewer are shown, and how many are
+  // not.
+  for (std::size_t most = kMaxListed, standings = kMaxStandings;; most = (most + 1) / 2, standings /= 2) {
+    const std::vector<std::string> ids = wanted.empty() ? Listed(most) : std::vector{Named(wanted).id};
+    Json campaigns = Json::array();
+    for (const std::string& id : ids)
+      campaigns.push_back(ToJson(service_.View(id), standings / std::max(ids.size(), std::size_t{1})));
+    const std::size_t unlisted = wanted.empty() ? service_.catalogue().entries().size() - ids.size() : 0;
+    std::string text = DumpAnyText(
+        {{"schema", "dispersa/list/1"}, {"campaigns", std::move(campaigns)}, {"unlisted", unlisted}});
+    if (text.size() <= kMaxAnswer || standings == 0) return text;
+  }
+}
+
+// All of them, page by page, in the order of their ids: those behind `after`.
+std::string FrontDesk::Ids(const std::string& arguments) const {
+  const auto& entries = service_.catalogue().entries();
+  auto next = entries.upper_bound(Json::parse(arguments).value("after", ""));
+  Json ids = Json::array();
+  for (; next != entries.end() && ids.size() < kMaxIds; ++next) ids.push_back(next->first);
+  return Json{{"ids", std::move(ids)}, {"more", next != entries.end()}}.dump();
 }
 
 // As many as fit into an answer; rather those that have not ended.
-std::vector<std::string> FrontDesk::Listed() const {
+std::vector<std::string> FrontDesk::Listed(std::size_t most) const {
   std::vector<std::string> ids = service_.catalogue().InOrder();
-  std::size_t surplus = ids.size() - std::min(ids.size(), kMaxListed);
+  std::size_t surplus = ids.size() - std::min(ids.size(), most);
   std::erase_if(ids, [&](const std::string& id) {
     return surplus > 0 && HasEnded(service_.catalogue().entries().at(id).state) && surplus-- > 0;
   });
-  ids.resize(std::min(ids.size(), kMaxListed));
+  ids.resize(std::min(ids.size(), most));
   return ids;
 }
 
@@ -293,7 +359,10 @@ std::string FrontDesk::Tally(const std::string& arguments) const {
 
 // "copying" until the database can be handed out as a whole.
 std::string FrontDesk::Files(const std::string& arguments) {
-  const CatalogueEntry& entry = Named(Json::parse(arguments).at("id"));
+  const Json json = Json::parse(arguments);
+  const CatalogueEntry& entry = Named(json.at("id"));
+  const std::string snapshot = json.value("snapshot", "");
+  if (!snapshot.empty()) return Snapshot(entry, snapshot);
   if (!service_.IsAtRest(entry.id)) {
     throw Refused(kExitIncomplete,
                   fmt::format("campaign {} is {}: its results can be fetched when it has ended",
@@ -311,14 +380,49 @@ std::string FrontDesk::Files(const std::string& arguments) {
       .dump();
 }
 
+// For a backup, whatever the campaign does now. Its state comes first, so that the database has what it
+// promises; reports of one that has not ended are written again.
+std::string FrontDesk::Snapshot(const CatalogueEntry& entry, const std::string& name) {
+  const fs::path directory = service_.catalogue().ResultsOf(entry.id);
+  Json answer = {{"id", entry.id}, {"state_json", service_.catalogue().StateTextOf(entry.id)}};
+  Json files = Json::array();
+  if (fs::exists(directory / kDatabase)) {
+    const auto database = copies_.Snapshot(directory, name, workforce_.now_s());
+    if (!database) return Json{{"id", entry.id}, {"state", "copying"}}.dump();
+    for (const fs::path& file : SnapshotFiles(entry.id)) {
+      const fs::path source = file == kDatabase ? *database : directory / file;
+      files.push_back({{"path", file.generic_string()}, {"size", fs::file_size(source)}});
+    }
+  }
+  answer["files"] = std::move(files);
+  answer["text_size"] = fs::file_size(directory.parent_path() / "campaign.yaml");
+  return answer.dump();
+}
+
+std::vector<fs::path> FrontDesk::SnapshotFiles(const std::string& id) const {
+  if (service_.IsAtRest(id)) return FilesIn(service_.catalogue().ResultsOf(id));
+  return {"campaign.yaml", kDatabase};
+}
+
+// By path within the result folder.
+std::vector<fs::path> FrontDesk::ReadableFiles(const std::string& id, bool is_for_backup) const {
+  if (is_for_backup) {
+    std::vector<fs::path> files = SnapshotFiles(id);
+    files.emplace_back("../campaign.yaml");
+    return files;
+  }
+  if (!service_.IsAtRest(id)) return {};
+  return FilesIn(service_.catalogue().ResultsOf(id));
+}
+
 std::string FrontDesk::Read(const std::string& arguments, std::string* data) {
   const Json json = Json::parse(arguments);
   const CatalogueEntry& entry = Named(json.at("id"));
   const fs::path directory = service_.catalogue().ResultsOf(entry.id);
   const fs::path path = json.at("path").get<std::string>();
   const std::uint64_t offset = json.at("offset");
-  const std::vector<fs::path> files = FilesIn(directory);
-  if (!service_.IsAtRest(entry.id) || std::find(files.begin(), files.end(), path) == files.end()) {
+  const std::vector<fs::path> files = ReadableFiles(entry.id, json.contains("snapshot"));
+  if (std::find(files.begin(), files.end(), path) == files.end()) {
     throw Refused(kExitBadInput,
                   "campaign " + entry.id.substr(0, 8) + " has no file " + Printable(path.string()));
   }

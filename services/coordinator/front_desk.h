@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <future>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -26,17 +28,24 @@ class FrontDesk {
     std::string text;
     std::uint64_t size = 0;
     double used_s = 0.0;
+    std::string owner;  ///< the name of its client's keys, or of a client without
     std::future<CatalogueEntry> parsed;
   };
 
-  std::string TakePart(const std::string& arguments, const std::string& data);
+  std::string TakePart(const std::string& client, const std::string& arguments, const std::string& data);
   std::string Launch(const std::string& arguments);
   std::string Cancel(const std::string& arguments);
+  std::string Repair(const std::string& arguments);
+  std::string Delete(const std::string& arguments);
+  std::string Ids(const std::string& arguments) const;
   std::string List(const std::string& arguments) const;
-  std::vector<std::string> Listed() const;
+  std::vector<std::string> Listed(std::size_t most) const;
   std::string Status(const std::string& arguments) const;
   std::string Tally(const std::string& arguments) const;
   std::string Files(const std::string& arguments);
+  std::string Snapshot(const CatalogueEntry& entry, const std::string& name);
+  std::vector<std::filesystem::path> SnapshotFiles(const std::string& id) const;
+  std::vector<std::filesystem::path> ReadableFiles(const std::string& id, bool is_for_backup) const;
   std::string Read(const std::string& arguments, std::string* data);
   const CatalogueEntry& Named(const std::string& id) const;
   void ForgetUploads();
@@ -45,6 +54,7 @@ class FrontDesk {
   const Workforce& workforce_;
   std::map<std::string, Upload> uploads_;  ///< by id
   DatabaseCopies copies_;
+  std::set<std::string> deleted_;  ///< ids: a client whose answer got lost asks again
 };
 
 }  // namespace dispersa

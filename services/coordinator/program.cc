@@ -38,7 +38,7 @@ int RunCoordinator(int argc, char** argv) {
   ClientOptions clients;
   std::string& data = clients.data;
   bool health = false;
-  double audit = 0.0;
+  std::optional<double> audit, keep_gb;
   app.add_option("campaign", request.campaign.name, "campaign file")->type_name(kFileType);
   app.add_option("--data", data, "folder of the campaigns that were launched, made if it is not there")
       ->type_name(kFolderType);
@@ -50,19 +50,28 @@ int RunCoordinator(int argc, char** argv) {
          "with --data: cases that a campaign may have, launches of more are refused; each takes memory "
          "here\n(default: 5000000)")
       ->transform(WholeNumber(1, kMostCases));
+  app.add_option("--keep-days", clients.retention.days,
+                 "with --data: campaigns are deleted so many days after their end; default: never")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--keep-gb", keep_gb,
+                 "with --data: those that ended first are deleted while all take more than so many GB; "
+                 "default: never")
+      ->check(CLI::PositiveNumber);
   app.add_flag("--health", health,
                "ask the coordinator of the domain on this machine: exit code 0 if it answers");
   app.add_option(
          "--audit", audit,
          "share of the results, 0 to 1, that the coordinator flies again; a worker whose result differs "
-         "is expelled, and\nwhatever it returned is flown again")
+         "is expelled, and\nwhatever it returned is flown again; 0: none; default: 0.01, and none where the "
+         "control "
+         "law is a plug-in")
       ->check(CLI::Range(0.0, 1.0));
   app.add_option("--out", request.out, "result folder; default: results/<name>-<first 8 of id>")
       ->type_name(kFolderType);
   app.add_option("--cases", request.overrides.cases, "number of cases, instead of the file's")
       ->transform(WholeNumber(1, kMostCases));
   app.add_option("--seed", request.overrides.seed, "seed, instead of the file's");
-  app.add_flag("--resume", request.resume, "go on in a folder of the same flight id");
+  app.add_flag("--resume", request.resume, "continue in a folder of the same flight id");
   app.add_option("--domain", network.domain, "DDS domain")
       ->envname("DISPERSA_DOMAIN")
       ->transform(WholeNumber(0, 99));
@@ -72,7 +81,7 @@ int RunCoordinator(int argc, char** argv) {
   app.add_flag("--insecure", admission.insecure, kInsecureHelp);
   app.add_flag("--allow-plugins", admission.allow_plugins, kAllowPluginsHelp);
   app.add_option("--patience", patience_s,
-                 "give up (exit code 5) after so many seconds without a worker; default: never")
+                 "end (exit code 5) after this many seconds without a worker; default: never")
       ->check(CLI::NonNegativeNumber);
   app.footer(
       "Example: dispersa-coordinator --data /var/lib/dispersa --domain 7 --keys coordinator-main\n"
@@ -88,6 +97,7 @@ int RunCoordinator(int argc, char** argv) {
                    "a campaign file"),
         json);
   }
+  if (keep_gb) clients.retention.bytes = static_cast<std::uint64_t>(*keep_gb * 1e9);
   CatchStopSignals();
   try {
     if (health) {

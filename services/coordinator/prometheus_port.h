@@ -1,4 +1,4 @@
-// Metrics for Prometheus on a port of the loopback interface.
+// An HTTP port of the loopback interface for Prometheus.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace dispersa {
 
-/// Answers GET of / and /metrics on 127.0.0.1 with the text that was set last. Throws NetworkError if the
-/// port is not free.
+/// Answers GET of / and /metrics on 127.0.0.1 with the last text set. Throws NetworkError if the port is
+/// taken.
 class PrometheusPort {
  public:
   explicit PrometheusPort(std::uint16_t port);

@@ -39,7 +39,8 @@ std::string PrometheusText(const Service& service, const Workforce& workforce) {
   put("workers", "gauge", "Workers that are joined.", workers.size());
   put("slots", "gauge", "Threads of theirs that fly.", slots);
   put("audits_total", "counter", "Results that were flown again.", workforce.audits());
-  put("expelled_total", "counter", "Workers whose results were wrong.", workforce.expelled());
+  put("expelled_total", "counter", "Keys, or workers without keys, that may not fly here any more.",
+      workforce.expelled().size());
   put("refused_total", "counter", "Datagrams and messages that were refused.", Complaints());
   return text;
 }

@@ -1,4 +1,4 @@
-// A service in figures, for a monitor that asks now and then.
+// Figures of a service for monitoring.
 #pragma once
 
 #include <string>

@@ -112,6 +112,7 @@ int ServeClients(const ServeOptions& options, const ClientOptions& clients) {
   ServiceOptions service_options;
   service_options.data = clients.data;
   service_options.max_cases = clients.max_cases;
+  service_options.retention = clients.retention;
   service_options.report_threads = UsableCores();
   Service service(service_options, coordinator);
   FrontDesk front_desk(service, coordinator);

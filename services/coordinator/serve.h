@@ -15,7 +15,8 @@ namespace dispersa {
 
 struct ServeOptions {
   NetworkOptions network;
-  double audit = 0.0;  ///< so much of the results is flown again
+  /// So much of the results is flown again; without a value see Coordinator.
+  std::optional<double> audit = {};
   std::vector<std::string>
       again;  ///< the command that takes this program's place when it hears nobody any more
 };
@@ -28,6 +29,7 @@ struct ClientOptions {
   std::string data;                                   ///< folder
   std::optional<std::uint16_t> prometheus_port = {};  ///< of 127.0.0.1
   std::uint64_t max_cases = kDefaultMaxCases;
+  Retention retention = {};
 };
 
 /// The campaigns that clients launch, until a signal to stop.

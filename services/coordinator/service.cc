@@ -1,14 +1,22 @@
 #include "services/coordinator/service.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
+#include <cstring>
+#include <fstream>
 #include <new>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "core/campaign_yaml/load.h"
 #include "core/pages/reports.h"
+#include "core/results/output_file.h"
+#include "services/coordinator/dump_any_text.h"
 #include "services/ledger/open_book.h"
 #include "services/log/log.h"
 #include "services/program/exit_code.h"
@@ -21,9 +29,37 @@ constexpr std::size_t kRateOver = 10;  // measurements
 constexpr std::size_t kMaxProblem = 1000;
 constexpr std::size_t kRemembered = 16;  // tallies of campaigns that fly no more
 
+constexpr double kRetention_s = 60.0;  // what is old is looked for so often
+constexpr char kDeletedFile[] = "deleted.jsonl";
+constexpr char kExpelledFile[] = "expelled.json";
 constexpr double kDelay_s = 10.0;  // until a full disk is tried again
 
 struct Stopped {};
+
+// On the disk when it returns.
+void AppendLine(const std::filesystem::path& file, const std::string& line) {
+  const int descriptor = open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+  const std::string text = line + "\n";
+  const bool is_written = descriptor >= 0 &&
+                          write(descriptor, text.data(), text.size()) == std::ssize(text) &&
+                          fsync(descriptor) == 0;
+  const int error = errno;
+  if (descriptor >= 0) close(descriptor);
+  if (is_written) return;
+  throw ResultError(error == ENOSPC ? ResultError::Kind::kDiskFull : ResultError::Kind::kFile,
+                    fmt::format("{}: cannot be written: {}", file.string(), std::strerror(error)));
+}
+
+std::uint64_t BytesIn(const std::filesystem::path& folder) {
+  std::uint64_t bytes = 0;
+  std::error_code error;
+  for (auto entry = std::filesystem::recursive_directory_iterator(folder, error);
+       !error && entry != std::filesystem::recursive_directory_iterator(); entry.increment(error)) {
+    std::error_code unsized;
+    if (const auto size = entry->file_size(unsized); !unsized) bytes += size;
+  }
+  return bytes;
+}
 
 std::string Waiting(const std::string& problem) { return problem + "; it goes on when there is space"; }
 
@@ -39,6 +75,7 @@ Service::Service(const ServiceOptions& options, Workforce& workforce)
   std::size_t open = 0;
   for (const auto& [id, entry] : catalogue_.entries()) open += !HasEnded(entry.state);
   LogInfo("{}: {} campaigns, {} of them open", options.data.string(), catalogue_.entries().size(), open);
+  LoadExpelled();
 }
 
 Service::~Service() {
@@ -56,6 +93,7 @@ void Service::Step() {
   FinishOpening();
   StartOpening();
   Measure();
+  DeleteOld();
 }
 
 void Service::Flush() {
@@ -206,6 +244,8 @@ void Service::BeginToOpen(const CatalogueEntry& entry) {
     if (id != entry.id && other.flight_id == entry.flight_id)
       opening.same_flights.push_back(catalogue_.ResultsOf(id));
   }
+  opening.distrusted = entry.distrusted;
+  for (const auto& [name, reason] : workforce_.expelled()) opening.distrusted.push_back(name);
   opening_.emplace();
   opening_->id = entry.id;
   opening_->book =
@@ -227,6 +267,7 @@ void Service::FinishOpening() {
             book->ledger().Progress().done, book->ledger().Progress().total);
     flying_[opened.id].book = std::move(book);
     entry.state = CampaignState::kFlying;
+    entry.distrusted.clear();
     Save(entry);
   } catch (...) {
     if (entry.state == CampaignState::kWaiting) Fail(entry, std::current_exception());
@@ -289,6 +330,7 @@ void Service::Measure() {
   if (now_s - measured_s_ < kMeasure_s) return;
   measured_s_ = now_s;
   SaveAgain();
+  NoteExpelled();
   for (auto& [id, flying] : flying_) {
     CatalogueEntry& entry = catalogue_.At(id);
     flying.past.emplace_back(now_s, flying.book->ledger().Progress().done);
@@ -306,6 +348,29 @@ void Service::NoteConflicts(CatalogueEntry& entry, Flying& flying) {
   entry.conflicts += seen - flying.conflicts_noted;
   flying.conflicts_noted = seen;
   Save(entry);
+}
+
+// Whoever was expelled stays so when the coordinator is started again, until its line is removed.
+void Service::LoadExpelled() {
+  std::ifstream stream(options_.data / kExpelledFile);
+  if (!stream) return;
+  try {
+    workforce_.Expel(nlohmann::json::parse(stream).get<std::map<std::string, std::string>>());
+  } catch (const nlohmann::json::exception& damage) {
+    LogError("{}: is damaged and left alone: {}", (options_.data / kExpelledFile).string(), damage.what());
+  }
+  expelled_noted_ = workforce_.expelled().size();
+}
+
+void Service::NoteExpelled() {
+  if (workforce_.expelled().size() == expelled_noted_) return;
+  try {
+    WriteFile(options_.data / kExpelledFile,
+              DumpAnyText(nlohmann::ordered_json(workforce_.expelled()), 2) + "\n");
+    expelled_noted_ = workforce_.expelled().size();
+  } catch (const ResultError& error) {
+    LogError("who was expelled cannot be stored, it is tried again: {}", error.what());
+  }
 }
 
 // An expelled worker's results: whoever cancels the campaign after a restart must not be promised them.
@@ -337,6 +402,7 @@ void Service::End(CatalogueEntry& entry, CampaignState state, int code, const st
   entry.state = state;
   entry.code = code;
   entry.problem = problem.substr(0, kMaxProblem);
+  entry.ended_unix_s = options_.unix_time_s();
   delayed_.erase(entry.id);
   Save(entry);
   Publish(entry);
@@ -411,6 +477,7 @@ void Service::Relaunch(const std::string& id, int priority) {
       (entry.state == CampaignState::kDone && entry.quarantined > 0)) {
     entry.state = CampaignState::kWaiting;
     entry.quarantined = 0;
+    entry.ended_unix_s = 0;
     entry.problem.clear();
   }
   catalogue_.Write(entry);
@@ -422,6 +489,101 @@ void Service::Relaunch(const std::string& id, int priority) {
 void Service::Launch(CatalogueEntry entry, const std::string& text) {
   LogInfo("campaign {} ({}): launched, {} cases", entry.name, entry.id.substr(0, 8), entry.cases);
   catalogue_.Add(std::move(entry), text);
+}
+
+// Neither written nor read: a campaign of the same flights that is being opened takes its results over.
+bool Service::MayBeDeleted(const std::string& id) const {
+  if (!IsAtRest(id)) return false;
+  return !opening_ ||
+         catalogue_.entries().at(opening_->id).flight_id != catalogue_.entries().at(id).flight_id;
+}
+
+void Service::Delete(const std::string& id) {
+  const CatalogueEntry& entry = catalogue_.At(id);
+  if (!MayBeDeleted(id)) {
+    throw Refused(
+        kExitBadInput,
+        fmt::format("campaign {} is {} and cannot be deleted, allowed: a campaign that has ended; `dispersa "
+                    "cancel` ends it",
+                    id.substr(0, 8), HasEnded(entry.state) ? "being read" : CampaignStateName(entry.state)));
+  }
+  Remember(entry);
+  LogInfo("campaign {} ({}) is deleted", entry.name, id.substr(0, 8));
+  delayed_.erase(id);
+  unsaved_.erase(id);
+  std::erase_if(flew_, [&](const auto& each) { return each.first == id; });
+  catalogue_.Remove(id);
+}
+
+// Who counts attempts at a requirement counts those whose results are gone, too.
+void Service::Remember(const CatalogueEntry& entry) const {
+  std::string verdict;
+  try {
+    std::ifstream stream(catalogue_.ResultsOf(entry.id) / "summary.json");
+    if (stream) verdict = nlohmann::json::parse(stream).value("verdict", "");
+  } catch (const nlohmann::json::exception&) {
+    // A damaged summary has no verdict.
+  }
+  const nlohmann::ordered_json line = {{"id", entry.id},
+                                       {"flight_id", entry.flight_id},
+                                       {"name", entry.name},
+                                       {"seed", entry.seed},
+                                       {"cases", entry.done},
+                                       {"state", CampaignStateName(entry.state)},
+                                       {"code", entry.code},
+                                       {"verdict", verdict},
+                                       {"ended_unix_s", entry.ended_unix_s},
+                                       {"deleted_unix_s", options_.unix_time_s()}};
+  AppendLine(options_.data / kDeletedFile, DumpAnyText(line));
+}
+
+void Service::DeleteOld() {
+  const Retention& keep = options_.retention;
+  if ((!keep.days && !keep.bytes) || workforce_.now_s() - retained_s_ < kRetention_s) return;
+  retained_s_ = workforce_.now_s();
+  std::vector<const CatalogueEntry*> ended;
+  std::map<std::string, std::uint64_t> sizes;
+  std::uint64_t total = 0;
+  for (const auto& [id, entry] : catalogue_.entries()) {
+    if (MayBeDeleted(id)) ended.push_back(&entry);
+    if (keep.bytes) total += sizes[id] = BytesIn(catalogue_.ResultsOf(id).parent_path());
+  }
+  std::sort(ended.begin(), ended.end(),
+            [](const auto* a, const auto* b) { return a->ended_unix_s < b->ended_unix_s; });
+  const std::int64_t now = options_.unix_time_s();
+  for (const CatalogueEntry* entry : ended) {
+    const std::string id = entry->id;
+    const bool is_old = keep.days && static_cast<double>(now - entry->ended_unix_s) > 86400.0 * *keep.days;
+    if (!is_old && !(keep.bytes && total > *keep.bytes)) break;
+    try {
+      if (keep.bytes) total -= sizes[id];
+      Delete(id);
+    } catch (const ResultError& error) {
+      LogError("campaign {} cannot be deleted: {}", id.substr(0, 8), error.what());
+    }
+  }
+}
+
+void Service::Repair(const std::string& id, const std::string& worker) {
+  CatalogueEntry& entry = catalogue_.At(id);
+  if (entry.state == CampaignState::kReporting || (opening_ && opening_->id == id)) {
+    throw Refused(kExitIncomplete,
+                  fmt::format("campaign {} is {} and cannot be repaired now, try again", id.substr(0, 8),
+                              entry.state == CampaignState::kReporting ? "reporting" : "being opened"));
+  }
+  CatalogueEntry repaired = entry;
+  repaired.state = CampaignState::kWaiting;
+  repaired.distrusted.push_back(worker);
+  repaired.quarantined = repaired.conflicts = 0;
+  repaired.ended_unix_s = 0;
+  repaired.problem.clear();
+  catalogue_.Write(repaired);
+  if (flying_.contains(id)) {
+    TakeBack(id);
+    repaired.done = entry.done;
+  }
+  entry = repaired;
+  LogInfo("campaign {} ({}): the results of {} are flown again", entry.name, id.substr(0, 8), worker);
 }
 
 void Service::Cancel(const std::string& id) {

@@ -3,9 +3,11 @@
 
 #include <atomic>
 #include <cstdint>
+#include <ctime>
 #include <deque>
 #include <exception>
 #include <filesystem>
+#include <functional>
 #include <future>
 #include <map>
 #include <memory>
@@ -24,12 +26,20 @@ namespace dispersa {
 /// A ledger takes 17 bytes a case, a report 140: with eight such campaigns open and a report 1.5 GB.
 inline constexpr std::uint64_t kDefaultMaxCases = 5000000;
 
+/// What becomes of campaigns that have ended.
+struct Retention {
+  std::optional<double> days = {};          ///< they are deleted so long after their end
+  std::optional<std::uint64_t> bytes = {};  ///< the oldest are deleted while all campaigns take more
+};
+
 struct ServiceOptions {
   std::filesystem::path data;
   int report_threads = 1;
   std::size_t flying_at_once = 8;  ///< campaigns that fly side by side; the others wait
   std::uint64_t max_cases =
       kDefaultMaxCases;  ///< of a campaign: its ledger and its report take memory for each
+  Retention retention = {};
+  std::function<std::int64_t()> unix_time_s = [] { return std::int64_t{std::time(nullptr)}; };
 };
 
 /// Asked for something that cannot be; `code` is the exit code of the client.
@@ -84,6 +94,11 @@ class Service {
   void Launch(CatalogueEntry entry, const std::string& text);
   /// Ends it; what it has flown stays. Again: nothing. Throws Refused when it is too late.
   void Cancel(const std::string& id);
+  /// Results of the workers that `worker` means (IsMeantBy) are removed and flown again, and contradictions
+  /// are forgotten: they were with these. Throws Refused while its report is written.
+  void Repair(const std::string& id, const std::string& worker);
+  /// Its folder; DATA/deleted.jsonl keeps a line of it. Throws Refused unless it is at rest.
+  void Delete(const std::string& id);
 
  private:
   using Book = std::unique_ptr<CampaignBook>;
@@ -113,6 +128,11 @@ class Service {
   bool MakeRoomFor(const CatalogueEntry& entry);
   void Measure();
   void NoteConflicts(CatalogueEntry& entry, Flying& flying);
+  void DeleteOld();
+  void Remember(const CatalogueEntry& entry) const;
+  bool MayBeDeleted(const std::string& id) const;
+  void LoadExpelled();
+  void NoteExpelled();
   void NoteRemoved(CatalogueEntry& entry, const Flying& flying);
   Book TakeBack(const std::string& id);
   /// In time, when the disk does not take it now.
@@ -140,6 +160,8 @@ class Service {
   std::map<std::string, Delayed> delayed_;  ///< by id: the disk was full
   std::set<std::string> unsaved_;           ///< ids whose state is not on the disk
   std::uint64_t opened_ = 0;
+  std::size_t expelled_noted_ = 0;
+  double retained_s_ = -1e9;  ///< when what is old was looked for
   double measured_s_ = -1.0;
 };
 

@@ -1,4 +1,4 @@
-// Starts this program again, in the same process, when its middleware does not come back from what froze it.
+// Restarts the coordinator in the same process when its middleware does not recover.
 #pragma once
 
 #include <atomic>
@@ -9,14 +9,14 @@
 
 namespace dispersa {
 
-/// When to start again. A pure state machine; times in seconds that this program was awake.
+/// Decides when to restart. A pure state machine; times are seconds during which this program was awake.
 class RestartRule {
  public:
-  /// Having heard somebody before, a coordinator with work that receives nobody for so long is deaf; a thread
-  /// that makes no round for so long hangs.
+  /// Restart after kNoReports_s without reports, if there is work and reports came before. Restart after
+  /// kHang_s in which the thread makes no round.
   static constexpr double kNoReports_s = 10.0, kHang_s = 20.0;
 
-  /// What is seen now. True: start again.
+  /// Takes the present observations. True: restart.
   bool Check(double now_s, bool receives, bool has_work, long rounds);
 
  private:
@@ -25,15 +25,15 @@ class RestartRule {
   long rounds_ = -1;
 };
 
-/// Whatever a coordinator knows is on its disk, or repeated by its workers until it is, so it may be started
-/// again at any moment; what the middleware knows of others dies with it, and what it has locked itself up in
-/// too. Runs a thread of its own, since the one that talks may be what hangs.
+/// A coordinator may be restarted at any moment: its state is on its disk, or its workers repeat it until it
+/// is. A restart also ends locks and stale connections inside the middleware. The watchdog has a thread of
+/// its own, because the message thread may hang.
 class Watchdog {
  public:
-  /// `arguments`: of the program that takes this one's place.
+  /// `arguments`: the command line of the restarted program.
   explicit Watchdog(std::vector<std::string> arguments);
 
-  /// Of each round: whether somebody is heard, and whether anybody needs to be.
+  /// Call it in each round: whether reports arrive, and whether there is work, so that they should.
   void Note(bool receives, bool has_work) {
     receives_ = receives;
     has_work_ = has_work;

@@ -1,7 +1,8 @@
-// The workers of a service: those of its coordinator, or made-up ones in a test.
+// The workers of a service: those of its coordinator, or simulated ones in a test.
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,15 +12,15 @@
 
 namespace dispersa {
 
-/// The part of a coordinator that a service, its front desk and its metrics use. It needs no network.
+/// The part of a coordinator that service, front desk and Prometheus text use. It needs no network.
 class Workforce {
  public:
   virtual ~Workforce() = default;
 
-  /// A book must stay until it is closed.
+  /// The book must exist until EndCampaign.
   virtual void BeginCampaign(CampaignBook& book, int priority) = 0;
   virtual void EndCampaign(const std::string& flight_id) = 0;
-  /// To all observers.
+  /// Sends it to all observers.
   virtual void Publish(CampaignProgress progress) = 0;
 
   virtual std::vector<Dispatcher::WorkerView> Workers() const = 0;
@@ -27,7 +28,8 @@ class Workforce {
   virtual std::optional<std::string> RefusalByAll(const std::string& flight_id) const = 0;
   virtual const AuditOptions& audit() const = 0;
   virtual std::uint64_t audits() const = 0;
-  virtual std::uint64_t expelled() const = 0;
+  virtual const std::map<std::string, std::string>& expelled() const = 0;
+  virtual void Expel(const std::map<std::string, std::string>& names) = 0;
   /// Seconds since the start.
   virtual double now_s() const = 0;
 };

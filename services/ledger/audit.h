@@ -1,4 +1,4 @@
-// Which results the coordinator flies again itself.
+// Decides which results the coordinator flies again itself.
 #pragma once
 
 #include <cstddef>
@@ -11,25 +11,31 @@
 
 namespace dispersa {
 
+/// Where nobody says otherwise: a forger of 500 results passes one time in 150.
+inline constexpr double kUsualAuditShare = 0.01;
+
 struct AuditOptions {
   double share = 0.0;      ///< of the results, 0 to 1; 0: none at all
   std::uint64_t salt = 0;  ///< decides which: whoever knows it knows which forgery is seen
+  /// Also where the control law is a plug-in: a law that differs from machine to machine then has its workers
+  /// expelled. Otherwise it has the campaign refused.
+  bool with_plugins = true;
 };
 
-/// A pure state machine: results come in, those that are to be flown again come out. By the coordinator,
-/// since two workers that agree may be one forger's.
+/// A pure state machine: takes results, and returns those to be flown again. The coordinator flies them,
+/// because one forger may own two workers that agree.
 class Audit {
  public:
   explicit Audit(const AuditOptions& options) : options_(options) {}
 
-  /// Takes the first result of each worker, and the share of all.
+  /// Selects the first result of each worker, and the given share of all results.
   void Consider(const Claim& claim);
-  /// Takes it in any case.
+  /// Selects this result.
   void Add(const Claim& claim) { waiting_.push_back(claim); }
-  /// What is to be flown again now; Settle says of each that it was.
+  /// Results to be flown again now. Call Settle once for each of them.
   std::vector<Claim> Take();
   void Settle() { --flying_; }
-  /// Nothing that this worker returned needs to be flown again any more.
+  /// Nothing that the workers returned that `worker` means needs to be flown again any more.
   void Drop(const std::string& worker);
   bool IsSettled() const { return waiting_.empty() && flying_ == 0; }
 

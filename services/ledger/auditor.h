@@ -1,4 +1,4 @@
-// Flies again what the audit asks for.
+// Flies the results again that the audit selected.
 #pragma once
 
 #include <condition_variable>
@@ -15,7 +15,7 @@
 
 namespace dispersa {
 
-/// One thread of its own that flies, so that whoever talks need not wait.
+/// Flies on one thread of its own, so that the coordinator's message thread does not wait.
 class Auditor {
  public:
   /// A claim and the fingerprint of the case as it was flown here.
@@ -29,7 +29,7 @@ class Auditor {
   ~Auditor();
 
   void Fly(const Campaign& campaign, std::vector<Claim> claims);
-  /// What has been flown since the last time.
+  /// Verdicts since the last call.
   std::vector<Verdict> Take();
 
  private:

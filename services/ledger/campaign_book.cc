@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 #include <utility>
 
 #include "core/flight/engine_version.h"
+#include "core/flight/flight_inputs.h"
 #include "core/results/fingerprint.h"
 #include "core/results/result_differences.h"
 #include "services/log/log.h"
@@ -63,6 +65,7 @@ CampaignBook::CampaignBook(const Campaign& campaign, std::unique_ptr<ResultStore
                            const LedgerOptions& options)
     : campaign_(campaign),
       store_(std::move(store)),
+      design_(campaign),
       rule_(RuleOf(campaign, *store_)),
       ledger_(EngineVersion(), rule_ ? rule_->target() : campaign.sampling.cases, options) {
   const std::uint64_t cases = ledger_.Progress().total;
@@ -74,13 +77,20 @@ CampaignBook::CampaignBook(const Campaign& campaign, std::unique_ptr<ResultStore
     ledger_.RequireSecondFlight(i, store_->WorkerOf(i).value_or(""));
 }
 
+bool CampaignBook::IsDrawnSo(const CaseResult& result) const {
+  const std::vector<double> drawn =
+      InputValues(design_.Draw(result.case_index), campaign_.vehicle.stages.size());
+  return result.inputs.size() == drawn.size() &&
+         std::memcmp(result.inputs.data(), drawn.data(), drawn.size() * sizeof(double)) == 0;
+}
+
 void CampaignBook::KeepTally() {
   tally_.emplace(campaign_);
   store_->ForEach([&](const CaseResult& result) { tally_->Add(result); });
 }
 
 void CampaignBook::KeepAudit(const AuditOptions& options) {
-  if (options.share <= 0.0 || audit_) return;
+  if (options.share <= 0.0 || audit_ || (campaign_.autopilot.plugin && !options.with_plugins)) return;
   audit_.emplace(options);
   store_->ForEachUnaudited([&](const Claim& claim) { audit_->Consider(claim); });
 }

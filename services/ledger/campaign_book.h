@@ -1,4 +1,4 @@
-// The ledger of a campaign together with the store that its results go to.
+// The ledger of a campaign together with the store of its results.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +12,7 @@
 #include "core/analysis/campaign_summary.h"
 #include "core/analysis/stopping_rule.h"
 #include "core/campaign/campaign.h"
+#include "core/campaign/case_design.h"
 #include "core/results/result_folder.h"
 #include "core/results/result_store.h"
 #include "services/ledger/audit.h"
@@ -21,15 +22,15 @@
 
 namespace dispersa {
 
-/// The exit code of a campaign that ends with this verdict after so many results that contradicted others:
-/// any is an internal error (1), whatever the verdict says.
+/// The exit code of a campaign with this verdict. One conflict (two different results of a case) makes it an
+/// internal error (1), whatever the verdict is.
 ExitCode CampaignExitCode(CampaignVerdict verdict, std::uint64_t conflicts);
 
-/// The worker's name when a campaign is flown by the process that writes its folder.
+/// The worker's name when the process that writes the folder flies the cases itself.
 inline constexpr char kInProcess[] = "in process";
 
-/// Results are stored in batches; nothing that was accepted is lost by more than one batch. Not thread-safe.
-/// Times are seconds from any origin. Storing throws ResultError, unless the book is told to be patient.
+/// Stores results in batches; a crash loses at most the last batch. Not thread-safe. Times are seconds from
+/// any origin. Storing throws ResultError, unless PauseOnDiskErrors was called.
 class CampaignBook {
  public:
   CampaignBook(const Campaign& campaign, std::unique_ptr<ResultStore> store,
@@ -37,65 +38,66 @@ class CampaignBook {
   CampaignBook(const Campaign& campaign, ResultFolder folder, const LedgerOptions& options = {});
 
   const Campaign& campaign() const { return campaign_; }
-  /// Of a book that was made with one.
+  /// Only of a book that was made with a folder.
   const ResultFolder& folder() const { return *folder_; }
   Ledger& ledger() { return ledger_; }
   const Ledger& ledger() const { return ledger_; }
-  /// Whether nothing is left to fly. Extends the ledger to the campaign's next look when all cases up to this
-  /// one are settled and its requirements are not decided.
+  /// Whether nothing is left to fly. When all cases up to the present look are settled and a requirement is
+  /// undecided, this extends the ledger to the next look.
   bool Complete();
   std::uint64_t flown_now() const { return flown_now_; }  ///< accepted since construction
 
-  /// Why its results cannot be believed, in words for the user: its control law is not deterministic. Nothing
-  /// of it needs to be flown any more.
+  /// Set when the control law is not deterministic: the error message for the user. The campaign then ends.
   const std::optional<std::string>& refusal() const { return refusal_; }
 
-  /// From now on an error of the disk is no exception. A full disk pauses the book: results are kept in
-  /// memory, and are stored when there is space. Any other error breaks it.
+  /// From now on a disk error throws no exception. A full disk pauses the book: it keeps results in memory
+  /// and stores them when there is space. Any other error breaks the book.
   void PauseOnDiskErrors() { pauses_on_disk_errors_ = true; }
-  /// Why nothing can be stored now; empty: it can. Nothing should be assigned meanwhile.
+  /// Why nothing can be stored now; empty: storing works. Assign no cases while it is set.
   const std::string& pause() const { return pause_; }
-  /// Why nothing can be stored any more; empty: it can.
+  /// Why nothing can be stored any more; empty: storing works.
   const std::string& breakdown() const { return breakdown_; }
   /// Results that were accepted and are not stored yet.
   std::uint64_t unstored() const { return results_.size(); }
 
-  /// What the first cases of a campaign with a plug-in gave before it: every result of them must be the same,
-  /// what the store holds too.
+  /// The results that the determinism check of a plug-in gave for the first cases. Every other result of
+  /// these cases, also a stored one, must have the same bits.
   void Expect(std::vector<CaseResult> flown);
 
-  /// Counts from what the store holds; to be called before the first result.
+  /// Starts a tally from the stored results. Call it before the first result arrives.
   void KeepTally();
-  /// How the requirements stand by what has been accepted, in a book that keeps a tally.
+  /// Of a book that keeps a tally: how the requirements stand after the accepted results.
   const RunningTally& tally() const { return *tally_; }
 
-  /// From now on nothing is complete before its audit is, of what the store holds already too. Nothing if the
-  /// share is 0, or when it is called again.
+  /// From now on the campaign is complete only when its audit is; stored results are audited too. No effect
+  /// if the share is 0, or when called again.
   void KeepAudit(const AuditOptions& options);
   bool IsAudited() const { return audit_.has_value(); }
-  /// What is to be flown again now.
+  /// Results to be flown again now.
   std::vector<Claim> TakeClaims() { return audit_ ? audit_->Take() : std::vector<Claim>(); }
-  /// What it gave. False: the worker returned something else.
+  /// `truth`: the fingerprint of the repeated flight. False: the worker returned a different result.
   bool Settle(const Claim& claim, const Digest& truth);
-  /// Results that were flown again since construction, and agreed.
+  /// Repeated flights since construction that agreed.
   std::uint64_t confirmed() const { return confirmed_; }
-  /// Whatever this worker returned is flown again. A campaign that stops when it is decided keeps the cases
-  /// that it was extended to.
+  /// Whether a result's inputs are those that the campaign draws for its case.
+  bool IsDrawnSo(const CaseResult& result) const;
+  /// Whatever the workers returned that `worker` means (IsMeantBy) is flown again. A campaign that stops when
+  /// it is decided keeps the cases that it was extended to.
   void Disown(const std::string& worker);
 
   void Start(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt, double now_s);
-  /// A result that differs from the one already accepted is logged, stored nowhere, and counted as a conflict
-  /// in the ledger's progress, until an audit tells who is wrong. Without audit it refuses a campaign whose
-  /// control law is a plug-in.
+  /// A result that differs from the accepted one is logged, is not stored, and counts as a conflict in the
+  /// ledger's progress until an audit settles it. Without audit, a conflict under a plug-in refuses the
+  /// campaign.
   Acceptance Accept(const std::string& worker, const std::string& host, std::uint64_t attempt,
                     const CaseResult& result, double now_s);
-  /// Ledger::Quarantine. A case that another worker could fly refuses the campaign, if two were to fly it.
+  /// See Ledger::Quarantine. If two workers had to fly the case and one could not, the campaign is refused.
   void Quarantine(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,
                   const std::string& reason, double now_s);
-  /// Stores what has gathered if it is time to. True: all that was accepted so far is stored.
+  /// Stores the accepted results when due. True: all accepted results are stored.
   bool FlushIfDue(double now_s);
   void Flush();
-  /// False: not everything is stored, see pause() and breakdown().
+  /// False: some results are not stored; see pause() and breakdown().
   bool TryFlush();
 
  private:
@@ -113,7 +115,8 @@ class CampaignBook {
   Campaign campaign_;
   std::unique_ptr<ResultStore> store_;
   const ResultFolder* folder_ = nullptr;  ///< the store, if it is one
-  std::optional<StoppingRule> rule_;      ///< of a campaign that stops when it is decided
+  CaseDesign design_;
+  std::optional<StoppingRule> rule_;  ///< of a campaign that stops when it is decided
   std::optional<RunningTally> tally_;
   std::optional<Audit> audit_;
   std::uint64_t confirmed_ = 0;

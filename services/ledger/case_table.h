@@ -1,4 +1,4 @@
-// What became of each case of a campaign: state and fingerprint, in little memory.
+// The state of each case of a campaign and the fingerprint of its result, in little memory.
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@ namespace dispersa {
 
 enum class CaseState : std::uint8_t { kWaiting, kSuspect, kAssigned, kDone, kQuarantined };
 
-/// Cases 0 .. size() - 1, each of which waits at first. A block of neighbours takes memory once one of them
-/// does not: 17 bytes a case.
+/// Cases 0 .. size() - 1. Every case waits at first. A block of 4096 cases takes memory, 17 bytes a case,
+/// when the first of them leaves that state.
 class CaseTable {
  public:
   explicit CaseTable(std::uint64_t size) { Extend(size); }

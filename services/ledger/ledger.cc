@@ -10,7 +10,8 @@ namespace {
 // A flight of the same campaign takes about as long as another; a factor of 20 over the longest seen is
 // a hang and not a slow case on a busy machine.
 constexpr double kLeasePerLongestCase = 20.0;
-constexpr double kMeanWeight = 0.1;  // of the newest duration in the running mean
+constexpr double kMeanWeight = 0.1;            // of the newest duration in the running mean
+constexpr std::size_t kRememberedWorkers = 4;  // that a case was taken from
 
 }  // namespace
 
@@ -51,6 +52,26 @@ void Ledger::Reopen(const std::vector<std::uint64_t>& cases) {
       flight->second = {};
     Return(case_index);
   }
+}
+
+bool Ledger::WasGiven(const std::string& worker, std::uint64_t case_index) const {
+  const auto entry = workers_.find(worker);
+  if (entry != workers_.end() && entry->second.held.contains(case_index)) return true;
+  const auto taken = taken_from_.find(case_index);
+  return taken != taken_from_.end() &&
+         std::find(taken->second.begin(), taken->second.end(), worker) != taken->second.end();
+}
+
+bool Ledger::IsResult(std::uint64_t case_index, const Digest& fingerprint) const {
+  return case_index < cases_.size() && cases_.StateOf(case_index) == CaseState::kDone &&
+         cases_.FingerprintOf(case_index) == fingerprint;
+}
+
+void Ledger::RememberGiven(const std::string& worker, std::uint64_t case_index) {
+  std::vector<std::string>& workers = taken_from_[case_index];
+  std::erase(workers, worker);
+  if (workers.size() == kRememberedWorkers) workers.erase(workers.begin());
+  workers.push_back(worker);
 }
 
 std::optional<std::string> Ledger::Join(const std::string& worker, const WorkerHello& hello, double now_s) {
@@ -132,6 +153,11 @@ Acceptance Ledger::Finished(const std::string& worker, std::uint64_t case_index,
                             const Digest& fingerprint, double now_s) {
   Settle(worker, case_index, attempt, now_s);
   if (case_index >= cases_.size()) return Acceptance::kUnknown;
+  if (const auto entry = workers_.find(worker); entry != workers_.end()) {
+    ++entry->second.returned;
+    entry->second.last_returned_s = now_s;
+    entry->second.slow = false;
+  }
   const CaseState state = cases_.StateOf(case_index);
   const auto flight = second_flights_.find(case_index);
   if (state == CaseState::kDone) {
@@ -162,6 +188,7 @@ void Ledger::Lost(const std::string& worker, WorkerEnd end, const std::string& r
   const auto held = std::move(entry->second.held);
   workers_.erase(entry);
   for (const auto& [case_index, how] : held) {
+    RememberGiven(worker, case_index);
     Drop(case_index, blames && how.started_s);
     if (cases_.StateOf(case_index) != CaseState::kAssigned) continue;  // another worker's result came
     if (blames && how.started_s) {
@@ -189,6 +216,7 @@ std::vector<std::string> Ledger::Expire(double now_s) {
     worker.alone = false;
     worker.stuck = true;
     for (const auto& [case_index, how] : held) {
+      RememberGiven(id, case_index);
       Drop(case_index, how.started_s && now_s - *how.started_s > lease_s);
       if (cases_.StateOf(case_index) != CaseState::kAssigned) continue;
       if (how.started_s && now_s - *how.started_s > lease_s) {
@@ -198,7 +226,37 @@ std::vector<std::string> Ledger::Expire(double now_s) {
       }
     }
   }
+  TakeBackOverdue(now_s);
   return stuck;
+}
+
+// The last cases of a campaign do not wait for a worker that is slow, or that never means to return them. A
+// case that takes so long with everybody is then left to its second worker.
+void Ledger::TakeBackOverdue(double now_s) {
+  if (!waiting_.Empty() || !suspects_.Empty()) return;
+  const bool is_somebody_idle = std::any_of(workers_.begin(), workers_.end(), [](const auto& each) {
+    return each.second.held.empty() && !each.second.stuck && !each.second.slow && !each.second.leaving;
+  });
+  if (!is_somebody_idle) return;
+  const double overdue_s = std::max(options_.overdue_s, kLeasePerLongestCase * longest_case_s_);
+  for (auto& [id, worker] : workers_) {
+    if (worker.alone || now_s - worker.last_returned_s <= overdue_s) continue;
+    for (auto held = worker.held.begin(); held != worker.held.end();) {
+      const auto here = held++;
+      const std::uint64_t case_index = here->first;
+      if (cases_.StateOf(case_index) != CaseState::kAssigned || taken_from_.contains(case_index)) continue;
+      RememberGiven(id, case_index);
+      Release(worker, here);
+      Return(case_index);
+      worker.slow = true;
+    }
+  }
+}
+
+bool Ledger::IsAnyoneQuick() const {
+  return std::any_of(workers_.begin(), workers_.end(), [](const auto& each) {
+    return !each.second.slow && !each.second.stuck && !each.second.leaving;
+  });
 }
 
 std::vector<Assignment> Ledger::Assign(double now_s) {
@@ -226,8 +284,11 @@ std::optional<Assignment> Ledger::GiveTo(const std::string& worker, std::uint64_
   const auto entry = workers_.find(worker);
   if (entry == workers_.end()) return std::nullopt;
   Worker& to = entry->second;
-  if (to.stuck || to.leaving || to.alone || to.batches.size() + elsewhere >= to.hello.credits)
-    return std::nullopt;
+  // Who holds much has returned much: nobody stops a campaign by taking its cases.
+  const std::uint64_t most =
+      std::min<std::uint64_t>(to.hello.credits, options_.first_assignments + to.returned);
+  if (to.stuck || to.leaving || to.alone || to.batches.size() + elsewhere >= most) return std::nullopt;
+  if (to.slow && IsAnyoneQuick()) return std::nullopt;
   // First what may show that nothing more needs to be flown.
   if (std::vector<std::uint64_t> again = SecondFlightsFor(worker, to); !again.empty())
     return Give(worker, to, std::move(again), now_s);
@@ -245,6 +306,7 @@ void Ledger::Withdraw(const std::string& worker, const std::vector<std::uint64_t
     const auto here = held++;
     if (std::find(begun.begin(), begun.end(), here->first) != begun.end()) continue;
     const std::uint64_t case_index = here->first;
+    RememberGiven(worker, case_index);
     Release(entry->second, here);
     if (cases_.StateOf(case_index) == CaseState::kAssigned) Return(case_index);
   }
@@ -342,7 +404,8 @@ std::uint64_t Ledger::BatchSize() const {
 
 Assignment Ledger::Give(const std::string& id, Worker& worker, std::vector<std::uint64_t> cases,
                         double now_s) {
-  if (worker.held.empty()) worker.last_report_s = now_s;  // an idle worker has nothing to report
+  if (worker.held.empty())
+    worker.last_report_s = worker.last_returned_s = now_s;  // an idle worker has nothing to report
   const std::uint64_t attempt = next_attempt_++;
   for (const std::uint64_t case_index : cases) {
     if (cases_.StateOf(case_index) == CaseState::kDone) {

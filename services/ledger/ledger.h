@@ -1,5 +1,5 @@
-// Who flies which case, what came back, who is to blame. A pure state machine: it knows neither clocks,
-// messages nor files; time is an argument, in seconds from any origin, and never decreases.
+// Assigns cases to workers, records their results, and blames cases that end their workers. A pure state
+// machine without clocks, messages or files. Time is an argument: seconds from any origin, never decreasing.
 #pragma once
 
 #include <cstdint>
@@ -16,12 +16,14 @@
 namespace dispersa {
 
 struct LedgerOptions {
-  double lease_s = 60.0;  ///< a worker that holds cases and reports nothing for so long is stuck
+  double lease_s = 60.0;  ///< a worker that holds cases and reports nothing for longer is stuck
   int blames_to_quarantine = 3;
-  double batch_duration_s = 0.25;  ///< what one slot should need for one assignment
+  double batch_duration_s = 0.25;  ///< target time of one slot for one assignment
   std::uint64_t max_batch = 64;    ///< cases
   std::uint64_t attempt_base =
       0;  ///< attempts count from here: ledgers of one coordinator have different ones
+  std::uint64_t first_assignments = 4;  ///< that a worker holds at most before it has returned anything
+  double overdue_s = 10.0;  ///< who returns nothing for so long loses its cases to workers that have none
   std::uint64_t side_by_side = 8;  ///< cases that a slot may fly at the same time: the widest engine's lanes
 };
 
@@ -44,20 +46,20 @@ enum class WorkerEnd {
   kLeft,     ///< by its own decision
   kKilled,   ///< from outside (SIGKILL, SIGTERM): blames no case
   kCrashed,  ///< by itself (a signal such as SIGSEGV, or an exit code): blames the cases that it flew
-  kSilent,   ///< its heartbeat stopped and nothing tells why: blames the cases that it flew
+  kSilent,   ///< its status messages stopped, the reason is unknown: blames the cases that it flew
 };
 
 enum class Acceptance {
   kAccepted,   ///< the first result of this case
-  kDuplicate,  ///< a further one with the same bits: harmless
-  kConflict,   ///< a further one with other bits: some machine or build breaks the contract
+  kDuplicate,  ///< a further result with the same bits: harmless
+  kConflict,   ///< a further result with other bits: a machine or a build breaks the contract
   kUnknown,    ///< no case of this campaign
 };
 
 struct CaseBlames {
   std::uint64_t case_index = 0;
-  std::vector<std::string> reasons;  ///< one of each blame
-  bool is_certain = false;  ///< its worker has seen alone what it does, and gave it up: the last reason
+  std::vector<std::string> reasons;  ///< one for each blame
+  bool is_certain = false;           ///< the worker saw the case end its child process: the last reason
 
   bool operator==(const CaseBlames&) const = default;
 };
@@ -72,61 +74,66 @@ struct LedgerProgress {
   std::uint64_t conflicts = 0;
 };
 
-/// Cases 0 .. cases - 1 of one campaign. Each ends done or quarantined. Rules of blame: only a case that
-/// its worker reported as started is blamed; a blamed case waits until the queue is empty and is then flown
-/// alone, by a worker that holds nothing else; the N-th blame quarantines it. A result is welcome whenever
-/// it comes, even of a quarantined case.
+/// Cases 0 .. cases - 1 of one campaign. Each ends done or quarantined. Rules of blame: only a case that its
+/// worker reported as started is blamed. A blamed case (a suspect) waits until the queue is empty, and then
+/// flies alone, on a worker that holds nothing else. The N-th blame quarantines it. A late result is
+/// accepted, even of a quarantined case.
 class Ledger {
  public:
   Ledger(std::string engine_version, std::uint64_t cases, const LedgerOptions& options = {});
 
-  /// A case whose result exists already (resume). Before any assignment.
+  /// A case whose result exists already (resume). Call it before any assignment.
   void MarkDone(std::uint64_t case_index, const Digest& fingerprint);
 
-  /// Two workers shall fly this case, if two attend: the one that did not fly it first does so as soon as it
-  /// has a result. Nothing is complete before, as long as somebody is there who could. `flown_by`: of a case
-  /// that is done already; empty if nobody knows.
+  /// A second worker shall fly this case too, as soon as it has a result. The campaign is not complete
+  /// before, while such a worker is present. `flown_by`: the worker that flew a case which is done already;
+  /// empty: unknown.
   void RequireSecondFlight(std::uint64_t case_index, const std::string& flown_by = "");
 
-  /// Adds cases at the end: there are so many in all from now on.
+  /// Adds cases at the end: `cases` is the new total.
   void Extend(std::uint64_t cases);
 
-  /// Results of these cases are not believed any more: they are flown again.
+  /// The results of these cases were removed: they are flown again.
   void Reopen(const std::vector<std::uint64_t>& cases);
+  /// Whether the worker was given this case and has not returned it.
+  bool WasGiven(const std::string& worker, std::uint64_t case_index) const;
+  /// Whether this is the result that the case has.
+  bool IsResult(std::uint64_t case_index, const Digest& fingerprint) const;
   /// Which of two results that contradicted each other is wrong is known.
   void SettleConflict() { --progress_.conflicts; }
 
-  /// A worker announces itself, or changes what it announced. Returns why it is refused, if it is.
+  /// A worker announces itself, or changes its announcement. Returns the reason if it is refused.
   std::optional<std::string> Join(const std::string& worker, const WorkerHello& hello, double now_s);
-  /// The worker says that it flies nothing. If it was stuck it is so no longer: what it was given got lost.
+  /// The worker reports that it flies nothing. It counts as stuck no longer: its assignment got lost.
   void Idle(const std::string& worker);
   void Started(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt, double now_s);
   /// `fingerprint` covers every bit of the result.
   Acceptance Finished(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,
                       const Digest& fingerprint, double now_s);
-  /// The worker survived what the case does to every process that flies it: it is quarantined at once, unless
-  /// it has a result. True: another worker has flown it, and this one was to do the same.
+  /// The case ended every child process in which this worker flew it: it is quarantined at once, unless it
+  /// has a result. True: it has a result, and this was its required second flight.
   bool Quarantine(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt,
                   const std::string& reason, double now_s);
   /// The worker is gone: its cases return to the queue. `reason` is kept with each blame.
   void Lost(const std::string& worker, WorkerEnd end, const std::string& reason);
 
   /// Takes the cases of stuck workers away from them, with a blame for those that flew too long, and
-  /// returns these workers; they get no more cases until they report something or are idle.
+  /// returns these workers; they get no more cases until they report something or are idle. When nothing else
+  /// waits and a worker has nothing to do, overdue cases are taken away sooner, once each and without a
+  /// blame.
   std::vector<std::string> Expire(double now_s);
-  /// What to send now, when all workers fly for this ledger alone.
+  /// The assignments to send now, if all workers fly for this ledger alone.
   std::vector<Assignment> Assign(double now_s);
-  /// Cases for one worker, if there are any that it may have. `elsewhere`: assignments that it holds of other
-  /// ledgers.
+  /// Cases for one worker, if there are any for it. `elsewhere`: assignments of other ledgers that it holds.
   std::optional<Assignment> GiveTo(const std::string& worker, std::uint64_t elsewhere, double now_s);
-  /// The worker takes no more, and begins none but these of what it holds: the others return to the queue.
+  /// The worker is leaving: it finishes the `begun` cases; its other cases return to the queue.
   void Withdraw(const std::string& worker, const std::vector<std::uint64_t>& begun);
 
   /// Cases of an assignment that the worker still owes.
   std::vector<std::uint64_t> Owed(const std::string& worker, std::uint64_t attempt) const;
   /// Assignments that it holds.
   std::uint64_t Batches(const std::string& worker) const;
-  /// It flies a suspect and may hold nothing else.
+  /// Whether the worker flies a suspect and may hold nothing else.
   bool IsAlone(const std::string& worker) const;
   /// Of the result that was accepted.
   Digest FingerprintOf(std::uint64_t case_index) const { return cases_.FingerprintOf(case_index); }
@@ -140,10 +147,10 @@ class Ledger {
  private:
   /// Of a case that two workers shall fly.
   struct SecondFlight {
-    std::string first;        ///< who returned its result; empty: nobody, or nobody knows
-    bool is_flown = false;    ///< now, for the second time
+    std::string first;        ///< the worker that returned its result; empty: none, or unknown
+    bool is_flown = false;    ///< the second flight is under way
     bool is_settled = false;  ///< another worker has flown it, or cannot
-    int blames = 0;           ///< of workers that were to
+    int blames = 0;           ///< in second flights
   };
   struct Held {
     std::uint64_t attempt = 0;
@@ -154,14 +161,21 @@ class Ledger {
     std::map<std::uint64_t, Held> held;              ///< by case index
     std::map<std::uint64_t, std::uint64_t> batches;  ///< attempt -> cases of it that are still held
     double last_report_s = 0.0;
-    bool alone = false;  ///< holds a suspect
+    std::uint64_t returned = 0;    ///< results
+    double last_returned_s = 0.0;  ///< or when it was given something after it had nothing
+    bool alone = false;            ///< holds a suspect
     bool stuck = false;
+    bool slow = false;  ///< its cases were overdue: others come first until it returns one
     bool leaving = false;
   };
 
   bool NeedsSecondFlight(std::uint64_t case_index, const SecondFlight& flight) const;
   bool MayNeedSecondFlight() const;
   std::vector<std::uint64_t> SecondFlightsFor(const std::string& id, const Worker& worker) const;
+  void TakeBackOverdue(double now_s);
+  bool IsAnyoneQuick() const;
+  // Its result is still welcome.
+  void RememberGiven(const std::string& worker, std::uint64_t case_index);
   // A worker holds it no longer, without a result.
   void Drop(std::uint64_t case_index, bool blames);
   double Lease() const;
@@ -170,7 +184,7 @@ class Ledger {
   void Release(Worker& worker, std::map<std::uint64_t, Held>::iterator held);
   void Return(std::uint64_t case_index);
   void Blame(std::uint64_t case_index, const std::string& reason);
-  // What the worker owed is no longer owed.
+  // The worker no longer owes this case.
   void Settle(const std::string& worker, std::uint64_t case_index, std::uint64_t attempt, double now_s);
 
   std::string engine_version_;
@@ -180,7 +194,8 @@ class Ledger {
   IndexSet suspects_;
   std::map<std::uint64_t, std::vector<std::string>> blames_;  ///< case index -> reasons
   std::set<std::uint64_t> quarantined_at_once_;
-  std::map<std::uint64_t, SecondFlight> second_flights_;  ///< by case index
+  std::map<std::uint64_t, SecondFlight> second_flights_;          ///< by case index
+  std::map<std::uint64_t, std::vector<std::string>> taken_from_;  ///< by case index: the last workers
   std::map<std::string, Worker> workers_;
   std::uint64_t next_attempt_ = 1;
   std::uint64_t slots_ = 0;

@@ -20,6 +20,8 @@ struct BookRequest {
   std::vector<std::filesystem::path> same_flights;
   std::uint64_t number = 1;  ///< of this book: books of one coordinator use different attempt numbers
   AuditOptions audit;
+  /// Workers (IsMeantBy) whose results are removed, flown again, and taken over from nowhere.
+  std::vector<std::string> distrusted = {};
 };
 
 /// May take minutes when there are many results. Throws InputError, ResultError.

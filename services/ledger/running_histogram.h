@@ -1,4 +1,4 @@
-// How values are distributed while they still come.
+// A histogram that grows while values arrive.
 #pragma once
 
 #include <cstddef>
@@ -14,8 +14,8 @@ struct HistogramBins {
   std::vector<std::int64_t> counts;  ///< the first and the last are not 0
 };
 
-/// In bounded memory. The bins are as wide as a power of two and begin at its multiples; the width doubles
-/// when the values no longer fit, so the same values give the same bins in whatever order they come.
+/// Takes bounded memory. The bin width is a power of two, and bins begin at its multiples. The width doubles
+/// when the values no longer fit. So the same values give the same bins in any order.
 class RunningHistogram {
  public:
   static constexpr std::size_t kMaxBins = 64;

@@ -1,4 +1,4 @@
-// How a campaign that is being flown stands: its requirements, and how its key metrics are distributed.
+// The state of a campaign while it flies: its requirements, and histograms of its key metrics.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,14 @@
 
 namespace dispersa {
 
-/// Of the cases flown so far, in whatever order they came: a figure to watch, on which no verdict rests.
+/// Counts over the cases flown so far, in any order. For display only: no verdict uses it.
 struct RequirementStanding {
   std::string metric;       ///< without the prefix
   std::string requirement;  ///< RequirementLine()
   std::int64_t n = 0;
   std::int64_t failures = 0;  ///< beyond the limit, undefined, or a lost flight
-  /// What the exact binomial limits of these n cases alone say: "pass", "fail", "inconclusive"; "study" of
-  /// chosen points, which give no verdict.
+  /// From the exact binomial limits of these n cases alone: "pass", "fail" or "inconclusive". "study": the
+  /// cases are chosen points, which give no verdict.
   std::string so_far;
 };
 

@@ -15,6 +15,7 @@
 #include "services/transport/key_folder.h"
 #include "services/transport/network.h"
 #include "services/transport/openssl.h"
+#include "services/transport/revocations.h"
 
 namespace dispersa {
 namespace {
@@ -99,6 +100,19 @@ Authority ReadAuthority(const fs::path& folder) {
   }
 }
 
+/// None if nothing was revoked yet.
+Revoked ReadRevoked(const fs::path& directory) {
+  const fs::path file = directory / kRevokedFile;
+  if (!fs::exists(file)) return {};
+  try {
+    const Certificate signer =
+        ReadCertificate(ReadKeyFile(directory / "authority" / kPermissionsAuthorityFile));
+    return ParseRevocations(VerifiedDocument(ReadKeyFile(file), signer.get()));
+  } catch (const std::runtime_error& error) {
+    Refuse(file, std::string("the list of revoked keys cannot be read: ") + error.what());
+  }
+}
+
 }  // namespace
 
 Validity ValidFor(int days) {
@@ -132,6 +146,11 @@ fs::path IssueKeys(const fs::path& directory, Role role, const std::string& name
     Refuse(directory, "no authority", "a folder that `dispersa keys init` made");
   }
   const fs::path folder = directory / "issued" / (std::string(Name(role)) + "-" + name);
+  const Revoked revoked = ReadRevoked(directory);
+  if (const auto names = revoked.find(role); names != revoked.end() && names->second.contains(name)) {
+    throw InputError("the keys of the " + std::string(Name(role)) + " '" + name + "' are revoked",
+                     "another name");
+  }
   if (fs::exists(folder)) {
     Refuse(folder, "these keys exist already and are not overwritten",
            "another name, or to remove the folder first");
@@ -160,6 +179,29 @@ fs::path IssueKeys(const fs::path& directory, Role role, const std::string& name
               {kIdentityKeyFile, ToPem(key.get())},
               {kPermissionsFile, SignDocument(permissions, signer.certificate.get(), signer.key.get())}});
   return folder;
+}
+
+fs::path RevokeKeys(const fs::path& directory, Role role, const std::string& name) {
+  if (!IsName(name)) {
+    throw InputError("'" + name + "' cannot be the name of keys",
+                     "1 to 31 letters, digits and '-', the first no '-'");
+  }
+  const fs::path authority = directory / "authority";
+  if (!fs::is_directory(authority)) {
+    Refuse(directory, "no authority", "a folder that `dispersa keys init` made");
+  }
+  const Authority signs = ReadAuthority(authority);
+  Revoked revoked = ReadRevoked(directory);
+  revoked[role].insert(name);
+  // In the place of the last list, as a whole.
+  const fs::path file = directory / kRevokedFile, draft = file.string() + ".new";
+  std::error_code error;
+  fs::remove(draft, error);
+  WriteNew(draft, SignDocument(RevocationText(revoked), signs.permissions.certificate.get(),
+                               signs.permissions.key.get()));
+  fs::rename(draft, file, error);
+  if (error) Refuse(file, "cannot be written: " + error.message());
+  return file;
 }
 
 }  // namespace dispersa

@@ -25,13 +25,18 @@ Validity ValidFor(int days);
 ///                                        certificate of that one could sign permissions for himself
 ///   authority/governance.p7s             how everything is protected
 ///   issued/<role>-<name>/                one folder for each participant, all that it needs
+///   revoked.p7s                          keys that are believed no more (revocations.h), once there are any
 ///
-/// Both functions make a folder as a whole or not at all, readable by the owner alone, and throw InputError
-/// rather than overwrite one.
+/// The first two functions make a folder as a whole or not at all, readable by the owner alone, and throw
+/// InputError rather than overwrite one.
 void MakeAuthority(const std::filesystem::path& directory, const Validity& validity);
 
 /// Returns the folder. Keys end with the authority at the latest; for more than a day longer: InputError.
 std::filesystem::path IssueKeys(const std::filesystem::path& directory, Role role, const std::string& name,
                                 const Validity& validity);
+
+/// Adds keys that were issued to the list of those that are not believed any more, and returns the list's
+/// file: it takes effect where it is copied into the folder of a coordinator's keys. Throws InputError.
+std::filesystem::path RevokeKeys(const std::filesystem::path& directory, Role role, const std::string& name);
 
 }  // namespace dispersa

@@ -1,6 +1,8 @@
 #include "services/transport/key_folder.h"
 
 #include <fmt/chrono.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstring>
@@ -54,6 +56,21 @@ void CheckDates(const fs::path& file, X509* certificate, const char* remedy) {
   }
 }
 
+// The group may read: that is how Kubernetes gives a secret to its pod.
+void RefuseOpenKey(const fs::path& file) {
+  struct stat what {};
+  if (stat(file.c_str(), &what) != 0) return;  // said when it is read
+  if (what.st_uid != geteuid() && what.st_uid != 0)
+    RefuseKeys(file, "belongs to another user, who could use it: `chown` it, or issue new keys");
+  if ((what.st_mode & 0027) != 0) {
+    RefuseKeys(
+        file,
+        fmt::format("other users of this machine can use it (mode {:o}): `chmod 600` it, and issue new keys "
+                    "if somebody may have read it",
+                    what.st_mode & 0777));
+  }
+}
+
 bool Contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
@@ -79,6 +96,7 @@ KeyFolder OpenKeyFolder(const fs::path& directory, std::initializer_list<Role> r
   const Certificate identity_ca = certificate_in(kIdentityAuthorityFile);
   const Certificate permissions_ca = certificate_in(kPermissionsAuthorityFile);
   const Certificate identity = certificate_in(kIdentityFile);
+  RefuseOpenKey(directory / kIdentityKeyFile);
   const PrivateKey key = Parse(directory / kIdentityKeyFile, ReadPrivateKey);
   if (X509_check_private_key(identity.get(), key.get()) != 1) {
     RefuseKeys(directory / kIdentityKeyFile, std::string("not the key of ") + kIdentityFile);

@@ -23,9 +23,12 @@ inline constexpr char kGovernanceFile[] = "governance.p7s";
 inline constexpr char kIdentityFile[] = "identity.pem";
 inline constexpr char kIdentityKeyFile[] = "identity.key";
 inline constexpr char kPermissionsFile[] = "permissions.p7s";
+/// Optional: revocations.h.
+inline constexpr char kRevokedFile[] = "revoked.p7s";
 
-/// Reads the folder and checks all of it: each file, signatures, dates, and that it is for one of `roles`.
-/// Throws NetworkError with what is wrong and what to do.
+/// Reads the folder and checks all of it: each file, signatures, dates, that no other user of the machine can
+/// use the key, and that the folder is for one of `roles`. Throws NetworkError with what is wrong and what to
+/// do.
 KeyFolder OpenKeyFolder(const std::filesystem::path& directory, std::initializer_list<Role> roles);
 
 /// The text of a file. Throws NetworkError.

@@ -78,6 +78,11 @@ std::optional<Role> ParseRole(const std::string& text) {
 
 std::string OwnPrefix(const std::string& name) { return name + "_"; }
 
+std::string KeyNameOf(const std::string& who) {
+  const std::size_t end = who.find('_');
+  return end == std::string::npos ? "" : who.substr(0, end);
+}
+
 // Each writer and reader has keys of its own, which only those have who are allowed to match it: what the
 // coordinator tells one worker another worker can neither read nor forge. Submessages are encrypted and not
 // only what they carry, so that nobody can forge acknowledgements or gaps either.

@@ -19,6 +19,8 @@ std::optional<Role> ParseRole(const std::string& text);
 /// Workers and clients with keys are called NAME_… after their keys: nobody else may speak and hear under
 /// such a name. Names of keys have no '_'.
 std::string OwnPrefix(const std::string& name);
+/// The name of the keys of one who is called so; empty: it has none.
+std::string KeyNameOf(const std::string& who);
 
 /// The protection of all traffic, the same for all participants.
 std::string GovernanceDocument();

@@ -52,7 +52,7 @@ int RunWorker(int argc, char** argv) {
                  "leave (exit code 0) after so many seconds without a case")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--patience", options.patience_s,
-                 "give up (exit code 5) after so many seconds without a coordinator; default: never")
+                 "end (exit code 5) after this many seconds without a coordinator; default: never")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--uuid", options.uuid, "name of this incarnation, drawn if not given");
   std::optional<int> run_pass;

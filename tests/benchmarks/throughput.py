@@ -40,7 +40,7 @@ def stored(out):
 def measure(build, cases, workers, out, processes):
     campaign = pathlib.Path(__file__).resolve().parents[2] / "campaigns/smoke.yaml"
     coordinator = subprocess.Popen([build / "bin/dispersa-coordinator", campaign, "--cases", str(cases), "--out", out,
-                                    *NETWORK], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                                    "--audit", "0", *NETWORK], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     processes.append(coordinator)
     crew = [subprocess.Popen([build / "tools/noop_worker", *NETWORK]) for _ in range(workers)]
     processes += crew

@@ -20,7 +20,7 @@ class AuditTest(ServiceCase):
         # Alone, it returns whatever it likes until its first result has been flown again.
         forger = self.start(os.environ["DISPERSA_NOOP_WORKER"], stderr=subprocess.DEVNULL)
         self.assertEqual(forger.wait(timeout=PATIENCE_S), 0)
-        self.assertRegex(self.log.read_text(), r"worker \S+ is refused: case \d+ of campaign \S+, flown again by "
+        self.assertRegex(self.log.read_text(), r"\S+ may not fly here any more: case \d+ of campaign \S+, flown again by "
                                                "the coordinator, gives other bits than the worker returned")
         wait_for(lambda: "results of worker" in self.log.read_text(), "removal of what it returned")
         self.start_worker()

@@ -8,6 +8,8 @@
 #include <set>
 #include <vector>
 
+#include "core/campaign/case_design.h"
+#include "core/flight/flight_inputs.h"
 #include "core/results/database.h"
 #include "core/results/result_folder.h"
 #include "made_up_service.h"
@@ -23,7 +25,9 @@ using ::testing::ElementsAre;
 class CampaignServiceTest : public ServiceTest {
  protected:
   void Return(const Campaign& campaign, std::uint64_t case_index) {
-    workforce_.Return("w", campaign.flight_id, MadeUpWorkforce::ResultOf(case_index));
+    CaseResult result = MadeUpWorkforce::ResultOf(case_index);
+    result.inputs = InputValues(CaseDesign(campaign).Draw(case_index), campaign.vehicle.stages.size());
+    workforce_.Return("w", campaign.flight_id, result);
   }
   /// Three lives of a worker end in this case, the only one that is left to fly.
   void Quarantine(const Campaign& campaign, std::uint64_t case_index) {
@@ -231,6 +235,109 @@ TEST_F(CampaignServiceTest, TimeLeftIsWhatIsMissingByTheRateOfTheLastSeconds) {
   EXPECT_EQ(told.done, 20u);
 }
 
+TEST_F(CampaignServiceTest, ARepairedCampaignFliesAWorkersCasesAgain) {
+  StartService();
+  const Campaign campaign = Smoke(4);
+  const std::string id = Launch(campaign);
+  ASSERT_TRUE(Reaches(id, CampaignState::kFlying));
+  CaseResult lie = MadeUpWorkforce::ResultOf(0), truth = lie;
+  lie.digest.low ^= 1;
+  workforce_.Return("node1_ab", campaign.flight_id, lie);
+  workforce_.Return("node2_cd", campaign.flight_id, truth);
+  workforce_.Return("node2_cd", campaign.flight_id, MadeUpWorkforce::ResultOf(1));
+  workforce_.time_s += 2.0;
+  service_->Step();
+  EXPECT_EQ(service_->catalogue().entries().at(id).conflicts, 1u) << "exit code 1 for ever";
+  service_->Repair(id, "node1");
+  EXPECT_EQ(StateOf(id), CampaignState::kWaiting);
+  StartService();  // also over a restart
+  ASSERT_TRUE(Reaches(id, CampaignState::kFlying));
+  EXPECT_EQ(service_->catalogue().entries().at(id).conflicts, 0u);
+  EXPECT_THAT(ResultFolder::Open(service_->catalogue().ResultsOf(id)).PresentCases(), ElementsAre(1));
+  EXPECT_EQ(service_->View(id).progress.waiting, 3u);
+}
+
+TEST_F(CampaignServiceTest, WhoWasExpelledStaysSoWhenTheCoordinatorIsStartedAgain) {
+  StartService();
+  workforce_.Join("node1_ab");
+  workforce_.Expel({{"node1", "case 4 gives other bits"}});
+  workforce_.time_s += 2.0;
+  service_->Step();
+  const std::filesystem::path file = folder_ / "data" / "expelled.json";
+  EXPECT_EQ(TextOfFile(file), "{\n  \"node1\": \"case 4 gives other bits\"\n}\n");
+  MadeUpWorkforce later;
+  service_.reset();
+  Service again({folder_ / "data"}, later);
+  EXPECT_THAT(later.expelled(), ElementsAre(testing::Pair("node1", "case 4 gives other bits")));
+}
+
+TEST_F(CampaignServiceTest, ACampaignThatHasEndedIsDeletedAndALineIsKept) {
+  StartService();
+  const Campaign campaign = Smoke(4, 7);
+  const std::string id = Launch(campaign);
+  ASSERT_TRUE(Reaches(id, CampaignState::kFlying));
+  const auto refusal = [&] {
+    try {
+      service_->Delete(id);
+      return std::string("none");
+    } catch (const Refused& refused) {
+      return std::to_string(refused.code) + ": " + refused.what();
+    }
+  };
+  EXPECT_EQ(refusal(),
+            "2: campaign " + id.substr(0, 8) +
+                " is flying and cannot be deleted, allowed: a campaign that has ended; `dispersa cancel` "
+                "ends it");
+  Return(campaign, 1);
+  service_->Cancel(id);
+  EXPECT_EQ(refusal(), "none");
+  EXPECT_FALSE(service_->catalogue().entries().contains(id));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "data" / id));
+  const auto line = nlohmann::json::parse(TextOfFile(folder_ / "data" / "deleted.jsonl"));
+  EXPECT_EQ(line.at("id"), id);
+  EXPECT_EQ(line.at("flight_id"), campaign.flight_id);
+  EXPECT_EQ(line.at("name"), campaign.name);
+  EXPECT_EQ(line.at("seed"), 7);
+  EXPECT_EQ(line.at("cases"), 1);
+  EXPECT_EQ(line.at("state"), "cancelled");
+  StartService();
+  EXPECT_TRUE(service_->catalogue().entries().empty());
+}
+
+TEST_F(CampaignServiceTest, OldCampaignsAndThoseBeyondTheSizeAreDeletedTheOldestFirst) {
+  std::int64_t now = 1'000'000;
+  const auto start = [&](const Retention& retention) {
+    service_.reset();
+    ServiceOptions options{folder_ / "data"};
+    options.retention = retention;
+    options.unix_time_s = [&] { return now; };
+    service_ = std::make_unique<Service>(options, workforce_);
+  };
+  start({});
+  std::vector<std::string> ids;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    ids.push_back(Launch(Smoke(2, seed)));
+    service_->Cancel(ids.back());
+    now += 86400;
+  }
+  const std::string flying = Launch(Smoke(2, 9));
+  const auto left = [&] {
+    workforce_.time_s += 61.0;
+    service_->Step();
+    std::vector<bool> are_there;
+    for (const std::string& id : ids) are_there.push_back(service_->catalogue().entries().contains(id));
+    EXPECT_TRUE(service_->catalogue().entries().contains(flying));
+    return are_there;
+  };
+  EXPECT_THAT(left(), ElementsAre(true, true, true));
+  start({.days = 2.5});
+  EXPECT_THAT(left(), ElementsAre(false, true, true));
+  start({.bytes = 100'000'000});
+  EXPECT_THAT(left(), ElementsAre(false, true, true));
+  start({.bytes = 1});
+  EXPECT_THAT(left(), ElementsAre(false, false, false)) << "and never what flies";
+}
+
 TEST_F(CampaignServiceTest, ACampaignThatNoWorkerCanFlySaysWhy) {
   StartService();
   const Campaign campaign = Smoke(2);
@@ -401,19 +508,36 @@ TEST_F(ServiceTroubleTest, AFullDiskPausesCampaignsAndTheyGoOnByThemselves) {
 // A campaign takes over results of the same flights.
 class OpeningTest : public ServiceTest {
  protected:
+  static CaseResult Drawn(const Campaign& campaign, std::uint64_t case_index) {
+    CaseResult result = MadeUpWorkforce::ResultOf(case_index);
+    result.inputs = InputValues(CaseDesign(campaign).Draw(case_index), campaign.vehicle.stages.size());
+    return result;
+  }
+  static std::vector<std::string> WorkersOf(const ResultFolder& folder) {
+    std::vector<std::string> workers;
+    for (const std::uint64_t i : folder.PresentCases())
+      workers.push_back(folder.WorkerOf(i).value_or("nobody"));
+    return workers;
+  }
   std::filesystem::path Flown(const std::string& name, const Campaign& campaign,
                               const std::vector<std::uint64_t>& cases) {
     ResultFolder folder = ResultFolder::Create(folder_ / name, campaign);
     std::vector<CaseResult> results;
-    for (const std::uint64_t i : cases) results.push_back(MadeUpWorkforce::ResultOf(i));
-    folder.Append(results);
+    std::vector<ExecutionRecord> records;
+    for (const std::uint64_t i : cases) {
+      results.push_back(Drawn(campaign, i));
+      records.push_back({i, flier_, "host", "", 1.0});
+    }
+    folder.Store(results, records);
     return folder_ / name;
   }
   std::unique_ptr<CampaignBook> Open(const Campaign& campaign, std::vector<std::filesystem::path> others,
-                                     std::uint64_t number = 1) {
-    return OpenBook(
-        {campaign.canonical_yaml, campaign.name, folder_ / "results", std::move(others), number, {}});
+                                     std::uint64_t number = 1, std::vector<std::string> distrusted = {},
+                                     const AuditOptions& audit = {}) {
+    return OpenBook({campaign.canonical_yaml, campaign.name, folder_ / "results", std::move(others), number,
+                     audit, std::move(distrusted)});
   }
+  std::string flier_ = "node1_ab";
 };
 
 TEST_F(OpeningTest, TakesOverCasesOfTheCampaignAlone) {
@@ -436,6 +560,42 @@ TEST_F(OpeningTest, ACampaignThatStopsByItselfTakesNothingOver) {
   ASSERT_EQ(stops.flight_id, all.flight_id);
   const auto flown = Flown("flown", all, {0, 39});
   EXPECT_THAT(Open(stops, {flown})->folder().PresentCases(), ElementsAre());
+}
+
+TEST_F(OpeningTest, WhoFlewACaseIsTakenOverWithIt) {
+  const auto flown = Flown("flown", Smoke(4), {0, 2});
+  const auto book = Open(Smoke(4), {flown});
+  EXPECT_THAT(WorkersOf(book->folder()), ElementsAre("node1_ab", "node1_ab"));
+}
+
+// A forgery that was taken over: it is found out, its worker is named, and the campaign ends well.
+TEST_F(OpeningTest, WhatIsTakenOverIsAuditedAndRemovedWithItsWorker) {
+  const auto flown = Flown("flown", Smoke(4), {0, 2});
+  const auto book = Open(Smoke(4), {flown}, 1, {}, {1.0, 7});
+  const std::vector<Claim> claims = book->TakeClaims();
+  ASSERT_EQ(claims.size(), 2u);
+  EXPECT_EQ(claims[0].worker, "node1_ab");
+  EXPECT_FALSE(book->Settle(claims[0], {1, 2}));
+  book->Disown("node1");
+  EXPECT_THAT(book->folder().PresentCases(), ElementsAre());
+  EXPECT_EQ(book->ledger().Progress().waiting, 4u);
+  EXPECT_EQ(book->ledger().Progress().conflicts, 0u);
+}
+
+TEST_F(OpeningTest, WhoseInputsTheCampaignDoesNotDrawIsNotTakenOver) {
+  ResultFolder forged = ResultFolder::Create(folder_ / "forged", Smoke(4));
+  forged.Append(std::vector{Drawn(Smoke(4), 0), MadeUpWorkforce::ResultOf(1)});
+  EXPECT_THAT(Open(Smoke(4), {folder_ / "forged"})->folder().PresentCases(), ElementsAre(0));
+}
+
+TEST_F(OpeningTest, ADistrustedWorkersResultsAreRemovedAndTakenOverFromNowhere) {
+  const auto first = Flown("first", Smoke(4), {0, 1});
+  Open(Smoke(4), {first});
+  flier_ = "node2_cd";
+  const auto second = Flown("second", Smoke(4), {1, 2});
+  const auto book = Open(Smoke(4), {first, second}, 2, {"node1"});
+  EXPECT_THAT(book->folder().PresentCases(), ElementsAre(1, 2));
+  EXPECT_THAT(WorkersOf(book->folder()), ElementsAre("node2_cd", "node2_cd"));
 }
 
 TEST_F(OpeningTest, AttemptsOfTwoOpeningsDiffer) {

@@ -39,6 +39,64 @@ class CatalogueTest : public testing::Test {
   fs::path root_;
 };
 
+// As the release before wrote it: without a version, seed, end and distrusted workers.
+TEST_F(CatalogueTest, AStateOfTheFirstVersionIsReadAndBecomesOneOfToday) {
+  fs::create_directories(root_ / "data" / "a1");
+  const fs::path file = root_ / "data" / "a1" / "state.json";
+  std::ofstream(file) << R"({
+  "id": "a1",
+  "flight_id": "fa1",
+  "name": "table3",
+  "priority": 2,
+  "order": 9,
+  "cases": 20,
+  "done": 20,
+  "quarantined": 0,
+  "conflicts": 1,
+  "state": "done",
+  "code": 1,
+  "problem": ""
+}
+)";
+  Catalogue catalogue(root_ / "data");
+  const CatalogueEntry& entry = catalogue.At("a1");
+  EXPECT_EQ(entry.name, "table3");
+  EXPECT_EQ(entry.order, 9u);
+  EXPECT_EQ(entry.conflicts, 1u);
+  EXPECT_EQ(entry.state, CampaignState::kDone);
+  EXPECT_EQ(entry.seed, 0u);
+  EXPECT_THAT(entry.distrusted, ElementsAre());
+  EXPECT_GT(entry.ended_unix_s, 1'500'000'000) << "when its file was written";
+  catalogue.Write(entry);
+  std::string text;
+  std::getline(std::ifstream(file), text, '\0');
+  EXPECT_THAT(text, testing::HasSubstr("\"version\": 2"));
+}
+
+TEST_F(CatalogueTest, AStateOfALaterVersionIsLeftAlone) {
+  fs::create_directories(root_ / "data" / "a1");
+  const fs::path file = root_ / "data" / "a1" / "state.json";
+  std::ofstream(file) << "{\"version\": 3, \"id\": \"a1\"}";
+  Catalogue catalogue(root_ / "data");
+  EXPECT_TRUE(catalogue.entries().empty());
+  EXPECT_TRUE(fs::exists(file));
+}
+
+TEST_F(CatalogueTest, WhatWasBeingDeletedIsGoneWhenItIsOpenedAgain) {
+  {
+    Catalogue catalogue(root_ / "data");
+    catalogue.Add(Entry("a1"), "text");
+    catalogue.Add(Entry("a2"), "text");
+    catalogue.Remove("a1");
+    EXPECT_FALSE(catalogue.entries().contains("a1"));
+    EXPECT_FALSE(fs::exists(root_ / "data" / "a1"));
+  }
+  fs::create_directories(root_ / "data" / ".deleted-a0" / "results");
+  Catalogue catalogue(root_ / "data");
+  EXPECT_FALSE(fs::exists(root_ / "data" / ".deleted-a0"));
+  EXPECT_EQ(catalogue.entries().size(), 1u);
+}
+
 TEST_F(CatalogueTest, RemembersEverythingOverARestart) {
   {
     Catalogue catalogue(root_ / "data");

@@ -36,7 +36,7 @@ Campaign MadeUp(const std::string& flight_id, std::uint64_t cases) {
 CaseResult ResultOf(std::uint64_t case_index) {
   CaseResult result;
   result.case_index = case_index;
-  result.inputs.resize(InputCount(kUsualStages));
+  result.inputs = InputValues({});  // what a campaign without dispersions draws
   return result;
 }
 
@@ -298,6 +298,7 @@ TEST_F(DispatcherTest, AWorkersNewConnectionIsItsOwnAlone) {
   EXPECT_EQ(dispatcher_.refused_messages(), 1u);
   dispatcher_.On("forger", Status(), 0.3);
   EXPECT_EQ(dispatcher_.refused_messages(), 2u) << "the worker has a new connection already";
+  ASSERT_EQ(Tick(0.3).assignments.at(0).cases.at(0), 0u);
   dispatcher_.On("forger", Report{"w", kEpoch, 1, kFlight, {{1, ResultOf(0)}}, {}}, 0.4);
   EXPECT_EQ(Progress().done, 0u);
   dispatcher_.On("s2", Report{"w", kEpoch, 1, kFlight, {{1, ResultOf(0)}}, {}}, 0.5);
@@ -339,11 +340,141 @@ TEST_F(DispatcherTest, AssignmentsOfAClosedCampaignAreNotRepeated) {
 TEST_F(DispatcherTest, AResultOfAnotherVehicleIsNone) {
   Open(2);
   dispatcher_.On("s", Status(), 0.0);
+  ASSERT_EQ(Tick(0.0).assignments.at(0).cases.at(0), 0u);
   CaseResult result = ResultOf(0);
   result.inputs.resize(InputCount(64));
   dispatcher_.On("s", Report{"w", kEpoch, 1, kFlight, {{1, result}}, {}}, 0.1);
   EXPECT_EQ(Progress().done, 0u);
   EXPECT_EQ(dispatcher_.refused_messages(), 1u);
+  EXPECT_EQ(dispatcher_.joined(), 0u);
+}
+
+// A worker that speaks well and lies.
+class ForgerTest : public DispatcherTest {
+ protected:
+  void Come(const std::string& worker, double now_s = 0.0) { dispatcher_.On(worker, Status(worker), now_s); }
+  std::vector<FlyOrder> Given(const std::string& worker, double now_s = 0.0) {
+    return Tick(now_s, worker).assignments;
+  }
+  void Return(const std::string& worker, CaseResult result, double now_s = 0.1, std::uint64_t epoch = kEpoch,
+              std::uint64_t attempt = 0) {
+    dispatcher_.On(worker, Report{worker, epoch, ++number_, kFlight, {{attempt, std::move(result)}}, {}},
+                   now_s);
+  }
+
+ private:
+  std::uint64_t number_ = 0;
+};
+
+TEST_F(ForgerTest, ACaseThatItWasNotGivenIsNotItsToReturn) {
+  Open(3000);
+  Come("forger");
+  Come("honest");
+  const std::set<std::uint64_t> given = [&] {
+    std::set<std::uint64_t> cases;
+    for (const FlyOrder& order : Given("forger")) cases.insert(order.cases.begin(), order.cases.end());
+    return cases;
+  }();
+  ASSERT_GT(given.size(), 0u);
+  SetLogLevel(LogLevel::kNothing);
+  for (std::uint64_t i = 0; i < 3000; ++i)
+    if (!given.contains(i)) Return("forger", ResultOf(i));
+  SetLogLevel(LogLevel::kInfo);
+  EXPECT_EQ(Progress().done, 0u);
+  EXPECT_EQ(dispatcher_.refused_messages(), 3000u - given.size());
+  Return("forger", ResultOf(*given.begin()));
+  EXPECT_EQ(Progress().done, 1u);
+  // For another epoch it is no better.
+  Return("forger", ResultOf(2999), 0.1, kEpoch + 1);
+  EXPECT_EQ(Progress().done, 1u);
+}
+
+TEST_F(ForgerTest, WhatWasTakenFromAWorkerIsStillItsToReturn) {
+  Open(2);
+  Come("w");
+  ASSERT_THAT(Given("w"), testing::SizeIs(2));
+  Tick(5.0);  // it fell silent
+  EXPECT_EQ(Progress().waiting, 2u);
+  Come("w", 5.1);
+  Return("w", ResultOf(1), 5.2);
+  EXPECT_EQ(Progress().done, 1u);
+  const std::uint64_t refused = dispatcher_.refused_messages();
+  Return("w", ResultOf(1), 5.3);  // its acknowledgement got lost
+  EXPECT_EQ(dispatcher_.refused_messages(), refused);
+}
+
+TEST_F(ForgerTest, InputsThatTheCampaignDoesNotDrawExpelTheKeysAndAllThatTheyReturned) {
+  Open(50);
+  for (const char* worker : {"node1_aa", "node1_bb", "node2_cc"}) Come(worker);
+  const std::vector<Orders> all = dispatcher_.Tick(0.0);
+  std::map<std::string, std::uint64_t> first, second;
+  for (const Orders& orders : all) {
+    if (orders.assignments.empty()) continue;
+    first[orders.worker] = orders.assignments.at(0).cases.at(0);
+    second[orders.worker] = orders.assignments.back().cases.back();
+  }
+  for (const auto& [worker, case_index] : first) Return(worker, ResultOf(case_index));
+  EXPECT_EQ(Progress().done, 3u);
+  CaseResult forged = ResultOf(second.at("node1_bb"));
+  forged.inputs[7] += 1e-12;
+  Return("node1_bb", forged);
+  EXPECT_EQ(Progress().done, 1u) << "of node2";
+  EXPECT_EQ(dispatcher_.joined(), 1u);
+  EXPECT_THAT(dispatcher_.expelled(),
+              ElementsAre(testing::Pair(
+                  "node1", "case " + std::to_string(forged.case_index) +
+                               " of campaign : its inputs are not those that the campaign draws")));
+  // The same keys are not back at once.
+  Come("node1_dd", 0.5);
+  EXPECT_EQ(dispatcher_.joined(), 1u);
+  EXPECT_THAT(Tick(0.5, "node1_dd").refusal, testing::HasSubstr("its inputs are not those"));
+  Come("node10_ee", 0.6);
+  EXPECT_EQ(dispatcher_.joined(), 2u) << "other keys";
+}
+
+TEST_F(ForgerTest, KeysThatWereExpelledBeforeStayOutside) {
+  Open(2);
+  Come("node1_aa");
+  dispatcher_.Expel({{"node1", "its keys are revoked"}});
+  EXPECT_EQ(dispatcher_.joined(), 0u);
+  EXPECT_EQ(Progress().waiting, 2u);
+  Come("node1_aa", 0.5);
+  EXPECT_EQ(Tick(0.5, "node1_aa").refusal, "its keys are revoked");
+}
+
+TEST_F(ForgerTest, TwentyThatTakeCasesAndReturnNoneHoldNobodyUp) {
+  constexpr std::uint64_t kCases = 400;
+  Open(kCases);
+  std::vector<std::string> sybils;
+  for (int i = 0; i < 20; ++i) sybils.push_back("a" + std::to_string(i));
+  std::map<std::string, std::vector<StartedCase>> started;
+  double now_s = 0.0, done_s = 0.0;
+  std::vector<StartedCase> owed;  // by the honest one, which needs 20 ms a case
+  for (; now_s < 60.0 && done_s == 0.0; now_s += 0.02) {
+    for (const std::string& sybil : sybils) {
+      WorkerStatus status = Status(sybil);
+      status.slots = 1024;
+      status.credits = 32768;
+      status.started = started[sybil];
+      for (const StartedCase& each : status.started) status.held.push_back(each.attempt);
+      dispatcher_.On(sybil, status, now_s);
+    }
+    dispatcher_.On("honest", Status("honest"), now_s);
+    if (!owed.empty()) {
+      Return("honest", ResultOf(owed.back().case_index), now_s, kEpoch, owed.back().attempt);
+      owed.pop_back();
+    }
+    for (const Orders& orders : dispatcher_.Tick(now_s)) {
+      for (const FlyOrder& order : orders.assignments) {
+        for (const std::uint64_t case_index : order.cases)
+          (orders.worker == "honest" ? owed : started[orders.worker]).push_back({case_index, order.attempt});
+      }
+    }
+    if (book_->Complete()) done_s = now_s;
+  }
+  EXPECT_EQ(Progress().done, kCases);
+  EXPECT_EQ(Progress().quarantined, 0u);
+  EXPECT_LT(done_s, 20.0) << "8 s of flying and 10 s of patience";
 }
 
 TEST_F(DispatcherTest, ARefusalForAnEarlierCoordinatorMeansNothing) {
@@ -509,11 +640,11 @@ TEST_F(DispatcherTest, ADrainingWorkerKeepsWhatItFliesAndGetsNoMore) {
 
 TEST_F(DispatcherTest, CampaignsOfAHigherPriorityFirstAndEqualOnesShare) {
   CampaignBook low(MadeUp(std::string(64, '1'), 50), std::make_unique<MemoryStore>(),
-                   {.attempt_base = 1000, .side_by_side = 1});
+                   {.attempt_base = 1000, .first_assignments = 20, .side_by_side = 1});
   CampaignBook one(MadeUp(std::string(64, '2'), 50), std::make_unique<MemoryStore>(),
-                   {.attempt_base = 2000, .side_by_side = 1});
+                   {.attempt_base = 2000, .first_assignments = 20, .side_by_side = 1});
   CampaignBook two(MadeUp(std::string(64, '3'), 50), std::make_unique<MemoryStore>(),
-                   {.attempt_base = 3000, .side_by_side = 1});
+                   {.attempt_base = 3000, .first_assignments = 20, .side_by_side = 1});
   dispatcher_.BeginCampaign(low, 0);
   dispatcher_.BeginCampaign(one, 5);
   dispatcher_.BeginCampaign(two, 5);
@@ -547,9 +678,10 @@ class AuditTest : public DispatcherTest {
     audited_->BeginCampaign(*book_);
     for (const char* worker : {"liar", "honest"}) audited_->On(worker, Status(worker), 0.0);
   }
-  /// Of a worker that nobody gave the case to: a result is welcome from whomever.
-  void Return(const std::string& worker, CaseResult result, std::uint64_t number = 1) {
-    audited_->On(worker, Report{worker, kEpoch, number, kFlight, {{0, std::move(result)}}, {}}, 0.0);
+  /// Of a worker that is there, whomever the case was given to.
+  void Return(const std::string& worker, const CaseResult& result) {
+    for (const Dispatcher::WorkerView& view : audited_->Workers())
+      if (view.worker == worker) book_->Accept(worker, "host", 0, result, 0.0);
   }
   static CaseResult Lie(std::uint64_t case_index) {
     CaseResult lie = ResultOf(case_index);
@@ -561,12 +693,12 @@ class AuditTest : public DispatcherTest {
 
 TEST_F(AuditTest, TakesTheFirstResultOfEachWorkerAndTheShare) {
   Audit(0.25, 1000);
-  for (std::uint64_t i = 0; i < 1000; ++i) Return(i % 2 == 0 ? "honest" : "liar", ResultOf(i), i + 1);
+  for (std::uint64_t i = 0; i < 1000; ++i) Return(i % 2 == 0 ? "honest" : "liar", ResultOf(i));
   const std::size_t taken = FlyClaims(*audited_);
   EXPECT_NEAR(static_cast<double>(taken), 252.0, 60.0) << "four standard deviations";
   EXPECT_EQ(FlyClaims(*audited_), 0u) << "each once";
   EXPECT_EQ(book_->confirmed(), taken);
-  EXPECT_EQ(audited_->expelled(), 0u);
+  EXPECT_EQ(audited_->expelled().size(), 0u);
   book_->Flush();
   EXPECT_EQ(store_->audited.size(), taken);
 }
@@ -583,12 +715,12 @@ TEST_F(AuditTest, NothingIsCompleteBeforeItsAuditIs) {
 
 TEST_F(AuditTest, ALiarIsExpelledAndAllThatItReturnedIsFlownAgain) {
   Audit(1e-9, 8);
-  for (std::uint64_t i = 0; i < 4; ++i) Return("honest", ResultOf(i), i + 1);
-  Return("liar", Lie(4), 1);
-  for (std::uint64_t i = 5; i < 8; ++i) Return("liar", ResultOf(i), i + 1);
+  for (std::uint64_t i = 0; i < 4; ++i) Return("honest", ResultOf(i));
+  Return("liar", Lie(4));
+  for (std::uint64_t i = 5; i < 8; ++i) Return("liar", ResultOf(i));
   ASSERT_TRUE(book_->ledger().Complete());
   FlyClaims(*audited_);
-  EXPECT_EQ(audited_->expelled(), 1u);
+  EXPECT_EQ(audited_->expelled().size(), 1u);
   EXPECT_EQ(Progress().done, 4u) << "what it told the truth about too";
   EXPECT_EQ(store_->stored, 4u);
   // It is told why, whenever it speaks, and gets and gives nothing any more.
@@ -601,9 +733,9 @@ TEST_F(AuditTest, ALiarIsExpelledAndAllThatItReturnedIsFlownAgain) {
     EXPECT_THAT(orders.assignments, IsEmpty());
   }
   EXPECT_TRUE(is_told);
-  Return("liar", ResultOf(5), 9);
+  Return("liar", ResultOf(5));
   EXPECT_EQ(Progress().done, 4u);
-  for (std::uint64_t i = 4; i < 8; ++i) Return("honest", ResultOf(i), i + 1);
+  for (std::uint64_t i = 4; i < 8; ++i) Return("honest", ResultOf(i));
   EXPECT_TRUE(book_->Complete());
 }
 
@@ -618,18 +750,18 @@ TEST_F(AuditTest, AnExpelledWorkerIsRememberedHoweverManyAreRefused) {
   SetLogLevel(LogLevel::kInfo);
   Return("liar", Lie(0));
   FlyClaims(*audited_);
-  EXPECT_EQ(audited_->expelled(), 1u);
+  EXPECT_EQ(audited_->expelled().size(), 1u);
   audited_->On("liar", Status("liar"), 1.0);
   EXPECT_EQ(audited_->joined(), 1u) << "the honest one";
 }
 
 TEST_F(AuditTest, ADisputedResultIsNotStoredAsAudited) {
   Audit(1e-9, 3);
-  Return("honest", ResultOf(0), 1);
-  Return("liar", ResultOf(1), 1);
+  Return("honest", ResultOf(0));
+  Return("liar", ResultOf(1));
   FlyClaims(*audited_);
-  Return("liar", Lie(2), 2);
-  Return("honest", ResultOf(2), 2);  // right, and not what is stored
+  Return("liar", Lie(2));
+  Return("honest", ResultOf(2));  // right, and not what is stored
   FlyClaims(*audited_);
   book_->Flush();
   EXPECT_THAT(store_->audited, ElementsAre(0, 1));
@@ -638,21 +770,21 @@ TEST_F(AuditTest, ADisputedResultIsNotStoredAsAudited) {
 TEST_F(AuditTest, SettlesWhoIsWrongWhenTwoContradictEachOther) {
   for (const bool the_lie_comes_first : {true, false}) {
     Audit(1e-9, 3);
-    Return("honest", ResultOf(0), 1);
-    Return("liar", ResultOf(1), 1);
+    Return("honest", ResultOf(0));
+    Return("liar", ResultOf(1));
     FlyClaims(*audited_);  // the first of each; the others are not chosen
-    if (the_lie_comes_first) Return("liar", Lie(2), 2);
-    Return("honest", ResultOf(2), 2);
-    if (!the_lie_comes_first) Return("liar", Lie(2), 2);
+    if (the_lie_comes_first) Return("liar", Lie(2));
+    Return("honest", ResultOf(2));
+    if (!the_lie_comes_first) Return("liar", Lie(2));
     EXPECT_EQ(Progress().conflicts, 1u);
     EXPECT_EQ(FlyClaims(*audited_), 2u);
-    EXPECT_EQ(audited_->expelled(), 1u);
+    EXPECT_EQ(audited_->expelled().size(), 1u);
     EXPECT_EQ(Progress().conflicts, 0u) << "it is known who was wrong";
     EXPECT_EQ(store_->WorkerOf(0), "honest");
     EXPECT_EQ(store_->WorkerOf(1), std::nullopt);
     EXPECT_EQ(book_->ledger().Complete(), false);
-    Return("honest", ResultOf(1), 3);
-    if (the_lie_comes_first) Return("honest", ResultOf(2), 4);
+    Return("honest", ResultOf(1));
+    if (the_lie_comes_first) Return("honest", ResultOf(2));
     EXPECT_TRUE(book_->Complete());
   }
 }
@@ -670,8 +802,9 @@ class PluginTest : public DispatcherTest {
     dispatcher_.BeginCampaign(*book_);
   }
   void Come(const std::string& worker) { dispatcher_.On(worker, Status(worker), 0.0); }
-  void Return(const std::string& worker, CaseResult result) {
-    dispatcher_.On(worker, Report{worker, kEpoch, 1, kFlight, {{0, std::move(result)}}, {}}, 0.0);
+  /// Whomever the case was given to.
+  void Return(const std::string& worker, const CaseResult& result) {
+    book_->Accept(worker, "host", 0, result, 0.0);
   }
   std::vector<std::uint64_t> Given(const std::string& worker) {
     std::vector<std::uint64_t> cases;

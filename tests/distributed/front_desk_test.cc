@@ -4,9 +4,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "core/results/result_folder.h"
 #include "made_up_service.h"
 #include "services/program/exit_code.h"
 
@@ -84,7 +86,10 @@ TEST_F(FrontDeskTest, ATextComesInPartsEachOnce) {
 }
 
 TEST_F(FrontDeskTest, EightTextsAtATimeAndNoMore) {
-  for (int i = 0; i < 8; ++i) EXPECT_EQ(Upload(std::to_string(i), 10, 0, "12345"), 5u);
+  for (int i = 0; i < 8; ++i) {
+    const Json part = {{"id", std::to_string(i)}, {"size", 10}, {"offset", 0}};
+    EXPECT_EQ(desk_->Answer({i < 4 ? "client" : "other", 5, "upload", part.dump(), "12345"}).code, kExitDone);
+  }
   const Json ninth = {{"id", "ninth"}, {"size", 10}, {"offset", 0}};
   EXPECT_EQ(Refusal("upload", ninth, "12345"), TooMany());
   EXPECT_EQ(Upload("3", 10, 5, "67890"), 10u) << "those that have begun go on";
@@ -127,6 +132,118 @@ TEST_F(FrontDeskTest, AFolderThatCannotBeMadeIsARefusal) {
   EXPECT_EQ(refused.text, folder.string() + ": cannot be made: Not a directory");
   EXPECT_EQ(LaunchUploaded(second).code, kExitDone);
   EXPECT_FALSE(service_->catalogue().entries().contains(first.id));
+}
+
+TEST_F(FrontDeskTest, ADeletedCampaignIsDeletedWhoeverAsksAgain) {
+  const std::string id = Launch(Smoke(2));
+  AskFor("cancel", {{"id", id}});
+  ASSERT_TRUE(Until([&] { return service_->IsAtRest(id); }));
+  for (int i = 0; i < 2; ++i)
+    EXPECT_EQ(AskFor("delete", {{"id", id}}).at("id"), id) << "an answer may get lost";
+  EXPECT_EQ(Refusal("delete", {{"id", id.substr(0, 8)}}),
+            "2: no campaign, or more than one, has the id '" + id.substr(0, 8) + "'");
+}
+
+TEST_F(FrontDeskTest, APriorityIsOfARange) {
+  EXPECT_EQ(Refusal("launch", {{"id", "a"}, {"flight_id", "b"}, {"priority", 2000000000}}),
+            "2: priority 2000000000, allowed: from -1000 to 1000");
+}
+
+TEST_F(FrontDeskTest, OneClientTakesHalfOfThePlacesForTexts) {
+  for (int i = 0; i < 4; ++i) Upload(std::to_string(i), 10, 0, "12345");
+  const Json fifth = {{"id", "fifth"}, {"size", 10}, {"offset", 0}};
+  EXPECT_EQ(Refusal("upload", fifth, "12345"), "5: this client sends 4 texts at a time already");
+  EXPECT_EQ(desk_->Answer({"other", 5, "upload", fifth.dump(), "12345"}).code, kExitDone);
+  const auto with_keys = [&](const char* client, const char* id) {
+    return desk_->Answer({client, 5, "upload", Json{{"id", id}, {"size", 10}, {"offset", 0}}.dump(), ""})
+        .code;
+  };
+  EXPECT_EQ(with_keys("ann_1", "a"), kExitDone);
+  EXPECT_EQ(with_keys("ann_2", "b"), kExitDone);
+}
+
+// One campaign of thousands of requirements: all others are listed, and so is it.
+TEST_F(FrontDeskTest, AnAnswerFitsWhateverRequirementsACampaignHas) {
+  Campaign all = Smoke(4);
+  std::string requirements = "requirements:\n";
+  for (int i = 0; i < 9000; ++i)
+    requirements += "  - {metric: pitch_error_peak_deg, below: " + std::to_string(1 + i) +
+                    ", probability: 0.5, consumer_risk: 0.1}\n";
+  std::string text = all.canonical_yaml;
+  const std::size_t begin = text.find("\nrequirements:\n") + 1;
+  std::size_t end = begin;
+  do end = text.find('\n', end) + 1;
+  while (text[end] == ' ' || text[end] == '-');
+  text.replace(begin, end - begin, requirements);
+  const Campaign many = ParseCampaign(text, "many");
+  const std::string one = Launch(many), other = Launch(Smoke(2, 5));
+  ASSERT_TRUE(Reaches(one, CampaignState::kFlying));
+  for (const char* method : {"list", "status"}) {
+    const Reply reply = Ask(method, Json::object());
+    EXPECT_LE(reply.text.size(), std::size_t{1} << 20);
+    const Json campaigns = Json::parse(reply.text).at("campaigns");
+    ASSERT_EQ(campaigns.size(), 2u);
+    for (const Json& campaign : campaigns) {
+      if (campaign.at("id") != one) continue;
+      EXPECT_EQ(campaign.at("requirements").size() + campaign.at("requirements_unlisted").get<std::size_t>(),
+                9001u)
+          << "the vehicle's own limit is one, too";
+    }
+  }
+}
+
+TEST_F(FrontDeskTest, AllIdsComeInPages) {
+  std::vector<std::string> ids = {Launch(Smoke(2, 1)), Launch(Smoke(2, 2))};
+  std::sort(ids.begin(), ids.end());
+  const Json page = AskFor("ids", Json::object());
+  EXPECT_EQ(page.at("ids"), Json(ids));
+  EXPECT_EQ(page.at("more"), false);
+  EXPECT_EQ(AskFor("ids", {{"after", ids[0]}}).at("ids"), Json{ids[1]});
+}
+
+TEST_F(FrontDeskTest, ASnapshotOfACampaignThatFliesIsWhole) {
+  const Campaign campaign = Smoke(4);
+  const std::string id = Launch(campaign);
+  ASSERT_TRUE(Reaches(id, CampaignState::kFlying));
+  workforce_.Return("w", campaign.flight_id, MadeUpWorkforce::ResultOf(2));
+  service_->Flush();
+  const Json which = {{"id", id}, {"snapshot", "monday"}};
+  Json answer;
+  ASSERT_TRUE(Until([&] {
+    answer = AskFor("files", which);
+    return !answer.contains("state");
+  }));
+  workforce_.Return("w", campaign.flight_id, MadeUpWorkforce::ResultOf(3));
+  service_->Flush();
+  const fs::path copy = folder_ / "copy";
+  fs::create_directories(copy);
+  for (const Json& file : answer.at("files")) {
+    Json part = which;
+    part["path"] = file.at("path");
+    part["offset"] = 0;
+    const Reply reply = Ask("read", part);
+    EXPECT_EQ(reply.data.size(), file.at("size").get<std::size_t>());
+    std::ofstream(copy / file.at("path").get<std::string>(), std::ios::binary) << reply.data;
+  }
+  EXPECT_THAT(ResultFolder::Open(copy).PresentCases(), ElementsAre(2));
+  Json text = which;
+  text["path"] = "../campaign.yaml";
+  text["offset"] = 0;
+  EXPECT_EQ(Ask("read", text).data, campaign.canonical_yaml);
+  EXPECT_EQ(Json::parse(answer.at("state_json").get<std::string>()).at("id"), id);
+  Json outside = which;
+  outside["path"] = "../state.json";
+  outside["offset"] = 0;
+  EXPECT_EQ(Ask("read", outside).code, kExitBadInput);
+}
+
+TEST_F(FrontDeskTest, ACampaignIsRepairedByTheNameOfAWorker) {
+  const std::string id = Launch(Smoke(2));
+  EXPECT_EQ(Refusal("repair", {{"id", id}, {"worker", ""}}), "2: a worker's name has 1 to 64 characters");
+  EXPECT_EQ(Refusal("repair", {{"id", "ab"}, {"worker", "w"}}),
+            "2: no campaign, or more than one, has the id 'ab'");
+  EXPECT_EQ(AskFor("repair", {{"id", id.substr(0, 8)}, {"worker", "node1"}}).at("id"), id);
+  EXPECT_THAT(service_->catalogue().entries().at(id).distrusted, ElementsAre("node1"));
 }
 
 // What a client was told is on the disk.

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <chrono>
 #include <ctime>
 #include <functional>
 #include <string>
@@ -16,6 +17,7 @@
 #include "services/transport/admission.h"
 #include "services/transport/authority.h"
 #include "services/transport/openssl.h"
+#include "services/transport/revocations.h"
 #include "temporary_folder.h"
 
 namespace dispersa::key_folder_test {
@@ -55,6 +57,7 @@ class KeyFolderTest : public testing::Test {
   static Certificate CertificateIn(const fs::path& file) { return ReadCertificate(TextOfFile(file)); }
   static void Write(const fs::path& file, const std::string& text) { std::ofstream(file) << text; }
 
+  int takes_ = 0;
   TemporaryFolder folder_;
   std::time_t now_ = std::time(nullptr);
 };
@@ -87,6 +90,63 @@ TEST_F(KeyFolderTest, EveryFileIsTheOwnersAlone) {
     }
   }
   EXPECT_EQ(files, 5 + 6);
+}
+
+TEST_F(KeyFolderTest, AKeyThatOthersCanUseIsRefused) {
+  const fs::path issued = Worker(), key = issued / kIdentityKeyFile;
+  for (const auto& [mode, text] :
+       {std::pair(0644, "644"), std::pair(0604, "604"), std::pair(0620, "620"), std::pair(0601, "601")}) {
+    chmod(key.c_str(), static_cast<mode_t>(mode));
+    EXPECT_EQ(OpenError(issued), key.string() + ": other users of this machine can use it (mode " + text +
+                                     "): `chmod 600` it, and issue new keys if somebody may have read it");
+  }
+  for (const int mode : {0600, 0400, 0440}) {  // the last: a secret of Kubernetes
+    chmod(key.c_str(), static_cast<mode_t>(mode));
+    EXPECT_EQ(OpenError(issued), "none") << mode;
+  }
+}
+
+TEST_F(KeyFolderTest, RevokedKeysAreOnAListThatTheAuthoritySigned) {
+  const fs::path main = IssueKeys(authority(), Role::kCoordinator, "main", ValidFor(1));
+  Revocations revocations(OpenKeyFolder(main, {Role::kCoordinator}));
+  EXPECT_FALSE(revocations.Refresh()) << "there is none";
+  const auto take = [&] {
+    fs::copy_file(authority() / kRevokedFile, main / kRevokedFile, fs::copy_options::overwrite_existing);
+    fs::last_write_time(main / kRevokedFile,
+                        fs::file_time_type::clock::now() + std::chrono::seconds(++takes_));
+    return revocations.Refresh();
+  };
+  EXPECT_EQ(RevokeKeys(authority(), Role::kWorker, "node1"), authority() / kRevokedFile);
+  RevokeKeys(authority(), Role::kClient, "ann");
+  EXPECT_TRUE(take());
+  EXPECT_FALSE(revocations.Refresh()) << "it is the same";
+  EXPECT_TRUE(revocations.Contains(Role::kWorker, "node1"));
+  EXPECT_TRUE(revocations.Contains(Role::kClient, "ann"));
+  EXPECT_FALSE(revocations.Contains(Role::kWorker, "ann"));
+  EXPECT_EQ(IssueError("node1"), "the keys of the worker 'node1' are revoked, allowed: another name");
+  // Neither a list of another authority nor one that was edited.
+  MakeAuthority(folder_ / "theirs", ValidFor(30));
+  const fs::path theirs = RevokeKeys(folder_ / "theirs", Role::kWorker, "node2");
+  std::string edited = TextOfFile(authority() / kRevokedFile);
+  edited.replace(edited.find("node1"), 5, "node3");
+  for (const std::string& text : {TextOfFile(theirs), edited}) {
+    Write(authority() / kRevokedFile, text);
+    EXPECT_FALSE(take());
+    EXPECT_TRUE(revocations.Contains(Role::kWorker, "node1")) << "the last good one holds";
+    EXPECT_FALSE(revocations.Contains(Role::kWorker, "node2"));
+    EXPECT_FALSE(revocations.Contains(Role::kWorker, "node3"));
+  }
+}
+
+TEST(RevocationsTest, ATextIsReadAsItIsWritten) {
+  const Revoked revoked = {{Role::kWorker, {"a", "b"}}, {Role::kClient, {"a"}}};
+  EXPECT_EQ(RevocationText(revoked), "dispersa revoked keys 1\nworker a\nworker b\nclient a\n");
+  EXPECT_EQ(ParseRevocations("dispersa revoked keys 1\r\nworker a\r\nworker b\r\nclient a\r\n"), revoked);
+  for (const std::string text : {"", "dispersa revoked keys 2\n"})
+    EXPECT_EQ(ErrorOf([&] { ParseRevocations(text); }), "no list of revoked keys");
+  for (const std::string line : {"king a", "worker", "worker "})
+    EXPECT_EQ(ErrorOf([&] { ParseRevocations("dispersa revoked keys 1\n" + line + "\n"); }),
+              "a line is not 'ROLE NAME': '" + line + "'");
 }
 
 TEST_F(KeyFolderTest, NothingIsOverwritten) {
@@ -182,6 +242,7 @@ class MadeUpKeys : public KeyFolderTest {
     Write(keys / kPermissionsAuthorityFile, ToPem(signer.certificate.get()));
     Write(keys / kIdentityFile, ToPem(own.get()));
     Write(keys / kIdentityKeyFile, ToPem(key.get()));
+    chmod((keys / kIdentityKeyFile).c_str(), 0600);
     Write(keys / kGovernanceFile, sign(GovernanceDocument()));
     Write(keys / kPermissionsFile,
           sign(PermissionsDocument(Role::kWorker, "one", SubjectText(own.get()), at(-1), at(1))));

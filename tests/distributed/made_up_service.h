@@ -38,6 +38,7 @@ class ServiceTest : public testing::Test {
     entry.flight_id = campaign.flight_id;
     entry.name = campaign.name;
     entry.cases = campaign.sampling.cases;
+    entry.seed = campaign.sampling.seed;
     entry.priority = priority;
     service_->Launch(entry, campaign.canonical_yaml);
     return campaign.id;

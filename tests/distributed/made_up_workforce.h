@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -15,8 +16,14 @@ namespace dispersa {
 
 class MadeUpWorkforce : public Workforce {
  public:
-  void BeginCampaign(CampaignBook& book, int priority) override { dispatcher.BeginCampaign(book, priority); }
-  void EndCampaign(const std::string& flight_id) override { dispatcher.EndCampaign(flight_id); }
+  void BeginCampaign(CampaignBook& book, int priority) override {
+    books_[book.campaign().flight_id] = &book;
+    dispatcher.BeginCampaign(book, priority);
+  }
+  void EndCampaign(const std::string& flight_id) override {
+    books_.erase(flight_id);
+    dispatcher.EndCampaign(flight_id);
+  }
   void Publish(CampaignProgress progress) override { published.push_back(std::move(progress)); }
   std::vector<Dispatcher::WorkerView> Workers() const override { return dispatcher.Workers(); }
   std::optional<std::string> RefusalByAll(const std::string& flight_id) const override {
@@ -24,7 +31,8 @@ class MadeUpWorkforce : public Workforce {
   }
   const AuditOptions& audit() const override { return dispatcher.audit(); }
   std::uint64_t audits() const override { return dispatcher.audits(); }
-  std::uint64_t expelled() const override { return dispatcher.expelled(); }
+  const std::map<std::string, std::string>& expelled() const override { return dispatcher.expelled(); }
+  void Expel(const std::map<std::string, std::string>& names) override { dispatcher.Expel(names); }
   double now_s() const override { return time_s; }
 
   void Join(const std::string& worker, std::uint32_t slots = 1) {
@@ -46,10 +54,10 @@ class MadeUpWorkforce : public Workforce {
     for (const FlyOrder& order : orders) cases += order.cases.size();
     return cases;
   }
-  /// A result that nobody needs to have been asked for is welcome too.
-  void Return(const std::string& worker, const std::string& flight_id, CaseResult result) {
-    dispatcher.On(worker, Report{worker, kEpoch, ++reports_, flight_id, {{0, std::move(result)}}, {}},
-                  time_s);
+  /// A result that came, whomever the case was given to.
+  void Return(const std::string& worker, const std::string& flight_id, const CaseResult& result) {
+    if (const auto book = books_.find(flight_id); book != books_.end())
+      book->second->Accept(worker, "host", 0, result, time_s);
   }
   static CaseResult ResultOf(std::uint64_t case_index) {
     CaseResult result;
@@ -66,7 +74,7 @@ class MadeUpWorkforce : public Workforce {
   std::vector<CampaignProgress> published;
 
  private:
-  std::uint64_t reports_ = 0;
+  std::map<std::string, CampaignBook*> books_;  ///< by flight id
 };
 
 }  // namespace dispersa

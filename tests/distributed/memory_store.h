@@ -48,9 +48,9 @@ class MemoryStore : public ResultStore {
   std::vector<std::uint64_t> Disown(const std::string& worker) override {
     std::vector<std::uint64_t> cases;
     for (const auto& [case_index, who] : worker_of) {
-      if (who == worker) cases.push_back(case_index);
+      if (IsMeantBy(worker, who)) cases.push_back(case_index);
     }
-    std::erase_if(worker_of, [&](const auto& each) { return each.second == worker; });
+    std::erase_if(worker_of, [&](const auto& each) { return IsMeantBy(worker, each.second); });
     for (const std::uint64_t case_index : cases) rows.erase(case_index);
     stored -= cases.size();
     return cases;

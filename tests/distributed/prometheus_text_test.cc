@@ -38,7 +38,8 @@ TEST_F(PrometheusTextTest, AnEmptyServiceIsAllZeros) {
           metric("dispersa_workers", "gauge", "Workers that are joined.", 0) +
           metric("dispersa_slots", "gauge", "Threads of theirs that fly.", 0) +
           metric("dispersa_audits_total", "counter", "Results that were flown again.", 0) +
-          metric("dispersa_expelled_total", "counter", "Workers whose results were wrong.", 0) +
+          metric("dispersa_expelled_total", "counter",
+                 "Keys, or workers without keys, that may not fly here any more.", 0) +
           metric("dispersa_refused_total", "counter", "Datagrams and messages that were refused.",
                  Complaints()));
 }

@@ -78,7 +78,7 @@ class DiskStore : public ResultStore {
   std::vector<std::uint64_t> Disown(const std::string& worker) override {
     std::vector<std::uint64_t> cases;
     for (const auto& [case_index, who] : disk_.worker_of) {
-      if (who == worker) cases.push_back(case_index);
+      if (IsMeantBy(worker, who)) cases.push_back(case_index);
     }
     for (const std::uint64_t case_index : cases)
       disk_.rows.erase(case_index), disk_.worker_of.erase(case_index);
@@ -92,7 +92,7 @@ class DiskStore : public ResultStore {
 CaseResult ResultOf(std::uint64_t case_index) {
   CaseResult result;
   result.case_index = case_index;
-  result.inputs.resize(InputCount(kUsualStages));
+  result.inputs = InputValues({});
   result.digest = {case_index, 7};
   result.outcome = Outcome::kCompleted;
   result.metrics.assign(MetricCount(kUsualStages), 0.0);

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "core/campaign/case_design.h"
+#include "core/campaign_yaml/load.h"
 #include "core/flight/engine_version.h"
 #include "core/flight/flight_inputs.h"
 #include "core/flight/metrics.h"
@@ -18,13 +20,13 @@ namespace dispersa {
 namespace {
 
 /// The same for every worker, another one for each case.
-CaseResult MadeUp(std::uint64_t case_index) {
+CaseResult MadeUp(std::uint64_t case_index, const CaseDesign& design) {
   CaseResult result;
   result.case_index = case_index;
   result.outcome = Outcome::kCompleted;
   result.end_time_s = 500.0;
   result.end_stage = 4;
-  result.inputs.assign(InputCount(kUsualStages), 1.0 / 3.0);
+  result.inputs = InputValues(design.Draw(case_index));  // the one thing that is seen at once
   result.metrics.assign(MetricCount(kUsualStages), 1.0 / static_cast<double>(case_index + 1));
   result.digest = {case_index, ~case_index};
   return result;
@@ -38,6 +40,7 @@ void Work(const NetworkOptions& network, const Peer& peer, std::uint32_t slots) 
   };
   const std::string uuid = MakeUuid();
   FlightDesk desk({.worker = uuid, .engine_version = EngineVersion(), .slots = slots}, 0.0);
+  std::optional<CaseDesign> design;  // of its one campaign
   std::optional<WorkerLink> link(std::in_place, network, peer, uuid);
   while (!desk.left() && desk.refusal().empty()) {
     for (const WorkerEvent& event : link->Wait(std::chrono::milliseconds(20))) {
@@ -47,10 +50,13 @@ void Work(const NetworkOptions& network, const Peer& peer, std::uint32_t slots) 
         desk.On(std::get<TextPart>(event), now_s());
       }
     }
-    if (const auto text = desk.TakeText()) desk.Loaded(text->flight_id, nullptr, "");
+    if (const auto text = desk.TakeText()) {
+      design.emplace(ParseCampaign(text->text, text->name));
+      desk.Loaded(text->flight_id, nullptr, "");
+    }
     while (const auto job = desk.Next(now_s())) {
       for (const Report& report : desk.TakeReports(now_s())) link->Send(report);
-      desk.Done(*job, MadeUp(job->case_index), now_s());
+      desk.Done(*job, MadeUp(job->case_index, *design), now_s());
     }
     const FlightDesk::Due due = desk.Tick(now_s());
     if (due.status) {
