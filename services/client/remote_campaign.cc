@@ -20,6 +20,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kPart = 256 << 10;
+constexpr int kMostAttempts = 3;  // to copy a campaign that changes meanwhile
 constexpr std::chrono::milliseconds kAskAgain(200);
 constexpr std::chrono::milliseconds kPeriod(500);
 constexpr std::chrono::milliseconds kPatience(1000);  // of one question of those that follow
@@ -134,6 +135,16 @@ void FetchFiles(Session& session, const Json& which, const Json& answer, const f
   }
 }
 
+bool IsThere(Session& session, const std::string& id) {
+  try {
+    session.Ask("list", {{"id", id}});
+    return true;
+  } catch (const Failure& failure) {
+    if (failure.code != kExitBadInput) throw;
+    return false;
+  }
+}
+
 std::vector<std::string> AllIds(Session& session) {
   std::vector<std::string> ids;
   for (bool more = true; more;) {
@@ -142,6 +153,28 @@ std::vector<std::string> AllIds(Session& session) {
     more = page.at("more").get<bool>() && !page.at("ids").empty();
   }
   return ids;
+}
+
+void CopyCampaign(Session& session, const std::string& id, const fs::path& folder) {
+  const Json which = {{"id", id}, {"snapshot", MakeUuid()}};
+  const Json answer = AskForFiles(session, which);
+  FetchFile(session, which, "../campaign.yaml", answer.at("text_size"), folder / "campaign.yaml");
+  FetchFiles(session, which, answer, folder / "results");
+  WriteFile(folder / "state.json", answer.at("state_json").get<std::string>());
+}
+
+/// False: it was deleted meanwhile. What is written or reported anew while it is copied is copied again.
+bool BackUpCampaign(Session& session, const std::string& id, const fs::path& folder) {
+  for (int attempt = 1;; ++attempt) {
+    try {
+      CopyCampaign(session, id, folder);
+      return true;
+    } catch (const Failure&) {
+      fs::remove_all(folder);
+      if (!IsThere(session, id)) return false;
+      if (attempt == kMostAttempts) throw;
+    }
+  }
 }
 
 }  // namespace
@@ -169,19 +202,16 @@ std::uint64_t BackUp(Session& session, const std::string& target) {
   const fs::path incomplete = out.string() + ".dispersa-backup";
   fs::remove_all(incomplete);  // of a backup that was killed
   fs::create_directories(incomplete);
-  const std::string snapshot = MakeUuid();
-  const std::vector<std::string> ids = AllIds(session);
-  for (const std::string& id : ids) {
+  std::uint64_t campaigns = 0;
+  for (const std::string& id : AllIds(session)) {
     if (!IsFileBelow(id))
       throw Failure{kExitInternalError, "the coordinator names a campaign that cannot be a folder"};
-    const Json which = {{"id", id}, {"snapshot", snapshot}};
-    const Json answer = AskForFiles(session, which);
-    FetchFile(session, which, "../campaign.yaml", answer.at("text_size"), incomplete / id / "campaign.yaml");
-    FetchFiles(session, which, answer, incomplete / id / "results");
-    WriteFile(incomplete / id / "state.json", answer.at("state_json").get<std::string>());
+    campaigns += BackUpCampaign(session, id, incomplete / id);
   }
+  // After the campaigns: what was deleted meanwhile has its line.
+  FetchFiles(session, {{"id", ""}}, AskForFiles(session, {{"id", ""}}), incomplete);
   fs::rename(incomplete, out);
-  return ids.size();
+  return campaigns;
 }
 
 }  // namespace dispersa

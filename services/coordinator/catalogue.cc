@@ -84,13 +84,18 @@ bool ComesBefore(const CatalogueEntry& a, const CatalogueEntry& b) {
   return std::tuple(b.priority, a.order) < std::tuple(a.priority, b.order);
 }
 
-Catalogue::Catalogue(const fs::path& directory) : directory_(directory) {
+void MakeDataFolder(const fs::path& directory) {
   std::error_code error;
   fs::create_directories(directory, error);
   if (error) {
     throw InputError(directory.string() + ": cannot be made: " + error.message(),
                      "a folder that can be written");
   }
+}
+
+Catalogue::Catalogue(const fs::path& directory) : directory_(directory) {
+  MakeDataFolder(directory);
+  std::error_code error;
   lock_.emplace(directory);
   for (const fs::directory_entry& folder : fs::directory_iterator(directory)) {
     if (folder.path().filename().string().starts_with(kDeleted)) {

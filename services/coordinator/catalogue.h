@@ -44,6 +44,9 @@ bool ComesBefore(const CatalogueEntry& a, const CatalogueEntry& b);
 /// Of state.json. 2: with `seed`, `ended_unix_s` and `distrusted`; what lacks them is read, too.
 inline constexpr int kStateVersion = 2;
 
+/// Throws InputError if it cannot.
+void MakeDataFolder(const std::filesystem::path& directory);
+
 /// DIR/<id>/campaign.yaml, state.json and results/. One process at a time, locked. Throws ResultError,
 /// InputError.
 class Catalogue {

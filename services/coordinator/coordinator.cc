@@ -21,16 +21,16 @@ constexpr std::size_t kTextPart = 256 << 10;
 constexpr double kRevocations_s = 5.0;  // a new list is looked for so often
 
 std::uint64_t Draw() {
-  // Not the time: clocks are set back.
   std::random_device device;
-  return (std::uint64_t{device()} << 32 | device()) | 1;
+  return std::uint64_t{device()} << 32 | device();
 }
 
 }  // namespace
 
-// The epoch is told to everybody; which results are audited, to nobody.
-Coordinator::Coordinator(const NetworkOptions& network, std::optional<double> audit_share)
-    : epoch_(Draw()),
+// The epoch is told to everybody. Nobody is told which results are audited.
+Coordinator::Coordinator(const NetworkOptions& network, std::optional<double> audit_share,
+                         std::uint64_t epoch)
+    : epoch_(epoch),
       dispatcher_(epoch_, EngineVersion(),
                   {.audit = {audit_share.value_or(kUsualAuditShare), Draw(), audit_share.has_value()}}),
       link_(network) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "services/coordinator/dispatcher.h"
+#include "services/coordinator/epoch.h"
 #include "services/coordinator/workforce.h"
 #include "services/ledger/auditor.h"
 #include "services/transport/coordinator_link.h"
@@ -23,7 +24,8 @@ class Coordinator : public Workforce {
   /// Throws NetworkError.
   /// `audit_share`: so much of all results is flown again here, 0 to 1. Without a value kUsualAuditShare of
   /// campaigns without a plug-in, whose results another machine may rightly contradict.
-  explicit Coordinator(const NetworkOptions& network, std::optional<double> audit_share = 0.0);
+  explicit Coordinator(const NetworkOptions& network, std::optional<double> audit_share = 0.0,
+                       std::uint64_t epoch = NextEpoch());
   /// Serves one campaign.
   Coordinator(const NetworkOptions& network, CampaignBook& book, std::optional<double> audit_share = 0.0);
 

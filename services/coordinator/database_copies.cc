@@ -17,6 +17,14 @@ constexpr std::chrono::milliseconds kCopyWait(20);
 fs::path DatabaseOf(const fs::path& results) { return results / "results.sqlite"; }
 fs::path LogOf(const fs::path& results) { return results / "results.sqlite-wal"; }
 fs::path CopyOf(const fs::path& results) { return results.parent_path() / "fetched.sqlite"; }
+// Apart from it: a client that fetches must not change what a backup is reading.
+fs::path SnapshotOf(const fs::path& results) { return results.parent_path() / "backup.sqlite"; }
+
+void RemoveCopy(const fs::path& file) {
+  std::error_code error;
+  fs::remove(file, error);
+  fs::remove(file.string() + ".tmp", error);
+}
 
 bool HasLog(const fs::path& results) {
   std::error_code error;
@@ -51,71 +59,87 @@ void MakeCopy(const fs::path& results, std::uint64_t promised) {
 }  // namespace
 
 std::optional<fs::path> DatabaseCopies::Whole(const fs::path& results, std::uint64_t promised, double now_s) {
-  const auto known = copies_.find(results);
+  const fs::path file = CopyOf(results);
+  const auto known = copies_.find(file);
   if (known == copies_.end() && !HasLog(results)) return DatabaseOf(results);
   if (known == copies_.end() ||
       (known->second.is_made && HasLog(results) && known->second.of != StateOf(results))) {
-    Forget(results);
-    Copy& copy = copies_[results];
+    Remove(file);
+    Copy& copy = copies_[file];
     copy.of = StateOf(results);
     copy.making = std::async(std::launch::async, MakeCopy, results, promised);
   }
-  return Ready(results, now_s);
-}
-
-std::optional<fs::path> DatabaseCopies::Snapshot(const fs::path& results, const std::string& name,
-                                                 double now_s) {
-  const std::string of = "snapshot " + name;
-  if (const auto known = copies_.find(results); known == copies_.end() || known->second.of != of) {
-    Forget(results);
-    Copy& copy = copies_[results];
-    copy.of = of;
-    copy.making = std::async(std::launch::async,
-                             [results] { ResultFolder::Open(results).CopyDatabase(CopyOf(results)); });
-  }
-  return Ready(results, now_s);
-}
-
-std::optional<fs::path> DatabaseCopies::Ready(const fs::path& results, double now_s) {
-  Copy& copy = copies_.at(results);
+  Copy& copy = copies_.at(file);
   copy.used_s = now_s;
-  if (!copy.is_made) {
-    if (copy.making.wait_for(kCopyWait) != std::future_status::ready) return std::nullopt;
-    try {
-      copy.making.get();
-    } catch (...) {
-      Forget(results);
-      throw;
-    }
-    copy.is_made = true;
+  try {
+    if (!IsMade(copy)) return std::nullopt;
+  } catch (...) {
+    Remove(file);
+    throw;
   }
   return Known(results, now_s);
 }
 
+std::optional<fs::path> DatabaseCopies::Snapshot(const fs::path& results, const std::string& name,
+                                                 double now_s) {
+  const fs::path file = SnapshotOf(results);
+  if (const auto known = copies_.find(file); known == copies_.end() || known->second.of != name) {
+    Remove(file);
+    Copy& copy = copies_[file];
+    copy.of = name;
+    copy.making =
+        std::async(std::launch::async, [results, file] { ResultFolder::Open(results).CopyDatabase(file); });
+  }
+  Copy& copy = copies_.at(file);
+  copy.used_s = now_s;
+  try {
+    return IsMade(copy) ? std::optional(file) : std::nullopt;
+  } catch (...) {
+    Remove(file);
+    throw;
+  }
+}
+
+std::optional<fs::path> DatabaseCopies::KnownSnapshot(const fs::path& results, const std::string& name,
+                                                      double now_s) {
+  const auto known = copies_.find(SnapshotOf(results));
+  if (known == copies_.end() || known->second.of != name || !known->second.is_made) return std::nullopt;
+  known->second.used_s = now_s;
+  return known->first;
+}
+
+// Throws what the copying threw.
+bool DatabaseCopies::IsMade(Copy& copy) {
+  if (copy.is_made) return true;
+  if (copy.making.wait_for(kCopyWait) != std::future_status::ready) return false;
+  copy.making.get();
+  return copy.is_made = true;
+}
+
 fs::path DatabaseCopies::Known(const fs::path& results, double now_s) {
-  const auto known = copies_.find(results);
+  const auto known = copies_.find(CopyOf(results));
   if (known == copies_.end() || !known->second.is_made) return DatabaseOf(results);
   known->second.used_s = now_s;
   std::error_code error;
   return fs::exists(CopyOf(results), error) ? CopyOf(results) : DatabaseOf(results);
 }
 
-void DatabaseCopies::Forget(const fs::path& results) {
-  if (copies_.erase(results) > 0) RemoveDatabaseCopy(results);  // a copy that is being made is waited for
+void DatabaseCopies::Forget(const fs::path& results) { Remove(CopyOf(results)); }
+
+void DatabaseCopies::Remove(const fs::path& file) {
+  if (copies_.erase(file) > 0) RemoveCopy(file);  // a copy that is being made is waited for
 }
 
 void DatabaseCopies::ForgetUnused(double now_s) {
   std::erase_if(copies_, [&](const auto& each) {
     const bool is_unused = each.second.is_made && now_s - each.second.used_s > kCopyPatience_s;
-    if (is_unused) RemoveDatabaseCopy(each.first);
+    if (is_unused) RemoveCopy(each.first);
     return is_unused;
   });
 }
 
-void RemoveDatabaseCopy(const fs::path& results) {
-  std::error_code error;
-  fs::remove(CopyOf(results), error);
-  fs::remove(CopyOf(results).string() + ".tmp", error);
+void RemoveDatabaseCopies(const fs::path& results) {
+  for (const fs::path& file : {CopyOf(results), SnapshotOf(results)}) RemoveCopy(file);
 }
 
 }  // namespace dispersa

@@ -20,29 +20,34 @@ class DatabaseCopies {
   /// being copied. Throws ResultError when that fails, and when the copy has fewer than `promised` cases.
   std::optional<std::filesystem::path> Whole(const std::filesystem::path& results, std::uint64_t promised,
                                              double now_s);
-  /// A copy of a database that somebody may be writing, one for each `name`. None: it is being copied.
-  std::optional<std::filesystem::path> Snapshot(const std::filesystem::path& results, const std::string& name,
-                                                double now_s);
   /// The same of a folder that Whole was asked about before: nothing is copied.
   std::filesystem::path Known(const std::filesystem::path& results, double now_s);
-  /// The campaign goes on: its copy is old.
+  /// A copy of a database that somebody may be writing, for a backup. The backup's `name` decides whether the
+  /// present copy is meant. None: it is being copied.
+  std::optional<std::filesystem::path> Snapshot(const std::filesystem::path& results, const std::string& name,
+                                                double now_s);
+  /// The same if it is there; none: another backup has taken its place, or nobody asked for too long.
+  std::optional<std::filesystem::path> KnownSnapshot(const std::filesystem::path& results,
+                                                     const std::string& name, double now_s);
+  /// The campaign goes on: the copy for those who fetch it is old.
   void Forget(const std::filesystem::path& results);
   /// Removes the copies that nobody has asked for lately.
   void ForgetUnused(double now_s);
 
  private:
-  std::optional<std::filesystem::path> Ready(const std::filesystem::path& results, double now_s);
-
   struct Copy {
-    std::string of;  ///< state of the database and its log that was copied
+    std::string of;  ///< what was copied: state of the database and its log, or a backup's name
     std::future<void> making;
     bool is_made = false;
     double used_s = 0.0;
   };
-  std::map<std::filesystem::path, Copy> copies_;  ///< by result folder
+  static bool IsMade(Copy& copy);
+  void Remove(const std::filesystem::path& file);
+
+  std::map<std::filesystem::path, Copy> copies_;  ///< by the copy's file
 };
 
-/// What a coordinator that was killed has left of a copy.
-void RemoveDatabaseCopy(const std::filesystem::path& results);
+/// Removes what a coordinator that was killed has left of copies.
+void RemoveDatabaseCopies(const std::filesystem::path& results);
 
 }  // namespace dispersa

@@ -105,6 +105,12 @@ std::size_t BinsFor(std::int64_t n) {
                     RunningHistogram::kMaxBins);
 }
 
+void RequireListed(const CatalogueEntry& entry, const std::vector<fs::path>& files, const fs::path& path) {
+  if (std::find(files.begin(), files.end(), path) != files.end()) return;
+  throw Refused(kExitBadInput,
+                "campaign " + entry.id.substr(0, 8) + " has no file " + Printable(path.string()));
+}
+
 void RefuseAnotherEngine(const std::string& asked, const CatalogueEntry& entry) {
   if (asked == entry.flight_id) return;
   throw Refused(kExitBadInput, fmt::format("campaign {} has the flight id {} here and {} at the client: the "
@@ -117,7 +123,7 @@ void RefuseAnotherEngine(const std::string& asked, const CatalogueEntry& entry) 
 FrontDesk::FrontDesk(Service& service, const Workforce& workforce)
     : service_(service), workforce_(workforce) {
   for (const auto& [id, entry] : service.catalogue().entries())
-    RemoveDatabaseCopy(service.catalogue().ResultsOf(id));
+    RemoveDatabaseCopies(service.catalogue().ResultsOf(id));
 }
 
 Reply FrontDesk::Answer(const Request& request) {
@@ -360,8 +366,9 @@ std::string FrontDesk::Tally(const std::string& arguments) const {
 // "copying" until the database can be handed out as a whole.
 std::string FrontDesk::Files(const std::string& arguments) {
   const Json json = Json::parse(arguments);
-  const CatalogueEntry& entry = Named(json.at("id"));
-  const std::string snapshot = json.value("snapshot", "");
+  const std::string snapshot = json.value("snapshot", ""), id = json.at("id");
+  if (id.empty()) return Journals();
+  const CatalogueEntry& entry = Named(id);
   if (!snapshot.empty()) return Snapshot(entry, snapshot);
   if (!service_.IsAtRest(entry.id)) {
     throw Refused(kExitIncomplete,
@@ -380,53 +387,76 @@ std::string FrontDesk::Files(const std::string& arguments) {
       .dump();
 }
 
-// For a backup, whatever the campaign does now. Its state comes first, so that the database has what it
-// promises; reports of one that has not ended are written again.
+// What a data directory has besides its campaigns.
+std::string FrontDesk::Journals() const {
+  Json files = Json::array();
+  for (const fs::path& file : service_.Journals())
+    files.push_back({{"path", file.filename().generic_string()}, {"size", fs::file_size(file)}});
+  return Json{{"id", ""}, {"files", std::move(files)}}.dump();
+}
+
+// For a backup, whatever the campaign does now. State and list of files are those of the moment before the
+// database is copied: so the copy has every case that the state promises. Reports of a campaign that has not
+// ended are written again.
 std::string FrontDesk::Snapshot(const CatalogueEntry& entry, const std::string& name) {
   const fs::path directory = service_.catalogue().ResultsOf(entry.id);
-  Json answer = {{"id", entry.id}, {"state_json", service_.catalogue().StateTextOf(entry.id)}};
-  Json files = Json::array();
-  if (fs::exists(directory / kDatabase)) {
-    const auto database = copies_.Snapshot(directory, name, workforce_.now_s());
-    if (!database) return Json{{"id", entry.id}, {"state", "copying"}}.dump();
-    for (const fs::path& file : SnapshotFiles(entry.id)) {
-      const fs::path source = file == kDatabase ? *database : directory / file;
-      files.push_back({{"path", file.generic_string()}, {"size", fs::file_size(source)}});
+  CampaignSnapshot& snapshot = snapshots_[entry.id];
+  if (snapshot.name != name) {
+    snapshot = {name, service_.catalogue().StateTextOf(entry.id), {}};
+    if (service_.IsAtRest(entry.id)) {
+      snapshot.files = FilesIn(directory);
+    } else if (fs::exists(directory / kDatabase)) {
+      snapshot.files = {"campaign.yaml", kDatabase};
     }
   }
-  answer["files"] = std::move(files);
-  answer["text_size"] = fs::file_size(directory.parent_path() / "campaign.yaml");
-  return answer.dump();
-}
-
-std::vector<fs::path> FrontDesk::SnapshotFiles(const std::string& id) const {
-  if (service_.IsAtRest(id)) return FilesIn(service_.catalogue().ResultsOf(id));
-  return {"campaign.yaml", kDatabase};
-}
-
-// By path within the result folder.
-std::vector<fs::path> FrontDesk::ReadableFiles(const std::string& id, bool is_for_backup) const {
-  if (is_for_backup) {
-    std::vector<fs::path> files = SnapshotFiles(id);
-    files.emplace_back("../campaign.yaml");
-    return files;
+  Json files = Json::array();
+  for (const fs::path& file : snapshot.files) {
+    fs::path source = directory / file;
+    if (file == kDatabase) {
+      const auto database = copies_.Snapshot(directory, name, workforce_.now_s());
+      if (!database) return Json{{"id", entry.id}, {"state", "copying"}}.dump();
+      source = *database;
+    }
+    files.push_back({{"path", file.generic_string()}, {"size", fs::file_size(source)}});
   }
-  if (!service_.IsAtRest(id)) return {};
-  return FilesIn(service_.catalogue().ResultsOf(id));
+  return Json{{"id", entry.id},
+              {"state_json", snapshot.state_json},
+              {"text_size", fs::file_size(directory.parent_path() / "campaign.yaml")},
+              {"files", std::move(files)}}
+      .dump();
+}
+
+// Where a file of a snapshot lies; `path` is relative to the result folder.
+fs::path FrontDesk::FindInSnapshot(const CatalogueEntry& entry, const std::string& name,
+                                   const fs::path& path) {
+  const auto found = snapshots_.find(entry.id);
+  if (found == snapshots_.end() || found->second.name != name) {
+    throw Refused(kExitIncomplete, fmt::format("the snapshot of campaign {} is gone: repeat the backup",
+                                               entry.id.substr(0, 8)));
+  }
+  const fs::path directory = service_.catalogue().ResultsOf(entry.id);
+  if (path == "../campaign.yaml") return directory.parent_path() / "campaign.yaml";
+  RequireListed(entry, found->second.files, path);
+  if (path != kDatabase) return directory / path;
+  if (const auto database = copies_.KnownSnapshot(directory, name, workforce_.now_s())) return *database;
+  throw Refused(kExitIncomplete,
+                fmt::format("the snapshot of campaign {} is gone: repeat the backup", entry.id.substr(0, 8)));
+}
+
+fs::path FrontDesk::FindInResults(const CatalogueEntry& entry, const fs::path& path) {
+  const fs::path directory = service_.catalogue().ResultsOf(entry.id);
+  RequireListed(entry, service_.IsAtRest(entry.id) ? FilesIn(directory) : std::vector<fs::path>(), path);
+  return path == kDatabase ? copies_.Known(directory, workforce_.now_s()) : directory / path;
 }
 
 std::string FrontDesk::Read(const std::string& arguments, std::string* data) {
   const Json json = Json::parse(arguments);
-  const CatalogueEntry& entry = Named(json.at("id"));
-  const fs::path directory = service_.catalogue().ResultsOf(entry.id);
   const fs::path path = json.at("path").get<std::string>();
   const std::uint64_t offset = json.at("offset");
-  const std::vector<fs::path> files = ReadableFiles(entry.id, json.contains("snapshot"));
-  if (std::find(files.begin(), files.end(), path) == files.end()) {
-    throw Refused(kExitBadInput,
-                  "campaign " + entry.id.substr(0, 8) + " has no file " + Printable(path.string()));
-  }
-  const fs::path source = path == kDatabase ? copies_.Known(directory, workforce_.now_s()) : directory / path;
+  const std::string snapshot = json.value("snapshot", ""), id = json.at("id");
+  const fs::path source = id.empty()         ? service_.JournalAt(path)
+                          : snapshot.empty() ? FindInResults(Named(id), path)
+                                             : FindInSnapshot(Named(id), snapshot, path);
   std::ifstream stream(source, std::ios::binary);
   data->resize(kFilePart);
   stream.seekg(static_cast<std::streamoff>(offset));

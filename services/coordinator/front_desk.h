@@ -32,6 +32,13 @@ class FrontDesk {
     std::future<CatalogueEntry> parsed;
   };
 
+  /// A campaign as a backup takes it.
+  struct CampaignSnapshot {
+    std::string name;        ///< of the backup
+    std::string state_json;  ///< of the moment before the database is copied
+    std::vector<std::filesystem::path> files;
+  };
+
   std::string TakePart(const std::string& client, const std::string& arguments, const std::string& data);
   std::string Launch(const std::string& arguments);
   std::string Cancel(const std::string& arguments);
@@ -43,9 +50,11 @@ class FrontDesk {
   std::string Status(const std::string& arguments) const;
   std::string Tally(const std::string& arguments) const;
   std::string Files(const std::string& arguments);
+  std::string Journals() const;
   std::string Snapshot(const CatalogueEntry& entry, const std::string& name);
-  std::vector<std::filesystem::path> SnapshotFiles(const std::string& id) const;
-  std::vector<std::filesystem::path> ReadableFiles(const std::string& id, bool is_for_backup) const;
+  std::filesystem::path FindInSnapshot(const CatalogueEntry& entry, const std::string& name,
+                                       const std::filesystem::path& path);
+  std::filesystem::path FindInResults(const CatalogueEntry& entry, const std::filesystem::path& path);
   std::string Read(const std::string& arguments, std::string* data);
   const CatalogueEntry& Named(const std::string& id) const;
   void ForgetUploads();
@@ -54,7 +63,8 @@ class FrontDesk {
   const Workforce& workforce_;
   std::map<std::string, Upload> uploads_;  ///< by id
   DatabaseCopies copies_;
-  std::set<std::string> deleted_;  ///< ids: a client whose answer got lost asks again
+  std::map<std::string, CampaignSnapshot> snapshots_;  ///< by id: of the last backup
+  std::set<std::string> deleted_;                      ///< ids: a client whose answer got lost asks again
 };
 
 }  // namespace dispersa

@@ -38,7 +38,8 @@ int RunCoordinator(int argc, char** argv) {
   ClientOptions clients;
   std::string& data = clients.data;
   bool health = false;
-  std::optional<double> audit, keep_gb;
+  std::optional<double> audit;
+  std::vector<std::string> keep;
   app.add_option("campaign", request.campaign.name, "campaign file")->type_name(kFileType);
   app.add_option("--data", data, "folder of the campaigns that were launched, made if it is not there")
       ->type_name(kFolderType);
@@ -50,13 +51,19 @@ int RunCoordinator(int argc, char** argv) {
          "with --data: cases that a campaign may have, launches of more are refused; each takes memory "
          "here\n(default: 5000000)")
       ->transform(WholeNumber(1, kMostCases));
-  app.add_option("--keep-days", clients.retention.days,
-                 "with --data: campaigns are deleted so many days after their end; default: never")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--keep-gb", keep_gb,
-                 "with --data: those that ended first are deleted while all take more than so many GB; "
-                 "default: never")
-      ->check(CLI::PositiveNumber);
+  app.add_option(
+         "--keep", keep,
+         "with --data: 90d deletes a campaign 90 days after its end; 200GB deletes the campaigns that "
+         "ended first\nwhile all of them take more; may be given twice; default: keep all")
+      ->type_name("TEXT")
+      ->check(CLI::Validator(
+          [](const std::string& text) {
+            Retention retention;
+            return ReadRetention(text, &retention)
+                       ? ""
+                       : "'" + text + "' is no limit, allowed: days as 90d, or a size as 200GB";
+          },
+          ""));
   app.add_flag("--health", health,
                "ask the coordinator of the domain on this machine: exit code 0 if it answers");
   app.add_option(
@@ -97,7 +104,7 @@ int RunCoordinator(int argc, char** argv) {
                    "a campaign file"),
         json);
   }
-  if (keep_gb) clients.retention.bytes = static_cast<std::uint64_t>(*keep_gb * 1e9);
+  for (const std::string& limit : keep) ReadRetention(limit, &clients.retention);
   CatchStopSignals();
   try {
     if (health) {

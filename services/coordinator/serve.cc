@@ -7,7 +7,9 @@
 
 #include "core/pages/reports.h"
 #include "services/coordinator/attendance.h"
+#include "services/coordinator/catalogue.h"
 #include "services/coordinator/coordinator.h"
+#include "services/coordinator/epoch.h"
 #include "services/coordinator/front_desk.h"
 #include "services/coordinator/prometheus_port.h"
 #include "services/coordinator/prometheus_text.h"
@@ -108,7 +110,8 @@ ExitCode ServeCampaign(const ServeOptions& options, const RunRequest& request,
 
 // Workers stay when it ends: another coordinator on the same data takes them over.
 int ServeClients(const ServeOptions& options, const ClientOptions& clients) {
-  Coordinator coordinator(options.network, options.audit);
+  MakeDataFolder(clients.data);
+  Coordinator coordinator(options.network, options.audit, NextEpoch(clients.data));
   ServiceOptions service_options;
   service_options.data = clients.data;
   service_options.max_cases = clients.max_cases;

@@ -17,9 +17,11 @@
 #include "core/pages/reports.h"
 #include "core/results/output_file.h"
 #include "services/coordinator/dump_any_text.h"
+#include "services/coordinator/epoch.h"
 #include "services/ledger/open_book.h"
 #include "services/log/log.h"
 #include "services/program/exit_code.h"
+#include "services/transport/validity.h"
 
 namespace dispersa {
 namespace {
@@ -458,6 +460,21 @@ const RunningTally* Service::TallyOf(const std::string& id) const {
   const auto flew =
       std::find_if(flew_.begin(), flew_.end(), [&](const auto& each) { return each.first == id; });
   return flew == flew_.end() ? nullptr : &flew->second;
+}
+
+std::vector<std::filesystem::path> Service::Journals() const {
+  std::vector<std::filesystem::path> files;
+  for (const char* name : {kDeletedFile, kExpelledFile, kEpochFile}) {
+    std::error_code error;
+    if (std::filesystem::is_regular_file(options_.data / name, error)) files.push_back(options_.data / name);
+  }
+  return files;
+}
+
+std::filesystem::path Service::JournalAt(const std::filesystem::path& name) const {
+  for (const std::filesystem::path& file : Journals())
+    if (file.filename() == name) return file;
+  throw Refused(kExitBadInput, "the coordinator has no file " + Printable(name.string()));
 }
 
 bool Service::IsAtRest(const std::string& id) const {

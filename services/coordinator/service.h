@@ -19,18 +19,13 @@
 #include <vector>
 
 #include "services/coordinator/catalogue.h"
+#include "services/coordinator/retention.h"
 #include "services/coordinator/workforce.h"
 
 namespace dispersa {
 
 /// A ledger takes 17 bytes a case, a report 140: with eight such campaigns open and a report 1.5 GB.
 inline constexpr std::uint64_t kDefaultMaxCases = 5000000;
-
-/// What becomes of campaigns that have ended.
-struct Retention {
-  std::optional<double> days = {};          ///< they are deleted so long after their end
-  std::optional<std::uint64_t> bytes = {};  ///< the oldest are deleted while all campaigns take more
-};
 
 struct ServiceOptions {
   std::filesystem::path data;
@@ -74,6 +69,10 @@ class Service {
 
   const Catalogue& catalogue() const { return catalogue_; }
   std::uint64_t max_cases() const { return options_.max_cases; }
+  /// Files of the data directory that belong to no campaign: deletions, expelled workers, the last start.
+  std::vector<std::filesystem::path> Journals() const;
+  /// The one with this name. Throws Refused.
+  std::filesystem::path JournalAt(const std::filesystem::path& name) const;
   CampaignView View(const std::string& id) const;
   /// What its results so far come to; also of one that flew lately. nullptr: not known.
   const RunningTally* TallyOf(const std::string& id) const;

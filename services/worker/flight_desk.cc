@@ -25,6 +25,8 @@ FlightDesk::FlightDesk(const FlightDeskOptions& options, double now_s)
       patience_s_(options.deaf_s) {}
 
 void FlightDesk::On(const Orders& orders, double now_s) {
+  // Of a coordinator whose place another one has taken, while that one lives.
+  if (orders.coordinator_epoch < epoch_ && IsHeard(now_s)) return;
   heard_s_ = now_s;
   patience_s_ = options_.deaf_s;
   for (const std::uint64_t number : orders.acknowledged) {

@@ -53,6 +53,7 @@ class FlightDesk {
   /// `now_s`: the connection is new.
   FlightDesk(const FlightDeskOptions& options, double now_s);
 
+  /// Orders of an older coordinator than the followed one are ignored while that one is heard. Epochs grow.
   void On(const Orders& orders, double now_s);
   void On(const TextPart& part, double now_s);
 

@@ -304,6 +304,21 @@ TEST_F(CampaignServiceTest, ACampaignThatHasEndedIsDeletedAndALineIsKept) {
   EXPECT_TRUE(service_->catalogue().entries().empty());
 }
 
+TEST(RetentionTest, IsReadAsAUserWritesIt) {
+  Retention retention;
+  EXPECT_TRUE(ReadRetention("90d", &retention));
+  EXPECT_EQ(retention.days, 90.0);
+  EXPECT_FALSE(retention.bytes);
+  for (const auto& [text, bytes] :
+       {std::pair("200GB", 200e9), std::pair("0.5TB", 5e11), std::pair("30MB", 3e7)}) {
+    EXPECT_TRUE(ReadRetention(text, &retention));
+    EXPECT_EQ(retention.bytes, static_cast<std::uint64_t>(bytes));
+  }
+  EXPECT_EQ(retention.days, 90.0);
+  for (const char* text : {"", "90", "d", "-1d", "0d", "nand", "1e3d", "90 d", "90days", "5gb", "2000000d"})
+    EXPECT_FALSE(ReadRetention(text, &retention)) << text;
+}
+
 TEST_F(CampaignServiceTest, OldCampaignsAndThoseBeyondTheSizeAreDeletedTheOldestFirst) {
   std::int64_t now = 1'000'000;
   const auto start = [&](const Retention& retention) {

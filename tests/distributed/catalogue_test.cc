@@ -10,6 +10,7 @@
 
 #include "core/flight/metrics.h"
 #include "core/input/input_error.h"
+#include "services/coordinator/epoch.h"
 #include "services/ledger/running_tally.h"
 
 namespace dispersa::catalogue_test {
@@ -71,6 +72,19 @@ TEST_F(CatalogueTest, AStateOfTheFirstVersionIsReadAndBecomesOneOfToday) {
   std::string text;
   std::getline(std::ifstream(file), text, '\0');
   EXPECT_THAT(text, testing::HasSubstr("\"version\": 2"));
+}
+
+TEST_F(CatalogueTest, EachStartHasALargerNumberAlsoWhenTheClockIsSetBack) {
+  fs::create_directories(root_);
+  const std::uint64_t first = NextEpoch(root_), second = NextEpoch(root_);
+  EXPECT_GT(first, 1'700'000'000'000'000u) << "microseconds since 1970";
+  EXPECT_GT(second, first);
+  std::ofstream(root_ / kEpochFile) << "9000000000000000\n";  // a clock that was far ahead
+  EXPECT_EQ(NextEpoch(root_), 9000000000000001u);
+  EXPECT_EQ(NextEpoch(root_), 9000000000000002u);
+  fs::remove(root_ / kEpochFile);
+  fs::create_directories(root_ / kEpochFile / "in its way");
+  EXPECT_GT(NextEpoch(root_), second) << "it starts all the same";
 }
 
 TEST_F(CatalogueTest, AStateOfALaterVersionIsLeftAlone) {

@@ -94,6 +94,29 @@ TEST_F(FlightDeskTest, RepeatsAReportUntilItIsAcknowledged) {
   EXPECT_THAT(desk_.Tick(9.0).reports, IsEmpty());
 }
 
+// A host whose place another one took, and that comes back: two coordinators never pull at one worker.
+TEST_F(FlightDeskTest, AnOlderCoordinatorIsFollowedOnlyWhenTheYoungerOneIsSilent) {
+  desk_.On(Say({{kFlight, 3, {10}}}, 8), 0.0);
+  Load();
+  desk_.Done(*desk_.Next(0.0), {}, 0.1);
+  EXPECT_FALSE(desk_.Next(0.1));
+  const std::uint64_t number = desk_.TakeReports(0.1).back().number;
+  Orders old = Say({{kFlight, 3, {20}}}, 7);
+  old.acknowledged = {number};
+  old.leave = true;
+  old.refusal = "another engine";
+  desk_.On(old, 4.9);
+  EXPECT_FALSE(desk_.Next(4.9));
+  EXPECT_FALSE(desk_.left());
+  EXPECT_EQ(desk_.refusal(), "");
+  EXPECT_THAT(desk_.Status(WorkerState::kReady).held, ElementsAre(3)) << "the younger one has not stored it";
+  EXPECT_EQ(desk_.Status(WorkerState::kReady).coordinator_epoch, 8u);
+  EXPECT_FALSE(desk_.IsHeard(5.1)) << "the older one's words are no sign of life";
+  desk_.On(Say({{kFlight, 3, {20}}}, 7), 5.1);
+  ASSERT_TRUE(desk_.Next(5.1));
+  EXPECT_EQ(desk_.Status(WorkerState::kReady).coordinator_epoch, 7u);
+}
+
 TEST_F(FlightDeskTest, AnotherCoordinatorsOrdersReplaceTheLastOnes) {
   desk_.On(Say({{kFlight, 3, {10, 11}}}), 0.0);
   Load();

@@ -237,6 +237,37 @@ TEST_F(FrontDeskTest, ASnapshotOfACampaignThatFliesIsWhole) {
   EXPECT_EQ(Ask("read", outside).code, kExitBadInput);
 }
 
+// Nothing that happens while a backup copies is half in it.
+TEST_F(FrontDeskTest, ASnapshotHasTheStateOfTheMomentBeforeItsDatabase) {
+  const Campaign campaign = Smoke(4);
+  const std::string id = Launch(campaign);
+  ASSERT_TRUE(Reaches(id, CampaignState::kFlying));
+  workforce_.Return("w", campaign.flight_id, MadeUpWorkforce::ResultOf(2));
+  service_->Flush();
+  const auto snapshot = [&](const char* name) {
+    Json answer;
+    EXPECT_TRUE(Until([&] {
+      answer = AskFor("files", {{"id", id}, {"snapshot", name}});
+      return !answer.contains("state");
+    }));
+    return answer;
+  };
+  snapshot("monday");
+  workforce_.Return("w", campaign.flight_id, MadeUpWorkforce::ResultOf(3));
+  AskFor("cancel", {{"id", id}});
+  const Json monday = snapshot("monday");
+  EXPECT_EQ(Json::parse(monday.at("state_json").get<std::string>()).at("state"), "flying");
+  EXPECT_THAT(monday.at("files"), testing::SizeIs(2));
+  const Json read = {{"id", id}, {"snapshot", "monday"}, {"path", "results.sqlite"}, {"offset", 0}};
+  const std::string before = Ask("read", read).data;
+  AskFor("files", {{"id", id}});  // somebody fetches it
+  EXPECT_TRUE(Ask("read", read).data == before);
+  const Json tuesday = snapshot("tuesday");
+  EXPECT_EQ(Json::parse(tuesday.at("state_json").get<std::string>()).at("done"), 2);
+  EXPECT_EQ(Refusal("read", read),
+            "5: the snapshot of campaign " + id.substr(0, 8) + " is gone: repeat the backup");
+}
+
 TEST_F(FrontDeskTest, ACampaignIsRepairedByTheNameOfAWorker) {
   const std::string id = Launch(Smoke(2));
   EXPECT_EQ(Refusal("repair", {{"id", id}, {"worker", ""}}), "2: a worker's name has 1 to 64 characters");

@@ -11,6 +11,7 @@
 
 #include "core/results/database.h"
 #include "made_up_service.h"
+#include "services/coordinator/epoch.h"
 
 namespace dispersa::remote_campaign_test {
 namespace {
@@ -315,6 +316,75 @@ TEST_F(RemoteCampaign, AFolderThatNobodyReadsAnyMoreIsNotFetchedFromItsCopy) {
   session_.Ask("cancel", {{"id", campaign.id}});
   const FetchedCampaign second = FetchCampaign(session_, campaign.id, (folder_ / "second").string());
   EXPECT_THAT(ResultFolder::Open(second.directory).PresentCases(), ElementsAre(0, 1));
+}
+
+// Another host takes over: it starts on a backup, and what came after the backup is flown again.
+TEST_F(RemoteCampaign, ABackupIsADataFolderFromWhichAnotherCoordinatorGoesOn) {
+  NextEpoch(folder_ / "data");
+  const Campaign ended = Smoke(2, 5), flying = Smoke(4, 6), deleted = Smoke(2, 7);
+  for (const Campaign& campaign : {ended, deleted}) {
+    Launch(campaign);
+    ASSERT_TRUE(Reaches(campaign.id, CampaignState::kFlying));
+    workforce_.Return("w", campaign.flight_id, MadeUpWorkforce::ResultOf(1));
+    session_.Ask("cancel", {{"id", campaign.id}});
+  }
+  session_.Ask("delete", {{"id", deleted.id}});
+  workforce_.Expel({{"node1", "case 4 gives other bits"}});
+  workforce_.time_s += 2.0;
+  Launch(flying);
+  ASSERT_TRUE(Reaches(flying.id, CampaignState::kFlying));
+  workforce_.Return("w", flying.flight_id, MadeUpWorkforce::ResultOf(0));
+  service_->Flush();
+  const fs::path backup = folder_ / "backup";
+  EXPECT_EQ(BackUp(session_, backup.string()), 2u);
+  workforce_.Return("w", flying.flight_id, MadeUpWorkforce::ResultOf(1));
+  service_->Flush();
+  EXPECT_FALSE(fs::exists(backup.string() + ".dispersa-backup"));
+  for (const char* file : {"deleted.jsonl", "expelled.json", "epoch"})
+    EXPECT_EQ(TextOfFile(backup / file), TextOfFile(folder_ / "data" / file)) << file;
+  EXPECT_GT(NextEpoch(backup), std::stoull(TextOfFile(folder_ / "data" / "epoch")));
+
+  MadeUpWorkforce others;
+  Service there(ServiceOptions{backup}, others);
+  EXPECT_THAT(others.expelled(), ElementsAre(testing::Pair("node1", "case 4 gives other bits")));
+  const auto& entries = there.catalogue().entries();
+  ASSERT_EQ(entries.size(), 2u);
+  EXPECT_EQ(entries.at(ended.id).state, CampaignState::kCancelled);
+  EXPECT_EQ(entries.at(ended.id).done, 1u);
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (entries.at(flying.id).state != CampaignState::kFlying && std::chrono::steady_clock::now() < deadline)
+    there.Step();
+  EXPECT_EQ(there.View(flying.id).progress.done, 1u);
+  EXPECT_EQ(there.View(flying.id).progress.waiting, 3u);
+  EXPECT_THAT(ResultFolder::Open(there.catalogue().ResultsOf(flying.id)).PresentCases(), ElementsAre(0));
+  EXPECT_EQ(there.catalogue().TextOf(ended.id), ended.canonical_yaml);
+}
+
+// Of what was deleted while it was copied, nothing is left.
+TEST_F(Fetching, ABackupLeavesOutWhatIsDeletedMeanwhileAndEndsForAnythingElse) {
+  const std::string id(64, 'a');
+  for (const bool is_deleted : {true, false}) {
+    MadeUpCoordinator coordinator;
+    coordinator.Answers("ids", {{"ids", {id}}, {"more", false}});
+    coordinator.Answers("files",
+                        {{"id", id}, {"state_json", "{}"}, {"text_size", 9}, {"files", Json::array()}});
+    if (is_deleted) coordinator.Answers("files", {{"id", ""}, {"files", Json::array()}});
+    coordinator.Refuses("read", 2, "no such campaign");
+    if (is_deleted) {
+      coordinator.Refuses("list", 2, "no campaign, or more than one, has the id");
+    } else {
+      coordinator.Answers("list", Listed(4, nullptr));
+    }
+    Session session = coordinator.Connect();
+    std::uint64_t campaigns = 9;
+    const std::string failure = FailureOf([&] { campaigns = BackUp(session, Target().string()); });
+    EXPECT_EQ(failure, is_deleted ? "none" : "2: no such campaign");
+    if (is_deleted) {
+      EXPECT_EQ(campaigns, 0u);
+      EXPECT_TRUE(fs::is_empty(Target()));
+      fs::remove_all(Target());
+    }
+  }
 }
 
 // Rows that somebody removed by hand are missed before they are handed out.

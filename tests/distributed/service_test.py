@@ -5,6 +5,7 @@ Environment as of processes.py.
 import json
 import signal
 import socket
+import sqlite3
 import subprocess
 import time
 
@@ -79,6 +80,27 @@ class ServiceTest(ServiceCase):
     def code_of(self, identity):
         wait_for(lambda: self.status(identity)["code"] is not None, "the end of a campaign")
         return self.status(identity)["code"]
+
+    def test_another_coordinator_takes_over_on_a_backup(self):
+        coordinator = self.start_coordinator()
+        self.start_worker("--slots", 2)
+        identity = self.dispersa("launch", CAMPAIGN, "--cases", CASES).strip()
+        wait_for(lambda: stored(self.data / identity / "results") > 0, "first results")
+        backup = self.data.parent / "backup"
+        self.assertEqual(self.dispersa("backup", backup), f"backup of 1 campaigns: {backup}\n")
+        coordinator.kill()
+        coordinator.wait()
+        lost = self.data
+        flown_before = stored(backup / identity / "results")
+        self.assertLess(flown_before, CASES)
+        self.data = backup
+        self.start_coordinator()
+        self.dispersa("watch", identity, code=self.reference.code)
+        self.assert_same_folder(identity, self.reference)
+        self.assertGreater(int((backup / "epoch").read_text()), int((lost / "epoch").read_text()))
+        with sqlite3.connect(f"file:{backup / identity / 'results'}/results.sqlite?mode=ro", uri=True) as database:
+            self.assertEqual(database.execute("SELECT count(DISTINCT worker) FROM execution").fetchone(), (1,),
+                             "the worker stays and follows")
 
     def test_cancel_keeps_what_was_flown_and_launch_goes_on(self):
         self.start_coordinator()
