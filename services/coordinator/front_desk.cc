@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <span>
 #include <vector>
 
@@ -15,6 +14,7 @@
 #include "core/cases/plugin_check.h"
 #include "core/results/json_number.h"
 #include "services/coordinator/dump_any_text.h"
+#include "services/coordinator/packed_files.h"
 #include "services/program/exit_code.h"
 #include "services/transport/permissions.h"
 #include "services/transport/validity.h"
@@ -36,22 +36,6 @@ constexpr std::size_t kMaxAnswer = 512 << 10;  // bytes
 constexpr std::size_t kMaxIds = 1000;
 constexpr std::size_t kFilePart = 256 << 10;
 constexpr char kDatabase[] = "results.sqlite";
-
-/// Files of a result folder that a client may have, by path within it.
-std::vector<fs::path> FilesIn(const fs::path& directory) {
-  std::vector<fs::path> files;
-  if (!fs::is_directory(directory)) return files;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(directory)) {
-    const std::string name = entry.path().filename().string();
-    if (entry.is_symlink() || !entry.is_regular_file() || name.ends_with(".tmp") || name.ends_with("-wal") ||
-        name.ends_with("-shm")) {
-      continue;
-    }
-    files.push_back(entry.path().lexically_relative(directory));
-  }
-  std::sort(files.begin(), files.end());
-  return files;
-}
 
 CatalogueEntry Parse(const std::string& text, std::uint64_t max_cases) {
   const Campaign campaign = ParseCampaign(text, "campaign");
@@ -381,7 +365,7 @@ std::string FrontDesk::Files(const std::string& arguments) {
   Json files = Json::array();
   for (const fs::path& file : FilesIn(directory)) {
     const fs::path source = file == kDatabase ? *database : directory / file;
-    files.push_back({{"path", file.generic_string()}, {"size", fs::file_size(source)}});
+    files.push_back({{"path", file.generic_string()}, {"size", SizeOf(source)}});
   }
   return Json{{"id", entry.id}, {"code", entry.code}, {"done", entry.done}, {"files", std::move(files)}}
       .dump();
@@ -404,7 +388,7 @@ std::string FrontDesk::Snapshot(const CatalogueEntry& entry, const std::string& 
   if (snapshot.name != name) {
     snapshot = {name, service_.catalogue().StateTextOf(entry.id), {}};
     if (service_.IsAtRest(entry.id)) {
-      snapshot.files = FilesIn(directory);
+      snapshot.files = StoredFilesIn(directory);
     } else if (fs::exists(directory / kDatabase)) {
       snapshot.files = {"campaign.yaml", kDatabase};
     }
@@ -457,11 +441,7 @@ std::string FrontDesk::Read(const std::string& arguments, std::string* data) {
   const fs::path source = id.empty()         ? service_.JournalAt(path)
                           : snapshot.empty() ? FindInResults(Named(id), path)
                                              : FindInSnapshot(Named(id), snapshot, path);
-  std::ifstream stream(source, std::ios::binary);
-  data->resize(kFilePart);
-  stream.seekg(static_cast<std::streamoff>(offset));
-  stream.read(data->data(), static_cast<std::streamsize>(data->size()));
-  data->resize(static_cast<std::size_t>(std::max<std::streamsize>(stream.gcount(), 0)));
+  *data = ReadPart(source, offset, kFilePart);
   return "{}";
 }
 

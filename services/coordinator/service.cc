@@ -18,6 +18,7 @@
 #include "core/results/output_file.h"
 #include "services/coordinator/dump_any_text.h"
 #include "services/coordinator/epoch.h"
+#include "services/coordinator/packed_files.h"
 #include "services/ledger/open_book.h"
 #include "services/log/log.h"
 #include "services/program/exit_code.h"
@@ -61,6 +62,15 @@ std::uint64_t BytesIn(const std::filesystem::path& folder) {
     if (const auto size = entry->file_size(unsized); !unsized) bytes += size;
   }
   return bytes;
+}
+
+// What is not packed is read all the same.
+void TryToPack(const std::filesystem::path& results) {
+  try {
+    PackReports(results);
+  } catch (const std::exception& error) {
+    LogWarning("{}: its reports are not compressed: {}", results.string(), error.what());
+  }
 }
 
 std::string Waiting(const std::string& problem) { return problem + "; it goes on when there is space"; }
@@ -168,7 +178,9 @@ void Service::StartReport() {
           };
           ResultFolder folder = ResultFolder::Open(results);
           folder.Lock();
-          return WriteReports(folder, ParseCampaign(text, name), options).verdict;
+          const CampaignVerdict verdict = WriteReports(folder, ParseCampaign(text, name), options).verdict;
+          TryToPack(results);
+          return verdict;
         });
   } catch (...) {
     reporting_.reset();

@@ -12,6 +12,7 @@
 #include "core/results/database.h"
 #include "made_up_service.h"
 #include "services/coordinator/epoch.h"
+#include "services/coordinator/packed_files.h"
 
 namespace dispersa::remote_campaign_test {
 namespace {
@@ -266,6 +267,39 @@ TEST_F(RemoteCampaign, IsLaunchedFollowedAndFetched) {
   for (const char* file : {"campaign.yaml", "results.sqlite", "histories/large.csv"}) {
     EXPECT_TRUE(TextOfFile(fetched.directory / file) == TextOfFile(results / file)) << file;
   }
+}
+
+// What takes most of the disk is compressed there; who fetches it sees nothing of that.
+TEST_F(RemoteCampaign, ReportsAreStoredPackedAndFetchedPlain) {
+  const Campaign campaign = Smoke(2);
+  Launch(campaign);
+  ASSERT_TRUE(Reaches(campaign.id, CampaignState::kFlying));
+  session_.Ask("cancel", {{"id", campaign.id}});
+  const fs::path results = service_->catalogue().ResultsOf(campaign.id);
+  fs::create_directories(results / "histories");
+  std::string history = "time_s\n";
+  while (history.size() < 600'000) history += std::to_string(history.size()) + "\n";
+  for (const char* file : {"histories/nominal.csv", "histories/case_1.csv", "report.html", "summary.json"})
+    std::ofstream(results / file, std::ios::binary) << history;
+  PackReports(results);
+  PackReports(results);  // again: nothing
+  for (const char* file : {"histories/nominal.csv", "histories/case_1.csv", "report.html"}) {
+    EXPECT_FALSE(fs::exists(results / file)) << file;
+    EXPECT_LT(fs::file_size(results / (std::string(file) + ".gz")), history.size() / 2) << file;
+    EXPECT_EQ(SizeOf(results / file), history.size());
+  }
+  EXPECT_TRUE(fs::exists(results / "summary.json"));
+  std::ofstream(results / "report.html", std::ios::binary) << "of a process that was killed";
+  const FetchedCampaign fetched = FetchCampaign(session_, campaign.id, (folder_ / "fetched").string());
+  for (const char* file : {"histories/nominal.csv", "histories/case_1.csv", "summary.json"})
+    EXPECT_TRUE(TextOfFile(fetched.directory / file) == history) << file;
+  EXPECT_EQ(TextOfFile(fetched.directory / "report.html"), "of a process that was killed");
+  EXPECT_FALSE(fs::exists(fetched.directory / "report.html.gz"));
+  EXPECT_EQ(ReadPart(results / "histories/nominal.csv", history.size(), 10), "");
+  EXPECT_EQ(ReadPart(results / "histories/nominal.csv", 7, 4), history.substr(7, 4));
+  BackUp(session_, (folder_ / "backup").string());
+  EXPECT_TRUE(fs::exists(folder_ / "backup" / campaign.id / "results/histories/nominal.csv.gz"));
+  EXPECT_EQ(SizeOf(folder_ / "backup" / campaign.id / "results/histories/nominal.csv"), history.size());
 }
 
 // As long as a reader has it open, SQLite leaves the last transactions beside the database.

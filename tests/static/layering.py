@@ -16,6 +16,7 @@ OWNED = [
     (r"hdf5", {"results"}),
     (r"(seccomp\.h|linux/landlock\.h)", {"containment"}),
     (r"sqlite3\.h", {"results"}),
+    (r"zlib\.h", {"coordinator"}),
     (r"CLI/", {"program", "cli", "coordinator", "worker"}),
     (r"(pybind11/|Python\.h)", {"python"}),
 ]

@@ -1,0 +1,26 @@
+// Result folders of a coordinator. Their texts that only people and plots read are kept compressed.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace dispersa {
+
+/// Compresses the histories and the page of a campaign that has its report: file X becomes X.gz. A killed
+/// process leaves both or one of them. Throws ResultError; then the rest stays as it was.
+void PackReports(const std::filesystem::path& results);
+
+/// Files of a result folder that a client may have, by path within it. X.gz is listed as X.
+std::vector<std::filesystem::path> FilesIn(const std::filesystem::path& results);
+/// The same files as they lie on the disk: X.gz is X.gz.
+std::vector<std::filesystem::path> StoredFilesIn(const std::filesystem::path& results);
+
+/// Of a file by its path, packed or not: the size of its text. Throws ResultError.
+std::uint64_t SizeOf(const std::filesystem::path& file);
+/// At most `most` bytes of its text from `offset`; none at its end. Throws ResultError.
+std::string ReadPart(const std::filesystem::path& file, std::uint64_t offset, std::size_t most);
+
+}  // namespace dispersa
