@@ -66,11 +66,27 @@ std::vector<std::size_t> MetricsOf(Database& database, std::size_t stages) {
   return metrics;
 }
 
-/// Younger than other tables: a folder may lack it.
-void CreateAudits(Database& database) {
+/// Of the tables, as SQLite's user_version. 1 (stored as 0): without `audits`. 2: with it.
+constexpr int kVersion = 2;
+
+int VersionOf(const Database& database) {
+  Statement select(database, "PRAGMA user_version");
+  return select.Step() ? std::max(1, static_cast<int>(select.Integer(0))) : 1;
+}
+
+void RefuseNewer(const Database& database, const fs::path& directory) {
+  const int version = VersionOf(database);
+  if (version <= kVersion) return;
+  throw InputError(fmt::format("{}: written by a newer dispersa: its {} has version {}, this one reads {}",
+                               directory.string(), kDatabaseName, version, kVersion));
+}
+
+/// What versions after the first one have besides. Again: nothing.
+void Upgrade(Database& database) {
   database.Execute(
       "CREATE TABLE IF NOT EXISTS audits (case_index INTEGER NOT NULL, worker TEXT NOT NULL, "
       "PRIMARY KEY (case_index, worker))");
+  database.Execute(fmt::format("PRAGMA user_version = {}", kVersion));
 }
 
 void CreateTables(Database& database, const Campaign& campaign) {
@@ -84,10 +100,10 @@ void CreateTables(Database& database, const Campaign& campaign) {
   database.Execute(
       "CREATE TABLE execution (case_index INTEGER NOT NULL, worker TEXT NOT NULL, host TEXT NOT NULL, "
       "started_utc TEXT NOT NULL, seconds REAL)");
-  CreateAudits(database);
   database.Execute(
       "CREATE TABLE looks (requirements_id TEXT NOT NULL, requirement TEXT NOT NULL, n INTEGER NOT NULL, "
       "failures INTEGER NOT NULL, verdict TEXT NOT NULL, PRIMARY KEY (requirements_id, requirement, n))");
+  Upgrade(database);
 }
 
 /// `register_plan`: no case has been flown, so that the requirements and the number of cases are the plan.
@@ -237,6 +253,7 @@ ResultFolder ResultFolder::Open(const fs::path& directory) {
   }
   ResultFolder folder(directory,
                       std::make_unique<Database>(directory / kDatabaseName, Database::Mode::kExisting));
+  RefuseNewer(*folder.database_, directory);
   std::string schema;
   try {
     schema = folder.Provenance("schema");
@@ -275,7 +292,7 @@ ResultFolder ResultFolder::Resume(const fs::path& directory, const Campaign& cam
   WriteFile(directory / kCampaignName, campaign.canonical_yaml);
   Transaction transaction(*folder.database_);
   WriteProvenance(*folder.database_, campaign, present.empty());
-  CreateAudits(*folder.database_);
+  Upgrade(*folder.database_);
   folder.RemoveDamaged();
   transaction.Commit();
   return folder;

@@ -37,7 +37,8 @@ std::string Deflated(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   z_stream deflate{};
   constexpr int kGzipHeader = 15 + 16, kMemory = 8;
-  if (!stream || deflateInit2(&deflate, Z_BEST_SPEED, Z_DEFLATED, kGzipHeader, kMemory, Z_DEFAULT_STRATEGY) != Z_OK)
+  if (!stream ||
+      deflateInit2(&deflate, Z_BEST_SPEED, Z_DEFLATED, kGzipHeader, kMemory, Z_DEFAULT_STRATEGY) != Z_OK)
     FailRead(file);
   const std::unique_ptr<z_stream, int (*)(z_stream*)> end(&deflate, deflateEnd);
   std::string packed;

@@ -286,6 +286,40 @@ TEST(ResultFolder, IsWrittenByOneProcessAtATime) {
   EXPECT_EQ(MessageOf<InputError>([&] { FolderLock again(temporary / "out"); }), busy);
 }
 
+// As the release before wrote it: without a version and the table of audits.
+TEST(ResultFolder, AFolderOfTheFirstVersionIsReadAndBecomesOneOfTodayWhenItGoesOn) {
+  TemporaryFolder temporary;
+  const fs::path database = temporary / "out" / "results.sqlite";
+  {
+    ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(3));
+    folder.Append({{MakeCase(0), MakeCase(2)}});
+  }
+  Database(database, Database::Mode::kExisting).Execute("DROP TABLE audits; PRAGMA user_version = 0");
+  EXPECT_THAT(ResultFolder::Open(temporary / "out").PresentCases(), ElementsAre(0, 2));
+  {
+    ResultFolder folder = ResultFolder::Resume(temporary / "out", MakeCampaign(3));
+    EXPECT_THAT(folder.PresentCases(), ElementsAre(0, 2));
+    folder.AppendAudits({{Claim{"w", 0, MakeCase(0).digest, false}}});
+  }
+  const Database today(database, Database::Mode::kExisting);
+  Statement version(today, "PRAGMA user_version");
+  ASSERT_TRUE(version.Step());
+  EXPECT_EQ(version.Integer(0), 2);
+  EXPECT_THAT(ResultFolder::Resume(temporary / "out", MakeCampaign(3)).PresentCases(), ElementsAre(0, 2));
+}
+
+TEST(ResultFolder, AFolderOfALaterVersionIsLeftAlone) {
+  TemporaryFolder temporary;
+  ResultFolder::Create(temporary / "out", MakeCampaign(3));
+  Database(temporary / "out" / "results.sqlite", Database::Mode::kExisting)
+      .Execute("PRAGMA user_version = 3");
+  const std::string error =
+      (temporary / "out").string() +
+      ": written by a newer dispersa: its results.sqlite has version 3, this one reads 2";
+  EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Open(temporary / "out"); }), error);
+  EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Resume(temporary / "out", MakeCampaign(3)); }), error);
+}
+
 TEST(ResultFolder, TellsADamagedRowAndRemovesItToBeFlownAgain) {
   const std::string metric = "metric_" + MetricNames()[0];
   for (const std::string& damage :
