@@ -21,7 +21,11 @@ Peer ParsePeer(const std::string& text, int domain) {
   return peer;
 }
 
-std::uint16_t CoordinatorPort(int domain) { return static_cast<std::uint16_t>(7400 + 250 * domain + 5); }
+std::uint16_t PortOf(int domain, int offset) {
+  return static_cast<std::uint16_t>(7400 + 250 * domain + offset);
+}
+
+std::uint16_t CoordinatorPort(int domain) { return PortOf(domain, 5); }
 
 std::uint16_t StatusPort(int domain) { return static_cast<std::uint16_t>(CoordinatorPort(domain) + 1); }
 

@@ -29,6 +29,8 @@ struct NetworkOptions {
   std::optional<Secret> secret = {};
 };
 
+/// UDP ports of a domain: 7400 + 250 * domain + offset, 0 to 249.
+std::uint16_t PortOf(int domain, int offset);
 /// The fixed port at which the coordinator of a domain is discovered: 7400 + 250 * domain + 5. No participant
 /// without a fixed port takes it.
 std::uint16_t CoordinatorPort(int domain);

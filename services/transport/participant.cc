@@ -25,6 +25,8 @@ namespace rtps = eprosima::fastrtps::rtps;
 
 constexpr std::uint32_t kReceiveBuffer = 4 << 20;
 constexpr std::uint32_t kSendBuffer = 1 << 20;
+// Of a domain's ports those that ordinary participants take: even ones for discovery, odd ones for the rest.
+constexpr int kFirstPort = 10, kLastPort = 249;
 
 class LogToSpdlog : public dds::LogConsumer {
  public:
@@ -110,9 +112,16 @@ dds::DomainParticipantQos MakeQos(const ParticipantOptions& options) {
   builtin.discovery_config.leaseDuration = eprosima::fastrtps::Duration_t(5, 0);
   builtin.discovery_config.leaseDuration_announcementperiod = eprosima::fastrtps::Duration_t(1, 0);
   // Own locators instead of the default ones, which include multicast: discovery is by peers alone, and
-  // nothing leaves the interface that was asked for. Port 0 is whatever is free.
+  // nothing leaves the interface that was asked for. Explicit ports: of its own Fast DDS tries a hundred and
+  // then hears nothing, so that no more participants than that had room on a host.
   const std::string own = address.empty() ? "0.0.0.0" : address;
-  builtin.metatrafficUnicastLocatorList.push_back(MakeLocator(own, options.discovery_port.value_or(0)));
+  const int domain = options.network.domain;
+  const auto free_port = [&](int first) {
+    return FreeUdpPort(address, PortOf(domain, first), PortOf(domain, kLastPort));
+  };
+  const std::uint16_t discovery = options.discovery_port ? *options.discovery_port : free_port(kFirstPort);
+  builtin.metatrafficUnicastLocatorList.push_back(MakeLocator(own, discovery));
+  qos.wire_protocol().default_unicast_locator_list.push_back(MakeLocator(own, free_port(kFirstPort + 1)));
   for (const Peer& peer : options.peers) {
     builtin.initialPeersList.push_back(MakeLocator(Resolve(peer.host), peer.port));
   }

@@ -1,4 +1,4 @@
-// A check that a fixed port is free: Fast DDS moves on to another port if one is occupied.
+// UDP ports that are free. Fast DDS tries a hundred ports if one is occupied, and then hears nothing.
 #pragma once
 
 #include <cstdint>
@@ -8,5 +8,9 @@ namespace dispersa {
 
 /// Whether a UDP socket can be bound there. Empty address: any interface.
 bool IsUdpPortFree(const std::string& address, std::uint16_t port);
+
+/// The first free port of `first`, `first` + 2, ... up to `last`; if all of them are taken, any free port of
+/// the system, with a warning. Throws NetworkError if there is none.
+std::uint16_t FreeUdpPort(const std::string& address, std::uint16_t first, std::uint16_t last);
 
 }  // namespace dispersa

@@ -289,7 +289,7 @@ TEST(ResultFolder, IsWrittenByOneProcessAtATime) {
 // As the release before wrote it: without a version and the table of audits.
 TEST(ResultFolder, AFolderOfTheFirstVersionIsReadAndBecomesOneOfTodayWhenItGoesOn) {
   TemporaryFolder temporary;
-  const fs::path database = temporary / "out" / "results.sqlite";
+  const std::filesystem::path database = temporary / "out" / "results.sqlite";
   {
     ResultFolder folder = ResultFolder::Create(temporary / "out", MakeCampaign(3));
     folder.Append({{MakeCase(0), MakeCase(2)}});
