@@ -1,10 +1,12 @@
 #include "core/campaign_yaml/decode_campaign.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include "core/campaign/case_result.h"
 #include "core/campaign/dispersion_fields.h"
+#include "core/campaign/plausible_dispersions.h"
 #include "core/campaign_yaml/campaign_ids.h"
 #include "core/campaign_yaml/decode.h"
 #include "core/campaign_yaml/inline_files.h"
@@ -15,6 +17,7 @@
 #include "core/input/field_reader.h"
 #include "core/input/number_text.h"
 #include "core/input/struct_problems.h"
+#include "core/math/constants.h"
 
 namespace dispersa {
 namespace {
@@ -178,6 +181,12 @@ class CampaignDescription {
              "thrusters fire for whole ticks of " + FormatRounded(campaign_.autopilot.tick_s) +
                  " s, which is longer than they have to",
              "at least a tick of the autopilot");
+    const Part whole{root_, ""};
+    for (const UnusualDispersion& unusual : UnusualDispersions(campaign_)) {
+      WarnOf(whole, "dispersions." + unusual.key, unusual.message, unusual.allowed);
+      warnings_->back().unusual = true;
+    }
+    if (decoded_.optimize) WarnOfInclination(*decoded_.optimize);
     if (reference_.node == nullptr) return;
     if (!campaign_.reference.target_missed.empty())
       WarnOf(reference_, "target_missed",
@@ -197,6 +206,20 @@ class CampaignDescription {
     const InputNode& at = FindField(*part.node, key, &path);
     AddProblem(*warnings_, at, part.path.empty() || path.empty() ? part.path + path : part.path + "." + path,
                message, allowed);
+  }
+
+  // A launch due east has the inclination of its latitude.
+  void WarnOfInclination(const TrajectoryProblem& problem) {
+    const double latitude_rad = std::fabs(campaign_.vehicle.site.latitude_rad);
+    if (!problem.target_inclination_rad) return;
+    const double least_rad = std::min(*problem.target_inclination_rad, kPi - *problem.target_inclination_rad);
+    constexpr double kTurned_rad = 0.5 * kRadPerDeg;
+    if (least_rad >= latitude_rad - kTurned_rad) return;
+    WarnOf(optimize_, "target.inclination_deg",
+           "no launch from a latitude of " + FormatRounded(latitude_rad * kDegPerRad) +
+               " deg comes to this inclination without turning its plane",
+           "from " + FormatRounded(latitude_rad * kDegPerRad) + " to " +
+               FormatRounded((kPi - latitude_rad) * kDegPerRad) + " deg");
   }
 
   void DescribeTrajectory(Fields& fields) {

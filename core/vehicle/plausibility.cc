@@ -30,9 +30,11 @@ struct Subject {
   const Vehicle& vehicle;
   const std::vector<StageFigures>& figures;
   std::size_t index = 0;
-  std::size_t part = 0;  ///< tank of the stage
+  std::size_t part = 0;  ///< tank, or body jettisoned, of the stage
 
   const Tank& tank() const { return stage().tanks[part]; }
+  const Jettison& jettison() const { return stage().jettisoned[part]; }
+  const AeroTable& table() const { return vehicle.aerodynamics[index]; }
   const Stage& stage() const { return vehicle.stages[index]; }
   const StageFigures& figure() const { return figures[index]; }
   std::size_t last_burn() const {
@@ -196,6 +198,30 @@ constexpr Check kStageChecks[] = {
      {1.0, 15.0},
      "the Space Shuttle's boosters 8 deg, its main engines 10.5 deg",
      [](const Subject& s) { return s.stage().gimbal.limit_rad * kDegPerRad; }},
+    {"gimbal.bandwidth_rad_s",
+     "is",
+     "rad/s",
+     {1.0, 2000.0},
+     {6.0, 250.0},
+     "actuators of nozzles have 2 to 20 Hz; slower ones hold no launcher that the air turns over",
+     [](const Subject& s) { return s.stage().gimbal.bandwidth_rad_s; }},
+    {"gimbal.rate_limit_rad_s",
+     "lets a nozzle turn at",
+     "deg/s",
+     {0.1, 1000.0},
+     {2.0, 120.0},
+     "the Space Shuttle's main engines 10 deg/s, small electric actuators to 60 deg/s",
+     [](const Subject& s) { return s.stage().gimbal.rate_limit_rad_s * kDegPerRad; }},
+    {"motor.liquid.cut_off.velocity_m_s",
+     "is, as an inertial speed,",
+     "m/s",
+     {500.0, 17000.0},
+     {1500.0, 12500.0},
+     "a site on the equator moves at 465 m/s, a circle at 200 km has 7784 m/s, escape from there 11,008 m/s",
+     [](const Subject& s) {
+       return s.stage().motor.cut_off == CutOff::kAtVelocity ? s.stage().motor.cut_off_velocity_m_s
+                                                             : kNothing;
+     }},
     {"gimbal.radius_m",
      "is, as part of half the stage's diameter_m,",
      "",
@@ -205,6 +231,201 @@ constexpr Check kStageChecks[] = {
      [](const Subject& s) {
        if (!s.stage().gimbal.nozzles.empty()) return kNothing;
        return s.stage().gimbal.radius_m / (0.5 * s.stage().diameter_m);
+     }},
+};
+
+// Of what a stage jettisons.
+constexpr Check kJettisonChecks[] = {
+    {"at.time_s",
+     "comes",
+     "s after lift-off",
+     kAnything,
+     {60.0, 1000.0},
+     "fairings leave 150 to 300 s after lift-off, above 100 km; sooner the payload meets the air",
+     [](const Subject& s) {
+       return s.jettison().trigger == JettisonTrigger::kAtTime ? s.jettison().threshold : kNothing;
+     }},
+    {"at.altitude_m",
+     "comes at",
+     "km",
+     kAnything,
+     {60.0, 200.0},
+     "fairings leave at 100 to 140 km; a flight may never come higher than its orbit",
+     [](const Subject& s) {
+       return s.jettison().trigger == JettisonTrigger::kAtAltitude ? s.jettison().threshold / 1e3 : kNothing;
+     }},
+    {"at.heat_flux_w_m2",
+     "waits for a free-molecular heating of",
+     "W/m2",
+     kAnything,
+     {10.0, 10000.0},
+     "1135 W/m2 of the user's manuals of Ariane 5, Vega and others",
+     [](const Subject& s) {
+       return s.jettison().trigger == JettisonTrigger::kAtHeatFlux ? s.jettison().threshold : kNothing;
+     }},
+};
+
+// The value of a table, at an incidence that it has, over Mach number: the one farthest from a value.
+double Farthest(const AeroTable& table, const std::vector<double>& values, std::size_t incidence,
+                double from) {
+  double farthest = from;
+  for (std::size_t m = 0; m < table.mach.size(); ++m) {
+    const double value = values[m * table.incidence_rad.size() + incidence];
+    if (std::fabs(value - from) > std::fabs(farthest - from)) farthest = value;
+  }
+  return farthest;
+}
+// The slope of the normal force from 0 to the first incidence of the table, or to 2 degrees if that is
+// nearer.
+double NormalSlope(const AeroTable& table, bool of_largest) {
+  if (table.incidence_rad.size() < 2 || table.incidence_rad[0] != 0.0) return kNothing;
+  double found = kNothing;
+  for (std::size_t m = 0; m < table.mach.size(); ++m) {
+    const double* row = table.cn.data() + m * table.incidence_rad.size();
+    const double slope = (row[1] - row[0]) / table.incidence_rad[1];
+    if (std::isnan(found) || (of_largest ? slope > found : slope < found)) found = slope;
+  }
+  return found;
+}
+
+// Of incidences up to 10 degrees: further on, and tail first, a body may be pulled forwards.
+double LeastAxial(const AeroTable& table) {
+  constexpr double kSmall_rad = 10.0 * kRadPerDeg;
+  double least = kAny;
+  for (std::size_t i = 0; i < table.incidence_rad.size(); ++i) {
+    if (i > 0 && table.incidence_rad[i] > kSmall_rad) break;
+    for (std::size_t m = 0; m < table.mach.size(); ++m)
+      least = std::min(least, table.ca[m * table.incidence_rad.size() + i]);
+  }
+  return least;
+}
+
+// Of the aerodynamic table of each stack.
+constexpr Check kAeroChecks[] = {
+    {"reference_area_m2",
+     "is the cross-section of the stack's lowest stage times",
+     "",
+     kAnything,
+     {0.3, 4.0},
+     "the usual reference is the cross-section",
+     [](const Subject& s) {
+       return s.table().reference_area_m2 / (0.25 * kPi * Square(s.stage().diameter_m));
+     }},
+    {"reference_length_m",
+     "is the diameter of the stack's lowest stage times",
+     "",
+     kAnything,
+     {0.5, 2.0},
+     "the usual reference is the diameter; with the length dampings are many times as large",
+     [](const Subject& s) { return s.table().reference_length_m / s.stage().diameter_m; }},
+    {"table.mach",
+     "begin at",
+     "",
+     kAnything,
+     {0.0, 0.9},
+     "a launcher is at rest before it flies; below the first one its values hold",
+     [](const Subject& s) { return s.index == 0 ? s.table().mach.front() : kNothing; }},
+    {"table.mach",
+     "end at",
+     "",
+     kAnything,
+     {2.0, kAny},
+     "a first stage burns out at Mach 4 to 10; above the last one its values hold",
+     [](const Subject& s) { return s.index == 0 ? s.table().mach.back() : kNothing; }},
+    {"table.incidence_deg",
+     "ends at",
+     "deg",
+     kAnything,
+     {5.0, 180.0},
+     "dispersed flights meet 5 to 10 deg; a range to 3.14 may be in radians",
+     [](const Subject& s) { return s.table().incidence_rad.back() * kDegPerRad; }},
+    {"table.ca",
+     "is at least",
+     "",
+     {0.0, kAny},
+     {0.02, kAny},
+     "the air resists; skin friction alone gives 0.05 to 0.1",
+     [](const Subject& s) { return LeastAxial(s.table()); }},
+    {"table.ca",
+     "is at most, at the smallest incidence,",
+     "",
+     {0.0, 20.0},
+     {0.0, 2.0},
+     "0.2 to 1.2 of launchers, about 1.5 of a blunt face",
+     [](const Subject& s) { return Farthest(s.table(), s.table().ca, 0, 0.0); }},
+    {"table.cn",
+     "is at an incidence of 0",
+     "",
+     {-0.05, 0.05},
+     {-0.001, 0.001},
+     "a body of revolution has no normal force there: incidence is the total angle between axis and flow",
+     [](const Subject& s) {
+       return s.table().incidence_rad[0] == 0.0 ? Farthest(s.table(), s.table().cn, 0, 0.0) : kNothing;
+     }},
+    {"table.cn",
+     "rises from an incidence of 0 by at least",
+     "a radian",
+     {0.0, kAny},
+     {0.5, kAny},
+     "2 by slender-body theory",
+     [](const Subject& s) { return NormalSlope(s.table(), false); }},
+    {"table.cn",
+     "rises from an incidence of 0 by at most",
+     "a radian",
+     {0.0, 500.0},
+     {0.0, 40.0},
+     "2 to 4 of bodies, to 30 of finned rockets on their cross-section; 57 times as much has radians under "
+     "degrees",
+     [](const Subject& s) { return NormalSlope(s.table(), true); }},
+    {"table.xcp_station_m",
+     "lies, as part of the stack's length, at most",
+     "",
+     {0.0, 2.0},
+     {0.0, 1.0},
+     "the air presses on the body",
+     [](const Subject& s) {
+       const std::vector<double>& xcp_m = s.table().xcp_station_m;
+       return *std::max_element(xcp_m.begin(), xcp_m.end()) / s.stage().bottom_station_m;
+     }},
+    {"table.xcp_station_m",
+     "lies, as part of the stack's length, at least",
+     "",
+     {-1.0, 2.0},
+     {0.0, 1.0},
+     "the air presses on the body",
+     [](const Subject& s) {
+       const std::vector<double>& xcp_m = s.table().xcp_station_m;
+       return *std::min_element(xcp_m.begin(), xcp_m.end()) / s.stage().bottom_station_m;
+     }},
+    {"table.cmq_per_rad",
+     "is at most",
+     "",
+     {-kAny, 0.0},
+     {-kAny, 0.0},
+     "the air takes from a turning body; above 0 it drives it",
+     [](const Subject& s) {
+       const std::vector<double>& cmq = s.table().cmq_per_rad;
+       return *std::max_element(cmq.begin(), cmq.end());
+     }},
+    {"table.cmq_per_rad",
+     "is at least",
+     "",
+     {-1e6, kAny},
+     {-10000.0, kAny},
+     "slender-body theory gives with the length L and the diameter d about -(L/d)²: -400 of a fineness of 20",
+     [](const Subject& s) {
+       const std::vector<double>& cmq = s.table().cmq_per_rad;
+       return *std::min_element(cmq.begin(), cmq.end());
+     }},
+    {"table.clp_per_rad",
+     "is at most",
+     "",
+     {-kAny, 0.0},
+     {-kAny, 0.0},
+     "the air takes from a rolling body; above 0 it drives it",
+     [](const Subject& s) {
+       const std::vector<double>& clp = s.table().clp_per_rad;
+       return *std::max_element(clp.begin(), clp.end());
      }},
 };
 
@@ -259,6 +480,40 @@ constexpr Check kGyroChecks[] = {
 };
 
 constexpr Check kVehicleChecks[] = {
+    {"site.latitude_rad",
+     "is",
+     "deg",
+     kAnything,
+     {-42.0, 64.0},
+     "orbital launch sites lie between 39.3 deg south (Mahia) and 62.9 deg north (Plesetsk); latitude and "
+     "longitude "
+     "may have changed places",
+     [](const Subject& s) { return s.vehicle.site.latitude_rad * kDegPerRad; }},
+    {"limits.q_max_pa",
+     "is",
+     "Pa",
+     kAnything,
+     {5000.0, 300000.0},
+     "launchers meet 20,000 to 90,000 Pa",
+     [](const Subject& s) { return s.vehicle.limits.q_max_pa > 0.0 ? s.vehicle.limits.q_max_pa : kNothing; }},
+    {"limits.q_alpha_pa_rad",
+     "is",
+     "Pa rad",
+     kAnything,
+     {200.0, 30000.0},
+     "launchers are limited to 2000 to 7000 Pa rad",
+     [](const Subject& s) {
+       return s.vehicle.limits.q_alpha_pa_rad > 0.0 ? s.vehicle.limits.q_alpha_pa_rad : kNothing;
+     }},
+    {"limits.axial_load_g",
+     "is",
+     "g",
+     kAnything,
+     {2.0, 50.0},
+     "user's manuals of solid launchers state up to 13 g",
+     [](const Subject& s) {
+       return s.vehicle.limits.axial_load_g > 0.0 ? s.vehicle.limits.axial_load_g : kNothing;
+     }},
     {"boosters.propellant_mass_kg",
      "implies with thrust and burning time a specific impulse of",
      "s",
@@ -320,7 +575,7 @@ constexpr Check kVehicleChecks[] = {
     {"reaction_control.thrust_n",
      "turns the last stage in pitch and yaw by",
      "deg/s2",
-     kAnything,
+     {0.0, 1000.0},
      {0.01, 60.0},
      "a rate of 1 deg/s should take neither minutes nor less than a cycle to stop",
      [](const Subject& s) {
@@ -342,7 +597,8 @@ std::string Readable(double value) {
 std::string SpanText(const Span& span, const std::string& unit) {
   const std::string end = unit.empty() ? "" : " " + unit;
   if (!(span.high < kAny)) return Readable(span.low) + end + " or more";
-  if (!(span.low > 0.0)) return "up to " + Readable(span.high) + end;
+  if (!(span.low > -kAny)) return "up to " + Readable(span.high) + end;
+  if (span.low == 0.0) return "up to " + Readable(span.high) + end;
   return Readable(span.low) + " to " + Readable(span.high) + end;
 }
 
@@ -384,9 +640,14 @@ std::vector<PlausibilityFinding> Plausibility(const Vehicle& vehicle) {
     for (std::size_t k = 0; k < vehicle.stages[i].tanks.size(); ++k)
       Apply(kTankChecks, {vehicle, figures, i, k}, "stages" + index + "tanks[" + std::to_string(k) + "].",
             findings);
+    for (std::size_t k = 0; k < vehicle.stages[i].jettisoned.size(); ++k)
+      Apply(kJettisonChecks, {vehicle, figures, i, k},
+            "stages" + index + "jettisoned[" + std::to_string(k) + "].", findings);
     if (vehicle.stages[i].gimbal.nozzle_mass_kg > 0.0)
       Apply(kNozzleChecks, {vehicle, figures, i}, "nozzles" + index, findings);
   }
+  for (std::size_t i = 0; i < vehicle.aerodynamics.size(); ++i)
+    Apply(kAeroChecks, {vehicle, figures, i}, "aerodynamics.tables[" + std::to_string(i) + "].", findings);
   for (std::size_t i = 0; i < vehicle.sensors.rate_gyros.size(); ++i)
     Apply(kGyroChecks, {vehicle, figures, i}, "sensors.rate_gyros[" + std::to_string(i) + "].", findings);
   Apply(kVehicleChecks, {vehicle, figures}, "", findings);

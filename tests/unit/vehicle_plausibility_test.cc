@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/math/constants.h"
 #include "core/vehicle/vehicle_figures.h"
 #include "tests/unit/sample_vehicle.h"
 
@@ -276,6 +277,96 @@ INSTANTIATE_TEST_SUITE_P(
              {"impossible reaction_control.specific_impulse_s is 7000 s, which cannot be | up to 1000 s "
               "(cold gas 40 to 75 "
               "s, hydrazine 220 to 240 s, two propellants to 330 s)"}},
+        Slip{"ThrustFromTheAir",
+             [](Vehicle& v) {
+               v.aerodynamics[0].ca = {-0.3, -0.3, -0.3, -0.3};
+             },
+             {"impossible aerodynamics.tables[0].table.ca is at least -0.3, which cannot be | 0 or more (the "
+              "air "
+              "resists; skin friction alone gives 0.05 to 0.1)",
+              "impossible aerodynamics.tables[0].table.ca is at most, at the smallest incidence, -0.3, which "
+              "cannot "
+              "be | up to 20 (0.2 to 1.2 of launchers, about 1.5 of a blunt face)"}},
+        Slip{"AThousandfoldDrag",
+             [](Vehicle& v) {
+               v.aerodynamics[1].ca = {300.0, 300.0, 300.0, 300.0};
+             },
+             {"impossible aerodynamics.tables[1].table.ca is at most, at the smallest incidence, 300, which "
+              "cannot "
+              "be | up to 20 (0.2 to 1.2 of launchers, about 1.5 of a blunt face)"}},
+        Slip{"LiftWithoutIncidence",
+             [](Vehicle& v) {
+               v.aerodynamics[0].cn = {0.2, 3.0, 0.2, 3.0};
+             },
+             {"impossible aerodynamics.tables[0].table.cn is at an incidence of 0 0.2, which cannot be | "
+              "-0.05 to "
+              "0.05 (a body of revolution has no normal force there: incidence is the total angle between "
+              "axis and "
+              "flow)"}},
+        Slip{"RadiansUnderDegrees",
+             [](Vehicle& v) {
+               v.aerodynamics[0].incidence_rad = {0.0, 0.5 * kRadPerDeg};
+               v.aerodynamics[0].cn = {0.0, 1.5, 0.0, 1.5};
+             },
+             {"unusual aerodynamics.tables[0].table.incidence_deg ends at 0.5 deg | 5 to 180 deg (dispersed "
+              "flights "
+              "meet 5 to 10 deg; a range to 3.14 may be in radians)",
+              "unusual aerodynamics.tables[0].table.cn rises from an incidence of 0 by at most 171.9 a "
+              "radian | up to "
+              "40 a radian (2 to 4 of bodies, to 30 of finned rockets on their cross-section; 57 times as "
+              "much has "
+              "radians under degrees)"}},
+        Slip{"TransonicTableAlone",
+             [](Vehicle& v) {
+               v.aerodynamics[0].mach = {0.95, 1.1};
+             },
+             {"unusual aerodynamics.tables[0].table.mach begin at 0.95 | up to 0.9 (a launcher is at rest "
+              "before it "
+              "flies; below the first one its values hold)",
+              "unusual aerodynamics.tables[0].table.mach end at 1.1 | 2 or more (a first stage burns out at "
+              "Mach 4 to "
+              "10; above the last one its values hold)"}},
+        Slip{"PressureKilometresAft",
+             [](Vehicle& v) {
+               v.aerodynamics[0].xcp_station_m = {4.0, 4.0, 2600.0, 4.0};
+             },
+             {"impossible aerodynamics.tables[0].table.xcp_station_m lies, as part of the stack's length, at "
+              "most "
+              "130, which cannot be | up to 2 (the air presses on the body)"}},
+        Slip{"DampingThatDrives",
+             [](Vehicle& v) {
+               v.aerodynamics[0].cmq_per_rad = {-40.0, 40.0};
+             },
+             {"impossible aerodynamics.tables[0].table.cmq_per_rad is at most 40, which cannot be | up to 0 "
+              "(the air "
+              "takes from a turning body; above 0 it drives it)"}},
+        Slip{
+            "SlowActuator",
+            [](Vehicle& v) { v.stages[0].gimbal.bandwidth_rad_s = 0.3; },
+            {"impossible stages[0].gimbal.bandwidth_rad_s is 0.3 rad/s, which cannot be | 1 to 2000 rad/s "
+             "(actuators of nozzles have 2 to 20 Hz; slower ones hold no launcher that the air turns over)"}},
+        Slip{
+            "LatitudeAndLongitudeSwapped",
+            [](Vehicle& v) { v.site.latitude_rad = -80.6 * kRadPerDeg; },
+            {"unusual site.latitude_rad is -80.6 deg | -42 to 64 deg (orbital launch sites lie between 39.3 "
+             "deg "
+             "south (Mahia) and 62.9 deg north (Plesetsk); latitude and longitude may have changed places)"}},
+        Slip{"PressureLimitOfABreeze",
+             [](Vehicle& v) { v.limits.q_max_pa = 40.0; },
+             {"unusual limits.q_max_pa is 40 Pa | 5000 to 300000 Pa (launchers meet 20,000 to 90,000 Pa)"}},
+        Slip{
+            "FairingThatLeavesInTheAir",
+            [](Vehicle& v) {
+              Jettison fairing;
+              fairing.name = "fairing";
+              fairing.mass_kg = 10.0;
+              fairing.trigger = JettisonTrigger::kAtTime;
+              fairing.threshold = 10.0;
+              v.stages[0].jettisoned = {fairing};
+            },
+            {"unusual stages[0].jettisoned[0].at.time_s comes 10 s after lift-off | 60 to 1000 s after "
+             "lift-off "
+             "(fairings leave 150 to 300 s after lift-off, above 100 km; sooner the payload meets the air)"}},
         Slip{"KilonewtonsOfReactionControl",
              [](Vehicle& v) { v.reaction_control.thrust_n = 20e3; },
              {"unusual reaction_control.thrust_n turns the last stage in pitch and yaw by 369 deg/s2 | "
