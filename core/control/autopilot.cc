@@ -1,6 +1,7 @@
 #include "core/control/autopilot.h"
 
 #include <cmath>
+#include <limits>
 
 #include "core/control/autopilot_step.h"
 #include "core/control/plugin.h"
@@ -9,18 +10,36 @@ namespace dispersa {
 
 namespace {
 
+constexpr double kSameNode = 1e-6;  // of a step: rounding
+
 EffectivenessRows RowsOf(const StageControl& stage) {
   const Table1D& pitch = stage.pitch_effectiveness_1_s2;
   const Table1D& roll = stage.roll_effectiveness_1_s2;
+  const std::size_t rows = pitch.x.size() - 1;
   EffectivenessRows table;
-  table.last = static_cast<int>(pitch.x.size()) - 2;
   table.end_s = pitch.x.back();
-  table.rows_per_s = (table.last + 1) / table.end_s;
-  for (std::size_t i = 0; i + 1 < pitch.x.size(); ++i) {
+  table.buckets_per_s = static_cast<double>(rows) / table.end_s;
+  const auto add = [&](std::size_t i) {
     for (const Table1D* t : {&pitch, &roll}) {
       const double slope = (t->y[i + 1] - t->y[i]) / (t->x[i + 1] - t->x[i]);
       table.rows.insert(table.rows.end(), {t->y[i] - slope * t->x[i], slope});
     }
+  };
+  for (std::size_t i = 0; i < rows; ++i) add(i);
+  add(rows - 1);  // the end itself
+  const double step = table.end_s / static_cast<double>(rows);
+  bool is_even = true;
+  for (std::size_t i = 0; i < rows; ++i)
+    is_even &= std::fabs(pitch.x[i] - step * static_cast<double>(i)) < kSameNode * step;
+  if (is_even) return table;
+  table.row_end_s.assign(pitch.x.begin() + 1, pitch.x.end());
+  table.row_end_s.back() = std::numeric_limits<double>::infinity();
+  int row = 0;
+  for (std::size_t bucket = 0; bucket <= rows; ++bucket) {
+    while (table.row_end_s[static_cast<std::size_t>(row)] * table.buckets_per_s <=
+           static_cast<double>(bucket))
+      ++row;
+    table.first.push_back(row);
   }
   return table;
 }

@@ -21,7 +21,7 @@ inline constexpr int kAxes = 3;
 inline constexpr const char* kAxisNames[kAxes] = {"roll", "pitch", "yaw"};
 
 /// The autopilot's knowledge of a stage from nominal data: angular acceleration per radian of deflection over
-/// the time since ignition, and the limits of the nozzles. Both tables share their evenly spaced arguments.
+/// the time since ignition, and the limits of the nozzles. Both tables share their arguments.
 struct StageControl {
   Table1D pitch_effectiveness_1_s2;  ///< of yaw too
   Table1D roll_effectiveness_1_s2;
@@ -29,14 +29,26 @@ struct StageControl {
 };
 
 /// StageControl's tables as straight pieces: a row has pitch (constant, slope) and roll (constant, slope)
-/// over the time since ignition, held outside [0, end_s].
+/// over the time since ignition, held outside [0, end_s]. Time is cut into equal buckets; unless each is a
+/// row, `first` is the row at the beginning of each.
 struct EffectivenessRows {
   static constexpr int kRowSize = 4;
 
   AlignedRows rows;
-  double rows_per_s = 0.0;
+  double buckets_per_s = 0.0;
   double end_s = 0.0;
-  int last = 0;
+  std::vector<int> first;
+  std::vector<double> row_end_s;  ///< of each row where there is `first`; the last one never ends
+
+  /// The row at a time in [0, end_s].
+  const double* RowAt(double since_ignition_s) const {
+    int row = static_cast<int>(since_ignition_s * buckets_per_s);
+    if (!first.empty()) {
+      row = first.data()[row];
+      while (since_ignition_s >= row_end_s.data()[row]) ++row;
+    }
+    return rows.data() + kRowSize * row;
+  }
 };
 
 /// Shared by all flights.

@@ -61,8 +61,7 @@ DISPERSA_INLINE void Effectiveness(const GimbalLoop<T>& loop, T since_ignition_s
     const EffectivenessRows& table = *loop.effectiveness[lane];
     const double t = Clamp(Lane(since_ignition_s, lane), 0.0, table.end_s);
     Lane(since, lane) = t;
-    const int cell = static_cast<int>(t * table.rows_per_s);
-    row[lane] = table.rows.data() + EffectivenessRows::kRowSize * (cell < table.last ? cell : table.last);
+    row[lane] = table.RowAt(t);
   }
   T c[4];
   LoadFour(row, c);

@@ -99,22 +99,45 @@ unsigned GoneAt(const std::vector<double>& jettison_s, double time_s) {
   return gone;
 }
 
+// So many even ones, and the corners of the thrust's level between them.
+std::vector<double> EffectivenessTimes(const MotorBurn& burn, double duration_s, int even) {
+  std::vector<double> times;
+  for (int i = 0; i < even; ++i) times.push_back(duration_s * i / (even - 1));
+  if (!burn.curve) return times;
+  const std::vector<double>& begin_s = burn.curve->begin_s;
+  for (std::size_t i = 0; i < begin_s.size(); ++i) {
+    const double from_s = begin_s[i] / burn.curve_rate,
+                 to_s = (i + 1 < begin_s.size() ? begin_s[i + 1] : burn.curve->end_s) / burn.curve_rate;
+    times.push_back(from_s);
+    // Where the level that the autopilot takes at least begins or ends.
+    const double from = burn.Fraction(from_s) - kLeastThrustFraction,
+                 to = burn.Fraction(to_s) - kLeastThrustFraction;
+    if ((from < 0.0) != (to < 0.0)) times.push_back(from_s + (to_s - from_s) * from / (from - to));
+  }
+  constexpr double kLeastStep_s = 1e-6;
+  std::sort(times.begin(), times.end());
+  std::vector<double> apart = {0.0};
+  for (const double time_s : times)
+    if (time_s > apart.back() + kLeastStep_s && time_s < duration_s - kLeastStep_s) apart.push_back(time_s);
+  apart.push_back(duration_s);
+  return apart;
+}
+
 }  // namespace
 
 StageControl BuildStageControl(const LauncherPlant& plant, int index, double ignition_s,
                                const std::vector<double>& jettison_s) {
   const LauncherStack& stack = plant.stacks[static_cast<std::size_t>(index)];
   // Under constant thrust the effectiveness changes slowly and smoothly: 33 points follow it to a part in a
-  // thousand. With a thrust curve it follows the curve to a thousandth of the burn; ignition and tail-off
-  // ramps are not in the table. At a jettison it jumps, and the table follows the jump as closely.
+  // thousand. With a thrust curve it has the curve's corners besides; ignition and tail-off ramps are not in
+  // the table. At a jettison it jumps, and the table follows the jump as closely.
   const bool jumps = (index == 0 && plant.boosters) || !plant.jettisons.empty();
   const int points = stack.burn.curve || jumps ? 1025 : 33;
   // A restart of a reference that leaves it nothing: any time at all.
   const double duration_s = std::max(stack.burn.duration_s, 1e-3);
   StageControl control;
   control.limit_rad = stack.gimbal.limit_rad;
-  for (int i = 0; i < points; ++i) {
-    const double since = duration_s * i / (points - 1);
+  for (const double since : EffectivenessTimes(stack.burn, duration_s, points)) {
     unsigned gone = GoneAt(jettison_s, ignition_s + since);
     if (plant.boosters && since > plant.boosters->burn.duration_s + plant.boosters->separation_delay_s)
       gone |= kBoostersGone;

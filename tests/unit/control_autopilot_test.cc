@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <vector>
@@ -164,6 +165,31 @@ TEST(BuildStageControl, IsThrustTimesLeverOverInertia) {
   const double exact = 25e3 * (10.0 - m.cg_station_m) / m.transverse_inertia_kg_m2;
   EXPECT_NEAR(control.pitch_effectiveness_1_s2(0.3), exact, 1e-3 * exact);
   EXPECT_EQ(control.limit_rad, kLimit);
+}
+
+// A curve whose corners lie between the even nodes: a rise of 12 ms, a step within 3 ms and a tail-off
+// through the least level. Both tables have them, and the rows that flights look up are the tables.
+TEST(BuildStageControl, HasTheCornersOfAThrustCurve) {
+  Vehicle vehicle = SampleVehicle();
+  Motor& motor = vehicle.stages[0].motor;
+  motor.thrust_curve = {{0.0, 0.012, 17.3331, 17.3361, 39.0, 41.23}, {0.0, 150e3, 200e3, 120e3, 110e3, 0.0}};
+  motor.thrust_n = motor.thrust_curve.Greatest();
+  motor.burning_time_s = motor.thrust_curve.Impulse() / motor.thrust_n;
+  const LauncherPlant plant = BuildNominalPlant(vehicle);
+  const LauncherStack& stack = plant.stacks[0];
+  const StageControl control = BuildStageControl(plant, 0);
+  const AutopilotModel model = BuildAutopilot(SampleAutopilot(), {control, Effectiveness(1.0, 1.0)}, 0.05);
+  for (int i = 0; i <= 41230; ++i) {
+    const double since = 1e-3 * i;
+    const double thrust =
+        stack.burn.vacuum_thrust_n * std::max(stack.burn.Fraction(since), kLeastThrustFraction);
+    const MassProperties m = stack.mass.At(stack.burn.Propellant(since));
+    const double pitch = 0.5 * thrust * (19.5 - m.cg_station_m) / m.transverse_inertia_kg_m2;
+    ASSERT_NEAR(control.pitch_effectiveness_1_s2(since), pitch, 1e-3 * pitch) << since;
+    const double* row = model.effectiveness[0].RowAt(since);
+    ASSERT_NEAR(row[0] + row[1] * since, control.pitch_effectiveness_1_s2(since), 1e-9) << since;
+    ASSERT_NEAR(row[2] + row[3] * since, control.roll_effectiveness_1_s2(since), 1e-8) << since;
+  }
 }
 
 // Reaction control: deadband 1, switching line e + 0.5 de/dt, closes half-way back.
