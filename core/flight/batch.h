@@ -74,6 +74,7 @@ class Batch {
   void MeasureBySensors(const T* reference);
   Vector<T> GyroRates(Vector<T> unit_rad_s);
   void DriftOn();
+  void AverageNoise();
   void FlyGimbals();
   template <bool kAll>
   void FlyGimbalsOf(M powered);

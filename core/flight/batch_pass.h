@@ -114,6 +114,7 @@ void Batch<T>::MeasureBySensors(const T* reference) {
   }
   if (model_.sensors().uses_gyros) rate = GyroRates(rate);
   if (any_drift_) {
+    AverageNoise();
     unit_.Measure(live_, time_s_, seen);
     Blend<T>(drifts_, unit_.measured, seen);
     DriftOn();
@@ -160,6 +161,23 @@ void Batch<T>::DriftOn() {
     Lane(unit_.drift_rad_s.x, lane) += noise[0];
     Lane(unit_.drift_rad_s.y, lane) += noise[1];
     Lane(unit_.drift_rad_s.z, lane) += noise[2];
+  }
+}
+
+/// The unit samples at every tick, also where nobody looks: over the n ticks of a cycle of the reaction
+/// control it turns by the mean of n samples, of which the one at its beginning is known.
+template <class T>
+void Batch<T>::AverageNoise() {
+  for (int lane = 0; lane < kLanes; ++lane) {
+    if (!(Bits(live_ & drifts_) >> lane & 1u) || !slot_[lane].record->noisy) continue;
+    const double ticks = Nearest((Lane(time_s_, lane) - Lane(unit_.time_s, lane)) / tick_s_);
+    if (ticks < 2.0) continue;
+    double others[kAxes];
+    slot_[lane].record->DrawNoise(others);
+    const Vector<double> bias = LaneOf(gyro_bias_rad_s_, lane),
+                         first = LaneOf(unit_.drift_rad_s, lane) - bias;
+    const Vector<double> sum = first + Sqrt(ticks - 1.0) * Vector<double>{others[0], others[1], others[2]};
+    SetLane(unit_.drift_rad_s, lane, bias + (1.0 / ticks) * sum);
   }
 }
 

@@ -341,5 +341,38 @@ TEST(Dispersions, GyroNoiseHasItsStandardDeviation) {
   EXPECT_NEAR(squares / kCases, 1.0, 4.0 * std::sqrt(2.0 / kCases));
 }
 
+// A gyro that samples at every tick turns the believed attitude by a random walk, in the coast as under
+// thrust: sigma sqrt(tick t). The reaction control looks at every fifth tick, and holds what is believed
+// within a deadband that is small beside the walk of 0.23 deg.
+TEST(Dispersions, GyroNoiseIsARandomWalkOfEveryTickInTheCoastToo) {
+  FlightDefinition definition = HighDefinition();
+  definition.last_ignition_s = 130.0;
+  definition.program.knots.back().time_s = 300.0;
+  definition.autopilot.reaction_control = {
+      .deadband_rad = 0.05 * kRadPerDeg, .rate_gain_s = 0.1, .hysteresis = 0.5, .cycle_ticks = 5};
+  const FlightModel model(definition);
+  constexpr int kCases = 60;
+  constexpr double kNoise_rad_s = 0.2 * kRadPerDeg;
+  double squares = 0.0, time_s = 0.0;
+  for (int i = 0; i < kCases; ++i) {
+    FlightInputs inputs;
+    inputs.gyro_noise_rad_s = kNoise_rad_s;
+    FlightOptions options;
+    options.case_index = static_cast<std::uint64_t>(i);
+    Vector3 error = Vector3::Zero();
+    options.observe = [&](const TickSample& sample) {
+      if (!sample.coasting) return;
+      error = sample.error.angle_rad;
+      time_s = sample.time_s;
+    };
+    ASSERT_NE(Fly(model, inputs, options).outcome, Outcome::kLostControl);
+    squares += error.squaredNorm();
+  }
+  ASSERT_GT(time_s, 125.0);
+  const double walk = kNoise_rad_s * std::sqrt(definition.autopilot.tick_s * time_s);
+  // Four standard errors of the mean square of 180 normals; a sample a cycle would give five times as much.
+  EXPECT_NEAR(squares / (3 * kCases) / (walk * walk), 1.0, 4.0 * std::sqrt(2.0 / (3 * kCases)));
+}
+
 }  // namespace
 }  // namespace dispersa::flight_dispersions_test
