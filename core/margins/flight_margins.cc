@@ -1,5 +1,7 @@
 #include "core/margins/flight_margins.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -62,6 +64,18 @@ class Bisection {
 
 }  // namespace
 
+LoopMargins Least(const LoopMargins& a, const LoopMargins& b) {
+  return {a.stable && b.stable,
+          std::min(a.gain_up_db, b.gain_up_db),
+          std::min(a.gain_down_db, b.gain_down_db),
+          std::min(a.phase_deg, b.phase_deg),
+          std::min(a.delay_s, b.delay_s),
+          std::max(a.crossover_rad_s, b.crossover_rad_s),
+          std::max(a.bending_peak_db, b.bending_peak_db),
+          std::min(a.bending_phase_6db_deg, b.bending_phase_6db_deg),
+          std::min(a.bending_phase_3db_deg, b.bending_phase_3db_deg)};
+}
+
 void LeastMargins::Take(const LoopMargins& m) {
   gain_db = std::min({gain_db, m.gain_up_db, m.gain_down_db});
   phase_deg = std::min({phase_deg, m.phase_deg, m.bending_phase_6db_deg});
@@ -81,16 +95,15 @@ bool Learns(const AutopilotModel& autopilot, Axis axis) {
   return info.adaptation || info.augmentation;
 }
 
-LoopMargins Least(const LoopMargins& a, const LoopMargins& b) {
-  return {a.stable && b.stable,
-          std::min(a.gain_up_db, b.gain_up_db),
-          std::min(a.gain_down_db, b.gain_down_db),
-          std::min(a.phase_deg, b.phase_deg),
-          std::min(a.delay_s, b.delay_s),
-          std::max(a.crossover_rad_s, b.crossover_rad_s),
-          std::max(a.bending_peak_db, b.bending_peak_db),
-          std::min(a.bending_phase_6db_deg, b.bending_phase_6db_deg),
-          std::min(a.bending_phase_3db_deg, b.bending_phase_3db_deg)};
+LoopMargins LeastOf(const std::vector<SetMargins>& all) {
+  LoopMargins least = all.front().margins;
+  for (const SetMargins& each : all) least = Least(least, each.margins);
+  return least;
+}
+
+int ModesOf(const LauncherPlant& plant, int stack) {
+  const LauncherStack& of = plant.stacks[static_cast<std::size_t>(stack)];
+  return of.bending ? of.bending->modes : 0;
 }
 
 // Those of one flight, those that hardly have thrust, and how it ended.
@@ -169,23 +182,28 @@ class InstantLoop {
       : tick_s_(tick_s),
         delay_ticks_(plant.stacks[static_cast<std::size_t>(sample.stack)].gimbal.delay_ticks) {
     const std::array<double, kModes> nominal = plant.bending.frequency;
-    for (const double departure : {0.0, -of.frequency_band, of.frequency_band}) {
-      for (std::size_t k = 0; k < kModes; ++k) plant.bending.frequency[k] = (1.0 + departure) * nominal[k];
-      plants_.push_back(LineariseAxis(plant, sample, axis, sensors, of.path));
-      if (plants_.back().lowest_mode_rad_s == 0.0 || of.frequency_band == 0.0) break;
+    for (const FrequencySet& set : FrequencySets(ModesOf(plant, sample.stack), of.frequency_band)) {
+      for (std::size_t k = 0; k < kModes; ++k) plant.bending.frequency[k] = set.factor[k] * nominal[k];
+      plants_.push_back({set.name, LineariseAxis(plant, sample, axis, sensors, of.path)});
+      if (plants_.back().plant.lowest_mode_rad_s == 0.0) break;
     }
   }
-  LoopMargins Of(const LinearLaw& law) const {
-    LoopMargins least = SampledLoop(plants_.front(), law, tick_s_, delay_ticks_).Margins();
-    for (std::size_t i = 1; i < plants_.size(); ++i)
-      least = Least(least, SampledLoop(plants_[i], law, tick_s_, delay_ticks_).Margins());
-    return least;
+  std::vector<SetMargins> BySet(const LinearLaw& law) const {
+    std::vector<SetMargins> all;
+    for (const auto& [frequencies, plant] : plants_)
+      all.push_back({frequencies, SampledLoop(plant, law, tick_s_, delay_ticks_).Margins()});
+    return all;
   }
+  LoopMargins Of(const LinearLaw& law) const { return LeastOf(BySet(law)); }
 
  private:
   double tick_s_;
   int delay_ticks_;
-  std::vector<AxisPlant> plants_;
+  struct Plant {
+    std::string frequencies;
+    AxisPlant plant;
+  };
+  std::vector<Plant> plants_;
 };
 
 // Of each axis: all laws of ComputedMargins. `learnt` is the sample whose memories count.
@@ -197,7 +215,7 @@ void AddMarginsAt(const LauncherPlant& plant, const FlightModel& model, const Fl
   for (const Axis axis : {kPitch, kYaw, kRoll}) {
     if (!HasLoop(plant, s, axis)) continue;
     const InstantLoop loop(plant, model.sensors(), s, axis, autopilot.config.tick_s, of);
-    const auto margins_of = [&](LinearLaw law) {
+    const auto flown = [&](LinearLaw law) {
       const bool is_spoilt = inputs.loop_stage == 0.0 || inputs.loop_stage == s.stack + 1;
       if (is_spoilt) law.effectiveness_1_s2 /= inputs.loop_gain_factor;
       if (law.rules > 1) {
@@ -205,15 +223,17 @@ void AddMarginsAt(const LauncherPlant& plant, const FlightModel& model, const Fl
         law.drive_rate *= inputs.pn_rate_factor;
         law.drive_prediction *= inputs.pn_rate_factor;
       }
-      return loop.Of(law);
+      return law;
     };
+    const auto margins_of = [&](const LinearLaw& law) { return loop.Of(flown(law)); };
     const auto law = [&](bool adapting) {
       return LineariseLaw(autopilot, s.stack, s.since_ignition_s, axis, adapting);
     };
-    const LoopMargins frozen = margins_of(law(false));
-    ComputedMargins each{instant.place, s.stack, s.time_s, axis, frozen, frozen, {}};
+    const std::vector<SetMargins> by_set = loop.BySet(flown(law(Learns(autopilot, axis))));
+    ComputedMargins each{instant.place, s.stack, s.time_s, axis, LeastOf(by_set), LeastOf(by_set), {}};
+    if (by_set.size() > 1) each.by_set = by_set;
     if (Learns(autopilot, axis)) {
-      each.adapting = margins_of(law(true));
+      each.frozen = margins_of(law(false));
       each.learnt = each.adapting;
       each.is_augmented = InfoOf(autopilot.laws[static_cast<std::size_t>(axis)].config.law).augmentation;
       for (const int error : {-1, 1}) {
@@ -227,6 +247,28 @@ void AddMarginsAt(const LauncherPlant& plant, const FlightModel& model, const Fl
 }
 
 }  // namespace
+
+std::vector<FrequencySet> FrequencySets(int modes, double band) {
+  std::array<double, kModes> nominal;
+  nominal.fill(1.0);
+  std::vector<FrequencySet> sets = {{"as they are", nominal}};
+  if (modes == 0 || band == 0.0) return sets;
+  const double percent = 100.0 * band;
+  for (const double departure : {-band, band}) {
+    const char* const way = departure < 0.0 ? "lower" : "higher";
+    FrequencySet all{fmt::format("all {:g} % {}", percent, way), nominal};
+    all.factor.fill(1.0 + departure);
+    sets.push_back(all);
+  }
+  for (int mode = 0; modes > 1 && mode < modes; ++mode)
+    for (const double departure : {-band, band}) {
+      sets.push_back(
+          {fmt::format("mode {} {:g} % {}", mode + 1, percent, departure < 0.0 ? "lower" : "higher"),
+           nominal});
+      sets.back().factor[static_cast<std::size_t>(mode)] = 1.0 + departure;
+    }
+  return sets;
+}
 
 std::vector<MarginInstant> MarginInstants(const FlightModel& model, double every_s,
                                           const FlightInputs& inputs) {

@@ -1,11 +1,12 @@
 // Stability margins of an autopilot along its nominal flight: computed from a linearisation, and measured by
 // spoiling the loop of the flight until it fails.
 //
-// A vehicle that bends is linearised with its modes, and its margins are the least over their frequencies
-// times 1 and 1 -+ kFrequencyBand; one without a beam has rigid-body margins. There is no slosh. The path is
-// held unless a MarginModel says that it drifts.
+// A vehicle that bends is linearised with its modes, and its margins are the least over sets of their
+// frequencies (FrequencySets); one without a beam has rigid-body margins. There is no slosh. The path is held
+// unless a MarginModel says that it drifts.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <optional>
 #include <string>
@@ -31,9 +32,24 @@ inline constexpr double kDispersedPhaseGate_deg = 20.0;
 
 /// What margins are computed of.
 struct MarginModel {
-  double frequency_band =
-      kFrequencyBand;  ///< the modes' frequencies are also so much lower and higher; 0: as they are
+  double frequency_band = kFrequencyBand;  ///< the modes' frequencies are also so much lower and higher,
+                                           ///< together and each alone; 0: as they are
   LateralPath path = LateralPath::kHeld;
+};
+
+/// Factors on the frequencies of the modes.
+struct FrequencySet {
+  std::string name;  ///< "as they are", "all 15 % lower", "mode 2 15 % higher", ...
+  std::array<double, kModes> factor;
+};
+/// The sets of which margins are the least: as they are, all lower and higher by the band, and, of several
+/// modes, each of them alone. A band of 0: as they are.
+std::vector<FrequencySet> FrequencySets(int modes, double band);
+
+/// The margins with one set of frequencies.
+struct SetMargins {
+  std::string frequencies;
+  LoopMargins margins;
 };
 
 /// One axis at one instant of the nominal flight.
@@ -47,7 +63,8 @@ struct ComputedMargins {
   /// As adapting, with what the law has learnt by then: the least on any side of zero error and zero rate.
   /// None where nothing changes by learning.
   std::optional<LoopMargins> learnt;
-  bool is_augmented = false;  ///< what is learnt is an augmentation's gain
+  bool is_augmented = false;            ///< what is learnt is an augmentation's gain
+  std::vector<SetMargins> by_set = {};  ///< as adapting, where there are several FrequencySets
 };
 
 /// One powered phase, all axes at once. Resolutions: kMeasuredGainStep_db, kMeasuredDelayStep_s; a value at
@@ -62,6 +79,9 @@ inline constexpr double kMeasuredGainStep_db = 0.1;
 inline constexpr double kMeasuredGainCeiling_db = 24.0;
 inline constexpr double kMeasuredDelayStep_s = 0.001;
 inline constexpr double kMeasuredDelayCeiling_s = 0.25;
+
+/// The least of each margin, and the greatest crossover and response of the bending.
+LoopMargins Least(const LoopMargins& a, const LoopMargins& b);
 
 /// The least of margins over axes and instants.
 struct LeastMargins {

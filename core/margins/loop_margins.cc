@@ -271,18 +271,21 @@ double SampledLoop::SpectralRadius(double gain_factor) const {
   return largest;
 }
 
-// The frequency between two at which the gain crosses 1, or the response the real axis.
-double SampledLoop::Refine(double low, double high, bool of_gain) const {
-  const auto value = [&](double w) {
-    const std::complex<double> l = Response(w);
-    return of_gain ? std::norm(l) - 1.0 : l.imag();
-  };
+// The frequency between two at which a value of the response changes its sign.
+template <typename Value>
+double SampledLoop::Refine(double low, double high, const Value& of_response) const {
+  const auto value = [&](double w) { return of_response(Response(w)); };
   const bool low_negative = value(low) < 0.0;
   for (int i = 0; i < kRefinements; ++i) {
     const double middle = 0.5 * (low + high);
     ((value(middle) < 0.0) == low_negative ? low : high) = middle;
   }
   return 0.5 * (low + high);
+}
+
+// The frequency between two at which the response's modulus, squared, crosses a level.
+double SampledLoop::CrossingOf(double level2, double low, double high) const {
+  return Refine(low, high, [&](std::complex<double> l) { return std::norm(l) - level2; });
 }
 
 // Neighbours 2 % apart from the slowest to half the sampling; near a mode as many within its width.
@@ -338,23 +341,39 @@ LoopMargins SampledLoop::Margins() const {
 
   const double bends_above_rad_s =
       plant_.lowest_mode_rad_s > 0.0 ? kBelowModes * plant_.lowest_mode_rad_s : kInfinity;
-  const auto bend = [&](std::complex<double> at) {
-    const double size = std::norm(at);
-    margins.bending_peak_db = std::max(margins.bending_peak_db, 0.5 * Decibel(size));
-    const double from_critical = kDegPerRad * std::fabs(Atan2(-at.imag(), -at.real()));
-    if (size >= k6db2) margins.bending_phase_6db_deg = std::min(margins.bending_phase_6db_deg, from_critical);
-    if (size >= k3db2) margins.bending_phase_3db_deg = std::min(margins.bending_phase_3db_deg, from_critical);
+  const struct {
+    double level2;
+    double& phase_deg;
+  } not_attenuated[] = {{k6db2, margins.bending_phase_6db_deg}, {k3db2, margins.bending_phase_3db_deg}};
+  const auto from_critical = [](std::complex<double> at) {
+    return kDegPerRad * std::fabs(Atan2(-at.imag(), -at.real()));
+  };
+  // Between two neighbours: the phase is least at an edge of where the response is not attenuated, or at 0
+  // where it crosses the axis there, or turns back, which neighbours so near to each other show.
+  const auto bend = [&](double w, std::complex<double> before, double next_w, std::complex<double> at) {
+    margins.bending_peak_db = std::max(margins.bending_peak_db, 0.5 * Decibel(std::norm(at)));
+    for (const auto& [level2, phase_deg] : not_attenuated) {
+      const bool was = std::norm(before) >= level2, is = std::norm(at) >= level2;
+      if (is) phase_deg = std::min(phase_deg, from_critical(at));
+      if (w >= bends_above_rad_s && was != is)
+        phase_deg = std::min(phase_deg, from_critical(Response(CrossingOf(level2, w, next_w))));
+    }
   };
   const std::vector<double> grid = Frequencies();
   std::complex<double> l = Response(grid.front());
   for (std::size_t i = 1; i < grid.size(); ++i) {
     const double w = grid[i - 1], next_w = grid[i];
     const std::complex<double> next = Response(next_w);
-    if (next_w >= bends_above_rad_s) bend(next);
-    if ((l.imag() < 0.0) != (next.imag() < 0.0) && i + 1 < grid.size())
-      critical(Response(Refine(w, next_w, false)).real());
+    if (next_w >= bends_above_rad_s) bend(w, l, next_w, next);
+    if ((l.imag() < 0.0) != (next.imag() < 0.0) && i + 1 < grid.size()) {
+      const double real =
+          Response(Refine(w, next_w, [](std::complex<double> at) { return at.imag(); })).real();
+      critical(real);
+      for (const auto& [level2, phase_deg] : not_attenuated)
+        if (w >= bends_above_rad_s && real <= -Sqrt(level2)) phase_deg = 0.0;
+    }
     if ((std::norm(l) < 1.0) != (std::norm(next) < 1.0)) {
-      const double crossover = Refine(w, next_w, true);
+      const double crossover = CrossingOf(1.0, w, next_w);
       const std::complex<double> at = Response(crossover);
       // Angle from -1, counter-clockwise, to L, in [0, 2 pi): what a delay may turn.
       double lead = Atan2(at.imag(), at.real()) + kPi;

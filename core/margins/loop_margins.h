@@ -110,7 +110,9 @@ class SampledLoop {
   Measured Rigid(std::complex<double> s) const;
   Measured Bent(std::complex<double> s, double angle_rad) const;
   Sensed BentSensed(std::complex<double> s, double angle_rad) const;
-  double Refine(double low, double high, bool of_gain) const;
+  template <typename Value>
+  double Refine(double low, double high, const Value& of_response) const;
+  double CrossingOf(double level2, double low, double high) const;
 
   AxisPlant plant_;
   bool is_rigid_;       ///< of four states, measured as they are

@@ -16,6 +16,7 @@ constexpr double kSlowest_rad_s = 1e-4;
 // A modulus this near 1 is 1: an angle that nothing restores.
 constexpr double kOnCircle = 1e-8;
 constexpr double kUnstable = -2.0;
+constexpr int kBetween = 4;  // parts of a straight line between two frequencies
 
 double Angle(std::complex<double> z) { return Atan2(z.imag(), z.real()); }
 
@@ -60,6 +61,11 @@ double LoopTable::Surplus(const LinearLaw& law, const std::vector<double>& weigh
     }
     return size > worth_looking;
   };
+  const auto take_bending = [&](std::complex<double> l, double size) {
+    if (!may_be_least(size)) return;
+    const double by_gain = (-10.0 * Log10(size) - gates.gain_db) / gates.gain_db;
+    least = std::min(least, std::max(by_gain, by_phase(l)));
+  };
   // Of 1 + L: how often it crosses the negative axis upwards, less downwards.
   int turns = 0;
   std::complex<double> before = 0.0, first = 0.0;
@@ -69,9 +75,15 @@ double LoopTable::Surplus(const LinearLaw& law, const std::vector<double>& weigh
       if (weights[k] != 0.0) rate += weights[k] * rates_[i][k];
     const std::complex<double> l = ResponseOf(law, s_[i], angle_[i], rate, tick_s_) / law.effectiveness_1_s2;
     const double w = frequency_rad_s_[i], size = std::norm(l);
-    if (w >= bends_above_rad_s_ && may_be_least(size)) {
-      const double by_gain = (-10.0 * Log10(size) - gates.gain_db) / gates.gain_db;
-      least = std::min(least, std::max(by_gain, by_phase(l)));
+    if (w >= bends_above_rad_s_) {
+      take_bending(l, size);
+      // The least is at an edge of where the response is not attenuated, between the frequencies of the
+      // table.
+      if (i > 0 && frequency_rad_s_[i - 1] >= bends_above_rad_s_)
+        for (int part = 1; part < kBetween; ++part) {
+          const std::complex<double> at = before + (l - before) * (static_cast<double>(part) / kBetween);
+          take_bending(at, std::norm(at));
+        }
     }
     if (i == 0) {
       first = l;

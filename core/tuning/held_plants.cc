@@ -21,8 +21,7 @@ HeldPlants::HeldPlants(const TunedPlant& plant, const std::vector<MarginInstant>
     : plant_(plant) {
   held_.resize(static_cast<std::size_t>(plant_.StageCount()));
   for (const MarginInstant& instant : instants)
-    Hold(plant_.untuned.nominal_plant(), "nominal plant", instant.sample,
-         {1.0, 1.0 - kFrequencyBand, 1.0 + kFrequencyBand},
+    Hold(plant_.untuned.nominal_plant(), "nominal plant", instant.sample, kFrequencyBand,
          {kGainMarginGate_db + kHeldGainReserve_db, kPhaseMarginGate_deg + kHeldPhaseReserve_deg,
           kDelayMarginGate_s + kHeldDelayReserve_s});
   for (int i = 0; i < draws; ++i) {
@@ -31,29 +30,32 @@ HeldPlants::HeldPlants(const TunedPlant& plant, const std::vector<MarginInstant>
     const FlightInputs inputs = rigid.Draw(draw);
     const LauncherPlant dispersed = plant_.untuned.PlantFor(inputs, draw);
     for (const MarginInstant& instant : MarginInstants(rigid.model(), 5.0, inputs))
-      Hold(dispersed, fmt::format("plant of draw {}", i), instant.sample, {1.0},
+      Hold(dispersed, fmt::format("plant of draw {}", i), instant.sample, 0.0,
            {kDispersedGainGate_db + kHeldGainReserve_db, kDispersedPhaseGate_deg + kHeldPhaseReserve_deg,
             0.0});
   }
 }
 
 void HeldPlants::Hold(LauncherPlant plant, const std::string& name, const TickSample& sample,
-                      const std::vector<double>& frequency_factors, const LoopGates& gates) {
+                      double frequency_band, const LoopGates& gates) {
   const std::size_t stage = static_cast<std::size_t>(sample.stack);
   SensorModel all = plant_.untuned.sensors();
   all.stages[stage].unit = 1.0;
   for (std::size_t g = 0; g < all.gyros.size(); ++g) all.stages[stage].gyro[g] = 1.0;
   const std::array<double, kModes> nominal = plant.bending.frequency;
-  for (const double factor : frequency_factors) {
-    for (std::size_t k = 0; k < kModes; ++k) plant.bending.frequency[k] = factor * nominal[k];
+  const auto& bending = plant.stacks[stage].bending;
+  const std::vector<FrequencySet> sets = FrequencySets(bending ? bending->modes : 0, frequency_band);
+  for (const FrequencySet& set : sets) {
+    for (std::size_t k = 0; k < kModes; ++k) plant.bending.frequency[k] = set.factor[k] * nominal[k];
     // Roll neither bends nor diverges: the nominal plant stands for all.
-    const std::vector<Axis> axes =
-        frequency_factors.size() > 1 ? std::vector{kPitch, kYaw, kRoll} : std::vector{kPitch, kYaw};
+    const std::vector<Axis> axes = frequency_band > 0.0 && &set == &sets.front()
+                                       ? std::vector{kPitch, kYaw, kRoll}
+                                       : std::vector{kPitch, kYaw};
     for (const Axis axis : axes) {
       if (axis == kRoll && !plant.stacks[stage].layout.rolls) continue;  // thrusters hold it
       held_[stage].push_back(
-          {factor == 1.0 ? name : fmt::format("{}, modes at {:.0f} %", name, 100.0 * factor),
-           sample.since_ignition_s, axis, gates,
+          {&set == &sets.front() ? name : fmt::format("{}, {}", name, set.name), sample.since_ignition_s,
+           axis, gates,
            LoopTable(LineariseAxis(plant, sample, axis, all), plant_.campaign.autopilot.tick_s,
                      plant.stacks[stage].gimbal.delay_ticks)});
     }

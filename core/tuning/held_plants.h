@@ -38,8 +38,8 @@ class HeldPlants {
     LoopTable table;
   };
 
-  void Hold(LauncherPlant plant, const std::string& name, const TickSample& sample,
-            const std::vector<double>& frequency_factors, const LoopGates& gates);
+  void Hold(LauncherPlant plant, const std::string& name, const TickSample& sample, double frequency_band,
+            const LoopGates& gates);
   /// The share of each sensor's rates in an autopilot's rate of a stage.
   std::vector<double> SharesOf(const AutopilotConfig& autopilot, int stage) const;
 

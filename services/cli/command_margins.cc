@@ -85,8 +85,31 @@ void PrintSkipped(const std::vector<SkippedInstant>& skipped) {
 std::string FrequenciesText(const MarginModel& of) {
   if (of.frequency_band == 0.0) return "the modes' frequencies as they are";
   return fmt::format(
-      "each margin the least with the modes' frequencies as they are, {0:g} % lower and {0:g} % higher",
+      "each margin the least with the modes' frequencies as they are, and {0:g} % lower and higher, all "
+      "together "
+      "and each mode alone",
       100.0 * of.frequency_band);
+}
+
+// What each departure of the modes' frequencies leaves: the least of a stage, adapting.
+void PrintBySet(const MarginsResult& result) {
+  if (!result.bends || result.of.frequency_band == 0.0) return;
+  fmt::print("\nLeast of each stage by the modes' frequencies (gain either way, phase, bending's phase):\n");
+  for (const MeasuredMargins& stage : result.measured) {
+    std::vector<SetMargins> least;
+    for (const ComputedMargins& m : result.computed) {
+      if (m.stage != stage.stage || m.by_set.empty()) continue;
+      if (least.empty()) least = m.by_set;
+      for (std::size_t i = 0; i < least.size(); ++i)
+        least[i].margins = Least(least[i].margins, m.by_set[i].margins);
+    }
+    for (const auto& [frequencies, m] : least) {
+      fmt::print("{:<8} {:<24} {:>8} {:>8.1f} {:>8} {}\n", fmt::format("stage {}", stage.stage + 1),
+                 frequencies, Number(std::min(m.gain_up_db, m.gain_down_db), "{:.2f}"), m.phase_deg,
+                 m.bending_phase_6db_deg < 180.0 ? fmt::format("{:.1f}", m.bending_phase_6db_deg) : "-",
+                 PassesGates(m) ? "" : "FAIL");
+    }
+  }
 }
 
 void PrintText(const MarginsResult& result) {
@@ -134,6 +157,7 @@ void PrintText(const MarginsResult& result) {
       if (nearest) PrintLoop(fmt::format("stage {}", stage.stage + 1), kind, *nearest, margins(*nearest));
     }
   }
+  PrintBySet(result);
   fmt::print(
       "\nMeasured: all axes of one stage's loop spoilt in flight until it is lost (to {} dB, {:.0f} ms).\n"
       "{:<10} {:>8} {:>8} {:>9}\n",
@@ -176,10 +200,10 @@ void AddMarginsCommand(CLI::App& app, Invocation& invocation) {
   command->add_option("--cases", options->margins.cases, "also of so many dispersed cases of the campaign")
       ->transform(WholeNumber(1, kMostCases));
   command
-      ->add_option(
-          "--frequency-band", options->margins.frequency_band_percent,
-          "bending: margins also with the modes' frequencies so many percent lower and higher (15); 0: as "
-          "they are")
+      ->add_option("--frequency-band", options->margins.frequency_band_percent,
+                   "bending: margins also with the modes' frequencies so many percent lower and higher, "
+                   "together and each "
+                   "alone (15); 0: as they are")
       ->check(CLI::Range(0.0, 50.0));
   command->add_flag(
       "--drift", options->margins.drift,

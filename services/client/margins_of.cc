@@ -44,6 +44,15 @@ nlohmann::ordered_json DispersedJson(const CampaignMargins& dispersed) {
           {"passed", dispersed.Passed()}};
 }
 
+nlohmann::ordered_json BySetJson(const std::vector<SetMargins>& by_set) {
+  auto sets = nlohmann::ordered_json::array();
+  for (const auto& [frequencies, margins] : by_set) {
+    sets.push_back({{"frequencies", frequencies}});
+    sets.back().update(LoopJson(margins, PassesGates(margins)));
+  }
+  return sets;
+}
+
 }  // namespace
 
 nlohmann::ordered_json MarginsJson(const MarginsResult& result) {
@@ -56,6 +65,7 @@ nlohmann::ordered_json MarginsJson(const MarginsResult& result) {
                         {"frozen", LoopJson(m.frozen, PassesGates(m.frozen))},
                         {"adapting", LoopJson(m.adapting, PassesGates(m.adapting))},
                         {"learnt", m.learnt ? LoopJson(*m.learnt, LearntPasses(m)) : nullptr}});
+    if (!m.by_set.empty()) computed.back()["by_frequencies"] = BySetJson(m.by_set);
   }
   auto skipped = nlohmann::ordered_json::array();
   for (const SkippedInstant& at : result.skipped) {

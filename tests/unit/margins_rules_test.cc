@@ -1,5 +1,6 @@
 // What margins must pass, and what is made of several plants, laws and instants: each by the loops that it is
 // made of.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -174,7 +175,26 @@ FlightModel Flexible() {
   return FlightModel(definition);
 }
 
-TEST(MarginsAt, OfABodyThatBendsAreTheLeastOfThreeSetsOfFrequencies) {
+TEST(FrequencySets, AreAllModesTogetherAndEachAlone) {
+  std::vector<std::string> names;
+  std::vector<std::array<double, 2>> factors;
+  for (const FrequencySet& set : FrequencySets(2, 0.15)) {
+    names.push_back(set.name);
+    factors.push_back({set.factor[0], set.factor[1]});
+    EXPECT_EQ(set.factor[2], names.back().rfind("all", 0) == 0 ? set.factor[0] : 1.0) << set.name;
+  }
+  EXPECT_THAT(names,
+              testing::ElementsAre("as they are", "all 15 % lower", "all 15 % higher", "mode 1 15 % lower",
+                                   "mode 1 15 % higher", "mode 2 15 % lower", "mode 2 15 % higher"));
+  using Two = std::array<double, 2>;
+  EXPECT_THAT(factors, testing::ElementsAre(Two{1.0, 1.0}, Two{0.85, 0.85}, Two{1.15, 1.15}, Two{0.85, 1.0},
+                                            Two{1.15, 1.0}, Two{1.0, 0.85}, Two{1.0, 1.15}));
+  EXPECT_EQ(FrequencySets(1, 0.15).size(), 3u);  // alone is together
+  EXPECT_EQ(FrequencySets(2, 0.0).size(), 1u);
+  EXPECT_EQ(FrequencySets(0, 0.15).size(), 1u);
+}
+
+TEST(MarginsAt, OfABodyThatBendsAreTheLeastOfAllSetsOfFrequencies) {
   const FlightModel model = Flexible();
   int different = 0;
   for (const MarginInstant& instant : MarginInstants(model, 10.0)) {
@@ -182,10 +202,14 @@ TEST(MarginsAt, OfABodyThatBendsAreTheLeastOfThreeSetsOfFrequencies) {
       return MarginsAt(plant, model.sensors(), model.autopilot(), instant.sample, kYaw, true,
                        {band, LateralPath::kHeld});
     };
+    const auto& bending =
+        model.nominal_plant().stacks[static_cast<std::size_t>(instant.sample.stack)].bending;
+    std::vector<std::array<double, 2>> factors = {{1.0, 1.0}, {0.8, 0.8}, {1.2, 1.2}};
+    if (bending->modes == 2) factors.insert(factors.end(), {{0.8, 1.0}, {1.2, 1.0}, {1.0, 0.8}, {1.0, 1.2}});
     std::vector<LoopMargins> each;
-    for (const double factor : {1.0, 0.8, 1.2}) {
+    for (const std::array<double, 2>& factor : factors) {
       LauncherPlant plant = model.nominal_plant();
-      for (double& frequency : plant.bending.frequency) frequency *= factor;
+      for (std::size_t mode = 0; mode < 2; ++mode) plant.bending.frequency[mode] *= factor[mode];
       each.push_back(at(plant, 0.0));
     }
     ExpectSame(at(model.nominal_plant(), 0.2), LeastOf(each));

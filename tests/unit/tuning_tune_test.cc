@@ -339,11 +339,11 @@ TEST(Tune, NamesTheGateThatItMissesByMost) {
   options.evaluations = 2 * 2 * kHeldPopulation;
   result = Tune(campaign, campaign.autopilot, options);
   ASSERT_FALSE(result.feasible);
-  EXPECT_THAT(
-      result.stages[0].missed,
-      testing::MatchesRegex("(the loop is unstable|(gain|phase|delay) margin [0-9]+ % below its gate with "
-                            "reserve): (nominal plant|plant of draw [01])(, modes at (85|115) %)?, (gains "
-                            "held|adapting), (roll|pitch|yaw) [0-9.]+ s after ignition"));
+  EXPECT_THAT(result.stages[0].missed,
+              testing::MatchesRegex(
+                  "(the loop is unstable|(gain|phase|delay) margin [0-9]+ % below its gate with "
+                  "reserve): (nominal plant|plant of draw [01])(, all 15 % (lower|higher))?, (gains "
+                  "held|adapting), (roll|pitch|yaw) [0-9.]+ s after ignition"));
 }
 
 TEST(Tune, NamesFlightsThatAreLost) {
