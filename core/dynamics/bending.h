@@ -29,7 +29,8 @@ struct ModeNow {
   T pivot_deflection, pivot_slope_1_m;
   T unit_slope_1_m, gyro_slope_1_m[kRateGyros];
   T shortening_1_m[kModes];
-  T strip_deflection[kStrips], strip_slope_1_m[kStrips];
+  T straight_lift[2];                    ///< BendingTable::kStraightLift
+  T lift[kLiftCauses][kLiftEffects];     ///< BendingTable::kLiftAt
   T section_moment_kg_m[kLoadStations];  ///< of its inertia, by its acceleration
 };
 
@@ -106,10 +107,9 @@ DISPERSA_INLINE void ShapesAt(BendingTableLanes<T>& b, T propellant_kg) {
       for (int i = 0; i < kRateGyros; ++i)
         m.gyro_slope_1_m[i] = b.slope_factor * c[BendingTable::kGyroSlope + i];
       for (int i = 0; i < kModes; ++i) m.shortening_1_m[i] = c[BendingTable::kShortening + i];
-      for (int i = 0; i < kStrips; ++i) {
-        m.strip_deflection[i] = c[BendingTable::kStripsAt + i];
-        m.strip_slope_1_m[i] = c[BendingTable::kStripsAt + kStrips + i];
-      }
+      for (int i = 0; i < 2; ++i) m.straight_lift[i] = c[BendingTable::kStraightLift + i];
+      for (int i = 0; i < kLiftCauses; ++i)
+        for (int k = 0; k < kLiftEffects; ++k) m.lift[i][k] = c[BendingTable::LiftColumn(i, k)];
       for (int i = 0; i < kLoadStations; ++i) m.section_moment_kg_m[i] = c[BendingTable::kMomentAt + i];
     }
   }
@@ -168,28 +168,19 @@ DISPERSA_INLINE void DriveAtPivot(const BendingTableLanes<T>& b, Vector<T> force
   }
 }
 
-/// The flow's forces by bending: each strip meets it at the incidence of its own, the body's plus
-/// slope q + deflection q' / V in its plane, and takes its share of the normal force by the slope of the
-/// coefficient at the body's incidence.
+/// What the flow does by bending: each place of the body meets it at an incidence of its own, the body's plus
+/// slope q + deflection q' / V in its plane, and the normal force is distributed along the body
+/// (lift_distribution.h), by bending with the slope of its coefficient at the body's incidence. An effect of
+/// a mode's lift is `by_slope` q + `by_rate` q' / V, times the normal force for each radian.
 template <class T>
-DISPERSA_INLINE StripForces<T> ForcesByBending(const BendingTableLanes<T>& b, const BendingState<T>& s,
-                                               const LoadTableLanes<T>& body, const NormalForce<T>& air) {
-  const T inverse_airspeed = T(1.0) / Max(air.airspeed_m_s, T(1e-30));
-  StripForces<T> o;
-  for (int strip = 0; strip < kStrips; ++strip) {
-    T incidence[kPlanes] = {T(0.0), T(0.0)};
-    for (int plane = 0; plane < kPlanes; ++plane)
-      for (int mode = 0; mode < b.modes; ++mode) {
-        const ModeNow<T>& m = b.At(plane, mode);
-        incidence[plane] =
-            Fma(m.strip_slope_1_m[strip], s.q_m[plane][mode],
-                Fma(m.strip_deflection[strip] * inverse_airspeed, s.rate_m_s[plane][mode], incidence[plane]));
-      }
-    const T stiffness = air.slope_n * body.Share(strip, air.xcp_station_m);
-    o.y_n[strip] = -(stiffness * incidence[0]);
-    o.z_n[strip] = -(stiffness * incidence[1]);
-  }
-  return o;
+struct LiftNow {
+  T by_slope, by_rate;
+};
+/// `aft_m`: of the centre of pressure behind that of slender-body theory.
+template <class T>
+DISPERSA_INLINE LiftNow<T> LiftOf(const ModeNow<T>& mode, int effect, T aft_m) {
+  return {Fma(aft_m, mode.lift[kSlopeShift][effect], mode.lift[kSlopeSlender][effect]),
+          Fma(aft_m, mode.lift[kRateShift][effect], mode.lift[kRateSlender][effect])};
 }
 
 /// What the flow does besides to a body that bends. Adds to the body's force and moment about C and to the
@@ -199,21 +190,28 @@ DISPERSA_INLINE void BendFlow(const BendingTableLanes<T>& b, const BendingState<
                               const LoadTableLanes<T>& body, T cg_station_m, FlowForce<T>& flow,
                               ModalForce<T>& o) {
   const NormalForce<T>& air = flow.normal;
-  const StripForces<T> by_bending = ForcesByBending(b, s, body, flow.normal);
-  for (int strip = 0; strip < kStrips; ++strip) {
-    const T aft_of_cg = body.strip_station_m[strip] - cg_station_m;
-    flow.force_n.y = flow.force_n.y + by_bending.y_n[strip];
-    flow.force_n.z = flow.force_n.z + by_bending.z_n[strip];
-    flow.moment_n_m.y = Fma(aft_of_cg, by_bending.z_n[strip], flow.moment_n_m.y);
-    flow.moment_n_m.z = Fma(-aft_of_cg, by_bending.y_n[strip], flow.moment_n_m.z);
-    const T straight = air.normal_n * body.Share(strip, air.xcp_station_m);
-    const T force[kPlanes] = {Fma(-straight, air.across_y, by_bending.y_n[strip]),
-                              Fma(-straight, air.across_z, by_bending.z_n[strip])};
-    for (int plane = 0; plane < kPlanes; ++plane)
-      for (int mode = 0; mode < b.modes; ++mode)
-        o.drive_m_s2[plane][mode] =
-            Fma(force[plane], b.At(plane, mode).strip_deflection[strip], o.drive_m_s2[plane][mode]);
-  }
+  const T aft_m = air.xcp_station_m - body.slender_station_m;
+  const T straight_n[kPlanes] = {-(air.normal_n * air.across_y), -(air.normal_n * air.across_z)};
+  const T by_rate_n = -(air.slope_n / Max(air.airspeed_m_s, T(1e-30)));
+  T force_n[kPlanes] = {T(0.0), T(0.0)}, first_n_m[kPlanes] = {T(0.0), T(0.0)};
+  for (int plane = 0; plane < kPlanes; ++plane)
+    for (int mode = 0; mode < b.modes; ++mode) {
+      const ModeNow<T>& m = b.At(plane, mode);
+      const T slope_n = -(air.slope_n * s.q_m[plane][mode]), rate_n = by_rate_n * s.rate_m_s[plane][mode];
+      const auto add = [&](int effect, T& sum) {
+        const LiftNow<T> lift = LiftOf(m, effect, aft_m);
+        sum = Fma(slope_n, lift.by_slope, Fma(rate_n, lift.by_rate, sum));
+      };
+      add(kForceEffect, force_n[plane]);
+      add(kFirstEffect, first_n_m[plane]);
+      T* const drive = o.drive_m_s2[plane];
+      for (int other = 0; other < b.modes; ++other) add(kWorkEffects + other, drive[other]);
+      drive[mode] = Fma(straight_n[plane], Fma(aft_m, m.straight_lift[1], m.straight_lift[0]), drive[mode]);
+    }
+  flow.force_n.y = flow.force_n.y + force_n[0];
+  flow.force_n.z = flow.force_n.z + force_n[1];
+  flow.moment_n_m.y = flow.moment_n_m.y + Fma(-cg_station_m, force_n[1], first_n_m[1]);
+  flow.moment_n_m.z = flow.moment_n_m.z - Fma(-cg_station_m, force_n[0], first_n_m[0]);
 }
 
 /// Adds bending's part to the sections' moments: `drive` is Q / m.
@@ -222,25 +220,21 @@ DISPERSA_INLINE SectionMoments<T> MomentsByBending(const BendingTableLanes<T>& b
                                                    const ModalForce<T>& drive, const LoadTableLanes<T>& body,
                                                    const NormalForce<T>& air) {
   SectionMoments<T> o;
-  const StripForces<T> forces = ForcesByBending(b, s, body, air);
-  for (int i = 0; i < kLoadStations; ++i) {
-    o.y_n_m[i] = o.z_n_m[i] = T(0.0);
-    for (int strip = 0; strip <= i; ++strip) {
-      const T arm = body.station_m[i] - body.strip_station_m[strip];
-      o.y_n_m[i] = Fma(-arm, forces.y_n[strip], o.y_n_m[i]);
-      o.z_n_m[i] = Fma(-arm, forces.z_n[strip], o.z_n_m[i]);
-    }
-  }
-  for (int mode = 0; mode < b.modes; ++mode) {
-    T acceleration[kPlanes];
-    for (int plane = 0; plane < kPlanes; ++plane) {
+  for (int i = 0; i < kLoadStations; ++i) o.y_n_m[i] = o.z_n_m[i] = T(0.0);
+  const T aft_m = air.xcp_station_m - body.slender_station_m;
+  const T by_rate_n = air.slope_n / Max(air.airspeed_m_s, T(1e-30));
+  for (int plane = 0; plane < kPlanes; ++plane) {
+    T* const moment_n_m = plane == 0 ? o.y_n_m : o.z_n_m;
+    for (int mode = 0; mode < b.modes; ++mode) {
       const ModeNow<T>& m = b.At(plane, mode);
-      acceleration[plane] = drive.drive_m_s2[plane][mode] - Fma(m.damping_1_s, s.rate_m_s[plane][mode],
-                                                                m.stiffness_1_s2 * s.q_m[plane][mode]);
-    }
-    for (int i = 0; i < kLoadStations; ++i) {
-      o.y_n_m[i] = Fma(acceleration[0], b.At(0, mode).section_moment_kg_m[i], o.y_n_m[i]);
-      o.z_n_m[i] = Fma(acceleration[1], b.At(1, mode).section_moment_kg_m[i], o.z_n_m[i]);
+      const T acceleration = drive.drive_m_s2[plane][mode] - Fma(m.damping_1_s, s.rate_m_s[plane][mode],
+                                                                 m.stiffness_1_s2 * s.q_m[plane][mode]);
+      const T slope_n = air.slope_n * s.q_m[plane][mode], rate_n = by_rate_n * s.rate_m_s[plane][mode];
+      for (int i = 0; i < kLoadStations; ++i) {
+        const LiftNow<T> lift = LiftOf(m, kSectionEffects + i, aft_m);
+        moment_n_m[i] = Fma(acceleration, m.section_moment_kg_m[i],
+                            Fma(slope_n, lift.by_slope, Fma(rate_n, lift.by_rate, moment_n_m[i])));
+      }
     }
   }
   return o;

@@ -12,46 +12,25 @@ inline namespace DISPERSA_ISA {
 /// LoadTable of each lane's stack.
 template <class T>
 struct LoadTableLanes {
-  T strip_station_m[kStrips], slender[kStrips], shift_1_m[kStrips], slender_station_m;
+  T slender_station_m;
   T station_m[kLoadStations], first_kg_m[kLoadStations][3], second_kg_m2[kLoadStations][3];
   T slender_arm_m[kLoadStations], shift_arm[kLoadStations];  ///< lever of the shares ahead of each station
-
-  /// The share of the normal force that acts on a strip.
-  DISPERSA_INLINE T Share(int strip, T xcp_station_m) const {
-    return Fma(xcp_station_m - slender_station_m, shift_1_m[strip], slender[strip]);
-  }
 };
 /// `table` null: nothing is known of this lane's sections.
 template <class T>
 DISPERSA_INLINE void SetLane(LoadTableLanes<T>& s, int lane, const LoadTable* table) {
-  static constexpr LoadTable kNone{};
+  static const LoadTable kNone{};
   const LoadTable& from = table ? *table : kNone;
-  for (int i = 0; i < kStrips; ++i) {
-    Lane(s.strip_station_m[i], lane) = from.strip_station_m.data()[i];
-    Lane(s.slender[i], lane) = from.slender.data()[i];
-    Lane(s.shift_1_m[i], lane) = from.shift_1_m.data()[i];
-  }
-  Lane(s.slender_station_m, lane) = from.slender_station_m;
+  Lane(s.slender_station_m, lane) = from.lift.slender_station_m;
   for (int i = 0; i < kLoadStations; ++i) {
     Lane(s.station_m[i], lane) = from.station_m.data()[i];
     for (int k = 0; k < 3; ++k) Lane(s.first_kg_m[i][k], lane) = from.first_kg_m.data()[i].data()[k];
     for (int k = 0; k < 3; ++k) Lane(s.second_kg_m2[i][k], lane) = from.second_kg_m2.data()[i].data()[k];
-    double slender = 0.0, shift = 0.0;
-    for (int strip = 0; strip <= i; ++strip) {
-      const double arm = from.station_m.data()[i] - from.strip_station_m.data()[strip];
-      slender += from.slender.data()[strip] * arm;
-      shift += from.shift_1_m.data()[strip] * arm;
-    }
-    Lane(s.slender_arm_m[i], lane) = slender;
-    Lane(s.shift_arm[i], lane) = shift;
+    Lane(s.slender_arm_m[i], lane) = from.slender_arm_m.data()[i];
+    Lane(s.shift_arm[i], lane) = from.shift_arm.data()[i];
   }
 }
 
-/// Forces along the body, across its axis, in body axes.
-template <class T>
-struct StripForces {
-  T y_n[kStrips], z_n[kStrips];
-};
 /// Moments about z (of forces along y) and about -y (along z) at each load station.
 template <class T>
 struct SectionMoments {

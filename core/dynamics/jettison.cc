@@ -87,4 +87,28 @@ RigidBodyState AfterSeparation(const LauncherPlant& plant, int below, unsigned j
                     above, MassOf(plant, below + 1, jettisoned).At(above.burn.propellant_mass_kg)));
 }
 
+void TakeAlong(const LauncherStack& below, const double* modal, RigidBodyState& above) {
+  if (!below.bending) return;
+  const BendingTable& table = *below.bending;
+  Vector3 moved = Vector3::Zero(), speed = Vector3::Zero(), turned = Vector3::Zero(), rate = Vector3::Zero();
+  for (int plane = 0; plane < kPlanes; ++plane)
+    for (int mode = 0; mode < table.modes; ++mode) {
+      const auto at = [&](int column) {
+        return table.At(table.planes == 1 ? 0 : plane, mode, column, below.burn.left_kg);
+      };
+      const double shift = at(BendingTable::kUpperShift), turn = at(BendingTable::kUpperTurn);
+      const double q_m = modal[plane * kModes + mode], q_m_s = modal[(kPlanes + plane) * kModes + mode];
+      // Plane y moves along y and turns about -z, plane z along z and about y.
+      const int along = plane == 0 ? 1 : 2, about = plane == 0 ? 2 : 1;
+      moved[along] += shift * q_m;
+      speed[along] += shift * q_m_s;
+      turned[about] += (plane == 0 ? -turn : turn) * q_m;
+      rate[about] += (plane == 0 ? -turn : turn) * q_m_s;
+    }
+  above.p_EoC_I += Rotate(above.q_IB, moved);
+  above.v_IC_I += Rotate(above.q_IB, speed);
+  above.q_IB = Normalized(above.q_IB * FromRotationVector(turned));
+  above.w_IB_B += rate;
+}
+
 }  // namespace dispersa

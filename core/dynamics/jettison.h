@@ -38,4 +38,9 @@ unsigned DueJettisons(const LauncherPlant& plant, int stack, unsigned jettisoned
 RigidBodyState AfterJettison(const LauncherPlant& plant, int stack, unsigned before, unsigned after,
                              double propellant_kg, double since_ignition_s, const RigidBodyState& state);
 
+/// What the bending of the stack below leaves to the body above at a separation: its centre of gravity, its
+/// attitude, its momentum and its angular momentum are those that its masses had by the modes. `modal`: of
+/// the burnt stack, as in the state of a launcher (kModalState). The body itself leaves unbent.
+void TakeAlong(const LauncherStack& below, const double* modal, RigidBodyState& above);
+
 }  // namespace dispersa

@@ -346,6 +346,7 @@ void FlightRecord::MassWithout(int stack, unsigned jettisoned, StackMass& mass) 
 void FlightRecord::Separate(int stage, unsigned jettisoned, double* y) {
   const std::size_t below = static_cast<std::size_t>(stage);
   RigidBodyState s = AfterSeparation(plant, stage, jettisoned, ReadState(y));
+  TakeAlong(plant.stacks[below], y + kModalState, s);
   if (!model_.definition().vehicle.stages[below + 1].restarts)  // nothing has left
     s.w_IB_B += Vector3(inputs.tip_off_roll_rad_s[below], inputs.tip_off_pitch_rad_s[below],
                         inputs.tip_off_yaw_rad_s[below]);

@@ -15,11 +15,27 @@ namespace dispersa {
 inline constexpr int kModes = kMostFlownModes;
 inline constexpr int kPlanes = 2;
 
+/// What a distributed force does: the force itself, its moment about the nose tip (its sum times the
+/// station), its work on each mode, and from kSectionEffects its moment about each load station, of what lies
+/// ahead.
+enum LiftEffect : int {
+  kForceEffect = 0,
+  kFirstEffect = 1,
+  kWorkEffects = 2,
+  kSectionEffects = kWorkEffects + kModes,
+  kLiftEffects = kSectionEffects + kLoadStations
+};
+/// By which the lift comes about: a mode's slope is an incidence, and so is its rate over the airspeed. By
+/// slender-body theory, and for each metre that the centre of pressure is aft of it (lift_distribution.h).
+enum LiftCause : int { kSlopeSlender, kSlopeShift, kRateSlender, kRateShift, kLiftCauses };
+
 struct BendingTable {
   /// Frequency (rad/s), 1 / generalised mass; at the pivot: deflection, slope; slopes at the inertial unit
-  /// and at each rate gyro; shortening with each mode; from kStripsAt deflection, then slope of each strip;
-  /// from kMomentAt the bending moment of the mode's inertia at each load station, for a unit acceleration of
-  /// it.
+  /// and at each rate gyro; shortening with each mode; the work on the mode of the straight body's lift, by
+  /// slender-body theory and by shift; from kLiftAt what the lift by a unit of the mode does, by cause and
+  /// effect, for a normal force of 1 for each radian; from kMomentAt the bending moment of the mode's inertia
+  /// at each load station, for a unit acceleration of it. Where a stage is above: by how much a unit of the
+  /// mode moves its centre of gravity and turns it, in the mean.
   enum Column : int {
     kFrequency = 0,
     kInverseMass = 1,
@@ -28,12 +44,17 @@ struct BendingTable {
     kUnitSlope = 4,
     kGyroSlope = 5,
     kShortening = 8,
-    kStripsAt = 16,
-    kMomentAt = 32,
-    kRowSize = 40
+    kStraightLift = 13,
+    kUpperShift = 15,
+    kLiftAt = 16,
+    kMomentAt = 72,
+    kUpperTurn = 79,
+    kRowSize = 80
   };
-  static_assert(kGyroSlope + kRateGyros == kShortening && kShortening + kModes <= kStripsAt &&
-                kStripsAt + 2 * kStrips == kMomentAt && kMomentAt + kLoadStations <= kRowSize);
+  static_assert(kGyroSlope + kRateGyros == kShortening && kShortening + kModes == kStraightLift &&
+                kLiftAt + int{kLiftCauses} * int{kLiftEffects} == kMomentAt &&
+                kMomentAt + kLoadStations == kUpperTurn);
+  static constexpr int LiftColumn(int cause, int effect) { return kLiftAt + kLiftEffects * cause + effect; }
 
   int modes = 0;                      ///< that fly, in each plane
   int planes = 1;                     ///< 1: plane z is plane y

@@ -4,20 +4,18 @@
 
 #include <array>
 
-#include "core/vehicle/vehicle.h"
+#include "core/structure/lift_distribution.h"
 
 namespace dispersa {
 
-/// Lengths of the body, all the same, that feel an incidence of their own.
-inline constexpr int kStrips = 8;
-/// The cross-sections between them.
-inline constexpr int kLoadStations = kStrips - 1;
+/// The cross-sections that are looked at, at equal distances along the stack.
+inline constexpr int kLoadStations = 7;
 
 struct LoadTable {
-  /// `slender` share of the normal force by slender-body theory, at the middle of each strip, plus for each
-  /// metre that the centre of pressure is aft of slender_station_m `shift`.
-  std::array<double, kStrips> strip_station_m{}, slender{}, shift_1_m{};
-  double slender_station_m = 0.0;
+  LiftDistribution lift;
+  /// Of the normal force ahead of each station, its moment about the station, m: by slender-body theory, plus
+  /// for each metre that the centre of pressure is aft of lift.slender_station_m `shift_arm`.
+  std::array<double, kLoadStations> slender_arm_m{}, shift_arm{};
 
   /// Stations s, and of the mass ahead of each, with m(x) its mass per length, g(x) the radius of gyration of
   /// its cross-section and p the propellant: the integral of m (s - x) = first[0] + first[1] p + first[2] p²,

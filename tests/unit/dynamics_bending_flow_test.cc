@@ -81,24 +81,50 @@ TEST(BendingFlow, OfARigidMotionIsTheFlowOfTheMovedBody) {
   EXPECT_NEAR(driven.drive_m_s2[1][1], expected.moment_n_m.y, kSmall_n);
 }
 
-// A turning body's strips meet the flow at the speed of their places.
+// The forces of the strips by bending alone, in one plane.
+std::array<double, kStrips> ForcesByBending(const std::vector<MadeUpMode>& modes,
+                                            const BendingState<double>& s, int plane) {
+  const LoadTable loads = MadeUpLoads();
+  const auto incidence = [&](double place_m) {
+    double at = 0.0;
+    for (std::size_t mode = 0; mode < modes.size(); ++mode)
+      at += s.q_m[plane][mode] * modes[mode].Slope(place_m) +
+            s.rate_m_s[plane][mode] * modes[mode].Deflection(place_m) / kSpeed_m_s;
+    return at;
+  };
+  std::array<double, kStrips> force = StripForces(loads, kXcp_m - loads.lift.slender_station_m, incidence);
+  for (double& each : force) each *= -kSlope_n;
+  return force;
+}
+
+// A turning body's places meet the flow at their own speeds, and where the cross-section does not grow the
+// incidence does.
 TEST(BendingFlow, OfATurningBodyIsThatOfEachPlacesSpeed) {
   const BendingTable table = MadeUpTable(RigidMotions());
   const BendingTableLanes<double> bending = BendingOf(table, 0.0);
-  const LoadTableLanes<double> body = BodySections();
+  const LoadTable loads = MadeUpLoads();
+  const double aft_m = kXcp_m - loads.lift.slender_station_m;
   for (int plane = 0; plane < kPlanes; ++plane) {
     BendingState<double> s{};
     s.rate_m_s[plane][1] = 0.3;
-    const lanes::StripForces<double> forces =
-        lanes::ForcesByBending(bending, s, body, LinearAir({0.0, 0.0}).normal);
-    double shares = 0.0;
-    for (int strip = 0; strip < kStrips; ++strip) {
-      const double share = body.Share(strip, kXcp_m), place_m = 1.25 + 2.5 * strip;
-      const double force = -kSlope_n * share * 0.3 * (place_m - kCg_m) / kSpeed_m_s;
-      EXPECT_NEAR(plane == 0 ? forces.y_n[strip] : forces.z_n[strip], force, kSmall_n) << strip;
-      EXPECT_EQ(plane == 0 ? forces.z_n[strip] : forces.y_n[strip], 0.0) << strip;
-      shares += share;
+    FlowForce<double> flow = LinearAir({0.0, 0.0});
+    ModalForce<double> driven{};
+    lanes::BendFlow(bending, s, BodySections(), kCg_m, flow, driven);
+    double force = 0.0, moment = 0.0, shares = 0.0;
+    for (const LiftPiece& strip : loads.lift.pieces) {
+      const double grown = strip.area_to - strip.area_from, middle_m = strip.Middle() - kCg_m;
+      const double mean_area = 0.5 * (strip.area_from + strip.area_to);
+      // d(A alpha) = alpha dA + A dalpha.
+      const double here =
+          -kSlope_n * 0.3 / kSpeed_m_s *
+          (grown * middle_m + mean_area * (strip.to_m - strip.from_m) + aft_m * strip.shift_1_m * middle_m);
+      force += here;
+      moment += here * middle_m;
+      shares += grown + aft_m * strip.shift_1_m;
     }
+    EXPECT_NEAR(plane == 0 ? flow.force_n.y : flow.force_n.z, force, kSmall_n);
+    EXPECT_EQ(plane == 0 ? flow.force_n.z : flow.force_n.y, 0.0);
+    EXPECT_NEAR(plane == 0 ? -flow.moment_n_m.z : flow.moment_n_m.y, moment, kSmall_n);
     EXPECT_NEAR(shares, 1.0, 1e-14);
   }
 }
@@ -119,19 +145,19 @@ TEST(BendingFlow, DrivesEachModeByTheWorkOfItsStrips) {
   ModalForce<double> driven{};
   driven.drive_m_s2[1][1] = 1e3;  // is added to
   lanes::BendFlow(bending, s, body, kCg_m, flow, driven);
+  const LoadTable loads = MadeUpLoads();
+  const double aft_m = kXcp_m - loads.lift.slender_station_m;
   double force[kPlanes] = {}, work[kPlanes][2] = {};
   for (std::size_t plane = 0; plane < kPlanes; ++plane) {
     const std::vector<MadeUpMode> modes = TwoPlanes()[plane];
-    for (int strip = 0; strip < kStrips; ++strip) {
-      const double place_m = 1.25 + 2.5 * strip;
-      double incidence = plane == 0 ? straight.y : straight.z;
-      for (std::size_t mode = 0; mode < 2; ++mode)
-        incidence += s.q_m[plane][mode] * modes[mode].Slope(place_m) +
-                     s.rate_m_s[plane][mode] * modes[mode].Deflection(place_m) / kSpeed_m_s;
-      const double here_n = -kSlope_n * body.Share(strip, kXcp_m) * incidence;
+    const double at = plane == 0 ? straight.y : straight.z;
+    const auto by_body = StripForces(loads, aft_m, [&](double) { return at; });
+    const auto by_bending = ForcesByBending(modes, s, static_cast<int>(plane));
+    for (std::size_t strip = 0; strip < kStrips; ++strip) {
+      const double here_n = by_bending[strip] - kSlope_n * by_body[strip];
       force[plane] += here_n;
       for (std::size_t mode = 0; mode < 2; ++mode)
-        work[plane][mode] += here_n * modes[mode].Deflection(place_m);
+        work[plane][mode] += here_n * modes[mode].Deflection(loads.lift.pieces[strip].Middle());
     }
   }
   EXPECT_NEAR(flow.force_n.y, force[0], kSmall_n);
@@ -178,9 +204,9 @@ TEST(BendingSections, CarryTheMassesAheadLessTheirAir) {
   for (const bool in_air : {false, true}) {
     NormalForce<double> air{};
     if (in_air) air = LinearAir({0.02, -0.01}).normal;
-    const lanes::StripForces<double> forces = lanes::ForcesByBending(bending, s, body, air);
     const lanes::SectionMoments<double> moments = lanes::MomentsByBending(bending, s, driven, body, air);
     for (std::size_t plane = 0; plane < kPlanes; ++plane) {
+      const auto forces = ForcesByBending(TwoPlanes()[plane], s, static_cast<int>(plane));
       double acceleration[2];
       for (std::size_t mode = 0; mode < 2; ++mode) {
         const double w = TwoPlanes()[plane][mode].frequency_rad_s;
@@ -192,7 +218,7 @@ TEST(BendingSections, CarryTheMassesAheadLessTheirAir) {
         double carried = 0.0;
         for (int strip = 0; strip <= station; ++strip) {
           const double place_m = 1.25 + 2.5 * strip;
-          double force = -(plane == 0 ? forces.y_n[strip] : forces.z_n[strip]);
+          double force = in_air ? -forces[static_cast<std::size_t>(strip)] : 0.0;
           for (std::size_t mode = 0; mode < 2; ++mode)
             force += BodyMass(static_cast<std::size_t>(strip)) * acceleration[mode] *
                      TwoPlanes()[plane][mode].Deflection(place_m);

@@ -56,10 +56,12 @@ void ExpectColumns(const lanes::ModeNow<double>& now, const std::function<double
     EXPECT_NEAR(now.gyro_slope_1_m[i], column(BendingTable::kGyroSlope + i), kRounding) << i;
   for (int i = 0; i < kModes; ++i)
     EXPECT_NEAR(now.shortening_1_m[i], column(BendingTable::kShortening + i), kRounding) << i;
-  for (int i = 0; i < kStrips; ++i) {
-    EXPECT_NEAR(now.strip_deflection[i], column(BendingTable::kStripsAt + i), kRounding) << i;
-    EXPECT_NEAR(now.strip_slope_1_m[i], column(BendingTable::kStripsAt + kStrips + i), kRounding) << i;
-  }
+  for (int i = 0; i < 2; ++i)
+    EXPECT_NEAR(now.straight_lift[i], column(BendingTable::kStraightLift + i), kRounding) << i;
+  for (int cause = 0; cause < kLiftCauses; ++cause)
+    for (int effect = 0; effect < kLiftEffects; ++effect)
+      EXPECT_NEAR(now.lift[cause][effect], column(BendingTable::LiftColumn(cause, effect)), kRounding)
+          << cause << ", " << effect;
   for (int i = 0; i < kLoadStations; ++i)
     EXPECT_NEAR(now.section_moment_kg_m[i], column(BendingTable::kMomentAt + i), kRounding) << i;
 }

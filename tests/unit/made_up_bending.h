@@ -23,27 +23,49 @@ struct MadeUpMode {
   double Slope(double s) const { return powers[1] + s * (2.0 * powers[2] + s * 3.0 * powers[3]); }
 };
 
+inline constexpr std::size_t kStrips = 8;
+
 /// The mass in the middle of each strip.
 inline double BodyMass(std::size_t strip) { return 100.0 * (1.0 + static_cast<double>(strip)); }
 
 /// Eight strips of 2.5 m. Their shares sum to 1, the shifts to 0 with a first moment of 1.
 inline LoadTable MadeUpLoads() {
+  constexpr double kSlender[kStrips] = {0.5, 0.1, 0.05, 0.05, 0.1, 0.1, 0.05, 0.05};
   LoadTable loads;
-  loads.slender = {0.5, 0.1, 0.05, 0.05, 0.1, 0.1, 0.05, 0.05};
-  double squares = 0.0;
+  double squares = 0.0, area = 0.0;
   for (std::size_t i = 0; i < kStrips; ++i) {
-    loads.strip_station_m[i] = 1.25 + 2.5 * static_cast<double>(i);
-    const double arm = loads.strip_station_m[i] - 10.0;
-    loads.shift_1_m[i] = arm;
-    squares += arm * arm;
-    loads.slender_station_m += loads.slender[i] * loads.strip_station_m[i];
+    LiftPiece strip;
+    strip.from_m = 2.5 * static_cast<double>(i);
+    strip.to_m = strip.from_m + 2.5;
+    strip.area_from = area;
+    strip.area_to = area += kSlender[i];
+    strip.shift_1_m = strip.Middle() - 10.0;
+    squares += strip.shift_1_m * strip.shift_1_m;
+    loads.lift.slender_station_m += kSlender[i] * strip.Middle();
+    loads.lift.pieces.push_back(strip);
   }
-  for (double& shift : loads.shift_1_m) shift /= squares;
+  for (LiftPiece& strip : loads.lift.pieces) strip.shift_1_m /= squares;
   for (std::size_t i = 0; i < kLoadStations; ++i) loads.station_m[i] = 2.5 * (1.0 + static_cast<double>(i));
   return loads;
 }
 
-inline std::array<double, BendingTable::kRowSize> RowOf(const MadeUpMode& mode, const LoadTable& loads) {
+/// The force of each strip for a normal force of 1 for each radian, where the incidence is so distributed
+/// along the body, with the centre of pressure `aft_m` of slender-body theory's.
+template <typename Incidence>
+std::array<double, kStrips> StripForces(const LoadTable& loads, double aft_m, const Incidence& at) {
+  std::array<double, kStrips> force;
+  for (std::size_t i = 0; i < kStrips; ++i) {
+    const LiftPiece& strip = loads.lift.pieces[i];
+    // d(A alpha) of slender-body theory, and the shift's share at the incidence of its place.
+    force[i] = strip.area_to * at(strip.to_m) - strip.area_from * at(strip.from_m) +
+               aft_m * strip.shift_1_m * at(strip.Middle());
+  }
+  return force;
+}
+
+inline std::array<double, BendingTable::kRowSize> RowOf(const std::vector<MadeUpMode>& modes,
+                                                        std::size_t which, const LoadTable& loads) {
+  const MadeUpMode& mode = modes[which];
   std::array<double, BendingTable::kRowSize> row{};
   row[BendingTable::kFrequency] = mode.frequency_rad_s;
   row[BendingTable::kInverseMass] = 1.0 / mode.mass_kg;
@@ -53,14 +75,37 @@ inline std::array<double, BendingTable::kRowSize> RowOf(const MadeUpMode& mode, 
   for (std::size_t i = 0; i < kRateGyros; ++i)
     row[BendingTable::kGyroSlope + i] = mode.Slope(kBodyGyros_m[i]);
   for (std::size_t i = 0; i < kModes; ++i) row[BendingTable::kShortening + i] = mode.shortening[i];
+  const auto straight = StripForces(loads, 0.0, [](double) { return 1.0; });
   for (std::size_t i = 0; i < kStrips; ++i) {
-    row[BendingTable::kStripsAt + i] = mode.Deflection(loads.strip_station_m[i]);
-    row[BendingTable::kStripsAt + kStrips + i] = mode.Slope(loads.strip_station_m[i]);
+    const LiftPiece& strip = loads.lift.pieces[i];
+    row[BendingTable::kStraightLift] += straight[i] * mode.Deflection(strip.Middle());
+    row[BendingTable::kStraightLift + 1] += strip.shift_1_m * mode.Deflection(strip.Middle());
+  }
+  for (const bool by_rate : {false, true}) {
+    const auto at = [&](double s) { return by_rate ? mode.Deflection(s) : mode.Slope(s); };
+    const auto slender = StripForces(loads, 0.0, at), with_shift = StripForces(loads, 1.0, at);
+    double* const of_slender =
+        row.data() + BendingTable::LiftColumn(by_rate ? kRateSlender : kSlopeSlender, 0);
+    for (std::size_t i = 0; i < kStrips; ++i) {
+      const double place_m = loads.lift.pieces[i].Middle();
+      const auto add = [&](double force, double* effects) {
+        effects[kForceEffect] += force;
+        effects[kFirstEffect] += force * place_m;
+        for (std::size_t j = 0; j < modes.size(); ++j)
+          effects[kWorkEffects + j] += force * modes[j].Deflection(place_m);
+        for (std::size_t k = i; k < kLoadStations; ++k)
+          effects[kSectionEffects + k] += force * (loads.station_m[k] - place_m);
+      };
+      add(slender[i], of_slender);
+      add(with_shift[i] - slender[i], of_slender + kLiftEffects);
+    }
   }
   for (std::size_t i = 0; i < kLoadStations; ++i)
-    for (std::size_t k = 0; k <= i; ++k)
-      row[BendingTable::kMomentAt + i] += BodyMass(k) * mode.Deflection(loads.strip_station_m[k]) *
-                                          (loads.station_m[i] - loads.strip_station_m[k]);
+    for (std::size_t k = 0; k <= i; ++k) {
+      const double place_m = loads.lift.pieces[k].Middle();
+      row[BendingTable::kMomentAt + i] +=
+          BodyMass(k) * mode.Deflection(place_m) * (loads.station_m[i] - place_m);
+    }
   return row;
 }
 
@@ -73,8 +118,8 @@ inline BendingTable MadeUpTable(const std::vector<std::vector<MadeUpMode>>& plan
   table.planes = static_cast<int>(planes.size());
   table.propellant_kg = {0.0};
   for (const std::vector<MadeUpMode>& modes : planes)
-    for (const MadeUpMode& mode : modes) {
-      const auto row = RowOf(mode, loads);
+    for (std::size_t mode = 0; mode < modes.size(); ++mode) {
+      const auto row = RowOf(modes, mode, loads);
       table.rows.insert(table.rows.end(), row.begin(), row.end());
     }
   return table;

@@ -7,15 +7,19 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include "core/campaign_yaml/load.h"
 #include "core/dynamics/aero_grid.h"
 #include "core/dynamics/integrator.h"
+#include "core/dynamics/jettison.h"
 #include "core/flight/flight_model.h"
 #include "core/flight/simpson_step.h"
 #include "core/margins/flight_margins.h"
 #include "core/margins/linear_axis.h"
 #include "core/structure/beam_elements.h"
+#include "core/structure/inertia_moment.h"
 #include "tests/slv4_flight.h"
 
 namespace dispersa::bending_flight_test {
@@ -238,10 +242,12 @@ TEST(BendingFlight, TheStepConvergesToCvode) {
       last[i] = error[i];
     }
     if (steps != 100) continue;
-    // As shipped: of 0.04 rad/s, 0.01 m and 0.1 m/s.
+    // As shipped: of 0.04 rad/s, 0.01 m and 0.3 m/s. The last is mode 3's, whose air swings through an eighth
+    // of a period in a step and is taken as a parabola: in proportion to what the flow does by the
+    // modes, 1.6e-6 without it, 1.09e-5 with half of it, 2.42e-5 with all.
     EXPECT_LT(error[0], 2e-8);
     EXPECT_LT(error[1], 1e-6);
-    EXPECT_LT(error[2], 2e-5);
+    EXPECT_LT(error[2], 2.5e-5);
   }
 }
 
@@ -386,6 +392,78 @@ TEST(BendingFlight, AStiffBodyIsARigidOne) {
       last[i] = error;
     }
   }
+}
+
+// A stage that leaves a ringing stack leaves the one above with the momentum and the angular momentum that
+// its own masses had. Those from the moments of a section behind them all, at two places: sums of m (s - x) w
+// and of m g² theta.
+TEST(BendingFlight, ASeparationLeavesTheUpperStackItsMomentum) {
+  const Vehicle vehicle = Flexible();
+  const InSpace space(vehicle);
+  const LauncherStack &below = space.plant.stacks[0], &above = space.plant.stacks[1];
+  const std::vector<StackModes> stacks = BuildBendingModes(vehicle);
+  const StackModes& stack = stacks[0];
+  const BendingLevel& burnt = stack.levels[0].back();
+  ASSERT_EQ(burnt.propellant_kg, 0.0);
+  const BeamMasses upper = BuildBeamMasses(vehicle, 1, vehicle.stages[1].propellant_mass_kg);
+  const MassProperties mass = above.mass.At(vehicle.stages[1].propellant_mass_kg);
+  for (int plane = 0; plane < kPlanes; ++plane)
+    for (int mode = 0; mode < 3; ++mode) {
+      const auto shape = [&](double s) {
+        return ShapeOf(stack, BeamPlane::kY, burnt.modes[static_cast<std::size_t>(mode)], s);
+      };
+      const double near_m = 25.0, far_m = 26.0;  // behind all of it
+      const double near = InertiaMoment(upper, near_m, shape), far = InertiaMoment(upper, far_m, shape);
+      const double momentum = (far - near) / (far_m - near_m);
+      const double angular = near_m * momentum - near - mass.cg_station_m * momentum;
+      double modal[2 * kPlanes * kModes] = {};
+      const double q_m = 0.003, rate_m_s = -0.2;
+      modal[plane * kModes + mode] = q_m;
+      modal[(kPlanes + plane) * kModes + mode] = rate_m_s;
+      RigidBodyState state;
+      state.q_IB = FromRotationVector(Vector3(0.3, -0.7, 1.1));
+      state.w_IB_B = Vector3(0.01, 0.02, -0.03);
+      const RigidBodyState before = state;
+      TakeAlong(below, modal, state);
+      const Vector3 along = plane == 0 ? Vector3::UnitY() : Vector3::UnitZ(),
+                    about = plane == 0 ? Vector3(-Vector3::UnitZ()) : Vector3(Vector3::UnitY());
+      const double move = momentum / mass.mass_kg, turn = angular / mass.transverse_inertia_kg_m2;
+      EXPECT_GT(std::fabs(move), 1e-3);
+      EXPECT_GT(std::fabs(turn), 1e-3);
+      const auto expect = [&](const Vector3& found, const Vector3& wanted, const char* what) {
+        EXPECT_LT((found - wanted).norm(), 2e-3 * wanted.norm())
+            << what << ", plane " << plane << ", mode " << mode;
+      };
+      expect(state.p_EoC_I, Rotate(before.q_IB, Vector3(move * q_m * along)), "place");
+      expect(state.v_IC_I, Rotate(before.q_IB, Vector3(move * rate_m_s * along)), "speed");
+      expect(RotationVector(Inverse(before.q_IB) * state.q_IB), turn * q_m * about, "turn");
+      expect(state.w_IB_B - before.w_IB_B, turn * rate_m_s * about, "rate");
+    }
+}
+
+// In a flight: the upper stack begins with what the ringing stage 1 leaves it. The modes swing on by a tenth
+// of their period within a tick, hence the factor.
+TEST(BendingFlight, TheUpperStackFliesOnWithTheModesMomentum) {
+  FlightDefinition definition = Slv4Definition(DISPERSA_CAMPAIGNS, "flexible");
+  definition.vehicle = Flexible();
+  const FlightModel model(definition);
+  std::optional<TickSample> before, after;
+  FlightOptions options;
+  options.observe = [&](const TickSample& s) {
+    if (s.stack == 0) before = s;
+    if (s.stack == 1 && !after) after = s;
+  };
+  FlightInputs inputs = Table3Inputs();
+  Fly(model, inputs, options);
+  ASSERT_TRUE(before && after);
+  const LauncherPlant plant = model.PlantFor(inputs);
+  RigidBodyState left;
+  left.q_IB = {};
+  TakeAlong(plant.stacks[0], before->bending.data(), left);
+  const Vector3 jump = after->state.w_IB_B - before->state.w_IB_B;
+  EXPECT_GT(left.w_IB_B.norm(), 1e-6);
+  EXPECT_LT((jump - left.w_IB_B).norm(), 0.5 * left.w_IB_B.norm())
+      << jump.transpose() << " for " << left.w_IB_B.transpose();
 }
 
 }  // namespace

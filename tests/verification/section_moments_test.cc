@@ -67,11 +67,13 @@ void ExpectBalance(const Vehicle& vehicle, const std::vector<double>& parts) {
   const LauncherPlant plant = BuildNominalPlant(vehicle);
   const LoadTable& table = *plant.stacks[0].loads;
   const double side_n = 4e3, normal_n = 2e4, xcp_m = 9.3, pivot_m = vehicle.stages[0].gimbal.pivot_station_m;
+  const auto share_of = [&](const LiftPiece& piece) {
+    return piece.area_to - piece.area_from + (xcp_m - table.lift.slender_station_m) * piece.shift_1_m;
+  };
   double shares = 0.0, centroid = 0.0;
-  for (std::size_t i = 0; i < kStrips; ++i) {
-    const double share = table.slender[i] + (xcp_m - table.slender_station_m) * table.shift_1_m[i];
-    shares += share;
-    centroid += share * table.strip_station_m[i];
+  for (const LiftPiece& piece : table.lift.pieces) {
+    shares += share_of(piece);
+    centroid += share_of(piece) * piece.Middle();
   }
   EXPECT_NEAR(shares, 1.0, 1e-12);
   EXPECT_NEAR(centroid, xcp_m, 1e-9);
@@ -85,9 +87,8 @@ void ExpectBalance(const Vehicle& vehicle, const std::vector<double>& parts) {
     for (int station = 0; station < kLoadStations; ++station) {
       const double s = table.station_m[static_cast<std::size_t>(station)];
       double behind = side_n * (s - pivot_m);
-      for (std::size_t i = static_cast<std::size_t>(station) + 1; i < kStrips; ++i)
-        behind -= normal_n * (table.slender[i] + (xcp_m - table.slender_station_m) * table.shift_1_m[i]) *
-                  (s - table.strip_station_m[i]);
+      for (const LiftPiece& piece : table.lift.pieces)
+        if (piece.Middle() > s) behind -= normal_n * share_of(piece) * (s - piece.Middle());
       for (const Tube& tube : Tubes(vehicle, propellant)) {
         const double from = std::max(tube.top_m, s), length = tube.bottom_m - from;
         if (length <= 0.0 || tube.mass_kg == 0.0) continue;
