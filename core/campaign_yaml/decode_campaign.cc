@@ -186,6 +186,7 @@ class CampaignDescription {
       WarnOf(whole, "dispersions." + unusual.key, unusual.message, unusual.allowed);
       warnings_->back().unusual = true;
     }
+    WarnOfGuidance();
     if (decoded_.optimize) WarnOfInclination(*decoded_.optimize);
     if (reference_.node == nullptr) return;
     if (!campaign_.reference.target_missed.empty())
@@ -206,6 +207,13 @@ class CampaignDescription {
     const InputNode& at = FindField(*part.node, key, &path);
     AddProblem(*warnings_, at, part.path.empty() || path.empty() ? part.path + path : part.path + "." + path,
                message, allowed);
+  }
+
+  void WarnOfGuidance() {
+    if (!flies() || !campaign_.guidance.closed_loop) return;
+    const GuidedAuthority authority = AuthorityOf(campaign_.vehicle, campaign_.autopilot);
+    for (const GuidanceExcess& one : ExcessesOf(campaign_.guidance, authority))
+      WarnOf({root_, ""}, "guidance." + one.key, one.message, one.allowed);
   }
 
   // A launch due east has the inclination of its latitude.

@@ -198,12 +198,17 @@ FeedForwardRows TabulateFeedForward(const AttitudeProgram& program, const Autopi
   return table;
 }
 
+GuidanceLimits GuidanceLimitsOf(const FlightDefinition& definition) {
+  return LimitsOf(definition.guidance, AuthorityOf(definition.vehicle, definition.autopilot));
+}
+
 GuidanceMission BuildMission(const FlightDefinition& definition, const LauncherPlant& plant,
                              const LaunchFrame& frame, const std::vector<StageTimes>& times) {
   // Fine enough that straight pieces stand for a program whose rates change by some 0.1 deg/s in a second.
   constexpr double kStep_s = 0.5;
   GuidanceMission mission;
   mission.config = definition.guidance;
+  mission.limits = GuidanceLimitsOf(definition);
   mission.earth = plant.environment.earth;
   mission.R_IL = frame.R_IL;
   const InjectionTarget& target = definition.target;
@@ -273,6 +278,7 @@ FlightModel FlightModel::WithAutopilot(const AutopilotConfig& autopilot) const {
       BuildAutopilot(autopilot, autopilot_.stages, definition_.vehicle.reaction_control.minimum_on_time_s);
   model.feed_forward_rows_ =
       TabulateFeedForward(definition_.program, autopilot, static_cast<long>(reference_rows_.last_tick) + 1);
+  if (model.guidance_mission_) model.guidance_mission_->limits = GuidanceLimitsOf(model.definition_);
   return model;
 }
 

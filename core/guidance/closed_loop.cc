@@ -122,12 +122,12 @@ bool ClosedLoopGuidance::SeeCoast(const GuidanceSight& sight) {
   double& ignition_s = plan_.value[kIgnition];
   const double left_s = ignition_s - time_s;
   if (left_s <= kLastPlan_s) {
-    const bool settled = sight.attitude_error_rad <= mission_.config.settled_angle_rad &&
-                         sight.rate_error_rad_s <= mission_.config.settled_rate_rad_s;
+    const bool settled = sight.attitude_error_rad <= mission_.limits.settled_angle_rad &&
+                         sight.rate_error_rad_s <= mission_.limits.settled_rate_rad_s;
     const Direction wanted = LastBurnAttitude(plan_, prior_).At(0.0);
     const Direction at = command_.direction();
     const bool there = Square(wanted.pitch_rad - at.pitch_rad) + Square(wanted.yaw_rad - at.yaw_rad) <=
-                       Square(mission_.config.settled_angle_rad);
+                       Square(mission_.limits.settled_angle_rad);
     if ((settled && there) || outcome_.postponed_s >= kLongestPostponement_s) {
       next_call_s_ = ignition_s + kTakeOver_s;
       return false;
@@ -182,7 +182,7 @@ void ClosedLoopGuidance::SeeLastBurn(const GuidanceSight& sight) {
 }
 
 void ClosedLoopGuidance::Command(double time_s) {
-  const GuidanceConfig& config = mission_.config;
+  const GuidanceLimits& limits = mission_.limits;
   Direction wanted, rate;
   switch (phase_) {
     case GuidancePhase::kBelowBurns:
@@ -190,7 +190,7 @@ void ClosedLoopGuidance::Command(double time_s) {
       rate = mission_.program.RateAt(time_s);
       wanted.pitch_rad += plan_.value[kBelowPitch];
       wanted.yaw_rad += plan_.value[kBelowYaw];
-      return command_.Follow(time_s, wanted, rate, config.turn_rate_rad_s, config.turn_acceleration_rad_s2);
+      return command_.Follow(time_s, wanted, rate, limits.turn_rate_rad_s, limits.turn_acceleration_rad_s2);
     case GuidancePhase::kCoast:
     case GuidancePhase::kLastBurns:
       break;
@@ -198,9 +198,9 @@ void ClosedLoopGuidance::Command(double time_s) {
   const LastBurnAttitude burn(plan_, prior_);
   wanted = burn.At(time_s - plan_.ignition_s());
   if (time_s < plan_.ignition_s())
-    return command_.Follow(time_s, wanted, {}, config.coast_rate_rad_s, config.coast_acceleration_rad_s2);
+    return command_.Follow(time_s, wanted, {}, limits.coast_rate_rad_s, limits.coast_acceleration_rad_s2);
   rate = burn.RateAt(time_s - plan_.ignition_s());
-  command_.Follow(time_s, wanted, rate, config.turn_rate_rad_s, config.turn_acceleration_rad_s2);
+  command_.Follow(time_s, wanted, rate, limits.turn_rate_rad_s, limits.turn_acceleration_rad_s2);
 }
 
 }  // namespace dispersa

@@ -6,6 +6,7 @@
 
 #include "core/environment/earth.h"
 #include "core/guidance/guidance_config.h"
+#include "core/guidance/guidance_limits.h"
 #include "core/math/linear.h"
 #include "core/vehicle/propulsion.h"
 
@@ -47,6 +48,7 @@ struct GuidedStage {
 
 struct GuidanceMission {
   GuidanceConfig config;
+  GuidanceLimits limits;
   Earth earth = Wgs84();
   Matrix3 R_IL = Matrix3::Identity();
   Arrival target;

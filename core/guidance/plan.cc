@@ -32,9 +32,9 @@ TurnCourse CourseOf(const GuidanceMission& mission) {
     course.from_s =
         std::min(StandsAfter(mission.last, kTakeOver_s, mission.config.period_s), 0.5 * burn.duration_s);
   course.back_s = course.from_s + (course.end_s - course.from_s) / 3.0;
-  course.round_s = std::min(mission.config.turn_rate_rad_s / mission.config.turn_acceleration_rad_s2,
+  course.round_s = std::min(mission.limits.turn_rate_rad_s / mission.limits.turn_acceleration_rad_s2,
                             0.25 * (course.back_s - course.from_s));
-  course.steepest_rad_s = kOfTurnRate * mission.config.turn_rate_rad_s;
+  course.steepest_rad_s = kOfTurnRate * mission.limits.turn_rate_rad_s;
   constexpr int kPieces = 400;
   double sum = 0.0, late = 0.0, early = 0.0, late_late = 0.0, late_early = 0.0, early_early = 0.0;
   for (int i = 0; i < kPieces; ++i) {

@@ -75,10 +75,10 @@ class Lag {
  public:
   Lag() = default;
   // `rate_rad_s` of the plan.
-  Lag(double error_rad, double rate_rad_s, const GuidanceConfig& config) : error_rad_(error_rad) {
-    const double left_rad_s = config.turn_rate_rad_s + (error_rad > 0.0 ? rate_rad_s : -rate_rad_s);
-    closing_rad_s_ = std::max(left_rad_s, kLeast * config.turn_rate_rad_s);
-    brake_s_ = std::max(2.0 * closing_rad_s_ / config.turn_acceleration_rad_s2, kShortest_s);
+  Lag(double error_rad, double rate_rad_s, const GuidanceLimits& limits) : error_rad_(error_rad) {
+    const double left_rad_s = limits.turn_rate_rad_s + (error_rad > 0.0 ? rate_rad_s : -rate_rad_s);
+    closing_rad_s_ = std::max(left_rad_s, kLeast * limits.turn_rate_rad_s);
+    brake_s_ = std::max(2.0 * closing_rad_s_ / limits.turn_acceleration_rad_s2, kShortest_s);
     const double brake_rad = 0.5 * closing_rad_s_ * brake_s_, way_rad = std::fabs(error_rad);
     if (way_rad > brake_rad) until_s_ = (way_rad - brake_rad) / closing_rad_s_;
     at_brake_rad_ = std::min(way_rad, brake_rad);
@@ -106,7 +106,7 @@ struct Lags {
     return {plan.pitch_rad + pitch.At(since_s), plan.yaw_rad + yaw.At(since_s)};
   }
 };
-Lags LagsOf(const GuidanceConfig& config, const Knowledge& known, const Direction& plan,
+Lags LagsOf(const GuidanceLimits& limits, const Knowledge& known, const Direction& plan,
             const Direction& rate) {
   Lags lags;
   if (!known.commanded) return lags;
@@ -114,8 +114,8 @@ Lags LagsOf(const GuidanceConfig& config, const Knowledge& known, const Directio
                yaw = known.commanded->yaw_rad - plan.yaw_rad;
   lags.any = std::max(std::fabs(pitch), std::fabs(yaw)) > 1e-3 * kRadPerDeg;
   if (lags.any) {
-    lags.pitch = Lag(pitch, rate.pitch_rad, config);
-    lags.yaw = Lag(yaw, rate.yaw_rad, config);
+    lags.pitch = Lag(pitch, rate.pitch_rad, limits);
+    lags.yaw = Lag(yaw, rate.yaw_rad, limits);
   }
   return lags;
 }
@@ -143,7 +143,7 @@ Injection Predict(const GuidanceMission& mission, const PlanPrior& prior, const 
       return along;
     };
     const Lags lags =
-        LagsOf(mission.config, known, planned(from.time_s), mission.program.RateAt(from.time_s));
+        LagsOf(mission.limits, known, planned(from.time_s), mission.program.RateAt(from.time_s));
     const auto direction = [&](double time_s) { return lags.Of(planned(time_s), time_s - from.time_s); };
     Burn(mission, known.below, known.burn_ignition_s, steps.burn_s, known.thrust_offset_rad_I, {}, direction,
          state);
@@ -158,7 +158,7 @@ Injection Predict(const GuidanceMission& mission, const PlanPrior& prior, const 
   double brakes_s = 0.0;
   if (lit) {
     const double since_s = from.time_s - ignition_s;
-    lags = LagsOf(mission.config, known, burn.At(since_s), burn.RateAt(since_s));
+    lags = LagsOf(mission.limits, known, burn.At(since_s), burn.RateAt(since_s));
     brakes_s = since_s + lags.yaw.brakes_s();
   }
   const auto direction = [&](double time_s) {

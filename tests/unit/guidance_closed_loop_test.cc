@@ -232,7 +232,7 @@ PointFlight BeforeIgnition(const GuidanceMission& mission) {
 
 TEST(ClosedLoopGuidance, IgnitesWhereAttitudeAndRateHaveSettled) {
   const GuidanceMission mission = ReachableMission();
-  const double angle = mission.config.settled_angle_rad, rate = mission.config.settled_rate_rad_s;
+  const double angle = mission.limits.settled_angle_rad, rate = mission.limits.settled_rate_rad_s;
   struct Case {
     double angle_rad, rate_rad_s;
     bool ignites;
@@ -261,7 +261,7 @@ TEST(ClosedLoopGuidance, DoesNotIgniteWhileItsCommandIsOnItsWay) {
   const Direction wanted = LastBurnAttitude(flight.guidance.plan(), BuildPrior(mission)).At(0.0);
   ASSERT_GT(std::fabs(flight.guidance.command().direction().pitch_rad - wanted.pitch_rad) +
                 std::fabs(flight.guidance.command().direction().yaw_rad - wanted.yaw_rad),
-            2.0 * mission.config.settled_angle_rad);
+            2.0 * mission.limits.settled_angle_rad);
   flight.See(GuidancePhase::kCoast, 0.0);
   EXPECT_EQ(flight.guidance.outcome().postponed_s, 2.0);
 }

@@ -255,8 +255,8 @@ TEST(Predictor, KnowsThatTheCommandIsBehindThePlan) {
     Vector3 v = from.v_IC_I;
     constexpr double kStep_s = 0.01;
     for (double time_s = 10.0; time_s < 46.9 - 0.5 * kStep_s; time_s += kStep_s) {
-      command.Follow(time_s + kStep_s, {0.0, 0.0}, {}, mission.config.turn_rate_rad_s,
-                     mission.config.turn_acceleration_rad_s2);
+      command.Follow(time_s + kStep_s, {0.0, 0.0}, {}, mission.limits.turn_rate_rad_s,
+                     mission.limits.turn_acceleration_rad_s2);
       const double middle_s = time_s + 0.5 * kStep_s;
       v += kStep_s * 30e3 / (910.0 - 540.0 / 46.9 * middle_s) *
            (mission.R_IL * UnitVector(command.direction()));
