@@ -13,7 +13,7 @@ BINARIES = pathlib.Path(os.environ["DISPERSA_BINARIES"])
 SERVICES = pathlib.Path(__file__).resolve().parents[2] / "services"
 BUILD = SERVICES / "docs" / "build.py"
 PAGES = ["index", "first-campaign", "your-vehicle", "your-control-law", "reading-the-report", "cluster", "commands",
-         "exit-codes", "schemas", "core/index", "core/campaign_yaml/index", "core/statistics/index", "services/python/index",
+         "exit-codes", "glossary", "schemas", "core/index", "core/campaign_yaml/index", "core/statistics/index", "services/python/index",
          "services/python/tutorial/tutorial", "services/python/reference"]
 # What a page makes a browser load.
 LOADS = {("script", "src"), ("img", "src"), ("link", "href"), ("iframe", "src"), ("source", "src"), ("video", "src"),

@@ -107,6 +107,8 @@ class Afternoon(unittest.TestCase):
         for name in ("pitch_launch", "injection_altitude"):
             with self.assertRaisesRegex(dispersa.BadInput, f"worst: '{name}' is not a metric of these flights"):
                 self.results.worst(name)
+        with self.assertRaisesRegex(dispersa.BadInput, r"flights \(did you mean 'pitch_error_peak_deg'\?\), allowed"):
+            self.results.worst("pitch_error_peek_deg")
 
     def test_8_report(self):
         again = dispersa.report(self.results)

@@ -111,6 +111,8 @@ class Plots(unittest.TestCase):
             dispersa.plot.bands(self.results, "roll")
         with self.assertRaisesRegex(dispersa.BadInput, "'pitch' is not a metric of this vehicle"):
             dispersa.plot.exceedance(self.results, "pitch")
+        with self.assertRaisesRegex(dispersa.BadInput, r"vehicle \(did you mean 'pitch_error_peak_deg'\?\)$"):
+            dispersa.plot.exceedance(self.results, "pitch_error_peek_deg")
 
 
 if __name__ == "__main__":

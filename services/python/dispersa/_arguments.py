@@ -1,4 +1,5 @@
 """Arguments that are checked before C++ sees them, in the words of the program's errors."""
+import difflib
 import math
 import operator
 
@@ -14,6 +15,12 @@ MOST_THREADS = 1024
 def refuse(message, allowed):
     """BadInput without a place in a file."""
     return BadInput([("", 0, 0, "", message, allowed)])
+
+
+def did_you_mean(word, names):
+    """" (did you mean 'x'?)" for the nearest of the names, else empty."""
+    nearest = difflib.get_close_matches(str(word), names, n=1, cutoff=0.7)
+    return f" (did you mean '{nearest[0]}'?)" if nearest else ""
 
 
 def as_whole(value):

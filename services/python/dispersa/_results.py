@@ -8,7 +8,7 @@ import shutil
 import numpy
 
 from . import _core
-from ._arguments import MOST_CASES, MOST_THREADS, finite, refuse, truth, whole, whole_if_given
+from ._arguments import MOST_CASES, MOST_THREADS, did_you_mean, finite, refuse, truth, whole, whole_if_given
 from ._source import placed, source
 from ._tables import structured
 from ._campaign import Campaign, _from_canonical, load, under_law
@@ -86,7 +86,8 @@ class Results:
         """Indices of the worst cases in a metric, a list of at most `count`, the worst first. As in the report, lost flights
         come before all others, which are ordered by the metric. Raises BadInput for an unknown metric."""
         if metric not in self.metrics.dtype.names:
-            raise refuse(f"worst: '{metric}' is not a metric of these flights", "a name of Results.metrics.dtype.names")
+            raise refuse(f"worst: '{metric}' is not a metric of these flights{did_you_mean(metric, self.metrics.dtype.names)}",
+                         "a name of Results.metrics.dtype.names")
         worse = _core.describe(metric)[3]
         if worse == "neither":
             raise refuse(f"worst: of '{metric}' neither sense is worse", "a metric that has a worse sense")

@@ -12,6 +12,7 @@ import matplotlib.pyplot as pyplot
 import numpy
 
 from . import _core
+from ._arguments import did_you_mean
 from .errors import BadInput
 from ._flight import Flight, Flights, History
 from ._results import Results
@@ -222,7 +223,7 @@ def _histories_of(flights, columns, labels=None):
 def _completed(results, metric):
     """Finite values of a metric over the completed flights."""
     if metric not in results.metrics.dtype.names:
-        raise BadInput(f"'{metric}' is not a metric of this vehicle")
+        raise BadInput(f"'{metric}' is not a metric of this vehicle{did_you_mean(metric, results.metrics.dtype.names)}")
     values = results.metrics[metric][numpy.array([outcome == "completed" for outcome in results.outcome], dtype=bool)]
     return values[numpy.isfinite(values)]
 
