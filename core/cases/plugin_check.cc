@@ -120,7 +120,7 @@ std::vector<CaseResult> CompareFlights(const CampaignFlights& flights, std::uint
       std::move(again.begin(), again.end(), std::back_inserter(alone));
     }
     if (alone.size() != i + 1 || together.size() != checked.size())
-      throw PluginError("answered with what is no result");
+      throw PluginError("returned no valid result");
     const std::string difference = Difference(alone[i].history, together[i].history);
     if (difference.empty()) continue;
     throw PluginError(

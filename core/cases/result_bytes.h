@@ -100,6 +100,6 @@ inline CaseResult UnpackResult(Unpacker& in) {
 }
 
 /// Thrown if the bytes are no result.
-inline ContainedEnd Garbled() { return {"answered with what is no result", PluginMark{}}; }
+inline ContainedEnd Garbled() { return {"returned no valid result", PluginMark{}}; }
 
 }  // namespace dispersa

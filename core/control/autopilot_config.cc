@@ -83,7 +83,7 @@ void CheckAxis(const AxisConfig& axis, const std::string& name, int stages, doub
   }
   CheckSchedule(axis, stages, tick_s, add);
   if (law.foreign && !axis.schedule.empty())
-    add("schedule", "changes gains that a plug-in's law is told at ignition alone",
+    add("schedule", "changes gains, but a plug-in gets its gains only at ignition",
         "no schedule with law: plugin");
   if (law.integral) is_one_a_stage("integral.ki_1_s3", axis.integral.ki_1_s3.size());
   if (law.rules) {

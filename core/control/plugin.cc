@@ -75,7 +75,7 @@ void PluginLaw::Open() const {
   // In a child no lock may be taken that another thread of the parent held.
   const Functions* const here = mark == nullptr ? FunctionsHere(config_) : nullptr;
   if (here == nullptr && mark == nullptr)
-    throw PluginError("is flown in a process of its own, which this command does not start");
+    throw PluginError("is a plug-in, which flies in a child process; this command starts none");
   CountCall();
   if (here != nullptr) {
     functions_ = *here;
@@ -200,10 +200,10 @@ void PluginFlight::End(double time_s, int stage) {
   // All that is watched may be a page: now and then.
   const bool is_sound = ++calls_ % 1024 == 0 || stage < 0 ? memory_.IsSound() : memory_.IsSoundNearby();
   if (is_sound) return;
-  if (stage < 0) throw PluginError("wrote beside the memory of its flight when it was created");
+  if (stage < 0) throw PluginError("wrote outside the memory of its flight when it was created");
   char text[128];
   std::snprintf(text, sizeof text,
-                "wrote beside the memory of its flight, at %.3f s at the latest, in stage %d", time_s,
+                "wrote outside the memory of its flight, at %.3f s at the latest, in stage %d", time_s,
                 stage + 1);
   throw PluginError(text);
 }

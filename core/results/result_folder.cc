@@ -216,7 +216,7 @@ ResultFolder ResultFolder::Create(const fs::path& directory, const Campaign& cam
   if (error) FailSystem(directory, error);
   if (!empty) {
     throw InputError(fmt::format("{}: the folder is not empty", directory.string()),
-                     "a new or an empty folder, or --resume to go on with a campaign of the same flight id");
+                     "a new or an empty folder, or --resume to continue a campaign of the same flight id");
   }
   try {
     WriteFile(directory / kCampaignName, campaign.canonical_yaml);
@@ -263,7 +263,7 @@ ResultFolder ResultFolder::Open(const fs::path& directory) {
       throw InputError(fmt::format("{}: not a result folder: {}", directory.string(), unreadable.what()));
     }
     throw InputError(
-        fmt::format("{}: flown by engine {}, whose inputs and metrics are not those of this one, {}",
+        fmt::format("{}: flown by engine {}; its inputs and metrics are not those of this engine, {}",
                     directory.string(), folder.Provenance("engine"), EngineVersion()));
   }
   return folder;

@@ -15,12 +15,11 @@ namespace dispersa {
 void AddReflownOptions(CLI::App& command, ReflownFlights& flights) {
   const std::map<std::string, std::uint64_t> words = {{"all", std::numeric_limits<std::uint64_t>::max()}};
   command.add_flag("--no-histories", flights.none,
-                   "fly no case again for the report: for gates that read verdicts only");
+                   "make the report without flying cases again; for gates that read only verdicts");
   command
-      .add_option(
-          "--envelope", flights.envelope,
-          "number of first cases to fly again for the percentiles over time, or all; the extremes of every "
-          "metric besides")
+      .add_option("--envelope", flights.envelope,
+                  "number of first cases, or all, to fly again for the percentiles over time; the extreme "
+                  "cases of every metric are flown too")
       ->transform(WholeNumber(1, UINT64_MAX))
       ->transform(CLI::Transformer(words).description("{all}"))
       ->default_str(std::to_string(flights.envelope));

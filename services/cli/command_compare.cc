@@ -79,7 +79,7 @@ ExitCode CompareAndShow(const CompareOptions& options, const GlobalOptions& glob
 void AddCompareCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<CompareOptions>();
   CLI::App* command =
-      app.add_subcommand("compare", "compare two result folders, paired by case where the draws match");
+      app.add_subcommand("compare", "compare two result folders, case by case if their draws are the same");
   command->add_option("a", options->a, "result folder")->required()->type_name(kFolderType);
   command->add_option("b", options->b, "result folder")->required()->type_name(kFolderType);
   command->add_option("--out", options->out, "folder for compare.html and compare.json")

@@ -17,9 +17,11 @@ void AddCompletionCommand(CLI::App& app, Invocation& invocation) {
   auto shell = std::make_shared<std::string>();
   CLI::App* command =
       app.add_subcommand("completion", "print a script that completes dispersa's command lines");
-  command->add_option("shell", *shell, "that reads it")->required()->check(CLI::IsMember(scripts));
+  command->add_option("shell", *shell, "shell that reads the script")
+      ->required()
+      ->check(CLI::IsMember(scripts));
   command->footer(
-      "An installed dispersa has them where shells look. For others:\n"
+      "An installation puts these scripts where shells find them. Without one:\n"
       "Examples: source <(dispersa completion bash)\n"
       "          dispersa completion fish > ~/.config/fish/completions/dispersa.fish");
   command->callback([shell, &invocation] {

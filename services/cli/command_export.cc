@@ -57,7 +57,7 @@ void ExportImpacts(const StoredCampaign& stored, const ExportOptions& options, s
 ExitCode Export(const ExportOptions& options, const GlobalOptions& global) {
   std::FILE* const stream = StreamBeside("--out", options.out, global);
   if (stream == stderr && options.format == ExportFormat::kHdf5)
-    throw InputError("--out: HDF5 is written in many places of its file", "a file");
+    throw InputError("--out: HDF5 cannot be written to standard output", "a file");
   const StoredCampaign stored = OpenStored(options.directory);
   RequireWritableFile("--out", options.out);
   switch (options.format) {
@@ -97,10 +97,10 @@ void AddExportCommand(CLI::App& app, Invocation& invocation) {
       {"csv", ExportFormat::kCsv},         {"geojson", ExportFormat::kGeoJson}, {"hdf5", ExportFormat::kHdf5},
       {"jsonl", ExportFormat::kJsonLines}, {"junit", ExportFormat::kJUnit},     {"kml", ExportFormat::kKml}};
   command
-      ->add_option(
-          "--format", options->format,
-          "csv or jsonl: one line a case; hdf5: one dataset a column; junit: a test case a requirement; "
-          "geojson or kml: impact points of spent stages and lost flights, flown again, and their footprints")
+      ->add_option("--format", options->format,
+                   "csv or jsonl: one line for each case; hdf5: one dataset for each column; junit: a test "
+                   "case for each requirement; geojson or kml: impact points of spent stages and lost "
+                   "flights, whose cases are flown again, and footprints")
       ->required()
       ->transform(CLI::CheckedTransformer(formats).description(CLI::detail::generate_map(formats, true)));
   command->add_option("--out", options->out, "file to write; -: standard output")

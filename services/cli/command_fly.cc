@@ -101,10 +101,9 @@ void AddFlyCommand(CLI::App& app, Invocation& invocation) {
   command->add_option("--history", options->history, "file for the time history, CSV; -: standard output")
       ->type_name(kFileType);
   command
-      ->add_option(
-          "--integrator", options->integrator,
-          "simpson (what campaigns fly), erk4 (what scenarios fly; classical Runge-Kutta through SUNDIALS) "
-          "or cvode (high accuracy, to compare)")
+      ->add_option("--integrator", options->integrator,
+                   "simpson (default of campaigns), erk4 (default of scenarios: the classical Runge-Kutta "
+                   "method of SUNDIALS) or cvode (high accuracy, for comparison)")
       ->type_name("{simpson,erk4,cvode}");
   command->add_option("--seed", options->overrides.seed, "seed, instead of the file's");
   command

@@ -91,18 +91,17 @@ ExitCode Init(const InitOptions& options, const GlobalOptions& global) {
 void AddInitCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<InitOptions>();
   CLI::App* command = app.add_subcommand("init", "write a folder with a commented campaign that flies");
-  command->add_option("directory", options->directory, "folder to make; an existing folder must be empty")
+  command->add_option("directory", options->directory, "folder, new or empty")
       ->required()
       ->type_name(kFolderType);
   command
       ->add_option("--from", options->from,
-                   "slv4, every key explained; or vega, electron, scout, from public data")
+                   "slv4, with every key explained; or vega, electron, scout from public data")
       ->type_name(fmt::format("{{{}}}", fmt::join(StarterNames(), ",")))
       ->capture_default_str();
   command->footer(
-      "Campaign, vehicle, autopilot, reference, the trajectory problem that it solves, and the schemas by "
-      "which\n"
-      "editors complete and check them.\n"
+      "Writes campaign, vehicle, autopilot, reference, trajectory problem, and the schemas with which\n"
+      "editors complete and check these files.\n"
       "Example: dispersa init first\n"
       "         dispersa init launcher --from vega");
   command->callback([options, &invocation] {

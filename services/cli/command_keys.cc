@@ -70,7 +70,7 @@ std::pair<CLI::App*, std::shared_ptr<KeysOptions>> AddCommand(
       ->required()
       ->type_name(kFolderType);
   if (days > 0) {
-    command->add_option("--days", options->days, fmt::format("valid for so long; default {}", days))
+    command->add_option("--days", options->days, fmt::format("days until the keys expire; default {}", days))
         ->transform(WholeNumber(1, kMostDays));
   }
   command->callback([options, &invocation, run] {
@@ -82,7 +82,8 @@ std::pair<CLI::App*, std::shared_ptr<KeysOptions>> AddCommand(
 }  // namespace
 
 void AddKeysCommand(CLI::App& app, Invocation& invocation) {
-  CLI::App* keys = app.add_subcommand("keys", "make the keys of daemons and clients");
+  CLI::App* keys =
+      app.add_subcommand("keys", "make the keys by which daemons and clients recognise each other");
   keys->require_subcommand(1);
   keys->fallthrough();
   keys->footer(
@@ -91,14 +92,14 @@ void AddKeysCommand(CLI::App& app, Invocation& invocation) {
       "          dispersa keys issue authority --role worker --name node1\n"
       "          dispersa-worker --keys authority/issued/worker-node1 --peer coordinator-host\n"
       "          dispersa keys revoke authority --role worker --name node1\n"
-      "The folder `authority` stays where it was made; a machine gets only its own folder of what was "
-      "issued.");
+      "The folder `authority` stays on the machine where it was made. Every other machine gets only its own "
+      "issued folder.");
   AddCommand(keys, invocation, "init", "make an authority", kAuthorityDays, Init);
   const auto [issue, issued] =
       AddCommand(keys, invocation, "issue", "make the keys of one participant", kIssuedDays, Issue);
   AddRoleAndName(issue, issued, "its name: letters, digits, '-'; often that of its machine");
   const auto [revoke, revoked] =
-      AddCommand(keys, invocation, "revoke", "have a worker's or client's keys believed no more", 0, Revoke);
+      AddCommand(keys, invocation, "revoke", "no longer accept the keys of a worker or client", 0, Revoke);
   AddRoleAndName(revoke, revoked, "its name");
 }
 

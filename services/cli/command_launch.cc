@@ -44,7 +44,7 @@ void AddLaunchCommand(CLI::App& app, Invocation& invocation) {
   command->add_option("--cases", options->overrides.cases, "number of cases, instead of the file's")
       ->transform(WholeNumber(1, kMostCases));
   command->add_option("--seed", options->overrides.seed, "seed, instead of the file's");
-  command->add_option("--priority", options->priority, "a campaign of higher priority flies first; default 0")
+  command->add_option("--priority", options->priority, "campaigns of higher priority fly first; default 0")
       ->transform(WholeNumber(-1000, 1000));
   command->footer("Example: dispersa launch campaigns/table3.yaml --cases 5000 --peer coordinator-host");
   BindSession(command, invocation, [options](Session& session, const GlobalOptions& global) {

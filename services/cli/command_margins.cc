@@ -197,20 +197,22 @@ void AddMarginsCommand(CLI::App& app, Invocation& invocation) {
   command->add_option("campaign", options->campaign, "campaign file")->required()->type_name(kYamlType);
   command->add_option("--autopilot", options->autopilot, "autopilot file, instead of the campaign's")
       ->type_name(kYamlType);
-  command->add_option("--cases", options->margins.cases, "also of so many dispersed cases of the campaign")
+  command
+      ->add_option("--cases", options->margins.cases,
+                   "number of dispersed cases of the campaign whose margins are computed too")
       ->transform(WholeNumber(1, kMostCases));
   command
       ->add_option("--frequency-band", options->margins.frequency_band_percent,
-                   "bending: margins also with the modes' frequencies so many percent lower and higher, "
-                   "together and each "
-                   "alone (15); 0: as they are")
+                   "bending: each margin is the least with the modes' frequencies as they are, and lowered "
+                   "and raised by this percentage (default 15), together and each mode alone")
       ->check(CLI::Range(0.0, 50.0));
   command->add_flag(
       "--drift", options->margins.drift,
-      "linearise pitch and yaw with the lateral velocity, whose incidence takes from the least gain");
+      "linearise pitch and yaw with the lateral velocity; its incidence reduces the margin to a lower gain");
   command->footer(
-      "Computed from a linearisation at lift-off, max q, ignitions and burnouts, and measured by spoiling\n"
-      "the loop in flight. Ends with 3 when a gate is not met.\n"
+      "The margins are computed from a linearisation at lift-off, max q, ignitions and burnouts. They are "
+      "also measured: the gain or\n"
+      "delay of the loop is changed in flight until control is lost. Exit code 3: a gate is not met.\n"
       "Example: dispersa margins campaigns/nominal.yaml\n"
       "         dispersa margins campaigns/aero20.yaml --cases 32");
   command->callback([options, &invocation] {

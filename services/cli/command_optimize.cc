@@ -95,7 +95,8 @@ ExitCode Optimize(const OptimizeOptions& options, const GlobalOptions& global) {
   const int threads = ThreadsOrAll(options.threads);
   if (options.seeds > 0) return StudySeeds(input, options, threads, global);
   const std::filesystem::path file = options.out.empty() ? input.name + "_reference.yaml" : options.out;
-  if (file == "-") throw InputError("--out: '-' is one stream, and three files are written", "a file name");
+  if (file == "-")
+    throw InputError("--out: '-' is one stream, but optimize writes three files", "a file name");
   RequireWritableReference("--out", file);
   TerminalObserver observer(global.quiet);
   const FoundReference found = FindReference(input, threads, observer);
@@ -125,15 +126,14 @@ void AddOptimizeCommand(CLI::App& app, Invocation& invocation) {
   command
       ->add_option(
           "-o,--out", options->out,
-          "reference file to write; the time history goes beside it as .csv, figures and tables as "
-          ".html; default <name>_reference.yaml. One that misses its target is written too, and says so")
+          "reference file to write; the time history goes beside it as .csv, figures and tables as .html; "
+          "default <name>_reference.yaml. A reference that misses its target is written too, with a mark")
       ->type_name(kFileType);
   command->add_option("--seed", options->seed, "seed, instead of the file's");
   command
-      ->add_option(
-          "--seeds", options->seeds,
-          "optimise with so many seeds, from the file's or --seed on, and print how well and how alike "
-          "they end; writes nothing; exit code 3 unless every one reaches the target")
+      ->add_option("--seeds", options->seeds,
+                   "optimise with this number of seeds, beginning with the file's or --seed, and print a "
+                   "table of the results; writes no file; exit code 3 unless every seed reaches the target")
       ->transform(WholeNumber(1, 10000));
   command->add_option("--threads", options->threads, "threads; the result does not depend on them")
       ->transform(WholeNumber(1, 1024));

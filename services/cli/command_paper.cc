@@ -82,8 +82,8 @@ ExitCode MakePaper(const PaperCommandOptions& options, const GlobalOptions& glob
 
 void AddPaperCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<PaperCommandOptions>();
-  CLI::App* command =
-      app.add_subcommand("paper", "fly and draw every table and figure of the paper on one page");
+  CLI::App* command = app.add_subcommand(
+      "paper", "compute every table and figure of the paper on one page, from new flights");
   command->add_option("--out", options->out, "folder for paper.html and its data, empty or new")
       ->required()
       ->type_name(kFolderType);

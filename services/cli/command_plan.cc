@@ -97,9 +97,9 @@ void AddPlanCommand(CLI::App& app, Invocation& invocation) {
   command->add_option("--seed", options->overrides.seed, "seed, instead of the file's");
   command->add_flag("--csv", options->csv, "all inputs, in the columns of cases.csv");
   command->add_flag("--all", options->all,
-                    "every dispersed input of every case, not only what fits on a screen");
+                    "every dispersed input of every case, not only as many as fit on a screen");
   command->footer(
-      "Prints of each dispersed input what was declared and what all cases drew, then its value in the first "
+      "Prints the declared and the drawn distribution of each dispersed input, then its values in the first "
       "cases.\n"
       "Example: dispersa plan campaigns/table3.yaml --cases 20 --csv");
   command->callback([options, &invocation] {

@@ -54,7 +54,7 @@ ExitCode Replay(const ReplayOptions& options, const GlobalOptions& global) {
 
 void AddReplayCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<ReplayOptions>();
-  CLI::App* command = app.add_subcommand("replay", "fly a stored case again and compare it to the last bit");
+  CLI::App* command = app.add_subcommand("replay", "fly a stored case again and compare it bit by bit");
   command->add_option("directory", options->directory, "result folder")->required()->type_name(kFolderType);
   command->add_option("--case", options->case_index, "case index, from 0")->required();
   command->add_option("--history", options->history, "file for the time history, CSV; -: standard output")

@@ -40,12 +40,11 @@ ExitCode Fill(const ReportCommand& options) {
 
 ExitCode ReportAgain(const ReportCommand& options, const GlobalOptions& global) {
   if (!options.template_file.empty()) {
-    if (global.json)
-      throw InputError("--template: what it gives is not the object of --json", "either of them");
+    if (global.json) throw InputError("--template and --json cannot be used together", "one of them");
     return Fill(options);
   }
   if (!options.out.empty())
-    throw InputError("--out: the reports stand in the result folder", "--out with --template");
+    throw InputError("--out: the reports are written into the result folder", "--out with --template");
   StoredCampaign stored = OpenStored(options.directory);
   RequireWritableFile("the report", stored.folder.directory() / "report.html");
   stored.folder.Lock();
@@ -60,12 +59,12 @@ ExitCode ReportAgain(const ReportCommand& options, const GlobalOptions& global) 
 
 void AddReportCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<ReportCommand>();
-  CLI::App* command = app.add_subcommand("report", "make the reports of a result folder again");
+  CLI::App* command = app.add_subcommand("report", "write the reports of a result folder again");
   command->add_option("directory", options->directory, "result folder")->required()->type_name(kFolderType);
   AddReflownOptions(*command, options->reflown);
   command
       ->add_option("--template", options->template_file,
-                   "Jinja template to fill from summary.json, instead of making the reports")
+                   "Jinja template to fill from summary.json, instead of writing the reports")
       ->type_name(kFileType);
   command->add_option("--out", options->out, "file for the filled template; default: standard output")
       ->type_name(kFileType);

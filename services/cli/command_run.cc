@@ -46,14 +46,14 @@ ExitCode Fly(const RunCommand& options, PreparedRun prepared, const GlobalOption
     return result.code;
   } catch (const Interrupted&) {
     observer.EndPhase();
-    Tell("interrupted; to go on: {}\n", ResumeCommand(options, directory));
+    Tell("interrupted; to continue: {}\n", ResumeCommand(options, directory));
     if (global.json) PrintErrorJson(kExitInterrupted, "interrupted");
     return kExitInterrupted;
   } catch (const ResultError& error) {
     observer.EndPhase();
     if (error.kind() != ResultError::Kind::kDiskFull) throw;
     LogError("{}", error.what());
-    Tell("to go on when there is space: {}\n", ResumeCommand(options, directory));
+    Tell("to continue when the disk has space: {}\n", ResumeCommand(options, directory));
     if (global.json) PrintErrorJson(kExitIncomplete, error.what());
     return kExitIncomplete;
   }
@@ -94,7 +94,7 @@ void AddRunCommand(CLI::App& app, Invocation& invocation) {
   command->add_option("--autopilot", request.overrides.autopilot, "autopilot file, instead of the campaign's")
       ->type_name(kYamlType);
   AddReflownOptions(*command, options->run.reflown);
-  command->add_flag("--resume", request.resume, "continue in a folder of the same flight id");
+  command->add_flag("--resume", request.resume, "continue in a result folder of the same flight id");
   command->footer(
       "Example: dispersa run campaigns/table3.yaml --cases 200 --out results/trial\n"
       "         dispersa run campaigns/table3.yaml --cases 500 --out results/trial --resume");

@@ -58,10 +58,10 @@ std::vector<std::string> WriteAll(const std::filesystem::path& folder) {
 
 ExitCode Schema(const SchemaOptions& options, const GlobalOptions& global) {
   if (options.kind.empty() == options.all.empty())
-    throw InputError("the schema of which kind of file is to be written is not said, or said twice",
+    throw InputError("give either a kind of file or --all",
                      "one of " + JoinWords(KindNames()) + ", or --all DIR");
   if (!options.all.empty()) {
-    if (!options.out.empty()) throw InputError("--out and --all are both given", "either of them");
+    if (!options.out.empty()) throw InputError("--out and --all cannot be used together", "one of them");
     TellWritten(WriteAll(options.all), global);
     return kExitDone;
   }
@@ -83,7 +83,7 @@ void AddSchemaCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<SchemaOptions>();
   CLI::App* command =
       app.add_subcommand("schema", "write the JSON Schema of a kind of input file, for editors");
-  command->add_option("kind", options->kind, "of file")
+  command->add_option("kind", options->kind, "kind of input file")
       ->type_name(fmt::format("{{{}}}", fmt::join(KindNames(), ",")));
   command->add_option("--out", options->out, "file to write, else standard output")->type_name(kFileType);
   command->add_option("--all", options->all, "folder for the schemas of all kinds")->type_name(kFolderType);

@@ -136,15 +136,13 @@ std::string Sentence(const FailureSearchResult& result, const Requirement& requi
     return fmt::format("The flight without dispersions fails {}.", LimitText(requirement));
   if (result.found) {
     return fmt::format(
-        "Fails {} at a distance of {} standard deviations from nothing dispersed, the smallest found by a "
-        "local search of "
-        "{} flights; a smaller one may exist.",
+        "Fails {} at a distance of {} standard deviations from the nominal, the smallest found by a local "
+        "search of {} flights. A smaller one may exist.",
         LimitText(requirement), ReadableText(result.distance), result.flights);
   }
   return fmt::format(
-      "No flight within {} standard deviations was found to fail {} in a local search of {} flights, which "
-      "does not show "
-      "that there is none.",
+      "No flight within {} standard deviations was found to fail {} in a local search of {} flights. This "
+      "does not show that there is none.",
       ReadableText(reach), LimitText(requirement), result.flights);
 }
 
@@ -215,8 +213,7 @@ void AddSearchCommand(CLI::App& app, Invocation& invocation) {
       "search", "find the smallest dispersion that fails a requirement, by a bounded local search");
   command->add_option("campaign", options->campaign, "campaign file")->required()->type_name(kYamlType);
   command
-      ->add_option("--metric", options->metric,
-                   "metric whose requirement shall fail; default: the first one's")
+      ->add_option("--metric", options->metric, "metric of the requirement; default: the first requirement")
       ->type_name(kMetricType);
   auto* below = command->add_option("--below", options->below,
                                     "limit instead of the campaign's; a flight above it fails");
@@ -224,13 +221,13 @@ void AddSearchCommand(CLI::App& app, Invocation& invocation) {
       ->excludes(below);
   command->add_option("--flights", options->options.max_flights, "largest number of flights, default 1000")
       ->transform(WholeNumber(20, 1000000));
-  command->add_option("--starts", options->options.starts, "points to search from, default 4")
+  command->add_option("--starts", options->options.starts, "number of starting points, default 4")
       ->transform(WholeNumber(1, 100));
   command
       ->add_option("--reach", options->options.reach, "farthest distance in standard deviations, default 6")
       ->check(CLI::Range(0.1, 8.0));
-  command->add_option("--seed", options->options.seed, "seed of the first points, default 1");
-  command->add_option("--out", options->out, "file for the JSON object of --json")->type_name(kFileType);
+  command->add_option("--seed", options->options.seed, "seed of the starting points, default 1");
+  command->add_option("--out", options->out, "file for the object that --json prints")->type_name(kFileType);
   command->footer(
       "Example: dispersa search campaigns/full.yaml --metric pitch_error_peak_deg --below 0.5 --flights "
       "2000");

@@ -54,16 +54,16 @@ std::string FullId(Session& session, const std::string& id) {
 
 void AddStatusCommands(CLI::App& app, Invocation& invocation) {
   BindSession(
-      app.add_subcommand("list", "the campaigns of a coordinator"), invocation,
+      app.add_subcommand("list", "list the campaigns of a coordinator"), invocation,
       [](Session& session, const GlobalOptions& global) { return Show("list", "", session, global); });
 
-  CLI::App* status = app.add_subcommand("status", "the campaigns and workers of a coordinator");
+  CLI::App* status = app.add_subcommand("status", "show the campaigns and workers of a coordinator");
   BindSession(status, invocation,
               [id = AddIdOption(status, false)](Session& session, const GlobalOptions& global) {
                 return Show("status", *id, session, global);
               });
 
-  CLI::App* cancel = app.add_subcommand("cancel", "end a campaign; its results are kept");
+  CLI::App* cancel = app.add_subcommand("cancel", "end a campaign; its stored results stay");
   BindSession(cancel, invocation, [id = AddIdOption(cancel)](Session& session, const GlobalOptions& global) {
     return Do("cancel", {{"id", *id}}, "cancelled", session, global);
   });

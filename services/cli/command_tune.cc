@@ -218,7 +218,7 @@ void PrintText(std::FILE* stream, const TuneOptions& options, const TuningResult
     if (!stage.missed.empty()) fmt::print(stream, "      misses by most: {}\n", stage.missed);
   }
   if (!result.skipped.empty())
-    fmt::print(stream, "No margins were asked for with less than {:g} % of full thrust:\n",
+    fmt::print(stream, "No margins are required below {:g} % of full thrust:\n",
                100.0 * kLeastThrustFraction);
   for (const SkippedInstant& at : result.skipped)
     fmt::print(stream, "      {:.2f} s, stage {}{}\n", at.time_s, at.stage + 1,
@@ -273,7 +273,7 @@ ExitCode RunTuning(const TuneOptions& given, const GlobalOptions& global) {
     PrintText(stream, options, result, log);
   }
   if (result.feasible) return kExitDone;
-  Tell("no design was found that meets every constraint; {} holds the best that was found\n", options.out);
+  Tell("no design was found that meets every constraint; {} has the best one that was found\n", options.out);
   return kExitRequirementFailed;
 }
 
@@ -281,48 +281,48 @@ ExitCode RunTuning(const TuneOptions& given, const GlobalOptions& global) {
 
 void AddTuneCommand(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<TuneOptions>();
-  CLI::App* command = app.add_subcommand("tune", "find the gains of an autopilot, for any control law");
+  CLI::App* command = app.add_subcommand("tune", "find the gains of an autopilot with any control law");
   command->add_option("campaign", options->campaign, "campaign file: vehicle, reference and dispersions")
       ->required()
       ->type_name(kYamlType);
   command
-      ->add_option(
-          "-o,--out", options->out,
-          "autopilot file to write; one that misses a constraint says so in its name; -: standard output")
+      ->add_option("-o,--out", options->out,
+                   "autopilot file to write; if a constraint is missed, the autopilot's name says so; -: "
+                   "standard output")
       ->required()
       ->type_name(kFileType);
   command
       ->add_option("--autopilot", options->autopilot,
-                   "autopilot file whose law and fixed parameters are taken, instead of the campaign's")
+                   "autopilot file with the law and the fixed parameters, instead of the campaign's")
       ->type_name(kYamlType);
   command
       ->add_option("--seed", options->tuning.seed,
-                   "seed of the search and of its cases; never the campaign's own")
+                   "seed of the search and of its cases; must not be the campaign's")
       ->capture_default_str();
   command->add_option("--cases", options->tuning.cases, "cases flown for each design")
       ->transform(WholeNumber(1, 10000))
       ->capture_default_str();
   command
       ->add_option("--evaluations", options->tuning.evaluations,
-                   "designs tried, shared by the stages and the augmentation of PD")
+                   "number of designs to try, shared by the stages and the augmentation of PD")
       ->transform(WholeNumber(1, 1000000))
       ->capture_default_str();
   command
-      ->add_option(
-          "--dispersed", options->tuning.dispersed,
-          "draws of the campaign whose plants must meet the gates of dispersed flights, by every design")
+      ->add_option("--dispersed", options->tuning.dispersed,
+                   "number of dispersed cases in which every design must meet the gates of dispersed flights")
       ->transform(WholeNumber(0, 1000))
       ->capture_default_str();
   command->add_flag(
       "--lqr", options->tuning.regulator,
-      "search the weights of a linear-quadratic regulator, whose gains the law flies: pid, pid_aac");
+      "search the weights of a linear-quadratic regulator and use its gains; for the laws pid and pid_aac");
   command->add_option("--threads", options->threads, "threads; the result does not depend on them")
       ->transform(WholeNumber(1, 1024));
   command->footer(
-      "Minimises the mean RMS pitch error of each stage, subject to computed margins above the gates of\n"
-      "`dispersa margins` with a reserve; then what augments PD, subject to the measured ones. The gains\n"
-      "that the file has are not looked at; the times of its schedule are kept. Ends with 3 when no design "
-      "meets the constraints.\n"
+      "Minimises the mean RMS pitch error of each stage. The computed margins must be above the gates of\n"
+      "`dispersa margins` with a reserve. Then it designs the augmentation of PD by the measured margins. It "
+      "ignores\n"
+      "the gains of the file and keeps the times of its schedule. Exit code 3: no design meets the "
+      "constraints.\n"
       "Example: dispersa tune campaigns/table3.yaml --autopilot campaigns/autopilots/pd.yaml --out pd.yaml");
   command->callback([options, &invocation] {
     invocation.command = [options](const GlobalOptions& global) { return RunTuning(*options, global); };

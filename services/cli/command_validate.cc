@@ -35,7 +35,7 @@ void Draw(const FileCheck& check, const ValidateOptions& options) {
 
 ExitCode Validate(const ValidateOptions& options, const GlobalOptions& global) {
   if (!options.picture.empty() && options.files.size() != 1)
-    throw InputError("--picture: one file is drawn at a time", "one vehicle or campaign file");
+    throw InputError("--picture: only one file can be drawn", "one vehicle or campaign file");
   RequireWritableFile("--picture", options.picture);
   std::FILE* const stream = StreamBeside("--picture", options.picture, global);
   auto errors = nlohmann::ordered_json::array();
@@ -87,9 +87,9 @@ void AddValidateCommand(CLI::App& app, Invocation& invocation) {
                    "file for a drawing of the vehicle to scale, SVG; -: standard output")
       ->type_name(kFileType);
   command->footer(
-      "A warning names what a vehicle's numbers imply that no known one has; of a valid vehicle file masses, "
-      "Isp,\n"
-      "ideal delta-v and thrust to weight are printed.\n"
+      "A warning names a number outside the range of known launchers. For a valid vehicle file the command "
+      "prints\n"
+      "masses, Isp, ideal delta-v and thrust-to-weight ratio.\n"
       "Example: dispersa validate campaigns/*.yaml campaigns/vehicles/slv4.yaml\n"
       "         dispersa validate --strict --picture slv4.svg campaigns/vehicles/slv4.yaml");
   command->callback([options, &invocation] {

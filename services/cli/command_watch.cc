@@ -50,9 +50,9 @@ class Watcher {
   void Away(const Session& session) {
     silent_ += kPatience;
     const std::string silence = session.Silence(silent_);
-    if (silent_ % kSayAgain == std::chrono::seconds(0)) LogWarning("{}; it is tried again", silence);
+    if (silent_ % kSayAgain == std::chrono::seconds(0)) LogWarning("{}; watch tries again", silence);
     if (page_ != nullptr)
-      page_->Show(NoticeParts(silence + "; what stands here is as it was then. It is tried again."));
+      page_->Show(NoticeParts(silence + "; this page shows the state before. watch tries again."));
   }
   void Show(const Json& status, const std::optional<Json>& tally) {
     silent_ = std::chrono::seconds(0);
@@ -128,11 +128,13 @@ ExitCode Watch(const std::string& id, const WatchOptions& options, Session& sess
 }  // namespace
 
 void AddWatchCommand(CLI::App& app, Invocation& invocation) {
-  CLI::App* watch = app.add_subcommand("watch", "follow a campaign and end with its exit code when it ends");
+  CLI::App* watch =
+      app.add_subcommand("watch", "follow a campaign until it ends, and end with its exit code");
   auto options = std::make_shared<WatchOptions>();
-  CLI::Option* web = watch->add_flag(
-      "--web", options->web, "also as a page for the browsers of this machine; its address goes to stderr");
-  watch->add_option("--port", options->port, "port of the page on 127.0.0.1; default: any that is free")
+  CLI::Option* web =
+      watch->add_flag("--web", options->web,
+                      "also serve a page for the browsers of this machine, and print its address on stderr");
+  watch->add_option("--port", options->port, "port of the page on 127.0.0.1; default: any free port")
       ->needs(web)
       ->transform(WholeNumber(1, 65535));
   watch->footer("Example: dispersa watch 3f2a --web --port 8080");

@@ -55,7 +55,7 @@ constexpr char kScript[] = R"js(
     });
     source.addEventListener("error", () => {
       if (over) return;
-      connection.textContent = "The connection to dispersa watch is lost; what stands here is old. It is tried again.";
+      connection.textContent = "The connection to dispersa watch is lost; this page shows the state before. It connects again by itself.";
       if (source.readyState === EventSource.CLOSED) setTimeout(connect, 2000);
     });
   }
@@ -63,7 +63,7 @@ constexpr char kScript[] = R"js(
   setInterval(() => {
     const silent_ms = Date.now() - heard;
     if (over || silent_ms < kSilence_ms) return;
-    connection.textContent = `dispersa watch has said nothing for ${Math.round(silent_ms / 1000)} s; what stands here is old.`;
+    connection.textContent = `dispersa watch has sent nothing for ${Math.round(silent_ms / 1000)} s; this page shows the state before.`;
   }, 1000);
 })();
 )js";
@@ -110,9 +110,9 @@ std::string StateWords(const Json& campaign, bool has_workers) {
     return fmt::format("Exit code {}: {}.", code, CodeWords(code));
   }
   const std::string state = campaign.at("state");
-  if (state == "waiting") return "It waits for its turn.";
-  if (state == "reporting") return "All cases are in; the report is being written.";
-  return has_workers ? "Cases are being flown." : "It waits for workers.";
+  if (state == "waiting") return "The campaign waits for its turn.";
+  if (state == "reporting") return "All cases have ended; the report is being written.";
+  return has_workers ? "Cases are being flown." : "The campaign waits for workers.";
 }
 
 std::string ProgressHtml(const Json& campaign, const Json& workers) {
@@ -141,8 +141,7 @@ std::string ProgressHtml(const Json& campaign, const Json& workers) {
   html += "</div>\n";
   if (!ended) return html;
   return html +
-         "<p>Its verdicts and all its numbers are in its result folder: <code class=\"command\">dispersa "
-         "fetch " +
+         "<p>The verdicts and all numbers are in the result folder: <code class=\"command\">dispersa fetch " +
          ShortId(campaign) + " --out DIR</code></p>\n";
 }
 
@@ -211,7 +210,7 @@ std::string HistogramHtml(const Json& histogram, const Json& requirements, std::
     if (summary.low_limit) bars.VerticalLimit(*summary.low_limit, "");
   }
   const std::string without =
-      cases > n ? fmt::format(" {} of {} cases are lost or do not define it.", cases - n, cases) : "";
+      cases > n ? fmt::format(" {} of {} cases are lost or do not define the metric.", cases - n, cases) : "";
   return Figure(bars.Svg("Histogram of " + info.title),
                 fmt::format("{}: histogram of {} completed flights.{}", HtmlText(info.title), n, without));
 }
@@ -220,16 +219,21 @@ std::string HistogramHtml(const Json& histogram, const Json& requirements, std::
 
 std::string LivePage(const std::string& id) {
   return PageHead("Campaign " + id, "", kStyle) + "<h1 id=\"name\">Campaign <code>" + HtmlText(id) +
-         "</code></h1>\n<p class=\"soft\">This page fills by itself while the campaign is flown.</p>\n"
-         "<noscript><p class=\"notice\">This page needs its script, which is part of it.</p></noscript>\n"
-         "<p class=\"notice\" id=\"connection\" role=\"status\"></p>\n<p class=\"notice\" id=\"notice\" "
-         "role=\"status\"></p>\n"
+         "</code></h1>\n"
+         "<p class=\"soft\">This page updates itself while the campaign flies.</p>\n"
+         "<noscript><p class=\"notice\">This page needs a browser that runs its script.</p></noscript>\n"
+         "<p class=\"notice\" id=\"connection\" role=\"status\"></p>\n"
+         "<p class=\"notice\" id=\"notice\" role=\"status\"></p>\n"
          "<div id=\"progress\"></div>\n"
-         "<h2>Requirements so far</h2>\n<p class=\"soft\">By the exact binomial limits of the cases flown so "
-         "far (of a study, whose points are chosen, there are none): figures to watch, on which no verdict "
-         "rests.</p>\n<div id=\"requirements\"></div>\n"
-         "<h2>Distribution of key metrics</h2>\n<div class=\"figures\" id=\"histograms\"></div>\n"
-         "<h2>Workers</h2>\n<div id=\"workers\"></div>\n<script>" +
+         "<h2>Requirements so far</h2>\n"
+         "<p class=\"soft\">These come from the exact binomial limits of the cases flown so far; a study has "
+         "no such limits. No verdict uses them.</p>\n"
+         "<div id=\"requirements\"></div>\n"
+         "<h2>Distribution of key metrics</h2>\n"
+         "<div class=\"figures\" id=\"histograms\"></div>\n"
+         "<h2>Workers</h2>\n"
+         "<div id=\"workers\"></div>\n"
+         "<script>" +
          kScript + "</script>\n</body>\n</html>\n";
 }
 

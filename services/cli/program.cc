@@ -84,8 +84,8 @@ int RunProgram(int argc, char** argv) {
   std::string color = "auto";
   CLI::App app("Monte Carlo dispersion campaigns of launch vehicles.", "dispersa");
   BeginCommandLine(app, invocation.global.json, "print one JSON object instead of text, also for an error");
-  app.add_flag("--quiet", invocation.global.quiet, "no progress, only warnings and errors");
-  app.add_option("--color", color, "colours on stderr; auto: on a terminal unless NO_COLOR is set")
+  app.add_flag("--quiet", invocation.global.quiet, "print no progress, only warnings and errors");
+  app.add_option("--color", color, "colours on stderr; auto: on a terminal, unless NO_COLOR is set")
       ->check(CLI::IsMember({"auto", "always", "never"}));
   app.require_subcommand(1);
   app.fallthrough();
@@ -93,7 +93,7 @@ int RunProgram(int argc, char** argv) {
       "Examples: dispersa validate campaigns/table3.yaml\n"
       "          dispersa fly campaigns/table3.yaml --case 17 --history case17.csv\n"
       "          dispersa run campaigns/table3.yaml --cases 200\n"
-      "`dispersa COMMAND --help` tells more. A FILE that is read may be -, standard input.");
+      "`dispersa COMMAND --help` describes a command. An input FILE may be -, standard input.");
   AddCommands(app, invocation);
   if (const auto code = ParseCommandLine(app, argc, argv)) return *code;
   LogForPeople(ColorNamed(color));

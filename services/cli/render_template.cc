@@ -82,7 +82,7 @@ std::string RenderTemplate(const std::filesystem::path& summary, const std::file
     ended.output.erase(ended.output.find_last_not_of('\n') + 1);
     throw InputError(ended.output);
   }
-  throw InputError("--template: there is no python3 with jinja2", "the Debian package python3-jinja2");
+  throw InputError("--template: python3 with jinja2 is not installed", "the Debian package python3-jinja2");
 }
 
 }  // namespace dispersa

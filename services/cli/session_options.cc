@@ -32,7 +32,7 @@ void BindSession(CLI::App* command, Invocation& invocation,
 
 std::shared_ptr<std::string> AddIdOption(CLI::App* command, bool required) {
   auto id = std::make_shared<std::string>();
-  command->add_option("id", *id, "id of the campaign, or its first characters")->required(required);
+  command->add_option("id", *id, "campaign id, or its first characters")->required(required);
   return id;
 }
 

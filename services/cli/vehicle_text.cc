@@ -33,7 +33,7 @@ std::string JettisonText(const Stage& stage, const Jettison& jettison) {
   const char* when = jettison.trigger == JettisonTrigger::kAtTime       ? "at {} s"
                      : jettison.trigger == JettisonTrigger::kAtAltitude ? "at {} m"
                                                                         : "at a heat flux of {} W/m2";
-  return fmt::format("jettisoned from {}: {}, {} kg, {}; it counts into every mass above\n", stage.name,
+  return fmt::format("jettisoned from {}: {}, {} kg, {}; the masses above include it\n", stage.name,
                      jettison.name, ReadableText(jettison.mass_kg),
                      fmt::format(fmt::runtime(when), ReadableText(jettison.threshold)));
 }
@@ -61,9 +61,8 @@ std::string VehicleText(const Vehicle& vehicle) {
   }
   text += fmt::format("{:<12}{:>84.0f}\n", "together", TotalDeltaV(figures));
   text +=
-      "dry/own of the last stage with its payload; dv and Isp in vacuum, without losses; T/W of stage 1 "
-      "where it "
-      "is released\n";
+      "dry/own of the last stage includes the payload; dv and Isp in vacuum, without losses; T/W of stage 1 "
+      "at its release\n";
   if (vehicle.boosters.count > 0) text += BoosterText(vehicle);
   for (const Stage& stage : vehicle.stages)
     for (const Jettison& jettison : stage.jettisoned) text += JettisonText(stage, jettison);
@@ -73,7 +72,7 @@ std::string VehicleText(const Vehicle& vehicle) {
     if (value > 0.0)
       limits += fmt::format("{}{} {}", limits.empty() ? "" : ", ", limit.metric, ReadableText(value));
   }
-  return text + "limits: " + (limits.empty() ? "none: no load is judged" : limits) + "\n";
+  return text + "limits: " + (limits.empty() ? "none, so no load is judged" : limits) + "\n";
 }
 
 nlohmann::ordered_json VehicleJson(const Vehicle& vehicle) {

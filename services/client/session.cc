@@ -36,7 +36,7 @@ Reply Session::Ask(const std::string& method, const Json& arguments, const std::
   throw Failure{kExitIncomplete,
                 Silence() + (has_keys_ ? ""
                                        : "; a coordinator with keys answers only clients with keys (--keys), "
-                                         "one without only its own user's")};
+                                         "one without keys only clients of its own user")};
 }
 
 std::string Session::Silence(std::chrono::seconds silent) const {

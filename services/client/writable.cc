@@ -34,7 +34,7 @@ void RequireWritableFolder(const std::string& option, const fs::path& path) {
   if (path.empty()) return;
   const auto refuse = [&](const fs::path& place, const std::string& why) {
     throw InputError(option + ": " + path.string() + " cannot be written: " + place.string() + ": " + why,
-                     "a folder that is there or can be made, and can be written");
+                     "an existing or new folder that can be written");
   };
   // A missing folder is made in the nearest existing folder above it.
   std::error_code error;

@@ -17,7 +17,7 @@ bool Attendance::Check(bool attended, double now_s) {
   }
   if (now_s - said_s_ >= kSayAgain_s) {
     said_s_ = now_s;
-    LogWarning("no worker for {:.0f} s; they may come to port {}", now_s - present_s_,
+    LogWarning("no worker for {:.0f} s; workers can join at port {}", now_s - present_s_,
                CoordinatorPort(domain_));
   }
   return !patience_s_ || now_s - present_s_ <= *patience_s_;

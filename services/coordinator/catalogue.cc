@@ -112,7 +112,7 @@ Catalogue::Catalogue(const fs::path& directory) : directory_(directory) {
       next_order_ = std::max(next_order_, entry.order + 1);
       entries_[entry.id] = std::move(entry);
     } catch (const std::exception& damage) {
-      LogError("{}: the state is damaged, the campaign is left alone: {}", folder.path().string(),
+      LogError("{}: the state is damaged, so the campaign is ignored: {}", folder.path().string(),
                damage.what());
     }
   }

@@ -233,7 +233,7 @@ std::vector<const FlownCase*> Dispatcher::On(const std::string& sender, const Re
   std::vector<const FlownCase*> accepted;
   for (const FlownCase& flown : report.flown) {
     if (flown.is_quarantined && !book.campaign().autopilot.plugin) {
-      Disagree(sender, "it gives up a case that no control law of the campaign's own could spoil");
+      Disagree(sender, "it quarantines a case although the campaign has no plug-in");
       continue;
     }
     if (flown.is_quarantined) {

@@ -29,27 +29,26 @@ int RunCoordinator(int argc, char** argv) {
   std::optional<double> patience_s;
   Admission admission;
   CLI::App app(
-      "With --data: serves the campaigns that clients launch to all dispersa-worker processes of a DDS "
-      "domain, until it is\n"
-      "told to stop. With a campaign: serves that one, writes its reports and ends.",
+      "With --data: flies the campaigns that clients launch on the dispersa-worker processes of a DDS "
+      "domain,\n"
+      "until it is stopped. With a campaign: flies this campaign, writes its reports and ends.",
       "dispersa-coordinator");
   bool json = false;
-  BeginCommandLine(app, json, "with --version, and of an error: one JSON object");
+  BeginCommandLine(app, json, "with --version, or for an error: print one JSON object");
   ClientOptions clients;
   std::string& data = clients.data;
   bool health = false;
   std::optional<double> audit;
   std::vector<std::string> keep;
   app.add_option("campaign", request.campaign.name, "campaign file")->type_name(kFileType);
-  app.add_option("--data", data, "folder of the campaigns that were launched, made if it is not there")
+  app.add_option("--data", data, "folder for the launched campaigns, made if it does not exist")
       ->type_name(kFolderType);
   app.add_option("--metrics", clients.prometheus_port,
-                 "with --data: port of 127.0.0.1 for metrics in Prometheus' text format")
+                 "with --data: port of 127.0.0.1 that serves figures in Prometheus' text format")
       ->transform(WholeNumber(1, 65535));
-  app.add_option(
-         "--max-cases", clients.max_cases,
-         "with --data: cases that a campaign may have, launches of more are refused; each takes memory "
-         "here\n(default: 5000000)")
+  app.add_option("--max-cases", clients.max_cases,
+                 "with --data: largest number of cases of a campaign, because each case takes memory; a "
+                 "launch of more is refused\n(default: 5000000)")
       ->transform(WholeNumber(1, kMostCases));
   app.add_option(
          "--keep", keep,
@@ -64,21 +63,21 @@ int RunCoordinator(int argc, char** argv) {
                        : "'" + text + "' is no limit, allowed: days as 90d, or a size as 200GB";
           },
           ""));
-  app.add_flag("--health", health,
-               "ask the coordinator of the domain on this machine: exit code 0 if it answers");
+  app.add_flag(
+      "--health", health,
+      "ask the coordinator of the domain on this machine whether it answers: exit code 0 if it does");
   app.add_option(
          "--audit", audit,
-         "share of the results, 0 to 1, that the coordinator flies again; a worker whose result differs "
-         "is expelled, and\nwhatever it returned is flown again; 0: none; default: 0.01, and none where the "
-         "control "
-         "law is a plug-in")
+         "share of the results, 0 to 1, that the coordinator flies again; a worker whose result "
+         "differs is expelled, and\nall its results are flown again; 0: none; default: 0.01, and none "
+         "if the control law is a plug-in")
       ->check(CLI::Range(0.0, 1.0));
   app.add_option("--out", request.out, "result folder; default: results/<name>-<first 8 of id>")
       ->type_name(kFolderType);
   app.add_option("--cases", request.overrides.cases, "number of cases, instead of the file's")
       ->transform(WholeNumber(1, kMostCases));
   app.add_option("--seed", request.overrides.seed, "seed, instead of the file's");
-  app.add_flag("--resume", request.resume, "continue in a folder of the same flight id");
+  app.add_flag("--resume", request.resume, "continue in a result folder of the same flight id");
   app.add_option("--domain", network.domain, "DDS domain")
       ->envname("DISPERSA_DOMAIN")
       ->transform(WholeNumber(0, 99));
@@ -88,7 +87,7 @@ int RunCoordinator(int argc, char** argv) {
   app.add_flag("--insecure", admission.insecure, kInsecureHelp);
   app.add_flag("--allow-plugins", admission.allow_plugins, kAllowPluginsHelp);
   app.add_option("--patience", patience_s,
-                 "end (exit code 5) after this many seconds without a worker; default: never")
+                 "end with exit code 5 after this number of seconds without a worker; default: never")
       ->check(CLI::NonNegativeNumber);
   app.footer(
       "Example: dispersa-coordinator --data /var/lib/dispersa --domain 7 --keys coordinator-main\n"
@@ -96,13 +95,13 @@ int RunCoordinator(int argc, char** argv) {
       "         dispersa-coordinator campaigns/table3.yaml --out results/table3 --address 127.0.0.1");
   if (const auto code = ParseCommandLine(app, argc, argv)) return *code;
   if (int(health) + int(!data.empty()) + int(!request.campaign.name.empty()) != 1) {
-    return EndFor(InputError("one of --data, a campaign, or --health is needed"), json);
+    return EndFor(InputError("give one of --data, a campaign file, or --health"), json);
   }
   if (request.campaign.name == kStandardInput) {
-    return EndFor(
-        InputError("the campaign cannot come from standard input: a coordinator may start itself again",
-                   "a campaign file"),
-        json);
+    return EndFor(InputError("the campaign cannot come from standard input: a coordinator may restart itself "
+                             "and read it again",
+                             "a campaign file"),
+                  json);
   }
   for (const std::string& limit : keep) ReadRetention(limit, &clients.retention);
   CatchStopSignals();

@@ -61,7 +61,7 @@ ExitCode ServeCampaign(const ServeOptions& options, const RunRequest& request,
   CampaignBook book(prepared.campaign, std::move(prepared.folder));
   book.Expect(std::move(prepared.flown));
   Coordinator coordinator(options.network, book, options.audit);
-  LogInfo("campaign {}, flight id {}, results in {}; domain {}, workers may come to port {}",
+  LogInfo("campaign {}, flight id {}, results in {}; domain {}, workers can join at port {}",
           book.campaign().name, book.campaign().flight_id, book.folder().directory().string(),
           options.network.domain, CoordinatorPort(options.network.domain));
   Every progress_period(kProgress_s);
@@ -74,7 +74,7 @@ ExitCode ServeCampaign(const ServeOptions& options, const RunRequest& request,
       book.Flush();
       throw Failure{
           kExitIncomplete,
-          fmt::format("no worker for {:.0f} s: the run ends; repeat the command with --resume to go on",
+          fmt::format("no worker for {:.0f} s: the run ends; repeat the command with --resume to continue",
                       *patience_s)};
     }
     if (progress_period.IsDue(coordinator.now_s())) {
@@ -104,7 +104,7 @@ ExitCode ServeCampaign(const ServeOptions& options, const RunRequest& request,
     fmt::print("result: {}\n", book.folder().directory().string());
     return CampaignExitCode(summary.verdict, book.ledger().Progress().conflicts);
   } catch (const Interrupted&) {
-    throw Failure{kExitInterrupted, "stopped; repeat the command with --resume to go on"};
+    throw Failure{kExitInterrupted, "stopped; repeat the command with --resume to continue"};
   }
 }
 
@@ -120,7 +120,7 @@ int ServeClients(const ServeOptions& options, const ClientOptions& clients) {
   Service service(service_options, coordinator);
   FrontDesk front_desk(service, coordinator);
   coordinator.Serve([&](const Request& request) { return front_desk.Answer(request); });
-  LogInfo("domain {}, workers and clients may come to port {}", options.network.domain,
+  LogInfo("domain {}, workers and clients can join at port {}", options.network.domain,
           CoordinatorPort(options.network.domain));
   std::optional<PrometheusPort> prometheus;
   if (clients.prometheus_port) prometheus.emplace(*clients.prometheus_port);
@@ -137,7 +137,7 @@ int ServeClients(const ServeOptions& options, const ClientOptions& clients) {
   }
   watchdog.reset();
   service.Flush();
-  LogInfo("stopped; what is open goes on when the coordinator is started again");
+  LogInfo("stopped; campaigns that have not ended continue when the coordinator starts again");
   return 0;
 }
 

@@ -39,7 +39,7 @@ constexpr double kDelay_s = 10.0;  // until a full disk is tried again
 
 struct Stopped {};
 
-// On the disk when it returns.
+// The line is on the disk when this returns.
 void AppendLine(const std::filesystem::path& file, const std::string& line) {
   const int descriptor = open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   const std::string text = line + "\n";
@@ -64,7 +64,7 @@ std::uint64_t BytesIn(const std::filesystem::path& folder) {
   return bytes;
 }
 
-// What is not packed is read all the same.
+// Reports that are not compressed can be read too.
 void TryToPack(const std::filesystem::path& results) {
   try {
     PackReports(results);
@@ -73,7 +73,7 @@ void TryToPack(const std::filesystem::path& results) {
   }
 }
 
-std::string Waiting(const std::string& problem) { return problem + "; it goes on when there is space"; }
+std::string Waiting(const std::string& problem) { return problem + "; it continues when the disk has space"; }
 
 template <typename T>
 bool IsReady(const std::future<T>& future) {
@@ -86,7 +86,8 @@ Service::Service(const ServiceOptions& options, Workforce& workforce)
     : options_(options), workforce_(workforce), catalogue_(options.data) {
   std::size_t open = 0;
   for (const auto& [id, entry] : catalogue_.entries()) open += !HasEnded(entry.state);
-  LogInfo("{}: {} campaigns, {} of them open", options.data.string(), catalogue_.entries().size(), open);
+  LogInfo("{}: {} campaigns, {} of them have not ended", options.data.string(), catalogue_.entries().size(),
+          open);
   LoadExpelled();
 }
 
@@ -277,7 +278,7 @@ void Service::FinishOpening() {
     delayed_.erase(opened.id);
     entry.flight_id = book->campaign().flight_id;  // another one if the engine is another one by now
     workforce_.BeginCampaign(*book, entry.priority);
-    LogInfo("campaign {} ({}) is open: {} of {} cases are there", entry.name, opened.id.substr(0, 8),
+    LogInfo("campaign {} ({}) flies: {} of {} cases have a result", entry.name, opened.id.substr(0, 8),
             book->ledger().Progress().done, book->ledger().Progress().total);
     flying_[opened.id].book = std::move(book);
     entry.state = CampaignState::kFlying;
@@ -311,7 +312,8 @@ void Service::Fail(CatalogueEntry& entry, std::exception_ptr error) {
 
 void Service::Delay(const CatalogueEntry& entry, const std::string& problem) {
   if (!delayed_.contains(entry.id)) {
-    LogError("campaign {} ({}) waits until there is space: {}", entry.name, entry.id.substr(0, 8), problem);
+    LogError("campaign {} ({}) waits until the disk has space: {}", entry.name, entry.id.substr(0, 8),
+             problem);
   }
   delayed_[entry.id] = {workforce_.now_s() + kDelay_s, problem};
   if (entry.state == CampaignState::kReporting) to_report_.push_back(entry.id);

@@ -47,7 +47,7 @@ void Watchdog::Watch(const std::stop_token& stop) {
        awake_s += std::chrono::duration<double>(kPeriod).count()) {
     std::this_thread::sleep_for(kPeriod);
     if (!rule.Check(awake_s, receives_, has_work_, rounds_)) continue;
-    LogWarning("nobody is heard any more: the coordinator starts again");
+    LogWarning("no messages arrive any more: the coordinator restarts");
     StartAgain(arguments_);
     return;
   }

@@ -243,8 +243,8 @@ Acceptance CampaignBook::Accept(const std::string& worker, const std::string& ho
         });
         if (refusal_) break;
       }
-      LogError("case {}: worker {} on {} returned other bits than were returned before: {}",
-               result.case_index, worker, host,
+      LogError("case {}: worker {} on {} returned other bits than an earlier result: {}", result.case_index,
+               worker, host,
                audit_ ? "it is flown again here"
                       : "a processor, a library or a build breaks the floating-point contract; no result "
                         "can be trusted");
@@ -267,7 +267,7 @@ bool CampaignBook::FlushIfDue(double now_s) {
 
 bool CampaignBook::TryFlush() {
   if (!breakdown_.empty() || !Try([this] { Flush(); })) return false;
-  if (!pause_.empty()) LogInfo("campaign {} goes on: there is space on the disk again", campaign_.name);
+  if (!pause_.empty()) LogInfo("campaign {} continues: the disk has space again", campaign_.name);
   pause_.clear();
   return true;
 }

@@ -51,8 +51,8 @@ std::vector<CaseResult> Check(const Campaign& campaign, const StopCheck& should_
     if (!is_said &&
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() > kPatience_s) {
       LogInfo(
-          "the control law {} is flown before the campaign, each of three flights twice, to see whether it "
-          "is deterministic",
+          "the control law {} is checked before the campaign: each of three flights is flown twice, to see "
+          "whether it is deterministic",
           campaign.autopilot.plugin->name);
       is_said = true;
     }

@@ -69,7 +69,7 @@ std::string SchemaText(FileKind kind) {
   Json schema = {{"$schema", "http://json-schema.org/draft-07/schema#"},
                  {"title", "dispersa " + NameOf(kind) + " file"},
                  {"description",
-                  "Written by `dispersa schema`. What values say together only `dispersa validate` knows."}};
+                  "Written by `dispersa schema`. Only `dispersa validate` checks relations between values."}};
   for (auto& [key, value] : file.items()) schema[key] = std::move(value);
   // Inside another file the key may be missing.
   if (!schema.contains("required")) schema["required"] = Json::array();

@@ -36,18 +36,16 @@ NetworkOptions Admit(NetworkOptions network, const Admission& admission, std::in
   }
   if (!admission.insecure) {
     throw NetworkError(
-        "beyond this machine nobody is spoken to without keys, allowed: --keys DIR with a folder that "
-        "`dispersa "
-        "keys issue` made, --address 127.0.0.1 for this machine alone, or --insecure on a network that you "
-        "trust");
+        "a network beyond this machine needs keys, allowed: --keys DIR with a folder that `dispersa keys "
+        "issue` made, --address 127.0.0.1 for this machine alone, or --insecure on a network that you trust");
   }
-  LogWarning("without keys: whoever reaches this network can read, join and forge (--insecure)");
+  LogWarning("no keys (--insecure): everyone on this network can read, join and forge");
   return network;
 }
 
 void AdmitPlugins(bool allowed) {
   if (allowed) return;
-  RefusePlugins("is a shared object, which is run here only where --allow-plugins says so");
+  RefusePlugins("is a shared object; this program runs shared objects only with --allow-plugins");
 }
 
 std::string NameOnNetwork(const NetworkOptions& network, const std::string& uuid) {

@@ -15,9 +15,10 @@ struct Admission {
   bool allow_plugins = false;
 };
 
-inline constexpr char kKeysHelp[] = "folder that `dispersa keys issue` made: who we are";
+inline constexpr char kKeysHelp[] = "folder with the keys of this program, made by `dispersa keys issue`";
 inline constexpr char kInsecureHelp[] =
-    "without keys beyond this machine, and on it with programs of all users: on networks that you trust";
+    "work without keys beyond this machine, and with programs of all its users; only for networks that you "
+    "trust";
 
 /// `network` as one of `roles` may use it. With keys: encrypted by them. Without keys: over the loopback
 /// interface alone, with this user's secret (user_secret.h), if `peer` is there, no address was given, and
@@ -27,9 +28,7 @@ NetworkOptions Admit(NetworkOptions network, const Admission& admission, std::in
                      const std::string& peer = "");
 
 inline constexpr char kAllowPluginsHelp[] =
-    "take campaigns whose control law is a shared object: whoever may launch runs code here; without it they "
-    "are "
-    "refused";
+    "accept campaigns whose control law is a shared object: everyone who may launch then runs code here";
 
 /// Without `allowed`, control laws that are shared objects are refused.
 void AdmitPlugins(bool allowed);

@@ -15,7 +15,7 @@ namespace {
 constexpr char kPassHead[] = "dispersa-run/1";
 constexpr std::size_t kMaxPass = 64 << 10;
 
-[[noreturn]] void RefusePass() { throw NetworkError("--run-pass: what came is not from `dispersa run`"); }
+[[noreturn]] void RefusePass() { throw NetworkError("--run-pass: the data is not from `dispersa run`"); }
 
 bool IsDigest(const std::string& text) {
   return text.size() == 64 && text.find_first_not_of("0123456789abcdef") == std::string::npos;

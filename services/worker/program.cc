@@ -32,12 +32,12 @@ int RunWorker(int argc, char** argv) {
   std::string peer;
   Admission admission;
   CLI::App app(
-      "Flies cases for a coordinator, which it waits for as long as there is none. SIGTERM: it finishes what "
-      "it flies,\n"
-      "hands back the rest and leaves; a second one ends it at once.",
+      "Flies cases for a coordinator, and waits while there is none. At SIGTERM it finishes its cases in "
+      "flight,\n"
+      "returns the others and leaves; a second SIGTERM ends it at once.",
       "dispersa-worker");
   bool json = false;
-  BeginCommandLine(app, json, "with --version, and of an error: one JSON object");
+  BeginCommandLine(app, json, "with --version, or for an error: print one JSON object");
   app.add_option("--domain", options.network.domain, "DDS domain")
       ->envname("DISPERSA_DOMAIN")
       ->transform(WholeNumber(0, 99));
@@ -47,14 +47,14 @@ int RunWorker(int argc, char** argv) {
   app.add_option("--keys", admission.keys, kKeysHelp)->type_name(kFolderType);
   app.add_flag("--insecure", admission.insecure, kInsecureHelp);
   app.add_flag("--allow-plugins", admission.allow_plugins, kAllowPluginsHelp);
-  app.add_option("--slots", options.slots, "cases flown at the same time")->transform(WholeNumber(1, 1024));
+  app.add_option("--slots", options.slots, "threads that fly; default: 1")->transform(WholeNumber(1, 1024));
   app.add_option("--idle-exit", options.idle_exit_s,
-                 "leave (exit code 0) after so many seconds without a case")
+                 "leave with exit code 0 after this number of seconds without a case; default: never")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--patience", options.patience_s,
-                 "end (exit code 5) after this many seconds without a coordinator; default: never")
+                 "end with exit code 5 after this number of seconds without a coordinator; default: never")
       ->check(CLI::NonNegativeNumber);
-  app.add_option("--uuid", options.uuid, "name of this incarnation, drawn if not given");
+  app.add_option("--uuid", options.uuid, "name of this process; default: a random one");
   std::optional<int> run_pass;
   app.add_option("--run-pass", run_pass, "descriptor from which `dispersa run` tells its worker who it is")
       ->group("");  // for it alone

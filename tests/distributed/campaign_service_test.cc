@@ -511,7 +511,7 @@ TEST_F(ServiceTroubleTest, AFullDiskPausesCampaignsAndTheyGoOnByThemselves) {
     return said;
   };
   const std::string data = (folder_ / "data").string(),
-                    later = ": no space left on the disk; it goes on when there is space\n";
+                    later = ": no space left on the disk; it continues when the disk has space\n";
   EXPECT_EQ(OnASmallDisk(folder_.path(), "3m", steps),
             "flying 0: " + data + "/" + flying.id + "/results/results.sqlite" + later +  //
                 "waiting 0: " + data + "/" + opening.id + "/results/campaign.yaml" + later +

@@ -134,7 +134,7 @@ class ChaosTest(unittest.TestCase):
         self.keep_busy(campaigns=1)
         wait_for(lambda: sum(self.stored().values()) > 0, "first results")
         self.hosts[0].drop("in", 100, *packets)
-        wait_for(lambda: "the coordinator starts again" in (self.root / "log").read_text(), "a new start")
+        wait_for(lambda: "the coordinator restarts" in (self.root / "log").read_text(), "a new start")
         self.hosts[0].heal()
         self.assert_same_bytes()
 

@@ -383,7 +383,7 @@ TEST_F(KeyFolderTest, WithoutKeysOnlyThisMachineIsSpokenTo) {
                                                         {"127.0.0.1", "host"},
                                                         {"10.0.0.1", "127.0.0.1"},
                                                         {"10.0.0.1", ""}}) {
-    EXPECT_THAT(refused(address, peer), HasSubstr("beyond this machine nobody is spoken to without keys"))
+    EXPECT_THAT(refused(address, peer), HasSubstr("a network beyond this machine needs keys"))
         << address << " " << peer;
   }
 }
@@ -395,7 +395,7 @@ TEST(Admission, PlugInsNeedLeave) {
     AdmitPlugins(allowed);
     return PluginRefusal(digest);
   };
-  EXPECT_EQ(refusal(false), "is a shared object, which is run here only where --allow-plugins says so");
+  EXPECT_EQ(refusal(false), "is a shared object; this program runs shared objects only with --allow-plugins");
   EXPECT_EQ(refusal(true), "");
   RefusePlugins("is another one", {digest});
   EXPECT_EQ(PluginRefusal(digest), "");

@@ -121,7 +121,7 @@ class LawsTest(ServiceCase):
 
     def test_without_leave_it_is_refused_on_the_loopback_interface_too(self):
         _, campaign = self.campaign(0)
-        words = "plugin.library: the control law is a shared object, which is run here only where --allow-plugins says so"
+        words = "plugin.library: the control law is a shared object; this program runs shared objects only with --allow-plugins"
         for network in ["--insecure"], self.NETWORK:
             # Refused before anything is sent.
             refused = subprocess.run([BINARIES / "dispersa-coordinator", campaign, *network, "--out", self.data / "out",

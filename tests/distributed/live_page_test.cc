@@ -43,7 +43,7 @@ TEST(LivePage, TextsOfOthersAreNoPartOfThePage) {
 
 TEST(LivePage, SaysHowFarItIs) {
   Json status = Status();
-  EXPECT_THAT(StatusParts(status)["progress"], HasSubstr("It waits for workers."));
+  EXPECT_THAT(StatusParts(status)["progress"], HasSubstr("The campaign waits for workers."));
   for (int i = 0; i < 52; ++i) status["workers"].push_back(Worker("h"));
   LiveParts parts = StatusParts(status);
   EXPECT_EQ(parts["title"], "smoke flying 5/20 – dispersa");
@@ -73,7 +73,7 @@ TEST(LivePage, ShowsHowRequirementsStandAndWhereTheirLimitsAre) {
   for (const char* words :
        {"<title>0.25 to 0.375: 1</title>", "<title>0.375 to 0.5: 4</title>", "<title>0.5 to 0.625: 2</title>",
         "limit: between -0.5 and 0.75 °", "Pitch error, peak, °",
-        "histogram of 7 completed flights. 2 of 9 cases are lost or do not define it."})
+        "histogram of 7 completed flights. 2 of 9 cases are lost or do not define the metric."})
     EXPECT_THAT(parts["histograms"], HasSubstr(words));
   EXPECT_THAT(parts["histograms"], Not(HasSubstr("Product of dynamic pressure"))) << "of no flight";
   EXPECT_TRUE(TallyParts(Json::parse(R"({"n": 0, "requirements": [], "histograms": []})")).empty())

@@ -87,8 +87,8 @@ TEST(Session, SilenceSaysWhereAndWhetherKeysMayBeMissing) {
   const std::string silence = "5: no coordinator has answered at host:7405 for 15 s";
   EXPECT_EQ(FailureOf([&] { without.Ask("list", {}); }),
             silence +
-                "; a coordinator with keys answers only clients with keys (--keys), one without only its own "
-                "user's");
+                "; a coordinator with keys answers only clients with keys (--keys), one without keys only "
+                "clients of its own user");
   EXPECT_EQ(FailureOf([&] { with.Ask("list", {}); }), silence);
   EXPECT_FALSE(with.Try("list", {}));
 }

@@ -128,7 +128,7 @@ class RunTest(unittest.TestCase):
                 self.assertEqual(run.stdout, "")
                 command = (f"dispersa run {shlex.quote(CAMPAIGN)} --cases {self.cases} --workers {workers} "
                            f"--out {run.out} --resume")
-                self.assertEqual(run.stderr.splitlines()[-1], f"interrupted; to go on: {command}")
+                self.assertEqual(run.stderr.splitlines()[-1], f"interrupted; to continue: {command}")
                 self.assertTrue(0 < run.stored() < self.cases)
         arguments = shlex.split(command)
         resumed = subprocess.run([BINARIES / arguments[0], *arguments[1:]], capture_output=True, timeout=3 * PATIENCE_S)
@@ -171,7 +171,7 @@ class RunTest(unittest.TestCase):
         run = self.run_dispersa("reference").finish()
         self.assertEqual(run.code, 2)
         self.assertRegex(run.stderr, f"{re.escape(str(run.out))}: the folder is not empty, allowed: a new or an empty "
-                                     "folder, or --resume to go on with a campaign of the same flight id\n$")
+                                     "folder, or --resume to continue a campaign of the same flight id\n$")
         after = sorted((p.name, p.read_bytes()) for p in self.reference.out.iterdir() if p.is_file())
         self.assertEqual(before, after)
 
@@ -264,7 +264,7 @@ class RunTest(unittest.TestCase):
             run = self.run_dispersa("disk/out", "--workers", 2).finish()
             self.assertEqual(run.code, 5, run.stderr)
             self.assertRegex(run.stderr, "no space left on the disk\n"
-                                         "to go on when there is space: dispersa run .* --resume\n$")
+                                         "to continue when the disk has space: dispersa run .* --resume\n$")
             subprocess.run(["mount", "-o", "remount,size=1g", disk], check=True)
             self.assert_same(self.run_dispersa("disk/out", "--workers", 2, "--resume").finish())
         finally:

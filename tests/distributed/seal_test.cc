@@ -119,7 +119,7 @@ TEST(RunPass, ArrivesAsItWasAndNothingElseIsTaken) {
   const RunPass parsed = ParseRunPass(ToText(pass));
   EXPECT_EQ(parsed.secret, pass.secret);
   EXPECT_EQ(parsed.plugins, pass.plugins);
-  const std::string text = ToText(pass), refused = "--run-pass: what came is not from `dispersa run`";
+  const std::string text = ToText(pass), refused = "--run-pass: the data is not from `dispersa run`";
   EXPECT_EQ(RefusalOf(text), "none");
   EXPECT_EQ(RefusalOf(""), refused);
   EXPECT_EQ(RefusalOf("dispersa-run/1\n"), refused);

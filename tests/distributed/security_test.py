@@ -369,7 +369,7 @@ class SecurityTest(unittest.TestCase):
             ("dispersa", ["watch", "0", "--address", "10.1.2.3"]),
         ):
             with self.subTest(program=program, arguments=arguments):
-                self.assertIn("beyond this machine nobody is spoken to without keys, allowed: --keys DIR with a folder that "
+                self.assertIn("a network beyond this machine needs keys, allowed: --keys DIR with a folder that "
                               "`dispersa keys issue` made, --address 127.0.0.1 for this machine alone, or --insecure on a "
                               "network that you trust\n", self.start_error(program, *arguments, "--domain", DOMAIN))
         self.assertIn("--keys and --insecure exclude each other",
@@ -392,11 +392,11 @@ class SecurityTest(unittest.TestCase):
         self.run_without_address("dispersa-coordinator", "--data", self.data, "--address", "127.0.0.1")
         self.run_without_address("dispersa-worker", "--peer", "localhost")
         self.assert_worker_is_listed()
-        self.assertNotIn("without keys", self.log.read_text())
+        self.assertNotIn("no keys", self.log.read_text())
 
     def test_insecure_is_said_and_warned_of(self):
         self.run_without_address("dispersa-coordinator", "--data", self.data, "--insecure")
-        self.wait_logged(r"\[warning\] without keys: whoever reaches this network can read, join and forge \(--insecure\)")
+        self.wait_logged(r"\[warning\] no keys \(--insecure\): everyone on this network can read, join and forge")
         self.run_without_address("dispersa-worker", "--peer", "127.0.0.1", "--insecure")
         self.assert_worker_is_listed("--insecure")
 

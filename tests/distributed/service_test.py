@@ -174,13 +174,13 @@ class ServiceTest(ServiceCase):
                 (2, "UDP port", coordinator, "--data", self.root / "more", *self.NETWORK),
                 (2, "metrics: port", coordinator, "--data", self.root / "more", "--metrics", busy.getsockname()[1], *other),
                 (2, "name", coordinator, bad, "--out", self.root / "bad", *other),
-                (2, "one of --data, a campaign, or --health is needed", coordinator, *other),
+                (2, "give one of --data, a campaign file, or --health", coordinator, *other),
                 (2, "cannot come from standard input", coordinator, "-", *other),
-                (2, "without keys", coordinator, "--data", self.root / "more"),
+                (2, "needs keys", coordinator, "--data", self.root / "more"),
                 (5, "does not answer", coordinator, "--health", *other),
                 (5, "no worker for 1 s", coordinator, CAMPAIGN, "--out", self.root / "nobody", "--patience", 1, *other),
                 (2, "peer '127.0.0.1:x'", worker, "--peer", "127.0.0.1:x", *here),
-                (2, "without keys", worker, "--peer", "192.0.2.1"),
+                (2, "needs keys", worker, "--peer", "192.0.2.1"),
                 (5, "no coordinator has answered", worker, "--peer", "127.0.0.1", "--patience", 1, *other)):
             with self.subTest(words=words):
                 ended = subprocess.run([BINARIES / command[0], *map(str, command[1:]), "--json"], capture_output=True,
@@ -241,7 +241,7 @@ class ServiceTest(ServiceCase):
     def test_without_a_coordinator_a_client_says_so(self):
         done = subprocess.run([BINARIES / "dispersa", "list", *self.NETWORK], capture_output=True, text=True, timeout=PATIENCE_S)
         self.assertEqual(done.returncode, 5)
-        self.assertEqual(done.stderr, "no coordinator has answered at 127.0.0.1:16405 for 15 s; a coordinator with keys answers only clients with keys (--keys), one without only its own user's\n")
+        self.assertEqual(done.stderr, "no coordinator has answered at 127.0.0.1:16405 for 15 s; a coordinator with keys answers only clients with keys (--keys), one without keys only clients of its own user\n")
 
 
 if __name__ == "__main__":

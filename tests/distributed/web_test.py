@@ -121,7 +121,7 @@ class WebTest(ServiceCase):
         watch = self.watch(identity[:12])
         viewers = [self.viewer() for _ in range(3)]
         wait_for(lambda: "histograms" in viewers[0].parts, "the first tally")
-        self.assertIn("It waits for", text(viewers[0].parts["progress"]))
+        self.assertIn("The campaign waits for", text(viewers[0].parts["progress"]))
         self.assertEqual(viewers[0].parts["workers"], "<p>There is no worker.</p>\n")
         viewers[2].go_away()
         self.start_worker()
@@ -159,7 +159,7 @@ class WebTest(ServiceCase):
         before = dict(viewer.parts)
 
         coordinator.kill()
-        wait_for(lambda: re.fullmatch(r"no coordinator has answered at 127\.0\.0\.1:15655 for \d+ s; what stands here is as it was then\. It is tried again\.",
+        wait_for(lambda: re.fullmatch(r"no coordinator has answered at 127\.0\.0\.1:15655 for \d+ s; this page shows the state before\. watch tries again\.",
                                       viewer.parts["notice"]), "the notice")
         self.assertEqual(viewer.parts["histograms"], before["histograms"], "what was known stays")
         self.start_coordinator()

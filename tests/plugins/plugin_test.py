@@ -293,8 +293,8 @@ class PluginTest(unittest.TestCase):
             self.assertFalse((out / "results.sqlite").exists())
 
     def test_what_writes_beside_its_memory_is_refused(self):
-        for behaviour, words in (("WRITES_BEFORE", r"wrote beside the memory of its flight, at \d+\.\d+ s at the latest, in stage 1"),
-                                 ("WRITES_BEHIND", r"(wrote beside the memory of its flight, at 0|cannot fly the nominal flight: it "
+        for behaviour, words in (("WRITES_BEFORE", r"wrote outside the memory of its flight, at \d+\.\d+ s at the latest, in stage 1"),
+                                 ("WRITES_BEHIND", r"(wrote outside the memory of its flight, at 0|cannot fly the nominal flight: it "
                                                    r"ended by signal 11 \(SIGSEGV\))")):
             out, ended = self.campaign_run(behaviour, self.law(behaviour))
             self.assertEqual(ended.returncode, 2, ended.stderr)
@@ -309,7 +309,7 @@ class PluginTest(unittest.TestCase):
                                         "--out", self.folder / "out/slow"], stdout=stderr, stderr=stderr)
             self.addCleanup(run.kill)
             for _ in range(600):
-                if "is flown before the campaign" in log.read_text():
+                if "is checked before the campaign" in log.read_text():
                     break
                 time.sleep(0.1)
             else:
@@ -393,7 +393,7 @@ class PluginTest(unittest.TestCase):
         self.compile("pd", SOURCE / "campaigns/control_laws/c/pd.c", flags=["-std=c99"])
         refused = self.dispersa("margins", CAMPAIGNS / "table3.yaml", "--autopilot", self.autopilot("pd"))
         self.assertEqual(refused.returncode, 2, refused.stderr)
-        self.assertIn("the control law is flown in a process of its own, which this command does not start",
+        self.assertIn("the control law is a plug-in, which flies in a child process; this command starts none",
                       refused.stderr)
 
     # ---- the installed interface ----

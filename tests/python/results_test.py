@@ -156,7 +156,7 @@ class Runs(unittest.TestCase):
             dispersa.compare(self.ours, pd, metrics=["pitch"])
 
     def test_refusals(self):
-        with self.assertRaisesRegex(dispersa.BadInput, "theirs.*resume=True to go on"):
+        with self.assertRaisesRegex(dispersa.BadInput, "theirs.*resume=True to continue"):
             dispersa.run(SMOKE, self.theirs, workers=0)
         with self.assertRaises(dispersa.BadInput):
             dispersa.results(self.folder / "nothing")

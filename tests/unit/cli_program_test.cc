@@ -265,10 +265,9 @@ TEST(CliProgram, OutputsAreTriedBeforeAnythingIsComputed) {
             "--out: " + files.Path(".") + " cannot be written: it is a folder, allowed: a file\n");
   const Output paper = Dispersa("paper --out " + files.Path("vehicle.yaml/paper"));
   EXPECT_EQ(paper.code, 2);
-  EXPECT_EQ(paper.error,
-            "--out: " + files.Path("vehicle.yaml/paper") +
-                " cannot be written: " + files.Path("vehicle.yaml") +
-                ": Not a directory, allowed: a folder that is there or can be made, and can be written\n");
+  EXPECT_EQ(paper.error, "--out: " + files.Path("vehicle.yaml/paper") +
+                             " cannot be written: " + files.Path("vehicle.yaml") +
+                             ": Not a directory, allowed: an existing or new folder that can be written\n");
 }
 
 TEST(CliProgram, ASearchThatMissesItsTargetWritesWhatItFound) {
@@ -546,7 +545,7 @@ TEST(CliProgram, MarginsAndTuneNameWhatTheySkip) {
                                 "/autopilots/pd.yaml --seed 9 --cases 1 --evaluations 64 --out " +
                                 file);
   EXPECT_EQ(tuned.code, 0) << tuned.error << tuned.text;
-  EXPECT_THAT(tuned.text, HasSubstr("No margins were asked for with less than 20 % of full thrust:\n"));
+  EXPECT_THAT(tuned.text, HasSubstr("No margins are required below 20 % of full thrust:\n"));
   EXPECT_THAT(ReadWholeFile(file), HasSubstr(" instants with less than 20 % of full thrust.\n"));
 }
 

@@ -50,7 +50,7 @@ TEST(VehicleText, IsTheRocketEquationInATable) {
             "second              3000        1000      2000     0.667      50.0     20.0    102.0        405 "
             "     1.70     2.55");
   EXPECT_EQ(lines[6], "together" + std::string(84, ' ') + "1141");
-  EXPECT_EQ(lines[8], "limits: none: no load is judged");
+  EXPECT_EQ(lines[8], "limits: none, so no load is judged");
 }
 
 TEST(VehicleText, NamesBoostersJettisonsAndLimits) {
@@ -67,10 +67,10 @@ TEST(VehicleText, NamesBoostersJettisonsAndLimits) {
       {.name = "ring", .mass_kg = 5.0, .trigger = JettisonTrigger::kAtTime, .threshold = 70.5}};
   const std::string text = VehicleText(vehicle);
   EXPECT_NE(text.find("\n3 boosters beside first, each of 950 kg with 800 kg of propellant, 80 kN and 25 s\n"
-                      "jettisoned from second: fairing, 60 kg, at a heat flux of 1135 W/m2; it counts into "
-                      "every mass above\n"
-                      "jettisoned from second: skirt, 20 kg, at 90000 m; it counts into every mass above\n"
-                      "jettisoned from second: ring, 5 kg, at 70.5 s; it counts into every mass above\n"
+                      "jettisoned from second: fairing, 60 kg, at a heat flux of 1135 W/m2; the masses above "
+                      "include it\n"
+                      "jettisoned from second: skirt, 20 kg, at 90000 m; the masses above include it\n"
+                      "jettisoned from second: ring, 5 kg, at 70.5 s; the masses above include it\n"
                       "limits: q_max_pa 90000, lateral_load_max_g 1.5\n"),
             std::string::npos)
       << text;

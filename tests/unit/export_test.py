@@ -54,8 +54,8 @@ class Templates(ExportTest):
 
     def test_no_object_of_a_template(self):
         done = dispersa("report", self.results, "--template", self.template("x"), "--json")
-        self.assertEqual((done.returncode, done.stderr), (2, "--template: what it gives is not the object of --json, allowed: "
-                                                             "either of them\n"))
+        self.assertEqual((done.returncode, done.stderr), (2, "--template and --json cannot be used together, allowed: "
+                                                             "one of them\n"))
         self.assertEqual(json.loads(done.stdout)["schema"], "dispersa/error/1")
 
     def test_shipped_templates(self):

@@ -201,7 +201,7 @@ TEST(ResultFolder, RefusesAFolderThatIsNotEmpty) {
   EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Create(temporary / "out", MakeCampaign(1)); }),
             (temporary / "out").string() +
                 ": the folder is not empty, allowed: a new or an empty folder, or --resume "
-                "to go on with a campaign of the same flight id");
+                "to continue a campaign of the same flight id");
 }
 
 TEST(ResultFolder, RefusesAFolderThatCannotBeMade) {
@@ -267,7 +267,7 @@ TEST(ResultFolder, RefusesColumnsOfAnotherEngine) {
       .Execute("ALTER TABLE cases DROP COLUMN metric_" + MetricNames()[0]);
   EXPECT_EQ(MessageOf<InputError>([&] { ResultFolder::Open(temporary / "out"); }),
             (temporary / "out").string() + ": flown by engine " + EngineVersion() +
-                ", whose inputs and metrics are not those of this one, " + EngineVersion());
+                "; its inputs and metrics are not those of this engine, " + EngineVersion());
 }
 
 TEST(ResultFolder, IsWrittenByOneProcessAtATime) {

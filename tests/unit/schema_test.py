@@ -167,8 +167,8 @@ class SchemaTest(unittest.TestCase):
     def test_a_folder_that_cannot_be_made_is_refused(self):
         done = subprocess.run([BINARIES / "dispersa", "schema", "--all", "/dev/null/schemas"], capture_output=True, text=True,
                               timeout=TIMEOUT_S)
-        self.assertEqual((2, "--all: /dev/null/schemas cannot be written: /dev/null: Not a directory, allowed: a folder that is "
-                             "there or can be made, and can be written\n"), (done.returncode, done.stderr))
+        self.assertEqual((2, "--all: /dev/null/schemas cannot be written: /dev/null: Not a directory, allowed: an existing or "
+                             "new folder that can be written\n"), (done.returncode, done.stderr))
 
     def test_what_is_written_as_an_object(self):
         for option, names in (("--all", ["campaign", "vehicle", "reference", "autopilot", "scenario"]), ("--out", ["vehicle"])):
