@@ -115,11 +115,13 @@ void PrintBySet(const MarginsResult& result) {
 void PrintText(const MarginsResult& result) {
   fmt::print(
       "Margins of autopilot {} along the nominal flight.\n"
-      "{}\n{}Gates: gain {:.0f} dB both ways, phase {:.0f} deg, delay {:.0f} ms.\n\n"
-      "Computed: linearised; frozen = gains held, adapting = with the adaptation about zero error,\n"
-      "learnt = the same with what was learnt by then from a thrust misalignment of 0.25 deg (an "
-      "augmentation's\n"
-      "gain need only leave {:.0f} dB and {:.0f} deg).\n",
+      "{}\n"
+      "{}Gates: gain {:.0f} dB both ways, phase {:.0f} deg, delay {:.0f} ms.\n"
+      "\n"
+      "Computed from a linearisation. frozen: gains held. adapting: with the adaptation about zero error.\n"
+      "learnt: with the trim learnt until then from a thrust misalignment of 0.25 deg (gates of an "
+      "augmentation:\n"
+      "{:.0f} dB and {:.0f} deg).\n",
       result.autopilot,
       result.bends
           ? fmt::format("Bending modes, no slosh; {}.\nBending: largest response, and its least angle "
@@ -159,7 +161,8 @@ void PrintText(const MarginsResult& result) {
   }
   PrintBySet(result);
   fmt::print(
-      "\nMeasured: all axes of one stage's loop spoilt in flight until it is lost (to {} dB, {:.0f} ms).\n"
+      "\nMeasured: gain or delay of all axes of one stage changed in flight until control is lost (steps of "
+      "{} dB, {:.0f} ms).\n"
       "{:<10} {:>8} {:>8} {:>9}\n",
       kMeasuredGainStep_db, 1e3 * kMeasuredDelayStep_s, "", "gain dB", "gain dB", "delay ms");
   for (const MeasuredMargins& m : result.measured) {

@@ -75,8 +75,7 @@ namespace {
 // The plug-in of an autopilot commands all axes that have one.
 void RefuseOtherPlugin(const AutopilotConfig& autopilot, unsigned axes) {
   if ((PluginAxes(autopilot) & ~axes) != 0)
-    throw InputError("axes: the autopilot has a law of a shared object on others than these",
-                     "all axes that it has");
+    throw InputError("axes: the autopilot has a plug-in on other axes", "all axes that it has");
 }
 
 }  // namespace

@@ -169,10 +169,10 @@ class Runs(unittest.TestCase):
                      lambda: dispersa.margins(SMOKE, frequency_band_percent="15")):
             self.assertRaises(dispersa.BadInput, call)
         for argument in ({"domain": 1}, {"address": "127.0.0.1"}, {"keys": "keys"}, {"insecure": True}, {"priority": 1}):
-            with self.assertRaisesRegex(dispersa.BadInput, "has a meaning with `peer` alone"):
+            with self.assertRaisesRegex(dispersa.BadInput, "may be given only with `peer`"):
                 dispersa.run(SMOKE, self.folder / "never", **argument)
         for argument in ({"workers": 1}, {"threads": 1}, {"resume": True}, {"histories": False}, {"envelope": 5}):
-            with self.assertRaisesRegex(dispersa.BadInput, "has a meaning without `peer` alone"):
+            with self.assertRaisesRegex(dispersa.BadInput, "may be given only without `peer`"):
                 dispersa.run(SMOKE, self.folder / "never", peer="127.0.0.1", **argument)
         with self.assertRaisesRegex(dispersa.BadInput, "allowed: keys=DIR .*, address=127.0.0.1 .*, or insecure=True on a network"):
             dispersa.run(SMOKE, self.folder / "never", peer="198.51.100.1", domain=88)

@@ -61,7 +61,7 @@ class Runs(unittest.TestCase):
         for name, value in (("domain", 1), ("address", "127.0.0.1"), ("keys", "keys"), ("insecure", True), ("priority", 1)):
             with self.assertRaises(dispersa.BadInput) as raised:
                 dispersa.run(SMOKE, self.folder / name, workers=0, **{name: value})
-            self.assertEqual(f"{name}: has a meaning with `peer` alone, allowed: its default", str(raised.exception))
+            self.assertEqual(f"{name}: may be given only with `peer`, allowed: its default", str(raised.exception))
 
     def test_one_metric_is_compared_by_its_name(self):
         compared = dispersa.compare(self.results, self.results, metrics="pitch_error_peak_deg")

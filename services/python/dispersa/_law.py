@@ -37,7 +37,7 @@ def identity(law):
             warnings.simplefilter("ignore")  # of iterators, which later versions of Python will not pickle
             return name_of(law), _Fingerprint().of(law)
     except RecursionError:
-        raise refuse("law: what it refers to goes deeper than can be seen", "a law that refers to less") from None
+        raise refuse("law: its references are nested too deeply for the hash", "a law with fewer levels of references") from None
 
 
 def name_of(law):

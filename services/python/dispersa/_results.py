@@ -90,7 +90,7 @@ class Results:
                          "a name of Results.metrics.dtype.names")
         worse = _core.describe(metric)[3]
         if worse == "neither":
-            raise refuse(f"worst: of '{metric}' neither sense is worse", "a metric that has a worse sense")
+            raise refuse(f"worst: no direction of '{metric}' is worse", "a metric that has a worse direction")
         values = self.metrics[metric]
         badness = {"larger": values, "smaller": -values, "farther_from_zero": numpy.abs(values)}[worse]
         completed = numpy.array([outcome == "completed" for outcome in self.outcome], dtype=bool)
@@ -224,19 +224,19 @@ def run(what, out="", *, cases=None, seed=None, autopilot=None, base=None, worke
         campaign = load(what, base=base, **overrides)
     sha256 = ""
     if law is None and axes is not None:
-        raise refuse("axes: go with a law in Python", "law=..., or no axes")
+        raise refuse("axes: need a law in Python", "law=..., or no axes")
     if law is not None:
         if workers != 0 or peer is not None:
-            raise refuse("law: a control law in Python flies in this process alone, and workers=0 is to say so",
-                         "workers=0; for workers and coordinators a law from a shared object")
+            raise refuse("law: a control law in Python flies in this process only",
+                         "workers=0 and no peer; for workers and coordinators a plug-in")
         campaign, sha256 = under_law(campaign, law, axes)
         if resume:
             _fly_a_stored_case_again(_folder_of(campaign, out), law)
     if peer is None:
-        _refuse_unheeded("with `peer` alone", domain=(domain, 0), address=(address, ""), keys=(keys, ""),
+        _refuse_unheeded("with `peer`", domain=(domain, 0), address=(address, ""), keys=(keys, ""),
                          insecure=(insecure, False), priority=(priority, 0))
     else:
-        _refuse_unheeded("without `peer` alone", workers=(workers, None), threads=(threads, 0), resume=(resume, False),
+        _refuse_unheeded("without `peer`", workers=(workers, None), threads=(threads, 0), resume=(resume, False),
                          histories=(histories, True), envelope=(envelope, ENVELOPE))
     if peer is not None:
         folder = _folder_of(campaign, out)
@@ -257,7 +257,7 @@ def _refuse_unheeded(where, **arguments):
     """Raises BadInput for one of these, (value, default) each, that is given where it has no meaning."""
     for name, (value, default) in arguments.items():
         if value != default:
-            raise refuse(f"{name}: has a meaning {where}", "its default")
+            raise refuse(f"{name}: may be given only {where}", "its default")
 
 
 def _folder_of(campaign, out):
@@ -275,8 +275,8 @@ def _fly_a_stored_case_again(folder, law):
         try:
             stored.replay(case, law=law)
         except ReplayMismatch as error:
-            raise refuse(f"law: the folder's first cases were flown with another one: {error}",
-                         "the law as it was then") from None
+            raise refuse(f"law: the folder's first case was flown with another law: {error}",
+                         "the law with which the folder was flown") from None
 
 
 def report(directory, *, histories=True, envelope=ENVELOPE, progress=None, law=None):
@@ -294,7 +294,7 @@ def _law_of(campaign, law):
     if law is None:
         return ""
     if campaign.python_law is None:
-        raise refuse("law: the campaign was flown with the autopilot that it holds", "no law")
+        raise refuse("law: the campaign was flown with its own autopilot", "no law")
     return under_law(campaign, law)[1]
 
 
